@@ -1,0 +1,23 @@
+/* base/memory.h: allocation with overflow checks. NULL means refused. */
+#ifndef VG_BASE_MEMORY_H
+#define VG_BASE_MEMORY_H
+
+#include <stddef.h>
+
+/** n * size bytes, uninitialised; never a zero-byte block. free() it. */
+void *vg_alloc(size_t n, size_t size);
+
+/** As vg_alloc, zeroed. */
+void *vg_calloc(size_t n, size_t size);
+
+/** Resize a block to n * size bytes; NULL leaves the old block valid. */
+void *vg_realloc(void *block, size_t n, size_t size);
+
+/** Room for at least `need` items of `size` bytes in *block, growing by half.
+ *
+ * @param block  in/out: address of the array pointer, e.g. &list
+ * @param cap    in/out: items the array can hold
+ * Returns 0, or -1 when refused (array and cap unchanged). */
+int vg_reserve(void *block, size_t *cap, size_t need, size_t size);
+
+#endif

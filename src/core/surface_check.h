@@ -1,0 +1,92 @@
+/* core/surface_check.h: is this triangulation fit to bound a mesh? */
+#ifndef VG_CORE_SURFACE_CHECK_H
+#define VG_CORE_SURFACE_CHECK_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "core/mesh.h"
+
+enum vg_defect_kind {
+  VG_DEFECT_OPEN_EDGE,          /* an edge with one triangle */
+  VG_DEFECT_NONMANIFOLD_EDGE,   /* an edge with three or more */
+  VG_DEFECT_ORIENTATION,        /* neighbours that disagree, not repaired */
+  VG_DEFECT_DUPLICATE_POINT,    /* two points at the same coordinates */
+  VG_DEFECT_UNUSED_POINT,
+  VG_DEFECT_DEGENERATE_TRIANGLE,/* repeated node or exactly zero area */
+  VG_DEFECT_DUPLICATE_TRIANGLE,
+  VG_DEFECT_INTERSECTION,       /* two triangles cross or overlap */
+  VG_DEFECT_SHELL,              /* nesting of closed shells is wrong */
+  VG_DEFECT_NO_BC,              /* patch without boundary condition */
+  VG_DEFECT_NOT_FINITE,         /* NaN or infinite coordinate */
+  VG_DEFECT_N
+};
+
+/** One finding. Faces, points are indices into the mesh; SIZE_MAX: none. */
+struct vg_defect {
+  enum vg_defect_kind kind;
+  size_t face[2];
+  size_t point[2];
+  double at[3];                 /* where */
+};
+
+struct vg_shell {               /* one edge-connected closed component */
+  size_t n_tri;
+  double volume;                /* signed; > 0: normals point out of it */
+  size_t parent;                /* shell directly around it; SIZE_MAX: none */
+  int depth;                    /* 0 outermost */
+  double lo[3], hi[3];
+};
+
+struct vg_surface_report {
+  size_t count[VG_DEFECT_N];    /* all findings by kind */
+  size_t n_defect, cap_defect;
+  struct vg_defect *defect;     /* every finding, sorted by kind, then face */
+  size_t n_flipped;             /* triangles turned by the repair */
+  size_t n_removed_point, n_removed_tri; /* removed by the repair */
+  int turned_inside_out;        /* the whole surface was turned */
+  size_t n_shell;
+  struct vg_shell *shell;
+  uint32_t *tri_shell;          /* [n_tri] */
+  int is_closed;                /* no open or non-manifold edge */
+};
+#define VG_SURFACE_REPORT_INIT { 0 }
+
+struct vg_surface_check_options {
+  int repair;                   /* orient, drop unused/duplicate points and
+                                   triangles where no guess is needed */
+  int require_bc;               /* report patches without a condition */
+  int external;                 /* the closed shells are bodies in a fluid
+                                   that a farfield will enclose: an outermost
+                                   shell must have its normals outward (into
+                                   the fluid). 0: outermost shells bound the
+                                   fluid from outside (normals inward). */
+};
+#define VG_SURFACE_CHECK_OPTIONS_INIT { 1, 0, 0 }
+
+/** Find (and with `repair` mend) the defects of the triangles of m.
+ * m may be changed only by the repair. O(n log n).
+ * Returns VG_OK also when defects remain: look at report->n_defect.
+ * VG_ERR_MEMORY otherwise. Threads: re-entrant. */
+vg_status vg_surface_check(struct vg_mesh *m,
+                           const struct vg_surface_check_options *options,
+                           struct vg_surface_report *report,
+                           struct vg_error *err);
+
+void vg_surface_report_release(struct vg_surface_report *r);
+
+/** One line for a person: patch, face (1-based), coordinates, what to do. */
+void vg_defect_text(const struct vg_mesh *m, const struct vg_defect *d,
+                    char *text, size_t size);
+
+/** Name of a kind: "open edge", ... Static string. */
+const char *vg_defect_name(enum vg_defect_kind kind);
+
+/** Merge points that coincide: exactly for tolerance 0, else within it
+ * (single linkage on a grid, lowest index kept), and renumber. Triangles that
+ * collapse are dropped. Counts may be NULL. */
+vg_status vg_surface_weld(struct vg_mesh *m, double tolerance,
+                          size_t *n_merged, size_t *n_dropped,
+                          struct vg_error *err);
+
+#endif
