@@ -1,0 +1,260 @@
+#include "core/boundary.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/cdt_tetgen.h"
+#include "core/predicates.h"
+
+/* --- surface triangles found among cell faces -------------------------- */
+
+struct tri_table {
+  size_t mask;
+  uint32_t *slot;            /* index of a triangle, or VG_NONE */
+  const uint32_t (*tri)[3];
+};
+
+static uint64_t hash3(const uint32_t v[3])
+{
+  uint64_t a = v[0], b = v[1], c = v[2];
+
+  /* symmetric in the three, so no sorting is needed to look up */
+  a = (a + b + c) * 0x9e3779b97f4a7c15u ^ (a * b + b * c + c * a);
+  return (a ^ a >> 31) * 0xc2b2ae3d27d4eb4fu >> 20;
+}
+
+/* 1: same turning sense, -1: opposite, 0: other points. */
+static int same_triangle(const uint32_t a[3], const uint32_t b[3])
+{
+  for (int k = 0; k < 3; k++) {
+    if (a[k] != b[0]) continue;
+    if (a[(k + 1) % 3] == b[1] && a[(k + 2) % 3] == b[2]) return 1;
+    if (a[(k + 1) % 3] == b[2] && a[(k + 2) % 3] == b[1]) return -1;
+  }
+  return 0;
+}
+
+static vg_status tri_table_init(struct tri_table *table, size_t n,
+                                const uint32_t (*tri)[3], struct vg_error *err)
+{
+  size_t size = 16;
+
+  while (size < 2 * n) size *= 2;
+  table->mask = size - 1;
+  table->tri = tri;
+  table->slot = vg_alloc(size, sizeof *table->slot);
+  if (!table->slot) return vg_fail_memory(err, "the surface table");
+  memset(table->slot, 0xff, size * sizeof *table->slot);
+  for (uint32_t i = 0; i < n; i++) {
+    size_t at = hash3(tri[i]) & table->mask;
+
+    while (table->slot[at] != VG_NONE) at = (at + 1) & table->mask;
+    table->slot[at] = i;
+  }
+  return VG_OK;
+}
+
+static uint32_t tri_table_find(const struct tri_table *table,
+                               const uint32_t v[3], int *sense)
+{
+  size_t at = hash3(v) & table->mask;
+
+  for (; table->slot[at] != VG_NONE; at = (at + 1) & table->mask) {
+    *sense = same_triangle(v, table->tri[table->slot[at]]);
+    if (*sense) return table->slot[at];
+  }
+  return VG_NONE;
+}
+
+vg_status vg_boundary_fix(struct vg_tets *t, size_t n_tri,
+                          const uint32_t (*tri)[3], uint8_t *missing,
+                          size_t *n_missing, struct vg_error *err)
+{
+  struct tri_table table;
+  uint8_t *found = vg_calloc(n_tri, 1);
+  vg_status st = tri_table_init(&table, n_tri, tri, err);
+
+  *n_missing = n_tri;
+  if (!found && st == VG_OK) st = vg_fail_memory(err, "the surface table");
+  for (uint32_t c = 0; st == VG_OK && c < t->n_cell; c++) {
+    if (t->flag[c] & VG_DEAD) continue;
+    for (int i = 0; i < 4; i++) {
+      uint32_t v[3], at;
+      int sense;
+
+      for (int k = 0; k < 3; k++) v[k] = t->cell[c].v[vg_face[i][k]];
+      at = tri_table_find(&table, v, &sense);
+      if (at == VG_NONE) continue;
+      t->flag[c] |= (uint8_t)(1 << i);
+      *n_missing -= !found[at];
+      found[at] = 1;
+    }
+  }
+  for (size_t i = 0; missing && st == VG_OK && i < n_tri; i++)
+    missing[i] = !found[i];
+  free(found);
+  free(table.slot);
+  return st;
+}
+
+/* --- which side is fluid ----------------------------------------------- */
+
+enum { SIDE_UNKNOWN, SIDE_FLUID, SIDE_SOLID };
+
+/* Seeds: the cells on both sides of every surface triangle. */
+static vg_status seed_sides(const struct vg_tets *t,
+                            const struct tri_table *table, uint8_t *side,
+                            uint32_t *stack, size_t *n_stack,
+                            struct vg_error *err)
+{
+  for (uint32_t c = 0; c < t->n_cell; c++)
+    for (int i = 0; i < 4; i++) {
+      uint32_t v[3];
+      int sense = 0;
+      uint8_t is;
+
+      if (!(t->flag[c] >> i & 1)) continue;
+      for (int k = 0; k < 3; k++) v[k] = t->cell[c].v[vg_face[i][k]];
+      if (tri_table_find(table, v, &sense) == VG_NONE) continue;
+      is = sense > 0 ? SIDE_FLUID : SIDE_SOLID;
+      if (side[c] == SIDE_UNKNOWN) stack[(*n_stack)++] = c;
+      else if (side[c] != is) return vg_fail(
+          err, VG_ERR_GEOMETRY, "the surface turns inside out at point %u "
+          "(%g %g %g); run 'vanguard check' on it", v[0] + 1, t->x[v[0]][0],
+          t->x[v[0]][1], t->x[v[0]][2]);
+      side[c] = is;
+    }
+  return VG_OK;
+}
+
+static vg_status spread_sides(struct vg_tets *t, uint8_t *side,
+                              uint32_t *stack, size_t n_stack,
+                              struct vg_error *err)
+{
+  while (n_stack) {
+    uint32_t c = stack[--n_stack];
+
+    for (int i = 0; i < 4; i++) {
+      uint32_t other = t->cell[c].link[i] >> 2;
+      const double *x = t->x[t->cell[c].v[0]];
+
+      if (t->flag[c] >> i & 1) continue;
+      if (t->cell[c].link[i] == VG_NONE) {
+        if (side[c] == SIDE_FLUID)
+          return vg_fail(err, VG_ERR_GEOMETRY,
+                         "the fluid is not enclosed near (%g %g %g): the "
+                         "outer boundary must point inward", x[0], x[1], x[2]);
+        continue;
+      }
+      if (side[other] == SIDE_UNKNOWN) {
+        side[other] = side[c];
+        stack[n_stack++] = other;
+      } else if (side[other] != side[c]) {
+        return vg_fail(err, VG_ERR_GEOMETRY,
+                       "fluid and solid meet without a surface between them "
+                       "near (%g %g %g); run 'vanguard check' on the surface",
+                       x[0], x[1], x[2]);
+      }
+    }
+  }
+  return VG_OK;
+}
+
+static vg_status mark_outside(struct vg_tets *t, size_t n_tri,
+                              const uint32_t (*tri)[3], struct vg_error *err)
+{
+  struct tri_table table = {0};
+  uint8_t *side = vg_calloc(t->n_cell, 1);
+  uint32_t *stack = vg_alloc(t->n_cell, sizeof *stack);
+  size_t n_stack = 0, n_fluid = 0;
+  vg_status st = VG_OK;
+
+  if (!side || !stack) st = vg_fail_memory(err, "boundary recovery");
+  if (st == VG_OK) st = tri_table_init(&table, n_tri, tri, err);
+  if (st == VG_OK) st = seed_sides(t, &table, side, stack, &n_stack, err);
+  if (st == VG_OK) st = spread_sides(t, side, stack, n_stack, err);
+  for (size_t c = 0; st == VG_OK && c < t->n_cell; c++) {
+    if (side[c] == SIDE_FLUID) n_fluid++;
+    else t->flag[c] |= VG_OUTSIDE;
+  }
+  if (st == VG_OK && !n_fluid)
+    st = vg_fail(err, VG_ERR_GEOMETRY, "the surface encloses no fluid");
+  free(side);
+  free(stack);
+  free(table.slot);
+  return st;
+}
+
+/* --- the whole void at once -------------------------------------------- */
+
+static vg_status adopt(struct vg_tets *t, size_t n_point, double (*x)[3],
+                       size_t n_tet, const uint32_t (*tet)[4],
+                       struct vg_error *err)
+{
+  t->x = x;
+  t->n_point = t->cap_point = n_point;
+  if (vg_tets_reserve_cells(t, n_tet))
+    return vg_fail_memory(err, "boundary recovery");
+  for (size_t c = 0; c < n_tet; c++) {
+    struct vg_cell *cell = &t->cell[c];
+    double sign;
+
+    memcpy(cell->v, tet[c], sizeof cell->v);
+    sign = vg_orient3d(x[cell->v[0]], x[cell->v[1]], x[cell->v[2]],
+                       x[cell->v[3]]);
+    if (sign == 0)
+      return vg_fail(err, VG_ERR_GEOMETRY,
+                     "boundary recovery left a flat cell at (%g %g %g)",
+                     x[cell->v[0]][0], x[cell->v[0]][1], x[cell->v[0]][2]);
+    if (sign < 0) {
+      cell->v[0] = tet[c][1];
+      cell->v[1] = tet[c][0];
+    }
+    t->flag[c] = 0;
+  }
+  t->n_cell = n_tet;
+  return vg_tets_link(t, err);
+}
+
+static vg_status whole_void(size_t n, const double (*x)[3], size_t n_tri,
+                            const uint32_t (*tri)[3], struct vg_tets *out,
+                            struct vg_boundary_report *report,
+                            struct vg_error *err)
+{
+  size_t n_all, n_tet, n_missing;
+  double (*all)[3];
+  uint32_t (*tet)[4];
+  vg_status st;
+
+  report->whole_void = 1;
+  VG_TRY(vg_cdt_tetgen(n, x, n_tri, tri, &n_all, &all, &n_tet, &tet, err));
+  st = adopt(out, n_all, all, n_tet, (const uint32_t (*)[4])tet, err);
+  free(tet);
+  VG_TRY(st);
+  report->n_steiner = n_all - n;
+  report->n_pocket = 1;
+  report->n_pocket_cell = n_tet;
+  VG_TRY(vg_boundary_fix(out, n_tri, tri, NULL, &n_missing, err));
+  if (n_missing)
+    st = vg_fail(err, VG_ERR_GEOMETRY,
+                 "%zu of %zu surface triangles could not be recovered; run "
+                 "'vanguard check' on the surface", n_missing, n_tri);
+done:
+  return st;
+}
+
+vg_status vg_boundary_tets(size_t n, const double (*x)[3], size_t n_tri,
+                           const uint32_t (*tri)[3], struct vg_tets *out,
+                           struct vg_boundary_report *report,
+                           struct vg_error *err)
+{
+  vg_status st;
+
+  memset(report, 0, sizeof *report);
+  VG_TRY(whole_void(n, x, n_tri, tri, out, report, err));
+  VG_TRY(mark_outside(out, n_tri, tri, err));
+done:
+  if (st < 0) vg_tets_release(out);
+  return st;
+}

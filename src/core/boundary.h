@@ -1,0 +1,39 @@
+/* core/boundary.h: the coarsest tetrahedralisation that holds a surface:
+ * points of the surface only, every triangle a constrained face. */
+#ifndef VG_CORE_BOUNDARY_H
+#define VG_CORE_BOUNDARY_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/status.h"
+#include "core/tets.h"
+
+struct vg_boundary_report {
+  size_t n_edge_lost, n_face_lost; /* not in the Delaunay tetrahedra */
+  size_t n_pocket, n_pocket_cell;  /* regions that TetGen had to close */
+  size_t n_retry;                  /* pockets that had to grow */
+  int whole_void;
+  size_t n_steiner;
+};
+
+/** Tetrahedralise the convex hull of a closed oriented surface.
+ *
+ * @param x, tri  [n][3] points, all used; [n_tri][3] facing the fluid
+ * @param out     empty on entry; points 0..n-1 are x, later ones were added;
+ *                cells linked, surface faces fixed, cells not in the fluid
+ *                flagged VG_OUTSIDE
+ * VG_ERR_GEOMETRY when the triangles do not bound a fluid. */
+vg_status vg_boundary_tets(size_t n, const double (*x)[3], size_t n_tri,
+                           const uint32_t (*tri)[3], struct vg_tets *out,
+                           struct vg_boundary_report *report,
+                           struct vg_error *err);
+
+/** Flag the faces of `t` that are in tri as fixed.
+ * missing out: [n_tri] 1 where no cell has the face; may be NULL.
+ * n_missing out: how many. */
+vg_status vg_boundary_fix(struct vg_tets *t, size_t n_tri,
+                          const uint32_t (*tri)[3], uint8_t *missing,
+                          size_t *n_missing, struct vg_error *err);
+
+#endif

@@ -1,0 +1,321 @@
+#include "core/insert.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/predicates.h"
+
+enum { CUT_MAX = 64 };       /* times a cavity may be cut back */
+
+vg_status vg_inserter_init(struct vg_inserter *s, struct vg_tets *t,
+                           struct vg_error *err)
+{
+  memset(s, 0, sizeof *s);
+  s->t = t;
+  s->cap_edge = 256;
+  s->edge = vg_calloc(s->cap_edge, sizeof *s->edge);
+  s->last = VG_NONE;
+  return s->edge ? VG_OK : vg_fail_memory(err, "the cavity table");
+}
+
+void vg_inserter_release(struct vg_inserter *s)
+{
+  free(s->cell);
+  free(s->tried);
+  free(s->face);
+  free(s->edge);
+  memset(s, 0, sizeof *s);
+}
+
+/* --- the cavity -------------------------------------------------------- */
+
+static int add_cell(struct vg_inserter *s, uint32_t c)
+{
+  if (vg_reserve(&s->cell, &s->cap_cell, s->n_cell + 1, sizeof *s->cell))
+    return -1;
+  s->t->flag[c] |= VG_MARK;
+  s->cell[s->n_cell++] = c;
+  return 0;
+}
+
+static int add_tried(struct vg_inserter *s, uint32_t c)
+{
+  if (vg_reserve(&s->tried, &s->cap_tried, s->n_tried + 1, sizeof *s->tried))
+    return -1;
+  s->t->flag[c] |= VG_TRIED;
+  s->tried[s->n_tried++] = c;
+  return 0;
+}
+
+static int add_face(struct vg_inserter *s, uint32_t c, int i)
+{
+  const struct vg_cell *cell = &s->t->cell[c];
+  struct vg_cavity_face *f;
+
+  if (vg_reserve(&s->face, &s->cap_face, s->n_face + 1, sizeof *s->face))
+    return -1;
+  f = &s->face[s->n_face++];
+  for (int k = 0; k < 3; k++) f->v[k] = cell->v[vg_face[i][k]];
+  f->link = cell->link[i];
+  f->fixed = s->t->flag[c] >> i & 1;
+  f->outside = s->t->flag[c] & VG_OUTSIDE;
+  return 0;
+}
+
+static void clear_marks(struct vg_inserter *s)
+{
+  for (size_t k = 0; k < s->n_cell; k++)
+    s->t->flag[s->cell[k]] &= (uint8_t)~VG_MARK;
+  for (size_t k = 0; k < s->n_tried; k++)
+    s->t->flag[s->tried[k]] &= (uint8_t)~VG_TRIED;
+  s->n_cell = s->n_tried = s->n_face = 0;
+}
+
+static int in_sphere(const struct vg_tets *t, uint32_t c, const double x[3])
+{
+  const uint32_t *v = t->cell[c].v;
+
+  return vg_insphere(t->x[v[0]], t->x[v[1]], t->x[v[2]], t->x[v[3]], x) > 0;
+}
+
+/* Cells reachable from those already in the list; cells marked TRIED before
+ * the call stay out. Faces are collected in the same sweep. */
+static int flood(struct vg_inserter *s, const double x[3])
+{
+  struct vg_tets *t = s->t;
+
+  for (size_t k = 0; k < s->n_cell; k++) {
+    uint32_t c = s->cell[k];
+
+    for (int i = 0; i < 4; i++) {
+      uint32_t link = t->cell[c].link[i], other = link >> 2;
+
+      if (link == VG_NONE || t->flag[c] >> i & 1) {
+        if (add_face(s, c, i)) return -1;
+        continue;
+      }
+      if (t->flag[other] & VG_MARK) continue;
+      if (!(t->flag[other] & VG_TRIED)) {
+        if (in_sphere(t, other, x)) {
+          if (add_cell(s, other)) return -1;
+          continue;
+        }
+        if (add_tried(s, other)) return -1;
+      }
+      if (add_face(s, c, i)) return -1;
+    }
+  }
+  return 0;
+}
+
+/* A face found while its neighbour was still unmarked may have been taken in
+ * later only through another face: impossible here, because a cell once TRIED
+ * stays out. The faces are therefore final after one flood. */
+
+/** Index of the first face not strictly visible from x, or n_face. */
+static size_t first_hidden(const struct vg_inserter *s, const double x[3])
+{
+  const struct vg_tets *t = s->t;
+  size_t k = 0;
+
+  for (; k < s->n_face; k++) {
+    const uint32_t *v = s->face[k].v;
+
+    if (!(vg_orient3d(t->x[v[0]], t->x[v[1]], t->x[v[2]], x) > 0)) break;
+  }
+  return k;
+}
+
+/* The cavity cell in front of face f. */
+static uint32_t cell_before(const struct vg_inserter *s, size_t f)
+{
+  const struct vg_cavity_face *face = &s->face[f];
+
+  if (face->link != VG_NONE)
+    return s->t->cell[face->link >> 2].link[face->link & 3] >> 2;
+  for (size_t k = 0; k < s->n_cell; k++) {
+    const struct vg_cell *c = &s->t->cell[s->cell[k]];
+
+    for (int i = 0; i < 4; i++)
+      if (c->link[i] == VG_NONE && c->v[vg_face[i][0]] == face->v[0] &&
+          c->v[vg_face[i][1]] == face->v[1] &&
+          c->v[vg_face[i][2]] == face->v[2])
+        return s->cell[k];
+  }
+  return VG_NONE;
+}
+
+/* Leave the cell before hidden face f out and flood again from the seed. */
+static int cut_back(struct vg_inserter *s, size_t f, const double x[3])
+{
+  uint32_t out = cell_before(s, f), seed = s->cell[0];
+
+  if (out == seed || out == VG_NONE) return 1;
+  for (size_t k = 0; k < s->n_cell; k++)
+    s->t->flag[s->cell[k]] &= (uint8_t)~VG_MARK;
+  s->n_cell = s->n_face = 0;
+  if (add_tried(s, out) || add_cell(s, seed)) return -1;
+  return flood(s, x);
+}
+
+/* --- is the point welcome? --------------------------------------------- */
+
+static double distance2(const double a[3], const double b[3])
+{
+  double u = a[0] - b[0], v = a[1] - b[1], w = a[2] - b[2];
+
+  return u * u + v * v + w * w;
+}
+
+/* Height over the face, squared, against the square of its mean edge. */
+static int too_low(const double a[3], const double b[3], const double c[3],
+                   const double x[3], double clearance)
+{
+  double u[3], v[3], w[3], n[3], dot = 0, n2 = 0, e2;
+
+  for (int k = 0; k < 3; k++) {
+    u[k] = b[k] - a[k];
+    v[k] = c[k] - a[k];
+    w[k] = x[k] - a[k];
+  }
+  n[0] = u[1] * v[2] - u[2] * v[1];
+  n[1] = u[2] * v[0] - u[0] * v[2];
+  n[2] = u[0] * v[1] - u[1] * v[0];
+  for (int k = 0; k < 3; k++) {
+    dot += n[k] * w[k];
+    n2 += n[k] * n[k];
+  }
+  e2 = (distance2(a, b) + distance2(b, c) + distance2(c, a)) / 3;
+  return dot * dot < clearance * clearance * e2 * n2;
+}
+
+static int unwelcome(const struct vg_inserter *s, const double x[3],
+                     double clearance, double nearest)
+{
+  double near2 = nearest * nearest;
+  const struct vg_tets *t = s->t;
+
+  for (size_t k = 0; k < s->n_face; k++) {
+    const struct vg_cavity_face *f = &s->face[k];
+
+    for (int i = 0; i < 3; i++)
+      if (distance2(t->x[f->v[i]], x) < near2) return 1;
+    if (f->fixed && clearance > 0 &&
+        too_low(t->x[f->v[0]], t->x[f->v[1]], t->x[f->v[2]], x, clearance))
+      return 1;
+  }
+  return 0;
+}
+
+/* --- refilling --------------------------------------------------------- */
+
+static int grow_edges(struct vg_inserter *s)
+{
+  size_t need = 256;
+
+  while (need < 6 * s->n_face) need *= 2;
+  if (need > s->cap_edge) {
+    struct vg_edge_slot *table = vg_calloc(need, sizeof *table);
+
+    if (!table) return -1;
+    free(s->edge);
+    s->edge = table;
+    s->cap_edge = need;
+    s->epoch = 0;
+  }
+  if (++s->epoch == 0) {
+    memset(s->edge, 0, s->cap_edge * sizeof *s->edge);
+    s->epoch = 1;
+  }
+  return 0;
+}
+
+/* Link the face of `link` whose edge away from the new point is (a, b). */
+static void link_edge(struct vg_inserter *s, uint32_t a, uint32_t b,
+                      uint32_t link)
+{
+  uint64_t key = a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
+  size_t mask = s->cap_edge - 1;
+  size_t at = key * 0x9e3779b97f4a7c15u >> 40 & mask;
+
+  for (;; at = (at + 1) & mask) {
+    struct vg_edge_slot *e = &s->edge[at];
+
+    if (e->epoch != s->epoch) {
+      e->epoch = s->epoch;
+      e->key = key;
+      e->link = link;
+      return;
+    }
+    if (e->key == key) {
+      vg_tets_join(s->t, e->link, link);
+      return;
+    }
+  }
+}
+
+static void refill(struct vg_inserter *s, uint32_t p)
+{
+  struct vg_tets *t = s->t;
+  size_t used = 0;
+
+  for (size_t k = 0; k < s->n_face; k++) {
+    const struct vg_cavity_face *f = &s->face[k];
+    uint32_t c = used < s->n_cell ? s->cell[used++] : vg_tets_take(t);
+    struct vg_cell *cell = &t->cell[c];
+
+    cell->v[0] = f->v[0];
+    cell->v[1] = f->v[1];
+    cell->v[2] = f->v[2];
+    cell->v[3] = p;
+    t->flag[c] = (uint8_t)(f->outside | f->fixed << 3);
+    cell->link[3] = f->link;
+    if (f->link != VG_NONE)
+      t->cell[f->link >> 2].link[f->link & 3] = 4 * c + 3;
+    link_edge(s, f->v[1], f->v[2], 4 * c);
+    link_edge(s, f->v[2], f->v[0], 4 * c + 1);
+    link_edge(s, f->v[0], f->v[1], 4 * c + 2);
+    s->last = c;
+  }
+  /* A star-shaped cavity of n vertices has 2n - 4 faces; with n - 3 cells or
+   * more there can be fewer faces than cells only around flat ones. */
+  while (used < s->n_cell) vg_tets_drop(t, s->cell[used++]);
+}
+
+vg_status vg_insert(struct vg_inserter *s, uint32_t p, uint32_t at,
+                    double clearance, double nearest, struct vg_error *err)
+{
+  struct vg_tets *t = s->t;
+  double x[3];
+  size_t hidden;
+  int bad;
+
+  memcpy(x, t->x[p], sizeof x);
+  bad = add_cell(s, at) || flood(s, x);
+  for (int cut = 0; !bad; cut++) {
+    hidden = first_hidden(s, x);
+    if (hidden == s->n_face) break;
+    bad = cut == CUT_MAX ? 1 : cut_back(s, hidden, x);
+    if (bad > 0) {
+      clear_marks(s);
+      return VG_BLOCKED;
+    }
+  }
+  if (!bad && unwelcome(s, x, clearance, nearest)) {
+    clear_marks(s);
+    return VG_BLOCKED;
+  }
+  bad = bad || grow_edges(s) || vg_tets_reserve_cells(t, s->n_face) ||
+        vg_reserve(&t->free, &t->cap_free, t->n_free + s->n_cell,
+                   sizeof *t->free);
+  if (bad) {
+    clear_marks(s);
+    return vg_fail_memory(err, "the cells of the volume mesh");
+  }
+  refill(s, p);
+  for (size_t k = 0; k < s->n_tried; k++)
+    t->flag[s->tried[k]] &= (uint8_t)~VG_TRIED;
+  s->n_cell = s->n_tried = s->n_face = 0;
+  return VG_OK;
+}
