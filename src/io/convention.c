@@ -1,0 +1,440 @@
+/* Orientation, index base and patches of meshes from files. The faces of the
+ * cells, inward, are those of formats.md 2.3. */
+#include "io/convention.h"
+
+#include <float.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/predicates.h"
+
+/* Inward faces, 0-based; a triangle repeats its last node. */
+static const unsigned char tet_face[4][4] = {
+  {1, 3, 2, 2}, {0, 2, 3, 3}, {0, 3, 1, 1}, {0, 1, 2, 2}
+};
+static const unsigned char pyr_face[5][4] = {
+  {0, 1, 2, 2}, {1, 4, 2, 2}, {2, 4, 3, 3}, {0, 2, 3, 3}, {0, 3, 4, 1}
+};
+static const unsigned char pri_face[5][4] = {
+  {0, 3, 4, 1}, {1, 4, 5, 2}, {0, 2, 5, 3}, {0, 1, 2, 2}, {3, 5, 4, 4}
+};
+static const unsigned char hex_face[6][4] = {
+  {0, 3, 7, 4}, {1, 5, 6, 2}, {0, 4, 5, 1}, {2, 6, 7, 3}, {0, 1, 2, 3},
+  {4, 7, 6, 5}
+};
+
+vg_status vg_check_points(const char *path, size_t n, const double (*p)[3],
+                          struct vg_error *err)
+{
+  for (size_t i = 0; i < n; i++)
+    for (int k = 0; k < 3; k++)
+      if (!(p[i][k] >= -DBL_MAX && p[i][k] <= DBL_MAX))
+        return vg_fail(err, VG_ERR_INPUT,
+                       "%s: coordinate %c of point %zu is not a finite "
+                       "number (%g); mend the file or check its byte order",
+                       path, "xyz"[k], i + 1, p[i][k]);
+  return VG_OK;
+}
+
+vg_status vg_index_from_file(const char *path, const char *element, size_t n,
+                             int width, size_t n_point, uint32_t *index,
+                             struct vg_error *err)
+{
+  size_t count = n * (size_t)width;
+  uint32_t limit = n_point < UINT32_MAX ? (uint32_t)n_point : UINT32_MAX;
+  uint32_t bad = 0;
+
+  for (size_t i = 0; i < count; i++) {
+    index[i] -= 1;
+    bad |= index[i] >= limit;
+  }
+  if (!bad) return VG_OK;
+  for (size_t i = 0; i < count; i++)
+    if (index[i] >= limit)
+      return vg_fail(err, VG_ERR_INPUT,
+                     "%s: %s %zu refers to point %lld; points are numbered 1 "
+                     "to %zu", path, element, i / (size_t)width + 1,
+                     (long long)(int32_t)(index[i] + 1), n_point);
+  return VG_OK;
+}
+
+/* --- patches --- */
+
+static uint32_t mix(uint32_t x)
+{
+  x ^= x >> 16;
+  x *= 0x7feb352du;
+  x ^= x >> 15;
+  x *= 0x846ca68bu;
+  return x ^ x >> 16;
+}
+
+struct tag_table {
+  size_t mask, n, cap;
+  uint32_t *slot;   /* [mask + 1] index into id + 1; 0: free */
+  int32_t *id;      /* [n] */
+};
+
+static int tag_grow(struct tag_table *t)
+{
+  size_t mask = t->mask ? 2 * t->mask + 1 : 255;
+  uint32_t *slot = vg_calloc(mask + 1, sizeof *slot);
+
+  if (!slot) return -1;
+  for (size_t i = 0; i < t->n; i++) {
+    size_t at = mix((uint32_t)t->id[i]) & mask;
+
+    while (slot[at]) at = (at + 1) & mask;
+    slot[at] = (uint32_t)i + 1;
+  }
+  free(t->slot);
+  t->slot = slot;
+  t->mask = mask;
+  return 0;
+}
+
+/* Index of a tag, added when new; -1 when memory is refused. */
+static int64_t tag_index(struct tag_table *t, int32_t id)
+{
+  size_t at;
+
+  if (2 * t->n >= t->mask && tag_grow(t) < 0) return -1;
+  at = mix((uint32_t)id) & t->mask;
+  for (; t->slot[at]; at = (at + 1) & t->mask)
+    if (t->id[t->slot[at] - 1] == id) return t->slot[at] - 1;
+  if (vg_reserve(&t->id, &t->cap, t->n + 1, sizeof *t->id) < 0) return -1;
+  t->id[t->n++] = id;
+  t->slot[at] = (uint32_t)t->n;
+  return (int64_t)t->n - 1;
+}
+
+static int compare_patch(const void *a, const void *b)
+{
+  const struct vg_patch *p = a, *q = b;
+
+  return (p->id > q->id) - (p->id < q->id);
+}
+
+/* Patches sorted by id; rank[i] is the place of the i-th tag found. */
+static vg_status make_patches(struct vg_mesh *m, const struct tag_table *t,
+                              uint32_t *rank, struct vg_error *err)
+{
+  struct vg_patch *patch = vg_calloc(t->n, sizeof *patch);
+
+  if (!patch) return vg_fail_memory(err, "the patches");
+  for (size_t i = 0; i < t->n; i++) {
+    patch[i].id = t->id[i];
+    patch[i].bc = (int32_t)i;
+  }
+  qsort(patch, t->n, sizeof *patch, compare_patch);
+  for (size_t i = 0; i < t->n; i++) {
+    rank[patch[i].bc] = (uint32_t)i;
+    patch[i].bc = patch[i].bc_fun3d = patch[i].family = VG_BC_NONE;
+  }
+  free(m->patch);
+  m->patch = patch;
+  m->n_patch = t->n;
+  return VG_OK;
+}
+
+vg_status vg_patches_from_tags(struct vg_mesh *m, const int32_t *tag,
+                               struct vg_error *err)
+{
+  struct tag_table t = {0};
+  size_t n = m->n_tri + m->n_quad;
+  uint32_t *of = vg_alloc(n, sizeof *of), *rank = NULL;
+  uint32_t *tri = vg_alloc(m->n_tri, sizeof *tri);
+  uint32_t *quad = vg_alloc(m->n_quad, sizeof *quad);
+  vg_status st = VG_OK;
+  int64_t last = -1;
+
+  if (!of || !tri || !quad) goto refused;
+  for (size_t i = 0; i < n; i++) {
+    if (last < 0 || t.id[last] != tag[i]) last = tag_index(&t, tag[i]);
+    if (last < 0) goto refused;
+    of[i] = (uint32_t)last;
+  }
+  rank = vg_alloc(t.n, sizeof *rank);
+  if (!rank) goto refused;
+  VG_TRY(make_patches(m, &t, rank, err));
+  for (size_t i = 0; i < m->n_tri; i++) tri[i] = rank[of[i]];
+  for (size_t i = 0; i < m->n_quad; i++) quad[i] = rank[of[m->n_tri + i]];
+  free(m->tri_patch);
+  free(m->quad_patch);
+  m->tri_patch = tri;
+  m->quad_patch = quad;
+  tri = quad = NULL;
+  goto done;
+refused:
+  st = vg_fail_memory(err, "the patches of the boundary faces");
+done:
+  free(of);
+  free(rank);
+  free(tri);
+  free(quad);
+  free(t.slot);
+  free(t.id);
+  return st;
+}
+
+/* --- orientation --- */
+
+static void sub(const double a[3], const double b[3], double c[3])
+{
+  for (int k = 0; k < 3; k++) c[k] = a[k] - b[k];
+}
+
+static double triple(const double a[3], const double b[3], const double c[3])
+{
+  return a[0] * (b[1] * c[2] - b[2] * c[1]) +
+         a[1] * (b[2] * c[0] - b[0] * c[2]) +
+         a[2] * (b[0] * c[1] - b[1] * c[0]);
+}
+
+/* Six times the volume by inward faces, seen from node 0. Quadrilaterals
+ * count as the mean of their two triangulations. */
+static double volume6(const struct vg_mesh *m, const uint32_t *c,
+                      const unsigned char (*face)[4], int n_face)
+{
+  double volume = 0, p[4][3];
+
+  for (int f = 0; f < n_face; f++) {
+    const unsigned char *q = face[f];
+
+    for (int k = 0; k < 4; k++)
+      sub(m->point[c[q[k]]], m->point[c[0]], p[k]);
+    if (q[2] == q[3])
+      volume -= triple(p[0], p[1], p[2]);
+    else
+      volume -= (triple(p[0], p[1], p[2]) + triple(p[0], p[2], p[3]) +
+                 triple(p[0], p[1], p[3]) + triple(p[1], p[2], p[3])) / 2;
+  }
+  return volume;
+}
+
+static void swap(uint32_t *c, int a, int b)
+{
+  uint32_t t = c[a];
+
+  c[a] = c[b];
+  c[b] = t;
+}
+
+static size_t turn_cells(struct vg_mesh *m)
+{
+  size_t n = 0;
+
+  for (size_t i = 0; i < m->n_tet; i++) {
+    uint32_t *c = m->tet[i];
+
+    if (vg_orient3d(m->point[c[0]], m->point[c[1]], m->point[c[2]],
+                    m->point[c[3]]) < 0) {
+      swap(c, 1, 2);
+      n++;
+    }
+  }
+  for (size_t i = 0; i < m->n_pyr; i++)
+    if (volume6(m, m->pyr[i], pyr_face, 5) < 0) {
+      swap(m->pyr[i], 1, 3);
+      n++;
+    }
+  for (size_t i = 0; i < m->n_pri; i++)
+    if (volume6(m, m->pri[i], pri_face, 5) < 0) {
+      swap(m->pri[i], 1, 2);
+      swap(m->pri[i], 4, 5);
+      n++;
+    }
+  for (size_t i = 0; i < m->n_hex; i++)
+    if (volume6(m, m->hex[i], hex_face, 6) < 0) {
+      swap(m->hex[i], 1, 3);
+      swap(m->hex[i], 5, 7);
+      n++;
+    }
+  return n;
+}
+
+/* Boundary faces by their sorted nodes; a triangle has UINT32_MAX last. */
+struct face_table {
+  size_t mask;
+  uint32_t *slot;          /* face + 1 */
+  unsigned char *found;    /* [n_tri + n_quad] */
+  unsigned char *on;       /* [n_point] the point is on the boundary */
+};
+
+static void order(uint32_t *k, int a, int b)
+{
+  if (k[a] > k[b]) swap(k, a, b);
+}
+
+static void make_key(const uint32_t *n, int width, uint32_t key[4])
+{
+  for (int i = 0; i < width; i++) key[i] = n[i];
+  if (width == 3) key[3] = UINT32_MAX;
+  order(key, 0, 1);
+  order(key, 2, 3);
+  order(key, 0, 2);
+  order(key, 1, 3);
+  order(key, 1, 2);
+}
+
+static const uint32_t *face_nodes(const struct vg_mesh *m, size_t f,
+                                  int *width)
+{
+  *width = f < m->n_tri ? 3 : 4;
+  return f < m->n_tri ? m->tri[f] : m->quad[f - m->n_tri];
+}
+
+static size_t slot_of(const struct face_table *t, const uint32_t key[4])
+{
+  uint32_t h = mix(key[0] ^ mix(key[1] ^ mix(key[2] ^ mix(key[3]))));
+
+  return h & t->mask;
+}
+
+static void face_release(struct face_table *t)
+{
+  free(t->slot);
+  free(t->found);
+  free(t->on);
+}
+
+static vg_status face_build(struct face_table *t, const struct vg_mesh *m,
+                            struct vg_error *err)
+{
+  size_t n = m->n_tri + m->n_quad, size = 16;
+
+  while (size < 2 * n) size *= 2;
+  t->mask = size - 1;
+  t->slot = vg_calloc(size, sizeof *t->slot);
+  t->found = vg_calloc(n, 1);
+  t->on = vg_calloc(m->n_point, 1);
+  if (!t->slot || !t->found || !t->on || n >= UINT32_MAX) {
+    face_release(t);
+    return vg_fail_memory(err, "a table of the boundary faces");
+  }
+  for (size_t f = 0; f < n; f++) {
+    int width;
+    const uint32_t *node = face_nodes(m, f, &width);
+    uint32_t key[4];
+    size_t at;
+
+    for (int k = 0; k < width; k++) t->on[node[k]] = 1;
+    make_key(node, width, key);
+    for (at = slot_of(t, key); t->slot[at]; at = (at + 1) & t->mask) {}
+    t->slot[at] = (uint32_t)f + 1;
+  }
+  return VG_OK;
+}
+
+/* Does the cycle a[0..w) run through the same nodes in the direction of b? */
+static int same_direction(const uint32_t *a, const uint32_t *b, int w)
+{
+  int i = 0;
+
+  while (i < w && b[i] != a[0]) i++;
+  return i < w && b[(i + 1) % w] == a[1];
+}
+
+/* One face of a cell, listed inward: turn every boundary face on the same
+ * nodes that has not met a cell yet. */
+static void meet_face(struct vg_mesh *m, struct face_table *t,
+                      const uint32_t *inward, int width,
+                      struct vg_turned *turned)
+{
+  uint32_t key[4], other[4];
+
+  make_key(inward, width, key);
+  for (size_t at = slot_of(t, key); t->slot[at]; at = (at + 1) & t->mask) {
+    size_t f = t->slot[at] - 1;
+    int w;
+    uint32_t *node = (uint32_t *)face_nodes(m, f, &w);
+
+    if (w != width || t->found[f]) continue;
+    make_key(node, w, other);
+    if (memcmp(key, other, sizeof key)) continue;
+    t->found[f] = 1;
+    if (same_direction(node, inward, w)) continue;
+    swap(node, 1, w - 1);
+    turned->face++;
+  }
+}
+
+static void meet_cells(struct vg_mesh *m, struct face_table *t, size_t n,
+                       const uint32_t *cell, int width,
+                       const unsigned char (*face)[4], int n_face,
+                       struct vg_turned *turned)
+{
+  for (size_t i = 0; i < n; i++) {
+    const uint32_t *c = cell + i * (size_t)width;
+    int on = 0;
+
+    for (int k = 0; k < width; k++) on += t->on[c[k]];
+    if (on < 3) continue;
+    for (int f = 0; f < n_face; f++) {
+      int w = face[f][2] == face[f][3] ? 3 : 4, all = 1;
+      uint32_t node[4];
+
+      for (int k = 0; k < w; k++) {
+        node[k] = c[face[f][k]];
+        all &= t->on[node[k]];
+      }
+      if (all) meet_face(m, t, node, w, turned);
+    }
+  }
+}
+
+vg_status vg_mesh_turn(struct vg_mesh *m, struct vg_turned *turned,
+                       struct vg_error *err)
+{
+  struct vg_turned result = {0, 0, 0};
+  struct face_table t = {0};
+  vg_status st;
+
+  if (m->n_tet + m->n_pyr + m->n_pri + m->n_hex) {
+    st = face_build(&t, m, err);
+    if (st < 0) return st;
+    result.cell = turn_cells(m);
+    meet_cells(m, &t, m->n_tet, &m->tet[0][0], 4, tet_face, 4, &result);
+    meet_cells(m, &t, m->n_pyr, &m->pyr[0][0], 5, pyr_face, 5, &result);
+    meet_cells(m, &t, m->n_pri, &m->pri[0][0], 6, pri_face, 5, &result);
+    meet_cells(m, &t, m->n_hex, &m->hex[0][0], 8, hex_face, 6, &result);
+    for (size_t f = 0; f < m->n_tri + m->n_quad; f++)
+      result.loose_face += !t.found[f];
+    face_release(&t);
+  }
+  if (turned) *turned = result;
+  return VG_OK;
+}
+
+void vg_mesh_keep_boundary(struct vg_mesh *m)
+{
+  uint32_t *new_index = vg_alloc(m->n_point, sizeof *new_index);
+  size_t n = 0;
+
+  free(m->tet);
+  free(m->pyr);
+  free(m->pri);
+  free(m->hex);
+  m->tet = NULL;
+  m->pyr = NULL;
+  m->pri = NULL;
+  m->hex = NULL;
+  m->n_tet = m->n_pyr = m->n_pri = m->n_hex = 0;
+  if (!new_index) return; /* unused points stay: harmless */
+  memset(new_index, 0xff, m->n_point * sizeof *new_index);
+  for (size_t i = 0; i < 3 * m->n_tri; i++) new_index[(&m->tri[0][0])[i]] = 0;
+  for (size_t i = 0; i < 4 * m->n_quad; i++)
+    new_index[(&m->quad[0][0])[i]] = 0;
+  for (size_t i = 0; i < m->n_point; i++)
+    if (!new_index[i]) {
+      memmove(m->point[n], m->point[i], sizeof m->point[n]);
+      new_index[i] = (uint32_t)n++;
+    }
+  for (size_t i = 0; i < 3 * m->n_tri; i++)
+    (&m->tri[0][0])[i] = new_index[(&m->tri[0][0])[i]];
+  for (size_t i = 0; i < 4 * m->n_quad; i++)
+    (&m->quad[0][0])[i] = new_index[(&m->quad[0][0])[i]];
+  m->n_point = n;
+  free(new_index);
+}
