@@ -254,7 +254,8 @@ static size_t turn_cells(struct vg_mesh *m)
   return n;
 }
 
-/* Boundary faces by their sorted nodes; a triangle has UINT32_MAX last. */
+/* Boundary faces by their sorted nodes; a triangle has UINT32_MAX last. Of
+ * several faces on the same nodes the first is kept. */
 struct face_table {
   size_t mask;
   uint32_t *slot;          /* face + 1 */
@@ -292,6 +293,24 @@ static size_t slot_of(const struct face_table *t, const uint32_t key[4])
   return h & t->mask;
 }
 
+/* The boundary face with this key, or SIZE_MAX and the free slot for it. */
+static size_t find_face(const struct vg_mesh *m, const struct face_table *t,
+                        const uint32_t key[4], size_t *free_slot)
+{
+  size_t at = slot_of(t, key);
+
+  for (; t->slot[at]; at = (at + 1) & t->mask) {
+    int width;
+    const uint32_t *node = face_nodes(m, t->slot[at] - 1, &width);
+    uint32_t other[4];
+
+    make_key(node, width, other);
+    if (!memcmp(key, other, sizeof other)) return t->slot[at] - 1;
+  }
+  if (free_slot) *free_slot = at;
+  return SIZE_MAX;
+}
+
 static void face_release(struct face_table *t)
 {
   free(t->slot);
@@ -321,8 +340,7 @@ static vg_status face_build(struct face_table *t, const struct vg_mesh *m,
 
     for (int k = 0; k < width; k++) t->on[node[k]] = 1;
     make_key(node, width, key);
-    for (at = slot_of(t, key); t->slot[at]; at = (at + 1) & t->mask) {}
-    t->slot[at] = (uint32_t)f + 1;
+    if (find_face(m, t, key, &at) == SIZE_MAX) t->slot[at] = (uint32_t)f + 1;
   }
   return VG_OK;
 }
@@ -336,28 +354,24 @@ static int same_direction(const uint32_t *a, const uint32_t *b, int w)
   return i < w && b[(i + 1) % w] == a[1];
 }
 
-/* One face of a cell, listed inward: turn every boundary face on the same
- * nodes that has not met a cell yet. */
+/* One face of a cell, listed inward: turn the boundary face on its nodes,
+ * unless a cell has met it before. */
 static void meet_face(struct vg_mesh *m, struct face_table *t,
                       const uint32_t *inward, int width,
                       struct vg_turned *turned)
 {
-  uint32_t key[4], other[4];
+  uint32_t key[4], *node;
+  size_t f;
+  int w;
 
   make_key(inward, width, key);
-  for (size_t at = slot_of(t, key); t->slot[at]; at = (at + 1) & t->mask) {
-    size_t f = t->slot[at] - 1;
-    int w;
-    uint32_t *node = (uint32_t *)face_nodes(m, f, &w);
-
-    if (w != width || t->found[f]) continue;
-    make_key(node, w, other);
-    if (memcmp(key, other, sizeof key)) continue;
-    t->found[f] = 1;
-    if (same_direction(node, inward, w)) continue;
-    swap(node, 1, w - 1);
-    turned->face++;
-  }
+  f = find_face(m, t, key, NULL);
+  if (f == SIZE_MAX || t->found[f]) return;
+  t->found[f] = 1;
+  node = (uint32_t *)face_nodes(m, f, &w);
+  if (same_direction(node, inward, w)) return;
+  swap(node, 1, w - 1);
+  turned->face++;
 }
 
 static void meet_cells(struct vg_mesh *m, struct face_table *t, size_t n,
@@ -395,16 +409,26 @@ vg_status vg_mesh_turn(struct vg_mesh *m, struct vg_turned *turned,
     st = face_build(&t, m, err);
     if (st < 0) return st;
     result.cell = turn_cells(m);
-    meet_cells(m, &t, m->n_tet, &m->tet[0][0], 4, tet_face, 4, &result);
-    meet_cells(m, &t, m->n_pyr, &m->pyr[0][0], 5, pyr_face, 5, &result);
-    meet_cells(m, &t, m->n_pri, &m->pri[0][0], 6, pri_face, 5, &result);
-    meet_cells(m, &t, m->n_hex, &m->hex[0][0], 8, hex_face, 6, &result);
+    meet_cells(m, &t, m->n_tet, (const uint32_t *)m->tet, 4, tet_face, 4, &result);
+    meet_cells(m, &t, m->n_pyr, (const uint32_t *)m->pyr, 5, pyr_face, 5, &result);
+    meet_cells(m, &t, m->n_pri, (const uint32_t *)m->pri, 6, pri_face, 5, &result);
+    meet_cells(m, &t, m->n_hex, (const uint32_t *)m->hex, 8, hex_face, 6, &result);
     for (size_t f = 0; f < m->n_tri + m->n_quad; f++)
       result.loose_face += !t.found[f];
     face_release(&t);
   }
   if (turned) *turned = result;
   return VG_OK;
+}
+
+static void mark_used(size_t n, const uint32_t *node, uint32_t *mark)
+{
+  for (size_t i = 0; i < n; i++) mark[node[i]] = 0;
+}
+
+static void renumber(size_t n, uint32_t *node, const uint32_t *new_index)
+{
+  for (size_t i = 0; i < n; i++) node[i] = new_index[node[i]];
 }
 
 void vg_mesh_keep_boundary(struct vg_mesh *m)
@@ -423,18 +447,15 @@ void vg_mesh_keep_boundary(struct vg_mesh *m)
   m->n_tet = m->n_pyr = m->n_pri = m->n_hex = 0;
   if (!new_index) return; /* unused points stay: harmless */
   memset(new_index, 0xff, m->n_point * sizeof *new_index);
-  for (size_t i = 0; i < 3 * m->n_tri; i++) new_index[(&m->tri[0][0])[i]] = 0;
-  for (size_t i = 0; i < 4 * m->n_quad; i++)
-    new_index[(&m->quad[0][0])[i]] = 0;
+  mark_used(3 * m->n_tri, (uint32_t *)m->tri, new_index);
+  mark_used(4 * m->n_quad, (uint32_t *)m->quad, new_index);
   for (size_t i = 0; i < m->n_point; i++)
     if (!new_index[i]) {
       memmove(m->point[n], m->point[i], sizeof m->point[n]);
       new_index[i] = (uint32_t)n++;
     }
-  for (size_t i = 0; i < 3 * m->n_tri; i++)
-    (&m->tri[0][0])[i] = new_index[(&m->tri[0][0])[i]];
-  for (size_t i = 0; i < 4 * m->n_quad; i++)
-    (&m->quad[0][0])[i] = new_index[(&m->quad[0][0])[i]];
+  renumber(3 * m->n_tri, (uint32_t *)m->tri, new_index);
+  renumber(4 * m->n_quad, (uint32_t *)m->quad, new_index);
   m->n_point = n;
   free(new_index);
 }
