@@ -1,0 +1,196 @@
+/* Writer of the run deck. Declared in cli/deck.h; grammar in docs/deck.md. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/deck.h"
+#include "io/stream.h"
+
+#define CELL_SIZE (2 * VG_WRITE_MAX + 4)
+#define LINE_WIDTH 78
+
+static void pad(struct vg_output *out, const char *text, size_t width)
+{
+  vg_output_text(out, text);
+  for (size_t n = strlen(text); n < width; n++) vg_output_text(out, " ");
+}
+
+static void default_text(const struct vg_param *p, const void *base,
+                         char *text, size_t size)
+{
+  if (p->required) snprintf(text, size, "none");
+  else vg_param_format(p, base, text, size);
+}
+
+/* "# name     help [unit; default]", continued under the help. */
+static void explain_param(struct vg_output *out, const struct vg_param *p,
+                          const void *defaults)
+{
+  char text[1024], value[CELL_SIZE];
+  size_t used = 2 + 15;
+  char *save = NULL;
+
+  default_text(p, defaults, value, sizeof value);
+  snprintf(text, sizeof text, "%s [%s%sdefault %s]", p->help, p->unit,
+           *p->unit ? ", " : "", value);
+  vg_output_text(out, "# ");
+  pad(out, p->name, 15);
+  for (char *w = strtok_r(text, " ", &save); w;
+       w = strtok_r(NULL, " ", &save)) {
+    if (used + strlen(w) > LINE_WIDTH) {
+      vg_output_text(out, "\n#                ");
+      used = 17;
+    }
+    if (used > 17) vg_output_text(out, " "), used++;
+    vg_output_text(out, w);
+    used += strlen(w);
+  }
+  vg_output_text(out, "\n");
+}
+
+/* Names p[first..last) above their values, in columns. */
+static void write_block(struct vg_output *out, const struct vg_param *p,
+                        size_t first, size_t last,
+                        const struct vg_settings *s)
+{
+  for (int line = 0; line < 2; line++) {
+    for (size_t i = first; i < last; i++) {
+      char value[CELL_SIZE];
+      size_t width = strlen(p[i].name);
+
+      vg_param_format(&p[i], s, value, sizeof value);
+      if (strlen(value) > width) width = strlen(value);
+      pad(out, line ? value : p[i].name, i + 1 < last ? width + 2 : 0);
+    }
+    vg_output_text(out, "\n");
+  }
+  vg_output_text(out, "\n");
+}
+
+static void write_params(struct vg_output *out, const struct vg_settings *s,
+                         const struct vg_settings *defaults, int explain)
+{
+  size_t n;
+  const struct vg_param *p = vg_settings_params(&n);
+  const size_t per_block = 6;
+
+  for (size_t first = 0; first < n; first += per_block) {
+    size_t last = first + per_block < n ? first + per_block : n;
+
+    for (size_t i = first; explain && i < last; i++)
+      explain_param(out, &p[i], defaults);
+    write_block(out, p, first, last, s);
+  }
+}
+
+static int is_default(const struct vg_param *p, const void *row,
+                      const void *defaults)
+{
+  char a[CELL_SIZE], b[CELL_SIZE];
+
+  vg_param_format(p, row, a, sizeof a);
+  vg_param_format(p, defaults, b, sizeof b);
+  return strcmp(a, b) == 0;
+}
+
+/* Columns worth writing and their widths; 0: left out. */
+static void column_widths(const struct vg_table *t, enum vg_table_kind kind,
+                          const struct vg_settings *s, const void *defaults,
+                          size_t *width)
+{
+  char value[CELL_SIZE];
+  size_t n = vg_settings_rows(s, kind);
+
+  for (size_t c = 0; c < t->n_column; c++) {
+    const struct vg_param *p = &t->column[c];
+    int used = kind != VG_TABLE_SOURCES || p->required;
+
+    width[c] = strlen(p->name);
+    for (size_t i = 0; i < n; i++) {
+      const void *row = vg_settings_row(s, kind, i);
+
+      used |= !is_default(p, row, defaults);
+      vg_param_format(p, row, value, sizeof value);
+      if (strlen(value) > width[c]) width[c] = strlen(value);
+    }
+    if (!used) width[c] = 0;
+  }
+}
+
+static void write_table(struct vg_output *out, const struct vg_settings *s,
+                        enum vg_table_kind kind, int explain)
+{
+  const struct vg_table *t = vg_settings_table(kind);
+  union { struct vg_farfield_row f; struct vg_patch_row p;
+          struct vg_source s; } defaults;
+  char value[CELL_SIZE];
+  size_t width[64] = { 0 }, n = vg_settings_rows(s, kind);
+
+  vg_settings_row_default(kind, &defaults);
+  if (explain) {
+    vg_output_format(out, "# Table %s. %s\n", t->name, t->help);
+    for (size_t c = 0; c < t->n_column; c++)
+      explain_param(out, &t->column[c], &defaults);
+  }
+  if (!n) {
+    if (explain && kind == VG_TABLE_SOURCES)
+      vg_output_text(out, "#\n# sources\n# kind  x0  y0  z0  r0    h0\n"
+                          "# point  0   0   0   0  0.01\n\n");
+    return;
+  }
+  column_widths(t, kind, s, &defaults, width);
+  vg_output_format(out, "%s\n", t->name);
+  for (size_t i = 0; i <= n; i++) {
+    for (size_t c = 0; c < t->n_column; c++) {
+      if (!width[c]) continue;
+      if (i) vg_param_format(&t->column[c], vg_settings_row(s, kind, i - 1),
+                             value, sizeof value);
+      pad(out, i ? value : t->column[c].name, width[c]);
+      vg_output_text(out, "  ");
+    }
+    vg_output_text(out, "\n");
+  }
+  vg_output_text(out, "\n");
+}
+
+vg_status vg_deck_write(const char *path, const struct vg_settings *s,
+                        const char *comment, int explain,
+                        struct vg_error *err)
+{
+  struct vg_output out = VG_OUTPUT_INIT;
+  struct vg_settings defaults;
+  vg_status st = vg_output_open(path, &out, err);
+
+  if (st < 0) return st;
+  vg_settings_default(&defaults);
+  vg_output_format(&out, "%s\n", s->title);
+  if (comment) vg_output_text(&out, comment);
+  if (explain)
+    vg_output_text(&out,
+      "# A line of names stands above a line of values; the order is free.\n"
+      "# A table is its name, a line of column names, then lines of values\n"
+      "# up to a blank line. Lengths are in the unit of the surface.\n");
+  vg_output_text(&out, "\n");
+  write_params(&out, s, &defaults, explain);
+  for (int t = 0; t < VG_TABLE_N; t++)
+    write_table(&out, s, (enum vg_table_kind)t, explain);
+  st = vg_output_commit(&out, err);
+  vg_output_release(&out);
+  return st;
+}
+
+vg_status vg_deck_patches_of(const struct vg_mesh *m, struct vg_settings *s,
+                             struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  for (size_t i = 0; i < m->n_patch && st >= 0; i++) {
+    const struct vg_patch *from = &m->patch[i];
+    struct vg_patch_row row = { .id = from->id, .bc = from->bc };
+
+    if (row.bc == VG_BC_NONE) row.bc = from->bc_fun3d;
+    snprintf(row.name, sizeof row.name, "%s", from->name);
+    st = vg_settings_add(s, VG_TABLE_PATCHES, &row, err);
+  }
+  return st;
+}

@@ -1,0 +1,131 @@
+/* cli/settings.h: everything a run can be told, and the tables that name it.
+ *
+ * One row of a table describes one value: the deck's reader and writer, the
+ * command line and its help all walk these rows, so a new setting is one new
+ * row. Uses core and io/stream.h. */
+#ifndef VG_CLI_SETTINGS_H
+#define VG_CLI_SETTINGS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "core/planar.h"
+#include "core/sizing.h"
+
+#define VG_TITLE_MAX 80
+#define VG_WRITE_MAX 160
+
+/** How the domain around the given surface is completed. */
+enum vg_domain_choice {
+  VG_DOMAIN_AUTO,      /* a farfield only where a body stands alone */
+  VG_DOMAIN_NONE, VG_DOMAIN_SPHERE, VG_DOMAIN_BOX
+};
+
+/** The farfield table has one row. NAN: not given. */
+struct vg_farfield_row {
+  int kind;                        /* enum vg_domain_choice */
+  double lengths, size, spacing;
+  double centre[3], lo[3], hi[3];
+};
+
+struct vg_patch_row {
+  int32_t id, bc;                  /* bc: USM3D or FUN3D code */
+  char name[VG_NAME_MAX];          /* "": as the input says */
+};
+
+/** All settings of a run. */
+struct vg_settings {
+  char title[VG_TITLE_MAX + 1];
+  double scale, growth, hmin, hmax;
+  int surface_sizes, d3m_sources;
+  double weld;
+  int repair;
+  int64_t optimise, max_cells;
+  char write[VG_WRITE_MAX];
+  struct vg_farfield_row farfield;
+  size_t n_source, cap_source, n_patch, cap_patch;
+  struct vg_source *source;        /* [n_source] owned */
+  struct vg_patch_row *patch;      /* [n_patch] owned */
+};
+#define VG_SETTINGS_INIT { .n_source = 0 } /* releasing this is a no-op */
+
+enum vg_param_type {
+  VG_PARAM_REAL,   /* double; "-" is NAN where `optional` */
+  VG_PARAM_COUNT,  /* int64_t */
+  VG_PARAM_ID,     /* int32_t; "-" is VG_BC_NONE where `optional` */
+  VG_PARAM_FLAG,   /* int: yes or no */
+  VG_PARAM_WORD,   /* int: position in words[] */
+  VG_PARAM_TEXT    /* char[size] */
+};
+
+/** One value: its name, where it lies, what it may be, and its help. */
+struct vg_param {
+  const char *name;
+  enum vg_param_type type;
+  size_t offset, size;      /* in the row or in vg_settings; size of a text */
+  double lo, hi;            /* range of a number; see above_lo */
+  int above_lo;             /* 1: lo itself is refused */
+  int optional;             /* 1: "-" stands for "not given" */
+  int required;             /* 1: a table must have this column */
+  const char *const *words; /* NULL-ended, for VG_PARAM_WORD */
+  const char *unit;         /* "" for pure numbers */
+  const char *help;
+};
+
+enum vg_table_kind { VG_TABLE_FARFIELD, VG_TABLE_PATCHES, VG_TABLE_SOURCES,
+                     VG_TABLE_N };
+
+struct vg_table {
+  const char *name, *help;
+  const struct vg_param *column;
+  size_t n_column, row_size;
+};
+
+/** The plain settings (no tables); *n of them. Static. */
+const struct vg_param *vg_settings_params(size_t *n);
+
+/** Description of a table. Static. */
+const struct vg_table *vg_settings_table(enum vg_table_kind kind);
+
+/** Give every setting its default. *s is overwritten, not released. */
+void vg_settings_default(struct vg_settings *s);
+
+/** Default row of a table into row[row_size]. */
+void vg_settings_row_default(enum vg_table_kind kind, void *row);
+
+/** Append a row; the farfield's replaces the one there is. */
+vg_status vg_settings_add(struct vg_settings *s, enum vg_table_kind kind,
+                          const void *row, struct vg_error *err);
+
+/** Row i of a table and the count of rows (farfield: always one). */
+const void *vg_settings_row(const struct vg_settings *s,
+                            enum vg_table_kind kind, size_t i);
+size_t vg_settings_rows(const struct vg_settings *s, enum vg_table_kind kind);
+
+void vg_settings_release(struct vg_settings *s);
+
+/** What holds between settings, e.g. hmin <= hmax. VG_ERR_INPUT. */
+vg_status vg_settings_check(const struct vg_settings *s,
+                            struct vg_error *err);
+
+/** Set the value that `p` describes in the struct at `base` from text.
+ * VG_ERR_INPUT says what is wrong, without a place: the caller adds it. */
+vg_status vg_param_set(const struct vg_param *p, void *base, const char *text,
+                       size_t len, struct vg_error *err);
+
+/** The value as text that vg_param_set reads back to the same value.
+ * out[size] should hold VG_WRITE_MAX * 2 + 3 bytes. */
+void vg_param_format(const struct vg_param *p, const void *base, char *out,
+                     size_t size);
+
+/** Nearest name to `text` among names (get(user, i), i < n), or NULL when
+ * none is near enough to be a slip. */
+const char *vg_nearest_name(const char *text, size_t n,
+                            const char *(*get)(const void *user, size_t i),
+                            const void *user);
+
+/** The settings as core understands them. */
+struct vg_sizing_options vg_settings_sizing(const struct vg_settings *s);
+struct vg_farfield vg_settings_farfield(const struct vg_settings *s);
+
+#endif
