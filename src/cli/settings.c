@@ -17,8 +17,8 @@ static const char *const source_words[] = {
   "vgrid_node", "vgrid_line", "point", "line", "triangle", "box", "sphere",
   "cylinder", NULL };
 
-#define AT(field) offsetof(struct vg_settings, field), \
-  sizeof ((struct vg_settings *)0)->field
+#define AT(field) .offset = offsetof(struct vg_settings, field), \
+  .size = sizeof ((struct vg_settings *)0)->field
 #define REAL .type = VG_PARAM_REAL, .hi = HUGE_SIZE
 #define LENGTH REAL, .unit = "length"
 
@@ -50,10 +50,10 @@ static const struct vg_param params[] = {
 };
 
 #undef AT
-#define AT(field) offsetof(struct vg_farfield_row, field), \
-  sizeof ((struct vg_farfield_row *)0)->field
+#define AT(field) .offset = offsetof(struct vg_farfield_row, field), \
+  .size = sizeof ((struct vg_farfield_row *)0)->field
 #define POINT(name, field, k, about) \
-  { name, offsetof(struct vg_farfield_row, field[k]), sizeof (double), \
+  { name, AT(field[k]), \
     .type = VG_PARAM_REAL, .lo = -HUGE_SIZE, .hi = HUGE_SIZE, .optional = 1, \
     .unit = "length", .help = about }
 
@@ -76,8 +76,8 @@ static const struct vg_param farfield_columns[] = {
 };
 
 #undef AT
-#define AT(field) offsetof(struct vg_patch_row, field), \
-  sizeof ((struct vg_patch_row *)0)->field
+#define AT(field) .offset = offsetof(struct vg_patch_row, field), \
+  .size = sizeof ((struct vg_patch_row *)0)->field
 
 static const struct vg_param patch_columns[] = {
   { "id", AT(id), .type = VG_PARAM_ID, .lo = INT32_MIN, .hi = INT32_MAX,
@@ -93,11 +93,11 @@ static const struct vg_param patch_columns[] = {
 
 #undef AT
 #undef POINT
-#define AT(field) offsetof(struct vg_source, field), \
-  sizeof ((struct vg_source *)0)->field
-#define ANY(name, field, u, about) \
+#define AT(field) .offset = offsetof(struct vg_source, field), \
+  .size = sizeof ((struct vg_source *)0)->field
+#define ANY(name, field, units, about) \
   { name, AT(field), .type = VG_PARAM_REAL, .lo = -HUGE_SIZE, \
-    .hi = HUGE_SIZE, .unit = u, .help = about }
+    .hi = HUGE_SIZE, .unit = units, .help = about }
 
 static const struct vg_param source_columns[] = {
   { "kind", AT(kind), .type = VG_PARAM_WORD, .words = source_words,
