@@ -1,10 +1,8 @@
-/* The undecided calls of predicates.h, in three steps:
- *   1. the plain determinant again with an error bound from its permanent,
- *      sharper than the inline bound for flat or long point sets;
- *   2. double-double arithmetic on the (exact) coordinate differences, with
+/* The undecided calls of predicates.h, in two steps:
+ *   1. double-double arithmetic on the (exact) coordinate differences, with
  *      a bound of about 1e-30 times the permanent: what is left after it is
  *      exactly zero, or nearly always so;
- *   3. expansions: sums of doubles that do not overlap, sorted by growing
+ *   2. expansions: sums of doubles that do not overlap, sorted by growing
  *      magnitude, zeros dropped; the empty one is 0. Sign of the last
  *      component = sign of the whole. */
 #include "core/predicates.h"
@@ -214,45 +212,27 @@ static double orient3d_expansion(const double *a, const double *b,
   return ex_sign(m, h);
 }
 
-static double orient3d_dd(const double *a, const double *b, const double *c,
-                          const double *d)
+double vg_orient3d_exact(const double a[3], const double b[3],
+                         const double c[3], const double d[3])
 {
-  struct dd p[3], q[3], r, det = { 0, 0 };
+  struct dd p[3], q[3], r[3], det = { 0, 0 };
+  double per = 0;
 
   for (int k = 0; k < 3; k++) {
     p[k] = dd_diff(b[k], a[k]);
     q[k] = dd_diff(c[k], a[k]);
+    r[k] = dd_diff(d[k], a[k]);
   }
   for (int k = 0; k < 3; k++) {
     int i = (k + 1) % 3, j = (k + 2) % 3;
 
-    r = dd_diff(d[k], a[k]);
-    det = dd_add(det, dd_mul(r, dd_minor(p[i], q[j], p[j], q[i])));
-  }
-  return det.hi;
-}
-
-double vg_orient3d_exact(const double a[3], const double b[3],
-                         const double c[3], const double d[3])
-{
-  double p[3], q[3], r[3], det = 0, per = 0;
-
-  for (int k = 0; k < 3; k++) {
-    p[k] = b[k] - a[k];
-    q[k] = c[k] - a[k];
-    r[k] = d[k] - a[k];
-  }
-  for (int k = 0; k < 3; k++) {
-    int i = (k + 1) % 3, j = (k + 2) % 3;
-
-    det += r[k] * (p[i] * q[j] - p[j] * q[i]);
-    per += fabs(r[k]) * (fabs(p[i] * q[j]) + fabs(p[j] * q[i]));
+    det = dd_add(det, dd_mul(r[k], dd_minor(p[i], q[j], p[j], q[i])));
+    per += fabs(r[k].hi) * (fabs(p[i].hi * q[j].hi)
+                            + fabs(p[j].hi * q[i].hi));
   }
   if (per == 0) return 0;
-  if (fabs(det) > (8 * U) * per) return det;
   /* To first order 8 + 4 + 8 + 3 * 4 = 32 u^2 per; doubled. */
-  det = orient3d_dd(a, b, c, d);
-  if (fabs(det) > (64 * U * U) * per) return det;
+  if (fabs(det.hi) > (64 * U * U) * per) return det.hi;
   return orient3d_expansion(a, b, c, d);
 }
 

@@ -1,9 +1,8 @@
 /* core/predicates.h: signs of determinants, exact for every finite input.
  *
- * An error bound from the largest coordinate differences, inline here,
- * decides almost all calls. What it leaves goes out of line: a bound from the
- * permanent, then double-double arithmetic, then exact floating-point
- * expansions (Shewchuk, "Adaptive precision floating-point arithmetic and
+ * An error bound, inline here, decides almost all calls. What it leaves goes
+ * out of line: double-double arithmetic, then exact floating-point expansions
+ * (Shewchuk, "Adaptive precision floating-point arithmetic and
  * fast robust geometric predicates", Discrete Comput. Geom. 18, 1997). No
  * global state, no initialisation call: safe from any thread. Build with
  * -ffp-contract=off (cmake/flags.cmake).
@@ -46,14 +45,16 @@ static inline double vg_orient3d(const double a[3], const double b[3],
   double bx = b[0] - a[0], by = b[1] - a[1], bz = b[2] - a[2];
   double cx = c[0] - a[0], cy = c[1] - a[1], cz = c[2] - a[2];
   double dx = d[0] - a[0], dy = d[1] - a[1], dz = d[2] - a[2];
-  double det = dx * (by * cz - bz * cy) + dy * (bz * cx - bx * cz)
-               + dz * (bx * cy - by * cx);
-  /* Shewchuk's bound is (7 + 56 u) u times the permanent, which is at most
-   * six times the product of the largest differences: 42 u = 4.663e-15. */
-  double bound = 4.67e-15 * vg_max3_abs(bx, cx, dx)
-                 * vg_max3_abs(by, cy, dy) * vg_max3_abs(bz, cz, dz);
+  double yz = by * cz, zy = bz * cy, zx = bz * cx, xz = bx * cz;
+  double xy = bx * cy, yx = by * cx;
+  double det = dx * (yz - zy) + dy * (zx - xz) + dz * (xy - yx);
+  /* Error: 8 roundings of u = 2^-53 each on any path, 8 u = 8.882e-16. One
+   * comparison, since a branch on the sign itself is hard to predict. */
+  double bound = 8.9e-16 * (fabs(dx) * (fabs(yz) + fabs(zy))
+                            + fabs(dy) * (fabs(zx) + fabs(xz))
+                            + fabs(dz) * (fabs(xy) + fabs(yx)));
 
-  if (det > bound || det < -bound) return det;
+  if (fabs(det) > bound) return det;
   return vg_orient3d_exact(a, b, c, d);
 }
 
@@ -86,7 +87,7 @@ static inline double vg_insphere(const double a[3], const double b[3],
   /* (16 + 224 u) u times the permanent, which is at most 4 lifts times 6
    * products: 384 u = 4.263e-14. */
   bound = 4.27e-14 * mx * my * mz * ml;
-  if (det > bound || det < -bound) return det;
+  if (fabs(det) > bound) return det;
   return vg_insphere_exact(a, b, c, d, e);
 }
 
@@ -98,7 +99,7 @@ static inline double vg_orient2d(const double a[2], const double b[2],
   double det = l - r, bound = 3.34e-16 * (fabs(l) + fabs(r));
 
   /* (3 + 16 u) u = 3.331e-16. */
-  if (det > bound || det < -bound) return det;
+  if (fabs(det) > bound) return det;
   return vg_orient2d_exact(a, b, c);
 }
 
@@ -119,7 +120,7 @@ static inline double vg_incircle(const double a[2], const double b[2],
   double bound = 6.67e-15 * vg_max3_abs(ax, bx, cx)
                  * vg_max3_abs(ay, by, cy) * vg_max3_abs(al, bl, cl);
 
-  if (det > bound || det < -bound) return det;
+  if (fabs(det) > bound) return det;
   return vg_incircle_exact(a, b, c, d);
 }
 
