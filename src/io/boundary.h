@@ -16,6 +16,13 @@
 vg_status vg_boundary_tag(struct vg_mesh *m, const int32_t *tag,
                           struct vg_error *err);
 
+/** Sort the boundary faces by patch: (*order)[(*start)[p]] up to, excluding,
+ * (*order)[(*start)[p + 1]] are those of patch p, in their order in m;
+ * triangles are numbered first, quadrilaterals from n_tri on. The caller frees
+ * both. O(n). VG_ERR_MEMORY on refusal. */
+vg_status vg_boundary_by_patch(const struct vg_mesh *m, size_t **start,
+                               size_t **order, struct vg_error *err);
+
 /** What vg_boundary_orient found and did. */
 struct vg_orient_report {
   size_t n_cell_turned;     /* cells of negative volume, renumbered */

@@ -5,6 +5,7 @@
 #define VG_IO_MEDIT_H
 
 #include "core/mesh.h"
+#include "io/stream.h"
 
 /** Read a surface or a volume mesh; gzip'd input is accepted; text or binary
  * is found from the content.
@@ -19,6 +20,10 @@
  * (dimension 2) or VG_ERR_MEMORY. Threads: re-entrant. O(n). */
 vg_status vg_medit_read(const char *path, struct vg_mesh *out,
                         struct vg_error *err);
+
+/** vg_medit_read from bytes in memory. */
+vg_status vg_medit_parse(struct vg_input *in, struct vg_mesh *out,
+                         struct vg_error *err);
 
 /** Write text or, when the path ends in "b", binary: version 2, or where the
  * file passes 2 GB version 3 (4 if counts need it), little-endian. */

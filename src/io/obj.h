@@ -5,6 +5,7 @@
 #define VG_IO_OBJ_H
 
 #include "core/mesh.h"
+#include "io/stream.h"
 
 /** Read a surface; gzip'd input is accepted.
  *
@@ -16,6 +17,10 @@
  * coordinate not finite) or VG_ERR_MEMORY. Threads: re-entrant. O(n). */
 vg_status vg_obj_read(const char *path, struct vg_mesh *out,
                       struct vg_error *err);
+
+/** vg_obj_read from bytes in memory. */
+vg_status vg_obj_parse(struct vg_input *in, struct vg_mesh *out,
+                       struct vg_error *err);
 
 /** Write the boundary, one group per patch; quadrilaterals stay. Patches
  * without a name are called patch_ID. */

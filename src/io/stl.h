@@ -7,6 +7,7 @@
 #define VG_IO_STL_H
 
 #include "core/mesh.h"
+#include "io/stream.h"
 
 /** Read a surface; gzip'd input is accepted.
  *
@@ -19,6 +20,10 @@
  * VG_ERR_MEMORY. Threads: re-entrant. Cost: O(n). */
 vg_status vg_stl_read(const char *path, struct vg_mesh *out,
                       struct vg_error *err);
+
+/** vg_stl_read from bytes in memory. */
+vg_status vg_stl_parse(struct vg_input *in, struct vg_mesh *out,
+                       struct vg_error *err);
 
 /** Write the boundary of m as ASCII, one solid per patch, 17 digits, so that
  * reading gives the same points bit by bit. Quadrilaterals become two

@@ -5,16 +5,21 @@
 #define VG_IO_TRI_H
 
 #include "core/mesh.h"
+#include "io/stream.h"
 
 /** Read a surface; gzip'd input is accepted, the variant is found from the
  * content. Components become patches in the order in which their numbers
- * rise; without components there is one patch 1. Scalars of a .triq are
- * checked and dropped.
+ * rise; without components there is one patch 1. Scalars of a .triq
+ * are dropped.
  * @param out  untouched on failure
  * Returns VG_ERR_IO, VG_ERR_FORMAT, VG_ERR_INPUT (index out of range,
  * coordinate not finite) or VG_ERR_MEMORY. Threads: re-entrant. O(n). */
 vg_status vg_tri_read(const char *path, struct vg_mesh *out,
                       struct vg_error *err);
+
+/** vg_tri_read from bytes in memory. */
+vg_status vg_tri_parse(struct vg_input *in, struct vg_mesh *out,
+                       struct vg_error *err);
 
 /** Write the boundary as text with components. Quadrilaterals become two
  * triangles. The file appears complete or not at all. */
