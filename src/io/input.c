@@ -14,6 +14,7 @@
 #include "base/memory.h"
 
 #define CHUNK ((size_t)1 << 20)
+#define WHOLE (SIZE_MAX / 4)
 
 int vg_host_is_little(void)
 {
@@ -33,13 +34,13 @@ static char *copy_string(const char *s)
   return to;
 }
 
-/* Append everything that can be read from fd; also works for pipes, whose
- * size is not known beforehand. */
+/* Append what can be read from fd, up to `limit` bytes; also works for
+ * pipes, whose size is not known beforehand. */
 static vg_status read_all(int fd, const char *path, size_t expected,
-                          unsigned char **data, size_t *size,
+                          size_t limit, unsigned char **data, size_t *size,
                           struct vg_error *err)
 {
-  size_t cap = expected < SIZE_MAX - 2 ? expected + 2 : expected, n = 0;
+  size_t cap = (expected < limit ? expected : limit) + 2, n = 0;
   unsigned char *block = vg_alloc(cap, 1), *more;
 
   if (!block) return vg_fail_memory(err, path);
@@ -62,8 +63,8 @@ static vg_status read_all(int fd, const char *path, size_t expected,
       return vg_fail(err, VG_ERR_IO, "%s: cannot read: %s", path,
                      strerror(errno));
     }
-    if (!got) break;
     n += (size_t)got;
+    if (!got || n >= limit) break;
   }
   block[n] = 0;
   *data = block;
@@ -114,8 +115,8 @@ static int inflate_members(z_stream *z, const unsigned char *from, size_t size,
   return Z_OK;
 }
 
-static vg_status unpack(const char *path, unsigned char **data, size_t *size,
-                        struct vg_error *err)
+static vg_status unpack(const char *path, int is_head, unsigned char **data,
+                        size_t *size, struct vg_error *err)
 {
   z_stream z = {0};
   unsigned char *plain = NULL;
@@ -126,6 +127,7 @@ static vg_status unpack(const char *path, unsigned char **data, size_t *size,
   if (inflateInit2(&z, 15 + 16) != Z_OK) return vg_fail_memory(err, path);
   code = inflate_members(&z, *data, *size, &plain, &n);
   inflateEnd(&z);
+  if (is_head && code == Z_BUF_ERROR && n) code = Z_OK;
   if (code != Z_OK) {
     free(plain);
     return gzip_error(path, code, (size_t)z.total_in, err);
@@ -138,11 +140,11 @@ static vg_status unpack(const char *path, unsigned char **data, size_t *size,
 }
 
 /* Takes over `data`. */
-static vg_status adopt(const char *path, unsigned char *data, size_t size,
-                       struct vg_input *in, struct vg_error *err)
+static vg_status adopt(const char *path, int is_head, unsigned char *data,
+                       size_t size, struct vg_input *in, struct vg_error *err)
 {
   struct vg_input made = VG_INPUT_INIT;
-  vg_status st = unpack(path, &data, &size, err);
+  vg_status st = unpack(path, is_head, &data, &size, err);
 
   if (st == VG_OK && !size)
     st = vg_fail(err, VG_ERR_FORMAT, "%s: the file is empty", path);
@@ -158,8 +160,8 @@ static vg_status adopt(const char *path, unsigned char *data, size_t size,
   return VG_OK;
 }
 
-vg_status vg_input_open(const char *path, struct vg_input *in,
-                        struct vg_error *err)
+static vg_status open_file(const char *path, size_t limit,
+                           struct vg_input *in, struct vg_error *err)
 {
   unsigned char *data = NULL;
   size_t size = 0, expected = 0;
@@ -177,9 +179,22 @@ vg_status vg_input_open(const char *path, struct vg_input *in,
     }
     if (S_ISREG(s.st_mode) && s.st_size > 0) expected = (size_t)s.st_size;
   }
-  st = read_all(fd, path, expected, &data, &size, err);
+  st = read_all(fd, path, expected, limit, &data, &size, err);
   close(fd);
-  return st < 0 ? st : adopt(path, data, size, in, err);
+  return st < 0 ? st
+                : adopt(path, limit < WHOLE, data, size, in, err);
+}
+
+vg_status vg_input_open(const char *path, struct vg_input *in,
+                        struct vg_error *err)
+{
+  return open_file(path, WHOLE, in, err);
+}
+
+vg_status vg_input_open_head(const char *path, size_t limit,
+                             struct vg_input *in, struct vg_error *err)
+{
+  return open_file(path, limit, in, err);
 }
 
 vg_status vg_input_memory(const char *name, const void *data, size_t size,
@@ -191,7 +206,7 @@ vg_status vg_input_memory(const char *name, const void *data, size_t size,
   if (!block) return vg_fail_memory(err, name);
   if (size) memcpy(block, data, size);
   block[size] = 0;
-  return adopt(name, block, size, in, err);
+  return adopt(name, 0, block, size, in, err);
 }
 
 void vg_input_release(struct vg_input *in)

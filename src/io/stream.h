@@ -36,6 +36,11 @@ struct vg_input {
 vg_status vg_input_open(const char *path, struct vg_input *in,
                         struct vg_error *err);
 
+/** As vg_input_open, but only about the first `limit` bytes (of the packed
+ * file), to look at a header. */
+vg_status vg_input_open_head(const char *path, size_t limit,
+                             struct vg_input *in, struct vg_error *err);
+
 /** As vg_input_open for bytes in memory (copied); `name` is for messages. */
 vg_status vg_input_memory(const char *name, const void *data, size_t size,
                           struct vg_input *in, struct vg_error *err);
