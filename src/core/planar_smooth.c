@@ -1,0 +1,92 @@
+/* Smoothing: every free vertex goes to the mean of the apexes of equilateral
+ * triangles on the edges of its ring, as far as the sum of squared inverse
+ * qualities of its triangles falls; then edges are flipped to Delaunay, which
+ * in the plane is also the flip to the larger smallest angle. */
+#include <math.h>
+
+#include "core/planar_front.h"
+#include "core/predicates.h"
+
+enum { RING_MAX = 32 };
+
+/* (sum of squared edges / area)^2 summed over the ring; INFINITY when a
+ * triangle is not positive. */
+static double badness(int n, double (*ring)[2], const double x[2])
+{
+  double sum = 0;
+
+  for (int i = 0; i < n; i++) {
+    const double *a = ring[i], *b = ring[i + 1 < n ? i + 1 : 0];
+    const double ax = a[0] - x[0], ay = a[1] - x[1];
+    const double bx = b[0] - x[0], by = b[1] - x[1];
+    const double cx = bx - ax, cy = by - ay, area = ax * by - ay * bx;
+    const double q = ax * ax + ay * ay + bx * bx + by * by + cx * cx + cy * cy;
+
+    if (!(area > 0)) return INFINITY;
+    sum += q / area * (q / area);
+  }
+  return sum;
+}
+
+static void ideal(int n, double (*ring)[2], double x[2])
+{
+  double sx = 0, sy = 0;
+  const double tall = 0.86602540378443864676;   /* sqrt(3) / 2 */
+
+  for (int i = 0; i < n; i++) {
+    const double *a = ring[i], *b = ring[i + 1 < n ? i + 1 : 0];
+
+    sx += 0.5 * (a[0] + b[0]) - tall * (b[1] - a[1]);
+    sy += 0.5 * (a[1] + b[1]) + tall * (b[0] - a[0]);
+  }
+  x[0] = sx / n;
+  x[1] = sy / n;
+}
+
+static int is_positive(int n, double (*ring)[2], const double x[2])
+{
+  for (int i = 0; i < n; i++)
+    if (!(vg_orient2d(ring[i], ring[i + 1 < n ? i + 1 : 0], x) > 0)) return 0;
+  return 1;
+}
+
+static int smooth_vertex(struct vg_tri2 *t, uint32_t v)
+{
+  uint32_t edge[RING_MAX];
+  double ring[RING_MAX][2], x[2], goal[2], step = 1;
+  const int n = vg_tri2_ring(t, v, RING_MAX, edge);
+  double before;
+
+  if (!n) return 0;
+  for (int i = 0; i < n; i++) {
+    const double *p = t->x[vg_t2_to(t, edge[i])];
+
+    ring[i][0] = p[0];
+    ring[i][1] = p[1];
+  }
+  before = badness(n, ring, t->x[v]);
+  ideal(n, ring, goal);
+  for (int attempt = 0; attempt < 3; attempt++, step *= 0.5) {
+    x[0] = t->x[v][0] + step * (goal[0] - t->x[v][0]);
+    x[1] = t->x[v][1] + step * (goal[1] - t->x[v][1]);
+    if (badness(n, ring, x) < before && is_positive(n, ring, x)) {
+      t->x[v][0] = x[0];
+      t->x[v][1] = x[1];
+      return 1;
+    }
+  }
+  return 0;
+}
+
+int vg_tri2_improve(struct vg_tri2 *t, uint32_t first_free, int n_sweep)
+{
+  for (int sweep = 0; sweep < n_sweep; sweep++) {
+    size_t n_moved = 0;
+
+    for (uint32_t v = first_free; v < t->n_point; v++)
+      n_moved += (size_t)smooth_vertex(t, v);
+    if (vg_tri2_legalise(t) < 0) return -1;
+    if (!n_moved) break;
+  }
+  return 0;
+}
