@@ -6,8 +6,16 @@
  *   bounded growth: h(d) = h0 inside the shape, h0 + (g - 1) d outside at
  *     distance d; the minimum over all sources.
  * The edges of the boundary triangulation are sources of the second family.
- * What is evaluated is an octree built from input alone, whose gradient is
- * bounded by (growth - 1). */
+ * The field is S = min(VGRID's mean, bounded sources), lowered until its
+ * gradient is at most (growth - 1); then, with size h_v at each point v of
+ * the boundary and g the growth rate,
+ *   min( min_v(h_v + (g-1) r_v), max( S, max_v(h_v - (g-1) r_v) ) ):
+ * the size on the boundary is the boundary's own, since the cells must fit
+ * it, and departs from there at the growth rate, upwards, or downwards to a
+ * source that is finer than the boundary near it. Sizes of the boundary that
+ * jump faster than the growth rate are lowered likewise.
+ * What is evaluated is an octree built from input alone: trilinear, within a
+ * few per cent, continuous, its gradient bounded by about (growth - 1). */
 #ifndef VG_CORE_SIZING_H
 #define VG_CORE_SIZING_H
 
@@ -41,7 +49,9 @@ struct vg_source {
 };
 
 struct vg_sizing_options {
-  double h_min, h_max;   /* clamp; 0: none */
+  double h_min;          /* no size below this; 0: none */
+  double h_max;          /* no size above this; 0: the largest one that the
+                            surface or a source asks for; INFINITY: none */
   double growth;         /* growth rate g > 1 of neighbouring edges away from
                             the surface; default 1.2 */
   double scale;          /* multiplies every source spacing (VGRID's ifact) */
@@ -67,16 +77,27 @@ vg_status vg_sizing_new(const struct vg_sizing_options *options, size_t n,
 /** Free a field; NULL is accepted. */
 void vg_sizing_free(struct vg_sizing *s);
 
-/** Target edge length at x, > 0; clamped to the nearest cell outside the
- * octree. Threads: safe on a shared field. Cost: about 0.2 us. */
+/** Target edge length at x, > 0. Outside the root cube: that of the nearest
+ * point of it, grown with the distance, up to h_max if one is given.
+ * Threads: safe on a shared field. Cost: below 0.2 us. */
 double vg_sizing_at(const struct vg_sizing *s, const double x[3]);
 
 /** vg_sizing_at for n points. h out: [n]. */
 void vg_sizing_eval(const struct vg_sizing *s, size_t n, const double (*x)[3],
                     double *h);
 
-/** The exact source law at x, without octree or surface: what the cache
- * approximates. Cost O(n). INFINITY when n is 0. */
+/** Bounds of vg_sizing_at within the root cube, both attained. Cost O(1). */
+void vg_sizing_range(const struct vg_sizing *s, double *h_min, double *h_max);
+
+/** Lower corner of the root cube, which encloses surface points and, where
+ * there are none, the sources; returns its side. */
+double vg_sizing_cube(const struct vg_sizing *s, double lo[3]);
+
+/** Leaves of the octree, 32 bytes and 4.6 of tree each. */
+size_t vg_sizing_leaves(const struct vg_sizing *s);
+
+/** The exact source law at x, clamped, without octree, surface or bound on
+ * the gradient. Cost O(n) and an allocation. INFINITY when n is 0. */
 double vg_sizing_sources_at(const struct vg_sizing_options *options, size_t n,
                             const struct vg_source *source,
                             const double x[3]);

@@ -1,0 +1,45 @@
+/* core/sizing_near.h: growth of very many point samples, by a bounding volume
+ * hierarchy. Internal to core/sizing. Uses base only.
+ *
+ * Sample i with size h_i gives, with slope s and d = max(0, r_i - p h_i),
+ *   from above  h_i + s d,  the minimum over i: sizes grow away from samples;
+ *   from below  h_i - s d,  the maximum over i: nothing may undercut them.
+ * The plateau p h_i (VG_NEAR_PLATEAU of h, s p <= VG_NEAR_OFFSET) closes the
+ * gaps between samples of one triangle and flattens the kink that a coarse
+ * interpolation across the surface would round upwards. */
+#ifndef VG_CORE_SIZING_NEAR_H
+#define VG_CORE_SIZING_NEAR_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/status.h"
+
+#define VG_NEAR_PLATEAU 0.25
+#define VG_NEAR_OFFSET 0.05
+
+struct vg_near;
+
+/** Build over n >= 1 samples; p [n][3] and h [n] are copied. */
+vg_status vg_near_new(size_t n, const double (*p)[3], const double *h,
+                      double slope, struct vg_near **out,
+                      struct vg_error *err);
+
+/** Free; NULL is accepted. */
+void vg_near_free(struct vg_near *t);
+
+/** Least "from above" value in the box lo..hi (a point: lo == hi).
+ *
+ * @param below  only values under this matter; it is returned if none is
+ * @param hint   in/out: where the search starts, and where it ended; any
+ *               value within what an earlier call returned, 0 at first
+ * The result is within one part in a thousand above the least value, and
+ * depends on box, below and hint alone. */
+double vg_near_above(const struct vg_near *t, const double lo[3],
+                     const double hi[3], double below, uint32_t *hint);
+
+/** Greatest "from below" value at x; `above` if none exceeds it. */
+double vg_near_below(const struct vg_near *t, const double x[3],
+                     double above);
+
+#endif

@@ -1,0 +1,48 @@
+/* core/sizing_octree.h: the exact field and the octree that caches it.
+ * Internal to core/sizing. */
+#ifndef VG_CORE_SIZING_OCTREE_H
+#define VG_CORE_SIZING_OCTREE_H
+
+#include "core/sizing_near.h"
+#include "core/sizing_source.h"
+
+/** What is cached: min(above, max(below, sources)), then clamped; above and
+ * below are the growth of the surface (sizing_near.h). So the field equals
+ * the local size on the surface, and departs from it at the growth rate. */
+struct vg_field {
+  const struct vg_near *near;  /* NULL: no surface */
+  struct vg_source_set set;
+  double slope;                /* growth - 1 */
+  double h_min, h_max;         /* clamp, 0 and INFINITY for none */
+};
+
+#define VG_OCTREE_LEAF 0x80000000u
+#define VG_OCTREE_DEPTH 20     /* levels below the root */
+
+struct vg_octree {
+  double lo[3], side;          /* root cube */
+  uint32_t root;               /* as an entry of child */
+  uint32_t (*child)[8];        /* [n_split] VG_OCTREE_LEAF | leaf, or split */
+  float (*leaf)[8];            /* [n_leaf] corner sizes; x fastest, then y */
+  size_t n_split, n_leaf;
+};
+#define VG_OCTREE_INIT { 0 }
+
+/** Value of the field at x before its gradient is limited. */
+double vg_field_at(const struct vg_field *f, const double x[3],
+                   uint32_t *hint);
+
+/** Build over the cube lo, side with about max_leaf leaves at most. *out is
+ * empty before, and on failure. */
+vg_status vg_octree_build(const struct vg_field *f, const double lo[3],
+                          double side, size_t max_leaf, struct vg_octree *out,
+                          struct vg_error *err);
+
+void vg_octree_release(struct vg_octree *t);
+
+/** Trilinear size at x; outside the cube at the nearest point of it, and
+ * *outside gets the distance (0 inside). */
+double vg_octree_at(const struct vg_octree *t, const double x[3],
+                    double *outside);
+
+#endif
