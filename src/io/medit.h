@@ -10,11 +10,10 @@
 /** Read a surface or a volume mesh; gzip'd input is accepted; text or binary
  * is found from the content.
  *
- * Orientation: cells are made positive. In a file with cells, faces that bound
- * one cell are turned into it and faces between two cells are dropped (they
- * are interfaces of volume references, not boundary); a file without
- * cells is kept as it is. Corners, ridges, edges, required entities and
- * unknown keywords are skipped. Points that no face or cell uses are kept.
+ * Orientation: cells are made positive and boundary faces turned into their
+ * cell (vg_mesh_turn); a file without cells is kept as it is. Corners,
+ * ridges, edges, required entities and unknown keywords are skipped. Points
+ * that no face or cell uses are kept.
  * @param out  untouched on failure
  * Returns VG_ERR_IO, VG_ERR_FORMAT, VG_ERR_INPUT, VG_ERR_UNSUPPORTED
  * (dimension 2) or VG_ERR_MEMORY. Threads: re-entrant. O(n). */
@@ -25,7 +24,7 @@ vg_status vg_medit_read(const char *path, struct vg_mesh *out,
 vg_status vg_medit_parse(struct vg_input *in, struct vg_mesh *out,
                          struct vg_error *err);
 
-/** Write text or, when the path ends in "b", binary: version 2, or where the
+/** Write text or, when the path ends in ".meshb", binary: version 2, or where the
  * file passes 2 GB version 3 (4 if counts need it), little-endian. */
 vg_status vg_medit_write(const char *path, const struct vg_mesh *m,
                          struct vg_error *err);

@@ -80,7 +80,7 @@ static vg_status read_face(struct reader *r, struct vg_error *err)
   if (r->patch == UINT32_MAX)
     VG_TRY(vg_soup_named_patch(&r->s, r->name, r->name_len, &r->patch, err));
   for (; next_token(r->in, &text, &len); n++) {
-    uint32_t node;
+    uint32_t node = 0;
 
     VG_TRY(read_corner(r, text, len, &node, err));
     if (n > 1) {

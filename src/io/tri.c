@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "io/boundary.h"
+#include "io/convention.h"
 
 /* What the header says, and how a binary file is laid out. */
 struct layout {
@@ -322,7 +322,7 @@ vg_status vg_tri_parse(struct vg_input *in, struct vg_mesh *out,
 
   if (vg_input_is_text(in)) st = read_text(in, &c, err);
   else st = read_binary(in, &c, err);
-  if (st == VG_OK) st = vg_boundary_tag(&c.m, c.tag, err);
+  if (st == VG_OK) st = vg_patches_from_tags(&c.m, c.tag, err);
   if (st == VG_OK) vg_mesh_move(out, &c.m);
   vg_mesh_release(&c.m);
   free(c.tag);
