@@ -6,6 +6,10 @@
 #ifndef VG_BASE_STATUS_H
 #define VG_BASE_STATUS_H
 
+#ifdef __cplusplus
+extern "C" {              /* for the C++ adapters of third-party libraries */
+#endif
+
 typedef enum {
   VG_OK = 0,
   /* > 0: expected outcome of a local step; the caller tries another way. */
@@ -41,5 +45,9 @@ const char *vg_status_name(vg_status code);
 
 /* In functions with `vg_status st` and a `done:` label that cleans up. */
 #define VG_TRY(call) do { if ((st = (call)) < 0) goto done; } while (0)
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -1,0 +1,117 @@
+#include "core/optimise.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/hilbert.h"
+#include "core/optimise_parts.h"
+
+/* sin^2 of dihedral angles: cells below are worked on one by one. */
+static const double aim_sweep = 0.1786;   /* 25 degrees */
+static const double aim_bad = 0.1786;
+
+static vg_status start(struct vg_optimiser *o, struct vg_tets *t,
+                       struct vg_error *err)
+{
+  o->t = t;
+  o->star = vg_alloc(t->n_point, sizeof *o->star);
+  o->cap_star = t->n_point;
+  if (!o->star || vg_reserve(&o->q, &o->cap_q, t->cap_cell, sizeof *o->q))
+    return vg_fail_memory(err, "optimisation");
+  for (uint32_t c = 0; c < t->n_cell; c++) {
+    o->q[c] = 1;
+    if (t->flag[c] & (VG_DEAD | VG_OUTSIDE)) continue;
+    o->q[c] = (float)vg_cell_shape(t, c);
+    for (int i = 0; i < 4; i++) o->star[t->cell[c].v[i]] = c;
+  }
+  return VG_OK;
+}
+
+static int is_live(const struct vg_tets *t, uint32_t c)
+{
+  return !(t->flag[c] & (VG_DEAD | VG_OUTSIDE));
+}
+
+static void sweep(struct vg_optimiser *o)
+{
+  struct vg_tets *t = o->t;
+
+  for (uint32_t p = (uint32_t)o->n_fixed; p < t->n_point; p++)
+    vg_smooth(o, p, aim_sweep);
+  for (uint32_t c = 0; c < t->n_cell; c++)
+    if (is_live(t, c) && o->q[c] < aim_sweep) vg_swap(o, c);
+}
+
+/* The cells below `aim`, worst first. */
+static vg_status list_bad(const struct vg_optimiser *o, double aim,
+                          size_t *n, struct vg_key **list,
+                          struct vg_error *err)
+{
+  const struct vg_tets *t = o->t;
+  size_t k = 0;
+
+  *n = 0;
+  for (uint32_t c = 0; c < t->n_cell; c++)
+    *n += is_live(t, c) && o->q[c] < aim;
+  *list = vg_alloc(*n, sizeof **list);
+  if (!*list) return vg_fail_memory(err, "optimisation");
+  for (uint32_t c = 0; c < t->n_cell; c++)
+    if (is_live(t, c) && o->q[c] < aim) {
+      double q = o->q[c] > 0 ? o->q[c] : 0;
+
+      (*list)[k].key = (uint64_t)(q * (1 << 20));
+      (*list)[k++].index = c;
+    }
+  return vg_sort_keys(*n, *list, err);
+}
+
+static vg_status mend(struct vg_optimiser *o, size_t *n_better,
+                      struct vg_error *err)
+{
+  struct vg_key *list = NULL;
+  size_t n;
+  vg_status st = list_bad(o, aim_bad, &n, &list, err);
+
+  *n_better = 0;
+  for (size_t k = 0; st == VG_OK && k < n; k++) {
+    uint32_t c = list[k].index;
+
+    if (!is_live(o->t, c) || o->q[c] >= aim_bad) continue;
+    if (vg_swap(o, c)) {
+      ++*n_better;
+      continue;
+    }
+    for (int i = 0; i < 4; i++) {
+      *n_better += (size_t)vg_smooth(o, o->t->cell[c].v[i], aim_bad);
+      if (o->q[c] >= aim_bad) break;
+    }
+  }
+  free(list);
+  return st;
+}
+
+vg_status vg_optimise(struct vg_tets *t, size_t n_fixed,
+                      const struct vg_sizing *sizing, int sweeps,
+                      struct vg_optimise_report *report, struct vg_error *err)
+{
+  struct vg_optimiser *o = vg_calloc(1, sizeof *o);
+  size_t n_better = 1;
+  vg_status st;
+
+  (void)sizing;
+  memset(report, 0, sizeof *report);
+  if (!o) return vg_fail_memory(err, "optimisation");
+  o->n_fixed = n_fixed;
+  o->report = report;
+  st = start(o, t, err);
+  for (int k = 0; st == VG_OK && k < sweeps; k++) sweep(o);
+  for (int k = 0; st == VG_OK && k < 8 && n_better; k++)
+    st = mend(o, &n_better, err);
+  if (st == VG_OK && o->refused) st = vg_fail_memory(err, "optimisation");
+  free(o->q);
+  free(o->star);
+  free(o->stack);
+  free(o);
+  return st;
+}

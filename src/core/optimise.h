@@ -1,0 +1,25 @@
+/* core/optimise.h: better cells from the same points and boundary. */
+#ifndef VG_CORE_OPTIMISE_H
+#define VG_CORE_OPTIMISE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/status.h"
+#include "core/sizing.h"
+#include "core/tets.h"
+
+struct vg_optimise_report {
+  size_t n_smoothed, n_flip, n_collapse, n_split;
+};
+
+/** Improve the cells of t in place: smoothing, swaps, insertion, removal.
+ *
+ * Points 0..n_fixed-1 stay; fixed faces stay; every cell stays positive.
+ * @param sweeps  passes over all cells before the bad ones alone are worked on
+ * Deterministic. VG_ERR_MEMORY on refusal (t is then still valid). */
+vg_status vg_optimise(struct vg_tets *t, size_t n_fixed,
+                      const struct vg_sizing *sizing, int sweeps,
+                      struct vg_optimise_report *report, struct vg_error *err);
+
+#endif

@@ -1,0 +1,69 @@
+/* core/optimise_parts.h: what the steps of the optimisation share. */
+#ifndef VG_CORE_OPTIMISE_PARTS_H
+#define VG_CORE_OPTIMISE_PARTS_H
+
+#include "core/optimise.h"
+#include "core/shape.h"
+
+enum { VG_BALL_MAX = 256, VG_SHELL_MAX = 10, VG_NEW_MAX = 64,
+       VG_OLD_MAX = 64 };
+
+struct vg_optimiser {
+  struct vg_tets *t;
+  size_t n_fixed;            /* points below stay */
+  float *q;                  /* [cap_cell] shape of each cell */
+  size_t cap_q;
+  uint32_t *star;            /* [n_point] a cell of each point */
+  size_t cap_star;
+  size_t n_ball;
+  uint32_t ball[VG_BALL_MAX];  /* links 4 * cell + index of the centre */
+  size_t n_stack, cap_stack;
+  uint32_t *stack;
+  int refused;               /* memory was refused */
+  struct vg_optimise_report *report;
+};
+
+static inline double vg_cell_shape(const struct vg_tets *t, uint32_t c)
+{
+  const uint32_t *v = t->cell[c].v;
+
+  return vg_shape(t->x[v[0]], t->x[v[1]], t->x[v[2]], t->x[v[3]]);
+}
+
+/** Collect the cells around point p in o->ball. 0 when there are more than
+ * VG_BALL_MAX, or when the ball is cut by a fixed face. */
+int vg_ball(struct vg_optimiser *o, uint32_t p);
+
+/** The closed ring of cells around edge a b, starting at cell c.
+ * cell, ring out: cell[k] holds a, b, ring[k], ring[k + 1], in an order such
+ * that (ring[k], ring[k + 1], a, b) is positive.
+ * Returns the number of cells; 0 when the edge is on a fixed face or at the
+ * hull, or when there are more than VG_SHELL_MAX. */
+int vg_shell(const struct vg_tets *t, uint32_t c, uint32_t a, uint32_t b,
+             uint32_t *cell, uint32_t *ring);
+
+/** Replace n_old cells by n_new ones that fill the same cavity.
+ * The first slots of old are reused; shapes, stars, links and fixed faces are
+ * brought up to date. made out: [n_new] the slots used; may be NULL.
+ * Returns 0; -1 when memory was refused, t unchanged. */
+int vg_replace(struct vg_optimiser *o, int n_old, const uint32_t *old,
+               int n_new, const uint32_t (*v)[4], const float *q,
+               uint32_t *made);
+
+/* Steps. Each returns 1 when the mesh became better, else 0. */
+
+/** Move p so that the worst cell around it gets better; `aim` > 0: positions
+ * that leave every cell above aim count by their mean shape instead. */
+int vg_smooth(struct vg_optimiser *o, uint32_t p, double aim);
+
+/** Remove faces and edges of cell c where the worst of the cells concerned
+ * gets better by it. */
+int vg_swap(struct vg_optimiser *o, uint32_t c);
+
+/** Take away a vertex of the bad cell c, into one of its neighbours. */
+int vg_collapse(struct vg_optimiser *o, uint32_t c);
+
+/** Put a point into the bad cell c, in a cavity chosen for it. */
+int vg_split(struct vg_optimiser *o, uint32_t c);
+
+#endif

@@ -1,0 +1,35 @@
+/* core/place.h: where the points of the field go: a front of points that
+ * starts at the surface and advances by the local spacing.
+ *
+ * Each face of the surface proposes the apex of a well-shaped cell; each
+ * point that stands proposes its neighbours in a body-centred cubic pattern.
+ * A proposal stands when it lies in the fluid and no point is nearer than a
+ * share of the local spacing. Smallest spacing first, then first come. The
+ * proposals of one point are tested against one list of its surroundings, from
+ * a spatial hash keyed by the level of the spacing: constant cost per point,
+ * whatever the span of sizes. */
+#ifndef VG_CORE_PLACE_H
+#define VG_CORE_PLACE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/status.h"
+#include "core/region.h"
+#include "core/sizing.h"
+#include "core/tets.h"
+
+struct vg_placed {
+  size_t n;
+  double (*x)[3];            /* [n], owned by the receiver */
+};
+
+/** Place field points into the fluid cells of t (surface points only).
+ * @param region  NULL: everywhere
+ * @param limit   refuse to place more points; 0: none
+ * Returns VG_ERR_UNSUPPORTED when the limit is passed. Deterministic. */
+vg_status vg_place(const struct vg_tets *t, const struct vg_sizing *sizing,
+                   const struct vg_region *region, size_t limit,
+                   struct vg_placed *out, struct vg_error *err);
+
+#endif
