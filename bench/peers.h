@@ -1,0 +1,35 @@
+/* bench/peers.h: what the files of the helper share. */
+#ifndef VG_BENCH_PEERS_H
+#define VG_BENCH_PEERS_H
+
+#include "core/mesh.h"
+#include "core/sizing.h"
+
+/** Read the mesh STEM.node, STEM.ele of TetGen. Its boundary is that of
+ * `surface`, whose points TetGen keeps as its first. */
+vg_status peer_read_tetgen(const char *stem, const struct vg_mesh *surface,
+                           struct vg_mesh *out, struct vg_error *err);
+
+/** Read triangles and tetrahedra of a binary Gmsh file of format 2.2. */
+vg_status peer_read_msh(const char *path, struct vg_mesh *out,
+                        struct vg_error *err);
+
+/** Points whose Delaunay tetrahedra carry the field by linear interpolation:
+ * the corners of an octree over the box lo, hi (a little enlarged) whose
+ * cells are at most `cells` target lengths wide, or twice that where the
+ * field is uniform. Caller frees *point, *size. */
+vg_status peer_sample(const struct vg_sizing *sizing, const double lo[3],
+                      const double hi[3], double cells, size_t *n,
+                      double (**point)[3], double **size,
+                      struct vg_error *err);
+
+/** Write STEM.b.node and STEM.b.mtr, a background of TetGen without its
+ * tetrahedra (tetgen STEM.b.node makes these). */
+vg_status peer_write_background(const char *stem, size_t n,
+                                const double (*point)[3], const double *size,
+                                struct vg_error *err);
+
+/** Turn STEM.b.node, .b.ele, .b.mtr into a view STEM.pos of Gmsh. */
+vg_status peer_write_view(const char *stem, struct vg_error *err);
+
+#endif
