@@ -24,8 +24,9 @@ vg_status vg_medit_read(const char *path, struct vg_mesh *out,
 vg_status vg_medit_parse(struct vg_input *in, struct vg_mesh *out,
                          struct vg_error *err);
 
-/** Write text or, when the path ends in ".meshb", binary: version 2, or where the
- * file passes 2 GB version 3 (4 if counts need it), little-endian. */
+/** Write text or, when the path ends in ".meshb", little-endian binary:
+ * version 2, or where the file passes 2 GB version 3 (4 if counts need it).
+ * Nameless format: patch names are lost. */
 vg_status vg_medit_write(const char *path, const struct vg_mesh *m,
                          struct vg_error *err);
 

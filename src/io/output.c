@@ -81,6 +81,18 @@ static void flush(struct vg_output *out)
   out->n = 0;
 }
 
+static vg_status write_error(const struct vg_output *out, struct vg_error *err)
+{
+  return vg_fail(err, VG_ERR_IO, "%s: cannot write: %s", out->path,
+                 strerror(out->error));
+}
+
+vg_status vg_output_flush(struct vg_output *out, struct vg_error *err)
+{
+  flush(out);
+  return out->error ? write_error(out, err) : VG_OK;
+}
+
 vg_status vg_output_commit(struct vg_output *out, struct vg_error *err)
 {
   vg_status st = VG_OK;
@@ -90,8 +102,7 @@ vg_status vg_output_commit(struct vg_output *out, struct vg_error *err)
   out->fd = -1;
   if (!out->error && rename(out->part, out->path)) out->error = errno;
   if (out->error) {
-    st = vg_fail(err, VG_ERR_IO, "%s: cannot write: %s", out->path,
-                 strerror(out->error));
+    st = write_error(out, err);
     unlink(out->part);
   }
   vg_output_release(out);

@@ -149,6 +149,10 @@ vg_status vg_output_open(const char *path, struct vg_output *out,
  * .part file is removed and an earlier file of that name is untouched. */
 vg_status vg_output_commit(struct vg_output *out, struct vg_error *err);
 
+/** Hand everything to the system and report an error so far: for several
+ * files that should appear together, before the first is committed. */
+vg_status vg_output_flush(struct vg_output *out, struct vg_error *err);
+
 /** Drop the .part file unless committed. Accepts an initialised output. */
 void vg_output_release(struct vg_output *out);
 
