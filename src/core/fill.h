@@ -14,12 +14,12 @@ typedef int (*vg_progress)(void *user, const char *stage, size_t done,
                            size_t expected);
 
 struct vg_fill_options {
-  int optimise;            /* sweeps of optimisation, 0: none; default 3 */
+  int optimise;            /* sweeps of optimisation, 0: none; default 2 */
   uint64_t max_cells;      /* refuse to make more; 0: no limit */
   vg_progress progress;
   void *user;
 };
-#define VG_FILL_OPTIONS_INIT { 3, 0, NULL, NULL }
+#define VG_FILL_OPTIONS_INIT { 2, 0, NULL, NULL }
 
 /** What happened, for the report. Times are wall seconds. */
 struct vg_fill_report {

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/hilbert.h"
 #include "core/predicates.h"
 
 const uint8_t vg_face[4][3] = {{1, 3, 2}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2}};
@@ -165,34 +166,122 @@ uint32_t vg_tets_locate(const struct vg_tets *t, uint32_t start,
 
 /* --- housekeeping ------------------------------------------------------ */
 
-vg_status vg_tets_compact(struct vg_tets *t, int drop_outside,
-                          struct vg_error *err)
+/* to[old] = new number of each point, VG_NONE for unused ones from n_keep on;
+ * t->x is put into the new order. */
+static vg_status order_points(struct vg_tets *t, size_t n_keep, uint32_t *to,
+                              struct vg_error *err)
 {
-  uint8_t gone = VG_DEAD | (drop_outside ? VG_OUTSIDE : 0);
-  uint32_t *to = vg_alloc(t->n_cell, sizeof *to);
-  uint32_t n = 0;
+  size_t n = t->n_point - n_keep, used = n_keep;
+  uint32_t *order = vg_alloc(n, sizeof *order);
+  double (*x)[3] = vg_alloc(n, sizeof *x);
+  vg_status st = VG_OK;
 
-  if (!to) return vg_fail_memory(err, "renumbering cells");
-  for (size_t c = 0; c < t->n_cell; c++)
-    to[c] = t->flag[c] & gone ? VG_NONE : n++;
+  if (!order || !x) st = vg_fail_memory(err, "renumbering points");
+  for (size_t c = 0; st == VG_OK && c < t->n_cell; c++)
+    for (int i = 0; i < 4 && !(t->flag[c] & (VG_DEAD | VG_OUTSIDE)); i++)
+      to[t->cell[c].v[i]] = 0;
+  for (size_t p = 0; st == VG_OK && p < n_keep; p++) to[p] = (uint32_t)p;
+  if (st == VG_OK) {
+    memcpy(x, t->x + n_keep, n * sizeof *x);
+    st = vg_hilbert_order(n, (const double (*)[3])x, order, err);
+  }
+  for (size_t k = 0; st == VG_OK && k < n; k++) {
+    size_t p = n_keep + order[k];
+
+    if (to[p] == VG_NONE) continue;
+    memcpy(t->x[used], x[order[k]], sizeof *x);
+    to[p] = (uint32_t)used++;
+  }
+  if (st == VG_OK) t->n_point = used;
+  free(order);
+  free(x);
+  return st;
+}
+
+/* to[old] = new number of each cell, VG_NONE for removed ones: counting sort
+ * by the highest point. Returns the number that stay. */
+static size_t order_cells(const struct vg_tets *t, uint32_t *start,
+                          uint32_t *to)
+{
+  size_t n = 0;
+
   for (size_t c = 0; c < t->n_cell; c++) {
-    struct vg_cell cell = t->cell[c];
+    const uint32_t *v = t->cell[c].v;
+    uint32_t top = v[0];
+
+    for (int i = 1; i < 4; i++) top = v[i] > top ? v[i] : top;
+    to[c] = t->flag[c] & (VG_DEAD | VG_OUTSIDE) ? VG_NONE : top;
+    if (to[c] != VG_NONE) start[top + 1]++;
+  }
+  for (size_t p = 0; p < t->n_point; p++) start[p + 1] += start[p];
+  for (size_t c = 0; c < t->n_cell; c++)
+    if (to[c] != VG_NONE) {
+      to[c] = start[to[c]]++;
+      n++;
+    }
+  return n;
+}
+
+static void move_cells(struct vg_tets *t, size_t n, const uint32_t *to,
+                       struct vg_cell *cell, uint8_t *flag)
+{
+  for (size_t c = 0; c < t->n_cell; c++) {
+    struct vg_cell at = t->cell[c];
 
     if (to[c] == VG_NONE) continue;
-    for (int i = 0; i < 4; i++)
-      if (cell.link[i] != VG_NONE) {
-        uint32_t other = to[cell.link[i] >> 2];
+    for (int i = 0; i < 4; i++) {
+      uint32_t other = at.link[i] == VG_NONE ? VG_NONE : to[at.link[i] >> 2];
 
-        cell.link[i] = other == VG_NONE ? VG_NONE
-                                        : 4 * other + (cell.link[i] & 3);
-      }
-    t->cell[to[c]] = cell;
-    t->flag[to[c]] = t->flag[c];
+      at.link[i] = other == VG_NONE ? VG_NONE : 4 * other + (at.link[i] & 3);
+    }
+    cell[to[c]] = at;
+    flag[to[c]] = t->flag[c];
   }
-  t->n_cell = n;
+  free(t->cell);
+  free(t->flag);
+  t->cell = cell;
+  t->flag = flag;
+  t->n_cell = t->cap_cell = n;
   t->n_free = 0;
+}
+
+vg_status vg_tets_tidy(struct vg_tets *t, size_t n_keep, struct vg_error *err)
+{
+  uint32_t *point = vg_alloc(t->n_point, sizeof *point), *start = NULL;
+  uint32_t *to = vg_alloc(t->n_cell, sizeof *to);
+  struct vg_cell *cell = NULL;
+  uint8_t *flag = NULL;
+  size_t n;
+  vg_status st = VG_OK;
+
+  if (!point || !to) {
+    st = vg_fail_memory(err, "renumbering cells");
+    goto done;
+  }
+  memset(point, 0xff, t->n_point * sizeof *point);
+  VG_TRY(order_points(t, n_keep, point, err));
+  for (size_t c = 0; c < t->n_cell; c++)
+    for (int i = 0; i < 4; i++)
+      if (!(t->flag[c] & (VG_DEAD | VG_OUTSIDE)))
+        t->cell[c].v[i] = point[t->cell[c].v[i]];
+  start = vg_calloc(t->n_point + 1, sizeof *start);
+  if (start) {
+    n = order_cells(t, start, to);
+    cell = vg_alloc(n, sizeof *cell);
+    flag = vg_alloc(n, sizeof *flag);
+  }
+  if (!cell || !flag) {
+    free(cell);
+    free(flag);
+    st = vg_fail_memory(err, "renumbering cells");
+    goto done;
+  }
+  move_cells(t, n, to, cell, flag);
+done:
+  free(point);
   free(to);
-  return VG_OK;
+  free(start);
+  return st;
 }
 
 size_t vg_tets_defects(const struct vg_tets *t)

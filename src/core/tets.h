@@ -73,10 +73,11 @@ vg_status vg_tets_link(struct vg_tets *t, struct vg_error *err);
 uint32_t vg_tets_locate(const struct vg_tets *t, uint32_t start,
                         const double x[3]);
 
-/** Remove dead cells, and outside ones if asked, keeping the order of the
- * rest. Links to removed cells become VG_NONE. VG_ERR_MEMORY on refusal. */
-vg_status vg_tets_compact(struct vg_tets *t, int drop_outside,
-                          struct vg_error *err);
+/** Remove dead and outside cells, and put what stays into an order that keeps
+ * neighbours together: points from n_keep on along a Hilbert curve, unused
+ * ones dropped (earlier ones keep their place), cells by their highest point.
+ * Links to removed cells become VG_NONE. VG_ERR_MEMORY on refusal. */
+vg_status vg_tets_tidy(struct vg_tets *t, size_t n_keep, struct vg_error *err);
 
 /** Test aid: number of inconsistencies (links, orientation). O(n). */
 size_t vg_tets_defects(const struct vg_tets *t);
