@@ -2,7 +2,7 @@
 # fuses or reorders floating point: no contraction, no fast-math, ever.
 add_library(vg_flags INTERFACE)
 target_compile_options(vg_flags INTERFACE
-  -Wall -Wextra -Wshadow -Wpointer-arith -Wno-unknown-warning-option
+  -Wall -Wextra -Wshadow -Wpointer-arith
   $<$<COMPILE_LANGUAGE:C>:-Wstrict-prototypes -Wmissing-prototypes>
   -ffp-contract=off -fno-fast-math
   $<$<BOOL:${VG_WERROR}>:-Werror>)
