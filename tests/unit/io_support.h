@@ -122,7 +122,7 @@ static inline void io_make_mixed(struct vg_mesh *m)
   /* Ring 0 3 4 1 of slots is 4 5 6 7 counter-clockwise seen from point 10. */
   static const uint32_t pyr[5] = { 4, 7, 10, 5, 6 };
   static const uint32_t tet[4] = { 5, 6, 10, 11 };
-  static const uint32_t tri[2][3] = { {1, 8, 2}, {4, 10, 7} };
+  static const uint32_t tri[2][3] = { {1, 8, 2}, {4, 7, 10} };
   static const uint32_t quad[3][4] = {
     {0, 1, 2, 3}, {0, 4, 5, 1}, {0, 3, 7, 4}
   };
