@@ -11,9 +11,9 @@
 static vg_status out_of_range(const struct vg_param *p, const char *text,
                               size_t len, struct vg_error *err)
 {
-  char lo[32];
+  char lo[33];
 
-  vg_format_real(p->lo, lo);
+  lo[vg_format_real(p->lo, lo)] = 0;
   if (p->hi >= 1e15 && p->lo > -1e15)
     return vg_fail(err, VG_ERR_INPUT, "%s is %.*s; it must be %s %s", p->name,
                    (int)len, text, p->above_lo ? "above" : "at least", lo);
@@ -148,7 +148,7 @@ void vg_param_format(const struct vg_param *p, const void *base, char *out,
                      size_t size)
 {
   const char *at = (const char *)base + p->offset;
-  char real[32];
+  char real[33];
   double v;
   int64_t count;
   int32_t id;
@@ -158,7 +158,7 @@ void vg_param_format(const struct vg_param *p, const void *base, char *out,
   case VG_PARAM_REAL:
     memcpy(&v, at, sizeof v);
     if (isnan(v)) snprintf(real, sizeof real, "-");
-    else vg_format_real(v, real);
+    else real[vg_format_real(v, real)] = 0;
     snprintf(out, size, "%s", real);
     break;
   case VG_PARAM_COUNT:

@@ -19,10 +19,12 @@ enum vg_defect_kind {
   VG_DEFECT_SHELL,              /* nesting of closed shells is wrong */
   VG_DEFECT_NO_BC,              /* patch without boundary condition */
   VG_DEFECT_NOT_FINITE,         /* NaN or infinite coordinate */
+  VG_DEFECT_QUAD,               /* quadrilateral: the fill takes triangles */
   VG_DEFECT_N
 };
 
-/** One finding. Faces, points are indices into the mesh; SIZE_MAX: none. */
+/** One finding. Faces and points are indices into the mesh after the repair,
+ * quadrilateral q counting as face n_tri + q; SIZE_MAX: none. */
 struct vg_defect {
   enum vg_defect_kind kind;
   size_t face[2];
@@ -30,8 +32,11 @@ struct vg_defect {
   double at[3];                 /* where */
 };
 
-struct vg_shell {               /* one edge-connected closed component */
-  size_t n_tri;
+struct vg_shell {               /* one edge-connected component */
+  size_t n_tri;                 /* a quadrilateral counts as two */
+  size_t face;                  /* the first of its faces */
+  int is_closed;                /* every edge has exactly two faces; parent and
+                                   depth are found among closed shells only */
   double volume;                /* signed; > 0: normals point out of it */
   size_t parent;                /* shell directly around it; SIZE_MAX: none */
   int depth;                    /* 0 outermost */
@@ -39,18 +44,25 @@ struct vg_shell {               /* one edge-connected closed component */
 };
 
 struct vg_surface_report {
-  size_t count[VG_DEFECT_N];    /* all findings by kind */
+  size_t count[VG_DEFECT_N];    /* all findings by kind, in the mesh as the
+                                   repair leaves it */
   size_t n_defect, cap_defect;
-  struct vg_defect *defect;     /* every finding, sorted by kind, then face */
+  struct vg_defect *defect;     /* every finding, sorted by kind, then face;
+                                   but beyond VG_SURFACE_PAIR_MAX intersecting
+                                   pairs one per face that intersects, with
+                                   its first partner: count stays true */
+  uint32_t *face_kinds;         /* [n_tri + n_quad] bit 1 << kind for every
+                                   finding that touches the face */
   size_t n_flipped;             /* triangles turned by the repair */
   size_t n_removed_point, n_removed_tri; /* removed by the repair */
-  int turned_inside_out;        /* the whole surface was turned */
+  int turned_inside_out;        /* every closed shell was turned as a whole */
   size_t n_shell;
   struct vg_shell *shell;
   uint32_t *tri_shell;          /* [n_tri] */
   int is_closed;                /* no open or non-manifold edge */
 };
 #define VG_SURFACE_REPORT_INIT { 0 }
+#define VG_SURFACE_PAIR_MAX 262144
 
 struct vg_surface_check_options {
   int repair;                   /* orient, drop unused/duplicate points and
@@ -64,10 +76,25 @@ struct vg_surface_check_options {
 };
 #define VG_SURFACE_CHECK_OPTIONS_INIT { 1, 0, 0 }
 
-/** Find (and with `repair` mend) the defects of the triangles of m.
- * m may be changed only by the repair. O(n log n).
+/** Find (and with `repair` mend) the defects of the boundary faces of m.
+ *
+ * The repair merges points with the same coordinates, drops unused points,
+ * triangles with a repeated node and copies of a triangle (same nodes, side
+ * and patch), makes neighbours agree (the fewer faces are turned) and turns
+ * closed shells to the side that `external` asks for. A shell nested deeper
+ * than the fluid's own boundary is never turned: whether it is a cavity or a
+ * stray body is not ours to guess.
+ *
+ * Intersections: pairs of triangles with a point in common that is not on a
+ * common node or edge; exact, touching counts, degenerate ones excepted.
+ * With cells in m, points that only cells use are not unused.
+ *
+ * @param m       changed only by the repair; untouched on failure
+ * @param report  released first; empty on failure
+ * O(n log n + intersections); memory about 500 bytes per triangle.
  * Returns VG_OK also when defects remain: look at report->n_defect.
- * VG_ERR_MEMORY otherwise. Threads: re-entrant. */
+ * VG_ERR_INPUT for a node or patch index out of range, VG_ERR_UNSUPPORTED
+ * beyond 1.4e9 faces, VG_ERR_MEMORY. Threads: re-entrant. */
 vg_status vg_surface_check(struct vg_mesh *m,
                            const struct vg_surface_check_options *options,
                            struct vg_surface_report *report,
@@ -82,9 +109,12 @@ void vg_defect_text(const struct vg_mesh *m, const struct vg_defect *d,
 /** Name of a kind: "open edge", ... Static string. */
 const char *vg_defect_name(enum vg_defect_kind kind);
 
-/** Merge points that coincide: exactly for tolerance 0, else within it
- * (single linkage on a grid, lowest index kept), and renumber. Triangles that
- * collapse are dropped. Counts may be NULL. */
+/** Merge points that coincide: exactly for tolerance 0 (0 and -0 are the
+ * same), else within it (single linkage on a grid, lowest index kept), and
+ * renumber. Triangles that collapse are dropped; cells are only renumbered.
+ * Counts may be NULL. O(n). On failure m is untouched: VG_ERR_INPUT for a
+ * tolerance that is negative or not finite or an index out of range,
+ * VG_ERR_MEMORY. */
 vg_status vg_surface_weld(struct vg_mesh *m, double tolerance,
                           size_t *n_merged, size_t *n_dropped,
                           struct vg_error *err);

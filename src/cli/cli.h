@@ -1,0 +1,48 @@
+/* cli/cli.h: what the subcommands share. Each subcommand is one file with one
+ * entry that takes its own argc, argv and returns an exit status. */
+#ifndef VG_CLI_CLI_H
+#define VG_CLI_CLI_H
+
+#include <argp.h>
+
+#include "base/status.h"
+#include "cli/settings.h"
+
+enum { VG_EXIT_DONE = 0, VG_EXIT_FAILED = 1, VG_EXIT_USAGE = 2 };
+
+int vg_cmd_mesh(int argc, char **argv);
+int vg_cmd_check(int argc, char **argv);
+int vg_cmd_deck(int argc, char **argv);
+int vg_cmd_demo(int argc, char **argv);
+
+/** argp_parse with exit status 2 for wrong usage and help on stdout. */
+void vg_cli_parse(const struct argp *argp, int argc, char **argv, void *input);
+
+/** Print "vanguard: message" to stderr; returns VG_EXIT_FAILED. */
+int vg_cli_fail(const struct vg_error *err);
+
+/** Help line "[unit; default x]" parts for the settings and their options.
+ *
+ * Appends one option per plain setting, and the farfield's kind, lengths, size
+ * and spacing, to option[*n...]; keys are VG_KEY_SETTING + position. Text is
+ * owned by the table, freed by vg_cli_options_free. */
+#define VG_KEY_SETTING 1000
+struct vg_cli_options {
+  struct argp_option *option;      /* NULL-ended */
+  char **text;
+  size_t n, n_text;
+};
+
+/** `own`: the subcommand's options, ended by a zero entry. */
+vg_status vg_cli_options(const struct argp_option *own,
+                         struct vg_cli_options *out);
+void vg_cli_options_free(struct vg_cli_options *o);
+
+/** Set what the option with `key` names; VG_BLOCKED when it names none. */
+vg_status vg_cli_option_set(int key, const char *text, struct vg_settings *s,
+                            struct vg_error *err);
+
+/** Count as "12,345,678" into text[32]; returns text. */
+char *vg_cli_count(unsigned long long n, char *text);
+
+#endif

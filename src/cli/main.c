@@ -1,0 +1,82 @@
+/* The program `vanguard`: finds the subcommand. Exit status: 0 done, 1 the
+ * job failed, 2 wrong usage. */
+#include <stdio.h>
+#include <string.h>
+
+#include "cli/cli.h"
+
+static const struct command {
+  const char *name, *summary;
+  int (*run)(int argc, char **argv);
+  const char *title;               /* argv[0] of the subcommand, for help */
+} commands[] = {
+  { "mesh", "mesh the volume of a project", vg_cmd_mesh, "vanguard mesh" },
+  { "check", "judge a surface or a volume mesh", vg_cmd_check,
+    "vanguard check" },
+  { "deck", "write a run deck with all defaults", vg_cmd_deck,
+    "vanguard deck" },
+  { "demo", "write a complete example project", vg_cmd_demo,
+    "vanguard demo" },
+};
+#define N_COMMAND (sizeof commands / sizeof *commands)
+
+static void usage(FILE *to)
+{
+  fprintf(to, "Usage: vanguard COMMAND [OPTION...]\n"
+          "Vanguard makes tetrahedral meshes for aerodynamics from closed "
+          "surfaces.\n\n");
+  for (size_t i = 0; i < N_COMMAND; i++)
+    fprintf(to, "  %-8s %s\n", commands[i].name, commands[i].summary);
+  fprintf(to, "\n'vanguard COMMAND --help' lists the options of a command, "
+          "'vanguard --version'\nshows the version. Exit status: 0 done, 1 "
+          "failed, 2 wrong usage.\n");
+}
+
+static int version(void)
+{
+  printf("vanguard " VG_VERSION "\n"
+         "Licence AGPL-3.0-or-later: "
+         "https://www.gnu.org/licenses/agpl-3.0.html\n");
+  return VG_EXIT_DONE;
+}
+
+static const char *command_name(const void *user, size_t i)
+{
+  (void)user;
+  return commands[i].name;
+}
+
+static int unknown(const char *word)
+{
+  const char *near = vg_nearest_name(word, N_COMMAND, command_name, NULL);
+
+  if (near)
+    fprintf(stderr, "vanguard: no command '%s'; did you mean '%s'?\n", word,
+            near);
+  else
+    fprintf(stderr, "vanguard: no command '%s'; 'vanguard --help' lists "
+            "them\n", word);
+  return VG_EXIT_USAGE;
+}
+
+int main(int argc, char **argv)
+{
+  const char *word = argc > 1 ? argv[1] : "";
+
+  if (argc < 2) {
+    usage(stderr);
+    return VG_EXIT_USAGE;
+  }
+  if (!strcmp(word, "--version") || !strcmp(word, "-V")) return version();
+  if (!strcmp(word, "--help") || !strcmp(word, "-h") ||
+      !strcmp(word, "help")) {
+    usage(stdout);
+    return VG_EXIT_DONE;
+  }
+  for (size_t i = 0; i < N_COMMAND; i++)
+    if (!strcmp(word, commands[i].name)) {
+      argv[1] = (char *)commands[i].title;
+      return commands[i].run(argc - 1, argv + 1);
+    }
+  return unknown(word);
+}

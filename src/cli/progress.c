@@ -1,0 +1,114 @@
+#include "cli/progress.h"
+
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "cli/cli.h"
+
+#define LIVE_EVERY_S 0.2
+#define PLAIN_EVERY_S 10.0
+
+static volatile sig_atomic_t interrupted;
+
+static void on_signal(int number)
+{
+  (void)number;
+  interrupted = 1;
+}
+
+int vg_display_interrupted(void)
+{
+  return interrupted != 0;
+}
+
+double vg_display_now(void)
+{
+  struct timespec t;
+
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+void vg_display_init(struct vg_display *d, int quiet)
+{
+  struct sigaction action;
+
+  memset(d, 0, sizeof *d);
+  d->quiet = quiet;
+  d->live = !quiet && isatty(STDERR_FILENO);
+  memset(&action, 0, sizeof action);
+  action.sa_handler = on_signal;
+  action.sa_flags = (int)SA_RESETHAND | SA_RESTART;
+  sigemptyset(&action.sa_mask);
+  sigaction(SIGINT, &action, NULL);
+  sigaction(SIGTERM, &action, NULL);
+}
+
+void vg_display_clear(struct vg_display *d)
+{
+  if (!d->open) return;
+  fputs("\r\033[K", stderr);
+  d->open = 0;
+}
+
+/* "3 s", "2 min 10 s", "1 h 05 min". */
+static void duration(double s, char *text, size_t size)
+{
+  unsigned long t = s > 0 ? (unsigned long)(s + 0.5) : 0;
+
+  if (t < 60) snprintf(text, size, "%lu s", t);
+  else if (t < 3600) snprintf(text, size, "%lu min %02lu s", t / 60, t % 60);
+  else snprintf(text, size, "%lu h %02lu min", t / 3600, t / 60 % 60);
+}
+
+static void show(struct vg_display *d, size_t done, size_t expected,
+                 double now)
+{
+  char count[32], of[32], rate_text[32], eta[32], line[160];
+  double elapsed = now - d->stage_start;
+  double rate = elapsed > 0 ? (double)done / elapsed : 0;
+  int n = snprintf(line, sizeof line, "%-12s", d->stage);
+
+  if (done || expected)
+    n += snprintf(line + n, sizeof line - (size_t)n, " %12s",
+                  vg_cli_count(done, count));
+  if (expected)
+    n += snprintf(line + n, sizeof line - (size_t)n, " of ~%s  %3.0f%%",
+                  vg_cli_count(expected, of),
+                  done < expected ? 100.0 * (double)done / (double)expected
+                                  : 100.0);
+  if (done && elapsed > 0.5) {
+    n += snprintf(line + n, sizeof line - (size_t)n, "  %s/s",
+                  vg_cli_count((unsigned long long)rate, rate_text));
+    if (expected > done && rate > 0) {
+      duration((double)(expected - done) / rate, eta, sizeof eta);
+      snprintf(line + n, sizeof line - (size_t)n, "  ETA %s", eta);
+    }
+  }
+  if (d->live) fprintf(stderr, "\r\033[K%s", line);
+  else fprintf(stderr, "%s\n", line);
+  fflush(stderr);
+  d->open = d->live;
+  d->last_shown = now;
+}
+
+int vg_display_update(void *user, const char *stage, size_t done,
+                      size_t expected)
+{
+  struct vg_display *d = user;
+  double now;
+
+  if (d->quiet) return vg_display_interrupted();
+  now = vg_display_now();
+  if (strncmp(stage, d->stage, sizeof d->stage - 1) != 0) {
+    snprintf(d->stage, sizeof d->stage, "%s", stage);
+    d->stage_start = now;
+    show(d, done, expected, now);
+  } else if (now - d->last_shown > (d->live ? LIVE_EVERY_S : PLAIN_EVERY_S)) {
+    show(d, done, expected, now);
+  }
+  return vg_display_interrupted();
+}

@@ -1,0 +1,32 @@
+/* cli/progress.h: what the user sees while waiting, on stderr: one live line
+ * on a terminal, plain lines elsewhere; and the wish to stop (SIGINT,
+ * SIGTERM). Times are for people only and decide nothing. */
+#ifndef VG_CLI_PROGRESS_H
+#define VG_CLI_PROGRESS_H
+
+#include <stddef.h>
+
+struct vg_display {
+  int quiet, live, open;    /* open: a live line stands without its end */
+  double stage_start, last_shown;
+  char stage[40];
+};
+
+/** quiet: show nothing. Installs the signal handlers. */
+void vg_display_init(struct vg_display *d, int quiet);
+
+/** A vg_progress callback (core/fill.h); user is the display. Returns 1 when
+ * the user asked to stop. */
+int vg_display_update(void *user, const char *stage, size_t done,
+                      size_t expected);
+
+/** Remove the live line, before something else is printed. */
+void vg_display_clear(struct vg_display *d);
+
+/** 1 after SIGINT or SIGTERM. A second one ends the process at once. */
+int vg_display_interrupted(void);
+
+/** Wall clock in seconds, from any start. */
+double vg_display_now(void);
+
+#endif

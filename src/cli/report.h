@@ -1,0 +1,44 @@
+/* cli/report.h: findings as text for a person and as JSON for a program. */
+#ifndef VG_CLI_REPORT_H
+#define VG_CLI_REPORT_H
+
+#include <jansson.h>
+#include <stdio.h>
+
+#include "core/fill.h"
+#include "core/mesh.h"
+#include "core/planar.h"
+#include "core/quality.h"
+#include "core/surface_check.h"
+
+#define VG_SHOWN_DEFECTS 20   /* first ones of a kind put in words */
+
+/** Counts of a mesh, its box and its patches. */
+void vg_report_size_text(FILE *to, const struct vg_mesh *m);
+json_t *vg_report_size_json(const struct vg_mesh *m);
+
+/** Every kind of defect counted, the first `shown` of each in words, shells,
+ * and what the repair did. */
+void vg_report_surface_text(FILE *to, const struct vg_mesh *m,
+                            const struct vg_surface_report *r, size_t shown);
+json_t *vg_report_surface_json(const struct vg_mesh *m,
+                               const struct vg_surface_report *r,
+                               size_t shown);
+
+/** Validity, then quality; `full`: with histograms and the worst cells. */
+void vg_report_mesh_text(FILE *to, const struct vg_mesh_report *r, int full);
+json_t *vg_report_mesh_json(const struct vg_mesh_report *r);
+
+/** What the fill did and how fast. */
+void vg_report_fill_text(FILE *to, const struct vg_fill_report *r,
+                         size_t n_cell);
+json_t *vg_report_fill_json(const struct vg_fill_report *r, size_t n_cell);
+
+/** What was added around the body. */
+void vg_report_domain_text(FILE *to, const struct vg_domain_report *r);
+json_t *vg_report_domain_json(const struct vg_domain_report *r);
+
+/** Largest memory of this process so far, bytes. */
+double vg_report_peak_memory(void);
+
+#endif

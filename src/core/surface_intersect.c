@@ -1,0 +1,254 @@
+/* Triangles that have more in common than their common nodes and edges, by
+ * signs of determinants alone (the idea of Guigue and Devillers, J. Graphics
+ * Tools 8, 2003): two triangles meet exactly when an edge of one meets the
+ * other. Common nodes are taken out first, by number. */
+#include "core/surface_parts.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/predicates.h"
+
+static int sign(double x)
+{
+  return (x > 0) - (x < 0);
+}
+
+static int side(const double *a, const double *b, const double *c,
+                const double *d)
+{
+  return sign(vg_orient3d(a, b, c, d));
+}
+
+/* --- in a common plane --------------------------------------------------- */
+
+struct plane {
+  int i, j; /* the coordinates kept */
+};
+
+static int turn(struct plane e, const double *a, const double *b,
+                const double *c)
+{
+  double p[2] = { a[e.i], a[e.j] }, q[2] = { b[e.i], b[e.j] };
+  double r[2] = { c[e.i], c[e.j] };
+
+  return sign(vg_orient2d(p, q, r));
+}
+
+/* A projection in which the triangle keeps an area. */
+static struct plane plane_of(const double *const t[3])
+{
+  struct plane e = { 0, 1 };
+
+  if (turn(e, t[0], t[1], t[2])) return e;
+  e.j = 2;
+  if (turn(e, t[0], t[1], t[2])) return e;
+  e.i = 1;
+  return e;
+}
+
+static int between(double a, double b, double x)
+{
+  return a < b ? a <= x && x <= b : b <= x && x <= a;
+}
+
+/* x lies on the line of a b: is it within? */
+static int on_segment(struct plane e, const double *a, const double *b,
+                      const double *x)
+{
+  return between(a[e.i], b[e.i], x[e.i]) && between(a[e.j], b[e.j], x[e.j]);
+}
+
+static int segments_meet(struct plane e, const double *a, const double *b,
+                         const double *c, const double *d)
+{
+  int abc = turn(e, a, b, c), abd = turn(e, a, b, d);
+  int cda = turn(e, c, d, a), cdb = turn(e, c, d, b);
+
+  if (!abc && !abd)
+    return on_segment(e, a, b, c) || on_segment(e, a, b, d)
+           || on_segment(e, c, d, a);
+  return abc * abd <= 0 && cda * cdb <= 0;
+}
+
+static int inside(struct plane e, const double *const t[3], const double *x)
+{
+  int a = turn(e, t[0], t[1], x), b = turn(e, t[1], t[2], x);
+  int c = turn(e, t[2], t[0], x);
+
+  return (a >= 0 && b >= 0 && c >= 0) || (a <= 0 && b <= 0 && c <= 0);
+}
+
+static int segment_in_plane(const double *p, const double *q,
+                            const double *const t[3])
+{
+  struct plane e = plane_of(t);
+
+  if (inside(e, t, p) || inside(e, t, q)) return 1;
+  for (int k = 0; k < 3; k++)
+    if (segments_meet(e, p, q, t[k], t[(k + 1) % 3])) return 1;
+  return 0;
+}
+
+/* --- in space ------------------------------------------------------------ */
+
+/* Does the closed segment p q meet the closed triangle t; sp and sq are the
+ * sides of its plane on which p and q lie. */
+static int segment_meets(const double *p, const double *q, int sp, int sq,
+                         const double *const t[3])
+{
+  int a, b, c;
+
+  if (sp * sq > 0) return 0;
+  if (!sp && !sq) return segment_in_plane(p, q, t);
+  a = side(p, q, t[0], t[1]);
+  b = side(p, q, t[1], t[2]);
+  if (a * b < 0) return 0;
+  c = side(p, q, t[2], t[0]);
+  return a * c >= 0 && b * c >= 0;
+}
+
+/* No common node. */
+static int apart_meet(const double *const a[3], const double *const b[3])
+{
+  int sa[3], sb[3];
+
+  for (int k = 0; k < 3; k++) sb[k] = side(a[0], a[1], a[2], b[k]);
+  if (sb[0] && sb[0] == sb[1] && sb[0] == sb[2]) return 0;
+  for (int k = 0; k < 3; k++) sa[k] = side(b[0], b[1], b[2], a[k]);
+  if (sa[0] && sa[0] == sa[1] && sa[0] == sa[2]) return 0;
+  for (int k = 0; k < 3; k++) {
+    int l = (k + 1) % 3;
+
+    if (segment_meets(b[k], b[l], sb[k], sb[l], a)) return 1;
+    if (segment_meets(a[k], a[l], sa[k], sa[l], b)) return 1;
+  }
+  return 0;
+}
+
+/* Common node a[0] = b[0]. What they share is convex and contains it; if it
+ * is more, it reaches the far edge of one of them. */
+static int at_node_meet(const double *const a[3], const double *const b[3])
+{
+  int sb1 = side(a[0], a[1], a[2], b[1]), sb2 = side(a[0], a[1], a[2], b[2]);
+  int sa1, sa2;
+
+  if (sb1 * sb2 > 0) return 0;
+  sa1 = side(b[0], b[1], b[2], a[1]);
+  sa2 = side(b[0], b[1], b[2], a[2]);
+  if (sa1 * sa2 > 0) return 0;
+  return segment_meets(b[1], b[2], sb1, sb2, a)
+         || segment_meets(a[1], a[2], sa1, sa2, b);
+}
+
+/* Common edge a[0] a[1]: they overlap if folded flat onto each other. */
+static int at_edge_meet(const double *const a[3], const double *const b[3])
+{
+  struct plane e;
+
+  if (side(a[0], a[1], a[2], b[2])) return 0;
+  e = plane_of(a);
+  return turn(e, a[0], a[1], a[2]) == turn(e, a[0], a[1], b[2]);
+}
+
+int vg_triangles_meet(const double (*point)[3], const uint32_t a[3],
+                      const uint32_t b[3])
+{
+  const double *p[3], *q[3];
+  int at = 0, n = 0, common_b = 0;
+
+  /* Common nodes to the front, in the order of a. */
+  for (int k = 0; k < 3; k++)
+    for (int l = 0; l < 3; l++)
+      if (a[k] == b[l]) {
+        p[n] = q[n] = point[a[k]];
+        n++;
+        at |= 1 << k;
+        common_b |= 1 << l;
+      }
+  if (n == 3) return 1;
+  for (int k = 0, i = n, j = n; k < 3; k++) {
+    if (!(at >> k & 1)) p[i++] = point[a[k]];
+    if (!(common_b >> k & 1)) q[j++] = point[b[k]];
+  }
+  if (n == 2) return at_edge_meet(p, q);
+  return n ? at_node_meet(p, q) : apart_meet(p, q);
+}
+
+/* --- all pairs ----------------------------------------------------------- */
+
+struct search {
+  struct vg_crossing *c;
+  const struct vg_faces *s;
+  const uint32_t *shell;
+  size_t cap;
+};
+
+static void note_partner(struct vg_crossing *c, uint32_t f, uint32_t g)
+{
+  if (g < c->partner[f]) c->partner[f] = g;
+}
+
+static vg_status check_pair(void *context, uint32_t f, uint32_t g)
+{
+  struct search *x = context;
+  struct vg_crossing *c = x->c;
+
+  if (!vg_triangles_meet(x->s->point, x->s->node[f], x->s->node[g]))
+    return VG_OK;
+  if (vg_faces_source(x->s, f) == vg_faces_source(x->s, g)) return VG_OK;
+  c->n_pair++;
+  note_partner(c, f, g);
+  note_partner(c, g, f);
+  if (x->shell[f] != x->shell[g])
+    c->other_shell[x->shell[f]] = c->other_shell[x->shell[g]] = 1;
+  if (c->n_pair > VG_SURFACE_PAIR_MAX) {
+    c->n_listed = 0;
+    return VG_OK;
+  }
+  if (vg_reserve(&c->pair, &x->cap, c->n_listed + 1, sizeof *c->pair))
+    return VG_ERR_MEMORY;
+  c->pair[c->n_listed][0] = f < g ? f : g;
+  c->pair[c->n_listed++][1] = f < g ? g : f;
+  return VG_OK;
+}
+
+static int compare_pair(const void *a, const void *b)
+{
+  const uint32_t *p = a, *q = b;
+
+  if (p[0] != q[0]) return p[0] < q[0] ? -1 : 1;
+  return (p[1] > q[1]) - (p[1] < q[1]);
+}
+
+vg_status vg_find_crossings(struct vg_crossing *c, const struct vg_faces *s,
+                            const struct vg_tree *t, const uint32_t *shell,
+                            size_t n_shell, struct vg_error *err)
+{
+  struct search x = { c, s, shell, 0 };
+  vg_status st = VG_OK;
+
+  c->partner = vg_alloc(s->n, sizeof *c->partner);
+  c->other_shell = vg_calloc(n_shell, 1);
+  if (!c->partner || !c->other_shell) {
+    st = VG_ERR_MEMORY;
+  } else {
+    memset(c->partner, 0xff, s->n * sizeof *c->partner);
+    st = vg_tree_pairs(t, check_pair, &x);
+  }
+  if (st < 0) {
+    vg_crossing_release(c);
+    return vg_fail_memory(err, "the list of intersections");
+  }
+  if (c->n_listed) qsort(c->pair, c->n_listed, sizeof *c->pair, compare_pair);
+  return VG_OK;
+}
+
+void vg_crossing_release(struct vg_crossing *c)
+{
+  free(c->pair);
+  free(c->partner);
+  free(c->other_shell);
+  memset(c, 0, sizeof *c);
+}
