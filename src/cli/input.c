@@ -1,0 +1,303 @@
+#define _GNU_SOURCE
+#include "cli/input.h"
+
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/memory.h"
+#include "cli/deck.h"
+#include "io/format.h"
+#include "io/mapbc.h"
+#include "io/ugrid.h"
+#include "io/vgrid.h"
+
+void vg_note(struct vg_notes *notes, const char *format, ...)
+{
+  va_list args;
+  char *text;
+  int n;
+
+  va_start(args, format);
+  n = vasprintf(&text, format, args);
+  va_end(args);
+  if (n < 0) return;
+  if (vg_reserve(&notes->text, &notes->cap, notes->n + 1,
+                 sizeof *notes->text))
+    free(text);
+  else
+    notes->text[notes->n++] = text;
+}
+
+static void release_files(struct vg_input_files *f)
+{
+  free(f->stem);
+  free(f->d3m);
+  free(f->front);
+  free(f->surface);
+  free(f->mapbc);
+  free(f->deck);
+  memset(f, 0, sizeof *f);
+}
+
+void vg_problem_release(struct vg_problem *p)
+{
+  release_files(&p->files);
+  vg_settings_release(&p->settings);
+  vg_project_release(&p->project);
+  vg_mesh_release(&p->surface);
+  vg_surface_report_release(&p->check);
+  for (size_t i = 0; i < p->notes.n; i++) free(p->notes.text[i]);
+  free(p->notes.text);
+  memset(&p->notes, 0, sizeof p->notes);
+}
+
+static int exists(const char *path)
+{
+  return access(path, F_OK) == 0;
+}
+
+/* Path of stem.suffix where that file exists, else "". NULL: no memory. */
+static char *beside(const char *stem, const char *suffix)
+{
+  char *path;
+
+  if (asprintf(&path, "%s.%s", stem, suffix) < 0) return NULL;
+  if (!exists(path)) *path = 0;
+  return path;
+}
+
+/* A .ugrid or Medit file beside may be the volume mesh of an earlier run. */
+static int holds_cells(const char *path)
+{
+  uint64_t count[7];
+
+  if (vg_ugrid_peek(path, count, NULL) < 0) return 0;
+  return count[3] + count[4] + count[5] + count[6] > 0;
+}
+
+/* The surface file of a stem: the only one that holds no cells. */
+static vg_status find_surface(const char *stem, char **out,
+                              struct vg_error *err)
+{
+  const char *suffix;
+  char *found = NULL;
+  vg_status st = VG_OK;
+
+  for (size_t i = 0; (suffix = vg_format_input_suffix(i)) && st >= 0; i++) {
+    char *path = beside(stem, suffix);
+
+    if (!path) {
+      st = vg_fail_memory(err, "a path");
+    } else if (!*path || holds_cells(path)) {
+      free(path);
+    } else if (found) {
+      st = vg_fail(err, VG_ERR_INPUT, "both %s and %s may be the surface; "
+                   "give the full name of one", found, path);
+      free(path);
+    } else {
+      found = path;
+    }
+  }
+  if (st >= 0 && !found) found = strdup("");
+  if (st < 0) {
+    free(found);
+    return st;
+  }
+  *out = found;
+  return found ? VG_OK : vg_fail_memory(err, "a path");
+}
+
+/* The stem of a full surface name, or NULL when it is none. */
+static char *stem_of(const char *name)
+{
+  size_t suffix = vg_format_suffix_length(name), n = strlen(name);
+
+  if (!suffix || suffix >= n || !exists(name)) return NULL;
+  return strndup(name, n - suffix);
+}
+
+static vg_status find_beside(struct vg_input_files *f, const char *deck,
+                             struct vg_error *err)
+{
+  f->mapbc = beside(f->stem, "mapbc");
+  f->deck = deck ? strdup(deck) : beside(f->stem, "deck");
+  if (!f->d3m) f->d3m = strdup("");
+  if (!f->front) f->front = strdup("");
+  if (!f->mapbc || !f->deck || !f->d3m || !f->front)
+    return vg_fail_memory(err, "the paths of the project");
+  return VG_OK;
+}
+
+static vg_status find_stem(const char *name, struct vg_input_files *f,
+                           struct vg_error *err)
+{
+  vg_status st;
+
+  f->stem = strdup(name);
+  f->d3m = beside(name, "d3m");
+  f->front = beside(name, "front");
+  if (!f->stem || !f->d3m || !f->front)
+    return vg_fail_memory(err, "the paths of the project");
+  if (*f->front) {
+    f->surface = strdup("");
+    return f->surface ? VG_OK : vg_fail_memory(err, "a path");
+  }
+  st = find_surface(name, &f->surface, err);
+  if (st < 0 || *f->surface || *f->d3m) return st;
+  return vg_fail(err, VG_ERR_INPUT, "%s: no project here: neither %s.d3m nor "
+                 "%s.front nor a surface such as %s.lb8.ugrid or %s.stl; give "
+                 "the stem of a project or the full name of a surface file",
+                 name, name, name, name, name);
+}
+
+vg_status vg_input_find(const char *name, const char *deck,
+                        struct vg_input_files *out, struct vg_error *err)
+{
+  struct vg_input_files f = { 0 };
+  vg_status st = VG_OK;
+
+  f.stem = stem_of(name);
+  if (f.stem) {
+    f.surface = strdup(name);
+    if (!f.surface) st = vg_fail_memory(err, "a path");
+  } else {
+    st = find_stem(name, &f, err);
+  }
+  if (st >= 0) st = find_beside(&f, deck, err);
+  if (st < 0) {
+    release_files(&f);
+    return st;
+  }
+  *out = f;
+  return VG_OK;
+}
+
+vg_status vg_problem_deck(struct vg_problem *p, struct vg_error *err)
+{
+  const char *base = strrchr(p->files.stem, '/');
+  struct vg_settings *s = &p->settings;
+
+  vg_settings_default(s);
+  snprintf(s->title, sizeof s->title, "%s", base ? base + 1 : p->files.stem);
+  if (!*p->files.deck) return VG_OK;
+  return vg_deck_read(p->files.deck, s, err);
+}
+
+static vg_status read_surface(struct vg_problem *p, struct vg_error *err)
+{
+  const struct vg_input_files *f = &p->files;
+  const struct vg_project *project = *f->d3m ? &p->project : NULL;
+  struct vg_sizing_options options = vg_settings_sizing(&p->settings);
+  struct vg_sizing *sizing = NULL;
+  vg_status st;
+
+  if (*f->front) return vg_front_read(f->front, project, &p->surface, err);
+  if (*f->surface) return vg_format_read(f->surface, &p->surface, err);
+  if (!p->project.n_shape)
+    return vg_fail(err, VG_ERR_INPUT, "%s: no patches in it and no surface "
+                   "beside it; add a .front or a surface file", f->d3m);
+  st = vg_sizing_new(&options, p->settings.n_source, p->settings.source, NULL,
+                     &sizing, err);
+  if (st >= 0)
+    st = vg_project_surface(&p->project, sizing, &p->surface, err);
+  vg_sizing_free(sizing);
+  return st;
+}
+
+/* Sources of the project come first, those of the deck after them; the sum of
+ * VGRID's law depends on the order in the last bits. */
+static vg_status merge_sources(struct vg_problem *p, struct vg_error *err)
+{
+  struct vg_settings *s = &p->settings;
+  size_t n = p->project.n_source, total = n + s->n_source;
+  struct vg_source *all;
+
+  if (!s->d3m_sources || !*p->files.d3m) return VG_OK;
+  s->scale *= p->project.ifact;
+  s->d3m_sources = 0;
+  if (!n) return VG_OK;
+  all = vg_alloc(total, sizeof *all);
+  if (!all) return vg_fail_memory(err, "the sources");
+  memcpy(all, p->project.source, n * sizeof *all);
+  if (s->n_source) memcpy(all + n, s->source, s->n_source * sizeof *all);
+  free(s->source);
+  s->source = all;
+  s->n_source = s->cap_source = total;
+  return VG_OK;
+}
+
+/* The table wins over the .mapbc; a code from 3000 on is FUN3D's. */
+static vg_status apply_patch_table(struct vg_problem *p, struct vg_error *err)
+{
+  int *axis = vg_alloc(p->surface.n_patch, sizeof *axis);
+  vg_status st = axis ? vg_patch_axes(&p->surface, axis, err)
+                      : vg_fail_memory(err, "the patches");
+
+  for (size_t i = 0; i < p->settings.n_patch && st >= 0; i++) {
+    const struct vg_patch_row *row = &p->settings.patch[i];
+    size_t at = vg_mesh_find_patch(&p->surface, row->id);
+    struct vg_patch *to = at == SIZE_MAX ? NULL : &p->surface.patch[at];
+
+    if (!to) {
+      st = vg_fail(err, VG_ERR_INPUT, "patch table: patch %d is not in the "
+                   "surface; 'vanguard deck' lists its patches",
+                   (int)row->id);
+      break;
+    }
+    if (*row->name) snprintf(to->name, sizeof to->name, "%s", row->name);
+    if (row->bc == VG_BC_NONE) continue;
+    if (row->bc >= 3000 && row->bc < 8000) {
+      to->bc_fun3d = row->bc;
+      to->bc = vg_bc_to_usm3d(row->bc);
+    } else {
+      to->bc = row->bc;
+      to->bc_fun3d = vg_bc_to_fun3d(row->bc, axis[at]);
+    }
+    to->family = to->bc;
+  }
+  free(axis);
+  return st;
+}
+
+static vg_status apply_conditions(struct vg_problem *p, struct vg_error *err)
+{
+  struct vg_mapbc bc = VG_MAPBC_INIT;
+  struct vg_mapbc_match match;
+  vg_status st;
+
+  if (!*p->files.mapbc) return VG_OK;
+  st = vg_mapbc_read(p->files.mapbc, &bc, err);
+  if (st >= 0) st = vg_mapbc_apply(&bc, &p->surface, &match, err);
+  vg_mapbc_release(&bc);
+  if (st < 0) return st;
+  if (match.n_unused)
+    vg_note(&p->notes, "%s lists %zu patches that the surface does not have "
+            "(the first is %d)", p->files.mapbc, match.n_unused,
+            (int)match.first_unused);
+  return VG_OK;
+}
+
+static void note_layers(struct vg_problem *p)
+{
+  if (p->project.grid)
+    vg_note(&p->notes, "the .d3m asks for viscous layers (grid = %d): this "
+            "version makes isotropic cells only", (int)p->project.grid);
+}
+
+vg_status vg_problem_surface(struct vg_problem *p, struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  if (*p->files.d3m) {
+    VG_TRY(vg_d3m_read(p->files.d3m, &p->project, err));
+    note_layers(p);
+  }
+  VG_TRY(merge_sources(p, err));
+  VG_TRY(read_surface(p, err));
+  VG_TRY(apply_conditions(p, err));
+  VG_TRY(apply_patch_table(p, err));
+done:
+  return st;
+}

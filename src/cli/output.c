@@ -1,0 +1,348 @@
+#define _GNU_SOURCE
+#include "cli/output.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/memory.h"
+#include "cli/deck.h"
+#include "core/quality.h"
+#include "io/format.h"
+#include "io/mapbc.h"
+#include "io/vgrid.h"
+#include "io/vtu.h"
+
+static void remove_aside(struct vg_outputs *o)
+{
+  char *path;
+
+  if (!o->aside) return;
+  for (size_t i = 0; i < o->n_file; i++) {
+    path = vg_outputs_aside(o, o->file[i].suffix);
+    if (path) unlink(path);
+    free(path);
+  }
+  rmdir(o->aside);
+  free(o->aside);
+  o->aside = NULL;
+}
+
+void vg_outputs_release(struct vg_outputs *o)
+{
+  remove_aside(o);
+  for (size_t i = 0; i < o->n_file; i++) free(o->file[i].suffix);
+  free(o->file);
+  free(o->dir);
+  free(o->name);
+  memset(o, 0, sizeof *o);
+}
+
+static char *join(const char *dir, const char *name, const char *suffix)
+{
+  char *path;
+
+  return asprintf(&path, "%s/%s.%s", dir, name, suffix) < 0 ? NULL : path;
+}
+
+char *vg_outputs_aside(struct vg_outputs *o, const char *suffix)
+{
+  return join(o->aside, o->name, suffix);
+}
+
+char *vg_outputs_final(const struct vg_outputs *o, const char *suffix)
+{
+  if (strcmp(o->dir, ".") == 0) {
+    char *path;
+
+    return asprintf(&path, "%s.%s", o->name, suffix) < 0 ? NULL : path;
+  }
+  return join(o->dir, o->name, suffix);
+}
+
+/* Words of the write list that are no suffix of a mesh format. */
+static int is_own_item(const char *item)
+{
+  return !strcmp(item, "cogsg") || !strcmp(item, "mapbc") ||
+         !strcmp(item, "fun3d.mapbc") || !strcmp(item, "vtu");
+}
+
+static vg_status plan_item(struct vg_outputs *o, const char *item, size_t len,
+                           struct vg_error *err)
+{
+  char *to = o->item[o->n_item];
+
+  if (!len) return VG_OK;
+  if (o->n_item == VG_OUTPUT_ITEMS || len >= sizeof o->item[0])
+    return vg_fail(err, VG_ERR_INPUT, "write: too many or too long names");
+  memcpy(to, item, len);
+  to[len] = 0;
+  for (size_t i = 0; i < o->n_item; i++)
+    if (!strcmp(o->item[i], to)) return VG_OK;
+  if (!is_own_item(to) && !vg_format_can_write(to))
+    return vg_fail(err, VG_ERR_INPUT, "write: '%s' is no format; known are "
+                   "cogsg (with bc and mapbc), mapbc, fun3d.mapbc, vtu and "
+                   "suffixes such as b8.ugrid, lb8.ugrid, ugrid, meshb", to);
+  o->n_item++;
+  return VG_OK;
+}
+
+static vg_status plan_items(struct vg_outputs *o, const char *list,
+                            struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  while (*list && st >= 0) {
+    size_t len = strcspn(list, ", ");
+
+    st = plan_item(o, list, len, err);
+    list += len;
+    list += strspn(list, ", ");
+  }
+  return st;
+}
+
+static int same_file(const char *a, const char *b)
+{
+  struct stat x, y;
+
+  if (!*a || !*b || stat(a, &x) || stat(b, &y)) return 0;
+  return x.st_dev == y.st_dev && x.st_ino == y.st_ino;
+}
+
+/* The input that writing STEM.suffix would overwrite, or NULL. */
+static const char *hits_input(const struct vg_outputs *o,
+                              const struct vg_input_files *f,
+                              const char *suffix)
+{
+  const char *input[] = { f->d3m, f->front, f->surface, f->mapbc, f->deck };
+  char *path = vg_outputs_final(o, suffix);
+  const char *hit = NULL;
+
+  for (size_t i = 0; path && i < sizeof input / sizeof *input; i++)
+    if (same_file(path, input[i])) hit = input[i];
+  free(path);
+  return hit;
+}
+
+static vg_status refuse_hit(const struct vg_outputs *o,
+                            const struct vg_problem *p, const char *suffix,
+                            struct vg_error *err)
+{
+  const char *hit = hits_input(o, &p->files, suffix);
+
+  if (!hit) return VG_OK;
+  return vg_fail(err, VG_ERR_INPUT, "writing %s would overwrite the input "
+                 "%s; use --out DIR or another --write list", suffix, hit);
+}
+
+static vg_status plan_place(const struct vg_problem *p, const char *dir,
+                            struct vg_outputs *o, struct vg_error *err)
+{
+  const char *slash = strrchr(p->files.stem, '/');
+  const char *base = slash ? slash + 1 : p->files.stem;
+
+  if (dir) o->dir = strdup(dir);
+  else if (!slash) o->dir = strdup(".");
+  else o->dir = strndup(p->files.stem, slash == p->files.stem
+                        ? 1 : (size_t)(slash - p->files.stem));
+  o->name = strdup(base);
+  if (!o->dir || !o->name) return vg_fail_memory(err, "the output paths");
+  if (!*base)
+    return vg_fail(err, VG_ERR_INPUT, "%s: the project has no name",
+                   p->files.stem);
+  if (dir && mkdir(dir, 0777) && errno != EEXIST)
+    return vg_fail(err, VG_ERR_IO, "%s: cannot create this folder: %s", dir,
+                   strerror(errno));
+  return VG_OK;
+}
+
+vg_status vg_outputs_plan(const struct vg_problem *p, const char *dir,
+                          struct vg_outputs *o, struct vg_error *err)
+{
+  vg_status st = plan_place(p, dir, o, err);
+
+  if (st >= 0) st = plan_items(o, p->settings.write, err);
+  for (size_t i = 0; i < o->n_item && st >= 0; i++) {
+    if (strcmp(o->item[i], "mapbc") != 0)
+      st = refuse_hit(o, p, o->item[i], err);
+    if (st >= 0 && !strcmp(o->item[i], "cogsg"))
+      st = refuse_hit(o, p, "bc", err);
+  }
+  return st;
+}
+
+vg_status vg_outputs_check(const struct vg_problem *p, struct vg_outputs *o,
+                           struct vg_error *err)
+{
+  struct vg_mapbc bc = VG_MAPBC_INIT;
+  vg_status st;
+
+  if (!hits_input(o, &p->files, "mapbc")) return VG_OK;
+  st = vg_mapbc_read(p->files.mapbc, &bc, err);
+  for (size_t i = 0; i < p->surface.n_patch && st >= 0; i++) {
+    int found = 0;
+
+    for (size_t j = 0; j < bc.n; j++)
+      found |= bc.entry[j].id == p->surface.patch[i].id;
+    if (!found)
+      st = vg_fail(err, VG_ERR_INPUT, "%s is an input and is not overwritten, "
+                   "but it lacks patch %d (%s) of the mesh; use --out DIR, or "
+                   "add the patch to it", p->files.mapbc,
+                   (int)p->surface.patch[i].id, p->surface.patch[i].name);
+  }
+  vg_mapbc_release(&bc);
+  return st;
+}
+
+vg_status vg_outputs_begin(struct vg_outputs *o, struct vg_error *err)
+{
+  if (o->aside) return VG_OK;
+  if (asprintf(&o->aside, "%s/.vanguard-XXXXXX", o->dir) < 0) {
+    o->aside = NULL;
+    return vg_fail_memory(err, "the output paths");
+  }
+  if (mkdtemp(o->aside)) return VG_OK;
+  free(o->aside);
+  o->aside = NULL;
+  return vg_fail(err, VG_ERR_IO, "%s: cannot write in this folder: %s",
+                 o->dir, strerror(errno));
+}
+
+vg_status vg_outputs_add(struct vg_outputs *o, const char *suffix,
+                         struct vg_error *err)
+{
+  char *copy = strdup(suffix);
+
+  if (!copy || vg_reserve(&o->file, &o->cap_file, o->n_file + 1,
+                          sizeof *o->file)) {
+    free(copy);
+    return vg_fail_memory(err, "the output paths");
+  }
+  o->file[o->n_file].suffix = copy;
+  o->file[o->n_file++].keep_old = 0;
+  return VG_OK;
+}
+
+static vg_status write_vtu(const char *path, const struct vg_mesh *m,
+                           struct vg_error *err)
+{
+  float *angle = vg_alloc(m->n_tet, sizeof *angle);
+  float *ratio = vg_alloc(m->n_tet, sizeof *ratio);
+  const struct vg_vtu_field field[] = {
+    { "angle_min", VG_VTU_CELL, VG_VTU_FLOAT32, 1, angle },
+    { "radius_ratio", VG_VTU_CELL, VG_VTU_FLOAT32, 1, ratio },
+  };
+  vg_status st;
+
+  if (!angle || !ratio) {
+    st = vg_fail_memory(err, "the quality of the cells");
+  } else {
+    vg_mesh_cell_quality(m, angle, ratio);
+    st = vg_vtu_write(path, m, field, 2, err);
+  }
+  free(angle);
+  free(ratio);
+  return st;
+}
+
+static vg_status write_file(struct vg_outputs *o, const struct vg_problem *p,
+                            const struct vg_mesh *m, const char *suffix,
+                            struct vg_error *err)
+{
+  char *path = vg_outputs_aside(o, suffix);
+  vg_status st;
+
+  if (!path) return vg_fail_memory(err, "the output paths");
+  if (!strcmp(suffix, "vtu"))
+    st = write_vtu(path, m, err);
+  else if (!strcmp(suffix, "surface.vtu"))
+    st = vg_vtu_write_boundary(path, m, NULL, 0, err);
+  else if (!strcmp(suffix, "mapbc"))
+    st = vg_mapbc_write(path, m, VG_MAPBC_VGRID, p->settings.title, NULL,
+                        err);
+  else if (!strcmp(suffix, "fun3d.mapbc"))
+    st = vg_mapbc_write(path, m, VG_MAPBC_FUN3D, NULL, NULL, err);
+  else
+    st = vg_format_write(path, m, err);
+  free(path);
+  return st < 0 ? st : vg_outputs_add(o, suffix, err);
+}
+
+static vg_status write_triple(struct vg_outputs *o, const struct vg_mesh *m,
+                              struct vg_error *err)
+{
+  const char *part[] = { "cogsg", "bc", "mapbc" };
+  char *stem;
+  vg_status st;
+
+  if (asprintf(&stem, "%s/%s", o->aside, o->name) < 0)
+    return vg_fail_memory(err, "the output paths");
+  st = vg_cogsg_write(stem, m, NULL, 0, NULL, err);
+  free(stem);
+  for (int i = 0; i < 3 && st >= 0; i++) st = vg_outputs_add(o, part[i], err);
+  return st;
+}
+
+/* The resolved settings say with which files they were used. */
+static vg_status write_deck(struct vg_outputs *o, const struct vg_problem *p,
+                            struct vg_error *err)
+{
+  const struct vg_input_files *f = &p->files;
+  char *path = vg_outputs_aside(o, "resolved.deck"), *comment = NULL;
+  vg_status st;
+
+  if (!path ||
+      asprintf(&comment, "# Settings of a run, complete: to repeat it,\n"
+               "#   vanguard mesh -p %s --deck %s.resolved.deck\n"
+               "# (sources of a .d3m are listed below and not read again)\n",
+               *f->surface ? f->surface : f->stem, o->name) < 0) {
+    free(path);
+    return vg_fail_memory(err, "the settings");
+  }
+  st = vg_deck_write(path, &p->settings, comment, 0, err);
+  free(path);
+  free(comment);
+  return st < 0 ? st : vg_outputs_add(o, "resolved.deck", err);
+}
+
+vg_status vg_outputs_mesh(struct vg_outputs *o, const struct vg_problem *p,
+                          const struct vg_mesh *mesh, struct vg_error *err)
+{
+  vg_status st = vg_outputs_begin(o, err);
+
+  for (size_t i = 0; i < o->n_item && st >= 0; i++) {
+    if (!strcmp(o->item[i], "cogsg")) st = write_triple(o, mesh, err);
+    else st = write_file(o, p, mesh, o->item[i], err);
+    if (st >= 0 && !strcmp(o->item[i], "vtu"))
+      st = write_file(o, p, mesh, "surface.vtu", err);
+  }
+  if (st >= 0) st = write_deck(o, p, err);
+  /* What may coincide with an input by then: a .mapbc that knows all patches,
+   * and the resolved deck of the run that is being repeated. */
+  for (size_t i = 0; i < o->n_file && st >= 0; i++)
+    o->file[i].keep_old = hits_input(o, &p->files, o->file[i].suffix) != NULL;
+  return st;
+}
+
+vg_status vg_outputs_commit(struct vg_outputs *o, struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  for (size_t i = 0; i < o->n_file && st >= 0; i++) {
+    char *from = vg_outputs_aside(o, o->file[i].suffix);
+    char *to = vg_outputs_final(o, o->file[i].suffix);
+
+    if (!from || !to)
+      st = vg_fail_memory(err, "the output paths");
+    else if (!o->file[i].keep_old && rename(from, to))
+      st = vg_fail(err, VG_ERR_IO, "%s: cannot be put in place: %s", to,
+                   strerror(errno));
+    free(from);
+    free(to);
+  }
+  remove_aside(o);
+  return st;
+}

@@ -1,0 +1,265 @@
+/* From triangles as read to the closed boundary of a fluid. Declared in
+ * cli/input.h. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "cli/deck.h"
+#include "cli/input.h"
+#include "io/convention.h"
+#include "io/vtu.h"
+
+/* Codes of patches that bound a fluid from outside: freestream, outflow,
+ * characteristic and internal-flow ends. */
+static int is_outer_condition(const struct vg_patch *p)
+{
+  if (p->bc == 0 || p->bc == 2 || p->bc == 3) return 1;
+  if (p->bc == 1001 || p->bc == 1002) return 1;
+  return p->bc_fun3d >= 5000 && p->bc_fun3d < 6000;
+}
+
+/* Six times the volume enclosed, by the divergence theorem about the first
+ * point. Only its sign is used, far from zero for real bodies. */
+static double signed_volume(const struct vg_mesh *m)
+{
+  const double *o = m->n_point ? m->point[0] : NULL;
+  double sum = 0;
+
+  for (size_t i = 0; i < m->n_tri; i++) {
+    double v[3][3];
+
+    for (int k = 0; k < 3; k++)
+      for (int c = 0; c < 3; c++)
+        v[k][c] = m->point[m->tri[i][k]][c] - o[c];
+    sum += v[0][0] * (v[1][1] * v[2][2] - v[1][2] * v[2][1])
+         + v[0][1] * (v[1][2] * v[2][0] - v[1][0] * v[2][2])
+         + v[0][2] * (v[1][0] * v[2][1] - v[1][1] * v[2][0]);
+  }
+  return sum;
+}
+
+static int looks_external(const struct vg_mesh *m)
+{
+  for (size_t i = 0; i < m->n_patch; i++)
+    if (is_outer_condition(&m->patch[i])) return 0;
+  return signed_volume(m) > 0;
+}
+
+/* Bodies inside an outer shell: the surface is the whole domain. */
+static int has_nested_shells(const struct vg_surface_report *r)
+{
+  for (size_t i = 0; i < r->n_shell; i++)
+    if (r->shell[i].depth > 0) return 1;
+  return 0;
+}
+
+vg_status vg_surface_examine(struct vg_mesh *m, int repair, int *external,
+                             struct vg_surface_report *r,
+                             struct vg_error *err)
+{
+  struct vg_surface_check_options o = VG_SURFACE_CHECK_OPTIONS_INIT;
+  int find_out = *external < 0;
+  vg_status st;
+
+  o.repair = repair;
+  o.external = find_out ? looks_external(m) : *external;
+  /* A surface without any condition is fine; one that was forgotten is not. */
+  for (size_t i = 0; i < m->n_patch; i++)
+    o.require_bc |= m->patch[i].bc != VG_BC_NONE;
+  st = vg_surface_check(m, &o, r, err);
+  if (st >= 0 && find_out && o.external && has_nested_shells(r)) {
+    o.external = 0;
+    vg_surface_report_release(r);
+    st = vg_surface_check(m, &o, r, err);
+  }
+  *external = o.external;
+  return st;
+}
+
+/* The fill takes triangles only. */
+static vg_status split_quads(struct vg_mesh *m, struct vg_notes *notes,
+                             struct vg_error *err)
+{
+  size_t n = m->n_tri + 2 * m->n_quad;
+  uint32_t (*tri)[3], *patch;
+
+  if (!m->n_quad) return VG_OK;
+  tri = vg_realloc(m->tri, n, sizeof *tri);
+  if (tri) m->tri = tri;
+  patch = vg_realloc(m->tri_patch, n, sizeof *patch);
+  if (patch) m->tri_patch = patch;
+  if (!tri || !patch) return vg_fail_memory(err, "the surface");
+  for (size_t i = 0; i < m->n_quad; i++) {
+    const uint32_t *q = m->quad[i];
+    const uint32_t half[2][3] = { { q[0], q[1], q[2] }, { q[0], q[2], q[3] } };
+
+    memcpy(tri + m->n_tri, half, sizeof half);
+    patch[m->n_tri] = patch[m->n_tri + 1] = m->quad_patch[i];
+    m->n_tri += 2;
+  }
+  vg_note(notes, "%zu quadrilaterals of the surface were split into "
+          "triangles", m->n_quad);
+  free(m->quad);
+  free(m->quad_patch);
+  m->quad = NULL;
+  m->quad_patch = NULL;
+  m->n_quad = 0;
+  return VG_OK;
+}
+
+static vg_status check(struct vg_problem *p, int *external,
+                       struct vg_error *err)
+{
+  vg_surface_report_release(&p->check);
+  return vg_surface_examine(&p->surface, p->settings.repair, external,
+                            &p->check, err);
+}
+
+static vg_status defects(const struct vg_problem *p, struct vg_error *err)
+{
+  if (!p->check.n_defect) return VG_OK;
+  return vg_fail(err, VG_ERR_GEOMETRY, "the surface has %zu defects and "
+                 "cannot bound a mesh", p->check.n_defect);
+}
+
+/* A half body: open edges, and nothing else is wrong. */
+static int is_only_open(const struct vg_surface_report *r)
+{
+  return r->count[VG_DEFECT_OPEN_EDGE] &&
+         r->count[VG_DEFECT_OPEN_EDGE] == r->n_defect;
+}
+
+static vg_status complete(struct vg_problem *p, struct vg_error *err)
+{
+  struct vg_settings *s = &p->settings;
+  struct vg_sizing_options options = vg_settings_sizing(s);
+  struct vg_farfield far;
+  struct vg_sizing *sizing = NULL;
+  int assumed = s->farfield.kind == VG_DOMAIN_AUTO;
+  vg_status st;
+
+  if (assumed) s->farfield.kind = VG_DOMAIN_SPHERE;
+  far = vg_settings_farfield(s);
+  VG_TRY(vg_sizing_new(&options, s->n_source, s->source, &p->surface, &sizing,
+                       err));
+  VG_TRY(vg_domain_complete(&p->surface, &far, sizing, &p->domain, err));
+  if (assumed)
+    vg_note(&p->notes, "the surface was taken as a body in open air: a "
+            "spherical farfield of radius %g body lengths was put around it "
+            "(--farfield none: the surface is the whole domain)",
+            far.lengths);
+done:
+  vg_sizing_free(sizing);
+  return st;
+}
+
+/* Names and conditions of the patches as they are now, for the resolved
+ * settings; what is added later comes by itself when the run is repeated. */
+static vg_status resolve_patches(struct vg_problem *p, struct vg_error *err)
+{
+  p->settings.n_patch = 0;
+  return vg_deck_patches_of(&p->surface, &p->settings, err);
+}
+
+static vg_status close_body(struct vg_problem *p, struct vg_display *show,
+                            struct vg_error *err)
+{
+  int external = 0;
+  vg_status st = VG_OK;
+
+  if (p->check.n_defect && !is_only_open(&p->check)) return defects(p, err);
+  vg_display_update(show, "farfield", 0, 0);
+  VG_TRY(complete(p, err));
+  vg_display_update(show, "check", p->surface.n_tri, 0);
+  VG_TRY(check(p, &external, err));
+  VG_TRY(defects(p, err));
+done:
+  return st;
+}
+
+vg_status vg_problem_close(struct vg_problem *p, struct vg_display *show,
+                           struct vg_error *err)
+{
+  struct vg_settings *s = &p->settings;
+  int external;
+  vg_status st = VG_OK;
+
+  vg_mesh_keep_boundary(&p->surface);
+  VG_TRY(split_quads(&p->surface, &p->notes, err));
+  VG_TRY(resolve_patches(p, err));
+  if (s->weld > 0)
+    VG_TRY(vg_surface_weld(&p->surface, s->weld, &p->n_welded, &p->n_dropped,
+                           err));
+  external = s->farfield.kind == VG_DOMAIN_AUTO
+             ? -1 : s->farfield.kind != VG_DOMAIN_NONE;
+  vg_display_update(show, "check", p->surface.n_tri, 0);
+  VG_TRY(check(p, &external, err));
+  if (external) return close_body(p, show, err);
+  s->farfield.kind = VG_DOMAIN_NONE;
+  VG_TRY(defects(p, err));
+done:
+  return st;
+}
+
+/* Face f of the report as one or two triangles (quadrilaterals come after
+ * the triangles). */
+static size_t face_triangles(const struct vg_mesh *m, size_t f,
+                             uint32_t out[2][3])
+{
+  const uint32_t *q;
+
+  if (f < m->n_tri) {
+    memcpy(out[0], m->tri[f], sizeof out[0]);
+    return 1;
+  }
+  q = m->quad[f - m->n_tri];
+  for (int k = 0; k < 3; k++) {
+    out[0][k] = q[k];
+    out[1][k] = q[k ? k + 1 : 0];
+  }
+  return 2;
+}
+
+vg_status vg_write_defects(const char *path, const struct vg_mesh *m,
+                           const struct vg_surface_report *r,
+                           struct vg_error *err)
+{
+  size_t room = 4 * r->n_defect, n = 0;
+  uint32_t (*tri)[3] = vg_alloc(room, sizeof *tri);
+  int32_t *kind = vg_alloc(room, sizeof *kind);
+  int32_t *patch = vg_alloc(room, sizeof *patch);
+  vg_status st = VG_OK;
+
+  if (!tri || !kind || !patch) {
+    st = vg_fail_memory(err, "the list of defects");
+    goto done;
+  }
+  for (size_t i = 0; i < r->n_defect; i++)
+    for (int k = 0; k < 2; k++) {
+      size_t f = r->defect[i].face[k], count;
+
+      if (f == SIZE_MAX) continue;
+      count = face_triangles(m, f, tri + n);
+      for (; count; count--, n++) {
+        kind[n] = (int32_t)r->defect[i].kind;
+        patch[n] = m->patch[f < m->n_tri ? m->tri_patch[f]
+                                         : m->quad_patch[f - m->n_tri]].id;
+      }
+    }
+  {
+    const struct vg_vtu_field field[] = {
+      { "defect", VG_VTU_CELL, VG_VTU_INT32, 1, kind },
+      { "patch", VG_VTU_CELL, VG_VTU_INT32, 1, patch },
+    };
+
+    st = vg_vtu_write_triangles(path, m->n_point,
+                                (const double (*)[3])m->point, n,
+                                (const uint32_t (*)[3])tri, field, 2, err);
+  }
+done:
+  free(tri);
+  free(kind);
+  free(patch);
+  return st;
+}
