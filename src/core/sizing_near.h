@@ -33,7 +33,7 @@ void vg_near_free(struct vg_near *t);
  * @param below  only values under this matter; it is returned if none is
  * @param hint   in/out: where the search starts, and where it ended; any
  *               value within what an earlier call returned, 0 at first
- * The result is within one part in a thousand above the least value, and
+ * The result is within two parts in a thousand above the least value, and
  * depends on box, below and hint alone. */
 double vg_near_above(const struct vg_near *t, const double lo[3],
                      const double hi[3], double below, uint32_t *hint);
