@@ -1,0 +1,65 @@
+#!/bin/sh
+# One command from a bare Debian 12 to a result:
+#   ./bootstrap.sh demo   build, mesh the embedded example, show the report
+#   ./bootstrap.sh test   build, run the whole test suite
+# Each installs the packages that are missing (as root, or through sudo).
+set -eu
+cd "$(dirname "$0")"
+
+packages="cmake ninja-build gcc g++ pkg-config libtet1.5-dev zlib1g-dev \
+libjansson-dev libcmocka-dev"
+
+install_missing() {
+  missing=
+  for package in "$@"; do
+    state=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null) ||
+      state=
+    [ "$state" = installed ] || missing="$missing $package"
+  done
+  [ -n "$missing" ] || return 0
+  echo "installing:$missing"
+  as_root=
+  if [ "$(id -u)" != 0 ]; then
+    command -v sudo >/dev/null || {
+      echo "bootstrap.sh: not root and no sudo; install:$missing" >&2
+      exit 1
+    }
+    as_root=sudo
+  fi
+  $as_root apt-get -qq update
+  # shellcheck disable=SC2086 # a list of words
+  DEBIAN_FRONTEND=noninteractive $as_root apt-get -qq install -y \
+    --no-install-recommends $missing >/dev/null
+}
+
+# -DVG_DATA_DIR is kept from an earlier configure, or taken from the
+# environment: tests that need real geometry skip without it.
+build() {
+  cmake --preset release -G Ninja ${VG_DATA_DIR:+-DVG_DATA_DIR="$VG_DATA_DIR"} \
+    ${VG_CMAKE_ARGS:-} >/dev/null
+  cmake --build --preset release
+}
+
+case "${1:-}" in
+demo)
+  # shellcheck disable=SC2086
+  install_missing $packages
+  build
+  mkdir -p build/demo
+  ./build/release/bin/vanguard demo "${2:-wing}" --out build/demo
+  ./build/release/bin/vanguard mesh -p "build/demo/${2:-wing}" \
+    --write cogsg,b8.ugrid,vtu
+  echo
+  echo "Open build/demo/${2:-wing}.vtu and .surface.vtu in ParaView."
+  ;;
+test)
+  # shellcheck disable=SC2086
+  install_missing $packages
+  build
+  ctest --preset release
+  ;;
+*)
+  sed -n '2,5s/^# *//p' "$0" >&2
+  exit 2
+  ;;
+esac

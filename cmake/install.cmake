@@ -1,0 +1,31 @@
+# Program, library, headers, pkg-config file and CMake package.
+include(CMakePackageConfigHelpers)
+if(NOT TARGET vanguard_program)
+  return()
+endif()
+
+install(TARGETS vanguard_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(TARGETS vanguard EXPORT vanguard-targets
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(DIRECTORY src/base src/core src/io
+  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/vanguard FILES_MATCHING PATTERN "*.h"
+  PATTERN "*_parts.h" EXCLUDE)
+
+set(package ${CMAKE_INSTALL_LIBDIR}/cmake/vanguard)
+install(EXPORT vanguard-targets NAMESPACE vanguard:: DESTINATION ${package})
+configure_package_config_file(cmake/vanguard-config.cmake.in
+  ${CMAKE_BINARY_DIR}/vanguard-config.cmake INSTALL_DESTINATION ${package})
+write_basic_package_version_file(${CMAKE_BINARY_DIR}/vanguard-config-version.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_BINARY_DIR}/vanguard-config.cmake
+  ${CMAKE_BINARY_DIR}/vanguard-config-version.cmake DESTINATION ${package})
+
+# Relative to the file itself, so that an install tree can be moved.
+file(RELATIVE_PATH includedir
+  ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_FULL_INCLUDEDIR})
+set(VG_PC_INCLUDEDIR "\${pcfiledir}/${includedir}")
+configure_file(cmake/vanguard.pc.in ${CMAKE_BINARY_DIR}/vanguard.pc @ONLY)
+install(FILES ${CMAKE_BINARY_DIR}/vanguard.pc
+  DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+install(FILES LICENSE README.md CHANGELOG.md CITATION.cff
+  DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -1,0 +1,55 @@
+#!/bin/bash
+# Includes go one way: base <- core <- io <- cli. Fails on an include against
+# the arrows, without a folder, or of a third-party header outside the file
+# that adapts it. architecture.sh SOURCE_ROOT
+set -u
+cd "$1/src" || exit 1
+bad=0
+
+rank() {
+  case $1 in
+  base) echo 0 ;; core) echo 1 ;; io) echo 2 ;; cli) echo 3 ;; *) echo 9 ;;
+  esac
+}
+
+complain() {
+  echo "$*"
+  bad=1
+}
+
+for folder in *; do
+  [ "$(rank "$folder")" != 9 ] ||
+    complain "src/$folder: a folder without a place in the order"
+done
+
+while IFS=: read -r file line text; do
+  target=$(sed -E 's/.*#[[:space:]]*include[[:space:]]*"([^"]*)".*/\1/' \
+    <<<"$text")
+  from=${file%%/*}
+  to=${target%%/*}
+  if [ "$to" = "$target" ]; then
+    complain "src/$file:$line: \"$target\" does not name its folder"
+  elif [ ! -e "$target" ]; then
+    complain "src/$file:$line: \"$target\" does not exist"
+  elif [ "$(rank "$to")" -gt "$(rank "$from")" ]; then
+    complain "src/$file:$line: $from must not include $to ($target)"
+  fi
+done < <(grep -rnE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' \
+  --include='*.[ch]' --include='*.cpp' .  | sed 's,^\./,,')
+
+# Third-party headers and the files that may see them.
+adapter() {
+  local header=$1 allowed=$2 file
+  while IFS= read -r file; do
+    [[ $file =~ $allowed ]] || complain "src/$file includes <$header>"
+  done < <(grep -rlE "#[[:space:]]*include[[:space:]]*[<\"]$header[>\"]" . |
+    sed 's,^\./,,')
+}
+adapter tetgen.h '^core/cdt_tetgen\.cpp$'
+adapter zlib.h '^io/[a-z_]+\.c$'
+adapter jansson.h '^cli/'
+adapter argp.h '^cli/'
+adapter pthread.h '^base/'
+
+[ "$bad" = 0 ] && echo "all includes follow the arrows"
+exit $bad

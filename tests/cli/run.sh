@@ -1,0 +1,49 @@
+#!/bin/bash
+# Runs one case: run.sh CASE PROGRAM FOLDER. The case is a shell script that
+# is sourced in an empty FOLDER, with the words below. Every expectation that
+# fails is shown; the case fails if one did. Skipped (77) by `skip`.
+set -u
+case_file=$(realpath "$1")
+program=$(realpath "$2")
+folder=$3
+here=$(dirname "$(realpath "$0")")
+failures=0
+
+rm -rf "$folder"
+mkdir -p "$folder"
+cd "$folder" || exit 1
+unset VANGUARD_OPTIONS
+export LC_ALL=C COLUMNS=80
+
+# vanguard ARGS...: output in files out and err, exit status in $status.
+vanguard() {
+  "$program" "$@" >out 2>err
+  status=$?
+}
+
+fail() {
+  failures=$((failures + 1))
+  echo "FAILED: $*"
+  echo "--- out"; head -40 out 2>/dev/null
+  echo "--- err"; head -40 err 2>/dev/null
+}
+
+# exits N: the last status.
+exits() { [ "$status" = "$1" ] || fail "exit status $status, not $1"; }
+
+# says FILE TEXT: FILE (out, err, or any) holds TEXT, a fixed string.
+says() { grep -qF -- "$2" "$1" || fail "$1 lacks '$2'"; }
+
+# lacks FILE TEXT: the opposite.
+lacks() { ! grep -qF -- "$2" "$1" || fail "$1 has '$2'"; }
+
+# is FILE: FILE is exactly standard input.
+is() { diff -u - "$1" || fail "$1 is not as expected"; }
+
+exists() { for f; do [ -e "$f" ] || fail "$f is absent"; done; }
+absent() { for f; do [ ! -e "$f" ] || fail "$f is there"; done; }
+same() { cmp "$1" "$2" || fail "$1 and $2 differ"; }
+skip() { echo "skipped: $*"; exit 77; }
+
+. "$case_file"
+[ "$failures" = 0 ]

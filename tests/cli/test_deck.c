@@ -1,0 +1,290 @@
+/* The run deck: grammar, messages with line numbers and suggestions, and the
+ * round trip parse(write(s)) == s. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "cli/deck.h"
+
+static vg_status parse(const char *text, struct vg_settings *s,
+                       struct vg_error *err)
+{
+  return vg_deck_parse("run.deck", text, strlen(text), s, err);
+}
+
+/* The text must be refused with a message that contains `expected`. */
+static void refuse(const char *text, const char *expected)
+{
+  struct vg_settings s = VG_SETTINGS_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+
+  assert_true(parse(text, &s, &err) < 0);
+  if (!strstr(err.text, expected))
+    fail_msg("message '%s' lacks '%s'", err.text, expected);
+  assert_null(s.source);
+}
+
+/* Equal in everything that can be written: compared value by value through
+ * the tables, so a new setting is compared without a change here. */
+static void assert_same(const struct vg_param *p, size_t n, const void *a,
+                        const void *b)
+{
+  char x[512], y[512];
+
+  for (size_t i = 0; i < n; i++) {
+    vg_param_format(&p[i], a, x, sizeof x);
+    vg_param_format(&p[i], b, y, sizeof y);
+    assert_string_equal(x, y);
+  }
+}
+
+static void assert_same_settings(const struct vg_settings *a,
+                                 const struct vg_settings *b)
+{
+  size_t n;
+  const struct vg_param *p = vg_settings_params(&n);
+
+  assert_string_equal(a->title, b->title);
+  assert_same(p, n, a, b);
+  for (int t = 0; t < VG_TABLE_N; t++) {
+    enum vg_table_kind kind = (enum vg_table_kind)t;
+    const struct vg_table *table = vg_settings_table(kind);
+
+    assert_int_equal(vg_settings_rows(a, kind), vg_settings_rows(b, kind));
+    for (size_t i = 0; i < vg_settings_rows(a, kind); i++)
+      assert_same(table->column, table->n_column, vg_settings_row(a, kind, i),
+                  vg_settings_row(b, kind, i));
+  }
+}
+
+static void round_trip(struct vg_settings *s, int explain)
+{
+  const char *path = VG_TMP_DIR "/round_trip.deck";
+  struct vg_settings back = VG_SETTINGS_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+
+  assert_int_equal(vg_deck_write(path, s, "# comment\n", explain, &err),
+                   VG_OK);
+  if (vg_deck_read(path, &back, &err) < 0) fail_msg("%s", err.text);
+  assert_same_settings(s, &back);
+  vg_settings_release(&back);
+  remove(path);
+}
+
+static void defaults_survive_a_round_trip(void **state)
+{
+  struct vg_settings s;
+
+  (void)state;
+  vg_settings_default(&s);
+  round_trip(&s, 0);
+  round_trip(&s, 1);
+  vg_settings_release(&s);
+}
+
+static void add_source(struct vg_settings *s, int kind)
+{
+  struct vg_source row;
+
+  vg_settings_row_default(VG_TABLE_SOURCES, &row);
+  row.kind = (enum vg_source_kind)kind;
+  for (int k = 0; k < 3; k++) {
+    row.p0[k] = 0.1 * kind + k;
+    row.p1[k] = 1.0 / 3 + k;
+    row.p2[k] = -1e-17 * k;
+    row.u[k] = k;
+    row.p[k] = 7 * k;
+    row.layer0[k] = 1e-5 * (k + 1);
+    row.layer1[k] = 1e-6 * (k + 1);
+  }
+  row.h0 = 0.1;
+  row.h1 = 0.2 * kind;
+  row.r0 = 1;
+  row.r1 = M_PI;
+  row.growth = kind % 2 ? 1.15 : 0;
+  row.an = 1.5;
+  row.bn = 0.25;
+  row.alpha = 1;
+  row.stretch = 1;
+  row.sp0 = 3;
+  row.sp1 = 4;
+  snprintf(row.group, sizeof row.group, "wing \"%d\" # tip", kind);
+  assert_int_equal(vg_settings_add(s, VG_TABLE_SOURCES, &row, NULL), VG_OK);
+}
+
+static void everything_survives_a_round_trip(void **state)
+{
+  struct vg_settings s;
+  struct vg_farfield_row far = { VG_DOMAIN_BOX, 12.5, 0, 3, { NAN, NAN, NAN },
+                                 { -1, -2, -3 }, { 1, 2, 1e9 } };
+  struct vg_patch_row patch = { -7, 4000, "left wing" };
+
+  (void)state;
+  vg_settings_default(&s);
+  snprintf(s.title, sizeof s.title, "A run: \"quotes\", # and all");
+  s.scale = 0.7071067811865476;
+  s.growth = 1.3;
+  s.hmin = 1e-5;
+  s.hmax = 1e5;
+  s.surface_sizes = s.d3m_sources = s.repair = 0;
+  s.weld = 1e-9;
+  s.optimise = 0;
+  s.max_cells = 9000000000000000;
+  snprintf(s.write, sizeof s.write, "vtu,with blank,#");
+  vg_settings_add(&s, VG_TABLE_FARFIELD, &far, NULL);
+  vg_settings_add(&s, VG_TABLE_PATCHES, &patch, NULL);
+  patch.id = 8;
+  patch.bc = VG_BC_NONE;
+  strcpy(patch.name, "-");
+  vg_settings_add(&s, VG_TABLE_PATCHES, &patch, NULL);
+  for (int kind = VG_SOURCE_VGRID_NODE; kind <= VG_SOURCE_CYLINDER; kind++)
+    add_source(&s, kind);
+  round_trip(&s, 0);
+  round_trip(&s, 1);
+  vg_settings_release(&s);
+}
+
+static void blocks_come_in_any_order(void **state)
+{
+  struct vg_settings s = VG_SETTINGS_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+
+  (void)state;
+  if (parse("# not the title\n\n ONERA M6 \r\n"
+            "sources   # a table\n"
+            "h0   kind   x0  group\n"
+            "0.1  point  1   \"le ft\"  # a comment\n"
+            "# a comment does not end a table\n"
+            "2    line   -   -\n"
+            "\n"
+            "hmax growth\n"
+            "\n"
+            "# values may wait\n"
+            "  1.5d1\t1.25\n"
+            "farfield\nkind lengths\nsphere 30\n"
+            "\nrepair\nno\n", &s, &err) < 0)
+    fail_msg("%s", err.text);
+  assert_string_equal(s.title, "ONERA M6");
+  assert_int_equal(s.n_source, 2);
+  assert_int_equal(s.source[0].kind, VG_SOURCE_POINT);
+  assert_true(s.source[0].h0 == 0.1);
+  assert_true(s.source[0].p0[0] == 1);
+  assert_string_equal(s.source[0].group, "le ft");
+  assert_true(s.source[0].an == 1);
+  assert_int_equal(s.source[1].kind, VG_SOURCE_LINE);
+  assert_true(s.source[1].p0[0] == 0);
+  assert_true(s.hmax == 15 && s.growth == 1.25);
+  assert_int_equal(s.farfield.kind, VG_DOMAIN_SPHERE);
+  assert_true(s.farfield.lengths == 30);
+  assert_int_equal(s.repair, 0);
+  assert_int_equal(s.surface_sizes, 1);
+  vg_settings_release(&s);
+}
+
+static void messages_name_line_and_remedy(void **state)
+{
+  (void)state;
+  refuse("", "run.deck");
+  refuse("# only a comment\n", "title");
+  refuse("growth scale\n1.2 1\n", "run.deck:1: this line holds names");
+  refuse("t\ngrwoth\n1.2\n", "run.deck:2: 'grwoth' is not a name known in "
+         "this deck; did you mean 'growth'?");
+  refuse("t\nsuorces\n", "did you mean 'sources'?");
+  refuse("t\nzzzzzzzz\n", "'vanguard deck' writes all names");
+  refuse("t\n\ngrowth hmin\n1.2\n", "run.deck:4: 1 values for 2 names");
+  refuse("t\ngrowth\n", "run.deck:2: names without a line of values");
+  refuse("t\ngrowth\n1.2\n1.3\n", "run.deck:4: '1.3' stands where a name");
+  refuse("t\ngrowth\n0.9\n", "run.deck:3: growth is 0.9; it must be above 1");
+  refuse("t\ngrowth\nfast\n", "growth must be a number, found 'fast'");
+  refuse("t\ngrowth\nnan\n", "growth must be a number");
+  refuse("t\nhmin hmin\n1 1\n", "named twice");
+  refuse("t\nhmin\n1\nhmin\n2\n", "run.deck:4: 'hmin' was set before (line "
+         "2)");
+  refuse("t\noptimise\n1.5\n", "whole number");
+  refuse("t\noptimise\n-1\n", "at least 0");
+  refuse("t\nrepair\nyess\n", "did you mean 'yes'?");
+  refuse("t\nhmin hmax\n2 1\n", "hmin 2 is larger than hmax 1");
+  refuse("t\nwrite\n\"open\n", "run.deck:3: a quote is not closed");
+  refuse("t\nwrite\n\001\n", "control character");
+}
+
+static void tables_are_checked_too(void **state)
+{
+  (void)state;
+  refuse("t\nsources kind\n", "stands alone on its line");
+  refuse("t\nsources\n", "needs a line of column names");
+  refuse("t\nsources\n\nkind h0\npoint 1\n", "needs a line of column names");
+  refuse("t\nsources\nkind x0\npoint 1\n", "needs a column 'h0'");
+  refuse("t\nsources\nkind h0 x9\n", "did you mean 'x");
+  refuse("t\nsources\nkind h0\npiont 1\n", "run.deck:4: kind cannot be "
+         "'piont'; did you mean 'point'?");
+  refuse("t\nsources\nkind h0\npoint -\n", "h0 must be a number");
+  refuse("t\nsources\nkind h0\npoint 0\n", "must be above 0");
+  refuse("t\nsources\nkind h0 growth\npoint 1 0.5\n", "growth of source 1");
+  refuse("t\nsources\nkind h0\npoint 1\n\nsources\nkind h0\npoint 1\n",
+         "run.deck:6: table 'sources' was given before (line 2)");
+  refuse("t\nfarfield\nkind\nbox\nbox\n", "one line of values");
+  refuse("t\nfarfield\nkind x y\nbox 1 2\n", "give all three or none");
+  refuse("t\nfarfield\nkind xlo ylo zlo xhi yhi zhi\nbox 0 0 0 1 -1 1\n",
+         "below the upper one in y");
+  refuse("t\nfarfield\nkind xlo ylo zlo xhi yhi zhi\nsphere 0 0 0 1 1 1\n",
+         "set kind to box");
+  refuse("t\npatches\nid bc\n1 4\n2 3\n1 5\n", "patch 1 is listed twice");
+  refuse("t\npatches\nid name\n1 a b\n", "3 values for 2 names");
+}
+
+static void failure_leaves_the_settings_alone(void **state)
+{
+  struct vg_settings s;
+
+  (void)state;
+  vg_settings_default(&s);
+  s.growth = 1.7;
+  add_source(&s, VG_SOURCE_BOX);
+  assert_true(parse("t\ngrowth\n1.3\nnonsense\n1\n", &s, NULL) < 0);
+  assert_true(s.growth == 1.7);
+  assert_int_equal(s.n_source, 1);
+  vg_settings_release(&s);
+}
+
+static void patches_come_from_a_mesh(void **state)
+{
+  struct vg_mesh m = VG_MESH_INIT;
+  struct vg_settings s;
+
+  (void)state;
+  vg_settings_default(&s);
+  vg_mesh_add_patch(&m, 3, "wing");
+  vg_mesh_add_patch(&m, 9, "far field");
+  m.patch[1].bc_fun3d = 5000;
+  assert_int_equal(vg_deck_patches_of(&m, &s, NULL), VG_OK);
+  assert_int_equal(s.n_patch, 2);
+  assert_int_equal(s.patch[0].id, 3);
+  assert_int_equal(s.patch[0].bc, VG_BC_NONE);
+  assert_int_equal(s.patch[1].bc, 5000);
+  round_trip(&s, 1);
+  vg_settings_release(&s);
+  vg_mesh_release(&m);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(defaults_survive_a_round_trip),
+    cmocka_unit_test(everything_survives_a_round_trip),
+    cmocka_unit_test(blocks_come_in_any_order),
+    cmocka_unit_test(messages_name_line_and_remedy),
+    cmocka_unit_test(tables_are_checked_too),
+    cmocka_unit_test(failure_leaves_the_settings_alone),
+    cmocka_unit_test(patches_come_from_a_mesh),
+  };
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
