@@ -11,7 +11,10 @@
 #include "core/planar_front.h"
 #include "core/planar_tri.h"
 
-enum { N_SWEEP = 8, LEFT = 8 /* flag bit LEFT + k: half-edge k is a given segment */ };
+enum {
+  N_SWEEP = 8,
+  LEFT = 8   /* flag bit LEFT + k: half-edge k is a given segment */
+};
 
 struct region {
   size_t n, n_edge;

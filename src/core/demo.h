@@ -1,0 +1,63 @@
+/* core/demo.h: the geometry of `vanguard demo`: complete flow domains that
+ * need no foreign data, at any size. Uses core/mesh.h, core/sizing.h. */
+#ifndef VG_CORE_DEMO_H
+#define VG_CORE_DEMO_H
+
+#include <stddef.h>
+
+#include "core/mesh.h"
+#include "core/planar.h"
+#include "core/sizing.h"
+
+/** Cells per cube of the target edge length in a finished mesh; what turns
+ * a number of cells into spacings, and back in estimates. */
+#define VG_DEMO_CELLS_PER_CUBE 6.0
+
+/** A case of the list. */
+struct vg_demo_case {
+  const char *name;        /* as on the command line */
+  const char *summary;     /* one line */
+  size_t n_cell;           /* default size */
+};
+
+/** All cases. *n out: their number. Static. */
+const struct vg_demo_case *vg_demo_cases(size_t *n);
+
+/** A case ready to be meshed. */
+struct vg_demo {
+  struct vg_mesh surface;  /* closed, triangles point into the fluid; patches
+                              named, with conditions of both solvers */
+  size_t n_body_tri;       /* of surface.tri, the first ones: the body; 0
+                              where there is none */
+  struct vg_sizing_options sizing;  /* recommended, with from_surface */
+  size_t n_source;
+  struct vg_source *source;
+  double n_cell;           /* estimated size of the mesh */
+};
+#define VG_DEMO_INIT { .n_body_tri = 0 }
+
+/** Make a case.
+ *
+ * @param name    "box" unit cube, even spacing; "sphere" of radius 1 in a box
+ *                of half width 20; "wing", "wing-half" swept tapered wing
+ *                with a blunt trailing edge, whole and on a symmetry plane;
+ *                "wing-sharp", "wing-sharp-half" with a sharp one
+ * @param n_cell  wanted number of cells, 0: the default. Geometry sets a
+ *                lower bound: see the estimate in *out
+ * @param out     owned by the caller, vg_demo_release; untouched on failure
+ * VG_ERR_INPUT names the known cases when there is no such case, or when
+ * n_cell is above 2e9. Same bytes for the same arguments. */
+vg_status vg_demo_make(const char *name, size_t n_cell, struct vg_demo *out,
+                       struct vg_error *err);
+
+void vg_demo_release(struct vg_demo *d);
+
+/** Cells that a field leads to within a box: VG_DEMO_CELLS_PER_CUBE times
+ * the integral of 1 / h^3, over points for which `inside` (may be NULL: all)
+ * is not 0. size(user, x) > 0. */
+double vg_demo_estimate(const double lo[3], const double hi[3],
+                        double (*size)(void *user, const double x[3]),
+                        int (*inside)(void *user, const double x[3]),
+                        void *user);
+
+#endif

@@ -1,0 +1,508 @@
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "core/farfield.h"
+#include "core/planar.h"
+#include "core/project.h"
+
+static double even(void *user, const double x[3])
+{
+  (void)x;
+  return *(double *)user;
+}
+
+struct side {
+  uint32_t a, b;
+};
+
+static int side_compare(const void *pa, const void *pb)
+{
+  const struct side *x = pa, *y = pb;
+
+  if (x->a != y->a) return x->a < y->a ? -1 : 1;
+  return x->b < y->b ? -1 : x->b > y->b;
+}
+
+/* Every directed edge once, and so is its reverse; every point used. */
+static void check_closed(const struct vg_mesh *m)
+{
+  struct side *list = malloc(3 * m->n_tri * sizeof *list);
+  char *used = calloc(m->n_point, 1);
+
+  for (size_t i = 0; i < 3 * m->n_tri; i++) {
+    list[i].a = m->tri[i / 3][i % 3];
+    list[i].b = m->tri[i / 3][(i + 1) % 3];
+    used[list[i].a] = 1;
+  }
+  qsort(list, 3 * m->n_tri, sizeof *list, side_compare);
+  for (size_t i = 0; i < 3 * m->n_tri; i++) {
+    const struct side back = { list[i].b, list[i].a };
+
+    if (i) assert_true(side_compare(&list[i - 1], &list[i]) < 0);
+    assert_non_null(bsearch(&back, list, 3 * m->n_tri, sizeof *list,
+                            side_compare));
+  }
+  for (size_t i = 0; i < m->n_point; i++) assert_true(used[i]);
+  free(list);
+  free(used);
+}
+
+/* Volume enclosed, positive when triangles point into it. */
+static double volume(const struct vg_mesh *m)
+{
+  double sum = 0;
+
+  for (size_t i = 0; i < m->n_tri; i++) {
+    const double *a = m->point[m->tri[i][0]], *b = m->point[m->tri[i][1]],
+                 *c = m->point[m->tri[i][2]];
+
+    sum -= a[0] * (b[1] * c[2] - b[2] * c[1])
+           + a[1] * (b[2] * c[0] - b[0] * c[2])
+           + a[2] * (b[0] * c[1] - b[1] * c[0]);
+  }
+  return sum / 6;
+}
+
+static double angle_min_deg(const struct vg_mesh *m)
+{
+  double least = 180;
+
+  for (size_t i = 0; i < m->n_tri; i++)
+    for (int k = 0; k < 3; k++) {
+      const double *a = m->point[m->tri[i][k]],
+                   *b = m->point[m->tri[i][(k + 1) % 3]],
+                   *c = m->point[m->tri[i][(k + 2) % 3]];
+      double uu = 0, vv = 0, uv = 0;
+
+      for (int j = 0; j < 3; j++) {
+        uu += (b[j] - a[j]) * (b[j] - a[j]);
+        vv += (c[j] - a[j]) * (c[j] - a[j]);
+        uv += (b[j] - a[j]) * (c[j] - a[j]);
+      }
+      least = fmin(least, acos(uv / sqrt(uu * vv)) * 180 / 3.14159265358979);
+    }
+  return least;
+}
+
+/* A sphere body, whole or half, radius 1 at the origin, normals out. */
+static struct vg_mesh ball(int half, double h)
+{
+  struct vg_mesh m = VG_MESH_INIT;
+  struct vg_rim rim = VG_RIM_INIT;
+  const struct vg_size_law law = { even, &h };
+  const double centre[3] = { 0, 0, 0 };
+  struct vg_error err = VG_ERROR_INIT;
+
+  assert_int_equal(vg_mesh_add_patch(&m, 7, "ball"), 0);
+  assert_int_equal(vg_add_sphere(&m, centre, 1, half, 0, &law, 0, &rim, &err),
+                   VG_OK);
+  vg_rim_release(&rim);
+  return m;
+}
+
+static struct vg_sizing *field(const struct vg_mesh *m, double growth)
+{
+  struct vg_sizing_options o = VG_SIZING_OPTIONS_INIT;
+  struct vg_sizing *s = NULL;
+  struct vg_error err = VG_ERROR_INIT;
+
+  o.growth = growth;
+  assert_int_equal(vg_sizing_new(&o, 0, NULL, m, &s, &err), VG_OK);
+  return s;
+}
+
+static void makes_even_spheres(void **state)
+{
+  (void)state;
+  for (int n = 4; n <= 40; n *= 3) {
+    struct vg_mesh m = ball(-1, 1.0 / n);
+    /* equilateral triangles of edge h on a sphere */
+    const double want = 4 * 3.14159265 * n * n / (0.4330127);
+
+    check_closed(&m);
+    assert_true((double)m.n_tri > 0.9 * want && (double)m.n_tri < 1.15 * want);
+    assert_true(angle_min_deg(&m) > 28);
+    for (size_t i = 0; i < m.n_point; i++) {
+      const double *x = m.point[i];
+
+      assert_true(fabs(x[0] * x[0] + x[1] * x[1] + x[2] * x[2] - 1) < 1e-14);
+    }
+    assert_true(volume(&m) < 0);   /* normals out of it */
+    vg_mesh_release(&m);
+  }
+}
+
+static void puts_a_sphere_around_a_body(void **state)
+{
+  struct vg_mesh m = ball(-1, 0.1);
+  const size_t n_point = m.n_point, n_tri = m.n_tri;
+  struct vg_sizing *s = field(&m, 1.2);
+  struct vg_farfield far = VG_FARFIELD_INIT;
+  struct vg_domain_report report;
+  struct vg_error err = VG_ERROR_INIT;
+  double first[3];
+
+  (void)state;
+  memcpy(first, m.point[17], sizeof first);
+  far.lengths = 10;
+  assert_int_equal(vg_domain_complete(&m, &far, s, &report, &err), VG_OK);
+  check_closed(&m);
+  assert_true(report.added_farfield && !report.added_symmetry);
+  assert_int_equal(report.n_added_tri, m.n_tri - n_tri);
+  assert_memory_equal(first, m.point[17], sizeof first);
+  /* chords lose 1 - 3/20 h^2/R^2 or so of the volume; h is 4 of R = 20 */
+  assert_true(volume(&m) > 0.95 * 4.18879 * 8000);
+  assert_true(volume(&m) < 4.18879 * 8000);
+  assert_int_equal(m.n_patch, 2);
+  assert_int_equal(m.patch[1].id, 8);
+  assert_string_equal(m.patch[1].name, "farfield");
+  assert_int_equal(m.patch[1].bc, 3);
+  assert_int_equal(m.patch[1].bc_fun3d, 5000);
+  assert_true(m.n_point > n_point + 100);
+  vg_sizing_free(s);
+  vg_mesh_release(&m);
+}
+
+static void puts_a_box_around_a_body(void **state)
+{
+  struct vg_mesh m = ball(-1, 0.1);
+  struct vg_sizing *s = field(&m, 1.2);
+  struct vg_farfield far = { VG_FARFIELD_BOX, 0, 0, { 0 }, 0, { -9, -5, -4 },
+                             { 7, 5, 4 }, 1, 0.8 };
+  struct vg_error err = VG_ERROR_INIT;
+  double body, lo[3], hi[3];
+
+  (void)state;
+  far.lengths = 1;
+  body = -volume(&m);
+  assert_int_equal(vg_domain_complete(&m, &far, s, NULL, &err), VG_OK);
+  check_closed(&m);
+  assert_true(fabs(volume(&m) - (16 * 10 * 8 - body)) < 1e-9);
+  vg_mesh_bounds(&m, lo, hi);
+  assert_memory_equal(lo, far.lo, sizeof lo);
+  assert_memory_equal(hi, far.hi, sizeof hi);
+  assert_true(angle_min_deg(&m) > 25);
+  vg_sizing_free(s);
+  vg_mesh_release(&m);
+}
+
+static void completes_half_bodies(void **state)
+{
+  (void)state;
+  for (int half = 0; half < 6; half++)
+    for (int kind = VG_FARFIELD_SPHERE; kind <= VG_FARFIELD_BOX; kind++) {
+      struct vg_mesh m = ball(half, 0.1);
+      struct vg_sizing *s;
+      struct vg_farfield far = VG_FARFIELD_INIT;
+      struct vg_domain_report report;
+      struct vg_error err = VG_ERROR_INIT;
+      const double body = -volume(&m);
+      size_t n_in_plane = 0;
+
+      /* a plane that is off by rounding, and not at zero */
+      for (size_t i = 0; i < m.n_point; i++)
+        m.point[i][half / 2] += 3 + (i % 3 ? 0 : 1e-12);
+      s = field(&m, 1.2);
+      far.kind = kind;
+      far.size = 20;
+      assert_int_equal(vg_domain_complete(&m, &far, s, &report, &err), VG_OK);
+      check_closed(&m);
+      assert_true(report.added_symmetry);
+      assert_int_equal(report.symmetry_axis, half / 2);
+      if (kind == VG_FARFIELD_BOX)
+        assert_true(fabs(volume(&m) - (40 * 40 * 20 - body)) < 1e-7);
+      else assert_true(volume(&m) > 0.94 * 16755.2);
+      assert_true(angle_min_deg(&m) > 25);
+      for (size_t i = 0; i < m.n_tri; i++) {
+        const struct vg_patch *p = &m.patch[m.tri_patch[i]];
+
+        if (strcmp(p->name, "symmetry")) continue;
+        n_in_plane++;
+        assert_int_equal(p->bc, 1);
+        assert_int_equal(p->bc_fun3d, 6661 + half / 2);
+        for (int k = 0; k < 3; k++)
+          assert_true(m.point[m.tri[i][k]][half / 2] == report.symmetry_at);
+      }
+      assert_true(n_in_plane > 100);
+      vg_sizing_free(s);
+      vg_mesh_release(&m);
+    }
+}
+
+static void copy_shifted(struct vg_mesh *to, const struct vg_mesh *from,
+                         double dx)
+{
+  struct vg_mesh both = VG_MESH_INIT;
+  const size_t np = to->n_point, nt = to->n_tri;
+
+  both.n_point = np + from->n_point;
+  both.n_tri = nt + from->n_tri;
+  both.point = malloc(both.n_point * sizeof *both.point);
+  both.tri = malloc(both.n_tri * sizeof *both.tri);
+  both.tri_patch = calloc(both.n_tri, sizeof *both.tri_patch);
+  for (size_t i = 0; i < both.n_point; i++) {
+    memcpy(both.point[i], i < np ? to->point[i] : from->point[i - np],
+           sizeof *both.point);
+    if (i >= np) both.point[i][0] += dx;
+  }
+  for (size_t i = 0; i < both.n_tri; i++)
+    for (int k = 0; k < 3; k++)
+      both.tri[i][k] = i < nt ? to->tri[i][k]
+                              : from->tri[i - nt][k] + (uint32_t)np;
+  vg_mesh_add_patch(&both, 1, "bodies");
+  vg_mesh_move(to, &both);
+}
+
+static void takes_several_bodies(void **state)
+{
+  struct vg_mesh m = ball(3, 0.2), other = ball(3, 0.1), free_body;
+  struct vg_sizing *s;
+  struct vg_farfield far = VG_FARFIELD_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+
+  (void)state;
+  free_body = ball(-1, 0.15);
+  for (size_t i = 0; i < free_body.n_point; i++) free_body.point[i][1] += 3;
+  copy_shifted(&m, &other, 2.5);
+  copy_shifted(&m, &free_body, 1);
+  s = field(&m, 1.2);
+  far.spacing = 6;
+  assert_int_equal(vg_domain_complete(&m, &far, s, NULL, &err), VG_OK);
+  check_closed(&m);
+  assert_true(angle_min_deg(&m) > 25);
+  vg_sizing_free(s);
+  vg_mesh_release(&m);
+  vg_mesh_release(&other);
+  vg_mesh_release(&free_body);
+}
+
+static void refuses(struct vg_mesh m, const struct vg_farfield *far,
+                    vg_status want, const char *word)
+{
+  struct vg_sizing *s = field(&m, 1.2);
+  struct vg_error err = VG_ERROR_INIT;
+  const size_t n = m.n_tri, n_point = m.n_point;
+
+  assert_int_equal(vg_domain_complete(&m, far, s, NULL, &err), want);
+  assert_int_equal(err.code, want);
+  if (!strstr(err.text, word)) fail_msg("%s", err.text);
+  assert_int_equal(m.n_tri, n);
+  assert_int_equal(m.n_point, n_point);
+  vg_sizing_free(s);
+  vg_mesh_release(&m);
+}
+
+static void refuses_bodies_it_cannot_complete(void **state)
+{
+  struct vg_farfield far = VG_FARFIELD_INIT, small = VG_FARFIELD_INIT,
+                     none = VG_FARFIELD_INIT, nowhere = VG_FARFIELD_INIT;
+  struct vg_mesh m = ball(-1, 0.3);
+
+  (void)state;
+  m.n_tri--;   /* a hole in the middle of the surface */
+  refuses(m, &far, VG_ERR_GEOMETRY, "open edges");
+  small.size = 1.02;
+  refuses(ball(-1, 0.3), &small, VG_ERR_GEOMETRY, "inside the farfield");
+  small.kind = VG_FARFIELD_BOX;
+  small.size = 0.9;
+  refuses(ball(3, 0.3), &small, VG_ERR_GEOMETRY, "inside the farfield");
+  none.kind = VG_FARFIELD_NONE;
+  refuses(ball(2, 0.3), &none, VG_ERR_GEOMETRY, "open along y = 0");
+  nowhere.lengths = NAN;
+  refuses(ball(-1, 0.3), &nowhere, VG_ERR_INPUT, "positive");
+  m = ball(-1, 0.3);
+  for (size_t i = 0; i < m.n_tri; i++) {
+    const uint32_t v = m.tri[i][0];
+
+    m.tri[i][0] = m.tri[i][1];
+    m.tri[i][1] = v;
+  }
+  refuses(m, &far, VG_ERR_INPUT, "into the body");
+  m = ball(3, 0.3);
+  for (size_t i = 0; i < m.n_point; i++)   /* bulges through its plane */
+    if (m.point[i][1] > 0.9) m.point[i][1] = -0.2;
+  refuses(m, &far, VG_ERR_GEOMETRY, "plane");
+}
+
+/* --- projects of planar patches ------------------------------------------ */
+
+/* VGRID's own example: a cube of half width 10, eight nodal sources, spacing
+ * 1 at the corners with y = -10 and 2 at those with y = +10. */
+static void box_project(struct vg_project *p)
+{
+  static const int32_t line[12][2] = {
+    { 1, 2 }, { 2, 3 }, { 4, 3 }, { 1, 4 }, { 5, 6 }, { 7, 6 }, { 8, 7 },
+    { 5, 8 }, { 1, 5 }, { 2, 6 }, { 3, 7 }, { 4, 8 } };
+  static const int32_t loop[6][4] = {
+    { 2, -3, -4, 1 }, { 8, 7, 6, -5 }, { 9, 5, -10, -1 }, { 11, -7, -12, 3 },
+    { 4, 12, -8, -9 }, { -6, -11, -2, 10 } };
+  static const double corner[8][3] = {
+    { -10, -10, -10 }, { 10, -10, -10 }, { 10, 10, -10 }, { -10, 10, -10 },
+    { -10, -10, 10 }, { 10, -10, 10 }, { 10, 10, 10 }, { -10, 10, 10 } };
+
+  memset(p, 0, sizeof *p);
+  p->ifact = p->vfact = 1;
+  p->n_point = p->n_source = 8;
+  p->n_curve = 12;
+  p->n_shape = 6;
+  p->point = malloc(sizeof corner);
+  memcpy(p->point, corner, sizeof corner);
+  p->curve = calloc(12, sizeof *p->curve);
+  p->shape = calloc(6, sizeof *p->shape);
+  p->source = calloc(8, sizeof *p->source);
+  for (int i = 0; i < 8; i++) {
+    p->source[i].kind = VG_SOURCE_VGRID_NODE;
+    memcpy(p->source[i].p0, corner[i], sizeof corner[i]);
+    p->source[i].h0 = p->source[i].h1 = corner[i][1] < 0 ? 1 : 2;
+    p->source[i].an = 1;
+  }
+  for (int i = 0; i < 12; i++) {
+    p->curve[i].id = i + 1;
+    p->curve[i].n = 2;
+    p->curve[i].point = malloc(2 * sizeof(uint32_t));
+    for (int k = 0; k < 2; k++)
+      p->curve[i].point[k] = (uint32_t)line[i][k] - 1;
+  }
+  for (int i = 0; i < 6; i++) {
+    p->shape[i].patch.id = i + 1;
+    p->shape[i].n = 4;
+    p->shape[i].curve = malloc(4 * sizeof(int32_t));
+    memcpy(p->shape[i].curve, loop[i], sizeof loop[i]);
+  }
+}
+
+static void marches_curves_as_vgrid_does(void **state)
+{
+  /* x along the first curve, from the .front that VGRID 3.6 wrote */
+  static const double want[] = {
+    -8.99999999417, -7.99415543241, -6.97124623625, -5.92181255177,
+    -4.83944148672, -3.72168279456, -2.57037271621, -1.39130717951,
+    -0.193415334438, 1.01231161176, 2.21395079804, 3.39981088209,
+    4.55969946316, 5.68629598072, 6.77640351223, 7.83164467197,
+    8.55442978131, 9.27721489066 };
+  struct vg_project p;
+  struct vg_mesh m = VG_MESH_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+
+  (void)state;
+  box_project(&p);
+  assert_int_equal(vg_project_surface(&p, NULL, &m, &err), VG_OK);
+  for (int i = 0; i < 8; i++)
+    assert_memory_equal(m.point[i], p.point[i], sizeof m.point[i]);
+  for (int i = 0; i < 18; i++)
+    /* VGRID keeps 1e-8 off its sources and prints 12 digits */
+    assert_true(fabs(m.point[8 + i][0] - want[i]) < 1e-6);
+  assert_true(m.point[26][0] == 10 && m.point[26][1] != -10);
+  vg_mesh_release(&m);
+  vg_project_release(&p);
+}
+
+static void meshes_a_project_of_planes(void **state)
+{
+  struct vg_project p;
+  struct vg_sizing *s = NULL;
+  struct vg_mesh m = VG_MESH_INIT;
+  struct vg_sizing_options o = VG_SIZING_OPTIONS_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+  size_t n_off = 0, n_floor = 0;
+
+  (void)state;
+  box_project(&p);
+  assert_int_equal(vg_sizing_new(&o, p.n_source, p.source, NULL, &s, &err),
+                   VG_OK);
+  assert_int_equal(vg_project_surface(&p, s, &m, &err), VG_OK);
+  check_closed(&m);
+  assert_true(fabs(volume(&m) - 8000) < 1e-8);
+  assert_true(angle_min_deg(&m) > 25);
+  for (size_t i = 0; i < m.n_point; i++) {
+    const double *x = m.point[i];
+
+    n_off += fabs(x[0]) != 10 && fabs(x[1]) != 10 && fabs(x[2]) != 10;
+  }
+  assert_int_equal(n_off, 0);
+  for (size_t i = 0; i < m.n_tri; i++) n_floor += m.tri_patch[i] == 2;
+  /* VGRID has 574 on that patch, the only one whose rim has no layers */
+  assert_true(n_floor > 520 && n_floor < 680);
+  vg_sizing_free(s);
+  vg_mesh_release(&m);
+  vg_project_release(&p);
+}
+
+/* A square plate whose sides are chains of many points, in an oblique plane,
+ * so short against the spacing that every side is one step. */
+static void keeps_corners_of_chains(void **state)
+{
+  struct vg_project p = VG_PROJECT_INIT;
+  struct vg_mesh m = VG_MESH_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+  double h = 0.21, area = 0;
+
+  (void)state;
+  p.n_point = 41;
+  p.n_curve = p.n_shape = p.n_source = 1;
+  p.point = calloc(41, sizeof *p.point);
+  p.curve = calloc(1, sizeof *p.curve);
+  p.shape = calloc(1, sizeof *p.shape);
+  p.source = calloc(1, sizeof *p.source);
+  p.curve->point = malloc(41 * sizeof(uint32_t));
+  p.shape->curve = malloc(sizeof(int32_t));
+  p.curve->id = p.shape->curve[0] = 1;
+  p.shape->n = 1;
+  p.curve->n = 41;
+  p.source->kind = VG_SOURCE_VGRID_NODE;
+  p.source->an = 1;
+  p.source->h0 = h;
+  for (uint32_t i = 0; i < 41; i++) {
+    const double t = i % 10 / 10.0, u = i / 10 % 4 == 0 ? t
+                 : i / 10 % 4 == 1 ? 1 : i / 10 % 4 == 2 ? 1 - t : 0;
+    const double v = i / 10 % 4 == 0 ? 0 : i / 10 % 4 == 1 ? t
+                 : i / 10 % 4 == 2 ? 1 : 1 - t;
+
+    p.point[i][0] = 0.6 * u;
+    p.point[i][1] = v;
+    p.point[i][2] = 0.8 * u;
+    p.curve->point[i] = i < 40 ? i : 0;
+  }
+  p.n_point = 40;
+  assert_int_equal(vg_project_surface(&p, NULL, &m, &err), VG_OK);
+  for (size_t i = 0; i < m.n_tri; i++) {
+    const double *a = m.point[m.tri[i][0]], *b = m.point[m.tri[i][1]],
+                 *c = m.point[m.tri[i][2]];
+
+    area += 0.5 * ((b[0] - a[0]) * (c[1] - a[1])
+                   - (b[1] - a[1]) * (c[0] - a[0])) / 0.6;
+  }
+  assert_true(fabs(area - 1) < 1e-9);
+  vg_mesh_release(&m);
+  p.point[5][2] += 1;   /* no longer plane */
+  p.point[6][2] += 1;
+  assert_int_equal(vg_project_surface(&p, NULL, &m, &err), VG_ERR_GEOMETRY);
+  p.curve->point[3] = 77;
+  assert_int_equal(vg_project_surface(&p, NULL, &m, &err), VG_ERR_INPUT);
+  assert_null(m.tri);
+  vg_project_release(&p);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(makes_even_spheres),
+    cmocka_unit_test(puts_a_sphere_around_a_body),
+    cmocka_unit_test(puts_a_box_around_a_body),
+    cmocka_unit_test(completes_half_bodies),
+    cmocka_unit_test(takes_several_bodies),
+    cmocka_unit_test(refuses_bodies_it_cannot_complete),
+    cmocka_unit_test(marches_curves_as_vgrid_does),
+    cmocka_unit_test(meshes_a_project_of_planes),
+    cmocka_unit_test(keeps_corners_of_chains),
+  };
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
