@@ -19,7 +19,6 @@
 #define LANES 8
 #define MAX_LEVEL 12
 #define SHY 2e-6f
-#define SLOPPY 0.002f    /* relative error allowed in a search */
 
 struct block {
   double origin[3];
@@ -298,7 +297,7 @@ void vg_near_free(struct vg_near *t)
 struct search {
   const struct vg_near *t;
   double mid[3];
-  float half[3], best;
+  float half[3], best, sloppy; /* sloppy: relative error allowed */
   uint32_t hint;
 };
 
@@ -407,7 +406,7 @@ static void descend_above(struct search *q, int level, uint32_t at)
                      (1 - SHY));
   }
   for (;;) {
-    float least = q->best * (1 - SLOPPY);
+    float least = q->best * (1 - q->sloppy);
     int first = LANES;
 
     for (int j = 0; j < LANES; j++)
@@ -423,9 +422,11 @@ static void descend_above(struct search *q, int level, uint32_t at)
 }
 
 double vg_near_above(const struct vg_near *t, const double lo[3],
-                     const double hi[3], double below, uint32_t *hint)
+                     const double hi[3], double below, double sloppy,
+                     uint32_t *hint)
 {
-  struct search q = { .t = t, .best = (float)below, .hint = *hint };
+  struct search q = { .t = t, .best = (float)below, .hint = *hint,
+                      .sloppy = (float)sloppy };
 
   for (int k = 0; k < 3; k++) {
     q.half[k] = (float)(0.5 * (hi[k] - lo[k]));
@@ -465,7 +466,7 @@ static void descend_below(struct search *q, int level, uint32_t at)
     bound[j] = left < g->h_max[j] ? left : g->h_max[j];
   }
   for (;;) {
-    float most = q->best * (1 + SLOPPY);
+    float most = q->best * (1 + q->sloppy);
     int first = LANES;
 
     for (int j = 0; j < LANES; j++)
@@ -481,9 +482,9 @@ static void descend_below(struct search *q, int level, uint32_t at)
 }
 
 double vg_near_below(const struct vg_near *t, const double x[3],
-                     double above)
+                     double above, double sloppy)
 {
-  struct search q = { .t = t, .best = (float)above,
+  struct search q = { .t = t, .best = (float)above, .sloppy = (float)sloppy,
                       .mid = { x[0], x[1], x[2] } };
 
   descend_below(&q, t->n_level - 1, 0);

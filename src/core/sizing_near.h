@@ -30,16 +30,18 @@ void vg_near_free(struct vg_near *t);
 
 /** Least "from above" value in the box lo..hi (a point: lo == hi).
  *
- * @param below  only values under this matter; it is returned if none is
- * @param hint   in/out: where the search starts, and where it ended; any
- *               value within what an earlier call returned, 0 at first
- * The result is within two parts in a thousand above the least value, and
- * depends on box, below and hint alone. */
+ * @param below   only values under this matter; it is returned if none is
+ * @param sloppy  relative error allowed upwards; some spares much searching
+ * @param hint    in/out: where the search starts, and where it ended; any
+ *                value that an earlier call returned, 0 at first
+ * The result depends on the arguments alone. */
 double vg_near_above(const struct vg_near *t, const double lo[3],
-                     const double hi[3], double below, uint32_t *hint);
+                     const double hi[3], double below, double sloppy,
+                     uint32_t *hint);
 
-/** Greatest "from below" value at x; `above` if none exceeds it. */
+/** Greatest "from below" value at x; `above` if none exceeds it. The result
+ * may be too low by the relative error `sloppy`. */
 double vg_near_below(const struct vg_near *t, const double x[3],
-                     double above);
+                     double above, double sloppy);
 
 #endif

@@ -18,7 +18,9 @@
  * neighbour's interpolation gives there, so the result is continuous. Parents
  * of a hanging point are older points, so one pass in order settles all. */
 #define TOLERANCE 0.03
-#define FLOOR 1.0
+#define FLOOR 1.25
+#define SLOPPY_POINT 0.004
+#define SLOPPY_BOX 0.03
 #define POINT_MAX (UINT32_MAX - 1)
 #define TOP (1u << VG_OCTREE_DEPTH)
 
@@ -31,7 +33,7 @@ struct cell {
 };
 
 struct point {
-  uint64_t key;         /* three lattice coordinates of 21 bits */
+  uint32_t at[3];       /* in units of the finest cell */
   uint32_t parent[4];   /* of a middle: ends of the edge, corners of the face */
   uint32_t hint;
   float h;              /* NAN until known */
@@ -62,7 +64,7 @@ static double combine(const struct vg_field *f, const double x[3],
                       double above, double source)
 {
   if (source < above) {
-    if (f->near) source = vg_near_below(f->near, x, source);
+    if (f->near) source = vg_near_below(f->near, x, source, SLOPPY_POINT);
     if (source < above) above = source;
   }
   return clamp(f, above);
@@ -73,7 +75,8 @@ double vg_field_at(const struct vg_field *f, const double x[3],
 {
   double above = f->h_max;
 
-  if (f->near) above = vg_near_above(f->near, x, x, above, hint);
+  if (f->near)
+    above = vg_near_above(f->near, x, x, above, SLOPPY_POINT, hint);
   return combine(f, x, above, vg_source_at(&f->set, x));
 }
 
@@ -87,10 +90,12 @@ static double field_floor(const struct vg_field *f, const double lo[3],
     hi[k] = lo[k] + side;
     mid[k] = lo[k] + 0.5 * side;
   }
-  if (f->near) above = vg_near_above(f->near, lo, hi, above, hint) * 0.998;
+  if (f->near)
+    above = vg_near_above(f->near, lo, hi, above, SLOPPY_BOX, hint) *
+            (1 - SLOPPY_BOX);
   source = vg_source_floor(&f->set, lo, hi);
   if (f->near && source < above) {
-    double below = vg_near_below(f->near, mid, source) -
+    double below = vg_near_below(f->near, mid, source, SLOPPY_POINT) -
                    0.8660254037844387 * side * f->slope;
 
     if (below > source) source = below;
@@ -100,20 +105,19 @@ static double field_floor(const struct vg_field *f, const double lo[3],
 
 /* Points. */
 
-static uint64_t lattice_key(const uint32_t at[3])
+static void point_place(const struct build *b, const struct point *p,
+                        double x[3])
 {
-  return (uint64_t)at[0] | (uint64_t)at[1] << 21 | (uint64_t)at[2] << 42;
+  for (int k = 0; k < 3; k++) x[k] = b->lo[k] + p->at[k] * b->unit;
 }
 
-static void point_place(const struct build *b, uint64_t key, double x[3])
+static size_t hash(const struct build *b, const uint32_t at[3])
 {
-  for (int k = 0; k < 3; k++)
-    x[k] = b->lo[k] + (double)(key >> 21 * k & 0x1fffff) * b->unit;
-}
+  uint64_t v = (uint64_t)at[0] * 0x9e3779b97f4a7c15ull;
 
-static size_t hash(const struct build *b, uint64_t key)
-{
-  return (size_t)(key * 0x9e3779b97f4a7c15ull >> 20) & (b->n_slot - 1);
+  v = (v ^ v >> 29 ^ at[1]) * 0xbf58476d1ce4e5b9ull;
+  v = (v ^ v >> 32 ^ at[2]) * 0x94d049bb133111ebull;
+  return (size_t)(v >> 24) & (b->n_slot - 1);
 }
 
 static int grow_table(struct build *b)
@@ -126,7 +130,7 @@ static int grow_table(struct build *b)
   b->slot = slot;
   b->n_slot = n;
   for (size_t i = 0; i < b->n_point; i++) {
-    size_t s = hash(b, b->point[i].key);
+    size_t s = hash(b, b->point[i].at);
 
     while (slot[s]) s = (s + 1) & (n - 1);
     slot[s] = (uint32_t)i + 1;
@@ -138,19 +142,19 @@ static int grow_table(struct build *b)
  * when memory is refused. */
 static uint32_t find_point(struct build *b, const uint32_t at[3])
 {
-  uint64_t key = lattice_key(at);
   struct point *p;
   size_t s;
 
   if (2 * (b->n_point + 1) > b->n_slot && grow_table(b)) return UINT32_MAX;
-  for (s = hash(b, key); b->slot[s]; s = (s + 1) & (b->n_slot - 1))
-    if (b->point[b->slot[s] - 1].key == key) return b->slot[s] - 1;
+  for (s = hash(b, at); b->slot[s]; s = (s + 1) & (b->n_slot - 1))
+    if (!memcmp(b->point[b->slot[s] - 1].at, at, sizeof p->at))
+      return b->slot[s] - 1;
   if (b->n_point >= POINT_MAX ||
       vg_reserve(&b->point, &b->cap_point, b->n_point + 1, sizeof *b->point))
     return UINT32_MAX;
   p = b->point + b->n_point;
   memset(p, 0, sizeof *p);
-  p->key = key;
+  memcpy(p->at, at, sizeof p->at);
   p->h = NAN;
   b->slot[s] = (uint32_t)++b->n_point;
   return b->slot[s] - 1;
@@ -290,11 +294,7 @@ static unsigned full_count(const struct point *p)
   unsigned on_side = 0;
 
   if (!p->n_parent) return 0;
-  for (int k = 0; k < 3; k++) {
-    uint64_t v = p->key >> 21 * k & 0x1fffff;
-
-    on_side += v == 0 || v == TOP;
-  }
+  for (int k = 0; k < 3; k++) on_side += p->at[k] == 0 || p->at[k] == TOP;
   return n >> on_side;
 }
 
@@ -310,7 +310,7 @@ static void settle(struct build *b, size_t first)
         sum += (double)b->point[p->parent[k]].h;
       p->h = (float)(sum / p->n_parent);
     } else if (!(p->h == p->h)) {
-      point_place(b, p->key, x);
+      point_place(b, p, x);
       p->h = (float)vg_field_at(b->f, x, &p->hint);
     }
   }
@@ -427,7 +427,7 @@ static int limit_gradient(struct build *b)
   b->source = vg_alloc(b->n_point, sizeof *b->source);
   if (!b->source) return -1;
   for (size_t i = 0; i < b->n_point; i++) {
-    point_place(b, b->point[i].key, x);
+    point_place(b, b->point + i, x);
     b->source[i] = (float)clamp(b->f, vg_source_at(&b->f->set, x));
   }
   while (sweep(b, 0, b->unit * TOP, flip)) flip = !flip;
@@ -441,9 +441,10 @@ static int limit_gradient(struct build *b)
       p->h = (float)(sum / p->n_parent);
       continue;
     }
-    point_place(b, p->key, x);
+    point_place(b, p, x);
     hint = p->hint;
-    if (b->f->near) above = vg_near_above(b->f->near, x, x, above, &hint);
+    if (b->f->near)
+      above = vg_near_above(b->f->near, x, x, above, SLOPPY_POINT, &hint);
     p->h = (float)combine(b->f, x, above, (double)b->source[i]);
   }
   return 0;
@@ -486,8 +487,8 @@ vg_status vg_octree_build(const struct vg_field *f, const double lo[3],
   int bad;
 
   if (b.max_cell > VG_OCTREE_LEAF / 2) b.max_cell = VG_OCTREE_LEAF / 2;
-  b.floor = FLOOR * 0.2 / f->slope;
-  b.floor = b.floor < 0.25 ? 0.25 : b.floor > 2 ? 2 : b.floor;
+  b.floor = FLOOR * sqrt(0.2 / f->slope);
+  if (b.floor > 2) b.floor = 2;
   for (int k = 0; k < 3; k++) b.lo[k] = out->lo[k] = lo[k];
   out->side = side;
   bad = grow(&b);

@@ -17,7 +17,7 @@ struct vg_field {
 };
 
 #define VG_OCTREE_LEAF 0x80000000u
-#define VG_OCTREE_DEPTH 20     /* levels below the root */
+#define VG_OCTREE_DEPTH 28     /* levels below the root */
 
 struct vg_octree {
   double lo[3], side;          /* root cube */
