@@ -20,6 +20,7 @@ struct check {
   struct vg_edges e;
   struct vg_tree tree;
   struct vg_crossing cross;
+  uint32_t (*fan)[3];       /* [s.n] */
   uint8_t *flip;            /* [s.n] faces to turn */
   uint32_t *shell;          /* [s.n] */
   uint8_t *shell_state, *shell_turn;
@@ -29,6 +30,7 @@ static void release(struct check *c)
 {
   free(c->same);
   free(c->owner);
+  free(c->fan);
   free(c->flip);
   free(c->shell);
   free(c->shell_state);
@@ -388,7 +390,10 @@ static vg_status build(struct check *c)
   r->tri_shell = vg_alloc(c->m->n_tri, sizeof *r->tri_shell);
   if (!c->flip || !c->shell || !r->face_kinds || !r->tri_shell)
     VG_TRY(vg_fail_memory(c->err, "the surface check"));
-  if (c->o->repair) VG_TRY(vg_orient_faces(&c->s, &c->e, c->flip, c->err));
+  VG_TRY(vg_orient_faces(&c->s, &c->e, c->flip, c->err));
+  VG_TRY(vg_label_fans(&c->s, &c->e, c->flip, &c->fan, c->err));
+  if (!c->o->repair) memset(c->flip, 0, c->s.n);
+  VG_TRY(vg_count_pieces(&c->s, &r->n_piece, c->err));
   VG_TRY(vg_label_shells(&c->s, &c->e, c->shell, &r->n_shell, c->err));
   for (size_t t = 0; t < c->m->n_tri; t++) r->tri_shell[t] = c->shell[t];
 done:
@@ -408,8 +413,8 @@ static vg_status build_shells(struct check *c)
     VG_TRY(vg_fail_memory(c->err, "the shells of the surface"));
   VG_TRY(vg_measure_shells(r->shell, c->shell_state, r->n_shell, &c->s, &c->e,
                            c->shell, c->flip, c->err));
-  VG_TRY(vg_find_crossings(&c->cross, &c->s, &c->tree, c->shell, r->n_shell,
-                           c->err));
+  VG_TRY(vg_find_crossings(&c->cross, &c->s, (const uint32_t (*)[3])c->fan,
+                           &c->tree, c->shell, r->n_shell, c->err));
   VG_TRY(vg_nest_shells(r->shell, r->n_shell, &c->s, &c->tree, c->shell,
                         c->err));
   VG_TRY(vg_side_shells(r->shell, c->shell_state, r->n_shell, c->o->external,

@@ -56,7 +56,8 @@ struct vg_surface_report {
   size_t n_flipped;             /* triangles turned by the repair */
   size_t n_removed_point, n_removed_tri; /* removed by the repair */
   int turned_inside_out;        /* every closed shell was turned as a whole */
-  size_t n_shell;
+  size_t n_piece;               /* components connected by nodes */
+  size_t n_shell;               /* components connected by edges */
   struct vg_shell *shell;
   uint32_t *tri_shell;          /* [n_tri] */
   int is_closed;                /* no open or non-manifold edge */
@@ -86,7 +87,9 @@ struct vg_surface_check_options {
  * stray body is not ours to guess.
  *
  * Intersections: pairs of triangles with a point in common that is not on a
- * common node or edge; exact, touching counts, degenerate ones excepted.
+ * common node or edge; exact, touching counts, degenerate ones excepted. A
+ * node is common only to faces that hang together around it through edges of
+ * two faces: sheets that meet in a node or a non-manifold edge touch.
  * With cells in m, points that only cells use are not unused.
  *
  * @param m       changed only by the repair; untouched on failure
@@ -94,7 +97,7 @@ struct vg_surface_check_options {
  * O(n log n + intersections); memory about 500 bytes per triangle.
  * Returns VG_OK also when defects remain: look at report->n_defect.
  * VG_ERR_INPUT for a node or patch index out of range, VG_ERR_UNSUPPORTED
- * beyond 1.4e9 faces, VG_ERR_MEMORY. Threads: re-entrant. */
+ * beyond 1.4e9 triangles, VG_ERR_MEMORY. Threads: re-entrant. */
 vg_status vg_surface_check(struct vg_mesh *m,
                            const struct vg_surface_check_options *options,
                            struct vg_surface_report *report,

@@ -153,23 +153,26 @@ static int at_edge_meet(const double *const a[3], const double *const b[3])
 }
 
 int vg_triangles_meet(const double (*point)[3], const uint32_t a[3],
-                      const uint32_t b[3])
+                      const uint32_t b[3], const uint32_t fan_a[3],
+                      const uint32_t fan_b[3])
 {
   const double *p[3], *q[3];
-  int at = 0, n = 0, common_b = 0;
+  int common_a = 0, common_b = 0, n = 0;
 
-  /* Common nodes to the front, in the order of a. */
+  /* Common corners to the front, in the order of a. A node of both that is
+   * no common corner is a place where they touch. */
   for (int k = 0; k < 3; k++)
-    for (int l = 0; l < 3; l++)
-      if (a[k] == b[l]) {
-        p[n] = q[n] = point[a[k]];
-        n++;
-        at |= 1 << k;
-        common_b |= 1 << l;
-      }
+    for (int l = 0; l < 3; l++) {
+      if (a[k] != b[l]) continue;
+      if (fan_a[k] != fan_b[l]) return 1;
+      p[n] = q[n] = point[a[k]];
+      n++;
+      common_a |= 1 << k;
+      common_b |= 1 << l;
+    }
   if (n == 3) return 1;
   for (int k = 0, i = n, j = n; k < 3; k++) {
-    if (!(at >> k & 1)) p[i++] = point[a[k]];
+    if (!(common_a >> k & 1)) p[i++] = point[a[k]];
     if (!(common_b >> k & 1)) q[j++] = point[b[k]];
   }
   if (n == 2) return at_edge_meet(p, q);
@@ -181,6 +184,7 @@ int vg_triangles_meet(const double (*point)[3], const uint32_t a[3],
 struct search {
   struct vg_crossing *c;
   const struct vg_faces *s;
+  const uint32_t (*fan)[3];
   const uint32_t *shell;
   size_t cap;
 };
@@ -195,9 +199,10 @@ static vg_status check_pair(void *context, uint32_t f, uint32_t g)
   struct search *x = context;
   struct vg_crossing *c = x->c;
 
-  if (!vg_triangles_meet(x->s->point, x->s->node[f], x->s->node[g]))
+  if (vg_faces_source(x->s, f) == vg_faces_source(x->s, g)
+      || !vg_triangles_meet(x->s->point, x->s->node[f], x->s->node[g],
+                            x->fan[f], x->fan[g]))
     return VG_OK;
-  if (vg_faces_source(x->s, f) == vg_faces_source(x->s, g)) return VG_OK;
   c->n_pair++;
   note_partner(c, f, g);
   note_partner(c, g, f);
@@ -223,10 +228,11 @@ static int compare_pair(const void *a, const void *b)
 }
 
 vg_status vg_find_crossings(struct vg_crossing *c, const struct vg_faces *s,
-                            const struct vg_tree *t, const uint32_t *shell,
-                            size_t n_shell, struct vg_error *err)
+                            const uint32_t (*fan)[3], const struct vg_tree *t,
+                            const uint32_t *shell, size_t n_shell,
+                            struct vg_error *err)
 {
-  struct search x = { c, s, shell, 0 };
+  struct search x = { c, s, fan, shell, 0 };
   vg_status st = VG_OK;
 
   c->partner = vg_alloc(s->n, sizeof *c->partner);

@@ -81,22 +81,87 @@ static uint32_t root_of(uint32_t *up, uint32_t i)
   return i;
 }
 
+/* The lower number stays the root. */
+static void join(uint32_t *up, uint32_t a, uint32_t b)
+{
+  a = root_of(up, a);
+  b = root_of(up, b);
+  if (a < b) up[b] = a;
+  else up[a] = b;
+}
+
+static uint32_t *each_alone(size_t n)
+{
+  uint32_t *up = vg_alloc(n, sizeof *up);
+
+  for (size_t i = 0; up && i < n; i++) up[i] = (uint32_t)i;
+  return up;
+}
+
+static uint32_t next_corner(uint32_t h)
+{
+  return h % 3 == 2 ? h - 2 : h + 1;
+}
+
+vg_status vg_label_fans(const struct vg_faces *s, const struct vg_edges *e,
+                        const uint8_t *flip, uint32_t (**fan)[3],
+                        struct vg_error *err)
+{
+  uint32_t *up = each_alone(3 * s->n);
+
+  if (!up) return vg_fail_memory(err, "the fans of the surface");
+  for (size_t i = 0; i < e->n; i++) {
+    uint32_t g, h;
+    int same_way;
+
+    if (e->start[i + 1] - e->start[i] != 2) continue;
+    g = e->half[e->start[i]];
+    h = e->half[e->start[i] + 1];
+    same_way = vg_edges_disagree(e, s, i);
+    if (same_way ^ flip[g / 3] ^ flip[h / 3]) continue;
+    join(up, g, same_way ? h : next_corner(h));
+    join(up, next_corner(g), same_way ? next_corner(h) : h);
+  }
+  for (uint32_t i = 0; i < 3 * s->n; i++) up[i] = root_of(up, i);
+  *fan = (uint32_t (*)[3])up;
+  return VG_OK;
+}
+
+vg_status vg_count_pieces(const struct vg_faces *s, size_t *n_piece,
+                          struct vg_error *err)
+{
+  uint32_t *up = each_alone(s->n_point);
+  uint8_t *used = vg_calloc(s->n_point, 1);
+
+  if (!up || !used) {
+    free(up);
+    free(used);
+    return vg_fail_memory(err, "the pieces of the surface");
+  }
+  for (size_t f = 0; f < s->n; f++) {
+    const uint32_t *n = s->node[f];
+
+    join(up, n[0], n[1]);
+    join(up, n[0], n[2]);
+    used[n[0]] = used[n[1]] = used[n[2]] = 1;
+  }
+  *n_piece = 0;
+  for (size_t p = 0; p < s->n_point; p++) *n_piece += used[p] && up[p] == p;
+  free(up);
+  free(used);
+  return VG_OK;
+}
+
 vg_status vg_label_shells(const struct vg_faces *s, const struct vg_edges *e,
                           uint32_t *shell, size_t *n_shell,
                           struct vg_error *err)
 {
-  uint32_t *up = vg_alloc(s->n, sizeof *up), n = 0;
+  uint32_t *up = each_alone(s->n), n = 0;
 
   if (!up) return vg_fail_memory(err, "the shells of the surface");
-  for (size_t f = 0; f < s->n; f++) up[f] = (uint32_t)f;
   for (size_t i = 0; i < e->n; i++)
-    for (uint32_t k = e->start[i] + 1; k < e->start[i + 1]; k++) {
-      uint32_t a = root_of(up, e->half[k - 1] / 3);
-      uint32_t b = root_of(up, e->half[k] / 3);
-
-      if (a < b) up[b] = a;
-      else up[a] = b;
-    }
+    for (uint32_t k = e->start[i] + 1; k < e->start[i + 1]; k++)
+      join(up, e->half[k - 1] / 3, e->half[k] / 3);
   for (size_t f = 0; f < s->n; f++) { /* a root is the lowest of its shell */
     uint32_t r = root_of(up, (uint32_t)f);
 

@@ -93,6 +93,19 @@ int vg_edges_disagree(const struct vg_edges *e, const struct vg_faces *s,
 vg_status vg_orient_faces(const struct vg_faces *s, const struct vg_edges *e,
                           uint8_t *flip, struct vg_error *err);
 
+/** (*fan)[f][k]: corners with the same number belong to faces that hang
+ * together around their node, through edges of two faces that agree once
+ * flip[] is applied. A node of a clean surface has one fan; where a node or
+ * an edge joins several sheets, each has its own. The caller frees it. O(n).
+ */
+vg_status vg_label_fans(const struct vg_faces *s, const struct vg_edges *e,
+                        const uint8_t *flip, uint32_t (**fan)[3],
+                        struct vg_error *err);
+
+/** Number of components connected by nodes. O(n). */
+vg_status vg_count_pieces(const struct vg_faces *s, size_t *n_piece,
+                          struct vg_error *err);
+
 /** Number the edge-connected components by their lowest face: shell[f],
  * UINT32_MAX for collapsed faces. O(n). */
 vg_status vg_label_shells(const struct vg_faces *s, const struct vg_edges *e,
@@ -136,9 +149,11 @@ vg_status vg_tree_ray(const struct vg_tree *t, const double p[3],
 /* surface_intersect.c -----------------------------------------------------*/
 
 /** Whether triangles a and b (nodes into point[], none degenerate) have a
- * point in common besides common nodes and edges. Exact. Same nodes: yes. */
+ * point in common besides common corners and the edges between them; corners
+ * are common when their fans are the same number. Exact. */
 int vg_triangles_meet(const double (*point)[3], const uint32_t a[3],
-                      const uint32_t b[3]);
+                      const uint32_t b[3], const uint32_t fan_a[3],
+                      const uint32_t fan_b[3]);
 
 struct vg_crossing {
   size_t n_pair;
@@ -150,8 +165,9 @@ struct vg_crossing {
 #define VG_CROSSING_INIT { 0 }
 
 vg_status vg_find_crossings(struct vg_crossing *c, const struct vg_faces *s,
-                            const struct vg_tree *t, const uint32_t *shell,
-                            size_t n_shell, struct vg_error *err);
+                            const uint32_t (*fan)[3], const struct vg_tree *t,
+                            const uint32_t *shell, size_t n_shell,
+                            struct vg_error *err);
 
 void vg_crossing_release(struct vg_crossing *c);
 

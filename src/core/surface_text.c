@@ -79,8 +79,8 @@ static const char *remedy(const struct vg_defect *d)
     return "two triangles have the same points; remove one, or both if they "
            "are a wall without thickness";
   case VG_DEFECT_INTERSECTION:
-    return "these faces cross or overlap; unite the bodies or move the "
-           "surface apart there";
+    return "these faces cross, overlap or touch; unite the bodies or "
+           "move the surface apart there";
   case VG_DEFECT_SHELL:
     return shell_text(d);
   case VG_DEFECT_NO_BC:
