@@ -94,28 +94,27 @@ static vg_status write_vtu(const char *path, const struct vg_mesh *m,
   return vg_vtu_write(path, m, NULL, 0, err);
 }
 
-#define UGRID(name) { name, 1, vg_ugrid_read, vg_ugrid_write }
+#define UGRID(name) { name, vg_ugrid_read, vg_ugrid_write }
 
 static const struct format {
   const char *suffix;
-  int is_input;       /* a project's surface may have it */
   reader read;
   writer write;
 } formats[] = {
-  { "stl", 1, read_stl, vg_stl_write },
-  { "tri", 1, read_tri, vg_tri_write },
-  { "triq", 1, read_tri, NULL },
-  { "obj", 1, read_obj, vg_obj_write },
-  { "mesh", 1, read_medit, vg_medit_write },
-  { "meshb", 1, read_medit, vg_medit_write },
+  { "stl", read_stl, vg_stl_write },
+  { "tri", read_tri, vg_tri_write },
+  { "triq", read_tri, NULL },
+  { "obj", read_obj, vg_obj_write },
+  { "mesh", read_medit, vg_medit_write },
+  { "meshb", read_medit, vg_medit_write },
   UGRID("b8.ugrid"), UGRID("lb8.ugrid"), UGRID("b4.ugrid"),
   UGRID("lb4.ugrid"), UGRID("r8.ugrid"), UGRID("lr8.ugrid"),
   UGRID("r4.ugrid"), UGRID("lr4.ugrid"), UGRID("b8l.ugrid"),
   UGRID("lb8l.ugrid"), UGRID("b8.ugrid64"), UGRID("lb8.ugrid64"),
   UGRID("ugrid"),
-  { "cogsg", 0, read_cogsg, write_cogsg },
-  { "front", 0, read_front, NULL },
-  { "vtu", 0, NULL, write_vtu },
+  { "cogsg", read_cogsg, write_cogsg },
+  { "front", read_front, NULL },
+  { "vtu", NULL, write_vtu },
 };
 #define N_FORMAT (sizeof formats / sizeof formats[0])
 
