@@ -10,29 +10,41 @@
  * lattice of side 1 is (8 sqrt(3)/2 + 6) / 14 = 0.923. */
 static const double lattice = 1.083;
 /* Least distance between points over the spacing of the later one. */
-static const double exclusion = 0.75;
+static const double exclusion = 0.66;
+/* The same between points of the lattice and others, where it is level. */
+static const double exclusion_level = 0.72;
 /* Height of the apex over a surface face: regular tetrahedron. */
 static const double apex = 0.8165;
 /* Spacing may change by this much per unit of length; points of the spatial
  * hash are looked for on the levels that this allows. */
 static const double slope = 0.1;
 
-enum { N_BUCKET = 8192, BUCKET_ZERO = 4096, NEAR_MAX = 2048 };
+/* A field that changes less than this over one edge counts as level. */
+static const double level_within = 1e-3;
 
-struct grid_slot { uint64_t key; uint32_t head, used; };
+enum { N_BUCKET = 8192, BUCKET_ZERO = 4096, NEAR_MAX = 2048,
+       PAGE_POINTS = 6 };
+
+struct grid_slot { uint64_t key; uint32_t head; };
+struct grid_page {           /* some points of a cell, from its corner */
+  uint32_t next, n;
+  float x[3][PAGE_POINTS];
+};
 
 struct placer {
   const struct vg_tets *t;
   const struct vg_sizing *sizing;
   const struct vg_region *region;
-  size_t n, cap, cap_h, cap_cell, cap_next, cap_queue, limit;
+  size_t n, cap, cap_h, cap_cell, cap_queue, limit;
   double (*x)[3];            /* surface points first */
   float *h;
   uint32_t *cell;            /* cell of t that holds the point */
-  uint32_t *next;            /* next point in the same grid cell */
   uint32_t *queue;           /* next item in the same bucket */
   size_t n_slot, n_used;     /* grid: open addressing, n_slot a power of 2 */
   struct grid_slot *slot;
+  size_t n_page, cap_page;
+  struct grid_page *page;
+  int level_lo, level_hi;    /* levels that the field can ask for */
   size_t n_face;
   uint32_t *face;            /* links 4 * cell + face of the surface */
   uint32_t first[N_BUCKET], last[N_BUCKET];
@@ -44,12 +56,12 @@ struct placer {
 
 /* --- spatial hash ------------------------------------------------------- */
 
-/* Level k has cells of side 2^k, between 0.9 and 1.8 of the spacing. */
+/* Level k has cells of side 2^k, between 1.1 and 2.2 of the spacing. */
 static int level_of(double h)
 {
   int e;
 
-  frexp(1.8 * h, &e);
+  frexp(2.2 * h, &e);
   return e - 1;
 }
 
@@ -65,60 +77,120 @@ static size_t grid_find(const struct placer *p, uint64_t key)
   uint64_t mix = (key ^ key >> 31) * 0x9e3779b97f4a7c15u;
   size_t at = (mix ^ mix >> 29) * 0xbf58476d1ce4e5b9u >> 32 & (p->n_slot - 1);
 
-  while (p->slot[at].used && p->slot[at].key != key)
+  while (p->slot[at].head != VG_NONE && p->slot[at].key != key)
     at = (at + 1) & (p->n_slot - 1);
   return at;
 }
 
 static int grid_resize(struct placer *p, size_t size)
 {
-  struct grid_slot *old = p->slot, *slot = vg_calloc(size, sizeof *slot);
+  struct grid_slot *old = p->slot, *slot = vg_alloc(size, sizeof *slot);
   size_t n = p->n_slot;
 
   if (!slot) return -1;
+  memset(slot, 0xff, size * sizeof *slot);
   p->slot = slot;
   p->n_slot = size;
   for (size_t i = 0; i < n; i++)
-    if (old[i].used) p->slot[grid_find(p, old[i].key)] = old[i];
+    if (old[i].head != VG_NONE) p->slot[grid_find(p, old[i].key)] = old[i];
   free(old);
   return 0;
+}
+
+static uint32_t grid_page(struct placer *p, uint32_t next)
+{
+  if (vg_reserve(&p->page, &p->cap_page, p->n_page + 1, sizeof *p->page))
+    return VG_NONE;
+  p->page[p->n_page].next = next;
+  p->page[p->n_page].n = 0;
+  return (uint32_t)p->n_page++;
 }
 
 static int grid_add(struct placer *p, uint32_t point)
 {
   int level = level_of(p->h[point]);
-  double inverse = ldexp(1, -level);
+  double inverse = ldexp(1, -level), side = ldexp(1, level);
   int64_t i[3];
+  struct grid_page *page;
   size_t at;
 
   if (2 * p->n_used >= p->n_slot && grid_resize(p, 2 * p->n_slot)) return -1;
   for (int k = 0; k < 3; k++)
     i[k] = (int64_t)floor((p->x[point][k] - p->lo[k]) * inverse);
   at = grid_find(p, grid_key(level, i));
-  if (!p->slot[at].used) {
-    p->slot[at].used = 1;
+  if (p->slot[at].head == VG_NONE) {
     p->slot[at].key = grid_key(level, i);
-    p->slot[at].head = VG_NONE;
     p->n_used++;
   }
-  p->next[point] = p->slot[at].head;
-  p->slot[at].head = point;
+  if (p->slot[at].head == VG_NONE ||
+      p->page[p->slot[at].head].n == PAGE_POINTS) {
+    uint32_t fresh = grid_page(p, p->slot[at].head);
+
+    if (fresh == VG_NONE) return -1;
+    p->slot[at].head = fresh;
+  }
+  page = &p->page[p->slot[at].head];
+  for (int k = 0; k < 3; k++)
+    page->x[k][page->n] =
+        (float)(p->x[point][k] - p->lo[k] - side * (double)i[k]);
+  page->n++;
   return 0;
 }
 
-static void gather_cell(struct placer *p, uint32_t point, const double c[3],
+/* The points of one grid cell; d: its corner relative to the centre. */
+static void gather_cell(struct placer *p, uint32_t at, const double d[3],
                         double r2)
 {
-  for (; point != VG_NONE; point = p->next[point]) {
-    double d[3], d2 = 0;
+  float x = (float)d[0], y = (float)d[1], z = (float)d[2], most = (float)r2;
 
-    for (int k = 0; k < 3; k++) {
-      d[k] = p->x[point][k] - c[k];
-      d2 += d[k] * d[k];
+  for (; at != VG_NONE; at = p->page[at].next) {
+    const struct grid_page *page = &p->page[at];
+
+    for (uint32_t k = 0; k < page->n; k++) {
+      float u = page->x[0][k] + x, v = page->x[1][k] + y;
+      float w = page->x[2][k] + z;
+
+      if (u * u + v * v + w * w > most || p->n_near == NEAR_MAX) continue;
+      p->near[0][p->n_near] = u;
+      p->near[1][p->n_near] = v;
+      p->near[2][p->n_near] = w;
+      p->n_near++;
     }
-    if (d2 > r2 || p->n_near == NEAR_MAX) continue;
-    for (int k = 0; k < 3; k++) p->near[k][p->n_near] = (float)d[k];
-    p->n_near++;
+  }
+}
+
+/* Distance along one axis from the centre to a cell that starts at d. */
+static double gap(double d, double side)
+{
+  return d > 0 ? d : d + side < 0 ? -(d + side) : 0;
+}
+
+static void gather_level(struct placer *p, const double c[3], double r,
+                         int level)
+{
+  double inverse = ldexp(1, -level), side = ldexp(1, level), d[3], g[3];
+  int64_t lo[3], hi[3], i[3];
+
+  for (int k = 0; k < 3; k++) {
+    lo[k] = (int64_t)floor((c[k] - r - p->lo[k]) * inverse);
+    hi[k] = (int64_t)floor((c[k] + r - p->lo[k]) * inverse);
+  }
+  for (i[0] = lo[0]; i[0] <= hi[0]; i[0]++) {
+    d[0] = p->lo[0] + side * (double)i[0] - c[0];
+    g[0] = gap(d[0], side);
+    for (i[1] = lo[1]; i[1] <= hi[1]; i[1]++) {
+      d[1] = p->lo[1] + side * (double)i[1] - c[1];
+      g[1] = gap(d[1], side);
+      for (i[2] = lo[2]; i[2] <= hi[2]; i[2]++) {
+        size_t at;
+
+        d[2] = p->lo[2] + side * (double)i[2] - c[2];
+        g[2] = gap(d[2], side);
+        if (g[0] * g[0] + g[1] * g[1] + g[2] * g[2] > r * r) continue;
+        at = grid_find(p, grid_key(level, i));
+        gather_cell(p, p->slot[at].head, d, r * r);
+      }
+    }
   }
 }
 
@@ -129,22 +201,9 @@ static void gather(struct placer *p, const double c[3], double h, double r)
 
   p->n_near = 0;
   for (int level = level_of(h - change); level <= level_of(h + change);
-       level++) {
-    double inverse = ldexp(1, -level);
-    int64_t lo[3], hi[3], i[3];
-
-    for (int k = 0; k < 3; k++) {
-      lo[k] = (int64_t)floor((c[k] - r - p->lo[k]) * inverse);
-      hi[k] = (int64_t)floor((c[k] + r - p->lo[k]) * inverse);
-    }
-    for (i[0] = lo[0]; i[0] <= hi[0]; i[0]++)
-      for (i[1] = lo[1]; i[1] <= hi[1]; i[1]++)
-        for (i[2] = lo[2]; i[2] <= hi[2]; i[2]++) {
-          size_t at = grid_find(p, grid_key(level, i));
-
-          if (p->slot[at].used) gather_cell(p, p->slot[at].head, c, r * r);
-        }
-  }
+       level++)
+    if (level >= p->level_lo && level <= p->level_hi)
+      gather_level(p, c, r, level);
 }
 
 /* Is any gathered point nearer than r to c + d? */
@@ -208,7 +267,6 @@ static int reserve(struct placer *p, size_t n)
   return vg_reserve(&p->x, &p->cap, n, sizeof *p->x) ||
          vg_reserve(&p->h, &p->cap_h, n, sizeof *p->h) ||
          vg_reserve(&p->cell, &p->cap_cell, n, sizeof *p->cell) ||
-         vg_reserve(&p->next, &p->cap_next, n, sizeof *p->next) ||
          vg_reserve(&p->queue, &p->cap_queue, p->n_face + n,
                     sizeof *p->queue);
 }
@@ -255,25 +313,61 @@ static int propose(struct placer *p, const double c[3], const double unit[3],
   return stand(p, c, d, there, start);
 }
 
-static const double pattern[14][3] = {
+static const double pattern[8][3] = {
   {.5, .5, .5}, {-.5, -.5, -.5}, {.5, .5, -.5}, {-.5, -.5, .5},
-  {.5, -.5, .5}, {-.5, .5, -.5}, {-.5, .5, .5}, {.5, -.5, -.5},
-  {1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+  {.5, -.5, .5}, {-.5, .5, -.5}, {-.5, .5, .5}, {.5, -.5, -.5}};
+
+/* Where the field is level, neighbours are points of one body-centred cubic
+ * lattice through the origin of the front: fronts that started anywhere meet
+ * without a fault. 1 when some neighbour lies where the field is not level. */
+static int grow_level(struct placer *p, const double c[3], double h,
+                      uint32_t start, int *bad)
+{
+  double a = lattice * h, reach2 = 1.21 * a * a;
+  int64_t base[3];
+  int graded = 0;
+
+  for (int k = 0; k < 3; k++)
+    base[k] = (int64_t)floor((c[k] - p->lo[k]) / a * 2 + 0.5);
+  for (int64_t i = -2; i <= 2; i++)
+    for (int64_t j = -2; j <= 2; j++)
+      for (int64_t k = -2; k <= 2; k++) {
+        int64_t at[3] = {base[0] + i, base[1] + j, base[2] + k};
+        double d[3], x[3], there, d2 = 0;
+
+        if ((at[0] ^ at[1]) & 1 || (at[0] ^ at[2]) & 1) continue;
+        for (int m = 0; m < 3; m++) {
+          x[m] = p->lo[m] + 0.5 * a * (double)at[m];
+          d[m] = x[m] - c[m];
+          d2 += d[m] * d[m];
+        }
+        if (d2 > reach2 || crowded(p, d, exclusion_level * h)) continue;
+        there = vg_sizing_at(p->sizing, x);
+        if (fabs(there - h) > level_within * h) {
+          graded = 1;
+          continue;
+        }
+        if (stand(p, c, d, there, start)) *bad = 1;
+      }
+  return graded;
+}
 
 static int grow_point(struct placer *p, uint32_t point)
 {
   double c[3], h = p->h[point];
   uint32_t start = p->cell[point];
+  int bad = 0;
 
   memcpy(c, p->x[point], sizeof c);
-  gather(p, c, h, (lattice + exclusion) * 1.1 * h);
-  for (int i = 0; i < 14; i++) {
+  gather(p, c, h, (lattice + exclusion_level) * 1.05 * h);
+  if (!grow_level(p, c, h, start, &bad)) return bad;
+  for (int i = 0; i < 8 && !bad; i++) {
     double unit[3];
 
     for (int k = 0; k < 3; k++) unit[k] = lattice * pattern[i][k];
-    if (propose(p, c, unit, h, start)) return -1;
+    bad = propose(p, c, unit, h, start);
   }
-  return 0;
+  return bad;
 }
 
 static int grow_face(struct placer *p, uint32_t link)
@@ -358,7 +452,7 @@ static void release(struct placer *p)
   free(p->x);
   free(p->h);
   free(p->cell);
-  free(p->next);
+  free(p->page);
   free(p->queue);
   free(p->slot);
   free(p->face);
@@ -370,12 +464,16 @@ static struct placer *start(const struct vg_tets *t,
                             const struct vg_region *region)
 {
   struct placer *p = vg_calloc(1, sizeof *p);
+  double lo, hi;
 
   if (!p) return NULL;
   p->t = t;
   p->sizing = sizing;
   p->region = region;
   p->lowest = N_BUCKET;
+  vg_sizing_range(sizing, &lo, &hi);
+  p->level_lo = level_of(lo) - 1;
+  p->level_hi = level_of(hi) + 1;
   memset(p->first, 0xff, sizeof p->first);
   for (int k = 0; k < 3; k++) p->lo[k] = t->n_point ? t->x[0][k] : 0;
   if (grid_resize(p, 1 << 16) || start_faces(p) || push_faces(p) ||
