@@ -9,7 +9,6 @@
 #include "cli/input.h"
 #include "cli/report.h"
 #include "io/format.h"
-#include "io/mapbc.h"
 
 struct arguments {
   const char *file, *deck, *defects;
@@ -87,25 +86,6 @@ done:
   return st;
 }
 
-/* Conditions from the .mapbc beside the file, where there is one. */
-static vg_status conditions(const struct arguments *a, struct vg_mesh *m,
-                            struct vg_error *err)
-{
-  struct vg_input_files files = { 0 };
-  struct vg_mapbc bc = VG_MAPBC_INIT;
-  struct vg_problem p = VG_PROBLEM_INIT;
-  vg_status st = vg_input_find(a->file, "", &files, err);
-
-  p.files = files;
-  if (st >= 0 && *files.mapbc) {
-    st = vg_mapbc_read(files.mapbc, &bc, err);
-    if (st >= 0) st = vg_mapbc_apply(&bc, m, NULL, err);
-  }
-  vg_mapbc_release(&bc);
-  vg_problem_release(&p);
-  return st;
-}
-
 static vg_status write_defects(const struct arguments *a,
                                const struct vg_mesh *m,
                                const struct vg_surface_report *r,
@@ -127,7 +107,6 @@ static vg_status check_surface(const struct arguments *a, struct vg_mesh *m,
   int external = -1;
   vg_status st;
 
-  VG_TRY(conditions(a, m, err));
   VG_TRY(vg_surface_examine(m, 1, &external, &r, err));
   if (a->json) {
     print_json(json_pack("{s:s s:b s:o s:o}", "file", a->file, "ok",
@@ -177,7 +156,7 @@ int vg_cmd_check(int argc, char **argv)
   vg_cli_parse(&argp, argc, argv, &a);
   vg_display_init(&show, a.quiet);
   vg_display_update(&show, "read", 0, 0);
-  st = vg_format_read(a.file, &m, &err);
+  st = vg_mesh_read(a.file, &m, NULL, &err);
   if (st >= 0) {
     vg_display_update(&show, "check", 0, 0);
     vg_display_clear(&show);

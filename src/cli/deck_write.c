@@ -15,24 +15,27 @@ static void pad(struct vg_output *out, const char *text, size_t width)
   for (size_t n = strlen(text); n < width; n++) vg_output_text(out, " ");
 }
 
-static void default_text(const struct vg_param *p, const void *base,
-                         char *text, size_t size)
+/* "[length, default 0]" or "[length, required]". */
+static void value_note(const struct vg_param *p, const void *defaults,
+                       char *text, size_t size)
 {
-  if (p->required) snprintf(text, size, "none");
-  else vg_param_format(p, base, text, size);
+  char value[CELL_SIZE] = "";
+
+  if (!p->required) vg_param_format(p, defaults, value, sizeof value);
+  snprintf(text, size, "[%s%s%s%s]", p->unit, *p->unit ? ", " : "",
+           p->required ? "required" : "default ", value);
 }
 
 /* "# name     help [unit; default]", continued under the help. */
 static void explain_param(struct vg_output *out, const struct vg_param *p,
                           const void *defaults)
 {
-  char text[1024], value[CELL_SIZE];
+  char text[1024], note[CELL_SIZE + 64];
   size_t used = 2 + 15;
   char *save = NULL;
 
-  default_text(p, defaults, value, sizeof value);
-  snprintf(text, sizeof text, "%s [%s%sdefault %s]", p->help, p->unit,
-           *p->unit ? ", " : "", value);
+  value_note(p, defaults, note, sizeof note);
+  snprintf(text, sizeof text, "%s %s", p->help, note);
   vg_output_text(out, "# ");
   pad(out, p->name, 15);
   for (char *w = strtok_r(text, " ", &save); w;
@@ -133,20 +136,25 @@ static void write_table(struct vg_output *out, const struct vg_settings *s,
       explain_param(out, &t->column[c], &defaults);
   }
   if (!n) {
-    if (explain && kind == VG_TABLE_SOURCES)
-      vg_output_text(out, "#\n# sources\n# kind  x0  y0  z0  r0    h0\n"
-                          "# point  0   0   0   0  0.01\n\n");
+    if (explain)
+      vg_output_text(out, kind == VG_TABLE_SOURCES
+        ? "#\n# sources\n# kind   x0  y0  z0  r0  h0\n"
+          "# point  0   0   0   0   0.01\n\n"
+        : "#\n# patches\n# id  bc  name\n# 1   4   wing\n\n");
     return;
   }
   column_widths(t, kind, s, &defaults, width);
   vg_output_format(out, "%s\n", t->name);
   for (size_t i = 0; i <= n; i++) {
+    size_t gap = 0;
+
     for (size_t c = 0; c < t->n_column; c++) {
       if (!width[c]) continue;
       if (i) vg_param_format(&t->column[c], vg_settings_row(s, kind, i - 1),
                              value, sizeof value);
-      pad(out, i ? value : t->column[c].name, width[c]);
-      vg_output_text(out, "  ");
+      pad(out, "", gap);
+      vg_output_text(out, i ? value : t->column[c].name);
+      gap = width[c] + 2 - strlen(i ? value : t->column[c].name);
     }
     vg_output_text(out, "\n");
   }

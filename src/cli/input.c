@@ -10,7 +10,6 @@
 #include "cli/deck.h"
 #include "io/format.h"
 #include "io/mapbc.h"
-#include "io/ugrid.h"
 #include "io/vgrid.h"
 
 void vg_note(struct vg_notes *notes, const char *format, ...)
@@ -68,16 +67,8 @@ static char *beside(const char *stem, const char *suffix)
   return path;
 }
 
-/* A .ugrid or Medit file beside may be the volume mesh of an earlier run. */
-static int holds_cells(const char *path)
-{
-  uint64_t count[7];
-
-  if (vg_ugrid_peek(path, count, NULL) < 0) return 0;
-  return count[3] + count[4] + count[5] + count[6] > 0;
-}
-
-/* The surface file of a stem: the only one that holds no cells. */
+/* The surface file of a stem: the only one that holds no cells, for files with
+ * cells beside it are meshes of earlier runs. */
 static vg_status find_surface(const char *stem, char **out,
                               struct vg_error *err)
 {
@@ -90,7 +81,7 @@ static vg_status find_surface(const char *stem, char **out,
 
     if (!path) {
       st = vg_fail_memory(err, "a path");
-    } else if (!*path || holds_cells(path)) {
+    } else if (!*path || vg_format_holds_cells(path)) {
       free(path);
     } else if (found) {
       st = vg_fail(err, VG_ERR_INPUT, "both %s and %s may be the surface; "

@@ -70,7 +70,7 @@ static void show(struct vg_display *d, size_t done, size_t expected,
   char count[32], of[32], rate_text[32], eta[32], line[160];
   double elapsed = now - d->stage_start;
   double rate = elapsed > 0 ? (double)done / elapsed : 0;
-  int n = snprintf(line, sizeof line, "%-12s", d->stage);
+  int n = snprintf(line, sizeof line, "%-24s", d->stage);
 
   if (done || expected)
     n += snprintf(line + n, sizeof line - (size_t)n, " %12s",

@@ -152,8 +152,8 @@ static const struct vg_table tables[VG_TABLE_N] = {
   [VG_TABLE_PATCHES] = { "patches", "Names and boundary conditions; they win "
     "over the .mapbc file.", patch_columns, COUNT(patch_columns),
     sizeof (struct vg_patch_row) },
-  [VG_TABLE_SOURCES] = { "sources", "Spacing in the volume. Columns that are "
-    "left out, and -, take their defaults.", source_columns,
+  [VG_TABLE_SOURCES] = { "sources", "Spacing in the volume. - or no "
+    "column: the default.", source_columns,
     COUNT(source_columns), sizeof (struct vg_source) },
 };
 
