@@ -25,7 +25,7 @@ static const double level_within = 1e-3;
 enum { N_BUCKET = 8192, BUCKET_ZERO = 4096, NEAR_MAX = 2048,
        PAGE_POINTS = 6 };
 
-struct grid_slot { uint64_t key; uint32_t head; };
+struct grid_slot { uint64_t key; uint32_t block; };
 struct grid_page {           /* some points of a cell, from its corner */
   uint32_t next, n;
   float x[3][PAGE_POINTS];
@@ -40,8 +40,10 @@ struct placer {
   float *h;
   uint32_t *cell;            /* cell of t that holds the point */
   uint32_t *queue;           /* next item in the same bucket */
-  size_t n_slot, n_used;     /* grid: open addressing, n_slot a power of 2 */
+  size_t n_slot;             /* grid: open addressing, a power of 2 */
   struct grid_slot *slot;
+  size_t n_block, cap_block;
+  uint32_t (*block)[64];
   size_t n_page, cap_page;
   struct grid_page *page;
   int level_lo, level_hi;    /* levels that the field can ask for */
@@ -65,11 +67,19 @@ static int level_of(double h)
   return e - 1;
 }
 
-static uint64_t grid_key(int level, const int64_t i[3])
+/* Cells are kept in blocks of 4 x 4 x 4, which share a hash entry and lie
+ * together in memory: the surroundings of a point touch few of them. */
+static uint64_t block_key(int level, const int64_t i[3])
 {
   return ((uint64_t)(level + 512) << 54) ^
-         ((uint64_t)i[0] & 0x3ffff) << 36 ^
-         ((uint64_t)i[1] & 0x3ffff) << 18 ^ ((uint64_t)i[2] & 0x3ffff);
+         ((uint64_t)(i[0] >> 2) & 0x3ffff) << 36 ^
+         ((uint64_t)(i[1] >> 2) & 0x3ffff) << 18 ^
+         ((uint64_t)(i[2] >> 2) & 0x3ffff);
+}
+
+static uint32_t cell_in_block(const int64_t i[3])
+{
+  return (uint32_t)((i[0] & 3) << 4 | (i[1] & 3) << 2 | (i[2] & 3));
 }
 
 static size_t grid_find(const struct placer *p, uint64_t key)
@@ -77,7 +87,7 @@ static size_t grid_find(const struct placer *p, uint64_t key)
   uint64_t mix = (key ^ key >> 31) * 0x9e3779b97f4a7c15u;
   size_t at = (mix ^ mix >> 29) * 0xbf58476d1ce4e5b9u >> 32 & (p->n_slot - 1);
 
-  while (p->slot[at].head != VG_NONE && p->slot[at].key != key)
+  while (p->slot[at].block != VG_NONE && p->slot[at].key != key)
     at = (at + 1) & (p->n_slot - 1);
   return at;
 }
@@ -92,9 +102,29 @@ static int grid_resize(struct placer *p, size_t size)
   p->slot = slot;
   p->n_slot = size;
   for (size_t i = 0; i < n; i++)
-    if (old[i].head != VG_NONE) p->slot[grid_find(p, old[i].key)] = old[i];
+    if (old[i].block != VG_NONE) p->slot[grid_find(p, old[i].key)] = old[i];
   free(old);
   return 0;
+}
+
+/* Head of the pages of cell i, made if need be; NULL: memory refused. */
+static uint32_t *grid_cell(struct placer *p, int level, const int64_t i[3])
+{
+  uint64_t key = block_key(level, i);
+  size_t at;
+
+  if (2 * p->n_block >= p->n_slot && grid_resize(p, 2 * p->n_slot))
+    return NULL;
+  at = grid_find(p, key);
+  if (p->slot[at].block == VG_NONE) {
+    if (vg_reserve(&p->block, &p->cap_block, p->n_block + 1,
+                   sizeof *p->block))
+      return NULL;
+    memset(p->block[p->n_block], 0xff, sizeof *p->block);
+    p->slot[at].key = key;
+    p->slot[at].block = (uint32_t)p->n_block++;
+  }
+  return &p->block[p->slot[at].block][cell_in_block(i)];
 }
 
 static uint32_t grid_page(struct placer *p, uint32_t next)
@@ -112,24 +142,19 @@ static int grid_add(struct placer *p, uint32_t point)
   double inverse = ldexp(1, -level), side = ldexp(1, level);
   int64_t i[3];
   struct grid_page *page;
-  size_t at;
+  uint32_t *head;
 
-  if (2 * p->n_used >= p->n_slot && grid_resize(p, 2 * p->n_slot)) return -1;
   for (int k = 0; k < 3; k++)
     i[k] = (int64_t)floor((p->x[point][k] - p->lo[k]) * inverse);
-  at = grid_find(p, grid_key(level, i));
-  if (p->slot[at].head == VG_NONE) {
-    p->slot[at].key = grid_key(level, i);
-    p->n_used++;
-  }
-  if (p->slot[at].head == VG_NONE ||
-      p->page[p->slot[at].head].n == PAGE_POINTS) {
-    uint32_t fresh = grid_page(p, p->slot[at].head);
+  head = grid_cell(p, level, i);
+  if (!head) return -1;
+  if (*head == VG_NONE || p->page[*head].n == PAGE_POINTS) {
+    uint32_t fresh = grid_page(p, *head);
 
     if (fresh == VG_NONE) return -1;
-    p->slot[at].head = fresh;
+    *head = fresh;
   }
-  page = &p->page[p->slot[at].head];
+  page = &p->page[*head];
   for (int k = 0; k < 3; k++)
     page->x[k][page->n] =
         (float)(p->x[point][k] - p->lo[k] - side * (double)i[k]);
@@ -170,6 +195,8 @@ static void gather_level(struct placer *p, const double c[3], double r,
 {
   double inverse = ldexp(1, -level), side = ldexp(1, level), d[3], g[3];
   int64_t lo[3], hi[3], i[3];
+  uint64_t key = UINT64_MAX;
+  uint32_t block = VG_NONE;
 
   for (int k = 0; k < 3; k++) {
     lo[k] = (int64_t)floor((c[k] - r - p->lo[k]) * inverse);
@@ -182,13 +209,15 @@ static void gather_level(struct placer *p, const double c[3], double r,
       d[1] = p->lo[1] + side * (double)i[1] - c[1];
       g[1] = gap(d[1], side);
       for (i[2] = lo[2]; i[2] <= hi[2]; i[2]++) {
-        size_t at;
-
         d[2] = p->lo[2] + side * (double)i[2] - c[2];
         g[2] = gap(d[2], side);
         if (g[0] * g[0] + g[1] * g[1] + g[2] * g[2] > r * r) continue;
-        at = grid_find(p, grid_key(level, i));
-        gather_cell(p, p->slot[at].head, d, r * r);
+        if (block_key(level, i) != key) {
+          key = block_key(level, i);
+          block = p->slot[grid_find(p, key)].block;
+        }
+        if (block != VG_NONE)
+          gather_cell(p, p->block[block][cell_in_block(i)], d, r * r);
       }
     }
   }
@@ -452,6 +481,7 @@ static void release(struct placer *p)
   free(p->x);
   free(p->h);
   free(p->cell);
+  free(p->block);
   free(p->page);
   free(p->queue);
   free(p->slot);
