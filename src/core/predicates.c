@@ -96,17 +96,27 @@ static inline struct dd dd_minor(struct dd a, struct dd b, struct dd c,
   return dd_sub(dd_mul(a, b), dd_mul(c, d));
 }
 
-/* h = e + f. Returns the length of h, at most m + n. h overlaps neither. */
+/* Is the next component of the merged e and f the one of e? */
+static inline int from_e(int i, int m, const double *e, int j, int n,
+                         const double *f)
+{
+  return j >= n || (i < m && fabs(e[i]) < fabs(f[j]));
+}
+
+/* h = e + f. Returns the length of h, at most m + n. h overlaps neither. The
+ * first component starts the sum instead of being added to 0: its error is
+ * not even looked at, so that the length holds when products overflowed and
+ * the components are infinite or NaN. */
 static int ex_sum(int m, const double *e, int n, const double *f, double *h)
 {
   int i = 0, j = 0, k = 0;
-  double q = 0, r;
+  double q, r;
 
+  if (m + n == 0) return 0;
+  q = from_e(i, m, e, j, n, f) ? e[i++] : f[j++];
   while (i < m || j < n) {
-    double g;
+    double g = from_e(i, m, e, j, n, f) ? e[i++] : f[j++];
 
-    if (j >= n || (i < m && fabs(e[i]) < fabs(f[j]))) g = e[i++];
-    else g = f[j++];
     two_sum(q, g, &q, &r);
     if (r != 0) h[k++] = r;
   }
