@@ -41,7 +41,7 @@ static int layout_fits(const struct vg_input *file, const struct layout *l)
   if (marker < 0 && marker > -8) return 0;
   if (vg_input_i32(&in, 2, head, "header", NULL) < 0 || head[1] < 0) return 0;
   full = 24 + l->tc_size + 16 * (int64_t)head[1];
-  return marker < 0 ? -marker < full : marker == full;
+  return marker < 0 ? marker > -full : marker == full;
 }
 
 static vg_status find_layout(const struct vg_input *in, struct layout *found,
