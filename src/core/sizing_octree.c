@@ -80,7 +80,8 @@ double vg_field_at(const struct vg_field *f, const double x[3],
   return combine(f, x, above, vg_source_at(&f->set, x));
 }
 
-/* Lower bound of the field within a cube. */
+/* Lower bound of the field within a cube; of VGRID's mean an estimate from
+ * its centre, which is all that a cube that resolves its sources needs. */
 static double field_floor(const struct vg_field *f, const double lo[3],
                           double side, uint32_t *hint)
 {
@@ -94,6 +95,11 @@ static double field_floor(const struct vg_field *f, const double lo[3],
     above = vg_near_above(f->near, lo, hi, above, SLOPPY_BOX, hint) *
             (1 - SLOPPY_BOX);
   source = vg_source_floor(&f->set, lo, hi);
+  if (f->set.n_mean) {
+    double mean = vg_source_mean(f->set.n_mean, f->set.mean, mid);
+
+    if (mean < source) source = mean;
+  }
   if (f->near && source < above) {
     double below = vg_near_below(f->near, mid, source, SLOPPY_POINT) -
                    0.8660254037844387 * side * f->slope;
@@ -210,19 +216,24 @@ static int wants_split(const struct build *b, struct cell *c, double side,
                        float test[7])
 {
   float h[8], low = INFINITY;
-  double lo[3];
+  double lo[3], hi[3];
 
   for (int k = 0; k < 7; k++) test[k] = NAN;
   if (side <= b->floor * (double)c->floor) return 0;
-  for (int k = 0; k < 3; k++) lo[k] = b->lo[k] + c->at[k] * b->unit;
+  for (int k = 0; k < 3; k++) {
+    lo[k] = b->lo[k] + c->at[k] * b->unit;
+    hi[k] = lo[k] + side;
+  }
   c->floor = (float)field_floor(b->f, lo, side, &c->hint);
   if (side <= b->floor * (double)c->floor) return 0;
-  if (b->f->h_max <= c->floor * (1 + TOLERANCE)) return 0;
+  if (!b->f->set.n_mean && b->f->h_max <= c->floor * (1 + TOLERANCE))
+    return 0;
   for (int i = 0; i < 8; i++) {
     h[i] = b->point[c->corner[i]].h;
     if (h[i] < low) low = h[i];
   }
   if (low > c->floor * (1 + 2 * TOLERANCE)) return 1;
+  if (!vg_source_resolved(&b->f->set, lo, hi, side)) return 1;
   return test_cell(b, c, side, h, test);
 }
 

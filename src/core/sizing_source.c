@@ -384,6 +384,30 @@ static void prepare_mean(const struct vg_sizing_options *o,
   m->h0 = 0.5 * (m->h0 + m->h1);
 }
 
+/* The mean varies next to a node over a fraction of the distance to the next
+ * source, next to a line over a fraction of its length. Quadratic, as is the
+ * use of the sources by then: every sample of the field costs all of them. */
+static void find_reach(struct vg_source_set *set)
+{
+  for (size_t i = 0; i < set->n_mean; i++) {
+    const struct vg_source *s = set->mean + i;
+    double d = INFINITY, t;
+
+    if (s->kind == VG_SOURCE_VGRID_LINE)
+      d = segment_distance(s->p0, s->p0, s->p1, &t);
+    else
+      for (size_t j = 0; j < set->n_mean; j++) {
+        const struct vg_source *o = set->mean + j;
+        int is_line = o->kind == VG_SOURCE_VGRID_LINE;
+
+        if (j == i) continue;
+        d = least(d, segment_distance(o->p0, is_line ? o->p1 : o->p0, s->p0,
+                                      &t));
+      }
+    set->reach[i] = 0.25 * d;
+  }
+}
+
 vg_status vg_source_prepare(const struct vg_sizing_options *options, size_t n,
                             const struct vg_source *source, int cones,
                             struct vg_source_set *set, struct vg_error *err)
@@ -391,7 +415,8 @@ vg_status vg_source_prepare(const struct vg_sizing_options *options, size_t n,
   if (!n) return VG_OK;
   set->bounded = vg_alloc(n, sizeof *set->bounded);
   set->mean = vg_alloc(n, sizeof *set->mean);
-  if (!set->bounded || !set->mean) {
+  set->reach = vg_alloc(n, sizeof *set->reach);
+  if (!set->bounded || !set->mean || !set->reach) {
     vg_source_release(set);
     return vg_fail_memory(err, "the sources");
   }
@@ -403,6 +428,7 @@ vg_status vg_source_prepare(const struct vg_sizing_options *options, size_t n,
   for (size_t i = 0; cones && i < n; i++)
     if (is_vgrid(source[i].kind))
       prepare_bounded(options, source + i, set->bounded + set->n_bounded++);
+  if (cones) find_reach(set);
   return VG_OK;
 }
 
@@ -410,6 +436,7 @@ void vg_source_release(struct vg_source_set *set)
 {
   free(set->bounded);
   free(set->mean);
+  free(set->reach);
   memset(set, 0, sizeof *set);
 }
 
@@ -455,6 +482,26 @@ double vg_source_floor(const struct vg_source_set *set, const double lo[3],
     h = least(h, bound);
   }
   return h;
+}
+
+int vg_source_resolved(const struct vg_source_set *set, const double lo[3],
+                       const double hi[3], double side)
+{
+  double mid[3], r2 = 0, t;
+
+  if (set->n_mean < 2) return 1; /* one node: constant; one line: bounded */
+  for (int k = 0; k < 3; k++) {
+    mid[k] = 0.5 * (lo[k] + hi[k]);
+    r2 += (hi[k] - mid[k]) * (hi[k] - mid[k]);
+  }
+  for (size_t i = 0; i < set->n_mean; i++) {
+    const struct vg_source *s = set->mean + i;
+    int is_line = s->kind == VG_SOURCE_VGRID_LINE;
+    double d = segment_distance(s->p0, is_line ? s->p1 : s->p0, mid, &t);
+
+    if (side > most(d - sqrt(r2), set->reach[i])) return 0;
+  }
+  return 1;
 }
 
 int vg_source_bounds(const struct vg_source_set *set, double lo[3],

@@ -22,6 +22,8 @@ struct vg_bounded {
 struct vg_source_set {
   struct vg_bounded *bounded; /* [n_bounded], the cones last */
   struct vg_source *mean;     /* [n_mean] scaled VGRID sources */
+  double *reach;              /* [n_mean] distance over which the mean varies
+                                 next to the source */
   size_t n_bounded, n_mean;
 };
 #define VG_SOURCE_SET_INIT { 0 }
@@ -50,6 +52,11 @@ double vg_source_at(const struct vg_source_set *set, const double x[3]);
 /** Lower bound of the bounded sources within the box lo..hi. */
 double vg_source_floor(const struct vg_source_set *set, const double lo[3],
                        const double hi[3]);
+
+/** Whether samples a distance `side` apart can show how the mean varies in
+ * the box lo..hi: 0 where one of its sources is too near. */
+int vg_source_resolved(const struct vg_source_set *set, const double lo[3],
+                       const double hi[3], double side);
 
 /** Box around the shapes of all sources; 0 if there are none. */
 int vg_source_bounds(const struct vg_source_set *set, double lo[3],
