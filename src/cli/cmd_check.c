@@ -103,11 +103,13 @@ static vg_status write_defects(const struct arguments *a,
 static vg_status check_surface(const struct arguments *a, struct vg_mesh *m,
                                struct vg_error *err)
 {
+  struct vg_surface_check_options o = VG_SURFACE_CHECK_OPTIONS_INIT;
   struct vg_surface_report r = VG_SURFACE_REPORT_INIT;
   int external = -1;
   vg_status st;
 
-  VG_TRY(vg_surface_examine(m, 1, &external, &r, err));
+  o.require_bc = vg_surface_has_conditions(m);
+  VG_TRY(vg_surface_examine(m, &o, &external, &r, err));
   if (a->json) {
     print_json(json_pack("{s:s s:b s:o s:o}", "file", a->file, "ok",
                          r.n_defect == 0, "size", vg_report_size_json(m),

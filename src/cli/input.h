@@ -30,6 +30,7 @@ struct vg_problem {
   struct vg_mesh surface;
   size_t n_welded, n_dropped;      /* by the weld */
   struct vg_surface_report check;
+  int require_bc;                  /* the input gives conditions */
   struct vg_domain_report domain;
   struct vg_notes notes;
 };
@@ -64,10 +65,15 @@ vg_status vg_problem_close(struct vg_problem *p, struct vg_display *show,
  *
  * @param external  in: 1, 0, or -1 to find out: a patch with a farfield
  *                  condition, normals that point inward, or shells inside
- *                  another one mean 0. out: 1 or 0 */
-vg_status vg_surface_examine(struct vg_mesh *m, int repair, int *external,
-                             struct vg_surface_report *r,
+ *                  another one mean 0. out: 1 or 0
+ * @param o         its `external` is set here */
+vg_status vg_surface_examine(struct vg_mesh *m,
+                             const struct vg_surface_check_options *o,
+                             int *external, struct vg_surface_report *r,
                              struct vg_error *err);
+
+/** 1 when a patch has a boundary condition: then all of them should. */
+int vg_surface_has_conditions(const struct vg_mesh *m);
 
 /** All faces with a defect, with the kind as a cell field, into a .vtu. */
 vg_status vg_write_defects(const char *path, const struct vg_mesh *m,

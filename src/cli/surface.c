@@ -46,27 +46,33 @@ static int looks_external(const struct vg_mesh *m)
   return signed_volume(m) > 0;
 }
 
-/* Bodies inside an outer shell: the surface is the whole domain. */
+/* Bodies inside an outer shell: the surface is the whole domain. Nesting
+ * means nothing where shells cross. */
 static int has_nested_shells(const struct vg_surface_report *r)
 {
+  if (r->count[VG_DEFECT_INTERSECTION]) return 0;
   for (size_t i = 0; i < r->n_shell; i++)
     if (r->shell[i].depth > 0) return 1;
   return 0;
 }
 
-vg_status vg_surface_examine(struct vg_mesh *m, int repair, int *external,
-                             struct vg_surface_report *r,
+int vg_surface_has_conditions(const struct vg_mesh *m)
+{
+  for (size_t i = 0; i < m->n_patch; i++)
+    if (m->patch[i].bc != VG_BC_NONE) return 1;
+  return 0;
+}
+
+vg_status vg_surface_examine(struct vg_mesh *m,
+                             const struct vg_surface_check_options *options,
+                             int *external, struct vg_surface_report *r,
                              struct vg_error *err)
 {
-  struct vg_surface_check_options o = VG_SURFACE_CHECK_OPTIONS_INIT;
+  struct vg_surface_check_options o = *options;
   int find_out = *external < 0;
   vg_status st;
 
-  o.repair = repair;
   o.external = find_out ? looks_external(m) : *external;
-  /* A surface without any condition is fine; one that was forgotten is not. */
-  for (size_t i = 0; i < m->n_patch; i++)
-    o.require_bc |= m->patch[i].bc != VG_BC_NONE;
   st = vg_surface_check(m, &o, r, err);
   if (st >= 0 && find_out && o.external && has_nested_shells(r)) {
     o.external = 0;
@@ -111,9 +117,12 @@ static vg_status split_quads(struct vg_mesh *m, struct vg_notes *notes,
 static vg_status check(struct vg_problem *p, int *external,
                        struct vg_error *err)
 {
+  struct vg_surface_check_options o = VG_SURFACE_CHECK_OPTIONS_INIT;
+
+  o.repair = p->settings.repair;
+  o.require_bc = p->require_bc;
   vg_surface_report_release(&p->check);
-  return vg_surface_examine(&p->surface, p->settings.repair, external,
-                            &p->check, err);
+  return vg_surface_examine(&p->surface, &o, external, &p->check, err);
 }
 
 static vg_status defects(const struct vg_problem *p, struct vg_error *err)
@@ -186,6 +195,7 @@ vg_status vg_problem_close(struct vg_problem *p, struct vg_display *show,
   vg_status st = VG_OK;
 
   vg_mesh_keep_boundary(&p->surface);
+  p->require_bc = vg_surface_has_conditions(&p->surface);
   VG_TRY(split_quads(&p->surface, &p->notes, err));
   VG_TRY(resolve_patches(p, err));
   if (s->weld > 0)
