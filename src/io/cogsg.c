@@ -171,6 +171,9 @@ static vg_status parse_volume(struct vg_input *in, struct vg_mesh *m,
   vg_input_order(in, l.is_big);
   st = vg_input_record(in, &record, "the cells", err);
   if (st == VG_OK) st = read_header(&record, &l, &h, err);
+  /* Behind the cells, three reals of at least four bytes for each point. */
+  if (st == VG_OK)
+    st = vg_input_need(in, (uint64_t)h.npo, 12, "the coordinates", err);
   if (st < 0) return st;
   m->tet = vg_alloc((size_t)h.nc, sizeof *m->tet);
   m->point = vg_alloc((size_t)h.npo, sizeof *m->point);
