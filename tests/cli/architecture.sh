@@ -6,11 +6,7 @@ set -u
 cd "$1/src" || exit 1
 bad=0
 
-rank() {
-  case $1 in
-  base) echo 0 ;; core) echo 1 ;; io) echo 2 ;; cli) echo 3 ;; *) echo 9 ;;
-  esac
-}
+declare -A rank=([base]=0 [core]=1 [io]=2 [cli]=3)
 
 complain() {
   echo "$*"
@@ -18,20 +14,20 @@ complain() {
 }
 
 for folder in *; do
-  [ "$(rank "$folder")" != 9 ] ||
+  [ -n "${rank[$folder]:-}" ] ||
     complain "src/$folder: a folder without a place in the order"
 done
 
 while IFS=: read -r file line text; do
-  target=$(sed -E 's/.*#[[:space:]]*include[[:space:]]*"([^"]*)".*/\1/' \
-    <<<"$text")
+  target=${text#*\"}
+  target=${target%%\"*}
   from=${file%%/*}
   to=${target%%/*}
   if [ "$to" = "$target" ]; then
     complain "src/$file:$line: \"$target\" does not name its folder"
   elif [ ! -e "$target" ]; then
     complain "src/$file:$line: \"$target\" does not exist"
-  elif [ "$(rank "$to")" -gt "$(rank "$from")" ]; then
+  elif [ "${rank[$to]:-9}" -gt "${rank[$from]:-9}" ]; then
     complain "src/$file:$line: $from must not include $to ($target)"
   fi
 done < <(grep -rnE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' \
