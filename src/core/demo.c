@@ -256,24 +256,16 @@ static vg_status sphere_surface(const struct scaled *s, struct vg_mesh *m,
   return st;
 }
 
-/* Farfield around the body, spaced by the law: to this end the law itself is
- * made a field. */
 static vg_status add_farfield(const struct scaled *s, struct vg_demo *d,
                               struct vg_error *err)
 {
+  const struct vg_size_law law = { vg_demo_size, (void *)&s->law };
   struct vg_farfield far = VG_FARFIELD_INIT;
-  struct vg_sizing *sizing = NULL;
-  vg_status st;
 
   far.size = FARFIELD;
   far.has_centre = 1;
   far.kind = s->entry->kind == SPHERE ? VG_FARFIELD_BOX : VG_FARFIELD_SPHERE;
-  VG_TRY(vg_sizing_new(&d->sizing, d->n_source, d->source, &d->surface,
-                       &sizing, err));
-  st = vg_domain_complete(&d->surface, &far, sizing, NULL, err);
-done:
-  vg_sizing_free(sizing);
-  return st;
+  return vg_domain_complete_by(&d->surface, &far, &law, NULL, err);
 }
 
 static vg_status make(struct scaled *s, size_t n_cell, struct vg_demo *d,

@@ -19,7 +19,7 @@
 struct domain {
   struct vg_mesh m;
   const struct vg_farfield *farfield;
-  const struct vg_sizing *sizing;
+  const struct vg_size_law *law;
   double lo[3], hi[3], length;   /* of the body */
   double centre[3], radius;
   int axis, side;                /* symmetry; axis -1: none; side 1: above */
@@ -217,8 +217,8 @@ static double domain_size(void *user, const double x[3])
   const struct domain *d = user;
   double h = d->farfield->spacing > 0 ? d->farfield->spacing : INFINITY;
 
-  if (d->sizing) {
-    const double s = vg_sizing_at(d->sizing, x);
+  if (d->law) {
+    const double s = d->law->at(d->law->user, x);
 
     if (s < h) h = s;
   }
@@ -235,7 +235,7 @@ static vg_status place_farfield(struct domain *d, struct vg_error *err)
     return vg_fail(err, VG_ERR_INPUT, "farfield: size %g, %g body lengths; "
                    "one of them must be a positive number", f->size,
                    f->lengths);
-  if (!(f->spacing >= 0) || (f->spacing == 0 && !d->sizing))
+  if (!(f->spacing >= 0) || (f->spacing == 0 && !d->law))
     return vg_fail(err, VG_ERR_INPUT, "farfield: the spacing %g is not a "
                    "positive length", f->spacing);
   d->radius = f->size > 0 ? f->size : f->lengths * d->length;
@@ -375,13 +375,13 @@ done:
   return st;
 }
 
-vg_status vg_domain_complete(struct vg_mesh *surface,
-                             const struct vg_farfield *farfield,
-                             const struct vg_sizing *sizing,
-                             struct vg_domain_report *report,
-                             struct vg_error *err)
+vg_status vg_domain_complete_by(struct vg_mesh *surface,
+                                const struct vg_farfield *farfield,
+                                const struct vg_size_law *law,
+                                struct vg_domain_report *report,
+                                struct vg_error *err)
 {
-  struct domain d = { .farfield = farfield, .sizing = sizing, .axis = -1 };
+  struct domain d = { .farfield = farfield, .law = law, .axis = -1 };
   vg_status st;
 
   if (!surface->n_tri && !surface->n_quad)
@@ -403,4 +403,21 @@ done:
   vg_mesh_release(&d.m);
   vg_rim_release(&d.open);
   return st;
+}
+
+static double size_of_field(void *user, const double x[3])
+{
+  return vg_sizing_at(user, x);
+}
+
+vg_status vg_domain_complete(struct vg_mesh *surface,
+                             const struct vg_farfield *farfield,
+                             const struct vg_sizing *sizing,
+                             struct vg_domain_report *report,
+                             struct vg_error *err)
+{
+  const struct vg_size_law law = { size_of_field, (void *)sizing };
+
+  return vg_domain_complete_by(surface, farfield, sizing ? &law : NULL,
+                               report, err);
 }

@@ -3,6 +3,7 @@
 #ifndef VG_CORE_FARFIELD_H
 #define VG_CORE_FARFIELD_H
 
+#include "core/planar.h"
 #include "core/planar_patch.h"
 
 /* Directed edges in one plane, the new surface on their left. */
@@ -38,5 +39,13 @@ vg_status vg_add_box(struct vg_mesh *m, const double lo[3],
                      const double hi[3], int open,
                      const struct vg_size_law *size, const uint32_t patch[6],
                      struct vg_rim *rim, struct vg_error *err);
+
+/** vg_domain_complete with any law of sizes in place of a field; law may be
+ * NULL where farfield->spacing is given. */
+vg_status vg_domain_complete_by(struct vg_mesh *surface,
+                                const struct vg_farfield *farfield,
+                                const struct vg_size_law *law,
+                                struct vg_domain_report *report,
+                                struct vg_error *err);
 
 #endif
