@@ -428,8 +428,9 @@ static void meshes_a_project_of_planes(void **state)
   }
   assert_int_equal(n_off, 0);
   for (size_t i = 0; i < m.n_tri; i++) n_floor += m.tri_patch[i] == 2;
-  /* VGRID has 574 on that patch, the only one whose rim has no layers */
-  assert_true(n_floor > 520 && n_floor < 680);
+  /* VGRID has 574 there, the one patch whose rim has no layers; its edges
+   * are a little longer than the spacing */
+  assert_true(n_floor > 520 && n_floor < 720);
   vg_sizing_free(s);
   vg_mesh_release(&m);
   vg_project_release(&p);
