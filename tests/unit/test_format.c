@@ -1,0 +1,235 @@
+#include "io_support.h"
+
+#include "io/format.h"
+#include "io/vgrid.h"
+
+static void suffixes_are_known(void **state)
+{
+  static const struct { const char *name; size_t length; } cases[] = {
+    {"wing.stl", 4}, {"dir.x/wing.lb8.ugrid", 10}, {"wing.ugrid", 6},
+    {"wing.B8.UGRID.gz", 12}, {"a.b.meshb", 6}, {"wing.b8.ugrid64", 11},
+    {"x.cogsg", 6}, {"x.front.gz", 9}, {"wing", 0}, {"wing.gz", 0},
+    {"wing.stl.bak", 0}, {"stl", 0}, {"", 0}, {".stl", 4}, {"x.vtu", 4},
+    {"x.y8.ugrid", 6}
+  };
+  size_t n = 0;
+
+  (void)state;
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+    if (vg_format_suffix_length(cases[i].name) != cases[i].length)
+      fail_msg("%s: %zu", cases[i].name,
+               vg_format_suffix_length(cases[i].name));
+  for (const char *s; (s = vg_format_input_suffix(n)); n++) {
+    char name[64];
+
+    snprintf(name, sizeof name, "x.%s", s);
+    assert_int_equal(vg_format_suffix_length(name), strlen(s) + 1);
+  }
+  assert_int_equal(n, 38);
+  assert_true(vg_format_can_write("b8.ugrid"));
+  assert_true(vg_format_can_write("cogsg"));
+  assert_true(vg_format_can_write("vtu"));
+  assert_false(vg_format_can_write("front"));
+  assert_false(vg_format_can_write("b9.ugrid"));
+  assert_false(vg_format_can_write(""));
+}
+
+static void unknown_suffixes_list_the_known(void **state)
+{
+  struct vg_mesh m = VG_MESH_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+
+  (void)state;
+  assert_int_equal(vg_mesh_read("wing.igs", &m, NULL, &err), VG_ERR_FORMAT);
+  assert_non_null(strstr(err.text, "wing.igs"));
+  assert_non_null(strstr(err.text, ".stl"));
+  assert_non_null(strstr(err.text, ".ugrid"));
+  assert_int_equal(vg_mesh_read("wing.vtu", &m, NULL, &err), VG_ERR_FORMAT);
+  assert_non_null(strstr(err.text, "written only"));
+  assert_int_equal(vg_format_write("wing.front", &m, &err), VG_ERR_FORMAT);
+  assert_non_null(strstr(err.text, "read only"));
+  assert_int_equal(vg_format_write("wing", &m, &err), VG_ERR_FORMAT);
+}
+
+/* Every format that can be written and read gives T1's boundary back; those
+ * for volumes its cell too. */
+static void every_format_round_trips(void **state)
+{
+  static const struct { const char *suffix; int volume, patches; } cases[] = {
+    {"stl", 0, 4}, {"tri", 0, 4}, {"obj", 0, 4}, {"mesh", 1, 4},
+    {"meshb", 1, 4}, {"ugrid", 1, 4}, {"b8.ugrid", 1, 4},
+    {"lb8l.ugrid", 1, 4}, {"r4.ugrid", 1, 4}, {"cogsg", 1, 4}
+  };
+  const char *stem = io_temp("format_t1");
+  struct vg_mesh t1;
+
+  (void)state;
+  io_make_t1(&t1, 1);
+  for (int k = 0; k < 4; k++) t1.patch[k].bc = k + 1;
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    struct vg_mesh m = VG_MESH_INIT;
+    struct vg_read_info info;
+    struct vg_error err = VG_ERROR_INIT;
+    char path[4200];
+
+    snprintf(path, sizeof path, "%s.%s", stem, cases[i].suffix);
+    if (vg_mesh_write(stem, cases[i].suffix, &t1, &err))
+      fail_msg("%s", err.text);
+    if (vg_mesh_read(path, &m, &info, &err)) fail_msg("%s", err.text);
+    assert_string_equal(info.format, cases[i].suffix);
+    assert_int_equal(info.n_cell, cases[i].volume);
+    assert_int_equal(vg_format_holds_cells(path), cases[i].volume);
+    assert_int_equal(m.n_tri, 4);
+    assert_int_equal(m.n_point, 4);
+    assert_int_equal(m.n_patch, cases[i].patches);
+    assert_int_equal(info.has_mapbc, !strcmp(cases[i].suffix, "cogsg"));
+    if (info.has_mapbc)
+      for (int k = 0; k < 4; k++) assert_int_equal(m.patch[k].bc, k + 1);
+    vg_mesh_release(&m);
+    unlink(path);
+  }
+  for (int i = 0; i < 2; i++) {
+    char path[4200];
+
+    snprintf(path, sizeof path, "%s.%s", stem, i ? "bc" : "mapbc");
+    unlink(path);
+  }
+  assert_int_equal(vg_mesh_write(stem, "vtu", &t1, NULL), VG_OK);
+  unlink(io_temp("format_t1.vtu"));
+  vg_mesh_release(&t1);
+}
+
+static void the_mapbc_beside_is_used(void **state)
+{
+  static const char text[] = "3\n1 4000 wall\n2 6662 symm\n9 5000 far\n";
+  const char *grid = io_temp("format_bc.lb8.ugrid");
+  const char *bc = io_temp("format_bc.mapbc");
+  const char *packed = io_temp("format_bc.mapbc.gz");
+  struct vg_mesh m, back = VG_MESH_INIT;
+  struct vg_read_info info;
+  struct vg_error err = VG_ERROR_INIT;
+
+  (void)state;
+  io_make_t1(&m, 1);
+  assert_int_equal(vg_format_write(grid, &m, &err), VG_OK);
+  for (int turn = 0; turn < 2; turn++) {
+    if (turn) io_write_gzip(packed, text, sizeof text - 1);
+    else io_write_file(bc, text, sizeof text - 1);
+    if (vg_surface_read(grid, &back, &info, &err)) fail_msg("%s", err.text);
+    assert_int_equal(back.n_tet, 0);
+    assert_int_equal(info.n_cell, 1);
+    assert_int_equal(info.has_mapbc, 1);
+    assert_int_equal(info.layout, VG_MAPBC_FUN3D);
+    assert_int_equal(info.match.n_missing, 2);
+    assert_int_equal(info.match.first_missing, 3);
+    assert_int_equal(info.match.n_unused, 1);
+    assert_int_equal(info.match.first_unused, 9);
+    assert_string_equal(back.patch[0].name, "wall");
+    assert_int_equal(back.patch[0].bc, 4);
+    vg_mesh_release(&back);
+    unlink(turn ? packed : bc);
+  }
+  /* A broken companion is an error, not a silence. */
+  io_write_file(bc, "x\n", 2);
+  assert_int_equal(vg_mesh_read(grid, &back, &info, &err), VG_ERR_FORMAT);
+  assert_non_null(strstr(err.text, "format_bc.mapbc"));
+  assert_null(back.point);
+  unlink(bc);
+  unlink(grid);
+  vg_mesh_release(&m);
+}
+
+/* A tetrahedron around a point inside it: four cells, five points. */
+static void surfaces_leave_inner_points_out(void **state)
+{
+  static const double point[5][3] = {
+    {0.1, 0.1, 0.1}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}
+  };
+  static const uint32_t tri[4][3] = {
+    {1, 2, 3}, {1, 4, 2}, {1, 3, 4}, {2, 4, 3}
+  };
+  const char *path = io_temp("format_inner.b8.ugrid");
+  struct vg_mesh m, back = VG_MESH_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+
+  (void)state;
+  io_make_t1(&m, 0);
+  m.point = realloc(m.point, sizeof point);
+  memcpy(m.point, point, sizeof point);
+  m.n_point = 5;
+  memcpy(m.tri, tri, sizeof tri);
+  m.tet = malloc(4 * sizeof *m.tet);
+  m.n_tet = 4;
+  for (int f = 0; f < 4; f++) {
+    memcpy(m.tet[f], tri[f], sizeof tri[f]);
+    m.tet[f][3] = 0;
+  }
+  assert_int_equal(vg_format_write(path, &m, &err), VG_OK);
+  assert_int_equal(vg_surface_read(path, &back, NULL, &err), VG_OK);
+  assert_int_equal(back.n_point, 4);
+  assert_int_equal(back.n_tet, 0);
+  for (int f = 0; f < 4; f++)
+    for (int k = 0; k < 3; k++)
+      assert_int_equal(back.tri[f][k], tri[f][k] - 1);
+  assert_memory_equal(back.point, point + 1, 4 * sizeof *point);
+  unlink(path);
+  vg_mesh_release(&m);
+  vg_mesh_release(&back);
+}
+
+/* By its name alone a .front finds its project. */
+static void reads_the_real_project(void **state)
+{
+  struct vg_mesh m = VG_MESH_INIT;
+  struct vg_read_info info;
+  struct vg_error err = VG_ERROR_INIT;
+
+  (void)state;
+  if (vg_surface_read(io_real("vgrid_box/box.front"), &m, &info, &err))
+    fail_msg("%s", err.text);
+  assert_int_equal(m.n_patch, 6);
+  assert_int_equal(info.has_mapbc, 1);
+  assert_int_equal(info.match.n_missing + info.match.n_unused, 0);
+  assert_int_equal(m.patch[2].bc, 4);
+  assert_int_equal(m.patch[2].bc_fun3d, 4000);
+  assert_string_equal(m.patch[2].name, "viscous");
+  vg_mesh_release(&m);
+}
+
+static void reads_real_surfaces(void **state)
+{
+  static const char *const name[] = {
+    "dirty/f16_components_overlapping.stl.xz", "dirty/three_plugs.bin.tri.xz",
+    "dirty/toy_airplane_with_holes.obj.xz", "simple/cape_bullet.tri.xz",
+    "simple/cube_sphere_uniform_volume.meshb.xz"
+  };
+  static const size_t n_tri[] = {17064, 11280, 16747, 4890, 700};
+
+  (void)state;
+  for (size_t i = 0; i < 5; i++) {
+    const char *path = io_real(name[i]);
+    struct vg_mesh m = VG_MESH_INIT;
+    struct vg_error err = VG_ERROR_INIT;
+
+    if (vg_surface_read(path, &m, NULL, &err)) fail_msg("%s", err.text);
+    assert_int_equal(m.n_tri, n_tri[i]);
+    assert_int_equal(m.n_tet, 0);
+    vg_mesh_release(&m);
+    unlink(path);
+  }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(suffixes_are_known),
+    cmocka_unit_test(unknown_suffixes_list_the_known),
+    cmocka_unit_test(every_format_round_trips),
+    cmocka_unit_test(the_mapbc_beside_is_used),
+    cmocka_unit_test(surfaces_leave_inner_points_out),
+    cmocka_unit_test(reads_the_real_project),
+    cmocka_unit_test(reads_real_surfaces),
+  };
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
