@@ -28,6 +28,26 @@ struct run {
   double start, time_read, time_check, time_size, time_judge, time_write;
 };
 
+/* A value that cannot be is wrong usage, known before anything is read. */
+static error_t keep_setting(struct arguments *a, int key, const char *text,
+                            const struct argp_state *state)
+{
+  struct vg_settings scratch;
+  struct vg_error err = VG_ERROR_INIT;
+  vg_status st;
+
+  vg_settings_default(&scratch);
+  st = vg_cli_option_set(key, text, &scratch, &err);
+  vg_settings_release(&scratch);
+  if (st == VG_BLOCKED) return ARGP_ERR_UNKNOWN;
+  if (st < 0) argp_error(state, "%s", err.text);
+  if (vg_reserve(&a->set, &a->cap_set, a->n_set + 1, sizeof *a->set))
+    return ENOMEM;
+  a->set[a->n_set].key = key;
+  a->set[a->n_set++].text = text;
+  return 0;
+}
+
 static error_t option(int key, char *arg, struct argp_state *state)
 {
   struct arguments *a = state->input;
@@ -49,13 +69,8 @@ static error_t option(int key, char *arg, struct argp_state *state)
   default:
     break;
   }
-  if (key < VG_KEY_SETTING || key >= VG_KEY_SETTING + 1000)
-    return ARGP_ERR_UNKNOWN;
-  if (vg_reserve(&a->set, &a->cap_set, a->n_set + 1, sizeof *a->set))
-    return ENOMEM;
-  a->set[a->n_set].key = key;
-  a->set[a->n_set++].text = arg;
-  return 0;
+  if (key < VG_KEY_SETTING) return ARGP_ERR_UNKNOWN;
+  return keep_setting(a, key, arg, state);
 }
 
 static vg_status apply_options(const struct arguments *a,

@@ -1,0 +1,75 @@
+# A surface that cannot bound a mesh is named, drawn and refused.
+# A unit tetrahedron as text, its third face missing.
+cat >open.ugrid <<'END'
+4 3 0 0 0 0 0
+0 0 0  1 0 0  0 1 0  0 0 1
+1 2 3  1 4 2  2 4 3
+1 2 4
+END
+vanguard check -q open.ugrid --defects shown.vtu
+exits 1
+says out "open edge: 3"
+says out "(not closed)"
+says err "open.ugrid: the surface has 3 defects"
+exists shown.vtu
+vanguard check -q --json open.ugrid
+exits 1
+says out '"open edge": 3'
+vanguard mesh -q -p open --farfield none
+exits 1
+says out "open edge: 3"
+says err "cannot bound a mesh"
+exists open.defects.vtu
+absent open.cogsg open.b8.ugrid open.resolved.deck open.report.json
+
+# Two tetrahedra that cross.
+cat >cross.ugrid <<'END'
+8 8 0 0 0 0 0
+0 0 0  1 0 0  0 1 0  0 0 1
+0.1 0.1 0.1  1.1 0.1 0.1  0.1 1.1 0.1  0.1 0.1 1.1
+1 3 2  1 2 4  1 4 3  2 3 4
+5 7 6  5 6 8  5 8 7  6 7 8
+1 1 1 1 2 2 2 2
+END
+vanguard check -q cross.ugrid
+exits 1
+says out "self-intersection"
+
+# A condition that was forgotten.
+cat >tet.ugrid <<'END'
+4 4 0 0 0 0 0
+0 0 0  1 0 0  0 1 0  0 0 1
+1 2 3  1 4 2  1 3 4  2 4 3
+1 2 3 4
+END
+vanguard check -q tet.ugrid
+exits 0
+printf '3\n1 4000 wall\n2 6662 symm\n3 5000 far\n' >tet.mapbc
+vanguard check -q tet.ugrid
+exits 1
+says out "no boundary condition: 1"
+vanguard mesh -q -p tet
+exits 1
+says out "no boundary condition: 1"
+
+# The deck may give it, but not to a patch that is not there.
+printf 't\npatches\nid bc name\n4 5000 "far two"\n' >tet.deck
+vanguard mesh -q -p tet --out done
+exits 0
+says done/tet.mapbc "far_two"
+printf 't\npatches\nid bc\n7 5000\n' >tet.deck
+vanguard mesh -q -p tet
+exits 1
+says err "patch 7 is not in the surface"
+
+for file in truncated.lb8.ugrid empty.stl noise.tri; do
+  head -c 40 /dev/zero >$file
+  vanguard check -q $file
+  exits 1
+  says err "vanguard: $file"
+done
+vanguard check -q absent.stl
+exits 1
+says err "absent.stl"
+vanguard check -q usage.unknown
+exits 1

@@ -1,0 +1,44 @@
+# Bodies alone get a farfield; half bodies a symmetry plane too.
+cat >octa.obj <<'END'
+v 1 0 0
+v -1 0 0
+v 0 1 0
+v 0 -1 0
+v 0 0 1
+v 0 0 -1
+g body
+f 1 3 5
+f 3 2 5
+f 2 4 5
+f 4 1 5
+f 3 1 6
+f 2 3 6
+f 4 2 6
+f 1 4 6
+END
+vanguard mesh -q -p octa --farfield-lengths 4 --growth 1.5
+exits 0
+says out "taken as a body in open air"
+says out "added: farfield"
+says out "validity: valid"
+says octa.mapbc "farfield"
+says octa.resolved.deck "sphere  4"
+vanguard mesh -q -p octa --deck octa.resolved.deck --out again
+exits 0
+same octa.b8.ugrid again/octa.b8.ugrid
+lacks out "taken as a body in open air"
+
+# Half of it, cut at y = 0.
+sed -e '/^v 0 -1 0/d' -e '/^f/d' octa.obj >half.obj
+cat >>half.obj <<'END'
+f 1 3 4
+f 3 2 4
+f 3 1 5
+f 2 3 5
+END
+vanguard mesh -q -p half --farfield box --farfield-lengths 3 --growth 1.5
+exits 0
+says out "added: symmetry plane y = 0"
+says out "added: farfield"
+says out "validity: valid"
+says half.mapbc "symmetry"

@@ -1,0 +1,38 @@
+# An input file is never overwritten: said before anything is computed.
+vanguard demo box --cells 2000 --out a
+vanguard mesh -q -p a/box --out b --write b8.ugrid
+exits 0
+
+mkdir c
+cp a/box.lb8.ugrid a/box.mapbc c
+vanguard mesh -q -p c/box --write lb8.ugrid,cogsg
+exits 1
+says err "writing lb8.ugrid would overwrite the input c/box.lb8.ugrid"
+says err "--out DIR"
+same a/box.lb8.ugrid c/box.lb8.ugrid
+absent c/box.cogsg
+
+# Also through a link.
+mkdir d
+ln -s ../c/box.lb8.ugrid d/box.lb8.ugrid
+vanguard mesh -q -p c/box --out d --write lb8.ugrid
+exits 1
+says err "would overwrite the input"
+same a/box.lb8.ugrid c/box.lb8.ugrid
+
+# A .mapbc that does not know every patch cannot stand for the mesh's.
+grep -v '^6 ' a/box.mapbc >c/box.mapbc
+vanguard mesh -q -p c/box
+exits 1
+absent c/box.cogsg
+
+vanguard mesh -q -p a/box --out e --write nonsense
+exits 1
+says err "'nonsense' is no format"
+vanguard mesh -q -p a/none
+exits 1
+says err "no project here"
+cp a/box.lb8.ugrid a/box.b8.ugrid
+vanguard mesh -q -p a/box --out e
+exits 1
+says err "may be the surface; give the full name of one"

@@ -1,0 +1,57 @@
+# Without a command, with help, with a slip: texts and exit status.
+vanguard
+exits 2
+is err <<'END'
+Usage: vanguard COMMAND [OPTION...]
+Vanguard makes tetrahedral meshes for aerodynamics from closed surfaces.
+
+  mesh     mesh the volume of a project
+  check    judge a surface or a volume mesh
+  deck     write a run deck with all defaults
+  demo     write a complete example project
+
+'vanguard COMMAND --help' lists the options of a command, 'vanguard --version'
+shows the version. Exit status: 0 done, 1 failed, 2 wrong usage.
+END
+cp err usage
+vanguard --help
+exits 0
+is out <usage
+
+vanguard --version
+exits 0
+is out <<'END'
+vanguard 0.1.0
+Licence AGPL-3.0-or-later: https://www.gnu.org/licenses/agpl-3.0.html
+END
+
+vanguard chekc
+exits 2
+is err <<'END'
+vanguard: no command 'chekc'; did you mean 'check'?
+END
+
+for command in mesh check deck demo; do
+  vanguard $command --help
+  exits 0
+  says out "Usage: vanguard $command [OPTION...]"
+  vanguard $command --no-such-option
+  exits 2
+  says err "--no-such-option"
+done
+
+vanguard mesh
+exits 2
+says err "which project?"
+vanguard mesh -p x --growth 0.5
+exits 2
+says err "growth is 0.5; it must be above 1"
+vanguard mesh -p x --farfield sphree
+exits 2
+says err "did you mean 'sphere'?"
+vanguard check
+exits 2
+vanguard demo
+exits 2
+vanguard demo box --cells many
+exits 2
