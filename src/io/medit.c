@@ -151,7 +151,7 @@ static vg_status read_vertices(struct reader *r, struct vg_error *err)
 static vg_status read_entities(struct reader *r, int section,
                                struct vg_error *err)
 {
-  const struct section *s = &sections[section];
+  const struct section *s = sections + section;
   int n_node = s->n_node;
   size_t n;
   uint32_t *node = section_get(&r->m, section, &n);
@@ -194,7 +194,7 @@ static size_t entity_size(const struct reader *r, int n_node)
 static vg_status read_section(struct reader *r, int section,
                               struct vg_error *err)
 {
-  const struct section *s = &sections[section];
+  const struct section *s = sections + section;
   int64_t n;
   vg_status st;
 
