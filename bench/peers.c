@@ -1,16 +1,19 @@
 /* vg_bench_peers: the go-between of bench/run.sh.
  *
  *   prepare SURFACE DECK STEM  the boundary of a .ugrid mesh as STEM.smesh
- *                              (TetGen), STEM.msh and STEM.geo (Gmsh), and
- *                              the size field as STEM.b.node, STEM.b.mtr
+ *                              (TetGen), STEM.msh and scripts STEM.geo,
+ *                              STEM.ext.geo (Gmsh), and the size field as
+ *                              STEM.b.node, STEM.b.mtr
  *   view STEM                  the same field, with the tetrahedra that
  *                              TetGen made of it, as STEM.pos (Gmsh)
  *   judge MESH SURFACE DECK [OUT.ugrid]
  *                              figures of a mesh: .ugrid, .msh, or the stem
  *                              of .node and .ele; optionally written as UGRID
+ *   seconds REPORT.json        time of the fill that a run of Vanguard reports
  *
  * DECK is a run deck (cli/deck.h), "-" for all defaults. Exit status 0 done,
  * 1 failed, 2 usage. */
+#include <jansson.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -224,13 +227,11 @@ done:
   return st;
 }
 
-/* A discrete surface per patch and one volume between them all. Physical
- * groups are not set: Gmsh would then save nothing else. */
-static vg_status write_gmsh(const char *stem, const struct vg_mesh *m,
+/* The triangles, those of a patch as one discrete surface. Physical groups are not set: Gmsh would then save nothing else. */
+static vg_status write_msh(const char *stem, const struct vg_mesh *m,
                             struct vg_error *err)
 {
   char name[NAME_MAX_LEN];
-  const char *base = strrchr(stem, '/');
   struct vg_output f = VG_OUTPUT_INIT;
   vg_status st = VG_OK;
 
@@ -246,17 +247,36 @@ static vg_status write_gmsh(const char *stem, const struct vg_mesh *m,
                      m->tri[i][1] + 1, m->tri[i][2] + 1);
   vg_output_text(&f, "$EndElements\n");
   VG_TRY(vg_output_commit(&f, err));
-  snprintf(name, sizeof name, "%s.geo", stem);
+done:
+  vg_output_release(&f);
+  return st;
+}
+
+static const char field_sizes[] =
+  "Field[1] = PostView;\nField[1].ViewIndex = 0;\n"
+  "Background Field = 1;\nMesh.MeshSizeExtendFromBoundary = 0;\n"
+  "Mesh.MeshSizeFromPoints = 0;\n";
+static const char extended_sizes[] =
+  "Mesh.MeshSizeExtendFromBoundary = 1;\nMesh.MeshSizeFromPoints = 0;\n";
+
+/* The script of a run: sizes from the field, or from the boundary alone. */
+static vg_status write_geo(const char *stem, const struct vg_mesh *m,
+                           int has_field, struct vg_error *err)
+{
+  char name[NAME_MAX_LEN];
+  const char *base = strrchr(stem, '/');
+  struct vg_output f = VG_OUTPUT_INIT;
+  vg_status st = VG_OK;
+
+  snprintf(name, sizeof name, "%s%s.geo", stem, has_field ? "" : ".ext");
   base = base ? base + 1 : stem;
   VG_TRY(vg_output_open(name, &f, err));
   vg_output_format(&f, "Merge \"%s.msh\";\nSurface Loop(1) = {1", base);
   for (size_t i = 1; i < m->n_patch; i++)
     vg_output_format(&f, ", %zu", i + 1);
-  vg_output_format(&f, "};\nVolume(1) = {1};\nMerge \"%s.pos\";\n"
-                   "Field[1] = PostView;\nField[1].ViewIndex = 0;\n"
-                   "Background Field = 1;\n"
-                   "Mesh.MeshSizeExtendFromBoundary = 0;\n"
-                   "Mesh.MeshSizeFromPoints = 0;\n", base);
+  vg_output_text(&f, "};\nVolume(1) = {1};\n");
+  if (has_field) vg_output_format(&f, "Merge \"%s.pos\";\n", base);
+  vg_output_text(&f, has_field ? field_sizes : extended_sizes);
   VG_TRY(vg_output_commit(&f, err));
 done:
   vg_output_release(&f);
@@ -274,7 +294,9 @@ static vg_status prepare(char **arg, struct vg_error *err)
   VG_TRY(load_surface(arg[0], arg[1], &m, &sizing, err));
   m.n_point = boundary_points(&m);
   VG_TRY(write_smesh(arg[2], &m, err));
-  VG_TRY(write_gmsh(arg[2], &m, err));
+  VG_TRY(write_msh(arg[2], &m, err));
+  VG_TRY(write_geo(arg[2], &m, 1, err));
+  VG_TRY(write_geo(arg[2], &m, 0, err));
   vg_mesh_bounds(&m, lo, hi);
   VG_TRY(peer_sample(sizing, lo, hi, BACKGROUND_CELLS, &n, &point, &size,
                      err));
@@ -338,6 +360,20 @@ done:
   return st;
 }
 
+static vg_status seconds(const char *path, struct vg_error *err)
+{
+  json_error_t where;
+  json_t *report = json_load_file(path, 0, &where);
+  json_t *fill = json_object_get(json_object_get(report, "seconds"), "fill");
+  int found = json_is_number(fill);
+
+  if (found) printf("%.4f\n", json_number_value(fill));
+  json_decref(report);
+  return found ? VG_OK
+               : vg_fail(err, VG_ERR_FORMAT, "%s: no seconds of a fill%s%s",
+                         path, report ? "" : ": ", report ? "" : where.text);
+}
+
 int main(int argc, char **argv)
 {
   struct vg_error err = VG_ERROR_INIT;
@@ -346,12 +382,15 @@ int main(int argc, char **argv)
   if (argc == 5 && !strcmp(argv[1], "prepare")) st = prepare(argv + 2, &err);
   else if (argc == 3 && !strcmp(argv[1], "view"))
     st = peer_write_view(argv[2], &err);
+  else if (argc == 3 && !strcmp(argv[1], "seconds"))
+    st = seconds(argv[2], &err);
   else if ((argc == 5 || argc == 6) && !strcmp(argv[1], "judge"))
     st = judge(argv + 2, argv[5], &err);
   else {
     fprintf(stderr, "usage: vg_bench_peers prepare SURFACE DECK STEM\n"
                     "       vg_bench_peers view STEM\n"
-                    "       vg_bench_peers judge MESH SURFACE DECK [OUT]\n");
+                    "       vg_bench_peers judge MESH SURFACE DECK [OUT]\n"
+                    "       vg_bench_peers seconds REPORT.json\n");
     return 2;
   }
   if (st < 0) fprintf(stderr, "vg_bench_peers: %s\n", err.text);

@@ -1,0 +1,226 @@
+#!/usr/bin/env bash
+# bench/run.sh: Vanguard, TetGen and gmsh HXT on the same surfaces, in one run.
+#
+# usage: bench/run.sh [--quick] [--out FILE] [--build DIR] [--work DIR]
+#                     [--runs N] [--meshcheck PROGRAM] [--no-peers] [CASE...]
+#   --quick      one run of every case at a tenth of its size
+#   --out        write the table to FILE too
+#   --build      build folder (default build/release, made when missing)
+#   --work       scratch folder, kept (default: a temporary one, removed)
+#   --runs       runs of a small case (default 3; large ones: 1)
+#   --meshcheck  a program that judges NAME.lb8.ugrid, exit status 0: valid
+#   --no-peers   only Vanguard
+#   CASE         box-1M box-10M sphere-2M sphere-12M wing wing-half wing-sharp
+#
+# One thread everywhere. Seconds are of the volume stage alone, from the
+# boundary triangulation to the finished mesh, without reading and writing:
+# of Vanguard the fill and its optimisation, of TetGen its total less its
+# output, of HXT "Done meshing 3D". All are wall time; TetGen knows CPU time
+# only, which is stretched by elapsed / CPU time of its process. Peak memory
+# is that of the whole process. All three keep the triangulation that
+# Vanguard's mesh has on its boundary, and take their sizes from the same
+# field: TetGen as a background mesh, HXT as a view on that mesh. Gmsh is slow
+# at looking sizes up in a view, so HXT also runs with the sizes of the
+# boundary extended inwards ("hxt-ext"): its full speed, but not our sizes.
+# The column "/ HXT" holds against the faster of the two.
+# Needs: tetgen, gmsh, time (Debian packages of these names).
+set -euo pipefail
+export LC_ALL=C OMP_NUM_THREADS=1
+
+root=$(cd "$(dirname "$0")/.." && pwd)
+build=$root/build/release
+work='' out='' meshcheck='' quick=0 runs=3 peers=1 cases=()
+TETGEN_OPTIONS=-pq1.414Ym
+
+usage() { sed -n '2,/^# One thread/p' "$0" | sed '$d; s/^# \{0,1\}//'; }
+die() { echo "bench/run.sh: $*" >&2; exit 1; }
+
+while [ $# -gt 0 ]; do
+  case $1 in
+    --quick) quick=1 ;;
+    --no-peers) peers=0 ;;
+    --out) out=${2:?}; shift ;;
+    --build) build=${2:?}; shift ;;
+    --work) work=${2:?}; shift ;;
+    --runs) runs=${2:?}; shift ;;
+    --meshcheck) meshcheck=${2:?}; shift ;;
+    -h|--help) usage; exit 0 ;;
+    -*) usage >&2; exit 2 ;;
+    *) cases+=("$1") ;;
+  esac
+  shift
+done
+[ ${#cases[@]} -gt 0 ] || cases=(box-1M wing wing-half wing-sharp sphere-2M
+                                 box-10M sphere-12M)
+
+# name -> demo, cells
+case_demo() {
+  case $1 in
+    box-*) echo box ;;
+    sphere-*) echo sphere ;;
+    wing|wing-half|wing-sharp) echo "$1" ;;
+    *) die "no case '$1'; see --help" ;;
+  esac
+}
+case_cells() {
+  local n=2000000
+  case $1 in
+    *-*M) n=${1##*-}; n=$((${n%M} * 1000000)) ;;
+  esac
+  [ $quick = 0 ] || n=$((n / 10))
+  echo "$n"
+}
+is_large() { [ "$(case_cells "$1")" -gt 5000000 ]; }
+
+need() {
+  command -v "$1" > /dev/null || [ -x "$1" ] ||
+    die "$1 is not installed: apt-get install $2"
+}
+need /usr/bin/time time
+if [ $peers = 1 ]; then need tetgen tetgen; need gmsh gmsh; fi
+
+if [ ! -x "$build/bin/vanguard" ] || [ ! -x "$build/bin/vg_bench_peers" ]; then
+  cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release >&2
+  cmake --build "$build" >&2
+fi
+vanguard=$build/bin/vanguard
+helper=$build/bin/vg_bench_peers
+
+if [ -z "$work" ]; then
+  work=$(mktemp -d "${TMPDIR:-/tmp}/vanguard-bench.XXXXXX")
+  trap 'rm -rf "$work"' EXIT
+fi
+mkdir -p "$work"
+
+# Value of "key value" lines: field FILE KEY
+field() { awk -v k="$2" '$1 == k { print $2; exit }' "$1"; }
+peak_mb() { awk '/Maximum resident/ { printf "%.0f", $NF / 1024 }' "$1"; }
+timed() { local log=$1; shift; /usr/bin/time -v -o "$log.time" "$@" > "$log" 2>&1; }
+
+# Each of these runs one mesher once in folder $1 and adds its seconds and
+# peak MB to NAME.runs.
+run_vanguard() {
+  timed "$1/vanguard.log" "$vanguard" mesh -p "$1/$2" --out "$1/out" \
+    --write lb8.ugrid || { tail -5 "$1/vanguard.log" >&2; return 1; }
+  echo "$("$helper" seconds "$1/out/$2.report.json") \
+    $(peak_mb "$1/vanguard.log.time")" >> "$1/vanguard.runs"
+}
+run_tetgen() {
+  timed "$1/tetgen.log" tetgen $TETGEN_OPTIONS "$1/peer.smesh" ||
+    { tail -5 "$1/tetgen.log" >&2; return 1; }
+  echo "$(awk '/^Total running seconds/ { t = $NF }
+    /^Output seconds/ { o = $NF }
+    /(User|System) time/ { cpu += $NF }
+    /Elapsed/ { n = split($NF, part, ":")
+                for (i = 1; i <= n; i++) wall = 60 * wall + part[i] }
+    END { print (t - o) * (wall > cpu ? wall / cpu : 1) }' \
+    "$1/tetgen.log" "$1/tetgen.log.time") \
+    $(peak_mb "$1/tetgen.log.time")" >> "$1/tetgen.runs"
+}
+hxt() {   # hxt FOLDER NAME SCRIPT
+  timed "$1/$2.log" gmsh -3 -algo hxt -nt 1 -format msh22 -bin \
+    -o "$1/$2.msh" "$1/$3" || { tail -5 "$1/$2.log" >&2; return 1; }
+  echo "$(sed -n 's/.*Done meshing 3D (Wall \([0-9.]*\)s.*/\1/p' \
+    "$1/$2.log") $(peak_mb "$1/$2.log.time")" >> "$1/$2.runs"
+}
+
+prepare_peers() {
+  "$helper" prepare "$1/out/$2.lb8.ugrid" "$1/out/$2.resolved.deck" "$1/peer" \
+    > "$1/peer.log"
+  tetgen "$1/peer.b.node" >> "$1/peer.log"
+  mv "$1/peer.b.1.node" "$1/peer.b.node"
+  mv "$1/peer.b.1.ele" "$1/peer.b.ele"
+  "$helper" view "$1/peer"
+}
+
+# Median, least and most of column $2 of file $1.
+spread() {
+  sort -g -k "$2,$2" "$1" | awk -v c="$2" '{ v[NR] = $c } END {
+    m = NR % 2 ? v[(NR + 1) / 2] : (v[NR / 2] + v[NR / 2 + 1]) / 2
+    print m, v[1], v[NR] }'
+}
+
+# Of rate $1 to the highest in the other files, "-" without any.
+ratio() {
+  local rate=$1
+  shift
+  { cat "$@" 2> /dev/null || true; } | awk -v a="$rate" '$1 > b { b = $1 }
+    END { if (b > 0) printf "%.2f", a / b; else print "-" }'
+}
+
+# One line of the table: row FOLDER CASE MESHER
+row() {
+  local d=$1 s=$1/$3.judge check=-
+  read -r med lo hi <<< "$(spread "$d/$3.runs" 1)"
+  read -r mb _ _ <<< "$(spread "$d/$3.runs" 2)"
+  if [ -n "$meshcheck" ]; then
+    check=OK
+    "$meshcheck" "$d/$3.lb8.ugrid" > "$d/$3.meshcheck" 2>&1 || check=FAIL
+  fi
+  local cells rate tet hxt
+  cells=$(field "$s" cells)
+  rate=$(awk -v n="$cells" -v t="$med" 'BEGIN { print (t > 0 ? n / t : 0) }')
+  echo "$rate" > "$d/$3.rate"
+  tet=$(ratio "$rate" "$d"/tetgen.rate)
+  hxt=$(ratio "$rate" "$d"/hxt*.rate)
+  awk -v case="$2" -v who="$3" -v cells="$cells" -v med="$med" -v lo="$lo" \
+    -v hi="$hi" -v rate="$rate" -v tet="$tet" -v hxt="$hxt" -v mb="$mb" \
+    -v check="$check" '
+    { f[$1] = $2 }
+    END {
+      ok = f["valid"] == 1 ? (f["kept"] == 1 ? "yes" : "not kept") : "NO"
+      printf "| %s | %s | %d | %.2f (%.2f-%.2f) | %d | %s | %s | %d | %.0f " \
+             "| %.1f / %.1f | %.3f | %.4f | %.1f | %.3f | %s | %s |\n",
+        case, who, cells, med, lo, hi, rate, tet, hxt, mb,
+        mb * 1048576 / cells, f["angle_min"], f["angle_max"], f["below_20"],
+        f["radius_ratio"], f["edges_within"], f["edge_mean"], ok, check
+    }' "$s"
+}
+
+judge() {
+  case $3 in
+    vanguard) mesh=$1/out/$2.lb8.ugrid ;;
+    tetgen) mesh=$1/peer.1 ;;
+    hxt*) mesh=$1/$3.msh ;;
+  esac
+  "$helper" judge "$mesh" "$1/out/$2.lb8.ugrid" "$1/out/$2.resolved.deck" \
+    "$1/$3.lb8.ugrid" > "$1/$3.judge"
+}
+
+say() { if [ -n "$out" ]; then tee -a "$out"; else cat; fi; }
+
+one_case() {
+  local name=$1 demo n=$runs d=$work/$1
+  demo=$(case_demo "$name")
+  [ $quick = 0 ] && ! is_large "$name" || n=1
+  rm -rf "$d"
+  mkdir -p "$d/out"
+  "$vanguard" demo "$demo" --cells "$(case_cells "$name")" --out "$d" \
+    > "$d/demo.log"
+  local stem=$demo meshers=(vanguard)
+  for ((i = 0; i < n; i++)); do
+    run_vanguard "$d" "$stem" || die "$name: vanguard failed, see above"
+    [ $peers = 1 ] || continue
+    [ $i -gt 0 ] || prepare_peers "$d" "$stem"
+    run_tetgen "$d" || echo "$name: TetGen failed" >&2
+    hxt "$d" hxt peer.geo || echo "$name: HXT failed" >&2
+    hxt "$d" hxt-ext peer.ext.geo || echo "$name: HXT failed" >&2
+  done
+  for p in tetgen hxt hxt-ext; do
+    if [ -s "$d/$p.runs" ]; then meshers=("$p" "${meshers[@]}"); fi
+  done
+  for p in "${meshers[@]}"; do
+    judge "$d" "$stem" "$p"
+    row "$d" "$name" "$p" | say
+  done
+  find "$d" -size +10M -delete   # large meshes would fill the disc
+}
+
+[ -z "$out" ] || : > "$out"
+say << END
+Vanguard $("$vanguard" --version | awk 'NR == 1 { print $2 }'), $(uname -m), $(nproc --all) cores, $(date -u +%Y-%m-%d); TetGen $TETGEN_OPTIONS, gmsh $(gmsh --version 2>&1 | tail -1) HXT -nt 1; one thread each.
+
+| case | mesher | cells | volume stage, s (min-max) | cells/s | / TetGen | / HXT | peak MB | B/cell | dihedral min / max | % < 20 | radius ratio | % edges in [0.7, 1.5] | edge / target | valid | meshcheck |
+|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|
+END
+for name in "${cases[@]}"; do one_case "$name"; done
