@@ -70,42 +70,58 @@ struct estimate {
   void *user;
 };
 
-/* Halve a block until it is at most this many edges long. */
+/* Halve a block until it is at most this many edges long, then take two Gauss
+ * points along each axis: over such a block h changes by as much as itself. */
 #define BLOCK_EDGES 3.0
+#define GAUSS 0.28867513459481288225   /* 1 / (2 sqrt(3)) */
+
+static double count_leaf(const struct estimate *e, const double mid[3],
+                         const double size[3])
+{
+  double sum = 0;
+
+  for (int c = 0; c < 8; c++) {
+    double x[3], h;
+
+    for (int k = 0; k < 3; k++)
+      x[k] = mid[k] + (c >> k & 1 ? GAUSS : -GAUSS) * size[k];
+    if (e->inside && !e->inside(e->user, x)) continue;
+    h = e->size(e->user, x);
+    sum += 1 / (h * h * h);
+  }
+  return sum / 8 * size[0] * size[1] * size[2];
+}
 
 static double count_block(const struct estimate *e, const double lo[3],
-                          const double hi[3], int depth)
+                          const double size[3], int depth)
 {
-  double x[3], h, sum = 0, volume = 1, longest = 0;
+  double mid[3], half[3], longest = 0, sum = 0;
 
   for (int k = 0; k < 3; k++) {
-    x[k] = 0.5 * (lo[k] + hi[k]);
-    volume *= hi[k] - lo[k];
-    longest = fmax(longest, hi[k] - lo[k]);
+    half[k] = 0.5 * size[k];
+    mid[k] = lo[k] + half[k];
+    longest = fmax(longest, size[k]);
   }
-  h = e->size(e->user, x);
-  if (longest <= BLOCK_EDGES * h || depth == 0)
-    return !e->inside || e->inside(e->user, x) ? volume / (h * h * h) : 0;
+  if (depth == 0 || longest <= BLOCK_EDGES * e->size(e->user, mid))
+    return count_leaf(e, mid, size);
   for (int c = 0; c < 8; c++) {
-    double a[3], b[3];
+    double corner[3];
 
-    for (int k = 0; k < 3; k++) {
-      a[k] = c >> k & 1 ? x[k] : lo[k];
-      b[k] = c >> k & 1 ? hi[k] : x[k];
-    }
-    sum += count_block(e, a, b, depth - 1);
+    for (int k = 0; k < 3; k++) corner[k] = c >> k & 1 ? mid[k] : lo[k];
+    sum += count_block(e, corner, half, depth - 1);
   }
   return sum;
 }
 
-double vg_demo_estimate(const double lo[3], const double hi[3],
+double vg_demo_cubes(const double lo[3], const double hi[3],
                         double (*size)(void *user, const double x[3]),
                         int (*inside)(void *user, const double x[3]),
                         void *user)
 {
   const struct estimate e = { size, inside, user };
+  const double side[3] = { hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2] };
 
-  return VG_DEMO_CELLS_PER_CUBE * count_block(&e, lo, hi, 24);
+  return count_block(&e, lo, side, 24);
 }
 
 /* --- laws ---------------------------------------------------------------- */
@@ -173,7 +189,8 @@ static double estimate(struct scaled *s)
     hi[k] = s->entry->kind == BOX ? 1 : FARFIELD;
   }
   if (s->entry->wing.is_half) lo[1] = 0;
-  return vg_demo_estimate(lo, hi, scaled_size, in_fluid, s);
+  return VG_DEMO_CELLS_PER_CUBE * VG_DEMO_GRADED
+         * vg_demo_cubes(lo, hi, scaled_size, in_fluid, s);
 }
 
 static double cube_root(double x)
