@@ -10,14 +10,17 @@
 
 #include "base/memory.h"
 
-/* Samples in the order of a k-d tree, eight to a block; blocks eight to a
- * group, groups eight to a group above, up to one root. Eight lanes each, in
+/* Samples are classed by size, so that large and small ones do not spoil each
+ * other's bounds; each class is a tree: samples in the order of a k-d tree,
+ * eight to a block, blocks eight to a group, groups eight to a group above,
+ * up to one root. Eight lanes each, in
  * loops that compilers turn into vectors. Positions are single precision and
  * relative to an origin of the block or group, so that rounding is relative
  * to the distance itself, however wide the span of sizes is; SHY allows for
  * it where a bound must not be too high. */
 #define LANES 8
 #define MAX_LEVEL 12
+#define MAX_CLASS 16     /* sizes within a factor of four; the last: others */
 #define SHY 2e-6f
 
 struct block {
@@ -30,11 +33,18 @@ struct group {
   float mid[3][LANES], half[3][LANES], h_min[LANES], h_max[LANES];
 };
 
-struct vg_near {
-  struct block *block;   /* [n_block] */
-  struct group *group;   /* all levels, the lowest first */
-  size_t n_block, start[MAX_LEVEL];
+struct tree {
+  const struct block *block;
+  const struct group *group[MAX_LEVEL]; /* the lowest level first */
   int n_level;
+  float h_min, h_max;
+};
+
+struct vg_near {
+  struct block *block;   /* of all trees, one after the other */
+  struct group *group;
+  struct tree tree[MAX_CLASS];
+  int n_tree;
   float slope, offset;
 };
 
@@ -145,25 +155,49 @@ static void order_keys(struct key *a, size_t n, size_t unit)
   order_keys(a + m, n - m, unit);
 }
 
-static void order_samples(size_t n, const double (*p)[3], struct key *key)
+static void order_samples(struct key *key, size_t n)
 {
   size_t unit = LANES;
 
-  for (size_t i = 0; i < n; i++) {
-    key[i].at = (uint32_t)i;
-    for (int k = 0; k < 3; k++) key[i].p[k] = (float)(p[i][k] - p[0][k]);
-  }
   while (unit < n) unit *= LANES;
   order_keys(key, n, unit);
 }
 
+static int size_class(double h, double least)
+{
+  int c = 0;
+
+  for (least *= 4; h > least && c < MAX_CLASS - 1; least *= 4) c++;
+  return c;
+}
+
+/* Keys by class of size, the classes in order; count gets how many each. */
+static void classify(size_t n, const double (*p)[3], const double *h,
+                     struct key *key, size_t count[MAX_CLASS])
+{
+  double least = h[0];
+  size_t at[MAX_CLASS];
+
+  for (size_t i = 1; i < n; i++) least = h[i] < least ? h[i] : least;
+  memset(count, 0, MAX_CLASS * sizeof *count);
+  for (size_t i = 0; i < n; i++) count[size_class(h[i], least)]++;
+  at[0] = 0;
+  for (int c = 1; c < MAX_CLASS; c++) at[c] = at[c - 1] + count[c - 1];
+  for (size_t i = 0; i < n; i++) {
+    struct key *a = key + at[size_class(h[i], least)]++;
+
+    a->at = (uint32_t)i;
+    for (int k = 0; k < 3; k++) a->p[k] = (float)(p[i][k] - p[0][k]);
+  }
+}
+
 /* The last block is padded by repeating its last sample. */
-static void fill_blocks(struct vg_near *t, size_t n, const double (*p)[3],
+static void fill_blocks(struct block *block, size_t n, const double (*p)[3],
                         const double *h, const struct key *key)
 {
-  for (size_t i = 0; i < t->n_block * LANES; i++) {
+  for (size_t i = 0; i < n || i % LANES; i++) {
     size_t from = key[i < n ? i : n - 1].at;
-    struct block *b = t->block + i / LANES;
+    struct block *b = block + i / LANES;
 
     b->h[i % LANES] = (float)h[from];
     for (int k = 0; k < 3; k++) {
@@ -224,26 +258,51 @@ static void fill_group(const struct bound *from, size_t n, struct group *g)
   }
 }
 
-/* Groups level by level; bound[] shrinks to the bounds of the level above. */
-static void fill_groups(struct vg_near *t, struct bound *bound)
+/* Groups level by level, over n blocks; bound[] shrinks to the bounds of the
+ * level above. Returns the number of groups. */
+static size_t fill_groups(struct tree *t, size_t n, struct group *group,
+                          struct bound *bound)
 {
-  size_t n = t->n_block, at = 0;
+  size_t at = 0;
 
   for (size_t i = 0; i < n; i++) bound_block(t->block + i, bound + i);
-  for (int level = 0; level < t->n_level; level++) {
+  do {
     size_t n_up = (n + LANES - 1) / LANES;
 
-    t->start[level] = at;
+    t->group[t->n_level++] = group + at;
     for (size_t i = 0; i < n_up; i++) {
       size_t m = n - i * LANES < LANES ? n - i * LANES : LANES;
       struct bound all = bound[i * LANES];
 
-      fill_group(bound + i * LANES, m, t->group + at + i);
+      fill_group(bound + i * LANES, m, group + at + i);
       for (size_t j = 1; j < m; j++) join(&all, bound + i * LANES + j);
       bound[i] = all;
     }
     at += n_up;
     n = n_up;
+  } while (n > 1);
+  t->h_min = bound[0].h_min;
+  t->h_max = bound[0].h_max;
+  return at;
+}
+
+static void fill_trees(struct vg_near *t, const double (*p)[3],
+                       const double *h, struct key *key,
+                       const size_t count[MAX_CLASS], struct bound *bound)
+{
+  struct block *block = t->block;
+  struct group *group = t->group;
+
+  for (int c = 0; c < MAX_CLASS; c++) {
+    size_t n_block = (count[c] + LANES - 1) / LANES;
+
+    if (!n_block) continue;
+    order_samples(key, count[c]);
+    fill_blocks(block, count[c], p, h, key);
+    t->tree[t->n_tree].block = block;
+    group += fill_groups(t->tree + t->n_tree++, n_block, group, bound);
+    block += n_block;
+    key += count[c];
   }
 }
 
@@ -253,26 +312,20 @@ vg_status vg_near_new(size_t n, const double (*p)[3], const double *h,
 {
   struct vg_near *t = vg_calloc(1, sizeof *t);
   struct key *key = vg_alloc(n, sizeof *key);
-  struct bound *bound = vg_alloc(n / LANES + 1, sizeof *bound);
-  size_t n_group = 0, m;
+  size_t count[MAX_CLASS], n_block = n / LANES + MAX_CLASS;
+  struct bound *bound = vg_alloc(n_block, sizeof *bound);
 
-  if (!t || !key || !bound) goto refused;
-  if (n > UINT32_MAX / 2) goto refused;
+  if (!t || !key || !bound || n > UINT32_MAX / 2) goto refused;
   t->slope = (float)slope;
   t->offset = (float)(slope * VG_NEAR_PLATEAU < VG_NEAR_OFFSET
                         ? slope * VG_NEAR_PLATEAU : VG_NEAR_OFFSET);
-  m = t->n_block = (n + LANES - 1) / LANES;
-  do {
-    m = (m + LANES - 1) / LANES;
-    n_group += m;
-    t->n_level++;
-  } while (m > 1);
-  t->block = vg_alloc(t->n_block, sizeof *t->block);
-  t->group = vg_alloc(n_group, sizeof *t->group);
+  t->block = vg_alloc(n_block, sizeof *t->block);
+  /* a seventh of the blocks, and what is not full on each level */
+  t->group = vg_alloc(n_block / 7 + MAX_CLASS * MAX_LEVEL,
+                      sizeof *t->group);
   if (!t->block || !t->group) goto refused;
-  order_samples(n, p, key);
-  fill_blocks(t, n, p, h, key);
-  fill_groups(t, bound);
+  classify(n, p, h, key, count);
+  fill_trees(t, p, h, key, count, bound);
   free(bound);
   free(key);
   *out = t;
@@ -296,6 +349,7 @@ void vg_near_free(struct vg_near *t)
 
 struct search {
   const struct vg_near *t;
+  const struct tree *tree;
   double mid[3];
   float half[3], best, sloppy; /* sloppy: relative error allowed */
   uint32_t hint;
@@ -372,9 +426,8 @@ static inline void distances(const struct search *q, const double origin[3],
   }
 }
 
-static void visit_block(struct search *q, uint32_t at)
+static void visit_block(struct search *q, const struct block *b)
 {
-  const struct block *b = q->t->block + at;
   const float keep = 1 - q->t->offset, slope = q->t->slope;
   float v[LANES], best = q->best;
 
@@ -387,14 +440,14 @@ static void visit_block(struct search *q, uint32_t at)
   for (int j = 0; j < LANES; j++) best = v[j] < best ? v[j] : best;
   if (!(best < q->best)) return;
   q->best = best;
-  q->hint = at;
+  q->hint = (uint32_t)(b - q->t->block);
 }
 
 /* Nearest child first, so that the rest is seldom entered. */
-static void descend_above(struct search *q, int level, uint32_t at)
+static void descend_above(struct search *q, int level, size_t at)
 {
   const struct vg_near *t = q->t;
-  const struct group *g = t->group + t->start[level] + at;
+  const struct group *g = q->tree->group[level] + at;
   const float keep = 1 - t->offset, slope = t->slope;
   float bound[LANES];
 
@@ -416,8 +469,8 @@ static void descend_above(struct search *q, int level, uint32_t at)
       }
     if (first == LANES) return;
     bound[first] = INFINITY;
-    if (level) descend_above(q, level - 1, at * LANES + (uint32_t)first);
-    else visit_block(q, at * LANES + (uint32_t)first);
+    if (level) descend_above(q, level - 1, at * LANES + (size_t)first);
+    else visit_block(q, q->tree->block + at * LANES + first);
   }
 }
 
@@ -432,15 +485,18 @@ double vg_near_above(const struct vg_near *t, const double lo[3],
     q.half[k] = (float)(0.5 * (hi[k] - lo[k]));
     q.mid[k] = 0.5 * (lo[k] + hi[k]);
   }
-  visit_block(&q, *hint);
-  descend_above(&q, t->n_level - 1, 0);
+  visit_block(&q, t->block + *hint);
+  for (int c = 0; c < t->n_tree; c++) {
+    q.tree = t->tree + c;
+    if (q.tree->h_min * (1 - q.sloppy) > q.best) break;
+    descend_above(&q, q.tree->n_level - 1, 0);
+  }
   *hint = q.hint;
   return (double)q.best;
 }
 
-static void visit_block_below(struct search *q, uint32_t at)
+static void visit_block_below(struct search *q, const struct block *b)
 {
-  const struct block *b = q->t->block + at;
   float d[LANES];
 
   distances(q, b->origin, b->p, NULL, d);
@@ -452,10 +508,10 @@ static void visit_block_below(struct search *q, uint32_t at)
   }
 }
 
-static void descend_below(struct search *q, int level, uint32_t at)
+static void descend_below(struct search *q, int level, size_t at)
 {
   const struct vg_near *t = q->t;
-  const struct group *g = t->group + t->start[level] + at;
+  const struct group *g = q->tree->group[level] + at;
   const float keep = 1 + t->offset, slope = t->slope;
   float bound[LANES];
 
@@ -476,8 +532,8 @@ static void descend_below(struct search *q, int level, uint32_t at)
       }
     if (first == LANES) return;
     bound[first] = -INFINITY;
-    if (level) descend_below(q, level - 1, at * LANES + (uint32_t)first);
-    else visit_block_below(q, at * LANES + (uint32_t)first);
+    if (level) descend_below(q, level - 1, at * LANES + (size_t)first);
+    else visit_block_below(q, q->tree->block + at * LANES + first);
   }
 }
 
@@ -487,6 +543,10 @@ double vg_near_below(const struct vg_near *t, const double x[3],
   struct search q = { .t = t, .best = (float)above, .sloppy = (float)sloppy,
                       .mid = { x[0], x[1], x[2] } };
 
-  descend_below(&q, t->n_level - 1, 0);
+  for (int c = t->n_tree - 1; c >= 0; c--) {
+    q.tree = t->tree + c;
+    if (q.tree->h_max <= q.best) break;
+    descend_below(&q, q.tree->n_level - 1, 0);
+  }
   return (double)q.best;
 }

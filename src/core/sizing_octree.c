@@ -101,10 +101,9 @@ static double field_floor(const struct vg_field *f, const double lo[3],
     if (mean < source) source = mean;
   }
   if (f->near && source < above) {
-    double below = vg_near_below(f->near, mid, source, SLOPPY_POINT) -
-                   0.8660254037844387 * side * f->slope;
+    double fall = 0.8660254037844387 * side * f->slope;
 
-    if (below > source) source = below;
+    source = vg_near_below(f->near, mid, source + fall, SLOPPY_BOX) - fall;
   }
   return clamp(f, source < above ? source : above);
 }
