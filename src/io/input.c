@@ -16,6 +16,11 @@
 #define CHUNK ((size_t)1 << 20)
 #define WHOLE (SIZE_MAX / 4)
 
+/* A packed file that grows beyond both is no mesh but a trap. */
+#define BOMB_SIZE ((size_t)1 << 28)
+#define BOMB_RATIO 200
+#define EXPLODES 100 /* beside zlib's codes */
+
 int vg_host_is_little(void)
 {
   const uint16_t one = 1;
@@ -76,6 +81,11 @@ static vg_status gzip_error(const char *path, int code, size_t at,
                             struct vg_error *err)
 {
   if (code == Z_MEM_ERROR) return vg_fail_memory(err, path);
+  if (code == EXPLODES)
+    return vg_fail(err, VG_ERR_FORMAT,
+                   "%s: gzip data that unpack to more than %d times their "
+                   "size; unpack the file with gunzip if it is meant so",
+                   path, BOMB_RATIO);
   if (code == Z_BUF_ERROR)
     return vg_fail(err, VG_ERR_FORMAT,
                    "%s: truncated gzip data: the file ends before its "
@@ -111,6 +121,7 @@ static int inflate_members(z_stream *z, const unsigned char *from, size_t size,
     *n += room - z->avail_out;
     if (code == Z_OK && z->avail_out && at >= size) return Z_BUF_ERROR;
     if (code != Z_OK && code != Z_STREAM_END) return code;
+    if (*n > BOMB_SIZE && *n / BOMB_RATIO > at) return EXPLODES;
   }
   return Z_OK;
 }

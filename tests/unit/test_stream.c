@@ -96,6 +96,21 @@ static void refuses_gzip_cut_anywhere(void **state)
   unlink(path);
 }
 
+static void refuses_gzip_that_explodes(void **state)
+{
+  const char *path = io_temp("stream_bomb.gz");
+  static char zero[1 << 20];
+  gzFile f = gzopen(path, "wb1");
+
+  (void)state;
+  assert_non_null(f);
+  for (int i = 0; i < 300; i++)
+    assert_int_equal(gzwrite(f, zero, sizeof zero), sizeof zero);
+  assert_int_equal(gzclose(f), Z_OK);
+  refuse_open(path, VG_ERR_FORMAT, "200 times");
+  unlink(path);
+}
+
 static void reads_numbers_of_both_orders(void **state)
 {
   static const unsigned char data[] = {
@@ -450,6 +465,7 @@ int main(void)
     cmocka_unit_test(names_what_cannot_be_opened),
     cmocka_unit_test(unpacks_gzip_whatever_its_name),
     cmocka_unit_test(refuses_gzip_cut_anywhere),
+    cmocka_unit_test(refuses_gzip_that_explodes),
     cmocka_unit_test(reads_numbers_of_both_orders),
     cmocka_unit_test(cuts_records_as_gfortran),
     cmocka_unit_test(refuses_records_with_wrong_markers),
