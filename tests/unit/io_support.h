@@ -131,7 +131,7 @@ static inline void io_make_mixed(struct vg_mesh *m)
   memset(m, 0, sizeof *m);
 #define FILL(array, from, n) \
   (m->array = malloc(sizeof from), memcpy(m->array, from, sizeof from), \
-   m->n = sizeof from / sizeof *m->array)
+   m->n = sizeof from / (sizeof *m->array))
   FILL(point, point, n_point);
   FILL(hex, hex, n_hex);
   FILL(pri, pri, n_pri);
