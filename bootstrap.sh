@@ -37,25 +37,25 @@ install_missing() {
 build() {
   cmake --preset release -G Ninja ${VG_DATA_DIR:+-DVG_DATA_DIR="$VG_DATA_DIR"} \
     ${VG_CMAKE_ARGS:-} >/dev/null
-  cmake --build --preset release
+  cmake --build --preset release --target "$1"
 }
 
 case "${1:-}" in
 demo)
   # shellcheck disable=SC2086
   install_missing $packages
-  build
-  mkdir -p build/demo
-  ./build/release/bin/vanguard demo "${2:-wing}" --out build/demo
-  ./build/release/bin/vanguard mesh -p "build/demo/${2:-wing}" \
+  build vanguard_program
+  rm -rf build/demo
+  ./build/release/bin/vanguard demo wing --cells 300000 --out build/demo
+  ./build/release/bin/vanguard mesh -p build/demo/wing \
     --write cogsg,b8.ugrid,vtu
   echo
-  echo "Open build/demo/${2:-wing}.vtu and .surface.vtu in ParaView."
+  echo "Open build/demo/wing.vtu and build/demo/wing.surface.vtu in ParaView."
   ;;
 test)
   # shellcheck disable=SC2086
   install_missing $packages
-  build
+  build all
   ctest --preset release
   ;;
 *)
