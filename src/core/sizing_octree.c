@@ -399,15 +399,21 @@ static int grow(struct build *b)
 static int lower_corners(const struct build *b, const struct cell *c,
                          double side)
 {
-  float reach[4], h[8];
+  static const unsigned char apart[8] = { 0, 1, 1, 2, 1, 2, 2, 3 };
+  float reach[4], h[8], low = INFINITY, high = 0;
   int changed = 0;
 
   for (int k = 0; k < 4; k++)
     reach[k] = (float)(b->f->slope * side * sqrt((double)k));
-  for (int i = 0; i < 8; i++) h[i] = b->source[c->corner[i]];
+  for (int i = 0; i < 8; i++) {
+    h[i] = b->source[c->corner[i]];
+    low = h[i] < low ? h[i] : low;
+    high = h[i] > high ? h[i] : high;
+  }
+  if (high <= low + reach[1]) return 0;
   for (int i = 0; i < 8; i++)
     for (int j = 0; j < 8; j++) {
-      float most = h[i] + reach[__builtin_popcount((unsigned)(i ^ j))];
+      float most = h[i] + reach[apart[i ^ j]];
 
       if (h[j] <= most) continue;
       h[j] = most;
@@ -428,35 +434,50 @@ static int sweep(const struct build *b, uint32_t at, double side, int flip)
   return changed;
 }
 
-static int limit_gradient(struct build *b)
+static float source_at_point(const struct build *b, size_t i)
 {
-  uint32_t hint = 0;
   double x[3];
-  int flip = 0;
 
-  b->source = vg_alloc(b->n_point, sizeof *b->source);
-  if (!b->source) return -1;
-  for (size_t i = 0; i < b->n_point; i++) {
-    point_place(b, b->point + i, x);
-    b->source[i] = (float)clamp(b->f, vg_source_at(&b->f->set, x));
-  }
-  while (sweep(b, 0, b->unit * TOP, flip)) flip = !flip;
+  point_place(b, b->point + i, x);
+  return (float)clamp(b->f, vg_source_at(&b->f->set, x));
+}
+
+/* The field at points whose sources were lowered, and at hanging ones. */
+static void renew(struct build *b, const float *before)
+{
   for (size_t i = 0; i < b->n_point; i++) {
     struct point *p = b->point + i;
-    double above = b->f->h_max, sum = 0;
+    double x[3], above = b->f->h_max, sum = 0;
 
-    for (int k = 0; k < p->n_parent; k++)
+    for (int k = 0; p->hangs && k < p->n_parent; k++)
       sum += (double)b->point[p->parent[k]].h;
-    if (p->hangs) {
-      p->h = (float)(sum / p->n_parent);
-      continue;
-    }
+    if (p->hangs) p->h = (float)(sum / p->n_parent);
+    if (p->hangs || b->source[i] == before[i]) continue;
     point_place(b, p, x);
-    hint = p->hint;
     if (b->f->near)
-      above = vg_near_above(b->f->near, x, x, above, SLOPPY_POINT, &hint);
+      above = vg_near_above(b->f->near, x, x, above, SLOPPY_POINT, &p->hint);
     p->h = (float)combine(b->f, x, above, (double)b->source[i]);
   }
+}
+
+static int limit_gradient(struct build *b)
+{
+  float *before = vg_alloc(b->n_point, sizeof *before);
+  int flip = 0, any = 0;
+
+  b->source = vg_alloc(b->n_point, sizeof *b->source);
+  if (!b->source || !before) {
+    free(before);
+    return -1;
+  }
+  for (size_t i = 0; i < b->n_point; i++)
+    before[i] = b->source[i] = source_at_point(b, i);
+  while (sweep(b, 0, b->unit * TOP, flip)) {
+    flip = !flip;
+    any = 1;
+  }
+  if (any) renew(b, before);
+  free(before);
   return 0;
 }
 
