@@ -121,10 +121,20 @@ static void join(uint32_t *map, uint32_t a, uint32_t b)
   else map[a] = b;
 }
 
+/* Cells of which the tolerance is the diagonal, and blocks of BLOCK^3 cells,
+ * which tell at once of most cells that nothing is near. */
+#define BLOCK 16
+#define REACH 2             /* cells that may hold a point within reach */
+#define CROWD 62            /* cells in reach, half of them: one side looks */
+
 struct grid {
-  struct table cell;        /* first point of each cell */
+  struct table cell, block; /* first point of each */
   double (*key)[3];         /* [n] cell of each point, whole numbers */
+  double (*block_key)[3];   /* [n] block, of points that are first in theirs */
   uint32_t *next;           /* [n] in the same cell */
+  uint32_t *next_cell;      /* [n] first point of the next cell in the block */
+  uint32_t *n_cell;         /* [n] > 0 for the first point of a cell; of a
+                               block's first, number of cells in the block */
   const double (*point)[3];
   double limit2;
 };
@@ -132,6 +142,7 @@ struct grid {
 static void link_cells(const struct grid *g, uint32_t *map, uint32_t a,
                        uint32_t b)
 {
+  if (root_of(map, a) == root_of(map, b)) return;
   for (uint32_t i = a; i != NONE; i = g->next[i])
     for (uint32_t j = b; j != NONE; j = g->next[j]) {
       const double *p = g->point[i], *q = g->point[j];
@@ -144,17 +155,80 @@ static void link_cells(const struct grid *g, uint32_t *map, uint32_t a,
     }
 }
 
-/* Half of the 124 cells about a cell of which the tolerance is the diagonal;
- * the other half looks back. */
-static void link_neighbours(const struct grid *g, uint32_t *map, uint32_t a)
+/* Look up half of the 124 cells in reach; the others look back. */
+static void link_by_cell(const struct grid *g, uint32_t *map, uint32_t a)
 {
   for (int o = 63; o < 125; o++) {
     const double *k = g->key[a];
-    double x[3] = { k[0] + o / 25 - 2, k[1] + o / 5 % 5 - 2, k[2] + o % 5 - 2 };
+    double x[3] = { k[0] + o / 25 - REACH, k[1] + o / 5 % 5 - REACH,
+                    k[2] + o % 5 - REACH };
     uint32_t b = *table_find(&g->cell, (const double (*)[3])g->key, x);
 
-    if (b != NONE && root_of(map, a) != root_of(map, b))
-      link_cells(g, map, a, b);
+    if (b != NONE) link_cells(g, map, a, b);
+  }
+}
+
+static int in_reach(const double a[3], const double b[3])
+{
+  return fabs(a[0] - b[0]) <= REACH && fabs(a[1] - b[1]) <= REACH
+         && fabs(a[2] - b[2]) <= REACH;
+}
+
+/* Block o (0..7) of those that the reach of cell `key` extends to; 0 when it
+ * is the same as an earlier one. */
+static int block_in_reach(const double key[3], int o, double block[3])
+{
+  for (int k = 0; k < 3; k++) {
+    double lo = floor((key[k] - REACH) / BLOCK);
+    double hi = floor((key[k] + REACH) / BLOCK);
+
+    if (o >> k & 1 && hi == lo) return 0;
+    block[k] = o >> k & 1 ? hi : lo;
+  }
+  return 1;
+}
+
+/* Through the list of cells of each block near; where those are many, single
+ * cells are looked up instead. */
+static void link_neighbours(const struct grid *g, uint32_t *map, uint32_t a)
+{
+  uint32_t first[8];
+  int n = 0;
+
+  for (int o = 0; o < 8; o++) {
+    double x[3];
+    uint32_t b;
+
+    if (!block_in_reach(g->key[a], o, x)) continue;
+    b = *table_find(&g->block, (const double (*)[3])g->block_key, x);
+    if (b == NONE) continue;
+    if (g->n_cell[b] > CROWD) {
+      link_by_cell(g, map, a);
+      return;
+    }
+    first[n++] = b;
+  }
+  while (n--)
+    for (uint32_t b = first[n]; b != NONE; b = g->next_cell[b])
+      if (b != a && in_reach(g->key[a], g->key[b])) link_cells(g, map, a, b);
+}
+
+static void enter_block(struct grid *g, uint32_t i)
+{
+  uint32_t *slot;
+
+  for (int k = 0; k < 3; k++)
+    g->block_key[i][k] = floor(g->key[i][k] / BLOCK);
+  slot = table_find(&g->block, (const double (*)[3])g->block_key,
+                    g->block_key[i]);
+  g->next_cell[i] = NONE;
+  g->n_cell[i] = 1;
+  if (*slot == NONE) {
+    *slot = i;
+  } else {
+    g->next_cell[i] = g->next_cell[*slot];
+    g->next_cell[*slot] = i;
+    g->n_cell[*slot]++;
   }
 }
 
@@ -162,7 +236,7 @@ static void link_neighbours(const struct grid *g, uint32_t *map, uint32_t a)
  * chain at once, so that a cell costs one search per neighbour. */
 static void link_grid(struct grid *g, uint32_t *map, size_t n, double side)
 {
-  for (size_t i = 0; i < n; i++) {
+  for (uint32_t i = 0; i < n; i++) {
     uint32_t *slot;
 
     if (map[i] != i || !finite3(g->point[i])) continue;
@@ -170,15 +244,16 @@ static void link_grid(struct grid *g, uint32_t *map, size_t n, double side)
     slot = table_find(&g->cell, (const double (*)[3])g->key, g->key[i]);
     g->next[i] = NONE;
     if (*slot == NONE) {
-      *slot = (uint32_t)i;
+      *slot = i;
+      enter_block(g, i);
     } else {
       map[i] = *slot;
       g->next[i] = g->next[*slot];
-      g->next[*slot] = (uint32_t)i;
+      g->next[*slot] = i;
     }
   }
-  for (size_t i = 0; i <= g->cell.mask; i++)
-    if (g->cell.slot[i] != NONE) link_neighbours(g, map, g->cell.slot[i]);
+  for (uint32_t i = 0; i < n; i++)
+    if (g->n_cell[i]) link_neighbours(g, map, i);
   for (size_t i = 0; i < n; i++) map[i] = root_of(map, (uint32_t)i);
 }
 
@@ -197,21 +272,33 @@ static double largest_coordinate(const struct vg_mesh *m)
 static vg_status link_near(const struct vg_mesh *m, double tolerance,
                            uint32_t *map, struct vg_error *err)
 {
-  struct grid g = { { 0, NULL }, NULL, NULL, NULL, tolerance * tolerance };
+  size_t n = m->n_point;
+  struct grid g;
   vg_status st = VG_OK;
   int bad;
 
   /* Coordinates have no digits for such a distance. */
   if (tolerance < 1e-15 * largest_coordinate(m)) return VG_OK;
+  memset(&g, 0, sizeof g);
   g.point = (const double (*)[3])m->point;
-  g.key = vg_alloc(m->n_point, sizeof *g.key);
-  g.next = vg_alloc(m->n_point, sizeof *g.next);
-  bad = table_init(&g.cell, m->n_point);
-  if (bad || !g.key || !g.next) st = vg_fail_memory(err, "the weld grid");
-  else link_grid(&g, map, m->n_point, 0.577 * tolerance);
+  g.limit2 = tolerance * tolerance;
+  g.key = vg_alloc(n, sizeof *g.key);
+  g.block_key = vg_alloc(n, sizeof *g.block_key);
+  g.next = vg_alloc(n, sizeof *g.next);
+  g.next_cell = vg_alloc(n, sizeof *g.next_cell);
+  g.n_cell = vg_calloc(n, sizeof *g.n_cell);
+  bad = table_init(&g.cell, n) + table_init(&g.block, n);
+  if (bad || !g.key || !g.block_key || !g.next || !g.next_cell || !g.n_cell)
+    st = vg_fail_memory(err, "the weld grid");
+  else
+    link_grid(&g, map, n, 0.577 * tolerance); /* 1 / sqrt(3), rounded down */
   free(g.key);
+  free(g.block_key);
   free(g.next);
+  free(g.next_cell);
+  free(g.n_cell);
   free(g.cell.slot);
+  free(g.block.slot);
   return st;
 }
 
