@@ -28,12 +28,21 @@ vg_status vg_check_points(const char *path, size_t n, const double (*p)[3],
                           struct vg_error *err)
 {
   for (size_t i = 0; i < n; i++)
-    for (int k = 0; k < 3; k++)
-      if (!(p[i][k] >= -DBL_MAX && p[i][k] <= DBL_MAX))
+    for (int k = 0; k < 3; k++) {
+      double x = p[i][k];
+
+      if (x >= -VG_COORDINATE_MAX && x <= VG_COORDINATE_MAX) continue;
+      if (!(x >= -DBL_MAX && x <= DBL_MAX))
         return vg_fail(err, VG_ERR_INPUT,
                        "%s: coordinate %c of point %zu is not a finite "
                        "number (%g); mend the file or check its byte order",
-                       path, "xyz"[k], i + 1, p[i][k]);
+                       path, "xyz"[k], i + 1, x);
+      return vg_fail(err, VG_ERR_INPUT,
+                     "%s: coordinate %c of point %zu is %g: beyond %g no "
+                     "volume can be computed; check the byte order or use "
+                     "another unit of length", path, "xyz"[k], i + 1, x,
+                     VG_COORDINATE_MAX);
+    }
   return VG_OK;
 }
 

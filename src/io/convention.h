@@ -21,7 +21,11 @@ struct vg_turned {
 vg_status vg_mesh_turn(struct vg_mesh *m, struct vg_turned *turned,
                        struct vg_error *err);
 
-/** Fail (VG_ERR_INPUT) naming the first point that is not finite. */
+/* Up to here products of three differences stay exact (core/predicates.h). */
+#define VG_COORDINATE_MAX 1e60
+
+/** Fail (VG_ERR_INPUT) naming the first point that is not finite, or beyond
+ * VG_COORDINATE_MAX. */
 vg_status vg_check_points(const char *path, size_t n, const double (*p)[3],
                           struct vg_error *err);
 

@@ -158,6 +158,7 @@ vg_status vg_front_parse(struct vg_input *in, const struct vg_project *project,
     goto done;
   }
   VG_TRY(read_surface(in, &m, err));
+  VG_TRY(vg_check_points(in->path, m.n_point, m.point, err));
   VG_TRY(skip_to_edges(in, &m, err));
   VG_TRY(read_edges(in, &m, &n_edge, &edge, err));
   VG_TRY(vg_front_patches(&m, n_edge, edge, project, in->path, err));

@@ -1,6 +1,5 @@
 #include "io/medit.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -136,10 +135,6 @@ static vg_status read_vertices(struct reader *r, struct vg_error *err)
         st = vg_input_real(r->in, &x[k], "a coordinate", err);
     else if (r->version == 1) st = vg_input_f32(r->in, 3, x, "Vertices", err);
     else st = vg_input_f64(r->in, 3, x, "Vertices", err);
-    if (st == VG_OK && !(isfinite(x[0]) && isfinite(x[1]) && isfinite(x[2])))
-      st = vg_fail(err, VG_ERR_INPUT,
-                   "%s: vertex %zu: a coordinate is not a finite number",
-                   r->in->path, i + 1);
     if (st == VG_OK) st = read_ints(r, 1, &ref, "a vertex reference", err);
     if (st < 0) return st;
   }
@@ -402,6 +397,7 @@ vg_status vg_medit_parse(struct vg_input *in, struct vg_mesh *out,
                    "%s: neither text nor binary Medit: a binary file begins "
                    "with the number 1", in->path);
   }
+  VG_TRY(vg_check_points(in->path, r.m.n_point, r.m.point, err));
   VG_TRY(check_nodes(&r, err));
   VG_TRY(join_tags(&r, err));
   VG_TRY(vg_mesh_turn(&r.m, NULL, err));

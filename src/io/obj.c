@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "io/boundary.h"
+#include "io/convention.h"
 #include "io/soup.h"
 
 struct reader {
@@ -143,7 +144,8 @@ vg_status vg_obj_parse(struct vg_input *in, struct vg_mesh *out,
                  "%s: no faces ('f' lines): not a surface in OBJ format",
                  in->path);
   else
-    vg_soup_finish(&r.s, out);
+    st = vg_check_points(in->path, r.s.m.n_point, r.s.m.point, err);
+  if (st == VG_OK) vg_soup_finish(&r.s, out);
 done:
   vg_soup_release(&r.s);
   return st;

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "io/boundary.h"
+#include "io/convention.h"
 #include "io/soup.h"
 
 #define HEADER 84
@@ -175,6 +176,8 @@ vg_status vg_stl_parse(struct vg_input *in, struct vg_mesh *out,
                  "another format)", in->path, in->size, (unsigned long)n);
   if (st == VG_OK && !s.m.n_tri)
     st = vg_fail(err, VG_ERR_INPUT, "%s: the surface has no facets", in->path);
+  if (st == VG_OK)
+    st = vg_check_points(in->path, s.m.n_point, s.m.point, err);
   if (st == VG_OK) vg_soup_finish(&s, out);
   vg_soup_release(&s);
   return st;

@@ -1,6 +1,5 @@
 #include "io/tri.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -251,11 +250,6 @@ static vg_status read_points(struct vg_input *in, struct content *c,
   x = c->m.point[0];
   if (l->real_size == 8) st = vg_input_f64(&part, n, x, "vertices", err);
   else st = vg_input_f32(&part, n, x, "vertices", err);
-  for (size_t i = 0; i < n && st == VG_OK; i++)
-    if (!isfinite(x[i]))
-      st = vg_fail(err, VG_ERR_INPUT,
-                   "%s: vertex %zu: a coordinate is not a finite number",
-                   in->path, i / 3 + 1);
   section_end(in, l, &part);
 done:
   return st;
@@ -322,6 +316,8 @@ vg_status vg_tri_parse(struct vg_input *in, struct vg_mesh *out,
 
   if (vg_input_is_text(in)) st = read_text(in, &c, err);
   else st = read_binary(in, &c, err);
+  if (st == VG_OK)
+    st = vg_check_points(in->path, c.m.n_point, c.m.point, err);
   if (st == VG_OK) st = vg_patches_from_tags(&c.m, c.tag, err);
   if (st == VG_OK) vg_mesh_move(out, &c.m);
   vg_mesh_release(&c.m);

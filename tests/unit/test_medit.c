@@ -223,7 +223,7 @@ static void refuses_broken_binary(void **state)
   BREAK(24, back, VG_ERR_FORMAT, "before it begins");
   BREAK(24, short_end, VG_ERR_FORMAT, "longer");
   BREAK(28, far, VG_ERR_FORMAT, "truncated");
-  BREAK(32, nan_value, VG_ERR_INPUT, "vertex 1");
+  BREAK(32, nan_value, VG_ERR_INPUT, "point 1");
   BREAK(156, far, VG_ERR_INPUT, "vertex 100000 is out of range");
 #undef BREAK
   free(copy);
