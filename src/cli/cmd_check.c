@@ -127,6 +127,9 @@ static vg_status check_surface(const struct arguments *a, struct vg_mesh *m,
   if (r.n_defect)
     st = vg_fail(err, VG_ERR_GEOMETRY, "%s: the surface has %zu defects",
                  a->file, r.n_defect);
+  else if (!m->n_tri)
+    st = vg_fail(err, VG_ERR_GEOMETRY, "%s: no surface is left: all its "
+                 "triangles are degenerate", a->file);
 done:
   vg_surface_report_release(&r);
   return st;
