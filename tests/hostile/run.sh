@@ -1,0 +1,41 @@
+#!/bin/bash
+# Shows every hostile file to the program: run.sh MAKE_HOSTILE PROGRAM FOLDER.
+# A refused file: exit status 1, stderr names the file, the answer holds the
+# phrase that its line in CASES gives. A mended one: status 0 and the phrase.
+# Never a signal, a time-out, or the report of a sanitizer.
+set -u
+make_hostile=$(realpath "$1")
+program=$(realpath "$2")
+folder=$3
+failures=0
+count=0
+
+rm -rf "$folder"
+mkdir -p "$folder"
+cd "$folder" || exit 1
+"$make_hostile" . || exit 1
+export LC_ALL=C COLUMNS=80
+
+fail() {
+  failures=$((failures + 1))
+  echo "FAILED: $command $file: $*"
+  echo "--- status $status, out"; head -20 out
+  echo "--- err"; head -20 err
+}
+
+while IFS='|' read -r command file verdict phrase; do
+  count=$((count + 1))
+  timeout 60 "$program" $command "$file" >out 2>err </dev/null
+  status=$?
+  expected=1
+  [ "$verdict" = mended ] && expected=0
+  [ $status = $expected ] || fail "exit status $status, not $expected"
+  grep -qF -- "$phrase" out err || fail "no '$phrase' in the answer"
+  if [ "$verdict" = refused ]; then
+    grep -qF -- "${file%.*}" err || fail "stderr does not name the file"
+  fi
+  ! grep -qE 'Sanitizer|runtime error' out err || fail "a sanitizer reports"
+done <CASES
+
+echo "$count hostile files, $failures failures"
+[ $count -ge 40 ] && [ $failures = 0 ]
