@@ -94,7 +94,9 @@ struct vg_surface_check_options {
  *
  * @param m       changed only by the repair; untouched on failure
  * @param report  released first; empty on failure
- * O(n log n + intersections); memory about 500 bytes per triangle.
+ * O(n log n + intersections) while no node has very many faces (pairs at one
+ * node are all tested); memory about 250 bytes per triangle, a copy of m for
+ * the repair not counted.
  * Returns VG_OK also when defects remain: look at report->n_defect.
  * VG_ERR_INPUT for a node or patch index out of range, VG_ERR_UNSUPPORTED
  * beyond 1.4e9 triangles, VG_ERR_MEMORY. Threads: re-entrant. */
