@@ -20,7 +20,7 @@
 #define TOLERANCE 0.03
 #define FLOOR 1.25
 #define SLOPPY_POINT 0.004
-#define SLOPPY_BOX 0.03
+#define SLOPPY_BOX 0.02
 #define POINT_MAX (UINT32_MAX - 1)
 #define TOP (1u << VG_OCTREE_DEPTH)
 
@@ -60,52 +60,52 @@ static double clamp(const struct vg_field *f, double h)
   return h > f->h_min ? h : f->h_min;
 }
 
+/* The surface's bounds applied to the sources' size at x. The upper bound is
+ * only searched below what is there already, which spares most of it. */
 static double combine(const struct vg_field *f, const double x[3],
-                      double above, double source)
+                      double source, uint32_t *hint)
 {
-  if (source < above) {
-    if (f->near) source = vg_near_below(f->near, x, source, SLOPPY_POINT);
-    if (source < above) above = source;
+  double h = source < f->h_max ? source : f->h_max;
+
+  if (f->near) {
+    if (source < f->h_max) h = vg_near_below(f->near, x, h, SLOPPY_POINT);
+    h = vg_near_above(f->near, x, x, h, SLOPPY_POINT, hint);
   }
-  return clamp(f, above);
+  return clamp(f, h);
 }
 
 double vg_field_at(const struct vg_field *f, const double x[3],
                    uint32_t *hint)
 {
-  double above = f->h_max;
-
-  if (f->near)
-    above = vg_near_above(f->near, x, x, above, SLOPPY_POINT, hint);
-  return combine(f, x, above, vg_source_at(&f->set, x));
+  return combine(f, x, vg_source_at(&f->set, x), hint);
 }
 
-/* Lower bound of the field within a cube; of VGRID's mean an estimate from
- * its centre, which is all that a cube that resolves its sources needs. */
+/* Lower bound of the field within a cube, but for SLOPPY_BOX of it; of VGRID's
+ * mean an estimate from the centre, which is good in a cube that resolves its
+ * sources. */
 static double field_floor(const struct vg_field *f, const double lo[3],
                           double side, uint32_t *hint)
 {
-  double hi[3], mid[3], above = f->h_max, source;
+  double hi[3], mid[3], h;
 
   for (int k = 0; k < 3; k++) {
     hi[k] = lo[k] + side;
     mid[k] = lo[k] + 0.5 * side;
   }
-  if (f->near)
-    above = vg_near_above(f->near, lo, hi, above, SLOPPY_BOX, hint) *
-            (1 - SLOPPY_BOX);
-  source = vg_source_floor(&f->set, lo, hi);
+  h = vg_source_floor(&f->set, lo, hi);
   if (f->set.n_mean) {
     double mean = vg_source_mean(f->set.n_mean, f->set.mean, mid);
 
-    if (mean < source) source = mean;
+    h = mean < h ? mean : h;
   }
-  if (f->near && source < above) {
+  if (f->near && h < f->h_max) {
     double fall = 0.8660254037844387 * side * f->slope;
 
-    source = vg_near_below(f->near, mid, source + fall, SLOPPY_BOX) - fall;
+    h = vg_near_below(f->near, mid, h + fall, SLOPPY_BOX) - fall;
   }
-  return clamp(f, source < above ? source : above);
+  h = h < f->h_max ? h : f->h_max;
+  if (f->near) h = vg_near_above(f->near, lo, hi, h, SLOPPY_BOX, hint);
+  return clamp(f, h);
 }
 
 /* Points. */
@@ -447,16 +447,14 @@ static void renew(struct build *b, const float *before)
 {
   for (size_t i = 0; i < b->n_point; i++) {
     struct point *p = b->point + i;
-    double x[3], above = b->f->h_max, sum = 0;
+    double x[3], sum = 0;
 
     for (int k = 0; p->hangs && k < p->n_parent; k++)
       sum += (double)b->point[p->parent[k]].h;
     if (p->hangs) p->h = (float)(sum / p->n_parent);
     if (p->hangs || b->source[i] == before[i]) continue;
     point_place(b, p, x);
-    if (b->f->near)
-      above = vg_near_above(b->f->near, x, x, above, SLOPPY_POINT, &p->hint);
-    p->h = (float)combine(b->f, x, above, (double)b->source[i]);
+    p->h = (float)combine(b->f, x, (double)b->source[i], &p->hint);
   }
 }
 
