@@ -16,6 +16,8 @@
  * cells worse than those of the coarser mesh without them. */
 static const double least_distance = 0.5;
 static const double least_height = 0.3;
+/* The first points of all keep farther off: the front decides near it. */
+static const double seed_distance = 0.8;
 
 enum { PROGRESS_STEP = 1 << 15 };
 
@@ -92,7 +94,7 @@ done:
 }
 
 static vg_status insert_one(struct growth *g, struct vg_inserter *s,
-                            const double x[3], uint32_t *at,
+                            const double x[3], double nearest, uint32_t *at,
                             struct vg_error *err)
 {
   struct vg_tets *t = &g->t;
@@ -106,14 +108,15 @@ static vg_status insert_one(struct growth *g, struct vg_inserter *s,
   memcpy(t->x[p], x, sizeof *t->x);
   t->n_point++;
   st = vg_insert(s, p, c, least_height,
-                 least_distance * vg_sizing_at(g->sizing, x), err);
+                 nearest * vg_sizing_at(g->sizing, x), err);
   if (st == VG_OK) *at = s->last;
   else t->n_point--;
   return st;
 }
 
 static vg_status insert_all(struct growth *g, const struct vg_placed *placed,
-                            const uint32_t *order, struct vg_error *err)
+                            const uint32_t *order, double nearest,
+                            struct vg_error *err)
 {
   struct vg_inserter s;
   uint32_t at = 0;
@@ -123,7 +126,7 @@ static vg_status insert_all(struct growth *g, const struct vg_placed *placed,
   if (st == VG_OK && vg_tets_reserve_points(&g->t, placed->n))
     st = vg_fail_memory(err, "the points of the mesh");
   for (size_t i = 0; st >= 0 && i < placed->n; i++) {
-    st = insert_one(g, &s, placed->x[order[i]], &at, err);
+    st = insert_one(g, &s, placed->x[order[i]], nearest, &at, err);
     g->report->n_inserted += st == VG_OK;
     g->report->n_refused += st == VG_BLOCKED;
     if (i % PROGRESS_STEP == 0 && stopped(g, "inserting", i, placed->n)) {
@@ -135,30 +138,44 @@ static vg_status insert_all(struct growth *g, const struct vg_placed *placed,
   return st < 0 ? st : VG_OK;
 }
 
-static vg_status populate(struct growth *g, struct vg_error *err)
+static vg_status insert_placed(struct growth *g, struct vg_placed *placed,
+                               double nearest, struct vg_error *err)
 {
-  struct vg_placed placed = {0};
-  uint32_t *order = NULL;
-  double t0 = now(), t1;
+  uint32_t *order = vg_alloc(placed->n, sizeof *order);
+  double t0 = now();
   vg_status st;
 
-  VG_TRY(vg_place(&g->t, g->sizing, g->region,
-                  g->options->point_limit, &placed, err));
-  g->report->n_placed += placed.n;
-  t1 = now();
-  g->report->time_place += t1 - t0;
-  order = vg_alloc(placed.n, sizeof *order);
   if (!order) {
     st = vg_fail_memory(err, "ordering points");
     goto done;
   }
-  VG_TRY(vg_insertion_order(placed.n, (const double (*)[3])placed.x, order,
+  VG_TRY(vg_insertion_order(placed->n, (const double (*)[3])placed->x, order,
                             err));
-  st = insert_all(g, &placed, order, err);
-  g->report->time_insert += now() - t1;
+  st = insert_all(g, placed, order, nearest, err);
 done:
   free(order);
-  free(placed.x);
+  free(placed->x);
+  g->report->n_placed += placed->n;
+  g->report->time_insert += now() - t0;
+  return st;
+}
+
+static vg_status populate(struct growth *g, struct vg_error *err)
+{
+  struct vg_placed placed = {0};
+  double t0;
+  vg_status st;
+
+  VG_TRY(vg_place_seeds(g->n_front, (const double (*)[3])g->t.x, g->sizing,
+                        g->region, &placed, err));
+  st = insert_placed(g, &placed, seed_distance, err);
+  if (st != VG_OK) goto done;
+  t0 = now();
+  VG_TRY(vg_place(&g->t, g->sizing, g->region, g->options->point_limit,
+                  &placed, err));
+  g->report->time_place += now() - t0;
+  st = insert_placed(g, &placed, least_distance, err);
+done:
   return st;
 }
 

@@ -347,7 +347,7 @@ static const double pattern[8][3] = {
   {.5, -.5, .5}, {-.5, .5, -.5}, {-.5, .5, .5}, {.5, -.5, -.5}};
 
 /* Where the field is level, neighbours are points of one body-centred cubic
- * lattice through the origin of the front: fronts that started anywhere meet
+ * lattice through the origin: fronts that started anywhere meet
  * without a fault. 1 when some neighbour lies where the field is not level. */
 static int grow_level(struct placer *p, const double c[3], double h,
                       uint32_t start, int *bad)
@@ -357,7 +357,7 @@ static int grow_level(struct placer *p, const double c[3], double h,
   int graded = 0;
 
   for (int k = 0; k < 3; k++)
-    base[k] = (int64_t)floor((c[k] - p->lo[k]) / a * 2 + 0.5);
+    base[k] = (int64_t)floor(c[k] / a * 2 + 0.5);
   for (int64_t i = -2; i <= 2; i++)
     for (int64_t j = -2; j <= 2; j++)
       for (int64_t k = -2; k <= 2; k++) {
@@ -366,7 +366,7 @@ static int grow_level(struct placer *p, const double c[3], double h,
 
         if ((at[0] ^ at[1]) & 1 || (at[0] ^ at[2]) & 1) continue;
         for (int m = 0; m < 3; m++) {
-          x[m] = p->lo[m] + 0.5 * a * (double)at[m];
+          x[m] = 0.5 * a * (double)at[m];
           d[m] = x[m] - c[m];
           d2 += d[m] * d[m];
         }
@@ -420,6 +420,81 @@ static int grow_face(struct placer *p, uint32_t link)
   h = vg_sizing_at(p->sizing, c);
   gather(p, c, h, (apex + exclusion) * 1.1 * h);
   return propose(p, c, unit, h, link >> 2);
+}
+
+/* --- seeds --------------------------------------------------------------- */
+
+/* Side of the cells that get one seed, over the spacing: from half of it. */
+static const double seed_cell = 8;
+
+struct seeder {
+  const struct vg_sizing *sizing;
+  const struct vg_region *region;
+  struct vg_placed *out;
+  size_t cap;
+};
+
+/* x moved to the lattice of spacing h when the field is level around it. */
+static void snap_to_lattice(const struct vg_sizing *sizing, double h,
+                            double x[3])
+{
+  double a = lattice * h, to[3], step[3];
+
+  for (int k = 0; k < 3; k++) to[k] = a * floor(x[k] / a + 0.5);
+  for (int k = 0; k < 3; k++)
+    for (int side = -1; side <= 1; side += 2) {
+      memcpy(step, to, sizeof step);
+      step[k] += 2 * side * h;
+      if (fabs(vg_sizing_at(sizing, step) - h) > level_within * h) return;
+    }
+  memcpy(x, to, sizeof to);
+}
+
+static int seed(struct seeder *s, const double lo[3], double side)
+{
+  double x[3], h, child[3];
+
+  for (int k = 0; k < 3; k++) x[k] = lo[k] + 0.5 * side;
+  h = vg_sizing_at(s->sizing, x);
+  if (s->region && !vg_region_near(s->region, x, h + side)) return 0;
+  if (side <= seed_cell * h) {
+    if (vg_reserve(&s->out->x, &s->cap, s->out->n + 1, sizeof *s->out->x))
+      return -1;
+    snap_to_lattice(s->sizing, h, x);
+    memcpy(s->out->x[s->out->n++], x, sizeof x);
+    return 0;
+  }
+  for (int octant = 0; octant < 8; octant++) {
+    for (int k = 0; k < 3; k++)
+      child[k] = lo[k] + (octant >> k & 1 ? 0.5 * side : 0);
+    if (seed(s, child, 0.5 * side)) return -1;
+  }
+  return 0;
+}
+
+vg_status vg_place_seeds(size_t n, const double (*x)[3],
+                         const struct vg_sizing *sizing,
+                         const struct vg_region *region,
+                         struct vg_placed *out, struct vg_error *err)
+{
+  struct seeder s = {sizing, region, out, 0};
+  double lo[3] = {0}, side = 0;
+
+  memset(out, 0, sizeof *out);
+  for (int k = 0; k < 3; k++) {
+    double hi = n ? x[0][k] : 0;
+
+    lo[k] = hi;
+    for (size_t i = 0; i < n; i++) {
+      if (x[i][k] < lo[k]) lo[k] = x[i][k];
+      if (x[i][k] > hi) hi = x[i][k];
+    }
+    if (hi - lo[k] > side) side = hi - lo[k];
+  }
+  if (!(side > 0) || !seed(&s, lo, side)) return VG_OK;
+  free(out->x);
+  memset(out, 0, sizeof *out);
+  return vg_fail_memory(err, "placing points");
 }
 
 /* --- the front ---------------------------------------------------------- */

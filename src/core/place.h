@@ -24,7 +24,17 @@ struct vg_placed {
   double (*x)[3];            /* [n], owned by the receiver */
 };
 
-/** Place field points into the fluid cells of t (surface points only).
+/** A sparse set of points, one for every few hundred of the field, to stand
+ * first. They break up the long cells that span a void from surface to
+ * surface, across which location would walk for ever.
+ * @param x    in: [n][3] the points that bound the void
+ * @param out  owned by the caller: free(out->x); some may lie outside */
+vg_status vg_place_seeds(size_t n, const double (*x)[3],
+                         const struct vg_sizing *sizing,
+                         const struct vg_region *region,
+                         struct vg_placed *out, struct vg_error *err);
+
+/** Place field points into the fluid cells of t, besides those it has.
  * @param region  NULL: everywhere
  * @param limit   refuse to place more points; 0: none
  * Returns VG_ERR_UNSUPPORTED when the limit is passed. Deterministic. */
