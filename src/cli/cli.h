@@ -42,6 +42,9 @@ void vg_cli_options_free(struct vg_cli_options *o);
 vg_status vg_cli_option_set(int key, const char *text, struct vg_settings *s,
                             struct vg_error *err);
 
+/** Make a folder and those above it; one that exists is fine. */
+vg_status vg_cli_make_folder(const char *path, struct vg_error *err);
+
 /** Count as "12,345,678" into text[32]; returns text. */
 char *vg_cli_count(unsigned long long n, char *text);
 

@@ -71,12 +71,14 @@ static vg_status check_mesh(const struct arguments *a, struct vg_mesh *m,
   VG_TRY(field(a, m, &sizing, err));
   VG_TRY(vg_mesh_judge(m, sizing, &r, err));
   if (a->json) {
-    print_json(json_pack("{s:s s:b s:o s:o}", "file", a->file, "ok",
-                         r.is_valid, "size", vg_report_size_json(m), "mesh",
+    print_json(json_pack("{s:s s:b s:o s:o s:o}", "file", a->file, "ok",
+                         r.is_valid, "size", vg_report_size_json(m), "patches",
+                         vg_report_patches_json(m), "mesh",
                          vg_report_mesh_json(&r)));
   } else {
     printf("%s: volume mesh\n", a->file);
     vg_report_size_text(stdout, m);
+    VG_TRY(vg_report_patches_text(stdout, m, err));
     vg_report_mesh_text(stdout, &r, 1);
   }
   if (!r.is_valid)
@@ -111,15 +113,16 @@ static vg_status check_surface(const struct arguments *a, struct vg_mesh *m,
   o.require_bc = vg_surface_has_conditions(m);
   VG_TRY(vg_surface_examine(m, &o, &external, &r, err));
   if (a->json) {
-    print_json(json_pack("{s:s s:b s:o s:o}", "file", a->file, "ok",
+    print_json(json_pack("{s:s s:b s:o s:o s:o}", "file", a->file, "ok",
                          r.n_defect == 0, "size", vg_report_size_json(m),
-                         "surface",
+                         "patches", vg_report_patches_json(m), "surface",
                          vg_report_surface_json(m, &r, VG_SHOWN_DEFECTS)));
   } else {
     printf("%s: surface, %s\n", a->file,
            external ? "taken as bodies in a fluid around them"
                       : "taken as the boundary of a fluid inside it");
     vg_report_size_text(stdout, m);
+    VG_TRY(vg_report_patches_text(stdout, m, err));
     vg_report_surface_text(stdout, m, &r, VG_SHOWN_DEFECTS);
     if (!r.n_defect) printf("  no defects\n");
   }

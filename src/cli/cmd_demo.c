@@ -1,9 +1,7 @@
 /* vanguard demo: complete example projects that need no foreign data. */
 #define _GNU_SOURCE
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/memory.h"
@@ -126,11 +124,7 @@ static vg_status make(const struct arguments *a, struct vg_error *err)
   vg_status st;
 
   VG_TRY(vg_demo_make(a->name, a->n_cell, &demo, err));
-  if (a->dir && mkdir(a->dir, 0777) && errno != EEXIST) {
-    st = vg_fail(err, VG_ERR_IO, "%s: cannot create this folder: %s", a->dir,
-                 strerror(errno));
-    goto done;
-  }
+  if (a->dir) VG_TRY(vg_cli_make_folder(a->dir, err));
   if (asprintf(&stem, "%s%s%s", a->dir ? a->dir : "", a->dir ? "/" : "",
                a->name) < 0) {
     stem = NULL;

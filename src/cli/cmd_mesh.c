@@ -189,6 +189,7 @@ static json_t *report_json(const struct run *r, int ok,
   json_object_set_new(o, "ok", json_boolean(ok));
   if (!ok) json_object_set_new(o, "error", json_string(err->text));
   json_object_set_new(o, "input", vg_report_size_json(&p->surface));
+  json_object_set_new(o, "patches", vg_report_patches_json(&p->surface));
   json_object_set_new(o, "surface", vg_report_surface_json(&p->surface,
                       &p->check, VG_SHOWN_DEFECTS));
   json_object_set_new(o, "domain", vg_report_domain_json(&p->domain));

@@ -1,9 +1,11 @@
-/* Command-line options made from the table of settings. Declared in
- * cli/cli.h. */
+/* Command-line options made from the table of settings. and small
+ * things that subcommands share. Declared in cli/cli.h. */
 #define _GNU_SOURCE
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "base/memory.h"
 #include "cli/cli.h"
@@ -28,6 +30,27 @@ int vg_cli_fail(const struct vg_error *err)
   fflush(stdout);
   fprintf(stderr, "vanguard: %s\n", err->text);
   return VG_EXIT_FAILED;
+}
+
+vg_status vg_cli_make_folder(const char *path, struct vg_error *err)
+{
+  char *part = strdup(path);
+  vg_status st = part ? VG_OK : vg_fail_memory(err, "a path");
+
+  for (char *end = part; st >= 0 && *end; ) {
+    char kept;
+
+    while (*end == '/') end++;
+    while (*end && *end != '/') end++;
+    kept = *end;
+    *end = 0;
+    if (mkdir(part, 0777) && errno != EEXIST)
+      st = vg_fail(err, VG_ERR_IO, "%s: cannot create this folder: %s", part,
+                   strerror(errno));
+    *end = kept;
+  }
+  free(part);
+  return st;
 }
 
 char *vg_cli_count(unsigned long long n, char *text)

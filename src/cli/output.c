@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "base/memory.h"
+#include "cli/cli.h"
 #include "cli/deck.h"
 #include "core/quality.h"
 #include "io/format.h"
@@ -153,10 +154,7 @@ static vg_status plan_place(const struct vg_problem *p, const char *dir,
   if (!*base)
     return vg_fail(err, VG_ERR_INPUT, "%s: the project has no name",
                    p->files.stem);
-  if (dir && mkdir(dir, 0777) && errno != EEXIST)
-    return vg_fail(err, VG_ERR_IO, "%s: cannot create this folder: %s", dir,
-                   strerror(errno));
-  return VG_OK;
+  return dir ? vg_cli_make_folder(dir, err) : VG_OK;
 }
 
 vg_status vg_outputs_plan(const struct vg_problem *p, const char *dir,

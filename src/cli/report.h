@@ -17,6 +17,13 @@
 void vg_report_size_text(FILE *to, const struct vg_mesh *m);
 json_t *vg_report_size_json(const struct vg_mesh *m);
 
+/** Number, faces, conditions and name of every patch; on screen at most
+ * VG_SHOWN_PATCHES. */
+#define VG_SHOWN_PATCHES 40
+vg_status vg_report_patches_text(FILE *to, const struct vg_mesh *m,
+                                 struct vg_error *err);
+json_t *vg_report_patches_json(const struct vg_mesh *m);
+
 /** Every kind of defect counted, the first `shown` of each in words, shells,
  * and what the repair did. */
 void vg_report_surface_text(FILE *to, const struct vg_mesh *m,

@@ -1,6 +1,8 @@
 /* Reports on surfaces and domains. Declared in cli/report.h. */
+#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "cli/cli.h"
 #include "cli/report.h"
 
@@ -50,6 +52,63 @@ json_t *vg_report_size_json(const struct vg_mesh *m)
                    "patches", (json_int_t)m->n_patch,
                    "lower", lo[0], lo[1], lo[2],
                    "upper", hi[0], hi[1], hi[2]);
+}
+
+/* Faces per patch; NULL when memory is refused. */
+static size_t *patch_faces(const struct vg_mesh *m)
+{
+  size_t *n = vg_calloc(m->n_patch, sizeof *n);
+
+  for (size_t i = 0; n && i < m->n_tri; i++) n[m->tri_patch[i]]++;
+  for (size_t i = 0; n && i < m->n_quad; i++) n[m->quad_patch[i]]++;
+  return n;
+}
+
+static void code_text(int32_t code, char *text, size_t size)
+{
+  if (code == VG_BC_NONE) snprintf(text, size, "-");
+  else snprintf(text, size, "%d", (int)code);
+}
+
+vg_status vg_report_patches_text(FILE *to, const struct vg_mesh *m,
+                                 struct vg_error *err)
+{
+  size_t *faces = patch_faces(m);
+  char count[32], bc[16], fun3d[16];
+
+  if (!faces) return vg_fail_memory(err, "a report");
+  fprintf(to, "  %8s %15s %6s %6s  %s\n", "patch", "faces", "USM3D", "FUN3D",
+          "name");
+  for (size_t i = 0; i < m->n_patch && i < VG_SHOWN_PATCHES; i++) {
+    code_text(m->patch[i].bc, bc, sizeof bc);
+    code_text(m->patch[i].bc_fun3d, fun3d, sizeof fun3d);
+    fprintf(to, "  %8d %15s %6s %6s  %s\n", (int)m->patch[i].id,
+            vg_cli_count(faces[i], count), bc, fun3d, m->patch[i].name);
+  }
+  if (m->n_patch > VG_SHOWN_PATCHES)
+    fprintf(to, "  ... and %zu more\n", m->n_patch - VG_SHOWN_PATCHES);
+  free(faces);
+  return VG_OK;
+}
+
+static json_t *code_json(int32_t code)
+{
+  return code == VG_BC_NONE ? json_null() : json_integer(code);
+}
+
+json_t *vg_report_patches_json(const struct vg_mesh *m)
+{
+  size_t *faces = patch_faces(m);
+  json_t *list = json_array();
+
+  for (size_t i = 0; faces && i < m->n_patch; i++)
+    json_array_append_new(list,
+      json_pack("{s:i s:s s:o s:o s:I}", "id", (int)m->patch[i].id, "name",
+                m->patch[i].name, "usm3d", code_json(m->patch[i].bc), "fun3d",
+                code_json(m->patch[i].bc_fun3d), "faces",
+                (json_int_t)faces[i]));
+  free(faces);
+  return list;
 }
 
 static void shells_text(FILE *to, const struct vg_surface_report *r)

@@ -174,6 +174,20 @@ static vg_status resolve_patches(struct vg_problem *p, struct vg_error *err)
   return vg_deck_patches_of(&p->surface, &p->settings, err);
 }
 
+/* Writers give patches without a condition that of an inviscid wall. */
+static void note_unset(struct vg_problem *p)
+{
+  size_t n = 0;
+
+  for (size_t i = 0; i < p->surface.n_patch; i++)
+    n += p->surface.patch[i].bc == VG_BC_NONE &&
+         p->surface.patch[i].bc_fun3d == VG_BC_NONE;
+  if (n)
+    vg_note(&p->notes, "%zu patches have no boundary condition and are written "
+            "as inviscid walls (5, FUN3D 3000); give conditions in a .mapbc "
+            "file or the deck", n);
+}
+
 static vg_status close_body(struct vg_problem *p, struct vg_display *show,
                             struct vg_error *err)
 {
@@ -199,6 +213,7 @@ vg_status vg_problem_close(struct vg_problem *p, struct vg_display *show,
 
   vg_mesh_keep_boundary(&p->surface);
   p->require_bc = vg_surface_has_conditions(&p->surface);
+  note_unset(p);
   VG_TRY(split_quads(&p->surface, &p->notes, err));
   VG_TRY(resolve_patches(p, err));
   if (s->weld > 0)

@@ -1,0 +1,13 @@
+# Progress goes to stderr: plain lines to a file, a live line to a terminal.
+vanguard demo box --cells 2000 --out made/on/the/way
+exits 0
+vanguard mesh -p made/on/the/way/box --out plain
+exits 0
+says err "inserting"
+lacks err $'\r'
+lacks out "inserting"
+
+script -qec "$program mesh -p made/on/the/way/box --out live" /dev/null \
+  >terminal </dev/null
+says terminal $'\r\033[K'
+says terminal "validity: valid"
