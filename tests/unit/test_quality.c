@@ -1,15 +1,14 @@
 /* The judge: known figures, and every kind of fault found and counted. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "base/memory.h"
 #include "core/quality.h"
+#include "io/ugrid.h"
+#include "io/vgrid.h"
+#include "io_support.h"
 
 #define N 4   /* cells per side of the test cube */
 #define P (N + 1)
@@ -573,6 +572,53 @@ static void a_hub_is_matched(void **state)
   vg_mesh_release(&m);
 }
 
+/* VGRID's own mesh of a 20 x 20 x 20 box with layers: counts from its
+ * headers, angles as an independent program (long double volumes, sorted
+ * faces) prints them, with its rounding. */
+static void a_mesh_of_vgrid(void **state)
+{
+  const char *file = io_real("vgrid_box/box.cogsg");
+  struct vg_mesh m = VG_MESH_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+  struct vg_mesh_report r;
+
+  (void)state;
+  assert_int_equal(vg_cogsg_read(file, &m, NULL, NULL, &err), VG_OK);
+  r = judge(&m);
+  assert_true(r.is_valid);
+  assert_int_equal(r.n_cell, 63926);
+  assert_int_equal(r.n_point, 12440);
+  assert_int_equal(r.n_inner_face, (4 * 63926 - 6810) / 2);
+  assert_int_equal(r.n_component, 1);
+  assert_near(r.volume, 8000, 1e-8);
+  assert_near(r.angle_min, 0.03, 0.006);
+  assert_near(r.angle_max, 179.15, 0.006);
+  vg_mesh_release(&m);
+}
+
+/* AFLR3's mesh of a body in a box: 38,604 tetrahedra, 85,900 prisms. The
+ * same independent program says: inner faces 290,603, angles 11.001 and
+ * 155.021, enclosed volume 79983.302897, none of the cells turned over. */
+static void a_mesh_with_prisms(void **state)
+{
+  const char *file = io_real("simple/cape_cigar_viscous_volume.lb8.ugrid.xz");
+  struct vg_mesh m = VG_MESH_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+  struct vg_mesh_report r;
+
+  (void)state;
+  assert_int_equal(vg_ugrid_read(file, &m, NULL, &err), VG_OK);
+  r = judge(&m);
+  assert_true(r.is_valid);
+  assert_int_equal(r.n_cell, 38604 + 85900);
+  assert_int_equal(r.n_inner_face, 290603);
+  assert_near(r.angle_min, 11.001, 0.0006);
+  assert_near(r.angle_max, 155.021, 0.0006);
+  assert_near(r.enclosed, 79983.302897, 1e-6);
+  assert_true(r.volume_error < 1e-13);
+  vg_mesh_release(&m);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -595,6 +641,8 @@ int main(void)
     cmocka_unit_test(edges_are_measured_against_the_field),
     cmocka_unit_test(figures_do_not_depend_on_numbering),
     cmocka_unit_test(a_hub_is_matched),
+    cmocka_unit_test(a_mesh_of_vgrid),
+    cmocka_unit_test(a_mesh_with_prisms),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);
