@@ -69,6 +69,26 @@ static void move_from(struct vg_mesh *m, size_t first, double x, double y,
   }
 }
 
+/* Kind, place and remedy of every finding, and a patch if it has a face. */
+static void check_texts(const struct vg_mesh *m,
+                        const struct vg_surface_report *r)
+{
+  char text[512], start[64];
+
+  for (size_t i = 0; i < r->n_defect; i++) {
+    const struct vg_defect *d = &r->defect[i];
+    const char *at;
+
+    vg_defect_text(m, d, text, sizeof text);
+    snprintf(start, sizeof start, "%s: %s", vg_defect_name(d->kind),
+             d->face[0] == SIZE_MAX ? "point " : "patch ");
+    assert_memory_equal(text, start, strlen(start));
+    at = strstr(text, " at (");
+    assert_non_null(at);
+    assert_true(strlen(strchr(at, ':')) > 20);
+  }
+}
+
 static void check(struct vg_mesh *m, int repair, int external,
                   struct vg_surface_report *r)
 {
@@ -88,6 +108,7 @@ static void check(struct vg_mesh *m, int repair, int external,
     assert_true(d[-1].kind < d->kind
                 || (d[-1].kind == d->kind && d[-1].face[0] <= d->face[0]));
   }
+  check_texts(m, r);
 }
 
 /* Only findings of one kind, n of them. */
@@ -139,6 +160,36 @@ static void accepts_a_box(void **unused)
     assert_int_equal(r.face_kinds[t], 0);
     assert_int_equal(r.tri_shell[t], 0);
   }
+  done(&m, &r);
+}
+
+/* A node with many faces. */
+static void accepts_a_double_cone(void **unused)
+{
+  const uint32_t n = 100;
+  NEW;
+
+  vg_mesh_add_patch(&m, 1, "");
+  add_point(&m, 0, 0, -1);
+  add_point(&m, 0, 0, 1);
+  for (uint32_t i = 0; i < n; i++) {
+    double u = 2 * 3.14159265358979 * i / n;
+
+    add_point(&m, cos(u), sin(u), 0);
+  }
+  for (uint32_t i = 0; i < n; i++) {
+    add_tri(&m, 0, 2 + (i + 1) % n, 2 + i, 0);
+    add_tri(&m, 1, 2 + (i + i % 2) % n, 2 + (i + 1 - i % 2) % n, 0);
+  }
+  check(&m, 0, 1, &r);
+  assert_true(r.is_closed);
+  assert_int_equal(r.count[VG_DEFECT_INTERSECTION], 0);
+  check(&m, 1, 1, &r);
+  assert_none(&r);
+  assert_int_equal(r.n_flipped, n / 2);
+  /* Polygon of n corners, base of two cones of height 1. */
+  assert_true(fabs(r.shell[0].volume
+                   - n * sin(2 * 3.14159265358979 / n) / 3) < 1e-12);
   done(&m, &r);
 }
 
@@ -884,6 +935,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(accepts_a_box),
+    cmocka_unit_test(accepts_a_double_cone),
     cmocka_unit_test(accepts_an_empty_mesh),
     cmocka_unit_test(reports_the_edges_of_a_hole),
     cmocka_unit_test(reports_three_faces_at_an_edge),
