@@ -418,10 +418,14 @@ vg_status vg_mesh_turn(struct vg_mesh *m, struct vg_turned *turned,
     st = face_build(&t, m, err);
     if (st < 0) return st;
     result.cell = turn_cells(m);
-    meet_cells(m, &t, m->n_tet, (const uint32_t *)m->tet, 4, tet_face, 4, &result);
-    meet_cells(m, &t, m->n_pyr, (const uint32_t *)m->pyr, 5, pyr_face, 5, &result);
-    meet_cells(m, &t, m->n_pri, (const uint32_t *)m->pri, 6, pri_face, 5, &result);
-    meet_cells(m, &t, m->n_hex, (const uint32_t *)m->hex, 8, hex_face, 6, &result);
+    meet_cells(m, &t, m->n_tet, (const uint32_t *)m->tet, 4, tet_face, 4,
+               &result);
+    meet_cells(m, &t, m->n_pyr, (const uint32_t *)m->pyr, 5, pyr_face, 5,
+               &result);
+    meet_cells(m, &t, m->n_pri, (const uint32_t *)m->pri, 6, pri_face, 5,
+               &result);
+    meet_cells(m, &t, m->n_hex, (const uint32_t *)m->hex, 8, hex_face, 6,
+               &result);
     for (size_t f = 0; f < m->n_tri + m->n_quad; f++)
       result.loose_face += !t.found[f];
     face_release(&t);

@@ -68,7 +68,8 @@ vg_status vg_patch_axes(const struct vg_mesh *m, int *axis,
   for (size_t i = 0; i < m->n_patch; i++) {
     axis[i] = -1;
     for (int k = 2; k >= 0; k--)
-      if (box[i][3 + k] >= box[i][k] && box[i][3 + k] - box[i][k] <= 1e-9 * size)
+      if (box[i][3 + k] >= box[i][k] &&
+          box[i][3 + k] - box[i][k] <= 1e-9 * size)
         axis[i] = k;
   }
   free(box);

@@ -371,7 +371,8 @@ static void written_reals_read_back(void **state)
 
 static void no_locale_shows(void **state)
 {
-  static const char *const name[] = {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8"};
+  static const char *const name[] = {"de_DE.UTF-8", "de_DE.utf8",
+                                     "fr_FR.UTF-8"};
   char text[32];
   double v;
   int found = 0;
@@ -447,7 +448,8 @@ static void a_full_disk_is_reported(void **state)
 {
   struct vg_output out = VG_OUTPUT_INIT;
   struct vg_error err = VG_ERROR_INIT;
-  const char *path = io_temp("stream_full"), *part = io_temp("stream_full.part");
+  const char *path = io_temp("stream_full");
+  const char *part = io_temp("stream_full.part");
 
   (void)state;
   unlink(part);

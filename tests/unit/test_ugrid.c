@@ -263,7 +263,8 @@ static void bad_values_are_named(void **state)
   io_refuse(parse_text, "-4 4 0 1 0 0 0", VG_ERR_FORMAT, "number of points");
   io_refuse(parse_text, "4000000000 4 0 1 0 0 0 1 2 3", VG_ERR_FORMAT,
             "truncated");
-  io_refuse(parse_text, "99999999999 4 0 1 0 0 0", VG_ERR_FORMAT, "99999999999");
+  io_refuse(parse_text, "99999999999 4 0 1 0 0 0", VG_ERR_FORMAT,
+            "99999999999");
   io_refuse(parse_text, "3 1 0 0 0 0 0\n0 0 0\n1 0 nan\n0 1 0\n1 2 3\n1\n",
             VG_ERR_FORMAT, "case:3:");
   io_refuse(parse_text, "3 1 0 0 0 0 0\n0 0 0\n1 0 0\n0 1 0\n1 2 4\n1\n",
@@ -391,7 +392,10 @@ static void many_tags_cost_no_quadratic_time(void **state)
 
 static void reads_real_files(void **state)
 {
-  static const struct { const char *name; size_t n_tri, n_tet, n_pri; } files[] = {
+  static const struct {
+    const char *name;
+    size_t n_tri, n_tet, n_pri;
+  } files[] = {
     {"transport/dlr_f6_wbnp_half_coarse.lb8.ugrid.xz", 33298, 0, 0},
     {"transport/dlr_f6_wbnp_half_medium.lb8.ugrid.xz", 111410, 0, 0},
     {"transport/onera_m6_sharp_te_farfield.lb8.ugrid.xz", 22278, 0, 0},

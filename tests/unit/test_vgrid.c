@@ -84,7 +84,8 @@ static void writes_t1_byte_for_byte(void **state)
   (void)state;
   io_make_t1(&m, 1);
   info.n_trailing = 1;
-  if (vg_cogsg_write(stem, &m, &info, 0, &n_unset, &err)) fail_msg("%s", err.text);
+  if (vg_cogsg_write(stem, &m, &info, 0, &n_unset, &err))
+    fail_msg("%s", err.text);
   assert_int_equal(n_unset, 4);
   compare_file(with(stem, ".cogsg"), t1_cogsg, sizeof t1_cogsg);
   compare_file(with(stem, ".bc"), t1_bc, sizeof t1_bc - 1);
