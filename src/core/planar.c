@@ -28,7 +28,7 @@ static vg_status check_input(const struct region *r, struct vg_error *err)
   if (r->n_edge < 3)
     return vg_fail(err, VG_ERR_INPUT, "plane region: %zu boundary segments; "
                    "a closed loop needs at least 3", r->n_edge);
-  if (r->n > VG_T2_NONE / 8)
+  if (r->n > VG_T2_POINT_MAX / 2)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
                    "plane region: %zu points are too many", r->n);
   for (size_t i = 0; i < r->n_edge; i++)
@@ -264,8 +264,9 @@ vg_status vg_planar_mesh(size_t n, const double (*p)[2], size_t n_edge,
   VG_TRY(boundary_size(&r, err));
   if (vg_tri2_fill(&r.t, size, user)
       || vg_tri2_improve(&r.t, (uint32_t)n + 3, N_SWEEP)) {
-    st = vg_fail_memory(err, "a plane triangulation; the size function may "
-                        "ask for very small edges");
+    st = vg_fail(err, VG_ERR_MEMORY, "plane region with %zu boundary segments: "
+                 "not enough memory, or more than %u points; the spacing may "
+                 "be far too small in it", n_edge, VG_T2_POINT_MAX);
     goto done;
   }
   st = hand_over(&r, n_new, add, n_tri, tri, err);

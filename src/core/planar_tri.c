@@ -23,8 +23,8 @@ uint32_t vg_tri2_add_point(struct vg_tri2 *t, const double x[2], double h)
 {
   size_t n = t->n_point;
 
-  if (n >= VG_T2_NONE / 4 || vg_reserve(&t->x, &t->cap_point, n + 1,
-                                        sizeof *t->x)
+  if (n >= VG_T2_POINT_MAX
+      || vg_reserve(&t->x, &t->cap_point, n + 1, sizeof *t->x)
       || vg_reserve(&t->h, &t->cap_h, n + 1, sizeof *t->h)
       || vg_reserve(&t->vt, &t->cap_vt, n + 1, sizeof *t->vt))
     return VG_T2_NONE;

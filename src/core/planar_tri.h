@@ -16,6 +16,10 @@
 
 #define VG_T2_NONE UINT32_MAX
 
+/* More points than a surface of any mesh has: a size function that asks for
+ * them is wrong, and is refused before memory is gone. */
+#define VG_T2_POINT_MAX 100000000u
+
 enum {
   VG_T2_EDGE = 7,      /* bits 0..2: half-edge k is constrained */
   VG_T2_INSIDE = 8,
@@ -123,7 +127,8 @@ int vg_tri2_cavity(struct vg_tri2 *t, const double x[2], uint32_t at);
 int vg_tri2_commit(struct vg_tri2 *t, uint32_t p, uint32_t flag);
 void vg_tri2_cancel(struct vg_tri2 *t);
 
-/** Append a point; its index, or NONE without memory. */
+/** Append a point; its index, or NONE without memory or beyond
+ * VG_T2_POINT_MAX. */
 uint32_t vg_tri2_add_point(struct vg_tri2 *t, const double x[2], double h);
 
 /** Flip until every free edge is Delaunay. Number of flips, -1 no memory. */
