@@ -188,6 +188,10 @@ static vg_status open_file(const char *path, size_t limit,
       close(fd);
       return vg_fail(err, VG_ERR_IO, "%s: is a folder, not a file", path);
     }
+    if (S_ISCHR(s.st_mode) || S_ISBLK(s.st_mode)) {
+      close(fd);
+      return vg_fail(err, VG_ERR_IO, "%s: is a device, not a file", path);
+    }
     if (S_ISREG(s.st_mode) && s.st_size > 0) expected = (size_t)s.st_size;
   }
   st = read_all(fd, path, expected, limit, &data, &size, err);

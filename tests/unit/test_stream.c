@@ -35,6 +35,7 @@ static void names_what_cannot_be_opened(void **state)
   (void)state;
   refuse_open(io_temp("stream_no_such_file"), VG_ERR_IO, "No such file");
   refuse_open(VG_TMP_DIR, VG_ERR_IO, "folder");
+  refuse_open("/dev/zero", VG_ERR_IO, "device");
   io_write_file(path, "", 0);
   refuse_open(path, VG_ERR_FORMAT, "empty");
   unlink(path);
