@@ -3,7 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "cli/deck.h"
+#include "io/mapbc.h"
 #include "io/stream.h"
 
 #define CELL_SIZE (2 * VG_WRITE_MAX + 4)
@@ -187,18 +189,31 @@ vg_status vg_deck_write(const char *path, const struct vg_settings *s,
   return st;
 }
 
+/* The code from which both solvers' follow: USM3D's where FUN3D's is its
+ * translation, else FUN3D's where that says more (4100 is more than 4). */
+static int32_t telling_code(const struct vg_patch *p, int axis)
+{
+  if (p->bc == VG_BC_NONE) return p->bc_fun3d;
+  if (p->bc_fun3d == vg_bc_to_fun3d(p->bc, axis)) return p->bc;
+  if (p->bc_fun3d != VG_BC_NONE && vg_bc_to_usm3d(p->bc_fun3d) == p->bc)
+    return p->bc_fun3d;
+  return p->bc;
+}
+
 vg_status vg_deck_patches_of(const struct vg_mesh *m, struct vg_settings *s,
                              struct vg_error *err)
 {
-  vg_status st = VG_OK;
+  int *axis = vg_alloc(m->n_patch, sizeof *axis);
+  vg_status st = axis ? vg_patch_axes(m, axis, err)
+                      : vg_fail_memory(err, "the patches");
 
   for (size_t i = 0; i < m->n_patch && st >= 0; i++) {
-    const struct vg_patch *from = &m->patch[i];
-    struct vg_patch_row row = { .id = from->id, .bc = from->bc };
+    struct vg_patch_row row = { .id = m->patch[i].id,
+                                .bc = telling_code(&m->patch[i], axis[i]) };
 
-    if (row.bc == VG_BC_NONE) row.bc = from->bc_fun3d;
-    snprintf(row.name, sizeof row.name, "%s", from->name);
+    snprintf(row.name, sizeof row.name, "%s", m->patch[i].name);
     st = vg_settings_add(s, VG_TABLE_PATCHES, &row, err);
   }
+  free(axis);
   return st;
 }

@@ -219,7 +219,23 @@ static vg_status merge_sources(struct vg_problem *p, struct vg_error *err)
   return VG_OK;
 }
 
-/* The table wins over the .mapbc; a code from 3000 on is FUN3D's. */
+/* A code from 3000 on, or a negative one, is FUN3D's. */
+static void set_condition(struct vg_patch *p, int32_t code, int axis)
+{
+  int32_t before = p->bc;
+
+  if (code == VG_BC_NONE) return;
+  if (code < 0 || (code >= 3000 && code < 8000)) {
+    p->bc_fun3d = code;
+    p->bc = vg_bc_to_usm3d(code);
+  } else {
+    p->bc = code;
+    p->bc_fun3d = vg_bc_to_fun3d(code, axis);
+  }
+  if (p->bc != before) p->family = p->bc;
+}
+
+/* The table wins over the .mapbc. */
 static vg_status apply_patch_table(struct vg_problem *p, struct vg_error *err)
 {
   int *axis = vg_alloc(p->surface.n_patch, sizeof *axis);
@@ -238,15 +254,7 @@ static vg_status apply_patch_table(struct vg_problem *p, struct vg_error *err)
       break;
     }
     if (*row->name) snprintf(to->name, sizeof to->name, "%s", row->name);
-    if (row->bc == VG_BC_NONE) continue;
-    if (row->bc >= 3000 && row->bc < 8000) {
-      to->bc_fun3d = row->bc;
-      to->bc = vg_bc_to_usm3d(row->bc);
-    } else {
-      to->bc = row->bc;
-      to->bc_fun3d = vg_bc_to_fun3d(row->bc, axis[at]);
-    }
-    to->family = to->bc;
+    set_condition(to, row->bc, axis[at]);
   }
   free(axis);
   return st;

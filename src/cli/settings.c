@@ -86,7 +86,7 @@ static const struct vg_param patch_columns[] = {
   { "bc", AT(bc), .type = VG_PARAM_ID, .lo = -9999, .hi = 99999,
     .optional = 1, .unit = "", .help = "boundary condition, USM3D code (0 "
     "freestream, 1 symmetry, 3 farfield, 4 viscous wall, 5 inviscid wall) or "
-    "FUN3D code (3000 to 7999); -: as the input says" },
+    "FUN3D code (3000 to 7999, or below 0); -: as the input says" },
   { "name", AT(name), .type = VG_PARAM_TEXT, .unit = "",
     .help = "name; \"\": as the input says" },
 };

@@ -38,7 +38,7 @@ adapter() {
   local header=$1 allowed=$2 file
   while IFS= read -r file; do
     [[ $file =~ $allowed ]] || complain "src/$file includes <$header>"
-  done < <(grep -rlE "#[[:space:]]*include[[:space:]]*[<\"]$header[>\"]" . |
+  done < <(grep -rlE "#[[:space:]]*include[[:space:]]*[<\"]${header}[>\"]" . |
     sed 's,^\./,,')
 }
 adapter tetgen.h '^core/cdt_tetgen\.cpp$'

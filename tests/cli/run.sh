@@ -6,7 +6,8 @@ set -u
 case_file=$(realpath "$1")
 program=$(realpath "$2")
 folder=$3
-here=$(dirname "$(realpath "$0")")
+here=$(dirname "$(realpath "$0")") # for cases
+export here
 failures=0
 
 rm -rf "$folder"
@@ -45,5 +46,6 @@ absent() { for f; do [ ! -e "$f" ] || fail "$f is there"; done; }
 same() { cmp "$1" "$2" || fail "$1 and $2 differ"; }
 skip() { echo "skipped: $*"; exit 77; }
 
+# shellcheck source=/dev/null
 . "$case_file"
 [ "$failures" = 0 ]

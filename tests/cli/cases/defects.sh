@@ -57,6 +57,15 @@ printf 't\npatches\nid bc name\n4 5000 "far two"\n' >tet.deck
 vanguard mesh -q -p tet --out done
 exits 0
 says done/tet.mapbc "far_two"
+says done/tet.resolved.deck "4   3   \"far two\""
+printf 't\npatches\nid bc\n4 4100\n' >tet.deck
+vanguard mesh -q -p tet --out more --write fun3d.mapbc
+exits 0
+says more/tet.resolved.deck "4   4100"
+vanguard mesh -q -p tet --deck more/tet.resolved.deck --out again \
+  --write fun3d.mapbc
+same more/tet.fun3d.mapbc again/tet.fun3d.mapbc
+says again/tet.fun3d.mapbc "4100"
 printf 't\npatches\nid bc\n7 5000\n' >tet.deck
 vanguard mesh -q -p tet
 exits 1

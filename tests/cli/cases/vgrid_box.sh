@@ -1,6 +1,8 @@
 # A real VGRID project meshes as it is.
 [ -d "${VG_DATA_DIR:-}/vgrid_box" ] || skip "VG_DATA_DIR has no vgrid_box"
-for suffix in d3m front mapbc; do cp "$VG_DATA_DIR/vgrid_box/box.$suffix" .; done
+for suffix in d3m front mapbc; do
+  cp "$VG_DATA_DIR/vgrid_box/box.$suffix" .
+done
 vanguard mesh -q -p box
 exits 0
 says out "validity: valid"
