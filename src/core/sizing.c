@@ -13,7 +13,7 @@
 
 struct vg_sizing {
   struct vg_octree octree;
-  double slope, cap;       /* outside the octree; INFINITY: no cap */
+  double slope, cap;       /* of sizes outside the octree */
   double least, most;      /* over the octree */
 };
 
@@ -43,7 +43,9 @@ static vg_status check_options(const struct vg_sizing_options *o,
   return VG_OK;
 }
 
-/* The cap where none is given: nothing beyond what the input asks for. */
+/* Largest size in the input. With a surface it is the cap where none is given:
+ * cells larger than any face of the boundary are of no use, and a uniform
+ * boundary should give a uniform mesh. VGRID's mean never exceeds it. */
 static double largest(const struct vg_source_set *set,
                       const struct vg_samples *s)
 {
@@ -113,10 +115,10 @@ static vg_status build(const struct vg_sizing_options *o,
                    "%g); use another unit of length", side);
   f->slope = o->growth - 1;
   f->h_min = o->h_min;
-  f->h_max = o->h_max > 0 ? o->h_max : cap;
+  f->h_max = o->h_max > 0 ? o->h_max : n ? cap : INFINITY;
   if (f->h_max < f->h_min) f->h_max = f->h_min;
   s->slope = f->slope;
-  s->cap = o->h_max > 0 ? o->h_max : INFINITY;
+  s->cap = o->h_max > 0 ? o->h_max : f->set.n_mean ? cap : INFINITY;
   if (n < (VG_OCTREE_LEAF - LEAF_BASE) / LEAF_PER_SAMPLE)
     limit += n * LEAF_PER_SAMPLE;
   return vg_octree_build(f, lo, side, limit, &s->octree, err);

@@ -50,8 +50,9 @@ struct vg_source {
 
 struct vg_sizing_options {
   double h_min;          /* no size below this; 0: none */
-  double h_max;          /* no size above this; 0: the largest one that the
-                            surface or a source asks for; INFINITY: none */
+  double h_max;          /* no size above this; INFINITY: no limit; 0: within
+                            a surface the largest one that the surface or a
+                            source asks for, elsewhere no limit */
   double growth;         /* growth rate g > 1 of neighbouring edges away from
                             the surface; default 1.2 */
   double scale;          /* multiplies every source spacing (VGRID's ifact) */
@@ -78,7 +79,8 @@ vg_status vg_sizing_new(const struct vg_sizing_options *options, size_t n,
 void vg_sizing_free(struct vg_sizing *s);
 
 /** Target edge length at x, > 0. Outside the root cube: that of the nearest
- * point of it, grown with the distance, up to h_max if one is given.
+ * point of it, grown with the distance, up to h_max if one is given, or the
+ * largest source if VGRID's are among them.
  * Threads: safe on a shared field. Cost: below 0.2 us. */
 double vg_sizing_at(const struct vg_sizing *s, const double x[3]);
 

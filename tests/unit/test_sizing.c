@@ -495,12 +495,35 @@ static void options_clamp(void **state)
   assert_near(hi, 0.5, 1e-7);
   assert_near(vg_sizing_at(s, far), 0.5, 1e-7);
   vg_sizing_free(s);
+  /* no limit outside the surface even where none is asked for */
+  s = field(&plain, 0, NULL, &m);
+  vg_sizing_range(s, &lo, &hi);
+  assert_near(hi, sqrt(2) * 12 / 9, 1e-6);
+  assert_near(vg_sizing_at(s, far), sqrt(2) * 12 / 9 + 0.2 * 88, 0.2);
+  vg_sizing_free(s);
   o = plain;
   o.h_max = INFINITY;
   s = field(&o, 0, NULL, &m);
   assert_near(vg_sizing_at(s, far), sqrt(2) * 12 / 9 + 0.2 * 88, 0.2);
   vg_sizing_free(s);
   vg_mesh_release(&m);
+}
+
+/* A source alone grows without limit, VGRID's mean stays below its largest. */
+static void sources_alone_need_no_limit(void **state)
+{
+  struct vg_source s = { .kind = VG_SOURCE_POINT, .h0 = 0.1 }, box[8];
+  const double x[3] = { 0.6, 0.8, 0 }, far[3] = { 0, 0, -500 };
+  struct vg_sizing *one_point = field(&plain, 1, &s, NULL), *vgrid;
+
+  (void)state;
+  assert_near(vg_sizing_at(one_point, x), 0.3, 0.03 * 0.3);
+  assert_near(vg_sizing_at(one_point, far), 100.1, 1);
+  box_sources(box);
+  vgrid = field(&plain, 8, box, NULL);
+  assert_true(vg_sizing_at(vgrid, far) <= 2);
+  vg_sizing_free(one_point);
+  vg_sizing_free(vgrid);
 }
 
 static void the_same_input_gives_the_same_bytes(void **state)
@@ -634,6 +657,7 @@ int main(void)
     cmocka_unit_test(sizes_may_span_five_decades),
     cmocka_unit_test(stretched_faces_take_their_short_edges),
     cmocka_unit_test(options_clamp),
+    cmocka_unit_test(sources_alone_need_no_limit),
     cmocka_unit_test(the_same_input_gives_the_same_bytes),
     cmocka_unit_test(bad_sources_are_named),
     cmocka_unit_test(bad_options_and_surfaces_are_refused),
