@@ -4,6 +4,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <cmocka.h>
@@ -235,6 +236,9 @@ static void is_exact_near_a_plane(void **unused)
                         + v * (p[2][k] - p[0][k]) / 2);
     check_orient3d(p);
     check_plane(p);
+    for (int k = 0; k < 2; k++) /* and c on the line of a b */
+      p[2][k] = rounded(p[0][k] + u * (p[1][k] - p[0][k]) / 2);
+    check_plane(p);
   }
 }
 
@@ -289,6 +293,94 @@ static void is_exact_after_translation(void **unused)
     check_orient3d(p);
     check_plane(p);
   }
+}
+
+/* Rows of whole numbers with determinant 1 and the largest entries that a
+ * double holds: 1 is far below what even two doubles can tell from 0. */
+static void sees_one_unit_of_volume(void **unused)
+{
+  uint64_t s = 5;
+
+  (void)unused;
+  for (int n = 0; n < 2000; n++) {
+    int64_t m[3][3] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } };
+    double p[4][3] = { { 0 } };
+
+    for (;;) { /* add a multiple of one row to another while it fits */
+      int i = (int)(next(&s) % 3), j = (i + 1 + (int)(next(&s) % 2)) % 3;
+      int64_t by = (int64_t)(next(&s) % 15) - 7, most = 0, row[3];
+
+      for (int k = 0; k < 3; k++) {
+        row[k] = m[i][k] + by * m[j][k];
+        if (llabs(row[k]) > most) most = llabs(row[k]);
+      }
+      if (most >= (int64_t)1 << 52) break;
+      memcpy(m[i], row, sizeof row);
+    }
+    for (int i = 0; i < 3; i++)
+      for (int k = 0; k < 3; k++) p[i + 1][k] = (double)m[i][k];
+    assert_int_equal(det_sign(4, 3, p, 0), -1);
+    check_orient3d(p);
+  }
+}
+
+static void sees_one_unit_of_area(void **unused)
+{
+  uint64_t s = 7;
+
+  (void)unused;
+  for (int n = 0; n < 2000; n++) { /* neighbours in a Farey series */
+    double p[4][3] = { { 0 } };
+    double *a = p[1 + n % 2], *b = p[2 - n % 2];
+
+    a[0] = b[1] = 1;
+    for (;;) {
+      double by = (double)(1 + next(&s) % 9), *c = b;
+
+      for (int k = 0; k < 2; k++) b[k] += by * a[k];
+      if (b[0] + b[1] > 0x1p48) break;
+      b = a;
+      a = c;
+    }
+    p[3][0] = p[1][0] + p[2][0]; /* incircle: fourth of a parallelogram */
+    p[3][1] = p[1][1] + p[2][1];
+    check_plane(p);
+    assert_int_equal(fabs(vg_orient2d(p[0], p[1], p[2])), 1);
+  }
+}
+
+/* Points on a sphere with squared radius R of 107 bits about 0, and one with
+ * R - 1: u^2 + v^2 = x^2 + y^2 - 1 for x = u + 1 and 2 u = v^2 - y^2. */
+static void sees_one_unit_of_squared_radius(void **unused)
+{
+  uint64_t s = 6;
+  double p[5][3];
+  int side[3] = { 0, 0, 0 };
+
+  (void)unused;
+  for (int n = 0; n < 4000; n++) {
+    double v = (double)(134000000 + next(&s) % 200000);
+    double y = v - 2 * (double)(1 + next(&s) % 30000000);
+    double u = (v - y) / 2 * (v + y), e[3] = { u, v, 0 };
+    double x[3] = { u + 1, y, n & 1 ? whole(&s, 53) : 0 };
+    int want;
+
+    e[2] = x[2];
+    for (int i = 0; i < 5; i++) {
+      uint64_t r = next(&s) >> 8;
+      const double *from = i == n / 2 % 5 ? e : x;
+      int turn = n & 1 ? (int)(r % 3) : 0; /* even: all in the plane z = 0 */
+
+      for (int k = 0; k < 3; k++)
+        p[i][k] = r >> (8 + k) & 1 ? -from[(k + turn) % 3]
+                                   : from[(k + turn) % 3];
+    }
+    check_insphere(p);
+    check_plane(p);
+    want = sign(vg_insphere(p[0], p[1], p[2], p[3], p[4]));
+    side[1 + want]++;
+  }
+  assert_true(side[0] > 500 && side[2] > 500);
 }
 
 static int parity(const int *perm, int n)
@@ -368,6 +460,9 @@ int main(void)
     cmocka_unit_test(is_exact_near_a_plane),
     cmocka_unit_test(is_exact_near_a_sphere),
     cmocka_unit_test(is_exact_after_translation),
+    cmocka_unit_test(sees_one_unit_of_volume),
+    cmocka_unit_test(sees_one_unit_of_area),
+    cmocka_unit_test(sees_one_unit_of_squared_radius),
     cmocka_unit_test(is_antisymmetric),
     cmocka_unit_test(holds_at_the_ends_of_the_range),
   };
