@@ -5,7 +5,9 @@
 
 #include "base/memory.h"
 #include "core/cdt_tetgen.h"
-#include "core/predicates.h"
+#include "core/hilbert.h"
+#include "core/insert.h"
+#include "core/recover.h"
 
 /* --- surface triangles found among cell faces -------------------------- */
 
@@ -161,8 +163,8 @@ static vg_status spread_sides(struct vg_tets *t, uint8_t *side,
   return VG_OK;
 }
 
-static vg_status mark_outside(struct vg_tets *t, size_t n_tri,
-                              const uint32_t (*tri)[3], struct vg_error *err)
+vg_status vg_boundary_sides(struct vg_tets *t, size_t n_tri,
+                            const uint32_t (*tri)[3], struct vg_error *err)
 {
   struct tri_table table = {0};
   uint8_t *side = vg_calloc(t->n_cell, 1);
@@ -186,36 +188,67 @@ static vg_status mark_outside(struct vg_tets *t, size_t n_tri,
   return st;
 }
 
-/* --- the whole void at once -------------------------------------------- */
+/* --- Delaunay tetrahedra of the points ----------------------------------- */
 
-static vg_status adopt(struct vg_tets *t, size_t n_point, double (*x)[3],
-                       size_t n_tet, const uint32_t (*tet)[4],
-                       struct vg_error *err)
+/* The five tetrahedra of a box with corner bits x, y, z = 1, 2, 4. */
+static const uint32_t box_cell[5][4] = {
+  {0, 1, 2, 4}, {3, 2, 1, 7}, {5, 4, 7, 1}, {6, 7, 4, 2}, {1, 2, 4, 7}};
+
+static vg_status start_in_box(struct vg_tets *t, size_t n,
+                              const double (*x)[3], struct vg_error *err)
 {
-  t->x = x;
-  t->n_point = t->cap_point = n_point;
-  if (vg_tets_reserve_cells(t, n_tet))
-    return vg_fail_memory(err, "boundary recovery");
-  for (size_t c = 0; c < n_tet; c++) {
-    struct vg_cell *cell = &t->cell[c];
-    double sign;
+  double lo[3], hi[3], side = 0;
 
-    memcpy(cell->v, tet[c], sizeof cell->v);
-    sign = vg_orient3d(x[cell->v[0]], x[cell->v[1]], x[cell->v[2]],
-                       x[cell->v[3]]);
-    if (sign == 0)
-      return vg_fail(err, VG_ERR_GEOMETRY,
-                     "boundary recovery left a flat cell at (%g %g %g)",
-                     x[cell->v[0]][0], x[cell->v[0]][1], x[cell->v[0]][2]);
-    if (sign < 0) {
-      cell->v[0] = tet[c][1];
-      cell->v[1] = tet[c][0];
+  if (vg_tets_reserve_points(t, n + 8) || vg_tets_reserve_cells(t, 7 * n + 5))
+    return vg_fail_memory(err, "boundary recovery");
+  memcpy(t->x, x, n * sizeof *x);
+  t->n_point = n + 8;
+  for (int k = 0; k < 3; k++) {
+    lo[k] = hi[k] = x[0][k];
+    for (size_t i = 1; i < n; i++) {
+      if (x[i][k] < lo[k]) lo[k] = x[i][k];
+      if (x[i][k] > hi[k]) hi[k] = x[i][k];
     }
+    if (hi[k] - lo[k] > side) side = hi[k] - lo[k];
+  }
+  for (size_t corner = 0; corner < 8; corner++)
+    for (int k = 0; k < 3; k++)
+      t->x[n + corner][k] = corner >> k & 1 ? hi[k] + side : lo[k] - side;
+  for (int c = 0; c < 5; c++) {
+    for (int i = 0; i < 4; i++)
+      t->cell[c].v[i] = (uint32_t)n + box_cell[c][i];
     t->flag[c] = 0;
   }
-  t->n_cell = n_tet;
+  t->n_cell = 5;
   return vg_tets_link(t, err);
 }
+
+static vg_status delaunay(struct vg_tets *t, size_t n, const double (*x)[3],
+                          struct vg_error *err)
+{
+  struct vg_inserter s = {0};
+  uint32_t *order = vg_alloc(n, sizeof *order), at = 0;
+  vg_status st = order ? VG_OK : vg_fail_memory(err, "boundary recovery");
+
+  if (st == VG_OK) st = vg_insertion_order(n, x, order, err);
+  if (st == VG_OK) st = start_in_box(t, n, x, err);
+  if (st == VG_OK) st = vg_inserter_init(&s, t, err);
+  for (size_t i = 0; st == VG_OK && i < n; i++) {
+    at = vg_tets_locate(t, at, x[order[i]]);
+    st = vg_insert(&s, order[i], at, 0, 0, err);
+    at = s.last;
+    if (st == VG_BLOCKED)
+      st = vg_fail(err, VG_ERR_GEOMETRY,
+                   "point %u (%.17g %.17g %.17g) coincides with another; "
+                   "weld the surface", order[i] + 1, x[order[i]][0],
+                   x[order[i]][1], x[order[i]][2]);
+  }
+  vg_inserter_release(&s);
+  free(order);
+  return st;
+}
+
+/* --- the whole void at once -------------------------------------------- */
 
 static vg_status whole_void(size_t n, const double (*x)[3], size_t n_tri,
                             const uint32_t (*tri)[3], struct vg_tets *out,
@@ -229,7 +262,8 @@ static vg_status whole_void(size_t n, const double (*x)[3], size_t n_tri,
 
   report->whole_void = 1;
   VG_TRY(vg_cdt_tetgen(n, x, n_tri, tri, &n_all, &all, &n_tet, &tet, err));
-  st = adopt(out, n_all, all, n_tet, (const uint32_t (*)[4])tet, err);
+  st = vg_tets_adopt(out, n_all, all, n_tet,
+                     (const uint32_t (*)[4])tet, err);
   free(tet);
   VG_TRY(st);
   report->n_steiner = n_all - n;
@@ -252,8 +286,14 @@ vg_status vg_boundary_tets(size_t n, const double (*x)[3], size_t n_tri,
   vg_status st;
 
   memset(report, 0, sizeof *report);
-  VG_TRY(whole_void(n, x, n_tri, tri, out, report, err));
-  VG_TRY(mark_outside(out, n_tri, tri, err));
+  VG_TRY(delaunay(out, n, x, err));
+  st = vg_recover(out, n_tri, tri, report, err);
+  if (st == VG_ERR_GEOMETRY) {
+    vg_tets_release(out);
+    st = whole_void(n, x, n_tri, tri, out, report, err);
+  }
+  VG_TRY(st);
+  VG_TRY(vg_boundary_sides(out, n_tri, tri, err));
 done:
   if (st < 0) vg_tets_release(out);
   return st;

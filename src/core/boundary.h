@@ -10,15 +10,18 @@
 #include "core/tets.h"
 
 struct vg_boundary_report {
-  size_t n_edge_lost, n_face_lost; /* not in the Delaunay tetrahedra */
+  size_t n_face_lost;              /* not in the Delaunay tetrahedra */
   size_t n_pocket, n_pocket_cell;  /* regions that TetGen had to close */
   size_t n_retry;                  /* pockets that had to grow */
   int whole_void;
   size_t n_steiner;
 };
 
-/** Tetrahedralise the convex hull of a closed oriented surface.
+/** Tetrahedralise the surroundings of a closed oriented surface.
  *
+ * Delaunay tetrahedra of the points in a wide box; triangles missing from
+ * them are recovered in pockets (core/recover.h); if that fails, TetGen gets
+ * the whole.
  * @param x, tri  [n][3] points, all used; [n_tri][3] facing the fluid
  * @param out     empty on entry; points 0..n-1 are x, later ones were added;
  *                cells linked, surface faces fixed, cells not in the fluid
@@ -35,5 +38,11 @@ vg_status vg_boundary_tets(size_t n, const double (*x)[3], size_t n_tri,
 vg_status vg_boundary_fix(struct vg_tets *t, size_t n_tri,
                           const uint32_t (*tri)[3], uint8_t *missing,
                           size_t *n_missing, struct vg_error *err);
+
+/** Flag VG_OUTSIDE the cells of t that do not lie on the side which the
+ * triangles face, all of them being fixed faces.
+ * VG_ERR_GEOMETRY when the triangles contradict each other. */
+vg_status vg_boundary_sides(struct vg_tets *t, size_t n_tri,
+                            const uint32_t (*tri)[3], struct vg_error *err);
 
 #endif

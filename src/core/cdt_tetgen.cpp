@@ -1,16 +1,49 @@
 #include "core/cdt_tetgen.h"
 
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <mutex>
 #include <new>
 
 #define TETLIBRARY
+#define terminatetetgen header_terminatetetgen
 #include <tetgen.h>
+#undef terminatetetgen
+
+/* TetGen 1.5.0 leaves through this function, which frees the mesh and throws;
+ * unwinding then destroys the mesh and frees it again. The library calls it
+ * through its symbol table, so this definition, found first, takes its place:
+ * the destructor alone frees. */
+void terminatetetgen(tetgenmesh *, int code);
+void terminatetetgen(tetgenmesh *, int code)
+{
+  throw code;
+}
 
 namespace {
 
 std::mutex tetgen_lock;
+
+/* TetGen tells its troubles to the standard output, quiet or not; the library
+ * never prints. In force while the lock is held. */
+class Silence {
+public:
+  Silence() : kept(stdout), nowhere(std::fopen("/dev/null", "w"))
+  {
+    if (nowhere) stdout = nowhere;
+  }
+  ~Silence()
+  {
+    stdout = kept;
+    if (nowhere) std::fclose(nowhere);
+  }
+  Silence(const Silence &) = delete;
+  Silence &operator=(const Silence &) = delete;
+
+private:
+  FILE *kept, *nowhere;
+};
 
 void put_points(tetgenio &in, size_t n, const double (*x)[3])
 {
@@ -86,7 +119,7 @@ extern "C" vg_status vg_cdt_tetgen(size_t n, const double (*x)[3],
                                    size_t *n_tet, uint32_t (**tet)[4],
                                    struct vg_error *err)
 {
-  /* p: keep facets; Y: without points on them; c: all of the convex hull;
+  /* p: keep facets; Y: without points on them; c: all of the hull;
    * M: coplanar neighbours stay separate facets; T: relative tolerance of
    * coplanarity, small because our predicates are exact. */
   char switches[] = "pYcMQT1e-13";
@@ -96,6 +129,8 @@ extern "C" vg_status vg_cdt_tetgen(size_t n, const double (*x)[3],
                    "boundary recovery of %zu points exceeds TetGen's indices",
                    n);
   std::lock_guard<std::mutex> guard(tetgen_lock);
+  Silence silence;
+
   try {
     tetgenio in, out;
 

@@ -80,7 +80,6 @@ static vg_status recover(struct growth *g, struct vg_error *err)
   g->n_front = n;
   VG_TRY(vg_boundary_tets(n, (const double (*)[3])x, v->n_face,
                           (const uint32_t (*)[3])tri, &g->t, &b, err));
-  g->report->n_surface_edge_lost += b.n_edge_lost;
   g->report->n_surface_face_lost += b.n_face_lost;
   g->report->n_pocket += b.n_pocket;
   g->report->n_pocket_cell += b.n_pocket_cell;

@@ -117,6 +117,33 @@ vg_status vg_tets_link(struct vg_tets *t, struct vg_error *err)
   return st;
 }
 
+vg_status vg_tets_adopt(struct vg_tets *t, size_t n_point, double (*x)[3],
+                        size_t n_cell, const uint32_t (*v)[4],
+                        struct vg_error *err)
+{
+  t->x = x;
+  t->n_point = t->cap_point = n_point;
+  if (vg_tets_reserve_cells(t, n_cell))
+    return vg_fail_memory(err, "tetrahedra");
+  for (size_t c = 0; c < n_cell; c++) {
+    struct vg_cell *cell = &t->cell[c];
+    const double *at = x[v[c][0]];
+    double sign = vg_orient3d(at, x[v[c][1]], x[v[c][2]], x[v[c][3]]);
+
+    if (sign == 0)
+      return vg_fail(err, VG_ERR_GEOMETRY, "a flat cell at (%g %g %g)", at[0],
+                     at[1], at[2]);
+    memcpy(cell->v, v[c], sizeof cell->v);
+    if (sign < 0) {
+      cell->v[0] = v[c][1];
+      cell->v[1] = v[c][0];
+    }
+    t->flag[c] = 0;
+  }
+  t->n_cell = n_cell;
+  return vg_tets_link(t, err);
+}
+
 /* --- location ---------------------------------------------------------- */
 
 static uint32_t search_all(const struct vg_tets *t, const double x[3])

@@ -68,6 +68,12 @@ static inline void vg_tets_join(struct vg_tets *t, uint32_t a, uint32_t b)
  * VG_ERR_GEOMETRY when a face has more than two cells. */
 vg_status vg_tets_link(struct vg_tets *t, struct vg_error *err);
 
+/** Make *t (empty) of points and cells in either orientation, and link them.
+ * x becomes t's, also on failure. VG_ERR_GEOMETRY for a flat cell. */
+vg_status vg_tets_adopt(struct vg_tets *t, size_t n_point, double (*x)[3],
+                        size_t n_cell, const uint32_t (*v)[4],
+                        struct vg_error *err);
+
 /** Walk from `start` to a cell that contains x (boundary included), through
  * constrained faces, ignoring dead cells. VG_NONE when x is outside all. */
 uint32_t vg_tets_locate(const struct vg_tets *t, uint32_t start,

@@ -1,0 +1,443 @@
+#include "core/recover.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/cdt_tetgen.h"
+#include "core/hilbert.h"
+#include "core/predicates.h"
+
+enum { ROUNDS = 4 };
+
+struct recovery {
+  struct vg_tets *t;
+  size_t n_tri;
+  const uint32_t (*tri)[3];
+  size_t n_missing;
+  uint32_t *missing;         /* [n_missing] triangles not in t */
+  uint32_t *parent;          /* [n_missing] pockets, as a union-find forest */
+  uint32_t *owner;           /* [cells] missing triangle of each cell */
+  uint32_t *star;            /* [points] a cell of each point */
+  size_t n_cell, cap_cell;
+  uint32_t *cell;            /* cells of all pockets, as they are found */
+  struct vg_boundary_report *report;
+};
+
+/* --- cells that a triangle passes through ------------------------------- */
+
+/* Conservative: touching at a corner or along an edge does not count, but a
+ * cell beside the triangle may. Counts a cell with a face in the triangle's
+ * plane, because that face is then to be replaced. */
+static int passes_through(const struct vg_tets *t, const uint32_t tri[3],
+                          uint32_t c)
+{
+  const double *a = t->x[tri[0]], *b = t->x[tri[1]], *d = t->x[tri[2]];
+  const uint32_t *v = t->cell[c].v;
+  int above = 0, below = 0, skip = -1;
+
+  for (int i = 0; i < 4; i++) {
+    double side = vg_orient3d(a, b, d, t->x[v[i]]);
+
+    above += side > 0;
+    below += side < 0;
+    if (side != 0) skip = i;
+  }
+  if (!(above && below) && above + below != 1) return 0;
+  if (above && below) skip = -1;
+  for (int i = 0; i < 4; i++) {
+    const double *p = t->x[v[vg_face[i][0]]], *q = t->x[v[vg_face[i][1]]];
+    const double *r = t->x[v[vg_face[i][2]]];
+
+    if (i == skip) continue;
+    if (!(vg_orient3d(p, q, r, a) > 0) && !(vg_orient3d(p, q, r, b) > 0) &&
+        !(vg_orient3d(p, q, r, d) > 0))
+      return 0;
+  }
+  return 1;
+}
+
+static uint32_t root_of(struct recovery *r, uint32_t k)
+{
+  while (r->parent[k] != k) {
+    r->parent[k] = r->parent[r->parent[k]];
+    k = r->parent[k];
+  }
+  return k;
+}
+
+/* The lower root wins, so that the outcome is the same in any order. */
+static void merge(struct recovery *r, uint32_t a, uint32_t b)
+{
+  a = root_of(r, a);
+  b = root_of(r, b);
+  if (a < b) r->parent[b] = a;
+  else r->parent[a] = b;
+}
+
+static int claim(struct recovery *r, uint32_t c, uint32_t k)
+{
+  if (r->owner[c] != VG_NONE) {
+    merge(r, r->owner[c], k);
+    return 0;
+  }
+  if (vg_reserve(&r->cell, &r->cap_cell, r->n_cell + 1, sizeof *r->cell))
+    return -1;
+  r->owner[c] = k;
+  r->cell[r->n_cell++] = c;
+  return 0;
+}
+
+/* Cells seen for one triangle, flagged VG_MARK while it is searched. */
+struct visit { size_t n, cap; uint32_t *cell; };
+
+static int visit(struct recovery *r, struct visit *list, uint32_t c)
+{
+  if (r->t->flag[c] & VG_MARK) return 0;
+  if (vg_reserve(&list->cell, &list->cap, list->n + 1, sizeof *list->cell))
+    return -1;
+  r->t->flag[c] |= VG_MARK;
+  list->cell[list->n++] = c;
+  return 0;
+}
+
+/* Do a cell and its neighbour behind face i share a corner of the triangle? */
+static int share_corner(const struct vg_cell *c, int i, const uint32_t tri[3])
+{
+  for (int k = 0; k < 3; k++)
+    for (int j = 0; j < 3; j++)
+      if (c->v[vg_face[i][k]] == tri[j]) return 1;
+  return 0;
+}
+
+/* The search goes around the corners of the triangle and through its pocket,
+ * which is connected and begins at a corner. */
+static int find_pocket(struct recovery *r, struct visit *list, uint32_t k)
+{
+  struct vg_tets *t = r->t;
+  const uint32_t *tri = r->tri[r->missing[k]];
+  int bad = 0;
+
+  list->n = 0;
+  for (int i = 0; i < 3 && !bad; i++) bad = visit(r, list, r->star[tri[i]]);
+  for (size_t m = 0; m < list->n && !bad; m++) {
+    uint32_t c = list->cell[m];
+    int inside = passes_through(t, tri, c);
+
+    if (inside) bad = claim(r, c, k);
+    for (int i = 0; i < 4 && !bad; i++) {
+      uint32_t link = t->cell[c].link[i];
+
+      if (link != VG_NONE && (inside || share_corner(&t->cell[c], i, tri)))
+        bad = visit(r, list, link >> 2);
+    }
+  }
+  for (size_t m = 0; m < list->n; m++)
+    t->flag[list->cell[m]] &= (uint8_t)~VG_MARK;
+  return bad;
+}
+
+/* One more ring of cells around every pocket. */
+static int add_ring(struct recovery *r)
+{
+  size_t n = r->n_cell;
+
+  for (size_t m = 0; m < n; m++)
+    for (int i = 0; i < 4; i++) {
+      uint32_t link = r->t->cell[r->cell[m]].link[i];
+
+      if (link != VG_NONE && claim(r, link >> 2, r->owner[r->cell[m]]))
+        return -1;
+    }
+  return 0;
+}
+
+/* --- closing one pocket -------------------------------------------------- */
+
+struct pocket {
+  size_t n_cell, n_tri, cap_tri, n_rim, n_point;
+  const struct vg_key *cell; /* index: cells of the pocket */
+  uint32_t (*tri)[3];        /* rim, fixed faces inside, missing triangles */
+  uint32_t *point;           /* [n_point] sorted numbers in t */
+};
+
+static int add_tri(struct pocket *p, const uint32_t v[3])
+{
+  if (vg_reserve(&p->tri, &p->cap_tri, p->n_tri + 1, sizeof *p->tri))
+    return -1;
+  memcpy(p->tri[p->n_tri++], v, 3 * sizeof *v);
+  return 0;
+}
+
+static int add_faces(const struct vg_tets *t, struct pocket *p, int rim)
+{
+  for (size_t m = 0; m < p->n_cell; m++) {
+    uint32_t c = p->cell[m].index, v[3];
+
+    for (int i = 0; i < 4; i++) {
+      uint32_t link = t->cell[c].link[i], other = link >> 2;
+      int is_rim = link == VG_NONE || !(t->flag[other] & VG_MARK);
+
+      if (is_rim != rim) continue;
+      if (!rim && (!(t->flag[c] >> i & 1) || c > other)) continue;
+      for (int k = 0; k < 3; k++) v[k] = t->cell[c].v[vg_face[i][k]];
+      if (add_tri(p, v)) return -1;
+    }
+  }
+  if (rim) p->n_rim = p->n_tri;
+  return 0;
+}
+
+static int by_number(const void *a, const void *b)
+{
+  uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
+
+  return (x > y) - (x < y);
+}
+
+/* The points used, and the triangles in terms of them. */
+static int number_points(const struct vg_tets *t, struct pocket *p)
+{
+  size_t n = 0;
+
+  p->point = vg_alloc(4 * p->n_cell, sizeof *p->point);
+  if (!p->point) return -1;
+  for (size_t m = 0; m < p->n_cell; m++)
+    for (int i = 0; i < 4; i++)
+      p->point[n++] = t->cell[p->cell[m].index].v[i];
+  qsort(p->point, n, sizeof *p->point, by_number);
+  for (size_t m = 0; m < n; m++)
+    if (!m || p->point[m] != p->point[m - 1])
+      p->point[p->n_point++] = p->point[m];
+  for (size_t m = 0; m < p->n_tri; m++)
+    for (int k = 0; k < 3; k++) {
+      const uint32_t *at = bsearch(&p->tri[m][k], p->point, p->n_point,
+                                   sizeof *at, by_number);
+
+      if (!at) return 1;     /* a corner outside: the pocket is too small */
+      p->tri[m][k] = (uint32_t)(at - p->point);
+    }
+  return 0;
+}
+
+/* Cells outside the rim are flagged; then: is every triangle there? */
+static vg_status verify(struct vg_tets *local, const struct pocket *p,
+                        struct vg_error *err)
+{
+  const uint32_t (*tri)[3] = (const uint32_t (*)[3])p->tri;
+  size_t n_missing;
+  vg_status st = vg_boundary_fix(local, p->n_rim, tri, NULL, &n_missing, err);
+
+  if (st == VG_OK && !n_missing)
+    st = vg_boundary_sides(local, p->n_rim, tri, err);
+  if (st == VG_OK && !n_missing)
+    st = vg_boundary_fix(local, p->n_tri, tri, NULL, &n_missing, err);
+  if (st == VG_OK && n_missing)
+    st = vg_fail(err, VG_ERR_GEOMETRY, "a pocket was not closed faithfully");
+  return st;
+}
+
+/* Put the local cells in place of the pocket's; links are renewed later. */
+static vg_status replace(struct recovery *r, const struct pocket *p,
+                         const struct vg_tets *local, struct vg_error *err)
+{
+  struct vg_tets *t = r->t;
+  size_t added = local->n_point - p->n_point, first = t->n_point;
+
+  if (vg_tets_reserve_points(t, added) ||
+      vg_tets_reserve_cells(t, local->n_cell))
+    return vg_fail_memory(err, "boundary recovery");
+  memcpy(t->x + first, local->x + p->n_point, added * sizeof *t->x);
+  t->n_point += added;
+  for (size_t m = 0; m < p->n_cell; m++)
+    if (vg_tets_drop(t, p->cell[m].index))
+      return vg_fail_memory(err, "boundary recovery");
+  for (size_t c = 0; c < local->n_cell; c++) {
+    uint32_t slot;
+
+    if (local->flag[c] & VG_OUTSIDE) continue;
+    slot = vg_tets_take(t);
+    for (int i = 0; i < 4; i++) {
+      uint32_t v = local->cell[c].v[i];
+
+      t->cell[slot].v[i] = v < p->n_point ? p->point[v]
+                                    : (uint32_t)(first + v - p->n_point);
+    }
+    t->flag[slot] = 0;
+  }
+  r->report->n_pocket++;
+  r->report->n_pocket_cell += local->n_cell;
+  r->report->n_steiner += added;
+  return VG_OK;
+}
+
+static vg_status tetrahedralise(struct recovery *r, struct pocket *p,
+                                struct vg_error *err)
+{
+  struct vg_tets local = VG_TETS_INIT;
+  double (*x)[3] = vg_alloc(p->n_point, sizeof *x), (*all)[3];
+  size_t n_all, n_tet;
+  uint32_t (*tet)[4];
+  vg_status st = x ? VG_OK : vg_fail_memory(err, "boundary recovery");
+
+  for (size_t k = 0; st == VG_OK && k < p->n_point; k++)
+    memcpy(x[k], r->t->x[p->point[k]], sizeof *x);
+  if (st == VG_OK)
+    st = vg_cdt_tetgen(p->n_point, (const double (*)[3])x, p->n_tri,
+                       (const uint32_t (*)[3])p->tri, &n_all, &all, &n_tet,
+                       &tet, err);
+  if (st == VG_OK) {
+    st = vg_tets_adopt(&local, n_all, all, n_tet, (const uint32_t (*)[4])tet,
+                       err);
+    free(tet);
+  }
+  if (st == VG_OK) st = verify(&local, p, err);
+  if (st == VG_OK) st = replace(r, p, &local, err);
+  vg_tets_release(&local);
+  free(x);
+  return st;
+}
+
+/* tri: the missing triangles of this pocket. */
+static vg_status close_pocket(struct recovery *r, size_t n_cell,
+                              const struct vg_key *cell, size_t n_tri,
+                              const struct vg_key *tri, struct vg_error *err)
+{
+  struct pocket p = {0};
+  vg_status st = VG_OK;
+  int bad;
+
+  p.n_cell = n_cell;
+  p.cell = cell;
+  for (size_t m = 0; m < n_cell; m++) r->t->flag[cell[m].index] |= VG_MARK;
+  bad = add_faces(r->t, &p, 1) || add_faces(r->t, &p, 0);
+  for (size_t m = 0; m < n_cell; m++)
+    r->t->flag[cell[m].index] &= (uint8_t)~VG_MARK;
+  for (size_t m = 0; m < n_tri && !bad; m++)
+    bad = add_tri(&p, r->tri[r->missing[tri[m].index]]);
+  if (!bad) {
+    bad = number_points(r->t, &p);
+    if (bad > 0) st = VG_ERR_GEOMETRY;
+  }
+  if (bad < 0) st = vg_fail_memory(err, "boundary recovery");
+  if (st == VG_OK && !bad) st = tetrahedralise(r, &p, err);
+  free(p.tri);
+  free(p.point);
+  return st;
+}
+
+/* --- rounds ---------------------------------------------------------------- */
+
+/* Cells and missing triangles, both sorted by pocket, are closed in step. A
+ * pocket that TetGen refuses waits for the next round. */
+static vg_status close_pockets(struct recovery *r, struct vg_error *err)
+{
+  struct vg_key *cell = vg_alloc(r->n_cell, sizeof *cell);
+  struct vg_key *tri = vg_alloc(r->n_missing, sizeof *tri);
+  size_t c = 0, k = 0;
+  vg_status st = VG_OK;
+
+  if (!cell || !tri) st = vg_fail_memory(err, "boundary recovery");
+  for (uint32_t m = 0; st == VG_OK && m < r->n_missing; m++) {
+    tri[m].key = root_of(r, m);
+    tri[m].index = m;
+  }
+  for (size_t m = 0; st == VG_OK && m < r->n_cell; m++) {
+    cell[m].key = root_of(r, r->owner[r->cell[m]]);
+    cell[m].index = r->cell[m];
+  }
+  if (st == VG_OK) st = vg_sort_keys(r->n_missing, tri, err);
+  if (st == VG_OK) st = vg_sort_keys(r->n_cell, cell, err);
+  while (st == VG_OK && c < r->n_cell) {
+    uint64_t id = cell[c].key;
+    size_t c1 = c, k1;
+
+    while (c1 < r->n_cell && cell[c1].key == id) c1++;
+    while (k < r->n_missing && tri[k].key < id) k++;
+    for (k1 = k; k1 < r->n_missing && tri[k1].key == id; k1++) {}
+    st = close_pocket(r, c1 - c, cell + c, k1 - k, tri + k, err);
+    if (st == VG_ERR_GEOMETRY) {
+      r->report->n_retry++;
+      st = VG_OK;
+    }
+    c = c1;
+    k = k1;
+  }
+  free(cell);
+  free(tri);
+  return st;
+}
+
+static vg_status find_pockets(struct recovery *r, int rings,
+                              struct vg_error *err)
+{
+  struct visit list = {0};
+  struct vg_tets *t = r->t;
+  int bad = 0;
+
+  r->n_cell = 0;
+  free(r->owner);
+  free(r->star);
+  r->owner = vg_alloc(t->n_cell, sizeof *r->owner);
+  r->star = vg_alloc(t->n_point, sizeof *r->star);
+  if (!r->owner || !r->star) return vg_fail_memory(err, "boundary recovery");
+  memset(r->owner, 0xff, t->n_cell * sizeof *r->owner);
+  for (uint32_t c = 0; c < t->n_cell; c++)
+    for (int i = 0; i < 4 && !(t->flag[c] & VG_DEAD); i++)
+      r->star[t->cell[c].v[i]] = c;
+  for (uint32_t k = 0; k < r->n_missing; k++) r->parent[k] = k;
+  for (uint32_t k = 0; k < r->n_missing && !bad; k++)
+    bad = find_pocket(r, &list, k);
+  for (int k = 0; k < rings && !bad; k++) bad = add_ring(r);
+  free(list.cell);
+  return bad ? vg_fail_memory(err, "boundary recovery") : VG_OK;
+}
+
+static vg_status list_missing(struct recovery *r, uint8_t *missing,
+                              struct vg_error *err)
+{
+  size_t n = 0;
+  vg_status st;
+
+  for (size_t c = 0; c < r->t->n_cell; c++)
+    r->t->flag[c] &= (uint8_t)~VG_FIXED_FACES;
+  st = vg_boundary_fix(r->t, r->n_tri, r->tri, missing, &r->n_missing, err);
+  for (size_t k = 0; st == VG_OK && k < r->n_tri; k++)
+    if (missing[k]) r->missing[n++] = (uint32_t)k;
+  return st;
+}
+
+vg_status vg_recover(struct vg_tets *t, size_t n_tri, const uint32_t (*tri)[3],
+                     struct vg_boundary_report *report, struct vg_error *err)
+{
+  struct recovery r = {0};
+  uint8_t *missing = vg_alloc(n_tri, 1);
+  vg_status st = VG_OK;
+
+  r.t = t;
+  r.n_tri = n_tri;
+  r.tri = tri;
+  r.report = report;
+  r.missing = vg_alloc(n_tri, sizeof *r.missing);
+  r.parent = vg_alloc(n_tri, sizeof *r.parent);
+  if (!missing || !r.missing || !r.parent)
+    st = vg_fail_memory(err, "boundary recovery");
+  if (st == VG_OK) st = list_missing(&r, missing, err);
+  report->n_face_lost = r.n_missing;
+  for (int round = 0; st == VG_OK && r.n_missing && round < ROUNDS; round++) {
+    st = find_pockets(&r, round, err);
+    if (st == VG_OK) st = close_pockets(&r, err);
+    if (st == VG_OK) st = vg_tets_link(t, err);
+    if (st == VG_OK) st = list_missing(&r, missing, err);
+  }
+  if (st == VG_OK && r.n_missing)
+    st = vg_fail(err, VG_ERR_GEOMETRY, "%zu surface triangles could not be "
+                 "recovered in pockets", r.n_missing);
+  free(missing);
+  free(r.missing);
+  free(r.parent);
+  free(r.owner);
+  free(r.star);
+  free(r.cell);
+  return st;
+}

@@ -1,0 +1,23 @@
+/* core/recover.h: surface triangles that are missing from Delaunay
+ * tetrahedra are put in, pocket by pocket. */
+#ifndef VG_CORE_RECOVER_H
+#define VG_CORE_RECOVER_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "core/boundary.h"
+#include "core/tets.h"
+
+/** Make every triangle a fixed face of t.
+ *
+ * The cells that a missing triangle passes through form its pocket; pockets
+ * that share cells are one. TetGen closes each pocket, its rim and every
+ * triangle in it kept; the result is verified face by face before it replaces
+ * the pocket's cells. A pocket that fails grows by a ring of cells and is tried
+ * again, three times.
+ * Returns VG_ERR_GEOMETRY when pockets remain that cannot be closed. */
+vg_status vg_recover(struct vg_tets *t, size_t n_tri, const uint32_t (*tri)[3],
+                     struct vg_boundary_report *report, struct vg_error *err);
+
+#endif
