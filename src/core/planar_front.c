@@ -164,7 +164,7 @@ static double target(const struct front *f, const double x[2], uint32_t at)
     if (t->h[v[k]] + reach < hi) hi = t->h[v[k]] + reach;
     if (t->h[v[k]] - reach > lo) lo = t->h[v[k]] - reach;
   }
-  if (!(h <= hi)) h = hi;
+  if (!(h <= hi && h > 0)) h = hi;
   return h < lo ? lo < hi ? lo : hi : h;
 }
 

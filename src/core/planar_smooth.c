@@ -7,7 +7,11 @@
 #include "core/planar_front.h"
 #include "core/predicates.h"
 
-enum { RING_MAX = 32 };
+enum { RING_MAX = 32, N_LIFT = 4 };
+
+/* Vertices of triangles with a smaller angle, by its sine (36 degrees), are
+ * moved once more, for that angle alone. */
+#define LIFT_BELOW 0.588
 
 /* (sum of squared edges / area)^2 summed over the ring; INFINITY when a
  * triangle is not positive. */
@@ -50,20 +54,27 @@ static int is_positive(int n, double (*ring)[2], const double x[2])
   return 1;
 }
 
-static int smooth_vertex(struct vg_tri2 *t, uint32_t v)
+static int get_ring(const struct vg_tri2 *t, uint32_t v, double (*ring)[2])
 {
   uint32_t edge[RING_MAX];
-  double ring[RING_MAX][2], x[2], goal[2], step = 1;
   const int n = vg_tri2_ring(t, v, RING_MAX, edge);
-  double before;
 
-  if (!n) return 0;
   for (int i = 0; i < n; i++) {
     const double *p = t->x[vg_t2_to(t, edge[i])];
 
     ring[i][0] = p[0];
     ring[i][1] = p[1];
   }
+  return n;
+}
+
+static int smooth_vertex(struct vg_tri2 *t, uint32_t v)
+{
+  double ring[RING_MAX][2], x[2], goal[2], step = 1;
+  const int n = get_ring(t, v, ring);
+  double before;
+
+  if (!n) return 0;
   before = badness(n, ring, t->x[v]);
   ideal(n, ring, goal);
   for (int attempt = 0; attempt < 3; attempt++, step *= 0.5) {
@@ -78,6 +89,62 @@ static int smooth_vertex(struct vg_tri2 *t, uint32_t v)
   return 0;
 }
 
+/* Smallest sine of the smallest angles of the ring's triangles. */
+static double least_sine(int n, double (*ring)[2], const double x[2])
+{
+  double least = 1;
+
+  for (int i = 0; i < n; i++) {
+    const double *a = ring[i], *b = ring[i + 1 < n ? i + 1 : 0];
+    const double ax = a[0] - x[0], ay = a[1] - x[1];
+    const double bx = b[0] - x[0], by = b[1] - x[1];
+    const double aa = ax * ax + ay * ay, bb = bx * bx + by * by;
+    const double cc = (bx - ax) * (bx - ax) + (by - ay) * (by - ay);
+    const double area = ax * by - ay * bx;
+    const double low = aa < bb ? aa < cc ? aa : cc : bb < cc ? bb : cc;
+    /* twice the area over the product of the two longer edges */
+    const double sine = area / sqrt(aa * bb * cc / low);
+
+    if (!(sine >= least)) least = sine;
+  }
+  return least;
+}
+
+/* Try ever smaller steps along the axes while the smallest angle grows. */
+static int lift_vertex(struct vg_tri2 *t, uint32_t v)
+{
+  static const double way[4][2] = { { 1, 0 }, { 0, 1 }, { -1, 0 },
+                                    { 0, -1 } };
+  double ring[RING_MAX][2], x[2], step, best;
+  const int n = get_ring(t, v, ring);
+  int moved = 0;
+
+  if (!n) return 0;
+  best = least_sine(n, ring, t->x[v]);
+  if (best >= LIFT_BELOW) return 0;
+  x[0] = ring[0][0] - t->x[v][0];
+  x[1] = ring[0][1] - t->x[v][1];
+  step = 0.25 * sqrt(x[0] * x[0] + x[1] * x[1]);
+  for (int i = 0; i < 24; i++) {
+    int better = 0;
+
+    for (int k = 0; k < 4; k++) {
+      double sine;
+
+      x[0] = t->x[v][0] + step * way[k][0];
+      x[1] = t->x[v][1] + step * way[k][1];
+      sine = least_sine(n, ring, x);
+      if (!(sine > best) || !is_positive(n, ring, x)) continue;
+      best = sine;
+      t->x[v][0] = x[0];
+      t->x[v][1] = x[1];
+      better = moved = 1;
+    }
+    if (!better) step *= 0.5;
+  }
+  return moved;
+}
+
 int vg_tri2_improve(struct vg_tri2 *t, uint32_t first_free, int n_sweep)
 {
   for (int sweep = 0; sweep < n_sweep; sweep++) {
@@ -85,6 +152,14 @@ int vg_tri2_improve(struct vg_tri2 *t, uint32_t first_free, int n_sweep)
 
     for (uint32_t v = first_free; v < t->n_point; v++)
       n_moved += (size_t)smooth_vertex(t, v);
+    if (vg_tri2_legalise(t) < 0) return -1;
+    if (!n_moved) break;
+  }
+  for (int sweep = 0; sweep < N_LIFT; sweep++) {
+    size_t n_moved = 0;
+
+    for (uint32_t v = first_free; v < t->n_point; v++)
+      n_moved += (size_t)lift_vertex(t, v);
     if (vg_tri2_legalise(t) < 0) return -1;
     if (!n_moved) break;
   }

@@ -130,7 +130,7 @@ static void makes_even_spheres(void **state)
 
     check_closed(&m);
     assert_true((double)m.n_tri > 0.9 * want && (double)m.n_tri < 1.15 * want);
-    assert_true(angle_min_deg(&m) > 28);
+    assert_true(angle_min_deg(&m) > 30);
     for (size_t i = 0; i < m.n_point; i++) {
       const double *x = m.point[i];
 
@@ -190,7 +190,7 @@ static void puts_a_box_around_a_body(void **state)
   vg_mesh_bounds(&m, lo, hi);
   assert_memory_equal(lo, far.lo, sizeof lo);
   assert_memory_equal(hi, far.hi, sizeof hi);
-  assert_true(angle_min_deg(&m) > 25);
+  assert_true(angle_min_deg(&m) > 30);
   vg_sizing_free(s);
   vg_mesh_release(&m);
 }
@@ -221,7 +221,7 @@ static void completes_half_bodies(void **state)
       if (kind == VG_FARFIELD_BOX)
         assert_true(fabs(volume(&m) - (40 * 40 * 20 - body)) < 1e-7);
       else assert_true(volume(&m) > 0.94 * 16755.2);
-      assert_true(angle_min_deg(&m) > 25);
+      assert_true(angle_min_deg(&m) > 30);
       for (size_t i = 0; i < m.n_tri; i++) {
         const struct vg_patch *p = &m.patch[m.tri_patch[i]];
 
@@ -278,7 +278,7 @@ static void takes_several_bodies(void **state)
   far.spacing = 6;
   assert_int_equal(vg_domain_complete(&m, &far, s, NULL, &err), VG_OK);
   check_closed(&m);
-  assert_true(angle_min_deg(&m) > 25);
+  assert_true(angle_min_deg(&m) > 30);
   vg_sizing_free(s);
   vg_mesh_release(&m);
   vg_mesh_release(&other);
@@ -422,7 +422,7 @@ static void meshes_a_project_of_planes(void **state)
   assert_int_equal(vg_project_surface(&p, s, &m, &err), VG_OK);
   check_closed(&m);
   assert_true(fabs(volume(&m) - 8000) < 1e-8);
-  assert_true(angle_min_deg(&m) > 25);
+  assert_true(angle_min_deg(&m) > 30);
   for (size_t i = 0; i < m.n_point; i++) {
     const double *x = m.point[i];
 
