@@ -196,7 +196,8 @@ vg_status vg_stl_read(const char *path, struct vg_mesh *out,
 
 /* --- writing --- */
 
-/* Unit normal; zero for a triangle without area, as the format asks. */
+/* Unit normal to six decimals, which is more than readers use; zero for a
+ * triangle without area, as the format asks. */
 static void normal_of(const double *a, const double *b, const double *c,
                       double normal[3])
 {
@@ -219,7 +220,7 @@ static void normal_of(const double *a, const double *b, const double *c,
   length = sqrt(normal[0] * normal[0] + normal[1] * normal[1] +
                 normal[2] * normal[2]);
   for (int k = 0; k < 3; k++)
-    normal[k] = length > 0 ? normal[k] / length : 0;
+    normal[k] = length > 0 ? floor(1e6 * normal[k] / length + 0.5) / 1e6 : 0;
 }
 
 static void put_facet(struct vg_output *o, const struct vg_mesh *m, uint32_t a,
