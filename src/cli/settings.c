@@ -224,7 +224,11 @@ vg_status vg_settings_add(struct vg_settings *s, enum vg_table_kind kind,
   case VG_TABLE_SOURCES:
     refused = vg_reserve(&s->source, &s->cap_source, s->n_source + 1,
                          sizeof *s->source);
-    if (!refused) memcpy(&s->source[s->n_source++], row, sizeof *s->source);
+    if (refused) break;
+    memcpy(&s->source[s->n_source], row, sizeof *s->source);
+    if (s->source[s->n_source].h1 == 0)
+      s->source[s->n_source].h1 = s->source[s->n_source].h0;
+    s->n_source++;
     break;
   case VG_TABLE_N:
     break;

@@ -93,7 +93,8 @@ void vg_settings_default(struct vg_settings *s);
 /** Default row of a table into row[row_size]. */
 void vg_settings_row_default(enum vg_table_kind kind, void *row);
 
-/** Append a row; the farfield's replaces the one there is. */
+/** Append a row; the farfield's replaces the one there is. A source without h1
+ * gets its h0 there. */
 vg_status vg_settings_add(struct vg_settings *s, enum vg_table_kind kind,
                           const void *row, struct vg_error *err);
 
