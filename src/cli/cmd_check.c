@@ -71,7 +71,8 @@ static vg_status check_mesh(const struct arguments *a, struct vg_mesh *m,
   VG_TRY(field(a, m, &sizing, err));
   VG_TRY(vg_mesh_judge(m, sizing, &r, err));
   if (a->json) {
-    print_json(json_pack("{s:s s:b s:o s:o s:o}", "file", a->file, "ok",
+    print_json(json_pack("{s:o s:b s:o s:o s:o}", "file",
+                         vg_report_string(a->file), "ok",
                          r.is_valid, "size", vg_report_size_json(m), "patches",
                          vg_report_patches_json(m), "mesh",
                          vg_report_mesh_json(&r)));
@@ -113,7 +114,8 @@ static vg_status check_surface(const struct arguments *a, struct vg_mesh *m,
   o.require_bc = vg_surface_has_conditions(m);
   VG_TRY(vg_surface_examine(m, &o, &external, &r, err));
   if (a->json) {
-    print_json(json_pack("{s:s s:b s:o s:o s:o}", "file", a->file, "ok",
+    print_json(json_pack("{s:o s:b s:o s:o s:o}", "file",
+                         vg_report_string(a->file), "ok",
                          r.n_defect == 0, "size", vg_report_size_json(m),
                          "patches", vg_report_patches_json(m), "surface",
                          vg_report_surface_json(m, &r, VG_SHOWN_DEFECTS)));

@@ -161,7 +161,7 @@ static json_t *strings(const struct vg_notes *notes)
   json_t *list = json_array();
 
   for (size_t i = 0; i < notes->n; i++)
-    json_array_append_new(list, json_string(notes->text[i]));
+    json_array_append_new(list, vg_report_string(notes->text[i]));
   return list;
 }
 
@@ -172,7 +172,7 @@ static json_t *files_json(const struct run *r)
   for (size_t i = 0; i < r->outputs.n_file; i++) {
     char *path = vg_outputs_final(&r->outputs, r->outputs.file[i].suffix);
 
-    if (path) json_array_append_new(list, json_string(path));
+    if (path) json_array_append_new(list, vg_report_string(path));
     free(path);
   }
   return list;
@@ -185,9 +185,9 @@ static json_t *report_json(const struct run *r, int ok,
   json_t *o = json_object();
 
   json_object_set_new(o, "vanguard", json_string(VG_VERSION));
-  json_object_set_new(o, "title", json_string(p->settings.title));
+  json_object_set_new(o, "title", vg_report_string(p->settings.title));
   json_object_set_new(o, "ok", json_boolean(ok));
-  if (!ok) json_object_set_new(o, "error", json_string(err->text));
+  if (!ok) json_object_set_new(o, "error", vg_report_string(err->text));
   json_object_set_new(o, "input", vg_report_size_json(&p->surface));
   json_object_set_new(o, "patches", vg_report_patches_json(&p->surface));
   json_object_set_new(o, "surface", vg_report_surface_json(&p->surface,

@@ -13,6 +13,10 @@
 
 #define VG_SHOWN_DEFECTS 20   /* first ones of a kind put in words */
 
+/** A string for JSON; bytes that are no UTF-8 (names from old files) become
+ * '?'. */
+json_t *vg_report_string(const char *text);
+
 /** Counts of a mesh, its box and its patches. */
 void vg_report_size_text(FILE *to, const struct vg_mesh *m);
 json_t *vg_report_size_json(const struct vg_mesh *m);

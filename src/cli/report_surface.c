@@ -6,6 +6,21 @@
 #include "cli/cli.h"
 #include "cli/report.h"
 
+json_t *vg_report_string(const char *text)
+{
+  json_t *o = json_string(text);
+  char *plain;
+
+  if (o) return o;
+  plain = strdup(text);
+  if (!plain) return json_null();
+  for (char *c = plain; *c; c++)
+    if ((unsigned char)*c >= 128) *c = '?';
+  o = json_string(plain);
+  free(plain);
+  return o ? o : json_null();
+}
+
 static size_t n_cell(const struct vg_mesh *m)
 {
   return m->n_tet + m->n_pyr + m->n_pri + m->n_hex;
@@ -103,8 +118,9 @@ json_t *vg_report_patches_json(const struct vg_mesh *m)
 
   for (size_t i = 0; faces && i < m->n_patch; i++)
     json_array_append_new(list,
-      json_pack("{s:i s:s s:o s:o s:I}", "id", (int)m->patch[i].id, "name",
-                m->patch[i].name, "usm3d", code_json(m->patch[i].bc), "fun3d",
+      json_pack("{s:i s:o s:o s:o s:I}", "id", (int)m->patch[i].id, "name",
+                vg_report_string(m->patch[i].name), "usm3d",
+                code_json(m->patch[i].bc), "fun3d",
                 code_json(m->patch[i].bc_fun3d), "faces",
                 (json_int_t)faces[i]));
   free(faces);
@@ -156,8 +172,9 @@ void vg_report_surface_text(FILE *to, const struct vg_mesh *m,
   for (int kind = 0; kind < VG_DEFECT_N; kind++) {
     size_t n = r->count[kind], said = 0;
 
-    if (n) fprintf(to, "  %s: %s\n", vg_defect_name((enum vg_defect_kind)kind),
-                   vg_cli_count(n, count));
+    if (n)
+      fprintf(to, "  %s: %s\n", vg_defect_name((enum vg_defect_kind)kind),
+              vg_cli_count(n, count));
     /* The list is sorted by kind. */
     for (; at < r->n_defect && (int)r->defect[at].kind == kind; at++) {
       if (said++ >= shown) continue;
@@ -182,16 +199,15 @@ static json_t *defects_json(const struct vg_mesh *m,
 
     if (said[d->kind]++ >= shown) continue;
     vg_defect_text(m, d, text, sizeof text);
-    one = json_pack("{s:s s:s s:[fff]}", "kind", vg_defect_name(d->kind),
-                    "text", text, "at", d->at[0], d->at[1], d->at[2]);
-    for (int k = 0; one && k < 2; k++)
+    one = json_pack("{s:s s:o}", "kind", vg_defect_name(d->kind), "text",
+                    vg_report_string(text));
+    /* NaN has no JSON form: such a defect goes without its place. */
+    json_object_set_new(one, "at", json_pack("[fff]", d->at[0], d->at[1],
+                                             d->at[2]));
+    for (int k = 0; k < 2; k++)
       if (d->face[k] != SIZE_MAX)
         json_object_set_new(one, k ? "face2" : "face",
                             json_integer((json_int_t)d->face[k] + 1));
-    /* NaN has no JSON form: such a defect goes without its place. */
-    if (!one)
-      one = json_pack("{s:s s:s}", "kind", vg_defect_name(d->kind), "text",
-                      text);
     json_array_append_new(list, one);
   }
   return list;

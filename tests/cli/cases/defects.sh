@@ -82,3 +82,9 @@ exits 1
 says err "absent.stl"
 vanguard check -q usage.unknown
 exits 1
+
+# Names that are not UTF-8 do not break the JSON.
+printf 't\npatches\nid bc name\n4 3 Fl\374gel\n' >tet.deck
+vanguard mesh -q -p tet --json --out latin
+exits 0
+says out '"Fl?gel"'
