@@ -1,8 +1,12 @@
-# Ctrl-C ends cleanly: a message, status 1, and nothing half-written.
-vanguard demo box --cells 600000 --out p
-"$program" mesh -q -p p/box --out o >out 2>err &
+# Ctrl-C ends cleanly: a message, status 1, and nothing half-written. Sent
+# when the work has begun, with the whole fill still to come.
+vanguard demo box --cells 400000 --out p
+"$program" mesh -p p/box --out o >out 2>err &
 pid=$!
-sleep 1.5
+for _ in $(seq 600); do
+  ! grep -q '^sizes' err || break
+  sleep 0.05
+done
 kill -INT $pid 2>/dev/null
 wait $pid
 status=$?
