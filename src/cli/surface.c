@@ -128,11 +128,11 @@ static vg_status check(struct vg_problem *p, int *external,
 static vg_status defects(const struct vg_problem *p, struct vg_error *err)
 {
   if (!p->check.n_defect && !p->surface.n_tri)
-    return vg_fail(err, VG_ERR_GEOMETRY, "no surface is left: all its "
-                   "triangles are degenerate");
+    return vg_fail(err, VG_ERR_GEOMETRY, "%s: no surface is left: all its "
+                   "triangles are degenerate", p->files.stem);
   if (!p->check.n_defect) return VG_OK;
-  return vg_fail(err, VG_ERR_GEOMETRY, "the surface has %zu defects and "
-                 "cannot bound a mesh", p->check.n_defect);
+  return vg_fail(err, VG_ERR_GEOMETRY, "%s: the surface has %zu defects and "
+                 "cannot bound a mesh", p->files.stem, p->check.n_defect);
 }
 
 /* A half body: open edges, and nothing else is wrong. */
