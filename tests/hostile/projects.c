@@ -109,6 +109,12 @@ static void make_d3m_empty(const char *stem)
   save(name, "", 0);
 }
 
+/* A name for what another case writes, or for nothing. */
+static void make_nothing(const char *stem)
+{
+  (void)stem;
+}
+
 /* A good surface with a bad deck beside it. */
 static void save_deck(const char *stem, const char *deck)
 {
@@ -193,6 +199,16 @@ const struct hostile hostile_projects[] = {
     .make = make_source_without_spacing, .command = MESH },
   { .file = "deck_binary", .phrase = "deck_binary.deck",
     .make = make_deck_binary, .command = MESH },
+  { .file = "crossing", .phrase = "cannot bound a mesh",
+    .make = make_nothing, .command = MESH },
+  { .file = "common_edge", .phrase = "cannot bound a mesh",
+    .make = make_nothing, .command = MESH },
+  { .file = "one_sided", .phrase = "cannot bound a mesh",
+    .make = make_nothing, .command = MESH },
+  { .file = "line", .phrase = "no surface is left", .make = make_nothing,
+    .command = MESH },
+  { .file = "nothing_here", .phrase = "no project here",
+    .make = make_nothing, .command = MESH },
   { .file = "deck_quote", .phrase = "quote", .make = make_quote,
     .command = MESH },
   { 0 }
