@@ -22,7 +22,7 @@ static const double slope = 0.1;
 /* A field that changes less than this over one edge counts as level. */
 static const double level_within = 1e-3;
 
-enum { N_BUCKET = 8192, BUCKET_ZERO = 4096, NEAR_MAX = 2048,
+enum { N_BUCKET = 8192, BUCKET_ZERO = 4096, NEAR_MAX = 2048, FOUND_MAX = 4096,
        PAGE_POINTS = 6 };
 
 struct grid_slot { uint64_t key; uint32_t block; };
@@ -51,6 +51,8 @@ struct placer {
   uint32_t *face;            /* links 4 * cell + face of the surface */
   uint32_t first[N_BUCKET], last[N_BUCKET];
   int lowest;                /* no bucket below it has items */
+  size_t n_found;
+  struct found { uint32_t page; float d[3]; } found[FOUND_MAX];
   size_t n_near;
   float near[3][NEAR_MAX];   /* surroundings, relative to the parent */
   double lo[3];
@@ -162,20 +164,32 @@ static int grid_add(struct placer *p, uint32_t point)
   return 0;
 }
 
-/* The points of one grid cell; d: its corner relative to the centre. */
-static void gather_cell(struct placer *p, uint32_t at, const double d[3],
-                        double r2)
+/* A grid cell met by a search: its pages are on their way to the cache while
+ * the other cells are looked up. d: its corner relative to the centre. */
+static void find_cell(struct placer *p, uint32_t page, const double d[3])
 {
-  float x = (float)d[0], y = (float)d[1], z = (float)d[2], most = (float)r2;
+  struct found *f = &p->found[p->n_found];
 
-  for (; at != VG_NONE; at = p->page[at].next) {
+  if (page == VG_NONE || p->n_found == FOUND_MAX) return;
+  __builtin_prefetch(&p->page[page]);
+  __builtin_prefetch((const char *)(&p->page[page] + 1) - 1);
+  f->page = page;
+  for (int k = 0; k < 3; k++) f->d[k] = (float)d[k];
+  p->n_found++;
+}
+
+static void gather_cell(struct placer *p, const struct found *f, float r2)
+{
+  float x = f->d[0], y = f->d[1], z = f->d[2];
+
+  for (uint32_t at = f->page; at != VG_NONE; at = p->page[at].next) {
     const struct grid_page *page = &p->page[at];
 
     for (uint32_t k = 0; k < page->n; k++) {
       float u = page->x[0][k] + x, v = page->x[1][k] + y;
       float w = page->x[2][k] + z;
 
-      if (u * u + v * v + w * w > most || p->n_near == NEAR_MAX) continue;
+      if (u * u + v * v + w * w > r2 || p->n_near == NEAR_MAX) continue;
       p->near[0][p->n_near] = u;
       p->near[1][p->n_near] = v;
       p->near[2][p->n_near] = w;
@@ -190,7 +204,7 @@ static double gap(double d, double side)
   return d > 0 ? d : d + side < 0 ? -(d + side) : 0;
 }
 
-static void gather_level(struct placer *p, const double c[3], double r,
+static void find_level(struct placer *p, const double c[3], double r,
                          int level)
 {
   double inverse = ldexp(1, -level), side = ldexp(1, level), d[3], g[3];
@@ -217,7 +231,7 @@ static void gather_level(struct placer *p, const double c[3], double r,
           block = p->slot[grid_find(p, key)].block;
         }
         if (block != VG_NONE)
-          gather_cell(p, p->block[block][cell_in_block(i)], d, r * r);
+          find_cell(p, p->block[block][cell_in_block(i)], d);
       }
     }
   }
@@ -228,26 +242,28 @@ static void gather(struct placer *p, const double c[3], double h, double r)
 {
   double change = slope * r < 0.5 * h ? slope * r : 0.5 * h;
 
-  p->n_near = 0;
+  p->n_near = p->n_found = 0;
   for (int level = level_of(h - change); level <= level_of(h + change);
        level++)
     if (level >= p->level_lo && level <= p->level_hi)
-      gather_level(p, c, r, level);
+      find_level(p, c, r, level);
+  for (size_t k = 0; k < p->n_found; k++)
+    gather_cell(p, &p->found[k], (float)(r * r));
 }
 
-/* Is any gathered point nearer than r to c + d? */
+/* Is any gathered point nearer than r to c + d? Counted without a branch, so
+ * that several are tested at once. */
 static int crowded(const struct placer *p, const double d[3], double r)
 {
-  float x = (float)d[0], y = (float)d[1], z = (float)d[2];
-  float least = INFINITY;
+  float x = (float)d[0], y = (float)d[1], z = (float)d[2], r2 = (float)(r * r);
+  int n = 0;
 
   for (size_t k = 0; k < p->n_near; k++) {
     float u = p->near[0][k] - x, v = p->near[1][k] - y, w = p->near[2][k] - z;
-    float d2 = u * u + v * v + w * w;
 
-    least = d2 < least ? d2 : least;
+    n += u * u + v * v + w * w < r2;
   }
-  return least < (float)(r * r);
+  return n;
 }
 
 /* --- queue -------------------------------------------------------------- */
@@ -346,57 +362,75 @@ static const double pattern[8][3] = {
   {.5, .5, .5}, {-.5, -.5, -.5}, {.5, .5, -.5}, {-.5, -.5, .5},
   {.5, -.5, .5}, {-.5, .5, -.5}, {-.5, .5, .5}, {.5, -.5, -.5}};
 
-/* Where the field is level, neighbours are points of one body-centred cubic
- * lattice through the origin: fronts that started anywhere meet
- * without a fault. 1 when some neighbour lies where the field is not level. */
-static int grow_level(struct placer *p, const double c[3], double h,
-                      uint32_t start, int *bad)
+static int is_level(const struct placer *p, const double x[3], double h)
 {
-  double a = lattice * h, reach2 = 1.21 * a * a;
-  int64_t base[3];
-  int graded = 0;
+  return fabs(vg_sizing_at(p->sizing, x) - h) <= level_within * h;
+}
+
+/* In how many of six directions does the field keep its value? */
+static int level_around(const struct placer *p, const double c[3], double h)
+{
+  int n = 0;
 
   for (int k = 0; k < 3; k++)
-    base[k] = (int64_t)floor(c[k] / a * 2 + 0.5);
-  for (int64_t i = -2; i <= 2; i++)
-    for (int64_t j = -2; j <= 2; j++)
-      for (int64_t k = -2; k <= 2; k++) {
-        int64_t at[3] = {base[0] + i, base[1] + j, base[2] + k};
-        double d[3], x[3], there, d2 = 0;
+    for (int side = -1; side <= 1; side += 2) {
+      double x[3] = {c[0], c[1], c[2]};
 
-        if ((at[0] ^ at[1]) & 1 || (at[0] ^ at[2]) & 1) continue;
-        for (int m = 0; m < 3; m++) {
-          x[m] = 0.5 * a * (double)at[m];
-          d[m] = x[m] - c[m];
-          d2 += d[m] * d[m];
+      x[k] += side * h;
+      n += is_level(p, x, h);
+    }
+  return n;
+}
+
+/* Where the field is level, neighbours are points of one body-centred cubic
+ * lattice through the origin: fronts that started anywhere meet without a
+ * fault. In units of half the side, its points are all even or all odd. */
+static int grow_level(struct placer *p, const double c[3], double h,
+                      uint32_t start, int everywhere)
+{
+  double half = 0.5 * lattice * h, reach2 = 4.84 * half * half;
+  int64_t base[3], i[3];
+
+  for (int k = 0; k < 3; k++) base[k] = (int64_t)floor(c[k] / half + 0.5);
+  for (i[0] = base[0] - 2; i[0] <= base[0] + 2; i[0]++)
+    for (i[1] = base[1] - 2; i[1] <= base[1] + 2; i[1]++) {
+      if ((i[0] ^ i[1]) & 1) continue;
+      for (i[2] = base[2] - 2; i[2] <= base[2] + 2; i[2]++) {
+        double d[3], x[3];
+
+        if ((i[0] ^ i[2]) & 1) continue;
+        for (int k = 0; k < 3; k++) {
+          x[k] = half * (double)i[k];
+          d[k] = x[k] - c[k];
         }
-        if (d2 > reach2 || crowded(p, d, exclusion_level * h)) continue;
-        there = vg_sizing_at(p->sizing, x);
-        if (fabs(there - h) > level_within * h) {
-          graded = 1;
+        if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] > reach2 ||
+            crowded(p, d, exclusion_level * h) ||
+            (!everywhere && !is_level(p, x, h)))
           continue;
-        }
-        if (stand(p, c, d, there, start)) *bad = 1;
+        if (stand(p, c, d, h, start)) return -1;
       }
-  return graded;
+    }
+  return 0;
 }
 
 static int grow_point(struct placer *p, uint32_t point)
 {
   double c[3], h = p->h[point];
   uint32_t start = p->cell[point];
-  int bad = 0;
+  int level;
 
   memcpy(c, p->x[point], sizeof c);
   gather(p, c, h, (lattice + exclusion_level) * 1.05 * h);
-  if (!grow_level(p, c, h, start, &bad)) return bad;
-  for (int i = 0; i < 8 && !bad; i++) {
+  level = level_around(p, c, h);
+  if (level && grow_level(p, c, h, start, level == 6)) return -1;
+  if (level == 6) return 0;
+  for (int i = 0; i < 8; i++) {
     double unit[3];
 
     for (int k = 0; k < 3; k++) unit[k] = lattice * pattern[i][k];
-    bad = propose(p, c, unit, h, start);
+    if (propose(p, c, unit, h, start)) return -1;
   }
-  return bad;
+  return 0;
 }
 
 static int grow_face(struct placer *p, uint32_t link)
