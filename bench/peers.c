@@ -227,7 +227,8 @@ done:
   return st;
 }
 
-/* The triangles, those of a patch as one discrete surface. Physical groups are not set: Gmsh would then save nothing else. */
+/* The triangles, those of a patch as one discrete surface. Physical groups
+ * are not set: Gmsh would then save nothing else. */
 static vg_status write_msh(const char *stem, const struct vg_mesh *m,
                             struct vg_error *err)
 {

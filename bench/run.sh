@@ -95,7 +95,11 @@ mkdir -p "$work"
 # Value of "key value" lines: field FILE KEY
 field() { awk -v k="$2" '$1 == k { print $2; exit }' "$1"; }
 peak_mb() { awk '/Maximum resident/ { printf "%.0f", $NF / 1024 }' "$1"; }
-timed() { local log=$1; shift; /usr/bin/time -v -o "$log.time" "$@" > "$log" 2>&1; }
+timed() {
+  local log=$1
+  shift
+  /usr/bin/time -v -o "$log.time" "$@" > "$log" 2>&1
+}
 
 # Each of these runs one mesher once in folder $1 and adds its seconds and
 # peak MB to NAME.runs.
