@@ -17,6 +17,7 @@ static vg_status start(struct vg_optimiser *o, struct vg_tets *t,
   o->t = t;
   o->star = vg_alloc(t->n_point, sizeof *o->star);
   o->cap_star = t->n_point;
+  if (o->star) memset(o->star, 0xff, t->n_point * sizeof *o->star);
   if (!o->star || vg_reserve(&o->q, &o->cap_q, t->cap_cell, sizeof *o->q))
     return vg_fail_memory(err, "optimisation");
   for (uint32_t c = 0; c < t->n_cell; c++) {
@@ -66,6 +67,18 @@ static vg_status list_bad(const struct vg_optimiser *o, double aim,
   return vg_sort_keys(*n, *list, err);
 }
 
+/* One bad cell: the cheapest step that helps. */
+static int mend_cell(struct vg_optimiser *o, uint32_t c, double aim)
+{
+  int better = 0;
+
+  if (vg_swap(o, c)) return 1;
+  for (int i = 0; i < 4 && o->q[c] < aim; i++)
+    better |= vg_smooth(o, o->t->cell[c].v[i], aim);
+  if (better) return 1;
+  return vg_collapse(o, c) || vg_split(o, c, aim);
+}
+
 static vg_status mend(struct vg_optimiser *o, size_t *n_better,
                       struct vg_error *err)
 {
@@ -77,15 +90,8 @@ static vg_status mend(struct vg_optimiser *o, size_t *n_better,
   for (size_t k = 0; st == VG_OK && k < n; k++) {
     uint32_t c = list[k].index;
 
-    if (!is_live(o->t, c) || o->q[c] >= aim_bad) continue;
-    if (vg_swap(o, c)) {
-      ++*n_better;
-      continue;
-    }
-    for (int i = 0; i < 4; i++) {
-      *n_better += (size_t)vg_smooth(o, o->t->cell[c].v[i], aim_bad);
-      if (o->q[c] >= aim_bad) break;
-    }
+    if (is_live(o->t, c) && o->q[c] < aim_bad)
+      *n_better += (size_t)mend_cell(o, c, aim_bad);
   }
   free(list);
   return st;
@@ -111,7 +117,6 @@ vg_status vg_optimise(struct vg_tets *t, size_t n_fixed,
   if (st == VG_OK && o->refused) st = vg_fail_memory(err, "optimisation");
   free(o->q);
   free(o->star);
-  free(o->stack);
   free(o);
   return st;
 }

@@ -10,6 +10,7 @@ int vg_ball(struct vg_optimiser *o, uint32_t p)
   uint32_t c = o->star[p];
   int whole = 1;
 
+  if (c == VG_NONE) return 0;
   o->n_ball = 1;
   for (uint32_t i = 0; i < 4; i++)
     if (t->cell[c].v[i] == p) o->ball[0] = 4 * c + i;

@@ -13,12 +13,10 @@ struct vg_optimiser {
   size_t n_fixed;            /* points below stay */
   float *q;                  /* [cap_cell] shape of each cell */
   size_t cap_q;
-  uint32_t *star;            /* [n_point] a cell of each point */
+  uint32_t *star;            /* [n_point] a cell of each point, or VG_NONE */
   size_t cap_star;
   size_t n_ball;
   uint32_t ball[VG_BALL_MAX];  /* links 4 * cell + index of the centre */
-  size_t n_stack, cap_stack;
-  uint32_t *stack;
   int refused;               /* memory was refused */
   struct vg_optimise_report *report;
 };
@@ -63,7 +61,8 @@ int vg_swap(struct vg_optimiser *o, uint32_t c);
 /** Take away a vertex of the bad cell c, into one of its neighbours. */
 int vg_collapse(struct vg_optimiser *o, uint32_t c);
 
-/** Put a point into the bad cell c, in a cavity chosen for it. */
-int vg_split(struct vg_optimiser *o, uint32_t c);
+/** Put a point into the bad cell c, in a cavity opened for it, and smooth it
+ * towards `aim`. */
+int vg_split(struct vg_optimiser *o, uint32_t c, double aim);
 
 #endif

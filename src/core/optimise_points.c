@@ -1,0 +1,188 @@
+/* For bad cells that neither swaps nor smoothing mend: a point is taken away,
+ * or one is put in (Klingner, Shewchuk, "Aggressive tetrahedral mesh
+ * improvement", 2007). Both are made only when the worst cell gets better. */
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/optimise_parts.h"
+
+static double worth(double old)
+{
+  return old < VG_SHAPE_FLAT ? VG_SHAPE_FLAT : old * 1.01;
+}
+
+/* --- taking a point away --------------------------------------------------- */
+
+struct merger {
+  int n_new;
+  uint32_t v[VG_OLD_MAX][4];
+  float q[VG_OLD_MAX];
+};
+
+/* The ball of p with p moved onto its neighbour `to`; 0 when not better. */
+static int plan_merge(const struct vg_optimiser *o, uint32_t to, double need,
+                      struct merger *m, double *worst)
+{
+  const struct vg_tets *t = o->t;
+
+  m->n_new = 0;
+  *worst = 2;
+  for (size_t k = 0; k < o->n_ball; k++) {
+    const uint32_t *v = t->cell[o->ball[k] >> 2].v;
+    uint32_t *w = m->v[m->n_new];
+    double q;
+
+    if (v[0] == to || v[1] == to || v[2] == to || v[3] == to) continue;
+    memcpy(w, v, 4 * sizeof *w);
+    w[o->ball[k] & 3] = to;
+    q = vg_shape(t->x[w[0]], t->x[w[1]], t->x[w[2]], t->x[w[3]]);
+    if (q <= need) return 0;
+    if (q < *worst) *worst = q;
+    m->q[m->n_new++] = (float)q;
+  }
+  return m->n_new > 0;
+}
+
+static int merge_point(struct vg_optimiser *o, uint32_t p)
+{
+  const struct vg_tets *t = o->t;
+  struct merger plan[2];
+  uint32_t old[VG_OLD_MAX];
+  double need = 2, worst;
+  int best = -1, now = 0;
+
+  if (p < o->n_fixed || !vg_ball(o, p) || o->n_ball > VG_OLD_MAX) return 0;
+  for (size_t k = 0; k < o->n_ball; k++) {
+    old[k] = o->ball[k] >> 2;
+    if (o->q[old[k]] < need) need = o->q[old[k]];
+  }
+  need = worth(need);
+  for (size_t k = 0; k < o->n_ball; k++)
+    for (uint32_t i = 0; i < 4; i++) {
+      if (i == (o->ball[k] & 3)) continue;
+      if (!plan_merge(o, t->cell[old[k]].v[i], need, &plan[now], &worst))
+        continue;
+      need = worst;
+      best = now;
+      now = !now;
+    }
+  if (best < 0) return 0;
+  if (vg_replace(o, (int)o->n_ball, old, plan[best].n_new,
+                 (const uint32_t (*)[4])plan[best].v, plan[best].q, NULL))
+    return 0;
+  o->star[p] = VG_NONE;
+  o->report->n_collapse++;
+  return 1;
+}
+
+int vg_collapse(struct vg_optimiser *o, uint32_t c)
+{
+  uint32_t v[4];
+
+  memcpy(v, o->t->cell[c].v, sizeof v);
+  for (int i = 0; i < 4; i++)
+    if (merge_point(o, v[i])) return 1;
+  return 0;
+}
+
+/* --- putting a point in ----------------------------------------------------- */
+
+struct cavity {
+  int n_old, n_new;
+  uint32_t old[VG_OLD_MAX];
+  uint32_t v[VG_NEW_MAX][4];
+  float q[VG_NEW_MAX];
+  double worst;              /* of the old cells */
+};
+
+static int in_cavity(const struct cavity *h, uint32_t c)
+{
+  for (int k = 0; k < h->n_old; k++)
+    if (h->old[k] == c) return 1;
+  return 0;
+}
+
+/* Faces of the cavity joined with x. A face that makes a cell no better than
+ * `need` is opened: the cell behind it joins the cavity. 0: cannot be done. */
+static int open_cavity(const struct vg_optimiser *o, const double x[3],
+                       double need, struct cavity *h)
+{
+  const struct vg_tets *t = o->t;
+
+restart:
+  h->n_new = 0;
+  for (int k = 0; k < h->n_old; k++)
+    for (int i = 0; i < 4; i++) {
+      uint32_t c = h->old[k], link = t->cell[c].link[i], *w;
+      const uint8_t *f = vg_face[i];
+      double q;
+
+      if (link != VG_NONE && in_cavity(h, link >> 2)) {
+        if (t->flag[c] >> i & 1) return 0;
+        continue;
+      }
+      if (h->n_new == VG_NEW_MAX) return 0;
+      w = h->v[h->n_new];
+      for (int j = 0; j < 3; j++) w[j] = t->cell[c].v[f[j]];
+      q = vg_shape(t->x[w[0]], t->x[w[1]], t->x[w[2]], x);
+      if (q <= need) {
+        if (link == VG_NONE || t->flag[c] >> i & 1 ||
+            h->n_old == VG_OLD_MAX / 2)
+          return 0;
+        h->old[h->n_old++] = link >> 2;
+        goto restart;
+      }
+      h->q[h->n_new++] = (float)q;
+    }
+  return 1;
+}
+
+static int put_point(struct vg_optimiser *o, const double x[3],
+                     struct cavity *h)
+{
+  struct vg_tets *t = o->t;
+  uint32_t p = (uint32_t)t->n_point;
+
+  if (vg_tets_reserve_points(t, 1) ||
+      vg_reserve(&o->star, &o->cap_star, t->n_point + 1, sizeof *o->star)) {
+    o->refused = 1;
+    return 0;
+  }
+  memcpy(t->x[p], x, sizeof *t->x);
+  for (int k = 0; k < h->n_new; k++) h->v[k][3] = p;
+  if (vg_replace(o, h->n_old, h->old, h->n_new, (const uint32_t (*)[4])h->v,
+                 h->q, NULL))
+    return 0;
+  t->n_point++;
+  o->report->n_split++;
+  return 1;
+}
+
+/* Centres to try: of the cell, and of its edges. */
+static int split_at(struct vg_optimiser *o, uint32_t c, const double share[4],
+                    double aim)
+{
+  const struct vg_tets *t = o->t;
+  struct cavity h;
+  double x[3] = {0}, need = worth(o->q[c]);
+
+  for (int i = 0; i < 4; i++)
+    for (int k = 0; k < 3; k++) x[k] += share[i] * t->x[t->cell[c].v[i]][k];
+  h.n_old = 1;
+  h.old[0] = c;
+  if (!open_cavity(o, x, need, &h) || !put_point(o, x, &h)) return 0;
+  for (int k = 0; k < 3 && vg_smooth(o, (uint32_t)t->n_point - 1, aim); k++) {
+  }
+  return 1;
+}
+
+int vg_split(struct vg_optimiser *o, uint32_t c, double aim)
+{
+  static const double share[7][4] = {
+    {.25, .25, .25, .25}, {.5, .5, 0, 0}, {.5, 0, .5, 0}, {.5, 0, 0, .5},
+    {0, .5, .5, 0}, {0, .5, 0, .5}, {0, 0, .5, .5}};
+
+  for (int k = 0; k < 7; k++)
+    if (split_at(o, c, share[k], aim)) return 1;
+  return 0;
+}
