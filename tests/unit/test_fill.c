@@ -378,6 +378,22 @@ static void what_is_not_a_boundary_is_refused(void **state)
   vg_mesh_release(&s);
 }
 
+static void shells_that_cross_are_refused(void **state)
+{
+  const double off[3] = { 0.7, 0.1, 0.2 };
+  struct vg_mesh s = VG_MESH_INIT;
+  struct vg_sizing *sizing;
+
+  (void)state;
+  shape_box(&s, 5, 4);
+  shape_sphere(&s, 6, origin, 1, 7);
+  shape_sphere(&s, 5, off, 1, 8);
+  sizing = shape_sizing(&s, 1.3, 0);
+  refused(&s, sizing);
+  vg_sizing_free(sizing);
+  vg_mesh_release(&s);
+}
+
 /* Without optimisation the mesh is worse, but as valid. */
 static void optimisation_is_optional(void **state)
 {
@@ -419,6 +435,7 @@ int main(void)
     cmocka_unit_test(more_cells_than_allowed_are_refused),
     cmocka_unit_test(nothing_at_all_is_refused),
     cmocka_unit_test(what_is_not_a_boundary_is_refused),
+    cmocka_unit_test(shells_that_cross_are_refused),
     cmocka_unit_test(optimisation_is_optional),
   };
 
