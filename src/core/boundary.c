@@ -255,21 +255,22 @@ static vg_status whole_void(size_t n, const double (*x)[3], size_t n_tri,
                             struct vg_boundary_report *report,
                             struct vg_error *err)
 {
-  size_t n_all, n_tet, n_missing;
-  double (*all)[3];
-  uint32_t (*tet)[4];
+  struct vg_cdt_job job = {.n = n, .n_tri = n_tri, .x = x, .tri = tri};
+  size_t n_missing = n_tri;
   vg_status st;
 
   report->whole_void = 1;
-  VG_TRY(vg_cdt_tetgen(n, x, n_tri, tri, &n_all, &all, &n_tet, &tet, err));
-  st = vg_tets_adopt(out, n_all, all, n_tet,
-                     (const uint32_t (*)[4])tet, err);
-  free(tet);
-  VG_TRY(st);
-  report->n_steiner = n_all - n;
-  report->n_pocket = 1;
-  report->n_pocket_cell = n_tet;
-  VG_TRY(vg_boundary_fix(out, n_tri, tri, NULL, &n_missing, err));
+  VG_TRY(vg_cdt_tetgen(1, &job, err));
+  if (job.st == VG_OK) {
+    report->n_steiner = job.n_all - n;
+    report->n_pocket = 1;
+    report->n_pocket_cell = job.n_tet;
+    st = vg_tets_adopt(out, job.n_all, job.all, job.n_tet,
+                       (const uint32_t (*)[4])job.tet, err);
+    free(job.tet);
+    VG_TRY(st);
+    VG_TRY(vg_boundary_fix(out, n_tri, tri, NULL, &n_missing, err));
+  }
   if (n_missing)
     st = vg_fail(err, VG_ERR_GEOMETRY,
                  "%zu of %zu surface triangles could not be recovered; run "

@@ -159,6 +159,7 @@ struct pocket {
   const struct vg_key *cell; /* index: cells of the pocket */
   uint32_t (*tri)[3];        /* rim, fixed faces inside, missing triangles */
   uint32_t *point;           /* [n_point] sorted numbers in t */
+  double (*x)[3];            /* [n_point]; NULL: not to be closed now */
 };
 
 static int add_tri(struct pocket *p, const uint32_t v[3])
@@ -271,73 +272,128 @@ static vg_status replace(struct recovery *r, const struct pocket *p,
   return VG_OK;
 }
 
-static vg_status tetrahedralise(struct recovery *r, struct pocket *p,
-                                struct vg_error *err)
+/* What TetGen needs of one pocket. tri: its missing triangles.
+ * VG_BLOCKED when a corner of them lies outside. */
+static vg_status describe(struct recovery *r, struct pocket *p, size_t n_tri,
+                          const struct vg_key *tri, struct vg_error *err)
+{
+  double (*x)[3] = NULL;
+  int bad;
+
+  for (size_t m = 0; m < p->n_cell; m++)
+    r->t->flag[p->cell[m].index] |= VG_MARK;
+  bad = add_faces(r->t, p, 1) || add_faces(r->t, p, 0);
+  for (size_t m = 0; m < p->n_cell; m++)
+    r->t->flag[p->cell[m].index] &= (uint8_t)~VG_MARK;
+  for (size_t m = 0; m < n_tri && !bad; m++)
+    bad = add_tri(p, r->tri[r->missing[tri[m].index]]);
+  if (!bad) bad = number_points(r->t, p);
+  if (!bad) {
+    x = vg_alloc(p->n_point, sizeof *x);
+    bad = x ? 0 : -1;
+  }
+  if (bad) return bad > 0 ? VG_BLOCKED
+                          : vg_fail_memory(err, "boundary recovery");
+  for (size_t k = 0; k < p->n_point; k++)
+    memcpy(x[k], r->t->x[p->point[k]], sizeof *x);
+  p->x = x;
+  return VG_OK;
+}
+
+/* Take the answer for one pocket, if it is faithful. */
+static vg_status accept(struct recovery *r, struct pocket *p,
+                        struct vg_cdt_job *job, struct vg_error *err)
 {
   struct vg_tets local = VG_TETS_INIT;
-  double (*x)[3] = vg_alloc(p->n_point, sizeof *x), (*all)[3];
-  size_t n_all, n_tet;
-  uint32_t (*tet)[4];
-  vg_status st = x ? VG_OK : vg_fail_memory(err, "boundary recovery");
+  vg_status st = job->st;
 
-  for (size_t k = 0; st == VG_OK && k < p->n_point; k++)
-    memcpy(x[k], r->t->x[p->point[k]], sizeof *x);
   if (st == VG_OK)
-    st = vg_cdt_tetgen(p->n_point, (const double (*)[3])x, p->n_tri,
-                       (const uint32_t (*)[3])p->tri, &n_all, &all, &n_tet,
-                       &tet, err);
-  if (st == VG_OK) {
-    st = vg_tets_adopt(&local, n_all, all, n_tet, (const uint32_t (*)[4])tet,
-                       err);
-    free(tet);
-  }
+    st = vg_tets_adopt(&local, job->n_all, job->all, job->n_tet,
+                       (const uint32_t (*)[4])job->tet, err);
   if (st == VG_OK) st = verify(&local, p, err);
   if (st == VG_OK) st = replace(r, p, &local, err);
   vg_tets_release(&local);
-  free(x);
-  return st;
-}
-
-/* tri: the missing triangles of this pocket. */
-static vg_status close_pocket(struct recovery *r, size_t n_cell,
-                              const struct vg_key *cell, size_t n_tri,
-                              const struct vg_key *tri, struct vg_error *err)
-{
-  struct pocket p = {0};
-  vg_status st = VG_OK;
-  int bad;
-
-  p.n_cell = n_cell;
-  p.cell = cell;
-  for (size_t m = 0; m < n_cell; m++) r->t->flag[cell[m].index] |= VG_MARK;
-  bad = add_faces(r->t, &p, 1) || add_faces(r->t, &p, 0);
-  for (size_t m = 0; m < n_cell; m++)
-    r->t->flag[cell[m].index] &= (uint8_t)~VG_MARK;
-  for (size_t m = 0; m < n_tri && !bad; m++)
-    bad = add_tri(&p, r->tri[r->missing[tri[m].index]]);
-  if (!bad) {
-    bad = number_points(r->t, &p);
-    if (bad > 0) st = VG_ERR_GEOMETRY;
-  }
-  if (bad < 0) st = vg_fail_memory(err, "boundary recovery");
-  if (st == VG_OK && !bad) st = tetrahedralise(r, &p, err);
-  free(p.tri);
-  free(p.point);
-  return st;
+  free(job->tet);
+  if (st != VG_ERR_GEOMETRY) return st;
+  r->report->n_retry++;
+  return VG_OK;
 }
 
 /* --- rounds ---------------------------------------------------------------- */
 
-/* Cells and missing triangles, both sorted by pocket, are closed in step. A
- * pocket that TetGen refuses waits for the next round. */
+/* Cells and missing triangles, both sorted by pocket, are cut up in step. */
+static vg_status describe_all(struct recovery *r, const struct vg_key *cell,
+                              const struct vg_key *tri, struct pocket *pocket,
+                              size_t *n_pocket, struct vg_error *err)
+{
+  size_t c = 0, k = 0;
+  vg_status st = VG_OK;
+
+  *n_pocket = 0;
+  while (st == VG_OK && c < r->n_cell) {
+    struct pocket *p = &pocket[*n_pocket];
+    uint64_t id = cell[c].key;
+    size_t c1 = c, k1;
+
+    memset(p, 0, sizeof *p);
+    while (c1 < r->n_cell && cell[c1].key == id) c1++;
+    while (k < r->n_missing && tri[k].key < id) k++;
+    for (k1 = k; k1 < r->n_missing && tri[k1].key == id; k1++) {}
+    p->cell = cell + c;
+    p->n_cell = c1 - c;
+    ++*n_pocket;
+    st = describe(r, p, k1 - k, tri + k, err);
+    if (st == VG_BLOCKED) {
+      p->n_tri = 0;          /* not closed in this round */
+      r->report->n_retry++;
+      st = VG_OK;
+    }
+    c = c1;
+    k = k1;
+  }
+  return st;
+}
+
+/* A pocket that TetGen refuses waits for the next round. */
+static vg_status close_all(struct recovery *r, size_t n,
+                           struct pocket *pocket, struct vg_error *err)
+{
+  struct vg_cdt_job *job = vg_calloc(n, sizeof *job);
+  size_t n_job = 0;
+  vg_status st = VG_OK;
+
+  if (!job) return vg_fail_memory(err, "boundary recovery");
+  for (size_t k = 0; k < n; k++)
+    if (pocket[k].x)
+      job[n_job++] = (struct vg_cdt_job){
+        .n = pocket[k].n_point, .n_tri = pocket[k].n_tri,
+        .x = (const double (*)[3])pocket[k].x,
+        .tri = (const uint32_t (*)[3])pocket[k].tri};
+  st = vg_cdt_tetgen(n_job, job, err);
+  n_job = 0;
+  for (size_t k = 0; k < n; k++) {
+    if (!pocket[k].x) continue;
+    if (st == VG_OK) {
+      st = accept(r, &pocket[k], &job[n_job], err);
+    } else {
+      free(job[n_job].all);
+      free(job[n_job].tet);
+    }
+    n_job++;
+  }
+  free(job);
+  return st;
+}
+
 static vg_status close_pockets(struct recovery *r, struct vg_error *err)
 {
   struct vg_key *cell = vg_alloc(r->n_cell, sizeof *cell);
   struct vg_key *tri = vg_alloc(r->n_missing, sizeof *tri);
-  size_t c = 0, k = 0;
+  struct pocket *pocket = vg_alloc(r->n_missing, sizeof *pocket);
+  size_t n = 0;
   vg_status st = VG_OK;
 
-  if (!cell || !tri) st = vg_fail_memory(err, "boundary recovery");
+  if (!cell || !tri || !pocket) st = vg_fail_memory(err, "boundary recovery");
   for (uint32_t m = 0; st == VG_OK && m < r->n_missing; m++) {
     tri[m].key = root_of(r, m);
     tri[m].index = m;
@@ -348,21 +404,14 @@ static vg_status close_pockets(struct recovery *r, struct vg_error *err)
   }
   if (st == VG_OK) st = vg_sort_keys(r->n_missing, tri, err);
   if (st == VG_OK) st = vg_sort_keys(r->n_cell, cell, err);
-  while (st == VG_OK && c < r->n_cell) {
-    uint64_t id = cell[c].key;
-    size_t c1 = c, k1;
-
-    while (c1 < r->n_cell && cell[c1].key == id) c1++;
-    while (k < r->n_missing && tri[k].key < id) k++;
-    for (k1 = k; k1 < r->n_missing && tri[k1].key == id; k1++) {}
-    st = close_pocket(r, c1 - c, cell + c, k1 - k, tri + k, err);
-    if (st == VG_ERR_GEOMETRY) {
-      r->report->n_retry++;
-      st = VG_OK;
-    }
-    c = c1;
-    k = k1;
+  if (st == VG_OK) st = describe_all(r, cell, tri, pocket, &n, err);
+  if (st == VG_OK) st = close_all(r, n, pocket, err);
+  for (size_t k = 0; k < n; k++) {
+    free(pocket[k].x);
+    free(pocket[k].tri);
+    free(pocket[k].point);
   }
+  free(pocket);
   free(cell);
   free(tri);
   return st;
