@@ -8,7 +8,10 @@
 #include "core/hilbert.h"
 #include "core/predicates.h"
 
-enum { ROUNDS = 4 };
+/* A pocket with more triangles is no pocket: where most of a surface of slivers
+ * is missing, its triangles are easier to recover than the rim of what Delaunay
+ * tetrahedra made of them. */
+enum { ROUNDS = 4, POCKET_MAX = 2000 };
 
 struct recovery {
   struct vg_tets *t;
@@ -351,6 +354,10 @@ static vg_status describe_all(struct recovery *r, const struct vg_key *cell,
     c = c1;
     k = k1;
   }
+  for (size_t m = 0; st == VG_OK && m < *n_pocket; m++)
+    if (pocket[m].n_tri > POCKET_MAX)
+      st = vg_fail(err, VG_ERR_GEOMETRY, "%zu of %zu surface triangles are "
+                   "missing, too many for pockets", r->n_missing, r->n_tri);
   return st;
 }
 

@@ -16,7 +16,8 @@
  * triangle in it kept; the result is verified face by face before it replaces
  * the pocket's cells. A pocket that fails grows by a ring of cells and is tried
  * again, three times.
- * Returns VG_ERR_GEOMETRY when pockets remain that cannot be closed. */
+ * Returns VG_ERR_GEOMETRY when pockets remain that cannot be closed, or one is
+ * so large that the whole surface is the better start. */
 vg_status vg_recover(struct vg_tets *t, size_t n_tri, const uint32_t (*tri)[3],
                      struct vg_boundary_report *report, struct vg_error *err);
 
