@@ -8,6 +8,7 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/resource.h>
+#include <sys/time.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -16,8 +17,10 @@
 
 namespace {
 
-/* A job that takes longer than this on the processor is given up, seconds. */
-const rlim_t patience = 1800;
+/* On some input TetGen turns in circles. A job is given up after this time on
+ * the processor, milliseconds and as many more as it has triangles: hundreds
+ * of times what pockets need, so that the outcome is the same everywhere. */
+const size_t patience = 500;
 
 struct answer {              /* on the pipe, before points and tetrahedra */
   uint64_t ok, n_added, n_tet;
@@ -82,9 +85,19 @@ void run(const vg_cdt_job &job, int to)
         4 * sizeof(int));
 }
 
+void be_patient(size_t n_tri)
+{
+  size_t limit = patience + n_tri;
+  itimerval time = {};
+
+  time.it_value.tv_sec = static_cast<time_t>(limit / 1000);
+  time.it_value.tv_usec = static_cast<suseconds_t>(limit % 1000 * 1000);
+  setitimer(ITIMER_PROF, &time, nullptr);
+}
+
 [[noreturn]] void child(size_t n_job, const vg_cdt_job *job, int to)
 {
-  rlimit none = {0, 0}, time = {patience, patience};
+  rlimit none = {0, 0};
   int nowhere = open("/dev/null", O_WRONLY);
 
   if (nowhere >= 0) {
@@ -92,11 +105,12 @@ void run(const vg_cdt_job &job, int to)
     dup2(nowhere, STDERR_FILENO);
   }
   setrlimit(RLIMIT_CORE, &none);
-  setrlimit(RLIMIT_CPU, &time);
   signal(SIGSEGV, SIG_DFL);
   signal(SIGABRT, SIG_DFL);
+  signal(SIGPROF, SIG_DFL);
   signal(SIGINT, SIG_IGN);   /* the parent decides */
   for (size_t k = 0; k < n_job; k++) {
+    be_patient(job[k].n_tri);
     try {
       run(job[k], to);
     } catch (...) {
