@@ -10,6 +10,8 @@
 #include "io/convention.h"
 #include "io/vtu.h"
 
+#define SHOWN_PATCHES 20   /* numbers in a note */
+
 /* Codes of patches that bound a fluid from outside: freestream, outflow,
  * characteristic and internal-flow ends. */
 static int is_outer_condition(const struct vg_patch *p)
@@ -153,6 +155,9 @@ static vg_status complete(struct vg_problem *p, struct vg_error *err)
 
   if (assumed) s->farfield.kind = VG_DOMAIN_SPHERE;
   far = vg_settings_farfield(s);
+  /* What is built here lies away from the body, whose own largest edge is no
+   * limit for it. */
+  if (!(options.h_max > 0)) options.h_max = INFINITY;
   VG_TRY(vg_sizing_new(&options, s->n_source, s->source, &p->surface, &sizing,
                        err));
   VG_TRY(vg_domain_complete(&p->surface, &far, sizing, &p->domain, err));
@@ -177,15 +182,22 @@ static vg_status resolve_patches(struct vg_problem *p, struct vg_error *err)
 /* Writers give patches without a condition that of an inviscid wall. */
 static void note_unset(struct vg_problem *p)
 {
-  size_t n = 0;
+  char list[12 * SHOWN_PATCHES + 8] = "";
+  size_t n = 0, at = 0;
 
-  for (size_t i = 0; i < p->surface.n_patch; i++)
-    n += p->surface.patch[i].bc == VG_BC_NONE &&
-         p->surface.patch[i].bc_fun3d == VG_BC_NONE;
+  for (size_t i = 0; i < p->surface.n_patch; i++) {
+    const struct vg_patch *patch = &p->surface.patch[i];
+
+    if (patch->bc != VG_BC_NONE || patch->bc_fun3d != VG_BC_NONE) continue;
+    if (n++ < SHOWN_PATCHES)
+      at += (size_t)snprintf(list + at, sizeof list - at, " %d",
+                             (int)patch->id);
+  }
   if (n)
     vg_note(&p->notes, "%zu patches have no boundary condition and are written "
-            "as inviscid walls (5, FUN3D 3000); give conditions in a .mapbc "
-            "file or the deck", n);
+            "as inviscid walls (5, FUN3D 3000): number%s%s; give conditions "
+            "in a .mapbc file or the deck", n, list,
+            n > SHOWN_PATCHES ? " ..." : "");
 }
 
 static vg_status close_body(struct vg_problem *p, struct vg_display *show,
