@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/fill.h"
 
 #define HUGE_SIZE 1e60 /* beyond this the predicates are not safe */
 
@@ -30,7 +31,8 @@ static const struct vg_param params[] = {
     .help = "largest ratio of neighbouring edges away from surface and "
             "sources" },
   { "hmin", AT(hmin), LENGTH, .help = "smallest edge; 0: no limit" },
-  { "hmax", AT(hmax), LENGTH, .help = "largest edge; 0: no limit" },
+  { "hmax", AT(hmax), LENGTH, .help = "largest edge; 0: the largest that the "
+    "surface (with its farfield) or a source asks for" },
   { "surface_sizes", AT(surface_sizes), .type = VG_PARAM_FLAG, .unit = "",
     .help = "edges of the surface grow into the volume" },
   { "d3m_sources", AT(d3m_sources), .type = VG_PARAM_FLAG, .unit = "",
@@ -187,6 +189,7 @@ void vg_settings_row_default(enum vg_table_kind kind, void *row)
 void vg_settings_default(struct vg_settings *s)
 {
   const struct vg_sizing_options sizing = VG_SIZING_OPTIONS_INIT;
+  const struct vg_fill_options fill = VG_FILL_OPTIONS_INIT;
 
   memset(s, 0, sizeof *s);
   s->scale = sizing.scale;
@@ -194,7 +197,7 @@ void vg_settings_default(struct vg_settings *s)
   s->surface_sizes = sizing.from_surface;
   s->d3m_sources = 1;
   s->repair = 1;
-  s->optimise = 3;
+  s->optimise = fill.optimise;
   snprintf(s->title, sizeof s->title, "untitled");
   snprintf(s->write, sizeof s->write, "cogsg,b8.ugrid");
   vg_settings_row_default(VG_TABLE_FARFIELD, &s->farfield);
