@@ -228,14 +228,12 @@ void vg_report_fill_text(FILE *to, const struct vg_fill_report *r,
   char a[32], b[32], c[32];
   double rate = r->time_total > 0 ? (double)n_cell / r->time_total : 0;
 
-  fprintf(to, "  voids %zu; field points inserted %s, refused %s\n",
-          r->n_void, vg_cli_count(r->n_inserted, a),
-          vg_cli_count(r->n_refused, b));
-  fprintf(to, "  surface edges recovered %s, faces %s; pockets closed %s "
-          "with %zu cells, retries %zu%s\n",
-          vg_cli_count(r->n_surface_edge_lost, a),
-          vg_cli_count(r->n_surface_face_lost, b),
-          vg_cli_count(r->n_pocket, c), r->n_pocket_cell, r->n_retry,
+  fprintf(to, "  field points inserted %s, refused %s\n",
+          vg_cli_count(r->n_inserted, a), vg_cli_count(r->n_refused, b));
+  fprintf(to, "  surface triangles recovered %s; pockets closed %s with %zu "
+          "cells, retries %zu%s\n",
+          vg_cli_count(r->n_surface_face_lost, a),
+          vg_cli_count(r->n_pocket, b), r->n_pocket_cell, r->n_retry,
           r->whole_void ? "; a whole void was closed by TetGen" : "");
   if (r->n_steiner)
     fprintf(to, "  points added to recover the boundary: %zu\n",
@@ -253,8 +251,8 @@ void vg_report_fill_text(FILE *to, const struct vg_fill_report *r,
 json_t *vg_report_fill_json(const struct vg_fill_report *r, size_t n_cell)
 {
   const struct { const char *name; size_t n; } row[] = {
-    { "voids", r->n_void }, { "edges_recovered", r->n_surface_edge_lost },
-    { "faces_recovered", r->n_surface_face_lost }, { "pockets", r->n_pocket },
+    { "triangles_recovered", r->n_surface_face_lost },
+    { "pockets", r->n_pocket },
     { "pocket_cells", r->n_pocket_cell }, { "retries", r->n_retry },
     { "steiner_points", r->n_steiner }, { "placed", r->n_placed },
     { "inserted", r->n_inserted }, { "refused", r->n_refused },

@@ -61,7 +61,6 @@ vg_status vg_fill(const struct vg_mesh *surface, const struct vg_sizing *sizing,
   VG_TRY(all_points_used(surface, err));
   st = vg_grow(&v, sizing, NULL, &grow, report, err);
   if (st != VG_OK) goto done;
-  report->n_void = 1;
   st = to_mesh(&v, surface, out, err);
 done:
   vg_void_release(&v);

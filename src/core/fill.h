@@ -23,8 +23,8 @@ struct vg_fill_options {
 
 /** What happened, for the report. Times are wall seconds. */
 struct vg_fill_report {
-  size_t n_void;           /* connected fluid regions filled */
-  size_t n_surface_edge_lost, n_surface_face_lost; /* not Delaunay at once */
+  size_t n_surface_face_lost; /* surface triangles to be recovered: not among
+                                 the Delaunay faces of the surface's points */
   size_t n_pocket, n_pocket_cell; /* pockets closed by TetGen, their cells */
   size_t n_retry;          /* larger pockets that had to be tried */
   int whole_void;          /* 1: TetGen had to close a whole void */
