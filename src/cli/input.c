@@ -176,23 +176,53 @@ vg_status vg_problem_deck(struct vg_problem *p, struct vg_error *err)
   return vg_deck_read(p->files.deck, s, err);
 }
 
-static vg_status read_surface(struct vg_problem *p, struct vg_error *err)
+static void note_unused(struct vg_problem *p,
+                        const struct vg_mapbc_match *match)
 {
-  const struct vg_input_files *f = &p->files;
-  const struct vg_project *project = *f->d3m ? &p->project : NULL;
+  if (match->n_unused)
+    vg_note(&p->notes, "%s.mapbc lists %zu patches that the surface does not "
+            "have (the first is %d)", p->files.stem, match->n_unused,
+            (int)match->first_unused);
+}
+
+/* Conditions are taken from the .mapbc beside the file. */
+static vg_status read_surface_file(struct vg_problem *p, struct vg_error *err)
+{
+  struct vg_read_info info = { 0 };
+  const char *path = p->files.surface;
+  vg_status st = vg_surface_read(path, &p->surface, &info, err);
+
+  if (st < 0) return st;
+  if (info.n_cell)
+    vg_note(&p->notes, "%s is a volume mesh: its boundary is meshed anew, its "
+            "%zu cells are not used", path, info.n_cell);
+  if (info.turned.face)
+    vg_note(&p->notes, "%s: %zu boundary faces pointed out of their cells and "
+            "were turned", path, info.turned.face);
+  if (info.turned.loose_face)
+    vg_note(&p->notes, "%s: %zu boundary faces belong to no cell", path,
+            info.turned.loose_face);
+  note_unused(p, &info.match);
+  return VG_OK;
+}
+
+/* Sizes have to reach over the patches, wherever the sources are. */
+static vg_status mesh_patches(struct vg_problem *p, struct vg_error *err)
+{
   struct vg_sizing_options options = vg_settings_sizing(&p->settings);
+  const struct vg_mesh corners = { .n_point = p->project.n_point,
+                                   .point = p->project.point };
   struct vg_sizing *sizing = NULL;
   vg_status st;
 
-  if (*f->front) return vg_front_read(f->front, project, &p->surface, err);
-  if (*f->surface) return vg_format_read(f->surface, &p->surface, err);
   if (!p->project.n_shape)
     return vg_fail(err, VG_ERR_INPUT, "%s: no patches in it and no surface "
-                   "beside it; add a .front or a surface file", f->d3m);
-  st = vg_sizing_new(&options, p->settings.n_source, p->settings.source, NULL,
-                     &sizing, err);
-  if (st >= 0)
-    st = vg_project_surface(&p->project, sizing, &p->surface, err);
+                   "beside it; add a .front or a surface file",
+                   p->files.d3m);
+  VG_TRY(vg_sizing_new(&options, p->settings.n_source, p->settings.source,
+                       &corners, &sizing, err));
+  VG_TRY(vg_project_surface(&p->project, sizing, &p->surface, err));
+done:
   vg_sizing_free(sizing);
   return st;
 }
@@ -270,12 +300,20 @@ static vg_status apply_conditions(struct vg_problem *p, struct vg_error *err)
   st = vg_mapbc_read(p->files.mapbc, &bc, err);
   if (st >= 0) st = vg_mapbc_apply(&bc, &p->surface, &match, err);
   vg_mapbc_release(&bc);
-  if (st < 0) return st;
-  if (match.n_unused)
-    vg_note(&p->notes, "%s lists %zu patches that the surface does not have "
-            "(the first is %d)", p->files.mapbc, match.n_unused,
-            (int)match.first_unused);
-  return VG_OK;
+  if (st >= 0) note_unused(p, &match);
+  return st;
+}
+
+static vg_status read_surface(struct vg_problem *p, struct vg_error *err)
+{
+  const struct vg_input_files *f = &p->files;
+  const struct vg_project *project = *f->d3m ? &p->project : NULL;
+  vg_status st;
+
+  if (!*f->front && *f->surface) return read_surface_file(p, err);
+  st = *f->front ? vg_front_read(f->front, project, &p->surface, err)
+                 : mesh_patches(p, err);
+  return st < 0 ? st : apply_conditions(p, err);
 }
 
 static void note_layers(struct vg_problem *p)
@@ -295,7 +333,6 @@ vg_status vg_problem_surface(struct vg_problem *p, struct vg_error *err)
   }
   VG_TRY(merge_sources(p, err));
   VG_TRY(read_surface(p, err));
-  VG_TRY(apply_conditions(p, err));
   VG_TRY(apply_patch_table(p, err));
 done:
   return st;
