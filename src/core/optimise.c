@@ -7,9 +7,10 @@
 #include "core/hilbert.h"
 #include "core/optimise_parts.h"
 
-/* sin^2 of dihedral angles: cells below are worked on one by one. */
-static const double aim_sweep = 0.1786;   /* 25 degrees */
-static const double aim_bad = 0.1786;
+/* As vg_shape. Cells below `aim` (dihedral angles below 25 or above 155
+ * degrees) are worked on one by one; `good` (45, 135) cells are not touched. */
+static const double aim = 0.1786;
+static const float good = 0.5;
 
 static vg_status start(struct vg_optimiser *o, struct vg_tets *t,
                        struct vg_error *err)
@@ -34,20 +35,38 @@ static int is_live(const struct vg_tets *t, uint32_t c)
   return !(t->flag[c] & (VG_DEAD | VG_OUTSIDE));
 }
 
-static void sweep(struct vg_optimiser *o)
+/* least[p]: shape of the worst cell around p. */
+static void worst_around(const struct vg_optimiser *o, float *least)
 {
-  struct vg_tets *t = o->t;
+  const struct vg_tets *t = o->t;
 
-  for (uint32_t p = (uint32_t)o->n_fixed; p < t->n_point; p++)
-    vg_smooth(o, p, aim_sweep);
+  for (size_t p = 0; p < t->n_point; p++) least[p] = 2;
   for (uint32_t c = 0; c < t->n_cell; c++)
-    if (is_live(t, c) && o->q[c] < aim_sweep) vg_swap(o, c);
+    for (int i = 0; i < 4 && is_live(t, c); i++)
+      if (o->q[c] < least[t->cell[c].v[i]])
+        least[t->cell[c].v[i]] = o->q[c];
 }
 
-/* The cells below `aim`, worst first. */
-static vg_status list_bad(const struct vg_optimiser *o, double aim,
-                          size_t *n, struct vg_key **list,
-                          struct vg_error *err)
+/* Points whose cells are all good are left where they are: in a level field
+ * that is nearly all of them. */
+static vg_status sweep(struct vg_optimiser *o, struct vg_error *err)
+{
+  struct vg_tets *t = o->t;
+  float *least = vg_alloc(t->n_point, sizeof *least);
+
+  if (!least) return vg_fail_memory(err, "optimisation");
+  worst_around(o, least);
+  for (uint32_t p = (uint32_t)o->n_fixed; p < t->n_point; p++)
+    if (least[p] < good) vg_smooth(o, p, aim);
+  free(least);
+  for (uint32_t c = 0; c < t->n_cell; c++)
+    if (is_live(t, c) && o->q[c] < aim) vg_swap(o, c);
+  return VG_OK;
+}
+
+/* The cells below aim, worst first. */
+static vg_status list_bad(const struct vg_optimiser *o, size_t *n,
+                          struct vg_key **list, struct vg_error *err)
 {
   const struct vg_tets *t = o->t;
   size_t k = 0;
@@ -68,7 +87,7 @@ static vg_status list_bad(const struct vg_optimiser *o, double aim,
 }
 
 /* One bad cell: the cheapest step that helps. */
-static int mend_cell(struct vg_optimiser *o, uint32_t c, double aim)
+static int mend_cell(struct vg_optimiser *o, uint32_t c)
 {
   int better = 0;
 
@@ -84,14 +103,14 @@ static vg_status mend(struct vg_optimiser *o, size_t *n_better,
 {
   struct vg_key *list = NULL;
   size_t n;
-  vg_status st = list_bad(o, aim_bad, &n, &list, err);
+  vg_status st = list_bad(o, &n, &list, err);
 
   *n_better = 0;
   for (size_t k = 0; st == VG_OK && k < n; k++) {
     uint32_t c = list[k].index;
 
-    if (is_live(o->t, c) && o->q[c] < aim_bad)
-      *n_better += (size_t)mend_cell(o, c, aim_bad);
+    if (is_live(o->t, c) && o->q[c] < aim)
+      *n_better += (size_t)mend_cell(o, c);
   }
   free(list);
   return st;
@@ -111,7 +130,7 @@ vg_status vg_optimise(struct vg_tets *t, size_t n_fixed,
   o->n_fixed = n_fixed;
   o->report = report;
   st = start(o, t, err);
-  for (int k = 0; st == VG_OK && k < sweeps; k++) sweep(o);
+  for (int k = 0; st == VG_OK && k < sweeps; k++) st = sweep(o, err);
   for (int k = 0; st == VG_OK && k < 8 && n_better; k++)
     st = mend(o, &n_better, err);
   if (st == VG_OK && o->refused) st = vg_fail_memory(err, "optimisation");

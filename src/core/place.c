@@ -382,6 +382,21 @@ static int level_around(const struct placer *p, const double c[3], double h)
   return n;
 }
 
+/* A displacement of up to 1e-4, fixed for each point of the lattice: without it
+ * points lie on common spheres and planes while the lattice is being built, and
+ * every predicate would have to be exact. */
+static double shake(const int64_t i[3], int k)
+{
+  uint64_t mix = (uint64_t)i[0] * 0x9e3779b97f4a7c15u +
+                 (uint64_t)i[1] * 0xc2b2ae3d27d4eb4fu +
+                 (uint64_t)i[2] * 0x165667b19e3779f9u + (uint64_t)k;
+
+  mix ^= mix >> 32;
+  mix *= 0xd6e8feb86659fd93u;
+  mix ^= mix >> 32;
+  return ((double)(mix & 0xffff) / 65536 - 0.5) * 2e-4;
+}
+
 /* Where the field is level, neighbours are points of one body-centred cubic
  * lattice through the origin: fronts that started anywhere meet without a
  * fault. In units of half the side, its points are all even or all odd. */
@@ -400,7 +415,7 @@ static int grow_level(struct placer *p, const double c[3], double h,
 
         if ((i[0] ^ i[2]) & 1) continue;
         for (int k = 0; k < 3; k++) {
-          x[k] = half * (double)i[k];
+          x[k] = half * ((double)i[k] + shake(i, k));
           d[k] = x[k] - c[k];
         }
         if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] > reach2 ||
