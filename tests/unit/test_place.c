@@ -1,0 +1,330 @@
+/* Points of the field: as far apart as the spacing says, nowhere a gap, all in
+ * the fluid, always the same. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "core/boundary.h"
+#include "core/place.h"
+#include "fill_shapes.h"
+#include "tets_support.h"
+
+/* A surface, its coarse cells and its field. */
+struct scene {
+  struct vg_mesh m;
+  struct vg_tets t;
+  struct vg_sizing *sizing;
+};
+
+static void scene_of(struct scene *s, double growth, double h_max)
+{
+  struct vg_boundary_report r;
+
+  memset(&s->t, 0, sizeof s->t);
+  s->sizing = shape_sizing(&s->m, growth, h_max);
+  assert_int_equal(vg_boundary_tets(s->m.n_point,
+                                    (const double (*)[3])s->m.point,
+                                    s->m.n_tri,
+                                    (const uint32_t (*)[3])s->m.tri, &s->t,
+                                    &r, NULL), VG_OK);
+}
+
+static void box_scene(struct scene *s, int n, double h_max)
+{
+  memset(&s->m, 0, sizeof s->m);
+  shape_box(&s->m, n, 0.5);
+  scene_of(s, 1.2, h_max);
+}
+
+static void sphere_scene(struct scene *s)
+{
+  const double centre[3] = {0, 0, 0};
+
+  memset(&s->m, 0, sizeof s->m);
+  shape_box(&s->m, 5, 4);
+  shape_sphere(&s->m, 8, centre, 1, 7);
+  scene_of(s, 1.15, 0);
+}
+
+static void scene_end(struct scene *s)
+{
+  vg_sizing_free(s->sizing);
+  vg_tets_release(&s->t);
+  vg_mesh_release(&s->m);
+}
+
+static double distance(const double a[3], const double b[3])
+{
+  return sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) +
+              (a[2] - b[2]) * (a[2] - b[2]));
+}
+
+static double nearest(size_t n, const double (*x)[3], const double at[3])
+{
+  double least = INFINITY;
+
+  for (size_t i = 0; i < n; i++) {
+    double d = distance(x[i], at);
+
+    least = d < least ? d : least;
+  }
+  return least;
+}
+
+static int in_fluid(const struct vg_tets *t, const double x[3])
+{
+  uint32_t c = vg_tets_locate(t, 0, x);
+
+  return c != VG_NONE && !(t->flag[c] & VG_OUTSIDE);
+}
+
+static struct vg_placed place(const struct scene *s,
+                              const struct vg_region *region, size_t limit)
+{
+  struct vg_placed out = {0};
+
+  assert_int_equal(vg_place(&s->t, s->sizing, region, limit, &out, NULL),
+                   VG_OK);
+  return out;
+}
+
+/* The least share of the spacing between points is 0.66, measured in single
+ * precision; a little less where the field is steep, as it is read twice. */
+static void keep_their_distance(const struct scene *s,
+                                const struct vg_placed *p, double share)
+{
+  for (size_t i = 0; i < p->n; i++) {
+    double h = vg_sizing_at(s->sizing, p->x[i]);
+
+    assert_true(in_fluid(&s->t, p->x[i]));
+    assert_true(nearest(i, (const double (*)[3])p->x, p->x[i]) > share * h);
+    assert_true(nearest(s->m.n_point, (const double (*)[3])s->m.point,
+                        p->x[i]) > share * h);
+  }
+}
+
+/* No point of the fluid is farther from all points than 1.1 spacings: in the
+ * lattice the farthest is at 0.61, and a gap where one more point could stand
+ * is at most 0.72 wide where fronts meet. */
+static void leave_no_gap(const struct scene *s, const struct vg_placed *p,
+                         const double lo[3], const double hi[3])
+{
+  uint64_t seed = 3;
+
+  for (int i = 0; i < 1500; i++) {
+    double x[3], a, b;
+
+    for (int k = 0; k < 3; k++)
+      x[k] = lo[k] + (hi[k] - lo[k]) * tets_random(&seed);
+    if (!in_fluid(&s->t, x)) continue;
+    a = nearest(p->n, (const double (*)[3])p->x, x);
+    b = nearest(s->m.n_point, (const double (*)[3])s->m.point, x);
+    assert_true((a < b ? a : b) < 1.1 * vg_sizing_at(s->sizing, x));
+  }
+}
+
+static void a_level_field(void **state)
+{
+  const double lo[3] = {-0.5, -0.5, -0.5}, hi[3] = {0.5, 0.5, 0.5};
+  struct scene s;
+  struct vg_placed p;
+
+  (void)state;
+  box_scene(&s, 8, 0.125);
+  p = place(&s, NULL, 0);
+  /* a body-centred lattice has sqrt(2) / h^3 points at the mean edge h */
+  assert_in_range(p.n, 300, 1000);
+  keep_their_distance(&s, &p, 0.65);
+  leave_no_gap(&s, &p, lo, hi);
+  free(p.x);
+  scene_end(&s);
+}
+
+static void a_graded_field(void **state)
+{
+  const double lo[3] = {-4, -4, -4}, hi[3] = {4, 4, 4};
+  struct scene s;
+  struct vg_placed p;
+
+  (void)state;
+  sphere_scene(&s);
+  p = place(&s, NULL, 0);
+  assert_true(p.n > 200);
+  keep_their_distance(&s, &p, 0.6);
+  leave_no_gap(&s, &p, lo, hi);
+  for (size_t i = 0; i < p.n; i++) {
+    const double zero[3] = {0, 0, 0};
+
+    assert_true(distance(p.x[i], zero) > 1);  /* none in the body */
+  }
+  free(p.x);
+  scene_end(&s);
+}
+
+static void the_same_bytes_again(void **state)
+{
+  struct scene s;
+  struct vg_placed p, q;
+
+  (void)state;
+  sphere_scene(&s);
+  p = place(&s, NULL, 0);
+  q = place(&s, NULL, 0);
+  assert_int_equal(p.n, q.n);
+  assert_memory_equal(p.x, q.x, p.n * sizeof *p.x);
+  free(p.x);
+  free(q.x);
+  scene_end(&s);
+}
+
+static void the_limit_is_exact(void **state)
+{
+  struct scene s;
+  struct vg_placed p, q, none = {0};
+  struct vg_error err = VG_ERROR_INIT;
+
+  (void)state;
+  box_scene(&s, 6, 0.15);
+  p = place(&s, NULL, 0);
+  q = place(&s, NULL, p.n);
+  assert_int_equal(p.n, q.n);
+  assert_memory_equal(p.x, q.x, p.n * sizeof *p.x);
+  assert_int_equal(vg_place(&s.t, s.sizing, NULL, p.n - 1, &none, &err),
+                   VG_ERR_UNSUPPORTED);
+  assert_true(strlen(err.text) > 10);
+  assert_int_equal(none.n, 0);
+  assert_null(none.x);
+  assert_int_equal(vg_place(&s.t, s.sizing, NULL, 1, &none, &err),
+                   VG_ERR_UNSUPPORTED);
+  assert_null(none.x);
+  free(p.x);
+  free(q.x);
+  scene_end(&s);
+}
+
+/* Points already there count: a second helping is all but empty. */
+static void points_that_stand_count(void **state)
+{
+  struct scene s;
+  struct vg_placed p, q;
+  struct vg_inserter inserter;
+
+  (void)state;
+  box_scene(&s, 8, 0.125);
+  p = place(&s, NULL, 0);
+  assert_int_equal(vg_inserter_init(&inserter, &s.t, NULL), VG_OK);
+  for (size_t i = 0; i < p.n; i++)
+    assert_int_equal(tets_insert(&inserter, p.x[i], 0, 0), VG_OK);
+  q = place(&s, NULL, 0);
+  assert_true(q.n <= p.n / 20);
+  vg_inserter_release(&inserter);
+  free(p.x);
+  free(q.x);
+  scene_end(&s);
+}
+
+/* --- regions ------------------------------------------------------------- */
+
+static void a_slab_gets_its_points_only(void **state)
+{
+  const struct vg_region zone = {1, {{{0, 0, 1}, 0.1, 0}, {{0}, 0, 0}}};
+  const double lo[3] = {-0.5, -0.5, 0.0}, hi[3] = {0.5, 0.5, 0.2};
+  struct scene s;
+  struct vg_placed p, all;
+
+  (void)state;
+  box_scene(&s, 16, 0.0625);
+  all = place(&s, NULL, 0);
+  p = place(&s, &zone, 0);
+  assert_true(p.n > all.n / 8 && p.n < all.n / 2);
+  for (size_t i = 0; i < p.n; i++)
+    assert_true(vg_region_near(&zone, p.x[i],
+                               vg_sizing_at(s.sizing, p.x[i])));
+  keep_their_distance(&s, &p, 0.65);
+  leave_no_gap(&s, &p, lo, hi);
+  free(p.x);
+  free(all.x);
+  scene_end(&s);
+}
+
+static void cells_of_regions(void **state)
+{
+  const double a[3] = {0, 0, 0}, b[3] = {1, 0, 0}, c[3] = {0, 1, 0};
+  const double d[3] = {0, 0, 1};
+  struct vg_region all = VG_REGION_ALL;
+  struct vg_region r = {1, {{{0, 0, 1}, 0.5, 0}, {{1, 0, 0}, 0.5, 0}}};
+
+  (void)state;
+  assert_true(vg_region_has_cell(&all, a, b, c, d));
+  assert_true(vg_region_has_cell(&r, a, b, c, d));
+  r.slab[0].offset = 1;      /* touches at d */
+  assert_true(vg_region_has_cell(&r, a, b, c, d));
+  r.slab[0].offset = 1.25;
+  assert_false(vg_region_has_cell(&r, a, b, c, d));
+  r.slab[0].reach = 0.25;
+  assert_true(vg_region_has_cell(&r, a, b, c, d));
+  r.slab[0].reach = 0.125;
+  assert_false(vg_region_has_cell(&r, a, b, c, d));
+  r.slab[0].offset = -1.25;
+  assert_false(vg_region_has_cell(&r, a, b, c, d));
+  r.n_slab = 2;
+  r.slab[0].offset = 0.5;
+  assert_true(vg_region_has_cell(&r, a, b, c, d));
+  r.slab[1].offset = 1.5;
+  assert_false(vg_region_has_cell(&r, a, b, c, d));
+  assert_true(vg_region_has_cell(&all, a, b, c, d));
+}
+
+/* --- seeds --------------------------------------------------------------- */
+
+static void seeds_are_few_and_spread(void **state)
+{
+  const struct vg_region zone = {1, {{{0, 0, 1}, 0, 0}, {{0}, 0, 0}}};
+  struct scene s;
+  struct vg_placed p = {0}, q = {0}, some = {0};
+  const double (*x)[3];
+
+  (void)state;
+  box_scene(&s, 24, 1.0 / 24);
+  x = (const double (*)[3])s.m.point;
+  assert_int_equal(vg_place_seeds(s.m.n_point, x, s.sizing, NULL, &p, NULL),
+                   VG_OK);
+  assert_int_equal(vg_place_seeds(s.m.n_point, x, s.sizing, NULL, &q, NULL),
+                   VG_OK);
+  assert_in_range(p.n, 8, 512);         /* 4^3: one for each 6^3 spacings */
+  assert_int_equal(p.n, q.n);
+  assert_memory_equal(p.x, q.x, p.n * sizeof *p.x);
+  for (size_t i = 0; i < p.n; i++)
+    for (int k = 0; k < 3; k++) assert_true(fabs(p.x[i][k]) < 0.5);
+  assert_int_equal(vg_place_seeds(s.m.n_point, x, s.sizing, &zone, &some,
+                                  NULL), VG_OK);
+  assert_true(some.n > 0 && some.n <= p.n);
+  free(p.x);
+  free(q.x);
+  free(some.x);
+  assert_int_equal(vg_place_seeds(0, x, s.sizing, NULL, &p, NULL), VG_OK);
+  assert_int_equal(p.n, 0);
+  assert_null(p.x);
+  scene_end(&s);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(a_level_field),
+    cmocka_unit_test(a_graded_field),
+    cmocka_unit_test(the_same_bytes_again),
+    cmocka_unit_test(the_limit_is_exact),
+    cmocka_unit_test(points_that_stand_count),
+    cmocka_unit_test(a_slab_gets_its_points_only),
+    cmocka_unit_test(cells_of_regions),
+    cmocka_unit_test(seeds_are_few_and_spread),
+  };
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
