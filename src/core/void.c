@@ -1,11 +1,14 @@
 #include "core/void.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
 #include "core/hilbert.h"
 #include "core/predicates.h"
+
+enum { PORTION = 1 << 16 };  /* items read at a time */
 
 static const char magic[8] = {'V', 'G', 'V', 'O', 'I', 'D', '1', '\n'};
 
@@ -63,7 +66,7 @@ size_t vg_void_defects(const struct vg_void *v)
       edge[n++].index = a < b;
     }
   if (vg_sort_keys(n, edge, NULL)) bad = SIZE_MAX;
-  for (size_t i = 0, j; !bad && i < n; i = j) {
+  for (size_t i = 0, j; bad != SIZE_MAX && i < n; i = j) {
     long balance = 0;
 
     for (j = i; j < n && edge[j].key == edge[i].key; j++)
@@ -98,13 +101,26 @@ vg_status vg_void_save(const struct vg_void *v, FILE *to,
   return VG_OK;
 }
 
-static int get(FILE *from, void *to, size_t n, size_t size)
+/* Read n items into *block. In portions, so that a count that lies asks for no
+ * more memory than there is data. Returns 0, 1: no data, -1: no memory. */
+static int get(FILE *from, void *block, size_t *cap, size_t n, size_t size)
 {
-  return n && fread(to, size, n, from) != n;
+  char *at;
+
+  for (size_t have = 0, more; have < n; have += more) {
+    more = n - have < PORTION ? n - have : PORTION;
+    if (vg_reserve(block, cap, have + more, size)) return -1;
+    memcpy(&at, block, sizeof at);
+    if (fread(at + have * size, size, more, from) != more) return 1;
+  }
+  return 0;
 }
 
-static int indices_are_good(const struct vg_void *v)
+static int content_is_good(const struct vg_void *v)
 {
+  for (size_t p = 0; p < v->n_point; p++)
+    for (int k = 0; k < 3; k++)
+      if (!isfinite(v->x[p][k])) return 0;
   for (size_t i = 0; i < v->n_face; i++)
     for (int k = 0; k < 3; k++)
       if (v->face[i][k] >= v->n_point) return 0;
@@ -116,21 +132,25 @@ static int indices_are_good(const struct vg_void *v)
 
 vg_status vg_void_load(struct vg_void *v, FILE *from, struct vg_error *err)
 {
-  char head[8];
+  char head[sizeof magic];
   uint64_t count[3];
+  int bad;
 
-  if (get(from, head, 1, sizeof head) || memcmp(head, magic, sizeof head) ||
-      get(from, count, 3, sizeof *count))
+  if (fread(head, sizeof head, 1, from) != 1 ||
+      memcmp(head, magic, sizeof head) ||
+      fread(count, sizeof count, 1, from) != 1)
     return vg_fail(err, VG_ERR_FORMAT, "not the state of a front");
   if (count[0] > UINT32_MAX || count[1] > UINT32_MAX || count[2] > UINT32_MAX)
     return vg_fail(err, VG_ERR_FORMAT, "the state of the front has "
                    "impossible counts");
-  if (allocate(v, count[0], count[1], count[2]))
-    return vg_fail_memory(err, "the front");
-  if (!get(from, v->x, v->n_point, sizeof *v->x) &&
-      !get(from, v->face, v->n_face, sizeof *v->face) &&
-      !get(from, v->cell, v->n_cell, sizeof *v->cell) && indices_are_good(v))
-    return VG_OK;
+  bad = get(from, &v->x, &v->cap_point, count[0], sizeof *v->x);
+  if (!bad) bad = get(from, &v->face, &v->cap_face, count[1], sizeof *v->face);
+  if (!bad) bad = get(from, &v->cell, &v->cap_cell, count[2], sizeof *v->cell);
+  v->n_point = count[0];
+  v->n_face = count[1];
+  v->n_cell = count[2];
+  if (!bad && content_is_good(v)) return VG_OK;
   vg_void_release(v);
+  if (bad < 0) return vg_fail_memory(err, "the front");
   return vg_fail(err, VG_ERR_FORMAT, "the state of the front is damaged");
 }
