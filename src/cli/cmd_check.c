@@ -108,15 +108,17 @@ static vg_status check_surface(const struct arguments *a, struct vg_mesh *m,
 {
   struct vg_surface_check_options o = VG_SURFACE_CHECK_OPTIONS_INIT;
   struct vg_surface_report r = VG_SURFACE_REPORT_INIT;
+  struct vg_notes notes = { 0 };
   int external = -1;
   vg_status st;
 
   o.require_bc = vg_surface_has_conditions(m);
-  VG_TRY(vg_surface_examine(m, &o, &external, &r, err));
+  VG_TRY(vg_surface_examine(m, &o, &external, &r, &notes, err));
   if (a->json) {
-    print_json(json_pack("{s:o s:b s:o s:o s:o}", "file",
+    print_json(json_pack("{s:o s:b s:s s:o s:o s:o}", "file",
                          vg_report_string(a->file), "ok",
-                         r.n_defect == 0, "size", vg_report_size_json(m),
+                         r.n_defect == 0, "taken_as",
+                         external ? "bodies" : "domain", "size", vg_report_size_json(m),
                          "patches", vg_report_patches_json(m), "surface",
                          vg_report_surface_json(m, &r, VG_SHOWN_DEFECTS)));
   } else {
@@ -126,6 +128,8 @@ static vg_status check_surface(const struct arguments *a, struct vg_mesh *m,
     vg_report_size_text(stdout, m);
     VG_TRY(vg_report_patches_text(stdout, m, err));
     vg_report_surface_text(stdout, m, &r, VG_SHOWN_DEFECTS);
+    for (size_t i = 0; i < notes.n; i++)
+      printf("  note: %s\n", notes.text[i]);
     if (!r.n_defect) printf("  no defects\n");
   }
   VG_TRY(write_defects(a, m, &r, err));
@@ -136,6 +140,7 @@ static vg_status check_surface(const struct arguments *a, struct vg_mesh *m,
     st = vg_fail(err, VG_ERR_GEOMETRY, "%s: no surface is left: all its "
                  "triangles are degenerate", a->file);
 done:
+  vg_notes_release(&notes);
   vg_surface_report_release(&r);
   return st;
 }

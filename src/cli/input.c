@@ -29,6 +29,13 @@ void vg_note(struct vg_notes *notes, const char *format, ...)
     notes->text[notes->n++] = text;
 }
 
+void vg_notes_release(struct vg_notes *notes)
+{
+  for (size_t i = 0; i < notes->n; i++) free(notes->text[i]);
+  free(notes->text);
+  memset(notes, 0, sizeof *notes);
+}
+
 static void release_files(struct vg_input_files *f)
 {
   free(f->stem);
@@ -47,9 +54,7 @@ void vg_problem_release(struct vg_problem *p)
   vg_project_release(&p->project);
   vg_mesh_release(&p->surface);
   vg_surface_report_release(&p->check);
-  for (size_t i = 0; i < p->notes.n; i++) free(p->notes.text[i]);
-  free(p->notes.text);
-  memset(&p->notes, 0, sizeof p->notes);
+  vg_notes_release(&p->notes);
 }
 
 static int exists(const char *path)

@@ -38,6 +38,8 @@ struct vg_problem {
 
 void vg_problem_release(struct vg_problem *p);
 
+void vg_notes_release(struct vg_notes *notes);
+
 /** Add a line for the report; loses it when memory is refused. */
 void vg_note(struct vg_notes *notes, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
@@ -64,13 +66,14 @@ vg_status vg_problem_close(struct vg_problem *p, struct vg_display *show,
  * stand in a fluid (*external 1) or bound it (0).
  *
  * @param external  in: 1, 0, or -1 to find out: a patch with a farfield
- *                  condition, normals that point inward, or shells inside
- *                  another one mean 0. out: 1 or 0
+ *                  condition, normals that point inward, shells inside
+ *                  another one, or a single shell shaped as a flow domain
+ *                  (core/envelope.h; with a note) mean 0. out: 1 or 0
  * @param o         its `external` is set here */
 vg_status vg_surface_examine(struct vg_mesh *m,
                              const struct vg_surface_check_options *o,
                              int *external, struct vg_surface_report *r,
-                             struct vg_error *err);
+                             struct vg_notes *notes, struct vg_error *err);
 
 /** 1 when a patch has a boundary condition: then all of them should. */
 int vg_surface_has_conditions(const struct vg_mesh *m);

@@ -145,14 +145,19 @@ static void shells_text(FILE *to, const struct vg_surface_report *r)
     fprintf(to, "    ... and %zu more\n", r->n_shell - VG_SHOWN_DEFECTS);
 }
 
-static void repair_text(FILE *to, const struct vg_surface_report *r)
+static void repair_text(FILE *to, const struct vg_mesh *m,
+                        const struct vg_surface_report *r)
 {
+  /* Where all was turned, those that were not had been turned before. */
+  size_t single = r->turned_inside_out ? m->n_tri + m->n_quad - r->n_flipped
+                                       : r->n_flipped;
+
   if (r->turned_inside_out)
     fprintf(to, "  repaired: the whole surface was turned, so that it points "
             "into the fluid\n");
-  if (r->n_flipped)
+  if (single)
     fprintf(to, "  repaired: %zu triangles turned to agree with their "
-            "neighbours\n", r->n_flipped);
+            "neighbours\n", single);
   if (r->n_removed_point)
     fprintf(to, "  repaired: %zu unused or duplicate points removed\n",
             r->n_removed_point);
@@ -168,7 +173,7 @@ void vg_report_surface_text(FILE *to, const struct vg_mesh *m,
   size_t at = 0;
 
   shells_text(to, r);
-  repair_text(to, r);
+  repair_text(to, m, r);
   for (int kind = 0; kind < VG_DEFECT_N; kind++) {
     size_t n = r->count[kind], said = 0;
 

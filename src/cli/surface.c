@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "cli/deck.h"
 #include "cli/input.h"
+#include "core/envelope.h"
 #include "io/convention.h"
 #include "io/vtu.h"
 
@@ -65,23 +66,81 @@ int vg_surface_has_conditions(const struct vg_mesh *m)
   return 0;
 }
 
+/* Numbers of the patches that lie in the outer part, as " 1 2 3". */
+static vg_status outer_patches(const struct vg_mesh *m, const uint8_t *outer,
+                               char *list, size_t size, struct vg_error *err)
+{
+  size_t (*n)[2] = vg_calloc(m->n_patch, sizeof *n), at = 0, shown = 0;
+
+  if (!n) return vg_fail_memory(err, "the patches");
+  *list = 0;
+  for (size_t i = 0; i < m->n_tri; i++) n[m->tri_patch[i]][outer[i]]++;
+  for (size_t i = 0; i < m->n_patch && at < size; i++) {
+    if (n[i][1] <= n[i][0]) continue;
+    if (shown++ < SHOWN_PATCHES)
+      at += (size_t)snprintf(list + at, size - at, " %d",
+                             (int)m->patch[i].id);
+    else if (shown == SHOWN_PATCHES + 1)
+      at += (size_t)snprintf(list + at, size - at, " ...");
+  }
+  free(n);
+  return VG_OK;
+}
+
+/* One shell with normals outward: a body, unless its shape says that it is
+ * the boundary of a fluid around a body. */
+static vg_status is_whole_domain(const struct vg_mesh *m,
+                                 const struct vg_surface_report *r,
+                                 struct vg_notes *notes, int *whole,
+                                 struct vg_error *err)
+{
+  struct vg_envelope e;
+  uint8_t *outer;
+  char list[12 * SHOWN_PATCHES + 8];
+  vg_status st;
+
+  *whole = 0;
+  if (r->n_shell != 1 || !r->is_closed || r->n_defect || m->n_quad)
+    return VG_OK;
+  outer = vg_alloc(m->n_tri, 1);
+  if (!outer) return vg_fail_memory(err, "the surface");
+  VG_TRY(vg_envelope_measure(m, outer, &e, err));
+  *whole = e.is_domain;
+  if (!e.is_domain) goto done;
+  VG_TRY(outer_patches(m, outer, list, sizeof list, err));
+  vg_note(notes, "the surface was taken as the boundary of a whole flow "
+          "domain, though its normals point out of it: %zu triangles (most of "
+          "patches%s) are a convex outer boundary that covers at least "
+          "%.0f %% of every view along x, y and z, and the others stand inside it "
+          "(--farfield sphere: it is a body in open air)", e.n_outer, list,
+          100 * fmin(e.covered, 1));
+done:
+  free(outer);
+  return st;
+}
+
 vg_status vg_surface_examine(struct vg_mesh *m,
                              const struct vg_surface_check_options *options,
                              int *external, struct vg_surface_report *r,
-                             struct vg_error *err)
+                             struct vg_notes *notes, struct vg_error *err)
 {
   struct vg_surface_check_options o = *options;
-  int find_out = *external < 0;
+  int find_out = *external < 0, inside = 0;
   vg_status st;
 
   o.external = find_out ? looks_external(m) : *external;
-  st = vg_surface_check(m, &o, r, err);
-  if (st >= 0 && find_out && o.external && has_nested_shells(r)) {
+  VG_TRY(vg_surface_check(m, &o, r, err));
+  if (find_out && o.external) {
+    inside = has_nested_shells(r);
+    if (!inside) VG_TRY(is_whole_domain(m, r, notes, &inside, err));
+  }
+  if (inside) {
     o.external = 0;
     vg_surface_report_release(r);
-    st = vg_surface_check(m, &o, r, err);
+    VG_TRY(vg_surface_check(m, &o, r, err));
   }
   *external = o.external;
+done:
   return st;
 }
 
@@ -124,7 +183,8 @@ static vg_status check(struct vg_problem *p, int *external,
   o.repair = p->settings.repair;
   o.require_bc = p->require_bc;
   vg_surface_report_release(&p->check);
-  return vg_surface_examine(&p->surface, &o, external, &p->check, err);
+  return vg_surface_examine(&p->surface, &o, external, &p->check, &p->notes,
+                            err);
 }
 
 static vg_status defects(const struct vg_problem *p, struct vg_error *err)

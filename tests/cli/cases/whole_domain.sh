@@ -1,0 +1,84 @@
+# A closed surface without conditions and with normals out of the fluid: a
+# room in which a block stands is taken as a domain, with a note.
+cat >room.obj <<'END'
+v 0 0 0
+v 9 0 0
+v 9 9 0
+v 0 9 0
+v 0 0 9
+v 9 0 9
+v 9 9 9
+v 0 9 9
+v 3 3 0
+v 6 3 0
+v 6 6 0
+v 3 6 0
+v 3 3 3
+v 6 3 3
+v 6 6 3
+v 3 6 3
+g walls
+f 5 6 7
+f 5 7 8
+f 1 2 6
+f 1 6 5
+f 2 3 7
+f 2 7 6
+f 3 4 8
+f 3 8 7
+f 4 1 5
+f 4 5 8
+g floor
+f 1 10 2
+f 1 9 10
+f 2 11 3
+f 2 10 11
+f 3 12 4
+f 3 11 12
+f 4 9 1
+f 4 12 9
+g block
+f 13 15 14
+f 13 16 15
+f 9 14 10
+f 9 13 14
+f 10 15 11
+f 10 14 15
+f 11 16 12
+f 11 15 16
+f 12 13 9
+f 12 16 13
+END
+vanguard mesh -q -p room
+exits 0
+says out "taken as the boundary of a whole flow domain"
+says out "(most of patches 1 2)"
+says out "the whole surface was turned"
+lacks out "added: farfield"
+says out "3 patches have no boundary condition"
+says out "number 1 2 3"
+says out "volume 702"
+vanguard mesh -q -p room --deck room.resolved.deck --out again
+exits 0
+same room.b8.ugrid again/room.b8.ugrid
+lacks out "taken as"
+vanguard check -q room.obj
+exits 0
+says out "taken as the boundary of a fluid inside it"
+says out "taken as the boundary of a whole flow domain"
+
+# The user knows better.
+vanguard mesh -q -p room --farfield sphere --farfield-lengths 3 \
+  --growth 1.5 --out outside
+exits 0
+says out "added: farfield"
+lacks out "taken as"
+
+# A brick says nothing: a body, and the note says how to have it otherwise.
+sed -e '/^g floor/,$d' room.obj >brick.obj
+printf 'f 1 3 2\nf 1 4 3\n' >>brick.obj
+sed -i '/^v/{9,$d}' brick.obj
+vanguard mesh -q -p brick --farfield-lengths 3 --growth 1.5
+exits 0
+says out "taken as a body in open air"
+says out "farfield none"
