@@ -1,5 +1,6 @@
 #include "core/fill.h"
 
+#include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -44,6 +45,23 @@ done:
   return st;
 }
 
+/* Field points make five cells each and more: beyond this many the limit on
+ * cells cannot be kept, which is known before most of the work is done. */
+static size_t most_points(uint64_t max_cells)
+{
+  if (!max_cells) return 0;
+  return max_cells < 5 ? 1 : (size_t)(max_cells / 5);
+}
+
+static vg_status within_limit(const struct vg_void *v, uint64_t max_cells,
+                              struct vg_error *err)
+{
+  if (!max_cells || v->n_cell <= max_cells) return VG_OK;
+  return vg_fail(err, VG_ERR_UNSUPPORTED, "the mesh has %zu cells, %" PRIu64
+                 " are allowed; use a coarser spacing or raise the limit",
+                 v->n_cell, max_cells);
+}
+
 vg_status vg_fill(const struct vg_mesh *surface, const struct vg_sizing *sizing,
                   const struct vg_fill_options *options, struct vg_mesh *out,
                   struct vg_fill_report *report, struct vg_error *err)
@@ -54,13 +72,17 @@ vg_status vg_fill(const struct vg_mesh *surface, const struct vg_sizing *sizing,
 
   memset(report, 0, sizeof *report);
   grow.sweeps = options->optimise;
-  grow.point_limit = options->max_cells / 5;
+  grow.point_limit = most_points(options->max_cells);
   grow.progress = options->progress;
   grow.user = options->user;
+  if (!surface->n_tri)
+    return vg_fail(err, VG_ERR_GEOMETRY, "the surface has no triangles: it "
+                   "encloses nothing to fill");
   VG_TRY(vg_void_from_mesh(&v, surface, err));
   VG_TRY(all_points_used(surface, err));
   st = vg_grow(&v, sizing, NULL, &grow, report, err);
   if (st != VG_OK) goto done;
+  VG_TRY(within_limit(&v, options->max_cells, err));
   st = to_mesh(&v, surface, out, err);
 done:
   vg_void_release(&v);
