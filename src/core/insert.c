@@ -6,7 +6,7 @@
 #include "base/memory.h"
 #include "core/predicates.h"
 
-enum { CUT_MAX = 64 };       /* times a cavity may be cut back */
+enum { CUT_MAX = 16 };       /* times a cavity may be cut back */
 
 vg_status vg_inserter_init(struct vg_inserter *s, struct vg_tets *t,
                            struct vg_error *err)
@@ -113,18 +113,12 @@ static int flood(struct vg_inserter *s, const double x[3])
  * later only through another face: impossible here, because a cell once TRIED
  * stays out. The faces are therefore final after one flood. */
 
-/** Index of the first face not strictly visible from x, or n_face. */
-static size_t first_hidden(const struct vg_inserter *s, const double x[3])
+static int is_hidden(const struct vg_inserter *s, size_t f, const double x[3])
 {
   const struct vg_tets *t = s->t;
-  size_t k = 0;
+  const uint32_t *v = s->face[f].v;
 
-  for (; k < s->n_face; k++) {
-    const uint32_t *v = s->face[k].v;
-
-    if (!(vg_orient3d(t->x[v[0]], t->x[v[1]], t->x[v[2]], x) > 0)) break;
-  }
-  return k;
+  return !(vg_orient3d(t->x[v[0]], t->x[v[1]], t->x[v[2]], x) > 0);
 }
 
 /* The cavity cell in front of face f. */
@@ -146,17 +140,26 @@ static uint32_t cell_before(const struct vg_inserter *s, size_t f)
   return VG_NONE;
 }
 
-/* Leave the cell before hidden face f out and flood again from the seed. */
-static int cut_back(struct vg_inserter *s, size_t f, const double x[3])
+/* Leave the cells before all hidden faces out and flood again from the seed.
+ * 0: done; 1: a face of the seed itself is hidden; 2: nothing was hidden. */
+static int cut_back(struct vg_inserter *s, const double x[3])
 {
-  uint32_t out = cell_before(s, f), seed = s->cell[0];
+  uint32_t seed = s->cell[0];
+  size_t n_tried = s->n_tried;
 
-  if (out == seed || out == VG_NONE) return 1;
+  for (size_t f = 0; f < s->n_face; f++) {
+    uint32_t out;
+
+    if (!is_hidden(s, f, x)) continue;
+    out = cell_before(s, f);
+    if (out == seed || out == VG_NONE) return 1;
+    if (!(s->t->flag[out] & VG_TRIED) && add_tried(s, out)) return -1;
+  }
+  if (s->n_tried == n_tried) return 2;
   for (size_t k = 0; k < s->n_cell; k++)
     s->t->flag[s->cell[k]] &= (uint8_t)~VG_MARK;
   s->n_cell = s->n_face = 0;
-  if (add_tried(s, out) || add_cell(s, seed)) return -1;
-  return flood(s, x);
+  return add_cell(s, seed) || flood(s, x) ? -1 : 0;
 }
 
 /* --- is the point welcome? --------------------------------------------- */
@@ -190,19 +193,26 @@ static int too_low(const double a[3], const double b[3], const double c[3],
   return dot * dot < clearance * clearance * e2 * n2;
 }
 
-static int unwelcome(const struct vg_inserter *s, const double x[3],
-                     double clearance, double nearest)
+static int too_near(const struct vg_inserter *s, const double x[3],
+                    double nearest)
 {
-  double near2 = nearest * nearest;
+  for (size_t k = 0; k < s->n_face && nearest > 0; k++)
+    for (int i = 0; i < 3; i++)
+      if (distance2(s->t->x[s->face[k].v[i]], x) < nearest * nearest)
+        return 1;
+  return 0;
+}
+
+static int too_low_anywhere(const struct vg_inserter *s, const double x[3],
+                            double clearance)
+{
   const struct vg_tets *t = s->t;
 
-  for (size_t k = 0; k < s->n_face; k++) {
-    const struct vg_cavity_face *f = &s->face[k];
+  for (size_t k = 0; k < s->n_face && clearance > 0; k++) {
+    const uint32_t *v = s->face[k].v;
 
-    for (int i = 0; i < 3; i++)
-      if (distance2(t->x[f->v[i]], x) < near2) return 1;
-    if (f->fixed && clearance > 0 &&
-        too_low(t->x[f->v[0]], t->x[f->v[1]], t->x[f->v[2]], x, clearance))
+    if (s->face[k].fixed &&
+        too_low(t->x[v[0]], t->x[v[1]], t->x[v[2]], x, clearance))
       return 1;
   }
   return 0;
@@ -288,30 +298,22 @@ vg_status vg_insert(struct vg_inserter *s, uint32_t p, uint32_t at,
 {
   struct vg_tets *t = s->t;
   double x[3];
-  size_t hidden;
-  int bad;
+  int state;
 
   memcpy(x, t->x[p], sizeof x);
-  bad = add_cell(s, at) || flood(s, x);
-  for (int cut = 0; !bad; cut++) {
-    hidden = first_hidden(s, x);
-    if (hidden == s->n_face) break;
-    bad = cut == CUT_MAX ? 1 : cut_back(s, hidden, x);
-    if (bad > 0) {
-      clear_marks(s);
-      return VG_BLOCKED;
-    }
-  }
-  if (!bad && unwelcome(s, x, clearance, nearest)) {
+  state = add_cell(s, at) || flood(s, x) ? -1 : 0;
+  if (!state && too_near(s, x, nearest)) state = 1;
+  for (int cut = 0; !state; cut++) state = cut == CUT_MAX ? 1 : cut_back(s, x);
+  if (state == 2) state = too_low_anywhere(s, x, clearance);
+  if (!state &&
+      (grow_edges(s) || vg_tets_reserve_cells(t, s->n_face) ||
+       vg_reserve(&t->free, &t->cap_free, t->n_free + s->n_cell,
+                  sizeof *t->free)))
+    state = -1;
+  if (state) {
     clear_marks(s);
-    return VG_BLOCKED;
-  }
-  bad = bad || grow_edges(s) || vg_tets_reserve_cells(t, s->n_face) ||
-        vg_reserve(&t->free, &t->cap_free, t->n_free + s->n_cell,
-                   sizeof *t->free);
-  if (bad) {
-    clear_marks(s);
-    return vg_fail_memory(err, "the cells of the volume mesh");
+    return state > 0 ? VG_BLOCKED
+                     : vg_fail_memory(err, "the cells of the volume mesh");
   }
   refill(s, p);
   for (size_t k = 0; k < s->n_tried; k++)

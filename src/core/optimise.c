@@ -11,6 +11,11 @@
  * degrees) are worked on one by one; `good` (45, 135) cells are not touched. */
 static const double aim = 0.1786;
 static const float good = 0.5;
+/* Below this (15, 165) points are taken away or put in. */
+static const double desperate = 0.067;
+
+/* Rounds of mending, ended early when less than a hundredth got better. */
+enum { ROUNDS = 8 };
 
 static vg_status start(struct vg_optimiser *o, struct vg_tets *t,
                        struct vg_error *err)
@@ -64,20 +69,25 @@ static vg_status sweep(struct vg_optimiser *o, struct vg_error *err)
   return VG_OK;
 }
 
-/* The cells below aim, worst first. */
+/* A cell on which everything failed is flagged VG_TRIED until it changes. */
+static int wants_mending(const struct vg_optimiser *o, uint32_t c)
+{
+  return is_live(o->t, c) && o->q[c] < aim && !(o->t->flag[c] & VG_TRIED);
+}
+
+/* The cells that want mending, worst first. */
 static vg_status list_bad(const struct vg_optimiser *o, size_t *n,
                           struct vg_key **list, struct vg_error *err)
 {
-  const struct vg_tets *t = o->t;
-  size_t k = 0;
+  size_t k = 0, n_cell = o->t->n_cell;
 
   *n = 0;
-  for (uint32_t c = 0; c < t->n_cell; c++)
-    *n += is_live(t, c) && o->q[c] < aim;
+  for (uint32_t c = 0; c < n_cell; c++)
+    *n += (size_t)wants_mending(o, c);
   *list = vg_alloc(*n, sizeof **list);
   if (!*list) return vg_fail_memory(err, "optimisation");
-  for (uint32_t c = 0; c < t->n_cell; c++)
-    if (is_live(t, c) && o->q[c] < aim) {
+  for (uint32_t c = 0; c < n_cell; c++)
+    if (wants_mending(o, c)) {
       double q = o->q[c] > 0 ? o->q[c] : 0;
 
       (*list)[k].key = (uint64_t)(q * (1 << 20));
@@ -94,25 +104,26 @@ static int mend_cell(struct vg_optimiser *o, uint32_t c)
   if (vg_swap(o, c)) return 1;
   for (int i = 0; i < 4 && o->q[c] < aim; i++)
     better |= vg_smooth(o, o->t->cell[c].v[i], aim);
-  if (better) return 1;
+  if (better || o->q[c] >= desperate) return better;
   return vg_collapse(o, c) || vg_split(o, c, aim);
 }
 
-static vg_status mend(struct vg_optimiser *o, size_t *n_better,
+static vg_status mend(struct vg_optimiser *o, int *again,
                       struct vg_error *err)
 {
   struct vg_key *list = NULL;
-  size_t n;
+  size_t n, n_better = 0;
   vg_status st = list_bad(o, &n, &list, err);
 
-  *n_better = 0;
   for (size_t k = 0; st == VG_OK && k < n; k++) {
     uint32_t c = list[k].index;
 
-    if (is_live(o->t, c) && o->q[c] < aim)
-      *n_better += (size_t)mend_cell(o, c);
+    if (!wants_mending(o, c)) continue;
+    if (mend_cell(o, c)) n_better++;
+    else o->t->flag[c] |= VG_TRIED;
   }
   free(list);
+  *again = n_better > n / 100;
   return st;
 }
 
@@ -121,7 +132,7 @@ vg_status vg_optimise(struct vg_tets *t, size_t n_fixed,
                       struct vg_optimise_report *report, struct vg_error *err)
 {
   struct vg_optimiser *o = vg_calloc(1, sizeof *o);
-  size_t n_better = 1;
+  int again = 1;
   vg_status st;
 
   (void)sizing;
@@ -131,8 +142,8 @@ vg_status vg_optimise(struct vg_tets *t, size_t n_fixed,
   o->report = report;
   st = start(o, t, err);
   for (int k = 0; st == VG_OK && k < sweeps; k++) st = sweep(o, err);
-  for (int k = 0; st == VG_OK && k < 8 && n_better; k++)
-    st = mend(o, &n_better, err);
+  for (int k = 0; st == VG_OK && k < ROUNDS && again; k++)
+    st = mend(o, &again, err);
   if (st == VG_OK && o->refused) st = vg_fail_memory(err, "optimisation");
   free(o->q);
   free(o->star);

@@ -87,6 +87,8 @@ int vg_collapse(struct vg_optimiser *o, uint32_t c)
 
 /* --- putting a point in ----------------------------------------------------- */
 
+enum { CAVITY_MAX = 20 };
+
 struct cavity {
   int n_old, n_new;
   uint32_t old[VG_OLD_MAX];
@@ -127,7 +129,7 @@ restart:
       q = vg_shape(t->x[w[0]], t->x[w[1]], t->x[w[2]], x);
       if (q <= need) {
         if (link == VG_NONE || t->flag[c] >> i & 1 ||
-            h->n_old == VG_OLD_MAX / 2)
+            h->n_old == CAVITY_MAX)
           return 0;
         h->old[h->n_old++] = link >> 2;
         goto restart;
@@ -158,31 +160,48 @@ static int put_point(struct vg_optimiser *o, const double x[3],
   return 1;
 }
 
-/* Centres to try: of the cell, and of its edges. */
-static int split_at(struct vg_optimiser *o, uint32_t c, const double share[4],
+static int split_at(struct vg_optimiser *o, uint32_t c, const double x[3],
                     double aim)
 {
-  const struct vg_tets *t = o->t;
   struct cavity h;
-  double x[3] = {0}, need = worth(o->q[c]);
 
-  for (int i = 0; i < 4; i++)
-    for (int k = 0; k < 3; k++) x[k] += share[i] * t->x[t->cell[c].v[i]][k];
   h.n_old = 1;
   h.old[0] = c;
-  if (!open_cavity(o, x, need, &h) || !put_point(o, x, &h)) return 0;
-  for (int k = 0; k < 3 && vg_smooth(o, (uint32_t)t->n_point - 1, aim); k++) {
+  if (!open_cavity(o, x, worth(o->q[c]), &h) || !put_point(o, x, &h)) return 0;
+  for (int k = 0;
+       k < 3 && vg_smooth(o, (uint32_t)o->t->n_point - 1, aim); k++) {
   }
   return 1;
 }
 
+static void centre(const struct vg_tets *t, uint32_t c, const double share[4],
+                   double x[3])
+{
+  for (int k = 0; k < 3; k++) {
+    x[k] = 0;
+    for (int i = 0; i < 4; i++) x[k] += share[i] * t->x[t->cell[c].v[i]][k];
+  }
+}
+
+/* Places to try: the centre of the cell, of its neighbours (for a flat cell
+ * that lies on the boundary) and of its edges. */
 int vg_split(struct vg_optimiser *o, uint32_t c, double aim)
 {
   static const double share[7][4] = {
     {.25, .25, .25, .25}, {.5, .5, 0, 0}, {.5, 0, .5, 0}, {.5, 0, 0, .5},
     {0, .5, .5, 0}, {0, .5, 0, .5}, {0, 0, .5, .5}};
+  double x[3];
 
-  for (int k = 0; k < 7; k++)
-    if (split_at(o, c, share[k], aim)) return 1;
+  for (int i = 0; i < 4; i++) {
+    uint32_t link = o->t->cell[c].link[i];
+
+    if (link == VG_NONE || o->t->flag[c] >> i & 1) continue;
+    centre(o->t, link >> 2, share[0], x);
+    if (split_at(o, c, x, aim)) return 1;
+  }
+  for (int k = 0; k < 7; k++) {
+    centre(o->t, c, share[k], x);
+    if (split_at(o, c, x, aim)) return 1;
+  }
   return 0;
 }

@@ -79,7 +79,10 @@ static void keep(struct vg_optimiser *o, uint32_t p, const double x[3],
                  const float *q)
 {
   memcpy(o->t->x[p], x, 3 * sizeof *x);
-  for (size_t k = 0; k < o->n_ball; k++) o->q[o->ball[k] >> 2] = q[k];
+  for (size_t k = 0; k < o->n_ball; k++) {
+    o->q[o->ball[k] >> 2] = q[k];
+    o->t->flag[o->ball[k] >> 2] &= (uint8_t)~VG_TRIED;
+  }
   o->report->n_smoothed++;
 }
 
