@@ -380,8 +380,8 @@ static void all_cross(const struct vg_void *v, size_t first,
       for (int k = 0; k < 4; k++) {
         double side = side_of(&r->slab[i], v->x[v->cell[c][k]]);
 
-        above |= side >= 0;
-        below |= side <= 0;
+        above |= side >= -r->slab[i].reach;
+        below |= side <= r->slab[i].reach;
       }
       assert_true(above && below);
     }
@@ -501,6 +501,40 @@ static void pencil_zone_rest(void **state)
   scene_end(&s);
 }
 
+static int around_the_plate(const int at[3])
+{
+  return at[0] < 2 || at[0] >= 6 || at[1] < 2 || at[1] >= 6 || at[2] != 2;
+}
+
+/* Oblique planes and lines through a plate, one after the other, each limited
+ * to a number of cells: fronts of any shape. */
+static void many_cuts_through_a_plate(void **state)
+{
+  static const struct vg_region cut[4] = {
+    {1, {{{0.6, 0, 0.8}, 4.1, 0}, {{0}, 0, 0}}},
+    {2, {{{0, 0.8, 0.6}, 4.3, 0.2}, {{0.8, -0.6, 0}, 0.9, 0}}},
+    {1, {{{0, 0, 1}, 2.2, 0}, {{0}, 0, 0}}},
+    {1, {{{-0.28, 0.96, 0}, 2.7, 0.3}, {{0}, 0, 0}}}};
+  const int n[3] = {8, 8, 5};
+  const double lo[3] = {0, 0, 0}, hi[3] = {8, 8, 5};
+  struct scene s;
+
+  (void)state;
+  memset(&s.m, 0, sizeof s.m);
+  shape_block(&s.m, n, lo, hi, around_the_plate);
+  scene_void(&s, 1.3, 0);
+  for (int k = 0; k < 4; k++) {
+    size_t first = s.v.n_cell;
+
+    assert_true(grow(&s, &cut[k], k % 2 ? 100 : 0) > 0);
+    all_cross(&s.v, first, &cut[k]);
+    adds_up(&s, 8 * 8 * 5 - 16);
+  }
+  grow(&s, NULL, 0);
+  is_finished(&s, 8 * 8 * 5 - 16);
+  scene_end(&s);
+}
+
 /* A region beside the void admits nothing, and leaves everything. */
 static void a_region_elsewhere(void **state)
 {
@@ -600,6 +634,7 @@ int main(void)
     cmocka_unit_test(a_zone_parts_the_void),
     cmocka_unit_test(an_oblique_zone_around_a_body),
     cmocka_unit_test(pencil_zone_rest),
+    cmocka_unit_test(many_cuts_through_a_plate),
     cmocka_unit_test(a_region_elsewhere),
     cmocka_unit_test(it_can_be_stopped_at_every_call),
     cmocka_unit_test(failures_leave_the_void_alone),
