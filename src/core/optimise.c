@@ -144,6 +144,7 @@ vg_status vg_optimise(struct vg_tets *t, size_t n_fixed,
   for (int k = 0; st == VG_OK && k < sweeps; k++) st = sweep(o, err);
   for (int k = 0; st == VG_OK && k < ROUNDS && again; k++)
     st = mend(o, &again, err);
+  for (size_t c = 0; c < t->n_cell; c++) t->flag[c] &= (uint8_t)~VG_TRIED;
   if (st == VG_OK && o->refused) st = vg_fail_memory(err, "optimisation");
   free(o->q);
   free(o->star);
