@@ -79,9 +79,20 @@ static int in_sphere(const struct vg_tets *t, uint32_t c, const double x[3])
   return vg_insphere(t->x[v[0]], t->x[v[1]], t->x[v[2]], t->x[v[3]], x) > 0;
 }
 
+/* Is x on the inner side of face i of cell c, or in its plane? */
+static int sees(const struct vg_tets *t, uint32_t c, int i, const double x[3])
+{
+  const uint32_t *v = t->cell[c].v;
+  const uint8_t *f = vg_face[i];
+
+  return vg_orient3d(t->x[v[f[0]]], t->x[v[f[1]]], t->x[v[f[2]]], x) >= 0;
+}
+
 /* Cells reachable from those already in the list; cells marked TRIED before
- * the call stay out. Faces are collected in the same sweep. */
-static int flood(struct vg_inserter *s, const double x[3])
+ * the call stay out. Only faces that x sees are crossed: among Delaunay cells
+ * every cell of the cavity is reached so. Where recovery has left slivers,
+ * whose spheres are huge, it keeps the search from running all over them. */
+static int flood_cells(struct vg_inserter *s, const double x[3])
 {
   struct vg_tets *t = s->t;
 
@@ -91,27 +102,32 @@ static int flood(struct vg_inserter *s, const double x[3])
     for (int i = 0; i < 4; i++) {
       uint32_t link = t->cell[c].link[i], other = link >> 2;
 
-      if (link == VG_NONE || t->flag[c] >> i & 1) {
-        if (add_face(s, c, i)) return -1;
+      if (link == VG_NONE || t->flag[c] >> i & 1 ||
+          t->flag[other] & (VG_MARK | VG_TRIED) || !sees(t, c, i, x))
         continue;
-      }
-      if (t->flag[other] & VG_MARK) continue;
-      if (!(t->flag[other] & VG_TRIED)) {
-        if (in_sphere(t, other, x)) {
-          if (add_cell(s, other)) return -1;
-          continue;
-        }
-        if (add_tried(s, other)) return -1;
-      }
-      if (add_face(s, c, i)) return -1;
+      if (in_sphere(t, other, x) ? add_cell(s, other) : add_tried(s, other))
+        return -1;
     }
   }
   return 0;
 }
 
-/* A face found while its neighbour was still unmarked may have been taken in
- * later only through another face: impossible here, because a cell once TRIED
- * stays out. The faces are therefore final after one flood. */
+static int flood(struct vg_inserter *s, const double x[3])
+{
+  struct vg_tets *t = s->t;
+
+  if (flood_cells(s, x)) return -1;
+  for (size_t k = 0; k < s->n_cell; k++)
+    for (int i = 0; i < 4; i++) {
+      uint32_t c = s->cell[k], link = t->cell[c].link[i];
+
+      if ((link == VG_NONE || t->flag[c] >> i & 1 ||
+           !(t->flag[link >> 2] & VG_MARK)) &&
+          add_face(s, c, i))
+        return -1;
+    }
+  return 0;
+}
 
 static int is_hidden(const struct vg_inserter *s, size_t f, const double x[3])
 {
