@@ -118,8 +118,10 @@ static vg_status check_surface(const struct arguments *a, struct vg_mesh *m,
     print_json(json_pack("{s:o s:b s:s s:o s:o s:o}", "file",
                          vg_report_string(a->file), "ok",
                          r.n_defect == 0, "taken_as",
-                         external ? "bodies" : "domain", "size", vg_report_size_json(m),
-                         "patches", vg_report_patches_json(m), "surface",
+                         external ? "bodies" : "domain",
+                         "size", vg_report_size_json(m), "patches",
+                         vg_report_patches_json(m),
+                         "surface",
                          vg_report_surface_json(m, &r, VG_SHOWN_DEFECTS)));
   } else {
     printf("%s: surface, %s\n", a->file,

@@ -111,9 +111,9 @@ static vg_status is_whole_domain(const struct vg_mesh *m,
   vg_note(notes, "the surface was taken as the boundary of a whole flow "
           "domain, though its normals point out of it: %zu triangles (most of "
           "patches%s) are a convex outer boundary that covers at least "
-          "%.0f %% of every view along x, y and z, and the others stand inside it "
-          "(--farfield sphere: it is a body in open air)", e.n_outer, list,
-          100 * fmin(e.covered, 1));
+          "%.0f %% of every view along x, y and z, and the others stand "
+          "inside it (--farfield sphere: it is a body in open air)", e.n_outer,
+          list, 100 * fmin(e.covered, 1));
 done:
   free(outer);
   return st;

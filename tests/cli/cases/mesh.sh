@@ -62,3 +62,12 @@ vanguard mesh -q -p p/box --out limited --max-cells 100
 exits 1
 says err "raise the limit"
 absent limited/box.b8.ugrid limited/box.cogsg
+
+# The boundary of a volume mesh is a surface to be meshed anew.
+mkdir volume
+cp p/box.b8.ugrid volume/old.b8.ugrid
+vanguard mesh -q -p volume/old.b8.ugrid --out anew
+exits 0
+says out "is a volume mesh: its boundary is meshed anew"
+says out "6 patches have no boundary condition"
+exists anew/old.b8.ugrid
