@@ -88,7 +88,7 @@ static vg_status new_path(const char *stem, const char *suffix, char **out,
 }
 
 static vg_status write_project(const char *stem, const char *name,
-                               const struct vg_demo *demo,
+                               size_t wanted, const struct vg_demo *demo,
                                struct vg_error *err)
 {
   char *path[3] = { NULL }, points[32], triangles[32], cells[32];
@@ -110,6 +110,9 @@ static vg_status write_project(const char *stem, const char *name,
          demo->surface.n_patch);
   printf("%s: settings, for about %s cells\n", path[2],
          vg_cli_count((unsigned long long)demo->n_cell, cells));
+  if (wanted && demo->n_cell > 1.05 * (double)wanted)
+    printf("  %s cells were asked for: the geometry needs more\n",
+           vg_cli_count(wanted, cells));
   printf("Next: vanguard mesh -p %s\n", stem);
 done:
   for (int i = 0; i < 3; i++) free(path[i]);
@@ -131,7 +134,7 @@ static vg_status make(const struct arguments *a, struct vg_error *err)
     st = vg_fail_memory(err, "a path");
     goto done;
   }
-  VG_TRY(write_project(stem, a->name, &demo, err));
+  VG_TRY(write_project(stem, a->name, a->n_cell, &demo, err));
 done:
   free(stem);
   vg_demo_release(&demo);

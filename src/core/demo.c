@@ -12,6 +12,9 @@
 #define FARFIELD 20.0      /* radius or half width, body lengths or chords */
 /* Largest factor on the spacings below that still resolves the geometry. */
 #define FACTOR_MAX 12.0
+/* The estimate comes this close to the number wanted, within these turns. */
+#define FIT_CLOSE 0.02
+#define FIT_TURNS 5
 /* Sphere in a box, as in the comparisons of docs/performance.md. */
 #define SPHERE_FINE 0.02
 #define SPHERE_COARSE 1.5
@@ -131,6 +134,7 @@ struct scaled {
   const struct entry *entry;
   double factor;
   struct vg_demo_law law;
+  struct vg_sizing *field;   /* borrowed; while its cells are counted */
 };
 
 static void make_law(struct scaled *s)
@@ -162,6 +166,13 @@ static void make_law(struct scaled *s)
   for (size_t i = 0; i < law->n; i++) law->source[i].an = 1;
 }
 
+static double field_size(void *user, const double x[3])
+{
+  const struct scaled *s = user;
+
+  return vg_sizing_at(s->field, x);
+}
+
 static double scaled_size(void *user, const double x[3])
 {
   struct scaled *s = user;
@@ -179,18 +190,22 @@ static int in_fluid(void *user, const double x[3])
   return rr < FARFIELD * FARFIELD && !vg_demo_wing_holds(&s->entry->wing, x);
 }
 
-static double estimate(struct scaled *s)
+/* Cells of a graded case where edges have these sizes. */
+static double n_cell_of(struct scaled *s,
+                        double (*size)(void *user, const double x[3]))
 {
-  double lo[3], hi[3];
+  const double lo[3] = { -FARFIELD, s->entry->wing.is_half ? 0 : -FARFIELD,
+                         -FARFIELD };
+  const double hi[3] = { FARFIELD, FARFIELD, FARFIELD };
 
-  make_law(s);
-  for (int k = 0; k < 3; k++) {
-    lo[k] = s->entry->kind == BOX ? 0 : -FARFIELD;
-    hi[k] = s->entry->kind == BOX ? 1 : FARFIELD;
-  }
-  if (s->entry->wing.is_half) lo[1] = 0;
   return VG_DEMO_CELLS_PER_CUBE * VG_DEMO_GRADED
-         * vg_demo_cubes(lo, hi, scaled_size, in_fluid, s);
+         * vg_demo_cubes(lo, hi, size, in_fluid, s);
+}
+
+static double law_estimate(struct scaled *s)
+{
+  make_law(s);
+  return n_cell_of(s, scaled_size);
 }
 
 static double cube_root(double x)
@@ -201,8 +216,8 @@ static double cube_root(double x)
   return y;
 }
 
-/* Cells fall by the first to the third power of the factor: the cube root of
- * the excess is a step that never overshoots. */
+/* From the factor that s has. Cells fall by the first to the third power of the
+ * factor: the cube root of the excess is a step that never overshoots. */
 static double fit_factor(struct scaled *s, double n_cell)
 {
   double n = 0;
@@ -213,11 +228,10 @@ static double fit_factor(struct scaled *s, double n_cell)
     make_law(s);
     return VG_DEMO_CELLS_PER_CUBE / (s->factor * s->factor * s->factor);
   }
-  s->factor = FACTOR_MAX;
   for (int i = 0; i < 30; i++) {
     double step;
 
-    n = estimate(s);
+    n = law_estimate(s);
     step = cube_root(n / n_cell);
     if (fabs(step - 1) < 0.003) break;
     if (s->factor * step > FACTOR_MAX) {
@@ -285,12 +299,13 @@ static vg_status add_farfield(const struct scaled *s, struct vg_demo *d,
   return vg_domain_complete_by(&d->surface, &far, &law, NULL, err);
 }
 
-static vg_status make(struct scaled *s, size_t n_cell, struct vg_demo *d,
-                      struct vg_error *err)
+/* All of *d by the law of s, but its n_cell. */
+static vg_status build(const struct scaled *s, struct vg_demo *d,
+                       struct vg_error *err)
 {
   vg_status st;
 
-  d->n_cell = fit_factor(s, (double)n_cell);
+  vg_demo_release(d);
   d->sizing = (struct vg_sizing_options)VG_SIZING_OPTIONS_INIT;
   d->sizing.growth = s->law.growth;
   d->sizing.h_max = s->law.h_max;
@@ -307,6 +322,46 @@ static vg_status make(struct scaled *s, size_t n_cell, struct vg_demo *d,
   if (st != VG_OK) return st;
   d->n_body_tri = d->surface.n_tri;
   return add_farfield(s, d, err);
+}
+
+/* The mesh follows the field, in which edges of the surface have their say:
+ * about leading edges and on coarse spheres cells are smaller than by the
+ * sources alone. */
+static vg_status field_estimate(struct scaled *s, const struct vg_demo *d,
+                                double *n_cell, struct vg_error *err)
+{
+  vg_status st = vg_sizing_new(&d->sizing, d->n_source, d->source, &d->surface,
+                               &s->field, err);
+
+  if (st < 0) return st;
+  *n_cell = n_cell_of(s, field_size);
+  vg_sizing_free(s->field);
+  s->field = NULL;
+  return VG_OK;
+}
+
+/* What the law gives too much, it is asked for less: two or three turns. */
+static vg_status make(struct scaled *s, double n_cell, struct vg_demo *d,
+                      struct vg_error *err)
+{
+  double ask = n_cell, n = 0;
+  vg_status st;
+
+  s->factor = FACTOR_MAX;
+  if (s->entry->kind == BOX) {
+    n = fit_factor(s, n_cell);
+    VG_TRY(build(s, d, err));
+  }
+  for (int turn = 0; s->entry->kind != BOX && turn < FIT_TURNS; turn++) {
+    fit_factor(s, ask);
+    VG_TRY(build(s, d, err));
+    VG_TRY(field_estimate(s, d, &n, err));
+    if (fabs(n / n_cell - 1) < FIT_CLOSE || s->factor == FACTOR_MAX) break;
+    ask *= n_cell / n;
+  }
+  d->n_cell = n;
+done:
+  return st;
 }
 
 static vg_status unknown(const char *name, struct vg_error *err)
@@ -334,7 +389,8 @@ vg_status vg_demo_make(const char *name, size_t n_cell, struct vg_demo *out,
   if (n_cell > 2000000000)
     return vg_fail(err, VG_ERR_INPUT, "%zu cells are more than one mesh can "
                    "number; ask for 2000000000 at most", n_cell);
-  st = make(&s, n_cell ? n_cell : cases[s.entry - entries].n_cell, &d, err);
+  if (!n_cell) n_cell = cases[s.entry - entries].n_cell;
+  st = make(&s, (double)n_cell, &d, err);
   if (st == VG_OK) {
     *out = d;
     d = (struct vg_demo)VG_DEMO_INIT;
