@@ -345,7 +345,7 @@ static vg_status make(struct scaled *s, double n_cell, struct vg_demo *d,
                       struct vg_error *err)
 {
   double ask = n_cell, n = 0;
-  vg_status st;
+  vg_status st = VG_OK;
 
   s->factor = FACTOR_MAX;
   if (s->entry->kind == BOX) {
