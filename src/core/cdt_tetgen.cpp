@@ -19,9 +19,9 @@
 namespace {
 
 /* On some input TetGen turns in circles. A job is given up after this time on
- * the processor, milliseconds and as many more as it has triangles: hundreds
+ * the processor, milliseconds and so many more for each triangle: hundreds
  * of times what pockets need, so that the outcome is the same everywhere. */
-const size_t patience = 500;
+const size_t patience = 2000, patience_each = 5;
 
 struct answer {              /* on the pipe, before points and tetrahedra */
   uint64_t ok, n_added, n_tet;
@@ -88,7 +88,7 @@ void run(const vg_cdt_job &job, int to)
 
 void be_patient(size_t n_tri)
 {
-  size_t limit = patience + n_tri;
+  size_t limit = patience + patience_each * n_tri;
   itimerval time = {};
 
   time.it_value.tv_sec = static_cast<time_t>(limit / 1000);

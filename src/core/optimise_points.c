@@ -139,12 +139,28 @@ restart:
   return 1;
 }
 
+/* Would a point of the old cells be in none of the new ones? */
+static int swallows(const struct vg_tets *t, const struct cavity *h)
+{
+  for (int k = 0; k < h->n_old; k++)
+    for (int i = 0; i < 4; i++) {
+      uint32_t p = t->cell[h->old[k]].v[i];
+      int found = 0;
+
+      for (int m = 0; m < h->n_new && !found; m++)
+        found = h->v[m][0] == p || h->v[m][1] == p || h->v[m][2] == p;
+      if (!found) return 1;
+    }
+  return 0;
+}
+
 static int put_point(struct vg_optimiser *o, const double x[3],
                      struct cavity *h)
 {
   struct vg_tets *t = o->t;
   uint32_t p = (uint32_t)t->n_point;
 
+  if (swallows(t, h)) return 0;
   if (vg_tets_reserve_points(t, 1) ||
       vg_reserve(&o->star, &o->cap_star, t->n_point + 1, sizeof *o->star)) {
     o->refused = 1;

@@ -15,9 +15,6 @@ static const double exclusion = 0.66;
 static const double exclusion_level = 0.72;
 /* Height of the apex over a surface face: regular tetrahedron. */
 static const double apex = 0.8165;
-/* Spacing may change by this much per unit of length; points of the spatial
- * hash are looked for on the levels that this allows. */
-static const double slope = 0.1;
 
 /* A field that changes less than this over one edge counts as level. */
 static const double level_within = 1e-3;
@@ -46,6 +43,7 @@ struct placer {
   uint32_t (*block)[64];
   size_t n_page, cap_page;
   struct grid_page *page;
+  double slope;              /* bound on the gradient of the field */
   int level_lo, level_hi;    /* levels that the field can ask for */
   size_t n_face;
   uint32_t *face;            /* links 4 * cell + face of the surface */
@@ -237,10 +235,11 @@ static void find_level(struct placer *p, const double c[3], double r,
   }
 }
 
-/* All points within r of c, r about twice the spacing h there. */
+/* All points within r of c, r about twice the spacing h there. They are on
+ * the levels that the gradient of the field allows. */
 static void gather(struct placer *p, const double c[3], double h, double r)
 {
-  double change = slope * r < 0.5 * h ? slope * r : 0.5 * h;
+  double change = fmin(p->slope * r, 0.6 * h);
 
   p->n_near = p->n_found = 0;
   for (int level = level_of(h - change); level <= level_of(h + change);
@@ -625,6 +624,7 @@ static struct placer *start(const struct vg_tets *t,
   p->sizing = sizing;
   p->region = region;
   p->lowest = N_BUCKET;
+  p->slope = vg_sizing_slope(sizing);
   vg_sizing_range(sizing, &lo, &hi);
   p->level_lo = level_of(lo) - 1;
   p->level_hi = level_of(hi) + 1;

@@ -190,6 +190,11 @@ void vg_sizing_range(const struct vg_sizing *s, double *h_min, double *h_max)
   *h_max = s->most;
 }
 
+double vg_sizing_slope(const struct vg_sizing *s)
+{
+  return s->slope;
+}
+
 double vg_sizing_cube(const struct vg_sizing *s, double lo[3])
 {
   for (int k = 0; k < 3; k++) lo[k] = s->octree.lo[k];

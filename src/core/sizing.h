@@ -91,6 +91,9 @@ void vg_sizing_eval(const struct vg_sizing *s, size_t n, const double (*x)[3],
 /** Bounds of vg_sizing_at within the root cube, both attained. Cost O(1). */
 void vg_sizing_range(const struct vg_sizing *s, double *h_min, double *h_max);
 
+/** Bound on the gradient of vg_sizing_at: growth - 1 (octree errors aside). */
+double vg_sizing_slope(const struct vg_sizing *s);
+
 /** Lower corner of the root cube, which encloses surface points and, where
  * there are none, the sources; returns its side. */
 double vg_sizing_cube(const struct vg_sizing *s, double lo[3]);
