@@ -48,7 +48,7 @@ static void sphere_scene(struct scene *s)
   memset(&s->m, 0, sizeof s->m);
   shape_box(&s->m, 5, 4);
   shape_sphere(&s->m, 8, centre, 1, 7);
-  scene_of(s, 1.15, 0);
+  scene_of(s, 1.3, 0);
 }
 
 static void scene_end(struct scene *s)
