@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/near.h"
 
 /* Side of the cubic pattern over the spacing: mean edge of a body-centred
  * lattice of side 1 is (8 sqrt(3)/2 + 6) / 14 = 0.923. */
@@ -19,251 +20,23 @@ static const double apex = 0.8165;
 /* A field that changes less than this over one edge counts as level. */
 static const double level_within = 1e-3;
 
-enum { N_BUCKET = 8192, BUCKET_ZERO = 4096, NEAR_MAX = 2048, FOUND_MAX = 4096,
-       PAGE_POINTS = 6 };
-
-struct grid_slot { uint64_t key; uint32_t block; };
-struct grid_page {           /* some points of a cell, from its corner */
-  uint32_t next, n;
-  float x[3][PAGE_POINTS];
-};
+enum { N_BUCKET = 8192, BUCKET_ZERO = 4096 };
 
 struct placer {
   const struct vg_tets *t;
   const struct vg_sizing *sizing;
   const struct vg_region *region;
-  size_t n, cap, cap_h, cap_cell, cap_queue, limit;
+  size_t n, cap, cap_h, cap_cell, cap_queue;
   double (*x)[3];            /* surface points first */
   float *h;
   uint32_t *cell;            /* cell of t that holds the point */
   uint32_t *queue;           /* next item in the same bucket */
-  size_t n_slot;             /* grid: open addressing, a power of 2 */
-  struct grid_slot *slot;
-  size_t n_block, cap_block;
-  uint32_t (*block)[64];
-  size_t n_page, cap_page;
-  struct grid_page *page;
-  double slope;              /* bound on the gradient of the field */
-  int level_lo, level_hi;    /* levels that the field can ask for */
   size_t n_face;
   uint32_t *face;            /* links 4 * cell + face of the surface */
   uint32_t first[N_BUCKET], last[N_BUCKET];
   int lowest;                /* no bucket below it has items */
-  size_t n_found;
-  struct found { uint32_t page; float d[3]; } found[FOUND_MAX];
-  size_t n_near;
-  float near[3][NEAR_MAX];   /* surroundings, relative to the parent */
-  double lo[3];
+  struct vg_near near;
 };
-
-/* --- spatial hash ------------------------------------------------------- */
-
-/* Level k has cells of side 2^k, between 1.1 and 2.2 of the spacing. */
-static int level_of(double h)
-{
-  int e;
-
-  frexp(2.2 * h, &e);
-  return e - 1;
-}
-
-/* Cells are kept in blocks of 4 x 4 x 4, which share a hash entry and lie
- * together in memory: the surroundings of a point touch few of them. */
-static uint64_t block_key(int level, const int64_t i[3])
-{
-  return ((uint64_t)(level + 512) << 54) ^
-         ((uint64_t)(i[0] >> 2) & 0x3ffff) << 36 ^
-         ((uint64_t)(i[1] >> 2) & 0x3ffff) << 18 ^
-         ((uint64_t)(i[2] >> 2) & 0x3ffff);
-}
-
-static uint32_t cell_in_block(const int64_t i[3])
-{
-  return (uint32_t)((i[0] & 3) << 4 | (i[1] & 3) << 2 | (i[2] & 3));
-}
-
-static size_t grid_find(const struct placer *p, uint64_t key)
-{
-  uint64_t mix = (key ^ key >> 31) * 0x9e3779b97f4a7c15u;
-  size_t at = (mix ^ mix >> 29) * 0xbf58476d1ce4e5b9u >> 32 & (p->n_slot - 1);
-
-  while (p->slot[at].block != VG_NONE && p->slot[at].key != key)
-    at = (at + 1) & (p->n_slot - 1);
-  return at;
-}
-
-static int grid_resize(struct placer *p, size_t size)
-{
-  struct grid_slot *old = p->slot, *slot = vg_alloc(size, sizeof *slot);
-  size_t n = p->n_slot;
-
-  if (!slot) return -1;
-  memset(slot, 0xff, size * sizeof *slot);
-  p->slot = slot;
-  p->n_slot = size;
-  for (size_t i = 0; i < n; i++)
-    if (old[i].block != VG_NONE) p->slot[grid_find(p, old[i].key)] = old[i];
-  free(old);
-  return 0;
-}
-
-/* Head of the pages of cell i, made if need be; NULL: memory refused. */
-static uint32_t *grid_cell(struct placer *p, int level, const int64_t i[3])
-{
-  uint64_t key = block_key(level, i);
-  size_t at;
-
-  if (2 * p->n_block >= p->n_slot && grid_resize(p, 2 * p->n_slot))
-    return NULL;
-  at = grid_find(p, key);
-  if (p->slot[at].block == VG_NONE) {
-    if (vg_reserve(&p->block, &p->cap_block, p->n_block + 1,
-                   sizeof *p->block))
-      return NULL;
-    memset(p->block[p->n_block], 0xff, sizeof *p->block);
-    p->slot[at].key = key;
-    p->slot[at].block = (uint32_t)p->n_block++;
-  }
-  return &p->block[p->slot[at].block][cell_in_block(i)];
-}
-
-static uint32_t grid_page(struct placer *p, uint32_t next)
-{
-  if (vg_reserve(&p->page, &p->cap_page, p->n_page + 1, sizeof *p->page))
-    return VG_NONE;
-  p->page[p->n_page].next = next;
-  p->page[p->n_page].n = 0;
-  return (uint32_t)p->n_page++;
-}
-
-static int grid_add(struct placer *p, uint32_t point)
-{
-  int level = level_of(p->h[point]);
-  double inverse = ldexp(1, -level), side = ldexp(1, level);
-  int64_t i[3];
-  struct grid_page *page;
-  uint32_t *head;
-
-  for (int k = 0; k < 3; k++)
-    i[k] = (int64_t)floor((p->x[point][k] - p->lo[k]) * inverse);
-  head = grid_cell(p, level, i);
-  if (!head) return -1;
-  if (*head == VG_NONE || p->page[*head].n == PAGE_POINTS) {
-    uint32_t fresh = grid_page(p, *head);
-
-    if (fresh == VG_NONE) return -1;
-    *head = fresh;
-  }
-  page = &p->page[*head];
-  for (int k = 0; k < 3; k++)
-    page->x[k][page->n] =
-        (float)(p->x[point][k] - p->lo[k] - side * (double)i[k]);
-  page->n++;
-  return 0;
-}
-
-/* A grid cell met by a search: its pages are on their way to the cache while
- * the other cells are looked up. d: its corner relative to the centre. */
-static void find_cell(struct placer *p, uint32_t page, const double d[3])
-{
-  struct found *f = &p->found[p->n_found];
-
-  if (page == VG_NONE || p->n_found == FOUND_MAX) return;
-  __builtin_prefetch(&p->page[page]);
-  __builtin_prefetch((const char *)(&p->page[page] + 1) - 1);
-  f->page = page;
-  for (int k = 0; k < 3; k++) f->d[k] = (float)d[k];
-  p->n_found++;
-}
-
-static void gather_cell(struct placer *p, const struct found *f, float r2)
-{
-  float x = f->d[0], y = f->d[1], z = f->d[2];
-
-  for (uint32_t at = f->page; at != VG_NONE; at = p->page[at].next) {
-    const struct grid_page *page = &p->page[at];
-
-    for (uint32_t k = 0; k < page->n; k++) {
-      float u = page->x[0][k] + x, v = page->x[1][k] + y;
-      float w = page->x[2][k] + z;
-
-      if (u * u + v * v + w * w > r2 || p->n_near == NEAR_MAX) continue;
-      p->near[0][p->n_near] = u;
-      p->near[1][p->n_near] = v;
-      p->near[2][p->n_near] = w;
-      p->n_near++;
-    }
-  }
-}
-
-/* Distance along one axis from the centre to a cell that starts at d. */
-static double gap(double d, double side)
-{
-  return d > 0 ? d : d + side < 0 ? -(d + side) : 0;
-}
-
-static void find_level(struct placer *p, const double c[3], double r,
-                         int level)
-{
-  double inverse = ldexp(1, -level), side = ldexp(1, level), d[3], g[3];
-  int64_t lo[3], hi[3], i[3];
-  uint64_t key = UINT64_MAX;
-  uint32_t block = VG_NONE;
-
-  for (int k = 0; k < 3; k++) {
-    lo[k] = (int64_t)floor((c[k] - r - p->lo[k]) * inverse);
-    hi[k] = (int64_t)floor((c[k] + r - p->lo[k]) * inverse);
-  }
-  for (i[0] = lo[0]; i[0] <= hi[0]; i[0]++) {
-    d[0] = p->lo[0] + side * (double)i[0] - c[0];
-    g[0] = gap(d[0], side);
-    for (i[1] = lo[1]; i[1] <= hi[1]; i[1]++) {
-      d[1] = p->lo[1] + side * (double)i[1] - c[1];
-      g[1] = gap(d[1], side);
-      for (i[2] = lo[2]; i[2] <= hi[2]; i[2]++) {
-        d[2] = p->lo[2] + side * (double)i[2] - c[2];
-        g[2] = gap(d[2], side);
-        if (g[0] * g[0] + g[1] * g[1] + g[2] * g[2] > r * r) continue;
-        if (block_key(level, i) != key) {
-          key = block_key(level, i);
-          block = p->slot[grid_find(p, key)].block;
-        }
-        if (block != VG_NONE)
-          find_cell(p, p->block[block][cell_in_block(i)], d);
-      }
-    }
-  }
-}
-
-/* All points within r of c, r about twice the spacing h there. They are on
- * the levels that the gradient of the field allows. */
-static void gather(struct placer *p, const double c[3], double h, double r)
-{
-  double change = fmin(p->slope * r, 0.6 * h);
-
-  p->n_near = p->n_found = 0;
-  for (int level = level_of(h - change); level <= level_of(h + change);
-       level++)
-    if (level >= p->level_lo && level <= p->level_hi)
-      find_level(p, c, r, level);
-  for (size_t k = 0; k < p->n_found; k++)
-    gather_cell(p, &p->found[k], (float)(r * r));
-}
-
-/* Is any gathered point nearer than r to c + d? Counted without a branch, so
- * that several are tested at once. */
-static int crowded(const struct placer *p, const double d[3], double r)
-{
-  float x = (float)d[0], y = (float)d[1], z = (float)d[2], r2 = (float)(r * r);
-  int n = 0;
-
-  for (size_t k = 0; k < p->n_near; k++) {
-    float u = p->near[0][k] - x, v = p->near[1][k] - y, w = p->near[2][k] - z;
-
-    n += u * u + v * v + w * w < r2;
-  }
-  return n;
-}
 
 /* --- queue -------------------------------------------------------------- */
 
@@ -330,12 +103,9 @@ static int stand(struct placer *p, const double c[3], const double d[3],
   p->h[point] = (float)h;
   p->cell[point] = cell;
   p->n++;
-  if (grid_add(p, point)) return -1;
+  if (vg_near_add(&p->near, x, h)) return -1;
   push(p, (uint32_t)p->n_face + point, h);
-  if (p->n_near < NEAR_MAX) {
-    for (int k = 0; k < 3; k++) p->near[k][p->n_near] = (float)d[k];
-    p->n_near++;
-  }
+  vg_near_note(&p->near, d);
   return 0;
 }
 
@@ -346,14 +116,14 @@ static int propose(struct placer *p, const double c[3], const double unit[3],
   double d[3], x[3], there;
 
   for (int k = 0; k < 3; k++) d[k] = unit[k] * h;
-  if (crowded(p, d, 0.9 * exclusion * h)) return 0;
+  if (vg_near_count(&p->near, d, 0.9 * exclusion * h)) return 0;
   for (int k = 0; k < 3; k++) x[k] = c[k] + d[k];
   there = vg_sizing_at(p->sizing, x);
   for (int k = 0; k < 3; k++) {
     d[k] = unit[k] * 0.5 * (h + there);
     x[k] = c[k] + d[k];
   }
-  if (crowded(p, d, exclusion * there)) return 0;
+  if (vg_near_count(&p->near, d, exclusion * there)) return 0;
   return stand(p, c, d, there, start);
 }
 
@@ -418,7 +188,7 @@ static int grow_level(struct placer *p, const double c[3], double h,
           d[k] = x[k] - c[k];
         }
         if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] > reach2 ||
-            crowded(p, d, exclusion_level * h) ||
+            vg_near_count(&p->near, d, exclusion_level * h) ||
             (!everywhere && !is_level(p, x, h)))
           continue;
         if (stand(p, c, d, h, start)) return -1;
@@ -434,7 +204,7 @@ static int grow_point(struct placer *p, uint32_t point)
   int level;
 
   memcpy(c, p->x[point], sizeof c);
-  gather(p, c, h, (lattice + exclusion_level) * 1.05 * h);
+  vg_near_gather(&p->near, c, h, (lattice + exclusion_level) * 1.05 * h);
   level = level_around(p, c, h);
   if (level && grow_level(p, c, h, start, level == 6)) return -1;
   if (level == 6) return 0;
@@ -466,7 +236,7 @@ static int grow_face(struct placer *p, uint32_t link)
   if (!(length > 0)) return 0;
   for (int k = 0; k < 3; k++) unit[k] = apex * n[k] / length;
   h = vg_sizing_at(p->sizing, c);
-  gather(p, c, h, (apex + exclusion) * 1.1 * h);
+  vg_near_gather(&p->near, c, h, (apex + exclusion) * 1.1 * h);
   return propose(p, c, unit, h, link >> 2);
 }
 
@@ -559,7 +329,7 @@ static int start_points(struct placer *p)
       p->cell[t->cell[c].v[k]] = c;
   for (uint32_t i = 0; i < p->n; i++) {
     p->h[i] = (float)vg_sizing_at(p->sizing, p->x[i]);
-    if (grid_add(p, i)) return -1;
+    if (vg_near_add(&p->near, p->x[i], p->h[i])) return -1;
     if (p->cell[i] != VG_NONE) push(p, (uint32_t)p->n_face + i, p->h[i]);
   }
   return 0;
@@ -604,11 +374,9 @@ static void release(struct placer *p)
   free(p->x);
   free(p->h);
   free(p->cell);
-  free(p->block);
-  free(p->page);
   free(p->queue);
-  free(p->slot);
   free(p->face);
+  vg_near_release(&p->near);
   free(p);
 }
 
@@ -617,21 +385,18 @@ static struct placer *start(const struct vg_tets *t,
                             const struct vg_region *region)
 {
   struct placer *p = vg_calloc(1, sizeof *p);
-  double lo, hi;
+  double origin[3] = {0}, h_min, h_max;
 
   if (!p) return NULL;
   p->t = t;
   p->sizing = sizing;
   p->region = region;
   p->lowest = N_BUCKET;
-  p->slope = vg_sizing_slope(sizing);
-  vg_sizing_range(sizing, &lo, &hi);
-  p->level_lo = level_of(lo) - 1;
-  p->level_hi = level_of(hi) + 1;
   memset(p->first, 0xff, sizeof p->first);
-  for (int k = 0; k < 3; k++) p->lo[k] = t->n_point ? t->x[0][k] : 0;
-  if (grid_resize(p, 1 << 16) || start_faces(p) || push_faces(p) ||
-      start_points(p)) {
+  if (t->n_point) memcpy(origin, t->x[0], sizeof origin);
+  vg_sizing_range(sizing, &h_min, &h_max);
+  if (vg_near_init(&p->near, origin, h_min, h_max, vg_sizing_slope(sizing)) ||
+      start_faces(p) || push_faces(p) || start_points(p)) {
     release(p);
     return NULL;
   }
