@@ -46,7 +46,7 @@ demo)
   install_missing $packages
   build vanguard_program
   rm -rf build/demo
-  ./build/release/bin/vanguard demo wing --cells 300000 --out build/demo
+  ./build/release/bin/vanguard demo wing --cells 600000 --out build/demo
   ./build/release/bin/vanguard mesh -p build/demo/wing \
     --write cogsg,b8.ugrid,vtu
   echo

@@ -71,3 +71,11 @@ exits 0
 says out "is a volume mesh: its boundary is meshed anew"
 says out "6 patches have no boundary condition"
 exists anew/old.b8.ugrid
+
+# A number of cells that the geometry does not allow is said to be one.
+vanguard demo sphere --cells 1000 --out small
+exits 0
+says out "1,000 cells were asked for: the geometry needs more"
+vanguard demo sphere --cells 100000 --out enough
+exits 0
+lacks out "asked for"
