@@ -125,7 +125,8 @@ static void find_cell(struct vg_near *s, uint32_t page, const double d[3])
   s->n_cell++;
 }
 
-static void gather_cell(struct vg_near *s, const struct vg_near_cell *f, float r2)
+static void gather_cell(struct vg_near *s, const struct vg_near_cell *f,
+                        float r2)
 {
   float x = f->d[0], y = f->d[1], z = f->d[2];
 
