@@ -9,7 +9,7 @@
 #include "core/insert.h"
 #include "core/recover.h"
 
-/* --- surface triangles found among cell faces -------------------------- */
+/* --- surface triangles found among cell faces ---------------------------- */
 
 struct tri_table {
   size_t mask;
@@ -100,7 +100,7 @@ vg_status vg_boundary_fix(struct vg_tets *t, size_t n_tri,
   return st;
 }
 
-/* --- which side is fluid ----------------------------------------------- */
+/* --- which side is fluid ------------------------------------------------- */
 
 enum { SIDE_UNKNOWN, SIDE_FLUID, SIDE_SOLID };
 
@@ -248,7 +248,7 @@ static vg_status delaunay(struct vg_tets *t, size_t n, const double (*x)[3],
   return st;
 }
 
-/* --- the whole void at once -------------------------------------------- */
+/* --- the whole void at once ---------------------------------------------- */
 
 static vg_status whole_void(size_t n, const double (*x)[3], size_t n_tri,
                             const uint32_t (*tri)[3], struct vg_tets *out,

@@ -27,7 +27,7 @@ struct answer {              /* on the pipe, before points and tetrahedra */
   uint64_t ok, n_added, n_tet;
 };
 
-/* --- in the child --------------------------------------------------------- */
+/* --- in the child -------------------------------------------------------- */
 
 void put(int to, const void *data, size_t size)
 {

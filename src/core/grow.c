@@ -199,7 +199,7 @@ done:
   return st;
 }
 
-/* --- what is kept --------------------------------------------------------- */
+/* --- what is kept -------------------------------------------------------- */
 
 /* VG_MARK on the cells that become final. */
 static size_t choose(struct growth *g)

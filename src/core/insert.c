@@ -28,7 +28,7 @@ void vg_inserter_release(struct vg_inserter *s)
   memset(s, 0, sizeof *s);
 }
 
-/* --- the cavity -------------------------------------------------------- */
+/* --- the cavity ---------------------------------------------------------- */
 
 static int add_cell(struct vg_inserter *s, uint32_t c)
 {
@@ -178,7 +178,7 @@ static int cut_back(struct vg_inserter *s, const double x[3])
   return add_cell(s, seed) || flood(s, x) ? -1 : 0;
 }
 
-/* --- is the point welcome? --------------------------------------------- */
+/* --- is the point welcome? ----------------------------------------------- */
 
 static double distance2(const double a[3], const double b[3])
 {
@@ -234,7 +234,7 @@ static int too_low_anywhere(const struct vg_inserter *s, const double x[3],
   return 0;
 }
 
-/* --- refilling --------------------------------------------------------- */
+/* --- refilling ----------------------------------------------------------- */
 
 static int grow_edges(struct vg_inserter *s)
 {

@@ -83,7 +83,7 @@ int vg_shell(const struct vg_tets *t, uint32_t c, uint32_t a, uint32_t b,
   return n;
 }
 
-/* --- replacing cells ---------------------------------------------------- */
+/* --- replacing cells ----------------------------------------------------- */
 
 struct rim {                 /* a face of the cavity, or a face waiting */
   uint32_t v[3], link;

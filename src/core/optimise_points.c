@@ -11,7 +11,7 @@ static double worth(double old)
   return old < VG_SHAPE_FLAT ? VG_SHAPE_FLAT : old * 1.01;
 }
 
-/* --- taking a point away --------------------------------------------------- ---------------------------------------------- */
+/* --- taking a point away ------------------------------------------------- */
 
 struct merger {
   int n_new;
@@ -85,7 +85,7 @@ int vg_collapse(struct vg_optimiser *o, uint32_t c)
   return 0;
 }
 
-/* --- putting a point in ------------------------------------------ */
+/* --- putting a point in -------------------------------------------------- */
 
 enum { CAVITY_MAX = 20 };
 

@@ -48,7 +48,7 @@ static int swap_face(struct vg_optimiser *o, uint32_t c, int i)
   return 1;
 }
 
-/* --- edge removal ------------------------------------------ */
+/* --- edge removal -------------------------------------------------------- */
 
 struct ring_plan {
   const struct vg_tets *t;

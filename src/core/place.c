@@ -38,7 +38,7 @@ struct placer {
   struct vg_near near;
 };
 
-/* --- queue -------------------------------------------------------------- */
+/* --- queue --------------------------------------------------------------- */
 
 /* Eight buckets per doubling of the spacing, first in first out. */
 static int bucket_of(double h)
@@ -77,7 +77,7 @@ static uint32_t pop(struct placer *p)
   return VG_NONE;
 }
 
-/* --- proposals ---------------------------------------------------------- */
+/* --- proposals ----------------------------------------------------------- */
 
 static int reserve(struct placer *p, size_t n)
 {
@@ -315,7 +315,7 @@ vg_status vg_place_seeds(size_t n, const double (*x)[3],
   return vg_fail_memory(err, "placing points");
 }
 
-/* --- the front ---------------------------------------------------------- */
+/* --- the front ----------------------------------------------------------- */
 
 static int start_points(struct placer *p)
 {

@@ -27,7 +27,7 @@ struct recovery {
   struct vg_boundary_report *report;
 };
 
-/* --- cells that a triangle passes through ------------------------------------------ */
+/* --- cells that a triangle passes through -------------------------------- */
 
 /* Conservative: touching at a corner or along an edge does not count, but a
  * cell beside the triangle may. Counts a cell with a face in the triangle's
@@ -155,7 +155,7 @@ static int add_ring(struct recovery *r)
   return 0;
 }
 
-/* --- closing one pocket ------------------------------------------ */
+/* --- closing one pocket -------------------------------------------------- */
 
 struct pocket {
   size_t n_cell, n_tri, cap_tri, n_rim, n_point;
@@ -322,7 +322,7 @@ static vg_status accept(struct recovery *r, struct pocket *p,
   return VG_OK;
 }
 
-/* --- rounds ------------------------------------------ */
+/* --- rounds -------------------------------------------------------------- */
 
 /* Cells and missing triangles, both sorted by pocket, are cut up in step. */
 static vg_status describe_all(struct recovery *r, const struct vg_key *cell,

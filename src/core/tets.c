@@ -47,7 +47,7 @@ int vg_tets_drop(struct vg_tets *t, uint32_t cell)
   return 0;
 }
 
-/* --- links ------------------------------------------------------------- */
+/* --- links --------------------------------------------------------------- */
 
 static void sort3(uint32_t v[3])
 {
@@ -144,7 +144,7 @@ vg_status vg_tets_adopt(struct vg_tets *t, size_t n_point, double (*x)[3],
   return vg_tets_link(t, err);
 }
 
-/* --- location ---------------------------------------------------------- */
+/* --- location ------------------------------------------------------------ */
 
 static uint32_t search_all(const struct vg_tets *t, const double x[3])
 {
@@ -191,7 +191,7 @@ uint32_t vg_tets_locate(const struct vg_tets *t, uint32_t start,
   return search_all(t, x);
 }
 
-/* --- housekeeping ------------------------------------------------------ */
+/* --- housekeeping -------------------------------------------------------- */
 
 /* to[old] = new number of each point, VG_NONE for unused ones from n_keep on;
  * t->x is put into the new order. */
