@@ -187,8 +187,7 @@ static vg_status improve(struct growth *g, struct vg_error *err)
   VG_TRY(vg_tets_tidy(&g->t, g->n_front, err));
   if (stopped(g, "optimising", 0, 1)) return VG_BLOCKED;
   if (g->options->sweeps > 0) {
-    st = vg_optimise(&g->t, g->n_front, g->sizing, g->options->sweeps, &r,
-                     err);
+    st = vg_optimise(&g->t, g->n_front, g->options->sweeps, &r, err);
     g->report->n_smoothed += r.n_smoothed;
     g->report->n_flip += r.n_flip;
     g->report->n_collapse += r.n_collapse;

@@ -127,15 +127,13 @@ static vg_status mend(struct vg_optimiser *o, int *again,
   return st;
 }
 
-vg_status vg_optimise(struct vg_tets *t, size_t n_fixed,
-                      const struct vg_sizing *sizing, int sweeps,
+vg_status vg_optimise(struct vg_tets *t, size_t n_fixed, int sweeps,
                       struct vg_optimise_report *report, struct vg_error *err)
 {
   struct vg_optimiser *o = vg_calloc(1, sizeof *o);
   int again = 1;
   vg_status st;
 
-  (void)sizing;
   memset(report, 0, sizeof *report);
   if (!o) return vg_fail_memory(err, "optimisation");
   o->n_fixed = n_fixed;

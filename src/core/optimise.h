@@ -6,7 +6,6 @@
 #include <stdint.h>
 
 #include "base/status.h"
-#include "core/sizing.h"
 #include "core/tets.h"
 
 struct vg_optimise_report {
@@ -18,8 +17,7 @@ struct vg_optimise_report {
  * Points 0..n_fixed-1 stay; fixed faces stay; every cell stays positive.
  * @param sweeps  passes over all cells before the bad ones alone are worked on
  * Deterministic. VG_ERR_MEMORY on refusal (t is then still valid). */
-vg_status vg_optimise(struct vg_tets *t, size_t n_fixed,
-                      const struct vg_sizing *sizing, int sweeps,
+vg_status vg_optimise(struct vg_tets *t, size_t n_fixed, int sweeps,
                       struct vg_optimise_report *report, struct vg_error *err);
 
 #endif

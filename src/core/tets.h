@@ -75,7 +75,8 @@ vg_status vg_tets_adopt(struct vg_tets *t, size_t n_point, double (*x)[3],
                         struct vg_error *err);
 
 /** Walk from `start` to a cell that contains x (boundary included), through
- * constrained faces, ignoring dead cells. VG_NONE when x is outside all. */
+ * constrained faces, ignoring dead cells. VG_NONE when x is outside all: sure
+ * only where the cells fill a convex hull (before vg_tets_tidy drops some). */
 uint32_t vg_tets_locate(const struct vg_tets *t, uint32_t start,
                         const double x[3]);
 

@@ -141,7 +141,6 @@ static uint32_t (*fixed_faces(const struct vg_tets *t, size_t *n))[3]
 
 /* Optimise t and hold it against what it was. */
 static struct vg_optimise_report optimise(struct vg_tets *t, size_t n_fixed,
-                                          const struct vg_sizing *sizing,
                                           int sweeps)
 {
   struct vg_optimise_report r;
@@ -152,7 +151,7 @@ static struct vg_optimise_report optimise(struct vg_tets *t, size_t n_fixed,
 
   assert_non_null(x);
   memcpy(x, t->x, n_fixed * sizeof *x);
-  assert_int_equal(vg_optimise(t, n_fixed, sizing, sweeps, &r, NULL), VG_OK);
+  assert_int_equal(vg_optimise(t, n_fixed, sweeps, &r, NULL), VG_OK);
   assert_int_equal(vg_tets_defects(t), 0);
   assert_memory_equal(t->x, x, n_fixed * sizeof *x);
   after = fixed_faces(t, &n_after);
@@ -184,7 +183,7 @@ static void random_cells_get_better(void **state)
     random_subject(&s, 5, 400, seed);
     bad = count_below(&s.t, ten_degrees);
     assert_true(bad > 100);
-    r = optimise(&s.t, s.m.n_point, s.sizing, 2);
+    r = optimise(&s.t, s.m.n_point, 2);
     assert_true(r.n_smoothed > 0 && r.n_flip > 0);
     assert_true(count_below(&s.t, ten_degrees) < bad / 10);
     assert_true(worst(&s.t) > 1e-4);
@@ -199,9 +198,9 @@ static void a_second_time_does_no_harm(void **state)
 
   (void)state;
   random_subject(&s, 5, 300, 8);
-  optimise(&s.t, s.m.n_point, s.sizing, 2);
+  optimise(&s.t, s.m.n_point, 2);
   once = worst(&s.t);
-  for (int k = 0; k < 3; k++) optimise(&s.t, s.m.n_point, s.sizing, k);
+  for (int k = 0; k < 3; k++) optimise(&s.t, s.m.n_point, k);
   assert_true(worst(&s.t) >= (once < aim ? once : aim) * (1 - 1e-6));
   subject_end(&s);
 }
@@ -214,7 +213,7 @@ static void the_same_bytes_again(void **state)
   (void)state;
   for (int k = 0; k < 2; k++) {
     random_subject(&s[k], 5, 400, 12);
-    r[k] = optimise(&s[k].t, s[k].m.n_point, s[k].sizing, 2);
+    r[k] = optimise(&s[k].t, s[k].m.n_point, 2);
   }
   assert_memory_equal(&r[0], &r[1], sizeof r[0]);
   assert_int_equal(s[0].t.n_cell, s[1].t.n_cell);
@@ -247,7 +246,7 @@ static void a_sliver_is_removed(void **state)
     put(&s, 0, -r, 0);
     ready(&s);
     assert_true(worst(&s.t) < 10 * lift[k] * lift[k]);
-    optimise(&s.t, s.m.n_point, s.sizing, 2);
+    optimise(&s.t, s.m.n_point, 2);
     assert_true(worst(&s.t) > ten_degrees);
     subject_end(&s);
   }
@@ -271,7 +270,7 @@ static void a_shaken_grid(void **state)
   }
   ready(&s);
   assert_true(worst(&s.t) < 1e-9);
-  optimise(&s.t, s.m.n_point, s.sizing, 2);
+  optimise(&s.t, s.m.n_point, 2);
   assert_true(worst(&s.t) > ten_degrees);
   subject_end(&s);
 }
@@ -292,7 +291,7 @@ static void points_too_many_are_taken_away(void **state)
     put(&s, x[0], x[1], x[2]);
   }
   ready(&s);
-  r = optimise(&s.t, s.m.n_point, s.sizing, 2);
+  r = optimise(&s.t, s.m.n_point, 2);
   assert_true(r.n_collapse > 0 || r.n_smoothed > 0);
   assert_true(worst(&s.t) > ten_degrees);
   subject_end(&s);
@@ -323,7 +322,7 @@ static void cells_outside_stay(void **state)
   for (size_t c = 0; c < s.t.n_cell; c++)
     n_out += !!(s.t.flag[c] & VG_OUTSIDE);
   assert_true(n_out > 100);
-  optimise(&s.t, s.m.n_point + 8, s.sizing, 2);
+  optimise(&s.t, s.m.n_point + 8, 2);
   for (size_t c = 0; c < s.t.n_cell; c++)
     if (s.t.flag[c] & VG_OUTSIDE) {
       assert_memory_equal(s.t.cell[c].v, before[c].v, sizeof before[c].v);
@@ -382,7 +381,7 @@ static void all_points_fixed(void **state)
     struct vg_optimise_report r;
 
     random_subject(&s, 4, 150, seed);
-    r = optimise(&s.t, s.t.n_point, s.sizing, 2);
+    r = optimise(&s.t, s.t.n_point, 2);
     assert_true(r.n_flip > 0);
     subject_end(&s);
   }
