@@ -359,7 +359,7 @@ static void a_fixed_plane_stays(void **state)
     assert_true(tets_insert(&s, x, 0.1, 0.2) >= 0);
   }
   vg_inserter_release(&s);
-  optimise(&t, 125, NULL, 2);
+  optimise(&t, 125, 2);
   for (size_t c = 0; c < t.n_cell; c++) {
     int above = 0, below = 0;
 
