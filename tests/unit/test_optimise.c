@@ -401,7 +401,7 @@ static void a_single_cell(void **state)
   x[3][2] = 1e-3;
   assert_int_equal(vg_tets_adopt(&t, 4, x, 1, v, NULL), VG_OK);
   t.flag[0] = VG_FIXED_FACES;
-  optimise(&t, 4, NULL, 2);
+  optimise(&t, 4, 2);
   assert_int_equal(tets_live(&t), 1);
   vg_tets_release(&t);
 }
