@@ -187,9 +187,10 @@ static double distance2(const double a[3], const double b[3])
   return u * u + v * v + w * w;
 }
 
-/* Height over the face, squared, against the square of its mean edge. */
+/* Height over the face, squared, against the square of its mean edge, or of
+ * `most` (0: none) where that is shorter, as above a needle. */
 static int too_low(const double a[3], const double b[3], const double c[3],
-                   const double x[3], double clearance)
+                   const double x[3], double clearance, double most)
 {
   double u[3], v[3], w[3], n[3], dot = 0, n2 = 0, e2;
 
@@ -206,6 +207,7 @@ static int too_low(const double a[3], const double b[3], const double c[3],
     n2 += n[k] * n[k];
   }
   e2 = (distance2(a, b) + distance2(b, c) + distance2(c, a)) / 3;
+  if (most > 0 && e2 > most * most) e2 = most * most;
   return dot * dot < clearance * clearance * e2 * n2;
 }
 
@@ -220,7 +222,7 @@ static int too_near(const struct vg_inserter *s, const double x[3],
 }
 
 static int too_low_anywhere(const struct vg_inserter *s, const double x[3],
-                            double clearance)
+                            double clearance, double most)
 {
   const struct vg_tets *t = s->t;
 
@@ -228,7 +230,7 @@ static int too_low_anywhere(const struct vg_inserter *s, const double x[3],
     const uint32_t *v = s->face[k].v;
 
     if (s->face[k].fixed &&
-        too_low(t->x[v[0]], t->x[v[1]], t->x[v[2]], x, clearance))
+        too_low(t->x[v[0]], t->x[v[1]], t->x[v[2]], x, clearance, most))
       return 1;
   }
   return 0;
@@ -320,7 +322,7 @@ vg_status vg_insert(struct vg_inserter *s, uint32_t p, uint32_t at,
   state = add_cell(s, at) || flood(s, x) ? -1 : 0;
   if (!state && too_near(s, x, nearest)) state = 1;
   for (int cut = 0; !state; cut++) state = cut == CUT_MAX ? 1 : cut_back(s, x);
-  if (state == 2) state = too_low_anywhere(s, x, clearance);
+  if (state == 2) state = too_low_anywhere(s, x, clearance, 2 * nearest);
   if (!state &&
       (grow_edges(s) || vg_tets_reserve_cells(t, s->n_face) ||
        vg_reserve(&t->free, &t->cap_free, t->n_free + s->n_cell,

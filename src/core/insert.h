@@ -44,7 +44,8 @@ void vg_inserter_release(struct vg_inserter *s);
  * `at` that contains it.
  *
  * @param clearance  least height of the new point over a constrained face of
- *                   its cavity, as a share of that face's mean edge; 0: none
+ *                   its cavity, as a share of that face's mean edge or of
+ *                   twice `nearest`, whichever is less; 0: none
  * @param nearest    least distance to any vertex of the cavity; 0: none
  * Returns VG_BLOCKED, and leaves t untouched, where the point would come too
  * near, coincide with a vertex, or see no valid cavity. */
