@@ -9,7 +9,8 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "fill_shapes.h"
+#include "core/demo.h"
+#include "core/fill.h"
 
 struct job {
   const struct vg_mesh *surface;
@@ -59,59 +60,71 @@ static void same_mesh(const struct job *a, const struct job *b)
                       a->mesh.n_tet * sizeof *a->mesh.tet);
 }
 
+/* An example with its own field. Their triangles are Delaunay, so no process
+ * has to be started for TetGen: the thread sanitizer's allocator does not
+ * survive a fork among threads. */
+static struct vg_sizing *example(const char *name, size_t n_cell,
+                                 struct vg_demo *d)
+{
+  struct vg_sizing *sizing = NULL;
+
+  memset(d, 0, sizeof *d);
+  assert_int_equal(vg_demo_make(name, n_cell, d, NULL), VG_OK);
+  assert_int_equal(vg_sizing_new(&d->sizing, d->n_source, d->source,
+                                 &d->surface, &sizing, NULL), VG_OK);
+  return sizing;
+}
+
 /* Two different voids, each with a field of its own. */
 static void two_voids_at_once(void **state)
 {
-  const double centre[3] = { 0.1, -0.2, 0 };
-  struct vg_mesh s[2] = { VG_MESH_INIT, VG_MESH_INIT };
+  struct vg_demo demo[2];
   struct vg_sizing *sizing[2];
   struct job alone[2], together[2];
 
   (void)state;
   memset(alone, 0, sizeof alone);
-  shape_torus(&s[0], 36, 14, 1, 0.35);
-  shape_box(&s[1], 5, 4);
-  shape_sphere(&s[1], 8, centre, 1, 7);
+  sizing[0] = example("box", 3000, &demo[0]);
+  sizing[1] = example("box", 8000, &demo[1]);
   for (int i = 0; i < 2; i++) {
-    sizing[i] = shape_sizing(&s[i], 1.3, 0);
-    alone[i].surface = &s[i];
+    alone[i].surface = &demo[i].surface;
     alone[i].sizing = sizing[i];
   }
   memcpy(together, alone, sizeof together);
   run_alone(alone, 2);
   run_together(together, 2);
   for (int i = 0; i < 2; i++) {
+    assert_int_equal(alone[i].report.n_surface_face_lost, 0);
     same_mesh(&alone[i], &together[i]);
     vg_mesh_release(&alone[i].mesh);
     vg_mesh_release(&together[i].mesh);
     vg_sizing_free(sizing[i]);
-    vg_mesh_release(&s[i]);
+    vg_demo_release(&demo[i]);
   }
 }
 
 /* Four fills of one surface that share one field. */
 static void a_field_is_shared(void **state)
 {
-  struct vg_mesh s = VG_MESH_INIT;
-  struct vg_sizing *sizing;
+  struct vg_demo demo;
+  struct vg_sizing *sizing = example("box", 5000, &demo);
   struct job job[4], alone;
 
   (void)state;
-  shape_box(&s, 7, 0.5);
-  sizing = shape_sizing(&s, 1.2, 0.1);
   memset(&alone, 0, sizeof alone);
-  alone.surface = &s;
+  alone.surface = &demo.surface;
   alone.sizing = sizing;
   for (int i = 0; i < 4; i++) job[i] = alone;
   run_alone(&alone, 1);
   run_together(job, 4);
+  assert_int_equal(alone.report.n_surface_face_lost, 0);
   for (int i = 0; i < 4; i++) {
     same_mesh(&alone, &job[i]);
     vg_mesh_release(&job[i].mesh);
   }
   vg_mesh_release(&alone.mesh);
   vg_sizing_free(sizing);
-  vg_mesh_release(&s);
+  vg_demo_release(&demo);
 }
 
 int main(void)
