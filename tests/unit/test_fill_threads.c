@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "core/demo.h"
-#include "core/fill.h"
+#include "fill_shapes.h"
 
 struct job {
   const struct vg_mesh *surface;
@@ -127,11 +127,45 @@ static void a_field_is_shared(void **state)
   vg_demo_release(&demo);
 }
 
+#ifndef __SANITIZE_THREAD__
+/* Surfaces with triangles that TetGen has to recover, in two threads. */
+static void pockets_at_once(void **state)
+{
+  const double centre[3] = { 0.1, -0.2, 0 };
+  struct vg_mesh s[2] = { VG_MESH_INIT, VG_MESH_INIT };
+  struct job alone[2], together[2];
+
+  (void)state;
+  memset(alone, 0, sizeof alone);
+  shape_torus(&s[0], 36, 14, 1, 0.35);
+  shape_box(&s[1], 5, 4);
+  shape_sphere(&s[1], 8, centre, 1, 7);
+  for (int i = 0; i < 2; i++) {
+    alone[i].surface = &s[i];
+    alone[i].sizing = shape_sizing(&s[i], 1.3, 0);
+  }
+  memcpy(together, alone, sizeof together);
+  run_alone(alone, 2);
+  run_together(together, 2);
+  for (int i = 0; i < 2; i++) {
+    assert_true(alone[i].report.n_surface_face_lost > 0);
+    same_mesh(&alone[i], &together[i]);
+    vg_mesh_release(&alone[i].mesh);
+    vg_mesh_release(&together[i].mesh);
+    vg_sizing_free((struct vg_sizing *)alone[i].sizing);
+    vg_mesh_release(&s[i]);
+  }
+}
+#endif
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(two_voids_at_once),
     cmocka_unit_test(a_field_is_shared),
+#ifndef __SANITIZE_THREAD__
+    cmocka_unit_test(pockets_at_once),
+#endif
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);
