@@ -7,7 +7,7 @@ endif()
 install(TARGETS vanguard_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(TARGETS vanguard EXPORT vanguard-targets
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(DIRECTORY src/base src/core src/io
+install(DIRECTORY src/base src/core src/layers src/io
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/vanguard FILES_MATCHING PATTERN "*.h"
   PATTERN "*_parts.h" EXCLUDE)
 

@@ -1,0 +1,65 @@
+#define _GNU_SOURCE
+#include "base/parallel.h"
+
+#include <pthread.h>
+#include <sched.h>
+#include <stdatomic.h>
+
+#define WORKERS_MAX 256
+
+struct loop {
+  size_t n, grain;
+  vg_loop_body body;
+  void *context;
+  atomic_size_t next;       /* chunk */
+};
+
+struct worker {
+  struct loop *loop;
+  int number;
+  pthread_t thread;
+};
+
+int vg_cores(void)
+{
+  cpu_set_t set;
+
+  if (sched_getaffinity(0, sizeof set, &set)) return 1;
+  return CPU_COUNT(&set) > 0 ? CPU_COUNT(&set) : 1;
+}
+
+static void *work(void *argument)
+{
+  struct worker *w = argument;
+  struct loop *l = w->loop;
+  size_t n_chunk = (l->n + l->grain - 1) / l->grain, c;
+
+  while ((c = atomic_fetch_add(&l->next, 1)) < n_chunk) {
+    size_t first = c * l->grain, left = l->n - first;
+
+    l->body(l->context, first, first + (left < l->grain ? left : l->grain),
+            w->number);
+  }
+  return NULL;
+}
+
+void vg_parallel_for(int threads, size_t n, size_t grain, vg_loop_body body,
+                     void *context)
+{
+  struct loop loop = { n, grain ? grain : 1, body, context, 0 };
+  struct worker w[WORKERS_MAX];
+  int started = 1;
+
+  if (!n) return;
+  if (threads <= 0) threads = vg_cores();
+  if (threads > WORKERS_MAX) threads = WORKERS_MAX;
+  if ((size_t)threads > (n - 1) / loop.grain + 1)
+    threads = (int)((n - 1) / loop.grain + 1);
+  w[0] = (struct worker){ .loop = &loop };
+  for (; started < threads; started++) {
+    w[started] = (struct worker){ .loop = &loop, .number = started };
+    if (pthread_create(&w[started].thread, NULL, work, &w[started])) break;
+  }
+  work(&w[0]);
+  while (started-- > 1) pthread_join(w[started].thread, NULL);
+}

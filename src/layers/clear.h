@@ -1,0 +1,41 @@
+/* layers/clear.h: keeping layers clear of other surfaces and of each other.
+ * Uses core, columns.h, topology.h. */
+#ifndef VG_LAYERS_CLEAR_H
+#define VG_LAYERS_CLEAR_H
+
+#include "layers/layers.h"
+#include "layers/topology.h"
+
+/** Height that each column may take because of what stands in front of it:
+ * `gap` times the distance along dir (a unit step is a height of 1) to the
+ * first triangle of the surface that is hit by the column, or by the tops of
+ * its faces when raised by as much: rays from the root and from the centres
+ * of its faces, and the nearest triangle within the cone of 45 degrees about
+ * dir, whichever is least. Triangles that share a point with the column's
+ * faces do not count, nor do triangles that the column could not meet
+ * (facing the same way), nor the patches that it slides in.
+ *
+ * @param reach    [n_column] height wanted, as a multiple of dir
+ * @param allowed  out: [n_column] <= reach; equal where nothing is near
+ * Cost: one query of a tree of boxes per column. Any number of threads. */
+vg_status vg_clear_ahead(const struct vg_mesh *surface,
+                         const struct vg_columns *columns,
+                         const struct vg_topology *topology, double gap,
+                         int threads, const double *reach, double *allowed,
+                         struct vg_error *err);
+
+/** Columns of which a top touches something it must not: another top that is
+ * no neighbour, a triangle of the surface outside the layers (its own wall
+ * and slide patches to be re-meshed excepted), a rim's flank. Exact.
+ *
+ * @param is_slide  [surface->n_patch] 1: will be re-meshed
+ * @param active    [n_column] columns that moved since the last call, or NULL:
+ *                  all; pairs of faces without an active column are skipped
+ * @param bad       out: [n_column] 1 for each column of a face that touches */
+vg_status vg_clear_tops(const struct vg_mesh *surface,
+                        const struct vg_columns *columns,
+                        const uint8_t *is_slide, const uint8_t *active,
+                        int threads, uint8_t *bad, size_t *n_bad,
+                        struct vg_error *err);
+
+#endif

@@ -1,0 +1,71 @@
+/* layers/measure.h: what the layers are, measured on their points, not taken
+ * from what was asked. Uses core, layers.h. */
+#ifndef VG_LAYERS_MEASURE_H
+#define VG_LAYERS_MEASURE_H
+
+#include "layers/layers.h"
+
+/** Per point of a wall, for pictures and reports. Arrays [n], owned. */
+struct vg_wall_fields {
+  size_t n;
+  uint32_t *point;          /* point of the surface, rising */
+  int32_t *level, *wanted;  /* least over its columns */
+  double *first, *asked;    /* wall distance of the first point (to the
+                               triangles at the root, exact geometry), and the
+                               law's delta1; 0 without a level */
+  double *total;            /* wall distance of the top */
+  double *growth;           /* largest ratio of neighbouring layers */
+  int32_t *cause, *squeezed;
+};
+
+void vg_wall_fields_release(struct vg_wall_fields *w);
+
+vg_status vg_layers_fields(const struct vg_mesh *surface,
+                           const struct vg_columns *columns, int threads,
+                           struct vg_wall_fields *out, struct vg_error *err);
+
+struct vg_range { double min, mean, max; };
+
+/** One wall patch; ranges over its points with at least one level. */
+struct vg_patch_layers {
+  uint32_t patch;
+  size_t n_face, n_point;
+  double full;              /* % of faces of which all columns have the levels
+                               that law and local size ask for */
+  double unsqueezed;        /* % of faces that are full at the law's growth */
+  double any;               /* % of faces with at least one level at all three
+                               corners */
+  struct vg_range asked, first, level, total, growth;
+  double first_error;       /* largest |first - asked| / asked */
+  struct vg_range y_plus;   /* over faces, mean of the three first heights;
+                               0 when no Reynolds number is given */
+  size_t cause[VG_CAUSE_N], squeezed[VG_CAUSE_N];  /* faces, by the worst of
+                               their columns (the one with fewest levels) */
+};
+
+/** All wall patches by rising patch, and the sum over all in *all. out: owned
+ * by the caller (free). reynolds, length: see vg_y_plus; 0: no y+. */
+vg_status vg_layers_patches(const struct vg_mesh *surface,
+                            const struct vg_columns *columns,
+                            const struct vg_wall_fields *fields,
+                            double reynolds, double length, size_t *n,
+                            struct vg_patch_layers **out,
+                            struct vg_patch_layers *all,
+                            struct vg_error *err);
+
+/** What is wrong with the cells that columns imply: all zero when valid. */
+struct vg_layer_judgement {
+  size_t n_cell, n_negative;      /* tetrahedra by the lift rule */
+  size_t n_prism, n_bad_corner;   /* whole prisms, those with a corner of no
+                                     positive volume */
+  size_t n_jump;                  /* edges whose levels differ by 2 or more */
+  size_t n_off_plane;             /* columns whose points leave a slide plane
+                                     with an axis by one bit */
+  double angle_of_top_min;        /* smallest angle of a top, degrees */
+};
+vg_status vg_layers_judge(const struct vg_mesh *surface,
+                          const struct vg_columns *columns, int threads,
+                          struct vg_layer_judgement *out,
+                          struct vg_error *err);
+
+#endif

@@ -1,0 +1,38 @@
+/* layers/topology.h: which columns, faces and rims a wall has. Uses core,
+ * columns.h, slide.h. */
+#ifndef VG_LAYERS_TOPOLOGY_H
+#define VG_LAYERS_TOPOLOGY_H
+
+#include "layers/slide.h"
+
+struct vg_topology {
+  uint32_t *first;          /* [n_column + 1] into corner[] */
+  uint32_t *corner;         /* 3 * face + k with face[k] the column, real and
+                               virtual faces, by rising face */
+  uint32_t *near_first;     /* [n_column + 1] into near[] */
+  uint32_t *near;           /* columns that share an edge, rising */
+  uint8_t *preset;          /* [n_column] 1: dir is given (a column inside a
+                               fan, without a triangle of its own) */
+};
+#define VG_TOPOLOGY_INIT { NULL, NULL, NULL, NULL, NULL }
+
+void vg_topology_release(struct vg_topology *t);
+
+/** Columns, faces, rims and their neighbourhoods. n, dir, cap, law of the
+ * columns are 0 but for the dir (unit) of preset columns.
+ *
+ * Without fans: one column per wall point. With them: an edge between two
+ * wall triangles whose normals differ by more than fan_angle degrees (convex)
+ * is a ridge; the triangles around a point, cut at its ridges, form sectors;
+ * each sector has a column, and between neighbouring sectors lie as many
+ * preset columns that the turning between directions is at most 40 degrees.
+ * A point that one direction serves well, or that lies on one ridge end only,
+ * keeps one column. Virtual faces close the gaps along ridges and at points.
+ * A ridge that ends at a slide patch ends in a rim there. */
+vg_status vg_topology_build(const struct vg_mesh *surface,
+                            const uint8_t *is_wall, size_t n_slide,
+                            const struct vg_slide *slide, double fan_angle,
+                            struct vg_columns *columns, struct vg_topology *t,
+                            struct vg_error *err);
+
+#endif
