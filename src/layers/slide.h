@@ -15,21 +15,30 @@ struct vg_slide {
   int is_plane;             /* its points lie in a plane */
   int axis;                 /* the plane is x, y or z = at, exactly; else -1 */
   double normal[3];         /* unit, into the fluid; mean for curved patches */
-  double at;                /* normal . x */
+  double at;                /* normal . x; with an axis the coordinate is
+                               at * normal[axis], exactly */
+  /* Curved patches: normals at their points, by rising point. Kept in the
+   * block that vg_slides_find returns. 0: vg_slide_normal looks them up in
+   * the surface, O(n_tri). */
+  size_t n_vertex;
+  const uint32_t *vertex;   /* [n_vertex] */
+  const double (*vertex_normal)[3];
 };
 
 /** Patches touched by walls, by rising patch.
  * @param is_wall  [surface->n_patch]
- * @param out      owned by the caller (free); NULL when there are none
+ * @param out      one block, owned by the caller (free); NULL when there are
+ *                 none
  * A patch is plane when no point is farther from the plane than 1e-6 of its
- * extent (surfaces from CAD are noisy); with an axis when all coordinates are
- * equal bit by bit. */
+ * extent (surfaces from CAD are noisy) and no triangle faces the other way;
+ * with an axis when all coordinates are equal bit by bit. O(n log n). */
 vg_status vg_slides_find(const struct vg_mesh *surface, const uint8_t *is_wall,
                          size_t *n, struct vg_slide **out,
                          struct vg_error *err);
 
 /** Normal of slide s at point p of the surface, into the fluid: the plane's,
- * or the mean of its triangles at p, weighted by angle. */
+ * or the mean of its triangles at p, weighted by angle; the patch's mean
+ * where p is not on it. O(log n). */
 void vg_slide_normal(const struct vg_slide *s, const struct vg_mesh *surface,
                      uint32_t p, double normal[3]);
 
