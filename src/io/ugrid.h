@@ -52,4 +52,13 @@ vg_status vg_ugrid_peek(const char *path, uint64_t count[7],
 vg_status vg_ugrid_write(const char *path, const struct vg_mesh *m,
                          struct vg_error *err);
 
+/** As vg_ugrid_write, followed by the first part of the tail (formats.md 2.2,
+ * item 10): the number of tetrahedra in the layers, an integer of the kind's
+ * size; a record of its own in Fortran kinds. Layer tetrahedra are meant to
+ * be the first ones of the file. Readers, ours too, ignore it.
+ * @param n_layer_tet  0 .. m->n_tet, else VG_ERR_INPUT; mixed meshes, whose
+ *                     layers are prisms mostly, have few or none */
+vg_status vg_ugrid_write_tail(const char *path, const struct vg_mesh *m,
+                              size_t n_layer_tet, struct vg_error *err);
+
 #endif
