@@ -7,7 +7,7 @@ set -eu
 cd "$(dirname "$0")"
 
 packages="cmake ninja-build gcc g++ pkg-config libtet1.5-dev zlib1g-dev \
-libjansson-dev libcmocka-dev"
+libjansson-dev libcmocka-dev liblapacke-dev"
 
 install_missing() {
   missing=
