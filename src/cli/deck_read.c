@@ -231,8 +231,41 @@ static vg_status parameters(struct reader *r, struct vg_error *err)
   return take_values(r, &r->s, err);
 }
 
+/* `layers` is a setting and a table. Alone on a line it is the setting when
+ * the line below is a value for it, not names of columns. */
+static int is_setting(struct reader *r, const struct vg_table *table)
+{
+  size_t n;
+  const struct vg_param *p = vg_settings_params(&n);
+  struct vg_settings scratch;
+
+  p = find_param(p, n, table->name);
+  if (!p || r->n_token != 1) return 0;
+  vg_settings_default(&scratch);
+  return vg_param_set(p, &scratch, r->token[0].text, r->token[0].len,
+                      NULL) >= 0;
+}
+
+static vg_status set_alone(struct reader *r, const struct vg_table *table,
+                           struct vg_error *err)
+{
+  size_t n;
+  const struct vg_param *p = vg_settings_params(&n);
+  size_t *at;
+
+  r->name[0] = find_param(p, n, table->name);
+  r->n_name = 1;
+  at = &r->set_at[r->name[0] - p];
+  if (*at)
+    return vg_fail(err, VG_ERR_FORMAT, "%s:%zu: '%s' was set before (line "
+                   "%zu); remove one", r->in.path, r->line, table->name, *at);
+  *at = r->line;
+  return take_values(r, &r->s, err);
+}
+
+/* Names of the columns. *is_value: it was no table, see is_setting. */
 static vg_status table_head(struct reader *r, const struct vg_table *table,
-                            struct vg_error *err)
+                            int *is_value, struct vg_error *err)
 {
   int state;
   vg_status st;
@@ -241,6 +274,8 @@ static vg_status table_head(struct reader *r, const struct vg_table *table,
     st = next_line(r, &state, err);
     if (st < 0) return st;
   } while (state == 2);
+  *is_value = state == 3 && is_setting(r, table);
+  if (*is_value) return set_alone(r, table, err);
   if (state != 3)
     return vg_fail(err, VG_ERR_FORMAT, "%s:%zu: table '%s' needs a line of "
                    "column names right below", r->in.path, r->line,
@@ -266,6 +301,7 @@ static vg_status table_rows(struct reader *r, enum vg_table_kind kind,
   union {
     struct vg_farfield_row farfield;
     struct vg_patch_row patch;
+    struct vg_layer_row layer;
     struct vg_source source;
   } row;
   size_t n_row = 0;
@@ -290,19 +326,26 @@ static vg_status table_rows(struct reader *r, enum vg_table_kind kind,
 static vg_status table(struct reader *r, enum vg_table_kind kind,
                        struct vg_error *err)
 {
+  size_t line_before = r->table_at[kind];
+  int is_value;
   vg_status st;
 
   if (r->n_token > 1)
     return vg_fail(err, VG_ERR_FORMAT, "%s:%zu: '%s' begins a table and "
                    "stands alone on its line; column names go on the next",
                    r->in.path, r->line, r->token[0].text);
-  if (r->table_at[kind])
-    return vg_fail(err, VG_ERR_FORMAT, "%s:%zu: table '%s' was given before "
-                   "(line %zu); join the two", r->in.path, r->line,
-                   r->token[0].text, r->table_at[kind]);
   r->table_at[kind] = r->line;
-  st = table_head(r, vg_settings_table(kind), err);
-  return st < 0 ? st : table_rows(r, kind, err);
+  st = table_head(r, vg_settings_table(kind), &is_value, err);
+  if (st < 0) return st;
+  if (is_value) {
+    r->table_at[kind] = line_before;
+    return st;
+  }
+  if (line_before)
+    return vg_fail(err, VG_ERR_FORMAT, "%s:%zu: table '%s' was given before "
+                   "(line %zu); join the two", r->in.path, r->table_at[kind],
+                   vg_settings_table(kind)->name, line_before);
+  return table_rows(r, kind, err);
 }
 
 /* A first line made of names only: somebody forgot the title. */
@@ -359,6 +402,17 @@ static vg_status title(struct reader *r, struct vg_error *err)
   return VG_OK;
 }
 
+/* The line begins a table: its first word does, and is no setting among
+ * others. */
+static int begins_table(const struct reader *r)
+{
+  size_t n;
+  const struct vg_param *p = vg_settings_params(&n);
+
+  return find_table(r->token[0].text) >= 0 &&
+         (r->n_token == 1 || !find_param(p, n, r->token[0].text));
+}
+
 static vg_status blocks(struct reader *r, struct vg_error *err)
 {
   int state;
@@ -368,7 +422,7 @@ static vg_status blocks(struct reader *r, struct vg_error *err)
     st = next_line(r, &state, err);
     if (st < 0 || state == 0) return st;
     if (state < 3) continue;
-    if (find_table(r->token[0].text) >= 0)
+    if (begins_table(r))
       st = table(r, (enum vg_table_kind)find_table(r->token[0].text), err);
     else
       st = parameters(r, err);

@@ -8,8 +8,9 @@
 #include "io/mapbc.h"
 #include "io/stream.h"
 
-#define CELL_SIZE (2 * VG_WRITE_MAX + 4)
+#define CELL_SIZE (2 * VG_LIST_MAX + 4)
 #define LINE_WIDTH 78
+#define NAME_WIDTH 18      /* the longest name and two blanks */
 
 static void pad(struct vg_output *out, const char *text, size_t width)
 {
@@ -33,20 +34,21 @@ static void explain_param(struct vg_output *out, const struct vg_param *p,
                           const void *defaults)
 {
   char text[1024], note[CELL_SIZE + 64];
-  size_t used = 2 + 15;
+  size_t used = 2 + NAME_WIDTH;
   char *save = NULL;
 
   value_note(p, defaults, note, sizeof note);
   snprintf(text, sizeof text, "%s %s", p->help, note);
   vg_output_text(out, "# ");
-  pad(out, p->name, 15);
+  pad(out, p->name, NAME_WIDTH);
   for (char *w = strtok_r(text, " ", &save); w;
        w = strtok_r(NULL, " ", &save)) {
     if (used + strlen(w) > LINE_WIDTH) {
-      vg_output_text(out, "\n#                ");
-      used = 17;
+      vg_output_text(out, "\n# ");
+      pad(out, "", NAME_WIDTH);
+      used = 2 + NAME_WIDTH;
     }
-    if (used > 17) vg_output_text(out, " "), used++;
+    if (used > 2 + NAME_WIDTH) vg_output_text(out, " "), used++;
     vg_output_text(out, w);
     used += strlen(w);
   }
@@ -108,7 +110,8 @@ static void column_widths(const struct vg_table *t, enum vg_table_kind kind,
 
   for (size_t c = 0; c < t->n_column; c++) {
     const struct vg_param *p = &t->column[c];
-    int used = kind != VG_TABLE_SOURCES || p->required;
+    int used = kind == VG_TABLE_FARFIELD || kind == VG_TABLE_PATCHES ||
+               p->required;
 
     width[c] = strlen(p->name);
     for (size_t i = 0; i < n; i++) {
@@ -122,12 +125,22 @@ static void column_widths(const struct vg_table *t, enum vg_table_kind kind,
   }
 }
 
+/* Shown where a table is empty. */
+static const char *const example[VG_TABLE_N] = {
+  [VG_TABLE_FARFIELD] = "",
+  [VG_TABLE_PATCHES] = "#\n# patches\n# id  bc  name\n# 1   4   wing\n\n",
+  [VG_TABLE_LAYERS] = "#\n# layers\n# id  grow  first  min_full\n"
+                      "# 1   yes   1e-5   98\n\n",
+  [VG_TABLE_SOURCES] = "#\n# sources\n# kind   x0  y0  z0  r0  h0\n"
+                       "# point  0   0   0   0   0.01\n\n",
+};
+
 static void write_table(struct vg_output *out, const struct vg_settings *s,
                         enum vg_table_kind kind, int explain)
 {
   const struct vg_table *t = vg_settings_table(kind);
   union { struct vg_farfield_row f; struct vg_patch_row p;
-          struct vg_source s; } defaults;
+          struct vg_layer_row l; struct vg_source s; } defaults;
   char value[CELL_SIZE];
   size_t width[64] = { 0 }, n = vg_settings_rows(s, kind);
 
@@ -139,10 +152,7 @@ static void write_table(struct vg_output *out, const struct vg_settings *s,
   }
   if (!n) {
     if (explain)
-      vg_output_text(out, kind == VG_TABLE_SOURCES
-        ? "#\n# sources\n# kind   x0  y0  z0  r0  h0\n"
-          "# point  0   0   0   0   0.01\n\n"
-        : "#\n# patches\n# id  bc  name\n# 1   4   wing\n\n");
+      vg_output_text(out, example[kind]);
     return;
   }
   column_widths(t, kind, s, &defaults, width);

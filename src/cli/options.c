@@ -86,7 +86,7 @@ static char *keep(struct vg_cli_options *o, char *text)
 static int add_option(struct vg_cli_options *o, const struct vg_param *p,
                       const char *name, int key, const void *base)
 {
-  char value[2 * VG_WRITE_MAX + 4], *long_name, *help;
+  char value[2 * VG_LIST_MAX + 4], *long_name, *help;
   struct argp_option *to = &o->option[o->n];
 
   vg_param_format(p, base, value, sizeof value);
@@ -159,7 +159,12 @@ vg_status vg_cli_option_set(int key, const char *text, struct vg_settings *s,
   const struct vg_param *p = vg_settings_params(&n);
 
   if (key < VG_KEY_SETTING || i >= n + N_FARFIELD) return VG_BLOCKED;
-  if (i < n) return vg_param_set(&p[i], s, text, strlen(text), err);
+  if (i < n) {
+    vg_status st = vg_param_set(&p[i], s, text, strlen(text), err);
+
+    if (st >= 0) vg_settings_override(s, &p[i]);
+    return st;
+  }
   return vg_param_set(farfield_column(i - n), &s->farfield, text,
                       strlen(text), err);
 }

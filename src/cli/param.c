@@ -109,11 +109,13 @@ vg_status vg_param_set(const struct vg_param *p, void *base, const char *text,
   static const char *const yes_no[] = { "no", "yes", NULL };
   const double unset = NAN;
   const int32_t none = VG_BC_NONE;
+  const int64_t no_count = VG_COUNT_NONE;
   char *at = (char *)base + p->offset;
 
   if (p->optional && vg_token_is(text, len, "-")) {
     if (p->type == VG_PARAM_REAL) memcpy(at, &unset, sizeof unset);
     if (p->type == VG_PARAM_ID) memcpy(at, &none, sizeof none);
+    if (p->type == VG_PARAM_COUNT) memcpy(at, &no_count, sizeof no_count);
     return VG_OK;
   }
   switch (p->type) {
@@ -163,7 +165,8 @@ void vg_param_format(const struct vg_param *p, const void *base, char *out,
     break;
   case VG_PARAM_COUNT:
     memcpy(&count, at, sizeof count);
-    snprintf(out, size, "%lld", (long long)count);
+    if (count == VG_COUNT_NONE && p->optional) snprintf(out, size, "-");
+    else snprintf(out, size, "%lld", (long long)count);
     break;
   case VG_PARAM_ID:
     memcpy(&id, at, sizeof id);

@@ -8,11 +8,15 @@
 
 #include "base/memory.h"
 #include "core/fill.h"
+#include "layers/join.h"
 
 #define HUGE_SIZE 1e60 /* beyond this the predicates are not safe */
 
 static const char *const domain_words[] = { "auto", "none", "sphere", "box",
                                             NULL };
+static const char *const answer_words[] = { "auto", "no", "yes", NULL };
+/* In the order of enum vg_layer_cells. */
+static const char *const cell_words[] = { "tets", "mixed", NULL };
 /* In the order of enum vg_source_kind. */
 static const char *const source_words[] = {
   "vgrid_node", "vgrid_line", "point", "line", "triangle", "box", "sphere",
@@ -22,6 +26,9 @@ static const char *const source_words[] = {
   .size = sizeof ((struct vg_settings *)0)->field
 #define REAL .type = VG_PARAM_REAL, .hi = HUGE_SIZE
 #define LENGTH REAL, .unit = "length"
+#define LIMIT(name, at, most, about) \
+  { name, at, .type = VG_PARAM_REAL, .hi = most, .optional = 1, \
+    .unit = "%", .help = about "; -: no limit" }
 
 static const struct vg_param params[] = {
   { "scale", AT(scale), REAL, .above_lo = 1, .unit = "",
@@ -48,7 +55,80 @@ static const struct vg_param params[] = {
   { "max_cells", AT(max_cells), .type = VG_PARAM_COUNT, .hi = 9e15,
     .unit = "cells", .help = "stop rather than make more; 0: no limit" },
   { "write", AT(write), .type = VG_PARAM_TEXT, .unit = "",
-    .help = "files to write, separated by commas" },
+    .help = "files to write, separated by commas; auto: cogsg,b8.ugrid, for "
+            "mixed cells b8.ugrid" },
+  { "cells", AT(cells), .type = VG_PARAM_WORD, .words = cell_words,
+    .unit = "", .help = "cells of the layers: tets, or mixed (prisms, "
+                        "pyramids and tetrahedra)" },
+  { "ugrid_tail", AT(ugrid_tail), .type = VG_PARAM_FLAG, .unit = "",
+    .help = "number of layer tetrahedra behind the cells of a .ugrid" },
+  { "threads", AT(threads), .type = VG_PARAM_COUNT, .hi = 4096,
+    .unit = "threads", .help = "threads for the layers; 0: one per core; "
+                               "results do not depend on it" },
+  { "layers", AT(layer.grow), .type = VG_PARAM_WORD, .words = answer_words,
+    .unit = "", .help = "viscous layers on the walls; auto: where the project "
+    "asks for them (.d3m, a viscous condition, walls) and the first height "
+    "is known" },
+  { "first", AT(layer.first), LENGTH,
+    .help = "height of the first layer; 0: by y_plus" },
+  { "y_plus", AT(layer.y_plus), REAL, .unit = "",
+    .help = "y+ of the first height, by reynolds and reference_length; 0: "
+            "first is given" },
+  { "reynolds", AT(layer.reynolds), REAL, .unit = "",
+    .help = "Reynolds number of reference_length; 0: unknown, no y+" },
+  { "reference_length", AT(layer.length), LENGTH,
+    .help = "length to which reynolds refers" },
+  { "ratio", AT(layer.ratio), .type = VG_PARAM_REAL, .lo = 1, .hi = 10,
+    .optional = 1, .unit = "", .help = "thickness of a layer over that of "
+    "the one below; -: 1 + rate1, or what layer_count and layer_total lead "
+    "to, or 1.2" },
+  { "rate1", AT(layer.rate1), .type = VG_PARAM_REAL, .hi = 9, .optional = 1,
+    .unit = "", .help = "VGRID's law, layer j is first * (1 + rate1 (1 + "
+    "rate2)^(j-1))^(j-1) thick; -: ratio - 1" },
+  { "rate2", AT(layer.rate2), .type = VG_PARAM_REAL, .hi = 9, .optional = 1,
+    .unit = "", .help = "the same; -: 0" },
+  { "layer_count", AT(layer.count), .type = VG_PARAM_COUNT,
+    .hi = VG_LEVELS_MAX, .unit = "layers",
+    .help = "number of layers; 0: until they are as thick as the local "
+            "edge" },
+  { "layer_max", AT(layer.most), .type = VG_PARAM_COUNT, .hi = VG_LEVELS_MAX,
+    .unit = "layers", .help = "never more layers than this, VGRID's nlayr; "
+                              "0: 250" },
+  { "layer_total", AT(layer.total), LENGTH,
+    .help = "no layers higher than this together; 0: no limit" },
+  { "constant_layers", AT(layer.constant), .type = VG_PARAM_COUNT, .lo = 1,
+    .hi = VG_LEVELS_MAX, .unit = "layers",
+    .help = "first layers of one thickness, before the growth begins" },
+  { "layer_cap", AT(layer.cap), .type = VG_PARAM_REAL, .hi = 10,
+    .optional = 1, .unit = "", .help = "largest growth of any layer; 0: "
+    "none; -: 1.3, none where the .d3m gives the law" },
+  { "walls", AT(layer.walls), .type = VG_PARAM_TEXT, .unit = "",
+    .help = "patches with layers, and no others, as in 3-12,15; \"\": by "
+            "their conditions" },
+  { "slip", AT(layer.slip), .type = VG_PARAM_TEXT, .unit = "",
+    .help = "patches without layers whatever their condition, as in 4,7-9" },
+  { "fan_angle", AT(layer.fan_angle), .type = VG_PARAM_REAL, .lo = 20,
+    .hi = 180, .unit = "degrees", .help = "convex edges that turn by more "
+    "than this get several columns per point; 180: none" },
+  { "layer_gap", AT(layer.gap), .type = VG_PARAM_REAL, .hi = 0.49,
+    .above_lo = 1, .unit = "", .help = "share of the distance to a surface "
+    "in front that layers may take" },
+  { "layer_end", AT(layer.end), .type = VG_PARAM_REAL, .hi = 100,
+    .above_lo = 1, .unit = "edges", .help = "layers end before one would be "
+    "thicker than this times the local edge" },
+  { "layer_smooth", AT(layer.smooth), .type = VG_PARAM_COUNT, .hi = 10000,
+    .unit = "sweeps", .help = "sweeps that smooth the directions of the "
+                              "layers" },
+  { "layer_sources", AT(layer.by_source), .type = VG_PARAM_FLAG, .unit = "",
+    .help = "first height and rates from the sources (VGRID's grid 2)" },
+  { "d3m_layers", AT(layer.from_d3m), .type = VG_PARAM_FLAG, .unit = "",
+    .help = "use the layer settings of the .d3m where none are given here" },
+  LIMIT("min_full", AT(layer.min_full), 100, "% of the faces of each wall "
+        "patch that must have all layers, else exit status 4"),
+  LIMIT("min_any", AT(layer.min_any), 100, "% of the faces of each wall patch "
+        "that must have a layer, else exit status 4"),
+  LIMIT("max_first_error", AT(layer.max_first_error), 1e9, "% by which a "
+        "first height may differ from what is asked, else exit status 4"),
 };
 
 #undef AT
@@ -94,6 +174,36 @@ static const struct vg_param patch_columns[] = {
 };
 
 #undef AT
+#define AT(field) .offset = offsetof(struct vg_layer_row, field), \
+  .size = sizeof ((struct vg_layer_row *)0)->field
+#define OWN(name, field, least, most, above, units, about) \
+  { name, AT(field), .type = VG_PARAM_REAL, .lo = least, .hi = most, \
+    .above_lo = above, .optional = 1, .unit = units, .help = about }
+
+static const struct vg_param layer_columns[] = {
+  { "id", AT(id), .type = VG_PARAM_ID, .lo = INT32_MIN, .hi = INT32_MAX,
+    .unit = "", .required = 1, .help = "number of the patch" },
+  { "grow", AT(grow), .type = VG_PARAM_WORD, .words = answer_words,
+    .unit = "", .help = "layers on this patch; auto: by its condition" },
+  OWN("first", first, 0, HUGE_SIZE, 1, "length", "as the setting"),
+  OWN("y_plus", y_plus, 0, HUGE_SIZE, 1, "", "as the setting"),
+  OWN("ratio", ratio, 1, 10, 0, "", "as the setting"),
+  OWN("rate1", rate1, 0, 9, 0, "", "as the setting"),
+  OWN("rate2", rate2, 0, 9, 0, "", "as the setting"),
+  { "count", AT(count), .type = VG_PARAM_COUNT, .hi = VG_LEVELS_MAX,
+    .optional = 1, .unit = "layers", .help = "as layer_count" },
+  OWN("total", total, 0, HUGE_SIZE, 0, "length", "as layer_total"),
+  { "constant", AT(constant), .type = VG_PARAM_COUNT, .lo = 1,
+    .hi = VG_LEVELS_MAX, .optional = 1, .unit = "layers",
+    .help = "as constant_layers" },
+  OWN("cap", cap, 0, 10, 0, "", "as layer_cap"),
+  OWN("min_full", min_full, 0, 100, 0, "%", "as the setting"),
+  OWN("min_any", min_any, 0, 100, 0, "%", "as the setting"),
+  OWN("max_first_error", max_first_error, 0, 1e9, 0, "%", "as the setting"),
+};
+
+#undef AT
+#undef OWN
 #undef POINT
 #define AT(field) .offset = offsetof(struct vg_source, field), \
   .size = sizeof ((struct vg_source *)0)->field
@@ -154,6 +264,9 @@ static const struct vg_table tables[VG_TABLE_N] = {
   [VG_TABLE_PATCHES] = { "patches", "Names and boundary conditions; they win "
     "over the .mapbc file.", patch_columns, COUNT(patch_columns),
     sizeof (struct vg_patch_row) },
+  [VG_TABLE_LAYERS] = { "layers", "Layers of single patches. - or "
+    "no column: the global one.", layer_columns,
+    COUNT(layer_columns), sizeof (struct vg_layer_row) },
   [VG_TABLE_SOURCES] = { "sources", "Spacing in the volume. - or no "
     "column: the default.", source_columns,
     COUNT(source_columns), sizeof (struct vg_source) },
@@ -174,6 +287,9 @@ void vg_settings_row_default(enum vg_table_kind kind, void *row)
 {
   struct vg_farfield_row far = { .kind = VG_DOMAIN_AUTO, .lengths = 20 };
   struct vg_patch_row patch = { .bc = VG_BC_NONE };
+  struct vg_layer_row layer = { 0, VG_ANSWER_AUTO, NAN, NAN, NAN, NAN, NAN,
+                                VG_COUNT_NONE, VG_COUNT_NONE, NAN, NAN, NAN,
+                                NAN, NAN };
   struct vg_source source = { .kind = VG_SOURCE_POINT, .an = 1 };
 
   for (int k = 0; k < 3; k++)
@@ -181,9 +297,24 @@ void vg_settings_row_default(enum vg_table_kind kind, void *row)
   switch (kind) {
   case VG_TABLE_FARFIELD: memcpy(row, &far, sizeof far); break;
   case VG_TABLE_PATCHES: memcpy(row, &patch, sizeof patch); break;
+  case VG_TABLE_LAYERS: memcpy(row, &layer, sizeof layer); break;
   case VG_TABLE_SOURCES: memcpy(row, &source, sizeof source); break;
   case VG_TABLE_N: break;
   }
+}
+
+static void default_layers(struct vg_layer_settings *l)
+{
+  const struct vg_layer_options o = VG_LAYER_OPTIONS_INIT;
+
+  l->ratio = l->rate1 = l->rate2 = l->cap = NAN;
+  l->min_full = l->min_any = l->max_first_error = NAN;
+  l->constant = 1;
+  l->fan_angle = o.fan_angle;
+  l->gap = o.gap;
+  l->end = o.end;
+  l->smooth = o.smooth;
+  l->from_d3m = 1;
 }
 
 void vg_settings_default(struct vg_settings *s)
@@ -199,7 +330,8 @@ void vg_settings_default(struct vg_settings *s)
   s->repair = 1;
   s->optimise = fill.optimise;
   snprintf(s->title, sizeof s->title, "untitled");
-  snprintf(s->write, sizeof s->write, "cogsg,b8.ugrid");
+  snprintf(s->write, sizeof s->write, "auto");
+  default_layers(&s->layer);
   vg_settings_row_default(VG_TABLE_FARFIELD, &s->farfield);
 }
 
@@ -207,6 +339,7 @@ void vg_settings_release(struct vg_settings *s)
 {
   free(s->source);
   free(s->patch);
+  free(s->layer_row);
   memset(s, 0, sizeof *s);
 }
 
@@ -223,6 +356,12 @@ vg_status vg_settings_add(struct vg_settings *s, enum vg_table_kind kind,
     refused = vg_reserve(&s->patch, &s->cap_patch, s->n_patch + 1,
                          sizeof *s->patch);
     if (!refused) memcpy(&s->patch[s->n_patch++], row, sizeof *s->patch);
+    break;
+  case VG_TABLE_LAYERS:
+    refused = vg_reserve(&s->layer_row, &s->cap_layer, s->n_layer + 1,
+                         sizeof *s->layer_row);
+    if (!refused)
+      memcpy(&s->layer_row[s->n_layer++], row, sizeof *s->layer_row);
     break;
   case VG_TABLE_SOURCES:
     refused = vg_reserve(&s->source, &s->cap_source, s->n_source + 1,
@@ -244,12 +383,14 @@ const void *vg_settings_row(const struct vg_settings *s,
 {
   if (kind == VG_TABLE_FARFIELD) return &s->farfield;
   if (kind == VG_TABLE_PATCHES) return &s->patch[i];
+  if (kind == VG_TABLE_LAYERS) return &s->layer_row[i];
   return &s->source[i];
 }
 
 size_t vg_settings_rows(const struct vg_settings *s, enum vg_table_kind kind)
 {
   if (kind == VG_TABLE_FARFIELD) return 1;
+  if (kind == VG_TABLE_LAYERS) return s->n_layer;
   return kind == VG_TABLE_PATCHES ? s->n_patch : s->n_source;
 }
 
@@ -265,21 +406,69 @@ static int compare_id(const void *a, const void *b)
   return (x > y) - (x < y);
 }
 
-static vg_status check_patches(const struct vg_settings *s,
-                               struct vg_error *err)
+/* Both tables of patches begin with the number. */
+static vg_status check_numbers(const struct vg_settings *s,
+                               enum vg_table_kind kind, struct vg_error *err)
 {
-  int32_t *id = vg_alloc(s->n_patch, sizeof *id), twice = 0;
+  size_t n = vg_settings_rows(s, kind);
+  int32_t *id = vg_alloc(n, sizeof *id), twice = 0;
   int found = 0;
 
   if (!id) return vg_fail_memory(err, "the patch table");
-  for (size_t i = 0; i < s->n_patch; i++) id[i] = s->patch[i].id;
-  qsort(id, s->n_patch, sizeof *id, compare_id);
-  for (size_t i = 1; i < s->n_patch && !found; i++)
+  for (size_t i = 0; i < n; i++)
+    memcpy(&id[i], vg_settings_row(s, kind, i), sizeof *id);
+  qsort(id, n, sizeof *id, compare_id);
+  for (size_t i = 1; i < n && !found; i++)
     if (id[i] == id[i - 1]) found = 1, twice = id[i];
   free(id);
   if (!found) return VG_OK;
-  return vg_fail(err, VG_ERR_INPUT, "patches: patch %d is listed twice; "
-                 "remove one of its lines", (int)twice);
+  return vg_fail(err, VG_ERR_INPUT, "%s: patch %d is listed twice; "
+                 "remove one of its lines", tables[kind].name, (int)twice);
+}
+
+static vg_status check_layer_rows(const struct vg_settings *s,
+                                  struct vg_error *err)
+{
+  for (size_t i = 0; i < s->n_layer; i++) {
+    const struct vg_layer_row *r = &s->layer_row[i];
+
+    if (!isnan(r->first) && !isnan(r->y_plus))
+      return vg_fail(err, VG_ERR_INPUT, "layers: patch %d has both first and "
+                     "y_plus; give one", (int)r->id);
+    if (!isnan(r->ratio) && (!isnan(r->rate1) || !isnan(r->rate2)))
+      return vg_fail(err, VG_ERR_INPUT, "layers: patch %d has both ratio and "
+                     "rates; give one", (int)r->id);
+    if (!isnan(r->y_plus) && !(s->layer.reynolds > 0))
+      return vg_fail(err, VG_ERR_INPUT, "layers: patch %d has y_plus, which "
+                     "needs reynolds and reference_length", (int)r->id);
+    if (!isnan(r->cap) && r->cap > 0 && r->cap < 1)
+      return vg_fail(err, VG_ERR_INPUT, "layers: cap of patch %d is %g; it "
+                     "must be at least 1, or 0 for none", (int)r->id, r->cap);
+  }
+  return s->n_layer ? check_numbers(s, VG_TABLE_LAYERS, err) : VG_OK;
+}
+
+static vg_status check_layers(const struct vg_settings *s,
+                              struct vg_error *err)
+{
+  const struct vg_layer_settings *l = &s->layer;
+
+  if (l->first > 0 && l->y_plus > 0)
+    return vg_fail(err, VG_ERR_INPUT, "first and y_plus are both given; give "
+                   "one");
+  if (!isnan(l->ratio) && (!isnan(l->rate1) || !isnan(l->rate2)))
+    return vg_fail(err, VG_ERR_INPUT, "ratio and rates are both given; give "
+                   "one (ratio is 1 + rate1)");
+  if ((l->reynolds > 0) != (l->length > 0))
+    return vg_fail(err, VG_ERR_INPUT, "reynolds and reference_length belong "
+                   "together; give both or none");
+  if (l->y_plus > 0 && !(l->reynolds > 0))
+    return vg_fail(err, VG_ERR_INPUT, "y_plus needs reynolds and "
+                   "reference_length");
+  if (!isnan(l->cap) && l->cap > 0 && l->cap < 1)
+    return vg_fail(err, VG_ERR_INPUT, "layer_cap is %g; it must be at least "
+                   "1, or 0 for none", l->cap);
+  return check_layer_rows(s, err);
 }
 
 vg_status vg_settings_check(const struct vg_settings *s, struct vg_error *err)
@@ -308,7 +497,27 @@ vg_status vg_settings_check(const struct vg_settings *s, struct vg_error *err)
       return vg_fail(err, VG_ERR_INPUT, "sources: growth of source %zu is %g; "
                      "it must be above 1, or 0 for the global one", i + 1,
                      s->source[i].growth);
-  return s->n_patch ? check_patches(s, err) : VG_OK;
+  if (s->n_patch && check_numbers(s, VG_TABLE_PATCHES, err) < 0)
+    return VG_ERR_INPUT;
+  return check_layers(s, err);
+}
+
+void vg_settings_write(struct vg_settings *s)
+{
+  if (strcmp(s->write, "auto") != 0) return;
+  snprintf(s->write, sizeof s->write, "%s",
+           s->cells == VG_LAYER_MIXED ? "b8.ugrid" : "cogsg,b8.ugrid");
+}
+
+void vg_settings_override(struct vg_settings *s, const struct vg_param *set)
+{
+  struct vg_layer_settings *l = &s->layer;
+  const void *at = (const char *)s + set->offset;
+
+  if (at == &l->first) l->y_plus = 0;
+  if (at == &l->y_plus) l->first = 0;
+  if (at == &l->ratio) l->rate1 = l->rate2 = NAN;
+  if (at == &l->rate1 || at == &l->rate2) l->ratio = NAN;
 }
 
 struct vg_sizing_options vg_settings_sizing(const struct vg_settings *s)

@@ -14,6 +14,7 @@
 
 #define VG_TITLE_MAX 80
 #define VG_WRITE_MAX 160
+#define VG_LIST_MAX 240    /* bytes of a list of patches; no text is longer */
 
 /** How the domain around the given surface is completed. */
 enum vg_domain_choice {
@@ -33,6 +34,36 @@ struct vg_patch_row {
   char name[VG_NAME_MAX];          /* "": as the input says */
 };
 
+/** Answers that a project may leave open. */
+enum vg_answer { VG_ANSWER_AUTO, VG_ANSWER_NO, VG_ANSWER_YES };
+
+#define VG_COUNT_NONE (-1)         /* a count that is not given */
+
+/** The layers of one patch. NAN, VG_COUNT_NONE: the global value. */
+struct vg_layer_row {
+  int32_t id;
+  int grow;                        /* enum vg_answer; auto: by condition */
+  double first, ratio, rate1, rate2, y_plus;
+  int64_t count, constant;
+  double total, cap;
+  double min_full, min_any, max_first_error;
+};
+
+/** Viscous layers on all walls. 0 (a rate, the cap and limits: NAN): not
+ * given. */
+struct vg_layer_settings {
+  int grow;                        /* enum vg_answer */
+  double first, ratio, rate1, rate2;
+  int64_t count, most, constant;
+  double total, cap;
+  double y_plus, reynolds, length;
+  char walls[VG_LIST_MAX], slip[VG_LIST_MAX];
+  double fan_angle, gap, end;
+  int64_t smooth;
+  int by_source, from_d3m;
+  double min_full, min_any, max_first_error;
+};
+
 /** All settings of a run. */
 struct vg_settings {
   char title[VG_TITLE_MAX + 1];
@@ -41,17 +72,22 @@ struct vg_settings {
   double weld;
   int repair;
   int64_t optimise, max_cells;
-  char write[VG_WRITE_MAX];
+  char write[VG_WRITE_MAX];        /* "auto": vg_settings_write */
+  int cells;                       /* enum vg_layer_cells */
+  int ugrid_tail;
+  int64_t threads;
+  struct vg_layer_settings layer;
   struct vg_farfield_row farfield;
-  size_t n_source, cap_source, n_patch, cap_patch;
+  size_t n_source, cap_source, n_patch, cap_patch, n_layer, cap_layer;
   struct vg_source *source;        /* [n_source] owned */
   struct vg_patch_row *patch;      /* [n_patch] owned */
+  struct vg_layer_row *layer_row;  /* [n_layer] owned */
 };
 #define VG_SETTINGS_INIT { .n_source = 0 } /* releasing this is a no-op */
 
 enum vg_param_type {
   VG_PARAM_REAL,   /* double; "-" is NAN where `optional` */
-  VG_PARAM_COUNT,  /* int64_t */
+  VG_PARAM_COUNT,  /* int64_t; "-" is VG_COUNT_NONE where `optional` */
   VG_PARAM_ID,     /* int32_t; "-" is VG_BC_NONE where `optional` */
   VG_PARAM_FLAG,   /* int: yes or no */
   VG_PARAM_WORD,   /* int: position in words[] */
@@ -72,8 +108,8 @@ struct vg_param {
   const char *help;
 };
 
-enum vg_table_kind { VG_TABLE_FARFIELD, VG_TABLE_PATCHES, VG_TABLE_SOURCES,
-                     VG_TABLE_N };
+enum vg_table_kind { VG_TABLE_FARFIELD, VG_TABLE_PATCHES, VG_TABLE_LAYERS,
+                     VG_TABLE_SOURCES, VG_TABLE_N };
 
 struct vg_table {
   const char *name, *help;
@@ -115,7 +151,7 @@ vg_status vg_param_set(const struct vg_param *p, void *base, const char *text,
                        size_t len, struct vg_error *err);
 
 /** The value as text that vg_param_set reads back to the same value.
- * out[size] should hold VG_WRITE_MAX * 2 + 3 bytes. */
+ * out[size] should hold VG_LIST_MAX * 2 + 3 bytes. */
 void vg_param_format(const struct vg_param *p, const void *base, char *out,
                      size_t size);
 
@@ -128,5 +164,13 @@ const char *vg_nearest_name(const char *text, size_t n,
 /** The settings as core understands them. */
 struct vg_sizing_options vg_settings_sizing(const struct vg_settings *s);
 struct vg_farfield vg_settings_farfield(const struct vg_settings *s);
+
+/** Settle what is left to the program: the files to write. */
+void vg_settings_write(struct vg_settings *s);
+
+/** Of settings that say the same in two ways (a first height and y+, a ratio
+ * and its rates) the one that was set last holds: forget the others.
+ * @param set  the setting that has just been set */
+void vg_settings_override(struct vg_settings *s, const struct vg_param *set);
 
 #endif

@@ -125,6 +125,8 @@ static void everything_survives_a_round_trip(void **state)
   struct vg_farfield_row far = { VG_DOMAIN_BOX, 12.5, 0, 3, { NAN, NAN, NAN },
                                  { -1, -2, -3 }, { 1, 2, 1e9 } };
   struct vg_patch_row patch = { -7, 4000, "left wing" };
+  struct vg_layer_row layer = { -7, VG_ANSWER_YES, 1e-5, 1.15, NAN, NAN, NAN,
+                                30, 2, 0.125, 0, 98, 99.9, NAN };
 
   (void)state;
   vg_settings_default(&s);
@@ -144,6 +146,10 @@ static void everything_survives_a_round_trip(void **state)
   patch.bc = VG_BC_NONE;
   strcpy(patch.name, "-");
   vg_settings_add(&s, VG_TABLE_PATCHES, &patch, NULL);
+  s.layer = (struct vg_layer_settings){ VG_ANSWER_YES, 1e-6, NAN, 0.15, 0.02,
+    30, 40, 5, 2.5, 1.3, 0, 5e6, 1.5, "1-3,-7", "8 ,9", 40, 0.3, 0.8, 7, 1, 0,
+    95, NAN, 1 };
+  vg_settings_add(&s, VG_TABLE_LAYERS, &layer, NULL);
   for (int kind = VG_SOURCE_VGRID_NODE; kind <= VG_SOURCE_CYLINDER; kind++)
     add_source(&s, kind);
   round_trip(&s, 0);
@@ -213,6 +219,15 @@ static void messages_name_line_and_remedy(void **state)
   refuse("t\nhmin hmax\n2 1\n", "hmin 2 is larger than hmax 1");
   refuse("t\nwrite\n\"open\n", "run.deck:3: a quote is not closed");
   refuse("t\nwrite\n\001\n", "control character");
+  refuse("t\nfirst y_plus\n1 1\n", "first and y_plus are both given");
+  refuse("t\ny_plus\n1\n", "y_plus needs reynolds");
+  refuse("t\nreynolds\n1e6\n", "reference_length belong together");
+  refuse("t\nratio rate1\n1.2 0.2\n", "ratio and rates are both given");
+  refuse("t\nlayer_cap\n0.5\n", "layer_cap is 0.5; it must be at least 1");
+  refuse("t\nlayers\nyse\n", "run.deck:3: 'yse' is not a name known in "
+         "layers");
+  refuse("t\nlayers\nyes\n\nlayers\nno\n", "'layers' was set before (line "
+         "3)");
 }
 
 static void tables_are_checked_too(void **state)
@@ -238,6 +253,45 @@ static void tables_are_checked_too(void **state)
          "set kind to box");
   refuse("t\npatches\nid bc\n1 4\n2 3\n1 5\n", "patch 1 is listed twice");
   refuse("t\npatches\nid name\n1 a b\n", "3 values for 2 names");
+  refuse("t\nlayers\nid\n3\n3\n", "layers: patch 3 is listed twice");
+  refuse("t\nlayers\nid first y_plus\n3 1 1\n", "both first and y_plus");
+  refuse("t\nlayers\nid ratio rate2\n3 1.1 0\n", "both ratio and rates");
+  refuse("t\nlayers\nid y_plus\n3 1\n", "needs reynolds");
+  refuse("t\nlayers\nid min_full\n3 101\n", "at most 100");
+  refuse("t\nlayers\nid count\n3 251\n", "at most 250");
+}
+
+/* `layers` is a setting, and a table of the same name. */
+static void layers_are_a_setting_and_a_table(void **state)
+{
+  struct vg_settings s = VG_SETTINGS_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+
+  (void)state;
+  if (parse("t\nlayers\nyes\n\nlayers\nid grow first min_full\n"
+            "3 auto 1e-5 98\n4 no - -\n\n"
+            "walls y_plus reynolds reference_length\n3-12,15 1 5e6 2.5\n",
+            &s, &err) < 0)
+    fail_msg("%s", err.text);
+  assert_int_equal(s.layer.grow, VG_ANSWER_YES);
+  assert_int_equal(s.n_layer, 2);
+  assert_int_equal(s.layer_row[0].grow, VG_ANSWER_AUTO);
+  assert_true(s.layer_row[0].first == 1e-5 && s.layer_row[0].min_full == 98);
+  assert_true(isnan(s.layer_row[0].ratio));
+  assert_int_equal(s.layer_row[1].grow, VG_ANSWER_NO);
+  assert_true(isnan(s.layer_row[1].first));
+  assert_int_equal(s.layer_row[1].count, VG_COUNT_NONE);
+  assert_string_equal(s.layer.walls, "3-12,15");
+  assert_true(s.layer.y_plus == 1 && s.layer.length == 2.5);
+  round_trip(&s, 1);
+  vg_settings_release(&s);
+  if (parse("t\ncells layers first\nmixed no 0.1\n", &s, &err) < 0)
+    fail_msg("%s", err.text);
+  assert_int_equal(s.layer.grow, VG_ANSWER_NO);
+  assert_string_equal(s.write, "auto");
+  vg_settings_write(&s);
+  assert_string_equal(s.write, "b8.ugrid");
+  vg_settings_release(&s);
 }
 
 static void failure_leaves_the_settings_alone(void **state)
@@ -282,6 +336,7 @@ int main(void)
     cmocka_unit_test(blocks_come_in_any_order),
     cmocka_unit_test(messages_name_line_and_remedy),
     cmocka_unit_test(tables_are_checked_too),
+    cmocka_unit_test(layers_are_a_setting_and_a_table),
     cmocka_unit_test(failure_leaves_the_settings_alone),
     cmocka_unit_test(patches_come_from_a_mesh),
   };
