@@ -1,5 +1,4 @@
-/* Orientation, index base and patches of meshes from files. The faces of the
- * cells, inward, are those of formats.md 2.3. */
+/* Orientation, index base and patches of meshes from files. */
 #include "io/convention.h"
 
 #include <float.h>
@@ -8,21 +7,7 @@
 
 #include "base/memory.h"
 #include "core/predicates.h"
-
-/* Inward faces, 0-based; a triangle repeats its last node. */
-static const unsigned char tet_face[4][4] = {
-  {1, 3, 2, 2}, {0, 2, 3, 3}, {0, 3, 1, 1}, {0, 1, 2, 2}
-};
-static const unsigned char pyr_face[5][4] = {
-  {0, 1, 2, 2}, {1, 4, 2, 2}, {2, 4, 3, 3}, {0, 2, 3, 3}, {0, 3, 4, 1}
-};
-static const unsigned char pri_face[5][4] = {
-  {0, 3, 4, 1}, {1, 4, 5, 2}, {0, 2, 5, 3}, {0, 1, 2, 2}, {3, 5, 4, 4}
-};
-static const unsigned char hex_face[6][4] = {
-  {0, 3, 7, 4}, {1, 5, 6, 2}, {0, 4, 5, 1}, {2, 6, 7, 3}, {0, 1, 2, 3},
-  {4, 7, 6, 5}
-};
+#include "io/cell_faces.h"
 
 vg_status vg_check_points(const char *path, size_t n, const double (*p)[3],
                           struct vg_error *err)
@@ -244,18 +229,18 @@ static size_t turn_cells(struct vg_mesh *m)
     }
   }
   for (size_t i = 0; i < m->n_pyr; i++)
-    if (volume6(m, m->pyr[i], pyr_face, 5) < 0) {
+    if (volume6(m, m->pyr[i], vg_pyr_face, 5) < 0) {
       swap(m->pyr[i], 1, 3);
       n++;
     }
   for (size_t i = 0; i < m->n_pri; i++)
-    if (volume6(m, m->pri[i], pri_face, 5) < 0) {
+    if (volume6(m, m->pri[i], vg_pri_face, 5) < 0) {
       swap(m->pri[i], 1, 2);
       swap(m->pri[i], 4, 5);
       n++;
     }
   for (size_t i = 0; i < m->n_hex; i++)
-    if (volume6(m, m->hex[i], hex_face, 6) < 0) {
+    if (volume6(m, m->hex[i], vg_hex_face, 6) < 0) {
       swap(m->hex[i], 1, 3);
       swap(m->hex[i], 5, 7);
       n++;
@@ -418,13 +403,13 @@ vg_status vg_mesh_turn(struct vg_mesh *m, struct vg_turned *turned,
     st = face_build(&t, m, err);
     if (st < 0) return st;
     result.cell = turn_cells(m);
-    meet_cells(m, &t, m->n_tet, (const uint32_t *)m->tet, 4, tet_face, 4,
+    meet_cells(m, &t, m->n_tet, (const uint32_t *)m->tet, 4, vg_tet_face, 4,
                &result);
-    meet_cells(m, &t, m->n_pyr, (const uint32_t *)m->pyr, 5, pyr_face, 5,
+    meet_cells(m, &t, m->n_pyr, (const uint32_t *)m->pyr, 5, vg_pyr_face, 5,
                &result);
-    meet_cells(m, &t, m->n_pri, (const uint32_t *)m->pri, 6, pri_face, 5,
+    meet_cells(m, &t, m->n_pri, (const uint32_t *)m->pri, 6, vg_pri_face, 5,
                &result);
-    meet_cells(m, &t, m->n_hex, (const uint32_t *)m->hex, 8, hex_face, 6,
+    meet_cells(m, &t, m->n_hex, (const uint32_t *)m->hex, 8, vg_hex_face, 6,
                &result);
     for (size_t f = 0; f < m->n_tri + m->n_quad; f++)
       result.loose_face += !t.found[f];

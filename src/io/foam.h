@@ -5,7 +5,7 @@
  *   CASE/system/{controlDict,fvSchemes,fvSolution}  only where absent: the
  *                  least that OpenFOAM's mesh tools (checkMesh, ...) ask for
  *   CASE/NAME.foam  empty, what ParaView opens; NAME is the last part of CASE
- *                  up to its first dot
+ *                  without ".openfoam"
  * The word in a write list is "foam" (binary) or "foam-ascii"; the case of
  * project STEM is STEM.openfoam (VG_FOAM_SUFFIX).
  *
@@ -45,8 +45,8 @@ vg_status vg_foam_write(const char *case_dir, const struct vg_mesh *m,
 vg_status vg_foam_place(const char *from_case, const char *to_case,
                         struct vg_error *err);
 
-/** Remove the files that vg_foam_write makes, and folders that this leaves
- * empty. Absent ones are no error. */
+/** Remove a case that was just made: the files that vg_foam_write makes, and
+ * folders that this leaves empty. Absent ones are no error. */
 void vg_foam_remove(const char *case_dir);
 
 /** OpenFOAM's type of a patch ("wall", "symmetryPlane", "symmetry", "patch")
