@@ -1,0 +1,236 @@
+/* Are the cells that columns imply fit to be written? Declared in
+ * layers/work.h. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "layers/vector.h"
+#include "layers/work.h"
+
+#define GRAIN 1024
+#define FLAT 0.01          /* least sine between a column and a layer */
+#define SHRUNK 0.04        /* least area of a layer, of that at the wall */
+#define LOWER 0.85         /* of the room, when a cell is bad */
+
+/* The face of one call: three columns by rising number, levels ascending. */
+struct stack {
+  const struct vg_column *c[3];
+  int order[3];                         /* corners by rising column */
+  double d[3][VG_LEVELS_MAX + 1];
+  double x[3][VG_LEVELS_MAX + 1][3];
+};
+
+struct search {
+  struct vg_layer_work *w;
+  const uint8_t *moved;
+  int16_t *level;           /* [n_face] first bad level, -1: none */
+  uint8_t *blame;           /* [n_face] bit k: corner k */
+  struct stack *stack;      /* [worker] */
+};
+
+static int positive(double det, double area2, const double up[3])
+{
+  return det > 0 && det * det >= FLAT * FLAT * area2 * vg_dot(up, up);
+}
+
+static int same_point(const struct stack *s, int a, int la, int b, int lb)
+{
+  return la == 0 && lb == 0 && s->c[a]->root == s->c[b]->root;
+}
+
+/* Tetrahedron (p at l, p at l + 1, q, r at their levels), where q and r
+ * follow p around the face. Those with a repeated point vanish. */
+static int lifted(const struct stack *s, int p, int l, int lq, int lr)
+{
+  int q = (p + 1) % 3, r = (p + 2) % 3;
+  const double *o = s->x[p][l];
+  double a[3], b[3], up[3], n[3];
+
+  if (same_point(s, p, l, q, lq) || same_point(s, p, l, r, lr) ||
+      same_point(s, q, lq, r, lr)) return 1;
+  vg_sub(s->x[q][lq], o, a);
+  vg_sub(s->x[r][lr], o, b);
+  vg_sub(s->x[p][l + 1], o, up);
+  vg_cross(a, b, n);
+  return positive(vg_dot(n, up), vg_dot(n, n), up);
+}
+
+/* All that is raised from level l, by the lift rule. */
+static int lifts(const struct stack *s, int l)
+{
+  int at[3];
+
+  for (int k = 0; k < 3; k++) at[k] = l < s->c[k]->n ? l : s->c[k]->n;
+  for (int i = 0; i < 3; i++) {
+    int p = s->order[i], q = (p + 1) % 3, r = (p + 2) % 3;
+
+    if (l >= s->c[p]->n) continue;
+    if (!lifted(s, p, l, at[q], at[r])) return 0;
+    at[p]++;
+  }
+  return 1;
+}
+
+static void area(const struct stack *s, int l, double n[3])
+{
+  double a[3], b[3];
+
+  vg_sub(s->x[1][l], s->x[0][l], a);
+  vg_sub(s->x[2][l], s->x[0][l], b);
+  vg_cross(a, b, n);
+}
+
+/* Corners of the prism between l and l + 1; returns those that are bad. */
+static int corners(const struct stack *s, int l, const double low[3],
+                   const double high[3])
+{
+  double a = vg_dot(low, low), b = vg_dot(high, high);
+  int bad = 0;
+
+  for (int k = 0; k < 3; k++) {
+    double up[3];
+
+    vg_sub(s->x[k][l + 1], s->x[k][l], up);
+    if (!positive(vg_dot(low, up), a, up) ||
+        !positive(vg_dot(high, up), b, up)) bad |= 1 << k;
+  }
+  return bad;
+}
+
+/* The pyramid over the quadrilateral of the two columns that rise from l,
+ * other than corner k: all four of its corner volumes. */
+static int pyramid(const struct stack *s, int l, int k)
+{
+  int p = (k + 1) % 3, q = (k + 2) % 3;
+  const double *apex = s->x[k][s->c[k]->n];
+  const double *ring[4] = { s->x[p][l], s->x[q][l], s->x[q][l + 1],
+                            s->x[p][l + 1] };
+
+  if (l == 0) return 1;     /* roots may coincide; lifts() covers those */
+  for (int i = 0; i < 4; i++)
+    if (!(vg_det(ring[i], ring[(i + 1) % 4], apex, ring[(i + 3) % 4]) > 0))
+      return 0;
+  return 1;
+}
+
+static int is_virtual(const struct stack *s)
+{
+  return s->c[0]->root == s->c[1]->root || s->c[1]->root == s->c[2]->root ||
+         s->c[2]->root == s->c[0]->root;
+}
+
+/* First level from which a bad cell rises, or -1. */
+static int first_bad(const struct stack *s, uint8_t *blame)
+{
+  int whole = s->c[0]->n, most = whole, from = is_virtual(s);
+  double base[3], low[3], high[3];
+
+  for (int k = 1; k < 3; k++) {
+    if (s->c[k]->n < whole) whole = s->c[k]->n;
+    if (s->c[k]->n > most) most = s->c[k]->n;
+  }
+  area(s, from <= whole ? from : 0, base);
+  memcpy(low, base, sizeof low);
+  *blame = 7;
+  for (int l = 0; l < whole; l++) {
+    int bad = 0;
+
+    if (l >= from) {
+      area(s, l + 1, high);
+      bad = corners(s, l, low, high);
+      if (vg_dot(high, base) < SHRUNK * vg_dot(base, base)) bad = 7;
+      memcpy(low, high, sizeof low);
+    }
+    if (!bad && !lifts(s, l)) bad = 7;
+    if (!bad) continue;
+    if (l == 0) *blame = (uint8_t)bad;
+    return l;
+  }
+  for (int l = whole; l < most; l++) {
+    if (!lifts(s, l)) return l;
+    for (int k = 0; k < 3; k++)
+      if (s->c[k]->n == l && s->c[(k + 1) % 3]->n > l &&
+          s->c[(k + 2) % 3]->n > l && !pyramid(s, l, k)) return l;
+  }
+  return -1;
+}
+
+static void load(struct stack *s, const struct vg_layer_work *w, size_t f)
+{
+  const uint32_t *face = w->c->face[f];
+
+  for (int k = 0; k < 3; k++) {
+    s->c[k] = &w->c->column[face[k]];
+    s->order[k] = k;
+    vg_column_points(w->c, w->m, face[k], s->d[k], s->x[k]);
+  }
+  for (int pass = 0; pass < 2; pass++)
+    for (int k = 0; k < 2; k++)
+      if (face[s->order[k]] > face[s->order[k + 1]]) {
+        int swap = s->order[k];
+
+        s->order[k] = s->order[k + 1];
+        s->order[k + 1] = swap;
+      }
+}
+
+static void search_body(void *context, size_t first, size_t end, int worker)
+{
+  struct search *q = context;
+  struct stack *s = &q->stack[worker];
+
+  for (size_t f = first; f < end; f++) {
+    const uint32_t *c = q->w->c->face[f];
+
+    q->level[f] = -1;
+    if (q->moved && !q->moved[c[0]] && !q->moved[c[1]] && !q->moved[c[2]])
+      continue;
+    load(s, q->w, f);
+    q->level[f] = (int16_t)first_bad(s, &q->blame[f]);
+  }
+}
+
+/* A cell that fails at some height will fail there however many layers lead
+ * up to it; one on the wall itself leaves no room at all. */
+static void lower(struct vg_layer_work *w, uint32_t i, int level)
+{
+  const struct vg_column *c = &w->c->column[i];
+  double d[VG_LEVELS_MAX + 1], limit = 0;
+
+  if (level > 0) {
+    int top = level + 1 < c->n ? level + 1 : c->n;
+
+    vg_law_heights(&w->c->law[c->law], c->cap, top, d);
+    limit = LOWER * w->room[i] < d[top] ? LOWER * w->room[i] : d[top];
+  }
+  vg_heights_lower(w, i, limit, VG_CAUSE_CELL);
+}
+
+vg_status vg_cells_lower(struct vg_layer_work *w, const uint8_t *moved,
+                         size_t *n_bad, struct vg_error *err)
+{
+  size_t n = w->c->n_face;
+  int threads = w->o->threads > 0 ? w->o->threads : vg_cores();
+  struct search q = { w, moved, vg_alloc(n, sizeof *q.level), vg_alloc(n, 1),
+                      vg_alloc((size_t)threads, sizeof *q.stack) };
+  vg_status st = VG_OK;
+
+  *n_bad = 0;
+  if (!q.level || !q.blame || !q.stack) {
+    st = vg_fail_memory(err, "the layers");
+    goto done;
+  }
+  vg_parallel_for(threads, n, GRAIN, search_body, &q);
+  for (size_t f = 0; f < n; f++) {
+    if (q.level[f] < 0) continue;
+    ++*n_bad;
+    for (int k = 0; k < 3; k++)
+      if (q.blame[f] >> k & 1) lower(w, w->c->face[f][k], q.level[f]);
+  }
+done:
+  free(q.level);
+  free(q.blame);
+  free(q.stack);
+  return st;
+}

@@ -1,0 +1,441 @@
+/* Marching directions: normal to the wall where it is smooth, in view of all
+ * faces at edges and corners, and bent apart where columns would converge.
+ * Declared in layers/work.h. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "layers/gram.h"
+#include "layers/vector.h"
+#include "layers/work.h"
+
+#define GRAIN 2048
+#define SMOOTH_WALL 0.95   /* least cosine at which the mean normal will do */
+#define VIEW_KEPT 0.6      /* share of the first view that smoothing leaves */
+#define CONVERGE 0.6       /* an edge that would shrink to less is bent apart */
+#define SAME_PLANE 0.05    /* sine between two patches that are as good as one */
+#define BAND 2.5           /* heights that bending reaches to */
+
+struct loop {
+  struct vg_layer_work *w;
+  double (*scratch)[3];     /* [worker][max_valence] */
+  double (*from)[3], (*to)[3];
+  const uint32_t *list;     /* columns to treat, NULL: all */
+  double hold;              /* pull back to root_dir */
+};
+
+/* Slide normals at a column; their number. */
+static int slide_normals(const struct vg_layer_work *w, size_t i,
+                         double n[2][3])
+{
+  const struct vg_column *c = &w->c->column[i];
+  int k = 0;
+
+  for (int s = 0; s < 2; s++)
+    for (size_t j = 0; j < w->n_slide && c->slide[s] != VG_NO_INDEX; j++)
+      if (w->slide[j].patch == c->slide[s])
+        vg_slide_normal(&w->slide[j], w->m, c->root, n[k++]);
+  return k;
+}
+
+static void remove_part(double v[3], const double n[3])
+{
+  double d = vg_dot(v, n);
+
+  for (int k = 0; k < 3; k++)
+    v[k] = fabs(n[k]) == 1 ? 0 : v[k] - d * n[k];
+}
+
+/* Into the slide plane, or along the curve of two: zero components stay zero
+ * to the last bit for planes normal to an axis. */
+static void constrain(int n_slide, double n[2][3], double v[3])
+{
+  double line[3];
+
+  if (n_slide) remove_part(v, n[0]);
+  if (n_slide < 2) return;
+  vg_cross(n[0], n[1], line);
+  if (vg_unit(line) < SAME_PLANE) return;
+  {
+    double d = vg_dot(v, line);
+
+    for (int k = 0; k < 3; k++) v[k] = line[k] == 0 ? 0 : d * line[k];
+  }
+}
+
+static int real_normals(const struct vg_layer_work *w, size_t i,
+                        double (*n)[3])
+{
+  int k = 0;
+
+  for (uint32_t j = w->t.first[i]; j < w->t.first[i + 1]; j++) {
+    uint32_t f = w->t.corner[j] / 3;
+
+    if (w->c->face_tri[f] != VG_NO_INDEX)
+      memcpy(n[k++], w->normal[f], sizeof *n);
+  }
+  return k;
+}
+
+static double least_view(int k, const double (*n)[3], const double v[3])
+{
+  double least = 1;
+
+  for (int i = 0; i < k; i++) {
+    double d = vg_dot(n[i], v);
+
+    if (d < least) least = d;
+  }
+  return least;
+}
+
+/* Angle between two edges without libm's acos: the chord 2 sin(a / 2) of unit
+ * vectors serves as weight just as well. */
+static double corner_weight(const struct vg_mesh *m, const uint32_t *tri,
+                            int k)
+{
+  double a[3], b[3];
+
+  vg_sub(m->point[tri[(k + 1) % 3]], m->point[tri[k]], a);
+  vg_sub(m->point[tri[(k + 2) % 3]], m->point[tri[k]], b);
+  vg_unit(a);
+  vg_unit(b);
+  return vg_distance(a, b);
+}
+
+static void mean_normal(const struct vg_layer_work *w, size_t i, double v[3])
+{
+  memset(v, 0, 3 * sizeof *v);
+  for (uint32_t j = w->t.first[i]; j < w->t.first[i + 1]; j++) {
+    uint32_t f = w->t.corner[j] / 3, tri = w->c->face_tri[f];
+    double a;
+
+    if (tri == VG_NO_INDEX) continue;
+    a = corner_weight(w->m, w->m->tri[tri], (int)(w->t.corner[j] % 3));
+    for (int k = 0; k < 3; k++) v[k] += a * w->normal[f][k];
+  }
+}
+
+static void first_direction(struct vg_layer_work *w, size_t i,
+                            double (*n)[3])
+{
+  struct vg_column *c = &w->c->column[i];
+  double slide[2][3], v[3], best[3];
+  int n_slide = slide_normals(w, i, slide), k = real_normals(w, i, n);
+
+  if (w->t.preset[i]) memcpy(v, c->dir, sizeof v);
+  else mean_normal(w, i, v);
+  constrain(n_slide, slide, v);
+  if (!(vg_unit(v) > 0)) v[0] = v[1] = v[2] = 0;
+  w->view[i] = least_view(k, n, v);
+  if (!w->t.preset[i] && w->view[i] < SMOOTH_WALL) {
+    for (int j = 0; j < k; j++) constrain(n_slide, slide, n[j]);
+    if (vg_most_normal(k, n, best)) {
+      constrain(n_slide, slide, best);
+      vg_unit(best);
+      memcpy(v, best, sizeof v);
+      k = real_normals(w, i, n);
+      w->view[i] = least_view(k, n, v);
+    }
+  }
+  if (!(w->view[i] >= VG_VIEW_MIN)) w->view[i] = 0;
+  memcpy(c->dir, v, sizeof v);
+  memcpy(w->root_dir[i], v, sizeof v);
+}
+
+static void first_body(void *context, size_t first, size_t end, int worker)
+{
+  struct loop *l = context;
+
+  for (size_t i = first; i < end; i++)
+    first_direction(l->w, i,
+                    l->scratch + (size_t)worker * l->w->max_valence);
+}
+
+static void normal_body(void *context, size_t first, size_t end, int worker)
+{
+  struct vg_layer_work *w = ((struct loop *)context)->w;
+
+  (void)worker;
+  for (size_t f = first; f < end; f++) {
+    const uint32_t tri = w->c->face_tri[f];
+    double a[3], b[3];
+
+    if (tri == VG_NO_INDEX) {
+      memset(w->normal[f], 0, sizeof w->normal[f]);
+      continue;
+    }
+    vg_sub(w->m->point[w->m->tri[tri][1]], w->m->point[w->m->tri[tri][0]], a);
+    vg_sub(w->m->point[w->m->tri[tri][2]], w->m->point[w->m->tri[tri][0]], b);
+    vg_cross(a, b, w->normal[f]);
+    vg_unit(w->normal[f]);
+  }
+}
+
+static vg_status scratch_new(struct vg_layer_work *w, struct loop *l,
+                             struct vg_error *err)
+{
+  int threads = w->o->threads > 0 ? w->o->threads : vg_cores();
+
+  l->w = w;
+  l->scratch = vg_alloc((size_t)threads * w->max_valence, sizeof *l->scratch);
+  return l->scratch ? VG_OK : vg_fail_memory(err, "the marching directions");
+}
+
+vg_status vg_directions_first(struct vg_layer_work *w, struct vg_error *err)
+{
+  struct loop l = { 0 };
+  vg_status st;
+
+  for (size_t i = 0; i < w->c->n_column; i++)
+    if (w->t.first[i + 1] - w->t.first[i] > w->max_valence)
+      w->max_valence = w->t.first[i + 1] - w->t.first[i];
+  VG_TRY(scratch_new(w, &l, err));
+  vg_parallel_for(w->o->threads, w->c->n_face, GRAIN, normal_body, &l);
+  vg_parallel_for(w->o->threads, w->c->n_column, GRAIN, first_body, &l);
+done:
+  free(l.scratch);
+  return st;
+}
+
+double vg_edge_change(const struct vg_layer_work *w, uint32_t i, uint32_t j,
+                      double h_i, double h_j)
+{
+  const struct vg_column *a = &w->c->column[i], *b = &w->c->column[j];
+  double e[3], l, sum = 0;
+
+  vg_sub(w->m->point[b->root], w->m->point[a->root], e);
+  l = vg_dot(e, e);
+  if (!(l > 0)) return 0;
+  for (int k = 0; k < 3; k++)
+    sum += (h_j * b->dir[k] - h_i * a->dir[k]) * e[k];
+  return sum / l;
+}
+
+/* Distance from the root along the unit vector v to its triangles, for a
+ * step of length 1: how far a small step gets away from the wall. */
+static double gain(const struct vg_layer_work *w, size_t i, const double v[3])
+{
+  double least = 1;
+
+  for (uint32_t j = w->t.first[i]; j < w->t.first[i + 1]; j++) {
+    uint32_t f = w->t.corner[j] / 3, tri = w->c->face_tri[f];
+    int k = (int)(w->t.corner[j] % 3);
+    double edge[2][3], in[3], d, side[2];
+
+    if (tri == VG_NO_INDEX) continue;
+    d = vg_dot(v, w->normal[f]);
+    for (int s = 0; s < 2; s++) {
+      vg_sub(w->m->point[w->m->tri[tri][(k + 1 + s) % 3]],
+             w->m->point[w->m->tri[tri][k]], edge[s]);
+      vg_unit(edge[s]);
+    }
+    vg_cross(w->normal[f], edge[0], in);
+    side[0] = vg_dot(v, in);
+    vg_cross(edge[1], w->normal[f], in);
+    side[1] = vg_dot(v, in);
+    if (side[0] < 0 || side[1] < 0) {   /* beside the triangle: its edges */
+      d = 1;
+      for (int s = 0; s < 2; s++) {
+        double along = vg_dot(v, edge[s]);
+        double off = along > 0 ? sqrt(fmax(0, 1 - along * along)) : 1;
+
+        if (off < d) d = off;
+      }
+    }
+    if (d < least) least = d;
+  }
+  return least;
+}
+
+static void scale_body(void *context, size_t first, size_t end, int worker)
+{
+  struct vg_layer_work *w = ((struct loop *)context)->w;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++) {
+    double d = gain(w, i, w->c->column[i].dir);
+
+    if (d * VG_FACTOR_MAX < 1) w->view[i] = 0;
+    else
+      for (int k = 0; k < 3; k++) w->c->column[i].dir[k] /= d;
+  }
+}
+
+vg_status vg_directions_scale(struct vg_layer_work *w, struct vg_error *err)
+{
+  struct loop l = { .w = w };
+
+  (void)err;
+  vg_parallel_for(w->o->threads, w->c->n_column, GRAIN, scale_body, &l);
+  return VG_OK;
+}
+
+/* Smoothing ----------------------------------------------------------------
+ *
+ * Where columns converge (a concave corner, a wall at an acute angle to a
+ * slide plane), all directions within BAND heights are relaxed towards the
+ * mean of their neighbours, so that the turn is spread evenly over them. */
+
+static uint32_t *converging(const struct vg_layer_work *w, double *reach,
+                            uint32_t *queue, size_t *n_queue)
+{
+  for (uint32_t i = 0; i < w->c->n_column; i++)
+    for (uint32_t j = w->t.near_first[i]; j < w->t.near_first[i + 1]; j++) {
+      uint32_t o = w->t.near[j];
+      double h = w->wanted[i] > w->wanted[o] ? w->wanted[i] : w->wanted[o];
+
+      if (1 + vg_edge_change(w, i, o, h, h) < CONVERGE && BAND * h > reach[i])
+        reach[i] = BAND * h;
+    }
+  for (uint32_t i = 0; i < w->c->n_column; i++)
+    if (reach[i] > 0) queue[(*n_queue)++] = i;
+  return queue;
+}
+
+/* reach[i] = max over paths of what is left of the reach at their start: the
+ * least fixed point, whatever the order. Rings of the queue. */
+static vg_status spread(const struct vg_layer_work *w, double *reach,
+                        struct vg_error *err)
+{
+  size_t n = w->c->n_column, n_now = 0, n_next;
+  uint32_t *now = vg_alloc(n, sizeof *now), *next = vg_alloc(n, sizeof *next);
+  uint8_t *queued = vg_calloc(n, 1);
+  vg_status st = VG_OK;
+
+  if (!now || !next || !queued) {
+    st = vg_fail_memory(err, "the smoothing");
+    goto done;
+  }
+  converging(w, reach, now, &n_now);
+  for (; n_now; n_now = n_next) {
+    uint32_t *swap = now;
+
+    n_next = 0;
+    for (size_t k = 0; k < n_now; k++) {
+      uint32_t i = now[k];
+
+      queued[i] = 0;
+      for (uint32_t j = w->t.near_first[i]; j < w->t.near_first[i + 1]; j++) {
+        uint32_t o = w->t.near[j];
+        double left = reach[i] -
+          vg_distance(w->m->point[w->c->column[i].root],
+                      w->m->point[w->c->column[o].root]);
+
+        if (!(left > reach[o])) continue;
+        reach[o] = left;
+        if (!queued[o]) queued[o] = 1, next[n_next++] = o;
+      }
+    }
+    now = next;
+    next = swap;
+  }
+done:
+  free(now);
+  free(next);
+  free(queued);
+  return st;
+}
+
+static void mean_of_near(const struct vg_layer_work *w, size_t i,
+                         double (*from)[3], double v[3])
+{
+  const double *root = w->m->point[w->c->column[i].root];
+
+  memset(v, 0, 3 * sizeof *v);
+  for (uint32_t j = w->t.near_first[i]; j < w->t.near_first[i + 1]; j++) {
+    uint32_t o = w->t.near[j];
+    double d = vg_distance(root, w->m->point[w->c->column[o].root]);
+
+    if (!(d > 0)) continue;   /* another column of the same fan */
+    for (int k = 0; k < 3; k++) v[k] += from[o][k] / d;
+  }
+}
+
+/* One Jacobi step; where the mean loses the faces from view, half of the way
+ * to it, and so on. */
+static void relax(const struct loop *l, size_t i, double (*n)[3])
+{
+  const struct vg_layer_work *w = l->w;
+  double slide[2][3], mean[3], step = 1 - l->hold, v[3];
+  int n_slide = slide_normals(w, i, slide), k;
+
+  memcpy(l->to[i], l->from[i], sizeof *l->to);
+  if (w->t.preset[i] || w->view[i] == 0) return;
+  mean_of_near(w, i, l->from, mean);
+  if (!(vg_unit(mean) > 0)) return;
+  k = real_normals(w, i, n);
+  for (int try = 0; try < 4; try++, step *= 0.5) {
+    for (int c = 0; c < 3; c++)
+      v[c] = step * mean[c] + (1 - step) * w->root_dir[i][c];
+    constrain(n_slide, slide, v);
+    if (!(vg_unit(v) > 0)) continue;
+    if (least_view(k, n, v) < VIEW_KEPT * w->view[i]) continue;
+    memcpy(l->to[i], v, sizeof v);
+    return;
+  }
+}
+
+static void relax_body(void *context, size_t first, size_t end, int worker)
+{
+  struct loop *l = context;
+
+  for (size_t k = first; k < end; k++)
+    relax(l, l->list[k], l->scratch + (size_t)worker * l->w->max_valence);
+}
+
+static vg_status sweeps(struct vg_layer_work *w, const uint32_t *list,
+                        size_t n, struct vg_error *err)
+{
+  size_t n_column = w->c->n_column;
+  struct loop l = { .list = list, .hold = 0.01 };
+  double (*swap)[3];
+  vg_status st;
+
+  l.from = vg_alloc(n_column, sizeof *l.from);
+  l.to = vg_alloc(n_column, sizeof *l.to);
+  VG_TRY(scratch_new(w, &l, err));
+  if (!l.from || !l.to) {
+    st = vg_fail_memory(err, "the smoothing");
+    goto done;
+  }
+  for (size_t i = 0; i < n_column; i++)
+    memcpy(l.from[i], w->c->column[i].dir, sizeof *l.from);
+  memcpy(l.to, l.from, n_column * sizeof *l.to);
+  for (int s = 0; s < w->o->smooth; s++) {
+    vg_parallel_for(w->o->threads, n, GRAIN / 4, relax_body, &l);
+    swap = l.from;
+    l.from = l.to;
+    l.to = swap;
+  }
+  for (size_t i = 0; i < n_column; i++)
+    memcpy(w->c->column[i].dir, l.from[i], sizeof *l.from);
+done:
+  free(l.from);
+  free(l.to);
+  free(l.scratch);
+  return st;
+}
+
+vg_status vg_directions_smooth(struct vg_layer_work *w, struct vg_error *err)
+{
+  size_t n = 0;
+  double *reach = vg_calloc(w->c->n_column, sizeof *reach);
+  uint32_t *list = vg_alloc(w->c->n_column, sizeof *list);
+  vg_status st = VG_OK;
+
+  if (!reach || !list) {
+    st = vg_fail_memory(err, "the smoothing");
+    goto done;
+  }
+  VG_TRY(spread(w, reach, err));
+  for (uint32_t i = 0; i < w->c->n_column; i++)
+    if (reach[i] > 0) list[n++] = i;
+  VG_TRY(sweeps(w, list, n, err));
+done:
+  free(reach);
+  free(list);
+  return st;
+}

@@ -1,0 +1,374 @@
+#include "layers/layers.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "base/memory.h"
+#include "core/surface_check.h"
+#include "layers/work.h"
+
+#define ROUNDS_MAX 100
+#define GENTLE 40          /* rounds in which room is lowered by a share */
+#define SHARE 0.75
+
+void vg_layer_front_release(struct vg_layer_front *f)
+{
+  vg_mesh_release(&f->mesh);
+  free(f->column);
+  free(f->point);
+  free(f->face);
+  f->column = f->point = f->face = NULL;
+}
+
+void vg_layers_release(struct vg_layers *l)
+{
+  vg_columns_release(&l->columns);
+  vg_layer_front_release(&l->front);
+}
+
+static double seconds(void)
+{
+  struct timespec t;
+
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static void work_release(struct vg_layer_work *w)
+{
+  vg_topology_release(&w->t);
+  free(w->slide);
+  free(w->is_wall);
+  free(w->is_slide);
+  free(w->normal);
+  free(w->root_dir);
+  free(w->view);
+  free(w->edge);
+  free(w->wanted);
+  free(w->room);
+  free(w->why);
+  free(w->by_size);
+}
+
+static vg_status check_request(const struct vg_mesh *m, size_t p,
+                               const struct vg_layer_request *r,
+                               struct vg_error *err)
+{
+  const struct vg_law *l = &r->law;
+
+  if (!r->is_wall) return VG_OK;
+  if (!(l->delta1 > 0 && l->delta1 < 1e60))
+    return vg_fail(err, VG_ERR_INPUT, "patch %d: the first layer is %g thick; "
+                   "give a height above 0", (int)m->patch[p].id, l->delta1);
+  if (!(l->rate1 >= 0 && l->rate1 <= 10 && l->rate2 >= 0 && l->rate2 <= 10))
+    return vg_fail(err, VG_ERR_INPUT, "patch %d: growth rates %g and %g; they "
+                   "must lie in 0 to 10", (int)m->patch[p].id, l->rate1,
+                   l->rate2);
+  if (!(l->cap >= 1))
+    return vg_fail(err, VG_ERR_INPUT, "patch %d: the cap on growth is %g; it "
+                   "must be 1 or more", (int)m->patch[p].id, l->cap);
+  return VG_OK;
+}
+
+static vg_status walls(struct vg_layer_work *w, struct vg_error *err)
+{
+  size_t n = 0;
+  vg_status st = VG_OK;
+
+  w->is_wall = vg_calloc(w->m->n_patch, 1);
+  w->is_slide = vg_calloc(w->m->n_patch, 1);
+  if (!w->is_wall || !w->is_slide) return vg_fail_memory(err, "the layers");
+  for (size_t p = 0; p < w->m->n_patch; p++) {
+    VG_TRY(check_request(w->m, p, &w->o->patch[p], err));
+    w->is_wall[p] = w->o->patch[p].is_wall != 0;
+    n += w->is_wall[p];
+  }
+  if (!n)
+    return vg_fail(err, VG_ERR_INPUT, "layers were asked for, but no patch is "
+                   "a wall that grows them");
+  if (!(w->o->gap > 0 && w->o->gap < 0.5 && w->o->end > 0))
+    return vg_fail(err, VG_ERR_INPUT, "the share of a gap that a layer may "
+                   "take is %g and the end of layers %g; the first must lie "
+                   "in 0 to 0.5, the second above 0", w->o->gap, w->o->end);
+  VG_TRY(vg_slides_find(w->m, w->is_wall, &w->n_slide, &w->slide, err));
+  for (size_t s = 0; s < w->n_slide; s++)
+    w->is_slide[w->slide[s].patch] = 1;
+done:
+  return st;
+}
+
+static vg_status arrays(struct vg_layer_work *w, struct vg_error *err)
+{
+  size_t n = w->c->n_column;
+
+  w->normal = vg_alloc(w->c->n_face, sizeof *w->normal);
+  w->root_dir = vg_alloc(n, sizeof *w->root_dir);
+  w->view = vg_alloc(n, sizeof *w->view);
+  w->edge = vg_alloc(n, sizeof *w->edge);
+  w->wanted = vg_alloc(n, sizeof *w->wanted);
+  w->room = vg_alloc(n, sizeof *w->room);
+  w->why = vg_calloc(n, 1);
+  w->by_size = vg_calloc(n, 1);
+  if (w->normal && w->root_dir && w->view && w->edge && w->wanted &&
+      w->room && w->why && w->by_size) return VG_OK;
+  return vg_fail_memory(err, "the layers");
+}
+
+/* Rooms before anything is tried: no view, corners, what stands ahead. */
+static vg_status first_rooms(struct vg_layer_work *w,
+                             struct vg_layer_report *r, struct vg_error *err)
+{
+  size_t n = w->c->n_column;
+  double *allowed = vg_alloc(n, sizeof *allowed), t = seconds();
+  vg_status st;
+
+  if (!allowed) return vg_fail_memory(err, "the layers");
+  for (size_t i = 0; i < n; i++) {
+    if (w->view[i] == 0) vg_heights_lower(w, i, 0, VG_CAUSE_NO_VIEW);
+    if (w->t.blocked && w->t.blocked[i])
+      vg_heights_lower(w, i, 0, VG_CAUSE_SLIDE);
+  }
+  VG_TRY(vg_heights_corner(w, err));
+  r->time_height += seconds() - t;
+  t = seconds();
+  VG_TRY(vg_clear_ahead(w->m, w->c, &w->t, w->o->gap, w->o->threads, w->room,
+                        allowed, err));
+  for (size_t i = 0; i < n; i++)
+    vg_heights_lower(w, i, allowed[i], VG_CAUSE_PROXIMITY);
+  r->time_clear += seconds() - t;
+done:
+  free(allowed);
+  return st;
+}
+
+/* What one round lowers the columns in question to. */
+static double lowered(const struct vg_layer_work *w, size_t i, size_t round)
+{
+  const struct vg_column *c = &w->c->column[i];
+  double d[VG_LEVELS_MAX + 1], h;
+
+  if (round >= GENTLE) return 0;
+  vg_law_heights(&w->c->law[c->law], c->cap, c->n, d);
+  h = d[c->n] < w->room[i] ? d[c->n] : w->room[i];
+  return SHARE * h;
+}
+
+static vg_status try_tops(struct vg_layer_work *w, const uint8_t *active,
+                          uint8_t *bad, size_t round, size_t *n_bad,
+                          struct vg_error *err)
+{
+  vg_status st = vg_clear_tops(w->m, w->c, w->is_slide, active, w->o->threads,
+                               bad, n_bad, err);
+
+  for (size_t i = 0; st >= 0 && *n_bad && i < w->c->n_column; i++)
+    if (bad[i])
+      vg_heights_lower(w, i, lowered(w, i, round), VG_CAUSE_COLLISION);
+  return st;
+}
+
+static vg_status try_slides(struct vg_layer_work *w,
+                            struct vg_layer_front *front, size_t round,
+                            size_t *n_bad, struct vg_error *err)
+{
+  struct vg_slide_trouble trouble = { 0 };
+  vg_status st = vg_slide_front(w->m, w->n_slide, w->slide, w->c, w->sizing,
+                                front, &trouble, err);
+
+  *n_bad = st == VG_BLOCKED ? trouble.n : 0;
+  for (size_t i = 0; st == VG_BLOCKED && i < trouble.n; i++)
+    vg_heights_lower(w, trouble.column[i],
+                     lowered(w, trouble.column[i], round), VG_CAUSE_SLIDE);
+  free(trouble.column);
+  return st == VG_BLOCKED ? VG_OK : st;
+}
+
+/* The front as it will be filled: re-meshed patches against tops. */
+static vg_status try_front(struct vg_layer_work *w,
+                           struct vg_layer_front *front, size_t round,
+                           size_t *n_bad, struct vg_error *err)
+{
+  struct vg_surface_check_options o = VG_SURFACE_CHECK_OPTIONS_INIT;
+  struct vg_surface_report r = VG_SURFACE_REPORT_INIT;
+  size_t n_cross;
+  vg_status st;
+
+  o.repair = 0;
+  *n_bad = 0;
+  VG_TRY(vg_surface_check(&front->mesh, &o, &r, err));
+  n_cross = r.count[VG_DEFECT_INTERSECTION] +
+            r.count[VG_DEFECT_DEGENERATE_TRIANGLE];
+  for (size_t t = 0; n_cross && t < front->mesh.n_tri; t++) {
+    const uint32_t bits = 1u << VG_DEFECT_INTERSECTION |
+                          1u << VG_DEFECT_DEGENERATE_TRIANGLE;
+
+    if (!(r.face_kinds[t] & bits)) continue;
+    for (int k = 0; k < 3; k++) {
+      uint32_t c = front->column[front->mesh.tri[t][k]];
+
+      if (c == VG_NO_INDEX) continue;
+      vg_heights_lower(w, c, lowered(w, c, round), VG_CAUSE_COLLISION);
+      ++*n_bad;
+    }
+  }
+  if (n_cross && !*n_bad)
+    st = vg_fail(err, VG_ERR_GEOMETRY, "the surface crosses itself where no "
+                 "layers are; check it with `vanguard check`");
+done:
+  vg_surface_report_release(&r);
+  return st;
+}
+
+struct rounds {
+  uint8_t *moved, *cells, *tops, *bad;  /* cells, tops: to be looked at */
+};
+
+static vg_status settle(struct vg_layer_work *w, struct rounds *q,
+                        struct vg_error *err)
+{
+  vg_status st = vg_heights_settle(w, q->moved, err);
+
+  for (size_t i = 0; st >= 0 && i < w->c->n_column; i++) {
+    q->cells[i] |= q->moved[i];
+    q->tops[i] |= q->moved[i];
+  }
+  return st;
+}
+
+/* The first test that fails lowers columns, and the round begins again with
+ * those that moved. Rooms only ever shrink, so it ends. */
+static vg_status one_round(struct vg_layer_work *w, struct rounds *q,
+                           struct vg_layer_front *front, size_t round,
+                           struct vg_layer_report *r, size_t *n_bad,
+                           struct vg_error *err)
+{
+  double t = seconds();
+  vg_status st;
+
+  VG_TRY(vg_cells_lower(w, round ? q->cells : NULL, n_bad, err));
+  memset(q->cells, 0, w->c->n_column);
+  if (!*n_bad) {
+    VG_TRY(try_tops(w, round ? q->tops : NULL, q->bad, round, n_bad, err));
+    memset(q->tops, 0, w->c->n_column);
+  }
+  r->time_clear += seconds() - t;
+  t = seconds();
+  if (!*n_bad) VG_TRY(try_slides(w, front, round, n_bad, err));
+  r->time_slide += seconds() - t;
+  t = seconds();
+  if (!*n_bad) VG_TRY(try_front(w, front, round, n_bad, err));
+  r->time_clear += seconds() - t;
+done:
+  return st;
+}
+
+static vg_status until_clear(struct vg_layer_work *w,
+                             struct vg_layer_front *front,
+                             struct vg_layer_report *r, struct vg_error *err)
+{
+  size_t n = w->c->n_column, n_bad = 1;
+  struct rounds q = { vg_calloc(n, 1), vg_calloc(n, 1), vg_calloc(n, 1),
+                      vg_calloc(n, 1) };
+  double t;
+  vg_status st = VG_OK;
+
+  if (!q.moved || !q.cells || !q.tops || !q.bad) {
+    st = vg_fail_memory(err, "the layers");
+    goto done;
+  }
+  for (r->n_round = 0; n_bad && r->n_round < ROUNDS_MAX; r->n_round++) {
+    if (w->o->progress && w->o->progress(w->o->user, "layers", r->n_round, 0)) {
+      st = VG_BLOCKED;
+      goto done;
+    }
+    t = seconds();
+    vg_layer_front_release(front);
+    VG_TRY(settle(w, &q, err));
+    r->time_height += seconds() - t;
+    VG_TRY(one_round(w, &q, front, r->n_round, r, &n_bad, err));
+  }
+  if (n_bad)
+    st = vg_fail(err, VG_ERR_GEOMETRY, "the layers could not be cleared in "
+                 "%d rounds; please report this with the project files",
+                 ROUNDS_MAX);
+done:
+  free(q.moved);
+  free(q.cells);
+  free(q.tops);
+  free(q.bad);
+  return st;
+}
+
+static void count(const struct vg_layer_work *w, struct vg_layer_report *r)
+{
+  const struct vg_columns *c = w->c;
+
+  r->n_column = c->n_column;
+  for (size_t i = 0; i < c->n_column; i++) {
+    r->n_wall_point += i == 0 || c->column[i].root != c->column[i - 1].root;
+    r->n_layer_point += c->column[i].n;
+    r->cause[c->column[i].cause]++;
+    r->squeezed[c->column[i].squeezed]++;
+  }
+  for (size_t f = 0; f < c->n_face; f++) {
+    if (c->face_tri[f] == VG_NO_INDEX) r->n_virtual_face++;
+    else r->n_wall_tri++;
+    for (int k = 0; k < 3; k++) r->n_cell += c->column[c->face[f][k]].n;
+  }
+  r->n_slide_patch = w->n_slide;
+}
+
+static vg_status columns(struct vg_layer_work *w, struct vg_layer_report *r,
+                         struct vg_error *err)
+{
+  double t = seconds();
+  vg_status st;
+
+  VG_TRY(walls(w, err));
+  VG_TRY(vg_topology_build(w->m, w->is_wall, w->n_slide, w->slide,
+                           w->o->fan_angle, w->c, &w->t, err));
+  VG_TRY(arrays(w, err));
+  r->time_topology = seconds() - t;
+  t = seconds();
+  VG_TRY(vg_directions_first(w, err));
+  r->time_direction = seconds() - t;
+  t = seconds();
+  VG_TRY(vg_heights_wanted(w, err));
+  r->time_height = seconds() - t;
+  t = seconds();
+  VG_TRY(vg_directions_smooth(w, err));
+  VG_TRY(vg_directions_scale(w, err));
+  r->time_direction += seconds() - t;
+done:
+  return st;
+}
+
+vg_status vg_layers_grow(const struct vg_mesh *surface,
+                         const struct vg_sizing *sizing,
+                         const struct vg_layer_options *options,
+                         struct vg_layers *out, struct vg_layer_report *report,
+                         struct vg_error *err)
+{
+  struct vg_layers l = VG_LAYERS_INIT;
+  struct vg_layer_work w = { .m = surface, .sizing = sizing, .o = options,
+                             .c = &l.columns, .t = VG_TOPOLOGY_INIT };
+  struct vg_layer_report r = { 0 };
+  double start = seconds();
+  vg_status st;
+
+  VG_TRY(columns(&w, &r, err));
+  VG_TRY(first_rooms(&w, &r, err));
+  VG_TRY(until_clear(&w, &l.front, &r, err));
+  if (st == VG_BLOCKED) goto done;
+  count(&w, &r);
+  r.time_total = seconds() - start;
+  *report = r;
+  vg_layers_release(out);
+  *out = l;
+  l = (struct vg_layers)VG_LAYERS_INIT;
+done:
+  work_release(&w);
+  vg_layers_release(&l);
+  return st;
+}

@@ -1,0 +1,79 @@
+/* layers/work.h: what the steps of vg_layers_grow share. Private to layers.
+ * Arrays are per column unless said otherwise; "height" counts in units of
+ * column.dir, so that the wall distance of the first point is delta1. */
+#ifndef VG_LAYERS_WORK_H
+#define VG_LAYERS_WORK_H
+
+#include "layers/clear.h"
+#include "layers/layers.h"
+#include "layers/slide.h"
+#include "layers/topology.h"
+
+#define VG_VIEW_MIN 0.02      /* least cosine between a column and a face */
+#define VG_FACTOR_MAX 4.0     /* longest dir: a wedge of 29 degrees */
+
+struct vg_layer_work {
+  const struct vg_mesh *m;
+  const struct vg_sizing *sizing;
+  const struct vg_layer_options *o;
+  size_t n_slide;
+  struct vg_slide *slide;
+  uint8_t *is_wall, *is_slide;  /* [m->n_patch] */
+  struct vg_columns *c;
+  struct vg_topology t;
+  double (*normal)[3];      /* [n_face] unit; 0 for virtual faces */
+  double (*root_dir)[3];    /* unit, before smoothing */
+  double *view;             /* least cosine to its faces that dir must keep;
+                               0: no direction sees them all */
+  double *edge;             /* local isotropic edge */
+  double *wanted;           /* height of n_wanted levels by the law */
+  double *room;             /* height it may take, <= wanted */
+  uint8_t *why;             /* enum vg_layer_cause: what set room */
+  uint8_t *by_size;         /* n_wanted is where the local size is reached */
+  size_t max_valence;       /* faces at a column */
+};
+
+/* direct.c ----------------------------------------------------------------*/
+
+/** Normals of faces, first directions and their view. */
+vg_status vg_directions_first(struct vg_layer_work *w, struct vg_error *err);
+
+/** Bend directions where columns of height `wanted` would converge. */
+vg_status vg_directions_smooth(struct vg_layer_work *w, struct vg_error *err);
+
+/** Lengths of dir, so that the first point is delta1 away from the wall. */
+vg_status vg_directions_scale(struct vg_layer_work *w, struct vg_error *err);
+
+/** Ratio by which a step of height h_i, h_j along the dirs of columns i and
+ * j changes the edge between their roots, along itself: 1 + this * height
+ * where both heights are equal. 0 for columns of one root. */
+double vg_edge_change(const struct vg_layer_work *w, uint32_t i, uint32_t j,
+                      double h_i, double h_j);
+
+/* height.c ----------------------------------------------------------------*/
+
+/** edge, law, n_wanted and wanted; room = wanted. */
+vg_status vg_heights_wanted(struct vg_layer_work *w, struct vg_error *err);
+
+/** Lower room where columns converge. */
+vg_status vg_heights_corner(struct vg_layer_work *w, struct vg_error *err);
+
+/** Lower room to at most `limit` for the reason `why`. */
+void vg_heights_lower(struct vg_layer_work *w, size_t column, double limit,
+                      enum vg_layer_cause why);
+
+/** From room to cap, n and causes: rooms of neighbours differ by no more than
+ * their distance, levels by one. `moved` out: [n_column], may be NULL: 1
+ * where n or cap changed. */
+vg_status vg_heights_settle(struct vg_layer_work *w, uint8_t *moved,
+                            struct vg_error *err);
+
+/* cells.c -----------------------------------------------------------------*/
+
+/** Lower room of the columns of faces with a cell that is inverted or too
+ * flat; faces without a `moved` column are skipped (NULL: none is). *n_bad
+ * out: how many faces. */
+vg_status vg_cells_lower(struct vg_layer_work *w, const uint8_t *moved,
+                         size_t *n_bad, struct vg_error *err);
+
+#endif
