@@ -14,7 +14,9 @@
 #define GRAIN 2048
 #define SMOOTH_WALL 0.95   /* least cosine at which the mean normal will do */
 #define VIEW_KEPT 0.6      /* share of the first view that smoothing leaves */
-#define CONVERGE 0.6       /* an edge that would shrink to less is bent apart */
+#define CONVERGE 0.75      /* an edge that would shrink to less is bent apart */
+#define BEND_FROM CONVERGE
+#define BEND_MAX 0.995
 #define SAME_PLANE 0.05    /* sine between two patches that are as good as one */
 #define BAND 2.5           /* heights that bending reaches to */
 
@@ -23,7 +25,6 @@ struct loop {
   double (*scratch)[3];     /* [worker][max_valence] */
   double (*from)[3], (*to)[3];
   const uint32_t *list;     /* columns to treat, NULL: all */
-  double hold;              /* pull back to root_dir */
 };
 
 /* Slide normals at a column; their number. */
@@ -276,8 +277,8 @@ vg_status vg_directions_scale(struct vg_layer_work *w, struct vg_error *err)
 /* Smoothing ----------------------------------------------------------------
  *
  * Where columns converge (a concave corner, a wall at an acute angle to a
- * slide plane), all directions within BAND heights are relaxed towards the
- * mean of their neighbours, so that the turn is spread evenly over them. */
+ * slide plane), directions within BAND heights are relaxed towards the mean
+ * of their neighbours as far as it takes, so that the turn is spread. */
 
 static uint32_t *converging(const struct vg_layer_work *w, double *reach,
                             uint32_t *queue, size_t *n_queue)
@@ -354,12 +355,36 @@ static void mean_of_near(const struct vg_layer_work *w, size_t i,
   }
 }
 
-/* One Jacobi step; where the mean loses the faces from view, half of the way
- * to it, and so on. */
+/* How strongly a column is bent: not at all while its edges keep their
+ * length up to the tops, wholly once one would shrink to half. So columns far
+ * from a corner, and those on its convex side, stay normal to the wall. */
+static double urge(const struct loop *l, size_t i)
+{
+  const struct vg_layer_work *w = l->w;
+  const double *root = w->m->point[w->c->column[i].root];
+  double least = 1;
+
+  for (uint32_t j = w->t.near_first[i]; j < w->t.near_first[i + 1]; j++) {
+    uint32_t o = w->t.near[j];
+    const double *v = l->from[o];
+    double e[3], d, ratio;
+
+    vg_sub(w->m->point[w->c->column[o].root], root, e);
+    d = vg_dot(e, e);
+    if (!(d > 0)) continue;
+    ratio = 1 + fmax(w->wanted[i], w->wanted[o]) *
+                (vg_dot(v, e) - vg_dot(l->from[i], e)) / d;
+    if (ratio < least) least = ratio;
+  }
+  return fmax(0, fmin(BEND_MAX, (BEND_FROM - least) / (BEND_FROM - 0.5)));
+}
+
+/* One damped Jacobi step; where the mean loses the faces from view, half of
+ * the way to it, and so on. */
 static void relax(const struct loop *l, size_t i, double (*n)[3])
 {
   const struct vg_layer_work *w = l->w;
-  double slide[2][3], mean[3], step = 1 - l->hold, v[3];
+  double slide[2][3], mean[3], step, v[3];
   int n_slide = slide_normals(w, i, slide), k;
 
   memcpy(l->to[i], l->from[i], sizeof *l->to);
@@ -367,9 +392,11 @@ static void relax(const struct loop *l, size_t i, double (*n)[3])
   mean_of_near(w, i, l->from, mean);
   if (!(vg_unit(mean) > 0)) return;
   k = real_normals(w, i, n);
+  step = urge(l, i);
   for (int try = 0; try < 4; try++, step *= 0.5) {
     for (int c = 0; c < 3; c++)
-      v[c] = step * mean[c] + (1 - step) * w->root_dir[i][c];
+      v[c] = l->from[i][c] + step * mean[c] +
+             (1 - step) * w->root_dir[i][c];
     constrain(n_slide, slide, v);
     if (!(vg_unit(v) > 0)) continue;
     if (least_view(k, n, v) < VIEW_KEPT * w->view[i]) continue;
@@ -390,7 +417,7 @@ static vg_status sweeps(struct vg_layer_work *w, const uint32_t *list,
                         size_t n, struct vg_error *err)
 {
   size_t n_column = w->c->n_column;
-  struct loop l = { .list = list, .hold = 0.01 };
+  struct loop l = { .list = list };
   double (*swap)[3];
   vg_status st;
 
