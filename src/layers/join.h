@@ -10,28 +10,31 @@ struct vg_join_info {
   size_t n_boundary_point;  /* they come first */
   size_t n_layer_point;     /* index behind the last layer point (npv) */
   size_t n_layer_tet, n_layer_pyr, n_layer_pri;  /* first of their kind */
-  double time;
+  double time;              /* wall seconds */
 };
 
 /** Layers and field in one mesh.
  *
- * Points: those of the surface that are still used, rising; points of flanks
- * and re-meshed patches; layer points, level by level away from the wall, by
- * rising column; field points. Boundary triangles: those of the surface that
- * stay, in their order, then flanks and re-meshed ones, by patch; patches as
- * they were. Cells: layer cells first, level by level, those of one face
- * together, then the field's.
+ * Points: those of the surface that are still used, rising; points of flanks,
+ * level by level, then new ones of re-meshed patches; layer points, level by
+ * level away from the wall, by rising column; field points. Boundary
+ * triangles: those of the surface that stay, in their order, then, by patch,
+ * flanks (rim by rim, upwards) and re-meshed ones; patches as they were.
+ * Cells: layer cells first, level by level, those of one face together, then
+ * the field's.
  *
  * VG_LAYER_TETS: the lift rule. VG_LAYER_MIXED: where three columns of a face
  * rise one prism, where two a pyramid, where one a tetrahedron, and flanks
- * whose two columns rise are quadrilaterals; virtual faces give what is left
- * of these when points fall together (a prism with one root edge collapsed
- * is a pyramid, with three roots equal a tetrahedron).
+ * whose two columns rise are quadrilaterals. Except at level 0 around a root
+ * of several columns: there these rise last, one by one, which makes pyramids
+ * and tetrahedra (a prism over an edge collapsed to a point is no cell of any
+ * format), and flanks of triangles.
  *
  * @param field   vg_fill's mesh of layers->front.mesh: its first points are
  *                the front's
- * @param layer_point  out: [m->n_point] level of each layer point, 0 for all
- *                others; owned by the caller; may be NULL
+ * @param out     replaced on success, untouched on failure
+ * VG_ERR_INPUT when columns of a face differ by more than a level or the field
+ * is not the front's; VG_ERR_UNSUPPORTED beyond 2^32 - 1 points.
  * Cost: memory speed, in parallel. Same bytes for any number of threads. */
 vg_status vg_layers_join(const struct vg_mesh *surface,
                          const struct vg_layers *layers,
