@@ -24,14 +24,22 @@ vg_status vg_clear_ahead(const struct vg_mesh *surface,
                          int threads, const double *reach, double *allowed,
                          struct vg_error *err);
 
-/** Columns of which a top touches something it must not: another top that is
- * no neighbour, a triangle of the surface outside the layers (its own wall
- * and slide patches to be re-meshed excepted), a rim's flank. Exact.
+/** Columns of which a top touches something it must not. Exact; touching is
+ * enough. A top may not touch
+ *   - a top that shares no column with it, or, where one does, anywhere else
+ *     (columns of one root are one as long as they have no level);
+ *   - a triangle of the surface that carries no face, but for those of slide
+ *     patches that a column of its face slides in.
+ * Flanks of rims of one slide patch may not overlap within it, nor reach a
+ * rim without a level. A top without area touches itself.
  *
  * @param is_slide  [surface->n_patch] 1: will be re-meshed
  * @param active    [n_column] columns that moved since the last call, or NULL:
  *                  all; pairs of faces without an active column are skipped
- * @param bad       out: [n_column] 1 for each column of a face that touches */
+ * @param bad       out: [n_column] 1 for each column with n > 0 of a face
+ *                  that touches, active or not; 0 for all others
+ * Faces whose columns have no level are the wall itself and are not tested
+ * against each other. Same result for any number of threads. */
 vg_status vg_clear_tops(const struct vg_mesh *surface,
                         const struct vg_columns *columns,
                         const uint8_t *is_slide, const uint8_t *active,

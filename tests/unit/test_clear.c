@@ -1,0 +1,639 @@
+/* Layers clear of each other and of what stands in front, on columns built by
+ * hand: one per point of a wall, all layers of equal thickness, so that the
+ * height of n layers is n times it. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "layers/clear.h"
+
+enum { MAX = 20000, PATCHES = 3 };
+
+/* Surface, columns and topology, growing as parts are added. */
+struct shape {
+  struct vg_mesh m;
+  struct vg_columns c;
+  struct vg_topology t;
+  struct vg_law law;
+  uint32_t of_point[MAX];
+  uint8_t is_wall[PATCHES];
+};
+
+static void *room(size_t n, size_t size)
+{
+  void *p = calloc(n, size);
+
+  assert_non_null(p);
+  return p;
+}
+
+static struct shape *shape_new(double thickness)
+{
+  struct shape *s = room(1, sizeof *s);
+
+  s->law = (struct vg_law){ thickness, 0, 0, 1.3, VG_LEVELS_MAX };
+  s->m.n_patch = PATCHES;
+  s->m.patch = room(PATCHES, sizeof *s->m.patch);
+  s->m.point = room(MAX, sizeof *s->m.point);
+  s->m.tri = room(2 * MAX, sizeof *s->m.tri);
+  s->m.tri_patch = room(2 * MAX, sizeof *s->m.tri_patch);
+  return s;
+}
+
+static void shape_free(struct shape *s)
+{
+  vg_mesh_release(&s->m);
+  s->c.law = NULL;
+  vg_columns_release(&s->c);
+  free(s->t.first);
+  free(s->t.corner);
+  free(s);
+}
+
+static uint32_t add_point(struct shape *s, double x, double y, double z)
+{
+  double *p = s->m.point[s->m.n_point];
+
+  assert_true(s->m.n_point < MAX);
+  p[0] = x;
+  p[1] = y;
+  p[2] = z;
+  return (uint32_t)s->m.n_point++;
+}
+
+static void add_tri(struct shape *s, uint32_t patch, uint32_t a, uint32_t b,
+                    uint32_t c)
+{
+  uint32_t *t = s->m.tri[s->m.n_tri];
+
+  assert_true(s->m.n_tri < 2 * MAX);
+  t[0] = a;
+  t[1] = b;
+  t[2] = c;
+  s->m.tri_patch[s->m.n_tri++] = patch;
+}
+
+/* n x n squares from o along u and v; the fluid is on the side of u x v. */
+static uint32_t add_plate(struct shape *s, uint32_t patch, int n,
+                          const double o[3], const double u[3],
+                          const double v[3])
+{
+  uint32_t first = (uint32_t)s->m.n_point, w = (uint32_t)n + 1;
+
+  for (int j = 0; j <= n; j++)
+    for (int i = 0; i <= n; i++)
+      add_point(s, o[0] + (u[0] * i + v[0] * j) / n,
+                o[1] + (u[1] * i + v[1] * j) / n,
+                o[2] + (u[2] * i + v[2] * j) / n);
+  for (uint32_t j = 0; j + 1 < w; j++)
+    for (uint32_t i = 0; i + 1 < w; i++) {
+      uint32_t a = first + j * w + i;
+
+      add_tri(s, patch, a, a + 1, a + w + 1);
+      add_tri(s, patch, a, a + w + 1, a + w);
+    }
+  return first;
+}
+
+/* Sphere of n x 2n patches; the fluid is outside. */
+static void add_sphere(struct shape *s, uint32_t patch, int n,
+                       const double o[3], double r)
+{
+  uint32_t w = 2 * (uint32_t)n, first, top, bottom;
+
+  top = add_point(s, o[0], o[1], o[2] + r);
+  first = top + 1;
+  for (int j = 1; j < n; j++)
+    for (int i = 0; i < 2 * n; i++) {
+      double a = M_PI * j / n, b = M_PI * i / n;
+
+      add_point(s, o[0] + r * sin(a) * cos(b), o[1] + r * sin(a) * sin(b),
+                o[2] + r * cos(a));
+    }
+  bottom = add_point(s, o[0], o[1], o[2] - r);
+  for (uint32_t i = 0; i < w; i++) {
+    uint32_t k = (i + 1) % w, last = first + (uint32_t)(n - 2) * w;
+
+    add_tri(s, patch, top, first + i, first + k);
+    for (uint32_t j = 0; j + 2 < (uint32_t)n; j++) {
+      uint32_t a = first + j * w;
+
+      add_tri(s, patch, a + i, a + w + i, a + w + k);
+      add_tri(s, patch, a + i, a + w + k, a + k);
+    }
+    add_tri(s, patch, last + i, bottom, last + k);
+  }
+}
+
+static void normal_of(const struct shape *s, const uint32_t t[3], double n[3])
+{
+  double (*p)[3] = s->m.point, d[3], e[3];
+
+  for (int k = 0; k < 3; k++) {
+    d[k] = p[t[1]][k] - p[t[0]][k];
+    e[k] = p[t[2]][k] - p[t[0]][k];
+  }
+  for (int k = 0; k < 3; k++)
+    n[k] = d[(k + 1) % 3] * e[(k + 2) % 3] - d[(k + 2) % 3] * e[(k + 1) % 3];
+}
+
+static void index_faces(struct shape *s)
+{
+  struct vg_columns *c = &s->c;
+  uint32_t *at;
+
+  s->t.first = room(c->n_column + 2, sizeof *s->t.first);
+  s->t.corner = room(3 * c->n_face + 1, sizeof *s->t.corner);
+  for (size_t f = 0; f < c->n_face; f++)
+    for (int k = 0; k < 3; k++) s->t.first[c->face[f][k] + 1]++;
+  for (size_t i = 0; i < c->n_column; i++) s->t.first[i + 1] += s->t.first[i];
+  at = room(c->n_column + 1, sizeof *at);
+  memcpy(at, s->t.first, c->n_column * sizeof *at);
+  for (size_t f = 0; f < c->n_face; f++)
+    for (uint32_t k = 0; k < 3; k++)
+      s->t.corner[at[c->face[f][k]]++] = (uint32_t)(3 * f) + k;
+  free(at);
+}
+
+/* A column of n levels on each point of the walls, along the mean normal. */
+static void grow(struct shape *s, int n)
+{
+  struct vg_columns *c = &s->c;
+  uint8_t *used = room(MAX, 1);
+
+  c->law = &s->law;
+  c->n_law = 1;
+  c->column = room(s->m.n_point + 1, sizeof *c->column);
+  c->face = room(s->m.n_tri + 1, sizeof *c->face);
+  c->face_tri = room(s->m.n_tri + 1, sizeof *c->face_tri);
+  for (size_t t = 0; t < s->m.n_tri; t++)
+    for (int k = 0; k < 3; k++)
+      used[s->m.tri[t][k]] |= s->is_wall[s->m.tri_patch[t]];
+  for (size_t p = 0; p < s->m.n_point; p++) {
+    if (!used[p]) continue;
+    s->of_point[p] = (uint32_t)c->n_column;
+    c->column[c->n_column++] = (struct vg_column){
+      .root = (uint32_t)p, .slide = { VG_NO_INDEX, VG_NO_INDEX }, .cap = 1.3,
+      .bent = SIZE_MAX, .n = (uint16_t)n, .n_wanted = (uint16_t)n };
+  }
+  for (size_t t = 0; t < s->m.n_tri; t++) {
+    double normal[3];
+
+    if (!s->is_wall[s->m.tri_patch[t]]) continue;
+    normal_of(s, s->m.tri[t], normal);
+    for (int k = 0; k < 3; k++) {
+      uint32_t i = s->of_point[s->m.tri[t][k]];
+
+      c->face[c->n_face][k] = i;
+      for (int l = 0; l < 3; l++) c->column[i].dir[l] += normal[l];
+    }
+    c->face_tri[c->n_face++] = (uint32_t)t;
+  }
+  for (size_t i = 0; i < c->n_column; i++) {
+    double *d = c->column[i].dir;
+    double l = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+
+    for (int k = 0; k < 3; k++) d[k] /= l;
+  }
+  index_faces(s);
+  free(used);
+}
+
+/* Rims: edges of faces whose points all lie in the plane z = at. */
+static void add_rims(struct shape *s, uint32_t patch, double at)
+{
+  struct vg_columns *c = &s->c;
+
+  c->rim = room(3 * c->n_face, sizeof *c->rim);
+  c->rim_patch = room(3 * c->n_face, sizeof *c->rim_patch);
+  for (size_t f = 0; f < c->n_face; f++)
+    for (int k = 0; k < 3; k++) {
+      uint32_t a = c->face[f][k], b = c->face[f][(k + 1) % 3];
+
+      if (s->m.point[c->column[a].root][2] != at
+          || s->m.point[c->column[b].root][2] != at)
+        continue;
+      c->column[a].slide[0] = c->column[b].slide[0] = patch;
+      c->rim[c->n_rim][0] = a;
+      c->rim[c->n_rim][1] = b;
+      c->rim_patch[c->n_rim++] = patch;
+    }
+}
+
+static size_t tops(const struct shape *s, const uint8_t *is_slide,
+                   const uint8_t *active, int threads, uint8_t *bad)
+{
+  static const uint8_t none[PATCHES];
+  struct vg_error err = VG_ERROR_INIT;
+  size_t n_bad = SIZE_MAX, n = 0;
+
+  memset(bad, 7, s->c.n_column);
+  assert_int_equal(vg_clear_tops(&s->m, &s->c, is_slide ? is_slide : none,
+                                 active, threads, bad, &n_bad, &err), VG_OK);
+  for (size_t i = 0; i < s->c.n_column; i++) {
+    assert_true(bad[i] <= 1);
+    n += bad[i];
+  }
+  assert_int_equal(n, n_bad);
+  return n;
+}
+
+static const double ex[3] = { 1, 0, 0 }, ey[3] = { 0, 1, 0 };
+static const double zero[3] = { 0, 0, 0 };
+
+/* Two plates that face each other, `gap` apart, n x n squares each; the upper
+ * one does not repeat the lower one's squares. */
+static struct shape *two_plates(int n, double gap, double thickness)
+{
+  struct shape *s = shape_new(thickness);
+  const double up[3] = { 0.01, 0.02, gap };
+
+  add_plate(s, 0, n, zero, ex, ey);
+  add_plate(s, 1, n + 1, up, ey, ex);
+  s->is_wall[0] = 1;
+  return s;
+}
+
+/* --- tops ---------------------------------------------------------------- */
+
+static void tops_between_plates(void **state)
+{
+  struct shape *s = two_plates(12, 0.25, 0.0625);
+  uint8_t bad[MAX];
+
+  (void)state;
+  s->is_wall[1] = 1;
+  grow(s, 1);
+  /* 1/16 from each side leaves 1/8; 2/16 touch exactly; 3/16 cross not, but
+   * have passed through: only the middle is a contact of tops. */
+  assert_int_equal(tops(s, NULL, NULL, 1, bad), 0);
+  for (size_t i = 0; i < s->c.n_column; i++) s->c.column[i].n = 2;
+  /* All but what lies over no square of the other plate. */
+  assert_true(tops(s, NULL, NULL, 1, bad) > s->c.n_column * 9 / 10);
+  shape_free(s);
+}
+
+static void one_column_through_the_other_front(void **state)
+{
+  struct shape *s = two_plates(12, 0.25, 0.0625);
+  uint32_t i;
+  uint8_t bad[MAX];
+
+  (void)state;
+  s->is_wall[1] = 1;
+  grow(s, 1);
+  i = s->of_point[6 * 13 + 6];
+  s->c.column[i].n = 4;
+  tops(s, NULL, NULL, 1, bad);
+  assert_int_equal(bad[i], 1);
+  assert_int_equal(bad[s->of_point[0]], 0);
+  /* Through the bare wall as well, whose own top it then is. */
+  s->c.column[i].n = 2;
+  for (size_t k = 169; k < s->c.n_column; k++) s->c.column[k].n = 0;
+  assert_int_equal(tops(s, NULL, NULL, 1, bad), 0);
+  s->c.column[i].n = 4;
+  assert_true(tops(s, NULL, NULL, 1, bad) > 0);
+  assert_int_equal(bad[i], 1);
+  /* A column without a level cannot be lowered and is not named. */
+  for (size_t k = 169; k < s->c.n_column; k++) assert_int_equal(bad[k], 0);
+  shape_free(s);
+}
+
+static void inert_patch_is_in_the_way(void **state)
+{
+  struct shape *s = two_plates(8, 0.25, 0.0625);
+  uint8_t bad[MAX];
+  uint8_t is_slide[PATCHES] = { 0, 1, 0 };
+
+  (void)state;
+  grow(s, 3);
+  assert_int_equal(tops(s, NULL, NULL, 1, bad), 0);
+  for (size_t i = 0; i < s->c.n_column; i++) s->c.column[i].n = 4;
+  assert_true(tops(s, NULL, NULL, 1, bad) > 60);
+  /* So is a slide patch for those that do not slide in it ... */
+  assert_true(tops(s, is_slide, NULL, 1, bad) > 60);
+  /* ... and only for them. */
+  for (size_t i = 0; i < s->c.n_column; i++) s->c.column[i].slide[1] = 1;
+  assert_int_equal(tops(s, is_slide, NULL, 1, bad), 0);
+  shape_free(s);
+}
+
+static struct shape *cube(void)
+{
+  struct shape *s = shape_new(0.125);
+  uint32_t p[3][3][3];
+
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      for (int k = 0; k < 3; k++)
+        if (i != 1 || j != 1 || k != 1)
+          p[i][j][k] = add_point(s, 0.5 * i, 0.5 * j, 0.5 * k);
+  for (int a = 0; a < 3; a++)
+    for (int side = 0; side < 2; side++)
+      for (int i = 0; i < 2; i++)
+        for (int j = 0; j < 2; j++) {
+          uint32_t q[2][2];
+
+          for (int u = 0; u < 2; u++)
+            for (int v = 0; v < 2; v++) {
+              int at[3];
+
+              at[a] = 2 * side;
+              at[(a + 1) % 3] = side ? i + u : i + v;
+              at[(a + 2) % 3] = side ? j + v : j + u;
+              q[u][v] = p[at[0]][at[1]][at[2]];
+            }
+          add_tri(s, 0, q[0][0], q[1][0], q[1][1]);
+          add_tri(s, 0, q[0][0], q[1][1], q[0][1]);
+        }
+  s->is_wall[0] = 1;
+  return s;
+}
+
+static void cube_grows_outward(void **state)
+{
+  struct shape *s = cube();
+  uint8_t bad[MAX];
+
+  (void)state;
+  grow(s, 3);
+  assert_int_equal(s->c.n_column, 26);
+  assert_int_equal(tops(s, NULL, NULL, 1, bad), 0);
+  /* Uneven levels: still no neighbour is touched. */
+  for (size_t i = 0; i < s->c.n_column; i += 3) s->c.column[i].n = 2;
+  assert_int_equal(tops(s, NULL, NULL, 1, bad), 0);
+  for (size_t i = 0; i < s->c.n_column; i++) s->c.column[i].n = 0;
+  assert_int_equal(tops(s, NULL, NULL, 1, bad), 0);
+  /* Inward, the tops of opposite sides meet in the middle. */
+  for (size_t i = 0; i < s->c.n_column; i++) {
+    s->c.column[i].n = 4;
+    for (int k = 0; k < 3; k++) s->c.column[i].dir[k] *= -1;
+  }
+  assert_true(tops(s, NULL, NULL, 1, bad) > 0);
+  shape_free(s);
+}
+
+static void tops_that_cross(void **state)
+{
+  struct shape *s = shape_new(0.125);
+  uint8_t bad[MAX];
+  uint32_t a, b;
+
+  (void)state;
+  add_plate(s, 0, 10, zero, ex, ey);
+  s->is_wall[0] = 1;
+  grow(s, 1);
+  assert_int_equal(tops(s, NULL, NULL, 1, bad), 0);
+  /* Two columns three squares apart lean over until they cross. */
+  a = s->of_point[5 * 11 + 3];
+  b = s->of_point[5 * 11 + 6];
+  s->c.column[a].dir[0] = 2;
+  s->c.column[b].dir[0] = -2;
+  assert_true(tops(s, NULL, NULL, 1, bad) > 1);
+  assert_true(bad[a] && bad[b]);
+  assert_false(bad[s->of_point[0]]);
+  shape_free(s);
+}
+
+static void degenerate_tops_are_bad(void **state)
+{
+  struct shape *s = shape_new(0.125);
+  uint8_t bad[MAX];
+  uint32_t a;
+
+  (void)state;
+  add_plate(s, 0, 8, zero, ex, ey);
+  s->is_wall[0] = 1;
+  grow(s, 1);
+  /* The top of a falls onto the line between those of its neighbours. */
+  a = s->of_point[4 * 9 + 4];
+  s->c.column[a].dir[0] = 1;
+  assert_true(tops(s, NULL, NULL, 1, bad) > 0);
+  assert_true(bad[a]);
+  s->c.column[a].dir[0] = NAN;
+  assert_true(tops(s, NULL, NULL, 1, bad) > 0);
+  assert_true(bad[a]);
+  shape_free(s);
+}
+
+/* Columns of one root: faces between them are nothing at level 0, and tops
+ * that stay at the root share it. */
+static void fan_of_columns(void **state)
+{
+  struct shape *s = shape_new(0.125);
+  struct vg_columns *c = &s->c;
+  uint8_t bad[MAX];
+  uint32_t p[4];
+
+  (void)state;
+  p[0] = add_point(s, 0, 0, 0);
+  p[1] = add_point(s, 0, 1, 0);
+  p[2] = add_point(s, 1, 0, 0);
+  p[3] = add_point(s, 1, 0.1, -0.01);
+  add_tri(s, 0, p[0], p[2], p[1]);
+  add_tri(s, 0, p[0], p[1], p[3]);
+  s->is_wall[0] = 1;
+  grow(s, 1);
+  /* Two columns more on point 0 and one more on point 1. */
+  free(c->face);
+  free(c->face_tri);
+  c->column = realloc(c->column, 7 * sizeof *c->column);
+  c->face = room(5, sizeof *c->face);
+  c->face_tri = room(5, sizeof *c->face_tri);
+  assert_non_null(c->column);
+  for (int i = 4; i < 7; i++) {
+    c->column[i] = c->column[0];
+    c->column[i].root = i < 6 ? p[0] : p[1];
+  }
+  c->n_column = 7;
+  c->n_face = 5;
+  memcpy(c->face[0], (uint32_t[]){ 0, 2, 1 }, sizeof *c->face);
+  memcpy(c->face[1], (uint32_t[]){ 5, 6, 3 }, sizeof *c->face);
+  memcpy(c->face[2], (uint32_t[]){ 0, 1, 4 }, sizeof *c->face);
+  memcpy(c->face[3], (uint32_t[]){ 4, 1, 6 }, sizeof *c->face);
+  memcpy(c->face[4], (uint32_t[]){ 4, 6, 5 }, sizeof *c->face);
+  c->face_tri[1] = 1;
+  for (int f = 2; f < 5; f++) c->face_tri[f] = VG_NO_INDEX;
+  for (size_t i = 0; i < 7; i++) {
+    static const double dir[7][3] = {
+      { 0, 0, 1 }, { 0, 0, 1 }, { 0, 0, 1 }, { 0, 0.1, -1 }, { -1, 0, 0 },
+      { 0, 0.1, -1 }, { 0, 0.1, -1 } };
+
+    memcpy(c->column[i].dir, dir[i], sizeof dir[i]);
+  }
+  for (unsigned levels = 0; levels < 128; levels++) {
+    /* Column 4 raised within a fan at level 0: a flap without volume, of two
+     * tops on each other. */
+    int flap = (levels >> 4 & 1) && !(levels & 0x63);
+
+    for (int i = 0; i < 7; i++) c->column[i].n = levels >> i & 1;
+    assert_int_equal(tops(s, NULL, NULL, 1, bad), flap);
+    assert_int_equal(bad[4], flap);
+  }
+  shape_free(s);
+}
+
+/* Two bars of triangles standing on the plane z = 0, which they slide in. */
+static struct shape *two_bars(double distance)
+{
+  struct shape *s = shape_new(0.125);
+  const double up[3] = { 0, 0, 2 }, back[3] = { 0, -1, 0 };
+  const double right[3] = { distance, 1, 0 };
+  const double o[3] = { -3, -3, 0 }, u[3] = { 0, 6, 0 }, v[3] = { 6, 0, 0 };
+
+  add_plate(s, 0, 8, zero, ey, up);            /* fluid towards +x */
+  add_plate(s, 0, 6, right, back, up);         /* fluid towards -x */
+  add_plate(s, 1, 4, o, v, u);
+  s->is_wall[0] = 1;
+  grow(s, 2);
+  add_rims(s, 1, 0);
+  return s;
+}
+
+static void flanks_in_one_plane(void **state)
+{
+  static const uint8_t is_slide[PATCHES] = { 0, 1, 0 };
+  struct shape *s = two_bars(0.625);
+  uint8_t bad[MAX];
+  uint32_t a;
+
+  (void)state;
+  assert_int_equal(s->c.n_rim, 14);
+  assert_int_equal(tops(s, is_slide, NULL, 1, bad), 0);
+  /* 3/8 on each side: they overlap, and so do the tops. */
+  for (size_t i = 0; i < s->c.n_column; i++) s->c.column[i].n = 3;
+  assert_true(tops(s, is_slide, NULL, 1, bad) > 14);
+  /* One column in the plane alone, the tops of which are kept apart by
+   * leaning away: only the flanks tell. */
+  for (size_t i = 0; i < s->c.n_column; i++)
+    s->c.column[i].n = s->c.column[i].slide[0] == 1 ? 2 : 0;
+  assert_int_equal(tops(s, is_slide, NULL, 1, bad), 0);
+  a = s->of_point[4];
+  s->c.column[a].n = 5;
+  tops(s, is_slide, NULL, 1, bad);
+  assert_true(bad[a]);
+  /* Through an edge of the wall without a level. */
+  for (size_t i = 0; i < s->c.n_column; i++) s->c.column[i].n = 0;
+  s->c.column[a].n = 4;
+  assert_int_equal(tops(s, is_slide, NULL, 1, bad), 0);
+  s->c.column[a].n = 6;
+  s->c.n_face = 0;
+  assert_int_equal(tops(s, is_slide, NULL, 1, bad), 1);
+  assert_true(bad[a]);
+  shape_free(s);
+}
+
+/* A plane known to noise only: nothing is exactly coplanar. */
+static void flanks_in_a_noisy_plane(void **state)
+{
+  static const uint8_t is_slide[PATCHES] = { 0, 1, 0 };
+  struct shape *s = two_bars(0.625);
+  uint8_t bad[MAX];
+
+  (void)state;
+  s->c.n_face = 0;
+  for (size_t i = 0; i < s->c.n_rim; i++)
+    for (int k = 0; k < 2; k++)
+      s->m.point[s->c.column[s->c.rim[i][k]].root][2] =
+        1e-7 * (double)(i % 5) - 2e-7;
+  assert_int_equal(tops(s, is_slide, NULL, 1, bad), 0);
+  for (size_t i = 0; i < s->c.n_column; i++) s->c.column[i].n = 3;
+  /* All but the ends of the rows may be lowered: both rows overlap. */
+  assert_int_equal(tops(s, is_slide, NULL, 1, bad), 16);
+  shape_free(s);
+}
+
+static struct shape *sphere_over_plane(double distance)
+{
+  struct shape *s = shape_new(0.03125);
+  const double o[3] = { 0, 0, 1 + distance };
+  const double p[3] = { -2, -2, 0 }, u[3] = { 4, 0, 0 }, v[3] = { 0, 4, 0 };
+
+  add_sphere(s, 0, 24, o, 1);
+  add_plate(s, 1, 20, p, u, v);
+  s->is_wall[0] = 1;
+  return s;
+}
+
+/* What is active decides which pairs are looked at, nothing else. */
+static void active_columns_only(void **state)
+{
+  struct shape *s = sphere_over_plane(0.2);
+  uint8_t bad[MAX], part[MAX], active[MAX];
+  size_t n;
+
+  (void)state;
+  s->is_wall[1] = 1;
+  grow(s, 4);
+  n = tops(s, NULL, NULL, 1, bad);
+  assert_true(n > 10 && n < s->c.n_column / 2);
+  /* Those that touch nothing may be inactive. */
+  assert_int_equal(tops(s, NULL, bad, 1, part), n);
+  assert_memory_equal(bad, part, s->c.n_column);
+  /* A single one: its faces, and what they touch. */
+  for (size_t i = 0; i < s->c.n_column; i++) {
+    memset(active, 0, sizeof active);
+    if (!bad[i]) continue;
+    active[i] = 1;
+    assert_true(tops(s, NULL, active, 1, part) > 0);
+    assert_true(part[i]);
+    for (size_t k = 0; k < s->c.n_column; k++) assert_true(bad[k] || !part[k]);
+    break;
+  }
+  memset(active, 0, sizeof active);
+  assert_int_equal(tops(s, NULL, active, 1, part), 0);
+  shape_free(s);
+}
+
+static void tops_with_any_number_of_threads(void **state)
+{
+  struct shape *s = sphere_over_plane(0.2);
+  uint8_t bad[MAX], again[MAX];
+  size_t n;
+
+  (void)state;
+  grow(s, 7);
+  n = tops(s, NULL, NULL, 1, bad);
+  assert_true(n > 0);
+  for (int threads = 2; threads <= 3; threads++) {
+    assert_int_equal(tops(s, NULL, NULL, threads, again), n);
+    assert_memory_equal(bad, again, s->c.n_column);
+  }
+  shape_free(s);
+}
+
+static void nothing_at_all(void **state)
+{
+  struct shape *s = shape_new(1);
+  uint8_t bad[1];
+
+  (void)state;
+  grow(s, 1);
+  assert_int_equal(tops(s, NULL, NULL, 1, bad), 0);
+  shape_free(s);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(tops_between_plates),
+    cmocka_unit_test(one_column_through_the_other_front),
+    cmocka_unit_test(inert_patch_is_in_the_way),
+    cmocka_unit_test(cube_grows_outward),
+    cmocka_unit_test(tops_that_cross),
+    cmocka_unit_test(degenerate_tops_are_bad),
+    cmocka_unit_test(fan_of_columns),
+    cmocka_unit_test(flanks_in_one_plane),
+    cmocka_unit_test(flanks_in_a_noisy_plane),
+    cmocka_unit_test(active_columns_only),
+    cmocka_unit_test(tops_with_any_number_of_threads),
+    cmocka_unit_test(nothing_at_all),
+  };
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
