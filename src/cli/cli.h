@@ -8,7 +8,9 @@
 #include "base/status.h"
 #include "cli/settings.h"
 
-enum { VG_EXIT_DONE = 0, VG_EXIT_FAILED = 1, VG_EXIT_USAGE = 2 };
+/* VG_EXIT_LIMIT: all is written, but a limit on the layers is not met. */
+enum { VG_EXIT_DONE = 0, VG_EXIT_FAILED = 1, VG_EXIT_USAGE = 2,
+       VG_EXIT_LIMIT = 4 };
 
 int vg_cmd_mesh(int argc, char **argv);
 int vg_cmd_check(int argc, char **argv);

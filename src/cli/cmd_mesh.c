@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "cli/cli.h"
+#include "cli/layers.h"
 #include "cli/output.h"
 #include "cli/report.h"
 #include "io/stream.h"
@@ -22,9 +23,11 @@ struct run {
   struct vg_problem problem;
   struct vg_outputs outputs;
   struct vg_display show;
+  struct vg_layer_stage layers;
   struct vg_mesh mesh;
+  size_t n_field_cell;
   struct vg_fill_report fill;
-  struct vg_mesh_report judge;
+  struct vg_mesh_report judge, field; /* all cells; with layers: the field's */
   double start, time_read, time_check, time_size, time_judge, time_write;
 };
 
@@ -102,12 +105,14 @@ static vg_status read_project(struct run *r, const struct arguments *a,
   VG_TRY(vg_input_find(a->project, a->deck, &p->files, err));
   VG_TRY(vg_problem_deck(p, err));
   VG_TRY(apply_options(a, &p->settings, err));
+  vg_settings_write(&p->settings);
   VG_TRY(vg_outputs_plan(p, a->dir, &r->outputs, err));
   VG_TRY(vg_problem_surface(p, err));
   r->time_read = vg_display_now() - t;
   VG_TRY(stopped(r, err));
   t = vg_display_now();
   VG_TRY(vg_problem_close(p, &r->show, err));
+  VG_TRY(vg_layer_stage_plan(&r->layers, p, err));
   r->time_check = vg_display_now() - t;
   VG_TRY(vg_outputs_check(p, &r->outputs, err));
   VG_TRY(stopped(r, err));
@@ -115,45 +120,105 @@ done:
   return st;
 }
 
-static vg_status fill(struct run *r, struct vg_sizing **sizing,
-                      struct vg_error *err)
+/* The size field over a boundary. */
+static vg_status measure_sizes(struct run *r, const struct vg_mesh *boundary,
+                               struct vg_sizing **sizing, struct vg_error *err)
 {
   const struct vg_settings *s = &r->problem.settings;
   struct vg_sizing_options options = vg_settings_sizing(s);
-  struct vg_fill_options o = VG_FILL_OPTIONS_INIT;
   double t = vg_display_now();
   vg_status st;
 
   vg_display_update(&r->show, "sizes", 0, 0);
-  VG_TRY(vg_sizing_new(&options, s->n_source, s->source, &r->problem.surface,
-                       sizing, err));
-  r->time_size = vg_display_now() - t;
+  st = vg_sizing_new(&options, s->n_source, s->source, boundary, sizing, err);
+  r->time_size += vg_display_now() - t;
+  return st < 0 ? st : stopped(r, err);
+}
+
+static vg_status fill(struct run *r, const struct vg_mesh *boundary,
+                      const struct vg_sizing *sizing, struct vg_mesh *out,
+                      struct vg_error *err)
+{
+  const struct vg_settings *s = &r->problem.settings;
+  struct vg_fill_options o = VG_FILL_OPTIONS_INIT;
+  vg_status st;
+
   o.optimise = (int)s->optimise;
   o.max_cells = (uint64_t)s->max_cells;
   o.progress = vg_display_update;
   o.user = &r->show;
-  VG_TRY(vg_fill(&r->problem.surface, *sizing, &o, &r->mesh, &r->fill, err));
+  st = vg_fill(boundary, sizing, &o, out, &r->fill, err);
+  r->n_field_cell = out->n_tet;
   if (st == VG_BLOCKED)
     st = vg_fail(err, VG_ERR_IO, "interrupted; nothing was written");
-done:
   return st;
 }
 
-static vg_status judge(struct run *r, const struct vg_sizing *sizing,
-                       struct vg_error *err)
+static size_t cell_count(const struct vg_mesh *m)
+{
+  return m->n_tet + m->n_pyr + m->n_pri + m->n_hex;
+}
+
+static vg_status judge(struct run *r, const struct vg_mesh *m,
+                       const struct vg_sizing *sizing,
+                       struct vg_mesh_report *report, struct vg_error *err)
 {
   double t = vg_display_now();
   vg_status st;
 
-  vg_display_update(&r->show, "judge", r->mesh.n_tet, 0);
-  st = vg_mesh_judge(&r->mesh, sizing, &r->judge, err);
-  r->time_judge = vg_display_now() - t;
+  vg_display_update(&r->show, "judge", cell_count(m), 0);
+  st = vg_mesh_judge(m, sizing, report, err);
+  r->time_judge += vg_display_now() - t;
   if (st < 0) return st;
-  if (!r->judge.is_valid)
+  if (!report->is_valid)
     return vg_fail(err, VG_ERR_GEOMETRY, "the mesh did not pass its own "
                    "check and was not written; please report this with the "
                    "project files");
   return stopped(r, err);
+}
+
+static vg_status mesh_plain(struct run *r, struct vg_error *err)
+{
+  const struct vg_mesh *surface = &r->problem.surface;
+  struct vg_sizing *sizing = NULL;
+  vg_status st;
+
+  VG_TRY(measure_sizes(r, surface, &sizing, err));
+  VG_TRY(fill(r, surface, sizing, &r->mesh, err));
+  VG_TRY(judge(r, &r->mesh, sizing, &r->judge, err));
+done:
+  vg_sizing_free(sizing);
+  return st;
+}
+
+/* The second size field is that of the front, so that the fill fits the tops
+ * of the layers. Edges are held against it; within layers there is no
+ * isotropic size to meet. */
+static vg_status mesh_layers(struct run *r, struct vg_error *err)
+{
+  const struct vg_mesh *surface = &r->problem.surface;
+  const struct vg_mesh *front = &r->layers.layers.front.mesh;
+  struct vg_mesh field = VG_MESH_INIT;
+  struct vg_sizing *sizing = NULL;
+  vg_status st;
+
+  VG_TRY(measure_sizes(r, surface, &sizing, err));
+  VG_TRY(vg_layer_stage_grow(&r->layers, surface, sizing, &r->show, err));
+  VG_TRY(stopped(r, err));
+  vg_sizing_free(sizing);
+  sizing = NULL;
+  VG_TRY(measure_sizes(r, front, &sizing, err));
+  VG_TRY(fill(r, front, sizing, &field, err));
+  VG_TRY(judge(r, &field, sizing, &r->field, err));
+  vg_display_update(&r->show, "join", 0, 0);
+  VG_TRY(vg_layer_stage_join(&r->layers, surface, &field,
+                             r->problem.settings.cells, &r->mesh, err));
+  vg_mesh_release(&field);
+  VG_TRY(judge(r, &r->mesh, NULL, &r->judge, err));
+done:
+  vg_mesh_release(&field);
+  vg_sizing_free(sizing);
+  return st;
 }
 
 static json_t *strings(const struct vg_notes *notes)
@@ -197,12 +262,19 @@ static json_t *report_json(const struct run *r, int ok,
   if (ok) {
     json_object_set_new(o, "mesh", vg_report_mesh_json(&r->judge));
     json_object_set_new(o, "fill", vg_report_fill_json(&r->fill,
-                                                       r->mesh.n_tet));
+                                                       r->n_field_cell));
+    if (r->layers.is_on) {
+      json_object_set_new(o, "field", vg_report_mesh_json(&r->field));
+      json_object_set_new(o, "layers",
+                          vg_report_layers_json(&r->layers, &p->surface));
+    }
     json_object_set_new(o, "files", files_json(r));
   }
-  json_object_set_new(o, "seconds", json_pack("{s:f s:f s:f s:f s:f s:f s:f}",
+  json_object_set_new(o, "seconds", json_pack(
+    "{s:f s:f s:f s:f s:f s:f s:f s:f s:f}",
     "read", r->time_read, "check", r->time_check, "sizes", r->time_size,
-    "fill", r->fill.time_total, "judge", r->time_judge, "write",
+    "layers", r->layers.report.time_total + r->layers.time_measure, "join",
+    r->layers.join.time, "fill", r->fill.time_total, "judge", r->time_judge, "write",
     r->time_write, "total", vg_display_now() - r->start));
   json_object_set_new(o, "peak_memory_bytes",
                       json_real(vg_report_peak_memory()));
@@ -235,8 +307,9 @@ static vg_status write_all(struct run *r, struct vg_error *err)
   json_t *report = NULL;
   vg_status st;
 
-  vg_display_update(&r->show, "write", r->mesh.n_tet, 0);
-  VG_TRY(vg_outputs_mesh(&r->outputs, &r->problem, &r->mesh, err));
+  vg_display_update(&r->show, "write", cell_count(&r->mesh), 0);
+  VG_TRY(vg_outputs_mesh(&r->outputs, &r->problem, &r->layers, &r->mesh,
+                         err));
   r->time_write = vg_display_now() - t;
   VG_TRY(vg_outputs_add(&r->outputs, "report.json", err));
   path = vg_outputs_aside(&r->outputs, "report.json");
@@ -267,22 +340,28 @@ static void print_surface(const struct run *r)
     printf("  note: %s\n", p->notes.text[i]);
 }
 
-static void print_report(const struct run *r)
+static void print_count(const char *name, size_t n)
 {
   char count[32];
 
-  print_surface(r);
-  printf("\nFill\n");
-  vg_report_fill_text(stdout, &r->fill, r->mesh.n_tet);
-  printf("\nMesh\n");
-  printf("  %-24s %15s\n", "points", vg_cli_count(r->mesh.n_point, count));
-  printf("  %-24s %15s\n", "tetrahedra", vg_cli_count(r->mesh.n_tet, count));
-  vg_report_mesh_text(stdout, &r->judge, 0);
-  printf("\nTime in seconds: read %.2f, check %.2f, sizes %.2f, fill %.2f, "
-         "judge %.2f, write %.2f, total %.2f\n", r->time_read, r->time_check,
-         r->time_size, r->fill.time_total, r->time_judge, r->time_write,
+  printf("  %-24s %15s\n", name, vg_cli_count(n, count));
+}
+
+static void print_times(const struct run *r)
+{
+  printf("\nTime in seconds: read %.2f, check %.2f, sizes %.2f, ",
+         r->time_read, r->time_check, r->time_size);
+  if (r->layers.is_on)
+    printf("layers %.2f, ", r->layers.report.time_total +
+           r->layers.time_measure + r->layers.join.time);
+  printf("fill %.2f, judge %.2f, write %.2f, total %.2f\n",
+         r->fill.time_total, r->time_judge, r->time_write,
          vg_display_now() - r->start);
   printf("Peak memory: %.0f MB\n", vg_report_peak_memory() / 1e6);
+}
+
+static void print_files(const struct run *r)
+{
   printf("\nFiles\n");
   for (size_t i = 0; i < r->outputs.n_file; i++) {
     char *path = vg_outputs_final(&r->outputs, r->outputs.file[i].suffix);
@@ -291,6 +370,30 @@ static void print_report(const struct run *r)
            r->outputs.file[i].keep_old ? "  (input, kept)" : "");
     free(path);
   }
+}
+
+static void print_report(const struct run *r)
+{
+  print_surface(r);
+  if (r->layers.is_on) {
+    printf("\nLayers\n");
+    vg_report_layers_text(stdout, &r->layers, &r->problem.surface);
+  }
+  printf("\nFill\n");
+  vg_report_fill_text(stdout, &r->fill, r->n_field_cell);
+  if (r->layers.is_on) {
+    printf("\nField outside the layers\n");
+    print_count("tetrahedra", r->n_field_cell);
+    vg_report_mesh_text(stdout, &r->field, 0);
+  }
+  printf("\nMesh\n");
+  print_count("points", r->mesh.n_point);
+  print_count("tetrahedra", r->mesh.n_tet);
+  if (r->mesh.n_pyr) print_count("pyramids", r->mesh.n_pyr);
+  if (r->mesh.n_pri) print_count("prisms", r->mesh.n_pri);
+  vg_report_mesh_text(stdout, &r->judge, 0);
+  print_times(r);
+  print_files(r);
 }
 
 /* All faces with a defect go into STEM.defects.vtu. */
@@ -324,12 +427,10 @@ static int print_json(const struct run *r, int ok, const struct vg_error *err)
 static vg_status run_stages(struct run *r, const struct arguments *a,
                             struct vg_error *err)
 {
-  struct vg_sizing *sizing = NULL;
   vg_status st = read_project(r, a, err);
 
-  if (st >= 0) st = fill(r, &sizing, err);
-  if (st >= 0) st = judge(r, sizing, err);
-  vg_sizing_free(sizing);
+  if (st >= 0)
+    st = r->layers.is_on ? mesh_layers(r, err) : mesh_plain(r, err);
   return st < 0 ? st : write_all(r, err);
 }
 
@@ -350,8 +451,14 @@ static int run(const struct arguments *a)
     vg_display_clear(&r.show);
     if (a->json) status = print_json(&r, 1, &err);
     else print_report(&r);
+    if (r.layers.n_missed && status == VG_EXIT_DONE) {
+      fflush(stdout);
+      vg_report_missed_text(stderr, &r.layers, &r.problem.surface);
+      status = VG_EXIT_LIMIT;
+    }
   }
   vg_outputs_release(&r.outputs);
+  vg_layer_stage_release(&r.layers);
   vg_mesh_release(&r.mesh);
   vg_problem_release(&r.problem);
   return status;
@@ -372,13 +479,19 @@ int vg_cmd_mesh(int argc, char **argv)
   };
   struct vg_cli_options options;
   struct argp argp = { .parser = option, .args_doc = "-p PROJECT",
-    .doc = "Fill the closed surface of a project with tetrahedra.\v"
+    .doc = "Mesh the volume of a project: viscous layers on its walls "
+      "where they are asked for, tetrahedra in the rest.\v"
       "A project is a VGRID project (PROJECT.d3m with PROJECT.front, or "
       "planar patches alone) or a surface (UGRID, STL, Cart3D, OBJ, Medit), "
       "with conditions in PROJECT.mapbc and settings in PROJECT.deck. Written "
       "are PROJECT.cogsg, .bc, .mapbc and .b8.ugrid, PROJECT.resolved.deck "
       "with all settings, and PROJECT.report.json; a surface with defects is "
-      "refused and its bad faces are put into PROJECT.defects.vtu." };
+      "refused and its bad faces are put into PROJECT.defects.vtu. Layers "
+      "grow on viscous walls (condition 4, class 2 of a .d3m, --walls) once "
+      "a first height is known (--first, or --y-plus with --reynolds and "
+      "--reference-length); PROJECT.wall.vtu shows them. Exit status: 0 "
+      "done, 1 failed, 2 wrong usage, 4 done but a limit on the layers "
+      "(--min-full, ...) is not met." };
   struct arguments a = { 0 };
   int status;
 

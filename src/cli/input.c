@@ -1,6 +1,7 @@
 #define _GNU_SOURCE
 #include "cli/input.h"
 
+#include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,9 +9,11 @@
 
 #include "base/memory.h"
 #include "cli/deck.h"
+#include "io/aflr.h"
 #include "io/format.h"
 #include "io/mapbc.h"
 #include "io/vgrid.h"
+#include "layers/law.h"
 
 void vg_note(struct vg_notes *notes, const char *format, ...)
 {
@@ -44,6 +47,8 @@ static void release_files(struct vg_input_files *f)
   free(f->surface);
   free(f->mapbc);
   free(f->deck);
+  free(f->tags);
+  free(f->aflr);
   memset(f, 0, sizeof *f);
 }
 
@@ -119,9 +124,13 @@ static vg_status find_beside(struct vg_input_files *f, const char *deck,
 {
   f->mapbc = beside(f->stem, "mapbc");
   f->deck = deck ? strdup(deck) : beside(f->stem, "deck");
+  f->tags = beside(f->stem, "tags");
+  f->aflr = beside(f->stem, "bc");
   if (!f->d3m) f->d3m = strdup("");
   if (!f->front) f->front = strdup("");
-  if (!f->mapbc || !f->deck || !f->d3m || !f->front)
+  /* A .bc beside a mesh of an earlier run is VGRID's. */
+  if (f->aflr && *f->aflr && !vg_aflr_is_bc(f->aflr)) *f->aflr = 0;
+  if (!f->mapbc || !f->deck || !f->d3m || !f->front || !f->tags || !f->aflr)
     return vg_fail_memory(err, "the paths of the project");
   return VG_OK;
 }
@@ -321,11 +330,94 @@ static vg_status read_surface(struct vg_problem *p, struct vg_error *err)
   return st < 0 ? st : apply_conditions(p, err);
 }
 
-static void note_layers(struct vg_problem *p)
+/* Layer settings of the .d3m where none are given. VGRID's vfact scales the
+ * spacing of its viscous part: the local edge at which layers end. */
+static void merge_layers(struct vg_problem *p)
 {
-  if (p->project.grid)
-    vg_note(&p->notes, "the .d3m asks for viscous layers (grid = %d): this "
-            "version makes isotropic cells only", (int)p->project.grid);
+  struct vg_layer_settings *l = &p->settings.layer;
+  const struct vg_project *d = &p->project;
+
+  if (!l->from_files || !d->grid || l->grow == VG_ANSWER_NO) return;
+  vg_note(&p->notes, "layers as the .d3m says (grid = %d): first %g, rates %g "
+          "and %g, at most %d layers, vfact %g", (int)d->grid,
+          d->layer.delta1, d->layer.rate1, d->layer.rate2,
+          (int)d->layer.n_max, d->vfact);
+  if (l->first == 0 && l->y_plus == 0) {
+    l->first = d->layer.delta1 > 0 ? d->layer.delta1 : 0;
+    if (d->grid == 2) l->by_source = 1;
+  }
+  if (isnan(l->ratio) && isnan(l->rate1) && isnan(l->rate2)) {
+    l->rate1 = d->layer.rate1;
+    l->rate2 = d->layer.rate2;
+  }
+  if (l->most == 0 && d->layer.n_max > 0)
+    l->most = d->layer.n_max < VG_LEVELS_MAX ? d->layer.n_max : VG_LEVELS_MAX;
+  if (isnan(l->cap)) l->cap = 0;
+  if (d->vfact > 0) l->end *= d->vfact;
+}
+
+/* The row of patch id in the layers table, added where there is none. */
+static struct vg_layer_row *layer_row(struct vg_settings *s, int32_t id)
+{
+  struct vg_layer_row row;
+
+  for (size_t i = 0; i < s->n_layer; i++)
+    if (s->layer_row[i].id == id) return &s->layer_row[i];
+  vg_settings_row_default(VG_TABLE_LAYERS, &row);
+  row.id = id;
+  if (vg_settings_add(s, VG_TABLE_LAYERS, &row, NULL) < 0) return NULL;
+  return &s->layer_row[s->n_layer - 1];
+}
+
+/* What an AFLR file asks for on one patch, where nothing is given. */
+static vg_status merge_aflr_patch(struct vg_settings *s,
+                                  const struct vg_aflr_patch *a, int32_t id,
+                                  struct vg_error *err)
+{
+  const struct vg_layer_settings *l = &s->layer;
+  struct vg_layer_row *row;
+
+  if (!a->is_viscous ||
+      !(a->spacing > 0 || a->thickness > 0 || a->n_layer > 0))
+    return VG_OK;
+  row = layer_row(s, id);
+  if (!row) return vg_fail_memory(err, "the layers table");
+  if (a->spacing > 0 && l->first == 0 && l->y_plus == 0 &&
+      isnan(row->first) && isnan(row->y_plus))
+    row->first = a->spacing;
+  if (a->thickness > 0 && l->total == 0 && isnan(row->total))
+    row->total = a->thickness;
+  if (a->n_layer > 0 && a->n_layer <= VG_LEVELS_MAX && l->count == 0 &&
+      row->count == VG_COUNT_NONE)
+    row->count = a->n_layer;
+  return VG_OK;
+}
+
+/* AFLR's .tags go by number, its .bc by name. */
+static vg_status apply_aflr(struct vg_problem *p, const char *path,
+                            int by_name, struct vg_error *err)
+{
+  struct vg_aflr a = VG_AFLR_INIT;
+  const struct vg_mesh *m = &p->surface;
+  size_t n_unused = 0;
+  vg_status st;
+
+  if (!*path) return VG_OK;
+  VG_TRY(by_name ? vg_aflr_bc_read(path, &a, err)
+                 : vg_aflr_tags_read(path, &a, err));
+  VG_TRY(vg_aflr_apply(&a, &p->surface, &n_unused, err));
+  if (n_unused)
+    vg_note(&p->notes, "%s lists %zu patches that the surface does not have",
+            path, n_unused);
+  for (size_t i = 0; i < a.n && p->settings.layer.from_files; i++)
+    for (size_t j = 0; j < m->n_patch; j++)
+      if (by_name ? strcmp(m->patch[j].name, a.patch[i].name) == 0
+                  : m->patch[j].id == a.patch[i].id)
+        VG_TRY(merge_aflr_patch(&p->settings, &a.patch[i], m->patch[j].id,
+                                err));
+done:
+  vg_aflr_release(&a);
+  return st;
 }
 
 vg_status vg_problem_surface(struct vg_problem *p, struct vg_error *err)
@@ -334,10 +426,13 @@ vg_status vg_problem_surface(struct vg_problem *p, struct vg_error *err)
 
   if (*p->files.d3m) {
     VG_TRY(vg_d3m_read(p->files.d3m, &p->project, err));
-    note_layers(p);
+    merge_layers(p);
   }
   VG_TRY(merge_sources(p, err));
   VG_TRY(read_surface(p, err));
+  VG_TRY(apply_aflr(p, p->files.tags, 0, err));
+  VG_TRY(apply_aflr(p, p->files.aflr, 1, err));
+  p->settings.layer.from_files = 0;
   VG_TRY(apply_patch_table(p, err));
 done:
   return st;

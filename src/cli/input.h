@@ -15,6 +15,7 @@
 struct vg_input_files {
   char *stem;                  /* folder and project name, no extension */
   char *d3m, *front, *surface, *mapbc, *deck;
+  char *tags, *aflr;           /* of AFLR: .tags, .bc */
 };
 
 /** Notes for the report, in the order in which they came up. */

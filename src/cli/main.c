@@ -1,5 +1,5 @@
 /* The program `vanguard`: finds the subcommand. Exit status: 0 done, 1 the
- * job failed, 2 wrong usage. */
+ * job failed, 2 wrong usage, 4 done but a limit on the layers is not met. */
 #include <stdio.h>
 #include <string.h>
 
@@ -23,13 +23,15 @@ static const struct command {
 static void usage(FILE *to)
 {
   fprintf(to, "Usage: vanguard COMMAND [OPTION...]\n"
-          "Vanguard makes tetrahedral meshes for aerodynamics from closed "
-          "surfaces.\n\n");
+          "Vanguard makes volume meshes for aerodynamics from closed "
+          "surfaces: viscous\nlayers on the walls, tetrahedra around "
+          "them.\n\n");
   for (size_t i = 0; i < N_COMMAND; i++)
     fprintf(to, "  %-8s %s\n", commands[i].name, commands[i].summary);
   fprintf(to, "\n'vanguard COMMAND --help' lists the options of a command, "
           "'vanguard --version'\nshows the version. Exit status: 0 done, 1 "
-          "failed, 2 wrong usage.\n");
+          "failed, 2 wrong usage,\n4 done but a limit on the layers is not "
+          "met.\n");
 }
 
 static int version(void)

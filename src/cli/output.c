@@ -11,10 +11,14 @@
 #include "cli/cli.h"
 #include "cli/deck.h"
 #include "core/quality.h"
+#include "io/foam.h"
 #include "io/format.h"
 #include "io/mapbc.h"
+#include "io/ugrid.h"
 #include "io/vgrid.h"
 #include "io/vtu.h"
+
+#define WALLS "wall.vtu"
 
 static void remove_aside(struct vg_outputs *o)
 {
@@ -23,7 +27,8 @@ static void remove_aside(struct vg_outputs *o)
   if (!o->aside) return;
   for (size_t i = 0; i < o->n_file; i++) {
     path = vg_outputs_aside(o, o->file[i].suffix);
-    if (path) unlink(path);
+    if (path && o->file[i].is_case) vg_foam_remove(path);
+    else if (path) unlink(path);
     free(path);
   }
   rmdir(o->aside);
@@ -63,11 +68,19 @@ char *vg_outputs_final(const struct vg_outputs *o, const char *suffix)
   return join(o->dir, o->name, suffix);
 }
 
+static int is_case(const char *item)
+{
+  struct vg_foam_options options;
+
+  return vg_foam_word(item, &options);
+}
+
 /* Words of the write list that are no suffix of a mesh format. */
 static int is_own_item(const char *item)
 {
   return !strcmp(item, "cogsg") || !strcmp(item, "mapbc") ||
-         !strcmp(item, "fun3d.mapbc") || !strcmp(item, "vtu");
+         !strcmp(item, "fun3d.mapbc") || !strcmp(item, "vtu") ||
+         is_case(item);
 }
 
 static vg_status plan_item(struct vg_outputs *o, const char *item, size_t len,
@@ -82,10 +95,14 @@ static vg_status plan_item(struct vg_outputs *o, const char *item, size_t len,
   to[len] = 0;
   for (size_t i = 0; i < o->n_item; i++)
     if (!strcmp(o->item[i], to)) return VG_OK;
+  for (size_t i = 0; i < o->n_item; i++)
+    if (is_case(to) && is_case(o->item[i]))
+      return vg_fail(err, VG_ERR_INPUT, "write: foam and foam-ascii go into "
+                     "the same folder; name one");
   if (!is_own_item(to) && !vg_format_can_write(to))
     return vg_fail(err, VG_ERR_INPUT, "write: '%s' is no format; known are "
-                   "cogsg (with bc and mapbc), mapbc, fun3d.mapbc, vtu and "
-                   "suffixes such as b8.ugrid, lb8.ugrid, ugrid, meshb", to);
+                   "cogsg (with bc and mapbc), mapbc, fun3d.mapbc, vtu, "
+                   "foam, foam-ascii and suffixes such as b8.ugrid, lb8.ugrid, ugrid, meshb", to);
   o->n_item++;
   return VG_OK;
 }
@@ -118,7 +135,8 @@ static const char *hits_input(const struct vg_outputs *o,
                               const struct vg_input_files *f,
                               const char *suffix)
 {
-  const char *input[] = { f->d3m, f->front, f->surface, f->mapbc, f->deck };
+  const char *input[] = { f->d3m, f->front, f->surface, f->mapbc, f->deck,
+                          f->tags, f->aflr };
   char *path = vg_outputs_final(o, suffix);
   const char *hit = NULL;
 
@@ -126,6 +144,15 @@ static const char *hits_input(const struct vg_outputs *o,
     if (same_file(path, input[i])) hit = input[i];
   free(path);
   return hit;
+}
+
+/* A .cogsg holds tetrahedra only. */
+static vg_status refuse_mixed(const char *item, const struct vg_settings *s,
+                              struct vg_error *err)
+{
+  if (s->cells != VG_LAYER_MIXED || strcmp(item, "cogsg") != 0) return VG_OK;
+  return vg_fail(err, VG_ERR_INPUT, "write: a .cogsg holds tetrahedra only, "
+                 "but cells is mixed; write b8.ugrid, or set cells to tets");
 }
 
 static vg_status refuse_hit(const struct vg_outputs *o,
@@ -168,6 +195,7 @@ vg_status vg_outputs_plan(const struct vg_problem *p, const char *dir,
       st = refuse_hit(o, p, o->item[i], err);
     if (st >= 0 && !strcmp(o->item[i], "cogsg"))
       st = refuse_hit(o, p, "bc", err);
+    if (st >= 0) st = refuse_mixed(o->item[i], &p->settings, err);
   }
   return st;
 }
@@ -219,8 +247,7 @@ vg_status vg_outputs_add(struct vg_outputs *o, const char *suffix,
     free(copy);
     return vg_fail_memory(err, "the output paths");
   }
-  o->file[o->n_file].suffix = copy;
-  o->file[o->n_file++].keep_old = 0;
+  o->file[o->n_file++] = (struct vg_outputs_file){ copy, 0, 0 };
   return VG_OK;
 }
 
@@ -233,20 +260,34 @@ static vg_status write_vtu(const char *path, const struct vg_mesh *m,
     { "angle_min", VG_VTU_CELL, VG_VTU_FLOAT32, 1, angle },
     { "radius_ratio", VG_VTU_CELL, VG_VTU_FLOAT32, 1, ratio },
   };
+  int is_mixed = m->n_pyr + m->n_pri + m->n_hex > 0;
   vg_status st;
 
   if (!angle || !ratio) {
     st = vg_fail_memory(err, "the quality of the cells");
   } else {
     vg_mesh_cell_quality(m, angle, ratio);
-    st = vg_vtu_write(path, m, field, 2, err);
+    st = vg_vtu_write(path, m, field, is_mixed ? 0 : 2, err);
   }
   free(angle);
   free(ratio);
   return st;
 }
 
+static vg_status write_format(const char *path, const char *suffix,
+                              const struct vg_problem *p,
+                              const struct vg_layer_stage *layers,
+                              const struct vg_mesh *m, struct vg_error *err)
+{
+  struct vg_ugrid_kind kind;
+
+  if (p->settings.ugrid_tail && vg_ugrid_kind(suffix, &kind))
+    return vg_ugrid_write_tail(path, m, layers->join.n_layer_tet, err);
+  return vg_format_write(path, m, err);
+}
+
 static vg_status write_file(struct vg_outputs *o, const struct vg_problem *p,
+                            const struct vg_layer_stage *layers,
                             const struct vg_mesh *m, const char *suffix,
                             struct vg_error *err)
 {
@@ -263,22 +304,47 @@ static vg_status write_file(struct vg_outputs *o, const struct vg_problem *p,
                         err);
   else if (!strcmp(suffix, "fun3d.mapbc"))
     st = vg_mapbc_write(path, m, VG_MAPBC_FUN3D, NULL, NULL, err);
+  else if (!strcmp(suffix, WALLS))
+    st = vg_layer_stage_write(layers, &p->surface, path, err);
   else
-    st = vg_format_write(path, m, err);
+    st = write_format(path, suffix, p, layers, m, err);
   free(path);
   return st < 0 ? st : vg_outputs_add(o, suffix, err);
 }
 
-static vg_status write_triple(struct vg_outputs *o, const struct vg_mesh *m,
-                              struct vg_error *err)
+static vg_status write_case(struct vg_outputs *o, const struct vg_mesh *m,
+                            const char *item, struct vg_error *err)
+{
+  struct vg_foam_options options;
+  char *path = vg_outputs_aside(o, VG_FOAM_SUFFIX);
+  vg_status st = path ? VG_OK : vg_fail_memory(err, "the output paths");
+
+  vg_foam_word(item, &options);
+  if (st >= 0) st = vg_outputs_add(o, VG_FOAM_SUFFIX, err);
+  if (st >= 0) {
+    o->file[o->n_file - 1].is_case = 1;
+    st = vg_foam_write(path, m, &options, err);
+  }
+  free(path);
+  return st;
+}
+
+static vg_status write_triple(struct vg_outputs *o,
+                              const struct vg_layer_stage *layers,
+                              const struct vg_mesh *m, struct vg_error *err)
 {
   const char *part[] = { "cogsg", "bc", "mapbc" };
+  struct vg_cogsg_info info = VG_COGSG_INFO_INIT;
   char *stem;
   vg_status st;
 
   if (asprintf(&stem, "%s/%s", o->aside, o->name) < 0)
     return vg_fail_memory(err, "the output paths");
-  st = vg_cogsg_write(stem, m, NULL, 0, NULL, err);
+  if (layers->is_on) {
+    info.n_layer_point = layers->join.n_layer_point;
+    info.n_layer_cell = layers->join.n_layer_tet;
+  }
+  st = vg_cogsg_write(stem, m, &info, 0, NULL, err);
   free(stem);
   for (int i = 0; i < 3 && st >= 0; i++) st = vg_outputs_add(o, part[i], err);
   return st;
@@ -307,16 +373,22 @@ static vg_status write_deck(struct vg_outputs *o, const struct vg_problem *p,
 }
 
 vg_status vg_outputs_mesh(struct vg_outputs *o, const struct vg_problem *p,
+                          const struct vg_layer_stage *layers,
                           const struct vg_mesh *mesh, struct vg_error *err)
 {
   vg_status st = vg_outputs_begin(o, err);
 
   for (size_t i = 0; i < o->n_item && st >= 0; i++) {
-    if (!strcmp(o->item[i], "cogsg")) st = write_triple(o, mesh, err);
-    else st = write_file(o, p, mesh, o->item[i], err);
-    if (st >= 0 && !strcmp(o->item[i], "vtu"))
-      st = write_file(o, p, mesh, "surface.vtu", err);
+    const char *item = o->item[i];
+
+    if (!strcmp(item, "cogsg")) st = write_triple(o, layers, mesh, err);
+    else if (is_case(item)) st = write_case(o, mesh, item, err);
+    else st = write_file(o, p, layers, mesh, item, err);
+    if (st >= 0 && !strcmp(item, "vtu"))
+      st = write_file(o, p, layers, mesh, "surface.vtu", err);
   }
+  if (st >= 0 && layers->is_on)
+    st = write_file(o, p, layers, mesh, WALLS, err);
   if (st >= 0) st = write_deck(o, p, err);
   /* What may coincide with an input by then: a .mapbc that knows all patches,
    * and the resolved deck of the run that is being repeated. */
@@ -335,6 +407,8 @@ vg_status vg_outputs_commit(struct vg_outputs *o, struct vg_error *err)
 
     if (!from || !to)
       st = vg_fail_memory(err, "the output paths");
+    else if (o->file[i].is_case)
+      st = vg_foam_place(from, to, err);
     else if (!o->file[i].keep_old && rename(from, to))
       st = vg_fail(err, VG_ERR_IO, "%s: cannot be put in place: %s", to,
                    strerror(errno));

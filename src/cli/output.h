@@ -5,6 +5,7 @@
 #define VG_CLI_OUTPUT_H
 
 #include "cli/input.h"
+#include "cli/layers.h"
 
 /** Kinds of file in a write list. */
 enum { VG_OUTPUT_ITEMS = 16 };
@@ -15,7 +16,8 @@ struct vg_outputs {
   size_t n_item;
   char item[VG_OUTPUT_ITEMS][24];
   size_t n_file, cap_file;
-  struct vg_outputs_file { char *suffix; int keep_old; } *file;
+  /* is_case: a folder with an OpenFOAM mesh. */
+  struct vg_outputs_file { char *suffix; int keep_old, is_case; } *file;
 };
 #define VG_OUTPUTS_INIT { .n_item = 0 }
 
@@ -39,8 +41,10 @@ char *vg_outputs_aside(struct vg_outputs *o, const char *suffix);
 /** Path of STEM.suffix when all is done; free() it. */
 char *vg_outputs_final(const struct vg_outputs *o, const char *suffix);
 
-/** Write the mesh in every form asked for, and the resolved deck. */
+/** Write the mesh in every form asked for, the resolved deck, and the walls
+ * with their layers where there are some. */
 vg_status vg_outputs_mesh(struct vg_outputs *o, const struct vg_problem *p,
+                          const struct vg_layer_stage *layers,
                           const struct vg_mesh *mesh, struct vg_error *err);
 
 /** Start the hidden folder; register a file written there by the caller. */

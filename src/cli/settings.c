@@ -121,8 +121,9 @@ static const struct vg_param params[] = {
                               "layers" },
   { "layer_sources", AT(layer.by_source), .type = VG_PARAM_FLAG, .unit = "",
     .help = "first height and rates from the sources (VGRID's grid 2)" },
-  { "d3m_layers", AT(layer.from_d3m), .type = VG_PARAM_FLAG, .unit = "",
-    .help = "use the layer settings of the .d3m where none are given here" },
+  { "file_layers", AT(layer.from_files), .type = VG_PARAM_FLAG, .unit = "",
+    .help = "use the layer settings of a .d3m, .tags or AFLR .bc where "
+            "none are given here" },
   LIMIT("min_full", AT(layer.min_full), 100, "% of the faces of each wall "
         "patch that must have all layers, else exit status 4"),
   LIMIT("min_any", AT(layer.min_any), 100, "% of the faces of each wall patch "
@@ -314,7 +315,7 @@ static void default_layers(struct vg_layer_settings *l)
   l->gap = o.gap;
   l->end = o.end;
   l->smooth = o.smooth;
-  l->from_d3m = 1;
+  l->from_files = 1;
 }
 
 void vg_settings_default(struct vg_settings *s)

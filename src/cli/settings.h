@@ -60,7 +60,7 @@ struct vg_layer_settings {
   char walls[VG_LIST_MAX], slip[VG_LIST_MAX];
   double fan_angle, gap, end;
   int64_t smooth;
-  int by_source, from_d3m;
+  int by_source, from_files;
   double min_full, min_any, max_first_error;
 };
 

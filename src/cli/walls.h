@@ -1,0 +1,51 @@
+/* cli/walls.h: on which patches layers grow. Uses cli/input.h. */
+#ifndef VG_CLI_WALLS_H
+#define VG_CLI_WALLS_H
+
+#include <stdint.h>
+
+#include "cli/input.h"
+
+/** Why a patch is a wall, for the report. */
+enum vg_wall_reason {
+  VG_WALL_NOT,
+  VG_WALL_SETTING,   /* the layers table or the list of walls */
+  VG_WALL_CLASS,     /* meshing class 2 of the .d3m */
+  VG_WALL_CONDITION, /* a viscous condition */
+  VG_WALL_BODY       /* a body without any condition: all of it */
+};
+
+/** In words. Static string. */
+const char *vg_wall_reason_name(enum vg_wall_reason reason);
+
+/** 1 for a condition of a viscous wall, in either solver's codes, or the name
+ * BCWallViscous. */
+int vg_is_viscous(const struct vg_patch *p);
+
+/** Numbers as in "3-12,15": ranges are inclusive, numbers may be negative.
+ *
+ * @param name  of the list, for messages
+ * @param on    in/out: [m->n_patch] set to 1 for patches in the list
+ * VG_ERR_INPUT for what is no number, and for a number or range that the
+ * surface does not have. */
+vg_status vg_patch_list(const char *name, const char *list,
+                        const struct vg_mesh *m, uint8_t *on,
+                        struct vg_error *err);
+
+/** The walls of a closed problem. The layers table decides, then the lists
+ * `walls` and `slip`, then meshing class and condition; a body without any
+ * condition is all wall when layers are asked for.
+ *
+ * @param reason  out: [p->surface.n_patch]
+ * @param n_wall  out
+ * VG_ERR_INPUT for a patch that is not there, for contradictions, and when
+ * layers are asked for and there is no wall: the message lists the patches
+ * and says what to do. */
+vg_status vg_walls_find(const struct vg_problem *p,
+                        enum vg_wall_reason *reason, size_t *n_wall,
+                        struct vg_error *err);
+
+/** 1 when settings ask for layers whatever the conditions say. */
+int vg_walls_asked(const struct vg_settings *s);
+
+#endif
