@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "layers/fan.h"
 #include "layers/topology_wall.h"
 
 void vg_topology_release(struct vg_topology *t)
@@ -17,47 +18,75 @@ void vg_topology_release(struct vg_topology *t)
   memset(t, 0, sizeof *t);
 }
 
-static vg_status make_columns(const struct vg_wall *w, struct vg_columns *c,
-                              struct vg_topology *t, struct vg_error *err)
+static vg_status make_columns(const struct vg_wall *w, const struct vg_fans *f,
+                              struct vg_columns *c, struct vg_topology *t,
+                              struct vg_error *err)
 {
-  c->n_column = w->n_point;
+  c->n_column = f->first[w->n_point];
   c->column = vg_calloc(c->n_column, sizeof *c->column);
   t->preset = vg_calloc(c->n_column, sizeof *t->preset);
   t->blocked = vg_calloc(c->n_column, sizeof *t->blocked);
   if (!c->column || !t->preset || !t->blocked)
     return vg_fail_memory(err, "the columns");
-  for (size_t i = 0; i < w->n_point; i++) {
-    struct vg_column *col = &c->column[i];
+  for (size_t p = 0; p < w->n_point; p++)
+    for (size_t i = f->first[p]; i < f->first[p + 1]; i++) {
+      struct vg_column *col = &c->column[i];
 
-    col->root = w->point[i];
-    memcpy(col->slide, w->slide[i], sizeof col->slide);
-    col->bent = SIZE_MAX;
-    t->blocked[i] = w->blocked[i];
+      col->root = w->point[p];
+      memcpy(col->slide, w->slide[p], sizeof col->slide);
+      col->bent = SIZE_MAX;
+      t->blocked[i] = w->blocked[p];
+    }
+  for (size_t i = 0; i < f->n_preset; i++) {
+    const struct vg_fan_preset *preset = &f->preset[i];
+    uint32_t at = f->first[preset->point] + preset->at;
+
+    memcpy(c->column[at].dir, preset->dir, sizeof preset->dir);
+    t->preset[at] = 1;
   }
   return VG_OK;
 }
 
-static vg_status make_faces(const struct vg_wall *w, struct vg_columns *c,
-                            struct vg_error *err)
+/* Faces of triangles, then virtual ones. */
+static vg_status make_faces(const struct vg_wall *w, const struct vg_fans *f,
+                            struct vg_columns *c, struct vg_error *err)
 {
-  c->n_face = w->n_face;
-  c->n_rim = w->n_rim;
+  c->n_face = w->n_face + f->n_face;
+  if (c->n_face > UINT32_MAX / 12)
+    return vg_fail(err, VG_ERR_UNSUPPORTED, "%zu faces with fans, %u at most; "
+                   "raise the fan angle or coarsen the surface", c->n_face,
+                   UINT32_MAX / 12);
   c->face = vg_alloc(c->n_face, sizeof *c->face);
   c->face_tri = vg_alloc(c->n_face, sizeof *c->face_tri);
+  if (!c->face || !c->face_tri)
+    return vg_fail_memory(err, "the faces of the columns");
+  for (uint32_t h = 0; h < 3 * w->n_face; h++)
+    c->face[h / 3][h % 3] = vg_fan_column(w, f, h);
+  memcpy(c->face_tri, w->tri, w->n_face * sizeof *w->tri);
+  for (size_t i = 0; i < f->n_face; i++) {
+    memcpy(c->face[w->n_face + i], f->face[i], sizeof *c->face);
+    c->face_tri[w->n_face + i] = VG_NO_INDEX;
+  }
+  return VG_OK;
+}
+
+/* Rims of triangles by rising half-edge, then those of fans. */
+static vg_status make_rims(const struct vg_wall *w, const struct vg_fans *f,
+                           struct vg_columns *c, struct vg_error *err)
+{
+  c->n_rim = w->n_rim + f->n_rim;
   c->rim = vg_alloc(c->n_rim, sizeof *c->rim);
   c->rim_patch = vg_alloc(c->n_rim, sizeof *c->rim_patch);
-  if (!c->face || !c->face_tri || !c->rim || !c->rim_patch)
-    return vg_fail_memory(err, "the faces of the columns");
-  for (size_t f = 0; f < w->n_face; f++) {
-    memcpy(c->face[f], w->face[f], sizeof *c->face);
-    c->face_tri[f] = w->tri[f];
-  }
+  if (!c->rim || !c->rim_patch)
+    return vg_fail_memory(err, "the rims of the columns");
   for (size_t i = 0; i < w->n_rim; i++) {
-    uint32_t h = w->rim[i], next = vg_half_next(h);
-
-    c->rim[i][0] = c->face[h / 3][h % 3];
-    c->rim[i][1] = c->face[next / 3][next % 3];
+    c->rim[i][0] = vg_fan_column(w, f, w->rim[i]);
+    c->rim[i][1] = vg_fan_column(w, f, vg_half_next(w->rim[i]));
     c->rim_patch[i] = w->rim_patch[i];
+  }
+  for (size_t i = 0; i < f->n_rim; i++) {
+    memcpy(c->rim[w->n_rim + i], f->rim[i], sizeof *c->rim);
+    c->rim_patch[w->n_rim + i] = f->rim_patch[i];
   }
   return VG_OK;
 }
@@ -125,13 +154,15 @@ vg_status vg_topology_build(const struct vg_mesh *surface,
 {
   vg_status st = VG_OK;
   struct vg_wall w = VG_WALL_INIT;
+  struct vg_fans f = VG_FANS_INIT;
   struct vg_columns c = VG_COLUMNS_INIT;
   struct vg_topology made = VG_TOPOLOGY_INIT;
 
-  (void)fan_angle;
   VG_TRY(vg_wall_build(surface, is_wall, n_slide, slide, &w, err));
-  VG_TRY(make_columns(&w, &c, &made, err));
-  VG_TRY(make_faces(&w, &c, err));
+  VG_TRY(vg_fans_build(&w, n_slide, slide, fan_angle, &f, err));
+  VG_TRY(make_columns(&w, &f, &c, &made, err));
+  VG_TRY(make_faces(&w, &f, &c, err));
+  VG_TRY(make_rims(&w, &f, &c, err));
   VG_TRY(make_corners(&c, &made, err));
   VG_TRY(make_near(&c, &made, err));
   *columns = c;
@@ -140,6 +171,7 @@ vg_status vg_topology_build(const struct vg_mesh *surface,
   made = (struct vg_topology)VG_TOPOLOGY_INIT;
 done:
   vg_wall_release(&w);
+  vg_fans_release(&f);
   vg_columns_release(&c);
   vg_topology_release(&made);
   return st;

@@ -38,6 +38,9 @@ void vg_topology_release(struct vg_topology *t);
  * keeps one column. Virtual faces close the gaps along ridges and at points.
  * A ridge that ends at a slide patch ends in a rim there.
  *
+ * Either all columns of one root have levels or none: otherwise two columns
+ * of one direction across a virtual face could make a flat first cell.
+ *
  * @param slide    [n_slide] as from vg_slides_find
  * @param columns  in: empty; untouched on failure, as is *t
  * Cost: O(points + triangles). Same bytes for the same input. */

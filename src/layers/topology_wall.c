@@ -219,8 +219,11 @@ static void visit_point(struct vg_wall *w, const struct rings *r, size_t p)
     n_seen++;
     h = vg_wall_turn(w, h);
   } while (h != VG_NO_INDEX && h != start && n_seen < n_corner);
-  if (n_seen != n_corner || (h != VG_NO_INDEX && h != start))
+  if (n_seen != n_corner || (h != VG_NO_INDEX && h != start)) {
     w->blocked[p] = 1;
+  } else if (h == start && n_corner < r->first[p + 1] - r->first[p]) {
+    w->blocked[p] = 1;        /* a closed ring, and another sheet touches it */
+  }
 }
 
 vg_status vg_wall_build(const struct vg_mesh *surface, const uint8_t *is_wall,
