@@ -1,0 +1,787 @@
+/* Layers as a whole, on surfaces that are hard for them: whatever the shape,
+ * valid cells, the first height kept, a front that bounds the rest, and every
+ * limit accounted for; then the fill and the join. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "core/fill.h"
+#include "core/predicates.h"
+#include "core/quality.h"
+#include "core/surface_check.h"
+#include "layer_cases.h"
+#include "layers/join.h"
+#include "layers/layers.h"
+#include "layers/measure.h"
+
+/* A case at work. All walls ask for the same: a first layer of 1/1000 of the
+ * edge, ratio 1.25, which takes about 30 levels and 4.4 edges. */
+struct bench {
+  struct vg_mesh surface;
+  struct vg_sizing *sizing;
+  struct vg_layer_request request[16];
+  struct vg_layer_options options;
+  struct vg_layers layers;
+  struct vg_layer_report report;
+};
+
+static void start(struct bench *b, double h)
+{
+  struct vg_layer_options options = VG_LAYER_OPTIONS_INIT;
+
+  b->sizing = shape_sizing(&b->surface, 1.2, 0);
+  assert_true(b->surface.n_patch <= 16);
+  memset(b->request, 0, sizeof b->request);
+  for (size_t p = 0; p < b->surface.n_patch; p++) {
+    struct vg_law law = VG_LAW_INIT;
+
+    law.delta1 = 1e-3 * h;
+    law.rate1 = 0.25;
+    b->request[p].is_wall = b->surface.patch[p].bc == CASE_WALL;
+    b->request[p].law = law;
+  }
+  b->options = options;
+  b->options.patch = b->request;
+}
+
+static void finish(struct bench *b)
+{
+  vg_layers_release(&b->layers);
+  vg_sizing_free(b->sizing);
+  vg_mesh_release(&b->surface);
+}
+
+static void grow(const struct bench *b, int threads, struct vg_layers *out,
+                 struct vg_layer_report *report)
+{
+  struct vg_layer_options options = b->options;
+  struct vg_error err = VG_ERROR_INIT;
+
+  options.threads = threads;
+  if (vg_layers_grow(&b->surface, b->sizing, &options, out, report, &err) < 0)
+    fail_msg("%s", err.text);
+}
+
+/* --- what must hold in every case ---------------------------------------- */
+
+static void is_clean(const struct vg_mesh *m)
+{
+  struct vg_surface_check_options options = { 0, 0, 0 };
+  struct vg_surface_report r = VG_SURFACE_REPORT_INIT;
+  struct vg_mesh copy = VG_MESH_INIT;
+  char text[300];
+
+  assert_int_equal(vg_mesh_copy(&copy, m, NULL), VG_OK);
+  assert_int_equal(vg_surface_check(&copy, &options, &r, NULL), VG_OK);
+  if (r.n_defect) {
+    vg_defect_text(&copy, &r.defect[0], text, sizeof text);
+    fail_msg("%zu defects: %s", r.n_defect, text);
+  }
+  assert_true(r.is_closed);
+  vg_surface_report_release(&r);
+  vg_mesh_release(&copy);
+}
+
+static void cells_are_valid(const struct bench *b)
+{
+  struct vg_layer_judgement r;
+
+  assert_int_equal(vg_layers_judge(&b->surface, &b->layers.columns, 1, &r,
+                                   NULL), VG_OK);
+  assert_int_equal(r.n_negative, 0);
+  assert_int_equal(r.n_bad_corner, 0);
+  assert_int_equal(r.n_bad_pyramid, 0);
+  assert_int_equal(r.n_jump, 0);
+  assert_int_equal(r.n_off_plane, 0);
+  assert_int_equal(r.n_cell, b->report.n_cell);
+  assert_true(r.n_cell > 0);
+}
+
+/* Within 1 % everywhere. Growth never above the law's cap: 1e-9 is for the
+ * rounding of the points, 1e-16 on layers of 1e-5 and up. */
+static void heights_are_kept(const struct bench *b)
+{
+  struct vg_wall_fields w = VG_WALL_FIELDS_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+
+  if (vg_layers_fields(&b->surface, &b->layers.columns, 1, &w, &err) < 0)
+    fail_msg("%s", err.text);
+  assert_int_equal(w.n, b->report.n_wall_point);
+  for (size_t i = 0; i < w.n; i++) {
+    const double *x = b->surface.point[w.point[i]];
+
+    if (w.asked[i] > 0 && !(fabs(w.first[i] / w.asked[i] - 1) < 0.01))
+      fail_msg("first height %g for %g at (%g, %g, %g)", w.first[i],
+               w.asked[i], x[0], x[1], x[2]);
+    if (!(w.growth[i] < 1.25 + 1e-9))
+      fail_msg("growth %g at (%g, %g, %g)", w.growth[i], x[0], x[1], x[2]);
+  }
+  vg_wall_fields_release(&w);
+}
+
+static int is_limit(int cause)
+{
+  return cause != VG_CAUSE_NONE && cause != VG_CAUSE_SIZE &&
+         cause < VG_CAUSE_N;
+}
+
+/* Fewer levels than wanted, or less growth than the law's: both say why. */
+static void limits_are_explained(const struct bench *b)
+{
+  const struct vg_columns *c = &b->layers.columns;
+  size_t cause[VG_CAUSE_N] = { 0 }, squeezed[VG_CAUSE_N] = { 0 };
+
+  assert_int_equal(c->n_column, b->report.n_column);
+  for (size_t i = 0; i < c->n_column; i++) {
+    const struct vg_column *col = &c->column[i];
+
+    assert_true(col->n <= col->n_wanted);
+    assert_int_equal(col->n < col->n_wanted, is_limit(col->cause));
+    if (col->n && col->cap < 1.25) assert_true(is_limit(col->squeezed));
+    assert_true(col->cause < VG_CAUSE_N && col->squeezed < VG_CAUSE_N);
+    cause[col->cause]++;
+    squeezed[col->squeezed]++;
+  }
+  assert_memory_equal(cause, b->report.cause, sizeof cause);
+  assert_memory_equal(squeezed, b->report.squeezed, sizeof squeezed);
+}
+
+static void minus(const double a[3], const double b[3], long double c[3])
+{
+  for (int k = 0; k < 3; k++) c[k] = (long double)a[k] - b[k];
+}
+
+static long double volume_of(const double a[3], const double b[3],
+                             const double c[3], const double d[3])
+{
+  long double u[3], v[3], w[3];
+
+  minus(b, a, u);
+  minus(c, a, v);
+  minus(d, a, w);
+  return ((u[1] * v[2] - u[2] * v[1]) * w[0] +
+          (u[2] * v[0] - u[0] * v[2]) * w[1] +
+          (u[0] * v[1] - u[1] * v[0]) * w[2]) / 6;
+}
+
+static long double enclosed(const struct vg_mesh *m)
+{
+  const double origin[3] = { 0, 0, 0 };
+  long double sum = 0;
+
+  for (size_t t = 0; t < m->n_tri; t++)
+    sum -= volume_of(origin, m->point[m->tri[t][0]], m->point[m->tri[t][1]],
+                     m->point[m->tri[t][2]]);
+  return sum;
+}
+
+/* By the lift rule, straight from its words; cells that vanish add nothing. */
+static long double volume_over(const struct vg_columns *c,
+                               const struct vg_mesh *m, size_t f)
+{
+  static double x[3][VG_LEVELS_MAX + 1][3];
+  double d[VG_LEVELS_MAX + 1];
+  const uint32_t *v = c->face[f];
+  int level[3] = { 0, 0, 0 };
+  long double sum = 0;
+
+  for (int k = 0; k < 3; k++) vg_column_points(c, m, v[k], d, x[k]);
+  for (;;) {
+    int k = -1, lowest = VG_LEVELS_MAX + 1;
+
+    for (int i = 0; i < 3; i++) {
+      if (level[i] == c->column[v[i]].n || level[i] > lowest) continue;
+      if (level[i] < lowest || v[i] < v[k]) k = i;
+      lowest = level[i];
+    }
+    if (k < 0) return sum;
+    sum += volume_of(x[0][level[0]], x[1][level[1]], x[2][level[2]],
+                     x[k][level[k] + 1]);
+    level[k]++;
+  }
+}
+
+/* Layers and what the front encloses make up the whole: they share no volume
+ * and leave none. Sums are in extended precision, so what is left is the
+ * rounding of the points on patches that are no coordinate planes. */
+static void volumes_add_up(const struct bench *b)
+{
+  long double whole = enclosed(&b->surface), sum;
+
+  sum = enclosed(&b->layers.front.mesh);
+  assert_true(sum > 0);
+  for (size_t f = 0; f < b->layers.columns.n_face; f++)
+    sum += volume_over(&b->layers.columns, &b->surface, f);
+  if (!(fabsl(sum - whole) < 1e-12L * whole))
+    fail_msg("volume %.17Lg in place of %.17Lg", sum, whole);
+}
+
+/* Every front point is what it says; the top of a face is that face's. */
+static void front_is_what_it_says(const struct bench *b)
+{
+  const struct vg_layer_front *f = &b->layers.front;
+  const struct vg_columns *c = &b->layers.columns;
+
+  assert_int_equal(f->mesh.n_patch, b->surface.n_patch);
+  for (size_t p = 0; p < f->mesh.n_point; p++) {
+    double x[3];
+
+    if (f->column[p] != VG_NO_INDEX) {
+      assert_true(c->column[f->column[p]].n >= 1);
+      vg_column_top(c, &b->surface, f->column[p], x);
+      assert_memory_equal(x, f->mesh.point[p], sizeof x);
+      assert_int_equal(f->point[p], VG_NO_INDEX);
+    } else if (f->point[p] != VG_NO_INDEX) {
+      assert_memory_equal(b->surface.point[f->point[p]], f->mesh.point[p],
+                          sizeof x);
+    }
+  }
+  for (size_t t = 0; t < f->mesh.n_tri; t++) {
+    if (f->face[t] == VG_NO_INDEX) continue;
+    assert_true(f->face[t] < c->n_face);
+    for (int k = 0; k < 3; k++) {
+      uint32_t p = f->mesh.tri[t][k], at = f->column[p];
+
+      if (at == VG_NO_INDEX) continue;
+      assert_true(at == c->face[f->face[t]][0] ||
+                  at == c->face[f->face[t]][1] || at == c->face[f->face[t]][2]);
+    }
+  }
+}
+
+/* Patches without layers that are a coordinate plane still are, exactly, and
+ * cover as much less as the flanks took. */
+static void planes_stay_planes(const struct bench *b)
+{
+  const struct vg_mesh *s = &b->surface, *f = &b->layers.front.mesh;
+
+  for (size_t p = 0; p < s->n_patch; p++)
+    for (int k = 0; k < 3; k++) {
+      double at = NAN;
+      int is_plane = !b->request[p].is_wall;
+
+      for (size_t i = 0; i < 3 * s->n_tri; i++) {
+        if (s->tri_patch[i / 3] != p) continue;
+        if (at != at) at = s->point[s->tri[i / 3][i % 3]][k];
+        is_plane &= s->point[s->tri[i / 3][i % 3]][k] == at;
+      }
+      for (size_t i = 0; i < 3 * f->n_tri && is_plane; i++)
+        if (f->tri_patch[i / 3] == p)
+          assert_true(f->point[f->tri[i / 3][i % 3]][k] == at);
+    }
+}
+
+static void same(const void *a, const void *b, size_t n, size_t size)
+{
+  if (n) assert_memory_equal(a, b, n * size);
+}
+
+static void same_layers(const struct vg_layers *a, const struct vg_layers *b)
+{
+  const struct vg_columns *c = &a->columns, *d = &b->columns;
+  const struct vg_mesh *m = &a->front.mesh, *n = &b->front.mesh;
+
+  assert_int_equal(c->n_column, d->n_column);
+  assert_int_equal(c->n_face, d->n_face);
+  assert_int_equal(c->n_rim, d->n_rim);
+  assert_int_equal(c->n_path, d->n_path);
+  for (size_t i = 0; i < c->n_column; i++) {
+    assert_memory_equal(c->column[i].dir, d->column[i].dir, 3 * sizeof(double));
+    assert_true(c->column[i].cap == d->column[i].cap);
+    assert_int_equal(c->column[i].n, d->column[i].n);
+    assert_int_equal(c->column[i].cause, d->column[i].cause);
+    assert_int_equal(c->column[i].squeezed, d->column[i].squeezed);
+  }
+  same(c->path, d->path, c->n_path, sizeof *c->path);
+  assert_int_equal(m->n_point, n->n_point);
+  assert_int_equal(m->n_tri, n->n_tri);
+  same(m->point, n->point, m->n_point, sizeof *m->point);
+  same(m->tri, n->tri, m->n_tri, sizeof *m->tri);
+  same(m->tri_patch, n->tri_patch, m->n_tri, sizeof *m->tri_patch);
+  same(a->front.column, b->front.column, m->n_point, sizeof(uint32_t));
+  same(a->front.point, b->front.point, m->n_point, sizeof(uint32_t));
+  same(a->front.face, b->front.face, m->n_tri, sizeof(uint32_t));
+}
+
+static void grow_and_check(struct bench *b)
+{
+  grow(b, 1, &b->layers, &b->report);
+  cells_are_valid(b);
+  heights_are_kept(b);
+  limits_are_explained(b);
+  is_clean(&b->layers.front.mesh);
+  front_is_what_it_says(b);
+  planes_stay_planes(b);
+  volumes_add_up(b);
+  for (int threads = 2; threads <= 3; threads++) {
+    struct vg_layers again = VG_LAYERS_INIT;
+    struct vg_layer_report report;
+
+    grow(b, threads, &again, &report);
+    same_layers(&b->layers, &again);
+    vg_layers_release(&again);
+  }
+}
+
+static void join_and_judge(const struct bench *b, const struct vg_mesh *field,
+                           enum vg_layer_cells cells)
+{
+  struct vg_mesh_report r;
+  struct vg_error err = VG_ERROR_INIT;
+  long double whole = enclosed(&b->surface);
+  struct vg_mesh m[2] = { VG_MESH_INIT, VG_MESH_INIT };
+  struct vg_join_info info[2];
+
+  for (int i = 0; i < 2; i++)
+    if (vg_layers_join(&b->surface, &b->layers, field, cells, 2 * i + 1, &m[i],
+                       &info[i], &err) < 0)
+      fail_msg("%s", err.text);
+  assert_int_equal(vg_mesh_judge(&m[0], NULL, &r, NULL), VG_OK);
+  assert_int_equal(r.not_positive, 0);
+  assert_int_equal(r.open_face, 0);
+  assert_int_equal(r.crowded_face, 0);
+  assert_int_equal(r.same_side_face, 0);
+  assert_int_equal(r.orphan_boundary, 0);
+  assert_int_equal(r.outward_boundary, 0);
+  assert_int_equal(r.unused_point, 0);
+  assert_int_equal(r.duplicate_point, 0);
+  assert_true(r.is_valid);
+  assert_true(fabs(r.volume - (double)whole) < 1e-9 * (double)whole);
+  if (cells == VG_LAYER_TETS)
+    assert_int_equal(info[0].n_layer_tet, b->report.n_cell);
+  else
+    assert_true(info[0].n_layer_pri > 0);
+  same(m[0].point, m[1].point, m[0].n_point, sizeof *m[0].point);
+  same(m[0].tet, m[1].tet, m[0].n_tet, sizeof *m[0].tet);
+  same(m[0].pri, m[1].pri, m[0].n_pri, sizeof *m[0].pri);
+  same(m[0].pyr, m[1].pyr, m[0].n_pyr, sizeof *m[0].pyr);
+  vg_mesh_release(&m[0]);
+  vg_mesh_release(&m[1]);
+}
+
+static void fill_and_join(const struct bench *b)
+{
+  const struct vg_mesh *front = &b->layers.front.mesh;
+  struct vg_fill_options options = VG_FILL_OPTIONS_INIT;
+  struct vg_sizing *sizing = shape_sizing(front, 1.3, 0);
+  struct vg_mesh field = VG_MESH_INIT;
+  struct vg_fill_report report;
+  struct vg_error err = VG_ERROR_INIT;
+
+  if (vg_fill(front, sizing, &options, &field, &report, &err) < 0)
+    fail_msg("%s", err.text);
+  join_and_judge(b, &field, VG_LAYER_TETS);
+  join_and_judge(b, &field, VG_LAYER_MIXED);
+  vg_mesh_release(&field);
+  vg_sizing_free(sizing);
+}
+
+static void all_of_it(struct bench *b, double h)
+{
+  start(b, h);
+  grow_and_check(b);
+  fill_and_join(b);
+}
+
+/* --- what must hold at a place ------------------------------------------- */
+
+struct place_figures {
+  size_t n, n_full, n_loose, n_none;   /* columns: all, full, not squeezed,
+                                          without a level */
+  double top_max;                      /* highest, by wall distance */
+};
+
+/* Columns with a root in a box. */
+static struct place_figures look(const struct bench *b, const double lo[3],
+                                 const double hi[3])
+{
+  const struct vg_columns *c = &b->layers.columns;
+  struct place_figures p = { .n = 0 };
+
+  for (size_t i = 0; i < c->n_column; i++) {
+    const struct vg_column *col = &c->column[i];
+    const double *x = b->surface.point[col->root];
+    double top[3], d2 = 0;
+    int in = 1;
+
+    for (int k = 0; k < 3; k++) in &= x[k] >= lo[k] && x[k] <= hi[k];
+    if (!in) continue;
+    vg_column_top(c, &b->surface, i, top);
+    for (int k = 0; k < 3; k++) d2 += (top[k] - x[k]) * (top[k] - x[k]);
+    p.n++;
+    p.n_full += col->n == col->n_wanted;
+    p.n_loose += col->squeezed == VG_CAUSE_NONE;
+    p.n_none += col->n == 0;
+    p.top_max = fmax(p.top_max, sqrt(d2));
+  }
+  return p;
+}
+
+static void is_full(const struct bench *b, double x0, double x1, double y0,
+                    double y1, double z0, double z1)
+{
+  struct place_figures p = look(b, (const double[3]){ x0, y0, z0 },
+                                (const double[3]){ x1, y1, z1 });
+
+  assert_true(p.n > 0);
+  assert_int_equal(p.n_full, p.n);
+  assert_int_equal(p.n_loose, p.n);
+}
+
+/* --- the cases ----------------------------------------------------------- */
+
+static void two_plates_that_close_to_a_gap(void **state)
+{
+  const double lo[3] = { 1.6, 0, -1 }, hi[3] = { 2.4, 1, 2 };
+  struct bench b = { .options.smooth = 0 };
+  struct place_figures p;
+
+  (void)state;
+  /* a whole stack is 0.44 high: the slot has room for a tenth of two */
+  case_slot(&b.surface, 0.1, 0.08);
+  all_of_it(&b, 0.1);
+  p = look(&b, lo, hi);
+  assert_true(p.n > 0 && p.n_none == 0);
+  assert_true(p.top_max < 0.5 * 0.08);
+  for (size_t i = 0; i < b.layers.columns.n_column; i++) {
+    const struct vg_column *c = &b.layers.columns.column[i];
+    double x = b.surface.point[c->root][0];
+
+    if (x > 1.6 && x < 2.4)
+      assert_true(is_limit(c->cause) || is_limit(c->squeezed));
+  }
+  finish(&b);
+}
+
+/* Edges wider than the slot: a stack of the tops alone would cross. */
+static void a_slot_narrower_than_an_edge(void **state)
+{
+  struct bench b = { .options.smooth = 0 };
+
+  (void)state;
+  case_slot(&b.surface, 0.2, 0.02);
+  all_of_it(&b, 0.2);
+  finish(&b);
+}
+
+static void a_right_angle(void **state)
+{
+  struct bench b = { .options.smooth = 0 };
+
+  (void)state;
+  case_corner(&b.surface, 0.05, 0, 1);
+  all_of_it(&b, 0.05);
+  is_full(&b, 0.5, 0.9, 0, 0.8, 0, 0);
+  finish(&b);
+}
+
+static void an_angle_of_30_degrees(void **state)
+{
+  struct bench b = { .options.smooth = 0 };
+
+  (void)state;
+  case_corner(&b.surface, 0.06, sqrt(0.75), 0.5);
+  all_of_it(&b, 0.06);
+  finish(&b);
+}
+
+static void a_cube(void **state)
+{
+  struct bench b = { .options.smooth = 0 };
+
+  (void)state;
+  case_cube(&b.surface, 0.125);
+  all_of_it(&b, 0.125);
+  is_full(&b, -0.3, 0.3, -0.3, 0.3, 0.5, 0.5);
+  finish(&b);
+}
+
+static void a_cube_with_fans(void **state)
+{
+  struct bench b = { .options.smooth = 0 };
+
+  (void)state;
+  case_cube(&b.surface, 0.125);
+  start(&b, 0.125);
+  b.options.fan_angle = 60;
+  grow_and_check(&b);
+  assert_true(b.report.n_virtual_face > 0);
+  assert_true(b.report.n_column > b.report.n_wall_point);
+  fill_and_join(&b);
+  finish(&b);
+}
+
+static void a_cone(void **state)
+{
+  struct bench b = { .options.smooth = 0 };
+
+  (void)state;
+  case_cone(&b.surface, 0.1, 1);
+  all_of_it(&b, 0.1);
+  finish(&b);
+}
+
+static void a_needle(void **state)
+{
+  struct bench b = { .options.smooth = 0 };
+
+  (void)state;
+  case_cone(&b.surface, 0.15, 2.5);
+  all_of_it(&b, 0.15);
+  finish(&b);
+}
+
+static void a_sphere_over_a_wall(void **state)
+{
+  struct bench b = { .options.smooth = 0 };
+  struct place_figures p;
+
+  (void)state;
+  case_sphere(&b.surface, 0.1, 0.02, CASE_WALL);
+  all_of_it(&b, 0.1);
+  is_full(&b, -0.2, 0.2, -0.2, 0.2, 0.9, 1.1);   /* the sphere's far side */
+  p = look(&b, (const double[3]){ -0.02, -0.02, 0 },
+           (const double[3]){ 0.02, 0.02, 0.1 });
+  assert_true(p.top_max < 0.01 + 1e-12);
+  finish(&b);
+}
+
+static void a_sphere_over_a_symmetry_plane(void **state)
+{
+  struct bench b = { .options.smooth = 0 };
+  struct place_figures p;
+
+  (void)state;
+  case_sphere(&b.surface, 0.1, 0.02, CASE_SYMMETRY);
+  all_of_it(&b, 0.1);
+  is_full(&b, -0.2, 0.2, -0.2, 0.2, 0.9, 1.1);
+  p = look(&b, (const double[3]){ -0.02, -0.02, 0 },
+           (const double[3]){ 0.02, 0.02, 0.1 });
+  assert_true(p.n == 1 && p.top_max < 0.02);
+  finish(&b);
+}
+
+static void a_thin_plate(void **state)
+{
+  struct bench b = { .options.smooth = 0 };
+
+  (void)state;
+  case_plate(&b.surface, 0.1, 0.04);
+  all_of_it(&b, 0.1);
+  is_full(&b, -0.2, 0.2, -0.2, 0.2, -0.1, 0.1);
+  finish(&b);
+}
+
+static void a_thin_plate_with_fans(void **state)
+{
+  struct bench b = { .options.smooth = 0 };
+
+  (void)state;
+  case_plate(&b.surface, 0.1, 0.04);
+  start(&b, 0.1);
+  b.options.fan_angle = 60;
+  grow_and_check(&b);
+  fill_and_join(&b);
+  finish(&b);
+}
+
+/* Edges of 11 degrees that end in two symmetry planes. */
+static void sharp_edges_between_two_planes(void **state)
+{
+  struct bench b = { .options.smooth = 0 };
+
+  (void)state;
+  case_wedge(&b.surface, 0.1, 0.1);
+  all_of_it(&b, 0.1);
+  is_full(&b, -0.2, 0.2, -0.4, 0.4, -1, 1);
+  finish(&b);
+}
+
+static void sharp_edges_with_fans(void **state)
+{
+  struct bench b = { .options.smooth = 0 };
+
+  (void)state;
+  case_wedge(&b.surface, 0.1, 0.1);
+  start(&b, 0.1);
+  b.options.fan_angle = 60;
+  grow_and_check(&b);
+  fill_and_join(&b);
+  finish(&b);
+}
+
+static void a_post_at_90_degrees(void **state)
+{
+  struct bench b = { .options.smooth = 0 };
+
+  (void)state;
+  case_post(&b.surface, 0.1, 0);
+  all_of_it(&b, 0.1);
+  is_full(&b, -1, 1, -1, 1, 0, 0.4);
+  assert_int_equal(b.report.n_slide_patch, 1);
+  finish(&b);
+}
+
+static void a_post_at_60_to_120_degrees(void **state)
+{
+  struct bench b = { .options.smooth = 0 };
+
+  (void)state;
+  case_post(&b.surface, 0.1, 0.57735);
+  all_of_it(&b, 0.1);
+  finish(&b);
+}
+
+/* 45 to 135 degrees: "and worse". */
+static void a_post_at_45_to_135_degrees(void **state)
+{
+  struct bench b = { .options.smooth = 0 };
+
+  (void)state;
+  case_post(&b.surface, 0.1, 1);
+  all_of_it(&b, 0.1);
+  finish(&b);
+}
+
+static void a_point_that_sees_nothing(void **state)
+{
+  const double at[3] = { 0, 0, 0 };
+  struct bench b = { .options.smooth = 0 };
+  struct place_figures p;
+
+  (void)state;
+  case_octants(&b.surface);
+  all_of_it(&b, 1.0 / 6);
+  p = look(&b, at, at);
+  assert_int_equal(p.n, 1);
+  assert_int_equal(p.n_none, 1);
+  assert_true(b.report.cause[VG_CAUSE_NO_VIEW] > 0);
+  finish(&b);
+}
+
+/* --- requests ------------------------------------------------------------ */
+
+static void levels_and_height_as_asked(void **state)
+{
+  struct bench b = { .options.smooth = 0 };
+
+  (void)state;
+  case_post(&b.surface, 0.1, 0);
+  start(&b, 0.1);
+  for (size_t p = 0; p < b.surface.n_patch; p++) {
+    b.request[p].n_max = 9;
+    b.request[p].n_exact = 1;
+  }
+  grow_and_check(&b);
+  for (size_t i = 0; i < b.layers.columns.n_column; i++)
+    assert_int_equal(b.layers.columns.column[i].n_wanted, 9);
+  vg_layers_release(&b.layers);
+  for (size_t p = 0; p < b.surface.n_patch; p++) {
+    b.request[p].n_max = b.request[p].n_exact = 0;
+    b.request[p].total = 0.05;
+  }
+  grow_and_check(&b);
+  assert_true(look(&b, (const double[3]){ -1, -1, 0.2 },
+                   (const double[3]){ 1, 1, 0.4 }).top_max <= 0.05);
+  finish(&b);
+}
+
+/* The law changes with the place; each point gets its own first height. */
+static void law_of_the_place(void *user, const double x[3], struct vg_law *law)
+{
+  const struct vg_law *base = user;
+
+  *law = *base;
+  law->delta1 *= 1 + x[2];
+}
+
+static void a_law_that_varies(void **state)
+{
+  struct bench b = { .options.smooth = 0 };
+  struct vg_law base;
+  struct vg_wall_fields w = VG_WALL_FIELDS_INIT;
+
+  (void)state;
+  case_post(&b.surface, 0.1, 0);
+  start(&b, 0.1);
+  base = b.request[0].law;
+  b.options.law_at = law_of_the_place;
+  b.options.law_user = &base;
+  grow_and_check(&b);
+  assert_int_equal(vg_layers_fields(&b.surface, &b.layers.columns, 1, &w, NULL),
+                   VG_OK);
+  for (size_t i = 0; i < w.n; i++) {
+    double z = b.surface.point[w.point[i]][2];
+
+    if (w.asked[i] > 0)
+      assert_true(fabs(w.asked[i] - base.delta1 * (1 + z)) < 1e-12);
+  }
+  vg_wall_fields_release(&w);
+  finish(&b);
+}
+
+static int stop_at_once(void *user, const char *stage, size_t done,
+                        size_t expected)
+{
+  (void)user;
+  (void)stage;
+  (void)done;
+  (void)expected;
+  return 1;
+}
+
+static void refusals_leave_nothing(void **state)
+{
+  struct bench b = { .options.smooth = 0 };
+  struct vg_error err = VG_ERROR_INIT;
+
+  (void)state;
+  case_post(&b.surface, 0.2, 0);
+  start(&b, 0.2);
+  b.request[0].law.delta1 = 0;
+  assert_int_equal(vg_layers_grow(&b.surface, b.sizing, &b.options, &b.layers,
+                                  &b.report, &err), VG_ERR_INPUT);
+  assert_non_null(strstr(err.text, "post"));
+  assert_null(b.layers.columns.column);
+  b.request[0].law.delta1 = 2e-4;
+  b.options.progress = stop_at_once;
+  assert_int_equal(vg_layers_grow(&b.surface, b.sizing, &b.options, &b.layers,
+                                  &b.report, &err), VG_BLOCKED);
+  assert_null(b.layers.columns.column);
+  assert_null(b.layers.front.mesh.point);
+  finish(&b);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(two_plates_that_close_to_a_gap),
+    cmocka_unit_test(a_slot_narrower_than_an_edge),
+    cmocka_unit_test(a_right_angle),
+    cmocka_unit_test(an_angle_of_30_degrees),
+    cmocka_unit_test(a_cube),
+    cmocka_unit_test(a_cube_with_fans),
+    cmocka_unit_test(a_cone),
+    cmocka_unit_test(a_needle),
+    cmocka_unit_test(a_sphere_over_a_wall),
+    cmocka_unit_test(a_sphere_over_a_symmetry_plane),
+    cmocka_unit_test(a_thin_plate),
+    cmocka_unit_test(a_thin_plate_with_fans),
+    cmocka_unit_test(sharp_edges_between_two_planes),
+    cmocka_unit_test(sharp_edges_with_fans),
+    cmocka_unit_test(a_post_at_90_degrees),
+    cmocka_unit_test(a_post_at_60_to_120_degrees),
+    cmocka_unit_test(a_post_at_45_to_135_degrees),
+    cmocka_unit_test(a_point_that_sees_nothing),
+    cmocka_unit_test(levels_and_height_as_asked),
+    cmocka_unit_test(a_law_that_varies),
+    cmocka_unit_test(refusals_leave_nothing),
+  };
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
