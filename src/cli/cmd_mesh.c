@@ -164,17 +164,18 @@ static vg_status judge(struct run *r, const struct vg_mesh *m,
                        struct vg_mesh_report *report, struct vg_error *err)
 {
   double t = vg_display_now();
+  char faults[300];
   vg_status st;
 
   vg_display_update(&r->show, "judge", cell_count(m), 0);
   st = vg_mesh_judge(m, sizing, report, err);
   r->time_judge += vg_display_now() - t;
   if (st < 0) return st;
-  if (!report->is_valid)
-    return vg_fail(err, VG_ERR_GEOMETRY, "the mesh did not pass its own "
-                   "check and was not written; please report this with the "
-                   "project files");
-  return stopped(r, err);
+  if (report->is_valid) return stopped(r, err);
+  vg_report_faults(report, faults, sizeof faults);
+  return vg_fail(err, VG_ERR_GEOMETRY, "the mesh did not pass its own check "
+                 "(%s) and was not written; please report this with the "
+                 "project files", faults);
 }
 
 static vg_status mesh_plain(struct run *r, struct vg_error *err)

@@ -40,6 +40,10 @@ json_t *vg_report_surface_json(const struct vg_mesh *m,
 void vg_report_mesh_text(FILE *to, const struct vg_mesh_report *r, int full);
 json_t *vg_report_mesh_json(const struct vg_mesh_report *r);
 
+/** What is wrong with an invalid mesh: "3 cells not positive, ...". */
+void vg_report_faults(const struct vg_mesh_report *r, char *text,
+                      size_t size);
+
 /** What the fill did and how fast. */
 void vg_report_fill_text(FILE *to, const struct vg_fill_report *r,
                          size_t n_cell);

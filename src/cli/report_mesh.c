@@ -84,6 +84,22 @@ static void validity_text(FILE *to, const struct vg_mesh_report *r)
   fprintf(to, "  connected regions: %zu\n", r->n_component);
 }
 
+void vg_report_faults(const struct vg_mesh_report *r, char *text, size_t size)
+{
+  const char *name;
+  size_t at = 0;
+
+  snprintf(text, size, "volumes differ by %.2g", r->volume_error);
+  for (int i = 0; ; i++) {
+    size_t n = validity(r, i, &name);
+
+    if (!name) break;
+    if (n && at < size)
+      at += (size_t)snprintf(text + at, size - at, "%s%zu %s",
+                             at ? ", " : "", n, name);
+  }
+}
+
 static void quality_text(FILE *to, const struct vg_mesh_report *r)
 {
   fprintf(to, "  dihedral angles: smallest %.2f, largest %.2f, 1st "

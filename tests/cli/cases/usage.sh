@@ -3,7 +3,8 @@ vanguard
 exits 2
 is err <<'END'
 Usage: vanguard COMMAND [OPTION...]
-Vanguard makes tetrahedral meshes for aerodynamics from closed surfaces.
+Vanguard makes volume meshes for aerodynamics from closed surfaces: viscous
+layers on the walls, tetrahedra around them.
 
   mesh     mesh the volume of a project
   check    judge a surface or a volume mesh
@@ -11,7 +12,8 @@ Vanguard makes tetrahedral meshes for aerodynamics from closed surfaces.
   demo     write a complete example project
 
 'vanguard COMMAND --help' lists the options of a command, 'vanguard --version'
-shows the version. Exit status: 0 done, 1 failed, 2 wrong usage.
+shows the version. Exit status: 0 done, 1 failed, 2 wrong usage,
+4 done but a limit on the layers is not met.
 END
 cp err usage
 vanguard --help
