@@ -32,10 +32,10 @@ struct level {
 };
 
 /* Corners of a face by rising column, by which of f0 < f1, f1 < f2, f2 < f0
- * hold (bits 0, 1, 2). */
+ * hold (bits 0, 1, 2; none or all cannot be). */
 static const uint8_t rising[8][3] = {
+  {0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {0, 1, 2},
   {2, 1, 0}, {2, 0, 1}, {1, 2, 0}, {0, 1, 2},
-  {1, 0, 2}, {2, 0, 1}, {1, 2, 0}, {0, 1, 2},
 };
 
 static const uint8_t *order_of(const uint32_t f[3])
