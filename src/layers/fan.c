@@ -235,7 +235,7 @@ static void keep(struct build *b, uint32_t p, const struct vg_fan_shape *s,
                  const uint32_t *corner, const size_t *size)
 {
   struct vg_fans *f = b->f;
-  int next = 0;
+  uint8_t is_sector[VG_FAN_COLUMNS] = { 0 };
 
   f->fan[f->n_fan++] = (struct vg_fan_point){
     p, (uint8_t)s->n_column, (uint8_t)s->n_polygon, (uint8_t)s->has_centre,
@@ -247,19 +247,17 @@ static void keep(struct build *b, uint32_t p, const struct vg_fan_shape *s,
 
     for (size_t j = 0; j < size[i]; j++, h = vg_wall_turn(b->w, h))
       f->at[h] = (uint8_t)s->at[i];
+    is_sector[s->at[i]] = 1;
     if (s->is_open && i == 0) continue;
     f->chain_of[corner[i]] = (uint32_t)f->n_chain;
     f->chain[f->n_chain++] = (struct vg_fan_chain){
       (uint8_t)s->at[o], (uint8_t)s->at[i], (uint8_t)s->n_step[o],
-      !s->is_open && s->n_sector == 2 && i == 0 };
+      o == s->shared };
   }
   for (int i = 0; i < s->n_column; i++) {
     struct vg_fan_preset *preset = &f->preset[f->n_preset];
 
-    if (next < s->n_sector && s->at[next] == i) {
-      next++;
-      continue;
-    }
+    if (is_sector[i]) continue;
     preset->point = p;
     preset->at = (uint32_t)i;
     memcpy(preset->dir, s->dir[i], sizeof preset->dir);

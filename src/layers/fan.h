@@ -25,6 +25,8 @@ struct vg_fan_shape {
                                         sectors i and i + 1 */
   /* out */
   int n_column;
+  int shared;                 /* the ridge whose chain is those of all others,
+                                 backwards, so that there is no gap; -1: none */
   int n_polygon;              /* columns around the gap at the point, 0: none */
   int has_centre;             /* the gap has a column in its middle, the last */
   int at[VG_FAN_SECTORS];     /* column of each sector */

@@ -155,33 +155,65 @@ static int spread_pair(struct vg_fan_shape *s)
   s->at[0] = 0;
   s->at[1] = n;
   s->n_step[0] = s->n_step[1] = n;
+  s->shared = 1;
   s->n_column = n + 1;
   return 1;
 }
 
-int vg_fan_spread(struct vg_fan_shape *s)
+/* Chains from sector `first` on across n_ridge ridges, one after the other,
+ * and at the end the sector behind the last one. */
+static int spread_from(struct vg_fan_shape *s, int first, int n_ridge)
 {
-  int n_ridge = s->is_open ? s->n_sector - 1 : s->n_sector;
   double chain[VG_FAN_STEPS + 1][3];
+  int at = first;
 
-  s->n_column = s->n_polygon = s->has_centre = 0;
-  if (!s->is_open && s->n_sector == 2) return spread_pair(s);
-  for (int i = 0; i < n_ridge; i++) {
-    int n = make_chain(s, s->sector[i], s->sector[(i + 1) % s->n_sector],
-                       s->ridge[i], chain);
+  s->n_column = 0;
+  for (int i = 0; i < n_ridge; i++, at = (at + 1) % s->n_sector) {
+    int n = make_chain(s, s->sector[at], s->sector[(at + 1) % s->n_sector],
+                       s->ridge[at], chain);
 
-    if (!n || !turns_about(n, (const double (*)[3])chain, s->ridge[i]))
+    if (!n || !turns_about(n, (const double (*)[3])chain, s->ridge[at]))
       return 0;
     memcpy(s->dir + s->n_column, chain, (size_t)n * sizeof *chain);
-    s->at[i] = s->n_column;
-    s->n_step[i] = n;
+    s->at[at] = s->n_column;
+    s->n_step[at] = n;
     s->n_column += n;
   }
-  if (!s->is_open) {
-    s->n_polygon = s->n_column;
-    return fill_polygon(s);
-  }
-  s->at[n_ridge] = s->n_column;
-  memcpy(s->dir[s->n_column++], s->sector[n_ridge], sizeof *s->dir);
+  if (at == first) return 1;
+  s->at[at] = s->n_column;
+  memcpy(s->dir[s->n_column++], s->sector[at], sizeof *s->dir);
   return 1;
+}
+
+/* Sectors in one plane, such as where a blunt edge becomes a sharp one: the
+ * chain of one ridge is those of the others, backwards. */
+static int spread_shared(struct vg_fan_shape *s)
+{
+  double back[VG_FAN_COLUMNS][3];
+
+  s->n_polygon = s->has_centre = 0;
+  for (int i = 0; i < s->n_sector; i++) {
+    int n;
+
+    if (!spread_from(s, (i + 1) % s->n_sector, s->n_sector - 1)) continue;
+    n = s->n_column - 1;
+    for (int j = 0; j <= n; j++)
+      memcpy(back[j], s->dir[n - j], sizeof *back);
+    if (!turns_about(n, (const double (*)[3])back, s->ridge[i])) continue;
+    s->shared = i;
+    s->n_step[i] = n;
+    return 1;
+  }
+  return 0;
+}
+
+int vg_fan_spread(struct vg_fan_shape *s)
+{
+  s->n_column = s->n_polygon = s->has_centre = 0;
+  s->shared = -1;
+  if (s->is_open) return spread_from(s, 0, s->n_sector - 1);
+  if (s->n_sector == 2) return spread_pair(s);
+  if (!spread_from(s, 0, s->n_sector)) return spread_shared(s);
+  s->n_polygon = s->n_column;
+  return fill_polygon(s) || spread_shared(s);
 }
