@@ -13,15 +13,20 @@
 #define VG_AFLR_NONE INT32_MIN
 
 /** What is said of one patch. What a file leaves open: 0, flag VG_AFLR_NONE.
- * id: of .surf and .tags; name: of .tags and .bc. */
+ * id: of .surf and .tags; name: of .tags and .bc.
+ *
+ * Grid-BC flags of AFLR3: 1 standard surface, far field or inviscid wall; 0
+ * plain; 2 cuts the layers (a symmetry plane, ...); 3 source surface; 4, 5, 6
+ * transparent; 7 fixed; a minus: layers grow on it. */
 struct vg_aflr_patch {
   int32_t id;              /* 0 in a .bc, which has names only */
   char name[VG_NAME_MAX];  /* "" in a .surf */
-  int32_t flag;            /* grid BC: -1 layers grow here, 0 plain, 1 far
-                              field, 2 cuts the layers, ... (formats.md 2.5) */
+  int32_t flag;            /* grid BC; .tags has properties instead, of which
+                              the last in a line counts */
   int is_viscous;          /* layers grow here */
-  double spacing;          /* first height; 0: not given */
-  double thickness;        /* of all layers; 0: not given */
+  double spacing;          /* first height; 0: not given. In a .surf: where
+                              all points of the patch have the same one */
+  double thickness;        /* of all layers; as spacing */
   int32_t n_layer;         /* 0: not given */
 };
 
@@ -39,10 +44,10 @@ struct vg_aflr {
 void vg_aflr_release(struct vg_aflr *a);
 
 /** Read a surface. Tags become patch ids, patches are sorted by id. The flag
- * of a patch gives its condition: -1 and other layer-growing ones viscous
- * wall (4, 4000), 1 far field (3, 5000), others none. Where faces of a patch
- * differ, its flag is that of most of its faces, of the lower flag at par.
- * Fewer columns behind the tag are accepted.
+ * of a patch gives its condition: below 0 viscous wall (4, 4000), 1 far field
+ * (3, 5000; AFLR3 knows it for inviscid walls too, which need a .mapbc), else
+ * none. Where faces of a patch differ, its flag is that of most of its faces,
+ * the lower one at par. Columns behind the tag may be missing.
  * @param a  may be NULL; both outputs are untouched on failure
  * Returns VG_ERR_IO, VG_ERR_FORMAT, VG_ERR_INPUT (index out of range, value
  * not finite) or VG_ERR_MEMORY. Threads: re-entrant. O(n). */
@@ -52,7 +57,8 @@ vg_status vg_aflr_surf_parse(struct vg_input *in, struct vg_mesh *m,
                              struct vg_aflr *a, struct vg_error *err);
 
 /** Read a .tags: 'id group visc recon rebuild fixed source trans delete
- * [spacing [thickness [layers]]]'. An id listed twice is VG_ERR_INPUT. */
+ * spacing thickness layers'; older ones lack `layers`, or that and `fixed`.
+ * An id listed twice is VG_ERR_INPUT. */
 vg_status vg_aflr_tags_read(const char *path, struct vg_aflr *a,
                             struct vg_error *err);
 vg_status vg_aflr_tags_parse(struct vg_input *in, struct vg_aflr *a,
@@ -69,10 +75,11 @@ vg_status vg_aflr_bc_parse(struct vg_input *in, struct vg_aflr *a,
 /** 1 when the file is text whose first entry is no line of four integers. */
 int vg_aflr_is_bc(const char *path);
 
-/** Give the patches of m names, and conditions by flag or is_viscous, from
- * a .tags (by id) or a .bc (by name). What is not listed keeps what it has;
- * an entry that is not viscous turns a viscous wall into an inviscid one (5,
- * 3000). *n_unused (may be NULL): entries that no patch of m has. */
+/** Give the patches of m what a .tags (by id) or a .bc (by name) says:
+ * the name where m has none, a viscous wall (4, 4000) where layers grow.
+ * A viscous wall on which they do not grow becomes inviscid (5, 3000). What
+ * is not listed keeps what it has.
+ * @param n_unused  out, may be NULL: entries that no patch of m has */
 vg_status vg_aflr_apply(const struct vg_aflr *a, struct vg_mesh *m,
                         size_t *n_unused, struct vg_error *err);
 

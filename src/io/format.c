@@ -7,6 +7,8 @@
 #include <unistd.h>
 
 #include "base/memory.h"
+#include "io/aflr.h"
+#include "io/foam.h"
 #include "io/medit.h"
 #include "io/obj.h"
 #include "io/stl.h"
@@ -32,6 +34,13 @@ PLAIN_READER(stl)
 PLAIN_READER(tri)
 PLAIN_READER(obj)
 PLAIN_READER(medit)
+
+static vg_status read_surf(const char *path, struct vg_mesh *out,
+                           struct vg_turned *turned, struct vg_error *err)
+{
+  (void)turned;
+  return vg_aflr_surf_read(path, out, NULL, err);
+}
 
 static vg_status read_cogsg(const char *path, struct vg_mesh *out,
                             struct vg_turned *turned, struct vg_error *err)
@@ -94,6 +103,12 @@ static vg_status write_vtu(const char *path, const struct vg_mesh *m,
   return vg_vtu_write(path, m, NULL, 0, err);
 }
 
+static vg_status write_foam(const char *path, const struct vg_mesh *m,
+                            struct vg_error *err)
+{
+  return vg_foam_write(path, m, NULL, err);
+}
+
 #define UGRID(name) { name, vg_ugrid_read, vg_ugrid_write }
 
 static const struct format {
@@ -114,6 +129,8 @@ static const struct format {
   UGRID("ugrid"),
   { "cogsg", read_cogsg, write_cogsg },
   { "front", read_front, NULL },
+  { "surf", read_surf, NULL },
+  { VG_FOAM_SUFFIX, NULL, write_foam },
   { "vtu", NULL, write_vtu },
 };
 #define N_FORMAT (sizeof formats / sizeof formats[0])
@@ -123,11 +140,12 @@ static const char *const input_suffix[] = {
   "stl", "tri", "triq", "obj", "mesh", "meshb", "b8.ugrid", "lb8.ugrid",
   "b4.ugrid", "lb4.ugrid", "r8.ugrid", "lr8.ugrid", "r4.ugrid", "lr4.ugrid",
   "b8l.ugrid", "lb8l.ugrid", "b8.ugrid64", "lb8.ugrid64", "ugrid",
+  "surf",
   "stl.gz", "tri.gz", "triq.gz", "obj.gz", "mesh.gz", "meshb.gz",
   "b8.ugrid.gz", "lb8.ugrid.gz", "b4.ugrid.gz", "lb4.ugrid.gz",
   "r8.ugrid.gz", "lr8.ugrid.gz", "r4.ugrid.gz", "lr4.ugrid.gz",
   "b8l.ugrid.gz", "lb8l.ugrid.gz", "b8.ugrid64.gz", "lb8.ugrid64.gz",
-  "ugrid.gz"
+  "ugrid.gz", "surf.gz"
 };
 
 const char *vg_format_input_suffix(size_t i)
@@ -140,8 +158,8 @@ const char *vg_format_list(void)
 {
   return ".stl .tri .triq .obj .mesh .meshb .ugrid, .X.ugrid with X of b8 lb8 "
          "b4 lb4 r8 lr8 r4 lr4 b8l lb8l, .b8.ugrid64 .lb8.ugrid64, .cogsg, "
-         ".front (read only), .vtu (written only); .gz may follow what is "
-         "read";
+         ".front .surf (read only), .vtu .openfoam (written only); .gz may "
+         "follow what is read";
 }
 
 /* Does name[0..n) end in ".suffix"? */

@@ -1,7 +1,8 @@
 /* io/format.h: the table of formats. Names decide, upper or lower case, a
  * ".gz" at the end aside: .stl .tri .triq .obj .mesh .meshb .ugrid (and
- * .b8.ugrid, ... , io/ugrid.h) .cogsg .front are read; .vtu is written only,
- * .front and .triq are read only. */
+ * .b8.ugrid, ... , io/ugrid.h) .cogsg .front .surf are read; .vtu and
+ * .openfoam (a folder, io/foam.h) are written only, .front, .triq and .surf
+ * are read only. */
 #ifndef VG_IO_FORMAT_H
 #define VG_IO_FORMAT_H
 

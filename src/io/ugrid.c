@@ -530,6 +530,24 @@ static void put_body(struct vg_output *out, const struct vg_ugrid_kind *kind,
   }
 }
 
+/* The number of layer tetrahedra, where there is a tail. */
+static void put_tail(struct vg_output *out, const struct vg_ugrid_kind *kind,
+                     const size_t *n_layer_tet)
+{
+  int32_t v;
+
+  if (!n_layer_tet) return;
+  if (kind->is_text) {
+    vg_output_int(out, (int64_t)*n_layer_tet);
+    vg_output_bytes(out, "\n", 1);
+    return;
+  }
+  v = (int32_t)(uint32_t)*n_layer_tet;
+  if (kind->is_record) vg_output_record(out, (uint64_t)kind->int_size);
+  put_ints(out, kind->int_size, 1, &v);
+  if (kind->is_record) vg_output_record_end(out);
+}
+
 static void put_binary(struct vg_output *out, const struct vg_ugrid_kind *kind,
                        const struct vg_mesh *m, const uint64_t count[7])
 {
@@ -583,8 +601,8 @@ static void put_text(struct vg_output *out, const struct vg_mesh *m,
   }
 }
 
-vg_status vg_ugrid_write(const char *path, const struct vg_mesh *m,
-                         struct vg_error *err)
+static vg_status write_mesh(const char *path, const struct vg_mesh *m,
+                            const size_t *n_layer_tet, struct vg_error *err)
 {
   struct vg_ugrid_kind kind;
   struct vg_output out = VG_OUTPUT_INIT;
@@ -605,5 +623,22 @@ vg_status vg_ugrid_write(const char *path, const struct vg_mesh *m,
   if (st < 0) return st;
   if (kind.is_text) put_text(&out, m, count);
   else put_binary(&out, &kind, m, count);
+  put_tail(&out, &kind, n_layer_tet);
   return vg_output_commit(&out, err);
+}
+
+vg_status vg_ugrid_write(const char *path, const struct vg_mesh *m,
+                         struct vg_error *err)
+{
+  return write_mesh(path, m, NULL, err);
+}
+
+vg_status vg_ugrid_write_tail(const char *path, const struct vg_mesh *m,
+                              size_t n_layer_tet, struct vg_error *err)
+{
+  if (n_layer_tet > m->n_tet)
+    return vg_fail(err, VG_ERR_INPUT, "%s: %zu tetrahedra are said to be in "
+                   "layers, but the mesh has %zu", path, n_layer_tet,
+                   m->n_tet);
+  return write_mesh(path, m, &n_layer_tet, err);
 }

@@ -10,7 +10,7 @@ static void suffixes_are_known(void **state)
     {"wing.B8.UGRID.gz", 12}, {"a.b.meshb", 6}, {"wing.b8.ugrid64", 11},
     {"x.cogsg", 6}, {"x.front.gz", 9}, {"wing", 0}, {"wing.gz", 0},
     {"wing.stl.bak", 0}, {"stl", 0}, {"", 0}, {".stl", 4}, {"x.vtu", 4},
-    {"x.y8.ugrid", 6}
+    {"x.y8.ugrid", 6}, {"x.surf.gz", 8}, {"x.openfoam", 9}
   };
   size_t n = 0;
 
@@ -25,11 +25,13 @@ static void suffixes_are_known(void **state)
     snprintf(name, sizeof name, "x.%s", s);
     assert_int_equal(vg_format_suffix_length(name), strlen(s) + 1);
   }
-  assert_int_equal(n, 38);
+  assert_int_equal(n, 40);
   assert_true(vg_format_can_write("b8.ugrid"));
   assert_true(vg_format_can_write("cogsg"));
   assert_true(vg_format_can_write("vtu"));
+  assert_true(vg_format_can_write("openfoam"));
   assert_false(vg_format_can_write("front"));
+  assert_false(vg_format_can_write("surf"));
   assert_false(vg_format_can_write("b9.ugrid"));
   assert_false(vg_format_can_write(""));
 }
