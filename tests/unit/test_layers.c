@@ -746,7 +746,7 @@ static void refusals_leave_nothing(void **state)
   b.request[0].law.delta1 = 0;
   assert_int_equal(vg_layers_grow(&b.surface, b.sizing, &b.options, &b.layers,
                                   &b.report, &err), VG_ERR_INPUT);
-  assert_non_null(strstr(err.text, "post"));
+  assert_non_null(strstr(err.text, "patch 21"));
   assert_null(b.layers.columns.column);
   b.request[0].law.delta1 = 2e-4;
   b.options.progress = stop_at_once;
