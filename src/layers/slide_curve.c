@@ -408,7 +408,7 @@ vg_status vg_slide_curves(struct vg_slide_work *w)
     if (j == VG_NO_INDEX) VG_TRY(run_single(w, &c, i));
     else if (j > i) VG_TRY(run_double(w, &c, i, j));
   }
-  qsort(w->gone, w->n_gone, sizeof *w->gone, compare);
+  if (w->n_gone) qsort(w->gone, w->n_gone, sizeof *w->gone, compare);
 done:
   free(runs);
   free(c.v);
