@@ -9,7 +9,7 @@
 #include "layers/work.h"
 
 #define GRAIN 1024
-#define FLAT 0.01          /* least sine between a column and a layer */
+#define FLAT (0.25 * VG_VIEW_MIN)  /* least sine of a column on a layer */
 #define SHRUNK 0.04        /* least area of a layer, of that at the wall */
 #define LOWER 0.85         /* of the room, when a cell is bad */
 
@@ -193,18 +193,39 @@ static void search_body(void *context, size_t first, size_t end, int worker)
 
 /* A cell that fails at some height will fail there however many layers lead
  * up to it; one on the wall itself leaves no room at all. */
-static void lower(struct vg_layer_work *w, uint32_t i, int level)
+static double limit(const struct vg_layer_work *w, uint32_t i, int level)
 {
   const struct vg_column *c = &w->c->column[i];
-  double d[VG_LEVELS_MAX + 1], limit = 0;
+  double d[VG_LEVELS_MAX + 1];
+  int top = level + 1 < c->n ? level + 1 : c->n;
 
-  if (level > 0) {
-    int top = level + 1 < c->n ? level + 1 : c->n;
+  if (!level) return 0;
+  vg_law_heights(&w->c->law[c->law], c->cap, top, d);
+  return LOWER * w->room[i] < d[top] ? LOWER * w->room[i] : d[top];
+}
 
-    vg_law_heights(&w->c->law[c->law], c->cap, top, d);
-    limit = LOWER * w->room[i] < d[top] ? LOWER * w->room[i] : d[top];
+/* The least of what the bad faces at a column leave it, not their product. */
+static vg_status lower(struct vg_layer_work *w, const struct search *q,
+                       size_t *n_bad, struct vg_error *err)
+{
+  double *least = vg_alloc(w->c->n_column, sizeof *least);
+
+  if (!least) return vg_fail_memory(err, "the layers");
+  for (size_t i = 0; i < w->c->n_column; i++) least[i] = INFINITY;
+  for (size_t f = 0; f < w->c->n_face; f++) {
+    if (q->level[f] < 0) continue;
+    ++*n_bad;
+    for (int k = 0; k < 3; k++) {
+      uint32_t i = w->c->face[f][k];
+      double l = limit(w, i, q->level[f]);
+
+      if (q->blame[f] >> k & 1 && l < least[i]) least[i] = l;
+    }
   }
-  vg_heights_lower(w, i, limit, VG_CAUSE_CELL);
+  for (size_t i = 0; i < w->c->n_column; i++)
+    vg_heights_lower(w, i, least[i], VG_CAUSE_CELL);
+  free(least);
+  return VG_OK;
 }
 
 vg_status vg_cells_lower(struct vg_layer_work *w, const uint8_t *moved,
@@ -222,12 +243,7 @@ vg_status vg_cells_lower(struct vg_layer_work *w, const uint8_t *moved,
     goto done;
   }
   vg_parallel_for(threads, n, GRAIN, search_body, &q);
-  for (size_t f = 0; f < n; f++) {
-    if (q.level[f] < 0) continue;
-    ++*n_bad;
-    for (int k = 0; k < 3; k++)
-      if (q.blame[f] >> k & 1) lower(w, w->c->face[f][k], q.level[f]);
-  }
+  st = lower(w, &q, n_bad, err);
 done:
   free(q.level);
   free(q.blame);

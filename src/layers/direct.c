@@ -17,6 +17,11 @@
 #define CONVERGE 0.75      /* an edge that would shrink to less is bent apart */
 #define BEND_FROM CONVERGE
 #define BEND_MAX 0.995
+#define CAP 0.05           /* height of a triangle over its longest edge */
+#define NOISE 0.002        /* the same, where the normal says nothing */
+#define NOISY 4            /* bit of vg_layer_work.cap */
+#define CAP_END 0.1
+#define CAP_SWEEPS 8       /* caps lie in chains */
 #define SAME_PLANE 0.05    /* sine between two patches that are as good as one */
 #define BAND 2.5           /* heights that bending reaches to */
 
@@ -66,6 +71,20 @@ static void constrain(int n_slide, double n[2][3], double v[3])
   }
 }
 
+/* A face that says where the wall at column i looks: no virtual one, and no
+ * cap where there is anything better. */
+static int counts(const struct vg_layer_work *w, size_t i, uint32_t f)
+{
+  if (w->c->face_tri[f] == VG_NO_INDEX) return 0;
+  if (!(w->cap[f] & NOISY)) return 1;
+  for (uint32_t j = w->t.first[i]; j < w->t.first[i + 1]; j++) {
+    uint32_t o = w->t.corner[j] / 3;
+
+    if (w->c->face_tri[o] != VG_NO_INDEX && !(w->cap[o] & NOISY)) return 0;
+  }
+  return 1;
+}
+
 static int real_normals(const struct vg_layer_work *w, size_t i,
                         double (*n)[3])
 {
@@ -74,8 +93,7 @@ static int real_normals(const struct vg_layer_work *w, size_t i,
   for (uint32_t j = w->t.first[i]; j < w->t.first[i + 1]; j++) {
     uint32_t f = w->t.corner[j] / 3;
 
-    if (w->c->face_tri[f] != VG_NO_INDEX)
-      memcpy(n[k++], w->normal[f], sizeof *n);
+    if (counts(w, i, f)) memcpy(n[k++], w->normal[f], sizeof *n);
   }
   return k;
 }
@@ -113,7 +131,7 @@ static void mean_normal(const struct vg_layer_work *w, size_t i, double v[3])
     uint32_t f = w->t.corner[j] / 3, tri = w->c->face_tri[f];
     double a;
 
-    if (tri == VG_NO_INDEX) continue;
+    if (!counts(w, i, f)) continue;
     a = corner_weight(w->m, w->m->tri[tri], (int)(w->t.corner[j] % 3));
     for (int k = 0; k < 3; k++) v[k] += a * w->normal[f][k];
   }
@@ -155,6 +173,26 @@ static void first_body(void *context, size_t first, size_t end, int worker)
                     l->scratch + (size_t)worker * l->w->max_valence);
 }
 
+/* 1 + the corner that lies on the edge across, by less than CAP of its
+ * length and well between its ends; 0: none. n2: twice the area. */
+static uint8_t cap_corner(const struct vg_mesh *m, const uint32_t *tri,
+                          double n2)
+{
+  for (int k = 0; k < 3; k++) {
+    const double *a = m->point[tri[(k + 1) % 3]];
+    const double *b = m->point[tri[(k + 2) % 3]];
+    double e[3], p[3], l, t;
+
+    vg_sub(b, a, e);
+    vg_sub(m->point[tri[k]], a, p);
+    l = vg_dot(e, e);
+    t = vg_dot(p, e);
+    if (n2 < CAP * l && t > CAP_END * l && t < (1 - CAP_END) * l)
+      return (uint8_t)((1 + k) | (n2 < NOISE * l ? NOISY : 0));
+  }
+  return 0;
+}
+
 static void normal_body(void *context, size_t first, size_t end, int worker)
 {
   struct vg_layer_work *w = ((struct loop *)context)->w;
@@ -171,7 +209,7 @@ static void normal_body(void *context, size_t first, size_t end, int worker)
     vg_sub(w->m->point[w->m->tri[tri][1]], w->m->point[w->m->tri[tri][0]], a);
     vg_sub(w->m->point[w->m->tri[tri][2]], w->m->point[w->m->tri[tri][0]], b);
     vg_cross(a, b, w->normal[f]);
-    vg_unit(w->normal[f]);
+    w->cap[f] = cap_corner(w->m, w->m->tri[tri], vg_unit(w->normal[f]));
   }
 }
 
@@ -226,7 +264,7 @@ static double gain(const struct vg_layer_work *w, size_t i, const double v[3])
     int k = (int)(w->t.corner[j] % 3);
     double edge[2][3], in[3], d, side[2];
 
-    if (tri == VG_NO_INDEX) continue;
+    if (!counts(w, i, f)) continue;
     d = vg_dot(v, w->normal[f]);
     for (int s = 0; s < 2; s++) {
       vg_sub(w->m->point[w->m->tri[tri][(k + 1 + s) % 3]],
@@ -265,13 +303,94 @@ static void scale_body(void *context, size_t first, size_t end, int worker)
   }
 }
 
+static int same_slides(const struct vg_column *a, const struct vg_column *b)
+{
+  return a->slide[0] == b->slide[0] && a->slide[1] == b->slide[1];
+}
+
+/* Mean over the caps of which i is the apex, of what the ends of the edges
+ * say: a flat triangle stays flat, instead of turning over. */
+static void follow(const struct loop *l, uint32_t i, double (*normal)[3])
+{
+  const struct vg_layer_work *w = l->w;
+  double sum[3] = { 0, 0, 0 };
+  int n = 0;
+
+  memcpy(l->to[i], l->from[i], sizeof *l->to);
+  for (uint32_t j = w->t.first[i]; j < w->t.first[i + 1]; j++) {
+    uint32_t f = w->t.corner[j] / 3, k = w->t.corner[j] % 3;
+    uint32_t a = w->c->face[f][(k + 1) % 3], b = w->c->face[f][(k + 2) % 3];
+    const double *p = w->m->point[w->c->column[a].root];
+    double e[3], x[3], t;
+
+    if ((w->cap[f] & 3) != 1 + k || w->view[a] == 0 || w->view[b] == 0) continue;
+    if (w->c->column[i].slide[0] != VG_NO_INDEX &&
+        !(same_slides(&w->c->column[i], &w->c->column[a]) &&
+          same_slides(&w->c->column[i], &w->c->column[b]))) continue;
+    vg_sub(w->m->point[w->c->column[b].root], p, e);
+    vg_sub(w->m->point[w->c->column[i].root], p, x);
+    t = vg_dot(x, e) / vg_dot(e, e);
+    for (int c = 0; c < 3; c++)
+      sum[c] += (1 - t) * l->from[a][c] + t * l->from[b][c];
+    n++;
+  }
+  if (!n) return;
+  for (int c = 0; c < 3; c++) sum[c] /= n;
+  if (least_view(real_normals(w, i, normal), normal, sum) >=
+      VIEW_KEPT * w->view[i] * vg_norm(sum))
+    memcpy(l->to[i], sum, sizeof sum);
+}
+
+static void follow_body(void *context, size_t first, size_t end, int worker)
+{
+  struct loop *l = context;
+
+  for (size_t i = first; i < end; i++)
+    if (l->w->view[i] > 0)
+      follow(l, (uint32_t)i,
+             l->scratch + (size_t)worker * l->w->max_valence);
+    else memcpy(l->to[i], l->from[i], sizeof *l->to);
+}
+
+static vg_status pair_new(const struct vg_layer_work *w, struct loop *l,
+                          struct vg_error *err)
+{
+  l->from = vg_alloc(w->c->n_column, sizeof *l->from);
+  l->to = vg_alloc(w->c->n_column, sizeof *l->to);
+  if (!l->from || !l->to) return vg_fail_memory(err, "the directions");
+  for (size_t i = 0; i < w->c->n_column; i++)
+    memcpy(l->from[i], w->c->column[i].dir, sizeof *l->from);
+  memcpy(l->to, l->from, w->c->n_column * sizeof *l->to);
+  return VG_OK;
+}
+
+static void pair_swap(struct loop *l)
+{
+  double (*swap)[3] = l->from;
+
+  l->from = l->to;
+  l->to = swap;
+}
+
 vg_status vg_directions_scale(struct vg_layer_work *w, struct vg_error *err)
 {
   struct loop l = { .w = w };
+  vg_status st;
 
-  (void)err;
   vg_parallel_for(w->o->threads, w->c->n_column, GRAIN, scale_body, &l);
-  return VG_OK;
+  VG_TRY(scratch_new(w, &l, err));
+  VG_TRY(pair_new(w, &l, err));
+  for (int s = 0; s < CAP_SWEEPS; s++) {
+    vg_parallel_for(w->o->threads, w->c->n_column, GRAIN, follow_body, &l);
+    pair_swap(&l);
+  }
+  for (size_t i = 0; i < w->c->n_column; i++)
+    memcpy(w->c->column[i].dir, l.from[i], sizeof *l.from);
+done:
+  free(l.from);
+  free(l.to);
+  free(l.scratch);
+  return st;
 }
 
 /* Smoothing ----------------------------------------------------------------
@@ -416,28 +535,16 @@ static void relax_body(void *context, size_t first, size_t end, int worker)
 static vg_status sweeps(struct vg_layer_work *w, const uint32_t *list,
                         size_t n, struct vg_error *err)
 {
-  size_t n_column = w->c->n_column;
   struct loop l = { .list = list };
-  double (*swap)[3];
   vg_status st;
 
-  l.from = vg_alloc(n_column, sizeof *l.from);
-  l.to = vg_alloc(n_column, sizeof *l.to);
   VG_TRY(scratch_new(w, &l, err));
-  if (!l.from || !l.to) {
-    st = vg_fail_memory(err, "the smoothing");
-    goto done;
-  }
-  for (size_t i = 0; i < n_column; i++)
-    memcpy(l.from[i], w->c->column[i].dir, sizeof *l.from);
-  memcpy(l.to, l.from, n_column * sizeof *l.to);
+  VG_TRY(pair_new(w, &l, err));
   for (int s = 0; s < w->o->smooth; s++) {
     vg_parallel_for(w->o->threads, n, GRAIN / 4, relax_body, &l);
-    swap = l.from;
-    l.from = l.to;
-    l.to = swap;
+    pair_swap(&l);
   }
-  for (size_t i = 0; i < n_column; i++)
+  for (size_t i = 0; i < w->c->n_column; i++)
     memcpy(w->c->column[i].dir, l.from[i], sizeof *l.from);
 done:
   free(l.from);

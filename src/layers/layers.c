@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 #include "core/surface_check.h"
+#include "layers/vector.h"
 #include "layers/work.h"
 
 #define ROUNDS_MAX 100
@@ -43,6 +44,7 @@ static void work_release(struct vg_layer_work *w)
   free(w->is_wall);
   free(w->is_slide);
   free(w->normal);
+  free(w->cap);
   free(w->root_dir);
   free(w->view);
   free(w->edge);
@@ -104,6 +106,7 @@ static vg_status arrays(struct vg_layer_work *w, struct vg_error *err)
   size_t n = w->c->n_column;
 
   w->normal = vg_alloc(w->c->n_face, sizeof *w->normal);
+  w->cap = vg_calloc(w->c->n_face, 1);
   w->root_dir = vg_alloc(n, sizeof *w->root_dir);
   w->view = vg_alloc(n, sizeof *w->view);
   w->edge = vg_alloc(n, sizeof *w->edge);
@@ -111,7 +114,7 @@ static vg_status arrays(struct vg_layer_work *w, struct vg_error *err)
   w->room = vg_alloc(n, sizeof *w->room);
   w->why = vg_calloc(n, 1);
   w->by_size = vg_calloc(n, 1);
-  if (w->normal && w->root_dir && w->view && w->edge && w->wanted &&
+  if (w->normal && w->cap && w->root_dir && w->view && w->edge && w->wanted &&
       w->room && w->why && w->by_size) return VG_OK;
   return vg_fail_memory(err, "the layers");
 }
@@ -126,6 +129,11 @@ static vg_status first_rooms(struct vg_layer_work *w,
 
   if (!allowed) return vg_fail_memory(err, "the layers");
   for (size_t i = 0; i < n; i++) {
+    double f = vg_norm(w->c->column[i].dir);
+
+    if (f > VG_FACTOR_WHOLE)
+      vg_heights_lower(w, i, VG_FACTOR_WHOLE / f * w->room[i],
+                       VG_CAUSE_CORNER);
     if (w->view[i] == 0) vg_heights_lower(w, i, 0, VG_CAUSE_NO_VIEW);
     if (w->t.blocked && w->t.blocked[i])
       vg_heights_lower(w, i, 0, VG_CAUSE_SLIDE);
@@ -186,8 +194,8 @@ static vg_status try_slides(struct vg_layer_work *w,
 
 /* The front as it will be filled: re-meshed patches against tops. */
 static vg_status try_front(struct vg_layer_work *w,
-                           struct vg_layer_front *front, size_t round,
-                           size_t *n_bad, struct vg_error *err)
+                           struct vg_layer_front *front, uint8_t *bad,
+                           size_t round, size_t *n_bad, struct vg_error *err)
 {
   struct vg_surface_check_options o = VG_SURFACE_CHECK_OPTIONS_INIT;
   struct vg_surface_report r = VG_SURFACE_REPORT_INIT;
@@ -196,6 +204,7 @@ static vg_status try_front(struct vg_layer_work *w,
 
   o.repair = 0;
   *n_bad = 0;
+  memset(bad, 0, w->c->n_column);
   VG_TRY(vg_surface_check(&front->mesh, &o, &r, err));
   n_cross = r.count[VG_DEFECT_INTERSECTION] +
             r.count[VG_DEFECT_DEGENERATE_TRIANGLE];
@@ -207,10 +216,13 @@ static vg_status try_front(struct vg_layer_work *w,
     for (int k = 0; k < 3; k++) {
       uint32_t c = front->column[front->mesh.tri[t][k]];
 
-      if (c == VG_NO_INDEX) continue;
-      vg_heights_lower(w, c, lowered(w, c, round), VG_CAUSE_COLLISION);
-      ++*n_bad;
+      if (c != VG_NO_INDEX) bad[c] = 1;
     }
+  }
+  for (size_t i = 0; n_cross && i < w->c->n_column; i++) {
+    if (!bad[i]) continue;
+    vg_heights_lower(w, i, lowered(w, i, round), VG_CAUSE_COLLISION);
+    ++*n_bad;
   }
   if (n_cross && !*n_bad)
     st = vg_fail(err, VG_ERR_GEOMETRY, "the surface crosses itself where no "
@@ -257,7 +269,7 @@ static vg_status one_round(struct vg_layer_work *w, struct rounds *q,
   if (!*n_bad) VG_TRY(try_slides(w, front, round, n_bad, err));
   r->time_slide += seconds() - t;
   t = seconds();
-  if (!*n_bad) VG_TRY(try_front(w, front, round, n_bad, err));
+  if (!*n_bad) VG_TRY(try_front(w, front, q->bad, round, n_bad, err));
   r->time_clear += seconds() - t;
 done:
   return st;

@@ -9,8 +9,9 @@
 #include "layers/slide.h"
 #include "layers/topology.h"
 
-#define VG_VIEW_MIN 0.02      /* least cosine between a column and a face */
-#define VG_FACTOR_MAX 4.0     /* longest dir: a wedge of 29 degrees */
+#define VG_VIEW_MIN 0.0002    /* least cosine between a column and a face */
+#define VG_FACTOR_MAX 1000.0  /* longest dir: a wedge of 0.1 degrees */
+#define VG_FACTOR_WHOLE 2.0   /* longest dir that may take the whole height */
 
 struct vg_layer_work {
   const struct vg_mesh *m;
@@ -22,6 +23,8 @@ struct vg_layer_work {
   struct vg_columns *c;
   struct vg_topology t;
   double (*normal)[3];      /* [n_face] unit; 0 for virtual faces */
+  uint8_t *cap;             /* [n_face] 1 + k: a triangle so flat that corner k
+                               lies on the edge across; 4: its normal is noise */
   double (*root_dir)[3];    /* unit, before smoothing */
   double *view;             /* least cosine to its faces that dir must keep;
                                0: no direction sees them all */
@@ -41,7 +44,8 @@ vg_status vg_directions_first(struct vg_layer_work *w, struct vg_error *err);
 /** Bend directions where columns of height `wanted` would converge. */
 vg_status vg_directions_smooth(struct vg_layer_work *w, struct vg_error *err);
 
-/** Lengths of dir, so that the first point is delta1 away from the wall. */
+/** Lengths of dir, so that the first point is delta1 away from the wall; the
+ * apex of a cap then follows the two ends of the edge it lies on. */
 vg_status vg_directions_scale(struct vg_layer_work *w, struct vg_error *err);
 
 /** Ratio by which a step of height h_i, h_j along the dirs of columns i and
