@@ -9,9 +9,23 @@
 
 #include "layers/clear.h"
 
-/* Children of a node, side by side so that one loop tests all eight. Those
- * that do not exist are empty: lo > hi. */
-struct vg_box8 { float lo[3][8], hi[3][8]; };
+/* Four lanes at a time, as GCC and Clang spell it for any processor. */
+typedef float vg_f4 __attribute__((vector_size(16)));
+typedef int32_t vg_i4 __attribute__((vector_size(16)));
+
+union vg_f8 { float f[8]; vg_f4 v[2]; };
+
+/* Children of a node, side by side so that all eight are tested at once.
+ * Those that do not exist are empty: lo > hi. */
+struct vg_box8 { union vg_f8 lo[3], hi[3]; };
+
+/* Bit i: lane i of a (4 .. 7: of b) is true. */
+static inline unsigned vg_lanes(vg_i4 a, vg_i4 b)
+{
+  vg_i4 m = (a & (vg_i4){ 1, 2, 4, 8 }) | (b & (vg_i4){ 16, 32, 64, 128 });
+
+  return (unsigned)(m[0] | m[1] | m[2] | m[3]);
+}
 
 /* Coordinates are those of the input minus `origin`, rounded to float.
  * Rounding is monotone, so boxes that touch do so after it as well: queries

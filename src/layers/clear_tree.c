@@ -134,8 +134,8 @@ static void make_leaves(void *context, size_t first, size_t end, int worker)
         tri_box_float(b, x->point, x->tri[t], x->grow, box);
       }
       for (int k = 0; k < 3; k++) {
-        b->node[j].lo[k][i] = box[k];
-        b->node[j].hi[k][i] = box[k + 3];
+        b->node[j].lo[k].f[i] = box[k];
+        b->node[j].hi[k].f[i] = box[k + 3];
       }
     }
 }
@@ -143,11 +143,11 @@ static void make_leaves(void *context, size_t first, size_t end, int worker)
 static void node_box(const struct vg_box8 *n, float box[6])
 {
   for (int k = 0; k < 3; k++) {
-    float lo = n->lo[k][0], hi = n->hi[k][0];
+    float lo = n->lo[k].f[0], hi = n->hi[k].f[0];
 
     for (int i = 1; i < 8; i++) {
-      if (n->lo[k][i] < lo) lo = n->lo[k][i];
-      if (n->hi[k][i] > hi) hi = n->hi[k][i];
+      if (n->lo[k].f[i] < lo) lo = n->lo[k].f[i];
+      if (n->hi[k].f[i] > hi) hi = n->hi[k].f[i];
     }
     box[k] = lo;
     box[k + 3] = hi;
@@ -168,8 +168,8 @@ static void make_parents(void *context, size_t first, size_t end, int worker)
 
       if (below + 8 * j + i < own) node_box(&b->node[below + 8 * j + i], box);
       for (int k = 0; k < 3; k++) {
-        b->node[own + j].lo[k][i] = box[k];
-        b->node[own + j].hi[k][i] = box[k + 3];
+        b->node[own + j].lo[k].f[i] = box[k];
+        b->node[own + j].hi[k].f[i] = box[k + 3];
       }
     }
 }
@@ -214,17 +214,23 @@ done:
 
 /* --- queries ------------------------------------------------------------- */
 
+static inline vg_i4 touch4(const struct vg_box8 *n, int h, const float q[6])
+{
+  vg_f4 lo[3], hi[3];
+
+  for (int k = 0; k < 3; k++) {
+    lo[k] = (vg_f4){ q[k], q[k], q[k], q[k] };
+    hi[k] = (vg_f4){ q[k + 3], q[k + 3], q[k + 3], q[k + 3] };
+  }
+  return (n->lo[0].v[h] <= hi[0]) & (n->hi[0].v[h] >= lo[0])
+         & (n->lo[1].v[h] <= hi[1]) & (n->hi[1].v[h] >= lo[1])
+         & (n->lo[2].v[h] <= hi[2]) & (n->hi[2].v[h] >= lo[2]);
+}
+
 /* Bit i: child i touches the box. */
 static inline unsigned touch8(const struct vg_box8 *n, const float q[6])
 {
-  static const unsigned bit[8] = { 1, 2, 4, 8, 16, 32, 64, 128 };
-  unsigned mask = 0;
-
-  for (int i = 0; i < 8; i++)
-    mask |= ((n->lo[0][i] <= q[3]) & (n->hi[0][i] >= q[0])
-             & (n->lo[1][i] <= q[4]) & (n->hi[1][i] >= q[1])
-             & (n->lo[2][i] <= q[5]) & (n->hi[2][i] >= q[2])) ? bit[i] : 0;
-  return mask;
+  return vg_lanes(touch4(n, 0, q), touch4(n, 1, q));
 }
 
 struct pairs {
@@ -239,8 +245,8 @@ static void leaf_pairs(const struct pairs *p, size_t l, size_t m)
   const struct vg_box8 *own = &p->b->node[l], *other = &p->b->node[m];
 
   for (size_t i = 0; i < 8 && 8 * l + i < p->b->n; i++) {
-    float q[6] = { own->lo[0][i], own->lo[1][i], own->lo[2][i],
-                   own->hi[0][i], own->hi[1][i], own->hi[2][i] };
+    float q[6] = { own->lo[0].f[i], own->lo[1].f[i], own->lo[2].f[i],
+                   own->hi[0].f[i], own->hi[1].f[i], own->hi[2].f[i] };
     unsigned mask = touch8(other, q);
 
     if (l == m) mask &= ~0u << (i + 1);

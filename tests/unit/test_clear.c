@@ -607,6 +607,281 @@ static void tops_with_any_number_of_threads(void **state)
   shape_free(s);
 }
 
+/* --- ahead --------------------------------------------------------------- */
+
+static double *ahead(struct shape *s, double reach, int threads)
+{
+  struct vg_error err = VG_ERROR_INIT;
+  double *wanted = room(s->c.n_column + 1, sizeof *wanted);
+  double *allowed = room(s->c.n_column + 1, sizeof *allowed);
+
+  for (size_t i = 0; i < s->c.n_column; i++) wanted[i] = reach;
+  assert_int_equal(vg_clear_ahead(&s->m, &s->c, &s->t, 0.4, threads, wanted,
+                                  allowed, &err), VG_OK);
+  for (size_t i = 0; i < s->c.n_column; i++)
+    assert_true(allowed[i] > 0 && allowed[i] <= reach);
+  free(wanted);
+  return allowed;
+}
+
+static void plates_share_the_gap(void **state)
+{
+  struct shape *s = two_plates(16, 0.3, 0.01);
+  double *allowed;
+
+  (void)state;
+  s->is_wall[1] = 1;
+  grow(s, 1);
+  allowed = ahead(s, 1, 1);
+  for (size_t i = 0; i < s->c.n_column; i++) {
+    const double *x = s->m.point[s->c.column[i].root];
+
+    /* Where the other plate covers it; 1e-12: rounding. */
+    if (x[0] >= 0.01 && x[0] <= 1 && x[1] >= 0.02 && x[1] <= 1)
+      assert_true(fabs(allowed[i] - 0.4 * 0.3) < 1e-12);
+  }
+  free(allowed);
+  /* A dir twice as long takes half the steps. */
+  for (size_t i = 0; i < s->c.n_column; i++) s->c.column[i].dir[2] *= 2;
+  allowed = ahead(s, 1, 1);
+  assert_true(fabs(allowed[8 * 17 + 8] - 0.2 * 0.3) < 1e-12);
+  free(allowed);
+  /* Too far away to matter. */
+  allowed = ahead(s, 0.05, 1);
+  for (size_t i = 0; i < s->c.n_column; i++)
+    assert_true(allowed[i] == 0.05);
+  free(allowed);
+  shape_free(s);
+}
+
+static void patches_to_slide_in(void **state)
+{
+  struct shape *s = two_plates(16, 0.3, 0.01);
+  double *allowed;
+  size_t middle = 8 * 17 + 8;
+
+  (void)state;
+  grow(s, 1);
+  s->c.column[middle].slide[1] = 1;
+  allowed = ahead(s, 1, 1);
+  assert_true(allowed[middle] == 1);
+  /* For others it is a patch like any other, straight ahead. */
+  assert_true(fabs(allowed[middle + 1] - 0.4 * 0.3) < 1e-12);
+  free(allowed);
+  shape_free(s);
+}
+
+/* On a sphere, dir makes the angle a with the downward normal of the plane:
+ * its cone meets the plane first at height H / (cos a + sin a). */
+static void sphere_near_a_plane(void **state)
+{
+  struct shape *s = sphere_over_plane(0.2);
+  double *allowed;
+  size_t n = 0;
+
+  (void)state;
+  grow(s, 1);
+  for (size_t i = 0; i < s->c.n_column; i++)
+    for (int k = 0; k < 3; k++)
+      s->c.column[i].dir[k] = s->m.point[s->c.column[i].root][k]
+                              - (k == 2 ? 1.2 : 0);
+  allowed = ahead(s, 0.3, 1);
+  for (size_t i = 0; i < s->c.n_column; i++) {
+    double g = -s->c.column[i].dir[2];
+    double expect = g > 0.2 ? 0.4 * (1.2 - g) / (g + sqrt(1 - g * g)) : 0.3;
+
+    if (expect > 0.3) expect = 0.3;
+    if (g < 0.2 || g > 0.3) {
+      assert_true(fabs(allowed[i] - expect) < 1e-9);
+      n += expect < 0.3;
+    }
+  }
+  assert_true(n > 100);
+  free(allowed);
+  shape_free(s);
+}
+
+static void a_convex_body_sees_nothing(void **state)
+{
+  struct shape *s = shape_new(0.1);
+  double *allowed;
+
+  (void)state;
+  add_sphere(s, 0, 16, zero, 1);
+  s->is_wall[0] = 1;
+  grow(s, 1);
+  allowed = ahead(s, 10, 1);
+  for (size_t i = 0; i < s->c.n_column; i++) assert_true(allowed[i] == 10);
+  free(allowed);
+  shape_free(s);
+}
+
+/* No triangle that faces the column may have a corner in the cone nearer than
+ * what the answer was made of: found without a tree. */
+static void nothing_in_the_cone_is_missed(void **state)
+{
+  struct shape *s = shape_new(0.1);
+  const double o[3] = { 0.3, 0.2, 1.4 };
+  double *allowed;
+  size_t n = 0;
+
+  (void)state;
+  add_sphere(s, 0, 30, zero, 1);
+  add_sphere(s, 1, 11, o, 0.35);
+  s->is_wall[0] = 1;
+  grow(s, 1);
+  allowed = ahead(s, 0.4, 1);
+  for (size_t i = 0; i < s->c.n_column; i++) {
+    const double *u = s->c.column[i].dir, *r = s->m.point[s->c.column[i].root];
+    double nearest = 1;
+
+    for (size_t t = 0; t < s->m.n_tri; t++) {
+      double c[3], along = 0, far = 0, g = 0;
+
+      if (s->m.tri_patch[t] == 0) continue;
+      normal_of(s, s->m.tri[t], c);
+      for (int k = 0; k < 3; k++) g += c[k] * u[k];
+      if (g > -0.21 * sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2])) continue;
+      for (int j = 0; j < 3; j++) {
+        along = far = 0;
+        for (int k = 0; k < 3; k++) {
+          double d = s->m.point[s->m.tri[t][j]][k] - r[k];
+
+          along += d * u[k];
+          far += d * d;
+        }
+        if (along > 0 && far < 1.99 * along * along)
+          nearest = fmin(nearest, along);
+      }
+    }
+    if (nearest < 1) {
+      assert_true(allowed[i] <= 0.4 * nearest + 1e-12);
+      /* Edges are 0.1 long: the corner is not far from the nearest place. */
+      assert_true(allowed[i] >= 0.4 * (nearest - 0.15));
+      n++;
+    }
+  }
+  assert_true(n > 50);
+  free(allowed);
+  shape_free(s);
+}
+
+/* Two walls at 30 degrees with the edge y; columns of both stand on it. */
+static struct shape *wedge(int n)
+{
+  struct shape *s = shape_new(0.01);
+  const double c = cos(M_PI / 6), z = sin(M_PI / 6);
+  uint32_t w = (uint32_t)n + 1;
+
+  add_plate(s, 0, n, zero, ex, ey);
+  for (int j = 0; j <= n; j++)
+    for (int i = 1; i <= n; i++)
+      add_point(s, c * i / n, (double)j / n, z * i / n);
+  for (uint32_t j = 0; j + 1 < w; j++)
+    for (uint32_t i = 0; i + 1 < w; i++) {
+      uint32_t p[2][2];
+
+      for (uint32_t u = 0; u < 2; u++)
+        for (uint32_t v = 0; v < 2; v++)
+          p[u][v] = i + u ? w * w + (j + v) * (w - 1) + i + u - 1
+                          : (j + v) * w;
+      add_tri(s, 0, p[0][0], p[1][1], p[1][0]);
+      add_tri(s, 0, p[0][0], p[0][1], p[1][1]);
+    }
+  s->is_wall[0] = 1;
+  return s;
+}
+
+static void concave_wedge_at_right_angles(void **state)
+{
+  enum { N = 20 };
+  struct shape *s = wedge(N);
+  const double t = tan(M_PI / 6);
+  double *allowed;
+
+  (void)state;
+  grow(s, 1);
+  allowed = ahead(s, 0.2, 1);
+  /* Square to its wall, the cone meets the other at x t / (1 + t). */
+  for (uint32_t i = 5; i <= N; i++) {
+    double x = (double)i / N, expect = 0.4 * x * t / (1 + t);
+
+    assert_true(fabs(allowed[N / 2 * (N + 1) + i] - expect) < 1e-9);
+  }
+  /* On the edge itself nothing is in front. */
+  for (uint32_t j = 0; j <= N; j++) assert_true(allowed[j * (N + 1)] == 0.2);
+  free(allowed);
+  shape_free(s);
+}
+
+static void concave_wedge_with_turned_columns(void **state)
+{
+  enum { N = 20 };
+  struct shape *s = wedge(N);
+  double *allowed;
+
+  (void)state;
+  grow(s, 1);
+  /* Along the bisector on the edge, square to the wall from 8 squares on. */
+  for (size_t i = 0; i < s->c.n_column; i++) {
+    struct vg_column *c = &s->c.column[i];
+    const double *x = s->m.point[c->root];
+    int upper = x[2] > 0;
+    double far = sqrt(x[0] * x[0] + x[2] * x[2]) * N / 8;
+    double a = fmin(far, 1) * 75 * M_PI / 180, l;
+
+    c->dir[0] = cos(M_PI / 12 + (upper ? -a : a));
+    c->dir[1] = 0;
+    c->dir[2] = sin(M_PI / 12 + (upper ? -a : a));
+    l = sqrt(c->dir[0] * c->dir[0] + c->dir[2] * c->dir[2]);
+    for (int k = 0; k < 3; k++) c->dir[k] /= l;
+  }
+  allowed = ahead(s, 0.2, 1);
+  /* The columns next to the edge are of one stack and limited by nothing. */
+  for (uint32_t i = 0; i <= 2; i++)
+    assert_true(allowed[N / 2 * (N + 1) + i] == 0.2);
+  assert_true(allowed[N / 2 * (N + 1) + 16] < 0.2);
+  free(allowed);
+  shape_free(s);
+}
+
+static void ahead_with_any_number_of_threads(void **state)
+{
+  struct shape *s = sphere_over_plane(0.05);
+  double *one, *more;
+
+  (void)state;
+  s->is_wall[1] = 1;
+  grow(s, 1);
+  one = ahead(s, 1, 1);
+  for (int threads = 2; threads <= 3; threads++) {
+    more = ahead(s, 1, threads);
+    assert_memory_equal(one, more, s->c.n_column * sizeof *one);
+    free(more);
+  }
+  free(one);
+  shape_free(s);
+}
+
+static void gap_must_leave_room(void **state)
+{
+  struct shape *s = two_plates(2, 1, 1);
+  struct vg_error err = VG_ERROR_INIT;
+  double h[18] = { 0 }, allowed[18];
+
+  (void)state;
+  grow(s, 1);
+  assert_int_equal(vg_clear_ahead(&s->m, &s->c, &s->t, 0, 1, h, allowed, &err),
+                   VG_ERR_INPUT);
+  assert_int_equal(vg_clear_ahead(&s->m, &s->c, &s->t, NAN, 1, h, allowed,
+                                  &err), VG_ERR_INPUT);
+  /* What wants nothing gets it. */
+  assert_int_equal(vg_clear_ahead(&s->m, &s->c, &s->t, 0.4, 1, h, allowed,
+                                  &err), VG_OK);
+  for (size_t i = 0; i < s->c.n_column; i++) assert_true(allowed[i] == 0);
+  shape_free(s);
+}
+
 static void nothing_at_all(void **state)
 {
   struct shape *s = shape_new(1);
@@ -615,6 +890,7 @@ static void nothing_at_all(void **state)
   (void)state;
   grow(s, 1);
   assert_int_equal(tops(s, NULL, NULL, 1, bad), 0);
+  free(ahead(s, 1, 1));
   shape_free(s);
 }
 
@@ -632,6 +908,15 @@ int main(void)
     cmocka_unit_test(flanks_in_a_noisy_plane),
     cmocka_unit_test(active_columns_only),
     cmocka_unit_test(tops_with_any_number_of_threads),
+    cmocka_unit_test(plates_share_the_gap),
+    cmocka_unit_test(patches_to_slide_in),
+    cmocka_unit_test(sphere_near_a_plane),
+    cmocka_unit_test(a_convex_body_sees_nothing),
+    cmocka_unit_test(nothing_in_the_cone_is_missed),
+    cmocka_unit_test(concave_wedge_at_right_angles),
+    cmocka_unit_test(concave_wedge_with_turned_columns),
+    cmocka_unit_test(ahead_with_any_number_of_threads),
+    cmocka_unit_test(gap_must_leave_room),
     cmocka_unit_test(nothing_at_all),
   };
 

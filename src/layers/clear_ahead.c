@@ -1,0 +1,747 @@
+/* What stands in front of a column? Triangles within a cone of 45 degrees that
+ * face it. Boxes about triangles and about their normals leave nothing to look
+ * at in most places, which is found out for a few neighbours at once.
+ *
+ * A triangle T limits a column with unit direction u unless
+ *   - it shares a point with the column's faces, or lies in a patch that the
+ *     column slides in;
+ *   - it does not face the column: n(T) . u > -0.2. A column meets such a
+ *     triangle from behind or after a long way at best; next to a concave
+ *     edge, where directions turn until they leave both walls, T is such a
+ *     triangle although it is as near as the edge is;
+ *   - its own columns grow away in nearly the same direction, m . u > 0.3 for
+ *     their mean m: both belong to one stack, that of a concave edge narrower
+ *     than a right angle, whose columns are nearly parallel. Without this the
+ *     distance to the other wall, which falls to nothing towards the edge,
+ *     would end the layers there;
+ *   - it lies in a patch in which columns slide (some other columns) and is
+ *     beside, not ahead: it counts for rays only, since the stack next to it
+ *     stands on it and must not be kept away from it.
+ * The distance to the others is counted along u. This is no proof that
+ * columns do not meet, only a good first height: vg_clear_tops is exact. */
+#include "layers/clear.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "layers/clear_parts.h"
+
+#define FACING 0.2
+#define SAME_STACK 0.3
+#define SQRT_2 1.41421356237309505
+
+enum { GRAIN = 512, STACK = 96, CENTRE_MAX = 64, TEAM = 16, LEAF_MAX = 32 };
+
+/* Of the children of a node: half the diagonals, and boxes about the unit
+ * normals of what is in them. */
+struct sides { union vg_f8 radius, mid[3], half[3]; };
+
+struct ahead {
+  const struct vg_mesh *surface;
+  const struct vg_columns *columns;
+  const struct vg_topology *topology;
+  double gap;
+  const double *reach;
+  double *allowed;
+  uint32_t *face_of;        /* [n_tri] its face, or VG_NO_INDEX */
+  uint32_t *column_of;      /* [n_point + 1] first column of each point */
+  uint8_t *slid;            /* [n_patch] columns slide in it */
+  struct vg_boxes boxes;
+  struct sides *sides;      /* [nodes] */
+  float (*normal)[3];       /* [boxes.n] unit, 0 without an area */
+  uint32_t *order;          /* [n_column] neighbours close together */
+};
+
+/* One column. Lengths are along u, in the unit of the surface. */
+struct query {
+  const struct ahead *x;
+  uint32_t column;
+  double root[3], u[3];
+  double reach;             /* nothing beyond it matters; shrinks */
+  double lowest, back;      /* where rays start below the root, and how far
+                               below it is the apex of a cone with all rays */
+  int n_centre;
+  double centre[CENTRE_MAX][3];  /* of the faces, relative to the root */
+};
+
+static double dot(const double *a, const double *b)
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void cross(const double *a, const double *b, double *c)
+{
+  c[0] = a[1] * b[2] - a[2] * b[1];
+  c[1] = a[2] * b[0] - a[0] * b[2];
+  c[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/* --- one triangle -------------------------------------------------------- */
+
+/* Does the line from o along u pass through t (corners p, normal n of any
+ * length) or nearly so? Where: *along. The slack closes the seams between
+ * triangles. */
+static int line_hits(const double o[3], const double u[3],
+                     const double (*p)[3], const double n[3], double *along)
+{
+  double d = dot(n, u), q[3], s;
+
+  if (!(d < 0)) return 0;
+  s = (n[0] * (p[0][0] - o[0]) + n[1] * (p[0][1] - o[1])
+       + n[2] * (p[0][2] - o[2])) / d;
+  if (!(s >= 0)) return 0;
+  for (int k = 0; k < 3; k++) q[k] = o[k] + s * u[k];
+  for (int i = 0; i < 3; i++) {
+    const double *a = p[i], *b = p[(i + 1) % 3];
+    double e[3], f[3], c[3];
+
+    for (int k = 0; k < 3; k++) {
+      e[k] = b[k] - a[k];
+      f[k] = q[k] - a[k];
+    }
+    cross(e, f, c);
+    if (dot(c, n) < -1e-6 * dot(n, n)) return 0;
+  }
+  *along = s;
+  return 1;
+}
+
+/* Least u . x over x on the edge a b within the cone of 45 degrees. */
+static double edge_in_cone(const double u[3], const double a[3],
+                           const double b[3])
+{
+  double e[3], ua = dot(u, a), ue, qa, qb, qc, root, t[4] = { 0, 1 };
+  double best = INFINITY;
+  int n = 2;
+
+  for (int k = 0; k < 3; k++) e[k] = b[k] - a[k];
+  ue = dot(u, e);
+  /* |a + t e|^2 - 2 (u . (a + t e))^2 = qa t^2 + 2 qb t + qc <= 0 */
+  qa = dot(e, e) - 2 * ue * ue;
+  qb = dot(a, e) - 2 * ua * ue;
+  qc = dot(a, a) - 2 * ua * ua;
+  root = qb * qb - qa * qc;
+  if (root >= 0) {
+    double q = -(qb + copysign(sqrt(root), qb));
+
+    if (qa != 0) t[n++] = q / qa;
+    if (q != 0) t[n++] = qc / q;
+  }
+  for (int i = 0; i < n; i++) {
+    double s = ua + t[i] * ue;
+
+    if (!(t[i] >= 0 && t[i] <= 1) || s < 0 || s >= best) continue;
+    if (i < 2 && (i ? qa + 2 * qb + qc : qc) > 0) continue;
+    best = s;
+  }
+  return best;
+}
+
+/* Least u . x over x in the triangle (corners p relative to the apex, unit
+ * normal n, facing the apex) within the cone; INFINITY: none below `most`. */
+static double nearest_in_cone(const double u[3], const double (*p)[3],
+                              const double n[3], double most)
+{
+  double g = -dot(n, u), h = -dot(n, p[0]), flat, w[3], s, best = INFINITY;
+  static const double apex[3] = { 0, 0, 0 };
+
+  if (!(h > 0)) return INFINITY;
+  /* The plane is nearest along the generator that heads for it most. */
+  flat = sqrt(g * g < 1 ? 1 - g * g : 0);
+  s = h / (g + flat);
+  if (s >= most) return INFINITY;
+  for (int k = 0; k < 3; k++)
+    w[k] = u[k] - (flat > 1e-9 ? (n[k] + g * u[k]) / flat : 0);
+  if (line_hits(apex, w, p, n, &s)) return s;
+  for (int i = 0; i < 3; i++) {
+    double e = edge_in_cone(u, p[i], p[(i + 1) % 3]);
+
+    if (e < best) best = e;
+  }
+  return best;
+}
+
+static int shares_point(const struct query *q, const uint32_t t[3])
+{
+  const struct vg_columns *c = q->x->columns;
+  const struct vg_topology *y = q->x->topology;
+
+  for (uint32_t i = y->first[q->column]; i < y->first[q->column + 1]; i++) {
+    const uint32_t *face = c->face[y->corner[i] / 3];
+
+    for (int k = 0; k < 3; k++) {
+      uint32_t root = c->column[face[k]].root;
+
+      if (root == t[0] || root == t[1] || root == t[2]) return 1;
+    }
+  }
+  return 0;
+}
+
+static void add_direction(const struct vg_column *c, double sum[3])
+{
+  double l = sqrt(dot(c->dir, c->dir));
+
+  if (l > 0)
+    for (int k = 0; k < 3; k++) sum[k] += c->dir[k] / l;
+}
+
+/* Do the columns of triangle t grow the same way as the one asked for? */
+static int same_stack(const struct query *q, uint32_t t)
+{
+  const struct ahead *x = q->x;
+  uint32_t f = x->face_of[t];
+  double sum[3] = { 0, 0, 0 };
+
+  for (int k = 0; k < 3; k++) {
+    uint32_t p = x->surface->tri[t][k];
+
+    if (f != VG_NO_INDEX)
+      add_direction(&x->columns->column[x->columns->face[f][k]], sum);
+    else
+      for (uint32_t i = x->column_of[p]; i < x->column_of[p + 1]; i++)
+        add_direction(&x->columns->column[i], sum);
+  }
+  return dot(sum, q->u) > SAME_STACK * sqrt(dot(sum, sum));
+}
+
+/* The triangle at position i of the tree: how near is it? */
+static void consider(struct query *q, size_t i)
+{
+  const struct ahead *x = q->x;
+  const struct vg_column *c = &x->columns->column[q->column];
+  const uint32_t *t = x->boxes.tri[i];
+  uint32_t patch = x->surface->tri_patch[x->boxes.item[i]];
+  double p[3][3], e[3], f[3], n[3], l, near = INFINITY, s;
+
+  if (patch == c->slide[0] || patch == c->slide[1]) return;
+  for (int j = 0; j < 3; j++)
+    for (int k = 0; k < 3; k++)
+      p[j][k] = x->surface->point[t[j]][k] - q->root[k];
+  for (int k = 0; k < 3; k++) {
+    e[k] = p[1][k] - p[0][k];
+    f[k] = p[2][k] - p[0][k];
+  }
+  cross(e, f, n);
+  l = sqrt(dot(n, n));
+  if (!(l > 0)) return;
+  for (int k = 0; k < 3; k++) n[k] /= l;
+  if (x->slid[patch]) {
+    static const double root[3] = { 0, 0, 0 };
+
+    if (line_hits(root, q->u, (const double (*)[3])p, n, &s)) near = s;
+  } else {
+    near = nearest_in_cone(q->u, (const double (*)[3])p, n, q->reach);
+  }
+  for (int j = 0; j < q->n_centre; j++)
+    if (line_hits(q->centre[j], q->u, (const double (*)[3])p, n, &s)
+        && s < near)
+      near = s;
+  if (near < q->reach && !shares_point(q, t)
+      && !same_stack(q, x->boxes.item[i]))
+    q->reach = near;
+}
+
+/* --- through the tree ---------------------------------------------------- */
+
+/* The query as the boxes see it. */
+struct cone {
+  float root[3], u[3], lo, hi, back, slack;
+};
+
+static inline vg_f4 all4(float x)
+{
+  return (vg_f4){ x, x, x, x };
+}
+
+
+/* Children with a normal n for which n . u < -FACING + spread. */
+static inline vg_i4 facing4(const struct sides *s, int h, const float u[3],
+                            float spread)
+{
+  vg_f4 least = all4(0);
+
+  for (int k = 0; k < 3; k++)
+    least += s->mid[k].v[h] * all4(u[k]) - s->half[k].v[h] * all4(fabsf(u[k]));
+  return least <= all4(spread - (float)FACING + 1e-5f);
+}
+
+/* Children whose balls touch the cone with its apex `back` below the root,
+ * and whose boxes lie between lo and hi along it; where they begin: *first. */
+static inline vg_i4 in_cone4(const struct vg_box8 *n, const struct sides *s,
+                             int h, const struct cone *c, vg_f4 *first)
+{
+  vg_f4 along = all4(0), half = all4(0), far = all4(0), reach;
+
+  for (int k = 0; k < 3; k++) {
+    vg_f4 lo = n->lo[k].v[h], hi = n->hi[k].v[h];
+    vg_f4 mid = 0.5f * (lo + hi) - all4(c->root[k]);
+
+    along += mid * all4(c->u[k]);
+    half += 0.5f * (hi - lo) * all4(fabsf(c->u[k]));
+    far += mid * mid;
+  }
+  half += all4(c->slack);
+  *first = along - half;
+  /* A point at height z and distance d from the axis is (d - z) / sqrt 2
+   * away from the cone. */
+  reach = along + all4(c->back) + 1.4143f * s->radius.v[h] + all4(c->slack);
+  return (along + half >= all4(c->lo)) & (*first <= all4(c->hi))
+         & (reach >= all4(0))
+         & (far - along * along <= reach * reach * 1.00001f)
+         & facing4(s, h, c->u, 0);
+}
+
+static inline unsigned in_cone(const struct ahead *x, size_t node,
+                               const struct cone *c, union vg_f8 *first)
+{
+  const struct vg_box8 *n = &x->boxes.node[node];
+  const struct sides *s = &x->sides[node];
+
+  return vg_lanes(in_cone4(n, s, 0, c, &first->v[0]),
+                  in_cone4(n, s, 1, c, &first->v[1]));
+}
+
+static void cone_of(const struct query *q, struct cone *c)
+{
+  const struct vg_boxes *b = &q->x->boxes;
+
+  for (int k = 0; k < 3; k++) {
+    c->root[k] = (float)(q->root[k] - b->origin[k]);
+    c->u[k] = (float)q->u[k];
+  }
+  c->lo = (float)q->lowest;
+  c->hi = (float)q->reach;
+  c->back = (float)q->back;
+  /* Rounding: 2^-24 of the coordinates and a few times that in sums. */
+  c->slack = 1e-6f * b->extent;
+}
+
+static void look_into_leaf(struct query *q, size_t leaf, struct cone *c)
+{
+  union vg_f8 first;
+  unsigned mask;
+
+  c->hi = (float)q->reach;
+  mask = in_cone(q->x, leaf, c, &first);
+  for (; mask; mask &= mask - 1) {
+    size_t i = 8 * leaf + (size_t)__builtin_ctz(mask);
+    const float *n = q->x->normal[i];
+
+    if (n[0] * c->u[0] + n[1] * c->u[1] + n[2] * c->u[2] < -(float)FACING)
+      consider(q, i);
+  }
+}
+
+/* All of the tree, what begins nearest first: soon little is near enough. */
+static void walk(struct query *q, struct cone *c)
+{
+  const struct vg_boxes *b = &q->x->boxes;
+  struct { int level; float first; size_t at; } stack[STACK] = {
+    { b->n_level - 1, -INFINITY, 0 } };
+  int depth = 1;
+
+  while (depth--) {
+    int level = stack[depth].level, bottom = depth;
+    size_t at = stack[depth].at;
+    union vg_f8 first;
+    unsigned mask;
+
+    c->hi = (float)q->reach;
+    if (stack[depth].first > c->hi) continue;
+    if (!level) {
+      look_into_leaf(q, at, c);
+      continue;
+    }
+    mask = in_cone(q->x, b->first[level] + at, c, &first);
+    for (; mask; mask &= mask - 1) {
+      int i = __builtin_ctz(mask), j = depth++;
+
+      for (; j > bottom && stack[j - 1].first < first.f[i]; j--)
+        stack[j] = stack[j - 1];
+      stack[j].level = level - 1;
+      stack[j].first = first.f[i];
+      stack[j].at = 8 * at + (size_t)i;
+    }
+  }
+}
+
+/* --- columns ------------------------------------------------------------- */
+
+/* Centres of the faces: where else rays start. */
+static void find_centres(struct query *q)
+{
+  const struct vg_columns *c = q->x->columns;
+  const struct vg_topology *y = q->x->topology;
+  double widest = 0;
+
+  q->n_centre = 0;
+  q->lowest = 0;
+  for (uint32_t i = y->first[q->column]; i < y->first[q->column + 1]; i++) {
+    const uint32_t *face = c->face[y->corner[i] / 3];
+    double *x = q->centre[q->n_centre], s, w;
+
+    /* Apexes with more faces than this: the cone has to do. */
+    if (q->n_centre == CENTRE_MAX) break;
+    memset(x, 0, sizeof q->centre[0]);
+    for (int j = 0; j < 3; j++)
+      for (int k = 0; k < 3; k++)
+        x[k] += q->x->surface->point[c->column[face[j]].root][k];
+    for (int k = 0; k < 3; k++) x[k] = x[k] / 3 - q->root[k];
+    s = dot(x, q->u);
+    w = dot(x, x);
+    if (s < q->lowest) q->lowest = s;
+    if (w > widest) widest = w;
+    q->n_centre++;
+  }
+  q->back = SQRT_2 * sqrt(widest);
+}
+
+/* 0: nothing to ask. */
+static int start_query(struct query *q, uint32_t i)
+{
+  const struct ahead *x = q->x;
+  const struct vg_column *c = &x->columns->column[i];
+  double l = sqrt(dot(c->dir, c->dir));
+
+  x->allowed[i] = x->reach[i];
+  if (!(l > 0 && isfinite(l) && x->reach[i] > 0)) return 0;
+  q->column = i;
+  for (int k = 0; k < 3; k++) {
+    q->root[k] = x->surface->point[c->root][k];
+    q->u[k] = c->dir[k] / l;
+  }
+  q->reach = x->reach[i] * l / x->gap;
+  find_centres(q);
+  return 1;
+}
+
+static void end_query(const struct query *q, double wanted)
+{
+  const struct ahead *x = q->x;
+  const double *d = x->columns->column[q->column].dir;
+  double h = x->gap * q->reach / sqrt(dot(d, d));
+
+  if (q->reach < wanted && h < x->reach[q->column])
+    x->allowed[q->column] = h;
+}
+
+/* Neighbours ask together: boxes about their cones, and directions within
+ * `spread` of u. */
+struct team {
+  int n;
+  struct query query[TEAM];
+  float lo[3], hi[3], u[3], spread;
+};
+
+static void gather_team(struct team *t, const struct vg_boxes *b)
+{
+  double u[3] = { 0, 0, 0 }, l, spread = 0;
+
+  for (int k = 0; k < 3; k++) {
+    double lo = INFINITY, hi = -INFINITY;
+
+    for (int i = 0; i < t->n; i++) {
+      const struct query *q = &t->query[i];
+      /* A cone of height h is within h of its axis, sideways. */
+      double h = q->reach + q->back, s = sqrt(fmax(0, 1 - q->u[k] * q->u[k]));
+      double apex = q->root[k] - b->origin[k] - q->back * q->u[k];
+
+      u[k] += q->u[k];
+      lo = fmin(lo, fmin(apex, apex + h * (q->u[k] - s)));
+      hi = fmax(hi, fmax(apex, apex + h * (q->u[k] + s)));
+    }
+    l = 1e-6 * (b->extent + (hi - lo));
+    t->lo[k] = (float)(lo - l);
+    t->hi[k] = (float)(hi + l);
+  }
+  l = sqrt(dot(u, u));
+  for (int k = 0; k < 3; k++) {
+    u[k] = l > 0 ? u[k] / l : 0;
+    t->u[k] = (float)u[k];
+  }
+  for (int i = 0; i < t->n; i++) {
+    double d = 0;
+
+    for (int k = 0; k < 3; k++)
+      d += (t->query[i].u[k] - u[k]) * (t->query[i].u[k] - u[k]);
+    if (d > spread) spread = d;
+  }
+  t->spread = (float)sqrt(spread);
+}
+
+static inline unsigned in_team(const struct ahead *x, size_t node,
+                               const struct team *t)
+{
+  const struct vg_box8 *n = &x->boxes.node[node];
+  vg_i4 m[2];
+
+  for (int h = 0; h < 2; h++) {
+    m[h] = facing4(&x->sides[node], h, t->u, t->spread);
+    for (int k = 0; k < 3; k++)
+      m[h] &= (n->lo[k].v[h] <= all4(t->hi[k]))
+              & (n->hi[k].v[h] >= all4(t->lo[k]));
+  }
+  return vg_lanes(m[0], m[1]);
+}
+
+/* Leaves that any of the team may have to look into; LEAF_MAX + 1: more than
+ * is worth listing. */
+static int leaves_of_team(const struct ahead *x, const struct team *t,
+                          size_t leaf[LEAF_MAX])
+{
+  const struct vg_boxes *b = &x->boxes;
+  struct { int level; size_t at; } stack[STACK] = { { b->n_level - 1, 0 } };
+  int depth = 1, n = 0;
+
+  while (depth--) {
+    int level = stack[depth].level;
+    size_t at = stack[depth].at;
+    unsigned mask = in_team(x, b->first[level] + at, t);
+
+    if (!level) {
+      if (!mask) continue;
+      if (n == LEAF_MAX) return LEAF_MAX + 1;
+      leaf[n++] = at;
+      continue;
+    }
+    for (; mask; mask &= mask - 1) {
+      stack[depth].level = level - 1;
+      stack[depth++].at = 8 * at + (size_t)__builtin_ctz(mask);
+    }
+  }
+  return n;
+}
+
+static void ask(const struct ahead *x, struct team *t)
+{
+  size_t leaf[LEAF_MAX];
+  int n;
+
+  if (!t->n) return;
+  gather_team(t, &x->boxes);
+  n = leaves_of_team(x, t, leaf);
+  for (int i = 0; i < t->n && n; i++) {
+    struct query *q = &t->query[i];
+    double wanted = q->reach;
+    struct cone c;
+
+    cone_of(q, &c);
+    if (n > LEAF_MAX) walk(q, &c);
+    else
+      for (int j = 0; j < n; j++) look_into_leaf(q, leaf[j], &c);
+    end_query(q, wanted);
+  }
+}
+
+static void look_ahead(void *context, size_t first, size_t end, int worker)
+{
+  const struct ahead *x = context;
+  struct team t;
+
+  (void)worker;
+  for (size_t i = first; i < end; i += TEAM) {
+    t.n = 0;
+    for (size_t j = i; j < end && j < i + TEAM; j++) {
+      t.query[t.n].x = x;
+      t.n += start_query(&t.query[t.n], x->order[j]);
+    }
+    ask(x, &t);
+  }
+}
+
+/* --- all ----------------------------------------------------------------- */
+
+static void ahead_release(struct ahead *x)
+{
+  free(x->face_of);
+  free(x->column_of);
+  free(x->slid);
+  free(x->sides);
+  free(x->order);
+  free(x->normal);
+  vg_boxes_release(&x->boxes);
+}
+
+static void measure_normals(void *context, size_t first, size_t end,
+                            int worker)
+{
+  struct ahead *x = context;
+  double (*p)[3] = x->surface->point;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++) {
+    const uint32_t *t = x->boxes.tri[i];
+    double e[3], f[3], n[3], l;
+
+    for (int k = 0; k < 3; k++) {
+      e[k] = p[t[1]][k] - p[t[0]][k];
+      f[k] = p[t[2]][k] - p[t[0]][k];
+    }
+    cross(e, f, n);
+    l = sqrt(dot(n, n));
+    for (int k = 0; k < 3; k++)
+      x->normal[i][k] = l > 0 ? (float)(n[k] / l) : 0;
+  }
+}
+
+static void range_of(const float *lo, const float *hi, struct sides *s, int i)
+{
+  for (int k = 0; k < 3; k++) {
+    s->mid[k].f[i] = 0.5f * (lo[k] + hi[k]);
+    s->half[k].f[i] = 0.5f * (hi[k] - lo[k]);
+  }
+}
+
+/* Empty children face nothing: their mid - half is NaN. */
+static void measure_child(struct ahead *x, int level, size_t j, int i)
+{
+  const struct vg_boxes *b = &x->boxes;
+  size_t node = b->first[level] + j, child = 8 * j + (size_t)i;
+  float lo[3] = { INFINITY, INFINITY, INFINITY };
+  float hi[3] = { -INFINITY, -INFINITY, -INFINITY }, d = 0;
+  struct sides *s = &x->sides[node];
+
+  for (int k = 0; k < 3; k++) {
+    float h = 0.5f * (b->node[node].hi[k].f[i] - b->node[node].lo[k].f[i]);
+
+    d += h * h;
+  }
+  s->radius.f[i] = sqrtf(d);
+  if (!level && child < b->n) {
+    range_of(x->normal[child], x->normal[child], s, i);
+    return;
+  }
+  if (level && b->first[level - 1] + child < b->first[level]) {
+    const struct sides *below = &x->sides[b->first[level - 1] + child];
+
+    for (int l = 0; l < 8; l++)
+      for (int k = 0; k < 3; k++) {
+        float m = below->mid[k].f[l], h = below->half[k].f[l];
+
+        if (m - h < lo[k]) lo[k] = m - h;
+        if (m + h > hi[k]) hi[k] = m + h;
+      }
+  }
+  range_of(lo, hi, s, i);
+}
+
+struct level { struct ahead *x; int level; };
+
+static void measure_level(void *context, size_t first, size_t end, int worker)
+{
+  const struct level *l = context;
+
+  (void)worker;
+  for (size_t j = first; j < end; j++)
+    for (int i = 0; i < 8; i++) measure_child(l->x, l->level, j, i);
+}
+
+static void measure_sides(struct ahead *x, size_t n_node, int threads)
+{
+  const struct vg_boxes *b = &x->boxes;
+
+  vg_parallel_for(threads, b->n, GRAIN, measure_normals, x);
+  for (int i = 0; i < b->n_level; i++) {
+    struct level l = { x, i };
+    size_t end = i + 1 < b->n_level ? b->first[i + 1] : n_node;
+
+    vg_parallel_for(threads, end - b->first[i], GRAIN, measure_level, &l);
+  }
+}
+
+/* As their faces come in the tree; those without one come last. */
+static vg_status order_columns(struct ahead *x, struct vg_error *err)
+{
+  const struct vg_columns *c = x->columns;
+  uint8_t *seen = vg_calloc(c->n_column, 1);
+  size_t n = 0;
+
+  if (!seen) return vg_fail_memory(err, "an order of the columns");
+  for (size_t i = 0; i < x->boxes.n; i++) {
+    uint32_t f = x->face_of[x->boxes.item[i]];
+
+    for (int k = 0; k < 3 && f != VG_NO_INDEX; k++) {
+      uint32_t column = c->face[f][k];
+
+      if (!seen[column]) x->order[n++] = column;
+      seen[column] = 1;
+    }
+  }
+  for (size_t i = 0; i < c->n_column; i++)
+    if (!seen[i]) x->order[n++] = (uint32_t)i;
+  free(seen);
+  return VG_OK;
+}
+
+/* Columns come by rising root, so those of point p are column_of[p] to
+ * column_of[p + 1] - 1. */
+static void index_columns(struct ahead *x)
+{
+  const struct vg_columns *c = x->columns;
+  const struct vg_mesh *m = x->surface;
+  size_t i = 0;
+
+  for (size_t p = 0; p <= m->n_point; p++) {
+    while (i < c->n_column && c->column[i].root < p) i++;
+    x->column_of[p] = (uint32_t)i;
+  }
+  for (size_t t = 0; t < m->n_tri; t++) x->face_of[t] = VG_NO_INDEX;
+  for (size_t f = 0; f < c->n_face; f++)
+    if (c->face_tri[f] != VG_NO_INDEX)
+      x->face_of[c->face_tri[f]] = (uint32_t)f;
+  for (i = 0; i < c->n_column; i++)
+    for (int k = 0; k < 2; k++)
+      if (c->column[i].slide[k] < m->n_patch)
+        x->slid[c->column[i].slide[k]] = 1;
+}
+
+static vg_status prepare(struct ahead *x, int threads, struct vg_error *err)
+{
+  const struct vg_mesh *m = x->surface;
+  struct vg_boxes *b = &x->boxes;
+  vg_status st;
+  size_t n_node;
+
+  st = vg_boxes_build(b, (const double (*)[3])m->point,
+                      (const uint32_t (*)[3])m->tri, m->n_tri, NULL, 0,
+                      threads, err);
+  if (st < 0) return st;
+  n_node = b->n ? b->first[b->n_level - 1] + 1 : 0;
+  x->face_of = vg_alloc(m->n_tri, sizeof *x->face_of);
+  x->column_of = vg_alloc(m->n_point + 1, sizeof *x->column_of);
+  x->slid = vg_calloc(m->n_patch, 1);
+  x->sides = vg_alloc(n_node, sizeof *x->sides);
+  x->normal = vg_alloc(b->n, sizeof *x->normal);
+  x->order = vg_alloc(x->columns->n_column, sizeof *x->order);
+  if (!x->face_of || !x->column_of || !x->slid || !x->sides || !x->normal
+      || !x->order)
+    return vg_fail_memory(err, "what stands in front of the layers");
+  index_columns(x);
+  measure_sides(x, n_node, threads);
+  return order_columns(x, err);
+}
+
+vg_status vg_clear_ahead(const struct vg_mesh *surface,
+                         const struct vg_columns *columns,
+                         const struct vg_topology *topology, double gap,
+                         int threads, const double *reach, double *allowed,
+                         struct vg_error *err)
+{
+  struct ahead x = { .surface = surface, .columns = columns,
+                     .topology = topology, .gap = gap, .reach = reach,
+                     .allowed = allowed };
+  vg_status st;
+
+  if (!(gap > 0))
+    return vg_fail(err, VG_ERR_INPUT, "a gap of %g leaves no room for layers: "
+                   "it must be more than 0", gap);
+  st = prepare(&x, threads, err);
+  if (st == VG_OK && x.boxes.n)
+    vg_parallel_for(threads, columns->n_column, GRAIN, look_ahead, &x);
+  ahead_release(&x);
+  return st;
+}
