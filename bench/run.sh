@@ -105,7 +105,7 @@ timed() {
 # peak MB to NAME.runs.
 run_vanguard() {
   timed "$1/vanguard.log" "$vanguard" mesh -p "$1/$2" --out "$1/out" \
-    --write lb8.ugrid || { tail -5 "$1/vanguard.log" >&2; return 1; }
+    --write lb8.ugrid --layers no || { tail -5 "$1/vanguard.log" >&2; return 1; }
   echo "$("$helper" seconds "$1/out/$2.report.json") \
     $(peak_mb "$1/vanguard.log.time")" >> "$1/vanguard.runs"
 }

@@ -55,6 +55,34 @@ static int list_cases(void)
   return VG_EXIT_DONE;
 }
 
+/* Cases with viscous layers: a flow at Re 5 million of the mean chord. */
+static const struct rans {
+  const char *name;
+  double y_plus, reynolds, length;
+} rans_cases[] = {
+  { "wing", 1, 5e6, 0.7 }, { "wing-half", 1, 5e6, 0.7 },
+  { "wing-sharp", 1, 5e6, 0.7 }, { "wing-sharp-half", 1, 5e6, 0.7 },
+};
+
+static const char layer_comment[] =
+  "# Viscous layers grow on the patches of condition 4 in the .mapbc. Their\n"
+  "# first height follows from y_plus, reynolds and reference_length (the\n"
+  "# mean chord) below; 'vanguard mesh --layers no' makes isotropic cells\n"
+  "# only, '--cells mixed' leaves prisms whole.\n";
+
+/* 1 when the case has layers. */
+static int set_layers(const char *name, struct vg_settings *s)
+{
+  for (size_t i = 0; i < sizeof rans_cases / sizeof *rans_cases; i++) {
+    if (strcmp(rans_cases[i].name, name) != 0) continue;
+    s->layer.y_plus = rans_cases[i].y_plus;
+    s->layer.reynolds = rans_cases[i].reynolds;
+    s->layer.length = rans_cases[i].length;
+    return 1;
+  }
+  return 0;
+}
+
 /* The recommended settings of the case as a deck. */
 static vg_status settings_of(const char *name, const struct vg_demo *demo,
                              struct vg_settings *s, struct vg_error *err)
@@ -93,6 +121,7 @@ static vg_status write_project(const char *stem, const char *name,
 {
   char *path[3] = { NULL }, points[32], triangles[32], cells[32];
   struct vg_settings s = VG_SETTINGS_INIT;
+  int has_layers;
   vg_status st;
 
   VG_TRY(new_path(stem, "lb8.ugrid", &path[0], err));
@@ -102,14 +131,17 @@ static vg_status write_project(const char *stem, const char *name,
   VG_TRY(vg_format_write(path[0], &demo->surface, err));
   VG_TRY(vg_mapbc_write(path[1], &demo->surface, VG_MAPBC_VGRID, name, NULL,
                         err));
-  VG_TRY(vg_deck_write(path[2], &s, NULL, 0, err));
+  has_layers = set_layers(name, &s);
+  VG_TRY(vg_deck_write(path[2], &s, has_layers ? layer_comment : NULL,
+                       has_layers, err));
   printf("%s: surface of %s points, %s triangles\n", path[0],
          vg_cli_count(demo->surface.n_point, points),
          vg_cli_count(demo->surface.n_tri, triangles));
   printf("%s: boundary conditions of %zu patches\n", path[1],
          demo->surface.n_patch);
-  printf("%s: settings, for about %s cells\n", path[2],
-         vg_cli_count((unsigned long long)demo->n_cell, cells));
+  printf("%s: settings, for about %s cells%s\n", path[2],
+         vg_cli_count((unsigned long long)demo->n_cell, cells),
+         has_layers ? " and the viscous layers" : "");
   if (wanted && demo->n_cell > 1.05 * (double)wanted)
     printf("  %s cells were asked for: the geometry needs more\n",
            vg_cli_count(wanted, cells));

@@ -113,6 +113,7 @@ static vg_status read_project(struct run *r, const struct arguments *a,
   t = vg_display_now();
   VG_TRY(vg_problem_close(p, &r->show, err));
   VG_TRY(vg_layer_stage_plan(&r->layers, p, err));
+  vg_problem_note_unset(p);
   r->time_check = vg_display_now() - t;
   VG_TRY(vg_outputs_check(p, &r->outputs, err));
   VG_TRY(stopped(r, err));
@@ -392,7 +393,8 @@ static void print_report(const struct run *r)
   print_count("tetrahedra", r->mesh.n_tet);
   if (r->mesh.n_pyr) print_count("pyramids", r->mesh.n_pyr);
   if (r->mesh.n_pri) print_count("prisms", r->mesh.n_pri);
-  vg_report_mesh_text(stdout, &r->judge, 0);
+  if (r->layers.is_on) vg_report_whole_text(stdout, &r->judge);
+  else vg_report_mesh_text(stdout, &r->judge, 0);
   print_times(r);
   print_files(r);
 }

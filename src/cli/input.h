@@ -63,6 +63,10 @@ vg_status vg_problem_surface(struct vg_problem *p, struct vg_error *err);
 vg_status vg_problem_close(struct vg_problem *p, struct vg_display *show,
                            struct vg_error *err);
 
+/** Writers give patches without a condition that of an inviscid wall: a note
+ * tells which these are. Once conditions are final. */
+void vg_problem_note_unset(struct vg_problem *p);
+
 /** vg_surface_check with the question settled whether the closed shells of m
  * stand in a fluid (*external 1) or bound it (0).
  *

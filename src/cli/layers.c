@@ -314,6 +314,28 @@ static void note_missing(const struct vg_layer_stage *s, struct vg_problem *p,
           "with --reynolds and --reference-length", n_wall, list);
 }
 
+/* A wall with layers and without a condition is a viscous one; left open, it
+ * would be written as inviscid. */
+static void give_conditions(const struct vg_layer_stage *s,
+                            struct vg_problem *p)
+{
+  size_t n = 0;
+
+  for (size_t i = 0; i < s->n_patch; i++) {
+    struct vg_patch *patch = &p->surface.patch[i];
+
+    if (s->reason[i] == VG_WALL_NOT || patch->bc != VG_BC_NONE ||
+        patch->bc_fun3d != VG_BC_NONE)
+      continue;
+    patch->bc = patch->family = 4;
+    patch->bc_fun3d = 4000;
+    n++;
+  }
+  if (n)
+    vg_note(&p->notes, "%zu patches with layers have no boundary condition "
+            "and are written as viscous walls (4, FUN3D 4000)", n);
+}
+
 static void note_choice(const struct vg_layer_stage *s, struct vg_problem *p)
 {
   const struct vg_layer_settings *l = &p->settings.layer;
@@ -415,6 +437,7 @@ vg_status vg_layer_stage_plan(struct vg_layer_stage *s, struct vg_problem *p,
   }
   VG_TRY(make_requests(s, p, err));
   note_choice(s, p);
+  give_conditions(s, p);
   set_options(s, &p->settings);
   VG_TRY(resolve(s, p, err));
   s->is_on = 1;

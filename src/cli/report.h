@@ -38,6 +38,10 @@ json_t *vg_report_surface_json(const struct vg_mesh *m,
 
 /** Validity, then quality; `full`: with histograms and the worst cells. */
 void vg_report_mesh_text(FILE *to, const struct vg_mesh_report *r, int full);
+
+/** The same of a mesh with layers, whose flat cells have no angles to be
+ * judged by: validity and volumes. */
+void vg_report_whole_text(FILE *to, const struct vg_mesh_report *r);
 json_t *vg_report_mesh_json(const struct vg_mesh_report *r);
 
 /** What is wrong with an invalid mesh: "3 cells not positive, ...". */

@@ -121,6 +121,14 @@ static void quality_text(FILE *to, const struct vg_mesh_report *r)
             "%.2f %%\n", r->edge_mean, r->edge_within);
 }
 
+void vg_report_whole_text(FILE *to, const struct vg_mesh_report *r)
+{
+  validity_text(to, r);
+  fprintf(to, "  volume ratio of neighbours: median %.2f, 95 %% below %.2f, "
+          "largest %.1f\n", r->volume_ratio[0], r->volume_ratio[1],
+          r->volume_ratio[2]);
+}
+
 void vg_report_mesh_text(FILE *to, const struct vg_mesh_report *r, int full)
 {
   validity_text(to, r);

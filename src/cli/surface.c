@@ -239,8 +239,7 @@ static vg_status resolve_patches(struct vg_problem *p, struct vg_error *err)
   return vg_deck_patches_of(&p->surface, &p->settings, err);
 }
 
-/* Writers give patches without a condition that of an inviscid wall. */
-static void note_unset(struct vg_problem *p)
+void vg_problem_note_unset(struct vg_problem *p)
 {
   char list[12 * SHOWN_PATCHES + 8] = "";
   size_t n = 0, at = 0;
@@ -285,7 +284,6 @@ vg_status vg_problem_close(struct vg_problem *p, struct vg_display *show,
 
   vg_mesh_keep_boundary(&p->surface);
   p->require_bc = vg_surface_has_conditions(&p->surface);
-  note_unset(p);
   VG_TRY(split_quads(&p->surface, &p->notes, err));
   VG_TRY(resolve_patches(p, err));
   if (s->weld > 0)

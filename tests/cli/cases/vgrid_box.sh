@@ -1,4 +1,4 @@
-# A real VGRID project meshes as it is.
+# A real VGRID project meshes as it is, with the layers it asks for.
 [ -d "${VG_DATA_DIR:-}/vgrid_box" ] || skip "VG_DATA_DIR has no vgrid_box"
 for suffix in d3m front mapbc; do
   cp "$VG_DATA_DIR/vgrid_box/box.$suffix" .
@@ -6,10 +6,30 @@ done
 vanguard mesh -q -p box
 exits 0
 says out "validity: valid"
-says out "the .d3m asks for viscous layers"
-exists box.cogsg box.bc box.b8.ugrid
+says out "layers as the .d3m says (grid = 1): first 0.001, rates 0.15 and 0.02"
+exists box.cogsg box.bc box.b8.ugrid box.wall.vtu
+says box.report.json '"wall_by": "meshing class"'
+grep -A6 '"first_asked":' box.report.json | grep -q '"min": 0.001' ||
+  fail "not the first height of the .d3m"
 same box.mapbc "$VG_DATA_DIR/vgrid_box/box.mapbc"
 same box.front "$VG_DATA_DIR/vgrid_box/box.front"
 vanguard check -q "$VG_DATA_DIR/vgrid_box/box.cogsg"
 exits 0
 says out "validity: valid"
+
+# The header says how many points and cells are in layers, in VGRID's order.
+count() { sed -n "s/.*\"$1\": \([0-9]*\).*/\1/p" box.report.json | tail -1; }
+nev=$(od -An -tu4 --endian=big -j 24 -N 4 box.cogsg | tr -d ' ')
+[ "$nev" = "$(count tetrahedra_if_all_are)" ] ||
+  fail "nev is $nev, not $(count tetrahedra_if_all_are)"
+
+# The resolved deck needs the .d3m no more and repeats the run.
+vanguard mesh -q -p box --deck box.resolved.deck --out again
+exits 0
+lacks out "as the .d3m says"
+same box.cogsg again/box.cogsg
+
+# Without layers it is what it was before there were any.
+vanguard mesh -q -p box --layers no --out plain
+exits 0
+absent plain/box.wall.vtu

@@ -1,0 +1,148 @@
+# Viscous layers: which patches are walls, heights, limits, files, errors.
+vanguard demo box --cells 2000 --out p
+exits 0
+
+# Walls by list. The report has tables, the JSON all figures.
+vanguard mesh -q -p p/box --walls 5 --first 1e-3 --out one
+exits 0
+exists one/box.wall.vtu one/box.cogsg one/box.b8.ugrid
+says out "validity: valid"
+says out "first asked"
+lacks out "y+:"
+vanguard mesh -q -p p/box --walls 5 --y-plus 1 --reynolds 1e5 \
+  --reference-length 2 --json --threads 2 --out two
+exits 0
+for key in columns wall_triangles percent_full percent_any first_asked \
+  first_error_percent levels growth y_plus fewer_by_cause proximity \
+  columns_per_second cells_per_second limits_met seconds; do
+  says out "\"$key\""
+done
+says out '"wall_by": "setting"'
+says out '"limits_met": true'
+says out "y+ 1 at Reynolds number 100000 of length 2: first height"
+grep -q '"tetrahedra_if_all_are": [1-9]' out || fail "no layer cells"
+
+# The resolved deck repeats it byte by byte, for any number of threads.
+vanguard mesh -q -p p/box --deck two/box.resolved.deck --threads 1 --out again
+exits 0
+for suffix in b8.ugrid cogsg bc wall.vtu; do
+  same two/box.$suffix again/box.$suffix
+done
+vanguard check -q two/box.cogsg
+exits 0
+says out "validity: valid"
+
+# Nothing is grown unless somebody asks; --layers no wins over all.
+vanguard mesh -q -p p/box --out plain
+exits 0
+absent plain/box.wall.vtu
+vanguard mesh -q -p p/box --walls 5 --first 1e-3 --layers no --out no
+exits 0
+absent no/box.wall.vtu
+same plain/box.b8.ugrid no/box.b8.ugrid
+
+# A viscous condition without a height is no reason to grow, but to say so.
+sed 's/^5 *3 *3/5 4 4/' p/box.mapbc >viscous.mapbc
+mkdir viscous
+cp p/box.lb8.ugrid p/box.deck viscous
+cp viscous.mapbc viscous/box.mapbc
+vanguard mesh -q -p viscous/box --out v1
+exits 0
+says out "1 patches are viscous walls (number 5) and get no layers"
+same plain/box.b8.ugrid v1/box.b8.ugrid
+vanguard mesh -q -p viscous/box --first 1e-3 --out v2
+exits 0
+same one/box.b8.ugrid v2/box.b8.ugrid
+says v2/box.report.json '"wall_by": "condition"'
+vanguard mesh -q -p viscous/box --first 1e-3 --slip 5 --out v3
+exits 0
+absent v3/box.wall.vtu
+
+# Own values of a patch; a limit that cannot be met: all files are written,
+# the patch is named, and the status is 4.
+cp p/box.deck own.deck
+printf '\nlayers\nid grow first min_full\n5 yes 3e-2 99\n6 yes - -\n' >>own.deck
+vanguard mesh -q -p p/box --deck own.deck --first 2e-2 --layer-count 80 \
+  --ratio 1.2 --out limit
+exits 4
+exists limit/box.b8.ugrid limit/box.wall.vtu limit/box.report.json
+says err "limit not met: patch 5 z-min: min_full is 99 %, reached "
+lacks err "patch 6"
+says limit/box.report.json '"limits_met": false'
+says limit/box.report.json '"limit": "min_full"'
+vanguard mesh -q -p p/box --deck own.deck --first 1e-3 --out met
+exits 0
+
+# Slips and what cannot be.
+refuse() { # TEXT OPTIONS...
+  local text=$1
+  shift
+  vanguard mesh -q -p p/box --out refused "$@"
+  exits 1
+  says err "$text"
+  absent refused/box.b8.ugrid
+}
+refuse "no first height is known; give --first" --layers yes --walls 5
+refuse "walls: patch 77 is not in the surface" --walls 77 --first 1
+refuse "walls: no patch of the surface is within 77-99" --walls 77-99 --first 1
+refuse "'3-x' is no list of patches" --walls 3-x --first 1
+refuse "'3-1' is no list of patches" --walls 3-1 --first 1
+refuse "patch 5 is in both lists" --walls 5 --slip 4-6 --first 1
+refuse "y_plus needs reynolds" --walls 5 --y-plus 1
+refuse "layers are asked for, but no patch is known to be a wall" \
+  --layers yes --first 1e-3
+refuse "name them with --walls" --layers yes --first 1e-3
+refuse "5 z-min (bc 3)" --layers yes --first 1e-3
+refuse "are together higher than 0.001" --walls 5 --first 1e-3 \
+  --layer-count 10 --layer-total 1e-3
+refuse "above layer_cap 1.3; give more layers" --walls 5 --first 1e-3 \
+  --layer-count 3 --layer-total 0.1
+refuse "a .cogsg holds tetrahedra only" --walls 5 --first 1e-3 --cells mixed \
+  --write cogsg
+refuse "no VGRID source has a first height" --walls 5 --first 1e-3 \
+  --layer-sources yes
+printf 't\nlayers\nid first\n66 1e-3\n' >slip.deck
+refuse "layers: patch 66 is not in the surface" --deck slip.deck --walls 5 \
+  --first 1
+printf 't\nwalls first\n5 1e-3\n\nlayers\nid grow\n5 no\n' >slip.deck
+refuse "the table layers says grow no" --deck slip.deck
+vanguard mesh -q -p p/box --first -1
+exits 2
+says err "first is -1; it must be at least 0"
+
+# A whole domain without conditions: the user has to say.
+mkdir bare
+cp p/box.lb8.ugrid bare
+vanguard mesh -q -p bare/box --farfield none --first 1e-3
+exits 1
+says err "no patch is known to be a wall"
+vanguard mesh -q -p bare/box --farfield none --first 1e-3 --walls 5-5
+exits 0
+exists bare/box.wall.vtu
+
+# Mixed cells: prisms, and no .cogsg by default.
+vanguard mesh -q -p p/box --walls 5 --first 1e-3 --cells mixed --out mixed
+exits 0
+absent mixed/box.cogsg
+exists mixed/box.b8.ugrid
+says mixed/box.report.json '"prisms"'
+grep -q '"prisms": [1-9]' mixed/box.report.json || fail "no prisms"
+vanguard check -q mixed/box.b8.ugrid
+exits 0
+says out "validity: valid"
+
+# The tail of a .ugrid is one integer.
+vanguard mesh -q -p p/box --walls 5 --first 1e-3 --ugrid-tail yes --out tail
+exits 0
+[ $(($(stat -c %s tail/box.b8.ugrid) - $(stat -c %s one/box.b8.ugrid))) = 4 ] ||
+  fail "the tail is not 4 bytes"
+
+# OpenFOAM case beside the other files, in place of an earlier one.
+for try in 1 2; do
+  vanguard mesh -q -p p/box --walls 5 --first 1e-3 --cells mixed --out foam \
+    --write foam,b8.ugrid
+  exits 0
+done
+exists foam/box.openfoam/constant/polyMesh/owner foam/box.b8.ugrid
+same foam/box.b8.ugrid mixed/box.b8.ugrid
+[ "$(ls -A foam | grep -c '^\.')" = 0 ] || fail "a hidden folder is left"

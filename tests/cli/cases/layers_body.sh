@@ -1,0 +1,73 @@
+# Layers on a body without conditions, and as AFLR's files say.
+corners=("1 0 0" "0 1 0" "0 0 1" "-1 0 0" "0 -1 0" "0 0 -1")
+facet() {
+  echo " facet normal 0 0 0"; echo "  outer loop"
+  for corner; do echo "   vertex ${corners[corner]}"; done
+  echo "  endloop"; echo " endfacet"
+}
+{
+  echo "solid upper"
+  facet 0 1 2; facet 1 3 2; facet 3 4 2; facet 4 0 2
+  echo "endsolid upper"; echo "solid lower"
+  facet 1 0 5; facet 3 1 5; facet 4 3 5; facet 0 4 5
+  echo "endsolid lower"
+} >body.stl
+
+# Asked for: the whole body, not the farfield.
+vanguard mesh -q -p body --first 0.01
+exits 0
+says out "2 patches with layers have no boundary condition"
+lacks out "inviscid"
+says body.mapbc "4"
+rm body.mapbc
+says out "no patch has a condition: layers grow on the whole body"
+[ "$(grep -c '"wall_by": "body"' body.report.json)" = 2 ] ||
+  fail "not both patches of the body are walls"
+sed -n '/^layers$/,/^$/p' body.resolved.deck >rows
+[ "$(grep -c yes rows)" = 2 ] || fail "the resolved deck does not list them"
+vanguard mesh -q -p body --deck body.resolved.deck --out again
+exits 0
+same body.b8.ugrid again/body.b8.ugrid
+
+vanguard mesh -q -p body --first 0.01 --slip 2 --out slip
+exits 0
+[ "$(grep -c '"wall_by"' slip/body.report.json)" = 1 ] ||
+  fail "a slip patch has layers"
+
+# Not asked for: none.
+vanguard mesh -q -p body --out none
+exits 0
+absent none/body.wall.vtu
+
+# .tags: a wall, its first height and the number of its layers.
+mkdir aflr
+cp body.stl aflr
+cat >aflr/body.tags <<'END'
+# id group visc recon rebuild fixed source trans delete spacing thickness layers
+1 upper 1 1 0 0 0 0 0 0.02 0 3
+2 lower 1 1 0 0 0 0 0 0.02 0 3
+END
+vanguard mesh -q -p aflr/body
+exits 0
+exists aflr/body.wall.vtu
+grep -A4 '"first_asked"' aflr/body.report.json | grep -q '"min": 0.02' ||
+  fail "not the height of the .tags"
+grep -A4 '"levels"' aflr/body.report.json | grep -q '"max": 3.0' ||
+  fail "not the number of the .tags"
+says aflr/body.report.json '"wall_by": "condition"'
+# What is given wins.
+vanguard mesh -q -p aflr/body --first 0.01 --layer-count 2 --out given
+exits 0
+grep -A4 '"first_asked"' given/body.report.json | grep -q '"min": 0.01' ||
+  fail "the .tags won over --first"
+
+# An AFLR .bc by name; it is an input that a .cogsg would overwrite.
+rm aflr/body.tags
+printf 'upper -1 0.02\nlower -1 0.02\n' >aflr/body.bc
+vanguard mesh -q -p aflr/body
+exits 1
+says err "would overwrite the input"
+vanguard mesh -q -p aflr/body --write b8.ugrid
+exits 0
+grep -A4 '"first_asked"' aflr/body.report.json | grep -q '"min": 0.02' ||
+  fail "not the height of the .bc"
