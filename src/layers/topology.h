@@ -38,8 +38,10 @@ void vg_topology_release(struct vg_topology *t);
  * keeps one column. Virtual faces close the gaps along ridges and at points.
  * A ridge that ends at a slide patch ends in a rim there.
  *
- * Either all columns of one root have levels or none: otherwise two columns
- * of one direction across a virtual face could make a flat first cell.
+ * All columns of one root should get the same levels and heights. Then cells
+ * of virtual faces are positive as long as no column of the face is 90 degrees
+ * or more away from the middle of the two others; else a fan that tapers onto
+ * one column makes flat or inverted ones.
  *
  * @param slide    [n_slide] as from vg_slides_find
  * @param columns  in: empty; untouched on failure, as is *t

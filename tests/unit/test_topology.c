@@ -9,10 +9,10 @@
 #include <cmocka.h>
 
 #include "base/memory.h"
-#include "fill_shapes.h"
 #include "layers/gram.h"
 #include "layers/topology.h"
 #include "layers/vector.h"
+#include "topology_shapes.h"
 
 #define LEVELS 3
 
@@ -52,70 +52,6 @@ static void build(struct made *s, unsigned walls, unsigned slides,
                         &err) != VG_OK)
     fail_msg("%s", err.text);
 }
-
-/* Shapes -------------------------------------------------------------------*/
-
-/* A cylinder along y over a polygon in the xz plane that runs clockwise seen
- * from +y, from y = 0 to 1 in n_y steps; patch 0. `root` 0: closed by a cap at
- * y = 0; 1: open onto a plane (patch 1), with a dome (patch 2) around all.
- * apex: the end at y = 1 is the point (0, 1, 0), without sides between. */
-static void extrude(struct vg_mesh *m, int n, const double (*at)[2], int n_y,
-                    int root, int apex)
-{
-  uint32_t end, low, far;
-  int rows = apex ? 1 : n_y + 1;
-
-  vg_mesh_add_patch(m, 1, "body");
-  vg_mesh_add_patch(m, 2, "plane");
-  vg_mesh_add_patch(m, 3, "far");
-  for (int j = 0; j < rows; j++)
-    for (int i = 0; i < n; i++)
-      shape_point(m, at[i][0], (double)j / n_y, at[i][1]);
-  end = shape_point(m, 0, 1, 0);
-  for (int j = 0; j + 1 < rows; j++)
-    for (int i = 0; i < n; i++) {
-      uint32_t a = (uint32_t)(j * n + i), b = (uint32_t)(j * n + (i + 1) % n);
-      uint32_t up = (uint32_t)n;
-
-      shape_tri(m, a, b, b + up, 0);
-      shape_tri(m, a, b + up, a + up, 0);
-    }
-  for (int i = 0; i < n; i++)
-    shape_tri(m, (uint32_t)((rows - 1) * n + i),
-              (uint32_t)((rows - 1) * n + (i + 1) % n), end, 0);
-  if (!root) {
-    low = shape_point(m, 0, 0, 0);
-    for (int i = 0; i < n; i++)
-      shape_tri(m, (uint32_t)((i + 1) % n), (uint32_t)i, low, 0);
-    return;
-  }
-  low = (uint32_t)m->n_point;
-  for (int i = 0; i < n; i++)
-    shape_point(m, 20 * at[i][0], 0, 20 * at[i][1]);
-  far = shape_point(m, 0, 20, 0);
-  for (int i = 0; i < n; i++) {
-    uint32_t a = (uint32_t)i, b = (uint32_t)((i + 1) % n);
-
-    shape_tri(m, b, a, low + a, 1);
-    shape_tri(m, b, low + a, low + b, 1);
-    shape_tri(m, low + b, low + a, far, 2);
-  }
-}
-
-static void ring(int n, double (*at)[2])
-{
-  for (int i = 0; i < n; i++) {
-    at[i][0] = cos(2 * M_PI * i / n);
-    at[i][1] = -sin(2 * M_PI * i / n);
-  }
-}
-
-static const double square[4][2] = {{-1, -1}, {-1, 1}, {1, 1}, {1, -1}};
-static const double plate[4][2] = {
-  {-1, -0.005}, {-1, 0.005}, {1, 0.005}, {1, -0.005} };
-static const double wedge[8][2] = {   /* 6 degrees at x = 1.5 */
-  {-1, -0.12}, {-1.2, 0}, {-1, 0.12}, {-0.5, 0.1048}, {0.5, 0.0524}, {1.5, 0},
-  {0.5, -0.0524}, {-0.5, -0.1048} };
 
 /* Checks -------------------------------------------------------------------*/
 
@@ -368,11 +304,11 @@ static size_t check_cells(struct made *s, double step, double *volume)
 }
 
 /* low or low + 1, in no order: neighbours differ by one at most. Columns of
- * one root have levels all or none. */
+ * one root have the same. */
 static void set_levels(struct made *s, int low)
 {
   for (size_t i = 0; i < s->c.n_column; i++) {
-    size_t seed = low ? i : s->c.column[i].root;
+    size_t seed = s->c.column[i].root;
 
     s->c.column[i].n = (uint16_t)((size_t)low + (seed * seed * 7 + seed / 3)
                                   % 2);
@@ -611,6 +547,78 @@ static void a_wedge_has_a_fan_down_to_its_plane(void **state)
   made_release(&s);
 }
 
+/* Swept back and forth, up to 45 degrees: the fan turns in the plane. */
+static void a_swept_wedge_keeps_its_fan_in_the_plane(void **state)
+{
+  (void)state;
+  for (int sweep = -4; sweep <= 4; sweep++) {
+    struct made s = MADE_INIT;
+
+    extrude(&s.m, 8, wedge, 4, 1, 0);
+    for (size_t i = 0; i < 8 * 5 + 1; i++)
+      s.m.point[i][0] += 0.25 * sweep * s.m.point[i][1];
+    build(&s, 1, ~0u, 130);
+    assert_int_equal(s.c.n_rim, 8 + columns_at(&s, 1.5, 0, 0) - 1);
+    assert_true(columns_at(&s, 1.5, 0, 0) >= 6);
+    assert_int_equal(check(&s, 0.01), 1);
+    made_release(&s);
+  }
+}
+
+/* The end of a sharp edge at a sharp tip: a corner of three sectors. */
+static void a_wedge_has_a_corner_at_its_tip(void **state)
+{
+  struct made s = MADE_INIT;
+
+  (void)state;
+  extrude(&s.m, 8, wedge, 4, 0, 0);
+  build(&s, 1, ~0u, 60);
+  assert_true(columns_at(&s, 1.5, 1, 0) >= 11);
+  assert_int_equal(check(&s, 1e-3), 2);
+  made_release(&s);
+}
+
+/* A ridge that flattens out inside the wall ends in a point with one column,
+ * onto which the fan of the point before tapers. */
+static void a_ridge_that_ends_tapers(void **state)
+{
+  struct made s = MADE_INIT;
+
+  (void)state;
+  extrude(&s.m, 8, wedge, 4, 1, 0);
+  for (int j = 0; j <= 4; j++) s.m.point[8 * j + 5][0] -= 0.225 * j;
+  build(&s, 1, ~0u, 130);
+  assert_true(columns_at(&s, 1.5, 0, 0) > 2);
+  assert_int_equal(columns_at(&s, 0.6, 1, 0), 1);
+  assert_int_equal(check(&s, 1e-3), 1);
+  made_release(&s);
+}
+
+/* A sharp edge (1, y > 0, 0) that opens into a narrow base (y < 0): at the
+ * point between, three sectors lie in one plane and leave no gap. */
+static void a_base_that_closes_needs_no_centre(void **state)
+{
+  static const double at[9][3] = {
+    {0, -1, 1}, {0, 1, 1}, {0, 1, -1}, {0, -1, -1}, {1, -1, 0.05},
+    {1, -1, -0.05}, {1, 0, 0}, {1, 1, 0}, {0, 0, 0} };
+  static const uint32_t tri[14][3] = {
+    {0, 4, 6}, {0, 6, 1}, {1, 6, 7}, {3, 6, 5}, {3, 2, 6}, {2, 7, 6},
+    {4, 5, 6}, {1, 7, 2}, {0, 3, 5}, {0, 5, 4}, {8, 0, 1}, {8, 1, 2},
+    {8, 2, 3}, {8, 3, 0} };
+  struct made s = MADE_INIT;
+
+  (void)state;
+  vg_mesh_add_patch(&s.m, 1, "body");
+  for (int i = 0; i < 9; i++) shape_point(&s.m, at[i][0], at[i][1], at[i][2]);
+  for (int i = 0; i < 14; i++)
+    shape_tri(&s.m, tri[i][0], tri[i][1], tri[i][2], 0);
+  build(&s, 1, ~0u, 35);
+  /* 45 degrees to the base and on: two steps each. */
+  assert_int_equal(columns_at(&s, 1, 0, 0), 5);
+  assert_int_equal(check(&s, 1e-3), 2);
+  made_release(&s);
+}
+
 static void a_thin_plate_has_fans_all_around(void **state)
 {
   struct made s = MADE_INIT;
@@ -722,6 +730,10 @@ int main(void)
     cmocka_unit_test(fans_fill_the_space_about_an_edge),
     cmocka_unit_test(a_wedge_keeps_one_column_without_fans),
     cmocka_unit_test(a_wedge_has_a_fan_down_to_its_plane),
+    cmocka_unit_test(a_swept_wedge_keeps_its_fan_in_the_plane),
+    cmocka_unit_test(a_wedge_has_a_corner_at_its_tip),
+    cmocka_unit_test(a_ridge_that_ends_tapers),
+    cmocka_unit_test(a_base_that_closes_needs_no_centre),
     cmocka_unit_test(a_thin_plate_has_fans_all_around),
     cmocka_unit_test(a_cone_has_a_fan_about_its_base),
     cmocka_unit_test(a_pyramid_has_a_fan_at_its_apex),
