@@ -31,7 +31,8 @@ struct vg_slide {
  *                 none
  * A patch is plane when no point is farther from the plane than 1e-6 of its
  * extent (surfaces from CAD are noisy) and no triangle faces the other way;
- * with an axis when all coordinates are equal bit by bit. O(n log n). */
+ * with an axis when all coordinates are equal bit by bit. Planes normal to an
+ * axis but for noise have no `axis`, but the axis as normal. O(n log n). */
 vg_status vg_slides_find(const struct vg_mesh *surface, const uint8_t *is_wall,
                          size_t *n, struct vg_slide **out,
                          struct vg_error *err);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "layers/vector.h"
 
 /* A plane patch's points are no farther from it than this of its extent. */
 #define FLATNESS 1e-6
@@ -17,27 +18,6 @@ struct shape {
   int found;                  /* touches a wall */
 };
 
-static void cross(const double a[3], const double b[3], double c[3])
-{
-  c[0] = a[1] * b[2] - a[2] * b[1];
-  c[1] = a[2] * b[0] - a[0] * b[2];
-  c[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-static double dot(const double a[3], const double b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static int unit(double n[3])
-{
-  const double len = sqrt(dot(n, n));
-
-  if (!(len > 0)) return -1;
-  for (int k = 0; k < 3; k++) n[k] /= len;
-  return 0;
-}
-
 static void area_vector(const struct vg_mesh *m, size_t t, double n[3])
 {
   const double *o = m->point[m->tri[t][0]];
@@ -47,7 +27,7 @@ static void area_vector(const struct vg_mesh *m, size_t t, double n[3])
     a[k] = m->point[m->tri[t][1]][k] - o[k];
     b[k] = m->point[m->tri[t][2]][k] - o[k];
   }
-  cross(a, b, n);
+  vg_cross(a, b, n);
 }
 
 /* Mark patches with an edge in common with a wall: the walls' edges by their
@@ -99,7 +79,7 @@ static void measure(const struct vg_mesh *m, struct shape *shape)
 
     if (!s->found) continue;
     area_vector(m, t, n);
-    w = sqrt(dot(n, n));
+    w = sqrt(vg_dot(n, n));
     if (!(s->weight > 0)) memcpy(s->first, n, sizeof n);
     s->weight += w;
     s->n_tri++;
@@ -116,9 +96,30 @@ static void measure(const struct vg_mesh *m, struct shape *shape)
   }
 }
 
-/* A patch that closes on itself has no mean: any normal of it will do. */
+static double extent_of(const struct shape *s)
+{
+  double extent = 0;
+
+  for (int k = 0; k < 3; k++) extent = fmax(extent, s->hi[k] - s->lo[k]);
+  return extent;
+}
+
+/* The coordinate in which a patch is thinner than the tolerance, or -1. */
+static int thin_axis(const struct shape *s)
+{
+  for (int k = 0; k < 3; k++)
+    if (s->hi[k] - s->lo[k] <= FLATNESS * extent_of(s)
+        && fabs(s->area[k]) > 0.9 * s->weight)
+      return k;
+  return -1;
+}
+
+/* A patch that closes on itself has no mean: any normal of it will do. A
+ * plane normal to an axis but for noise gets the axis as normal, so that
+ * what slides in it does not drift along the axis. */
 static void start(const struct shape *s, uint32_t patch, struct vg_slide *out)
 {
+  const int thin = thin_axis(s);
   double centre[3];
 
   memset(out, 0, sizeof *out);
@@ -126,20 +127,50 @@ static void start(const struct shape *s, uint32_t patch, struct vg_slide *out)
   out->axis = -1;
   out->is_plane = s->weight > 0;
   memcpy(out->normal, s->area, sizeof out->normal);
-  if (dot(s->area, s->area) <= 1e-16 * s->weight * s->weight
-      || unit(out->normal)) {
+  if (vg_dot(s->area, s->area) <= 1e-16 * s->weight * s->weight
+      || !(vg_unit(out->normal) > 0)) {
     memcpy(out->normal, s->first, sizeof out->normal);
-    if (unit(out->normal)) out->normal[2] = 1;
+    if (!(vg_unit(out->normal) > 0)) out->normal[2] = 1;
   }
   for (int k = 0; k < 3; k++) {
     centre[k] = s->weight > 0 ? s->inside[k] / s->weight : s->lo[k];
-    if (out->axis >= 0 || s->lo[k] != s->hi[k]) continue;
-    out->axis = k;
-    for (int j = 0; j < 3; j++)
-      out->normal[j] = j != k ? 0 : out->normal[j] < 0 ? -1 : 1;
+    if (thin >= 0)
+      out->normal[k] = k != thin ? 0 : s->area[k] < 0 ? -1 : 1;
   }
+  if (thin >= 0 && s->lo[thin] == s->hi[thin]) out->axis = thin;
   out->at = out->axis >= 0 ? out->normal[out->axis] * s->lo[out->axis]
-                           : dot(out->normal, centre);
+                           : vg_dot(out->normal, centre);
+}
+
+static int compare_value(const void *a, const void *b)
+{
+  const double p = *(const double *)a, q = *(const double *)b;
+
+  return (p > q) - (p < q);
+}
+
+/* Where a plane normal to an axis is noisy, it stands where most points do:
+ * at the median. */
+static vg_status settle_planes(const struct vg_mesh *m,
+                               const struct shape *shape, size_t n,
+                               struct vg_slide *slide, struct vg_error *err)
+{
+  for (size_t i = 0; i < n; i++) {
+    const int k = thin_axis(&shape[slide[i].patch]);
+    double *x;
+    size_t n_x = 0;
+
+    if (k < 0 || slide[i].axis >= 0) continue;
+    x = vg_alloc(3 * shape[slide[i].patch].n_tri, sizeof *x);
+    if (!x) return vg_fail_memory(err, "slide patches");
+    for (size_t t = 0; t < m->n_tri; t++)
+      for (int j = 0; m->tri_patch[t] == slide[i].patch && j < 3; j++)
+        x[n_x++] = m->point[m->tri[t][j]][k];
+    qsort(x, n_x, sizeof *x, compare_value);
+    slide[i].at = slide[i].normal[k] * x[n_x / 2];
+    free(x);
+  }
+  return VG_OK;
 }
 
 /* Clear is_plane where a triangle is off the plane or turned over. */
@@ -150,15 +181,15 @@ static void check_planes(const struct vg_mesh *m, const struct shape *shape,
     const uint32_t i = slide_of[m->tri_patch[t]];
     const struct shape *e = &shape[m->tri_patch[t]];
     struct vg_slide *s;
-    double extent = 0, n[3];
+    double extent, n[3];
 
     if (i == VG_NO_INDEX) continue;
     s = &slide[i];
     area_vector(m, t, n);
-    if (dot(n, s->normal) < 0) s->is_plane = 0;
-    for (int k = 0; k < 3; k++) extent = fmax(extent, e->hi[k] - e->lo[k]);
+    if (vg_dot(n, s->normal) < 0) s->is_plane = 0;
+    extent = extent_of(e);
     for (int k = 0; s->axis < 0 && k < 3; k++)
-      if (fabs(dot(m->point[m->tri[t][k]], s->normal) - s->at)
+      if (fabs(vg_dot(m->point[m->tri[t][k]], s->normal) - s->at)
           > FLATNESS * extent)
         s->is_plane = 0;
   }
@@ -188,10 +219,11 @@ static void add_corner(const struct vg_mesh *m, size_t t, int k, double n[3])
     a[j] = m->point[m->tri[t][(k + 1) % 3]][j] - o[j];
     b[j] = m->point[m->tri[t][(k + 2) % 3]][j] - o[j];
   }
-  cross(a, b, c);
-  area = sqrt(dot(c, c));
+  vg_cross(a, b, c);
+  area = sqrt(vg_dot(c, c));
   if (!(area > 0)) return;
-  angle = 2 * arc_tangent(area / (sqrt(dot(a, a) * dot(b, b)) + dot(a, b)));
+  angle = 2 * arc_tangent(area / (sqrt(vg_dot(a, a) * vg_dot(b, b))
+                                  + vg_dot(a, b)));
   for (int j = 0; j < 3; j++) n[j] += angle * c[j] / area;
 }
 
@@ -275,7 +307,7 @@ static struct vg_slide *with_tables(const struct vg_mesh *m, size_t n,
     for (size_t j = 0; j < out[i].n_vertex; j++) {
       double *v = normal[(size_t)(out[i].vertex - list) + j];
 
-      if (unit(v)) memcpy(v, out[i].normal, sizeof out[i].normal);
+      if (!(vg_unit(v) > 0)) memcpy(v, out[i].normal, sizeof out[i].normal);
     }
   return out;
 }
@@ -303,6 +335,7 @@ vg_status vg_slides_find(const struct vg_mesh *surface, const uint8_t *is_wall,
     slide_of[i] = (uint32_t)n_found;
     start(&shape[i], (uint32_t)i, &slide[n_found++]);
   }
+  VG_TRY(settle_planes(surface, shape, n_found, slide, err));
   check_planes(surface, shape, slide_of, slide);
   if (n_found) {
     found = with_tables(surface, n_found, slide, shape, slide_of);
@@ -337,5 +370,5 @@ void vg_slide_normal(const struct vg_slide *s, const struct vg_mesh *surface,
   for (size_t t = 0; t < surface->n_tri; t++)
     for (int k = 0; surface->tri_patch[t] == s->patch && k < 3; k++)
       if (surface->tri[t][k] == p) add_corner(surface, t, k, n);
-  if (!unit(n)) memcpy(normal, n, sizeof n);
+  if (vg_unit(n) > 0) memcpy(normal, n, sizeof n);
 }
