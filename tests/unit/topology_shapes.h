@@ -8,8 +8,8 @@
  * from +y, from y = 0 to 1 in n_y steps; patch 0. `root` 0: closed by a cap at
  * y = 0; 1: open onto a plane (patch 1), with a dome (patch 2) around all.
  * apex: the end at y = 1 is the point (0, 1, 0), without sides between. */
-static inline void extrude(struct vg_mesh *m, int n, const double (*at)[2], int n_y,
-                    int root, int apex)
+static inline void extrude(struct vg_mesh *m, int n, const double (*at)[2],
+                           int n_y, int root, int apex)
 {
   uint32_t end, low, far;
   int rows = apex ? 1 : n_y + 1;
