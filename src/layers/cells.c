@@ -11,7 +11,7 @@
 #define GRAIN 1024
 #define FLAT (0.25 * VG_VIEW_MIN)  /* least sine of a column on a layer */
 #define SHRUNK 0.04        /* least area of a layer, of that at the wall */
-#define LOWER 0.85         /* of the room, when a cell is bad */
+#define LOWER 0.75         /* of the room, when a cell is bad */
 
 /* The face of one call: three columns by rising number, levels ascending. */
 struct stack {

@@ -264,6 +264,7 @@ vg_status vg_heights_wanted(struct vg_layer_work *w, struct vg_error *err)
                    d);
     w->wanted[i] = w->room[i] = d[c->column[i].n_wanted];
     w->why[i] = VG_CAUSE_NONE;
+    w->settled[i] = -1;
   }
 done:
   return st;
@@ -314,6 +315,22 @@ vg_status vg_heights_corner(struct vg_layer_work *w, struct vg_error *err)
   return VG_OK;
 }
 
+/* Growth and levels that fit into the room of a column. */
+static void fit(struct vg_layer_work *w, size_t i)
+{
+  struct vg_column *c = &w->c->column[i];
+  const struct vg_law *law = &w->c->law[c->law];
+
+  w->settled[i] = w->room[i];
+  w->own[i] = c->n_wanted;
+  c->cap = law->cap;
+  if (w->room[i] >= w->wanted[i]) return;
+  c->cap = vg_law_squeeze(law, c->n_wanted, w->room[i]);
+  if (c->cap > 0) return;
+  c->cap = 1;
+  w->own[i] = (uint16_t)(w->room[i] / law->delta1);
+}
+
 static void settle_body(void *context, size_t first, size_t end, int worker)
 {
   struct vg_layer_work *w = context;
@@ -321,19 +338,12 @@ static void settle_body(void *context, size_t first, size_t end, int worker)
   (void)worker;
   for (size_t i = first; i < end; i++) {
     struct vg_column *c = &w->c->column[i];
-    const struct vg_law *law = &w->c->law[c->law];
 
-    c->n = c->n_wanted;
-    c->cap = law->cap;
-    c->cause = w->by_size[i] ? VG_CAUSE_SIZE : VG_CAUSE_NONE;
-    c->squeezed = VG_CAUSE_NONE;
-    if (w->room[i] >= w->wanted[i]) continue;
-    c->squeezed = w->why[i];
-    c->cap = vg_law_squeeze(law, c->n, w->room[i]);
-    if (c->cap > 0) continue;
-    c->cap = 1;
-    c->cause = w->why[i];
-    c->n = (uint16_t)(w->room[i] / law->delta1);
+    if (w->room[i] != w->settled[i]) fit(w, i);
+    c->n = w->own[i];
+    c->squeezed = w->room[i] < w->wanted[i] ? w->why[i] : VG_CAUSE_NONE;
+    c->cause = c->n < c->n_wanted ? w->why[i]
+             : w->by_size[i] ? VG_CAUSE_SIZE : VG_CAUSE_NONE;
   }
 }
 

@@ -50,6 +50,8 @@ static void work_release(struct vg_layer_work *w)
   free(w->edge);
   free(w->wanted);
   free(w->room);
+  free(w->settled);
+  free(w->own);
   free(w->why);
   free(w->by_size);
 }
@@ -112,10 +114,12 @@ static vg_status arrays(struct vg_layer_work *w, struct vg_error *err)
   w->edge = vg_alloc(n, sizeof *w->edge);
   w->wanted = vg_alloc(n, sizeof *w->wanted);
   w->room = vg_alloc(n, sizeof *w->room);
+  w->settled = vg_alloc(n, sizeof *w->settled);
+  w->own = vg_calloc(n, sizeof *w->own);
   w->why = vg_calloc(n, 1);
   w->by_size = vg_calloc(n, 1);
   if (w->normal && w->cap && w->root_dir && w->view && w->edge && w->wanted &&
-      w->room && w->why && w->by_size) return VG_OK;
+      w->room && w->settled && w->own && w->why && w->by_size) return VG_OK;
   return vg_fail_memory(err, "the layers");
 }
 

@@ -31,6 +31,8 @@ struct vg_layer_work {
   double *edge;             /* local isotropic edge */
   double *wanted;           /* height of n_wanted levels by the law */
   double *room;             /* height it may take, <= wanted */
+  double *settled;          /* room for which cap and ... */
+  uint16_t *own;            /* ... levels were found last */
   uint8_t *why;             /* enum vg_layer_cause: what set room */
   uint8_t *by_size;         /* n_wanted is where the local size is reached */
   size_t max_valence;       /* faces at a column */
