@@ -2,6 +2,9 @@
 
 #include <math.h>
 
+/* A rate that no layers have. */
+#define RATE_MAX 1e6
+
 static double power(double x, int n)
 {
   double y = 1;
@@ -18,15 +21,14 @@ static double bare(const struct vg_law *law, int j)
 
   if (k <= 0) return law->delta1;
   return law->delta1 *
-         power(1 + law->rate1 * power(1 + law->rate2, k), k);
+         power(1 + law->rate1 * (law->rate2 > 0 ? power(1 + law->rate2, k)
+                                                : 1), k);
 }
 
-/* Runs through the layers: thickness of layer j, given that of j - 1. */
-static double next(const struct vg_law *law, double cap, int j, double before)
+/* Thickness of layer j under a cap, given that of j - 1. */
+static double next(double bare, double cap, int j, double before)
 {
-  double t = bare(law, j);
-
-  return j > 1 && t > cap * before ? cap * before : t;
+  return j > 1 && bare > cap * before ? cap * before : bare;
 }
 
 void vg_law_heights(const struct vg_law *law, double cap, int n, double *d)
@@ -36,7 +38,7 @@ void vg_law_heights(const struct vg_law *law, double cap, int n, double *d)
   if (cap > law->cap) cap = law->cap;
   d[0] = 0;
   for (int j = 1; j <= n; j++) {
-    t = next(law, cap, j, t);
+    t = next(bare(law, j), cap, j, t);
     d[j] = d[j - 1] + t;
   }
 }
@@ -45,16 +47,18 @@ double vg_law_thickness(const struct vg_law *law, int j)
 {
   double t = 0;
 
-  for (int i = 1; i <= j; i++) t = next(law, law->cap, i, t);
+  for (int i = 1; i <= j; i++) t = next(bare(law, i), law->cap, i, t);
   return t;
 }
 
-static double sum(const struct vg_law *law, double cap, int n)
+/* Height of n layers of thickness b[1 .. n] by the law alone; adds as
+ * vg_law_heights does, to the last bit. */
+static double sum(const double *b, double cap, int n)
 {
   double total = 0, t = 0;
 
   for (int j = 1; j <= n; j++) {
-    t = next(law, cap, j, t);
+    t = next(b[j], cap, j, t);
     total += t;
   }
   return total;
@@ -62,19 +66,21 @@ static double sum(const struct vg_law *law, double cap, int n)
 
 double vg_law_squeeze(const struct vg_law *law, int n, double height)
 {
-  double lo = 1, hi = law->cap;
+  double lo = 1, hi = law->cap, b[VG_LEVELS_MAX + 1];
 
-  if (sum(law, hi, n) <= height) return hi;
-  if (sum(law, lo, n) > height) return 0;
+  if (n > VG_LEVELS_MAX) n = VG_LEVELS_MAX;
+  for (int j = 1; j <= n; j++) b[j] = bare(law, j);
+  if (sum(b, hi, n) <= height) return hi;
+  if (sum(b, lo, n) > height) return 0;
   /* An unlimited law still has a largest ratio among its n layers. */
   if (!isfinite(hi)) {
     hi = 2;
-    while (sum(law, hi, n) <= height) hi *= 2;
+    while (sum(b, hi, n) <= height) hi *= 2;
   }
   for (int i = 0; i < 40; i++) {
     double mid = 0.5 * (lo + hi);
 
-    if (sum(law, mid, n) <= height) lo = mid;
+    if (sum(b, mid, n) <= height) lo = mid;
     else hi = mid;
   }
   return lo;
@@ -96,19 +102,30 @@ double vg_y_plus(double y, double reynolds, double length)
   return y * reynolds * friction(reynolds) / length;
 }
 
+static double total_at(double delta1, int n_constant, int n, double rate)
+{
+  struct vg_law law = { delta1, rate, 0, INFINITY, n_constant };
+  double total = 0;
+
+  for (int j = 1; j <= n; j++) total += bare(&law, j);
+  return total;
+}
+
 double vg_law_rate_for_total(double delta1, int n_constant, int n,
                              double total)
 {
-  struct vg_law law = { delta1, 0, 0, INFINITY, n_constant };
   double lo = 0, hi = 1;
 
-  if (sum(&law, INFINITY, n) > total) return -1;
-  law.rate1 = hi;
-  while (sum(&law, INFINITY, n) < total && hi < 1e6) law.rate1 = hi *= 2;
+  if (total_at(delta1, n_constant, n, 0) > total) return -1;
+  while (total_at(delta1, n_constant, n, hi) < total) {
+    if (hi > RATE_MAX) return INFINITY;
+    hi *= 2;
+  }
   for (int i = 0; i < 60; i++) {
-    law.rate1 = 0.5 * (lo + hi);
-    if (sum(&law, INFINITY, n) < total) lo = law.rate1;
-    else hi = law.rate1;
+    double mid = 0.5 * (lo + hi);
+
+    if (total_at(delta1, n_constant, n, mid) < total) lo = mid;
+    else hi = mid;
   }
   return 0.5 * (lo + hi);
 }

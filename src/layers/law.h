@@ -43,7 +43,8 @@ double vg_first_height(double y_plus, double reynolds, double length);
 double vg_y_plus(double y, double reynolds, double length);
 
 /** Rate (r1, with r2 = 0) for which n layers reach `total`; < 0 when n layers
- * of delta1 are higher already. Within 1e-12 relative. */
+ * of delta1 are higher already, INFINITY when none does (all n of constant
+ * thickness, or a rate beyond 1e6). Within 1e-12 relative. */
 double vg_law_rate_for_total(double delta1, int n_constant, int n,
                              double total);
 
