@@ -4,6 +4,7 @@
 #include <pthread.h>
 #include <sched.h>
 #include <stdatomic.h>
+#include <unistd.h>
 
 #define WORKERS_MAX 256
 
@@ -23,16 +24,20 @@ struct worker {
 int vg_cores(void)
 {
   cpu_set_t set;
+  long n;
 
-  if (sched_getaffinity(0, sizeof set, &set)) return 1;
-  return CPU_COUNT(&set) > 0 ? CPU_COUNT(&set) : 1;
+  if (!sched_getaffinity(0, sizeof set, &set))
+    return CPU_COUNT(&set) > 0 ? CPU_COUNT(&set) : 1;
+  /* more processors than a cpu_set_t has */
+  n = sysconf(_SC_NPROCESSORS_ONLN);
+  return n < 1 ? 1 : n > WORKERS_MAX ? WORKERS_MAX : (int)n;
 }
 
 static void *work(void *argument)
 {
   struct worker *w = argument;
   struct loop *l = w->loop;
-  size_t n_chunk = (l->n + l->grain - 1) / l->grain, c;
+  size_t n_chunk = (l->n - 1) / l->grain + 1, c;
 
   while ((c = atomic_fetch_add(&l->next, 1)) < n_chunk) {
     size_t first = c * l->grain, left = l->n - first;
