@@ -304,10 +304,11 @@ static inline void case_slot(struct vg_mesh *m, double h, double gap)
                             { 0, 1 } };
   uint32_t below = case_patch(m, "below", CASE_WALL, 0);
   uint32_t above = case_patch(m, "above", CASE_WALL, 0);
-  uint32_t far = case_patch(m, "farfield", CASE_FARFIELD, 0);
+  uint32_t in = case_patch(m, "in", CASE_FARFIELD, 0);
+  uint32_t out = case_patch(m, "out", CASE_FARFIELD, 0);
   uint32_t end[2] = { case_patch(m, "left", CASE_SYMMETRY, 1),
                       case_patch(m, "right", CASE_SYMMETRY, 1) };
-  const uint32_t side[5] = { below, far, above, above, far };
+  const uint32_t side[5] = { below, out, above, above, in };
 
   case_extrude(&b, 5, xz, side, 0, 0.8, end, 0);
   case_end(&b);
@@ -437,9 +438,8 @@ static inline void case_sphere(struct vg_mesh *m, double h, double gap,
   m->patch[0].bc = m->patch[0].family = CASE_WALL;
   m->patch[0].bc_fun3d = 4000;
   for (int i = 0; i < 6; i++)
-    patch[i] = i == 1 || i == 2 || i == 3 || i == 5 ? patch[0] :
-               i == 0 ? case_patch(m, "farfield", CASE_FARFIELD, 0) :
-               case_patch(m, "floor", floor_bc, 2);
+    patch[i] = i == 4 ? case_patch(m, "floor", floor_bc, 2) :
+               case_patch(m, "farfield", CASE_FARFIELD, 0);
   case_box(&b, lo, hi, patch, 0);
   case_end(&b);
 }

@@ -381,6 +381,26 @@ static void fill_and_join(const struct bench *b)
   vg_sizing_free(sizing);
 }
 
+/* Shares of wall faces, in per cent. */
+static void at_least(const struct bench *b, double full, double unsqueezed,
+                     double any)
+{
+  struct vg_wall_fields w = VG_WALL_FIELDS_INIT;
+  struct vg_patch_layers *list = NULL, all;
+  size_t n;
+
+  assert_int_equal(vg_layers_fields(&b->surface, &b->layers.columns, 1, &w,
+                                    NULL), VG_OK);
+  assert_int_equal(vg_layers_patches(&b->surface, &b->layers.columns, &w, 0, 0,
+                                     &n, &list, &all, NULL), VG_OK);
+  assert_int_equal(all.n_face, b->report.n_wall_tri);
+  if (all.full < full || all.unsqueezed < unsqueezed || all.any < any)
+    fail_msg("%g %% full, %g %% unsqueezed, %g %% any", all.full,
+             all.unsqueezed, all.any);
+  vg_wall_fields_release(&w);
+  free(list);
+}
+
 static void all_of_it(struct bench *b, double h)
 {
   start(b, h);
@@ -445,6 +465,7 @@ static void two_plates_that_close_to_a_gap(void **state)
   /* a whole stack is 0.44 high: the slot has room for a tenth of two */
   case_slot(&b.surface, 0.1, 0.08);
   all_of_it(&b, 0.1);
+  at_least(&b, 100, 0, 100);
   p = look(&b, lo, hi);
   assert_true(p.n > 0 && p.n_none == 0);
   assert_true(p.top_max < 0.5 * 0.08);
@@ -466,6 +487,7 @@ static void a_slot_narrower_than_an_edge(void **state)
   (void)state;
   case_slot(&b.surface, 0.2, 0.02);
   all_of_it(&b, 0.2);
+  at_least(&b, 100, 0, 100);
   finish(&b);
 }
 
@@ -476,6 +498,7 @@ static void a_right_angle(void **state)
   (void)state;
   case_corner(&b.surface, 0.05, 0, 1);
   all_of_it(&b, 0.05);
+  at_least(&b, 100, 60, 100);
   is_full(&b, 0.5, 0.9, 0, 0.8, 0, 0);
   finish(&b);
 }
@@ -487,6 +510,7 @@ static void an_angle_of_30_degrees(void **state)
   (void)state;
   case_corner(&b.surface, 0.06, sqrt(0.75), 0.5);
   all_of_it(&b, 0.06);
+  at_least(&b, 100, 0, 100);
   finish(&b);
 }
 
@@ -497,6 +521,7 @@ static void a_cube(void **state)
   (void)state;
   case_cube(&b.surface, 0.125);
   all_of_it(&b, 0.125);
+  at_least(&b, 100, 100, 100);
   is_full(&b, -0.3, 0.3, -0.3, 0.3, 0.5, 0.5);
   finish(&b);
 }
@@ -513,6 +538,7 @@ static void a_cube_with_fans(void **state)
   assert_true(b.report.n_virtual_face > 0);
   assert_true(b.report.n_column > b.report.n_wall_point);
   fill_and_join(&b);
+  at_least(&b, 100, 100, 100);
   finish(&b);
 }
 
@@ -523,6 +549,7 @@ static void a_cone(void **state)
   (void)state;
   case_cone(&b.surface, 0.1, 1);
   all_of_it(&b, 0.1);
+  at_least(&b, 100, 100, 100);
   finish(&b);
 }
 
@@ -533,6 +560,7 @@ static void a_needle(void **state)
   (void)state;
   case_cone(&b.surface, 0.15, 2.5);
   all_of_it(&b, 0.15);
+  at_least(&b, 100, 100, 100);
   finish(&b);
 }
 
@@ -544,6 +572,7 @@ static void a_sphere_over_a_wall(void **state)
   (void)state;
   case_sphere(&b.surface, 0.1, 0.02, CASE_WALL);
   all_of_it(&b, 0.1);
+  at_least(&b, 100, 5, 100);
   is_full(&b, -0.2, 0.2, -0.2, 0.2, 0.9, 1.1);   /* the sphere's far side */
   p = look(&b, (const double[3]){ -0.02, -0.02, 0 },
            (const double[3]){ 0.02, 0.02, 0.1 });
@@ -559,6 +588,7 @@ static void a_sphere_over_a_symmetry_plane(void **state)
   (void)state;
   case_sphere(&b.surface, 0.1, 0.02, CASE_SYMMETRY);
   all_of_it(&b, 0.1);
+  at_least(&b, 100, 10, 100);
   is_full(&b, -0.2, 0.2, -0.2, 0.2, 0.9, 1.1);
   p = look(&b, (const double[3]){ -0.02, -0.02, 0 },
            (const double[3]){ 0.02, 0.02, 0.1 });
@@ -573,6 +603,7 @@ static void a_thin_plate(void **state)
   (void)state;
   case_plate(&b.surface, 0.1, 0.04);
   all_of_it(&b, 0.1);
+  at_least(&b, 100, 100, 100);
   is_full(&b, -0.2, 0.2, -0.2, 0.2, -0.1, 0.1);
   finish(&b);
 }
@@ -587,6 +618,7 @@ static void a_thin_plate_with_fans(void **state)
   b.options.fan_angle = 60;
   grow_and_check(&b);
   fill_and_join(&b);
+  at_least(&b, 100, 100, 100);
   finish(&b);
 }
 
@@ -598,6 +630,7 @@ static void sharp_edges_between_two_planes(void **state)
   (void)state;
   case_wedge(&b.surface, 0.1, 0.1);
   all_of_it(&b, 0.1);
+  at_least(&b, 100, 100, 100);
   is_full(&b, -0.2, 0.2, -0.4, 0.4, -1, 1);
   finish(&b);
 }
@@ -612,6 +645,7 @@ static void sharp_edges_with_fans(void **state)
   b.options.fan_angle = 60;
   grow_and_check(&b);
   fill_and_join(&b);
+  at_least(&b, 100, 100, 100);
   finish(&b);
 }
 
@@ -622,6 +656,7 @@ static void a_post_at_90_degrees(void **state)
   (void)state;
   case_post(&b.surface, 0.1, 0);
   all_of_it(&b, 0.1);
+  at_least(&b, 100, 100, 100);
   is_full(&b, -1, 1, -1, 1, 0, 0.4);
   assert_int_equal(b.report.n_slide_patch, 1);
   finish(&b);
@@ -634,6 +669,7 @@ static void a_post_at_60_to_120_degrees(void **state)
   (void)state;
   case_post(&b.surface, 0.1, 0.57735);
   all_of_it(&b, 0.1);
+  at_least(&b, 100, 50, 100);
   finish(&b);
 }
 
@@ -645,6 +681,29 @@ static void a_post_at_45_to_135_degrees(void **state)
   (void)state;
   case_post(&b.surface, 0.1, 1);
   all_of_it(&b, 0.1);
+  at_least(&b, 100, 40, 100);
+  finish(&b);
+}
+
+/* Four sides of a box as one patch touch the floor: no plane fits it. What
+ * cannot be re-meshed costs levels, never validity. */
+static void a_slide_patch_with_folds(void **state)
+{
+  struct bench b = { .options.smooth = 0 };
+  uint32_t first;
+
+  (void)state;
+  case_sphere(&b.surface, 0.15, 0.5, CASE_WALL);
+  first = VG_NO_INDEX;
+  for (size_t t = 0; t < b.surface.n_tri; t++) {
+    uint32_t *p = &b.surface.tri_patch[t];
+
+    if (b.surface.patch[*p].bc != CASE_FARFIELD) continue;
+    if (first == VG_NO_INDEX) first = *p;
+    *p = first;
+  }
+  all_of_it(&b, 0.15);
+  at_least(&b, 0, 0, 90);
   finish(&b);
 }
 
@@ -657,6 +716,7 @@ static void a_point_that_sees_nothing(void **state)
   (void)state;
   case_octants(&b.surface);
   all_of_it(&b, 1.0 / 6);
+  at_least(&b, 0, 0, 95);
   p = look(&b, at, at);
   assert_int_equal(p.n, 1);
   assert_int_equal(p.n_none, 1);
@@ -777,6 +837,7 @@ int main(void)
     cmocka_unit_test(a_post_at_90_degrees),
     cmocka_unit_test(a_post_at_60_to_120_degrees),
     cmocka_unit_test(a_post_at_45_to_135_degrees),
+    cmocka_unit_test(a_slide_patch_with_folds),
     cmocka_unit_test(a_point_that_sees_nothing),
     cmocka_unit_test(levels_and_height_as_asked),
     cmocka_unit_test(a_law_that_varies),
