@@ -1,4 +1,4 @@
-#include "io_support.h"
+#include "mixed_support.h"
 
 #include "io/ugrid.h"
 
@@ -256,6 +256,74 @@ static void tails_are_ignored(void **state)
   vg_mesh_release(&back);
 }
 
+/* The tail follows what is written without it, in the kind's own integers
+ * and records, and readers do not mind. */
+static void the_number_of_layer_tetrahedra_follows(void **state)
+{
+  static const struct { const char *suffix; size_t size, at; int big; } kind[] =
+  {
+    {"b8.ugrid", 4, 0, 1}, {"lb8.ugrid", 4, 0, 0}, {"lb4.ugrid", 4, 0, 0},
+    {"b8l.ugrid", 8, 0, 1}, {"lb8l.ugrid", 8, 0, 0}, {"r8.ugrid", 12, 4, 1},
+    {"lr4.ugrid", 12, 4, 0}, {"ugrid", 3, 0, 0}
+  };
+  struct vg_mesh m, back = VG_MESH_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+
+  (void)state;
+  mixed_make(&m, 3, 2);
+  for (size_t i = 0; i < sizeof kind / sizeof *kind; i++) {
+    const char *path = path_of("tail", kind[i].suffix);
+    size_t plain, size, value = 0, width = kind[i].size == 8 ? 8 : 4;
+    unsigned char *a, *b;
+
+    assert_int_equal(vg_ugrid_write(path, &m, &err), VG_OK);
+    a = io_slurp(path, &plain);
+    assert_int_equal(vg_ugrid_write_tail(path, &m, 11, &err), VG_OK);
+    b = io_slurp(path, &size);
+    assert_int_equal(size, plain + kind[i].size);
+    assert_memory_equal(a, b, plain);
+    if (kind[i].size == 3) {
+      assert_string_equal((char *)b + plain, "11\n");
+    } else {
+      for (size_t k = 0; k < width; k++)
+        value = value << 8 | b[plain + kind[i].at +
+                               (kind[i].big ? k : width - 1 - k)];
+      assert_int_equal(value, 11);
+    }
+    if (vg_ugrid_read(path, &back, NULL, &err)) fail_msg("%s", err.text);
+    assert_int_equal(back.n_tet, m.n_tet);
+    vg_mesh_release(&back);
+    free(a);
+    free(b);
+    unlink(path);
+  }
+  assert_int_equal(vg_ugrid_write_tail(path_of("tail", "b8.ugrid"), &m, 13,
+                                       &err), VG_ERR_INPUT);
+  assert_non_null(strstr(err.text, "13 tetrahedra"));
+  assert_true(access(path_of("tail", "b8.ugrid"), F_OK) != 0);
+  vg_mesh_release(&m);
+}
+
+/* The faces of mixed_support.h, written down apart, close a mesh of all kinds
+ * and point out of it; what reads the file finds nothing to turn. */
+static void a_closed_mesh_of_all_kinds_is_right(void **state)
+{
+  const char *path = path_of("closed", "b8.ugrid");
+  struct vg_mesh m, back = VG_MESH_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+  struct vg_turned turned;
+
+  (void)state;
+  mixed_make(&m, 4, 3);
+  assert_int_equal(vg_ugrid_write(path, &m, &err), VG_OK);
+  assert_int_equal(vg_ugrid_read(path, &back, &turned, &err), VG_OK);
+  assert_int_equal(turned.cell + turned.face + turned.loose_face, 0);
+  io_same(&m, &back, 0);
+  unlink(path);
+  vg_mesh_release(&m);
+  vg_mesh_release(&back);
+}
+
 static void bad_values_are_named(void **state)
 {
   (void)state;
@@ -444,6 +512,8 @@ int main(void)
     cmocka_unit_test(mirrored_cells_and_faces_are_turned),
     cmocka_unit_test(a_wrong_name_is_told_the_right_one),
     cmocka_unit_test(tails_are_ignored),
+    cmocka_unit_test(the_number_of_layer_tetrahedra_follows),
+    cmocka_unit_test(a_closed_mesh_of_all_kinds_is_right),
     cmocka_unit_test(bad_values_are_named),
     cmocka_unit_test(binary_values_are_checked),
     cmocka_unit_test(survives_damage),
