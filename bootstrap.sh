@@ -50,7 +50,8 @@ demo)
   ./build/release/bin/vanguard mesh -p build/demo/wing \
     --write cogsg,b8.ugrid,vtu
   echo
-  echo "Open build/demo/wing.vtu and build/demo/wing.surface.vtu in ParaView."
+  echo "Open build/demo/wing.vtu and, for the layers on the wing," \
+    "build/demo/wing.wall.vtu in ParaView."
   ;;
 test)
   # shellcheck disable=SC2086
