@@ -146,9 +146,6 @@ vg_status vg_slide_cross(struct vg_slide_work *w, size_t s,
                          const struct vg_slide_loops *loops,
                          const double (*p)[2], size_t *n_bad);
 
-/** Re-mesh slide s. */
-vg_status vg_slide_remesh(struct vg_slide_work *w, size_t s);
-
 /* slide_curved.c ----------------------------------------------------------*/
 
 /* The triangles of a curved patch over its mean plane. */
@@ -177,5 +174,37 @@ void vg_slide_lift(const struct vg_slide_graph *g, const double p[2],
  * already) excepted. */
 vg_status vg_slide_bend(struct vg_slide_work *w, size_t s,
                         const struct vg_slide_graph *g);
+
+/* slide_size.c ------------------------------------------------------------*/
+
+/* Edge length in a slide patch: the field's, but no finer than the edges
+ * between tops, from where it may fall at the field's slope. */
+struct vg_slide_law {
+  const struct vg_sizing *sizing;
+  const struct vg_slide_frame *frame;
+  const struct vg_slide_graph *graph;   /* NULL: the patch is plane */
+  double slope;
+  struct { double p[2], h; } *top;      /* edges finer than which it would be */
+  struct vg_box2 *box;                  /* as far as they matter */
+  struct vg_tree2 tree;
+};
+
+/** Let tops bound the size from below. */
+vg_status vg_slide_law_floor(struct vg_slide_work *w,
+                             const struct vg_slide_loops *loops,
+                             struct vg_slide_law *l);
+void vg_slide_law_release(struct vg_slide_law *l);
+
+/** The point of the patch at p. */
+void vg_slide_place(const struct vg_slide_law *l, const double p[2],
+                    double x[3]);
+
+/** The size at p; law: the struct vg_slide_law. */
+double vg_slide_size(void *law, const double p[2]);
+
+/* slide_plane.c, again ----------------------------------------------------*/
+
+/** Re-mesh slide s. */
+vg_status vg_slide_remesh(struct vg_slide_work *w, size_t s);
 
 #endif

@@ -70,27 +70,6 @@ void vg_slide_to_space(const struct vg_slide_frame *f, const double p[2],
     x[k] = f->o[k] + p[0] * f->u[k] + p[1] * f->v[k];
 }
 
-struct law {
-  const struct vg_sizing *sizing;
-  const struct vg_slide_frame *frame;
-  const struct vg_slide_graph *graph;   /* NULL: the patch is plane */
-};
-
-static void place(const struct law *l, const double p[2], double x[3])
-{
-  if (l->graph) vg_slide_lift(l->graph, p, x);
-  else vg_slide_to_space(l->frame, p, x);
-}
-
-static double size_at(void *user, const double p[2])
-{
-  const struct law *l = user;
-  double x[3];
-
-  place(l, p, x);
-  return vg_sizing_at(l->sizing, x);
-}
-
 /* The region in the plane, with numbers of its own: `number` is the point. */
 struct region {
   size_t n;
@@ -156,7 +135,7 @@ static void check_slivers(struct vg_slide_work *w, size_t s,
 }
 
 static vg_status append(struct vg_slide_work *w, size_t s,
-                        const struct law *law, const struct region *r,
+                        const struct vg_slide_law *law, const struct region *r,
                         size_t n_add, const double (*add)[2], size_t n_tri,
                         const uint32_t (*tri)[3])
 {
@@ -172,7 +151,7 @@ static vg_status append(struct vg_slide_work *w, size_t s,
   for (size_t i = 0; i < n_add; i++) {
     vg_status st;
 
-    place(law, add[i], x);
+    vg_slide_place(law, add[i], x);
     st = vg_slide_add_point(w, x, &number);
     if (st != VG_OK) return st;
   }
@@ -185,7 +164,7 @@ static vg_status append(struct vg_slide_work *w, size_t s,
   return VG_OK;
 }
 
-static vg_status fill(struct vg_slide_work *w, size_t s, struct law *law,
+static vg_status fill(struct vg_slide_work *w, size_t s, struct vg_slide_law *law,
                       const struct region *r, size_t n_edge)
 {
   double (*add)[2] = NULL;
@@ -193,8 +172,8 @@ static vg_status fill(struct vg_slide_work *w, size_t s, struct law *law,
   size_t n_add = 0, n_tri = 0;
   struct vg_error err = VG_ERROR_INIT;
   vg_status st = vg_planar_mesh(r->n, (const double (*)[2])r->p, n_edge,
-                                (const uint32_t (*)[2])r->edge, size_at, law,
-                                &n_add, &add, &n_tri, &tri, &err);
+                                (const uint32_t (*)[2])r->edge, vg_slide_size,
+                                law, &n_add, &add, &n_tri, &tri, &err);
 
   if (st == VG_ERR_GEOMETRY || st == VG_ERR_INPUT) {
     vg_slide_blame_all(w, s, "its new boundary encloses no region");
@@ -213,7 +192,7 @@ vg_status vg_slide_remesh(struct vg_slide_work *w, size_t s)
 {
   struct vg_slide_graph graph = { 0 };
   struct vg_slide_frame frame;
-  struct law law = { w->sizing, &frame, NULL };
+  struct vg_slide_law law = { .sizing = w->sizing, .frame = &frame };
   struct vg_slide_loops loops = { 0, 0, NULL };
   struct region r = { 0, NULL, NULL, NULL };
   size_t n_bad = 0;
@@ -234,11 +213,16 @@ vg_status vg_slide_remesh(struct vg_slide_work *w, size_t s)
   VG_TRY(make_region(w, &loops, &frame, &r));
   VG_TRY(vg_slide_cross(w, s, &frame, &loops, (const double (*)[2])r.p,
                         &n_bad));
-  if (!n_bad) VG_TRY(fill(w, s, &law, &r, loops.n));
-  else if (!w->n_bad) vg_slide_blame_all(w, s, "its border crosses itself");
+  if (!n_bad) {
+    VG_TRY(vg_slide_law_floor(w, &loops, &law));
+    VG_TRY(fill(w, s, &law, &r, loops.n));
+  }
+  if (n_bad && !w->n_bad)
+    vg_slide_blame_all(w, s, "its border crosses itself");
 done:
   release_region(w, &r);
   free(loops.edge);
+  vg_slide_law_release(&law);
   vg_slide_graph_release(&graph);
   return st;
 }
