@@ -158,9 +158,8 @@ static vg_status bend(struct vg_slide_work *w, uint32_t i,
 /* Where a top stands along the chain, and the first point behind it that
  * stays (c->n - 1 at most); -1 when it is past the end. */
 static int cut(const struct vg_slide_work *w, const struct chain *c,
-               const double top[3], double *s, size_t *keep)
+               const double top[3], double h, double *s, size_t *keep)
 {
-  const double h = vg_sizing_at(w->sizing, top);
   size_t i = 0;
 
   for (;; i++) {
@@ -201,22 +200,68 @@ static vg_status remove_edges(struct vg_slide_work *w, const struct chain *c,
   return VG_OK;
 }
 
+/* An end of a gap; at a top h is the length of the edges that meet there,
+ * from which sizes depart at the field's slope; 0 at a point that stays. */
 struct end { uint32_t v; double s, h; };
 
-/* March from a to b: as many edges as fit, growing evenly. */
+/* Size along the curve. */
+static double size_at(const struct vg_slide_work *w, const struct chain *c,
+                      const struct end end[2], double s)
+{
+  const double slope = vg_sizing_slope(w->sizing);
+  double x[3], h;
+
+  on_chain(w, c, s, x);
+  h = vg_sizing_at(w->sizing, x);
+  for (int k = 0; k < 2; k++) {
+    const double far = slope * fabs(s - end[k].s);
+
+    if (end[k].h > 0) h = fmax(fmin(h, end[k].h + far), end[k].h - far);
+  }
+  return h;
+}
+
+/* Edges that fit between a and b, by Simpson's rule over many pieces: sum[i]
+ * of them up to the i-th. */
+enum { PIECES = 256 };
+
+static void count_edges(const struct vg_slide_work *w, const struct chain *c,
+                        const struct end end[2], double *sum)
+{
+  const double step = (end[1].s - end[0].s) / PIECES;
+  double left = 1 / size_at(w, c, end, end[0].s);
+
+  sum[0] = 0;
+  for (int i = 0; i < PIECES; i++) {
+    const double at = end[0].s + step * i;
+    const double mid = 1 / size_at(w, c, end, at + 0.5 * step);
+    const double right = 1 / size_at(w, c, end, at + step);
+
+    sum[i + 1] = sum[i] + step / 6 * (left + 4 * mid + right);
+    left = right;
+  }
+}
+
+/* March from one end to the other. */
 static vg_status march(struct vg_slide_work *w, const struct chain *c,
                        struct end a, struct end b)
 {
-  const double len = b.s - a.s, mean = 0.5 * (a.h + b.h);
-  const double fit = len / mean + 0.5;
-  const size_t n = fit < 2 ? 1 : fit > 1e6 ? 1000000 : (size_t)fit;
-  double at = 0, x[3];
+  const struct end end[2] = { a, b };
+  double sum[PIECES + 1], x[3], fit;
   uint32_t last = a.v, v;
+  size_t n;
+  int piece = 0;
 
-  for (size_t i = 0; i + 1 < n; i++) {
-    at += (a.h + (b.h - a.h) * ((double)i + 0.5) / (double)n)
-          / (mean * (double)n);
-    on_chain(w, c, a.s + at * len, x);
+  count_edges(w, c, end, sum);
+  fit = sum[PIECES];
+  n = fit < 1.5 ? 1 : fit > 1e6 ? 1000000 : (size_t)(fit + 0.5);
+  for (size_t i = 1; i < n; i++) {
+    const double want = fit * (double)i / (double)n;
+    double part;
+
+    while (piece + 1 < PIECES && sum[piece + 1] < want) piece++;
+    part = (want - sum[piece]) / (sum[piece + 1] - sum[piece]);
+    on_chain(w, c, a.s + (b.s - a.s) * (piece + part) / PIECES, x);
     if (vg_slide_add_point(w, x, &v)) return VG_ERR_MEMORY;
     if (add_edge(w, c, last, v)) return VG_ERR_MEMORY;
     last = v;
@@ -273,6 +318,28 @@ static int is_bent(const struct vg_slide_work *w, const struct chain *c)
          || !w->slide[w->slide_of[c->right]].is_plane;
 }
 
+/* Mean length of the edges between tops at column i. */
+static double top_edge(const struct vg_slide_work *w, uint32_t i)
+{
+  const double *x = w->x[w->m->n_point + i];
+  const struct vg_column *col = &w->c->column[i];
+  double sum = 0;
+  int n = 0;
+
+  for (int k = 0; k < 2; k++) {
+    const uint32_t s = w->slide_of[col->slide[k]];
+
+    for (uint32_t r = w->rim_first[s]; r < w->rim_first[s + 1]; r++) {
+      const uint32_t *e = w->c->rim[w->rim[r]];
+
+      if (e[0] != i && e[1] != i) continue;
+      sum += vg_distance(x, w->x[vg_slide_top(w, e[0] == i ? e[1] : e[0])]);
+      n++;
+    }
+  }
+  return n ? sum / n : 0;
+}
+
 /* Cut the chain at the top of column i, which stands at its start; blame the
  * column if it does not fit. *keep == c->n: blamed. */
 static vg_status cut_start(struct vg_slide_work *w, const struct chain *c,
@@ -282,38 +349,41 @@ static vg_status cut_start(struct vg_slide_work *w, const struct chain *c,
   int is_short = 0;
 
   if (is_bent(w, c) && bend(w, i, c, &is_short)) return VG_ERR_MEMORY;
-  if (is_short || cut(w, c, x, &top->s, keep)) {
+  top->h = top_edge(w, i);
+  if (is_short || cut(w, c, x, fmin(vg_sizing_at(w->sizing, x), top->h),
+                      &top->s, keep)) {
     vg_slide_blame(w, i, c->left, w->m->point[c->v[0]],
                    "a column is longer than the curve that it follows");
     *keep = c->n;
     return VG_OK;
   }
   top->v = vg_slide_top(w, i);
-  top->h = vg_sizing_at(w->sizing, x);
   return VG_OK;
 }
 
-static struct end at_vertex(const struct chain *c, size_t i, int forward)
+/* Is too little left between two ends to be meshed? */
+static int is_narrow(const struct chain *c, struct end a, struct end b)
 {
-  const double h = forward ? c->s[i + 1 < c->n ? i + 1 : i] - c->s[i]
-                           : c->s[i] - c->s[i ? i - 1 : 0];
+  double h = c->s[c->n - 1];
 
-  return (struct end){ c->v[i], c->s[i], h };
+  if (a.h > 0) h = fmin(h, a.h);
+  if (b.h > 0) h = fmin(h, b.h);
+  return b.s - a.s < LEAST * h;
 }
 
 /* One column: everything behind `keep` stays. */
 static vg_status run_single(struct vg_slide_work *w, const struct chain *c,
                             uint32_t i)
 {
-  struct end top = { 0, 0, 0 }, next;
+  struct end top = { 0, 0, 0 }, next = { 0, 0, 0 };
   size_t keep;
   vg_status st = VG_OK;
 
   VG_TRY(cut_start(w, c, i, &top, &keep));
   if (keep == c->n) return VG_OK;
-  next = at_vertex(c, keep, 1);
-  if (!(next.h > 0)) next.h = top.h;
-  if (next.s - top.s < LEAST * fmin(top.h, c->s[c->n - 1])) {
+  next.v = c->v[keep];
+  next.s = c->s[keep];
+  if (is_narrow(c, top, next)) {
     vg_slide_blame(w, i, c->left, w->m->point[c->v[0]],
                    "a column ends too near to the end of its curve");
     return VG_OK;
@@ -328,7 +398,7 @@ done:
 static vg_status run_double(struct vg_slide_work *w, struct chain *c,
                             uint32_t i, uint32_t j)
 {
-  struct end a = { 0, 0, 0 }, b = { 0, 0, 0 };
+  struct end a = { 0, 0, 0 }, b = { 0, 0, 0 }, p = { 0, 0, 0 };
   const size_t n = c->n;
   size_t keep_a, keep_b;
   vg_status st = VG_OK;
@@ -340,7 +410,7 @@ static vg_status run_double(struct vg_slide_work *w, struct chain *c,
   reverse(c);
   if (keep_a == n || keep_b == n) return VG_OK;
   keep_b = n - 1 - keep_b;
-  if (b.s - a.s < LEAST * fmin(fmin(a.h, b.h), c->s[n - 1])) {
+  if (is_narrow(c, a, b)) {
     for (int k = 0; k < 2; k++)
       vg_slide_blame(w, k ? j : i, c->left, w->m->point[c->v[k ? n - 1 : 0]],
                      "two columns meet on the curve that they follow");
@@ -352,14 +422,12 @@ static vg_status run_double(struct vg_slide_work *w, struct chain *c,
   }
   VG_TRY(remove_edges(w, c, 0, keep_a));
   VG_TRY(remove_edges(w, c, keep_b, n - 1));
-  {
-    struct end p = at_vertex(c, keep_a, keep_a < keep_b);
-    struct end q = at_vertex(c, keep_b, keep_a == keep_b);
-
-    if (keep_a == keep_b) p.h = q.h = 0.5 * (a.h + b.h);
-    VG_TRY(march(w, c, a, p));
-    st = march(w, c, q, b);
-  }
+  p.v = c->v[keep_a];
+  p.s = c->s[keep_a];
+  VG_TRY(march(w, c, a, p));
+  p.v = c->v[keep_b];
+  p.s = c->s[keep_b];
+  st = march(w, c, p, b);
 done:
   return st;
 }

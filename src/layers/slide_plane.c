@@ -164,8 +164,9 @@ static vg_status append(struct vg_slide_work *w, size_t s,
   return VG_OK;
 }
 
-static vg_status fill(struct vg_slide_work *w, size_t s, struct vg_slide_law *law,
-                      const struct region *r, size_t n_edge)
+static vg_status fill(struct vg_slide_work *w, size_t s,
+                      struct vg_slide_law *law, const struct region *r,
+                      size_t n_edge)
 {
   double (*add)[2] = NULL;
   uint32_t (*tri)[3] = NULL;
