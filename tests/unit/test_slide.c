@@ -837,6 +837,164 @@ static void tunnel_is_no_graph(void **state)
   release(&a);
 }
 
+/* One plane in two patches, cut by a line that starts at the body: columns
+ * there slide in both, though not along the line. */
+static void plane_in_two_patches(void **state)
+{
+  struct made a = { 0 };
+
+  (void)state;
+  make_duct(&a.g, 1, 1, 36, 6);
+  add_patches(&a.g, 5);
+  for (size_t t = 0; t < a.g.m.n_tri; t++) {
+    double z = 0;
+
+    for (int k = 0; k < 3; k++) z += a.g.m.point[a.g.m.tri[t][k]][2];
+    if (a.g.m.tri_patch[t] == 1 && z < 0) a.g.m.tri_patch[t] = 4;
+  }
+  grow(&a, 0, 0, 12);
+  for (size_t i = 0; i < a.c.n_column; i++) {
+    struct vg_column *c = &a.c.column[i];
+    const double *x = a.g.m.point[c->root];
+
+    /* Tilted, so that tops do not stand on the cut. */
+    c->dir[0] = x[0] - 0.2 * x[2];
+    c->dir[1] = 0;
+    c->dir[2] = x[2] + 0.2 * x[0];
+    vg_unit(c->dir);
+  }
+  assert_int_equal(front(&a), VG_OK);
+  save(&a.front.mesh, "split");
+  assert_sound(&a);
+  assert_points(&a);
+  assert_plane(&a, 1, 15);
+  assert_same_again(&a);
+  release(&a);
+}
+
+/* Where a body's edge turns in the plane, three columns stand on one point:
+ * the virtual faces between them end in rims. */
+static void fan_at_the_plane(void **state)
+{
+  struct made a = { 0 };
+  struct vg_columns *c = &a.c;
+  uint32_t first = 0, n_rim;
+  size_t n;
+
+  (void)state;
+  make_duct(&a.g, 1, 1, 36, 1);
+  grow(&a, 0, 0, 8);
+  n = c->n_column;
+  /* Columns 0 and 36 stand at angle 0, one on each plane; double both. */
+  c->face = vg_realloc(c->face, c->n_face + 2, sizeof *c->face);
+  c->face_tri = vg_realloc(c->face_tri, c->n_face + 2, sizeof *c->face_tri);
+  {
+    struct vg_column *more = vg_calloc(n + 2, sizeof *more);
+    uint32_t *to = vg_alloc(n, sizeof *to);
+
+    for (uint32_t i = 0; i < n; i++) {
+      to[i] = first;
+      more[first++] = c->column[i];
+      if (i % 36 == 0) more[first++] = c->column[i];
+    }
+    /* The lower of each pair leans to negative angles and takes that side. */
+    for (int e = 0; e < 2; e++) {
+      more[to[36 * e]].dir[2] = -0.3;
+      more[to[36 * e] + 1].dir[2] = 0.3;
+    }
+    for (size_t f = 0; f < c->n_face; f++) {
+      double z = 0;
+
+      for (int k = 0; k < 3; k++)
+        z += a.g.m.point[c->column[c->face[f][k]].root][2];
+      for (int k = 0; k < 3; k++)
+        c->face[f][k] = to[c->face[f][k]] + (c->face[f][k] % 36 == 0 && z > 0);
+    }
+    for (size_t i = 0; i < c->n_rim; i++) {
+      double z = 0;
+
+      for (int k = 0; k < 2; k++)
+        z += a.g.m.point[c->column[c->rim[i][k]].root][2];
+      for (int k = 0; k < 2; k++)
+        c->rim[i][k] = to[c->rim[i][k]] + (c->rim[i][k] % 36 == 0 && z > 0);
+    }
+    free(c->column);
+    c->column = more;
+    c->n_column = n + 2;
+    free(to);
+  }
+  /* Counter-clockwise from outside: up y, then towards negative angles. */
+  memcpy(c->face[c->n_face], (uint32_t[]){ 1, 0, 37 }, sizeof *c->face);
+  memcpy(c->face[c->n_face + 1], (uint32_t[]){ 1, 37, 38 }, sizeof *c->face);
+  c->face_tri[c->n_face] = c->face_tri[c->n_face + 1] = VG_NO_INDEX;
+  c->n_face += 2;
+  n_rim = (uint32_t)c->n_rim;
+  memcpy(c->rim[n_rim], (uint32_t[]){ 1, 0 }, sizeof *c->rim);
+  memcpy(c->rim[n_rim + 1], (uint32_t[]){ 37, 38 }, sizeof *c->rim);
+  c->rim_patch[n_rim] = 1;
+  c->rim_patch[n_rim + 1] = 2;
+  c->n_rim += 2;
+  assert_int_equal(front(&a), VG_OK);
+  save(&a.front.mesh, "fan");
+  assert_sound(&a);
+  assert_points(&a);
+  assert_plane(&a, 0, 15);
+  assert_plane(&a, 1, 15);
+  /* With no levels at all the fan is one point and its faces vanish. */
+  for (size_t i = 0; i < c->n_column; i++) c->column[i].n = 0;
+  vg_layer_front_release(&a.front);
+  assert_int_equal(front(&a), VG_OK);
+  assert_sound(&a);
+  assert_int_equal(a.front.mesh.n_tri, a.g.m.n_tri);
+  release(&a);
+}
+
+/* Sides of a box that the floor's columns slide in, but one that they are
+ * told to leave out: their flanks there would hang in the air. */
+static void border_without_columns_is_trouble(void **state)
+{
+  struct made a = { 0 };
+
+  (void)state;
+  make_box(&a.g, 6, 0, NULL);
+  grow(&a, 0, 0, 5);
+  for (size_t i = 0, n = a.c.n_rim; i < n; i++)
+    if (a.c.rim_patch[i] == 5) {
+      a.c.n_rim--;
+      memmove(a.c.rim + i, a.c.rim + i + 1, (n - i - 1) * sizeof *a.c.rim);
+      memmove(a.c.rim_patch + i, a.c.rim_patch + i + 1,
+              (n - i - 1) * sizeof *a.c.rim_patch);
+      i--, n--;
+    }
+  assert_int_equal(front(&a), VG_BLOCKED);
+  assert_int_equal(a.trouble.n, 7);
+  for (size_t i = 0; i < a.trouble.n; i++) {
+    struct vg_column *c = &a.c.column[a.trouble.column[i]];
+
+    assert_true(a.g.m.point[c->root][0] == 1);
+    c->n = 0;
+  }
+  free(a.trouble.column);
+  assert_int_equal(front(&a), VG_OK);
+  assert_sound(&a);
+  release(&a);
+}
+
+/* Floor and roof with a curved side between them. */
+static void curved_side_from_both_ends(void **state)
+{
+  struct made a = { 0 };
+
+  (void)state;
+  make_box(&a.g, 12, 0, bulge);
+  grow(&a, 0, 1, 8);
+  assert_int_equal(front(&a), VG_OK);
+  save(&a.front.mesh, "bulge2");
+  assert_sound(&a);
+  assert_points(&a);
+  release(&a);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -853,6 +1011,10 @@ int main(void)
     cmocka_unit_test(too_high_is_trouble),
     cmocka_unit_test(gently_curved_side),
     cmocka_unit_test(tunnel_is_no_graph),
+    cmocka_unit_test(plane_in_two_patches),
+    cmocka_unit_test(fan_at_the_plane),
+    cmocka_unit_test(border_without_columns_is_trouble),
+    cmocka_unit_test(curved_side_from_both_ends),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);
