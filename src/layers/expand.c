@@ -12,13 +12,9 @@ static void mark_columns(struct vg_expand *e)
   const struct vg_columns *c = e->columns;
 
   for (size_t i = 0; i < c->n_column; i++) {
-    uint32_t root = c->column[i].root;
-
     e->mark[i] = c->column[i].n;
     if (c->column[i].n > e->n_level) e->n_level = c->column[i].n;
-    if ((i && c->column[i - 1].root == root) ||
-        (i + 1 < c->n_column && c->column[i + 1].root == root))
-      e->mark[i] |= VG_MARK_SHARED;
+    if (vg_shares_root(c, i)) e->mark[i] |= VG_MARK_SHARED;
   }
   for (size_t r = 0; r < c->n_rim; r++)
     for (int k = 0; k < 2; k++) e->mark[c->rim[r][k]] |= VG_MARK_FLANK;

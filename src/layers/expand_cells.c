@@ -15,6 +15,7 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "layers/join.h"
 
 /* Where the next cell goes. */
 struct sink {
@@ -98,16 +99,13 @@ static void rise_together(struct sink *s, uint32_t p[3], const uint32_t h[3],
     if (mask >> k & 1 && h[k] != VG_NO_INDEX) p[k] = h[k];
 }
 
-/* Points p stand at level 0. With two corners in the mask or three, all roots
- * of the face differ. */
-static void rise_from_wall(const struct vg_expand *e, const uint32_t f[3],
+/* Points p stand at level 0; corners in the mask share their root with no
+ * other column, so with two of them all points differ. */
+static void rise_from_wall(const uint32_t f[3], unsigned together,
                            uint32_t p[3], const uint32_t h[3], struct sink *s)
 {
   const uint8_t *order = order_of(f);
-  unsigned together = 0;
 
-  for (int k = 0; k < 3 && e->mixed; k++)
-    together |= (unsigned)!(e->mark[f[k]] & VG_MARK_SHARED) << k;
   if (together & (together - 1)) rise_together(s, p, h, together);
   else
     for (int k = 0; k < 3; k++)
@@ -139,10 +137,47 @@ static inline void rise(const struct level *l, size_t face, struct sink *s)
   const uint32_t *f = l->e->columns->face[face];
   uint32_t p[3] = { l->low[f[0]], l->low[f[1]], l->low[f[2]] };
   const uint32_t h[3] = { l->high[f[0]], l->high[f[1]], l->high[f[2]] };
+  unsigned together = 0;
 
-  if (!l->level) rise_from_wall(l->e, f, p, h, s);
+  if (!l->level) {
+    for (int k = 0; k < 3 && l->e->mixed; k++)
+      together |= (unsigned)!(l->e->mark[f[k]] & VG_MARK_SHARED) << k;
+    rise_from_wall(f, together, p, h, s);
+  }
   else if (l->e->mixed) rise_together(s, p, h, 7);
   else rise_one_by_one(f, p, h, s);
+}
+
+int vg_join_wall_cells(const struct vg_columns *c, size_t face,
+                       struct vg_wall_cell cell[3])
+{
+  const uint32_t *f = c->face[face];
+  uint32_t tet[3][4], pyr[1][5], pri[1][6], p[3], h[3];
+  struct sink s = { tet, pyr, pri };
+  unsigned together = 0;
+  int n = 0;
+
+  for (int k = 2; k >= 0; k--) {
+    p[k] = (uint32_t)k;
+    for (int i = 2; i > k; i--)
+      if (c->column[f[i]].root == c->column[f[k]].root) p[i] = p[k];
+    h[k] = c->column[f[k]].n ? (uint32_t)k + 3 : VG_NO_INDEX;
+    together |= (unsigned)!vg_shares_root(c, f[k]) << k;
+  }
+  rise_from_wall(f, together, p, h, &s);
+  for (; tet + n < s.tet; n++) {
+    cell[n].n_node = 4;
+    memcpy(cell[n].node, tet[n], sizeof tet[n]);
+  }
+  if (s.pyr > pyr) {
+    cell[n].n_node = 5;
+    memcpy(cell[n++].node, pyr, sizeof pyr);
+  }
+  if (s.pri > pri) {
+    cell[n].n_node = 6;
+    memcpy(cell[n++].node, pri, sizeof pri);
+  }
+  return n;
 }
 
 static void fill_block(void *context, size_t first, size_t end, int worker)

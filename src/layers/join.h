@@ -43,4 +43,18 @@ vg_status vg_layers_join(const struct vg_mesh *surface,
                          struct vg_mesh *out, struct vg_join_info *info,
                          struct vg_error *err);
 
+/** A cell in the node order of its kind: corner k of the face at level 0 is
+ * k, at level 1 it is 3 + k; of corners with one root the first stands for
+ * all at level 0. */
+struct vg_wall_cell {
+  int n_node;               /* 4, 5 or 6 */
+  uint32_t node[6];
+};
+
+/** The cells that VG_LAYER_MIXED makes of a face at level 0, where they may
+ * differ from those of the levels above, for checks of their shape.
+ * cell out: [3]. Returns their number, 0 to 3. */
+int vg_join_wall_cells(const struct vg_columns *columns, size_t face,
+                       struct vg_wall_cell cell[3]);
+
 #endif

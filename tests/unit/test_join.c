@@ -166,6 +166,60 @@ static size_t check_model(const struct model *m)
   return n_flat;
 }
 
+/* The cells of one level are those that vg_join_wall_cells tells. */
+static void check_wall_cells(const struct model *m)
+{
+  const struct vg_columns *c = &m->layers.columns;
+  struct vg_mesh mesh = VG_MESH_INIT;
+  struct vg_join_info info;
+  size_t n[7] = {0}, at[7] = {0};
+
+  join_model(m, VG_LAYER_MIXED, 1, &mesh, &info);
+  for (size_t i = 0; i < c->n_face; i++) {
+    struct vg_wall_cell cell[3];
+    int n_cell = vg_join_wall_cells(c, i, cell);
+
+    for (int k = 0; k < n_cell; k++) {
+      int size = cell[k].n_node;
+      const uint32_t *node = size == 4 ? mesh.tet[at[4]++]
+                           : size == 5 ? mesh.pyr[at[5]++]
+                                       : mesh.pri[at[6]++];
+
+      n[size]++;
+      for (int j = 0; j < size; j++) {
+        uint32_t local = cell[k].node[j];
+        size_t column = c->face[i][local % 3];
+        double x[2][3], d[VG_LEVELS_MAX + 1];
+
+        vg_column_points(c, &m->surface, column, d, x);
+        for (int a = 0; a < 3; a++)
+          assert_true(mesh.point[node[j]][a] == x[local / 3][a]);
+      }
+    }
+  }
+  assert_int_equal(n[4], info.n_layer_tet);
+  assert_int_equal(n[5], info.n_layer_pyr);
+  assert_int_equal(n[6], info.n_layer_pri);
+  vg_mesh_release(&mesh);
+}
+
+/* Without a level the boundary is the surface, in its order. */
+static void check_nothing_grown(const struct model *m)
+{
+  struct vg_mesh mesh = VG_MESH_INIT;
+  struct vg_join_info info;
+
+  join_model(m, VG_LAYER_MIXED, 1, &mesh, &info);
+  assert_int_equal(info.n_layer_tet + info.n_layer_pyr + info.n_layer_pri, 0);
+  assert_int_equal(info.n_layer_point, m->surface.n_point);
+  assert_int_equal(mesh.n_tri, m->surface.n_tri);
+  assert_memory_equal(mesh.tri, m->surface.tri,
+                      mesh.n_tri * sizeof *mesh.tri);
+  assert_memory_equal(mesh.tri_patch, m->surface.tri_patch,
+                      mesh.n_tri * sizeof *mesh.tri_patch);
+  vg_mesh_release(&mesh);
+}
+
 static uint32_t one_side(const double x[3], const double y[3])
 {
   (void)x;
@@ -300,6 +354,8 @@ static void check_roofs(int n_each, int n_model)
     if (model_front_is_manifold(&m)) {
       model_field(&m);
       n_flat = check_model(&m);
+      if (i % 7 == 0) check_nothing_grown(&m);
+      if (i % 7 == 1) check_wall_cells(&m);   /* one level at most */
       /* heights that differ within a fan may twist its cells flat */
       if (n_each) assert_int_equal(n_flat, 0);
       n_done++;
