@@ -33,7 +33,7 @@
 #define SAME_STACK 0.3
 #define SQRT_2 1.41421356237309505
 
-enum { GRAIN = 512, STACK = 96, CENTRE_MAX = 64, TEAM = 16, LEAF_MAX = 32 };
+enum { GRAIN = 512, STACK = 96, CENTRE_MAX = 64, TEAM = 16, LEAF_MAX = 64 };
 
 /* Of the children of a node: half the diagonals, and boxes about the unit
  * normals of what is in them. */
@@ -61,8 +61,10 @@ struct query {
   uint32_t column;
   double root[3], u[3];
   double reach;             /* nothing beyond it matters; shrinks */
-  double lowest, back;      /* where rays start below the root, and how far
-                               below it is the apex of a cone with all rays */
+  double lowest, highest;   /* where rays start, below and above the root */
+  double widest;            /* square of the farthest such place from it */
+  double back;              /* how far below the root a cone with all rays has
+                               its apex */
   int n_centre;
   double centre[CENTRE_MAX][3];  /* of the faces, relative to the root */
 };
@@ -81,9 +83,9 @@ static void cross(const double *a, const double *b, double *c)
 
 /* --- one triangle -------------------------------------------------------- */
 
-/* Does the line from o along u pass through t (corners p, normal n of any
- * length) or nearly so? Where: *along. The slack closes the seams between
- * triangles. */
+/* Does the line from o along u pass through a triangle (corners p, unit normal
+ * n), or nearly so, nearer than *along? Where: *along. The slack closes the
+ * seams between triangles. */
 static int line_hits(const double o[3], const double u[3],
                      const double (*p)[3], const double n[3], double *along)
 {
@@ -92,7 +94,7 @@ static int line_hits(const double o[3], const double u[3],
   if (!(d < 0)) return 0;
   s = (n[0] * (p[0][0] - o[0]) + n[1] * (p[0][1] - o[1])
        + n[2] * (p[0][2] - o[2])) / d;
-  if (!(s >= 0)) return 0;
+  if (!(s >= 0 && s < *along)) return 0;
   for (int k = 0; k < 3; k++) q[k] = o[k] + s * u[k];
   for (int i = 0; i < 3; i++) {
     const double *a = p[i], *b = p[(i + 1) % 3];
@@ -103,7 +105,7 @@ static int line_hits(const double o[3], const double u[3],
       f[k] = q[k] - a[k];
     }
     cross(e, f, c);
-    if (dot(c, n) < -1e-6 * dot(n, n)) return 0;
+    if (dot(c, n) < -1e-6 * dot(e, e)) return 0;
   }
   *along = s;
   return 1;
@@ -155,6 +157,7 @@ static double nearest_in_cone(const double u[3], const double (*p)[3],
   if (s >= most) return INFINITY;
   for (int k = 0; k < 3; k++)
     w[k] = u[k] - (flat > 1e-9 ? (n[k] + g * u[k]) / flat : 0);
+  s = most;
   if (line_hits(apex, w, p, n, &s)) return s;
   for (int i = 0; i < 3; i++) {
     double e = edge_in_cone(u, p[i], p[(i + 1) % 3]);
@@ -208,19 +211,61 @@ static int same_stack(const struct query *q, uint32_t t)
   return dot(sum, q->u) > SAME_STACK * sqrt(dot(sum, sum));
 }
 
+/* Least distance along u, the reach at most, at which a line from the centre
+ * of a face passes through the triangle (corners p, unit normal n). */
+static double nearest_on_lines(const struct query *q, const double (*p)[3],
+                               const double n[3])
+{
+  double c[3], near = q->reach, along, off, far = 0;
+
+  /* Most triangles are too far to the side for all of them. */
+  for (int k = 0; k < 3; k++) c[k] = (p[0][k] + p[1][k] + p[2][k]) / 3;
+  for (int j = 0; j < 3; j++) {
+    double d[3] = { p[j][0] - c[0], p[j][1] - c[1], p[j][2] - c[2] };
+
+    far = fmax(far, dot(d, d));
+  }
+  along = dot(c, q->u);
+  off = dot(c, c) - along * along;
+  if (off > 2.01 * (q->widest + far)) return near;
+  for (int j = 0; j < q->n_centre; j++)
+    line_hits(q->centre[j], q->u, p, n, &near);
+  return near;
+}
+
+/* Is the triangle (corners p) beyond what matters, or beside the cone that
+ * holds all rays? The cone lies on one side of the planes along its
+ * generators; the one that heads for the triangle is tried. */
+static int is_aside(const struct query *q, const double (*p)[3])
+{
+  double a[3], c[3], along, off, m = q->reach + q->highest;
+
+  for (int j = 0; j < 3; j++) a[j] = dot(p[j], q->u);
+  if (a[0] > m && a[1] > m && a[2] > m) return 1;
+  along = (a[0] + a[1] + a[2]) / 3;
+  for (int k = 0; k < 3; k++)
+    c[k] = (p[0][k] + p[1][k] + p[2][k]) / 3 - along * q->u[k];
+  off = sqrt(dot(c, c));
+  for (int j = 0; j < 3; j++)
+    if (!(dot(p[j], c) > 1.00001 * off * (a[j] + q->back))) return 0;
+  return 1;
+}
+
 /* The triangle at position i of the tree: how near is it? */
 static void consider(struct query *q, size_t i)
 {
+  static const double root[3] = { 0, 0, 0 };
   const struct ahead *x = q->x;
   const struct vg_column *c = &x->columns->column[q->column];
   const uint32_t *t = x->boxes.tri[i];
   uint32_t patch = x->surface->tri_patch[x->boxes.item[i]];
-  double p[3][3], e[3], f[3], n[3], l, near = INFINITY, s;
+  double p[3][3], e[3], f[3], n[3], l, near, s;
 
   if (patch == c->slide[0] || patch == c->slide[1]) return;
   for (int j = 0; j < 3; j++)
     for (int k = 0; k < 3; k++)
       p[j][k] = x->surface->point[t[j]][k] - q->root[k];
+  if (is_aside(q, (const double (*)[3])p)) return;
   for (int k = 0; k < 3; k++) {
     e[k] = p[1][k] - p[0][k];
     f[k] = p[2][k] - p[0][k];
@@ -229,17 +274,13 @@ static void consider(struct query *q, size_t i)
   l = sqrt(dot(n, n));
   if (!(l > 0)) return;
   for (int k = 0; k < 3; k++) n[k] /= l;
-  if (x->slid[patch]) {
-    static const double root[3] = { 0, 0, 0 };
-
-    if (line_hits(root, q->u, (const double (*)[3])p, n, &s)) near = s;
-  } else {
+  near = q->reach;
+  if (x->slid[patch])
+    line_hits(root, q->u, (const double (*)[3])p, n, &near);
+  else
     near = nearest_in_cone(q->u, (const double (*)[3])p, n, q->reach);
-  }
-  for (int j = 0; j < q->n_centre; j++)
-    if (line_hits(q->centre[j], q->u, (const double (*)[3])p, n, &s)
-        && s < near)
-      near = s;
+  s = nearest_on_lines(q, (const double (*)[3])p, n);
+  if (s < near) near = s;
   if (near < q->reach && !shares_point(q, t)
       && !same_stack(q, x->boxes.item[i]))
     q->reach = near;
@@ -314,7 +355,7 @@ static void cone_of(const struct query *q, struct cone *c)
     c->u[k] = (float)q->u[k];
   }
   c->lo = (float)q->lowest;
-  c->hi = (float)q->reach;
+  c->hi = (float)(q->reach + q->highest);
   c->back = (float)q->back;
   /* Rounding: 2^-24 of the coordinates and a few times that in sums. */
   c->slack = 1e-6f * b->extent;
@@ -325,7 +366,7 @@ static void look_into_leaf(struct query *q, size_t leaf, struct cone *c)
   union vg_f8 first;
   unsigned mask;
 
-  c->hi = (float)q->reach;
+  c->hi = (float)(q->reach + q->highest);
   mask = in_cone(q->x, leaf, c, &first);
   for (; mask; mask &= mask - 1) {
     size_t i = 8 * leaf + (size_t)__builtin_ctz(mask);
@@ -350,7 +391,7 @@ static void walk(struct query *q, struct cone *c)
     union vg_f8 first;
     unsigned mask;
 
-    c->hi = (float)q->reach;
+    c->hi = (float)(q->reach + q->highest);
     if (stack[depth].first > c->hi) continue;
     if (!level) {
       look_into_leaf(q, at, c);
@@ -376,10 +417,9 @@ static void find_centres(struct query *q)
 {
   const struct vg_columns *c = q->x->columns;
   const struct vg_topology *y = q->x->topology;
-  double widest = 0;
 
   q->n_centre = 0;
-  q->lowest = 0;
+  q->lowest = q->highest = q->widest = 0;
   for (uint32_t i = y->first[q->column]; i < y->first[q->column + 1]; i++) {
     const uint32_t *face = c->face[y->corner[i] / 3];
     double *x = q->centre[q->n_centre], s, w;
@@ -394,10 +434,11 @@ static void find_centres(struct query *q)
     s = dot(x, q->u);
     w = dot(x, x);
     if (s < q->lowest) q->lowest = s;
-    if (w > widest) widest = w;
+    if (s > q->highest) q->highest = s;
+    if (w > q->widest) q->widest = w;
     q->n_centre++;
   }
-  q->back = SQRT_2 * sqrt(widest);
+  q->back = SQRT_2 * sqrt(q->widest);
 }
 
 /* 0: nothing to ask. */
@@ -447,7 +488,7 @@ static void gather_team(struct team *t, const struct vg_boxes *b)
     for (int i = 0; i < t->n; i++) {
       const struct query *q = &t->query[i];
       /* A cone of height h is within h of its axis, sideways. */
-      double h = q->reach + q->back, s = sqrt(fmax(0, 1 - q->u[k] * q->u[k]));
+      double h = q->reach + q->highest + q->back, s = sqrt(fmax(0, 1 - q->u[k] * q->u[k]));
       double apex = q->root[k] - b->origin[k] - q->back * q->u[k];
 
       u[k] += q->u[k];
