@@ -12,6 +12,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "core/predicates.h"
+#include "layers/join.h"
 
 #define DEGREE 57.295779513082320877
 
@@ -125,22 +126,80 @@ static void raise_prism(struct stack *s, int l, struct vg_layer_judgement *r)
   r->n_bad_corner += bad_first || bad_last || bad_rest;
 }
 
-/* The pyramid over the quadrilateral of the corners that rise, its apex the
- * one that does not. */
-static void judge_pyramid(const struct stack *s, int l,
+static void count_pyramid(const double *const base[4], const double apex[3],
                           struct vg_layer_judgement *r)
 {
-  int c = s->n[0] <= l ? 0 : s->n[1] <= l ? 1 : 2;
-  int a = (c + 1) % 3, b = (c + 2) % 3, bad = 0;
-  const double *apex = s->x[c][s->level[c]];
-  const double *base[4] = { s->x[a][l], s->x[a][l + 1], s->x[b][l + 1],
-                            s->x[b][l] };
+  int bad = 0;
 
   for (int k = 0; k < 4; k++)
     bad |= !(vg_orient3d(base[k], base[(k + 1) % 4], base[(k + 2) % 4],
                          apex) > 0);
   r->n_pyramid++;
   r->n_bad_pyramid += bad != 0;
+}
+
+/* The pyramid over the quadrilateral of the corners that rise, its apex the
+ * one that does not. */
+static void judge_pyramid(const struct stack *s, int l,
+                          struct vg_layer_judgement *r)
+{
+  int c = s->n[0] <= l ? 0 : s->n[1] <= l ? 1 : 2;
+  int a = (c + 1) % 3, b = (c + 2) % 3;
+  const double *base[4] = { s->x[a][l], s->x[a][l + 1], s->x[b][l + 1],
+                            s->x[b][l] };
+
+  count_pyramid(base, s->x[c][s->level[c]], r);
+}
+
+static int shares_root(const struct vg_columns *c, size_t i)
+{
+  uint32_t root = c->column[i].root;
+
+  return (i && c->column[i - 1].root == root) ||
+         (i + 1 < c->n_column && c->column[i + 1].root == root);
+}
+
+/* What mixed output makes at level 0 of a face in which a column shares its
+ * root: tetrahedra and pyramids, never a whole prism. */
+static void judge_wall(const struct judge_job *j, size_t face,
+                       const struct stack *s, struct vg_layer_judgement *r)
+{
+  struct vg_wall_cell cell[3];
+  int n = vg_join_wall_cells(j->columns, face, cell);
+
+  for (int i = 0; i < n; i++) {
+    const double *p[6];
+
+    for (int k = 0; k < cell[i].n_node; k++)
+      p[k] = s->x[cell[i].node[k] % 3][cell[i].node[k] / 3];
+    if (cell[i].n_node == 5) {
+      const double *base[4] = { p[0], p[3], p[4], p[1] };
+
+      count_pyramid(base, p[2], r);
+    } else {
+      r->n_wall_tet++;
+      r->n_bad_wall_tet += !(vg_orient3d(p[0], p[1], p[2], p[3]) > 0);
+    }
+  }
+}
+
+/* All cells of a face. Above level 0 its points differ, but where two columns
+ * of one root have no level, and there only the third can rise. */
+static void judge_face(const struct judge_job *j, size_t face, struct stack *s,
+                       struct vg_layer_judgement *r)
+{
+  const uint32_t *v = j->columns->face[face];
+  int shared = shares_root(j->columns, v[0]) ||
+               shares_root(j->columns, v[1]) || shares_root(j->columns, v[2]);
+
+  for (int l = 0; l < s->n[0] || l < s->n[1] || l < s->n[2]; l++) {
+    int up = (s->n[0] > l) + (s->n[1] > l) + (s->n[2] > l);
+
+    if (shared && !l) judge_wall(j, face, s, r);
+    else if (up == 2) judge_pyramid(s, l, r);
+    if (up == 3 && !(shared && !l)) raise_prism(s, l, r);
+    else raise(s, l, r);
+  }
 }
 
 static double cosine_at(const double a[3], const double b[3],
@@ -211,16 +270,7 @@ static void judge_faces(void *context, size_t first, size_t end, int worker)
     const uint32_t *v = j->columns->face[f];
     struct stack s = stack_of(j, points, &n_used, v);
 
-    for (int l = 0; l < s.n[0] || l < s.n[1] || l < s.n[2]; l++) {
-      int up = (s.n[0] > l) + (s.n[1] > l) + (s.n[2] > l);
-
-      if (up == 3 && !has_pinch(&s)) {
-        raise_prism(&s, l, &r);
-        continue;
-      }
-      if (up == 2 && !has_pinch(&s)) judge_pyramid(&s, l, &r);
-      raise(&s, l, &r);
-    }
+    judge_face(j, f, &s, &r);
     judge_top(&s, &cosine);
     for (int k = 0; k < 3; k++) r.n_jump += is_jump(j, v[k], v[(k + 1) % 3]);
   }
@@ -362,6 +412,8 @@ static void add(const struct vg_layer_judgement *part,
   sum->n_bad_corner += part->n_bad_corner;
   sum->n_pyramid += part->n_pyramid;
   sum->n_bad_pyramid += part->n_bad_pyramid;
+  sum->n_wall_tet += part->n_wall_tet;
+  sum->n_bad_wall_tet += part->n_bad_wall_tet;
   sum->n_jump += part->n_jump;
 }
 

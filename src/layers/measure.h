@@ -71,16 +71,21 @@ vg_status vg_layers_patches(const struct vg_mesh *surface,
                             struct vg_patch_layers *all,
                             struct vg_error *err);
 
-/** What is wrong with the cells that columns imply: n_negative, n_bad_corner,
- * n_bad_pyramid, n_jump and n_off_plane are zero when all is valid. Cells that
+/** What is wrong with the cells that columns imply, as tetrahedra and as mixed
+ * cells: n_negative, n_bad_corner, n_bad_pyramid, n_bad_wall_tet, n_jump and
+ * n_off_plane are zero when all is valid. Cells that
  * vanish (see columns.h) do not count. Signs of volumes are exact. */
 struct vg_layer_judgement {
   size_t n_cell, n_negative;      /* tetrahedra by the lift rule, those of no
                                      positive volume */
   size_t n_prism, n_bad_corner;   /* whole prisms, those with a corner of no
                                      positive volume */
-  size_t n_pyramid, n_bad_pyramid; /* where two columns of a face rise; those
-                                     with a base corner of no such volume */
+  size_t n_pyramid, n_bad_pyramid; /* where two columns of a face rise
+                                     together; those with a base corner of no
+                                     such volume */
+  size_t n_wall_tet, n_bad_wall_tet; /* what mixed output makes at level 0
+                                     where columns share a root; those of no
+                                     such volume */
   size_t n_jump;                  /* edges whose levels differ by 2 or more */
   size_t n_off_plane;             /* columns whose points leave a slide plane
                                      with an axis by one bit */

@@ -433,8 +433,12 @@ static void virtual_faces_of_a_ridge(void **state)
    * columns at the near point lose one cell of level 0, the others two */
   assert_int_equal(r.n_cell, 16 * 9 + 4 * 8 + 4 * 7);
   assert_int_equal(r.n_negative + r.n_bad_corner, 0);
-  assert_int_equal(r.n_prism, 16 * 3 + 8 * 2);
-  assert_int_equal(r.n_jump, 0);
+  /* mixed cells: all faces touch the ridge, so there is no prism at level 0;
+   * real faces have one corner on it or two */
+  assert_int_equal(r.n_prism, 24 * 2);
+  assert_int_equal(r.n_pyramid, 8);
+  assert_int_equal(r.n_wall_tet, 8 * 1 + 8 * 3 + 4 * 2 + 4 * 1);
+  assert_int_equal(r.n_bad_pyramid + r.n_bad_wall_tet + r.n_jump, 0);
   w = fields(p);
   assert_int_equal(w.n, 15);
   for (size_t i = 0; i < w.n; i++)
@@ -450,6 +454,7 @@ static void virtual_faces_of_a_ridge(void **state)
   r = judge(p);
   assert_int_equal(r.n_negative, 4 * 8 + 4 * 7);
   assert_int_equal(r.n_bad_corner, 8 * 2);
+  assert_int_equal(r.n_bad_wall_tet, 4 * 2 + 4 * 1);
 }
 
 /* Many chunks, some of them shared by workers. */

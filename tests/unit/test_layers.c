@@ -96,6 +96,7 @@ static void cells_are_valid(const struct bench *b)
   assert_int_equal(r.n_negative, 0);
   assert_int_equal(r.n_bad_corner, 0);
   assert_int_equal(r.n_bad_pyramid, 0);
+  assert_int_equal(r.n_bad_wall_tet, 0);
   assert_int_equal(r.n_jump, 0);
   assert_int_equal(r.n_off_plane, 0);
   assert_int_equal(r.n_cell, b->report.n_cell);
@@ -725,6 +726,23 @@ static void a_point_that_sees_nothing(void **state)
   finish(&b);
 }
 
+/* Fans there too, and layers so thin that nothing else sets their height. */
+static void a_point_that_sees_nothing_with_fans(void **state)
+{
+  struct bench b = { .options.smooth = 0 };
+
+  (void)state;
+  case_octants(&b.surface);
+  start(&b, 1.0 / 6);
+  b.options.fan_angle = 60;
+  for (size_t p = 0; p < b.surface.n_patch; p++)
+    b.request[p].law.delta1 = 1e-6;
+  grow_and_check(&b);
+  fill_and_join(&b);
+  at_least(&b, 0, 0, 90);
+  finish(&b);
+}
+
 /* --- requests ------------------------------------------------------------ */
 
 static void levels_and_height_as_asked(void **state)
@@ -840,6 +858,7 @@ int main(void)
     cmocka_unit_test(a_post_at_45_to_135_degrees),
     cmocka_unit_test(a_slide_patch_with_folds),
     cmocka_unit_test(a_point_that_sees_nothing),
+    cmocka_unit_test(a_point_that_sees_nothing_with_fans),
     cmocka_unit_test(levels_and_height_as_asked),
     cmocka_unit_test(a_law_that_varies),
     cmocka_unit_test(refusals_leave_nothing),
