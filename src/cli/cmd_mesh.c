@@ -200,11 +200,12 @@ static vg_status mesh_layers(struct run *r, struct vg_error *err)
 {
   const struct vg_mesh *surface = &r->problem.surface;
   const struct vg_mesh *front = &r->layers.layers.front.mesh;
-  struct vg_mesh field = VG_MESH_INIT;
+  struct vg_mesh field = VG_MESH_INIT, view = VG_MESH_INIT;
   struct vg_sizing *sizing = NULL;
   vg_status st;
 
-  VG_TRY(measure_sizes(r, surface, &sizing, err));
+  VG_TRY(vg_layer_stage_sizes(&r->layers, &r->problem, &view, err));
+  VG_TRY(measure_sizes(r, &view, &sizing, err));
   VG_TRY(vg_layer_stage_grow(&r->layers, surface, sizing, &r->show, err));
   VG_TRY(stopped(r, err));
   vg_sizing_free(sizing);
@@ -218,6 +219,8 @@ static vg_status mesh_layers(struct run *r, struct vg_error *err)
   vg_mesh_release(&field);
   VG_TRY(judge(r, &r->mesh, NULL, &r->judge, err));
 done:
+  free(view.tri);
+  free(view.tri_patch);
   vg_mesh_release(&field);
   vg_sizing_free(sizing);
   return st;

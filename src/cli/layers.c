@@ -445,6 +445,53 @@ done:
   return st;
 }
 
+/* Patches without layers that share an edge with a wall. */
+static void mark_beside(const struct vg_layer_stage *s,
+                        const struct vg_mesh *m, uint8_t *on_wall,
+                        uint8_t *beside)
+{
+  for (size_t i = 0; i < m->n_tri; i++)
+    for (int k = 0; k < 3 && s->reason[m->tri_patch[i]] != VG_WALL_NOT; k++)
+      on_wall[m->tri[i][k]] = 1;
+  for (size_t i = 0; i < m->n_tri; i++) {
+    const uint32_t *t = m->tri[i];
+
+    if (s->reason[m->tri_patch[i]] == VG_WALL_NOT &&
+        on_wall[t[0]] + on_wall[t[1]] + on_wall[t[2]] > 1)
+      beside[m->tri_patch[i]] = 1;
+  }
+}
+
+vg_status vg_layer_stage_sizes(const struct vg_layer_stage *s,
+                               const struct vg_problem *p,
+                               struct vg_mesh *out, struct vg_error *err)
+{
+  const struct vg_mesh *m = &p->surface;
+  int is_front = *p->files.front && p->project.grid > 0;
+  uint8_t *on_wall = vg_calloc(m->n_point, 1);
+  uint8_t *beside = vg_calloc(m->n_patch, 1);
+  vg_status st = VG_OK;
+
+  *out = *m;
+  out->n_tri = 0;
+  out->tri = vg_alloc(m->n_tri, sizeof *out->tri);
+  out->tri_patch = vg_alloc(m->n_tri, sizeof *out->tri_patch);
+  if (!on_wall || !beside || !out->tri || !out->tri_patch) {
+    st = vg_fail_memory(err, "the sizes");
+    goto done;
+  }
+  if (is_front) mark_beside(s, m, on_wall, beside);
+  for (size_t i = 0; i < m->n_tri; i++) {
+    if (beside[m->tri_patch[i]]) continue;
+    memcpy(out->tri[out->n_tri], m->tri[i], sizeof *out->tri);
+    out->tri_patch[out->n_tri++] = m->tri_patch[i];
+  }
+done:
+  free(on_wall);
+  free(beside);
+  return st;
+}
+
 static vg_status judge(struct vg_layer_stage *s, const struct vg_mesh *surface,
                        struct vg_error *err)
 {

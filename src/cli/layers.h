@@ -55,6 +55,16 @@ void vg_layer_stage_release(struct vg_layer_stage *s);
 vg_status vg_layer_stage_plan(struct vg_layer_stage *s, struct vg_problem *p,
                               struct vg_error *err);
 
+/** The triangles that say how large edges are before layers grow. All, but
+ * for a VGRID front with layers: there VGRID has put the layers' points on
+ * the patches beside the walls already, a thousandth of an edge apart, and
+ * these patches are left out.
+ * @param out  borrows points and patches of the surface; tri and tri_patch
+ *             are its own: free them, nothing else */
+vg_status vg_layer_stage_sizes(const struct vg_layer_stage *s,
+                               const struct vg_problem *p,
+                               struct vg_mesh *out, struct vg_error *err);
+
 /** Grow, judge and measure. What is left to fill is s->layers.front.mesh.
  * VG_ERR_GEOMETRY when cells are wrong: a fault of the program. */
 vg_status vg_layer_stage_grow(struct vg_layer_stage *s,

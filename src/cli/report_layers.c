@@ -6,6 +6,8 @@
 #include "cli/layers.h"
 #include "cli/report.h"
 
+#define FIRST_SHOWN 1e-3   /* relative difference of first heights */
+
 static const struct vg_patch *patch_of(const struct vg_mesh *surface,
                                        const struct vg_patch_layers *w)
 {
@@ -54,20 +56,43 @@ static void row_total(FILE *to, const struct vg_mesh *surface,
   fprintf(to, "\n");
 }
 
+/* First heights are the same on most patches: worth a line are those that
+ * ask for something else than all together, or get it. */
+static int is_first_special(const struct vg_layer_stage *s,
+                            const struct vg_patch_layers *w)
+{
+  return s->n_wall == 1 || w->first_error > FIRST_SHOWN ||
+         fabs(w->asked.mean - s->all.asked.mean) >
+           FIRST_SHOWN * s->all.asked.mean;
+}
+
+static int is_any(const struct vg_layer_stage *s,
+                  const struct vg_patch_layers *w)
+{
+  (void)s;
+  (void)w;
+  return 1;
+}
+
 typedef void (*row_writer)(FILE *to, const struct vg_mesh *surface,
+                           const struct vg_patch_layers *w);
+
+typedef int (*row_chooser)(const struct vg_layer_stage *s,
                            const struct vg_patch_layers *w);
 
 static void table(FILE *to, const struct vg_layer_stage *s,
                   const struct vg_mesh *surface, const char *head,
-                  row_writer row)
+                  row_writer row, row_chooser choose)
 {
-  size_t n = s->n_wall < VG_SHOWN_PATCHES ? s->n_wall : VG_SHOWN_PATCHES;
+  size_t n = 0;
 
   fprintf(to, "\n  %5s %-16s %s\n", "patch", "name", head);
-  for (size_t i = 0; i < n; i++) row(to, surface, &s->wall[i]);
-  if (n < s->n_wall)
+  for (size_t i = 0; i < s->n_wall; i++)
+    if (choose(s, &s->wall[i]) && n++ < VG_SHOWN_PATCHES)
+      row(to, surface, &s->wall[i]);
+  if (n > VG_SHOWN_PATCHES)
     fprintf(to, "  ... and %zu more patches (all are in the JSON report)\n",
-            s->n_wall - n);
+            n - VG_SHOWN_PATCHES);
   if (s->n_wall > 1) row(to, NULL, &s->all);
 }
 
@@ -153,11 +178,11 @@ void vg_report_layers_text(FILE *to, const struct vg_layer_stage *s,
 
   sizes(to, s);
   table(to, s, surface, "      faces  full %  as law   any %  levels: min, "
-        "mean, max", row_cover);
+        "mean, max", row_cover, is_any);
   table(to, s, surface, "first asked   got: min       mean        max  "
-        "error %", row_first);
+        "error %", row_first, is_first_special);
   table(to, s, surface, s->all.y_plus.max > 0 ? with_y_plus : without,
-        row_total);
+        row_total, is_any);
   causes(to, s, surface);
   fprintf(to, "\n  smallest angle of a top %.1f degrees; whole prisms %zu, "
           "with a bad corner %zu\n", s->judgement.angle_of_top_min,

@@ -17,6 +17,12 @@ vanguard check -q "$VG_DATA_DIR/vgrid_box/box.cogsg"
 exits 0
 says out "validity: valid"
 
+# VGRID made 51,564 layer cells of 30 levels; the points that it has put on the
+# side walls already must not end ours early.
+n=$(sed -n 's/.*"tetrahedra_if_all_are": \([0-9]*\).*/\1/p' box.report.json)
+[ "$n" -gt 50533 ] && [ "$n" -lt 52595 ] ||
+  fail "$n layer cells are not within 2 % of VGRID's 51,564"
+
 # The header says how many points and cells are in layers, in VGRID's order.
 count() { sed -n "s/.*\"$1\": \([0-9]*\).*/\1/p" box.report.json | tail -1; }
 nev=$(od -An -tu4 --endian=big -j 24 -N 4 box.cogsg | tr -d ' ')
