@@ -488,7 +488,8 @@ static void gather_team(struct team *t, const struct vg_boxes *b)
     for (int i = 0; i < t->n; i++) {
       const struct query *q = &t->query[i];
       /* A cone of height h is within h of its axis, sideways. */
-      double h = q->reach + q->highest + q->back, s = sqrt(fmax(0, 1 - q->u[k] * q->u[k]));
+      double h = q->reach + q->highest + q->back;
+      double s = sqrt(fmax(0, 1 - q->u[k] * q->u[k]));
       double apex = q->root[k] - b->origin[k] - q->back * q->u[k];
 
       u[k] += q->u[k];
