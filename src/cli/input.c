@@ -5,6 +5,7 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <unistd.h>
 
 #include "base/memory.h"
@@ -58,6 +59,7 @@ void vg_problem_release(struct vg_problem *p)
   vg_settings_release(&p->settings);
   vg_project_release(&p->project);
   vg_mesh_release(&p->surface);
+  free(p->heights.item);
   vg_surface_report_release(&p->check);
   vg_notes_release(&p->notes);
 }
@@ -420,6 +422,71 @@ done:
   return st;
 }
 
+static int compare_height(const void *a, const void *b)
+{
+  const struct vg_point_height *p = a, *q = b;
+
+  for (int k = 0; k < 3; k++)
+    if (p->x[k] != q->x[k]) return p->x[k] < q->x[k] ? -1 : 1;
+  return (p->first > q->first) - (p->first < q->first);
+}
+
+static int compare_place(const void *a, const void *b)
+{
+  const struct vg_point_height *p = a, *q = b;
+
+  for (int k = 0; k < 3; k++)
+    if (p->x[k] != q->x[k]) return p->x[k] < q->x[k] ? -1 : 1;
+  return 0;
+}
+
+double *vg_point_height(const struct vg_point_heights *h, const double x[3])
+{
+  const struct vg_point_height key = { { x[0], x[1], x[2] }, 0 };
+  struct vg_point_height *found;
+
+  if (!h->n) return NULL;
+  found = bsearch(&key, h->item, h->n, sizeof *h->item, compare_place);
+  return found ? &found->first : NULL;
+}
+
+/* A .surf may have a first height at each point. They are found again by
+ * their coordinates, since repairs renumber points. */
+static vg_status read_heights(struct vg_problem *p, struct vg_error *err)
+{
+  const char *path = p->files.surface;
+  struct vg_mesh m = VG_MESH_INIT;
+  struct vg_aflr a = VG_AFLR_INIT;
+  size_t len = strlen(path);
+  vg_status st = VG_OK;
+
+  if (len > 3 && !strcasecmp(path + len - 3, ".gz")) len -= 3;
+  if (len < 5 || strncasecmp(path + len - 5, ".surf", 5) || *p->files.front ||
+      *p->files.d3m || !p->settings.layer.from_files)
+    return VG_OK;
+  VG_TRY(vg_aflr_surf_read(path, &m, &a, err));
+  if (!a.spacing) goto done;
+  p->heights.item = vg_alloc(a.n_point, sizeof *p->heights.item);
+  if (!p->heights.item) {
+    st = vg_fail_memory(err, "the heights of a .surf");
+    goto done;
+  }
+  for (size_t i = 0; i < a.n_point; i++) {
+    struct vg_point_height *to = &p->heights.item[p->heights.n];
+
+    if (!(a.spacing[i] > 0)) continue;
+    memcpy(to->x, m.point[i], sizeof to->x);
+    to->first = a.spacing[i];
+    p->heights.n++;
+  }
+  qsort(p->heights.item, p->heights.n, sizeof *p->heights.item,
+        compare_height);
+done:
+  vg_mesh_release(&m);
+  vg_aflr_release(&a);
+  return st;
+}
+
 vg_status vg_problem_surface(struct vg_problem *p, struct vg_error *err)
 {
   vg_status st = VG_OK;
@@ -432,7 +499,9 @@ vg_status vg_problem_surface(struct vg_problem *p, struct vg_error *err)
   VG_TRY(read_surface(p, err));
   VG_TRY(apply_aflr(p, p->files.tags, 0, err));
   VG_TRY(apply_aflr(p, p->files.aflr, 1, err));
-  p->settings.layer.from_files = 0;
+  VG_TRY(read_heights(p, err));
+  /* What has been taken is in the settings, but for heights by point. */
+  if (!p->heights.n) p->settings.layer.from_files = 0;
   VG_TRY(apply_patch_table(p, err));
 done:
   return st;

@@ -24,11 +24,21 @@ struct vg_notes {
   char **text;
 };
 
+/** First heights at points of a .surf, by rising x, y, z. */
+struct vg_point_heights {
+  size_t n;
+  struct vg_point_height { double x[3], first; } *item;
+};
+
+/** The height at x, NULL where none is given. O(log n). */
+double *vg_point_height(const struct vg_point_heights *h, const double x[3]);
+
 struct vg_problem {
   struct vg_input_files files;
   struct vg_settings settings;
   struct vg_project project;       /* empty without a .d3m */
   struct vg_mesh surface;
+  struct vg_point_heights heights;
   size_t n_welded, n_dropped;      /* by the weld */
   struct vg_surface_report check;
   int require_bc;                  /* the input gives conditions */

@@ -11,10 +11,12 @@
 #define DEFAULT_CAP 1.3
 #define SHOWN_PATCHES 20
 
-/* First height and rates by source. Each is the mean that the spacing would
+/* By source: first height and rates. Each is the mean that the spacing would
  * be, with the value in place of the spacing (formats.md 1.7): the same
- * weights, by the same code. */
+ * weights, by the same code. By point: the first height of a .surf, the rest by
+ * patch. */
 struct vg_layer_laws {
+  const struct vg_point_heights *heights;  /* NULL: by source */
   size_t n;
   struct vg_source *source[3];  /* [n] h0, h1: delta1, rate1, rate2 */
   double constant[3];           /* one value at all sources, or NAN */
@@ -58,6 +60,14 @@ static void law_at(void *user, const double x[3], struct vg_law *law)
   law->rate2 = v[2] > 0 ? v[2] : 0;
   law->cap = l->cap;
   law->n_constant = l->n_constant;
+}
+
+static void height_at(void *user, const double x[3], struct vg_law *law)
+{
+  const struct vg_layer_laws *l = user;
+  const double *h = vg_point_height(l->heights, x);
+
+  if (h && *h > 0) law->delta1 = *h;
 }
 
 static int has_law(const struct vg_source *s)
@@ -237,9 +247,27 @@ static vg_status check_row(const struct vg_layer_row *r, int by_source,
                  "to no or remove the values", (int)r->id);
 }
 
+static vg_status use_heights(struct vg_layer_stage *s,
+                             const struct vg_problem *p, const double *least,
+                             struct vg_error *err)
+{
+  int used = 0;
+
+  for (size_t i = 0; i < s->n_patch; i++)
+    if (least[i] > 0 && s->reason[i] != VG_WALL_NOT) {
+      s->request[i].law.delta1 = least[i];
+      used = 1;
+    }
+  if (!used) return VG_OK;
+  s->laws = vg_calloc(1, sizeof *s->laws);
+  if (!s->laws) return vg_fail_memory(err, "the laws of the layers");
+  s->laws->heights = &p->heights;
+  return VG_OK;
+}
+
 static vg_status make_requests(struct vg_layer_stage *s,
                                const struct vg_problem *p,
-                               struct vg_error *err)
+                               const double *least, struct vg_error *err)
 {
   const struct vg_settings *set = &p->settings;
   const struct vg_layer_settings *l = &set->layer;
@@ -259,28 +287,71 @@ static vg_status make_requests(struct vg_layer_stage *s,
     if (s->reason[i] == VG_WALL_NOT) continue;
     VG_TRY(check_row(&row, l->by_source, err));
     VG_TRY(make_request(set, &row, q, err));
-    if (s->laws) {
+    if (l->by_source) {
       q->law.delta1 = s->laws->source[0][0].h0;
       q->law.rate1 = s->laws->source[1][0].h0 - s->laws->shift[1];
       q->law.rate2 = s->laws->source[2][0].h0 - s->laws->shift[2];
     }
-    if (!(q->law.delta1 > 0)) st = no_first(m, i, err);
+    if (!(q->law.delta1 > 0) && !(least[i] > 0)) st = no_first(m, i, err);
     if (st < 0) break;
   }
+  if (st >= 0) st = use_heights(s, p, least, err);
 done:
   return st;
 }
 
+/* Heights by point are for patches that have none by setting. */
+static int uses_points(const struct vg_problem *p, const struct vg_layer_row *r)
+{
+  const struct vg_layer_settings *l = &p->settings.layer;
+
+  return p->heights.n && !l->by_source && l->first == 0 && l->y_plus == 0 &&
+         isnan(r->first) && isnan(r->y_plus);
+}
+
+/* Heights at points of patches that have their own are dropped; the least of
+ * the others, per patch, is for points without one.
+ * @param least  out: [n_patch], 0 where a patch uses none */
+static vg_status sort_heights(struct vg_problem *p, double *least,
+                              struct vg_error *err)
+{
+  const struct vg_mesh *m = &p->surface;
+  uint8_t *uses = vg_calloc(m->n_patch, 1);
+
+  if (!uses) return vg_fail_memory(err, "the patches");
+  for (size_t i = 0; i < m->n_patch; i++) {
+    struct vg_layer_row row = row_of(&p->settings, m->patch[i].id);
+
+    uses[i] = (uint8_t)uses_points(p, &row);
+  }
+  for (int pass = 0; pass < 2; pass++)
+    for (size_t i = 0; i < m->n_tri; i++) {
+      const uint32_t of = m->tri_patch[i];
+
+      for (int k = 0; k < 3 && uses[of] == pass; k++) {
+        double *h = vg_point_height(&p->heights, m->point[m->tri[i][k]]);
+
+        if (h && !pass) *h = 0;
+        else if (h && *h > 0 && (least[of] == 0 || *h < least[of]))
+          least[of] = *h;
+      }
+    }
+  free(uses);
+  return VG_OK;
+}
+
 /* 1 when each wall has a first height. */
 static int first_is_known(const struct vg_layer_stage *s,
-                          const struct vg_problem *p)
+                          const struct vg_problem *p, const double *least)
 {
   const struct vg_layer_settings *l = &p->settings.layer;
 
   for (size_t i = 0; i < s->n_patch && !l->by_source; i++) {
     struct vg_layer_row row = row_of(&p->settings, p->surface.patch[i].id);
 
-    if (s->reason[i] != VG_WALL_NOT && !(first_height(l, &row) > 0)) return 0;
+    if (s->reason[i] != VG_WALL_NOT && !(first_height(l, &row) > 0) &&
+        !(least[i] > 0))
+      return 0;
   }
   return 1;
 }
@@ -395,7 +466,7 @@ static void set_options(struct vg_layer_stage *s, const struct vg_settings *set)
 
   *o = defaults;
   o->patch = s->request;
-  o->law_at = s->laws ? law_at : NULL;
+  o->law_at = !s->laws ? NULL : s->laws->heights ? height_at : law_at;
   o->law_user = s->laws;
   o->fan_angle = set->layer.fan_angle;
   o->end = set->layer.end;
@@ -421,13 +492,17 @@ vg_status vg_layer_stage_plan(struct vg_layer_stage *s, struct vg_problem *p,
                               struct vg_error *err)
 {
   struct vg_layer_settings *l = &p->settings.layer;
+  double *least = vg_calloc(p->surface.n_patch, sizeof *least);
   size_t n_wall;
-  vg_status st;
+  vg_status st = least ? VG_OK : vg_fail_memory(err, "the patches");
 
+  if (st < 0) goto done;
   VG_TRY(allocate(s, p->surface.n_patch, err));
   if (l->grow == VG_ANSWER_NO) goto done;
+  if (p->heights.n) VG_TRY(sort_heights(p, least, err));
   VG_TRY(vg_walls_find(p, s->reason, &n_wall, err));
-  if (n_wall && !vg_walls_asked(&p->settings) && !first_is_known(s, p)) {
+  if (n_wall && !vg_walls_asked(&p->settings) &&
+      !first_is_known(s, p, least)) {
     note_missing(s, p, n_wall);
     n_wall = 0;
   }
@@ -435,13 +510,14 @@ vg_status vg_layer_stage_plan(struct vg_layer_stage *s, struct vg_problem *p,
     l->grow = VG_ANSWER_NO;
     goto done;
   }
-  VG_TRY(make_requests(s, p, err));
+  VG_TRY(make_requests(s, p, least, err));
   note_choice(s, p);
   give_conditions(s, p);
   set_options(s, &p->settings);
   VG_TRY(resolve(s, p, err));
   s->is_on = 1;
 done:
+  free(least);
   return st;
 }
 

@@ -122,8 +122,8 @@ static const struct vg_param params[] = {
   { "layer_sources", AT(layer.by_source), .type = VG_PARAM_FLAG, .unit = "",
     .help = "first height and rates from the sources (VGRID's grid 2)" },
   { "file_layers", AT(layer.from_files), .type = VG_PARAM_FLAG, .unit = "",
-    .help = "use the layer settings of a .d3m, .tags or AFLR .bc where "
-            "none are given here" },
+    .help = "use the layer settings of a .d3m, .surf, .tags or AFLR .bc "
+            "where none are given here" },
   LIMIT("min_full", AT(layer.min_full), 100, "% of the faces of each wall "
         "patch that must have all layers, else exit status 4"),
   LIMIT("min_any", AT(layer.min_any), 100, "% of the faces of each wall patch "

@@ -71,3 +71,36 @@ vanguard mesh -q -p aflr/body --write b8.ugrid
 exits 0
 grep -A4 '"first_asked"' aflr/body.report.json | grep -q '"min": 0.02' ||
   fail "not the height of the .bc"
+
+# A .surf: layers on flag -1, first heights by point, between 0.01 and 0.02.
+mkdir surf
+cat >surf/body.surf <<'END'
+8 0 6
+1 0 0 0.01
+0 1 0 0.01
+0 0 1 0.02
+-1 0 0 0.01
+0 -1 0 0.01
+0 0 -1 0.01
+1 2 3 1 7 -1
+2 4 3 1 7 -1
+4 5 3 1 7 -1
+5 1 3 1 7 -1
+2 1 6 2 7 -1
+4 2 6 2 7 -1
+5 4 6 2 7 -1
+1 5 6 2 7 -1
+END
+vanguard mesh -q -p surf/body --out by_point
+exits 0
+grep -A4 '"first_asked"' by_point/body.report.json | grep -q '"max": 0.02' ||
+  fail "not the heights of the .surf"
+grep -A4 '"first_asked"' by_point/body.report.json | grep -q '"min": 0.01' ||
+  fail "not the heights of the .surf"
+vanguard mesh -q -p surf/body --deck by_point/body.resolved.deck --out again
+exits 0
+same by_point/body.b8.ugrid again/body.b8.ugrid
+vanguard mesh -q -p surf/body --first 0.03125 --out one_height
+exits 0
+grep -A4 '"first_asked"' one_height/body.report.json |
+  grep -q '"max": 0.03125' || fail "--first did not win over the .surf"
