@@ -44,7 +44,7 @@ void vg_slide_blame_all(struct vg_slide_work *w, size_t s, const char *what)
     for (int k = 0; k < 2; k++) {
       const uint32_t i = w->c->rim[w->rim[r]][k];
 
-      vg_slide_blame(w, i, w->slide[s].patch,
+      vg_slide_blame(w, i, w->part[s].patch,
                      w->m->point[w->c->column[i].root], what);
     }
 }
@@ -64,11 +64,12 @@ uint32_t vg_slide_twin(const struct vg_slide_work *w, uint32_t a, uint32_t b)
 static void release(struct vg_slide_work *w)
 {
   free(w->slide_of);
-  free(w->moved);
   free(w->x);
   free(w->local);
   free(w->first);
   free(w->half);
+  free(w->part);
+  free(w->part_of);
   free(w->tri_first);
   free(w->tri);
   free(w->rim_first);
@@ -78,61 +79,6 @@ static void release(struct vg_slide_work *w)
   free(w->new_tri);
   free(w->new_patch);
   free(w->bad);
-}
-
-/* Bucket items by class: n_class + 1 offsets and the items of each, rising.
- * VG_NO_INDEX belongs to none. */
-static vg_status bucket(size_t n, const uint32_t *class_of, size_t n_class,
-                        uint32_t **first, uint32_t **item,
-                        struct vg_error *err)
-{
-  size_t total = 0;
-
-  *first = vg_calloc(n_class + 2, sizeof **first);
-  for (size_t i = 0; *first && i < n; i++)
-    if (class_of[i] != VG_NO_INDEX) {
-      (*first)[class_of[i] + 2]++;
-      total++;
-    }
-  *item = vg_alloc(total, sizeof **item);
-  if (!*first || !*item) return vg_fail_memory(err, "slide patches");
-  for (size_t i = 0; i < n_class; i++) (*first)[i + 2] += (*first)[i + 1];
-  for (size_t i = 0; i < n; i++)
-    if (class_of[i] != VG_NO_INDEX)
-      (*item)[(*first)[class_of[i] + 1]++] = (uint32_t)i;
-  return VG_OK;
-}
-
-/* Triangles, half-edges and rims of slide patches. */
-static vg_status sort_parts(struct vg_slide_work *w)
-{
-  const struct vg_mesh *m = w->m;
-  const struct vg_columns *c = w->c;
-  size_t most = 3 * m->n_tri > c->n_rim ? 3 * m->n_tri : c->n_rim;
-  uint32_t *class_of = vg_alloc(most, sizeof *class_of);
-  vg_status st;
-
-  if (!class_of) return vg_fail_memory(w->err, "slide patches");
-  for (size_t i = 0; i < m->n_tri; i++)
-    class_of[i] = w->slide_of[m->tri_patch[i]];
-  VG_TRY(bucket(m->n_tri, class_of, w->n_slide, &w->tri_first, &w->tri,
-                w->err));
-  for (size_t i = 0; i < 3 * m->n_tri; i++)
-    class_of[i] = w->slide_of[m->tri_patch[i / 3]] == VG_NO_INDEX
-                  ? VG_NO_INDEX : m->tri[i / 3][i % 3];
-  VG_TRY(bucket(3 * m->n_tri, class_of, m->n_point, &w->first, &w->half,
-                w->err));
-  for (size_t i = 0; i < c->n_rim; i++)
-    class_of[i] = w->slide_of[c->rim_patch[i]];
-  VG_TRY(bucket(c->n_rim, class_of, w->n_slide, &w->rim_first, &w->rim,
-                w->err));
-  for (size_t i = 0; i < c->n_rim; i++)
-    if (class_of[i] != VG_NO_INDEX && (c->column[c->rim[i][0]].n
-                                       || c->column[c->rim[i][1]].n))
-      w->moved[class_of[i]] = 1;
-done:
-  free(class_of);
-  return st;
 }
 
 static vg_status prepare(struct vg_slide_work *w)
@@ -145,11 +91,10 @@ static vg_status prepare(struct vg_slide_work *w)
                    "%zu points and %zu triangles are too many", c->n_column,
                    m->n_point, m->n_tri);
   w->slide_of = vg_alloc(m->n_patch, sizeof *w->slide_of);
-  w->moved = vg_calloc(w->n_slide, 1);
   w->bad = vg_calloc(c->n_column, 1);
   w->n_x = w->cap_x = m->n_point + c->n_column;
   w->x = vg_alloc(w->cap_x, sizeof *w->x);
-  if (!w->slide_of || !w->moved || !w->bad || !w->x)
+  if (!w->slide_of || !w->bad || !w->x)
     return vg_fail_memory(w->err, "slide patches");
   free(c->path);
   c->path = NULL;
@@ -162,7 +107,7 @@ static vg_status prepare(struct vg_slide_work *w)
   for (size_t i = 0; i < m->n_patch; i++) w->slide_of[i] = VG_NO_INDEX;
   for (size_t i = 0; i < w->n_slide; i++)
     w->slide_of[w->slide[i].patch] = (uint32_t)i;
-  return sort_parts(w);
+  return vg_slide_parts(w);
 }
 
 /* The front ---------------------------------------------------------------*/
@@ -224,10 +169,10 @@ static vg_status list_triangles(struct vg_slide_work *w, struct list *l)
     for (int k = 0; k < 3; k++) patch_of[m->tri[t][k]] = m->tri_patch[t];
   }
   for (uint32_t t = 0; t < m->n_tri; t++) {
-    const uint32_t patch = m->tri_patch[t], s = w->slide_of[patch];
+    const uint32_t patch = m->tri_patch[t];
 
     if (face_of[t] != VG_NO_INDEX) put_top(w, face_of[t], patch, l);
-    else if (s == VG_NO_INDEX || !w->moved[s])
+    else if (w->part_of[t] == VG_NO_INDEX)
       put(l, m->tri[t], patch, VG_NO_INDEX);
   }
   for (uint32_t f = 0; f < c->n_face; f++)
@@ -376,8 +321,7 @@ vg_status vg_slide_front(const struct vg_mesh *surface, size_t n_slide,
     goto done;
   }
   memset(w.local, 0xff, w.n_x * sizeof *w.local);
-  for (size_t s = 0; s < n_slide; s++)
-    if (w.moved[s]) VG_TRY(vg_slide_remesh(&w, s));
+  for (size_t s = 0; s < w.n_part; s++) VG_TRY(vg_slide_remesh(&w, s));
   VG_TRY(assemble(&w, front));
   if (w.n_bad) st = hand_trouble(&w, trouble);
 done:

@@ -179,13 +179,19 @@ static int cut(const struct vg_slide_work *w, const struct chain *c,
   return 0;
 }
 
+/* An edge of the new curve, for the parts on both sides of chain edge i. */
 static vg_status add_edge(struct vg_slide_work *w, const struct chain *c,
-                          uint32_t a, uint32_t b)
+                          size_t i, uint32_t a, uint32_t b)
 {
+  const uint32_t left = vg_slide_twin(w, c->v[i + 1], c->v[i]);
+  const uint32_t right = vg_slide_twin(w, c->v[i], c->v[i + 1]);
+
   if (vg_reserve(&w->edge, &w->cap_edge, w->n_edge + 2, sizeof *w->edge))
     return vg_fail_memory(w->err, "curves between slide patches");
-  w->edge[w->n_edge++] = (struct vg_slide_edge){ c->left, { a, b } };
-  w->edge[w->n_edge++] = (struct vg_slide_edge){ c->right, { b, a } };
+  w->edge[w->n_edge++]
+    = (struct vg_slide_edge){ w->part_of[left / 3], { a, b } };
+  w->edge[w->n_edge++]
+    = (struct vg_slide_edge){ w->part_of[right / 3], { b, a } };
   return VG_OK;
 }
 
@@ -242,9 +248,9 @@ static void count_edges(const struct vg_slide_work *w, const struct chain *c,
   }
 }
 
-/* March from one end to the other. */
+/* March from one end to the other, in place of chain edge `at` and others. */
 static vg_status march(struct vg_slide_work *w, const struct chain *c,
-                       struct end a, struct end b)
+                       size_t at, struct end a, struct end b)
 {
   const struct end end[2] = { a, b };
   double sum[PIECES + 1], x[3], fit;
@@ -263,10 +269,10 @@ static vg_status march(struct vg_slide_work *w, const struct chain *c,
     part = (want - sum[piece]) / (sum[piece + 1] - sum[piece]);
     on_chain(w, c, a.s + (b.s - a.s) * (piece + part) / PIECES, x);
     if (vg_slide_add_point(w, x, &v)) return VG_ERR_MEMORY;
-    if (add_edge(w, c, last, v)) return VG_ERR_MEMORY;
+    if (add_edge(w, c, at, last, v)) return VG_ERR_MEMORY;
     last = v;
   }
-  return add_edge(w, c, last, b.v);
+  return add_edge(w, c, at, last, b.v);
 }
 
 /* The column at the chain's end that runs along it too, or VG_NO_INDEX. */
@@ -322,20 +328,15 @@ static int is_bent(const struct vg_slide_work *w, const struct chain *c)
 static double top_edge(const struct vg_slide_work *w, uint32_t i)
 {
   const double *x = w->x[w->m->n_point + i];
-  const struct vg_column *col = &w->c->column[i];
   double sum = 0;
   int n = 0;
 
-  for (int k = 0; k < 2; k++) {
-    const uint32_t s = w->slide_of[col->slide[k]];
+  for (size_t r = 0; r < w->c->n_rim; r++) {
+    const uint32_t *e = w->c->rim[r];
 
-    for (uint32_t r = w->rim_first[s]; r < w->rim_first[s + 1]; r++) {
-      const uint32_t *e = w->c->rim[w->rim[r]];
-
-      if (e[0] != i && e[1] != i) continue;
-      sum += vg_distance(x, w->x[vg_slide_top(w, e[0] == i ? e[1] : e[0])]);
-      n++;
-    }
+    if (e[0] != i && e[1] != i) continue;
+    sum += vg_distance(x, w->x[vg_slide_top(w, e[0] == i ? e[1] : e[0])]);
+    n++;
   }
   return n ? sum / n : 0;
 }
@@ -389,7 +390,7 @@ static vg_status run_single(struct vg_slide_work *w, const struct chain *c,
     return VG_OK;
   }
   VG_TRY(remove_edges(w, c, 0, keep));
-  st = march(w, c, top, next);
+  st = march(w, c, 0, top, next);
 done:
   return st;
 }
@@ -418,16 +419,16 @@ static vg_status run_double(struct vg_slide_work *w, struct chain *c,
   }
   if (keep_a > keep_b) {
     VG_TRY(remove_edges(w, c, 0, n - 1));
-    return march(w, c, a, b);
+    return march(w, c, 0, a, b);
   }
   VG_TRY(remove_edges(w, c, 0, keep_a));
   VG_TRY(remove_edges(w, c, keep_b, n - 1));
   p.v = c->v[keep_a];
   p.s = c->s[keep_a];
-  VG_TRY(march(w, c, a, p));
+  VG_TRY(march(w, c, 0, a, p));
   p.v = c->v[keep_b];
   p.s = c->s[keep_b];
-  st = march(w, c, p, b);
+  st = march(w, c, n - 2, p, b);
 done:
   return st;
 }

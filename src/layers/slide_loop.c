@@ -30,21 +30,19 @@ static vg_status add_edge(struct vg_slide_work *w, struct vg_slide_loops *l,
   return VG_OK;
 }
 
-/* Half-edges of the patch's triangles without a partner in it, that neither
+/* Half-edges of the part's triangles without a partner in it, that neither
  * columns nor curves replace. */
 static vg_status former_edges(struct vg_slide_work *w, size_t s,
                               const uint64_t *rim, size_t n_rim,
                               struct vg_slide_loops *l)
 {
-  const uint32_t patch = w->slide[s].patch;
-
   for (uint32_t i = w->tri_first[s]; i < w->tri_first[s + 1]; i++)
     for (int k = 0; k < 3; k++) {
       const uint32_t *v = w->m->tri[w->tri[i]];
       const uint32_t a = v[k], b = v[k < 2 ? k + 1 : 0];
       const uint32_t twin = vg_slide_twin(w, a, b);
 
-      if (twin != VG_NO_INDEX && w->m->tri_patch[twin / 3] == patch) continue;
+      if (twin != VG_NO_INDEX && w->part_of[twin / 3] == s) continue;
       if (has_key(rim, n_rim, (uint64_t)b << 32 | a)
           || has_key(w->gone, w->n_gone, vg_slide_key(a, b)))
         continue;
@@ -63,7 +61,7 @@ static vg_status new_edges(struct vg_slide_work *w, size_t s,
     if (a != b && add_edge(w, l, b, a)) return VG_ERR_MEMORY;
   }
   for (size_t i = 0; i < w->n_edge; i++)
-    if (w->edge[i].patch == w->slide[s].patch
+    if (w->edge[i].part == s
         && add_edge(w, l, w->edge[i].v[0], w->edge[i].v[1]))
       return VG_ERR_MEMORY;
   return VG_OK;
@@ -72,7 +70,7 @@ static vg_status new_edges(struct vg_slide_work *w, size_t s,
 static void blame_point(struct vg_slide_work *w, size_t s, uint32_t p,
                         const char *what)
 {
-  const uint32_t patch = w->slide[s].patch;
+  const uint32_t patch = w->part[s].patch;
   const uint32_t i = vg_slide_column(w, p);
 
   if (i != VG_NO_INDEX) vg_slide_blame(w, i, patch, w->x[p], what);
@@ -233,7 +231,7 @@ static void blame_flank(struct cross *x, const char *what)
 
   x->n_bad++;
   for (int k = 0; k < 2; k++)
-    vg_slide_blame(x->w, r[k], x->w->slide[x->s].patch,
+    vg_slide_blame(x->w, r[k], x->w->part[x->s].patch,
                    x->w->m->point[x->w->c->column[r[k]].root], what);
 }
 

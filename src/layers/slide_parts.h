@@ -33,7 +33,7 @@ void vg_tree2_query(const struct vg_tree2 *t, const struct vg_box2 *box,
 
 /* slide.c -----------------------------------------------------------------*/
 
-struct vg_slide_edge { uint32_t patch, v[2]; };
+struct vg_slide_edge { uint32_t part, v[2]; };
 
 struct vg_slide_work {
   const struct vg_mesh *m;
@@ -42,15 +42,19 @@ struct vg_slide_work {
   const struct vg_slide *slide;
   struct vg_columns *c;
   uint32_t *slide_of;       /* [m->n_patch] index into slide[] */
-  uint8_t *moved;           /* [n_slide] has a rim column with levels */
   size_t n_x, cap_x;
   double (*x)[3];           /* [n_x] surface, tops, new points */
   uint32_t *local;          /* [surface, tops, curves] scratch, VG_NO_INDEX
                                between uses */
   /* Half-edges 3 * triangle + corner of slide patches, by first point. */
   uint32_t *first, *half;   /* [m->n_point + 1], [first[n_point]] */
-  uint32_t *tri_first, *tri;/* [n_slide + 1] into tri[]: triangles by slide */
-  uint32_t *rim_first, *rim;/* [n_slide + 1] into rim[]: rims by slide */
+  /* What is re-meshed: plane patches as a whole, of curved ones the
+   * surroundings of the walls, each with its own mean normal. */
+  size_t n_part, cap_part;
+  struct vg_slide *part;
+  uint32_t *part_of;        /* [m->n_tri] VG_NO_INDEX: stays */
+  uint32_t *tri_first, *tri;/* [n_part + 1] into tri[]: triangles by part */
+  uint32_t *rim_first, *rim;/* [n_part + 1] into rim[]: rims by part */
   /* Curves between slide patches: edges of the surface that are gone (both
    * points, the lower one in the high half, sorted) and those in their
    * place. */
@@ -97,12 +101,17 @@ vg_status vg_slide_add_point(struct vg_slide_work *w, const double x[3],
 void vg_slide_blame(struct vg_slide_work *w, uint32_t i, uint32_t patch,
                     const double x[3], const char *what);
 
-/** Blame all rim columns of slide s. */
+/** Blame all rim columns of part s. */
 void vg_slide_blame_all(struct vg_slide_work *w, size_t s, const char *what);
 
 /** The half-edge from b to a (twin of a -> b) in a slide patch, or
  * VG_NO_INDEX. */
 uint32_t vg_slide_twin(const struct vg_slide_work *w, uint32_t a, uint32_t b);
+
+/* slide_region.c ----------------------------------------------------------*/
+
+/** Half-edges, parts, and what belongs to each. */
+vg_status vg_slide_parts(struct vg_slide_work *w);
 
 /* slide_curve.c -----------------------------------------------------------*/
 
@@ -112,13 +121,13 @@ vg_status vg_slide_curves(struct vg_slide_work *w);
 
 /* slide_loop.c ------------------------------------------------------------*/
 
-/* The new boundary of a slide patch, region on its left. */
+/* The new boundary of a part, region on its left. */
 struct vg_slide_loops {
   size_t n, cap;
   uint32_t (*edge)[2];
 };
 
-/** Boundary of slide s; empty where columns were blamed. */
+/** Boundary of part s; empty where columns were blamed. */
 vg_status vg_slide_boundary(struct vg_slide_work *w, size_t s,
                             struct vg_slide_loops *out);
 
@@ -148,7 +157,7 @@ vg_status vg_slide_cross(struct vg_slide_work *w, size_t s,
 
 /* slide_curved.c ----------------------------------------------------------*/
 
-/* The triangles of a curved patch over its mean plane. */
+/* The triangles of a curved part over its mean plane. */
 struct vg_slide_graph {
   const struct vg_slide_work *w;
   struct vg_slide_frame frame;
@@ -161,7 +170,7 @@ struct vg_slide_graph {
   double extent;
 };
 
-/** VG_BLOCKED when the patch is no graph over its mean plane. */
+/** VG_BLOCKED when the part is no graph over its mean plane. */
 vg_status vg_slide_graph(const struct vg_slide_work *w, size_t s,
                          struct vg_slide_graph *g);
 void vg_slide_graph_release(struct vg_slide_graph *g);
@@ -170,7 +179,7 @@ void vg_slide_graph_release(struct vg_slide_graph *g);
 void vg_slide_lift(const struct vg_slide_graph *g, const double p[2],
                    double x[3]);
 
-/** Bend the rim columns of slide s onto it, those that follow a curve (bent
+/** Bend the rim columns of part s onto it, those that follow a curve (bent
  * already) excepted. */
 vg_status vg_slide_bend(struct vg_slide_work *w, size_t s,
                         const struct vg_slide_graph *g);
@@ -204,7 +213,7 @@ double vg_slide_size(void *law, const double p[2]);
 
 /* slide_plane.c, again ----------------------------------------------------*/
 
-/** Re-mesh slide s. */
+/** Re-mesh part s. */
 vg_status vg_slide_remesh(struct vg_slide_work *w, size_t s);
 
 #endif

@@ -16,7 +16,7 @@
 void vg_slide_frame(const struct vg_slide_work *w, size_t s,
                     struct vg_slide_frame *f)
 {
-  const struct vg_slide *sl = &w->slide[s];
+  const struct vg_slide *sl = &w->part[s];
   const double *x = w->m->point[w->m->tri[w->tri[w->tri_first[s]]][0]];
   double e[3] = { 0 }, off;
   int low;
@@ -128,7 +128,7 @@ static void check_slivers(struct vg_slide_work *w, size_t s,
       const uint32_t c = vg_slide_column(w, r->number[t[k]]);
 
       if (c != VG_NO_INDEX)
-        vg_slide_blame(w, c, w->slide[s].patch, w->x[r->number[t[k]]],
+        vg_slide_blame(w, c, w->part[s].patch, w->x[r->number[t[k]]],
                        "tops line up so that a triangle has no area");
     }
   }
@@ -159,7 +159,7 @@ static vg_status append(struct vg_slide_work *w, size_t s,
     for (int k = 0; k < 3; k++)
       w->new_tri[w->n_new][k] = tri[i][k] < r->n
         ? r->number[tri[i][k]] : (uint32_t)(base + (tri[i][k] - r->n));
-    w->new_patch[w->n_new++] = w->slide[s].patch;
+    w->new_patch[w->n_new++] = w->part[s].patch;
   }
   return VG_OK;
 }
@@ -199,7 +199,7 @@ vg_status vg_slide_remesh(struct vg_slide_work *w, size_t s)
   size_t n_bad = 0;
   vg_status st;
 
-  if (!w->slide[s].is_plane) {
+  if (!w->part[s].is_plane) {
     VG_TRY(vg_slide_graph(w, s, &graph));
     if (st == VG_BLOCKED) {
       vg_slide_blame_all(w, s, "it is too curved to be meshed anew");

@@ -995,6 +995,57 @@ static void curved_side_from_both_ends(void **state)
   release(&a);
 }
 
+#define WRAP 3.0
+
+static void wrap(double x[3])
+{
+  const double a = x[0] / WRAP, r = WRAP + x[1];
+
+  x[0] = r * sin(a);
+  x[1] = r * cos(a);
+}
+
+/* A strut between two cylinders that turn by 153 degrees: no graphs as a
+ * whole, but around the strut. The rest of them stays as it is. */
+static void only_the_surroundings(void **state)
+{
+  struct made a = { 0 };
+  size_t n_same = 0, n_patch = 0;
+
+  (void)state;
+  make_duct(&a.g, 0.7, 0.7, 36, 8);
+  for (size_t i = 0; i < a.g.m.n_point; i++) wrap(a.g.m.point[i]);
+  grow(&a, 0, 0, 8);
+  assert_int_equal(a.n_slide, 2);
+  assert_false(a.slide[0].is_plane);
+  assert_int_equal(front(&a), VG_OK);
+  save(&a.front.mesh, "wrap");
+  assert_sound(&a);
+  assert_points(&a);
+  for (size_t t = 0; t < a.g.m.n_tri; t++) {
+    const uint32_t *v = a.g.m.tri[t];
+
+    if (a.g.m.tri_patch[t] != 1) continue;
+    n_patch++;
+    for (size_t u = 0; u < a.front.mesh.n_tri; u++) {
+      const uint32_t *f = a.front.mesh.tri[u];
+
+      n_same += a.front.point[f[0]] == v[0] && a.front.point[f[1]] == v[1]
+                && a.front.point[f[2]] == v[2];
+    }
+  }
+  assert_true(n_same > n_patch / 10 && n_same < n_patch);
+  for (size_t u = 0; u < a.front.mesh.n_tri; u++)
+    for (int k = 0; k < 3 && a.front.mesh.tri_patch[u] == 1; k++) {
+      const double *x = a.front.mesh.point[a.front.mesh.tri[u][k]];
+
+      /* Sagitta of edges of 0.8 on a radius of 3. */
+      assert_true(fabs(hypot(x[0], x[1]) - WRAP) < 0.03);
+    }
+  assert_same_again(&a);
+  release(&a);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -1015,6 +1066,7 @@ int main(void)
     cmocka_unit_test(fan_at_the_plane),
     cmocka_unit_test(border_without_columns_is_trouble),
     cmocka_unit_test(curved_side_from_both_ends),
+    cmocka_unit_test(only_the_surroundings),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);
