@@ -92,24 +92,13 @@ static int edge_meets_half(const struct outline *p, int i,
   return 0;
 }
 
-/* Without a half of its own, q is an edge of the wall as it was. */
-static int edge_meets_edge(const struct outline *p, int i,
-                           const struct outline *q)
-{
-  int j = (i + 1) % p->n;
-
-  for (int k = 0; k < 2; k++)
-    if (q->node[k] == p->node[i] || q->node[k] == p->node[j]) return 0;
-  return segments_meet(p->x[i], p->x[j], q->x[0], q->x[1]);
-}
-
+/* Edges of p with q, when q has a level: one that has none is an edge of the
+ * wall as it was, and asked about the other way round. */
 static int edges_meet(const struct outline *p, const struct outline *q)
 {
-  for (int i = 0; i < p->n; i++) {
-    if (q->n == 2 && edge_meets_edge(p, i, q)) return 1;
+  for (int i = 0; i < p->n; i++)
     for (int h = 0; h < q->n_tri; h++)
       if (edge_meets_half(p, i, q, h)) return 1;
-  }
   return 0;
 }
 

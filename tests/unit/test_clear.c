@@ -453,6 +453,39 @@ static void patches_to_slide_in(void **state)
   /* For others it is a patch like any other, straight ahead. */
   assert_true(fabs(allowed[middle + 1] - 0.4 * 0.3) < 1e-12);
   free(allowed);
+  /* It is met where it is ahead, at 0.3 / 0.8; a wall also beside. */
+  s->c.column[middle + 1].dir[0] = 0.6;
+  s->c.column[middle + 1].dir[2] = 0.8;
+  allowed = ahead(s, 1, 1);
+  assert_true(fabs(allowed[middle + 1] - 0.4 * 0.3 / 0.8) < 1e-12);
+  free(allowed);
+  s->c.column[middle].slide[1] = VG_NO_INDEX;
+  allowed = ahead(s, 1, 1);
+  assert_true(fabs(allowed[middle + 1] - 0.4 * 0.3 / 1.4) < 1e-12);
+  free(allowed);
+  shape_free(s);
+}
+
+/* What grows the same way is no limit, whatever its wall looks like. */
+static void columns_of_one_stack(void **state)
+{
+  struct shape *s = two_plates(16, 0.3, 0.01);
+  size_t middle = 8 * 17 + 8;
+  double *allowed;
+
+  (void)state;
+  s->is_wall[1] = 1;
+  grow(s, 1);
+  s->c.column[middle].dir[0] = 0.6;
+  s->c.column[middle].dir[2] = 0.8;
+  for (size_t i = 17 * 17; i < s->c.n_column; i++) {
+    s->c.column[i].dir[0] = 0.8;
+    s->c.column[i].dir[2] = -0.1;
+  }
+  allowed = ahead(s, 1, 1);
+  assert_true(allowed[middle] == 1);
+  assert_true(fabs(allowed[middle + 1] - 0.4 * 0.3) < 1e-12);
+  free(allowed);
   shape_free(s);
 }
 
@@ -593,6 +626,9 @@ static void concave_wedge_at_right_angles(void **state)
 
     assert_true(fabs(allowed[N / 2 * (N + 1) + i] - expect) < 1e-9);
   }
+  /* Next to the edge, triangles of the other wall that stand on the edge do
+   * not count: the next row begins at z = 1/2 of a square. */
+  assert_true(fabs(allowed[N / 2 * (N + 1) + 1] - 0.4 * 0.5 / N) < 1e-9);
   /* On the edge itself nothing is in front. */
   for (uint32_t j = 0; j <= N; j++) assert_true(allowed[j * (N + 1)] == 0.2);
   free(allowed);
@@ -695,6 +731,7 @@ int main(void)
     cmocka_unit_test(tops_with_any_number_of_threads),
     cmocka_unit_test(plates_share_the_gap),
     cmocka_unit_test(patches_to_slide_in),
+    cmocka_unit_test(columns_of_one_stack),
     cmocka_unit_test(sphere_near_a_plane),
     cmocka_unit_test(a_convex_body_sees_nothing),
     cmocka_unit_test(nothing_in_the_cone_is_missed),
