@@ -189,11 +189,10 @@ static vg_status begin(struct job *j)
   w->n_swapped = w->n_collapsed = 0;
   w->moved_max = w->moved_relative = 0;
   w->head = w->n_queue = 0;
+  memset(w->queued, 0, 3 * w->n_tri);
   VG_TRY(build_topology(j));
   VG_TRY(check_faces(j));
   VG_TRY(pair_halves(j));
-  for (uint32_t h = 0; h < 3 * w->n_tri; h++)
-    if (h < w->mate[h]) vg_swap_push(w, h);
 done:
   return st;
 }
@@ -266,28 +265,37 @@ static void count_slivers(const struct vg_swapper *w, size_t *n_cap,
   *n_cap = *n_needle = 0;
   for (size_t t = 0; t < w->n_tri; t++) {
     struct vg_shape s;
-    double a, b, c;
 
     if (vg_tri_removed(w, t)) continue;
     vg_shape_of(w->point[w->tri[t][0]], w->point[w->tri[t][1]],
                 w->point[w->tri[t][2]], &s);
     if (vg_shape_sound(&s)) continue;
-    a = sqrt(s.longest2);
-    b = sqrt(s.middle2);
-    c = sqrt(s.shortest2);
-    if (a * a - b * b - c * c > b * c) ++*n_cap; /* cosine below -1/2 */
+    if (vg_shape_cap(&s)) ++*n_cap;
     else ++*n_needle;
   }
 }
 
+static void swap_all(struct vg_swapper *w, int caps_only)
+{
+  w->caps_only = caps_only;
+  for (uint32_t h = 0; h < 3 * w->n_tri; h++)
+    if (h < w->mate[h]) vg_swap_push(w, h);
+  vg_swap_edges(w);
+}
+
+/* Short edges and caps first: they need the movement that is allowed most,
+ * and a cap that goes with its apex moves the surface less than by a swap. */
 static vg_status change(struct job *j)
 {
-  size_t n = 1;
+  size_t n = 0;
   vg_status st = VG_OK;
 
-  vg_swap_edges(&j->w);
-  for (int i = 0; i < PASSES && n && j->w.o->collapse; i++) {
+  if (j->w.o->collapse) VG_TRY(vg_swap_points(&j->w, &n, j->err));
+  swap_all(&j->w, 1);
+  swap_all(&j->w, 0);
+  for (int i = 0; i < PASSES && j->w.o->collapse; i++) {
     VG_TRY(vg_swap_points(&j->w, &n, j->err));
+    if (!n) break;
     vg_swap_edges(&j->w);
   }
 done:

@@ -8,6 +8,10 @@
  * square must not count. */
 #define GAIN 1.01
 
+/* Pairs without a cap may use this part of the distance only: there is less
+ * to be gained, and on a curved surface all of them together count. */
+#define GOOD 0.3
+
 static const double *at(const struct vg_swapper *w, uint32_t p)
 {
   return w->point[p];
@@ -171,6 +175,16 @@ static int may_move(struct vg_swapper *w, size_t s, size_t t, double by,
   return 1;
 }
 
+/* Length of which a pair may move the part that the options give. A cap
+ * cannot move by more than its height; two needles of a strip could move by
+ * much of the width of the strip if their length were taken. */
+static double length_of(const struct vg_shape pair[2])
+{
+  if (vg_shape_cap(&pair[0]) || vg_shape_cap(&pair[1]))
+    return sqrt(fmin(pair[0].longest2, pair[1].longest2));
+  return GOOD * sqrt(fmin(pair[0].shortest2, pair[1].shortest2));
+}
+
 static void try_swap(struct vg_swapper *w, uint32_t f)
 {
   uint32_t g = w->mate[f];
@@ -178,22 +192,23 @@ static void try_swap(struct vg_swapper *w, uint32_t f)
   uint32_t hc = vg_half_prev(f), hd = vg_half_prev(g);
   uint32_t c = vg_half_from(w, hc), d = vg_half_from(w, hd);
   struct vg_shape before[2], after[2];
-  double length2;
 
   if (w->patch[f / 3] != w->patch[g / 3] || c == d || w->locked[a]
       || w->locked[b] || w->locked[c] || w->locked[d])
     return;
   vg_shape_of(at(w, a), at(w, b), at(w, c), &before[0]);
   vg_shape_of(at(w, b), at(w, a), at(w, d), &before[1]);
+  if (w->caps_only && !vg_shape_cap(&before[0])
+      && !vg_shape_cap(&before[1]))
+    return;
   vg_shape_of(at(w, a), at(w, d), at(w, c), &after[0]);
   vg_shape_of(at(w, d), at(w, b), at(w, c), &after[1]);
   if (!(fmin(after[0].sine2, after[1].sine2)
         > GAIN * fmin(before[0].sine2, before[1].sine2))
       || !normals_fit(w, before, after) || joined(w, hc, hd))
     return;
-  length2 = fmin(before[0].longest2, before[1].longest2);
   if (!may_move(w, f / 3, g / 3, distance(at(w, a), at(w, b), at(w, c),
-                                          at(w, d)), sqrt(length2)))
+                                          at(w, d)), length_of(before)))
     return;
   w->changed[f / 3] = w->changed[g / 3] = 1;
   w->n_swapped++;

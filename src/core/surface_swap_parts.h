@@ -25,6 +25,7 @@ struct vg_swapper {
   uint32_t *queue;          /* [3 n_tri] ring of half-edges to look at */
   uint8_t *queued;          /* [3 n_tri] */
   size_t head, n_queue;
+  int caps_only;            /* leave pairs without a cap */
   uint32_t *mark;           /* [n_point] last turn in which it was a */
   uint32_t turn;            /* neighbour of the point to be removed */
   size_t n_swapped, n_collapsed;
@@ -88,6 +89,15 @@ int vg_shape_agree(const struct vg_swapper *w, const struct vg_shape *a,
 
 /* To the end of the queue, unless it or its mate is in it. */
 void vg_swap_push(struct vg_swapper *w, uint32_t h);
+
+/* Cosine of the largest angle below -1/2. */
+static inline int vg_shape_cap(const struct vg_shape *s)
+{
+  double rest = s->longest2 - s->middle2 - s->shortest2;
+
+  return !vg_shape_sound(s) && rest > 0
+         && rest * rest > s->middle2 * s->shortest2;
+}
 
 /* surface_swap_edge.c: swap what is in the queue, and what becomes worth it
  * by that, until nothing is left. */

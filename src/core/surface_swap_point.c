@@ -187,6 +187,16 @@ static void measure(const struct vg_swapper *w, double *sum, uint32_t *n)
   }
 }
 
+/* A short side of a cap: swaps have left it, but its apex may go. */
+static int at_cap(const struct vg_swapper *w, uint32_t h)
+{
+  const double *a = from(w, h), *b = from(w, vg_half_next(h));
+  struct vg_shape s;
+
+  vg_shape_of(a, b, from(w, vg_half_prev(h)), &s);
+  return vg_shape_cap(&s) && length2(a, b) < s.longest2;
+}
+
 vg_status vg_swap_points(struct vg_swapper *w, size_t *n_removed,
                          struct vg_error *err)
 {
@@ -208,7 +218,8 @@ vg_status vg_swap_points(struct vg_swapper *w, size_t *n_removed,
     b = vg_half_from(w, w->mate[h]);
     own = sqrt(length2(w->point[a], w->point[b]));
     mean = (sum[a] + sum[b] - 2 * own) / (double)(n[a] + n[b] - 2);
-    if (own < w->o->short_edge * mean)
+    if (own < w->o->short_edge * mean || at_cap(w, h)
+        || at_cap(w, w->mate[h]))
       *n_removed += (size_t)try_collapse(w, h, mean);
   }
   free(sum);
