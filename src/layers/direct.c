@@ -253,37 +253,48 @@ double vg_edge_change(const struct vg_layer_work *w, uint32_t i, uint32_t j,
   return sum / l;
 }
 
-/* Distance from the root along the unit vector v to its triangles, for a
- * step of length 1: how far a small step gets away from the wall. */
-static double gain(const struct vg_layer_work *w, size_t i, const double v[3])
+/* Distance of the unit vector v at corner k of a triangle with unit normal n
+ * from the triangle, which goes on for ever. */
+static double off_triangle(const struct vg_mesh *m, const uint32_t *tri, int k,
+                           const double n[3], const double v[3])
 {
+  double edge[2][3], in[3], side[2], least = 1;
+
+  for (int s = 0; s < 2; s++) {
+    vg_sub(m->point[tri[(k + 1 + s) % 3]], m->point[tri[k]], edge[s]);
+    vg_unit(edge[s]);
+  }
+  vg_cross(n, edge[0], in);
+  side[0] = vg_dot(v, in);
+  vg_cross(edge[1], n, in);
+  side[1] = vg_dot(v, in);
+  if (side[0] >= 0 && side[1] >= 0) return vg_dot(v, n);
+  for (int s = 0; s < 2; s++) {   /* beside it: its edges */
+    double along = vg_dot(v, edge[s]);
+    double off = along > 0 ? sqrt(fmax(0, 1 - along * along)) : 1;
+
+    if (off < least) least = off;
+  }
+  return least;
+}
+
+/* How far a small step of length 1 along v gets away from the wall: from the
+ * triangles at the root, whichever columns of a fan they belong to. */
+static double gain(const struct vg_layer_work *w, uint32_t i,
+                   const double v[3])
+{
+  uint32_t first, end;
   double least = 1;
 
-  for (uint32_t j = w->t.first[i]; j < w->t.first[i + 1]; j++) {
+  vg_root_range(w->c, i, &first, &end);
+  for (uint32_t j = w->t.first[first]; j < w->t.first[end]; j++) {
     uint32_t f = w->t.corner[j] / 3, tri = w->c->face_tri[f];
-    int k = (int)(w->t.corner[j] % 3);
-    double edge[2][3], in[3], d, side[2];
+    double d;
 
-    if (!counts(w, i, f)) continue;
-    d = vg_dot(v, w->normal[f]);
-    for (int s = 0; s < 2; s++) {
-      vg_sub(w->m->point[w->m->tri[tri][(k + 1 + s) % 3]],
-             w->m->point[w->m->tri[tri][k]], edge[s]);
-      vg_unit(edge[s]);
-    }
-    vg_cross(w->normal[f], edge[0], in);
-    side[0] = vg_dot(v, in);
-    vg_cross(edge[1], w->normal[f], in);
-    side[1] = vg_dot(v, in);
-    if (side[0] < 0 || side[1] < 0) {   /* beside the triangle: its edges */
-      d = 1;
-      for (int s = 0; s < 2; s++) {
-        double along = vg_dot(v, edge[s]);
-        double off = along > 0 ? sqrt(fmax(0, 1 - along * along)) : 1;
-
-        if (off < d) d = off;
-      }
-    }
+    if (tri == VG_NO_INDEX || !counts(w, w->c->face[f][w->t.corner[j] % 3], f))
+      continue;
+    d = off_triangle(w->m, w->m->tri[tri], (int)(w->t.corner[j] % 3),
+                     w->normal[f], v);
     if (d < least) least = d;
   }
   return least;
@@ -295,7 +306,7 @@ static void scale_body(void *context, size_t first, size_t end, int worker)
 
   (void)worker;
   for (size_t i = first; i < end; i++) {
-    double d = gain(w, i, w->c->column[i].dir);
+    double d = gain(w, (uint32_t)i, w->c->column[i].dir);
 
     if (d * VG_FACTOR_MAX < 1) w->view[i] = 0;
     else
@@ -434,10 +445,10 @@ static vg_status spread(const struct vg_layer_work *w, double *reach,
     uint32_t *swap = now;
 
     n_next = 0;
+    for (size_t k = 0; k < n_now; k++) queued[now[k]] = 0;
     for (size_t k = 0; k < n_now; k++) {
       uint32_t i = now[k];
 
-      queued[i] = 0;
       for (uint32_t j = w->t.near_first[i]; j < w->t.near_first[i + 1]; j++) {
         uint32_t o = w->t.near[j];
         double left = reach[i] -

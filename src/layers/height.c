@@ -97,12 +97,13 @@ static vg_status local_edges(struct vg_layer_work *w, struct vg_error *err)
 }
 
 /* Of the patches that meet at a point, the one with the thinnest first layer
- * rules. */
-static uint32_t ruling_patch(const struct vg_layer_work *w, uint32_t i)
+ * rules, for all columns of a fan, so that they rise together. */
+static uint32_t patch_of(const struct vg_layer_work *w, uint32_t i)
 {
-  uint32_t best = VG_NO_INDEX;
+  uint32_t first, end, best = VG_NO_INDEX;
 
-  for (uint32_t j = w->t.first[i]; j < w->t.first[i + 1]; j++) {
+  vg_root_range(w->c, i, &first, &end);
+  for (uint32_t j = w->t.first[first]; j < w->t.first[end]; j++) {
     uint32_t tri = w->c->face_tri[w->t.corner[j] / 3], p;
 
     if (tri == VG_NO_INDEX) continue;
@@ -112,20 +113,6 @@ static uint32_t ruling_patch(const struct vg_layer_work *w, uint32_t i)
         w->o->patch[best].law.delta1 && p < best)) best = p;
   }
   return best;
-}
-
-/* Columns inside a fan take the patch of a neighbour with the same root. */
-static uint32_t patch_of(const struct vg_layer_work *w, uint32_t i)
-{
-  uint32_t p = ruling_patch(w, i);
-
-  for (uint32_t o = i; p == VG_NO_INDEX && o-- > 0 &&
-       w->c->column[o].root == w->c->column[i].root;)
-    p = ruling_patch(w, o);
-  for (uint32_t o = i + 1; p == VG_NO_INDEX && o < w->c->n_column &&
-       w->c->column[o].root == w->c->column[i].root; o++)
-    p = ruling_patch(w, o);
-  return p;
 }
 
 /* Levels until the next would be thicker than the local cell. */
@@ -175,7 +162,8 @@ static void wanted_body(void *context, size_t first, size_t end, int worker)
   }
 }
 
-/* A minimum over the columns, spread over their neighbours: lower(w, i, o)
+/* Neighbours differ by one level at most, columns of one root by none.
+ * A minimum over the columns, spread over their neighbours: lower(w, i, o)
  * lowers o because of i and says whether it did. The least fixed point does
  * not depend on the order. */
 static vg_status propagate(struct vg_layer_work *w,
@@ -192,10 +180,10 @@ static vg_status propagate(struct vg_layer_work *w,
     uint32_t *swap = now;
 
     n_next = 0;
+    for (uint32_t k = 0; k < n_now; k++) queued[now[k]] = 0;
     for (uint32_t k = 0; k < n_now; k++) {
       uint32_t i = now[k];
 
-      queued[i] = 0;
       for (uint32_t j = w->t.near_first[i]; j < w->t.near_first[i + 1]; j++) {
         uint32_t o = w->t.near[j];
 
@@ -216,8 +204,10 @@ static int lower_wanted(struct vg_layer_work *w, uint32_t i, uint32_t o)
 {
   struct vg_column *a = &w->c->column[i], *b = &w->c->column[o];
 
-  if (b->n_wanted <= a->n_wanted + 1) return 0;
-  b->n_wanted = a->n_wanted + 1;
+  int most = a->n_wanted + (a->root != b->root);
+
+  if (b->n_wanted <= most) return 0;
+  b->n_wanted = (uint16_t)most;
   w->by_size[o] = w->by_size[i];
   return 1;
 }
@@ -226,8 +216,10 @@ static int lower_level(struct vg_layer_work *w, uint32_t i, uint32_t o)
 {
   struct vg_column *a = &w->c->column[i], *b = &w->c->column[o];
 
-  if (b->n <= a->n + 1) return 0;
-  b->n = a->n + 1;
+  int most = a->n + (a->root != b->root);
+
+  if (b->n <= most) return 0;
+  b->n = (uint16_t)most;
   b->cause = a->cause;
   return 1;
 }

@@ -155,9 +155,10 @@ static int same_tri(const struct join *j, size_t f, size_t s)
 }
 
 /* A patch off the walls stays when the front has the same triangles of it in
- * the same order.
+ * the same order; a wall stays, also where no column rises.
  * at: [n_patch + 1]; list: [surface->n_tri] its triangles, by patch. */
-static void compare_patches(struct join *j, size_t *at, uint32_t *list)
+static void compare_patches(struct join *j, const uint8_t *is_wall, size_t *at,
+                            uint32_t *list)
 {
   const struct vg_mesh *s = j->surface, *f = &j->front->mesh;
   size_t sum = 0;
@@ -177,7 +178,7 @@ static void compare_patches(struct join *j, size_t *at, uint32_t *list)
   for (size_t i = 0; i < f->n_tri; i++) {
     uint32_t q = f->tri_patch[i];
 
-    if (j->front->face[i] != VG_NO_INDEX) continue;
+    if (j->front->face[i] != VG_NO_INDEX || is_wall[q]) continue;
     if (at[q] < sum && s->tri_patch[list[at[q]]] == q &&
         same_tri(j, i, list[at[q]]))
       at[q]++;
@@ -195,18 +196,24 @@ static vg_status find_changes(struct join *j, struct vg_error *err)
   const struct vg_mesh *s = j->surface;
   size_t *at = vg_calloc(s->n_patch + 1, sizeof *at);
   uint32_t *list = vg_alloc(s->n_tri, sizeof *list);
+  uint8_t *is_wall = vg_calloc(s->n_patch, 1);
   vg_status st = VG_OK;
 
-  for (size_t i = 0; i < j->columns->n_face; i++)
-    if (j->columns->face_tri[i] != VG_NO_INDEX)
-      j->stays[j->columns->face_tri[i]] = 1;
-  if (at && list) {
-    compare_patches(j, at, list);
+  for (size_t i = 0; is_wall && i < j->columns->n_face; i++) {
+    uint32_t tri = j->columns->face_tri[i];
+
+    if (tri == VG_NO_INDEX) continue;
+    j->stays[tri] = 1;
+    is_wall[s->tri_patch[tri]] = 1;
+  }
+  if (at && list && is_wall) {
+    compare_patches(j, is_wall, at, list);
     for (size_t i = 0; i < s->n_tri; i++)
       if (!j->changed[s->tri_patch[i]]) j->stays[i] = 1;
   } else st = vg_fail_memory(err, "the boundary of the mesh");
   free(at);
   free(list);
+  free(is_wall);
   return st;
 }
 

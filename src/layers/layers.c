@@ -316,6 +316,30 @@ done:
   return st;
 }
 
+/* Cells of a face by the lift rule; those at the wall in which columns of one
+ * root are one point vanish. */
+static size_t face_cells(const struct vg_columns *c, const uint32_t face[3])
+{
+  const struct vg_column *k[3];
+  size_t n = 0;
+  int up[3] = { 0, 0, 0 };
+
+  for (int i = 0; i < 3; i++) n += (k[i] = &c->column[face[i]])->n;
+  for (int step = 0; step < 3; step++) {
+    int a = -1, q, r;
+
+    for (int i = 0; i < 3; i++)
+      if (!up[i] && (a < 0 || face[i] < face[a])) a = i;
+    up[a] = 1;
+    q = (a + 1) % 3, r = (a + 2) % 3;
+    if (k[a]->n && ((k[q]->root == k[a]->root && !(up[q] && k[q]->n)) ||
+                    (k[r]->root == k[a]->root && !(up[r] && k[r]->n)) ||
+                    (k[q]->root == k[r]->root && !(up[q] && k[q]->n) &&
+                     !(up[r] && k[r]->n)))) n--;
+  }
+  return n;
+}
+
 static void count(const struct vg_layer_work *w, struct vg_layer_report *r)
 {
   const struct vg_columns *c = w->c;
@@ -330,7 +354,7 @@ static void count(const struct vg_layer_work *w, struct vg_layer_report *r)
   for (size_t f = 0; f < c->n_face; f++) {
     if (c->face_tri[f] == VG_NO_INDEX) r->n_virtual_face++;
     else r->n_wall_tri++;
-    for (int k = 0; k < 3; k++) r->n_cell += c->column[c->face[f][k]].n;
+    r->n_cell += face_cells(c, c->face[f]);
   }
   r->n_slide_patch = w->n_slide;
 }

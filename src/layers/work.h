@@ -38,6 +38,18 @@ struct vg_layer_work {
   size_t max_valence;       /* faces at a column */
 };
 
+/** Columns first .. end - 1 have the root of column i. */
+static inline void vg_root_range(const struct vg_columns *c, uint32_t i,
+                                 uint32_t *first, uint32_t *end)
+{
+  const uint32_t root = c->column[i].root;
+
+  for (*first = i; *first > 0 && c->column[*first - 1].root == root;)
+    --*first;
+  for (*end = i + 1; *end < c->n_column && c->column[*end].root == root;)
+    ++*end;
+}
+
 /* direct.c ----------------------------------------------------------------*/
 
 /** Normals of faces, first directions and their view. */
