@@ -35,7 +35,7 @@ void vg_slide_blame(struct vg_slide_work *w, uint32_t i, uint32_t patch,
     snprintf(w->text, TEXT, "patch %" PRId32 " (%.60s) near (%.6g, %.6g, "
              "%.6g): %s", p->id, p->name, x[0], x[1], x[2], what);
   w->n_bad += !w->bad[i];
-  w->bad[i] = 1;
+  if (!w->bad[i]) w->bad[i] = 1;
 }
 
 void vg_slide_blame_all(struct vg_slide_work *w, size_t s, const char *what)
@@ -287,13 +287,18 @@ done:
 static vg_status hand_trouble(const struct vg_slide_work *w,
                               struct vg_slide_trouble *trouble)
 {
-  uint32_t *list = vg_alloc(w->n_bad, sizeof *list);
+  uint32_t *list = vg_alloc(w->n_bad, sizeof *list + 1);
+  uint8_t *never = (uint8_t *)(list + w->n_bad);
   size_t n = 0;
 
   if (!list) return vg_fail_memory(w->err, "slide patches");
   for (uint32_t i = 0; i < w->c->n_column; i++)
-    if (w->bad[i]) list[n++] = i;
+    if (w->bad[i]) {
+      never[n] = w->bad[i] > 1;
+      list[n++] = i;
+    }
   trouble->n = n;
+  trouble->never = never;
   trouble->column = list;
   return VG_BLOCKED;
 }

@@ -47,6 +47,8 @@ void vg_slide_normal(const struct vg_slide *s, const struct vg_mesh *surface,
 struct vg_slide_trouble {
   size_t n;
   uint32_t *column;         /* [n] sorted, unique; owned */
+  const uint8_t *never;     /* [n] 1: not even its first layer fits, so that
+                               only n = 0 helps; in the block of column */
   char text[200];           /* the first failure, for the report */
 };
 

@@ -250,6 +250,23 @@ static void visit_flank(void *user, uint32_t j)
   blame_point(x->w, x->s, v, "a flank runs into another part of the boundary");
 }
 
+/* The point of column i at level 1, in the plane. */
+static void risen(const struct vg_slide_work *w,
+                  const struct vg_slide_frame *f, uint32_t i, double q[2])
+{
+  const struct vg_column *c = &w->c->column[i];
+  const double *root = w->m->point[c->root];
+  double x[3], d[2];
+
+  if (c->bent != SIZE_MAX) {
+    memcpy(x, w->c->path[c->bent + 1], sizeof x);
+  } else {
+    vg_law_heights(&w->c->law[c->law], c->cap, 1, d);
+    for (int k = 0; k < 3; k++) x[k] = root[k] + c->dir[k] * d[1];
+  }
+  vg_slide_to_plane(f, x, q);
+}
+
 /* The flank over a rim, counter-clockwise; 0 corners where it is none. */
 static void set_flank(struct cross *x, const struct vg_slide_frame *f,
                       uint32_t rim)
@@ -277,6 +294,23 @@ static int is_convex(const struct cross *x)
           > 0))
       return 0;
   return 1;
+}
+
+/* Which columns of a flank that folds leave the patch at once? */
+static void give_up(struct cross *x, const struct vg_slide_frame *f)
+{
+  const struct vg_slide_work *w = x->w;
+  const uint32_t *r = w->c->rim[x->rim];
+  const uint32_t a = w->c->column[r[0]].root, b = w->c->column[r[1]].root;
+  double pa[2], pb[2], q[2];
+
+  vg_slide_to_plane(f, w->x[a], pa);
+  vg_slide_to_plane(f, w->x[b], pb);
+  for (int k = 0; k < 2 && a != b; k++) {
+    if (!w->bad[r[k]]) continue;
+    risen(w, f, r[k], q);
+    if (!(vg_orient2d(pb, pa, q) > 0)) w->bad[r[k]] = 2;
+  }
 }
 
 static void box_of(size_t n, const double (*q)[2], struct vg_box2 *box)
@@ -321,6 +355,7 @@ vg_status vg_slide_cross(struct vg_slide_work *w, size_t s,
     if (!x.n) continue;
     if (!is_convex(&x)) {
       blame_flank(&x, "a flank folds over");
+      give_up(&x, frame);
       continue;
     }
     box_of((size_t)x.n, (const double (*)[2])x.q, &b);

@@ -65,7 +65,7 @@ struct vg_slide_work {
   size_t n_new, cap_new, cap_new_patch;
   uint32_t (*new_tri)[3], *new_patch;
   /* Trouble. */
-  uint8_t *bad;             /* [n_column] */
+  uint8_t *bad;             /* [n_column] 2: at any height */
   size_t n_bad, cap_path;
   char *text;               /* [200] "" until something fails */
   struct vg_error *err;

@@ -995,6 +995,35 @@ static void curved_side_from_both_ends(void **state)
   release(&a);
 }
 
+/* A column that leaves the plane's region at once can have no levels. */
+static void backward_is_never(void **state)
+{
+  struct made a = { 0 };
+  size_t n_never = 0;
+
+  (void)state;
+  make_duct(&a.g, 1, 1, 36, 6);
+  grow(&a, 0, 0, 6);
+  for (size_t i = 0; i < a.c.n_column; i++) {
+    const double *x = a.g.m.point[a.c.column[i].root];
+
+    if (x[0] > 0.99 && x[1] == 0) a.c.column[i].dir[0] = -1;
+  }
+  assert_int_equal(front(&a), VG_BLOCKED);
+  for (size_t i = 0; i < a.trouble.n; i++) {
+    struct vg_column *c = &a.c.column[a.trouble.column[i]];
+
+    assert_int_equal(a.trouble.never[i], c->dir[0] == -1);
+    n_never += a.trouble.never[i];
+    if (a.trouble.never[i]) c->n = 0;
+  }
+  assert_int_equal(n_never, 1);
+  free(a.trouble.column);
+  assert_int_equal(front(&a), VG_OK);
+  assert_sound(&a);
+  release(&a);
+}
+
 #define WRAP 3.0
 
 static void wrap(double x[3])
@@ -1067,6 +1096,7 @@ int main(void)
     cmocka_unit_test(border_without_columns_is_trouble),
     cmocka_unit_test(curved_side_from_both_ends),
     cmocka_unit_test(only_the_surroundings),
+    cmocka_unit_test(backward_is_never),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);
