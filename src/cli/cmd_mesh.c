@@ -279,8 +279,9 @@ static json_t *report_json(const struct run *r, int ok,
     "{s:f s:f s:f s:f s:f s:f s:f s:f s:f}",
     "read", r->time_read, "check", r->time_check, "sizes", r->time_size,
     "layers", r->layers.report.time_total + r->layers.time_measure, "join",
-    r->layers.join.time, "fill", r->fill.time_total, "judge", r->time_judge, "write",
-    r->time_write, "total", vg_display_now() - r->start));
+    r->layers.join.time, "fill", r->fill.time_total,
+    "judge", r->time_judge, "write", r->time_write,
+    "total", vg_display_now() - r->start));
   json_object_set_new(o, "peak_memory_bytes",
                       json_real(vg_report_peak_memory()));
   return o;

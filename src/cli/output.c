@@ -102,7 +102,8 @@ static vg_status plan_item(struct vg_outputs *o, const char *item, size_t len,
   if (!is_own_item(to) && !vg_format_can_write(to))
     return vg_fail(err, VG_ERR_INPUT, "write: '%s' is no format; known are "
                    "cogsg (with bc and mapbc), mapbc, fun3d.mapbc, vtu, "
-                   "foam, foam-ascii and suffixes such as b8.ugrid, lb8.ugrid, ugrid, meshb", to);
+                   "foam, foam-ascii and suffixes such as b8.ugrid, "
+                   "lb8.ugrid, ugrid, meshb", to);
   o->n_item++;
   return VG_OK;
 }

@@ -39,3 +39,20 @@ same box.cogsg again/box.cogsg
 vanguard mesh -q -p box --layers no --out plain
 exits 0
 absent plain/box.wall.vtu
+
+# grid 2: the law follows the sources; at a source it is the source's.
+mkdir by_source
+cp box.front box.mapbc by_source
+awk '/\( *grid:/ { sub(/1 \(/, "2 (") }
+  /^source_number/ && !n++ { at = NR + 4 }
+  NR == at { sub(/^0.001/, "0.002") } { print }' box.d3m >by_source/box.d3m
+cmp -s box.d3m by_source/box.d3m && fail "the .d3m was not changed"
+vanguard mesh -q -p by_source/box
+exits 0
+grep -A4 '"first_asked"' by_source/box.report.json >asked
+grep -q '"max": 0.002' asked || fail "not the law at the first source"
+grep -q '"min": 0.001,' asked || fail "not between the laws of the sources"
+vanguard mesh -q -p by_source/box --deck by_source/box.resolved.deck \
+  --out source_again
+exits 0
+same by_source/box.cogsg source_again/box.cogsg
