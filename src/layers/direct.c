@@ -17,6 +17,7 @@
 #define CONVERGE 0.75      /* an edge that would shrink to less is bent apart */
 #define BEND_FROM CONVERGE
 #define BEND_MAX 0.995
+#define STILL 1e-4         /* a direction that changes by less has settled */
 #define CAP 0.05           /* height of a triangle over its longest edge */
 #define NOISE 0.002        /* the same, where the normal says nothing */
 #define NOISY 4            /* bit of vg_layer_work.cap */
@@ -30,6 +31,7 @@ struct loop {
   double (*scratch)[3];     /* [worker][max_valence] */
   double (*from)[3], (*to)[3];
   const uint32_t *list;     /* columns to treat, NULL: all */
+  uint8_t *stirs, *stirred; /* [n_column] moves in this sweep, in the last */
 };
 
 /* Slide normals at a column; their number. */
@@ -509,6 +511,17 @@ static double urge(const struct loop *l, size_t i)
   return fmax(0, fmin(BEND_MAX, (BEND_FROM - least) / (BEND_FROM - 0.5)));
 }
 
+/* Nothing has moved around column i, so it will not move either. */
+static int is_still(const struct loop *l, size_t i)
+{
+  const struct vg_layer_work *w = l->w;
+
+  if (l->stirred[i]) return 0;
+  for (uint32_t j = w->t.near_first[i]; j < w->t.near_first[i + 1]; j++)
+    if (l->stirred[w->t.near[j]]) return 0;
+  return 1;
+}
+
 /* One damped Jacobi step; where the mean loses the faces from view, half of
  * the way to it, and so on. */
 static void relax(const struct loop *l, size_t i, double (*n)[3])
@@ -518,7 +531,8 @@ static void relax(const struct loop *l, size_t i, double (*n)[3])
   int n_slide = slide_normals(w, i, slide), k;
 
   memcpy(l->to[i], l->from[i], sizeof *l->to);
-  if (w->t.preset[i] || w->view[i] == 0) return;
+  l->stirs[i] = 0;
+  if (w->t.preset[i] || w->view[i] == 0 || is_still(l, i)) return;
   mean_of_near(w, i, l->from, mean);
   if (!(vg_unit(mean) > 0)) return;
   k = real_normals(w, i, n);
@@ -531,6 +545,7 @@ static void relax(const struct loop *l, size_t i, double (*n)[3])
     if (!(vg_unit(v) > 0)) continue;
     if (least_view(k, n, v) < VIEW_KEPT * w->view[i]) continue;
     memcpy(l->to[i], v, sizeof v);
+    l->stirs[i] = vg_distance(v, l->from[i]) > STILL;
     return;
   }
 }
@@ -551,15 +566,28 @@ static vg_status sweeps(struct vg_layer_work *w, const uint32_t *list,
 
   VG_TRY(scratch_new(w, &l, err));
   VG_TRY(pair_new(w, &l, err));
+  l.stirs = vg_calloc(w->c->n_column, 1);
+  l.stirred = vg_calloc(w->c->n_column, 1);
+  if (!l.stirs || !l.stirred) {
+    st = vg_fail_memory(err, "the smoothing");
+    goto done;
+  }
+  for (size_t k = 0; k < n; k++) l.stirred[list[k]] = 1;
   for (int s = 0; s < w->o->smooth; s++) {
+    uint8_t *swap = l.stirs;
+
     vg_parallel_for(w->o->threads, n, GRAIN / 4, relax_body, &l);
     pair_swap(&l);
+    l.stirs = l.stirred;
+    l.stirred = swap;
   }
   for (size_t i = 0; i < w->c->n_column; i++)
     memcpy(w->c->column[i].dir, l.from[i], sizeof *l.from);
 done:
   free(l.from);
   free(l.to);
+  free(l.stirs);
+  free(l.stirred);
   free(l.scratch);
   return st;
 }

@@ -196,6 +196,54 @@ static vg_status try_slides(struct vg_layer_work *w,
   return st == VG_BLOCKED ? VG_OK : st;
 }
 
+/* Column i starts in front of the plane of patch p, in which it does not
+ * slide, and ends on it or behind. */
+static int crosses(const struct vg_layer_work *w, uint32_t p, uint32_t i)
+{
+  const struct vg_column *c = &w->c->column[i];
+  const struct vg_slide *s = w->slide;
+  double top[3], at;
+
+  if (c->slide[0] == p || c->slide[1] == p || !c->n) return 0;
+  while (s->patch != p) s++;
+  if (s->axis < 0) return 0;
+  at = s->at * s->normal[s->axis];
+  vg_column_top(w->c, w->m, i, top);
+  return (w->m->point[c->root][s->axis] - at) * s->normal[s->axis] > 0 &&
+         !((top[s->axis] - at) * s->normal[s->axis] > 0);
+}
+
+/* Tops that stand on a slide plane with one edge or corner and cross it with
+ * the others. vg_clear_tops has tested all other pairs, so that with planes
+ * normal to an axis the front is clear when there are none. */
+static void try_sides(struct vg_layer_work *w, uint8_t *bad, size_t round,
+                      size_t *n_bad)
+{
+  memset(bad, 0, w->c->n_column);
+  *n_bad = 0;
+  for (size_t f = 0; f < w->c->n_face; f++)
+    for (int k = 0; k < 3; k++) {
+      const struct vg_column *c = &w->c->column[w->c->face[f][k]];
+
+      for (int q = 0; q < 2 && c->slide[q] != VG_NO_INDEX; q++)
+        for (int o = 1; o < 3; o++)
+          if (crosses(w, c->slide[q], w->c->face[f][(k + o) % 3]))
+            bad[w->c->face[f][(k + o) % 3]] = 1;
+    }
+  for (size_t i = 0; i < w->c->n_column; i++) {
+    if (!bad[i]) continue;
+    vg_heights_lower(w, i, lowered(w, i, round), VG_CAUSE_COLLISION);
+    ++*n_bad;
+  }
+}
+
+static int all_axis_planes(const struct vg_layer_work *w)
+{
+  for (size_t s = 0; s < w->n_slide; s++)
+    if (w->slide[s].axis < 0) return 0;
+  return 1;
+}
+
 /* The front as it will be filled: re-meshed patches against tops. */
 static vg_status try_front(struct vg_layer_work *w,
                            struct vg_layer_front *front, uint8_t *bad,
@@ -273,7 +321,9 @@ static vg_status one_round(struct vg_layer_work *w, struct rounds *q,
   if (!*n_bad) VG_TRY(try_slides(w, front, round, n_bad, err));
   r->time_slide += seconds() - t;
   t = seconds();
-  if (!*n_bad) VG_TRY(try_front(w, front, q->bad, round, n_bad, err));
+  if (!*n_bad) try_sides(w, q->bad, round, n_bad);
+  if (!*n_bad && !all_axis_planes(w))
+    VG_TRY(try_front(w, front, q->bad, round, n_bad, err));
   r->time_clear += seconds() - t;
 done:
   return st;
