@@ -59,17 +59,25 @@ struct vg_slide_trouble {
  * at once, it runs along their common curve: the points of the curve that it
  * swallows (and those closer to its top than half the local size) go, and the
  * rest of the curve is marched anew up to the next point that stays.
- * New points of a plane with an axis have its coordinate to the last bit;
- * curved patches are re-meshed in the plane that fits them best and lifted
- * back onto the former triangles; columns that slide in a curved patch are
- * bent (columns->path) onto it.
+ * New points of a plane with an axis have its coordinate to the last bit. Of
+ * a curved patch the surroundings of walls are re-meshed, as far as a few
+ * edges beyond the tops, in the plane that fits them best (no triangle may be
+ * tilted by more than 60 degrees against it), and lifted back onto the former
+ * triangles; columns that slide in a curved patch are bent (columns->path)
+ * onto it, or along the curve where they slide in two. Triangles are no finer
+ * than the edges between tops near by, else as `sizing` says.
  * A patch whose rim columns all have n = 0 stays as it is.
  *
- * @param columns  only bent and path change
+ * @param columns  only bent and path change: made anew in every call
+ * @param front    out: what it held is not released. Points: those of the
+ *                 surface, rising; tops by rising column; new ones. Triangles:
+ *                 the surface's in their order with tops in the places of
+ *                 their faces, tops of virtual faces, re-meshed ones by part
  * @param trouble  out: columns at which a patch could not be re-meshed (loops
  *                 that cross, normals that turn over); *front is then empty
  *                 and the return is VG_BLOCKED
- * Same bytes for the same input. */
+ * Same bytes for the same input. Cost: about 1 us per column, 6 us per
+ * triangle of a re-meshed patch. */
 vg_status vg_slide_front(const struct vg_mesh *surface, size_t n_slide,
                          const struct vg_slide *slide,
                          struct vg_columns *columns,

@@ -78,6 +78,50 @@ vg_status vg_slide_graph(const struct vg_slide_work *w, size_t s,
   return vg_fail_memory(w->err, "a curved slide patch");
 }
 
+/* Visit the triangles of part s at roots of columns that rise: add up their
+ * area vectors, or count those that are steep against `normal`. */
+static size_t at_roots(const struct vg_slide_work *w, size_t s,
+                       const double *normal, double sum[3])
+{
+  size_t n_steep = 0;
+
+  for (uint32_t r = w->rim_first[s]; r < w->rim_first[s + 1]; r++) {
+    const struct vg_column *c = &w->c->column[w->c->rim[w->rim[r]][0]];
+
+    for (uint32_t j = w->first[c->root]; j < w->first[c->root + 1]; j++) {
+      const uint32_t t = w->half[j] / 3, *v = w->m->tri[t];
+      double a[3], b[3], n[3];
+
+      if (!c->n || w->part_of[t] != s) continue;
+      if (normal) {
+        n_steep += (size_t)is_steep(w->m, t, normal);
+        continue;
+      }
+      vg_sub(w->m->point[v[1]], w->m->point[v[0]], a);
+      vg_sub(w->m->point[v[2]], w->m->point[v[0]], b);
+      vg_cross(a, b, n);
+      for (int k = 0; k < 3; k++) sum[k] += n[k];
+    }
+  }
+  return n_steep;
+}
+
+void vg_slide_blame_steep(struct vg_slide_work *w, size_t s)
+{
+  double sum[3] = { 0 };
+  int never;
+
+  at_roots(w, s, NULL, sum);
+  never = !(vg_unit(sum) > 0) || at_roots(w, s, sum, NULL) > 0;
+  vg_slide_blame_all(w, s, "it is too curved to be meshed anew");
+  for (uint32_t r = w->rim_first[s]; never && r < w->rim_first[s + 1]; r++)
+    for (int k = 0; k < 2; k++) {
+      const uint32_t i = w->c->rim[w->rim[r]][k];
+
+      if (w->bad[i]) w->bad[i] = 2;
+    }
+}
+
 /* The nearest triangle so far. */
 struct nearest {
   const struct vg_slide_graph *g;

@@ -175,6 +175,10 @@ vg_status vg_slide_graph(const struct vg_slide_work *w, size_t s,
                          struct vg_slide_graph *g);
 void vg_slide_graph_release(struct vg_slide_graph *g);
 
+/** Blame the rim columns of part s, which is no graph: for good when it is
+ * none even right at their roots, since less height leaves a smaller part. */
+void vg_slide_blame_steep(struct vg_slide_work *w, size_t s);
+
 /** The point of the patch over p; beyond its border that nearest to it. */
 void vg_slide_lift(const struct vg_slide_graph *g, const double p[2],
                    double x[3]);

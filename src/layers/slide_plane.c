@@ -202,7 +202,7 @@ vg_status vg_slide_remesh(struct vg_slide_work *w, size_t s)
   if (!w->part[s].is_plane) {
     VG_TRY(vg_slide_graph(w, s, &graph));
     if (st == VG_BLOCKED) {
-      vg_slide_blame_all(w, s, "it is too curved to be meshed anew");
+      vg_slide_blame_steep(w, s);
       return VG_OK;
     }
     law.graph = &graph;

@@ -827,8 +827,10 @@ static void tunnel_is_no_graph(void **state)
   assert_false(a.slide[0].is_plane);
   assert_int_equal(front(&a), VG_BLOCKED);
   assert_int_equal(a.trouble.n, 4 * 8);
-  for (size_t i = 0; i < a.trouble.n; i++)
+  for (size_t i = 0; i < a.trouble.n; i++) {
+    assert_true(a.trouble.never[i]);
     a.c.column[a.trouble.column[i]].n = 0;
+  }
   free(a.trouble.column);
   for (size_t i = 0; i < a.c.n_column; i++)
     if (a.c.column[i].n) a.c.column[i].n = 1;
