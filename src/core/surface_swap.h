@@ -16,7 +16,9 @@
 
 struct vg_swap_options {
   double distance;          /* how far the surface may move in all, in parts
-                               of the length of the triangles there */
+                               of the length there: of the longest edges at
+                               a cap, of the mean of the edges at a short
+                               edge, elsewhere of 0.3 of the shortest */
   double angle;             /* how far normals may turn, degrees, < 90 */
   int collapse;             /* collapse short edges too */
   double short_edge;        /* short: below this part of the mean length of
@@ -33,8 +35,9 @@ struct vg_swap_report {
   double moved;             /* bound of how far the surface moved */
   double moved_relative;    /* the same, in parts of the length there */
   size_t n_cap[2], n_needle[2]; /* before, after */
-  size_t n_kept;            /* points whose triangles stay as they are because
-                               others would meet another part of the surface */
+  size_t n_kept;            /* points whose triangles stay as they are, since
+                               better ones met another part of the surface;
+                               all when no way was found to avoid that */
 };
 #define VG_SWAP_REPORT_INIT { 0 }
 
