@@ -284,6 +284,11 @@ static vg_status make_requests(struct vg_layer_stage *s,
     s->limit[i].min_any = choose(row.min_any, l->min_any);
     s->limit[i].max_first_error = choose(row.max_first_error,
                                          l->max_first_error);
+    if (s->reason[i] == VG_WALL_NOT && vg_has_limits(&row))
+      st = vg_fail(err, VG_ERR_INPUT, "layers: patch %d has a limit, but it "
+                   "is no wall; set grow to yes or remove the limit",
+                   (int)row.id);
+    if (st < 0) break;
     if (s->reason[i] == VG_WALL_NOT) continue;
     VG_TRY(check_row(&row, l->by_source, err));
     VG_TRY(make_request(set, &row, q, err));
@@ -507,6 +512,9 @@ vg_status vg_layer_stage_plan(struct vg_layer_stage *s, struct vg_problem *p,
     n_wall = 0;
   }
   if (!n_wall) {
+    if (vg_walls_asked(&p->settings))
+      vg_note(&p->notes, "layers are asked for, but no patch has a viscous "
+              "condition: there are none (--walls names walls)");
     l->grow = VG_ANSWER_NO;
     goto done;
   }

@@ -1,5 +1,6 @@
 #include "cli/walls.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -33,13 +34,24 @@ int vg_is_viscous(const struct vg_patch *p)
          (bc <= -4000 && bc > -5000);
 }
 
+int vg_has_limits(const struct vg_layer_row *r)
+{
+  return !isnan(r->min_full) || !isnan(r->min_any) ||
+         !isnan(r->max_first_error);
+}
+
 int vg_walls_asked(const struct vg_settings *s)
 {
   const struct vg_layer_settings *l = &s->layer;
 
   if (l->grow == VG_ANSWER_NO) return 0;
+  for (size_t i = 0; i < s->n_layer; i++)
+    if (s->layer_row[i].grow == VG_ANSWER_YES ||
+        vg_has_limits(&s->layer_row[i]))
+      return 1;
   return l->grow == VG_ANSWER_YES || l->first > 0 || l->y_plus > 0 ||
-         *l->walls;
+         *l->walls || !isnan(l->min_full) || !isnan(l->min_any) ||
+         !isnan(l->max_first_error);
 }
 
 /* A whole number at *text, which moves behind it; 0 when there is none. */
@@ -197,6 +209,17 @@ static void patch_words(const struct vg_mesh *m, char *text, size_t size)
   }
 }
 
+/* Layers or nothing: a limit that is checked on no patch would be met. */
+static int insists(const struct vg_settings *s)
+{
+  const struct vg_layer_settings *l = &s->layer;
+
+  for (size_t i = 0; i < s->n_layer; i++)
+    if (vg_has_limits(&s->layer_row[i])) return 1;
+  return l->grow == VG_ANSWER_YES || !isnan(l->min_full) ||
+         !isnan(l->min_any) || !isnan(l->max_first_error);
+}
+
 static vg_status no_walls(const struct vg_problem *p, struct vg_error *err)
 {
   char list[600];
@@ -225,7 +248,7 @@ vg_status vg_walls_find(const struct vg_problem *p,
   /* A whole domain in which conditions say that nothing is viscous is left
    * as it is, unless somebody insists. */
   if (!*n_wall && vg_walls_asked(&p->settings) &&
-      (p->settings.layer.grow == VG_ANSWER_YES || !p->require_bc))
+      (insists(&p->settings) || !p->require_bc))
     st = no_walls(p, err);
 done:
   free(mark_of);

@@ -45,7 +45,11 @@ vg_status vg_walls_find(const struct vg_problem *p,
                         enum vg_wall_reason *reason, size_t *n_wall,
                         struct vg_error *err);
 
-/** 1 when settings ask for layers whatever the conditions say. */
+/** 1 when a row sets a limit. */
+int vg_has_limits(const struct vg_layer_row *r);
+
+/** 1 when settings ask for layers, be it by a limit on them: then a missing
+ * wall or height is an error, not a note. */
 int vg_walls_asked(const struct vg_settings *s);
 
 #endif

@@ -106,6 +106,16 @@ refuse "layers: patch 66 is not in the surface" --deck slip.deck --walls 5 \
   --first 1
 printf 't\nwalls first\n5 1e-3\n\nlayers\nid grow\n5 no\n' >slip.deck
 refuse "the table layers says grow no" --deck slip.deck
+vanguard mesh -q -p p/box --first 1e-3 --out note
+exits 0
+says out "layers are asked for, but no patch has a viscous condition"
+
+# A limit without layers would be met by nothing.
+refuse "no patch is known to be a wall" --first 1e-3 --min-full 98
+refuse "no first height is known" --walls 5 --min-full 98
+printf 't\nlayers\nid min_full\n6 98\n' >slip.deck
+refuse "patch 6 has a limit, but it is no wall" --deck slip.deck --walls 5 \
+  --first 1e-3
 vanguard mesh -q -p p/box --first -1
 exits 2
 says err "first is -1; it must be at least 0"
