@@ -1,5 +1,6 @@
 /* Are the cells that columns imply fit to be written? Declared in
  * layers/work.h. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,6 +13,7 @@
 #define FLAT (0.25 * VG_VIEW_MIN)  /* least sine of a column on a layer */
 #define SHRUNK 0.04        /* least area of a layer, of that at the wall */
 #define LOWER 0.75         /* of the room, when a cell is bad */
+#define NEAR_FARTHEST 0.5  /* share of the farthest reach at a bad cell */
 
 /* The face of one call: three columns by rising number, levels ascending. */
 struct stack {
@@ -192,16 +194,29 @@ static void search_body(void *context, size_t first, size_t end, int worker)
 }
 
 /* A cell that fails at some height will fail there however many layers lead
- * up to it; one on the wall itself leaves no room at all. */
-static double limit(const struct vg_layer_work *w, uint32_t i, int level)
+ * up to it: what is lowered are the columns that reach farthest, of those to
+ * blame, not one that already keeps low. One that fails on the wall itself
+ * leaves no room at all. least: [3] out, INFINITY where not lowered. */
+static void limits(const struct vg_layer_work *w, const uint32_t face[3],
+                   int level, int blame, double least[3])
 {
-  const struct vg_column *c = &w->c->column[i];
-  double d[VG_LEVELS_MAX + 1];
-  int top = level + 1 < c->n ? level + 1 : c->n;
+  double reach[3] = { 0, 0, 0 }, far = 0;
 
-  if (!level) return 0;
-  vg_law_heights(&w->c->law[c->law], c->cap, top, d);
-  return LOWER * w->room[i] < d[top] ? LOWER * w->room[i] : d[top];
+  for (int k = 0; k < 3; k++) {
+    const struct vg_column *c = &w->c->column[face[k]];
+    double d[VG_LEVELS_MAX + 1];
+    int top = level + 1 < c->n ? level + 1 : c->n;
+
+    least[k] = level ? INFINITY : 0;
+    if (!level || !(blame >> k & 1)) continue;
+    vg_law_heights(&w->c->law[c->law], c->cap, top, d);
+    least[k] = fmin(LOWER * w->room[face[k]], d[top]);
+    reach[k] = d[top] * vg_norm(c->dir);
+    far = fmax(far, reach[k]);
+  }
+  for (int k = 0; k < 3; k++)
+    if (!(blame >> k & 1) || reach[k] < NEAR_FARTHEST * far)
+      least[k] = INFINITY;
 }
 
 /* The least of what the bad faces at a column leave it, not their product. */
@@ -213,14 +228,13 @@ static vg_status lower(struct vg_layer_work *w, const struct search *q,
   if (!least) return vg_fail_memory(err, "the layers");
   for (size_t i = 0; i < w->c->n_column; i++) least[i] = INFINITY;
   for (size_t f = 0; f < w->c->n_face; f++) {
+    double l[3];
+
     if (q->level[f] < 0) continue;
     ++*n_bad;
-    for (int k = 0; k < 3; k++) {
-      uint32_t i = w->c->face[f][k];
-      double l = limit(w, i, q->level[f]);
-
-      if (q->blame[f] >> k & 1 && l < least[i]) least[i] = l;
-    }
+    limits(w, w->c->face[f], q->level[f], q->blame[f], l);
+    for (int k = 0; k < 3; k++)
+      least[w->c->face[f][k]] = fmin(least[w->c->face[f][k]], l[k]);
   }
   for (size_t i = 0; i < w->c->n_column; i++)
     vg_heights_lower(w, i, least[i], VG_CAUSE_CELL);

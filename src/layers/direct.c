@@ -412,66 +412,6 @@ done:
  * slide plane), directions within BAND heights are relaxed towards the mean
  * of their neighbours as far as it takes, so that the turn is spread. */
 
-static uint32_t *converging(const struct vg_layer_work *w, double *reach,
-                            uint32_t *queue, size_t *n_queue)
-{
-  for (uint32_t i = 0; i < w->c->n_column; i++)
-    for (uint32_t j = w->t.near_first[i]; j < w->t.near_first[i + 1]; j++) {
-      uint32_t o = w->t.near[j];
-      double h = w->wanted[i] > w->wanted[o] ? w->wanted[i] : w->wanted[o];
-
-      if (1 + vg_edge_change(w, i, o, h, h) < CONVERGE && BAND * h > reach[i])
-        reach[i] = BAND * h;
-    }
-  for (uint32_t i = 0; i < w->c->n_column; i++)
-    if (reach[i] > 0) queue[(*n_queue)++] = i;
-  return queue;
-}
-
-/* reach[i] = max over paths of what is left of the reach at their start: the
- * least fixed point, whatever the order. Rings of the queue. */
-static vg_status spread(const struct vg_layer_work *w, double *reach,
-                        struct vg_error *err)
-{
-  size_t n = w->c->n_column, n_now = 0, n_next;
-  uint32_t *now = vg_alloc(n, sizeof *now), *next = vg_alloc(n, sizeof *next);
-  uint8_t *queued = vg_calloc(n, 1);
-  vg_status st = VG_OK;
-
-  if (!now || !next || !queued) {
-    st = vg_fail_memory(err, "the smoothing");
-    goto done;
-  }
-  converging(w, reach, now, &n_now);
-  for (; n_now; n_now = n_next) {
-    uint32_t *swap = now;
-
-    n_next = 0;
-    for (size_t k = 0; k < n_now; k++) queued[now[k]] = 0;
-    for (size_t k = 0; k < n_now; k++) {
-      uint32_t i = now[k];
-
-      for (uint32_t j = w->t.near_first[i]; j < w->t.near_first[i + 1]; j++) {
-        uint32_t o = w->t.near[j];
-        double left = reach[i] -
-          vg_distance(w->m->point[w->c->column[i].root],
-                      w->m->point[w->c->column[o].root]);
-
-        if (!(left > reach[o])) continue;
-        reach[o] = left;
-        if (!queued[o]) queued[o] = 1, next[n_next++] = o;
-      }
-    }
-    now = next;
-    next = swap;
-  }
-done:
-  free(now);
-  free(next);
-  free(queued);
-  return st;
-}
-
 static void mean_of_near(const struct vg_layer_work *w, size_t i,
                          double (*from)[3], double v[3])
 {
@@ -487,26 +427,51 @@ static void mean_of_near(const struct vg_layer_work *w, size_t i,
   }
 }
 
-/* How strongly a column is bent: not at all while its edges keep their
- * length up to the tops, wholly once one would shrink to half. So columns far
- * from a corner, and those on its convex side, stay normal to the wall. */
+/* What is left of the area of a face, seen along its normal, when its columns
+ * have risen by h along the unit vectors dir. */
+static double top_share(const struct vg_layer_work *w, uint32_t f,
+                        double (*dir)[3], double h)
+{
+  double x[3][3], a[3], b[3], base[3], top[3], n2;
+
+  for (int k = 0; k < 3; k++)
+    memcpy(x[k], w->m->point[w->c->column[w->c->face[f][k]].root],
+           sizeof x[k]);
+  vg_sub(x[1], x[0], a);
+  vg_sub(x[2], x[0], b);
+  vg_cross(a, b, base);
+  n2 = vg_dot(base, base);
+  if (!(n2 > 0)) return 1;
+  for (int k = 0; k < 3; k++) {
+    const double *v = dir[w->c->face[f][0]];
+
+    a[k] += h * (dir[w->c->face[f][1]][k] - v[k]);
+    b[k] += h * (dir[w->c->face[f][2]][k] - v[k]);
+  }
+  vg_cross(a, b, top);
+  return vg_dot(base, top) / n2;
+}
+
+static double tallest(const struct vg_layer_work *w, uint32_t f)
+{
+  const uint32_t *c = w->c->face[f];
+
+  return fmax(w->wanted[c[0]], fmax(w->wanted[c[1]], w->wanted[c[2]]));
+}
+
+/* How strongly a column is bent: not at all while its faces keep their area
+ * up to the tops, wholly once one would shrink to half. So columns far from a
+ * corner, and those on its convex side, stay normal to the wall. */
 static double urge(const struct loop *l, size_t i)
 {
   const struct vg_layer_work *w = l->w;
-  const double *root = w->m->point[w->c->column[i].root];
   double least = 1;
 
-  for (uint32_t j = w->t.near_first[i]; j < w->t.near_first[i + 1]; j++) {
-    uint32_t o = w->t.near[j];
-    const double *v = l->from[o];
-    double e[3], d, ratio;
+  for (uint32_t j = w->t.first[i]; j < w->t.first[i + 1]; j++) {
+    uint32_t f = w->t.corner[j] / 3;
 
-    vg_sub(w->m->point[w->c->column[o].root], root, e);
-    d = vg_dot(e, e);
-    if (!(d > 0)) continue;
-    ratio = 1 + fmax(w->wanted[i], w->wanted[o]) *
-                (vg_dot(v, e) - vg_dot(l->from[i], e)) / d;
-    if (ratio < least) least = ratio;
+    if (w->c->face_tri[f] != VG_NO_INDEX)
+      least = fmin(least, top_share(w, f, l->from, tallest(w, f)));
   }
   return fmax(0, fmin(BEND_MAX, (BEND_FROM - least) / (BEND_FROM - 0.5)));
 }
@@ -589,6 +554,65 @@ done:
   free(l.stirs);
   free(l.stirred);
   free(l.scratch);
+  return st;
+}
+
+static void converging(const struct vg_layer_work *w, double (*dir)[3],
+                       double *reach, uint32_t *queue, size_t *n_queue)
+{
+  for (uint32_t f = 0; f < w->c->n_face; f++) {
+    double h = tallest(w, f);
+
+    if (w->c->face_tri[f] == VG_NO_INDEX ||
+        top_share(w, f, dir, h) >= CONVERGE) continue;
+    for (int k = 0; k < 3; k++)
+      reach[w->c->face[f][k]] = fmax(reach[w->c->face[f][k]], BAND * h);
+  }
+  for (uint32_t i = 0; i < w->c->n_column; i++)
+    if (reach[i] > 0) queue[(*n_queue)++] = i;
+}
+
+/* reach[i] = max over paths of what is left of the reach at their start: the
+ * least fixed point, whatever the order. Rings of the queue. */
+static vg_status spread(const struct vg_layer_work *w, double *reach,
+                        struct vg_error *err)
+{
+  size_t n = w->c->n_column, n_now = 0, n_next;
+  uint32_t *now = vg_alloc(n, sizeof *now), *next = vg_alloc(n, sizeof *next);
+  uint8_t *queued = vg_calloc(n, 1);
+  vg_status st = VG_OK;
+
+  if (!now || !next || !queued) {
+    st = vg_fail_memory(err, "the smoothing");
+    goto done;
+  }
+  converging(w, w->root_dir, reach, now, &n_now);
+  for (; n_now; n_now = n_next) {
+    uint32_t *swap = now;
+
+    n_next = 0;
+    for (size_t k = 0; k < n_now; k++) queued[now[k]] = 0;
+    for (size_t k = 0; k < n_now; k++) {
+      uint32_t i = now[k];
+
+      for (uint32_t j = w->t.near_first[i]; j < w->t.near_first[i + 1]; j++) {
+        uint32_t o = w->t.near[j];
+        double left = reach[i] -
+          vg_distance(w->m->point[w->c->column[i].root],
+                      w->m->point[w->c->column[o].root]);
+
+        if (!(left > reach[o])) continue;
+        reach[o] = left;
+        if (!queued[o]) queued[o] = 1, next[n_next++] = o;
+      }
+    }
+    now = next;
+    next = swap;
+  }
+done:
+  free(now);
+  free(next);
+  free(queued);
   return st;
 }
 

@@ -17,6 +17,7 @@
 #define GRAIN 2048
 #define EDGE_SWEEPS 3
 #define KEEP_EDGE 0.3      /* of an edge's length at the top, along itself */
+#define LEAN 0.3           /* of a triangle's height that a corner may lean */
 #define SLOPE 1.0          /* of rooms over the wall, where they are limited */
 
 static double edge_length(const struct vg_layer_work *w, uint32_t i,
@@ -163,8 +164,8 @@ static void wanted_body(void *context, size_t first, size_t end, int worker)
 }
 
 /* Neighbours differ by one level at most, columns of one root by none.
- * A minimum over the columns, spread over their neighbours: lower(w, i, o)
- * lowers o because of i and says whether it did. The least fixed point does
+ * A minimum over the columns, spread over their neighbours: lower(w, i, j)
+ * lowers near[j] because of i and says whether it did. The least fixed point does
  * not depend on the order. */
 static vg_status propagate(struct vg_layer_work *w,
                            int (*lower)(struct vg_layer_work *, uint32_t,
@@ -187,7 +188,7 @@ static vg_status propagate(struct vg_layer_work *w,
       for (uint32_t j = w->t.near_first[i]; j < w->t.near_first[i + 1]; j++) {
         uint32_t o = w->t.near[j];
 
-        if (lower(w, i, o) && !queued[o]) queued[o] = 1, next[n_next++] = o;
+        if (lower(w, i, j) && !queued[o]) queued[o] = 1, next[n_next++] = o;
       }
     }
     now = next;
@@ -200,8 +201,9 @@ static vg_status propagate(struct vg_layer_work *w,
   return n_now ? VG_OK : vg_fail_memory(err, "the layers");
 }
 
-static int lower_wanted(struct vg_layer_work *w, uint32_t i, uint32_t o)
+static int lower_wanted(struct vg_layer_work *w, uint32_t i, uint32_t j)
 {
+  uint32_t o = w->t.near[j];
   struct vg_column *a = &w->c->column[i], *b = &w->c->column[o];
 
   int most = a->n_wanted + (a->root != b->root);
@@ -212,8 +214,9 @@ static int lower_wanted(struct vg_layer_work *w, uint32_t i, uint32_t o)
   return 1;
 }
 
-static int lower_level(struct vg_layer_work *w, uint32_t i, uint32_t o)
+static int lower_level(struct vg_layer_work *w, uint32_t i, uint32_t j)
 {
+  uint32_t o = w->t.near[j];
   struct vg_column *a = &w->c->column[i], *b = &w->c->column[o];
 
   int most = a->n + (a->root != b->root);
@@ -224,12 +227,12 @@ static int lower_level(struct vg_layer_work *w, uint32_t i, uint32_t o)
   return 1;
 }
 
-static int lower_room(struct vg_layer_work *w, uint32_t i, uint32_t o)
+static int lower_room(struct vg_layer_work *w, uint32_t i, uint32_t j)
 {
-  double limit;
+  uint32_t o = w->t.near[j];
+  double limit = w->room[i] + w->slack[j];
 
   if (w->why[i] == VG_CAUSE_NONE) return 0;
-  limit = w->room[i] + SLOPE * edge_length(w, i, o);
   if (!(w->room[o] > limit)) return 0;
   w->room[o] = limit;
   w->why[o] = w->why[i];
@@ -268,6 +271,64 @@ void vg_heights_lower(struct vg_layer_work *w, size_t i, double limit,
   if (!(limit < w->room[i])) return;
   w->room[i] = limit > 0 ? limit : 0;
   w->why[i] = (uint8_t)why;
+}
+
+/* In a face whose columns lean, one that is higher by d moves its corner by
+ * d times the leaning part; across the longest edge that must stay below
+ * LEAN of the height of the triangle. */
+static double face_slack(const struct vg_layer_work *w, uint32_t f)
+{
+  const uint32_t *c = w->c->face[f];
+  const double *x[3], *n = w->normal[f];
+  double lean[3] = { 0, 0, 0 }, e[3], longest[3], across[3], area[3];
+  double most = 0, side;
+
+  for (int k = 0; k < 3; k++) x[k] = w->m->point[w->c->column[c[k]].root];
+  for (int k = 0; k < 3; k++) {
+    double l;
+
+    vg_sub(x[(k + 1) % 3], x[k], e);
+    l = vg_dot(e, e);
+    if (l > most) most = l, memcpy(longest, e, sizeof e);
+    for (int i = 0; i < 3; i++) lean[i] += w->c->column[c[k]].dir[i] / 3;
+  }
+  vg_sub(x[1], x[0], e);
+  vg_sub(x[2], x[0], across);
+  vg_cross(e, across, area);
+  vg_cross(n, longest, across);
+  side = fabs(vg_dot(lean, across));    /* times the longest edge */
+  return side > 0 ? LEAN * vg_norm(area) / side : INFINITY;
+}
+
+static void slack_body(void *context, size_t first, size_t end, int worker)
+{
+  struct vg_layer_work *w = context;
+
+  (void)worker;
+  for (uint32_t i = (uint32_t)first; i < end; i++) {
+    for (uint32_t j = w->t.near_first[i]; j < w->t.near_first[i + 1]; j++)
+      w->slack[j] = SLOPE * edge_length(w, i, w->t.near[j]);
+    for (uint32_t k = w->t.first[i]; k < w->t.first[i + 1]; k++) {
+      uint32_t f = w->t.corner[k] / 3;
+      double s;
+
+      if (w->c->face_tri[f] == VG_NO_INDEX) continue;
+      s = face_slack(w, f);
+      for (uint32_t j = w->t.near_first[i]; j < w->t.near_first[i + 1]; j++)
+        if ((w->t.near[j] == w->c->face[f][0] ||
+             w->t.near[j] == w->c->face[f][1] ||
+             w->t.near[j] == w->c->face[f][2]) && s < w->slack[j])
+          w->slack[j] = s;
+    }
+  }
+}
+
+vg_status vg_heights_slack(struct vg_layer_work *w, struct vg_error *err)
+{
+  w->slack = vg_alloc(w->t.near_first[w->c->n_column], sizeof *w->slack);
+  if (!w->slack) return vg_fail_memory(err, "the layers");
+  vg_parallel_for(w->o->threads, w->c->n_column, GRAIN, slack_body, w);
+  return VG_OK;
 }
 
 struct corner {

@@ -50,6 +50,7 @@ static void work_release(struct vg_layer_work *w)
   free(w->edge);
   free(w->wanted);
   free(w->room);
+  free(w->slack);
   free(w->settled);
   free(w->own);
   free(w->why);
@@ -142,6 +143,7 @@ static vg_status first_rooms(struct vg_layer_work *w,
     if (w->t.blocked && w->t.blocked[i])
       vg_heights_lower(w, i, 0, VG_CAUSE_SLIDE);
   }
+  VG_TRY(vg_heights_slack(w, err));
   VG_TRY(vg_heights_corner(w, err));
   r->time_height += seconds() - t;
   t = seconds();

@@ -31,6 +31,7 @@ struct vg_layer_work {
   double *edge;             /* local isotropic edge */
   double *wanted;           /* height of n_wanted levels by the law */
   double *room;             /* height it may take, <= wanted */
+  double *slack;            /* [like t.near] by how much rooms may differ */
   double *settled;          /* room for which cap and ... */
   uint16_t *own;            /* ... levels were found last */
   uint8_t *why;             /* enum vg_layer_cause: what set room */
@@ -72,6 +73,10 @@ double vg_edge_change(const struct vg_layer_work *w, uint32_t i, uint32_t j,
 
 /** edge, law, n_wanted and wanted; room = wanted. */
 vg_status vg_heights_wanted(struct vg_layer_work *w, struct vg_error *err);
+
+/** slack: no more than the distance of the roots, and in thin faces whose
+ * columns lean over so little that the face does not turn over. */
+vg_status vg_heights_slack(struct vg_layer_work *w, struct vg_error *err);
 
 /** Lower room where columns converge. */
 vg_status vg_heights_corner(struct vg_layer_work *w, struct vg_error *err);
