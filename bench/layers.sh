@@ -1,0 +1,136 @@
+#!/usr/bin/env bash
+# bench/layers.sh: what viscous layers cost, phase by phase, in one run.
+#
+# usage: bench/layers.sh [--quick] [--out FILE] [--build DIR] [--work DIR]
+#                        [--runs N] [--threads LIST] [--data DIR] [CASE...]
+#   --quick    the smallest size of each wing, one run
+#   --out      write the tables to FILE too
+#   --build    build folder (default build/release, made when missing)
+#   --work     folder for the mesh that is written (default: a temporary one)
+#   --runs     runs of a case, of which the median counts (default 3)
+#   --threads  numbers of threads (default "1 2")
+#   --data     folder of real geometry: its surfaces too (verification/README.md
+#              lists them); there layers are made, joined and written alone,
+#              without the field
+#   CASE       wing wing-half wing-sharp, or a surface of --data
+#
+# Layers with y+ 1 at Re 5 million of the mean chord and ratio 1.2. Phases are
+# wall time by the report of vg_layers_grow; "D + H + C" are directions,
+# heights and collisions together. Joining makes the whole mesh of layers and
+# field (an empty mesh in, points and cells out); writing makes a .b8.ugrid in
+# the work folder, through the page cache. Of wall / CPU time the second, user
+# and system time of all threads, tells how much other work disturbed the first.
+set -euo pipefail
+export LC_ALL=C
+
+root=$(cd "$(dirname "$0")/.." && pwd)
+build=$root/build/release
+work='' out='' data='' quick=0 runs=3 threads='1 2' cases=()
+
+usage() { sed -n '2,/^# Layers with/p' "$0" | sed '$d; s/^# \{0,1\}//'; }
+die() { echo "bench/layers.sh: $*" >&2; exit 1; }
+
+while [ $# -gt 0 ]; do
+  case $1 in
+    --quick) quick=1 runs=1 ;;
+    --out|--build|--work|--runs|--threads|--data)
+      [ $# -gt 1 ] || { usage >&2; exit 2; }
+      declare "${1#--}=$2"
+      shift ;;
+    -h|--help) usage; exit 0 ;;
+    -*) usage >&2; exit 2 ;;
+    *) cases+=("$1") ;;
+  esac
+  shift
+done
+
+# Isotropic cells that `vanguard demo` is asked for: with the layers 2.1, 5
+# and 10 million cells.
+sizes="600000 2000000 5000000"
+[ $quick = 0 ] || sizes=600000
+
+# name, file below --data, walls, b: body or d: domain, mean chord, Re
+surfaces="
+dlr_f6_coarse  transport/dlr_f6_wbnp_half_coarse.lb8.ugrid.xz       1-123 d 141.2 3e6
+dlr_f6_medium  transport/dlr_f6_wbnp_half_medium.lb8.ugrid.xz       1-123 d 141.2 3e6
+onera_m6       transport/onera_m6_sharp_te_farfield.lb8.ugrid.xz    3-12 d 0.646 11.72e6
+30p30n_coarse  highlift/30p30n_swept_wing_in_box_coarse.lb8.ugrid.xz 1-10 d 1000 9e6
+30p30n_medium  highlift/30p30n_swept_wing_in_box_medium.lb8.ugrid.xz 1-10 d 1000 9e6
+falcon         bizjet/falcon_full_mirrored.lb8.ugrid.xz             1-999 b 2.9 5e6
+p180           bizjet/p180_avanti_full.lb8.ugrid.xz                 1-999 b 1.14 5e6
+concorde       supersonic/concorde_full.lb8.ugrid.xz                1-999 b 14 5e6
+f16            supersonic/f16_full.lb8.ugrid.xz                     1-999 b 3.4 5e6
+low_boom       supersonic/low_boom_sst_full.lb8.ugrid.xz            1-999 b 20 5e6
+tmx1242        supersonic/tmx1242_wing_body.lb8.ugrid.xz            1-999 b 9 5e6
+tnd6480        supersonic/tnd6480_delta_wing_body.lb8.ugrid.xz      1-999 b 15 5e6
+"
+
+if [ ! -x "$build/bin/vg_bench_layers" ]; then
+  cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release >&2
+  cmake --build "$build" >&2
+fi
+program=$build/bin/vg_bench_layers
+
+if [ -z "$work" ]; then
+  work=$(mktemp -d "${TMPDIR:-/tmp}/vanguard-layers.XXXXXX")
+  trap 'rm -rf "$work"' EXIT
+fi
+mkdir -p "$work"
+rows=$work/rows
+: > "$rows"
+
+wanted() {
+  [ ${#cases[@]} = 0 ] || printf '%s\n' "${cases[@]}" | grep -qx -- "$1"
+}
+
+run_case() {   # run_case NAME OPTION...
+  local name=$1 t
+  shift
+  for t in $threads; do
+    "$program" --name "$name" --threads "$t" --runs "$runs" \
+      --out "$work/mesh.b8.ugrid" "$@" | tee -a "$rows" >&2 ||
+      die "$name failed, see above"
+  done
+}
+
+for wing in wing wing-half wing-sharp; do
+  wanted $wing || continue
+  for n in $sizes; do run_case $wing --demo $wing --cells $n; done
+done
+if [ -n "$data" ] && [ $quick = 0 ]; then
+  while read -r name file walls kind length reynolds; do
+    if [ -z "$name" ] || ! wanted "$name" || [ ! -e "$data/$file" ]; then
+      continue
+    fi
+    surface=$work/$(basename "${file%.xz}")
+    xz -dc "$data/$file" > "$surface"
+    domain=no
+    [ "$kind" = b ] || domain=yes
+    run_case "$name" --fill no --walls "$walls" --domain $domain \
+      --length "$length" --reynolds "$reynolds" "$surface"
+    rm -f "$surface"
+  done <<< "$surfaces"
+fi
+[ -s "$rows" ] || die "no such case; see --help"
+
+say() { if [ -n "$out" ]; then tee "$out"; else cat; fi; }
+{
+  echo "Vanguard, $(uname -m), $(nproc --all) cores, $(date -u +%Y-%m-%d);" \
+    "medians of $runs runs, load before $(cut -d' ' -f1 /proc/loadavg)."
+  cat << END
+
+Growing, microseconds per wall point:
+
+| case | threads | wall points | layer tetrahedra | mean levels | topology | directions | heights | clearance | slide patches | D + H + C, wall points/s | wall / CPU, s | all phases, wall points/s | all phases, M layer cells/s | rounds |
+|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|
+END
+  sed -n 's/^grow //p' "$rows"
+  cat << END
+
+Joining and writing:
+
+| case | threads | cells | all cells | layer cells | % prisms of these | joining, M cells/s | wall / CPU, s | writing: wall / CPU, s | MB/s | both, M cells/s |
+|---|---|---|---|---|---|---|---|---|---|---|
+END
+  sed -n 's/^join //p' "$rows"
+} | say
