@@ -13,6 +13,7 @@
 #define FLAT (0.25 * VG_VIEW_MIN)  /* least sine of a column on a layer */
 #define SHRUNK 0.04        /* least area of a layer, of that at the wall */
 #define LOWER 0.75         /* of the room, when a cell is bad */
+#define RESERVE 2.0        /* times the least height of all levels */
 #define NEAR_FARTHEST 0.5  /* share of the farthest reach at a bad cell */
 
 /* The face of one call: three columns by rising number, levels ascending. */
@@ -219,46 +220,69 @@ static void limits(const struct vg_layer_work *w, const uint32_t face[3],
       least[k] = INFINITY;
 }
 
-/* The least of what the bad faces at a column leave it, not their product. */
-static vg_status lower(struct vg_layer_work *w, const struct search *q,
-                       size_t *n_bad, struct vg_error *err)
+/* Lowering to these limits would cost levels. */
+static int costs_levels(const struct vg_layer_work *w, const uint32_t face[3],
+                        const double limit[3])
 {
-  double *least = vg_alloc(w->c->n_column, sizeof *least);
+  for (int k = 0; k < 3; k++) {
+    const struct vg_column *c = &w->c->column[face[k]];
 
-  if (!least) return vg_fail_memory(err, "the layers");
+    if (limit[k] < RESERVE * c->n_wanted * w->c->law[c->law].delta1)
+      return 1;
+  }
+  return 0;
+}
+
+/* A column gets the least of what its bad faces leave it, not the product.
+ * turn: [n_face] out, 1 for faces whose columns are to be turned instead. */
+static void judge(struct vg_layer_work *w, const struct search *q,
+                  int may_turn, double *least, uint8_t *turn, size_t *n_bad,
+                  size_t *n_turn)
+{
   for (size_t i = 0; i < w->c->n_column; i++) least[i] = INFINITY;
   for (size_t f = 0; f < w->c->n_face; f++) {
+    const uint32_t *face = w->c->face[f];
     double l[3];
 
+    turn[f] = 0;
     if (q->level[f] < 0) continue;
     ++*n_bad;
-    limits(w, w->c->face[f], q->level[f], q->blame[f], l);
-    for (int k = 0; k < 3; k++)
-      least[w->c->face[f][k]] = fmin(least[w->c->face[f][k]], l[k]);
+    limits(w, face, q->level[f], q->blame[f], l);
+    if (may_turn && q->level[f] > 0 && costs_levels(w, face, l)) {
+      turn[f] = 1;
+      ++*n_turn;
+    } else {
+      for (int k = 0; k < 3; k++)
+        least[face[k]] = fmin(least[face[k]], l[k]);
+    }
   }
-  for (size_t i = 0; i < w->c->n_column; i++)
-    vg_heights_lower(w, i, least[i], VG_CAUSE_CELL);
-  free(least);
-  return VG_OK;
 }
 
 vg_status vg_cells_lower(struct vg_layer_work *w, const uint8_t *moved,
-                         size_t *n_bad, struct vg_error *err)
+                         int may_turn, uint8_t *turned, size_t *n_bad,
+                         struct vg_error *err)
 {
-  size_t n = w->c->n_face;
+  size_t n = w->c->n_face, n_turn = 0;
   int threads = w->o->threads > 0 ? w->o->threads : vg_cores();
   struct search q = { w, moved, vg_alloc(n, sizeof *q.level), vg_alloc(n, 1),
                       vg_alloc((size_t)threads, sizeof *q.stack) };
+  double *least = vg_alloc(w->c->n_column, sizeof *least);
+  uint8_t *turn = vg_alloc(n, 1);
   vg_status st = VG_OK;
 
   *n_bad = 0;
-  if (!q.level || !q.blame || !q.stack) {
+  if (!q.level || !q.blame || !q.stack || !least || !turn) {
     st = vg_fail_memory(err, "the layers");
     goto done;
   }
   vg_parallel_for(threads, n, GRAIN, search_body, &q);
-  st = lower(w, &q, n_bad, err);
+  judge(w, &q, may_turn, least, turn, n_bad, &n_turn);
+  for (size_t i = 0; i < w->c->n_column; i++)
+    vg_heights_lower(w, i, least[i], VG_CAUSE_CELL);
+  if (n_turn) st = vg_directions_even(w, turn, turned, err);
 done:
+  free(least);
+  free(turn);
   free(q.level);
   free(q.blame);
   free(q.stack);

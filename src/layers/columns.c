@@ -28,7 +28,8 @@ static void at_height(const struct vg_column *c, const double *root, double h,
                       double x[3])
 {
   for (int k = 0; k < 3; k++)
-    x[k] = c->dir[k] == 0 ? root[k] : root[k] + c->dir[k] * h;
+    x[k] = h == 0 || (c->dir[k] == 0 && c->shift[k] == 0)
+           ? root[k] : root[k] + (c->shift[k] + c->dir[k] * h);
 }
 
 void vg_column_points(const struct vg_columns *c, const struct vg_mesh *m,

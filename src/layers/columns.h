@@ -45,9 +45,12 @@ struct vg_column {
   uint32_t root;       /* point of the surface */
   uint32_t law;        /* index into vg_columns.law */
   uint32_t slide[2];   /* patches it slides in, VG_NO_INDEX: none; [0] first */
-  double dir[3];       /* level l stands at root + dir * height(l); its length
-                          is the factor that makes the first point delta1
-                          away from the wall, >= 1 */
+  double dir[3];       /* level l >= 1 stands at root + shift + dir *
+                          height(l); length 1 to 2 */
+  double shift[3];     /* what makes the first point delta1 away from the
+                          wall, in corners where dir alone does not: so the
+                          layers above may be straightened out and the first
+                          height is kept. 0 for most */
   double cap;          /* growth of this column: the law's, or less where it
                           was squeezed (vg_law_heights) */
   size_t bent;         /* SIZE_MAX: straight. Else levels 0 .. n are
@@ -80,8 +83,8 @@ struct vg_columns {
 
 void vg_columns_release(struct vg_columns *c);
 
-/** Points of levels 0 .. column[i].n into x. Straight columns: root +
- * dir * d, so a component of dir that is 0 keeps the root's to the last bit.
+/** Points of levels 0 .. column[i].n into x. Where dir and shift have a
+ * component of 0, straight columns keep that of the root to the last bit.
  * d: scratch for vg_law_heights, [VG_LEVELS_MAX + 1]. */
 void vg_column_points(const struct vg_columns *c, const struct vg_mesh *m,
                       size_t i, double *d, double (*x)[3]);

@@ -14,6 +14,7 @@
 #define GRAIN 2048
 #define SMOOTH_WALL 0.95   /* least cosine at which the mean normal will do */
 #define VIEW_KEPT 0.6      /* share of the first view that smoothing leaves */
+#define VIEW_LEAST 0.2     /* the same, where cells would be lost otherwise */
 #define CONVERGE 0.75      /* an edge that would shrink to less is bent apart */
 #define BEND_FROM CONVERGE
 #define BEND_MAX 0.995
@@ -309,10 +310,11 @@ static void scale_body(void *context, size_t first, size_t end, int worker)
   (void)worker;
   for (size_t i = first; i < end; i++) {
     double d = gain(w, (uint32_t)i, w->c->column[i].dir);
+    double length = fmin(1 / d, VG_FACTOR_WHOLE);
 
     if (d * VG_FACTOR_MAX < 1) w->view[i] = 0;
     else
-      for (int k = 0; k < 3; k++) w->c->column[i].dir[k] /= d;
+      for (int k = 0; k < 3; k++) w->c->column[i].dir[k] *= length;
   }
 }
 
@@ -383,6 +385,42 @@ static void pair_swap(struct loop *l)
 
   l->from = l->to;
   l->to = swap;
+}
+
+/* Along dir, or, where that leaves the first point no room, along the
+ * direction from before smoothing. */
+static void shift_body(void *context, size_t first, size_t end, int worker)
+{
+  struct vg_layer_work *w = ((struct loop *)context)->w;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++) {
+    struct vg_column *c = &w->c->column[i];
+    double v[3], delta1 = w->c->law[c->law].delta1, d;
+
+    memset(c->shift, 0, sizeof c->shift);
+    if (w->view[i] == 0) continue;
+    memcpy(v, c->dir, sizeof v);
+    vg_unit(v);
+    d = gain(w, (uint32_t)i, v);
+    if (d * VG_FACTOR_MAX < 1) {
+      memcpy(v, w->root_dir[i], sizeof v);
+      d = gain(w, (uint32_t)i, v);
+    }
+    if (d * VG_FACTOR_MAX < 1) w->view[i] = 0;
+    else if (fabs(d * vg_norm(c->dir) - 1) > 1e-9)
+      for (int k = 0; k < 3; k++)
+        c->shift[k] = delta1 * (v[k] / d - c->dir[k]);
+  }
+}
+
+vg_status vg_directions_shift(struct vg_layer_work *w, struct vg_error *err)
+{
+  struct loop l = { .w = w };
+
+  (void)err;
+  vg_parallel_for(w->o->threads, w->c->n_column, GRAIN, shift_body, &l);
+  return VG_OK;
 }
 
 vg_status vg_directions_scale(struct vg_layer_work *w, struct vg_error *err)
@@ -634,5 +672,52 @@ vg_status vg_directions_smooth(struct vg_layer_work *w, struct vg_error *err)
 done:
   free(reach);
   free(list);
+  return st;
+}
+
+/* Half of the way to the mean over the faces to turn, or less. */
+static int even(struct vg_layer_work *w, size_t i, const uint8_t *turn,
+                double (*from)[3], double (*n)[3], double v[3])
+{
+  double slide[2][3], mean[3] = { 0, 0, 0 }, step = 0.5;
+  int n_slide = slide_normals(w, i, slide), n_mean = 0, k;
+
+  for (uint32_t j = w->t.first[i]; j < w->t.first[i + 1]; j++) {
+    uint32_t f = w->t.corner[j] / 3;
+
+    for (int c = 0; turn[f] && c < 3; c++) {
+      for (int x = 0; x < 3; x++) mean[x] += from[w->c->face[f][c]][x];
+      n_mean++;
+    }
+  }
+  if (!n_mean || w->view[i] == 0) return 0;
+  k = real_normals(w, i, n);
+  for (int try = 0; try < 4; try++, step *= 0.5) {
+    for (int x = 0; x < 3; x++)
+      v[x] = (1 - step) * from[i][x] + step * mean[x] / n_mean;
+    constrain(n_slide, slide, v);
+    if (least_view(k, n, v) >= VIEW_LEAST * w->view[i] * vg_norm(v)) return 1;
+  }
+  return 0;
+}
+
+vg_status vg_directions_even(struct vg_layer_work *w, const uint8_t *turn,
+                             uint8_t *turned, struct vg_error *err)
+{
+  struct loop l = { 0 };
+  vg_status st;
+
+  VG_TRY(scratch_new(w, &l, err));
+  VG_TRY(pair_new(w, &l, err));
+  for (size_t i = 0; i < w->c->n_column; i++)
+    if (even(w, i, turn, l.from, l.scratch, l.to[i])) {
+      memcpy(w->c->column[i].dir, l.to[i], sizeof *l.to);
+      turned[i] = 1;
+    }
+  VG_TRY(vg_directions_shift(w, err));
+done:
+  free(l.from);
+  free(l.to);
+  free(l.scratch);
   return st;
 }

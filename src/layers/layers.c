@@ -7,12 +7,12 @@
 
 #include "base/memory.h"
 #include "core/surface_check.h"
-#include "layers/vector.h"
 #include "layers/work.h"
 
 #define ROUNDS_MAX 100
 #define GENTLE 40          /* rounds in which room is lowered by a share */
 #define SHARE 0.75
+#define TURNS_MAX 12       /* rounds that may turn columns */
 
 void vg_layer_front_release(struct vg_layer_front *f)
 {
@@ -134,11 +134,6 @@ static vg_status first_rooms(struct vg_layer_work *w,
 
   if (!allowed) return vg_fail_memory(err, "the layers");
   for (size_t i = 0; i < n; i++) {
-    double f = vg_norm(w->c->column[i].dir);
-
-    if (f > VG_FACTOR_WHOLE)
-      vg_heights_lower(w, i, VG_FACTOR_WHOLE / f * w->room[i],
-                       VG_CAUSE_CORNER);
     if (w->view[i] == 0) vg_heights_lower(w, i, 0, VG_CAUSE_NO_VIEW);
     if (w->t.blocked && w->t.blocked[i])
       vg_heights_lower(w, i, 0, VG_CAUSE_SLIDE);
@@ -287,7 +282,8 @@ done:
 }
 
 struct rounds {
-  uint8_t *moved, *cells, *tops, *bad;  /* cells, tops: to be looked at */
+  uint8_t *moved, *turned, *cells, *tops, *bad;  /* cells, tops: to be looked
+                                                    at */
 };
 
 static vg_status settle(struct vg_layer_work *w, struct rounds *q,
@@ -296,6 +292,8 @@ static vg_status settle(struct vg_layer_work *w, struct rounds *q,
   vg_status st = vg_heights_settle(w, q->moved, err);
 
   for (size_t i = 0; st >= 0 && i < w->c->n_column; i++) {
+    q->moved[i] |= q->turned[i];
+    q->turned[i] = 0;
     q->cells[i] |= q->moved[i];
     q->tops[i] |= q->moved[i];
   }
@@ -312,7 +310,8 @@ static vg_status one_round(struct vg_layer_work *w, struct rounds *q,
   double t = seconds();
   vg_status st;
 
-  VG_TRY(vg_cells_lower(w, round ? q->cells : NULL, n_bad, err));
+  VG_TRY(vg_cells_lower(w, round ? q->cells : NULL, round < TURNS_MAX,
+                        q->turned, n_bad, err));
   memset(q->cells, 0, w->c->n_column);
   if (!*n_bad) {
     VG_TRY(try_tops(w, round ? q->tops : NULL, q->bad, round, n_bad, err));
@@ -337,11 +336,11 @@ static vg_status until_clear(struct vg_layer_work *w,
 {
   size_t n = w->c->n_column, n_bad = 1;
   struct rounds q = { vg_calloc(n, 1), vg_calloc(n, 1), vg_calloc(n, 1),
-                      vg_calloc(n, 1) };
+                      vg_calloc(n, 1), vg_calloc(n, 1) };
   double t;
   vg_status st = VG_OK;
 
-  if (!q.moved || !q.cells || !q.tops || !q.bad) {
+  if (!q.moved || !q.turned || !q.cells || !q.tops || !q.bad) {
     st = vg_fail_memory(err, "the layers");
     goto done;
   }
@@ -362,6 +361,7 @@ static vg_status until_clear(struct vg_layer_work *w,
                  ROUNDS_MAX);
 done:
   free(q.moved);
+  free(q.turned);
   free(q.cells);
   free(q.tops);
   free(q.bad);
@@ -431,6 +431,7 @@ static vg_status columns(struct vg_layer_work *w, struct vg_layer_report *r,
   t = seconds();
   VG_TRY(vg_directions_smooth(w, err));
   VG_TRY(vg_directions_scale(w, err));
+  VG_TRY(vg_directions_shift(w, err));
   r->time_direction += seconds() - t;
 done:
   return st;

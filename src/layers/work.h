@@ -11,7 +11,7 @@
 
 #define VG_VIEW_MIN 0.0002    /* least cosine between a column and a face */
 #define VG_FACTOR_MAX 1000.0  /* longest dir: a wedge of 0.1 degrees */
-#define VG_FACTOR_WHOLE 2.0   /* longest dir that may take the whole height */
+#define VG_FACTOR_WHOLE 2.0   /* longest dir */
 
 struct vg_layer_work {
   const struct vg_mesh *m;
@@ -59,9 +59,17 @@ vg_status vg_directions_first(struct vg_layer_work *w, struct vg_error *err);
 /** Bend directions where columns of height `wanted` would converge. */
 vg_status vg_directions_smooth(struct vg_layer_work *w, struct vg_error *err);
 
-/** Lengths of dir, so that the first point is delta1 away from the wall; the
- * apex of a cap then follows the two ends of the edge it lies on. */
+/** Lengths of dir, so that layers are as thick as the law says; the apex of a
+ * cap then follows the two ends of the edge it lies on. */
 vg_status vg_directions_scale(struct vg_layer_work *w, struct vg_error *err);
+
+/** shift: what puts the first point delta1 away from the wall. */
+vg_status vg_directions_shift(struct vg_layer_work *w, struct vg_error *err);
+
+/** Make the columns of faces with turn[f] != 0 more alike, as far as they
+ * keep their view. turned out: [n_column] set to 1 where dir changed. */
+vg_status vg_directions_even(struct vg_layer_work *w, const uint8_t *turn,
+                             uint8_t *turned, struct vg_error *err);
 
 /** Ratio by which a step of height h_i, h_j along the dirs of columns i and
  * j changes the edge between their roots, along itself: 1 + this * height
@@ -93,10 +101,12 @@ vg_status vg_heights_settle(struct vg_layer_work *w, uint8_t *moved,
 
 /* cells.c -----------------------------------------------------------------*/
 
-/** Lower room of the columns of faces with a cell that is inverted or too
- * flat; faces without a `moved` column are skipped (NULL: none is). *n_bad
- * out: how many faces. */
+/** Find the faces with a cell that is inverted or too flat; faces without a
+ * `moved` column are skipped (NULL: none is). Their columns are lowered; but
+ * where that would cost levels and `may_turn`, they are made more alike.
+ * *n_bad out: how many faces. turned out: as vg_directions_even. */
 vg_status vg_cells_lower(struct vg_layer_work *w, const uint8_t *moved,
-                         size_t *n_bad, struct vg_error *err);
+                         int may_turn, uint8_t *turned, size_t *n_bad,
+                         struct vg_error *err);
 
 #endif
