@@ -114,6 +114,7 @@ static vg_status read_project(struct run *r, const struct arguments *a,
   VG_TRY(vg_problem_close(p, &r->show, err));
   VG_TRY(vg_layer_stage_plan(&r->layers, p, err));
   vg_problem_note_unset(p);
+  VG_TRY(vg_walls_swap(p, r->layers.is_on ? r->layers.reason : NULL, err));
   r->time_check = vg_display_now() - t;
   VG_TRY(vg_outputs_check(p, &r->outputs, err));
   VG_TRY(stopped(r, err));

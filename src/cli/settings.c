@@ -49,6 +49,10 @@ static const struct vg_param params[] = {
   { "repair", AT(repair), .type = VG_PARAM_FLAG, .unit = "",
     .help = "mend what needs no guess: orientation, unused and duplicate "
             "items" },
+  { "surface_swap", AT(swap), .type = VG_PARAM_WORD, .words = answer_words,
+    .unit = "", .help = "swap and collapse edges of the surface where its "
+    "triangles are bad, without moving it visibly; auto: where layers grow "
+    "and there are slivers" },
   { "optimise", AT(optimise), .type = VG_PARAM_COUNT, .hi = 100,
     .unit = "sweeps", .help = "sweeps of smoothing and swapping after the "
                               "fill" },

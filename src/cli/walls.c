@@ -6,6 +6,7 @@
 #include <strings.h>
 
 #include "base/memory.h"
+#include "core/surface_swap.h"
 #include "io/mapbc.h"
 #include "io/stream.h"
 
@@ -252,5 +253,59 @@ vg_status vg_walls_find(const struct vg_problem *p,
     st = no_walls(p, err);
 done:
   free(mark_of);
+  return st;
+}
+
+/* Lower than VG_SWAP_SLIVER of its longest edge. */
+static int is_sliver(const struct vg_mesh *m, const uint32_t t[3])
+{
+  double e[3][3], n[3], longest = 0;
+
+  for (int k = 0; k < 3; k++) {
+    double square = 0;
+
+    for (int c = 0; c < 3; c++) {
+      e[k][c] = m->point[t[(k + 1) % 3]][c] - m->point[t[k]][c];
+      square += e[k][c] * e[k][c];
+    }
+    if (square > longest) longest = square;
+  }
+  n[0] = e[0][1] * e[1][2] - e[0][2] * e[1][1];
+  n[1] = e[0][2] * e[1][0] - e[0][0] * e[1][2];
+  n[2] = e[0][0] * e[1][1] - e[0][1] * e[1][0];
+  return sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) <
+         VG_SWAP_SLIVER * longest;
+}
+
+/* Patches beside the walls are meshed anew in any case. */
+static int walls_have_slivers(const struct vg_mesh *m,
+                              const enum vg_wall_reason *reason)
+{
+  for (size_t i = 0; i < m->n_tri; i++)
+    if (reason[m->tri_patch[i]] != VG_WALL_NOT && is_sliver(m, m->tri[i]))
+      return 1;
+  return 0;
+}
+
+vg_status vg_walls_swap(struct vg_problem *p,
+                        const enum vg_wall_reason *reason,
+                        struct vg_error *err)
+{
+  const struct vg_swap_options o = VG_SWAP_OPTIONS_INIT;
+  struct vg_swap_report r = VG_SWAP_REPORT_INIT;
+  int *answer = &p->settings.swap;
+  vg_status st;
+
+  if (*answer == VG_ANSWER_AUTO)
+    *answer = reason && walls_have_slivers(&p->surface, reason)
+              ? VG_ANSWER_YES : VG_ANSWER_NO;
+  if (*answer == VG_ANSWER_NO) return VG_OK;
+  st = vg_surface_swap(&p->surface, &o, &r, err);
+  if (st < 0) return st;
+  vg_note(&p->notes, "slivers of the surface: caps %zu, now %zu, needles %zu, "
+          "now %zu, by %zu swaps and %zu collapses of edges that move it by "
+          "%.2g at most (--surface-swap no: as given)", r.n_cap[0],
+          r.n_cap[1], r.n_needle[0], r.n_needle[1], r.n_swapped,
+          r.n_collapsed, r.moved);
   return st;
 }

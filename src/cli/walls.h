@@ -45,6 +45,14 @@ vg_status vg_walls_find(const struct vg_problem *p,
                         enum vg_wall_reason *reason, size_t *n_wall,
                         struct vg_error *err);
 
+/** Swap and collapse edges of the closed surface as settings say; `auto` does
+ * so where a wall has slivers, on which layers would invert. With a note;
+ * settings are resolved.
+ * @param reason  [n_patch] of the walls; NULL: no layers grow */
+vg_status vg_walls_swap(struct vg_problem *p,
+                        const enum vg_wall_reason *reason,
+                        struct vg_error *err);
+
 /** 1 when a row sets a limit. */
 int vg_has_limits(const struct vg_layer_row *r);
 

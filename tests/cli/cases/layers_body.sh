@@ -104,3 +104,38 @@ vanguard mesh -q -p surf/body --first 0.03125 --out one_height
 exits 0
 grep -A4 '"first_asked"' one_height/body.report.json |
   grep -q '"max": 0.03125' || fail "--first did not win over the .surf"
+
+# Needles on a wall are removed before layers grow, and only then.
+cat >needle.obj <<'END'
+v 1 0 0
+v 0 1 0
+v 0 0 1
+v -1 0 0
+v 0 -1 0
+v 0 0 -1
+v 0.999 0 0.001
+f 1 2 7
+f 7 2 3
+f 2 4 3
+f 4 5 3
+f 5 1 7
+f 5 7 3
+f 2 1 6
+f 4 2 6
+f 5 4 6
+f 1 5 6
+END
+vanguard mesh -q -p needle --first 0.001 --out swapped
+exits 0
+says out "needles 2, now 0"
+says swapped/needle.report.json '"wall_triangles": 8'
+vanguard mesh -q -p needle --deck swapped/needle.resolved.deck --out again
+exits 0
+same swapped/needle.b8.ugrid again/needle.b8.ugrid
+vanguard mesh -q -p needle --first 0.001 --surface-swap no --out as_given
+exits 0
+lacks out "needles"
+says as_given/needle.report.json '"wall_triangles": 10'
+vanguard mesh -q -p needle --out isotropic
+exits 0
+lacks out "needles"
