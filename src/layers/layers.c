@@ -9,8 +9,8 @@
 #include "core/surface_check.h"
 #include "layers/work.h"
 
-#define ROUNDS_MAX 100
-#define GENTLE 40          /* rounds in which room is lowered by a share */
+#define ROUNDS_MAX 300
+#define GENTLE 40          /* sound rounds in which rooms lose a share only */
 #define SHARE 0.75
 #define TURNS_MAX 12       /* rounds that may turn columns */
 
@@ -284,6 +284,7 @@ done:
 struct rounds {
   uint8_t *moved, *turned, *cells, *tops, *bad;  /* cells, tops: to be looked
                                                     at */
+  size_t sound;             /* rounds in which all cells were sound */
 };
 
 static vg_status settle(struct vg_layer_work *w, struct rounds *q,
@@ -303,19 +304,22 @@ static vg_status settle(struct vg_layer_work *w, struct rounds *q,
 /* The first test that fails lowers columns, and the round begins again with
  * those that moved. Rooms only ever shrink, so it ends. */
 static vg_status one_round(struct vg_layer_work *w, struct rounds *q,
-                           struct vg_layer_front *front, size_t round,
+                           struct vg_layer_front *front,
                            struct vg_layer_report *r, size_t *n_bad,
                            struct vg_error *err)
 {
+  size_t round = q->sound;
   double t = seconds();
   vg_status st;
 
-  VG_TRY(vg_cells_lower(w, round ? q->cells : NULL, round < TURNS_MAX,
-                        q->turned, n_bad, err));
+  VG_TRY(vg_cells_lower(w, r->n_round ? q->cells : NULL,
+                        r->n_round < TURNS_MAX, q->turned, n_bad, err));
   memset(q->cells, 0, w->c->n_column);
   if (!*n_bad) {
-    VG_TRY(try_tops(w, round ? q->tops : NULL, q->bad, round, n_bad, err));
+    VG_TRY(try_tops(w, q->sound ? q->tops : NULL, q->bad, q->sound, n_bad,
+                    err));
     memset(q->tops, 0, w->c->n_column);
+    round = q->sound++;
   }
   r->time_clear += seconds() - t;
   t = seconds();
@@ -336,7 +340,7 @@ static vg_status until_clear(struct vg_layer_work *w,
 {
   size_t n = w->c->n_column, n_bad = 1;
   struct rounds q = { vg_calloc(n, 1), vg_calloc(n, 1), vg_calloc(n, 1),
-                      vg_calloc(n, 1), vg_calloc(n, 1) };
+                      vg_calloc(n, 1), vg_calloc(n, 1), 0 };
   double t;
   vg_status st = VG_OK;
 
@@ -353,7 +357,7 @@ static vg_status until_clear(struct vg_layer_work *w,
     vg_layer_front_release(front);
     VG_TRY(settle(w, &q, err));
     r->time_height += seconds() - t;
-    VG_TRY(one_round(w, &q, front, r->n_round, r, &n_bad, err));
+    VG_TRY(one_round(w, &q, front, r, &n_bad, err));
   }
   if (n_bad)
     st = vg_fail(err, VG_ERR_GEOMETRY, "the layers could not be cleared in "
