@@ -280,7 +280,8 @@ static double face_slack(const struct vg_layer_work *w, uint32_t f)
 {
   const uint32_t *c = w->c->face[f];
   const double *x[3], *n = w->normal[f];
-  double lean[3] = { 0, 0, 0 }, e[3], longest[3], across[3], area[3];
+  double lean[3] = { 0, 0, 0 }, longest[3] = { 0, 0, 0 };
+  double e[3], across[3], area[3];
   double most = 0, side;
 
   for (int k = 0; k < 3; k++) x[k] = w->m->point[w->c->column[c[k]].root];

@@ -187,8 +187,9 @@ static vg_status try_slides(struct vg_layer_work *w,
 
   *n_bad = st == VG_BLOCKED ? trouble.n : 0;
   for (size_t i = 0; st == VG_BLOCKED && i < trouble.n; i++)
-    vg_heights_lower(w, trouble.column[i],
-                     lowered(w, trouble.column[i], round), VG_CAUSE_SLIDE);
+    vg_heights_lower(w, trouble.column[i], trouble.never[i]
+                     ? 0 : lowered(w, trouble.column[i], round),
+                     VG_CAUSE_SLIDE);
   free(trouble.column);
   return st == VG_BLOCKED ? VG_OK : st;
 }
@@ -281,6 +282,26 @@ done:
   return st;
 }
 
+/* Columns on curved patches were bent onto them: are their cells still
+ * sound? */
+static vg_status try_bent(struct vg_layer_work *w, uint8_t *bent,
+                          uint8_t *turned, size_t *n_bad, struct vg_error *err)
+{
+  for (size_t i = 0; i < w->c->n_column; i++)
+    bent[i] = w->c->column[i].bent != SIZE_MAX;
+  return vg_cells_lower(w, bent, 0, turned, n_bad, err);
+}
+
+/* Straight again, until the patches are re-meshed the next time. */
+static void unbend(struct vg_columns *c)
+{
+  for (size_t i = 0; c->n_path && i < c->n_column; i++)
+    c->column[i].bent = SIZE_MAX;
+  free(c->path);
+  c->path = NULL;
+  c->n_path = 0;
+}
+
 struct rounds {
   uint8_t *moved, *turned, *cells, *tops, *bad;  /* cells, tops: to be looked
                                                     at */
@@ -324,6 +345,8 @@ static vg_status one_round(struct vg_layer_work *w, struct rounds *q,
   r->time_clear += seconds() - t;
   t = seconds();
   if (!*n_bad) VG_TRY(try_slides(w, front, round, n_bad, err));
+  if (!*n_bad && w->c->n_path)
+    VG_TRY(try_bent(w, q->bad, q->turned, n_bad, err));
   r->time_slide += seconds() - t;
   t = seconds();
   if (!*n_bad) try_sides(w, q->bad, round, n_bad);
@@ -355,6 +378,7 @@ static vg_status until_clear(struct vg_layer_work *w,
     }
     t = seconds();
     vg_layer_front_release(front);
+    unbend(w->c);
     VG_TRY(settle(w, &q, err));
     r->time_height += seconds() - t;
     VG_TRY(one_round(w, &q, front, r, &n_bad, err));
@@ -396,7 +420,9 @@ static size_t face_cells(const struct vg_columns *c, const uint32_t face[3])
   return n;
 }
 
-static void count(const struct vg_layer_work *w, struct vg_layer_report *r)
+static void count(const struct vg_layer_work *w,
+                  const struct vg_layer_front *front,
+                  struct vg_layer_report *r)
 {
   const struct vg_columns *c = w->c;
 
@@ -413,6 +439,9 @@ static void count(const struct vg_layer_work *w, struct vg_layer_report *r)
     r->n_cell += face_cells(c, c->face[f]);
   }
   r->n_slide_patch = w->n_slide;
+  for (size_t t = 0; t < front->mesh.n_tri; t++)
+    r->n_slide_tri += front->face[t] == VG_NO_INDEX &&
+                      w->is_slide[front->mesh.tri_patch[t]];
 }
 
 static vg_status columns(struct vg_layer_work *w, struct vg_layer_report *r,
@@ -458,7 +487,7 @@ vg_status vg_layers_grow(const struct vg_mesh *surface,
   VG_TRY(first_rooms(&w, &r, err));
   VG_TRY(until_clear(&w, &l.front, &r, err));
   if (st == VG_BLOCKED) goto done;
-  count(&w, &r);
+  count(&w, &l.front, &r);
   r.time_total = seconds() - start;
   *report = r;
   vg_layers_release(out);
