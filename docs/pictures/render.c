@@ -7,10 +7,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <zlib.h>
 
 #include "base/memory.h"
 #include "io/format.h"
+#include "png.h"
 
 #define SAMPLES 2
 
@@ -220,69 +220,6 @@ static void aim(struct image *im, const struct vg_mesh *m)
   im->scale = 0.95 * fmin(im->width / width, im->height / height);
 }
 
-static void put32(unsigned char *to, unsigned long v)
-{
-  for (int k = 0; k < 4; k++) to[k] = (unsigned char)(v >> (24 - 8 * k));
-}
-
-static void chunk(FILE *f, const char *name, const unsigned char *data,
-                  size_t n)
-{
-  unsigned char word[4];
-  unsigned long crc = crc32(0, (const unsigned char *)name, 4);
-
-  if (n) crc = crc32(crc, data, (unsigned)n);
-  put32(word, n);
-  fwrite(word, 1, 4, f);
-  fwrite(name, 1, 4, f);
-  fwrite(data, 1, n, f);
-  put32(word, crc);
-  fwrite(word, 1, 4, f);
-}
-
-/* Mean of the samples of a pixel. */
-static void shrink(const struct image *im, int x, int y, unsigned char *to)
-{
-  for (int k = 0; k < 3; k++) {
-    int sum = 0;
-
-    for (int j = 0; j < SAMPLES * SAMPLES; j++)
-      sum += im->rgb[(size_t)(y * SAMPLES + j / SAMPLES) * (size_t)im->width +
-                     (size_t)(x * SAMPLES + j % SAMPLES)][k];
-    to[k] = (unsigned char)(sum / (SAMPLES * SAMPLES));
-  }
-}
-
-static int write_png(const char *path, const struct image *im)
-{
-  int width = im->width / SAMPLES, height = im->height / SAMPLES;
-  size_t row = 1 + 3 * (size_t)width;
-  uLongf packed = compressBound(row * (size_t)height);
-  unsigned char *raw = vg_calloc(row, (size_t)height);
-  unsigned char *out = vg_alloc(packed, 1), head[13] = { 0 };
-  FILE *f = fopen(path, "wb");
-  int bad = !raw || !out || !f;
-
-  for (int y = 0; !bad && y < height; y++)
-    for (int x = 0; x < width; x++)
-      shrink(im, x, y, raw + (size_t)y * row + 1 + 3 * (size_t)x);
-  bad = bad || compress2(out, &packed, raw, row * (size_t)height, 9) != Z_OK;
-  if (!bad) {
-    put32(head, (unsigned long)width);
-    put32(head + 4, (unsigned long)height);
-    head[8] = 8;   /* bits per channel */
-    head[9] = 2;   /* RGB */
-    fwrite("\211PNG\r\n\032\n", 1, 8, f);
-    chunk(f, "IHDR", head, sizeof head);
-    chunk(f, "IDAT", out, packed);
-    chunk(f, "IEND", NULL, 0);
-  }
-  if (f && fclose(f)) bad = 1;
-  free(raw);
-  free(out);
-  return bad;
-}
-
 int main(int argc, char **argv)
 {
   const double toward[3] = { 0.55, -0.75, 0.9 };
@@ -311,7 +248,8 @@ int main(int argc, char **argv)
   look(&im, toward);
   aim(&im, &m);
   bad = bad || draw_mesh(&im, &m, strtod(argv[3], NULL)) ||
-        write_png(argv[2], &im);
+        png_write(argv[2], im.width / SAMPLES, im.height / SAMPLES, SAMPLES,
+                  (const unsigned char (*)[3])im.rgb);
   free(im.depth);
   free(im.rgb);
   vg_mesh_release(&m);
