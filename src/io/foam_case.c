@@ -142,10 +142,13 @@ vg_status vg_foam_place_mesh(const char *from, const char *to,
                              struct vg_error *err)
 {
   vg_status st = VG_OK;
+  struct stat s;
 
   /* Where there was none or it is empty, the whole mesh appears at once. */
   if (!rename(from, to)) return VG_OK;
-  if (errno != ENOTEMPTY && errno != EEXIST)
+  /* ENOTDIR: perhaps a link to a folder, which several cases may share. */
+  if (errno != ENOTEMPTY && errno != EEXIST &&
+      (errno != ENOTDIR || stat(to, &s) || !S_ISDIR(s.st_mode)))
     return vg_fail(err, VG_ERR_IO, "%s: cannot be put in place: %s", to,
                    strerror(errno));
   /* Stopped from here on, a mesh without `boundary` is left, which nothing

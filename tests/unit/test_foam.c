@@ -534,6 +534,39 @@ static void a_case_is_placed(void **state)
   vg_mesh_release(&m);
 }
 
+/* Several cases may share a mesh by a link. */
+static void a_linked_mesh_stays_linked(void **state)
+{
+  const char *dir = io_temp("linked.openfoam"), *mesh = io_temp("shared_mesh");
+  struct vg_mesh m;
+  struct stat s;
+  struct foam f;
+
+  (void)state;
+  io_make_t1(&m, 1);
+  write_case(dir, &m, 0);
+  assert_int_equal(rename(in_case(dir, "constant/polyMesh"), mesh), 0);
+  assert_int_equal(symlink(mesh, in_case(dir, "constant/polyMesh")), 0);
+  write_case(dir, &m, 1);
+  load(dir, 1, &f);
+  assert_int_equal(f.n_cell, 1);
+  unload(&f);
+  assert_int_equal(lstat(in_case(dir, "constant/polyMesh"), &s), 0);
+  assert_true(S_ISLNK(s.st_mode));
+  assert_false(exists(in_case(dir, "constant/polyMesh.part")));
+  unlink(in_case(dir, "constant/polyMesh"));
+  vg_foam_remove(dir);
+  assert_false(exists(dir));
+  for (int i = 0; i < 5; i++) {
+    static const char *const file[5] = { "points", "faces", "owner",
+                                         "neighbour", "boundary" };
+
+    assert_int_equal(unlink(in_case(mesh, file[i])), 0);
+  }
+  assert_int_equal(rmdir(mesh), 0);
+  vg_mesh_release(&m);
+}
+
 /* A pole that every cell has: chains of one point would make this quadratic,
  * minutes instead of a moment. */
 static void a_point_of_many_cells(void **state)
@@ -600,6 +633,7 @@ int main(void)
     cmocka_unit_test(unwritable_places_are_told),
     cmocka_unit_test(a_case_is_remeshed_in_place),
     cmocka_unit_test(a_case_is_placed),
+    cmocka_unit_test(a_linked_mesh_stays_linked),
     cmocka_unit_test(a_point_of_many_cells),
     cmocka_unit_test(words),
   };
