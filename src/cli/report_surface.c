@@ -145,16 +145,18 @@ static void shells_text(FILE *to, const struct vg_surface_report *r)
     fprintf(to, "    ... and %zu more\n", r->n_shell - VG_SHOWN_DEFECTS);
 }
 
-static void repair_text(FILE *to, const struct vg_mesh *m,
-                        const struct vg_surface_report *r)
+static void repair_text(FILE *to, const struct vg_surface_report *r)
 {
   /* Where all was turned, those that were not had been turned before. */
-  size_t single = r->turned_inside_out ? m->n_tri + m->n_quad - r->n_flipped
-                                       : r->n_flipped;
+  size_t single = r->n_flipped;
 
-  if (r->turned_inside_out)
+  if (r->turned_inside_out) {
+    single = 0;
+    for (size_t i = 0; i < r->n_shell; i++) single += r->shell[i].n_tri;
+    single -= r->n_flipped;
     fprintf(to, "  repaired: the whole surface was turned, so that it points "
             "into the fluid\n");
+  }
   if (single)
     fprintf(to, "  repaired: %zu triangles turned to agree with their "
             "neighbours\n", single);
@@ -173,7 +175,7 @@ void vg_report_surface_text(FILE *to, const struct vg_mesh *m,
   size_t at = 0;
 
   shells_text(to, r);
-  repair_text(to, m, r);
+  repair_text(to, r);
   for (int kind = 0; kind < VG_DEFECT_N; kind++) {
     size_t n = r->count[kind], said = 0;
 

@@ -75,6 +75,15 @@ static int lifts(const struct stack *s, int l)
   return 1;
 }
 
+/* Of the three tetrahedra of a prism the first and the last are corners; this
+ * is the one between them. */
+static int middle(const struct stack *s, int l)
+{
+  int p = s->order[1], q = (p + 1) % 3, r = (p + 2) % 3;
+
+  return lifted(s, p, l, l + (q == s->order[0]), l + (r == s->order[0]));
+}
+
 static void area(const struct stack *s, int l, double n[3])
 {
   double a[3], b[3];
@@ -145,7 +154,7 @@ static int first_bad(const struct stack *s, uint8_t *blame)
       if (vg_dot(high, base) < SHRUNK * vg_dot(base, base)) bad = 7;
       memcpy(low, high, sizeof low);
     }
-    if (!bad && !lifts(s, l)) bad = 7;
+    if (!bad && !(l < from ? lifts(s, l) : middle(s, l))) bad = 7;
     if (!bad) continue;
     if (l == 0) *blame = (uint8_t)bad;
     return l;

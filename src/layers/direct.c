@@ -18,7 +18,7 @@
 #define CONVERGE 0.75      /* an edge that would shrink to less is bent apart */
 #define BEND_FROM CONVERGE
 #define BEND_MAX 0.995
-#define STILL 1e-4         /* a direction that changes by less has settled */
+#define STILL 1e-3         /* a direction that changes by less has settled */
 #define CAP 0.05           /* height of a triangle over its longest edge */
 #define NOISE 0.002        /* the same, where the normal says nothing */
 #define NOISY 4            /* bit of vg_layer_work.cap */
@@ -294,8 +294,7 @@ static double gain(const struct vg_layer_work *w, uint32_t i,
     uint32_t f = w->t.corner[j] / 3, tri = w->c->face_tri[f];
     double d;
 
-    if (tri == VG_NO_INDEX || !counts(w, w->c->face[f][w->t.corner[j] % 3], f))
-      continue;
+    if (tri == VG_NO_INDEX) continue;
     d = off_triangle(w->m, w->m->tri[tri], (int)(w->t.corner[j] % 3),
                      w->normal[f], v);
     if (d < least) least = d;

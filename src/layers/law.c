@@ -25,6 +25,13 @@ static double bare(const struct vg_law *law, int j)
                                                 : 1), k);
 }
 
+/* The same, given that of layer j - 1: one product for a geometric law. */
+static double bare_next(const struct vg_law *law, int j, double before)
+{
+  if (j <= 1 || j <= law->n_constant) return law->delta1;
+  return law->rate2 > 0 ? bare(law, j) : before * (1 + law->rate1);
+}
+
 /* Thickness of layer j under a cap, given that of j - 1. */
 static double next(double bare, double cap, int j, double before)
 {
@@ -33,21 +40,25 @@ static double next(double bare, double cap, int j, double before)
 
 void vg_law_heights(const struct vg_law *law, double cap, int n, double *d)
 {
-  double t = 0;
+  double t = 0, b = 0;
 
   if (cap > law->cap) cap = law->cap;
   d[0] = 0;
   for (int j = 1; j <= n; j++) {
-    t = next(bare(law, j), cap, j, t);
+    b = bare_next(law, j, b);
+    t = next(b, cap, j, t);
     d[j] = d[j - 1] + t;
   }
 }
 
 double vg_law_thickness(const struct vg_law *law, int j)
 {
-  double t = 0;
+  double t = 0, b = 0;
 
-  for (int i = 1; i <= j; i++) t = next(bare(law, i), law->cap, i, t);
+  for (int i = 1; i <= j; i++) {
+    b = bare_next(law, i, b);
+    t = next(b, law->cap, i, t);
+  }
   return t;
 }
 
@@ -69,7 +80,8 @@ double vg_law_squeeze(const struct vg_law *law, int n, double height)
   double lo = 1, hi = law->cap, b[VG_LEVELS_MAX + 1];
 
   if (n > VG_LEVELS_MAX) n = VG_LEVELS_MAX;
-  for (int j = 1; j <= n; j++) b[j] = bare(law, j);
+  b[0] = 0;
+  for (int j = 1; j <= n; j++) b[j] = bare_next(law, j, b[j - 1]);
   if (sum(b, hi, n) <= height) return hi;
   if (sum(b, lo, n) > height) return 0;
   /* An unlimited law still has a largest ratio among its n layers. */
@@ -77,7 +89,7 @@ double vg_law_squeeze(const struct vg_law *law, int n, double height)
     hi = 2;
     while (sum(b, hi, n) <= height) hi *= 2;
   }
-  for (int i = 0; i < 40; i++) {
+  for (int i = 0; i < 28; i++) {   /* 4e-9 of the cap */
     double mid = 0.5 * (lo + hi);
 
     if (sum(b, mid, n) <= height) lo = mid;
