@@ -201,7 +201,7 @@ wing_cases() {
   [ $quick = 0 ] || sizes=s
   for shape in wing wing-half wing-sharp wing-sharp-half; do
     for size in $sizes; do
-      case $size in s) n=600000 ;; m) n=2000000 ;; l) n=5000000 ;; esac
+      case $size in s) n=600000 ;; m) n=1100000 ;; l) n=2000000 ;; esac
       for law in 1.16 1.2; do
         wanted "${shape}_${size}_$law" || continue
         if [ $law = 1.16 ]; then
