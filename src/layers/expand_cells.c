@@ -54,12 +54,28 @@ static inline void put_tet(struct sink *s, const uint32_t p[3], uint32_t top)
   n[3] = top;
 }
 
-static void put_prism(struct sink *s, const uint32_t p[3], const uint32_t h[3])
+/* Who splits a prism's quadrilaterals from node 0 on (0 1 2 3, 1 2 3 4,
+ * 2 3 4 5) should agree with his neighbours. By rising columns he would, but
+ * half of the faces turn the other way round; there one of two edges must
+ * disagree, and they take turns, so that warped sides add up to nothing. */
+static int first_corner(const uint32_t f[3])
+{
+  const uint8_t *o = order_of(f);
+  int turns_well = (o[0] + 1) % 3 == o[1];
+
+  return turns_well || ((f[0] ^ f[1] ^ f[2]) & 1) ? o[0] : o[1];
+}
+
+static void put_prism(struct sink *s, const uint32_t f[3], const uint32_t p[3],
+                      const uint32_t h[3])
 {
   uint32_t *n = *s->pri++;
+  int first = first_corner(f);
 
-  memcpy(n, p, 3 * sizeof *n);
-  memcpy(n + 3, h, 3 * sizeof *n);
+  for (int k = 0; k < 3; k++) {
+    n[k] = p[(first + k) % 3];
+    n[3 + k] = h[(first + k) % 3];
+  }
 }
 
 /* A prism of which corner w does not rise. */
@@ -84,15 +100,15 @@ static void lift(struct sink *s, uint32_t p[3], uint32_t top, int k)
 }
 
 /* Corners of the mask that rise rise together; their roots differ. */
-static void rise_together(struct sink *s, uint32_t p[3], const uint32_t h[3],
-                          unsigned mask)
+static void rise_together(struct sink *s, const uint32_t f[3], uint32_t p[3],
+                          const uint32_t h[3], unsigned mask)
 {
   int n = 0, last = 0, rest = 0;
 
   for (int k = 0; k < 3; k++)
     if (mask >> k & 1 && h[k] != VG_NO_INDEX) n++, last = k;
     else rest = k;
-  if (n == 3) put_prism(s, p, h);
+  if (n == 3) put_prism(s, f, p, h);
   else if (n == 2) put_pyramid(s, p, h, rest);
   else if (n == 1) put_tet(s, p, h[last]);
   for (int k = 0; k < 3; k++)
@@ -106,7 +122,7 @@ static void rise_from_wall(const uint32_t f[3], unsigned together,
 {
   const uint8_t *order = order_of(f);
 
-  if (together & (together - 1)) rise_together(s, p, h, together);
+  if (together & (together - 1)) rise_together(s, f, p, h, together);
   else
     for (int k = 0; k < 3; k++)
       if (together >> k & 1 && h[k] != VG_NO_INDEX) lift(s, p, h[k], k);
@@ -144,7 +160,7 @@ static inline void rise(const struct level *l, size_t face, struct sink *s)
       together |= (unsigned)!(l->e->mark[f[k]] & VG_MARK_SHARED) << k;
     rise_from_wall(f, together, p, h, s);
   }
-  else if (l->e->mixed) rise_together(s, p, h, 7);
+  else if (l->e->mixed) rise_together(s, f, p, h, 7);
   else rise_one_by_one(f, p, h, s);
 }
 
