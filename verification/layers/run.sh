@@ -110,9 +110,6 @@ prepare_checker() {
   esac
   sed -e 's/PYB\[4\] = {0,3,4,1}/PYB[4] = {1,4,3,0}/' \
     -e 's/{{0,1,2},{1,4,2},{4,3,2},{3,0,2}}/{{2,1,0},{2,4,1},{2,3,4},{2,0,3}}/' \
-    -e '/^  for .*c < m\.npri/,/^  }/s/V += v;/V += (v + OTHER_SPLIT) \/ 2;/' \
-    -e 's/OTHER_SPLIT/CORNERS(0,1,2,5) + CORNERS(0,1,5,4) + CORNERS(0,4,5,3)/' \
-    -e '1i #define CORNERS(a,b,c,d) vol(X(n[a]),X(n[b]),X(n[c]),X(n[d]))' \
     "$meshcheck" > "$work/judge_mixed.c"
   checker=$work/judge checker_mixed=$work/judge_mixed
   gcc -O2 -w -o "$checker" "$meshcheck" -lm &&
