@@ -43,6 +43,7 @@ static void work_release(struct vg_layer_work *w)
   free(w->slide);
   free(w->is_wall);
   free(w->is_slide);
+  free(w->noise);
   free(w->normal);
   free(w->cap);
   free(w->root_dir);
@@ -77,6 +78,29 @@ static vg_status check_request(const struct vg_mesh *m, size_t p,
   return VG_OK;
 }
 
+static double off_plane(const struct vg_slide *s, const double x[3])
+{
+  return s->normal[0] * x[0] + s->normal[1] * x[1] + s->normal[2] * x[2] -
+         s->at;
+}
+
+static vg_status roughness(struct vg_layer_work *w, struct vg_error *err)
+{
+  w->noise = vg_alloc(w->n_slide, sizeof *w->noise);
+  if (!w->noise) return vg_fail_memory(err, "the layers");
+  for (size_t s = 0; s < w->n_slide; s++) {
+    const struct vg_slide *slide = &w->slide[s];
+
+    w->is_slide[slide->patch] = 1;
+    w->noise[s] = slide->is_plane ? 0 : INFINITY;
+    for (size_t t = 0; slide->is_plane && t < w->m->n_tri; t++)
+      for (int k = 0; w->m->tri_patch[t] == slide->patch && k < 3; k++)
+        w->noise[s] = fmax(w->noise[s], fabs(off_plane(slide,
+                             w->m->point[w->m->tri[t][k]])));
+  }
+  return VG_OK;
+}
+
 static vg_status walls(struct vg_layer_work *w, struct vg_error *err)
 {
   size_t n = 0;
@@ -98,8 +122,7 @@ static vg_status walls(struct vg_layer_work *w, struct vg_error *err)
                    "take is %g and the end of layers %g; the first must lie "
                    "in 0 to 0.5, the second above 0", w->o->gap, w->o->end);
   VG_TRY(vg_slides_find(w->m, w->is_wall, &w->n_slide, &w->slide, err));
-  for (size_t s = 0; s < w->n_slide; s++)
-    w->is_slide[w->slide[s].patch] = 1;
+  st = roughness(w, err);
 done:
   return st;
 }
@@ -194,52 +217,48 @@ static vg_status try_slides(struct vg_layer_work *w,
   return st == VG_BLOCKED ? VG_OK : st;
 }
 
-/* Column i starts in front of the plane of patch p, in which it does not
- * slide, and ends on it or behind. */
+/* Column i, which does not slide in patch p, starts in front of its plane and
+ * ends on it or behind: 1. 2: the patch is too rough for its plane to tell. */
 static int crosses(const struct vg_layer_work *w, uint32_t p, uint32_t i)
 {
   const struct vg_column *c = &w->c->column[i];
-  const struct vg_slide *s = w->slide;
-  double top[3], at;
+  size_t s = 0;
+  double top[3], root;
 
   if (c->slide[0] == p || c->slide[1] == p || !c->n) return 0;
-  while (s->patch != p) s++;
-  if (s->axis < 0) return 0;
-  at = s->at * s->normal[s->axis];
+  while (w->slide[s].patch != p) s++;
+  root = off_plane(&w->slide[s], w->m->point[c->root]);
+  if (fabs(root) <= 2 * w->noise[s]) return w->noise[s] > 0 ? 2 : 0;
   vg_column_top(w->c, w->m, i, top);
-  return (w->m->point[c->root][s->axis] - at) * s->normal[s->axis] > 0 &&
-         !((top[s->axis] - at) * s->normal[s->axis] > 0);
+  return root > 0 && !(off_plane(&w->slide[s], top) > 2 * w->noise[s]);
 }
 
 /* Tops that stand on a slide plane with one edge or corner and cross it with
- * the others. vg_clear_tops has tested all other pairs, so that with planes
- * normal to an axis the front is clear when there are none. */
+ * the others. vg_clear_tops has tested all other pairs, so that the front is
+ * clear when there are none, unless a patch was too rough. */
 static void try_sides(struct vg_layer_work *w, uint8_t *bad, size_t round,
-                      size_t *n_bad)
+                      size_t *n_bad, int *is_unsure)
 {
   memset(bad, 0, w->c->n_column);
   *n_bad = 0;
+  *is_unsure = 0;
   for (size_t f = 0; f < w->c->n_face; f++)
     for (int k = 0; k < 3; k++) {
       const struct vg_column *c = &w->c->column[w->c->face[f][k]];
 
       for (int q = 0; q < 2 && c->slide[q] != VG_NO_INDEX; q++)
-        for (int o = 1; o < 3; o++)
-          if (crosses(w, c->slide[q], w->c->face[f][(k + o) % 3]))
-            bad[w->c->face[f][(k + o) % 3]] = 1;
+        for (int o = 1; o < 3; o++) {
+          int how = crosses(w, c->slide[q], w->c->face[f][(k + o) % 3]);
+
+          if (how == 1) bad[w->c->face[f][(k + o) % 3]] = 1;
+          if (how == 2) *is_unsure = 1;
+        }
     }
   for (size_t i = 0; i < w->c->n_column; i++) {
     if (!bad[i]) continue;
     vg_heights_lower(w, i, lowered(w, i, round), VG_CAUSE_COLLISION);
     ++*n_bad;
   }
-}
-
-static int all_axis_planes(const struct vg_layer_work *w)
-{
-  for (size_t s = 0; s < w->n_slide; s++)
-    if (w->slide[s].axis < 0) return 0;
-  return 1;
 }
 
 /* The front as it will be filled: re-meshed patches against tops. */
@@ -331,6 +350,7 @@ static vg_status one_round(struct vg_layer_work *w, struct rounds *q,
 {
   size_t round = q->sound;
   double t = seconds();
+  int is_unsure = 0;
   vg_status st;
 
   VG_TRY(vg_cells_lower(w, r->n_round ? q->cells : NULL,
@@ -349,8 +369,8 @@ static vg_status one_round(struct vg_layer_work *w, struct rounds *q,
     VG_TRY(try_bent(w, q->bad, q->turned, n_bad, err));
   r->time_slide += seconds() - t;
   t = seconds();
-  if (!*n_bad) try_sides(w, q->bad, round, n_bad);
-  if (!*n_bad && !all_axis_planes(w))
+  if (!*n_bad) try_sides(w, q->bad, round, n_bad, &is_unsure);
+  if (!*n_bad && is_unsure)
     VG_TRY(try_front(w, front, q->bad, round, n_bad, err));
   r->time_clear += seconds() - t;
 done:

@@ -20,6 +20,8 @@ struct vg_layer_work {
   size_t n_slide;
   struct vg_slide *slide;
   uint8_t *is_wall, *is_slide;  /* [m->n_patch] */
+  double *noise;            /* [n_slide] how far points of a plane patch lie off
+                               its plane; INFINITY: it is curved */
   struct vg_columns *c;
   struct vg_topology t;
   double (*normal)[3];      /* [n_face] unit; 0 for virtual faces */
