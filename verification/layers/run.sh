@@ -138,7 +138,7 @@ bars() {
   first=$(json "$1" all first_error_percent)
   holds '>=' "$full" "$4" || miss "full $(printf %.2f "$full") < $4"
   holds '>=' "$any" 99.9 || miss "any $(printf %.2f "$any") < 99.9"
-  holds '<=' "$first" 1 || miss "first height off by $first %"
+  holds '<=' "$first" 1 || miss "first height off by $(printf %.2f "$first") %"
   prisms=-
   if [ "$3" = mixed ]; then
     layers=$(awk -v t="$(json "$1" layers tetrahedra)" \
