@@ -221,8 +221,8 @@ static void print_grow(const struct bench *b, const struct figures *f)
   const struct vg_layer_report *r = &f->grow;
   double n = (double)r->n_wall_point, us = 1e6 / n, t = phases(r);
 
-  printf("grow | %s | %d | %zu | %zu | %.1f | %.2f | %.2f | %.2f | %.2f | %.2f "
-         "| %.0f | %.0f | %.3f / %.3f | %.0f | %.1f | %zu |\n", b->o.name,
+  printf("grow | %s | %d | %zu | %zu | %.1f | %.2f | %.2f | %.2f | %.2f "
+         "| %.2f | %.0f | %.0f | %.3f / %.3f | %.0f | %.1f | %zu |\n", b->o.name,
          b->o.threads, r->n_wall_point, r->n_cell,
          (double)r->n_layer_point / (double)r->n_column,
          us * r->time_topology, us * r->time_direction, us * r->time_height,
