@@ -317,6 +317,16 @@ static void scale_body(void *context, size_t first, size_t end, int worker)
   }
 }
 
+/* Columns of a fan keep their directions: cells between them are sound only
+ * as they were spread. */
+static int in_fan(const struct vg_layer_work *w, size_t i)
+{
+  const struct vg_column *c = w->c->column;
+
+  return (i > 0 && c[i - 1].root == c[i].root) ||
+         (i + 1 < w->c->n_column && c[i + 1].root == c[i].root);
+}
+
 static int same_slides(const struct vg_column *a, const struct vg_column *b)
 {
   return a->slide[0] == b->slide[0] && a->slide[1] == b->slide[1];
@@ -360,7 +370,7 @@ static void follow_body(void *context, size_t first, size_t end, int worker)
   struct loop *l = context;
 
   for (size_t i = first; i < end; i++)
-    if (l->w->view[i] > 0)
+    if (l->w->view[i] > 0 && !in_fan(l->w, i))
       follow(l, (uint32_t)i,
              l->scratch + (size_t)worker * l->w->max_valence);
     else memcpy(l->to[i], l->from[i], sizeof *l->to);
@@ -534,7 +544,7 @@ static void relax(const struct loop *l, size_t i, double (*n)[3])
 
   memcpy(l->to[i], l->from[i], sizeof *l->to);
   l->stirs[i] = 0;
-  if (w->t.preset[i] || w->view[i] == 0 || is_still(l, i)) return;
+  if (in_fan(w, i) || w->view[i] == 0 || is_still(l, i)) return;
   mean_of_near(w, i, l->from, mean);
   if (!(vg_unit(mean) > 0)) return;
   k = real_normals(w, i, n);
@@ -689,7 +699,7 @@ static int even(struct vg_layer_work *w, size_t i, const uint8_t *turn,
       n_mean++;
     }
   }
-  if (!n_mean || w->view[i] == 0) return 0;
+  if (!n_mean || w->view[i] == 0 || in_fan(w, i)) return 0;
   k = real_normals(w, i, n);
   for (int try = 0; try < 4; try++, step *= 0.5) {
     for (int x = 0; x < 3; x++)
