@@ -222,13 +222,14 @@ static void print_grow(const struct bench *b, const struct figures *f)
   double n = (double)r->n_wall_point, us = 1e6 / n, t = phases(r);
 
   printf("grow | %s | %d | %zu | %zu | %.1f | %.2f | %.2f | %.2f | %.2f "
-         "| %.2f | %.0f | %.0f | %.3f / %.3f | %.0f | %.1f | %zu |\n", b->o.name,
-         b->o.threads, r->n_wall_point, r->n_cell,
+         "| %.2f | %.0f | %.0f | %.3f / %.3f | %.0f | %.1f | %zu |\n",
+         b->o.name, b->o.threads, r->n_wall_point, r->n_cell,
          (double)r->n_layer_point / (double)r->n_column,
          us * r->time_topology, us * r->time_direction, us * r->time_height,
          us * r->time_clear, us * r->time_slide, n / t,
-         n / (t * f->grown.cpu / f->grown.wall), f->grown.wall, f->grown.cpu, n / r->time_total,
-         1e-6 * (double)r->n_cell / r->time_total, r->n_round);
+         n / (t * f->grown.cpu / f->grown.wall), f->grown.wall, f->grown.cpu,
+         n / r->time_total, 1e-6 * (double)r->n_cell / r->time_total,
+         r->n_round);
 }
 
 static int by_joined(const void *a, const void *b, int kind)
