@@ -267,6 +267,26 @@ static void judge(struct vg_layer_work *w, const struct search *q,
   }
 }
 
+/* Faces whose columns would not turn are lowered after all. Columns of every
+ * bad face count as turned, so that it will be looked at again. */
+static void stubborn(const struct vg_layer_work *w, const struct search *q,
+                     const uint8_t *turn, uint8_t *turned, double *least)
+{
+  for (size_t f = 0; f < w->c->n_face; f++) {
+    const uint32_t *face = w->c->face[f];
+    double l[3];
+
+    if (!turn[f] || turned[face[0]] || turned[face[1]] || turned[face[2]])
+      continue;
+    limits(w, face, q->level[f], q->blame[f], l);
+    for (int k = 0; k < 3; k++)
+      least[face[k]] = fmin(least[face[k]], l[k]);
+  }
+  for (size_t f = 0; f < w->c->n_face; f++)
+    for (int k = 0; q->level[f] >= 0 && k < 3; k++)
+      turned[w->c->face[f][k]] = 1;
+}
+
 vg_status vg_cells_lower(struct vg_layer_work *w, const uint8_t *moved,
                          int may_turn, uint8_t *turned, size_t *n_bad,
                          struct vg_error *err)
@@ -286,9 +306,10 @@ vg_status vg_cells_lower(struct vg_layer_work *w, const uint8_t *moved,
   }
   vg_parallel_for(threads, n, GRAIN, search_body, &q);
   judge(w, &q, may_turn, least, turn, n_bad, &n_turn);
+  if (n_turn) VG_TRY(vg_directions_even(w, turn, turned, err));
+  stubborn(w, &q, turn, turned, least);
   for (size_t i = 0; i < w->c->n_column; i++)
     vg_heights_lower(w, i, least[i], VG_CAUSE_CELL);
-  if (n_turn) st = vg_directions_even(w, turn, turned, err);
 done:
   free(least);
   free(turn);
