@@ -241,8 +241,11 @@ vg_status vg_outputs_begin(struct vg_outputs *o, struct vg_error *err)
 vg_status vg_outputs_add(struct vg_outputs *o, const char *suffix,
                          struct vg_error *err)
 {
-  char *copy = strdup(suffix);
+  char *copy;
 
+  for (size_t i = 0; i < o->n_file; i++)   /* cogsg brings the mapbc */
+    if (!strcmp(o->file[i].suffix, suffix)) return VG_OK;
+  copy = strdup(suffix);
   if (!copy || vg_reserve(&o->file, &o->cap_file, o->n_file + 1,
                           sizeof *o->file)) {
     free(copy);
@@ -323,7 +326,8 @@ static vg_status write_case(struct vg_outputs *o, const struct vg_mesh *m,
   vg_foam_word(item, &options);
   if (st >= 0) st = vg_outputs_add(o, VG_FOAM_SUFFIX, err);
   if (st >= 0) {
-    o->file[o->n_file - 1].is_case = 1;
+    for (size_t i = 0; i < o->n_file; i++)
+      if (!strcmp(o->file[i].suffix, VG_FOAM_SUFFIX)) o->file[i].is_case = 1;
     st = vg_foam_write(path, m, &options, err);
   }
   free(path);
