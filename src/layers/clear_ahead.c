@@ -31,6 +31,7 @@
 
 #define FACING 0.2
 #define SAME_STACK 0.3
+#define SHARP 0.5             /* cosine of a column to its triangle */
 #define SQRT_2 1.41421356237309505
 
 enum { GRAIN = 512, STACK = 96, CENTRE_MAX = 64, TEAM = 16, LEAF_MAX = 64 };
@@ -608,6 +609,31 @@ static void ahead_release(struct ahead *x)
   vg_boxes_release(&x->boxes);
 }
 
+/* Two sharp edges that point at each other face each other with their
+ * columns, not with their triangles, whose normals n are across. Such columns
+ * lean out of the triangle: n is turned towards them. */
+static void turn_to_edge(const struct ahead *x, size_t tri, double n[3])
+{
+  double (*p)[3] = x->surface->point, out[3] = { 0, 0, 0 }, l;
+  const uint32_t *t = x->surface->tri[tri];
+  uint32_t f = x->face_of[tri];
+
+  if (f == VG_NO_INDEX) return;
+  for (int k = 0; k < 3; k++) {
+    const struct vg_column *c = &x->columns->column[x->columns->face[f][k]];
+    double unit[3] = { 0, 0, 0 }, lean = 0;
+
+    add_direction(c, unit);
+    for (int j = 0; j < 3; j++)
+      lean += unit[j] * (2 * p[t[k]][j] - p[t[(k + 1) % 3]][j] -
+                         p[t[(k + 2) % 3]][j]);
+    if (lean > 0 && dot(unit, n) < SHARP) add_direction(c, out);
+  }
+  for (int k = 0; k < 3; k++) n[k] += out[k];
+  l = sqrt(dot(n, n));
+  for (int k = 0; l > 0 && k < 3; k++) n[k] /= l;
+}
+
 static void measure_normals(void *context, size_t first, size_t end,
                             int worker)
 {
@@ -625,8 +651,9 @@ static void measure_normals(void *context, size_t first, size_t end,
     }
     cross(e, f, n);
     l = sqrt(dot(n, n));
-    for (int k = 0; k < 3; k++)
-      x->normal[i][k] = l > 0 ? (float)(n[k] / l) : 0;
+    for (int k = 0; k < 3; k++) n[k] = l > 0 ? n[k] / l : 0;
+    if (l > 0) turn_to_edge(x, x->boxes.item[i], n);
+    for (int k = 0; k < 3; k++) x->normal[i][k] = (float)n[k];
   }
 }
 
