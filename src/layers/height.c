@@ -165,8 +165,8 @@ static void wanted_body(void *context, size_t first, size_t end, int worker)
 
 /* Neighbours differ by one level at most, columns of one root by none.
  * A minimum over the columns, spread over their neighbours: lower(w, i, j)
- * lowers near[j] because of i and says whether it did. The least fixed point does
- * not depend on the order. */
+ * lowers near[j] because of i and says whether it did. The least fixed point
+ * does not depend on the order. */
 static vg_status propagate(struct vg_layer_work *w,
                            int (*lower)(struct vg_layer_work *, uint32_t,
                                         uint32_t),
@@ -332,6 +332,23 @@ vg_status vg_heights_slack(struct vg_layer_work *w, struct vg_error *err)
   return VG_OK;
 }
 
+/* Ratio by which steps of height h_i, h_j along the dirs of columns i and j
+ * change the edge between their roots, along itself, less 1. 0 for columns of
+ * one root. */
+static double edge_change(const struct vg_layer_work *w, uint32_t i,
+                          uint32_t j, double h_i, double h_j)
+{
+  const struct vg_column *a = &w->c->column[i], *b = &w->c->column[j];
+  double e[3], l, sum = 0;
+
+  vg_sub(w->m->point[b->root], w->m->point[a->root], e);
+  l = vg_dot(e, e);
+  if (!(l > 0)) return 0;
+  for (int k = 0; k < 3; k++)
+    sum += (h_j * b->dir[k] - h_i * a->dir[k]) * e[k];
+  return sum / l;
+}
+
 struct corner {
   const struct vg_layer_work *w;
   double *limit;
@@ -349,7 +366,7 @@ static void corner_body(void *context, size_t first, size_t end, int worker)
     c->limit[i] = INFINITY;
     for (uint32_t j = w->t.near_first[i]; j < w->t.near_first[i + 1]; j++) {
       uint32_t o = w->t.near[j];
-      double s = vg_edge_change(w, (uint32_t)i, o, w->room[i], w->room[o]);
+      double s = edge_change(w, (uint32_t)i, o, w->room[i], w->room[o]);
       double h = (1 - KEEP_EDGE) / -s * w->room[i];
 
       if (1 + s < KEEP_EDGE && h < c->limit[i]) c->limit[i] = h;

@@ -26,7 +26,8 @@ struct vg_layer_work {
   struct vg_topology t;
   double (*normal)[3];      /* [n_face] unit; 0 for virtual faces */
   uint8_t *cap;             /* [n_face] 1 + k: a triangle so flat that corner k
-                               lies on the edge across; 4: its normal is noise */
+                               lies on the edge across; bit 4: its normal is
+                               noise */
   double (*root_dir)[3];    /* unit, before smoothing */
   double *view;             /* least cosine to its faces that dir must keep;
                                0: no direction sees them all */
@@ -53,7 +54,7 @@ static inline void vg_root_range(const struct vg_columns *c, uint32_t i,
     ++*end;
 }
 
-/* direct.c ----------------------------------------------------------------*/
+/* direct.c, bend.c, lift.c ------------------------------------------------*/
 
 /** Normals of faces, first directions and their view. */
 vg_status vg_directions_first(struct vg_layer_work *w, struct vg_error *err);
@@ -72,12 +73,6 @@ vg_status vg_directions_shift(struct vg_layer_work *w, struct vg_error *err);
  * keep their view. turned out: [n_column] set to 1 where dir changed. */
 vg_status vg_directions_even(struct vg_layer_work *w, const uint8_t *turn,
                              uint8_t *turned, struct vg_error *err);
-
-/** Ratio by which a step of height h_i, h_j along the dirs of columns i and
- * j changes the edge between their roots, along itself: 1 + this * height
- * where both heights are equal. 0 for columns of one root. */
-double vg_edge_change(const struct vg_layer_work *w, uint32_t i, uint32_t j,
-                      double h_i, double h_j);
 
 /* height.c ----------------------------------------------------------------*/
 
