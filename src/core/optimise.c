@@ -15,7 +15,7 @@ static const float good = 0.5;
 static const double desperate = 0.067;
 
 /* Rounds of mending, ended early when less than a hundredth got better. */
-enum { ROUNDS = 8 };
+enum { ROUNDS = 8, CLASSES = 8 };
 
 static vg_status start(struct vg_optimiser *o, struct vg_tets *t,
                        struct vg_error *err)
@@ -24,10 +24,16 @@ static vg_status start(struct vg_optimiser *o, struct vg_tets *t,
   o->star = vg_alloc(t->n_point, sizeof *o->star);
   o->cap_star = t->n_point;
   if (o->star) memset(o->star, 0xff, t->n_point * sizeof *o->star);
-  if (!o->star || vg_reserve(&o->q, &o->cap_q, t->cap_cell, sizeof *o->q))
+  o->vain = vg_calloc(t->n_point, sizeof *o->vain);
+  o->cap_vain = t->n_point;
+  if (!o->star || !o->vain ||
+      vg_reserve(&o->q, &o->cap_q, t->cap_cell, sizeof *o->q) ||
+      vg_reserve(&o->vain_cell, &o->cap_vain_cell, t->cap_cell,
+                 sizeof *o->vain_cell))
     return vg_fail_memory(err, "optimisation");
   for (uint32_t c = 0; c < t->n_cell; c++) {
     o->q[c] = 1;
+    o->vain_cell[c] = 0;
     if (t->flag[c] & (VG_DEAD | VG_OUTSIDE)) continue;
     o->q[c] = (float)vg_cell_shape(t, c);
     for (int i = 0; i < 4; i++) o->star[t->cell[c].v[i]] = c;
@@ -75,7 +81,8 @@ static int wants_mending(const struct vg_optimiser *o, uint32_t c)
   return is_live(o->t, c) && o->q[c] < aim && !(o->t->flag[c] & VG_TRIED);
 }
 
-/* The cells that want mending, worst first. */
+/* The cells that want mending: the worst first in a few classes, and within
+ * a class as they lie in memory, where neighbours are near each other. */
 static vg_status list_bad(const struct vg_optimiser *o, size_t *n,
                           struct vg_key **list, struct vg_error *err)
 {
@@ -90,7 +97,8 @@ static vg_status list_bad(const struct vg_optimiser *o, size_t *n,
     if (wants_mending(o, c)) {
       double q = o->q[c] > 0 ? o->q[c] : 0;
 
-      (*list)[k].key = (uint64_t)(q * (1 << 20));
+      (*list)[k].key = q < desperate ? (uint64_t)(CLASSES * q / desperate)
+                                     : CLASSES;
       (*list)[k++].index = c;
     }
   return vg_sort_keys(*n, *list, err);
@@ -146,6 +154,8 @@ vg_status vg_optimise(struct vg_tets *t, size_t n_fixed, int sweeps,
   if (st == VG_OK && o->refused) st = vg_fail_memory(err, "optimisation");
   free(o->q);
   free(o->star);
+  free(o->vain);
+  free(o->vain_cell);
   free(o);
   return st;
 }

@@ -146,7 +146,11 @@ static void link_face(struct vg_tets *t, uint32_t c, uint32_t i,
 
 static int grow_shapes(struct vg_optimiser *o)
 {
-  return vg_reserve(&o->q, &o->cap_q, o->t->cap_cell, sizeof *o->q);
+  size_t n = o->t->cap_cell;
+
+  return vg_reserve(&o->q, &o->cap_q, n, sizeof *o->q) ||
+         vg_reserve(&o->vain_cell, &o->cap_vain_cell, n,
+                    sizeof *o->vain_cell);
 }
 
 int vg_replace(struct vg_optimiser *o, int n_old, const uint32_t *old,
@@ -172,6 +176,7 @@ int vg_replace(struct vg_optimiser *o, int n_old, const uint32_t *old,
     memcpy(t->cell[c].v, v[k], sizeof t->cell[c].v);
     t->flag[c] = 0;
     o->q[c] = q[k];
+    vg_changed(o, c);
     for (int i = 0; i < 4; i++) o->star[v[k][i]] = c;
   }
   for (int k = 0; k < n_new; k++)

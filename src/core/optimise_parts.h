@@ -8,13 +8,22 @@
 enum { VG_BALL_MAX = 256, VG_SHELL_MAX = 10, VG_NEW_MAX = 64,
        VG_OLD_MAX = 64 };
 
+enum {                       /* what was tried in vain, until a change */
+  VG_VAIN_SMOOTH = 1, VG_VAIN_MERGE = 2,   /* of a point */
+  VG_VAIN_SPLIT = 4                        /* of a cell */
+};
+
 struct vg_optimiser {
   struct vg_tets *t;
   size_t n_fixed;            /* points below stay */
   float *q;                  /* [cap_cell] shape of each cell */
   size_t cap_q;
+  uint8_t *vain_cell;        /* [cap_cell] steps of no use to each cell */
+  size_t cap_vain_cell;
   uint32_t *star;            /* [n_point] a cell of each point, or VG_NONE */
   size_t cap_star;
+  uint8_t *vain;             /* [n_point] and to each point, until a change */
+  size_t cap_vain;
   size_t n_ball;
   uint32_t ball[VG_BALL_MAX];  /* links 4 * cell + index of the centre */
   int refused;               /* memory was refused */
@@ -26,6 +35,16 @@ static inline double vg_cell_shape(const struct vg_tets *t, uint32_t c)
   const uint32_t *v = t->cell[c].v;
 
   return vg_shape(t->x[v[0]], t->x[v[1]], t->x[v[2]], t->x[v[3]]);
+}
+
+/** Cell c changed: what was in vain for it and its points may work now. */
+static inline void vg_changed(struct vg_optimiser *o, uint32_t c)
+{
+  const uint32_t *v = o->t->cell[c].v;
+
+  o->t->flag[c] &= (uint8_t)~VG_TRIED;
+  o->vain_cell[c] = 0;
+  o->vain[v[0]] = o->vain[v[1]] = o->vain[v[2]] = o->vain[v[3]] = 0;
 }
 
 /** Collect the cells around point p in o->ball. 0 when there are more than

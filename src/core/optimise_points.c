@@ -51,7 +51,9 @@ static int merge_point(struct vg_optimiser *o, uint32_t p)
   double need = 2, worst;
   int best = -1, now = 0;
 
-  if (p < o->n_fixed || !vg_ball(o, p) || o->n_ball > VG_OLD_MAX) return 0;
+  if (p < o->n_fixed || o->vain[p] & VG_VAIN_MERGE) return 0;
+  o->vain[p] |= VG_VAIN_MERGE;
+  if (!vg_ball(o, p) || o->n_ball > VG_OLD_MAX) return 0;
   for (size_t k = 0; k < o->n_ball; k++) {
     old[k] = o->ball[k] >> 2;
     if (o->q[old[k]] < need) need = o->q[old[k]];
@@ -93,8 +95,8 @@ struct cavity {
   int n_old, n_new;
   uint32_t old[VG_OLD_MAX];
   uint32_t v[VG_NEW_MAX][4];
+  uint32_t from[VG_NEW_MAX]; /* faces, as links */
   float q[VG_NEW_MAX];
-  double worst;              /* of the old cells */
 };
 
 static int in_cavity(const struct cavity *h, uint32_t c)
@@ -104,6 +106,26 @@ static int in_cavity(const struct cavity *h, uint32_t c)
   return 0;
 }
 
+/* Cell `c` joined the cavity: drop the face it shares with a cell that was in
+ * before. 0: the two are separated by a fixed face. */
+static int drop_shared(const struct vg_tets *t, uint32_t c, struct cavity *h)
+{
+  for (int m = 0; m < h->n_new;) {
+    uint32_t from = h->from[m], link = t->cell[from >> 2].link[from & 3];
+
+    if (link == VG_NONE || link >> 2 != c) {
+      m++;
+      continue;
+    }
+    if (t->flag[c] >> (link & 3) & 1) return 0;
+    h->n_new--;
+    memcpy(h->v[m], h->v[h->n_new], sizeof h->v[m]);
+    h->q[m] = h->q[h->n_new];
+    h->from[m] = h->from[h->n_new];
+  }
+  return 1;
+}
+
 /* Faces of the cavity joined with x. A face that makes a cell no better than
  * `need` is opened: the cell behind it joins the cavity. 0: cannot be done. */
 static int open_cavity(const struct vg_optimiser *o, const double x[3],
@@ -111,11 +133,13 @@ static int open_cavity(const struct vg_optimiser *o, const double x[3],
 {
   const struct vg_tets *t = o->t;
 
-restart:
   h->n_new = 0;
-  for (int k = 0; k < h->n_old; k++)
-    for (int i = 0; i < 4; i++) {
-      uint32_t c = h->old[k], link = t->cell[c].link[i], *w;
+  for (int k = 0; k < h->n_old; k++) {
+    uint32_t c = h->old[k];
+
+    if (!drop_shared(t, c, h)) return 0;
+    for (uint32_t i = 0; i < 4; i++) {
+      uint32_t link = t->cell[c].link[i], *w;
       const uint8_t *f = vg_face[i];
       double q;
 
@@ -127,15 +151,16 @@ restart:
       w = h->v[h->n_new];
       for (int j = 0; j < 3; j++) w[j] = t->cell[c].v[f[j]];
       q = vg_shape(t->x[w[0]], t->x[w[1]], t->x[w[2]], x);
-      if (q <= need) {
-        if (link == VG_NONE || t->flag[c] >> i & 1 ||
-            h->n_old == CAVITY_MAX)
-          return 0;
-        h->old[h->n_old++] = link >> 2;
-        goto restart;
+      if (q > need) {
+        h->from[h->n_new] = 4 * c + i;
+        h->q[h->n_new++] = (float)q;
+        continue;
       }
-      h->q[h->n_new++] = (float)q;
+      if (link == VG_NONE || t->flag[c] >> i & 1 || h->n_old == CAVITY_MAX)
+        return 0;
+      h->old[h->n_old++] = link >> 2;
     }
+  }
   return 1;
 }
 
@@ -162,7 +187,8 @@ static int put_point(struct vg_optimiser *o, const double x[3],
 
   if (swallows(t, h)) return 0;
   if (vg_tets_reserve_points(t, 1) ||
-      vg_reserve(&o->star, &o->cap_star, t->n_point + 1, sizeof *o->star)) {
+      vg_reserve(&o->star, &o->cap_star, t->n_point + 1, sizeof *o->star) ||
+      vg_reserve(&o->vain, &o->cap_vain, t->n_point + 1, sizeof *o->vain)) {
     o->refused = 1;
     return 0;
   }
@@ -208,6 +234,7 @@ int vg_split(struct vg_optimiser *o, uint32_t c, double aim)
     {0, .5, .5, 0}, {0, .5, 0, .5}, {0, 0, .5, .5}};
   double x[3];
 
+  if (o->vain_cell[c] & VG_VAIN_SPLIT) return 0;
   for (int i = 0; i < 4; i++) {
     uint32_t link = o->t->cell[c].link[i];
 
@@ -219,5 +246,6 @@ int vg_split(struct vg_optimiser *o, uint32_t c, double aim)
     centre(o->t, c, share[k], x);
     if (split_at(o, c, x, aim)) return 1;
   }
+  o->vain_cell[c] |= VG_VAIN_SPLIT;
   return 0;
 }

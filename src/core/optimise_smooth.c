@@ -34,16 +34,26 @@ static int try_at(const struct vg_optimiser *o, const double x[3],
   return 1;
 }
 
-static void present(const struct vg_optimiser *o, struct ball_state *s)
+/* The worst cell becomes the first of the ball: it decides soonest. */
+static void present(struct vg_optimiser *o, struct ball_state *s)
 {
+  size_t worst = 0;
+  uint32_t first;
+
   s->worst = 2;
   s->sum = 0;
   for (size_t k = 0; k < o->n_ball; k++) {
     double q = o->q[o->ball[k] >> 2];
 
-    if (q < s->worst) s->worst = q;
+    if (q < s->worst) {
+      s->worst = q;
+      worst = k;
+    }
     s->sum += q;
   }
+  first = o->ball[worst];
+  o->ball[worst] = o->ball[0];
+  o->ball[0] = first;
 }
 
 /* Volume-weighted mean of centroids: sum (V_i (x + y1 + y2 + y3) / 4) / V.
@@ -81,7 +91,7 @@ static void keep(struct vg_optimiser *o, uint32_t p, const double x[3],
   memcpy(o->t->x[p], x, 3 * sizeof *x);
   for (size_t k = 0; k < o->n_ball; k++) {
     o->q[o->ball[k] >> 2] = q[k];
-    o->t->flag[o->ball[k] >> 2] &= (uint8_t)~VG_TRIED;
+    vg_changed(o, o->ball[k] >> 2);
   }
   o->report->n_smoothed++;
 }
@@ -146,7 +156,8 @@ int vg_smooth(struct vg_optimiser *o, uint32_t p, double aim)
   double to[3], x[3], stop;
   int better = 0;
 
-  if (p < o->n_fixed || !vg_ball(o, p)) return 0;
+  if (p < o->n_fixed || o->vain[p] & VG_VAIN_SMOOTH || !vg_ball(o, p))
+    return 0;
   present(o, &now);
   target(o, o->t->x[p], to);
   for (double share = 1; share > 0.2 && !better; share *= 0.5) {
@@ -163,5 +174,6 @@ int vg_smooth(struct vg_optimiser *o, uint32_t p, double aim)
   }
   for (int k = 0; k < 4 && now.worst < aim && climb(o, p, &now); k++)
     better = 1;
+  if (!better) o->vain[p] |= VG_VAIN_SMOOTH;
   return better;
 }
