@@ -1,6 +1,7 @@
 /* For bad cells that neither swaps nor smoothing mend: a point is taken away,
  * or one is put in (Klingner, Shewchuk, "Aggressive tetrahedral mesh
  * improvement", 2007). Both are made only when the worst cell gets better. */
+#include <math.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -43,13 +44,29 @@ static int plan_merge(const struct vg_optimiser *o, uint32_t to, double need,
   return m->n_new > 0;
 }
 
+/* The points that share an edge with the centre of the ball, each once. */
+static int neighbours(const struct vg_optimiser *o, uint32_t *to)
+{
+  int n = 0;
+
+  for (size_t k = 0; k < o->n_ball; k++)
+    for (uint32_t i = 0; i < 4; i++) {
+      uint32_t v = o->t->cell[o->ball[k] >> 2].v[i];
+      int m = 0;
+
+      if (i == (o->ball[k] & 3)) continue;
+      while (m < n && to[m] != v) m++;
+      if (m == n) to[n++] = v;
+    }
+  return n;
+}
+
 static int merge_point(struct vg_optimiser *o, uint32_t p)
 {
-  const struct vg_tets *t = o->t;
   struct merger plan[2];
-  uint32_t old[VG_OLD_MAX];
+  uint32_t old[VG_OLD_MAX], to[3 * VG_OLD_MAX];
   double need = 2, worst;
-  int best = -1, now = 0;
+  int best = -1, now = 0, n;
 
   if (p < o->n_fixed || o->vain[p] & VG_VAIN_MERGE) return 0;
   o->vain[p] |= VG_VAIN_MERGE;
@@ -59,15 +76,13 @@ static int merge_point(struct vg_optimiser *o, uint32_t p)
     if (o->q[old[k]] < need) need = o->q[old[k]];
   }
   need = worth(need);
-  for (size_t k = 0; k < o->n_ball; k++)
-    for (uint32_t i = 0; i < 4; i++) {
-      if (i == (o->ball[k] & 3)) continue;
-      if (!plan_merge(o, t->cell[old[k]].v[i], need, &plan[now], &worst))
-        continue;
-      need = worst;
-      best = now;
-      now = !now;
-    }
+  n = neighbours(o, to);
+  for (int k = 0; k < n; k++) {
+    if (!plan_merge(o, to[k], need, &plan[now], &worst)) continue;
+    need = worst;
+    best = now;
+    now = !now;
+  }
   if (best < 0) return 0;
   if (vg_replace(o, (int)o->n_ball, old, plan[best].n_new,
                  (const uint32_t (*)[4])plan[best].v, plan[best].q, NULL))
@@ -89,7 +104,11 @@ int vg_collapse(struct vg_optimiser *o, uint32_t c)
 
 /* --- putting a point in -------------------------------------------------- */
 
-enum { CAVITY_MAX = 20 };
+/* Over stretched boundary triangles a point needs a large cavity. */
+enum { CAVITY_MAX = 44 };
+
+/* As vg_shape: angles below 10 or above 170 degrees. */
+static const float worst_of_all = 0.03F;
 
 struct cavity {
   int n_old, n_new;
@@ -225,16 +244,54 @@ static void centre(const struct vg_tets *t, uint32_t c, const double share[4],
   }
 }
 
-/* Places to try: the centre of the cell, of its neighbours (for a flat cell
- * that lies on the boundary) and of its edges. */
+/* A place above the middle of face i of cell c, as high over it as `share` of
+ * the root of twice its area: 1.3 would be a regular tetrahedron. */
+static void above(const struct vg_tets *t, uint32_t c, int i, double share,
+                  double x[3])
+{
+  const uint32_t *v = t->cell[c].v;
+  const double *a = t->x[v[vg_face[i][0]]], *b = t->x[v[vg_face[i][1]]];
+  const double *d = t->x[v[vg_face[i][2]]];
+  double n[3], size;
+
+  for (int k = 0; k < 3; k++) {
+    int l = (k + 1) % 3, m = (k + 2) % 3;
+
+    n[k] = (b[l] - a[l]) * (d[m] - a[m]) - (b[m] - a[m]) * (d[l] - a[l]);
+  }
+  size = sqrt(sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]));
+  for (int k = 0; k < 3; k++)
+    x[k] = (a[k] + b[k] + d[k]) / 3 + (size > 0 ? share * n[k] / size : 0);
+}
+
+/* Where the cell lies on a fixed face: a point above that face, with room
+ * below it, in a cavity that is opened as far as that takes. */
+static int split_above(struct vg_optimiser *o, uint32_t c, double aim)
+{
+  double x[3];
+
+  for (int i = 0; i < 4; i++) {
+    if (!(o->t->flag[c] >> i & 1)) continue;
+    for (double share = 1; share > 0.2; share *= 0.5) {
+      above(o->t, c, i, share, x);
+      if (split_at(o, c, x, aim)) return 1;
+    }
+  }
+  return 0;
+}
+
+/* Further places: the centre of its neighbours (for a flat cell that lies on
+ * the boundary), of the cell, and for the worst of its edges. */
 int vg_split(struct vg_optimiser *o, uint32_t c, double aim)
 {
   static const double share[7][4] = {
     {.25, .25, .25, .25}, {.5, .5, 0, 0}, {.5, 0, .5, 0}, {.5, 0, 0, .5},
     {0, .5, .5, 0}, {0, .5, 0, .5}, {0, 0, .5, .5}};
+  int n = o->q[c] < worst_of_all ? 7 : 1;
   double x[3];
 
   if (o->vain_cell[c] & VG_VAIN_SPLIT) return 0;
+  if (split_above(o, c, aim)) return 1;
   for (int i = 0; i < 4; i++) {
     uint32_t link = o->t->cell[c].link[i];
 
@@ -242,7 +299,7 @@ int vg_split(struct vg_optimiser *o, uint32_t c, double aim)
     centre(o->t, link >> 2, share[0], x);
     if (split_at(o, c, x, aim)) return 1;
   }
-  for (int k = 0; k < 7; k++) {
+  for (int k = 0; k < n; k++) {
     centre(o->t, c, share[k], x);
     if (split_at(o, c, x, aim)) return 1;
   }
