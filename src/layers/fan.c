@@ -10,6 +10,7 @@
 
 /* As in direct.c: where all faces are seen this well the mean normal is the
  * direction, elsewhere the most normal one. */
+#define LEAST_CLEAR 0.3    /* of a step, that it leads away from the wall */
 #define SMOOTH_WALL 0.95
 #define LEAST_VIEW 0.1        /* cosine between a sector's column and faces */
 
@@ -265,6 +266,30 @@ static void keep(struct build *b, uint32_t p, const struct vg_fan_shape *s,
   }
 }
 
+/* Do all directions lead away from all triangles at p? At a ridge that ends
+ * in a concave corner some may lead into the other wall. */
+static int is_clear(const struct build *b, uint32_t p,
+                    const struct vg_fan_shape *s)
+{
+  const struct vg_wall *w = b->w;
+  uint32_t h = w->start[p];
+
+  do {
+    const double *o = wall_point(w, h), *a = wall_point(w, vg_half_next(h));
+    const double *c = wall_point(w, vg_half_previous(h));
+    double e[3], f[3], n[3];
+
+    vg_sub(a, o, e);
+    vg_sub(c, o, f);
+    vg_cross(e, f, n);
+    vg_unit(n);
+    for (int i = 0; i < s->n_column; i++)
+      if (vg_off_corner(o, a, c, n, s->dir[i]) < LEAST_CLEAR) return 0;
+    h = vg_wall_turn(w, h);
+  } while (h != VG_NO_INDEX && h != w->start[p]);
+  return 1;
+}
+
 static vg_status visit(struct build *b, uint32_t p, struct vg_error *err)
 {
   const struct vg_wall *w = b->w;
@@ -287,7 +312,8 @@ static vg_status visit(struct build *b, uint32_t p, struct vg_error *err)
     vg_sub(wall_point(w, vg_half_next(at)), wall_point(w, at), s.ridge[i]);
     vg_unit(s.ridge[i]);
   }
-  if (one_will_do(b, &s, corner[0], n) || !vg_fan_spread(&s)) return VG_OK;
+  if (one_will_do(b, &s, corner[0], n) || !vg_fan_spread(&s) ||
+      !is_clear(b, p, &s)) return VG_OK;
   if ((st = reserve(b, &s, err)) < 0) return st;
   keep(b, p, &s, corner, size);
   return VG_OK;

@@ -12,31 +12,6 @@
                               would be lost otherwise */
 #define CAP_SWEEPS 8       /* caps lie in chains */
 
-/* Distance of the unit vector v at corner k of a triangle with unit normal n
- * from the triangle, which goes on for ever. */
-static double off_triangle(const struct vg_mesh *m, const uint32_t *tri, int k,
-                           const double n[3], const double v[3])
-{
-  double edge[2][3], in[3], side[2], least = 1;
-
-  for (int s = 0; s < 2; s++) {
-    vg_sub(m->point[tri[(k + 1 + s) % 3]], m->point[tri[k]], edge[s]);
-    vg_unit(edge[s]);
-  }
-  vg_cross(n, edge[0], in);
-  side[0] = vg_dot(v, in);
-  vg_cross(edge[1], n, in);
-  side[1] = vg_dot(v, in);
-  if (side[0] >= 0 && side[1] >= 0) return vg_dot(v, n);
-  for (int s = 0; s < 2; s++) {   /* beside it: its edges */
-    double along = vg_dot(v, edge[s]);
-    double off = along > 0 ? sqrt(fmax(0, 1 - along * along)) : 1;
-
-    if (off < least) least = off;
-  }
-  return least;
-}
-
 /* How far a small step of length 1 along v gets away from the wall: from the
  * triangles at the root, whichever columns of a fan they belong to. */
 static double gain(const struct vg_layer_work *w, uint32_t i,
@@ -47,12 +22,14 @@ static double gain(const struct vg_layer_work *w, uint32_t i,
 
   vg_root_range(w->c, i, &first, &end);
   for (uint32_t j = w->t.first[first]; j < w->t.first[end]; j++) {
-    uint32_t f = w->t.corner[j] / 3, tri = w->c->face_tri[f];
+    uint32_t f = w->t.corner[j] / 3, k = w->t.corner[j] % 3;
+    uint32_t tri = w->c->face_tri[f], *t;
     double d;
 
     if (tri == VG_NO_INDEX) continue;
-    d = off_triangle(w->m, w->m->tri[tri], (int)(w->t.corner[j] % 3),
-                     w->normal[f], v);
+    t = w->m->tri[tri];
+    d = vg_off_corner(w->m->point[t[k]], w->m->point[t[(k + 1) % 3]],
+                      w->m->point[t[(k + 2) % 3]], w->normal[f], v);
     if (d < least) least = d;
   }
   return least;

@@ -57,4 +57,29 @@ static inline double vg_det(const double o[3], const double a[3],
   return vg_dot(x, w);
 }
 
+/** Distance of p + v (v a unit vector) from the triangle p, a, b with unit
+ * normal n, as if the triangle went on for ever. */
+static inline double vg_off_corner(const double p[3], const double a[3],
+                                   const double b[3], const double n[3],
+                                   const double v[3])
+{
+  double edge[2][3], in[3], side[2], least = 1;
+
+  vg_sub(a, p, edge[0]);
+  vg_sub(b, p, edge[1]);
+  for (int s = 0; s < 2; s++) vg_unit(edge[s]);
+  vg_cross(n, edge[0], in);
+  side[0] = vg_dot(v, in);
+  vg_cross(edge[1], n, in);
+  side[1] = vg_dot(v, in);
+  if (side[0] >= 0 && side[1] >= 0) return vg_dot(v, n);
+  for (int s = 0; s < 2; s++) {   /* beside it: its edges */
+    double along = vg_dot(v, edge[s]);
+    double off = along > 0 ? sqrt(fmax(0, 1 - along * along)) : 1;
+
+    if (off < least) least = off;
+  }
+  return least;
+}
+
 #endif
