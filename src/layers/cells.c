@@ -6,6 +6,8 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "layers/expand.h"
+#include "layers/join.h"
 #include "layers/vector.h"
 #include "layers/work.h"
 
@@ -110,6 +112,12 @@ static int corners(const struct stack *s, int l, const double low[3],
   return bad;
 }
 
+static int is_virtual(const struct stack *s)
+{
+  return s->c[0]->root == s->c[1]->root || s->c[1]->root == s->c[2]->root ||
+         s->c[2]->root == s->c[0]->root;
+}
+
 /* The pyramid over the quadrilateral of the two columns that rise from l,
  * other than corner k: all four of its corner volumes. */
 static int pyramid(const struct stack *s, int l, int k)
@@ -119,17 +127,44 @@ static int pyramid(const struct stack *s, int l, int k)
   const double *ring[4] = { s->x[p][l], s->x[q][l], s->x[q][l + 1],
                             s->x[p][l + 1] };
 
-  if (l == 0) return 1;     /* roots may coincide; lifts() covers those */
+  if (l == 0 && is_virtual(s)) return 1;     /* see wall_cells() */
   for (int i = 0; i < 4; i++)
     if (!(vg_det(ring[i], ring[(i + 1) % 4], apex, ring[(i + 3) % 4]) > 0))
       return 0;
   return 1;
 }
 
-static int is_virtual(const struct stack *s)
+/* At the wall, faces at a fan make other cells in mixed output than by the
+ * lift rule. */
+static int wall_cells(const struct stack *s, const struct vg_columns *c,
+                      size_t f)
 {
-  return s->c[0]->root == s->c[1]->root || s->c[1]->root == s->c[2]->root ||
-         s->c[2]->root == s->c[0]->root;
+  struct vg_wall_cell cell[3];
+  int n, fan = 0;
+
+  for (int k = 0; k < 3; k++) fan |= vg_shares_root(c, c->face[f][k]);
+  n = fan ? vg_join_wall_cells(c, f, cell) : 0;
+  for (int i = 0; i < n; i++) {
+    static const int8_t corner[3][6][4] = {
+      { { 0, 1, 2, 3 } },
+      { { 0, 1, 2, 3 }, { 1, 4, 2, 0 }, { 4, 3, 2, 1 }, { 3, 0, 2, 4 } },
+      { { 0, 1, 2, 3 }, { 1, 2, 0, 4 }, { 2, 0, 1, 5 }, { 3, 5, 4, 0 },
+        { 4, 3, 5, 1 }, { 5, 4, 3, 2 } } };
+    static const int n_corner[3] = { 1, 4, 6 };
+    int kind = cell[i].n_node - 4;
+
+    for (int j = 0; j < n_corner[kind]; j++) {
+      const double *x[4];
+
+      for (int m = 0; m < 4; m++) {
+        int node = (int)cell[i].node[corner[kind][j][m]];
+
+        x[m] = node < 3 ? s->x[node][0] : s->x[node - 3][1];
+      }
+      if (!(vg_det(x[0], x[1], x[2], x[3]) > 0)) return 0;
+    }
+  }
+  return 1;
 }
 
 /* First level from which a bad cell rises, or -1. */
@@ -200,6 +235,10 @@ static void search_body(void *context, size_t first, size_t end, int worker)
       continue;
     load(s, q->w, f);
     q->level[f] = (int16_t)first_bad(s, &q->blame[f]);
+    if (q->level[f] && !wall_cells(s, q->w->c, f)) {
+      q->level[f] = 0;
+      q->blame[f] = 7;
+    }
   }
 }
 
