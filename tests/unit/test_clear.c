@@ -666,6 +666,52 @@ static void concave_wedge_with_turned_columns(void **state)
   shape_free(s);
 }
 
+/* A flat bar along y with a sharp edge at x = at; `side` -1: it lies before
+ * the edge, 1: behind. */
+static void add_sharp_bar(struct shape *s, int n, double at, int side)
+{
+  uint32_t first = (uint32_t)s->m.n_point;
+
+  for (int j = 0; j <= n; j++) {
+    double y = (double)j / n;
+
+    add_point(s, at, y, 0);
+    add_point(s, at + side, y, 0.05);
+    add_point(s, at + side, y, -0.05);
+  }
+  for (uint32_t j = 0; j < (uint32_t)n; j++)
+    for (uint32_t k = 1; k < 3; k++) {
+      uint32_t a = first + 3 * j, b = a + 3;
+      int flip = (k == 1) == (side > 0);
+
+      add_tri(s, 0, a, flip ? b + k : b, flip ? b : b + k);
+      add_tri(s, 0, a, flip ? a + k : b + k, flip ? b + k : a + k);
+    }
+}
+
+/* Neither edge sees a triangle of the other: all are across its direction. */
+static void sharp_edges_face_each_other(void **state)
+{
+  enum { N = 16 };
+  struct shape *s = shape_new(0.01);
+  double *allowed;
+
+  (void)state;
+  add_sharp_bar(s, N, 0, -1);
+  add_sharp_bar(s, N, 0.2, 1);
+  s->is_wall[0] = 1;
+  grow(s, 1);
+  assert_true(s->c.column[3 * (N / 2)].dir[0] > 0.99);
+  assert_true(s->c.column[3 * (N + 1 + N / 2)].dir[0] < -0.99);
+  allowed = ahead(s, 1, 1);
+  for (uint32_t j = 2; j + 2 <= N; j++) {
+    assert_true(fabs(allowed[3 * j] - 0.4 * 0.2) < 1e-9);
+    assert_true(fabs(allowed[3 * (N + 1 + j)] - 0.4 * 0.2) < 1e-9);
+  }
+  free(allowed);
+  shape_free(s);
+}
+
 static void ahead_with_any_number_of_threads(void **state)
 {
   struct shape *s = sphere_over_plane(0.05);
@@ -735,6 +781,7 @@ int main(void)
     cmocka_unit_test(sphere_near_a_plane),
     cmocka_unit_test(a_convex_body_sees_nothing),
     cmocka_unit_test(nothing_in_the_cone_is_missed),
+    cmocka_unit_test(sharp_edges_face_each_other),
     cmocka_unit_test(concave_wedge_at_right_angles),
     cmocka_unit_test(concave_wedge_with_turned_columns),
     cmocka_unit_test(ahead_with_any_number_of_threads),
