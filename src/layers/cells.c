@@ -256,8 +256,8 @@ static void limits(const struct vg_layer_work *w, const uint32_t face[3],
     double d[VG_LEVELS_MAX + 1];
     int top = level + 1 < c->n ? level + 1 : c->n;
 
-    least[k] = level ? INFINITY : 0;
-    if (!level || !(blame >> k & 1)) continue;
+    least[k] = level && !w->haste ? INFINITY : 0;
+    if (least[k] == 0 || !(blame >> k & 1)) continue;
     vg_law_heights(&w->c->law[c->law], c->cap, top, d);
     least[k] = fmin(LOWER * w->room[face[k]], d[top]);
     reach[k] = d[top] * vg_norm(c->dir);

@@ -10,6 +10,7 @@
 #include "layers/work.h"
 
 #define ROUNDS_MAX 300
+#define HASTE 150          /* rounds after which what is bad gets no layers */
 #define GENTLE 40          /* sound rounds in which rooms lose a share only */
 #define SHARE 0.75
 #define TURNS_MAX 12       /* rounds that may turn columns */
@@ -181,7 +182,7 @@ static double lowered(const struct vg_layer_work *w, size_t i, size_t round)
   const struct vg_column *c = &w->c->column[i];
   double d[VG_LEVELS_MAX + 1], h;
 
-  if (round >= GENTLE) return 0;
+  if (round >= GENTLE || w->haste) return 0;
   vg_law_heights(&w->c->law[c->law], c->cap, c->n, d);
   h = d[c->n] < w->room[i] ? d[c->n] : w->room[i];
   return SHARE * h;
@@ -396,6 +397,7 @@ static vg_status until_clear(struct vg_layer_work *w,
       st = VG_BLOCKED;
       goto done;
     }
+    w->haste = r->n_round >= HASTE;
     t = seconds();
     vg_layer_front_release(front);
     unbend(w->c);
