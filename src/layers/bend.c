@@ -13,7 +13,6 @@
 #include "layers/vector.h"
 
 #define CONVERGE 0.75      /* a face that would shrink to less is bent apart */
-#define BEND_FROM CONVERGE
 #define BEND_MAX 0.995
 #define STILL 1e-3         /* a direction that changes by less has settled */
 #define BAND 2.5           /* heights that bending reaches to */
@@ -80,7 +79,7 @@ static double urge(const struct vg_turn *l, size_t i)
     if (w->c->face_tri[f] != VG_NO_INDEX)
       least = fmin(least, top_share(w, f, l->from, tallest(w, f)));
   }
-  return fmax(0, fmin(BEND_MAX, (BEND_FROM - least) / (BEND_FROM - 0.5)));
+  return fmax(0, fmin(BEND_MAX, (CONVERGE - least) / (CONVERGE - 0.5)));
 }
 
 /* Nothing has moved around column i, so it will not move either. */
@@ -104,7 +103,7 @@ static void relax(const struct vg_turn *l, size_t i, double (*n)[3])
 
   memcpy(l->to[i], l->from[i], sizeof *l->to);
   l->stirs[i] = 0;
-  if (vg_in_fan(w, i) || w->view[i] == 0 || is_still(l, i)) return;
+  if (vg_shares_root(w->c, i) || w->view[i] == 0 || is_still(l, i)) return;
   mean_of_near(w, i, l->from, mean);
   if (!(vg_unit(mean) > 0)) return;
   k = vg_face_normals(w, i, n);
@@ -160,63 +159,30 @@ done:
   return st;
 }
 
-static void converging(const struct vg_layer_work *w, double (*dir)[3],
-                       double *reach, uint32_t *queue, size_t *n_queue)
+static void converging(const struct vg_layer_work *w, double *reach)
 {
   for (uint32_t f = 0; f < w->c->n_face; f++) {
     double h = tallest(w, f);
 
     if (w->c->face_tri[f] == VG_NO_INDEX ||
-        top_share(w, f, dir, h) >= CONVERGE) continue;
+        top_share(w, f, w->root_dir, h) >= CONVERGE) continue;
     for (int k = 0; k < 3; k++)
       reach[w->c->face[f][k]] = fmax(reach[w->c->face[f][k]], BAND * h);
   }
-  for (uint32_t i = 0; i < w->c->n_column; i++)
-    if (reach[i] > 0) queue[(*n_queue)++] = i;
 }
 
-/* reach[i] = max over paths of what is left of the reach at their start: the
- * least fixed point, whatever the order. Rings of the queue. */
-static vg_status spread(const struct vg_layer_work *w, double *reach,
-                        struct vg_error *err)
+/* What is left of the reach of column i at its neighbour. */
+static int carry(struct vg_layer_work *w, void *context, uint32_t i,
+                 uint32_t j)
 {
-  size_t n = w->c->n_column, n_now = 0, n_next;
-  uint32_t *now = vg_alloc(n, sizeof *now), *next = vg_alloc(n, sizeof *next);
-  uint8_t *queued = vg_calloc(n, 1);
-  vg_status st = VG_OK;
+  double *reach = context, left;
+  uint32_t o = w->t.near[j];
 
-  if (!now || !next || !queued) {
-    st = vg_fail_memory(err, "the smoothing");
-    goto done;
-  }
-  converging(w, w->root_dir, reach, now, &n_now);
-  for (; n_now; n_now = n_next) {
-    uint32_t *swap = now;
-
-    n_next = 0;
-    for (size_t k = 0; k < n_now; k++) queued[now[k]] = 0;
-    for (size_t k = 0; k < n_now; k++) {
-      uint32_t i = now[k];
-
-      for (uint32_t j = w->t.near_first[i]; j < w->t.near_first[i + 1]; j++) {
-        uint32_t o = w->t.near[j];
-        double left = reach[i] -
-          vg_distance(w->m->point[w->c->column[i].root],
-                      w->m->point[w->c->column[o].root]);
-
-        if (!(left > reach[o])) continue;
-        reach[o] = left;
-        if (!queued[o]) queued[o] = 1, next[n_next++] = o;
-      }
-    }
-    now = next;
-    next = swap;
-  }
-done:
-  free(now);
-  free(next);
-  free(queued);
-  return st;
+  if (!(reach[i] > reach[o])) return 0;
+  left = reach[i] - vg_root_distance(w, i, o);
+  if (!(left > reach[o])) return 0;
+  reach[o] = left;
+  return 1;
 }
 
 vg_status vg_directions_smooth(struct vg_layer_work *w, struct vg_error *err)
@@ -230,7 +196,8 @@ vg_status vg_directions_smooth(struct vg_layer_work *w, struct vg_error *err)
     st = vg_fail_memory(err, "the smoothing");
     goto done;
   }
-  VG_TRY(spread(w, reach, err));
+  converging(w, reach);
+  VG_TRY(vg_columns_spread(w, carry, reach, err));
   for (uint32_t i = 0; i < w->c->n_column; i++)
     if (reach[i] > 0) list[n++] = i;
   VG_TRY(sweeps(w, list, n, err));

@@ -6,7 +6,6 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "layers/expand.h"
 #include "layers/join.h"
 #include "layers/vector.h"
 #include "layers/work.h"

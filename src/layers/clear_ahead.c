@@ -28,6 +28,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "layers/clear_parts.h"
+#include "layers/vector.h"
 
 #define FACING 0.2
 #define SAME_STACK 0.3
@@ -70,18 +71,6 @@ struct query {
   double centre[CENTRE_MAX][3];  /* of the faces, relative to the root */
 };
 
-static double dot(const double *a, const double *b)
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double *a, const double *b, double *c)
-{
-  c[0] = a[1] * b[2] - a[2] * b[1];
-  c[1] = a[2] * b[0] - a[0] * b[2];
-  c[2] = a[0] * b[1] - a[1] * b[0];
-}
-
 /* --- one triangle -------------------------------------------------------- */
 
 /* Does the line from o along u pass through a triangle (corners p, unit normal
@@ -90,7 +79,7 @@ static void cross(const double *a, const double *b, double *c)
 static int line_hits(const double o[3], const double u[3],
                      const double (*p)[3], const double n[3], double *along)
 {
-  double d = dot(n, u), q[3], s;
+  double d = vg_dot(n, u), q[3], s;
 
   if (!(d < 0)) return 0;
   s = (n[0] * (p[0][0] - o[0]) + n[1] * (p[0][1] - o[1])
@@ -105,8 +94,8 @@ static int line_hits(const double o[3], const double u[3],
       e[k] = b[k] - a[k];
       f[k] = q[k] - a[k];
     }
-    cross(e, f, c);
-    if (dot(c, n) < -1e-6 * dot(e, e)) return 0;
+    vg_cross(e, f, c);
+    if (vg_dot(c, n) < -1e-6 * vg_dot(e, e)) return 0;
   }
   *along = s;
   return 1;
@@ -116,16 +105,16 @@ static int line_hits(const double o[3], const double u[3],
 static double edge_in_cone(const double u[3], const double a[3],
                            const double b[3])
 {
-  double e[3], ua = dot(u, a), ue, qa, qb, qc, root, t[4] = { 0, 1 };
+  double e[3], ua = vg_dot(u, a), ue, qa, qb, qc, root, t[4] = { 0, 1 };
   double best = INFINITY;
   int n = 2;
 
   for (int k = 0; k < 3; k++) e[k] = b[k] - a[k];
-  ue = dot(u, e);
+  ue = vg_dot(u, e);
   /* |a + t e|^2 - 2 (u . (a + t e))^2 = qa t^2 + 2 qb t + qc <= 0 */
-  qa = dot(e, e) - 2 * ue * ue;
-  qb = dot(a, e) - 2 * ua * ue;
-  qc = dot(a, a) - 2 * ua * ua;
+  qa = vg_dot(e, e) - 2 * ue * ue;
+  qb = vg_dot(a, e) - 2 * ua * ue;
+  qc = vg_dot(a, a) - 2 * ua * ua;
   root = qb * qb - qa * qc;
   if (root >= 0) {
     double q = -(qb + copysign(sqrt(root), qb));
@@ -148,7 +137,8 @@ static double edge_in_cone(const double u[3], const double a[3],
 static double nearest_in_cone(const double u[3], const double (*p)[3],
                               const double n[3], double most)
 {
-  double g = -dot(n, u), h = -dot(n, p[0]), flat, w[3], s, best = INFINITY;
+  double g = -vg_dot(n, u), h = -vg_dot(n, p[0]);
+  double flat, w[3], s, best = INFINITY;
   static const double apex[3] = { 0, 0, 0 };
 
   if (!(h > 0)) return INFINITY;
@@ -187,7 +177,7 @@ static int shares_point(const struct query *q, const uint32_t t[3])
 
 static void add_direction(const struct vg_column *c, double sum[3])
 {
-  double l = sqrt(dot(c->dir, c->dir));
+  double l = sqrt(vg_dot(c->dir, c->dir));
 
   if (l > 0)
     for (int k = 0; k < 3; k++) sum[k] += c->dir[k] / l;
@@ -209,7 +199,7 @@ static int same_stack(const struct query *q, uint32_t t)
       for (uint32_t i = x->column_of[p]; i < x->column_of[p + 1]; i++)
         add_direction(&x->columns->column[i], sum);
   }
-  return dot(sum, q->u) > SAME_STACK * sqrt(dot(sum, sum));
+  return vg_dot(sum, q->u) > SAME_STACK * sqrt(vg_dot(sum, sum));
 }
 
 /* Least distance along u, the reach at most, at which a line from the centre
@@ -224,10 +214,10 @@ static double nearest_on_lines(const struct query *q, const double (*p)[3],
   for (int j = 0; j < 3; j++) {
     double d[3] = { p[j][0] - c[0], p[j][1] - c[1], p[j][2] - c[2] };
 
-    far = fmax(far, dot(d, d));
+    far = fmax(far, vg_dot(d, d));
   }
-  along = dot(c, q->u);
-  off = dot(c, c) - along * along;
+  along = vg_dot(c, q->u);
+  off = vg_dot(c, c) - along * along;
   if (off > 2.01 * (q->widest + far)) return near;
   for (int j = 0; j < q->n_centre; j++)
     line_hits(q->centre[j], q->u, p, n, &near);
@@ -241,14 +231,14 @@ static int is_aside(const struct query *q, const double (*p)[3])
 {
   double a[3], c[3], along, off, m = q->reach + q->highest;
 
-  for (int j = 0; j < 3; j++) a[j] = dot(p[j], q->u);
+  for (int j = 0; j < 3; j++) a[j] = vg_dot(p[j], q->u);
   if (a[0] > m && a[1] > m && a[2] > m) return 1;
   along = (a[0] + a[1] + a[2]) / 3;
   for (int k = 0; k < 3; k++)
     c[k] = (p[0][k] + p[1][k] + p[2][k]) / 3 - along * q->u[k];
-  off = sqrt(dot(c, c));
+  off = sqrt(vg_dot(c, c));
   for (int j = 0; j < 3; j++)
-    if (!(dot(p[j], c) > 1.00001 * off * (a[j] + q->back))) return 0;
+    if (!(vg_dot(p[j], c) > 1.00001 * off * (a[j] + q->back))) return 0;
   return 1;
 }
 
@@ -271,8 +261,8 @@ static void consider(struct query *q, size_t i)
     e[k] = p[1][k] - p[0][k];
     f[k] = p[2][k] - p[0][k];
   }
-  cross(e, f, n);
-  l = sqrt(dot(n, n));
+  vg_cross(e, f, n);
+  l = sqrt(vg_dot(n, n));
   if (!(l > 0)) return;
   for (int k = 0; k < 3; k++) n[k] /= l;
   near = q->reach;
@@ -432,8 +422,8 @@ static void find_centres(struct query *q)
       for (int k = 0; k < 3; k++)
         x[k] += q->x->surface->point[c->column[face[j]].root][k];
     for (int k = 0; k < 3; k++) x[k] = x[k] / 3 - q->root[k];
-    s = dot(x, q->u);
-    w = dot(x, x);
+    s = vg_dot(x, q->u);
+    w = vg_dot(x, x);
     if (s < q->lowest) q->lowest = s;
     if (s > q->highest) q->highest = s;
     if (w > q->widest) q->widest = w;
@@ -447,7 +437,7 @@ static int start_query(struct query *q, uint32_t i)
 {
   const struct ahead *x = q->x;
   const struct vg_column *c = &x->columns->column[i];
-  double l = sqrt(dot(c->dir, c->dir));
+  double l = sqrt(vg_dot(c->dir, c->dir));
 
   x->allowed[i] = x->reach[i];
   if (!(l > 0 && isfinite(l) && x->reach[i] > 0)) return 0;
@@ -465,7 +455,7 @@ static void end_query(const struct query *q, double wanted)
 {
   const struct ahead *x = q->x;
   const double *d = x->columns->column[q->column].dir;
-  double h = x->gap * q->reach / sqrt(dot(d, d));
+  double h = x->gap * q->reach / sqrt(vg_dot(d, d));
 
   if (q->reach < wanted && h < x->reach[q->column])
     x->allowed[q->column] = h;
@@ -501,7 +491,7 @@ static void gather_team(struct team *t, const struct vg_boxes *b)
     t->lo[k] = (float)(lo - l);
     t->hi[k] = (float)(hi + l);
   }
-  l = sqrt(dot(u, u));
+  l = sqrt(vg_dot(u, u));
   for (int k = 0; k < 3; k++) {
     u[k] = l > 0 ? u[k] / l : 0;
     t->u[k] = (float)u[k];
@@ -627,10 +617,10 @@ static void turn_to_edge(const struct ahead *x, size_t tri, double n[3])
     for (int j = 0; j < 3; j++)
       lean += unit[j] * (2 * p[t[k]][j] - p[t[(k + 1) % 3]][j] -
                          p[t[(k + 2) % 3]][j]);
-    if (lean > 0 && dot(unit, n) < SHARP) add_direction(c, out);
+    if (lean > 0 && vg_dot(unit, n) < SHARP) add_direction(c, out);
   }
   for (int k = 0; k < 3; k++) n[k] += out[k];
-  l = sqrt(dot(n, n));
+  l = sqrt(vg_dot(n, n));
   for (int k = 0; l > 0 && k < 3; k++) n[k] /= l;
 }
 
@@ -649,8 +639,8 @@ static void measure_normals(void *context, size_t first, size_t end,
       e[k] = p[t[1]][k] - p[t[0]][k];
       f[k] = p[t[2]][k] - p[t[0]][k];
     }
-    cross(e, f, n);
-    l = sqrt(dot(n, n));
+    vg_cross(e, f, n);
+    l = sqrt(vg_dot(n, n));
     for (int k = 0; k < 3; k++) n[k] = l > 0 ? n[k] / l : 0;
     if (l > 0) turn_to_edge(x, x->boxes.item[i], n);
     for (int k = 0; k < 3; k++) x->normal[i][k] = (float)n[k];

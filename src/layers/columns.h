@@ -83,6 +83,15 @@ struct vg_columns {
 
 void vg_columns_release(struct vg_columns *c);
 
+/** Whether column i is one of a fan. */
+static inline int vg_shares_root(const struct vg_columns *c, size_t i)
+{
+  uint32_t root = c->column[i].root;
+
+  return (i && c->column[i - 1].root == root) ||
+         (i + 1 < c->n_column && c->column[i + 1].root == root);
+}
+
 /** Points of levels 0 .. column[i].n into x. Where dir and shift have a
  * component of 0, straight columns keep that of the root to the last bit.
  * d: scratch for vg_law_heights, [VG_LEVELS_MAX + 1]. */

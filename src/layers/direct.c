@@ -91,14 +91,6 @@ double vg_least_view(int k, const double (*n)[3], const double v[3])
   return least;
 }
 
-int vg_in_fan(const struct vg_layer_work *w, size_t i)
-{
-  const struct vg_column *c = w->c->column;
-
-  return (i > 0 && c[i - 1].root == c[i].root) ||
-         (i + 1 < w->c->n_column && c[i + 1].root == c[i].root);
-}
-
 vg_status vg_turn_scratch(struct vg_layer_work *w, struct vg_turn *l,
                              struct vg_error *err)
 {

@@ -44,8 +44,4 @@ int vg_face_counts(const struct vg_layer_work *w, size_t i, uint32_t f);
 
 double vg_least_view(int k, const double (*n)[3], const double v[3]);
 
-/** Columns of a fan keep their directions: cells between them are sound only
- * as they were spread. */
-int vg_in_fan(const struct vg_layer_work *w, size_t i);
-
 #endif

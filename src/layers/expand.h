@@ -66,14 +66,6 @@ void vg_expand_level(const struct vg_expand *e, size_t l, uint32_t *id);
 
 static inline unsigned vg_mark_n(uint16_t mark) { return mark & 0x0fff; }
 
-static inline int vg_shares_root(const struct vg_columns *c, size_t i)
-{
-  uint32_t root = c->column[i].root;
-
-  return (i && c->column[i - 1].root == root) ||
-         (i + 1 < c->n_column && c->column[i + 1].root == root);
-}
-
 #define VG_COLUMN_CHUNK 2048
 #define VG_FACE_BLOCK 2048
 

@@ -20,13 +20,6 @@
 #define LEAN 0.3           /* of a triangle's height that a corner may lean */
 #define SLOPE 1.0          /* of rooms over the wall, where they are limited */
 
-static double edge_length(const struct vg_layer_work *w, uint32_t i,
-                          uint32_t j)
-{
-  return vg_distance(w->m->point[w->c->column[i].root],
-                     w->m->point[w->c->column[j].root]);
-}
-
 /* Edge of the equilateral triangle with the mean area of the faces. */
 static void edge_body(void *context, size_t first, size_t end, int worker)
 {
@@ -163,14 +156,10 @@ static void wanted_body(void *context, size_t first, size_t end, int worker)
   }
 }
 
-/* Neighbours differ by one level at most, columns of one root by none.
- * A minimum over the columns, spread over their neighbours: lower(w, i, j)
- * lowers near[j] because of i and says whether it did. The least fixed point
- * does not depend on the order. */
-static vg_status propagate(struct vg_layer_work *w,
-                           int (*lower)(struct vg_layer_work *, uint32_t,
-                                        uint32_t),
-                           struct vg_error *err)
+vg_status vg_columns_spread(struct vg_layer_work *w,
+                            int (*change)(struct vg_layer_work *, void *,
+                                          uint32_t, uint32_t),
+                            void *context, struct vg_error *err)
 {
   uint32_t n = (uint32_t)w->c->n_column, n_now = n, n_next;
   uint32_t *now = vg_alloc(n, sizeof *now), *next = vg_alloc(n, sizeof *next);
@@ -188,7 +177,8 @@ static vg_status propagate(struct vg_layer_work *w,
       for (uint32_t j = w->t.near_first[i]; j < w->t.near_first[i + 1]; j++) {
         uint32_t o = w->t.near[j];
 
-        if (lower(w, i, j) && !queued[o]) queued[o] = 1, next[n_next++] = o;
+        if (change(w, context, i, j) && !queued[o])
+          queued[o] = 1, next[n_next++] = o;
       }
     }
     now = next;
@@ -201,37 +191,42 @@ static vg_status propagate(struct vg_layer_work *w,
   return n_now ? VG_OK : vg_fail_memory(err, "the layers");
 }
 
-static int lower_wanted(struct vg_layer_work *w, uint32_t i, uint32_t j)
+/* Neighbours differ by one level at most, columns of one root by none. */
+static int lower_wanted(struct vg_layer_work *w, void *unused, uint32_t i,
+                        uint32_t j)
 {
   uint32_t o = w->t.near[j];
   struct vg_column *a = &w->c->column[i], *b = &w->c->column[o];
-
   int most = a->n_wanted + (a->root != b->root);
 
+  (void)unused;
   if (b->n_wanted <= most) return 0;
   b->n_wanted = (uint16_t)most;
   w->by_size[o] = w->by_size[i];
   return 1;
 }
 
-static int lower_level(struct vg_layer_work *w, uint32_t i, uint32_t j)
+static int lower_level(struct vg_layer_work *w, void *unused, uint32_t i,
+                        uint32_t j)
 {
   uint32_t o = w->t.near[j];
   struct vg_column *a = &w->c->column[i], *b = &w->c->column[o];
-
   int most = a->n + (a->root != b->root);
 
+  (void)unused;
   if (b->n <= most) return 0;
   b->n = (uint16_t)most;
   b->cause = a->cause;
   return 1;
 }
 
-static int lower_room(struct vg_layer_work *w, uint32_t i, uint32_t j)
+static int lower_room(struct vg_layer_work *w, void *unused, uint32_t i,
+                        uint32_t j)
 {
   uint32_t o = w->t.near[j];
   double limit = w->room[i] + w->slack[j];
 
+  (void)unused;
   if (w->why[i] == VG_CAUSE_NONE) return 0;
   if (!(w->room[o] > limit)) return 0;
   w->room[o] = limit;
@@ -251,7 +246,7 @@ vg_status vg_heights_wanted(struct vg_layer_work *w, struct vg_error *err)
     c->law[p] = w->o->patch[p].law;
   VG_TRY(local_edges(w, err));
   vg_parallel_for(w->o->threads, c->n_column, GRAIN, wanted_body, w);
-  VG_TRY(propagate(w, lower_wanted, err));
+  VG_TRY(vg_columns_spread(w, lower_wanted, NULL, err));
   for (size_t i = 0; i < c->n_column; i++) {
     double d[VG_LEVELS_MAX + 1];
 
@@ -308,7 +303,7 @@ static void slack_body(void *context, size_t first, size_t end, int worker)
   (void)worker;
   for (uint32_t i = (uint32_t)first; i < end; i++) {
     for (uint32_t j = w->t.near_first[i]; j < w->t.near_first[i + 1]; j++)
-      w->slack[j] = SLOPE * edge_length(w, i, w->t.near[j]);
+      w->slack[j] = SLOPE * vg_root_distance(w, i, w->t.near[j]);
     for (uint32_t k = w->t.first[i]; k < w->t.first[i + 1]; k++) {
       uint32_t f = w->t.corner[k] / 3;
       double s;
@@ -430,9 +425,9 @@ vg_status vg_heights_settle(struct vg_layer_work *w, uint8_t *moved,
     before[i].cap = w->c->column[i].cap;
     before[i].n = w->c->column[i].n;
   }
-  VG_TRY(propagate(w, lower_room, err));
+  VG_TRY(vg_columns_spread(w, lower_room, NULL, err));
   vg_parallel_for(w->o->threads, n, GRAIN, settle_body, w);
-  VG_TRY(propagate(w, lower_level, err));
+  VG_TRY(vg_columns_spread(w, lower_level, NULL, err));
   for (size_t i = 0; moved && i < n; i++)
     moved[i] = before[i].cap != w->c->column[i].cap ||
                before[i].n != w->c->column[i].n;

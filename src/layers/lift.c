@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "layers/direct.h"
 #include "layers/vector.h"
@@ -93,24 +94,45 @@ static void follow_body(void *context, size_t first, size_t end, int worker)
 {
   struct vg_turn *l = context;
 
-  for (size_t i = first; i < end; i++)
-    if (l->w->view[i] > 0 && !vg_in_fan(l->w, i))
-      follow(l, (uint32_t)i,
-             l->scratch + (size_t)worker * l->w->max_valence);
-    else memcpy(l->to[i], l->from[i], sizeof *l->to);
+  for (size_t k = first; k < end; k++)
+    follow(l, l->list[k], l->scratch + (size_t)worker * l->w->max_valence);
 }
+
+/* Columns at the apex of a cap that may follow, by rising number; their
+ * number. list: [n_column]. */
+static size_t apices(const struct vg_layer_work *w, uint32_t *list)
+{
+  size_t n = 0;
+
+  for (uint32_t i = 0; i < w->c->n_column; i++) {
+    int is_apex = 0;
+
+    if (w->view[i] == 0 || vg_shares_root(w->c, i)) continue;
+    for (uint32_t j = w->t.first[i]; j < w->t.first[i + 1] && !is_apex; j++)
+      is_apex = (w->cap[w->t.corner[j] / 3] & 3) == 1 + w->t.corner[j] % 3;
+    if (is_apex) list[n++] = i;
+  }
+  return n;
+}
+
+struct shift {
+  struct vg_layer_work *w;
+  const uint8_t *which;
+};
 
 /* Along dir, or, where that leaves the first point no room, along the
  * direction from before smoothing. */
 static void shift_body(void *context, size_t first, size_t end, int worker)
 {
-  struct vg_layer_work *w = ((struct vg_turn *)context)->w;
+  const struct shift *s = context;
+  struct vg_layer_work *w = s->w;
 
   (void)worker;
   for (size_t i = first; i < end; i++) {
     struct vg_column *c = &w->c->column[i];
     double v[3], delta1 = w->c->law[c->law].delta1, d;
 
+    if (s->which && !s->which[i]) continue;
     memset(c->shift, 0, sizeof c->shift);
     if (w->view[i] == 0) continue;
     memcpy(v, c->dir, sizeof v);
@@ -127,31 +149,35 @@ static void shift_body(void *context, size_t first, size_t end, int worker)
   }
 }
 
-vg_status vg_directions_shift(struct vg_layer_work *w, struct vg_error *err)
+void vg_directions_shift(struct vg_layer_work *w, const uint8_t *which)
 {
-  struct vg_turn l = { .w = w };
+  struct shift s = { w, which };
 
-  (void)err;
-  vg_parallel_for(w->o->threads, w->c->n_column, VG_GRAIN, shift_body, &l);
-  return VG_OK;
+  vg_parallel_for(w->o->threads, w->c->n_column, VG_GRAIN, shift_body, &s);
 }
 
 vg_status vg_directions_scale(struct vg_layer_work *w, struct vg_error *err)
 {
   struct vg_turn l = { .w = w };
+  uint32_t *list = vg_alloc(w->c->n_column, sizeof *list);
+  size_t n;
   vg_status st;
 
+  if (!list) return vg_fail_memory(err, "the directions");
   vg_parallel_for(w->o->threads, w->c->n_column, VG_GRAIN, scale_body, &l);
+  l.list = list;
+  n = apices(w, list);
   VG_TRY(vg_turn_scratch(w, &l, err));
   VG_TRY(vg_turn_new(w, &l, err));
   for (int s = 0; s < CAP_SWEEPS; s++) {
-    vg_parallel_for(w->o->threads, w->c->n_column, VG_GRAIN, follow_body, &l);
+    vg_parallel_for(w->o->threads, n, VG_GRAIN, follow_body, &l);
     vg_turn_swap(&l);
   }
   for (size_t i = 0; i < w->c->n_column; i++)
     memcpy(w->c->column[i].dir, l.from[i], sizeof *l.from);
 done:
   vg_turn_free(&l);
+  free(list);
   return st;
 }
 
@@ -170,7 +196,7 @@ static int even(struct vg_layer_work *w, size_t i, const uint8_t *turn,
       n_mean++;
     }
   }
-  if (!n_mean || w->view[i] == 0 || vg_in_fan(w, i)) return 0;
+  if (!n_mean || w->view[i] == 0 || vg_shares_root(w->c, i)) return 0;
   k = vg_face_normals(w, i, n);
   for (int try = 0; try < 4; try++, step *= 0.5) {
     for (int x = 0; x < 3; x++)
@@ -195,7 +221,7 @@ vg_status vg_directions_even(struct vg_layer_work *w, const uint8_t *turn,
       memcpy(w->c->column[i].dir, l.to[i], sizeof *l.to);
       turned[i] = 1;
     }
-  VG_TRY(vg_directions_shift(w, err));
+  vg_directions_shift(w, turned);
   for (size_t i = 0; i < w->c->n_column; i++)
     if (w->view[i] == 0 && w->room[i] > 0) {
       vg_heights_lower(w, i, 0, VG_CAUSE_NO_VIEW);

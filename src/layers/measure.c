@@ -12,6 +12,7 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "layers/vector.h"
 
 enum { GRAIN = 512 };       /* wall points per chunk */
 
@@ -43,22 +44,12 @@ void vg_wall_fields_release(struct vg_wall_fields *w)
   memset(w, 0, sizeof *w);
 }
 
-static double dot(const double a[3], const double b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void minus(const double a[3], const double b[3], double c[3])
-{
-  for (int k = 0; k < 3; k++) c[k] = a[k] - b[k];
-}
-
 /* Square of |p - t u|. */
 static double off_line2(const double p[3], double t, const double u[3])
 {
   double q[3] = { p[0] - t * u[0], p[1] - t * u[1], p[2] - t * u[2] };
 
-  return dot(q, q);
+  return vg_dot(q, q);
 }
 
 /* Square of the distance of x from triangle a b c by the region of the plane
@@ -70,36 +61,36 @@ static double to_triangle2(const double x[3], const double a[3],
   double u[3], v[3], p[3], q[3], r[3], n[3];
   double d1, d2, d3, d4, d5, d6, va, vb, vc, height;
 
-  minus(b, a, u);
-  minus(c, a, v);
-  minus(x, a, p);
-  d1 = dot(u, p);
-  d2 = dot(v, p);
-  if (d1 <= 0 && d2 <= 0) return dot(p, p);
-  minus(p, u, q);
-  d3 = dot(u, q);
-  d4 = dot(v, q);
-  if (d3 >= 0 && d4 <= d3) return dot(q, q);
+  vg_sub(b, a, u);
+  vg_sub(c, a, v);
+  vg_sub(x, a, p);
+  d1 = vg_dot(u, p);
+  d2 = vg_dot(v, p);
+  if (d1 <= 0 && d2 <= 0) return vg_dot(p, p);
+  vg_sub(p, u, q);
+  d3 = vg_dot(u, q);
+  d4 = vg_dot(v, q);
+  if (d3 >= 0 && d4 <= d3) return vg_dot(q, q);
   vc = d1 * d4 - d3 * d2;
   if (vc <= 0 && d1 >= 0 && d3 <= 0) return off_line2(p, d1 / (d1 - d3), u);
-  minus(p, v, r);
-  d5 = dot(u, r);
-  d6 = dot(v, r);
-  if (d6 >= 0 && d5 <= d6) return dot(r, r);
+  vg_sub(p, v, r);
+  d5 = vg_dot(u, r);
+  d6 = vg_dot(v, r);
+  if (d6 >= 0 && d5 <= d6) return vg_dot(r, r);
   vb = d5 * d2 - d1 * d6;
   if (vb <= 0 && d2 >= 0 && d6 <= 0) return off_line2(p, d2 / (d2 - d6), v);
   va = d3 * d6 - d5 * d4;
   if (va <= 0 && d4 >= d3 && d5 >= d6) {
     double w[3];
 
-    minus(v, u, w);
+    vg_sub(v, u, w);
     return off_line2(q, (d4 - d3) / (d4 - d3 + d5 - d6), w);
   }
   n[0] = u[1] * v[2] - u[2] * v[1];
   n[1] = u[2] * v[0] - u[0] * v[2];
   n[2] = u[0] * v[1] - u[1] * v[0];
-  height = dot(n, p);
-  return height * height / dot(n, n);
+  height = vg_dot(n, p);
+  return height * height / vg_dot(n, n);
 }
 
 /* Take the wall triangles at point `at` into account. */
@@ -159,8 +150,8 @@ static double growth_of(const double (*x)[3], int n)
   for (int l = 1; l <= n; l++) {
     double e[3], now;
 
-    minus(x[l], x[l - 1], e);
-    now = dot(e, e);
+    vg_sub(x[l], x[l - 1], e);
+    now = vg_dot(e, e);
     if (l > 1 && now > most * before) most = now / before;
     before = now;
   }

@@ -8,6 +8,7 @@
 #include "layers/layers.h"
 #include "layers/slide.h"
 #include "layers/topology.h"
+#include "layers/vector.h"
 
 #define VG_VIEW_MIN 0.0002    /* least cosine between a column and a face */
 #define VG_FACTOR_MAX 1000.0  /* longest dir: a wedge of 0.1 degrees */
@@ -55,6 +56,13 @@ static inline void vg_root_range(const struct vg_columns *c, uint32_t i,
     ++*end;
 }
 
+static inline double vg_root_distance(const struct vg_layer_work *w,
+                                      uint32_t i, uint32_t j)
+{
+  return vg_distance(w->m->point[w->c->column[i].root],
+                     w->m->point[w->c->column[j].root]);
+}
+
 /* direct.c, bend.c, lift.c ------------------------------------------------*/
 
 /** Normals of faces, first directions and their view. */
@@ -67,8 +75,9 @@ vg_status vg_directions_smooth(struct vg_layer_work *w, struct vg_error *err);
  * cap then follows the two ends of the edge it lies on. */
 vg_status vg_directions_scale(struct vg_layer_work *w, struct vg_error *err);
 
-/** shift: what puts the first point delta1 away from the wall. */
-vg_status vg_directions_shift(struct vg_layer_work *w, struct vg_error *err);
+/** shift: what puts the first point delta1 away from the wall. which:
+ * [n_column] the columns to look at, NULL: all. */
+void vg_directions_shift(struct vg_layer_work *w, const uint8_t *which);
 
 /** Make the columns of faces with turn[f] != 0 more alike, as far as they
  * keep their view. turned out: [n_column] set to 1 where dir changed. */
@@ -76,6 +85,15 @@ vg_status vg_directions_even(struct vg_layer_work *w, const uint8_t *turn,
                              uint8_t *turned, struct vg_error *err);
 
 /* height.c ----------------------------------------------------------------*/
+
+/** Spread a bound over the columns: change(w, context, i, j) moves that of
+ * column t.near[j] because of that of column i, always to the same side, and
+ * says whether it did. Ends at the fixed point, which does not depend on the
+ * order. */
+vg_status vg_columns_spread(struct vg_layer_work *w,
+                            int (*change)(struct vg_layer_work *, void *,
+                                          uint32_t, uint32_t),
+                            void *context, struct vg_error *err);
 
 /** edge, law, n_wanted and wanted; room = wanted. */
 vg_status vg_heights_wanted(struct vg_layer_work *w, struct vg_error *err);
