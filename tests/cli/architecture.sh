@@ -1,5 +1,6 @@
 #!/bin/bash
-# Includes go one way: base <- core <- layers <- cli and core <- io <- cli.
+# Includes go one way: base <- core <- layers <- partition <- cli and core <-
+# io <- cli.
 # Fails on an include against the arrows, without a folder, or of a
 # third-party header outside the file that adapts it.
 # architecture.sh SOURCE_ROOT
@@ -7,7 +8,8 @@ set -u
 cd "$1/src" || exit 1
 bad=0
 
-declare -A rank=([base]=0 [core]=1 [layers]=2 [io]=3 [cli]=4)
+declare -A rank=([base]=0 [core]=1 [layers]=2 [io]=3 [partition]=3
+  [cli]=4)
 
 complain() {
   echo "$*"
@@ -30,7 +32,7 @@ while IFS=: read -r file line text; do
     complain "src/$file:$line: \"$target\" does not exist"
   elif [ "${rank[$to]:-9}" -gt "${rank[$from]:-9}" ]; then
     complain "src/$file:$line: $from must not include $to ($target)"
-  elif [ "$from" = io ] && [ "$to" = layers ]; then
+  elif [ "$from" = io ] && [[ $to = layers || $to = partition ]]; then
     complain "src/$file:$line: io knows the types of core only ($target)"
   fi
 done < <(grep -rnE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' \
@@ -49,7 +51,10 @@ adapter zlib.h '^io/[a-z_]+\.c$'
 adapter jansson.h '^cli/'
 adapter argp.h '^cli/'
 adapter lapacke.h '^layers/gram\.c$'
-adapter pthread.h '^base/'
+adapter pthread.h '^(base|partition)/'
+adapter mpi.h '^(base/comm[a-z_]*|io/shared_file)\.c$'
+adapter hwloc.h '^base/'
+adapter xxhash.h '^partition/store[a-z_]*\.c$'
 
 [ "$bad" = 0 ] && echo "all includes follow the arrows"
 exit $bad

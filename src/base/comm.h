@@ -1,0 +1,99 @@
+/* base/comm.h: the ranks of a job. One process without a launcher is a job of
+ * one rank and never touches MPI; under mpirun or srun MPI is used, with calls
+ * from several threads. comm.c is the only file of base that sees mpi.h.
+ *
+ * Collectives must be called by all ranks in the same order, each by one
+ * thread. While a rank waits in one it sleeps between polls instead of
+ * spinning, so that ranks which share cores do not take time from those that
+ * work. NULL is a valid job of one rank everywhere. */
+#ifndef VG_BASE_COMM_H
+#define VG_BASE_COMM_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/status.h"
+
+struct vg_comm;
+
+/** Bytes with their owner: free(data). */
+struct vg_bytes { size_t n; unsigned char *data; };
+
+/** Join the job that a launcher started (found by its environment), or be one
+ * rank alone. Call once, before any thread is started.
+ * *out is NULL for a job of one rank without a launcher. */
+vg_status vg_comm_open(struct vg_comm **out, struct vg_error *err);
+
+/** Leave the job; NULL accepted. Collective. */
+void vg_comm_close(struct vg_comm *c);
+
+/** End all ranks now, with an exit status: for what no rank can mend. Prints
+ * nothing. Does not return. */
+void vg_comm_abort(struct vg_comm *c, int exit_status)
+    __attribute__((noreturn));
+
+int vg_comm_rank(const struct vg_comm *c);
+int vg_comm_size(const struct vg_comm *c);
+
+/** Rank and number of ranks among those that share this node's memory. */
+int vg_comm_node_rank(const struct vg_comm *c);
+int vg_comm_node_size(const struct vg_comm *c);
+
+/** The MPI_Comm, as a pointer to it; NULL in a job without MPI. For adapters
+ * that need MPI themselves (io/shared_file.c). */
+const void *vg_comm_mpi(const struct vg_comm *c);
+
+/* --- collectives --------------------------------------------------------- */
+
+/** v: [n], replaced by the sum, or the maximum, over all ranks. */
+vg_status vg_comm_sum(struct vg_comm *c, size_t n, uint64_t *v,
+                      struct vg_error *err);
+vg_status vg_comm_max(struct vg_comm *c, size_t n, double *v,
+                      struct vg_error *err);
+
+/** The bytes of rank `root` on every rank; elsewhere *b is replaced. Any
+ * length. */
+vg_status vg_comm_bcast(struct vg_comm *c, int root, struct vg_bytes *b,
+                        struct vg_error *err);
+
+/** As vg_comm_bcast among the ranks of a node, from its first. */
+vg_status vg_comm_node_bcast(struct vg_comm *c, struct vg_bytes *b,
+                             struct vg_error *err);
+
+/** Bytes of every rank on every rank, in order of ranks: out [size], each to
+ * be freed by the caller. */
+vg_status vg_comm_allgather(struct vg_comm *c, const struct vg_bytes *mine,
+                            struct vg_bytes *out, struct vg_error *err);
+
+/** to: [size] one for each rank, kept by the caller; from: [size] what each
+ * rank had for this one, to be freed by the caller. Any length. */
+vg_status vg_comm_exchange(struct vg_comm *c, const struct vg_bytes *to,
+                           struct vg_bytes *from, struct vg_error *err);
+
+/** All ranks take the worst status of all; where that is another rank's, *err
+ * becomes its message with "rank N: " before it. So one rank's failure ends a
+ * stage on all of them. Returns what all return. */
+vg_status vg_comm_agree(struct vg_comm *c, vg_status mine,
+                        struct vg_error *err);
+
+/** Let this process use the cores of all ranks of its node (on = 1), or its
+ * own again: for stages that the first rank of a node does for the others,
+ * who wait asleep. Returns the cores at hand. */
+int vg_comm_node_cores(struct vg_comm *c, int on);
+
+/* --- messages, for one thread that polls --------------------------------- */
+
+struct vg_message { int from, kind; struct vg_bytes bytes; };
+
+/** Post a message; takes over b (b->data becomes NULL). Never blocks. A
+ * message to oneself arrives like any other. Any length.
+ * Threads: safe. */
+vg_status vg_comm_post(struct vg_comm *c, int to, int kind,
+                       struct vg_bytes *b, struct vg_error *err);
+
+/** Take one message that has arrived and free what was sent. VG_OK: *m is
+ * the caller's; VG_BLOCKED: none. One thread only. */
+vg_status vg_comm_poll(struct vg_comm *c, struct vg_message *m,
+                       struct vg_error *err);
+
+#endif

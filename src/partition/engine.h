@@ -1,0 +1,93 @@
+/* partition/engine.h: tasks over ranks and threads. Uses base only.
+ *
+ * A task is made on a rank, its home, and done by some worker thread of some
+ * rank; its outcome returns home, where it may make further tasks. There are
+ * no levels and no barriers: whoever is idle takes the task at hand with the
+ * highest priority. No rank only manages: a thread of rank 0 that sleeps
+ * nearly always keeps the list, and each rank has one that serves messages.
+ *
+ * Which worker does what depends on timing. So what a task computes must
+ * follow from its input alone, and what it makes be named by its path. */
+#ifndef VG_PARTITION_ENGINE_H
+#define VG_PARTITION_ENGINE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/comm.h"
+#include "base/status.h"
+#include "partition/spans.h"
+
+struct vg_task {
+  char path[VG_PATH_MAX];    /* unique; decides between equal priorities */
+  char kind;                 /* VG_SPAN_...; for records, and 'A'..'Z' */
+  int pinned;                /* 1: to be done by its home rank */
+  double priority;           /* higher first */
+  double weight;             /* expected work, in cells, for progress */
+  void *input;               /* owned by the engine once submitted */
+};
+
+struct vg_engine;            /* one per rank while vg_engine_run runs */
+
+/** What tasks are. All but `done` may run in several threads at once. */
+struct vg_engine_ops {
+  /** Do the task. Allowed to keep results on this rank (in user).
+   * outcome out: what its home needs to know, for `done` (may be left NULL).
+   * worker: 0 .. threads - 1, names scratch space.
+   * VG_BLOCKED: stopped half-way because vg_engine_stopping; counts as not
+   * done. n_cell out: work done, for progress and records. */
+  vg_status (*run)(void *user, const struct vg_task *task, int worker,
+                   void **outcome, size_t *n_cell, struct vg_error *err);
+  /** On the task's home rank: take the outcome over (always frees it), and
+   * submit what follows. One call at a time per rank, in a worker thread;
+   * keep it short. rank: which rank ran the task. */
+  vg_status (*done)(void *user, struct vg_engine *e,
+                    const struct vg_task *task, void *outcome, int rank,
+                    struct vg_error *err);
+  /** For the way to another rank and back. Not called on the home rank's own
+   * tasks. unpack makes what release_input / done frees. */
+  vg_status (*pack_input)(void *user, const void *input, struct vg_bytes *out,
+                          struct vg_error *err);
+  vg_status (*unpack_input)(void *user, const struct vg_bytes *in,
+                            void **input, struct vg_error *err);
+  vg_status (*pack_outcome)(void *user, const void *outcome,
+                            struct vg_bytes *out, struct vg_error *err);
+  vg_status (*unpack_outcome)(void *user, const struct vg_bytes *in,
+                              void **outcome, struct vg_error *err);
+  void (*release_input)(void *user, void *input);
+  void (*release_outcome)(void *user, void *outcome);
+};
+
+struct vg_engine_options {
+  int threads;               /* workers on this rank, at least 1 */
+  uint64_t shuffle;          /* 0: by priority; else: in an order drawn from
+                                this number, to show that order is no matter */
+  /** Called on rank 0 now and then: cells done and known so far, tasks done
+   * and known. Non-zero: stop. May be NULL. */
+  int (*progress)(void *user, double done, double known, size_t n_done,
+                  size_t n_known);
+  /** Polled on every rank (a signal's flag, say): non-zero stops all ranks
+   * after the tasks under way. May be NULL. */
+  int (*stop)(void *user);
+  void *user;
+};
+
+/** Run until no task is left anywhere. Collective.
+ *
+ * @param first  tasks that this rank submits at the start: [n_first]
+ * @param spans  out: what this rank's workers did when (all of the job's on
+ *               rank 0), owned by the caller: vg_spans_release; may be NULL
+ * Returns on all ranks VG_OK; VG_BLOCKED when stopped; or the first failure,
+ * on other ranks too, with its message ("rank 3: ..."). Tasks that were not
+ * done are released. A rank that dies ends the job through the launcher. */
+vg_status vg_engine_run(struct vg_comm *comm,
+                        const struct vg_engine_options *options,
+                        const struct vg_engine_ops *ops, void *user,
+                        size_t n_first, const struct vg_task *first,
+                        struct vg_spans *spans, struct vg_error *err);
+
+/** Hand a task over; it is copied, its input taken over. For `done` only. */
+vg_status vg_engine_submit(struct vg_engine *e, const struct vg_task *task,
+                           struct vg_error *err);
+
+#endif

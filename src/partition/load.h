@@ -1,0 +1,79 @@
+/* partition/load.h: how many cells will a void need, and where? Uses core.
+ *
+ * A load is a list of cubes that together cover a void, each with the cells
+ * expected in it: c V / h^3, V the part of the cube in the void. Cubes are a
+ * few target edges wide, so there are some thousands to a few hundred
+ * thousands of them, whatever the mesh will have. */
+#ifndef VG_PARTITION_LOAD_H
+#define VG_PARTITION_LOAD_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/status.h"
+#include "core/sizing.h"
+#include "core/void.h"
+
+/** Cells per cube of the target edge, measured over boxes, spheres and wings
+ * (docs/performance.md); corrected by what a void's zones turned out. */
+#define VG_LOAD_CELLS_PER_CUBE 9.0
+
+struct vg_load_cube {
+  float at[3], half;         /* centre, half the side */
+  float h;                   /* target edge at the centre */
+  float cells;               /* expected in the part inside the void */
+};
+
+struct vg_load {
+  size_t n;
+  struct vg_load_cube *cube; /* [n] in the order of an octree: fixed */
+  double cells;              /* sum */
+};
+#define VG_LOAD_INIT { 0, NULL, 0 }
+
+void vg_load_release(struct vg_load *l);
+
+/** The load of a void.
+ *
+ * @param v   front only is looked at; closed
+ * @param threads  to use; the result does not depend on it
+ * Octree over the void's box: split while wider than 4 h, or than 2 h where
+ * the front passes (the part inside is then sampled); cubes outside dropped.
+ * Cost: O(front + cubes) times a logarithm. Result follows from the arguments
+ * alone, bit by bit. VG_ERR_MEMORY. */
+vg_status vg_load_new(const struct vg_void *v, const struct vg_sizing *sizing,
+                      double cells_per_cube, int threads, struct vg_load *out,
+                      struct vg_error *err);
+
+/** What each of n voids takes of the load of a void that was cut into them.
+ *
+ * child: [n] fronts that lie inside the parent's void; out: [n] loads. A cube
+ * goes to the child that contains its centre (cubes that children share are
+ * split by samples); what lies in none of them (the zones) is dropped. The
+ * cubes' cells are multiplied by `correction`, the ratio of cells made to
+ * cells expected in the ancestors' zones.
+ * O(cubes + fronts) times a logarithm. */
+vg_status vg_load_split(const struct vg_load *parent, size_t n,
+                        const struct vg_void *child, double correction,
+                        struct vg_load *out, struct vg_error *err);
+
+/** Position along `axis` below which lies the share `part` of the cells;
+ * cubes count as evenly filled. */
+double vg_load_quantile(const struct vg_load *l, int axis, double part);
+
+/** Cells expected within `width` target edges on each side of the plane
+ * x[axis] = at: what a zone costs. */
+double vg_load_zone(const struct vg_load *l, int axis, double at,
+                    double width);
+
+/** Largest target edge met on the plane (0: the plane misses the void). */
+double vg_load_coarsest(const struct vg_load *l, int axis, double at);
+
+/** Flat bytes and back, for messages: VG_ERR_FORMAT when damaged. */
+struct vg_bytes;
+vg_status vg_load_pack(const struct vg_load *l, struct vg_bytes *out,
+                       struct vg_error *err);
+vg_status vg_load_unpack(const struct vg_bytes *in, struct vg_load *out,
+                         struct vg_error *err);
+
+#endif

@@ -1,0 +1,69 @@
+#include "partition/spans.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+
+void vg_spans_release(struct vg_spans *s)
+{
+  struct vg_spans empty = VG_SPANS_INIT;
+
+  free(s->span);
+  *s = empty;
+}
+
+vg_status vg_spans_add(struct vg_spans *s, const struct vg_span *span,
+                       struct vg_error *err)
+{
+  if (vg_reserve(&s->span, &s->cap, s->n + 1, sizeof *s->span))
+    return vg_fail_memory(err, "the record of tasks");
+  s->span[s->n++] = *span;
+  return VG_OK;
+}
+
+static int by_path(const void *a, const void *b)
+{
+  const struct vg_span *s = a, *t = b;
+  int order = strcmp(s->path, t->path);
+
+  return order ? order : s->kind - t->kind;
+}
+
+void vg_spans_sort(struct vg_spans *s)
+{
+  if (s->n) qsort(s->span, s->n, sizeof *s->span, by_path);
+}
+
+/* Sum and maximum of the workers' busy time. */
+static void busy(const struct vg_spans *s, double *sum, double *most)
+{
+  size_t n = (size_t)(s->n_rank * s->n_thread);
+  double *time = vg_calloc(n, sizeof *time);
+
+  *sum = *most = 0;
+  for (size_t i = 0; time && i < s->n; i++)
+    time[s->span[i].rank * s->n_thread + s->span[i].thread] +=
+      s->span[i].end - s->span[i].start;
+  for (size_t i = 0; time && i < n; i++) {
+    *sum += time[i];
+    if (time[i] > *most) *most = time[i];
+  }
+  free(time);
+}
+
+double vg_spans_busy(const struct vg_spans *s)
+{
+  double sum, most, all = s->wall * s->n_rank * s->n_thread;
+
+  busy(s, &sum, &most);
+  return all > 0 ? sum / all : 0;
+}
+
+double vg_spans_imbalance(const struct vg_spans *s)
+{
+  double sum, most;
+
+  busy(s, &sum, &most);
+  return sum > 0 ? most * s->n_rank * s->n_thread / sum : 1;
+}
