@@ -7,24 +7,37 @@
 #include "core/quality.h"
 #include "core/slices.h"
 
-/** Which cells are judged. */
-enum vg_judge_what { VG_JUDGE_ALL, VG_JUDGE_FIELD /* no layers */ };
-
-/** Judge a mesh in slices. Collective; the same report on every rank.
+/** Judge a mesh in slices, and at the same time the field in it by itself:
+ * the slices that are no layers. Collective; the same reports on every rank.
  *
- * All figures of vg_mesh_report, with the same meaning, the worst cells by
- * their number in the mesh (tets, pyramids, prisms). Faces are matched within
- * slices; those left over meet on the rank that their points' hash names. Sums
- * are kept in a way that does not depend on who adds what, so that the report
- * is the same for any number of ranks and threads, bit by bit.
- * VG_JUDGE_FIELD: slices of layers are left out; what bounds the field
- * (tops of layers, boundary) is not looked up, so faces without a neighbour
- * are counted only against `front_faces`, their expected number.
- * @param sizing  may be NULL; edges shared between slices count once
- * Memory: one slice and its faces per thread, and the left over faces. */
+ * All figures of vg_mesh_report, with the same meaning, by the same code as
+ * vg_mesh_judge, the worst cells by their number in the mesh (tets, pyramids,
+ * prisms). Faces are matched within slices; those left over meet on the rank
+ * that their points' hash names, edges and places of points likewise. Counts
+ * are integers and sums exact, so that the reports are the same, bit by bit,
+ * for any number of ranks and threads and for any cut into slices, and those
+ * of vg_mesh_judge on the whole mesh.
+ *
+ * What bounds the field (tops of layers, boundary) is not looked up, so its
+ * faces without a neighbour are only counted: in the field's report open_face
+ * is their difference from `front_faces`, and `enclosed` is its volume. Points
+ * at one place are counted for the whole mesh only.
+ *
+ * In a mesh that is not valid a face may have two cells in one slice and more
+ * elsewhere: what is elsewhere counts as open, or as boundary without a cell,
+ * instead of as crowded.
+ *
+ * @param sizing  may be NULL; edges are those of the field if a report of it
+ *                is asked for (those of its faces without a neighbour apart),
+ *                else those of the whole mesh (the boundary's apart)
+ * @param field   may be NULL
+ * VG_ERR_MEMORY; VG_ERR_INPUT when slices and their counts do not agree, and
+ * what a server of slices answers; on failure reports are untouched.
+ * Memory: one slice and its faces per thread; 28 bytes per face left over
+ * and 24 per point, twice while they are sent; n_point / 8. */
 vg_status vg_slices_judge(struct vg_comm *comm, const struct vg_slices *s,
-                          enum vg_judge_what what, uint64_t front_faces,
-                          const struct vg_sizing *sizing, int threads,
-                          struct vg_mesh_report *report, struct vg_error *err);
+                          uint64_t front_faces, const struct vg_sizing *sizing,
+                          int threads, struct vg_mesh_report *whole,
+                          struct vg_mesh_report *field, struct vg_error *err);
 
 #endif
