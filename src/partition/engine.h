@@ -24,7 +24,8 @@ struct vg_task {
   int pinned;                /* 1: to be done by its home rank */
   double priority;           /* higher first */
   double weight;             /* expected work, in cells, for progress */
-  void *input;               /* owned by the engine once submitted */
+  void *input;               /* owned by the engine once submitted; may be
+                                NULL, and is in `done` */
 };
 
 struct vg_engine;            /* one per rank while vg_engine_run runs */
@@ -34,18 +35,21 @@ struct vg_engine_ops {
   /** Do the task. Allowed to keep results on this rank (in user).
    * outcome out: what its home needs to know, for `done` (may be left NULL).
    * worker: 0 .. threads - 1, names scratch space.
-   * VG_BLOCKED: stopped half-way because vg_engine_stopping; counts as not
-   * done. n_cell out: work done, for progress and records. */
-  vg_status (*run)(void *user, const struct vg_task *task, int worker,
-                   void **outcome, size_t *n_cell, struct vg_error *err);
+   * VG_BLOCKED: stopped half-way because vg_engine_stopping(e); counts as not
+   * done (and stops the job, should it not be stopping yet).
+   * n_cell out: work done, for progress and records. */
+  vg_status (*run)(void *user, const struct vg_engine *e,
+                   const struct vg_task *task, int worker, void **outcome,
+                   size_t *n_cell, struct vg_error *err);
   /** On the task's home rank: take the outcome over (always frees it), and
-   * submit what follows. One call at a time per rank, in a worker thread;
-   * keep it short. rank: which rank ran the task. */
+   * submit what follows. One call at a time per rank, in a thread of the
+   * engine that need not be a worker; keep it short. Called for every task
+   * that was done, also after a stop or a failure. rank: which rank ran it. */
   vg_status (*done)(void *user, struct vg_engine *e,
                     const struct vg_task *task, void *outcome, int rank,
                     struct vg_error *err);
-  /** For the way to another rank and back. Not called on the home rank's own
-   * tasks. unpack makes what release_input / done frees. */
+  /** For the way to another rank and back: never called in a job of one rank,
+   * nor for what is NULL. unpack makes what release_input / done frees. */
   vg_status (*pack_input)(void *user, const void *input, struct vg_bytes *out,
                           struct vg_error *err);
   vg_status (*unpack_input)(void *user, const struct vg_bytes *in,
@@ -86,8 +90,14 @@ vg_status vg_engine_run(struct vg_comm *comm,
                         size_t n_first, const struct vg_task *first,
                         struct vg_spans *spans, struct vg_error *err);
 
-/** Hand a task over; it is copied, its input taken over. For `done` only. */
+/** Hand a task over; it is copied, its input taken over, released on failure.
+ * For `done` only. VG_ERR_INPUT: no path, or a priority or weight that is no
+ * number. */
 vg_status vg_engine_submit(struct vg_engine *e, const struct vg_task *task,
                            struct vg_error *err);
+
+/** 1 when the job is being stopped (by a failure, too): for a long `run` to
+ * ask now and then. Threads: safe. */
+int vg_engine_stopping(const struct vg_engine *e);
 
 #endif
