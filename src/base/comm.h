@@ -1,6 +1,6 @@
 /* base/comm.h: the ranks of a job. One process without a launcher is a job of
  * one rank and never touches MPI; under mpirun or srun MPI is used, with calls
- * from several threads. comm.c is the only file of base that sees mpi.h.
+ * from several threads. Only comm*.c of base see mpi.h.
  *
  * Collectives must be called by all ranks in the same order, each by one
  * thread. While a rank waits in one it sleeps between polls instead of
@@ -80,6 +80,11 @@ vg_status vg_comm_agree(struct vg_comm *c, vg_status mine,
  * own again: for stages that the first rank of a node does for the others,
  * who wait asleep. Returns the cores at hand. */
 int vg_comm_node_cores(struct vg_comm *c, int on);
+
+/** Threads that suit this rank's binding: the cores (not their hyperthreads)
+ * it may use, divided among the ranks of the node that are bound to the same
+ * ones; all of them where the launcher binds nothing. At least 1. Local. */
+int vg_comm_default_threads(const struct vg_comm *c);
 
 /* --- messages, for one thread that polls --------------------------------- */
 

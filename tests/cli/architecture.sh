@@ -52,8 +52,8 @@ adapter jansson.h '^cli/'
 adapter argp.h '^cli/'
 adapter lapacke.h '^layers/gram\.c$'
 adapter pthread.h '^(base|partition)/'
-adapter mpi.h '^(base/comm[a-z_]*|io/shared_file)\.c$'
-adapter hwloc.h '^base/'
+adapter mpi.h '^(base/comm(_[a-z]+)?\.c|base/comm_parts\.h|io/shared_file\.c)$'
+adapter hwloc.h '^base/comm_cores\.c$'
 adapter xxhash.h '^partition/store[a-z_]*\.c$'
 
 [ "$bad" = 0 ] && echo "all includes follow the arrows"

@@ -1,0 +1,219 @@
+/* Joining and leaving a job, and waiting asleep: base/comm.h. */
+#include "base/comm.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "base/comm_parts.h"
+#include "base/memory.h"
+
+/* Bytes in one call of MPI: far below the 2^31 of its counts. */
+#define CHUNK ((size_t)1 << 28)
+
+/* Sleep between looks. The first looks are close together for what is nearly
+ * there; a rank that waits long looks seldom enough to use no core. */
+enum { NAP_FIRST_NS = 2000, NAP_BRISK_NS = 16000, NAP_LAST_NS = 200000,
+       NAP_IDLE_NS = 1000000, NAPS_UNTIL_IDLE = 400 };
+
+vg_status vg_comm_fail(struct vg_error *err, const char *what, int rc)
+{
+  char text[MPI_MAX_ERROR_STRING + 1] = "";
+  int n;
+
+  if (MPI_Error_string(rc, text, &n)) text[0] = 0;
+  return vg_fail(err, VG_ERR_REMOTE, "MPI: %s: %s", what, text);
+}
+
+int vg_comm_wait(int n, MPI_Request *request, int brisk)
+{
+  long nap = NAP_FIRST_NS;
+  int done = 0, rc, count = 0;
+
+  while (!(rc = MPI_Testall(n, request, &done, MPI_STATUSES_IGNORE)) &&
+         !done) {
+    const struct timespec t = { 0, nap };
+
+    nanosleep(&t, NULL);
+    if (count < NAPS_UNTIL_IDLE) count++;
+    nap = nap * 2;
+    if (brisk && nap > NAP_BRISK_NS) nap = NAP_BRISK_NS;
+    if (nap > NAP_LAST_NS)
+      nap = count < NAPS_UNTIL_IDLE ? NAP_LAST_NS : NAP_IDLE_NS;
+  }
+  return rc;
+}
+
+/* --- launchers ----------------------------------------------------------- */
+
+static long number(const char *name)
+{
+  const char *text = getenv(name);
+
+  return text ? strtol(text, NULL, 10) : -1;
+}
+
+/* Variables of the launchers that connect their processes: Open MPI's mpirun,
+ * whatever speaks PMI (MPICH's, Intel's and Cray's; srun --mpi=pmi2) and PMIx
+ * (prterun, srun --mpi=pmix). Says how many processes there should be, if the
+ * launcher tells, else 1. */
+static int launched(long *size)
+{
+  static const char *const sign[] = { "OMPI_COMM_WORLD_SIZE", "PMI_SIZE",
+                                      "PMI_RANK", "PMIX_RANK" };
+  static const char *const sizes[] = { "OMPI_COMM_WORLD_SIZE", "PMI_SIZE",
+                                       "SLURM_STEP_NUM_TASKS" };
+
+  *size = 1;
+  for (size_t i = 0; i < sizeof sizes / sizeof *sizes && *size <= 1; i++)
+    *size = number(sizes[i]);
+  for (size_t i = 0; i < sizeof sign / sizeof *sign; i++)
+    if (getenv(sign[i])) return 1;
+  return 0;
+}
+
+/* Processes of a Slurm step that nothing connects would each believe to be
+ * alone, and all do and write the same. */
+static int is_loose_step(void)
+{
+  return getenv("SLURM_STEP_ID") && getenv("SLURM_PROCID") &&
+         number("SLURM_STEP_NUM_TASKS") > 1;
+}
+
+static vg_status start(struct vg_comm *c, struct vg_error *err)
+{
+  int is_up, is_over, level, rc;
+
+  if (MPI_Finalized(&is_over) || is_over)
+    return vg_fail(err, VG_ERR_UNSUPPORTED, "MPI was left and cannot be "
+                   "joined again in the same process");
+  rc = MPI_Initialized(&is_up);
+  if (!rc && is_up) rc = MPI_Query_thread(&level);
+  else if (!rc) {
+    rc = MPI_Init_thread(NULL, NULL, MPI_THREAD_MULTIPLE, &level);
+    c->owns_mpi = !rc;
+  }
+  if (rc) return vg_comm_fail(err, "cannot start", rc);
+  if (level < MPI_THREAD_MULTIPLE)
+    return vg_fail(err, VG_ERR_UNSUPPORTED, "this MPI library does not allow "
+                   "calls from several threads (MPI_THREAD_MULTIPLE; it "
+                   "offers level %d); use one that does, or run one rank "
+                   "with --threads and without mpirun", level);
+  return VG_OK;
+}
+
+static int duplicate(MPI_Comm *to)
+{
+  int rc = MPI_Comm_dup(MPI_COMM_WORLD, to);
+
+  return rc ? rc : MPI_Comm_set_errhandler(*to, MPI_ERRORS_RETURN);
+}
+
+static vg_status join(struct vg_comm *c, struct vg_error *err)
+{
+  int rc;
+
+  if ((rc = duplicate(&c->all)) || (rc = duplicate(&c->wire)) ||
+      (rc = MPI_Comm_rank(c->all, &c->rank)) ||
+      (rc = MPI_Comm_size(c->all, &c->size)) ||
+      (rc = MPI_Comm_split_type(c->all, MPI_COMM_TYPE_SHARED, c->rank,
+                                MPI_INFO_NULL, &c->node)) ||
+      (rc = MPI_Comm_set_errhandler(c->node, MPI_ERRORS_RETURN)) ||
+      (rc = MPI_Comm_rank(c->node, &c->node_rank)) ||
+      (rc = MPI_Comm_size(c->node, &c->node_size)))
+    return vg_comm_fail(err, "cannot join the job", rc);
+  return VG_OK;
+}
+
+static void leave(struct vg_comm *c)
+{
+  if (c->node != MPI_COMM_NULL) MPI_Comm_free(&c->node);
+  if (c->wire != MPI_COMM_NULL) MPI_Comm_free(&c->wire);
+  if (c->all != MPI_COMM_NULL) MPI_Comm_free(&c->all);
+  if (c->owns_mpi) MPI_Finalize();
+  vg_comm_messages_release(c);
+  pthread_mutex_destroy(&c->lock);
+  free(c->core);
+  free(c);
+}
+
+static vg_status check_size(const struct vg_comm *c, long announced,
+                            struct vg_error *err)
+{
+  if (c->size > 1 || announced <= 1 || !c->owns_mpi) return VG_OK;
+  return vg_fail(err, VG_ERR_UNSUPPORTED, "the launcher started %ld "
+                 "processes that do not find each other: use the mpirun of "
+                 "the MPI library that this program is linked with (or srun "
+                 "--mpi with a plugin that it knows)", announced);
+}
+
+vg_status vg_comm_open(struct vg_comm **out, struct vg_error *err)
+{
+  struct vg_comm *c;
+  long announced;
+  vg_status st;
+
+  if (!launched(&announced)) {
+    if (is_loose_step())
+      return vg_fail(err, VG_ERR_UNSUPPORTED, "srun started %ld processes "
+                     "without connecting them; use srun --mpi=pmix or "
+                     "--mpi=pmi2 (srun --mpi=list shows what there is), or "
+                     "mpirun", announced);
+    *out = NULL;
+    return VG_OK;
+  }
+  c = vg_calloc(1, sizeof *c);
+  if (!c) return vg_fail_memory(err, "communication");
+  c->all = c->wire = c->node = MPI_COMM_NULL;
+  c->chunk = CHUNK;
+  c->last = &c->first;
+  pthread_mutex_init(&c->lock, NULL);
+  VG_TRY(start(c, err));
+  VG_TRY(join(c, err));
+  VG_TRY(check_size(c, announced, err));
+  VG_TRY(vg_comm_cores_open(c, err));
+  *out = c;
+  return VG_OK;
+done:
+  leave(c);
+  return st;
+}
+
+void vg_comm_close(struct vg_comm *c)
+{
+  if (!c) return;
+  vg_comm_drain(c);
+  leave(c);
+}
+
+void vg_comm_abort(struct vg_comm *c, int exit_status)
+{
+  if (c) MPI_Abort(c->all, exit_status);
+  _exit(exit_status);
+}
+
+int vg_comm_rank(const struct vg_comm *c)
+{
+  return c ? c->rank : 0;
+}
+
+int vg_comm_size(const struct vg_comm *c)
+{
+  return c ? c->size : 1;
+}
+
+int vg_comm_node_rank(const struct vg_comm *c)
+{
+  return c ? c->node_rank : 0;
+}
+
+int vg_comm_node_size(const struct vg_comm *c)
+{
+  return c ? c->node_size : 1;
+}
+
+const void *vg_comm_mpi(const struct vg_comm *c)
+{
+  return c ? &c->all : NULL;
+}

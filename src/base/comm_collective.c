@@ -1,0 +1,382 @@
+/* What all ranks do together: base/comm.h. All waiting is done asleep; where
+ * one rank may run out of memory all ranks agree before they go on. */
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/comm_parts.h"
+#include "base/memory.h"
+
+static vg_status finish(MPI_Request *request, int rc, const char *what,
+                        struct vg_error *err)
+{
+  if (!rc) rc = vg_comm_wait(1, request, 0);
+  return rc ? vg_comm_fail(err, what, rc) : VG_OK;
+}
+
+/* v [n] of a type, reduced in place. */
+static vg_status reduce(struct vg_comm *c, size_t n, void *v, size_t size,
+                        MPI_Datatype type, MPI_Op op, struct vg_error *err)
+{
+  size_t most = c->chunk / size;
+  vg_status st = VG_OK;
+
+  if (!most) most = 1;
+  for (size_t at = 0; at < n && st >= 0; at += most) {
+    int m = (int)(n - at < most ? n - at : most);
+    MPI_Request request;
+    int rc = MPI_Iallreduce(MPI_IN_PLACE, (char *)v + at * size, m, type, op,
+                            c->all, &request);
+
+    st = finish(&request, rc, "reduction", err);
+  }
+  return st;
+}
+
+vg_status vg_comm_sum(struct vg_comm *c, size_t n, uint64_t *v,
+                      struct vg_error *err)
+{
+  return c ? reduce(c, n, v, sizeof *v, MPI_UINT64_T, MPI_SUM, err) : VG_OK;
+}
+
+vg_status vg_comm_max(struct vg_comm *c, size_t n, double *v,
+                      struct vg_error *err)
+{
+  return c ? reduce(c, n, v, sizeof *v, MPI_DOUBLE, MPI_MAX, err) : VG_OK;
+}
+
+/* --- agreement ----------------------------------------------------------- */
+
+struct verdict {
+  int status, rank;
+  char text[sizeof ((struct vg_error *)0)->text];
+};
+
+/* Failures before what another rank's failure caused, before outcomes. */
+static uint64_t severity(vg_status st)
+{
+  return st < 0 ? (st == VG_ERR_REMOTE) : st > 0 ? 2 : 3;
+}
+
+/* "rank 3: ..." says already whose it is. */
+static int names_rank(const char *text)
+{
+  size_t n;
+
+  if (strncmp(text, "rank ", 5)) return 0;
+  n = strspn(text + 5, "0123456789");
+  return n && text[5 + n] == ':';
+}
+
+vg_status vg_comm_agree_in(const struct vg_comm *c, MPI_Comm comm,
+                           vg_status mine, struct vg_error *err)
+{
+  struct verdict v = { mine, c->rank, "" };
+  MPI_Request request;
+  uint64_t key;
+  int me, rc, root;
+  vg_status st;
+
+  MPI_Comm_rank(comm, &me);
+  key = severity(mine) << 32 | (uint32_t)me;
+  rc = MPI_Iallreduce(MPI_IN_PLACE, &key, 1, MPI_UINT64_T, MPI_MIN, comm,
+                      &request);
+  if ((st = finish(&request, rc, "agreement", err)) < 0) return st;
+  if (key >> 32 == severity(VG_OK)) return VG_OK;
+  root = (int)(uint32_t)key;
+  if (mine < 0 && err) memcpy(v.text, err->text, sizeof v.text);
+  rc = MPI_Ibcast(&v, (int)sizeof v, MPI_BYTE, root, comm, &request);
+  if ((st = finish(&request, rc, "agreement", err)) < 0) return st;
+  if (root == me || v.status > 0) return (vg_status)v.status;
+  v.text[sizeof v.text - 1] = 0;
+  if (names_rank(v.text))
+    return vg_fail(err, (vg_status)v.status, "%s", v.text);
+  return vg_fail(err, (vg_status)v.status, "rank %d: %s", v.rank,
+                 v.text[0] ? v.text : vg_status_name((vg_status)v.status));
+}
+
+vg_status vg_comm_agree(struct vg_comm *c, vg_status mine,
+                        struct vg_error *err)
+{
+  return c ? vg_comm_agree_in(c, c->all, mine, err) : mine;
+}
+
+/* --- bytes --------------------------------------------------------------- */
+
+static vg_status fresh(uint64_t n, struct vg_bytes *b, struct vg_error *err)
+{
+  b->data = n <= SIZE_MAX ? vg_alloc((size_t)n, 1) : NULL;
+  if (!b->data) return vg_fail_memory(err, "bytes from another rank");
+  b->n = (size_t)n;
+  return VG_OK;
+}
+
+static vg_status bcast_in(const struct vg_comm *c, MPI_Comm comm, int root,
+                          struct vg_bytes *b, struct vg_error *err)
+{
+  struct vg_bytes got = { 0, NULL };
+  uint64_t n = b->n;
+  MPI_Request request;
+  vg_status st;
+  int me, rc;
+
+  MPI_Comm_rank(comm, &me);
+  rc = MPI_Ibcast(&n, 1, MPI_UINT64_T, root, comm, &request);
+  VG_TRY(finish(&request, rc, "broadcast", err));
+  if (me == root) got = *b;
+  else st = fresh(n, &got, err);
+  VG_TRY(vg_comm_agree_in(c, comm, st, err));
+  for (size_t at = 0; at < got.n; at += c->chunk) {
+    size_t m = got.n - at < c->chunk ? got.n - at : c->chunk;
+
+    rc = MPI_Ibcast(got.data + at, (int)m, MPI_BYTE, root, comm, &request);
+    if (!rc) rc = vg_comm_wait(1, &request, 1);
+    if (rc) VG_TRY(vg_comm_fail(err, "broadcast", rc));
+  }
+  if (me == root) return VG_OK;
+  free(b->data);
+  *b = got;
+  return VG_OK;
+done:
+  if (me != root) free(got.data);
+  return st;
+}
+
+vg_status vg_comm_bcast(struct vg_comm *c, int root, struct vg_bytes *b,
+                        struct vg_error *err)
+{
+  return c ? bcast_in(c, c->all, root, b, err) : VG_OK;
+}
+
+vg_status vg_comm_node_bcast(struct vg_comm *c, struct vg_bytes *b,
+                             struct vg_error *err)
+{
+  return c ? bcast_in(c, c->node, 0, b, err) : VG_OK;
+}
+
+static vg_status copy_own(const struct vg_bytes *from, struct vg_bytes *to,
+                          struct vg_error *err)
+{
+  vg_status st = fresh(from->n, to, err);
+
+  if (st >= 0 && from->n) memcpy(to->data, from->data, from->n);
+  return st;
+}
+
+static void release_all(struct vg_bytes *b, int n)
+{
+  for (int i = 0; b && i < n; i++) free(b[i].data);
+  free(b);
+}
+
+/* Room for n [size] bytes from every rank; all or none of the ranks. */
+static vg_status fresh_all(const struct vg_comm *c, const uint64_t *n,
+                           struct vg_bytes **out, struct vg_error *err)
+{
+  struct vg_bytes *b = vg_calloc((size_t)c->size, sizeof *b);
+  vg_status st = b ? VG_OK : vg_fail_memory(err, "bytes from all ranks");
+
+  for (int i = 0; i < c->size && st >= 0; i++) st = fresh(n[i], &b[i], err);
+  st = vg_comm_agree_in(c, c->all, st, err);
+  if (st < 0) release_all(b, c->size);
+  else *out = b;
+  return st;
+}
+
+/* --- all to all ---------------------------------------------------------- */
+
+struct transfers { int n; size_t cap; MPI_Request *request; };
+
+static vg_status transfer(const struct vg_comm *c, struct transfers *t,
+                          const struct vg_bytes *b, int peer, int is_send,
+                          struct vg_error *err)
+{
+  for (size_t at = 0; at < b->n; at += c->chunk) {
+    int m = (int)(b->n - at < c->chunk ? b->n - at : c->chunk), rc;
+
+    rc = is_send ? MPI_Isend(b->data + at, m, MPI_BYTE, peer,
+                             VG_TAG_EXCHANGE, c->all, t->request + t->n)
+                 : MPI_Irecv(b->data + at, m, MPI_BYTE, peer,
+                             VG_TAG_EXCHANGE, c->all, t->request + t->n);
+    if (rc) return vg_comm_fail(err, "exchange", rc);
+    t->n++;
+  }
+  return VG_OK;
+}
+
+static size_t n_chunks(const struct vg_comm *c, const struct vg_bytes *b)
+{
+  size_t n = 0;
+
+  for (int i = 0; i < c->size; i++)
+    if (i != c->rank) n += b[i].n / c->chunk + 1;
+  return n;
+}
+
+/* Peers in turn from one's own number on, so that not all send to one. */
+static vg_status exchange_bytes(const struct vg_comm *c,
+                                const struct vg_bytes *to,
+                                struct vg_bytes *from, MPI_Request *request,
+                                struct vg_error *err)
+{
+  struct transfers t = { .request = request };
+  vg_status st = VG_OK;
+
+  for (int k = 1; k < c->size && st >= 0; k++)
+    st = transfer(c, &t, &from[(c->rank + c->size - k) % c->size],
+                  (c->rank + c->size - k) % c->size, 0, err);
+  for (int k = 1; k < c->size && st >= 0; k++)
+    st = transfer(c, &t, &to[(c->rank + k) % c->size],
+                  (c->rank + k) % c->size, 1, err);
+  if (st >= 0) {
+    int rc = vg_comm_wait(t.n, t.request, 1);
+
+    if (rc) st = vg_comm_fail(err, "exchange", rc);
+  }
+  return st;
+}
+
+static vg_status exchange(struct vg_comm *c, const struct vg_bytes *to,
+                          struct vg_bytes *from, uint64_t *n,
+                          struct vg_error *err)
+{
+  struct vg_bytes *got = NULL;
+  MPI_Request *all = NULL, request;
+  vg_status st;
+  int rc;
+
+  rc = MPI_Ialltoall(MPI_IN_PLACE, 1, MPI_UINT64_T, n, 1, MPI_UINT64_T,
+                     c->all, &request);
+  VG_TRY(finish(&request, rc, "exchange", err));
+  VG_TRY(fresh_all(c, n, &got, err));
+  if (to[c->rank].n) memcpy(got[c->rank].data, to[c->rank].data, got[c->rank].n);
+  all = vg_alloc(n_chunks(c, to) + n_chunks(c, got), sizeof *all);
+  st = all ? VG_OK : vg_fail_memory(err, "transfers");
+  VG_TRY(vg_comm_agree_in(c, c->all, st, err));
+  VG_TRY(exchange_bytes(c, to, got, all, err));
+  memcpy(from, got, (size_t)c->size * sizeof *from);
+  memset(got, 0, (size_t)c->size * sizeof *got);
+done:
+  free(all);
+  release_all(got, c->size);
+  return st;
+}
+
+vg_status vg_comm_exchange(struct vg_comm *c, const struct vg_bytes *to,
+                           struct vg_bytes *from, struct vg_error *err)
+{
+  uint64_t *n;
+  vg_status st;
+
+  if (!c) return copy_own(to, from, err);
+  n = vg_alloc((size_t)c->size, sizeof *n);
+  st = vg_comm_agree(c, n ? VG_OK : vg_fail_memory(err, "sizes"), err);
+  if (st >= 0) {
+    for (int i = 0; i < c->size; i++) n[i] = to[i].n;
+    st = exchange(c, to, from, n, err);
+  }
+  free(n);
+  return st;
+}
+
+/* --- gather on all ------------------------------------------------------- */
+
+/* What MPI needs to gather a piece of each rank: at the same place in all. */
+struct gather {
+  size_t piece;              /* most bytes of a rank at a time */
+  unsigned char *stage;      /* [size * piece] */
+  int *count, *place;        /* [size] */
+};
+
+static void gather_release(struct gather *g)
+{
+  free(g->stage);
+  free(g->count);
+  free(g->place);
+}
+
+static vg_status gather_open(const struct vg_comm *c, const uint64_t *n,
+                             struct gather *g, struct vg_error *err)
+{
+  size_t size = (size_t)c->size, most = 0;
+
+  for (size_t i = 0; i < size; i++) most = n[i] > most ? n[i] : most;
+  g->piece = c->chunk / size + 1;
+  if (g->piece > most) g->piece = most;
+  g->stage = vg_alloc(size, g->piece);
+  g->count = vg_alloc(size, sizeof *g->count);
+  g->place = vg_alloc(size, sizeof *g->place);
+  return vg_comm_agree_in(c, c->all,
+                          g->stage && g->count && g->place ? VG_OK :
+                          vg_fail_memory(err, "gathering"), err);
+}
+
+/* The bytes from `at` on of every rank. */
+static vg_status gather_piece(const struct vg_comm *c, struct gather *g,
+                              const struct vg_bytes *mine, size_t at,
+                              struct vg_bytes *out, struct vg_error *err)
+{
+  static const unsigned char none;
+  MPI_Request request;
+  int rc, n = 0;
+
+  for (int i = 0; i < c->size; i++) {
+    size_t left = out[i].n > at ? out[i].n - at : 0;
+
+    g->count[i] = (int)(left < g->piece ? left : g->piece);
+    g->place[i] = n;
+    n += g->count[i];
+  }
+  rc = MPI_Iallgatherv(g->count[c->rank] ? mine->data + at : &none,
+                       g->count[c->rank], MPI_BYTE, g->stage, g->count,
+                       g->place, MPI_BYTE, c->all, &request);
+  if (!rc) rc = vg_comm_wait(1, &request, 1);
+  if (rc) return vg_comm_fail(err, "gathering", rc);
+  for (int i = 0; i < c->size; i++)
+    if (g->count[i])
+      memcpy(out[i].data + at, g->stage + g->place[i], (size_t)g->count[i]);
+  return VG_OK;
+}
+
+static vg_status gather(struct vg_comm *c, const struct vg_bytes *mine,
+                        struct vg_bytes *out, uint64_t *n,
+                        struct vg_error *err)
+{
+  struct gather g = { 0 };
+  struct vg_bytes *got = NULL;
+  MPI_Request request;
+  vg_status st;
+  size_t most = 0;
+  int rc = MPI_Iallgather(MPI_IN_PLACE, 1, MPI_UINT64_T, n, 1, MPI_UINT64_T,
+                          c->all, &request);
+
+  VG_TRY(finish(&request, rc, "gathering", err));
+  VG_TRY(fresh_all(c, n, &got, err));
+  VG_TRY(gather_open(c, n, &g, err));
+  for (int i = 0; i < c->size; i++) most = n[i] > most ? n[i] : most;
+  for (size_t at = 0; at < most; at += g.piece)
+    VG_TRY(gather_piece(c, &g, mine, at, got, err));
+  memcpy(out, got, (size_t)c->size * sizeof *out);
+  memset(got, 0, (size_t)c->size * sizeof *got);
+done:
+  gather_release(&g);
+  release_all(got, c->size);
+  return st;
+}
+
+vg_status vg_comm_allgather(struct vg_comm *c, const struct vg_bytes *mine,
+                            struct vg_bytes *out, struct vg_error *err)
+{
+  uint64_t *n;
+  vg_status st;
+
+  if (!c) return copy_own(mine, out, err);
+  n = vg_alloc((size_t)c->size, sizeof *n);
+  st = vg_comm_agree(c, n ? VG_OK : vg_fail_memory(err, "sizes"), err);
+  if (st >= 0) {
+    n[c->rank] = mine->n;
+    st = gather(c, mine, out, n, err);
+  }
+  free(n);
+  return st;
+}

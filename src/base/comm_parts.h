@@ -1,0 +1,70 @@
+/* base/comm_parts.h: what the files behind base/comm.h share. */
+#ifndef VG_BASE_COMM_PARTS_H
+#define VG_BASE_COMM_PARTS_H
+
+#include <mpi.h>
+#include <pthread.h>
+
+#include "base/comm.h"
+
+/* Sets of processors by their number; more than any node has. */
+struct vg_cores_mask { unsigned long word[8192 / (8 * sizeof(long))]; };
+
+/* Tags on `all` outside collectives. */
+enum { VG_TAG_EXCHANGE = 1, VG_TAG_PART = 2 };
+
+enum { VG_ARRIVING = 64 };
+
+struct vg_sent;              /* memory under way, until all requests are done */
+struct vg_queued;            /* a message to oneself */
+
+struct vg_arriving {
+  struct vg_message message;
+  MPI_Request *request;      /* [n_request] */
+  int n_request;
+};
+
+struct vg_comm {
+  MPI_Comm all;              /* collectives, and parts of long messages */
+  MPI_Comm wire;             /* messages */
+  MPI_Comm node;             /* ranks of this node */
+  int rank, size, node_rank, node_size;
+  int owns_mpi;              /* was started here */
+  size_t chunk;              /* bytes that go in one call of MPI, <= INT_MAX */
+  struct vg_cores_mask *core; /* [node_size], their binding when opened */
+
+  pthread_mutex_t lock;      /* of what follows, to `received` */
+  MPI_Request *request;      /* [n_request] of sends under way */
+  struct vg_sent **sent;     /* [n_request] what each of them sends */
+  int *done;                 /* [cap_request] */
+  int n_request;
+  size_t cap_request, cap_sent, cap_done;
+  struct vg_queued *first, **last;
+  uint64_t posted;           /* to others, ever */
+
+  uint64_t received;         /* from others, ever; the polling thread's */
+  struct vg_arriving arriving[VG_ARRIVING];  /* by time of arrival */
+  int n_arriving;
+};
+
+/** VG_ERR_REMOTE with MPI's reason. */
+vg_status vg_comm_fail(struct vg_error *err, const char *what, int rc);
+
+/** Wait for requests [n] asleep. brisk: all ranks are known to be there, so
+ * look more often for the sake of speed. Returns an MPI code. */
+int vg_comm_wait(int n, MPI_Request *request, int brisk);
+
+/** vg_comm_agree among the ranks of a communicator. */
+vg_status vg_comm_agree_in(const struct vg_comm *c, MPI_Comm comm,
+                           vg_status mine, struct vg_error *err);
+
+/** Gather the bindings of the ranks of the node. Collective. */
+vg_status vg_comm_cores_open(struct vg_comm *c, struct vg_error *err);
+
+/** Take and drop messages until none is under way. Collective. */
+void vg_comm_drain(struct vg_comm *c);
+
+/** Memory of messages. */
+void vg_comm_messages_release(struct vg_comm *c);
+
+#endif
