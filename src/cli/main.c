@@ -4,19 +4,21 @@
 #include <string.h>
 
 #include "cli/cli.h"
+#include "core/cdt_server.h"
 
 static const struct command {
   const char *name, *summary;
   int (*run)(int argc, char **argv);
   const char *title;               /* argv[0] of the subcommand, for help */
+  int meshes;
 } commands[] = {
-  { "mesh", "mesh the volume of a project", vg_cmd_mesh, "vanguard mesh" },
+  { "mesh", "mesh the volume of a project", vg_cmd_mesh, "vanguard mesh", 1 },
   { "check", "judge a surface or a volume mesh", vg_cmd_check,
-    "vanguard check" },
+    "vanguard check", 0 },
   { "deck", "write a run deck with all defaults", vg_cmd_deck,
-    "vanguard deck" },
+    "vanguard deck", 0 },
   { "demo", "write a complete example project", vg_cmd_demo,
-    "vanguard demo" },
+    "vanguard demo", 0 },
 };
 #define N_COMMAND (sizeof commands / sizeof *commands)
 
@@ -61,6 +63,18 @@ static int unknown(const char *word)
   return VG_EXIT_USAGE;
 }
 
+/* Before threads and MPI: while this process is small. Without the server
+ * TetGen is dearer to start, so a refusal ends nothing. */
+static int run(const struct command *c, int argc, char **argv)
+{
+  int status;
+
+  if (c->meshes) vg_cdt_server_start(NULL);
+  status = c->run(argc, argv);
+  vg_cdt_server_stop();
+  return status;
+}
+
 int main(int argc, char **argv)
 {
   const char *word = argc > 1 ? argv[1] : "";
@@ -78,7 +92,7 @@ int main(int argc, char **argv)
   for (size_t i = 0; i < N_COMMAND; i++)
     if (!strcmp(word, commands[i].name)) {
       argv[1] = (char *)commands[i].title;
-      return commands[i].run(argc - 1, argv + 1);
+      return run(&commands[i], argc - 1, argv + 1);
     }
   return unknown(word);
 }

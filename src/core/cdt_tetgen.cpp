@@ -3,15 +3,15 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
-#include <exception>
+#include <vector>
 
-#include <fcntl.h>
 #include <signal.h>
-#include <sys/prctl.h>
-#include <sys/resource.h>
+#include <sys/socket.h>
 #include <sys/time.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include "core/cdt_server.h"
 
 #define TETLIBRARY
 #include <tetgen.h>
@@ -23,67 +23,93 @@ namespace {
  * of times what pockets need, so that the outcome is the same everywhere. */
 const size_t patience = 2000, patience_each = 5;
 
-struct answer {              /* on the pipe, before points and tetrahedra */
-  uint64_t ok, n_added, n_tet;
+/* On the socket, in the byte order of the machine: */
+struct question {            /* before x and tri */
+  uint64_t n, n_tri;
+};
+struct answer {              /* before the added points and the tetrahedra */
+  uint64_t n_added, n_tet;
 };
 
-/* --- in the child -------------------------------------------------------- */
+const uint64_t n_max = 1u << 31;   /* TetGen counts in int */
 
-void put(int to, const void *data, size_t size)
+bool put(int to, const void *data, size_t size)
 {
   const char *at = static_cast<const char *>(data);
 
   while (size) {
-    ssize_t n = write(to, at, size);
+    ssize_t n = send(to, at, size, MSG_NOSIGNAL);
 
     if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) _exit(1);
+    if (n <= 0) return false;
     at += n;
     size -= static_cast<size_t>(n);
   }
+  return true;
 }
 
-void take_input(tetgenio &in, const vg_cdt_job &job)
+bool get(int from, void *data, size_t size)
 {
-  in.firstnumber = 0;
-  in.numberofpoints = static_cast<int>(job.n);
-  in.pointlist = new REAL[3 * job.n];
-  std::memcpy(in.pointlist, job.x, 3 * job.n * sizeof(REAL));
-  in.numberoffacets = static_cast<int>(job.n_tri);
-  in.facetlist = new tetgenio::facet[job.n_tri];
-  for (size_t i = 0; i < job.n_tri; i++) {
-    tetgenio::facet *f = &in.facetlist[i];
+  char *at = static_cast<char *>(data);
 
-    tetgenio::init(f);
-    f->numberofpolygons = 1;
-    f->polygonlist = new tetgenio::polygon[1];
-    tetgenio::init(f->polygonlist);
-    f->polygonlist->numberofvertices = 3;
-    f->polygonlist->vertexlist = new int[3];
-    for (int k = 0; k < 3; k++)
-      f->polygonlist->vertexlist[k] = static_cast<int>(job.tri[i][k]);
+  while (size) {
+    ssize_t n = recv(from, at, size, 0);
+
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return false;
+    at += n;
+    size -= static_cast<size_t>(n);
   }
+  return true;
 }
 
-void run(const vg_cdt_job &job, int to)
+/* --- in the child -------------------------------------------------------- */
+
+void take_facet(tetgenio::facet *f, const uint32_t tri[3])
+{
+  tetgenio::init(f);
+  f->numberofpolygons = 1;
+  f->polygonlist = new tetgenio::polygon[1];
+  tetgenio::init(f->polygonlist);
+  f->polygonlist->numberofvertices = 3;
+  f->polygonlist->vertexlist = new int[3];
+  for (int k = 0; k < 3; k++)
+    f->polygonlist->vertexlist[k] = static_cast<int>(tri[k]);
+}
+
+bool take_input(tetgenio &in, const question &q, int from)
+{
+  std::vector<uint32_t> tri(3 * q.n_tri);
+
+  in.firstnumber = 0;
+  in.numberofpoints = static_cast<int>(q.n);
+  in.pointlist = new REAL[3 * q.n];
+  in.facetlist = new tetgenio::facet[q.n_tri];
+  if (!get(from, in.pointlist, 3 * q.n * sizeof(REAL)) ||
+      !get(from, tri.data(), tri.size() * sizeof tri[0])) return false;
+  in.numberoffacets = static_cast<int>(q.n_tri);
+  for (size_t i = 0; i < q.n_tri; i++)
+    take_facet(&in.facetlist[i], &tri[3 * i]);
+  return true;
+}
+
+bool run(const question &q, int fd)
 {
   /* p: keep facets; Y: without points on them; c: all of the hull;
    * M: coplanar neighbours stay separate facets; T: relative tolerance of
    * coplanarity, small because our predicates are exact. */
   char switches[] = "pYcMQT1e-13";
   tetgenio in, out;
-  answer a = {1, 0, 0};
+  answer a;
 
-  take_input(in, job);
+  if (!take_input(in, q, fd)) return false;
   tetrahedralize(switches, &in, &out);
-  a.n_added = static_cast<uint64_t>(out.numberofpoints) - job.n;
+  if (out.numberofcorners != 4) return false;
+  a.n_added = static_cast<uint64_t>(out.numberofpoints) - q.n;
   a.n_tet = static_cast<uint64_t>(out.numberoftetrahedra);
-  put(to, &a, sizeof a);
-  put(to, out.pointlist + 3 * job.n, 3 * a.n_added * sizeof(REAL));
-  for (uint64_t i = 0; i < a.n_tet; i++)
-    put(to, out.tetrahedronlist +
-                i * static_cast<uint64_t>(out.numberofcorners),
-        4 * sizeof(int));
+  return put(fd, &a, sizeof a) &&
+         put(fd, out.pointlist + 3 * q.n, 3 * a.n_added * sizeof(REAL)) &&
+         put(fd, out.tetrahedronlist, 4 * a.n_tet * sizeof(int));
 }
 
 void be_patient(size_t n_tri)
@@ -96,47 +122,14 @@ void be_patient(size_t n_tri)
   setitimer(ITIMER_PROF, &time, nullptr);
 }
 
-[[noreturn]] void child(size_t n_job, const vg_cdt_job *job, int to)
-{
-  rlimit none = {0, 0};
-  int nowhere = open("/dev/null", O_WRONLY);
-
-  if (nowhere >= 0) {
-    dup2(nowhere, STDOUT_FILENO);
-    dup2(nowhere, STDERR_FILENO);
-  }
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  setrlimit(RLIMIT_CORE, &none);
-  signal(SIGSEGV, SIG_DFL);
-  signal(SIGABRT, SIG_DFL);
-  signal(SIGPROF, SIG_DFL);
-  signal(SIGINT, SIG_IGN);   /* the parent decides */
-  for (size_t k = 0; k < n_job; k++) {
-    be_patient(job[k].n_tri);
-    try {
-      run(job[k], to);
-    } catch (...) {
-      _exit(1);
-    }
-  }
-  _exit(0);
-}
-
 /* --- in the parent ------------------------------------------------------- */
 
-bool get(int from, void *data, size_t size)
+bool ask(const vg_cdt_job &job, int to)
 {
-  char *at = static_cast<char *>(data);
+  question q = {job.n, job.n_tri};
 
-  while (size) {
-    ssize_t n = read(from, at, size);
-
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) return false;
-    at += n;
-    size -= static_cast<size_t>(n);
-  }
-  return true;
+  return put(to, &q, sizeof q) && put(to, job.x, job.n * sizeof *job.x) &&
+         put(to, job.tri, job.n_tri * sizeof *job.tri);
 }
 
 /* One answer; false when the child is gone. */
@@ -144,7 +137,8 @@ bool receive(vg_cdt_job &job, int from)
 {
   answer a;
 
-  if (!get(from, &a, sizeof a) || !a.ok) return false;
+  if (!get(from, &a, sizeof a)) return false;
+  if (a.n_added > n_max || a.n_tet > n_max) return false;
   job.n_all = job.n + a.n_added;
   job.n_tet = a.n_tet;
   job.all = static_cast<double(*)[3]>(
@@ -166,33 +160,60 @@ bool receive(vg_cdt_job &job, int from)
   return false;
 }
 
-/* A child works through the jobs until one ends it. Returns how many were
- * answered, or a negative status. */
-long run_child(size_t n_job, vg_cdt_job *job)
+/* A child of this process; -1 when refused. */
+int fork_here(pid_t *pid)
 {
-  int ends[2], state;
-  long done = 0;
-  pid_t pid;
+  int ends[2];
+  pid_t self = getpid();
 
-  if (pipe2(ends, O_CLOEXEC)) return VG_ERR_MEMORY;
-  pid = fork();
-  if (pid == 0) {
-    close(ends[0]);
-    child(n_job, job, ends[1]);
+  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends)) return -1;
+  *pid = fork();
+  if (*pid == 0) {
+    vg_cdt_server_part(self, ends[1]);
+    vg_cdt_serve(ends[1]);
   }
   close(ends[1]);
-  if (pid > 0) {
-    while (static_cast<size_t>(done) < n_job && receive(job[done], ends[0]))
-      done++;
-  }
+  if (*pid > 0) return ends[0];
   close(ends[0]);
-  if (pid < 0) return VG_ERR_MEMORY;
-  while (waitpid(pid, &state, 0) < 0 && errno == EINTR) {
+  return -1;
+}
+
+/* A child works through the jobs until one ends it. Returns how many need not
+ * be tried again, or a negative status. */
+long run_child(size_t n_job, vg_cdt_job *job)
+{
+  int fd = vg_cdt_server_ask();
+  long done = 0, n = static_cast<long>(n_job);
+  pid_t pid = 0;
+
+  if (fd < 0) fd = fork_here(&pid);
+  if (fd < 0) return VG_ERR_MEMORY;
+  while (done < n && ask(job[done], fd) && receive(job[done], fd)) done++;
+  /* blame the job, unless the child was taken along by the server's end */
+  if (done < n && (pid || vg_cdt_server_lives())) done++;
+  shutdown(fd, SHUT_RDWR);
+  close(fd);
+  while (pid && waitpid(pid, nullptr, 0) < 0 && errno == EINTR) {
   }
   return done;
 }
 
 }  // namespace
+
+extern "C" void vg_cdt_serve(int fd)
+{
+  question q;
+
+  while (get(fd, &q, sizeof q)) {
+    be_patient(q.n_tri);
+    try {
+      if (!run(q, fd)) _exit(1);
+    } catch (...) {
+      _exit(1);
+    }
+  }
+  _exit(0);
+}
 
 extern "C" vg_status vg_cdt_tetgen(size_t n_job, struct vg_cdt_job *job,
                                    struct vg_error *err)
@@ -212,7 +233,7 @@ extern "C" vg_status vg_cdt_tetgen(size_t n_job, struct vg_cdt_job *job,
     long done = run_child(n_job - next, job + next);
 
     if (done < 0) return vg_fail_memory(err, "a process for TetGen");
-    next += static_cast<size_t>(done) + 1;  /* past the one that failed */
+    next += static_cast<size_t>(done);
   }
   return VG_OK;
 }
