@@ -8,10 +8,6 @@
 #include "base/memory.h"
 #include "core/quality_parts.h"
 
-/* Share of the volume by which cells and boundary may differ: far above the
- * rounding of compensated sums, far below any cell that matters. */
-#define VOLUME_TOLERANCE 1e-9
-
 /* Inward faces of formats.md 2.3, each turned around. */
 const struct vg_cell_faces vg_cell_faces[VG_CELL_KINDS] = {
   { 4, 4, 4, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}} },
@@ -42,33 +38,49 @@ static size_t out_of_range(const uint32_t *node, size_t n, size_t n_point)
   return bad;
 }
 
-static void check_indices(const struct vg_mesh *m, struct vg_mesh_report *r)
+size_t vg_count_bad_index(const struct vg_mesh *m)
 {
+  size_t bad = out_of_range((const uint32_t *)m->tri, 3 * m->n_tri,
+                            m->n_point) +
+               out_of_range((const uint32_t *)m->quad, 4 * m->n_quad,
+                            m->n_point);
+
   for (int kind = 0; kind < VG_CELL_KINDS; kind++) {
     struct vg_cells c = vg_mesh_cells(m, kind);
     size_t n = c.n * (size_t)vg_cell_faces[kind].n_node;
 
-    r->bad_index += out_of_range(c.node, n, m->n_point);
+    bad += out_of_range(c.node, n, m->n_point);
   }
-  r->bad_index += out_of_range((const uint32_t *)m->tri, 3 * m->n_tri,
-                               m->n_point);
-  r->bad_index += out_of_range((const uint32_t *)m->quad, 4 * m->n_quad,
-                               m->n_point);
+  return bad;
 }
 
-static vg_status count_unused(const struct vg_mesh *m,
-                              struct vg_mesh_report *r, struct vg_error *err)
+size_t vg_count_not_finite(size_t n, const double (*x)[3])
 {
-  uint8_t *used = vg_calloc(m->n_point, 1);
+  size_t bad = 0;
 
-  if (!used) return vg_fail_memory(err, "the points in use");
+  for (size_t i = 0; i < n; i++)
+    bad += !isfinite(x[i][0]) || !isfinite(x[i][1]) || !isfinite(x[i][2]);
+  return bad;
+}
+
+void vg_mark_used(const struct vg_mesh *m, uint8_t *used)
+{
   for (int kind = 0; kind < VG_CELL_KINDS; kind++) {
     struct vg_cells c = vg_mesh_cells(m, kind);
     size_t n = c.n * (size_t)vg_cell_faces[kind].n_node;
 
     for (size_t i = 0; i < n; i++) used[c.node[i]] = 1;
   }
-  for (size_t i = 0; i < m->n_point; i++) r->unused_point += !used[i];
+}
+
+static vg_status count_unused(const struct vg_mesh *m, struct vg_counts *n,
+                              struct vg_error *err)
+{
+  uint8_t *used = vg_calloc(m->n_point, 1);
+
+  if (!used) return vg_fail_memory(err, "the points in use");
+  vg_mark_used(m, used);
+  for (size_t i = 0; i < m->n_point; i++) n->unused_point += !used[i];
   free(used);
   return VG_OK;
 }
@@ -96,8 +108,7 @@ static int same_place(const double a[3], const double b[3])
  * the slots taken; a slot holds index + 1. Points that coincide with one in
  * the table are not entered, so a crowd at one place stays cheap. */
 static vg_status count_duplicates(const struct vg_mesh *m,
-                                  struct vg_mesh_report *r,
-                                  struct vg_error *err)
+                                  struct vg_counts *n, struct vg_error *err)
 {
   size_t n_slot = 16;
   uint32_t *slot;
@@ -110,18 +121,11 @@ static vg_status count_duplicates(const struct vg_mesh *m,
 
     while (slot[at] && !same_place(m->point[slot[at] - 1], m->point[i]))
       at = (at + 1) & (n_slot - 1);
-    if (slot[at]) r->duplicate_point++;
+    if (slot[at]) n->duplicate_point++;
     else slot[at] = (uint32_t)(i + 1);
   }
   free(slot);
   return VG_OK;
-}
-
-static void check_finite(const struct vg_mesh *m, struct vg_mesh_report *r)
-{
-  for (size_t i = 0; i < m->n_point; i++)
-    r->not_finite += !isfinite(m->point[i][0]) || !isfinite(m->point[i][1]) ||
-                     !isfinite(m->point[i][2]);
 }
 
 static double triple(const double o[3], const double a[3], const double b[3],
@@ -152,71 +156,78 @@ double vg_quad_cone(const double o[3], const double a[3], const double b[3],
           triple(o, b, c, d)) / 2;
 }
 
-/* What the boundary encloses, positive where its faces point inwards. The
- * cones start at the middle of the box of points: the least cancellation. */
-static double enclosed_volume(const struct vg_mesh *m)
+/* The cones start at the middle of the box: the least cancellation. */
+double vg_enclosed_volume(const struct vg_mesh *m, const double lo[3],
+                          const double hi[3])
 {
   const double (*x)[3] = (const double (*)[3])m->point;
-  struct vg_sum sum = { 0, 0 };
-  double lo[3], hi[3], o[3];
+  struct vg_exact sum = { .n_odd = 0 };
+  double o[3];
 
-  vg_mesh_bounds(m, lo, hi);
   for (int k = 0; k < 3; k++) o[k] = lo[k] + (hi[k] - lo[k]) / 2;
   for (size_t i = 0; i < m->n_tri; i++) {
     const uint32_t *n = m->tri[i];
 
-    vg_sum_add(&sum, -vg_tri_cone(o, x[n[0]], x[n[1]], x[n[2]]));
+    vg_exact_add(&sum, -vg_tri_cone(o, x[n[0]], x[n[1]], x[n[2]]));
   }
   for (size_t i = 0; i < m->n_quad; i++) {
     const uint32_t *n = m->quad[i];
 
-    vg_sum_add(&sum, -vg_quad_cone(o, x[n[0]], x[n[1]], x[n[2]], x[n[3]]));
+    vg_exact_add(&sum, -vg_quad_cone(o, x[n[0]], x[n[1]], x[n[2]],
+                                     x[n[3]]));
   }
-  return (sum.total + sum.lost) / 6;
+  return vg_exact_value(&sum) / 6;
 }
 
-static void conclude(struct vg_mesh_report *r)
+static vg_status judge_all(const struct vg_mesh *m,
+                           const struct vg_sizing *sizing,
+                           struct vg_figures *f, size_t *n_component,
+                           struct vg_error *err)
 {
-  double scale = fabs(r->enclosed);
+  float *volume = NULL;
+  vg_status st;
 
-  if (fabs(r->volume) > scale) scale = fabs(r->volume);
-  r->volume_error = scale > 0 ? fabs(r->volume - r->enclosed) / scale : 0;
-  r->is_valid = r->n_cell && !r->unused_point && !r->duplicate_point &&
-                !r->not_positive && !r->open_face && !r->crowded_face &&
-                !r->same_side_face && !r->orphan_boundary &&
-                !r->outward_boundary && r->volume_error < VOLUME_TOLERANCE;
+  VG_TRY(count_unused(m, &f->n, err));
+  VG_TRY(count_duplicates(m, &f->n, err));
+  volume = vg_alloc(f->n.n_cell, sizeof *volume);
+  if (!volume) {
+    st = vg_fail_memory(err, "the volumes of the cells");
+    goto done;
+  }
+  vg_judge_shape(m, 0, volume, f);
+  VG_TRY(vg_judge_faces(m, volume, f, NULL, n_component, err));
+  free(volume);
+  volume = NULL;
+  if (sizing) VG_TRY(vg_judge_edges(m, sizing, f, NULL, err));
+done:
+  free(volume);
+  return st;
 }
 
 vg_status vg_mesh_judge(const struct vg_mesh *m, const struct vg_sizing *sizing,
                         struct vg_mesh_report *report, struct vg_error *err)
 {
-  struct vg_mesh_report r;
-  float *volume = NULL;
+  struct vg_figures *f = vg_figures_new();
+  size_t n_component = 0;
+  double lo[3], hi[3];
+  int sound;
   vg_status st = VG_OK;
 
-  memset(&r, 0, sizeof r);
-  r.n_point = m->n_point;
-  r.n_cell = m->n_tet + m->n_pyr + m->n_pri + m->n_hex;
-  check_indices(m, &r);
-  check_finite(m, &r);
+  if (!f) return vg_fail_memory(err, "the figures of the mesh");
+  f->n.n_point = m->n_point;
+  f->n.n_cell = m->n_tet + m->n_pyr + m->n_pri + m->n_hex;
+  f->n.bad_index = vg_count_bad_index(m);
+  f->n.not_finite = vg_count_not_finite(m->n_point,
+                                        (const double (*)[3])m->point);
   /* Without indices and places nothing else means anything. */
-  if (r.bad_index || r.not_finite || !r.n_cell) goto done;
-  VG_TRY(count_unused(m, &r, err));
-  VG_TRY(count_duplicates(m, &r, err));
-  volume = vg_alloc(r.n_cell, sizeof *volume);
-  if (!volume) {
-    st = vg_fail_memory(err, "the volumes of the cells");
-    goto done;
-  }
-  VG_TRY(vg_judge_shape(m, volume, &r, err));
-  VG_TRY(vg_judge_faces(m, volume, &r, err));
-  free(volume);
-  volume = NULL;
-  if (sizing) VG_TRY(vg_judge_edges(m, sizing, &r, err));
-  r.enclosed = enclosed_volume(m);
-  conclude(&r);
+  sound = !f->n.bad_index && !f->n.not_finite && f->n.n_cell;
+  if (sound) VG_TRY(judge_all(m, sizing, f, &n_component, err));
+  vg_figures_report(f, n_component, sound && sizing, report);
+  if (!sound) goto done;
+  vg_mesh_bounds(m, lo, hi);
+  report->enclosed = vg_enclosed_volume(m, lo, hi);
+  vg_report_conclude(report);
 done:
-  free(volume);
-  if (st == VG_OK) *report = r;
+  free(f);
   return st;
 }

@@ -26,9 +26,11 @@ struct edges {
   uint32_t *entry;
   uint32_t lo, n;
   int pass;              /* 0 counts, 1 enters */
-  double mid[GROUP][3], length[GROUP], target[GROUP];
-  size_t n_group, n_edge, within;
-  struct vg_sum sum;
+  struct vg_figures *f;
+  struct vg_loose *loose;  /* NULL: m has its boundary */
+  int refused;           /* memory for loose edges */
+  uint32_t pair[GROUP][2];
+  size_t n_group;
 };
 
 static const uint8_t tet_edge[6][2] =
@@ -63,6 +65,12 @@ static void enter_boundary(struct edges *e)
 
   enter_all(e, (const uint32_t *)m->tri, m->n_tri, 3, tri_edge, 3);
   enter_all(e, (const uint32_t *)m->quad, m->n_quad, 4, quad_edge, 4);
+  for (size_t i = 0; e->loose && i < e->loose->n_face; i++) {
+    const uint32_t *n = e->loose->face[i].node;
+    int quad = n[3] != VG_NO_NODE;
+
+    enter_all(e, n, 1, 4, quad ? quad_edge : tri_edge, quad ? 4 : 3);
+  }
 }
 
 static void enter_cells(struct edges *e)
@@ -87,49 +95,90 @@ static void count_entries(struct edges *e)
   e->pass = 1;
 }
 
-static void flush(struct edges *e, struct vg_mesh_report *r)
+/* Length / target of up to GROUP edges; the ends of an edge may be told in
+ * either order. */
+static void measure(const struct vg_mesh *m, const struct vg_sizing *sizing,
+                    size_t n, const uint32_t (*pair)[2], double *ratio)
 {
-  vg_sizing_eval(e->sizing, e->n_group, (const double (*)[3])e->mid,
-                 e->target);
-  for (size_t i = 0; i < e->n_group; i++) {
-    double ratio = e->length[i] / e->target[i], bin = ratio * 10;
+  double mid[GROUP][3], target[GROUP];
 
-    vg_sum_add(&e->sum, ratio);
-    e->within += ratio >= 0.7 && ratio <= 1.5;
-    r->hist_edge[bin < VG_HIST_UNIT ? (size_t)bin : VG_HIST_UNIT - 1]++;
+  for (size_t i = 0; i < n; i++) {
+    const double *p = m->point[pair[i][0]], *q = m->point[pair[i][1]];
+    double sum = 0;
+
+    for (int k = 0; k < 3; k++) {
+      double d = q[k] - p[k];
+
+      mid[i][k] = p[k] / 2 + q[k] / 2;
+      sum += d * d;
+    }
+    ratio[i] = sqrt(sum);
   }
-  e->n_edge += e->n_group;
+  vg_sizing_eval(sizing, n, (const double (*)[3])mid, target);
+  for (size_t i = 0; i < n; i++) ratio[i] /= target[i];
+}
+
+static void flush(struct edges *e)
+{
+  double ratio[GROUP];
+
+  measure(e->m, e->sizing, e->n_group, (const uint32_t (*)[2])e->pair, ratio);
+  for (size_t i = 0; i < e->n_group; i++) vg_figures_edge(e->f, ratio[i]);
   e->n_group = 0;
 }
 
-static void measure(struct edges *e, uint32_t a, uint32_t b,
-                    struct vg_mesh_report *r)
+static void add(struct edges *e, uint32_t a, uint32_t b)
 {
-  const double *p = e->m->point[a], *q = e->m->point[b];
-  double sum = 0;
-
-  for (int k = 0; k < 3; k++) {
-    double d = q[k] - p[k];
-
-    e->mid[e->n_group][k] = p[k] + d / 2;
-    sum += d * d;
-  }
-  e->length[e->n_group++] = sqrt(sum);
-  if (e->n_group == GROUP) flush(e, r);
+  e->pair[e->n_group][0] = a;
+  e->pair[e->n_group++][1] = b;
+  if (e->n_group == GROUP) flush(e);
 }
 
-static void measure_range(struct edges *e, struct vg_mesh_report *r)
+static void add_loose(struct edges *e, uint32_t a, uint32_t b)
+{
+  struct vg_loose *loose = e->loose;
+
+  if (vg_reserve(&loose->edge, &loose->room_edge, loose->n_edge + 1,
+                 sizeof *loose->edge)) {
+    e->refused = 1;
+    return;
+  }
+  loose->edge[loose->n_edge++] = (struct vg_loose_edge){ { a, b }, 0 };
+}
+
+static void measure_loose(struct edges *e)
+{
+  uint32_t pair[GROUP][2];
+  double ratio[GROUP];
+
+  for (size_t at = 0, n; at < e->loose->n_edge; at += n) {
+    struct vg_loose_edge *edge = e->loose->edge + at;
+
+    n = e->loose->n_edge - at;
+    if (n > GROUP) n = GROUP;
+    for (size_t i = 0; i < n; i++)
+      for (int k = 0; k < 2; k++) pair[i][k] = edge[i].node[k];
+    measure(e->m, e->sizing, n, (const uint32_t (*)[2])pair, ratio);
+    for (size_t i = 0; i < n; i++) edge[i].ratio = ratio[i];
+  }
+}
+
+static void measure_range(struct edges *e)
 {
   size_t at = 0;
 
   for (uint32_t v = e->lo; v < e->lo + e->n; v++) {
     size_t inner = at + e->n_boundary[v], end = e->count[v];
 
-    for (; at < inner; at++) e->mark[e->entry[at]] = v + 1;
+    for (; at < inner; at++) {
+      if (e->loose && e->mark[e->entry[at]] != v + 1)
+        add_loose(e, v, e->entry[at]);
+      e->mark[e->entry[at]] = v + 1;
+    }
     for (; at < end; at++) {
       if (e->mark[e->entry[at]] == v + 1) continue;
       e->mark[e->entry[at]] = v + 1;
-      measure(e, v, e->entry[at], r);
+      add(e, v, e->entry[at]);
     }
   }
 }
@@ -155,7 +204,8 @@ static vg_status prepare(struct edges *e, size_t *room, struct vg_error *err)
 {
   const struct vg_mesh *m = e->m;
   size_t total = 6 * m->n_tet + 8 * m->n_pyr + 9 * m->n_pri + 12 * m->n_hex +
-                 3 * m->n_tri + 4 * m->n_quad;
+                 3 * m->n_tri + 4 * m->n_quad +
+                 (e->loose ? 4 * e->loose->n_face : 0);
   size_t most = 0, n;
 
   e->count = vg_calloc(m->n_point, sizeof *e->count);
@@ -177,7 +227,8 @@ static vg_status prepare(struct edges *e, size_t *room, struct vg_error *err)
 
 vg_status vg_judge_edges(const struct vg_mesh *m,
                          const struct vg_sizing *sizing,
-                         struct vg_mesh_report *r, struct vg_error *err)
+                         struct vg_figures *f, struct vg_loose *loose,
+                         struct vg_error *err)
 {
   struct edges *e = vg_calloc(1, sizeof *e);
   size_t room = 0, n;
@@ -186,6 +237,8 @@ vg_status vg_judge_edges(const struct vg_mesh *m,
   if (!e) return vg_fail_memory(err, "the edges of the mesh");
   e->m = m;
   e->sizing = sizing;
+  e->f = f;
+  e->loose = loose;
   VG_TRY(prepare(e, &room, err));
   for (uint32_t lo = 0, hi; lo < m->n_point; lo = hi) {
     hi = make_range(e, lo, room, 1, &n);
@@ -193,14 +246,14 @@ vg_status vg_judge_edges(const struct vg_mesh *m,
     e->n = hi - lo;
     enter_boundary(e);
     enter_cells(e);
-    measure_range(e, r);
+    measure_range(e);
   }
-  flush(e, r);
-  r->has_sizing = 1;
-  if (e->n_edge) {
-    r->edge_mean = (e->sum.total + e->sum.lost) / (double)e->n_edge;
-    r->edge_within = 100 * (double)e->within / (double)e->n_edge;
+  flush(e);
+  if (e->refused) {
+    st = vg_fail_memory(err, "the rim of a part of the mesh");
+    goto done;
   }
+  if (loose) measure_loose(e);
 done:
   free(e->count);
   free(e->n_boundary);

@@ -21,17 +21,10 @@
  * of more faces than this is a hub, and rare. */
 #define SMALL_BUCKET 48
 
-/* Ratios are counted in bins of equal exponent and leading mantissa bits:
- * 1/256 relative width, from 1 to the largest float. */
-#define RATIO_SHIFT 15
-#define ONE_BITS 0x3F800000u
-#define N_RATIO ((0x7F800000u - ONE_BITS) >> RATIO_SHIFT)
-
 struct record {
-  uint32_t a, b, c;    /* the other nodes; c only of quads, else NO_NODE */
+  uint32_t a, b, c;    /* the other nodes; c only of quads, else VG_NO_NODE */
   uint32_t owner;      /* 2 * (cell, or n_cell + boundary face) + winding */
 };
-#define NO_NODE UINT32_MAX
 
 struct table {
   const struct vg_mesh *m;
@@ -42,7 +35,9 @@ struct table {
   size_t n_cell;
   uint32_t *parent;        /* [n_cell] components */
   const float *volume;
-  size_t *ratio;           /* [N_RATIO] */
+  struct vg_figures *f;
+  struct vg_loose *loose;  /* NULL: m is a whole mesh */
+  int refused;             /* memory for loose faces */
 };
 
 static uint32_t lower(uint32_t a, uint32_t b) { return a < b ? a : b; }
@@ -70,7 +65,7 @@ static void put_tri(struct table *t, uint32_t a, uint32_t b, uint32_t c,
   if (low == a) next = b, last = c;
   else if (low == b) next = c, last = a;
   else next = a, last = b;
-  put(t, low, lower(next, last), upper(next, last), NO_NODE,
+  put(t, low, lower(next, last), upper(next, last), VG_NO_NODE,
       2 * owner + (next > last));
 }
 
@@ -232,41 +227,59 @@ static void join(struct table *t, uint32_t a, uint32_t b)
   else t->parent[a] = b;
 }
 
-static void count_ratio(struct table *t, uint32_t a, uint32_t b)
+static void match_pair(struct table *t, const struct record r[2])
 {
-  float v = t->volume[a], w = t->volume[b], ratio;
-  uint32_t bits;
+  uint32_t a = r[0].owner >> 1, b = r[1].owner >> 1;
 
-  if (!(v > 0) || !(w > 0)) return;
-  ratio = v > w ? v / w : w / v;
-  memcpy(&bits, &ratio, sizeof bits);
-  bits = (bits - ONE_BITS) >> RATIO_SHIFT;
-  t->ratio[bits < N_RATIO ? bits : N_RATIO - 1]++;
+  t->f->n.n_inner_face++;
+  t->f->n.same_side_face += (r[0].owner & 1) == (r[1].owner & 1);
+  join(t, a, b);
+  vg_figures_ratio(t->f, t->volume[a], t->volume[b]);
 }
 
 /* The n records of one face. */
-static void match(struct table *t, const struct record *r, size_t n,
-                  struct vg_mesh_report *report)
+static void match(struct table *t, const struct record *r, size_t n)
 {
+  struct vg_counts *count = &t->f->n;
   size_t n_boundary = 0;
 
   for (size_t i = 0; i < n; i++) n_boundary += r[i].owner >> 1 >= t->n_cell;
-  if (n == n_boundary) report->orphan_boundary += n;
-  else if (n > 2) report->crowded_face++;
-  else if (n == 1) report->open_face++;
+  if (n == n_boundary) count->orphan_boundary += n;
+  else if (n > 2) count->crowded_face++;
+  else if (n == 1) count->open_face++;
   else if (n_boundary)   /* inwards: winds against its cell's outward face */
-    report->outward_boundary += (r[0].owner & 1) == (r[1].owner & 1);
-  else {
-    uint32_t a = r[0].owner >> 1, b = r[1].owner >> 1;
+    count->outward_boundary += (r[0].owner & 1) == (r[1].owner & 1);
+  else match_pair(t, r);
+}
 
-    report->n_inner_face++;
-    report->same_side_face += (r[0].owner & 1) == (r[1].owner & 1);
-    join(t, a, b);
-    count_ratio(t, a, b);
+/* In a part of a mesh: n records of one face, which others have to match.
+ * Its cell stands for the component until all are known. */
+static void pass_on(struct table *t, uint32_t lowest, const struct record *r,
+                    size_t n)
+{
+  struct vg_loose *loose = t->loose;
+
+  if (vg_reserve(&loose->face, &loose->room_face, loose->n_face + n,
+                 sizeof *loose->face)) {
+    t->refused = 1;
+    return;
+  }
+  for (size_t i = 0; i < n; i++, r++) {
+    struct vg_loose_face *face = &loose->face[loose->n_face++];
+    uint32_t next = r->owner & 1 ? r->b : r->a;
+    uint32_t last = r->owner & 1 ? r->a : r->b;
+    int quad = r->c != VG_NO_NODE;
+
+    face->node[0] = lowest;
+    face->node[1] = next;
+    face->node[2] = quad ? r->c : last;
+    face->node[3] = quad ? last : VG_NO_NODE;
+    face->component = r->owner >> 1;
+    face->volume = t->volume[r->owner >> 1];
   }
 }
 
-static void match_range(struct table *t, struct vg_mesh_report *report)
+static void match_range(struct table *t)
 {
   size_t begin = 0;
 
@@ -279,38 +292,29 @@ static void match_range(struct table *t, struct vg_mesh_report *report)
 
       while (next < end && !order(t->record + begin, t->record + next))
         next++;
-      match(t, t->record + begin, next - begin, report);
+      if (!t->loose) match(t, t->record + begin, next - begin);
+      else if (next - begin == 2) match_pair(t, t->record + begin);
+      else pass_on(t, t->lo + v, t->record + begin, next - begin);
       begin = next;
     }
   }
 }
 
-static double ratio_at(const struct table *t, size_t rank)
+/* Components in the order of their first cells. */
+static vg_status number_loose(struct table *t, struct vg_error *err)
 {
-  size_t seen = 0;
+  uint32_t *number = vg_alloc(t->n_cell, sizeof *number), n = 0;
 
-  for (uint32_t i = 0; i < N_RATIO; i++) {
-    uint32_t bits = ONE_BITS + (i << RATIO_SHIFT);
-    float value;
+  if (!number) return vg_fail_memory(err, "the parts of the mesh");
+  for (size_t i = 0; i < t->n_cell; i++)
+    if (t->parent[i] == i) number[i] = n++;
+  for (size_t i = 0; i < t->loose->n_face; i++) {
+    uint32_t *component = &t->loose->face[i].component;
 
-    seen += t->ratio[i];
-    if (seen < rank) continue;
-    memcpy(&value, &bits, sizeof value);
-    return value;
+    *component = number[root_of(t->parent, *component)];
   }
-  return 0;
-}
-
-static void finish(const struct table *t, struct vg_mesh_report *r)
-{
-  size_t n = 0;
-
-  for (size_t i = 0; i < t->n_cell; i++) r->n_component += t->parent[i] == i;
-  for (uint32_t i = 0; i < N_RATIO; i++) n += t->ratio[i];
-  if (!n) return;
-  r->volume_ratio[0] = ratio_at(t, n / 2 + n % 2);
-  r->volume_ratio[1] = ratio_at(t, n - n / 20);
-  r->volume_ratio[2] = ratio_at(t, n);
+  free(number);
+  return VG_OK;
 }
 
 static void release(struct table *t)
@@ -318,7 +322,6 @@ static void release(struct table *t)
   free(t->start);
   free(t->record);
   free(t->parent);
-  free(t->ratio);
 }
 
 /* Nodes lo .. hi - 1 with at most `room` faces together, but at least one
@@ -354,37 +357,55 @@ static vg_status prepare(struct table *t, size_t room, struct vg_error *err)
   return VG_OK;
 }
 
-vg_status vg_judge_faces(const struct vg_mesh *m, const float *volume,
-                         struct vg_mesh_report *r, struct vg_error *err)
+void vg_loose_release(struct vg_loose *loose)
 {
-  struct table t = { .m = m, .volume = volume, .n_cell = r->n_cell };
+  free(loose->face);
+  free(loose->edge);
+  memset(loose, 0, sizeof *loose);
+}
+
+static vg_status match_all(struct table *t, size_t room, struct vg_error *err)
+{
+  size_t n;
+
+  for (uint32_t lo = 0, hi; lo < t->m->n_point; lo = hi) {
+    hi = make_range(t, lo, room, 1, &n);
+    t->lo = lo;
+    t->n = hi - lo;
+    put_range(t);
+    match_range(t);
+  }
+  if (t->refused) return vg_fail_memory(err, "the rim of a part of the mesh");
+  return t->loose ? number_loose(t, err) : VG_OK;
+}
+
+vg_status vg_judge_faces(const struct vg_mesh *m, const float *volume,
+                         struct vg_figures *f, struct vg_loose *loose,
+                         size_t *n_component, struct vg_error *err)
+{
+  struct table t = { .m = m, .volume = volume, .f = f, .loose = loose };
   size_t n_record = 4 * m->n_tet + 5 * (m->n_pyr + m->n_pri) +
                     6 * m->n_hex + m->n_tri + m->n_quad;
-  size_t room = n_record / N_PASS, n;
+  size_t room = n_record / N_PASS;
   vg_status st = VG_OK;
 
-  if (r->n_cell + m->n_tri + m->n_quad > UINT32_MAX / 2 ||
+  t.n_cell = m->n_tet + m->n_pyr + m->n_pri + m->n_hex;
+  if (t.n_cell + m->n_tri + m->n_quad > UINT32_MAX / 2 ||
       n_record > UINT32_MAX)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
                    "a mesh of %zu cells is too large for the check of its "
-                   "faces (limit 2^30); check its parts", r->n_cell);
+                   "faces (limit 2^30); check its parts", t.n_cell);
   t.start = vg_calloc(m->n_point, sizeof *t.start);
-  t.parent = vg_alloc(r->n_cell, sizeof *t.parent);
-  t.ratio = vg_calloc(N_RATIO, sizeof *t.ratio);
-  if (!t.start || !t.parent || !t.ratio) {
+  t.parent = vg_alloc(t.n_cell, sizeof *t.parent);
+  if (!t.start || !t.parent) {
     st = vg_fail_memory(err, "the faces of the mesh");
     goto done;
   }
   if (room < LEAST_RECORDS) room = LEAST_RECORDS;
   VG_TRY(prepare(&t, room, err));
-  for (uint32_t lo = 0, hi; lo < m->n_point; lo = hi) {
-    hi = make_range(&t, lo, room, 1, &n);
-    t.lo = lo;
-    t.n = hi - lo;
-    put_range(&t);
-    match_range(&t, r);
-  }
-  finish(&t, r);
+  VG_TRY(match_all(&t, room, err));
+  *n_component = 0;
+  for (size_t i = 0; i < t.n_cell; i++) *n_component += t.parent[i] == i;
 done:
   release(&t);
   return st;

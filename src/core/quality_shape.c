@@ -5,17 +5,11 @@
  *   circumradius = | |u|^2 v x w + |v|^2 w x u + |w|^2 u x v | / (12 V),
  *   inradius = 3 V / (sum of face areas). */
 #include <math.h>
-#include <stdlib.h>
 
-#include "base/memory.h"
 #include "core/predicates.h"
 #include "core/quality_parts.h"
 
 #define DEGREE 57.295779513082320877
-
-/* Smallest angles are also counted in bins of 0.01 degree: percentiles. */
-#define FINE_PER_DEGREE 100
-#define N_FINE (180 * FINE_PER_DEGREE + 1)
 
 struct tet_shape {
   double cos_max, cos_min;   /* of the smallest and largest dihedral angle */
@@ -116,82 +110,51 @@ static size_t bin_of(double x, double per_unit, size_t n)
   return at < (double)n ? (size_t)at : n - 1;
 }
 
-/* The list stays sorted; of equal angles the first cell comes first. */
-static void note_worst(struct vg_mesh_report *r, const struct vg_mesh *m,
-                       size_t cell, double angle)
-{
-  size_t i = r->n_worst;
-
-  if (i == VG_WORST) {
-    if (angle >= r->worst[VG_WORST - 1].value) return;
-    i--;
-  } else r->n_worst++;
-  while (i && r->worst[i - 1].value > angle) {
-    r->worst[i] = r->worst[i - 1];
-    i--;
-  }
-  r->worst[i].cell = cell;
-  r->worst[i].value = angle;
-  for (int k = 0; k < 3; k++) {
-    r->worst[i].at[k] = 0;
-    for (int j = 0; j < 4; j++)
-      r->worst[i].at[k] += m->point[m->tet[cell][j]][k] / 4;
-  }
-}
-
-struct shape_sums {
-  struct vg_sum radius, mean;
-  size_t below[5], above[3];
-  size_t fine[N_FINE];
-};
-
-static void count_angles(struct vg_mesh_report *r, struct shape_sums *sums,
-                         double least, double most)
+static void count_angles(struct vg_figures *f, double least, double most)
 {
   static const double low[5] = { 5, 10, 15, 20, 30 };
   static const double high[3] = { 150, 160, 170 };
+  struct vg_counts *n = &f->n;
 
-  if (least < r->angle_min) r->angle_min = least;
-  if (most > r->angle_max) r->angle_max = most;
-  for (int k = 0; k < 5; k++) sums->below[k] += least < low[k];
-  for (int k = 0; k < 3; k++) sums->above[k] += most > high[k];
-  r->hist_angle_min[bin_of(least, 1 / 5., VG_HIST_ANGLE)]++;
-  r->hist_angle_max[bin_of(most, 1 / 5., VG_HIST_ANGLE)]++;
-  sums->fine[bin_of(least, FINE_PER_DEGREE, N_FINE)]++;
+  if (least < f->angle_min) f->angle_min = least;
+  if (most > f->angle_max) f->angle_max = most;
+  for (int k = 0; k < 5; k++) n->below[k] += least < low[k];
+  for (int k = 0; k < 3; k++) n->above[k] += most > high[k];
+  n->angle_min[bin_of(least, 1 / 5., VG_HIST_ANGLE)]++;
+  n->angle_max[bin_of(most, 1 / 5., VG_HIST_ANGLE)]++;
+  n->fine[bin_of(least, VG_FINE_PER_DEGREE, VG_N_FINE)]++;
 }
 
-static void judge_tet(const struct vg_mesh *m, size_t cell,
-                      struct vg_mesh_report *r, struct shape_sums *sums)
+static void note_worst(struct vg_figures *f, const struct vg_mesh *m,
+                       size_t i, size_t cell, double angle)
 {
-  const uint32_t *n = m->tet[cell];
+  struct vg_worst_cell w = { .cell = cell, .value = angle };
+
+  if (f->n_worst == VG_WORST && angle > f->worst[VG_WORST - 1].value) return;
+  for (int k = 0; k < 3; k++)
+    for (int j = 0; j < 4; j++) w.at[k] += m->point[m->tet[i][j]][k] / 4;
+  vg_figures_worst(f, &w);
+}
+
+static void judge_tet(const struct vg_mesh *m, size_t i, size_t cell,
+                      struct vg_figures *f)
+{
+  const uint32_t *n = m->tet[i];
   struct tet_shape s = measure_tet(m->point[n[0]], m->point[n[1]],
                                    m->point[n[2]], m->point[n[3]]);
   double least = angle_of(s.cos_max), most = angle_of(s.cos_min);
 
-  count_angles(r, sums, least, most);
-  note_worst(r, m, cell, least);
-  vg_sum_add(&sums->radius, s.radius_ratio);
-  if (s.radius_ratio < r->radius_ratio_min)
-    r->radius_ratio_min = s.radius_ratio;
-  r->hist_radius_ratio[bin_of(s.radius_ratio, VG_HIST_UNIT, VG_HIST_UNIT)]++;
+  f->n.n_tet++;
+  count_angles(f, least, most);
+  note_worst(f, m, i, cell, least);
+  vg_exact_add(&f->n.sum_radius, s.radius_ratio);
+  if (s.radius_ratio < f->radius_ratio_min)
+    f->radius_ratio_min = s.radius_ratio;
+  f->n.radius_ratio[bin_of(s.radius_ratio, VG_HIST_UNIT, VG_HIST_UNIT)]++;
   /* (3 V)^2 = volume6^2 / 4 */
   if (s.edge2_sum > 0)
-    vg_sum_add(&sums->mean,
-               12 * cbrt(s.volume6 * s.volume6 / 4) / s.edge2_sum);
-}
-
-static void finish_shape(struct vg_mesh_report *r,
-                         const struct shape_sums *sums, size_t n_tet)
-{
-  size_t at = 0, seen = sums->fine[0];
-  double n = (double)n_tet;
-
-  for (int k = 0; k < 5; k++) r->below[k] = 100 * (double)sums->below[k] / n;
-  for (int k = 0; k < 3; k++) r->above[k] = 100 * (double)sums->above[k] / n;
-  r->radius_ratio_mean = (sums->radius.total + sums->radius.lost) / n;
-  r->mean_ratio_mean = (sums->mean.total + sums->mean.lost) / n;
-  while (100 * seen < n_tet) seen += sums->fine[++at];
-  r->angle_min_p1 = (double)at / FINE_PER_DEGREE;
+    vg_exact_add(&f->n.sum_mean,
+                 12 * cbrt(s.volume6 * s.volume6 / 4) / s.edge2_sum);
 }
 
 /* A corner tetrahedron of a prism, pyramid or hexahedron is spanned by a node
@@ -245,7 +208,7 @@ static double mixed_volume(const struct vg_mesh *m, int kind,
 }
 
 static void judge_mixed(const struct vg_mesh *m, int kind, float *volume,
-                        struct vg_sum *total, struct vg_mesh_report *r)
+                        struct vg_figures *f)
 {
   struct vg_cells c = vg_mesh_cells(m, kind);
   size_t width = (size_t)vg_cell_faces[kind].n_node;
@@ -254,38 +217,27 @@ static void judge_mixed(const struct vg_mesh *m, int kind, float *volume,
     const uint32_t *n = c.node + width * i;
     double v = mixed_volume(m, kind, n);
 
-    vg_sum_add(total, v);
+    vg_exact_add(&f->n.volume, v);
     volume[c.first + i] = (float)v;
-    r->not_positive += !(v > 0) || !corners_positive(m, kind, n);
+    f->n.not_positive += !(v > 0) || !corners_positive(m, kind, n);
   }
 }
 
-vg_status vg_judge_shape(const struct vg_mesh *m, float *volume,
-                         struct vg_mesh_report *r, struct vg_error *err)
+void vg_judge_shape(const struct vg_mesh *m, size_t first, float *volume,
+                    struct vg_figures *f)
 {
-  struct shape_sums *sums = vg_calloc(1, sizeof *sums);
-  struct vg_sum total = { 0, 0 };
-
-  if (!sums) return vg_fail_memory(err, "histograms");
-  r->angle_min = 180;
-  r->radius_ratio_min = 1;
   for (size_t i = 0; i < m->n_tet; i++) {
     const uint32_t *n = m->tet[i];
     double six = vg_orient3d(m->point[n[0]], m->point[n[1]], m->point[n[2]],
                              m->point[n[3]]);
 
-    r->not_positive += !(six > 0);
-    vg_sum_add(&total, six / 6);
+    f->n.not_positive += !(six > 0);
+    vg_exact_add(&f->n.volume, six / 6);
     volume[i] = (float)(six / 6);
-    judge_tet(m, i, r, sums);
+    judge_tet(m, i, first + i, f);
   }
-  if (m->n_tet) finish_shape(r, sums, m->n_tet);
-  else r->angle_min = r->radius_ratio_min = 0;
   for (int kind = VG_CELL_PYR; kind < VG_CELL_KINDS; kind++)
-    judge_mixed(m, kind, volume, &total, r);
-  r->volume = total.total + total.lost;
-  free(sums);
-  return VG_OK;
+    judge_mixed(m, kind, volume, f);
 }
 
 void vg_mesh_cell_quality(const struct vg_mesh *m, float *angle_min,
