@@ -1,9 +1,22 @@
 /* partition/model.h: the same tasks on another machine. Uses spans.h.
  *
  * Discrete-event simulation of engine.h's rules: tasks become ready when the
- * tasks that made them have ended, idle workers take the one with the highest
- * priority, a task done away from home costs two messages. Inputs are the
- * spans of a real run, or ones made up from an estimate alone. */
+ * tasks that they wait for have ended, idle workers take the one with the
+ * highest priority, a task done away from home costs two messages. Inputs are
+ * the spans of a real run, or ones made up from an estimate alone.
+ *
+ * What a task waits for. A record tells only which task's end made it, of
+ * several that were waited for the last one in that run; on another machine
+ * another one would be last. So, by the kind of `after`:
+ * - J: this task alone.
+ * - P, T: the stage that it belongs to: all tasks of kind P and T of the same
+ *   node (the path up to the first letter) made by the same task.
+ * - R: in the same way all tasks of kind R.
+ * - L: this task alone; but for a task of kind R whose node is the leaf's or
+ *   above it, all leaves at or below that node.
+ *
+ * A task's home is that of the task that made it; the first ones keep their
+ * own, modulo the number of ranks. Joins are done at home. */
 #ifndef VG_PARTITION_MODEL_H
 #define VG_PARTITION_MODEL_H
 
@@ -12,16 +25,22 @@
 
 #include "partition/spans.h"
 
+/** Most workers that are simulated. */
+#define VG_MODEL_WORKERS_MAX (1 << 20)
+
 struct vg_machine {
   int ranks, threads;        /* threads per rank */
   int ranks_per_node;        /* messages within a node are free of latency */
   double latency;            /* s per message; default 2e-6 */
-  double bandwidth;          /* bytes/s of a rank's link; default 1e10 */
+  double bandwidth;          /* bytes/s of a rank's link, each way; 1e10.
+                                Messages of a rank wait for each other */
   double rate;               /* speed of a core over the recorded one; 1 */
-  double serial;             /* s before the first and after the last task,
-                                done once (reading, sizes, layers, files) */
+  double serial;             /* s of the recorded core, before the first and
+                                after the last task, done once (reading,
+                                sizes, layers, files) */
+  int joins_roam;            /* 1: joins are done by any rank */
 };
-#define VG_MACHINE_INIT { 1, 1, 1, 2e-6, 1e10, 1, 0 }
+#define VG_MACHINE_INIT { 1, 1, 1, 2e-6, 1e10, 1, 0, 0 }
 
 struct vg_forecast {
   double wall;               /* s, serial part included */
@@ -29,22 +48,30 @@ struct vg_forecast {
   double speedup, efficiency;/* work / wall; over workers */
   double critical;           /* s, longest chain of tasks, serial included */
   double cuts;               /* share of the busy time spent on P, T and J */
-  double cuts_wall;          /* s until the last of P, T and J has ended */
+  double cuts_wall;          /* s, from the first task's start until the last
+                                of P, T and J has ended */
   double idle;               /* share of the workers' time */
   double imbalance;          /* max / mean of busy time per worker */
+  double bytes;              /* sent between ranks */
 };
 
 /** Which task made which is in span.after; span.cpu is its duration.
- * @param timeline  out: where each span ran on the machine; may be NULL
- * VG_ERR_INPUT when the record contradicts itself (names the path).
- * Deterministic. O(n log n). */
+ *
+ * Sizes of messages are the recorded ones. A task that was done at home has
+ * none: what it would have sent follows from its cells, as bytes per
+ * cells^(2/3) of the tasks of its kind that did travel, or of a void of equal
+ * cells in all.
+ * @param timeline  out: where each span ran on the machine, by path; may be
+ *                  NULL
+ * VG_ERR_INPUT when the record contradicts itself (names the path), or for a
+ * machine that cannot be. Deterministic. O(n log n). */
 vg_status vg_model_replay(const struct vg_spans *spans,
                           const struct vg_machine *machine,
                           struct vg_forecast *out, struct vg_spans *timeline,
                           struct vg_error *err);
 
 /** The priority of a task as the advancing partition gives it (advance.h):
- * cuts before fills, heavier first. */
+ * cuts before fills (J, P, T, L, R, then others), heavier first. */
 double vg_model_priority(char kind, double estimate);
 
 #endif

@@ -1,0 +1,474 @@
+/* The simulation of a record on other machines: graphs whose schedules are
+ * known. Durations are sums of powers of two, so results are exact unless a
+ * tolerance is given. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "partition/model.h"
+
+static void add(struct vg_spans *s, const char *path, const char *after,
+                double cpu)
+{
+  struct vg_span one = { .cpu = cpu, .estimate = 1000 * cpu };
+  size_t at = strcspn(path, "JPTLR");
+
+  snprintf(one.path, sizeof one.path, "%s", path);
+  snprintf(one.after, sizeof one.after, "%s", after);
+  one.kind = path[at];
+  one.n_cell = (uint64_t)(1000 * cpu);
+  assert_int_equal(vg_spans_add(s, &one, NULL), VG_OK);
+  s->n_rank = s->n_thread = 1;
+}
+
+/* Free messages, so that schedules are those of text books. */
+static struct vg_machine machine_of(int ranks, int threads)
+{
+  struct vg_machine m = VG_MACHINE_INIT;
+
+  m.ranks = ranks;
+  m.threads = threads;
+  m.latency = 0;
+  m.bandwidth = 1e300;
+  return m;
+}
+
+static struct vg_forecast replay(const struct vg_spans *s,
+                                 const struct vg_machine *m,
+                                 struct vg_spans *timeline)
+{
+  struct vg_forecast f;
+  struct vg_error err = VG_ERROR_INIT;
+  vg_status st = vg_model_replay(s, m, &f, timeline, &err);
+
+  if (st < 0) fail_msg("%s", err.text);
+  return f;
+}
+
+static struct vg_span *find(struct vg_spans *s, const char *path)
+{
+  for (size_t i = 0; i < s->n; i++)
+    if (!strcmp(s->span[i].path, path)) return &s->span[i];
+  fail_msg("no task %s", path);
+  return NULL;
+}
+
+static void a_chain_takes_its_sum(void **state)
+{
+  struct vg_spans s = VG_SPANS_INIT;
+
+  (void)state;
+  add(&s, "0J1", "", 1);
+  add(&s, "0P1", "0J1", 2);
+  add(&s, "0J2", "0P1", 0.5);
+  add(&s, "0L", "0J2", 4);
+  for (int ranks = 1; ranks <= 8; ranks *= 2) {
+    struct vg_machine m = machine_of(ranks, 2);
+    struct vg_forecast f;
+
+    m.serial = 0.25;
+    f = replay(&s, &m, NULL);
+    assert_true(f.wall == 7.75 && f.work == 7.75 && f.critical == 7.75);
+    assert_true(f.speedup == 1 && f.efficiency == 1.0 / (2 * ranks));
+    assert_true(f.cuts == 3.5 / 7.5 && f.cuts_wall == 3.5);
+    assert_true(f.idle == 1 - 7.5 / (7.5 * 2 * ranks));
+  }
+  vg_spans_release(&s);
+}
+
+static void add_fork_join(struct vg_spans *s, int n)
+{
+  char path[16];
+
+  add(s, "0J1", "", 1);
+  for (int i = 0; i < n; i++) {
+    snprintf(path, sizeof path, "0P%d", i);
+    add(s, path, "0J1", 2);
+  }
+  /* The record names the one that happened to be last. */
+  add(s, "0J2", "0P3", 1);
+}
+
+static void a_join_waits_for_its_whole_stage(void **state)
+{
+  static const double wall[] = { 18, 10, 8, 6, 6, 6, 6, 4, 4 };
+  struct vg_spans s = VG_SPANS_INIT;
+
+  (void)state;
+  add_fork_join(&s, 8);
+  for (int n = 1; n <= 9; n++) {
+    struct vg_machine m = machine_of(1, n);
+    struct vg_forecast f = replay(&s, &m, NULL);
+
+    assert_true(f.wall == wall[n - 1]);
+    assert_true(f.work == 18 && f.critical == 4);
+    m = machine_of(n, 1);
+    assert_true(replay(&s, &m, NULL).wall == wall[n - 1]);
+  }
+  vg_spans_release(&s);
+}
+
+/* Two nodes cut by one stage each: neither's join waits for the other's
+ * pencils, though all were made by one task. */
+static void stages_are_of_one_node(void **state)
+{
+  struct vg_spans s = VG_SPANS_INIT, t = VG_SPANS_INIT;
+  struct vg_machine m = machine_of(1, 2);
+
+  (void)state;
+  add(&s, "0J1", "", 1);
+  add(&s, "0.1P1", "0J1", 1);
+  add(&s, "0.2P1", "0J1", 8);
+  add(&s, "0.1J1", "0.1P1", 1);
+  add(&s, "0.2J1", "0.2P1", 1);
+  replay(&s, &m, &t);
+  assert_true(find(&t, "0.1J1")->start == 2);
+  assert_true(find(&t, "0.2J1")->start == 9);
+  vg_spans_release(&s);
+  vg_spans_release(&t);
+}
+
+/* Repairs after a leaf wait for all leaves below their node, and for no
+ * other. */
+static void repairs_wait_for_the_leaves_below(void **state)
+{
+  struct vg_spans s = VG_SPANS_INIT, t = VG_SPANS_INIT;
+  struct vg_machine m = machine_of(1, 8);
+
+  (void)state;
+  add(&s, "0J1", "", 1);
+  add(&s, "0.1L", "0J1", 1);
+  add(&s, "0.2J1", "0J1", 1);
+  add(&s, "0.2.1L", "0.2J1", 8);
+  add(&s, "0.2.10L", "0.2J1", 4);
+  add(&s, "0.3L", "0J1", 32);
+  add(&s, "0.2R1", "0.2.10L", 1);
+  add(&s, "0.2.1R1", "0.2.1L", 1);
+  add(&s, "0R1", "0.1L", 1);
+  add(&s, "0R2", "0R1", 1);
+  replay(&s, &m, &t);
+  assert_true(find(&t, "0.2R1")->start == 10);
+  assert_true(find(&t, "0.2.1R1")->start == 10);
+  assert_true(find(&t, "0R1")->start == 33);
+  assert_true(find(&t, "0R2")->start == 34);
+  vg_spans_release(&s);
+  vg_spans_release(&t);
+}
+
+/* LPT of 5, 5, 4, 4, 3, 3, 3 on 3 workers: Graham's worst case, 11 where 9 is
+ * best: 4/3 - 1/9. */
+static void heavier_leaves_go_first(void **state)
+{
+  static const double cpu[] = { 3, 5, 4, 3, 5, 4, 3 };
+  struct vg_spans s = VG_SPANS_INIT;
+  struct vg_machine m = machine_of(3, 1);
+  struct vg_forecast f;
+  char path[16];
+
+  (void)state;
+  for (int i = 0; i < 7; i++) {
+    snprintf(path, sizeof path, "0.%dL", i);
+    add(&s, path, "", cpu[i]);
+  }
+  f = replay(&s, &m, NULL);
+  assert_true(f.wall == 11);
+  assert_true(f.critical == 5 && f.work == 27);
+  assert_true(f.imbalance == 11.0 / 9);
+  m.ranks = 1;
+  assert_true(replay(&s, &m, NULL).wall == 27);
+  assert_true(replay(&s, &m, NULL).idle == 0);
+  vg_spans_release(&s);
+}
+
+/* Numbers without a pattern; no state outside, the same everywhere. */
+static double drawn(uint32_t *seed)
+{
+  *seed = *seed * 1664525u + 1013904223u;
+  return 1 + (*seed >> 24) / 64.0;
+}
+
+/* List schedules: longest chain and mean load below, Graham's bound above. */
+static void schedules_keep_the_bounds(void **state)
+{
+  struct vg_spans s = VG_SPANS_INIT;
+  uint32_t seed = 7;
+  char path[32], after[32];
+
+  (void)state;
+  for (int i = 0; i < 60; i++) {
+    snprintf(path, sizeof path, "0.%dJ", i);
+    add(&s, path, "", drawn(&seed));
+    for (int k = 0; k < 5; k++) {
+      snprintf(path, sizeof path, "0.%d.%dL", i, k);
+      snprintf(after, sizeof after, "0.%dJ", i);
+      add(&s, path, after, drawn(&seed));
+    }
+  }
+  for (int n = 1; n <= 512; n *= 2) {
+    struct vg_machine m = machine_of(1, n);
+    struct vg_forecast f = replay(&s, &m, NULL);
+
+    assert_true(f.wall >= f.critical && f.wall >= f.work / n);
+    assert_true(f.wall <= f.work / n + f.critical);
+    assert_true(f.speedup <= n * (1 + 1e-12) && f.efficiency <= 1 + 1e-12);
+    assert_true(f.idle >= 0 && f.idle < 1 && f.imbalance >= 1);
+  }
+  vg_spans_release(&s);
+}
+
+/* One leaf at home, one away: 1 MB there and 2 MB back at 1 MB/s, a latency
+ * of 1/4 s each; none within a node. */
+static void messages_take_time(void **state)
+{
+  struct vg_spans s = VG_SPANS_INIT, t = VG_SPANS_INIT;
+  struct vg_machine m = machine_of(2, 1);
+  struct vg_forecast f;
+
+  (void)state;
+  m.bandwidth = 1e6;
+  m.latency = 0.25;
+  add(&s, "0.1L", "", 8);
+  add(&s, "0.2L", "", 4);
+  s.span[1].bytes_in = 1000000;
+  s.span[1].bytes_out = 2000000;
+  f = replay(&s, &m, &t);
+  assert_true(find(&t, "0.1L")->rank == 0);
+  assert_true(find(&t, "0.2L")->rank == 1);
+  assert_true(find(&t, "0.2L")->start == 1.25);
+  assert_true(find(&t, "0.2L")->bytes_out == 2000000);
+  assert_true(find(&t, "0.1L")->bytes_in == 0);
+  assert_true(f.wall == 8 && f.bytes == 3e6);
+  vg_spans_release(&t);
+  s.span[1].cpu = 7.5;
+  assert_true(replay(&s, &m, NULL).wall == 1.25 + 7.5 + 2.25);
+  m.ranks_per_node = 2;
+  assert_true(replay(&s, &m, NULL).wall == 1 + 7.5 + 2);
+  vg_spans_release(&s);
+}
+
+/* Four inputs leave one rank one after the other. */
+static void a_link_is_taken_in_turn(void **state)
+{
+  struct vg_spans s = VG_SPANS_INIT, t = VG_SPANS_INIT;
+  struct vg_machine m = machine_of(5, 1);
+  char path[16];
+
+  (void)state;
+  m.bandwidth = 1e6;
+  add(&s, "0.0L", "", 64);
+  for (int i = 1; i <= 4; i++) {
+    snprintf(path, sizeof path, "0.%dL", i);
+    add(&s, path, "", 16);
+    s.span[i].bytes_in = 500000;
+  }
+  replay(&s, &m, &t);
+  for (int i = 1; i <= 4; i++) {
+    snprintf(path, sizeof path, "0.%dL", i);
+    assert_true(find(&t, path)->start == 0.5 * i);
+    assert_true(find(&t, path)->rank == i);
+  }
+  vg_spans_release(&s);
+  vg_spans_release(&t);
+}
+
+/* What did not travel in the record is sized like what did. */
+static void sizes_are_made_up_from_cells(void **state)
+{
+  struct vg_spans s = VG_SPANS_INIT, t = VG_SPANS_INIT;
+  struct vg_machine m = machine_of(3, 1);
+
+  (void)state;
+  add(&s, "0.1L", "", 8);
+  add(&s, "0.2L", "", 8);
+  add(&s, "0.3L", "", 1);
+  s.span[1].bytes_in = 40000;
+  s.span[1].bytes_out = 400;
+  replay(&s, &m, &t);
+  assert_true(find(&t, "0.2L")->bytes_in == 40000);
+  assert_true(find(&t, "0.3L")->bytes_in == 10000); /* 8 x the cells: 4 x */
+  assert_true(find(&t, "0.3L")->bytes_out == 100);
+  vg_spans_release(&s);
+  vg_spans_release(&t);
+}
+
+static void joins_stay_at_home(void **state)
+{
+  struct vg_spans s = VG_SPANS_INIT, t = VG_SPANS_INIT;
+  struct vg_machine m = machine_of(4, 1);
+
+  (void)state;
+  for (int i = 0; i < 4; i++) {
+    char path[16];
+
+    snprintf(path, sizeof path, "0.%dJ", i);
+    add(&s, path, "", 1);
+  }
+  assert_true(replay(&s, &m, &t).wall == 4);
+  for (size_t i = 0; i < t.n; i++) assert_int_equal(t.span[i].rank, 0);
+  vg_spans_release(&t);
+  m.joins_roam = 1;
+  assert_true(replay(&s, &m, NULL).wall == 1);
+  for (int i = 0; i < 4; i++) s.span[i].home = i;
+  m.joins_roam = 0;
+  assert_true(replay(&s, &m, &t).wall == 1);
+  for (size_t i = 0; i < t.n; i++)
+    assert_int_equal(t.span[i].home, (int)i);
+  vg_spans_release(&t);
+  vg_spans_release(&s);
+}
+
+static void a_faster_core_takes_less(void **state)
+{
+  struct vg_spans s = VG_SPANS_INIT;
+  struct vg_machine m = machine_of(1, 1);
+  struct vg_forecast f;
+
+  (void)state;
+  add(&s, "0J", "", 2);
+  add(&s, "0.1L", "0J", 6);
+  m.serial = 2;
+  m.rate = 2;
+  f = replay(&s, &m, NULL);
+  assert_true(f.wall == 5 && f.work == 5 && f.critical == 5);
+  assert_true(f.cuts_wall == 1 && f.cuts == 0.25);
+  vg_spans_release(&s);
+}
+
+static void nothing_takes_no_time(void **state)
+{
+  struct vg_spans s = VG_SPANS_INIT, t = VG_SPANS_INIT;
+  struct vg_machine m = machine_of(2, 2);
+  struct vg_forecast f = replay(&s, &m, &t);
+
+  (void)state;
+  assert_true(f.wall == 0 && f.speedup == 1 && f.imbalance == 1);
+  assert_int_equal(t.n, 0);
+  vg_spans_release(&t);
+}
+
+/* Order of the record and of the run that it is of do not matter. */
+static void the_same_record_gives_the_same(void **state)
+{
+  struct vg_spans s = VG_SPANS_INIT, r = VG_SPANS_INIT;
+  struct vg_spans t = VG_SPANS_INIT, u = VG_SPANS_INIT;
+  struct vg_machine m = VG_MACHINE_INIT;
+  struct vg_forecast f, g;
+
+  (void)state;
+  m.ranks = 3;
+  m.threads = 2;
+  add_fork_join(&s, 50);
+  for (size_t i = s.n; i-- > 0; ) {
+    struct vg_span one = s.span[i];
+
+    one.rank = one.thread = 7;
+    one.start = (double)i;
+    assert_int_equal(vg_spans_add(&r, &one, NULL), VG_OK);
+  }
+  f = replay(&s, &m, &t);
+  g = replay(&r, &m, &u);
+  assert_memory_equal(&f, &g, sizeof f);
+  assert_int_equal(t.n, u.n);
+  for (size_t i = 0; i < t.n; i++) {
+    assert_string_equal(t.span[i].path, u.span[i].path);
+    assert_true(t.span[i].start == u.span[i].start);
+    assert_int_equal(t.span[i].rank, u.span[i].rank);
+    assert_int_equal(t.span[i].thread, u.span[i].thread);
+  }
+  vg_spans_release(&s);
+  vg_spans_release(&r);
+  vg_spans_release(&t);
+  vg_spans_release(&u);
+}
+
+static void refuses(struct vg_spans *s, const struct vg_machine *m,
+                    const char *text)
+{
+  struct vg_forecast f, before;
+  struct vg_spans t = VG_SPANS_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+
+  memset(&f, 1, sizeof f);
+  before = f;
+  assert_int_equal(vg_model_replay(s, m, &f, &t, &err), VG_ERR_INPUT);
+  if (!strstr(err.text, text)) fail_msg("'%s' lacks '%s'", err.text, text);
+  assert_memory_equal(&f, &before, sizeof f);
+  assert_null(t.span);
+  vg_spans_release(s);
+}
+
+static void contradictions_are_named(void **state)
+{
+  struct vg_machine m = VG_MACHINE_INIT;
+  struct vg_spans s = VG_SPANS_INIT;
+
+  (void)state;
+  add(&s, "0L", "0J", 1);
+  refuses(&s, &m, "'0L' of the record was made by '0J'");
+  add(&s, "0L", "", 1);
+  add(&s, "0L", "", 1);
+  refuses(&s, &m, "'0L' is in the record more than once");
+  add(&s, "0J", "", 1);
+  add(&s, "0.1J", "0.2J", 1);
+  add(&s, "0.2J", "0.1J", 1);
+  refuses(&s, &m, "comes after itself");
+  add(&s, "0L", "0L", 1);
+  refuses(&s, &m, "comes after itself");
+  /* 0R waits for all leaves below 0, one of which came after it. */
+  add(&s, "0.1L", "", 1);
+  add(&s, "0R", "0.1L", 1);
+  add(&s, "0.2L", "0R", 1);
+  refuses(&s, &m, "waits for tasks that wait for it");
+  add(&s, "0L", "", -1);
+  refuses(&s, &m, "'0L' of the record took -1 seconds");
+  m.ranks = 0;
+  refuses(&s, &m, "0 ranks");
+  m.ranks = m.threads = 1 << 16;
+  refuses(&s, &m, "cannot be simulated");
+  m.ranks = m.threads = 1;
+  m.bandwidth = 0;
+  refuses(&s, &m, "bandwidth 0");
+}
+
+static void cuts_come_before_fills(void **state)
+{
+  static const char order[] = "JPTLRX";
+
+  (void)state;
+  for (int i = 0; i + 1 < 6; i++) {
+    assert_true(vg_model_priority(order[i], 0) >
+                vg_model_priority(order[i + 1], 1e11));
+    assert_true(vg_model_priority(order[i], 10) >
+                vg_model_priority(order[i], 9));
+    assert_true(vg_model_priority(order[i], -1) ==
+                vg_model_priority(order[i], 0));
+  }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(a_chain_takes_its_sum),
+    cmocka_unit_test(a_join_waits_for_its_whole_stage),
+    cmocka_unit_test(stages_are_of_one_node),
+    cmocka_unit_test(repairs_wait_for_the_leaves_below),
+    cmocka_unit_test(heavier_leaves_go_first),
+    cmocka_unit_test(schedules_keep_the_bounds),
+    cmocka_unit_test(messages_take_time),
+    cmocka_unit_test(a_link_is_taken_in_turn),
+    cmocka_unit_test(sizes_are_made_up_from_cells),
+    cmocka_unit_test(joins_stay_at_home),
+    cmocka_unit_test(a_faster_core_takes_less),
+    cmocka_unit_test(nothing_takes_no_time),
+    cmocka_unit_test(the_same_record_gives_the_same),
+    cmocka_unit_test(contradictions_are_named),
+    cmocka_unit_test(cuts_come_before_fills),
+  };
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
