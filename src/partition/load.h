@@ -20,16 +20,20 @@
 
 struct vg_load_cube {
   float at[3], half;         /* centre, half the side */
-  float h;                   /* target edge at the centre */
-  float cells;               /* expected in the part inside the void */
+  float h;                   /* target edge, averaged like 1 / h^3 */
+  float part;                /* of the cube in the void, > 0; scaled (so
+                                perhaps above 1) such that the parts make up
+                                the volume that the front encloses */
+  float cells;               /* expected in that part */
 };
 
 struct vg_load {
   size_t n;
   struct vg_load_cube *cube; /* [n] in the order of an octree: fixed */
   double cells;              /* sum */
+  double lo[3], unit;        /* of the octree: corner, side / 2^31 */
 };
-#define VG_LOAD_INIT { 0, NULL, 0 }
+#define VG_LOAD_INIT { 0, NULL, 0, { 0, 0, 0 }, 0 }
 
 void vg_load_release(struct vg_load *l);
 

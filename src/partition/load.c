@@ -1,0 +1,397 @@
+/* Outline: an octree is refined until its nodes are a few target edges wide;
+ * what is wholly outside is dropped where it is found. Branches are worked on
+ * by several threads; their cubes are joined in the order of the tree. */
+#include "partition/load.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "partition/load_tree.h"
+
+/* Widest cube in target edges, free and where the front passes. */
+#define WIDE_FREE 4.0
+#define WIDE_FRONT 4.0
+/* With fewer cubes than this, narrower ones are tried, down to LEAST edges. */
+#define FEW_CUBES 64
+#define LEAST 1.0
+/* Places of the root cube that are tried when volumes do not agree. */
+#define PLACES 3
+
+void vg_load_release(struct vg_load *l)
+{
+  free(l->cube);
+  memset(l, 0, sizeof *l);
+}
+
+/* --- cubes of a branch --------------------------------------------------- */
+
+struct cubes {
+  size_t n, cap;
+  struct vg_load_cube *cube;
+};
+
+struct maker {
+  const struct vg_load_tree *tree;
+  const struct vg_sizing *sizing;
+  double per_cube, narrow;   /* narrow: divides the widths allowed */
+  size_t n_branch, cap_branch, large;
+  struct branch {
+    struct vg_load_node node;
+    uint32_t *item;          /* [node.n] */
+    struct cubes out;
+    double crossed;          /* sum of squares of volumes, cubes crossed */
+    int refused;
+  } *branch;
+};
+
+/* Mean of 1 / h^3 over a node: a rule of four points, exact for quadratics. */
+static double mean_density(const struct maker *m,
+                           const struct vg_load_node *node)
+{
+  static const int sign[4][3] = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1},
+                                 {-1, -1, 1}};
+  const struct vg_load_tree *t = m->tree;
+  const double half = 0.5 * vg_load_side(node) * t->unit;
+  double sum = 0;
+
+  for (int i = 0; i < 4; i++) {
+    double x[3], h;
+
+    for (int k = 0; k < 3; k++)
+      x[k] = t->lo[k] + node->at[k] * t->unit
+             + half * (1 + sign[i][k] * 0.57735026918962576);
+    h = vg_sizing_at(m->sizing, x);
+    sum += 1 / (h * h * h);
+  }
+  return sum / 4;
+}
+
+/* Cube root to single precision: h is of no use beyond. */
+static double cube_root(double x)
+{
+  int e;
+  double f = frexp(x, &e), y;
+
+  while (e % 3) {
+    f *= 0.5;
+    e++;
+  }
+  y = 0.5 + 0.5 * f;
+  for (int i = 0; i < 6; i++) y -= (y - f / (y * y)) / 3;
+  return ldexp(y, e / 3);
+}
+
+static int emit(const struct maker *m, struct branch *b,
+                const struct vg_load_stack *s,
+                const struct vg_load_node *node, double density)
+{
+  const struct vg_load_tree *t = m->tree;
+  const double side = vg_load_side(node) * t->unit;
+  const double volume = side * side * side;
+  struct vg_load_cube *c;
+  int inside = VG_LOAD_SAMPLES;
+
+  if (node->n) {
+    int32_t owner[VG_LOAD_SAMPLES];
+
+    vg_load_sample(t, s, node, owner);
+    for (int i = 0; i < VG_LOAD_SAMPLES; i++) inside -= owner[i] < 1;
+    b->crossed += volume * volume;
+  }
+  if (!inside) return 0;
+  if (vg_reserve(&b->out.cube, &b->out.cap, b->out.n + 1, sizeof *c))
+    return -1;
+  c = &b->out.cube[b->out.n++];
+  for (int k = 0; k < 3; k++)
+    c->at[k] = (float)(t->lo[k] + node->at[k] * t->unit + 0.5 * side);
+  c->half = (float)(0.5 * side);
+  c->h = (float)(1 / cube_root(density));
+  c->part = (float)inside / VG_LOAD_SAMPLES;
+  c->cells = (float)(m->per_cube * density * volume * (double)c->part);
+  return 0;
+}
+
+static int is_leaf(const struct maker *m, const struct vg_load_node *node,
+                   double density)
+{
+  const double side = vg_load_side(node) * m->tree->unit * m->narrow;
+  const double wide = node->n ? WIDE_FRONT : WIDE_FREE;
+
+  return node->level >= VG_LOAD_LEVELS
+         || side * side * side * density <= wide * wide * wide;
+}
+
+static int refine(const struct maker *m, struct branch *b,
+                  struct vg_load_stack *s, const struct vg_load_node *node)
+{
+  const size_t keep = s->n;
+  struct vg_load_node part[8];
+  double density;
+  int bad = 0;
+
+  if (!node->n && node->owner < 1) return 0;
+  density = mean_density(m, node);
+  if (is_leaf(m, node, density)) return emit(m, b, s, node, density);
+  if (vg_load_octants(m->tree, s, node, part, 1)) return -1;
+  for (int o = 0; o < 8 && !bad; o++) bad = refine(m, b, s, &part[o]);
+  s->n = keep;
+  return bad;
+}
+
+static void refine_part(void *context, size_t first, size_t end, int worker)
+{
+  const struct maker *m = context;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++) {
+    struct branch *b = &m->branch[i];
+    struct vg_load_stack s = VG_LOAD_STACK_INIT;
+
+    s.item = b->item;
+    s.n = s.cap = b->node.n;
+    b->node.first = 0;
+    b->refused = refine(m, b, &s, &b->node);
+    b->item = NULL;
+    vg_load_stack_release(&s);
+  }
+}
+
+/* --- branches ------------------------------------------------------------ */
+
+static int add_branch(struct maker *m, const struct vg_load_stack *s,
+                      const struct vg_load_node *node)
+{
+  struct branch *b;
+
+  if (vg_reserve(&m->branch, &m->cap_branch, m->n_branch + 1,
+                 sizeof *m->branch))
+    return -1;
+  b = &m->branch[m->n_branch];
+  memset(b, 0, sizeof *b);
+  b->node = *node;
+  b->item = vg_alloc(node->n, sizeof *b->item);
+  if (!b->item) return -1;
+  m->n_branch++;
+  if (node->n)
+    memcpy(b->item, s->item + node->first, node->n * sizeof *b->item);
+  return 0;
+}
+
+/* Branches in the order of the tree, none with a large share of the front. */
+static int plan(struct maker *m, struct vg_load_stack *s,
+                const struct vg_load_node *node, int threads)
+{
+  const size_t keep = s->n;
+  struct vg_load_node part[8];
+  int bad = 0;
+
+  if (!node->n && node->owner < 1) return 0;
+  if ((node->n <= m->large && node->level)
+      || is_leaf(m, node, mean_density(m, node)))
+    return add_branch(m, s, node);
+  if (vg_load_octants(m->tree, s, node, part, threads)) return -1;
+  for (int o = 0; o < 8 && !bad; o++) bad = plan(m, s, &part[o], threads);
+  s->n = keep;
+  return bad;
+}
+
+static int plan_all(struct maker *m, int threads)
+{
+  const size_t n = m->tree->n_tri;
+  struct vg_load_stack s = VG_LOAD_STACK_INIT;
+  struct vg_load_node root = { .n = n };
+  int bad = vg_reserve(&s.item, &s.cap, 2 * n, sizeof *s.item);
+
+  for (size_t i = 0; i < n && !bad; i++) s.item[i] = (uint32_t)i;
+  s.n = n;
+  if (!bad) bad = plan(m, &s, &root, threads);
+  vg_load_stack_release(&s);
+  return bad;
+}
+
+/* All cubes in order. crossed: see struct branch. */
+static int join(const struct maker *m, struct vg_load *out, double *crossed)
+{
+  size_t n = 0;
+
+  for (size_t i = 0; i < m->n_branch; i++) {
+    if (m->branch[i].refused) return -1;
+    n += m->branch[i].out.n;
+  }
+  out->cube = vg_alloc(n, sizeof *out->cube);
+  if (!out->cube) return -1;
+  out->n = 0;
+  *crossed = 0;
+  for (size_t i = 0; i < m->n_branch; i++) {
+    const struct cubes *c = &m->branch[i].out;
+
+    if (c->n) memcpy(out->cube + out->n, c->cube, c->n * sizeof *c->cube);
+    out->n += c->n;
+    *crossed += m->branch[i].crossed;
+  }
+  return 0;
+}
+
+static int make(struct maker *m, int threads, struct vg_load *out,
+                double *crossed)
+{
+  int bad;
+
+  m->n_branch = 0;
+  bad = plan_all(m, threads);
+  if (!bad) {
+    vg_parallel_for(threads, m->n_branch, 1, refine_part, m);
+    bad = join(m, out, crossed);
+  }
+  for (size_t i = 0; i < m->n_branch; i++) {
+    free(m->branch[i].item);
+    free(m->branch[i].out.cube);
+  }
+  return bad;
+}
+
+/* --- the whole ----------------------------------------------------------- */
+
+/* A root cube with room to spare, at a place where planes of the lattice are
+ * unlikely to lie in planes of the front. */
+static void place_root(struct vg_load_tree *t, const double lo[3],
+                       const double hi[3], int place)
+{
+  static const double room[PLACES][3] = {
+    { 0.381966, 0.414214, 0.302776 }, { 0.618034, 0.236068, 0.561553 },
+    { 0.192582, 0.732051, 0.449490 }
+  };
+  double extent = 0, side;
+  int e;
+
+  for (int k = 0; k < 3; k++)
+    if (hi[k] - lo[k] > extent) extent = hi[k] - lo[k];
+  frexp(1.02 * extent, &e);
+  side = ldexp(1, e);
+  t->unit = ldexp(side, -VG_LOAD_BITS);
+  for (int k = 0; k < 3; k++) {
+    const double x = lo[k] - (side - (hi[k] - lo[k])) * room[place][k];
+
+    t->lo[k] = floor(x / t->unit) * t->unit;
+  }
+}
+
+static double parts_volume(const struct vg_load *l)
+{
+  double sum = 0;
+
+  for (size_t i = 0; i < l->n; i++) {
+    const double side = 2 * (double)l->cube[i].half;
+
+    sum += side * side * side * (double)l->cube[i].part;
+  }
+  return sum;
+}
+
+/* Let the parts make up the volume of the front. */
+static void scale_parts(struct vg_load *l, double ratio)
+{
+  l->cells = 0;
+  for (size_t i = 0; i < l->n; i++) {
+    struct vg_load_cube *c = &l->cube[i];
+
+    c->part = (float)((double)c->part * ratio);
+    c->cells = (float)((double)c->cells * ratio);
+    l->cells += (double)c->cells;
+  }
+}
+
+/* A void that no sample has hit: one cube of its volume. */
+static int lone_cube(const struct maker *m, const double lo[3],
+                     const double hi[3], double volume, struct vg_load *l)
+{
+  struct vg_load_cube *c = vg_alloc(1, sizeof *c);
+  double x[3], side = 0, h;
+
+  if (!c) return -1;
+  for (int k = 0; k < 3; k++) {
+    x[k] = 0.5 * (lo[k] + hi[k]);
+    c->at[k] = (float)x[k];
+    if (hi[k] - lo[k] > side) side = hi[k] - lo[k];
+  }
+  h = vg_sizing_at(m->sizing, x);
+  c->half = (float)(0.5 * side);
+  c->h = (float)h;
+  c->part = (float)(volume / (side * side * side));
+  c->cells = (float)(m->per_cube * volume / (h * h * h));
+  free(l->cube);
+  l->cube = c;
+  l->n = 1;
+  l->cells = (double)c->cells;
+  return 0;
+}
+
+/* The best of several places of the root cube; nearly always the first. */
+static vg_status build(struct maker *m, struct vg_load_tree *t,
+                       const struct vg_void *v, double volume, int threads,
+                       struct vg_load *out, struct vg_error *err)
+{
+  double lo[3], hi[3], best = INFINITY;
+
+  vg_load_box(v, lo, hi);
+  for (int place = 0; place < PLACES; place++) {
+    struct vg_load l = VG_LOAD_INIT;
+    double crossed, off;
+    vg_status st;
+    int bad;
+
+    place_root(t, lo, hi, place);
+    st = vg_load_tree_new(t, 1, v, threads, err);
+    if (st < 0) return st;
+    bad = make(m, threads, &l, &crossed);
+    vg_load_tree_release(t);
+    if (bad) return vg_fail_memory(err, "the estimate of cells");
+    memcpy(l.lo, t->lo, sizeof l.lo);
+    l.unit = t->unit;
+    off = fabs(parts_volume(&l) - volume);
+    if (off < best) {
+      vg_load_release(out);
+      *out = l;
+      best = off;
+    } else vg_load_release(&l);
+    /* what samples of 1/8 of a cube may be wrong by, and a bit */
+    if (off <= 0.01 * volume + 0.5 * sqrt(crossed)) break;
+  }
+  if (!out->n && lone_cube(m, lo, hi, volume, out))
+    return vg_fail_memory(err, "the estimate of cells");
+  return VG_OK;
+}
+
+vg_status vg_load_new(const struct vg_void *v, const struct vg_sizing *sizing,
+                      double cells_per_cube, int threads, struct vg_load *out,
+                      struct vg_error *err)
+{
+  struct vg_load_tree t = { .unit = 1 };
+  struct maker m = { .tree = &t, .sizing = sizing,
+                     .per_cube = cells_per_cube, .narrow = 1 };
+  struct vg_load l = VG_LOAD_INIT;
+  const double volume = vg_load_volume(v);
+  vg_status st = VG_OK;
+
+  m.large = threads == 1 ? v->n_face : v->n_face / 64 + 1024;
+  if (!(volume > 0) || !v->n_face) {
+    *out = l;
+    return VG_OK;
+  }
+  for (; st == VG_OK; m.narrow *= 2) {
+    vg_load_release(&l);
+    st = build(&m, &t, v, volume, threads, &l, err);
+    if (l.n >= FEW_CUBES || WIDE_FREE / m.narrow <= LEAST) break;
+  }
+  free(m.branch);
+  if (st < 0) {
+    vg_load_release(&l);
+    return st;
+  }
+  if (parts_volume(&l) > 0) scale_parts(&l, volume / parts_volume(&l));
+  *out = l;
+  return VG_OK;
+}

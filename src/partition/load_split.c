@@ -1,0 +1,325 @@
+/* Outline: the parent's cubes are descended along with the children's fronts.
+ * Where no front is left in a node, all of its cubes have the same owner; in a
+ * cube that fronts cross, samples are counted for each. The samples of a cube
+ * are always the same ones, so what earlier cuts have dropped was outside the
+ * children too, and errors do not pile up over generations. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "partition/load.h"
+#include "partition/load_tree.h"
+
+struct share {
+  uint32_t cube, child;
+  double part;
+};
+
+struct split {
+  const struct vg_load *parent;
+  struct vg_load_tree tree;
+  struct vg_load_stack stack;
+  size_t n_share, cap_share, n_child;
+  struct share *share;       /* by cube */
+};
+
+static int add_share(struct split *s, size_t cube, int32_t owner, int samples)
+{
+  struct share *to;
+
+  if (owner < 1 || (size_t)owner > s->n_child) return 0;
+  if (vg_reserve(&s->share, &s->cap_share, s->n_share + 1, sizeof *to))
+    return -1;
+  to = &s->share[s->n_share++];
+  to->cube = (uint32_t)cube;
+  to->child = (uint32_t)owner - 1;
+  to->part = (double)samples / VG_LOAD_SAMPLES;
+  return 0;
+}
+
+static int share_cube(struct split *s, const struct vg_load_node *node,
+                      size_t cube)
+{
+  int32_t owner[VG_LOAD_SAMPLES];
+
+  vg_load_sample(&s->tree, &s->stack, node, owner);
+  for (int i = 0; i < VG_LOAD_SAMPLES; i++) {
+    int n = 1;
+
+    for (int j = i + 1; j < VG_LOAD_SAMPLES && owner[i]; j++)
+      if (owner[j] == owner[i]) {
+        owner[j] = 0;
+        n++;
+      }
+    if (add_share(s, cube, owner[i], n)) return -1;
+  }
+  return 0;
+}
+
+/* Octant of a node whose centre is mid that holds a cube. */
+static int octant_of(const struct vg_load_cube *c, const double mid[3])
+{
+  int o = 0;
+
+  for (int k = 0; k < 3; k++) o |= ((double)c->at[k] > mid[k]) << k;
+  return o;
+}
+
+static void middle(const struct split *s, const struct vg_load_node *node,
+                   double mid[3])
+{
+  const double half = 0.5 * vg_load_side(node);
+
+  for (int k = 0; k < 3; k++)
+    mid[k] = s->tree.lo[k] + (node->at[k] + half) * s->tree.unit;
+}
+
+/* First of cubes a .. b - 1, sorted by octant, that is in octant o or later. */
+static size_t first_of(const struct split *s, size_t a, size_t b,
+                       const double mid[3], int o)
+{
+  while (a < b) {
+    const size_t m = a + (b - a) / 2;
+
+    if (octant_of(&s->parent->cube[m], mid) < o) a = m + 1;
+    else b = m;
+  }
+  return a;
+}
+
+/* Is the node the one cube a .. b - 1? */
+static int is_cube(const struct split *s, const struct vg_load_node *node,
+                   size_t a, size_t b)
+{
+  return node->level >= VG_LOAD_LEVELS
+         || (b - a == 1 && vg_load_side(node) * s->tree.unit
+                           < 2.5 * (double)s->parent->cube[a].half);
+}
+
+static int descend(struct split *s, const struct vg_load_node *node,
+                   size_t a, size_t b)
+{
+  const size_t keep = s->stack.n;
+  struct vg_load_node part[8];
+  double mid[3];
+  int bad = 0;
+
+  if (a == b || (!node->n && node->owner < 1)) return 0;
+  if (!node->n) {
+    for (; a < b && !bad; a++)
+      bad = add_share(s, a, node->owner, VG_LOAD_SAMPLES);
+    return bad;
+  }
+  if (is_cube(s, node, a, b)) return share_cube(s, node, a);
+  if (vg_load_octants(&s->tree, &s->stack, node, part, 1)) return -1;
+  middle(s, node, mid);
+  for (int o = 0; o < 8 && !bad; o++) {
+    const size_t to = o < 7 ? first_of(s, a, b, mid, o + 1) : b;
+
+    bad = descend(s, &part[o], a, to);
+    a = to;
+  }
+  s->stack.n = keep;
+  return bad;
+}
+
+/* The smallest node around all children that is no smaller than the parent's
+ * cube there, and the parent's cubes a .. b - 1 in it. */
+static void find_start(const struct split *s, struct vg_load_node *node,
+                       size_t *a, size_t *b)
+{
+  uint32_t lo[3], hi[3];
+
+  for (int k = 0; k < 3; k++) {
+    lo[k] = UINT32_MAX;
+    hi[k] = 0;
+  }
+  for (size_t i = 0; i < s->tree.n_tri; i++)
+    for (int k = 0; k < 3; k++) {
+      if (s->tree.tri[i].lo[k] < lo[k]) lo[k] = s->tree.tri[i].lo[k];
+      if (s->tree.tri[i].hi[k] > hi[k]) hi[k] = s->tree.tri[i].hi[k];
+    }
+  *a = 0;
+  *b = s->parent->n;
+  while (!is_cube(s, node, *a, *b)) {
+    const uint32_t half = vg_load_side(node) / 2;
+    double mid[3];
+    size_t from, to;
+    int o = 0;
+
+    for (int k = 0; k < 3; k++) {
+      o |= (lo[k] >= node->at[k] + half) << k;
+      if (lo[k] < node->at[k] + half && hi[k] >= node->at[k] + half) return;
+    }
+    middle(s, node, mid);
+    from = first_of(s, *a, *b, mid, o);
+    to = o < 7 ? first_of(s, *a, *b, mid, o + 1) : *b;
+    if (from == to) return;
+    for (int k = 0; k < 3; k++) node->at[k] += o >> k & 1 ? half : 0;
+    node->level++;
+    *a = from;
+    *b = to;
+  }
+}
+
+static int share_all(struct split *s)
+{
+  struct vg_load_node node = { .n = s->tree.n_tri };
+  size_t a, b;
+
+  if (vg_reserve(&s->stack.item, &s->stack.cap, 3 * node.n + 1,
+                 sizeof *s->stack.item))
+    return -1;
+  for (size_t i = 0; i < node.n; i++) s->stack.item[i] = (uint32_t)i;
+  s->stack.n = node.n;
+  find_start(s, &node, &a, &b);
+  return descend(s, &node, a, b);
+}
+
+/* --- children ------------------------------------------------------------ */
+
+/* Cells per volume and edge where the parent has a cube around x, or nearly
+ * so: the cube that a descent ends in. */
+static const struct vg_load_cube *cube_at(const struct split *s,
+                                          const double x[3])
+{
+  struct vg_load_node node = { .level = 0 };
+  size_t a = 0, b = s->parent->n;
+
+  while (b - a > 1 && node.level < VG_LOAD_LEVELS) {
+    const uint32_t half = vg_load_side(&node) / 2;
+    double mid[3];
+    size_t from, to;
+    int o = 0;
+
+    middle(s, &node, mid);
+    for (int k = 0; k < 3; k++) o |= (x[k] > mid[k]) << k;
+    from = first_of(s, a, b, mid, o);
+    to = o < 7 ? first_of(s, a, b, mid, o + 1) : b;
+    if (from == to) {
+      a = from < b ? from : b - 1;
+      break;
+    }
+    for (int k = 0; k < 3; k++) node.at[k] += o >> k & 1 ? half : 0;
+    node.level++;
+    a = from;
+    b = to;
+  }
+  return &s->parent->cube[a];
+}
+
+/* A child too small for any sample: one cube around it. */
+static int lone_cube(const struct split *s, const struct vg_void *v,
+                     double volume, double correction, struct vg_load *out)
+{
+  double lo[3], hi[3], x[3], side = 0, old;
+  const struct vg_load_cube *near;
+  struct vg_load_cube *c;
+
+  vg_load_box(v, lo, hi);
+  for (int k = 0; k < 3; k++) {
+    x[k] = 0.5 * (lo[k] + hi[k]);
+    if (hi[k] - lo[k] > side) side = hi[k] - lo[k];
+  }
+  if (!s->parent->n || !(volume > 0) || !(side > 0)) return 0;
+  c = vg_alloc(1, sizeof *c);
+  if (!c) return -1;
+  near = cube_at(s, x);
+  old = 2 * (double)near->half;
+  for (int k = 0; k < 3; k++) c->at[k] = (float)x[k];
+  c->half = (float)(0.5 * side);
+  c->h = near->h;
+  c->part = (float)(volume / (side * side * side));
+  c->cells = (float)(correction * (double)near->cells * volume
+                     / (old * old * old * (double)near->part));
+  out->cube = c;
+  out->n = 1;
+  out->cells = (double)c->cells;
+  return 0;
+}
+
+static void take_share(const struct split *s, const struct share *from,
+                       struct vg_load_cube *to)
+{
+  const struct vg_load_cube *c = &s->parent->cube[from->cube];
+
+  *to = *c;
+  to->part = (float)from->part;
+  to->cells = (float)((double)c->cells * from->part / (double)c->part);
+}
+
+/* Parts are scaled to make up the child's volume, cells with them. */
+static void finish(struct vg_load *l, double volume, double correction)
+{
+  double sum = 0, ratio;
+
+  for (size_t i = 0; i < l->n; i++) {
+    const double side = 2 * (double)l->cube[i].half;
+
+    sum += side * side * side * (double)l->cube[i].part;
+  }
+  ratio = sum > 0 && volume > 0 ? volume / sum : 1;
+  for (size_t i = 0; i < l->n; i++) {
+    struct vg_load_cube *c = &l->cube[i];
+
+    c->part = (float)(ratio * (double)c->part);
+    c->cells = (float)(ratio * correction * (double)c->cells);
+    l->cells += (double)c->cells;
+  }
+}
+
+static int deal(const struct split *s, const struct vg_void *child,
+                double correction, struct vg_load *made)
+{
+  for (size_t i = 0; i < s->n_share; i++) made[s->share[i].child].n++;
+  for (size_t c = 0; c < s->n_child; c++) {
+    struct vg_load *l = &made[c];
+
+    l->cube = l->n ? vg_alloc(l->n, sizeof *l->cube) : NULL;
+    if (l->n && !l->cube) return -1;
+    l->n = 0;
+    memcpy(l->lo, s->parent->lo, sizeof l->lo);
+    l->unit = s->parent->unit;
+  }
+  for (size_t i = 0; i < s->n_share; i++) {
+    struct vg_load *l = &made[s->share[i].child];
+
+    take_share(s, &s->share[i], &l->cube[l->n++]);
+  }
+  for (size_t c = 0; c < s->n_child; c++) {
+    const double volume = vg_load_volume(&child[c]);
+
+    if (made[c].n) finish(&made[c], volume, correction);
+    else if (lone_cube(s, &child[c], volume, correction, &made[c])) return -1;
+  }
+  return 0;
+}
+
+vg_status vg_load_split(const struct vg_load *parent, size_t n,
+                        const struct vg_void *child, double correction,
+                        struct vg_load *out, struct vg_error *err)
+{
+  struct split s = { .parent = parent, .n_child = n,
+                     .stack = VG_LOAD_STACK_INIT };
+  struct vg_load *made = vg_calloc(n, sizeof *made);
+  vg_status st = VG_OK;
+
+  memcpy(s.tree.lo, parent->lo, sizeof s.tree.lo);
+  s.tree.unit = parent->unit > 0 ? parent->unit : 1;
+  if (!made) return vg_fail_memory(err, "the estimate of cells");
+  VG_TRY(vg_load_tree_new(&s.tree, n, child, 1, err));
+  if (share_all(&s) || deal(&s, child, correction, made)) {
+    st = vg_fail_memory(err, "the estimate of cells");
+    goto done;
+  }
+  memcpy(out, made, n * sizeof *out);
+  memset(made, 0, n * sizeof *made);
+done:
+  for (size_t c = 0; c < n; c++) vg_load_release(&made[c]);
+  free(made);
+  free(s.share);
+  vg_load_tree_release(&s.tree);
+  vg_load_stack_release(&s.stack);
+  return st;
+}
