@@ -1,4 +1,4 @@
-/* Cells of faces and flanks of rims, one level at a time.
+/* Cells of faces and flanks of rims, one face or rim at a time, upwards.
  *
  * All tetrahedra: columns rise one by one, by rising number. Mixed: they rise
  * together, which makes a prism, a pyramid over the two that rise or one
@@ -15,22 +15,11 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "layers/expand_parts.h"
 #include "layers/join.h"
 
-/* Where the next cell goes. */
-struct sink {
-  uint32_t (*tet)[4];
-  uint32_t (*pyr)[5];
-  uint32_t (*pri)[6];
-};
-
-struct level {
-  const struct vg_expand *e;
-  size_t level;
-  const uint32_t *low, *high;  /* [n_column] points at this and the next */
-  struct vg_mesh *m;
-  uint8_t *bad;                /* [n_block] has a face with a jump */
-};
+/* Blocks of faces that a thread takes at a time. */
+#define BLOCK_GRAIN 8
 
 /* Corners of a face by rising column, by which of f0 < f1, f1 < f2, f2 < f0
  * hold (bits 0, 1, 2; none or all cannot be). */
@@ -44,7 +33,8 @@ static const uint8_t *order_of(const uint32_t f[3])
   return rising[(f[0] < f[1]) | (f[1] < f[2]) << 1 | (f[2] < f[0]) << 2];
 }
 
-static inline void put_tet(struct sink *s, const uint32_t p[3], uint32_t top)
+static inline void put_tet(struct vg_cell_sink *s, const uint32_t p[3],
+                           uint32_t top)
 {
   uint32_t *n = *s->tet++;
 
@@ -66,11 +56,10 @@ static int first_corner(const uint32_t f[3])
   return turns_well || ((f[0] ^ f[1] ^ f[2]) & 1) ? o[0] : o[1];
 }
 
-static void put_prism(struct sink *s, const uint32_t f[3], const uint32_t p[3],
-                      const uint32_t h[3])
+static inline void put_prism(struct vg_cell_sink *s, int first,
+                             const uint32_t p[3], const uint32_t h[3])
 {
   uint32_t *n = *s->pri++;
-  int first = first_corner(f);
 
   for (int k = 0; k < 3; k++) {
     n[k] = p[(first + k) % 3];
@@ -79,7 +68,7 @@ static void put_prism(struct sink *s, const uint32_t f[3], const uint32_t p[3],
 }
 
 /* A prism of which corner w does not rise. */
-static void put_pyramid(struct sink *s, const uint32_t p[3],
+static void put_pyramid(struct vg_cell_sink *s, const uint32_t p[3],
                         const uint32_t h[3], int w)
 {
   uint32_t *n = *s->pyr++;
@@ -93,22 +82,22 @@ static void put_pyramid(struct sink *s, const uint32_t p[3],
 }
 
 /* The lift rule where points may be equal. */
-static void lift(struct sink *s, uint32_t p[3], uint32_t top, int k)
+static void lift(struct vg_cell_sink *s, uint32_t p[3], uint32_t top, int k)
 {
   if (p[0] != p[1] && p[1] != p[2] && p[2] != p[0]) put_tet(s, p, top);
   p[k] = top;
 }
 
 /* Corners of the mask that rise rise together; their roots differ. */
-static void rise_together(struct sink *s, const uint32_t f[3], uint32_t p[3],
-                          const uint32_t h[3], unsigned mask)
+static void rise_together(struct vg_cell_sink *s, const uint32_t f[3],
+                          uint32_t p[3], const uint32_t h[3], unsigned mask)
 {
   int n = 0, last = 0, rest = 0;
 
   for (int k = 0; k < 3; k++)
     if (mask >> k & 1 && h[k] != VG_NO_INDEX) n++, last = k;
     else rest = k;
-  if (n == 3) put_prism(s, f, p, h);
+  if (n == 3) put_prism(s, first_corner(f), p, h);
   else if (n == 2) put_pyramid(s, p, h, rest);
   else if (n == 1) put_tet(s, p, h[last]);
   for (int k = 0; k < 3; k++)
@@ -118,7 +107,8 @@ static void rise_together(struct sink *s, const uint32_t f[3], uint32_t p[3],
 /* Points p stand at level 0; corners in the mask share their root with no
  * other column, so with two of them all points differ. */
 static void rise_from_wall(const uint32_t f[3], unsigned together,
-                           uint32_t p[3], const uint32_t h[3], struct sink *s)
+                           uint32_t p[3], const uint32_t h[3],
+                           struct vg_cell_sink *s)
 {
   const uint8_t *order = order_of(f);
 
@@ -134,7 +124,7 @@ static void rise_from_wall(const uint32_t f[3], unsigned together,
 }
 
 static inline void rise_one_by_one(const uint32_t f[3], uint32_t p[3],
-                                   const uint32_t h[3], struct sink *s)
+                                   const uint32_t h[3], struct vg_cell_sink *s)
 {
   const uint8_t *order = order_of(f);
 
@@ -147,20 +137,64 @@ static inline void rise_one_by_one(const uint32_t f[3], uint32_t p[3],
   }
 }
 
-/* Cells of one face at the present level. */
-static inline void rise(const struct level *l, size_t face, struct sink *s)
+/* Corners of a face whose root has no other column, where that matters. */
+static unsigned alone(const struct vg_expand *e, const uint32_t f[3])
 {
-  const uint32_t *f = l->e->columns->face[face];
-  uint32_t p[3] = { l->low[f[0]], l->low[f[1]], l->low[f[2]] };
-  const uint32_t h[3] = { l->high[f[0]], l->high[f[1]], l->high[f[2]] };
-  unsigned together = 0;
+  unsigned mask = 0;
 
-  if (!l->level) {
-    for (int k = 0; k < 3 && l->e->mixed; k++)
-      together |= (unsigned)!(l->e->mark[f[k]] & VG_MARK_SHARED) << k;
-    rise_from_wall(f, together, p, h, s);
+  for (int k = 0; k < 3 && e->mixed; k++)
+    mask |= (unsigned)!(e->mark[f[k]] & VG_MARK_SHARED) << k;
+  return mask;
+}
+
+static unsigned levels_of(const struct vg_expand *e, const uint32_t f[3],
+                          unsigned n[3])
+{
+  unsigned low = VG_LEVELS_MAX;
+
+  for (int k = 0; k < 3; k++) {
+    n[k] = vg_mark_n(e->mark[f[k]]);
+    if (n[k] < low) low = n[k];
   }
-  else if (l->e->mixed) rise_together(s, f, p, h, 7);
+  return low;
+}
+
+/* n_level levels of which all three columns have the next as well. */
+static void whole_levels(int mixed, const uint32_t f[3], unsigned n_level,
+                         uint32_t p[3], struct vg_cell_sink *s)
+{
+  const uint8_t *order = order_of(f);
+  int first = first_corner(f);
+
+  for (unsigned l = 0; l < n_level; l++)
+    if (mixed) {
+      const uint32_t h[3] = { p[0] + 1, p[1] + 1, p[2] + 1 };
+
+      put_prism(s, first, p, h);
+      memcpy(p, h, sizeof h);
+    } else
+      for (int i = 0; i < 3; i++) {
+        uint32_t *v = &p[order[i]];
+
+        put_tet(s, p, *v + 1);
+        ++*v;
+      }
+}
+
+void vg_expand_face(const struct vg_expand *e, size_t face,
+                    const uint32_t foot[3], const uint32_t base[3],
+                    struct vg_cell_sink *s)
+{
+  const uint32_t *f = e->columns->face[face];
+  uint32_t p[3] = { foot[0], foot[1], foot[2] }, h[3];
+  unsigned n[3], low = levels_of(e, f, n);
+
+  for (int k = 0; k < 3; k++) h[k] = n[k] ? base[k] : VG_NO_INDEX;
+  rise_from_wall(f, alone(e, f), p, h, s);
+  if (!low) return;
+  whole_levels(e->mixed, f, low - 1, p, s);
+  for (int k = 0; k < 3; k++) h[k] = n[k] > low ? p[k] + 1 : VG_NO_INDEX;
+  if (e->mixed) rise_together(s, f, p, h, 7);
   else rise_one_by_one(f, p, h, s);
 }
 
@@ -169,7 +203,7 @@ int vg_join_wall_cells(const struct vg_columns *c, size_t face,
 {
   const uint32_t *f = c->face[face];
   uint32_t tet[3][4], pyr[1][5], pri[1][6], p[3], h[3];
-  struct sink s = { tet, pyr, pri };
+  struct vg_cell_sink s = { tet, pyr, pri };
   unsigned together = 0;
   int n = 0;
 
@@ -196,74 +230,51 @@ int vg_join_wall_cells(const struct vg_columns *c, size_t face,
   return n;
 }
 
-static void fill_block(void *context, size_t first, size_t end, int worker)
+/* Cells of a face; -1: its columns differ by more than a level. */
+static int count_face(const struct vg_expand *e, const uint32_t f[3],
+                      size_t count[VG_N_KIND])
 {
-  const struct level *l = context;
-  const struct vg_expand *e = l->e;
-  size_t at = l->level * e->n_block + first / VG_FACE_BLOCK, n = 0;
-  struct sink s = { NULL, NULL, NULL };
+  uint32_t tet[3][4], pyr[1][5], pri[1][6], p[3], h[3];
+  struct vg_cell_sink s = { tet, pyr, pri };
+  unsigned n[3], low = levels_of(e, f, n), more = 0;
 
-  (void)worker;
-  for (int k = 0; k < VG_N_KIND; k++) n += e->cell[k][at + 1] - e->cell[k][at];
-  if (!n) return;
-  if (e->n_cell[VG_KIND_TET]) s.tet = l->m->tet + e->cell[VG_KIND_TET][at];
-  if (e->n_cell[VG_KIND_PYR]) s.pyr = l->m->pyr + e->cell[VG_KIND_PYR][at];
-  if (e->n_cell[VG_KIND_PRI]) s.pri = l->m->pri + e->cell[VG_KIND_PRI][at];
-  for (size_t i = first; i < end; i++) rise(l, i, &s);
-}
-
-/* Levels of a face: `whole` of three rising columns, then one level of `part`
- * rising ones, 0 to 2. -1: neighbours differ by more. */
-static int levels_of(const struct vg_expand *e, size_t face, unsigned *whole)
-{
-  const uint32_t *f = e->columns->face[face];
-  unsigned a = vg_mark_n(e->mark[f[0]]), b = vg_mark_n(e->mark[f[1]]),
-           c = vg_mark_n(e->mark[f[2]]);
-  unsigned low = a < b ? a : b;
-
-  if (c < low) low = c;
-  *whole = low;
-  if (a > low + 1 || b > low + 1 || c > low + 1) return -1;
-  return (int)(a + b + c - 3 * low);
-}
-
-static void count_wall(const struct level *l, size_t face, size_t *count)
-{
-  uint32_t tet[3][4], pyr[1][5], pri[1][6];
-  struct sink s = { tet, pyr, pri };
-
-  rise(l, face, &s);
+  for (int k = 0; k < 3; k++) {
+    if (n[k] > low + 1) return -1;
+    more += n[k] - low;
+    p[k] = e->foot[f[k]];
+    h[k] = n[k] ? e->base[f[k]] : VG_NO_INDEX;
+  }
+  rise_from_wall(f, alone(e, f), p, h, &s);
   count[VG_KIND_TET] += (size_t)(s.tet - tet);
   count[VG_KIND_PYR] += (size_t)(s.pyr - pyr);
   count[VG_KIND_PRI] += (size_t)(s.pri - pri);
+  if (!low) return 0;
+  if (e->mixed) {
+    count[VG_KIND_PRI] += low - 1;
+    count[VG_KIND_PYR] += more == 2;
+    count[VG_KIND_TET] += more == 1;
+  } else count[VG_KIND_TET] += 3 * (low - 1) + more;
+  return 0;
 }
 
-static void count_block(void *context, size_t first, size_t end, int worker)
+struct counting {
+  struct vg_expand *e;
+  uint8_t *bad;              /* [n_block] has a face with a jump */
+};
+
+static void count_blocks(void *context, size_t first, size_t end, int worker)
 {
-  const struct level *l = context;
-  const struct vg_expand *e = l->e;
-  size_t count[VG_LEVELS_MAX + 1][3] = {{0}}, wall[VG_N_KIND] = {0}, whole = 0;
-  size_t block = first / VG_FACE_BLOCK;
+  const struct counting *c = context;
+  struct vg_expand *e = c->e;
 
   (void)worker;
-  for (size_t i = first; i < end; i++) {
-    unsigned low;
-    int part = levels_of(e, i, &low);
+  for (size_t b = first; b < end; b++) {
+    size_t count[VG_N_KIND] = {0}, i = b * VG_FACE_BLOCK;
 
-    if (part < 0) l->bad[block] = 1;
-    else count[low][part]++;
-    count_wall(l, i, wall);
+    for (; i < (b + 1) * VG_FACE_BLOCK && i < e->columns->n_face; i++)
+      if (count_face(e, e->columns->face[i], count)) c->bad[b] = 1;
+    for (int k = 0; k < VG_N_KIND; k++) e->cell[k][b] = count[k];
   }
-  for (size_t k = e->n_level; k-- > 0;) {
-    size_t at = k * e->n_block + block, one = count[k][1], two = count[k][2];
-
-    whole += count[k + 1][0] + count[k + 1][1] + count[k + 1][2];
-    e->cell[VG_KIND_TET][at] = e->mixed ? one : 3 * whole + 2 * two + one;
-    e->cell[VG_KIND_PYR][at] = e->mixed ? two : 0;
-    e->cell[VG_KIND_PRI][at] = e->mixed ? whole : 0;
-  }
-  for (int k = 0; k < VG_N_KIND && e->n_level; k++)
-    e->cell[k][block] = wall[k];
 }
 
 static vg_status report_jump(const struct vg_expand *e, struct vg_error *err)
@@ -272,9 +283,9 @@ static vg_status report_jump(const struct vg_expand *e, struct vg_error *err)
 
   for (size_t i = 0; i < c->n_face; i++) {
     const uint32_t *f = c->face[i];
-    unsigned low;
+    size_t count[VG_N_KIND] = {0};
 
-    if (levels_of(e, i, &low) >= 0) continue;
+    if (count_face(e, f, count) == 0) continue;
     return vg_fail(err, VG_ERR_INPUT,
                    "the columns on points %zu, %zu and %zu have %u, %u and %u "
                    "levels; neighbours may differ by one",
@@ -286,55 +297,32 @@ static vg_status report_jump(const struct vg_expand *e, struct vg_error *err)
   return VG_OK;
 }
 
+/* Counts into first indices. */
 static void add_up(struct vg_expand *e)
 {
-  size_t n = e->n_level * e->n_block;
-
   for (int k = 0; k < VG_N_KIND; k++) {
     size_t sum = 0;
 
-    for (size_t i = 0; i < n; i++) {
-      size_t here = e->cell[k][i];
+    for (size_t b = 0; b < e->n_block; b++) {
+      size_t here = e->cell[k][b];
 
-      e->cell[k][i] = sum;
+      e->cell[k][b] = sum;
       sum += here;
     }
-    e->cell[k][n] = e->n_cell[k] = sum;
+    e->cell[k][e->n_block] = e->n_cell[k] = sum;
   }
 }
 
-static void stand_on_wall(const struct vg_expand *e, const uint32_t *root,
-                          uint32_t *low)
+vg_status vg_expand_count(struct vg_expand *e, struct vg_error *err)
 {
-  for (size_t i = 0; i < e->columns->n_column; i++)
-    low[i] = root[e->columns->column[i].root];
-}
+  struct counting c = { e, vg_calloc(e->n_block, 1) };
+  size_t bad = 0;
 
-vg_status vg_expand_count(struct vg_expand *e, const uint32_t *root,
-                          struct vg_error *err)
-{
-  size_t n_column = e->columns->n_column, bad = 0;
-  uint32_t *low = vg_alloc(n_column, sizeof *low);
-  uint32_t *high = vg_alloc(n_column, sizeof *high);
-  struct level l = { e, 0, low, high, NULL, vg_calloc(e->n_block, 1) };
-  int refused = !low || !high || !l.bad;
-
-  for (int k = 0; k < VG_N_KIND; k++) {
-    e->cell[k] = vg_calloc(e->n_level * e->n_block + 1, sizeof *e->cell[k]);
-    refused |= !e->cell[k];
-  }
-  if (!refused && e->n_level) {
-    stand_on_wall(e, root, low);
-    vg_expand_level(e, 1, high);
-    vg_parallel_for(e->threads, e->columns->n_face, VG_FACE_BLOCK,
-                    count_block, &l);
-    for (size_t i = 0; i < e->n_block; i++) bad += l.bad[i];
-    add_up(e);
-  }
-  free(low);
-  free(high);
-  free(l.bad);
-  if (refused) return vg_fail_memory(err, "the numbers of the layer cells");
+  if (!c.bad) return vg_fail_memory(err, "the numbers of the layer cells");
+  vg_parallel_for(e->threads, e->n_block, BLOCK_GRAIN, count_blocks, &c);
+  for (size_t b = 0; b < e->n_block; b++) bad += c.bad[b];
+  free(c.bad);
+  add_up(e);
   return bad ? report_jump(e, err) : VG_OK;
 }
 
@@ -358,8 +346,8 @@ static int rim_second_first(const struct vg_expand *e, const uint32_t rim[2],
   return late[0] != late[1] ? late[0] : rim[1] < rim[0];
 }
 
-void vg_expand_flank(const struct vg_expand *e, size_t r, size_t *tri,
-                     size_t *quad)
+void vg_expand_count_flank(const struct vg_expand *e, size_t r, size_t *tri,
+                           size_t *quad)
 {
   const uint32_t *rim = e->columns->rim[r];
   const struct vg_column *c = e->columns->column;
@@ -375,58 +363,37 @@ void vg_expand_flank(const struct vg_expand *e, size_t r, size_t *tri,
   if ((a || b) && c[rim[0]].root == c[rim[1]].root) --*tri;
 }
 
-/* Inward faces of the flank of rim r at the present level. */
-static void rise_rim(const struct level *l, size_t r, size_t *tri_at,
-                     size_t *quad_at)
+/* Faces of one level of a flank; p: the points it stands on, in/out; h: those
+ * that rise; first: the column to rise first, where they do one by one. */
+static void rise_rim(uint32_t p[2], const uint32_t h[2], int first,
+                     uint32_t (**to)[3])
 {
-  const uint32_t *rim = l->e->columns->rim[r];
-  uint32_t p[2] = { l->low[rim[0]], l->low[rim[1]] };
-  const uint32_t h[2] = { l->high[rim[0]], l->high[rim[1]] };
-  int first = rim_second_first(l->e, rim, l->level);
-
-  if (h[0] != VG_NO_INDEX && h[1] != VG_NO_INDEX &&
-      rim_together(l->e, rim, l->level)) {
-    const uint32_t quad[4] = { p[1], p[0], h[0], h[1] };
-
-    memcpy(l->m->quad[quad_at[r]++], quad, sizeof quad);
-    return;
-  }
   for (int i = 0; i < 2; i++) {
     int k = first ^ i;
     const uint32_t tri[3] = { p[1], p[0], h[k] };
 
     if (h[k] == VG_NO_INDEX) continue;
-    if (p[0] != p[1]) memcpy(l->m->tri[tri_at[r]++], tri, sizeof tri);
+    if (p[0] != p[1]) memcpy(*(*to)++, tri, sizeof tri);
     p[k] = h[k];
   }
 }
 
-vg_status vg_expand_cells(const struct vg_expand *e, const uint32_t *root,
-                          struct vg_mesh *m, size_t *tri_at, size_t *quad_at,
-                          struct vg_error *err)
+void vg_expand_flank(const struct vg_expand *e, size_t r, uint32_t (*tri)[3],
+                     uint32_t (*quad)[4])
 {
-  const struct vg_columns *c = e->columns;
-  uint32_t *low = vg_alloc(c->n_column, sizeof *low);
-  uint32_t *high = vg_alloc(c->n_column, sizeof *high);
-  vg_status st = VG_OK;
+  const uint32_t *rim = e->columns->rim[r];
+  unsigned a = vg_mark_n(e->mark[rim[0]]), b = vg_mark_n(e->mark[rim[1]]);
+  uint32_t p[2] = { e->foot[rim[0]], e->foot[rim[1]] };
 
-  if (!low || !high) {
-    st = vg_fail_memory(err, "the points of two levels");
-    goto done;
-  }
-  stand_on_wall(e, root, low);
-  for (size_t i = 0; i < e->n_level; i++) {
-    struct level l = { e, i, low, high, m, NULL };
-    uint32_t *swap = low;
+  for (unsigned l = 0; l < a || l < b; l++) {
+    const uint32_t h[2] = { l < a ? e->base[rim[0]] + l : VG_NO_INDEX,
+                            l < b ? e->base[rim[1]] + l : VG_NO_INDEX };
 
-    vg_expand_level(e, i + 1, high);
-    vg_parallel_for(e->threads, c->n_face, VG_FACE_BLOCK, fill_block, &l);
-    for (size_t r = 0; r < c->n_rim; r++) rise_rim(&l, r, tri_at, quad_at);
-    low = high;
-    high = swap;
+    if (l < a && l < b && rim_together(e, rim, l)) {
+      const uint32_t side[4] = { p[1], p[0], h[0], h[1] };
+
+      memcpy(*quad++, side, sizeof side);
+      memcpy(p, h, sizeof h);
+    } else rise_rim(p, h, rim_second_first(e, rim, l), &tri);
   }
-done:
-  free(low);
-  free(high);
-  return st;
 }

@@ -16,12 +16,13 @@ struct vg_join_info {
 /** Layers and field in one mesh.
  *
  * Points: those of the surface that are still used, rising; points of flanks,
- * level by level, then new ones of re-meshed patches; layer points, level by
- * level away from the wall, by rising column; field points. Boundary
- * triangles: those of the surface that stay, in their order, then, by patch,
- * flanks (rim by rim, upwards) and re-meshed ones; patches as they were.
- * Cells: layer cells first, level by level, those of one face together, then
- * the field's.
+ * then new ones of re-meshed patches; points inside layers; field points.
+ * Points of layers and flanks go column by column, upwards from level 1,
+ * columns in the order in which the faces (and their corners) first have them.
+ * Boundary triangles: those of the surface that stay, in their order, then, by
+ * patch, flanks (rim by rim, upwards) and re-meshed ones; patches as they
+ * were. Cells: layer cells first, face by face, upwards, then the field's.
+ * So a run of faces has runs of cells and of new points: a slice (slices.h).
  *
  * VG_LAYER_TETS: the lift rule. VG_LAYER_MIXED: where three columns of a face
  * rise one prism, where two a pyramid, where one a tetrahedron, and flanks

@@ -9,14 +9,22 @@
 /** The mesh of layers and field, in the order of vg_layers_join.
  *
  * Every rank has the same surface and layers; the field's slices are shared
- * out. The slices of the layers (runs of about 64 k cells, from the numbering
- * alone) are shared out too: this rank serves those with number k % size ==
- * rank, besides the field's. Points of the boundary are owned by the layers'
- * slices (or, without layers, by one slice of rank 0).
- * @param field  of layers->front.mesh: its first points are the front's, in
- *               a slice without cells, which is not passed on; borrowed until
- *               closed
- * @param out    out->boundary and all else belong to *keep */
+ * out. The slices of the layers are shared out too: this rank serves those
+ * with number k % size == rank, before the field's. First come those of the
+ * boundary's points, 64 k each, without cells; then runs of faces with all
+ * that stands on them, at least 64 k cells each. Both follow from the layers
+ * alone.
+ *
+ * Kept per rank: the surface's and front's numbers, columns', and the
+ * boundary with its points, all O(surface). A slice at hand costs its own
+ * cells and points.
+ * @param field  of layers->front.mesh: its first points are the front's. They
+ *               are taken out of the slices that own them; what then has
+ *               neither points nor cells is passed on as an empty slice.
+ *               Borrowed until closed, as are surface and layers
+ * @param out    out->boundary and all else belong to *keep
+ * @param info   may be NULL
+ * Fails as vg_layers_join does, and then leaves *out and *keep untouched. */
 struct vg_layer_slices;
 vg_status vg_layer_slices_open(const struct vg_mesh *surface,
                                const struct vg_layers *layers,
@@ -27,6 +35,7 @@ vg_status vg_layer_slices_open(const struct vg_mesh *surface,
                                struct vg_join_info *info,
                                struct vg_error *err);
 
+/** Accepts NULL. */
 void vg_layer_slices_close(struct vg_layer_slices *keep);
 
 #endif

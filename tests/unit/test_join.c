@@ -423,53 +423,74 @@ static void a_sphere_in_a_box(void **state)
   model_release(&m);
 }
 
+/* Points of a column one after the other, columns as faces have them. */
+static void check_points(const struct model *m, const struct vg_mesh *mesh,
+                         const struct vg_join_info *info)
+{
+  const struct vg_columns *c = &m->layers.columns;
+  uint8_t *seen = vg_calloc(c->n_column, 1);
+  size_t at = info->n_boundary_point;
+
+  for (size_t i = 0; i < 3 * c->n_face; i++) {
+    double d[VG_LEVELS_MAX + 1], x[VG_LEVELS_MAX + 1][3];
+    uint32_t column = c->face[i / 3][i % 3];
+    size_t n = c->column[column].n;
+
+    if (seen[column]++) continue;
+    vg_column_points(c, &m->surface, column, d, x);
+    if (n) assert_memory_equal(mesh->point[at], x[1], n * sizeof *x);
+    at += n;
+  }
+  assert_int_equal(at, info->n_layer_point);
+  free(seen);
+}
+
+/* The lift rule by hand. */
+static void check_lifts(const struct model *m, const struct vg_mesh *mesh,
+                        const struct vg_join_info *info)
+{
+  const struct vg_columns *c = &m->layers.columns;
+  size_t n = 0;
+
+  for (size_t i = 0; i < c->n_face; i++)
+    for (size_t l = 0; l < 6; l++) {
+      size_t rises = 0;
+
+      for (int k = 0; k < 3; k++) rises += c->column[c->face[i][k]].n > l;
+      for (size_t k = 0; k < rises; k++, n++) {
+        uint32_t top = mesh->tet[n][3];
+        double d[VG_LEVELS_MAX + 1], x[VG_LEVELS_MAX + 1][3];
+        int found = 0;
+
+        for (int v = 0; v < 3; v++) {
+          if (c->column[c->face[i][v]].n <= l) continue;
+          vg_column_points(c, &m->surface, c->face[i][v], d, x);
+          found |= !memcmp(mesh->point[top], x[l + 1], sizeof x[0]) &&
+                   !memcmp(mesh->point[mesh->tet[n][v]], x[l], sizeof x[0]);
+        }
+        assert_true(found);
+      }
+    }
+  assert_int_equal(n, info->n_layer_tet);
+}
+
 static void points_and_cells_in_order(void **state)
 {
   struct model m;
   struct vg_mesh mesh = VG_MESH_INIT;
   struct vg_join_info info;
   uint64_t seed = 8;
-  size_t n_point = 0, l = 1, i = 0, at, n = 0;
-  const struct vg_columns *c = &m.layers.columns;
+  size_t n_point = 0;
 
   (void)state;
   model_sphere(&m, 5, 6, &seed);
   fill_model(&m);
   join_model(&m, VG_LAYER_TETS, 2, &mesh, &info);
-  for (size_t k = 0; k < c->n_column; k++) n_point += c->column[k].n;
+  for (size_t k = 0; k < m.layers.columns.n_column; k++)
+    n_point += m.layers.columns.column[k].n;
   assert_int_equal(info.n_layer_point, m.surface.n_point + n_point);
-  at = info.n_boundary_point;
-  for (; l <= 6; l++)
-    for (i = 0; i < c->n_column; i++) {
-      double d[VG_LEVELS_MAX + 1], x[VG_LEVELS_MAX + 1][3];
-
-      if (c->column[i].n < l) continue;
-      vg_column_points(c, &m.surface, i, d, x);
-      assert_memory_equal(mesh.point[at], x[l], sizeof x[l]);
-      at++;
-    }
-  assert_int_equal(at, info.n_layer_point);
-  /* the lift rule by hand */
-  for (l = 0; l < 6; l++)
-    for (i = 0; i < c->n_face; i++) {
-      size_t rises = 0;
-
-      for (int k = 0; k < 3; k++) rises += c->column[c->face[i][k]].n > l;
-      for (size_t k = 0; k < rises; k++, n++) {
-        uint32_t top = mesh.tet[n][3];
-        double d[VG_LEVELS_MAX + 1], x[VG_LEVELS_MAX + 1][3];
-        int found = 0;
-
-        for (int v = 0; v < 3; v++) {
-          if (c->column[c->face[i][v]].n <= l) continue;
-          vg_column_points(c, &m.surface, c->face[i][v], d, x);
-          found |= !memcmp(mesh.point[top], x[l + 1], sizeof x[0]) &&
-                   !memcmp(mesh.point[mesh.tet[n][v]], x[l], sizeof x[0]);
-        }
-        assert_true(found);
-      }
-    }
-  assert_int_equal(n, info.n_layer_tet);
+  check_points(&m, &mesh, &info);
+  check_lifts(&m, &mesh, &info);
   vg_mesh_release(&mesh);
   model_release(&m);
 }
@@ -531,6 +552,13 @@ static void refuses_what_does_not_fit(void **state)
                                     cells ? VG_LAYER_MIXED : VG_LAYER_TETS,
                                     1, &mesh, NULL, &err), VG_ERR_INPUT);
   assert_non_null(strstr(err.text, "neighbours"));
+  model_column(&m, 0, (const double[3]){ 0, 0, 1 });
+  m.layers.columns.column[7].n = 1;
+  m.layers.columns.column[m.layers.columns.n_column - 1].n = 1;
+  assert_int_equal(vg_layers_join(&m.surface, &m.layers, &m.field,
+                                  VG_LAYER_TETS, 1, &mesh, NULL, &err),
+                   VG_ERR_INPUT);
+  assert_non_null(strstr(err.text, "no face"));
   m.layers.columns.column[7].n = VG_LEVELS_MAX + 1;
   assert_int_equal(vg_layers_join(&m.surface, &m.layers, &m.field,
                                   VG_LAYER_TETS, 1, &mesh, NULL, &err),
