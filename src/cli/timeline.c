@@ -1,0 +1,371 @@
+#include "cli/timeline.h"
+
+#include <jansson.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/report.h"
+#include "io/stream.h"
+
+#define SECONDS_MAX 1e9
+#define COUNT_MAX ((json_int_t)1 << 53)   /* integers that a double holds */
+
+enum column {
+  COLUMN_PATH, COLUMN_AFTER, COLUMN_KIND, COLUMN_RANK, COLUMN_THREAD,
+  COLUMN_HOME, COLUMN_START, COLUMN_END, COLUMN_CPU, COLUMN_ESTIMATE,
+  COLUMN_CELLS, COLUMN_BYTES_IN, COLUMN_BYTES_OUT, COLUMN_N
+};
+
+static const char *const columns[COLUMN_N] = {
+  "path", "after", "kind", "rank", "thread", "home", "start", "end", "cpu",
+  "estimate", "cells", "bytes_in", "bytes_out"
+};
+
+/* The keys of phases in the facts. */
+static const struct { const char *name, *key; } phases[VG_PHASE_N] = {
+  { "read", "seconds_read" }, { "check", "seconds_check" },
+  { "sizes", "seconds_sizes" }, { "layers", "seconds_layers" },
+  { "cut+fill", "seconds_cut_fill" }, { "number", "seconds_number" },
+  { "judge", "seconds_judge" }, { "write", "seconds_write" },
+  { "total", "seconds_total" },
+};
+
+const char *vg_phase_name(enum vg_phase phase)
+{
+  return phases[phase].name;
+}
+
+void vg_timeline_release(struct vg_timeline *t)
+{
+  vg_spans_release(&t->spans);
+  memset(t, 0, sizeof *t);
+}
+
+double vg_timeline_serial(const struct vg_timeline *t)
+{
+  double rest = t->seconds[VG_PHASE_TOTAL] - t->spans.wall;
+
+  return rest > 0 ? rest : 0;
+}
+
+/* --- writing ------------------------------------------------------------- */
+
+static void put_string(struct vg_output *out, const char *text)
+{
+  json_t *string = vg_report_string(text);
+  char *quoted = json_dumps(string, JSON_ENCODE_ANY);
+
+  vg_output_text(out, quoted ? quoted : "\"\"");
+  free(quoted);
+  json_decref(string);
+}
+
+static void put_seconds(struct vg_output *out, double s)
+{
+  vg_output_real(out, isfinite(s) && s > 0 ? floor(s * 1e6 + 0.5) / 1e6 : 0);
+}
+
+static void put_facts(struct vg_output *out, const struct vg_timeline *t)
+{
+  vg_output_text(out, "{\"vanguard_timeline\": 1,\n\"facts\": {\"title\": ");
+  put_string(out, t->title);
+  vg_output_format(out, ", \"ranks\": %d, \"threads\": %d, \"cells\": %llu, "
+                   "\"points\": %llu,\n \"digest\": ", (int)t->spans.n_rank,
+                   (int)t->spans.n_thread, (unsigned long long)t->n_cell,
+                   (unsigned long long)t->n_point);
+  put_string(out, t->digest);
+  for (int i = 0; i < VG_PHASE_N; i++) {
+    vg_output_format(out, ",%s\"%s\": ", i % 4 ? " " : "\n ", phases[i].key);
+    put_seconds(out, i == VG_PHASE_ENGINE ? t->spans.wall : t->seconds[i]);
+  }
+  vg_output_text(out, "},\n\"columns\": [");
+  for (int i = 0; i < COLUMN_N; i++)
+    vg_output_format(out, "%s\"%s\"", i ? ", " : "", columns[i]);
+  vg_output_text(out, "],\n\"spans\": [");
+}
+
+static void put_span(struct vg_output *out, const struct vg_span *s)
+{
+  char kind[2] = { s->kind, 0 };
+
+  vg_output_text(out, "[");
+  put_string(out, s->path);
+  vg_output_text(out, ",");
+  put_string(out, s->after);
+  vg_output_text(out, ",");
+  put_string(out, kind);
+  vg_output_format(out, ",%d,%d,%d,", (int)s->rank, (int)s->thread,
+                   (int)s->home);
+  put_seconds(out, s->start);
+  vg_output_text(out, ",");
+  put_seconds(out, s->end);
+  vg_output_text(out, ",");
+  put_seconds(out, s->cpu);
+  vg_output_text(out, ",");
+  vg_output_real(out, isfinite(s->estimate) ? floor(s->estimate + 0.5) : 0);
+  vg_output_format(out, ",%llu,%llu,%llu]", (unsigned long long)s->n_cell,
+                   (unsigned long long)s->bytes_in,
+                   (unsigned long long)s->bytes_out);
+}
+
+vg_status vg_timeline_write(const char *path, const struct vg_timeline *t,
+                            struct vg_error *err)
+{
+  struct vg_output out = VG_OUTPUT_INIT;
+  vg_status st;
+
+  VG_TRY(vg_output_open(path, &out, err));
+  put_facts(&out, t);
+  for (size_t i = 0; i < t->spans.n; i++) {
+    vg_output_text(&out, i ? ",\n" : "\n");
+    put_span(&out, &t->spans.span[i]);
+  }
+  vg_output_text(&out, "\n]}\n");
+  VG_TRY(vg_output_commit(&out, err));
+done:
+  vg_output_release(&out);
+  return st;
+}
+
+/* --- reading ------------------------------------------------------------- */
+
+/* Where in the file a value is, for messages. */
+struct place { const char *name; size_t span; const char *path; };
+
+static vg_status bad_value(const struct place *at, const char *what,
+                           const char *wanted, struct vg_error *err)
+{
+  if (!at->span)
+    return vg_fail(err, VG_ERR_FORMAT, "%s: fact \"%s\" is not %s", at->name,
+                   what, wanted);
+  return vg_fail(err, VG_ERR_FORMAT, "%s: span %zu%s%s: \"%s\" is not %s",
+                 at->name, at->span, at->path ? ", task " : "",
+                 at->path ? at->path : "", what, wanted);
+}
+
+static vg_status get_text(const struct place *at, const json_t *o,
+                          const char *what, size_t size, char *out,
+                          struct vg_error *err)
+{
+  if (!json_is_string(o) || json_string_length(o) >= size)
+    return bad_value(at, what, "a text, or longer than any that vanguard "
+                     "writes", err);
+  memcpy(out, json_string_value(o), json_string_length(o) + 1);
+  return VG_OK;
+}
+
+/* A whole number from 0 to limit. */
+static vg_status get_count(const struct place *at, const json_t *o,
+                           const char *what, json_int_t limit, uint64_t *out,
+                           struct vg_error *err)
+{
+  char wanted[80];
+  json_int_t v = json_integer_value(o);
+
+  snprintf(wanted, sizeof wanted, "a whole number from 0 to %lld",
+           (long long)limit);
+  if (!json_is_integer(o) || v < 0 || v > limit)
+    return bad_value(at, what, wanted, err);
+  *out = (uint64_t)v;
+  return VG_OK;
+}
+
+static vg_status get_real(const struct place *at, const json_t *o,
+                          const char *what, double most, double *out,
+                          struct vg_error *err)
+{
+  double v = json_number_value(o);
+  char wanted[80];
+
+  snprintf(wanted, sizeof wanted, "a number from 0 to %d million",
+           (int)(most / 1e6));
+  if (!json_is_number(o) || !(v >= 0 && v <= most))
+    return bad_value(at, what, wanted, err);
+  *out = v;
+  return VG_OK;
+}
+
+static vg_status get_facts(const char *name, const json_t *root,
+                           struct vg_timeline *t, struct vg_error *err)
+{
+  const json_t *facts = json_object_get(root, "facts"), *o;
+  struct place at = { name, 0, NULL };
+  uint64_t ranks, threads;
+  vg_status st = VG_OK;
+
+  if (!json_is_object(facts))
+    return vg_fail(err, VG_ERR_FORMAT, "%s: \"facts\" is missing", name);
+  VG_TRY(get_count(&at, json_object_get(facts, "ranks"), "ranks",
+                   VG_TIMELINE_MAX, &ranks, err));
+  VG_TRY(get_count(&at, json_object_get(facts, "threads"), "threads",
+                   VG_TIMELINE_MAX, &threads, err));
+  if (!ranks || !threads || ranks * threads > VG_TIMELINE_MAX)
+    return vg_fail(err, VG_ERR_FORMAT, "%s: %llu ranks with %llu threads: "
+                   "from 1 to %d workers can be read", name,
+                   (unsigned long long)ranks, (unsigned long long)threads,
+                   VG_TIMELINE_MAX);
+  t->spans.n_rank = (int32_t)ranks;
+  t->spans.n_thread = (int32_t)threads;
+  if ((o = json_object_get(facts, "title")))
+    VG_TRY(get_text(&at, o, "title", sizeof t->title, t->title, err));
+  if ((o = json_object_get(facts, "digest")))
+    VG_TRY(get_text(&at, o, "digest", sizeof t->digest, t->digest, err));
+  if ((o = json_object_get(facts, "cells")))
+    VG_TRY(get_count(&at, o, "cells", COUNT_MAX, &t->n_cell, err));
+  if ((o = json_object_get(facts, "points")))
+    VG_TRY(get_count(&at, o, "points", COUNT_MAX, &t->n_point, err));
+  for (int i = 0; i < VG_PHASE_N; i++)
+    if ((o = json_object_get(facts, phases[i].key)))
+      VG_TRY(get_real(&at, o, phases[i].key, SECONDS_MAX, &t->seconds[i],
+                      err));
+  t->spans.wall = t->seconds[VG_PHASE_ENGINE];
+done:
+  return st;
+}
+
+/* In which place of a row each column is. */
+static vg_status get_columns(const char *name, const json_t *root,
+                             size_t place[COLUMN_N], struct vg_error *err)
+{
+  const json_t *list = json_object_get(root, "columns");
+
+  for (int c = 0; c < COLUMN_N; c++) {
+    size_t i, n = json_array_size(list);
+
+    for (i = 0; i < n; i++) {
+      const char *word = json_string_value(json_array_get(list, i));
+
+      if (word && !strcmp(word, columns[c])) break;
+    }
+    if (i == n)
+      return vg_fail(err, VG_ERR_FORMAT, "%s: no column \"%s\" in "
+                     "\"columns\"", name, columns[c]);
+    place[c] = i;
+  }
+  return VG_OK;
+}
+
+static vg_status get_numbers(const struct place *at, json_t *const *v,
+                             const struct vg_spans *all, struct vg_span *s,
+                             struct vg_error *err)
+{
+  uint64_t rank = 0, thread = 0, home = 0;
+  vg_status st;
+
+  VG_TRY(get_count(at, v[COLUMN_RANK], "rank", all->n_rank - 1, &rank, err));
+  VG_TRY(get_count(at, v[COLUMN_THREAD], "thread", all->n_thread - 1, &thread,
+                   err));
+  VG_TRY(get_count(at, v[COLUMN_HOME], "home", all->n_rank - 1, &home, err));
+  s->rank = (int32_t)rank;
+  s->thread = (int32_t)thread;
+  s->home = (int32_t)home;
+  VG_TRY(get_real(at, v[COLUMN_START], "start", SECONDS_MAX, &s->start, err));
+  VG_TRY(get_real(at, v[COLUMN_END], "end", SECONDS_MAX, &s->end, err));
+  VG_TRY(get_real(at, v[COLUMN_CPU], "cpu", SECONDS_MAX, &s->cpu, err));
+  VG_TRY(get_real(at, v[COLUMN_ESTIMATE], "estimate", 1e15, &s->estimate,
+                  err));
+  VG_TRY(get_count(at, v[COLUMN_CELLS], "cells", COUNT_MAX, &s->n_cell, err));
+  VG_TRY(get_count(at, v[COLUMN_BYTES_IN], "bytes_in", COUNT_MAX,
+                   &s->bytes_in, err));
+  VG_TRY(get_count(at, v[COLUMN_BYTES_OUT], "bytes_out", COUNT_MAX,
+                   &s->bytes_out, err));
+  if (s->end < s->start)
+    st = bad_value(at, "end", "after \"start\"", err);
+done:
+  return st;
+}
+
+static vg_status get_span(struct place *at, const json_t *row,
+                          const size_t place[COLUMN_N],
+                          const struct vg_spans *all, struct vg_span *s,
+                          struct vg_error *err)
+{
+  json_t *v[COLUMN_N];
+  char kind[2];
+  vg_status st;
+
+  memset(s, 0, sizeof *s);
+  for (int c = 0; c < COLUMN_N; c++) {
+    v[c] = json_array_get(row, place[c]);
+    if (!v[c])
+      return vg_fail(err, VG_ERR_FORMAT, "%s: span %zu has no \"%s\": it is "
+                     "not a list as long as \"columns\"", at->name, at->span,
+                     columns[c]);
+  }
+  VG_TRY(get_text(at, v[COLUMN_PATH], "path", sizeof s->path, s->path, err));
+  if (!s->path[0]) return bad_value(at, "path", "of any length", err);
+  at->path = s->path;
+  VG_TRY(get_text(at, v[COLUMN_AFTER], "after", sizeof s->after, s->after,
+                  err));
+  VG_TRY(get_text(at, v[COLUMN_KIND], "kind", sizeof kind, kind, err));
+  if (kind[0] < 'A' || kind[0] > 'Z')
+    return bad_value(at, "kind", "a letter from A to Z", err);
+  s->kind = kind[0];
+  VG_TRY(get_numbers(at, v, all, s, err));
+done:
+  return st;
+}
+
+static vg_status get_spans(const char *name, const json_t *root,
+                           struct vg_spans *out, struct vg_error *err)
+{
+  const json_t *list = json_object_get(root, "spans");
+  size_t place[COLUMN_N];
+  vg_status st;
+
+  VG_TRY(get_columns(name, root, place, err));
+  if (!json_is_array(list))
+    return vg_fail(err, VG_ERR_FORMAT, "%s: \"spans\" is missing", name);
+  for (size_t i = 0; i < json_array_size(list); i++) {
+    struct place at = { name, i + 1, NULL };
+    struct vg_span span;
+
+    VG_TRY(get_span(&at, json_array_get(list, i), place, out, &span, err));
+    VG_TRY(vg_spans_add(out, &span, err));
+  }
+  vg_spans_sort(out);
+done:
+  return st;
+}
+
+vg_status vg_timeline_parse(const char *name, const void *data, size_t size,
+                            struct vg_timeline *out, struct vg_error *err)
+{
+  struct vg_timeline t = VG_TIMELINE_INIT;
+  json_error_t where;
+  json_t *root = json_loadb(data, size, JSON_REJECT_DUPLICATES, &where);
+  vg_status st;
+
+  if (!root)
+    return vg_fail(err, VG_ERR_FORMAT, "%s:%d: not JSON: %s", name,
+                   where.line, where.text);
+  if (json_integer_value(json_object_get(root, "vanguard_timeline")) != 1) {
+    st = vg_fail(err, VG_ERR_FORMAT, "%s: not a timeline of vanguard mesh "
+                 "(\"vanguard_timeline\" is not 1): give the "
+                 ".timeline.json that 'vanguard mesh --timeline' wrote",
+                 name);
+    goto done;
+  }
+  VG_TRY(get_facts(name, root, &t, err));
+  VG_TRY(get_spans(name, root, &t.spans, err));
+  *out = t;
+  memset(&t, 0, sizeof t);
+done:
+  json_decref(root);
+  vg_timeline_release(&t);
+  return st;
+}
+
+vg_status vg_timeline_read(const char *path, struct vg_timeline *out,
+                           struct vg_error *err)
+{
+  struct vg_input in = VG_INPUT_INIT;
+  vg_status st;
+
+  VG_TRY(vg_input_open(path, &in, err));
+  VG_TRY(vg_timeline_parse(path, in.data, in.size, out, err));
+done:
+  vg_input_release(&in);
+  return st;
+}

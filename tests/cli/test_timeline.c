@@ -1,0 +1,202 @@
+/* The timeline of a run: round trip, columns in any order, and messages. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "cli/timeline.h"
+
+#define COLUMNS "\"columns\": [\"path\",\"after\",\"kind\",\"rank\"," \
+  "\"thread\",\"home\",\"start\",\"end\",\"cpu\",\"estimate\",\"cells\"," \
+  "\"bytes_in\",\"bytes_out\"]"
+#define HEAD "{\"vanguard_timeline\": 1, \"facts\": {\"ranks\": 2, " \
+  "\"threads\": 3}, "
+
+static void refuse(const char *text, const char *expected)
+{
+  struct vg_timeline t = VG_TIMELINE_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+
+  assert_int_equal(vg_timeline_parse("t.json", text, strlen(text), &t, &err),
+                   VG_ERR_FORMAT);
+  if (strncmp(err.text, "t.json:", 7) || !strstr(err.text, expected))
+    fail_msg("message '%s' lacks '%s'", err.text, expected);
+  assert_null(t.spans.span);
+}
+
+static void accept(const char *text, struct vg_timeline *t)
+{
+  struct vg_error err = VG_ERROR_INIT;
+
+  if (vg_timeline_parse("t.json", text, strlen(text), t, &err) < 0)
+    fail_msg("%s", err.text);
+}
+
+static void fill(struct vg_timeline *t)
+{
+  static const struct vg_span span[] = {
+    { "0.1L", "0J", 'L', 1, 0, 0, 1.25, 3.5, 2.125, 400, 500, 60, 7 },
+    { "0J", "", 'J', 0, 2, 0, 0, 1.000001, 0.75, 0, 0, 0, 0 },
+  };
+
+  snprintf(t->title, sizeof t->title, "a \"wing\"\n\\ \xc3\xbc");
+  snprintf(t->digest, sizeof t->digest, "0123abcd");
+  t->n_cell = (uint64_t)1 << 40;
+  t->n_point = 12345;
+  for (int i = 0; i < VG_PHASE_N; i++) t->seconds[i] = 0.5 + i;
+  t->spans.n_rank = 2;
+  t->spans.n_thread = 3;
+  t->spans.wall = t->seconds[VG_PHASE_ENGINE];
+  for (int i = 0; i < 2; i++)
+    assert_int_equal(vg_spans_add(&t->spans, &span[i], NULL), VG_OK);
+}
+
+static void what_is_written_is_read(void **state)
+{
+  const char *path = VG_TMP_DIR "/round.timeline.json";
+  struct vg_timeline t = VG_TIMELINE_INIT, u = VG_TIMELINE_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+
+  (void)state;
+  fill(&t);
+  if (vg_timeline_write(path, &t, &err) < 0 ||
+      vg_timeline_read(path, &u, &err) < 0)
+    fail_msg("%s", err.text);
+  assert_string_equal(t.title, u.title);
+  assert_string_equal(t.digest, u.digest);
+  assert_memory_equal(t.seconds, u.seconds, sizeof t.seconds);
+  assert_true(t.n_cell == u.n_cell && t.n_point == u.n_point);
+  assert_int_equal(u.spans.n, 2);
+  assert_int_equal(u.spans.n_rank, 2);
+  assert_int_equal(u.spans.n_thread, 3);
+  assert_true(u.spans.wall == t.spans.wall);
+  assert_memory_equal(t.spans.span, u.spans.span, 2 * sizeof *t.spans.span);
+  assert_true(vg_timeline_serial(&u) == 4);
+  vg_timeline_release(&t);
+  vg_timeline_release(&u);
+  remove(path);
+}
+
+/* A title in bytes that are no UTF-8 must not spoil the file. */
+static void any_title_can_be_written(void **state)
+{
+  const char *path = VG_TMP_DIR "/title.timeline.json";
+  struct vg_timeline t = VG_TIMELINE_INIT, u = VG_TIMELINE_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+
+  (void)state;
+  fill(&t);
+  snprintf(t.title, sizeof t.title, "m\xfc""ll");
+  if (vg_timeline_write(path, &t, &err) < 0 ||
+      vg_timeline_read(path, &u, &err) < 0)
+    fail_msg("%s", err.text);
+  assert_string_equal(u.title, "m?ll");
+  vg_timeline_release(&t);
+  vg_timeline_release(&u);
+  remove(path);
+}
+
+static void columns_come_in_any_order(void **state)
+{
+  struct vg_timeline t = VG_TIMELINE_INIT;
+
+  (void)state;
+  accept(HEAD "\"columns\": [\"new\",\"bytes_out\",\"after\",\"kind\","
+         "\"rank\",\"thread\",\"home\",\"start\",\"end\",\"cpu\","
+         "\"estimate\",\"cells\",\"bytes_in\",\"path\"], \"spans\": "
+         "[[[1,2],9,\"\",\"L\",1,2,0,1,2.5,1,10,11,12,\"0L\"]], "
+         "\"more\": null}", &t);
+  assert_int_equal(t.spans.n, 1);
+  assert_string_equal(t.spans.span[0].path, "0L");
+  assert_int_equal(t.spans.span[0].bytes_out, 9);
+  assert_int_equal(t.spans.span[0].thread, 2);
+  assert_true(t.spans.span[0].end == 2.5);
+  assert_int_equal(t.n_cell, 0);
+  vg_timeline_release(&t);
+}
+
+static void faults_are_named(void **state)
+{
+  (void)state;
+  refuse("", "not JSON");
+  refuse("{\"a\": 1,\n\"a\": 2}", "t.json:2: not JSON");
+  refuse("[]", "not a timeline of vanguard mesh");
+  refuse("{\"ok\": true}", "give the .timeline.json");
+  refuse("{\"vanguard_timeline\": 1}", "\"facts\" is missing");
+  refuse("{\"vanguard_timeline\": 1, \"facts\": {\"ranks\": 2}}",
+         "fact \"threads\" is not a whole number");
+  refuse("{\"vanguard_timeline\": 1, \"facts\": {\"ranks\": 0, "
+         "\"threads\": 1}}", "0 ranks with 1 threads");
+  refuse("{\"vanguard_timeline\": 1, \"facts\": {\"ranks\": 1048576, "
+         "\"threads\": 1048576}}", "workers can be read");
+  refuse("{\"vanguard_timeline\": 1, \"facts\": {\"ranks\": 1, "
+         "\"threads\": 1, \"seconds_judge\": -1}}",
+         "fact \"seconds_judge\" is not a number from 0");
+  refuse(HEAD "\"columns\": [\"path\"]}", "no column \"after\"");
+  refuse(HEAD COLUMNS "}", "\"spans\" is missing");
+  refuse(HEAD COLUMNS ", \"spans\": [[\"0L\"]]}", "span 1 has no \"after\"");
+  refuse(HEAD COLUMNS ", \"spans\": [7]}", "span 1 has no \"path\"");
+}
+
+/* A span with one value replaced. */
+static void refuse_span(const char *values, const char *expected)
+{
+  char text[1024];
+
+  snprintf(text, sizeof text, HEAD COLUMNS ", \"spans\": [[\"0J\",\"\","
+           "\"J\",0,0,0,0,1,1,0,0,0,0],[%s]]}", values);
+  refuse(text, expected);
+}
+
+static void faults_of_spans_are_named(void **state)
+{
+  (void)state;
+  refuse_span("\"\",\"\",\"L\",0,0,0,0,1,1,0,0,0,0",
+              "span 2: \"path\" is not of any length");
+  refuse_span("1,\"\",\"L\",0,0,0,0,1,1,0,0,0,0", "span 2: \"path\"");
+  refuse_span("\"0.1.1.1.1.1.1.1.1.1.1.1.1.1.1.1.1.1.1.1.1.1.1.1.1.1.1.1.1.1."
+              "1.1L\",\"\",\"L\",0,0,0,0,1,1,0,0,0,0", "span 2: \"path\"");
+  refuse_span("\"0L\",\"\",\"l\",0,0,0,0,1,1,0,0,0,0",
+              "span 2, task 0L: \"kind\" is not a letter");
+  refuse_span("\"0L\",\"\",\"L\",2,0,0,0,1,1,0,0,0,0",
+              "\"rank\" is not a whole number from 0 to 1");
+  refuse_span("\"0L\",\"\",\"L\",0,3,0,0,1,1,0,0,0,0",
+              "\"thread\" is not a whole number from 0 to 2");
+  refuse_span("\"0L\",\"\",\"L\",0,0,-1,0,1,1,0,0,0,0", "\"home\" is not");
+  refuse_span("\"0L\",\"\",\"L\",0,0,0,2,1,1,0,0,0,0",
+              "\"end\" is not after \"start\"");
+  refuse_span("\"0L\",\"\",\"L\",0,0,0,0,1e10,1,0,0,0,0", "\"end\" is not");
+  refuse_span("\"0L\",\"\",\"L\",0,0,0,0,1,\"1\",0,0,0,0", "\"cpu\" is not");
+  refuse_span("\"0L\",\"\",\"L\",0,0,0,0,1,1,0,0.5,0,0",
+              "\"cells\" is not a whole number");
+}
+
+static void a_missing_file_is_named(void **state)
+{
+  struct vg_timeline t = VG_TIMELINE_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+
+  (void)state;
+  assert_int_equal(vg_timeline_read(VG_TMP_DIR "/none.json", &t, &err),
+                   VG_ERR_IO);
+  assert_non_null(strstr(err.text, "none.json"));
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(what_is_written_is_read),
+    cmocka_unit_test(any_title_can_be_written),
+    cmocka_unit_test(columns_come_in_any_order),
+    cmocka_unit_test(faults_are_named),
+    cmocka_unit_test(faults_of_spans_are_named),
+    cmocka_unit_test(a_missing_file_is_named),
+  };
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
