@@ -1,0 +1,484 @@
+/* Layers and field in slices are, put together, what vg_layers_join makes. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "base/parallel.h"
+#include "join_support.h"
+#include "layer_cases.h"
+#include "layers/slices.h"
+#include "layers/slices_parts.h"
+
+/* --- a mesh of tetrahedra served in pieces ------------------------------- */
+
+struct server {
+  const struct vg_mesh *m;
+  size_t n_front;
+  size_t n_piece;        /* of the cells and of the points that are not the
+                            front's */
+  size_t rank, size;
+  int apart;             /* the front's points are in a slice of their own */
+  int fails;
+};
+
+struct piece {
+  double (*x)[3];
+  uint32_t *id, *own, (*tet)[4];
+};
+
+static size_t share(size_t n, size_t i, size_t of) { return n * i / of; }
+
+static void serve_put(const struct vg_slices *s, struct vg_slice *slice)
+{
+  struct piece *p = slice->keep;
+
+  (void)s;
+  free(p->x);
+  free(p->id);
+  free(p->own);
+  free(p->tet);
+  free(p);
+}
+
+/* Points that cells use come first, so what is owned stands anywhere. */
+static void serve_points(const struct vg_mesh *m, size_t first, size_t end,
+                         size_t first_tet, size_t n_tet, struct vg_slice *out)
+{
+  struct piece *p = vg_calloc(1, sizeof *p);
+  uint32_t *local = vg_alloc(m->n_point, sizeof *local);
+  size_t n = 0;
+
+  memset(local, 0xff, m->n_point * sizeof *local);
+  p->id = vg_alloc(4 * n_tet + end - first, sizeof *p->id);
+  p->x = vg_alloc(4 * n_tet + end - first, sizeof *p->x);
+  p->own = vg_alloc(end - first, sizeof *p->own);
+  p->tet = vg_alloc(n_tet, sizeof *p->tet);
+  for (size_t i = 0; i < 4 * n_tet + end - first; i++) {
+    uint32_t v = i < 4 * n_tet ? m->tet[first_tet + i / 4][i % 4]
+                               : (uint32_t)(first + i - 4 * n_tet);
+
+    if (local[v] == VG_NO_INDEX) {
+      local[v] = (uint32_t)n;
+      p->id[n] = v;
+      memcpy(p->x[n++], m->point[v], sizeof *p->x);
+    }
+    if (i < 4 * n_tet) p->tet[i / 4][i % 4] = local[v];
+    else p->own[i - 4 * n_tet] = local[v];
+  }
+  free(local);
+  *out = (struct vg_slice){ .n_point = n, .x = (const double (*)[3])p->x,
+    .id = p->id, .point_at = first, .n_own = end - first, .own = p->own,
+    .domain = 7, .kind = 1, .keep = p };
+  out->cell_at[VG_SLICE_TET] = first_tet;
+  out->n_cell[VG_SLICE_TET] = n_tet;
+  out->cell[VG_SLICE_TET] = (const uint32_t *)p->tet;
+}
+
+static vg_status serve_get(const struct vg_slices *s, size_t i,
+                           struct vg_slice *out, struct vg_error *err)
+{
+  const struct server *v = s->user;
+  size_t at = v->rank + i * v->size, first, end, cell;
+
+  if (v->fails) return vg_fail_memory(err, "a test");
+  if (v->apart && !at) {
+    serve_points(v->m, 0, v->n_front, 0, 0, out);
+    return VG_OK;
+  }
+  at -= (size_t)v->apart;
+  first = v->n_front + share(v->m->n_point - v->n_front, at, v->n_piece);
+  end = v->n_front + share(v->m->n_point - v->n_front, at + 1, v->n_piece);
+  cell = share(v->m->n_tet, at, v->n_piece);
+  serve_points(v->m, !v->apart && !at ? 0 : first, end, cell,
+               share(v->m->n_tet, at + 1, v->n_piece) - cell, out);
+  return VG_OK;
+}
+
+static struct vg_slices serve(struct server *v)
+{
+  size_t n = v->n_piece + (size_t)v->apart;
+  struct vg_slices s = { .n_point = v->m->n_point, .boundary = v->m,
+    .get = serve_get, .put = serve_put, .user = v };
+
+  s.n_cell[VG_SLICE_TET] = v->m->n_tet;
+  s.n_boundary_point = v->n_front;
+  s.n_slice = n > v->rank ? (n - v->rank + v->size - 1) / v->size : 0;
+  return s;
+}
+
+/* --- slices against the whole mesh --------------------------------------- */
+
+static const size_t n_node[VG_SLICE_KINDS] = { 4, 5, 6 };
+
+struct check {
+  const struct vg_mesh *m;
+  const struct vg_slices *s;
+  uint8_t *point, *cell[VG_SLICE_KINDS];   /* seen how often */
+  size_t *wrong;           /* by slice */
+};
+
+static size_t count_of(const struct vg_mesh *m, int kind)
+{
+  return kind == VG_SLICE_TET ? m->n_tet : kind == VG_SLICE_PYR ? m->n_pyr
+                                                                : m->n_pri;
+}
+
+static const uint32_t *cells_of(const struct vg_mesh *m, int kind)
+{
+  return kind == VG_SLICE_TET ? (const uint32_t *)m->tet
+       : kind == VG_SLICE_PYR ? (const uint32_t *)m->pyr
+                              : (const uint32_t *)m->pri;
+}
+
+static void check_start(struct check *c, const struct vg_mesh *m)
+{
+  memset(c, 0, sizeof *c);
+  c->m = m;
+  c->point = vg_calloc(m->n_point, 1);
+  for (int k = 0; k < VG_SLICE_KINDS; k++)
+    c->cell[k] = vg_calloc(count_of(m, k), 1);
+}
+
+/* Differences between a slice and the mesh. */
+static size_t compare(const struct check *c, const struct vg_slice *s)
+{
+  size_t wrong = 0;
+
+  for (size_t i = 0; i < s->n_point; i++)
+    if (s->id[i] >= c->m->n_point) return 1;
+    else wrong += memcmp(s->x[i], c->m->point[s->id[i]], sizeof *s->x) != 0;
+  for (size_t i = 0; i < s->n_own; i++)
+    if (s->own[i] >= s->n_point || s->id[s->own[i]] != s->point_at + i)
+      return wrong + 1;
+    else c->point[s->point_at + i]++;
+  for (int k = 0; k < VG_SLICE_KINDS; k++) {
+    const uint32_t *whole = cells_of(c->m, k);
+
+    if (s->cell_at[k] + s->n_cell[k] > count_of(c->m, k)) return wrong + 1;
+    for (size_t i = 0; i < s->n_cell[k] * n_node[k]; i++)
+      if (s->cell[k][i] >= s->n_point) return wrong + 1;
+      else wrong += s->id[s->cell[k][i]] !=
+                    whole[s->cell_at[k] * n_node[k] + i];
+    for (size_t i = 0; i < s->n_cell[k]; i++) c->cell[k][s->cell_at[k] + i]++;
+  }
+  return wrong;
+}
+
+static void compare_some(void *context, size_t first, size_t end, int worker)
+{
+  const struct check *c = context;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++) {
+    struct vg_slice slice;
+
+    c->wrong[i] = 1;
+    if (c->s->get(c->s, i, &slice, NULL) < 0) continue;
+    c->wrong[i] = compare(c, &slice);
+    c->s->put(c->s, &slice);
+  }
+}
+
+/* Everything once. */
+static void check_end(struct check *c)
+{
+  for (size_t i = 0; i < c->m->n_point; i++) assert_int_equal(c->point[i], 1);
+  for (int k = 0; k < VG_SLICE_KINDS; k++) {
+    for (size_t i = 0; i < count_of(c->m, k); i++)
+      assert_int_equal(c->cell[k][i], 1);
+    free(c->cell[k]);
+  }
+  free(c->point);
+}
+
+static void same(const void *a, const void *b, size_t n, size_t size)
+{
+  if (n) assert_memory_equal(a, b, n * size);
+}
+
+static void same_boundary(const struct vg_mesh *a, const struct vg_mesh *b)
+{
+  assert_int_equal(b->n_point + b->n_tet + b->n_pyr + b->n_pri, 0);
+  assert_int_equal(a->n_tri, b->n_tri);
+  assert_int_equal(a->n_quad, b->n_quad);
+  assert_int_equal(a->n_patch, b->n_patch);
+  same(a->tri, b->tri, a->n_tri, sizeof *a->tri);
+  same(a->tri_patch, b->tri_patch, a->n_tri, sizeof *a->tri_patch);
+  same(a->quad, b->quad, a->n_quad, sizeof *a->quad);
+  same(a->quad_patch, b->quad_patch, a->n_quad, sizeof *a->quad_patch);
+  same(a->patch, b->patch, a->n_patch, sizeof *a->patch);
+}
+
+static void same_counts(const struct vg_mesh *m, const struct vg_join_info *a,
+                        const struct vg_slices *s,
+                        const struct vg_join_info *b)
+{
+  const size_t n_layer[VG_SLICE_KINDS] = { a->n_layer_tet, a->n_layer_pyr,
+                                           a->n_layer_pri };
+
+  assert_int_equal(a->n_boundary_point, b->n_boundary_point);
+  assert_int_equal(a->n_layer_point, b->n_layer_point);
+  assert_int_equal(a->n_layer_tet, b->n_layer_tet);
+  assert_int_equal(a->n_layer_pyr, b->n_layer_pyr);
+  assert_int_equal(a->n_layer_pri, b->n_layer_pri);
+  assert_int_equal(s->n_point, m->n_point);
+  assert_int_equal(s->n_boundary_point, a->n_boundary_point);
+  assert_int_equal(s->n_layer_point, a->n_layer_point);
+  for (int k = 0; k < VG_SLICE_KINDS; k++) {
+    assert_int_equal(s->n_cell[k], count_of(m, k));
+    assert_int_equal(s->n_layer_cell[k], n_layer[k]);
+  }
+}
+
+/* What a field in n_piece pieces on `size` ranks of some threads makes,
+ * against one mesh. Returns the number of slices of the layers. */
+static size_t check_split(const struct model *m, const struct vg_mesh *whole,
+                          const struct vg_join_info *info,
+                          enum vg_layer_cells cells, size_t n_piece, int apart,
+                          int size, int threads)
+{
+  struct check c;
+  size_t n_slice = 0;
+
+  check_start(&c, whole);
+  for (int rank = 0; rank < size; rank++) {
+    struct server server = { &m->field, m->layers.front.mesh.n_point, n_piece,
+                             (size_t)rank, (size_t)size, apart, 0 };
+    struct vg_slices field = serve(&server), s;
+    struct vg_layer_slices *keep;
+    struct vg_join_info again;
+    struct vg_error err = VG_ERROR_INIT;
+
+    if (vg_layer_slices_open(&m->surface, &m->layers, &field, cells, rank,
+                             size, threads, &s, &keep, &again, &err) < 0)
+      fail_msg("%s", err.text);
+    same_counts(whole, info, &s, &again);
+    same_boundary(whole, s.boundary);
+    c.s = &s;
+    c.wrong = vg_calloc(s.n_slice, sizeof *c.wrong);
+    vg_parallel_for(threads, s.n_slice, 1, compare_some, &c);
+    for (size_t i = 0; i < s.n_slice; i++) assert_int_equal(c.wrong[i], 0);
+    n_slice += s.n_slice - field.n_slice;
+    free(c.wrong);
+    vg_layer_slices_close(keep);
+  }
+  check_end(&c);
+  return n_slice;
+}
+
+/* Every block of faces as a slice of its own. */
+static void check_blocks(const struct model *m, const struct vg_mesh *whole,
+                         const struct vg_join_info *info,
+                         enum vg_layer_cells cells)
+{
+  struct vg_join_plan plan;
+  struct check c;
+  const size_t n_layer[VG_SLICE_KINDS] = {
+    info->n_layer_tet, info->n_layer_pyr, info->n_layer_pri };
+
+  check_start(&c, whole);
+  assert_int_equal(vg_join_plan_open(&plan, &m->surface, &m->layers,
+                                     m->field.n_point -
+                                     m->layers.front.mesh.n_point, cells, 1,
+                                     NULL), VG_OK);
+  for (size_t b = 0; b < plan.expand.n_block; b++) {
+    struct vg_layer_slice at = { .is_field = 0 };
+    struct vg_slice s = { .n_point = 0 };
+
+    assert_int_equal(vg_layer_slice_expand(&plan, b, b + 1, &at, &s, NULL),
+                     VG_OK);
+    assert_int_equal(compare(&c, &s), 0);
+    free(at.x);
+    free(at.id);
+    free(at.own);
+    for (int k = 0; k < VG_SLICE_KINDS; k++) free(at.cell[k]);
+  }
+  vg_join_plan_close(&plan);
+  for (size_t i = info->n_boundary_point; i < info->n_layer_point; i++)
+    assert_int_equal(c.point[i], 1);
+  for (int k = 0; k < VG_SLICE_KINDS; k++) {
+    for (size_t i = 0; i < n_layer[k]; i++)
+      assert_int_equal(c.cell[k][i], 1);
+    free(c.cell[k]);
+  }
+  free(c.point);
+}
+
+static size_t check_model(const struct model *m, int most)
+{
+  size_t n_slice = 0;
+
+  for (int i = 0; i < 2; i++) {
+    enum vg_layer_cells cells = i ? VG_LAYER_MIXED : VG_LAYER_TETS;
+    struct vg_mesh whole = VG_MESH_INIT;
+    struct vg_join_info info;
+
+    assert_int_equal(vg_layers_join(&m->surface, &m->layers, &m->field, cells,
+                                    1, &whole, &info, NULL), VG_OK);
+    for (int size = 1; size <= most; size++)
+      n_slice = check_split(m, &whole, &info, cells, (size_t)(2 * size - 1),
+                            size % 2, size, 1 + size % 3);
+    check_blocks(m, &whole, &info, cells);
+    vg_mesh_release(&whole);
+  }
+  return n_slice;
+}
+
+/* --- cases --------------------------------------------------------------- */
+
+static void roofs_with_fans(void **state)
+{
+  uint64_t seed = 11;
+  int n_done = 0;
+
+  (void)state;
+  for (int i = 0; i < 60; i++) {
+    struct model m;
+
+    model_roof(&m, 2 + 2 * (i % 4), i % 3 ? 0 : 1 + i % ROOF_FAN, i % 7,
+               &seed);
+    model_front(&m);
+    if (model_front_is_manifold(&m)) {
+      model_field(&m);
+      check_model(&m, 3);
+      n_done++;
+    }
+    model_release(&m);
+  }
+  assert_true(n_done > 40);
+}
+
+/* More than one slice of points without cells, and several runs of faces. */
+static void many_slices(void **state)
+{
+  uint64_t seed = 3;
+  struct model m;
+
+  (void)state;
+  model_sphere(&m, 130, 3, &seed);
+  assert_true(m.surface.n_point > 65536);
+  assert_int_equal(vg_mesh_copy(&m.field, &m.layers.front.mesh, NULL), VG_OK);
+  assert_true(check_model(&m, 4) >= 4);
+  model_release(&m);
+}
+
+static void without_layers(void **state)
+{
+  uint64_t seed = 3;
+  struct model m;
+
+  (void)state;
+  model_sphere(&m, 5, 0, &seed);
+  assert_int_equal(vg_mesh_copy(&m.field, &m.layers.front.mesh, NULL), VG_OK);
+  assert_int_equal(check_model(&m, 3), 1);
+  vg_columns_release(&m.layers.columns);
+  assert_int_equal(check_model(&m, 3), 1);
+  model_release(&m);
+}
+
+/* Grown layers of fans, with patches re-meshed around flanks, and a field. */
+static void check_grown(struct model *m, double h)
+{
+  struct vg_layer_request request[16];
+  struct vg_layer_options o = VG_LAYER_OPTIONS_INIT;
+  struct vg_fill_options fill = VG_FILL_OPTIONS_INIT;
+  struct vg_layer_report report;
+  struct vg_fill_report filled;
+  struct vg_sizing *sizing = shape_sizing(&m->surface, 1.2, 0);
+  struct vg_error err = VG_ERROR_INIT;
+
+  assert_true(m->surface.n_patch <= 16);
+  memset(request, 0, sizeof request);
+  for (size_t p = 0; p < m->surface.n_patch; p++) {
+    request[p].law = (struct vg_law)VG_LAW_INIT;
+    request[p].law.delta1 = 1e-3 * h;
+    request[p].is_wall = m->surface.patch[p].bc == CASE_WALL;
+  }
+  o.patch = request;
+  o.fan_angle = 60;
+  if (vg_layers_grow(&m->surface, sizing, &o, &m->layers, &report, &err) < 0)
+    fail_msg("%s", err.text);
+  vg_sizing_free(sizing);
+  sizing = shape_sizing(&m->layers.front.mesh, 1.3, 0);
+  if (vg_fill(&m->layers.front.mesh, sizing, &fill, &m->field, &filled,
+              &err) < 0)
+    fail_msg("%s", err.text);
+  vg_sizing_free(sizing);
+  assert_true(m->field.n_point > m->layers.front.mesh.n_point);
+  assert_true(m->layers.columns.n_rim > 0);
+  assert_true(report.n_virtual_face > 0);
+  check_model(m, 3);
+  model_release(m);
+}
+
+static void a_wedge_between_planes(void **state)
+{
+  struct model m = { .apex = 0 };
+
+  (void)state;
+  case_wedge(&m.surface, 0.1, 0.12);
+  check_grown(&m, 0.1);
+}
+
+static void refusals(void **state)
+{
+  uint64_t seed = 4;
+  struct model m;
+  struct vg_slices s = { .n_slice = 77 }, field;
+  struct vg_layer_slices *keep = NULL;
+  struct vg_slice slice;
+  struct vg_error err = VG_ERROR_INIT;
+  struct server server = { .n_piece = 1, .size = 1 };
+
+  (void)state;
+  model_sphere(&m, 3, 2, &seed);
+  server.m = &m.field;
+  field = serve(&server);
+  assert_int_equal(vg_layer_slices_open(&m.surface, &m.layers, &field,
+                                        VG_LAYER_TETS, 0, 1, 1, &s, &keep,
+                                        NULL, &err), VG_ERR_INPUT);
+  assert_non_null(strstr(err.text, "does not fill"));
+  assert_int_equal(vg_mesh_copy(&m.field, &m.layers.front.mesh, NULL), VG_OK);
+  server.n_front = m.field.n_point;
+  field = serve(&server);
+  field.n_point += UINT32_MAX;
+  assert_int_equal(vg_layer_slices_open(&m.surface, &m.layers, &field,
+                                        VG_LAYER_TETS, 0, 1, 1, &s, &keep,
+                                        NULL, &err), VG_ERR_UNSUPPORTED);
+  field.n_point -= UINT32_MAX;
+  assert_int_equal(s.n_slice, 77);
+  assert_null(keep);
+  assert_int_equal(vg_layer_slices_open(&m.surface, &m.layers, &field,
+                                        VG_LAYER_TETS, 0, 1, 1, &s, &keep,
+                                        NULL, &err), VG_OK);
+  server.fails = 1;
+  slice.n_point = 5;
+  assert_int_equal(s.get(&s, s.n_slice - 1, &slice, &err), VG_ERR_MEMORY);
+  assert_int_equal(slice.n_point, 5);
+  vg_layer_slices_close(keep);
+  m.layers.columns.column[7].n = 5;
+  assert_int_equal(vg_layer_slices_open(&m.surface, &m.layers, &field,
+                                        VG_LAYER_MIXED, 0, 1, 1, &s, &keep,
+                                        NULL, &err), VG_ERR_INPUT);
+  assert_non_null(strstr(err.text, "neighbours"));
+  vg_layer_slices_close(NULL);
+  model_release(&m);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(roofs_with_fans),
+    cmocka_unit_test(many_slices),
+    cmocka_unit_test(without_layers),
+    cmocka_unit_test(a_wedge_between_planes),
+    cmocka_unit_test(refusals),
+  };
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
