@@ -80,7 +80,8 @@ struct vg_engine_options {
  *
  * @param first  tasks that this rank submits at the start: [n_first]
  * @param spans  out: what this rank's workers did when (all of the job's on
- *               rank 0), owned by the caller: vg_spans_release; may be NULL
+ *               rank 0), by path, also after a stop; owned by the caller:
+ *               vg_spans_release; may be NULL
  * Returns on all ranks VG_OK; VG_BLOCKED when stopped; or the first failure,
  * on other ranks too, with its message ("rank 3: ..."). Tasks that were not
  * done are released. A rank that dies ends the job through the launcher. */

@@ -1,0 +1,268 @@
+/* A tree of tasks for the tests of the engine. A node's children follow from
+ * its path; its value from its path and its children's values, in order. The
+ * root's value shows that every task was done once, and its outcome came to
+ * the right place, whoever did what when. */
+#ifndef VG_TEST_ENGINE_SUPPORT_H
+#define VG_TEST_ENGINE_SUPPORT_H
+
+#include <stdatomic.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "base/memory.h"
+#include "partition/engine.h"
+
+enum { ANY = -1 };
+
+struct forest {
+  int rank, size, threads;
+  int depth;                 /* nodes with longer paths are leaves */
+  double spin;               /* s of work per task */
+  size_t ballast;            /* bytes more in each input */
+  int pin;                   /* every pin-th task (by its path) is pinned */
+  const char *fail_at;       /* path of a task whose run fails */
+  const char *done_fails_at; /* whose done fails */
+  const char *pack_fails_at;
+  const char *stop_at;       /* once run, stop() says so */
+  atomic_int stop;
+  atomic_int in_done;        /* threads there */
+  atomic_int bad;            /* rules that were broken */
+  atomic_long alive;         /* inputs and outcomes on this rank */
+  atomic_long n_run, n_done, n_moved;
+  atomic_int busy[64];       /* by worker */
+  uint64_t sum;              /* of all tasks' digests, in done */
+  double last_done, last_known;
+};
+
+struct forest_input { uint64_t digest; size_t n; unsigned char data[]; };
+struct forest_outcome { uint64_t digest; int n_child; };
+
+static inline uint64_t forest_mix(uint64_t h)
+{
+  h = (h ^ h >> 30) * 0xbf58476d1ce4e5b9u;
+  h = (h ^ h >> 27) * 0x94d049bb133111ebu;
+  return h ^ h >> 31;
+}
+
+static inline uint64_t forest_digest(const char *path)
+{
+  uint64_t h = 1;
+
+  for (; *path; path++) h = forest_mix(h * 31 + (unsigned char)*path);
+  return h;
+}
+
+static inline int forest_children(const struct forest *f, const char *path)
+{
+  size_t depth = strlen(path);
+
+  if ((int)depth > f->depth) return 0;
+  return depth < 3 ? 4 : (int)(forest_digest(path) % 9);
+}
+
+static inline void forest_spin(double seconds)
+{
+  struct timespec t0, t;
+
+  if (seconds <= 0) return;
+  clock_gettime(CLOCK_MONOTONIC, &t0);
+  do clock_gettime(CLOCK_MONOTONIC, &t);
+  while ((double)(t.tv_sec - t0.tv_sec) +
+         1e-9 * (double)(t.tv_nsec - t0.tv_nsec) < seconds);
+}
+
+static inline struct vg_task forest_task(struct forest *f, const char *path)
+{
+  uint64_t digest = forest_digest(path);
+  struct forest_input *in = vg_alloc(1, sizeof *in + f->ballast);
+  struct vg_task t = { .kind = 'T', .weight = (double)(digest % 1000) };
+
+  if (!in) abort();
+  atomic_fetch_add(&f->alive, 1);
+  in->digest = digest;
+  in->n = f->ballast;
+  memset(in->data, (int)(digest & 255), in->n);
+  snprintf(t.path, sizeof t.path, "%s", path);
+  t.pinned = f->pin && !(digest / 7 % (uint64_t)f->pin);
+  t.priority = (double)(digest % 1000);
+  t.input = in;
+  return t;
+}
+
+static inline vg_status forest_run(void *user, const struct vg_engine *e,
+                                   const struct vg_task *task, int worker,
+                                   void **outcome, size_t *n_cell,
+                                   struct vg_error *err)
+{
+  struct forest *f = user;
+  const struct forest_input *in = task->input;
+  struct forest_outcome *out;
+
+  if (worker < 0 || worker >= f->threads) abort();
+  if (atomic_fetch_add(&f->busy[worker], 1)) f->bad++;
+  if (in->digest != forest_digest(task->path)) f->bad++;
+  for (size_t i = 0; i < in->n; i++)
+    if (in->data[i] != (in->digest & 255)) f->bad++;
+  forest_spin(f->spin);
+  atomic_fetch_sub(&f->busy[worker], 1);
+  if (f->fail_at && !strcmp(task->path, f->fail_at))
+    return vg_fail(err, VG_ERR_GEOMETRY, "task %s fails", task->path);
+  if (f->stop_at && !strcmp(task->path, f->stop_at)) {
+    atomic_store(&f->stop, 1);
+    while (!vg_engine_stopping(e)) forest_spin(1e-4);
+    return VG_BLOCKED;
+  }
+  out = vg_alloc(1, sizeof *out);
+  if (!out) return vg_fail_memory(err, "an outcome");
+  atomic_fetch_add(&f->alive, 1);
+  atomic_fetch_add(&f->n_run, 1);
+  out->digest = forest_mix(in->digest);
+  out->n_child = forest_children(f, task->path);
+  *outcome = out;
+  *n_cell = (size_t)task->weight;
+  return VG_OK;
+}
+
+static inline vg_status forest_done(void *user, struct vg_engine *e,
+                                    const struct vg_task *task, void *outcome,
+                                    int rank, struct vg_error *err)
+{
+  struct forest *f = user;
+  struct forest_outcome *out = outcome;
+  vg_status st = VG_OK;
+  int n_child = out->n_child;
+
+  if (atomic_fetch_add(&f->in_done, 1) || task->input) f->bad++;
+  if (out->digest != forest_mix(forest_digest(task->path))) f->bad++;
+  if (task->pinned && rank != f->rank) f->bad++;
+  if (rank != f->rank) f->n_moved++;
+  f->sum += out->digest;
+  f->n_done++;
+  free(out);
+  atomic_fetch_sub(&f->alive, 1);
+  for (int i = 0; i < n_child && !st; i++) {
+    char path[VG_PATH_MAX];
+    struct vg_task child;
+
+    snprintf(path, sizeof path, "%.60s%c", task->path, '0' + i);
+    child = forest_task(f, path);
+    st = vg_engine_submit(e, &child, err);
+  }
+  if (f->done_fails_at && !strcmp(task->path, f->done_fails_at))
+    st = vg_fail(err, VG_ERR_INPUT, "done of %s fails", task->path);
+  atomic_fetch_sub(&f->in_done, 1);
+  return st;
+}
+
+static inline vg_status forest_copy(const void *from, size_t n,
+                                    struct vg_bytes *to, struct vg_error *err)
+{
+  to->data = vg_alloc(n, 1);
+  if (!to->data) return vg_fail_memory(err, "bytes");
+  memcpy(to->data, from, n);
+  to->n = n;
+  return VG_OK;
+}
+
+static inline vg_status forest_pack_input(void *user, const void *input,
+                                          struct vg_bytes *out,
+                                          struct vg_error *err)
+{
+  const struct forest *f = user;
+  const struct forest_input *in = input;
+
+  if (f->pack_fails_at && in->digest == forest_digest(f->pack_fails_at))
+    return vg_fail(err, VG_ERR_MEMORY, "packing fails");
+  return forest_copy(in, sizeof *in + in->n, out, err);
+}
+
+static inline vg_status forest_unpack(void *user, const struct vg_bytes *in,
+                                      void **out, struct vg_error *err)
+{
+  struct forest *f = user;
+
+  *out = vg_alloc(in->n, 1);
+  if (!*out) return vg_fail_memory(err, "a copy");
+  memcpy(*out, in->data, in->n);
+  atomic_fetch_add(&f->alive, 1);
+  return VG_OK;
+}
+
+static inline vg_status forest_pack_outcome(void *user, const void *outcome,
+                                            struct vg_bytes *out,
+                                            struct vg_error *err)
+{
+  (void)user;
+  return forest_copy(outcome, sizeof(struct forest_outcome), out, err);
+}
+
+static inline void forest_release(void *user, void *what)
+{
+  struct forest *f = user;
+
+  free(what);
+  atomic_fetch_sub(&f->alive, 1);
+}
+
+static inline int forest_stop(void *user)
+{
+  return atomic_load(&((struct forest *)user)->stop);
+}
+
+static inline int forest_progress(void *user, double done, double known,
+                                  size_t n_done, size_t n_known)
+{
+  struct forest *f = user;
+
+  if (done < f->last_done || known < 0 || n_done > n_known) f->bad++;
+  f->last_done = done;
+  f->last_known = known;
+  return 0;
+}
+
+/* Run `n_tree` trees, from ranks in turn: tree t begins at rank t % size. */
+static inline vg_status forest_grow(struct forest *f, struct vg_comm *comm,
+                                    int n_tree, uint64_t shuffle,
+                                    struct vg_spans *spans,
+                                    struct vg_error *err)
+{
+  static const struct vg_engine_ops ops = {
+    forest_run, forest_done, forest_pack_input, forest_unpack,
+    forest_pack_outcome, forest_unpack, forest_release, forest_release
+  };
+  struct vg_engine_options options = {
+    f->threads, shuffle, forest_progress, forest_stop, f
+  };
+  struct vg_task first[64];
+  size_t n = 0;
+
+  f->rank = vg_comm_rank(comm);
+  f->size = vg_comm_size(comm);
+  for (int t = 0; t < n_tree && n < 64; t++) {
+    char path[2] = { (char)('a' + t), 0 };
+
+    if (t % f->size == f->rank) first[n++] = forest_task(f, path);
+  }
+  return vg_engine_run(comm, &options, &ops, f, n, first, spans, err);
+}
+
+/* What a run must find: tasks and sum of digests of a tree. */
+static inline void forest_expect(const struct forest *f, const char *path,
+                                 long *n, uint64_t *sum)
+{
+  int n_child = forest_children(f, path);
+
+  ++*n;
+  *sum += forest_mix(forest_digest(path));
+  for (int i = 0; i < n_child; i++) {
+    char child[VG_PATH_MAX];
+
+    snprintf(child, sizeof child, "%.60s%c", path, '0' + i);
+    forest_expect(f, child, n, sum);
+  }
+}
+
+#endif
