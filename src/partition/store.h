@@ -14,9 +14,13 @@
 #include "base/comm.h"
 #include "base/status.h"
 
-struct vg_digest { uint64_t word[2]; };   /* XXH3, 128 bits */
+/* XXH3, 128 bits. Equal digests are taken as equal input: among 10^9 tasks the
+ * chance of an accident is below 10^-20. It is no defence against records that
+ * somebody forges. */
+struct vg_digest { uint64_t word[2]; };
 
-/** Digest of n bytes, continuing from `seed` (zeroed at the start). */
+/** Digest of n bytes, continuing from `seed` (zeroed at the start). Where a
+ * chain is cut into calls counts: "ab" "c" differs from "a" "bc". */
 struct vg_digest vg_digest_of(struct vg_digest seed, size_t n,
                               const void *data);
 
@@ -26,11 +30,14 @@ struct vg_store_options {
   const char *dir;           /* the run directory, made when absent */
   struct vg_digest job;      /* of input and options of the whole run */
   const char *what;          /* a line that says what the run is, for people:
-                                kept in the directory, shown in refusals */
+                                kept in the directory, shown in refusals; cut
+                                after 199 bytes */
   int resume;                /* 1: records must be there and fit; 0: the
-                                directory must hold no other run */
-  uint64_t limit;            /* bytes to keep at most, over all ranks; tasks
-                                beyond it are not kept; 0: no limit */
+                                directory must hold none, not even of the same
+                                job (they might be there by mistake) */
+  uint64_t limit;            /* bytes to keep at most, over all ranks, with
+                                what is there; tasks beyond it are not kept;
+                                each rank has an equal share; 0: no limit */
 };
 
 /** Open or make the run directory. Collective; rank 0 decides.
@@ -38,7 +45,9 @@ struct vg_store_options {
  * Refuses, with the reason and the remedy: a directory that cannot be written;
  * one that belongs to another job (changed input or options: says which of
  * both runs it was); a resume without a directory; a run that is under way in
- * it (lock, with host and process). */
+ * it (lock, with host and process); one that not all ranks see. A directory
+ * whose run kept nothing is taken over, its files of other names stay. What
+ * was made is removed again on failure. */
 vg_status vg_store_open(struct vg_comm *comm,
                         const struct vg_store_options *options,
                         struct vg_store **out, struct vg_error *err);
