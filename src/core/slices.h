@@ -51,6 +51,16 @@ struct vg_slices {
   void *user;                /* the server's */
 };
 
+/** Call body for each slice that this rank serves, in threads. Returns the
+ * failure of the first slice that failed; those after a failure may be left
+ * out. */
+typedef vg_status (*vg_slice_body)(void *context,
+                                   const struct vg_slice *slice,
+                                   struct vg_error *err);
+vg_status vg_slices_each(const struct vg_slices *s, int threads,
+                         vg_slice_body body, void *context,
+                         struct vg_error *err);
+
 /** Slices into one mesh in memory, on a job of one rank: for writers of whole
  * meshes. Boundary included. VG_ERR_MEMORY. */
 vg_status vg_slices_collect(const struct vg_slices *s, int threads,

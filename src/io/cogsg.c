@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 #include "io/mapbc.h"
+#include "io/slices_parts.h"
 #include "io/vgrid.h"
 
 #define BLOCK 4096
@@ -271,6 +272,10 @@ static void put_slot(struct vg_output *out, const struct vg_mesh *m, int slot,
 {
   int32_t block[BLOCK];
 
+  if (!m->tet) {
+    vg_output_skip(out, 4 * (uint64_t)m->n_tet);
+    return;
+  }
   for (size_t i = 0, len; i < m->n_tet; i += len) {
     len = m->n_tet - i < BLOCK ? m->n_tet - i : BLOCK;
     if (new_index)
@@ -288,6 +293,10 @@ static void put_axis(struct vg_output *out, const struct vg_mesh *m, int axis,
 {
   double block[BLOCK];
 
+  if (!m->point) {
+    vg_output_skip(out, 8 * (uint64_t)m->n_point);
+    return;
+  }
   for (size_t i = 0, len; i < m->n_point; i += len) {
     len = m->n_point - i < BLOCK ? m->n_point - i : BLOCK;
     for (size_t k = 0; k < len; k++)
@@ -296,9 +305,11 @@ static void put_axis(struct vg_output *out, const struct vg_mesh *m, int axis,
   }
 }
 
-static void put_volume(struct vg_output *out, const struct vg_mesh *m,
-                       const struct vg_cogsg_info *info,
-                       const uint32_t *new_to_old, const uint32_t *old_to_new)
+#define HEAD_BYTES 32u     /* six integers and tc */
+
+void vg_cogsg_put(struct vg_output *out, const struct vg_mesh *m,
+                  const struct vg_cogsg_info *info,
+                  const uint32_t *new_to_old, const uint32_t *old_to_new)
 {
   const int32_t head[6] = {
     info->inew, (int32_t)m->n_tet, (int32_t)m->n_point,
@@ -308,7 +319,7 @@ static void put_volume(struct vg_output *out, const struct vg_mesh *m,
   const int32_t zero = 0;
 
   vg_output_order(out, 1);
-  vg_output_record(out, 32 + 16 * (uint64_t)m->n_tet);
+  vg_output_record(out, HEAD_BYTES + 16 * (uint64_t)m->n_tet);
   vg_output_i32(out, 6, head);
   vg_output_f64(out, 1, &info->tc);
   for (int slot = 0; slot < 4; slot++) put_slot(out, m, slot, old_to_new);
@@ -323,6 +334,21 @@ static void put_volume(struct vg_output *out, const struct vg_mesh *m,
   }
 }
 
+void vg_cogsg_seek(struct vg_output *out, uint64_t n_tet, uint64_t n_point,
+                   enum vg_cogsg_part part, int column, uint64_t first)
+{
+  uint64_t cells = HEAD_BYTES + 16 * n_tet;
+
+  vg_output_order(out, 1);
+  if (part == VG_COGSG_CELLS)
+    vg_output_seek_record(out, 0, cells, HEAD_BYTES +
+                          4 * ((uint64_t)column * n_tet + first));
+  else
+    vg_output_seek_record(out, vg_record_size(cells, out->record_limit),
+                          24 * n_point,
+                          8 * ((uint64_t)column * n_point + first));
+}
+
 /* Right-justified to 8 columns, with a blank in front even of 8 digits. */
 static void put_column(struct vg_output *out, int64_t v)
 {
@@ -332,9 +358,9 @@ static void put_column(struct vg_output *out, int64_t v)
   vg_output_bytes(out, text, (size_t)n);
 }
 
-static void put_faces(struct vg_output *out, const struct vg_mesh *m,
-                      const struct vg_cogsg_info *info,
-                      const uint32_t *old_to_new)
+void vg_cogsg_put_faces(struct vg_output *out, const struct vg_mesh *m,
+                        const struct vg_cogsg_info *info,
+                        const uint32_t *old_to_new)
 {
   int32_t igrid = info->igrid ? info->igrid : info->n_layer_cell ? 2 : 1;
 
@@ -355,9 +381,9 @@ static void put_faces(struct vg_output *out, const struct vg_mesh *m,
   }
 }
 
-static vg_status check_writable(const char *stem, const struct vg_mesh *m,
-                                const struct vg_cogsg_info *info,
-                                struct vg_error *err)
+vg_status vg_cogsg_check(const char *stem, const struct vg_mesh *m,
+                         const struct vg_cogsg_info *info,
+                         struct vg_error *err)
 {
   if (m->n_pyr || m->n_pri || m->n_hex || m->n_quad)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
@@ -376,8 +402,8 @@ static vg_status check_writable(const char *stem, const struct vg_mesh *m,
   return VG_OK;
 }
 
-static vg_status write_mapbc(const char *stem, const struct vg_mesh *m,
-                             size_t *n_unset, struct vg_error *err)
+vg_status vg_cogsg_write_mapbc(const char *stem, const struct vg_mesh *m,
+                               size_t *n_unset, struct vg_error *err)
 {
   const char *slash = strrchr(stem, '/');
   char *name = beside(stem, ".mapbc");
@@ -407,16 +433,16 @@ vg_status vg_cogsg_write(const char *stem, const struct vg_mesh *m,
     st = vg_fail_memory(err, "a file name");
     goto done;
   }
-  VG_TRY(check_writable(stem, m, &full, err));
+  VG_TRY(vg_cogsg_check(stem, m, &full, err));
   VG_TRY(vg_vgrid_order(m, &new_to_old, &old_to_new, &full.n_curve_point,
                         &full.n_boundary, err));
   VG_TRY(vg_output_open(cogsg_name, &cogsg, err));
   VG_TRY(vg_output_open(bc_name, &bc, err));
-  put_volume(&cogsg, m, &full, new_to_old, old_to_new);
-  put_faces(&bc, m, &full, old_to_new);
+  vg_cogsg_put(&cogsg, m, &full, new_to_old, old_to_new);
+  vg_cogsg_put_faces(&bc, m, &full, old_to_new);
   VG_TRY(vg_output_flush(&bc, err));
   VG_TRY(vg_output_flush(&cogsg, err));
-  VG_TRY(write_mapbc(stem, m, n_unset, err));
+  VG_TRY(vg_cogsg_write_mapbc(stem, m, n_unset, err));
   VG_TRY(vg_output_commit(&bc, err));
   VG_TRY(vg_output_commit(&cogsg, err));
 done:

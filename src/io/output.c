@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "base/memory.h"
+#include "io/shared_file.h"
 
 #define CAPACITY ((size_t)1 << 20)
 #define BLOCK 2048
@@ -68,9 +69,33 @@ vg_status vg_output_open(const char *path, struct vg_output *out,
   return VG_OK;
 }
 
+vg_status vg_output_shared(struct vg_shared_file *file, struct vg_output *out,
+                           struct vg_error *err)
+{
+  out->buffer = vg_alloc(CAPACITY, 1);
+  if (!out->buffer) return vg_fail_memory(err, "a write buffer");
+  out->shared = file;
+  return VG_OK;
+}
+
+static void flush_shared(struct vg_output *out)
+{
+  if (out->shared && out->n && !out->error &&
+      vg_shared_write(out->shared, out->at, out->n, out->buffer,
+                      &out->failed) < 0)
+    out->error = EIO;
+  out->at += out->n;
+  out->n = 0;
+}
+
 static void flush(struct vg_output *out)
 {
   size_t at = 0;
+
+  if (out->fd < 0) {
+    flush_shared(out);
+    return;
+  }
 
   while (at < out->n && !out->error) {
     ssize_t put = write(out->fd, out->buffer + at, out->n - at);
@@ -83,8 +108,12 @@ static void flush(struct vg_output *out)
 
 static vg_status write_error(const struct vg_output *out, struct vg_error *err)
 {
-  return vg_fail(err, VG_ERR_IO, "%s: cannot write: %s", out->path,
-                 strerror(out->error));
+  if (out->failed.code) {
+    if (err) *err = out->failed;
+    return out->failed.code;
+  }
+  return vg_fail(err, VG_ERR_IO, "%s: cannot write: %s",
+                 out->path ? out->path : "output", strerror(out->error));
 }
 
 vg_status vg_output_flush(struct vg_output *out, struct vg_error *err)
@@ -114,11 +143,18 @@ void vg_output_order(struct vg_output *out, int is_big)
   out->swap = (is_big != 0) == vg_host_is_little();
 }
 
+/* data NULL: bytes that others write. */
 static void put_raw(struct vg_output *out, const void *data, size_t n)
 {
   const unsigned char *from = data;
 
   out->written += n;
+  if (!data && n) {
+    flush(out);
+    out->at += n;
+    if (out->fd >= 0 && !out->error) out->error = EPROTO;
+    return;
+  }
   while (n) {
     size_t room = CAPACITY - out->n, m = n < room ? n : room;
 
@@ -135,7 +171,7 @@ static void put_marker(struct vg_output *out, uint32_t n, int is_negative)
   uint32_t word = is_negative ? 0 - n : n;
 
   if (out->swap) word = __builtin_bswap32(word);
-  put_raw(out, &word, sizeof word);
+  put_raw(out, out->no_markers ? NULL : &word, sizeof word);
 }
 
 /* Signs as in formats.md 1.1. */
@@ -191,11 +227,42 @@ void vg_output_bytes(struct vg_output *out, const void *data, size_t n)
     }
     m = n < out->part_left ? n : out->part_left;
     put_raw(out, from, m);
-    from += m;
+    if (from) from += m;
     n -= m;
     out->part_left -= (uint32_t)m;
     out->record_left -= m;
   }
+}
+
+void vg_output_skip(struct vg_output *out, uint64_t n)
+{
+  vg_output_bytes(out, NULL, n);
+}
+
+void vg_output_seek(struct vg_output *out, uint64_t at)
+{
+  flush(out);
+  out->at = at;
+  out->record_open = out->no_markers = 0;
+}
+
+void vg_output_seek_record(struct vg_output *out, uint64_t at, uint64_t bytes,
+                           uint64_t offset)
+{
+  uint64_t limit = out->record_limit, part = offset / limit;
+  uint64_t left = bytes - part * limit;
+
+  vg_output_seek(out, at + 4 + offset + 8 * part);
+  out->record_open = out->no_markers = 1;
+  out->part_first = !part;
+  out->record_left = bytes - offset;
+  out->part_len = (uint32_t)(left < limit ? left : limit);
+  out->part_left = (uint32_t)(part * limit + out->part_len - offset);
+}
+
+uint64_t vg_record_size(uint64_t bytes, uint32_t limit)
+{
+  return bytes + 8 * (bytes ? (bytes - 1) / limit + 1 : 1);
 }
 
 /* Values pass through a block that stays in cache: convert, swap, append. */

@@ -8,7 +8,8 @@
  * A reader of format X has two entries: vg_X_read(path, ...) opens the file
  * and calls vg_X_parse(struct vg_input *, ...), which fuzzers call directly.
  *
- * Output goes to PATH.part and gets its name by rename when complete. */
+ * Output goes to PATH.part and gets its name by rename when complete; or into
+ * a file that all ranks write, at any place of it (io/shared_file.h). */
 #ifndef VG_IO_STREAM_H
 #define VG_IO_STREAM_H
 
@@ -16,6 +17,8 @@
 #include <stdint.h>
 
 #include "base/status.h"
+
+struct vg_shared_file;
 
 struct vg_input {
   char *path;           /* for messages; owned */
@@ -137,6 +140,10 @@ struct vg_output {
   uint64_t record_left;    /* data bytes the open record still expects */
   uint32_t part_len, part_left; /* of the open subrecord */
   int record_open, part_first;
+  struct vg_shared_file *shared; /* instead of fd; NULL: only measured */
+  uint64_t at;             /* shared: where in the file the buffer belongs */
+  int no_markers;          /* markers are passed over: another writes them */
+  struct vg_error failed;  /* shared: why, when error is set */
 };
 #define VG_OUTPUT_INIT { .fd = -1, .record_limit = VG_RECORD_LIMIT }
 
@@ -155,6 +162,28 @@ vg_status vg_output_flush(struct vg_output *out, struct vg_error *err);
 
 /** Drop the .part file unless committed. Accepts an initialised output. */
 void vg_output_release(struct vg_output *out);
+
+/** Write into a file of all ranks, from its start; borrowed, and to be closed
+ * by the caller after vg_output_flush (for errors) and vg_output_release.
+ * NULL: nothing is written, but `written` tells how much would be. */
+vg_status vg_output_shared(struct vg_shared_file *file, struct vg_output *out,
+                           struct vg_error *err);
+
+/** Go to a place of a shared file, outside of any record. */
+void vg_output_seek(struct vg_output *out, uint64_t at);
+
+/** Go to data byte `offset` of a record of `bytes` bytes that starts (with
+ * its first marker) at `at`. Its markers are left to who writes the frame. */
+void vg_output_seek_record(struct vg_output *out, uint64_t at, uint64_t bytes,
+                           uint64_t offset);
+
+/** Leave n bytes to others: only for shared files. Markers of a record that
+ * is open are written where they belong. */
+void vg_output_skip(struct vg_output *out, uint64_t n);
+
+/** Bytes of a Fortran record in a file, with its markers; limit as
+ * record_limit. */
+uint64_t vg_record_size(uint64_t bytes, uint32_t limit);
 
 /** Declare the byte order of the values that follow. */
 void vg_output_order(struct vg_output *out, int is_big);

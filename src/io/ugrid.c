@@ -6,6 +6,7 @@
 #include <strings.h>
 
 #include "base/memory.h"
+#include "io/slices_parts.h"
 
 #define BLOCK 3072 /* a multiple of 3 and 4 */
 
@@ -67,24 +68,31 @@ int vg_ugrid_kind(const char *name, struct vg_ugrid_kind *kind)
 
 /* --- does the content fit a kind? --- */
 
+/* Where in the body the nodes of an element start; for element 6, its end. */
+static uint64_t nodes_at(const struct vg_ugrid_kind *kind,
+                         const uint64_t count[7], int element)
+{
+  uint64_t n_int = element > 1 ? count[1] + count[2] : 0;
+
+  for (int k = 0; k < element; k++)
+    n_int += count[k + 1] * (uint64_t)element_width[k];
+  return 3 * (uint64_t)kind->real_size * count[0] +
+         n_int * (uint64_t)kind->int_size;
+}
+
 /* Bytes behind the header; UINT64_MAX when the counts are impossible. */
 static uint64_t body_bytes(const struct vg_ugrid_kind *kind,
                            const uint64_t count[7])
 {
-  uint64_t n_int = 0, real = (uint64_t)kind->real_size;
-
   for (int k = 0; k < 7; k++)
     if (count[k] > UINT32_MAX - 2) return UINT64_MAX;
-  for (int k = 0; k < 6; k++)
-    n_int += count[k + 1] * (uint64_t)element_width[k];
-  n_int += count[1] + count[2];
-  return 3 * real * count[0] + n_int * (uint64_t)kind->int_size;
+  return nodes_at(kind, count, 6);
 }
 
 static uint64_t marker_bytes(const struct vg_ugrid_kind *kind, uint64_t body)
 {
   if (!kind->is_record) return 0;
-  return 8 + 8 * (body ? (body - 1) / VG_RECORD_LIMIT + 1 : 1);
+  return 8 + vg_record_size(body, VG_RECORD_LIMIT) - body;
 }
 
 /* Counts of a binary header at the cursor, whatever they are worth. 0 when
@@ -485,16 +493,30 @@ static void put_ints(struct vg_output *out, int int_size, size_t n,
   vg_output_i64(out, n, wide);
 }
 
-static void put_nodes(struct vg_output *out, int int_size, size_t n,
-                      const uint32_t *node)
+void vg_ugrid_put_nodes(struct vg_output *out,
+                        const struct vg_ugrid_kind *kind, size_t n,
+                        const uint32_t *node)
 {
   int32_t block[BLOCK];
 
+  if (!node) {
+    vg_output_skip(out, n * (uint64_t)kind->int_size);
+    return;
+  }
   for (size_t i = 0, m; i < n; i += m) {
     m = n - i < BLOCK ? n - i : BLOCK;
     for (size_t k = 0; k < m; k++) block[k] = (int32_t)(node[i + k] + 1);
-    put_ints(out, int_size, m, block);
+    put_ints(out, kind->int_size, m, block);
   }
+}
+
+void vg_ugrid_put_points(struct vg_output *out,
+                         const struct vg_ugrid_kind *kind, size_t n,
+                         const double (*x)[3])
+{
+  if (!x) vg_output_skip(out, 3 * (uint64_t)kind->real_size * n);
+  else if (kind->real_size == 8) vg_output_f64(out, 3 * n, *x);
+  else vg_output_f32(out, 3 * n, *x);
 }
 
 static void put_tags(struct vg_output *out, const struct vg_mesh *m,
@@ -517,13 +539,11 @@ static void put_tags(struct vg_output *out, const struct vg_mesh *m,
 static void put_body(struct vg_output *out, const struct vg_ugrid_kind *kind,
                      const struct vg_mesh *m)
 {
-  const double *x = (const double *)m->point;
-
-  if (kind->real_size == 8) vg_output_f64(out, 3 * m->n_point, x);
-  else vg_output_f32(out, 3 * m->n_point, x);
+  vg_ugrid_put_points(out, kind, m->n_point,
+                      (const double (*)[3])m->point);
   for (int e = 0; e < 6; e++) {
-    put_nodes(out, kind->int_size, count_of(m, e) * (size_t)element_width[e],
-              nodes_of(m, e));
+    vg_ugrid_put_nodes(out, kind, count_of(m, e) * (size_t)element_width[e],
+                       nodes_of(m, e));
     if (e != 1) continue;
     put_tags(out, m, kind->int_size, m->n_tri, m->tri_patch);
     put_tags(out, m, kind->int_size, m->n_quad, m->quad_patch);
@@ -548,14 +568,20 @@ static void put_tail(struct vg_output *out, const struct vg_ugrid_kind *kind,
   if (kind->is_record) vg_output_record_end(out);
 }
 
-static void put_binary(struct vg_output *out, const struct vg_ugrid_kind *kind,
-                       const struct vg_mesh *m, const uint64_t count[7])
+static void counts_of(const struct vg_mesh *m, uint64_t count[7])
 {
-  uint32_t header[7];
+  count[0] = m->n_point;
+  for (int e = 0; e < 6; e++) count[e + 1] = count_of(m, e);
+}
+
+static void put_binary(struct vg_output *out, const struct vg_ugrid_kind *kind,
+                       const struct vg_mesh *m)
+{
+  uint64_t count[7];
   int32_t head[7];
 
-  for (int k = 0; k < 7; k++) header[k] = (uint32_t)count[k];
-  memcpy(head, header, sizeof head);
+  counts_of(m, count);
+  for (int k = 0; k < 7; k++) head[k] = (int32_t)(uint32_t)count[k];
   vg_output_order(out, kind->is_big);
   if (kind->is_record) vg_output_record(out, 7 * (uint64_t)kind->int_size);
   put_ints(out, kind->int_size, 7, head);
@@ -577,9 +603,11 @@ static void put_text_rows(struct vg_output *out, size_t n, int width,
     }
 }
 
-static void put_text(struct vg_output *out, const struct vg_mesh *m,
-                     const uint64_t count[7])
+static void put_text(struct vg_output *out, const struct vg_mesh *m)
 {
+  uint64_t count[7];
+
+  counts_of(m, count);
   for (int k = 0; k < 7; k++) {
     vg_output_int(out, (int64_t)count[k]);
     vg_output_bytes(out, k < 6 ? " " : "\n", 1);
@@ -601,29 +629,65 @@ static void put_text(struct vg_output *out, const struct vg_mesh *m,
   }
 }
 
-static vg_status write_mesh(const char *path, const struct vg_mesh *m,
-                            const size_t *n_layer_tet, struct vg_error *err)
+vg_status vg_ugrid_check(const char *path, const struct vg_ugrid_kind *kind,
+                         const struct vg_mesh *m, const size_t *n_layer_tet,
+                         struct vg_error *err)
 {
-  struct vg_ugrid_kind kind;
-  struct vg_output out = VG_OUTPUT_INIT;
-  uint64_t count[7] = {m->n_point, m->n_tri, m->n_quad, m->n_tet,
-                       m->n_pyr, m->n_pri, m->n_hex};
-  uint64_t limit;
-  vg_status st;
+  uint64_t limit = kind->int_size == 4 ? INT32_MAX : UINT32_MAX - 2;
+  uint64_t count[7];
 
-  if (!vg_ugrid_kind(path, &kind)) return not_a_name(path, err);
-  limit = kind.int_size == 4 ? INT32_MAX : UINT32_MAX - 2;
+  counts_of(m, count);
   for (int k = 0; k < 7; k++)
     if (count[k] > limit)
       return vg_fail(err, VG_ERR_UNSUPPORTED,
                      "%s: %llu points or elements are too many for the "
                      "integers of this kind; write .b8l.ugrid", path,
                      (unsigned long long)count[k]);
-  st = vg_output_open(path, &out, err);
+  if (n_layer_tet && *n_layer_tet > m->n_tet)
+    return vg_fail(err, VG_ERR_INPUT, "%s: %zu tetrahedra are said to be in "
+                   "layers, but the mesh has %zu", path, *n_layer_tet,
+                   m->n_tet);
+  return VG_OK;
+}
+
+void vg_ugrid_put(struct vg_output *out, const struct vg_ugrid_kind *kind,
+                  const struct vg_mesh *m, const size_t *n_layer_tet)
+{
+  if (kind->is_text) put_text(out, m);
+  else put_binary(out, kind, m);
+  put_tail(out, kind, n_layer_tet);
+}
+
+void vg_ugrid_seek(struct vg_output *out, const struct vg_ugrid_kind *kind,
+                   const uint64_t count[7], int item, uint64_t first)
+{
+  uint64_t head = 7 * (uint64_t)kind->int_size, at;
+
+  if (!item)
+    at = 3 * (uint64_t)kind->real_size * first;
+  else
+    at = nodes_at(kind, count, item - 1) +
+         first * (uint64_t)(element_width[item - 1] * kind->int_size);
+  vg_output_order(out, kind->is_big);
+  if (!kind->is_record)
+    vg_output_seek(out, head + at);
+  else
+    vg_output_seek_record(out, vg_record_size(head, out->record_limit),
+                          body_bytes(kind, count), at);
+}
+
+static vg_status write_mesh(const char *path, const struct vg_mesh *m,
+                            const size_t *n_layer_tet, struct vg_error *err)
+{
+  struct vg_ugrid_kind kind;
+  struct vg_output out = VG_OUTPUT_INIT;
+  vg_status st;
+
+  if (!vg_ugrid_kind(path, &kind)) return not_a_name(path, err);
+  st = vg_ugrid_check(path, &kind, m, n_layer_tet, err);
+  if (st >= 0) st = vg_output_open(path, &out, err);
   if (st < 0) return st;
-  if (kind.is_text) put_text(&out, m, count);
-  else put_binary(&out, &kind, m, count);
-  put_tail(&out, &kind, n_layer_tet);
+  vg_ugrid_put(&out, &kind, m, n_layer_tet);
   return vg_output_commit(&out, err);
 }
 
@@ -636,9 +700,5 @@ vg_status vg_ugrid_write(const char *path, const struct vg_mesh *m,
 vg_status vg_ugrid_write_tail(const char *path, const struct vg_mesh *m,
                               size_t n_layer_tet, struct vg_error *err)
 {
-  if (n_layer_tet > m->n_tet)
-    return vg_fail(err, VG_ERR_INPUT, "%s: %zu tetrahedra are said to be in "
-                   "layers, but the mesh has %zu", path, n_layer_tet,
-                   m->n_tet);
   return write_mesh(path, m, &n_layer_tet, err);
 }

@@ -4,9 +4,11 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "io/slices_parts.h"
 #include "io/stream.h"
 
-/* Elements of one kind. The file's slot k is our node slot[k]. */
+/* Elements of one kind. The file's slot k is our node slot[k]. node NULL:
+ * left for others to write, as are points and fields without data. */
 struct block {
   const uint32_t *node;
   size_t n;
@@ -14,6 +16,8 @@ struct block {
   uint8_t type;             /* VTK's number */
   uint8_t slot[8];
 };
+
+#define END "\n </AppendedData>\n</VTKFile>\n"
 
 /* What a file shows: points (renumbered where `number` is set) and blocks. */
 struct grid {
@@ -46,17 +50,17 @@ static void add_block(struct grid *g, const uint32_t *node, size_t n,
 static const struct block triangle = { NULL, 0, 3, 5, PLAIN };
 static const struct block quadrilateral = { NULL, 0, 4, 9, PLAIN };
 
+static const struct block cells[4] = {   /* as VG_SLICE_TET and so on */
+  { NULL, 0, 4, 10, PLAIN }, { NULL, 0, 5, 14, PYRAMID },
+  { NULL, 0, 6, 13, WEDGE }, { NULL, 0, 8, 12, PLAIN }
+};
+
 static void add_cells(struct grid *g, const struct vg_mesh *m)
 {
-  static const struct block tet = { NULL, 0, 4, 10, PLAIN };
-  static const struct block pyr = { NULL, 0, 5, 14, PYRAMID };
-  static const struct block pri = { NULL, 0, 6, 13, WEDGE };
-  static const struct block hex = { NULL, 0, 8, 12, PLAIN };
-
-  add_block(g, m->tet ? m->tet[0] : NULL, m->n_tet, &tet);
-  add_block(g, m->pyr ? m->pyr[0] : NULL, m->n_pyr, &pyr);
-  add_block(g, m->pri ? m->pri[0] : NULL, m->n_pri, &pri);
-  add_block(g, m->hex ? m->hex[0] : NULL, m->n_hex, &hex);
+  add_block(g, m->tet ? m->tet[0] : NULL, m->n_tet, &cells[0]);
+  add_block(g, m->pyr ? m->pyr[0] : NULL, m->n_pyr, &cells[1]);
+  add_block(g, m->pri ? m->pri[0] : NULL, m->n_pri, &cells[2]);
+  add_block(g, m->hex ? m->hex[0] : NULL, m->n_hex, &cells[3]);
 }
 
 /* --- header --- */
@@ -156,6 +160,10 @@ static void put_size(struct vg_output *o, uint64_t bytes)
 static void put_points(struct vg_output *o, const struct grid *g)
 {
   put_size(o, 24 * (uint64_t)g->n_point);
+  if (!g->point) {
+    vg_output_skip(o, 24 * (uint64_t)g->n_point);
+    return;
+  }
   if (!g->list) {
     if (g->n_point) vg_output_f64(o, 3 * g->n_point, g->point[0]);
     return;
@@ -164,41 +172,60 @@ static void put_points(struct vg_output *o, const struct grid *g)
     vg_output_f64(o, 3, g->point[g->list[i]]);
 }
 
-static void put_connectivity(struct vg_output *o, const struct grid *g)
+static void put_nodes(struct vg_output *o, const struct block *k,
+                      const uint32_t *number, uint64_t add)
 {
-  put_size(o, connectivity_bytes(g));
-  for (int b = 0; b < g->n_block; b++) {
-    const struct block *k = &g->block[b];
-    const uint32_t *node = k->node;
+  const uint32_t *node = k->node;
 
-    for (size_t i = 0; i < k->n; i++, node += k->n_node) {
-      int64_t v[8];
+  if (!node) {
+    vg_output_skip(o, k->n * (uint64_t)k->n_node * 8);
+    return;
+  }
+  for (size_t i = 0; i < k->n; i++, node += k->n_node) {
+    int64_t v[8];
 
-      for (int j = 0; j < k->n_node; j++) {
-        uint32_t p = node[k->slot[j]];
+    for (int j = 0; j < k->n_node; j++) {
+      uint32_t p = node[k->slot[j]];
 
-        v[j] = g->number ? g->number[p] : p;
-      }
-      vg_output_bytes(o, v, (size_t)k->n_node * sizeof *v);
+      v[j] = (int64_t)(add + (number ? number[p] : p));
     }
+    vg_output_bytes(o, v, (size_t)k->n_node * sizeof *v);
   }
 }
 
-/* Offsets are where each cell ends in the connectivity. */
+static void put_connectivity(struct vg_output *o, const struct grid *g)
+{
+  put_size(o, connectivity_bytes(g));
+  for (int b = 0; b < g->n_block; b++)
+    put_nodes(o, &g->block[b], g->number, 0);
+}
+
+/* Where each cell ends in the connectivity; *end: where the last one did. */
+static void put_ends(struct vg_output *o, const struct block *k, int64_t *end)
+{
+  for (size_t i = 0; i < k->n; i++) {
+    *end += k->n_node;
+    vg_output_bytes(o, end, sizeof *end);
+  }
+}
+
+static void put_types(struct vg_output *o, const struct block *k)
+{
+  for (size_t i = 0; i < k->n; i++) vg_output_bytes(o, &k->type, 1);
+}
+
 static void put_offsets_types(struct vg_output *o, const struct grid *g)
 {
   int64_t end = 0;
 
   put_size(o, 8 * (uint64_t)g->n_cell);
   for (int b = 0; b < g->n_block; b++)
-    for (size_t i = 0; i < g->block[b].n; i++) {
-      end += g->block[b].n_node;
-      vg_output_bytes(o, &end, sizeof end);
-    }
+    if (g->block[b].node) put_ends(o, &g->block[b], &end);
+    else vg_output_skip(o, 8 * (uint64_t)g->block[b].n);
   put_size(o, g->n_cell);
   for (int b = 0; b < g->n_block; b++)
-    for (size_t i = 0; i < g->block[b].n; i++)
-      vg_output_bytes(o, &g->block[b].type, 1);
+    if (g->block[b].node) put_types(o, &g->block[b]);
+    else vg_output_skip(o, g->block[b].n);
 }
 
 static void put_patches(struct vg_output *o, const struct vg_mesh *m)
@@ -220,7 +247,9 @@ static void put_fields(struct vg_output *o, const struct grid *g,
 
     if (f->place != place) continue;
     put_size(o, field_bytes(g, f));
-    if (place == VG_VTU_POINT && g->list)
+    if (!data)
+      vg_output_skip(o, field_bytes(g, f));
+    else if (place == VG_VTU_POINT && g->list)
       for (size_t p = 0; p < g->n_point; p++)
         vg_output_bytes(o, data + g->list[p] * size, size);
     else if (field_bytes(g, f))
@@ -244,6 +273,18 @@ static vg_status check_names(const struct grid *g, struct vg_error *err)
   return VG_OK;
 }
 
+static void put_grid(struct vg_output *o, const struct grid *g)
+{
+  put_header(o, g);
+  put_points(o, g);
+  put_connectivity(o, g);
+  put_offsets_types(o, g);
+  put_fields(o, g, VG_VTU_POINT);
+  if (g->patches) put_patches(o, g->patches);
+  put_fields(o, g, VG_VTU_CELL);
+  vg_output_text(o, END);
+}
+
 static vg_status write_grid(const char *path, const struct grid *g,
                             struct vg_error *err)
 {
@@ -252,18 +293,59 @@ static vg_status write_grid(const char *path, const struct grid *g,
 
   VG_TRY(check_names(g, err));
   VG_TRY(vg_output_open(path, &o, err));
-  put_header(&o, g);
-  put_points(&o, g);
-  put_connectivity(&o, g);
-  put_offsets_types(&o, g);
-  put_fields(&o, g, VG_VTU_POINT);
-  if (g->patches) put_patches(&o, g->patches);
-  put_fields(&o, g, VG_VTU_CELL);
-  vg_output_text(&o, "\n </AppendedData>\n</VTKFile>\n");
+  put_grid(&o, g);
   st = vg_output_commit(&o, err);
 done:
   vg_output_release(&o);
   return st;
+}
+
+/* --- parts, for meshes in slices --- */
+
+void vg_vtu_put(struct vg_output *out, const struct vg_mesh *frame,
+                const struct vg_vtu_field *field, size_t n)
+{
+  struct grid g = { .n_point = frame->n_point,
+                    .point = (const double (*)[3])frame->point,
+                    .field = field, .n_field = n };
+
+  add_cells(&g, frame);
+  put_grid(out, &g);
+}
+
+void vg_vtu_find(const struct vg_mesh *frame, uint64_t file_size,
+                 const struct vg_vtu_field *field, size_t n,
+                 struct vg_vtu_places *to)
+{
+  struct grid g = { .n_point = frame->n_point, .field = field, .n_field = n };
+  uint64_t at = file_size - strlen(END);
+
+  add_cells(&g, frame);
+  for (size_t i = n; i-- > 0;) {
+    at -= field_bytes(&g, &field[i]);
+    to->field[i] = at;
+    at -= 8;
+  }
+  to->types = at -= g.n_cell;
+  to->offsets = at -= 8 + 8 * (uint64_t)g.n_cell;
+  to->connectivity = at -= 8 + connectivity_bytes(&g);
+  to->points = at -= 8 + 24 * (uint64_t)g.n_point;
+}
+
+void vg_vtu_put_cells(struct vg_output *out, const struct vg_vtu_places *at,
+                      const struct vg_vtu_cells *c)
+{
+  struct block b = cells[c->kind];
+  int64_t end = (int64_t)c->first_node;
+
+  b.node = c->node;
+  b.n = c->n;
+  vg_output_seek(out, at->connectivity + 8 * c->first_node);
+  put_nodes(out, &b, c->number, c->add);
+  vg_output_seek(out, at->offsets + 8 * c->first);
+  put_ends(out, &b, &end);
+  vg_output_seek(out, at->types + c->first);
+  put_types(out, &b);
 }
 
 /* --- entries --- */
