@@ -210,48 +210,6 @@ static void sort_bucket(struct record *r, size_t n)
   }
 }
 
-static uint32_t root_of(uint32_t *parent, uint32_t i)
-{
-  while (parent[i] != i) {
-    parent[i] = parent[parent[i]];
-    i = parent[i];
-  }
-  return i;
-}
-
-static void join(struct table *t, uint32_t a, uint32_t b)
-{
-  a = root_of(t->parent, a);
-  b = root_of(t->parent, b);
-  if (a < b) t->parent[b] = a;
-  else t->parent[a] = b;
-}
-
-static void match_pair(struct table *t, const struct record r[2])
-{
-  uint32_t a = r[0].owner >> 1, b = r[1].owner >> 1;
-
-  t->f->n.n_inner_face++;
-  t->f->n.same_side_face += (r[0].owner & 1) == (r[1].owner & 1);
-  join(t, a, b);
-  vg_figures_ratio(t->f, t->volume[a], t->volume[b]);
-}
-
-/* The n records of one face. */
-static void match(struct table *t, const struct record *r, size_t n)
-{
-  struct vg_counts *count = &t->f->n;
-  size_t n_boundary = 0;
-
-  for (size_t i = 0; i < n; i++) n_boundary += r[i].owner >> 1 >= t->n_cell;
-  if (n == n_boundary) count->orphan_boundary += n;
-  else if (n > 2) count->crowded_face++;
-  else if (n == 1) count->open_face++;
-  else if (n_boundary)   /* inwards: winds against its cell's outward face */
-    count->outward_boundary += (r[0].owner & 1) == (r[1].owner & 1);
-  else match_pair(t, r);
-}
-
 /* In a part of a mesh: n records of one face, which others have to match.
  * Its cell stands for the component until all are known. */
 static void pass_on(struct table *t, uint32_t lowest, const struct record *r,
@@ -279,6 +237,25 @@ static void pass_on(struct table *t, uint32_t lowest, const struct record *r,
   }
 }
 
+/* The n records of one face. */
+static void match(struct table *t, uint32_t lowest, const struct record *r,
+                  size_t n)
+{
+  int same_side = n > 1 && (r[0].owner & 1) == (r[1].owner & 1);
+  uint32_t a = r[0].owner >> 1, b;
+  size_t n_boundary = 0;
+
+  if (t->loose && n != 2) {
+    pass_on(t, lowest, r, n);
+    return;
+  }
+  for (size_t i = 0; i < n; i++) n_boundary += r[i].owner >> 1 >= t->n_cell;
+  if (!vg_figures_face(t->f, n - n_boundary, n_boundary, same_side)) return;
+  b = r[1].owner >> 1;
+  vg_join_sets(t->parent, a, b);
+  vg_figures_ratio(t->f, t->volume[a], t->volume[b]);
+}
+
 static void match_range(struct table *t)
 {
   size_t begin = 0;
@@ -292,9 +269,7 @@ static void match_range(struct table *t)
 
       while (next < end && !order(t->record + begin, t->record + next))
         next++;
-      if (!t->loose) match(t, t->record + begin, next - begin);
-      else if (next - begin == 2) match_pair(t, t->record + begin);
-      else pass_on(t, t->lo + v, t->record + begin, next - begin);
+      match(t, t->lo + v, t->record + begin, next - begin);
       begin = next;
     }
   }
@@ -311,7 +286,7 @@ static vg_status number_loose(struct table *t, struct vg_error *err)
   for (size_t i = 0; i < t->loose->n_face; i++) {
     uint32_t *component = &t->loose->face[i].component;
 
-    *component = number[root_of(t->parent, *component)];
+    *component = number[vg_root_of(t->parent, *component)];
   }
   free(number);
   return VG_OK;

@@ -55,6 +55,24 @@ void vg_figures_add(struct vg_figures *f, const struct vg_figures *more)
     vg_figures_worst(f, &more->worst[i]);
 }
 
+int vg_figures_face(struct vg_figures *f, size_t n_cell, size_t n_boundary,
+                    int same_side)
+{
+  struct vg_counts *n = &f->n;
+
+  if (!n_cell) n->orphan_boundary += n_boundary;
+  else if (n_cell + n_boundary > 2) n->crowded_face++;
+  else if (n_cell + n_boundary == 1) n->open_face++;
+  else if (n_boundary)   /* inwards: winds against its cell's outward face */
+    n->outward_boundary += same_side;
+  else {
+    n->n_inner_face++;
+    n->same_side_face += same_side;
+    return 1;
+  }
+  return 0;
+}
+
 void vg_figures_ratio(struct vg_figures *f, float v, float w)
 {
   float ratio;

@@ -51,6 +51,11 @@ void vg_figures_add(struct vg_figures *f, const struct vg_figures *more);
 /** Enter a cell where it is among the worst. */
 void vg_figures_worst(struct vg_figures *f, const struct vg_worst_cell *w);
 
+/** A face of n_cell cells and n_boundary boundary faces; same_side: when
+ * these are two, both wind the same way. Returns whether it joins two cells. */
+int vg_figures_face(struct vg_figures *f, size_t n_cell, size_t n_boundary,
+                    int same_side);
+
 /** Two cells of volumes v and w share a face. */
 void vg_figures_ratio(struct vg_figures *f, float v, float w);
 
@@ -65,6 +70,26 @@ void vg_figures_report(const struct vg_figures *f, size_t n_component,
 /** With r->volume and r->enclosed known: their difference, and whether the
  * mesh is valid. */
 void vg_report_conclude(struct vg_mesh_report *r);
+
+/** Disjoint sets, the lowest of each its root. */
+static inline uint32_t vg_root_of(uint32_t *parent, uint32_t i)
+{
+  while (parent[i] != i) {
+    parent[i] = parent[parent[i]];
+    i = parent[i];
+  }
+  return i;
+}
+
+/** Returns whether they were two. */
+static inline int vg_join_sets(uint32_t *parent, uint32_t a, uint32_t b)
+{
+  a = vg_root_of(parent, a);
+  b = vg_root_of(parent, b);
+  if (a < b) parent[b] = a;
+  else parent[a] = b;
+  return a != b;
+}
 
 /** Faces of one kind of cell, normals out of the cell: n_face of them, the
  * first n_tri are triangles (fourth entry unused), the others quads. */
