@@ -1,0 +1,43 @@
+/* A rank that gives up, for faults.sh: `fault abort` ends the job with status
+ * 7, `fault kill` dies at once, `fault leave` closes while messages are under
+ * way; the other ranks wait in a collective, or close too. */
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/comm.h"
+#include "base/memory.h"
+
+static int leave(struct vg_comm *c)
+{
+  int size = vg_comm_size(c);
+
+  /* short, of the size that MPI sends at once, and long */
+  for (int i = 0; i < 3 * size; i++) {
+    const size_t n[] = { 10, 3000, 20000000 };
+    struct vg_bytes b = { n[i / size], vg_calloc(n[i / size], 1) };
+
+    if (vg_comm_post(c, i % size, i / size, &b, NULL)) return 1;
+  }
+  vg_comm_close(c);
+  return 0;
+}
+
+int main(int argc, char **argv)
+{
+  struct vg_error err = VG_ERROR_INIT;
+  struct vg_comm *c;
+  uint64_t v = 0;
+
+  if (argc != 2 || vg_comm_open(&c, &err)) {
+    fprintf(stderr, "fault: %s\n", err.text);
+    return 1;
+  }
+  if (!strcmp(argv[1], "leave")) return leave(c);
+  if (vg_comm_rank(c) == vg_comm_size(c) - 1) {
+    if (!strcmp(argv[1], "abort")) vg_comm_abort(c, 7);
+    raise(SIGKILL);
+  }
+  vg_comm_sum(c, 1, &v, &err);
+  return 0;
+}

@@ -1,0 +1,31 @@
+#!/bin/sh
+# What ends a job: faults.sh PROGRAM MPIRUN [FLAG] (-n). None of it may hang.
+set -u
+program=$1
+shift
+bad=0
+
+check() { # WHAT EXPECTED_STATUS
+  timeout 30 "$mpirun" "$flag" 2 "$program" "$1" >/dev/null 2>&1
+  status=$?
+  [ $status = "$2" ] || { echo "$1: status $status, not $2"; bad=1; }
+}
+
+mpirun=$1
+flag=${2:--n}
+check abort 7
+check kill 137
+check leave 0
+
+# Processes that a launcher of another kind started, and that nothing connects.
+loose() {
+  text=$(env "$@" timeout 30 "$program" leave 2>&1) &&
+    { echo "$*: no error"; bad=1; }
+  case $text in
+    *"processes"*) ;;
+    *) echo "$*: says '$text'"; bad=1 ;;
+  esac
+}
+loose PMI_SIZE=4 PMI_RANK=0
+loose SLURM_STEP_ID=0 SLURM_PROCID=0 SLURM_STEP_NUM_TASKS=3
+exit $bad

@@ -1,0 +1,166 @@
+/* Tasks' outcomes kept by all ranks, found by any; refusals reach all. */
+#define _GNU_SOURCE
+#include "mpi_support.h"
+
+#include <ftw.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "partition/store.h"
+
+#define N_KEY 60
+
+static const struct vg_digest zero = {{0, 0}};
+static char dir[256];
+
+static int remove_one(const char *path, const struct stat *s, int flag,
+                      struct FTW *f)
+{
+  (void)s; (void)flag; (void)f;
+  return remove(path);
+}
+
+/* A folder for each number of ranks, as these tests may run side by side. */
+static int open_job_and_clean(void **state)
+{
+  int bad = open_job(state);
+
+  if (bad) return bad;
+  snprintf(dir, sizeof dir, VG_TMP_DIR "/store_run_%d", vg_comm_size(job));
+  if (!vg_comm_rank(job)) nftw(dir, remove_one, 16, FTW_DEPTH | FTW_PHYS);
+  return vg_comm_agree(job, VG_OK, NULL) < 0;
+}
+
+static struct vg_digest key_of(uint64_t k)
+{
+  return vg_digest_of(zero, sizeof k, &k);
+}
+
+static vg_status try_open(uint64_t run, int resume, uint64_t limit,
+                          struct vg_store **s, struct vg_error *err)
+{
+  struct vg_store_options o = {.dir = dir, .job = key_of(run), .what = "a run",
+                               .resume = resume, .limit = limit};
+
+  *s = NULL;
+  return vg_store_open(job, &o, s, err);
+}
+
+static uint64_t sum_of(uint64_t v)
+{
+  assert_int_equal(vg_comm_sum(job, 1, &v, NULL), VG_OK);
+  return v;
+}
+
+static void kept_by_one_found_by_all(void **state)
+{
+  unsigned char data[1000];
+  struct vg_store *s;
+  struct stat info;
+  struct vg_store_report r;
+
+  (void)state;
+  assert_int_equal(try_open(1, 0, 0, &s, NULL), VG_OK);
+  for (uint64_t k = 0; k < N_KEY; k++) {
+    if ((int)k % vg_comm_size(job) != vg_comm_rank(job)) continue;
+    memset(data, (int)k, sizeof data);
+    vg_store_keep(s, key_of(k), sizeof data, data);
+  }
+  vg_store_state(s, &r);
+  assert_int_equal(sum_of(r.n_kept), N_KEY);
+  vg_store_close(s, 0);
+  assert_int_equal(try_open(1, 1, 0, &s, NULL), VG_OK);
+  for (uint64_t k = 0; k < N_KEY; k++) {
+    struct vg_bytes b = {0, NULL};
+
+    memset(data, (int)k, sizeof data);
+    assert_int_equal(vg_store_find(s, key_of(k), &b, NULL), VG_OK);
+    assert_int_equal(b.n, sizeof data);
+    assert_memory_equal(b.data, data, sizeof data);
+    free(b.data);
+  }
+  vg_store_close(s, 1);
+  assert_int_equal(vg_comm_agree(job, VG_OK, NULL), VG_OK);
+  assert_int_equal(stat(dir, &info), -1);
+}
+
+static void all_ranks_are_refused(void **state)
+{
+  struct vg_error err = VG_ERROR_INIT;
+  struct vg_store *s, *again;
+
+  (void)state;
+  assert_int_equal(try_open(1, 1, 0, &s, &err), VG_ERR_INPUT);
+  assert_non_null(strstr(err.text, "no such run directory"));
+  assert_int_equal(try_open(1, 0, 0, &s, NULL), VG_OK);
+  assert_int_equal(try_open(1, 1, 0, &again, &err), VG_ERR_INPUT);
+  assert_non_null(strstr(err.text, "under way"));
+  if (vg_comm_rank(job))
+    assert_int_equal(strncmp(err.text, "rank 0: ", 8), 0);
+  assert_null(again);
+  vg_store_keep(s, key_of(9), 3, "abc");
+  vg_store_close(s, 0);
+  assert_int_equal(try_open(2, 1, 0, &s, &err), VG_ERR_INPUT);
+  assert_non_null(strstr(err.text, "have changed"));
+  assert_int_equal(try_open(1, 1, 0, &s, NULL), VG_OK);
+  vg_store_close(s, 1);
+}
+
+static void the_limit_is_for_all_together(void **state)
+{
+  static const char data[1000];
+  const uint64_t limit = 20000;
+  struct vg_store *s;
+  struct vg_store_report r;
+  uint64_t sum;
+
+  (void)state;
+  assert_int_equal(try_open(1, 0, limit, &s, NULL), VG_OK);
+  for (uint64_t k = 0; k < 30; k++)
+    vg_store_keep(s, key_of(100 * k + (uint64_t)vg_comm_rank(job)),
+                  sizeof data, data);
+  vg_store_state(s, &r);
+  assert_non_null(strstr(r.stopped, "limit of 20000 bytes over all ranks"));
+  sum = sum_of(r.bytes_kept);
+  /* a rank's share is used up to less than one record */
+  assert_true(sum <= limit &&
+              sum + 1100u * (unsigned)vg_comm_size(job) > limit);
+  vg_store_close(s, 0);
+  assert_int_equal(try_open(1, 1, limit, &s, NULL), VG_OK);
+  for (uint64_t k = 0; k < 30; k++)
+    vg_store_keep(s, key_of(10000 + 100 * k + (uint64_t)vg_comm_rank(job)),
+                  sizeof data, data);
+  vg_store_state(s, &r);
+  assert_true(sum + sum_of(r.bytes_kept) <= limit);
+  vg_store_close(s, 1);
+}
+
+/* Not seen by a rank other than 0, as on a disk of one node. */
+static void a_directory_of_one_node(void **state)
+{
+  struct vg_error err = VG_ERROR_INIT;
+  struct vg_store *s;
+  char kept[256];
+
+  (void)state;
+  if (vg_comm_size(job) < 2) skip();
+  memcpy(kept, dir, sizeof dir);
+  if (vg_comm_rank(job) == 1) strcat(dir, "_elsewhere");
+  assert_int_equal(try_open(1, 0, 0, &s, &err), VG_ERR_IO);
+  assert_non_null(strstr(err.text, "file system that all nodes share"));
+  memcpy(dir, kept, sizeof dir);
+  assert_int_equal(vg_comm_agree(job, VG_OK, NULL), VG_OK);
+  assert_int_equal(access(dir, F_OK), -1);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(kept_by_one_found_by_all),
+    cmocka_unit_test(all_ranks_are_refused),
+    cmocka_unit_test(the_limit_is_for_all_together),
+    cmocka_unit_test(a_directory_of_one_node),
+  };
+
+  return cmocka_run_group_tests(tests, open_job_and_clean, close_job);
+}
