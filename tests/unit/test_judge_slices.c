@@ -1,0 +1,316 @@
+/* Judging slices: the report of vg_mesh_judge, whatever the cut, the threads
+ * and the damage. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "judge_support.h"
+
+static void judge_cut(struct cut *c, const struct vg_sizing *sizing,
+                      int threads, uint64_t front, struct vg_mesh_report *r,
+                      struct vg_mesh_report *field)
+{
+  struct vg_error err = VG_ERROR_INIT;
+
+  if (vg_slices_judge(NULL, &c->s, front, sizing, threads, r, field, &err) < 0)
+    fail_msg("%s", err.text);
+}
+
+/* Any cut of m, on 1 and 3 threads, against the mesh in one piece. */
+static void check_cuts(const struct vg_mesh *m, const struct vg_sizing *sizing,
+                       struct vg_mesh_report *whole)
+{
+  static const size_t n_slice[] = { 1, 2, 7, 40 };
+  struct vg_error err = VG_ERROR_INIT;
+
+  assert_int_equal(vg_mesh_judge(m, sizing, whole, &err), VG_OK);
+  for (size_t i = 0; i < sizeof n_slice / sizeof *n_slice; i++) {
+    struct cut c;
+
+    cut_make(&c, m, n_slice[i], 0, NULL, 17 + i);
+    for (int threads = 1; threads < 4; threads += 2) {
+      struct vg_mesh_report r;
+
+      judge_cut(&c, sizing, threads, 0, &r, NULL);
+      assert_same_report(&r, whole);
+    }
+    cut_release(&c);
+  }
+}
+
+static void tetrahedra_in_slices(void **state)
+{
+  struct vg_mesh m = judge_mesh(VG_LAYER_TETS);
+  struct vg_sizing *sizing = shape_sizing(&m, 1.5, 0);
+  struct vg_mesh_report r;
+
+  (void)state;
+  check_cuts(&m, NULL, &r);
+  assert_true(r.is_valid);
+  assert_int_equal(r.n_component, 1);
+  assert_int_equal(r.has_sizing, 0);
+  check_cuts(&m, sizing, &r);
+  assert_int_equal(r.has_sizing, 1);
+  assert_true(r.edge_mean > 0.1 && r.edge_mean < 10);
+  vg_sizing_free(sizing);
+  vg_mesh_release(&m);
+}
+
+static void mixed_cells_in_slices(void **state)
+{
+  struct vg_mesh m = judge_mesh(VG_LAYER_MIXED);
+  struct vg_sizing *sizing = shape_sizing(&m, 1.5, 0);
+  struct vg_mesh_report r;
+
+  (void)state;
+  assert_true(m.n_pri > 100 && m.n_pyr > 10);
+  check_cuts(&m, sizing, &r);
+  assert_true(r.is_valid);
+  vg_sizing_free(sizing);
+  vg_mesh_release(&m);
+}
+
+/* Quadrilaterals on the boundary, and prisms alone: no angles. */
+static void prisms_in_slices(void **state)
+{
+  struct vg_mesh m = judge_prisms(5, 4, 3);
+  struct vg_mesh_report r;
+
+  (void)state;
+  assert_true(m.n_quad > 0 && m.n_tri > 0);
+  check_cuts(&m, NULL, &r);
+  assert_true(r.is_valid);
+  vg_mesh_release(&m);
+}
+
+static void every_damage_is_counted_alike(void **state)
+{
+  (void)state;
+  for (int damage = 0; damage < JUDGE_DAMAGES; damage++)
+    for (int cells = 0; cells < 2; cells++)
+      for (uint32_t at = 0; at < 3; at++) {
+        struct vg_mesh m = judge_mesh(cells ? VG_LAYER_MIXED : VG_LAYER_TETS);
+        struct vg_mesh_report r;
+
+        judge_damage(&m, damage, at);
+        check_cuts(&m, NULL, &r);
+        assert_false(r.is_valid);
+        assert_true(judge_faults(&r) > 0);
+        vg_mesh_release(&m);
+      }
+}
+
+/* Two blocks and a third that touches one along an edge only. */
+static void components_are_those_of_the_whole(void **state)
+{
+  struct vg_mesh m = judge_prisms(6, 6, 6);
+  struct vg_mesh_report r;
+
+  (void)state;
+  judge_take_layer(&m, 6, 2);
+  check_cuts(&m, NULL, &r);
+  assert_int_equal(r.n_component, 2);
+  vg_mesh_release(&m);
+}
+
+/* Slices of kind 0 are layers, the others the field: against a mesh of the
+ * field's cells alone, bounded by its faces without a neighbour. */
+static void the_field_is_judged_by_itself(void **state)
+{
+  (void)state;
+  for (int cells = 0; cells < 2; cells++) {
+    struct vg_mesh m = judge_mesh(cells ? VG_LAYER_MIXED : VG_LAYER_TETS);
+    struct vg_sizing *sizing = shape_sizing(&m, 1.5, 0);
+    struct vg_mesh_report whole, field, want, want_field;
+    struct vg_error err = VG_ERROR_INIT;
+    struct cut c;
+    struct vg_mesh part;
+
+    cut_make(&c, &m, 11, 0, NULL, 3);
+    part = judge_field(&c);
+    assert_int_equal(vg_mesh_judge(&m, NULL, &want, &err), VG_OK);
+    assert_int_equal(vg_mesh_judge(&part, sizing, &want_field, &err), VG_OK);
+    judge_cut(&c, sizing, 2, part.n_tri + part.n_quad, &whole, &field);
+    assert_same_report(&whole, &want);
+    /* numbers of cells are those in the whole mesh, and what encloses the
+     * field is not looked up */
+    judge_map_worst(&c, &want_field);
+    assert_true(want_field.volume_error < 1e-12);
+    want_field.enclosed = want_field.volume;
+    want_field.volume_error = 0;
+    assert_same_report(&field, &want_field);
+    assert_true(field.is_valid);
+    judge_cut(&c, sizing, 2, part.n_tri + part.n_quad + 3, &whole, &field);
+    assert_int_equal(field.open_face, 3);
+    assert_false(field.is_valid);
+    cut_release(&c);
+    vg_mesh_release(&part);
+    vg_sizing_free(sizing);
+    vg_mesh_release(&m);
+  }
+}
+
+static void points_that_are_nowhere(void **state)
+{
+  struct vg_mesh m = judge_mesh(VG_LAYER_TETS);
+  struct vg_mesh_report r;
+
+  (void)state;
+  m.point[7][1] = NAN;
+  m.point[m.n_point - 1][2] = -INFINITY;
+  check_cuts(&m, NULL, &r);
+  assert_int_equal(r.not_finite, 2);
+  vg_mesh_release(&m);
+}
+
+static struct cut *inner;    /* what spoil_get spoils */
+
+static vg_status spoil_get(const struct vg_slices *s, size_t i,
+                           struct vg_slice *out, struct vg_error *err)
+{
+  vg_status st = cut_get(&inner->s, i, out, err);
+
+  (void)s;
+  if (st < 0 || i != 1) return st;
+  memcpy((void *)(uintptr_t)(out->cell[VG_SLICE_TET] + 2), &out->n_point, 4);
+  memset((void *)(uintptr_t)(out->id + 3), 0xff, 4);
+  return VG_OK;
+}
+
+static void spoil_put(const struct vg_slices *s, struct vg_slice *slice)
+{
+  (void)s;
+  cut_put(&inner->s, slice);
+}
+
+static void indices_that_point_nowhere(void **state)
+{
+  struct vg_mesh m = judge_mesh(VG_LAYER_TETS);
+  struct vg_mesh_report r;
+  struct vg_slices s;
+  struct cut c;
+
+  (void)state;
+  cut_make(&c, &m, 4, 0, NULL, 5);
+  inner = &c;
+  s = c.s;
+  s.get = spoil_get;
+  s.put = spoil_put;
+  assert_int_equal(vg_slices_judge(NULL, &s, 0, NULL, 2, &r, NULL, NULL),
+                   VG_OK);
+  assert_false(r.is_valid);
+  assert_true(r.bad_index >= 2);
+  assert_int_equal(r.n_cell, m.n_tet);
+  m.tri[5][1] = (uint32_t)m.n_point;
+  judge_cut(&c, NULL, 1, 0, &r, NULL);
+  assert_int_equal(r.bad_index, 1);
+  assert_false(r.is_valid);
+  cut_release(&c);
+  vg_mesh_release(&m);
+}
+
+static void failures_are_told(void **state)
+{
+  struct vg_mesh m = judge_mesh(VG_LAYER_TETS);
+  struct vg_mesh_report r;
+  struct vg_error err = VG_ERROR_INIT;
+  struct cut c;
+
+  (void)state;
+  memset(&r, 0x5a, sizeof r);
+  cut_make(&c, &m, 6, 0, NULL, 5);
+  c.bad = 4;
+  assert_int_equal(vg_slices_judge(NULL, &c.s, 0, NULL, 2, &r, NULL, &err),
+                   VG_ERR_IO);
+  assert_string_equal(err.text, "slice 4 is bad");
+  c.bad = SIZE_MAX;
+  c.s.n_cell[VG_SLICE_PRI]++;
+  assert_int_equal(vg_slices_judge(NULL, &c.s, 0, NULL, 2, &r, NULL, &err),
+                   VG_ERR_INPUT);
+  assert_non_null(strstr(err.text, "prisms"));
+  assert_true(((unsigned char *)&r)[9] == 0x5a);
+  cut_release(&c);
+  vg_mesh_release(&m);
+}
+
+static void nothing_is_not_valid(void **state)
+{
+  struct vg_mesh m = VG_MESH_INIT;
+  struct vg_mesh_report r;
+  struct cut c;
+
+  (void)state;
+  cut_make(&c, &m, 1, 0, NULL, 5);
+  judge_cut(&c, NULL, 2, 0, &r, NULL);
+  assert_false(r.is_valid);
+  assert_int_equal(r.n_cell, 0);
+  cut_release(&c);
+}
+
+/* --- sums ---------------------------------------------------------------- */
+
+static void sums_are_exact(void **state)
+{
+  static const double x[] = { 1, 1e-300, 1e300, -1e300, 5e-324, 0.1, -1,
+                              -5e-324, 3, -0.1, 1e-300 };
+  struct vg_exact s = { .n_odd = 0 }, t = { .n_odd = 0 };
+  size_t n = sizeof x / sizeof *x;
+
+  (void)state;
+  for (size_t i = 0; i < n; i++) vg_exact_add(&s, x[i]);
+  for (size_t i = n; i-- > 0;) vg_exact_add(&t, x[i]);
+  assert_memory_equal(&s, &t, sizeof s);
+  assert_true(vg_exact_value(&s) == 3);
+  vg_exact_add(&s, -3);
+  assert_true(vg_exact_value(&s) == 2e-300);
+  vg_exact_add(&s, -2e-300);
+  assert_true(vg_exact_value(&s) == 0);
+  vg_exact_add(&s, -5e-324);
+  assert_true(vg_exact_value(&s) == -5e-324);
+  vg_exact_add(&s, 1.7e308);
+  vg_exact_add(&s, INFINITY);
+  assert_true(isnan(vg_exact_value(&s)));
+}
+
+/* Halfway cases go to the even neighbour, unless something far below tips
+ * them. */
+static void sums_are_rounded_once(void **state)
+{
+  struct vg_exact s = { .n_odd = 0 };
+
+  (void)state;
+  vg_exact_add(&s, 1);
+  vg_exact_add(&s, ldexp(1, -53));
+  assert_true(vg_exact_value(&s) == 1);
+  vg_exact_add(&s, 1e-200);
+  assert_true(vg_exact_value(&s) == 1 + ldexp(1, -52));
+  vg_exact_add(&s, -2e-200);
+  assert_true(vg_exact_value(&s) == 1);
+  for (int i = 0; i < 1000; i++) vg_exact_add(&s, -1e16);
+  assert_true(vg_exact_value(&s) == -1e19);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(tetrahedra_in_slices),
+    cmocka_unit_test(mixed_cells_in_slices),
+    cmocka_unit_test(prisms_in_slices),
+    cmocka_unit_test(every_damage_is_counted_alike),
+    cmocka_unit_test(components_are_those_of_the_whole),
+    cmocka_unit_test(the_field_is_judged_by_itself),
+    cmocka_unit_test(points_that_are_nowhere),
+    cmocka_unit_test(indices_that_point_nowhere),
+    cmocka_unit_test(failures_are_told),
+    cmocka_unit_test(nothing_is_not_valid),
+    cmocka_unit_test(sums_are_exact),
+    cmocka_unit_test(sums_are_rounded_once),
+  };
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
