@@ -107,6 +107,8 @@ static vg_status write_beside(const struct cogsg *c, const char *stem,
   VG_TRY(vg_output_open(bc_name, bc, err));
   vg_cogsg_put_faces(bc, &m, &c->info, c->old_to_new);
   VG_TRY(vg_output_flush(bc, err));
+  /* of the points, .mapbc depends on the box that holds all: the boundary */
+  m.n_point = c->boundary.n;
   m.point = c->boundary.x;
   VG_TRY(vg_cogsg_write_mapbc(stem, &m, NULL, err));
 done:

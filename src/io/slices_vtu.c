@@ -2,7 +2,7 @@
 #include "core/quality.h"
 #include "io/slices_parts.h"
 
-#define BLOCK 2048
+#define BLOCK 32768   /* each is a write of its own, twice 128 kB on the stack */
 
 static const int cell_width[VG_SLICE_KINDS] = { 4, 5, 6 };
 
@@ -24,20 +24,20 @@ static void put_quality(const struct whole *w, const struct vg_slice *slice,
                         struct vg_output *out)
 {
   size_t n = slice->n_cell[VG_SLICE_TET];
-  float figure[BLOCK];
+  float figure[2][BLOCK];
 
-  for (int f = 0; f < 2; f++) {
-    vg_output_seek(out, w->at.field[f] +
-                   sizeof(float) * slice->cell_at[VG_SLICE_TET]);
-    for (size_t i = 0; i < n; i += BLOCK) {
-      const struct vg_mesh part = {
-        .n_point = slice->n_point, .point = (double (*)[3])slice->x,
-        .n_tet = n - i < BLOCK ? n - i : BLOCK,
-        .tet = (uint32_t (*)[4])slice->cell[VG_SLICE_TET] + i
-      };
+  for (size_t i = 0; i < n; i += BLOCK) {
+    const struct vg_mesh part = {
+      .n_point = slice->n_point, .point = (double (*)[3])slice->x,
+      .n_tet = n - i < BLOCK ? n - i : BLOCK,
+      .tet = (uint32_t (*)[4])slice->cell[VG_SLICE_TET] + i
+    };
 
-      vg_mesh_cell_quality(&part, f ? NULL : figure, f ? figure : NULL);
-      vg_output_bytes(out, figure, part.n_tet * sizeof *figure);
+    vg_mesh_cell_quality(&part, figure[0], figure[1]);
+    for (int f = 0; f < 2; f++) {
+      vg_output_seek(out, w->at.field[f] + sizeof **figure *
+                     (slice->cell_at[VG_SLICE_TET] + i));
+      vg_output_bytes(out, figure[f], part.n_tet * sizeof **figure);
     }
   }
 }
