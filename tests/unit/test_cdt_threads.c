@@ -68,8 +68,10 @@ static int batches_differ(const struct batch *a, const struct batch *b)
   for (int k = 0; k < N_JOB; k++) {
     const struct vg_cdt_job *p = &a->job[k], *q = &b->job[k];
 
-    if (p->st != q->st || p->n_all != q->n_all || p->n_tet != q->n_tet ||
-        memcmp(p->all, q->all, p->n_all * sizeof *p->all) ||
+    if (p->st != q->st || p->n_all != q->n_all || p->n_tet != q->n_tet)
+      return 1;
+    if (p->st != VG_OK) continue;
+    if (memcmp(p->all, q->all, p->n_all * sizeof *p->all) ||
         memcmp(p->tet, q->tet, p->n_tet * sizeof *p->tet)) return 1;
   }
   return 0;
