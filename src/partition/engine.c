@@ -18,6 +18,14 @@ double vg_engine_now(void)
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
+double vg_engine_thread_time(void)
+{
+  struct timespec t;
+
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
 void vg_engine_lock(struct vg_engine *e)
 {
   pthread_mutex_lock(&e->lock);

@@ -2,8 +2,11 @@
  *
  * MPI has no wait for a message that leaves the core to others, so this thread
  * sleeps between polls: briefly after something came or was sent, longer and
- * longer while nothing happens. Alone it is only woken for the caller's. */
+ * longer while nothing happens, until the polls take SHARE of a core. What one
+ * takes is measured, as it differs tenfold between machines: so where waking
+ * is cheap, messages wait less. Alone it is only woken for the caller's. */
 #define _GNU_SOURCE
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -12,9 +15,12 @@
 #include "partition/engine_parts.h"
 
 /* Seconds. */
-#define SLEEP_MIN 20e-6
-#define SLEEP_MAX 500e-6
+#define SLEEP_MIN 50e-6      /* and as much again, by the kernel's slack */
+#define SLEEP_MORE 1.5
+#define SLEEP_LOW 300e-6     /* bounds of the longest sleep */
+#define SLEEP_HIGH 5e-3
 #define SLEEP_ALONE 20e-3
+#define SHARE 0.005
 #define STOP_EVERY 20e-3
 #define PROGRESS_EVERY 0.2
 #define PATIENCE 30.0         /* with a mailbox that fails */
@@ -314,20 +320,46 @@ static int all_over(const struct vg_engine *e)
   return 1;
 }
 
+struct pace {
+  double sleep, longest;     /* s */
+  double cpu;                /* of this thread, when counting began */
+  int n;                     /* polls in vain since */
+};
+
+static void set_pace(struct pace *p, int active)
+{
+  enum { SAMPLE = 32 };
+  double cpu;
+
+  if (active) {
+    p->sleep = SLEEP_MIN;
+    p->n = -1;
+  } else {
+    p->sleep = fmin(SLEEP_MORE * p->sleep, p->longest);
+  }
+  p->n++;
+  if (p->n % SAMPLE) return;
+  cpu = vg_engine_thread_time();
+  if (p->n)
+    p->longest = fmax(SLEEP_LOW, fmin((cpu - p->cpu) / (SAMPLE * SHARE),
+                                      SLEEP_HIGH));
+  p->cpu = cpu;
+  p->n = 0;
+}
+
 /* Sleep, unless over or something is to be sent. Returns 1 when over. */
-static int doze(struct vg_engine *e, double *sleep, int active)
+static int doze(struct vg_engine *e, struct pace *pace, int active)
 {
   struct timespec until;
   double t;
   int over;
 
   vg_engine_lock(e);
-  if (active || e->hurry) *sleep = SLEEP_MIN;
-  else *sleep = 2 * *sleep < SLEEP_MAX ? 2 * *sleep : SLEEP_MAX;
+  if (e->size > 1) set_pace(pace, active || e->hurry);
   e->hurry = 0;
   over = all_over(e);
   if (!over && !e->out.first) {
-    t = vg_engine_now() + (e->size > 1 ? *sleep : SLEEP_ALONE);
+    t = vg_engine_now() + pace->sleep;
     until.tv_sec = (time_t)t;
     until.tv_nsec = (long)(1e9 * (t - (double)until.tv_sec));
     pthread_cond_timedwait(&e->serve, &e->lock, &until);
@@ -339,7 +371,9 @@ static int doze(struct vg_engine *e, double *sleep, int active)
 
 void vg_serve(struct vg_engine *e)
 {
-  double sleep = SLEEP_MIN, failing = 0, stop = 0, progress = e->begin;
+  struct pace pace = { .sleep = e->size > 1 ? SLEEP_MIN : SLEEP_ALONE,
+                       .longest = SLEEP_LOW };
+  double failing = 0, stop = 0, progress = e->begin;
   int active;
 
   do {
@@ -355,6 +389,6 @@ void vg_serve(struct vg_engine *e)
       show_progress(e);
       progress = now;
     }
-  } while (!doze(e, &sleep, active));
+  } while (!doze(e, &pace, active));
   show_progress(e);
 }

@@ -1,19 +1,9 @@
 /* What the workers do: tasks, and `done` for what has ended. */
-#define _GNU_SOURCE
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "base/memory.h"
 #include "partition/engine_parts.h"
-
-static double thread_time(void)
-{
-  struct timespec t;
-
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 void vg_work_queue(struct vg_engine *e, struct vg_job *j)
 {
@@ -101,7 +91,7 @@ static void record(struct vg_worker *w, const struct vg_job *j,
   span->home = j->home;
   span->start = start - w->e->begin;
   span->end = vg_engine_now() - w->e->begin;
-  span->cpu = thread_time() - cpu;
+  span->cpu = vg_engine_thread_time() - cpu;
   span->estimate = j->task.weight;
   span->n_cell = j->n_cell;
 }
@@ -113,7 +103,7 @@ static vg_status run(struct vg_worker *w, struct vg_job *j,
   size_t n_cell = 0;
   vg_status st;
 
-  span->bytes_in = j->bytes.n;
+  if (j->home != e->rank) span->bytes_in = j->bytes.n;
   st = unpack(e, j, err);
   if (!st)
     st = e->ops->run(e->user, e, &j->task, w->number, &j->outcome, &n_cell,
@@ -145,7 +135,7 @@ static void do_job(struct vg_worker *w, struct vg_job *j)
 {
   struct vg_engine *e = w->e;
   struct vg_error err = VG_ERROR_INIT;
-  double start = vg_engine_now(), cpu = thread_time();
+  double start = vg_engine_now(), cpu = vg_engine_thread_time();
   struct vg_span span;
   vg_status st;
 
