@@ -2,7 +2,8 @@
 #include "core/quality.h"
 #include "io/slices_parts.h"
 
-#define BLOCK 32768   /* each is a write of its own, twice 128 kB on the stack */
+/* Each is a write of its own; twice 128 kB on the stack. */
+#define BLOCK 32768
 
 static const int cell_width[VG_SLICE_KINDS] = { 4, 5, 6 };
 
