@@ -12,11 +12,21 @@
 #include "partition/load_tree.h"
 
 /* Widest cube in target edges, free and where the front passes. */
-#define WIDE_FREE 4.0
-#define WIDE_FRONT 4.0
+#define WIDE_FREE 3.0
+#define WIDE_FRONT 2.0
+/* They may be wider to have about this many cubes, for large meshes. Nodes this
+ * wide tell how large a mesh is; a leaf fills its width's cube on average. */
+#define MANY_CUBES 250000.0
+#define WIDE_ROUGH 12.0
+#define FILLED 0.35
 /* With fewer cubes than this, narrower ones are tried, down to LEAST edges. */
 #define FEW_CUBES 64
 #define LEAST 1.0
+/* Where the target edge varies, cells are more by this share: nearly the same
+ * for growth rates from 1.1 to 1.35, while even spacing allows regular cells.
+ * Full from this gradient on. */
+#define GRADED 0.21
+#define GRADIENT 0.05
 /* Places of the root cube that are tried when volumes do not agree. */
 #define PLACES 3
 
@@ -36,7 +46,8 @@ struct cubes {
 struct maker {
   const struct vg_load_tree *tree;
   const struct vg_sizing *sizing;
-  double per_cube, narrow;   /* narrow: divides the widths allowed */
+  double per_cube;
+  double narrow, wide;       /* divides, multiplies the widths allowed */
   size_t n_branch, cap_branch, large;
   struct branch {
     struct vg_load_node node;
@@ -47,26 +58,33 @@ struct maker {
   } *branch;
 };
 
-/* Mean of 1 / h^3 over a node: a rule of four points, exact for quadratics. */
-static double mean_density(const struct maker *m,
-                           const struct vg_load_node *node)
+/* Of a node: mean of 1 / h^3 and that times the correction for a gradient. A
+ * rule of four points, exact for quadratics. */
+struct density { double cubes, cells; };
+
+static struct density mean_density(const struct maker *m,
+                                   const struct vg_load_node *node)
 {
   static const int sign[4][3] = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1},
                                  {-1, -1, 1}};
   const struct vg_load_tree *t = m->tree;
   const double half = 0.5 * vg_load_side(node) * t->unit;
-  double sum = 0;
+  const double off = 0.57735026918962576 * half;
+  double sum = 0, g[3] = { 0, 0, 0 }, gg = 0, slope;
 
   for (int i = 0; i < 4; i++) {
     double x[3], h;
 
     for (int k = 0; k < 3; k++)
-      x[k] = t->lo[k] + node->at[k] * t->unit
-             + half * (1 + sign[i][k] * 0.57735026918962576);
+      x[k] = t->lo[k] + node->at[k] * t->unit + half + sign[i][k] * off;
     h = vg_sizing_at(m->sizing, x);
     sum += 1 / (h * h * h);
+    for (int k = 0; k < 3; k++) g[k] += sign[i][k] * h;
   }
-  return sum / 4;
+  for (int k = 0; k < 3; k++) gg += g[k] * g[k];
+  slope = sqrt(gg) / (4 * off * GRADIENT);
+  sum /= 4;
+  return (struct density){ sum, sum * (1 + GRADED * fmin(slope, 1)) };
 }
 
 /* Cube root to single precision: h is of no use beyond. */
@@ -86,7 +104,7 @@ static double cube_root(double x)
 
 static int emit(const struct maker *m, struct branch *b,
                 const struct vg_load_stack *s,
-                const struct vg_load_node *node, double density)
+                const struct vg_load_node *node, struct density density)
 {
   const struct vg_load_tree *t = m->tree;
   const double side = vg_load_side(node) * t->unit;
@@ -108,9 +126,10 @@ static int emit(const struct maker *m, struct branch *b,
   for (int k = 0; k < 3; k++)
     c->at[k] = (float)(t->lo[k] + node->at[k] * t->unit + 0.5 * side);
   c->half = (float)(0.5 * side);
-  c->h = (float)(1 / cube_root(density));
+  c->h = (float)(1 / cube_root(density.cubes));
   c->part = (float)inside / VG_LOAD_SAMPLES;
-  c->cells = (float)(m->per_cube * density * volume * (double)c->part);
+  c->cells = (float)(m->per_cube * density.cells * volume
+                     * (double)c->part);
   return 0;
 }
 
@@ -118,7 +137,7 @@ static int is_leaf(const struct maker *m, const struct vg_load_node *node,
                    double density)
 {
   const double side = vg_load_side(node) * m->tree->unit * m->narrow;
-  const double wide = node->n ? WIDE_FRONT : WIDE_FREE;
+  const double wide = m->wide * (node->n ? WIDE_FRONT : WIDE_FREE);
 
   return node->level >= VG_LOAD_LEVELS
          || side * side * side * density <= wide * wide * wide;
@@ -129,12 +148,12 @@ static int refine(const struct maker *m, struct branch *b,
 {
   const size_t keep = s->n;
   struct vg_load_node part[8];
-  double density;
+  struct density density;
   int bad = 0;
 
   if (!node->n && node->owner < 1) return 0;
   density = mean_density(m, node);
-  if (is_leaf(m, node, density)) return emit(m, b, s, node, density);
+  if (is_leaf(m, node, density.cubes)) return emit(m, b, s, node, density);
   if (vg_load_octants(m->tree, s, node, part, 1)) return -1;
   for (int o = 0; o < 8 && !bad; o++) bad = refine(m, b, s, &part[o]);
   s->n = keep;
@@ -190,7 +209,7 @@ static int plan(struct maker *m, struct vg_load_stack *s,
 
   if (!node->n && node->owner < 1) return 0;
   if ((node->n <= m->large && node->level)
-      || is_leaf(m, node, mean_density(m, node)))
+      || is_leaf(m, node, mean_density(m, node).cubes))
     return add_branch(m, s, node);
   if (vg_load_octants(m->tree, s, node, part, threads)) return -1;
   for (int o = 0; o < 8 && !bad; o++) bad = plan(m, s, &part[o], threads);
@@ -210,6 +229,52 @@ static int plan_all(struct maker *m, int threads)
   if (!bad) bad = plan(m, &s, &root, threads);
   vg_load_stack_release(&s);
   return bad;
+}
+
+/* Cubes of the target edge in a node, whatever is the void. */
+static double rough(const struct maker *m, const struct vg_load_node *node)
+{
+  const double side = vg_load_side(node) * m->tree->unit;
+  const double n = mean_density(m, node).cubes * side * side * side;
+  struct vg_load_node part = *node;
+  double sum = 0;
+
+  if (node->level >= VG_LOAD_LEVELS
+      || n <= WIDE_ROUGH * WIDE_ROUGH * WIDE_ROUGH)
+    return n;
+  part.level++;
+  for (int o = 0; o < 8; o++) {
+    for (int k = 0; k < 3; k++)
+      part.at[k] = node->at[k] + (o >> k & 1 ? vg_load_side(&part) : 0);
+    sum += rough(m, &part);
+  }
+  return sum;
+}
+
+struct rough_job { const struct maker *m; double *sum; };
+
+static void rough_part(void *context, size_t first, size_t end, int worker)
+{
+  const struct rough_job *job = context;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++)
+    job->sum[i] = rough(job->m, &job->m->branch[i].node);
+}
+
+/* Choose the widths for a tolerable number of cubes. */
+static int widen(struct maker *m, int threads)
+{
+  struct rough_job job = { m, vg_alloc(m->n_branch, sizeof *job.sum) };
+  double sum = 0, wide;
+
+  if (!job.sum) return -1;
+  vg_parallel_for(threads, m->n_branch, 1, rough_part, &job);
+  for (size_t i = 0; i < m->n_branch; i++) sum += job.sum[i];
+  free(job.sum);
+  wide = cube_root(sum / (FILLED * MANY_CUBES)) / WIDE_FREE;
+  m->wide = wide > 1 ? wide : 1;
+  return 0;
 }
 
 /* All cubes in order. crossed: see struct branch. */
@@ -241,7 +306,8 @@ static int make(struct maker *m, int threads, struct vg_load *out,
   int bad;
 
   m->n_branch = 0;
-  bad = plan_all(m, threads);
+  m->wide = 1;
+  bad = plan_all(m, threads) || (m->n_branch && widen(m, threads));
   if (!bad) {
     vg_parallel_for(threads, m->n_branch, 1, refine_part, m);
     bad = join(m, out, crossed);
@@ -276,31 +342,6 @@ static void place_root(struct vg_load_tree *t, const double lo[3],
     const double x = lo[k] - (side - (hi[k] - lo[k])) * room[place][k];
 
     t->lo[k] = floor(x / t->unit) * t->unit;
-  }
-}
-
-static double parts_volume(const struct vg_load *l)
-{
-  double sum = 0;
-
-  for (size_t i = 0; i < l->n; i++) {
-    const double side = 2 * (double)l->cube[i].half;
-
-    sum += side * side * side * (double)l->cube[i].part;
-  }
-  return sum;
-}
-
-/* Let the parts make up the volume of the front. */
-static void scale_parts(struct vg_load *l, double ratio)
-{
-  l->cells = 0;
-  for (size_t i = 0; i < l->n; i++) {
-    struct vg_load_cube *c = &l->cube[i];
-
-    c->part = (float)((double)c->part * ratio);
-    c->cells = (float)((double)c->cells * ratio);
-    l->cells += (double)c->cells;
   }
 }
 
@@ -339,7 +380,7 @@ static vg_status build(struct maker *m, struct vg_load_tree *t,
   vg_load_box(v, lo, hi);
   for (int place = 0; place < PLACES; place++) {
     struct vg_load l = VG_LOAD_INIT;
-    double crossed, off;
+    double crossed = 0, off;
     vg_status st;
     int bad;
 
@@ -351,7 +392,7 @@ static vg_status build(struct maker *m, struct vg_load_tree *t,
     if (bad) return vg_fail_memory(err, "the estimate of cells");
     memcpy(l.lo, t->lo, sizeof l.lo);
     l.unit = t->unit;
-    off = fabs(parts_volume(&l) - volume);
+    off = fabs(vg_load_parts(&l) - volume);
     if (off < best) {
       vg_load_release(out);
       *out = l;
@@ -376,7 +417,7 @@ vg_status vg_load_new(const struct vg_void *v, const struct vg_sizing *sizing,
   const double volume = vg_load_volume(v);
   vg_status st = VG_OK;
 
-  m.large = threads == 1 ? v->n_face : v->n_face / 64 + 1024;
+  m.large = v->n_face / 64 + 1024;
   if (!(volume > 0) || !v->n_face) {
     *out = l;
     return VG_OK;
@@ -391,7 +432,7 @@ vg_status vg_load_new(const struct vg_void *v, const struct vg_sizing *sizing,
     vg_load_release(&l);
     return st;
   }
-  if (parts_volume(&l) > 0) scale_parts(&l, volume / parts_volume(&l));
+  vg_load_fit(&l, volume);
   *out = l;
   return VG_OK;
 }

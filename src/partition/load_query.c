@@ -7,9 +7,9 @@
 #include "base/comm.h"
 #include "base/memory.h"
 
-/* Bins of a histogram, and how often one of them is looked into again: to
- * 1 / 2^24 of the extent. */
-enum { BINS = 256, ZOOMS = 3 };
+/* Bins of a histogram, and how many histograms, each within a bin of the one
+ * before: so cells count as even within 1 / 2^16 of the extent. */
+enum { BINS = 256, ZOOMS = 2 };
 
 /* Part of a cube's cells below x. */
 static inline double below(const struct vg_load_cube *c, int axis, double x)
@@ -69,7 +69,7 @@ static double histogram(const struct vg_load *l, int axis, double lo,
 
 double vg_load_quantile(const struct vg_load *l, int axis, double part)
 {
-  double bin[BINS], lo, hi, target = part * l->cells;
+  double bin[BINS], lo, hi, target = part * l->cells, rest = 0;
 
   if (!l->n) return 0;
   extent(l, axis, &lo, &hi);
@@ -83,8 +83,9 @@ double vg_load_quantile(const struct vg_load *l, int axis, double part)
     while (b < BINS - 1 && sum + bin[b] < target) sum += bin[b++];
     lo += b * width;
     hi = lo + width;
+    rest = bin[b] > 0 ? (target - sum) / bin[b] : 0;
   }
-  return 0.5 * (lo + hi);
+  return lo + fmin(fmax(rest, 0), 1) * (hi - lo);
 }
 
 double vg_load_zone(const struct vg_load *l, int axis, double at,

@@ -240,33 +240,14 @@ static int lone_cube(const struct split *s, const struct vg_void *v,
 }
 
 static void take_share(const struct split *s, const struct share *from,
-                       struct vg_load_cube *to)
+                       double correction, struct vg_load_cube *to)
 {
   const struct vg_load_cube *c = &s->parent->cube[from->cube];
 
   *to = *c;
   to->part = (float)from->part;
-  to->cells = (float)((double)c->cells * from->part / (double)c->part);
-}
-
-/* Parts are scaled to make up the child's volume, cells with them. */
-static void finish(struct vg_load *l, double volume, double correction)
-{
-  double sum = 0, ratio;
-
-  for (size_t i = 0; i < l->n; i++) {
-    const double side = 2 * (double)l->cube[i].half;
-
-    sum += side * side * side * (double)l->cube[i].part;
-  }
-  ratio = sum > 0 && volume > 0 ? volume / sum : 1;
-  for (size_t i = 0; i < l->n; i++) {
-    struct vg_load_cube *c = &l->cube[i];
-
-    c->part = (float)(ratio * (double)c->part);
-    c->cells = (float)(ratio * correction * (double)c->cells);
-    l->cells += (double)c->cells;
-  }
+  to->cells = (float)(correction * (double)c->cells * from->part
+                      / (double)c->part);
 }
 
 static int deal(const struct split *s, const struct vg_void *child,
@@ -285,12 +266,12 @@ static int deal(const struct split *s, const struct vg_void *child,
   for (size_t i = 0; i < s->n_share; i++) {
     struct vg_load *l = &made[s->share[i].child];
 
-    take_share(s, &s->share[i], &l->cube[l->n++]);
+    take_share(s, &s->share[i], correction, &l->cube[l->n++]);
   }
   for (size_t c = 0; c < s->n_child; c++) {
     const double volume = vg_load_volume(&child[c]);
 
-    if (made[c].n) finish(&made[c], volume, correction);
+    if (made[c].n) vg_load_fit(&made[c], volume);
     else if (lone_cube(s, &child[c], volume, correction, &made[c])) return -1;
   }
   return 0;

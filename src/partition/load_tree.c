@@ -16,6 +16,9 @@
 
 enum { GRAIN = 1 << 14 };
 
+/* A volume that is off by more is made to fit by all cubes alike. */
+#define ROUGH 0.03
+
 /* --- fronts -------------------------------------------------------------- */
 
 double vg_load_volume(const struct vg_void *v)
@@ -306,5 +309,56 @@ void vg_load_sample(const struct vg_load_tree *t,
     for (int k = 0; k < 3; k++) q[k] = p[k] + (from >> k & 1 ? half : 0);
     owner[o] = owner[from]
                + along(t, list, node->n, axis, q, q[axis] + half);
+  }
+}
+
+/* --- volumes ------------------------------------------------------------- */
+
+static double cube_volume(const struct vg_load_cube *c)
+{
+  return 8 * (double)c->half * (double)c->half * (double)c->half;
+}
+
+double vg_load_parts(const struct vg_load *l)
+{
+  double sum = 0;
+
+  for (size_t i = 0; i < l->n; i++)
+    sum += cube_volume(&l->cube[i]) * (double)l->cube[i].part;
+  return sum;
+}
+
+static void multiply(struct vg_load_cube *c, double factor)
+{
+  c->part = (float)((double)c->part * factor);
+  c->cells = (float)((double)c->cells * factor);
+}
+
+/* Least squares: a part p is thought to be wrong by p (1 - p) in the square,
+ * so what is missing goes to each cube by its volume times that; most of it
+ * to large cubes, whose errors are the large ones. */
+void vg_load_fit(struct vg_load *l, double volume)
+{
+  const double off = volume > 0 ? volume - vg_load_parts(l) : 0;
+  double weight = 0, left;
+
+  for (size_t i = 0; i < l->n; i++) {
+    const double v = cube_volume(&l->cube[i]), p = (double)l->cube[i].part;
+
+    weight += v * v * p * (1 - p);
+  }
+  for (size_t i = 0; i < l->n && weight > 0; i++) {
+    const double p = (double)l->cube[i].part;
+    double f = 1 + off * cube_volume(&l->cube[i]) * (1 - p) / weight;
+
+    if (f < 0.5) f = 0.5;
+    multiply(&l->cube[i], f < 2 ? f : 2);
+  }
+  left = vg_load_parts(l);
+  l->cells = 0;
+  for (size_t i = 0; i < l->n; i++) {
+    if (left > 0 && volume > 0 && fabs(volume - left) > ROUGH * volume)
+      multiply(&l->cube[i], volume / left);
+    l->cells += (double)l->cube[i].cells;
   }
 }

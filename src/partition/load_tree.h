@@ -77,4 +77,10 @@ void vg_load_sample(const struct vg_load_tree *t,
                     const struct vg_load_node *node,
                     int32_t owner[VG_LOAD_SAMPLES]);
 
+/** Volume of all parts. */
+double vg_load_parts(const struct vg_load *l);
+
+/** Let the parts, as sampled, make up `volume`, and set the sum of cells. */
+void vg_load_fit(struct vg_load *l, double volume);
+
 #endif
