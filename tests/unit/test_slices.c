@@ -295,19 +295,23 @@ static void what_shows_the_boundary(void **state)
   cut_release(&c);
 }
 
-/* Data of the n-th array of a .vtu. */
-static const void *array_of(const unsigned char *data, size_t size, int n,
+/* Data of the n-th array of a .vtu, aligned; to be freed. */
+static void *array_of(const unsigned char *data, size_t size, int n,
                             uint64_t *bytes)
 {
   const char *at = (const char *)data;
   const unsigned char *base = memmem(data, size, "<AppendedData", 13);
+  void *copy;
 
   assert_non_null(base);
   base = (unsigned char *)strchr((const char *)base, '_') + 1;
   for (int i = 0; i <= n; i++) at = strstr(at, " offset=\"") + 9;
   base += strtoull(at, NULL, 10);
   memcpy(bytes, base, sizeof *bytes);
-  return base + sizeof *bytes;
+  copy = vg_alloc(*bytes, 1);
+  assert_true(*bytes <= size);
+  memcpy(copy, base + sizeof *bytes, *bytes);
+  return copy;
 }
 
 /* Slots of VTK that hold our nodes. */
@@ -323,12 +327,12 @@ static size_t check_piece(const struct cut *c, const char *path, size_t g)
   size_t size, n = 0;
   uint64_t b;
   unsigned char *data = io_slurp(path, &size);
-  const double (*x)[3] = array_of(data, size, 0, &b);
-  const int64_t *node = array_of(data, size, 1, &b), *first = node;
-  const int64_t *end = array_of(data, size, 2, &b);
-  const unsigned char *types = array_of(data, size, 3, &b);
-  const int32_t *domain = array_of(data, size, 4, &b);
-  const int32_t *kinds = array_of(data, size, 5, &b);
+  double (*x)[3] = array_of(data, size, 0, &b);
+  int64_t *first = array_of(data, size, 1, &b), *node = first;
+  int64_t *end = array_of(data, size, 2, &b);
+  unsigned char *types = array_of(data, size, 3, &b);
+  int32_t *domain = array_of(data, size, 4, &b);
+  int32_t *kinds = array_of(data, size, 5, &b);
   size_t n_cell = b / 4;
 
   for (; g < c->n && n < n_cell; g++)
@@ -348,6 +352,12 @@ static size_t check_piece(const struct cut *c, const char *path, size_t g)
         assert_int_equal(kinds[n], g % 4);
       }
   assert_int_equal(n, n_cell);
+  free(x);
+  free(first);
+  free(end);
+  free(types);
+  free(domain);
+  free(kinds);
   free(data);
   return g;
 }
