@@ -9,6 +9,7 @@
 #include <string.h>
 #include <cmocka.h>
 
+#include "core/cdt_server.h"
 #include "core/demo.h"
 #include "fill_shapes.h"
 
@@ -60,9 +61,7 @@ static void same_mesh(const struct job *a, const struct job *b)
                       a->mesh.n_tet * sizeof *a->mesh.tet);
 }
 
-/* An example with its own field. Their triangles are Delaunay, so no process
- * has to be started for TetGen: the thread sanitizer's allocator does not
- * survive a fork among threads. */
+/* An example with its own field. */
 static struct vg_sizing *example(const char *name, size_t n_cell,
                                  struct vg_demo *d)
 {
@@ -127,7 +126,6 @@ static void a_field_is_shared(void **state)
   vg_demo_release(&demo);
 }
 
-#ifndef __SANITIZE_THREAD__
 /* Surfaces with triangles that TetGen has to recover, in two threads. */
 static void pockets_at_once(void **state)
 {
@@ -156,17 +154,17 @@ static void pockets_at_once(void **state)
     vg_mesh_release(&s[i]);
   }
 }
-#endif
 
+/* The thread sanitizer's allocator does not survive a fork among threads, so
+ * TetGen's children come from a server, as in the program. */
 int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(two_voids_at_once),
     cmocka_unit_test(a_field_is_shared),
-#ifndef __SANITIZE_THREAD__
     cmocka_unit_test(pockets_at_once),
-#endif
   };
 
+  if (vg_cdt_server_start(NULL) != VG_OK) return 1;
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
