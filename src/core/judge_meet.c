@@ -52,45 +52,96 @@ int vg_meet_rank(const struct vg_meeting *m, const void *key)
   return rank_of(hash(key, m->key), vg_comm_size(m->comm));
 }
 
-static struct vg_items *list_at(struct vg_items *list, size_t i,
-                                size_t stride)
+/* --- counting sort ------------------------------------------------------- */
+
+/* Items of several sources, put in order of bins: ranks or parts. */
+struct sorting {
+  const struct vg_meeting *m;
+  size_t (*bin)(const struct sorting *s, uint64_t h);
+  struct vg_bytes *from;     /* [n_from], freed as they are done with */
+  size_t n_from, n_bin;
+  size_t *at;                /* [n_from][n_bin] */
+  size_t *first;             /* [n_bin + 1] */
+  unsigned char *item;
+};
+
+static size_t rank_bin(const struct sorting *s, uint64_t h)
 {
-  return (struct vg_items *)(void *)((unsigned char *)list + i * stride);
+  return (size_t)rank_of(h, (int)s->n_bin);
+}
+
+static size_t part_bin(const struct sorting *s, uint64_t h)
+{
+  return (size_t)h & (s->n_bin - 1);
+}
+
+static void count_sources(void *context, size_t first, size_t end, int worker)
+{
+  const struct sorting *s = context;
+  size_t size = s->m->size;
+
+  (void)worker;
+  for (size_t r = first; r < end; r++) {
+    const struct vg_bytes *from = &s->from[r];
+
+    for (size_t i = 0; i < from->n; i += size)
+      s->at[r * s->n_bin + s->bin(s, hash(from->data + i, s->m->key))]++;
+  }
+}
+
+static void move_sources(void *context, size_t first, size_t end, int worker)
+{
+  const struct sorting *s = context;
+  size_t size = s->m->size;
+
+  (void)worker;
+  for (size_t r = first; r < end; r++) {
+    struct vg_bytes *from = &s->from[r];
+    size_t *at = s->at + r * s->n_bin;
+
+    for (size_t i = 0; i < from->n; i += size) {
+      size_t bin = s->bin(s, hash(from->data + i, s->m->key));
+
+      memcpy(s->item + size * at[bin]++, from->data + i, size);
+    }
+    free(from->data);
+    *from = (struct vg_bytes){ 0, NULL };
+  }
+}
+
+static vg_status sort_items(struct sorting *s, struct vg_error *err)
+{
+  size_t n = 0, at = 0;
+
+  for (size_t r = 0; r < s->n_from; r++) n += s->from[r].n / s->m->size;
+  s->at = vg_calloc(s->n_from, s->n_bin * sizeof *s->at);
+  s->first = vg_alloc(s->n_bin + 1, sizeof *s->first);
+  s->item = vg_alloc(n, s->m->size);
+  if (!s->at || !s->first || !s->item)
+    return vg_fail_memory(err, "what slices share");
+  vg_parallel_for(s->m->threads, s->n_from, 1, count_sources, s);
+  for (size_t b = 0; b < s->n_bin; b++) {
+    s->first[b] = at;
+    for (size_t r = 0; r < s->n_from; r++) {
+      size_t count = s->at[r * s->n_bin + b];
+
+      s->at[r * s->n_bin + b] = at;
+      at += count;
+    }
+  }
+  s->first[s->n_bin] = at;
+  vg_parallel_for(s->m->threads, s->n_from, 1, move_sources, s);
+  return VG_OK;
+}
+
+static void end_sorting(struct sorting *s)
+{
+  free(s->at);
+  free(s->first);
+  free(s->item);
 }
 
 /* --- to their ranks ------------------------------------------------------ */
-
-static vg_status pack(const struct vg_meeting *m, struct vg_items *list,
-                      size_t n_list, size_t stride, struct vg_bytes *to,
-                      struct vg_error *err)
-{
-  int size = vg_comm_size(m->comm);
-
-  for (size_t l = 0; l < n_list; l++) {
-    const struct vg_items *from = list_at(list, l, stride);
-
-    for (size_t i = 0; i < from->n; i++)
-      to[rank_of(hash(from->data + i * m->size, m->key), size)].n += m->size;
-  }
-  for (int r = 0; r < size; r++) {
-    to[r].data = vg_alloc(to[r].n, 1);
-    if (!to[r].data) return vg_fail_memory(err, "what slices share");
-    to[r].n = 0;
-  }
-  for (size_t l = 0; l < n_list; l++) {
-    struct vg_items *from = list_at(list, l, stride);
-
-    for (size_t i = 0; i < from->n; i++) {
-      const unsigned char *item = from->data + i * m->size;
-      struct vg_bytes *b = &to[rank_of(hash(item, m->key), size)];
-
-      memcpy(b->data + b->n, item, m->size);
-      b->n += m->size;
-    }
-    vg_items_release(from);
-  }
-  return VG_OK;
-}
 
 static void release(struct vg_bytes *b, size_t n)
 {
@@ -99,23 +150,30 @@ static void release(struct vg_bytes *b, size_t n)
 }
 
 /* *out: [size], what all ranks had for this one. */
-static vg_status send(const struct vg_meeting *m, struct vg_items *list,
-                      size_t n_list, size_t stride, struct vg_bytes **out,
+static vg_status send(const struct vg_meeting *m, struct vg_bytes *list,
+                      size_t n_list, struct vg_bytes **out,
                       struct vg_error *err)
 {
   size_t size = (size_t)vg_comm_size(m->comm);
+  struct sorting s = { .m = m, .bin = rank_bin, .from = list,
+                       .n_from = n_list, .n_bin = size };
   struct vg_bytes *to = vg_calloc(size, sizeof *to);
   struct vg_bytes *from = vg_calloc(size, sizeof *from);
   vg_status st = VG_OK;
 
-  if (!to || !from) st = vg_fail_memory(err, "what slices share");
-  else st = pack(m, list, n_list, stride, to, err);
+  if (!to || !from || !list) st = vg_fail_memory(err, "what slices share");
+  else st = sort_items(&s, err);
   VG_TRY(vg_comm_agree(m->comm, st, err));
+  for (size_t r = 0; r < size; r++) {
+    to[r].data = s.item + m->size * s.first[r];
+    to[r].n = m->size * (s.first[r + 1] - s.first[r]);
+  }
   VG_TRY(vg_comm_exchange(m->comm, to, from, err));
   *out = from;
   from = NULL;
 done:
-  release(to, size);
+  end_sorting(&s);
+  free(to);
   release(from, size);
   return st;
 }
@@ -124,59 +182,10 @@ done:
 
 struct hall {
   const struct vg_meeting *m;
-  unsigned char *item;       /* by part */
-  size_t *end;               /* [n_part] */
-  size_t n_part, most;       /* a power of two; items of the largest part */
+  struct sorting s;          /* by part, a power of two of them */
+  size_t most;               /* items of the largest part */
   atomic_int refused;
 };
-
-static size_t part_of(const struct hall *h, const unsigned char *item)
-{
-  return (size_t)hash(item, h->m->key) & (h->n_part - 1);
-}
-
-static vg_status make_parts(struct hall *h, size_t n, struct vg_error *err)
-{
-  h->n_part = 1;
-  while (h->n_part < MOST_PARTS && h->n_part * PART_ITEMS < n) h->n_part *= 2;
-  h->end = vg_calloc(h->n_part, sizeof *h->end);
-  h->item = vg_alloc(n, h->m->size);
-  if (!h->end || !h->item) return vg_fail_memory(err, "what slices share");
-  return VG_OK;
-}
-
-/* Counting sort by part; the sources are freed as they are done with. */
-static vg_status gather(struct hall *h, struct vg_bytes *from, size_t n_from,
-                        struct vg_error *err)
-{
-  size_t size = h->m->size, n = 0, at = 0;
-  vg_status st;
-
-  for (size_t r = 0; r < n_from; r++) n += from[r].n / size;
-  st = make_parts(h, n, err);
-  if (st < 0) return st;
-  for (size_t r = 0; r < n_from; r++)
-    for (size_t i = 0; i < from[r].n; i += size)
-      h->end[part_of(h, from[r].data + i)]++;
-  for (size_t p = 0; p < h->n_part; p++) {
-    size_t count = h->end[p];
-
-    if (count > h->most) h->most = count;
-    h->end[p] = at;
-    at += count;
-  }
-  for (size_t r = 0; r < n_from; r++) {
-    for (size_t i = 0; i < from[r].n; i += size) {
-      const unsigned char *item = from[r].data + i;
-
-      memcpy(h->item + size * h->end[part_of(h, item)]++, item, size);
-    }
-    free(from[r].data);
-    from[r].data = NULL;
-    from[r].n = 0;
-  }
-  return VG_OK;
-}
 
 static size_t bucket_of(const struct hall *h, const unsigned char *item,
                         size_t n_bucket)
@@ -219,9 +228,9 @@ static void call_groups(const struct vg_meeting *m, const unsigned char *item,
 static void meet_part(const struct hall *h, size_t p, unsigned char *room,
                       size_t *bucket, size_t n_bucket, int worker)
 {
-  size_t size = h->m->size, first = p ? h->end[p - 1] : 0;
-  size_t n = h->end[p] - first, at = 0;
-  const unsigned char *item = h->item + size * first;
+  size_t size = h->m->size, first = h->s.first[p];
+  size_t n = h->s.first[p + 1] - first, at = 0;
+  const unsigned char *item = h->s.item + size * first;
 
   memset(bucket, 0, n_bucket * sizeof *bucket);
   for (size_t i = 0; i < n; i++)
@@ -264,43 +273,62 @@ static void meet_parts(void *context, size_t first, size_t end, int worker)
 static vg_status meet_here(const struct vg_meeting *m, struct vg_bytes *from,
                            size_t n_from, struct vg_error *err)
 {
-  struct hall h = { .m = m };
+  struct hall h = { .m = m, .s = { .m = m, .bin = part_bin, .from = from,
+                                   .n_from = n_from, .n_bin = 1 } };
+  size_t n = 0;
   vg_status st;
 
-  VG_TRY(gather(&h, from, n_from, err));
-  vg_parallel_for(m->threads, h.n_part, 8, meet_parts, &h);
+  for (size_t r = 0; r < n_from; r++) n += from[r].n / m->size;
+  while (h.s.n_bin < MOST_PARTS && h.s.n_bin * PART_ITEMS < n)
+    h.s.n_bin *= 2;
+  VG_TRY(sort_items(&h.s, err));
+  for (size_t p = 0; p < h.s.n_bin; p++) {
+    size_t count = h.s.first[p + 1] - h.s.first[p];
+
+    if (count > h.most) h.most = count;
+  }
+  vg_parallel_for(m->threads, h.s.n_bin, 8, meet_parts, &h);
   if (atomic_load(&h.refused)) st = vg_fail_memory(err, "what slices share");
 done:
-  free(h.item);
-  free(h.end);
+  end_sorting(&h.s);
   return st;
+}
+
+/* The lists' memory as sources; NULL when refused. */
+static struct vg_bytes *take_lists(const struct vg_meeting *m,
+                                   struct vg_items *list, size_t n_list,
+                                   size_t stride)
+{
+  struct vg_bytes *from = vg_calloc(n_list, sizeof *from);
+
+  for (size_t l = 0; l < n_list; l++) {
+    struct vg_items *one =
+      (void *)((unsigned char *)list + l * stride);
+
+    if (from) from[l] = (struct vg_bytes){ one->n * m->size, one->data };
+    else free(one->data);
+    memset(one, 0, sizeof *one);
+  }
+  return from;
 }
 
 vg_status vg_meet(const struct vg_meeting *m, struct vg_items *list,
                   size_t n_list, size_t stride, struct vg_error *err)
 {
-  size_t n_from = (size_t)vg_comm_size(m->comm);
-  struct vg_bytes *from = NULL;
+  struct vg_bytes *from = take_lists(m, list, n_list, stride), *got = NULL;
+  size_t n_from = n_list;
   vg_status st = VG_OK;
 
-  if (n_from > 1) {
-    VG_TRY(send(m, list, n_list, stride, &from, err));
-  } else {             /* the lists are what there is to be gathered */
-    n_from = n_list;
-    from = vg_calloc(n_list, sizeof *from);
-    for (size_t l = 0; from && l < n_list; l++) {
-      struct vg_items *one = list_at(list, l, stride);
-
-      from[l] = (struct vg_bytes){ one->n * m->size, one->data };
-      memset(one, 0, sizeof *one);
-    }
+  if (vg_comm_size(m->comm) > 1) {
+    VG_TRY(send(m, from, n_list, &got, err));
+    release(from, n_list);
+    from = got;
+    n_from = (size_t)vg_comm_size(m->comm);
   }
   st = from ? meet_here(m, from, n_from, err)
             : vg_fail_memory(err, "what slices share");
   st = vg_comm_agree(m->comm, st, err);
 done:
   release(from, n_from);
-  for (size_t l = 0; l < n_list; l++)
-    vg_items_release(list_at(list, l, stride));
   return st;
 }

@@ -93,7 +93,7 @@ static void every_damage_is_counted_alike(void **state)
   (void)state;
   for (int damage = 0; damage < JUDGE_DAMAGES; damage++)
     for (int cells = 0; cells < 2; cells++)
-      for (uint32_t at = 0; at < 3; at++) {
+      for (uint32_t at = 0; at < 3; at += 2) {
         struct vg_mesh m = judge_mesh(cells ? VG_LAYER_MIXED : VG_LAYER_TETS);
         struct vg_mesh_report r;
 
