@@ -285,8 +285,8 @@ static void another_run_is_refused(void **state)
   (void)state;
   vg_store_keep(s, key_of(7), 3, "abc");
   vg_store_close(s, 0);
-  REFUSED(&o, VG_ERR_INPUT, RUN_DIR, "first", "second", "another run", "choose",
-          "1 finished");
+  REFUSED(&o, VG_ERR_INPUT, RUN_DIR, "first", "second", "another run",
+          "choose", "1 finished");
   o.resume = 1;
   REFUSED(&o, VG_ERR_INPUT, RUN_DIR, "first", "second", "changed", "restore");
   o = options_of(1, 0);
@@ -313,7 +313,8 @@ static void nothing_to_resume(void **state)
   struct vg_store_options o = options_of(1, 1);
 
   (void)state;
-  REFUSED(&o, VG_ERR_INPUT, RUN_DIR, "no such run directory", "without resuming");
+  REFUSED(&o, VG_ERR_INPUT, RUN_DIR, "no such run directory",
+          "without resuming");
   assert_int_equal(access(RUN_DIR, F_OK), -1);
   assert_int_equal(mkdir(RUN_DIR, 0777), 0);
   REFUSED(&o, VG_ERR_INPUT, RUN_DIR, "holds no run", "without resuming");
