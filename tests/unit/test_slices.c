@@ -182,6 +182,40 @@ static void records_in_parts(void **state)
   }
 }
 
+/* Where skipping and seeking lead to in a record of 7 GB must be the same
+ * place; nothing is written. */
+static void places_beyond_two_gigabytes(void **state)
+{
+  const uint64_t bytes = 7000000000u;
+
+  (void)state;
+  for (uint64_t part = 0; part < 4; part++)
+    for (int off = part ? -3 : 0; off < 4; off++) {
+      uint64_t offset = part * VG_RECORD_LIMIT + (uint64_t)off;
+      struct vg_output a = VG_OUTPUT_INIT, b = VG_OUTPUT_INIT;
+
+      assert_int_equal(vg_output_shared(NULL, &a, NULL), VG_OK);
+      assert_int_equal(vg_output_shared(NULL, &b, NULL), VG_OK);
+      vg_output_record(&a, bytes);
+      vg_output_skip(&a, offset);
+      vg_output_bytes(&a, "", 1);
+      vg_output_seek_record(&b, 0, bytes, offset);
+      vg_output_bytes(&b, "", 1);
+      assert_true(a.at + a.n == b.at + b.n);
+      assert_true(b.at + b.n == 5 + offset + 8 * (offset / VG_RECORD_LIMIT));
+      vg_output_skip(&a, bytes - offset - 1);
+      vg_output_skip(&b, bytes - offset - 1);
+      vg_output_record_end(&a);
+      vg_output_record_end(&b);
+      assert_int_equal(vg_output_flush(&a, NULL), VG_OK);
+      assert_int_equal(vg_output_flush(&b, NULL), VG_OK);
+      assert_true(a.at == b.at && a.written == a.at);
+      assert_true(a.at == vg_record_size(bytes, VG_RECORD_LIMIT));
+      vg_output_release(&a);
+      vg_output_release(&b);
+    }
+}
+
 /* The .mapbc has the stem in its title: two folders, one name. */
 static void cogsg_case(const struct vg_mesh *m, const struct vg_join_info *in,
                        uint32_t limit, uint64_t seed)
@@ -479,6 +513,7 @@ int main(void)
     cmocka_unit_test(collect_is_the_mesh),
     cmocka_unit_test(every_kind_of_ugrid),
     cmocka_unit_test(records_in_parts),
+    cmocka_unit_test(places_beyond_two_gigabytes),
     cmocka_unit_test(one_vtu),
     cmocka_unit_test(what_shows_the_boundary),
     cmocka_unit_test(pieces_are_the_mesh),
