@@ -9,7 +9,7 @@
 
 /* Cells that make a slice, and points of the boundary in one. */
 #define SLICE_CELLS 65536
-#define SLICE_POINTS 65536
+#define SLICE_POINTS 16384
 
 _Static_assert((int)VG_SLICE_TET == VG_KIND_TET &&
                (int)VG_SLICE_PYR == VG_KIND_PYR &&

@@ -11,7 +11,7 @@
  * Every rank has the same surface and layers; the field's slices are shared
  * out. The slices of the layers are shared out too: this rank serves those
  * with number k % size == rank, before the field's. First come those of the
- * boundary's points, 64 k each, without cells; then runs of faces with all
+ * boundary's points, 16 k each, without cells; then runs of faces with all
  * that stands on them, at least 64 k cells each. Both follow from the layers
  * alone.
  *
