@@ -105,8 +105,8 @@ vg_status vg_engine_submit(struct vg_engine *e, const struct vg_task *task,
   j->task = *task;
   memcpy(j->after, e->doing, sizeof j->after);
   j->home = e->rank;
-  j->rank.path = j->task.path;
-  j->rank.key = e->options->shuffle ? draw(task->path, e->options->shuffle)
+  j->place.path = j->task.path;
+  j->place.key = e->options->shuffle ? draw(task->path, e->options->shuffle)
                                     : task->priority;
   e->fresh[e->n_fresh++] = j;
   return VG_OK;

@@ -19,54 +19,6 @@
 /* What the list knows of RECALL to a rank. */
 enum { NOT_ASKED, ASKED, DECLINED };
 
-int vg_rank_before(const struct vg_rank *a, const struct vg_rank *b)
-{
-  if (a->key != b->key) return a->key > b->key;
-  return strcmp(a->path, b->path) < 0;
-}
-
-static struct vg_rank *meld(struct vg_rank *a, struct vg_rank *b)
-{
-  struct vg_rank *first = a, *second = b;
-
-  if (!a || !b) return a ? a : b;
-  if (vg_rank_before(b, a)) first = b, second = a;
-  second->next = first->child;
-  first->child = second;
-  return first;
-}
-
-void vg_rank_push(struct vg_rank **heap, struct vg_rank *item)
-{
-  item->child = item->next = NULL;
-  *heap = meld(*heap, item);
-}
-
-struct vg_rank *vg_rank_pop(struct vg_rank **heap)
-{
-  struct vg_rank *top = *heap, *pairs = NULL, *left;
-
-  if (!top) return NULL;
-  left = top->child;
-  while (left) {
-    struct vg_rank *a = left, *b = a->next, *pair;
-
-    left = b ? b->next : NULL;
-    a->next = NULL;
-    if (b) b->next = NULL;
-    pair = meld(a, b);
-    pair->next = pairs;
-    pairs = pair;
-  }
-  for (*heap = NULL; pairs; pairs = left) {
-    left = pairs->next;
-    pairs->next = NULL;
-    *heap = meld(*heap, pairs);
-  }
-  top->child = top->next = NULL;
-  return top;
-}
-
 vg_status vg_list_init(struct vg_list *l, int size, struct vg_error *err)
 {
   size_t n = (size_t)size;
@@ -83,7 +35,7 @@ vg_status vg_list_init(struct vg_list *l, int size, struct vg_error *err)
 void vg_list_release(struct vg_list *l, int size)
 {
   for (int r = 0; l->ready && r < size; r++)
-    while (l->ready[r]) free(vg_rank_pop(&l->ready[r]));
+    while (l->ready[r]) free(vg_heap_pop(&l->ready[r]));
   free(l->ready);
   free(l->threads);
   free(l->load);
@@ -123,7 +75,7 @@ static int first_home(const struct vg_list *l, int size)
   int best = -1;
 
   for (int r = 0; r < size; r++)
-    if (l->ready[r] && (best < 0 || vg_rank_before(l->ready[r],
+    if (l->ready[r] && (best < 0 || vg_heap_before(l->ready[r],
                                                    l->ready[best])))
       best = r;
   return best;
@@ -148,7 +100,7 @@ static int give(struct vg_engine *e, int ahead)
   if (!e->options->shuffle && l->ready[to] &&
       nearly(l->ready[to]->key, l->ready[home]->key))
     home = to;
-  task = (struct vg_ready *)vg_rank_pop(&l->ready[home]);
+  task = (struct vg_ready *)vg_heap_pop(&l->ready[home]);
   l->n_ready--;
   l->n_out++;
   add_load(l, to, 1);
@@ -227,9 +179,9 @@ static void add_ready(struct vg_engine *e, int from, const struct vg_notice *n)
   }
   *task = (struct vg_ready){ .handle = n->handle };
   memcpy(task->path, n->path, sizeof task->path);
-  task->rank.key = n->key;
-  task->rank.path = task->path;
-  vg_rank_push(&l->ready[from], &task->rank);
+  task->place.key = n->key;
+  task->place.path = task->path;
+  vg_heap_push(&l->ready[from], &task->place);
   l->n_ready++;
 }
 

@@ -43,16 +43,16 @@ enum {
 /* --- a heap that needs no memory of its own ------------------------------ */
 
 /* Pairing heap (Fredman et al., 1986): first member of what is in it. */
-struct vg_rank {
+struct vg_heap {
   double key;                /* higher first */
   const char *path;          /* lower first, where keys are equal */
-  struct vg_rank *child, *next;
+  struct vg_heap *child, *next;
 };
 
-void vg_rank_push(struct vg_rank **heap, struct vg_rank *item);
-struct vg_rank *vg_rank_pop(struct vg_rank **heap);
+void vg_heap_push(struct vg_heap **heap, struct vg_heap *item);
+struct vg_heap *vg_heap_pop(struct vg_heap **heap);
 /** 1 when a comes before b. */
-int vg_rank_before(const struct vg_rank *a, const struct vg_rank *b);
+int vg_heap_before(const struct vg_heap *a, const struct vg_heap *b);
 
 /* --- messages ------------------------------------------------------------ */
 
@@ -105,7 +105,7 @@ struct vg_return {
 /* A task: one at its home until it has ended, another one where it is done.
  * Its way: fresh -> [list] -> queue (or out) -> run -> ended. */
 struct vg_job {
-  struct vg_rank rank;       /* in queue; must be first */
+  struct vg_heap place;      /* in queue; must be first */
   struct vg_task task;
   char after[VG_PATH_MAX];
   uint64_t handle;           /* its number at home */
@@ -121,13 +121,13 @@ struct vg_jobs { struct vg_job *first, *last; };
 
 /* A task that waits on the list. */
 struct vg_ready {
-  struct vg_rank rank;       /* must be first */
+  struct vg_heap place;      /* must be first */
   char path[VG_PATH_MAX];
   uint64_t handle;
 };
 
 struct vg_list {
-  struct vg_rank **ready;    /* [size] free tasks, by home */
+  struct vg_heap **ready;    /* [size] free tasks, by home */
   int *threads, *load;       /* [size] workers; tasks it has, pinned too */
   unsigned char *asked;      /* [size] see recall */
   size_t n_ready, n_hello;
@@ -162,7 +162,7 @@ struct vg_engine {
   int ending;                /* END has been said (rank 0) or heard */
   int hurry;                 /* something was posted: poll soon */
 
-  struct vg_rank *queue[2];  /* jobs to be done here: free, pinned */
+  struct vg_heap *queue[2];  /* jobs to be done here: free, pinned */
   struct vg_jobs ended;      /* home jobs, to be told to `done` */
   struct vg_jobs out;        /* jobs whose input goes to job->to */
   int in_done;               /* a thread is there, or first tasks are made */

@@ -45,7 +45,7 @@ void vg_serve_assign(struct vg_engine *e, uint64_t handle, int to)
 
 void vg_serve_recall(struct vg_engine *e, int to)
 {
-  struct vg_job *j = (struct vg_job *)vg_rank_pop(&e->queue[0]);
+  struct vg_job *j = (struct vg_job *)vg_heap_pop(&e->queue[0]);
 
   if (j) push_out(e, j, to);
   vg_tell_moved(e, to, j != NULL);
@@ -78,7 +78,7 @@ static vg_status pack(struct vg_engine *e, struct vg_job *j,
   b->data = data;
   memcpy(c.path, j->task.path, sizeof c.path);
   memcpy(c.after, j->after, sizeof c.after);
-  c.key = j->rank.key;
+  c.key = j->place.key;
   c.priority = j->task.priority;
   c.weight = j->task.weight;
   c.handle = j->handle;
@@ -162,8 +162,8 @@ static void take_input(struct vg_engine *e, struct vg_bytes *b)
   j->task.weight = c.weight;
   j->handle = c.handle;
   j->home = c.home;
-  j->rank.key = c.key;
-  j->rank.path = j->task.path;
+  j->place.key = c.key;
+  j->place.path = j->task.path;
   j->packed = c.has;
   j->bytes = *b;
   *b = (struct vg_bytes){ 0 };

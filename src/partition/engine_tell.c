@@ -43,7 +43,7 @@ static uint64_t enter_fresh(struct vg_engine *e)
     j->handle = e->n_home;
     e->home[e->n_home++] = j;
     memcpy(notice->path, j->task.path, sizeof notice->path);
-    notice->key = j->rank.key;
+    notice->key = j->place.key;
     notice->weight = j->task.weight;
     notice->handle = j->handle;
     notice->pinned = j->task.pinned != 0;

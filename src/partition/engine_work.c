@@ -7,16 +7,16 @@
 
 void vg_work_queue(struct vg_engine *e, struct vg_job *j)
 {
-  vg_rank_push(&e->queue[j->task.pinned != 0], &j->rank);
+  vg_heap_push(&e->queue[j->task.pinned != 0], &j->place);
   pthread_cond_signal(&e->work);
 }
 
 static struct vg_job *next_job(struct vg_engine *e)
 {
-  struct vg_rank **q = e->queue;
-  int i = !q[0] || (q[1] && vg_rank_before(q[1], q[0]));
+  struct vg_heap **q = e->queue;
+  int i = !q[0] || (q[1] && vg_heap_before(q[1], q[0]));
 
-  return (struct vg_job *)vg_rank_pop(&q[i]);
+  return (struct vg_job *)vg_heap_pop(&q[i]);
 }
 
 /* A worker that ends a task of its own rank calls `done` itself, or leaves it
