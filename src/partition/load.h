@@ -2,8 +2,8 @@
  *
  * A load is a list of cubes that together cover a void, each with the cells
  * expected in it: c V / h^3, V the part of the cube in the void. Cubes are a
- * few target edges wide, so there are some thousands to a few hundred
- * thousands of them, whatever the mesh will have. */
+ * few target edges wide; there are some thousands to a few hundred thousands
+ * of them, whatever the mesh will have. */
 #ifndef VG_PARTITION_LOAD_H
 #define VG_PARTITION_LOAD_H
 
@@ -14,16 +14,15 @@
 #include "core/sizing.h"
 #include "core/void.h"
 
-/** Cells per cube of the target edge, measured over boxes, spheres and wings
- * (docs/performance.md); corrected by what a void's zones turned out. */
+/** Cells per cube of the target edge where spacing is even, measured over
+ * boxes (docs/performance.md); corrected by what a void's zones turned out. */
 #define VG_LOAD_CELLS_PER_CUBE 9.0
 
 struct vg_load_cube {
   float at[3], half;         /* centre, half the side */
   float h;                   /* target edge, averaged like 1 / h^3 */
-  float part;                /* of the cube in the void, > 0; scaled (so
-                                perhaps above 1) such that the parts make up
-                                the volume that the front encloses */
+  float part;                /* of the cube in the void, > 0; such that all
+                                make up the volume that the front encloses */
   float cells;               /* expected in that part */
 };
 
@@ -41,8 +40,12 @@ void vg_load_release(struct vg_load *l);
  *
  * @param v   front only is looked at; closed
  * @param threads  to use; the result does not depend on it
- * Octree over the void's box: split while wider than 4 h, or than 2 h where
- * the front passes (the part inside is then sampled); cubes outside dropped.
+ * @param cells_per_cube  VG_LOAD_CELLS_PER_CUBE; where h varies in space the
+ *            cells are up to 1.21 times as many, as measured
+ * Octree over the void's box: split while wider than 3 h, or than 2 h where
+ * the front passes (the part inside is then sampled); up to twice as wide in
+ * meshes of 100 M cells, to have about 300,000 cubes at most, and as narrow
+ * as 1 h in voids with fewer than 64. Cubes outside are dropped.
  * Cost: O(front + cubes) times a logarithm. Result follows from the arguments
  * alone, bit by bit. VG_ERR_MEMORY. */
 vg_status vg_load_new(const struct vg_void *v, const struct vg_sizing *sizing,
@@ -52,9 +55,10 @@ vg_status vg_load_new(const struct vg_void *v, const struct vg_sizing *sizing,
 /** What each of n voids takes of the load of a void that was cut into them.
  *
  * child: [n] fronts that lie inside the parent's void; out: [n] loads. A cube
- * goes to the child that contains its centre (cubes that children share are
- * split by samples); what lies in none of them (the zones) is dropped. The
- * cubes' cells are multiplied by `correction`, the ratio of cells made to
+ * goes to the child that it lies in (cubes that fronts cross are shared by
+ * samples); what lies in none of them (the zones) is dropped. A child
+ * that is too small for the cubes gets one around it. Shares are made to fit
+ * the volumes of the fronts; nothing drifts over generations. The cubes' cells are multiplied by `correction`, the ratio of cells made to
  * cells expected in the ancestors' zones.
  * O(cubes + fronts) times a logarithm. */
 vg_status vg_load_split(const struct vg_load *parent, size_t n,

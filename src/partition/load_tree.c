@@ -14,10 +14,11 @@
 #include "base/parallel.h"
 #include "core/predicates.h"
 
-enum { GRAIN = 1 << 14 };
+enum { GRAIN = 1 << 14, FIT_PASSES = 4 };
 
-/* A volume that is off by more is made to fit by all cubes alike. */
-#define ROUGH 0.03
+/* A volume that is off by more is made to fit: by the cubes that the front
+ * crosses if that is possible, else by all alike. */
+#define FITS 1e-5
 
 /* --- fronts -------------------------------------------------------------- */
 
@@ -337,10 +338,9 @@ static void multiply(struct vg_load_cube *c, double factor)
 /* Least squares: a part p is thought to be wrong by p (1 - p) in the square,
  * so what is missing goes to each cube by its volume times that; most of it
  * to large cubes, whose errors are the large ones. */
-void vg_load_fit(struct vg_load *l, double volume)
+static void fit_parts(struct vg_load *l, double missing)
 {
-  const double off = volume > 0 ? volume - vg_load_parts(l) : 0;
-  double weight = 0, left;
+  double weight = 0;
 
   for (size_t i = 0; i < l->n; i++) {
     const double v = cube_volume(&l->cube[i]), p = (double)l->cube[i].part;
@@ -348,17 +348,26 @@ void vg_load_fit(struct vg_load *l, double volume)
     weight += v * v * p * (1 - p);
   }
   for (size_t i = 0; i < l->n && weight > 0; i++) {
-    const double p = (double)l->cube[i].part;
-    double f = 1 + off * cube_volume(&l->cube[i]) * (1 - p) / weight;
+    const double v = cube_volume(&l->cube[i]), p = (double)l->cube[i].part;
+    const double f = 1 + missing * v * (1 - p) / weight;
 
-    if (f < 0.5) f = 0.5;
-    multiply(&l->cube[i], f < 2 ? f : 2);
+    multiply(&l->cube[i], fmin(fmax(f, 0.5), 1 / p));
   }
-  left = vg_load_parts(l);
+}
+
+void vg_load_fit(struct vg_load *l, double volume)
+{
+  double sum = vg_load_parts(l);
+
+  for (int pass = 0; pass < FIT_PASSES && volume > 0; pass++) {
+    if (fabs(volume - sum) <= FITS * volume) break;
+    fit_parts(l, volume - sum);
+    sum = vg_load_parts(l);
+  }
   l->cells = 0;
   for (size_t i = 0; i < l->n; i++) {
-    if (left > 0 && volume > 0 && fabs(volume - left) > ROUGH * volume)
-      multiply(&l->cube[i], volume / left);
+    if (volume > 0 && fabs(volume - sum) > FITS * volume)
+      multiply(&l->cube[i], volume / sum);
     l->cells += (double)l->cube[i].cells;
   }
 }

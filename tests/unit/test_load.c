@@ -1,0 +1,504 @@
+/* Estimates of cells: volumes on shapes and real surfaces, cells against the
+ * mesher's, the split among children, quantiles, messages. */
+#include "io_support.h"
+
+#include "base/comm.h"
+#include "core/demo.h"
+#include "fill_shapes.h"
+#include "io/ugrid.h"
+#include "partition/load.h"
+
+struct scene {
+  struct vg_void v;
+  struct vg_sizing *sizing;
+  double volume;
+};
+
+static double enclosed(const struct vg_void *v)
+{
+  double sum = 0;
+
+  for (size_t i = 0; i < v->n_face; i++) {
+    const double *a = v->x[v->face[i][0]], *b = v->x[v->face[i][1]];
+    const double *c = v->x[v->face[i][2]];
+
+    sum -= a[0] * (b[1] * c[2] - b[2] * c[1])
+           + a[1] * (b[2] * c[0] - b[0] * c[2])
+           + a[2] * (b[0] * c[1] - b[1] * c[0]);
+  }
+  return sum / 6;
+}
+
+/* Takes the triangles of m; m is released. even: the edge everywhere; 0: as
+ * the triangles have it. */
+static void make_scene(struct scene *s, struct vg_mesh *m, double even)
+{
+  struct vg_sizing_options o = VG_SIZING_OPTIONS_INIT;
+
+  o.h_max = even;
+  o.from_surface = !(even > 0);
+  memset(s, 0, sizeof *s);
+  assert_int_equal(vg_void_from_mesh(&s->v, m, NULL), VG_OK);
+  assert_int_equal(vg_sizing_new(&o, 0, NULL, m, &s->sizing, NULL), VG_OK);
+  s->volume = enclosed(&s->v);
+  assert_true(s->volume > 0);
+  vg_mesh_release(m);
+}
+
+static void make_demo(struct scene *s, const char *name, size_t n_cell)
+{
+  struct vg_demo d = VG_DEMO_INIT;
+
+  assert_int_equal(vg_demo_make(name, n_cell, &d, NULL), VG_OK);
+  make_scene(s, &d.surface, 0);
+  vg_demo_release(&d);
+}
+
+static void release_scene(struct scene *s)
+{
+  vg_void_release(&s->v);
+  vg_sizing_free(s->sizing);
+}
+
+static void estimate(const struct scene *s, int threads, struct vg_load *l)
+{
+  struct vg_error err = VG_ERROR_INIT;
+
+  *l = (struct vg_load)VG_LOAD_INIT;
+  if (vg_load_new(&s->v, s->sizing, VG_LOAD_CELLS_PER_CUBE, threads, l, &err)
+      < 0)
+    fail_msg("%s", err.text);
+}
+
+static double volume_of(const struct vg_load_cube *c)
+{
+  return 8 * pow((double)c->half, 3);
+}
+
+/* Volume by samples alone, before it was made to fit: the fit changes a part
+ * by far less than a sample (1/8) is worth. */
+static double sampled(const struct vg_load *l)
+{
+  double sum = 0;
+
+  for (size_t i = 0; i < l->n; i++)
+    sum += volume_of(&l->cube[i]) * round(8 * (double)l->cube[i].part) / 8;
+  return sum;
+}
+
+static double fitted(const struct vg_load *l)
+{
+  double sum = 0;
+
+  for (size_t i = 0; i < l->n; i++)
+    sum += volume_of(&l->cube[i]) * (double)l->cube[i].part;
+  return sum;
+}
+
+/* A branch on the wrong side would be worth many per cent, and a farfield has
+ * few cubes: what three standard deviations of samples are worth, where a
+ * part is known to about 0.12. */
+static void check_volume(const struct scene *s, const struct vg_load *l)
+{
+  double cells = 0, crossed = 0;
+
+  assert_true(l->n > 0);
+  for (size_t i = 0; i < l->n; i++)
+    if (round(8 * (double)l->cube[i].part) < 8)
+      crossed += volume_of(&l->cube[i]) * volume_of(&l->cube[i]);
+  if (fabs(sampled(l) - s->volume) > 0.01 * s->volume + 0.36 * sqrt(crossed))
+    fail_msg("volume %g of %g", sampled(l), s->volume);
+  assert_true(fabs(fitted(l) / s->volume - 1) < 1e-5);
+  for (size_t i = 0; i < l->n; i++) cells += (double)l->cube[i].cells;
+  assert_true(fabs(cells / l->cells - 1) < 1e-9);
+}
+
+static void demos_keep_their_volume(void **state)
+{
+  static const struct { const char *name; size_t n_cell; } list[] = {
+    { "box", 200000 }, { "sphere", 1000000 }, { "wing-half", 100000 }
+  };
+
+  (void)state;
+  for (size_t i = 0; i < sizeof list / sizeof *list; i++) {
+    struct vg_load l;
+    struct scene s;
+
+    make_demo(&s, list[i].name, list[i].n_cell);
+    estimate(&s, 1, &l);
+    check_volume(&s, &l);
+    vg_load_release(&l);
+    release_scene(&s);
+  }
+}
+
+/* Nothing inside the sphere, everything well outside of it. */
+static void a_body_is_left_out(void **state)
+{
+  struct vg_load l;
+  struct scene s;
+  double far = 0;
+
+  (void)state;
+  make_demo(&s, "sphere", 200000);
+  estimate(&s, 1, &l);
+  for (size_t i = 0; i < l.n; i++) {
+    const struct vg_load_cube *c = &l.cube[i];
+    double most = 0, least = 0, out = 0;
+
+    for (int k = 0; k < 3; k++) {
+      const double x = fabs((double)c->at[k]), half = (double)c->half;
+
+      most += (x + half) * (x + half);
+      least += x > half ? (x - half) * (x - half) : 0;
+      if (x + half > out) out = x + half;
+    }
+    assert_true(most > 1);
+    if (least < 1.1 || out > 20) continue;
+    assert_true(c->part > 0.999f && c->part < 1.001f);
+    far += volume_of(c);
+  }
+  assert_true(far > 0.4 * s.volume);
+  vg_load_release(&l);
+  release_scene(&s);
+}
+
+static void threads_do_not_matter(void **state)
+{
+  struct vg_load l, other;
+  struct scene s;
+
+  (void)state;
+  make_demo(&s, "wing-half", 100000);
+  estimate(&s, 1, &l);
+  for (int threads = 2; threads < 4; threads++) {
+    estimate(&s, threads, &other);
+    assert_int_equal(other.n, l.n);
+    assert_true(memcmp(&other.cells, &l.cells, sizeof l.cells) == 0);
+    assert_memory_equal(other.cube, l.cube, l.n * sizeof *l.cube);
+    vg_load_release(&other);
+  }
+  vg_load_release(&l);
+  release_scene(&s);
+}
+
+/* --- against the mesher -------------------------------------------------- */
+
+static void compare_with_mesh(const char *name, size_t n_cell)
+{
+  struct vg_fill_options o = VG_FILL_OPTIONS_INIT;
+  struct vg_fill_report r;
+  struct vg_mesh out = VG_MESH_INIT;
+  struct vg_demo d = VG_DEMO_INIT;
+  struct vg_load l;
+  struct scene s;
+  double ratio;
+
+  make_demo(&s, name, n_cell);
+  estimate(&s, 1, &l);
+  assert_int_equal(vg_demo_make(name, n_cell, &d, NULL), VG_OK);
+  memset(&r, 0, sizeof r);
+  assert_int_equal(vg_fill(&d.surface, s.sizing, &o, &out, &r, NULL), VG_OK);
+  ratio = (double)out.n_tet / l.cells;
+  print_message("%s: %zu cells made, %.0f expected: %.3f\n", name, out.n_tet,
+                l.cells, ratio);
+  assert_true(ratio > 1 / 1.15 && ratio < 1.15);
+  vg_mesh_release(&out);
+  vg_demo_release(&d);
+  vg_load_release(&l);
+  release_scene(&s);
+}
+
+/* 15 %: what choosing a decomposition can bear. */
+static void expects_what_is_made(void **state)
+{
+  (void)state;
+  compare_with_mesh("box", 20000);
+  compare_with_mesh("box", 200000);
+  compare_with_mesh("sphere", 200000);
+}
+
+/* --- split --------------------------------------------------------------- */
+
+/* Blocks of boxes that are cut from a block of 12 x 4 x 4. */
+static int in_slab(const int at[3])
+{
+  return at[0] < 5;
+}
+
+static int in_corner(const int at[3])
+{
+  return at[0] > 5 && (at[1] < 2 || at[2] < 2);
+}
+
+static int in_rest(const int at[3])
+{
+  return at[0] > 5 && at[1] > 2 && at[2] > 2;
+}
+
+static int (*const piece[3])(const int at[3]) = { in_slab, in_corner, in_rest };
+static const double share[3] = { 5. / 12, 4.5 / 12, 0.375 / 12 };
+
+static void make_piece(struct vg_void *v, int (*in)(const int at[3]))
+{
+  const int n[3] = { 12, 4, 4 };
+  const double lo[3] = { 0, 0, 0 }, hi[3] = { 3, 1, 1 };
+  struct vg_mesh m = VG_MESH_INIT;
+
+  memset(v, 0, sizeof *v);
+  shape_block(&m, n, lo, hi, in);
+  assert_int_equal(vg_void_from_mesh(v, &m, NULL), VG_OK);
+  vg_mesh_release(&m);
+}
+
+static void make_bar(struct scene *s)
+{
+  const int n[3] = { 60, 20, 20 };
+  const double lo[3] = { 0, 0, 0 }, hi[3] = { 3, 1, 1 };
+  struct vg_mesh m = VG_MESH_INIT;
+
+  shape_block(&m, n, lo, hi, shape_all);
+  make_scene(s, &m, 0.05);
+}
+
+static void children_get_their_share(void **state)
+{
+  struct vg_load l, part[3];
+  struct vg_void v[3];
+  struct scene s;
+
+  (void)state;
+  make_bar(&s);
+  estimate(&s, 1, &l);
+  for (int c = 0; c < 3; c++) make_piece(&v[c], piece[c]);
+  assert_int_equal(vg_load_split(&l, 3, v, 1.5, part, NULL), VG_OK);
+  for (int c = 0; c < 3; c++) {
+    const double volume = enclosed(&v[c]);
+
+    assert_true(part[c].n > 0 && part[c].n < l.n);
+    assert_true(fabs(volume / 3 - share[c]) < 1e-12);
+    /* some tens of cubes along each wall, samples of an eighth each */
+    assert_true(fabs(sampled(&part[c]) / volume - 1) < 0.1);
+    assert_true(fabs(fitted(&part[c]) / volume - 1) < 1e-5);
+    /* even spacing, so cells go by volume, but for the rounding of numbers */
+    assert_true(fabs(part[c].cells / (1.5 * l.cells * volume / 3) - 1)
+                < 1e-4);
+    vg_void_release(&v[c]);
+    vg_load_release(&part[c]);
+  }
+  vg_load_release(&l);
+  release_scene(&s);
+}
+
+/* Split again and again into what it is: nothing wears off. */
+static void generations_do_not_drift(void **state)
+{
+  struct vg_load l, next;
+  struct scene s;
+  double cells;
+  size_t n;
+
+  (void)state;
+  make_demo(&s, "sphere", 200000);
+  estimate(&s, 1, &l);
+  cells = l.cells;
+  n = l.n;
+  for (int i = 0; i < 5; i++) {
+    assert_int_equal(vg_load_split(&l, 1, &s.v, 1, &next, NULL), VG_OK);
+    assert_int_equal(next.n, n);
+    assert_true(fabs(next.cells / cells - 1) < 1e-3);
+    vg_load_release(&l);
+    l = next;
+  }
+  vg_load_release(&l);
+  release_scene(&s);
+}
+
+static void tiny_and_empty_children(void **state)
+{
+  const double at[3] = { 0.71, 0.53, 0.47 };
+  struct vg_load l, part[2];
+  struct vg_void v[2] = { VG_VOID_INIT, VG_VOID_INIT };
+  struct vg_mesh m = VG_MESH_INIT;
+  struct scene s;
+  double volume;
+
+  (void)state;
+  make_bar(&s);
+  estimate(&s, 1, &l);
+  shape_sphere(&m, 3, at, 1e-3, 1);
+  for (size_t i = 0; i < m.n_tri; i++) {   /* its inside */
+    const uint32_t a = m.tri[i][0];
+
+    m.tri[i][0] = m.tri[i][1];
+    m.tri[i][1] = a;
+  }
+  assert_int_equal(vg_void_from_mesh(&v[0], &m, NULL), VG_OK);
+  volume = enclosed(&v[0]);
+  assert_true(volume > 0);
+  assert_int_equal(vg_load_split(&l, 2, v, 1, part, NULL), VG_OK);
+  assert_int_equal(part[0].n, 1);
+  assert_true(fabs(part[0].cells / (l.cells * volume / 3) - 1) < 0.1);
+  assert_int_equal(part[1].n, 0);
+  assert_true(part[1].cells == 0);
+  for (int c = 0; c < 2; c++) {
+    vg_load_release(&part[c]);
+    vg_void_release(&v[c]);
+  }
+  assert_int_equal(vg_load_new(&v[1], s.sizing, 9, 1, &part[1], NULL), VG_OK);
+  assert_int_equal(part[1].n, 0);
+  vg_mesh_release(&m);
+  vg_load_release(&l);
+  release_scene(&s);
+}
+
+/* A void smaller than an edge still has a load of its volume. */
+static void a_small_void_has_cubes(void **state)
+{
+  struct vg_mesh m = VG_MESH_INIT;
+  struct vg_load l;
+  struct scene s;
+
+  (void)state;
+  shape_box(&m, 2, 1);
+  make_scene(&s, &m, 0);
+  estimate(&s, 1, &l);
+  assert_true(l.n >= 8);
+  assert_true(fabs(fitted(&l) / 8 - 1) < 1e-5);
+  assert_true(fabs(vg_load_quantile(&l, 2, 0.5)) < 0.3);
+  vg_load_release(&l);
+  release_scene(&s);
+}
+
+/* --- questions ----------------------------------------------------------- */
+
+static void two_cubes(struct vg_load *l)
+{
+  static struct vg_load_cube cube[2] = {
+    { { 1, 5, 0 }, 1, 0.5f, 1, 300 }, { { 4, 5, 0 }, 2, 1, 1, 100 }
+  };
+
+  *l = (struct vg_load){ 2, cube, 400, { 0, 0, 0 }, 1 };
+}
+
+static void answers_on_two_cubes(void **state)
+{
+  struct vg_load l;
+
+  (void)state;
+  two_cubes(&l);      /* x: 300 cells in 0 .. 2, 100 in 2 .. 6 */
+  assert_true(fabs(vg_load_quantile(&l, 0, 0.375) - 1) < 1e-3);
+  assert_true(fabs(vg_load_quantile(&l, 0, 0.875) - 4) < 1e-3);
+  assert_true(fabs(vg_load_quantile(&l, 0, 0) - 0) < 1e-12);
+  assert_true(fabs(vg_load_quantile(&l, 0, 1) - 6) < 1e-12);
+  assert_true(fabs(vg_load_quantile(&l, 1, 0.5) - 5) < 1e-3);
+  assert_true(fabs(vg_load_zone(&l, 0, 4, 1) - 50) < 1e-9);
+  assert_true(fabs(vg_load_zone(&l, 0, 2, 1) - (75 + 25)) < 1e-9);
+  assert_true(fabs(vg_load_zone(&l, 1, 5, 2) - 400) < 1e-9);
+  assert_true(vg_load_coarsest(&l, 0, 1) == 0.5);
+  assert_true(vg_load_coarsest(&l, 0, 2) == 1);
+  assert_true(vg_load_coarsest(&l, 0, 7) == 0);
+}
+
+static void quantiles_halve_a_mesh(void **state)
+{
+  struct vg_load l;
+  struct scene s;
+
+  (void)state;
+  make_bar(&s);
+  estimate(&s, 1, &l);
+  for (int i = 1; i < 10; i++)   /* even spacing: to a part of an edge, 0.05 */
+    assert_true(fabs(vg_load_quantile(&l, 0, i / 10.) - 0.3 * i) < 0.05);
+  assert_true(fabs(vg_load_quantile(&l, 1, 0.5) - 0.5) < 0.02);
+  vg_load_release(&l);
+  release_scene(&s);
+}
+
+static void messages_come_back(void **state)
+{
+  struct vg_bytes bytes = { 0, NULL }, shorter;
+  struct vg_load l, back = VG_LOAD_INIT;
+
+  (void)state;
+  two_cubes(&l);
+  assert_int_equal(vg_load_pack(&l, &bytes, NULL), VG_OK);
+  assert_int_equal(vg_load_unpack(&bytes, &back, NULL), VG_OK);
+  assert_int_equal(back.n, 2);
+  assert_memory_equal(back.cube, l.cube, 2 * sizeof *l.cube);
+  assert_true(back.cells == 400 && back.unit == 1);
+  vg_load_release(&back);
+  for (size_t n = 0; n < bytes.n; n++) {
+    shorter = (struct vg_bytes){ n, bytes.data };
+    assert_int_equal(vg_load_unpack(&shorter, &back, NULL), VG_ERR_FORMAT);
+  }
+  for (size_t i = 0; i < 16; i++) {   /* name and count */
+    bytes.data[i] ^= 0x40;
+    assert_int_equal(vg_load_unpack(&bytes, &back, NULL), VG_ERR_FORMAT);
+    bytes.data[i] ^= 0x40;
+  }
+  memset(bytes.data + bytes.n - 28, 0xff, 28);   /* a cube of NaN */
+  assert_int_equal(vg_load_unpack(&bytes, &back, NULL), VG_ERR_FORMAT);
+  assert_null(back.cube);
+  free(bytes.data);
+}
+
+/* --- real surfaces ------------------------------------------------------- */
+
+/* As a domain, or, of walls alone, what they enclose. */
+static void check_real(const char *name)
+{
+  struct vg_error err = VG_ERROR_INIT;
+  struct vg_mesh m = VG_MESH_INIT;
+  struct vg_void v = VG_VOID_INIT;
+  const char *path = io_real(name);
+  vg_status st = vg_ugrid_read(path, &m, NULL, &err);
+  struct vg_load l;
+  struct scene s;
+
+  if (!strncmp(path, VG_TMP_DIR, strlen(VG_TMP_DIR))) remove(path);
+  if (st < 0) fail_msg("%s: %s", name, err.text);
+  assert_int_equal(vg_void_from_mesh(&v, &m, NULL), VG_OK);
+  for (size_t i = 0; enclosed(&v) < 0 && i < m.n_tri; i++) {
+    const uint32_t a = m.tri[i][0];
+
+    m.tri[i][0] = m.tri[i][1];
+    m.tri[i][1] = a;
+  }
+  vg_void_release(&v);
+  make_scene(&s, &m, 0);
+  estimate(&s, 2, &l);
+  print_message("%s: %zu triangles, %zu cubes, %.0f cells, volume %.4f\n",
+                name, s.v.n_face, l.n, l.cells, sampled(&l) / s.volume);
+  check_volume(&s, &l);
+  vg_load_release(&l);
+  release_scene(&s);
+}
+
+static void real_surfaces_keep_their_volume(void **state)
+{
+  (void)state;
+  check_real("transport/dlr_f6_wbnp_half_coarse.lb8.ugrid.xz");
+  check_real("transport/onera_m6_sharp_te_farfield.lb8.ugrid.xz");
+  check_real("bizjet/falcon_full_mirrored.lb8.ugrid.xz");
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(demos_keep_their_volume),
+    cmocka_unit_test(a_body_is_left_out),
+    cmocka_unit_test(threads_do_not_matter),
+    cmocka_unit_test(expects_what_is_made),
+    cmocka_unit_test(children_get_their_share),
+    cmocka_unit_test(generations_do_not_drift),
+    cmocka_unit_test(tiny_and_empty_children),
+    cmocka_unit_test(a_small_void_has_cubes),
+    cmocka_unit_test(answers_on_two_cubes),
+    cmocka_unit_test(quantiles_halve_a_mesh),
+    cmocka_unit_test(messages_come_back),
+    cmocka_unit_test(real_surfaces_keep_their_volume),
+  };
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
