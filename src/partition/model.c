@@ -39,8 +39,10 @@ struct sim {
   double *chain, *group_chain; /* longest chain up to a task's or group's end */
   double *in, *out;          /* [n] bytes to and from a rank */
   uint32_t *worker;          /* [n] who does it */
-  struct ready ready, *home; /* home: [ranks] joins */
-  uint32_t *home_store;
+  struct ready ready;
+  uint32_t *home;            /* [n] where it was made, then where it belongs */
+  /* Joins that wait for their rank: leftist heaps, first[ranks] on top. */
+  uint32_t *first, *left_of, *right_of, *depth;
   struct links all, own;
   struct event *event;       /* heap by time, kind, task */
   uint32_t n_event, n_ended;
@@ -108,6 +110,7 @@ static void find_bytes(struct sim *s)
                                        : FRONT_BYTES);
     if (front[kind] > 0) s->out[i] = size * out[kind] / front[kind];
     else s->out[i] = is_cut(one->kind) ? size * FRONT_BYTES : SMALL_BYTES;
+    if (s->g.moves[i]) s->out[i] = 0;
   }
 }
 
@@ -136,6 +139,32 @@ static uint32_t ready_pop(struct ready *r)
   }
   r->place[at] = last;
   return top;
+}
+
+/* Two leftist heaps of tasks as one: the right path is the short one, so this
+ * is no deeper than their logarithms. */
+static uint32_t merge(struct sim *s, uint32_t a, uint32_t b)
+{
+  uint32_t left, right;
+
+  if (a == NONE || b == NONE) return a == NONE ? b : a;
+  if (s->place[b] < s->place[a]) {
+    uint32_t swap = a;
+
+    a = b;
+    b = swap;
+  }
+  right = merge(s, s->right_of[a], b);
+  left = s->left_of[a];
+  if (left == NONE || s->depth[left] < s->depth[right]) {
+    s->left_of[a] = right;
+    s->right_of[a] = left;
+  } else {
+    s->right_of[a] = right;
+  }
+  right = s->right_of[a];
+  s->depth[a] = right == NONE ? 1 : s->depth[right] + 1;
+  return a;
 }
 
 static int is_before(const struct event *a, const struct event *b)
@@ -194,12 +223,6 @@ static uint32_t rank_of(const struct sim *s, uint32_t worker)
   return worker / (uint32_t)s->machine->threads;
 }
 
-static uint32_t home_of(const struct sim *s, uint32_t task)
-{
-  return (uint32_t)s->g.span[s->g.root[task]].home %
-    (uint32_t)s->machine->ranks;
-}
-
 static void touch(struct sim *s, uint32_t rank)
 {
   if (s->is_touched[rank]) return;
@@ -251,7 +274,7 @@ static double send(struct sim *s, uint32_t from, uint32_t to, double bytes)
 static void hand_out(struct sim *s, uint32_t task, uint32_t worker)
 {
   struct vg_span *span = &s->g.span[task];
-  uint32_t rank = rank_of(s, worker), home = home_of(s, task);
+  uint32_t rank = rank_of(s, worker), home = s->home[task];
 
   unlink_item(&s->all, worker);
   unlink_item(&s->own, worker);
@@ -262,28 +285,37 @@ static void hand_out(struct sim *s, uint32_t task, uint32_t worker)
   span->start = rank == home ? s->now : send(s, home, rank, s->in[task]);
   span->cpu /= s->machine->rate;
   span->end = span->start + span->cpu;
+  if (s->g.moves[task]) s->home[task] = rank;
   s->busy[worker] += span->cpu;
   event_push(s, span->end, EVENT_COMPUTED, task);
 }
 
 static void make_ready(struct sim *s, uint32_t task)
 {
-  uint32_t home = home_of(s, task);
+  const struct vg_span *span = &s->g.span[task];
+  uint32_t after = s->g.after[task], *home = &s->home[task];
 
-  if (s->g.span[task].kind != VG_SPAN_JOIN || s->machine->joins_roam) {
+  *home = after != NONE ? s->home[after]
+                        : (uint32_t)span->home % (uint32_t)s->machine->ranks;
+  if (span->kind != VG_SPAN_JOIN || s->g.moves[task] ||
+      s->machine->joins_roam) {
     ready_push(&s->ready, s->place[task]);
     return;
   }
-  ready_push(&s->home[home], s->place[task]);
-  touch(s, home);
+  s->left_of[task] = s->right_of[task] = NONE;
+  s->depth[task] = 1;
+  s->first[*home] = merge(s, s->first[*home], task);
+  touch(s, *home);
 }
 
 static void hand_out_joins(struct sim *s, uint32_t rank)
 {
-  struct ready *r = &s->home[rank];
+  while (s->first[rank] != NONE && idle_of(s, rank) != NONE) {
+    uint32_t task = s->first[rank];
 
-  while (r->n && idle_of(s, rank) != NONE)
-    hand_out(s, s->order[ready_pop(r)], idle_of(s, rank));
+    s->first[rank] = merge(s, s->left_of[task], s->right_of[task]);
+    hand_out(s, task, idle_of(s, rank));
+  }
 }
 
 /* Joins first: no kind comes before them. The others go to a worker of their
@@ -298,7 +330,7 @@ static void hand_out_all(struct sim *s)
   }
   while (s->ready.n && idle_any(s) != NONE) {
     uint32_t task = s->order[ready_pop(&s->ready)];
-    uint32_t worker = idle_of(s, home_of(s, task));
+    uint32_t worker = idle_of(s, s->home[task]);
 
     hand_out(s, task, worker != NONE ? worker : idle_any(s));
   }
@@ -328,7 +360,7 @@ static void end_task(struct sim *s, uint32_t task)
 static void computed(struct sim *s, uint32_t task)
 {
   const struct vg_span *span = &s->g.span[task];
-  uint32_t rank = (uint32_t)span->rank, home = (uint32_t)span->home;
+  uint32_t rank = (uint32_t)span->rank, home = s->home[task];
 
   set_idle(s, s->worker[task]);
   if (is_cut(span->kind) && s->cuts_wall < span->end)
@@ -354,7 +386,10 @@ static void sim_release(struct sim *s)
   free(s->worker);
   free(s->ready.place);
   free(s->home);
-  free(s->home_store);
+  free(s->first);
+  free(s->left_of);
+  free(s->right_of);
+  free(s->depth);
   free(s->all.prev);
   free(s->all.next);
   free(s->own.prev);
@@ -381,8 +416,11 @@ static vg_status sim_allocate(struct sim *s, struct vg_error *err)
   s->out = vg_alloc(n, sizeof *s->out);
   s->worker = vg_alloc(n, sizeof *s->worker);
   s->ready.place = vg_alloc(n, sizeof *s->ready.place);
-  s->home = vg_calloc(ranks, sizeof *s->home);
-  s->home_store = vg_alloc(n, sizeof *s->home_store);
+  s->home = vg_alloc(n, sizeof *s->home);
+  s->first = vg_alloc(ranks, sizeof *s->first);
+  s->left_of = vg_alloc(n, sizeof *s->left_of);
+  s->right_of = vg_alloc(n, sizeof *s->right_of);
+  s->depth = vg_alloc(n, sizeof *s->depth);
   s->all.prev = vg_alloc(n_link, sizeof *s->all.prev);
   s->all.next = vg_alloc(n_link, sizeof *s->all.next);
   s->own.prev = vg_alloc(n_link, sizeof *s->own.prev);
@@ -395,7 +433,7 @@ static vg_status sim_allocate(struct sim *s, struct vg_error *err)
   s->is_touched = vg_calloc(ranks, sizeof *s->is_touched);
   if (!s->order || !s->place || !s->left || !s->chain || !s->group_chain ||
       !s->in || !s->out || !s->worker || !s->ready.place || !s->home ||
-      !s->home_store || !s->all.prev || !s->all.next || !s->own.prev ||
+      !s->first || !s->left_of || !s->right_of || !s->depth || !s->all.prev || !s->all.next || !s->own.prev ||
       !s->own.next || !s->event || !s->sent || !s->received || !s->busy ||
       !s->touched || !s->is_touched)
     return vg_fail_memory(err, "the simulation");
@@ -433,17 +471,11 @@ static vg_status sort_tasks(struct sim *s, struct vg_error *err)
   return VG_OK;
 }
 
-static void set_heaps(struct sim *s)
+static void set_lists(struct sim *s)
 {
-  uint32_t ranks = (uint32_t)s->machine->ranks, at = 0;
+  uint32_t ranks = (uint32_t)s->machine->ranks;
 
-  for (uint32_t i = 0; i < s->g.n; i++)
-    if (s->g.span[i].kind == VG_SPAN_JOIN) s->home[home_of(s, i)].n++;
-  for (uint32_t r = 0; r < ranks; r++) {
-    s->home[r].place = s->home_store + at;
-    at += s->home[r].n;
-    s->home[r].n = 0;
-  }
+  for (uint32_t r = 0; r < ranks; r++) s->first[r] = NONE;
   for (uint32_t i = s->n_worker; i <= s->n_worker + ranks; i++)
     s->all.prev[i] = s->all.next[i] = s->own.prev[i] = s->own.next[i] = i;
   for (uint32_t w = 0; w < s->n_worker; w++) set_idle(s, w);
@@ -452,7 +484,7 @@ static void set_heaps(struct sim *s)
 static vg_status simulate(struct sim *s, struct vg_error *err)
 {
   memcpy(s->left, s->g.size, s->g.n_group * sizeof *s->left);
-  set_heaps(s);
+  set_lists(s);
   for (uint32_t i = 0; i < s->g.n; i++) {
     if (s->g.wait[i] != NONE) continue;
     s->chain[i] = s->g.span[i].cpu / s->machine->rate;

@@ -15,8 +15,11 @@
  * - L: this task alone; but for a task of kind R whose node is the leaf's or
  *   above it, all leaves at or below that node.
  *
- * A task's home is that of the task that made it; the first ones keep their
- * own, modulo the number of ranks. Joins are done at home. */
+ * A task is made on the home of the task that made it; the first ones keep
+ * their own, modulo the number of ranks. Leaves, and joins that start a node
+ * (made by a task of another node, or by none), move: they are done by any
+ * rank, which is their home from then on, and nothing goes back. Other joins
+ * are done at home. The rest is done by any rank and returns. */
 #ifndef VG_PARTITION_MODEL_H
 #define VG_PARTITION_MODEL_H
 
@@ -38,7 +41,7 @@ struct vg_machine {
   double serial;             /* s of the recorded core, before the first and
                                 after the last task, done once (reading,
                                 sizes, layers, files) */
-  int joins_roam;            /* 1: joins are done by any rank */
+  int joins_roam;            /* 1: all joins are done by any rank */
 };
 #define VG_MACHINE_INIT { 1, 1, 1, 2e-6, 1e10, 1, 0, 0 }
 

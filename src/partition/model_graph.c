@@ -29,7 +29,7 @@ void vg_model_graph_release(struct vg_model_graph *g)
   free(g->span);
   free(g->after);
   free(g->wait);
-  free(g->root);
+  free(g->moves);
   free(g->in_first);
   free(g->in);
   free(g->dep_first);
@@ -137,29 +137,28 @@ static vg_status find_after(struct vg_model_graph *g, struct vg_error *err)
   return VG_OK;
 }
 
-/* Walk up to a known root, then mark all on the way: each task is walked over
- * twice. While the walk lasts, root of the tasks on it is `on_way`. */
-static vg_status find_roots(struct vg_model_graph *g, struct vg_error *err)
+/* Walk up until a task that has been passed before; each task is passed
+ * once. A walk that meets itself is a circle. */
+static vg_status find_circles(struct vg_model_graph *g, struct vg_error *err)
 {
-  const uint32_t on_way = NONE - 1;
+  uint32_t *walk = vg_calloc(g->n, sizeof *walk);
+  vg_status st = VG_OK;
 
-  for (uint32_t i = 0; i < g->n; i++) g->root[i] = NONE;
-  for (uint32_t i = 0; i < g->n; i++) {
-    uint32_t at = i, root;
+  if (!walk) return vg_fail_memory(err, "the order of the record");
+  for (uint32_t i = 0; i < g->n && st >= 0; i++) {
+    uint32_t at = i;
 
-    while (g->root[at] == NONE && g->after[at] != NONE) {
-      g->root[at] = on_way;
+    if (walk[i]) continue;
+    while (at != NONE && !walk[at]) {
+      walk[at] = i + 1;
       at = g->after[at];
     }
-    if (g->root[at] == on_way)
-      return vg_fail(err, VG_ERR_INPUT, "task '%s' of the record comes after "
-                     "itself", g->span[at].path);
-    root = g->root[at] == NONE ? at : g->root[at];
-    g->root[at] = root;
-    for (at = i; g->root[at] == on_way; at = g->after[at])
-      g->root[at] = root;
+    if (at != NONE && walk[at] == i + 1)
+      st = vg_fail(err, VG_ERR_INPUT, "task '%s' of the record comes after "
+                   "itself", g->span[at].path);
   }
-  return VG_OK;
+  free(walk);
+  return st;
 }
 
 static vg_status add_member(struct members *m, uint32_t task, uint32_t group,
@@ -257,6 +256,22 @@ static vg_status join_repaired(const struct vg_model_graph *g,
   }
 done:
   return st;
+}
+
+/* Wherever these are done is their home from then on: leaves, and joins that
+ * start a node. */
+static void find_moves(struct vg_model_graph *g)
+{
+  for (uint32_t i = 0; i < g->n; i++) {
+    struct key one = key_of(g, i), maker;
+
+    g->moves[i] = g->span[i].kind == VG_SPAN_LEAF;
+    if (g->span[i].kind != VG_SPAN_JOIN) continue;
+    g->moves[i] = 1;
+    if (g->after[i] == NONE) continue;
+    maker = key_of(g, g->after[i]);
+    g->moves[i] = node_order(&one, &maker) != 0;
+  }
 }
 
 static vg_status find_waits(struct vg_model_graph *g, struct members *m,
@@ -357,13 +372,14 @@ vg_status vg_model_graph_new(const struct vg_spans *spans,
   VG_TRY(copy_spans(spans, &g, err));
   g.after = vg_alloc(g.n, sizeof *g.after);
   g.wait = vg_alloc(g.n, sizeof *g.wait);
-  g.root = vg_alloc(g.n, sizeof *g.root);
-  if (!g.after || !g.wait || !g.root) {
+  g.moves = vg_alloc(g.n, sizeof *g.moves);
+  if (!g.after || !g.wait || !g.moves) {
     st = vg_fail_memory(err, "the order of the record");
     goto done;
   }
   VG_TRY(find_after(&g, err));
-  VG_TRY(find_roots(&g, err));
+  VG_TRY(find_circles(&g, err));
+  find_moves(&g);
   VG_TRY(find_waits(&g, &m, err));
   VG_TRY(list_all(&g, &m, err));
   *out = g;

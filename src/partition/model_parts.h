@@ -13,7 +13,7 @@ struct vg_model_graph {
   struct vg_span *span;      /* [n] by path; a copy */
   uint32_t *after;           /* [n] task, or NONE */
   uint32_t *wait;            /* [n] group, or NONE */
-  uint32_t *root;            /* [n] first task of its chain of `after` */
+  unsigned char *moves;      /* [n] 1: done anywhere, and its home is there */
   uint32_t *in_first, *in;   /* [n + 1], groups that a task is in */
   uint32_t *dep_first, *dep; /* [n_group + 1], tasks that wait for a group */
   uint32_t *size;            /* [n_group] members */

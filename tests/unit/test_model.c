@@ -221,7 +221,7 @@ static void schedules_keep_the_bounds(void **state)
   vg_spans_release(&s);
 }
 
-/* One leaf at home, one away: 1 MB there and 2 MB back at 1 MB/s, a latency
+/* One tile at home, one away: 1 MB there and 2 MB back at 1 MB/s, a latency
  * of 1/4 s each; none within a node. */
 static void messages_take_time(void **state)
 {
@@ -232,16 +232,16 @@ static void messages_take_time(void **state)
   (void)state;
   m.bandwidth = 1e6;
   m.latency = 0.25;
-  add(&s, "0.1L", "", 8);
-  add(&s, "0.2L", "", 4);
+  add(&s, "0T1", "", 8);
+  add(&s, "0T2", "", 4);
   s.span[1].bytes_in = 1000000;
   s.span[1].bytes_out = 2000000;
   f = replay(&s, &m, &t);
-  assert_true(find(&t, "0.1L")->rank == 0);
-  assert_true(find(&t, "0.2L")->rank == 1);
-  assert_true(find(&t, "0.2L")->start == 1.25);
-  assert_true(find(&t, "0.2L")->bytes_out == 2000000);
-  assert_true(find(&t, "0.1L")->bytes_in == 0);
+  assert_true(find(&t, "0T1")->rank == 0);
+  assert_true(find(&t, "0T2")->rank == 1);
+  assert_true(find(&t, "0T2")->start == 1.25);
+  assert_true(find(&t, "0T2")->bytes_out == 2000000);
+  assert_true(find(&t, "0T1")->bytes_in == 0);
   assert_true(f.wall == 8 && f.bytes == 3e6);
   vg_spans_release(&t);
   s.span[1].cpu = 7.5;
@@ -283,42 +283,84 @@ static void sizes_are_made_up_from_cells(void **state)
   struct vg_machine m = machine_of(3, 1);
 
   (void)state;
-  add(&s, "0.1L", "", 8);
-  add(&s, "0.2L", "", 8);
-  add(&s, "0.3L", "", 1);
+  add(&s, "0P1", "", 8);
+  add(&s, "0P2", "", 8);
+  add(&s, "0P3", "", 1);
   s.span[1].bytes_in = 40000;
   s.span[1].bytes_out = 400;
   replay(&s, &m, &t);
-  assert_true(find(&t, "0.2L")->bytes_in == 40000);
-  assert_true(find(&t, "0.3L")->bytes_in == 10000); /* 8 x the cells: 4 x */
-  assert_true(find(&t, "0.3L")->bytes_out == 100);
+  assert_true(find(&t, "0P2")->bytes_in == 40000);
+  assert_true(find(&t, "0P3")->bytes_in == 10000); /* 8 x the cells: 4 x */
+  assert_true(find(&t, "0P3")->bytes_out == 100);
   vg_spans_release(&s);
   vg_spans_release(&t);
 }
 
-static void joins_stay_at_home(void **state)
+/* A node lives where it was started; its pencils come back, its joins stay,
+ * what it makes starts anywhere. */
+static void nodes_move_and_joins_stay(void **state)
+{
+  struct vg_spans s = VG_SPANS_INIT, t = VG_SPANS_INIT;
+  struct vg_machine m = machine_of(2, 1);
+
+  (void)state;
+  add(&s, "0J0", "", 1);
+  add(&s, "0.0J0", "0J0", 2);
+  add(&s, "0.1J0", "0J0", 2);
+  add(&s, "0.1P0", "0.1J0", 4);
+  add(&s, "0.1P1", "0.1J0", 1);
+  add(&s, "0.1J1", "0.1P1", 1);
+  add(&s, "0.1.0L", "0.1J1", 8);
+  add(&s, "0.1.1L", "0.1J1", 6);
+  for (size_t i = 0; i < s.n; i++) s.span[i].bytes_in = 1;
+  replay(&s, &m, &t);
+  assert_int_equal(find(&t, "0.0J0")->rank, 0);
+  assert_int_equal(find(&t, "0.1J0")->rank, 1);
+  assert_int_equal(find(&t, "0.1J0")->home, 0);
+  assert_int_equal(find(&t, "0.1P0")->rank, 1);
+  assert_int_equal(find(&t, "0.1P1")->rank, 0);
+  assert_int_equal(find(&t, "0.1P1")->home, 1);
+  assert_int_equal(find(&t, "0.1J1")->rank, 1);
+  assert_true(find(&t, "0.1J1")->start == 7);
+  assert_int_equal(find(&t, "0.1.0L")->rank, 1);
+  assert_int_equal(find(&t, "0.1.1L")->rank, 0);
+  vg_spans_release(&t);
+  vg_spans_release(&s);
+}
+
+/* Joins that wait for one rank are done by priority, others idle. */
+static void joins_wait_for_their_rank(void **state)
 {
   struct vg_spans s = VG_SPANS_INIT, t = VG_SPANS_INIT;
   struct vg_machine m = machine_of(4, 1);
+  char path[16], maker[16];
+  double last = 1e9;
 
   (void)state;
-  for (int i = 0; i < 4; i++) {
-    char path[16];
-
-    snprintf(path, sizeof path, "0.%dJ", i);
-    add(&s, path, "", 1);
+  add(&s, "0J0", "", 1);
+  add(&s, "0T0", "0J0", 8);
+  for (int i = 0; i < 8; i++) {
+    snprintf(path, sizeof path, "0J%d", i + 1);
+    add(&s, path, "0J0", 1);
+    s.span[s.n - 1].estimate = 10 * ((i * 3) % 8);
   }
-  assert_true(replay(&s, &m, &t).wall == 4);
-  for (size_t i = 0; i < t.n; i++) assert_int_equal(t.span[i].rank, 0);
+  assert_true(replay(&s, &m, &t).wall == 9);
+  for (int e = 0; e < 8; e++)
+    for (int i = 0; i < 8; i++) {
+      struct vg_span *one;
+
+      snprintf(maker, sizeof maker, "0J%d", i + 1);
+      one = find(&t, maker);
+      assert_int_equal(one->rank, 0);
+      if ((i * 3) % 8 != e) continue;
+      assert_true(one->start < last);
+      last = one->start;
+    }
   vg_spans_release(&t);
-  m.joins_roam = 1;
-  assert_true(replay(&s, &m, NULL).wall == 1);
-  for (int i = 0; i < 4; i++) s.span[i].home = i;
-  m.joins_roam = 0;
-  assert_true(replay(&s, &m, &t).wall == 1);
-  for (size_t i = 0; i < t.n; i++)
-    assert_int_equal(t.span[i].home, (int)i);
-  vg_spans_release(&t);
+  m.joins_roam = 1;      /* four by four, then the tile */
+  assert_true(replay(&s, &m, NULL).wall == 11);
+  s.span[1].cpu = 1;
+  assert_true(replay(&s, &m, NULL).wall == 4);
   vg_spans_release(&s);
 }
 
@@ -462,7 +504,8 @@ int main(void)
     cmocka_unit_test(messages_take_time),
     cmocka_unit_test(a_link_is_taken_in_turn),
     cmocka_unit_test(sizes_are_made_up_from_cells),
-    cmocka_unit_test(joins_stay_at_home),
+    cmocka_unit_test(nodes_move_and_joins_stay),
+    cmocka_unit_test(joins_wait_for_their_rank),
     cmocka_unit_test(a_faster_core_takes_less),
     cmocka_unit_test(nothing_takes_no_time),
     cmocka_unit_test(the_same_record_gives_the_same),
