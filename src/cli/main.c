@@ -1,5 +1,6 @@
 /* The program `vanguard`: finds the subcommand. Exit status: 0 done, 1 the
- * job failed, 2 wrong usage, 4 done but a limit on the layers is not met. */
+ * job failed, 2 wrong usage, 4 done but not as it should be: a limit on the
+ * layers is not met, or runs of a sweep differ. */
 #include <stdio.h>
 #include <string.h>
 
@@ -15,6 +16,8 @@ static const struct command {
   { "mesh", "mesh the volume of a project", vg_cmd_mesh, "vanguard mesh", 1 },
   { "check", "judge a surface or a volume mesh", vg_cmd_check,
     "vanguard check", 0 },
+  { "plan", "forecast a run on other machines", vg_cmd_plan,
+    "vanguard plan", 0 },
   { "deck", "write a run deck with all defaults", vg_cmd_deck,
     "vanguard deck", 0 },
   { "demo", "write a complete example project", vg_cmd_demo,

@@ -1,0 +1,23 @@
+/* cli/plan.h: what vanguard plan computes. Uses cli/ranges.h,
+ * partition/model.h. */
+#ifndef VG_CLI_PLAN_H
+#define VG_CLI_PLAN_H
+
+#include "cli/ranges.h"
+#include "partition/model.h"
+
+struct vg_plan_options {
+  const char *replay;           /* a .timeline.json, or NULL */
+  struct vg_range ranks, threads;
+  struct vg_machine machine;    /* all but ranks, threads and serial */
+  double serial;                /* s; below 0: as in the record */
+  const char *plot;             /* file for a figure of speed-up, or NULL */
+  int json;
+};
+
+/** Replay a record on all machines asked for, and print what comes out; the
+ * machine it was recorded on first, to show how well the model fits.
+ * Returns an exit status. */
+int vg_plan_replay(const struct vg_plan_options *o);
+
+#endif

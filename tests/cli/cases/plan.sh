@@ -1,0 +1,65 @@
+# A recorded run on other machines: text, JSON, figure and messages.
+cat >r.timeline.json <<'END'
+{"vanguard_timeline": 1,
+"facts": {"title": "box", "ranks": 1, "threads": 1, "cells": 4000,
+ "points": 900, "digest": "", "seconds_read": 1, "seconds_cut_fill": 9,
+ "seconds_write": 1, "seconds_total": 11},
+"columns": ["path", "after", "kind", "rank", "thread", "home", "start", "end",
+ "cpu", "estimate", "cells", "bytes_in", "bytes_out"],
+"spans": [
+["0J", "", "J",0,0,0,0,1,1,0,0,0,0],
+["0.1L","0J","L",0,0,0,1,3,2,1000,1000,0,0],
+["0.2L","0J","L",0,0,0,3,5,2,1000,1000,0,0],
+["0.3L","0J","L",0,0,0,5,7,2,1000,1000,0,0],
+["0.4L","0J","L",0,0,0,7,9,2,1000,1000,0,0]
+]}
+END
+
+vanguard plan --replay r.timeline.json --ranks 1:4:x2 --threads 1,2
+exits 0
+says out "1 ranks x 1 threads, 5 tasks, 4,000 cells; cut and fill 9.000 s"
+says out "replayed: 11.000 s, measured 11.000 s (+0.0 %)"
+says out "      1       1       1     11.000      1.00       100.0      5.000"
+says out "      2       1       2      7.000      1.57        78.6      5.000"
+says out "      4       2       8      5.000      2.20        27.5      5.000"
+[ "$(grep -c '^ *[0-9][0-9]* *[0-9][0-9]* *[0-9][0-9]* ' out)" = 6 ] || fail "not 6 rows"
+
+# The serial part can be left out; a faster core takes less.
+vanguard plan -r r.timeline.json -n 4 --serial 0 --rate 2 -j
+exits 0
+says out '"seconds": 1.5'
+says out '"serial": 0.0'
+says out '"error_percent": '
+
+# Slow links leave the work at home.
+vanguard plan -r r.timeline.json -n 2 --latency 0.5 --serial 0
+says out "      2       1       2      6.0"
+vanguard plan -r r.timeline.json -n 2 --latency 0.5 --serial 0 \
+  --ranks-per-node 2
+says out "      2       1       2      5.0"
+
+vanguard plan -r r.timeline.json --plot speedup.svg
+exits 0
+says out "    512       1     512"
+says speedup.svg ">ideal<"
+
+vanguard plan
+exits 2
+says err "which run?"
+vanguard plan -r r.timeline.json -n 4:2
+exits 2
+says err "--ranks takes numbers from 1"
+vanguard plan -r r.timeline.json -n 1,2x
+exits 2
+says err "not '2x'"
+vanguard plan -r none.timeline.json
+exits 1
+says err "none.timeline.json"
+sed 's/"0.3L","0J"/"0.3L","0K"/' r.timeline.json >bad.timeline.json
+vanguard plan -r bad.timeline.json
+exits 1
+says err "bad.timeline.json: task '0.3L' of the record was made by '0K'"
+echo '{"ok": true}' >report.json
+vanguard plan -r report.json
+exits 1
+says err "report.json: not a timeline of vanguard mesh"
