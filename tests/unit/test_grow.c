@@ -12,6 +12,7 @@
 
 #include "core/grow.h"
 #include "fill_shapes.h"
+#include "zone_support.h"
 
 struct scene {
   struct vg_mesh m;
@@ -56,15 +57,28 @@ static void scene_end(struct scene *s)
 }
 
 /* One call; the void must be valid after it. Returns the cells it made. */
-static size_t grow(struct scene *s, const struct vg_region *region,
-                   size_t max_cells)
+static size_t grow(struct scene *s, size_t max_cells)
 {
   struct vg_grow_options options = VG_GROW_OPTIONS_INIT;
   struct vg_error err = VG_ERROR_INIT;
   size_t before = s->v.n_cell;
 
   options.max_cells = max_cells;
-  if (vg_grow(&s->v, s->sizing, region, &options, &s->report, &err) != VG_OK)
+  if (vg_grow(&s->v, s->sizing, &options, &s->report, &err) != VG_OK)
+    fail_msg("%s", err.text);
+  assert_int_equal(vg_void_defects(&s->v), 0);
+  return s->v.n_cell - before;
+}
+
+/* Likewise along a region's planes. */
+static size_t cut(struct scene *s, const struct vg_region *region)
+{
+  struct vg_grow_options options = VG_GROW_OPTIONS_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+  size_t before = s->v.n_cell;
+
+  if (zone_take(&s->v, s->sizing, region, &options, &s->report,
+                &err) != VG_OK)
     fail_msg("%s", err.text);
   assert_int_equal(vg_void_defects(&s->v), 0);
   return s->v.n_cell - before;
@@ -141,7 +155,7 @@ static size_t cells_of_box(int n)
   size_t made;
 
   box_scene(&s, n);
-  made = grow(&s, NULL, 0);
+  made = grow(&s, 0);
   is_finished(&s, 1);
   scene_end(&s);
   return made;
@@ -158,12 +172,12 @@ static void stopped_at_any_count(void **state)
     struct scene s;
 
     box_scene(&s, 4);
-    assert_int_equal(grow(&s, NULL, most[k]), most[k]);
+    assert_int_equal(grow(&s, most[k]), most[k]);
     assert_int_equal(s.v.n_face == 0, most[k] == all);
     adds_up(&s, 1);
-    grow(&s, NULL, 0);
+    grow(&s, 0);
     is_finished(&s, 1);
-    assert_int_equal(grow(&s, NULL, 0), 0);      /* nothing to do: no harm */
+    assert_int_equal(grow(&s, 0), 0);      /* nothing to do: no harm */
     scene_end(&s);
   }
 }
@@ -176,7 +190,7 @@ static void in_many_steps(void **state)
   (void)state;
   box_scene(&s, 4);
   while (s.v.n_face && calls++ < 100) {
-    grow(&s, NULL, 60);
+    grow(&s, 60);
     adds_up(&s, 1);
   }
   assert_in_range(calls, 5, 60);
@@ -194,7 +208,7 @@ static void around_a_body_in_steps(void **state)
   sphere_scene(&s);
   volume = volume_of_front(&s.v);
   while (s.v.n_face && calls++ < 40) {
-    grow(&s, NULL, 700);
+    grow(&s, 700);
     adds_up(&s, volume);
   }
   assert_true(calls > 2);
@@ -235,15 +249,15 @@ static void stored_in_between(void **state)
   (void)state;
   box_scene(&s, 4);
   box_scene(&kept, 4);
-  grow(&s, NULL, 150);
-  grow(&kept, NULL, 150);
+  grow(&s, 150);
+  grow(&kept, 150);
   f = stored(&s.v);
   vg_void_release(&s.v);
   assert_int_equal(vg_void_load(&s.v, f, NULL), VG_OK);
   fclose(f);
   same_void(&s.v, &kept.v);
-  grow(&s, NULL, 0);
-  grow(&kept, NULL, 0);
+  grow(&s, 0);
+  grow(&kept, 0);
   same_void(&s.v, &kept.v);
   is_finished(&s, 1);
   f = stored(&s.v);          /* no front, cells only */
@@ -298,7 +312,7 @@ static void damaged_states_are_refused(void **state)
 
   (void)state;
   box_scene(&s, 3);
-  grow(&s, NULL, 20);
+  grow(&s, 20);
   f = stored(&s.v);
   face = 32 + s.v.n_point * sizeof *s.v.x;
   cell = face + s.v.n_face * sizeof *s.v.face;
@@ -350,7 +364,7 @@ static void defects_of_a_void_are_seen(void **state)
 
   (void)state;
   box_scene(&s, 3);
-  grow(&s, NULL, 10);
+  grow(&s, 10);
   s.v.n_face--;
   assert_int_equal(vg_void_defects(&s.v), 3);
   s.v.n_face++;
@@ -363,32 +377,51 @@ static void defects_of_a_void_are_seen(void **state)
 
 /* --- regions ------------------------------------------------------------ */
 
-static double side_of(const struct vg_slab *s, const double x[3])
+static double side_of(const struct vg_plane *p, const double x[3])
 {
-  return s->normal[0] * x[0] + s->normal[1] * x[1] + s->normal[2] * x[2] -
-         s->offset;
+  return p->normal[0] * x[0] + p->normal[1] * x[1] + p->normal[2] * x[2] -
+         p->offset;
 }
 
-/* Cells from `first` on all cross the planes of the region. */
+static int crosses(const struct vg_void *v, size_t c,
+                   const struct vg_region *r)
+{
+  for (int i = 0; i < r->n_plane; i++) {
+    int above = 0, below = 0;
+
+    for (int k = 0; k < 4; k++) {
+      double side = side_of(&r->plane[i], v->x[v->cell[c][k]]);
+
+      above |= side >= 0;
+      below |= side <= 0;
+    }
+    if (!above || !below) return 0;
+  }
+  return 1;
+}
+
+/* Cells from `first` on all cross the planes of the region, or fill a dent
+ * between cells that do: their corners are corners of such cells. */
 static void all_cross(const struct vg_void *v, size_t first,
                       const struct vg_region *r)
 {
+  uint8_t *used = vg_calloc(v->n_point, 1);
+  size_t n = 0;
+
+  assert_non_null(used);
+  for (size_t c = first; c < v->n_cell; c++) {
+    if (!crosses(v, c, r)) continue;
+    n++;
+    for (int k = 0; k < 4; k++) used[v->cell[c][k]] = 1;
+  }
+  assert_true(2 * n > v->n_cell - first);
   for (size_t c = first; c < v->n_cell; c++)
-    for (int i = 0; i < r->n_slab; i++) {
-      int above = 0, below = 0;
-
-      for (int k = 0; k < 4; k++) {
-        double side = side_of(&r->slab[i], v->x[v->cell[c][k]]);
-
-        above |= side >= -r->slab[i].reach;
-        below |= side <= r->slab[i].reach;
-      }
-      assert_true(above && below);
-    }
+    for (int k = 0; k < 4; k++) assert_true(used[v->cell[c][k]]);
+  free(used);
 }
 
 /* Faces of the front which cross the plane; those on either side. */
-static void front_sides(const struct vg_void *v, const struct vg_slab *s,
+static void front_sides(const struct vg_void *v, const struct vg_plane *s,
                         size_t count[3])
 {
   memset(count, 0, 3 * sizeof *count);
@@ -435,9 +468,9 @@ static size_t front_components(const struct vg_void *v)
 }
 
 static const struct vg_region plane_zone = {
-  1, {{{0, 0, 1}, 0.03, 0}, {{0}, 0, 0}}};
+  .n_plane = 1, .plane = {{{0, 0, 1}, 0.03}} };
 static const struct vg_region line_pencil = {
-  2, {{{0, 0, 1}, 0.03, 0}, {{1, 0, 0}, 0.07, 0}}};
+  .n_plane = 2, .plane = {{{0, 0, 1}, 0.03}, {{1, 0, 0}, 0.07}} };
 
 static void a_zone_parts_the_void(void **state)
 {
@@ -446,22 +479,23 @@ static void a_zone_parts_the_void(void **state)
 
   (void)state;
   box_scene(&s, 8);
-  made = grow(&s, &plane_zone, 0);
+  made = cut(&s, &plane_zone);
   assert_true(made > 100);
   all_cross(&s.v, 0, &plane_zone);
   adds_up(&s, 1);
-  front_sides(&s.v, &plane_zone.slab[0], side);
+  front_sides(&s.v, &plane_zone.plane[0], side);
   assert_int_equal(side[0], 0);
   assert_true(side[1] > 350 && side[2] > 350);
   assert_int_equal(front_components(&s.v), 2);
-  grow(&s, NULL, 0);
+  grow(&s, 0);
   is_finished(&s, 1);
   scene_end(&s);
 }
 
 static void an_oblique_zone_around_a_body(void **state)
 {
-  const struct vg_region zone = {1, {{{0.6, 0, 0.8}, 0.2, 0}, {{0}, 0, 0}}};
+  const struct vg_region zone = {
+    .n_plane = 1, .plane = {{{0.6, 0, 0.8}, 0.2}} };
   struct scene s;
   size_t side[3];
   double volume;
@@ -469,13 +503,13 @@ static void an_oblique_zone_around_a_body(void **state)
   (void)state;
   sphere_scene(&s);
   volume = volume_of_front(&s.v);
-  assert_true(grow(&s, &zone, 0) > 50);
+  assert_true(cut(&s, &zone) > 50);
   all_cross(&s.v, 0, &zone);
   adds_up(&s, volume);
-  front_sides(&s.v, &zone.slab[0], side);
+  front_sides(&s.v, &zone.plane[0], side);
   assert_int_equal(side[0], 0);
   assert_true(side[1] > 50 && side[2] > 50);
-  grow(&s, NULL, 0);
+  grow(&s, 0);
   is_finished(&s, volume);
   scene_end(&s);
 }
@@ -487,16 +521,16 @@ static void pencil_zone_rest(void **state)
 
   (void)state;
   box_scene(&s, 7);
-  pencil = grow(&s, &line_pencil, 0);
+  pencil = cut(&s, &line_pencil);
   assert_in_range(pencil, 14, 400);
   all_cross(&s.v, 0, &line_pencil);
   adds_up(&s, 1);
-  assert_true(grow(&s, &plane_zone, 0) > pencil);
+  assert_true(cut(&s, &plane_zone) > pencil);
   all_cross(&s.v, pencil, &plane_zone);
   adds_up(&s, 1);
-  front_sides(&s.v, &plane_zone.slab[0], side);
+  front_sides(&s.v, &plane_zone.plane[0], side);
   assert_true(side[1] > 300 && side[2] > 300);
-  grow(&s, NULL, 0);
+  grow(&s, 0);
   is_finished(&s, 1);
   scene_end(&s);
 }
@@ -506,15 +540,16 @@ static int around_the_plate(const int at[3])
   return at[0] < 2 || at[0] >= 6 || at[1] < 2 || at[1] >= 6 || at[2] != 2;
 }
 
-/* Oblique planes and lines through a plate, one after the other, each limited
- * to a number of cells: fronts of any shape. */
+/* Oblique planes and lines through a plate, one after the other: fronts of
+ * any shape. */
 static void many_cuts_through_a_plate(void **state)
 {
-  static const struct vg_region cut[4] = {
-    {1, {{{0.6, 0, 0.8}, 4.1, 0}, {{0}, 0, 0}}},
-    {2, {{{0, 0.8, 0.6}, 4.3, 0.2}, {{0.8, -0.6, 0}, 0.9, 0}}},
-    {1, {{{0, 0, 1}, 2.2, 0}, {{0}, 0, 0}}},
-    {1, {{{-0.28, 0.96, 0}, 2.7, 0.3}, {{0}, 0, 0}}}};
+  static const struct vg_region cuts[4] = {
+    { .n_plane = 1, .plane = {{{0.6, 0, 0.8}, 4.1}} },
+    { .n_plane = 2,
+      .plane = {{{0, 0.8, 0.6}, 4.3}, {{0.8, -0.36, 0.48}, 2.2}} },
+    { .n_plane = 1, .plane = {{{0, 0, 1}, 2.2}} },
+    { .n_plane = 1, .plane = {{{-0.28, 0.96, 0}, 2.7}} }};
   const int n[3] = {8, 8, 5};
   const double lo[3] = {0, 0, 0}, hi[3] = {8, 8, 5};
   struct scene s;
@@ -526,27 +561,31 @@ static void many_cuts_through_a_plate(void **state)
   for (int k = 0; k < 4; k++) {
     size_t first = s.v.n_cell;
 
-    assert_true(grow(&s, &cut[k], k % 2 ? 100 : 0) > 0);
-    all_cross(&s.v, first, &cut[k]);
+    assert_true(cut(&s, &cuts[k]) > 0);
+    all_cross(&s.v, first, &cuts[k]);
     adds_up(&s, 8 * 8 * 5 - 16);
   }
-  grow(&s, NULL, 0);
+  grow(&s, 0);
   is_finished(&s, 8 * 8 * 5 - 16);
   scene_end(&s);
 }
 
-/* A region beside the void admits nothing, and leaves everything. */
+/* A region beside the void finds no front, and leaves everything. */
 static void a_region_elsewhere(void **state)
 {
-  const struct vg_region away = {1, {{{0, 0, 1}, 3, 0}, {{0}, 0, 0}}};
+  const struct vg_region away = {
+    .n_plane = 1, .plane = {{{0, 0, 1}, 3}} };
+  struct vg_grow_options options = VG_GROW_OPTIONS_INIT;
   struct scene s;
 
   (void)state;
   box_scene(&s, 3);
-  assert_int_equal(grow(&s, &away, 0), 0);
+  assert_int_equal(zone_take(&s.v, s.sizing, &away, &options, &s.report,
+                             NULL), VG_BLOCKED);
   assert_int_equal(s.v.n_face, s.m.n_tri);
+  assert_int_equal(s.v.n_cell, 0);
   adds_up(&s, 1);
-  grow(&s, NULL, 0);
+  grow(&s, 0);
   is_finished(&s, 1);
   scene_end(&s);
 }
@@ -576,12 +615,12 @@ static void it_can_be_stopped_at_every_call(void **state)
   (void)state;
   box_scene(&s, 4);
   box_scene(&kept, 4);
-  grow(&s, NULL, 50);
-  grow(&kept, NULL, 50);
+  grow(&s, 50);
+  grow(&kept, 50);
   options.progress = stop_later;
   options.user = &stop;
   for (; stop.at < 100; stop.at++, stop.calls = 0) {
-    st = vg_grow(&s.v, s.sizing, NULL, &options, &s.report, NULL);
+    st = vg_grow(&s.v, s.sizing, &options, &s.report, NULL);
     if (st == VG_OK) break;
     assert_int_equal(st, VG_BLOCKED);
     assert_int_equal(stop.calls, stop.at);
@@ -603,17 +642,17 @@ static void failures_leave_the_void_alone(void **state)
   (void)state;
   box_scene(&s, 4);
   box_scene(&kept, 4);
-  grow(&s, NULL, 50);
-  grow(&kept, NULL, 50);
+  grow(&s, 50);
+  grow(&kept, 50);
   options.point_limit = 3;
-  assert_int_equal(vg_grow(&s.v, s.sizing, NULL, &options, &s.report, &err),
+  assert_int_equal(vg_grow(&s.v, s.sizing, &options, &s.report, &err),
                    VG_ERR_UNSUPPORTED);
   assert_true(strlen(err.text) > 10);
   same_void(&s.v, &kept.v);
   options.point_limit = 0;
   s.v.n_face--;              /* open */
   kept.v.n_face--;
-  assert_int_equal(vg_grow(&s.v, s.sizing, NULL, &options, &s.report, &err),
+  assert_int_equal(vg_grow(&s.v, s.sizing, &options, &s.report, &err),
                    VG_ERR_GEOMETRY);
   assert_true(strlen(err.text) > 10);
   same_void(&s.v, &kept.v);

@@ -232,7 +232,8 @@ static void points_that_stand_count(void **state)
 
 static void a_slab_gets_its_points_only(void **state)
 {
-  const struct vg_region zone = {1, {{{0, 0, 1}, 0.1, 0}, {{0}, 0, 0}}};
+  const struct vg_region zone = {
+    .n_plane = 1, .plane = {{{0, 0, 1}, 0.1}} };
   const double lo[3] = {-0.5, -0.5, 0.0}, hi[3] = {0.5, 0.5, 0.2};
   struct scene s;
   struct vg_placed p, all;
@@ -243,8 +244,7 @@ static void a_slab_gets_its_points_only(void **state)
   p = place(&s, &zone, 0);
   assert_true(p.n > all.n / 8 && p.n < all.n / 2);
   for (size_t i = 0; i < p.n; i++)
-    assert_true(vg_region_near(&zone, p.x[i],
-                               vg_sizing_at(s.sizing, p.x[i])));
+    assert_true(vg_region_near(&zone, s.sizing, p.x[i], VG_BAND_PLACE));
   keep_their_distance(&s, &p, 0.65);
   leave_no_gap(&s, &p, lo, hi);
   free(p.x);
@@ -252,39 +252,71 @@ static void a_slab_gets_its_points_only(void **state)
   scene_end(&s);
 }
 
+/* The spacing is 0.25 everywhere: a reach of 1 is 0.25. */
 static void cells_of_regions(void **state)
 {
   const double a[3] = {0, 0, 0}, b[3] = {1, 0, 0}, c[3] = {0, 1, 0};
   const double d[3] = {0, 0, 1};
   struct vg_region all = VG_REGION_ALL;
-  struct vg_region r = {1, {{{0, 0, 1}, 0.5, 0}, {{1, 0, 0}, 0.5, 0}}};
+  struct vg_region r = {
+    .n_plane = 1, .plane = {{{0, 0, 1}, 0.5}, {{1, 0, 0}, 0.5}} };
+  struct scene s;
 
   (void)state;
-  assert_true(vg_region_has_cell(&all, a, b, c, d));
-  assert_true(vg_region_has_cell(&r, a, b, c, d));
-  r.slab[0].offset = 1;      /* touches at d */
-  assert_true(vg_region_has_cell(&r, a, b, c, d));
-  r.slab[0].offset = 1.25;
-  assert_false(vg_region_has_cell(&r, a, b, c, d));
-  r.slab[0].reach = 0.25;
-  assert_true(vg_region_has_cell(&r, a, b, c, d));
-  r.slab[0].reach = 0.125;
-  assert_false(vg_region_has_cell(&r, a, b, c, d));
-  r.slab[0].offset = -1.25;
-  assert_false(vg_region_has_cell(&r, a, b, c, d));
-  r.n_slab = 2;
-  r.slab[0].offset = 0.5;
-  assert_true(vg_region_has_cell(&r, a, b, c, d));
-  r.slab[1].offset = 1.5;
-  assert_false(vg_region_has_cell(&r, a, b, c, d));
-  assert_true(vg_region_has_cell(&all, a, b, c, d));
+  box_scene(&s, 4, 0.25);
+  assert_true(fabs(vg_sizing_at(s.sizing, a) - 0.25) < 1e-3);
+  assert_true(vg_region_has_cell(&all, s.sizing, a, b, c, d));
+  assert_true(vg_region_has_cell(&r, s.sizing, a, b, c, d));
+  r.plane[0].offset = 1;     /* touches at d */
+  assert_true(vg_region_has_cell(&r, s.sizing, a, b, c, d));
+  r.plane[0].offset = 1.25;
+  assert_false(vg_region_has_cell(&r, s.sizing, a, b, c, d));
+  r.reach = 1.01;
+  assert_true(vg_region_has_cell(&r, s.sizing, a, b, c, d));
+  r.reach = 0.5;
+  assert_false(vg_region_has_cell(&r, s.sizing, a, b, c, d));
+  r.plane[0].offset = -1.25;
+  assert_false(vg_region_has_cell(&r, s.sizing, a, b, c, d));
+  r.n_plane = 2;
+  r.plane[0].offset = 0.5;
+  assert_true(vg_region_has_cell(&r, s.sizing, a, b, c, d));
+  r.plane[1].offset = 1.5;
+  assert_false(vg_region_has_cell(&r, s.sizing, a, b, c, d));
+  assert_true(vg_region_has_cell(&all, s.sizing, a, b, c, d));
+  scene_end(&s);
+}
+
+/* A cell belongs when all its corners are within all walls. */
+static void walls_of_regions(void **state)
+{
+  const double a[3] = {0, 0, 0}, b[3] = {0.2, 0, 0}, c[3] = {0, 0.2, 0};
+  const double d[3] = {0, 0, 0.2};
+  struct vg_region r = { .n_plane = 1, .plane = {{{0, 0, 1}, 0.1}},
+                         .n_wall = 1, .wall = {{{1, 0, 0}, -0.1}} };
+  struct scene s;
+
+  (void)state;
+  box_scene(&s, 4, 0.25);
+  assert_true(vg_region_within(&r, a));
+  assert_true(vg_region_has_cell(&r, s.sizing, a, b, c, d));
+  r.wall[0].offset = 0;      /* a, c and d are on it: not within */
+  assert_false(vg_region_within(&r, a));
+  assert_true(vg_region_within(&r, b));
+  assert_false(vg_region_has_cell(&r, s.sizing, a, b, c, d));
+  r.wall[0].offset = 0.1;
+  assert_false(vg_region_has_cell(&r, s.sizing, a, b, c, d));
+  r.wall[0].normal[0] = -1;
+  r.wall[0].offset = -0.3;
+  assert_true(vg_region_has_cell(&r, s.sizing, a, b, c, d));
+  scene_end(&s);
 }
 
 /* --- seeds --------------------------------------------------------------- */
 
 static void seeds_are_few_and_spread(void **state)
 {
-  const struct vg_region zone = {1, {{{0, 0, 1}, 0, 0}, {{0}, 0, 0}}};
+  const struct vg_region zone = {
+    .n_plane = 1, .plane = {{{0, 0, 1}, 0}} };
   struct scene s;
   struct vg_placed p = {0}, q = {0}, some = {0};
   const double (*x)[3];
@@ -303,7 +335,8 @@ static void seeds_are_few_and_spread(void **state)
     for (int k = 0; k < 3; k++) assert_true(fabs(p.x[i][k]) < 0.5);
   assert_int_equal(vg_place_seeds(s.m.n_point, x, s.sizing, &zone, &some,
                                   NULL), VG_OK);
-  assert_true(some.n > 0 && some.n <= p.n);
+  assert_true(some.n > 0 && some.n < p.n);
+  for (size_t i = 0; i < some.n; i++) assert_true(fabs(some.x[i][2]) < 1e-9);
   free(p.x);
   free(q.x);
   free(some.x);
@@ -323,6 +356,7 @@ int main(void)
     cmocka_unit_test(points_that_stand_count),
     cmocka_unit_test(a_slab_gets_its_points_only),
     cmocka_unit_test(cells_of_regions),
+    cmocka_unit_test(walls_of_regions),
     cmocka_unit_test(seeds_are_few_and_spread),
   };
 
