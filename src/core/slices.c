@@ -1,6 +1,5 @@
 #include "core/slices.h"
 
-#include <pthread.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,7 +11,7 @@ struct each {
   const struct vg_slices *s;
   vg_slice_body body;
   void *context;
-  pthread_mutex_t lock;
+  atomic_flag busy;         /* noting a failure, which happens rarely */
   atomic_size_t first;      /* slice that failed; n_slice: none */
   vg_status status;
   struct vg_error err;
@@ -21,13 +20,13 @@ struct each {
 static void note_failure(struct each *e, size_t i, vg_status st,
                          const struct vg_error *err)
 {
-  pthread_mutex_lock(&e->lock);
+  while (atomic_flag_test_and_set(&e->busy)) {}
   if (i < e->first) {
     e->first = i;
     e->status = st;
     e->err = *err;
   }
-  pthread_mutex_unlock(&e->lock);
+  atomic_flag_clear(&e->busy);
 }
 
 static void each_slice(void *context, size_t first, size_t end, int worker)
@@ -52,11 +51,10 @@ vg_status vg_slices_each(const struct vg_slices *s, int threads,
                          vg_slice_body body, void *context,
                          struct vg_error *err)
 {
-  struct each e = { s, body, context, PTHREAD_MUTEX_INITIALIZER, s->n_slice,
-                    VG_OK, VG_ERROR_INIT };
+  struct each e = { s, body, context, ATOMIC_FLAG_INIT, s->n_slice, VG_OK,
+                    VG_ERROR_INIT };
 
   vg_parallel_for(threads, s->n_slice, 1, each_slice, &e);
-  pthread_mutex_destroy(&e.lock);
   if (e.status < 0 && err) *err = e.err;
   return e.status;
 }
