@@ -1,7 +1,7 @@
 /* Joining and leaving a job, and waiting asleep: base/comm.h. */
 #include "base/comm.h"
 
-#include <stdio.h>
+#include <sched.h>
 #include <stdlib.h>
 #include <time.h>
 #include <unistd.h>
@@ -13,9 +13,11 @@
 #define CHUNK ((size_t)1 << 28)
 
 /* Sleep between looks. The first looks are close together for what is nearly
- * there; a rank that waits long looks seldom enough to use no core. */
+ * there; a rank that waits long looks seldom enough to use no core. While
+ * bytes flow it is the looks that move them, so there a rank sleeps only
+ * after LOOKS of them. */
 enum { NAP_FIRST_NS = 2000, NAP_BRISK_NS = 16000, NAP_LAST_NS = 200000,
-       NAP_IDLE_NS = 1000000, NAPS_UNTIL_IDLE = 400 };
+       NAP_IDLE_NS = 1000000, NAPS_UNTIL_IDLE = 400, LOOKS = 64 };
 
 vg_status vg_comm_fail(struct vg_error *err, const char *what, int rc)
 {
@@ -26,21 +28,37 @@ vg_status vg_comm_fail(struct vg_error *err, const char *what, int rc)
   return vg_fail(err, VG_ERR_REMOTE, "MPI: %s: %s", what, text);
 }
 
+static void nap(long ns)
+{
+  const struct timespec t = { 0, ns };
+
+  nanosleep(&t, NULL);
+}
+
+/* The n-th time, from 0. */
+static void nap_idle(int n)
+{
+  long ns = n < 16 ? (long)NAP_FIRST_NS << n : NAP_LAST_NS;
+
+  if (ns > NAP_LAST_NS) ns = NAP_LAST_NS;
+  nap(n < NAPS_UNTIL_IDLE ? ns : NAP_IDLE_NS);
+}
+
+static void nap_brisk(int n)
+{
+  if (n % LOOKS == LOOKS - 1) nap(NAP_BRISK_NS);
+  else sched_yield();
+}
+
 int vg_comm_wait(int n, MPI_Request *request, int brisk)
 {
-  long nap = NAP_FIRST_NS;
-  int done = 0, rc, count = 0;
+  int done = 0, rc, looks = 0;
 
   while (!(rc = MPI_Testall(n, request, &done, MPI_STATUSES_IGNORE)) &&
          !done) {
-    const struct timespec t = { 0, nap };
-
-    nanosleep(&t, NULL);
-    if (count < NAPS_UNTIL_IDLE) count++;
-    nap = nap * 2;
-    if (brisk && nap > NAP_BRISK_NS) nap = NAP_BRISK_NS;
-    if (nap > NAP_LAST_NS)
-      nap = count < NAPS_UNTIL_IDLE ? NAP_LAST_NS : NAP_IDLE_NS;
+    if (brisk) nap_brisk(looks);
+    else nap_idle(looks);
+    looks = looks < NAPS_UNTIL_IDLE ? looks + 1 : brisk ? 0 : looks;
   }
   return rc;
 }

@@ -21,14 +21,16 @@ struct vg_bytes { size_t n; unsigned char *data; };
 
 /** Join the job that a launcher started (found by its environment), or be one
  * rank alone. Call once, before any thread is started.
- * *out is NULL for a job of one rank without a launcher. */
+ * *out is NULL for a job of one rank without a launcher.
+ * VG_ERR_UNSUPPORTED where MPI does not allow calls from several threads, or
+ * a launcher started processes that do not find each other. */
 vg_status vg_comm_open(struct vg_comm **out, struct vg_error *err);
 
 /** Leave the job; NULL accepted. Collective. */
 void vg_comm_close(struct vg_comm *c);
 
 /** End all ranks now, with an exit status: for what no rank can mend. Prints
- * nothing. Does not return. */
+ * nothing (the launcher may) and flushes nothing. Does not return. */
 void vg_comm_abort(struct vg_comm *c, int exit_status)
     __attribute__((noreturn));
 
@@ -72,13 +74,16 @@ vg_status vg_comm_exchange(struct vg_comm *c, const struct vg_bytes *to,
 
 /** All ranks take the worst status of all; where that is another rank's, *err
  * becomes its message with "rank N: " before it. So one rank's failure ends a
- * stage on all of them. Returns what all return. */
+ * stage on all of them. Of several failures the lowest rank's, one with a
+ * cause of its own before VG_ERR_REMOTE; any failure before an outcome > 0.
+ * Returns what all return. */
 vg_status vg_comm_agree(struct vg_comm *c, vg_status mine,
                         struct vg_error *err);
 
 /** Let this process use the cores of all ranks of its node (on = 1), or its
  * own again: for stages that the first rank of a node does for the others,
- * who wait asleep. Returns the cores at hand. */
+ * who wait asleep. It is the calling thread that is bound, and what it starts
+ * from then on. Returns the cores at hand, hyperthreads not counted. Local. */
 int vg_comm_node_cores(struct vg_comm *c, int on);
 
 /** Threads that suit this rank's binding: the cores (not their hyperthreads)
@@ -91,13 +96,16 @@ int vg_comm_default_threads(const struct vg_comm *c);
 struct vg_message { int from, kind; struct vg_bytes bytes; };
 
 /** Post a message; takes over b (b->data becomes NULL). Never blocks. A
- * message to oneself arrives like any other. Any length.
- * Threads: safe. */
+ * message to oneself arrives like any other. Any length. Those of a rank to
+ * another arrive in the order of posting. kind: 0 .. 16383.
+ * On failure b stays the caller's, or is NULL. VG_ERR_UNSUPPORTED in a job
+ * without MPI. Threads: safe. */
 vg_status vg_comm_post(struct vg_comm *c, int to, int kind,
                        struct vg_bytes *b, struct vg_error *err);
 
 /** Take one message that has arrived and free what was sent. VG_OK: *m is
- * the caller's; VG_BLOCKED: none. One thread only. */
+ * the caller's; VG_BLOCKED: none. One thread only. Long messages move only
+ * while both sides poll. What is under way when the job is left is dropped. */
 vg_status vg_comm_poll(struct vg_comm *c, struct vg_message *m,
                        struct vg_error *err);
 

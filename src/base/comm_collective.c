@@ -1,6 +1,5 @@
 /* What all ranks do together: base/comm.h. All waiting is done asleep; where
  * one rank may run out of memory all ranks agree before they go on. */
-#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -249,7 +248,8 @@ static vg_status exchange(struct vg_comm *c, const struct vg_bytes *to,
                      c->all, &request);
   VG_TRY(finish(&request, rc, "exchange", err));
   VG_TRY(fresh_all(c, n, &got, err));
-  if (to[c->rank].n) memcpy(got[c->rank].data, to[c->rank].data, got[c->rank].n);
+  if (to[c->rank].n)
+    memcpy(got[c->rank].data, to[c->rank].data, to[c->rank].n);
   all = vg_alloc(n_chunks(c, to) + n_chunks(c, got), sizeof *all);
   st = all ? VG_OK : vg_fail_memory(err, "transfers");
   VG_TRY(vg_comm_agree_in(c, c->all, st, err));
@@ -279,104 +279,21 @@ vg_status vg_comm_exchange(struct vg_comm *c, const struct vg_bytes *to,
   return st;
 }
 
-/* --- gather on all ------------------------------------------------------- */
-
-/* What MPI needs to gather a piece of each rank: at the same place in all. */
-struct gather {
-  size_t piece;              /* most bytes of a rank at a time */
-  unsigned char *stage;      /* [size * piece] */
-  int *count, *place;        /* [size] */
-};
-
-static void gather_release(struct gather *g)
-{
-  free(g->stage);
-  free(g->count);
-  free(g->place);
-}
-
-static vg_status gather_open(const struct vg_comm *c, const uint64_t *n,
-                             struct gather *g, struct vg_error *err)
-{
-  size_t size = (size_t)c->size, most = 0;
-
-  for (size_t i = 0; i < size; i++) most = n[i] > most ? n[i] : most;
-  g->piece = c->chunk / size + 1;
-  if (g->piece > most) g->piece = most;
-  g->stage = vg_alloc(size, g->piece);
-  g->count = vg_alloc(size, sizeof *g->count);
-  g->place = vg_alloc(size, sizeof *g->place);
-  return vg_comm_agree_in(c, c->all,
-                          g->stage && g->count && g->place ? VG_OK :
-                          vg_fail_memory(err, "gathering"), err);
-}
-
-/* The bytes from `at` on of every rank. */
-static vg_status gather_piece(const struct vg_comm *c, struct gather *g,
-                              const struct vg_bytes *mine, size_t at,
-                              struct vg_bytes *out, struct vg_error *err)
-{
-  static const unsigned char none;
-  MPI_Request request;
-  int rc, n = 0;
-
-  for (int i = 0; i < c->size; i++) {
-    size_t left = out[i].n > at ? out[i].n - at : 0;
-
-    g->count[i] = (int)(left < g->piece ? left : g->piece);
-    g->place[i] = n;
-    n += g->count[i];
-  }
-  rc = MPI_Iallgatherv(g->count[c->rank] ? mine->data + at : &none,
-                       g->count[c->rank], MPI_BYTE, g->stage, g->count,
-                       g->place, MPI_BYTE, c->all, &request);
-  if (!rc) rc = vg_comm_wait(1, &request, 1);
-  if (rc) return vg_comm_fail(err, "gathering", rc);
-  for (int i = 0; i < c->size; i++)
-    if (g->count[i])
-      memcpy(out[i].data + at, g->stage + g->place[i], (size_t)g->count[i]);
-  return VG_OK;
-}
-
-static vg_status gather(struct vg_comm *c, const struct vg_bytes *mine,
-                        struct vg_bytes *out, uint64_t *n,
-                        struct vg_error *err)
-{
-  struct gather g = { 0 };
-  struct vg_bytes *got = NULL;
-  MPI_Request request;
-  vg_status st;
-  size_t most = 0;
-  int rc = MPI_Iallgather(MPI_IN_PLACE, 1, MPI_UINT64_T, n, 1, MPI_UINT64_T,
-                          c->all, &request);
-
-  VG_TRY(finish(&request, rc, "gathering", err));
-  VG_TRY(fresh_all(c, n, &got, err));
-  VG_TRY(gather_open(c, n, &g, err));
-  for (int i = 0; i < c->size; i++) most = n[i] > most ? n[i] : most;
-  for (size_t at = 0; at < most; at += g.piece)
-    VG_TRY(gather_piece(c, &g, mine, at, got, err));
-  memcpy(out, got, (size_t)c->size * sizeof *out);
-  memset(got, 0, (size_t)c->size * sizeof *got);
-done:
-  gather_release(&g);
-  release_all(got, c->size);
-  return st;
-}
-
+/* An exchange in which all get the same: as many bytes on the way as MPI's
+ * own gathering moves, of any length, and no copy of them beside. */
 vg_status vg_comm_allgather(struct vg_comm *c, const struct vg_bytes *mine,
                             struct vg_bytes *out, struct vg_error *err)
 {
-  uint64_t *n;
+  struct vg_bytes *to;
   vg_status st;
 
   if (!c) return copy_own(mine, out, err);
-  n = vg_alloc((size_t)c->size, sizeof *n);
-  st = vg_comm_agree(c, n ? VG_OK : vg_fail_memory(err, "sizes"), err);
+  to = vg_alloc((size_t)c->size, sizeof *to);
+  st = vg_comm_agree(c, to ? VG_OK : vg_fail_memory(err, "gathering"), err);
   if (st >= 0) {
-    n[c->rank] = mine->n;
-    st = gather(c, mine, out, n, err);
+    for (int i = 0; i < c->size; i++) to[i] = *mine;
+    st = vg_comm_exchange(c, to, out, err);
   }
-  free(n);
+  free(to);
   return st;
 }

@@ -1,10 +1,11 @@
 /* io/shared_file.h: one file written by all ranks, each at its own places, by
  * MPI-IO; by pwrite in a job without MPI. Uses base/comm.h.
  *
- * Open MPI 4.1.4 on two ranks, 512 MB, tmpfs: ompio writes pieces of 64 kB
- * and more as fast as pwrite does (2 to 5 GB/s, the noise is larger than the
- * difference); independent writes from several threads come out right. Both
- * ompio and ROMIO need the care that shared_file.c takes with full disks. */
+ * Open MPI 4.1.4, two ranks on a busy machine: ompio writes pieces of 64 kB to
+ * 4 MB at 1 to 3 GB/s to tmpfs and ext4's cache, pwrite at 1 to 4: neither is
+ * what limits. Independent writes of several threads come out right; ompio
+ * does them one after the other. Both ompio and ROMIO need the care that
+ * shared_file.c takes with full disks. */
 #ifndef VG_IO_SHARED_FILE_H
 #define VG_IO_SHARED_FILE_H
 
