@@ -35,6 +35,16 @@ static void bar_edges(struct vg_judge_worker *w, const struct vg_face_item *f)
   add_edge(w, n[2], n[3]);
 }
 
+/* A face that does not join two things may have more cells, which a slice has
+ * matched with each other. */
+static void suspect(struct vg_judge_worker *w, const struct vg_face_item *f)
+{
+  struct vg_face_key *key = vg_items_add(&w->suspect, sizeof *key);
+
+  if (key) memcpy(key, f->node, sizeof *key);
+  else w->st = vg_fail_memory(&w->err, "the faces between slices");
+}
+
 /* The face as it is in the whole mesh (q 0), or in the field alone. */
 static void match_face(const struct vg_slices_judgement *j,
                        struct vg_judge_worker *w, int q,
@@ -54,6 +64,7 @@ static void match_face(const struct vg_slices_judgement *j,
   }
   n_seen = n_cell + n_boundary;
   if (!n_seen) return;
+  if (q == VG_JUDGED_WHOLE && (n_seen != 2 || !n_cell)) suspect(w, f);
   if (j->sizing && j->edges_of == q &&
       (q == VG_JUDGED_FIELD ? n_cell == 1 : n_boundary > 0)) bar_edges(w, f);
   if (!vg_figures_face(w->figures[q], n_cell, n_boundary,

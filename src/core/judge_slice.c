@@ -36,6 +36,31 @@ void vg_face_item_set(struct vg_face_item *f, const uint32_t node[4])
   f->flags = next > last ? VG_FACE_WINDING : 0;
 }
 
+int vg_face_key_order(const void *a, const void *b)
+{
+  return memcmp(a, b, sizeof(struct vg_face_key));
+}
+
+static void item_of_local(const struct work *k, const uint32_t local[4],
+                          struct vg_face_item *f)
+{
+  uint32_t node[4];
+
+  for (int c = 0; c < 4; c++)
+    node[c] = local[c] == VG_NO_NODE ? VG_NO_NODE : k->slice->id[local[c]];
+  vg_face_item_set(f, node);
+}
+
+static int is_suspect(const void *context, const uint32_t local[4])
+{
+  const struct work *k = context;
+  struct vg_face_item f;
+
+  item_of_local(k, local, &f);
+  return bsearch(f.node, k->j->suspect, k->j->n_suspect,
+                 sizeof *k->j->suspect, vg_face_key_order) != NULL;
+}
+
 /* The arrays of a mesh are not const, but none of the judges writes. */
 static void make_view(struct work *k)
 {
@@ -127,13 +152,9 @@ static vg_status keep_faces(struct work *k, struct vg_error *err)
   for (size_t i = 0; i < k->loose.n_face; i++) {
     const struct vg_loose_face *from = &k->loose.face[i];
     struct vg_face_item *f = vg_items_add(&k->w->face, sizeof *f);
-    uint32_t node[4];
 
     if (!f) return vg_fail_memory(err, "the faces between slices");
-    for (int c = 0; c < 4; c++)
-      node[c] = from->node[c] == VG_NO_NODE ? VG_NO_NODE
-                                            : k->slice->id[from->node[c]];
-    vg_face_item_set(f, node);
+    item_of_local(k, from->node, f);
     f->component = from->component;
     f->volume = from->volume;
     f->flags |= (uint32_t)k->at << VG_FACE_BITS |
@@ -191,6 +212,8 @@ static vg_status judge_slice(struct vg_slices_judgement *j,
   k.is_field = slice.kind != 0;
   k.f = w->figures[k.is_field && has_field(j)];
   make_view(&k);
+  k.loose.context = &k;
+  k.loose.is_shared = j->n_suspect ? is_suspect : NULL;
   for (int kind = 0; kind < VG_SLICE_KINDS; kind++) {
     w->n_cell[kind] += slice.n_cell[kind];
     k.n_cell += slice.n_cell[kind];

@@ -97,6 +97,7 @@ static void release(struct vg_slices_judgement *j)
     vg_items_release(&w->face);
     vg_items_release(&w->edge);
     vg_items_release(&w->place);
+    vg_items_release(&w->suspect);
     for (int q = 0; q < VG_JUDGED; q++) {
       free(w->figures[q]);
       free(w->parent[q]);
@@ -106,6 +107,7 @@ static void release(struct vg_slices_judgement *j)
   for (int q = 0; q < VG_JUDGED; q++) free(j->used[q]);
   free(j->place);
   free(j->n_component);
+  free(j->suspect);
 }
 
 /* --- slices -------------------------------------------------------------- */
@@ -435,6 +437,86 @@ done:
   return st;
 }
 
+/* --- suspects ------------------------------------------------------------ */
+
+static vg_status pack_suspects(struct vg_slices_judgement *j,
+                               struct vg_bytes *mine, struct vg_error *err)
+{
+  const size_t size = sizeof(struct vg_face_key);
+  size_t n = 0;
+
+  for (int i = 0; i < j->n_worker; i++) n += size * j->worker[i].suspect.n;
+  mine->data = vg_alloc(n, 1);
+  if (!mine->data) return vg_fail_memory(err, "the faces between slices");
+  for (int i = 0; i < j->n_worker; i++) {
+    const struct vg_items *s = &j->worker[i].suspect;
+
+    if (s->n) memcpy(mine->data + mine->n, s->data, size * s->n);
+    mine->n += size * s->n;
+  }
+  return VG_OK;
+}
+
+static vg_status unpack_suspects(const struct vg_bytes *all, size_t size,
+                                 size_t *n, struct vg_face_key **key,
+                                 struct vg_error *err)
+{
+  size_t n_byte = 0;
+
+  for (size_t r = 0; r < size; r++) n_byte += all[r].n;
+  *key = vg_alloc(n_byte, 1);
+  if (!*key) return vg_fail_memory(err, "the faces between slices");
+  for (size_t r = 0, at = 0; r < size; at += all[r++].n)
+    if (all[r].n) memcpy((unsigned char *)*key + at, all[r].data, all[r].n);
+  *n = n_byte / sizeof **key;
+  qsort(*key, *n, sizeof **key, vg_face_key_order);
+  return VG_OK;
+}
+
+/* Of all ranks. Each is named once: its items met on one rank. */
+static vg_status gather_suspects(struct vg_slices_judgement *j, size_t *n,
+                                 struct vg_face_key **key,
+                                 struct vg_error *err)
+{
+  size_t size = (size_t)vg_comm_size(j->comm);
+  struct vg_bytes mine = { 0, NULL };
+  struct vg_bytes *all = vg_calloc(size, sizeof *all);
+  vg_status st = all ? pack_suspects(j, &mine, err)
+                     : vg_fail_memory(err, "the faces between slices");
+
+  VG_TRY(vg_comm_agree(j->comm, st, err));
+  VG_TRY(vg_comm_allgather(j->comm, &mine, all, err));
+  st = unpack_suspects(all, size, n, key, err);
+  st = vg_comm_agree(j->comm, st, err);
+done:
+  for (size_t r = 0; all && r < size; r++) free(all[r].data);
+  free(all);
+  free(mine.data);
+  return st;
+}
+
+/* Once more where faces are suspect: slices then leave these to be matched
+ * with all others. Only in a mesh that is not valid. */
+static vg_status judge_again(struct vg_slices_judgement *j,
+                             uint64_t front_faces, struct vg_mesh_report *r,
+                             struct vg_error *err)
+{
+  struct vg_slices_judgement again = {
+    .comm = j->comm, .s = j->s, .sizing = j->sizing, .threads = j->threads,
+    .n_judged = j->n_judged, .edges_of = j->edges_of
+  };
+  vg_status st;
+
+  VG_TRY(gather_suspects(j, &again.n_suspect, &again.suspect, err));
+  if (!again.n_suspect) goto done;
+  st = prepare(&again, err);
+  VG_TRY(vg_comm_agree(j->comm, st, err));
+  VG_TRY(judge(&again, front_faces, r, err));
+done:
+  release(&again);
+  return st;
+}
+
 vg_status vg_slices_judge(struct vg_comm *comm, const struct vg_slices *s,
                           uint64_t front_faces, const struct vg_sizing *sizing,
                           int threads, struct vg_mesh_report *whole,
@@ -450,6 +532,7 @@ vg_status vg_slices_judge(struct vg_comm *comm, const struct vg_slices *s,
 
   VG_TRY(vg_comm_agree(comm, st, err));
   VG_TRY(judge(&j, front_faces, r, err));
+  VG_TRY(judge_again(&j, front_faces, r, err));
   *whole = r[VG_JUDGED_WHOLE];
   if (field) *field = r[VG_JUDGED_FIELD];
 done:

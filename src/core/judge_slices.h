@@ -24,8 +24,8 @@
  * at one place are counted for the whole mesh only.
  *
  * In a mesh that is not valid a face may have two cells in one slice and more
- * elsewhere: what is elsewhere counts as open, or as boundary without a cell,
- * instead of as crowded.
+ * elsewhere. So where faces do not join two things, all slices are judged a
+ * second time with these faces left over.
  *
  * @param sizing  may be NULL; edges are those of the field if a report of it
  *                is asked for (those of its faces without a neighbour apart),

@@ -26,6 +26,9 @@ struct vg_face_item {
   uint32_t flags;
 };
 
+/* Its nodes name a face. */
+struct vg_face_key { uint32_t node[4]; };
+
 struct vg_edge_item {
   uint32_t node[2];          /* lower, upper */
   double ratio;              /* length / target; < 0: not to be counted */
@@ -36,6 +39,7 @@ struct vg_place_item { double x[3]; };
 /** Belongs to one thread. */
 struct vg_judge_worker {
   struct vg_items face, edge, place;
+  struct vg_items suspect;   /* keys of faces that do not join two */
   /* Of slices: what is no field and what is; afterwards whole and field. */
   struct vg_figures *figures[VG_JUDGED];
   uint32_t *parent[VG_JUDGED]; /* [n_component of all] */
@@ -59,6 +63,10 @@ struct vg_slices_judgement {
   double (*place)[3];        /* [n_place] where points of the boundary are */
   uint32_t *n_component;     /* [n_slice], then that of the first */
   uint64_t n_all, n_all_field; /* components of slices */
+  /* Faces that did not join two when all but these were matched in slices:
+   * sorted, of all ranks, on all ranks. */
+  size_t n_suspect;
+  struct vg_face_key *suspect;
 };
 
 /** Canonical form of a face with these nodes in the mesh, in cyclic order;
@@ -67,6 +75,9 @@ void vg_face_item_set(struct vg_face_item *f, const uint32_t node[4]);
 
 /** Judge slices first .. end - 1; a body of vg_parallel_for on j. */
 void vg_judge_some_slices(void *j, size_t first, size_t end, int worker);
+
+/** Order of keys, for qsort and bsearch. */
+int vg_face_key_order(const void *a, const void *b);
 
 /** Let faces meet, then edges, then places. Collective. */
 vg_status vg_judge_match(struct vg_slices_judgement *j, struct vg_error *err);

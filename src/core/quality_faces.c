@@ -210,6 +210,30 @@ static void sort_bucket(struct record *r, size_t n)
   }
 }
 
+/* Nodes in cyclic order, as its cell winds them. */
+static void face_nodes(uint32_t lowest, const struct record *r,
+                       uint32_t node[4])
+{
+  uint32_t next = r->owner & 1 ? r->b : r->a;
+  uint32_t last = r->owner & 1 ? r->a : r->b;
+  int quad = r->c != VG_NO_NODE;
+
+  node[0] = lowest;
+  node[1] = next;
+  node[2] = quad ? r->c : last;
+  node[3] = quad ? last : VG_NO_NODE;
+}
+
+static int is_shared(const struct vg_loose *loose, uint32_t lowest,
+                     const struct record *r)
+{
+  uint32_t node[4];
+
+  if (!loose->is_shared) return 0;
+  face_nodes(lowest, r, node);
+  return loose->is_shared(loose->context, node);
+}
+
 /* In a part of a mesh: n records of one face, which others have to match.
  * Its cell stands for the component until all are known. */
 static void pass_on(struct table *t, uint32_t lowest, const struct record *r,
@@ -224,14 +248,8 @@ static void pass_on(struct table *t, uint32_t lowest, const struct record *r,
   }
   for (size_t i = 0; i < n; i++, r++) {
     struct vg_loose_face *face = &loose->face[loose->n_face++];
-    uint32_t next = r->owner & 1 ? r->b : r->a;
-    uint32_t last = r->owner & 1 ? r->a : r->b;
-    int quad = r->c != VG_NO_NODE;
 
-    face->node[0] = lowest;
-    face->node[1] = next;
-    face->node[2] = quad ? r->c : last;
-    face->node[3] = quad ? last : VG_NO_NODE;
+    face_nodes(lowest, r, face->node);
     face->component = r->owner >> 1;
     face->volume = t->volume[r->owner >> 1];
   }
@@ -245,7 +263,7 @@ static void match(struct table *t, uint32_t lowest, const struct record *r,
   uint32_t a = r[0].owner >> 1, b;
   size_t n_boundary = 0;
 
-  if (t->loose && n != 2) {
+  if (t->loose && (n != 2 || is_shared(t->loose, lowest, r))) {
     pass_on(t, lowest, r, n);
     return;
   }

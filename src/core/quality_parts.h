@@ -142,6 +142,9 @@ struct vg_loose {
   size_t n_face, room_face, n_edge, room_edge;
   struct vg_loose_face *face;
   struct vg_loose_edge *edge; /* their edges, each once: length / target */
+  /* NULL, or which faces of two cells are to be listed, too. */
+  int (*is_shared)(const void *context, const uint32_t node[4]);
+  const void *context;
 };
 #define VG_NO_NODE UINT32_MAX
 

@@ -127,7 +127,7 @@ static inline void judge_take_layer(struct vg_mesh *m, size_t n, size_t k)
 
 /* --- damage -------------------------------------------------------------- */
 
-#define JUDGE_DAMAGES 11
+#define JUDGE_DAMAGES 14
 
 static inline void judge_swap(uint32_t *a, uint32_t *b)
 {
@@ -165,6 +165,17 @@ static inline void judge_damage(struct vg_mesh *m, int damage, uint32_t at)
   case 8: memcpy(m->tri[tri], m->tri[tri + 1], sizeof *m->tri); break;
   case 9:                  /* a cell hangs on another point */
     m->tet[tet][3] = m->tet[tet / 2][0];
+    break;
+  case 10:                 /* a cell twice, the second time among the last */
+    memcpy(m->tet[m->n_tet - 1], m->tet[tet / 2], sizeof *m->tet);
+    break;
+  case 11:                 /* a boundary face between two cells, or twice */
+    memcpy(m->tri[tri], m->tet[tet], sizeof *m->tri);
+    if (at) memcpy(m->tri[tri + 1], m->tet[tet], sizeof *m->tri);
+    break;
+  case 12:                 /* a third cell on a face, in one slice or not */
+    memcpy(m->tet[m->n_tet - 1], m->tet[at ? m->n_tet - 5 : tet / 2],
+           3 * sizeof **m->tet);
     break;
   default:                 /* prisms or tetrahedra, turned over */
     t = m->n_pri ? m->pri[m->n_pri / (2 + at)] : m->tet[tet / 2];
