@@ -56,10 +56,11 @@ vg_status vg_load_new(const struct vg_void *v, const struct vg_sizing *sizing,
  *
  * child: [n] fronts that lie inside the parent's void; out: [n] loads. A cube
  * goes to the child that it lies in (cubes that fronts cross are shared by
- * samples); what lies in none of them (the zones) is dropped. A child
- * that is too small for the cubes gets one around it. Shares are made to fit
- * the volumes of the fronts; nothing drifts over generations. The cubes' cells are multiplied by `correction`, the ratio of cells made to
- * cells expected in the ancestors' zones.
+ * samples); what lies in none of them (the zones) is dropped. A child that is
+ * too small for the cubes gets one around it. Shares are made to fit the
+ * volumes of the fronts; nothing drifts over generations. The cubes' cells are
+ * multiplied by `correction`, the ratio of cells made to cells expected in the
+ * ancestors' zones.
  * O(cubes + fronts) times a logarithm. */
 vg_status vg_load_split(const struct vg_load *parent, size_t n,
                         const struct vg_void *child, double correction,
