@@ -17,7 +17,7 @@
  * bytes flow it is the looks that move them, so there a rank sleeps only
  * after LOOKS of them. */
 enum { NAP_FIRST_NS = 2000, NAP_BRISK_NS = 16000, NAP_LAST_NS = 200000,
-       NAP_IDLE_NS = 1000000, NAPS_UNTIL_IDLE = 400, LOOKS = 64 };
+       NAP_IDLE_NS = 2000000, NAPS_UNTIL_IDLE = 200, LOOKS = 64 };
 
 vg_status vg_comm_fail(struct vg_error *err, const char *what, int rc)
 {
