@@ -14,6 +14,7 @@ enum { VG_EXIT_DONE = 0, VG_EXIT_FAILED = 1, VG_EXIT_USAGE = 2,
 
 int vg_cmd_mesh(int argc, char **argv);
 int vg_cmd_check(int argc, char **argv);
+int vg_cmd_sweep(int argc, char **argv);
 int vg_cmd_plan(int argc, char **argv);
 int vg_cmd_deck(int argc, char **argv);
 int vg_cmd_demo(int argc, char **argv);

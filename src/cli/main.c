@@ -16,6 +16,8 @@ static const struct command {
   { "mesh", "mesh the volume of a project", vg_cmd_mesh, "vanguard mesh", 1 },
   { "check", "judge a surface or a volume mesh", vg_cmd_check,
     "vanguard check", 0 },
+  { "sweep", "mesh over a grid of parameters and compare", vg_cmd_sweep,
+    "vanguard sweep", 0 },
   { "plan", "forecast a run on other machines", vg_cmd_plan,
     "vanguard plan", 0 },
   { "deck", "write a run deck with all defaults", vg_cmd_deck,

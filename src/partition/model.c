@@ -433,9 +433,10 @@ static vg_status sim_allocate(struct sim *s, struct vg_error *err)
   s->is_touched = vg_calloc(ranks, sizeof *s->is_touched);
   if (!s->order || !s->place || !s->left || !s->chain || !s->group_chain ||
       !s->in || !s->out || !s->worker || !s->ready.place || !s->home ||
-      !s->first || !s->left_of || !s->right_of || !s->depth || !s->all.prev || !s->all.next || !s->own.prev ||
-      !s->own.next || !s->event || !s->sent || !s->received || !s->busy ||
-      !s->touched || !s->is_touched)
+      !s->first || !s->left_of || !s->right_of || !s->depth ||
+      !s->all.prev || !s->all.next || !s->own.prev || !s->own.next ||
+      !s->event || !s->sent || !s->received || !s->busy || !s->touched ||
+      !s->is_touched)
     return vg_fail_memory(err, "the simulation");
   return VG_OK;
 }

@@ -8,6 +8,7 @@ layers on the walls, tetrahedra around them.
 
   mesh     mesh the volume of a project
   check    judge a surface or a volume mesh
+  sweep    mesh over a grid of parameters and compare
   plan     forecast a run on other machines
   deck     write a run deck with all defaults
   demo     write a complete example project
@@ -34,7 +35,7 @@ is err <<'END'
 vanguard: no command 'chekc'; did you mean 'check'?
 END
 
-for command in mesh check plan deck demo; do
+for command in mesh check sweep plan deck demo; do
   vanguard $command --help
   exits 0
   says out "Usage: vanguard $command [OPTION...]"

@@ -1,0 +1,101 @@
+# A grid of runs: tables, figures, digests, failures. A small program stands
+# for vanguard mesh, so that times and digests are known.
+cat >fake <<'END'
+#!/bin/bash
+# mesh -p P --threads T --leaf-cells C --timeline -o DIR ...
+ranks=${RANKS:-1} threads=1 leaf=0 dir=. wrong=0
+[ "$1" = mesh ] || exit 2
+while [ $# -gt 0 ]; do
+  case $1 in
+    --threads) threads=$2; shift ;;
+    --leaf-cells) leaf=$2; shift ;;
+    --levels) leaf=$((2 ** $2)); shift ;;
+    -o) dir=$2; shift ;;
+    --wrong) wrong=1 ;;
+    --fail-at) [ "$threads" = "$2" ] && {
+      echo "vanguard: no memory for $2 threads" >&2
+      echo "prun: a rank has ended" >&2
+      exit 3
+    }; shift ;;
+  esac
+  shift
+done
+echo "progress"
+n=$((ranks * threads))
+digest=$leaf$((wrong * n))
+echo "mesh $digest" >"$dir/box.cogsg"
+cat >"$dir/box.timeline.json" <<JSON
+{"vanguard_timeline": 1, "facts": {"title": "box", "ranks": $ranks,
+ "threads": $threads, "cells": 3000, "points": 600, "digest": "",
+ "seconds_read": 1, "seconds_cut_fill": $((8 / n)),
+ "seconds_total": $((8 / n + 1))},
+"columns": ["path", "after", "kind", "rank", "thread", "home", "start", "end",
+ "cpu", "estimate", "cells", "bytes_in", "bytes_out"],
+"spans": [
+["0.0L","","L",0,0,0,0,$((n > 1 ? 8 / n : 4)),4,1000,1500,0,0],
+["0.1L","","L",$((ranks - 1)),$((threads - 1)),0,$((n > 1 ? 0 : 4)),$((8 / n)),4,1000,1500,0,0]
+]}
+JSON
+cat >"$dir/box.report.json" <<JSON
+{"ok": true, "mesh": {"angle_min": 12.5}, "peak_memory_bytes": 5e6,
+ "files": [{"path": "$dir/box.cogsg", "bytes": 9, "xxh3": "$digest"},
+  {"path": "$dir/box.report.json", "bytes": 1, "xxh3": "$RANDOM"}]}
+JSON
+END
+chmod +x fake
+sweep() { vanguard sweep --program ./fake --launcher "env RANKS={ranks}" "$@"; }
+
+sweep -p box --leaf-cells 100,200 -n 1,2 -t 1:4:x2 -o s
+exits 0
+says err "12 of 12: c200-n2-t4"
+says out "12 of 12 cases done; tables and figures in s"
+says out "Digests agree: equal mesh options gave the same files (10 compared)"
+says out "c100-n2-t1     2       1      5.00     1.80    90.0     4.00"
+[ "$(wc -l <s/sweep.csv)" = 13 ] || fail "not 13 lines"
+says s/sweep.csv '"c200-n2-t4",,200,2,4,8,1,done,0,2,'
+says s/sweep.json '"digests": "agree"'
+says s/sweep.json '"angle_min": 12.5'
+exists s/speedup.svg s/phases.svg s/c100-n1-t1.timeline.svg \
+  s/c200-n2-t4.sizes.svg s/c100-n1-t1/run.log s/c100-n1-t1/box.report.json
+absent s/c100-n1-t1/box.cogsg
+says s/speedup.svg "leaves of 200, 2 ranks"
+says s/speedup.svg "leaves of 100, model"
+says s/c100-n1-t1/run.log progress
+
+# Levels beside leaf sizes, repeats, meshes kept, nothing but JSON on stdout.
+sweep -p box -L 3:4 --leaf-cells 100 --repeat 2 -o k --keep -q -j
+exits 0
+exists k/L3-n1-t1-r2/box.cogsg
+says out '"case": "c100-n1-t1-r2"'
+says err "6 of 6 cases done"
+lacks err "1 of 6: "
+
+# A failed case is told with its reason and does not end the sweep; what an
+# earlier sweep left there is not taken for its result.
+sweep -p box --leaf-cells 100 -t 1,2,4 -o s -- --fail-at 2
+exits 1
+says out "failed, status 3: no memory for 2 threads"
+says out "2 of 3 cases done"
+says s/sweep.csv ',failed,3,'
+absent s/c100-n1-t2/box.report.json
+
+# Files that differ are an error of their own.
+sweep -p box --leaf-cells 100 -n 1,2 -o w -- --wrong
+exits 4
+says out "Digests DIFFER: box.cogsg is not the same in c100-n1-t1 and c100-n2-t1"
+says w/sweep.json '"digests": "differ"'
+
+# A program that is not there.
+vanguard sweep -p box --program ./none -o none
+exits 1
+says out "failed, status 127: cannot start ./none"
+
+vanguard sweep
+exits 2
+says err "which project?"
+vanguard sweep -p box -n 0
+exits 2
+says err "--ranks takes numbers from 1"
+vanguard sweep -p box --leaf-cells many
+exits 2
+says err "not 'many'"
