@@ -281,21 +281,23 @@ static vg_status spawn(struct vg_sweep_case *c, char **word, int log,
   return VG_OK;
 }
 
-/* The last line that vanguard wrote, or else the last one: what went wrong. */
+/* What went wrong: the last line that vanguard wrote; or else what follows
+ * the first rule, as launchers put round their messages; or the last line. */
 static void find_note(const char *path, struct vg_sweep_case *c)
 {
+  enum { LAST, RULE, FRAMED, OURS } kept = LAST;
   FILE *f = fopen(path, "r");
   char *line = NULL;
   size_t cap = 0;
-  int is_ours = 0;
 
   snprintf(c->note, sizeof c->note, "see %.200s", path);
   while (f && getline(&line, &cap, f) > 0) {
     int ours = !strncmp(line, "vanguard: ", 10);
 
     line[strcspn(line, "\r\n")] = 0;
-    if (!line[strspn(line, " \t-")] || (is_ours && !ours)) continue;
-    is_ours = ours;
+    if (kept == LAST && !strncmp(line, "-----", 5)) kept = RULE;
+    if (!line[strspn(line, " \t-")] || (kept >= FRAMED && !ours)) continue;
+    kept = ours ? OURS : kept == RULE ? FRAMED : kept;
     snprintf(c->note, sizeof c->note, "%s", line + (ours ? 10 : 0));
   }
   free(line);

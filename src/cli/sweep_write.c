@@ -259,6 +259,8 @@ done:
 
 /* A line of the speed-up figure being put together. */
 struct line {
+  const struct vg_sweep_case *mesh;
+  int colour;                  /* a model has that of what it models */
   char label[64];
   size_t n;
   double *workers, *speedup;   /* [VG_RANGE_MAX at most] */
@@ -312,7 +314,8 @@ static vg_status median(const struct vg_sweep *s,
   return VG_OK;
 }
 
-static vg_status new_line(struct lines *l, size_t room, struct line **out,
+static vg_status new_line(struct lines *l, const struct vg_sweep_case *mesh,
+                          size_t room, struct line **out,
                           struct vg_error *err)
 {
   struct line *to;
@@ -321,6 +324,8 @@ static vg_status new_line(struct lines *l, size_t room, struct line **out,
     return vg_fail_memory(err, "a figure");
   to = &l->line[l->n++];
   memset(to, 0, sizeof *to);
+  to->mesh = mesh;
+  to->colour = (int)l->n - 1;
   to->workers = vg_alloc(room, sizeof *to->workers);
   to->speedup = vg_alloc(room, sizeof *to->speedup);
   if (!to->workers || !to->speedup) return vg_fail_memory(err, "a figure");
@@ -361,7 +366,7 @@ static vg_status add_measured(const struct vg_sweep *s,
   struct line *to;
   vg_status st;
 
-  VG_TRY(new_line(l, s->n, &to, err));
+  VG_TRY(new_line(l, first, s->n, &to, err));
   name_mesh(first, to->label, sizeof to->label);
   if ((by_ranks ? o->threads.n : o->ranks.n) > 1)
     snprintf(to->label + strlen(to->label), 24, by_ranks ? ", %d threads"
@@ -395,7 +400,12 @@ static vg_status add_model(const struct vg_sweep *s,
         s->item[i].ranks * s->item[i].threads == 1)
       c = &s->item[i];
   if (!c) return VG_OK;
-  VG_TRY(new_line(l, 64, &to, err));
+  VG_TRY(new_line(l, mesh, 64, &to, err));
+  for (size_t i = 0; i + 1 < l->n; i++)
+    if (vg_sweep_same_mesh(l->line[i].mesh, mesh)) {
+      to->colour = l->line[i].colour;
+      break;
+    }
   name_mesh(mesh, to->label, sizeof to->label - 8);
   snprintf(to->label + strlen(to->label), 8, ", model");
   for (int n = 1; n <= most && to->n < 64; n = most > 16 ? 2 * n : n + 1) {
@@ -453,8 +463,8 @@ static vg_status draw_speedup(const struct vg_sweep *s, struct vg_error *err)
   }
   for (size_t i = 0; i < l.n; i++)
     l.series[i] = (struct vg_plot_series){
-      l.line[i].label, (int)i, i >= n_measured, l.line[i].n,
-      l.line[i].workers, l.line[i].speedup };
+      l.line[i].label, l.line[i].colour, i >= n_measured,
+      l.line[i].n, l.line[i].workers, l.line[i].speedup };
   seconds[vg_format_real(floor(time * 100 + 0.5) / 100, seconds)] = 0;
   snprintf(subtitle, sizeof subtitle, "against %s: %s s", base->name,
            seconds);

@@ -90,6 +90,39 @@ vanguard sweep -p box --program ./none -o none
 exits 1
 says out "failed, status 127: cannot start ./none"
 
+# A launcher's own message stands between rules.
+cat >launch <<'END'
+#!/bin/bash
+printf '%s\n' started ------ "No slots for $1." "Ask for fewer." ------
+exit 1
+END
+chmod +x launch
+vanguard sweep -p box -n 3 --launcher "./launch {ranks}x{threads}" -o none
+exits 1
+says out "failed, status 1: No slots for 3x1."
+
+# Told to stop: the run is told too, and what there is gets shown.
+cat >slow <<'END'
+#!/bin/bash
+trap 'echo "vanguard: stopped"; exit 1' TERM
+for _ in $(seq 200); do sleep 0.1; done
+END
+chmod +x slow
+"$program" sweep -p box --program ./slow -t 1,2 -o stop >out 2>err &
+pid=$!
+for _ in $(seq 100); do
+  [ ! -e stop/n1-t1/run.log ] || break
+  sleep 0.05
+done
+sleep 0.3
+kill -TERM $pid
+wait $pid
+status=$?
+exits 1
+says out "failed, status 1: stopped"
+says out "n1-t2     1       2 not run"
+says err "interrupted during n1-t1"
+
 vanguard sweep
 exits 2
 says err "which project?"
