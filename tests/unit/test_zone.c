@@ -1,0 +1,478 @@
+/* Zones: final cells along planes, made from the part of a front near them;
+ * what they part, what they cost, what stops them. */
+#include "io/ugrid.h"
+#include "zone_scene.h"
+
+/* --- planes, one after the other ----------------------------------------- */
+
+static void three_zones_make_eight_boxes(void **state)
+{
+  struct scene s;
+  size_t made = 0;
+
+  (void)state;
+  box_scene(&s, 12);
+  parts_are(&s, 1);
+  for (int axis = 0; axis < 3; axis++) {
+    struct vg_region r = plane_at(axis, 0.03 * axis - 0.02);
+    size_t now = cut(&s, &r);
+
+    /* 9 cells to a cube of the spacing: a layer one cell thick */
+    assert_in_range(now, 12 * 12 * 5, 12 * 12 * 40);
+    made += now;
+    parts_are(&s, (size_t)2 << axis);
+  }
+  assert_int_equal(s.report.whole_void, 0);
+  assert_true(smallest_angle(&s.v, 0) > 5);
+  print_message("%zu cells, smallest angle %.1f\n", made,
+                smallest_angle(&s.v, 0));
+  is_filled(&s);
+  scene_end(&s);
+}
+
+/* Wherever the planes are. */
+static void any_planes_part_a_box(void **state)
+{
+  (void)state;
+  for (int k = 0; k < 6; k++) {
+    struct scene s;
+
+    box_scene(&s, 8 + k % 3);
+    for (int axis = 0; axis < 3; axis++) {
+      double at = 0.4 * ((k * 37 + axis * 53 + 11) % 97 / 97.0 - 0.5);
+      struct vg_region r = plane_at(axis, at);
+
+      cut(&s, &r);
+      parts_are(&s, (size_t)2 << axis);
+    }
+    is_filled(&s);
+    scene_end(&s);
+  }
+}
+
+/* Planes through the points of the front, and along a side. */
+static void planes_through_points(void **state)
+{
+  struct scene s;
+
+  (void)state;
+  for (int axis = 0; axis < 3; axis++) {
+    struct vg_region r = plane_at(axis, 0);
+
+    box_scene(&s, 8);
+    assert_true(cut(&s, &r) > 200);
+    parts_are(&s, 2);
+    is_filled(&s);
+    scene_end(&s);
+  }
+  for (int side = -1; side <= 1; side += 2) {
+    struct vg_region r = plane_at(1, 0.5 * side);
+
+    box_scene(&s, 8);
+    assert_true(cut(&s, &r) > 100);
+    parts_are(&s, 1);
+    is_filled(&s);
+    scene_end(&s);
+  }
+}
+
+/* x cuts the body, y misses it, z cuts what is left of it. */
+static void zones_around_a_sphere(void **state)
+{
+  static const double at[3] = {0.15, 2.1, -0.3};
+  static const size_t want[3] = {2, 4, 8};
+  struct scene s;
+
+  (void)state;
+  sphere_scene(&s);
+  parts_are(&s, 2);       /* outside and body */
+  for (int axis = 0; axis < 3; axis++) {
+    struct vg_region r = plane_at(axis, at[axis]);
+
+    assert_true(cut(&s, &r) > 100);
+    parts_are(&s, want[axis]);
+  }
+  print_message("%zu cells, smallest angle %.1f\n", s.v.n_cell,
+                smallest_angle(&s.v, 0));
+  assert_true(smallest_angle(&s.v, 0) > 5);
+  is_filled(&s);
+  scene_end(&s);
+}
+
+/* A zone that misses the body leaves it whole, in one of the parts. */
+static void a_zone_beside_the_sphere(void **state)
+{
+  struct vg_region r = plane_at(2, 2.0);
+  struct scene s;
+
+  (void)state;
+  sphere_scene(&s);
+  assert_true(cut(&s, &r) > 50);
+  parts_are(&s, 3);
+  is_filled(&s);
+  scene_end(&s);
+}
+
+/* --- cost ---------------------------------------------------------------- */
+
+/* A box of 6 x 6 x n cells of edge 1, cut at z = 5.3: what the zone is given,
+ * and what it makes. */
+static void zone_of_tower(int n, struct vg_zone *z, size_t *n_point,
+                          size_t *n_face)
+{
+  const int count[3] = {6, 6, n};
+  const double lo[3] = {0, 0, 0}, hi[3] = {6, 6, n};
+  struct vg_grow_options options = VG_GROW_OPTIONS_INIT;
+  struct vg_region r = plane_at(2, 5.3);
+  struct zone_part p;
+  struct scene s;
+
+  memset(&s.m, 0, sizeof s.m);
+  shape_block(&s.m, count, lo, hi, shape_all);
+  scene_void(&s, 1.2, 1);
+  zone_select(&s.v, s.sizing, &r, &p);
+  assert_true(p.n_face < s.v.n_face);
+  assert_int_equal(zone_make(&p, &r, s.sizing, &options, z, &s.report, NULL),
+                   VG_OK);
+  *n_point = p.n_point;
+  *n_face = p.n_face;
+  zone_part_release(&p);
+  scene_end(&s);
+}
+
+static void same_zone(const struct vg_zone *a, const struct vg_zone *b,
+                      size_t n_front_face)
+{
+  assert_int_equal(a->n_point, b->n_point);
+  assert_int_equal(a->n_face, b->n_face);
+  assert_int_equal(a->n_cell, b->n_cell);
+  assert_int_equal(a->n_hole, b->n_hole);
+  assert_memory_equal(&a->volume, &b->volume, sizeof a->volume);
+  assert_memory_equal(a->x, b->x, a->n_point * sizeof *a->x);
+  assert_memory_equal(a->face, b->face, a->n_face * sizeof *a->face);
+  assert_memory_equal(a->cell, b->cell, a->n_cell * sizeof *a->cell);
+  assert_memory_equal(a->gone, b->gone, n_front_face);
+}
+
+/* A zone is given as many faces, whatever else the front has. */
+static void a_zone_costs_what_is_near(void **state)
+{
+  struct vg_zone z[3] = { VG_ZONE_INIT, VG_ZONE_INIT, VG_ZONE_INIT };
+  size_t n_point[3], n_face[3];
+
+  (void)state;
+  for (int k = 0; k < 3; k++) {
+    zone_of_tower(15 << k, &z[k], &n_point[k], &n_face[k]);
+    assert_int_equal(n_point[k], n_point[0]);
+    assert_int_equal(n_face[k], n_face[0]);
+    /* 48 faces to a row around the tower, rows one spacing high */
+    assert_true((double)n_face[k] >= 48 * 2 * VG_BAND_FRONT);
+    assert_true((double)n_face[k] <= 48 * (2 * VG_BAND_FRONT + 2));
+    assert_true(z[k].n_cell > 200);
+    assert_int_equal(z[k].n_hole, 0);
+    /* as many spacings are read from another tree: cells differ a little */
+    assert_true(fabs((double)z[k].n_cell / (double)z[0].n_cell - 1) < 0.05);
+    assert_true(fabs(z[k].volume / z[0].volume - 1) < 0.05);
+  }
+  for (int k = 0; k < 3; k++) vg_zone_release(&z[k]);
+}
+
+static void the_same_bytes_again(void **state)
+{
+  struct vg_zone z[2] = { VG_ZONE_INIT, VG_ZONE_INIT };
+  size_t n_point[2], n_face[2];
+
+  (void)state;
+  for (int k = 0; k < 2; k++) zone_of_tower(20, &z[k], &n_point[k], &n_face[k]);
+  assert_int_equal(n_face[0], n_face[1]);
+  same_zone(&z[0], &z[1], n_face[0]);
+  for (int k = 0; k < 2; k++) vg_zone_release(&z[k]);
+  assert_null(z[0].cell);
+  assert_int_equal(z[0].n_cell + z[0].n_face + z[0].n_point, 0);
+}
+
+/* Where the spacing is 1, the sum of V / h^3 is the volume of the cells; what
+ * is listed is in range and used. */
+static void what_a_zone_says_of_itself(void **state)
+{
+  struct vg_grow_options options = VG_GROW_OPTIONS_INIT;
+  struct vg_region r = plane_at(0, 0.04);
+  struct vg_zone z = VG_ZONE_INIT;
+  struct zone_part p;
+  struct scene s;
+  uint8_t *used, *is_gone;
+  size_t n_front, n_gone = 0;
+  double sum = 0, h;
+
+  (void)state;
+  box_scene(&s, 8);
+  zone_select(&s.v, s.sizing, &r, &p);
+  assert_int_equal(zone_make(&p, &r, s.sizing, &options, &z, &s.report, NULL),
+                   VG_OK);
+  used = vg_calloc(p.n_point + z.n_point, 1);
+  is_gone = vg_calloc(s.v.n_face, 1);
+  assert_true(used && is_gone);
+  for (size_t c = 0; c < z.n_cell; c++)
+    for (int k = 0; k < 4; k++) {
+      assert_true(z.cell[c][k] < p.n_point + z.n_point);
+      used[z.cell[c][k]] = 1;
+    }
+  for (size_t i = 0; i < z.n_face; i++)
+    for (int k = 0; k < 3; k++) {
+      assert_true(z.face[i][k] < p.n_point + z.n_point);
+      assert_true(used[z.face[i][k]]);
+    }
+  for (size_t q = 0; q < z.n_point; q++) assert_true(used[p.n_point + q]);
+  for (size_t i = 0; i < p.n_face; i++) n_gone += z.gone[i] == 1;
+  assert_true(n_gone > 30 && n_gone < p.n_face);
+  assert_int_equal((n_gone + z.n_face) % 2, 0);
+  n_front = s.v.n_face;
+  zone_add(&s.v, &p, &z, is_gone);
+  zone_compact(&s.v, is_gone, n_front);
+  assert_int_equal(s.v.n_face, n_front - n_gone + z.n_face);
+  is_valid(&s);
+  for (size_t c = 0; c < s.v.n_cell; c++) sum += volume_of_cell(&s.v, c);
+  h = vg_sizing_at(s.sizing, p.x[0]);
+  assert_true(fabs(sum / (h * h * h) / z.volume - 1) < 1e-6);
+  free(used);
+  free(is_gone);
+  vg_zone_release(&z);
+  zone_part_release(&p);
+  scene_end(&s);
+}
+
+/* Without reach, a pencil is the cells that the line passes through. */
+static void a_pencil_is_thin(void **state)
+{
+  struct vg_region thin = line_at(0, 0.03, 1, 0.02), thick = thin;
+  size_t made[2];
+  struct scene s;
+
+  (void)state;
+  thin.reach = 0;
+  for (int k = 0; k < 2; k++) {
+    box_scene(&s, 10);
+    made[k] = cut(&s, k ? &thick : &thin);
+    parts_are(&s, 1);
+    is_filled(&s);
+    scene_end(&s);
+  }
+  assert_in_range(made[0], 20, 250);
+  assert_true(made[1] > 2 * made[0]);
+}
+
+/* --- real ---------------------------------------------------------------- */
+
+static void a_real_surface(void **state)
+{
+  const char *path =
+      io_real("simple/hemisphere_cylinder_farfield.lb8.ugrid.xz");
+  struct vg_error err = VG_ERROR_INIT;
+  double lo[3], hi[3];
+  struct scene s;
+
+  (void)state;
+  memset(&s.m, 0, sizeof s.m);
+  if (vg_ugrid_read(path, &s.m, NULL, &err) < 0) fail_msg("%s", err.text);
+  remove(path);
+  for (size_t i = 0; i < s.m.n_tri; i++) {     /* normals point outwards */
+    uint32_t keep = s.m.tri[i][0];
+
+    s.m.tri[i][0] = s.m.tri[i][1];
+    s.m.tri[i][1] = keep;
+  }
+  scene_void(&s, 1.25, 0);
+  vg_mesh_bounds(&s.m, lo, hi);
+  for (int axis = 0; axis < 3; axis++) {
+    struct vg_region r = plane_at(axis, lo[axis] + 0.4 * (hi[axis] - lo[axis]));
+    size_t n_crumb, made = cut(&s, &r);
+
+    print_message("axis %d: %zu cells, %zu parts", axis, made,
+                  parts_of(&s.v, &n_crumb));
+    print_message(", %zu crumbs\n", n_crumb);
+  }
+  is_filled(&s);
+  scene_end(&s);
+}
+
+/* --- refusal ------------------------------------------------------------- */
+
+static void is_empty(const struct vg_zone *z)
+{
+  const struct vg_zone empty = VG_ZONE_INIT;
+
+  assert_memory_equal(z, &empty, sizeof empty);
+}
+
+static void no_front_near(void **state)
+{
+  struct vg_grow_options options = VG_GROW_OPTIONS_INIT;
+  struct vg_region r = plane_at(1, 2);
+  struct vg_zone z = VG_ZONE_INIT;
+  struct zone_part p;
+  struct scene s;
+
+  (void)state;
+  box_scene(&s, 6);
+  zone_select(&s.v, s.sizing, &r, &p);
+  assert_int_equal(p.n_face, 0);
+  assert_int_equal(zone_make(&p, &r, s.sizing, &options, &z, &s.report, NULL),
+                   VG_BLOCKED);
+  is_empty(&z);
+  zone_part_release(&p);
+  scene_end(&s);
+}
+
+/* There is front near, but the plane is on its outer side: nothing is made. */
+static void a_plane_outside(void **state)
+{
+  struct vg_grow_options options = VG_GROW_OPTIONS_INIT;
+  struct scene s;
+
+  (void)state;
+  box_scene(&s, 6);
+  for (double off = 0.25; off < VG_BAND_FRONT; off += 0.25)
+    for (int side = -1; side <= 1; side += 2) {
+      struct vg_region r = plane_at(1, side * (0.5 + off / 6));
+      struct vg_zone z = VG_ZONE_INIT;
+      struct zone_part p;
+      vg_status st;
+
+      zone_select(&s.v, s.sizing, &r, &p);
+      assert_true(p.n_face > 0);
+      st = zone_make(&p, &r, s.sizing, &options, &z, &s.report, NULL);
+      assert_true(st == VG_OK || st == VG_BLOCKED);
+      if (z.n_cell + z.n_face)
+        fail_msg("%zu cells %g spacings outside", z.n_cell, off);
+      vg_zone_release(&z);
+      zone_part_release(&p);
+    }
+  scene_end(&s);
+}
+
+/* A front that is not what it should be: no crash, nothing made or a status.
+ * A face on the plane that is turned over contradicts its neighbours. */
+static int is_below_and_above(const struct zone_part *p, size_t face,
+                              double at)
+{
+  int below = 0, above = 0;
+
+  for (int k = 0; k < 3; k++) {
+    below |= p->x[p->face[face][k]][1] < at;
+    above |= p->x[p->face[face][k]][1] > at;
+  }
+  return below && above;
+}
+
+static void a_damaged_front(void **state)
+{
+  struct vg_grow_options options = VG_GROW_OPTIONS_INIT;
+  struct vg_region r = plane_at(1, 0.03);
+  struct vg_zone z = VG_ZONE_INIT;
+  struct zone_part p;
+  struct scene s;
+  uint32_t keep;
+  size_t at = 0;
+  vg_status st;
+
+  (void)state;
+  box_scene(&s, 8);
+  zone_select(&s.v, s.sizing, &r, &p);
+  while (!is_below_and_above(&p, at, 0.03)) at++;
+  keep = p.face[at][0];
+  p.face[at][0] = p.face[at][1];
+  p.face[at][1] = keep;
+  st = zone_make(&p, &r, s.sizing, &options, &z, &s.report, NULL);
+  assert_int_equal(st, VG_BLOCKED);
+  assert_true(s.report.n_retry > 0);
+  is_empty(&z);
+  zone_part_release(&p);
+  scene_end(&s);
+}
+
+struct stop { int at, calls; };
+
+static int stop_later(void *user, const char *stage, size_t done,
+                      size_t expected)
+{
+  struct stop *s = user;
+
+  (void)done;
+  (void)expected;
+  assert_non_null(stage);
+  return ++s->calls >= s->at;
+}
+
+static void it_can_be_stopped_at_every_call(void **state)
+{
+  struct vg_grow_options options = VG_GROW_OPTIONS_INIT;
+  struct vg_region r = plane_at(2, 0.03);
+  struct vg_zone z = VG_ZONE_INIT;
+  struct stop stop = {1, 0};
+  struct zone_part p;
+  struct scene s;
+  vg_status st = VG_BLOCKED;
+
+  (void)state;
+  box_scene(&s, 8);
+  zone_select(&s.v, s.sizing, &r, &p);
+  options.progress = stop_later;
+  options.user = &stop;
+  for (; stop.at < 100; stop.at++, stop.calls = 0) {
+    st = zone_make(&p, &r, s.sizing, &options, &z, &s.report, NULL);
+    if (st == VG_OK) break;
+    assert_int_equal(st, VG_BLOCKED);
+    assert_int_equal(stop.calls, stop.at);
+    is_empty(&z);
+  }
+  assert_int_equal(st, VG_OK);
+  assert_true(stop.at > 3);
+  assert_true(z.n_cell > 200);
+  vg_zone_release(&z);
+  zone_part_release(&p);
+  scene_end(&s);
+}
+
+static void the_point_limit_refuses(void **state)
+{
+  struct vg_grow_options options = VG_GROW_OPTIONS_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+  struct vg_region r = plane_at(2, 0.03);
+  struct vg_zone z = VG_ZONE_INIT;
+  struct zone_part p;
+  struct scene s;
+
+  (void)state;
+  box_scene(&s, 8);
+  zone_select(&s.v, s.sizing, &r, &p);
+  options.point_limit = 3;
+  assert_int_equal(zone_make(&p, &r, s.sizing, &options, &z, &s.report, &err),
+                   VG_ERR_UNSUPPORTED);
+  assert_true(strlen(err.text) > 10);
+  is_empty(&z);
+  zone_part_release(&p);
+  scene_end(&s);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(three_zones_make_eight_boxes),
+    cmocka_unit_test(any_planes_part_a_box),
+    cmocka_unit_test(planes_through_points),
+    cmocka_unit_test(zones_around_a_sphere),
+    cmocka_unit_test(a_zone_beside_the_sphere),
+    cmocka_unit_test(a_zone_costs_what_is_near),
+    cmocka_unit_test(the_same_bytes_again),
+    cmocka_unit_test(what_a_zone_says_of_itself),
+    cmocka_unit_test(a_pencil_is_thin),
+    cmocka_unit_test(a_real_surface),
+    cmocka_unit_test(no_front_near),
+    cmocka_unit_test(a_plane_outside),
+    cmocka_unit_test(a_damaged_front),
+    cmocka_unit_test(it_can_be_stopped_at_every_call),
+    cmocka_unit_test(the_point_limit_refuses),
+  };
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,168 @@
+/* Pencils, tiles and blocks of a lattice of planes: all regions of a stage are
+ * grown from the same front, kept apart by walls. */
+#include "partition/lattice.h"
+#include "zone_scene.h"
+
+struct stage {
+  size_t n;
+  struct zone_part *part;
+  struct vg_zone *zone;
+  struct vg_region *region;
+};
+
+/* All regions of a stage, each from the front as it was before. */
+static void grow_stage(struct scene *s, const struct vg_lattice *l, int stage,
+                       struct stage *out)
+{
+  struct vg_grow_options options = VG_GROW_OPTIONS_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+
+  out->n = vg_lattice_count(l, stage);
+  out->part = vg_calloc(out->n, sizeof *out->part);
+  out->zone = vg_calloc(out->n, sizeof *out->zone);
+  out->region = vg_calloc(out->n, sizeof *out->region);
+  assert_true(out->part && out->zone && out->region);
+  for (size_t k = 0; k < out->n; k++) {
+    vg_lattice_region(l, stage, k, &out->region[k]);
+    zone_select(&s->v, s->sizing, &out->region[k], &out->part[k]);
+    if (zone_make(&out->part[k], &out->region[k], s->sizing, &options,
+                  &out->zone[k], &s->report, &err) != VG_OK)
+      fail_msg("stage %d, region %zu: %s", stage, k, err.text);
+  }
+}
+
+/* Put them into the void; no two have taken the same face, all cells are
+ * within their region's walls. Returns the cells. */
+static size_t join_stage(struct scene *s, struct stage *g)
+{
+  uint8_t *is_gone = vg_calloc(s->v.n_face, 1);
+  uint8_t *before = vg_calloc(s->v.n_face, 1);
+  size_t n_front = s->v.n_face, first = s->v.n_cell;
+
+  assert_true(is_gone && before);
+  for (size_t k = 0; k < g->n; k++) {
+    size_t c = s->v.n_cell;
+
+    memcpy(before, is_gone, n_front);
+    for (size_t i = 0; i < g->part[k].n_face; i++)
+      assert_false(g->zone[k].gone[i] && before[g->part[k].from[i]]);
+    zone_add(&s->v, &g->part[k], &g->zone[k], is_gone);
+    for (; c < s->v.n_cell; c++)
+      for (int i = 0; i < 4; i++)
+        assert_true(vg_region_within(&g->region[k],
+                                     s->v.x[s->v.cell[c][i]]));
+    vg_zone_release(&g->zone[k]);
+    zone_part_release(&g->part[k]);
+  }
+  zone_compact(&s->v, is_gone, n_front);
+  free(before);
+  free(is_gone);
+  free(g->part);
+  free(g->zone);
+  free(g->region);
+  is_valid(s);
+  return s->v.n_cell - first;
+}
+
+/* Cut by a lattice, all regions of a stage from the same front. */
+static void cut_by(struct scene *s, const struct vg_lattice *l,
+                   size_t made[VG_LATTICE_STAGES])
+{
+  for (int stage = 0; stage < VG_LATTICE_STAGES; stage++) {
+    struct stage g;
+
+    grow_stage(s, l, stage, &g);
+    made[stage] = join_stage(s, &g);
+  }
+}
+
+static void two_planes_at_once(void **state)
+{
+  const struct vg_lattice l = { .n = {0, 0, 2}, .at = {{0}, {0}, {2.7, 9.2}} };
+  const int count[3] = {6, 6, 12};
+  const double lo[3] = {0, 0, 0}, hi[3] = {6, 6, 12};
+  size_t made[VG_LATTICE_STAGES];
+  struct scene s;
+
+  (void)state;
+  memset(&s.m, 0, sizeof s.m);
+  shape_block(&s.m, count, lo, hi, shape_all);
+  scene_void(&s, 1.2, 1);
+  cut_by(&s, &l, made);
+  assert_int_equal(made[0] + made[1], 0);
+  parts_are(&s, 3);
+  is_filled(&s);
+  scene_end(&s);
+}
+
+/* A line along z first, then four tiles at the same time. */
+static void a_pencil_and_four_tiles(void **state)
+{
+  const struct vg_lattice l = { .n = {1, 1, 0}, .at = {{0.03}, {-0.04}, {0}} };
+  size_t made[VG_LATTICE_STAGES];
+  struct scene s;
+
+  (void)state;
+  box_scene(&s, 14);
+  cut_by(&s, &l, made);
+  assert_true(made[0] > 14 * 10 && made[0] < made[2]);
+  assert_int_equal(made[1], 0);
+  parts_are(&s, 4);
+  assert_true(smallest_angle(&s.v, 0) > 5);
+  print_message("pencil %zu, tiles %zu, smallest angle %.1f\n", made[0],
+                made[2], smallest_angle(&s.v, 0));
+  is_filled(&s);
+  scene_end(&s);
+}
+
+/* One line along z, four segments, twelve tiles, eight blocks. */
+static void a_lattice_in_a_box(void **state)
+{
+  const struct vg_lattice l = { .n = {1, 1, 1},
+                                .at = {{0.02}, {0.01}, {-0.03}} };
+  size_t made[VG_LATTICE_STAGES];
+  struct scene s;
+
+  (void)state;
+  box_scene(&s, 14);
+  cut_by(&s, &l, made);
+  assert_true(made[0] > 100 && made[1] > 200 && made[2] > made[1]);
+  parts_are(&s, 8);
+  print_message("lines %zu and %zu, tiles %zu, smallest angle %.1f\n", made[0],
+                made[1], made[2], smallest_angle(&s.v, 0));
+  assert_true(smallest_angle(&s.v, 0) > 5);
+  is_filled(&s);
+  scene_end(&s);
+}
+
+/* Likewise through a sphere and around it: lines start and end on the body. */
+static void a_lattice_around_a_sphere(void **state)
+{
+  const struct vg_lattice l = { .n = {1, 1, 1},
+                                .at = {{0.2}, {-0.1}, {0.07}} };
+  size_t made[VG_LATTICE_STAGES];
+  struct scene s;
+
+  (void)state;
+  sphere_scene(&s);
+  cut_by(&s, &l, made);
+  assert_true(made[0] > 0 && made[1] > 0 && made[2] > 0);
+  parts_are(&s, 8);
+  print_message("lines %zu and %zu, tiles %zu, smallest angle %.1f\n", made[0],
+                made[1], made[2], smallest_angle(&s.v, 0));
+  assert_true(smallest_angle(&s.v, 0) > 5);
+  is_filled(&s);
+  scene_end(&s);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(two_planes_at_once),
+    cmocka_unit_test(a_pencil_and_four_tiles),
+    cmocka_unit_test(a_lattice_in_a_box),
+    cmocka_unit_test(a_lattice_around_a_sphere),
+  };
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
