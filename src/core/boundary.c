@@ -104,86 +104,174 @@ vg_status vg_boundary_fix(struct vg_tets *t, size_t n_tri,
 
 enum { SIDE_UNKNOWN, SIDE_FLUID, SIDE_SOLID };
 
+struct sides {
+  struct vg_tets *t;
+  const struct vg_region *region;    /* NULL: everywhere */
+  const struct vg_sizing *sizing;
+  double band;               /* sides are told so near the region */
+  int is_strict;             /* 1: a contradiction is an error */
+  uint8_t *side;             /* [n_cell] */
+  uint32_t *queue;           /* [n_cell] cells with a side, as they got it */
+  size_t n_queue, next;
+};
+
+/* Is face i of cell c where sides are to be told? */
+static int matters(const struct sides *s, uint32_t c, int i)
+{
+  const struct vg_tets *t = s->t;
+  const uint32_t *v = t->cell[c].v;
+  const uint8_t *f = vg_face[i];
+
+  return !s->region ||
+         vg_region_meets(s->region, s->sizing, t->x[v[f[0]]], t->x[v[f[1]]],
+                         t->x[v[f[2]]], s->band);
+}
+
+static void set_side(struct sides *s, uint32_t c, uint8_t is)
+{
+  s->side[c] = is;
+  s->queue[s->n_queue++] = c;
+}
+
 /* Seeds: the cells on both sides of every surface triangle. */
-static vg_status seed_sides(const struct vg_tets *t,
-                            const struct tri_table *table, uint8_t *side,
-                            uint32_t *stack, size_t *n_stack,
+static vg_status seed_sides(struct sides *s, const struct tri_table *table,
                             struct vg_error *err)
 {
+  const struct vg_tets *t = s->t;
+
   for (uint32_t c = 0; c < t->n_cell; c++)
     for (int i = 0; i < 4; i++) {
       uint32_t v[3];
       int sense = 0;
       uint8_t is;
 
-      if (!(t->flag[c] >> i & 1)) continue;
+      if (!(t->flag[c] >> i & 1) || !matters(s, c, i)) continue;
       for (int k = 0; k < 3; k++) v[k] = t->cell[c].v[vg_face[i][k]];
       if (tri_table_find(table, v, &sense) == VG_NONE) continue;
       is = sense > 0 ? SIDE_FLUID : SIDE_SOLID;
-      if (side[c] == SIDE_UNKNOWN) stack[(*n_stack)++] = c;
-      else if (side[c] != is) return vg_fail(
+      if (s->side[c] == SIDE_UNKNOWN) set_side(s, c, is);
+      else if (s->side[c] != is && s->is_strict) return vg_fail(
           err, VG_ERR_GEOMETRY, "the surface turns inside out at point %u "
           "(%g %g %g); run 'vanguard check' on it", v[0] + 1, t->x[v[0]][0],
           t->x[v[0]][1], t->x[v[0]][2]);
-      side[c] = is;
     }
   return VG_OK;
 }
 
-static vg_status spread_sides(struct vg_tets *t, uint8_t *side,
-                              uint32_t *stack, size_t n_stack,
-                              struct vg_error *err)
+static vg_status spread_over(struct sides *s, uint32_t c, int i,
+                             struct vg_error *err)
 {
-  while (n_stack) {
-    uint32_t c = stack[--n_stack];
+  struct vg_tets *t = s->t;
+  uint32_t link = t->cell[c].link[i], other = link >> 2;
+  const double *x = t->x[t->cell[c].v[0]];
 
-    for (int i = 0; i < 4; i++) {
-      uint32_t other = t->cell[c].link[i] >> 2;
-      const double *x = t->x[t->cell[c].v[0]];
-
-      if (t->flag[c] >> i & 1) continue;
-      if (t->cell[c].link[i] == VG_NONE) {
-        if (side[c] == SIDE_FLUID)
-          return vg_fail(err, VG_ERR_GEOMETRY,
-                         "the fluid is not enclosed near (%g %g %g): the "
-                         "outer boundary must point inward", x[0], x[1], x[2]);
-        continue;
-      }
-      if (side[other] == SIDE_UNKNOWN) {
-        side[other] = side[c];
-        stack[n_stack++] = other;
-      } else if (side[other] != side[c]) {
-        return vg_fail(err, VG_ERR_GEOMETRY,
-                       "fluid and solid meet without a surface between them "
-                       "near (%g %g %g); run 'vanguard check' on the surface",
-                       x[0], x[1], x[2]);
-      }
-    }
+  if (t->flag[c] >> i & 1 ||
+      (link != VG_NONE && s->side[other] == s->side[c]) || !matters(s, c, i))
+    return VG_OK;
+  if (link == VG_NONE) {
+    if (s->side[c] != SIDE_FLUID || !s->is_strict) return VG_OK;
+    return vg_fail(err, VG_ERR_GEOMETRY,
+                   "the fluid is not enclosed near (%g %g %g): the outer "
+                   "boundary must point inward", x[0], x[1], x[2]);
   }
-  return VG_OK;
+  if (s->side[other] == SIDE_UNKNOWN) {
+    set_side(s, other, s->side[c]);
+    return VG_OK;
+  }
+  if (!s->is_strict) return VG_OK;
+  return vg_fail(err, VG_ERR_GEOMETRY,
+                 "fluid and solid meet without a surface between them near "
+                 "(%g %g %g); run 'vanguard check' on the surface", x[0], x[1],
+                 x[2]);
+}
+
+static vg_status spread_sides(struct sides *s, struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  for (; st == VG_OK && s->next < s->n_queue; s->next++)
+    for (int i = 0; st == VG_OK && i < 4; i++)
+      st = spread_over(s, s->queue[s->next], i, err);
+  return st;
+}
+
+/* On the region itself every front face is known, so what is reached along it
+ * is sure. From there sides spread over the band; where they contradict each
+ * other, for want of faces, the nearest wins. */
+static vg_status tell_sides(struct sides *s, const struct tri_table *table,
+                            struct vg_error *err)
+{
+  vg_status st;
+
+  s->band = s->region ? -s->region->reach + 1e-6 : 0;
+  s->is_strict = 1;
+  VG_TRY(seed_sides(s, table, err));
+  VG_TRY(spread_sides(s, err));
+  if (!s->region) goto done;
+  s->band = VG_BAND_FLUID;
+  s->is_strict = 0;
+  s->next = 0;
+  VG_TRY(seed_sides(s, table, err));
+  st = spread_sides(s, err);
+done:
+  return st;
+}
+
+static int meets_region(const struct sides *s, uint32_t c)
+{
+  for (int i = 0; i < 4; i++)
+    if (matters(s, c, i)) return 1;
+  return 0;
+}
+
+/* With a region, cells that were not reached lie away from it: they count as
+ * fluid, so that they do not hinder insertion, but faces between these and
+ * what is known to be solid are fixed, since no surface was. Cells that were
+ * not reached although they meet the region have no front nearby that could
+ * tell: nothing is to grow there. */
+static void wall_off(struct sides *s)
+{
+  struct vg_tets *t = s->t;
+
+  s->band = VG_BAND_PLACE;
+  for (uint32_t c = 0; c < t->n_cell; c++)
+    if (s->side[c] == SIDE_UNKNOWN && !(t->flag[c] & VG_DEAD))
+      s->side[c] = meets_region(s, c) ? SIDE_SOLID : SIDE_FLUID;
+  for (uint32_t c = 0; c < t->n_cell; c++)
+    for (int i = 0; i < 4 && s->side[c] == SIDE_SOLID; i++) {
+      uint32_t link = t->cell[c].link[i];
+
+      if (link == VG_NONE || s->side[link >> 2] == SIDE_SOLID) continue;
+      t->flag[c] |= (uint8_t)(1 << i);
+      t->flag[link >> 2] |= (uint8_t)(1 << (link & 3));
+    }
 }
 
 vg_status vg_boundary_sides(struct vg_tets *t, size_t n_tri,
-                            const uint32_t (*tri)[3], struct vg_error *err)
+                            const uint32_t (*tri)[3],
+                            const struct vg_region *region,
+                            const struct vg_sizing *sizing,
+                            struct vg_error *err)
 {
   struct tri_table table = {0};
-  uint8_t *side = vg_calloc(t->n_cell, 1);
-  uint32_t *stack = vg_alloc(t->n_cell, sizeof *stack);
-  size_t n_stack = 0, n_fluid = 0;
+  struct sides s = { .t = t, .region = region, .sizing = sizing };
+  size_t n_fluid = 0;
   vg_status st = VG_OK;
 
-  if (!side || !stack) st = vg_fail_memory(err, "boundary recovery");
+  s.side = vg_calloc(t->n_cell, 1);
+  s.queue = vg_alloc(t->n_cell, sizeof *s.queue);
+  if (!s.side || !s.queue) st = vg_fail_memory(err, "boundary recovery");
   if (st == VG_OK) st = tri_table_init(&table, n_tri, tri, err);
-  if (st == VG_OK) st = seed_sides(t, &table, side, stack, &n_stack, err);
-  if (st == VG_OK) st = spread_sides(t, side, stack, n_stack, err);
+  if (st == VG_OK) st = tell_sides(&s, &table, err);
+  if (st == VG_OK && region) wall_off(&s);
   for (size_t c = 0; st == VG_OK && c < t->n_cell; c++) {
-    if (side[c] == SIDE_FLUID) n_fluid++;
+    if (s.side[c] == SIDE_FLUID) n_fluid++;
     else t->flag[c] |= VG_OUTSIDE;
   }
   if (st == VG_OK && !n_fluid)
     st = vg_fail(err, VG_ERR_GEOMETRY, "the surface encloses no fluid");
-  free(side);
-  free(stack);
+  free(s.side);
+  free(s.queue);
   free(table.slot);
   return st;
 }
@@ -294,7 +382,26 @@ vg_status vg_boundary_tets(size_t n, const double (*x)[3], size_t n_tri,
     st = whole_void(n, x, n_tri, tri, out, report, err);
   }
   VG_TRY(st);
-  VG_TRY(vg_boundary_sides(out, n_tri, tri, err));
+  VG_TRY(vg_boundary_sides(out, n_tri, tri, NULL, NULL, err));
+done:
+  if (st < 0) vg_tets_release(out);
+  return st;
+}
+
+vg_status vg_boundary_open(size_t n, const double (*x)[3], size_t n_tri,
+                           const uint32_t (*tri)[3],
+                           const struct vg_region *region,
+                           const struct vg_sizing *sizing,
+                           struct vg_tets *out,
+                           struct vg_boundary_report *report,
+                           struct vg_error *err)
+{
+  vg_status st;
+
+  memset(report, 0, sizeof *report);
+  VG_TRY(delaunay(out, n, x, err));
+  VG_TRY(vg_recover(out, n_tri, tri, report, err));
+  VG_TRY(vg_boundary_sides(out, n_tri, tri, region, sizing, err));
 done:
   if (st < 0) vg_tets_release(out);
   return st;

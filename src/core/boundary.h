@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "base/status.h"
+#include "core/region.h"
 #include "core/tets.h"
 
 struct vg_boundary_report {
@@ -41,8 +42,25 @@ vg_status vg_boundary_fix(struct vg_tets *t, size_t n_tri,
 
 /** Flag VG_OUTSIDE the cells of t that do not lie on the side which the
  * triangles face, all of them being fixed faces.
+ * region: NULL, or sides are told within VG_BAND_FLUID of it only, triangles
+ * near it being all there are; what lies beyond counts as fluid, with fixed
+ * faces before what is known to be solid.
  * VG_ERR_GEOMETRY when the triangles contradict each other. */
 vg_status vg_boundary_sides(struct vg_tets *t, size_t n_tri,
-                            const uint32_t (*tri)[3], struct vg_error *err);
+                            const uint32_t (*tri)[3],
+                            const struct vg_region *region,
+                            const struct vg_sizing *sizing,
+                            struct vg_error *err);
+
+/** vg_boundary_tets for the part of a front near a region. Points n to n + 7
+ * are corners of a wide box. VG_ERR_GEOMETRY also when pockets are not
+ * enough. */
+vg_status vg_boundary_open(size_t n, const double (*x)[3], size_t n_tri,
+                           const uint32_t (*tri)[3],
+                           const struct vg_region *region,
+                           const struct vg_sizing *sizing,
+                           struct vg_tets *out,
+                           struct vg_boundary_report *report,
+                           struct vg_error *err);
 
 #endif

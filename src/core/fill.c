@@ -80,7 +80,7 @@ vg_status vg_fill(const struct vg_mesh *surface, const struct vg_sizing *sizing,
                    "encloses nothing to fill");
   VG_TRY(vg_void_from_mesh(&v, surface, err));
   VG_TRY(all_points_used(surface, err));
-  st = vg_grow(&v, sizing, NULL, &grow, report, err);
+  st = vg_grow(&v, sizing, &grow, report, err);
   if (st != VG_OK) goto done;
   VG_TRY(within_limit(&v, options->max_cells, err));
   st = to_mesh(&v, surface, out, err);

@@ -46,16 +46,28 @@ static int is_live(const struct vg_tets *t, uint32_t c)
   return !(t->flag[c] & (VG_DEAD | VG_OUTSIDE));
 }
 
-/* least[p]: shape of the worst cell around p. */
+/* Is cell c one that should get better? */
+static int concerns(const struct vg_optimiser *o, uint32_t c)
+{
+  const struct vg_tets *t = o->t;
+  const uint32_t *v = t->cell[c].v;
+
+  return !o->region ||
+         vg_region_has_cell(o->region, o->sizing, t->x[v[0]], t->x[v[1]],
+                            t->x[v[2]], t->x[v[3]]);
+}
+
+/* least[p]: shape of the worst cell around p that concerns us. */
 static void worst_around(const struct vg_optimiser *o, float *least)
 {
   const struct vg_tets *t = o->t;
 
   for (size_t p = 0; p < t->n_point; p++) least[p] = 2;
   for (uint32_t c = 0; c < t->n_cell; c++)
-    for (int i = 0; i < 4 && is_live(t, c); i++)
-      if (o->q[c] < least[t->cell[c].v[i]])
-        least[t->cell[c].v[i]] = o->q[c];
+    if (is_live(t, c) && o->q[c] < good && concerns(o, c))
+      for (int i = 0; i < 4; i++)
+        if (o->q[c] < least[t->cell[c].v[i]])
+          least[t->cell[c].v[i]] = o->q[c];
 }
 
 /* Points whose cells are all good are left where they are: in a level field
@@ -71,14 +83,15 @@ static vg_status sweep(struct vg_optimiser *o, struct vg_error *err)
     if (least[p] < good) vg_smooth(o, p, aim);
   free(least);
   for (uint32_t c = 0; c < t->n_cell; c++)
-    if (is_live(t, c) && o->q[c] < aim) vg_swap(o, c);
+    if (is_live(t, c) && o->q[c] < aim && concerns(o, c)) vg_swap(o, c);
   return VG_OK;
 }
 
 /* A cell on which everything failed is flagged VG_TRIED until it changes. */
 static int wants_mending(const struct vg_optimiser *o, uint32_t c)
 {
-  return is_live(o->t, c) && o->q[c] < aim && !(o->t->flag[c] & VG_TRIED);
+  return is_live(o->t, c) && o->q[c] < aim &&
+         !(o->t->flag[c] & VG_TRIED) && concerns(o, c);
 }
 
 /* The cells that want mending: the worst first in a few classes, and within
@@ -136,6 +149,8 @@ static vg_status mend(struct vg_optimiser *o, int *again,
 }
 
 vg_status vg_optimise(struct vg_tets *t, size_t n_fixed, int sweeps,
+                      const struct vg_region *region,
+                      const struct vg_sizing *sizing,
                       struct vg_optimise_report *report, struct vg_error *err)
 {
   struct vg_optimiser *o = vg_calloc(1, sizeof *o);
@@ -145,6 +160,8 @@ vg_status vg_optimise(struct vg_tets *t, size_t n_fixed, int sweeps,
   memset(report, 0, sizeof *report);
   if (!o) return vg_fail_memory(err, "optimisation");
   o->n_fixed = n_fixed;
+  o->region = region;
+  o->sizing = sizing;
   o->report = report;
   st = start(o, t, err);
   for (int k = 0; st == VG_OK && k < sweeps; k++) st = sweep(o, err);

@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include "base/status.h"
+#include "core/region.h"
 #include "core/tets.h"
 
 struct vg_optimise_report {
@@ -16,8 +17,13 @@ struct vg_optimise_report {
  *
  * Points 0..n_fixed-1 stay; fixed faces stay; every cell stays positive.
  * @param sweeps  passes over all cells before the bad ones alone are worked on
+ * @param region  cells that do not belong to it are left as they are, unless
+ *                that helps one that does; NULL: all belong
+ * @param sizing  what the region is measured by; NULL without region
  * Deterministic. VG_ERR_MEMORY on refusal (t is then still valid). */
 vg_status vg_optimise(struct vg_tets *t, size_t n_fixed, int sweeps,
+                      const struct vg_region *region,
+                      const struct vg_sizing *sizing,
                       struct vg_optimise_report *report, struct vg_error *err);
 
 #endif

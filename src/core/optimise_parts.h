@@ -16,6 +16,8 @@ enum {                       /* what was tried in vain, until a change */
 struct vg_optimiser {
   struct vg_tets *t;
   size_t n_fixed;            /* points below stay */
+  const struct vg_region *region;  /* NULL: all cells matter */
+  const struct vg_sizing *sizing;  /* of the region */
   float *q;                  /* [cap_cell] shape of each cell */
   size_t cap_q;
   uint8_t *vain_cell;        /* [cap_cell] steps of no use to each cell */

@@ -95,7 +95,8 @@ static int stand(struct placer *p, const double c[3], const double d[3],
   double x[3] = {c[0] + d[0], c[1] + d[1], c[2] + d[2]};
   uint32_t cell, point = (uint32_t)p->n;
 
-  if (p->region && !vg_region_near(p->region, x, h)) return 0;
+  if (p->region && !vg_region_near(p->region, p->sizing, x, VG_BAND_PLACE))
+    return 0;
   cell = vg_tets_locate(p->t, start, x);
   if (cell == VG_NONE || p->t->flag[cell] & VG_OUTSIDE) return 0;
   if (reserve(p, p->n + 1)) return -1;
@@ -217,6 +218,21 @@ static int grow_point(struct placer *p, uint32_t point)
   return 0;
 }
 
+/* Is x, where the spacing is h, a point of the lattice? */
+static int on_lattice(const double x[3], double h)
+{
+  double half = 0.5 * lattice * h;
+  int64_t i[3];
+
+  for (int k = 0; k < 3; k++) {
+    i[k] = (int64_t)floor(x[k] / half + 0.5);
+    if (fabs(x[k] - half * (double)i[k]) > level_within * half) return 0;
+  }
+  return !((i[0] ^ i[1]) & 1) && !((i[0] ^ i[2]) & 1);
+}
+
+/* A face whose corners are all of the lattice is a zone's: its points go on
+ * with the lattice, an apex would only disturb it. */
 static int grow_face(struct placer *p, uint32_t link)
 {
   const struct vg_cell *cell = &p->t->cell[link >> 2];
@@ -236,6 +252,8 @@ static int grow_face(struct placer *p, uint32_t link)
   if (!(length > 0)) return 0;
   for (int k = 0; k < 3; k++) unit[k] = apex * n[k] / length;
   h = vg_sizing_at(p->sizing, c);
+  if (on_lattice(v[0], h) && on_lattice(v[1], h) && on_lattice(v[2], h))
+    return 0;
   vg_near_gather(&p->near, c, h, (apex + exclusion) * 1.1 * h);
   return propose(p, c, unit, h, link >> 2);
 }
@@ -268,13 +286,33 @@ static void snap_to_lattice(const struct vg_sizing *sizing, double h,
   memcpy(x, to, sizeof to);
 }
 
+/* Does the cube meet the planes of the region, between its walls? Then x, its
+ * middle, is moved onto them. */
+static int on_region(const struct vg_region *r, double side, double x[3])
+{
+  double foot[3];
+
+  for (int i = 0; i < r->n_wall; i++) {
+    const double *n = r->wall[i].normal;
+
+    if (n[0] * x[0] + n[1] * x[1] + n[2] * x[2] - r->wall[i].offset <
+        -0.5 * side * (fabs(n[0]) + fabs(n[1]) + fabs(n[2])))
+      return 0;
+  }
+  vg_region_foot(r, x, foot);
+  for (int k = 0; k < 3; k++)
+    if (fabs(foot[k] - x[k]) > 0.5 * side) return 0;
+  memcpy(x, foot, sizeof foot);
+  return 1;
+}
+
 static int seed(struct seeder *s, const double lo[3], double side)
 {
   double x[3], h, child[3];
 
   for (int k = 0; k < 3; k++) x[k] = lo[k] + 0.5 * side;
+  if (s->region && !on_region(s->region, side, x)) return 0;
   h = vg_sizing_at(s->sizing, x);
-  if (s->region && !vg_region_near(s->region, x, h + side)) return 0;
   if (side <= seed_cell * h) {
     if (vg_reserve(&s->out->x, &s->cap, s->out->n + 1, sizeof *s->out->x))
       return -1;
@@ -317,6 +355,13 @@ vg_status vg_place_seeds(size_t n, const double (*x)[3],
 
 /* --- the front ----------------------------------------------------------- */
 
+/* May what stands at x propose points that are near the region? */
+static int may_propose(const struct placer *p, const double x[3])
+{
+  return !p->region ||
+         vg_region_near(p->region, p->sizing, x, VG_BAND_PLACE + lattice);
+}
+
 static int start_points(struct placer *p)
 {
   const struct vg_tets *t = p->t;
@@ -330,7 +375,8 @@ static int start_points(struct placer *p)
   for (uint32_t i = 0; i < p->n; i++) {
     p->h[i] = (float)vg_sizing_at(p->sizing, p->x[i]);
     if (vg_near_add(&p->near, p->x[i], p->h[i])) return -1;
-    if (p->cell[i] != VG_NONE) push(p, (uint32_t)p->n_face + i, p->h[i]);
+    if (p->cell[i] != VG_NONE && may_propose(p, p->x[i]))
+      push(p, (uint32_t)p->n_face + i, p->h[i]);
   }
   return 0;
 }
@@ -364,7 +410,7 @@ static int push_faces(struct placer *p)
     for (int j = 0; j < 3; j++)
       for (int k = 0; k < 3; k++)
         c[k] += p->t->x[cell->v[vg_face[p->face[i] & 3][j]]][k] / 3;
-    push(p, i, vg_sizing_at(p->sizing, c));
+    if (may_propose(p, c)) push(p, i, vg_sizing_at(p->sizing, c));
   }
   return 0;
 }

@@ -233,7 +233,7 @@ static vg_status verify(struct vg_tets *local, const struct pocket *p,
   vg_status st = vg_boundary_fix(local, p->n_rim, tri, NULL, &n_missing, err);
 
   if (st == VG_OK && !n_missing)
-    st = vg_boundary_sides(local, p->n_rim, tri, err);
+    st = vg_boundary_sides(local, p->n_rim, tri, NULL, NULL, err);
   if (st == VG_OK && !n_missing)
     st = vg_boundary_fix(local, p->n_tri, tri, NULL, &n_missing, err);
   if (st == VG_OK && n_missing)

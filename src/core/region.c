@@ -1,39 +1,204 @@
 #include "core/region.h"
 
 #include <math.h>
+#include <string.h>
 
-/* Rings of cells, in target edges, placed beyond a slab so that the cells
- * which cross it have their final shape. */
-static const double margin = 3;
-
-static double side(const struct vg_slab *s, const double x[3])
+static double side(const struct vg_plane *p, const double x[3])
 {
-  return s->normal[0] * x[0] + s->normal[1] * x[1] + s->normal[2] * x[2] -
-         s->offset;
+  return p->normal[0] * x[0] + p->normal[1] * x[1] + p->normal[2] * x[2] -
+         p->offset;
 }
 
-int vg_region_has_cell(const struct vg_region *r, const double a[3],
+void vg_region_foot(const struct vg_region *r, const double x[3],
+                    double foot[3])
+{
+  memcpy(foot, x, 3 * sizeof *x);
+  for (int i = 0; i < r->n_plane; i++) {
+    double s = side(&r->plane[i], foot);
+
+    for (int k = 0; k < 3; k++) foot[k] -= s * r->plane[i].normal[k];
+  }
+}
+
+double vg_region_spacing(const struct vg_region *r,
+                         const struct vg_sizing *sizing, const double x[3])
+{
+  double foot[3];
+
+  vg_region_foot(r, x, foot);
+  return vg_sizing_at(sizing, foot);
+}
+
+int vg_region_within(const struct vg_region *r, const double x[3])
+{
+  for (int i = 0; i < r->n_wall; i++)
+    if (!(side(&r->wall[i], x) > 0)) return 0;
+  return 1;
+}
+
+/* How far n corners all lie from a plane, or beyond a wall: the most of
+ * these. */
+static double gap(const struct vg_region *r, int n, const double *const *x)
+{
+  double far = 0;
+
+  for (int i = 0; i < r->n_plane + r->n_wall; i++) {
+    int is_wall = i >= r->n_plane, above = 0, below = 0;
+    const struct vg_plane *p = is_wall ? &r->wall[i - r->n_plane]
+                                       : &r->plane[i];
+    double near = INFINITY;
+
+    for (int k = 0; k < n; k++) {
+      double s = side(p, x[k]);
+
+      above |= s >= 0;
+      below |= s <= 0;
+      if (fabs(s) < near) near = fabs(s);
+    }
+    if (is_wall ? !above : !(above && below))
+      if (near > far) far = near;
+  }
+  return far;
+}
+
+int vg_region_near(const struct vg_region *r, const struct vg_sizing *sizing,
+                   const double x[3], double band)
+{
+  double far = gap(r, 1, &x);
+
+  return far == 0 ||
+         far <= (r->reach + band) * vg_region_spacing(r, sizing, x);
+}
+
+/* --- triangles ----------------------------------------------------------- */
+
+enum { CORNERS = 3 + 2 * 2 + VG_REGION_WALLS };
+
+/* Keep what lies at sign * side <= most. Returns the corners left. */
+static int clip(int n, double (*x)[3], const struct vg_plane *p, double sign,
+                double most)
+{
+  double out[CORNERS][3];
+  int m = 0;
+
+  for (int i = 0; i < n; i++) {
+    const double *a = x[i], *b = x[(i + 1) % n];
+    double s = sign * side(p, a) - most, t = sign * side(p, b) - most;
+
+    if (s <= 0) memcpy(out[m++], a, sizeof *out);
+    if ((s < 0 && t > 0) || (s > 0 && t < 0)) {
+      for (int k = 0; k < 3; k++)
+        out[m][k] = a[k] + (b[k] - a[k]) * (s / (s - t));
+      m++;
+    }
+    if (m > CORNERS - 2) break;
+  }
+  memcpy(x, out, (size_t)m * sizeof *out);
+  return m;
+}
+
+/* Is there anything of the triangle within `most` of every plane, and no
+ * farther beyond a wall? middle out: of what there is. */
+static int reaches(const struct vg_region *r, const double *const corner[3],
+                   double most, double middle[3])
+{
+  double x[CORNERS][3];
+  int n = 3;
+
+  for (int k = 0; k < 3; k++) memcpy(x[k], corner[k], sizeof *x);
+  for (int i = 0; i < r->n_plane && n; i++) {
+    n = clip(n, x, &r->plane[i], 1, most);
+    if (n) n = clip(n, x, &r->plane[i], -1, most);
+  }
+  for (int i = 0; i < r->n_wall && n; i++)
+    n = clip(n, x, &r->wall[i], -1, most);
+  for (int k = 0; k < 3; k++) {
+    middle[k] = 0;
+    for (int i = 0; i < n; i++) middle[k] += x[i][k] / n;
+  }
+  return n > 0;
+}
+
+static double longest(const double *const corner[3])
+{
+  double most = 0;
+
+  for (int i = 0; i < 3; i++) {
+    double d2 = 0;
+
+    for (int k = 0; k < 3; k++) {
+      double d = corner[(i + 1) % 3][k] - corner[i][k];
+
+      d2 += d * d;
+    }
+    if (d2 > most) most = d2;
+  }
+  return sqrt(most);
+}
+
+/* A triangle much larger than the cells here may cross the planes, and the
+ * walls, each at another place: its part within reach is cut out, then once
+ * more by the spacing that is found there. */
+int vg_region_meets(const struct vg_region *r, const struct vg_sizing *sizing,
+                    const double a[3], const double b[3], const double c[3],
+                    double band)
+{
+  const double *corner[3] = {a, b, c};
+  double d = gap(r, 3, corner), most = 0, middle[3];
+
+  for (int k = 0; k < 3; k++) {
+    double h = vg_region_spacing(r, sizing, corner[k]);
+
+    if (h > most) most = h;
+    middle[k] = (a[k] + b[k] + c[k]) / 3;
+  }
+  if (longest(corner) <= 2 * most) return d <= (r->reach + band) * most;
+  most = fmax(most, vg_region_spacing(r, sizing, middle));
+  return reaches(r, corner, (r->reach + band) * most, middle) &&
+         reaches(r, corner, (r->reach + band) *
+                   vg_region_spacing(r, sizing, middle), middle);
+}
+
+int vg_region_meets_box(const struct vg_region *r,
+                        const struct vg_sizing *sizing, const double lo[3],
+                        const double hi[3], double band)
+{
+  double middle[3], half[3], h, diagonal = 0, far = 0;
+
+  for (int k = 0; k < 3; k++) {
+    middle[k] = 0.5 * (lo[k] + hi[k]);
+    half[k] = 0.5 * (hi[k] - lo[k]);
+    diagonal += half[k] * half[k];
+  }
+  for (int i = 0; i < r->n_plane + r->n_wall; i++) {
+    int is_wall = i >= r->n_plane;
+    const struct vg_plane *p = is_wall ? &r->wall[i - r->n_plane]
+                                       : &r->plane[i];
+    double s = side(p, middle), out = 0;
+
+    for (int k = 0; k < 3; k++) out += fabs(p->normal[k]) * half[k];
+    s = (is_wall ? -s : fabs(s)) - out;
+    if (s > far) far = s;
+  }
+  if (far == 0) return 1;
+  h = vg_region_spacing(r, sizing, middle) +
+      vg_sizing_slope(sizing) * sqrt(diagonal);
+  return far <= (r->reach + band) * h;
+}
+
+int vg_region_has_cell(const struct vg_region *r,
+                       const struct vg_sizing *sizing, const double a[3],
                        const double b[3], const double c[3],
                        const double d[3])
 {
-  for (int i = 0; i < r->n_slab; i++) {
-    const double *corner[4] = {a, b, c, d};
-    int above = 0, below = 0;
+  const double *corner[4] = {a, b, c, d};
 
-    for (int k = 0; k < 4; k++) {
-      double s = side(&r->slab[i], corner[k]);
-
-      above |= s >= -r->slab[i].reach;
-      below |= s <= r->slab[i].reach;
-    }
-    if (!above || !below) return 0;
-  }
-  return 1;
-}
-
-int vg_region_near(const struct vg_region *r, const double x[3], double h)
-{
-  for (int i = 0; i < r->n_slab; i++)
-    if (fabs(side(&r->slab[i], x)) > r->slab[i].reach + margin * h) return 0;
-  return 1;
+  for (int k = 0; k < 4; k++)
+    if (!vg_region_within(r, corner[k])) return 0;
+  if (gap(r, 4, corner) == 0) return 1;
+  for (int k = 0; k < 4 && r->reach > 0; k++)
+    if (gap(r, 1, &corner[k]) <=
+        r->reach * vg_region_spacing(r, sizing, corner[k]))
+      return 1;
+  return 0;
 }

@@ -1,25 +1,70 @@
-/* core/region.h: where growth may go. */
+/* core/region.h: where growth may go: along a plane or a line, within walls.
+ * Uses core/sizing.h.
+ *
+ * A region lies along its planes' common part: one plane makes a zone, two a
+ * pencil around the line where they meet. Distances from it are measured in
+ * the spacing at its foot, the projection of a point onto all planes, so that
+ * a region is as thick as cells are on it, however sizes grow away from it. */
 #ifndef VG_CORE_REGION_H
 #define VG_CORE_REGION_H
 
-/** A set of cells, by the signed distances of their corners. A cell belongs
- * to the region when it meets every slab: some corner has |s| <= reach or
- * corners lie on both sides, s = normal . x - offset. No slab: everything.
- * One slab with reach 0: the cells that cross a plane (a zone). Two: the cells
- * that cross the line where two planes meet (a pencil). */
+#include "core/sizing.h"
+
+struct vg_plane { double normal[3], offset; };  /* normal . x = offset */
+
+enum { VG_REGION_WALLS = 12 };
+
 struct vg_region {
-  int n_slab;
-  struct vg_slab { double normal[3], offset, reach; } slab[2];
+  int n_plane;               /* 0: everything */
+  struct vg_plane plane[2];  /* unit normals, here and below; at right
+                                angles */
+  double reach;              /* cells within so many spacings belong to it,
+                                besides those that cross every plane */
+  int n_wall;                /* convex: all corners of a cell must have */
+  struct vg_plane wall[VG_REGION_WALLS];  /* normal . x > offset. Regions with
+                                walls between them cannot overlap */
 };
 #define VG_REGION_ALL { 0 }
 
-/** Does the cell a b c d belong to the region? */
-int vg_region_has_cell(const struct vg_region *r, const double a[3],
+/* Beyond the reach, in spacings at the foot: how far points are placed, so
+ * that the region's cells get their final shape; how far cells are told from
+ * outside; how far front faces must be known. */
+#define VG_BAND_PLACE 1.3
+#define VG_BAND_FLUID 2.2
+#define VG_BAND_FRONT 3.5
+
+/** Spacing at the foot of x. */
+double vg_region_spacing(const struct vg_region *r,
+                         const struct vg_sizing *sizing, const double x[3]);
+
+/** x moved onto all planes. */
+void vg_region_foot(const struct vg_region *r, const double x[3],
+                    double foot[3]);
+
+/** Is x on the inner side of all walls? */
+int vg_region_within(const struct vg_region *r, const double x[3]);
+
+/** Is x within reach + band spacings of every plane, and no farther beyond any
+ * wall? */
+int vg_region_near(const struct vg_region *r, const struct vg_sizing *sizing,
+                   const double x[3], double band);
+
+/** Does the triangle come as near? Conservative: sizes are taken at its
+ * corners and its middle. */
+int vg_region_meets(const struct vg_region *r, const struct vg_sizing *sizing,
+                    const double a[3], const double b[3], const double c[3],
+                    double band);
+
+/** May a triangle within the box come as near? Never no where one does. */
+int vg_region_meets_box(const struct vg_region *r,
+                        const struct vg_sizing *sizing, const double lo[3],
+                        const double hi[3], double band);
+
+/** Does the cell a b c d, within the walls, cross every plane or have a corner
+ * within reach? */
+int vg_region_has_cell(const struct vg_region *r,
+                       const struct vg_sizing *sizing, const double a[3],
                        const double b[3], const double c[3],
                        const double d[3]);
-
-/** May a cell of size about h with a corner at x belong to it? Points that
- * fail are not needed for growing the region. */
-int vg_region_near(const struct vg_region *r, const double x[3], double h);
 
 #endif

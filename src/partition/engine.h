@@ -22,6 +22,9 @@ struct vg_task {
   char path[VG_PATH_MAX];    /* unique; decides between equal priorities */
   char kind;                 /* VG_SPAN_...; for records, and 'A'..'Z' */
   int pinned;                /* 1: to be done by its home rank */
+  int moves;                 /* 1: wherever it is done becomes its home: its
+                                outcome stays there, and `done` is called
+                                there */
   double priority;           /* higher first */
   double weight;             /* expected work, in cells, for progress */
   void *input;               /* owned by the engine once submitted; may be

@@ -151,7 +151,8 @@ static struct vg_optimise_report optimise(struct vg_tets *t, size_t n_fixed,
 
   assert_non_null(x);
   memcpy(x, t->x, n_fixed * sizeof *x);
-  assert_int_equal(vg_optimise(t, n_fixed, sweeps, &r, NULL), VG_OK);
+  assert_int_equal(vg_optimise(t, n_fixed, sweeps, NULL, NULL, &r, NULL),
+                   VG_OK);
   assert_int_equal(vg_tets_defects(t), 0);
   assert_memory_equal(t->x, x, n_fixed * sizeof *x);
   after = fixed_faces(t, &n_after);

@@ -1,0 +1,671 @@
+#include "partition/advance.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "base/memory.h"
+#include "partition/bytes.h"
+#include "partition/model.h"
+#include "partition/node.h"
+#include "partition/select.h"
+
+static double now(void)
+{
+  struct timespec t;
+
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* --- doing tasks --------------------------------------------------------- */
+
+/* What a task's home hears. Where that is another rank, `node` is its own
+ * pointer coming back to it. */
+struct outcome {
+  int what;
+  struct vg_node *node;      /* START, and LEAF that outgrew: owned; JOIN, ZONE:
+                                borrowed */
+  size_t index;
+  struct vg_change change;
+};
+
+static void free_outcome(struct outcome *o)
+{
+  if (o->what == VG_WORK_START || o->what == VG_WORK_LEAF)
+    vg_node_free(o->node);
+  vg_change_release(&o->change);
+  free(o);
+}
+
+static vg_status run_leaf(struct vg_partition *p, struct vg_work *w,
+                          struct outcome *o, const struct vg_engine *e,
+                          struct vg_error *err)
+{
+  int outgrown;
+  vg_status st = vg_work_leaf(p, w, &outgrown, &o->change.n_cell, e, err);
+
+  if (st == VG_OK && outgrown) {
+    o->node = w->node;
+    w->node = NULL;
+  }
+  return st;
+}
+
+static vg_status run_work(struct vg_partition *p, struct vg_work *w,
+                          struct outcome *o, const struct vg_engine *e,
+                          struct vg_error *err)
+{
+  o->what = w->what;
+  if (w->what == VG_WORK_LEAF) return run_leaf(p, w, o, e, err);
+  o->node = w->node;
+  o->index = w->index;
+  if (w->what == VG_WORK_ZONE) return vg_work_zone(p, w, &o->change, e, err);
+  if (w->what == VG_WORK_JOIN) return vg_node_join(p, w->node, err);
+  w->node = NULL;
+  return vg_node_start(p, o->node, err);
+}
+
+static vg_status run(void *user, const struct vg_engine *e,
+                     const struct vg_task *task, int worker, void **outcome,
+                     size_t *n_cell, struct vg_error *err)
+{
+  struct outcome *o = vg_calloc(1, sizeof *o);
+  vg_status st;
+
+  (void)worker;
+  if (!o) return vg_fail_memory(err, "the outcome of a task");
+  st = run_work(user, task->input, o, e, err);
+  *n_cell = o->change.n_cell;
+  if (st == VG_OK) *outcome = o;
+  else free_outcome(o);
+  return st;
+}
+
+/* --- what follows from them ---------------------------------------------- */
+
+static vg_status submit(struct vg_engine *e, const char *path, char kind,
+                        int pinned, int moves, double estimate,
+                        struct vg_work *w, struct vg_error *err)
+{
+  struct vg_task t = { .kind = kind, .pinned = pinned, .moves = moves,
+                       .priority = vg_model_priority(kind, estimate),
+                       .weight = estimate, .input = w };
+
+  snprintf(t.path, sizeof t.path, "%s", path);
+  return vg_engine_submit(e, &t, err);
+}
+
+static struct vg_work *new_work(int what, struct vg_node *n)
+{
+  struct vg_work *w = vg_calloc(1, sizeof *w);
+
+  if (!w) return NULL;
+  w->what = what;
+  w->node = n;
+  return w;
+}
+
+static vg_status submit_start(struct vg_engine *e, struct vg_node *n,
+                              struct vg_error *err)
+{
+  struct vg_work *w = new_work(VG_WORK_START, n);
+  char path[VG_PATH_MAX];
+
+  if (!w) {
+    vg_node_free(n);
+    return vg_fail_memory(err, "a task");
+  }
+  snprintf(path, sizeof path, "%.*sJ0", VG_PATH_MAX - 3, n->path);
+  return submit(e, path, VG_SPAN_JOIN, 0, 1, n->load.cells, w, err);
+}
+
+static vg_status submit_leaf(struct vg_partition *p, struct vg_engine *e,
+                             struct vg_node *n, struct vg_error *err)
+{
+  struct vg_work *w = new_work(VG_WORK_LEAF, n);
+  char path[VG_PATH_MAX];
+
+  if (!w) {
+    vg_node_free(n);
+    return vg_fail_memory(err, "a task");
+  }
+  w->serial = vg_partition_serial(p);
+  snprintf(path, sizeof path, "%.*sL", VG_PATH_MAX - 2, n->path);
+  return submit(e, path, VG_SPAN_LEAF, 0, 1, n->load.cells, w, err);
+}
+
+static vg_status submit_join(struct vg_engine *e, struct vg_node *n,
+                             struct vg_error *err)
+{
+  struct vg_work *w = new_work(VG_WORK_JOIN, n);
+  char path[VG_PATH_MAX];
+
+  if (!w) return vg_fail_memory(err, "a task");
+  snprintf(path, sizeof path, "%.*sJ%d", VG_PATH_MAX - 14, n->path,
+           ++n->n_join);
+  return submit(e, path, VG_SPAN_JOIN, 1, 0, n->load.cells, w, err);
+}
+
+static vg_status submit_child(struct vg_partition *p, struct vg_engine *e,
+                              struct vg_node *c, struct vg_error *err)
+{
+  double leaf = p->options.rule.leaf_cells;
+
+  if (vg_node_wants_cut(p, c)) return submit_start(e, c, err);
+  pthread_mutex_lock(&p->lock);
+  p->report.n_leaf++;
+  p->report.n_uncut += leaf > 0 && c->load.cells > VG_OUTGROWN * leaf;
+  pthread_mutex_unlock(&p->lock);
+  return submit_leaf(p, e, c, err);
+}
+
+/* From its first stage to its last a node is held by this rank alone. */
+static void hold(struct vg_partition *p, struct vg_node *n)
+{
+  pthread_mutex_lock(&p->lock);
+  n->next = p->cutting;
+  n->link = &p->cutting;
+  if (n->next) n->next->link = &n->next;
+  p->cutting = n;
+  pthread_mutex_unlock(&p->lock);
+}
+
+static void let_go(struct vg_partition *p, struct vg_node *n)
+{
+  pthread_mutex_lock(&p->lock);
+  *n->link = n->next;
+  if (n->next) n->next->link = n->link;
+  pthread_mutex_unlock(&p->lock);
+}
+
+/* A node whose planning or joining is over: its works, or its children. */
+static vg_status follow(struct vg_partition *p, struct vg_engine *e,
+                        struct vg_node *n, struct vg_error *err)
+{
+  size_t n_work = n->n_work;
+  vg_status st = VG_OK;
+
+  for (size_t k = 0; st == VG_OK && k < n_work; k++) {
+    struct vg_work *w = n->work[k];
+
+    n->work[k] = NULL;
+    pthread_mutex_lock(&p->lock);
+    p->report.n_pencil += w->kind == VG_SPAN_PENCIL;
+    p->report.n_tile += w->kind == VG_SPAN_TILE;
+    pthread_mutex_unlock(&p->lock);
+    st = submit(e, w->path, w->kind, 0, 0, w->estimate, w, err);
+  }
+  if (n_work || st < 0) return st;
+  let_go(p, n);
+  pthread_mutex_lock(&p->lock);
+  p->report.n_node += n->n_child != 1 || n->child[0] != n;
+  pthread_mutex_unlock(&p->lock);
+  for (size_t k = 0; st == VG_OK && k < n->n_child; k++) {
+    struct vg_node *c = n->child[k];
+
+    n->child[k] = NULL;
+    if (c == n) {
+      n->n_child = 0;
+      return submit_child(p, e, c, err);
+    }
+    st = submit_child(p, e, c, err);
+  }
+  vg_node_free(n);
+  return st;
+}
+
+/* The last outcome of a stage lets the node go on. */
+static vg_status zone_done(struct vg_partition *p, struct vg_engine *e,
+                           struct outcome *o, struct vg_error *err)
+{
+  struct vg_node *n = o->node;
+  struct vg_change *change = &n->change[o->index];
+
+  *change = o->change;
+  memset(&o->change, 0, sizeof o->change);
+  pthread_mutex_lock(&p->lock);
+  p->report.n_blocked += (uint64_t)change->blocked;
+  p->report.n_zone_cell += change->n_cell;
+  pthread_mutex_unlock(&p->lock);
+  return --n->n_left ? VG_OK : submit_join(e, n, err);
+}
+
+/* A leaf that outgrew its estimate becomes a node: its front is what it was,
+ * and there are at least as many cells in it as it was stopped for. */
+static vg_status leaf_done(struct vg_partition *p, struct vg_engine *e,
+                           struct outcome *o, struct vg_error *err)
+{
+  struct vg_node *n = o->node;
+  double leaf = p->options.rule.leaf_cells, more;
+
+  if (!n) return VG_OK;
+  o->node = NULL;
+  pthread_mutex_lock(&p->lock);
+  p->report.n_outgrown++;
+  p->report.n_leaf--;
+  pthread_mutex_unlock(&p->lock);
+  more = VG_OUTGROWN * (n->load.cells > leaf ? n->load.cells : leaf) /
+         (n->load.cells > 1 ? n->load.cells : 1);
+  for (size_t k = 0; k < n->load.n; k++)
+    n->load.cube[k].cells *= (float)more;
+  n->load.cells *= more;
+  snprintf(n->path + strlen(n->path), sizeof n->path - strlen(n->path), "+");
+  return submit_child(p, e, n, err);
+}
+
+static vg_status done(void *user, struct vg_engine *e,
+                      const struct vg_task *task, void *outcome, int rank,
+                      struct vg_error *err)
+{
+  struct vg_partition *p = user;
+  struct outcome *o = outcome;
+  struct vg_node *n = o->node;
+  vg_status st;
+
+  (void)task;
+  (void)rank;
+  if (o->what == VG_WORK_ZONE) {
+    st = zone_done(p, e, o, err);
+  } else if (o->what == VG_WORK_LEAF) {
+    st = leaf_done(p, e, o, err);
+  } else {
+    o->node = NULL;          /* goes on by itself */
+    if (o->what == VG_WORK_START) hold(p, n);
+    st = follow(p, e, n, err);
+  }
+  free_outcome(o);
+  return st;
+}
+
+/* --- to other ranks ------------------------------------------------------ */
+
+static vg_status packed(struct vg_writer *w, struct vg_bytes *out,
+                        struct vg_error *err)
+{
+  if (w->refused) {
+    free(w->bytes.data);
+    return vg_fail_memory(err, "a message");
+  }
+  *out = w->bytes;
+  return VG_OK;
+}
+
+static void put_node(struct vg_writer *w, const struct vg_node *n)
+{
+  int32_t number[3] = {n->levels, n->retry, n->is_final};
+  uint64_t cubes = n->load.n;
+
+  vg_put(w, sizeof n->path, 1, n->path);
+  vg_put(w, 3, sizeof *number, number);
+  vg_put(w, 1, sizeof n->per_cube, &n->per_cube);
+  vg_put(w, 1, sizeof cubes, &cubes);
+  vg_put(w, 1, sizeof n->load.cells, &n->load.cells);
+  vg_put(w, n->load.n, sizeof *n->load.cube, n->load.cube);
+  vg_front_put(w, &n->front, 1);
+}
+
+static struct vg_node *get_node(struct vg_reader *r)
+{
+  struct vg_front empty = VG_FRONT_INIT;
+  struct vg_node *n = vg_node_new("", &empty);
+  int32_t number[3] = {0};
+  uint64_t cubes = 0;
+
+  if (!n) return NULL;
+  vg_get(r, sizeof n->path, 1, n->path);
+  vg_get(r, 3, sizeof *number, number);
+  vg_get(r, 1, sizeof n->per_cube, &n->per_cube);
+  vg_get(r, 1, sizeof cubes, &cubes);
+  vg_get(r, 1, sizeof n->load.cells, &n->load.cells);
+  n->levels = number[0];
+  n->retry = number[1];
+  n->is_final = number[2];
+  n->load.n = cubes;
+  n->load.cube = vg_get_array(r, cubes, sizeof *n->load.cube);
+  vg_front_get(r, &n->front, 1);
+  if (!r->bad) return n;
+  n->load.n = 0;
+  vg_node_free(n);
+  return NULL;
+}
+
+static vg_status pack_input(void *user, const void *input,
+                            struct vg_bytes *out, struct vg_error *err)
+{
+  const struct vg_work *k = input;
+  struct vg_writer w = { .cap = 0 };
+  int32_t what = k->what;
+  uint64_t home[2] = {(uint64_t)(uintptr_t)k->node, k->index};
+
+  (void)user;
+  vg_put(&w, 1, sizeof what, &what);
+  vg_put(&w, 1, sizeof k->serial, &k->serial);
+  if (k->what == VG_WORK_ZONE) {
+    vg_put(&w, sizeof k->path, 1, k->path);
+    vg_put(&w, 1, 1, &k->kind);
+    vg_put(&w, 2, sizeof *home, home);
+    vg_put(&w, 1, sizeof k->region, &k->region);
+    vg_front_put(&w, &k->part, 1);
+  } else {
+    put_node(&w, k->node);
+  }
+  return packed(&w, out, err);
+}
+
+static vg_status unpack_input(void *user, const struct vg_bytes *in,
+                              void **input, struct vg_error *err)
+{
+  struct vg_reader r = { .data = in->data, .n = in->n };
+  struct vg_work *k = new_work(0, NULL);
+  int32_t what = 0;
+  uint64_t home[2] = {0, 0};
+
+  (void)user;
+  if (!k) return vg_fail_memory(err, "a message");
+  vg_get(&r, 1, sizeof what, &what);
+  vg_get(&r, 1, sizeof k->serial, &k->serial);
+  k->what = what;
+  if (what == VG_WORK_ZONE) {
+    vg_get(&r, sizeof k->path, 1, k->path);
+    vg_get(&r, 1, 1, &k->kind);
+    vg_get(&r, 2, sizeof *home, home);
+    vg_get(&r, 1, sizeof k->region, &k->region);
+    vg_front_get(&r, &k->part, 1);
+    k->node = (struct vg_node *)(uintptr_t)home[0];
+    k->index = home[1];
+  } else if (!r.bad && !(k->node = get_node(&r))) {
+    r.bad = 1;
+  }
+  if (r.bad) {
+    free(k);
+    return vg_fail_memory(err, "a message");
+  }
+  *input = k;
+  return VG_OK;
+}
+
+static vg_status pack_outcome(void *user, const void *outcome,
+                              struct vg_bytes *out, struct vg_error *err)
+{
+  const struct outcome *o = outcome;
+  struct vg_writer w = { .cap = 0 };
+  uint64_t home[2] = {(uint64_t)(uintptr_t)o->node, o->index};
+
+  (void)user;                /* only those of zones travel */
+  vg_put(&w, 2, sizeof *home, home);
+  vg_change_put(&w, &o->change);
+  return packed(&w, out, err);
+}
+
+static vg_status unpack_outcome(void *user, const struct vg_bytes *in,
+                                void **outcome, struct vg_error *err)
+{
+  struct vg_reader r = { .data = in->data, .n = in->n };
+  struct outcome *o = vg_calloc(1, sizeof *o);
+  uint64_t home[2] = {0, 0};
+
+  (void)user;
+  if (!o) return vg_fail_memory(err, "a message");
+  vg_get(&r, 2, sizeof *home, home);
+  vg_change_get(&r, &o->change);
+  if (r.bad) {
+    free(o);
+    return vg_fail_memory(err, "a message");
+  }
+  o->what = VG_WORK_ZONE;
+  o->node = (struct vg_node *)(uintptr_t)home[0];
+  o->index = home[1];
+  *outcome = o;
+  return VG_OK;
+}
+
+static void release_input(void *user, void *input)
+{
+  (void)user;
+  vg_work_free(input);
+}
+
+static void release_outcome(void *user, void *outcome)
+{
+  (void)user;
+  free_outcome(outcome);
+}
+
+/* --- the whole ----------------------------------------------------------- */
+
+static int progress(void *user, double done_cells, double known,
+                    size_t n_done, size_t n_known)
+{
+  struct vg_partition *p = user;
+  double all = p->report.estimate;
+
+  (void)known;
+  (void)n_done;
+  (void)n_known;
+  if (!p->options.progress) return 0;
+  if (done_cells > all) all = done_cells;
+  return p->options.progress(p->options.user, "fill", (size_t)done_cells,
+                             (size_t)all);
+}
+
+static int stop(void *user)
+{
+  struct vg_partition *p = user;
+
+  return p->options.stop && p->options.stop(p->options.user);
+}
+
+/* The root: the whole void, with its load. */
+static vg_status make_root(struct vg_partition *p, struct vg_node **out,
+                           struct vg_error *err)
+{
+  const struct vg_mesh *m = p->boundary;
+  struct vg_front f = VG_FRONT_INIT;
+  struct vg_void v = { .n_point = m->n_point, .x = m->point,
+                       .n_face = m->n_tri, .face = m->tri };
+  struct vg_node *n = NULL;
+  vg_status st = VG_OK;
+
+  f.n_point = m->n_point;
+  f.n_face = m->n_tri;
+  f.x = vg_alloc(m->n_point, sizeof *f.x);
+  f.name = vg_alloc(m->n_point, sizeof *f.name);
+  f.face = vg_alloc(m->n_tri, sizeof *f.face);
+  if (f.x && f.name && f.face) n = vg_node_new("0", &f);
+  if (!n) {
+    vg_front_release(&f);
+    return vg_fail_memory(err, "the front");
+  }
+  memcpy(n->front.x, m->point, m->n_point * sizeof *n->front.x);
+  memcpy(n->front.face, m->tri, m->n_tri * sizeof *n->front.face);
+  for (size_t k = 0; k < m->n_point; k++)
+    n->front.name[k] = VG_POINT_NAME(0, k);
+  n->levels = p->options.levels;
+  VG_TRY(vg_load_new(&v, p->sizing, n->per_cube, p->options.threads,
+                     &n->load, err));
+  p->report.estimate = n->load.cells;
+  /* a void that is not cut is filled as it is, in the order it came in */
+  if (vg_node_wants_cut(p, n)) VG_TRY(vg_select_sort(&n->front, err));
+  *out = n;
+  n = NULL;
+done:
+  vg_node_free(n);
+  return st;
+}
+
+static vg_status within_limit(const struct vg_partition *p, double cells,
+                              const char *how, struct vg_error *err)
+{
+  if (!p->options.max_cells || cells <= (double)p->options.max_cells)
+    return VG_OK;
+  return vg_fail(err, VG_ERR_UNSUPPORTED, "the mesh %s %.0f cells, %llu are "
+                 "allowed; use a coarser spacing or raise the limit", how,
+                 cells, (unsigned long long)p->options.max_cells);
+}
+
+static vg_status run_tasks(struct vg_partition *p, struct vg_comm *comm,
+                           struct vg_spans *spans, struct vg_error *err)
+{
+  static const struct vg_engine_ops ops = {
+    run, done, pack_input, unpack_input, pack_outcome, unpack_outcome,
+    release_input, release_outcome };
+  struct vg_engine_options o = { p->options.threads, p->options.shuffle,
+                                 progress, stop, p };
+  struct vg_task first = { .kind = VG_SPAN_JOIN, .moves = 1 };
+  struct vg_node *root = NULL;
+  size_t n_first = 0;
+  vg_status st = VG_OK;
+
+  if (p->rank == 0) st = make_root(p, &root, err);
+  /* no estimate is off by more than half */
+  if (st == VG_OK && p->rank == 0)
+    st = within_limit(p, p->report.estimate / 1.5, "would have", err);
+  st = vg_comm_agree(comm, st, err);
+  if (st < 0) {
+    vg_node_free(root);
+    return st;
+  }
+  if (root) {
+    int cut = vg_node_wants_cut(p, root);
+    struct vg_work *w = new_work(cut ? VG_WORK_START : VG_WORK_LEAF, root);
+
+    n_first = 1;
+    first.kind = cut ? VG_SPAN_JOIN : VG_SPAN_LEAF;
+    first.weight = root->load.cells;
+    first.input = w;
+    snprintf(first.path, sizeof first.path, cut ? "0J0" : "0L");
+    if (!cut) {
+      p->report.n_leaf++;
+      if (w) w->serial = vg_partition_serial(p);
+    }
+    if (!w) vg_node_free(root);
+  }
+  st = vg_comm_agree(comm, n_first && !first.input
+                             ? vg_fail_memory(err, "a task") : VG_OK, err);
+  if (st < 0) {
+    vg_work_free(first.input);
+    return st;
+  }
+  return vg_engine_run(comm, &o, &ops, p, n_first, &first, spans, err);
+}
+
+uint32_t vg_partition_serial(struct vg_partition *p)
+{
+  uint32_t k = (uint32_t)atomic_fetch_add(&p->n_serial, 1);
+
+  return 1 + k * (uint32_t)p->size + (uint32_t)p->rank;
+}
+
+/* Counts and times of all ranks together. */
+static vg_status sum_report(struct vg_partition *p, struct vg_comm *comm,
+                            struct vg_error *err)
+{
+  struct vg_partition_report *r = &p->report;
+  struct vg_fill_report *f = &r->fill;
+  uint64_t whole = (uint64_t)f->whole_void;
+  double *time[5] = {&f->time_boundary, &f->time_place, &f->time_insert,
+                     &f->time_optimise, &f->time_total};
+  size_t *count[] = {&f->n_surface_face_lost, &f->n_pocket,
+    &f->n_pocket_cell, &f->n_retry, &f->n_steiner, &f->n_placed,
+    &f->n_inserted, &f->n_refused, &f->n_smoothed, &f->n_flip,
+    &f->n_collapse, &f->n_split};
+  uint64_t *more[] = {&r->n_node, &r->n_pencil, &r->n_tile, &r->n_leaf,
+    &r->n_zone_cell, &r->n_blocked, &r->n_retry, &r->n_uncut,
+    &r->n_outgrown, &r->n_found, &whole};
+  enum { N_COUNT = sizeof count / sizeof *count,
+         N_MORE = sizeof more / sizeof *more };
+  uint64_t v[N_COUNT + N_MORE + 5];
+  double estimate = r->estimate;
+  vg_status st;
+
+  for (size_t k = 0; k < N_COUNT; k++) v[k] = *count[k];
+  for (size_t k = 0; k < N_MORE; k++) v[N_COUNT + k] = *more[k];
+  for (size_t k = 0; k < 5; k++)
+    v[N_COUNT + N_MORE + k] = (uint64_t)(*time[k] * 1e6);
+  st = vg_comm_sum(comm, sizeof v / sizeof *v, v, err);
+  if (st == VG_OK) st = vg_comm_max(comm, 1, &estimate, err);
+  if (st < 0) return st;
+  for (size_t k = 0; k < N_COUNT; k++) *count[k] = v[k];
+  for (size_t k = 0; k < N_MORE; k++) *more[k] = v[N_COUNT + k];
+  for (size_t k = 0; k < 5; k++)
+    *time[k] = 1e-6 * (double)v[N_COUNT + N_MORE + k];
+  f->whole_void = (int)whole;
+  r->estimate = estimate;
+  return VG_OK;
+}
+
+vg_status vg_partition_grow(struct vg_comm *comm, const struct vg_mesh *front,
+                            const struct vg_sizing *sizing,
+                            const struct vg_partition_options *options,
+                            struct vg_partition **out,
+                            struct vg_partition_report *report,
+                            struct vg_spans *spans, struct vg_error *err)
+{
+  struct vg_partition *p = vg_calloc(1, sizeof *p);
+  double t0 = now();
+  vg_status st;
+
+  st = vg_comm_agree(comm, p ? VG_OK : vg_fail_memory(err, "the partition"),
+                     err);
+  if (st < 0) {
+    free(p);
+    return st;
+  }
+  pthread_mutex_init(&p->lock, NULL);
+  p->rank = vg_comm_rank(comm);
+  p->size = vg_comm_size(comm);
+  p->boundary = front;
+  p->sizing = sizing;
+  p->options = *options;
+  if (p->options.threads < 1) p->options.threads = 1;
+  st = run_tasks(p, comm, spans, err);
+  p->report.wall = now() - t0;
+  if (st == VG_OK) st = vg_partition_number(p, comm, err);
+  if (st == VG_OK) st = sum_report(p, comm, err);
+  p->report.number = now() - t0 - p->report.wall;
+  if (st == VG_OK)
+    st = within_limit(p, (double)p->slices.n_cell[VG_SLICE_TET], "has", err);
+  *report = p->report;
+  if (st == VG_OK) *out = p;
+  else vg_partition_free(p);
+  return st;
+}
+
+const struct vg_slices *vg_partition_slices(const struct vg_partition *p)
+{
+  return &p->slices;
+}
+
+vg_status vg_partition_leaves(const struct vg_partition *p, size_t *n,
+                              uint64_t **sizes, struct vg_error *err)
+{
+  *n = 0;
+  *sizes = vg_alloc(p->n_piece, sizeof **sizes);
+  if (!*sizes) return vg_fail_memory(err, "sizes of leaves");
+  for (size_t k = 0; k < p->n_piece; k++)
+    if (p->piece[k].kind == VG_SPAN_LEAF)
+      (*sizes)[(*n)++] = p->piece[k].n_cell;
+  return VG_OK;
+}
+
+void vg_partition_free(struct vg_partition *p)
+{
+  struct vg_node *n;
+
+  if (!p) return;
+  while ((n = p->cutting)) {
+    p->cutting = n->next;
+    vg_node_free(n);
+  }
+  for (size_t k = 0; k < p->n_piece; k++) vg_piece_release(&p->piece[k]);
+  free(p->piece);
+  free(p->place);
+  free(p->point_at);
+  free(p->cell_at);
+  free(p->domain);
+  free(p->front_id);
+  pthread_mutex_destroy(&p->lock);
+  free(p);
+}

@@ -1,0 +1,89 @@
+/* partition/advance.h: the advancing partition: a void is cut by zones of
+ * final cells until what is left between them is small, and filled, as tasks
+ * over ranks and threads. Uses core, load.h, lattice.h, engine.h, store.h.
+ *
+ * Tasks of a node, a void with path p ("0" is the whole, "0.2" its third
+ * part): pJ0 plans planes and takes the parts of the front that their lines
+ * and tiles need; pP.. grow pencils along the lines, pT.. tiles of the planes
+ * between them; pJ1, pJ2, ... put what they made into the void, in the order
+ * of their numbers, and after the last stage find its parts: p.0, p.1, ...,
+ * each cut again or filled: p.0L. A cut costs what its zones cost; the front
+ * of the node is only passed through at memory speed. */
+#ifndef VG_PARTITION_ADVANCE_H
+#define VG_PARTITION_ADVANCE_H
+
+#include "base/comm.h"
+#include "core/fill.h"
+#include "core/slices.h"
+#include "partition/engine.h"
+#include "partition/lattice.h"
+#include "partition/spans.h"
+#include "partition/store.h"
+
+/** Cells to a leaf, by default: measured, docs/performance.md. */
+#define VG_LEAF_CELLS 150000.0
+
+struct vg_partition_options {
+  struct vg_cut_rule rule;
+  int levels;                /* bisections, where rule.leaf_cells is 0 */
+  int threads;
+  int sweeps;                /* of optimisation */
+  uint64_t max_cells;        /* refuse to make more; 0: no limit */
+  uint64_t shuffle;          /* see engine.h */
+  struct vg_store *store;    /* may be NULL */
+  struct vg_digest job;      /* of size field and options, for the store */
+  vg_progress progress;      /* on rank 0; cells done, expected */
+  int (*stop)(void *user);
+  void *user;
+};
+#define VG_PARTITION_OPTIONS_INIT \
+  { { VG_LEAF_CELLS, -1, 0 }, 0, 1, 2, 0, 0, NULL, {{0, 0}}, NULL, NULL, \
+    NULL }
+
+/** What happened, summed over all ranks. */
+struct vg_partition_report {
+  struct vg_fill_report fill;  /* times are seconds of all workers together */
+  uint64_t n_node, n_pencil, n_tile, n_leaf;
+  uint64_t n_zone_cell;      /* cells of pencils and tiles */
+  uint64_t n_blocked;        /* pencils and tiles that could not be grown */
+  uint64_t n_retry;          /* cuts that did not part their void */
+  uint64_t n_uncut;          /* leaves filled although larger than asked for,
+                                because no plane parts them */
+  uint64_t n_outgrown;       /* leaves that outgrew their estimate and were
+                                cut again */
+  uint64_t n_found;          /* tasks whose outcome was in the store */
+  double estimate;           /* cells expected at the start */
+  double wall;               /* seconds of the engine */
+  double number;             /* seconds of numbering */
+};
+
+/** The cells of a void, on the ranks that made them. */
+struct vg_partition;
+
+/** Fill what the triangles of `front` enclose. Collective.
+ *
+ * @param front  as vg_fill's surface, the same on every rank; borrowed until
+ *               vg_partition_free
+ * @param spans  see vg_engine_run
+ * The cells follow from front, sizing, rule, levels and sweeps alone.
+ * Returns on all ranks alike: VG_BLOCKED when stopped; VG_ERR_GEOMETRY;
+ * VG_ERR_UNSUPPORTED beyond max_cells or 2^32 - 1 points. */
+vg_status vg_partition_grow(struct vg_comm *comm, const struct vg_mesh *front,
+                            const struct vg_sizing *sizing,
+                            const struct vg_partition_options *options,
+                            struct vg_partition **out,
+                            struct vg_partition_report *report,
+                            struct vg_spans *spans, struct vg_error *err);
+
+/** The mesh in slices: one for each task that made cells, in the order of
+ * their paths, and on rank 0 one without cells that owns the points of the
+ * front, which come first. Valid until vg_partition_free. */
+const struct vg_slices *vg_partition_slices(const struct vg_partition *p);
+
+/** Cells of each leaf of this rank: sizes out: [*n], owned by the caller. */
+vg_status vg_partition_leaves(const struct vg_partition *p, size_t *n,
+                              uint64_t **sizes, struct vg_error *err);
+
+void vg_partition_free(struct vg_partition *p);
+
+#endif

@@ -1,0 +1,263 @@
+#include "partition/lattice.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Cells within so many spacings of a line belong to its pencil: more than
+ * tiles are thick, so that tiles end at pencils and not at each other. */
+static const double pencil_reach = 1.0;
+/* Parallel planes are this many of the largest spacings on them apart. */
+static const double apart = 10;
+/* Where a second and a third attempt put a plane, as shares of the load. */
+static const double other_share[] = {0, 0.07, -0.07, 0.15, -0.15};
+/* Blocks that may exceed the leaf size by this need no further cut. */
+static const double leaf_slack = 1.25;
+
+enum { HALVINGS = 3, PER_AXIS = 2 };
+
+/* --- planes -------------------------------------------------------------- */
+
+static double plane_at(const struct vg_load *load, int axis, int k, int n,
+                       int retry)
+{
+  int most = (int)(sizeof other_share / sizeof *other_share);
+  double share = (double)(k + 1) / (n + 1);
+
+  return vg_load_quantile(load, axis, share + other_share[retry % most] /
+                                                  (n + 1));
+}
+
+static void place_planes(const struct vg_load *load, int axis, int n,
+                         int retry, struct vg_lattice *l)
+{
+  l->n[axis] = n;
+  for (int k = 0; k < n; k++)
+    l->at[axis][k] = plane_at(load, axis, k, n, retry);
+}
+
+/* Are all planes across the axis far enough apart? */
+static int is_roomy(const struct vg_load *load, int axis,
+                    const struct vg_lattice *l)
+{
+  for (int k = 0; k + 1 < l->n[axis]; k++) {
+    double h = fmax(vg_load_coarsest(load, axis, l->at[axis][k]),
+                    vg_load_coarsest(load, axis, l->at[axis][k + 1]));
+
+    if (!(l->at[axis][k + 1] - l->at[axis][k] >= apart * h)) return 0;
+  }
+  return 1;
+}
+
+/* Cells in the zones of n planes across the axis, infinite where there is no
+ * room for them. */
+static double zone_cost(const struct vg_load *load, int axis, int n,
+                        int retry)
+{
+  struct vg_lattice l = {0};
+  double sum = 0;
+
+  place_planes(load, axis, n, retry, &l);
+  if (!is_roomy(load, axis, &l)) return INFINITY;
+  for (int k = 0; k < n; k++) {
+    double cells = vg_load_zone(load, axis, l.at[axis][k], 1);
+
+    if (!(cells > 0)) return INFINITY;
+    sum += cells;
+  }
+  return sum;
+}
+
+static int bisections_wanted(const struct vg_load *load,
+                             const struct vg_cut_rule *rule, int levels)
+{
+  int n = 0;
+
+  if (!(rule->leaf_cells > 0)) return levels < HALVINGS ? levels : HALVINGS;
+  while (n < HALVINGS && load->cells > leaf_slack * rule->leaf_cells *
+                                           (double)(1 << n))
+    n++;
+  return n;
+}
+
+/* The axis to halve the blocks of next: that which adds the fewest cells to
+ * zones. */
+static int next_axis(const struct vg_load *load,
+                     const struct vg_cut_rule *rule, const int half[3],
+                     int retry)
+{
+  double least = INFINITY;
+  int best = -1;
+
+  for (int axis = 0; axis < 3; axis++) {
+    int now = (1 << half[axis]) - 1, then = (1 << (half[axis] + 1)) - 1;
+    double more;
+
+    if (half[axis] == PER_AXIS) continue;
+    if (rule->first_axis >= 0 && axis != rule->first_axis &&
+        (rule->constant || !half[rule->first_axis]))
+      continue;
+    more = zone_cost(load, axis, then, retry);
+    if (now) more -= zone_cost(load, axis, now, retry);
+    /* a first plane across an axis is preferred to several across one */
+    if (more < least * (half[axis] && best >= 0 ? 0.8 : 1)) {
+      least = more;
+      best = axis;
+    }
+  }
+  return best;
+}
+
+int vg_lattice_plan(const struct vg_load *load, const struct vg_cut_rule *rule,
+                    int levels, int retry, struct vg_lattice *out)
+{
+  int want = bisections_wanted(load, rule, levels), used = 0;
+  int half[3] = {0, 0, 0};
+
+  memset(out, 0, sizeof *out);
+  if (retry && want > 1) want = 1;
+  for (; used < want; used++) {
+    int axis = next_axis(load, rule, half, retry);
+
+    if (axis < 0) break;
+    half[axis]++;
+  }
+  for (int axis = 0; axis < 3; axis++)
+    place_planes(load, axis, (1 << half[axis]) - 1, retry, out);
+  return used;
+}
+
+/* --- regions ------------------------------------------------------------- */
+
+static void add_wall(struct vg_region *r, const double normal[3],
+                     double offset)
+{
+  memcpy(r->wall[r->n_wall].normal, normal, 3 * sizeof *normal);
+  r->wall[r->n_wall++].offset = offset;
+}
+
+/* sign (x[axis] - at) > 0 */
+static void bound(struct vg_region *r, int axis, int sign, double at)
+{
+  double normal[3] = {0};
+
+  normal[axis] = sign;
+  add_wall(r, normal, sign * at);
+}
+
+/* Midway to the neighbours of plane k. */
+static void between(struct vg_region *r, const struct vg_lattice *l, int axis,
+                    int k)
+{
+  const double *at = l->at[axis];
+
+  if (k > 0) bound(r, axis, 1, 0.5 * (at[k - 1] + at[k]));
+  if (k + 1 < l->n[axis]) bound(r, axis, -1, 0.5 * (at[k] + at[k + 1]));
+}
+
+/* Half the square root of 2: walls have unit normals. */
+static const double slope = 0.7071067811865476;
+
+/* |x[across] - at| < sign (x[along] - end): the region ends in a roof where
+ * another one crosses. */
+static void roof(struct vg_region *r, int across, double at, int along,
+                 int sign, double end)
+{
+  for (int side = -1; side <= 1; side += 2) {
+    double normal[3] = {0};
+
+    normal[along] = slope * sign;
+    normal[across] = slope * side;
+    add_wall(r, normal, slope * (sign * end + side * at));
+  }
+}
+
+/* Interval k of the axis: between plane k - 1 and plane k. */
+static void ends(struct vg_region *r, const struct vg_lattice *l, int along,
+                 int k, int across, double at)
+{
+  if (k > 0) roof(r, across, at, along, 1, l->at[along][k - 1]);
+  if (k < l->n[along]) roof(r, across, at, along, -1, l->at[along][k]);
+}
+
+static void cross(struct vg_region *r, int axis, double at)
+{
+  struct vg_plane *p = &r->plane[r->n_plane++];
+
+  memset(p->normal, 0, sizeof p->normal);
+  p->normal[axis] = 1;
+  p->offset = at;
+}
+
+/* Lines along z, all of them from end to end. */
+static int line(const struct vg_lattice *l, size_t k, struct vg_region *r)
+{
+  int i = (int)k / l->n[1], j = (int)k % l->n[1];
+
+  cross(r, 0, l->at[0][i]);
+  cross(r, 1, l->at[1][j]);
+  between(r, l, 0, i);
+  between(r, l, 1, j);
+  return 2;
+}
+
+/* Lines along x and y, from one line along z to the next. */
+static int segment(const struct vg_lattice *l, size_t k, struct vg_region *r)
+{
+  size_t along_x = (size_t)(l->n[0] + 1) * (size_t)(l->n[1] * l->n[2]);
+  int along = k >= along_x, other = !along, part, j, m;
+
+  if (along) k -= along_x;
+  part = (int)k % (l->n[along] + 1);
+  k /= (size_t)(l->n[along] + 1);
+  j = (int)k % l->n[other];
+  m = (int)k / l->n[other];
+  cross(r, other, l->at[other][j]);
+  cross(r, 2, l->at[2][m]);
+  between(r, l, other, j);
+  between(r, l, 2, m);
+  ends(r, l, along, part, other, l->at[other][j]);
+  return along;
+}
+
+static size_t tiles_across(const struct vg_lattice *l, int axis)
+{
+  int b = (axis + 1) % 3, c = (axis + 2) % 3;
+
+  return (size_t)(l->n[axis] * (l->n[b] + 1) * (l->n[c] + 1));
+}
+
+static int tile(const struct vg_lattice *l, size_t k, struct vg_region *r)
+{
+  int axis = 0, b, c, i, j, m;
+
+  while (k >= tiles_across(l, axis)) k -= tiles_across(l, axis++);
+  b = (axis + 1) % 3;
+  c = (axis + 2) % 3;
+  j = (int)k % (l->n[b] + 1);
+  k /= (size_t)(l->n[b] + 1);
+  m = (int)k % (l->n[c] + 1);
+  i = (int)k / (l->n[c] + 1);
+  cross(r, axis, l->at[axis][i]);
+  between(r, l, axis, i);
+  ends(r, l, b, j, axis, l->at[axis][i]);
+  ends(r, l, c, m, axis, l->at[axis][i]);
+  return axis;
+}
+
+size_t vg_lattice_count(const struct vg_lattice *l, int stage)
+{
+  size_t x = (size_t)l->n[0], y = (size_t)l->n[1], z = (size_t)l->n[2];
+
+  if (stage == 0) return x * y;
+  if (stage == 1) return (x + 1) * y * z + (y + 1) * x * z;
+  return tiles_across(l, 0) + tiles_across(l, 1) + tiles_across(l, 2);
+}
+
+int vg_lattice_region(const struct vg_lattice *l, int stage, size_t k,
+                      struct vg_region *r)
+{
+  memset(r, 0, sizeof *r);
+  if (stage < 2) r->reach = pencil_reach;
+  return stage == 0 ? line(l, k, r) : stage == 1 ? segment(l, k, r)
+                                                 : tile(l, k, r);
+}

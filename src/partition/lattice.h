@@ -1,0 +1,42 @@
+/* partition/lattice.h: where a void is cut. Uses load.h, core/region.h.
+ *
+ * Planes across one, two or three axes at weighted quantiles of the load make
+ * blocks. Where planes meet, lines are grown first, as pencils, so that the
+ * tiles of the planes between them can be grown at the same time, and then
+ * the blocks. Walls between the regions of a stage keep them apart: midway
+ * between parallel planes, and at 45 degrees where planes meet. */
+#ifndef VG_PARTITION_LATTICE_H
+#define VG_PARTITION_LATTICE_H
+
+#include "core/region.h"
+#include "partition/load.h"
+
+enum { VG_LATTICE_PLANES = 7, VG_LATTICE_STAGES = 3 };
+
+struct vg_lattice {
+  int n[3];                  /* planes across each axis */
+  double at[3][VG_LATTICE_PLANES];
+};
+
+struct vg_cut_rule {
+  double leaf_cells;         /* cut while more are expected; 0: by levels */
+  int first_axis;            /* 0 to 2: cut across this one first; -1: best */
+  int constant;              /* 1: across first_axis only */
+};
+
+/** Planes for a void.
+ * @param levels  bisections left, for a rule by levels
+ * @param retry   0, 1, ...: after a failed attempt, other planes
+ * Returns the bisections used (as levels): 0 when no plane makes sense. */
+int vg_lattice_plan(const struct vg_load *load, const struct vg_cut_rule *rule,
+                    int levels, int retry, struct vg_lattice *out);
+
+/** Number of regions of a stage: 0: lines along z (the last axis with lines
+ * across all), 1: segments of the other lines, 2: tiles. */
+size_t vg_lattice_count(const struct vg_lattice *l, int stage);
+
+/** Region k of a stage. Returns the axis of the line, or of the plane. */
+int vg_lattice_region(const struct vg_lattice *l, int stage, size_t k,
+                      struct vg_region *r);
+
+#endif

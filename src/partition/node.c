@@ -1,0 +1,255 @@
+#include "partition/node.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "partition/select.h"
+
+static void drop_stage(struct vg_node *n)
+{
+  for (size_t k = 0; k < n->n_work; k++) {
+    vg_work_free(n->work[k]);
+    free(n->point[k]);
+    free(n->face[k]);
+    vg_change_release(&n->change[k]);
+  }
+  free(n->work);
+  free(n->point);
+  free(n->face);
+  free(n->change);
+  n->work = NULL;
+  n->point = n->face = NULL;
+  n->change = NULL;
+  n->n_work = 0;
+}
+
+void vg_node_free(struct vg_node *n)
+{
+  if (!n) return;
+  drop_stage(n);
+  for (size_t k = 0; k < n->n_child; k++)
+    if (n->child[k] != n) vg_node_free(n->child[k]);
+  free(n->child);
+  vg_front_release(&n->front);
+  vg_load_release(&n->load);
+  free(n);
+}
+
+void vg_work_free(struct vg_work *w)
+{
+  if (!w) return;
+  if (w->what == VG_WORK_START || w->what == VG_WORK_LEAF)
+    vg_node_free(w->node);
+  vg_front_release(&w->part);
+  free(w);
+}
+
+struct vg_node *vg_node_new(const char *path, struct vg_front *front)
+{
+  struct vg_node *n = vg_calloc(1, sizeof *n);
+
+  if (!n) return NULL;
+  snprintf(n->path, sizeof n->path, "%s", path);
+  n->front = *front;
+  memset(front, 0, sizeof *front);
+  n->per_cube = VG_LOAD_CELLS_PER_CUBE;
+  return n;
+}
+
+int vg_node_wants_cut(const struct vg_partition *p, const struct vg_node *n)
+{
+  struct vg_lattice l;
+
+  return !n->is_final && n->retry < VG_RETRIES &&
+         strlen(n->path) + 8 < VG_PATH_MAX &&
+         vg_lattice_plan(&n->load, &p->options.rule, n->levels, n->retry,
+                         &l) > 0;
+}
+
+/* --- the works of a stage ------------------------------------------------ */
+
+static vg_status make_room(struct vg_node *n, size_t n_work,
+                           struct vg_error *err)
+{
+  n->work = vg_calloc(n_work, sizeof *n->work);
+  n->point = vg_calloc(n_work, sizeof *n->point);
+  n->face = vg_calloc(n_work, sizeof *n->face);
+  n->change = vg_calloc(n_work, sizeof *n->change);
+  if (n->work && n->point && n->face && n->change) return VG_OK;
+  return vg_fail_memory(err, "cutting a front");
+}
+
+static vg_status add_work(struct vg_partition *p, struct vg_node *n,
+                          struct vg_select *s, size_t k,
+                          struct vg_error *err)
+{
+  struct vg_work *w = vg_calloc(1, sizeof *w);
+  size_t i = n->n_work;
+  vg_status st;
+
+  if (!w) return vg_fail_memory(err, "cutting a front");
+  w->what = VG_WORK_ZONE;
+  w->kind = n->stage < 2 ? VG_SPAN_PENCIL : VG_SPAN_TILE;
+  w->node = n;
+  w->index = i;
+  vg_lattice_region(&n->lattice, n->stage, k, &w->region);
+  st = vg_select_part(s, &w->region, &w->part, &n->point[i], &n->face[i],
+                      err);
+  if (st < 0 || !w->part.n_face) {
+    free(n->point[i]);
+    free(n->face[i]);
+    n->point[i] = n->face[i] = NULL;
+    vg_work_free(w);
+    return st;
+  }
+  snprintf(w->path, sizeof w->path, "%.*s%c%zu", VG_PATH_MAX - 12, n->path,
+           w->kind, w->kind == VG_SPAN_PENCIL ? n->n_pencil++ : k);
+  w->serial = vg_partition_serial(p);
+  n->work[n->n_work++] = w;
+  return VG_OK;
+}
+
+/* What the tiles of a plane are expected to make, shared out evenly: it
+ * decides the order of tasks only. */
+static void estimate_works(struct vg_node *n)
+{
+  for (size_t i = 0; i < n->n_work; i++) {
+    struct vg_work *w = n->work[i];
+    const struct vg_plane *plane = &w->region.plane[0];
+    int axis = plane->normal[0] > 0 ? 0 : plane->normal[1] > 0 ? 1 : 2;
+    int b = (axis + 1) % 3, c = (axis + 2) % 3;
+    double cells = vg_load_zone(&n->load, axis, plane->offset, 1);
+
+    w->estimate = w->kind == VG_SPAN_TILE
+                    ? cells / ((n->lattice.n[b] + 1) * (n->lattice.n[c] + 1))
+                    : 0.1 * cells / (n->lattice.n[b] + n->lattice.n[c] + 1);
+  }
+}
+
+static vg_status prepare(struct vg_partition *p, struct vg_node *n,
+                         struct vg_error *err)
+{
+  struct vg_select s = {0};
+  vg_status st = VG_OK;
+
+  VG_TRY(vg_select_open(&s, &n->front, p->sizing, err));
+  for (; !n->n_work && n->stage < VG_LATTICE_STAGES; n->stage++) {
+    size_t count = vg_lattice_count(&n->lattice, n->stage);
+
+    if (!count) continue;
+    VG_TRY(make_room(n, count, err));
+    for (size_t k = 0; k < count; k++) VG_TRY(add_work(p, n, &s, k, err));
+    if (!n->n_work) drop_stage(n);
+  }
+  estimate_works(n);
+  n->n_left = n->n_work;
+done:
+  vg_select_close(&s);
+  return st;
+}
+
+/* Nothing to cut: the void is its own only part, to be filled as it is. */
+static vg_status keep_whole(struct vg_node *n, struct vg_error *err)
+{
+  n->child = vg_alloc(1, sizeof *n->child);
+  if (!n->child) return vg_fail_memory(err, "cutting a front");
+  n->child[0] = n;
+  n->n_child = 1;
+  n->is_final = 1;
+  return VG_OK;
+}
+
+vg_status vg_node_start(struct vg_partition *p, struct vg_node *n,
+                        struct vg_error *err)
+{
+  vg_status st;
+
+  n->stage = 0;
+  n->n_bisection = vg_lattice_plan(&n->load, &p->options.rule, n->levels,
+                                   n->retry, &n->lattice);
+  VG_TRY(prepare(p, n, err));
+  if (!n->n_work) st = keep_whole(n, err);
+done:
+  return st;
+}
+
+/* --- putting a stage into the front -------------------------------------- */
+
+static uint32_t point_of(const struct vg_node *n, size_t i, size_t base,
+                         uint32_t v, size_t n_part)
+{
+  return v < n_part ? n->point[i][v] : (uint32_t)(base + v - n_part);
+}
+
+/* Points and faces that the stage made, behind those that stay. */
+static void add_change(struct vg_node *n, size_t i, size_t n_part)
+{
+  const struct vg_change *c = &n->change[i];
+  struct vg_front *f = &n->front;
+  size_t base = f->n_point;
+
+  if (c->n_point) memcpy(f->x + base, c->x, c->n_point * sizeof *f->x);
+  for (size_t k = 0; k < c->n_point; k++)
+    f->name[base + k] = VG_POINT_NAME(c->serial, k);
+  f->n_point += c->n_point;
+  for (size_t k = 0; k < c->n_face; k++, f->n_face++)
+    for (int j = 0; j < 3; j++)
+      f->face[f->n_face][j] = point_of(n, i, base, c->face[k][j], n_part);
+}
+
+/* Faces that have a cell now leave; points that no face uses as well. */
+static vg_status shrink(struct vg_node *n, struct vg_error *err)
+{
+  struct vg_front *f = &n->front;
+  uint8_t *gone = vg_calloc(f->n_face, 1);
+  size_t left = 0;
+
+  if (!gone) return vg_fail_memory(err, "cutting a front");
+  for (size_t i = 0; i < n->n_work; i++)
+    for (size_t k = 0; k < n->change[i].n_gone; k++)
+      gone[n->face[i][n->change[i].gone[k]]] = 1;
+  for (size_t i = 0; i < f->n_face; i++)
+    if (!gone[i]) memmove(f->face[left++], f->face[i], sizeof *f->face);
+  f->n_face = left;
+  free(gone);
+  return VG_OK;
+}
+
+static vg_status put_in(struct vg_node *n, struct vg_error *err)
+{
+  struct vg_front *f = &n->front;
+  size_t np = f->n_point, nf, cap_x = np, cap_name = np, cap_face = f->n_face;
+  vg_status st;
+
+  VG_TRY(shrink(n, err));
+  nf = f->n_face;
+  for (size_t i = 0; i < n->n_work; i++) {
+    np += n->change[i].n_point;
+    nf += n->change[i].n_face;
+    n->zone_cells += (double)n->change[i].n_cell;
+    n->zone_volume += n->change[i].volume;
+  }
+  if (vg_reserve(&f->x, &cap_x, np, sizeof *f->x) ||
+      vg_reserve(&f->name, &cap_name, np, sizeof *f->name) ||
+      vg_reserve(&f->face, &cap_face, nf, sizeof *f->face))
+    return vg_fail_memory(err, "cutting a front");
+  for (size_t i = 0; i < n->n_work; i++)
+    add_change(n, i, n->change[i].n_part);
+done:
+  return st;
+}
+
+vg_status vg_node_join(struct vg_partition *p, struct vg_node *n,
+                       struct vg_error *err)
+{
+  vg_status st;
+
+  VG_TRY(put_in(n, err));
+  drop_stage(n);
+  VG_TRY(prepare(p, n, err));
+  if (!n->n_work) st = vg_node_split(p, n, err);
+done:
+  return st;
+}

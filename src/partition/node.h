@@ -1,0 +1,124 @@
+/* partition/node.h: one void on its way through the advancing partition.
+ * Private to node*.c, advance.c and number.c. */
+#ifndef VG_PARTITION_NODE_H
+#define VG_PARTITION_NODE_H
+
+#include <pthread.h>
+#include <stdatomic.h>
+
+#include "partition/advance.h"
+#include "partition/job.h"
+
+/* A leaf that needs this many times the points that were expected is cut
+ * again, as is one beyond this many times the leaf size. */
+#define VG_OUTGROWN 2.0
+
+/* Attempts to part a void by other planes. */
+enum { VG_RETRIES = 5 };
+
+struct vg_work;
+
+struct vg_node {
+  struct vg_node *next, **link;  /* nodes being cut on this rank */
+  char path[VG_PATH_MAX];
+  struct vg_front front;
+  struct vg_load load;
+  double per_cube;           /* cells per cube of the spacing, as the zones of
+                                its ancestors turned out */
+  int levels;                /* bisections left, in a partition by levels */
+  int retry;                 /* attempts that failed */
+  int is_final;              /* a leaf whatever it needs */
+  /* while it is being cut */
+  struct vg_lattice lattice;
+  int n_bisection, n_join;
+  int stage;                 /* the next one to be looked at */
+  size_t n_work, n_left;     /* of this stage; not yet done */
+  struct vg_work **work;     /* [n_work] until submitted */
+  uint32_t **point, **face;  /* [n_work] what of the front each was given */
+  struct vg_change *change;  /* [n_work] what came of it */
+  double zone_cells, zone_volume;
+  size_t n_pencil;           /* pencils so far: numbers go on */
+  size_t n_child;
+  struct vg_node **child;    /* [n_child] what it fell into */
+};
+
+/* What a task is given. */
+enum { VG_WORK_START, VG_WORK_JOIN, VG_WORK_ZONE, VG_WORK_LEAF };
+
+struct vg_work {
+  int what;
+  struct vg_node *node;      /* START, LEAF: owned; JOIN, ZONE: borrowed, at
+                                its home only */
+  uint32_t serial;           /* ZONE, LEAF */
+  /* ZONE */
+  char path[VG_PATH_MAX];
+  char kind;
+  size_t index;
+  double estimate;
+  struct vg_front part;
+  struct vg_region region;
+};
+
+struct vg_partition {
+  int rank, size;
+  const struct vg_mesh *boundary;
+  const struct vg_sizing *sizing;
+  struct vg_partition_options options;
+  atomic_uint_fast32_t n_serial;
+  pthread_mutex_t lock;      /* of what follows */
+  size_t n_piece, cap_piece;
+  struct vg_piece *piece;    /* what this rank made */
+  struct vg_partition_report report;
+  struct vg_node *cutting;   /* what a stopped job leaves */
+  /* numbering */
+  struct vg_slices slices;
+  size_t n_place;
+  struct vg_place_of { uint32_t serial; uint64_t point; } *place; /* by serial */
+  uint64_t *point_at, *cell_at;  /* [n_piece] */
+  uint32_t *domain;          /* [n_piece] */
+  uint32_t *front_id;        /* [boundary->n_point] 0, 1, ... */
+  struct vg_mesh rim;        /* the boundary without points */
+};
+
+/** A serial that no other task of any rank has. Threads: safe. */
+uint32_t vg_partition_serial(struct vg_partition *p);
+
+void vg_node_free(struct vg_node *n);
+void vg_work_free(struct vg_work *w);
+
+/** A new node around a front, which it takes over. NULL: no memory. */
+struct vg_node *vg_node_new(const char *path, struct vg_front *front);
+
+/** Does the void ask to be cut? */
+int vg_node_wants_cut(const struct vg_partition *p, const struct vg_node *n);
+
+/** Plan planes and the works of the first stage that has some. Without any,
+ * n->n_work is 0 and n->n_child 1 (itself, to be filled). */
+vg_status vg_node_start(struct vg_partition *p, struct vg_node *n,
+                        struct vg_error *err);
+
+/** Put the changes of a stage into the front; then the works of the next
+ * stage, or, when there is none, the children. */
+vg_status vg_node_join(struct vg_partition *p, struct vg_node *n,
+                       struct vg_error *err);
+
+/** Find the parts of the front: n->child. (node_split.c) */
+vg_status vg_node_split(struct vg_partition *p, struct vg_node *n,
+                        struct vg_error *err);
+
+/** Grow what a zone's or a leaf's work asks for; keeps the piece.
+ * change out: what its home hears. outgrown out: 1: too large, nothing was
+ * made. (work.c) */
+vg_status vg_work_zone(struct vg_partition *p, const struct vg_work *w,
+                       struct vg_change *change, const struct vg_engine *e,
+                       struct vg_error *err);
+vg_status vg_work_leaf(struct vg_partition *p, const struct vg_work *w,
+                       int *outgrown, size_t *n_cell,
+                       const struct vg_engine *e, struct vg_error *err);
+
+/** Number what all ranks made, and serve it as slices. Collective.
+ * (number.c) */
+vg_status vg_partition_number(struct vg_partition *p, struct vg_comm *comm,
+                              struct vg_error *err);
+
+#endif
