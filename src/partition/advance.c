@@ -292,18 +292,24 @@ static vg_status packed(struct vg_writer *w, struct vg_bytes *out,
   return VG_OK;
 }
 
-static void put_node(struct vg_writer *w, const struct vg_node *n)
+static vg_status put_node(struct vg_writer *w, const struct vg_node *n,
+                          struct vg_error *err)
 {
   int32_t number[3] = {n->levels, n->retry, n->is_final};
-  uint64_t cubes = n->load.n;
+  struct vg_bytes load = {0, NULL};
+  uint64_t size;
+  vg_status st = vg_load_pack(&n->load, &load, err);
 
+  if (st < 0) return st;
+  size = load.n;
   vg_put(w, sizeof n->path, 1, n->path);
   vg_put(w, 3, sizeof *number, number);
   vg_put(w, 1, sizeof n->per_cube, &n->per_cube);
-  vg_put(w, 1, sizeof cubes, &cubes);
-  vg_put(w, 1, sizeof n->load.cells, &n->load.cells);
-  vg_put(w, n->load.n, sizeof *n->load.cube, n->load.cube);
+  vg_put(w, 1, sizeof size, &size);
+  vg_put(w, load.n, 1, load.data);
   vg_front_put(w, &n->front, 1);
+  free(load.data);
+  return VG_OK;
 }
 
 static struct vg_node *get_node(struct vg_reader *r)
@@ -311,22 +317,23 @@ static struct vg_node *get_node(struct vg_reader *r)
   struct vg_front empty = VG_FRONT_INIT;
   struct vg_node *n = vg_node_new("", &empty);
   int32_t number[3] = {0};
-  uint64_t cubes = 0;
+  struct vg_bytes load = {0, NULL};
+  uint64_t size = 0;
 
   if (!n) return NULL;
   vg_get(r, sizeof n->path, 1, n->path);
   vg_get(r, 3, sizeof *number, number);
   vg_get(r, 1, sizeof n->per_cube, &n->per_cube);
-  vg_get(r, 1, sizeof cubes, &cubes);
-  vg_get(r, 1, sizeof n->load.cells, &n->load.cells);
+  vg_get(r, 1, sizeof size, &size);
   n->levels = number[0];
   n->retry = number[1];
   n->is_final = number[2];
-  n->load.n = cubes;
-  n->load.cube = vg_get_array(r, cubes, sizeof *n->load.cube);
+  load.n = size;
+  load.data = vg_get_array(r, size, 1);
+  if (!r->bad) r->bad = vg_load_unpack(&load, &n->load, NULL) < 0;
+  free(load.data);
   vg_front_get(r, &n->front, 1);
   if (!r->bad) return n;
-  n->load.n = 0;
   vg_node_free(n);
   return NULL;
 }
@@ -349,7 +356,12 @@ static vg_status pack_input(void *user, const void *input,
     vg_put(&w, 1, sizeof k->region, &k->region);
     vg_front_put(&w, &k->part, 1);
   } else {
-    put_node(&w, k->node);
+    vg_status st = put_node(&w, k->node, err);
+
+    if (st < 0) {
+      free(w.bytes.data);
+      return st;
+    }
   }
   return packed(&w, out, err);
 }

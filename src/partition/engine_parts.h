@@ -18,7 +18,7 @@
  *   list -> any  DRAIN    start nothing more
  *   list -> any  END      nothing is left; how it went
  *   home -> R    INPUT    the task and its input
- *   R -> home    OUTCOME  what came of it
+ *   R -> home    OUTCOME  what came of it; not of tasks that move
  *
  * So a remote task costs two small messages before its input is on the way,
  * and the news of an outcome carry the new tasks with them: when no task is
@@ -92,7 +92,7 @@ struct vg_carry {
   char path[VG_PATH_MAX], after[VG_PATH_MAX];
   double key, priority, weight;
   uint64_t handle;
-  int32_t home, kind, has, pad;     /* has: not NULL */
+  int32_t home, kind, has, moves;   /* has: not NULL */
 };
 
 struct vg_return {

@@ -84,6 +84,7 @@ static vg_status pack(struct vg_engine *e, struct vg_job *j,
   c.handle = j->handle;
   c.home = j->home;
   c.kind = j->task.kind;
+  c.moves = j->task.moves;
   c.has = j->packed;
   memcpy(data + b->n, &c, sizeof c);
   b->n += sizeof c;
@@ -158,6 +159,7 @@ static void take_input(struct vg_engine *e, struct vg_bytes *b)
   memcpy(j->task.path, c.path, sizeof c.path);
   memcpy(j->after, c.after, sizeof c.after);
   j->task.kind = (char)c.kind;
+  j->task.moves = c.moves;
   j->task.priority = c.priority;
   j->task.weight = c.weight;
   j->handle = c.handle;

@@ -96,6 +96,12 @@ static void record(struct vg_worker *w, const struct vg_job *j,
   span->n_cell = j->n_cell;
 }
 
+/* Is `done` to be called here? */
+static int stays(const struct vg_engine *e, const struct vg_job *j)
+{
+  return j->home == e->rank || j->task.moves;
+}
+
 static vg_status run(struct vg_worker *w, struct vg_job *j,
                      struct vg_span *span, struct vg_error *err)
 {
@@ -111,7 +117,7 @@ static vg_status run(struct vg_worker *w, struct vg_job *j,
   j->n_cell = n_cell;
   if (j->task.input) e->ops->release_input(e->user, j->task.input);
   j->task.input = NULL;
-  if (st || j->home == e->rank) return st;
+  if (st || stays(e, j)) return st;
   vg_engine_lock(e);
   w->owes = 0;
   vg_tell_free(e);
@@ -154,7 +160,7 @@ static void do_job(struct vg_worker *w, struct vg_job *j)
   vg_engine_lock(e);
   if (vg_spans_add(&e->spans, &span, &err))
     vg_tell_fail(e, err.code, j->task.path, &err);
-  if (j->home == e->rank) {
+  if (stays(e, j)) {
     j->runner = e->rank;
     vg_work_end(e, j);       /* whoever calls done frees it */
     j = NULL;
@@ -187,7 +193,7 @@ static void end_one(struct vg_engine *e)
   }
   if (st) fail(e, j, st, &err);
   vg_engine_lock(e);
-  e->home[j->handle] = NULL;
+  if (j->home == e->rank) e->home[j->handle] = NULL;
   vg_tell_news(e, j);
   e->in_done = 0;
   vg_engine_unlock(e);
