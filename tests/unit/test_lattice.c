@@ -1,0 +1,453 @@
+/* Where a void is cut: planes at quantiles of the load, the regions of each
+ * stage, and the walls that keep them apart. */
+#include "io_support.h"
+
+#include "fill_shapes.h"
+#include "partition/lattice.h"
+#include "tets_support.h"
+
+struct scene {
+  struct vg_sizing *sizing;
+  struct vg_load load;
+};
+
+static void scene_of(struct scene *s, struct vg_mesh *m, double growth,
+                     double h_max)
+{
+  struct vg_void v = VG_VOID_INIT;
+
+  s->load = (struct vg_load)VG_LOAD_INIT;
+  s->sizing = shape_sizing(m, growth, h_max);
+  assert_int_equal(vg_void_from_mesh(&v, m, NULL), VG_OK);
+  assert_int_equal(vg_load_new(&v, s->sizing, VG_LOAD_CELLS_PER_CUBE, 1,
+                               &s->load, NULL), VG_OK);
+  vg_void_release(&v);
+  vg_mesh_release(m);
+}
+
+/* n spacings long, from -0.5 to 0.5. */
+static void box_scene(struct scene *s, int n)
+{
+  struct vg_mesh m = VG_MESH_INIT;
+
+  shape_box(&m, n, 0.5);
+  scene_of(s, &m, 1.2, 1.0 / n);
+}
+
+static void block_scene(struct scene *s, int nx, int ny, int nz)
+{
+  const int n[3] = {nx, ny, nz};
+  const double lo[3] = {0, 0, 0}, hi[3] = {nx, ny, nz};
+  struct vg_mesh m = VG_MESH_INIT;
+
+  shape_block(&m, n, lo, hi, shape_all);
+  scene_of(s, &m, 1.2, 1);
+}
+
+/* Cells are dense around the body, which is off the middle. */
+static void sphere_scene(struct scene *s)
+{
+  const double centre[3] = {4, -3, 2};
+  struct vg_mesh m = VG_MESH_INIT;
+
+  shape_box(&m, 6, 10);
+  shape_sphere(&m, 10, centre, 1, 7);
+  scene_of(s, &m, 1.2, 0);
+}
+
+static void scene_end(struct scene *s)
+{
+  vg_load_release(&s->load);
+  vg_sizing_free(s->sizing);
+}
+
+/* The share of the cells below a plane. */
+static double share_below(const struct vg_load *l, int axis, double at)
+{
+  double sum = 0;
+
+  for (size_t i = 0; i < l->n; i++) {
+    const struct vg_load_cube *c = &l->cube[i];
+    double part = 0.5 + (at - (double)c->at[axis]) / (2 * (double)c->half);
+
+    sum += (double)c->cells * fmax(0, fmin(1, part));
+  }
+  return sum / l->cells;
+}
+
+static void planes_are(const struct vg_lattice *l, int x, int y, int z)
+{
+  if (l->n[0] != x || l->n[1] != y || l->n[2] != z)
+    fail_msg("%d %d %d planes instead of %d %d %d", l->n[0], l->n[1], l->n[2],
+             x, y, z);
+}
+
+/* --- planes -------------------------------------------------------------- */
+
+/* As many bisections as one cut makes at most: 8 blocks at least. */
+static int most_of(const struct vg_load *load)
+{
+  const struct vg_cut_rule rule = { 0, -1, 0 };
+  struct vg_lattice l;
+  int most = vg_lattice_plan(load, &rule, 100, 0, &l);
+
+  assert_in_range(most, 3, 6);
+  return most;
+}
+
+static void levels_make_planes(void **state)
+{
+  const struct vg_cut_rule rule = { 0, -1, 0 };
+  struct vg_lattice l;
+  struct scene s;
+  int most;
+
+  (void)state;
+  box_scene(&s, 48);
+  most = most_of(&s.load);
+  for (int levels = 0; levels <= 8; levels++) {
+    int used = vg_lattice_plan(&s.load, &rule, levels, 0, &l), blocks = 1;
+
+    assert_int_equal(used, levels < most ? levels : most);
+    for (int axis = 0; axis < 3; axis++) blocks *= l.n[axis] + 1;
+    assert_int_equal(blocks, 1 << used);
+    if (levels == 3) planes_are(&l, 1, 1, 1);
+    if (used == 6) planes_are(&l, 3, 3, 3);
+  }
+  scene_end(&s);
+}
+
+/* Rising, and with an equal share of the cells between them. */
+static void planes_are_at_quantiles(void **state)
+{
+  const struct vg_cut_rule rule = { 0, -1, 0 };
+
+  (void)state;
+  for (int kind = 0; kind < 2; kind++) {
+    struct vg_lattice l;
+    struct scene s;
+    int n = 0;
+
+    if (kind) sphere_scene(&s);
+    else box_scene(&s, 48);
+    assert_true(vg_lattice_plan(&s.load, &rule, 6, 0, &l) >= 3);
+    for (int axis = 0; axis < 3; axis++)
+      for (int k = 0; k < l.n[axis]; k++, n++) {
+        double want = (k + 1.0) / (l.n[axis] + 1);
+
+        /* quantiles are read from cubes in single precision */
+        assert_true(fabs(share_below(&s.load, axis, l.at[axis][k]) - want) <
+                    1e-3);
+        assert_true(!k || l.at[axis][k] > l.at[axis][k - 1]);
+      }
+    assert_true(n >= 3);
+    if (!kind) assert_true(fabs(l.at[0][l.n[0] / 2]) < 0.02);
+    scene_end(&s);
+  }
+}
+
+/* Parallel planes need room for their zones: ten spacings. */
+static void planes_keep_their_distance(void **state)
+{
+  const struct vg_cut_rule rule = { 0, -1, 0 }, along = { 0, 2, 1 };
+  struct vg_lattice l;
+  struct scene s;
+
+  (void)state;
+  box_scene(&s, 24);         /* a quarter of it is 6 */
+  assert_int_equal(vg_lattice_plan(&s.load, &rule, 6, 0, &l), 3);
+  planes_are(&l, 1, 1, 1);
+  scene_end(&s);
+  block_scene(&s, 6, 6, 32);
+  assert_int_equal(vg_lattice_plan(&s.load, &along, 6, 0, &l), 1);
+  planes_are(&l, 0, 0, 1);
+  scene_end(&s);
+  block_scene(&s, 6, 6, 60);
+  assert_int_equal(vg_lattice_plan(&s.load, &along, 6, 0, &l), 2);
+  planes_are(&l, 0, 0, 3);
+  for (int k = 0; k < 2; k++) assert_true(l.at[2][k + 1] - l.at[2][k] >= 10);
+  scene_end(&s);
+}
+
+/* A long block is cut across its length. */
+static void the_cheapest_axis_is_cut(void **state)
+{
+  const struct vg_cut_rule rule = { 0, -1, 0 };
+  static const int size[3][3] = {{40, 8, 12}, {12, 40, 8}, {8, 12, 40}};
+
+  (void)state;
+  for (int axis = 0; axis < 3; axis++) {
+    struct vg_lattice l;
+    struct scene s;
+
+    block_scene(&s, size[axis][0], size[axis][1], size[axis][2]);
+    assert_int_equal(vg_lattice_plan(&s.load, &rule, 1, 0, &l), 1);
+    planes_are(&l, axis == 0, axis == 1, axis == 2);
+    assert_true(fabs(l.at[axis][0] - 20) < 0.5);
+    scene_end(&s);
+  }
+}
+
+static void an_axis_can_be_asked_for(void **state)
+{
+  struct scene s;
+
+  (void)state;
+  block_scene(&s, 50, 14, 46);
+  for (int axis = 0; axis < 3; axis++) {
+    struct vg_cut_rule rule = { 0, axis, 0 };
+    struct vg_lattice l;
+
+    assert_int_equal(vg_lattice_plan(&s.load, &rule, 1, 0, &l), 1);
+    planes_are(&l, axis == 0, axis == 1, axis == 2);
+    assert_int_equal(vg_lattice_plan(&s.load, &rule, 3, 0, &l), 3);
+    assert_true(l.n[axis] > 0);
+    rule.constant = 1;
+    assert_int_equal(vg_lattice_plan(&s.load, &rule, 6, 0, &l),
+                     axis == 1 ? 1 : 2);
+    planes_are(&l, axis == 0 ? 3 : 0, axis == 1, axis == 2 ? 3 : 0);
+  }
+  scene_end(&s);
+}
+
+/* Cut while more cells are expected than a leaf should have. */
+static void leaves_have_their_size(void **state)
+{
+  struct vg_lattice l;
+  struct scene s;
+  int most;
+
+  (void)state;
+  box_scene(&s, 48);
+  most = most_of(&s.load);
+  for (int want = 0; want <= most; want++) {
+    struct vg_cut_rule rule = { s.load.cells / (1 << want), -1, 0 };
+
+    assert_int_equal(vg_lattice_plan(&s.load, &rule, 0, 0, &l), want);
+    rule.leaf_cells /= 1.2;  /* a little more is let pass */
+    assert_int_equal(vg_lattice_plan(&s.load, &rule, 0, 0, &l), want);
+    rule.leaf_cells /= 1.2;
+    assert_int_equal(vg_lattice_plan(&s.load, &rule, 0, 0, &l),
+                     want < most ? want + 1 : most);
+  }
+  scene_end(&s);
+}
+
+/* Further attempts are single planes, each at another place. */
+static void attempts_differ(void **state)
+{
+  const struct vg_cut_rule rule = { 0, 2, 0 };
+  double at[5];
+  struct scene s;
+
+  (void)state;
+  box_scene(&s, 48);
+  for (int k = 0; k < 5; k++) {
+    struct vg_lattice l;
+
+    assert_int_equal(vg_lattice_plan(&s.load, &rule, k ? 6 : 1, k, &l), 1);
+    planes_are(&l, 0, 0, 1);
+    at[k] = l.at[2][0];
+    assert_true(fabs(at[k]) < 0.2);
+    for (int j = 0; j < k; j++)
+      assert_true(fabs(at[k] - at[j]) > 1.0 / 48);
+  }
+  scene_end(&s);
+}
+
+static void nothing_to_cut(void **state)
+{
+  const struct vg_cut_rule rule = { 0, -1, 0 }, small = { 1e9, -1, 0 };
+  const struct vg_load empty = VG_LOAD_INIT;
+  struct vg_lattice l;
+  struct scene s;
+
+  (void)state;
+  box_scene(&s, 8);
+  assert_int_equal(vg_lattice_plan(&s.load, &small, 6, 0, &l), 0);
+  planes_are(&l, 0, 0, 0);
+  for (int stage = 0; stage < VG_LATTICE_STAGES; stage++)
+    assert_int_equal(vg_lattice_count(&l, stage), 0);
+  assert_int_equal(vg_lattice_plan(&empty, &rule, 6, 0, &l), 0);
+  planes_are(&l, 0, 0, 0);
+  scene_end(&s);
+}
+
+/* --- regions ------------------------------------------------------------- */
+
+static const struct vg_lattice two = {
+  .n = {1, 1, 1}, .at = {{0.1}, {-0.2}, {0.15}} };
+static const struct vg_lattice four = {
+  .n = {3, 3, 3},
+  .at = {{-0.5, 0.1, 0.45}, {-0.6, -0.2, 0.5}, {-0.4, 0, 0.55}} };
+static const struct vg_lattice flat = {
+  .n = {2, 1, 0}, .at = {{-0.3, 0.4}, {0.1}, {0}} };
+static const struct vg_lattice row = {
+  .n = {0, 7, 0}, .at = {{0}, {-.6, -.4, -.2, 0, .2, .4, .6}, {0}} };
+
+static void counts_are(const struct vg_lattice *l, size_t lines,
+                       size_t segments, size_t tiles)
+{
+  assert_int_equal(vg_lattice_count(l, 0), lines);
+  assert_int_equal(vg_lattice_count(l, 1), segments);
+  assert_int_equal(vg_lattice_count(l, 2), tiles);
+}
+
+static void numbers_of_regions(void **state)
+{
+  (void)state;
+  counts_are(&two, 1, 4, 12);
+  counts_are(&four, 9, 72, 144);
+  counts_are(&flat, 2, 0, 7);
+  counts_are(&row, 0, 0, 7);
+}
+
+static double length_of(const double v[3])
+{
+  return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+/* Planes of the lattice, in the axes they should be; unit normals. */
+static void is_well_made(const struct vg_lattice *l, int stage, int axis,
+                         const struct vg_region *r)
+{
+  int is_tile = stage == 2;
+
+  assert_int_equal(r->n_plane, is_tile ? 1 : 2);
+  assert_in_range(r->n_wall, 0, VG_REGION_WALLS);
+  assert_true(is_tile ? r->reach >= 0 : r->reach > 0);
+  assert_in_range(axis, 0, 2);
+  for (int i = 0; i < r->n_plane; i++) {
+    int across = -1, found = 0;
+
+    assert_true(fabs(length_of(r->plane[i].normal) - 1) < 1e-15);
+    for (int k = 0; k < 3; k++)
+      if (r->plane[i].normal[k] != 0) across = k;
+    assert_true(across >= 0 && (across == axis) == is_tile);
+    for (int k = 0; k < l->n[across]; k++)
+      found |= l->at[across][k] == r->plane[i].offset;
+    assert_true(found);
+  }
+  if (!is_tile)
+    for (int k = 0; k < 3; k++)
+      assert_true(r->plane[0].normal[k] * r->plane[1].normal[k] == 0);
+  for (int i = 0; i < r->n_wall; i++)
+    assert_true(fabs(length_of(r->wall[i].normal) - 1) < 1e-12);
+}
+
+/* How many regions of the stage have x within their walls? hit: counts. */
+static int owners(size_t n, const struct vg_region *r, const double x[3],
+                  size_t *hit)
+{
+  int sum = 0;
+
+  for (size_t k = 0; k < n; k++) {
+    if (!vg_region_within(&r[k], x)) continue;
+    hit[k]++;
+    sum++;
+  }
+  return sum;
+}
+
+/* A random point; half of them on or near planes, where walls meet. */
+static void sample(const struct vg_lattice *l, uint64_t *seed, double x[3])
+{
+  for (int k = 0; k < 3; k++) {
+    x[k] = 2 * tets_random(seed) - 1;
+    if (l->n[k] && tets_random(seed) < 0.5) {
+      int i = (int)(tets_random(seed) * l->n[k]);
+
+      x[k] = l->at[k][i] + 0.1 * (tets_random(seed) - 0.5);
+      if (tets_random(seed) < 0.3) x[k] = l->at[k][i];
+    }
+  }
+}
+
+static void walls_keep_apart(const struct vg_lattice *l)
+{
+  uint64_t seed = 5;
+
+  for (int stage = 0; stage < VG_LATTICE_STAGES; stage++) {
+    size_t n = vg_lattice_count(l, stage);
+    struct vg_region *r = vg_calloc(n, sizeof *r);
+    size_t *hit = vg_calloc(n, sizeof *hit);
+
+    assert_true(r && hit);
+    for (size_t k = 0; k < n; k++)
+      is_well_made(l, stage, vg_lattice_region(l, stage, k, &r[k]), &r[k]);
+    for (int i = 0; i < 40000; i++) {
+      double x[3];
+
+      sample(l, &seed, x);
+      assert_true(owners(n, r, x, hit) <= 1);
+    }
+    for (size_t k = 0; k < n; k++) assert_true(hit[k] > 0);
+    free(r);
+    free(hit);
+  }
+}
+
+static int is_on(const struct vg_region *r, const double x[3])
+{
+  double foot[3], off = 0;
+
+  vg_region_foot(r, x, foot);
+  for (int k = 0; k < 3; k++) off = fmax(off, fabs(foot[k] - x[k]));
+  return off < 1e-12;
+}
+
+/* Where the planes of a region meet, some region has the point: the whole of
+ * a plane is cut, the whole of a line grown. Points between crossings only. */
+static void nothing_is_left_out(const struct vg_lattice *l)
+{
+  uint64_t seed = 9;
+
+  for (int stage = 0; stage < VG_LATTICE_STAGES; stage++) {
+    size_t n = vg_lattice_count(l, stage);
+    struct vg_region *r = vg_calloc(n, sizeof *r);
+
+    assert_non_null(r);
+    for (size_t k = 0; k < n; k++) vg_lattice_region(l, stage, k, &r[k]);
+    for (int i = 0; i < 4000 && n; i++) {
+      size_t found = 0, of = (size_t)(tets_random(&seed) * (double)n);
+      double x[3], foot[3];
+
+      for (int k = 0; k < 3; k++) x[k] = 2 * tets_random(&seed) - 1;
+      vg_region_foot(&r[of], x, foot);
+      for (size_t k = 0; k < n; k++) {
+        found += is_on(&r[k], foot) && vg_region_within(&r[k], foot);
+      }
+      assert_int_equal(found, 1);
+    }
+    free(r);
+  }
+}
+
+static void regions_are_apart_and_complete(void **state)
+{
+  const struct vg_lattice *all[4] = { &two, &four, &flat, &row };
+
+  (void)state;
+  for (int k = 0; k < 4; k++) {
+    walls_keep_apart(all[k]);
+    nothing_is_left_out(all[k]);
+  }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(levels_make_planes),
+    cmocka_unit_test(planes_are_at_quantiles),
+    cmocka_unit_test(planes_keep_their_distance),
+    cmocka_unit_test(the_cheapest_axis_is_cut),
+    cmocka_unit_test(an_axis_can_be_asked_for),
+    cmocka_unit_test(leaves_have_their_size),
+    cmocka_unit_test(attempts_differ),
+    cmocka_unit_test(nothing_to_cut),
+    cmocka_unit_test(numbers_of_regions),
+    cmocka_unit_test(regions_are_apart_and_complete),
+  };
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
