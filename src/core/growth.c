@@ -15,6 +15,9 @@
  * cells worse than those of the coarser mesh without them. */
 static const double least_distance = 0.5;
 static const double least_height = 0.3;
+/* Cells so near to those of a region, in spacings, are optimised too: what is
+ * bad there would be left as a notch in the front. */
+static const double rim = 0.6;
 /* The first points of all keep farther off: the front decides near it. */
 static const double seed_distance = 0.8;
 
@@ -124,14 +127,17 @@ done:
 vg_status vg_growth_improve(struct vg_growth *g, struct vg_error *err)
 {
   struct vg_optimise_report r = {0};
+  struct vg_region near = {0};
   double t0 = vg_growth_now();
   vg_status st = VG_OK;
 
   VG_TRY(vg_tets_tidy(&g->t, g->n_front, err));
   if (vg_growth_stopped(g, "optimising", 0, 1)) return VG_BLOCKED;
+  if (g->region) near = *g->region;
+  near.reach += rim;
   if (g->options->sweeps > 0) {
-    st = vg_optimise(&g->t, g->n_front, g->options->sweeps, g->region,
-                     g->sizing, &r, err);
+    st = vg_optimise(&g->t, g->n_front, g->options->sweeps,
+                     g->region ? &near : NULL, g->sizing, &r, err);
     g->report->n_smoothed += r.n_smoothed;
     g->report->n_flip += r.n_flip;
     g->report->n_collapse += r.n_collapse;
