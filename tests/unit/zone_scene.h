@@ -48,7 +48,7 @@ static inline void sphere_scene(struct scene *s)
   const double centre[3] = {0.1, 0, 0};
 
   memset(&s->m, 0, sizeof s->m);
-  shape_box(&s->m, 6, 3);
+  shape_box(&s->m, 8, 3);
   shape_sphere(&s->m, 8, centre, 1, 7);
   scene_void(s, 1.3, 0);
 }
