@@ -155,6 +155,36 @@ static void a_lattice_around_a_sphere(void **state)
   scene_end(&s);
 }
 
+/* Where three lines meet, cells of tiles may need a corner beyond the walls;
+ * a few are left out, and blocks hang together there. Whole planes without
+ * walls, one after the other, close what is left. */
+static void planes_close_what_is_left(void **state)
+{
+  (void)state;
+  for (int q = 0; q < 5; q++) {
+    struct vg_lattice l = { .n = {1, 1, 1} };
+    size_t made[VG_LATTICE_STAGES], n_tile, more = 0;
+    struct scene s;
+
+    if (q % 2) sphere_scene(&s);
+    else box_scene(&s, 12 + 2 * q);
+    for (int k = 0; k < 3; k++)
+      l.at[k][0] = ((q * 37 + k * 53 + 11) % 97 / 97.0 - 0.5) *
+                   (q % 2 ? 3 : 0.3);
+    cut_by(&s, &l, made);
+    n_tile = made[2];
+    for (int axis = 0; axis < 3; axis++) {
+      struct vg_region r = plane_at(axis, l.at[axis][0]);
+
+      more += cut(&s, &r);
+    }
+    assert_true(more < n_tile / 20);
+    parts_are(&s, 8);
+    is_filled(&s);
+    scene_end(&s);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -162,6 +192,7 @@ int main(void)
     cmocka_unit_test(a_pencil_and_four_tiles),
     cmocka_unit_test(a_lattice_in_a_box),
     cmocka_unit_test(a_lattice_around_a_sphere),
+    cmocka_unit_test(planes_close_what_is_left),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);
