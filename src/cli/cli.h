@@ -42,6 +42,10 @@ vg_status vg_cli_options(const struct argp_option *own,
                          struct vg_cli_options *out);
 void vg_cli_options_free(struct vg_cli_options *o);
 
+/** Key of a plain setting's option, for a short one that means the same; 0:
+ * no setting has the name. */
+int vg_cli_option_key(const char *name);
+
 /** Set what the option with `key` names; VG_BLOCKED when it names none. */
 vg_status vg_cli_option_set(int key, const char *text, struct vg_settings *s,
                             struct vg_error *err);

@@ -9,11 +9,14 @@
 #include "cli/layers.h"
 #include "cli/output.h"
 #include "cli/report.h"
+#include "cli/run.h"
+#include "cli/timeline.h"
 #include "io/stream.h"
 
 struct arguments {
   const char *project, *deck, *dir;
-  int json, quiet;
+  int json, quiet, timeline;
+  struct vg_run_options run;
   /* Settings wait until the deck has been read, which they win over. */
   size_t n_set, cap_set;
   struct { int key; const char *text; } *set;
@@ -24,11 +27,8 @@ struct run {
   struct vg_outputs outputs;
   struct vg_display show;
   struct vg_layer_stage layers;
-  struct vg_mesh mesh;
-  size_t n_field_cell;
-  struct vg_fill_report fill;
-  struct vg_mesh_report judge, field; /* all cells; with layers: the field's */
-  double start, time_read, time_check, time_size, time_judge, time_write;
+  struct vg_run mesh;
+  double start, time_read, time_check, time_write, time_digest;
 };
 
 /* A value that cannot be is wrong usage, known before anything is read. */
@@ -51,6 +51,21 @@ static error_t keep_setting(struct arguments *a, int key, const char *text,
   return 0;
 }
 
+/* Options that are no settings: they do not change the mesh. */
+enum { KEY_TIMELINE = 1, KEY_RUN_DIR, KEY_RESUME, KEY_KEEP, KEY_LIMIT,
+       KEY_SHUFFLE };
+
+static error_t limit(const char *text, uint64_t *to,
+                     const struct argp_state *state)
+{
+  int64_t v;
+
+  if (vg_parse_int(text, strlen(text), &v) < 0 || v < 0)
+    argp_error(state, "'%s' is no number from 0 up", text);
+  *to = (uint64_t)v;
+  return 0;
+}
+
 static error_t option(int key, char *arg, struct argp_state *state)
 {
   struct arguments *a = state->input;
@@ -61,6 +76,14 @@ static error_t option(int key, char *arg, struct argp_state *state)
   case 'o': a->dir = arg; return 0;
   case 'j': a->json = 1; return 0;
   case 'q': a->quiet = 1; return 0;
+  case KEY_TIMELINE: a->timeline = 1; return 0;
+  case KEY_RUN_DIR: a->run.dir = arg; return 0;
+  case KEY_RESUME: a->run.resume = 1; return 0;
+  case KEY_KEEP: a->run.keep = 1; return 0;
+  case KEY_LIMIT: return limit(arg, &a->run.limit, state);
+  case KEY_SHUFFLE: return limit(arg, &a->run.shuffle, state);
+  case 'L': return keep_setting(a, vg_cli_option_key("levels"), arg, state);
+  case 't': return keep_setting(a, vg_cli_option_key("threads"), arg, state);
   case ARGP_KEY_ARG:
     if (a->project) argp_error(state, "one project at a time: %s", arg);
     a->project = arg;
@@ -68,6 +91,8 @@ static error_t option(int key, char *arg, struct argp_state *state)
   case ARGP_KEY_END:
     if (!a->project)
       argp_error(state, "which project? give -p PROJECT");
+    if (a->run.resume && !a->run.dir)
+      argp_error(state, "--resume needs the --run-dir of the run");
     return 0;
   default:
     break;
@@ -86,13 +111,6 @@ static vg_status apply_options(const struct arguments *a,
   return st < 0 ? st : vg_settings_check(s, err);
 }
 
-static vg_status stopped(const struct run *r, struct vg_error *err)
-{
-  (void)r;
-  if (!vg_display_interrupted()) return VG_OK;
-  return vg_fail(err, VG_ERR_IO, "interrupted; nothing was written");
-}
-
 /* Stages up to a closed surface. */
 static vg_status read_project(struct run *r, const struct arguments *a,
                               struct vg_error *err)
@@ -106,10 +124,11 @@ static vg_status read_project(struct run *r, const struct arguments *a,
   VG_TRY(vg_problem_deck(p, err));
   VG_TRY(apply_options(a, &p->settings, err));
   vg_settings_write(&p->settings);
-  VG_TRY(vg_outputs_plan(p, a->dir, &r->outputs, err));
+  VG_TRY(vg_outputs_plan(p, a->dir, vg_comm_size(r->mesh.comm), &r->outputs,
+                         err));
   VG_TRY(vg_problem_surface(p, err));
   r->time_read = vg_display_now() - t;
-  VG_TRY(stopped(r, err));
+  VG_TRY(vg_run_stopped(err));
   t = vg_display_now();
   VG_TRY(vg_problem_close(p, &r->show, err));
   VG_TRY(vg_layer_stage_plan(&r->layers, p, err));
@@ -117,113 +136,8 @@ static vg_status read_project(struct run *r, const struct arguments *a,
   VG_TRY(vg_walls_swap(p, r->layers.is_on ? r->layers.reason : NULL, err));
   r->time_check = vg_display_now() - t;
   VG_TRY(vg_outputs_check(p, &r->outputs, err));
-  VG_TRY(stopped(r, err));
+  VG_TRY(vg_run_stopped(err));
 done:
-  return st;
-}
-
-/* The size field over a boundary. */
-static vg_status measure_sizes(struct run *r, const struct vg_mesh *boundary,
-                               struct vg_sizing **sizing, struct vg_error *err)
-{
-  const struct vg_settings *s = &r->problem.settings;
-  struct vg_sizing_options options = vg_settings_sizing(s);
-  double t = vg_display_now();
-  vg_status st;
-
-  vg_display_update(&r->show, "sizes", 0, 0);
-  st = vg_sizing_new(&options, s->n_source, s->source, boundary, sizing, err);
-  r->time_size += vg_display_now() - t;
-  return st < 0 ? st : stopped(r, err);
-}
-
-static vg_status fill(struct run *r, const struct vg_mesh *boundary,
-                      const struct vg_sizing *sizing, struct vg_mesh *out,
-                      struct vg_error *err)
-{
-  const struct vg_settings *s = &r->problem.settings;
-  struct vg_fill_options o = VG_FILL_OPTIONS_INIT;
-  vg_status st;
-
-  o.optimise = (int)s->optimise;
-  o.max_cells = (uint64_t)s->max_cells;
-  o.progress = vg_display_update;
-  o.user = &r->show;
-  st = vg_fill(boundary, sizing, &o, out, &r->fill, err);
-  r->n_field_cell = out->n_tet;
-  if (st == VG_BLOCKED)
-    st = vg_fail(err, VG_ERR_IO, "interrupted; nothing was written");
-  return st;
-}
-
-static size_t cell_count(const struct vg_mesh *m)
-{
-  return m->n_tet + m->n_pyr + m->n_pri + m->n_hex;
-}
-
-static vg_status judge(struct run *r, const struct vg_mesh *m,
-                       const struct vg_sizing *sizing,
-                       struct vg_mesh_report *report, struct vg_error *err)
-{
-  double t = vg_display_now();
-  char faults[300];
-  vg_status st;
-
-  vg_display_update(&r->show, "judge", cell_count(m), 0);
-  st = vg_mesh_judge(m, sizing, report, err);
-  r->time_judge += vg_display_now() - t;
-  if (st < 0) return st;
-  if (report->is_valid) return stopped(r, err);
-  vg_report_faults(report, faults, sizeof faults);
-  return vg_fail(err, VG_ERR_GEOMETRY, "the mesh did not pass its own check "
-                 "(%s) and was not written; please report this with the "
-                 "project files", faults);
-}
-
-static vg_status mesh_plain(struct run *r, struct vg_error *err)
-{
-  const struct vg_mesh *surface = &r->problem.surface;
-  struct vg_sizing *sizing = NULL;
-  vg_status st;
-
-  VG_TRY(measure_sizes(r, surface, &sizing, err));
-  VG_TRY(fill(r, surface, sizing, &r->mesh, err));
-  VG_TRY(judge(r, &r->mesh, sizing, &r->judge, err));
-done:
-  vg_sizing_free(sizing);
-  return st;
-}
-
-/* The second size field is that of the front, so that the fill fits the tops
- * of the layers. Edges are held against it; within layers there is no
- * isotropic size to meet. */
-static vg_status mesh_layers(struct run *r, struct vg_error *err)
-{
-  const struct vg_mesh *surface = &r->problem.surface;
-  const struct vg_mesh *front = &r->layers.layers.front.mesh;
-  struct vg_mesh field = VG_MESH_INIT, view = VG_MESH_INIT;
-  struct vg_sizing *sizing = NULL;
-  vg_status st;
-
-  VG_TRY(vg_layer_stage_sizes(&r->layers, &r->problem, &view, err));
-  VG_TRY(measure_sizes(r, &view, &sizing, err));
-  VG_TRY(vg_layer_stage_grow(&r->layers, surface, sizing, &r->show, err));
-  VG_TRY(stopped(r, err));
-  vg_sizing_free(sizing);
-  sizing = NULL;
-  VG_TRY(measure_sizes(r, front, &sizing, err));
-  VG_TRY(fill(r, front, sizing, &field, err));
-  VG_TRY(judge(r, &field, sizing, &r->field, err));
-  vg_display_update(&r->show, "join", 0, 0);
-  VG_TRY(vg_layer_stage_join(&r->layers, surface, &field,
-                             r->problem.settings.cells, &r->mesh, err));
-  vg_mesh_release(&field);
-  VG_TRY(judge(r, &r->mesh, NULL, &r->judge, err));
-done:
-  free(view.tri);
-  free(view.tri_patch);
-  vg_mesh_release(&field);
-  vg_sizing_free(sizing);
   return st;
 }
 
@@ -241,9 +155,19 @@ static json_t *files_json(const struct run *r)
   json_t *list = json_array();
 
   for (size_t i = 0; i < r->outputs.n_file; i++) {
-    char *path = vg_outputs_final(&r->outputs, r->outputs.file[i].suffix);
+    const struct vg_outputs_file *f = &r->outputs.file[i];
+    char *path = vg_outputs_final(&r->outputs, f->suffix), digest[36];
+    json_t *one = json_object();
 
-    if (path) json_array_append_new(list, vg_report_string(path));
+    json_object_set_new(one, "path", vg_report_string(path ? path : ""));
+    if (f->digest[0] || f->digest[1]) {
+      snprintf(digest, sizeof digest, "%016llx%016llx",
+               (unsigned long long)f->digest[1],
+               (unsigned long long)f->digest[0]);
+      json_object_set_new(one, "bytes", json_integer((json_int_t)f->bytes));
+      json_object_set_new(one, "xxh3", json_string(digest));
+    }
+    json_array_append_new(list, one);
     free(path);
   }
   return list;
@@ -266,25 +190,28 @@ static json_t *report_json(const struct run *r, int ok,
   json_object_set_new(o, "domain", vg_report_domain_json(&p->domain));
   json_object_set_new(o, "notes", strings(&p->notes));
   if (ok) {
-    json_object_set_new(o, "mesh", vg_report_mesh_json(&r->judge));
-    json_object_set_new(o, "fill", vg_report_fill_json(&r->fill,
-                                                       r->n_field_cell));
+    json_object_set_new(o, "mesh", vg_report_mesh_json(&r->mesh.judge));
+    json_object_set_new(o, "fill",
+                        vg_report_fill_json(&r->mesh.partition.fill,
+                                            r->mesh.n_field_cell));
+    json_object_set_new(o, "partition", vg_report_partition_json(&r->mesh));
     if (r->layers.is_on) {
-      json_object_set_new(o, "field", vg_report_mesh_json(&r->field));
+      json_object_set_new(o, "field", vg_report_mesh_json(&r->mesh.field_judge));
       json_object_set_new(o, "layers",
                           vg_report_layers_json(&r->layers, &p->surface));
     }
     json_object_set_new(o, "files", files_json(r));
   }
   json_object_set_new(o, "seconds", json_pack(
-    "{s:f s:f s:f s:f s:f s:f s:f s:f s:f}",
-    "read", r->time_read, "check", r->time_check, "sizes", r->time_size,
-    "layers", r->layers.report.time_total + r->layers.time_measure, "join",
-    r->layers.join.time, "fill", r->fill.time_total,
-    "judge", r->time_judge, "write", r->time_write,
-    "total", vg_display_now() - r->start));
+    "{s:f s:f s:f s:f s:f s:f s:f s:f s:f s:f}",
+    "read", r->time_read, "check", r->time_check, "sizes", r->mesh.time_size,
+    "layers", r->mesh.time_layers, "fill", r->mesh.partition.wall,
+    "number", r->mesh.partition.number,
+    "judge", r->mesh.time_judge, "write", r->time_write,
+    "digest", r->time_digest, "total", vg_display_now() - r->start));
   json_object_set_new(o, "peak_memory_bytes",
-                      json_real(vg_report_peak_memory()));
+                      json_real(r->mesh.memory > 0 ? r->mesh.memory
+                                : vg_report_peak_memory()));
   return o;
 }
 
@@ -307,28 +234,76 @@ static vg_status write_json(const char *path, const json_t *o,
   return st;
 }
 
-static vg_status write_all(struct run *r, struct vg_error *err)
+/* Phases as the record of the run has them. */
+static vg_status write_timeline(struct run *r, struct vg_error *err)
+{
+  struct vg_timeline t = VG_TIMELINE_INIT;
+  const struct vg_slices *m = &r->mesh.slices;
+  char *path;
+  vg_status st;
+
+  VG_TRY(vg_outputs_add(&r->outputs, "timeline.json", err));
+  snprintf(t.title, sizeof t.title, "%s", r->problem.settings.title);
+  t.seconds[VG_PHASE_READ] = r->time_read;
+  t.seconds[VG_PHASE_CHECK] = r->time_check;
+  t.seconds[VG_PHASE_SIZES] = r->mesh.time_size;
+  t.seconds[VG_PHASE_LAYERS] = r->mesh.time_layers;
+  t.seconds[VG_PHASE_NUMBER] = r->mesh.partition.number;
+  t.seconds[VG_PHASE_JUDGE] = r->mesh.time_judge;
+  t.seconds[VG_PHASE_WRITE] = r->time_write + r->time_digest;
+  t.seconds[VG_PHASE_TOTAL] = vg_display_now() - r->start;
+  t.n_cell = vg_run_cells(&r->mesh);
+  t.n_point = m->n_point;
+  t.spans = r->mesh.spans;
+  path = vg_outputs_aside(&r->outputs, "timeline.json");
+  st = path ? vg_timeline_write(path, &t, err)
+            : vg_fail_memory(err, "the record of tasks");
+  free(path);
+done:
+  return st;
+}
+
+/* Rank 0's part: the reports, and putting everything into its place. */
+static vg_status finish(struct run *r, const struct arguments *a,
+                        struct vg_error *err)
 {
   double t = vg_display_now();
   char *path = NULL;
   json_t *report = NULL;
   vg_status st;
 
-  vg_display_update(&r->show, "write", cell_count(&r->mesh), 0);
-  VG_TRY(vg_outputs_mesh(&r->outputs, &r->problem, &r->layers, &r->mesh,
-                         err));
-  r->time_write = vg_display_now() - t;
+  VG_TRY(vg_outputs_digest(&r->outputs, err));
+  r->time_digest = vg_display_now() - t;
+  if (a->timeline) VG_TRY(write_timeline(r, err));
   VG_TRY(vg_outputs_add(&r->outputs, "report.json", err));
   path = vg_outputs_aside(&r->outputs, "report.json");
   report = report_json(r, 1, NULL);
   st = path && report ? write_json(path, report, err)
                       : vg_fail_memory(err, "the report");
   if (st < 0) goto done;
-  VG_TRY(stopped(r, err));
+  VG_TRY(vg_run_stopped(err));
   VG_TRY(vg_outputs_commit(&r->outputs, err));
 done:
   json_decref(report);
   free(path);
+  return st;
+}
+
+static vg_status write_all(struct run *r, const struct arguments *a,
+                           struct vg_error *err)
+{
+  struct vg_run *m = &r->mesh;
+  double t = vg_display_now();
+  vg_status st;
+
+  vg_display_update(&r->show, "write", vg_run_cells(m), 0);
+  VG_TRY(vg_outputs_mesh(&r->outputs, &r->problem, &r->layers, m->comm,
+                         &m->slices, m->threads, err));
+  r->time_write = vg_display_now() - t;
+  VG_TRY(vg_run_memory(m, err));
+  st = m->rank ? VG_OK : finish(r, a, err);
+  st = vg_comm_agree(m->comm, st, err);
+done:
   return st;
 }
 
@@ -357,14 +332,13 @@ static void print_count(const char *name, size_t n)
 static void print_times(const struct run *r)
 {
   printf("\nTime in seconds: read %.2f, check %.2f, sizes %.2f, ",
-         r->time_read, r->time_check, r->time_size);
-  if (r->layers.is_on)
-    printf("layers %.2f, ", r->layers.report.time_total +
-           r->layers.time_measure + r->layers.join.time);
-  printf("fill %.2f, judge %.2f, write %.2f, total %.2f\n",
-         r->fill.time_total, r->time_judge, r->time_write,
-         vg_display_now() - r->start);
-  printf("Peak memory: %.0f MB\n", vg_report_peak_memory() / 1e6);
+         r->time_read, r->time_check, r->mesh.time_size);
+  if (r->layers.is_on) printf("layers %.2f, ", r->mesh.time_layers);
+  printf("fill %.2f, number %.2f, judge %.2f, write %.2f, total %.2f\n",
+         r->mesh.partition.wall, r->mesh.partition.number,
+         r->mesh.time_judge, r->time_write, vg_display_now() - r->start);
+  printf("Peak memory%s: %.0f MB\n",
+         r->mesh.size > 1 ? " of a rank" : "", r->mesh.memory / 1e6);
 }
 
 static void print_files(const struct run *r)
@@ -381,25 +355,31 @@ static void print_files(const struct run *r)
 
 static void print_report(const struct run *r)
 {
+  const struct vg_run *m = &r->mesh;
+
   print_surface(r);
   if (r->layers.is_on) {
     printf("\nLayers\n");
     vg_report_layers_text(stdout, &r->layers, &r->problem.surface);
   }
+  printf("\nPartition\n");
+  vg_report_partition_text(stdout, m);
   printf("\nFill\n");
-  vg_report_fill_text(stdout, &r->fill, r->n_field_cell);
+  vg_report_fill_text(stdout, &m->partition.fill, m->n_field_cell);
   if (r->layers.is_on) {
     printf("\nField outside the layers\n");
-    print_count("tetrahedra", r->n_field_cell);
-    vg_report_mesh_text(stdout, &r->field, 0);
+    print_count("tetrahedra", m->n_field_cell);
+    vg_report_mesh_text(stdout, &m->field_judge, 0);
   }
   printf("\nMesh\n");
-  print_count("points", r->mesh.n_point);
-  print_count("tetrahedra", r->mesh.n_tet);
-  if (r->mesh.n_pyr) print_count("pyramids", r->mesh.n_pyr);
-  if (r->mesh.n_pri) print_count("prisms", r->mesh.n_pri);
-  if (r->layers.is_on) vg_report_whole_text(stdout, &r->judge);
-  else vg_report_mesh_text(stdout, &r->judge, 0);
+  print_count("points", m->slices.n_point);
+  print_count("tetrahedra", m->slices.n_cell[VG_SLICE_TET]);
+  if (m->slices.n_cell[VG_SLICE_PYR])
+    print_count("pyramids", m->slices.n_cell[VG_SLICE_PYR]);
+  if (m->slices.n_cell[VG_SLICE_PRI])
+    print_count("prisms", m->slices.n_cell[VG_SLICE_PRI]);
+  if (r->layers.is_on) vg_report_whole_text(stdout, &m->judge);
+  else vg_report_mesh_text(stdout, &m->judge, 0);
   print_times(r);
   print_files(r);
 }
@@ -435,40 +415,62 @@ static int print_json(const struct run *r, int ok, const struct vg_error *err)
 static vg_status run_stages(struct run *r, const struct arguments *a,
                             struct vg_error *err)
 {
-  vg_status st = read_project(r, a, err);
+  struct vg_run *m = &r->mesh;
+  vg_status st;
 
-  if (st >= 0)
-    st = r->layers.is_on ? mesh_layers(r, err) : mesh_plain(r, err);
-  return st < 0 ? st : write_all(r, err);
+  r->mesh.options = a->run;
+  VG_TRY(vg_comm_agree(m->comm, read_project(r, a, err), err));
+  VG_TRY(vg_run_mesh(m, &r->problem, &r->layers, &r->show, err));
+  st = write_all(r, a, err);
+done:
+  return st;
+}
+
+static int report_failure(struct run *r, const struct arguments *a,
+                          const struct vg_error *err)
+{
+  if (r->mesh.rank) return VG_EXIT_FAILED;
+  show_defects(r, a);
+  if (a->json) print_json(r, 0, err);
+  return vg_cli_fail(err);
+}
+
+static int report_success(struct run *r, const struct arguments *a)
+{
+  int status = VG_EXIT_DONE;
+
+  if (r->mesh.rank) return status;
+  if (a->json) status = print_json(r, 1, NULL);
+  else print_report(r);
+  if (!r->layers.n_missed || status != VG_EXIT_DONE) return status;
+  fflush(stdout);
+  vg_report_missed_text(stderr, &r->layers, &r->problem.surface);
+  return VG_EXIT_LIMIT;
 }
 
 static int run(const struct arguments *a)
 {
   struct run r = { .problem = VG_PROBLEM_INIT };
   struct vg_error err = VG_ERROR_INIT;
-  int status = VG_EXIT_DONE;
+  int status;
 
   r.start = vg_display_now();
-  vg_display_init(&r.show, a->quiet);
+  if (vg_comm_open(&r.mesh.comm, &err) < 0) return vg_cli_fail(&err);
+  r.mesh.rank = vg_comm_rank(r.mesh.comm);
+  r.mesh.size = vg_comm_size(r.mesh.comm);
+  vg_display_init(&r.show, a->quiet || r.mesh.rank);
   if (run_stages(&r, a, &err) < 0) {
     vg_display_clear(&r.show);
-    show_defects(&r, a);
-    if (a->json) print_json(&r, 0, &err);
-    status = vg_cli_fail(&err);
+    status = report_failure(&r, a, &err);
   } else {
     vg_display_clear(&r.show);
-    if (a->json) status = print_json(&r, 1, &err);
-    else print_report(&r);
-    if (r.layers.n_missed && status == VG_EXIT_DONE) {
-      fflush(stdout);
-      vg_report_missed_text(stderr, &r.layers, &r.problem.surface);
-      status = VG_EXIT_LIMIT;
-    }
+    status = report_success(&r, a);
   }
+  vg_run_release(&r.mesh, status == VG_EXIT_DONE || status == VG_EXIT_LIMIT);
   vg_outputs_release(&r.outputs);
   vg_layer_stage_release(&r.layers);
-  vg_mesh_release(&r.mesh);
   vg_problem_release(&r.problem);
+  vg_comm_close(r.mesh.comm);
   return status;
 }
 
@@ -483,6 +485,19 @@ int vg_cmd_mesh(int argc, char **argv)
       "input]", 1 },
     { "json", 'j', NULL, 0, "report as JSON on standard output", 1 },
     { "quiet", 'q', NULL, 0, "no progress", 1 },
+    { "timeline", KEY_TIMELINE, NULL, 0, "write what each worker did when, "
+      "PROJECT.timeline.json, for 'vanguard plan' and 'vanguard sweep'", 1 },
+    { "run-dir", KEY_RUN_DIR, "DIR", 0, "keep finished tasks here, so that a "
+      "run that is stopped or killed can be resumed; emptied at success", 1 },
+    { "resume", KEY_RESUME, NULL, 0, "go on with what is kept in --run-dir, "
+      "on any number of ranks and threads", 1 },
+    { "keep-run", KEY_KEEP, NULL, 0, "do not empty --run-dir at success", 1 },
+    { "run-limit", KEY_LIMIT, "BYTES", 0, "keep no more in --run-dir, over all "
+      "ranks [default 0: no limit]", 1 },
+    { "shuffle-tasks", KEY_SHUFFLE, "SEED", 0, "do tasks in another order, to "
+      "show that it is no matter [default 0: heaviest first]", 1 },
+    { NULL, 't', "N", 0, "the same as --threads", 1 },
+    { NULL, 'L', "N", 0, "the same as --levels", 1 },
     { 0 }
   };
   struct vg_cli_options options;
@@ -497,7 +512,9 @@ int vg_cmd_mesh(int argc, char **argv)
       "refused and its bad faces are put into PROJECT.defects.vtu. Layers "
       "grow on viscous walls (condition 4, class 2 of a .d3m, --walls) once "
       "a first height is known (--first, or --y-plus with --reynolds and "
-      "--reference-length); PROJECT.wall.vtu shows them. Exit status: 0 "
+      "--reference-length); PROJECT.wall.vtu shows them. Under mpirun or srun "
+      "all ranks mesh together; the files are the same, byte for byte, for "
+      "any number of ranks and threads. Exit status: 0 "
       "done, 1 failed, 2 wrong usage, 4 done but a limit on the layers "
       "(--min-full, ...) is not met." };
   struct arguments a = { 0 };

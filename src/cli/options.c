@@ -152,6 +152,16 @@ void vg_cli_options_free(struct vg_cli_options *o)
   memset(o, 0, sizeof *o);
 }
 
+int vg_cli_option_key(const char *name)
+{
+  size_t n;
+  const struct vg_param *p = vg_settings_params(&n);
+
+  for (size_t i = 0; i < n; i++)
+    if (!strcmp(p[i].name, name)) return VG_KEY_SETTING + (int)i;
+  return 0;
+}
+
 vg_status vg_cli_option_set(int key, const char *text, struct vg_settings *s,
                             struct vg_error *err)
 {

@@ -2,21 +2,23 @@
 #include "cli/output.h"
 
 #include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/memory.h"
 #include "cli/cli.h"
 #include "cli/deck.h"
-#include "core/quality.h"
 #include "io/foam.h"
 #include "io/format.h"
 #include "io/mapbc.h"
+#include "io/slices.h"
 #include "io/ugrid.h"
-#include "io/vgrid.h"
-#include "io/vtu.h"
+#include "partition/store.h"
 
 #define WALLS "wall.vtu"
 
@@ -25,13 +27,13 @@ static void remove_aside(struct vg_outputs *o)
   char *path;
 
   if (!o->aside) return;
-  for (size_t i = 0; i < o->n_file; i++) {
+  for (size_t i = 0; i < o->n_file && !o->is_guest; i++) {
     path = vg_outputs_aside(o, o->file[i].suffix);
     if (path && o->file[i].is_case) vg_foam_remove(path);
     else if (path) unlink(path);
     free(path);
   }
-  rmdir(o->aside);
+  if (!o->is_guest) rmdir(o->aside);
   free(o->aside);
   o->aside = NULL;
 }
@@ -50,7 +52,8 @@ static char *join(const char *dir, const char *name, const char *suffix)
 {
   char *path;
 
-  return asprintf(&path, "%s/%s.%s", dir, name, suffix) < 0 ? NULL : path;
+  return asprintf(&path, "%s/%s%s%s", dir, name, *suffix == '_' ? "" : ".",
+                  suffix) < 0 ? NULL : path;
 }
 
 char *vg_outputs_aside(struct vg_outputs *o, const char *suffix)
@@ -63,7 +66,8 @@ char *vg_outputs_final(const struct vg_outputs *o, const char *suffix)
   if (strcmp(o->dir, ".") == 0) {
     char *path;
 
-    return asprintf(&path, "%s.%s", o->name, suffix) < 0 ? NULL : path;
+    return asprintf(&path, "%s%s%s", o->name, *suffix == '_' ? "" : ".",
+                    suffix) < 0 ? NULL : path;
   }
   return join(o->dir, o->name, suffix);
 }
@@ -80,7 +84,7 @@ static int is_own_item(const char *item)
 {
   return !strcmp(item, "cogsg") || !strcmp(item, "mapbc") ||
          !strcmp(item, "fun3d.mapbc") || !strcmp(item, "vtu") ||
-         is_case(item);
+         !strcmp(item, "pvtu") || is_case(item);
 }
 
 static vg_status plan_item(struct vg_outputs *o, const char *item, size_t len,
@@ -102,7 +106,7 @@ static vg_status plan_item(struct vg_outputs *o, const char *item, size_t len,
   if (!is_own_item(to) && !vg_format_can_write(to))
     return vg_fail(err, VG_ERR_INPUT, "write: '%s' is no format; known are "
                    "cogsg (with bc and mapbc), mapbc, fun3d.mapbc, vtu, "
-                   "foam, foam-ascii and suffixes such as b8.ugrid, "
+                   "pvtu, foam, foam-ascii and suffixes such as b8.ugrid, "
                    "lb8.ugrid, ugrid, meshb", to);
   o->n_item++;
   return VG_OK;
@@ -185,8 +189,18 @@ static vg_status plan_place(const struct vg_problem *p, const char *dir,
   return dir ? vg_cli_make_folder(dir, err) : VG_OK;
 }
 
+static vg_status refuse_ranks(const char *item, int ranks,
+                              struct vg_error *err)
+{
+  if (ranks == 1 || vg_slices_can_write(item)) return VG_OK;
+  return vg_fail(err, VG_ERR_UNSUPPORTED, "write: %s needs the whole mesh in "
+                 "one process; run on one rank, or write b8.ugrid and convert "
+                 "it", item);
+}
+
 vg_status vg_outputs_plan(const struct vg_problem *p, const char *dir,
-                          struct vg_outputs *o, struct vg_error *err)
+                          int ranks, struct vg_outputs *o,
+                          struct vg_error *err)
 {
   vg_status st = plan_place(p, dir, o, err);
 
@@ -197,6 +211,7 @@ vg_status vg_outputs_plan(const struct vg_problem *p, const char *dir,
     if (st >= 0 && !strcmp(o->item[i], "cogsg"))
       st = refuse_hit(o, p, "bc", err);
     if (st >= 0) st = refuse_mixed(o->item[i], &p->settings, err);
+    if (st >= 0) st = refuse_ranks(o->item[i], ranks, err);
   }
   return st;
 }
@@ -224,9 +239,8 @@ vg_status vg_outputs_check(const struct vg_problem *p, struct vg_outputs *o,
   return st;
 }
 
-vg_status vg_outputs_begin(struct vg_outputs *o, struct vg_error *err)
+static vg_status make_aside(struct vg_outputs *o, struct vg_error *err)
 {
-  if (o->aside) return VG_OK;
   if (asprintf(&o->aside, "%s/.vanguard-XXXXXX", o->dir) < 0) {
     o->aside = NULL;
     return vg_fail_memory(err, "the output paths");
@@ -251,115 +265,171 @@ vg_status vg_outputs_add(struct vg_outputs *o, const char *suffix,
     free(copy);
     return vg_fail_memory(err, "the output paths");
   }
-  o->file[o->n_file++] = (struct vg_outputs_file){ copy, 0, 0 };
+  o->file[o->n_file++] = (struct vg_outputs_file){ .suffix = copy };
   return VG_OK;
 }
 
-static vg_status write_vtu(const char *path, const struct vg_mesh *m,
-                           struct vg_error *err)
+/* The folder that rank 0 makes, on all ranks. */
+static vg_status begin(struct vg_outputs *o, struct vg_comm *comm,
+                       struct vg_error *err)
 {
-  float *angle = vg_alloc(m->n_tet, sizeof *angle);
-  float *ratio = vg_alloc(m->n_tet, sizeof *ratio);
-  const struct vg_vtu_field field[] = {
-    { "angle_min", VG_VTU_CELL, VG_VTU_FLOAT32, 1, angle },
-    { "radius_ratio", VG_VTU_CELL, VG_VTU_FLOAT32, 1, ratio },
-  };
-  int is_mixed = m->n_pyr + m->n_pri + m->n_hex > 0;
-  vg_status st;
+  struct vg_bytes name = {0, NULL};
+  vg_status st = VG_OK;
 
-  if (!angle || !ratio) {
-    st = vg_fail_memory(err, "the quality of the cells");
-  } else {
-    vg_mesh_cell_quality(m, angle, ratio);
-    st = vg_vtu_write(path, m, field, is_mixed ? 0 : 2, err);
-  }
-  free(angle);
-  free(ratio);
+  o->is_guest = vg_comm_rank(comm) > 0;
+  if (!o->is_guest) st = make_aside(o, err);
+  VG_TRY(vg_comm_agree(comm, st, err));
+  if (!o->is_guest)
+    name = (struct vg_bytes){ strlen(o->aside) + 1,
+                              (unsigned char *)o->aside };
+  o->aside = NULL;
+  st = vg_comm_bcast(comm, 0, &name, err);
+  o->aside = (char *)name.data;
+done:
   return st;
 }
 
-static vg_status write_format(const char *path, const char *suffix,
-                              const struct vg_problem *p,
-                              const struct vg_layer_stage *layers,
-                              const struct vg_mesh *m, struct vg_error *err)
+/* The mesh on its way out. */
+struct writing {
+  struct vg_outputs *o;
+  const struct vg_problem *p;
+  const struct vg_layer_stage *layers;
+  struct vg_comm *comm;
+  const struct vg_slices *mesh;
+  int threads;
+  struct vg_mesh whole;      /* for writers of whole meshes; else empty */
+};
+
+static vg_status write_format(const struct writing *w, const char *path,
+                              const char *suffix, struct vg_error *err)
 {
   struct vg_ugrid_kind kind;
 
-  if (p->settings.ugrid_tail && vg_ugrid_kind(suffix, &kind))
-    return vg_ugrid_write_tail(path, m, layers->join.n_layer_tet, err);
-  return vg_format_write(path, m, err);
+  if (w->p->settings.ugrid_tail && vg_ugrid_kind(suffix, &kind))
+    return vg_ugrid_write_tail(path, &w->whole,
+                               w->mesh->n_layer_cell[VG_SLICE_TET], err);
+  return vg_format_write(path, &w->whole, err);
 }
 
-static vg_status write_file(struct vg_outputs *o, const struct vg_problem *p,
-                            const struct vg_layer_stage *layers,
-                            const struct vg_mesh *m, const char *suffix,
-                            struct vg_error *err)
-{
-  char *path = vg_outputs_aside(o, suffix);
-  vg_status st;
-
-  if (!path) return vg_fail_memory(err, "the output paths");
-  if (!strcmp(suffix, "vtu"))
-    st = write_vtu(path, m, err);
-  else if (!strcmp(suffix, "surface.vtu"))
-    st = vg_vtu_write_boundary(path, m, NULL, 0, err);
-  else if (!strcmp(suffix, "mapbc"))
-    st = vg_mapbc_write(path, m, VG_MAPBC_VGRID, p->settings.title, NULL,
-                        err);
-  else if (!strcmp(suffix, "fun3d.mapbc"))
-    st = vg_mapbc_write(path, m, VG_MAPBC_FUN3D, NULL, NULL, err);
-  else if (!strcmp(suffix, WALLS))
-    st = vg_layer_stage_write(layers, &p->surface, path, err);
-  else
-    st = write_format(path, suffix, p, layers, m, err);
-  free(path);
-  return st < 0 ? st : vg_outputs_add(o, suffix, err);
-}
-
-static vg_status write_case(struct vg_outputs *o, const struct vg_mesh *m,
-                            const char *item, struct vg_error *err)
+static vg_status write_alone(struct writing *w, const char *item,
+                             struct vg_error *err)
 {
   struct vg_foam_options options;
-  char *path = vg_outputs_aside(o, VG_FOAM_SUFFIX);
-  vg_status st = path ? VG_OK : vg_fail_memory(err, "the output paths");
+  char *path;
+  vg_status st = VG_OK;
 
-  vg_foam_word(item, &options);
-  if (st >= 0) st = vg_outputs_add(o, VG_FOAM_SUFFIX, err);
+  if (!w->whole.n_point)
+    st = vg_slices_collect(w->mesh, w->threads, &w->whole, err);
+  if (st < 0) return st;
+  if (!vg_foam_word(item, &options)) {
+    path = vg_outputs_aside(w->o, item);
+    st = path ? write_format(w, path, item, err)
+              : vg_fail_memory(err, "the output paths");
+    free(path);
+    return st < 0 ? st : vg_outputs_add(w->o, item, err);
+  }
+  path = vg_outputs_aside(w->o, VG_FOAM_SUFFIX);
+  st = path ? vg_outputs_add(w->o, VG_FOAM_SUFFIX, err)
+            : vg_fail_memory(err, "the output paths");
   if (st >= 0) {
-    for (size_t i = 0; i < o->n_file; i++)
-      if (!strcmp(o->file[i].suffix, VG_FOAM_SUFFIX)) o->file[i].is_case = 1;
-    st = vg_foam_write(path, m, &options, err);
+    w->o->file[w->o->n_file - 1].is_case = 1;
+    st = vg_foam_write(path, &w->whole, &options, err);
   }
   free(path);
   return st;
 }
 
-static vg_status write_triple(struct vg_outputs *o,
-                              const struct vg_layer_stage *layers,
-                              const struct vg_mesh *m, struct vg_error *err)
+/* Conditions, with the title of the project. Rank 0 writes. */
+static vg_status write_conditions(struct writing *w, const char *item,
+                                  struct vg_error *err)
 {
-  const char *part[] = { "cogsg", "bc", "mapbc" };
-  struct vg_cogsg_info info = VG_COGSG_INFO_INIT;
+  int is_fun3d = strcmp(item, "mapbc") != 0;
+  struct vg_mesh rim = VG_MESH_INIT;
+  char *path = vg_outputs_aside(w->o, item);
+  vg_status st = vg_slices_boundary(w->comm, w->mesh, w->threads, &rim, err);
+
+  if (st >= 0 && !path) st = vg_fail_memory(err, "the output paths");
+  if (st >= 0 && !w->o->is_guest)
+    st = vg_mapbc_write(path, &rim, is_fun3d ? VG_MAPBC_FUN3D
+                                             : VG_MAPBC_VGRID,
+                        is_fun3d ? NULL : w->p->settings.title, NULL, err);
+  vg_mesh_release(&rim);
+  free(path);
+  st = vg_comm_agree(w->comm, st, err);
+  return st < 0 ? st : vg_outputs_add(w->o, item, err);
+}
+
+/* The pieces of a .pvtu are found by their names. */
+static vg_status add_pieces(struct writing *w, const char *stem,
+                            struct vg_error *err)
+{
+  char suffix[40];
+  vg_status st = VG_OK;
+
+  for (size_t k = 0; st >= 0; k++) {
+    char *path = vg_slices_piece(stem, k);
+    int there = path && access(path, F_OK) == 0;
+
+    free(path);
+    if (!there) break;
+    snprintf(suffix, sizeof suffix, "_%zu.vtu", k);
+    st = vg_outputs_add(w->o, suffix, err);
+  }
+  return st;
+}
+
+static vg_status write_slices(struct writing *w, const char *item,
+                              struct vg_error *err)
+{
+  const char *triple[] = { "cogsg", "bc", "mapbc", NULL };
+  const char *pair[] = { "vtu", "surface.vtu", NULL };
+  const char *one[] = { item, NULL };
+  const char **part = !strcmp(item, "cogsg") ? triple
+                    : !strcmp(item, "vtu") ? pair : one;
+  struct vg_slices_options o = { .threads = w->threads,
+                                 .tail = w->p->settings.ugrid_tail };
   char *stem;
   vg_status st;
 
-  if (asprintf(&stem, "%s/%s", o->aside, o->name) < 0)
+  if (asprintf(&stem, "%s/%s", w->o->aside, w->o->name) < 0)
     return vg_fail_memory(err, "the output paths");
-  if (layers->is_on) {
-    info.n_layer_point = layers->join.n_layer_point;
-    info.n_layer_cell = layers->join.n_layer_tet;
-  }
-  st = vg_cogsg_write(stem, m, &info, 0, NULL, err);
+  st = vg_slices_write_with(w->comm, w->mesh, stem, item, &o, err);
+  if (st >= 0 && part == pair)
+    st = vg_slices_write_with(w->comm, w->mesh, stem, pair[1], &o, err);
+  for (; *part && st >= 0; part++) st = vg_outputs_add(w->o, *part, err);
+  if (st >= 0 && !strcmp(item, "pvtu")) st = add_pieces(w, stem, err);
   free(stem);
-  for (int i = 0; i < 3 && st >= 0; i++) st = vg_outputs_add(o, part[i], err);
   return st;
 }
 
-/* The resolved settings say with which files they were used. */
+static vg_status write_item(struct writing *w, const char *item,
+                            struct vg_error *err)
+{
+  if (!strcmp(item, "mapbc") || !strcmp(item, "fun3d.mapbc"))
+    return write_conditions(w, item, err);
+  return vg_slices_can_write(item) ? write_slices(w, item, err)
+                                   : write_alone(w, item, err);
+}
+
+static vg_status write_walls(struct vg_outputs *o, const struct vg_problem *p,
+                             const struct vg_layer_stage *layers,
+                             struct vg_error *err)
+{
+  char *path = vg_outputs_aside(o, WALLS);
+  vg_status st = path ? vg_layer_stage_write(layers, &p->surface, path, err)
+                      : vg_fail_memory(err, "the output paths");
+
+  free(path);
+  return st < 0 ? st : vg_outputs_add(o, WALLS, err);
+}
+
+/* The resolved settings say with which files they were used. The number of
+ * threads is the machine's affair: the file is the same for any. */
 static vg_status write_deck(struct vg_outputs *o, const struct vg_problem *p,
                             struct vg_error *err)
 {
   const struct vg_input_files *f = &p->files;
+  struct vg_settings settings = p->settings;
   char *path = vg_outputs_aside(o, "resolved.deck"), *comment = NULL;
   vg_status st;
 
@@ -371,7 +441,8 @@ static vg_status write_deck(struct vg_outputs *o, const struct vg_problem *p,
     free(path);
     return vg_fail_memory(err, "the settings");
   }
-  st = vg_deck_write(path, &p->settings, comment, 0, err);
+  settings.threads = 0;
+  st = vg_deck_write(path, &settings, comment, 0, err);
   free(path);
   free(comment);
   return st < 0 ? st : vg_outputs_add(o, "resolved.deck", err);
@@ -379,26 +450,60 @@ static vg_status write_deck(struct vg_outputs *o, const struct vg_problem *p,
 
 vg_status vg_outputs_mesh(struct vg_outputs *o, const struct vg_problem *p,
                           const struct vg_layer_stage *layers,
-                          const struct vg_mesh *mesh, struct vg_error *err)
+                          struct vg_comm *comm, const struct vg_slices *mesh,
+                          int threads, struct vg_error *err)
 {
-  vg_status st = vg_outputs_begin(o, err);
+  struct writing w = { o, p, layers, comm, mesh, threads, VG_MESH_INIT };
+  vg_status st = begin(o, comm, err);
 
-  for (size_t i = 0; i < o->n_item && st >= 0; i++) {
-    const char *item = o->item[i];
-
-    if (!strcmp(item, "cogsg")) st = write_triple(o, layers, mesh, err);
-    else if (is_case(item)) st = write_case(o, mesh, item, err);
-    else st = write_file(o, p, layers, mesh, item, err);
-    if (st >= 0 && !strcmp(item, "vtu"))
-      st = write_file(o, p, layers, mesh, "surface.vtu", err);
-  }
-  if (st >= 0 && layers->is_on)
-    st = write_file(o, p, layers, mesh, WALLS, err);
-  if (st >= 0) st = write_deck(o, p, err);
+  for (size_t i = 0; i < o->n_item && st >= 0; i++)
+    st = write_item(&w, o->item[i], err);
+  if (st >= 0 && !o->is_guest && layers->is_on)
+    st = write_walls(o, p, layers, err);
+  if (st >= 0 && !o->is_guest) st = write_deck(o, p, err);
   /* What may coincide with an input by then: a .mapbc that knows all patches,
    * and the resolved deck of the run that is being repeated. */
   for (size_t i = 0; i < o->n_file && st >= 0; i++)
     o->file[i].keep_old = hits_input(o, &p->files, o->file[i].suffix) != NULL;
+  vg_mesh_release(&w.whole);
+  return vg_comm_agree(comm, st, err);
+}
+
+static vg_status digest_file(const char *path, struct vg_outputs_file *f,
+                             struct vg_error *err)
+{
+  struct vg_digest d = {{0, 0}};
+  struct stat s;
+  int fd = open(path, O_RDONLY);
+  void *data = MAP_FAILED;
+
+  if (fd >= 0 && !fstat(fd, &s)) {
+    f->bytes = (uint64_t)s.st_size;
+    if (s.st_size)
+      data = mmap(NULL, (size_t)s.st_size, PROT_READ, MAP_PRIVATE, fd, 0);
+    if (data != MAP_FAILED) {
+      d = vg_digest_of(d, (size_t)s.st_size, data);
+      munmap(data, (size_t)s.st_size);
+    }
+  }
+  if (fd >= 0) close(fd);
+  memcpy(f->digest, d.word, sizeof f->digest);
+  if (fd >= 0 && (data != MAP_FAILED || !f->bytes)) return VG_OK;
+  return vg_fail(err, VG_ERR_IO, "%s: cannot be read back: %s", path,
+                 strerror(errno));
+}
+
+vg_status vg_outputs_digest(struct vg_outputs *o, struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  for (size_t i = 0; i < o->n_file && st >= 0; i++) {
+    char *path = vg_outputs_aside(o, o->file[i].suffix);
+
+    if (!path) st = vg_fail_memory(err, "the output paths");
+    else if (!o->file[i].is_case) st = digest_file(path, &o->file[i], err);
+    free(path);
+  }
   return st;
 }
 

@@ -4,8 +4,10 @@
 #ifndef VG_CLI_OUTPUT_H
 #define VG_CLI_OUTPUT_H
 
+#include "base/comm.h"
 #include "cli/input.h"
 #include "cli/layers.h"
+#include "core/slices.h"
 
 /** Kinds of file in a write list. */
 enum { VG_OUTPUT_ITEMS = 16 };
@@ -13,22 +15,29 @@ enum { VG_OUTPUT_ITEMS = 16 };
 struct vg_outputs {
   char *dir, *name;           /* target folder ("." if none), base name */
   char *aside;                /* hidden folder while writing, or NULL */
+  int is_guest;               /* 1: another rank makes and removes it */
   size_t n_item;
   char item[VG_OUTPUT_ITEMS][24];
   size_t n_file, cap_file;
-  /* is_case: a folder with an OpenFOAM mesh. */
-  struct vg_outputs_file { char *suffix; int keep_old, is_case; } *file;
+  /* is_case: a folder with an OpenFOAM mesh. A suffix that begins with '_'
+   * follows the name without a dot. */
+  struct vg_outputs_file {
+    char *suffix;
+    int keep_old, is_case;
+    uint64_t bytes, digest[2]; /* vg_outputs_digest */
+  } *file;
 };
 #define VG_OUTPUTS_INIT { .n_item = 0 }
 
 void vg_outputs_release(struct vg_outputs *o);
 
 /** Understand the write list and where files go, and refuse at once what
- * would overwrite an input.
+ * would overwrite an input, or cannot be written by several ranks.
  *
  * @param dir  NULL: beside the input; created when absent */
 vg_status vg_outputs_plan(const struct vg_problem *p, const char *dir,
-                          struct vg_outputs *o, struct vg_error *err);
+                          int ranks, struct vg_outputs *o,
+                          struct vg_error *err);
 
 /** Once the surface is final: an existing .mapbc that is an input stays, and
  * must know every patch. Call before the fill. */
@@ -42,17 +51,22 @@ char *vg_outputs_aside(struct vg_outputs *o, const char *suffix);
 char *vg_outputs_final(const struct vg_outputs *o, const char *suffix);
 
 /** Write the mesh in every form asked for, the resolved deck, and the walls
- * with their layers where there are some. */
+ * with their layers where there are some. Collective; what is no form of
+ * io/slices.h is written from a copy of the whole mesh, by one rank alone.
+ * Starts the hidden folder. */
 vg_status vg_outputs_mesh(struct vg_outputs *o, const struct vg_problem *p,
                           const struct vg_layer_stage *layers,
-                          const struct vg_mesh *mesh, struct vg_error *err);
+                          struct vg_comm *comm, const struct vg_slices *mesh,
+                          int threads, struct vg_error *err);
 
-/** Start the hidden folder; register a file written there by the caller. */
-vg_status vg_outputs_begin(struct vg_outputs *o, struct vg_error *err);
+/** Size and XXH3 digest of every file there is. On rank 0. */
+vg_status vg_outputs_digest(struct vg_outputs *o, struct vg_error *err);
+
+/** Register a file that the caller writes into the hidden folder. */
 vg_status vg_outputs_add(struct vg_outputs *o, const char *suffix,
                          struct vg_error *err);
 
-/** Move all files to their place and remove the hidden folder. */
+/** Move all files to their place and remove the hidden folder. On rank 0. */
 vg_status vg_outputs_commit(struct vg_outputs *o, struct vg_error *err);
 
 #endif

@@ -45,6 +45,7 @@ void vg_display_init(struct vg_display *d, int quiet)
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, NULL);
   sigaction(SIGTERM, &action, NULL);
+  sigaction(SIGUSR1, &action, NULL);  /* a batch system's warning */
 }
 
 void vg_display_clear(struct vg_display *d)

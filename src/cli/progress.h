@@ -1,6 +1,6 @@
 /* cli/progress.h: what the user sees while waiting, on stderr: one live line
  * on a terminal, plain lines elsewhere; and the wish to stop (SIGINT,
- * SIGTERM). Times are for people only and decide nothing. */
+ * SIGTERM, SIGUSR1). Times are for people only and decide nothing. */
 #ifndef VG_CLI_PROGRESS_H
 #define VG_CLI_PROGRESS_H
 
@@ -23,7 +23,7 @@ int vg_display_update(void *user, const char *stage, size_t done,
 /** Remove the live line, before something else is printed. */
 void vg_display_clear(struct vg_display *d);
 
-/** 1 after SIGINT or SIGTERM. A second one ends the process at once. */
+/** 1 after one of these signals. A second one ends the process at once. */
 int vg_display_interrupted(void);
 
 /** Wall clock in seconds, from any start. */

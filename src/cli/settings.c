@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "core/fill.h"
 #include "layers/join.h"
+#include "partition/advance.h"
 
 #define HUGE_SIZE 1e60 /* beyond this the predicates are not safe */
 
@@ -66,9 +67,20 @@ static const struct vg_param params[] = {
                         "pyramids and tetrahedra)" },
   { "ugrid_tail", AT(ugrid_tail), .type = VG_PARAM_FLAG, .unit = "",
     .help = "number of layer tetrahedra behind the cells of a .ugrid" },
+  { "leaf_cells", AT(leaf_cells), .type = VG_PARAM_COUNT, .hi = 9e15,
+    .unit = "cells", .help = "the space to fill is cut until parts expect no "
+    "more cells; 0: not at all" },
+  { "levels", AT(levels), .type = VG_PARAM_COUNT, .hi = 30,
+    .unit = "bisections", .help = "cut everywhere alike, into 2^levels "
+    "parts, instead of by leaf_cells; 0: by leaf_cells" },
+  { "split_direction", AT(split_direction), .type = VG_PARAM_COUNT, .hi = 3,
+    .unit = "", .help = "first cut across x (1), y (2) or z (3); 0: where it "
+                        "costs least" },
+  { "constant_direction", AT(constant_direction), .type = VG_PARAM_FLAG,
+    .unit = "", .help = "all cuts across split_direction" },
   { "threads", AT(threads), .type = VG_PARAM_COUNT, .hi = 4096,
-    .unit = "threads", .help = "threads for the layers; 0: one per core; "
-                               "results do not depend on it" },
+    .unit = "threads", .help = "threads of each process; 0: one per core "
+    "that it is bound to; results do not depend on it" },
   { "layers", AT(layer.grow), .type = VG_PARAM_WORD, .words = answer_words,
     .unit = "", .help = "viscous layers on the walls; auto: where the project "
     "asks for them (.d3m, a viscous condition, walls) and the first height "
@@ -334,6 +346,7 @@ void vg_settings_default(struct vg_settings *s)
   s->d3m_sources = 1;
   s->repair = 1;
   s->optimise = fill.optimise;
+  s->leaf_cells = VG_LEAF_CELLS;
   snprintf(s->title, sizeof s->title, "untitled");
   snprintf(s->write, sizeof s->write, "auto");
   default_layers(&s->layer);
@@ -481,6 +494,9 @@ vg_status vg_settings_check(const struct vg_settings *s, struct vg_error *err)
   const struct vg_farfield_row *f = &s->farfield;
   int centre = n_given(f->centre), lo = n_given(f->lo), hi = n_given(f->hi);
 
+  if (s->constant_direction && !s->split_direction)
+    return vg_fail(err, VG_ERR_INPUT, "constant_direction needs a "
+                   "split_direction of 1, 2 or 3");
   if (s->hmin > 0 && s->hmax > 0 && s->hmin > s->hmax)
     return vg_fail(err, VG_ERR_INPUT, "hmin %g is larger than hmax %g; "
                    "swap them or set one to 0", s->hmin, s->hmax);

@@ -76,6 +76,9 @@ struct vg_settings {
   int swap;                        /* enum vg_answer: swap edges */
   int cells;                       /* enum vg_layer_cells */
   int ugrid_tail;
+  int64_t leaf_cells, levels;      /* how far the void is cut up */
+  int64_t split_direction;         /* 0: best; 1 to 3: x, y, z first */
+  int constant_direction;
   int64_t threads;
   struct vg_layer_settings layer;
   struct vg_farfield_row farfield;

@@ -190,7 +190,7 @@ static vg_status open_slices(struct vg_partition *p, struct vg_error *err)
   if (!p->front_id) return vg_fail_memory(err, "numbering the mesh");
   for (size_t k = 0; k < p->boundary->n_point; k++)
     p->front_id[k] = (uint32_t)k;
-  s->n_boundary_point = s->n_layer_point = p->boundary->n_point;
+  s->n_boundary_point = p->boundary->n_point;
   s->boundary = &p->rim;
   s->n_slice = p->n_piece + (p->rank == 0);
   s->get = serve;

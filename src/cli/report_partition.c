@@ -1,0 +1,78 @@
+/* How the work was cut up and shared out, for a person and for a program. */
+#include "cli/cli.h"
+#include "cli/run.h"
+
+static uint64_t leaf_at(const struct vg_run *r, size_t part)
+{
+  return r->n_leaf ? r->leaf[(r->n_leaf - 1) * part / 2] : 0;
+}
+
+static double share_of(const struct vg_run *r, uint64_t n)
+{
+  return r->n_field_cell ? 100 * (double)n / (double)r->n_field_cell : 0;
+}
+
+void vg_report_partition_text(FILE *to, const struct vg_run *r)
+{
+  const struct vg_partition_report *p = &r->partition;
+  char a[32], b[32], c[32];
+
+  fprintf(to, "  %d rank%s x %d thread%s; %s cells expected, %s made\n",
+          r->size, r->size > 1 ? "s" : "", r->threads,
+          r->threads > 1 ? "s" : "",
+          vg_cli_count((unsigned long long)p->estimate, a),
+          vg_cli_count(r->n_field_cell, b));
+  fprintf(to, "  cuts %s, pencils %s, tiles %s: %.1f %% of the cells; ",
+          vg_cli_count(p->n_node, a), vg_cli_count(p->n_pencil, b),
+          vg_cli_count(p->n_tile, c), share_of(r, p->n_zone_cell));
+  fprintf(to, "leaves %s", vg_cli_count(r->n_leaf, a));
+  if (r->n_leaf > 1)
+    fprintf(to, " of %s to %s cells, median %s",
+            vg_cli_count(leaf_at(r, 0), a), vg_cli_count(leaf_at(r, 2), b),
+            vg_cli_count(leaf_at(r, 1), c));
+  fprintf(to, "\n");
+  if (p->n_blocked || p->n_retry || p->n_uncut || p->n_outgrown)
+    fprintf(to, "  zones given up %s, cuts repeated elsewhere %s, leaves cut "
+            "again %s, left large %llu\n", vg_cli_count(p->n_blocked, a),
+            vg_cli_count(p->n_retry, b), vg_cli_count(p->n_outgrown, c),
+            (unsigned long long)p->n_uncut);
+  fprintf(to, "  workers busy %.1f %%, imbalance %.3f (most over mean)\n",
+          100 * vg_spans_busy(&r->spans), vg_spans_imbalance(&r->spans));
+  if (!r->store) return;
+  fprintf(to, "  tasks found in %s: %s\n", r->options.dir,
+          vg_cli_count(p->n_found, a));
+  if (*r->stored.stopped)
+    fprintf(to, "  not all tasks were kept there: %s\n", r->stored.stopped);
+}
+
+static json_t *count(uint64_t n)
+{
+  return json_integer((json_int_t)n);
+}
+
+json_t *vg_report_partition_json(const struct vg_run *r)
+{
+  const struct vg_partition_report *p = &r->partition;
+  const struct { const char *name; uint64_t n; } row[] = {
+    { "ranks", (uint64_t)r->size }, { "threads", (uint64_t)r->threads },
+    { "cuts", p->n_node }, { "pencils", p->n_pencil }, { "tiles", p->n_tile },
+    { "leaves", p->n_leaf }, { "zone_cells", p->n_zone_cell },
+    { "zones_given_up", p->n_blocked }, { "cuts_repeated", p->n_retry },
+    { "leaves_cut_again", p->n_outgrown }, { "leaves_left_large", p->n_uncut },
+    { "tasks_found", p->n_found },
+  };
+  json_t *o = json_object(), *leaves = json_array();
+
+  for (size_t i = 0; i < sizeof row / sizeof *row; i++)
+    json_object_set_new(o, row[i].name, count(row[i].n));
+  for (size_t i = 0; i < r->n_leaf; i++)
+    json_array_append_new(leaves, count(r->leaf[i]));
+  json_object_set_new(o, "leaf_cells", leaves);
+  json_object_set_new(o, "estimate", json_real(p->estimate));
+  json_object_set_new(o, "busy", json_real(vg_spans_busy(&r->spans)));
+  json_object_set_new(o, "imbalance",
+                      json_real(vg_spans_imbalance(&r->spans)));
+  json_object_set_new(o, "memory_of_all_ranks_bytes",
+                      json_real(r->memory_sum));
+  return o;
+}

@@ -1,0 +1,302 @@
+#include "cli/run.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "cli/report.h"
+
+vg_status vg_run_stopped(struct vg_error *err)
+{
+  if (!vg_display_interrupted()) return VG_OK;
+  return vg_fail(err, VG_ERR_IO, "interrupted; nothing was written");
+}
+
+uint64_t vg_run_cells(const struct vg_run *r)
+{
+  uint64_t n = 0;
+
+  for (int k = 0; k < VG_SLICE_KINDS; k++) n += r->slices.n_cell[k];
+  return n;
+}
+
+vg_status vg_run_memory(struct vg_run *r, struct vg_error *err)
+{
+  uint64_t sum = (uint64_t)vg_report_peak_memory();
+  vg_status st;
+
+  r->memory = (double)sum;
+  st = vg_comm_max(r->comm, 1, &r->memory, err);
+  if (st >= 0) st = vg_comm_sum(r->comm, 1, &sum, err);
+  r->memory_sum = (double)sum;
+  return st;
+}
+
+/* The size field over a boundary. */
+static vg_status measure_sizes(struct vg_run *r, const struct vg_problem *p,
+                               const struct vg_mesh *boundary,
+                               struct vg_display *show,
+                               struct vg_sizing **sizing, struct vg_error *err)
+{
+  const struct vg_settings *s = &p->settings;
+  struct vg_sizing_options options = vg_settings_sizing(s);
+  double t = vg_display_now();
+  vg_status st;
+
+  vg_display_update(show, "sizes", 0, 0);
+  st = vg_sizing_new(&options, s->n_source, s->source, boundary, sizing, err);
+  r->time_size += vg_display_now() - t;
+  return st < 0 ? st : vg_run_stopped(err);
+}
+
+/* --- the run directory --------------------------------------------------- */
+
+/* Everything that the tasks' outcomes follow from, besides their input. */
+static struct vg_digest job_digest(const struct vg_problem *p,
+                                   const struct vg_mesh *boundary)
+{
+  const struct vg_settings *s = &p->settings;
+  struct vg_digest d = {{0, 0}};
+  double size[5] = {s->scale, s->growth, s->hmin, s->hmax,
+                    (double)s->surface_sizes};
+  int64_t cut[5] = {s->leaf_cells, s->levels, s->split_direction,
+                    s->constant_direction, s->optimise};
+
+  d = vg_digest_of(d, strlen(VG_VERSION), VG_VERSION);
+  d = vg_digest_of(d, sizeof size, size);
+  d = vg_digest_of(d, sizeof cut, cut);
+  for (size_t i = 0; i < s->n_source; i++) {
+    const struct vg_source *q = &s->source[i];
+    double v[19] = {q->kind, q->h0, q->h1, q->r0, q->r1, q->growth, q->an};
+
+    memcpy(v + 7, q->p0, sizeof q->p0);
+    memcpy(v + 10, q->p1, sizeof q->p1);
+    memcpy(v + 13, q->p2, sizeof q->p2);
+    memcpy(v + 16, q->u, sizeof q->u);
+    d = vg_digest_of(d, sizeof v, v);
+  }
+  d = vg_digest_of(d, boundary->n_point * sizeof *boundary->point,
+                   boundary->point);
+  return vg_digest_of(d, boundary->n_tri * sizeof *boundary->tri,
+                      boundary->tri);
+}
+
+static vg_status open_store(struct vg_run *r, const struct vg_problem *p,
+                            const struct vg_mesh *boundary,
+                            struct vg_partition_options *o,
+                            struct vg_error *err)
+{
+  struct vg_store_options s = { .dir = r->options.dir,
+    .resume = r->options.resume, .limit = r->options.limit };
+  char what[200];
+
+  if (!r->options.dir) return VG_OK;
+  o->job = s.job = job_digest(p, boundary);
+  snprintf(what, sizeof what, "%s (%zu boundary triangles)",
+           p->settings.title, boundary->n_tri);
+  s.what = what;
+  return vg_store_open(r->comm, &s, &r->store, err);
+}
+
+static vg_status say_stopped(const struct vg_run *r, struct vg_error *err)
+{
+  if (!r->store)
+    return vg_fail(err, VG_ERR_IO, "interrupted; nothing was written (with "
+                   "--run-dir a run can be resumed)");
+  return vg_fail(err, VG_ERR_IO, "stopped; finished tasks are kept in %s: "
+                 "give the same command with --resume to go on, on any "
+                 "number of ranks", r->options.dir);
+}
+
+/* --- the field ----------------------------------------------------------- */
+
+static int wants_stop(void *user)
+{
+  (void)user;
+  return vg_display_interrupted();
+}
+
+static int by_size(const void *a, const void *b)
+{
+  uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
+
+  return (x > y) - (x < y);
+}
+
+/* Sizes of all leaves, on all ranks, for the report. */
+static vg_status gather_leaves(struct vg_run *r, struct vg_error *err)
+{
+  struct vg_bytes mine = {0, NULL};
+  struct vg_bytes *all = vg_calloc((size_t)r->size, sizeof *all);
+  uint64_t *own = NULL;
+  size_t n = 0;
+  vg_status st = vg_partition_leaves(r->field, &n, &own, err);
+
+  mine = (struct vg_bytes){ n * sizeof *own, (unsigned char *)own };
+  if (!all) st = vg_fail_memory(err, "sizes of leaves");
+  VG_TRY(vg_comm_agree(r->comm, st, err));
+  VG_TRY(vg_comm_allgather(r->comm, &mine, all, err));
+  for (int k = 0; k < r->size; k++) r->n_leaf += all[k].n / sizeof *r->leaf;
+  r->leaf = vg_alloc(r->n_leaf, sizeof *r->leaf);
+  n = 0;
+  for (int k = 0; k < r->size && r->leaf; k++) {
+    if (all[k].n) memcpy(r->leaf + n, all[k].data, all[k].n);
+    n += all[k].n / sizeof *r->leaf;
+  }
+  if (r->leaf && n) qsort(r->leaf, n, sizeof *r->leaf, by_size);
+  st = vg_comm_agree(r->comm, r->leaf ? VG_OK
+                     : vg_fail_memory(err, "sizes of leaves"), err);
+done:
+  for (int k = 0; all && k < r->size; k++) free(all[k].data);
+  free(all);
+  free(own);
+  return st;
+}
+
+static vg_status fill(struct vg_run *r, const struct vg_problem *p,
+                      const struct vg_mesh *boundary,
+                      const struct vg_sizing *sizing, struct vg_display *show,
+                      struct vg_error *err)
+{
+  const struct vg_settings *s = &p->settings;
+  struct vg_partition_options o = VG_PARTITION_OPTIONS_INIT;
+  vg_status st;
+
+  o.rule.leaf_cells = s->levels ? 0 : (double)s->leaf_cells;
+  o.rule.first_axis = (int)s->split_direction - 1;
+  o.rule.constant = s->constant_direction;
+  o.levels = (int)s->levels;
+  o.threads = r->threads;
+  o.sweeps = (int)s->optimise;
+  o.max_cells = (uint64_t)s->max_cells;
+  o.shuffle = r->options.shuffle;
+  o.progress = vg_display_update;
+  o.stop = wants_stop;
+  o.user = show;
+  VG_TRY(open_store(r, p, boundary, &o, err));
+  o.store = r->store;
+  st = vg_partition_grow(r->comm, boundary, sizing, &o, &r->field,
+                         &r->partition, &r->spans, err);
+  if (r->store) vg_store_state(r->store, &r->stored);
+  if (st == VG_BLOCKED) st = say_stopped(r, err);
+  if (st < 0) goto done;
+  r->n_field_cell =
+    vg_partition_slices(r->field)->n_cell[VG_SLICE_TET];
+  st = gather_leaves(r, err);
+done:
+  return st;
+}
+
+/* --- judgement ----------------------------------------------------------- */
+
+/* Edges are held against the field's sizes; within layers there is no
+ * isotropic size to meet. */
+static vg_status judge(struct vg_run *r, size_t front_faces,
+                       const struct vg_sizing *sizing, struct vg_display *show,
+                       struct vg_error *err)
+{
+  double t = vg_display_now();
+  char faults[300];
+  vg_status st;
+
+  vg_display_update(show, "judge", vg_run_cells(r), 0);
+  st = vg_slices_judge(r->comm, &r->slices, front_faces, sizing, r->threads,
+                       &r->judge, r->layers ? &r->field_judge : NULL, err);
+  r->time_judge += vg_display_now() - t;
+  if (st < 0) return st;
+  if (r->judge.is_valid && (!r->layers || r->field_judge.is_valid))
+    return VG_OK;
+  vg_report_faults(r->judge.is_valid ? &r->field_judge : &r->judge, faults,
+                   sizeof faults);
+  return vg_fail(err, VG_ERR_GEOMETRY, "the mesh did not pass its own check "
+                 "(%s) and was not written; please report this with the "
+                 "project files", faults);
+}
+
+static vg_status mesh_plain(struct vg_run *r, const struct vg_problem *p,
+                            struct vg_display *show, struct vg_error *err)
+{
+  const struct vg_mesh *surface = &p->surface;
+  struct vg_sizing *sizing = NULL;
+  vg_status st;
+
+  st = measure_sizes(r, p, surface, show, &sizing, err);
+  VG_TRY(vg_comm_agree(r->comm, st, err));
+  VG_TRY(fill(r, p, surface, sizing, show, err));
+  r->slices = *vg_partition_slices(r->field);
+  st = judge(r, 0, sizing, show, err);
+done:
+  vg_sizing_free(sizing);
+  return st;
+}
+
+/* Columns and the front above them, with their sizes. */
+static vg_status grow_layers(struct vg_run *r, const struct vg_problem *p,
+                             struct vg_layer_stage *layers,
+                             struct vg_display *show,
+                             struct vg_sizing **sizing, struct vg_error *err)
+{
+  struct vg_mesh view = VG_MESH_INIT;
+  double t;
+  vg_status st;
+
+  VG_TRY(vg_layer_stage_sizes(layers, p, &view, err));
+  VG_TRY(measure_sizes(r, p, &view, show, sizing, err));
+  t = vg_display_now();
+  layers->options.threads = r->threads;
+  VG_TRY(vg_layer_stage_grow(layers, &p->surface, *sizing, show, err));
+  r->time_layers = vg_display_now() - t;
+  VG_TRY(vg_run_stopped(err));
+  vg_sizing_free(*sizing);
+  *sizing = NULL;
+  st = measure_sizes(r, p, &layers->layers.front.mesh, show, sizing, err);
+done:
+  free(view.tri);
+  free(view.tri_patch);
+  return st;
+}
+
+/* The second size field is that of the front, so that the fill fits the tops
+ * of the layers. */
+static vg_status mesh_layers(struct vg_run *r, const struct vg_problem *p,
+                             struct vg_layer_stage *layers,
+                             struct vg_display *show, struct vg_error *err)
+{
+  const struct vg_mesh *front = &layers->layers.front.mesh;
+  struct vg_sizing *sizing = NULL;
+  vg_status st;
+
+  st = grow_layers(r, p, layers, show, &sizing, err);
+  VG_TRY(vg_comm_agree(r->comm, st, err));
+  VG_TRY(fill(r, p, front, sizing, show, err));
+  st = vg_layer_slices_open(&p->surface, &layers->layers,
+                            vg_partition_slices(r->field),
+                            (enum vg_layer_cells)p->settings.cells, r->rank,
+                            r->size, r->threads, &r->slices, &r->layers,
+                            &layers->join, err);
+  VG_TRY(vg_comm_agree(r->comm, st, err));
+  st = judge(r, front->n_tri, sizing, show, err);
+done:
+  vg_sizing_free(sizing);
+  return st;
+}
+
+vg_status vg_run_mesh(struct vg_run *r, const struct vg_problem *p,
+                      struct vg_layer_stage *layers, struct vg_display *show,
+                      struct vg_error *err)
+{
+  r->threads = p->settings.threads ? (int)p->settings.threads
+                                   : vg_comm_default_threads(r->comm);
+  return layers->is_on ? mesh_layers(r, p, layers, show, err)
+                       : mesh_plain(r, p, show, err);
+}
+
+void vg_run_release(struct vg_run *r, int success)
+{
+  vg_layer_slices_close(r->layers);
+  vg_partition_free(r->field);
+  vg_spans_release(&r->spans);
+  vg_store_close(r->store, success && !r->options.keep);
+  free(r->leaf);
+}

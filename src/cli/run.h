@@ -1,0 +1,66 @@
+/* cli/run.h: the stages of vanguard mesh between a closed surface and files,
+ * by all ranks together. Uses partition, layers. */
+#ifndef VG_CLI_RUN_H
+#define VG_CLI_RUN_H
+
+#include <jansson.h>
+#include <stdio.h>
+
+#include "base/comm.h"
+#include "cli/input.h"
+#include "cli/layers.h"
+#include "core/judge_slices.h"
+#include "layers/slices.h"
+#include "partition/advance.h"
+
+/** What does not change the mesh. */
+struct vg_run_options {
+  const char *dir;           /* where finished tasks are kept, or NULL */
+  int resume, keep;
+  uint64_t limit, shuffle;
+};
+
+struct vg_run {
+  struct vg_run_options options;
+  struct vg_comm *comm;      /* NULL: one rank without a launcher */
+  int rank, size, threads;
+  struct vg_partition *field;
+  struct vg_partition_report partition;
+  struct vg_spans spans;
+  struct vg_store *store;
+  struct vg_store_report stored;
+  struct vg_layer_slices *layers;  /* NULL without layers */
+  struct vg_slices slices;   /* the mesh */
+  uint64_t n_field_cell;
+  size_t n_leaf;             /* of all ranks; cells of each, by size: */
+  uint64_t *leaf;
+  struct vg_mesh_report judge, field_judge;  /* of all; with layers: of the
+                                                 field */
+  double time_size, time_layers, time_judge;
+  double memory;             /* bytes, of the rank that needs most */
+  double memory_sum;
+};
+
+/** VG_ERR_IO once the user or the system asked to stop. */
+vg_status vg_run_stopped(struct vg_error *err);
+
+/** Sizes, layers, field, judgement. Collective; the mesh is r->slices.
+ * p->surface and layers are needed as long as it is. */
+vg_status vg_run_mesh(struct vg_run *r, const struct vg_problem *p,
+                      struct vg_layer_stage *layers, struct vg_display *show,
+                      struct vg_error *err);
+
+/** Cells of all kinds. */
+uint64_t vg_run_cells(const struct vg_run *r);
+
+/** Largest memory so far of any rank, and of all together. Collective. */
+vg_status vg_run_memory(struct vg_run *r, struct vg_error *err);
+
+/** Collective. success: what was kept for a resume is removed. */
+void vg_run_release(struct vg_run *r, int success);
+
+/** cli/report_partition.c: cuts, tasks, balance. */
+void vg_report_partition_text(FILE *to, const struct vg_run *r);
+json_t *vg_report_partition_json(const struct vg_run *r);
+
+#endif
