@@ -9,7 +9,7 @@
 
 /* As vg_shape. Cells below `aim` (dihedral angles below 25 or above 155
  * degrees) are worked on one by one; `good` (45, 135) cells are not touched. */
-static const double aim = 0.1786;
+static const double aim = VG_SHAPE_AIM;
 static const float good = 0.5;
 /* Below this (15, 165) points are taken away or put in. */
 static const double desperate = 0.067;
@@ -148,22 +148,12 @@ static vg_status mend(struct vg_optimiser *o, int *again,
   return st;
 }
 
-vg_status vg_optimise(struct vg_tets *t, size_t n_fixed, int sweeps,
-                      const struct vg_region *region,
-                      const struct vg_sizing *sizing,
-                      struct vg_optimise_report *report, struct vg_error *err)
+static vg_status optimise(struct vg_optimiser *o, struct vg_tets *t,
+                          int sweeps, struct vg_error *err)
 {
-  struct vg_optimiser *o = vg_calloc(1, sizeof *o);
   int again = 1;
-  vg_status st;
+  vg_status st = start(o, t, err);
 
-  memset(report, 0, sizeof *report);
-  if (!o) return vg_fail_memory(err, "optimisation");
-  o->n_fixed = n_fixed;
-  o->region = region;
-  o->sizing = sizing;
-  o->report = report;
-  st = start(o, t, err);
   for (int k = 0; st == VG_OK && k < sweeps; k++) st = sweep(o, err);
   for (int k = 0; st == VG_OK && k < ROUNDS && again; k++)
     st = mend(o, &again, err);
@@ -175,4 +165,34 @@ vg_status vg_optimise(struct vg_tets *t, size_t n_fixed, int sweeps,
   free(o->vain_cell);
   free(o);
   return st;
+}
+
+vg_status vg_optimise(struct vg_tets *t, size_t n_fixed, int sweeps,
+                      const struct vg_region *region,
+                      const struct vg_sizing *sizing,
+                      struct vg_optimise_report *report, struct vg_error *err)
+{
+  struct vg_optimiser *o = vg_calloc(1, sizeof *o);
+
+  memset(report, 0, sizeof *report);
+  if (!o) return vg_fail_memory(err, "optimisation");
+  o->n_fixed = o->n_keep = n_fixed;
+  o->region = region;
+  o->sizing = sizing;
+  o->report = report;
+  return optimise(o, t, sweeps, err);
+}
+
+vg_status vg_optimise_bad(struct vg_tets *t, size_t n_fixed, size_t n_keep,
+                          struct vg_optimise_report *report,
+                          struct vg_error *err)
+{
+  struct vg_optimiser *o = vg_calloc(1, sizeof *o);
+
+  memset(report, 0, sizeof *report);
+  if (!o) return vg_fail_memory(err, "optimisation");
+  o->n_fixed = n_fixed;
+  o->n_keep = n_keep;
+  o->report = report;
+  return optimise(o, t, 0, err);
 }

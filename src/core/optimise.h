@@ -26,4 +26,15 @@ vg_status vg_optimise(struct vg_tets *t, size_t n_fixed, int sweeps,
                       const struct vg_sizing *sizing,
                       struct vg_optimise_report *report, struct vg_error *err);
 
+/** Improve the bad cells of t alone: what vg_optimise does after its sweeps.
+ *
+ * @param n_keep  >= n_fixed; points below may move from n_fixed on, but are
+ *                not taken away */
+vg_status vg_optimise_bad(struct vg_tets *t, size_t n_fixed, size_t n_keep,
+                          struct vg_optimise_report *report,
+                          struct vg_error *err);
+
+/** A cell of a shape (core/shape.h) below this is one that is worked on. */
+#define VG_SHAPE_AIM 0.1786
+
 #endif

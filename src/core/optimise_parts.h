@@ -16,6 +16,7 @@ enum {                       /* what was tried in vain, until a change */
 struct vg_optimiser {
   struct vg_tets *t;
   size_t n_fixed;            /* points below stay */
+  size_t n_keep;             /* points below are not taken away */
   const struct vg_region *region;  /* NULL: all cells matter */
   const struct vg_sizing *sizing;  /* of the region */
   float *q;                  /* [cap_cell] shape of each cell */

@@ -68,7 +68,7 @@ static int merge_point(struct vg_optimiser *o, uint32_t p)
   double need = 2, worst;
   int best = -1, now = 0, n;
 
-  if (p < o->n_fixed || o->vain[p] & VG_VAIN_MERGE) return 0;
+  if (p < o->n_keep || o->vain[p] & VG_VAIN_MERGE) return 0;
   o->vain[p] |= VG_VAIN_MERGE;
   if (!vg_ball(o, p) || o->n_ball > VG_OLD_MAX) return 0;
   for (size_t k = 0; k < o->n_ball; k++) {
