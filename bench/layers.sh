@@ -23,28 +23,15 @@
 # "by CPU time" is the rate with the seconds of all growing scaled accordingly:
 # per core, as far as the disturbance was even.
 set -euo pipefail
-export LC_ALL=C
 
 root=$(cd "$(dirname "$0")/.." && pwd)
+# shellcheck source=bench/common.sh
+. "$root/bench/common.sh"
 build=$root/build/release
-work='' out='' data='' quick=0 runs=3 threads='1 2' cases=()
+work='' data='' quick=0 runs=3 threads='1 2'
 
-usage() { sed -n '2,/^# Layers with/p' "$0" | sed '$d; s/^# \{0,1\}//'; }
-die() { echo "bench/layers.sh: $*" >&2; exit 1; }
-
-while [ $# -gt 0 ]; do
-  case $1 in
-    --quick) quick=1 runs=1 ;;
-    --out|--build|--work|--runs|--threads|--data)
-      [ $# -gt 1 ] || { usage >&2; exit 2; }
-      declare "${1#--}=$2"
-      shift ;;
-    -h|--help) usage; exit 0 ;;
-    -*) usage >&2; exit 2 ;;
-    *) cases+=("$1") ;;
-  esac
-  shift
-done
+take_options "out build work runs threads data" quick "$@"
+[ $quick = 0 ] || runs=1
 
 # Isotropic cells that `vanguard demo` is asked for: with the layers, as
 # tetrahedra, 2, 5 and 10 million cells.
@@ -67,23 +54,12 @@ tmx1242        supersonic/tmx1242_wing_body.lb8.ugrid.xz            1-999 b 9 5e
 tnd6480        supersonic/tnd6480_delta_wing_body.lb8.ugrid.xz      1-999 b 15 5e6
 "
 
-if [ ! -x "$build/bin/vg_bench_layers" ]; then
-  cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release >&2
-  cmake --build "$build" >&2
-fi
+make_programs "$build" vg_bench_layers
 program=$build/bin/vg_bench_layers
 
-if [ -z "$work" ]; then
-  work=$(mktemp -d "${TMPDIR:-/tmp}/vanguard-layers.XXXXXX")
-  trap 'rm -rf "$work"' EXIT
-fi
-mkdir -p "$work"
+work_folder layers
 rows=$work/rows
 : > "$rows"
-
-wanted() {
-  [ ${#cases[@]} = 0 ] || printf '%s\n' "${cases[@]}" | grep -qx -- "$1"
-}
 
 run_case() {   # run_case NAME OPTION...
   local name=$1 t
@@ -97,7 +73,7 @@ run_case() {   # run_case NAME OPTION...
 
 for wing in wing wing-half wing-sharp; do
   wanted $wing || continue
-  for n in $sizes; do run_case $wing --demo $wing --cells $n; done
+  for n in $sizes; do run_case $wing --demo $wing --cells "$n"; done
 done
 if [ -n "$data" ] && [ $quick = 0 ]; then
   while read -r name file walls kind length reynolds; do
@@ -115,7 +91,7 @@ if [ -n "$data" ] && [ $quick = 0 ]; then
 fi
 [ -s "$rows" ] || die "no such case; see --help"
 
-say() { if [ -n "$out" ]; then tee "$out"; else cat; fi; }
+[ -z "$out" ] || : > "$out"
 {
   echo "Vanguard, $(uname -m), $(nproc --all) cores, $(date -u +%Y-%m-%d);" \
     "medians of $runs runs, load before $(cut -d' ' -f1 /proc/loadavg)."

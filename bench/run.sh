@@ -25,31 +25,16 @@
 # The column "/ HXT" holds against the faster of the two.
 # Needs: tetgen, gmsh, time (Debian packages of these names).
 set -euo pipefail
-export LC_ALL=C OMP_NUM_THREADS=1
+export OMP_NUM_THREADS=1
 
 root=$(cd "$(dirname "$0")/.." && pwd)
+# shellcheck source=bench/common.sh
+. "$root/bench/common.sh"
 build=$root/build/release
-work='' out='' meshcheck='' quick=0 runs=3 peers=1 cases=()
+work='' meshcheck='' quick=0 runs=3 no_peers=0
 TETGEN_OPTIONS=-pq1.414Ym
 
-usage() { sed -n '2,/^# One thread/p' "$0" | sed '$d; s/^# \{0,1\}//'; }
-die() { echo "bench/run.sh: $*" >&2; exit 1; }
-
-while [ $# -gt 0 ]; do
-  case $1 in
-    --quick) quick=1 ;;
-    --no-peers) peers=0 ;;
-    --out) out=${2:?}; shift ;;
-    --build) build=${2:?}; shift ;;
-    --work) work=${2:?}; shift ;;
-    --runs) runs=${2:?}; shift ;;
-    --meshcheck) meshcheck=${2:?}; shift ;;
-    -h|--help) usage; exit 0 ;;
-    -*) usage >&2; exit 2 ;;
-    *) cases+=("$1") ;;
-  esac
-  shift
-done
+take_options "out build work runs meshcheck" "quick no-peers" "$@"
 [ ${#cases[@]} -gt 0 ] || cases=(box-1M wing wing-half wing-sharp sphere-2M
                                  box-10M sphere-12M)
 
@@ -72,25 +57,14 @@ case_cells() {
 }
 is_large() { [ "$(case_cells "$1")" -gt 5000000 ]; }
 
-need() {
-  command -v "$1" > /dev/null || [ -x "$1" ] ||
-    die "$1 is not installed: apt-get install $2"
-}
 need /usr/bin/time time
-if [ $peers = 1 ]; then need tetgen tetgen; need gmsh gmsh; fi
+if [ $no_peers = 0 ]; then need tetgen tetgen; need gmsh gmsh; fi
 
-if [ ! -x "$build/bin/vanguard" ] || [ ! -x "$build/bin/vg_bench_peers" ]; then
-  cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release >&2
-  cmake --build "$build" >&2
-fi
+make_programs "$build" vanguard vg_bench_peers
 vanguard=$build/bin/vanguard
 helper=$build/bin/vg_bench_peers
 
-if [ -z "$work" ]; then
-  work=$(mktemp -d "${TMPDIR:-/tmp}/vanguard-bench.XXXXXX")
-  trap 'rm -rf "$work"' EXIT
-fi
-mkdir -p "$work"
+work_folder bench
 
 # Value of "key value" lines: field FILE KEY
 field() { awk -v k="$2" '$1 == k { print $2; exit }' "$1"; }
@@ -191,8 +165,6 @@ judge() {
     "$1/$3.lb8.ugrid" > "$1/$3.judge"
 }
 
-say() { if [ -n "$out" ]; then tee -a "$out"; else cat; fi; }
-
 one_case() {
   local name=$1 demo n=$runs d=$work/$1
   demo=$(case_demo "$name")
@@ -204,7 +176,7 @@ one_case() {
   local stem=$demo meshers=(vanguard)
   for ((i = 0; i < n; i++)); do
     run_vanguard "$d" "$stem" || die "$name: vanguard failed, see above"
-    [ $peers = 1 ] || continue
+    [ $no_peers = 0 ] || continue
     [ $i -gt 0 ] || prepare_peers "$d" "$stem"
     run_tetgen "$d" || echo "$name: TetGen failed" >&2
     hxt "$d" hxt peer.geo || echo "$name: HXT failed" >&2
