@@ -21,7 +21,7 @@
 #include "partition/store.h"
 
 /** Cells to a leaf, by default: measured, docs/performance.md. */
-#define VG_LEAF_CELLS 150000.0
+#define VG_LEAF_CELLS 300000.0
 
 struct vg_partition_options {
   struct vg_cut_rule rule;
