@@ -27,5 +27,7 @@ set(VG_PC_INCLUDEDIR "\${pcfiledir}/${includedir}")
 configure_file(cmake/vanguard.pc.in ${CMAKE_BINARY_DIR}/vanguard.pc @ONLY)
 install(FILES ${CMAKE_BINARY_DIR}/vanguard.pc
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+install(PROGRAMS share/slurm/vanguard.sbatch
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/vanguard)
 install(FILES LICENSE README.md CHANGELOG.md CITATION.cff
   DESTINATION ${CMAKE_INSTALL_DOCDIR})

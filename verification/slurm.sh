@@ -1,0 +1,163 @@
+#!/usr/bin/env bash
+# verification/slurm.sh: share/slurm/vanguard.sbatch under a Slurm of one host.
+#
+# usage: verification/slurm.sh [--vanguard PROGRAM] [--work DIR] [--cells N]
+#   --vanguard  the program (default build/release/bin/vanguard)
+#   --work      scratch folder, kept (default: a temporary one, removed)
+#   --cells     of the box that is meshed (default 2000000)
+# Starts munged, slurmctld and slurmd of its own on free ports, with all state
+# in the scratch folder, and ends them again. Two jobs of two ranks: one in
+# peace, and one that is told by Slurm that its time is up, goes back into the
+# queue and continues. Both must write the same files. Needs root (slurmd has
+# to change users) and Debian's slurm-wlm, munge and openmpi-bin.
+# Exit status: 0 as it should be, 1 a failure, 2 usage, 77 cannot be tried.
+set -euo pipefail
+
+root=$(cd "$(dirname "$0")/.." && pwd)
+# shellcheck source=bench/common.sh
+. "$root/bench/common.sh"
+vanguard=$root/build/release/bin/vanguard
+work='' cells=2000000
+take_options "vanguard work cells" "" "$@"
+
+for program in munged slurmctld slurmd sbatch scontrol mpirun; do
+  command -v $program > /dev/null || skip "no $program"
+done
+[ "$(id -u)" = 0 ] || skip "a Slurm of our own needs root"
+[ -x "$vanguard" ] || die "no program $vanguard: build it first"
+work_folder slurm
+work=$(cd "$work" && pwd)
+
+daemons=()
+clean_up() {
+  status=$?
+  [ ${#daemons[@]} = 0 ] || kill "${daemons[@]}" 2> /dev/null || true
+  wait
+  if [ $status != 0 ] && [ $status != 77 ]; then
+    tail -n 15 "$work"/*.log >&2 || true
+  fi
+  case $work in "${TMPDIR:-/tmp}"/vanguard-slurm.*) rm -rf "$work" ;; esac
+  exit $status
+}
+trap clean_up EXIT
+
+free_port() {   # from $1 on
+  local port=$1
+  while (: < "/dev/tcp/127.0.0.1/$port") 2> /dev/null; do
+    port=$((port + 1))
+  done
+  echo "$port"
+}
+
+start_slurm() {
+  local d=$work/slurm cores host port
+  host=$(hostname -s)
+  cores=$(nproc)
+  port=$(free_port 16817)
+  rm -rf "$d"
+  mkdir -p "$d/state" "$d/spool"
+  chmod 755 "$work" "$d"
+  (umask 077; head -c 1024 /dev/urandom > "$d/munge.key")
+  munged --foreground --force --key-file "$d/munge.key" \
+    --socket "$d/munge.socket" --pid-file "$d/munged.pid" \
+    --seed-file "$d/munge.seed" > "$work/munged.log" 2>&1 &
+  daemons+=($!)
+  cat > "$d/slurm.conf" << CONF
+ClusterName=vanguard
+SlurmctldHost=$host(127.0.0.1)
+SlurmctldPort=$port
+SlurmdPort=$(free_port $((port + 1)))
+AuthType=auth/munge
+AuthInfo=socket=$d/munge.socket
+CredType=cred/munge
+SlurmUser=root
+SlurmdUser=root
+StateSaveLocation=$d/state
+SlurmdSpoolDir=$d/spool
+SlurmctldPidFile=$d/slurmctld.pid
+SlurmdPidFile=$d/slurmd.pid
+ProctrackType=proctrack/pgid
+TaskPlugin=task/none
+SelectType=select/cons_tres
+SelectTypeParameters=CR_Core
+SchedulerType=sched/backfill
+SchedulerParameters=sched_interval=1,bf_interval=1,requeue_setup_env_fail
+MpiDefault=none
+ReturnToService=2
+KillWait=20
+NodeName=$host NodeAddr=127.0.0.1 CPUs=$cores State=UNKNOWN
+PartitionName=all Nodes=$host Default=YES MaxTime=INFINITE State=UP
+CONF
+  export SLURM_CONF=$d/slurm.conf
+  slurmctld -D -i > "$work/slurmctld.log" 2>&1 &
+  daemons+=($!)
+  slurmd -D > "$work/slurmd.log" 2>&1 &
+  daemons+=($!)
+  for _ in $(seq 100); do
+    [ "$(sinfo -h -o %t 2> /dev/null || true)" != idle ] || return 0
+    sleep 0.2
+  done
+  tail -n 5 "$work"/*.log >&2 || true
+  skip "Slurm does not come up on this host"
+}
+
+# submit NAME: a job; its id.
+submit() {
+  PROJECT=$work/box OUT=$work/$1 VANGUARD=$vanguard \
+    OPTIONS='--leaf-cells 30000' \
+    OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
+    sbatch --parsable --job-name "$1" --output "$work/$1.log" --ntasks 2 \
+    --ntasks-per-node 2 --cpus-per-task $(($(nproc) > 1 ? $(nproc) / 2 : 1)) \
+    --overcommit "$root/share/slurm/vanguard.sbatch"
+}
+
+state() { scontrol show job "$1" -o | sed -n 's/.* JobState=\([A-Z]*\) .*/\1/p'; }
+await_end() {   # await_end JOB SECONDS: its last state
+  local s=''
+  for _ in $(seq "$2"); do
+    s=$(state "$1")
+    case $s in PENDING|RUNNING|COMPLETING|CONFIGURING|REQUEUED) sleep 1 ;;
+      *) break ;;
+    esac
+  done
+  echo "$s"
+}
+
+start_slurm
+echo "Slurm $(sinfo --version | cut -d' ' -f2), $(nproc) cores"
+"$vanguard" demo box --cells "$cells" --out "$work" > "$work/demo.log"
+
+job=$(submit peace)
+end=$(await_end "$job" 600)
+[ "$end" = COMPLETED ] || die "the undisturbed job ended as $end"
+
+# The signal that --signal=B:USR1@120 sends, without waiting for a time limit
+# (Slurm's are minutes). As soon as something is kept.
+job=$(submit told)
+for _ in $(seq 300); do
+  [ "$(find "$work/told/box.run" -type f 2> /dev/null | wc -l)" -lt 6 ] || break
+  sleep 0.1
+done
+scancel --batch --signal USR1 "$job"
+for _ in $(seq 60); do
+  [ "$(state "$job")" != RUNNING ] || { sleep 1; continue; }
+  break
+done
+grep -q 'told to stop (limit)' "$work/told.log" ||
+  die "the job was not told in time: more --cells"
+grep -q 'back in the queue' "$work/told.log" || die "not requeued"
+# Slurm holds a requeued job back for a while; that is not ours to wait for.
+scontrol update jobid="$job" starttime=now > /dev/null 2>&1 || true
+end=$(await_end "$job" 900)
+[ "$end" = COMPLETED ] || die "the resumed job ended as $end"
+grep -q 'continuing from' "$work/told.log" || die "it did not continue"
+
+n=0
+for file in "$work"/peace/box.*; do
+  case $file in *.json|*.deck) continue ;; esac
+  cmp "$file" "$work/told/${file##*/}" || die "files differ"
+  n=$((n + 1))
+done
+[ $n -ge 3 ] || die "only $n files were compared"
+[ ! -e "$work/told/box.run" ] || die "the run directory is still there"
+echo "requeued, continued, $n files the same"
