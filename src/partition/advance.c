@@ -9,6 +9,7 @@
 #include "partition/bytes.h"
 #include "partition/model.h"
 #include "partition/node.h"
+#include "partition/repair.h"
 #include "partition/select.h"
 
 static double now(void)
@@ -634,9 +635,10 @@ vg_status vg_partition_grow(struct vg_comm *comm, const struct vg_mesh *front,
   if (p->options.threads < 1) p->options.threads = 1;
   st = run_tasks(p, comm, spans, err);
   p->report.wall = now() - t0;
+  if (st == VG_OK) st = vg_partition_repair(p, comm, err);
   if (st == VG_OK) st = vg_partition_number(p, comm, err);
   if (st == VG_OK) st = sum_report(p, comm, err);
-  p->report.number = now() - t0 - p->report.wall;
+  p->report.number = now() - t0 - p->report.wall - p->report.repair;
   if (st == VG_OK)
     st = within_limit(p, (double)p->slices.n_cell[VG_SLICE_TET], "has", err);
   *report = p->report;

@@ -52,6 +52,15 @@ struct vg_partition_report {
   uint64_t n_outgrown;       /* leaves that outgrew their estimate and were
                                 cut again */
   uint64_t n_found;          /* tasks whose outcome was in the store */
+  uint64_t n_repair;         /* bad regions beside interfaces; those that got
+                                better */
+  uint64_t n_repaired;
+  uint64_t n_repair_cell;    /* cells in all those regions */
+  uint64_t n_repair_bad;     /* below VG_SHAPE_AIM among them, before, after */
+  uint64_t n_repair_bad_left;
+  double repair_worst;       /* and the worst one (core/shape.h) */
+  double repair_worst_left;
+  double repair;             /* seconds of repairs */
   double estimate;           /* cells expected at the start */
   double wall;               /* seconds of the engine */
   double number;             /* seconds of numbering */

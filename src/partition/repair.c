@@ -1,0 +1,528 @@
+/* Repairs: cells gathered by cluster, mended, and put back as pieces. */
+#include "partition/repair.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "partition/repair_parts.h"
+
+/* Balls to a cluster: a few hundred cells each. What is left over is done in
+ * further rounds. */
+enum { MOST_BALLS = 100, ROUNDS = 3 };
+
+static double now(void)
+{
+  struct timespec t;
+
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* A cell of a piece that a cluster has. */
+struct pick { uint32_t cluster, cell; };
+
+/* One round. */
+struct repair {
+  struct vg_partition *p;
+  struct vg_owners owners;
+  struct vg_balls balls;
+  struct picks { size_t n, cap; struct pick *at; int refused; } *pick;
+                             /* [n_piece] by cluster */
+  size_t n_block, cap_block;
+  struct vg_block *block;    /* of the clusters of this rank, by cluster and
+                                path */
+  size_t n_job;
+  size_t *first;             /* [n_job + 1] block */
+  struct vg_mended *mended;  /* [n_job] */
+  vg_status *st;             /* [n_job] */
+  uint64_t *better;          /* [n_cluster] on all ranks */
+  size_t number;             /* clusters of earlier rounds */
+};
+
+static void repair_free(struct repair *r)
+{
+  for (size_t k = 0; r->pick && k < r->p->n_piece; k++) free(r->pick[k].at);
+  for (size_t k = 0; k < r->n_block; k++) vg_block_release(&r->block[k]);
+  for (size_t k = 0; r->mended && k < r->n_job; k++)
+    vg_mended_release(&r->mended[k]);
+  free(r->pick);
+  free(r->block);
+  free(r->first);
+  free(r->mended);
+  free(r->st);
+  free(r->better);
+  free(r->owners.at);
+  vg_balls_release(&r->balls);
+}
+
+/* --- which cells --------------------------------------------------------- */
+
+static int by_cluster(const void *a, const void *b)
+{
+  const struct pick *s = a, *t = b;
+
+  if (s->cluster != t->cluster) return s->cluster < t->cluster ? -1 : 1;
+  return s->cell < t->cell ? -1 : s->cell > t->cell;
+}
+
+/* A cell with corners in the balls of two clusters is the first one's. */
+static void pick_in(struct repair *r, size_t k, const uint32_t *in)
+{
+  const struct vg_piece *q = &r->p->piece[k];
+  struct picks *s = &r->pick[k];
+
+  for (size_t c = 0; c < q->n_cell; c++) {
+    uint32_t least = in[q->cell[c][0]];
+
+    for (int i = 1; i < 4; i++)
+      if (in[q->cell[c][i]] < least) least = in[q->cell[c][i]];
+    if (least == VG_NO_CLUSTER) continue;
+    if (vg_reserve(&s->at, &s->cap, s->n + 1, sizeof *s->at)) {
+      s->refused = 1;
+      return;
+    }
+    s->at[s->n++] = (struct pick){ least, (uint32_t)c };
+  }
+  if (s->n) qsort(s->at, s->n, sizeof *s->at, by_cluster);
+}
+
+static void pick_body(void *context, size_t first, size_t end, int worker)
+{
+  struct repair *r = context;
+
+  (void)worker;
+  for (size_t k = first; k < end; k++) {
+    const struct vg_piece *q = &r->p->piece[k];
+    size_t n = q->n_in + q->n_point;
+    uint32_t *in = vg_alloc(n, sizeof *in), any = VG_NO_CLUSTER;
+
+    r->pick[k].refused = !in;
+    for (size_t i = 0; in && i < n; i++) {
+      in[i] = vg_balls_at(&r->balls, q->x[i]);
+      any &= in[i];
+    }
+    if (in && any != VG_NO_CLUSTER) pick_in(r, k, in);
+    free(in);
+  }
+}
+
+static vg_status pick(struct repair *r, struct vg_error *err)
+{
+  size_t n = r->p->n_piece;
+
+  r->pick = vg_calloc(n, sizeof *r->pick);
+  if (!r->pick) return vg_fail_memory(err, "repairs");
+  vg_parallel_for(r->p->options.threads, n, 1, pick_body, r);
+  for (size_t k = 0; k < n; k++)
+    if (r->pick[k].refused) return vg_fail_memory(err, "repairs");
+  return VG_OK;
+}
+
+/* --- to the ranks that mend ---------------------------------------------- */
+
+/* Corners in the ball of a later cluster: that one does not get the cell, so
+ * it must hold them. Lists of points for each such cluster, without cells. */
+static void put_holds(struct repair *r, size_t k, const struct pick *pick,
+                      struct vg_post *post)
+{
+  const struct vg_piece *q = &r->p->piece[k];
+
+  for (int i = 0; i < 4; i++) {
+    uint32_t v = q->cell[pick->cell][i];
+    uint32_t cluster = vg_balls_at(&r->balls, q->x[v]);
+    uint64_t name = v < q->n_in ? q->in[v]
+                                : VG_POINT_NAME(q->serial, v - q->n_in);
+    uint8_t hold = 1;
+    struct vg_block b = { .cluster = cluster, .n_point = 1, .name = &name,
+                          .x = &q->x[v], .hold = &hold };
+
+    if (cluster == VG_NO_CLUSTER || cluster == pick->cluster) continue;
+    memcpy(b.path, q->path, sizeof b.path);
+    vg_block_put(&post->to[cluster % (uint32_t)r->p->size], &b);
+  }
+}
+
+/* The cells of one cluster: pick [n]. number: [n points], VG_NO_CLUSTER. */
+static void fill_block(const struct vg_piece *q, size_t n,
+                       const struct pick *pick, uint32_t *number,
+                       struct vg_block *b)
+{
+  b->cluster = pick->cluster;
+  b->n_point = 0;
+  b->n_cell = n;
+  memcpy(b->path, q->path, sizeof b->path);
+  for (size_t c = 0; c < n; c++)
+    for (int i = 0; i < 4; i++) {
+      uint32_t v = q->cell[pick[c].cell][i];
+
+      if (number[v] == VG_NO_CLUSTER) {
+        b->name[b->n_point] = v < q->n_in
+                                ? q->in[v]
+                                : VG_POINT_NAME(q->serial, v - q->n_in);
+        memcpy(b->x[b->n_point], q->x[v], sizeof *b->x);
+        number[v] = (uint32_t)b->n_point++;
+      }
+      b->cell[c][i] = number[v];
+    }
+  for (size_t c = 0; c < n; c++)
+    for (int i = 0; i < 4; i++)
+      number[q->cell[pick[c].cell][i]] = VG_NO_CLUSTER;
+}
+
+static vg_status put_piece(struct repair *r, size_t k, struct vg_post *post,
+                           struct vg_error *err)
+{
+  const struct vg_piece *q = &r->p->piece[k];
+  const struct picks *s = &r->pick[k];
+  size_t n_point = q->n_in + q->n_point, most = 4 * s->n;
+  uint32_t *number = vg_alloc(n_point, sizeof *number);
+  struct vg_block b = { 0 };
+
+  b.name = vg_alloc(most, sizeof *b.name);
+  b.x = vg_alloc(most, sizeof *b.x);
+  b.hold = vg_calloc(most, 1);
+  b.cell = vg_alloc(s->n, sizeof *b.cell);
+  if (!number || !b.name || !b.x || !b.hold || !b.cell) {
+    free(number);
+    vg_block_release(&b);
+    return vg_fail_memory(err, "repairs");
+  }
+  memset(number, 0xff, n_point * sizeof *number);
+  for (size_t first = 0, end; first < s->n; first = end) {
+    for (end = first; end < s->n &&
+                      s->at[end].cluster == s->at[first].cluster; end++)
+      put_holds(r, k, &s->at[end], post);
+    fill_block(q, end - first, &s->at[first], number, &b);
+    vg_block_put(&post->to[b.cluster % (uint32_t)r->p->size], &b);
+  }
+  free(number);
+  vg_block_release(&b);
+  return VG_OK;
+}
+
+/* What is only held comes last: its points have no cells of their own, so
+ * their order does not matter. */
+static int by_path(const void *a, const void *b)
+{
+  const struct vg_block *s = a, *t = b;
+
+  if (s->cluster != t->cluster) return s->cluster < t->cluster ? -1 : 1;
+  if (!s->n_cell != !t->n_cell) return s->n_cell ? -1 : 1;
+  return strcmp(s->path, t->path);
+}
+
+static vg_status take_blocks(struct repair *r, const struct vg_bytes *from,
+                             struct vg_error *err)
+{
+  for (int k = 0; k < r->p->size; k++) {
+    struct vg_reader in = { .data = from[k].data, .n = from[k].n };
+
+    while (in.at < in.n) {
+      if (vg_reserve(&r->block, &r->cap_block, r->n_block + 1,
+                     sizeof *r->block))
+        return vg_fail_memory(err, "repairs");
+      vg_block_get(&in, &r->block[r->n_block]);
+      if (in.bad) return vg_fail_memory(err, "repairs");
+      r->n_block++;
+    }
+  }
+  if (r->n_block)
+    qsort(r->block, r->n_block, sizeof *r->block, by_path);
+  r->first = vg_alloc(r->n_block + 1, sizeof *r->first);
+  if (!r->first) return vg_fail_memory(err, "repairs");
+  for (size_t k = 0; k < r->n_block; k++)
+    if (!k || r->block[k].cluster != r->block[k - 1].cluster)
+      r->first[r->n_job++] = k;
+  r->first[r->n_job] = r->n_block;
+  r->mended = vg_calloc(r->n_job, sizeof *r->mended);
+  r->st = vg_calloc(r->n_job, sizeof *r->st);
+  return r->mended && r->st ? VG_OK : vg_fail_memory(err, "repairs");
+}
+
+static vg_status send_cells(struct repair *r, struct vg_comm *comm,
+                            struct vg_error *err)
+{
+  struct vg_post post = { 0 };
+  struct vg_bytes *from = NULL;
+  vg_status st = pick(r, err);
+
+  if (st == VG_OK) st = vg_post_new(&post, r->p->size, err);
+  for (size_t k = 0; st == VG_OK && k < r->p->n_piece; k++)
+    if (r->pick[k].n) st = put_piece(r, k, &post, err);
+  st = vg_post_send(&post, comm, st, &from, err);
+  if (st == VG_OK) st = take_blocks(r, from, err);
+  vg_bytes_release(from, r->p->size);
+  return st;
+}
+
+/* --- mending ------------------------------------------------------------- */
+
+static void mend_body(void *context, size_t first, size_t end, int worker)
+{
+  struct repair *r = context;
+
+  (void)worker;
+  for (size_t k = first; k < end; k++)
+    r->st[k] = vg_repair_mend(r->first[k + 1] - r->first[k],
+                              &r->block[r->first[k]], &r->balls,
+                              &r->mended[k], NULL);
+}
+
+static vg_status mend(struct repair *r, struct vg_error *err)
+{
+  vg_parallel_for(r->p->options.threads, r->n_job, 1, mend_body, r);
+  for (size_t k = 0; k < r->n_job; k++)
+    if (r->st[k] < 0)
+      return vg_fail(err, r->st[k], "cells beside interfaces could not be "
+                     "mended: %s", vg_status_name(r->st[k]));
+  return VG_OK;
+}
+
+/* Which clusters got better, and what that came to, on all ranks. */
+static vg_status tell(struct repair *r, struct vg_comm *comm,
+                      struct vg_error *err)
+{
+  struct vg_partition_report *to = &r->p->report;
+  size_t n = r->balls.n_cluster;
+  vg_status st;
+
+  r->better = vg_calloc(n, sizeof *r->better);
+  st = vg_comm_agree(comm, r->better ? VG_OK : vg_fail_memory(err, "repairs"),
+                     err);
+  if (st < 0) return st;
+  for (size_t k = 0; k < r->n_job; k++) {
+    const struct vg_mended *m = &r->mended[k];
+
+    r->better[r->block[r->first[k]].cluster] = (uint64_t)m->better;
+    to->n_repair_cell += m->n_cell;
+    to->n_repair_bad += m->n_bad;
+    to->n_repair_bad_left += m->n_bad_left;
+    if (m->worst < to->repair_worst) to->repair_worst = m->worst;
+    if (m->worst_left < to->repair_worst_left)
+      to->repair_worst_left = m->worst_left;
+  }
+  if (n) st = vg_comm_sum(comm, n, r->better, err);
+  to->n_repair += n;
+  for (size_t k = 0; st == VG_OK && k < n; k++)
+    to->n_repaired += r->better[k];
+  return st;
+}
+
+/* --- putting back -------------------------------------------------------- */
+
+/* Drop cells that clusters took, and points of others then not used. */
+static vg_status shrink(struct vg_piece *q, const struct picks *s,
+                        const uint64_t *better, struct vg_error *err)
+{
+  size_t n = q->n_in + q->n_point, kept = 0, n_in = 0;
+  uint8_t *gone = vg_calloc(q->n_cell, 1);
+  uint32_t *to = vg_alloc(n, sizeof *to);
+
+  if (!gone || !to) {
+    free(gone);
+    free(to);
+    return vg_fail_memory(err, "repairs");
+  }
+  memset(to, 0xff, n * sizeof *to);
+  for (size_t k = 0; k < s->n; k++)
+    gone[s->at[k].cell] = (uint8_t)better[s->at[k].cluster];
+  for (size_t c = 0; c < q->n_cell; c++) {
+    if (gone[c]) continue;
+    memmove(q->cell[kept], q->cell[c], sizeof *q->cell);
+    for (int i = 0; i < 4; i++) to[q->cell[kept][i]] = 0;
+    kept++;
+  }
+  q->n_cell = kept;
+  for (size_t k = 0; k < q->n_in; k++) {
+    if (to[k] == UINT32_MAX) continue;
+    to[k] = (uint32_t)n_in;
+    q->in[n_in] = q->in[k];
+    memmove(q->x[n_in++], q->x[k], sizeof *q->x);
+  }
+  for (size_t k = 0; k < q->n_point; k++)
+    to[q->n_in + k] = (uint32_t)(n_in + k);
+  memmove(q->x + n_in, q->x + q->n_in, q->n_point * sizeof *q->x);
+  q->n_in = n_in;
+  for (size_t c = 0; c < kept; c++)
+    for (int i = 0; i < 4; i++) q->cell[c][i] = to[q->cell[c][i]];
+  free(gone);
+  free(to);
+  return VG_OK;
+}
+
+static vg_status remove_cells(struct repair *r, struct vg_error *err)
+{
+  for (size_t k = 0; k < r->p->n_piece; k++) {
+    const struct picks *s = &r->pick[k];
+    size_t n = 0;
+    vg_status st;
+
+    while (n < s->n && !r->better[s->at[n].cluster]) n++;
+    if (n == s->n) continue;
+    st = shrink(&r->p->piece[k], s, r->better, err);
+    if (st < 0) return st;
+  }
+  return VG_OK;
+}
+
+/* Points that moved, to those who own them. */
+struct move { uint64_t name; double x[3]; };
+
+static void put_moves(const struct repair *r, struct vg_post *post)
+{
+  for (size_t k = 0; k < r->n_job; k++) {
+    const struct vg_mended *m = &r->mended[k];
+
+    for (size_t i = 0; m->better && i < m->n_moved; i++) {
+      const struct vg_owner *o = vg_owners_find(&r->owners, m->moved[i]);
+      struct move move = { m->moved[i],
+                           { m->x[i][0], m->x[i][1], m->x[i][2] } };
+
+      if (o) vg_put(&post->to[o->rank], 1, sizeof move, &move);
+    }
+  }
+}
+
+static void take_moves(const struct repair *r, const struct vg_bytes *from)
+{
+  struct move move;
+
+  for (int k = 0; k < r->p->size; k++)
+    for (size_t at = 0; at + sizeof move <= from[k].n; at += sizeof move) {
+      const struct vg_owner *o;
+      struct vg_piece *q;
+
+      memcpy(&move, from[k].data + at, sizeof move);
+      o = vg_owners_find(&r->owners, move.name);
+      q = &r->p->piece[o->piece];
+      memcpy(q->x[q->n_in + (uint32_t)move.name], move.x, sizeof move.x);
+    }
+}
+
+static vg_status add_pieces(struct repair *r, struct vg_error *err)
+{
+  struct vg_partition *p = r->p;
+
+  if (vg_reserve(&p->piece, &p->cap_piece, p->n_piece + r->n_job,
+                 sizeof *p->piece))
+    return vg_fail_memory(err, "repairs");
+  for (size_t k = 0; k < r->n_job; k++) {
+    struct vg_piece *q = &r->mended[k].piece;
+
+    if (!r->mended[k].better) continue;
+    q->kind = VG_SPAN_REPAIR;
+    q->serial = vg_partition_serial(p);
+    snprintf(q->path, sizeof q->path, "R%06zu",
+             r->number + r->block[r->first[k]].cluster);
+    p->piece[p->n_piece++] = *q;
+    memset(q, 0, sizeof *q);
+  }
+  return VG_OK;
+}
+
+static vg_status put_back(struct repair *r, struct vg_comm *comm,
+                          struct vg_error *err)
+{
+  struct vg_post post = { 0 };
+  struct vg_bytes *from = NULL;
+  vg_status st = remove_cells(r, err);
+
+  if (st == VG_OK) st = vg_post_new(&post, r->p->size, err);
+  if (st == VG_OK) put_moves(r, &post);
+  st = vg_post_send(&post, comm, st, &from, err);
+  if (st < 0) return st;
+  take_moves(r, from);
+  vg_bytes_release(from, r->p->size);
+  /* the picks were those of the pieces there were */
+  for (size_t k = 0; k < r->p->n_piece; k++) free(r->pick[k].at);
+  free(r->pick);
+  r->pick = NULL;
+  return vg_comm_agree(comm, add_pieces(r, err), err);
+}
+
+/* --- the whole ----------------------------------------------------------- */
+
+static vg_status round_of(struct repair *r, struct vg_comm *comm, size_t n,
+                          const struct vg_spot *spot, struct vg_error *err)
+{
+  vg_status st = vg_comm_agree(comm, vg_balls_new(n, spot, MOST_BALLS,
+                                                  &r->balls, err), err);
+
+  if (st == VG_OK)
+    st = vg_comm_agree(comm, send_cells(r, comm, err), err);
+  if (st == VG_OK) st = vg_comm_agree(comm, mend(r, err), err);
+  if (st == VG_OK) st = tell(r, comm, err);
+  return st == VG_OK ? put_back(r, comm, err) : st;
+}
+
+/* Spots that this round left for the next. */
+static size_t left_over(const struct vg_balls *b, struct vg_spot *spot)
+{
+  size_t n = 0;
+
+  for (size_t k = 0; k < b->n; k++)
+    if (b->cluster[k] == VG_NO_CLUSTER) spot[n++] = spot[k];
+  return n;
+}
+
+static vg_status all_rounds(struct vg_partition *p, struct vg_comm *comm,
+                            struct vg_error *err)
+{
+  struct vg_spot *spot = NULL;
+  size_t n = 0, number = 0;
+  vg_status st = VG_OK;
+
+  for (int k = 0; st == VG_OK && k < ROUNDS && (!k || n); k++) {
+    struct repair r = { .p = p, .number = number };
+
+    st = vg_owners_gather(p, comm, &r.owners, err);
+    if (st == VG_OK && !k)
+      st = vg_repair_find(p, comm, &r.owners, &n, &spot, err);
+    if (st == VG_OK && n) {
+      st = round_of(&r, comm, n, spot, err);
+      number += r.balls.n_cluster;
+      if (st == VG_OK) n = left_over(&r.balls, spot);
+    }
+    repair_free(&r);
+  }
+  free(spot);
+  return st;
+}
+
+/* Sums and extremes over all ranks. */
+static vg_status agree_report(struct vg_partition *p, struct vg_comm *comm,
+                              struct vg_error *err)
+{
+  struct vg_partition_report *r = &p->report;
+  uint64_t v[3] = {r->n_repair_cell, r->n_repair_bad, r->n_repair_bad_left};
+  double least[2] = {-r->repair_worst, -r->repair_worst_left};
+  vg_status st = vg_comm_sum(comm, 3, v, err);
+
+  if (st == VG_OK) st = vg_comm_max(comm, 2, least, err);
+  if (st < 0) return st;
+  r->n_repair_cell = v[0];
+  r->n_repair_bad = v[1];
+  r->n_repair_bad_left = v[2];
+  r->repair_worst = -least[0];
+  r->repair_worst_left = -least[1];
+  return VG_OK;
+}
+
+vg_status vg_partition_repair(struct vg_partition *p, struct vg_comm *comm,
+                              struct vg_error *err)
+{
+  double t0 = now();
+  vg_status st;
+
+  /* the regular tetrahedron, where there is nothing to do */
+  p->report.repair_worst = p->report.repair_worst_left = 8.0 / 9;
+  st = all_rounds(p, comm, err);
+  if (st == VG_OK) st = agree_report(p, comm, err);
+  p->report.repair = now() - t0;
+  return st;
+}

@@ -1,0 +1,110 @@
+/* partition/repair_parts.h: what the steps of the repair share. */
+#ifndef VG_PARTITION_REPAIR_PARTS_H
+#define VG_PARTITION_REPAIR_PARTS_H
+
+#include "core/optimise.h"
+#include "partition/bytes.h"
+#include "partition/repair.h"
+
+#define VG_NO_CLUSTER UINT32_MAX
+
+/* --- who has which piece (repair_find.c) --------------------------------- */
+
+struct vg_owner { uint32_t serial, rank, piece; };
+
+struct vg_owners { size_t n; struct vg_owner *at; };  /* by serial */
+
+/** Pieces of all ranks. Collective. */
+vg_status vg_owners_gather(const struct vg_partition *p, struct vg_comm *comm,
+                           struct vg_owners *out, struct vg_error *err);
+
+/** Whose point is this? NULL: the boundary's. */
+const struct vg_owner *vg_owners_find(const struct vg_owners *o,
+                                      uint64_t name);
+
+/** A list for each of the ranks. */
+struct vg_post { int size; struct vg_writer *to; };
+
+vg_status vg_post_new(struct vg_post *post, int size, struct vg_error *err);
+void vg_post_release(struct vg_post *post);
+
+/** Give each rank its list. from out: [size], see vg_bytes_release.
+ * Collective; st: this rank's status so far. */
+vg_status vg_post_send(struct vg_post *post, struct vg_comm *comm,
+                       vg_status st, struct vg_bytes **from,
+                       struct vg_error *err);
+void vg_bytes_release(struct vg_bytes *b, int size);
+
+/* --- where (repair_find.c, repair_balls.c) ------------------------------- */
+
+/* A ball around a bad cell. */
+struct vg_spot { double at[3], radius; };
+
+/** Balls around the bad cells of all ranks that have a corner on an
+ * interface, by their coordinates. Collective. */
+vg_status vg_repair_find(struct vg_partition *p, struct vg_comm *comm,
+                         const struct vg_owners *owners, size_t *n,
+                         struct vg_spot **out, struct vg_error *err);
+
+enum { VG_LEVEL_MAX = 64 };
+
+/* Balls, to be found by points in them. */
+struct vg_balls {
+  size_t n;
+  const struct vg_spot *spot;  /* [n] borrowed */
+  uint32_t *cluster;         /* [n] or VG_NO_CLUSTER: to be done later */
+  size_t n_cluster;
+  int n_level, level[VG_LEVEL_MAX];  /* binary exponents of the radii */
+  double share[VG_LEVEL_MAX];  /* grid cells of each level to a length */
+  uint64_t mask;
+  uint32_t *first, *ball;    /* [mask + 2] into ball: by hash of grid cells */
+};
+
+/** Join balls that overlap to clusters, numbered by their first ball. Balls
+ * that would make a cluster of more than `most` are left for later. */
+vg_status vg_balls_new(size_t n, const struct vg_spot *spot, size_t most,
+                       struct vg_balls *out, struct vg_error *err);
+void vg_balls_release(struct vg_balls *b);
+
+/** The cluster in whose balls x is, or VG_NO_CLUSTER. Threads: safe. */
+uint32_t vg_balls_at(const struct vg_balls *b, const double x[3]);
+
+/* --- what (repair_mend.c) ------------------------------------------------ */
+
+/* Cells of one piece for a cluster, as they travel. */
+struct vg_block {
+  uint32_t cluster;
+  char path[VG_PATH_MAX];    /* of the piece */
+  uint64_t n_point, n_cell;
+  uint64_t *name;            /* [n_point] */
+  double (*x)[3];            /* [n_point] */
+  uint8_t *hold;             /* [n_point] 1: in a ball, but not all its cells
+                                are the cluster's */
+  uint32_t (*cell)[4];       /* [n_cell] */
+};
+
+void vg_block_release(struct vg_block *b);
+void vg_block_put(struct vg_writer *w, const struct vg_block *b);
+/** Sets r->bad, and leaves *b empty, where the data cannot be. */
+void vg_block_get(struct vg_reader *r, struct vg_block *b);
+
+/* What became of a cluster. */
+struct vg_mended {
+  int better;                /* 0: the cells stay as they were */
+  uint64_t n_cell;           /* of the cluster */
+  uint64_t n_bad, n_bad_left;  /* cells below VG_SHAPE_AIM before, after */
+  double worst, worst_left;  /* as vg_shape */
+  struct vg_piece piece;     /* without path and serial */
+  size_t n_moved;
+  uint64_t *moved;           /* [n_moved] points of others that moved */
+  double (*x)[3];            /* [n_moved] to here */
+};
+
+void vg_mended_release(struct vg_mended *m);
+
+/** Mend the cells of a cluster. block: [n] by path. */
+vg_status vg_repair_mend(size_t n, const struct vg_block *block,
+                         const struct vg_balls *balls, struct vg_mended *out,
+                         struct vg_error *err);
+
+#endif
