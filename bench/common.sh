@@ -84,3 +84,70 @@ calc() {
   awk "${set[@]}" "BEGIN { print $text }"
 }
 holds() { awk "BEGIN { exit !($*) }"; }   # holds 1.02 '<=' 1.1
+
+# Open MPI asks twice before it starts anything for root.
+if [ "$(id -u)" = 0 ]; then
+  export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+fi
+
+# launch RANKS THREADS COMMAND...: bound to cores where there are enough. One
+# rank needs no launcher.
+launch() {
+  local ranks=$1 threads=$2 how=()
+  shift 2
+  if [ "$ranks" = 1 ]; then
+    "$@"
+    return
+  fi
+  if [ $((ranks * threads)) -le "$(nproc)" ]; then
+    how=(--map-by "slot:PE=$threads" --bind-to core)
+  else
+    how=(--oversubscribe --bind-to none)
+  fi
+  mpirun -n "$ranks" "${how[@]}" "$@"
+}
+
+# digest FOLDER: of all its files that hold results and no times.
+digest() {
+  (cd "$1" && find . -type f ! -name '*.json' ! -name '*.deck' -print0 |
+    sort -z | xargs -0r sha256sum | sha256sum | cut -c1-16)
+}
+
+# run_mesh VANGUARD FOLDER RANKS THREADS OPTION...: vanguard mesh with its
+# record, timed. FOLDER/row.json: wall, cpu (user and system time of all
+# ranks), peak_mb (of the largest process), and what report and record say.
+# Status as the mesher's; its words are in FOLDER/log.
+run_mesh() {
+  local vanguard=$1 d=$2 ranks=$3 threads=$4 status=0 report record
+  shift 4
+  rm -rf "$d"
+  mkdir -p "$d/out"
+  # Around all of it: a launcher's time is that of its ranks.
+  local script_text
+  script_text=$(declare -f launch)
+  /usr/bin/time -o "$d/time" -f '%e %U %S %M' bash -c "$script_text
+    launch \"\$@\"" - "$ranks" "$threads" "$vanguard" mesh --quiet --out \
+    "$d/out" --threads "$threads" --timeline "$@" > "$d/log" 2>&1 || status=$?
+  [ $status = 0 ] || return $status
+  report=$(echo "$d"/out/*.report.json)
+  record=$(echo "$d"/out/*.timeline.json)
+  cp "$record" "$d/record.json"
+  jq -n -c --slurpfile r "$report" --slurpfile t "$record" \
+    --arg time "$(tail -1 "$d/time")" --arg options "$*" '
+    ($time | split(" ") | map(tonumber)) as $s | $r[0].partition as $p |
+    {ranks: $t[0].facts.ranks, threads: $t[0].facts.threads,
+     options: $options, wall: $s[0], cpu: ($s[1] + $s[2]),
+     peak_mb: ($s[3] / 1024), cells: $t[0].facts.cells,
+     points: $t[0].facts.points, estimate: $p.estimate, leaves: $p.leaves,
+     cuts: $p.cuts, tasks: ($t[0].spans | length),
+     zone_share: ($p.zone_cells / $t[0].facts.cells),
+     busy: $p.busy, imbalance: $p.imbalance,
+     memory_mb: ($p.memory_of_all_ranks_bytes / 1048576),
+     angle_min: ($r[0].field // $r[0].mesh).angle_min,
+     valid: $r[0].mesh.valid,
+     seconds: ($t[0].facts | with_entries(select(.key | startswith("seconds_"))
+               | .key |= ltrimstr("seconds_")))}' > "$d/row.json"
+}
+get() { jq -r "$2" "$1"; }   # get FILE EXPRESSION
+median() { sort -g | awk '{ v[NR] = $1 } END {
+  print NR % 2 ? v[(NR + 1) / 2] : (v[NR / 2] + v[NR / 2 + 1]) / 2 }'; }

@@ -1,0 +1,41 @@
+# bench/aircraft.sh: surfaces of the data folder, and how they are meshed with
+# layers. Sourced after common.sh, with `vanguard` the program.
+# shellcheck shell=bash disable=SC2034,SC2154 # for, and from, the caller
+
+# name, file below the data folder, patches that are walls (all: a body in open
+# air), mean chord, Reynolds number; chords without a source are read off the
+# bounding box.
+aircraft_table="
+dlr_f6_coarse transport/dlr_f6_wbnp_half_coarse.lb8.ugrid.xz 1-123 141.2 3e6
+dlr_f6_medium transport/dlr_f6_wbnp_half_medium.lb8.ugrid.xz 1-123 141.2 3e6
+onera_m6      transport/onera_m6_sharp_te_farfield.lb8.ugrid.xz 3-12 0.646 11.72e6
+30p30n_medium highlift/30p30n_swept_wing_in_box_medium.lb8.ugrid.xz 1-10 1000 9e6
+falcon        bizjet/falcon_full_mirrored.lb8.ugrid.xz all 2.9 5e6
+f16           supersonic/f16_full.lb8.ugrid.xz all 3.4 5e6
+"
+
+# aircraft DATA NAME FOLDER: its surface in FOLDER, if there is one; `project`
+# and `options` say how it is meshed. Status 1: no such file.
+aircraft() {
+  local name file walls length reynolds
+  read -r name file walls length reynolds < <(
+    awk -v n="$2" '$1 == n' <<< "$aircraft_table") || return 1
+  [ -e "$1/$file" ] || return 1
+  mkdir -p "$3"
+  project=$3/$name.lb8.ugrid
+  [ -e "$project" ] || xz -dc "$1/$file" > "$project"
+  options=(--layers yes --y-plus 1 --reynolds "$reynolds"
+    --reference-length "$length" --ratio 1.2)
+  case $walls in
+    all) options+=(--farfield sphere) ;;
+    *) options+=(--farfield none --walls "$walls") ;;
+  esac
+}
+
+# demo_project NAME CELLS FOLDER: as aircraft, of vanguard demo.
+demo_project() {
+  project=$3/$1.$2/$1
+  options=()
+  [ -e "$project.lb8.ugrid" ] ||
+    "$vanguard" demo "$1" --cells "$2" --out "$3/$1.$2" > /dev/null
+}

@@ -1,0 +1,364 @@
+#!/usr/bin/env bash
+# bench/parallel.sh: what cutting costs, and what ranks and threads bring.
+#
+# usage: bench/parallel.sh [--quick] [--scale X] [--runs N] [--data DIR]
+#          [--aircraft NAME] [--small N] [--leaf-cells LIST] [--build DIR]
+#          [--work DIR] [--out FILE] [--json FILE] [PART...]
+#   --quick       everything at a twentieth of its size, one run
+#   --scale       all numbers of cells times X (default 1)
+#   --runs        runs of each, of which the median counts (default 3)
+#   --data        folder of real geometry (verification/README.md): the parts
+#                 two and determinism take aircraft from there
+#   --aircraft    the one with two cores (default dlr_f6_medium)
+#   --small       cells of the runs that are compared byte by byte
+#                 (default 300000)
+#   --leaf-cells  sizes for the part leaf
+#   --build       build folder (default build/release, made when missing)
+#   --work        scratch folder, kept (default: a temporary one, removed)
+#   --out         write the tables to FILE too
+#   --json        every run and every figure, as one JSON
+#   PART          price two balance leaf memory determinism replay; large (not
+#                 by default): a layered mesh of 50 million cells
+#
+#   price         CPU of 64 leaves over CPU of no cut, one thread, box 5 M
+#   two           start to files closed: 2 ranks, or 2 threads, against the
+#                 best single thread, cut or not: box 10 M, sphere 12 M, aircraft;
+#                 what vanguard plan makes of the record of one for two
+#   balance       most over mean of the workers' time, 8 leaves per worker
+#   leaf          time, memory and forecast for 64 workers over leaf sizes
+#   memory        of the largest rank, over ranks
+#   determinism   digests for ranks 1 2 4 7, threads 1 2 3, and shuffled tasks
+#   replay        box 23 M and sphere 12 M on 1 to 512 workers
+#
+# Runs that are compared alternate, so that other work on the machine disturbs
+# all alike; wall / CPU in the JSON tell how much. The machine should be quiet:
+# the load before is in the heading. Needs: jq, time, openmpi-bin.
+set -euo pipefail
+
+root=$(cd "$(dirname "$0")/.." && pwd)
+# shellcheck source=bench/common.sh
+. "$root/bench/common.sh"
+# shellcheck source=bench/aircraft.sh
+. "$root/bench/aircraft.sh"
+build=$root/build/release
+work='' json='' data='' aircraft=dlr_f6_medium quick=0 scale=1 runs=3
+small=300000 leaf_cells='20000 50000 100000 150000 300000 600000'
+project='' options=()
+take_options "scale runs data aircraft small leaf-cells build work out json" \
+  quick "$@"
+if [ "$quick" = 1 ]; then
+  runs=1 scale=$(calc "$scale / 20") small=60000
+  leaf_cells='10000 20000 50000'
+fi
+need jq jq
+need /usr/bin/time time
+need mpirun openmpi-bin
+make_programs "$build" vanguard
+vanguard=$build/bin/vanguard
+work_folder parallel
+rows=$work/rows.json figures=$work/figures.json
+: > "$rows"
+: > "$figures"
+
+asked() {   # parts by name; large only when it is named
+  if [ ${#cases[@]} = 0 ]; then [ "$1" != large ]; else wanted "$1"; fi
+}
+cells() { calc "int($1 * $scale)"; }
+fmt() { printf "%.${2:-2}f" "$1"; }
+
+# once NAME RANKS THREADS OPTION...: a run of `project`; its row goes to all
+# rows, its record stays.
+once() {
+  local name=$1 ranks=$2 threads=$3
+  shift 3
+  run_mesh "$vanguard" "$work/$name" "$ranks" "$threads" -p "$project" \
+    "${options[@]}" "$@" ||
+    die "$name failed: $(grep -a '^vanguard' "$work/$name/log" | tail -1)"
+  jq -c --arg part "$part" --arg name "$name" \
+    '{part: $part, name: $name} + .' "$work/$name/row.json" >> "$rows"
+  echo "$part $name: $(get "$work/$name/row.json" '"\(.wall) s"')" >&2
+  find "$work/$name/out" -type f ! -name '*.json' -size +1M -delete
+}
+middle() {   # middle NAME KEY: median over the runs so far
+  jq -r --arg part "$part" --arg name "$1" \
+    "select(.part == \$part and .name == \$name) | $2" "$rows" | median
+}
+# figure NAME VALUE [BAR]: for the JSON.
+figure() {
+  jq -n -c --arg part "$part" --arg name "$1" --argjson value "$2" \
+    --arg bar "${3:-}" '$ARGS.named' >> "$figures"
+}
+forecast() {   # forecast RECORD RANKS THREADS EXPRESSION
+  "$vanguard" plan --replay "$1" --ranks "$2" --threads "$3" --json |
+    jq -r ".forecast[0] | $4"
+}
+
+part_price() {
+  local n ratio fill
+  n=$(cells 5000000)
+  demo_project box "$n" "$work/input"
+  for ((i = 0; i < runs; i++)); do
+    once whole 1 1 --leaf-cells 0
+    once cut 1 1 --leaf-cells $((n / 64))
+  done
+  ratio=$(calc "$(middle cut .cpu) / $(middle whole .cpu)")
+  fill=$(calc "$(middle cut .seconds.cut_fill) / \
+    $(middle whole .seconds.cut_fill)")
+  figure box "$ratio" '<= 1.10'
+  say << ROW
+
+## Price of cutting (bar: CPU ratio at most 1.10)
+
+| case | cells | leaves | zones, % of cells | CPU uncut, s | CPU cut, s | ratio | ratio of cutting and filling, wall |
+|---|---|---|---|---|---|---|---|
+| box | $(middle cut .cells) | $(middle cut .leaves) | $(fmt "$(calc "100 * $(middle cut .zone_share)")" 1) | $(fmt "$(middle whole .cpu)") | $(fmt "$(middle cut .cpu)") | $(fmt "$ratio" 3) | $(fmt "$fill" 3) |
+ROW
+}
+
+two_case() {   # two_case NAME: rows of `project`
+  local one best r t w error
+  for ((i = 0; i < runs; i++)); do
+    once "$1-1x1" 1 1
+    once "$1-uncut" 1 1 --leaf-cells 0
+    once "$1-2x1" 2 1
+    once "$1-1x2" 1 2
+  done
+  one=$(middle "$1-1x1" .wall)
+  best=$(printf '%s\n' "$one" "$(middle "$1-uncut" .wall)" | sort -g | head -1)
+  for how in 2x1 1x2; do
+    r=${how%x*} t=${how#*x}
+    w=$(middle "$1-$how" .wall)
+    error=$(calc "100 * ($(forecast "$work/$1-1x1/record.json" "$r" "$t" \
+      .seconds) / $(middle "$1-$how" .seconds.total) - 1)")
+    figure "$1 $how" "$(calc "$best / $w")" '>= 1.75'
+    figure "$1 $how forecast error percent" "$error"
+    echo "| $1 | $(middle "$1-$how" .cells) | $how | $(fmt "$one") |" \
+      "$(fmt "$(middle "$1-uncut" .wall)") | $(fmt "$w") |" \
+      "$(fmt "$(calc "$best / $w")") | $(fmt "$(calc "$one / $w")") |" \
+      "$(fmt "$(calc "$(middle "$1-$how" .cpu) / $w")") |" \
+      "$(fmt "$(middle "$1-$how" .imbalance)" 3) | $(fmt "$error" 1) |" | say
+  done
+}
+part_two() {
+  say << 'ROW'
+
+## Two cores (bar: speed-up at least 1.75)
+
+| case | cells | ranks x threads | 1x1, s | 1x1 uncut, s | s | speed-up against the better | against 1x1 | cores in use | imbalance | forecast off by, % |
+|---|---|---|---|---|---|---|---|---|---|---|
+ROW
+  demo_project box "$(cells 10000000)" "$work/input"
+  two_case box
+  demo_project sphere "$(cells 12000000)" "$work/input"
+  two_case sphere
+  if [ -n "$data" ] && aircraft "$data" "$aircraft" "$work/input"; then
+    two_case "$aircraft"
+  else
+    echo "no aircraft: --data DIR" >&2
+  fi
+}
+
+part_balance() {
+  say << 'ROW'
+
+## Balance at 8 leaves per worker (bar: 1.05)
+
+| case | ranks x threads | cells | leaves | busy, % | imbalance | forecast for 16 workers: imbalance |
+|---|---|---|---|---|---|---|
+ROW
+  local name how n leaf
+  for name in sphere wing; do
+    n=$(cells 2000000)
+    [ $name = wing ] || n=$(cells 6000000)
+    demo_project $name "$n" "$work/input"
+    once $name-probe 1 1
+    leaf=$(calc "int($(middle $name-probe .estimate) / 16)")
+    for how in 2x1 1x2; do
+      once $name-$how ${how%x*} ${how#*x} --leaf-cells "$leaf"
+      figure "$name $how" "$(middle $name-$how .imbalance)" '<= 1.05'
+    done
+    once $name-fine 1 1 --leaf-cells $((leaf / 8))
+    for how in 2x1 1x2; do
+      echo "| $name | $how | $(middle $name-$how .cells) |" \
+        "$(middle $name-$how .leaves) |" \
+        "$(fmt "$(calc "100 * $(middle $name-$how .busy)")" 1) |" \
+        "$(fmt "$(middle $name-$how .imbalance)" 3) |" \
+        "$(fmt "$(forecast "$work/$name-fine/record.json" 16 1 .imbalance)" 3) |" |
+        say
+    done
+  done
+}
+
+part_leaf() {
+  local name size id
+  say << 'ROW'
+
+## Leaf sizes
+
+| case | leaf cells | leaves | zones, % of cells | 1x1, s | CPU, s | peak MB | 1x2, s | smallest angle | forecast, 64 workers: speed-up |
+|---|---|---|---|---|---|---|---|---|---|
+ROW
+  for name in box sphere; do
+    demo_project $name "$(cells 5000000)" "$work/input"
+    for ((i = 0; i < runs; i++)); do
+      for size in $leaf_cells; do
+        once "$name-$size" 1 1 --leaf-cells "$size"
+        once "$name-$size-1x2" 1 2 --leaf-cells "$size"
+      done
+    done
+    for size in $leaf_cells; do
+      id=$name-$size
+      echo "| $name | $size | $(middle "$id" .leaves) |" \
+        "$(fmt "$(calc "100 * $(middle "$id" .zone_share)")" 1) |" \
+        "$(fmt "$(middle "$id" .wall)") | $(fmt "$(middle "$id" .cpu)") |" \
+        "$(fmt "$(middle "$id" .peak_mb)" 0) |" \
+        "$(fmt "$(middle "$id-1x2" .wall)") |" \
+        "$(fmt "$(middle "$id" .angle_min)") |" \
+        "$(fmt "$(forecast "$work/$id/record.json" 64 1 .speedup)" 1) |" | say
+    done
+  done
+}
+
+part_memory() {
+  local n name shared per
+  say << 'ROW'
+
+## Memory of the largest rank (bar: 1.3 x 150 B x cells / ranks + shared part)
+
+| case | ranks | cells | peak MB | all ranks, MB | shared part, MB | beside it, B per cell of a rank | bar, MB |
+|---|---|---|---|---|---|---|---|
+ROW
+  for name in box sphere; do
+    demo_project $name "$(cells 10000000)" "$work/input"
+    for n in 1 2 4; do once $name-$n $n 1; done
+    # peak = shared + per cells / ranks, through 1 and 4 ranks
+    per=$(calc "($(middle $name-1 .peak_mb) - $(middle $name-4 .peak_mb)) * \
+      1048576 / (0.75 * $(middle $name-1 .cells))")
+    shared=$(calc "$(middle $name-1 .peak_mb) - \
+      $per * $(middle $name-1 .cells) / 1048576")
+    figure "$name shared MB" "$shared"
+    for n in 1 2 4; do
+      figure "$name $n ranks peak MB" "$(middle $name-$n .peak_mb)"
+      echo "| $name | $n | $(middle $name-$n .cells) |" \
+        "$(fmt "$(middle $name-$n .peak_mb)" 0) |" \
+        "$(fmt "$(middle $name-$n .memory_mb)" 0) | $(fmt "$shared" 0) |" \
+        "$(fmt "$per" 0) | $(fmt "$(calc "$shared + 1.3 * 150 / 1048576 * \
+          $(middle $name-$n .cells) / $n")" 0) |" | say
+    done
+  done
+}
+
+# alike NAME: `project` for all numbers of ranks and threads.
+alike() {
+  local r t first='' this n=0 bad='' how
+  for r in 1 2 4 7; do
+    for t in 1 2 3; do
+      for how in "" "--shuffle-tasks $((r * 10 + t))"; do
+        # shuffled tasks where there are several workers only
+        [ -z "$how" ] || [ $((r * t)) -gt 1 ] || continue
+        # shellcheck disable=SC2086 # two words
+        run_mesh "$vanguard" "$work/$1" "$r" "$t" -p "$project" \
+          "${options[@]}" --leaf-cells $((small / 12)) $how ||
+          die "$1 $r x $t $how: $(grep -a '^vanguard' "$work/$1/log" |
+            tail -1)"
+        this=$(digest "$work/$1/out")
+        first=${first:-$this}
+        n=$((n + 1))
+        [ "$this" = "$first" ] || bad="$bad ${r}x$t${how:+ ${how#* }}"
+      done
+    done
+  done
+  figure "$1 different runs" "$(wc -w <<< "$bad")" '= 0'
+  echo "| $1 | $(get "$work/$1/row.json" '"\(.cells) | \(.leaves)"') | $n |" \
+    "$first | ${bad:-none} |" | say
+  [ -z "$bad" ] || failed=1
+}
+part_determinism() {
+  local name
+  say << 'ROW'
+
+## Determinism: ranks 1 2 4 7, threads 1 2 3, also shuffled
+
+| case | cells | leaves | runs | digest | runs that differ |
+|---|---|---|---|---|---|
+ROW
+  for name in box sphere wing; do
+    demo_project $name "$small" "$work/input"
+    alike $name
+  done
+  [ -n "$data" ] || return 0
+  for name in dlr_f6_coarse falcon; do
+    if [ "$quick" = 0 ] && aircraft "$data" $name "$work/input"; then
+      alike $name
+    fi
+  done
+}
+
+part_replay() {
+  local name n how
+  say << 'ROW'
+
+## Forecasts from the record of one thread (bar: 45 at 64 workers, cuts end within 10 % of the time; PVGRID: 22.95 for the box, 15.47 for the sphere)
+
+| case | cells | workers | s | speed-up of cutting and filling | speed-up with reading and writing on one core | critical path, s | cuts end at % of the time | imbalance |
+|---|---|---|---|---|---|---|---|---|
+ROW
+  for name in box sphere; do
+    n=$(cells 23000000)
+    [ $name = box ] || n=$(cells 12000000)
+    demo_project $name "$n" "$work/input"
+    once $name 1 1
+    for how in 1 2 4 8 16 32 64 128 256 512; do
+      "$vanguard" plan --replay "$work/$name/record.json" --ranks $how \
+        --serial 0 --json > "$work/tasks.json"
+      "$vanguard" plan --replay "$work/$name/record.json" --ranks $how \
+        --json > "$work/all.json"
+      figure "$name $how" "$(get "$work/tasks.json" .forecast[0].speedup)"
+      jq -r --slurpfile all "$work/all.json" --arg name $name \
+        --arg cells "$(middle $name .cells)" '
+        def f($d): . * pow(10; $d) | round / pow(10; $d);
+        .forecast[0] | "| \($name) | \($cells) | \(.workers) | " +
+          "\(.seconds | f(2)) | \(.speedup | f(2)) | " +
+          "\($all[0].forecast[0].speedup | f(2)) | \(.critical | f(2)) | " +
+          "\(100 * .cuts_end / .seconds | f(1)) | \(.imbalance | f(3)) |"' \
+        "$work/tasks.json" | say
+    done
+  done
+}
+
+part_large() {
+  demo_project wing "$(cells 10000000)" "$work/input"
+  once wing 1 "$(nproc)"
+  figure "wing peak MB" "$(middle wing .peak_mb)" '<= 24576'
+  say << ROW
+
+## A large layered mesh (bar: 24 GiB)
+
+wing, $(middle wing .cells) cells: $(fmt "$(middle wing .wall)" 0) s, peak $(fmt "$(middle wing .peak_mb)" 0) MB
+ROW
+}
+
+[ -z "$out" ] || : > "$out"
+failed=0
+say << HEAD
+Vanguard $("$vanguard" --version | awk 'NR == 1 { print $2 }'), $(uname -m), $(nproc) cores, $(date -u +%Y-%m-%d), load before $(cut -d' ' -f1 /proc/loadavg); medians of $runs runs, sizes x $scale.
+HEAD
+for part in price two balance leaf memory determinism replay large; do
+  asked "$part" || continue
+  case $part in
+    price) part_price ;;
+    two) part_two ;;
+    balance) part_balance ;;
+    leaf) part_leaf ;;
+    memory) part_memory ;;
+    determinism) part_determinism ;;
+    replay) part_replay ;;
+    large) part_large ;;
+  esac
+done
+[ -s "$figures" ] || die "no such part; see --help"
+if [ -n "$json" ]; then
+  jq -n --slurpfile figures "$figures" --slurpfile runs "$rows" \
+    --arg scale "$scale" '{scale: $scale, $figures, $runs}' > "$json"
+fi
+exit $failed
