@@ -10,22 +10,26 @@
 
 /* Measured: docs/performance.md, Model. */
 const struct vg_rates vg_rates_measured = {
-  .pencil = { 1e-3, 2.0e-6, 8e-6, 0 },
-  .tile = { 1e-3, 3.0e-6, 3e-6, 0 },
-  .leaf = { 1e-3, 1.7e-6, 1e-6, 0 },
-  .join = { 1e-4, 0, 0.5e-6, 0.3e-6 },
+  .pencil = { 1e-3, 5.5e-6, 15e-6, 0, 0 },
+  .tile = { 1e-3, 2.5e-6, 12e-6, 10e-6, 0 },
+  .leaf = { 1e-3, 1.55e-6, 2.6e-6, 1.5e-6, 0 },
+  .join = { 1e-4, 0, 0, 0.2e-6, 0.3e-6 },
 };
 
 /* Cells of a zone reach this many spacings to each side of its plane, those of
  * a pencil of both of its planes: as measured over boxes. */
-static const double tile_reach = 0.6, pencil_reach = 1.0;
+static const double tile_reach = 0.68, pencil_reach = 1.45;
 
 /* Beyond the zone, in spacings: front that its growth must know (region.h). */
-static const double pencil_band = 1.0 + VG_BAND_FRONT;
+static const double pencil_band = 1 + VG_BAND_FRONT;
 static const double tile_band = VG_BAND_FRONT;
 
 /* Faces of a triangle's own spacing to a square of it, 4 / sqrt(3). */
 static const double faces_per_square = 2.309;
+
+/* Where spacing varies a load has this share more cells to a cube of it
+ * (load.c); there they cost more as well. */
+static const double graded_more = 0.21;
 
 /* Bytes of a front per face: three indices, half a point and its name. */
 static const double bytes_per_face = 28;
@@ -97,10 +101,34 @@ static vg_status add_bit(struct front *f, const struct bit *b,
 
 /* --- tasks --------------------------------------------------------------- */
 
-static double seconds(const struct vg_task_rate *r, double cells, double faces,
-                      double cubes)
+/* Cells, and how many of them lie where spacing varies. */
+struct amount { double cells, graded; };
+
+/* Of a share of a cube. */
+static void add_amount(struct amount *a, const struct vg_load_cube *c,
+                       double share)
 {
-  return r->task + r->cell * cells + r->face * faces + r->cube * cubes;
+  double side = 2 * (double)c->half / (double)c->h, cells = (double)c->cells;
+  double cubes = (double)c->part * side * side * side;
+  double more = cubes > 0 ? cells / (cubes * VG_LOAD_CELLS_PER_CUBE) - 1 : 0;
+
+  a->cells += share * cells;
+  a->graded += share * cells * fmin(fmax(more / graded_more, 0), 1);
+}
+
+static struct amount amount_of(const struct vg_load *l)
+{
+  struct amount a = {0, 0};
+
+  for (size_t i = 0; i < l->n; i++) add_amount(&a, &l->cube[i], 1);
+  return a;
+}
+
+static double seconds(const struct vg_task_rate *r, struct amount a,
+                      double faces, double cubes)
+{
+  return r->task + r->even * (a.cells - a.graded) + r->graded * a.graded +
+         r->face * faces + r->cube * cubes;
 }
 
 static const struct vg_task_rate *rate_of(const struct vg_rates *r, char kind)
@@ -109,20 +137,22 @@ static const struct vg_task_rate *rate_of(const struct vg_rates *r, char kind)
          : kind == VG_SPAN_LEAF ? &r->leaf : &r->join;
 }
 
-/* cells: made by it, for joins of the whole void. */
+/* a: what it makes; for joins what is in the void. */
 static vg_status add_task(struct forecast *c, const char *path,
-                          const char *after, char kind, double cells,
+                          const char *after, char kind, struct amount a,
                           double faces, double cubes)
 {
   struct vg_spans *s = &c->out->spans;
   int makes = kind != VG_SPAN_JOIN;
-  struct vg_span span = { .kind = kind, .start = s->wall, .estimate = cells };
+  struct vg_span span = { .kind = kind, .start = s->wall,
+                          .estimate = a.cells };
 
   snprintf(span.path, sizeof span.path, "%s", path);
   snprintf(span.after, sizeof span.after, "%s", after);
-  span.cpu = seconds(rate_of(c->rates, kind), makes ? cells : 0, faces, cubes);
+  span.cpu = seconds(rate_of(c->rates, kind),
+                     makes ? a : (struct amount){0, 0}, faces, cubes);
   span.end = s->wall += span.cpu;
-  if (makes) span.n_cell = (uint64_t)(cells + 0.5);
+  if (makes) span.n_cell = (uint64_t)(a.cells + 0.5);
   span.bytes_in = (uint64_t)(bytes_per_face * faces +
                              cubes * sizeof(struct vg_load_cube));
   if (kind == VG_SPAN_PENCIL || kind == VG_SPAN_TILE)
@@ -233,26 +263,27 @@ static double faces_near(const struct front *f, size_t n,
 
 /* Cells of the region leave the load and, if it has a front, make sides. */
 static vg_status take(struct part *p, const struct vg_region *r,
-                      struct front *made, double *cells, struct vg_error *err)
+                      struct front *made, struct amount *a,
+                      struct vg_error *err)
 {
   vg_status st = VG_OK;
 
-  *cells = 0;
+  *a = (struct amount){0, 0};
   for (size_t i = 0; st >= 0 && i < p->load.n; i++) {
     struct vg_load_cube *c = &p->load.cube[i];
     double reach = r->n_plane > 1 ? pencil_reach : tile_reach, share = 1;
+    int passes = 1;
 
     for (int k = 0; share > 0 && k < r->n_plane; k++)
       share *= overlap(c, &r->plane[k], reach * (double)c->h);
     if (!(share > 0) || !is_over(r, c->at, 0)) continue;
-    *cells += share * (double)c->cells;
-    c->cells -= (float)(share * (double)c->cells);
-    share = 1;
     for (int k = 0; k < r->n_plane; k++)
-      if (fabs((double)c->at[axis_of(&r->plane[k])] - r->plane[k].offset) >
-          (double)c->half)
-        share = 0;
-    if (share > 0) st = add_sides(c, r, made, err);
+      passes &= fabs((double)c->at[axis_of(&r->plane[k])] -
+                     r->plane[k].offset) <= (double)c->half;
+    if (passes) st = add_sides(c, r, made, err);
+    add_amount(a, c, share);
+    c->cells *= (float)(1 - share);
+    c->part *= (float)(1 - share);
   }
   return st;
 }
@@ -271,21 +302,22 @@ static vg_status grow_stage(struct forecast *c, struct part *p,
   snprintf(maker, sizeof maker, "%s", after);
   for (size_t k = 0; k < count; k++) {
     char kind = stage < 2 ? VG_SPAN_PENCIL : VG_SPAN_TILE;
-    double cells, faces;
+    struct amount a;
     struct vg_region r;
+    double faces;
 
     vg_lattice_region(l, stage, k, &r);
-    VG_TRY(take(p, &r, &made, &cells, c->err));
+    VG_TRY(take(p, &r, &made, &a, c->err));
     faces = faces_near(&p->front, n_front, &r);
-    if (!(cells >= 1) || !(faces > 0)) continue;
+    if (!(a.cells >= 1) || !(faces > 0)) continue;
     snprintf(path, sizeof path, "%.*s%c%zu", VG_PATH_MAX - 24, p->path, kind,
              kind == VG_SPAN_PENCIL ? *n_pencil : k);
     *n_pencil += kind == VG_SPAN_PENCIL;
-    VG_TRY(add_task(c, path, maker, kind, cells, faces, 0));
+    VG_TRY(add_task(c, path, maker, kind, a, faces, 0));
     memcpy(after, path, sizeof path);
     c->out->n_pencil += kind == VG_SPAN_PENCIL;
     c->out->n_tile += kind == VG_SPAN_TILE;
-    c->out->zone_cells += cells;
+    c->out->zone_cells += a.cells;
   }
   for (size_t k = 0; k < count; k++) {
     struct vg_region r;
@@ -443,7 +475,7 @@ static vg_status add_node(struct forecast *c, const struct part *p,
 }
 
 static vg_status add_leaf(struct forecast *c, const struct part *p,
-                          const char *after)
+                          struct amount a, const char *after)
 {
   char path[VG_PATH_MAX];
   size_t index = 0;
@@ -452,7 +484,7 @@ static vg_status add_leaf(struct forecast *c, const struct part *p,
   VG_TRY(add_node(c, p, NULL, &index));
   c->out->n_leaf++;
   snprintf(path, sizeof path, "%.*sL", VG_PATH_MAX - 2, p->path);
-  st = add_task(c, path, after, VG_SPAN_LEAF, p->load.cells,
+  st = add_task(c, path, after, VG_SPAN_LEAF, a,
                 c->out->node[index].faces, (double)p->load.n);
 done:
   return st;
@@ -465,8 +497,8 @@ static vg_status add_join(struct forecast *c, const struct part *p, int number,
   vg_status st;
 
   snprintf(path, sizeof path, "%.*sJ%d", VG_PATH_MAX - 14, p->path, number);
-  st = add_task(c, path, after, VG_SPAN_JOIN, p->load.cells,
-                faces_of(&p->front), (double)p->load.n);
+  st = add_task(c, path, after, VG_SPAN_JOIN,
+                (struct amount){p->load.cells, 0}, faces_of(&p->front), (double)p->load.n);
   memcpy(after, path, sizeof path);
   return st;
 }
@@ -480,6 +512,7 @@ static vg_status add_rest(struct forecast *c, const struct part *from,
                           const char *after)
 {
   struct part rest = { .parent = parent, .depth = from->depth + 1 };
+  struct amount a = {0, 0};
   vg_status st = VG_OK;
 
   snprintf(rest.path, sizeof rest.path, "%.*s.r", VG_PATH_MAX - 8,
@@ -491,11 +524,13 @@ static vg_status add_rest(struct forecast *c, const struct part *from,
 
     if (p->load.cells >= least) continue;
     rest.load.cells += p->load.cells;
+    for (size_t k = 0; k < p->load.n; k++)
+      add_amount(&a, &p->load.cube[k], 1);
     rest.load.n += p->load.n;
     for (size_t k = 0; st >= 0 && k < p->front.n; k++)
       st = add_bit(&rest.front, &p->front.bit[k], c->err);
   }
-  if (st >= 0 && rest.load.cells > 0) st = add_leaf(c, &rest, after);
+  if (st >= 0 && rest.load.cells > 0) st = add_leaf(c, &rest, a, after);
   free(rest.front.bit);
   return st;
 }
@@ -565,7 +600,8 @@ static vg_status go_down(struct forecast *c, struct part *p,
 
   if (p->retry < RETRIES && strlen(p->path) + 8 < VG_PATH_MAX)
     used = vg_lattice_plan(&p->load, c->rule, p->levels, p->retry, &l);
-  return used > 0 ? cut(c, p, &l, used, after) : add_leaf(c, p, after);
+  return used > 0 ? cut(c, p, &l, used, after)
+                  : add_leaf(c, p, amount_of(&p->load), after);
 }
 
 /* --- the whole ----------------------------------------------------------- */

@@ -12,9 +12,10 @@
 #include "partition/lattice.h"
 #include "partition/spans.h"
 
-/** Seconds of one core that a task of a kind takes: at all, per cell made, per
- * face of the front it is given, per cube of the load. */
-struct vg_task_rate { double task, cell, face, cube; };
+/** Seconds of one core that a task of a kind takes: at all, per cell made where
+ * spacing is even and where it varies, per face of the front it is given, per
+ * cube of the load. */
+struct vg_task_rate { double task, even, graded, face, cube; };
 
 struct vg_rates {
   struct vg_task_rate pencil, tile, leaf, join;
