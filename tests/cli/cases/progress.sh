@@ -3,9 +3,9 @@ vanguard demo box --cells 2000 --out made/on/the/way
 exits 0
 vanguard mesh -p made/on/the/way/box --out plain
 exits 0
-says err "inserting"
+says err "fill  "
 lacks err $'\r'
-lacks out "inserting"
+lacks out "fill  "
 
 script -qec "$program mesh -p made/on/the/way/box --out live" /dev/null \
   >terminal </dev/null
