@@ -1,0 +1,158 @@
+# Cut, filled and written by threads and ranks: the same files for any number
+# of both, in any order, and resumed; refusals; a stop that leaves nothing
+# half-written.
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
+  OMPI_MCA_rmaps_base_oversubscribe=1 \
+  OMPI_MCA_hwloc_base_binding_policy=none \
+  PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe \
+  PRTE_MCA_hwloc_default_binding_policy=none
+has_mpirun=0
+! mpirun -n 2 true >/dev/null 2>&1 || has_mpirun=1
+[ $has_mpirun = 1 ] || echo "no mpirun that starts here: threads only"
+
+# ranks N ARGS...: as vanguard, under mpirun.
+ranks() {
+  local n=$1
+  shift
+  mpirun -n "$n" "$program" "$@" >out 2>err
+  status=$?
+}
+
+# Names and digests of all files that the run in folder $1 wrote, but for the
+# record of its tasks, which holds times.
+digests() {
+  sed -n '/timeline.json/d
+    s,.*"path": ".*/\([^/]*\)".*,\1,p
+    s/.*"xxh3": "\(.*\)".*/  \1/p' "$1"/*.report.json
+}
+
+# agrees FOLDER [WITH]: its files are those of folder WITH (one).
+agrees() {
+  local with=${2:-one}
+  exits 0
+  digests "$1" >"$1.digests"
+  same "$with.digests" "$1.digests"
+  cmp -s "$with"/*.b8.ugrid "$1"/*.b8.ugrid || fail "$1: another mesh"
+}
+
+vanguard demo box --cells 30000 --out p
+cut="-q -p p/box --leaf-cells 5000 --write cogsg,b8.ugrid,vtu,pvtu"
+
+# shellcheck disable=SC2086 # lists of options
+{
+vanguard mesh $cut -t 1 --out one --timeline
+exits 0
+digests one >one.digests
+[ "$(grep -c '^  [0-9a-f]\{32\}$' one.digests)" -ge 9 ] ||
+  fail "too few digests: $(cat one.digests)"
+exists one/box.{cogsg,bc,mapbc,b8.ugrid,vtu,surface.vtu,pvtu} one/box_0.vtu \
+  one/box.timeline.json
+says out "1 rank x 1 thread;"
+says one/box.report.json '"leaves": '
+says one/box.pvtu 'Source="box_0.vtu"'
+vanguard check -q one/box.b8.ugrid
+exits 0
+
+vanguard mesh $cut -t 2 --out two
+agrees two
+vanguard mesh $cut -t 2 --shuffle-tasks 7 --out shuffled
+agrees shuffled
+absent two/box.timeline.json
+
+if [ $has_mpirun = 1 ]; then
+  ranks 2 mesh $cut -t 1 --out ranks2
+  agrees ranks2
+  says out "2 ranks x 1 thread;"
+  ranks 3 mesh $cut -t 2 --out ranks3
+  agrees ranks3
+  ranks 2 mesh -q -p p/box --write foam --out whole
+  exits 1
+  says err "write: foam needs the whole mesh in one process"
+  absent whole/box.openfoam
+  [ -z "$(ls -A whole)" ] || fail "left behind: $(ls -A whole)"
+fi
+
+# Where and how often it is cut.
+vanguard mesh -q -p p/box --levels 2 --json --out levels
+exits 0
+says out '"pencils": 1,'
+says out '"tiles": 4,'
+vanguard mesh -q -p p/box -L 2 --split-direction 3 --constant-direction yes \
+  --json --out slabs
+exits 0
+says out '"pencils": 0,'
+says out '"tiles": 3,'
+vanguard mesh -q -p p/box --leaf-cells 0 --json --out uncut
+exits 0
+says out '"leaves": 1,'
+says out '"cuts": 0,'
+vanguard mesh -q -p p/box --constant-direction yes --out none
+exits 1
+says err "constant_direction needs a split_direction of 1, 2 or 3"
+
+# Tasks kept, and found again by another number of workers.
+vanguard mesh -q -p p/box --resume
+exits 2
+says err "--resume needs the --run-dir of the run"
+vanguard mesh $cut --run-dir none --resume --out none
+exits 1
+says err "none: holds no run that could be resumed"
+absent none/box.b8.ugrid
+vanguard mesh $cut -t 2 --run-dir run --keep-run --out kept
+agrees kept
+exists run/run.txt
+vanguard mesh $cut --run-dir run --out kept
+exits 1
+says err "resume it, remove the directory to start anew, or choose another one"
+vanguard mesh $cut --run-dir run --resume --hmax 0.2 --out other
+exits 1
+says err "run: cannot be resumed: input or options have changed since"
+absent other/box.b8.ugrid
+if [ $has_mpirun = 1 ]; then
+  ranks 2 mesh $cut -t 1 --run-dir run --resume --keep-run --out resumed
+  agrees resumed
+  lacks out "tasks found in run: 0"
+fi
+vanguard mesh $cut -t 1 --run-dir run --resume --out again
+agrees again
+says out "tasks found in run: "
+lacks out "tasks found in run: 0"
+absent run
+}
+
+# Layers of prisms, expanded by whoever writes them.
+vanguard demo wing-half --cells 250000 --out p
+layered="-q -p p/wing-half --layer-count 5 --cells mixed --leaf-cells 40000"
+layered="$layered --write b8.ugrid,pvtu,vtu"
+# shellcheck disable=SC2086
+{
+vanguard mesh $layered -t 1 --out wing
+exits 0
+says out "prisms"
+digests wing >wing.digests
+exists wing/wing-half.wall.vtu
+if [ $has_mpirun = 1 ]; then ranks 2 mesh $layered -t 1 --out wing2
+else vanguard mesh $layered -t 2 --out wing2; fi
+agrees wing2 wing
+}
+
+# SIGTERM in the middle of the fill; then the rest of it.
+vanguard demo box --cells 400000 --out p4
+for directory in "" "--run-dir r4"; do
+  # shellcheck disable=SC2086
+  "$program" mesh -p p4/box --leaf-cells 20000 -t 2 --out o4 $directory \
+    >out 2>err &
+  pid=$!
+  for _ in $(seq 600); do
+    ! grep -q '^fill' err || break
+    sleep 0.02
+  done
+  kill -TERM $pid 2>/dev/null
+  wait $pid
+  status=$?
+  exits 1
+  [ -z "$(ls -A o4)" ] || fail "left behind: $(ls -A o4)"
+  [ -n "$directory" ] || says err "interrupted; nothing was written"
+done
+says err "stopped; finished tasks are kept in r4"
+says err "--resume"
