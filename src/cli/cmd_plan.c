@@ -1,13 +1,18 @@
 /* vanguard plan: what a run would take on other machines. */
+#include <errno.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "cli/cli.h"
 #include "cli/plan.h"
 #include "io/stream.h"
 
 enum { KEY_RANKS_PER_NODE = 300, KEY_LATENCY, KEY_BANDWIDTH, KEY_RATE,
-       KEY_SERIAL, KEY_ROAM, KEY_PLOT };
+       KEY_SERIAL, KEY_ROAM, KEY_PLOT, KEY_TARGET, KEY_DEPTH };
+
+enum { DEPTH_MAX = 40 };
 
 static void number(const char *name, const char *text, double lo, double *out,
                    const struct argp_state *state)
@@ -17,7 +22,7 @@ static void number(const char *name, const char *text, double lo, double *out,
                text);
 }
 
-static void range(const char *name, const char *text, struct vg_range *out,
+static void range(const char *name, const char *text, struct vg_range_list *out,
                   const struct argp_state *state)
 {
   struct vg_error err = VG_ERROR_INIT;
@@ -26,24 +31,69 @@ static void range(const char *name, const char *text, struct vg_range *out,
     argp_error(state, "%s", err.text);
 }
 
+/* A value that cannot be is wrong usage, known before anything is read. */
+static error_t keep_setting(struct vg_plan_options *o, int key,
+                            const char *text, const struct argp_state *state)
+{
+  struct vg_settings scratch;
+  struct vg_error err = VG_ERROR_INIT;
+  vg_status st;
+
+  vg_settings_default(&scratch);
+  st = vg_cli_option_set(key, text, &scratch, &err);
+  vg_settings_release(&scratch);
+  if (st == VG_BLOCKED) return ARGP_ERR_UNKNOWN;
+  if (st < 0) argp_error(state, "%s", err.text);
+  if (vg_reserve(&o->set, &o->cap_set, o->n_set + 1, sizeof *o->set))
+    return ENOMEM;
+  o->set[o->n_set].key = key;
+  o->set[o->n_set++].text = text;
+  return 0;
+}
+
+static int whole(const char *name, const char *text, int64_t lo, int64_t hi,
+                 const struct argp_state *state)
+{
+  int64_t n;
+
+  if (!vg_parse_int(text, strlen(text), &n) || n < lo || n > hi)
+    argp_error(state, "--%s takes a whole number from %d, not '%s'", name,
+               (int)lo, text);
+  return (int)n;
+}
+
+static void check_end(const struct vg_plan_options *o,
+                      const struct argp_state *state)
+{
+  if (!o->replay && !o->project)
+    argp_error(state, "which run? give -p PROJECT, or --replay "
+               "FILE.timeline.json");
+  if (o->replay && o->project)
+    argp_error(state, "either a project or a --replay, not both");
+  if (o->replay && (o->n_set || o->deck || o->target > 0))
+    argp_error(state, "a --replay takes no settings, deck or target: the "
+               "tasks are those of the record");
+}
+
 static error_t option(int key, char *arg, struct argp_state *state)
 {
   struct vg_plan_options *o = state->input;
-  int64_t n;
 
   switch (key) {
   case 'r': o->replay = arg; return 0;
+  case 'p': o->project = arg; return 0;
+  case 'd': o->deck = arg; return 0;
+  case 'q': o->quiet = 1; return 0;
   case 'n': range("--ranks", arg, &o->ranks, state); return 0;
   case 't': range("--threads", arg, &o->threads, state); return 0;
   case 'j': o->json = 1; return 0;
   case KEY_PLOT: o->plot = arg; return 0;
   case KEY_RANKS_PER_NODE:
-    if (!vg_parse_int(arg, strlen(arg), &n) || n < 1 ||
-        n > VG_MODEL_WORKERS_MAX)
-      argp_error(state, "--ranks-per-node takes a whole number from 1, not "
-                 "'%s'", arg);
-    o->machine.ranks_per_node = (int)n;
+    o->machine.ranks_per_node = whole("ranks-per-node", arg, 1,
+                                      VG_MODEL_WORKERS_MAX, state);
     return 0;
+  case KEY_DEPTH: o->depth = whole("depth", arg, 0, DEPTH_MAX, state); return 0;
+  case KEY_TARGET: number("target", arg, 1e-3, &o->target, state); return 0;
   case KEY_LATENCY:
     number("latency", arg, 0, &o->machine.latency, state);
     return 0;
@@ -53,58 +103,86 @@ static error_t option(int key, char *arg, struct argp_state *state)
   case KEY_RATE: number("rate", arg, 1e-6, &o->machine.rate, state); return 0;
   case KEY_SERIAL: number("serial", arg, 0, &o->serial, state); return 0;
   case KEY_ROAM: o->machine.joins_roam = 1; return 0;
+  case 'L': return keep_setting(o, vg_cli_option_key("levels"), arg, state);
   case ARGP_KEY_ARG:
-    argp_error(state, "what is '%s'? a record is given with --replay", arg);
+    if (o->project) argp_error(state, "one project at a time: %s", arg);
+    o->project = arg;
     return 0;
-  case ARGP_KEY_END:
-    if (!o->replay)
-      argp_error(state, "which run? give --replay FILE.timeline.json");
-    return 0;
-  default: return ARGP_ERR_UNKNOWN;
+  case ARGP_KEY_END: check_end(o, state); return 0;
+  default: break;
   }
+  if (key < VG_KEY_SETTING) return ARGP_ERR_UNKNOWN;
+  return keep_setting(o, key, arg, state);
 }
 
 int vg_cmd_plan(int argc, char **argv)
 {
-  const struct argp_option options[] = {
+  const struct argp_option own[] = {
+    { "project", 'p', "PROJECT", 0, "path and name without extension, or one "
+      "surface file, as for 'vanguard mesh'", 1 },
+    { "deck", 'd', "FILE", 0, "run deck [default PROJECT.deck if it exists]",
+      1 },
     { "replay", 'r', "FILE", 0, "record of a run, as 'vanguard mesh "
       "--timeline' writes it", 1 },
     { "ranks", 'n', "LIST", 0, "numbers of ranks: 1,2,4 or 3:7 or 1:64:x2 "
-      "[default 1:512:x2]", 2 },
-    { "threads", 't', "LIST", 0, "threads of each rank [default 1]", 2 },
+      "[default 1:512:x2]", 1 },
+    { "threads", 't', "LIST", 0, "threads of each rank [default 1]", 1 },
     { "ranks-per-node", KEY_RANKS_PER_NODE, "N", 0, "ranks that share a "
-      "node: no latency between them [default 1]", 2 },
+      "node: no latency between them [default 1]", 1 },
     { "latency", KEY_LATENCY, "S", 0, "seconds per message [default 2e-6]",
-      2 },
+      1 },
     { "bandwidth", KEY_BANDWIDTH, "B", 0, "bytes per second of a rank's link "
-      "[default 1e10]", 2 },
-    { "rate", KEY_RATE, "X", 0, "speed of a core over the recorded one "
-      "[default 1]", 2 },
+      "[default 1e10]", 1 },
+    { "rate", KEY_RATE, "X", 0, "speed of a core over the recorded one; "
+      "without a record over the one that the times were measured on "
+      "[default 1]", 1 },
+    { "target", KEY_TARGET, "S", 0, "seconds: find the smallest machine that "
+      "needs no more [default: the largest that is 80 % efficient]", 1 },
     { "serial", KEY_SERIAL, "S", 0, "seconds done once, before and after the "
-      "tasks [default as in the record]", 2 },
+      "tasks [default as in the record; without one what reading, checking "
+      "and sizes took now]", 1 },
     { "joins-roam", KEY_ROAM, NULL, 0, "joins are done by any rank, not at "
-      "their home", 2 },
-    { "json", 'j', NULL, 0, "forecast as JSON on standard output", 3 },
-    { "plot", KEY_PLOT, "FILE", 0, "figure of the speed-up (SVG)", 3 },
+      "their home", 1 },
+    { "json", 'j', NULL, 0, "forecast as JSON on standard output, with "
+      "the whole tree", 1 },
+    { "depth", KEY_DEPTH, "N", 0, "levels of the tree of cuts that are shown "
+      "[default 2]", 1 },
+    { "quiet", 'q', NULL, 0, "no progress", 1 },
+    { "plot", KEY_PLOT, "FILE", 0, "figure of the speed-up (SVG)", 1 },
+    { NULL, 'L', "N", 0, "the same as --levels", 1 },
     { 0 }
   };
-  const struct argp argp = { .options = options, .parser = option,
-    .args_doc = "--replay FILE",
-    .doc = "Forecast the time of a run on other machines, by simulating the "
-      "tasks of a recorded one: who is idle takes the next task, cuts before "
+  struct vg_cli_options options;
+  struct argp argp = { .parser = option,
+    .args_doc = "-p PROJECT\n--replay FILE",
+    .doc = "Forecast the mesh of a project and the time of its run before "
+      "anything is meshed, or the time of a recorded run on other machines. "
+      "Tasks are simulated: who is idle takes the next one, cuts before "
       "fills, heavy ones first.\v"
       "Speed-up is against one worker of the same tasks; critical is the "
       "longest chain of tasks that wait for each other, which no machine can "
       "go below; cuts end is when the last cut has been made." };
-  struct vg_plan_options o = { .machine = VG_MACHINE_INIT, .serial = -1 };
+  struct vg_plan_options o = { .machine = VG_MACHINE_INIT, .serial = -1,
+                               .depth = 2 };
   struct vg_error err = VG_ERROR_INIT;
   int status;
 
   if (vg_range_parse("--ranks", "1:512:x2", 1, 512, &o.ranks, &err) < 0 ||
       vg_range_parse("--threads", "1", 1, 1, &o.threads, &err) < 0)
     return vg_cli_fail(&err);
+  if (vg_cli_options(own, &options) < 0) {
+    vg_fail_memory(&err, "the options");
+    return vg_cli_fail(&err);
+  }
+  /* --threads is a list here */
+  for (size_t i = 0; i < options.n; i++)
+    if (options.option[i].key == vg_cli_option_key("threads"))
+      options.option[i].flags |= OPTION_HIDDEN;
+  argp.options = options.option;
   vg_cli_parse(&argp, argc, argv, &o);
-  status = vg_plan_replay(&o);
+  status = o.replay ? vg_plan_replay(&o) : vg_plan_estimate(&o);
+  vg_cli_options_free(&options);
+  free(o.set);
   vg_range_release(&o.ranks);
   vg_range_release(&o.threads);
   return status;

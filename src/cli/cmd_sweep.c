@@ -13,7 +13,7 @@ enum { KEY_LEAF_CELLS = 300, KEY_REPEAT, KEY_LAUNCHER, KEY_KEEP,
        KEY_PROGRAM };
 
 static void range(const char *name, const char *text, int64_t lo, int64_t hi,
-                  struct vg_range *out, const struct argp_state *state)
+                  struct vg_range_list *out, const struct argp_state *state)
 {
   struct vg_error err = VG_ERROR_INIT;
 

@@ -8,16 +8,26 @@
 
 struct vg_plan_options {
   const char *replay;           /* a .timeline.json, or NULL */
-  struct vg_range ranks, threads;
+  const char *project, *deck;   /* without a replay */
+  /* Settings wait until the deck has been read, which they win over. */
+  size_t n_set, cap_set;
+  struct { int key; const char *text; } *set;
+  double target;                /* s; 0: none */
+  int depth;                    /* of the tree as text */
+  struct vg_range_list ranks, threads;
   struct vg_machine machine;    /* all but ranks, threads and serial */
   double serial;                /* s; below 0: as in the record */
   const char *plot;             /* file for a figure of speed-up, or NULL */
-  int json;
+  int json, quiet;
 };
 
 /** Replay a record on all machines asked for, and print what comes out; the
  * machine it was recorded on first, to show how well the model fits.
  * Returns an exit status. */
 int vg_plan_replay(const struct vg_plan_options *o);
+
+/** Forecast the mesh of a project and its run on all machines asked for, from
+ * surface and sizes alone, and print it. Returns an exit status. */
+int vg_plan_estimate(const struct vg_plan_options *o);
 
 #endif

@@ -8,7 +8,7 @@
 
 struct span { int64_t first, last, step; int is_factor; };
 
-void vg_range_release(struct vg_range *r)
+void vg_range_release(struct vg_range_list *r)
 {
   free(r->v);
   memset(r, 0, sizeof *r);
@@ -38,7 +38,7 @@ static int parse_one(const char *text, size_t len, struct span *s)
     s->step > s->is_factor;
 }
 
-static vg_status add(const char *what, struct vg_range *r, int64_t v,
+static vg_status add(const char *what, struct vg_range_list *r, int64_t v,
                      struct vg_error *err)
 {
   for (size_t i = 0; i < r->n; i++)
@@ -53,7 +53,7 @@ static vg_status add(const char *what, struct vg_range *r, int64_t v,
 }
 
 static vg_status add_all(const char *what, const struct span *s, int64_t lo,
-                         int64_t hi, struct vg_range *r, struct vg_error *err)
+                         int64_t hi, struct vg_range_list *r, struct vg_error *err)
 {
   vg_status st = VG_OK;
 
@@ -74,10 +74,10 @@ static vg_status add_all(const char *what, const struct span *s, int64_t lo,
 }
 
 vg_status vg_range_parse(const char *what, const char *text, int64_t lo,
-                         int64_t hi, struct vg_range *out,
+                         int64_t hi, struct vg_range_list *out,
                          struct vg_error *err)
 {
-  struct vg_range r = VG_RANGE_INIT;
+  struct vg_range_list r = VG_RANGE_INIT;
   vg_status st;
 
   for (;;) {

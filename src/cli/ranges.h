@@ -12,17 +12,17 @@
 /** Most numbers in a list. */
 #define VG_RANGE_MAX 4096
 
-struct vg_range { size_t n, cap; int64_t *v; };
+struct vg_range_list { size_t n, cap; int64_t *v; };
 #define VG_RANGE_INIT { 0, 0, NULL }
 
-void vg_range_release(struct vg_range *r);
+void vg_range_release(struct vg_range_list *r);
 
 /** Numbers from lo to hi in the order given, each once.
  * @param what  for messages: the option
  * @param out   replaced; untouched on failure
  * VG_ERR_INPUT. */
 vg_status vg_range_parse(const char *what, const char *text, int64_t lo,
-                         int64_t hi, struct vg_range *out,
+                         int64_t hi, struct vg_range_list *out,
                          struct vg_error *err);
 
 #endif

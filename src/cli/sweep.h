@@ -15,7 +15,7 @@ struct vg_sweep_options {
   const char *launcher;          /* words with {ranks}, {threads}; NULL:
                                     mpirun from 2 ranks on */
   const char *program;           /* NULL: this one */
-  struct vg_range levels, leaf_cells, ranks, threads;
+  struct vg_range_list levels, leaf_cells, ranks, threads;
   int repeat, keep, json, quiet;
   int n_extra;
   char **extra;                  /* [n_extra] for vanguard mesh */

@@ -11,7 +11,7 @@
 
 static void gives(const char *text, size_t n, const int64_t *v)
 {
-  struct vg_range r = VG_RANGE_INIT;
+  struct vg_range_list r = VG_RANGE_INIT;
   struct vg_error err = VG_ERROR_INIT;
 
   if (vg_range_parse("-n", text, 0, 1000, &r, &err) < 0)
@@ -37,7 +37,7 @@ static void lists_and_ranges(void **state)
 static void refuses(const char *text, int64_t hi, const char *expected)
 {
   int64_t kept = 9;
-  struct vg_range r = { 1, 1, &kept };
+  struct vg_range_list r = { 1, 1, &kept };
   struct vg_error err = VG_ERROR_INIT;
 
   assert_int_equal(vg_range_parse("-n", text, 0, hi, &r, &err),
