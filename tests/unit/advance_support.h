@@ -12,6 +12,7 @@
 #include "core/judge_slices.h"
 #include "io/format.h"
 #include "partition/advance.h"
+#include "fill_shapes.h"
 #include "partition/job.h"
 
 struct scene {
@@ -64,6 +65,24 @@ static inline void scene_file(struct scene *s, const char *path)
   if (scene_volume(&s->m) < 0) scene_turn(&s->m);
   if (vg_sizing_new(&o, 0, NULL, &s->m, &s->sizing, &err) < 0)
     fail_msg("%s", err.text);
+  s->volume = scene_volume(&s->m);
+}
+
+/* A coarse box with a ball of far smaller cells, that grow so steeply around
+ * it that the four samples of the cube of the load that holds it pass it by:
+ * twice as many cells are made as were expected. */
+static inline void scene_surprise(struct scene *s)
+{
+  const struct vg_source ball = { .kind = VG_SOURCE_SPHERE, .p0 = {1, 1, 1},
+                                  .h0 = 0.06, .r0 = 0.5, .an = 1 };
+  struct vg_sizing_options o = VG_SIZING_OPTIONS_INIT;
+
+  memset(s, 0, sizeof *s);
+  shape_box(&s->m, 12, 6);
+  o.growth = 4;
+  o.h_max = 1;
+  assert_int_equal(vg_sizing_new(&o, 1, &ball, &s->m, &s->sizing, NULL),
+                   VG_OK);
   s->volume = scene_volume(&s->m);
 }
 
@@ -265,11 +284,11 @@ static inline void remove_folder(const char *dir)
   nftw(dir, remove_one, 16, FTW_DEPTH | FTW_PHYS);
 }
 
-static inline struct vg_digest job_digest(uint64_t job)
+static inline struct vg_digest job_digest(uint64_t run)
 {
   const struct vg_digest zero = {{0, 0}};
 
-  return vg_digest_of(zero, sizeof job, &job);
+  return vg_digest_of(zero, sizeof run, &run);
 }
 
 static inline vg_status open_store(struct vg_comm *comm, const char *dir,

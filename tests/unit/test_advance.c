@@ -3,10 +3,7 @@
 #define _GNU_SOURCE
 #include "advance_support.h"
 
-#include <time.h>
-
 #include "core/cdt_server.h"
-#include "fill_shapes.h"
 
 /* --- without cuts it is the fill ----------------------------------------- */
 
@@ -56,7 +53,7 @@ static void uncut_is_the_fill(void **state)
 /* --- any order ----------------------------------------------------------- */
 
 static struct vg_partition_report same_in_any_order(const struct scene *s,
-                                                    double leaf)
+                                                    double leaf, int more)
 {
   static const uint64_t shuffle[] = { 5, 77 };
   struct vg_partition_options o = options_of(leaf, 1, 0);
@@ -65,10 +62,10 @@ static struct vg_partition_report same_in_any_order(const struct scene *s,
 
   assert_true(first.n_node > 1);
   assert_int_equal(first.n_uncut, 0);
-  for (int k = 0; k < 2; k++) {
+  for (int k = 0; k < more; k++) {
     struct mesh_digest d;
 
-    o.threads = 2 + k;
+    o.threads = 3 - k;
     o.shuffle = shuffle[k];
     d = run_of(NULL, s, &o, 0, &r);
     same_digest(&expect, &d);
@@ -81,11 +78,11 @@ static void several_generations(void **state)
   struct scene s;
 
   (void)state;
-  scene_demo(&s, "box", 60000);
-  same_in_any_order(&s, 4000);
+  scene_demo(&s, "box", 40000);
+  same_in_any_order(&s, 2000, 2);
   scene_end(&s);
-  scene_demo(&s, "sphere", 60000);
-  same_in_any_order(&s, 4000);
+  scene_demo(&s, "sphere", 40000);
+  same_in_any_order(&s, 3000, 2);
   scene_end(&s);
 }
 
@@ -96,7 +93,7 @@ static void around_a_wing(void **state)
 
   (void)state;
   scene_demo(&s, "wing-half", 0);
-  same_in_any_order(&s, 20000);
+  same_in_any_order(&s, 40000, 1);
   scene_end(&s);
 }
 
@@ -106,7 +103,7 @@ static void real_surface(void **state)
 
   (void)state;
   scene_file(&s, io_real("simple/hemisphere_cylinder_farfield.lb8.ugrid.xz"));
-  same_in_any_order(&s, 5000);
+  same_in_any_order(&s, 5000, 1);
   scene_end(&s);
 }
 
@@ -250,6 +247,37 @@ static void all_is_found_again(void **state)
   scene_end(&s);
 }
 
+/* Leaves that outgrow their estimate are cut again, in any order; of their
+ * first attempts nothing is kept. */
+static void leaves_that_outgrow(void **state)
+{
+  const char *dir = VG_TMP_DIR "/advance_outgrown";
+  struct vg_partition_options o = options_of(4000, 1, 0);
+  struct vg_partition_report first, r;
+  struct mesh_digest expect, d;
+  struct scene s;
+
+  (void)state;
+  remove_folder(dir);
+  scene_surprise(&s);
+  expect = run_of(NULL, &s, &o, 1, &first);
+  assert_true(first.n_outgrown > 0);
+  assert_true((double)expect.n_cell > 1.5 * first.estimate);
+  o.threads = 3;
+  o.shuffle = 5;
+  o.job = job_digest(1);
+  for (int resume = 0; resume < 2; resume++) {
+    assert_int_equal(open_store(NULL, dir, 1, resume, &o.store, NULL), VG_OK);
+    d = run_of(NULL, &s, &o, 0, &r);
+    same_digest(&expect, &d);
+    assert_int_equal(r.n_outgrown, first.n_outgrown);
+    assert_int_equal(n_task(&r), n_task(&first));
+    assert_int_equal(r.n_found, resume ? n_task(&r) : 0);
+    vg_store_close(o.store, resume);
+  }
+  scene_end(&s);
+}
+
 /* --- refusals ------------------------------------------------------------ */
 
 static void too_many_cells(void **state)
@@ -320,6 +348,7 @@ int main(void)
     cmocka_unit_test(levels_double_the_leaves),
     cmocka_unit_test(directions_are_respected),
     cmocka_unit_test(all_is_found_again),
+    cmocka_unit_test(leaves_that_outgrow),
     cmocka_unit_test(too_many_cells),
     cmocka_unit_test(fronts_that_bound_nothing),
   };
