@@ -125,6 +125,7 @@ await_end() {   # await_end JOB SECONDS: its last state
 
 start_slurm
 echo "Slurm $(sinfo --version | cut -d' ' -f2), $(nproc) cores"
+rm -f "$work"/box.*
 "$vanguard" demo box --cells "$cells" --out "$work" > "$work/demo.log"
 
 job=$(submit peace)
