@@ -4,18 +4,12 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
-#include "core/sizing_octree.h"
+#include "core/sizing_parts.h"
 #include "core/sizing_surface.h"
 
 /* Leaves beyond those that a surface accounts for: sources may need some. */
 #define LEAF_BASE (1u << 20)
 #define LEAF_PER_SAMPLE 8
-
-struct vg_sizing {
-  struct vg_octree octree;
-  double slope, cap;       /* of sizes outside the octree */
-  double least, most;      /* over the octree */
-};
 
 static vg_status check_options(const struct vg_sizing_options *o,
                                struct vg_error *err)
@@ -121,7 +115,7 @@ static vg_status build(const struct vg_sizing_options *o,
   s->cap = o->h_max > 0 ? o->h_max : f->set.n_mean ? cap : INFINITY;
   if (n < (VG_OCTREE_LEAF - LEAF_BASE) / LEAF_PER_SAMPLE)
     limit += n * LEAF_PER_SAMPLE;
-  return vg_octree_build(f, lo, side, limit, &s->octree, err);
+  return vg_octree_build(f, lo, side, limit, o->threads, &s->octree, err);
 }
 
 vg_status vg_sizing_new(const struct vg_sizing_options *options, size_t n,
@@ -148,7 +142,7 @@ vg_status vg_sizing_new(const struct vg_sizing_options *options, size_t n,
     VG_TRY(vg_samples_make(surface, &samples, err));
   if (samples.n)
     VG_TRY(vg_near_new(samples.n, (const double (*)[3])samples.p, samples.h,
-                       options->growth - 1, &near, err));
+                       options->growth - 1, options->threads, &near, err));
   f.near = near;
   VG_TRY(build(options, surface, &f, &samples, s, err));
   find_range(s);

@@ -22,6 +22,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/comm.h"
 #include "core/mesh.h"
 
 enum vg_source_kind {
@@ -57,8 +58,9 @@ struct vg_sizing_options {
                             the surface; default 1.2 */
   double scale;          /* multiplies every source spacing (VGRID's ifact) */
   int from_surface;      /* 1: boundary edges are sources (default) */
+  int threads;           /* 0: one per core; default 1 */
 };
-#define VG_SIZING_OPTIONS_INIT { 0, 0, 1.2, 1, 1 }
+#define VG_SIZING_OPTIONS_INIT { 0, 0, 1.2, 1, 1, 1 }
 
 struct vg_sizing;        /* opaque, read-only after vg_sizing_new */
 
@@ -69,7 +71,7 @@ struct vg_sizing;        /* opaque, read-only after vg_sizing_new */
  * @param out      owned by the caller, vg_sizing_free; untouched on failure
  * Returns VG_ERR_INPUT naming the source for non-finite data, spacing <= 0,
  * growth <= 1, or when nothing defines a size.
- * Result depends on the arguments only, bit by bit. */
+ * Result depends on the arguments only, bit by bit, and not on threads. */
 vg_status vg_sizing_new(const struct vg_sizing_options *options, size_t n,
                         const struct vg_source *source,
                         const struct vg_mesh *surface,
@@ -77,6 +79,19 @@ vg_status vg_sizing_new(const struct vg_sizing_options *options, size_t n,
 
 /** Free a field; NULL is accepted. */
 void vg_sizing_free(struct vg_sizing *s);
+
+/** All of a field as bytes, for other ranks on machines of the same kind.
+ *
+ * @param out  replaced on success, free(out->data); untouched on failure */
+vg_status vg_sizing_pack(const struct vg_sizing *s, struct vg_bytes *out,
+                         struct vg_error *err);
+
+/** The field that was packed; the same values bit by bit. VG_ERR_FORMAT for
+ * bytes that are no field: whatever they are, what is returned can be used.
+ *
+ * @param out  owned by the caller, vg_sizing_free; untouched on failure */
+vg_status vg_sizing_unpack(const struct vg_bytes *bytes,
+                           struct vg_sizing **out, struct vg_error *err);
 
 /** Target edge length at x, > 0. Outside the root cube: that of the nearest
  * point of it, grown with the distance, up to h_max if one is given, or the

@@ -9,6 +9,7 @@
 #endif
 
 #include "base/memory.h"
+#include "base/parallel.h"
 
 /* Samples are classed by size, so that large and small ones do not spoil each
  * other's bounds; each class is a tree: samples in the order of a k-d tree,
@@ -155,12 +156,66 @@ static void order_keys(struct key *a, size_t n, size_t unit)
   order_keys(a + m, n - m, unit);
 }
 
-static void order_samples(struct key *key, size_t n)
+/* Keys that one thread orders alone. */
+#define RANGE 8192
+
+struct range {
+  struct key *key;
+  size_t n, unit;
+};
+
+/* As order_keys, the longer ranges halved round by round: range i becomes
+ * 2 i and 2 i + 1. */
+static void halve_body(void *context, size_t first, size_t end, int worker)
 {
-  size_t unit = LANES;
+  struct range *range = context;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++) {
+    struct range *r = range + 2 * i, *up = r + 1;
+    size_t lane;
+
+    *up = (struct range){ r->key, 0, LANES };
+    while (r->unit > LANES && r->n <= r->unit) r->unit /= LANES;
+    if (r->n <= RANGE) continue;
+    lane = (r->n + r->unit - 1) / r->unit;
+    up->unit = r->unit;
+    up->n = r->n - lane / 2 * r->unit;
+    r->n -= up->n;
+    up->key = r->key + r->n;
+    select_keys(r->key, r->n + up->n, r->n,
+                longest_side(r->key, r->n + up->n));
+  }
+}
+
+static void order_body(void *context, size_t first, size_t end, int worker)
+{
+  struct range *r = context;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++)
+    order_keys(r[i].key, r[i].n, r[i].unit);
+}
+
+/* Ranges are spread over the array for the next round, from the end. */
+static int order_samples(struct key *key, size_t n, int threads)
+{
+  size_t unit = LANES, n_range = 1, most = 1;
+  struct range *range;
 
   while (unit < n) unit *= LANES;
-  order_keys(key, n, unit);
+  while (most < n / (RANGE / 8)) most *= 2;
+  range = vg_alloc(2 * most, sizeof *range);
+  if (!range) return -1;
+  range[0] = (struct range){ key, n, unit };
+  while (n_range < most) {
+    for (size_t i = n_range; i-- > 0;) range[2 * i] = range[i];
+    vg_parallel_for(threads, n_range, 1, halve_body, range);
+    n_range *= 2;
+  }
+  vg_parallel_for(threads, n_range, 1, order_body, range);
+  free(range);
+  return 0;
 }
 
 static int size_class(double h, double least)
@@ -286,9 +341,10 @@ static size_t fill_groups(struct tree *t, size_t n, struct group *group,
   return at;
 }
 
-static void fill_trees(struct vg_near *t, const double (*p)[3],
-                       const double *h, struct key *key,
-                       const size_t count[MAX_CLASS], struct bound *bound)
+static int fill_trees(struct vg_near *t, const double (*p)[3],
+                      const double *h, struct key *key,
+                      const size_t count[MAX_CLASS], struct bound *bound,
+                      int threads)
 {
   struct block *block = t->block;
   struct group *group = t->group;
@@ -297,17 +353,18 @@ static void fill_trees(struct vg_near *t, const double (*p)[3],
     size_t n_block = (count[c] + LANES - 1) / LANES;
 
     if (!n_block) continue;
-    order_samples(key, count[c]);
+    if (order_samples(key, count[c], threads)) return -1;
     fill_blocks(block, count[c], p, h, key);
     t->tree[t->n_tree].block = block;
     group += fill_groups(t->tree + t->n_tree++, n_block, group, bound);
     block += n_block;
     key += count[c];
   }
+  return 0;
 }
 
 vg_status vg_near_new(size_t n, const double (*p)[3], const double *h,
-                      double slope, struct vg_near **out,
+                      double slope, int threads, struct vg_near **out,
                       struct vg_error *err)
 {
   struct vg_near *t = vg_calloc(1, sizeof *t);
@@ -325,7 +382,7 @@ vg_status vg_near_new(size_t n, const double (*p)[3], const double *h,
                       sizeof *t->group);
   if (!t->block || !t->group) goto refused;
   classify(n, p, h, key, count);
-  fill_trees(t, p, h, key, count, bound);
+  if (fill_trees(t, p, h, key, count, bound, threads)) goto refused;
   free(bound);
   free(key);
   *out = t;

@@ -20,9 +20,10 @@
 
 struct vg_near;
 
-/** Build over n >= 1 samples; p [n][3] and h [n] are copied. */
+/** Build over n >= 1 samples; p [n][3] and h [n] are copied. threads: as
+ * vg_parallel_for's; the same for any number. */
 vg_status vg_near_new(size_t n, const double (*p)[3], const double *h,
-                      double slope, struct vg_near **out,
+                      double slope, int threads, struct vg_near **out,
                       struct vg_error *err);
 
 /** Free; NULL is accepted. */

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/parallel.h"
 
 /* The octree is made level by level. A cell is split where trilinear
  * interpolation between its corners would miss the field by more than
@@ -23,6 +24,7 @@
 #define SLOPPY_BOX 0.02
 #define POINT_MAX (UINT32_MAX - 1)
 #define TOP (1u << VG_OCTREE_DEPTH)
+#define GRAIN 128       /* cells or points that a thread takes at a time */
 
 struct cell {
   uint32_t at[3];       /* lower corner, in units of the finest cell */
@@ -47,9 +49,13 @@ struct build {
   struct cell *cell;
   struct point *point;
   float *source;        /* [n_point] sources alone; NULL where not needed */
-  uint32_t *slot;       /* hash table of points, 0: free, else index + 1 */
+  /* Hash table of the points of a level, 0: free, else index + 1. A middle
+   * is odd in units of its level's half side, so no older point is there. */
+  uint32_t *slot;
+  size_t first_point;   /* of the level */
   size_t n_cell, n_point, cap_cell, cap_point, n_slot, max_cell;
   double lo[3], unit, floor;
+  int threads;
 };
 
 /* The field. */
@@ -125,22 +131,39 @@ static size_t hash(const struct build *b, const uint32_t at[3])
   return (size_t)(v >> 24) & (b->n_slot - 1);
 }
 
-static int grow_table(struct build *b)
+static void enter(struct build *b, size_t index)
 {
-  size_t n = b->n_slot ? 2 * b->n_slot : 4096;
-  uint32_t *slot = vg_calloc(n, sizeof *slot);
+  size_t s = hash(b, b->point[index].at);
 
+  while (b->slot[s]) s = (s + 1) & (b->n_slot - 1);
+  b->slot[s] = (uint32_t)index + 1;
+}
+
+/* Room for n points of the level without more than half of it taken. */
+static int grow_table(struct build *b, size_t n)
+{
+  size_t n_slot = b->n_slot ? b->n_slot : 64;
+  uint32_t *slot;
+
+  while (n_slot < 2 * n) n_slot *= 2;
+  slot = vg_calloc(n_slot, sizeof *slot);
   if (!slot) return -1;
   free(b->slot);
   b->slot = slot;
-  b->n_slot = n;
-  for (size_t i = 0; i < b->n_point; i++) {
-    size_t s = hash(b, b->point[i].at);
-
-    while (slot[s]) s = (s + 1) & (n - 1);
-    slot[s] = (uint32_t)i + 1;
-  }
+  b->n_slot = n_slot;
+  for (size_t i = b->first_point; i < b->n_point; i++) enter(b, i);
   return 0;
+}
+
+/* An empty table for a level where n cells are split; where all neighbours
+ * are, that makes seven points each. */
+static int start_level(struct build *b, size_t n)
+{
+  free(b->slot);
+  b->slot = NULL;
+  b->n_slot = 0;
+  b->first_point = b->n_point;
+  return grow_table(b, 8 * n + 19);
 }
 
 /* Index of the point at a lattice position, made when it is new; UINT32_MAX
@@ -150,7 +173,9 @@ static uint32_t find_point(struct build *b, const uint32_t at[3])
   struct point *p;
   size_t s;
 
-  if (2 * (b->n_point + 1) > b->n_slot && grow_table(b)) return UINT32_MAX;
+  if (2 * (b->n_point + 1 - b->first_point) > b->n_slot &&
+      grow_table(b, b->n_slot))
+    return UINT32_MAX;
   for (s = hash(b, at); b->slot[s]; s = (s + 1) & (b->n_slot - 1))
     if (!memcmp(b->point[b->slot[s] - 1].at, at, sizeof p->at))
       return b->slot[s] - 1;
@@ -270,6 +295,27 @@ static uint32_t make_point(struct build *b, const struct cell *c,
   return index;
 }
 
+/* Where the points of a cell will be looked for is far apart in memory: have
+ * all of it fetched at once. */
+static void fetch_points(const struct build *b, const struct cell *c,
+                         uint32_t half)
+{
+  size_t at[19];
+  int n = 0;
+
+  for (int i = 1; i < 26; i++) {
+    uint32_t q[3] = { c->at[0] + half * (uint32_t)(i % 3),
+                      c->at[1] + half * (uint32_t)(i / 3 % 3),
+                      c->at[2] + half * (uint32_t)(i / 9) };
+
+    if (i % 3 != 1 && i / 3 % 3 != 1 && i / 9 != 1) continue;
+    at[n] = hash(b, q);
+    __builtin_prefetch(b->slot + at[n++]);
+  }
+  while (n--)
+    if (b->slot[at[n]]) __builtin_prefetch(b->point + b->slot[at[n]] - 1);
+}
+
 static int split(struct build *b, size_t index, uint32_t half,
                  const float test[7])
 {
@@ -277,6 +323,7 @@ static int split(struct build *b, size_t index, uint32_t half,
   struct cell c = b->cell[index];
   uint32_t id[27];
 
+  fetch_points(b, &c, half);
   for (int i = 0; i < 27; i++)
     if ((id[i] = make_point(b, &c, half, i)) == UINT32_MAX) return -1;
   for (int i = 0; i < 7; i++)
@@ -308,9 +355,14 @@ static unsigned full_count(const struct point *p)
   return n >> on_side;
 }
 
-static void settle(struct build *b, size_t first)
+/* Parents are corners of cells that this level has split: points of levels
+ * before, known by now. So points need not wait for each other. */
+static void settle_body(void *context, size_t first, size_t end, int worker)
 {
-  for (size_t i = first; i < b->n_point; i++) {
+  struct build *b = context;
+
+  (void)worker;
+  for (size_t i = b->first_point + first; i < b->first_point + end; i++) {
     struct point *p = b->point + i;
     double x[3], sum = 0;
 
@@ -326,47 +378,76 @@ static void settle(struct build *b, size_t first)
   }
 }
 
+/* The points of the level. */
+static void settle(struct build *b)
+{
+  vg_parallel_for(b->threads, b->n_point - b->first_point, GRAIN, settle_body,
+                  b);
+}
+
+/* A level: cells from first on. */
+struct level {
+  struct build *b;
+  size_t first;
+  double side;
+  uint8_t *mark;        /* by cell: split */
+  float (*test)[7];
+};
+
+static void decide_body(void *context, size_t first, size_t end, int worker)
+{
+  const struct level *l = context;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++)
+    l->mark[i] = (uint8_t)wants_split(l->b, l->b->cell + l->first + i,
+                                      l->side, l->test[i]);
+}
+
 /* Which of the cells first..last are split. Where the tree would become too
  * large for its limit the floor rises: a coarser field, but one that covers
  * everything alike. */
-static size_t decide(struct build *b, size_t first, size_t last, double side,
-                     uint8_t *mark, float (*test)[7])
+static size_t decide(struct level *l, size_t last)
 {
+  struct build *b = l->b;
   size_t n = 0;
 
-  for (size_t i = first; i < last; i++) {
-    mark[i - first] = (uint8_t)wants_split(b, b->cell + i, side,
-                                           test[i - first]);
-    n += mark[i - first];
-  }
+  vg_parallel_for(b->threads, last - l->first, GRAIN, decide_body, l);
+  for (size_t i = 0; i < last - l->first; i++) n += l->mark[i];
   while (n && last + 8 * n > b->max_cell) {
     b->floor *= 1.25;
     n = 0;
-    for (size_t i = first; i < last; i++) {
-      if (side <= b->floor * (double)b->cell[i].floor) mark[i - first] = 0;
-      n += mark[i - first];
+    for (size_t i = 0; i < last - l->first; i++) {
+      if (l->side <= b->floor * (double)b->cell[l->first + i].floor)
+        l->mark[i] = 0;
+      n += l->mark[i];
     }
   }
   return n;
 }
 
+static int split_level(struct level *l, uint32_t half, size_t last)
+{
+  size_t n = decide(l, last);
+
+  if (start_level(l->b, n)) return -1;
+  for (size_t i = 0; n && i < last - l->first; i++)
+    if (l->mark[i] && split(l->b, l->first + i, half, l->test[i])) return -1;
+  settle(l->b);
+  return 0;
+}
+
 static int grow_level(struct build *b, int level, size_t first, size_t last)
 {
-  double side = b->unit * (TOP >> level);
-  uint8_t *mark = vg_alloc(last - first, sizeof *mark);
-  float (*test)[7] = vg_alloc(last - first, sizeof *test);
-  size_t n_before = b->n_point;
-  int bad = !mark || !test;
+  struct level l = { b, first, b->unit * (TOP >> level),
+                     vg_alloc(last - first, sizeof *l.mark),
+                     vg_alloc(last - first, sizeof *l.test) };
+  int bad = !l.mark || !l.test ||
+            split_level(&l, TOP >> (level + 1), last);
 
-  if (!bad && decide(b, first, last, side, mark, test))
-    for (size_t i = first; i < last && !bad; i++)
-      if (mark[i - first])
-        bad = split(b, i, TOP >> (level + 1), test[i - first]);
-  free(mark);
-  free(test);
-  if (bad) return -1;
-  settle(b, n_before);
-  return 0;
+  free(l.mark);
+  free(l.test);
+  return bad ? -1 : 0;
 }
 
 static int grow(struct build *b)
@@ -376,13 +457,14 @@ static int grow(struct build *b)
   if (vg_reserve(&b->cell, &b->cap_cell, 1, sizeof *b->cell)) return -1;
   memset(b->cell, 0, sizeof *b->cell);
   b->n_cell = 1;
+  if (start_level(b, 1)) return -1;
   for (int i = 0; i < 8; i++) {
     uint32_t at[3] = { (i & 1) * TOP, (i >> 1 & 1) * TOP, (i >> 2) * TOP };
 
     b->cell->corner[i] = find_point(b, at);
     if (b->cell->corner[i] == UINT32_MAX) return -1;
   }
-  settle(b, 0);
+  settle(b);
   for (int level = 0; level < VG_OCTREE_DEPTH && first < last; level++) {
     if (grow_level(b, level, first, last)) return -1;
     first = last;
@@ -434,27 +516,54 @@ static int sweep(const struct build *b, uint32_t at, double side, int flip)
   return changed;
 }
 
-static float source_at_point(const struct build *b, size_t i)
+static void source_body(void *context, size_t first, size_t end, int worker)
 {
+  struct build *b = context;
   double x[3];
 
-  point_place(b, b->point + i, x);
-  return (float)clamp(b->f, vg_source_at(&b->f->set, x));
+  (void)worker;
+  for (size_t i = first; i < end; i++) {
+    point_place(b, b->point + i, x);
+    b->source[i] = (float)clamp(b->f, vg_source_at(&b->f->set, x));
+  }
 }
 
-/* The field at points whose sources were lowered, and at hanging ones. */
-static void renew(struct build *b, const float *before)
-{
-  for (size_t i = 0; i < b->n_point; i++) {
-    struct point *p = b->point + i;
-    double x[3], sum = 0;
+struct lowered {
+  struct build *b;
+  const float *before;
+};
 
-    for (int k = 0; p->hangs && k < p->n_parent; k++)
-      sum += (double)b->point[p->parent[k]].h;
-    if (p->hangs) p->h = (float)(sum / p->n_parent);
-    if (p->hangs || b->source[i] == before[i]) continue;
+static void renew_body(void *context, size_t first, size_t end, int worker)
+{
+  const struct lowered *l = context;
+  struct build *b = l->b;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++) {
+    struct point *p = b->point + i;
+    double x[3];
+
+    if (p->hangs || b->source[i] == l->before[i]) continue;
     point_place(b, p, x);
     p->h = (float)combine(b->f, x, (double)b->source[i], &p->hint);
+  }
+}
+
+/* The field at points whose sources were lowered, and at hanging ones, whose
+ * parents may hang too: in order. */
+static void renew(struct build *b, const float *before)
+{
+  struct lowered l = { b, before };
+
+  vg_parallel_for(b->threads, b->n_point, GRAIN, renew_body, &l);
+  for (size_t i = 0; i < b->n_point; i++) {
+    struct point *p = b->point + i;
+    double sum = 0;
+
+    if (!p->hangs) continue;
+    for (int k = 0; k < p->n_parent; k++)
+      sum += (double)b->point[p->parent[k]].h;
+    p->h = (float)(sum / p->n_parent);
   }
 }
 
@@ -468,8 +577,8 @@ static int limit_gradient(struct build *b)
     free(before);
     return -1;
   }
-  for (size_t i = 0; i < b->n_point; i++)
-    before[i] = b->source[i] = source_at_point(b, i);
+  vg_parallel_for(b->threads, b->n_point, GRAIN, source_body, b);
+  memcpy(before, b->source, b->n_point * sizeof *before);
   while (sweep(b, 0, b->unit * TOP, flip)) {
     flip = !flip;
     any = 1;
@@ -509,10 +618,11 @@ static int compact(const struct build *b, struct vg_octree *t)
 }
 
 vg_status vg_octree_build(const struct vg_field *f, const double lo[3],
-                          double side, size_t max_leaf, struct vg_octree *out,
-                          struct vg_error *err)
+                          double side, size_t max_leaf, int threads,
+                          struct vg_octree *out, struct vg_error *err)
 {
-  struct build b = { .f = f, .unit = side / TOP, .max_cell = max_leaf };
+  struct build b = { .f = f, .unit = side / TOP, .max_cell = max_leaf,
+                     .threads = threads };
   int bad;
 
   if (b.max_cell > VG_OCTREE_LEAF / 2) b.max_cell = VG_OCTREE_LEAF / 2;

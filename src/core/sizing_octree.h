@@ -33,10 +33,11 @@ double vg_field_at(const struct vg_field *f, const double x[3],
                    uint32_t *hint);
 
 /** Build over the cube lo, side with about max_leaf leaves at most. *out is
- * empty before, and on failure. */
+ * empty before, and on failure. threads: as vg_parallel_for's; the same tree
+ * for any number. */
 vg_status vg_octree_build(const struct vg_field *f, const double lo[3],
-                          double side, size_t max_leaf, struct vg_octree *out,
-                          struct vg_error *err);
+                          double side, size_t max_leaf, int threads,
+                          struct vg_octree *out, struct vg_error *err);
 
 void vg_octree_release(struct vg_octree *t);
 

@@ -1,55 +1,7 @@
-/* partition/bytes.h: flat bytes for messages and records, written and read in
- * sequence, in this machine's byte order. Uses base/comm.h. */
+/* partition/bytes.h: where base/bytes.h came from. */
 #ifndef VG_PARTITION_BYTES_H
 #define VG_PARTITION_BYTES_H
 
-#include <stdlib.h>
-#include <string.h>
-
-#include "base/comm.h"
-#include "base/memory.h"
-
-struct vg_writer { struct vg_bytes bytes; size_t cap; int refused; };
-
-static inline void vg_put(struct vg_writer *w, size_t n, size_t size,
-                          const void *data)
-{
-  size_t more = n * size;
-
-  if (w->refused || !more) return;
-  if (vg_reserve(&w->bytes.data, &w->cap, w->bytes.n + more, 1)) {
-    w->refused = 1;
-    return;
-  }
-  memcpy(w->bytes.data + w->bytes.n, data, more);
-  w->bytes.n += more;
-}
-
-struct vg_reader { const unsigned char *data; size_t n, at; int bad; };
-
-static inline void vg_get(struct vg_reader *r, size_t n, size_t size,
-                          void *data)
-{
-  if (r->bad || (size && n > (r->n - r->at) / size)) {
-    r->bad = 1;
-    return;
-  }
-  if (n && size) memcpy(data, r->data + r->at, n * size);
-  r->at += n * size;
-}
-
-/** A new array of n items that follow; NULL (and r->bad) when they do not. */
-static inline void *vg_get_array(struct vg_reader *r, size_t n, size_t size)
-{
-  void *a;
-
-  if (r->bad || (size && n > (r->n - r->at) / size) ||
-      !(a = vg_alloc(n, size))) {
-    r->bad = 1;
-    return NULL;
-  }
-  vg_get(r, n, size, a);
-  return a;
-}
+#include "base/bytes.h"
 
 #endif

@@ -1,0 +1,15 @@
+/* core/sizing_parts.h: what a field of sizes consists of. Internal to
+ * core/sizing. */
+#ifndef VG_CORE_SIZING_PARTS_H
+#define VG_CORE_SIZING_PARTS_H
+
+#include "core/sizing.h"
+#include "core/sizing_octree.h"
+
+struct vg_sizing {
+  struct vg_octree octree;
+  double slope, cap;       /* of sizes outside the octree */
+  double least, most;      /* over the octree */
+};
+
+#endif
