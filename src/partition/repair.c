@@ -1,7 +1,6 @@
 /* Repairs: cells gathered by cluster, mended, and put back as pieces. */
 #include "partition/repair.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,6 +8,7 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "core/hilbert.h"
 #include "partition/repair_parts.h"
 
 /* Balls to a cluster: a few hundred cells each. What is left over is done in
@@ -23,16 +23,29 @@ static double now(void)
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* A cell of a piece that a cluster has. */
-struct pick { uint32_t cluster, cell; };
+/* Cells of a piece that clusters have. */
+struct picks {
+  size_t n, cap;
+  struct vg_key *at;         /* [n] cells by cluster */
+  size_t n_held, cap_held;
+  struct vg_key *held;       /* [n_held] cells with a corner in the balls of a
+                                further cluster, by the one that has them */
+  vg_status st;
+};
+
+static void picks_release(struct picks *s)
+{
+  free(s->at);
+  free(s->held);
+  memset(s, 0, sizeof *s);
+}
 
 /* One round. */
 struct repair {
   struct vg_partition *p;
   struct vg_owners owners;
   struct vg_balls balls;
-  struct picks { size_t n, cap; struct pick *at; int refused; } *pick;
-                             /* [n_piece] by cluster */
+  struct picks *pick;        /* [n_piece] */
   size_t n_block, cap_block;
   struct vg_block *block;    /* of the clusters of this rank, by cluster and
                                 path */
@@ -46,7 +59,8 @@ struct repair {
 
 static void repair_free(struct repair *r)
 {
-  for (size_t k = 0; r->pick && k < r->p->n_piece; k++) free(r->pick[k].at);
+  for (size_t k = 0; r->pick && k < r->p->n_piece; k++)
+    picks_release(&r->pick[k]);
   for (size_t k = 0; k < r->n_block; k++) vg_block_release(&r->block[k]);
   for (size_t k = 0; r->mended && k < r->n_job; k++)
     vg_mended_release(&r->mended[k]);
@@ -62,33 +76,35 @@ static void repair_free(struct repair *r)
 
 /* --- which cells --------------------------------------------------------- */
 
-static int by_cluster(const void *a, const void *b)
+static int add(size_t *n, size_t *cap, struct vg_key **list, uint32_t cluster,
+               size_t cell)
 {
-  const struct pick *s = a, *t = b;
-
-  if (s->cluster != t->cluster) return s->cluster < t->cluster ? -1 : 1;
-  return s->cell < t->cell ? -1 : s->cell > t->cell;
+  if (vg_reserve(list, cap, *n + 1, sizeof **list)) return -1;
+  (*list)[(*n)++] = (struct vg_key){ cluster, (uint32_t)cell };
+  return 0;
 }
 
 /* A cell with corners in the balls of two clusters is the first one's. */
-static void pick_in(struct repair *r, size_t k, const uint32_t *in)
+static vg_status pick_in(const struct vg_piece *q, const uint32_t *in,
+                         struct picks *s)
 {
-  const struct vg_piece *q = &r->p->piece[k];
-  struct picks *s = &r->pick[k];
-
   for (size_t c = 0; c < q->n_cell; c++) {
-    uint32_t least = in[q->cell[c][0]];
+    const uint32_t *v = q->cell[c];
+    uint32_t least = VG_NO_CLUSTER, all = VG_NO_CLUSTER;
+    int held = 0;
 
-    for (int i = 1; i < 4; i++)
-      if (in[q->cell[c][i]] < least) least = in[q->cell[c][i]];
-    if (least == VG_NO_CLUSTER) continue;
-    if (vg_reserve(&s->at, &s->cap, s->n + 1, sizeof *s->at)) {
-      s->refused = 1;
-      return;
+    for (int i = 0; i < 4; i++) {
+      all &= in[v[i]];
+      if (in[v[i]] < least) least = in[v[i]];
     }
-    s->at[s->n++] = (struct pick){ least, (uint32_t)c };
+    if (all == VG_NO_CLUSTER) continue;
+    for (int i = 0; i < 4; i++)
+      held |= in[v[i]] != least && in[v[i]] != VG_NO_CLUSTER;
+    if (add(&s->n, &s->cap, &s->at, least, c) ||
+        (held && add(&s->n_held, &s->cap_held, &s->held, least, c)))
+      return VG_ERR_MEMORY;
   }
-  if (s->n) qsort(s->at, s->n, sizeof *s->at, by_cluster);
+  return vg_sort_keys(s->n, s->at, NULL);
 }
 
 static void pick_body(void *context, size_t first, size_t end, int worker)
@@ -99,14 +115,15 @@ static void pick_body(void *context, size_t first, size_t end, int worker)
   for (size_t k = first; k < end; k++) {
     const struct vg_piece *q = &r->p->piece[k];
     size_t n = q->n_in + q->n_point;
-    uint32_t *in = vg_alloc(n, sizeof *in), any = VG_NO_CLUSTER;
+    uint32_t *in = vg_alloc(n, sizeof *in), all = VG_NO_CLUSTER;
 
-    r->pick[k].refused = !in;
     for (size_t i = 0; in && i < n; i++) {
       in[i] = vg_balls_at(&r->balls, q->x[i]);
-      any &= in[i];
+      all &= in[i];
     }
-    if (in && any != VG_NO_CLUSTER) pick_in(r, k, in);
+    if (!in) r->pick[k].st = VG_ERR_MEMORY;
+    else if (all != VG_NO_CLUSTER)
+      r->pick[k].st = pick_in(q, in, &r->pick[k]);
     free(in);
   }
 }
@@ -119,29 +136,31 @@ static vg_status pick(struct repair *r, struct vg_error *err)
   if (!r->pick) return vg_fail_memory(err, "repairs");
   vg_parallel_for(r->p->options.threads, n, 1, pick_body, r);
   for (size_t k = 0; k < n; k++)
-    if (r->pick[k].refused) return vg_fail_memory(err, "repairs");
+    if (r->pick[k].st < 0) return vg_fail_memory(err, "repairs");
   return VG_OK;
 }
 
 /* --- to the ranks that mend ---------------------------------------------- */
 
-/* Corners in the ball of a later cluster: that one does not get the cell, so
- * it must hold them. Lists of points for each such cluster, without cells. */
-static void put_holds(struct repair *r, size_t k, const struct pick *pick,
-                      struct vg_post *post)
+static uint64_t name_of(const struct vg_piece *q, uint32_t v)
 {
-  const struct vg_piece *q = &r->p->piece[k];
+  return v < q->n_in ? q->in[v] : VG_POINT_NAME(q->serial, v - q->n_in);
+}
 
+/* Corners in the ball of a further cluster: that one does not get the cell, so
+ * it must hold them. */
+static void put_held(struct repair *r, const struct vg_piece *q,
+                     const struct vg_key *held, struct vg_post *post)
+{
   for (int i = 0; i < 4; i++) {
-    uint32_t v = q->cell[pick->cell][i];
+    uint32_t v = q->cell[held->index][i];
     uint32_t cluster = vg_balls_at(&r->balls, q->x[v]);
-    uint64_t name = v < q->n_in ? q->in[v]
-                                : VG_POINT_NAME(q->serial, v - q->n_in);
+    uint64_t name = name_of(q, v);
     uint8_t hold = 1;
     struct vg_block b = { .cluster = cluster, .n_point = 1, .name = &name,
                           .x = &q->x[v], .hold = &hold };
 
-    if (cluster == VG_NO_CLUSTER || cluster == pick->cluster) continue;
+    if (cluster == VG_NO_CLUSTER || cluster == held->key) continue;
     memcpy(b.path, q->path, sizeof b.path);
     vg_block_put(&post->to[cluster % (uint32_t)r->p->size], &b);
   }
@@ -149,21 +168,19 @@ static void put_holds(struct repair *r, size_t k, const struct pick *pick,
 
 /* The cells of one cluster: pick [n]. number: [n points], VG_NO_CLUSTER. */
 static void fill_block(const struct vg_piece *q, size_t n,
-                       const struct pick *pick, uint32_t *number,
+                       const struct vg_key *pick, uint32_t *number,
                        struct vg_block *b)
 {
-  b->cluster = pick->cluster;
+  b->cluster = (uint32_t)pick->key;
   b->n_point = 0;
   b->n_cell = n;
   memcpy(b->path, q->path, sizeof b->path);
   for (size_t c = 0; c < n; c++)
     for (int i = 0; i < 4; i++) {
-      uint32_t v = q->cell[pick[c].cell][i];
+      uint32_t v = q->cell[pick[c].index][i];
 
       if (number[v] == VG_NO_CLUSTER) {
-        b->name[b->n_point] = v < q->n_in
-                                ? q->in[v]
-                                : VG_POINT_NAME(q->serial, v - q->n_in);
+        b->name[b->n_point] = name_of(q, v);
         memcpy(b->x[b->n_point], q->x[v], sizeof *b->x);
         number[v] = (uint32_t)b->n_point++;
       }
@@ -171,7 +188,7 @@ static void fill_block(const struct vg_piece *q, size_t n,
     }
   for (size_t c = 0; c < n; c++)
     for (int i = 0; i < 4; i++)
-      number[q->cell[pick[c].cell][i]] = VG_NO_CLUSTER;
+      number[q->cell[pick[c].index][i]] = VG_NO_CLUSTER;
 }
 
 static vg_status put_piece(struct repair *r, size_t k, struct vg_post *post,
@@ -194,12 +211,13 @@ static vg_status put_piece(struct repair *r, size_t k, struct vg_post *post,
   }
   memset(number, 0xff, n_point * sizeof *number);
   for (size_t first = 0, end; first < s->n; first = end) {
-    for (end = first; end < s->n &&
-                      s->at[end].cluster == s->at[first].cluster; end++)
-      put_holds(r, k, &s->at[end], post);
+    for (end = first; end < s->n && s->at[end].key == s->at[first].key;
+         end++) {
+    }
     fill_block(q, end - first, &s->at[first], number, &b);
     vg_block_put(&post->to[b.cluster % (uint32_t)r->p->size], &b);
   }
+  for (size_t c = 0; c < s->n_held; c++) put_held(r, q, &s->held[c], post);
   free(number);
   vg_block_release(&b);
   return VG_OK;
@@ -330,7 +348,7 @@ static vg_status shrink(struct vg_piece *q, const struct picks *s,
   }
   memset(to, 0xff, n * sizeof *to);
   for (size_t k = 0; k < s->n; k++)
-    gone[s->at[k].cell] = (uint8_t)better[s->at[k].cluster];
+    gone[s->at[k].index] = (uint8_t)better[s->at[k].key];
   for (size_t c = 0; c < q->n_cell; c++) {
     if (gone[c]) continue;
     memmove(q->cell[kept], q->cell[c], sizeof *q->cell);
@@ -362,7 +380,7 @@ static vg_status remove_cells(struct repair *r, struct vg_error *err)
     size_t n = 0;
     vg_status st;
 
-    while (n < s->n && !r->better[s->at[n].cluster]) n++;
+    while (n < s->n && !r->better[s->at[n].key]) n++;
     if (n == s->n) continue;
     st = shrink(&r->p->piece[k], s, r->better, err);
     if (st < 0) return st;
@@ -439,7 +457,7 @@ static vg_status put_back(struct repair *r, struct vg_comm *comm,
   take_moves(r, from);
   vg_bytes_release(from, r->p->size);
   /* the picks were those of the pieces there were */
-  for (size_t k = 0; k < r->p->n_piece; k++) free(r->pick[k].at);
+  for (size_t k = 0; k < r->p->n_piece; k++) picks_release(&r->pick[k]);
   free(r->pick);
   r->pick = NULL;
   return vg_comm_agree(comm, add_pieces(r, err), err);

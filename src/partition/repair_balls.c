@@ -258,6 +258,47 @@ vg_status vg_balls_new(size_t n, const struct vg_spot *spot, size_t most,
   return st;
 }
 
+/* Is ball i's middle deep in an earlier ball that stays, not much smaller? */
+static int is_covered(const struct vg_balls *b, uint32_t i)
+{
+  const struct vg_spot *s = &b->spot[i];
+
+  for (int l = 0; l < b->n_level; l++) {
+    double m = b->share[l];
+    uint64_t at = hash(b->level[l], grid(s->at[0], m), grid(s->at[1], m),
+                       grid(s->at[2], m)) & b->mask;
+
+    for (uint32_t k = b->first[at]; k < b->first[at + 1]; k++) {
+      const struct vg_spot *t = &b->spot[b->ball[k]];
+
+      if (b->cluster[b->ball[k]] != VG_NO_CLUSTER && b->ball[k] < i &&
+          t->radius > 0.8 * s->radius &&
+          distance2(s->at, t->at) < 0.2 * t->radius * t->radius)
+        return 1;
+    }
+  }
+  return 0;
+}
+
+vg_status vg_spots_thin(size_t *n, struct vg_spot *spot, struct vg_error *err)
+{
+  struct vg_balls b = { .n = *n, .spot = spot };
+  vg_status st = VG_OK;
+
+  b.cluster = vg_alloc(*n, sizeof *b.cluster);
+  if (!b.cluster) return vg_fail_memory(err, "repairs");
+  memset(b.cluster, 0xff, *n * sizeof *b.cluster);
+  list_levels(&b);
+  st = fill_grid(&b, err);
+  for (uint32_t i = 0; st == VG_OK && i < b.n; i++)
+    if (!is_covered(&b, i)) b.cluster[i] = 0;
+  *n = 0;
+  for (size_t i = 0; st == VG_OK && i < b.n; i++)
+    if (b.cluster[i] != VG_NO_CLUSTER) spot[(*n)++] = spot[i];
+  vg_balls_release(&b);
+  return st;
+}
+
 void vg_balls_release(struct vg_balls *b)
 {
   free(b->cluster);

@@ -8,10 +8,9 @@
 #include "core/shape.h"
 #include "partition/repair_parts.h"
 
-/* As vg_shape: dihedral angles below 18 or above 162 degrees. */
-static const double bad = 0.0955;
-/* Radius of a ball, in local spacings. */
-static const double reach = 2.5;
+/* Radius of a ball, in local spacings: around cells with dihedral angles
+ * below 18 or above 162 degrees (as vg_shape), and around other bad ones. */
+static const double bad = 0.0955, far = 2.5, near = 1.2;
 
 /* --- owners -------------------------------------------------------------- */
 
@@ -203,7 +202,7 @@ static double distance2(const double a[3], const double b[3])
 }
 
 /* A ball around a cell: a few spacings, and all of the cell. */
-static struct vg_spot around(const struct vg_partition *p,
+static struct vg_spot around(const struct vg_partition *p, double shape,
                              const double *const x[4])
 {
   struct vg_spot s;
@@ -211,7 +210,7 @@ static struct vg_spot around(const struct vg_partition *p,
 
   for (int a = 0; a < 3; a++)
     s.at[a] = 0.25 * (x[0][a] + x[1][a] + x[2][a] + x[3][a]);
-  r = reach * vg_sizing_at(p->sizing, s.at);
+  r = (shape < bad ? far : near) * vg_sizing_at(p->sizing, s.at);
   s.radius = r * r;
   for (int i = 0; i < 4; i++) {
     double d = 1.01 * distance2(s.at, x[i]);
@@ -231,15 +230,17 @@ static void find_in(const struct search *s, size_t k)
   for (size_t c = 0; c < q->n_cell; c++) {
     const uint32_t *v = q->cell[c];
     const double *x[4];
+    double shape;
 
     if (!(shared[v[0]] | shared[v[1]] | shared[v[2]] | shared[v[3]])) continue;
     for (int i = 0; i < 4; i++) x[i] = q->x[v[i]];
-    if (vg_shape(x[0], x[1], x[2], x[3]) >= bad) continue;
+    shape = vg_shape(x[0], x[1], x[2], x[3]);
+    if (shape >= VG_SHAPE_AIM) continue;
     if (vg_reserve(&f->spot, &f->cap, f->n + 1, sizeof *f->spot)) {
       f->refused = 1;
       return;
     }
-    f->spot[f->n++] = around(s->p, x);
+    f->spot[f->n++] = around(s->p, shape, x);
   }
 }
 
@@ -286,6 +287,7 @@ static vg_status gather(const struct search *s, struct vg_comm *comm,
   free(w.bytes.data);
   *n = at / sizeof **out;
   if (*n) qsort(*out, *n, sizeof **out, by_place);
+  if (st == VG_OK) st = vg_spots_thin(n, *out, err);
   return vg_comm_agree(comm, st, err);
 }
 

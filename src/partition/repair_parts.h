@@ -60,6 +60,9 @@ struct vg_balls {
   uint32_t *first, *ball;    /* [mask + 2] into ball: by hash of grid cells */
 };
 
+/** Leave out balls around what is deep in others. */
+vg_status vg_spots_thin(size_t *n, struct vg_spot *spot, struct vg_error *err);
+
 /** Join balls that overlap to clusters, numbered by their first ball. Balls
  * that would make a cluster of more than `most` are left for later. */
 vg_status vg_balls_new(size_t n, const struct vg_spot *spot, size_t most,
