@@ -1,0 +1,68 @@
+/* Repairs on any number of ranks and threads make the same cells. */
+#include "mpi_support.h"
+
+#include "../unit/repair_support.h"
+
+static struct vg_digest repaired(struct vg_comm *comm, int threads,
+                                 struct vg_partition_report *report)
+{
+  struct vg_digest d;
+  struct scene s;
+
+  scene_new(&s, 16, 6, 6);
+  scene_shake(&s, 0.45, 7);
+  scene_cut(&s, comm, threads);
+  assert_int_equal(vg_partition_repair(&s.p, comm, NULL), VG_OK);
+  d = scene_digest(&s, comm);
+  *report = s.p.report;
+  scene_end(&s);
+  return d;
+}
+
+static void test_same_as_alone(void **state)
+{
+  struct vg_partition_report one, all;
+  struct vg_digest want = repaired(NULL, 1, &one);
+
+  (void)state;
+  assert_true(one.n_repaired > 0);
+  for (int threads = 1; threads <= 3; threads += 2) {
+    struct vg_digest got = repaired(job, threads, &all);
+
+    assert_memory_equal(&got, &want, sizeof want);
+    assert_int_equal(all.n_repair, one.n_repair);
+    assert_int_equal(all.n_repaired, one.n_repaired);
+    assert_int_equal(all.n_repair_cell, one.n_repair_cell);
+    assert_int_equal(all.n_repair_bad, one.n_repair_bad);
+    assert_int_equal(all.n_repair_bad_left, one.n_repair_bad_left);
+    assert_true(all.repair_worst == one.repair_worst);
+    assert_true(all.repair_worst_left == one.repair_worst_left);
+  }
+}
+
+/* Ranks without any piece take part. */
+static void test_empty(void **state)
+{
+  struct scene s;
+
+  (void)state;
+  scene_new(&s, 4, 2, 2);
+  s.p.rank = vg_comm_rank(job);
+  s.p.size = vg_comm_size(job);
+  s.p.sizing = s.sizing;
+  s.p.options.threads = 1;
+  pthread_mutex_init(&s.p.lock, NULL);
+  assert_int_equal(vg_partition_repair(&s.p, job, NULL), VG_OK);
+  assert_int_equal(s.p.report.n_repair, 0);
+  scene_end(&s);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(test_same_as_alone),
+    cmocka_unit_test(test_empty),
+  };
+
+  return RUN_IN_JOB(tests);
+}

@@ -1,0 +1,387 @@
+/* Repairs: bad cells across an interface get better, and nothing else
+ * changes. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "partition/repair_parts.h"
+#include "repair_support.h"
+
+static const double aim = VG_SHAPE_AIM;
+
+/* --- looking at pieces --------------------------------------------------- */
+
+static size_t count_cells(const struct scene *s)
+{
+  size_t n = 0;
+
+  for (size_t k = 0; k < s->p.n_piece; k++) n += s->p.piece[k].n_cell;
+  return n;
+}
+
+/* Points of the box in the original order of names: place in one array. */
+static size_t index_of(const struct scene *s, uint64_t name, size_t n_hull)
+{
+  size_t at = n_hull;
+
+  if (!(name >> 32)) return (uint32_t)name;
+  for (size_t k = 0; k < s->p.n_piece; k++) {
+    if (s->p.piece[k].serial == name >> 32) return at + (uint32_t)name;
+    at += s->p.piece[k].n_point;
+  }
+  fail();
+  return 0;
+}
+
+/* All pieces as one mesh: fails where they do not fit together. */
+static void whole(const struct scene *s, struct vg_tets *t)
+{
+  size_t n_hull = s->t.n_point, n = n_hull, n_cell = count_cells(s), at = 0;
+  double (*x)[3];
+  uint32_t (*cell)[4] = vg_alloc(n_cell, sizeof *cell);
+
+  for (size_t k = 0; k < s->p.n_piece; k++) n += s->p.piece[k].n_point;
+  x = vg_calloc(n, sizeof *x);
+  assert_true(x && cell);
+  memcpy(x, s->t.x, n_hull * sizeof *x);
+  for (size_t k = 0; k < s->p.n_piece; k++) {
+    const struct vg_piece *q = &s->p.piece[k];
+
+    for (size_t i = 0; i < q->n_point; i++)
+      memcpy(x[index_of(s, VG_POINT_NAME(q->serial, i), n_hull)],
+             q->x[q->n_in + i], sizeof *x);
+  }
+  for (size_t k = 0; k < s->p.n_piece; k++) {
+    const struct vg_piece *q = &s->p.piece[k];
+
+    for (size_t c = 0; c < q->n_cell; c++, at++)
+      for (int i = 0; i < 4; i++) {
+        uint32_t v = q->cell[c][i];
+        size_t p = index_of(s, v < q->n_in ? q->in[v]
+                              : VG_POINT_NAME(q->serial, v - q->n_in),
+                            n_hull);
+
+        cell[at][i] = (uint32_t)p;
+        assert_memory_equal(x[p], q->x[v], sizeof *x);
+      }
+  }
+  memset(t, 0, sizeof *t);
+  assert_int_equal(vg_tets_adopt(t, n, x, n_cell,
+                                 (const uint32_t (*)[4])cell, NULL), VG_OK);
+  assert_int_equal(vg_tets_defects(t), 0);
+  free(cell);
+}
+
+static double worst_of(const struct vg_tets *t)
+{
+  double worst = 2;
+
+  for (size_t c = 0; c < t->n_cell; c++) {
+    double q = cell_shape(t, c);
+
+    if (q < worst) worst = q;
+  }
+  return worst;
+}
+
+/* Every face without neighbour is on the hull of the box. */
+static void check_hull(const struct scene *s, const struct vg_tets *t)
+{
+  for (size_t c = 0; c < t->n_cell; c++)
+    for (int i = 0; i < 4; i++)
+      for (int m = 0; m < 3 && t->cell[c].link[i] == VG_NONE; m++)
+        assert_true(on_hull(s, t->x[t->cell[c].v[vg_face[i][m]]]));
+}
+
+static void check_volume(const struct scene *s, const struct vg_tets *t)
+{
+  double v = s->n[0] * s->n[1] * s->n[2];
+
+  assert_true(fabs(tets_volume(t) - v) < 1e-11 * v);
+}
+
+/* --- tests --------------------------------------------------------------- */
+
+/* A point of the interface between slabs 1 and 2 moved until cells on both
+ * sides of it are bad. */
+static void bad_scene(struct scene *s, int n)
+{
+  const double by[3] = {0.1, 0.72, -0.12};
+
+  scene_new(s, 16, n, n);
+  assert_true(scene_move(s, scene_point(s, 8, n / 2, n / 2), by, 1e-6));
+  assert_true(worst_of(&s->t) < 0.05);
+  scene_cut(s, NULL, 1);
+}
+
+static void test_mends_across(void **state)
+{
+  struct scene s;
+  struct vg_tets t;
+  const struct vg_piece *q;
+
+  (void)state;
+  bad_scene(&s, 8);
+  assert_int_equal(vg_partition_repair(&s.p, NULL, NULL), VG_OK);
+  assert_int_equal(s.p.report.n_repair, 1);
+  assert_int_equal(s.p.report.n_repaired, 1);
+  assert_true(s.p.report.repair_worst == worst_of(&s.t));
+  assert_true(s.p.report.n_repair_bad_left < s.p.report.n_repair_bad);
+  whole(&s, &t);
+  check_hull(&s, &t);
+  check_volume(&s, &t);
+  assert_true(worst_of(&t) >= aim);
+  assert_int_equal(s.p.n_piece, SLABS + 1);
+  q = &s.p.piece[SLABS];
+  assert_string_equal(q->path, "R000000");
+  assert_int_equal(q->kind, VG_SPAN_REPAIR);
+  assert_int_equal(q->n_cell, s.p.report.n_repair_cell + count_cells(&s) -
+                              s.t.n_cell);
+  vg_tets_release(&t);
+  scene_end(&s);
+}
+
+/* Points farther than the ball are where they were, and no piece keeps the
+ * name of a point that it does not use. */
+static void test_rim_stays(void **state)
+{
+  struct scene s;
+  size_t n_moved = 0, n_own = 0;
+
+  (void)state;
+  bad_scene(&s, 8);
+  assert_int_equal(vg_partition_repair(&s.p, NULL, NULL), VG_OK);
+  for (int g = 0; g < SLABS; g++) {
+    const struct vg_piece *q = &s.p.piece[g];
+    uint8_t *used = vg_calloc(q->n_in + q->n_point, 1);
+
+    assert_non_null(used);
+    for (size_t i = 0; i < q->n_point; i++) {
+      const double *x = q->x[q->n_in + i];
+      double d = hypot(hypot(x[0] - 8, x[1] - 4), x[2] - 4);
+      int moved = 0;
+
+      for (int k = 0; k < 3; k++) moved |= x[k] != round(x[k]);
+      n_own++;
+      n_moved += (size_t)moved;
+      if (d > 4.5) assert_false(moved);
+    }
+    for (size_t c = 0; c < q->n_cell; c++)
+      for (int i = 0; i < 4; i++) used[q->cell[c][i]] = 1;
+    for (size_t i = 0; i < q->n_in; i++) assert_true(used[i]);
+    free(used);
+  }
+  assert_true(n_moved > 0);
+  assert_int_equal(n_own, 15 * 7 * 7);
+  scene_end(&s);
+}
+
+static void unchanged(struct scene *s)
+{
+  struct vg_digest before, after;
+
+  before = scene_digest(s, NULL);
+  assert_int_equal(vg_partition_repair(&s->p, NULL, NULL), VG_OK);
+  after = scene_digest(s, NULL);
+  assert_memory_equal(&before, &after, sizeof after);
+  assert_int_equal(s->p.report.n_repaired, 0);
+}
+
+static void test_nothing_bad(void **state)
+{
+  struct scene s;
+
+  (void)state;
+  scene_new(&s, 8, 3, 3);
+  scene_cut(&s, NULL, 1);
+  unchanged(&s);
+  assert_int_equal(s.p.report.n_repair, 0);
+  scene_end(&s);
+}
+
+/* What is bad inside a piece was its own task's to mend. */
+static void test_inside_is_left(void **state)
+{
+  const double by[3] = {0.05, 0.72, -0.12};
+  struct scene s;
+
+  (void)state;
+  scene_new(&s, 24, 6, 6);
+  assert_true(scene_move(&s, scene_point(&s, 15, 3, 3), by, 1e-6));
+  assert_true(worst_of(&s.t) < aim);
+  scene_cut(&s, NULL, 1);
+  unchanged(&s);
+  assert_int_equal(s.p.report.n_repair, 0);
+  scene_end(&s);
+}
+
+/* Flat slabs: all cells are bad, and the hull leaves no room for better. */
+static void test_hopeless(void **state)
+{
+  struct scene s;
+
+  (void)state;
+  scene_new(&s, 4, 2, 2);
+  for (uint32_t p = 0; p < s.t.n_point; p++)
+    for (int k = 1; k < 3; k++) s.t.x[p][k] *= 512;
+  s.n[1] *= 512;
+  s.n[2] *= 512;
+  assert_true(worst_of(&s.t) < aim);
+  scene_cut(&s, NULL, 1);
+  unchanged(&s);
+  assert_int_equal(s.p.report.n_repair, 1);
+  assert_true(s.p.report.repair_worst_left == s.p.report.repair_worst);
+  assert_int_equal(s.p.report.n_repair_bad_left, s.p.report.n_repair_bad);
+  scene_end(&s);
+}
+
+/* Many regions, side by side and overlapping. */
+static void test_many(void **state)
+{
+  struct vg_digest d[2];
+
+  (void)state;
+  for (int k = 0; k < 2; k++) {
+    struct vg_tets t;
+    struct scene s;
+
+    scene_new(&s, 20, 8, 8);
+    scene_shake(&s, 0.4, 3);
+    scene_cut(&s, NULL, k ? 3 : 1);
+    assert_int_equal(vg_partition_repair(&s.p, NULL, NULL), VG_OK);
+    assert_true(s.p.report.n_repaired > 0);
+    assert_true(s.p.report.n_repair_bad_left < s.p.report.n_repair_bad / 2);
+    whole(&s, &t);
+    check_hull(&s, &t);
+    check_volume(&s, &t);
+    d[k] = scene_digest(&s, NULL);
+    vg_tets_release(&t);
+    scene_end(&s);
+  }
+  assert_memory_equal(&d[0], &d[1], sizeof *d);
+}
+
+/* --- balls --------------------------------------------------------------- */
+
+enum { N_BALL = 600 };
+
+static void scatter(struct vg_spot *spot, uint64_t seed)
+{
+  for (int i = 0; i < N_BALL; i++) {
+    for (int k = 0; k < 3; k++) spot[i].at[k] = 4 * tets_random(&seed) - 2;
+    spot[i].radius = 0.3 * ldexp(1, -(int)(8 * tets_random(&seed)));
+  }
+}
+
+static int touch(const struct vg_spot *a, const struct vg_spot *b)
+{
+  double d = 0, r = a->radius + b->radius;
+
+  for (int k = 0; k < 3; k++)
+    d += (a->at[k] - b->at[k]) * (a->at[k] - b->at[k]);
+  return d <= r * r;
+}
+
+static void test_balls(void **state)
+{
+  static struct vg_spot spot[N_BALL];
+  struct vg_balls b;
+  uint64_t seed = 5;
+  size_t n_in = 0;
+
+  (void)state;
+  scatter(spot, 11);
+  assert_int_equal(vg_balls_new(N_BALL, spot, N_BALL, &b, NULL), VG_OK);
+  assert_true(b.n_cluster > 10 && b.n_cluster < N_BALL);
+  for (int i = 0; i < N_BALL; i++)
+    for (int j = 0; j < i; j++)
+      if (touch(&spot[i], &spot[j]))
+        assert_int_equal(b.cluster[i], b.cluster[j]);
+  for (int k = 0; k < 20000; k++) {
+    struct vg_spot x = { .radius = 0 };
+    uint32_t want = VG_NO_CLUSTER;
+
+    for (int a = 0; a < 3; a++) x.at[a] = 4 * tets_random(&seed) - 2;
+    for (int i = 0; i < N_BALL; i++)
+      if (touch(&spot[i], &x)) want = b.cluster[i];
+    n_in += want != VG_NO_CLUSTER;
+    assert_int_equal(vg_balls_at(&b, x.at), want);
+  }
+  assert_true(n_in > 100);
+  vg_balls_release(&b);
+}
+
+/* No cluster of more balls than asked for; those that are left over are in
+ * none, and clusters stay apart. */
+static void test_balls_capped(void **state)
+{
+  static struct vg_spot spot[N_BALL];
+  size_t size[N_BALL] = {0}, left = 0;
+  struct vg_balls b;
+
+  (void)state;
+  scatter(spot, 12);
+  assert_int_equal(vg_balls_new(N_BALL, spot, 5, &b, NULL), VG_OK);
+  for (int i = 0; i < N_BALL; i++) {
+    if (b.cluster[i] == VG_NO_CLUSTER) {
+      left++;
+      continue;
+    }
+    assert_true(b.cluster[i] < b.n_cluster);
+    assert_true(++size[b.cluster[i]] <= 5);
+    for (int j = 0; j < i; j++)
+      if (b.cluster[j] != VG_NO_CLUSTER && touch(&spot[i], &spot[j]))
+        assert_int_equal(b.cluster[i], b.cluster[j]);
+  }
+  assert_true(left > 0 && left < N_BALL / 2);
+  vg_balls_release(&b);
+}
+
+/* What is left out is within half the radius of one that stays. */
+static void test_thin(void **state)
+{
+  static struct vg_spot all[N_BALL], spot[N_BALL];
+  size_t n = N_BALL;
+
+  (void)state;
+  scatter(all, 13);
+  for (int i = 0; i < N_BALL; i++) all[i].radius = 0.5 + 0.1 * (i % 2);
+  memcpy(spot, all, sizeof all);
+  assert_int_equal(vg_spots_thin(&n, spot, NULL), VG_OK);
+  assert_true(n > 10 && n < N_BALL);
+  for (int i = 0; i < N_BALL; i++) {
+    struct vg_spot x = all[i];
+    int found = 0;
+
+    x.radius = 0;
+    for (size_t k = 0; k < n && !found; k++) {
+      struct vg_spot half = spot[k];
+
+      half.radius *= 0.5;
+      found = touch(&half, &x);
+    }
+    assert_true(found);
+  }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(test_mends_across),
+    cmocka_unit_test(test_rim_stays),
+    cmocka_unit_test(test_nothing_bad),
+    cmocka_unit_test(test_inside_is_left),
+    cmocka_unit_test(test_hopeless),
+    cmocka_unit_test(test_many),
+    cmocka_unit_test(test_balls),
+    cmocka_unit_test(test_balls_capped),
+    cmocka_unit_test(test_thin),
+  };
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
