@@ -21,8 +21,8 @@ static const double layer_per_cell = 1.0e-6;    /* growing and measuring */
 
 /* Bytes: of a mesh in pieces; of a void that is filled, per cell; of sizes,
  * front and load, per triangle of the front and per cube; of the program. */
-static const double mesh_per_cell = 75, fill_per_cell = 130;
-static const double per_triangle = 700, per_cube = 100, program = 30e6;
+static const double mesh_per_cell = 40, fill_per_cell = 60;
+static const double per_triangle = 280, per_cube = 28, program = 18e6;
 
 /* --- layers that are not grown ------------------------------------------- */
 

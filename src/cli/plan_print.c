@@ -28,9 +28,9 @@ static const struct form {
   { "r4.ugrid", 12, 16, 24, 16 }, { "lr4.ugrid", 12, 16, 24, 16 },
   { "b8l.ugrid", 24, 32, 48, 32 }, { "lb8l.ugrid", 24, 32, 48, 32 },
   { "b8.ugrid64", 24, 32, 48, 32 }, { "lb8.ugrid64", 24, 32, 48, 32 },
-  { "ugrid", 68, 30, 44, 24 }, { "cogsg", 24, 16, 0, 40 },
-  { "vtu", 24, 33, 33, 0 }, { "pvtu", 27, 30, 38, 0 },
-  { "meshb", 28, 20, 28, 16 }, { "mesh", 70, 32, 46, 26 },
+  { "ugrid", 51, 28, 42, 24 }, { "cogsg", 24, 16, 0, 41 },
+  { "vtu", 24, 49, 57, 49 }, { "pvtu", 28, 49, 57, 0 },
+  { "meshb", 28, 20, 28, 16 }, { "mesh", 56, 30, 44, 26 },
 };
 
 double vg_plan_bytes(const struct vg_plan *p, const char *item)
@@ -47,10 +47,10 @@ double vg_plan_bytes(const struct vg_plan *p, const char *item)
              f->face * boundary;
   }
   if (vg_foam_word(item, &foam)) {
-    double faces = 2 * p->tet + 2.5 * p->prism;
+    double faces = 2 * p->tet + 2.5 * p->prism + 0.5 * boundary;
 
-    return foam.is_ascii ? 68 * p->point + 46 * faces
-                         : 24 * p->point + 23.5 * faces;
+    return foam.is_ascii ? 58 * p->point + 46 * faces
+                         : 24 * p->point + 24 * faces;
   }
   return 0;
 }

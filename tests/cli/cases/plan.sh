@@ -63,3 +63,64 @@ echo '{"ok": true}' >report.json
 vanguard plan -r report.json
 exits 1
 says err "report.json: not a timeline of vanguard mesh"
+
+# Before anything is meshed: the same tree as the run has, nothing is written.
+vanguard demo box --cells 60000 --out p
+before=$(ls -A p)
+vanguard plan -q -p p/box --leaf-cells 8000 -n 1,2,8 -t 1,2 --write vtu,cogsg
+exits 0
+is err </dev/null
+[ "$(ls -A p)" = "$before" ] || fail "plan has written into the project"
+says out "Mesh expected"
+says out "1 cuts into 8 leaves; 5 pencils and 12 tiles"
+says out "  8 leaves: "
+says out "Best: "
+says out "40,000       "
+grep -q "^  vtu  *[0-9.]* MB" out || fail "no size of the .vtu"
+grep -q "^      8       2      16 " out || fail "no row of 8 x 2"
+vanguard plan -q -p p/box --leaf-cells 8000 -n 2 -j --serial 0
+exits 0
+cp out plan.json
+says plan.json '"leaves": 8'
+says plan.json '"path": "0.7"'
+says plan.json '"best_leaf_cells"'
+vanguard mesh -q -p p/box --leaf-cells 8000 --out m --json
+exits 0
+says out '"pencils": 5'
+says out '"tiles": 12'
+
+# Cells and points that a plan says and a mesh has, within 6 %: the estimate's
+# own error.
+figures() { sed -n 's/^ *"\(cells\|points\)": \([0-9][0-9.]*\).*/\1 \2/p' "$1" |
+  sort -u -k1,1; }
+figures plan.json >planned
+vanguard check m/box.b8.ugrid --json
+exits 0
+figures out | paste -d ' ' planned - >both
+[ "$(wc -l <both)" = 2 ] || fail "no cells and points to compare"
+awk '$1 != $3 || $2 / $4 < 0.94 || $2 / $4 > 1.06 { exit 1 }' both ||
+  fail "planned and made: $(cat both)"
+
+# One leaf where that is asked for; a target that cannot be, and one that can.
+vanguard plan -q -p p/box --leaf-cells 0 -n 1
+says out "0 cuts into 1 leaves"
+vanguard plan -q -p p/box --target 0.001 -n 1,2
+exits 0
+says out "No machine of the list takes 0.001 s or less."
+vanguard plan -q -p p/box --target 1000 -n 1,2
+says out "Best: 1 ranks x 1 threads"
+
+vanguard plan -p p/box -r r.timeline.json
+exits 2
+says err "either a project or a --replay"
+vanguard plan -r r.timeline.json --leaf-cells 5
+exits 2
+says err "takes no settings"
+vanguard plan -p p/none
+exits 1
+says err "p/none"
+vanguard plan -p p/box --growth 0.5
+exits 2
+vanguard plan -p p/box --depth x
+exits 2
+says err "--depth takes a whole number from 0, not 'x'"
