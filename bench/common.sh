@@ -93,18 +93,18 @@ fi
 # launch RANKS THREADS COMMAND...: bound to cores where there are enough. One
 # rank needs no launcher.
 launch() {
-  local ranks=$1 threads=$2 how=()
+  local ranks=$1 threads=$2 binding=()
   shift 2
   if [ "$ranks" = 1 ]; then
     "$@"
     return
   fi
   if [ $((ranks * threads)) -le "$(nproc)" ]; then
-    how=(--map-by "slot:PE=$threads" --bind-to core)
+    binding=(--map-by "slot:PE=$threads" --bind-to core)
   else
-    how=(--oversubscribe --bind-to none)
+    binding=(--oversubscribe --bind-to none)
   fi
-  mpirun -n "$ranks" "${how[@]}" "$@"
+  mpirun -n "$ranks" "${binding[@]}" "$@"
 }
 
 # digest FOLDER: of all its files that hold results and no times.

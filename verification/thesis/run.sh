@@ -1,0 +1,257 @@
+#!/usr/bin/env bash
+# verification/thesis/run.sh: the cases of the thesis that PVGRID comes from,
+# at sizes for 2 cores and 24 GiB.
+#
+# usage: verification/thesis/run.sh [--quick] [--scale X] [--data DIR]
+#          [--build DIR] [--meshcheck PROGRAM] [--work DIR] [--out FILE]
+#          [--json FILE] [CASE...]
+#   --quick      everything at a hundredth of its size
+#   --scale      numbers of cells times X (default 1)
+#   --data       folder of real geometry (verification/README.md), for aircraft
+#   --build      build folder (default build/release, made when missing)
+#   --meshcheck  another judge, run as PROGRAM -q MESH.b8.ugrid; exit status 0:
+#                valid
+#   --work       scratch folder, kept (default: a temporary one, removed)
+#   --out        write the tables to FILE too
+#   --json       every run, as one JSON
+#   CASE         box sphere wing aircraft jet
+#
+# box 23 M and sphere 12 M as in the thesis; wing and aircraft with viscous
+# layers, 20 M and more, for its DLR-F6 and EET; jet: a nozzle whose fine plume
+# fills a corner of a large box, where one of 16 subdomains of equal volume has
+# most of the work. Each on one thread, two ranks and two threads, all of which
+# must write the same files; and what the record of one thread makes of 64
+# workers, beside the thesis's 64 processors (README.md).
+# Exit status: 0 all valid and the same, 1 not, 2 usage.
+# Needs: jq, time, openmpi-bin.
+set -euo pipefail
+
+root=$(cd "$(dirname "$0")/../.." && pwd)
+# shellcheck source=bench/common.sh
+. "$root/bench/common.sh"
+# shellcheck source=bench/aircraft.sh
+. "$root/bench/aircraft.sh"
+build=$root/build/release
+work='' json='' data='' meshcheck='' quick=0 scale=1
+project='' options=() options_all=() this=''
+take_options "scale data build meshcheck work out json" quick "$@"
+[ "$quick" = 0 ] || scale=$(calc "$scale / 100")
+need jq jq
+need /usr/bin/time time
+need mpirun openmpi-bin
+make_programs "$build" vanguard
+vanguard=$build/bin/vanguard
+work_folder thesis
+rows=$work/rows.json failed=0
+: > "$rows"
+[ -z "$out" ] || : > "$out"
+cells() { calc "int($1 * $scale)"; }
+
+# once CASE HOW OPTION...: HOW is RANKSxTHREADS. Leaves the digest in `this`.
+once() {
+  local name=$1 how=$2
+  local d=$work/$name.$how
+  shift 2
+  run_mesh "$vanguard" "$d" "${how%x*}" "${how#*x}" -p "$project" \
+    "${options[@]}" "$@" ||
+    die "$name $how failed: $(grep -a '^vanguard' "$d/log" | tail -1)"
+  jq -c --arg case "$name" --arg how "$how" '{case: $case, how: $how} + .' \
+    "$d/row.json" >> "$rows"
+  echo "$name $how: $(get "$d/row.json" '"\(.wall) s"')" >&2
+  this=$(digest "$d/out")
+  if [ -n "$meshcheck" ] && [ "$how" = 2x1 ]; then
+    "$meshcheck" -q "$d"/out/*.b8.ugrid > "$d/meshcheck" 2>&1 || {
+      echo "$name: the other judge says no: $d/meshcheck" >&2; failed=1; }
+  fi
+  [ "$(get "$d/row.json" .valid)" = true ] || {
+    echo "$name $how: not valid" >&2; failed=1; }
+  find "$d/out" -type f ! -name '*.json' -size +1M -delete
+}
+
+row() {   # row CASE HOW RESULT
+  jq -r --slurpfile one "$work/$1.1x1/row.json" --arg case "$1" --arg how "$2" \
+    --arg result "$3" '
+    def f($d): . * pow(10; $d) | round / pow(10; $d);
+    .seconds as $s | "| \($case) | \(.cells) | \($how) | \(.wall | f(1)) | " +
+    "\($s.layers | f(1)) | \($s.cut_fill | f(1)) | " +
+    "\($s.judge + $s.write | f(1)) | \($one[0].wall / .wall | f(2)) | " +
+    "\(.leaves) | \(100 * .zone_share | f(1)) | \(.imbalance | f(3)) | " +
+    "\(.peak_mb | f(0)) | \(.angle_min | f(2)) | \($result) |"' \
+    "$work/$1.$2/row.json" | say
+}
+
+# A case on one and two cores.
+three() {
+  local how first='' result
+  for how in 1x1 2x1 1x2; do
+    once "$1" $how
+    first=${first:-$this} result='the same'
+    [ "$this" = "$first" ] || { result='DIFFERS'; failed=1; }
+    [ $how != 1x1 ] || result='-'
+    row "$1" $how "$result"
+  done
+}
+
+# forecast NAME RECORD WORKERS: lines of the second table.
+forecast() {
+  "$vanguard" plan --replay "$2" --ranks "$3" --serial 0 --json \
+    > "$work/tasks.json"
+  "$vanguard" plan --replay "$2" --ranks "$3" --json |
+    jq -r --slurpfile tasks "$work/tasks.json" --arg name "$1" '
+    def f($d): . * pow(10; $d) | round / pow(10; $d);
+    .forecast[0] as $all | $tasks[0].forecast[0] | "| \($name) | " +
+    "\(.workers) | \(.cuts_end | f(2)) | \(.seconds | f(2)) | " +
+    "\($all.seconds | f(2)) | \(.speedup | f(2)) | " +
+    "\($all.speedup | f(2)) | \(.imbalance | f(3)) |"'
+}
+
+# --- the jet ------------------------------------------------------------------
+
+# A nozzle of length 1, radius 0.15, along x from the origin: rings of points
+# with a disc at both ends.
+nozzle() {
+  awk 'BEGIN {
+    n = 24; pi = atan2(0, -1); r = 0.15
+    k = 0
+    for (j = 3; j >= 1; j--) ring[k++] = "0 " r * j / 3      # inner to outer:
+    for (j = 1; j <= 26; j++) ring[k++] = j / 26 " " r       # see below
+    for (j = 2; j >= 1; j--) ring[k++] = "1 " r * j / 3
+    # the first disc from its centre outwards
+    t = ring[0]; ring[0] = ring[2]; ring[2] = t
+    print "v 0 0 0"
+    for (i = 0; i < k; i++) {
+      split(ring[i], p, " ")
+      for (a = 0; a < n; a++)
+        printf "v %.9f %.9f %.9f\n", p[1], p[2] * cos(2 * pi * a / n),
+               p[2] * sin(2 * pi * a / n)
+    }
+    print "v 1 0 0"
+    for (a = 0; a < n; a++) {
+      b = (a + 1) % n
+      print "f", 1, 2 + b, 2 + a
+      for (i = 0; i + 1 < k; i++) {
+        s = 2 + i * n; t = s + n
+        print "f", s + a, s + b, t + b
+        print "f", s + a, t + b, t + a
+      }
+      print "f", 2 + k * n, 2 + (k - 1) * n + a, 2 + (k - 1) * n + b
+    }
+  }'
+}
+
+# The nozzle stands near the corner of a box of 40 lengths; its plume is a cone
+# of fine cells. Spacing for a number of cells: nearly all are in the cone and
+# in the layer in which cells grow to twice its spacing.
+jet_project() {
+  local d=$work/input/jet h
+  mkdir -p "$d"
+  nozzle > "$d/jet.obj"
+  # 6.5 cells per cube of the spacing; 14.1 is the volume of the cone; growth
+  # around it adds about half as much again
+  h=$(calc "exp(log(1.5 * 6.5 * 14.1 / $1) / 3)")
+  cat > "$d/jet.deck" << DECK
+A supersonic jet in the corner of a large box
+
+growth
+1.2
+
+farfield
+kind  spacing  xlo  ylo  zlo  xhi  yhi  zhi
+box   2.5      -4   -4   -4   36   36   36
+
+sources
+kind      x0  y0  z0  x1  y1  z1  r0    r1   h0
+cylinder  1   0   0   11  0   0   0.25  1.0  $h
+DECK
+  project=$d/jet.obj
+  options=(--layers no)
+}
+
+jet_row() {   # jet_row WHAT NAME
+  local d=$work/$2.1x1
+  "$vanguard" plan --replay "$d/record.json" --ranks 8,16 --serial 0 --json \
+    > "$work/plan.json"
+  jq -r --slurpfile r "$d/out/jet.report.json" --slurpfile p \
+    "$work/plan.json" --arg what "$1" --slurpfile two "$work/$2.1x2/row.json" '
+    def f($d): . * pow(10; $d) | round / pow(10; $d);
+    $r[0].partition.leaf_cells as $l | $p[0].forecast as $f |
+    "| \($what) | \(.cells) | \($l | length) | " +
+    "\(100 * ($l | max) / ($l | add) | f(1)) | \(.wall | f(1)) | " +
+    "\($two[0].wall | f(1)) | \($two[0].imbalance | f(3)) | " +
+    "\($f[0].speedup | f(2)) | \($f[1].speedup | f(2)) | " +
+    "\($f[1].imbalance | f(3)) |"' "$d/row.json" | say
+}
+
+case_jet() {
+  jet_project "$(cells 8000000)"
+  say << 'HEAD'
+
+## Jet: one of 16 subdomains has most of the work
+
+| decomposition | cells | leaves | largest leaf, % | 1x1, s | 1x2, s | imbalance, 1x2 | forecast of cutting and filling: speed-up at 8 | at 16 | imbalance at 16 |
+|---|---|---|---|---|---|---|---|---|---|
+HEAD
+  local how leaf
+  leaf=$(cells 125000)   # 64 leaves and more
+  for how in 1x1 1x2; do
+    once jet-uniform $how -L 4
+    once jet-adaptive $how --leaf-cells "$leaf"
+  done
+  jet_row "uniform, -L 4" jet-uniform
+  jet_row "adaptive, --leaf-cells $leaf" jet-adaptive
+}
+
+# ------------------------------------------------------------------------------
+
+# As many leaves at any scale; below 20,000 cells they are mostly surface.
+[ "$scale" = 1 ] || options_all=(--leaf-cells "$(calc "int(150000 * $scale < \
+  20000 ? 20000 : 150000 * $scale)")")
+say << HEAD
+Vanguard $("$vanguard" --version | awk 'NR == 1 { print $2 }'), $(uname -m), $(nproc) cores, $(date -u +%Y-%m-%d), load before $(cut -d' ' -f1 /proc/loadavg), sizes x $scale.
+
+| case | cells | ranks x threads | start to files closed, s | layers, s | cutting and filling, s | judging and writing, s | speed-up | leaves | zones, % of cells | imbalance | peak MB of a rank | smallest angle | files |
+|---|---|---|---|---|---|---|---|---|---|---|---|---|---|
+HEAD
+forecasts=()
+for name in box sphere wing aircraft; do
+  wanted $name || continue
+  case $name in
+    box) demo_project box "$(cells 23000000)" "$work/input" ;;
+    sphere) demo_project sphere "$(cells 12000000)" "$work/input" ;;
+    wing) demo_project wing "$(cells 4400000)" "$work/input" ;;
+    aircraft)
+      if holds "$scale" '<' 0.5; then plane=dlr_f6_coarse
+      else plane=dlr_f6_medium; fi
+      if [ -z "$data" ] || ! aircraft "$data" $plane "$work/input"; then
+        echo "SKIP aircraft: no --data with $plane" >&2
+        continue
+      fi
+      # thinner growth than usual, for 20 million cells
+      [ $plane = dlr_f6_coarse ] || options+=(--ratio 1.12 --growth 1.12) ;;
+  esac
+  options+=("${options_all[@]}")
+  three $name
+  forecasts+=("$name")
+done
+if [ ${#forecasts[@]} -gt 0 ]; then
+  say << 'HEAD'
+
+## On more workers, forecast from the record of one thread
+
+| case | workers | last cut, s | cutting and filling, s | with reading and writing on one core, s | speed-up of cutting and filling | of all | imbalance |
+|---|---|---|---|---|---|---|---|
+HEAD
+  for name in "${forecasts[@]}"; do
+    for n in 1 2 16 64; do
+      forecast "$name" "$work/$name.1x1/record.json" $n | say
+    done
+  done
+  say << 'END_OF_THESIS'
+| PVGRID, box 23 M | 64 | 373.97 | 554.87 | 624.06 | | 22.95 | |
+| PVGRID, sphere 12 M | 64 | | | | | 15.47 | |
+END_OF_THESIS
+fi
+! wanted jet || case_jet
+[ -s "$rows" ] || die "no such case; see --help"
+[ -z "$json" ] || jq -s '{runs: .}' "$rows" > "$json"
+exit $failed
