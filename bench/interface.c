@@ -1,0 +1,304 @@
+/* interface CASE CELLS LEAF [THREADS]: are cells beside interfaces as good as
+ * all cells?
+ *
+ * CASE: a case of `vanguard demo` with about CELLS cells, or a file with a
+ * closed surface, which is meshed as it is. It is filled in leaves of LEAF
+ * cells; points whose cells were made by different tasks are on interfaces.
+ * One line each for all cells, for those within two rings of an interface
+ * (repairs included), and for the others: number, smallest angle, first and
+ * fifth hundredth and mean of the smallest dihedral angle, 99th hundredth of
+ * the largest; mean, first and 99th hundredth of the mean edge over the
+ * target. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "base/memory.h"
+#include "core/cdt_server.h"
+#include "core/demo.h"
+#include "core/surface_check.h"
+#include "io/format.h"
+#include "partition/advance.h"
+
+enum { BINS = 1800, N_SIZE = 400, REPAIR = 3 };
+
+#define MIXED UINT32_MAX      /* of a point: cells of two tasks */
+#define NOBODY (UINT32_MAX - 1)
+
+static const double degree = 57.29577951308232;
+
+static double cpu(void)
+{
+  struct timespec t;
+
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static void must(vg_status st, const struct vg_error *err)
+{
+  if (st == VG_OK) return;
+  fprintf(stderr, "interface: %s\n", err->text);
+  exit(1);
+}
+
+struct share {
+  size_t n, low[BINS + 1], high[BINS + 1], size[N_SIZE + 1];
+  double least, sum_low, sum_size;
+};
+
+struct census {
+  const struct vg_sizing *sizing;
+  uint32_t *task;            /* [n_point] whose cells a point has */
+  uint8_t *ring;             /* [n_point] rings from an interface, + 1 */
+  int now;                   /* ring that is looked for */
+  struct share all, near, rest;
+};
+
+/* --- rings --------------------------------------------------------------- */
+
+static vg_status mark(void *context, const struct vg_slice *s,
+                      struct vg_error *err)
+{
+  struct census *k = context;
+  const uint32_t *v = s->cell[VG_SLICE_TET];
+
+  (void)err;
+  for (size_t c = 0; c < 4 * s->n_cell[VG_SLICE_TET]; c++) {
+    uint32_t *t = &k->task[s->id[v[c]]];
+
+    if (*t == NOBODY) *t = s->domain;
+    else if (*t != s->domain) *t = MIXED;
+  }
+  return VG_OK;
+}
+
+static vg_status widen(void *context, const struct vg_slice *s,
+                       struct vg_error *err)
+{
+  struct census *k = context;
+  const uint32_t *v = s->cell[VG_SLICE_TET];
+
+  (void)err;
+  for (size_t c = 0; c < s->n_cell[VG_SLICE_TET]; c++, v += 4) {
+    int beside = 0;
+
+    for (int i = 0; i < 4; i++) {
+      uint8_t r = k->ring[s->id[v[i]]];
+
+      beside |= r && r <= k->now;
+    }
+    for (int i = 0; beside && i < 4; i++)
+      if (!k->ring[s->id[v[i]]])
+        k->ring[s->id[v[i]]] = (uint8_t)(k->now + 1);
+  }
+  return VG_OK;
+}
+
+/* --- figures ------------------------------------------------------------- */
+
+static void area(const double *a, const double *b, const double *c,
+                 double n[3])
+{
+  for (int k = 0; k < 3; k++) {
+    int l = (k + 1) % 3, m = (k + 2) % 3;
+
+    n[k] = (b[l] - a[l]) * (c[m] - a[m]) - (b[m] - a[m]) * (c[l] - a[l]);
+  }
+}
+
+/* Smallest and largest dihedral angle, degrees. */
+static void angles(const double *const x[4], double *low, double *high)
+{
+  double n[4][3], length[4];
+
+  area(x[1], x[3], x[2], n[0]);
+  area(x[0], x[2], x[3], n[1]);
+  area(x[0], x[3], x[1], n[2]);
+  area(x[0], x[1], x[2], n[3]);
+  for (int i = 0; i < 4; i++)
+    length[i] = sqrt(n[i][0] * n[i][0] + n[i][1] * n[i][1] +
+                     n[i][2] * n[i][2]);
+  *low = 180;
+  *high = 0;
+  for (int i = 0; i < 4; i++)
+    for (int j = 0; j < i; j++) {
+      double dot = n[i][0] * n[j][0] + n[i][1] * n[j][1] + n[i][2] * n[j][2];
+      double a = acos(fmax(-1, fmin(1, -dot / (length[i] * length[j]))));
+
+      *low = fmin(*low, a * degree);
+      *high = fmax(*high, a * degree);
+    }
+}
+
+static double edge_over_target(const struct vg_sizing *sizing,
+                               const double *const x[4])
+{
+  double middle[3], sum = 0;
+
+  for (int k = 0; k < 3; k++)
+    middle[k] = (x[0][k] + x[1][k] + x[2][k] + x[3][k]) / 4;
+  for (int i = 0; i < 4; i++)
+    for (int j = 0; j < i; j++) {
+      double d[3] = {x[i][0] - x[j][0], x[i][1] - x[j][1], x[i][2] - x[j][2]};
+
+      sum += sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    }
+  return sum / 6 / vg_sizing_at(sizing, middle);
+}
+
+static void count(struct share *s, double low, double high, double size)
+{
+  s->n++;
+  s->low[(int)(low * BINS / 180)]++;
+  s->high[(int)(high * BINS / 180)]++;
+  s->size[(int)fmin(N_SIZE, size * N_SIZE / 4)]++;
+  s->least = fmin(s->least, low);
+  s->sum_low += low;
+  s->sum_size += size;
+}
+
+static vg_status tally(void *context, const struct vg_slice *s,
+                       struct vg_error *err)
+{
+  struct census *k = context;
+  const uint32_t *v = s->cell[VG_SLICE_TET];
+
+  (void)err;
+  for (size_t c = 0; c < s->n_cell[VG_SLICE_TET]; c++, v += 4) {
+    const double *x[4];
+    double low, high, size;
+    int near = s->kind == REPAIR;
+
+    for (int i = 0; i < 4; i++) {
+      uint8_t ring = k->ring[s->id[v[i]]];
+
+      x[i] = s->x[v[i]];
+      near |= ring && ring <= k->now;
+    }
+    angles(x, &low, &high);
+    size = edge_over_target(k->sizing, x);
+    count(&k->all, low, high, size);
+    count(near ? &k->near : &k->rest, low, high, size);
+  }
+  return VG_OK;
+}
+
+static double part(const size_t *bin, size_t n_bin, size_t n, double share,
+                   double width)
+{
+  double sum = 0;
+
+  for (size_t k = 0; k < n_bin; k++) {
+    sum += (double)bin[k];
+    if (sum >= share * (double)n) return ((double)k + 0.5) * width;
+  }
+  return (double)n_bin * width;
+}
+
+static void show(const char *name, const struct share *s)
+{
+  double w = 180.0 / BINS, z = 4.0 / N_SIZE, n = s->n ? (double)s->n : 1;
+
+  printf("%-5s %10zu cells  angle min %6.2f 1%% %6.2f 5%% %6.2f mean %6.2f  "
+         "largest 99%% %7.2f  edge/target mean %.3f 1%% %.3f 99%% %.3f\n",
+         name, s->n, s->least, part(s->low, BINS + 1, s->n, 0.01, w),
+         part(s->low, BINS + 1, s->n, 0.05, w), s->sum_low / n,
+         part(s->high, BINS + 1, s->n, 0.99, w), s->sum_size / n,
+         part(s->size, N_SIZE + 1, s->n, 0.01, z),
+         part(s->size, N_SIZE + 1, s->n, 0.99, z));
+}
+
+/* Cells with a corner on an interface are the first ring, their neighbours
+ * at points the second. One rank, one thread: marks are not atomic. */
+static void measure(const struct vg_slices *s, const struct vg_sizing *sizing)
+{
+  struct census *k = vg_calloc(1, sizeof *k);
+  struct vg_error err = VG_ERROR_INIT;
+
+  if (!k) exit(1);
+  k->sizing = sizing;
+  k->task = vg_alloc(s->n_point, sizeof *k->task);
+  k->ring = vg_calloc(s->n_point, 1);
+  if (!k->task || !k->ring) exit(1);
+  k->all.least = k->near.least = k->rest.least = 180;
+  for (size_t p = 0; p < s->n_point; p++) k->task[p] = NOBODY;
+  must(vg_slices_each(s, 1, mark, k, &err), &err);
+  for (size_t p = s->n_boundary_point; p < s->n_point; p++)
+    k->ring[p] = k->task[p] == MIXED;
+  k->now = 1;
+  must(vg_slices_each(s, 1, widen, k, &err), &err);
+  k->now = 2;
+  must(vg_slices_each(s, 1, tally, k, &err), &err);
+  show("all", &k->all);
+  show("near", &k->near);
+  show("other", &k->rest);
+  free(k->task);
+  free(k->ring);
+  free(k);
+}
+
+/* --- the mesh ------------------------------------------------------------ */
+
+static void load(const char *name, double cells, struct vg_demo *d)
+{
+  struct vg_error err = VG_ERROR_INIT;
+  struct vg_surface_report r = VG_SURFACE_REPORT_INIT;
+  struct vg_surface_check_options o = VG_SURFACE_CHECK_OPTIONS_INIT;
+
+  if (!strchr(name, '.')) {
+    must(vg_demo_make(name, (size_t)cells, d, &err), &err);
+    return;
+  }
+  must(vg_surface_read(name, &d->surface, NULL, &err), &err);
+  must(vg_surface_check(&d->surface, &o, &r, &err), &err);
+  vg_surface_report_release(&r);
+  d->sizing = (struct vg_sizing_options)VG_SIZING_OPTIONS_INIT;
+}
+
+static double angle(double shape)
+{
+  return asin(sqrt(fmax(0, shape))) * degree;
+}
+
+int main(int argc, char **argv)
+{
+  struct vg_demo d = VG_DEMO_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+  struct vg_sizing *sizing = NULL;
+  struct vg_partition_options o = VG_PARTITION_OPTIONS_INIT;
+  struct vg_partition_report r = {0};
+  struct vg_spans spans = VG_SPANS_INIT;
+  struct vg_partition *p = NULL;
+  double t0;
+
+  if (argc < 4) {
+    fprintf(stderr, "usage: interface CASE|FILE CELLS LEAF [THREADS]\n");
+    return 2;
+  }
+  must(vg_cdt_server_start(&err), &err);
+  load(argv[1], atof(argv[2]), &d);
+  must(vg_sizing_new(&d.sizing, d.n_source, d.source, &d.surface, &sizing,
+                     &err), &err);
+  o.rule.leaf_cells = atof(argv[3]);
+  o.threads = argc > 4 ? atoi(argv[4]) : 1;
+  t0 = cpu();
+  must(vg_partition_grow(NULL, &d.surface, sizing, &o, &p, &r, &spans, &err),
+       &err);
+  printf("%s: %llu leaves, %.2f s cpu\nrepair %.3f s: %llu of %llu regions "
+         "better, %llu cells, %llu bad, %llu left, worst %.2f, %.2f left\n",
+         argv[1], (unsigned long long)r.n_leaf, cpu() - t0, r.repair,
+         (unsigned long long)r.n_repaired, (unsigned long long)r.n_repair,
+         (unsigned long long)r.n_repair_cell,
+         (unsigned long long)r.n_repair_bad,
+         (unsigned long long)r.n_repair_bad_left, angle(r.repair_worst),
+         angle(r.repair_worst_left));
+  measure(vg_partition_slices(p), sizing);
+  vg_partition_free(p);
+  vg_spans_release(&spans);
+  vg_sizing_free(sizing);
+  vg_demo_release(&d);
+  return 0;
+}
