@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "cli/report.h"
+#include "layers/pack.h"
 
 vg_status vg_run_stopped(struct vg_error *err)
 {
@@ -33,9 +34,52 @@ vg_status vg_run_memory(struct vg_run *r, struct vg_error *err)
   return st;
 }
 
+/* --- once per node: sizes and layers ------------------------------------- */
+
+/* The first rank of a node does it, on the cores of all, who wait asleep. */
+static int leads_node(const struct vg_run *r)
+{
+  return vg_comm_node_rank(r->comm) == 0;
+}
+
+static int node_threads(struct vg_run *r, const struct vg_settings *s)
+{
+  int n = vg_comm_node_cores(r->comm, 1);
+
+  return s->threads ? (int)s->threads * vg_comm_node_size(r->comm) : n;
+}
+
+/* What the first rank of the node made, with status st, on the others too.
+ * Collective; without layers NULL. */
+static vg_status share_with_node(struct vg_run *r, vg_status st,
+                                 const struct vg_mesh *surface,
+                                 struct vg_layers *layers,
+                                 struct vg_sizing **sizing,
+                                 struct vg_error *err)
+{
+  int makes = leads_node(r) && vg_comm_node_size(r->comm) > 1;
+  struct vg_bytes size = {0, NULL}, layer = {0, NULL};
+
+  if (st >= 0 && makes) st = vg_sizing_pack(*sizing, &size, err);
+  if (st >= 0 && makes && layers) st = vg_layers_pack(layers, &layer, err);
+  VG_TRY(vg_comm_agree(r->comm, st, err));
+  VG_TRY(vg_comm_node_bcast(r->comm, &size, err));
+  if (!leads_node(r)) st = vg_sizing_unpack(&size, sizing, err);
+  VG_TRY(vg_comm_agree(r->comm, st, err));
+  if (layers) VG_TRY(vg_comm_node_bcast(r->comm, &layer, err));
+  if (layers && !leads_node(r))
+    st = vg_layers_unpack(&layer, surface, layers, err);
+  if (st >= 0) st = vg_run_stopped(err);
+  st = vg_comm_agree(r->comm, st, err);
+done:
+  free(size.data);
+  free(layer.data);
+  return st;
+}
+
 /* The size field over a boundary. */
 static vg_status measure_sizes(struct vg_run *r, const struct vg_problem *p,
-                               const struct vg_mesh *boundary,
+                               const struct vg_mesh *boundary, int threads,
                                struct vg_display *show,
                                struct vg_sizing **sizing, struct vg_error *err)
 {
@@ -44,6 +88,7 @@ static vg_status measure_sizes(struct vg_run *r, const struct vg_problem *p,
   double t = vg_display_now();
   vg_status st;
 
+  options.threads = threads;
   vg_display_update(show, "sizes", 0, 0);
   st = vg_sizing_new(&options, s->n_source, s->source, boundary, sizing, err);
   r->time_size += vg_display_now() - t;
@@ -219,10 +264,14 @@ static vg_status mesh_plain(struct vg_run *r, const struct vg_problem *p,
 {
   const struct vg_mesh *surface = &p->surface;
   struct vg_sizing *sizing = NULL;
-  vg_status st;
+  vg_status st = VG_OK;
 
-  st = measure_sizes(r, p, surface, show, &sizing, err);
-  VG_TRY(vg_comm_agree(r->comm, st, err));
+  if (leads_node(r)) {
+    st = measure_sizes(r, p, surface, node_threads(r, &p->settings), show,
+                       &sizing, err);
+    vg_comm_node_cores(r->comm, 0);
+  }
+  VG_TRY(share_with_node(r, st, surface, NULL, &sizing, err));
   VG_TRY(fill(r, p, surface, sizing, show, err));
   r->slices = *vg_partition_slices(r->field);
   st = judge(r, 0, sizing, show, err);
@@ -231,27 +280,31 @@ done:
   return st;
 }
 
-/* Columns and the front above them, with their sizes. */
+/* Columns and the front above them, with their sizes; on the cores of the
+ * node. */
 static vg_status grow_layers(struct vg_run *r, const struct vg_problem *p,
                              struct vg_layer_stage *layers,
                              struct vg_display *show,
                              struct vg_sizing **sizing, struct vg_error *err)
 {
   struct vg_mesh view = VG_MESH_INIT;
+  int threads = node_threads(r, &p->settings);
   double t;
   vg_status st;
 
   VG_TRY(vg_layer_stage_sizes(layers, p, &view, err));
-  VG_TRY(measure_sizes(r, p, &view, show, sizing, err));
+  VG_TRY(measure_sizes(r, p, &view, threads, show, sizing, err));
   t = vg_display_now();
-  layers->options.threads = r->threads;
+  layers->options.threads = threads;
   VG_TRY(vg_layer_stage_grow(layers, &p->surface, *sizing, show, err));
   r->time_layers = vg_display_now() - t;
   VG_TRY(vg_run_stopped(err));
   vg_sizing_free(*sizing);
   *sizing = NULL;
-  st = measure_sizes(r, p, &layers->layers.front.mesh, show, sizing, err);
+  st = measure_sizes(r, p, &layers->layers.front.mesh, threads, show, sizing,
+                     err);
 done:
+  vg_comm_node_cores(r->comm, 0);
   free(view.tri);
   free(view.tri_patch);
   return st;
@@ -265,10 +318,10 @@ static vg_status mesh_layers(struct vg_run *r, const struct vg_problem *p,
 {
   const struct vg_mesh *front = &layers->layers.front.mesh;
   struct vg_sizing *sizing = NULL;
-  vg_status st;
+  vg_status st = VG_OK;
 
-  st = grow_layers(r, p, layers, show, &sizing, err);
-  VG_TRY(vg_comm_agree(r->comm, st, err));
+  if (leads_node(r)) st = grow_layers(r, p, layers, show, &sizing, err);
+  VG_TRY(share_with_node(r, st, &p->surface, &layers->layers, &sizing, err));
   VG_TRY(fill(r, p, front, sizing, show, err));
   st = vg_layer_slices_open(&p->surface, &layers->layers,
                             vg_partition_slices(r->field),
