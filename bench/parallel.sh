@@ -28,7 +28,8 @@
 #   leaf          time, memory and forecast for 64 workers over leaf sizes
 #   memory        of the largest rank, over ranks
 #   determinism   digests for ranks 1 2 4 7, threads 1 2 3, and shuffled tasks
-#   replay        box 23 M and sphere 12 M on 1 to 512 workers
+#   replay        box 23 M and sphere 12 M on 1 to 512 workers, by their
+#                 records; box 100 M on 512 by its estimate alone
 #
 # Runs that are compared alternate, so that other work on the machine disturbs
 # all alike; wall / CPU in the JSON tell how much. The machine should be quiet:
@@ -324,6 +325,24 @@ ROW
         "$work/tasks.json" | say
     done
   done
+  say << 'ROW'
+
+## Forecasts before meshing (bar: 300 at 512 workers)
+
+| case | cells expected | workers | cutting and filling, s | speed-up | of all | MB of a rank |
+|---|---|---|---|---|---|---|
+ROW
+  n=$(cells 100000000)
+  demo_project box "$n" "$work/input"
+  "$vanguard" plan -p "$project" --ranks 64,512 --json --quiet \
+    > "$work/plan.json"
+  figure "box estimate 512" "$(get "$work/plan.json" \
+    .forecast[1].tasks.speedup)" '>= 300'
+  jq -r --arg n "$n" '
+    def f($d): . * pow(10; $d) | round / pow(10; $d);
+    .forecast[] | "| box | \($n) | \(.workers) | \(.tasks.seconds | f(2)) |"
+      + " \(.tasks.speedup | f(1)) | \(.speedup | f(1)) |"
+      + " \(.memory_bytes / 1048576 | f(0)) |"' "$work/plan.json" | say
 }
 
 part_large() {
