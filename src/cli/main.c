@@ -13,13 +13,14 @@ static const struct command {
   const char *title;               /* argv[0] of the subcommand, for help */
   int meshes;
 } commands[] = {
-  { "mesh", "mesh the volume of a project", vg_cmd_mesh, "vanguard mesh", 1 },
+  { "mesh", "mesh the volume of a project, on threads and MPI ranks",
+    vg_cmd_mesh, "vanguard mesh", 1 },
   { "check", "judge a surface or a volume mesh", vg_cmd_check,
     "vanguard check", 0 },
-  { "sweep", "mesh over a grid of parameters and compare", vg_cmd_sweep,
-    "vanguard sweep", 0 },
-  { "plan", "forecast a run on other machines", vg_cmd_plan,
-    "vanguard plan", 0 },
+  { "plan", "forecast cells, memory and time before a project is meshed",
+    vg_cmd_plan, "vanguard plan", 0 },
+  { "sweep", "mesh with many leaf sizes, ranks and threads, and compare",
+    vg_cmd_sweep, "vanguard sweep", 0 },
   { "deck", "write a run deck with all defaults", vg_cmd_deck,
     "vanguard deck", 0 },
   { "demo", "write a complete example project", vg_cmd_demo,
@@ -36,9 +37,10 @@ static void usage(FILE *to)
   for (size_t i = 0; i < N_COMMAND; i++)
     fprintf(to, "  %-8s %s\n", commands[i].name, commands[i].summary);
   fprintf(to, "\n'vanguard COMMAND --help' lists the options of a command, "
-          "'vanguard --version'\nshows the version. Exit status: 0 done, 1 "
-          "failed, 2 wrong usage,\n4 done but a limit on the layers is not "
-          "met.\n");
+          "'vanguard --version'\nshows the version. On several nodes: "
+          "'mpirun -n RANKS vanguard mesh -p PROJECT'.\n"
+          "Exit status: 0 done, 1 failed, 2 wrong usage, 4 done, but a limit "
+          "on the layers\nis not met or runs of a sweep differ.\n");
 }
 
 static int version(void)

@@ -6,16 +6,17 @@ Usage: vanguard COMMAND [OPTION...]
 Vanguard makes volume meshes for aerodynamics from closed surfaces: viscous
 layers on the walls, tetrahedra around them.
 
-  mesh     mesh the volume of a project
+  mesh     mesh the volume of a project, on threads and MPI ranks
   check    judge a surface or a volume mesh
-  sweep    mesh over a grid of parameters and compare
-  plan     forecast a run on other machines
+  plan     forecast cells, memory and time before a project is meshed
+  sweep    mesh with many leaf sizes, ranks and threads, and compare
   deck     write a run deck with all defaults
   demo     write a complete example project
 
 'vanguard COMMAND --help' lists the options of a command, 'vanguard --version'
-shows the version. Exit status: 0 done, 1 failed, 2 wrong usage,
-4 done but a limit on the layers is not met.
+shows the version. On several nodes: 'mpirun -n RANKS vanguard mesh -p PROJECT'.
+Exit status: 0 done, 1 failed, 2 wrong usage, 4 done, but a limit on the layers
+is not met or runs of a sweep differ.
 END
 cp err usage
 vanguard --help
