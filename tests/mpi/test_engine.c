@@ -80,6 +80,53 @@ static void all_ways(void **state)
   same_result(2, 2, 0, 1, 0);          /* all pinned */
 }
 
+/* Of every task that moves, `done` is called where it ran: what it made is at
+ * home there, and its outcome does not travel. One of three, then all. */
+static void homes_move(void **state)
+{
+  (void)state;
+  for (int move = 3; move > 0; move -= 2)
+    for (uint64_t shuffle = 0; shuffle < 2; shuffle++) {
+      struct forest f = { .threads = 2, .depth = 4, .move = move, .pin = 5,
+                          .spin = 2e-4 };
+      struct vg_spans s = VG_SPANS_INIT;
+      uint64_t sum = 0, away = 0, elsewhere = 0;
+      long n = 0;
+
+      forest_expect(&f, "a", &n, &sum);
+      assert_true(forest_grow(&f, job, 1, shuffle, &s, NULL) == VG_OK);
+      assert_true(total((uint64_t)f.n_done) == (uint64_t)n);
+      assert_true(total(f.sum) == sum);
+      check_rest(&f);
+      for (size_t i = 0; i < s.n; i++) {
+        uint64_t digest = forest_digest(s.span[i].path);
+
+        if (digest / 5 % (uint64_t)move) continue;
+        assert_true(s.span[i].bytes_out == 0);
+        away += s.span[i].rank != s.span[i].home;
+        elsewhere += s.span[i].home != 0;
+      }
+      if (vg_comm_size(job) > 1) assert_true(total(away) > 0);
+      if (vg_comm_size(job) > 1) assert_true(total(elsewhere) > 0);
+      vg_spans_release(&s);
+    }
+}
+
+/* Moved tasks that fail, or are stopped, leave nothing on any rank. */
+static void moved_and_stopped(void **state)
+{
+  struct forest f = { .threads = 2, .depth = 4, .move = 1, .spin = 1e-4,
+                      .fail_at = "a12" };
+  struct forest g = { .threads = 2, .depth = 4, .move = 1, .spin = 1e-4,
+                      .stop_at = "a12" };
+
+  (void)state;
+  assert_true(forest_grow(&f, job, 2, 0, NULL, NULL) == VG_ERR_GEOMETRY);
+  check_rest(&f);
+  assert_true(forest_grow(&g, job, 2, 0, NULL, NULL) == VG_BLOCKED);
+  check_rest(&g);
+}
+
 static int ends_with(const char *text, const char *end)
 {
   size_t n = strlen(text), m = strlen(end);
@@ -312,6 +359,8 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(all_ways),
+    cmocka_unit_test(homes_move),
+    cmocka_unit_test(moved_and_stopped),
     cmocka_unit_test(a_failure_is_heard),
     cmocka_unit_test(other_failures),
     cmocka_unit_test(it_stops),

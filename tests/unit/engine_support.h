@@ -23,6 +23,7 @@ struct forest {
   double spin;               /* s of work per task */
   size_t ballast;            /* bytes more in each input */
   int pin;                   /* every pin-th task (by its path) is pinned */
+  int move;                  /* every move-th one moves its home */
   const char *fail_at;       /* path of a task whose run fails */
   const char *done_fails_at; /* whose done fails */
   const char *pack_fails_at;
@@ -87,6 +88,7 @@ static inline struct vg_task forest_task(struct forest *f, const char *path)
   memset(in->data, (int)(digest & 255), in->n);
   snprintf(t.path, sizeof t.path, "%s", path);
   t.pinned = f->pin && !(digest / 7 % (uint64_t)f->pin);
+  t.moves = f->move && !(digest / 5 % (uint64_t)f->move);
   t.priority = (double)(digest % 1000);
   t.input = in;
   return t;
@@ -137,7 +139,7 @@ static inline vg_status forest_done(void *user, struct vg_engine *e,
 
   if (atomic_fetch_add(&f->in_done, 1) || task->input) f->bad++;
   if (out->digest != forest_mix(forest_digest(task->path))) f->bad++;
-  if (task->pinned && rank != f->rank) f->bad++;
+  if ((task->pinned || task->moves) && rank != f->rank) f->bad++;
   if (rank != f->rank) f->n_moved++;
   f->sum += out->digest;
   f->n_done++;
