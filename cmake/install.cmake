@@ -7,9 +7,10 @@ endif()
 install(TARGETS vanguard_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(TARGETS vanguard EXPORT vanguard-targets
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(DIRECTORY src/base src/core src/layers src/io
+install(DIRECTORY src/base src/core src/layers src/partition src/io
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/vanguard FILES_MATCHING PATTERN "*.h"
-  PATTERN "*_parts.h" EXCLUDE)
+  PATTERN "*_parts.h" EXCLUDE PATTERN "partition/node.h" EXCLUDE
+  PATTERN "partition/repair.h" EXCLUDE)
 
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/vanguard)
 install(EXPORT vanguard-targets NAMESPACE vanguard:: DESTINATION ${package})
