@@ -123,6 +123,8 @@ static vg_status read_project(struct run *r, const struct arguments *a,
   VG_TRY(vg_input_find(a->project, a->deck, &p->files, err));
   VG_TRY(vg_problem_deck(p, err));
   VG_TRY(apply_options(a, &p->settings, err));
+  p->threads = p->settings.threads ? (int)p->settings.threads
+                                   : vg_comm_default_threads(r->mesh.comm);
   vg_settings_write(&p->settings);
   VG_TRY(vg_outputs_plan(p, a->dir, vg_comm_size(r->mesh.comm), &r->outputs,
                          err));

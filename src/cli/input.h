@@ -42,6 +42,7 @@ struct vg_problem {
   size_t n_welded, n_dropped;      /* by the weld */
   struct vg_surface_report check;
   int require_bc;                  /* the input gives conditions */
+  int threads;                     /* for the check; 0: one per core */
   struct vg_domain_report domain;
   struct vg_notes notes;
 };

@@ -182,6 +182,7 @@ static vg_status check(struct vg_problem *p, int *external,
 
   o.repair = p->settings.repair;
   o.require_bc = p->require_bc;
+  o.threads = p->threads;
   vg_surface_report_release(&p->check);
   return vg_surface_examine(&p->surface, &o, external, &p->check, &p->notes,
                             err);
@@ -218,6 +219,7 @@ static vg_status complete(struct vg_problem *p, struct vg_error *err)
   /* What is built here lies away from the body, whose own largest edge is no
    * limit for it. */
   if (!(options.h_max > 0)) options.h_max = INFINITY;
+  options.threads = p->threads;
   VG_TRY(vg_sizing_new(&options, s->n_source, s->source, &p->surface, &sizing,
                        err));
   VG_TRY(vg_domain_complete(&p->surface, &far, sizing, &p->domain, err));

@@ -382,7 +382,7 @@ static vg_status build(struct check *c)
   VG_TRY(list_owners(c));
   VG_TRY(vg_faces_build(&c->s, c->m, c->same, c->err));
   VG_TRY(vg_edges_build(&c->e, &c->s, c->err));
-  VG_TRY(vg_tree_build(&c->tree, &c->s, c->err));
+  VG_TRY(vg_tree_build(&c->tree, &c->s, c->o->threads, c->err));
   c->flip = vg_calloc(c->s.n, 1);
   c->shell = vg_alloc(c->s.n, sizeof *c->shell);
   r->face_kinds = vg_calloc(c->m->n_tri + c->m->n_quad,
@@ -414,7 +414,8 @@ static vg_status build_shells(struct check *c)
   VG_TRY(vg_measure_shells(r->shell, c->shell_state, r->n_shell, &c->s, &c->e,
                            c->shell, c->flip, c->err));
   VG_TRY(vg_find_crossings(&c->cross, &c->s, (const uint32_t (*)[3])c->fan,
-                           &c->tree, c->shell, r->n_shell, c->err));
+                           &c->tree, c->shell, r->n_shell, c->o->threads,
+                           c->err));
   VG_TRY(vg_nest_shells(r->shell, r->n_shell, &c->s, &c->tree, c->shell,
                         c->err));
   VG_TRY(vg_side_shells(r->shell, c->shell_state, r->n_shell, c->o->external,

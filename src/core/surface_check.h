@@ -74,8 +74,9 @@ struct vg_surface_check_options {
                                    shell must have its normals outward (into
                                    the fluid). 0: outermost shells bound the
                                    fluid from outside (normals inward). */
+  int threads;                  /* 0: one per core; the same result for any */
 };
-#define VG_SURFACE_CHECK_OPTIONS_INIT { 1, 0, 0 }
+#define VG_SURFACE_CHECK_OPTIONS_INIT { 1, 0, 0, 1 }
 
 /** Find (and with `repair` mend) the defects of the boundary faces of m.
  *

@@ -128,18 +128,25 @@ struct vg_tree {
 };
 #define VG_TREE_INIT { 0 }
 
-/** Over the faces whose state is 0. O(n log n). */
+/** Over the faces whose state is 0. O(n log n). threads: as
+ * vg_parallel_for's; the same tree for any number. */
 vg_status vg_tree_build(struct vg_tree *t, const struct vg_faces *s,
-                        struct vg_error *err);
+                        int threads, struct vg_error *err);
 
 void vg_tree_release(struct vg_tree *t);
 
-/** Call visit(context, a, b) for all pairs of faces whose boxes touch, once
- * each, in an order that depends on the geometry alone. Stops when visit
- * returns < 0, and returns that. */
-vg_status vg_tree_pairs(const struct vg_tree *t,
-                        vg_status (*visit)(void *, uint32_t, uint32_t),
-                        void *context);
+/* worker < vg_tree_workers(threads) names scratch space. */
+typedef vg_status (*vg_tree_visit)(void *context, int worker, uint32_t a,
+                                   uint32_t b);
+
+int vg_tree_workers(int threads);
+
+/** Call visit for all pairs of faces whose boxes touch, once each, from
+ * several threads at once. With one thread in an order that depends on the
+ * geometry alone. Stops soon after visit returned < 0, and returns one such
+ * status; VG_ERR_MEMORY without a message. */
+vg_status vg_tree_pairs(const struct vg_tree *t, int threads,
+                        vg_tree_visit visit, void *context);
 
 /** Call visit(context, f) for all faces whose box touches the line from p
  * towards -x. Stops when visit returns < 0, and returns that. */
@@ -167,7 +174,7 @@ struct vg_crossing {
 vg_status vg_find_crossings(struct vg_crossing *c, const struct vg_faces *s,
                             const uint32_t (*fan)[3], const struct vg_tree *t,
                             const uint32_t *shell, size_t n_shell,
-                            struct vg_error *err);
+                            int threads, struct vg_error *err);
 
 void vg_crossing_release(struct vg_crossing *c);
 

@@ -210,11 +210,12 @@ static void lock(struct job *j, uint32_t t)
   }
 }
 
-static vg_status test_pair(void *context, uint32_t f, uint32_t g)
+static vg_status test_pair(void *context, int worker, uint32_t f, uint32_t g)
 {
   struct job *j = context;
   const uint32_t (*fan)[3] = (const uint32_t (*)[3])j->fan;
 
+  (void)worker;
   if (!j->w.changed[f] && !j->w.changed[g]) return VG_OK;
   if (!vg_triangles_meet(j->s.point, j->s.node[f], j->s.node[g], fan[f],
                          fan[g]))
@@ -251,8 +252,8 @@ static vg_status test(struct job *j)
   test_faces(j);
   test_edges(j);
   VG_TRY(vg_label_fans(&j->s, &j->e, j->flip, &j->fan, j->err));
-  VG_TRY(vg_tree_build(&j->tree, &j->s, j->err));
-  VG_TRY(vg_tree_pairs(&j->tree, test_pair, j));
+  VG_TRY(vg_tree_build(&j->tree, &j->s, 1, j->err));
+  VG_TRY(vg_tree_pairs(&j->tree, 1, test_pair, j));
 done:
   return st;
 }

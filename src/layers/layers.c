@@ -273,6 +273,7 @@ static vg_status try_front(struct vg_layer_work *w,
   vg_status st;
 
   o.repair = 0;
+  o.threads = w->o->threads;
   *n_bad = 0;
   memset(bad, 0, w->c->n_column);
   VG_TRY(vg_surface_check(&front->mesh, &o, &r, err));

@@ -463,7 +463,7 @@ static void reports_quadrilaterals(void **unused)
 
 static void asks_for_boundary_conditions(void **unused)
 {
-  struct vg_surface_check_options o = { 1, 1, 1 };
+  struct vg_surface_check_options o = { 1, 1, 1, 1 };
   NEW;
 
   add_box(&m, 0, 1, 1);
@@ -931,6 +931,63 @@ static void names_every_kind(void **unused)
   }
 }
 
+/* n triangles anywhere in the unit cube, of edges of about `size`. */
+static void add_soup(struct vg_mesh *m, size_t n, double size, uint64_t seed)
+{
+  uint32_t patch = (uint32_t)vg_mesh_add_patch(m, 1, "soup");
+
+  for (size_t i = 0; i < 3 * n; i++) {
+    double x[3];
+
+    for (int k = 0; k < 3; k++) {
+      seed = seed * 6364136223846793005u + 1442695040888963407u;
+      x[k] = size * (double)(seed >> 40) / (1 << 24);
+      if (i % 3) x[k] += m->point[i - i % 3][k] - size / 2;
+      else x[k] /= size;
+    }
+    add_point(m, x[0], x[1], x[2]);
+    if (i % 3 == 2)
+      add_tri(m, (uint32_t)i - 2, (uint32_t)i - 1, (uint32_t)i, patch);
+  }
+}
+
+/* Few pairs, each listed, and more than are listed, one partner for each. */
+static void threads_find_the_same(void **unused)
+{
+  static const double size[2] = { 0.06, 1.5 };
+
+  (void)unused;
+  for (int pass = 0; pass < 2; pass++) {
+    struct vg_mesh m = VG_MESH_INIT;
+    struct vg_surface_report r[3];
+
+    memset(r, 0, sizeof r);
+    add_soup(&m, pass ? 3000 : 20000, size[pass], 7);
+    for (int i = 0; i < 3; i++) {
+      struct vg_surface_check_options o = { 0, 0, 1, i + 1 };
+
+      assert_int_equal(vg_surface_check(&m, &o, &r[i], NULL), VG_OK);
+    }
+    assert_true(r[0].count[VG_DEFECT_INTERSECTION] > 1000);
+    assert_int_equal(r[0].count[VG_DEFECT_INTERSECTION] > VG_SURFACE_PAIR_MAX,
+                     pass);
+    for (int i = 1; i < 3; i++) {
+      assert_memory_equal(r[0].count, r[i].count, sizeof r[0].count);
+      assert_int_equal(r[0].n_defect, r[i].n_defect);
+      for (size_t d = 0; d < r[0].n_defect; d++) {
+        assert_int_equal(r[0].defect[d].kind, r[i].defect[d].kind);
+        for (int k = 0; k < 2; k++)
+          assert_int_equal(r[0].defect[d].face[k], r[i].defect[d].face[k]);
+      }
+      assert_memory_equal(r[0].face_kinds, r[i].face_kinds,
+                          m.n_tri * sizeof *r[0].face_kinds);
+      vg_surface_report_release(&r[i]);
+    }
+    vg_surface_report_release(&r[0]);
+    vg_mesh_release(&m);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -962,6 +1019,7 @@ int main(void)
     cmocka_unit_test(welds_a_chain),
     cmocka_unit_test(welds_as_the_definition_says),
     cmocka_unit_test(names_every_kind),
+    cmocka_unit_test(threads_find_the_same)
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);
