@@ -13,7 +13,9 @@ const struct vg_rates vg_rates_measured = {
   .pencil = { 1e-3, 5.5e-6, 15e-6, 0, 0 },
   .tile = { 1e-3, 2.5e-6, 12e-6, 10e-6, 0 },
   .leaf = { 1e-3, 1.55e-6, 2.6e-6, 1.5e-6, 0 },
-  .join = { 1e-4, 0, 0, 0.2e-6, 0.3e-6 },
+  .plan = { 1e-4, 0, 0, 0.03e-6, 0.45e-6 },
+  .join = { 1e-4, 0, 0, 0.14e-6, 0 },
+  .split = { 1e-4, 0, 0, 0.5e-6, 0.1e-6 },
 };
 
 /* Cells of a zone reach this many spacings to each side of its plane, those of
@@ -131,15 +133,10 @@ static double seconds(const struct vg_task_rate *r, struct amount a,
          r->face * faces + r->cube * cubes;
 }
 
-static const struct vg_task_rate *rate_of(const struct vg_rates *r, char kind)
-{
-  return kind == VG_SPAN_PENCIL ? &r->pencil : kind == VG_SPAN_TILE ? &r->tile
-         : kind == VG_SPAN_LEAF ? &r->leaf : &r->join;
-}
-
 /* a: what it makes; for joins what is in the void. */
 static vg_status add_task(struct forecast *c, const char *path,
-                          const char *after, char kind, struct amount a,
+                          const char *after, char kind,
+                          const struct vg_task_rate *rate, struct amount a,
                           double faces, double cubes)
 {
   struct vg_spans *s = &c->out->spans;
@@ -149,8 +146,7 @@ static vg_status add_task(struct forecast *c, const char *path,
 
   snprintf(span.path, sizeof span.path, "%s", path);
   snprintf(span.after, sizeof span.after, "%s", after);
-  span.cpu = seconds(rate_of(c->rates, kind),
-                     makes ? a : (struct amount){0, 0}, faces, cubes);
+  span.cpu = seconds(rate, makes ? a : (struct amount){0, 0}, faces, cubes);
   span.end = s->wall += span.cpu;
   if (makes) span.n_cell = (uint64_t)(a.cells + 0.5);
   span.bytes_in = (uint64_t)(bytes_per_face * faces +
@@ -313,7 +309,9 @@ static vg_status grow_stage(struct forecast *c, struct part *p,
     snprintf(path, sizeof path, "%.*s%c%zu", VG_PATH_MAX - 24, p->path, kind,
              kind == VG_SPAN_PENCIL ? *n_pencil : k);
     *n_pencil += kind == VG_SPAN_PENCIL;
-    VG_TRY(add_task(c, path, maker, kind, a, faces, 0));
+    VG_TRY(add_task(c, path, maker, kind, stage < 2 ? &c->rates->pencil
+                                                    : &c->rates->tile,
+                    a, faces, 0));
     memcpy(after, path, sizeof path);
     c->out->n_pencil += kind == VG_SPAN_PENCIL;
     c->out->n_tile += kind == VG_SPAN_TILE;
@@ -484,20 +482,20 @@ static vg_status add_leaf(struct forecast *c, const struct part *p,
   VG_TRY(add_node(c, p, NULL, &index));
   c->out->n_leaf++;
   snprintf(path, sizeof path, "%.*sL", VG_PATH_MAX - 2, p->path);
-  st = add_task(c, path, after, VG_SPAN_LEAF, a,
+  st = add_task(c, path, after, VG_SPAN_LEAF, &c->rates->leaf, a,
                 c->out->node[index].faces, (double)p->load.n);
 done:
   return st;
 }
 
 static vg_status add_join(struct forecast *c, const struct part *p, int number,
-                          char *after)
+                          const struct vg_task_rate *rate, char *after)
 {
   char path[VG_PATH_MAX];
   vg_status st;
 
   snprintf(path, sizeof path, "%.*sJ%d", VG_PATH_MAX - 14, p->path, number);
-  st = add_task(c, path, after, VG_SPAN_JOIN,
+  st = add_task(c, path, after, VG_SPAN_JOIN, rate,
                 (struct amount){p->load.cells, 0}, faces_of(&p->front), (double)p->load.n);
   memcpy(after, path, sizeof path);
   return st;
@@ -576,12 +574,15 @@ static vg_status cut(struct forecast *c, struct part *p,
 
   snprintf(after, sizeof after, "%s", maker);
   VG_TRY(add_node(c, p, l, &index));
-  VG_TRY(add_join(c, p, n_join++, after));
+  VG_TRY(add_join(c, p, n_join++, &c->rates->plan, after));
   for (int stage = 0; stage < VG_LATTICE_STAGES; stage++) {
     size_t n = c->out->spans.n;
+    int is_last = stage + 1 == VG_LATTICE_STAGES;
 
     VG_TRY(grow_stage(c, p, l, stage, &n_pencil, after));
-    if (c->out->spans.n > n) VG_TRY(add_join(c, p, n_join++, after));
+    if (c->out->spans.n == n) continue;
+    VG_TRY(add_join(c, p, n_join++, is_last ? &c->rates->split
+                                            : &c->rates->join, after));
   }
   c->out->node[index].zone = c->out->zone_cells - before;
   VG_TRY(open_blocks(&b, l, p, c->err));

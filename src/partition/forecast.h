@@ -18,7 +18,9 @@
 struct vg_task_rate { double task, even, graded, face, cube; };
 
 struct vg_rates {
-  struct vg_task_rate pencil, tile, leaf, join;
+  struct vg_task_rate pencil, tile, leaf;
+  struct vg_task_rate plan, join, split;  /* joins: the first of a node, those
+                                             between stages, the last */
 };
 
 /** As measured: forecast.c says where. */
