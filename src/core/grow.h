@@ -54,8 +54,8 @@ void vg_zone_release(struct vg_zone *z);
 
 /** Grow the cells of a region from the front near it.
  *
- * @param x, face  front faces that vg_region_meets within VG_BAND_FRONT, all
- *                 of them and no other, with their points
+ * @param x, face  front faces that vg_region_may_meet within VG_BAND_FRONT,
+ *                 all of them and no other, with their points
  * @param region   with at least one plane
  * @param z        empty; released on failure
  * Cells lie within the region's walls, so regions that walls keep apart may be

@@ -1,7 +1,10 @@
 #include "core/region.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
+
+#include "base/memory.h"
 
 static double side(const struct vg_plane *p, const double x[3])
 {
@@ -137,26 +140,42 @@ static double longest(const double *const corner[3])
 }
 
 /* A triangle much larger than the cells here may cross the planes, and the
- * walls, each at another place: its part within reach is cut out, then once
- * more by the spacing that is found there. */
-int vg_region_meets(const struct vg_region *r, const struct vg_sizing *sizing,
-                    const double a[3], const double b[3], const double c[3],
-                    double band)
+ * walls, each at another place, so its part within reach is cut out: by the
+ * largest spacing found at it, and then, to be sure, by that found there. */
+static int meets(const struct vg_region *r, const struct vg_sizing *sizing,
+                 const double *const corner[3], double band, int is_sure)
 {
-  const double *corner[3] = {a, b, c};
   double d = gap(r, 3, corner), most = 0, middle[3];
 
   for (int k = 0; k < 3; k++) {
     double h = vg_region_spacing(r, sizing, corner[k]);
 
     if (h > most) most = h;
-    middle[k] = (a[k] + b[k] + c[k]) / 3;
+    middle[k] = (corner[0][k] + corner[1][k] + corner[2][k]) / 3;
   }
   if (longest(corner) <= 2 * most) return d <= (r->reach + band) * most;
   most = fmax(most, vg_region_spacing(r, sizing, middle));
-  return reaches(r, corner, (r->reach + band) * most, middle) &&
-         reaches(r, corner, (r->reach + band) *
-                   vg_region_spacing(r, sizing, middle), middle);
+  if (!reaches(r, corner, (r->reach + band) * most, middle)) return 0;
+  return !is_sure || reaches(r, corner, (r->reach + band) *
+                               vg_region_spacing(r, sizing, middle), middle);
+}
+
+int vg_region_meets(const struct vg_region *r, const struct vg_sizing *sizing,
+                    const double a[3], const double b[3], const double c[3],
+                    double band)
+{
+  const double *corner[3] = {a, b, c};
+
+  return meets(r, sizing, corner, band, 1);
+}
+
+int vg_region_may_meet(const struct vg_region *r,
+                       const struct vg_sizing *sizing, const double a[3],
+                       const double b[3], const double c[3], double band)
+{
+  const double *corner[3] = {a, b, c};
+
+  return meets(r, sizing, corner, band, 0);
 }
 
 int vg_region_meets_box(const struct vg_region *r,
@@ -201,4 +220,94 @@ int vg_region_has_cell(const struct vg_region *r,
         r->reach * vg_region_spacing(r, sizing, corner[k]))
       return 1;
   return 0;
+}
+
+/* --- many points --------------------------------------------------------- */
+
+vg_status vg_ruler_init(struct vg_ruler *ruler, const struct vg_region *region,
+                        const struct vg_sizing *sizing, size_t n,
+                        const double (*x)[3], struct vg_error *err)
+{
+  int m = region->n_plane + region->n_wall;
+
+  *ruler = (struct vg_ruler){region, sizing, x, m, NULL, NULL};
+  ruler->side = vg_alloc(n, (size_t)(m ? m : 1) * sizeof *ruler->side);
+  ruler->spacing = vg_alloc(n, sizeof *ruler->spacing);
+  if (!ruler->side || !ruler->spacing)
+    return vg_fail_memory(err, "measuring a front");
+  for (size_t p = 0; p < n; p++) {
+    double *s = ruler->side + p * (size_t)m;
+
+    for (int i = 0; i < region->n_plane; i++)
+      s[i] = side(&region->plane[i], x[p]);
+    for (int i = region->n_plane; i < m; i++)
+      s[i] = side(&region->wall[i - region->n_plane], x[p]);
+    ruler->spacing[p] = vg_region_spacing(region, sizing, x[p]);
+  }
+  return VG_OK;
+}
+
+void vg_ruler_release(struct vg_ruler *ruler)
+{
+  free(ruler->side);
+  free(ruler->spacing);
+  memset(ruler, 0, sizeof *ruler);
+}
+
+static const double *sides_of(const struct vg_ruler *ruler, uint32_t p)
+{
+  return ruler->side + p * (size_t)ruler->n_side;
+}
+
+int vg_ruler_near(const struct vg_ruler *ruler, uint32_t p, double band)
+{
+  const struct vg_region *r = ruler->region;
+  const double *s = sides_of(ruler, p);
+  double most = fmax(0, (r->reach + band) * ruler->spacing[p]);
+
+  for (int i = 0; i < r->n_plane; i++)
+    if (fabs(s[i]) > most) return 0;
+  for (int i = r->n_plane; i < ruler->n_side; i++)
+    if (-s[i] > most) return 0;
+  return 1;
+}
+
+/* As gap(), for three corners of a ruler. */
+static double gap_of(const struct vg_ruler *ruler, const uint32_t v[3])
+{
+  const double *a = sides_of(ruler, v[0]), *b = sides_of(ruler, v[1]);
+  const double *c = sides_of(ruler, v[2]);
+  double far = 0;
+
+  for (int i = 0; i < ruler->n_side; i++) {
+    double lo = fmin(fmin(a[i], b[i]), c[i]);
+    double hi = fmax(fmax(a[i], b[i]), c[i]);
+
+    if (-hi > far) far = -hi;
+    if (i < ruler->region->n_plane && lo > far) far = lo;
+  }
+  return far;
+}
+
+/* Large triangles are looked at as in vg_region_meets once their sides do not
+ * rule them out. */
+int vg_ruler_meets(const struct vg_ruler *ruler, const uint32_t v[3],
+                   double band)
+{
+  const double (*x)[3] = ruler->x;
+  const double *corner[3] = {x[v[0]], x[v[1]], x[v[2]]};
+  const double *h = ruler->spacing;
+  double most = fmax(fmax(h[v[0]], h[v[1]]), h[v[2]]);
+  double reach = ruler->region->reach + band, far = gap_of(ruler, v), middle[3];
+
+  if (longest(corner) <= 2 * most) return far <= reach * most;
+  if (far > 0) {
+    for (int k = 0; k < 3; k++)
+      middle[k] = (corner[0][k] + corner[1][k] + corner[2][k]) / 3;
+    if (far > reach * most &&
+        far > reach * vg_region_spacing(ruler->region, ruler->sizing, middle))
+      return 0;
+  }
+  return vg_region_meets(ruler->region, ruler->sizing, corner[0], corner[1],
+                         corner[2], band);
 }

@@ -8,6 +8,10 @@
 #ifndef VG_CORE_REGION_H
 #define VG_CORE_REGION_H
 
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/status.h"
 #include "core/sizing.h"
 
 struct vg_plane { double normal[3], offset; };  /* normal . x = offset */
@@ -49,16 +53,42 @@ int vg_region_within(const struct vg_region *r, const double x[3]);
 int vg_region_near(const struct vg_region *r, const struct vg_sizing *sizing,
                    const double x[3], double band);
 
-/** Does the triangle come as near? Conservative: sizes are taken at its
- * corners and its middle. */
+/** Does the triangle come as near? By the spacing where it does. */
 int vg_region_meets(const struct vg_region *r, const struct vg_sizing *sizing,
                     const double a[3], const double b[3], const double c[3],
                     double band);
+
+/** May it? Never no where it does. */
+int vg_region_may_meet(const struct vg_region *r,
+                       const struct vg_sizing *sizing, const double a[3],
+                       const double b[3], const double c[3], double band);
 
 /** May a triangle within the box come as near? Never no where one does. */
 int vg_region_meets_box(const struct vg_region *r,
                         const struct vg_sizing *sizing, const double lo[3],
                         const double hi[3], double band);
+
+/** Distances of many points from a region, measured once: questions about
+ * their triangles then cost no look-up of sizes. */
+struct vg_ruler {
+  const struct vg_region *region;    /* borrowed, as the next two */
+  const struct vg_sizing *sizing;
+  const double (*x)[3];
+  int n_side;                /* of a point: of all planes, then all walls */
+  double *side;              /* [points][n_side] */
+  double *spacing;           /* [points] at the foot */
+};
+
+/** VG_ERR_MEMORY on refusal. Call vg_ruler_release in any case. */
+vg_status vg_ruler_init(struct vg_ruler *ruler, const struct vg_region *region,
+                        const struct vg_sizing *sizing, size_t n,
+                        const double (*x)[3], struct vg_error *err);
+void vg_ruler_release(struct vg_ruler *ruler);
+
+/** vg_region_near and vg_region_meets of points by their numbers. */
+int vg_ruler_near(const struct vg_ruler *ruler, uint32_t p, double band);
+int vg_ruler_meets(const struct vg_ruler *ruler, const uint32_t v[3],
+                   double band);
 
 /** Does the cell a b c d, within the walls, cross every plane or have a corner
  * within reach? */

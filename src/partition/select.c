@@ -63,9 +63,9 @@ static vg_status list_faces(const struct vg_select *s,
       return vg_fail_memory(err, "cutting a front");
     }
     for (size_t i = b * RUN; i < end; i++)
-      if (vg_region_meets(r, s->sizing, f->x[f->face[i][0]],
-                          f->x[f->face[i][1]], f->x[f->face[i][2]],
-                          VG_BAND_FRONT))
+      if (vg_region_may_meet(r, s->sizing, f->x[f->face[i][0]],
+                             f->x[f->face[i][1]], f->x[f->face[i][2]],
+                             VG_BAND_FRONT))
         (*face)[(*n)++] = (uint32_t)i;
   }
   return VG_OK;
