@@ -8,9 +8,11 @@
 #include "core/shape.h"
 #include "partition/repair_parts.h"
 
-/* Radius of a ball, in local spacings: around cells with dihedral angles
- * below 18 or above 162 degrees (as vg_shape), and around other bad ones. */
-static const double bad = 0.0955, far = 2.5, near = 1.2;
+/* The worse a cell, the larger its ball: `reach` local spacings, and `most`
+ * times as far as its own corners. Below 3 degrees (as vg_shape, dihedral
+ * angles, or above 177), 18 degrees, and VG_SHAPE_AIM. */
+static const struct { double shape, reach, most; } class[3] = {
+  { 0.00274, 5, 2 }, { 0.0955, 2.5, 1.01 }, { VG_SHAPE_AIM, 1.2, 1.01 } };
 
 /* --- owners -------------------------------------------------------------- */
 
@@ -206,18 +208,20 @@ static struct vg_spot around(const struct vg_partition *p, double shape,
                              const double *const x[4])
 {
   struct vg_spot s;
-  double r;
+  double far = 0, reach;
+  int k = 0;
 
+  while (k < 2 && shape >= class[k].shape) k++;
   for (int a = 0; a < 3; a++)
     s.at[a] = 0.25 * (x[0][a] + x[1][a] + x[2][a] + x[3][a]);
-  r = (shape < bad ? far : near) * vg_sizing_at(p->sizing, s.at);
-  s.radius = r * r;
   for (int i = 0; i < 4; i++) {
-    double d = 1.01 * distance2(s.at, x[i]);
+    double d = distance2(s.at, x[i]);
 
-    if (d > s.radius) s.radius = d;
+    if (d > far) far = d;
   }
-  s.radius = sqrt(s.radius);
+  reach = class[k].reach * vg_sizing_at(p->sizing, s.at);
+  s.radius = class[k].most * sqrt(far);
+  if (s.radius < reach) s.radius = reach;
   return s;
 }
 
