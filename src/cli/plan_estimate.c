@@ -17,7 +17,7 @@
 /* Seconds of one core; docs/performance.md, Model. */
 static const double spread_per_cell = 0.35e-6;  /* number, judge, encode */
 static const double digest_per_byte = 0.4e-9;   /* the files once more */
-static const double layer_per_cell = 1.0e-6;    /* growing and measuring */
+static const double layer_per_cell = 0.1e-6;    /* growing and measuring */
 
 /* Bytes: of a mesh in pieces; of a void that is filled, per cell; of sizes,
  * front and load, per triangle of the front and per cube; of the program. */

@@ -48,7 +48,8 @@ struct vg_plan {
   size_t best_leaf;
 };
 
-/** Bytes of the files that a word of the write list stands for; 0: not known. */
+/** Bytes of the files that a word of the write list stands for; 0: not
+ * known. */
 double vg_plan_bytes(const struct vg_plan *p, const char *item);
 
 /** Speed-up over workers as a figure. */

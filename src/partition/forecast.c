@@ -496,7 +496,8 @@ static vg_status add_join(struct forecast *c, const struct part *p, int number,
 
   snprintf(path, sizeof path, "%.*sJ%d", VG_PATH_MAX - 14, p->path, number);
   st = add_task(c, path, after, VG_SPAN_JOIN, rate,
-                (struct amount){p->load.cells, 0}, faces_of(&p->front), (double)p->load.n);
+                (struct amount){p->load.cells, 0}, faces_of(&p->front),
+                (double)p->load.n);
   memcpy(after, path, sizeof path);
   return st;
 }
