@@ -97,7 +97,7 @@ static vg_status number(struct vg_partition *p, size_t n,
     if (s[k].rank == (uint64_t)p->rank) {
       p->point_at[s[k].index] = point;
       p->cell_at[s[k].index] = cell;
-      p->domain[s[k].index] = (uint32_t)k;
+      p->domain[s[k].index] = (uint32_t)(k + 1);
     }
     point += s[k].n_point;
     cell += s[k].n_cell;
@@ -206,7 +206,7 @@ vg_status vg_partition_number(struct vg_partition *p, struct vg_comm *comm,
   size_t n;
   vg_status st;
 
-  VG_TRY(gather(p, comm, &s, &n, err));
+  VG_TRY(vg_comm_agree(comm, gather(p, comm, &s, &n, err), err));
   st = number(p, n, s, err);
   if (st == VG_OK) st = open_slices(p, err);
   st = vg_comm_agree(comm, st, err);
