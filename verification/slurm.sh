@@ -6,10 +6,10 @@
 #   --work      scratch folder, kept (default: a temporary one, removed)
 #   --cells     of the box that is meshed (default 2000000)
 # Starts munged, slurmctld and slurmd of its own on free ports, with all state
-# in the scratch folder, and ends them again. Two jobs of two ranks: one in
-# peace, and one that is told by Slurm that its time is up, goes back into the
-# queue and continues. Both must write the same files. Needs root (slurmd has
-# to change users) and Debian's slurm-wlm, munge and openmpi-bin.
+# in the scratch folder, and ends them again. Jobs of two ranks: one in peace,
+# and, by mpirun and by srun, one that is told by Slurm that its time is up, goes
+# back into the queue and continues. All must write the same files. Needs root
+# (slurmd has to change users) and Debian's slurm-wlm, munge and openmpi-bin.
 # Exit status: 0 as it should be, 1 a failure, 2 usage, 77 cannot be tried.
 set -euo pipefail
 
@@ -101,8 +101,9 @@ CONF
   skip "Slurm does not come up on this host"
 }
 
-# submit NAME: a job; its id.
+# submit NAME LAUNCHER: a job; its id.
 submit() {
+  LAUNCHER=$2 \
   PROJECT=$work/box OUT=$work/$1 VANGUARD=$vanguard \
     OPTIONS='--leaf-cells 30000' \
     OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
@@ -116,9 +117,15 @@ await_end() {   # await_end JOB SECONDS: its last state
   local s=''
   for _ in $(seq "$2"); do
     s=$(state "$1")
-    case $s in PENDING|RUNNING|COMPLETING|CONFIGURING|REQUEUED) sleep 1 ;;
+    case $s in
+      # Slurm holds a requeued job back for two minutes; they are not ours to
+      # wait for.
+      PENDING) scontrol update jobid="$1" starttime=now > /dev/null 2>&1 ||
+        true ;;
+      RUNNING|COMPLETING|CONFIGURING|REQUEUED) ;;
       *) break ;;
     esac
+    sleep 1
   done
   echo "$s"
 }
@@ -128,37 +135,43 @@ echo "Slurm $(sinfo --version | cut -d' ' -f2), $(nproc) cores"
 rm -f "$work"/box.*
 "$vanguard" demo box --cells "$cells" --out "$work" > "$work/demo.log"
 
-job=$(submit peace)
+job=$(submit peace mpirun)
 end=$(await_end "$job" 600)
 [ "$end" = COMPLETED ] || die "the undisturbed job ended as $end"
 
-# The signal that --signal=B:USR1@120 sends, without waiting for a time limit
-# (Slurm's are minutes). As soon as something is kept.
-job=$(submit told)
-for _ in $(seq 300); do
-  [ "$(find "$work/told/box.run" -type f 2> /dev/null | wc -l)" -lt 6 ] || break
-  sleep 0.1
-done
-scancel --batch --signal USR1 "$job"
-for _ in $(seq 60); do
-  [ "$(state "$job")" != RUNNING ] || { sleep 1; continue; }
-  break
-done
-grep -q 'told to stop (limit)' "$work/told.log" ||
-  die "the job was not told in time: more --cells"
-grep -q 'back in the queue' "$work/told.log" || die "not requeued"
-# Slurm holds a requeued job back for a while; that is not ours to wait for.
-scontrol update jobid="$job" starttime=now > /dev/null 2>&1 || true
-end=$(await_end "$job" 900)
-[ "$end" = COMPLETED ] || die "the resumed job ended as $end"
-grep -q 'continuing from' "$work/told.log" || die "it did not continue"
+told() {   # told NAME LAUNCHER
+  local d=$work/$1 file n=0
+  # The signal that --signal=B:USR1@120 sends, without waiting for a time limit
+  # (Slurm's are minutes). As soon as something is kept.
+  job=$(submit "$1" "$2")
+  for _ in $(seq 300); do
+    [ "$(find "$d/box.run" -type f 2> /dev/null | wc -l)" -lt 6 ] || break
+    sleep 0.1
+  done
+  scancel --batch --signal USR1 "$job"
+  for _ in $(seq 60); do
+    [ "$(state "$job")" = RUNNING ] || break
+    sleep 1
+  done
+  grep -q 'told to stop (limit)' "$d.log" ||
+    die "the job was not told in time: more --cells"
+  grep -q 'back in the queue' "$d.log" || die "$2: not requeued"
+  end=$(await_end "$job" 900)
+  [ "$end" = COMPLETED ] || die "$2: the resumed job ended as $end"
+  grep -q 'continuing from' "$d.log" || die "$2: it did not continue"
+  for file in "$work"/peace/box.*; do
+    case $file in *.json|*.deck) continue ;; esac
+    cmp "$file" "$d/${file##*/}" || die "$2: files differ"
+    n=$((n + 1))
+  done
+  [ $n -ge 3 ] || die "only $n files were compared"
+  [ ! -e "$d/box.run" ] || die "$2: the run directory is still there"
+  echo "$2: requeued, continued, $n files the same"
+}
 
-n=0
-for file in "$work"/peace/box.*; do
-  case $file in *.json|*.deck) continue ;; esac
-  cmp "$file" "$work/told/${file##*/}" || die "files differ"
-  n=$((n + 1))
-done
-[ $n -ge 3 ] || die "only $n files were compared"
-[ ! -e "$work/told/box.run" ] || die "the run directory is still there"
-echo "requeued, continued, $n files the same"
+told mpirun-job mpirun
+if srun --mpi=list 2>&1 | grep -qw pmix; then
+  told srun-job "srun --mpi=pmix --overcommit"
+else
+  echo "srun: not tried, this Slurm has no pmix"
+fi
