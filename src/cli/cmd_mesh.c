@@ -164,8 +164,8 @@ static json_t *files_json(const struct run *r)
     json_object_set_new(one, "path", vg_report_string(path ? path : ""));
     if (f->digest[0] || f->digest[1]) {
       snprintf(digest, sizeof digest, "%016llx%016llx",
-               (unsigned long long)f->digest[1],
-               (unsigned long long)f->digest[0]);
+               (unsigned long long)f->digest[0],
+               (unsigned long long)f->digest[1]);
       json_object_set_new(one, "bytes", json_integer((json_int_t)f->bytes));
       json_object_set_new(one, "xxh3", json_string(digest));
     }
@@ -490,14 +490,14 @@ int vg_cmd_mesh(int argc, char **argv)
     { "timeline", KEY_TIMELINE, NULL, 0, "write what each worker did when, "
       "PROJECT.timeline.json, for 'vanguard plan' and 'vanguard sweep'", 1 },
     { "run-dir", KEY_RUN_DIR, "DIR", 0, "keep finished tasks here, so that a "
-      "run that is stopped or killed can be resumed; emptied at success", 1 },
+      "run that is stopped or killed can be resumed; removed at success", 1 },
     { "resume", KEY_RESUME, NULL, 0, "go on with what is kept in --run-dir, "
       "on any number of ranks and threads", 1 },
-    { "keep-run", KEY_KEEP, NULL, 0, "do not empty --run-dir at success", 1 },
+    { "keep-run", KEY_KEEP, NULL, 0, "keep --run-dir at success", 1 },
     { "run-limit", KEY_LIMIT, "BYTES", 0, "keep no more in --run-dir, over all "
       "ranks [default 0: no limit]", 1 },
-    { "shuffle-tasks", KEY_SHUFFLE, "SEED", 0, "do tasks in another order, to "
-      "show that it is no matter [default 0: heaviest first]", 1 },
+    { "shuffle-tasks", KEY_SHUFFLE, "SEED", 0, "do tasks in another order; "
+      "the files stay the same (a test) [default 0: heaviest first]", 1 },
     { NULL, 't', "N", 0, "the same as --threads", 1 },
     { NULL, 'L', "N", 0, "the same as --levels", 1 },
     { 0 }

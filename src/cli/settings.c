@@ -68,8 +68,8 @@ static const struct vg_param params[] = {
   { "ugrid_tail", AT(ugrid_tail), .type = VG_PARAM_FLAG, .unit = "",
     .help = "number of layer tetrahedra behind the cells of a .ugrid" },
   { "leaf_cells", AT(leaf_cells), .type = VG_PARAM_COUNT, .hi = 9e15,
-    .unit = "cells", .help = "the space to fill is cut until parts expect no "
-    "more cells; 0: not at all" },
+    .unit = "cells", .help = "the space outside the layers is cut into parts "
+    "of about so many cells, filled in parallel; 0: not at all" },
   { "levels", AT(levels), .type = VG_PARAM_COUNT, .hi = 30,
     .unit = "bisections", .help = "cut everywhere alike, into 2^levels "
     "parts, instead of by leaf_cells; 0: by leaf_cells" },

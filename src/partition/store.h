@@ -24,6 +24,9 @@ struct vg_digest { uint64_t word[2]; };
 struct vg_digest vg_digest_of(struct vg_digest seed, size_t n,
                               const void *data);
 
+/** XXH3-128 of n bytes, as xxhsum -H2 prints it. */
+struct vg_digest vg_digest_plain(size_t n, const void *data);
+
 struct vg_store;
 
 struct vg_store_options {
