@@ -48,7 +48,7 @@ project='' options=()
 take_options "scale runs data aircraft small leaf-cells build work out json" \
   quick "$@"
 if [ "$quick" = 1 ]; then
-  runs=1 scale=$(calc "$scale / 20") small=60000
+  runs=1 scale=$(calc "$scale / 20") small=60000 aircraft=dlr_f6_coarse
   leaf_cells='10000 20000 50000'
 fi
 need jq jq
