@@ -358,12 +358,13 @@ ROW
 }
 
 [ -z "$out" ] || : > "$out"
-failed=0
+failed=0 tried=0
 say << HEAD
 Vanguard $("$vanguard" --version | awk 'NR == 1 { print $2 }'), $(uname -m), $(nproc) cores, $(date -u +%Y-%m-%d), load before $(cut -d' ' -f1 /proc/loadavg); medians of $runs runs, sizes x $scale.
 HEAD
 for part in price two balance leaf memory determinism replay large; do
   asked "$part" || continue
+  tried=1
   case $part in
     price) part_price ;;
     two) part_two ;;
@@ -375,7 +376,7 @@ for part in price two balance leaf memory determinism replay large; do
     large) part_large ;;
   esac
 done
-[ -s "$figures" ] || die "no such part; see --help"
+[ $tried = 1 ] || die "no such part; see --help"
 if [ -n "$json" ]; then
   jq -n --slurpfile figures "$figures" --slurpfile runs "$rows" \
     --arg scale "$scale" '{scale: $scale, $figures, $runs}' > "$json"
