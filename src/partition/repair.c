@@ -288,7 +288,7 @@ static void mend_body(void *context, size_t first, size_t end, int worker)
   for (size_t k = first; k < end; k++)
     r->st[k] = vg_repair_mend(r->first[k + 1] - r->first[k],
                               &r->block[r->first[k]], &r->balls,
-                              &r->mended[k], NULL);
+                              r->p->sizing, &r->mended[k], NULL);
 }
 
 static vg_status mend(struct repair *r, struct vg_error *err)
@@ -478,14 +478,26 @@ static vg_status round_of(struct repair *r, struct vg_comm *comm, size_t n,
   return st == VG_OK ? put_back(r, comm, err) : st;
 }
 
-/* Spots that this round left for the next. */
-static size_t left_over(const struct vg_balls *b, struct vg_spot *spot)
+/* Balls for the next round: those that this one left over, and, after the
+ * first, large ones around what stayed bad. */
+static vg_status next_round(struct repair *r, struct vg_comm *comm, int first,
+                            size_t *n, struct vg_spot **spot,
+                            struct vg_error *err)
 {
-  size_t n = 0;
+  struct vg_writer w = { .cap = 0 };
+  struct vg_spot *more = NULL;
+  vg_status st;
 
-  for (size_t k = 0; k < b->n; k++)
-    if (b->cluster[k] == VG_NO_CLUSTER) spot[n++] = spot[k];
-  return n;
+  for (size_t k = 0; r->p->rank == 0 && k < r->balls.n; k++)
+    if (r->balls.cluster[k] == VG_NO_CLUSTER)
+      vg_put(&w, 1, sizeof **spot, &(*spot)[k]);
+  for (size_t k = 0; first && k < r->n_job; k++)
+    vg_put(&w, r->mended[k].n_spot, sizeof **spot, r->mended[k].spot);
+  st = vg_spots_gather(&w, r->p->size, comm, n, &more, err);
+  free(w.bytes.data);
+  free(*spot);
+  *spot = more;
+  return st;
 }
 
 static vg_status all_rounds(struct vg_partition *p, struct vg_comm *comm,
@@ -504,7 +516,8 @@ static vg_status all_rounds(struct vg_partition *p, struct vg_comm *comm,
     if (st == VG_OK && n) {
       st = round_of(&r, comm, n, spot, err);
       number += r.balls.n_cluster;
-      if (st == VG_OK) n = left_over(&r.balls, spot);
+      if (st == VG_OK && k + 1 < ROUNDS)
+        st = next_round(&r, comm, !k, &n, &spot, err);
     }
     repair_free(&r);
   }

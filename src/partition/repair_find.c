@@ -9,10 +9,12 @@
 #include "partition/repair_parts.h"
 
 /* The worse a cell, the larger its ball: `reach` local spacings, and `most`
- * times as far as its own corners. Below 3 degrees (as vg_shape, dihedral
- * angles, or above 177), 18 degrees, and VG_SHAPE_AIM. */
-static const struct { double shape, reach, most; } class[3] = {
-  { 0.00274, 5, 2 }, { 0.0955, 2.5, 1.01 }, { VG_SHAPE_AIM, 1.2, 1.01 } };
+ * times as far as its own corners. Beside long triangles of a sharp edge, what
+ * stayed bad needs much room. */
+static const struct { double reach, most; } ball[VG_BALL_SIZES] = {
+  { 1.2, 1.01 }, { 2.5, 1.01 }, { 4, 2 } };
+/* As vg_shape: dihedral angles below 18 or above 162 degrees. */
+static const double bad = 0.0955;
 
 /* --- owners -------------------------------------------------------------- */
 
@@ -203,15 +205,12 @@ static double distance2(const double a[3], const double b[3])
   return x * x + y * y + z * z;
 }
 
-/* A ball around a cell: a few spacings, and all of the cell. */
-static struct vg_spot around(const struct vg_partition *p, double shape,
-                             const double *const x[4])
+struct vg_spot vg_spot_around(const struct vg_sizing *sizing,
+                              const double *const x[4], enum vg_ball_size k)
 {
   struct vg_spot s;
   double far = 0, reach;
-  int k = 0;
 
-  while (k < 2 && shape >= class[k].shape) k++;
   for (int a = 0; a < 3; a++)
     s.at[a] = 0.25 * (x[0][a] + x[1][a] + x[2][a] + x[3][a]);
   for (int i = 0; i < 4; i++) {
@@ -219,8 +218,8 @@ static struct vg_spot around(const struct vg_partition *p, double shape,
 
     if (d > far) far = d;
   }
-  reach = class[k].reach * vg_sizing_at(p->sizing, s.at);
-  s.radius = class[k].most * sqrt(far);
+  reach = ball[k].reach * vg_sizing_at(sizing, s.at);
+  s.radius = ball[k].most * sqrt(far);
   if (s.radius < reach) s.radius = reach;
   return s;
 }
@@ -244,7 +243,9 @@ static void find_in(const struct search *s, size_t k)
       f->refused = 1;
       return;
     }
-    f->spot[f->n++] = around(s->p, shape, x);
+    f->spot[f->n++] = vg_spot_around(s->p->sizing, x, shape < bad
+                                                        ? VG_BALL_MIDDLE
+                                                        : VG_BALL_SMALL);
   }
 }
 
@@ -265,30 +266,26 @@ static int by_place(const void *a, const void *b)
   return s->radius < t->radius ? -1 : s->radius > t->radius;
 }
 
-static vg_status gather(const struct search *s, struct vg_comm *comm,
-                        size_t *n, struct vg_spot **out, struct vg_error *err)
+vg_status vg_spots_gather(struct vg_writer *w, int n_rank, struct vg_comm *comm,
+                          size_t *n, struct vg_spot **out,
+                          struct vg_error *err)
 {
-  struct vg_writer w = { .cap = 0 };
-  struct vg_bytes *all = vg_calloc((size_t)s->p->size, sizeof *all);
+  struct vg_bytes *all = vg_calloc((size_t)n_rank, sizeof *all);
   size_t bytes = 0, at = 0;
   vg_status st;
 
-  for (size_t k = 0; k < s->p->n_piece; k++) {
-    w.refused |= s->found[k].refused;
-    vg_put(&w, s->found[k].n, sizeof **out, s->found[k].spot);
-  }
-  st = vg_comm_agree(comm, w.refused || !all ? vg_fail_memory(err, "repairs")
-                                             : VG_OK, err);
-  if (st == VG_OK) st = vg_comm_allgather(comm, &w.bytes, all, err);
-  for (int r = 0; st == VG_OK && r < s->p->size; r++) bytes += all[r].n;
+  *out = NULL;
+  st = vg_comm_agree(comm, w->refused || !all ? vg_fail_memory(err, "repairs")
+                                              : VG_OK, err);
+  if (st == VG_OK) st = vg_comm_allgather(comm, &w->bytes, all, err);
+  for (int r = 0; st == VG_OK && r < n_rank; r++) bytes += all[r].n;
   if (st == VG_OK && !(*out = vg_alloc(bytes, 1)))
     st = vg_fail_memory(err, "repairs");
-  for (int r = 0; st == VG_OK && r < s->p->size; r++) {
+  for (int r = 0; st == VG_OK && r < n_rank; r++) {
     if (all[r].n) memcpy((char *)*out + at, all[r].data, all[r].n);
     at += all[r].n;
   }
-  vg_bytes_release(all, s->p->size);
-  free(w.bytes.data);
+  vg_bytes_release(all, n_rank);
   *n = at / sizeof **out;
   if (*n) qsort(*out, *n, sizeof **out, by_place);
   if (st == VG_OK) st = vg_spots_thin(n, *out, err);
@@ -300,12 +297,18 @@ vg_status vg_repair_find(struct vg_partition *p, struct vg_comm *comm,
                          struct vg_spot **out, struct vg_error *err)
 {
   struct search s = { .p = p };
+  struct vg_writer w = { .cap = 0 };
   vg_status st = mark(&s, comm, owners, err);
 
   *n = 0;
   if (st == VG_OK) {
     vg_parallel_for(p->options.threads, p->n_piece, 1, find_body, &s);
-    st = gather(&s, comm, n, out, err);
+    for (size_t k = 0; k < p->n_piece; k++) {
+      w.refused |= s.found[k].refused;
+      vg_put(&w, s.found[k].n, sizeof **out, s.found[k].spot);
+    }
+    st = vg_spots_gather(&w, p->size, comm, n, out, err);
+    free(w.bytes.data);
   }
   search_free(&s);
   return st;

@@ -7,6 +7,9 @@
 #include "core/tets.h"
 #include "partition/repair_parts.h"
 
+/* As vg_shape: what stays below 5 degrees, or above 175, is tried again. */
+static const double hopeless = 0.0076;
+
 /* --- as they travel ------------------------------------------------------ */
 
 void vg_block_release(struct vg_block *b)
@@ -53,6 +56,7 @@ void vg_mended_release(struct vg_mended *m)
   vg_piece_release(&m->piece);
   free(m->moved);
   free(m->x);
+  free(m->spot);
   memset(m, 0, sizeof *m);
 }
 
@@ -275,6 +279,26 @@ static vg_status to_piece(const struct joint *j, struct vg_mended *m,
   return VG_OK;
 }
 
+/* Where another attempt needs more room. */
+static vg_status list_left(const struct joint *j,
+                           const struct vg_sizing *sizing,
+                           struct vg_mended *m, struct vg_error *err)
+{
+  const struct vg_tets *t = &j->t;
+
+  for (size_t c = 0; c < t->n_cell; c++) {
+    const double *x[4];
+
+    if (t->flag[c] & VG_DEAD) continue;
+    for (int i = 0; i < 4; i++) x[i] = t->x[t->cell[c].v[i]];
+    if (vg_shape(x[0], x[1], x[2], x[3]) >= hopeless) continue;
+    if (vg_reserve(&m->spot, &m->cap_spot, m->n_spot + 1, sizeof *m->spot))
+      return vg_fail_memory(err, "repairs");
+    m->spot[m->n_spot++] = vg_spot_around(sizing, x, VG_BALL_LARGE);
+  }
+  return VG_OK;
+}
+
 static vg_status take(const struct joint *j, struct vg_mended *m,
                       struct vg_error *err)
 {
@@ -298,8 +322,9 @@ static vg_status take(const struct joint *j, struct vg_mended *m,
 }
 
 vg_status vg_repair_mend(size_t n, const struct vg_block *block,
-                         const struct vg_balls *balls, struct vg_mended *out,
-                         struct vg_error *err)
+                         const struct vg_balls *balls,
+                         const struct vg_sizing *sizing,
+                         struct vg_mended *out, struct vg_error *err)
 {
   struct joint j = { .n_block = n, .block = block, .balls = balls };
   struct vg_optimise_report r;
@@ -317,6 +342,7 @@ vg_status vg_repair_mend(size_t n, const struct vg_block *block,
     st = vg_optimise_bad(&j.t, j.n_fixed, j.n_point, &r, err);
   }
   if (st == VG_OK) st = take(&j, &m, err);
+  if (st == VG_OK) st = list_left(&j, sizing, &m, err);
   if (st == VG_ERR_GEOMETRY) {
     /* cells that do not fit together, or flat ones, are left to the judge */
     m.better = 0;

@@ -40,6 +40,21 @@ void vg_bytes_release(struct vg_bytes *b, int size);
 /* A ball around a bad cell. */
 struct vg_spot { double at[3], radius; };
 
+/* For cells that are not good, bad ones, and what stayed bad. */
+enum vg_ball_size { VG_BALL_SMALL, VG_BALL_MIDDLE, VG_BALL_LARGE,
+                    VG_BALL_SIZES };
+
+/** A ball around a cell: a few spacings, and all of the cell. */
+struct vg_spot vg_spot_around(const struct vg_sizing *sizing,
+                              const double *const x[4], enum vg_ball_size k);
+
+/** The balls that ranks wrote, on all of them: in an order that does not
+ * depend on ranks, thinned. out: owned by the caller, also on failure.
+ * Collective. */
+vg_status vg_spots_gather(struct vg_writer *w, int n_rank,
+                          struct vg_comm *comm, size_t *n,
+                          struct vg_spot **out, struct vg_error *err);
+
 /** Balls around the bad cells of all ranks that have a corner on an
  * interface, by their coordinates. Collective. */
 vg_status vg_repair_find(struct vg_partition *p, struct vg_comm *comm,
@@ -101,13 +116,16 @@ struct vg_mended {
   size_t n_moved;
   uint64_t *moved;           /* [n_moved] points of others that moved */
   double (*x)[3];            /* [n_moved] to here */
+  size_t n_spot, cap_spot;
+  struct vg_spot *spot;      /* [n_spot] around cells that stayed bad */
 };
 
 void vg_mended_release(struct vg_mended *m);
 
 /** Mend the cells of a cluster. block: [n] by path. */
 vg_status vg_repair_mend(size_t n, const struct vg_block *block,
-                         const struct vg_balls *balls, struct vg_mended *out,
-                         struct vg_error *err);
+                         const struct vg_balls *balls,
+                         const struct vg_sizing *sizing,
+                         struct vg_mended *out, struct vg_error *err);
 
 #endif
