@@ -34,6 +34,13 @@ static int is_corner(const struct zone *g, uint32_t p)
   return p >= g->k.n_front && p < g->k.n_front + 8;
 }
 
+static int all_four(const struct zone *g, const uint8_t *flag, uint32_t c)
+{
+  const uint32_t *v = g->k.t.cell[c].v;
+
+  return flag[v[0]] && flag[v[1]] && flag[v[2]] && flag[v[3]];
+}
+
 static int belongs(const struct zone *g, uint32_t c)
 {
   const struct vg_tets *t = &g->k.t;
@@ -43,28 +50,21 @@ static int belongs(const struct zone *g, uint32_t c)
                             t->x[v[2]], t->x[v[3]]);
 }
 
-/* All corners near the region, none a corner of the box? */
-static int is_known(const struct zone *g, uint32_t c)
-{
-  const struct vg_tets *t = &g->k.t;
-
-  for (int i = 0; i < 4; i++) {
-    uint32_t p = t->cell[c].v[i];
-
-    if (is_corner(g, p) || !vg_region_near(g->k.region, g->k.sizing, t->x[p],
-                                           VG_BAND_FLUID))
-      return 0;
-  }
-  return 1;
-}
-
-/* Only cells near the region stay. The faces around them are fixed. */
-static void narrow(struct zone *g)
+/* Only cells near the region stay, none of them at a corner of the box. The
+ * faces around them are fixed. */
+static vg_status narrow(struct zone *g, struct vg_error *err)
 {
   struct vg_tets *t = &g->k.t;
+  uint8_t *is_known = vg_alloc(t->n_point, 1);
 
+  if (!is_known) return vg_fail_memory(err, "the points of a zone");
+  for (uint32_t p = 0; p < t->n_point; p++)
+    is_known[p] = !is_corner(g, p) &&
+                  vg_region_near(g->k.region, g->k.sizing, t->x[p],
+                                 VG_BAND_FLUID);
   for (uint32_t c = 0; c < t->n_cell; c++) {
-    if (t->flag[c] & (VG_DEAD | VG_OUTSIDE) || is_known(g, c)) continue;
+    if (t->flag[c] & (VG_DEAD | VG_OUTSIDE) || all_four(g, is_known, c))
+      continue;
     t->flag[c] |= VG_OUTSIDE;
     g->z->n_hole += (size_t)belongs(g, c);
   }
@@ -75,6 +75,8 @@ static void narrow(struct zone *g)
       if (link == VG_NONE || t->flag[link >> 2] & VG_OUTSIDE)
         t->flag[c] |= (uint8_t)(1 << i);
     }
+  free(is_known);
+  return VG_OK;
 }
 
 static double volume(const double a[3], const double b[3], const double c[3],
@@ -130,13 +132,6 @@ static double shape_of(const struct vg_tets *t, uint32_t c)
   return vg_shape(t->x[v[0]], t->x[v[1]], t->x[v[2]], t->x[v[3]]);
 }
 
-static int all_used(const struct zone *g, const uint8_t *used, uint32_t c)
-{
-  const uint32_t *v = g->k.t.cell[c].v;
-
-  return used[v[0]] && used[v[1]] && used[v[2]] && used[v[3]];
-}
-
 /* VG_MARK on the cells that become final: those that belong, and those that
  * fill the dents between them without a further point, which leaves a smooth
  * front. */
@@ -152,7 +147,7 @@ static vg_status choose(struct zone *g, struct vg_error *err)
     for (int i = 0; i < 4; i++) used[t->cell[c].v[i]] = 1;
   }
   for (uint32_t c = 0; c < t->n_cell; c++)
-    if (!(t->flag[c] & (VG_DEAD | VG_MARK)) && all_used(g, used, c) &&
+    if (!(t->flag[c] & (VG_DEAD | VG_MARK)) && all_four(g, used, c) &&
         is_within(g, c) && shape_of(t, c) > dent)
       take(g, c);
   free(used);
@@ -337,10 +332,8 @@ vg_status vg_zone_grow(size_t n_point, const double (*x)[3], size_t n_face,
     return VG_BLOCKED;
   st = recover(&g, n_point, x, err);
   if (st == VG_OK) st = vg_growth_populate(&g.k, err);
-  if (st == VG_OK) {
-    narrow(&g);
-    st = vg_growth_improve(&g.k, err);
-  }
+  if (st == VG_OK) st = narrow(&g, err);
+  if (st == VG_OK) st = vg_growth_improve(&g.k, err);
   if (st == VG_OK) st = commit(&g, err);
   if (st != VG_OK) vg_zone_release(z);
   vg_tets_release(&g.k.t);

@@ -13,6 +13,10 @@ static const double other_share[] = {0, 0.07, -0.07, 0.15, -0.15};
 /* Blocks that may exceed the leaf size by this need no further cut. */
 static const double leaf_slack = 1.25;
 
+/* Below so many leaves planes are grown whole, one after another: tiles have
+ * more rim, and there are voids enough to keep every thread busy. */
+static const double few_leaves = 12;
+
 enum { HALVINGS = 3, PER_AXIS = 2 };
 
 /* --- planes -------------------------------------------------------------- */
@@ -73,6 +77,8 @@ static int bisections_wanted(const struct vg_load *load,
   int n = 0;
 
   if (!(rule->leaf_cells > 0)) return levels < HALVINGS ? levels : HALVINGS;
+  if (load->cells < few_leaves * rule->leaf_cells)
+    return load->cells > leaf_slack * rule->leaf_cells;
   while (n < HALVINGS && load->cells > leaf_slack * rule->leaf_cells *
                                            (double)(1 << n))
     n++;
