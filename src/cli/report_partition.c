@@ -31,11 +31,17 @@ void vg_report_partition_text(FILE *to, const struct vg_run *r)
             vg_cli_count(leaf_at(r, 0), a), vg_cli_count(leaf_at(r, 2), b),
             vg_cli_count(leaf_at(r, 1), c));
   fprintf(to, "\n");
+  if (p->cuts_given_up)
+    fprintf(to, "  cuts were given up: a part between them could not be "
+            "filled, so the whole was filled by one worker\n");
   if (p->n_blocked || p->n_retry || p->n_uncut || p->n_outgrown)
     fprintf(to, "  zones given up %s, cuts repeated elsewhere %s, leaves cut "
             "again %s, left large %llu\n", vg_cli_count(p->n_blocked, a),
             vg_cli_count(p->n_retry, b), vg_cli_count(p->n_outgrown, c),
             (unsigned long long)p->n_uncut);
+  fprintf(to, "  repaired across interfaces: %s of %s regions, %.2f s\n",
+          vg_cli_count(p->n_repaired, a), vg_cli_count(p->n_repair, b),
+          p->repair);
   fprintf(to, "  workers busy %.1f %%, imbalance %.3f (most over mean)\n",
           100 * vg_spans_busy(&r->spans), vg_spans_imbalance(&r->spans));
   if (!r->store) return;
@@ -59,7 +65,9 @@ json_t *vg_report_partition_json(const struct vg_run *r)
     { "leaves", p->n_leaf }, { "zone_cells", p->n_zone_cell },
     { "zones_given_up", p->n_blocked }, { "cuts_repeated", p->n_retry },
     { "leaves_cut_again", p->n_outgrown }, { "leaves_left_large", p->n_uncut },
-    { "tasks_found", p->n_found },
+    { "tasks_found", p->n_found }, { "regions_bad", p->n_repair },
+    { "regions_repaired", p->n_repaired },
+    { "cells_in_regions", p->n_repair_cell },
   };
   json_t *o = json_object(), *leaves = json_array();
 
@@ -68,6 +76,8 @@ json_t *vg_report_partition_json(const struct vg_run *r)
   for (size_t i = 0; i < r->n_leaf; i++)
     json_array_append_new(leaves, count(r->leaf[i]));
   json_object_set_new(o, "leaf_cells", leaves);
+  json_object_set_new(o, "cuts_given_up", json_boolean(p->cuts_given_up));
+  json_object_set_new(o, "repair_seconds", json_real(p->repair));
   json_object_set_new(o, "estimate", json_real(p->estimate));
   json_object_set_new(o, "busy", json_real(vg_spans_busy(&r->spans)));
   json_object_set_new(o, "imbalance",

@@ -609,12 +609,12 @@ static vg_status sum_report(struct vg_partition *p, struct vg_comm *comm,
   return VG_OK;
 }
 
-vg_status vg_partition_grow(struct vg_comm *comm, const struct vg_mesh *front,
-                            const struct vg_sizing *sizing,
-                            const struct vg_partition_options *options,
-                            struct vg_partition **out,
-                            struct vg_partition_report *report,
-                            struct vg_spans *spans, struct vg_error *err)
+static vg_status grow(struct vg_comm *comm, const struct vg_mesh *front,
+                      const struct vg_sizing *sizing,
+                      const struct vg_partition_options *options,
+                      struct vg_partition **out,
+                      struct vg_partition_report *report,
+                      struct vg_spans *spans, struct vg_error *err)
 {
   struct vg_partition *p = vg_calloc(1, sizeof *p);
   double t0 = now();
@@ -644,6 +644,36 @@ vg_status vg_partition_grow(struct vg_comm *comm, const struct vg_mesh *front,
   *report = p->report;
   if (st == VG_OK) *out = p;
   else vg_partition_free(p);
+  return st;
+}
+
+/* Where a part between cuts cannot be filled, the void is filled uncut: that
+ * takes longer, but only a boundary that bounds nothing fails a run. */
+vg_status vg_partition_grow(struct vg_comm *comm, const struct vg_mesh *front,
+                            const struct vg_sizing *sizing,
+                            const struct vg_partition_options *options,
+                            struct vg_partition **out,
+                            struct vg_partition_report *report,
+                            struct vg_spans *spans, struct vg_error *err)
+{
+  struct vg_partition_options uncut = *options;
+  struct vg_error why = VG_ERROR_INIT;
+  uint64_t n_cut;
+  vg_status st, sum;
+
+  st = grow(comm, front, sizing, options, out, report, spans, &why);
+  n_cut = report->n_node;
+  sum = vg_comm_sum(comm, 1, &n_cut, err);
+  if (sum < 0) return sum;
+  if (st != VG_ERR_GEOMETRY || !n_cut) {
+    if (err) *err = why;
+    return st;
+  }
+  uncut.rule.leaf_cells = 0;
+  uncut.levels = 0;
+  if (spans) vg_spans_release(spans);
+  st = grow(comm, front, sizing, &uncut, out, report, spans, err);
+  report->cuts_given_up = 1;
   return st;
 }
 

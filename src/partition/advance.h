@@ -61,6 +61,8 @@ struct vg_partition_report {
   double repair_worst;       /* and the worst one (core/shape.h) */
   double repair_worst_left;
   double repair;             /* seconds of repairs */
+  int cuts_given_up;         /* 1: a part could not be filled; the void was
+                                filled uncut, by one worker */
   double estimate;           /* cells expected at the start */
   double wall;               /* seconds of the engine */
   double number;             /* seconds of numbering */
