@@ -106,8 +106,7 @@ enum { SIDE_UNKNOWN, SIDE_FLUID, SIDE_SOLID };
 
 struct sides {
   struct vg_tets *t;
-  const struct vg_region *region;    /* NULL: everywhere */
-  const struct vg_sizing *sizing;
+  const struct vg_ruler *ruler;      /* NULL: everywhere */
   double band;               /* sides are told so near the region */
   int is_strict;             /* 1: a contradiction is an error */
   uint8_t *side;             /* [n_cell] */
@@ -118,13 +117,11 @@ struct sides {
 /* Is face i of cell c where sides are to be told? */
 static int matters(const struct sides *s, uint32_t c, int i)
 {
-  const struct vg_tets *t = s->t;
-  const uint32_t *v = t->cell[c].v;
+  const uint32_t *v = s->t->cell[c].v;
   const uint8_t *f = vg_face[i];
+  uint32_t tri[3] = {v[f[0]], v[f[1]], v[f[2]]};
 
-  return !s->region ||
-         vg_region_meets(s->region, s->sizing, t->x[v[f[0]]], t->x[v[f[1]]],
-                         t->x[v[f[2]]], s->band);
+  return !s->ruler || vg_ruler_meets(s->ruler, tri, s->band);
 }
 
 static void set_side(struct sides *s, uint32_t c, uint8_t is)
@@ -203,11 +200,11 @@ static vg_status tell_sides(struct sides *s, const struct tri_table *table,
 {
   vg_status st;
 
-  s->band = s->region ? -s->region->reach + 1e-6 : 0;
+  s->band = s->ruler ? -s->ruler->region->reach + 1e-6 : 0;
   s->is_strict = 1;
   VG_TRY(seed_sides(s, table, err));
   VG_TRY(spread_sides(s, err));
-  if (!s->region) goto done;
+  if (!s->ruler) goto done;
   s->band = VG_BAND_FLUID;
   s->is_strict = 0;
   s->next = 0;
@@ -254,7 +251,8 @@ vg_status vg_boundary_sides(struct vg_tets *t, size_t n_tri,
                             struct vg_error *err)
 {
   struct tri_table table = {0};
-  struct sides s = { .t = t, .region = region, .sizing = sizing };
+  struct vg_ruler ruler = {0};
+  struct sides s = { .t = t, .ruler = region ? &ruler : NULL };
   size_t n_fluid = 0;
   vg_status st = VG_OK;
 
@@ -262,6 +260,9 @@ vg_status vg_boundary_sides(struct vg_tets *t, size_t n_tri,
   s.queue = vg_alloc(t->n_cell, sizeof *s.queue);
   if (!s.side || !s.queue) st = vg_fail_memory(err, "boundary recovery");
   if (st == VG_OK) st = tri_table_init(&table, n_tri, tri, err);
+  if (st == VG_OK && region)
+    st = vg_ruler_init(&ruler, region, sizing, t->n_point,
+                       (const double (*)[3])t->x, err);
   if (st == VG_OK) st = tell_sides(&s, &table, err);
   if (st == VG_OK && region) wall_off(&s);
   for (size_t c = 0; st == VG_OK && c < t->n_cell; c++) {
@@ -272,6 +273,7 @@ vg_status vg_boundary_sides(struct vg_tets *t, size_t n_tri,
     st = vg_fail(err, VG_ERR_GEOMETRY, "the surface encloses no fluid");
   free(s.side);
   free(s.queue);
+  vg_ruler_release(&ruler);
   free(table.slot);
   return st;
 }
