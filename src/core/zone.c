@@ -61,7 +61,7 @@ static vg_status narrow(struct zone *g, struct vg_error *err)
   for (uint32_t p = 0; p < t->n_point; p++)
     is_known[p] = !is_corner(g, p) &&
                   vg_region_near(g->k.region, g->k.sizing, t->x[p],
-                                 VG_BAND_FLUID);
+                                 VG_BAND_FRONT - 0.2);
   for (uint32_t c = 0; c < t->n_cell; c++) {
     if (t->flag[c] & (VG_DEAD | VG_OUTSIDE) || all_four(g, is_known, c))
       continue;
