@@ -12,7 +12,7 @@
  * out. The slices of the layers are shared out too: this rank serves those
  * with number k % size == rank, before the field's. First come those of the
  * boundary's points, 16 k each, without cells; then runs of faces with all
- * that stands on them, at least 64 k cells each. Both follow from the layers
+ * that stands on them, at least 256 k cells each. Both follow from the layers
  * alone.
  *
  * Kept per rank: the surface's and front's numbers, columns', and the

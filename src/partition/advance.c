@@ -6,7 +6,7 @@
 #include <time.h>
 
 #include "base/memory.h"
-#include "partition/bytes.h"
+#include "base/bytes.h"
 #include "partition/model.h"
 #include "partition/node.h"
 #include "partition/repair.h"

@@ -7,7 +7,7 @@
 #include "base/memory.h"
 #include "core/hilbert.h"
 #include "core/predicates.h"
-#include "partition/bytes.h"
+#include "base/bytes.h"
 
 void vg_front_release(struct vg_front *f)
 {

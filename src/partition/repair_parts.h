@@ -3,7 +3,7 @@
 #define VG_PARTITION_REPAIR_PARTS_H
 
 #include "core/optimise.h"
-#include "partition/bytes.h"
+#include "base/bytes.h"
 #include "partition/repair.h"
 
 #define VG_NO_CLUSTER UINT32_MAX

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "partition/bytes.h"
+#include "base/bytes.h"
 #include "partition/node.h"
 
 /* Points to a cell in a field; a bound for the first, not an estimate. */

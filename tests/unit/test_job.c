@@ -3,7 +3,7 @@
 #include "io_support.h"
 
 #include "fill_shapes.h"
-#include "partition/bytes.h"
+#include "base/bytes.h"
 #include "partition/job.h"
 #include "tets_support.h"
 
