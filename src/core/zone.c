@@ -8,6 +8,9 @@
 #include "core/growth.h"
 #include "core/shape.h"
 
+/* A plane without walls may use all that is known of the front, which large
+ * triangles of the surface ask for; where others grow beside it, less. */
+static const double whole_band = VG_BAND_FRONT - 0.2;
 /* Dents are not filled with cells worse than this (dihedral angles of about
  * 30 and 150 degrees). */
 static const double dent = 0.25;
@@ -56,12 +59,14 @@ static vg_status narrow(struct zone *g, struct vg_error *err)
 {
   struct vg_tets *t = &g->k.t;
   uint8_t *is_known = vg_alloc(t->n_point, 1);
+  const struct vg_region *r = g->k.region;
+  double band = r->n_plane > 1 || r->n_wall ? VG_BAND_FLUID : whole_band;
 
   if (!is_known) return vg_fail_memory(err, "the points of a zone");
   for (uint32_t p = 0; p < t->n_point; p++)
     is_known[p] = !is_corner(g, p) &&
                   vg_region_near(g->k.region, g->k.sizing, t->x[p],
-                                 VG_BAND_FRONT - 0.2);
+                                 band);
   for (uint32_t c = 0; c < t->n_cell; c++) {
     if (t->flag[c] & (VG_DEAD | VG_OUTSIDE) || all_four(g, is_known, c))
       continue;

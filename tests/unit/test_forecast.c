@@ -77,34 +77,40 @@ static int is_leaf(const struct vg_outlook_node *n)
   return !n->lattice.n[0] && !n->lattice.n[1] && !n->lattice.n[2];
 }
 
-/* Eight blocks that differ by what cubes beside planes do: some per cent. */
+/* Eight blocks, each cut in two; they differ by what cubes beside planes do:
+ * some per cent. */
 static void a_box_has_a_regular_tree(void **state)
 {
   struct vg_outlook o;
   struct scene s;
+  size_t n_block = 0;
 
   (void)state;
   make(&s, "box", 200000);
-  o = look(&s, leaves_of(s.load.cells / 8), 0);
-  assert_int_equal(o.n_leaf, 8);
-  assert_int_equal(o.n_node, 9);
-  assert_int_equal(o.n_tile, 12);
+  o = look(&s, leaves_of(s.load.cells / 16), 0);
+  assert_int_equal(o.n_leaf, 16);
+  assert_int_equal(o.n_node, 25);
+  assert_int_equal(o.n_tile, 12 + 8);
   assert_int_equal(o.n_pencil, 5);
   assert_int_equal(o.node[0].n_child, 8);
   assert_true(o.node[0].parent == SIZE_MAX);
   for (int k = 0; k < 3; k++) assert_int_equal(o.node[0].lattice.n[k], 1);
-  for (size_t i = 1; i < 9; i++) {
+  for (size_t i = 1; i < o.n_node; i++) {
     const struct vg_outlook_node *n = &o.node[i];
     double even = (s.load.cells - o.zone_cells) / 8;
 
-    assert_true(is_leaf(n) && n->parent == 0 && n->depth == 1);
-    assert_true(fabs(n->cells / even - 1) < 0.05);
+    assert_int_equal(is_leaf(n), n->depth == 2);
+    if (n->depth != 1) continue;
+    n_block++;
+    assert_true(n->parent == 0 && n->n_child == 2);
+    assert_in_range((int)(100 * n->cells / even), 95, 125);
     for (int k = 0; k < 3; k++) {
       double at = o.node[0].lattice.at[k][0];
 
       assert_true(n->lo[k] == at || n->hi[k] == at);
     }
   }
+  assert_int_equal(n_block, 8);
   vg_outlook_release(&o);
   release(&s);
 }

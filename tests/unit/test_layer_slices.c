@@ -362,7 +362,7 @@ static void many_slices(void **state)
   struct model m;
 
   (void)state;
-  model_sphere(&m, 66, 6, &seed);
+  model_sphere(&m, 66, 70, &seed);
   assert_true(m.surface.n_point > 16384);
   assert_int_equal(vg_mesh_copy(&m.field, &m.layers.front.mesh, NULL), VG_OK);
   assert_true(check_model(&m, 4) >= 4);

@@ -72,8 +72,8 @@ exits 0
 is err </dev/null
 [ "$(ls -A p)" = "$before" ] || fail "plan has written into the project"
 says out "Mesh expected"
-says out "1 cuts into 8 leaves; 5 pencils and 12 tiles"
-says out "  8 leaves: "
+says out "7 cuts into 8 leaves; 0 pencils and 7 tiles"
+says out "    0.1: "
 says out "Best: "
 says out "40,000       "
 grep -q "^  vtu  *[0-9.]* MB" out || fail "no size of the .vtu"
@@ -82,12 +82,12 @@ vanguard plan -q -p p/box --leaf-cells 8000 -n 2 -j --serial 0
 exits 0
 cp out plan.json
 says plan.json '"leaves": 8'
-says plan.json '"path": "0.7"'
+says plan.json '"path": "0.1.1.1"'
 says plan.json '"best_leaf_cells"'
 vanguard mesh -q -p p/box --leaf-cells 8000 --out m --json
 exits 0
-says out '"pencils": 5'
-says out '"tiles": 12'
+says out '"pencils": 0'
+says out '"tiles": 7'
 
 # Cells and points that a plan says and a mesh has, within 6 %: the estimate's
 # own error.
