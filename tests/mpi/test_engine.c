@@ -45,6 +45,10 @@ static void check_spans(const struct forest *f, const struct vg_spans *s,
   }
 }
 
+/* Tasks done away from home: who is quick enough is chance in one run, not in
+ * all of them together. */
+static uint64_t n_away;
+
 /* Trees begin on the ranks in turn: one tree, on rank 0 only. */
 static void same_result(int n_tree, int threads, uint64_t shuffle, int pin,
                         double spin)
@@ -62,8 +66,7 @@ static void same_result(int n_tree, int threads, uint64_t shuffle, int pin,
   assert_true(total(f.sum) == sum);
   check_rest(&f);
   check_spans(&f, &s, n);
-  if (vg_comm_size(job) > 1 && spin > 0)
-    assert_true(total((uint64_t)f.n_moved) > 0);
+  n_away += total((uint64_t)f.n_moved);
   vg_spans_release(&s);
 }
 
@@ -78,19 +81,22 @@ static void all_ways(void **state)
     }
   same_result(0, 2, 0, 0, 0);
   same_result(2, 2, 0, 1, 0);          /* all pinned */
+  if (vg_comm_size(job) > 1) assert_true(n_away > 0);
 }
 
 /* Of every task that moves, `done` is called where it ran: what it made is at
  * home there, and its outcome does not travel. One of three, then all. */
 static void homes_move(void **state)
 {
+  uint64_t away = 0, elsewhere = 0;
+
   (void)state;
   for (int move = 3; move > 0; move -= 2)
     for (uint64_t shuffle = 0; shuffle < 2; shuffle++) {
       struct forest f = { .threads = 2, .depth = 4, .move = move, .pin = 5,
                           .spin = 2e-4 };
       struct vg_spans s = VG_SPANS_INIT;
-      uint64_t sum = 0, away = 0, elsewhere = 0;
+      uint64_t sum = 0;
       long n = 0;
 
       forest_expect(&f, "a", &n, &sum);
@@ -106,10 +112,10 @@ static void homes_move(void **state)
         away += s.span[i].rank != s.span[i].home;
         elsewhere += s.span[i].home != 0;
       }
-      if (vg_comm_size(job) > 1) assert_true(total(away) > 0);
-      if (vg_comm_size(job) > 1) assert_true(total(elsewhere) > 0);
       vg_spans_release(&s);
     }
+  if (vg_comm_size(job) > 1) assert_true(total(away) > 0);
+  if (vg_comm_size(job) > 1) assert_true(total(elsewhere) > 0);
 }
 
 /* Moved tasks that fail, or are stopped, leave nothing on any rank. */
