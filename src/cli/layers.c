@@ -653,19 +653,6 @@ done:
   return st;
 }
 
-vg_status vg_layer_stage_join(struct vg_layer_stage *s,
-                              const struct vg_mesh *surface,
-                              const struct vg_mesh *field, int cells,
-                              struct vg_mesh *out, struct vg_error *err)
-{
-  vg_status st = vg_layers_join(surface, &s->layers, field,
-                                (enum vg_layer_cells)cells,
-                                s->options.threads, out, &s->join, err);
-
-  vg_layers_release(&s->layers);
-  return st;
-}
-
 static vg_status write_walls(const struct vg_layer_stage *s,
                              const struct vg_mesh *surface, size_t n_tri,
                              const uint32_t (*tri)[3], const int32_t *patch,

@@ -72,13 +72,6 @@ vg_status vg_layer_stage_grow(struct vg_layer_stage *s,
                               const struct vg_sizing *sizing,
                               struct vg_display *show, struct vg_error *err);
 
-/** Layers and field in one mesh; the columns and the front are given up.
- * @param out  empty */
-vg_status vg_layer_stage_join(struct vg_layer_stage *s,
-                              const struct vg_mesh *surface,
-                              const struct vg_mesh *field, int cells,
-                              struct vg_mesh *out, struct vg_error *err);
-
 /** Triangles of the walls with, per point, levels, heights and causes. */
 vg_status vg_layer_stage_write(const struct vg_layer_stage *s,
                                const struct vg_mesh *surface,

@@ -259,19 +259,6 @@ static const double *sides_of(const struct vg_ruler *ruler, uint32_t p)
   return ruler->side + p * (size_t)ruler->n_side;
 }
 
-int vg_ruler_near(const struct vg_ruler *ruler, uint32_t p, double band)
-{
-  const struct vg_region *r = ruler->region;
-  const double *s = sides_of(ruler, p);
-  double most = fmax(0, (r->reach + band) * ruler->spacing[p]);
-
-  for (int i = 0; i < r->n_plane; i++)
-    if (fabs(s[i]) > most) return 0;
-  for (int i = r->n_plane; i < ruler->n_side; i++)
-    if (-s[i] > most) return 0;
-  return 1;
-}
-
 /* As gap(), for three corners of a ruler. */
 static double gap_of(const struct vg_ruler *ruler, const uint32_t v[3])
 {

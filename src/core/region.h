@@ -85,8 +85,7 @@ vg_status vg_ruler_init(struct vg_ruler *ruler, const struct vg_region *region,
                         const double (*x)[3], struct vg_error *err);
 void vg_ruler_release(struct vg_ruler *ruler);
 
-/** vg_region_near and vg_region_meets of points by their numbers. */
-int vg_ruler_near(const struct vg_ruler *ruler, uint32_t p, double band);
+/** vg_region_meets of points by their numbers. */
 int vg_ruler_meets(const struct vg_ruler *ruler, const uint32_t v[3],
                    double band);
 
