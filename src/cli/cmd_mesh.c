@@ -60,7 +60,7 @@ static error_t limit(const char *text, uint64_t *to,
 {
   int64_t v;
 
-  if (vg_parse_int(text, strlen(text), &v) < 0 || v < 0)
+  if (!vg_parse_int(text, strlen(text), &v) || v < 0)
     argp_error(state, "'%s' is no number from 0 up", text);
   *to = (uint64_t)v;
   return 0;
