@@ -14,6 +14,7 @@ static const double cells_per_point = 5.5;
  * serials. */
 struct made {
   struct vg_change change;   /* ZONE */
+  struct vg_fill_report report;  /* without times where it was kept */
   size_t n_in, n_point, n_cell;
   uint32_t *in;              /* [n_in] points of the front that cells use */
   double (*x)[3];            /* [n_point] new ones */
@@ -29,6 +30,32 @@ static void made_release(struct made *m)
   memset(m, 0, sizeof *m);
 }
 
+/* So that a resumed run reports what was done of the whole mesh. */
+enum { N_REPORT = 13 };
+
+static void report_put(struct vg_writer *w, const struct vg_fill_report *r)
+{
+  const uint64_t v[N_REPORT] = {
+    r->n_surface_face_lost, r->n_pocket, r->n_pocket_cell, r->n_retry,
+    (uint64_t)r->whole_void, r->n_steiner, r->n_placed, r->n_inserted,
+    r->n_refused, r->n_smoothed, r->n_flip, r->n_collapse, r->n_split };
+
+  vg_put(w, N_REPORT, sizeof *v, v);
+}
+
+static void report_get(struct vg_reader *in, struct vg_fill_report *r)
+{
+  uint64_t v[N_REPORT] = {0};
+
+  vg_get(in, N_REPORT, sizeof *v, v);
+  *r = (struct vg_fill_report){
+    .n_surface_face_lost = v[0], .n_pocket = v[1], .n_pocket_cell = v[2],
+    .n_retry = v[3], .whole_void = (int)v[4], .n_steiner = v[5],
+    .n_placed = v[6], .n_inserted = v[7], .n_refused = v[8],
+    .n_smoothed = v[9], .n_flip = v[10], .n_collapse = v[11],
+    .n_split = v[12] };
+}
+
 static void made_put(struct vg_writer *w, const struct made *m)
 {
   uint64_t count[3] = {m->n_in, m->n_point, m->n_cell};
@@ -38,6 +65,7 @@ static void made_put(struct vg_writer *w, const struct made *m)
   vg_put(w, m->n_in, sizeof *m->in, m->in);
   vg_put(w, m->n_point, sizeof *m->x, m->x);
   vg_put(w, m->n_cell, sizeof *m->cell, m->cell);
+  report_put(w, &m->report);
 }
 
 static void made_get(struct vg_reader *r, struct made *m)
@@ -52,6 +80,7 @@ static void made_get(struct vg_reader *r, struct made *m)
   m->in = vg_get_array(r, m->n_in, sizeof *m->in);
   m->x = vg_get_array(r, m->n_point, sizeof *m->x);
   m->cell = vg_get_array(r, m->n_cell, sizeof *m->cell);
+  report_get(r, &m->report);
   if (r->bad) made_release(m);
 }
 
@@ -245,7 +274,6 @@ static vg_status grow_zone(struct vg_partition *p, const struct vg_work *w,
 {
   const struct vg_front *f = &w->part;
   struct vg_grow_options o = VG_GROW_OPTIONS_INIT;
-  struct vg_fill_report r = {0};
   struct vg_zone z = VG_ZONE_INIT;
   vg_status st;
 
@@ -254,8 +282,7 @@ static vg_status grow_zone(struct vg_partition *p, const struct vg_work *w,
   o.user = (void *)(uintptr_t)e;
   st = vg_zone_grow(f->n_point, (const double (*)[3])f->x, f->n_face,
                     (const uint32_t (*)[3])f->face, &w->region, p->sizing,
-                    &o, &z, &r, err);
-  add_report(p, &r);
+                    &o, &z, &m->report, err);
   if (st == VG_BLOCKED && !vg_engine_stopping(e)) {
     m->change.n_part = f->n_point;
     m->change.blocked = 1;
@@ -280,6 +307,7 @@ vg_status vg_work_zone(struct vg_partition *p, const struct vg_work *w,
     st = grow_zone(p, w, &m, e, err);
     if (st == VG_OK) keep(p, key, &m);
   }
+  add_report(p, &m.report);
   if (st == VG_OK)
     st = to_piece(p, &m, &w->part, w->serial, w->path, w->kind, err);
   if (st == VG_OK) {
@@ -307,7 +335,6 @@ static vg_status grow_leaf(struct vg_partition *p, const struct vg_node *n,
 {
   const struct vg_front *f = &n->front;
   struct vg_grow_options o = VG_GROW_OPTIONS_INIT;
-  struct vg_fill_report r = {0};
   struct vg_void v = VG_VOID_INIT;
   vg_status st;
 
@@ -324,8 +351,7 @@ static vg_status grow_leaf(struct vg_partition *p, const struct vg_node *n,
   memcpy(v.face, f->face, f->n_face * sizeof *v.face);
   v.n_point = f->n_point;
   v.n_face = f->n_face;
-  st = vg_grow(&v, p->sizing, &o, &r, err);
-  add_report(p, &r);
+  st = vg_grow(&v, p->sizing, &o, &m->report, err);
   *outgrown = limit && st == VG_ERR_UNSUPPORTED;
   if (st == VG_OK) {
     m->n_point = v.n_point - f->n_point;
@@ -356,9 +382,10 @@ vg_status vg_work_leaf(struct vg_partition *p, const struct vg_work *w,
   if (p->options.store) key = key_of(p, &n->front, NULL, limit);
   if (!find(p, key, &m, err)) {
     st = grow_leaf(p, n, limit, &m, outgrown, e, err);
-    if (*outgrown) return VG_OK;
     if (st == VG_OK) keep(p, key, &m);
   }
+  add_report(p, &m.report);
+  if (*outgrown) return VG_OK;
   *n_cell = m.n_cell;
   snprintf(path, sizeof path, "%.*sL", VG_PATH_MAX - 2, n->path);
   if (st == VG_OK)
