@@ -3,9 +3,9 @@
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
+#include "base/clock.h"
 #include "cli/cli.h"
 
 #define LIVE_EVERY_S 0.2
@@ -26,10 +26,7 @@ int vg_display_interrupted(void)
 
 double vg_display_now(void)
 {
-  struct timespec t;
-
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+  return vg_clock();
 }
 
 void vg_display_init(struct vg_display *d, int quiet)
@@ -41,11 +38,12 @@ void vg_display_init(struct vg_display *d, int quiet)
   d->live = !quiet && isatty(STDERR_FILENO);
   memset(&action, 0, sizeof action);
   action.sa_handler = on_signal;
-  action.sa_flags = (int)SA_RESETHAND | SA_RESTART;
   sigemptyset(&action.sa_mask);
+  action.sa_flags = SA_RESTART;
+  sigaction(SIGUSR1, &action, NULL);
+  action.sa_flags |= (int)SA_RESETHAND;
   sigaction(SIGINT, &action, NULL);
   sigaction(SIGTERM, &action, NULL);
-  sigaction(SIGUSR1, &action, NULL);  /* a batch system's warning */
 }
 
 void vg_display_clear(struct vg_display *d)

@@ -1,0 +1,17 @@
+/* base/clock.h: seconds, for reports and displays; nothing that is made may
+ * follow from them. */
+#ifndef VG_BASE_CLOCK_H
+#define VG_BASE_CLOCK_H
+
+#include <time.h>
+
+/** Seconds of a clock that only goes forward, from any start. */
+static inline double vg_clock(void)
+{
+  struct timespec t;
+
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+#endif
