@@ -50,6 +50,23 @@ int vg_cli_option_key(const char *name);
 vg_status vg_cli_option_set(int key, const char *text, struct vg_settings *s,
                             struct vg_error *err);
 
+/** Settings from the command line: they wait until the deck has been read,
+ * which they win over. */
+struct vg_cli_kept {
+  size_t n, cap;
+  struct { int key; const char *text; } *set;   /* text is argv's */
+};
+
+/** Keep what the option with `key` sets. A value that cannot be is wrong usage,
+ * known before anything is read. For a parser: ARGP_ERR_UNKNOWN when the key
+ * is no setting's. */
+error_t vg_cli_keep(struct vg_cli_kept *kept, int key, const char *text,
+                    const struct argp_state *state);
+
+/** Set all of them, and check that the settings go together. */
+vg_status vg_cli_apply(const struct vg_cli_kept *kept, struct vg_settings *s,
+                       struct vg_error *err);
+
 /** Make a folder and those above it; one that exists is fine. */
 vg_status vg_cli_make_folder(const char *path, struct vg_error *err);
 

@@ -4,7 +4,6 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "base/memory.h"
 #include "cli/cli.h"
 #include "cli/layers.h"
 #include "cli/output.h"
@@ -17,9 +16,7 @@ struct arguments {
   const char *project, *deck, *dir;
   int json, quiet, timeline;
   struct vg_run_options run;
-  /* Settings wait until the deck has been read, which they win over. */
-  size_t n_set, cap_set;
-  struct { int key; const char *text; } *set;
+  struct vg_cli_kept kept;
 };
 
 struct run {
@@ -30,26 +27,6 @@ struct run {
   struct vg_run mesh;
   double start, time_read, time_check, time_write, time_digest;
 };
-
-/* A value that cannot be is wrong usage, known before anything is read. */
-static error_t keep_setting(struct arguments *a, int key, const char *text,
-                            const struct argp_state *state)
-{
-  struct vg_settings scratch;
-  struct vg_error err = VG_ERROR_INIT;
-  vg_status st;
-
-  vg_settings_default(&scratch);
-  st = vg_cli_option_set(key, text, &scratch, &err);
-  vg_settings_release(&scratch);
-  if (st == VG_BLOCKED) return ARGP_ERR_UNKNOWN;
-  if (st < 0) argp_error(state, "%s", err.text);
-  if (vg_reserve(&a->set, &a->cap_set, a->n_set + 1, sizeof *a->set))
-    return ENOMEM;
-  a->set[a->n_set].key = key;
-  a->set[a->n_set++].text = text;
-  return 0;
-}
 
 /* Options that are no settings: they do not change the mesh. */
 enum { KEY_TIMELINE = 1, KEY_RUN_DIR, KEY_RESUME, KEY_KEEP, KEY_LIMIT,
@@ -82,8 +59,8 @@ static error_t option(int key, char *arg, struct argp_state *state)
   case KEY_KEEP: a->run.keep = 1; return 0;
   case KEY_LIMIT: return limit(arg, &a->run.limit, state);
   case KEY_SHUFFLE: return limit(arg, &a->run.shuffle, state);
-  case 'L': return keep_setting(a, vg_cli_option_key("levels"), arg, state);
-  case 't': return keep_setting(a, vg_cli_option_key("threads"), arg, state);
+  case 'L': key = vg_cli_option_key("levels"); break;
+  case 't': key = vg_cli_option_key("threads"); break;
   case ARGP_KEY_ARG:
     if (a->project) argp_error(state, "one project at a time: %s", arg);
     a->project = arg;
@@ -97,18 +74,7 @@ static error_t option(int key, char *arg, struct argp_state *state)
   default:
     break;
   }
-  if (key < VG_KEY_SETTING) return ARGP_ERR_UNKNOWN;
-  return keep_setting(a, key, arg, state);
-}
-
-static vg_status apply_options(const struct arguments *a,
-                               struct vg_settings *s, struct vg_error *err)
-{
-  vg_status st = VG_OK;
-
-  for (size_t i = 0; i < a->n_set && st >= 0; i++)
-    st = vg_cli_option_set(a->set[i].key, a->set[i].text, s, err);
-  return st < 0 ? st : vg_settings_check(s, err);
+  return vg_cli_keep(&a->kept, key, arg, state);
 }
 
 /* Stages up to a closed surface. */
@@ -122,7 +88,7 @@ static vg_status read_project(struct run *r, const struct arguments *a,
   vg_display_update(&r->show, "read", 0, 0);
   VG_TRY(vg_input_find(a->project, a->deck, &p->files, err));
   VG_TRY(vg_problem_deck(p, err));
-  VG_TRY(apply_options(a, &p->settings, err));
+  VG_TRY(vg_cli_apply(&a->kept, &p->settings, err));
   p->threads = p->settings.threads ? (int)p->settings.threads
                                    : vg_comm_default_threads(r->mesh.comm);
   vg_settings_write(&p->settings);
@@ -526,7 +492,7 @@ int vg_cmd_mesh(int argc, char **argv)
   argp.options = options.option;
   vg_cli_parse(&argp, argc, argv, &a);
   status = run(&a);
-  free(a.set);
+  free(a.kept.set);
   vg_cli_options_free(&options);
   return status;
 }

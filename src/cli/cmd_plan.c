@@ -1,10 +1,8 @@
 /* vanguard plan: what a run would take on other machines. */
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "cli/cli.h"
 #include "cli/plan.h"
 #include "io/stream.h"
@@ -31,26 +29,6 @@ static void range(const char *name, const char *text, struct vg_range_list *out,
     argp_error(state, "%s", err.text);
 }
 
-/* A value that cannot be is wrong usage, known before anything is read. */
-static error_t keep_setting(struct vg_plan_options *o, int key,
-                            const char *text, const struct argp_state *state)
-{
-  struct vg_settings scratch;
-  struct vg_error err = VG_ERROR_INIT;
-  vg_status st;
-
-  vg_settings_default(&scratch);
-  st = vg_cli_option_set(key, text, &scratch, &err);
-  vg_settings_release(&scratch);
-  if (st == VG_BLOCKED) return ARGP_ERR_UNKNOWN;
-  if (st < 0) argp_error(state, "%s", err.text);
-  if (vg_reserve(&o->set, &o->cap_set, o->n_set + 1, sizeof *o->set))
-    return ENOMEM;
-  o->set[o->n_set].key = key;
-  o->set[o->n_set++].text = text;
-  return 0;
-}
-
 static int whole(const char *name, const char *text, int64_t lo, int64_t hi,
                  const struct argp_state *state)
 {
@@ -70,7 +48,7 @@ static void check_end(const struct vg_plan_options *o,
                "FILE.timeline.json");
   if (o->replay && o->project)
     argp_error(state, "either a project or a --replay, not both");
-  if (o->replay && (o->n_set || o->deck || o->target > 0))
+  if (o->replay && (o->kept.n || o->deck || o->target > 0))
     argp_error(state, "a --replay takes no settings, deck or target: the "
                "tasks are those of the record");
 }
@@ -103,7 +81,7 @@ static error_t option(int key, char *arg, struct argp_state *state)
   case KEY_RATE: number("rate", arg, 1e-6, &o->machine.rate, state); return 0;
   case KEY_SERIAL: number("serial", arg, 0, &o->serial, state); return 0;
   case KEY_ROAM: o->machine.joins_roam = 1; return 0;
-  case 'L': return keep_setting(o, vg_cli_option_key("levels"), arg, state);
+  case 'L': key = vg_cli_option_key("levels"); break;
   case ARGP_KEY_ARG:
     if (o->project) argp_error(state, "one project at a time: %s", arg);
     o->project = arg;
@@ -111,8 +89,7 @@ static error_t option(int key, char *arg, struct argp_state *state)
   case ARGP_KEY_END: check_end(o, state); return 0;
   default: break;
   }
-  if (key < VG_KEY_SETTING) return ARGP_ERR_UNKNOWN;
-  return keep_setting(o, key, arg, state);
+  return vg_cli_keep(&o->kept, key, arg, state);
 }
 
 int vg_cmd_plan(int argc, char **argv)
@@ -182,7 +159,7 @@ int vg_cmd_plan(int argc, char **argv)
   vg_cli_parse(&argp, argc, argv, &o);
   status = o.replay ? vg_plan_replay(&o) : vg_plan_estimate(&o);
   vg_cli_options_free(&options);
-  free(o.set);
+  free(o.kept.set);
   vg_range_release(&o.ranks);
   vg_range_release(&o.threads);
   return status;

@@ -1,4 +1,4 @@
-/* Command-line options made from the table of settings. and small
+/* Command-line options made from the table of settings, and small
  * things that subcommands share. Declared in cli/cli.h. */
 #define _GNU_SOURCE
 #include <errno.h>
@@ -177,4 +177,33 @@ vg_status vg_cli_option_set(int key, const char *text, struct vg_settings *s,
   }
   return vg_param_set(farfield_column(i - n), &s->farfield, text,
                       strlen(text), err);
+}
+
+error_t vg_cli_keep(struct vg_cli_kept *kept, int key, const char *text,
+                    const struct argp_state *state)
+{
+  struct vg_settings scratch;
+  struct vg_error err = VG_ERROR_INIT;
+  vg_status st;
+
+  vg_settings_default(&scratch);
+  st = vg_cli_option_set(key, text, &scratch, &err);
+  vg_settings_release(&scratch);
+  if (st == VG_BLOCKED) return ARGP_ERR_UNKNOWN;
+  if (st < 0) argp_error(state, "%s", err.text);
+  if (vg_reserve(&kept->set, &kept->cap, kept->n + 1, sizeof *kept->set))
+    return ENOMEM;
+  kept->set[kept->n].key = key;
+  kept->set[kept->n++].text = text;
+  return 0;
+}
+
+vg_status vg_cli_apply(const struct vg_cli_kept *kept, struct vg_settings *s,
+                       struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  for (size_t i = 0; i < kept->n && st >= 0; i++)
+    st = vg_cli_option_set(kept->set[i].key, kept->set[i].text, s, err);
+  return st < 0 ? st : vg_settings_check(s, err);
 }

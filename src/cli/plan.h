@@ -1,17 +1,16 @@
-/* cli/plan.h: what vanguard plan computes. Uses cli/ranges.h,
- * partition/model.h. */
+/* cli/plan.h: what vanguard plan computes. Uses cli/cli.h,
+ * cli/ranges.h, partition/model.h. */
 #ifndef VG_CLI_PLAN_H
 #define VG_CLI_PLAN_H
 
+#include "cli/cli.h"
 #include "cli/ranges.h"
 #include "partition/model.h"
 
 struct vg_plan_options {
   const char *replay;           /* a .timeline.json, or NULL */
   const char *project, *deck;   /* without a replay */
-  /* Settings wait until the deck has been read, which they win over. */
-  size_t n_set, cap_set;
-  struct { int key; const char *text; } *set;
+  struct vg_cli_kept kept;
   double target;                /* s; 0: none */
   int depth;                    /* of the tree as text */
   struct vg_range_list ranks, threads;

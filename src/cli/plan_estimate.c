@@ -178,10 +178,7 @@ static vg_status read_project(struct vg_plan *p, struct vg_error *err)
   vg_display_update(&p->show, "read", 0, 0);
   VG_TRY(vg_input_find(o->project, o->deck, &q->files, err));
   VG_TRY(vg_problem_deck(q, err));
-  for (size_t i = 0; i < o->n_set; i++)
-    VG_TRY(vg_cli_option_set(o->set[i].key, o->set[i].text, &q->settings,
-                             err));
-  VG_TRY(vg_settings_check(&q->settings, err));
+  VG_TRY(vg_cli_apply(&o->kept, &q->settings, err));
   vg_settings_write(&q->settings);
   VG_TRY(vg_problem_surface(q, err));
   VG_TRY(vg_problem_close(q, &p->show, err));
