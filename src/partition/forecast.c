@@ -48,7 +48,6 @@ struct front { size_t n, cap; struct bit *bit; };
 /* A void on its way down the tree. */
 struct part {
   struct vg_load load;
-  size_t cap_cube;
   struct front front;
   double lo[3], hi[3];
   char path[VG_PATH_MAX];
@@ -352,42 +351,17 @@ static struct part *block_at(struct blocks *b, const int at[3])
                   (at[1] + (b->l->n[1] + 1) * at[2])];
 }
 
-/* A cube that planes pass is shared out: each share lies in the middle of its
- * piece. */
-static vg_status share_cube(struct blocks *b, const struct vg_load_cube *c,
-                            int axis, int at[3], struct vg_error *err)
+static vg_status share_load(struct blocks *b, const struct vg_load *load,
+                            struct vg_error *err)
 {
-  double half, lo, hi;
-  int k, last;
-  vg_status st = VG_OK;
+  const double *const at[3] = { b->l->at[0], b->l->at[1], b->l->at[2] };
+  struct vg_load *out = vg_calloc(b->n, sizeof *out);
+  vg_status st = out ? VG_OK : vg_fail_memory(err, "a forecast");
 
-  if (axis == 3) {
-    struct part *p = block_at(b, at);
-
-    if (vg_reserve(&p->load.cube, &p->cap_cube, p->load.n + 1,
-                   sizeof *p->load.cube))
-      return vg_fail_memory(err, "a forecast");
-    p->load.cube[p->load.n++] = *c;
-    p->load.cells += (double)c->cells;
-    return VG_OK;
-  }
-  half = (double)c->half;
-  lo = (double)c->at[axis] - half;
-  hi = (double)c->at[axis] + half;
-  last = side_of(b->l, axis, hi);
-  for (k = side_of(b->l, axis, lo); st >= 0 && k <= last; k++) {
-    double from = k > 0 ? fmax(lo, b->l->at[axis][k - 1]) : lo;
-    double to = k < b->l->n[axis] ? fmin(hi, b->l->at[axis][k]) : hi;
-    struct vg_load_cube piece = *c;
-    double share = (to - from) / (2 * half);
-
-    if (!(share > 0)) continue;
-    piece.at[axis] = (float)(0.5 * (from + to));
-    piece.part = (float)(share * (double)c->part);
-    piece.cells = (float)(share * (double)c->cells);
-    at[axis] = k;
-    st = share_cube(b, &piece, axis + 1, at, err);
-  }
+  if (st >= 0)
+    st = vg_load_split_blocks(load, b->l->n, at, 0, 1, 1, out, err);
+  for (size_t i = 0; st >= 0 && i < b->n; i++) b->part[i].load = out[i];
+  free(out);
   return st;
 }
 
@@ -428,7 +402,7 @@ static void blocks_release(struct blocks *b)
 static vg_status open_blocks(struct blocks *b, const struct vg_lattice *l,
                              struct part *p, struct vg_error *err)
 {
-  vg_status st = VG_OK;
+  vg_status st;
 
   b->l = l;
   b->n = (size_t)((l->n[0] + 1) * (l->n[1] + 1) * (l->n[2] + 1));
@@ -437,11 +411,7 @@ static vg_status open_blocks(struct blocks *b, const struct vg_lattice *l,
     b->n = 0;
     return vg_fail_memory(err, "a forecast");
   }
-  for (size_t i = 0; st >= 0 && i < p->load.n; i++) {
-    int at[3] = {0, 0, 0};
-
-    st = share_cube(b, &p->load.cube[i], 0, at, err);
-  }
+  st = share_load(b, &p->load, err);
   if (st >= 0) st = share_front(b, &p->front, err);
   for (size_t i = 0; i < b->n; i++) set_box(b, p, i);
   return st;
@@ -639,6 +609,7 @@ static vg_status add_load(const struct vg_load *load, struct part *p,
                           struct vg_error *err)
 {
   p->load = *load;
+  p->load.index = NULL;
   p->load.cube = vg_alloc(load->n, sizeof *p->load.cube);
   if (!p->load.cube) {
     p->load.n = 0;
@@ -657,7 +628,7 @@ static vg_status add_load(const struct vg_load *load, struct part *p,
       p->lo[k] = fmin(p->lo[k], x - half);
       p->hi[k] = fmax(p->hi[k], x + half);
     }
-  return VG_OK;
+  return vg_load_index(&p->load, 1, err);
 }
 
 vg_status vg_outlook_new(const struct vg_void *v, const struct vg_load *load,

@@ -14,9 +14,11 @@
 /* Widest cube in target edges, free and where the front passes. */
 #define WIDE_FREE 3.0
 #define WIDE_FRONT 2.0
-/* They may be wider to have about this many cubes, for large meshes. Nodes this
- * wide tell how large a mesh is; a leaf fills its width's cube on average. */
-#define MANY_CUBES 250000.0
+/* In large meshes they are wider, to have about this many cubes, or one for so
+ * many cubes of the target edge. Nodes this wide tell how large a mesh is; a
+ * leaf fills its width's cube on average. */
+#define MANY_CUBES 40000.0
+#define EDGES_MOST 280.0
 #define WIDE_ROUGH 12.0
 #define FILLED 0.35
 /* With fewer cubes than this, narrower ones are tried, down to LEAST edges. */
@@ -29,12 +31,6 @@
 #define GRADIENT 0.05
 /* Places of the root cube that are tried when volumes do not agree. */
 #define PLACES 3
-
-void vg_load_release(struct vg_load *l)
-{
-  free(l->cube);
-  memset(l, 0, sizeof *l);
-}
 
 /* --- cubes of a branch --------------------------------------------------- */
 
@@ -272,7 +268,8 @@ static int widen(struct maker *m, int threads)
   vg_parallel_for(threads, m->n_branch, 1, rough_part, &job);
   for (size_t i = 0; i < m->n_branch; i++) sum += job.sum[i];
   free(job.sum);
-  wide = cube_root(sum / (FILLED * MANY_CUBES)) / WIDE_FREE;
+  sum = fmin(sum / MANY_CUBES, EDGES_MOST);
+  wide = cube_root(sum / FILLED) / WIDE_FREE;
   m->wide = wide > 1 ? wide : 1;
   return 0;
 }
@@ -433,6 +430,8 @@ vg_status vg_load_new(const struct vg_void *v, const struct vg_sizing *sizing,
     return st;
   }
   vg_load_fit(&l, volume);
-  *out = l;
-  return VG_OK;
+  st = vg_load_index(&l, threads, err);
+  if (st < 0) vg_load_release(&l);
+  else *out = l;
+  return st;
 }

@@ -26,13 +26,18 @@ struct vg_load_cube {
   float cells;               /* expected in that part */
 };
 
+struct vg_load_index;
+
 struct vg_load {
   size_t n;
   struct vg_load_cube *cube; /* [n] in the order of an octree: fixed */
   double cells;              /* sum */
   double lo[3], unit;        /* of the octree: corner, side / 2^31 */
+  int is_block;              /* 1: cubes count from .. to only: the void lies */
+  double from[3], to[3];     /* between planes that pass cubes */
+  struct vg_load_index *index;
 };
-#define VG_LOAD_INIT { 0, NULL, 0, { 0, 0, 0 }, 0 }
+#define VG_LOAD_INIT { .n = 0 }
 
 void vg_load_release(struct vg_load *l);
 
@@ -43,9 +48,9 @@ void vg_load_release(struct vg_load *l);
  * @param cells_per_cube  VG_LOAD_CELLS_PER_CUBE; where h varies in space the
  *            cells are up to 1.21 times as many, as measured
  * Octree over the void's box: split while wider than 3 h, or than 2 h where
- * the front passes (the part inside is then sampled); up to twice as wide in
- * meshes of 100 M cells, to have about 300,000 cubes at most, and as narrow
- * as 1 h in voids with fewer than 64. Cubes outside are dropped.
+ * the front passes (the part inside is then sampled); wider in meshes of more
+ * than 10 M cells, to have about 40,000 cubes or one for 2,500 cells, and as
+ * narrow as 1 h in voids with fewer than 64. Cubes outside are dropped.
  * Cost: O(front + cubes) times a logarithm. Result follows from the arguments
  * alone, bit by bit. VG_ERR_MEMORY. */
 vg_status vg_load_new(const struct vg_void *v, const struct vg_sizing *sizing,
@@ -66,12 +71,40 @@ vg_status vg_load_split(const struct vg_load *parent, size_t n,
                         const struct vg_void *child, double correction,
                         struct vg_load *out, struct vg_error *err);
 
+/** What lies in each block of a lattice of planes.
+ *
+ * n: planes across each axis; at: their places, rising; out: [blocks] loads,
+ * x first: block i + (n[0] + 1) (j + (n[1] + 1) k) is behind i planes across
+ * x. A cube that planes pass goes to several blocks, by volume; what lies
+ * within `reach` target edges of a plane goes to none (zones).
+ * O(cubes + blocks). */
+vg_status vg_load_split_blocks(const struct vg_load *parent, const int n[3],
+                               const double *const at[3], double reach,
+                               double correction, int threads,
+                               struct vg_load *out, struct vg_error *err);
+
+/** As vg_load_split, for children that a lattice of planes has parted: one
+ * that is alone in its block gets what lies there, fitted to its volume; only
+ * for others fronts are looked at in detail. planes: n and at as above.
+ * O(cubes + faces of the fronts). */
+vg_status vg_load_split_lattice(const struct vg_load *parent, const int n[3],
+                                const double *const at[3], size_t n_child,
+                                const struct vg_void *child,
+                                double correction, int threads,
+                                struct vg_load *out, struct vg_error *err);
+
+/** Make the index for the questions below anew, after cubes were changed by
+ * hand; all loads from here have one. O(cubes). VG_ERR_MEMORY. */
+vg_status vg_load_index(struct vg_load *l, int threads, struct vg_error *err);
+
+/* Questions: O(log cubes) each. */
+
 /** Position along `axis` below which lies the share `part` of the cells;
  * cubes count as evenly filled. */
 double vg_load_quantile(const struct vg_load *l, int axis, double part);
 
 /** Cells expected within `width` target edges on each side of the plane
- * x[axis] = at: what a zone costs. */
+ * x[axis] = at: what a zone costs. As dense as on the plane. */
 double vg_load_zone(const struct vg_load *l, int axis, double at,
                     double width);
 

@@ -236,6 +236,7 @@ static int lone_cube(const struct split *s, const struct vg_void *v,
   out->cube = c;
   out->n = 1;
   out->cells = (double)c->cells;
+  out->is_block = 0;
   return 0;
 }
 
@@ -260,8 +261,7 @@ static int deal(const struct split *s, const struct vg_void *child,
     l->cube = l->n ? vg_alloc(l->n, sizeof *l->cube) : NULL;
     if (l->n && !l->cube) return -1;
     l->n = 0;
-    memcpy(l->lo, s->parent->lo, sizeof l->lo);
-    l->unit = s->parent->unit;
+    vg_load_copy_frame(s->parent, l);
   }
   for (size_t i = 0; i < s->n_share; i++) {
     struct vg_load *l = &made[s->share[i].child];
@@ -273,6 +273,7 @@ static int deal(const struct split *s, const struct vg_void *child,
 
     if (made[c].n) vg_load_fit(&made[c], volume);
     else if (lone_cube(s, &child[c], volume, correction, &made[c])) return -1;
+    if (vg_load_index(&made[c], 1, NULL) < 0) return -1;
   }
   return 0;
 }

@@ -320,6 +320,15 @@ static double cube_volume(const struct vg_load_cube *c)
   return 8 * (double)c->half * (double)c->half * (double)c->half;
 }
 
+void vg_load_copy_frame(const struct vg_load *from, struct vg_load *to)
+{
+  memcpy(to->lo, from->lo, sizeof to->lo);
+  to->unit = from->unit;
+  to->is_block = from->is_block;
+  memcpy(to->from, from->from, sizeof to->from);
+  memcpy(to->to, from->to, sizeof to->to);
+}
+
 double vg_load_parts(const struct vg_load *l)
 {
   double sum = 0;

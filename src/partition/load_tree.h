@@ -77,6 +77,9 @@ void vg_load_sample(const struct vg_load_tree *t,
                     const struct vg_load_node *node,
                     int32_t owner[VG_LOAD_SAMPLES]);
 
+/** All but the cubes. */
+void vg_load_copy_frame(const struct vg_load *from, struct vg_load *to);
+
 /** Volume of all parts. */
 double vg_load_parts(const struct vg_load *l);
 

@@ -378,7 +378,14 @@ static void two_cubes(struct vg_load *l)
     { { 1, 5, 0 }, 1, 0.5f, 1, 300 }, { { 4, 5, 0 }, 2, 1, 1, 100 }
   };
 
-  *l = (struct vg_load){ 2, cube, 400, { 0, 0, 0 }, 1 };
+  *l = (struct vg_load){ .n = 2, .cube = cube, .cells = 400, .unit = 1 };
+  assert_int_equal(vg_load_index(l, 1, NULL), VG_OK);
+}
+
+static void release_index(struct vg_load *l)
+{
+  l->cube = NULL;
+  vg_load_release(l);
 }
 
 static void answers_on_two_cubes(void **state)
@@ -398,6 +405,167 @@ static void answers_on_two_cubes(void **state)
   assert_true(vg_load_coarsest(&l, 0, 1) == 0.5);
   assert_true(vg_load_coarsest(&l, 0, 2) == 1);
   assert_true(vg_load_coarsest(&l, 0, 7) == 0);
+  release_index(&l);
+}
+
+/* The same questions, asked of all cubes one after another. */
+static double cells_below(const struct vg_load *l, int axis, double x)
+{
+  double sum = 0;
+
+  for (size_t i = 0; i < l->n; i++) {
+    const double half = (double)l->cube[i].half;
+    const double s = (x - (double)l->cube[i].at[axis]) / half;
+
+    sum += (double)l->cube[i].cells * (s < -1 ? 0 : s > 1 ? 1
+                                                         : 0.5 * (1 + s));
+  }
+  return sum;
+}
+
+static double cells_near(const struct vg_load *l, int axis, double x,
+                         double width)
+{
+  double sum = 0;
+
+  for (size_t i = 0; i < l->n; i++) {
+    const struct vg_load_cube *c = &l->cube[i];
+
+    if (fabs((double)c->at[axis] - x) < (double)c->half)
+      sum += (double)c->cells * width * (double)c->h / (double)c->half;
+  }
+  return sum;
+}
+
+/* Spacing varies by a factor of tens here. Bins are as wide as the cubes of a
+ * sample, about a tenth of what lies around the sphere. */
+static void bins_answer_as_cubes_do(void **state)
+{
+  struct vg_load l;
+  struct scene s;
+
+  (void)state;
+  make_demo(&s, "sphere", 400000);
+  estimate(&s, 1, &l);
+  for (int axis = 0; axis < 3; axis++)
+    for (int i = 1; i < 32; i++) {
+      const double x = vg_load_quantile(&l, axis, i / 32.);
+      const double all = cells_near(&l, axis, x, 1);
+
+      assert_true(fabs(cells_below(&l, axis, x) / l.cells - i / 32.) < 2e-3);
+      assert_true(fabs(vg_load_zone(&l, axis, x, 1) / all - 1) < 0.15);
+      for (size_t k = 0; k < l.n; k++)
+        if (fabs((double)l.cube[k].at[axis] - x)
+            < 0.97 * (double)l.cube[k].half)
+          assert_true((double)l.cube[k].h
+                      <= vg_load_coarsest(&l, axis, x));
+    }
+  vg_load_release(&l);
+  release_scene(&s);
+}
+
+/* --- blocks -------------------------------------------------------------- */
+
+static const int planes[3] = { 2, 1, 1 };
+static const double across[3][2] = { { 0.93, 1.71 }, { 0.47 }, { 0.61 } };
+static const double *const places[3] = { across[0], across[1], across[2] };
+
+static void blocks_share_a_load(void **state)
+{
+  struct vg_load l, part[12], again[12];
+  struct scene s;
+  double cells = 0, expected;
+
+  (void)state;
+  make_bar(&s);
+  estimate(&s, 1, &l);
+  assert_int_equal(vg_load_split_blocks(&l, planes, places, 0, 1.5, 1, part,
+                                        NULL), VG_OK);
+  assert_int_equal(vg_load_split_blocks(&l, planes, places, 0, 1.5, 3, again,
+                                        NULL), VG_OK);
+  for (int b = 0; b < 12; b++) {
+    const double wide[3] = { 0.93, 0.78, 1.29 };
+    const double y = b / 3 % 2 ? 0.53 : 0.47, z = b / 6 ? 0.39 : 0.61;
+
+    expected = 1.5 * l.cells * wide[b % 3] / 3 * y * z;
+    cells += part[b].cells;
+    /* even spacing; cubes along the walls hold what samples found */
+    assert_true(fabs(part[b].cells / expected - 1) < 0.05);
+    assert_int_equal(part[b].n, again[b].n);
+    assert_memory_equal(part[b].cube, again[b].cube,
+                        part[b].n * sizeof *part[b].cube);
+    if (b % 3)               /* nothing is beyond the plane */
+      assert_true(vg_load_quantile(&part[b], 0, 0) >= across[0][b % 3 - 1]);
+    vg_load_release(&part[b]);
+    vg_load_release(&again[b]);
+  }
+  assert_true(fabs(cells / (1.5 * l.cells) - 1) < 1e-3);
+  vg_load_release(&l);
+  release_scene(&s);
+}
+
+/* Block of the bar between planes, kept `gap` away from them. */
+static void make_block(struct vg_void *v, int b, double gap)
+{
+  struct vg_mesh m = VG_MESH_INIT;
+  const int n[3] = { 16, 8, 8 };
+  double lo[3], hi[3];
+  const double end[3] = { 3, 1, 1 };
+
+  for (int k = 0; k < 3; k++) {
+    const int i = b % (planes[k] + 1);
+
+    b /= planes[k] + 1;
+    lo[k] = i > 0 ? across[k][i - 1] + gap : 0;
+    hi[k] = i < planes[k] ? across[k][i] - gap : end[k];
+  }
+  shape_block(&m, n, lo, hi, shape_all);
+  assert_int_equal(vg_void_from_mesh(v, &m, NULL), VG_OK);
+  vg_mesh_release(&m);
+}
+
+/* Twelve blocks, the last two of them one child (a zone was given up) and a
+ * small void beside a large one in the first. */
+static void children_of_a_lattice(void **state)
+{
+  struct vg_load l, part[13];
+  struct vg_void v[13] = { VG_VOID_INIT };
+  struct vg_mesh m = VG_MESH_INIT;
+  const int n[3] = { 16, 8, 8 };
+  const double lo[3] = { 0.96, 0.5, 0.64 }, hi[3] = { 3, 1, 1 };
+  const double near[3] = { 0, 0, 0 }, far[3] = { 0.4, 0.4, 0.5 };
+  const double rest[3] = { 0.45, 0.05, 0.05 }, end[3] = { 0.9, 0.44, 0.5 };
+  struct scene s;
+
+  (void)state;
+  make_bar(&s);
+  estimate(&s, 1, &l);
+  shape_block(&m, n, near, far, shape_all);
+  assert_int_equal(vg_void_from_mesh(&v[0], &m, NULL), VG_OK);
+  vg_mesh_release(&m);
+  for (int b = 1; b < 10; b++) make_block(&v[b], b, 0.03);
+  shape_block(&m, n, lo, hi, shape_all);
+  assert_int_equal(vg_void_from_mesh(&v[10], &m, NULL), VG_OK);
+  vg_mesh_release(&m);
+  shape_block(&m, n, rest, end, shape_all);
+  assert_int_equal(vg_void_from_mesh(&v[11], &m, NULL), VG_OK);
+  vg_mesh_release(&m);
+  make_block(&v[12], 9, 0.03);
+  /* an empty front has an empty load */
+  vg_void_release(&v[12]);
+  assert_int_equal(vg_load_split_lattice(&l, planes, places, 13, v, 1, 2, part,
+                                         NULL), VG_OK);
+  for (int c = 0; c < 12; c++) {
+    const double volume = enclosed(&v[c]);
+
+    assert_true(fabs(fitted(&part[c]) / volume - 1) < 1e-5);
+    assert_true(fabs(part[c].cells / (l.cells * volume / 3) - 1) < 1e-3);
+    vg_load_release(&part[c]);
+    vg_void_release(&v[c]);
+  }
+  assert_int_equal(part[12].n, 0);
+  vg_load_release(&l);
+  release_scene(&s);
 }
 
 static void quantiles_halve_a_mesh(void **state)
@@ -495,6 +663,9 @@ int main(void)
     cmocka_unit_test(tiny_and_empty_children),
     cmocka_unit_test(a_small_void_has_cubes),
     cmocka_unit_test(answers_on_two_cubes),
+    cmocka_unit_test(bins_answer_as_cubes_do),
+    cmocka_unit_test(blocks_share_a_load),
+    cmocka_unit_test(children_of_a_lattice),
     cmocka_unit_test(quantiles_halve_a_mesh),
     cmocka_unit_test(messages_come_back),
     cmocka_unit_test(real_surfaces_keep_their_volume),
