@@ -134,14 +134,18 @@ static vg_status open_store(struct vg_run *r, const struct vg_problem *p,
 {
   struct vg_store_options s = { .dir = r->options.dir,
     .resume = r->options.resume, .limit = r->options.limit };
-  char what[200];
+  char what[200], *settings;
+  vg_status st;
 
   if (!r->options.dir) return VG_OK;
   o->job = s.job = job_digest(p, boundary);
   snprintf(what, sizeof what, "%s (%zu boundary triangles)",
            p->settings.title, boundary->n_tri);
   s.what = what;
-  return vg_store_open(r->comm, &s, &r->store, err);
+  s.settings = settings = vg_run_settings(&p->settings, boundary);
+  st = vg_store_open(r->comm, &s, &r->store, err);
+  free(settings);
+  return st;
 }
 
 static vg_status say_stopped(const struct vg_run *r, struct vg_error *err)

@@ -59,6 +59,11 @@ vg_status vg_run_memory(struct vg_run *r, struct vg_error *err);
 /** Collective. success: what was kept for a resume is removed. */
 void vg_run_release(struct vg_run *r, int success);
 
+/** cli/run_settings.c: lines of name=value for vg_store_options; the caller
+ * frees them. NULL: no memory. */
+char *vg_run_settings(const struct vg_settings *s,
+                      const struct vg_mesh *boundary);
+
 /** cli/report_partition.c: cuts, tasks, balance. */
 void vg_report_partition_text(FILE *to, const struct vg_run *r);
 json_t *vg_report_partition_json(const struct vg_run *r);

@@ -58,19 +58,24 @@ static vg_status enter(struct vg_store *s, int resume, struct vg_error *err)
 }
 
 /* The run in the directory against ours. */
-static vg_status compare(const struct vg_store *s, int resume,
+static vg_status compare(const struct vg_store *s,
+                         const struct vg_store_options *o,
                          const struct vg_store_run *there,
                          const struct vg_store_run *ours, uint64_t n_record,
                          struct vg_error *err)
 {
   int same = !memcmp(&there->job, &ours->job, sizeof ours->job);
+  char differ[400] = "";
 
-  if (resume && same) return VG_OK;
-  if (resume)
+  if (o->resume && same) return VG_OK;
+  if (!same)
+    vg_store_compare_settings(s, o->settings, differ, sizeof differ);
+  if (o->resume)
     return vg_fail(err, VG_ERR_INPUT, "%s: cannot be resumed: input or "
                    "options have changed since; its run was: %s; this one "
-                   "is: %s; restore what changed, or start without resuming "
-                   "in another directory", s->dir, there->what, ours->what);
+                   "is: %s; %srestore what changed, or start without resuming "
+                   "in another directory", s->dir, there->what, ours->what,
+                   differ);
   if (!n_record) return VG_OK;     /* nothing would be lost */
   if (same)
     return vg_fail(err, VG_ERR_INPUT, "%s: holds %llu finished tasks of this "
@@ -78,9 +83,10 @@ static vg_status compare(const struct vg_store *s, int resume,
                    "anew, or choose another one", s->dir,
                    (unsigned long long)n_record, there->what);
   return vg_fail(err, VG_ERR_INPUT, "%s: holds %llu finished tasks of another "
-                 "run; it was: %s; this one is: %s; choose another directory, "
-                 "or remove this one", s->dir, (unsigned long long)n_record,
-                 there->what, ours->what);
+                 "run; it was: %s; this one is: %s; %schoose another "
+                 "directory, or remove this one", s->dir,
+                 (unsigned long long)n_record, there->what, ours->what,
+                 differ);
 }
 
 static struct vg_store_run run_of(const struct vg_store_options *o)
@@ -106,14 +112,15 @@ static vg_status claim(struct vg_store *s, const struct vg_store_options *o,
                    s->dir);
   *tally = vg_store_walk(s->fd, 0);
   if (st == VG_OK) {
-    st = compare(s, o->resume, &there, &ours, tally->n, err);
+    st = compare(s, o, &there, &ours, tally->n, err);
     if (st < 0) return st;
   } else if (tally->n) {
     return vg_fail(err, VG_ERR_INPUT, "%s: holds %llu finished tasks without "
                    "a note of whose they are; remove the directory or choose "
                    "another one", s->dir, (unsigned long long)tally->n);
   }
-  return vg_store_write_run(s, &ours, err);
+  st = vg_store_write_settings(s, o->settings, err);
+  return st < 0 ? st : vg_store_write_run(s, &ours, err);
 }
 
 static vg_status take(struct vg_store *s, const struct vg_store_options *o,

@@ -35,6 +35,9 @@ struct vg_store_options {
   const char *what;          /* a line that says what the run is, for people:
                                 kept in the directory, shown in refusals; cut
                                 after 199 bytes */
+  const char *settings;      /* lines of name=value, kept in the directory, so
+                                that a refusal can say what differs; may be
+                                NULL */
   int resume;                /* 1: records must be there and fit; 0: the
                                 directory must hold none, not even of the same
                                 job (they might be there by mistake) */
@@ -47,7 +50,7 @@ struct vg_store_options {
  *
  * Refuses, with the reason and the remedy: a directory that cannot be written;
  * one that belongs to another job (changed input or options: says which of
- * both runs it was); a resume without a directory; a run that is under way in
+ * both runs it was, and which settings differ); a resume without a directory; a run that is under way in
  * it (lock, with host and process); one that not all ranks see. A directory
  * whose run kept nothing is taken over, its files of other names stay. What
  * was made is removed again on failure. */

@@ -1,5 +1,5 @@
 /* partition/store_parts.h: what the files of the store share. In the run
- * directory lie run.txt (whose records these are), run.lock, and
+ * directory lie run.txt (whose records these are), run.settings, run.lock, and
  * records/XX/KEY with KEY in 32 hexadecimal digits, XX its first two. All
  * names are relative to one descriptor of the directory. */
 #ifndef VG_PARTITION_STORE_PARTS_H
@@ -57,5 +57,16 @@ void vg_store_remove_run(const struct vg_store *s);
 /** The directory is this process's until vg_store_unlock. */
 vg_status vg_store_lock(struct vg_store *s, struct vg_error *err);
 void vg_store_unlock(struct vg_store *s, int remove);
+
+/** run.settings: its text (NULL: none) in the directory; gone with
+ * vg_store_remove_run. */
+vg_status vg_store_write_settings(const struct vg_store *s, const char *text,
+                                  struct vg_error *err);
+void vg_store_remove_settings(const struct vg_store *s);
+
+/** What of `ours` is not as in the directory: "growth was 1.2, is 1.3; ", as
+ * many as fit; "" where nothing is known to differ. size: 64 at least. */
+void vg_store_compare_settings(const struct vg_store *s, const char *ours,
+                               char *out, size_t size);
 
 #endif

@@ -130,6 +130,7 @@ vg_status vg_store_write_run(const struct vg_store *s,
 void vg_store_remove_run(const struct vg_store *s)
 {
   unlinkat(s->fd, RUN, 0);
+  vg_store_remove_settings(s);
 }
 
 /* --- run.lock ------------------------------------------------------------ */

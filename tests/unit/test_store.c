@@ -363,6 +363,39 @@ static void a_place_that_cannot_be_written(void **state)
   REFUSED(&o, VG_ERR_IO, "/proc/self/store", "choose another");
 }
 
+/* A refusal names what differs, and nothing that does not. */
+static void settings_side_by_side(void **state)
+{
+  struct vg_store_options o = options_of(1, 0);
+  struct vg_store *s = NULL;
+  struct vg_error err = VG_ERROR_INIT;
+  char many[9000] = "";
+
+  (void)state;
+  o.settings = "growth=1.2\nhmax=0\nwalls=3-12\n";
+  assert_int_equal(vg_store_open(NULL, &o, &s, NULL), VG_OK);
+  vg_store_keep(s, key_of(1), 1, "x");
+  vg_store_close(s, 0);
+  o = options_of(2, 1);
+  o.settings = "hmax=0\ngrowth=1.25\nwalls=3-1\nscale=2\nhm=0\n";
+  REFUSED(&o, VG_ERR_INPUT, "growth was 1.2, is 1.25; ",
+          "walls was 3-12, is 3-1; ", "scale was not known, is 2; ",
+          "hm was not known");
+  assert_int_equal(vg_store_open(NULL, &o, &s, &err), VG_ERR_INPUT);
+  assert_null(strstr(err.text, "hmax"));
+  o.resume = 0;
+  REFUSED(&o, VG_ERR_INPUT, "of another run", "growth was 1.2, is 1.25; ");
+  for (int k = 0; k < 300; k++)
+    snprintf(many + strlen(many), 30, "name%d=value\n", k);
+  o.settings = many;
+  REFUSED(&o, VG_ERR_INPUT, "name0 was", "more; choose another directory");
+  o = options_of(1, 1);          /* whatever the lines say, jobs decide */
+  o.settings = "growth=3";
+  assert_int_equal(vg_store_open(NULL, &o, &s, NULL), VG_OK);
+  vg_store_close(s, 1);
+  assert_int_equal(access(RUN_DIR, F_OK), -1);
+}
+
 static void folders_above_and_other_files(void **state)
 {
   struct vg_store_options o = options_of(1, 0);
@@ -526,6 +559,7 @@ int main(void)
     TEST(a_damaged_note),
     TEST(records_without_a_note),
     TEST(a_place_that_cannot_be_written),
+    TEST(settings_side_by_side),
     TEST(folders_above_and_other_files),
     TEST(one_run_at_a_time),
     TEST(a_limit),

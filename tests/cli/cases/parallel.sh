@@ -113,6 +113,8 @@ says err "resume it, remove the directory to start anew, or choose another one"
 vanguard mesh $cut --run-dir run --resume --hmax 0.2 --out other
 exits 1
 says err "run: cannot be resumed: input or options have changed since"
+says err ", is 0.2; restore what changed"
+lacks err "threads was"
 absent other/box.b8.ugrid
 if [ $has_mpirun = 1 ]; then
   ranks 2 mesh $cut -t 1 --run-dir run --resume --keep-run --out resumed
