@@ -8,9 +8,10 @@
 #include "core/optimise_parts.h"
 
 /* As vg_shape. Cells below `aim` (dihedral angles below 25 or above 155
- * degrees) are worked on one by one; `good` (45, 135) cells are not touched. */
+ * degrees) are worked on one by one; sweeps swap below `fair` (30, 150);
+ * `good` (45, 135) cells are not touched. */
 static const double aim = VG_SHAPE_AIM;
-static const float good = 0.5;
+static const float fair = 0.25, good = 0.5;
 /* Below this (15, 165) points are taken away or put in. */
 static const double desperate = 0.067;
 
@@ -70,20 +71,22 @@ static void worst_around(const struct vg_optimiser *o, float *least)
           least[t->cell[c].v[i]] = o->q[c];
 }
 
-/* Points whose cells are all good are left where they are: in a level field
- * that is nearly all of them. */
+/* Swaps first: a sliver that is smoothed spoils its neighbours. Points whose
+ * cells are all good are left where they are: in a level field that is nearly
+ * all of them. */
 static vg_status sweep(struct vg_optimiser *o, struct vg_error *err)
 {
   struct vg_tets *t = o->t;
-  float *least = vg_alloc(t->n_point, sizeof *least);
+  float *least;
 
+  for (uint32_t c = 0; c < t->n_cell; c++)
+    if (is_live(t, c) && o->q[c] < fair && concerns(o, c)) vg_swap(o, c);
+  least = vg_alloc(t->n_point, sizeof *least);
   if (!least) return vg_fail_memory(err, "optimisation");
   worst_around(o, least);
   for (uint32_t p = (uint32_t)o->n_fixed; p < t->n_point; p++)
     if (least[p] < good) vg_smooth(o, p, aim);
   free(least);
-  for (uint32_t c = 0; c < t->n_cell; c++)
-    if (is_live(t, c) && o->q[c] < aim && concerns(o, c)) vg_swap(o, c);
   return VG_OK;
 }
 
