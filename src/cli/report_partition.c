@@ -1,10 +1,68 @@
 /* How the work was cut up and shared out, for a person and for a program. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
 #include "cli/cli.h"
 #include "cli/run.h"
 
-static uint64_t leaf_at(const struct vg_run *r, size_t part)
+/* Leaves by what they were filled with. Crumbs are parts of a void that are too
+ * small for a task each and are filled together: ".r" at the end of a path. */
+struct leaves {
+  size_t n, n_crumb;
+  uint64_t *cells;           /* [n] rising; of no crumbs */
+  uint64_t crumb_cells;
+};
+
+static int by_size(const void *a, const void *b)
 {
-  return r->n_leaf ? r->leaf[(r->n_leaf - 1) * part / 2] : 0;
+  uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
+
+  return (x > y) - (x < y);
+}
+
+static int is_crumb(const struct vg_span *s)
+{
+  size_t n = strlen(s->path);
+
+  return n > 3 && !strcmp(s->path + n - 3, ".rL");
+}
+
+/* Without memory: none. */
+static struct leaves leaves_of(const struct vg_spans *s)
+{
+  struct leaves l = { .cells = vg_alloc(s->n, sizeof *l.cells) };
+
+  for (size_t i = 0; i < s->n && l.cells; i++) {
+    const struct vg_span *span = &s->span[i];
+
+    if (span->kind != VG_SPAN_LEAF || !span->n_cell) continue;
+    if (is_crumb(span)) {
+      l.n_crumb++;
+      l.crumb_cells += span->n_cell;
+    } else {
+      l.cells[l.n++] = span->n_cell;
+    }
+  }
+  if (l.n) qsort(l.cells, l.n, sizeof *l.cells, by_size);
+  return l;
+}
+
+static void print_leaves(FILE *to, const struct vg_spans *s)
+{
+  struct leaves l = leaves_of(s);
+  char a[32], b[32], c[32];
+
+  fprintf(to, "leaves %s", vg_cli_count(l.n, a));
+  if (l.n > 1)
+    fprintf(to, " of %s to %s cells, median %s",
+            vg_cli_count(l.cells[0], a), vg_cli_count(l.cells[l.n - 1], b),
+            vg_cli_count(l.cells[(l.n - 1) / 2], c));
+  fprintf(to, "\n");
+  if (l.n_crumb)
+    fprintf(to, "  and %s of crumbs filled together, %s cells\n",
+            vg_cli_count(l.n_crumb, a), vg_cli_count(l.crumb_cells, b));
+  free(l.cells);
 }
 
 static double share_of(const struct vg_run *r, uint64_t n)
@@ -25,12 +83,7 @@ void vg_report_partition_text(FILE *to, const struct vg_run *r)
   fprintf(to, "  cuts %s, pencils %s, tiles %s: %.1f %% of the cells; ",
           vg_cli_count(p->n_node, a), vg_cli_count(p->n_pencil, b),
           vg_cli_count(p->n_tile, c), share_of(r, p->n_zone_cell));
-  fprintf(to, "leaves %s", vg_cli_count(r->n_leaf, a));
-  if (r->n_leaf > 1)
-    fprintf(to, " of %s to %s cells, median %s",
-            vg_cli_count(leaf_at(r, 0), a), vg_cli_count(leaf_at(r, 2), b),
-            vg_cli_count(leaf_at(r, 1), c));
-  fprintf(to, "\n");
+  print_leaves(to, &r->spans);
   if (p->cuts_given_up)
     fprintf(to, "  cuts were given up: a part between them could not be "
             "filled, so the whole was filled by one worker\n");
@@ -59,10 +112,12 @@ static json_t *count(uint64_t n)
 json_t *vg_report_partition_json(const struct vg_run *r)
 {
   const struct vg_partition_report *p = &r->partition;
+  struct leaves l = leaves_of(&r->spans);
   const struct { const char *name; uint64_t n; } row[] = {
     { "ranks", (uint64_t)r->size }, { "threads", (uint64_t)r->threads },
     { "cuts", p->n_node }, { "pencils", p->n_pencil }, { "tiles", p->n_tile },
-    { "leaves", p->n_leaf }, { "zone_cells", p->n_zone_cell },
+    { "leaves", l.n }, { "crumb_leaves", l.n_crumb },
+    { "crumb_cells", l.crumb_cells }, { "zone_cells", p->n_zone_cell },
     { "zones_given_up", p->n_blocked }, { "cuts_repeated", p->n_retry },
     { "leaves_cut_again", p->n_outgrown }, { "leaves_left_large", p->n_uncut },
     { "tasks_found", p->n_found }, { "regions_bad", p->n_repair },
@@ -73,8 +128,9 @@ json_t *vg_report_partition_json(const struct vg_run *r)
 
   for (size_t i = 0; i < sizeof row / sizeof *row; i++)
     json_object_set_new(o, row[i].name, count(row[i].n));
-  for (size_t i = 0; i < r->n_leaf; i++)
-    json_array_append_new(leaves, count(r->leaf[i]));
+  for (size_t i = 0; i < l.n; i++)
+    json_array_append_new(leaves, count(l.cells[i]));
+  free(l.cells);
   json_object_set_new(o, "leaf_cells", leaves);
   json_object_set_new(o, "cuts_given_up", json_boolean(p->cuts_given_up));
   json_object_set_new(o, "repair_seconds", json_real(p->repair));

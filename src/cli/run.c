@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "cli/report.h"
 #include "layers/pack.h"
 
@@ -166,43 +165,6 @@ static int wants_stop(void *user)
   return vg_display_interrupted();
 }
 
-static int by_size(const void *a, const void *b)
-{
-  uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
-
-  return (x > y) - (x < y);
-}
-
-/* Sizes of all leaves, on all ranks, for the report. */
-static vg_status gather_leaves(struct vg_run *r, struct vg_error *err)
-{
-  struct vg_bytes mine = {0, NULL};
-  struct vg_bytes *all = vg_calloc((size_t)r->size, sizeof *all);
-  uint64_t *own = NULL;
-  size_t n = 0;
-  vg_status st = vg_partition_leaves(r->field, &n, &own, err);
-
-  mine = (struct vg_bytes){ n * sizeof *own, (unsigned char *)own };
-  if (!all) st = vg_fail_memory(err, "sizes of leaves");
-  VG_TRY(vg_comm_agree(r->comm, st, err));
-  VG_TRY(vg_comm_allgather(r->comm, &mine, all, err));
-  for (int k = 0; k < r->size; k++) r->n_leaf += all[k].n / sizeof *r->leaf;
-  r->leaf = vg_alloc(r->n_leaf, sizeof *r->leaf);
-  n = 0;
-  for (int k = 0; k < r->size && r->leaf; k++) {
-    if (all[k].n) memcpy(r->leaf + n, all[k].data, all[k].n);
-    n += all[k].n / sizeof *r->leaf;
-  }
-  if (r->leaf && n) qsort(r->leaf, n, sizeof *r->leaf, by_size);
-  st = vg_comm_agree(r->comm, r->leaf ? VG_OK
-                     : vg_fail_memory(err, "sizes of leaves"), err);
-done:
-  for (int k = 0; all && k < r->size; k++) free(all[k].data);
-  free(all);
-  free(own);
-  return st;
-}
-
 static vg_status fill(struct vg_run *r, const struct vg_problem *p,
                       const struct vg_mesh *boundary,
                       const struct vg_sizing *sizing, struct vg_display *show,
@@ -229,10 +191,9 @@ static vg_status fill(struct vg_run *r, const struct vg_problem *p,
                          &r->partition, &r->spans, err);
   if (r->store) vg_store_state(r->store, &r->stored);
   if (st == VG_BLOCKED) st = say_stopped(r, err);
-  if (st < 0) goto done;
-  r->n_field_cell =
-    vg_partition_slices(r->field)->n_cell[VG_SLICE_TET];
-  st = gather_leaves(r, err);
+  if (st >= 0)
+    r->n_field_cell =
+      vg_partition_slices(r->field)->n_cell[VG_SLICE_TET];
 done:
   return st;
 }
@@ -355,5 +316,4 @@ void vg_run_release(struct vg_run *r, int success)
   vg_partition_free(r->field);
   vg_spans_release(&r->spans);
   vg_store_close(r->store, success && !r->options.keep);
-  free(r->leaf);
 }

@@ -32,8 +32,6 @@ struct vg_run {
   struct vg_layer_slices *layers;  /* NULL without layers */
   struct vg_slices slices;   /* the mesh */
   uint64_t n_field_cell;
-  size_t n_leaf;             /* of all ranks; cells of each, by size: */
-  uint64_t *leaf;
   struct vg_mesh_report judge, field_judge;  /* of all; with layers: of the
                                                  field */
   double time_size, time_layers, time_judge;

@@ -96,6 +96,16 @@ vanguard mesh -q -p p/box --constant-direction yes --out none
 exits 1
 says err "constant_direction needs a split_direction of 1, 2 or 3"
 
+# What is filled as one leaf because it is little is counted apart.
+vanguard demo sphere --cells 60000 --out p
+vanguard mesh -q -p p/sphere --leaf-cells 6000 --json --out crumbs
+exits 0
+crumbs=$(sed -n 's/.*"crumb_leaves": \([0-9]*\).*/\1/p' out)
+cells=$(sed -n 's/.*"crumb_cells": \([0-9]*\).*/\1/p' out)
+least=$(sed -n '/"leaf_cells"/{n;s/[^0-9]//g;p}' out)
+[ "$((crumbs == 0))" = "$((cells == 0))" ] || fail "$crumbs crumbs: $cells cells"
+[ "$least" -ge 300 ] || fail "a leaf of $least cells"
+
 # Tasks kept, and found again by another number of workers.
 vanguard mesh -q -p p/box --resume
 exits 2
