@@ -252,6 +252,7 @@ static vg_status leaf_done(struct vg_partition *p, struct vg_engine *e,
   for (size_t k = 0; k < n->load.n; k++)
     n->load.cube[k].cells *= (float)more;
   n->load.cells *= more;
+  n->is_planned = 0;
   snprintf(n->path + strlen(n->path), sizeof n->path - strlen(n->path), "+");
   return submit_child(p, e, n, err);
 }
@@ -296,7 +297,8 @@ static vg_status packed(struct vg_writer *w, struct vg_bytes *out,
 static vg_status put_node(struct vg_writer *w, const struct vg_node *n,
                           struct vg_error *err)
 {
-  int32_t number[3] = {n->levels, n->retry, n->is_final};
+  int32_t number[5] = {n->levels, n->retry, n->is_final, n->is_planned,
+                       n->n_bisection};
   struct vg_bytes load = {0, NULL};
   uint64_t size;
   vg_status st = vg_load_pack(&n->load, &load, err);
@@ -304,7 +306,8 @@ static vg_status put_node(struct vg_writer *w, const struct vg_node *n,
   if (st < 0) return st;
   size = load.n;
   vg_put(w, sizeof n->path, 1, n->path);
-  vg_put(w, 3, sizeof *number, number);
+  vg_put(w, 5, sizeof *number, number);
+  vg_put(w, 1, sizeof n->lattice, &n->lattice);
   vg_put(w, 1, sizeof n->per_cube, &n->per_cube);
   vg_put(w, 1, sizeof size, &size);
   vg_put(w, load.n, 1, load.data);
@@ -317,18 +320,21 @@ static struct vg_node *get_node(struct vg_reader *r)
 {
   struct vg_front empty = VG_FRONT_INIT;
   struct vg_node *n = vg_node_new("", &empty);
-  int32_t number[3] = {0};
+  int32_t number[5] = {0};
   struct vg_bytes load = {0, NULL};
   uint64_t size = 0;
 
   if (!n) return NULL;
   vg_get(r, sizeof n->path, 1, n->path);
-  vg_get(r, 3, sizeof *number, number);
+  vg_get(r, 5, sizeof *number, number);
+  vg_get(r, 1, sizeof n->lattice, &n->lattice);
   vg_get(r, 1, sizeof n->per_cube, &n->per_cube);
   vg_get(r, 1, sizeof size, &size);
   n->levels = number[0];
   n->retry = number[1];
   n->is_final = number[2];
+  n->is_planned = number[3];
+  n->n_bisection = number[4];
   load.n = size;
   load.data = vg_get_array(r, size, 1);
   if (!r->bad) r->bad = vg_load_unpack(&load, &n->load, NULL) < 0;

@@ -267,3 +267,39 @@ int vg_lattice_region(const struct vg_lattice *l, int stage, size_t k,
   return stage == 0 ? line(l, k, r) : stage == 1 ? segment(l, k, r)
                                                  : tile(l, k, r);
 }
+
+void vg_lattice_patch(const struct vg_lattice *l, int axis, int i,
+                      const double lo[3], const double hi[3],
+                      struct vg_region *r)
+{
+  memset(r, 0, sizeof *r);
+  cross(r, axis, l->at[axis][i]);
+  between(r, l, axis, i);
+  for (int k = 0; k < 3; k++) {
+    if (k == axis) continue;
+    bound(r, k, 1, lo[k]);
+    bound(r, k, -1, hi[k]);
+  }
+}
+
+/* --- blocks -------------------------------------------------------------- */
+
+size_t vg_lattice_blocks(const struct vg_lattice *l)
+{
+  return (size_t)(l->n[0] + 1) * (size_t)(l->n[1] + 1) * (size_t)(l->n[2] + 1);
+}
+
+uint32_t vg_lattice_block(const struct vg_lattice *l, const double x[3],
+                          int upper)
+{
+  int block = 0;
+
+  for (int axis = 2; axis >= 0; axis--) {
+    int below = 0;
+
+    for (int i = 0; i < l->n[axis]; i++)
+      below += upper ? x[axis] >= l->at[axis][i] : x[axis] > l->at[axis][i];
+    block = block * (l->n[axis] + 1) + below;
+  }
+  return (uint32_t)block;
+}

@@ -11,7 +11,11 @@
 #include "core/region.h"
 #include "partition/load.h"
 
-enum { VG_LATTICE_PLANES = 7, VG_LATTICE_STAGES = 3 };
+enum {
+  VG_LATTICE_PLANES = 7,
+  VG_LATTICE_STAGES = 3,
+  VG_LATTICE_BLOCKS = 512    /* (VG_LATTICE_PLANES + 1)^3 */
+};
 
 struct vg_lattice {
   int n[3];                  /* planes across each axis */
@@ -38,5 +42,21 @@ size_t vg_lattice_count(const struct vg_lattice *l, int stage);
 /** Region k of a stage. Returns the axis of the line, or of the plane. */
 int vg_lattice_region(const struct vg_lattice *l, int stage, size_t k,
                       struct vg_region *r);
+
+/** The part of plane i across an axis that lies in a box: where parts of a
+ * void still hang together after all stages. Boxes that do not overlap keep
+ * such regions apart. */
+void vg_lattice_patch(const struct vg_lattice *l, int axis, int i,
+                      const double lo[3], const double hi[3],
+                      struct vg_region *r);
+
+/** The blocks between planes: x first, i + (n[0] + 1) (j + (n[1] + 1) k) is
+ * behind i planes across x. */
+size_t vg_lattice_blocks(const struct vg_lattice *l);
+
+/** The block that x lies in. What is on a plane is in the block below it, or,
+ * if upper is 1, above it. */
+uint32_t vg_lattice_block(const struct vg_lattice *l, const double x[3],
+                          int upper);
 
 #endif

@@ -58,17 +58,23 @@ struct vg_node *vg_node_new(const char *path, struct vg_front *front)
   return n;
 }
 
-int vg_node_wants_cut(const struct vg_partition *p, const struct vg_node *n)
+int vg_node_wants_cut(const struct vg_partition *p, struct vg_node *n)
 {
-  struct vg_lattice l;
-
-  return !n->is_final && n->retry < VG_RETRIES &&
-         strlen(n->path) + 8 < VG_PATH_MAX &&
-         vg_lattice_plan(&n->load, &p->options.rule, n->levels, n->retry,
-                         &l) > 0;
+  if (n->is_final || n->retry >= VG_RETRIES ||
+      strlen(n->path) + 8 >= VG_PATH_MAX)
+    return 0;
+  if (!n->is_planned)
+    n->n_bisection = vg_lattice_plan(&n->load, &p->options.rule, n->levels,
+                                     n->retry, &n->lattice);
+  n->is_planned = 1;
+  return n->n_bisection > 0;
 }
 
 /* --- the works of a stage ------------------------------------------------ */
+
+/* Behind the stages of the lattice: places that hang together, across x, y
+ * and z. */
+enum { STAGES = VG_LATTICE_STAGES + 3 };
 
 static vg_status make_room(struct vg_node *n, size_t n_work,
                            struct vg_error *err)
@@ -81,8 +87,17 @@ static vg_status make_room(struct vg_node *n, size_t n_work,
   return vg_fail_memory(err, "cutting a front");
 }
 
+/* Its number among the pencils or tiles of the node. */
+static size_t number_of(struct vg_node *n, size_t k)
+{
+  if (n->stage < 2) return n->n_pencil++;
+  if (n->stage < VG_LATTICE_STAGES) return k;
+  return vg_lattice_count(&n->lattice, 2) + n->n_patch++;
+}
+
 static vg_status add_work(struct vg_partition *p, struct vg_node *n,
                           struct vg_select *s, size_t k,
+                          const struct vg_region *region,
                           struct vg_error *err)
 {
   struct vg_work *w = vg_calloc(1, sizeof *w);
@@ -94,7 +109,7 @@ static vg_status add_work(struct vg_partition *p, struct vg_node *n,
   w->kind = n->stage < 2 ? VG_SPAN_PENCIL : VG_SPAN_TILE;
   w->node = n;
   w->index = i;
-  vg_lattice_region(&n->lattice, n->stage, k, &w->region);
+  w->region = *region;
   st = vg_select_part(s, &w->region, &w->part, &n->point[i], &n->face[i],
                       err);
   if (st < 0 || !w->part.n_face) {
@@ -105,7 +120,7 @@ static vg_status add_work(struct vg_partition *p, struct vg_node *n,
     return st;
   }
   snprintf(w->path, sizeof w->path, "%.*s%c%zu", VG_PATH_MAX - 12, n->path,
-           w->kind, w->kind == VG_SPAN_PENCIL ? n->n_pencil++ : k);
+           w->kind, number_of(n, k));
   w->serial = vg_partition_serial(p);
   n->work[n->n_work++] = w;
   return VG_OK;
@@ -122,10 +137,48 @@ static void estimate_works(struct vg_node *n)
     int b = (axis + 1) % 3, c = (axis + 2) % 3;
     double cells = vg_load_zone(&n->load, axis, plane->offset, 1);
 
-    w->estimate = w->kind == VG_SPAN_TILE
-                    ? cells / ((n->lattice.n[b] + 1) * (n->lattice.n[c] + 1))
-                    : 0.1 * cells / (n->lattice.n[b] + n->lattice.n[c] + 1);
+    if (n->stage >= VG_LATTICE_STAGES)
+      w->estimate = 0.01 * cells;
+    else
+      w->estimate = w->kind == VG_SPAN_TILE
+                      ? cells / ((n->lattice.n[b] + 1) * (n->lattice.n[c] + 1))
+                      : 0.1 * cells / (n->lattice.n[b] + n->lattice.n[c] + 1);
   }
+}
+
+/* Regions of the node's stage. */
+static vg_status list_regions(const struct vg_partition *p,
+                              const struct vg_node *n,
+                              struct vg_region **region, size_t *count,
+                              struct vg_error *err)
+{
+  *region = NULL;
+  if (n->stage >= VG_LATTICE_STAGES)
+    return vg_node_open_places(p, n, n->stage - VG_LATTICE_STAGES, region,
+                               count, err);
+  *count = vg_lattice_count(&n->lattice, n->stage);
+  *region = vg_alloc(*count, sizeof **region);
+  if (!*region) return vg_fail_memory(err, "cutting a front");
+  for (size_t k = 0; k < *count; k++)
+    vg_lattice_region(&n->lattice, n->stage, k, &(*region)[k]);
+  return VG_OK;
+}
+
+static vg_status prepare_stage(struct vg_partition *p, struct vg_node *n,
+                               struct vg_select *s, struct vg_error *err)
+{
+  struct vg_region *region;
+  size_t count;
+  vg_status st = list_regions(p, n, &region, &count, err);
+
+  if (st == VG_OK && count && !s->front)
+    st = vg_select_open(s, &n->front, p->sizing, err);
+  if (st == VG_OK && count) st = make_room(n, count, err);
+  for (size_t k = 0; st == VG_OK && k < count; k++)
+    st = add_work(p, n, s, k, &region[k], err);
+  if (st == VG_OK) estimate_works(n);
+  free(region);
+  return st;
 }
 
 static vg_status prepare(struct vg_partition *p, struct vg_node *n,
@@ -134,18 +187,11 @@ static vg_status prepare(struct vg_partition *p, struct vg_node *n,
   struct vg_select s = {0};
   vg_status st = VG_OK;
 
-  VG_TRY(vg_select_open(&s, &n->front, p->sizing, err));
-  for (; !n->n_work && n->stage < VG_LATTICE_STAGES; n->stage++) {
-    size_t count = vg_lattice_count(&n->lattice, n->stage);
-
-    if (!count) continue;
-    VG_TRY(make_room(n, count, err));
-    for (size_t k = 0; k < count; k++) VG_TRY(add_work(p, n, &s, k, err));
-    if (!n->n_work) drop_stage(n);
+  for (; !n->n_work && n->stage < STAGES && st == VG_OK; n->stage++) {
+    drop_stage(n);
+    st = prepare_stage(p, n, &s, err);
   }
-  estimate_works(n);
   n->n_left = n->n_work;
-done:
   vg_select_close(&s);
   return st;
 }
@@ -167,8 +213,7 @@ vg_status vg_node_start(struct vg_partition *p, struct vg_node *n,
   vg_status st;
 
   n->stage = 0;
-  n->n_bisection = vg_lattice_plan(&n->load, &p->options.rule, n->levels,
-                                   n->retry, &n->lattice);
+  if (!vg_node_wants_cut(p, n)) return keep_whole(n, err);
   VG_TRY(prepare(p, n, err));
   if (!n->n_work) st = keep_whole(n, err);
 done:
@@ -230,6 +275,7 @@ static vg_status put_in(struct vg_node *n, struct vg_error *err)
     nf += n->change[i].n_face;
     n->zone_cells += (double)n->change[i].n_cell;
     n->zone_volume += n->change[i].volume;
+    n->n_blocked += n->change[i].blocked != 0;
   }
   if (vg_reserve(&f->x, &cap_x, np, sizeof *f->x) ||
       vg_reserve(&f->name, &cap_name, np, sizeof *f->name) ||

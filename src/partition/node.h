@@ -29,8 +29,10 @@ struct vg_node {
   int retry;                 /* attempts that failed */
   int is_final;              /* a leaf whatever it needs */
   /* while it is being cut */
+  int is_planned;            /* the next two are of this load, this retry */
+  int n_bisection;
   struct vg_lattice lattice;
-  int n_bisection, n_join;
+  int n_join;
   int stage;                 /* the next one to be looked at */
   size_t n_work, n_left;     /* of this stage; not yet done */
   struct vg_work **work;     /* [n_work] until submitted */
@@ -38,6 +40,8 @@ struct vg_node {
   struct vg_change *change;  /* [n_work] what came of it */
   double zone_cells, zone_volume;
   size_t n_pencil;           /* pencils so far: numbers go on */
+  size_t n_patch;            /* tiles that closed what was left, likewise */
+  size_t n_blocked;          /* works that made nothing */
   size_t n_child;
   struct vg_node **child;    /* [n_child] what it fell into */
 };
@@ -89,11 +93,12 @@ void vg_work_free(struct vg_work *w);
 /** A new node around a front, which it takes over. NULL: no memory. */
 struct vg_node *vg_node_new(const char *path, struct vg_front *front);
 
-/** Does the void ask to be cut? */
-int vg_node_wants_cut(const struct vg_partition *p, const struct vg_node *n);
+/** Does the void ask to be cut? Plans the planes, which vg_node_start uses;
+ * after its load was changed n->is_planned must be 0. */
+int vg_node_wants_cut(const struct vg_partition *p, struct vg_node *n);
 
-/** Plan planes and the works of the first stage that has some. Without any,
- * n->n_work is 0 and n->n_child 1 (itself, to be filled). */
+/** The works of the first stage that has some. Without any, n->n_work is 0
+ * and n->n_child 1 (itself, to be filled). */
 vg_status vg_node_start(struct vg_partition *p, struct vg_node *n,
                         struct vg_error *err);
 
@@ -102,7 +107,16 @@ vg_status vg_node_start(struct vg_partition *p, struct vg_node *n,
 vg_status vg_node_join(struct vg_partition *p, struct vg_node *n,
                        struct vg_error *err);
 
-/** Find the parts of the front: n->child. (node_split.c) */
+/** Where the void hangs together across planes of the lattice after its
+ * stages: places across one axis, to be closed like tiles. They are few, or
+ * none are given.
+ * region out: [*n_region], to be freed by the caller. (node_close.c) */
+vg_status vg_node_open_places(const struct vg_partition *p,
+                              const struct vg_node *n, int axis,
+                              struct vg_region **region, size_t *n_region,
+                              struct vg_error *err);
+
+/** Part the front by blocks: n->child. (node_split.c) */
 vg_status vg_node_split(struct vg_partition *p, struct vg_node *n,
                         struct vg_error *err);
 

@@ -1,5 +1,10 @@
-/* What a cut leaves: the parts of the front, grouped into voids. */
-#include <math.h>
+/* What a cut leaves: the front, parted by the blocks of the lattice. Outline:
+ * faces that are left lie on one side of every plane (node_close.c), so the
+ * block of a point tells that of its faces, and what bounds a void within a
+ * block never shares a point with another block. Where a face still touches
+ * planes, the blocks on both sides are one void. A void's parts, a body in it
+ * or a crumb that a zone went around, need not be told apart: cutting and
+ * filling take any number of them. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,87 +12,201 @@
 #include "base/memory.h"
 #include "partition/node.h"
 
-/* A part with fewer faces is a cell or two that a zone went around. */
-enum { CRUMB_FACES = 24 };
-#define REST SIZE_MAX
 /* Voids below this share of a leaf are filled together. */
 static const double small_share = 0.02;
 /* A cut that leaves more than this in one part did not part its void. */
 static const double not_parted = 0.9;
+/* Cells that zones make of it are not the blocks': spacings to each side. */
+static const double zone_reach = 0.68;
+
+enum { ON_PLANE = 0x8000, NONE = 0xffff };
 
 struct split {
   struct vg_node *n;
+  uint16_t *block;           /* [n_point] of the front; with ON_PLANE or not */
+  uint16_t root[VG_LATTICE_BLOCKS];   /* union-find of blocks */
+  uint16_t child[VG_LATTICE_BLOCKS];  /* of a root, or NONE */
+  int is_merged;
   size_t n_part;
-  struct vg_front *part;     /* [n_part] fronts, without an edge in common */
-  double *volume;            /* [n_part] enclosed; negative: around a body */
-  uint32_t *owner;           /* [n_part] the part it is put to */
+  struct vg_front *part;     /* [n_part] of the children, in their order */
 };
 
-static vg_status find_parts(struct split *s, struct vg_error *err)
+/* --- blocks of points and faces ------------------------------------------ */
+
+static vg_status label_points(struct split *s, struct vg_error *err)
 {
-  struct vg_front *f = &s->n->front;
-  uint32_t *part = vg_alloc(f->n_face, sizeof *part);
-  vg_status st = part ? VG_OK : vg_fail_memory(err, "the parts of a front");
+  const struct vg_front *f = &s->n->front;
+  const struct vg_lattice *l = &s->n->lattice;
 
-  if (st == VG_OK) st = vg_front_parts(f, part, &s->n_part, err);
-  if (st == VG_OK) {
-    s->part = vg_calloc(s->n_part, sizeof *s->part);
-    s->volume = vg_alloc(s->n_part, sizeof *s->volume);
-    s->owner = vg_alloc(s->n_part, sizeof *s->owner);
-    if (!s->part || !s->volume || !s->owner)
-      st = vg_fail_memory(err, "the parts of a front");
-  }
-  if (st == VG_OK) st = vg_front_split(f, part, s->n_part, s->part, err);
-  if (st == VG_OK) vg_front_release(f);
-  free(part);
-  return st;
-}
+  s->block = vg_alloc(f->n_point, sizeof *s->block);
+  if (!s->block) return vg_fail_memory(err, "the parts of a front");
+  for (size_t p = 0; p < f->n_point; p++) {
+    uint32_t b = vg_lattice_block(l, f->x[p], 0);
 
-/* A shell around a body belongs to the void that holds it: the smallest one
- * that encloses a point of it. */
-static void find_owners(struct split *s)
-{
-  for (size_t k = 0; k < s->n_part; k++) {
-    s->owner[k] = (uint32_t)k;
-    s->volume[k] = vg_front_volume(&s->part[k]);
-  }
-  for (size_t k = 0; k < s->n_part; k++) {
-    double least = INFINITY;
-
-    if (s->volume[k] > 0) continue;
-    for (size_t m = 0; m < s->n_part; m++)
-      if (s->volume[m] > 0 && s->volume[m] < least &&
-          s->volume[m] > -s->volume[k] &&
-          vg_front_encloses(&s->part[m], s->part[k].x[0])) {
-        least = s->volume[m];
-        s->owner[k] = (uint32_t)m;
-      }
-  }
-}
-
-static vg_status put_shells(struct split *s, struct vg_error *err)
-{
-  for (size_t k = 0; k < s->n_part; k++) {
-    vg_status st;
-
-    if (s->owner[k] == k) continue;
-    st = vg_front_append(&s->part[s->owner[k]], &s->part[k], err);
-    if (st < 0) return st;
-    vg_front_release(&s->part[k]);
+    s->block[p] = (uint16_t)b;
+    if (vg_lattice_block(l, f->x[p], 1) != b) s->block[p] |= ON_PLANE;
   }
   return VG_OK;
 }
 
+static uint16_t root_of(struct split *s, uint32_t b)
+{
+  while (s->root[b] != b) b = s->root[b] = s->root[s->root[b]];
+  return (uint16_t)b;
+}
+
+static void unite(struct split *s, uint32_t a, uint32_t b)
+{
+  a = root_of(s, a);
+  b = root_of(s, b);
+  if (a == b) return;
+  s->is_merged = 1;
+  s->root[a < b ? b : a] = (uint16_t)(a < b ? a : b);
+}
+
+static void unite_corners(struct split *s, const uint32_t v[3])
+{
+  const struct vg_front *f = &s->n->front;
+
+  for (int k = 0; k < 3; k++) {
+    uint32_t b = s->block[v[k]] & (uint32_t)~ON_PLANE;
+
+    unite(s, b, s->block[v[0]] & (uint32_t)~ON_PLANE);
+    if (s->block[v[k]] & ON_PLANE)
+      unite(s, b, vg_lattice_block(&s->n->lattice, f->x[v[k]], 1));
+  }
+}
+
+/* Blocks that hang together become one; those without faces none. */
+static void find_children(struct split *s)
+{
+  const struct vg_front *f = &s->n->front;
+  uint8_t is_used[VG_LATTICE_BLOCKS] = {0};
+
+  for (uint32_t b = 0; b < VG_LATTICE_BLOCKS; b++) s->root[b] = (uint16_t)b;
+  for (size_t i = 0; i < f->n_face; i++) {
+    const uint32_t *v = f->face[i];
+    uint16_t a = s->block[v[0]], b = s->block[v[1]], c = s->block[v[2]];
+
+    if (a != b || b != c || a & ON_PLANE) unite_corners(s, v);
+    is_used[a & ~ON_PLANE] = 1;
+  }
+  s->n_part = 0;
+  memset(s->child, 0xff, sizeof s->child);
+  for (uint32_t b = 0; b < VG_LATTICE_BLOCKS; b++) {
+    uint16_t r = root_of(s, b);
+
+    if (is_used[b] && s->child[r] == NONE)
+      s->child[r] = (uint16_t)s->n_part++;
+  }
+  for (uint32_t b = 0; b < VG_LATTICE_BLOCKS; b++)
+    s->child[b] = s->child[root_of(s, b)];
+}
+
+/* --- fronts of the children ---------------------------------------------- */
+
+static vg_status make_room(struct split *s, const size_t *n_face,
+                           const size_t *n_point, struct vg_error *err)
+{
+  s->part = vg_calloc(s->n_part, sizeof *s->part);
+  if (!s->part) return vg_fail_memory(err, "the parts of a front");
+  for (size_t k = 0; k < s->n_part; k++) {
+    struct vg_front *part = &s->part[k];
+
+    part->x = vg_alloc(n_point[k], sizeof *part->x);
+    part->name = vg_alloc(n_point[k], sizeof *part->name);
+    part->face = vg_alloc(n_face[k], sizeof *part->face);
+    if (!part->x || !part->name || !part->face)
+      return vg_fail_memory(err, "the parts of a front");
+  }
+  return VG_OK;
+}
+
+/* Points in the order in which faces use them. */
+static void deal_out(struct split *s, uint32_t *number)
+{
+  const struct vg_front *f = &s->n->front;
+
+  for (size_t i = 0; i < f->n_face; i++) {
+    uint16_t b = s->block[f->face[i][0]] & (uint16_t)~ON_PLANE;
+    struct vg_front *part = &s->part[s->child[b]];
+    uint32_t *to = part->face[part->n_face++];
+
+    for (int k = 0; k < 3; k++) {
+      uint32_t p = f->face[i][k];
+
+      if (number[p] == UINT32_MAX) {
+        memcpy(part->x[part->n_point], f->x[p], sizeof *part->x);
+        part->name[part->n_point] = f->name[p];
+        number[p] = (uint32_t)part->n_point++;
+      }
+      to[k] = number[p];
+    }
+  }
+}
+
+static vg_status split_front(struct split *s, struct vg_error *err)
+{
+  const struct vg_front *f = &s->n->front;
+  uint32_t *number = vg_alloc(f->n_point, sizeof *number);
+  size_t *count = vg_calloc(2 * s->n_part + 1, sizeof *count);
+  vg_status st = VG_OK;
+
+  if (!number || !count) st = vg_fail_memory(err, "the parts of a front");
+  if (st == VG_OK) {
+    for (size_t i = 0; i < f->n_face; i++)
+      count[s->child[s->block[f->face[i][0]] & ~ON_PLANE]]++;
+    for (size_t p = 0; p < f->n_point; p++) {
+      uint16_t c = s->child[s->block[p] & ~ON_PLANE];
+
+      if (c != NONE) count[s->n_part + c]++;
+    }
+    st = make_room(s, count, count + s->n_part, err);
+  }
+  if (st == VG_OK) {
+    memset(number, 0xff, f->n_point * sizeof *number);
+    deal_out(s, number);
+    vg_front_release(&s->n->front);
+  }
+  free(number);
+  free(count);
+  return st;
+}
+
+/* Where nothing could be grown beside a block, a body in it may have lost its
+ * void: then the front stays as it is. */
+static int bounds_nothing(const struct split *s)
+{
+  for (size_t k = 0; s->n->n_blocked && k < s->n_part; k++)
+    if (!(vg_front_volume(&s->part[k]) > 0)) return 1;
+  return 0;
+}
+
+/* One part again. */
+static vg_status undo(struct split *s, struct vg_error *err)
+{
+  for (size_t k = 1; k < s->n_part; k++) {
+    vg_status st = vg_front_append(&s->part[0], &s->part[k], err);
+
+    if (st < 0) return st;
+    vg_front_release(&s->part[k]);
+  }
+  s->n_part = 1;
+  s->is_merged = 1;
+  return VG_OK;
+}
+
+/* --- children ------------------------------------------------------------ */
+
 /* The child's name, number k or, for what is put together, "r"; path[] has
  * room (vg_node_wants_cut). */
-static struct vg_node *new_child(const struct vg_node *n, size_t k,
+static struct vg_node *new_child(const struct vg_node *n, size_t k, int is_rest,
                                  struct vg_front *front)
 {
   char path[VG_PATH_MAX];
   struct vg_node *child;
 
-  if (k == REST) snprintf(path, sizeof path, "%.*s.r", VG_PATH_MAX - 8,
-                          n->path);
+  if (is_rest) snprintf(path, sizeof path, "%.*s.r", VG_PATH_MAX - 8, n->path);
   else snprintf(path, sizeof path, "%.*s.%zu", VG_PATH_MAX - 24, n->path, k);
   child = vg_node_new(path, front);
   if (!child) return NULL;
@@ -97,26 +216,15 @@ static struct vg_node *new_child(const struct vg_node *n, size_t k,
   return child;
 }
 
-/* All parts but crumbs become children. */
-static vg_status make_children(struct split *s, struct vg_front *crumbs,
-                               struct vg_error *err)
+static vg_status make_children(struct split *s, struct vg_error *err)
 {
   struct vg_node *n = s->n;
 
   n->child = vg_calloc(s->n_part + 1, sizeof *n->child);
   if (!n->child) return vg_fail_memory(err, "the parts of a front");
   for (size_t k = 0; k < s->n_part; k++) {
-    vg_status st;
-
-    if (!s->part[k].n_face) continue;
-    if (s->part[k].n_face < CRUMB_FACES) {
-      st = vg_front_append(crumbs, &s->part[k], err);
-      if (st < 0) return st;
-      continue;
-    }
-    n->child[n->n_child] = new_child(n, n->n_child, &s->part[k]);
-    if (!n->child[n->n_child])
-      return vg_fail_memory(err, "the parts of a front");
+    n->child[k] = new_child(n, k, 0, &s->part[k]);
+    if (!n->child[k]) return vg_fail_memory(err, "the parts of a front");
     n->n_child++;
   }
   return VG_OK;
@@ -134,7 +242,32 @@ static double correction(struct vg_node *n)
   return n->per_cube / was;
 }
 
-static vg_status share_load(struct vg_node *n, struct vg_error *err)
+/* Every child is what was left of one block. */
+static vg_status load_of_blocks(struct split *s, struct vg_error *err)
+{
+  struct vg_node *n = s->n;
+  const double *at[3];
+  size_t n_block = vg_lattice_blocks(&n->lattice);
+  struct vg_load *load = vg_calloc(n_block, sizeof *load);
+  vg_status st;
+
+  if (!load) return vg_fail_memory(err, "the load of a void");
+  for (int k = 0; k < 3; k++) at[k] = n->lattice.at[k];
+  st = vg_load_split_blocks(&n->load, n->lattice.n, at, zone_reach,
+                            correction(n), 1, load, err);
+  for (size_t b = 0; st == VG_OK && b < n_block; b++) {
+    if (s->child[b] == NONE) {
+      vg_load_release(&load[b]);
+      continue;
+    }
+    n->child[s->child[b]]->load = load[b];
+    n->child[s->child[b]]->per_cube = n->per_cube;
+  }
+  free(load);
+  return st;
+}
+
+static vg_status load_of_fronts(struct vg_node *n, struct vg_error *err)
 {
   struct vg_void *v = vg_calloc(n->n_child, sizeof *v);
   struct vg_load *load = vg_calloc(n->n_child, sizeof *load);
@@ -174,62 +307,60 @@ static void count_retry(struct vg_partition *p, struct vg_node *n)
     }
 }
 
-/* Put small children together with the crumbs. Returns how many stay. */
+/* Put small children together. */
 static vg_status bundle(struct vg_partition *p, struct vg_node *n,
-                        struct vg_front *crumbs, struct vg_error *err)
+                        struct vg_error *err)
 {
-  double least = small_share * p->options.rule.leaf_cells;
-  struct vg_node *rest = NULL;
+  double least = small_share * p->options.rule.leaf_cells, cells = 0;
+  struct vg_front rest = VG_FRONT_INIT;
   size_t left = 0;
-  double cells = 0;
+  vg_status st = VG_OK;
 
   for (size_t k = 0; k < n->n_child; k++) {
     struct vg_node *c = n->child[k];
-    vg_status st;
 
     n->child[k] = NULL;
-    if (c->load.cells >= least) {
+    if (st < 0 || c->load.cells >= least) {
       n->child[left++] = c;
       continue;
     }
     cells += c->load.cells;
-    st = vg_front_append(crumbs, &c->front, err);
+    st = vg_front_append(&rest, &c->front, err);
     vg_node_free(c);
-    if (st < 0) {
-      n->n_child = k + 1;
-      return st;
-    }
   }
   n->n_child = left;
-  if (!crumbs->n_face) return VG_OK;
-  rest = new_child(n, REST, crumbs);
-  if (!rest) return vg_fail_memory(err, "the parts of a front");
-  rest->is_final = 1;
-  rest->load.cells = cells;
-  n->child[n->n_child++] = rest;
-  return VG_OK;
+  if (st == VG_OK && rest.n_face) {
+    struct vg_node *r = new_child(n, 0, 1, &rest);
+
+    if (!r) st = vg_fail_memory(err, "the parts of a front");
+    else {
+      r->is_final = 1;
+      r->load.cells = cells;
+      n->child[n->n_child++] = r;
+    }
+  }
+  vg_front_release(&rest);
+  return st;
 }
 
 vg_status vg_node_split(struct vg_partition *p, struct vg_node *n,
                         struct vg_error *err)
 {
   struct split s = { .n = n };
-  struct vg_front crumbs = VG_FRONT_INIT;
   vg_status st;
 
-  VG_TRY(find_parts(&s, err));
-  find_owners(&s);
-  VG_TRY(put_shells(&s, err));
-  VG_TRY(make_children(&s, &crumbs, err));
-  VG_TRY(share_load(n, err));
+  VG_TRY(label_points(&s, err));
+  find_children(&s);
+  VG_TRY(split_front(&s, err));
+  if (bounds_nothing(&s)) VG_TRY(undo(&s, err));
+  VG_TRY(make_children(&s, err));
+  VG_TRY(s.is_merged ? load_of_fronts(n, err) : load_of_blocks(&s, err));
   count_retry(p, n);
-  st = bundle(p, n, &crumbs, err);
+  st = bundle(p, n, err);
 done:
   for (size_t k = 0; s.part && k < s.n_part; k++)
     vg_front_release(&s.part[k]);
   free(s.part);
-  free(s.volume);
-  free(s.owner);
-  vg_front_release(&crumbs);
+  free(s.block);
   return st;
 }
