@@ -5,6 +5,8 @@
 #include <string.h>
 
 #include "cli/cli.h"
+#include "cli/deck.h"
+#include "cli/input.h"
 #include "cli/progress.h"
 #include "cli/sweep.h"
 #include "io/stream.h"
@@ -12,12 +14,29 @@
 enum { KEY_LEAF_CELLS = 300, KEY_REPEAT, KEY_LAUNCHER, KEY_KEEP,
        KEY_PROGRAM };
 
-static void range(const char *name, const char *text, int64_t lo, int64_t hi,
-                  struct vg_range_list *out, const struct argp_state *state)
+/* Lists, from an option or from the deck. */
+enum { RANKS, THREADS, LEVELS, LEAF_CELLS, N_LIST };
+static const struct {
+  const char *option, *column;
+  int64_t lo, hi;
+} lists[N_LIST] = {
+  { "--ranks", "ranks", 1, 1000000 }, { "--threads", "threads", 1, 1000 },
+  { "--levels", "levels", 0, 40 },
+  { "--leaf-cells", "leaf_cells", 1, 1000000000000 } };
+
+static struct vg_range_list *list_of(struct vg_sweep_options *o, int k)
+{
+  return k == RANKS ? &o->ranks : k == THREADS ? &o->threads
+       : k == LEVELS ? &o->levels : &o->leaf_cells;
+}
+
+static void range(int k, const char *text, struct vg_sweep_options *o,
+                  const struct argp_state *state)
 {
   struct vg_error err = VG_ERROR_INIT;
 
-  if (vg_range_parse(name, text, lo, hi, out, &err) < 0)
+  if (vg_range_parse(lists[k].option, text, lists[k].lo, lists[k].hi,
+                     list_of(o, k), &err) < 0)
     argp_error(state, "%s", err.text);
 }
 
@@ -28,13 +47,12 @@ static error_t option(int key, char *arg, struct argp_state *state)
 
   switch (key) {
   case 'p': o->project = arg; return 0;
+  case 'd': o->deck = arg; return 0;
   case 'o': o->dir = arg; return 0;
-  case 'L': range("--levels", arg, 0, 40, &o->levels, state); return 0;
-  case KEY_LEAF_CELLS:
-    range("--leaf-cells", arg, 1, 1000000000000, &o->leaf_cells, state);
-    return 0;
-  case 'n': range("--ranks", arg, 1, 1000000, &o->ranks, state); return 0;
-  case 't': range("--threads", arg, 1, 1000, &o->threads, state); return 0;
+  case 'L': range(LEVELS, arg, o, state); return 0;
+  case KEY_LEAF_CELLS: range(LEAF_CELLS, arg, o, state); return 0;
+  case 'n': range(RANKS, arg, o, state); return 0;
+  case 't': range(THREADS, arg, o, state); return 0;
   case KEY_REPEAT:
     if (!vg_parse_int(arg, strlen(arg), &n) || n < 1 || n > 1000)
       argp_error(state, "--repeat takes a number from 1 to 1000, not '%s'",
@@ -56,6 +74,59 @@ static error_t option(int key, char *arg, struct argp_state *state)
     return 0;
   default: return ARGP_ERR_UNKNOWN;
   }
+}
+
+/* --- what the deck says -------------------------------------------------- */
+
+/* A list of the deck, where no option gave one. */
+static vg_status take_list(const char *deck, int k, const char *text,
+                           struct vg_sweep_options *o, struct vg_error *err)
+{
+  char what[400];
+
+  if (!*text) return VG_OK;
+  snprintf(what, sizeof what, "%.300s: sweep: %s", deck, lists[k].column);
+  return vg_range_parse(what, text, lists[k].lo, lists[k].hi, list_of(o, k),
+                        err);
+}
+
+/* Options win over the deck; levels and leaf sizes are one question. */
+static vg_status take_row(const char *deck, const struct vg_sweep_row *row,
+                          struct vg_sweep_options *o, struct vg_error *err)
+{
+  const char *text[N_LIST] = { row->ranks, row->threads, row->levels,
+                               row->leaf_cells };
+  int given[N_LIST];
+  vg_status st = VG_OK;
+
+  for (int k = 0; k < N_LIST; k++) given[k] = list_of(o, k)->n > 0;
+  given[LEVELS] = given[LEAF_CELLS] = given[LEVELS] || given[LEAF_CELLS];
+  for (int k = 0; k < N_LIST && st >= 0; k++)
+    if (!given[k]) st = take_list(deck, k, text[k], o, err);
+  if (!o->repeat) o->repeat = (int)row->repeat;
+  return st;
+}
+
+/* A project that is not found is for its runs to tell. */
+static vg_status take_deck(struct vg_sweep_options *o, struct vg_error *err)
+{
+  struct vg_problem p = VG_PROBLEM_INIT;
+  const char *deck = o->deck;
+  vg_status st = VG_OK;
+
+  vg_settings_default(&p.settings);
+  if (!deck && vg_input_find(o->project, NULL, &p.files, NULL) >= 0)
+    deck = p.files.deck;
+  if (deck && *deck) st = vg_deck_read(deck, &p.settings, err);
+  if (st >= 0 && p.settings.n_sweep)
+    st = take_row(deck, &p.settings.sweep, o, err);
+  if (st >= 0 && !o->ranks.n)
+    st = vg_range_parse("--ranks", "1", 1, 1, &o->ranks, err);
+  if (st >= 0 && !o->threads.n)
+    st = vg_range_parse("--threads", "1", 1, 1, &o->threads, err);
+  if (!o->repeat) o->repeat = 1;
+  vg_problem_release(&p);
+  return st;
 }
 
 static void print_value(double v, int width, int digits)
@@ -145,7 +216,7 @@ static vg_status run_all(struct vg_sweep *s, struct vg_error *err)
 }
 
 /* A sweep that was stopped shows what there is. */
-static int run(const struct vg_sweep_options *o)
+static int run(struct vg_sweep_options *o)
 {
   struct vg_sweep s = { .n = 0 };
   struct vg_display show;
@@ -154,6 +225,7 @@ static int run(const struct vg_sweep_options *o)
   vg_status st, ran;
 
   vg_display_init(&show, o->quiet);
+  VG_TRY(take_deck(o, &err));
   VG_TRY(vg_sweep_plan(o, &s, &err));
   VG_TRY(vg_cli_make_folder(o->dir, &err));
   ran = run_all(&s, &why);
@@ -174,6 +246,9 @@ int vg_cmd_sweep(int argc, char **argv)
 {
   const struct argp_option options[] = {
     { "project", 'p', "PROJECT", 0, "as for vanguard mesh", 1 },
+    { "deck", 'd', "FILE", 0, "run deck, for vanguard mesh too; lists that no "
+      "option gives come from its table sweep [default PROJECT.deck if there "
+      "is one]", 1 },
     { "levels", 'L', "LIST", 0, "levels of bisection: 1,2,4 or 3:7 or "
       "2:10:2", 2 },
     { "leaf-cells", KEY_LEAF_CELLS, "LIST", 0, "cells to a leaf; both lists "
@@ -205,13 +280,9 @@ int vg_cmd_sweep(int argc, char **argv)
       "first case on one worker. A case that fails is listed with its "
       "message; its log is DIR/CASE/run.log. Exit status: 0 done, 1 a case "
       "failed, 2 wrong usage, 4 equal mesh options gave different files." };
-  struct vg_sweep_options o = { .dir = "sweep", .repeat = 1 };
-  struct vg_error err = VG_ERROR_INIT;
+  struct vg_sweep_options o = { .dir = "sweep" };
   int status;
 
-  if (vg_range_parse("--ranks", "1", 1, 1, &o.ranks, &err) < 0 ||
-      vg_range_parse("--threads", "1", 1, 1, &o.threads, &err) < 0)
-    return vg_cli_fail(&err);
   for (int i = 1; i < argc && !o.extra; i++) {
     if (strcmp(argv[i], "--") != 0) continue;
     o.extra = argv + i + 1;
@@ -220,9 +291,6 @@ int vg_cmd_sweep(int argc, char **argv)
   }
   vg_cli_parse(&argp, argc, argv, &o);
   status = run(&o);
-  vg_range_release(&o.levels);
-  vg_range_release(&o.leaf_cells);
-  vg_range_release(&o.ranks);
-  vg_range_release(&o.threads);
+  for (int k = 0; k < N_LIST; k++) vg_range_release(list_of(&o, k));
   return status;
 }

@@ -303,6 +303,7 @@ static vg_status table_rows(struct reader *r, enum vg_table_kind kind,
     struct vg_patch_row patch;
     struct vg_layer_row layer;
     struct vg_source source;
+    struct vg_sweep_row sweep;
   } row;
   size_t n_row = 0;
   int state;
@@ -312,9 +313,10 @@ static vg_status table_rows(struct reader *r, enum vg_table_kind kind,
     st = next_line(r, &state, err);
     if (st < 0 || state < 2) return st;
     if (state == 2) continue;
-    if (kind == VG_TABLE_FARFIELD && n_row++)
-      return fail(r, err, VG_ERR_FORMAT, "the farfield table has one line of "
-                  "values");
+    if ((kind == VG_TABLE_FARFIELD || kind == VG_TABLE_SWEEP) && n_row++)
+      return vg_fail(err, VG_ERR_FORMAT, "%s:%zu: the %s table has one line of "
+                     "values", r->in.path, r->line,
+                     vg_settings_table(kind)->name);
     vg_settings_row_default(kind, &row);
     st = take_values(r, &row, err);
     if (st < 0) return st;

@@ -272,6 +272,22 @@ static const struct vg_param source_columns[] = {
     .help = "name of the group, for people" },
 };
 
+#undef AT
+#define AT(field) .offset = offsetof(struct vg_sweep_row, field), \
+  .size = sizeof ((struct vg_sweep_row *)0)->field
+#define LIST(name, field, about) \
+  { name, AT(field), .type = VG_PARAM_TEXT, .unit = "", .help = about }
+
+static const struct vg_param sweep_columns[] = {
+  LIST("ranks", ranks, "numbers of ranks, as in 1,2,4 or 1:64:x2; \"\": 1"),
+  LIST("threads", threads, "threads of each rank; \"\": 1"),
+  LIST("levels", levels, "levels of bisection; \"\": none"),
+  LIST("leaf_cells", leaf_cells, "cells to a leaf; both lists make cases of "
+       "their own; \"\": as the setting"),
+  { "repeat", AT(repeat), .type = VG_PARAM_COUNT, .hi = 1000,
+    .unit = "times", .help = "runs of each case; 0: one" },
+};
+
 #define COUNT(a) (sizeof (a) / sizeof *(a))
 
 static const struct vg_table tables[VG_TABLE_N] = {
@@ -287,6 +303,9 @@ static const struct vg_table tables[VG_TABLE_N] = {
   [VG_TABLE_SOURCES] = { "sources", "Spacing in the volume. - or no "
     "column: the default.", source_columns,
     COUNT(source_columns), sizeof (struct vg_source) },
+  [VG_TABLE_SWEEP] = { "sweep", "What vanguard sweep runs, of which other "
+    "commands take no notice. One line.", sweep_columns,
+    COUNT(sweep_columns), sizeof (struct vg_sweep_row) },
 };
 
 const struct vg_param *vg_settings_params(size_t *n)
@@ -308,6 +327,7 @@ void vg_settings_row_default(enum vg_table_kind kind, void *row)
                                 VG_COUNT_NONE, VG_COUNT_NONE, NAN, NAN, NAN,
                                 NAN, NAN };
   struct vg_source source = { .kind = VG_SOURCE_POINT, .an = 1 };
+  struct vg_sweep_row sweep = { .repeat = 0 };
 
   for (int k = 0; k < 3; k++)
     far.centre[k] = far.lo[k] = far.hi[k] = NAN;
@@ -316,6 +336,7 @@ void vg_settings_row_default(enum vg_table_kind kind, void *row)
   case VG_TABLE_PATCHES: memcpy(row, &patch, sizeof patch); break;
   case VG_TABLE_LAYERS: memcpy(row, &layer, sizeof layer); break;
   case VG_TABLE_SOURCES: memcpy(row, &source, sizeof source); break;
+  case VG_TABLE_SWEEP: memcpy(row, &sweep, sizeof sweep); break;
   case VG_TABLE_N: break;
   }
 }
@@ -390,6 +411,10 @@ vg_status vg_settings_add(struct vg_settings *s, enum vg_table_kind kind,
       s->source[s->n_source].h1 = s->source[s->n_source].h0;
     s->n_source++;
     break;
+  case VG_TABLE_SWEEP:
+    memcpy(&s->sweep, row, sizeof s->sweep);
+    s->n_sweep = 1;
+    break;
   case VG_TABLE_N:
     break;
   }
@@ -400,6 +425,7 @@ const void *vg_settings_row(const struct vg_settings *s,
                             enum vg_table_kind kind, size_t i)
 {
   if (kind == VG_TABLE_FARFIELD) return &s->farfield;
+  if (kind == VG_TABLE_SWEEP) return &s->sweep;
   if (kind == VG_TABLE_PATCHES) return &s->patch[i];
   if (kind == VG_TABLE_LAYERS) return &s->layer_row[i];
   return &s->source[i];
@@ -408,6 +434,7 @@ const void *vg_settings_row(const struct vg_settings *s,
 size_t vg_settings_rows(const struct vg_settings *s, enum vg_table_kind kind)
 {
   if (kind == VG_TABLE_FARFIELD) return 1;
+  if (kind == VG_TABLE_SWEEP) return s->n_sweep;
   if (kind == VG_TABLE_LAYERS) return s->n_layer;
   return kind == VG_TABLE_PATCHES ? s->n_patch : s->n_source;
 }
@@ -537,6 +564,7 @@ void vg_settings_override(struct vg_settings *s, const struct vg_param *set)
 
   if (at == &l->first) l->y_plus = 0;
   if (at == &l->y_plus) l->first = 0;
+  if (at == &s->leaf_cells) s->levels = 0;
   if (at == &l->ratio) l->rate1 = l->rate2 = NAN;
   if (at == &l->rate1 || at == &l->rate2) l->ratio = NAN;
 }

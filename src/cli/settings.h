@@ -49,6 +49,14 @@ struct vg_layer_row {
   double min_full, min_any, max_first_error;
 };
 
+/** Lists of numbers as cli/ranges.h takes them, for vanguard sweep alone; "":
+ * not given. */
+struct vg_sweep_row {
+  char ranks[VG_LIST_MAX], threads[VG_LIST_MAX];
+  char levels[VG_LIST_MAX], leaf_cells[VG_LIST_MAX];
+  int64_t repeat;                  /* 0: not given */
+};
+
 /** Viscous layers on all walls. 0 (a rate, the cap and limits: NAN): not
  * given. */
 struct vg_layer_settings {
@@ -82,6 +90,8 @@ struct vg_settings {
   int64_t threads;
   struct vg_layer_settings layer;
   struct vg_farfield_row farfield;
+  struct vg_sweep_row sweep;
+  size_t n_sweep;                  /* 1: given */
   size_t n_source, cap_source, n_patch, cap_patch, n_layer, cap_layer;
   struct vg_source *source;        /* [n_source] owned */
   struct vg_patch_row *patch;      /* [n_patch] owned */
@@ -113,7 +123,7 @@ struct vg_param {
 };
 
 enum vg_table_kind { VG_TABLE_FARFIELD, VG_TABLE_PATCHES, VG_TABLE_LAYERS,
-                     VG_TABLE_SOURCES, VG_TABLE_N };
+                     VG_TABLE_SOURCES, VG_TABLE_SWEEP, VG_TABLE_N };
 
 struct vg_table {
   const char *name, *help;
@@ -133,12 +143,13 @@ void vg_settings_default(struct vg_settings *s);
 /** Default row of a table into row[row_size]. */
 void vg_settings_row_default(enum vg_table_kind kind, void *row);
 
-/** Append a row; the farfield's replaces the one there is. A source without h1
+/** Append a row; those of farfield and sweep replace the one there is. A source without h1
  * gets its h0 there. */
 vg_status vg_settings_add(struct vg_settings *s, enum vg_table_kind kind,
                           const void *row, struct vg_error *err);
 
-/** Row i of a table and the count of rows (farfield: always one). */
+/** Row i of a table and the count of rows (farfield: always one; sweep: at most
+ * one). */
 const void *vg_settings_row(const struct vg_settings *s,
                             enum vg_table_kind kind, size_t i);
 size_t vg_settings_rows(const struct vg_settings *s, enum vg_table_kind kind);
@@ -173,7 +184,7 @@ struct vg_farfield vg_settings_farfield(const struct vg_settings *s);
 void vg_settings_write(struct vg_settings *s);
 
 /** Of settings that say the same in two ways (a first height and y+, a ratio
- * and its rates) the one that was set last holds: forget the others.
+ * and its rates, leaf_cells and levels) the one that was set last holds: forget the others.
  * @param set  the setting that has just been set */
 void vg_settings_override(struct vg_settings *s, const struct vg_param *set);
 

@@ -12,6 +12,7 @@
 
 struct vg_sweep_options {
   const char *project, *dir;
+  const char *deck;              /* NULL: PROJECT.deck where there is one */
   const char *launcher;          /* words with {ranks}, {threads}; NULL:
                                     mpirun from 2 ranks on */
   const char *program;           /* NULL: this one */

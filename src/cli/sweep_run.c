@@ -192,6 +192,10 @@ static vg_status command_line(const struct vg_sweep_options *o,
   VG_TRY(add_word(w, strdup("mesh"), err));
   VG_TRY(add_word(w, strdup("-p"), err));
   VG_TRY(add_word(w, strdup(o->project), err));
+  if (o->deck) {
+    VG_TRY(add_word(w, strdup("--deck"), err));
+    VG_TRY(add_word(w, strdup(o->deck), err));
+  }
   VG_TRY(add_pair(w, "--threads", c->threads, err));
   if (c->levels >= 0) VG_TRY(add_pair(w, "--levels", c->levels, err));
   if (c->leaf_cells >= 0)

@@ -127,6 +127,7 @@ static void everything_survives_a_round_trip(void **state)
   struct vg_patch_row patch = { -7, 4000, "left wing" };
   struct vg_layer_row layer = { -7, VG_ANSWER_YES, 1e-5, 1.15, NAN, NAN, NAN,
                                 30, 2, 0.125, 0, 98, 99.9, NAN };
+  struct vg_sweep_row sweep = { "1,2", "1:4:x2", "", "20000,50000", 3 };
 
   (void)state;
   vg_settings_default(&s);
@@ -152,6 +153,7 @@ static void everything_survives_a_round_trip(void **state)
   vg_settings_add(&s, VG_TABLE_LAYERS, &layer, NULL);
   for (int kind = VG_SOURCE_VGRID_NODE; kind <= VG_SOURCE_CYLINDER; kind++)
     add_source(&s, kind);
+  vg_settings_add(&s, VG_TABLE_SWEEP, &sweep, NULL);
   round_trip(&s, 0);
   round_trip(&s, 1);
   vg_settings_release(&s);

@@ -123,6 +123,41 @@ says out "failed, status 1: stopped"
 says out "n1-t2     1       2 not run"
 says err "interrupted during n1-t1"
 
+# Lists from the deck of the project, or another one; options win.
+vanguard demo box --cells 2000 --out p
+cat >>p/box.deck <<'END'
+
+sweep
+ranks  threads  leaf_cells  repeat
+1,2    1:4:x2   100         2
+END
+sweep -p p/box -o d
+exits 0
+says out "12 of 12 cases done"
+says d/sweep.csv '"c100-n2-t4-r2"'
+sweep -p p/box -o d -t 1 -L 3 --repeat 1
+exits 0
+says out "2 of 2 cases done"
+says d/sweep.csv '"L3-n2-t1"'
+printf 'Sizes\n\nsweep\nlevels\n3:5\n' >levels.deck
+sweep -p p/box --deck levels.deck -o d
+exits 0
+says out "3 of 3 cases done"
+says out "L5-n1-t1 "
+printf 'Sizes\n\nsweep\nleaf_cells\nmany\n' >bad.deck
+sweep -p p/box --deck bad.deck -o d
+exits 1
+says err "bad.deck: sweep: leaf_cells takes numbers as 1,2,4 or ranges"
+says err "not 'many'"
+# Its other commands take no notice of it; a second line is one too many.
+vanguard mesh -q -p p/box --out m
+exits 0
+says m/box.resolved.deck "1:4:x2"
+printf '1 1 1 1\n' >>p/box.deck
+vanguard mesh -q -p p/box --out m
+exits 1
+says err "the sweep table has one line of values"
+
 vanguard sweep
 exits 2
 says err "which project?"
