@@ -11,7 +11,7 @@
 #include "base/memory.h"
 #include "core/quality_parts.h"
 
-#define LEAST_ENTRIES ((size_t)1 << 18)
+#define LEAST_ENTRIES ((size_t)1 << 21)
 #define N_PASS 4
 
 /* Targets are asked for in groups: one call for many points. */

@@ -5,7 +5,9 @@
  * matched by its other nodes: no global sort, so O(n). The records of all
  * buckets at once would need 64 bytes per tetrahedron, so buckets are made
  * and matched for one range of nodes after the other, in as many passes over
- * the cells as keep the records of a range small. */
+ * the cells as keep the records of a range small.
+ *
+ * Tetrahedra alone are first tried by quality_pairs.c. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -296,8 +298,10 @@ static void match_range(struct table *t)
 /* Components in the order of their first cells. */
 static vg_status number_loose(struct table *t, struct vg_error *err)
 {
-  uint32_t *number = vg_alloc(t->n_cell, sizeof *number), n = 0;
+  uint32_t *number, n = 0;
 
+  if (!t->loose->n_face) return VG_OK;
+  number = vg_alloc(t->n_cell, sizeof *number);
   if (!number) return vg_fail_memory(err, "the parts of the mesh");
   for (size_t i = 0; i < t->n_cell; i++)
     if (t->parent[i] == i) number[i] = n++;
@@ -345,9 +349,7 @@ static vg_status prepare(struct table *t, size_t room, struct vg_error *err)
     if (n > most) most = n;
   }
   t->record = vg_alloc(most, sizeof *t->record);
-  if (!t->record) return vg_fail_memory(err, "the table of faces");
-  for (size_t i = 0; i < t->n_cell; i++) t->parent[i] = (uint32_t)i;
-  return VG_OK;
+  return t->record ? VG_OK : vg_fail_memory(err, "the table of faces");
 }
 
 void vg_loose_release(struct vg_loose *loose)
@@ -357,10 +359,24 @@ void vg_loose_release(struct vg_loose *loose)
   memset(loose, 0, sizeof *loose);
 }
 
-static vg_status match_all(struct table *t, size_t room, struct vg_error *err)
+static void part_cells(struct table *t)
 {
-  size_t n;
+  for (size_t i = 0; i < t->n_cell; i++) t->parent[i] = (uint32_t)i;
+}
 
+/* All sides of a face together: any cells, any faults. */
+static vg_status match_all(struct table *t, size_t n_record,
+                           struct vg_error *err)
+{
+  size_t room = n_record / N_PASS, n;
+  vg_status st;
+
+  if (room < LEAST_RECORDS) room = LEAST_RECORDS;
+  t->start = vg_calloc(t->m->n_point, sizeof *t->start);
+  if (!t->start) return vg_fail_memory(err, "the faces of the mesh");
+  st = prepare(t, room, err);
+  if (st < 0) return st;
+  part_cells(t);
   for (uint32_t lo = 0, hi; lo < t->m->n_point; lo = hi) {
     hi = make_range(t, lo, room, 1, &n);
     t->lo = lo;
@@ -368,8 +384,8 @@ static vg_status match_all(struct table *t, size_t room, struct vg_error *err)
     put_range(t);
     match_range(t);
   }
-  if (t->refused) return vg_fail_memory(err, "the rim of a part of the mesh");
-  return t->loose ? number_loose(t, err) : VG_OK;
+  return t->refused ? vg_fail_memory(err, "the rim of a part of the mesh")
+                    : VG_OK;
 }
 
 vg_status vg_judge_faces(const struct vg_mesh *m, const float *volume,
@@ -379,8 +395,7 @@ vg_status vg_judge_faces(const struct vg_mesh *m, const float *volume,
   struct table t = { .m = m, .volume = volume, .f = f, .loose = loose };
   size_t n_record = 4 * m->n_tet + 5 * (m->n_pyr + m->n_pri) +
                     6 * m->n_hex + m->n_tri + m->n_quad;
-  size_t room = n_record / N_PASS;
-  vg_status st = VG_OK;
+  vg_status st = VG_BLOCKED;
 
   t.n_cell = m->n_tet + m->n_pyr + m->n_pri + m->n_hex;
   if (t.n_cell + m->n_tri + m->n_quad > UINT32_MAX / 2 ||
@@ -388,15 +403,13 @@ vg_status vg_judge_faces(const struct vg_mesh *m, const float *volume,
     return vg_fail(err, VG_ERR_UNSUPPORTED,
                    "a mesh of %zu cells is too large for the check of its "
                    "faces (limit 2^30); check its parts", t.n_cell);
-  t.start = vg_calloc(m->n_point, sizeof *t.start);
   t.parent = vg_alloc(t.n_cell, sizeof *t.parent);
-  if (!t.start || !t.parent) {
-    st = vg_fail_memory(err, "the faces of the mesh");
-    goto done;
-  }
-  if (room < LEAST_RECORDS) room = LEAST_RECORDS;
-  VG_TRY(prepare(&t, room, err));
-  VG_TRY(match_all(&t, room, err));
+  if (!t.parent) return vg_fail_memory(err, "the faces of the mesh");
+  part_cells(&t);
+  if (vg_faces_can_pair(m, loose))
+    VG_TRY(vg_pair_faces(m, volume, f, loose, t.parent, err));
+  if (st == VG_BLOCKED) VG_TRY(match_all(&t, n_record, err));
+  if (loose) VG_TRY(number_loose(&t, err));
   *n_component = 0;
   for (size_t i = 0; i < t.n_cell; i++) *n_component += t.parent[i] == i;
 done:

@@ -157,6 +157,18 @@ vg_status vg_judge_faces(const struct vg_mesh *m, const float *volume,
                          struct vg_figures *f, struct vg_loose *loose,
                          size_t *n_component, struct vg_error *err);
 
+/** Whether vg_pair_faces does for a mesh or a part of one: tetrahedra, whose
+ * loose faces are not given. */
+int vg_faces_can_pair(const struct vg_mesh *m, const struct vg_loose *loose);
+
+/** As vg_judge_faces, where each face has two sides.
+ * @param parent  in/out: [n_tet] components: each cell its own
+ * VG_BLOCKED: some faces of a whole mesh have not; nothing but parent was
+ * touched. Of a part, sides that find no other are listed in loose. */
+vg_status vg_pair_faces(const struct vg_mesh *m, const float *volume,
+                        struct vg_figures *f, struct vg_loose *loose,
+                        uint32_t *parent, struct vg_error *err);
+
 /** Edges against the field: those that are not of boundary faces. With loose
  * faces: those that are not of these, whose edges are listed. */
 vg_status vg_judge_edges(const struct vg_mesh *m,
