@@ -25,9 +25,10 @@ set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=bench/common.sh
 . "$root/bench/common.sh"
+# shellcheck source=verification/parallel/runs.sh
+. "$root/verification/parallel/runs.sh"
 vanguard=$root/build/release/bin/vanguard
 work='' cells=600000 kills=5 seed='' demo=box
-LIMIT_S=300
 take_options "vanguard cells kills seed demo work out" "" "$@"
 RANDOM=${seed:=$(($(date +%s) % 32768))}
 [ -x "$vanguard" ] || die "no program $vanguard: build it first"
@@ -35,6 +36,7 @@ command -v mpirun > /dev/null || skip "no mpirun"
 work_folder faults
 work=$(cd "$work" && pwd)
 leaf=$((cells / 30))
+mesh_options=(-p "$work/in/$demo" --leaf-cells "$leaf")
 mounts=() failed=0
 
 # shellcheck disable=SC2317 # a trap
@@ -45,33 +47,6 @@ clean_up() {
 }
 trap clean_up EXIT
 
-# begin RANKS THREADS OPTION...: in the background, as `pid`.
-begin() {
-  local ranks=$1 threads=$2
-  shift 2
-  local command=("$vanguard" mesh -q -p "$work/in/$demo" --out "$out_dir"
-    --threads "$threads" --leaf-cells "$leaf" --run-dir "$run_dir" "$@")
-  [ "$ranks" = 1 ] || command=(mpirun --oversubscribe --bind-to none
-    -n "$ranks" "${command[@]}")
-  "${command[@]}" > "$work/log" 2>&1 < /dev/null &
-  pid=$!
-}
-
-# The end of `pid`: `status`, `hung`.
-finish() {
-  local i
-  hung=0 status=0
-  for ((i = 0; i < LIMIT_S * 10; i++)); do
-    kill -0 "$pid" 2> /dev/null || break
-    sleep 0.1
-  done
-  if kill -0 "$pid" 2> /dev/null; then
-    hung=1
-    kill -9 "$pid"
-  fi
-  { wait "$pid"; } 2> /dev/null || status=$?
-}
-
 # until_kept N: wait until N tasks are in the run directory, or the run ends.
 until_kept() {
   while kill -0 "$pid" 2> /dev/null; do
@@ -80,16 +55,12 @@ until_kept() {
     sleep 0.02
   done
 }
-# ranks_of RANKS: their processes. (Below them are helpers of the same name.)
-ranks_of() { if [ "$1" = 1 ]; then echo "$pid"; else pgrep -P "$pid"; fi; }
-
 fresh() {   # fresh NAME: folders of a case
   case_name=$1 out_dir=$work/$1/out run_dir=$work/$1/run why=''
   rm -rf "${work:?}/$1"
   mkdir -p "$out_dir"
 }
 bad() { why="${why:+$why; }$*"; }
-message() { grep -a -m 1 '^vanguard: ' "$work/log" | cut -c11- || true; }
 said() { grep -qaE "$1" "$work/log" || bad "no word of '$1'"; }
 ended() {   # ended STATUS...
   local s

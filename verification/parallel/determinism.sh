@@ -1,0 +1,190 @@
+#!/usr/bin/env bash
+# verification/parallel/determinism.sh: the same files from any number of ranks
+# and threads, in any order of the tasks, and resumed after kill -9.
+#
+# usage: verification/parallel/determinism.sh [--quick] [--vanguard PROGRAM]
+#          [--data DIR] [--cells N] [--leaves N] [--ranks LIST]
+#          [--threads LIST] [--kills N] [--seed N] [--work DIR] [--out FILE]
+#          [CASE...]
+#   --quick     small: 60,000 cells (the wing more, but few layers), 1 and 2
+#               ranks and threads, one kill, no aircraft
+#   --vanguard  the program (default build/release/bin/vanguard)
+#   --data      folder of real geometry (verification/README.md), for aircraft
+#   --cells     of box, sphere and wing without its layers (default 600000; the
+#               wing has 250000 at least)
+#   --leaves    into about how many parts (default 24)
+#   --ranks     default "1 2 4 7"
+#   --threads   default "1 2 3"
+#   --kills     runs of each case that are killed and resumed (default 5)
+#   --seed      of orders, times and victims (default: the clock; printed)
+#   --work      scratch folder, kept (default: a temporary one, removed)
+#   --out       write the table to FILE too (markdown)
+#   CASE        box sphere wing dlr_f6_coarse falcon; the wing and both aircraft
+#               have viscous layers
+#
+# Of each case: first one rank, one thread, heaviest task first. Then all ranks
+# x threads, each with tasks in another order. Then runs of which one rank is
+# killed at a random time, resumed on another number of ranks and threads, which
+# may be killed again, until one ends. Bar: every file but report and resolved
+# deck is the same, byte for byte, in all of them. A kill that comes after the
+# end is tried again, earlier.
+# Exit status: 0 all the same, 1 not, or a run failed, 2 usage, 77 no mpirun.
+set -euo pipefail
+
+root=$(cd "$(dirname "$0")/../.." && pwd)
+# shellcheck source=bench/common.sh
+. "$root/bench/common.sh"
+# shellcheck source=bench/aircraft.sh
+. "$root/bench/aircraft.sh"
+# shellcheck source=verification/parallel/runs.sh
+. "$root/verification/parallel/runs.sh"
+vanguard=$root/build/release/bin/vanguard
+work='' data='' cells='' leaves=24 ranks='' threads='' kills='' seed='' quick=0
+project='' options=()
+take_options "vanguard data cells leaves ranks threads kills seed work out" \
+  quick "$@"
+if [ "$quick" = 1 ]; then
+  data='' cells=${cells:-60000} ranks=${ranks:-1 2} threads=${threads:-1 2}
+  kills=${kills:-1}
+fi
+: "${cells:=600000}" "${ranks:=1 2 4 7}" "${threads:=1 2 3}" "${kills:=5}"
+RANDOM=${seed:=$(($(date +%s) % 32768))}
+[ -x "$vanguard" ] || die "no program $vanguard: build it first"
+command -v mpirun > /dev/null || skip "no mpirun"
+work_folder determinism
+work=$(cd "$work" && pwd)
+read -ra ranks <<< "$ranks"
+read -ra threads <<< "$threads"
+out_dir=$work/files run_dir='' failed=0
+[ -z "$out" ] || : > "$out"
+
+any() { local list=("$@"); echo "${list[RANDOM % $#]}"; }
+fact() {   # fact BLOCK KEY: a number of a block of the report
+  sed -n "/^  \"$1\": {/,/^  }/s/^    \"$2\": \([0-9]*\),*\$/\1/p" \
+    "$out_dir"/*.report.json
+}
+
+# whole RANKS THREADS OPTION...: a run to its end; its digest in `this`.
+whole() {
+  rm -rf "$out_dir"
+  begin "$@"
+  finish
+  [ $hung = 0 ] || die "$name: $1 x $2 hung"
+  [ "$status" = 0 ] || die "$name: $1 x $2: status $status: $(message)"
+  this=$(digest "$out_dir")
+}
+
+differs() {   # differs HOW
+  [ "$this" != "$first" ] || return 0
+  bad="$bad${bad:+, }$1"
+  failed=1
+}
+
+shuffled() {
+  local r t order
+  for r in "${ranks[@]}"; do
+    for t in "${threads[@]}"; do
+      order=$((RANDOM + 1))
+      whole "$r" "$t" --shuffle-tasks $order
+      n_run=$((n_run + 1))
+      differs "$r x $t (order $order)"
+    done
+  done
+}
+
+kept() {   # tasks in the run directory
+  { find "$run_dir/records" -type f 2> /dev/null || true; } | wc -l
+}
+
+# Killed once, or more often; as `this` what comes out. Numbers of ranks and
+# threads change every time.
+killed() {
+  local r t how wait_s victims within=$1 chain=''
+  run_dir=$work/run
+  rm -rf "$run_dir" "$out_dir"
+  while :; do
+    r=$(any "${ranks[@]}") t=$(any "${threads[@]}") how=()
+    [ ! -e "$run_dir/run.txt" ] || how=(--resume)
+    wait_s=$(calc "$within * (0.05 + 0.9 * $RANDOM / 32768)")
+    rm -rf "$out_dir"
+    begin "$r" "$t" "${how[@]}"
+    # the second of three goes on to the end as a rule
+    if [ -z "$chain" ] || [ $((RANDOM % 3)) = 0 ]; then
+      sleep "$wait_s"
+      mapfile -t victims < <(ranks_of "$r")
+      [ ${#victims[@]} = 0 ] ||
+        kill -9 "$(any "${victims[@]}")" 2> /dev/null || true
+    fi
+    finish
+    [ $hung = 0 ] || die "$name: killed on $r x $t: the others hung"
+    if [ "$status" = 0 ]; then
+      if [ -z "$chain" ]; then   # too late
+        within=$(calc "$within / 2")
+        continue
+      fi
+      break
+    fi
+    said=$(message)
+    [ -z "$said" ] || die "$name: $r x $t: $said"
+    n_kill=$((n_kill + 1))
+    n_kept=$((n_kept + $(kept)))
+    chain="$chain $r x $t for $(printf %.2f "$wait_s") s,"
+  done
+  this=$(digest "$out_dir")
+  run_dir=''
+  [ ! -e "$work/run" ] || bad="$bad${bad:+, }run directory still there"
+  differs "killed:$chain then $r x $t"
+}
+
+one_case() {
+  local from to n
+  n=$(get_cells)
+  mesh_options=(-p "$project" "${options[@]}" --leaf-cells $((n / leaves)))
+  bad='' first='' n_run=1 n_kill=0 n_kept=0
+  from=$(date +%s%N)
+  whole 1 1
+  to=$(date +%s%N)
+  first=$this
+  local made parts
+  made=$(fact mesh cells) parts=$(fact partition leaves)
+  shuffled
+  for ((k = 0; k < kills; k++)); do
+    killed "$(calc "($to - $from) / 1e9")"
+  done
+  echo "| $name | $made | $parts | $n_run | $kills | $n_kill | $n_kept |" \
+    "$first | ${bad:-none} |" | say
+  rm -rf "$out_dir"
+}
+
+# Cells to expect above the layers, for the size of a leaf.
+get_cells() {
+  "$vanguard" plan -p "$project" "${options[@]}" -q -j -n 1 > "$work/plan.json" ||
+    die "$name: no forecast"
+  sed -n 's/^    "field_cells": \([0-9]*\).*/\1/p' "$work/plan.json"
+}
+
+say << HEAD
+Vanguard $("$vanguard" --version | awk 'NR == 1 { print $2 }'), $(nproc) cores, $(date -u +%Y-%m-%d); ranks ${ranks[*]}, threads ${threads[*]}, each with tasks in another order; seed $seed. Bar: no run differs.
+
+| case | cells | leaves | runs to the end | runs killed and resumed | kills | tasks found again | digest | runs that differ |
+|---|---|---|---|---|---|---|---|---|
+HEAD
+tried=0
+for name in box sphere wing dlr_f6_coarse falcon; do
+  wanted $name || continue
+  case $name in
+    wing)
+      demo_project wing $((cells < 250000 ? 250000 : cells)) "$work/input"
+      [ "$quick" = 0 ] || options+=(--layer-count 5) ;;
+    box|sphere) demo_project $name "$cells" "$work/input" ;;
+    *)
+      if [ -z "$data" ] || ! aircraft "$data" $name "$work/input"; then
+        [ "$quick" = 1 ] || echo "SKIP $name: no --data with it" >&2
+        continue
+      fi ;;
+  esac
+  tried=1
+  one_case
+done
+[ $tried = 1 ] || die "no such case, or no data for it; see --help"
+exit $failed

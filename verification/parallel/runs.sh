@@ -1,0 +1,44 @@
+# verification/parallel/runs.sh: runs in the background that can be killed.
+# Sourced by bash after bench/common.sh; the caller has `vanguard`, `work`,
+# `out_dir`, `run_dir` and mesh_options, what is meshed and how.
+# shellcheck shell=bash disable=SC2034,SC2154 # for, and from, the caller
+LIMIT_S=${LIMIT_S:-300}
+mesh_options=()
+
+# begin RANKS THREADS OPTION...: as `pid`. More ranks than cores are allowed,
+# and bound to none.
+begin() {
+  local ranks=$1 threads=$2
+  shift 2
+  local command=("$vanguard" mesh -q "${mesh_options[@]}" --out "$out_dir"
+    --threads "$threads" "$@")
+  [ -z "$run_dir" ] || command+=(--run-dir "$run_dir")
+  [ "$ranks" = 1 ] || command=(mpirun --oversubscribe --bind-to none
+    -n "$ranks" "${command[@]}")
+  "${command[@]}" > "$work/log" 2>&1 < /dev/null &
+  pid=$!
+}
+
+# The end of `pid`: `status`, `hung`. (The shell itself would tell of runs that
+# were killed.)
+finish() {
+  local i
+  hung=0 status=0
+  {
+    for ((i = 0; i < LIMIT_S * 20; i++)); do
+      kill -0 "$pid" || break
+      sleep 0.05
+    done
+    if kill -0 "$pid"; then
+      hung=1
+      kill -9 "$pid"
+    fi
+    wait "$pid" || status=$?
+  } 2> /dev/null
+}
+
+# ranks_of RANKS: their processes. (Below them are helpers of the same name.)
+ranks_of() { if [ "$1" = 1 ]; then echo "$pid"; else pgrep -P "$pid"; fi; }
+
+# What the program said when it failed.
+message() { grep -a -m 1 '^vanguard: ' "$work/log" | cut -c11- || true; }
