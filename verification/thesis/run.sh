@@ -182,6 +182,29 @@ jet_row() {   # jet_row WHAT NAME
     "\($f[1].imbalance | f(3)) |"' "$d/row.json" | say
 }
 
+# PVGRID halves the boundary's box again and again: x into N, y and z into two.
+# What share of the cells the fullest part has, by the forecast of cells, spread
+# evenly over each of many small leaves.
+halved() {
+  "$vanguard" plan -p "$project" "${options[@]}" -q --json -n 1 \
+    --leaf-cells "$(cells 40000)" > "$work/boxes.json"
+  jq -r '
+    def f($d): . * pow(10; $d) | round / pow(10; $d);
+    def in($lo; $hi; $k; $n):
+      [0, ([$hi, 40 * ($k + 1) / $n - 4] | min) -
+          ([$lo, 40 * $k / $n - 4] | max)] | max;
+    [.tree.nodes[] | select(.leaf)] as $l |
+    def most($nx): [range($nx) as $i | range(2) as $j | range(2) as $k |
+      [$l[] | .cells * in(.lo[0]; .hi[0]; $i; $nx) *
+        in(.lo[1]; .hi[1]; $j; 2) * in(.lo[2]; .hi[2]; $k; 2) /
+        in(.lo[0]; .hi[0]; 0; 1) / in(.lo[1]; .hi[1]; 0; 1) /
+        in(.lo[2]; .hi[2]; 0; 1)] | add] | max / add;
+    "| halved in the middle, as PVGRID does (forecast) | " +
+    "\(.mesh.cells | round) | 16 | \(100 * most(4) | f(1)) | - | - | - | " +
+    "at most \(1 / most(2) | f(2)) | at most \(1 / most(4) | f(2)) | " +
+    "\(16 * most(4) | f(2)) |"' "$work/boxes.json" | say
+}
+
 case_jet() {
   jet_project "$(cells 8000000)"
   say << 'HEAD'
@@ -197,6 +220,7 @@ HEAD
     once jet-uniform $how -L 4
     once jet-adaptive $how --leaf-cells "$leaf"
   done
+  halved
   jet_row "uniform, -L 4" jet-uniform
   jet_row "adaptive, --leaf-cells $leaf" jet-adaptive
 }
@@ -207,11 +231,14 @@ HEAD
 [ "$scale" = 1 ] || options_all=(--leaf-cells "$(calc "int(150000 * $scale < \
   20000 ? 20000 : 150000 * $scale)")")
 say << HEAD
-Vanguard $("$vanguard" --version | awk 'NR == 1 { print $2 }'), $(uname -m), $(nproc) cores, $(date -u +%Y-%m-%d), load before $(cut -d' ' -f1 /proc/loadavg), sizes x $scale.
+Vanguard $("$vanguard" --version | awk 'NR == 1 { print $2 }'), $(uname -m), $(nproc) cores, $(date -u +%Y-%m-%d), load before $(cut -d' ' -f1 /proc/loadavg), sizes x $scale. Bar: every mesh valid, all files of a case the same.
+HEAD
+if wanted box || wanted sphere || wanted wing || wanted aircraft; then say << 'HEAD'
 
 | case | cells | ranks x threads | start to files closed, s | layers, s | cutting and filling, s | judging and writing, s | speed-up | leaves | zones, % of cells | imbalance | peak MB of a rank | smallest angle | files |
 |---|---|---|---|---|---|---|---|---|---|---|---|---|---|
 HEAD
+fi
 forecasts=()
 for name in box sphere wing aircraft; do
   wanted $name || continue
