@@ -106,10 +106,11 @@ killed() {
     r=$(any "${ranks[@]}") t=$(any "${threads[@]}") how=()
     [ ! -e "$run_dir/run.txt" ] || how=(--resume)
     wait_s=$(calc "$within * (0.05 + 0.9 * $RANDOM / 32768)")
-    rm -rf "$out_dir"
+    rm -rf "$out_dir" "$run_dir/run.lock"
     begin "$r" "$t" "${how[@]}"
-    # the second of three goes on to the end as a rule
+    # one of three is killed once more
     if [ -z "$chain" ] || [ $((RANDOM % 3)) = 0 ]; then
+      until_open
       sleep "$wait_s"
       mapfile -t victims < <(ranks_of "$r")
       [ ${#victims[@]} = 0 ] ||

@@ -143,6 +143,7 @@ case_random() {
     ranks=$((RANDOM % 3 + 1)) threads=$((RANDOM % 2 + 1))
     wait_s=$(calc "$RANDOM / 32768 * $((to - from)) / 1e9")
     begin $ranks $threads
+    until_open
     sleep "$wait_s"
     mapfile -t victims < <(ranks_of $ranks)
     kill -9 "${victims[RANDOM % ${#victims[@]}]}" 2> /dev/null || true

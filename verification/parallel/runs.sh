@@ -37,6 +37,15 @@ finish() {
   } 2> /dev/null
 }
 
+# Wait until the run directory is open, or the run has ended. Its lock must not
+# be there before. Before that there is nothing to be resumed, and Open MPI 4.1's
+# mpirun may wait for ever when a rank is killed while ranks connect to it.
+until_open() {
+  until [ -e "$run_dir/run.lock" ] || ! kill -0 "$pid" 2> /dev/null; do
+    sleep 0.01
+  done
+}
+
 # ranks_of RANKS: their processes. (Below them are helpers of the same name.)
 ranks_of() { if [ "$1" = 1 ]; then echo "$pid"; else pgrep -P "$pid"; fi; }
 
