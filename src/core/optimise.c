@@ -11,7 +11,7 @@
  * degrees) are worked on one by one; sweeps swap below `fair` (30, 150);
  * `good` (45, 135) cells are not touched. */
 static const double aim = VG_SHAPE_AIM;
-static const float fair = 0.25, good = 0.5;
+static const float fair = 0.25, good = VG_SHAPE_GOOD;
 /* Below this (15, 165) points are taken away or put in. */
 static const double desperate = 0.067;
 

@@ -34,6 +34,18 @@ vg_status vg_optimise_bad(struct vg_tets *t, size_t n_fixed, size_t n_keep,
                           struct vg_optimise_report *report,
                           struct vg_error *err);
 
+/** Smooth points of cells that need not hang together: one sweep over
+ * point [n], in that order.
+ *
+ * t: its links are not looked at, its cells positive; each of those points
+ * has all its cells there, none of them with a fixed face.
+ * q out: [t.n_cell] shapes of the cells as they end
+ * Deterministic. VG_ERR_MEMORY on refusal. */
+vg_status vg_optimise_points(struct vg_tets *t, size_t n,
+                             const uint32_t *point, float *q,
+                             struct vg_optimise_report *report,
+                             struct vg_error *err);
+
 /** A cell of a shape (core/shape.h) below this is one that is worked on. */
 #define VG_SHAPE_AIM 0.1786
 

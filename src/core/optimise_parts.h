@@ -33,6 +33,9 @@ struct vg_optimiser {
   struct vg_optimise_report *report;
 };
 
+/** A cell of a shape from here on is as good as it need be (45, 135). */
+#define VG_SHAPE_GOOD 0.5f
+
 static inline double vg_cell_shape(const struct vg_tets *t, uint32_t c)
 {
   const uint32_t *v = t->cell[c].v;
@@ -75,6 +78,9 @@ int vg_replace(struct vg_optimiser *o, int n_old, const uint32_t *old,
 /** Move p so that the worst cell around it gets better; `aim` > 0: positions
  * that leave every cell above aim count by their mean shape instead. */
 int vg_smooth(struct vg_optimiser *o, uint32_t p, double aim);
+
+/** The same for a point whose ball is in o->ball already. */
+int vg_smooth_ball(struct vg_optimiser *o, uint32_t p, double aim);
 
 /** Remove faces and edges of cell c where the worst of the cells concerned
  * gets better by it. */

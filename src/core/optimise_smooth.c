@@ -149,15 +149,13 @@ static int climb(struct vg_optimiser *o, uint32_t p, struct ball_state *now)
   return 0;
 }
 
-int vg_smooth(struct vg_optimiser *o, uint32_t p, double aim)
+int vg_smooth_ball(struct vg_optimiser *o, uint32_t p, double aim)
 {
   float q[VG_BALL_MAX];
   struct ball_state now, s;
   double to[3], x[3], stop;
   int better = 0;
 
-  if (p < o->n_fixed || o->vain[p] & VG_VAIN_SMOOTH || !vg_ball(o, p))
-    return 0;
   present(o, &now);
   target(o, o->t->x[p], to);
   for (double share = 1; share > 0.2 && !better; share *= 0.5) {
@@ -174,6 +172,14 @@ int vg_smooth(struct vg_optimiser *o, uint32_t p, double aim)
   }
   for (int k = 0; k < 4 && now.worst < aim && climb(o, p, &now); k++)
     better = 1;
-  if (!better) o->vain[p] |= VG_VAIN_SMOOTH;
   return better;
+}
+
+int vg_smooth(struct vg_optimiser *o, uint32_t p, double aim)
+{
+  if (p < o->n_fixed || o->vain[p] & VG_VAIN_SMOOTH || !vg_ball(o, p))
+    return 0;
+  if (vg_smooth_ball(o, p, aim)) return 1;
+  o->vain[p] |= VG_VAIN_SMOOTH;
+  return 0;
 }

@@ -512,7 +512,7 @@ static vg_status all_rounds(struct vg_partition *p, struct vg_comm *comm,
 
     st = vg_owners_gather(p, comm, &r.owners, err);
     if (st == VG_OK && !k)
-      st = vg_repair_find(p, comm, &r.owners, &n, &spot, err);
+      st = vg_repair_smooth(p, comm, &r.owners, &n, &spot, err);
     if (st == VG_OK && n) {
       st = round_of(&r, comm, n, spot, err);
       number += r.balls.n_cluster;
@@ -530,15 +530,17 @@ static vg_status agree_report(struct vg_partition *p, struct vg_comm *comm,
                               struct vg_error *err)
 {
   struct vg_partition_report *r = &p->report;
-  uint64_t v[3] = {r->n_repair_cell, r->n_repair_bad, r->n_repair_bad_left};
+  uint64_t v[4] = {r->n_repair_cell, r->n_repair_bad, r->n_repair_bad_left,
+                   r->n_repair_moved};
   double least[2] = {-r->repair_worst, -r->repair_worst_left};
-  vg_status st = vg_comm_sum(comm, 3, v, err);
+  vg_status st = vg_comm_sum(comm, 4, v, err);
 
   if (st == VG_OK) st = vg_comm_max(comm, 2, least, err);
   if (st < 0) return st;
   r->n_repair_cell = v[0];
   r->n_repair_bad = v[1];
   r->n_repair_bad_left = v[2];
+  r->n_repair_moved = v[3];
   r->repair_worst = -least[0];
   r->repair_worst_left = -least[1];
   return VG_OK;

@@ -1,8 +1,9 @@
-/* partition/repair.h: bad cells beside interfaces are mended, whichever tasks
- * made them. Uses core, node.h.
+/* partition/repair.h: cells beside interfaces get better, whichever tasks made
+ * them. Uses core, node.h.
  *
- * A task leaves the front that it was given as it is, so what is bad beside an
- * interface may need changes on both sides. Such cells are found, each with a
+ * A task leaves the front that it was given as it is, so points on interfaces
+ * lack a sweep of the optimisation: they get it first (repair_smooth.c). What
+ * is bad then may need changes on both sides. Such cells are found, each with a
  * ball around it; balls that overlap are a cluster. The cells with a corner
  * in a cluster's balls are taken from their pieces and mended on one rank:
  * points in the balls may move, all others stay, so that clusters do not

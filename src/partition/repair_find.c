@@ -1,11 +1,9 @@
-/* Which cells beside interfaces are bad, and who has which piece. */
+/* Balls around bad cells, who has which piece, and letters to other ranks. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
-#include "base/parallel.h"
-#include "core/shape.h"
 #include "partition/repair_parts.h"
 
 /* The worse a cell, the larger its ball: `reach` local spacings, and `most`
@@ -13,8 +11,6 @@
  * stayed bad needs much room. */
 static const struct { double reach, most; } ball[VG_BALL_SIZES] = {
   { 1.2, 1.01 }, { 2.5, 1.01 }, { 4, 2 } };
-/* As vg_shape: dihedral angles below 18 or above 162 degrees. */
-static const double bad = 0.0955;
 
 /* --- owners -------------------------------------------------------------- */
 
@@ -25,34 +21,60 @@ static int by_serial(const void *a, const void *b)
   return s->serial < t->serial ? -1 : s->serial > t->serial;
 }
 
+/* As it travels. */
+struct listed { struct vg_owner o; char path[VG_PATH_MAX]; };
+
+static int by_listed_path(const void *a, const void *b)
+{
+  return strcmp(((const struct listed *)a)->path,
+                ((const struct listed *)b)->path);
+}
+
 static vg_status list_owners(struct vg_bytes *all, int size,
                              struct vg_owners *out, struct vg_error *err)
 {
-  size_t n = 0;
+  struct listed *l;
+  size_t bytes = 0, at = 0;
 
-  for (int r = 0; r < size; r++) n += all[r].n / sizeof *out->at;
-  out->at = vg_alloc(n, sizeof *out->at);
-  if (!out->at) return vg_fail_memory(err, "repairs");
-  for (int r = 0; r < size; r++) {
-    if (all[r].n) memcpy(out->at + out->n, all[r].data, all[r].n);
-    out->n += all[r].n / sizeof *out->at;
+  for (int r = 0; r < size; r++) bytes += all[r].n;
+  l = vg_alloc(bytes, 1);
+  out->n = bytes / sizeof *l;
+  out->at = vg_alloc(out->n, sizeof *out->at);
+  if (!l || !out->at) {
+    free(l);
+    return vg_fail_memory(err, "repairs");
   }
-  if (n) qsort(out->at, n, sizeof *out->at, by_serial);
+  for (int r = 0; r < size; r++) {
+    if (all[r].n) memcpy((char *)l + at, all[r].data, all[r].n);
+    at += all[r].n;
+  }
+  if (out->n) qsort(l, out->n, sizeof *l, by_listed_path);
+  for (size_t k = 0; k < out->n; k++) {
+    out->at[k] = l[k].o;
+    out->at[k].order = (uint32_t)k;
+  }
+  if (out->n) qsort(out->at, out->n, sizeof *out->at, by_serial);
+  free(l);
   return VG_OK;
 }
 
 vg_status vg_owners_gather(const struct vg_partition *p, struct vg_comm *comm,
                            struct vg_owners *out, struct vg_error *err)
 {
-  struct vg_owner *own = vg_alloc(p->n_piece, sizeof *own);
+  struct listed *own = vg_calloc(p->n_piece, sizeof *own);
   struct vg_bytes *all = vg_calloc((size_t)p->size, sizeof *all);
   struct vg_bytes mine = {p->n_piece * sizeof *own, (unsigned char *)own};
   vg_status st = own && all ? VG_OK : vg_fail_memory(err, "repairs");
 
   memset(out, 0, sizeof *out);
-  for (size_t k = 0; st == VG_OK && k < p->n_piece; k++)
-    own[k] = (struct vg_owner){ p->piece[k].serial, (uint32_t)p->rank,
-                                (uint32_t)k };
+  for (size_t k = 0; st == VG_OK && k < p->n_piece; k++) {
+    const struct vg_piece *q = &p->piece[k];
+
+    own[k].o = (struct vg_owner){
+      .serial = q->serial, .rank = (uint32_t)p->rank, .piece = (uint32_t)k,
+      .is_zone = q->kind == VG_SPAN_PENCIL || q->kind == VG_SPAN_TILE };
+    memcpy(own[k].path, q->path, sizeof own[k].path);
+  }
   st = vg_comm_agree(comm, st, err);
   if (st == VG_OK) st = vg_comm_allgather(comm, &mine, all, err);
   if (st == VG_OK) st = list_owners(all, p->size, out, err);
@@ -113,89 +135,6 @@ vg_status vg_post_send(struct vg_post *post, struct vg_comm *comm,
   return st;
 }
 
-/* --- points on interfaces ------------------------------------------------ */
-
-struct search {
-  const struct vg_partition *p;
-  uint8_t **shared;          /* [n_piece][n_in + n_point] */
-  struct found { size_t n, cap; struct vg_spot *spot; int refused; } *found;
-};
-
-static void search_free(struct search *s)
-{
-  for (size_t k = 0; k < s->p->n_piece; k++) {
-    if (s->shared) free(s->shared[k]);
-    if (s->found) free(s->found[k].spot);
-  }
-  free(s->shared);
-  free(s->found);
-}
-
-static vg_status search_new(struct search *s, struct vg_error *err)
-{
-  size_t n = s->p->n_piece;
-
-  s->shared = vg_calloc(n, sizeof *s->shared);
-  s->found = vg_calloc(n, sizeof *s->found);
-  if (!s->shared || !s->found) return vg_fail_memory(err, "repairs");
-  for (size_t k = 0; k < n; k++) {
-    const struct vg_piece *q = &s->p->piece[k];
-
-    s->shared[k] = vg_calloc(q->n_in + q->n_point, 1);
-    if (!s->shared[k]) return vg_fail_memory(err, "repairs");
-  }
-  return VG_OK;
-}
-
-/* Points of others are on an interface, and their owners hear of it. */
-static void mark_foreign(struct search *s, const struct vg_owners *owners,
-                         struct vg_post *post)
-{
-  const struct vg_owner *o = NULL;
-
-  for (size_t k = 0; k < s->p->n_piece; k++) {
-    const struct vg_piece *q = &s->p->piece[k];
-
-    for (size_t i = 0; i < q->n_in; i++) {
-      if (!(q->in[i] >> 32)) continue;
-      s->shared[k][i] = 1;
-      if (!o || o->serial != q->in[i] >> 32)
-        o = vg_owners_find(owners, q->in[i]);
-      if (o) vg_put(&post->to[o->rank], 1, sizeof q->in[i], &q->in[i]);
-    }
-  }
-}
-
-static void mark_own(struct search *s, const struct vg_owners *owners,
-                     const struct vg_bytes *names)
-{
-  const struct vg_owner *o = NULL;
-  uint64_t name;
-
-  for (size_t at = 0; at + sizeof name <= names->n; at += sizeof name) {
-    memcpy(&name, names->data + at, sizeof name);
-    if (!o || o->serial != name >> 32) o = vg_owners_find(owners, name);
-    if (o)
-      s->shared[o->piece][s->p->piece[o->piece].n_in + (uint32_t)name] = 1;
-  }
-}
-
-static vg_status mark(struct search *s, struct vg_comm *comm,
-                      const struct vg_owners *owners, struct vg_error *err)
-{
-  struct vg_post post = {0};
-  struct vg_bytes *from = NULL;
-  vg_status st = search_new(s, err);
-
-  if (st == VG_OK) st = vg_post_new(&post, s->p->size, err);
-  if (st == VG_OK) mark_foreign(s, owners, &post);
-  st = vg_post_send(&post, comm, st, &from, err);
-  for (int r = 0; st == VG_OK && r < s->p->size; r++)
-    mark_own(s, owners, &from[r]);
-  vg_bytes_release(from, s->p->size);
-  return st;
-}
-
 /* --- bad cells ----------------------------------------------------------- */
 
 static double distance2(const double a[3], const double b[3])
@@ -222,37 +161,6 @@ struct vg_spot vg_spot_around(const struct vg_sizing *sizing,
   s.radius = ball[k].most * sqrt(far);
   if (s.radius < reach) s.radius = reach;
   return s;
-}
-
-static void find_in(const struct search *s, size_t k)
-{
-  const struct vg_piece *q = &s->p->piece[k];
-  const uint8_t *shared = s->shared[k];
-  struct found *f = &s->found[k];
-
-  for (size_t c = 0; c < q->n_cell; c++) {
-    const uint32_t *v = q->cell[c];
-    const double *x[4];
-    double shape;
-
-    if (!(shared[v[0]] | shared[v[1]] | shared[v[2]] | shared[v[3]])) continue;
-    for (int i = 0; i < 4; i++) x[i] = q->x[v[i]];
-    shape = vg_shape(x[0], x[1], x[2], x[3]);
-    if (shape >= VG_SHAPE_AIM) continue;
-    if (vg_reserve(&f->spot, &f->cap, f->n + 1, sizeof *f->spot)) {
-      f->refused = 1;
-      return;
-    }
-    f->spot[f->n++] = vg_spot_around(s->p->sizing, x, shape < bad
-                                                        ? VG_BALL_MIDDLE
-                                                        : VG_BALL_SMALL);
-  }
-}
-
-static void find_body(void *context, size_t first, size_t end, int worker)
-{
-  (void)worker;
-  for (size_t k = first; k < end; k++) find_in(context, k);
 }
 
 /* --- of all ranks -------------------------------------------------------- */
@@ -290,26 +198,4 @@ vg_status vg_spots_gather(struct vg_writer *w, int n_rank, struct vg_comm *comm,
   if (*n) qsort(*out, *n, sizeof **out, by_place);
   if (st == VG_OK) st = vg_spots_thin(n, *out, err);
   return vg_comm_agree(comm, st, err);
-}
-
-vg_status vg_repair_find(struct vg_partition *p, struct vg_comm *comm,
-                         const struct vg_owners *owners, size_t *n,
-                         struct vg_spot **out, struct vg_error *err)
-{
-  struct search s = { .p = p };
-  struct vg_writer w = { .cap = 0 };
-  vg_status st = mark(&s, comm, owners, err);
-
-  *n = 0;
-  if (st == VG_OK) {
-    vg_parallel_for(p->options.threads, p->n_piece, 1, find_body, &s);
-    for (size_t k = 0; k < p->n_piece; k++) {
-      w.refused |= s.found[k].refused;
-      vg_put(&w, s.found[k].n, sizeof **out, s.found[k].spot);
-    }
-    st = vg_spots_gather(&w, p->size, comm, n, out, err);
-    free(w.bytes.data);
-  }
-  search_free(&s);
-  return st;
 }

@@ -10,7 +10,11 @@
 
 /* --- who has which piece (repair_find.c) --------------------------------- */
 
-struct vg_owner { uint32_t serial, rank, piece; };
+struct vg_owner {
+  uint32_t serial, rank, piece;
+  uint32_t order;            /* in the order of the paths */
+  int is_zone;               /* its points may have cells elsewhere */
+};
 
 struct vg_owners { size_t n; struct vg_owner *at; };  /* by serial */
 
@@ -35,7 +39,7 @@ vg_status vg_post_send(struct vg_post *post, struct vg_comm *comm,
                        struct vg_error *err);
 void vg_bytes_release(struct vg_bytes *b, int size);
 
-/* --- where (repair_find.c, repair_balls.c) ------------------------------- */
+/* --- where (repair_smooth.c, repair_balls.c) ----------------------------- */
 
 /* A ball around a bad cell. */
 struct vg_spot { double at[3], radius; };
@@ -55,11 +59,42 @@ vg_status vg_spots_gather(struct vg_writer *w, int n_rank,
                           struct vg_comm *comm, size_t *n,
                           struct vg_spot **out, struct vg_error *err);
 
-/** Balls around the bad cells of all ranks that have a corner on an
- * interface, by their coordinates. Collective. */
-vg_status vg_repair_find(struct vg_partition *p, struct vg_comm *comm,
-                         const struct vg_owners *owners, size_t *n,
-                         struct vg_spot **out, struct vg_error *err);
+/** As vg_shape: dihedral angles below 18 or above 162 degrees. */
+#define VG_SHAPE_BAD 0.0955
+
+/** Smooth the points on interfaces, and list balls around the cells with a
+ * corner there that stay bad, of all ranks, by their coordinates. Collective.
+ * (repair_smooth.c) */
+vg_status vg_repair_smooth(struct vg_partition *p, struct vg_comm *comm,
+                           const struct vg_owners *owners, size_t *n,
+                           struct vg_spot **out, struct vg_error *err);
+
+/* Cells of one piece that have a corner among the points of another, as its
+ * owner needs them. (repair_seam.c) */
+struct vg_seam {
+  uint32_t owner, to;        /* whose points: piece and rank */
+  uint32_t from, rank;       /* who has the cells: likewise */
+  uint32_t order;            /* of its path */
+  uint32_t n_known, n_other, n_cell;
+  uint32_t *known;           /* [n_known] places of the owner's points */
+  uint32_t *vertex;          /* [n_known] in the piece that has the cells */
+  double (*x)[3];            /* [n_other] corners that are not the owner's */
+  uint8_t *before;           /* [n_other] whose points may move first: */
+  uint32_t (*cell)[4];       /* [n_cell] 0 ... n_known - 1 known, then other */
+};
+enum { VG_BEFORE_NOT, VG_BEFORE_OWN,  /* of the piece that has the cells */
+       VG_BEFORE_OTHER };
+
+void vg_seam_release(struct vg_seam *s);
+void vg_seam_put(struct vg_writer *w, const struct vg_seam *s);
+/** Sets r->bad, and leaves *s empty, where the data cannot be. */
+void vg_seam_get(struct vg_reader *r, struct vg_seam *s);
+
+/** The seams of piece k of this rank. out: owned by the caller, also on
+ * failure. */
+vg_status vg_seams_of(const struct vg_partition *p, size_t k,
+                      const struct vg_owners *owners, size_t *n,
+                      struct vg_seam **out);
 
 enum { VG_LEVEL_MAX = 64 };
 
