@@ -77,7 +77,7 @@ static error_t option(int key, char *arg, struct argp_state *state)
   return vg_cli_keep(&a->kept, key, arg, state);
 }
 
-/* Stages up to a closed surface. */
+/* Stages up to a surface as read, by each rank. */
 static vg_status read_project(struct run *r, const struct arguments *a,
                               struct vg_error *err)
 {
@@ -89,22 +89,27 @@ static vg_status read_project(struct run *r, const struct arguments *a,
   VG_TRY(vg_input_find(a->project, a->deck, &p->files, err));
   VG_TRY(vg_problem_deck(p, err));
   VG_TRY(vg_cli_apply(&a->kept, &p->settings, err));
-  p->threads = p->settings.threads ? (int)p->settings.threads
-                                   : vg_comm_default_threads(r->mesh.comm);
   vg_settings_write(&p->settings);
   VG_TRY(vg_outputs_plan(p, a->dir, vg_comm_size(r->mesh.comm), &r->outputs,
                          err));
   VG_TRY(vg_problem_surface(p, err));
   r->time_read = vg_display_now() - t;
   VG_TRY(vg_run_stopped(err));
-  t = vg_display_now();
-  VG_TRY(vg_problem_close(p, &r->show, err));
-  VG_TRY(vg_layer_stage_plan(&r->layers, p, err));
-  vg_problem_note_unset(p);
-  VG_TRY(vg_walls_swap(p, r->layers.is_on ? r->layers.reason : NULL, err));
+done:
+  return st;
+}
+
+static vg_status close_surface(struct run *r, struct vg_error *err)
+{
+  struct vg_run *m = &r->mesh;
+  double t = vg_display_now();
+  vg_status st;
+
+  VG_TRY(vg_run_surface(m, &r->problem, &r->layers, &r->show, err));
   r->time_check = vg_display_now() - t;
-  VG_TRY(vg_outputs_check(p, &r->outputs, err));
-  VG_TRY(vg_run_stopped(err));
+  st = vg_outputs_check(&r->problem, &r->outputs, err);
+  if (st >= 0) st = vg_run_stopped(err);
+  st = vg_comm_agree(m->comm, st, err);
 done:
   return st;
 }
@@ -388,6 +393,7 @@ static vg_status run_stages(struct run *r, const struct arguments *a,
 
   r->mesh.options = a->run;
   VG_TRY(vg_comm_agree(m->comm, read_project(r, a, err), err));
+  VG_TRY(close_surface(r, err));
   VG_TRY(vg_run_mesh(m, &r->problem, &r->layers, &r->show, err));
   st = write_all(r, a, err);
 done:

@@ -4,7 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "cli/report.h"
+#include "cli/share.h"
+#include "cli/walls.h"
 #include "layers/pack.h"
 
 vg_status vg_run_stopped(struct vg_error *err)
@@ -46,6 +49,48 @@ static int node_threads(struct vg_run *r, const struct vg_settings *s)
   int n = vg_comm_node_cores(r->comm, 1);
 
   return s->threads ? (int)s->threads * vg_comm_node_size(r->comm) : n;
+}
+
+static vg_status settle_surface(struct vg_problem *p,
+                                struct vg_layer_stage *layers,
+                                struct vg_display *show, struct vg_error *err)
+{
+  vg_status st;
+
+  VG_TRY(vg_problem_close(p, show, err));
+  VG_TRY(vg_layer_stage_plan(layers, p, err));
+  vg_problem_note_unset(p);
+  st = vg_walls_swap(p, layers->is_on ? layers->reason : NULL, err);
+done:
+  return st;
+}
+
+vg_status vg_run_surface(struct vg_run *r, struct vg_problem *p,
+                         struct vg_layer_stage *layers,
+                         struct vg_display *show, struct vg_error *err)
+{
+  struct vg_bytes b = {0, NULL};
+  uint64_t is_on = 0;
+  vg_status st = VG_OK;
+
+  if (leads_node(r)) {
+    p->threads = node_threads(r, &p->settings);
+    st = settle_surface(p, layers, show, err);
+    vg_comm_node_cores(r->comm, 0);
+    if (st >= 0 && vg_comm_node_size(r->comm) > 1)
+      st = vg_surface_pack(&p->surface, (uint64_t)layers->is_on, &b, err);
+  }
+  VG_TRY(vg_comm_agree(r->comm, st, err));
+  if (vg_comm_node_size(r->comm) > 1)
+    VG_TRY(vg_comm_node_bcast(r->comm, &b, err));
+  if (!leads_node(r)) {
+    st = vg_surface_unpack(&b, &p->surface, &is_on, err);
+    layers->is_on = (int)is_on;
+  }
+  st = vg_comm_agree(r->comm, st, err);
+done:
+  free(b.data);
+  return st;
 }
 
 /* What the first rank of the node made, with status st, on the others too.
@@ -275,6 +320,21 @@ done:
   return st;
 }
 
+/* By what each rank has of the field. */
+static vg_status share_layers(struct vg_run *r, struct vg_error *err)
+{
+  uint64_t *n = vg_calloc((size_t)r->size, sizeof *n);
+  vg_status st = n ? VG_OK : vg_fail_memory(err, "the slices of the layers");
+
+  VG_TRY(vg_comm_agree(r->comm, st, err));
+  n[r->rank] = vg_partition_slices(r->field)->n_served;
+  VG_TRY(vg_comm_sum(r->comm, (size_t)r->size, n, err));
+  vg_layer_slices_share(r->layers, n, &r->slices);
+done:
+  free(n);
+  return st;
+}
+
 /* The second size field is that of the front, so that the fill fits the tops
  * of the layers. */
 static vg_status mesh_layers(struct vg_run *r, const struct vg_problem *p,
@@ -294,6 +354,7 @@ static vg_status mesh_layers(struct vg_run *r, const struct vg_problem *p,
                             r->size, r->threads, &r->slices, &r->layers,
                             &layers->join, err);
   VG_TRY(vg_comm_agree(r->comm, st, err));
+  VG_TRY(share_layers(r, err));
   st = judge(r, front->n_tri, sizing, show, err);
 done:
   vg_sizing_free(sizing);

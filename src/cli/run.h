@@ -42,6 +42,13 @@ struct vg_run {
 /** VG_ERR_IO once the user or the system asked to stop. */
 vg_status vg_run_stopped(struct vg_error *err);
 
+/** Close the surface as read, settle its layers and swap its slivers. By the
+ * first rank of each node on the cores of all; the others get the surface and
+ * whether layers grow, no notes, reports or settings. Collective. */
+vg_status vg_run_surface(struct vg_run *r, struct vg_problem *p,
+                         struct vg_layer_stage *layers,
+                         struct vg_display *show, struct vg_error *err);
+
 /** Sizes, layers, field, judgement. Collective; the mesh is r->slices.
  * p->surface and layers are needed as long as it is. */
 vg_status vg_run_mesh(struct vg_run *r, const struct vg_problem *p,

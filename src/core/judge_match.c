@@ -83,6 +83,16 @@ static void meet_face(void *context, const unsigned char *item, size_t n,
     match_face(j, &j->worker[worker], q, (const void *)item, n);
 }
 
+/* Two sides of a face are all, unless it is suspect. */
+static int is_whole_face(const void *context, const unsigned char *item,
+                         size_t n)
+{
+  const struct vg_slices_judgement *j = context;
+
+  (void)item;
+  return n == 2 && !j->n_suspect;
+}
+
 /* Of the boundary, which all ranks know, what meets others here. */
 static vg_status add_boundary(struct vg_slices_judgement *j,
                               const struct vg_meeting *m,
@@ -139,7 +149,7 @@ static vg_status meet_faces(struct vg_slices_judgement *j,
 {
   struct vg_meeting m = {
     j->comm, j->threads, sizeof(struct vg_face_item), 4 * sizeof(uint32_t),
-    meet_face, j
+    meet_face, j, is_whole_face
   };
   vg_status st;
 
@@ -177,28 +187,134 @@ static void meet_place(void *context, const unsigned char *item, size_t n,
   j->worker[worker].figures[VG_JUDGED_WHOLE]->n.duplicate_point += n - 1;
 }
 
+/* Points that may be at one place. */
+static void meet_place_key(void *context, const unsigned char *item, size_t n,
+                           int worker)
+{
+  struct vg_slices_judgement *j = context;
+  struct vg_judge_worker *w = &j->worker[worker];
+  uint64_t *key;
+
+  if (n == 1) return;
+  key = vg_items_add(&w->crowd, sizeof *key);
+  if (key) memcpy(key, item, sizeof *key);
+  else w->st = vg_fail_memory(&w->err, "points at one place");
+}
+
 static vg_status meet_edges(struct vg_slices_judgement *j,
                             struct vg_error *err)
 {
   struct vg_meeting m = {
     j->comm, j->threads, sizeof(struct vg_edge_item), 2 * sizeof(uint32_t),
-    meet_edge, j
+    meet_edge, j, NULL
   };
 
   return vg_meet(&m, &j->worker[0].edge, (size_t)j->n_worker,
                  sizeof *j->worker, err);
 }
 
+static int by_key(const void *a, const void *b)
+{
+  uint64_t x, y;
+
+  memcpy(&x, a, sizeof x);
+  memcpy(&y, b, sizeof y);
+  return (x > y) - (x < y);
+}
+
+/* Keys of the places, of all ranks, at which there may be several points. */
+static vg_status gather_crowds(struct vg_slices_judgement *j,
+                               struct vg_bytes *out, struct vg_error *err)
+{
+  size_t size = (size_t)vg_comm_size(j->comm);
+  struct vg_items mine = { 0 }, got = { 0 };
+  struct vg_bytes *all = vg_calloc(size, sizeof *all), b;
+  vg_status st = all ? VG_OK : vg_fail_memory(err, "points at one place");
+
+  for (int i = 0; i < j->n_worker && st >= 0; i++)
+    st = vg_items_append(&mine, &j->worker[i].crowd, sizeof(uint64_t), err);
+  VG_TRY(vg_comm_agree(j->comm, st, err));
+  b = (struct vg_bytes){ mine.n * sizeof(uint64_t), mine.data };
+  VG_TRY(vg_comm_allgather(j->comm, &b, all, err));
+  for (size_t r = 0; r < size && st >= 0; r++) {
+    struct vg_items one = { all[r].n / sizeof(uint64_t), 0, all[r].data };
+
+    st = vg_items_append(&got, &one, sizeof(uint64_t), err);
+  }
+  if (got.n) qsort(got.data, got.n, sizeof(uint64_t), by_key);
+  *out = (struct vg_bytes){ got.n, got.data };
+  got.data = NULL;
+  st = vg_comm_agree(j->comm, st, err);
+done:
+  for (size_t r = 0; all && r < size; r++) free(all[r].data);
+  free(all);
+  vg_items_release(&mine);
+  vg_items_release(&got);
+  return st;
+}
+
+/* Places themselves, of the points that may be at one with another. */
+struct crowd {
+  struct vg_slices_judgement *j;
+  const struct vg_bytes *key;    /* n keys, sorted */
+  struct vg_items place;
+};
+
+static vg_status list_crowded(void *context, const struct vg_slice *s,
+                              struct vg_error *err)
+{
+  struct crowd *c = context;
+
+  for (size_t i = 0; i < s->n_own; i++) {
+    struct vg_place_item place = vg_place_item(s->x[s->own[i]]), *to;
+    uint64_t key = vg_meet_hash(&place, sizeof place);
+
+    if (!bsearch(&key, c->key->data, c->key->n, sizeof key, by_key)) continue;
+    to = vg_items_add(&c->place, sizeof *to);
+    if (!to) return vg_fail_memory(err, "points at one place");
+    *to = place;
+  }
+  return VG_OK;
+}
+
+static vg_status count_duplicates(struct vg_slices_judgement *j,
+                                  const struct vg_bytes *key,
+                                  struct vg_error *err)
+{
+  struct vg_meeting m = {
+    j->comm, j->threads, sizeof(struct vg_place_item),
+    sizeof(struct vg_place_item), meet_place, j, NULL
+  };
+  struct crowd c = { j, key, { 0 } };
+  vg_status st = vg_slices_each(j->s, 1, list_crowded, &c, err);
+
+  VG_TRY(vg_comm_agree(j->comm, st, err));
+  st = vg_meet(&m, &c.place, 1, sizeof c.place, err);
+done:
+  vg_items_release(&c.place);
+  return st;
+}
+
+/* Only keys of places meet, a third of their bytes; where these are equal,
+ * which in a good mesh is chance, the places do. */
 static vg_status meet_places(struct vg_slices_judgement *j,
                              struct vg_error *err)
 {
   struct vg_meeting m = {
-    j->comm, j->threads, sizeof(struct vg_place_item),
-    sizeof(struct vg_place_item), meet_place, j
+    j->comm, j->threads, sizeof(uint64_t), sizeof(uint64_t), meet_place_key,
+    j, NULL
   };
+  struct vg_bytes crowd = { 0, NULL };
+  vg_status st;
 
-  return vg_meet(&m, &j->worker[0].place, (size_t)j->n_worker,
-                 sizeof *j->worker, err);
+  VG_TRY(vg_meet(&m, &j->worker[0].place, (size_t)j->n_worker,
+                 sizeof *j->worker, err));
+  st = vg_comm_agree(j->comm, worst_status(j, err), err);
+  if (st >= 0) st = gather_crowds(j, &crowd, err);
+  if (st >= 0 && crowd.n) st = count_duplicates(j, &crowd, err);
+done:
+  free(crowd.data);
+  return st;
 }
 
 vg_status vg_judge_match(struct vg_slices_judgement *j, struct vg_error *err)

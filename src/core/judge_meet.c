@@ -19,25 +19,21 @@ void *vg_items_add(struct vg_items *list, size_t size)
   return list->data + size * list->n++;
 }
 
+vg_status vg_items_append(struct vg_items *to, const struct vg_items *more,
+                          size_t size, struct vg_error *err)
+{
+  if (!more->n) return VG_OK;
+  if (vg_reserve(&to->data, &to->room, to->n + more->n, size))
+    return vg_fail_memory(err, "what slices share");
+  memcpy(to->data + size * to->n, more->data, size * more->n);
+  to->n += more->n;
+  return VG_OK;
+}
+
 void vg_items_release(struct vg_items *list)
 {
   free(list->data);
   memset(list, 0, sizeof *list);
-}
-
-static uint64_t hash(const void *key, size_t n)
-{
-  uint64_t h = n;
-
-  for (size_t i = 0; i < n; i += sizeof(uint32_t)) {
-    uint32_t word;
-
-    memcpy(&word, (const unsigned char *)key + i, sizeof word);
-    h = (h ^ word) * UINT64_C(0x9E3779B97F4A7C15);
-    h ^= h >> 32;
-  }
-  h *= UINT64_C(0xD6E8FEB86659FD93);
-  return h ^ h >> 32;
 }
 
 /* Ranks, parts and buckets are named by different bits of the hash: upper
@@ -49,7 +45,7 @@ static int rank_of(uint64_t h, int size)
 
 int vg_meet_rank(const struct vg_meeting *m, const void *key)
 {
-  return rank_of(hash(key, m->key), vg_comm_size(m->comm));
+  return rank_of(vg_meet_hash(key, m->key), vg_comm_size(m->comm));
 }
 
 /* --- counting sort ------------------------------------------------------- */
@@ -85,7 +81,7 @@ static void count_sources(void *context, size_t first, size_t end, int worker)
     const struct vg_bytes *from = &s->from[r];
 
     for (size_t i = 0; i < from->n; i += size)
-      s->at[r * s->n_bin + s->bin(s, hash(from->data + i, s->m->key))]++;
+      s->at[r * s->n_bin + s->bin(s, vg_meet_hash(from->data + i, s->m->key))]++;
   }
 }
 
@@ -100,7 +96,7 @@ static void move_sources(void *context, size_t first, size_t end, int worker)
     size_t *at = s->at + r * s->n_bin;
 
     for (size_t i = 0; i < from->n; i += size) {
-      size_t bin = s->bin(s, hash(from->data + i, s->m->key));
+      size_t bin = s->bin(s, vg_meet_hash(from->data + i, s->m->key));
 
       memcpy(s->item + size * at[bin]++, from->data + i, size);
     }
@@ -184,13 +180,14 @@ struct hall {
   const struct vg_meeting *m;
   struct sorting s;          /* by part, a power of two of them */
   size_t most;               /* items of the largest part */
+  struct vg_items *left;     /* NULL, or [threads]: groups not whole go here */
   atomic_int refused;
 };
 
 static size_t bucket_of(const struct hall *h, const unsigned char *item,
                         size_t n_bucket)
 {
-  return (size_t)(hash(item, h->m->key) >> 20) & (n_bucket - 1);
+  return (size_t)(vg_meet_hash(item, h->m->key) >> 20) & (n_bucket - 1);
 }
 
 /* Insertion by key; equal keys stay where they are, so that a crowd of them
@@ -212,20 +209,39 @@ static void sort_bucket(const struct vg_meeting *m, unsigned char *item,
   }
 }
 
-static void call_groups(const struct vg_meeting *m, const unsigned char *item,
-                        size_t n, int worker)
+static void look_at(struct hall *h, const unsigned char *item, size_t n,
+                    int worker)
 {
+  const struct vg_meeting *m = h->m;
+
+  if (!h->left || m->is_whole(m->context, item, n)) {
+    m->group(m->context, item, n, worker);
+    return;
+  }
+  for (size_t i = 0; i < n; i++) {
+    unsigned char *to = vg_items_add(&h->left[worker], m->size);
+
+    if (to) memcpy(to, item + m->size * i, m->size);
+    else atomic_store(&h->refused, 1);
+  }
+}
+
+static void look_at_all(struct hall *h, const unsigned char *item, size_t n,
+                        int worker)
+{
+  const struct vg_meeting *m = h->m;
+
   for (size_t i = 0, j; i < n; i = j) {
     const unsigned char *first = item + m->size * i;
 
     for (j = i + 1; j < n; j++)
       if (memcmp(first, item + m->size * j, m->key)) break;
-    m->group(m->context, first, j - i, worker);
+    look_at(h, first, j - i, worker);
   }
 }
 
 /* room: of the largest part and one item; bucket: [n_bucket]. */
-static void meet_part(const struct hall *h, size_t p, unsigned char *room,
+static void meet_part(struct hall *h, size_t p, unsigned char *room,
                       size_t *bucket, size_t n_bucket, int worker)
 {
   size_t size = h->m->size, first = h->s.first[p];
@@ -251,7 +267,7 @@ static void meet_part(const struct hall *h, size_t p, unsigned char *room,
 
     sort_bucket(h->m, room + size * begin, bucket[b] - begin,
                 room + size * h->most);
-    call_groups(h->m, room + size * begin, bucket[b] - begin, worker);
+    look_at_all(h, room + size * begin, bucket[b] - begin, worker);
   }
 }
 
@@ -271,10 +287,12 @@ static void meet_parts(void *context, size_t first, size_t end, int worker)
 }
 
 static vg_status meet_here(const struct vg_meeting *m, struct vg_bytes *from,
-                           size_t n_from, struct vg_error *err)
+                           size_t n_from, struct vg_items *left,
+                           struct vg_error *err)
 {
-  struct hall h = { .m = m, .s = { .m = m, .bin = part_bin, .from = from,
-                                   .n_from = n_from, .n_bin = 1 } };
+  struct hall h = { .m = m, .left = left,
+                    .s = { .m = m, .bin = part_bin, .from = from,
+                           .n_from = n_from, .n_bin = 1 } };
   size_t n = 0;
   vg_status st;
 
@@ -312,6 +330,25 @@ static struct vg_bytes *take_lists(const struct vg_meeting *m,
   return from;
 }
 
+/* Look at what is whole on this rank. *from, *n_from: what is not. Local. */
+static vg_status meet_first(const struct vg_meeting *m, struct vg_bytes **from,
+                            size_t *n_from, struct vg_error *err)
+{
+  size_t n = (size_t)(m->threads > 0 ? m->threads : 1);
+  struct vg_items *left = vg_calloc(n, sizeof *left);
+  struct vg_meeting one = *m;
+  vg_status st = *from && left ? VG_OK
+                               : vg_fail_memory(err, "what slices share");
+
+  one.threads = (int)n;
+  if (st >= 0) st = meet_here(&one, *from, *n_from, left, err);
+  release(*from, *n_from);
+  *from = left ? take_lists(m, left, n, sizeof *left) : NULL;
+  *n_from = n;
+  free(left);
+  return st;
+}
+
 vg_status vg_meet(const struct vg_meeting *m, struct vg_items *list,
                   size_t n_list, size_t stride, struct vg_error *err)
 {
@@ -320,12 +357,14 @@ vg_status vg_meet(const struct vg_meeting *m, struct vg_items *list,
   vg_status st = VG_OK;
 
   if (vg_comm_size(m->comm) > 1) {
-    VG_TRY(send(m, from, n_list, &got, err));
-    release(from, n_list);
+    if (m->is_whole) st = meet_first(m, &from, &n_from, err);
+    VG_TRY(vg_comm_agree(m->comm, st, err));
+    VG_TRY(send(m, from, n_from, &got, err));
+    release(from, n_from);
     from = got;
     n_from = (size_t)vg_comm_size(m->comm);
   }
-  st = from ? meet_here(m, from, n_from, err)
+  st = from ? meet_here(m, from, n_from, NULL, err)
             : vg_fail_memory(err, "what slices share");
   st = vg_comm_agree(m->comm, st, err);
 done:

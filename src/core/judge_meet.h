@@ -8,6 +8,7 @@
 
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #include "base/comm.h"
 
@@ -20,6 +21,10 @@ struct vg_items {
 /** Room for one more item of this size at the end; NULL when refused. */
 void *vg_items_add(struct vg_items *list, size_t size);
 
+/** All of `more`, items of this size, behind those of *to. */
+vg_status vg_items_append(struct vg_items *to, const struct vg_items *more,
+                          size_t size, struct vg_error *err);
+
 void vg_items_release(struct vg_items *list);
 
 struct vg_meeting {
@@ -31,7 +36,25 @@ struct vg_meeting {
   void (*group)(void *context, const unsigned char *item, size_t n,
                 int worker);
   void *context;
+  /** NULL, or whether n items of one key, all that this rank has, are all
+   * there are. Such groups are looked at where they are and do not travel. */
+  int (*is_whole)(const void *context, const unsigned char *item, size_t n);
 };
+
+static inline uint64_t vg_meet_hash(const void *key, size_t n)
+{
+  uint64_t h = n;
+
+  for (size_t i = 0; i < n; i += sizeof(uint32_t)) {
+    uint32_t word;
+
+    memcpy(&word, (const unsigned char *)key + i, sizeof word);
+    h = (h ^ word) * UINT64_C(0x9E3779B97F4A7C15);
+    h ^= h >> 32;
+  }
+  h *= UINT64_C(0xD6E8FEB86659FD93);
+  return h ^ h >> 32;
+}
 
 /** Rank on which items of a key meet. */
 int vg_meet_rank(const struct vg_meeting *m, const void *key);

@@ -115,11 +115,11 @@ static vg_status note_points(struct work *k, struct vg_error *err)
 
   for (size_t i = 0; i < s->n_own; i++) {
     const double *x = s->x[s->own[i]];
-    struct vg_place_item *p = vg_items_add(&k->w->place, sizeof *p);
+    struct vg_place_item place = vg_place_item(x);
+    uint64_t *key = vg_items_add(&k->w->place, sizeof *key);
 
-    if (!p) return vg_fail_memory(err, "the points of slices");
-    /* -0 and +0 are the same place */
-    for (int c = 0; c < 3; c++) p->x[c] = x[c] + 0.0;
+    if (!key) return vg_fail_memory(err, "the points of slices");
+    *key = vg_meet_hash(&place, sizeof place);
     extend_box(k->w, x);
     if (s->point_at + i < k->j->n_place)
       memcpy(k->j->place[s->point_at + i], x, sizeof *k->j->place);

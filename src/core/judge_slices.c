@@ -97,6 +97,7 @@ static void release(struct vg_slices_judgement *j)
     vg_items_release(&w->face);
     vg_items_release(&w->edge);
     vg_items_release(&w->place);
+    vg_items_release(&w->crowd);
     vg_items_release(&w->suspect);
     for (int q = 0; q < VG_JUDGED; q++) {
       free(w->figures[q]);

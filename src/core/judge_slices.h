@@ -12,8 +12,9 @@
  *
  * All figures of vg_mesh_report, with the same meaning, by the same code as
  * vg_mesh_judge, the worst cells by their number in the mesh (tets, pyramids,
- * prisms). Faces are matched within slices; those left over meet on the rank
- * that their points' hash names, edges and places of points likewise. Counts
+ * prisms). Faces are matched within slices, then between the slices of a rank;
+ * those left over meet on the rank that their points' hash names, edges and
+ * keys of the places of points likewise. Counts
  * are integers and sums exact, so that the reports are the same, bit by bit,
  * for any number of ranks and threads and for any cut into slices, and those
  * of vg_mesh_judge on the whole mesh.
@@ -34,7 +35,7 @@
  * VG_ERR_MEMORY; VG_ERR_INPUT when slices and their counts do not agree, and
  * what a server of slices answers; on failure reports are untouched.
  * Memory: one slice and its faces per thread; 28 bytes per face left over
- * and 24 per point, twice while they are sent; n_point / 8. */
+ * and 8 per point, twice while they are sent; n_point / 8. */
 vg_status vg_slices_judge(struct vg_comm *comm, const struct vg_slices *s,
                           uint64_t front_faces, const struct vg_sizing *sizing,
                           int threads, struct vg_mesh_report *whole,

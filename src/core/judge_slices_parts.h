@@ -36,9 +36,17 @@ struct vg_edge_item {
 
 struct vg_place_item { double x[3]; };
 
+/* -0 and +0 are the same place. */
+static inline struct vg_place_item vg_place_item(const double x[3])
+{
+  return (struct vg_place_item){ { x[0] + 0.0, x[1] + 0.0, x[2] + 0.0 } };
+}
+
 /** Belongs to one thread. */
 struct vg_judge_worker {
-  struct vg_items face, edge, place;
+  struct vg_items face, edge;
+  struct vg_items place;     /* keys of places */
+  struct vg_items crowd;     /* of these, where several points may be */
   struct vg_items suspect;   /* keys of faces that do not join two */
   /* Of slices: what is no field and what is; afterwards whole and field. */
   struct vg_figures *figures[VG_JUDGED];

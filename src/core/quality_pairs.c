@@ -3,8 +3,8 @@
  * A face waits in a hash table until its other side comes, and leaves with it:
  * cells are written in an order in which neighbours follow each other closely,
  * so that few faces wait at a time and the table stays in the cache. This
- * takes two thirds of the time of quality_faces.c, which sees all sides of a face
- * together.
+ * takes two thirds of the time of quality_faces.c, which sees all sides of a
+ * face together.
  *
  * What it does not see is a face with four sides, two and two. If cells are
  * positive and their faces leave in pairs of opposite sides, then they cover

@@ -43,6 +43,7 @@ struct vg_slices {
    * indices of the mesh; no points, no cells. */
   const struct vg_mesh *boundary;
   size_t n_slice;            /* served by this rank */
+  uint64_t n_served;         /* cells of all kinds in them */
   /** Make slice i at hand; it stays valid until put. Threads: any number of
    * slices at once, each by one thread. VG_ERR_MEMORY. */
   vg_status (*get)(const struct vg_slices *s, size_t i, struct vg_slice *out,

@@ -1,6 +1,7 @@
 /* Layers and field in slices: what slices there are, and which is whose. */
 #include "layers/slices.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -23,7 +24,7 @@ struct vg_layer_slices {
   size_t n_part;           /* of the boundary's points */
   size_t n_run, room_run;
   size_t *run;             /* [n_run + 1] first block of faces */
-  size_t n_mine;           /* of parts and runs */
+  size_t first, n_mine;    /* served here, of parts and runs */
 };
 
 /* Close a run where it has its cells. Blocks at the end on which nothing
@@ -57,9 +58,64 @@ static vg_status find_slices(struct vg_layer_slices *k, struct vg_error *err)
   if (!k->point) return vg_fail_memory(err, "the points of the boundary");
   vg_join_plan_points(&k->plan, 1, k->point);
   k->n_part = (n + SLICE_POINTS - 1) / SLICE_POINTS;
-  n = k->n_part + k->n_run;
-  k->n_mine = n > k->rank ? (n - k->rank + k->size - 1) / k->size : 0;
   return VG_OK;
+}
+
+static uint64_t cells_of(const struct vg_layer_slices *k, size_t slice)
+{
+  const struct vg_expand *e = &k->plan.expand;
+  size_t run = slice - k->n_part;
+  uint64_t n = 0;
+
+  for (int i = 0; i < VG_N_KIND && slice >= k->n_part; i++)
+    n += e->cell[i][k->run[run + 1]] - e->cell[i][k->run[run]];
+  return n;
+}
+
+/* What a slice weighs, in cells: the making of a point is a few of them. */
+static uint64_t weight_of(const struct vg_layer_slices *k, size_t slice)
+{
+  return slice < k->n_part ? SLICE_POINTS / 4 : cells_of(k, slice);
+}
+
+/* Up to where all ranks are to be filled, so that `n` more find room: as water
+ * in vessels of which some hold more than that already. */
+static double level_of(size_t size, const uint64_t *n_field, uint64_t n)
+{
+  double level = INFINITY;
+
+  for (size_t r = 0; r < size; r++) {  /* vessels as full as r hold water */
+    double sum = (double)n, wet = 0;
+
+    for (size_t i = 0; i < size; i++) {
+      if (n_field[i] > n_field[r]) continue;
+      sum += (double)n_field[i];
+      wet++;
+    }
+    if (sum / wet < level) level = sum / wet;
+  }
+  return level;
+}
+
+/* A slice is served by the rank whose share its middle lies in. */
+static void share_out(struct vg_layer_slices *k, const uint64_t *n_field)
+{
+  size_t n = k->n_part + k->n_run, rank = 0;
+  uint64_t total = 0, at = 0;
+  double level, end;
+
+  for (size_t i = 0; i < n; i++) total += weight_of(k, i);
+  level = level_of(k->size, n_field, total);
+  end = fmax(level - (double)n_field[0], 0);
+  k->first = k->n_mine = 0;
+  for (size_t i = 0; i < n; i++) {
+    uint64_t w = weight_of(k, i);
+
+    while (rank + 1 < k->size && (double)at + (double)w / 2 >= end)
+      end += fmax(level - (double)n_field[++rank], 0);
+    if (rank == k->rank && !k->n_mine++) k->first = i;
+    at += w;
+  }
 }
 
 static vg_status get_part(const struct vg_layer_slices *k, size_t part,
@@ -145,7 +201,7 @@ static vg_status get_slice(const struct vg_slices *slices, size_t i,
                            struct vg_slice *out, struct vg_error *err)
 {
   const struct vg_layer_slices *k = slices->user;
-  size_t n = k->rank + i * k->size;    /* of parts and runs */
+  size_t n = k->first + i;             /* of parts and runs */
   struct vg_layer_slice *at = vg_calloc(1, sizeof *at);
   struct vg_slice s = { 0 };
   vg_status st;
@@ -184,9 +240,23 @@ static void describe(struct vg_layer_slices *k, struct vg_slices *out)
   }
   out->boundary = &p->boundary;
   out->n_slice = k->n_mine + k->field->n_slice;
+  out->n_served = k->field->n_served;
+  for (size_t i = 0; i < k->n_mine; i++)
+    out->n_served += cells_of(k, k->first + i);
   out->get = get_slice;
   out->put = put_slice;
   out->user = k;
+}
+
+static vg_status share_equally(struct vg_layer_slices *k,
+                               struct vg_error *err)
+{
+  uint64_t *none = vg_calloc(k->size, sizeof *none);
+
+  if (!none) return vg_fail_memory(err, "the slices of the mesh");
+  share_out(k, none);
+  free(none);
+  return VG_OK;
 }
 
 vg_status vg_layer_slices_open(const struct vg_mesh *surface,
@@ -214,6 +284,7 @@ vg_status vg_layer_slices_open(const struct vg_mesh *surface,
                            field->n_point - layers->front.mesh.n_point, cells,
                            threads, err));
   VG_TRY(find_slices(k, err));
+  VG_TRY(share_equally(k, err));
   vg_join_plan_describe(&k->plan, vg_join_now() - start, info);
   describe(k, out);
   *keep = k;
@@ -221,6 +292,13 @@ vg_status vg_layer_slices_open(const struct vg_mesh *surface,
 done:
   vg_layer_slices_close(k);
   return st;
+}
+
+void vg_layer_slices_share(struct vg_layer_slices *k,
+                           const uint64_t *n_field, struct vg_slices *out)
+{
+  share_out(k, n_field);
+  describe(k, out);
 }
 
 void vg_layer_slices_close(struct vg_layer_slices *k)

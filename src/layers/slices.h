@@ -9,11 +9,10 @@
 /** The mesh of layers and field, in the order of vg_layers_join.
  *
  * Every rank has the same surface and layers; the field's slices are shared
- * out. The slices of the layers are shared out too: this rank serves those
- * with number k % size == rank, before the field's. First come those of the
- * boundary's points, 16 k each, without cells; then runs of faces with all
- * that stands on them, at least 256 k cells each. Both follow from the layers
- * alone.
+ * out. The slices of the layers are shared out too: each rank serves some that
+ * follow each other, before the field's. First come those of the boundary's
+ * points, 16 k each, without cells; then runs of faces with all that stands on
+ * them, at least 256 k cells each. Both follow from the layers alone.
  *
  * Kept per rank: the surface's and front's numbers, columns', and the
  * boundary with its points, all O(surface). A slice at hand costs its own
@@ -34,6 +33,13 @@ vg_status vg_layer_slices_open(const struct vg_mesh *surface,
                                struct vg_layer_slices **keep,
                                struct vg_join_info *info,
                                struct vg_error *err);
+
+/** Share the slices of the layers out anew, so that with the field's all ranks
+ * serve nearly as many cells. The same call on every rank.
+ * @param n_field  [size] cells of the field that each rank serves
+ * @param out      as from vg_layer_slices_open */
+void vg_layer_slices_share(struct vg_layer_slices *keep,
+                           const uint64_t *n_field, struct vg_slices *out);
 
 /** Accepts NULL. */
 void vg_layer_slices_close(struct vg_layer_slices *keep);

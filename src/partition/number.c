@@ -193,6 +193,7 @@ static vg_status open_slices(struct vg_partition *p, struct vg_error *err)
   s->n_boundary_point = p->boundary->n_point;
   s->boundary = &p->rim;
   s->n_slice = p->n_piece + (p->rank == 0);
+  for (size_t k = 0; k < p->n_piece; k++) s->n_served += p->piece[k].n_cell;
   s->get = serve;
   s->put = put_back;
   s->user = p;
