@@ -29,6 +29,8 @@
  * Full from this gradient on. */
 #define GRADED 0.21
 #define GRADIENT 0.05
+/* A cube with more triangles holds details that its density need not know. */
+#define CROWD 400
 /* Places of the root cube that are tried when volumes do not agree. */
 #define PLACES 3
 
@@ -98,23 +100,49 @@ static double cube_root(double x)
   return ldexp(y, e / 3);
 }
 
+/* Samples of a cube that the front passes: how many are inside, and the
+ * density there. Without bias, however wide the cube is. */
+static int sample(const struct maker *m, const struct vg_load_stack *s,
+                  const struct vg_load_node *node, struct density *density)
+{
+  const struct vg_load_tree *t = m->tree;
+  const double more = density->cells / density->cubes;
+  int32_t owner[VG_LOAD_SAMPLES];
+  uint32_t at[3];
+  double sum = 0;
+  int inside = 0;
+
+  vg_load_sample(t, s, node, owner, at);
+  for (int i = 0; i < VG_LOAD_SAMPLES; i++) {
+    double x[3], h;
+
+    if (owner[i] < 1) continue;
+    for (int k = 0; k < 3; k++) {
+      const uint32_t p = at[k] + (i >> k & 1 ? vg_load_side(node) / 2 : 0);
+
+      x[k] = t->lo[k] + p * t->unit;
+    }
+    h = vg_sizing_at(m->sizing, x);
+    sum += 1 / (h * h * h);
+    inside++;
+  }
+  if (inside) {
+    density->cubes = sum / inside;
+    density->cells = more * density->cubes;
+  }
+  return inside;
+}
+
 static int emit(const struct maker *m, struct branch *b,
-                const struct vg_load_stack *s,
-                const struct vg_load_node *node, struct density density)
+                const struct vg_load_node *node, struct density density,
+                int inside)
 {
   const struct vg_load_tree *t = m->tree;
   const double side = vg_load_side(node) * t->unit;
   const double volume = side * side * side;
   struct vg_load_cube *c;
-  int inside = VG_LOAD_SAMPLES;
 
-  if (node->n) {
-    int32_t owner[VG_LOAD_SAMPLES];
-
-    vg_load_sample(t, s, node, owner);
-    for (int i = 0; i < VG_LOAD_SAMPLES; i++) inside -= owner[i] < 1;
-    b->crossed += volume * volume;
-  }
+  if (node->n) b->crossed += volume * volume;
   if (!inside) return 0;
   if (vg_reserve(&b->out.cube, &b->out.cap, b->out.n + 1, sizeof *c))
     return -1;
@@ -136,7 +164,8 @@ static int is_leaf(const struct maker *m, const struct vg_load_node *node,
   const double wide = m->wide * (node->n ? WIDE_FRONT : WIDE_FREE);
 
   return node->level >= VG_LOAD_LEVELS
-         || side * side * side * density <= wide * wide * wide;
+         || (node->n <= CROWD
+             && side * side * side * density <= wide * wide * wide);
 }
 
 static int refine(const struct maker *m, struct branch *b,
@@ -149,7 +178,13 @@ static int refine(const struct maker *m, struct branch *b,
 
   if (!node->n && node->owner < 1) return 0;
   density = mean_density(m, node);
-  if (is_leaf(m, node, density.cubes)) return emit(m, b, s, node, density);
+  if (is_leaf(m, node, density.cubes)) {
+    int inside = VG_LOAD_SAMPLES;
+
+    if (node->n) inside = sample(m, s, node, &density);
+    if (is_leaf(m, node, density.cubes))
+      return emit(m, b, node, density, inside);
+  }
   if (vg_load_octants(m->tree, s, node, part, 1)) return -1;
   for (int o = 0; o < 8 && !bad; o++) bad = refine(m, b, s, &part[o]);
   s->n = keep;

@@ -83,16 +83,6 @@ vg_status vg_load_split_blocks(const struct vg_load *parent, const int n[3],
                                double correction, int threads,
                                struct vg_load *out, struct vg_error *err);
 
-/** As vg_load_split, for children that a lattice of planes has parted: one
- * that is alone in its block gets what lies there, fitted to its volume; only
- * for others fronts are looked at in detail. planes: n and at as above.
- * O(cubes + faces of the fronts). */
-vg_status vg_load_split_lattice(const struct vg_load *parent, const int n[3],
-                                const double *const at[3], size_t n_child,
-                                const struct vg_void *child,
-                                double correction, int threads,
-                                struct vg_load *out, struct vg_error *err);
-
 /** Make the index for the questions below anew, after cubes were changed by
  * hand; all loads from here have one. O(cubes). VG_ERR_MEMORY. */
 vg_status vg_load_index(struct vg_load *l, int threads, struct vg_error *err);

@@ -11,9 +11,10 @@
 #include "base/parallel.h"
 #include "partition/load.h"
 
-/* Cubes whose edges become those of bins; two edges nearer to each other than
- * this share of a half cube are one (coordinates are of single precision). */
-enum { SAMPLE = 256, LEVELS_MAX = 16 };
+/* Cubes whose edges become those of bins: all of few, up to SAMPLE of many.
+ * Two edges nearer to each other than this share of a half cube are one
+ * (coordinates are of single precision). */
+enum { SAMPLE = 256, FEW = 32, ONE_OF = 8 };
 #define ONE_EDGE 0.01
 
 struct axis {
@@ -75,7 +76,8 @@ static int by_place(const void *a, const void *b)
 static size_t find_edges(const struct vg_load *l, int k, double *edge,
                          struct mark *mark)
 {
-  const size_t step = (l->n + SAMPLE - 1) / SAMPLE;
+  const size_t few = FEW + l->n / ONE_OF;
+  const size_t step = 1 + (l->n - 1) / (few < SAMPLE ? few : SAMPLE);
   double lo = INFINITY, hi = -INFINITY, from, to;
   size_t n = 0, m = 0;
 

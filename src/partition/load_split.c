@@ -42,8 +42,9 @@ static int share_cube(struct split *s, const struct vg_load_node *node,
                       size_t cube)
 {
   int32_t owner[VG_LOAD_SAMPLES];
+  uint32_t at[3];
 
-  vg_load_sample(&s->tree, &s->stack, node, owner);
+  vg_load_sample(&s->tree, &s->stack, node, owner, at);
   for (int i = 0; i < VG_LOAD_SAMPLES; i++) {
     int n = 1;
 

@@ -286,7 +286,7 @@ static uint64_t scatter(const struct vg_load_node *node)
 void vg_load_sample(const struct vg_load_tree *t,
                     const struct vg_load_stack *s,
                     const struct vg_load_node *node,
-                    int32_t owner[VG_LOAD_SAMPLES])
+                    int32_t owner[VG_LOAD_SAMPLES], uint32_t at[3])
 {
   const uint32_t half = vg_load_side(node) / 2;
   const uint32_t *list = s->item + node->first;
@@ -303,6 +303,7 @@ void vg_load_sample(const struct vg_load_tree *t,
     p[k] = to;
   }
   owner[0] = own;
+  memcpy(at, p, sizeof p);
   for (int o = 1; o < 8; o++) {
     const int axis = o >> 2 ? 2 : o >> 1 ? 1 : 0, from = o ^ 1 << axis;
     uint32_t q[3];

@@ -71,11 +71,12 @@ int vg_load_octants(const struct vg_load_tree *t, struct vg_load_stack *s,
 
 /** Who owns each of 2 x 2 x 2 points of a node. They are shifted by an amount
  * that follows from the node, so that errors of neighbours along a plane wall
- * do not add up. */
+ * do not add up. at out: the first of them; the others are half a node on,
+ * x first. */
 void vg_load_sample(const struct vg_load_tree *t,
                     const struct vg_load_stack *s,
                     const struct vg_load_node *node,
-                    int32_t owner[VG_LOAD_SAMPLES]);
+                    int32_t owner[VG_LOAD_SAMPLES], uint32_t at[3]);
 
 /** All but the cubes. */
 void vg_load_copy_frame(const struct vg_load *from, struct vg_load *to);
