@@ -67,8 +67,9 @@ struct vg_columns {
   struct vg_column *column; /* [n_column] by rising root; those of one root by
                                rising position around it */
   uint32_t (*face)[3];      /* [n_face] columns, counter-clockwise seen from
-                               the fluid; first those of triangles, by rising
-                               triangle, then the virtual ones */
+                               the fluid; first those of triangles (by rising
+                               triangle while layers grow, then along a
+                               Hilbert curve), then the virtual ones */
   uint32_t *face_tri;       /* [n_face] triangle of the surface; virtual:
                                VG_NO_INDEX */
   uint32_t (*rim)[2];       /* [n_rim] edges of one face, in its direction;

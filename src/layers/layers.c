@@ -511,6 +511,7 @@ vg_status vg_layers_grow(const struct vg_mesh *surface,
   VG_TRY(until_clear(&w, &l.front, &r, err));
   if (st == VG_BLOCKED) goto done;
   count(&w, &l.front, &r);
+  VG_TRY(vg_layers_order(surface, &l, err));
   r.time_total = seconds() - start;
   *report = r;
   vg_layers_release(out);

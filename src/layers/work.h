@@ -125,4 +125,11 @@ vg_status vg_cells_lower(struct vg_layer_work *w, const uint8_t *moved,
                          int may_turn, uint8_t *turned, size_t *n_bad,
                          struct vg_error *err);
 
+/* order.c -----------------------------------------------------------------*/
+
+/** Put the faces of grown layers in an order along a Hilbert curve: fewer lie
+ * between slices, and points are numbered near their neighbours. */
+vg_status vg_layers_order(const struct vg_mesh *surface, struct vg_layers *l,
+                          struct vg_error *err);
+
 #endif
