@@ -52,6 +52,9 @@ void vg_seam_get(struct vg_reader *r, struct vg_seam *s)
 
 /* --- the seams of a piece ------------------------------------------------ */
 
+/* A cell with a corner among the points of an owner. */
+struct hit { uint32_t cell, owner; };
+
 /* A piece, and those whose points it uses. */
 struct user {
   const struct vg_piece *q;
@@ -60,6 +63,8 @@ struct user {
   const struct vg_owner **owner;  /* [n_owner] in the order of first use */
   uint32_t *of;              /* [n_in] place in owner, VG_NO_CLUSTER: the
                                 boundary's */
+  size_t n_hit, cap_hit;
+  struct hit *hit;           /* [n_hit] by cell */
   size_t *first;             /* [n_owner + 2] cells of each owner's seam */
   uint32_t *cell;
   uint32_t *number;          /* [n_in + n_point] scratch */
@@ -70,6 +75,7 @@ static void user_release(struct user *u)
 {
   free(u->owner);
   free(u->of);
+  free(u->hit);
   free(u->first);
   free(u->cell);
   free(u->number);
@@ -117,21 +123,36 @@ static int owners_at(const struct user *u, const uint32_t *v, uint32_t *out)
   return n;
 }
 
-static vg_status list_cells(struct user *u)
+/* One pass over the cells, most of which have nothing to do with others. */
+static vg_status find_hits(struct user *u)
 {
   const struct vg_piece *q = u->q;
-  uint32_t at[4];
 
+  for (size_t c = 0; c < q->n_cell; c++) {
+    const uint32_t *v = q->cell[c];
+    uint32_t at[4];
+
+    if (v[0] >= q->n_in && v[1] >= q->n_in && v[2] >= q->n_in &&
+        v[3] >= q->n_in)
+      continue;
+    if (vg_reserve(&u->hit, &u->cap_hit, u->n_hit + 4, sizeof *u->hit))
+      return VG_ERR_MEMORY;
+    for (int n = owners_at(u, v, at); n--;)
+      u->hit[u->n_hit++] = (struct hit){ (uint32_t)c, at[n] };
+  }
+  return VG_OK;
+}
+
+static vg_status list_cells(struct user *u)
+{
   u->first = vg_calloc(u->n_owner + 2, sizeof *u->first);
-  if (!u->first) return VG_ERR_MEMORY;
-  for (size_t c = 0; c < q->n_cell; c++)
-    for (int n = owners_at(u, q->cell[c], at); n--;) u->first[at[n] + 2]++;
+  if (!u->first || find_hits(u) < 0) return VG_ERR_MEMORY;
+  for (size_t k = 0; k < u->n_hit; k++) u->first[u->hit[k].owner + 2]++;
   for (size_t k = 0; k < u->n_owner; k++) u->first[k + 2] += u->first[k + 1];
-  u->cell = vg_alloc(u->first[u->n_owner + 1], sizeof *u->cell);
+  u->cell = vg_alloc(u->n_hit, sizeof *u->cell);
   if (!u->cell) return VG_ERR_MEMORY;
-  for (size_t c = 0; c < q->n_cell; c++)
-    for (int n = owners_at(u, q->cell[c], at); n--;)
-      u->cell[u->first[at[n] + 1]++] = (uint32_t)c;
+  for (size_t k = 0; k < u->n_hit; k++)
+    u->cell[u->first[u->hit[k].owner + 1]++] = u->hit[k].cell;
   return VG_OK;
 }
 

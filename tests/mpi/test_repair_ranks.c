@@ -3,7 +3,7 @@
 
 #include "../unit/repair_support.h"
 
-static struct vg_digest repaired(struct vg_comm *comm, int threads,
+static struct vg_digest repaired(struct vg_comm *comm, int threads, int zones,
                                  struct vg_partition_report *report)
 {
   struct vg_digest d;
@@ -12,6 +12,7 @@ static struct vg_digest repaired(struct vg_comm *comm, int threads,
   scene_new(&s, 16, 6, 6);
   scene_shake(&s, 0.45, 7);
   scene_cut(&s, comm, threads);
+  if (zones) scene_zones(&s);
   assert_int_equal(vg_partition_repair(&s.p, comm, NULL), VG_OK);
   d = scene_digest(&s, comm);
   *report = s.p.report;
@@ -19,17 +20,18 @@ static struct vg_digest repaired(struct vg_comm *comm, int threads,
   return d;
 }
 
-static void test_same_as_alone(void **state)
+static void same_as_alone(int zones)
 {
   struct vg_partition_report one, all;
-  struct vg_digest want = repaired(NULL, 1, &one);
+  struct vg_digest want = repaired(NULL, 1, zones, &one);
 
-  (void)state;
   assert_true(one.n_repaired > 0);
+  assert_int_equal(one.n_repair_moved > 0, zones);
   for (int threads = 1; threads <= 3; threads += 2) {
-    struct vg_digest got = repaired(job, threads, &all);
+    struct vg_digest got = repaired(job, threads, zones, &all);
 
     assert_memory_equal(&got, &want, sizeof want);
+    assert_int_equal(all.n_repair_moved, one.n_repair_moved);
     assert_int_equal(all.n_repair, one.n_repair);
     assert_int_equal(all.n_repaired, one.n_repaired);
     assert_int_equal(all.n_repair_cell, one.n_repair_cell);
@@ -38,6 +40,18 @@ static void test_same_as_alone(void **state)
     assert_true(all.repair_worst == one.repair_worst);
     assert_true(all.repair_worst_left == one.repair_worst_left);
   }
+}
+
+static void test_same_as_alone(void **state)
+{
+  (void)state;
+  same_as_alone(0);
+}
+
+static void test_zones_as_alone(void **state)
+{
+  (void)state;
+  same_as_alone(1);
 }
 
 /* Ranks without any piece take part. */
@@ -61,6 +75,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_same_as_alone),
+    cmocka_unit_test(test_zones_as_alone),
     cmocka_unit_test(test_empty),
   };
 

@@ -176,6 +176,12 @@ static inline void scene_cut(struct scene *s, struct vg_comm *comm,
   free(place);
 }
 
+/* As if the slabs were zones: their points on interfaces may move. */
+static inline void scene_zones(struct scene *s)
+{
+  for (size_t k = 0; k < s->p.n_piece; k++) s->p.piece[k].kind = VG_SPAN_TILE;
+}
+
 static inline void scene_end(struct scene *s)
 {
   for (size_t k = 0; k < s->p.n_piece; k++) vg_piece_release(&s->p.piece[k]);

@@ -89,6 +89,14 @@ static double worst_of(const struct vg_tets *t)
   return worst;
 }
 
+static double mean_of(const struct vg_tets *t)
+{
+  double sum = 0;
+
+  for (size_t c = 0; c < t->n_cell; c++) sum += cell_shape(t, c);
+  return sum / (double)t->n_cell;
+}
+
 /* Every face without neighbour is on the hull of the box. */
 static void check_hull(const struct scene *s, const struct vg_tets *t)
 {
@@ -179,6 +187,43 @@ static void test_rim_stays(void **state)
   assert_true(n_moved > 0);
   assert_int_equal(n_own, 15 * 7 * 7);
   scene_end(&s);
+}
+
+/* Points on interfaces of zones are smoothed, in slabs that are wide and in
+ * such where those of two interfaces have cells in common; others stay. */
+static void test_smooths(void **state)
+{
+  static const int wide[] = {16, 4};
+
+  (void)state;
+  for (int k = 0; k < 2; k++) {
+    struct vg_tets before, after;
+    struct scene s;
+    size_t moved = 0;
+
+    scene_new(&s, wide[k], 6, 6);
+    scene_shake(&s, 0.1, 11);
+    scene_cut(&s, NULL, 1);
+    scene_zones(&s);
+    whole(&s, &before);
+    assert_int_equal(vg_partition_repair(&s.p, NULL, NULL), VG_OK);
+    assert_int_equal(s.p.report.n_repaired, 0);
+    whole(&s, &after);
+    check_volume(&s, &after);
+    assert_true(mean_of(&after) > mean_of(&before));
+    assert_true(worst_of(&after) >= fmin(aim, worst_of(&before)));
+    for (size_t p = 0; p < after.n_point; p++) {
+      if (!memcmp(after.x[p], before.x[p], sizeof *after.x)) continue;
+      /* at 1/4, 1/2, 3/4 of the length, but for the shaking */
+      assert_true(fabs(remainder(before.x[p][0], wide[k] / SLABS)) <= 0.1);
+      moved++;
+    }
+    assert_int_equal(moved, s.p.report.n_repair_moved);
+    assert_in_range(moved, k ? 15 : 40, 75);
+    vg_tets_release(&before);
+    vg_tets_release(&after);
+    scene_end(&s);
+  }
 }
 
 static void unchanged(struct scene *s)
@@ -374,6 +419,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_mends_across),
     cmocka_unit_test(test_rim_stays),
+    cmocka_unit_test(test_smooths),
     cmocka_unit_test(test_nothing_bad),
     cmocka_unit_test(test_inside_is_left),
     cmocka_unit_test(test_hopeless),
