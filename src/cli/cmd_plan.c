@@ -138,7 +138,9 @@ int vg_cmd_plan(int argc, char **argv)
       "fills, heavy ones first.\v"
       "Speed-up is against one worker of the same tasks; critical is the "
       "longest chain of tasks that wait for each other, which no machine can "
-      "go below; cuts end is when the last cut has been made." };
+      "go below; cuts end is when the last cut has been made, cuts the share "
+      "of the work that cuts are, extra the share beyond what their cells "
+      "would have taken in leaves." };
   struct vg_plan_options o = { .machine = VG_MACHINE_INIT, .serial = -1,
                                .depth = 2 };
   struct vg_error err = VG_ERROR_INIT;

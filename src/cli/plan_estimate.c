@@ -19,10 +19,12 @@ static const double spread_per_cell = 0.35e-6;  /* number, judge, encode */
 static const double digest_per_byte = 0.4e-9;   /* the files once more */
 static const double layer_per_cell = 0.1e-6;    /* growing and measuring */
 
-/* Bytes: of a mesh in pieces; of a void that is filled, per cell; of sizes,
- * front and load, per triangle of the front and per cube; of the program. */
+/* Bytes: of a mesh in pieces; of a void that is filled, per cell; of front,
+ * load and sizes, per triangle of the front, per cube and per leaf of the
+ * sizes' octree (vg_sizing_leaves); of the program. */
 static const double mesh_per_cell = 40, fill_per_cell = 60;
-static const double per_triangle = 280, per_cube = 28, program = 18e6;
+static const double per_triangle = 280, per_cube = 28, per_leaf = 37;
+static const double program = 18e6;
 
 /* --- layers that are not grown ------------------------------------------- */
 
@@ -268,7 +270,9 @@ static void count_memory(struct vg_plan *p)
         n->cells > most) most = n->cells;
   }
   p->shared = program + per_triangle * (double)p->front->n_tri +
-              per_cube * (double)p->load.n + 24 * p->layer_point;
+              per_cube * (double)p->load.n +
+              per_leaf * (double)vg_sizing_leaves(p->sizing) +
+              24 * p->layer_point;
   p->per_cell = mesh_per_cell;
   p->per_thread = fill_per_cell * most;
 }

@@ -144,14 +144,25 @@ static void print_leaves(const struct vg_outlook *o, size_t parent, int indent)
   printf(" cells\n");
 }
 
+static void print_number(size_t n, const char *what)
+{
+  printf("%zu %s%s", n, what, n == 1 ? "" : "s");
+}
+
 static void print_tree(const struct vg_plan *p)
 {
   const struct vg_outlook *o = &p->outlook;
   char a[32], b[32];
 
-  printf("\nCuts\n  %zu cuts into %zu leaves; %zu pencils and %zu tiles with "
-         "%s cells (%.1f %%)\n", o->n_node - o->n_leaf, o->n_leaf,
-         o->n_pencil, o->n_tile, count(o->zone_cells, a),
+  printf("\nCuts\n  ");
+  print_number(o->n_node - o->n_leaf, "cut");
+  printf(" into ");
+  if (o->n_leaf == 1) printf("1 leaf; ");
+  else printf("%zu leaves; ", o->n_leaf);
+  print_number(o->n_pencil, "pencil");
+  printf(" and ");
+  print_number(o->n_tile, "tile");
+  printf(" with %s cells (%.1f %%)\n", count(o->zone_cells, a),
          o->cells > 0 ? 100 * o->zone_cells / o->cells : 0);
   for (size_t i = 0; i < o->n_node; i++) {
     const struct vg_outlook_node *n = &o->node[i];
@@ -167,10 +178,11 @@ static void print_tree(const struct vg_plan *p)
 
 static void print_row(const struct vg_plan_row *r)
 {
-  printf("  %5d %7d %7d %10.2f %9.2f %11.1f %10.2f %9.2f %10.3f %5.1f %9.0f\n",
+  printf("  %5d %7d %7d %10.2f %9.2f %11.1f %10.2f %9.2f %10.3f %9.3f %5.1f %5.1f %9.0f\n",
          r->ranks, r->threads, r->ranks * r->threads, r->wall, r->speedup,
          100 * r->efficiency, r->tasks.wall, r->tasks.speedup,
-         r->tasks.critical, 100 * r->tasks.cuts, r->memory / 1e6);
+         r->tasks.critical, r->tasks.cuts_wall, 100 * r->tasks.cuts,
+         100 * r->tasks.cuts_extra, r->memory / 1e6);
 }
 
 static void print_best(const struct vg_plan *p)
@@ -189,8 +201,9 @@ static void print_best(const struct vg_plan *p)
   } else {
     r = &p->row[p->best];
     if (p->o->target > 0) why = "the fewest within the target";
-    printf("\nBest: %d ranks x %d threads, %.2f s (%s)\n", r->ranks,
-           r->threads, r->wall, why);
+    printf("\nBest: %d rank%s x %d thread%s, %.2f s (%s)\n", r->ranks,
+           r->ranks > 1 ? "s" : "", r->threads, r->threads > 1 ? "s" : "",
+           r->wall, why);
     snprintf(text, sizeof text, "There");
   }
   printf("%s %d x %d by leaf size:\n   leaf cells  leaves       time      tasks"
@@ -213,9 +226,9 @@ void vg_plan_text(const struct vg_plan *p)
          "%.2f s behind them\n  (shared by all workers but for %.2f s)\n",
          p->serial, p->outlook.spans.wall, p->spread + p->digest, p->digest);
   printf("  ranks threads workers       time  speed-up  efficiency      tasks "
-         " speed-up   critical  cuts   a rank\n");
+         " speed-up   critical  cuts end  cuts extra    a rank\n");
   printf("                               s                     %%          s  "
-         "                  s     %%        MB\n");
+         "                  s         s     %%     %%        MB\n");
   for (size_t i = 0; i < p->n_row; i++) print_row(&p->row[i]);
   print_best(p);
 }
@@ -225,12 +238,13 @@ void vg_plan_text(const struct vg_plan *p)
 static json_t *row_json(const struct vg_plan_row *r)
 {
   return json_pack("{s:i s:i s:i s:f s:f s:f s:f s:{s:f s:f s:f s:f s:f s:f "
-                   "s:f}}", "ranks", r->ranks, "threads", r->threads,
+                   "s:f s:f}}", "ranks", r->ranks, "threads", r->threads,
                    "workers", r->ranks * r->threads, "seconds", r->wall,
                    "speedup", r->speedup, "efficiency", r->efficiency,
                    "memory_bytes", r->memory, "tasks", "seconds",
                    r->tasks.wall, "speedup", r->tasks.speedup, "critical",
-                   r->tasks.critical, "cuts", r->tasks.cuts, "cuts_end",
+                   r->tasks.critical, "cuts", r->tasks.cuts,
+                   "cuts_extra", r->tasks.cuts_extra, "cuts_end",
                    r->tasks.cuts_wall, "idle", r->tasks.idle, "bytes_sent",
                    r->tasks.bytes);
 }

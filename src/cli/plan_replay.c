@@ -73,36 +73,40 @@ static void print_text(const struct plan *p)
   const struct vg_spans *s = &p->t.spans;
   char cells[32];
 
-  printf("%s\n\nRecord %s\n  %d ranks x %d threads, %zu tasks, %s cells; cut "
+  printf("%s\n\nRecord %s\n  %d rank%s x %d thread%s, %zu tasks, %s cells; cut "
          "and fill %.3f s\n  once on one core (reading to files): %.3f s\n",
-         p->t.title, p->o->replay, (int)s->n_rank, (int)s->n_thread, s->n,
+         p->t.title, p->o->replay, (int)s->n_rank, s->n_rank > 1 ? "s" : "",
+         (int)s->n_thread, s->n_thread > 1 ? "s" : "", s->n,
          vg_cli_count((unsigned long long)p->t.n_cell, cells), s->wall,
          p->machine.serial);
   printf("  the same machine replayed: %.3f s, measured %.3f s (%+.1f %%)\n",
          p->recorded.f.wall, p->measured, error_percent(p));
   printf("\nForecast\n  ranks threads workers       time  speed-up  "
-         "efficiency   critical   cuts end  cuts  idle  imbalance   sent\n");
+         "efficiency   critical   cuts end  cuts extra  idle  imbalance   sent"
+         "\n");
   printf("                               s                     %%          s"
-         "          s     %%     %%                MB\n");
+         "          s     %%     %%     %%                MB\n");
   for (size_t i = 0; i < p->n; i++) {
     const struct row *r = &p->row[i];
 
     printf("  %5d %7d %7d %10.3f %9.2f %11.1f %10.3f %10.3f %5.1f %5.1f "
-           "%10.3f %6.0f\n", r->ranks, r->threads, r->ranks * r->threads,
+           "%5.1f %10.3f %6.0f\n", r->ranks, r->threads, r->ranks * r->threads,
            r->f.wall, r->f.speedup, 100 * r->f.efficiency, r->f.critical,
-           r->f.cuts_wall, 100 * r->f.cuts, 100 * r->f.idle, r->f.imbalance,
+           r->f.cuts_wall, 100 * r->f.cuts, 100 * r->f.cuts_extra,
+           100 * r->f.idle, r->f.imbalance,
            r->f.bytes / 1e6);
   }
 }
 
 static json_t *row_json(const struct row *r)
 {
-  return json_pack("{s:i s:i s:i s:f s:f s:f s:f s:f s:f s:f s:f s:f s:f}",
+  return json_pack("{s:i s:i s:i s:f s:f s:f s:f s:f s:f s:f s:f s:f s:f s:f}",
                    "ranks", r->ranks, "threads", r->threads, "workers",
                    r->ranks * r->threads, "seconds", r->f.wall, "work",
                    r->f.work, "speedup", r->f.speedup, "efficiency",
                    r->f.efficiency, "critical", r->f.critical, "cuts",
-                   r->f.cuts, "cuts_end", r->f.cuts_wall, "idle", r->f.idle,
+                   r->f.cuts, "cuts_extra", r->f.cuts_extra, "cuts_end",
+                   r->f.cuts_wall, "idle", r->f.idle,
                    "imbalance", r->f.imbalance, "bytes_sent", r->f.bytes);
 }
 

@@ -529,6 +529,22 @@ static vg_status check_machine(const struct vg_machine *m,
   return VG_OK;
 }
 
+/* Time of cuts beyond what leaves take for as many cells. */
+static double extra_of_cuts(const struct sim *s, double cuts)
+{
+  double leaves = 0, n_leaf = 0, n_zone = 0;
+
+  for (uint32_t i = 0; i < s->g.n; i++) {
+    const struct vg_span *one = &s->g.span[i];
+
+    if (is_cut(one->kind)) n_zone += (double)one->n_cell;
+    if (one->kind != VG_SPAN_LEAF) continue;
+    leaves += one->cpu;
+    n_leaf += (double)one->n_cell;
+  }
+  return n_leaf > 0 ? cuts - n_zone * leaves / n_leaf : cuts;
+}
+
 static struct vg_forecast judge(const struct sim *s)
 {
   double serial = s->machine->serial / s->machine->rate, sum = 0, most = 0;
@@ -551,6 +567,7 @@ static struct vg_forecast judge(const struct sim *s)
   f.bytes = s->bytes;
   if (sum > 0) {
     f.cuts = cuts / sum;
+    f.cuts_extra = extra_of_cuts(s, cuts) / sum;
     f.imbalance = most * workers / sum;
     f.idle = 1 - sum / (s->now * workers);
     if (f.idle < 0) f.idle = 0;            /* of rounding */

@@ -51,6 +51,8 @@ struct vg_forecast {
   double speedup, efficiency;/* work / wall; over workers */
   double critical;           /* s, longest chain of tasks, serial included */
   double cuts;               /* share of the busy time spent on P, T and J */
+  double cuts_extra;         /* share of it that their cells, final ones, would
+                                not have cost in leaves: the price of cutting */
   double cuts_wall;          /* s, from the first task's start until the last
                                 of P, T and J has ended */
   double idle;               /* share of the workers' time */

@@ -7,6 +7,7 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <math.h>
 #include <string.h>
 #include <cmocka.h>
 
@@ -381,6 +382,29 @@ static void a_faster_core_takes_less(void **state)
   vg_spans_release(&s);
 }
 
+/* A join, a zone of 500 cells in 2 s, two leaves of 4000 cells in 4 s each:
+ * the zone's cells would have taken 0.5 s in leaves. */
+static void zones_make_cells_too(void **state)
+{
+  struct vg_spans s = VG_SPANS_INIT;
+  struct vg_machine m = machine_of(3, 1);
+  struct vg_forecast f;
+
+  (void)state;
+  add(&s, "0J0", "", 1);
+  add(&s, "0T0", "0J0", 2);
+  add(&s, "0J1", "0T0", 1);
+  add(&s, "0.0L", "0J1", 4);
+  add(&s, "0.1L", "0J1", 4);
+  s.span[0].n_cell = s.span[2].n_cell = 0;
+  s.span[1].n_cell = 500;
+  f = replay(&s, &m, NULL);
+  assert_true(fabs(f.cuts - 4. / 12) < 1e-12);
+  assert_true(fabs(f.cuts_extra - 3.5 / 12) < 1e-12);
+  assert_true(fabs(f.cuts_wall - 4) < 1e-12);
+  vg_spans_release(&s);
+}
+
 static void nothing_takes_no_time(void **state)
 {
   struct vg_spans s = VG_SPANS_INIT, t = VG_SPANS_INIT;
@@ -507,6 +531,7 @@ int main(void)
     cmocka_unit_test(nodes_move_and_joins_stay),
     cmocka_unit_test(joins_wait_for_their_rank),
     cmocka_unit_test(a_faster_core_takes_less),
+    cmocka_unit_test(zones_make_cells_too),
     cmocka_unit_test(nothing_takes_no_time),
     cmocka_unit_test(the_same_record_gives_the_same),
     cmocka_unit_test(contradictions_are_named),

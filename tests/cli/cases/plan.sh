@@ -17,7 +17,7 @@ END
 
 vanguard plan --replay r.timeline.json --ranks 1:4:x2 --threads 1,2
 exits 0
-says out "1 ranks x 1 threads, 5 tasks, 4,000 cells; cut and fill 9.000 s"
+says out "1 rank x 1 thread, 5 tasks, 4,000 cells; cut and fill 9.000 s"
 says out "replayed: 11.000 s, measured 11.000 s (+0.0 %)"
 says out "      1       1       1     11.000      1.00       100.0      5.000"
 says out "      2       1       2      7.000      1.57        78.6      5.000"
@@ -103,12 +103,12 @@ awk '$1 != $3 || $2 / $4 < 0.94 || $2 / $4 > 1.06 { exit 1 }' both ||
 
 # One leaf where that is asked for; a target that cannot be, and one that can.
 vanguard plan -q -p p/box --leaf-cells 0 -n 1
-says out "0 cuts into 1 leaves"
+says out "0 cuts into 1 leaf"
 vanguard plan -q -p p/box --target 0.001 -n 1,2
 exits 0
 says out "No machine of the list takes 0.001 s or less."
 vanguard plan -q -p p/box --target 1000 -n 1,2
-says out "Best: 1 ranks x 1 threads"
+says out "Best: 1 rank x 1 thread"
 
 vanguard plan -p p/box -r r.timeline.json
 exits 2
