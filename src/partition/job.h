@@ -26,6 +26,10 @@ struct vg_front {
 };
 #define VG_FRONT_INIT { 0 }
 
+/** The first point of a face that is no longer part of a front: only while a
+ * node is being cut (node.c); fronts of tasks have none. */
+#define VG_FACE_GONE UINT32_MAX
+
 void vg_front_release(struct vg_front *f);
 
 /** Bytes of a front and back. */

@@ -268,20 +268,6 @@ int vg_lattice_region(const struct vg_lattice *l, int stage, size_t k,
                                                  : tile(l, k, r);
 }
 
-void vg_lattice_patch(const struct vg_lattice *l, int axis, int i,
-                      const double lo[3], const double hi[3],
-                      struct vg_region *r)
-{
-  memset(r, 0, sizeof *r);
-  cross(r, axis, l->at[axis][i]);
-  between(r, l, axis, i);
-  for (int k = 0; k < 3; k++) {
-    if (k == axis) continue;
-    bound(r, k, 1, lo[k]);
-    bound(r, k, -1, hi[k]);
-  }
-}
-
 /* --- blocks -------------------------------------------------------------- */
 
 size_t vg_lattice_blocks(const struct vg_lattice *l)

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "partition/select.h"
 
 static void drop_stage(struct vg_node *n)
 {
@@ -32,6 +31,8 @@ void vg_node_free(struct vg_node *n)
   for (size_t k = 0; k < n->n_child; k++)
     if (n->child[k] != n) vg_node_free(n->child[k]);
   free(n->child);
+  vg_select_release(&n->select);
+  free(n->block);
   vg_front_release(&n->front);
   vg_load_release(&n->load);
   free(n);
@@ -72,9 +73,9 @@ int vg_node_wants_cut(const struct vg_partition *p, struct vg_node *n)
 
 /* --- the works of a stage ------------------------------------------------ */
 
-/* Behind the stages of the lattice: places that hang together, across x, y
- * and z. */
-enum { STAGES = VG_LATTICE_STAGES + 3 };
+/* Behind the stages of the lattice: places that hang together, and those that
+ * still do. */
+enum { STAGES = VG_LATTICE_STAGES + 2 };
 
 static vg_status make_room(struct vg_node *n, size_t n_work,
                            struct vg_error *err)
@@ -96,8 +97,7 @@ static size_t number_of(struct vg_node *n, size_t k)
 }
 
 static vg_status add_work(struct vg_partition *p, struct vg_node *n,
-                          struct vg_select *s, size_t k,
-                          const struct vg_region *region,
+                          size_t k, const struct vg_region *region,
                           struct vg_error *err)
 {
   struct vg_work *w = vg_calloc(1, sizeof *w);
@@ -110,8 +110,8 @@ static vg_status add_work(struct vg_partition *p, struct vg_node *n,
   w->node = n;
   w->index = i;
   w->region = *region;
-  st = vg_select_part(s, &w->region, &w->part, &n->point[i], &n->face[i],
-                      err);
+  st = vg_select_part(&n->select, &w->region, &w->part, &n->point[i],
+                      &n->face[i], err);
   if (st < 0 || !w->part.n_face) {
     free(n->point[i]);
     free(n->face[i]);
@@ -135,14 +135,16 @@ static void estimate_works(struct vg_node *n)
     const struct vg_plane *plane = &w->region.plane[0];
     int axis = plane->normal[0] > 0 ? 0 : plane->normal[1] > 0 ? 1 : 2;
     int b = (axis + 1) % 3, c = (axis + 2) % 3;
-    double cells = vg_load_zone(&n->load, axis, plane->offset, 1);
+    double cells;
 
-    if (n->stage >= VG_LATTICE_STAGES)
-      w->estimate = 0.01 * cells;
-    else
-      w->estimate = w->kind == VG_SPAN_TILE
-                      ? cells / ((n->lattice.n[b] + 1) * (n->lattice.n[c] + 1))
-                      : 0.1 * cells / (n->lattice.n[b] + n->lattice.n[c] + 1);
+    if (!w->region.n_plane) {
+      w->estimate = (double)w->part.n_face;
+      continue;
+    }
+    cells = vg_load_zone(&n->load, axis, plane->offset, 1);
+    w->estimate = w->kind == VG_SPAN_TILE
+                    ? cells / ((n->lattice.n[b] + 1) * (n->lattice.n[c] + 1))
+                    : 0.1 * cells / (n->lattice.n[b] + n->lattice.n[c] + 1);
   }
 }
 
@@ -154,8 +156,7 @@ static vg_status list_regions(const struct vg_partition *p,
 {
   *region = NULL;
   if (n->stage >= VG_LATTICE_STAGES)
-    return vg_node_open_places(p, n, n->stage - VG_LATTICE_STAGES, region,
-                               count, err);
+    return vg_node_open_places(p, n, region, count, err);
   *count = vg_lattice_count(&n->lattice, n->stage);
   *region = vg_alloc(*count, sizeof **region);
   if (!*region) return vg_fail_memory(err, "cutting a front");
@@ -165,17 +166,16 @@ static vg_status list_regions(const struct vg_partition *p,
 }
 
 static vg_status prepare_stage(struct vg_partition *p, struct vg_node *n,
-                               struct vg_select *s, struct vg_error *err)
+                               struct vg_error *err)
 {
   struct vg_region *region;
   size_t count;
   vg_status st = list_regions(p, n, &region, &count, err);
 
-  if (st == VG_OK && count && !s->front)
-    st = vg_select_open(s, &n->front, p->sizing, err);
+  if (st == VG_OK && count) st = vg_select_update(&n->select, err);
   if (st == VG_OK && count) st = make_room(n, count, err);
   for (size_t k = 0; st == VG_OK && k < count; k++)
-    st = add_work(p, n, s, k, &region[k], err);
+    st = add_work(p, n, k, &region[k], err);
   if (st == VG_OK) estimate_works(n);
   free(region);
   return st;
@@ -184,15 +184,13 @@ static vg_status prepare_stage(struct vg_partition *p, struct vg_node *n,
 static vg_status prepare(struct vg_partition *p, struct vg_node *n,
                          struct vg_error *err)
 {
-  struct vg_select s = {0};
   vg_status st = VG_OK;
 
   for (; !n->n_work && n->stage < STAGES && st == VG_OK; n->stage++) {
     drop_stage(n);
-    st = prepare_stage(p, n, &s, err);
+    st = prepare_stage(p, n, err);
   }
   n->n_left = n->n_work;
-  vg_select_close(&s);
   return st;
 }
 
@@ -214,8 +212,12 @@ vg_status vg_node_start(struct vg_partition *p, struct vg_node *n,
 
   n->stage = 0;
   if (!vg_node_wants_cut(p, n)) return keep_whole(n, err);
+  vg_select_init(&n->select, &n->front, p->sizing);
   VG_TRY(prepare(p, n, err));
-  if (!n->n_work) st = keep_whole(n, err);
+  if (!n->n_work) {
+    vg_select_release(&n->select);
+    st = keep_whole(n, err);
+  }
 done:
   return st;
 }
@@ -244,32 +246,38 @@ static void add_change(struct vg_node *n, size_t i, size_t n_part)
       f->face[f->n_face][j] = point_of(n, i, base, c->face[k][j], n_part);
 }
 
-/* Faces that have a cell now leave; points that no face uses as well. */
-static vg_status shrink(struct vg_node *n, struct vg_error *err)
+/* Faces that have a cell now. */
+static void drop_gone(struct vg_node *n)
 {
-  struct vg_front *f = &n->front;
-  uint8_t *gone = vg_calloc(f->n_face, 1);
-  size_t left = 0;
-
-  if (!gone) return vg_fail_memory(err, "cutting a front");
   for (size_t i = 0; i < n->n_work; i++)
     for (size_t k = 0; k < n->change[i].n_gone; k++)
-      gone[n->face[i][n->change[i].gone[k]]] = 1;
-  for (size_t i = 0; i < f->n_face; i++)
-    if (!gone[i]) memmove(f->face[left++], f->face[i], sizeof *f->face);
-  f->n_face = left;
-  free(gone);
+      n->front.face[n->face[i][n->change[i].gone[k]]][0] = VG_FACE_GONE;
+}
+
+/* Blocks of the points that are new. */
+static vg_status label_points(struct vg_node *n, struct vg_error *err)
+{
+  const struct vg_front *f = &n->front;
+
+  if (vg_reserve(&n->block, &n->cap_block, f->n_point, sizeof *n->block))
+    return vg_fail_memory(err, "cutting a front");
+  for (; n->n_block < f->n_point; n->n_block++) {
+    const double *x = f->x[n->n_block];
+    uint32_t b = vg_lattice_block(&n->lattice, x, 0);
+
+    if (vg_lattice_block(&n->lattice, x, 1) != b) b |= VG_ON_PLANE;
+    n->block[n->n_block] = (uint16_t)b;
+  }
   return VG_OK;
 }
 
 static vg_status put_in(struct vg_node *n, struct vg_error *err)
 {
   struct vg_front *f = &n->front;
-  size_t np = f->n_point, nf, cap_x = np, cap_name = np, cap_face = f->n_face;
-  vg_status st;
+  size_t np = f->n_point, nf = f->n_face, cap_x = np, cap_name = np;
+  size_t cap_face = nf;
 
-  VG_TRY(shrink(n, err));
-  nf = f->n_face;
+  drop_gone(n);
   for (size_t i = 0; i < n->n_work; i++) {
     np += n->change[i].n_point;
     nf += n->change[i].n_face;
@@ -283,8 +291,7 @@ static vg_status put_in(struct vg_node *n, struct vg_error *err)
     return vg_fail_memory(err, "cutting a front");
   for (size_t i = 0; i < n->n_work; i++)
     add_change(n, i, n->change[i].n_part);
-done:
-  return st;
+  return label_points(n, err);
 }
 
 vg_status vg_node_join(struct vg_partition *p, struct vg_node *n,
@@ -295,7 +302,10 @@ vg_status vg_node_join(struct vg_partition *p, struct vg_node *n,
   VG_TRY(put_in(n, err));
   drop_stage(n);
   VG_TRY(prepare(p, n, err));
-  if (!n->n_work) st = vg_node_split(p, n, err);
+  if (!n->n_work) {
+    vg_select_release(&n->select);
+    st = vg_node_split(p, n, err);
+  }
 done:
   return st;
 }

@@ -8,6 +8,7 @@
 
 #include "partition/advance.h"
 #include "partition/job.h"
+#include "partition/select.h"
 
 /* A leaf that needs this many times the points that were expected is cut
  * again, as is one beyond this many times the leaf size. */
@@ -17,6 +18,9 @@
 enum { VG_RETRIES = 5 };
 
 struct vg_work;
+
+/* Beside the number of a block: the point is on a plane, in the block below. */
+#define VG_ON_PLANE 0x8000u
 
 struct vg_node {
   struct vg_node *next, **link;  /* nodes being cut on this rank */
@@ -28,7 +32,11 @@ struct vg_node {
   int levels;                /* bisections left, in a partition by levels */
   int retry;                 /* attempts that failed */
   int is_final;              /* a leaf whatever it needs */
-  /* while it is being cut */
+  /* while it is being cut: faces stay where they are, with VG_FACE_GONE */
+  struct vg_select select;
+  size_t n_block, cap_block;
+  uint16_t *block;           /* [n_block] of the front's points: the block that
+                                each is in, with VG_ON_PLANE or not */
   int is_planned;            /* the next two are of this load, this retry */
   int n_bisection;
   struct vg_lattice lattice;
@@ -40,7 +48,7 @@ struct vg_node {
   struct vg_change *change;  /* [n_work] what came of it */
   double zone_cells, zone_volume;
   size_t n_pencil;           /* pencils so far: numbers go on */
-  size_t n_patch;            /* tiles that closed what was left, likewise */
+  size_t n_patch;            /* boxes that closed what was left, likewise */
   size_t n_blocked;          /* works that made nothing */
   size_t n_child;
   struct vg_node **child;    /* [n_child] what it fell into */
@@ -107,12 +115,19 @@ vg_status vg_node_start(struct vg_partition *p, struct vg_node *n,
 vg_status vg_node_join(struct vg_partition *p, struct vg_node *n,
                        struct vg_error *err);
 
+/** Does a face with these points lie within one block, off all planes? */
+static inline int vg_node_is_in_block(const uint16_t *block,
+                                      const uint32_t v[3])
+{
+  return block[v[0]] == block[v[1]] && block[v[0]] == block[v[2]] &&
+         !(block[v[0]] & VG_ON_PLANE);
+}
+
 /** Where the void hangs together across planes of the lattice after its
- * stages: places across one axis, to be closed like tiles. They are few, or
- * none are given.
+ * stages: boxes to be filled. They are few, or none are given.
  * region out: [*n_region], to be freed by the caller. (node_close.c) */
 vg_status vg_node_open_places(const struct vg_partition *p,
-                              const struct vg_node *n, int axis,
+                              const struct vg_node *n,
                               struct vg_region **region, size_t *n_region,
                               struct vg_error *err);
 

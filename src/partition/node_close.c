@@ -2,8 +2,8 @@
  * that touches a plane is made by a stage, so the faces that are left lie on
  * one side of each plane, except where cells could not be kept, because they
  * would have reached into another region. Faces that touch a plane there are
- * put together to places, boxes around them on the plane, and each is grown
- * again without the others beside it. */
+ * put together to places, and the boxes around these are filled: few cells,
+ * which no plane needs to cross any more. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,25 +12,21 @@
 #include "partition/node.h"
 
 /* A box ends so many spacings beyond the faces that it is made for. */
-static const double margin = 2.5;
+static const double margin = 1.5;
 /* Places with more faces are where a region was given up; more places: the
  * planes do not suit this void. */
 enum { MOST_FACES = 600, MOST_PLACES = 512, MOST_TOUCHING = 16384 };
 
 struct place {
-  int plane;                 /* across the axis */
   size_t n_face;             /* 0: became part of another one */
   double lo[3], hi[3];
 };
 
-struct touching { int plane; uint32_t face; };
-
 struct search {
   const struct vg_node *n;
   const struct vg_sizing *sizing;
-  int axis;
   size_t n_touching, cap_touching;
-  struct touching *touching;
+  uint32_t *touching;        /* [n_touching] faces */
   uint32_t *parent;          /* [n_touching] those with a point in common */
   size_t n_place, cap_place;
   struct place *place;
@@ -49,23 +45,19 @@ static void extent_of(const struct search *s, uint32_t face, int axis,
 
 static vg_status list_touching(struct search *s, struct vg_error *err)
 {
-  const struct vg_lattice *l = &s->n->lattice;
-
   for (uint32_t i = 0; i < s->n->front.n_face; i++) {
-    double lo, hi;
+    const uint32_t *v = s->n->front.face[i];
+    const uint16_t *block = s->n->block;
 
-    extent_of(s, i, s->axis, &lo, &hi);
-    for (int k = 0; k < l->n[s->axis]; k++) {
-      if (!(l->at[s->axis][k] >= lo && l->at[s->axis][k] <= hi)) continue;
-      if (s->n_touching == MOST_TOUCHING) {
-        s->n_touching = 0;
-        return VG_OK;
-      }
-      if (vg_reserve(&s->touching, &s->cap_touching, s->n_touching + 1,
-                     sizeof *s->touching))
-        return vg_fail_memory(err, "cutting a front");
-      s->touching[s->n_touching++] = (struct touching){ k, i };
+    if (v[0] == VG_FACE_GONE || vg_node_is_in_block(block, v)) continue;
+    if (s->n_touching == MOST_TOUCHING) {
+      s->n_touching = 0;
+      return VG_OK;
     }
+    if (vg_reserve(&s->touching, &s->cap_touching, s->n_touching + 1,
+                   sizeof *s->touching))
+      return vg_fail_memory(err, "cutting a front");
+    s->touching[s->n_touching++] = i;
   }
   return VG_OK;
 }
@@ -83,8 +75,8 @@ static int by_point(const void *a, const void *b)
   return (*s > *t) - (*s < *t);
 }
 
-/* Faces of a plane that have a point in common are of one place. The lowest
- * of them is their root. */
+/* Faces that have a point in common are of one place. The lowest of them is
+ * their root. */
 static vg_status unite_touching(struct search *s, struct vg_error *err)
 {
   size_t m = 0;
@@ -96,7 +88,7 @@ static vg_status unite_touching(struct search *s, struct vg_error *err)
     return vg_fail_memory(err, "cutting a front");
   }
   for (uint32_t i = 0; i < s->n_touching; i++) {
-    const uint32_t *v = s->n->front.face[s->touching[i].face];
+    const uint32_t *v = s->n->front.face[s->touching[i]];
 
     s->parent[i] = i;
     for (int k = 0; k < 3; k++) key[m++] = (uint64_t)v[k] << 32 | i;
@@ -105,9 +97,7 @@ static vg_status unite_touching(struct search *s, struct vg_error *err)
   for (size_t i = 1; i < m; i++) {
     uint32_t a = (uint32_t)key[i - 1], b = (uint32_t)key[i];
 
-    if (key[i - 1] >> 32 != key[i] >> 32 ||
-        s->touching[a].plane != s->touching[b].plane)
-      continue;
+    if (key[i - 1] >> 32 != key[i] >> 32) continue;
     a = root_of(s->parent, a);
     b = root_of(s->parent, b);
     s->parent[a > b ? a : b] = a > b ? b : a;
@@ -125,19 +115,17 @@ static void widen(struct place *p, const struct place *by)
   p->n_face += by->n_face;
 }
 
-static void place_of_face(const struct search *s, const struct touching *t,
+static void place_of_face(const struct search *s, uint32_t face,
                           struct place *out)
 {
-  double foot[3], h;
+  double middle[3], h;
 
-  out->plane = t->plane;
   out->n_face = 1;
   for (int k = 0; k < 3; k++) {
-    extent_of(s, t->face, k, &out->lo[k], &out->hi[k]);
-    foot[k] = 0.5 * (out->lo[k] + out->hi[k]);
+    extent_of(s, face, k, &out->lo[k], &out->hi[k]);
+    middle[k] = 0.5 * (out->lo[k] + out->hi[k]);
   }
-  foot[s->axis] = s->n->lattice.at[s->axis][t->plane];
-  h = margin * vg_sizing_at(s->sizing, foot);
+  h = margin * vg_sizing_at(s->sizing, middle);
   for (int k = 0; k < 3; k++) {
     out->lo[k] -= h;
     out->hi[k] += h;
@@ -153,7 +141,7 @@ static vg_status make_places(struct search *s, struct vg_error *err)
     uint32_t root = root_of(s->parent, i);
     struct place one;
 
-    place_of_face(s, &s->touching[i], &one);
+    place_of_face(s, s->touching[i], &one);
     if (root != i) {
       widen(&s->place[place[root]], &one);
       continue;
@@ -170,13 +158,11 @@ static vg_status make_places(struct search *s, struct vg_error *err)
   return st;
 }
 
-static int overlap(const struct search *s, const struct place *a,
-                   const struct place *b)
+static int overlap(const struct place *a, const struct place *b)
 {
-  if (a->plane != b->plane || !a->n_face || !b->n_face) return 0;
+  if (!a->n_face || !b->n_face) return 0;
   for (int k = 0; k < 3; k++)
-    if (k != s->axis && (a->lo[k] >= b->hi[k] || b->lo[k] >= a->hi[k]))
-      return 0;
+    if (a->lo[k] >= b->hi[k] || b->lo[k] >= a->hi[k]) return 0;
   return 1;
 }
 
@@ -189,11 +175,22 @@ static void merge_places(struct search *s)
     again = 0;
     for (size_t a = 0; a < s->n_place; a++)
       for (size_t b = a + 1; b < s->n_place; b++) {
-        if (!overlap(s, &s->place[a], &s->place[b])) continue;
+        if (!overlap(&s->place[a], &s->place[b])) continue;
         widen(&s->place[a], &s->place[b]);
         s->place[b].n_face = 0;
         again = 1;
       }
+  }
+}
+
+static void box_region(const struct place *p, struct vg_region *r)
+{
+  memset(r, 0, sizeof *r);
+  for (int k = 0; k < 3; k++) {
+    r->wall[r->n_wall].normal[k] = 1;
+    r->wall[r->n_wall++].offset = p->lo[k];
+    r->wall[r->n_wall].normal[k] = -1;
+    r->wall[r->n_wall++].offset = -p->hi[k];
   }
 }
 
@@ -202,22 +199,18 @@ static vg_status to_regions(const struct search *s, struct vg_region **region,
 {
   *region = vg_alloc(s->n_place, sizeof **region);
   if (!*region) return vg_fail_memory(err, "cutting a front");
-  for (size_t k = 0; k < s->n_place; k++) {
-    const struct place *p = &s->place[k];
-
-    if (!p->n_face || p->n_face > MOST_FACES) continue;
-    vg_lattice_patch(&s->n->lattice, s->axis, p->plane, p->lo, p->hi,
-                     &(*region)[(*n_region)++]);
-  }
+  for (size_t k = 0; k < s->n_place; k++)
+    if (s->place[k].n_face && s->place[k].n_face <= MOST_FACES)
+      box_region(&s->place[k], &(*region)[(*n_region)++]);
   return VG_OK;
 }
 
 vg_status vg_node_open_places(const struct vg_partition *p,
-                              const struct vg_node *n, int axis,
+                              const struct vg_node *n,
                               struct vg_region **region, size_t *n_region,
                               struct vg_error *err)
 {
-  struct search s = { .n = n, .sizing = p->sizing, .axis = axis };
+  struct search s = { .n = n, .sizing = p->sizing };
   int n_axis = 0;
   vg_status st;
 

@@ -19,11 +19,10 @@ static const double not_parted = 0.9;
 /* Cells that zones make of it are not the blocks': spacings to each side. */
 static const double zone_reach = 0.68;
 
-enum { ON_PLANE = 0x8000, NONE = 0xffff };
+enum { NONE = 0xffff };
 
 struct split {
   struct vg_node *n;
-  uint16_t *block;           /* [n_point] of the front; with ON_PLANE or not */
   uint16_t root[VG_LATTICE_BLOCKS];   /* union-find of blocks */
   uint16_t child[VG_LATTICE_BLOCKS];  /* of a root, or NONE */
   int is_merged;
@@ -31,23 +30,7 @@ struct split {
   struct vg_front *part;     /* [n_part] of the children, in their order */
 };
 
-/* --- blocks of points and faces ------------------------------------------ */
-
-static vg_status label_points(struct split *s, struct vg_error *err)
-{
-  const struct vg_front *f = &s->n->front;
-  const struct vg_lattice *l = &s->n->lattice;
-
-  s->block = vg_alloc(f->n_point, sizeof *s->block);
-  if (!s->block) return vg_fail_memory(err, "the parts of a front");
-  for (size_t p = 0; p < f->n_point; p++) {
-    uint32_t b = vg_lattice_block(l, f->x[p], 0);
-
-    s->block[p] = (uint16_t)b;
-    if (vg_lattice_block(l, f->x[p], 1) != b) s->block[p] |= ON_PLANE;
-  }
-  return VG_OK;
-}
+/* --- blocks that hang together -------------------------------------------- */
 
 static uint16_t root_of(struct split *s, uint32_t b)
 {
@@ -64,16 +47,20 @@ static void unite(struct split *s, uint32_t a, uint32_t b)
   s->root[a < b ? b : a] = (uint16_t)(a < b ? a : b);
 }
 
+static uint32_t block_of(const struct split *s, uint32_t point)
+{
+  return s->n->block[point] & ~VG_ON_PLANE;
+}
+
 static void unite_corners(struct split *s, const uint32_t v[3])
 {
-  const struct vg_front *f = &s->n->front;
+  const struct vg_node *n = s->n;
 
   for (int k = 0; k < 3; k++) {
-    uint32_t b = s->block[v[k]] & (uint32_t)~ON_PLANE;
-
-    unite(s, b, s->block[v[0]] & (uint32_t)~ON_PLANE);
-    if (s->block[v[k]] & ON_PLANE)
-      unite(s, b, vg_lattice_block(&s->n->lattice, f->x[v[k]], 1));
+    unite(s, block_of(s, v[k]), block_of(s, v[0]));
+    if (n->block[v[k]] & VG_ON_PLANE)
+      unite(s, block_of(s, v[k]),
+            vg_lattice_block(&n->lattice, n->front.x[v[k]], 1));
   }
 }
 
@@ -86,10 +73,10 @@ static void find_children(struct split *s)
   for (uint32_t b = 0; b < VG_LATTICE_BLOCKS; b++) s->root[b] = (uint16_t)b;
   for (size_t i = 0; i < f->n_face; i++) {
     const uint32_t *v = f->face[i];
-    uint16_t a = s->block[v[0]], b = s->block[v[1]], c = s->block[v[2]];
 
-    if (a != b || b != c || a & ON_PLANE) unite_corners(s, v);
-    is_used[a & ~ON_PLANE] = 1;
+    if (v[0] == VG_FACE_GONE) continue;
+    if (!vg_node_is_in_block(s->n->block, v)) unite_corners(s, v);
+    is_used[block_of(s, v[0])] = 1;
   }
   s->n_part = 0;
   memset(s->child, 0xff, sizeof s->child);
@@ -128,10 +115,12 @@ static void deal_out(struct split *s, uint32_t *number)
   const struct vg_front *f = &s->n->front;
 
   for (size_t i = 0; i < f->n_face; i++) {
-    uint16_t b = s->block[f->face[i][0]] & (uint16_t)~ON_PLANE;
-    struct vg_front *part = &s->part[s->child[b]];
-    uint32_t *to = part->face[part->n_face++];
+    struct vg_front *part;
+    uint32_t *to;
 
+    if (f->face[i][0] == VG_FACE_GONE) continue;
+    part = &s->part[s->child[block_of(s, f->face[i][0])]];
+    to = part->face[part->n_face++];
     for (int k = 0; k < 3; k++) {
       uint32_t p = f->face[i][k];
 
@@ -155,9 +144,10 @@ static vg_status split_front(struct split *s, struct vg_error *err)
   if (!number || !count) st = vg_fail_memory(err, "the parts of a front");
   if (st == VG_OK) {
     for (size_t i = 0; i < f->n_face; i++)
-      count[s->child[s->block[f->face[i][0]] & ~ON_PLANE]]++;
+      if (f->face[i][0] != VG_FACE_GONE)
+        count[s->child[block_of(s, f->face[i][0])]]++;
     for (size_t p = 0; p < f->n_point; p++) {
-      uint16_t c = s->child[s->block[p] & ~ON_PLANE];
+      uint16_t c = s->child[block_of(s, (uint32_t)p)];
 
       if (c != NONE) count[s->n_part + c]++;
     }
@@ -349,7 +339,6 @@ vg_status vg_node_split(struct vg_partition *p, struct vg_node *n,
   struct split s = { .n = n };
   vg_status st;
 
-  VG_TRY(label_points(&s, err));
   find_children(&s);
   VG_TRY(split_front(&s, err));
   if (bounds_nothing(&s)) VG_TRY(undo(&s, err));
@@ -361,6 +350,5 @@ done:
   for (size_t k = 0; s.part && k < s.n_part; k++)
     vg_front_release(&s.part[k]);
   free(s.part);
-  free(s.block);
   return st;
 }

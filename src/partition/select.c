@@ -1,122 +1,277 @@
 #include "partition/select.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
 #include "core/hilbert.h"
 
-enum { RUN = 64 };           /* faces to a box */
+/* Faces to a box, and boxes to one of the next level. */
+enum { RUN = 16, FAN = 8 };
 
-vg_status vg_select_open(struct vg_select *s, const struct vg_front *front,
-                         const struct vg_sizing *sizing, struct vg_error *err)
+void vg_select_init(struct vg_select *s, const struct vg_front *front,
+                    const struct vg_sizing *sizing)
 {
+  memset(s, 0, sizeof *s);
   s->front = front;
   s->sizing = sizing;
-  s->n_box = (front->n_face + RUN - 1) / RUN;
-  s->box = vg_alloc(s->n_box, sizeof *s->box);
-  s->local = vg_alloc(front->n_point, sizeof *s->local);
-  if (!s->box || !s->local) {
-    vg_select_close(s);
-    return vg_fail_memory(err, "cutting a front");
-  }
-  memset(s->local, 0xff, front->n_point * sizeof *s->local);
-  for (size_t i = 0; i < front->n_face; i++)
-    for (int j = 0; j < 3; j++) {
-      struct vg_select_box *b = &s->box[i / RUN];
-      const double *x = front->x[front->face[i][j]];
-
-      for (int k = 0; k < 3; k++) {
-        if ((i % RUN == 0 && j == 0) || x[k] < b->lo[k]) b->lo[k] = x[k];
-        if ((i % RUN == 0 && j == 0) || x[k] > b->hi[k]) b->hi[k] = x[k];
-      }
-    }
-  return VG_OK;
 }
 
-void vg_select_close(struct vg_select *s)
+void vg_select_release(struct vg_select *s)
 {
-  free(s->box);
+  for (int k = 0; k < VG_SELECT_LEVELS; k++) free(s->level[k].box);
   free(s->local);
   memset(s, 0, sizeof *s);
 }
 
-/* Faces that the region needs into *face; the number of them. */
-static vg_status list_faces(const struct vg_select *s,
-                            const struct vg_region *r, uint32_t **face,
-                            size_t *n, struct vg_error *err)
+/* --- boxes --------------------------------------------------------------- */
+
+static const struct vg_select_box empty = {
+  {INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+
+static int make_boxes(struct vg_select_level *l, size_t n)
+{
+  if (vg_reserve(&l->box, &l->cap, n, sizeof *l->box)) return -1;
+  while (l->n < n) l->box[l->n++] = empty;
+  return 0;
+}
+
+static void widen(struct vg_select_box *b, const double lo[3],
+                  const double hi[3])
+{
+  for (int k = 0; k < 3; k++) {
+    if (lo[k] < b->lo[k]) b->lo[k] = lo[k];
+    if (hi[k] > b->hi[k]) b->hi[k] = hi[k];
+  }
+}
+
+vg_status vg_select_update(struct vg_select *s, struct vg_error *err)
 {
   const struct vg_front *f = s->front;
-  size_t cap = 0;
+  size_t from = s->n_face / RUN, n = (f->n_face + RUN - 1) / RUN;
 
-  *face = NULL;
-  *n = 0;
-  for (size_t b = 0; b < s->n_box; b++) {
-    size_t end = (b + 1) * RUN < f->n_face ? (b + 1) * RUN : f->n_face;
+  if (vg_reserve(&s->local, &s->cap_local, f->n_point, sizeof *s->local) ||
+      make_boxes(&s->level[0], n))
+    return vg_fail_memory(err, "cutting a front");
+  for (; s->n_local < f->n_point; s->n_local++)
+    s->local[s->n_local] = UINT32_MAX;
+  for (; s->n_face < f->n_face; s->n_face++)
+    for (int j = 0; j < 3 && f->face[s->n_face][0] != VG_FACE_GONE; j++) {
+      const double *x = f->x[f->face[s->n_face][j]];
 
-    if (!vg_region_meets_box(r, s->sizing, s->box[b].lo, s->box[b].hi,
-                             VG_BAND_FRONT))
-      continue;
-    if (vg_reserve(face, &cap, *n + RUN, sizeof **face)) {
-      free(*face);
-      *face = NULL;
-      return vg_fail_memory(err, "cutting a front");
+      widen(&s->level[0].box[s->n_face / RUN], x, x);
     }
-    for (size_t i = b * RUN; i < end; i++)
-      if (vg_region_may_meet(r, s->sizing, f->x[f->face[i][0]],
-                             f->x[f->face[i][1]], f->x[f->face[i][2]],
-                             VG_BAND_FRONT))
-        (*face)[(*n)++] = (uint32_t)i;
+  for (int k = 1; k < VG_SELECT_LEVELS && n > 1; k++) {
+    const struct vg_select_level *below = &s->level[k - 1];
+
+    n = (n + FAN - 1) / FAN;
+    if (make_boxes(&s->level[k], n))
+      return vg_fail_memory(err, "cutting a front");
+    for (size_t b = from; b < below->n; b++)
+      widen(&s->level[k].box[b / FAN], below->box[b].lo, below->box[b].hi);
+    from /= FAN;
   }
   return VG_OK;
 }
 
-/* Points of the listed faces, numbered as they come. */
-static void number_points(struct vg_select *s, size_t n, const uint32_t *face,
-                          struct vg_front *part, uint32_t *point)
-{
-  const struct vg_front *f = s->front;
+/* --- faces of a region --------------------------------------------------- */
 
+struct list {
+  const struct vg_select *s;
+  const struct vg_region *region;
+  size_t n, cap;
+  uint32_t *face;
+};
+
+/* The spacing at the foot of any point of a box is at most this. */
+static double most_spacing(const struct list *l, const struct vg_select_box *b)
+{
+  double middle[3], d2 = 0;
+
+  for (int k = 0; k < 3; k++) {
+    middle[k] = 0.5 * (b->lo[k] + b->hi[k]);
+    d2 += (b->hi[k] - middle[k]) * (b->hi[k] - middle[k]);
+  }
+  return vg_region_spacing(l->region, l->s->sizing, middle) +
+         vg_sizing_slope(l->s->sizing) * sqrt(d2);
+}
+
+static double side(const struct vg_plane *p, const double x[3])
+{
+  return p->normal[0] * x[0] + p->normal[1] * x[1] + p->normal[2] * x[2] -
+         p->offset;
+}
+
+/* Do all corners lie farther than `most` from a plane, on one side, or beyond
+ * a wall? */
+static int is_far(const struct vg_region *r, const double *const x[3],
+                  double most)
+{
+  for (int i = 0; i < r->n_wall; i++)
+    if (side(&r->wall[i], x[0]) < -most && side(&r->wall[i], x[1]) < -most &&
+        side(&r->wall[i], x[2]) < -most)
+      return 1;
+  for (int i = 0; i < r->n_plane; i++) {
+    double a = side(&r->plane[i], x[0]), b = side(&r->plane[i], x[1]);
+    double c = side(&r->plane[i], x[2]);
+
+    if ((a > most && b > most && c > most) ||
+        (a < -most && b < -most && c < -most))
+      return 1;
+  }
+  return 0;
+}
+
+static int list_run(struct list *l, size_t run)
+{
+  const struct vg_front *f = l->s->front;
+  size_t end = (run + 1) * RUN < f->n_face ? (run + 1) * RUN : f->n_face;
+  double most = (l->region->reach + VG_BAND_FRONT) *
+                most_spacing(l, &l->s->level[0].box[run]);
+
+  if (vg_reserve(&l->face, &l->cap, l->n + RUN, sizeof *l->face)) return -1;
+  for (size_t i = run * RUN; i < end; i++) {
+    const double *x[3];
+
+    if (f->face[i][0] == VG_FACE_GONE) continue;
+    for (int k = 0; k < 3; k++) x[k] = f->x[f->face[i][k]];
+    if (!is_far(l->region, x, most)) l->face[l->n++] = (uint32_t)i;
+  }
+  return 0;
+}
+
+static int list_box(struct list *l, int level, size_t b)
+{
+  const struct vg_select_level *at = &l->s->level[level];
+
+  if (!(at->box[b].lo[0] <= at->box[b].hi[0]) ||
+      !vg_region_meets_box(l->region, l->s->sizing, at->box[b].lo,
+                           at->box[b].hi, VG_BAND_FRONT))
+    return 0;
+  if (!level) return list_run(l, b);
+  for (size_t k = b * FAN; k < (b + 1) * FAN && k < (at - 1)->n; k++)
+    if (list_box(l, level - 1, k)) return -1;
+  return 0;
+}
+
+static int list_faces(struct list *l)
+{
+  int top = VG_SELECT_LEVELS - 1;
+
+  while (top > 0 && !l->s->level[top].n) top--;
+  for (size_t b = 0; b < l->s->level[top].n; b++)
+    if (list_box(l, top, b)) return -1;
+  return 0;
+}
+
+/* Points of the listed faces, numbered as they come. local: [points of the
+ * front] all UINT32_MAX, before and after. */
+static void number_points(const struct vg_front *f, uint32_t *local, size_t n,
+                          const uint32_t *face, struct vg_front *part,
+                          uint32_t *point)
+{
   for (size_t i = 0; i < n; i++)
     for (int k = 0; k < 3; k++) {
       uint32_t p = f->face[face[i]][k];
 
-      if (s->local[p] == UINT32_MAX) {
+      if (local[p] == UINT32_MAX) {
         point[part->n_point] = p;
         memcpy(part->x[part->n_point], f->x[p], sizeof *part->x);
         part->name[part->n_point] = f->name[p];
-        s->local[p] = (uint32_t)part->n_point++;
+        local[p] = (uint32_t)part->n_point++;
       }
-      part->face[i][k] = s->local[p];
+      part->face[i][k] = local[p];
     }
   part->n_face = n;
-  for (size_t i = 0; i < part->n_point; i++) s->local[point[i]] = UINT32_MAX;
+  for (size_t i = 0; i < part->n_point; i++) local[point[i]] = UINT32_MAX;
+}
+
+static size_t count_points(const struct vg_front *f, uint32_t *local, size_t n,
+                           const uint32_t *face)
+{
+  size_t count = 0;
+
+  for (size_t i = 0; i < n; i++)
+    for (int k = 0; k < 3; k++) {
+      uint32_t *to = &local[f->face[face[i]][k]];
+
+      count += *to == UINT32_MAX;
+      *to = 0;
+    }
+  for (size_t i = 0; i < n; i++)
+    for (int k = 0; k < 3; k++) local[f->face[face[i]][k]] = UINT32_MAX;
+  return count;
+}
+
+static vg_status take(const struct vg_front *f, uint32_t *local, size_t n,
+                      const uint32_t *face, struct vg_front *part,
+                      uint32_t **point, struct vg_error *err)
+{
+  size_t n_point = count_points(f, local, n, face);
+
+  memset(part, 0, sizeof *part);
+  part->x = vg_alloc(n_point, sizeof *part->x);
+  part->name = vg_alloc(n_point, sizeof *part->name);
+  part->face = vg_alloc(n, sizeof *part->face);
+  *point = vg_alloc(n_point, sizeof **point);
+  if (part->x && part->name && part->face && *point) {
+    number_points(f, local, n, face, part, *point);
+    return VG_OK;
+  }
+  vg_front_release(part);
+  free(*point);
+  *point = NULL;
+  return vg_fail_memory(err, "cutting a front");
 }
 
 vg_status vg_select_part(struct vg_select *s, const struct vg_region *region,
                          struct vg_front *part, uint32_t **point,
                          uint32_t **face, struct vg_error *err)
 {
-  size_t n;
+  struct list l = { .s = s, .region = region };
   vg_status st;
 
   memset(part, 0, sizeof *part);
+  *point = *face = NULL;
+  st = list_faces(&l) ? vg_fail_memory(err, "cutting a front") : VG_OK;
+  if (st == VG_OK)
+    st = take(s->front, s->local, l.n, l.face, part, point, err);
+  if (st == VG_OK) *face = l.face;
+  else free(l.face);
+  return st;
+}
+
+vg_status vg_select_near(const struct vg_front *part,
+                         const struct vg_region *region,
+                         const struct vg_sizing *sizing,
+                         struct vg_front *near, uint32_t **point,
+                         uint32_t **face, struct vg_error *err)
+{
+  uint32_t *local = vg_alloc(part->n_point, sizeof *local);
+  size_t n = 0;
+  vg_status st = VG_OK;
+
+  memset(near, 0, sizeof *near);
   *point = NULL;
-  st = list_faces(s, region, face, &n, err);
-  if (st < 0) return st;
-  part->x = vg_alloc(3 * n, sizeof *part->x);
-  part->name = vg_alloc(3 * n, sizeof *part->name);
-  part->face = vg_alloc(n, sizeof *part->face);
-  *point = vg_alloc(3 * n, sizeof **point);
-  if (!part->x || !part->name || !part->face || !*point) {
-    vg_front_release(part);
-    free(*point);
-    free(*face);
-    *point = *face = NULL;
-    return vg_fail_memory(err, "cutting a front");
+  *face = vg_alloc(part->n_face, sizeof **face);
+  if (!local || !*face) st = vg_fail_memory(err, "cutting a front");
+  for (size_t i = 0; st == VG_OK && i < part->n_face; i++) {
+    const uint32_t *v = part->face[i];
+
+    if (vg_region_may_meet(region, sizing, part->x[v[0]], part->x[v[1]],
+                           part->x[v[2]], VG_BAND_FRONT))
+      (*face)[n++] = (uint32_t)i;
   }
-  number_points(s, n, *face, part, *point);
-  return VG_OK;
+  if (st == VG_OK) {
+    memset(local, 0xff, part->n_point * sizeof *local);
+    st = take(part, local, n, *face, near, point, err);
+  }
+  free(local);
+  if (st == VG_OK) return VG_OK;
+  free(*face);
+  *face = NULL;
+  return st;
 }
 
 vg_status vg_select_sort(struct vg_front *f, struct vg_error *err)

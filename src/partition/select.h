@@ -4,25 +4,43 @@
 
 #include "partition/job.h"
 
-/** Boxes around runs of faces: what lies far off is passed over in one. */
+enum { VG_SELECT_LEVELS = 12 };
+
+/** Boxes around runs of faces, around runs of these, and so on: what lies far
+ * off is passed over in one. */
 struct vg_select {
   const struct vg_front *front;   /* borrowed */
   const struct vg_sizing *sizing; /* borrowed */
-  size_t n_box;
-  struct vg_select_box { double lo[3], hi[3]; } *box;
-  uint32_t *local;           /* [front->n_point] scratch, all UINT32_MAX */
+  size_t n_face;             /* so many have boxes */
+  struct vg_select_level {
+    size_t n, cap;
+    struct vg_select_box { double lo[3], hi[3]; } *box;
+  } level[VG_SELECT_LEVELS]; /* from the smallest; the last has one */
+  size_t n_local, cap_local;
+  uint32_t *local;           /* [points of the front] scratch, UINT32_MAX */
 };
 
-vg_status vg_select_open(struct vg_select *s, const struct vg_front *front,
-                         const struct vg_sizing *sizing,
-                         struct vg_error *err);
-void vg_select_close(struct vg_select *s);
+/** Nothing selected yet. */
+void vg_select_init(struct vg_select *s, const struct vg_front *front,
+                    const struct vg_sizing *sizing);
+void vg_select_release(struct vg_select *s);
 
-/** Faces within VG_BAND_FRONT of the region, with their points.
+/** Look at what was added to the front since the last call: O(added). */
+vg_status vg_select_update(struct vg_select *s, struct vg_error *err);
+
+/** Faces that may lie within VG_BAND_FRONT of the region, with their points;
+ * without those that are gone.
  * part out: a front of its own; point, face out: [part->n_point, n_face] which
  * of the whole they are; all to be freed by the caller. */
 vg_status vg_select_part(struct vg_select *s, const struct vg_region *region,
                          struct vg_front *part, uint32_t **point,
+                         uint32_t **face, struct vg_error *err);
+
+/** Of such a part the faces that vg_region_may_meet, likewise. */
+vg_status vg_select_near(const struct vg_front *part,
+                         const struct vg_region *region,
+                         const struct vg_sizing *sizing,
+                         struct vg_front *near, uint32_t **point,
                          uint32_t **face, struct vg_error *err);
 
 /** Put the faces of a front into an order that keeps neighbours together. */

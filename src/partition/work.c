@@ -268,11 +268,10 @@ static vg_status to_change(struct vg_zone *z, const struct vg_front *f,
   return compact(m, f->n_point, err);
 }
 
-static vg_status grow_zone(struct vg_partition *p, const struct vg_work *w,
-                           struct made *m, const struct vg_engine *e,
-                           struct vg_error *err)
+static vg_status grow_zone(struct vg_partition *p, const struct vg_front *f,
+                           const struct vg_region *region, struct made *m,
+                           const struct vg_engine *e, struct vg_error *err)
 {
-  const struct vg_front *f = &w->part;
   struct vg_grow_options o = VG_GROW_OPTIONS_INIT;
   struct vg_zone z = VG_ZONE_INIT;
   vg_status st;
@@ -281,7 +280,7 @@ static vg_status grow_zone(struct vg_partition *p, const struct vg_work *w,
   o.progress = stop;
   o.user = (void *)(uintptr_t)e;
   st = vg_zone_grow(f->n_point, (const double (*)[3])f->x, f->n_face,
-                    (const uint32_t (*)[3])f->face, &w->region, p->sizing,
+                    (const uint32_t (*)[3])f->face, region, p->sizing,
                     &o, &z, &m->report, err);
   if (st == VG_BLOCKED && !vg_engine_stopping(e)) {
     m->change.n_part = f->n_point;
@@ -294,27 +293,61 @@ static vg_status grow_zone(struct vg_partition *p, const struct vg_work *w,
   return st;
 }
 
+static vg_status find_or_grow(struct vg_partition *p,
+                              const struct vg_front *f,
+                              const struct vg_region *region, struct made *m,
+                              const struct vg_engine *e, struct vg_error *err)
+{
+  struct vg_digest key = {{0, 0}};
+  vg_status st = VG_OK;
+
+  if (p->options.store) key = key_of(p, f, region, 0);
+  if (!find(p, key, m, err)) {
+    st = grow_zone(p, f, region, m, e, err);
+    if (st == VG_OK) keep(p, key, m);
+  }
+  add_report(p, &m->report);
+  return st;
+}
+
+/* In the numbers of the part that the work was given: it was made of the
+ * points and faces listed. */
+static void renumber(struct vg_change *c, size_t n_given,
+                     const uint32_t *point, const uint32_t *face)
+{
+  for (size_t i = 0; i < c->n_face; i++)
+    for (int k = 0; k < 3; k++) {
+      size_t v = c->face[i][k];
+
+      c->face[i][k] = v < c->n_part ? point[v]
+                                    : (uint32_t)(v - c->n_part + n_given);
+    }
+  for (size_t i = 0; i < c->n_gone; i++) c->gone[i] = face[c->gone[i]];
+  c->n_part = n_given;
+}
+
 vg_status vg_work_zone(struct vg_partition *p, const struct vg_work *w,
                        struct vg_change *change, const struct vg_engine *e,
                        struct vg_error *err)
 {
-  struct vg_digest key = {{0, 0}};
+  struct vg_front f = VG_FRONT_INIT;
   struct made m = { .n_in = 0 };
-  vg_status st = VG_OK;
+  uint32_t *point = NULL, *face = NULL;
+  vg_status st;
 
-  if (p->options.store) key = key_of(p, &w->part, &w->region, 0);
-  if (!find(p, key, &m, err)) {
-    st = grow_zone(p, w, &m, e, err);
-    if (st == VG_OK) keep(p, key, &m);
-  }
-  add_report(p, &m.report);
-  if (st == VG_OK)
-    st = to_piece(p, &m, &w->part, w->serial, w->path, w->kind, err);
-  if (st == VG_OK) {
-    *change = m.change;
-    change->serial = w->serial;
-    memset(&m.change, 0, sizeof m.change);
-  }
+  VG_TRY(vg_select_near(&w->part, &w->region, p->sizing, &f, &point, &face,
+                        err));
+  if (f.n_face)
+    VG_TRY(find_or_grow(p, &f, &w->region, &m, e, err));
+  VG_TRY(to_piece(p, &m, &f, w->serial, w->path, w->kind, err));
+  *change = m.change;
+  change->serial = w->serial;
+  memset(&m.change, 0, sizeof m.change);
+  renumber(change, w->part.n_point, point, face);
+done:
+  vg_front_release(&f);
+  free(point);
+  free(face);
   made_release(&m);
   return st;
 }
