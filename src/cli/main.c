@@ -1,6 +1,7 @@
 /* The program `vanguard`: finds the subcommand. Exit status: 0 done, 1 the
  * job failed, 2 wrong usage, 4 done but not as it should be: a limit on the
  * layers is not met, or runs of a sweep differ. */
+#include <malloc.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -70,12 +71,27 @@ static int unknown(const char *word)
   return VG_EXIT_USAGE;
 }
 
+/* Every task and slice takes a few arrays of megabytes and gives them back.
+ * By default glibc would hand many of them to the system, which has to clear
+ * each page again for the next: with these limits a run has half the page
+ * faults (DLR-F6, 4.2 M cells: 50,000, now 22,000), for some 50 MB that are
+ * kept. Larger blocks stay mappings of their own and are given back at once. */
+static void keep_memory(void)
+{
+#ifdef __GLIBC__
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);
+  mallopt(M_TRIM_THRESHOLD, 256 << 20);
+  mallopt(M_TOP_PAD, 1 << 20);
+#endif
+}
+
 /* Before threads and MPI: while this process is small. Without the server
  * TetGen is dearer to start, so a refusal ends nothing. */
 static int run(const struct command *c, int argc, char **argv)
 {
   int status;
 
+  keep_memory();
   if (c->meshes) vg_cdt_server_start(NULL);
   status = c->run(argc, argv);
   vg_cdt_server_stop();
