@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/clock.h"
 #include "base/memory.h"
 #include "core/boundary.h"
 #include "core/growth.h"
@@ -151,20 +152,20 @@ vg_status vg_grow(struct vg_void *v, const struct vg_sizing *sizing,
 {
   struct growth g = { .k = { sizing, NULL, options, report, VG_TETS_INIT, 0 },
                       .v = v };
-  double t0 = vg_growth_now();
+  double t0 = vg_clock();
   vg_status st = VG_OK;
 
   if (!v->n_face) return VG_OK;
   if (vg_growth_stopped(&g.k, "recovering the boundary", 0, v->n_face))
     return VG_BLOCKED;
   st = recover(&g, err);
-  report->time_boundary += vg_growth_now() - t0;
+  report->time_boundary += vg_clock() - t0;
   if (st == VG_OK) st = vg_growth_populate(&g.k, err);
   if (st == VG_OK) st = vg_growth_improve(&g.k, err);
   if (st == VG_OK) st = commit(&g, err);
   vg_tets_release(&g.k.t);
   free(g.local);
   free(g.global);
-  report->time_total += vg_growth_now() - t0;
+  report->time_total += vg_clock() - t0;
   return st;
 }

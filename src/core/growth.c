@@ -2,8 +2,8 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
+#include "base/clock.h"
 #include "base/memory.h"
 #include "core/hilbert.h"
 #include "core/insert.h"
@@ -22,14 +22,6 @@ static const double rim = 0.6;
 static const double seed_distance = 0.8;
 
 enum { PROGRESS_STEP = 1 << 15 };
-
-double vg_growth_now(void)
-{
-  struct timespec t;
-
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 int vg_growth_stopped(const struct vg_growth *g, const char *stage,
                       size_t done, size_t expected)
@@ -87,7 +79,7 @@ static vg_status insert_placed(struct vg_growth *g, struct vg_placed *placed,
                                double nearest, struct vg_error *err)
 {
   uint32_t *order = vg_alloc(placed->n, sizeof *order);
-  double t0 = vg_growth_now();
+  double t0 = vg_clock();
   vg_status st;
 
   if (!order) {
@@ -101,7 +93,7 @@ done:
   free(order);
   free(placed->x);
   g->report->n_placed += placed->n;
-  g->report->time_insert += vg_growth_now() - t0;
+  g->report->time_insert += vg_clock() - t0;
   return st;
 }
 
@@ -115,10 +107,10 @@ vg_status vg_growth_populate(struct vg_growth *g, struct vg_error *err)
                         g->region, &placed, err));
   st = insert_placed(g, &placed, seed_distance, err);
   if (st != VG_OK) goto done;
-  t0 = vg_growth_now();
+  t0 = vg_clock();
   VG_TRY(vg_place(&g->t, g->sizing, g->region, g->options->point_limit,
                   &placed, err));
-  g->report->time_place += vg_growth_now() - t0;
+  g->report->time_place += vg_clock() - t0;
   st = insert_placed(g, &placed, least_distance, err);
 done:
   return st;
@@ -131,7 +123,7 @@ vg_status vg_growth_improve(struct vg_growth *g, struct vg_error *err)
 {
   struct vg_optimise_report r = {0};
   struct vg_region near = {0};
-  double t0 = vg_growth_now();
+  double t0 = vg_clock();
   vg_status st = VG_OK;
 
   VG_TRY(vg_tets_tidy(&g->t, g->n_front, err));
@@ -146,7 +138,7 @@ vg_status vg_growth_improve(struct vg_growth *g, struct vg_error *err)
     g->report->n_collapse += r.n_collapse;
     g->report->n_split += r.n_split;
   }
-  g->report->time_optimise += vg_growth_now() - t0;
+  g->report->time_optimise += vg_clock() - t0;
 done:
   return st;
 }

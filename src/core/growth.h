@@ -15,8 +15,6 @@ struct vg_growth {
   size_t n_front;            /* points of the front: the first of t */
 };
 
-double vg_growth_now(void);
-
 /** Non-zero: the caller wants to stop. */
 int vg_growth_stopped(const struct vg_growth *g, const char *stage,
                       size_t done, size_t expected);

@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/clock.h"
 #include "base/memory.h"
 #include "core/boundary.h"
 #include "core/grow.h"
@@ -306,13 +307,13 @@ static vg_status recover(struct zone *g, size_t n_point,
                          const double (*x)[3], struct vg_error *err)
 {
   struct vg_boundary_report b = {0};
-  double t0 = vg_growth_now();
+  double t0 = vg_clock();
   vg_status st;
 
   st = vg_boundary_open(n_point, x, g->n_face, g->face, g->k.region,
                         g->k.sizing, &g->k.t, &b, err);
   add_boundary(g->k.report, &b);
-  g->k.report->time_boundary += vg_growth_now() - t0;
+  g->k.report->time_boundary += vg_clock() - t0;
   if (st != VG_ERR_GEOMETRY) return st;
   g->k.report->n_retry++;
   return VG_BLOCKED;
@@ -329,7 +330,7 @@ vg_status vg_zone_grow(size_t n_point, const double (*x)[3], size_t n_face,
   struct zone g = { .k = { sizing, region, options, report, VG_TETS_INIT,
                            n_point },
                     .n_face = n_face, .face = face, .z = z };
-  double t0 = vg_growth_now();
+  double t0 = vg_clock();
   vg_status st;
 
   if (!n_point || !n_face) return VG_BLOCKED;
@@ -343,6 +344,6 @@ vg_status vg_zone_grow(size_t n_point, const double (*x)[3], size_t n_face,
   if (st != VG_OK) vg_zone_release(z);
   vg_tets_release(&g.k.t);
   free(g.number);
-  report->time_total += vg_growth_now() - t0;
+  report->time_total += vg_clock() - t0;
   return st;
 }

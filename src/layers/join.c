@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/clock.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "layers/join_plan.h"
@@ -99,7 +100,7 @@ vg_status vg_layers_join(const struct vg_mesh *surface,
 {
   struct vg_mesh m = VG_MESH_INIT;
   struct join j = { .field = field, .m = &m };
-  double start = vg_join_now();
+  double start = vg_clock();
   vg_status st;
 
   VG_TRY(vg_join_check_field(&layers->front, field->n_point, field->n_tri,
@@ -111,7 +112,7 @@ vg_status vg_layers_join(const struct vg_mesh *surface,
   VG_TRY(place_points(&j, err));
   VG_TRY(make_cells(&j, err));
   vg_mesh_move(out, &m);
-  vg_join_plan_describe(&j.plan, vg_join_now() - start, info);
+  vg_join_plan_describe(&j.plan, vg_clock() - start, info);
 done:
   vg_mesh_release(&m);
   vg_join_plan_close(&j.plan);

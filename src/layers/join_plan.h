@@ -43,9 +43,6 @@ void vg_join_plan_points(const struct vg_join_plan *p, int boundary_only,
 void vg_join_plan_describe(const struct vg_join_plan *p, double time,
                            struct vg_join_info *info);
 
-/** Wall seconds, of a clock that only goes on. */
-double vg_join_now(void);
-
 /** Part of vg_join_plan_open: the boundary, once points have numbers. */
 vg_status vg_join_boundary(struct vg_join_plan *p, struct vg_error *err);
 

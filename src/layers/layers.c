@@ -3,8 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
+#include "base/clock.h"
 #include "base/memory.h"
 #include "core/surface_check.h"
 #include "layers/work.h"
@@ -28,14 +28,6 @@ void vg_layers_release(struct vg_layers *l)
 {
   vg_columns_release(&l->columns);
   vg_layer_front_release(&l->front);
-}
-
-static double seconds(void)
-{
-  struct timespec t;
-
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
 static void work_release(struct vg_layer_work *w)
@@ -153,7 +145,7 @@ static vg_status first_rooms(struct vg_layer_work *w,
                              struct vg_layer_report *r, struct vg_error *err)
 {
   size_t n = w->c->n_column;
-  double *allowed = vg_alloc(n, sizeof *allowed), t = seconds();
+  double *allowed = vg_alloc(n, sizeof *allowed), t = vg_clock();
   vg_status st;
 
   if (!allowed) return vg_fail_memory(err, "the layers");
@@ -164,13 +156,13 @@ static vg_status first_rooms(struct vg_layer_work *w,
   }
   VG_TRY(vg_heights_slack(w, err));
   VG_TRY(vg_heights_corner(w, err));
-  r->time_height += seconds() - t;
-  t = seconds();
+  r->time_height += vg_clock() - t;
+  t = vg_clock();
   VG_TRY(vg_clear_ahead(w->m, w->c, &w->t, w->o->gap, w->o->threads, w->room,
                         allowed, err));
   for (size_t i = 0; i < n; i++)
     vg_heights_lower(w, i, allowed[i], VG_CAUSE_PROXIMITY);
-  r->time_clear += seconds() - t;
+  r->time_clear += vg_clock() - t;
 done:
   free(allowed);
   return st;
@@ -351,7 +343,7 @@ static vg_status one_round(struct vg_layer_work *w, struct rounds *q,
                            struct vg_error *err)
 {
   size_t round = q->sound;
-  double t = seconds();
+  double t = vg_clock();
   int is_unsure = 0;
   vg_status st;
 
@@ -364,17 +356,17 @@ static vg_status one_round(struct vg_layer_work *w, struct rounds *q,
     memset(q->tops, 0, w->c->n_column);
     round = q->sound++;
   }
-  r->time_clear += seconds() - t;
-  t = seconds();
+  r->time_clear += vg_clock() - t;
+  t = vg_clock();
   if (!*n_bad) VG_TRY(try_slides(w, front, round, n_bad, err));
   if (!*n_bad && w->c->n_path)
     VG_TRY(try_bent(w, q->bad, q->turned, n_bad, err));
-  r->time_slide += seconds() - t;
-  t = seconds();
+  r->time_slide += vg_clock() - t;
+  t = vg_clock();
   if (!*n_bad) try_sides(w, q->bad, round, n_bad, &is_unsure);
   if (!*n_bad && is_unsure)
     VG_TRY(try_front(w, front, q->bad, round, n_bad, err));
-  r->time_clear += seconds() - t;
+  r->time_clear += vg_clock() - t;
 done:
   return st;
 }
@@ -399,11 +391,11 @@ static vg_status until_clear(struct vg_layer_work *w,
       goto done;
     }
     w->haste = r->n_round >= HASTE;
-    t = seconds();
+    t = vg_clock();
     vg_layer_front_release(front);
     unbend(w->c);
     VG_TRY(settle(w, &q, err));
-    r->time_height += seconds() - t;
+    r->time_height += vg_clock() - t;
     VG_TRY(one_round(w, &q, front, r, &n_bad, err));
   }
   if (n_bad)
@@ -470,25 +462,25 @@ static void count(const struct vg_layer_work *w,
 static vg_status columns(struct vg_layer_work *w, struct vg_layer_report *r,
                          struct vg_error *err)
 {
-  double t = seconds();
+  double t = vg_clock();
   vg_status st;
 
   VG_TRY(walls(w, err));
   VG_TRY(vg_topology_build(w->m, w->is_wall, w->n_slide, w->slide,
                            w->o->fan_angle, w->c, &w->t, err));
   VG_TRY(arrays(w, err));
-  r->time_topology = seconds() - t;
-  t = seconds();
+  r->time_topology = vg_clock() - t;
+  t = vg_clock();
   VG_TRY(vg_directions_first(w, err));
-  r->time_direction = seconds() - t;
-  t = seconds();
+  r->time_direction = vg_clock() - t;
+  t = vg_clock();
   VG_TRY(vg_heights_wanted(w, err));
-  r->time_height = seconds() - t;
-  t = seconds();
+  r->time_height = vg_clock() - t;
+  t = vg_clock();
   VG_TRY(vg_directions_smooth(w, err));
   VG_TRY(vg_directions_scale(w, err));
   vg_directions_shift(w, NULL);
-  r->time_direction += seconds() - t;
+  r->time_direction += vg_clock() - t;
 done:
   return st;
 }
@@ -503,7 +495,7 @@ vg_status vg_layers_grow(const struct vg_mesh *surface,
   struct vg_layer_work w = { .m = surface, .sizing = sizing, .o = options,
                              .c = &l.columns, .t = VG_TOPOLOGY_INIT };
   struct vg_layer_report r = { 0 };
-  double start = seconds();
+  double start = vg_clock();
   vg_status st;
 
   VG_TRY(columns(&w, &r, err));
@@ -512,7 +504,7 @@ vg_status vg_layers_grow(const struct vg_mesh *surface,
   if (st == VG_BLOCKED) goto done;
   count(&w, &l.front, &r);
   VG_TRY(vg_layers_order(surface, &l, err));
-  r.time_total = seconds() - start;
+  r.time_total = vg_clock() - start;
   *report = r;
   vg_layers_release(out);
   *out = l;

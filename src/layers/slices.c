@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/clock.h"
 #include "base/memory.h"
 #include "layers/slices_parts.h"
 
@@ -268,7 +269,7 @@ vg_status vg_layer_slices_open(const struct vg_mesh *surface,
                                struct vg_join_info *info,
                                struct vg_error *err)
 {
-  double start = vg_join_now();
+  double start = vg_clock();
   struct vg_layer_slices *k = vg_calloc(1, sizeof *k);
   vg_status st;
 
@@ -285,7 +286,7 @@ vg_status vg_layer_slices_open(const struct vg_mesh *surface,
                            threads, err));
   VG_TRY(find_slices(k, err));
   VG_TRY(share_equally(k, err));
-  vg_join_plan_describe(&k->plan, vg_join_now() - start, info);
+  vg_join_plan_describe(&k->plan, vg_clock() - start, info);
   describe(k, out);
   *keep = k;
   k = NULL;

@@ -3,22 +3,14 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
+#include "base/clock.h"
 #include "base/memory.h"
 #include "base/bytes.h"
 #include "partition/model.h"
 #include "partition/node.h"
 #include "partition/repair.h"
 #include "partition/select.h"
-
-static double now(void)
-{
-  struct timespec t;
-
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 /* --- doing tasks --------------------------------------------------------- */
 
@@ -623,7 +615,7 @@ static vg_status grow(struct vg_comm *comm, const struct vg_mesh *front,
                       struct vg_spans *spans, struct vg_error *err)
 {
   struct vg_partition *p = vg_calloc(1, sizeof *p);
-  double t0 = now();
+  double t0 = vg_clock();
   vg_status st;
 
   st = vg_comm_agree(comm, p ? VG_OK : vg_fail_memory(err, "the partition"),
@@ -640,11 +632,11 @@ static vg_status grow(struct vg_comm *comm, const struct vg_mesh *front,
   p->options = *options;
   if (p->options.threads < 1) p->options.threads = 1;
   st = run_tasks(p, comm, spans, err);
-  p->report.wall = now() - t0;
+  p->report.wall = vg_clock() - t0;
   if (st == VG_OK) st = vg_partition_repair(p, comm, err);
   if (st == VG_OK) st = vg_partition_number(p, comm, err);
   if (st == VG_OK) st = sum_report(p, comm, err);
-  p->report.number = now() - t0 - p->report.wall - p->report.repair;
+  p->report.number = vg_clock() - t0 - p->report.wall - p->report.repair;
   if (st == VG_OK)
     st = within_limit(p, (double)p->slices.n_cell[VG_SLICE_TET], "has", err);
   *report = p->report;

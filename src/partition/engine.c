@@ -7,16 +7,9 @@
 #include <string.h>
 #include <time.h>
 
+#include "base/clock.h"
 #include "base/memory.h"
 #include "partition/engine_parts.h"
-
-double vg_engine_now(void)
-{
-  struct timespec t;
-
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 double vg_engine_thread_time(void)
 {
@@ -266,7 +259,7 @@ static vg_status conduct(struct vg_engine *e, struct vg_error *err)
 {
   vg_status st = VG_OK;
 
-  e->begin = vg_engine_now();
+  e->begin = vg_clock();
   vg_engine_lock(e);
   vg_tell_news(e, NULL);
   vg_engine_unlock(e);
@@ -275,7 +268,7 @@ static vg_status conduct(struct vg_engine *e, struct vg_error *err)
   if (e->rank)
     vg_engine_say(e, 0, VG_SAY_BYE,
                   (struct vg_say){ .handle = e->sent[0] + 1 });
-  e->spans.wall = vg_engine_now() - e->begin;
+  e->spans.wall = vg_clock() - e->begin;
   if (e->size > 1) st = gather(e, err);
   return st < 0 ? st : verdict(e, err);
 }

@@ -184,8 +184,7 @@ struct vg_engine {
 /* All below want the lock to be held, unless said otherwise. */
 
 /* engine.c */
-double vg_engine_now(void);          /* s, these two without lock */
-double vg_engine_thread_time(void);  /* processor time of the caller */
+double vg_engine_thread_time(void);  /* s of the caller, without lock */
 void vg_engine_lock(struct vg_engine *e);
 void vg_engine_unlock(struct vg_engine *e);
 void vg_job_free(struct vg_engine *e, struct vg_job *j);  /* without lock too */

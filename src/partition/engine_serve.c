@@ -11,6 +11,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "base/clock.h"
 #include "base/memory.h"
 #include "partition/engine_parts.h"
 
@@ -267,11 +268,11 @@ static int receive(struct vg_engine *e, double *failing)
     return n;
   }
   if (!*failing) {
-    *failing = vg_engine_now();
+    *failing = vg_clock();
     vg_engine_lock(e);
     vg_tell_fail(e, st, "", &err);
     vg_engine_unlock(e);
-  } else if (vg_engine_now() - *failing > PATIENCE) {
+  } else if (vg_clock() - *failing > PATIENCE) {
     vg_comm_abort(e->comm, 1);
   }
   return n;
@@ -361,7 +362,7 @@ static int doze(struct vg_engine *e, struct pace *pace, int active)
   e->hurry = 0;
   over = all_over(e);
   if (!over && !e->out.first) {
-    t = vg_engine_now() + pace->sleep;
+    t = vg_clock() + pace->sleep;
     until.tv_sec = (time_t)t;
     until.tv_nsec = (long)(1e9 * (t - (double)until.tv_sec));
     pthread_cond_timedwait(&e->serve, &e->lock, &until);
@@ -379,7 +380,7 @@ void vg_serve(struct vg_engine *e)
   int active;
 
   do {
-    double now = vg_engine_now();
+    double now = vg_clock();
 
     active = e->size > 1 ? receive(e, &failing) : 0;
     active += send_inputs(e);

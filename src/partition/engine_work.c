@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/clock.h"
 #include "base/memory.h"
 #include "partition/engine_parts.h"
 
@@ -90,7 +91,7 @@ static void record(struct vg_worker *w, const struct vg_job *j,
   span->thread = w->number;
   span->home = j->home;
   span->start = start - w->e->begin;
-  span->end = vg_engine_now() - w->e->begin;
+  span->end = vg_clock() - w->e->begin;
   span->cpu = vg_engine_thread_time() - cpu;
   span->estimate = j->task.weight;
   span->n_cell = j->n_cell;
@@ -141,7 +142,7 @@ static void do_job(struct vg_worker *w, struct vg_job *j)
 {
   struct vg_engine *e = w->e;
   struct vg_error err = VG_ERROR_INIT;
-  double start = vg_engine_now(), cpu = vg_engine_thread_time();
+  double start = vg_clock(), cpu = vg_engine_thread_time();
   struct vg_span span;
   vg_status st;
 
