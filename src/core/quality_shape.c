@@ -11,88 +11,136 @@
 
 #define DEGREE 57.295779513082320877
 
-struct tet_shape {
-  double cos_max, cos_min;   /* of the smallest and largest dihedral angle */
-  double volume6;            /* |6 V| */
-  double radius_ratio, edge2_sum;
+/* Tetrahedra are measured a few at a time, each step for all of them, which
+ * compilers make vector instructions of. */
+#define GROUP 4
+
+typedef double lanes[GROUP];
+
+/* Of GROUP tetrahedra. */
+struct tet_shapes {
+  lanes cos_max, cos_min;    /* of the smallest and largest dihedral angle */
+  lanes volume6;             /* |6 V| */
+  lanes radius_ratio, edge2_sum;
 };
 
-static double dot(const double a[3], const double b[3])
+static void dot(lanes a[3], lanes b[3], lanes out)
 {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  for (int t = 0; t < GROUP; t++)
+    out[t] = a[0][t] * b[0][t] + a[1][t] * b[1][t] + a[2][t] * b[2][t];
 }
 
-static void cross(const double a[3], const double b[3], double c[3])
+static void cross(lanes a[3], lanes b[3], lanes c[3])
 {
-  c[0] = a[1] * b[2] - a[2] * b[1];
-  c[1] = a[2] * b[0] - a[0] * b[2];
-  c[2] = a[0] * b[1] - a[1] * b[0];
+  for (int t = 0; t < GROUP; t++) {
+    c[0][t] = a[1][t] * b[2][t] - a[2][t] * b[1][t];
+    c[1][t] = a[2][t] * b[0][t] - a[0][t] * b[2][t];
+    c[2][t] = a[0][t] * b[1][t] - a[1][t] * b[0][t];
+  }
 }
 
-/* Extreme cosines of the angles between the faces of outward normals n and
- * squared lengths l. A face without area makes the worst of both kinds, so
- * that it cannot hide. Returns the sum of the lengths. */
-static double add_angles(double n[4][3], const double l[4],
-                         struct tet_shape *s)
+/* Extreme cosines of the angles between the faces of outward normals n. A
+ * face without area makes the worst of both kinds, so that it cannot hide.
+ * area2: sum of the lengths of the normals, which are normalised. */
+static void add_angles(lanes n[4][3], struct tet_shapes *s, lanes area2)
 {
-  double length[4];
+  lanes length[4], c;
 
   for (int i = 0; i < 4; i++) {
-    length[i] = sqrt(l[i]);
-    if (!(length[i] > 0)) {
-      s->cos_max = 1;
-      s->cos_min = -1;
-      return 0;
-    }
+    dot(n[i], n[i], length[i]);
+    for (int t = 0; t < GROUP; t++) length[i][t] = sqrt(length[i][t]);
+  }
+  for (int t = 0; t < GROUP; t++) {
+    s->cos_max[t] = -2;
+    s->cos_min[t] = 2;
+    area2[t] = length[0][t] + length[1][t] + length[2][t] + length[3][t];
   }
   for (int i = 0; i < 4; i++) {
-    double scale = 1 / length[i];
+    lanes scale;
 
-    for (int k = 0; k < 3; k++) n[i][k] *= scale;
+    for (int t = 0; t < GROUP; t++) scale[t] = 1 / length[i][t];
+    for (int k = 0; k < 3; k++)
+      for (int t = 0; t < GROUP; t++) n[i][k][t] *= scale[t];
     for (int j = 0; j < i; j++) {
-      double c = -dot(n[i], n[j]);
-
-      if (c > s->cos_max) s->cos_max = c;
-      if (c < s->cos_min) s->cos_min = c;
+      dot(n[i], n[j], c);
+      for (int t = 0; t < GROUP; t++) {
+        s->cos_max[t] = -c[t] > s->cos_max[t] ? -c[t] : s->cos_max[t];
+        s->cos_min[t] = -c[t] < s->cos_min[t] ? -c[t] : s->cos_min[t];
+      }
     }
   }
-  return length[0] + length[1] + length[2] + length[3];
+  for (int t = 0; t < GROUP; t++) {
+    if (length[0][t] > 0 && length[1][t] > 0 && length[2][t] > 0 &&
+        length[3][t] > 0) continue;
+    s->cos_max[t] = 1;
+    s->cos_min[t] = -1;
+    area2[t] = 0;
+  }
 }
 
-static struct tet_shape measure_tet(const double a[3], const double b[3],
-                                    const double c[3], const double d[3])
+/* Normals of faces, |q| = |6 V| * twice the circumradius. */
+static void add_edges(lanes u[3], lanes v[3], lanes w[3], lanes n[4][3],
+                      lanes q[3], struct tet_shapes *s)
 {
-  struct tet_shape s = { -2, 2, 0, 0, 0 };
-  double u[3], v[3], w[3], n[4][3], l[4], q[3];
-  double uu, vv, ww, area2;
+  lanes uu, vv, ww;
 
-  for (int k = 0; k < 3; k++) {
-    u[k] = b[k] - a[k];
-    v[k] = c[k] - a[k];
-    w[k] = d[k] - a[k];
-  }
+  dot(u, u, uu);
+  dot(v, v, vv);
+  dot(w, w, ww);
+  for (int t = 0; t < GROUP; t++) s->edge2_sum[t] = 0;
+  for (int k = 0; k < 3; k++)
+    for (int t = 0; t < GROUP; t++) {
+      double e = v[k][t] - u[k][t], f = w[k][t] - u[k][t];
+      double g = w[k][t] - v[k][t];
+
+      q[k][t] = uu[t] * n[1][k][t] + vv[t] * n[2][k][t] + ww[t] * n[3][k][t];
+      s->edge2_sum[t] += e * e + f * f + g * g;
+    }
+  for (int t = 0; t < GROUP; t++) s->edge2_sum[t] += uu[t] + vv[t] + ww[t];
+}
+
+/* x: corners, [4][3] of GROUP tetrahedra. */
+static void measure_tets(lanes x[4][3], struct tet_shapes *s)
+{
+  lanes u[3], v[3], w[3], n[4][3], q[3], area2, qq;
+
+  for (int k = 0; k < 3; k++)
+    for (int t = 0; t < GROUP; t++) {
+      u[k][t] = x[1][k][t] - x[0][k][t];
+      v[k][t] = x[2][k][t] - x[0][k][t];
+      w[k][t] = x[3][k][t] - x[0][k][t];
+    }
   cross(v, w, n[1]);
   cross(w, u, n[2]);
   cross(u, v, n[3]);
-  for (int k = 0; k < 3; k++) n[0][k] = -n[1][k] - n[2][k] - n[3][k];
-  for (int i = 0; i < 4; i++) l[i] = dot(n[i], n[i]);
-  uu = dot(u, u);
-  vv = dot(v, v);
-  ww = dot(w, w);
-  for (int k = 0; k < 3; k++) {
-    double e = v[k] - u[k], f = w[k] - u[k], g = w[k] - v[k];
-
-    q[k] = uu * n[1][k] + vv * n[2][k] + ww * n[3][k];
-    s.edge2_sum += e * e + f * f + g * g;
-  }
-  s.edge2_sum += uu + vv + ww;
-  s.volume6 = fabs(dot(n[3], w));
-  area2 = add_angles(n, l, &s);   /* normalises n */
+  for (int k = 0; k < 3; k++)
+    for (int t = 0; t < GROUP; t++)
+      n[0][k][t] = -n[1][k][t] - n[2][k][t] - n[3][k][t];
+  add_edges(u, v, w, n, q, s);
+  dot(n[3], w, s->volume6);
+  dot(q, q, qq);
+  add_angles(n, s, area2);
   /* 3 (3 V / A) (12 V / |q|) with A = area2 / 2 and V = volume6 / 6 */
-  s.radius_ratio = area2 * sqrt(dot(q, q));
-  if (s.radius_ratio > 0)
-    s.radius_ratio = 6 * s.volume6 * s.volume6 / s.radius_ratio;
-  return s;
+  for (int t = 0; t < GROUP; t++) {
+    double ratio = area2[t] * sqrt(qq[t]);
+
+    s->volume6[t] = fabs(s->volume6[t]);
+    s->radius_ratio[t] = ratio > 0
+                         ? 6 * s->volume6[t] * s->volume6[t] / ratio : ratio;
+  }
+}
+
+/* Tetrahedra first .. first + n - 1 of m, n <= GROUP. */
+static void measure_some(const struct vg_mesh *m, size_t first, size_t n,
+                         struct tet_shapes *s)
+{
+  lanes x[4][3];
+
+  for (size_t t = 0; t < GROUP; t++)
+    for (int i = 0; i < 4; i++)
+      for (int k = 0; k < 3; k++)
+        x[i][k][t] = m->point[m->tet[first + (t < n ? t : 0)][i]][k];
+  measure_tets(x, s);
 }
 
 static double angle_of(double cosine)
@@ -136,25 +184,24 @@ static void note_worst(struct vg_figures *f, const struct vg_mesh *m,
   vg_figures_worst(f, &w);
 }
 
+/* Tetrahedron i, measured as t of a group. */
 static void judge_tet(const struct vg_mesh *m, size_t i, size_t cell,
+                      const struct tet_shapes *s, size_t t,
                       struct vg_figures *f)
 {
-  const uint32_t *n = m->tet[i];
-  struct tet_shape s = measure_tet(m->point[n[0]], m->point[n[1]],
-                                   m->point[n[2]], m->point[n[3]]);
-  double least = angle_of(s.cos_max), most = angle_of(s.cos_min);
+  double least = angle_of(s->cos_max[t]), most = angle_of(s->cos_min[t]);
+  double ratio = s->radius_ratio[t], volume6 = s->volume6[t];
 
   f->n.n_tet++;
   count_angles(f, least, most);
   note_worst(f, m, i, cell, least);
-  vg_exact_add(&f->n.sum_radius, s.radius_ratio);
-  if (s.radius_ratio < f->radius_ratio_min)
-    f->radius_ratio_min = s.radius_ratio;
-  f->n.radius_ratio[bin_of(s.radius_ratio, VG_HIST_UNIT, VG_HIST_UNIT)]++;
+  vg_exact_add(&f->n.sum_radius, ratio);
+  if (ratio < f->radius_ratio_min) f->radius_ratio_min = ratio;
+  f->n.radius_ratio[bin_of(ratio, VG_HIST_UNIT, VG_HIST_UNIT)]++;
   /* (3 V)^2 = volume6^2 / 4 */
-  if (s.edge2_sum > 0)
+  if (s->edge2_sum[t] > 0)
     vg_exact_add(&f->n.sum_mean,
-                 12 * cbrt(s.volume6 * s.volume6 / 4) / s.edge2_sum);
+                 12 * cbrt(volume6 * volume6 / 4) / s->edge2_sum[t]);
 }
 
 /* A corner tetrahedron of a prism, pyramid or hexahedron is spanned by a node
@@ -234,7 +281,13 @@ void vg_judge_shape(const struct vg_mesh *m, size_t first, float *volume,
     f->n.not_positive += !(six > 0);
     vg_exact_add(&f->n.volume, six / 6);
     volume[i] = (float)(six / 6);
-    judge_tet(m, i, first + i, f);
+  }
+  for (size_t i = 0, n; i < m->n_tet; i += n) {
+    struct tet_shapes s;
+
+    n = m->n_tet - i < GROUP ? m->n_tet - i : GROUP;
+    measure_some(m, i, n, &s);
+    for (size_t t = 0; t < n; t++) judge_tet(m, i + t, first + i + t, &s, t, f);
   }
   for (int kind = VG_CELL_PYR; kind < VG_CELL_KINDS; kind++)
     judge_mixed(m, kind, volume, f);
@@ -243,12 +296,14 @@ void vg_judge_shape(const struct vg_mesh *m, size_t first, float *volume,
 void vg_mesh_cell_quality(const struct vg_mesh *m, float *angle_min,
                           float *radius_ratio)
 {
-  for (size_t i = 0; i < m->n_tet; i++) {
-    const uint32_t *n = m->tet[i];
-    struct tet_shape s = measure_tet(m->point[n[0]], m->point[n[1]],
-                                     m->point[n[2]], m->point[n[3]]);
+  for (size_t i = 0, n; i < m->n_tet; i += n) {
+    struct tet_shapes s;
 
-    if (angle_min) angle_min[i] = (float)angle_of(s.cos_max);
-    if (radius_ratio) radius_ratio[i] = (float)s.radius_ratio;
+    n = m->n_tet - i < GROUP ? m->n_tet - i : GROUP;
+    measure_some(m, i, n, &s);
+    for (size_t t = 0; t < n; t++) {
+      if (angle_min) angle_min[i + t] = (float)angle_of(s.cos_max[t]);
+      if (radius_ratio) radius_ratio[i + t] = (float)s.radius_ratio[t];
+    }
   }
 }
