@@ -81,14 +81,16 @@ vg_status vg_boundary_fix(struct vg_tets *t, size_t n_tri,
   if (!found && st == VG_OK) st = vg_fail_memory(err, "the surface table");
   for (uint32_t c = 0; st == VG_OK && c < t->n_cell; c++) {
     if (t->flag[c] & VG_DEAD) continue;
-    for (int i = 0; i < 4; i++) {
-      uint32_t v[3], at;
+    for (uint32_t i = 0; i < 4; i++) {
+      uint32_t link = t->cell[c].link[i], v[3], at;
       int sense;
 
+      if (link < 4 * c + i) continue;    /* seen from there */
       for (int k = 0; k < 3; k++) v[k] = t->cell[c].v[vg_face[i][k]];
       at = tri_table_find(&table, v, &sense);
       if (at == VG_NONE) continue;
       t->flag[c] |= (uint8_t)(1 << i);
+      if (link != VG_NONE) t->flag[link >> 2] |= (uint8_t)(1 << (link & 3));
       *n_missing -= !found[at];
       found[at] = 1;
     }

@@ -12,7 +12,8 @@
 
 struct vg_boundary_report {
   size_t n_face_lost;              /* not in the Delaunay tetrahedra */
-  size_t n_pocket, n_pocket_cell;  /* regions that TetGen had to close */
+  size_t n_face_left;              /* of these, what flips did not bring in */
+  size_t n_pocket, n_pocket_cell;  /* regions that TetGen closed */
   size_t n_retry;                  /* pockets that had to grow */
   int whole_void;
   size_t n_steiner;
@@ -21,8 +22,8 @@ struct vg_boundary_report {
 /** Tetrahedralise the surroundings of a closed oriented surface.
  *
  * Delaunay tetrahedra of the points in a wide box; triangles missing from
- * them are recovered in pockets (core/recover.h); if that fails, TetGen gets
- * the whole.
+ * them are brought in by flips, else in pockets (core/recover.h); if that
+ * fails, TetGen gets the whole.
  * @param x, tri  [n][3] points, all used; [n_tri][3] facing the fluid
  * @param out     empty on entry; points 0..n-1 are x, later ones were added;
  *                cells linked, surface faces fixed, cells not in the fluid
@@ -33,7 +34,7 @@ vg_status vg_boundary_tets(size_t n, const double (*x)[3], size_t n_tri,
                            struct vg_boundary_report *report,
                            struct vg_error *err);
 
-/** Flag the faces of `t` that are in tri as fixed.
+/** Flag the faces of `t` (linked) that are in tri as fixed.
  * missing out: [n_tri] 1 where no cell has the face; may be NULL.
  * n_missing out: how many. */
 vg_status vg_boundary_fix(struct vg_tets *t, size_t n_tri,

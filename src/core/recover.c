@@ -7,6 +7,7 @@
 #include "core/cdt_tetgen.h"
 #include "core/hilbert.h"
 #include "core/predicates.h"
+#include "core/recover_flip.h"
 
 /* A pocket with more triangles is no pocket: where most of a surface of slivers
  * is missing, its triangles are easier to recover than the rim of what Delaunay
@@ -224,6 +225,25 @@ static int number_points(const struct vg_tets *t, struct pocket *p)
   return 0;
 }
 
+/* Do two cells lie on the same side of the face between them? */
+static int is_folded(const struct vg_tets *t)
+{
+  for (uint32_t c = 0; c < t->n_cell; c++)
+    for (int i = 0; i < 4; i++) {
+      uint32_t link = t->cell[c].link[i], v[3], w[3];
+      int k = 0;
+
+      if (link == VG_NONE) continue;
+      for (int m = 0; m < 3; m++) {
+        v[m] = t->cell[c].v[vg_face[i][m]];
+        w[m] = t->cell[link >> 2].v[vg_face[link & 3][m]];
+      }
+      while (w[k] != v[0]) k++;
+      if (w[(k + 1) % 3] == v[1]) return 1;
+    }
+  return 0;
+}
+
 /* Cells outside the rim are flagged; then: is every triangle there? */
 static vg_status verify(struct vg_tets *local, const struct pocket *p,
                         struct vg_error *err)
@@ -236,7 +256,7 @@ static vg_status verify(struct vg_tets *local, const struct pocket *p,
     st = vg_boundary_sides(local, p->n_rim, tri, NULL, NULL, err);
   if (st == VG_OK && !n_missing)
     st = vg_boundary_fix(local, p->n_tri, tri, NULL, &n_missing, err);
-  if (st == VG_OK && n_missing)
+  if (st == VG_OK && (n_missing || is_folded(local)))
     st = vg_fail(err, VG_ERR_GEOMETRY, "a pocket was not closed faithfully");
   return st;
 }
@@ -463,6 +483,29 @@ static vg_status list_missing(struct recovery *r, uint8_t *missing,
   return st;
 }
 
+/* Fixed faces were kept up by every flip; so their number tells whether all
+ * triangles are there, if each comes once. */
+static int is_complete(const struct recovery *r)
+{
+  static const uint8_t bits[16] = {0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3,
+                                   4};
+  size_t n = 0;
+
+  for (size_t c = 0; c < r->t->n_cell; c++)
+    n += bits[r->t->flag[c] & VG_FIXED_FACES];
+  return !r->n_missing && n == 2 * r->n_tri;
+}
+
+static vg_status flip_first(struct recovery *r, uint8_t *missing,
+                            struct vg_error *err)
+{
+  vg_status st = vg_recover_flips(r->t, r->n_tri, r->tri, &r->n_missing,
+                                  r->missing, err);
+
+  if (st == VG_OK && !is_complete(r)) st = list_missing(r, missing, err);
+  return st;
+}
+
 vg_status vg_recover(struct vg_tets *t, size_t n_tri, const uint32_t (*tri)[3],
                      struct vg_boundary_report *report, struct vg_error *err)
 {
@@ -480,6 +523,8 @@ vg_status vg_recover(struct vg_tets *t, size_t n_tri, const uint32_t (*tri)[3],
     st = vg_fail_memory(err, "boundary recovery");
   if (st == VG_OK) st = list_missing(&r, missing, err);
   report->n_face_lost = r.n_missing;
+  if (st == VG_OK && r.n_missing) st = flip_first(&r, missing, err);
+  report->n_face_left = r.n_missing;
   for (int round = 0; st == VG_OK && r.n_missing && round < ROUNDS; round++) {
     st = find_pockets(&r, round, err);
     if (st == VG_OK) st = close_pockets(&r, err);

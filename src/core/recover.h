@@ -1,5 +1,5 @@
 /* core/recover.h: surface triangles that are missing from Delaunay
- * tetrahedra are put in, pocket by pocket. */
+ * tetrahedra are put in, by flips or pocket by pocket. */
 #ifndef VG_CORE_RECOVER_H
 #define VG_CORE_RECOVER_H
 
@@ -11,11 +11,11 @@
 
 /** Make every triangle a fixed face of t.
  *
- * The cells that a missing triangle passes through form its pocket; pockets
- * that share cells are one. TetGen closes each pocket, its rim and every
- * triangle in it kept; the result is verified face by face before it replaces
- * the pocket's cells. A pocket that fails grows by a ring of cells and is tried
- * again, three times.
+ * Flips bring in most (core/recover_flip.h). The cells that a triangle still
+ * missing passes through form its pocket; pockets that share cells are one.
+ * TetGen closes each pocket, its rim and every triangle in it kept; the result
+ * is verified face by face before it replaces the pocket's cells. A pocket
+ * that fails grows by a ring of cells and is tried again, three times.
  * Returns VG_ERR_GEOMETRY when pockets remain that cannot be closed, or one is
  * so large that the whole surface is the better start. */
 vg_status vg_recover(struct vg_tets *t, size_t n_tri, const uint32_t (*tri)[3],
