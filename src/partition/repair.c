@@ -49,6 +49,7 @@ struct repair {
   size_t n_block, cap_block;
   struct vg_block *block;    /* of the clusters of this rank, by cluster and
                                 path */
+  struct vg_repair_rim rim;         /* between their points */
   size_t n_job;
   size_t *first;             /* [n_job + 1] block */
   struct vg_mended *mended;  /* [n_job] */
@@ -72,6 +73,7 @@ static void repair_free(struct repair *r)
   free(r->better);
   free(r->owners.at);
   vg_balls_release(&r->balls);
+  vg_repair_rim_release(&r->rim);
 }
 
 /* --- which cells --------------------------------------------------------- */
@@ -287,12 +289,16 @@ static void mend_body(void *context, size_t first, size_t end, int worker)
   (void)worker;
   for (size_t k = first; k < end; k++)
     r->st[k] = vg_repair_mend(r->first[k + 1] - r->first[k],
-                              &r->block[r->first[k]], &r->balls,
+                              &r->block[r->first[k]], &r->balls, &r->rim,
                               r->p->sizing, &r->mended[k], NULL);
 }
 
 static vg_status mend(struct repair *r, struct vg_error *err)
 {
+  vg_status st = vg_repair_rim_new(r->p->boundary, r->n_block, r->block,
+                                   &r->rim, err);
+
+  if (st < 0) return st;
   vg_parallel_for(r->p->options.threads, r->n_job, 1, mend_body, r);
   for (size_t k = 0; k < r->n_job; k++)
     if (r->st[k] < 0)

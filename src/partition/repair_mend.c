@@ -66,6 +66,7 @@ struct joint {
   size_t n_block;
   const struct vg_block *block;
   const struct vg_balls *balls;
+  const struct vg_repair_rim *rim;
   /* points in the order in which they are first met */
   size_t n_point, n_fixed, n_cell;
   uint64_t *name;
@@ -161,21 +162,32 @@ static void join_points(struct joint *j)
   }
 }
 
-/* Faces around the cells, and those of three points of the boundary, which
- * may be sheets with cells on both sides, are fixed. */
+/* Is face i of cell c a triangle of the boundary? */
+static int on_rim(const struct joint *j, uint32_t c, int i)
+{
+  const uint32_t *v = j->t.cell[c].v;
+  uint32_t at[3];
+
+  for (int m = 0; m < 3; m++) {
+    uint64_t name = j->name[j->point[v[vg_face[i][m]]]];
+
+    if (name >> 32) return 0;
+    at[m] = (uint32_t)name;
+  }
+  return vg_repair_rim_has(j->rim, at);
+}
+
+/* Faces around the cells and sheets of the boundary are fixed. Other faces of
+ * three boundary points are not: between them lie flat cells over edges that
+ * the boundary has the other way round. */
 static void fix_faces(struct joint *j)
 {
   struct vg_tets *t = &j->t;
 
   for (uint32_t c = 0; c < t->n_cell; c++)
-    for (int i = 0; i < 4; i++) {
-      int on = 0;
-
-      for (int m = 0; m < 3; m++)
-        on += !(j->name[j->point[t->cell[c].v[vg_face[i][m]]]] >> 32);
-      if (on == 3 || t->cell[c].link[i] == VG_NONE)
+    for (int i = 0; i < 4; i++)
+      if (t->cell[c].link[i] == VG_NONE || on_rim(j, c, i))
         t->flag[c] |= (uint8_t)(1 << i);
-    }
 }
 
 static vg_status join_cells(struct joint *j, struct vg_error *err)
@@ -323,10 +335,12 @@ static vg_status take(const struct joint *j, struct vg_mended *m,
 
 vg_status vg_repair_mend(size_t n, const struct vg_block *block,
                          const struct vg_balls *balls,
+                         const struct vg_repair_rim *rim,
                          const struct vg_sizing *sizing,
                          struct vg_mended *out, struct vg_error *err)
 {
-  struct joint j = { .n_block = n, .block = block, .balls = balls };
+  struct joint j = { .n_block = n, .block = block, .balls = balls,
+                     .rim = rim };
   struct vg_optimise_report r;
   struct vg_mended m = { .better = 0 };
   vg_status st = joint_new(&j, err);

@@ -141,6 +141,27 @@ void vg_block_put(struct vg_writer *w, const struct vg_block *b);
 /** Sets r->bad, and leaves *b empty, where the data cannot be. */
 void vg_block_get(struct vg_reader *r, struct vg_block *b);
 
+/* --- the boundary (repair_rim.c) ------------------------------------------ */
+
+/* Its triangles between points that clusters have: a sheet with cells on both
+ * sides cannot be told from other faces of three boundary points by the cells
+ * alone. */
+struct vg_repair_rim {
+  size_t n;
+  uint32_t (*tri)[3];        /* [n] smallest point first, in rising order */
+};
+
+/** Triangles between the points of block [n]; boundary may be NULL. */
+vg_status vg_repair_rim_new(const struct vg_mesh *boundary, size_t n,
+                            const struct vg_block *block,
+                            struct vg_repair_rim *out, struct vg_error *err);
+void vg_repair_rim_release(struct vg_repair_rim *r);
+
+/** Is there a triangle of these points, of the front? */
+int vg_repair_rim_has(const struct vg_repair_rim *r, const uint32_t v[3]);
+
+/* --- what came of it (repair_mend.c) -------------------------------------- */
+
 /* What became of a cluster. */
 struct vg_mended {
   int better;                /* 0: the cells stay as they were */
@@ -160,6 +181,7 @@ void vg_mended_release(struct vg_mended *m);
 /** Mend the cells of a cluster. block: [n] by path. */
 vg_status vg_repair_mend(size_t n, const struct vg_block *block,
                          const struct vg_balls *balls,
+                         const struct vg_repair_rim *rim,
                          const struct vg_sizing *sizing,
                          struct vg_mended *out, struct vg_error *err);
 
