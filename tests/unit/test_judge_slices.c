@@ -9,6 +9,7 @@
 #include <string.h>
 #include <cmocka.h>
 
+#include "base/memory.h"
 #include "judge_support.h"
 
 static void judge_cut(struct cut *c, const struct vg_sizing *sizing,
@@ -73,6 +74,34 @@ static void mixed_cells_in_slices(void **state)
   assert_true(r.is_valid);
   vg_sizing_free(sizing);
   vg_mesh_release(&m);
+}
+
+/* Every face of cells that are there twice or three times has an even number
+ * of sides, some of those of the boundary apart. */
+static void cells_several_times_over(void **state)
+{
+  (void)state;
+  for (size_t times = 2; times <= 3; times++) {
+    struct vg_mesh m = judge_mesh(VG_LAYER_TETS);
+    size_t n = m.n_tet;
+    struct vg_mesh_report whole, r;
+    struct vg_error err = VG_ERROR_INIT;
+    struct cut c;
+
+    m.tet = vg_realloc(m.tet, times * n, sizeof *m.tet);
+    for (size_t k = 1; k < times; k++)
+      memcpy(m.tet + k * n, m.tet, n * sizeof *m.tet);
+    m.n_tet = times * n;
+    assert_int_equal(vg_mesh_judge(&m, NULL, &whole, &err), VG_OK);
+    assert_false(whole.is_valid);
+    for (size_t n_slice = 1; n_slice < 40; n_slice += 6) {
+      cut_make(&c, &m, n_slice, 0, NULL, 5);
+      judge_cut(&c, NULL, 2, 0, &r, NULL);
+      assert_false(r.is_valid);
+      cut_release(&c);
+    }
+    vg_mesh_release(&m);
+  }
 }
 
 /* Quadrilaterals on the boundary, and prisms alone: no angles. */
@@ -301,6 +330,7 @@ int main(void)
     cmocka_unit_test(tetrahedra_in_slices),
     cmocka_unit_test(mixed_cells_in_slices),
     cmocka_unit_test(prisms_in_slices),
+    cmocka_unit_test(cells_several_times_over),
     cmocka_unit_test(every_damage_is_counted_alike),
     cmocka_unit_test(components_are_those_of_the_whole),
     cmocka_unit_test(the_field_is_judged_by_itself),

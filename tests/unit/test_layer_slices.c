@@ -237,10 +237,22 @@ static void same_counts(const struct vg_mesh *m, const struct vg_join_info *a,
 
 /* What a field in n_piece pieces on `size` ranks of some threads makes,
  * against one mesh. Returns the number of slices of the layers. */
+/* Anew, as if later ranks had more of the field, the last more than all. */
+static void share_unevenly(struct vg_layer_slices *keep, int size,
+                           struct vg_slices *s)
+{
+  uint64_t n_field[64] = { 0 };
+
+  assert_in_range(size, 1, 64);
+  for (int r = 1; r < size; r++)
+    n_field[r] = r + 1 < size ? 2000 * (uint64_t)r : 100000000;
+  vg_layer_slices_share(keep, n_field, s);
+}
+
 static size_t check_split(const struct model *m, const struct vg_mesh *whole,
                           const struct vg_join_info *info,
                           enum vg_layer_cells cells, size_t n_piece, int apart,
-                          int size, int threads)
+                          int size, int threads, int unevenly)
 {
   struct check c;
   size_t n_slice = 0;
@@ -257,6 +269,7 @@ static size_t check_split(const struct model *m, const struct vg_mesh *whole,
     if (vg_layer_slices_open(&m->surface, &m->layers, &field, cells, rank,
                              size, threads, &s, &keep, &again, &err) < 0)
       fail_msg("%s", err.text);
+    if (unevenly) share_unevenly(keep, size, &s);
     same_counts(whole, info, &s, &again);
     same_boundary(whole, s.boundary);
     c.s = &s;
@@ -324,7 +337,7 @@ static size_t check_model(const struct model *m, int most)
     for (int size = 1; size <= most; size++)
       n_slice[i] = check_split(m, &whole, &info, cells,
                                (size_t)(2 * size - 1), size % 2, size,
-                               1 + size % 3);
+                               1 + size % 3, i);
     check_blocks(m, &whole, &info, cells);
     vg_mesh_release(&whole);
   }
