@@ -633,7 +633,7 @@ static vg_status grow(struct vg_comm *comm, const struct vg_mesh *front,
   if (p->options.threads < 1) p->options.threads = 1;
   st = run_tasks(p, comm, spans, err);
   p->report.wall = vg_clock() - t0;
-  if (st == VG_OK) st = vg_partition_repair(p, comm, err);
+  if (st == VG_OK) st = vg_partition_repair(p, comm, spans, err);
   if (st == VG_OK) st = vg_partition_number(p, comm, err);
   if (st == VG_OK) st = sum_report(p, comm, err);
   p->report.number = vg_clock() - t0 - p->report.wall - p->report.repair;

@@ -4,8 +4,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
+#include "base/clock.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "core/hilbert.h"
@@ -14,14 +14,6 @@
 /* Balls to a cluster: a few hundred cells each. What is left over is done in
  * further rounds. */
 enum { MOST_BALLS = 100, ROUNDS = 3 };
-
-static double now(void)
-{
-  struct timespec t;
-
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 /* Cells of a piece that clusters have. */
 struct picks {
@@ -53,9 +45,11 @@ struct repair {
   size_t n_job;
   size_t *first;             /* [n_job + 1] block */
   struct vg_mended *mended;  /* [n_job] */
+  struct vg_span *span;      /* [n_job] */
   vg_status *st;             /* [n_job] */
   uint64_t *better;          /* [n_cluster] on all ranks */
   size_t number;             /* clusters of earlier rounds */
+  struct vg_spans *spans;    /* tasks of this rank */
 };
 
 static void repair_free(struct repair *r)
@@ -69,6 +63,7 @@ static void repair_free(struct repair *r)
   free(r->block);
   free(r->first);
   free(r->mended);
+  free(r->span);
   free(r->st);
   free(r->better);
   free(r->owners.at);
@@ -260,8 +255,9 @@ static vg_status take_blocks(struct repair *r, const struct vg_bytes *from,
       r->first[r->n_job++] = k;
   r->first[r->n_job] = r->n_block;
   r->mended = vg_calloc(r->n_job, sizeof *r->mended);
+  r->span = vg_calloc(r->n_job, sizeof *r->span);
   r->st = vg_calloc(r->n_job, sizeof *r->st);
-  return r->mended && r->st ? VG_OK : vg_fail_memory(err, "repairs");
+  return r->mended && r->span && r->st ? VG_OK : vg_fail_memory(err, "repairs");
 }
 
 static vg_status send_cells(struct repair *r, struct vg_comm *comm,
@@ -286,11 +282,15 @@ static void mend_body(void *context, size_t first, size_t end, int worker)
 {
   struct repair *r = context;
 
-  (void)worker;
-  for (size_t k = first; k < end; k++)
-    r->st[k] = vg_repair_mend(r->first[k + 1] - r->first[k],
-                              &r->block[r->first[k]], &r->balls, &r->rim,
-                              r->p->sizing, &r->mended[k], NULL);
+  for (size_t k = first; k < end; k++) {
+    const struct vg_block *b = &r->block[r->first[k]];
+
+    vg_repair_begin(&r->span[k], worker);
+    r->st[k] = vg_repair_mend(r->first[k + 1] - r->first[k], b, &r->balls,
+                              &r->rim, r->p->sizing, &r->mended[k], NULL);
+    vg_repair_end(&r->span[k], "", r->number + b->cluster,
+                  r->mended[k].n_cell);
+  }
 }
 
 static vg_status mend(struct repair *r, struct vg_error *err)
@@ -300,11 +300,14 @@ static vg_status mend(struct repair *r, struct vg_error *err)
 
   if (st < 0) return st;
   vg_parallel_for(r->p->options.threads, r->n_job, 1, mend_body, r);
-  for (size_t k = 0; k < r->n_job; k++)
+  for (size_t k = 0; k < r->n_job; k++) {
     if (r->st[k] < 0)
       return vg_fail(err, r->st[k], "cells beside interfaces could not be "
                      "mended: %s", vg_status_name(r->st[k]));
-  return VG_OK;
+    VG_TRY(vg_spans_add(r->spans, &r->span[k], err));
+  }
+done:
+  return st;
 }
 
 /* Which clusters got better, and what that came to, on all ranks. */
@@ -507,18 +510,18 @@ static vg_status next_round(struct repair *r, struct vg_comm *comm, int first,
 }
 
 static vg_status all_rounds(struct vg_partition *p, struct vg_comm *comm,
-                            struct vg_error *err)
+                            struct vg_spans *spans, struct vg_error *err)
 {
   struct vg_spot *spot = NULL;
   size_t n = 0, number = 0;
   vg_status st = VG_OK;
 
   for (int k = 0; st == VG_OK && k < ROUNDS && (!k || n); k++) {
-    struct repair r = { .p = p, .number = number };
+    struct repair r = { .p = p, .number = number, .spans = spans };
 
     st = vg_owners_gather(p, comm, &r.owners, err);
-    if (st == VG_OK && !k)
-      st = vg_repair_smooth(p, comm, &r.owners, &n, &spot, err);
+    if (st == VG_OK && !k && r.owners.n > 1)
+      st = vg_repair_smooth(p, comm, &r.owners, spans, &n, &spot, err);
     if (st == VG_OK && n) {
       st = round_of(&r, comm, n, spot, err);
       number += r.balls.n_cluster;
@@ -553,15 +556,19 @@ static vg_status agree_report(struct vg_partition *p, struct vg_comm *comm,
 }
 
 vg_status vg_partition_repair(struct vg_partition *p, struct vg_comm *comm,
-                              struct vg_error *err)
+                              struct vg_spans *spans, struct vg_error *err)
 {
-  double t0 = now();
+  struct vg_spans own = VG_SPANS_INIT;
+  double t0 = vg_clock();
   vg_status st;
 
   /* the regular tetrahedron, where there is nothing to do */
   p->report.repair_worst = p->report.repair_worst_left = 8.0 / 9;
-  st = all_rounds(p, comm, err);
+  st = all_rounds(p, comm, &own, err);
   if (st == VG_OK) st = agree_report(p, comm, err);
-  p->report.repair = now() - t0;
+  if (st == VG_OK && spans)
+    st = vg_repair_record(p, comm, t0, &own, spans, err);
+  vg_spans_release(&own);
+  p->report.repair = vg_clock() - t0;
   return st;
 }

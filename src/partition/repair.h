@@ -19,9 +19,10 @@
 #include "partition/node.h"
 
 /** Mend cells beside interfaces. Collective; call between the end of the
- * engine and numbering. Fills what concerns it in p->report, the same on all
+ * engine and numbering. spans: those of the engine, on all ranks or none; tasks
+ * are added to them. Fills what concerns it in p->report, the same on all
  * ranks. VG_ERR_MEMORY: pieces are then of no further use. */
 vg_status vg_partition_repair(struct vg_partition *p, struct vg_comm *comm,
-                              struct vg_error *err);
+                              struct vg_spans *spans, struct vg_error *err);
 
 #endif

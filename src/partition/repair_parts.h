@@ -64,9 +64,10 @@ vg_status vg_spots_gather(struct vg_writer *w, int n_rank,
 
 /** Smooth the points on interfaces, and list balls around the cells with a
  * corner there that stay bad, of all ranks, by their coordinates. Collective.
- * (repair_smooth.c) */
+ * spans: this rank's tasks are added. (repair_smooth.c) */
 vg_status vg_repair_smooth(struct vg_partition *p, struct vg_comm *comm,
-                           const struct vg_owners *owners, size_t *n,
+                           const struct vg_owners *owners,
+                           struct vg_spans *spans, size_t *n,
                            struct vg_spot **out, struct vg_error *err);
 
 /* Cells of one piece that have a corner among the points of another, as its
@@ -184,5 +185,19 @@ vg_status vg_repair_mend(size_t n, const struct vg_block *block,
                          const struct vg_repair_rim *rim,
                          const struct vg_sizing *sizing,
                          struct vg_mended *out, struct vg_error *err);
+
+/* --- how long (repair_record.c) ------------------------------------------- */
+
+/** A task's time, from its begin to its end in the same thread. what: part of
+ * the path, with which and number it is one of its kind. */
+void vg_repair_begin(struct vg_span *s, int worker);
+void vg_repair_end(struct vg_span *s, const char *what, size_t number,
+                   size_t n_cell);
+
+/** Put the tasks of all ranks, own and others', into the record of the run.
+ * begin: when repairs began. Collective. */
+vg_status vg_repair_record(const struct vg_partition *p, struct vg_comm *comm,
+                           double begin, const struct vg_spans *own,
+                           struct vg_spans *spans, struct vg_error *err);
 
 #endif

@@ -23,6 +23,7 @@ struct outcome {
   size_t n_spot, cap_spot;
   struct vg_spot *spot;
   size_t n_moved;
+  struct vg_span span[2];    /* its seams found, its points smoothed */
   vg_status st;
 };
 
@@ -61,11 +62,13 @@ static void seam_body(void *context, size_t first, size_t end, int worker)
 {
   struct smoothing *s = context;
 
-  (void)worker;
   for (size_t k = first; k < end; k++) {
     struct outcome *o = &s->out[k];
+    const struct vg_piece *q = &s->p->piece[k];
 
+    vg_repair_begin(&o->span[0], worker);
     o->st = vg_seams_of(s->p, k, s->owners, &o->n_seam, &o->seam);
+    vg_repair_end(&o->span[0], "C", q->serial, q->n_cell);
   }
 }
 
@@ -356,10 +359,14 @@ static void smooth_body(void *context, size_t first, size_t end, int worker)
 {
   struct smoothing *s = context;
 
-  (void)worker;
-  for (size_t k = first; k < end; k++)
-    if (s->first[k + 1] > s->first[k])
-      s->out[k].st = smooth_piece(s, k, &s->out[k]);
+  for (size_t k = first; k < end; k++) {
+    struct outcome *o = &s->out[k];
+
+    if (s->first[k + 1] == s->first[k]) continue;
+    vg_repair_begin(&o->span[1], worker);
+    o->st = smooth_piece(s, k, o);
+    vg_repair_end(&o->span[1], "S", s->p->piece[k].serial, o->n_moved);
+  }
 }
 
 /* --- back to those who use the points ------------------------------------ */
@@ -427,7 +434,8 @@ static vg_status tell(struct smoothing *s, struct vg_comm *comm,
 }
 
 vg_status vg_repair_smooth(struct vg_partition *p, struct vg_comm *comm,
-                           const struct vg_owners *owners, size_t *n,
+                           const struct vg_owners *owners,
+                           struct vg_spans *spans, size_t *n,
                            struct vg_spot **out, struct vg_error *err)
 {
   struct smoothing s = { .p = p, .owners = owners };
@@ -442,6 +450,10 @@ vg_status vg_repair_smooth(struct vg_partition *p, struct vg_comm *comm,
   for (size_t k = 0; st == VG_OK && k < p->n_piece; k++) {
     vg_put(&w, s.out[k].n_spot, sizeof **out, s.out[k].spot);
     p->report.n_repair_moved += s.out[k].n_moved;
+    for (int i = 0; i < 2 && !w.refused; i++)
+      if (s.out[k].span[i].kind &&
+          vg_spans_add(spans, &s.out[k].span[i], err) < 0)
+        w.refused = 1;
   }
   if (st == VG_OK) st = vg_spots_gather(&w, p->size, comm, n, out, err);
   free(w.bytes.data);

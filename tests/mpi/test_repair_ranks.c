@@ -13,7 +13,7 @@ static struct vg_digest repaired(struct vg_comm *comm, int threads, int zones,
   scene_shake(&s, 0.45, 7);
   scene_cut(&s, comm, threads);
   if (zones) scene_zones(&s);
-  assert_int_equal(vg_partition_repair(&s.p, comm, NULL), VG_OK);
+  assert_int_equal(vg_partition_repair(&s.p, comm, NULL, NULL), VG_OK);
   d = scene_digest(&s, comm);
   *report = s.p.report;
   scene_end(&s);
@@ -66,7 +66,7 @@ static void test_empty(void **state)
   s.p.sizing = s.sizing;
   s.p.options.threads = 1;
   pthread_mutex_init(&s.p.lock, NULL);
-  assert_int_equal(vg_partition_repair(&s.p, job, NULL), VG_OK);
+  assert_int_equal(vg_partition_repair(&s.p, job, NULL, NULL), VG_OK);
   assert_int_equal(s.p.report.n_repair, 0);
   scene_end(&s);
 }

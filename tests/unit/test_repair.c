@@ -135,7 +135,7 @@ static void test_mends_across(void **state)
 
   (void)state;
   bad_scene(&s, 8);
-  assert_int_equal(vg_partition_repair(&s.p, NULL, NULL), VG_OK);
+  assert_int_equal(vg_partition_repair(&s.p, NULL, NULL, NULL), VG_OK);
   assert_int_equal(s.p.report.n_repair, 1);
   assert_int_equal(s.p.report.n_repaired, 1);
   assert_true(s.p.report.repair_worst == worst_of(&s.t));
@@ -163,7 +163,7 @@ static void test_rim_stays(void **state)
 
   (void)state;
   bad_scene(&s, 8);
-  assert_int_equal(vg_partition_repair(&s.p, NULL, NULL), VG_OK);
+  assert_int_equal(vg_partition_repair(&s.p, NULL, NULL, NULL), VG_OK);
   for (int g = 0; g < SLABS; g++) {
     const struct vg_piece *q = &s.p.piece[g];
     uint8_t *used = vg_calloc(q->n_in + q->n_point, 1);
@@ -206,7 +206,7 @@ static void test_smooths(void **state)
     scene_cut(&s, NULL, 1);
     scene_zones(&s);
     whole(&s, &before);
-    assert_int_equal(vg_partition_repair(&s.p, NULL, NULL), VG_OK);
+    assert_int_equal(vg_partition_repair(&s.p, NULL, NULL, NULL), VG_OK);
     assert_int_equal(s.p.report.n_repaired, 0);
     whole(&s, &after);
     check_volume(&s, &after);
@@ -231,7 +231,7 @@ static void unchanged(struct scene *s)
   struct vg_digest before, after;
 
   before = scene_digest(s, NULL);
-  assert_int_equal(vg_partition_repair(&s->p, NULL, NULL), VG_OK);
+  assert_int_equal(vg_partition_repair(&s->p, NULL, NULL, NULL), VG_OK);
   after = scene_digest(s, NULL);
   assert_memory_equal(&before, &after, sizeof after);
   assert_int_equal(s->p.report.n_repaired, 0);
@@ -298,7 +298,7 @@ static void test_many(void **state)
     scene_new(&s, 20, 8, 8);
     scene_shake(&s, 0.4, 3);
     scene_cut(&s, NULL, k ? 3 : 1);
-    assert_int_equal(vg_partition_repair(&s.p, NULL, NULL), VG_OK);
+    assert_int_equal(vg_partition_repair(&s.p, NULL, NULL, NULL), VG_OK);
     assert_true(s.p.report.n_repaired > 0);
     assert_true(s.p.report.n_repair_bad_left < s.p.report.n_repair_bad / 2);
     whole(&s, &t);
