@@ -9,10 +9,10 @@
 #include "core/predicates.h"
 #include "core/recover_flip.h"
 
-/* A pocket with more triangles is no pocket: where most of a surface of slivers
- * is missing, its triangles are easier to recover than the rim of what Delaunay
- * tetrahedra made of them. */
-enum { ROUNDS = 4, POCKET_MAX = 2000 };
+/* A pocket with more triangles is no pocket: where flips leave that many, the
+ * triangles of the surface are easier to recover than the rim of what they made
+ * of Delaunay tetrahedra. Some of 10,000 triangles were worth it. */
+enum { ROUNDS = 4, POCKET_MAX = 40000 };
 
 struct recovery {
   struct vg_tets *t;
