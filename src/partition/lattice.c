@@ -13,11 +13,12 @@ static const double other_share[] = {0, 0.07, -0.07, 0.15, -0.15};
 /* Blocks that may exceed the leaf size by this need no further cut. */
 static const double leaf_slack = 1.25;
 
-/* Below so many leaves planes are grown whole, one after another: tiles have
- * more rim, and there are voids enough to keep every thread busy. */
-static const double few_leaves = 12;
+/* Below so many leaves planes are grown whole, one after another, which costs
+ * least: lattices have pencils, and tiles more rim. With more leaves more
+ * workers are expected, who would wait for single planes. */
+static const double few_leaves = 80;
 
-enum { HALVINGS = 3, PER_AXIS = 2 };
+enum { HALVINGS = 6, PER_AXIS = 2 };
 
 /* --- planes -------------------------------------------------------------- */
 
@@ -266,6 +267,20 @@ int vg_lattice_region(const struct vg_lattice *l, int stage, size_t k,
   if (stage < 2) r->reach = pencil_reach;
   return stage == 0 ? line(l, k, r) : stage == 1 ? segment(l, k, r)
                                                  : tile(l, k, r);
+}
+
+void vg_lattice_patch(const struct vg_lattice *l, int axis, int i,
+                      const double lo[3], const double hi[3],
+                      struct vg_region *r)
+{
+  memset(r, 0, sizeof *r);
+  cross(r, axis, l->at[axis][i]);
+  between(r, l, axis, i);
+  for (int k = 0; k < 3; k++) {
+    if (k == axis) continue;
+    bound(r, k, 1, lo[k]);
+    bound(r, k, -1, hi[k]);
+  }
 }
 
 /* --- blocks -------------------------------------------------------------- */

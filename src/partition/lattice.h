@@ -43,6 +43,13 @@ size_t vg_lattice_count(const struct vg_lattice *l, int stage);
 int vg_lattice_region(const struct vg_lattice *l, int stage, size_t k,
                       struct vg_region *r);
 
+/** The part of plane i across an axis that lies in a box: where parts of a
+ * void still hang together after all stages. Boxes that do not overlap keep
+ * such regions apart. */
+void vg_lattice_patch(const struct vg_lattice *l, int axis, int i,
+                      const double lo[3], const double hi[3],
+                      struct vg_region *r);
+
 /** The blocks between planes: x first, i + (n[0] + 1) (j + (n[1] + 1) k) is
  * behind i planes across x. */
 size_t vg_lattice_blocks(const struct vg_lattice *l);

@@ -73,9 +73,9 @@ int vg_node_wants_cut(const struct vg_partition *p, struct vg_node *n)
 
 /* --- the works of a stage ------------------------------------------------ */
 
-/* Behind the stages of the lattice: places that hang together, and those that
- * still do. */
-enum { STAGES = VG_LATTICE_STAGES + 2 };
+/* Behind the stages of the lattice: places that hang together, as boxes, then
+ * across x, y and z. */
+enum { STAGES = VG_LATTICE_STAGES + 4 };
 
 static vg_status make_room(struct vg_node *n, size_t n_work,
                            struct vg_error *err)
@@ -137,7 +137,7 @@ static void estimate_works(struct vg_node *n)
     int b = (axis + 1) % 3, c = (axis + 2) % 3;
     double cells;
 
-    if (!w->region.n_plane) {
+    if (n->stage >= VG_LATTICE_STAGES) {
       w->estimate = (double)w->part.n_face;
       continue;
     }
@@ -156,7 +156,8 @@ static vg_status list_regions(const struct vg_partition *p,
 {
   *region = NULL;
   if (n->stage >= VG_LATTICE_STAGES)
-    return vg_node_open_places(p, n, region, count, err);
+    return vg_node_open_places(p, n, n->stage - VG_LATTICE_STAGES - 1, region,
+                               count, err);
   *count = vg_lattice_count(&n->lattice, n->stage);
   *region = vg_alloc(*count, sizeof **region);
   if (!*region) return vg_fail_memory(err, "cutting a front");

@@ -124,10 +124,11 @@ static inline int vg_node_is_in_block(const uint16_t *block,
 }
 
 /** Where the void hangs together across planes of the lattice after its
- * stages: boxes to be filled. They are few, or none are given.
+ * stages: boxes to be filled, for axis -1, then patches of the planes across
+ * an axis. They are few, or none are given.
  * region out: [*n_region], to be freed by the caller. (node_close.c) */
 vg_status vg_node_open_places(const struct vg_partition *p,
-                              const struct vg_node *n,
+                              const struct vg_node *n, int axis,
                               struct vg_region **region, size_t *n_region,
                               struct vg_error *err);
 

@@ -2,8 +2,10 @@
  * that touches a plane is made by a stage, so the faces that are left lie on
  * one side of each plane, except where cells could not be kept, because they
  * would have reached into another region. Faces that touch a plane there are
- * put together to places, and the boxes around these are filled: few cells,
- * which no plane needs to cross any more. */
+ * put together to places. The boxes around small ones are filled, all at once:
+ * few cells, which no plane needs to cross any more. What is left then, drawn
+ * out along lines where spacing grows, is grown again plane after plane, as
+ * patches of the planes without the regions that hindered. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,21 +14,32 @@
 #include "partition/node.h"
 
 /* A box ends so many spacings beyond the faces that it is made for. */
-static const double margin = 1.5;
-/* Places with more faces are where a region was given up; more places: the
+static const double margin = 1.5, patch_margin = 2.5;
+/* Larger places, in cubes of their spacing, are not filled. */
+static const double most_volume = 1500;
+/* There is more in a box where spacings below this share of its own are. */
+static const double finer = 0.4;
+/* Patches with more faces are where a region was given up; more places: the
  * planes do not suit this void. */
 enum { MOST_FACES = 600, MOST_PLACES = 512, MOST_TOUCHING = 16384 };
 
+struct touching { int plane; uint32_t face; };
+
 struct place {
+  int plane;                 /* of a patch, across the axis */
   size_t n_face;             /* 0: became part of another one */
+  uint32_t first;            /* of its faces */
+  double spacing;            /* the least at them */
   double lo[3], hi[3];
 };
 
 struct search {
   const struct vg_node *n;
   const struct vg_sizing *sizing;
+  int axis;                  /* across which patches are; -1: boxes */
+  double margin;
   size_t n_touching, cap_touching;
-  uint32_t *touching;        /* [n_touching] faces */
+  struct touching *touching;
   uint32_t *parent;          /* [n_touching] those with a point in common */
   size_t n_place, cap_place;
   struct place *place;
@@ -43,21 +56,40 @@ static void extent_of(const struct search *s, uint32_t face, int axis,
   *hi = fmax(fmax(a, b), c);
 }
 
+static int add_touching(struct search *s, int plane, uint32_t face)
+{
+  if (vg_reserve(&s->touching, &s->cap_touching, s->n_touching + 1,
+                 sizeof *s->touching))
+    return -1;
+  s->touching[s->n_touching++] = (struct touching){ plane, face };
+  return 0;
+}
+
+static int add_planes(struct search *s, uint32_t face)
+{
+  const struct vg_lattice *l = &s->n->lattice;
+  double lo, hi;
+
+  extent_of(s, face, s->axis, &lo, &hi);
+  for (int i = 0; i < l->n[s->axis]; i++)
+    if (l->at[s->axis][i] >= lo && l->at[s->axis][i] <= hi &&
+        add_touching(s, i, face))
+      return -1;
+  return 0;
+}
+
 static vg_status list_touching(struct search *s, struct vg_error *err)
 {
   for (uint32_t i = 0; i < s->n->front.n_face; i++) {
     const uint32_t *v = s->n->front.face[i];
-    const uint16_t *block = s->n->block;
 
-    if (v[0] == VG_FACE_GONE || vg_node_is_in_block(block, v)) continue;
-    if (s->n_touching == MOST_TOUCHING) {
+    if (v[0] == VG_FACE_GONE || vg_node_is_in_block(s->n->block, v)) continue;
+    if (s->n_touching >= MOST_TOUCHING) {
       s->n_touching = 0;
       return VG_OK;
     }
-    if (vg_reserve(&s->touching, &s->cap_touching, s->n_touching + 1,
-                   sizeof *s->touching))
+    if (s->axis < 0 ? add_touching(s, 0, i) : add_planes(s, i))
       return vg_fail_memory(err, "cutting a front");
-    s->touching[s->n_touching++] = i;
   }
   return VG_OK;
 }
@@ -75,8 +107,8 @@ static int by_point(const void *a, const void *b)
   return (*s > *t) - (*s < *t);
 }
 
-/* Faces that have a point in common are of one place. The lowest of them is
- * their root. */
+/* Faces of a plane that have a point in common are of one place. The lowest
+ * of them is their root. */
 static vg_status unite_touching(struct search *s, struct vg_error *err)
 {
   size_t m = 0;
@@ -88,7 +120,7 @@ static vg_status unite_touching(struct search *s, struct vg_error *err)
     return vg_fail_memory(err, "cutting a front");
   }
   for (uint32_t i = 0; i < s->n_touching; i++) {
-    const uint32_t *v = s->n->front.face[s->touching[i]];
+    const uint32_t *v = s->n->front.face[s->touching[i].face];
 
     s->parent[i] = i;
     for (int k = 0; k < 3; k++) key[m++] = (uint64_t)v[k] << 32 | i;
@@ -97,7 +129,9 @@ static vg_status unite_touching(struct search *s, struct vg_error *err)
   for (size_t i = 1; i < m; i++) {
     uint32_t a = (uint32_t)key[i - 1], b = (uint32_t)key[i];
 
-    if (key[i - 1] >> 32 != key[i] >> 32) continue;
+    if (key[i - 1] >> 32 != key[i] >> 32 ||
+        s->touching[a].plane != s->touching[b].plane)
+      continue;
     a = root_of(s->parent, a);
     b = root_of(s->parent, b);
     s->parent[a > b ? a : b] = a > b ? b : a;
@@ -112,23 +146,26 @@ static void widen(struct place *p, const struct place *by)
     p->lo[k] = fmin(p->lo[k], by->lo[k]);
     p->hi[k] = fmax(p->hi[k], by->hi[k]);
   }
+  p->spacing = fmin(p->spacing, by->spacing);
   p->n_face += by->n_face;
 }
 
-static void place_of_face(const struct search *s, uint32_t face,
+static void place_of_face(const struct search *s, const struct touching *t,
                           struct place *out)
 {
-  double middle[3], h;
+  double middle[3];
 
+  out->first = t->face;
+  out->plane = t->plane;
   out->n_face = 1;
   for (int k = 0; k < 3; k++) {
-    extent_of(s, face, k, &out->lo[k], &out->hi[k]);
+    extent_of(s, t->face, k, &out->lo[k], &out->hi[k]);
     middle[k] = 0.5 * (out->lo[k] + out->hi[k]);
   }
-  h = margin * vg_sizing_at(s->sizing, middle);
+  out->spacing = vg_sizing_at(s->sizing, middle);
   for (int k = 0; k < 3; k++) {
-    out->lo[k] -= h;
-    out->hi[k] += h;
+    out->lo[k] -= s->margin * out->spacing;
+    out->hi[k] += s->margin * out->spacing;
   }
 }
 
@@ -141,7 +178,7 @@ static vg_status make_places(struct search *s, struct vg_error *err)
     uint32_t root = root_of(s->parent, i);
     struct place one;
 
-    place_of_face(s, s->touching[i], &one);
+    place_of_face(s, &s->touching[i], &one);
     if (root != i) {
       widen(&s->place[place[root]], &one);
       continue;
@@ -158,26 +195,95 @@ static vg_status make_places(struct search *s, struct vg_error *err)
   return st;
 }
 
+/* Is there little in the box, by the spacing at the faces and by what is found
+ * elsewhere in it? */
+static int is_small(const struct search *s, const struct place *p)
+{
+  double volume = 1, x[3];
+
+  for (int k = 0; k < 3; k++) volume *= (p->hi[k] - p->lo[k]) / p->spacing;
+  for (int i = 0; i < 27 && volume <= most_volume; i++) {
+    int at[3] = { i % 3, i / 3 % 3, i / 9 };
+
+    for (int k = 0; k < 3; k++)
+      x[k] = p->lo[k] + 0.5 * at[k] * (p->hi[k] - p->lo[k]);
+    if (vg_sizing_at(s->sizing, x) < finer * p->spacing) return 0;
+  }
+  return volume <= most_volume;
+}
+
 static int overlap(const struct place *a, const struct place *b)
 {
-  if (!a->n_face || !b->n_face) return 0;
   for (int k = 0; k < 3; k++)
     if (a->lo[k] >= b->hi[k] || b->lo[k] >= a->hi[k]) return 0;
   return 1;
 }
 
-/* Until no two overlap. */
-static void merge_places(struct search *s)
+static int by_spacing(const void *a, const void *b)
 {
+  const struct place *p = a, *q = b;
+
+  if (p->spacing != q->spacing) return p->spacing < q->spacing ? -1 : 1;
+  return (p->first > q->first) - (p->first < q->first);
+}
+
+/* Put p together with all that it overlaps, as long as that stays small: then
+ * these leave the list and p stands for them. Else p is given up. */
+static int absorb(const struct search *s, struct place *list, size_t *n,
+                  struct place *p)
+{
+  uint8_t is_taken[MOST_PLACES] = {0};
+  size_t left = 0;
+  struct place all = *p;
   int again = 1;
 
   while (again) {
     again = 0;
-    for (size_t a = 0; a < s->n_place; a++)
-      for (size_t b = a + 1; b < s->n_place; b++) {
-        if (!overlap(&s->place[a], &s->place[b])) continue;
-        widen(&s->place[a], &s->place[b]);
-        s->place[b].n_face = 0;
+    for (size_t k = 0; k < *n; k++) {
+      if (is_taken[k] || !overlap(&list[k], &all)) continue;
+      widen(&all, &list[k]);
+      again = is_taken[k] = 1;
+    }
+  }
+  if (!is_small(s, &all)) return 0;
+  for (size_t k = 0; k < *n; k++)
+    if (!is_taken[k]) list[left++] = list[k];
+  *n = left;
+  *p = all;
+  return 1;
+}
+
+/* Small boxes that do not overlap, the finest first. */
+static void choose_places(struct search *s)
+{
+  size_t n = 0;
+
+  qsort(s->place, s->n_place, sizeof *s->place, by_spacing);
+  for (size_t k = 0; k < s->n_place; k++) {
+    struct place p = s->place[k];
+
+    if (absorb(s, s->place, &n, &p)) s->place[n++] = p;
+  }
+  s->n_place = n;
+}
+
+/* Patches of a plane that overlap become one. */
+static void merge_patches(struct search *s)
+{
+  int again = 1, b = (s->axis + 1) % 3, c = (s->axis + 2) % 3;
+
+  while (again) {
+    again = 0;
+    for (size_t i = 0; i < s->n_place; i++)
+      for (size_t j = i + 1; j < s->n_place; j++) {
+        struct place *p = &s->place[i], *q = &s->place[j];
+
+        if (p->plane != q->plane || !p->n_face || !q->n_face ||
+            p->lo[b] >= q->hi[b] || q->lo[b] >= p->hi[b] ||
+            p->lo[c] >= q->hi[c] || q->lo[c] >= p->hi[c])
+          continue;
+        widen(p, q);
+        q->n_face = 0;
         again = 1;
       }
   }
@@ -199,32 +305,40 @@ static vg_status to_regions(const struct search *s, struct vg_region **region,
 {
   *region = vg_alloc(s->n_place, sizeof **region);
   if (!*region) return vg_fail_memory(err, "cutting a front");
-  for (size_t k = 0; k < s->n_place; k++)
-    if (s->place[k].n_face && s->place[k].n_face <= MOST_FACES)
-      box_region(&s->place[k], &(*region)[(*n_region)++]);
+  for (size_t k = 0; k < s->n_place; k++) {
+    const struct place *p = &s->place[k];
+
+    if (s->axis < 0)
+      box_region(p, &(*region)[(*n_region)++]);
+    else if (p->n_face && p->n_face <= MOST_FACES)
+      vg_lattice_patch(&s->n->lattice, s->axis, p->plane, p->lo, p->hi,
+                       &(*region)[(*n_region)++]);
+  }
   return VG_OK;
 }
 
 vg_status vg_node_open_places(const struct vg_partition *p,
-                              const struct vg_node *n,
+                              const struct vg_node *n, int axis,
                               struct vg_region **region, size_t *n_region,
                               struct vg_error *err)
 {
-  struct search s = { .n = n, .sizing = p->sizing };
+  struct search s = { .n = n, .sizing = p->sizing, .axis = axis,
+                      .margin = axis < 0 ? margin : patch_margin };
   int n_axis = 0;
   vg_status st;
 
   *region = NULL;
   *n_region = 0;
-  /* planes that none crosses are grown whole: there is nothing to add */
+  /* a plane that none crosses was grown whole: only boxes can add to it */
   for (int k = 0; k < 3; k++) n_axis += n->lattice.n[k] > 0;
-  if (n_axis < 2) return VG_OK;
+  if (axis >= 0 && (n_axis < 2 || !n->lattice.n[axis])) return VG_OK;
   VG_TRY(list_touching(&s, err));
   if (!s.n_touching) goto done;
   VG_TRY(unite_touching(&s, err));
   VG_TRY(make_places(&s, err));
   if (s.n_place > MOST_PLACES) goto done;
-  merge_places(&s);
+  if (axis < 0) choose_places(&s);
+  else merge_patches(&s);
   st = to_regions(&s, region, n_region, err);
 done:
   free(s.touching);

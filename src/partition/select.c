@@ -41,9 +41,21 @@ static void widen(struct vg_select_box *b, const double lo[3],
                   const double hi[3])
 {
   for (int k = 0; k < 3; k++) {
-    if (lo[k] < b->lo[k]) b->lo[k] = lo[k];
-    if (hi[k] > b->hi[k]) b->hi[k] = hi[k];
+    b->lo[k] = lo[k] < b->lo[k] ? lo[k] : b->lo[k];
+    b->hi[k] = hi[k] > b->hi[k] ? hi[k] : b->hi[k];
   }
+}
+
+/* Faces from..end - 1, all of one run. */
+static void widen_run(struct vg_select *s, size_t from, size_t end)
+{
+  const struct vg_front *f = s->front;
+  struct vg_select_box b = s->level[0].box[from / RUN];
+
+  for (size_t i = from; i < end; i++)
+    for (int j = 0; j < 3 && f->face[i][0] != VG_FACE_GONE; j++)
+      widen(&b, f->x[f->face[i][j]], f->x[f->face[i][j]]);
+  s->level[0].box[from / RUN] = b;
 }
 
 vg_status vg_select_update(struct vg_select *s, struct vg_error *err)
@@ -56,12 +68,13 @@ vg_status vg_select_update(struct vg_select *s, struct vg_error *err)
     return vg_fail_memory(err, "cutting a front");
   for (; s->n_local < f->n_point; s->n_local++)
     s->local[s->n_local] = UINT32_MAX;
-  for (; s->n_face < f->n_face; s->n_face++)
-    for (int j = 0; j < 3 && f->face[s->n_face][0] != VG_FACE_GONE; j++) {
-      const double *x = f->x[f->face[s->n_face][j]];
+  while (s->n_face < f->n_face) {
+    size_t end = (s->n_face / RUN + 1) * RUN;
 
-      widen(&s->level[0].box[s->n_face / RUN], x, x);
-    }
+    if (end > f->n_face) end = f->n_face;
+    widen_run(s, s->n_face, end);
+    s->n_face = end;
+  }
   for (int k = 1; k < VG_SELECT_LEVELS && n > 1; k++) {
     const struct vg_select_level *below = &s->level[k - 1];
 
@@ -97,28 +110,40 @@ static double most_spacing(const struct list *l, const struct vg_select_box *b)
          vg_sizing_slope(l->s->sizing) * sqrt(d2);
 }
 
-static double side(const struct vg_plane *p, const double x[3])
+/* The planes and walls of a region beyond which a triangle of a box may lie:
+ * normal . x < least for all corners. */
+struct limits {
+  int n;
+  struct { const double *normal; double sign, least; } of[2 * 2 +
+                                                          VG_REGION_WALLS];
+};
+
+static void add_limit(struct limits *l, const struct vg_plane *p, double sign,
+                      double most, const struct vg_select_box *b)
 {
-  return p->normal[0] * x[0] + p->normal[1] * x[1] + p->normal[2] * x[2] -
-         p->offset;
+  double least = sign * p->offset - most, nearest = 0;
+
+  for (int k = 0; k < 3; k++) {
+    double n = sign * p->normal[k];
+
+    nearest += n * (n > 0 ? b->lo[k] : b->hi[k]);
+  }
+  if (nearest >= least) return;
+  l->of[l->n].normal = p->normal;
+  l->of[l->n].sign = sign;
+  l->of[l->n++].least = least;
 }
 
-/* Do all corners lie farther than `most` from a plane, on one side, or beyond
- * a wall? */
-static int is_far(const struct vg_region *r, const double *const x[3],
-                  double most)
+static int is_far(const struct limits *l, const double *const x[3])
 {
-  for (int i = 0; i < r->n_wall; i++)
-    if (side(&r->wall[i], x[0]) < -most && side(&r->wall[i], x[1]) < -most &&
-        side(&r->wall[i], x[2]) < -most)
-      return 1;
-  for (int i = 0; i < r->n_plane; i++) {
-    double a = side(&r->plane[i], x[0]), b = side(&r->plane[i], x[1]);
-    double c = side(&r->plane[i], x[2]);
+  for (int i = 0; i < l->n; i++) {
+    const double *n = l->of[i].normal;
+    int beyond = 0;
 
-    if ((a > most && b > most && c > most) ||
-        (a < -most && b < -most && c < -most))
-      return 1;
+    for (int k = 0; k < 3; k++)
+      beyond += l->of[i].sign * (n[0] * x[k][0] + n[1] * x[k][1] +
+                                 n[2] * x[k][2]) < l->of[i].least;
+    if (beyond == 3) return 1;
   }
   return 0;
 }
@@ -126,17 +151,25 @@ static int is_far(const struct vg_region *r, const double *const x[3],
 static int list_run(struct list *l, size_t run)
 {
   const struct vg_front *f = l->s->front;
+  const struct vg_region *r = l->region;
+  const struct vg_select_box *b = &l->s->level[0].box[run];
   size_t end = (run + 1) * RUN < f->n_face ? (run + 1) * RUN : f->n_face;
-  double most = (l->region->reach + VG_BAND_FRONT) *
-                most_spacing(l, &l->s->level[0].box[run]);
+  double most = (r->reach + VG_BAND_FRONT) * most_spacing(l, b);
+  struct limits limits = { .n = 0 };
 
   if (vg_reserve(&l->face, &l->cap, l->n + RUN, sizeof *l->face)) return -1;
+  for (int i = 0; i < r->n_plane; i++) {
+    add_limit(&limits, &r->plane[i], 1, most, b);
+    add_limit(&limits, &r->plane[i], -1, most, b);
+  }
+  for (int i = 0; i < r->n_wall; i++)
+    add_limit(&limits, &r->wall[i], 1, most, b);
   for (size_t i = run * RUN; i < end; i++) {
     const double *x[3];
 
     if (f->face[i][0] == VG_FACE_GONE) continue;
     for (int k = 0; k < 3; k++) x[k] = f->x[f->face[i][k]];
-    if (!is_far(l->region, x, most)) l->face[l->n++] = (uint32_t)i;
+    if (!is_far(&limits, x)) l->face[l->n++] = (uint32_t)i;
   }
   return 0;
 }
@@ -187,28 +220,11 @@ static void number_points(const struct vg_front *f, uint32_t *local, size_t n,
   for (size_t i = 0; i < part->n_point; i++) local[point[i]] = UINT32_MAX;
 }
 
-static size_t count_points(const struct vg_front *f, uint32_t *local, size_t n,
-                           const uint32_t *face)
-{
-  size_t count = 0;
-
-  for (size_t i = 0; i < n; i++)
-    for (int k = 0; k < 3; k++) {
-      uint32_t *to = &local[f->face[face[i]][k]];
-
-      count += *to == UINT32_MAX;
-      *to = 0;
-    }
-  for (size_t i = 0; i < n; i++)
-    for (int k = 0; k < 3; k++) local[f->face[face[i]][k]] = UINT32_MAX;
-  return count;
-}
-
 static vg_status take(const struct vg_front *f, uint32_t *local, size_t n,
                       const uint32_t *face, struct vg_front *part,
                       uint32_t **point, struct vg_error *err)
 {
-  size_t n_point = count_points(f, local, n, face);
+  size_t n_point = 3 * n < f->n_point ? 3 * n : f->n_point;
 
   memset(part, 0, sizeof *part);
   part->x = vg_alloc(n_point, sizeof *part->x);

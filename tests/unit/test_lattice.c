@@ -211,11 +211,11 @@ static void an_axis_can_be_asked_for(void **state)
 }
 
 /* Cut while more cells are expected than a leaf should have, a little more let
- * pass: one plane at a time where few leaves come of it, else several. */
+ * pass: one plane at a time where few leaves come of it, else as many as make them. */
 static void leaves_have_their_size(void **state)
 {
   static const struct { double leaves; int planes; } is[] = {
-    {1, 0}, {1.2, 0}, {1.3, 1}, {2, 1}, {4, 1}, {11, 1}, {13, 3}, {64, 3}};
+    {1, 0}, {1.2, 0}, {1.3, 1}, {2, 1}, {4, 1}, {12, 1}, {64, 1}, {90, 6}};
   struct vg_lattice l;
   struct scene s;
 
@@ -431,6 +431,59 @@ static void regions_are_apart_and_complete(void **state)
   }
 }
 
+/* --- blocks and patches -------------------------------------------------- */
+
+/* A block's number is the sum of what its point is behind, x first; on a plane
+ * a point is in the block below and, asked for the upper one, above. */
+static void points_have_blocks(void **state)
+{
+  uint64_t seed = 3;
+
+  (void)state;
+  assert_int_equal(vg_lattice_blocks(&four), 64);
+  assert_int_equal(vg_lattice_blocks(&flat), 6);
+  for (int i = 0; i < 1000; i++) {
+    uint32_t want[2] = {0, 0}, step = 1;
+    double x[3];
+
+    sample(&four, &seed, x);
+    for (int axis = 0; axis < 3; axis++, step *= 4)
+      for (int k = 0; k < 3; k++) {
+        want[0] += step * (x[axis] > four.at[axis][k]);
+        want[1] += step * (x[axis] >= four.at[axis][k]);
+      }
+    assert_int_equal(vg_lattice_block(&four, x, 0), want[0]);
+    assert_int_equal(vg_lattice_block(&four, x, 1), want[1]);
+  }
+}
+
+/* A patch is on its plane and ends with the box, and midway to the next plane:
+ * patches of boxes beside each other do not overlap. */
+static void patches_end_with_their_box(void **state)
+{
+  const double lo[3] = {-0.2, -0.3, 0.1}, hi[3] = {0.4, 0.3, 0.6};
+  struct vg_region r;
+  uint64_t seed = 4;
+
+  (void)state;
+  for (int i = 0; i < 3; i++) {
+    vg_lattice_patch(&four, 1, i, lo, hi, &r);
+    assert_int_equal(r.n_plane, 1);
+    assert_true(r.plane[0].normal[1] == 1 &&
+                r.plane[0].offset == four.at[1][i]);
+    for (int n = 0; n < 1000; n++) {
+      double x[3];
+      int in;
+
+      for (int k = 0; k < 3; k++) x[k] = 2 * tets_random(&seed) - 1;
+      in = x[0] > lo[0] && x[0] < hi[0] && x[2] > lo[2] && x[2] < hi[2] &&
+           (i == 0 || x[1] > 0.5 * (four.at[1][i - 1] + four.at[1][i])) &&
+           (i == 2 || x[1] < 0.5 * (four.at[1][i] + four.at[1][i + 1]));
+      assert_int_equal(vg_region_within(&r, x), in);
+    }
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -444,6 +497,8 @@ int main(void)
     cmocka_unit_test(nothing_to_cut),
     cmocka_unit_test(numbers_of_regions),
     cmocka_unit_test(regions_are_apart_and_complete),
+    cmocka_unit_test(points_have_blocks),
+    cmocka_unit_test(patches_end_with_their_box),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);
