@@ -10,13 +10,19 @@
 
 /* Measured: docs/performance.md, Model. */
 const struct vg_rates vg_rates_measured = {
-  .pencil = { 1e-3, 5.5e-6, 15e-6, 0, 0 },
-  .tile = { 1e-3, 2.5e-6, 12e-6, 10e-6, 0 },
-  .leaf = { 1e-3, 1.55e-6, 2.6e-6, 1.5e-6, 0 },
-  .plan = { 1e-4, 0, 0, 0.03e-6, 0.45e-6 },
-  .join = { 1e-4, 0, 0, 0.14e-6, 0 },
-  .split = { 1e-4, 0, 0, 0.5e-6, 0.1e-6 },
+  .pencil = { 0, 3.6e-6, 5.3e-6, 8e-6, 0, 0 },
+  .tile = { 0, 2.35e-6, 5.6e-6, 6e-6, 0, 0 },
+  .leaf = { 0, 1.45e-6, 2.6e-6, 3.5e-6, 0, 0 },
+  .closing = { 13e-3, 0, 0, 0, 0, 0 },
+  .plan = { 1e-4, 0, 0, 0.036e-6, 0, 0.09e-6 },
+  .join = { 1e-4, 0, 0, 0.009e-6, 0.135e-3, 0.09e-6 },
+  .close = { 1e-4, 0, 0, 0.06e-6, 0.45e-3, 0 },
+  .split = { 1e-4, 0, 0, 0.08e-6, 0, 0 },
 };
+
+/* Where three planes meet, so many places are left where parts hang together,
+ * with so many faces beside them; their cells, some 200, count as the tiles'. */
+static const double places_per_corner = 1.8, place_faces = 900;
 
 /* Cells of a zone reach this many spacings to each side of its plane, those of
  * a pencil of both of its planes: as measured over boxes. */
@@ -57,6 +63,7 @@ struct part {
 
 struct forecast {
   struct vg_outlook *out;
+  double n_handed, handed;   /* tasks since the last join, faces given to them */
   const struct vg_cut_rule *rule;
   const struct vg_rates *rates;
   struct vg_error *err;
@@ -126,10 +133,10 @@ static struct amount amount_of(const struct vg_load *l)
 }
 
 static double seconds(const struct vg_task_rate *r, struct amount a,
-                      double faces, double cubes)
+                      double faces)
 {
   return r->task + r->even * (a.cells - a.graded) + r->graded * a.graded +
-         r->face * faces + r->cube * cubes;
+         r->face * faces;
 }
 
 /* a: what it makes; for joins what is in the void. */
@@ -140,13 +147,11 @@ static vg_status add_task(struct forecast *c, const char *path,
 {
   struct vg_spans *s = &c->out->spans;
   int makes = kind != VG_SPAN_JOIN;
-  struct vg_span span = { .kind = kind, .start = s->wall,
-                          .estimate = a.cells };
+  struct vg_span span = { .kind = kind, .estimate = a.cells };
 
   snprintf(span.path, sizeof span.path, "%s", path);
   snprintf(span.after, sizeof span.after, "%s", after);
-  span.cpu = seconds(rate, makes ? a : (struct amount){0, 0}, faces, cubes);
-  span.end = s->wall += span.cpu;
+  span.cpu = seconds(rate, makes ? a : (struct amount){0, 0}, faces);
   if (makes) span.n_cell = (uint64_t)(a.cells + 0.5);
   span.bytes_in = (uint64_t)(bytes_per_face * faces +
                              cubes * sizeof(struct vg_load_cube));
@@ -312,6 +317,8 @@ static vg_status grow_stage(struct forecast *c, struct part *p,
                                                     : &c->rates->tile,
                     a, faces, 0));
     memcpy(after, path, sizeof path);
+    c->n_handed++;
+    c->handed += faces;
     c->out->n_pencil += kind == VG_SPAN_PENCIL;
     c->out->n_tile += kind == VG_SPAN_TILE;
     c->out->zone_cells += a.cells;
@@ -469,6 +476,66 @@ static vg_status add_join(struct forecast *c, const struct part *p, int number,
                 (struct amount){p->load.cells, 0}, faces_of(&p->front),
                 (double)p->load.n);
   memcpy(after, path, sizeof path);
+  c->n_handed = c->handed = 0;
+  return st;
+}
+
+/* What a join, the span `index`, spends on the tasks that it makes. */
+static void pay_tasks(struct forecast *c, size_t index,
+                      const struct vg_task_rate *rate)
+{
+  c->out->spans.span[index].cpu += rate->made * c->n_handed +
+                                   rate->hand * c->handed;
+}
+
+/* Where three planes meet parts may still hang together. */
+static vg_status close_places(struct forecast *c, const struct part *p,
+                              const struct vg_lattice *l, char *after)
+{
+  double corners = (double)l->n[0] * l->n[1] * l->n[2];
+  size_t n = (size_t)ceil(places_per_corner * corners);
+  char maker[VG_PATH_MAX], path[VG_PATH_MAX];
+  vg_status st = VG_OK;
+
+  snprintf(maker, sizeof maker, "%s", after);
+  for (size_t k = 0; st >= 0 && k < n; k++) {
+    snprintf(path, sizeof path, "%.*sT%zu", VG_PATH_MAX - 24, p->path,
+             vg_lattice_count(l, VG_LATTICE_STAGES - 1) + k);
+    st = add_task(c, path, maker, VG_SPAN_TILE, &c->rates->closing,
+                  (struct amount){0, 0}, place_faces, 0);
+    memcpy(after, path, sizeof path);
+    c->n_handed++;
+    c->out->n_tile++;
+  }
+  return st;
+}
+
+/* Joins and zones of a void. */
+static vg_status grow_zones(struct forecast *c, struct part *p,
+                            const struct vg_lattice *l, char *after)
+{
+  int has_corners = l->n[0] && l->n[1] && l->n[2], n_join = 0;
+  const struct vg_rates *r = c->rates;
+  const struct vg_task_rate *last = &r->plan;
+  size_t n_pencil = 0, join = c->out->spans.n;
+  vg_status st;
+
+  VG_TRY(add_join(c, p, n_join++, last, after));
+  for (int stage = 0; stage <= VG_LATTICE_STAGES; stage++) {
+    size_t n = c->out->spans.n;
+
+    if (stage < VG_LATTICE_STAGES)
+      VG_TRY(grow_stage(c, p, l, stage, &n_pencil, after));
+    else VG_TRY(close_places(c, p, l, after));
+    if (c->out->spans.n == n) continue;
+    pay_tasks(c, join, last);
+    last = stage + 1 < VG_LATTICE_STAGES ? &r->join
+           : stage < VG_LATTICE_STAGES && has_corners ? &r->close
+                                                      : &r->split;
+    join = c->out->spans.n;
+    VG_TRY(add_join(c, p, n_join++, last, after));
+  }
+done:
   return st;
 }
 
@@ -539,22 +606,12 @@ static vg_status cut(struct forecast *c, struct part *p,
   struct blocks b = { .n = 0 };
   double before = c->out->zone_cells;
   char after[VG_PATH_MAX];
-  size_t index = 0, n_pencil = 0;
-  int n_join = 0;
+  size_t index = 0;
   vg_status st;
 
   snprintf(after, sizeof after, "%s", maker);
   VG_TRY(add_node(c, p, l, &index));
-  VG_TRY(add_join(c, p, n_join++, &c->rates->plan, after));
-  for (int stage = 0; stage < VG_LATTICE_STAGES; stage++) {
-    size_t n = c->out->spans.n;
-    int is_last = stage + 1 == VG_LATTICE_STAGES;
-
-    VG_TRY(grow_stage(c, p, l, stage, &n_pencil, after));
-    if (c->out->spans.n == n) continue;
-    VG_TRY(add_join(c, p, n_join++, is_last ? &c->rates->split
-                                            : &c->rates->join, after));
-  }
+  VG_TRY(grow_zones(c, p, l, after));
   c->out->node[index].zone = c->out->zone_cells - before;
   VG_TRY(open_blocks(&b, l, p, c->err));
   part_release(p);
@@ -577,6 +634,15 @@ static vg_status go_down(struct forecast *c, struct part *p,
 }
 
 /* --- the whole ----------------------------------------------------------- */
+
+/* One task after the other, as they were made. */
+static void line_up(struct vg_spans *s)
+{
+  for (size_t i = 0; i < s->n; i++) {
+    s->span[i].start = s->wall;
+    s->span[i].end = s->wall += s->span[i].cpu;
+  }
+}
 
 static vg_status add_surface(const struct vg_void *v, struct part *p,
                              struct vg_error *err)
@@ -637,7 +703,7 @@ vg_status vg_outlook_new(const struct vg_void *v, const struct vg_load *load,
                          struct vg_error *err)
 {
   struct vg_outlook o = VG_OUTLOOK_INIT;
-  struct forecast c = { &o, rule, rates, err };
+  struct forecast c = { .out = &o, .rule = rule, .rates = rates, .err = err };
   struct part root = { .path = "0", .parent = SIZE_MAX, .levels = levels };
   vg_status st;
 
@@ -645,6 +711,7 @@ vg_status vg_outlook_new(const struct vg_void *v, const struct vg_load *load,
   VG_TRY(add_load(load, &root, err));
   VG_TRY(add_surface(v, &root, err));
   VG_TRY(go_down(&c, &root, ""));
+  line_up(&o.spans);
   vg_spans_sort(&o.spans);
   o.spans.n_rank = o.spans.n_thread = 1;
   vg_outlook_release(out);

@@ -13,14 +13,16 @@
 #include "partition/spans.h"
 
 /** Seconds of one core that a task of a kind takes: at all, per cell made where
- * spacing is even and where it varies, per face of the front it is given, per
- * cube of the load. */
-struct vg_task_rate { double task, even, graded, face, cube; };
+ * spacing is even and where it varies, per face of the front it is given; for
+ * joins, per task that it makes and per face of the fronts of these. */
+struct vg_task_rate { double task, even, graded, face, made, hand; };
 
 struct vg_rates {
   struct vg_task_rate pencil, tile, leaf;
-  struct vg_task_rate plan, join, split;  /* joins: the first of a node, those
-                                             between stages, the last */
+  struct vg_task_rate closing;   /* where parts still hang together */
+  struct vg_task_rate plan, join, close, split;  /* joins: the first of a node,
+                                    those between stages, the one that looks
+                                    for such places, the last */
 };
 
 /** As measured: forecast.c says where. */

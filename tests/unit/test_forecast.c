@@ -77,20 +77,38 @@ static int is_leaf(const struct vg_outlook_node *n)
   return !n->lattice.n[0] && !n->lattice.n[1] && !n->lattice.n[2];
 }
 
-/* Eight blocks, each cut in two; they differ by what cubes beside planes do:
- * some per cent. */
-static void a_box_has_a_regular_tree(void **state)
+/* Few leaves: planes one after another, always the middle of what is left. */
+static void few_leaves_have_whole_planes(void **state)
 {
   struct vg_outlook o;
   struct scene s;
-  size_t n_block = 0;
 
   (void)state;
   make(&s, "box", 200000);
   o = look(&s, leaves_of(s.load.cells / 16), 0);
   assert_int_equal(o.n_leaf, 16);
-  assert_int_equal(o.n_node, 25);
-  assert_int_equal(o.n_tile, 12 + 8);
+  assert_int_equal(o.n_node, 31);
+  assert_int_equal(o.n_tile, 15);
+  assert_int_equal(o.n_pencil, 0);
+  assert_int_equal(o.node[0].n_child, 2);
+  vg_outlook_release(&o);
+  release(&s);
+}
+
+/* Eight blocks at once; they differ by what cubes beside planes do: some per
+ * cent. */
+static void a_box_has_a_regular_tree(void **state)
+{
+  struct vg_cut_rule rule = { .leaf_cells = 0, .first_axis = -1 };
+  struct vg_outlook o;
+  struct scene s;
+
+  (void)state;
+  make(&s, "box", 200000);
+  o = look(&s, rule, 3);
+  assert_int_equal(o.n_leaf, 8);
+  assert_int_equal(o.n_node, 9);
+  assert_int_equal(o.n_tile, 12 + 2);       /* two places where three meet */
   assert_int_equal(o.n_pencil, 5);
   assert_int_equal(o.node[0].n_child, 8);
   assert_true(o.node[0].parent == SIZE_MAX);
@@ -99,10 +117,7 @@ static void a_box_has_a_regular_tree(void **state)
     const struct vg_outlook_node *n = &o.node[i];
     double even = (s.load.cells - o.zone_cells) / 8;
 
-    assert_int_equal(is_leaf(n), n->depth == 2);
-    if (n->depth != 1) continue;
-    n_block++;
-    assert_true(n->parent == 0 && n->n_child == 2);
+    assert_true(is_leaf(n) && n->depth == 1 && n->parent == 0);
     assert_in_range((int)(100 * n->cells / even), 95, 125);
     for (int k = 0; k < 3; k++) {
       double at = o.node[0].lattice.at[k][0];
@@ -110,7 +125,6 @@ static void a_box_has_a_regular_tree(void **state)
       assert_true(n->lo[k] == at || n->hi[k] == at);
     }
   }
-  assert_int_equal(n_block, 8);
   vg_outlook_release(&o);
   release(&s);
 }
@@ -300,6 +314,7 @@ static void points_follow_from_cells(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+    cmocka_unit_test(few_leaves_have_whole_planes),
     cmocka_unit_test(a_box_has_a_regular_tree),
     cmocka_unit_test(sums_are_the_loads),
     cmocka_unit_test(the_model_runs_its_tasks),
