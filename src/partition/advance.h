@@ -6,9 +6,10 @@
  * part): pJ0 plans planes and takes the parts of the front that their lines
  * and tiles need; pP.. grow pencils along the lines, pT.. tiles of the planes
  * between them; pJ1, pJ2, ... put what they made into the void, in the order
- * of their numbers, and after the last stage find its parts: p.0, p.1, ...,
- * each cut again or filled: p.0L. A cut costs what its zones cost; the front
- * of the node is only passed through at memory speed. */
+ * of their numbers, and after the last stage part it into p.0, p.1, ..., each
+ * cut again or filled: p.0L. Between these, tiles with further numbers close
+ * places where parts still hang together. A cut costs what its zones cost; the
+ * front of the node is only passed through at memory speed. */
 #ifndef VG_PARTITION_ADVANCE_H
 #define VG_PARTITION_ADVANCE_H
 
