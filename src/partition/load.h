@@ -2,8 +2,9 @@
  *
  * A load is a list of cubes that together cover a void, each with the cells
  * expected in it: c V / h^3, V the part of the cube in the void. Cubes are a
- * few target edges wide; there are some thousands to a few hundred thousands
- * of them, whatever the mesh will have. */
+ * few target edges wide in small meshes; there are some thousands to some tens
+ * of thousands of them, more only where cells are many hundred millions.
+ * Questions about planes are answered from an index of each axis. */
 #ifndef VG_PARTITION_LOAD_H
 #define VG_PARTITION_LOAD_H
 
