@@ -116,9 +116,6 @@ done:
   return st;
 }
 
-/* Of a region only bad cells are mended: points that were smoothed are off the
- * lattice that the voids beside it go on with, which would cost those more
- * than smoothing gains here. */
 vg_status vg_growth_improve(struct vg_growth *g, struct vg_error *err)
 {
   struct vg_optimise_report r = {0};
@@ -131,7 +128,7 @@ vg_status vg_growth_improve(struct vg_growth *g, struct vg_error *err)
   if (g->region) near = *g->region;
   near.reach += rim;
   if (g->options->sweeps > 0) {
-    st = vg_optimise(&g->t, g->n_front, g->region ? 0 : g->options->sweeps,
+    st = vg_optimise(&g->t, g->n_front, g->options->sweeps,
                      g->region ? &near : NULL, g->sizing, &r, err);
     g->report->n_smoothed += r.n_smoothed;
     g->report->n_flip += r.n_flip;

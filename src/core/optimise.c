@@ -73,7 +73,9 @@ static void worst_around(const struct vg_optimiser *o, float *least)
 
 /* Swaps first: a sliver that is smoothed spoils its neighbours. Points whose
  * cells are all good are left where they are: in a level field that is nearly
- * all of them. */
+ * all of them. Those of a region stay where they stand, on the lattice that the
+ * voids beside it go on with: moved off it they would cost these more than
+ * smoothing gains here. */
 static vg_status sweep(struct vg_optimiser *o, struct vg_error *err)
 {
   struct vg_tets *t = o->t;
@@ -81,6 +83,7 @@ static vg_status sweep(struct vg_optimiser *o, struct vg_error *err)
 
   for (uint32_t c = 0; c < t->n_cell; c++)
     if (is_live(t, c) && o->q[c] < fair && concerns(o, c)) vg_swap(o, c);
+  if (o->region) return VG_OK;
   least = vg_alloc(t->n_point, sizeof *least);
   if (!least) return vg_fail_memory(err, "optimisation");
   worst_around(o, least);
