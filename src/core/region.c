@@ -70,7 +70,7 @@ int vg_region_near(const struct vg_region *r, const struct vg_sizing *sizing,
   double far = gap(r, 1, &x);
 
   return far == 0 ||
-         far <= (r->reach + band) * vg_region_spacing(r, sizing, x);
+         far <= vg_region_band(r, band) * vg_region_spacing(r, sizing, x);
 }
 
 /* --- triangles ----------------------------------------------------------- */
@@ -153,10 +153,10 @@ static int meets(const struct vg_region *r, const struct vg_sizing *sizing,
     if (h > most) most = h;
     middle[k] = (corner[0][k] + corner[1][k] + corner[2][k]) / 3;
   }
-  if (longest(corner) <= 2 * most) return d <= (r->reach + band) * most;
+  if (longest(corner) <= 2 * most) return d <= vg_region_band(r, band) * most;
   most = fmax(most, vg_region_spacing(r, sizing, middle));
-  if (!reaches(r, corner, (r->reach + band) * most, middle)) return 0;
-  return !is_sure || reaches(r, corner, (r->reach + band) *
+  if (!reaches(r, corner, vg_region_band(r, band) * most, middle)) return 0;
+  return !is_sure || reaches(r, corner, vg_region_band(r, band) *
                                vg_region_spacing(r, sizing, middle), middle);
 }
 
@@ -202,7 +202,7 @@ int vg_region_meets_box(const struct vg_region *r,
   if (far == 0) return 1;
   h = vg_region_spacing(r, sizing, middle) +
       vg_sizing_slope(sizing) * sqrt(diagonal);
-  return far <= (r->reach + band) * h;
+  return far <= vg_region_band(r, band) * h;
 }
 
 int vg_region_has_cell(const struct vg_region *r,
@@ -285,7 +285,8 @@ int vg_ruler_meets(const struct vg_ruler *ruler, const uint32_t v[3],
   const double *corner[3] = {x[v[0]], x[v[1]], x[v[2]]};
   const double *h = ruler->spacing;
   double most = fmax(fmax(h[v[0]], h[v[1]]), h[v[2]]);
-  double reach = ruler->region->reach + band, far = gap_of(ruler, v), middle[3];
+  double reach = vg_region_band(ruler->region, band);
+  double far = gap_of(ruler, v), middle[3];
 
   if (longest(corner) <= 2 * most) return far <= reach * most;
   if (far > 0) {

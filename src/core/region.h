@@ -24,6 +24,9 @@ struct vg_region {
                                 angles */
   double reach;              /* cells within so many spacings belong to it,
                                 besides those that cross every plane */
+  double wide;               /* the front must be known, and cells are told
+                                from outside, so many spacings farther than
+                                elsewhere: triangles reach far beyond */
   int n_wall;                /* convex: all corners of a cell must have */
   struct vg_plane wall[VG_REGION_WALLS];  /* normal . x > offset. Regions with
                                 walls between them cannot overlap */
@@ -36,6 +39,12 @@ struct vg_region {
 #define VG_BAND_PLACE 1.3
 #define VG_BAND_FLUID 2.2
 #define VG_BAND_FRONT 3.5
+
+/** A band of the region, in spacings from its planes. */
+static inline double vg_region_band(const struct vg_region *r, double band)
+{
+  return r->reach + band + (band >= VG_BAND_FLUID ? r->wide : 0);
+}
 
 /** Spacing at the foot of x. */
 double vg_region_spacing(const struct vg_region *r,

@@ -4,8 +4,10 @@
  * would have reached into another region. Faces that touch a plane there are
  * put together to places. The boxes around small ones are filled, all at once:
  * few cells, which no plane needs to cross any more. What is left then, drawn
- * out along lines where spacing grows, is grown again plane after plane, as
- * patches of the planes without the regions that hindered. */
+ * out along lines where spacing grows, or bounded by triangles that reach
+ * farther from their plane than zones know the front, is grown again plane
+ * after plane, as patches of the planes without the regions that hindered, and
+ * as wide as these triangles. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,6 +32,7 @@ struct place {
   size_t n_face;             /* 0: became part of another one */
   uint32_t first;            /* of its faces */
   double spacing;            /* the least at them */
+  double wide;               /* most spacings from the plane, of a patch */
   double lo[3], hi[3];
 };
 
@@ -147,7 +150,24 @@ static void widen(struct place *p, const struct place *by)
     p->hi[k] = fmax(p->hi[k], by->hi[k]);
   }
   p->spacing = fmin(p->spacing, by->spacing);
+  p->wide = fmax(p->wide, by->wide);
   p->n_face += by->n_face;
+}
+
+/* How far a face reaches from its plane, in the spacings on that. */
+static double width_of(const struct search *s, const struct touching *t)
+{
+  const struct vg_front *f = &s->n->front;
+  double at = s->n->lattice.at[s->axis][t->plane], most = 0;
+
+  for (int k = 0; k < 3; k++) {
+    const double *x = f->x[f->face[t->face][k]];
+    double foot[3] = {x[0], x[1], x[2]};
+
+    foot[s->axis] = at;
+    most = fmax(most, fabs(x[s->axis] - at) / vg_sizing_at(s->sizing, foot));
+  }
+  return most;
 }
 
 static void place_of_face(const struct search *s, const struct touching *t,
@@ -163,6 +183,7 @@ static void place_of_face(const struct search *s, const struct touching *t,
     middle[k] = 0.5 * (out->lo[k] + out->hi[k]);
   }
   out->spacing = vg_sizing_at(s->sizing, middle);
+  out->wide = s->axis < 0 ? 0 : width_of(s, t);
   for (int k = 0; k < 3; k++) {
     out->lo[k] -= s->margin * out->spacing;
     out->hi[k] += s->margin * out->spacing;
@@ -307,12 +328,16 @@ static vg_status to_regions(const struct search *s, struct vg_region **region,
   if (!*region) return vg_fail_memory(err, "cutting a front");
   for (size_t k = 0; k < s->n_place; k++) {
     const struct place *p = &s->place[k];
+    struct vg_region *r = &(*region)[*n_region];
 
-    if (s->axis < 0)
-      box_region(p, &(*region)[(*n_region)++]);
-    else if (p->n_face && p->n_face <= MOST_FACES)
-      vg_lattice_patch(&s->n->lattice, s->axis, p->plane, p->lo, p->hi,
-                       &(*region)[(*n_region)++]);
+    if (s->axis < 0) {
+      box_region(p, r);
+    } else {
+      if (!p->n_face || p->n_face > MOST_FACES) continue;
+      vg_lattice_patch(&s->n->lattice, s->axis, p->plane, p->lo, p->hi, r);
+      r->wide = fmax(p->wide + margin - VG_BAND_FLUID, 0);
+    }
+    ++*n_region;
   }
   return VG_OK;
 }
@@ -324,14 +349,11 @@ vg_status vg_node_open_places(const struct vg_partition *p,
 {
   struct search s = { .n = n, .sizing = p->sizing, .axis = axis,
                       .margin = axis < 0 ? margin : patch_margin };
-  int n_axis = 0;
   vg_status st;
 
   *region = NULL;
   *n_region = 0;
-  /* a plane that none crosses was grown whole: only boxes can add to it */
-  for (int k = 0; k < 3; k++) n_axis += n->lattice.n[k] > 0;
-  if (axis >= 0 && (n_axis < 2 || !n->lattice.n[axis])) return VG_OK;
+  if (axis >= 0 && !n->lattice.n[axis]) return VG_OK;
   VG_TRY(list_touching(&s, err));
   if (!s.n_touching) goto done;
   VG_TRY(unite_touching(&s, err));

@@ -154,7 +154,7 @@ static int list_run(struct list *l, size_t run)
   const struct vg_region *r = l->region;
   const struct vg_select_box *b = &l->s->level[0].box[run];
   size_t end = (run + 1) * RUN < f->n_face ? (run + 1) * RUN : f->n_face;
-  double most = (r->reach + VG_BAND_FRONT) * most_spacing(l, b);
+  double most = vg_region_band(r, VG_BAND_FRONT) * most_spacing(l, b);
   struct limits limits = { .n = 0 };
 
   if (vg_reserve(&l->face, &l->cap, l->n + RUN, sizeof *l->face)) return -1;
