@@ -6,7 +6,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -473,24 +472,15 @@ static vg_status digest_file(const char *path, struct vg_outputs_file *f,
                              struct vg_error *err)
 {
   struct vg_digest d = {{0, 0}};
-  struct stat s;
-  int fd = open(path, O_RDONLY);
-  void *data = MAP_FAILED;
+  int fd = open(path, O_RDONLY), bad = 1, why;
 
-  if (fd >= 0 && !fstat(fd, &s)) {
-    f->bytes = (uint64_t)s.st_size;
-    if (s.st_size)
-      data = mmap(NULL, (size_t)s.st_size, PROT_READ, MAP_PRIVATE, fd, 0);
-    if (data != MAP_FAILED) {
-      d = vg_digest_plain((size_t)s.st_size, data);
-      munmap(data, (size_t)s.st_size);
-    }
-  }
+  if (fd >= 0) bad = vg_digest_file(fd, &d, &f->bytes);
+  why = errno;
   if (fd >= 0) close(fd);
+  if (bad) return vg_fail(err, VG_ERR_IO, "%s: cannot be read back: %s", path,
+                          strerror(why));
   memcpy(f->digest, d.word, sizeof f->digest);
-  if (fd >= 0 && (data != MAP_FAILED || !f->bytes)) return VG_OK;
-  return vg_fail(err, VG_ERR_IO, "%s: cannot be read back: %s", path,
-                 strerror(errno));
+  return VG_OK;
 }
 
 vg_status vg_outputs_digest(struct vg_outputs *o, struct vg_error *err)
