@@ -21,9 +21,9 @@ static const double margin = 1.5, patch_margin = 2.5;
 static const double most_volume = 1500;
 /* There is more in a box where spacings below this share of its own are. */
 static const double finer = 0.4;
-/* Patches with more faces are where a region was given up; more places: the
- * planes do not suit this void. */
-enum { MOST_FACES = 600, MOST_PLACES = 512, MOST_TOUCHING = 16384 };
+/* Patches with more faces are where a region was given up, fewer may hang
+ * together all along a body; more places: the planes do not suit this void. */
+enum { MOST_FACES = 4000, MOST_PLACES = 512, MOST_TOUCHING = 16384 };
 
 struct touching { int plane; uint32_t face; };
 
