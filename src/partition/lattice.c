@@ -114,6 +114,30 @@ static int next_axis(const struct vg_load *load,
   return best;
 }
 
+/* Does x lie outside the void, and not near its front either? */
+static int is_outside(const struct vg_load *load, const double x[3])
+{
+  for (size_t i = 0; i < load->n; i++) {
+    const struct vg_load_cube *c = &load->cube[i];
+    int within = 1;
+
+    for (int k = 0; k < 3; k++)
+      within &= fabs(x[k] - (double)c->at[k]) <= (double)c->half;
+    if (within) return 0;
+  }
+  return 1;
+}
+
+/* Growth begins at a front and ends at one. Where the only point that lines
+ * have in common is in a body, each of them has its ends on fronts already. */
+static int are_lines_apart(const struct vg_load *load,
+                           const struct vg_lattice *l)
+{
+  const double x[3] = {l->at[0][0], l->at[1][0], l->at[2][0]};
+
+  return l->n[0] == 1 && l->n[1] == 1 && l->n[2] == 1 && is_outside(load, x);
+}
+
 int vg_lattice_plan(const struct vg_load *load, const struct vg_cut_rule *rule,
                     int levels, int retry, struct vg_lattice *out)
 {
@@ -130,6 +154,7 @@ int vg_lattice_plan(const struct vg_load *load, const struct vg_cut_rule *rule,
   }
   for (int axis = 0; axis < 3; axis++)
     place_planes(load, axis, (1 << half[axis]) - 1, retry, out);
+  out->lines_at_once = are_lines_apart(load, out);
   return used;
 }
 
@@ -207,22 +232,33 @@ static int line(const struct vg_lattice *l, size_t k, struct vg_region *r)
   return 2;
 }
 
-/* Lines along x and y, from one line along z to the next. */
+static size_t segments_along(const struct vg_lattice *l, int axis)
+{
+  int b = (axis + 1) % 3, c = (axis + 2) % 3;
+
+  return (size_t)((l->n[axis] + 1) * l->n[b] * l->n[c]);
+}
+
+/* Lines along x and y, from one line along z to the next; lines_at_once: all
+ * lines, from where they meet. */
 static int segment(const struct vg_lattice *l, size_t k, struct vg_region *r)
 {
-  size_t along_x = (size_t)(l->n[0] + 1) * (size_t)(l->n[1] * l->n[2]);
-  int along = k >= along_x, other = !along, part, j, m;
+  int along = 0, part;
 
-  if (along) k -= along_x;
-  part = (int)k % (l->n[along] + 1);
+  while (k >= segments_along(l, along)) k -= segments_along(l, along++);
+  part = (int)(k % (size_t)(l->n[along] + 1));
   k /= (size_t)(l->n[along] + 1);
-  j = (int)k % l->n[other];
-  m = (int)k / l->n[other];
-  cross(r, other, l->at[other][j]);
-  cross(r, 2, l->at[2][m]);
-  between(r, l, other, j);
-  between(r, l, 2, m);
-  ends(r, l, along, part, other, l->at[other][j]);
+  for (int across = 0; across < 3; across++) {
+    int i;
+
+    if (across == along) continue;
+    i = (int)(k % (size_t)l->n[across]);
+    k /= (size_t)l->n[across];
+    cross(r, across, l->at[across][i]);
+    between(r, l, across, i);
+    if (across != 2 || l->lines_at_once)
+      ends(r, l, along, part, across, l->at[across][i]);
+  }
   return along;
 }
 
@@ -253,10 +289,11 @@ static int tile(const struct vg_lattice *l, size_t k, struct vg_region *r)
 
 size_t vg_lattice_count(const struct vg_lattice *l, int stage)
 {
-  size_t x = (size_t)l->n[0], y = (size_t)l->n[1], z = (size_t)l->n[2];
+  size_t x_y = segments_along(l, 0) + segments_along(l, 1);
 
-  if (stage == 0) return x * y;
-  if (stage == 1) return (x + 1) * y * z + (y + 1) * x * z;
+  if (stage == 0 && l->lines_at_once) return x_y + segments_along(l, 2);
+  if (stage == 0) return (size_t)(l->n[0] * l->n[1]);
+  if (stage == 1) return l->lines_at_once ? 0 : x_y;
   return tiles_across(l, 0) + tiles_across(l, 1) + tiles_across(l, 2);
 }
 
@@ -265,8 +302,8 @@ int vg_lattice_region(const struct vg_lattice *l, int stage, size_t k,
 {
   memset(r, 0, sizeof *r);
   if (stage < 2) r->reach = pencil_reach;
-  return stage == 0 ? line(l, k, r) : stage == 1 ? segment(l, k, r)
-                                                 : tile(l, k, r);
+  if (stage == 2) return tile(l, k, r);
+  return stage || l->lines_at_once ? segment(l, k, r) : line(l, k, r);
 }
 
 void vg_lattice_patch(const struct vg_lattice *l, int axis, int i,

@@ -19,6 +19,7 @@ enum {
 
 struct vg_lattice {
   int n[3];                  /* planes across each axis */
+  int lines_at_once;         /* 1: n is 1 1 1, and the planes meet in a body */
   double at[3][VG_LATTICE_PLANES];
 };
 
@@ -36,7 +37,8 @@ int vg_lattice_plan(const struct vg_load *load, const struct vg_cut_rule *rule,
                     int levels, int retry, struct vg_lattice *out);
 
 /** Number of regions of a stage: 0: lines along z (the last axis with lines
- * across all), 1: segments of the other lines, 2: tiles. */
+ * across all), 1: segments of the other lines, 2: tiles. lines_at_once: 0:
+ * segments of all lines, 1: none. */
 size_t vg_lattice_count(const struct vg_lattice *l, int stage);
 
 /** Region k of a stage. Returns the axis of the line, or of the plane. */

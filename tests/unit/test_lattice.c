@@ -274,6 +274,8 @@ static void nothing_to_cut(void **state)
 
 static const struct vg_lattice two = {
   .n = {1, 1, 1}, .at = {{0.1}, {-0.2}, {0.15}} };
+static const struct vg_lattice once = {
+  .n = {1, 1, 1}, .lines_at_once = 1, .at = {{0.1}, {-0.2}, {0.15}} };
 static const struct vg_lattice four = {
   .n = {3, 3, 3},
   .at = {{-0.5, 0.1, 0.45}, {-0.6, -0.2, 0.5}, {-0.4, 0, 0.55}} };
@@ -294,6 +296,7 @@ static void numbers_of_regions(void **state)
 {
   (void)state;
   counts_are(&two, 1, 4, 12);
+  counts_are(&once, 6, 0, 12);
   counts_are(&four, 9, 72, 144);
   counts_are(&flat, 2, 0, 7);
   counts_are(&row, 0, 0, 7);
@@ -422,10 +425,10 @@ static void nothing_is_left_out(const struct vg_lattice *l)
 
 static void regions_are_apart_and_complete(void **state)
 {
-  const struct vg_lattice *all[4] = { &two, &four, &flat, &row };
+  const struct vg_lattice *all[5] = { &two, &once, &four, &flat, &row };
 
   (void)state;
-  for (int k = 0; k < 4; k++) {
+  for (int k = 0; k < 5; k++) {
     walls_keep_apart(all[k]);
     nothing_is_left_out(all[k]);
   }

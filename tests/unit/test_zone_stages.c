@@ -155,6 +155,26 @@ static void a_lattice_around_a_sphere(void **state)
   scene_end(&s);
 }
 
+/* Planes that meet in the body: six segments at the same time. */
+static void all_lines_at_once(void **state)
+{
+  const struct vg_lattice l = { .n = {1, 1, 1}, .lines_at_once = 1,
+                                .at = {{0.2}, {-0.1}, {0.07}} };
+  size_t made[VG_LATTICE_STAGES];
+  struct scene s;
+
+  (void)state;
+  sphere_scene(&s);
+  assert_int_equal(vg_lattice_count(&l, 0), 6);
+  cut_by(&s, &l, made);
+  assert_true(made[0] > 0 && made[2] > 0);
+  assert_int_equal(made[1], 0);
+  parts_are(&s, 8);
+  assert_true(smallest_angle(&s.v, 0) > 5);
+  is_filled(&s);
+  scene_end(&s);
+}
+
 /* Where three lines meet, cells of tiles may need a corner beyond the walls;
  * a few are left out, and blocks hang together there. Whole planes without
  * walls, one after the other, close what is left. */
@@ -192,6 +212,7 @@ int main(void)
     cmocka_unit_test(a_pencil_and_four_tiles),
     cmocka_unit_test(a_lattice_in_a_box),
     cmocka_unit_test(a_lattice_around_a_sphere),
+    cmocka_unit_test(all_lines_at_once),
     cmocka_unit_test(planes_close_what_is_left),
   };
 
