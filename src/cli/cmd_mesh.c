@@ -178,7 +178,7 @@ static json_t *report_json(const struct run *r, int ok,
   json_object_set_new(o, "seconds", json_pack(
     "{s:f s:f s:f s:f s:f s:f s:f s:f s:f s:f}",
     "read", r->time_read, "check", r->time_check, "sizes", r->mesh.time_size,
-    "layers", r->mesh.time_layers, "fill", r->mesh.partition.wall,
+    "layers", r->mesh.time_layers, "fill", r->mesh.time_fill,
     "number", r->mesh.partition.number,
     "judge", r->mesh.time_judge, "write", r->time_write,
     "digest", r->time_digest, "total", vg_display_now() - r->start));
@@ -308,7 +308,7 @@ static void print_times(const struct run *r)
          r->time_read, r->time_check, r->mesh.time_size);
   if (r->layers.is_on) printf("layers %.2f, ", r->mesh.time_layers);
   printf("fill %.2f, number %.2f, judge %.2f, write %.2f, total %.2f\n",
-         r->mesh.partition.wall, r->mesh.partition.number,
+         r->mesh.time_fill, r->mesh.partition.number,
          r->mesh.time_judge, r->time_write, vg_display_now() - r->start);
   printf("Peak memory%s: %.0f MB\n",
          r->mesh.size > 1 ? " of a rank" : "", r->mesh.memory / 1e6);

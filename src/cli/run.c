@@ -217,6 +217,7 @@ static vg_status fill(struct vg_run *r, const struct vg_problem *p,
 {
   const struct vg_settings *s = &p->settings;
   struct vg_partition_options o = VG_PARTITION_OPTIONS_INIT;
+  double t = vg_display_now();
   vg_status st;
 
   o.rule.leaf_cells = s->levels ? 0 : (double)s->leaf_cells;
@@ -234,6 +235,7 @@ static vg_status fill(struct vg_run *r, const struct vg_problem *p,
   o.store = r->store;
   st = vg_partition_grow(r->comm, boundary, sizing, &o, &r->field,
                          &r->partition, &r->spans, err);
+  r->time_fill = vg_display_now() - t - r->partition.number;
   if (r->store) vg_store_state(r->store, &r->stored);
   if (st == VG_BLOCKED) st = say_stopped(r, err);
   if (st >= 0)

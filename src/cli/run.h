@@ -35,6 +35,7 @@ struct vg_run {
   struct vg_mesh_report judge, field_judge;  /* of all; with layers: of the
                                                  field */
   double time_size, time_layers, time_judge;
+  double time_fill;          /* cuts, leaves and repairs */
   double memory;             /* bytes, of the rank that needs most */
   double memory_sum;
 };
