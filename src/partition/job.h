@@ -39,16 +39,6 @@ void vg_front_put(struct vg_writer *w, const struct vg_front *f, int names);
 /** Sets r->bad, and leaves *f empty, where the data cannot be. */
 void vg_front_get(struct vg_reader *r, struct vg_front *f, int names);
 
-/** Parts of a front that share no edge, by their first face.
- * part out: [n_face] 0, 1, ...; n out: how many. O(n_face) expected. */
-vg_status vg_front_parts(const struct vg_front *f, uint32_t *part, size_t *n,
-                         struct vg_error *err);
-
-/** One front for each of n parts: out [n], with the points they use. */
-vg_status vg_front_split(const struct vg_front *f, const uint32_t *part,
-                         size_t n, struct vg_front *out,
-                         struct vg_error *err);
-
 /** Add the faces of `from`, and its points but those that are there already,
  * by their names, to a front. */
 vg_status vg_front_append(struct vg_front *to, const struct vg_front *from,
@@ -56,9 +46,6 @@ vg_status vg_front_append(struct vg_front *to, const struct vg_front *from,
 
 /** What a front encloses; negative for a shell around a body. */
 double vg_front_volume(const struct vg_front *f);
-
-/** Does a closed front enclose x? Exact; x not on it. */
-int vg_front_encloses(const struct vg_front *f, const double x[3]);
 
 /** What tasks that make cells leave on the rank that did them. */
 struct vg_piece {

@@ -1,8 +1,9 @@
 /* Fronts as tasks get them: their parts where voids touch, splitting and
- * joining, what they enclose, bytes and back. */
+ * joining, their volume, bytes and back. */
 #include "io_support.h"
 
 #include "fill_shapes.h"
+#include "front_parts.h"
 #include "base/bytes.h"
 #include "partition/job.h"
 #include "tets_support.h"
@@ -68,7 +69,7 @@ static uint32_t *parts_of(const struct vg_front *f, size_t *n)
   uint32_t *part = vg_alloc(f->n_face, sizeof *part), next = 0;
 
   assert_non_null(part);
-  assert_int_equal(vg_front_parts(f, part, n, NULL), VG_OK);
+  assert_int_equal(front_parts(f, part, n, NULL), VG_OK);
   for (size_t i = 0; i < f->n_face; i++) {     /* by their first faces */
     assert_true(part[i] <= next);
     next += part[i] == next;
@@ -180,7 +181,7 @@ static void no_front_has_no_parts(void **state)
   size_t n = 5;
 
   (void)state;
-  assert_int_equal(vg_front_parts(&f, NULL, &n, NULL), VG_OK);
+  assert_int_equal(front_parts(&f, NULL, &n, NULL), VG_OK);
   assert_int_equal(n, 0);
 }
 
@@ -259,7 +260,7 @@ static void split_and_join(struct vg_front f)
 
   out = vg_calloc(n, sizeof *out);
   assert_non_null(out);
-  assert_int_equal(vg_front_split(&f, part, n, out, NULL), VG_OK);
+  assert_int_equal(front_split(&f, part, n, out, NULL), VG_OK);
   for (size_t k = 0; k < n; k++) {
     is_part_of(&out[k], &f);
     assert_true(is_closed(&out[k]));
@@ -301,7 +302,7 @@ static void an_empty_part(void **state)
   (void)state;
   assert_non_null(part);
   for (size_t i = 0; i < f.n_face; i++) part[i] = 2 * (i > 5);
-  assert_int_equal(vg_front_split(&f, part, 3, out, NULL), VG_OK);
+  assert_int_equal(front_split(&f, part, 3, out, NULL), VG_OK);
   assert_int_equal(out[0].n_face, 6);
   assert_int_equal(out[1].n_face + out[1].n_point, 0);
   assert_int_equal(out[2].n_face, 6);
@@ -334,63 +335,6 @@ static void volumes(void **state)
   assert_true(fabs(vg_front_volume(&f) - 8e6) < 1e-5);
   vg_front_release(&f);
   vg_front_release(&g);
-}
-
-static int corner(const int at[3])
-{
-  return at[0] == 0 || at[1] == 0;
-}
-
-/* Points of a grid, so that rays along axes would meet edges and corners. */
-static void points_within(void **state)
-{
-  struct vg_front f = block(3, 3, 2, corner);
-
-  (void)state;
-  for (int i = -1; i < 8; i++)
-    for (int j = -1; j < 8; j++)
-      for (int k = -1; k < 6; k++) {
-        double x[3] = { 0.5 * i + 0.25, 0.5 * j + 0.25, 0.5 * k + 0.25 };
-        int in = x[0] > 0 && x[1] > 0 && x[2] > 0 && x[0] < 3 && x[1] < 3 &&
-                 x[2] < 2 && (x[0] < 1 || x[1] < 1);
-
-        assert_int_equal(vg_front_encloses(&f, x), in);
-      }
-  vg_front_release(&f);
-}
-
-/* A ring, tested against its surface within the error of its chords; as a
- * void, and turned inside out, as a body. */
-static void points_within_a_ring(void **state)
-{
-  struct vg_mesh m = VG_MESH_INIT;
-  struct vg_front f;
-  uint64_t seed = 4;
-  int count[2] = {0, 0};
-
-  (void)state;
-  shape_torus(&m, 48, 24, 2, 0.7);
-  f = front_of(&m);
-  for (int i = 0; i < 600; i++) {
-    double x[3], ring, off;
-
-    for (int k = 0; k < 3; k++)
-      x[k] = (k < 2 ? 6 : 2) * (tets_random(&seed) - 0.5);
-    ring = sqrt(x[0] * x[0] + x[1] * x[1]) - 2;
-    off = sqrt(ring * ring + x[2] * x[2]) - 0.7;
-    if (fabs(off) < 0.02) continue;
-    if (i == 300)
-      for (size_t k = 0; k < f.n_face; k++) {
-        uint32_t keep = f.face[k][0];
-
-        f.face[k][0] = f.face[k][1];
-        f.face[k][1] = keep;
-      }
-    assert_int_equal(vg_front_encloses(&f, x), off < 0);
-    count[off < 0]++;
-  }
-  assert_true(count[0] > 100 && count[1] > 100);
-  vg_front_release(&f);
 }
 
 /* --- bytes --------------------------------------------------------------- */
@@ -566,8 +510,6 @@ int main(void)
     cmocka_unit_test(parts_are_split_and_joined),
     cmocka_unit_test(an_empty_part),
     cmocka_unit_test(volumes),
-    cmocka_unit_test(points_within),
-    cmocka_unit_test(points_within_a_ring),
     cmocka_unit_test(fronts_as_bytes),
     cmocka_unit_test(several_in_a_row),
     cmocka_unit_test(changes_as_bytes),

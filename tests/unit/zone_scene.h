@@ -6,6 +6,7 @@
 #include "io_support.h"
 
 #include "fill_shapes.h"
+#include "front_parts.h"
 #include "partition/job.h"
 #include "zone_support.h"
 
@@ -117,7 +118,7 @@ static inline size_t parts_of(const struct vg_void *v, size_t *n_crumb)
   size_t n, large = 0, *size;
 
   assert_non_null(part);
-  assert_int_equal(vg_front_parts(&f, part, &n, NULL), VG_OK);
+  assert_int_equal(front_parts(&f, part, &n, NULL), VG_OK);
   size = vg_calloc(n, sizeof *size);
   assert_non_null(size);
   for (size_t i = 0; i < v->n_face; i++) {
