@@ -169,7 +169,8 @@ static json_t *report_json(const struct run *r, int ok,
                                             r->mesh.n_field_cell));
     json_object_set_new(o, "partition", vg_report_partition_json(&r->mesh));
     if (r->layers.is_on) {
-      json_object_set_new(o, "field", vg_report_mesh_json(&r->mesh.field_judge));
+      json_object_set_new(o, "field",
+                          vg_report_mesh_json(&r->mesh.field_judge));
       json_object_set_new(o, "layers",
                           vg_report_layers_json(&r->layers, &p->surface));
     }

@@ -178,7 +178,8 @@ static void print_tree(const struct vg_plan *p)
 
 static void print_row(const struct vg_plan_row *r)
 {
-  printf("  %5d %7d %7d %10.2f %9.2f %11.1f %10.2f %9.2f %10.3f %9.3f %5.1f %5.1f %9.0f\n",
+  printf("  %5d %7d %7d %10.2f %9.2f %11.1f %10.2f %9.2f %10.3f %9.3f %5.1f "
+         "%5.1f %9.0f\n",
          r->ranks, r->threads, r->ranks * r->threads, r->wall, r->speedup,
          100 * r->efficiency, r->tasks.wall, r->tasks.speedup,
          r->tasks.critical, r->tasks.cuts_wall, 100 * r->tasks.cuts,

@@ -66,7 +66,8 @@ static vg_status insert_all(struct vg_growth *g, const struct vg_placed *placed,
     st = insert_one(g, &s, placed->x[order[i]], nearest, &at, err);
     g->report->n_inserted += st == VG_OK;
     g->report->n_refused += st == VG_BLOCKED;
-    if (i % PROGRESS_STEP == 0 && vg_growth_stopped(g, "inserting", i, placed->n)) {
+    if (i % PROGRESS_STEP == 0 &&
+        vg_growth_stopped(g, "inserting", i, placed->n)) {
       vg_inserter_release(&s);
       return VG_BLOCKED;
     }

@@ -81,7 +81,8 @@ static void count_sources(void *context, size_t first, size_t end, int worker)
     const struct vg_bytes *from = &s->from[r];
 
     for (size_t i = 0; i < from->n; i += size)
-      s->at[r * s->n_bin + s->bin(s, vg_meet_hash(from->data + i, s->m->key))]++;
+      s->at[r * s->n_bin +
+            s->bin(s, vg_meet_hash(from->data + i, s->m->key))]++;
   }
 }
 

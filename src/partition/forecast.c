@@ -63,7 +63,7 @@ struct part {
 
 struct forecast {
   struct vg_outlook *out;
-  double n_handed, handed;   /* tasks since the last join, faces given to them */
+  double n_handed, handed;   /* tasks since the last join, faces they got */
   const struct vg_cut_rule *rule;
   const struct vg_rates *rates;
   struct vg_error *err;

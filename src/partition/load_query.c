@@ -312,7 +312,7 @@ double vg_load_quantile(const struct vg_load *l, int axis, double part)
   if (!(part < 1)) return a->edge[a->n];
   target = part * a->below[a->n];
   hi = a->n - 1;
-  while (lo < hi) {              /* first bin that ends at the target or later */
+  while (lo < hi) {          /* first bin that ends at the target or later */
     const size_t m = lo + (hi - lo) / 2;
 
     if (a->below[m + 1] < target) lo = m + 1;
