@@ -568,6 +568,7 @@ static void messages_come_back(void **state)
   assert_int_equal(vg_load_unpack(&bytes, &back, NULL), VG_ERR_FORMAT);
   assert_null(back.cube);
   free(bytes.data);
+  release_index(&l);
 }
 
 /* --- real surfaces ------------------------------------------------------- */
