@@ -2,11 +2,12 @@
 #ifndef VG_CORE_OPTIMISE_PARTS_H
 #define VG_CORE_OPTIMISE_PARTS_H
 
+#include "core/cavity.h"
 #include "core/optimise.h"
 #include "core/shape.h"
 
-enum { VG_BALL_MAX = 256, VG_SHELL_MAX = 10, VG_NEW_MAX = 64,
-       VG_OLD_MAX = 64 };
+enum { VG_BALL_MAX = 256, VG_SHELL_MAX = 10, VG_NEW_MAX = VG_CAVITY_MAX,
+       VG_OLD_MAX = VG_CAVITY_MAX };
 
 enum {                       /* what was tried in vain, until a change */
   VG_VAIN_SMOOTH = 1, VG_VAIN_MERGE = 2,   /* of a point */
@@ -56,14 +57,6 @@ static inline void vg_changed(struct vg_optimiser *o, uint32_t c)
 /** Collect the cells around point p in o->ball. 0 when there are more than
  * VG_BALL_MAX, or when the ball is cut by a fixed face. */
 int vg_ball(struct vg_optimiser *o, uint32_t p);
-
-/** The closed ring of cells around edge a b, starting at cell c.
- * cell, ring out: cell[k] holds a, b, ring[k], ring[k + 1], in an order such
- * that (ring[k], ring[k + 1], a, b) is positive.
- * Returns the number of cells; 0 when the edge is on a fixed face or at the
- * hull, or when there are more than VG_SHELL_MAX. */
-int vg_shell(const struct vg_tets *t, uint32_t c, uint32_t a, uint32_t b,
-             uint32_t *cell, uint32_t *ring);
 
 /** Replace n_old cells by n_new ones that fill the same cavity.
  * The first slots of old are reused; shapes, stars, links and fixed faces are

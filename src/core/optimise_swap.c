@@ -131,7 +131,7 @@ static int remove_edge(struct vg_optimiser *o, uint32_t c, int i, int j)
   r.t = o->t;
   r.a = o->t->cell[c].v[i];
   r.b = o->t->cell[c].v[j];
-  n = vg_shell(o->t, c, r.a, r.b, cell, r.ring);
+  n = vg_cavity_ring(o->t, c, r.a, r.b, VG_SHELL_MAX, 0, cell, r.ring);
   if (n < 3) return 0;
   worst = o->q[cell[0]];
   for (int k = 1; k < n; k++)

@@ -1,9 +1,8 @@
 #include "core/recover_flip.h"
 
 #include <limits.h>
-#include <string.h>
 
-#include "base/memory.h"
+#include "core/cavity.h"
 #include "core/shape.h"
 
 enum { NEW_MAX = 2 * VG_FLIP_RING };
@@ -23,98 +22,37 @@ struct change {              /* cells that go, cells that come */
 
 /* --- replacing cells ----------------------------------------------------- */
 
-struct rim {                 /* a face of the cavity, or a new one waiting */
-  uint32_t v[3], link;
-  uint8_t fixed, is_new;
-};
-
-static void sorted(const struct vg_cell *c, int i, uint32_t v[3])
-{
-  uint32_t a = c->v[vg_face[i][0]], b = c->v[vg_face[i][1]];
-  uint32_t d = c->v[vg_face[i][2]], keep;
-
-#define ORDER(x, y) if (x > y) { keep = x; x = y; y = keep; }
-  ORDER(a, b)
-  ORDER(b, d)
-  ORDER(a, b)
-#undef ORDER
-  v[0] = a;
-  v[1] = b;
-  v[2] = d;
-}
-
-static int collect_rim(const struct vg_tets *t, const struct change *g,
-                       struct rim *rim)
-{
-  int n = 0;
-
-  for (int k = 0; k < g->n_old; k++)
-    for (int i = 0; i < 4; i++) {
-      uint32_t link = t->cell[g->old[k]].link[i];
-
-      if (link != VG_NONE && t->flag[link >> 2] & VG_MARK) continue;
-      sorted(&t->cell[g->old[k]], i, rim[n].v);
-      rim[n].link = link;
-      rim[n].is_new = 0;
-      rim[n++].fixed = t->flag[g->old[k]] >> i & 1;
-    }
-  return n;
-}
-
-/* Link face i of new cell c with the rim or with another new cell. */
-static void link_face(struct vg_flipper *f, uint32_t c, uint32_t i,
-                      struct rim *rim, int *n)
+/* Triangles of the front among the faces between new cells are fixed. */
+static void fix_inside(struct vg_flipper *f, int n, const uint32_t *slot)
 {
   struct vg_tets *t = f->t;
-  uint32_t v[3];
 
-  sorted(&t->cell[c], (int)i, v);
-  for (int k = 0; k < *n; k++) {
-    struct rim *r = &rim[k];
+  for (int k = 0; k < n; k++) t->flag[slot[k]] |= VG_MARK;
+  for (int k = 0; k < n; k++)
+    for (int i = 0; i < 4; i++) {
+      uint32_t link = t->cell[slot[k]].link[i], v[3];
 
-    if (r->v[0] != v[0] || r->v[1] != v[1] || r->v[2] != v[2]) continue;
-    if (r->is_new && vg_flip_is_tri(&f->front, v)) {
-      r->fixed = 1;
-      t->flag[r->link >> 2] |= (uint8_t)(1 << (r->link & 3));
+      if (link == VG_NONE || !(t->flag[link >> 2] & VG_MARK)) continue;
+      vg_cavity_face(&t->cell[slot[k]], i, v);
+      if (vg_flip_is_tri(&f->front, v))
+        t->flag[slot[k]] |= (uint8_t)(1 << i);
     }
-    t->cell[c].link[i] = r->link;
-    if (r->link != VG_NONE)
-      t->cell[r->link >> 2].link[r->link & 3] = 4 * c + i;
-    if (r->fixed) t->flag[c] |= (uint8_t)(1 << i);
-    *r = rim[--*n];
-    return;
-  }
-  memcpy(rim[*n].v, v, sizeof v);
-  rim[*n].link = 4 * c + i;
-  rim[*n].is_new = 1;
-  rim[(*n)++].fixed = 0;
+  for (int k = 0; k < n; k++) t->flag[slot[k]] &= (uint8_t)~VG_MARK;
 }
 
 static int replace(struct vg_flipper *f, const struct change *g)
 {
-  struct vg_tets *t = f->t;
-  struct rim rim[4 * VG_FLIP_RING + 4 * NEW_MAX];
   uint32_t slot[NEW_MAX];
-  int n;
 
-  if (vg_tets_reserve_cells(t, (size_t)g->n_new) ||
-      vg_reserve(&t->free, &t->cap_free, t->n_free + (size_t)g->n_old,
-                 sizeof *t->free)) {
+  if (vg_cavity_reserve(f->t, g->n_old, g->n_new)) {
     f->refused = 1;
     return 0;
   }
-  for (int k = 0; k < g->n_old; k++) t->flag[g->old[k]] |= VG_MARK;
-  n = collect_rim(t, g, rim);
-  for (int k = 0; k < g->n_new; k++) {
-    uint32_t c = slot[k] = k < g->n_old ? g->old[k] : vg_tets_take(t);
-
-    memcpy(t->cell[c].v, g->v[k], sizeof t->cell[c].v);
-    t->flag[c] = 0;
-    for (int i = 0; i < 4; i++) f->star[g->v[k][i]] = c;
-  }
+  vg_cavity_refill(f->t, g->n_old, g->old, g->n_new,
+                   (const uint32_t (*)[4])g->v, slot);
   for (int k = 0; k < g->n_new; k++)
-    for (uint32_t i = 0; i < 4; i++) link_face(f, slot[k], i, rim, &n);
-  for (int k = g->n_new; k < g->n_old; k++) vg_tets_drop(t, g->old[k]);
+    for (int i = 0; i < 4; i++) f->star[g->v[k][i]] = slot[k];
+  fix_inside(f, g->n_new, slot);
   f->n_change++;
   return 1;
 }
@@ -160,54 +98,6 @@ int vg_flip_face(struct vg_flipper *f, uint32_t c, int i)
 }
 
 /* --- the ring around an edge --------------------------------------------- */
-
-/* Is (from, to, a, b) an odd order of the corners of cell c? */
-static int is_odd(const struct vg_cell *c, uint32_t from, uint32_t to,
-                  uint32_t a, uint32_t b)
-{
-  uint32_t want[4] = {from, to, a, b};
-  int place[4] = {0}, odd = 0;
-
-  for (int i = 0; i < 4; i++)
-    for (int j = 0; j < 4; j++)
-      if (c->v[j] == want[i]) place[i] = j;
-  for (int i = 0; i < 4; i++)
-    for (int j = i + 1; j < 4; j++) odd ^= place[i] > place[j];
-  return odd;
-}
-
-/* 0: at the hull, or too many cells. */
-static int open_ring(const struct vg_tets *t, uint32_t c, uint32_t a,
-                     uint32_t b, struct ring *r)
-{
-  uint32_t first = c, other[2], from, to;
-  int i, k = 0;
-
-  r->a = a;
-  r->b = b;
-  r->n = 0;
-  for (i = 0; i < 4; i++)
-    if (t->cell[c].v[i] != a && t->cell[c].v[i] != b)
-      other[k++] = t->cell[c].v[i];
-  k = is_odd(&t->cell[c], other[0], other[1], a, b);
-  from = other[k];
-  to = other[!k];
-  do {
-    const struct vg_cell *at = &t->cell[c];
-    uint32_t link;
-
-    if (r->n == VG_FLIP_RING) return 0;
-    r->cell[r->n] = c;
-    r->v[r->n++] = from;
-    for (i = 0; at->v[i] != from; i++) {}
-    link = at->link[i];
-    if (link == VG_NONE) return 0;
-    c = link >> 2;
-    from = to;
-    to = t->cell[c].v[link & 3];
-  } while (c != first);
-  return 1;
-}
 
 static int in_the_way(const struct vg_flipper *f, const struct ring *r)
 {
@@ -387,7 +277,7 @@ static int reduce_ring(struct vg_flipper *f, const struct ring *r,
 static int remove_edge(struct vg_flipper *f, uint32_t c,
                        const struct removal *m)
 {
-  struct ring r;
+  struct ring r = {.a = m->a, .b = m->b};
   struct plan p = {.f = f, .r = &r};
   struct change g = {.n_old = 0};
 
@@ -395,7 +285,8 @@ static int remove_edge(struct vg_flipper *f, uint32_t c,
       vg_flip_edge_at(&f->front, m->a, m->b) != VG_NONE)
     return 0;
   f->budget--;
-  if (!open_ring(f->t, c, m->a, m->b, &r)) return 0;
+  r.n = vg_cavity_ring(f->t, c, m->a, m->b, VG_FLIP_RING, 1, r.cell, r.v);
+  if (!r.n) return 0;
   if (m->ear != VG_NONE && !turn_ring(&r, m->ear)) return 0;
   p.most = in_the_way(f, &r) - m->gain;
   if (p.most >= 0 && make_plan(&p, m->ear != VG_NONE)) {
