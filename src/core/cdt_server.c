@@ -234,3 +234,11 @@ int vg_cdt_server_ask(void)
   vg_cdt_server_lives();     /* remembers it when the server died */
   return -1;
 }
+
+int vg_cdt_server_answers(void)
+{
+  int fd = vg_cdt_server_ask();
+
+  if (fd >= 0) close(fd);
+  return fd >= 0;
+}

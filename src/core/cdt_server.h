@@ -40,9 +40,15 @@ void vg_cdt_server_stop(void);
  * affinity of the calling thread. Threads: safe. */
 int vg_cdt_server_ask(void);
 
-/** 1 while the server lives; 0: none was started, or it died. A child that
- * is gone while this holds went by itself. Threads: safe. */
+/** 1 while the server lives; 0: none was started, or it died and was waited
+ * for. Threads: safe. */
 int vg_cdt_server_lives(void);
+
+/** 1 when the server has just given proof of life by a fresh child: then one
+ * that is gone went by itself. The socket of a server is no such proof, since
+ * it may stay open for a moment after its children were told of its end.
+ * Threads: safe. */
+int vg_cdt_server_answers(void);
 
 /** Make the calling process, just forked by `parent`, a child that shares
  * nothing with it but `fd`: no other files, default signals save those that

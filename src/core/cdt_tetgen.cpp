@@ -190,7 +190,7 @@ long run_child(size_t n_job, vg_cdt_job *job)
   if (fd < 0) return VG_ERR_MEMORY;
   while (done < n && ask(job[done], fd) && receive(job[done], fd)) done++;
   /* blame the job, unless the child was taken along by the server's end */
-  if (done < n && (pid || vg_cdt_server_lives())) done++;
+  if (done < n && (pid || vg_cdt_server_answers())) done++;
   shutdown(fd, SHUT_RDWR);
   close(fd);
   while (pid && waitpid(pid, nullptr, 0) < 0 && errno == EINTR) {
