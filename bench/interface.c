@@ -3,7 +3,8 @@
  *
  * CASE: a case of `vanguard demo` with about CELLS cells, or a file with a
  * closed surface, which is meshed as it is. It is filled in leaves of LEAF
- * cells; points whose cells were made by different tasks are on interfaces.
+ * cells; points that a zone made and that have cells of other tasks are on
+ * interfaces, before and after repairs.
  * One line each for all cells, for those within two rings of an interface
  * (repairs included), and for the others: number, smallest angle, first and
  * fifth hundredth and mean of the smallest dihedral angle, 99th hundredth of
@@ -22,7 +23,7 @@
 #include "io/format.h"
 #include "partition/advance.h"
 
-enum { BINS = 1800, N_SIZE = 400, REPAIR = 3 };
+enum { BINS = 1800, N_SIZE = 400, ZONE = 2, REPAIR = 3 };
 
 #define MIXED UINT32_MAX      /* of a point: cells of two tasks */
 #define NOBODY (UINT32_MAX - 1)
@@ -52,6 +53,7 @@ struct share {
 struct census {
   const struct vg_sizing *sizing;
   uint32_t *task;            /* [n_point] whose cells a point has */
+  uint8_t *is_zone;          /* [n_point] made by a zone */
   uint8_t *ring;             /* [n_point] rings from an interface, + 1 */
   int now;                   /* ring that is looked for */
   struct share all, near, rest;
@@ -66,6 +68,8 @@ static vg_status mark(void *context, const struct vg_slice *s,
   const uint32_t *v = s->cell[VG_SLICE_TET];
 
   (void)err;
+  for (size_t i = 0; i < s->n_own; i++)
+    k->is_zone[s->point_at + i] = s->kind == ZONE;
   for (size_t c = 0; c < 4 * s->n_cell[VG_SLICE_TET]; c++) {
     uint32_t *t = &k->task[s->id[v[c]]];
 
@@ -221,13 +225,14 @@ static void measure(const struct vg_slices *s, const struct vg_sizing *sizing)
   if (!k) exit(1);
   k->sizing = sizing;
   k->task = vg_alloc(s->n_point, sizeof *k->task);
+  k->is_zone = vg_calloc(s->n_point, 1);
   k->ring = vg_calloc(s->n_point, 1);
-  if (!k->task || !k->ring) exit(1);
+  if (!k->task || !k->is_zone || !k->ring) exit(1);
   k->all.least = k->near.least = k->rest.least = 180;
   for (size_t p = 0; p < s->n_point; p++) k->task[p] = NOBODY;
   must(vg_slices_each(s, 1, mark, k, &err), &err);
   for (size_t p = s->n_boundary_point; p < s->n_point; p++)
-    k->ring[p] = k->task[p] == MIXED;
+    k->ring[p] = k->is_zone[p] && k->task[p] == MIXED;
   k->now = 1;
   must(vg_slices_each(s, 1, widen, k, &err), &err);
   k->now = 2;
@@ -236,6 +241,7 @@ static void measure(const struct vg_slices *s, const struct vg_sizing *sizing)
   show("near", &k->near);
   show("other", &k->rest);
   free(k->task);
+  free(k->is_zone);
   free(k->ring);
   free(k);
 }
@@ -287,9 +293,12 @@ int main(int argc, char **argv)
   t0 = cpu();
   must(vg_partition_grow(NULL, &d.surface, sizing, &o, &p, &r, &spans, &err),
        &err);
-  printf("%s: %llu leaves, %.2f s cpu\nrepair %.3f s: %llu of %llu regions "
+  printf("%s: %llu leaves, %.2f s cpu\nacross interfaces %llu swaps, %llu "
+         "points moved\nrepair %.3f s: %llu of %llu regions "
          "better, %llu cells, %llu bad, %llu left, worst %.2f, %.2f left\n",
-         argv[1], (unsigned long long)r.n_leaf, cpu() - t0, r.repair,
+         argv[1], (unsigned long long)r.n_leaf, cpu() - t0,
+         (unsigned long long)r.n_repair_swapped,
+         (unsigned long long)r.n_repair_moved, r.repair,
          (unsigned long long)r.n_repaired, (unsigned long long)r.n_repair,
          (unsigned long long)r.n_repair_cell,
          (unsigned long long)r.n_repair_bad,

@@ -346,7 +346,7 @@ ROW
 }
 
 part_large() {
-  demo_project wing "$(cells 10000000)" "$work/input"
+  demo_project wing "$(cells 12000000)" "$work/input"
   once wing 1 "$(nproc)"
   figure "wing peak MB" "$(middle wing .peak_mb)" '<= 24576'
   say << ROW

@@ -99,6 +99,25 @@ static int is_loose_step(void)
          number("SLURM_STEP_NUM_TASKS") > 1;
 }
 
+/* Open MPI looks for networks, 0.2 s long, also where all ranks are on one
+ * node, as its mpirun tells. There it is asked for what it would end with:
+ * shared memory, and sockets where that is refused. What was asked of it
+ * otherwise counts. Of other launchers and libraries the variables are not
+ * known. */
+static void spare_networks(void)
+{
+  static const char *const asked[] = { "OMPI_MCA_pml", "OMPI_MCA_btl",
+                                       "OMPI_MCA_mtl" };
+
+  if (number("OMPI_COMM_WORLD_SIZE") < 1 ||
+      number("OMPI_COMM_WORLD_SIZE") != number("OMPI_COMM_WORLD_LOCAL_SIZE"))
+    return;
+  for (size_t i = 0; i < sizeof asked / sizeof *asked; i++)
+    if (getenv(asked[i])) return;
+  setenv(asked[0], "ob1", 0);
+  setenv(asked[1], "self,vader,tcp", 0);
+}
+
 static vg_status start(struct vg_comm *c, struct vg_error *err)
 {
   int is_up, is_over, level, rc;
@@ -109,6 +128,7 @@ static vg_status start(struct vg_comm *c, struct vg_error *err)
   rc = MPI_Initialized(&is_up);
   if (!rc && is_up) rc = MPI_Query_thread(&level);
   else if (!rc) {
+    spare_networks();
     rc = MPI_Init_thread(NULL, NULL, MPI_THREAD_MULTIPLE, &level);
     c->owns_mpi = !rc;
   }
@@ -151,6 +171,7 @@ static void leave(struct vg_comm *c)
   if (c->all != MPI_COMM_NULL) MPI_Comm_free(&c->all);
   if (c->owns_mpi) MPI_Finalize();
   vg_comm_messages_release(c);
+  vg_comm_bells_close(c);
   pthread_mutex_destroy(&c->lock);
   free(c->core);
   free(c);
@@ -191,6 +212,7 @@ vg_status vg_comm_open(struct vg_comm **out, struct vg_error *err)
   VG_TRY(join(c, err));
   VG_TRY(check_size(c, announced, err));
   VG_TRY(vg_comm_cores_open(c, err));
+  VG_TRY(vg_comm_bells_open(c, err));
   *out = c;
   return VG_OK;
 done:

@@ -62,6 +62,31 @@ vg_status vg_comm_bcast(struct vg_comm *c, int root, struct vg_bytes *b,
 vg_status vg_comm_node_bcast(struct vg_comm *c, struct vg_bytes *b,
                              struct vg_error *err);
 
+/** Bytes that the ranks of a node have in common, to be read. */
+struct vg_common { size_t n; const unsigned char *data; int is_mapped; };
+
+enum { VG_COMMON_ALIGN = 64 };
+
+/** From the beginning of a part of n bytes to the next one's. */
+static inline size_t vg_common_padded(size_t n)
+{
+  return (n + VG_COMMON_ALIGN - 1) / VG_COMMON_ALIGN * VG_COMMON_ALIGN;
+}
+
+/** The parts [n_part] of the first rank of a node on all of its ranks: one
+ * behind the other, each from a multiple of VG_COMMON_ALIGN on. One copy in
+ * memory that the ranks have in common, or one on each where the system
+ * refuses that. Elsewhere n_part and part are not looked at.
+ *
+ * @param out  vg_common_release; untouched on failure, which all ranks of the
+ *             node have. Local from then on: a rank may release it before
+ *             others do */
+vg_status vg_comm_node_common(struct vg_comm *c, size_t n_part,
+                              const struct vg_bytes *part,
+                              struct vg_common *out, struct vg_error *err);
+
+void vg_common_release(struct vg_common *b);
+
 /** Bytes of every rank on every rank, in order of ranks: out [size], each to
  * be freed by the caller. */
 vg_status vg_comm_allgather(struct vg_comm *c, const struct vg_bytes *mine,
@@ -108,5 +133,17 @@ vg_status vg_comm_post(struct vg_comm *c, int to, int kind,
  * while both sides poll. What is under way when the job is left is dropped. */
 vg_status vg_comm_poll(struct vg_comm *c, struct vg_message *m,
                        struct vg_error *err);
+
+/** A count that changes when a rank of this node has posted to this one, or a
+ * thread of this one has rung: to be taken before vg_comm_poll. Messages from
+ * other nodes do not ring. Not in a job without MPI. */
+unsigned vg_comm_bell(const struct vg_comm *c);
+
+/** Sleep so long, or until the bell has rung since it was heard; it may also
+ * return without either. One thread only. */
+void vg_comm_listen(struct vg_comm *c, unsigned heard, double seconds);
+
+/** Wake the thread that listens. Threads: safe. */
+void vg_comm_ring(struct vg_comm *c);
 
 #endif

@@ -4,6 +4,7 @@
 
 #include <mpi.h>
 #include <pthread.h>
+#include <stdatomic.h>
 
 #include "base/comm.h"
 
@@ -15,6 +16,7 @@ enum { VG_TAG_EXCHANGE = 1, VG_TAG_PART = 2 };
 
 enum { VG_ARRIVING = 64 };
 
+struct vg_bell;              /* comm_bell.c */
 struct vg_sent;              /* memory under way, until all requests are done */
 struct vg_queued;            /* a message to oneself */
 
@@ -30,8 +32,12 @@ struct vg_comm {
   MPI_Comm node;             /* ranks of this node */
   int rank, size, node_rank, node_size;
   int owns_mpi;              /* was started here */
+  int apart;                 /* ranks of a node have no memory in common */
   size_t chunk;              /* bytes that go in one call of MPI, <= INT_MAX */
   struct vg_cores_mask *core; /* [node_size], their binding when opened */
+  struct vg_common bells;    /* what holds the bells */
+  struct vg_bell *bell;      /* [node_size] */
+  int *bell_at;              /* [size] which is a rank's */
 
   pthread_mutex_t lock;      /* of what follows, to `received` */
   MPI_Request *request;      /* [n_request] of sends under way */
@@ -60,6 +66,18 @@ vg_status vg_comm_agree_in(const struct vg_comm *c, MPI_Comm comm,
 
 /** Gather the bindings of the ranks of the node. Collective. */
 vg_status vg_comm_cores_open(struct vg_comm *c, struct vg_error *err);
+
+/** vg_comm_node_common; writes: ranks may change it. */
+vg_status vg_comm_node_memory(struct vg_comm *c, size_t n_part,
+                              const struct vg_bytes *part, int writes,
+                              struct vg_common *out, struct vg_error *err);
+
+/** Bells of the node. Collective. */
+vg_status vg_comm_bells_open(struct vg_comm *c, struct vg_error *err);
+void vg_comm_bells_close(struct vg_comm *c);
+
+/** Ring that of another rank, if there is a way. Threads: safe. */
+void vg_comm_ring_at(struct vg_comm *c, int rank);
 
 /** Take and drop messages until none is under way. Collective. */
 void vg_comm_drain(struct vg_comm *c);

@@ -8,7 +8,7 @@
 #include "io/stream.h"
 
 enum { KEY_RANKS_PER_NODE = 300, KEY_LATENCY, KEY_BANDWIDTH, KEY_RATE,
-       KEY_SERIAL, KEY_ROAM, KEY_PLOT, KEY_TARGET, KEY_DEPTH };
+       KEY_SERIAL, KEY_ROAM, KEY_LOOPS, KEY_PLOT, KEY_TARGET, KEY_DEPTH };
 
 enum { DEPTH_MAX = 40 };
 
@@ -80,6 +80,10 @@ static error_t option(int key, char *arg, struct argp_state *state)
     return 0;
   case KEY_RATE: number("rate", arg, 1e-6, &o->machine.rate, state); return 0;
   case KEY_SERIAL: number("serial", arg, 0, &o->serial, state); return 0;
+  case KEY_LOOPS:
+    o->machine.loop_threads = whole("loop-threads", arg, 1,
+                                    VG_MODEL_WORKERS_MAX, state);
+    return 0;
   case KEY_ROAM: o->machine.joins_roam = 1; return 0;
   case 'L': key = vg_cli_option_key("levels"); break;
   case ARGP_KEY_ARG:
@@ -103,7 +107,9 @@ int vg_cmd_plan(int argc, char **argv)
       "--timeline' writes it", 1 },
     { "ranks", 'n', "LIST", 0, "numbers of ranks: 1,2,4 or 3:7 or 1:64:x2 "
       "[default 1:512:x2]", 1 },
-    { "threads", 't', "LIST", 0, "threads of each rank [default 1]", 1 },
+    { "threads", 't', "LIST", 0, "threads of each rank [default 1]; those "
+      "that are idle help with joins, so that a node's cores as one rank do "
+      "more than as ranks of one thread", 1 },
     { "ranks-per-node", KEY_RANKS_PER_NODE, "N", 0, "ranks that share a "
       "node: no latency between them [default 1]", 1 },
     { "latency", KEY_LATENCY, "S", 0, "seconds per message [default 2e-6]",
@@ -120,6 +126,8 @@ int vg_cmd_plan(int argc, char **argv)
       "and sizes took now]", 1 },
     { "joins-roam", KEY_ROAM, NULL, 0, "joins are done by any rank, not at "
       "their home", 1 },
+    { "loop-threads", KEY_LOOPS, "N", 0, "most threads that make loops of "
+      "joins faster, since they share the memory of a rank [default 16]", 1 },
     { "json", 'j', NULL, 0, "forecast as JSON on standard output, with "
       "the whole tree", 1 },
     { "depth", KEY_DEPTH, "N", 0, "levels of the tree of cuts that are shown "
@@ -137,8 +145,8 @@ int vg_cmd_plan(int argc, char **argv)
       "Tasks are simulated: who is idle takes the next one, cuts before "
       "fills, heavy ones first.\v"
       "Speed-up is against one worker of the same tasks; critical is the "
-      "longest chain of tasks that wait for each other, which no machine can "
-      "go below; cuts end is when the last cut has been made, cuts the share "
+      "longest chain of tasks that wait for each other, which no machine of "
+      "such ranks can go below; cuts end is when the last cut has been made, cuts the share "
       "of the work that cuts are, extra the share beyond what their cells "
       "would have taken in leaves." };
   struct vg_plan_options o = { .machine = VG_MACHINE_INIT, .serial = -1,

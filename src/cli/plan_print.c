@@ -224,8 +224,10 @@ void vg_plan_text(const struct vg_plan *p)
   for (size_t i = 0; i < notes->n; i++) printf("  note: %s\n", notes->text[i]);
   print_tree(p);
   printf("\nForecast: on one core %.2f s before the tasks, %.2f s of tasks, "
-         "%.2f s behind them\n  (shared by all workers but for %.2f s)\n",
-         p->serial, p->outlook.spans.wall, p->spread + p->digest, p->digest);
+         "%.2f s behind them\n  (shared by all workers but for %.2f s); of "
+         "the tasks %.2f s in loops of joins\n  that idle threads of a rank "
+         "help with\n", p->serial, p->outlook.spans.wall,
+         p->spread + p->digest, p->digest, vg_spans_loops(&p->outlook.spans));
   printf("  ranks threads workers       time  speed-up  efficiency      tasks "
          " speed-up   critical  cuts end  cuts extra    a rank\n");
   printf("                               s                     %%          s  "
@@ -337,9 +339,9 @@ vg_status vg_plan_json(const struct vg_plan *p, struct vg_error *err)
   json_object_set_new(o, "memory", json_pack("{s:f s:f s:f}", "shared",
     p->shared, "per_cell", p->per_cell, "per_thread", p->per_thread));
   json_object_set_new(o, "tree", tree_json(p));
-  json_object_set_new(o, "one_core", json_pack("{s:f s:f s:f s:f}", "before",
-    p->serial, "tasks", p->outlook.spans.wall, "spread", p->spread, "digest",
-    p->digest));
+  json_object_set_new(o, "one_core", json_pack("{s:f s:f s:f s:f s:f}",
+    "before", p->serial, "tasks", p->outlook.spans.wall, "loops",
+    vg_spans_loops(&p->outlook.spans), "spread", p->spread, "digest", p->digest));
   for (size_t i = 0; i < p->n_row; i++)
     json_array_append_new(rows, row_json(&p->row[i]));
   json_object_set_new(o, "forecast", rows);

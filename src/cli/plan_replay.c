@@ -79,6 +79,8 @@ static void print_text(const struct plan *p)
          (int)s->n_thread, s->n_thread > 1 ? "s" : "", s->n,
          vg_cli_count((unsigned long long)p->t.n_cell, cells), s->wall,
          p->machine.serial);
+  printf("  in loops of joins that idle threads of a rank help with: %.3f s\n",
+         vg_spans_loops(s));
   printf("  the same machine replayed: %.3f s, measured %.3f s (%+.1f %%)\n",
          p->recorded.f.wall, p->measured, error_percent(p));
   printf("\nForecast\n  ranks threads workers       time  speed-up  "
@@ -119,10 +121,12 @@ static vg_status print_json(const struct plan *p, struct vg_error *err)
   json_object_set_new(o, "record", vg_report_string(p->o->replay));
   json_object_set_new(o, "tasks", json_integer((json_int_t)p->t.spans.n));
   json_object_set_new(o, "serial", json_real(p->machine.serial));
-  json_object_set_new(o, "machine", json_pack("{s:i s:f s:f s:f s:b}",
+  json_object_set_new(o, "loops", json_real(vg_spans_loops(&p->t.spans)));
+  json_object_set_new(o, "machine", json_pack("{s:i s:f s:f s:f s:b s:i}",
     "ranks_per_node", p->machine.ranks_per_node, "latency",
     p->machine.latency, "bandwidth", p->machine.bandwidth, "rate",
-    p->machine.rate, "joins_roam", p->machine.joins_roam));
+    p->machine.rate, "joins_roam", p->machine.joins_roam, "loop_threads",
+    p->machine.loop_threads));
   json_object_set_new(o, "recorded", json_pack("{s:i s:i s:f s:f s:f}",
     "ranks", p->recorded.ranks, "threads", p->recorded.threads, "measured",
     p->measured, "replayed", p->recorded.f.wall, "error_percent",

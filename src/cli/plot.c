@@ -16,18 +16,27 @@
 #define LANES_HEIGHT_MAX 1400.0
 #define N_BIN 30
 
+/* Workers in loops of another one's task: joins only have any. */
+#define HELP 'h'
+
 static const struct { char kind; const char *name, *colour; } kinds[] = {
   { VG_SPAN_JOIN, "join", VG_SVG_RED },
   { VG_SPAN_PENCIL, "pencil", VG_SVG_BLUE },
   { VG_SPAN_TILE, "tile", VG_SVG_SKY },
   { VG_SPAN_LEAF, "leaf", VG_SVG_ORANGE },
   { VG_SPAN_REPAIR, "repair", VG_SVG_PURPLE },
+  { HELP, "help", VG_SVG_YELLOW },
   { 0, "other", VG_SVG_GREY },
 };
 #define N_KIND (sizeof kinds / sizeof *kinds)
 
+/* A worker busy: with a task or in help. */
+struct mark { size_t kind, lane; double start, end; };
+
 struct lanes {
   const struct vg_timeline *t;
+  size_t n_mark;
+  struct mark *mark;         /* [n_mark] in lanes that exist */
   size_t n;                  /* workers */
   double offset, end;        /* s: the engine's start; all */
   double top, height;        /* of one lane */
@@ -43,12 +52,32 @@ static size_t kind_of(char kind)
 }
 
 /* A record may come from a test or another program: workers are checked. */
-static size_t lane_of(const struct lanes *l, const struct vg_span *s)
+static void add_mark(struct lanes *l, char kind, int rank, int thread,
+                     double start, double end)
 {
-  return (size_t)s->rank * (size_t)l->t->spans.n_thread + (size_t)s->thread;
+  size_t lane = (size_t)rank * (size_t)l->t->spans.n_thread + (size_t)thread;
+
+  if (lane >= l->n) return;
+  l->mark[l->n_mark++] = (struct mark){ kind_of(kind), lane, start, end };
 }
 
-static void measure(const struct vg_timeline *t, struct lanes *l)
+static vg_status add_marks(struct lanes *l, struct vg_error *err)
+{
+  const struct vg_spans *s = &l->t->spans;
+
+  l->mark = vg_alloc(s->n + s->n_help, sizeof *l->mark);
+  if (!l->mark) return vg_fail_memory(err, "a figure");
+  for (size_t i = 0; i < s->n; i++)
+    add_mark(l, s->span[i].kind, s->span[i].rank, s->span[i].thread,
+             s->span[i].start, s->span[i].end);
+  for (size_t i = 0; i < s->n_help; i++)
+    add_mark(l, HELP, s->help[i].rank, s->help[i].thread, s->help[i].start,
+             s->help[i].end);
+  return VG_OK;
+}
+
+static vg_status measure(const struct vg_timeline *t, struct lanes *l,
+                         struct vg_error *err)
 {
   const struct vg_spans *s = &t->spans;
   double after = 0, last = s->wall;
@@ -70,6 +99,7 @@ static void measure(const struct vg_timeline *t, struct lanes *l)
   l->axis = vg_axis_linear(l->end, 9, LEFT, RIGHT);
   /* Nothing comes behind the end: the axis need not reach its last tick. */
   l->axis.hi = l->end;
+  return add_marks(l, err);
 }
 
 /* Stages outside of the engine, all ranks' lanes at once. */
@@ -96,21 +126,20 @@ static void draw_stages(struct vg_svg *svg, const struct lanes *l)
 
 static void draw_tasks(struct vg_svg *svg, const struct lanes *l)
 {
-  const struct vg_spans *s = &l->t->spans;
   double gap = l->height > 8 ? 2 : l->height > 4 ? 1 : 0;
 
   for (size_t k = 0; k < N_KIND; k++) {
     int any = 0;
 
-    for (size_t i = 0; i < s->n; i++) {
-      const struct vg_span *one = &s->span[i];
+    for (size_t i = 0; i < l->n_mark; i++) {
+      const struct mark *one = &l->mark[i];
       double x = vg_axis_at(&l->axis, l->offset + one->start);
       double w = vg_axis_at(&l->axis, l->offset + one->end) - x;
 
-      if (kind_of(one->kind) != k || lane_of(l, one) >= l->n) continue;
+      if (one->kind != k) continue;
       if (!any++)
         vg_svg_boxes_begin(svg, kinds[k].colour, gap ? 0.3 : 0);
-      vg_svg_box(svg, x, l->top + l->height * (double)lane_of(l, one) + gap,
+      vg_svg_box(svg, x, l->top + l->height * (double)one->lane + gap,
                  w > 0.2 ? w : 0.2, l->height - 2 * gap);
     }
     if (any) vg_svg_boxes_end(svg);
@@ -135,9 +164,8 @@ static vg_status draw_names(struct vg_svg *svg, const struct lanes *l,
   char text[64];
 
   if (!busy) return vg_fail_memory(err, "a figure");
-  for (size_t i = 0; i < s->n; i++)
-    if (lane_of(l, &s->span[i]) < l->n)
-      busy[lane_of(l, &s->span[i])] += s->span[i].end - s->span[i].start;
+  for (size_t i = 0; i < l->n_mark; i++)
+    busy[l->mark[i].lane] += l->mark[i].end - l->mark[i].start;
   if (every > 1 && s->n_thread > 1)
     every = (every + (size_t)s->n_thread - 1) / (size_t)s->n_thread *
       (size_t)s->n_thread;
@@ -161,16 +189,16 @@ static vg_status draw_names(struct vg_svg *svg, const struct lanes *l,
   return VG_OK;
 }
 
-static void draw_keys(struct vg_svg *svg, const struct vg_timeline *t)
+static void draw_keys(struct vg_svg *svg, const struct lanes *l)
 {
   double time[N_KIND] = { 0 }, sum = 0, x = LEFT;
   char text[64];
 
-  for (size_t i = 0; i < t->spans.n; i++) {
-    const struct vg_span *s = &t->spans.span[i];
+  for (size_t i = 0; i < l->n_mark; i++) {
+    double took = l->mark[i].end - l->mark[i].start;
 
-    time[kind_of(s->kind)] += s->end - s->start;
-    sum += s->end - s->start;
+    time[l->mark[i].kind] += took;
+    sum += took;
   }
   for (size_t k = 0; k < N_KIND; k++) {
     if (!(time[k] > 0)) continue;
@@ -201,7 +229,7 @@ vg_status vg_plot_timeline(const char *path, const struct vg_timeline *t,
   double bottom;
   vg_status st;
 
-  measure(t, &l);
+  VG_TRY(measure(t, &l, err));
   bottom = l.top + l.height * (double)l.n;
   snprintf(subtitle, sizeof subtitle, "%d ranks x %d threads, %s cells, %zu "
            "tasks; cut and fill %s s, workers %d %% busy, imbalance %s",
@@ -212,13 +240,14 @@ vg_status vg_plot_timeline(const char *path, const struct vg_timeline *t,
            two_decimals(vg_spans_imbalance(&t->spans), imbalance));
   VG_TRY(vg_svg_open(path, WIDTH, bottom + 48, t->title, subtitle, &svg,
                      err));
-  draw_keys(&svg, t);
+  draw_keys(&svg, &l);
   draw_stages(&svg, &l);
   vg_axis_draw_x(&svg, &l.axis, bottom, l.top, "seconds");
   draw_tasks(&svg, &l);
   VG_TRY(draw_names(&svg, &l, err));
   VG_TRY(vg_svg_close(&svg, err));
 done:
+  free(l.mark);
   vg_svg_release(&svg);
   return st;
 }

@@ -92,7 +92,10 @@ void vg_report_partition_text(FILE *to, const struct vg_run *r)
             "again %s, left large %llu\n", vg_cli_count(p->n_blocked, a),
             vg_cli_count(p->n_retry, b), vg_cli_count(p->n_outgrown, c),
             (unsigned long long)p->n_uncut);
-  fprintf(to, "  repaired across interfaces: %s of %s regions, %.2f s\n",
+  fprintf(to, "  across interfaces: points moved %s times, %s swaps; ",
+          vg_cli_count(p->n_repair_moved, a),
+          vg_cli_count(p->n_repair_swapped, b));
+  fprintf(to, "repaired %s of %s regions, %.2f s\n",
           vg_cli_count(p->n_repaired, a), vg_cli_count(p->n_repair, b),
           p->repair);
   fprintf(to, "  workers busy %.1f %%, imbalance %.3f (most over mean)\n",
@@ -123,6 +126,8 @@ json_t *vg_report_partition_json(const struct vg_run *r)
     { "tasks_found", p->n_found }, { "regions_bad", p->n_repair },
     { "regions_repaired", p->n_repaired },
     { "cells_in_regions", p->n_repair_cell },
+    { "points_moved_across", p->n_repair_moved },
+    { "swaps_across", p->n_repair_swapped },
   };
   json_t *o = json_object(), *leaves = json_array();
 

@@ -30,6 +30,7 @@ vg_status vg_run_memory(struct vg_run *r, struct vg_error *err)
   vg_status st;
 
   r->memory = (double)sum;
+  if (vg_comm_node_rank(r->comm)) sum -= sum < r->common ? sum : r->common;
   st = vg_comm_max(r->comm, 1, &r->memory, err);
   if (st >= 0) st = vg_comm_sum(r->comm, 1, &sum, err);
   r->memory_sum = (double)sum;
@@ -102,21 +103,19 @@ static vg_status share_with_node(struct vg_run *r, vg_status st,
                                  struct vg_error *err)
 {
   int makes = leads_node(r) && vg_comm_node_size(r->comm) > 1;
-  struct vg_bytes size = {0, NULL}, layer = {0, NULL};
+  struct vg_bytes layer = {0, NULL};
 
-  if (st >= 0 && makes) st = vg_sizing_pack(*sizing, &size, err);
   if (st >= 0 && makes && layers) st = vg_layers_pack(layers, &layer, err);
   VG_TRY(vg_comm_agree(r->comm, st, err));
-  VG_TRY(vg_comm_node_bcast(r->comm, &size, err));
-  if (!leads_node(r)) st = vg_sizing_unpack(&size, sizing, err);
+  st = vg_sizing_share(r->comm, sizing, err);
   VG_TRY(vg_comm_agree(r->comm, st, err));
-  if (layers) VG_TRY(vg_comm_node_bcast(r->comm, &layer, err));
-  if (layers && !leads_node(r))
+  r->common = vg_sizing_common(*sizing);
+  if (layers) st = vg_comm_node_bcast(r->comm, &layer, err);
+  if (st >= 0 && layers && !leads_node(r))
     st = vg_layers_unpack(&layer, surface, layers, err);
   if (st >= 0) st = vg_run_stopped(err);
   st = vg_comm_agree(r->comm, st, err);
 done:
-  free(size.data);
   free(layer.data);
   return st;
 }

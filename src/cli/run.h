@@ -36,8 +36,9 @@ struct vg_run {
                                                  field */
   double time_size, time_layers, time_judge;
   double time_fill;          /* cuts, leaves and repairs */
+  size_t common;             /* bytes of sizes, one copy on the node */
   double memory;             /* bytes, of the rank that needs most */
-  double memory_sum;
+  double memory_sum;         /* of all, what a node has in common once */
 };
 
 /** VG_ERR_IO once the user or the system asked to stop. */

@@ -134,12 +134,12 @@ vg_status vg_surface_examine(struct vg_mesh *m,
     inside = has_nested_shells(r);
     if (!inside) VG_TRY(is_whole_domain(m, r, notes, &inside, err));
   }
-  if (inside) {
+  if (inside && !(o.repair && vg_surface_turn(m, r))) {
     o.external = 0;
     vg_surface_report_release(r);
     VG_TRY(vg_surface_check(m, &o, r, err));
   }
-  *external = o.external;
+  *external = o.external && !inside;
 done:
   return st;
 }

@@ -9,17 +9,26 @@
 #include "io/stream.h"
 
 #define SECONDS_MAX 1e9
+#define ROUNDED 2e-6             /* twice half of what times are kept to */
 #define COUNT_MAX ((json_int_t)1 << 53)   /* integers that a double holds */
 
 enum column {
   COLUMN_PATH, COLUMN_AFTER, COLUMN_KIND, COLUMN_RANK, COLUMN_THREAD,
   COLUMN_HOME, COLUMN_START, COLUMN_END, COLUMN_CPU, COLUMN_ESTIMATE,
-  COLUMN_CELLS, COLUMN_BYTES_IN, COLUMN_BYTES_OUT, COLUMN_N
+  COLUMN_CELLS, COLUMN_BYTES_IN, COLUMN_BYTES_OUT, COLUMN_LOOPS, COLUMN_N
+};
+
+enum help_column {
+  HELP_PATH, HELP_RANK, HELP_THREAD, HELP_START, HELP_END, HELP_N
 };
 
 static const char *const columns[COLUMN_N] = {
   "path", "after", "kind", "rank", "thread", "home", "start", "end", "cpu",
-  "estimate", "cells", "bytes_in", "bytes_out"
+  "estimate", "cells", "bytes_in", "bytes_out", "loops"
+};
+
+static const char *const help_columns[HELP_N] = {
+  "path", "rank", "thread", "start", "end"
 };
 
 /* The keys of phases in the facts. */
@@ -79,10 +88,17 @@ static void put_facts(struct vg_output *out, const struct vg_timeline *t)
     vg_output_format(out, ",%s\"%s\": ", i % 4 ? " " : "\n ", phases[i].key);
     put_seconds(out, i == VG_PHASE_ENGINE ? t->spans.wall : t->seconds[i]);
   }
-  vg_output_text(out, "},\n\"columns\": [");
-  for (int i = 0; i < COLUMN_N; i++)
-    vg_output_format(out, "%s\"%s\"", i ? ", " : "", columns[i]);
-  vg_output_text(out, "],\n\"spans\": [");
+  vg_output_text(out, "},\n");
+}
+
+/* Names of columns, and the beginning of the rows. */
+static void put_head(struct vg_output *out, const char *before, int n,
+                     const char *const *name, const char *rows)
+{
+  vg_output_format(out, "\"%scolumns\": [", before);
+  for (int i = 0; i < n; i++)
+    vg_output_format(out, "%s\"%s\"", i ? ", " : "", name[i]);
+  vg_output_format(out, "],\n\"%s\": [", rows);
 }
 
 static void put_span(struct vg_output *out, const struct vg_span *s)
@@ -104,9 +120,22 @@ static void put_span(struct vg_output *out, const struct vg_span *s)
   put_seconds(out, s->cpu);
   vg_output_text(out, ",");
   vg_output_real(out, isfinite(s->estimate) ? floor(s->estimate + 0.5) : 0);
-  vg_output_format(out, ",%llu,%llu,%llu]", (unsigned long long)s->n_cell,
+  vg_output_format(out, ",%llu,%llu,%llu,", (unsigned long long)s->n_cell,
                    (unsigned long long)s->bytes_in,
                    (unsigned long long)s->bytes_out);
+  put_seconds(out, s->loops);
+  vg_output_text(out, "]");
+}
+
+static void put_help(struct vg_output *out, const struct vg_help *h)
+{
+  vg_output_text(out, "[");
+  put_string(out, h->path);
+  vg_output_format(out, ",%d,%d,", (int)h->rank, (int)h->thread);
+  put_seconds(out, h->start);
+  vg_output_text(out, ",");
+  put_seconds(out, h->end);
+  vg_output_text(out, "]");
 }
 
 vg_status vg_timeline_write(const char *path, const struct vg_timeline *t,
@@ -117,9 +146,16 @@ vg_status vg_timeline_write(const char *path, const struct vg_timeline *t,
 
   VG_TRY(vg_output_open(path, &out, err));
   put_facts(&out, t);
+  put_head(&out, "", COLUMN_N, columns, "spans");
   for (size_t i = 0; i < t->spans.n; i++) {
     vg_output_text(&out, i ? ",\n" : "\n");
     put_span(&out, &t->spans.span[i]);
+  }
+  vg_output_text(&out, "\n],\n");
+  put_head(&out, "help_", HELP_N, help_columns, "help");
+  for (size_t i = 0; i < t->spans.n_help; i++) {
+    vg_output_text(&out, i ? ",\n" : "\n");
+    put_help(&out, &t->spans.help[i]);
   }
   vg_output_text(&out, "\n]}\n");
   VG_TRY(vg_output_commit(&out, err));
@@ -130,17 +166,22 @@ done:
 
 /* --- reading ------------------------------------------------------------- */
 
-/* Where in the file a value is, for messages. */
-struct place { const char *name; size_t span; const char *path; };
+/* Where in the file a value is, for messages: of span or help `number`, of a
+ * fact where that is 0. */
+struct place {
+  const char *name, *list;
+  size_t number;
+  const char *path;
+};
 
 static vg_status bad_value(const struct place *at, const char *what,
                            const char *wanted, struct vg_error *err)
 {
-  if (!at->span)
+  if (!at->number)
     return vg_fail(err, VG_ERR_FORMAT, "%s: fact \"%s\" is not %s", at->name,
                    what, wanted);
-  return vg_fail(err, VG_ERR_FORMAT, "%s: span %zu%s%s: \"%s\" is not %s",
-                 at->name, at->span, at->path ? ", task " : "",
+  return vg_fail(err, VG_ERR_FORMAT, "%s: %s %zu%s%s: \"%s\" is not %s",
+                 at->name, at->list, at->number, at->path ? ", task " : "",
                  at->path ? at->path : "", what, wanted);
 }
 
@@ -190,7 +231,7 @@ static vg_status get_facts(const char *name, const json_t *root,
                            struct vg_timeline *t, struct vg_error *err)
 {
   const json_t *facts = json_object_get(root, "facts"), *o;
-  struct place at = { name, 0, NULL };
+  struct place at = { .name = name };
   uint64_t ranks, threads;
   vg_status st = VG_OK;
 
@@ -224,44 +265,97 @@ done:
   return st;
 }
 
-/* In which place of a row each column is. */
+/* In which place of a row each column is; the last n - n_must may be absent:
+ * SIZE_MAX. */
 static vg_status get_columns(const char *name, const json_t *root,
-                             size_t place[COLUMN_N], struct vg_error *err)
+                             const char *key, int n, int n_must,
+                             const char *const *column, size_t *place,
+                             struct vg_error *err)
 {
-  const json_t *list = json_object_get(root, "columns");
+  const json_t *list = json_object_get(root, key);
 
-  for (int c = 0; c < COLUMN_N; c++) {
-    size_t i, n = json_array_size(list);
+  for (int c = 0; c < n; c++) {
+    size_t i, n_word = json_array_size(list);
 
-    for (i = 0; i < n; i++) {
+    for (i = 0; i < n_word; i++) {
       const char *word = json_string_value(json_array_get(list, i));
 
-      if (word && !strcmp(word, columns[c])) break;
+      if (word && !strcmp(word, column[c])) break;
     }
-    if (i == n)
-      return vg_fail(err, VG_ERR_FORMAT, "%s: no column \"%s\" in "
-                     "\"columns\"", name, columns[c]);
-    place[c] = i;
+    if (i == n_word && c < n_must)
+      return vg_fail(err, VG_ERR_FORMAT, "%s: no column \"%s\" in \"%s\"",
+                     name, column[c], key);
+    place[c] = i < n_word ? i : SIZE_MAX;
   }
   return VG_OK;
+}
+
+/* The values of a row by column; NULL for one that is absent. */
+static vg_status get_row(const struct place *at, const json_t *row, int n,
+                         const char *const *column, const size_t *place,
+                         const char *key, json_t **v, struct vg_error *err)
+{
+  for (int c = 0; c < n; c++) {
+    v[c] = place[c] == SIZE_MAX ? NULL : json_array_get(row, place[c]);
+    if (!v[c] && place[c] != SIZE_MAX)
+      return vg_fail(err, VG_ERR_FORMAT, "%s: %s %zu has no \"%s\": it is "
+                     "not a list as long as \"%s\"", at->name, at->list,
+                     at->number, column[c], key);
+  }
+  return VG_OK;
+}
+
+static vg_status get_times(const struct place *at, const json_t *start,
+                           const json_t *end, double *from, double *to,
+                           struct vg_error *err)
+{
+  vg_status st;
+
+  VG_TRY(get_real(at, start, "start", SECONDS_MAX, from, err));
+  VG_TRY(get_real(at, end, "end", SECONDS_MAX, to, err));
+  if (*to < *from) st = bad_value(at, "end", "after \"start\"", err);
+done:
+  return st;
+}
+
+static vg_status get_worker(const struct place *at, const json_t *rank,
+                            const json_t *thread, const struct vg_spans *all,
+                            int32_t out[2], struct vg_error *err)
+{
+  uint64_t r = 0, t = 0;
+  vg_status st;
+
+  VG_TRY(get_count(at, rank, "rank", all->n_rank - 1, &r, err));
+  VG_TRY(get_count(at, thread, "thread", all->n_thread - 1, &t, err));
+  out[0] = (int32_t)r;
+  out[1] = (int32_t)t;
+done:
+  return st;
+}
+
+static vg_status get_path(const struct place *at, const json_t *o,
+                          char path[VG_PATH_MAX], struct vg_error *err)
+{
+  vg_status st = get_text(at, o, "path", VG_PATH_MAX, path, err);
+
+  return !st && !path[0] ? bad_value(at, "path", "of any length", err) : st;
 }
 
 static vg_status get_numbers(const struct place *at, json_t *const *v,
                              const struct vg_spans *all, struct vg_span *s,
                              struct vg_error *err)
 {
-  uint64_t rank = 0, thread = 0, home = 0;
+  uint64_t home = 0;
+  int32_t who[2];
   vg_status st;
 
-  VG_TRY(get_count(at, v[COLUMN_RANK], "rank", all->n_rank - 1, &rank, err));
-  VG_TRY(get_count(at, v[COLUMN_THREAD], "thread", all->n_thread - 1, &thread,
-                   err));
+  VG_TRY(get_worker(at, v[COLUMN_RANK], v[COLUMN_THREAD], all, who, err));
   VG_TRY(get_count(at, v[COLUMN_HOME], "home", all->n_rank - 1, &home, err));
-  s->rank = (int32_t)rank;
-  s->thread = (int32_t)thread;
+  s->rank = who[0];
+  s->thread = who[1];
   s->home = (int32_t)home;
-  VG_TRY(get_real(at, v[COLUMN_START], "start", SECONDS_MAX, &s->start, err));
-  VG_TRY(get_real(at, v[COLUMN_END], "end", SECONDS_MAX, &s->end, err));
+  VG_TRY(get_times(at, v[COLUMN_START], v[COLUMN_END], &s->start, &s->end,
+                   err));
   VG_TRY(get_real(at, v[COLUMN_CPU], "cpu", SECONDS_MAX, &s->cpu, err));
   VG_TRY(get_real(at, v[COLUMN_ESTIMATE], "estimate", 1e15, &s->estimate,
                   err));
@@ -270,8 +364,10 @@ static vg_status get_numbers(const struct place *at, json_t *const *v,
                    &s->bytes_in, err));
   VG_TRY(get_count(at, v[COLUMN_BYTES_OUT], "bytes_out", COUNT_MAX,
                    &s->bytes_out, err));
-  if (s->end < s->start)
-    st = bad_value(at, "end", "after \"start\"", err);
+  if (!v[COLUMN_LOOPS]) goto done;
+  VG_TRY(get_real(at, v[COLUMN_LOOPS], "loops", SECONDS_MAX, &s->loops, err));
+  if (s->loops > s->cpu + ROUNDED)
+    st = bad_value(at, "loops", "within \"cpu\"", err);
 done:
   return st;
 }
@@ -281,20 +377,13 @@ static vg_status get_span(struct place *at, const json_t *row,
                           const struct vg_spans *all, struct vg_span *s,
                           struct vg_error *err)
 {
-  json_t *v[COLUMN_N];
+  json_t *v[COLUMN_N] = { NULL };
   char kind[2];
   vg_status st;
 
   memset(s, 0, sizeof *s);
-  for (int c = 0; c < COLUMN_N; c++) {
-    v[c] = json_array_get(row, place[c]);
-    if (!v[c])
-      return vg_fail(err, VG_ERR_FORMAT, "%s: span %zu has no \"%s\": it is "
-                     "not a list as long as \"columns\"", at->name, at->span,
-                     columns[c]);
-  }
-  VG_TRY(get_text(at, v[COLUMN_PATH], "path", sizeof s->path, s->path, err));
-  if (!s->path[0]) return bad_value(at, "path", "of any length", err);
+  VG_TRY(get_row(at, row, COLUMN_N, columns, place, "columns", v, err));
+  VG_TRY(get_path(at, v[COLUMN_PATH], s->path, err));
   at->path = s->path;
   VG_TRY(get_text(at, v[COLUMN_AFTER], "after", sizeof s->after, s->after,
                   err));
@@ -314,17 +403,49 @@ static vg_status get_spans(const char *name, const json_t *root,
   size_t place[COLUMN_N];
   vg_status st;
 
-  VG_TRY(get_columns(name, root, place, err));
+  VG_TRY(get_columns(name, root, "columns", COLUMN_N, COLUMN_LOOPS, columns,
+                     place, err));
   if (!json_is_array(list))
     return vg_fail(err, VG_ERR_FORMAT, "%s: \"spans\" is missing", name);
   for (size_t i = 0; i < json_array_size(list); i++) {
-    struct place at = { name, i + 1, NULL };
+    struct place at = { name, "span", i + 1, NULL };
     struct vg_span span;
 
     VG_TRY(get_span(&at, json_array_get(list, i), place, out, &span, err));
     VG_TRY(vg_spans_add(out, &span, err));
   }
-  vg_spans_sort(out);
+done:
+  return st;
+}
+
+/* Records of earlier versions have none. */
+static vg_status get_helps(const char *name, const json_t *root,
+                           struct vg_spans *out, struct vg_error *err)
+{
+  const json_t *list = json_object_get(root, "help");
+  size_t place[HELP_N];
+  vg_status st = VG_OK;
+
+  if (!json_array_size(list)) return VG_OK;
+  VG_TRY(get_columns(name, root, "help_columns", HELP_N, HELP_N, help_columns,
+                     place, err));
+  for (size_t i = 0; i < json_array_size(list); i++) {
+    struct place at = { name, "help", i + 1, NULL };
+    struct vg_help h;
+    json_t *v[HELP_N] = { NULL };
+    int32_t who[2];
+
+    memset(&h, 0, sizeof h);
+    VG_TRY(get_row(&at, json_array_get(list, i), HELP_N, help_columns, place,
+                   "help_columns", v, err));
+    VG_TRY(get_path(&at, v[HELP_PATH], h.path, err));
+    at.path = h.path;
+    VG_TRY(get_worker(&at, v[HELP_RANK], v[HELP_THREAD], out, who, err));
+    VG_TRY(get_times(&at, v[HELP_START], v[HELP_END], &h.start, &h.end, err));
+    h.rank = who[0];
+    h.thread = who[1];
+    VG_TRY(vg_spans_add_help(out, &h, err));
+  }
 done:
   return st;
 }
@@ -349,6 +470,8 @@ vg_status vg_timeline_parse(const char *name, const void *data, size_t size,
   }
   VG_TRY(get_facts(name, root, &t, err));
   VG_TRY(get_spans(name, root, &t.spans, err));
+  VG_TRY(get_helps(name, root, &t.spans, err));
+  vg_spans_sort(&t.spans);
   *out = t;
   memset(&t, 0, sizeof t);
 done:

@@ -6,10 +6,15 @@
  *    "facts": {"title": "wing", "ranks": 2, "threads": 4, "cells": 123,
  *              "points": 45, "digest": "", "seconds_read": 0.1, ...},
  *    "columns": ["path", "after", "kind", "rank", ...],
- *    "spans": [["0J1", "", "J", 0, ...], ...]}
+ *    "spans": [["0J1", "", "J", 0, ...], ...],
+ *    "help_columns": ["path", "rank", "thread", "start", "end"],
+ *    "help": [["0J1", 1, 2, 0.25, 0.375], ...]}
  *
+ * "help": when workers were in loops of another one's task. "loops" of a span
+ * is what of its "cpu" was in loops; both have the helpers' time in them.
  * Times are kept to the microsecond. Readers take columns in any order, pass
- * over those that they do not know and take a fact that is absent as 0. */
+ * over those that they do not know and take as 0 a fact that is absent, and
+ * "loops" in records of versions that had none; these have no "help". */
 #ifndef VG_CLI_TIMELINE_H
 #define VG_CLI_TIMELINE_H
 
@@ -53,7 +58,7 @@ vg_status vg_timeline_write(const char *path, const struct vg_timeline *t,
 
 /** Read from memory; the entry for fuzzing. Spans come out by path, with
  * ranks and threads below n_rank and n_thread, and times that are finite, not
- * negative and not beyond 1e9 s; whether they make a graph is left to
+ * negative and not beyond 1e9 s, help too; whether they make a graph is left to
  * vg_model_replay.
  *
  * @param name  for messages, which all begin with it

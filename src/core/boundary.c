@@ -144,7 +144,9 @@ static vg_status seed_sides(struct sides *s, const struct tri_table *table,
       int sense = 0;
       uint8_t is;
 
-      if (!(t->flag[c] >> i & 1) || !matters(s, c, i)) continue;
+      if (!(t->flag[c] >> i & 1) || (s->side[c] && !s->is_strict) ||
+          !matters(s, c, i))
+        continue;
       for (int k = 0; k < 3; k++) v[k] = t->cell[c].v[vg_face[i][k]];
       if (tri_table_find(table, v, &sense) == VG_NONE) continue;
       is = sense > 0 ? SIDE_FLUID : SIDE_SOLID;

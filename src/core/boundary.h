@@ -15,6 +15,7 @@ struct vg_boundary_report {
   size_t n_face_left;              /* of these, what flips did not bring in */
   size_t n_pocket, n_pocket_cell;  /* regions that TetGen closed */
   size_t n_retry;                  /* pockets that had to grow */
+  size_t n_restored;               /* flips back towards Delaunay cells */
   int whole_void;
   size_t n_steiner;
 };

@@ -13,10 +13,10 @@ vg_status vg_inserter_init(struct vg_inserter *s, struct vg_tets *t,
 {
   memset(s, 0, sizeof *s);
   s->t = t;
-  s->cap_edge = 256;
-  s->edge = vg_calloc(s->cap_edge, sizeof *s->edge);
   s->last = VG_NONE;
-  return s->edge ? VG_OK : vg_fail_memory(err, "the cavity table");
+  s->cap_local = t->cap_point;
+  s->local = vg_calloc(s->cap_local, sizeof *s->local);
+  return s->local ? VG_OK : vg_fail_memory(err, "the cavity table");
 }
 
 void vg_inserter_release(struct vg_inserter *s)
@@ -24,6 +24,7 @@ void vg_inserter_release(struct vg_inserter *s)
   free(s->cell);
   free(s->tried);
   free(s->face);
+  free(s->local);
   free(s->edge);
   memset(s, 0, sizeof *s);
 }
@@ -32,7 +33,8 @@ void vg_inserter_release(struct vg_inserter *s)
 
 static int add_cell(struct vg_inserter *s, uint32_t c)
 {
-  if (vg_reserve(&s->cell, &s->cap_cell, s->n_cell + 1, sizeof *s->cell))
+  if (s->n_cell == s->cap_cell &&
+      vg_reserve(&s->cell, &s->cap_cell, s->n_cell + 1, sizeof *s->cell))
     return -1;
   s->t->flag[c] |= VG_MARK;
   s->cell[s->n_cell++] = c;
@@ -41,7 +43,8 @@ static int add_cell(struct vg_inserter *s, uint32_t c)
 
 static int add_tried(struct vg_inserter *s, uint32_t c)
 {
-  if (vg_reserve(&s->tried, &s->cap_tried, s->n_tried + 1, sizeof *s->tried))
+  if (s->n_tried == s->cap_tried &&
+      vg_reserve(&s->tried, &s->cap_tried, s->n_tried + 1, sizeof *s->tried))
     return -1;
   s->t->flag[c] |= VG_TRIED;
   s->tried[s->n_tried++] = c;
@@ -53,7 +56,8 @@ static int add_face(struct vg_inserter *s, uint32_t c, int i)
   const struct vg_cell *cell = &s->t->cell[c];
   struct vg_cavity_face *f;
 
-  if (vg_reserve(&s->face, &s->cap_face, s->n_face + 1, sizeof *s->face))
+  if (s->n_face == s->cap_face &&
+      vg_reserve(&s->face, &s->cap_face, s->n_face + 1, sizeof *s->face))
     return -1;
   f = &s->face[s->n_face++];
   for (int k = 0; k < 3; k++) f->v[k] = cell->v[vg_face[i][k]];
@@ -238,9 +242,42 @@ static int too_low_anywhere(const struct vg_inserter *s, const double x[3],
 
 /* --- refilling ----------------------------------------------------------- */
 
+static int grow_local(struct vg_inserter *s)
+{
+  size_t old = s->cap_local;
+
+  if (s->t->n_point <= old) return 0;
+  if (vg_reserve(&s->local, &s->cap_local, s->t->n_point, sizeof *s->local))
+    return -1;
+  memset(s->local + old, 0, (s->cap_local - old) * sizeof *s->local);
+  return 0;
+}
+
+/* Number the vertices of the cavity as they come. 0: there are too many. */
+static int number_vertices(struct vg_inserter *s)
+{
+  uint32_t n = 0;
+
+  for (size_t k = 0; k < s->n_face; k++) {
+    struct vg_cavity_face *f = &s->face[k];
+
+    for (int i = 0; i < 3; i++) {
+      uint32_t v = f->v[i], at = s->local[v];
+
+      if (at >= n || s->vertex[at] != v) {
+        if (n == VG_CAVITY_TABLE) return 0;
+        at = s->local[v] = n;
+        s->vertex[n++] = v;
+      }
+      f->at[i] = (uint8_t)at;
+    }
+  }
+  return 1;
+}
+
 static int grow_edges(struct vg_inserter *s)
 {
-  size_t need = 256;
+  size_t need = 1024;
 
   while (need < 6 * s->n_face) need *= 2;
   if (need > s->cap_edge) {
@@ -283,13 +320,15 @@ static void link_edge(struct vg_inserter *s, uint32_t a, uint32_t b,
   }
 }
 
-static void refill(struct vg_inserter *s, uint32_t p)
+/* A cell before each face of the cavity, which learns its number instead of
+ * what lies behind it. */
+static void make_cells(struct vg_inserter *s, uint32_t p)
 {
   struct vg_tets *t = s->t;
   size_t used = 0;
 
   for (size_t k = 0; k < s->n_face; k++) {
-    const struct vg_cavity_face *f = &s->face[k];
+    struct vg_cavity_face *f = &s->face[k];
     uint32_t c = used < s->n_cell ? s->cell[used++] : vg_tets_take(t);
     struct vg_cell *cell = &t->cell[c];
 
@@ -301,9 +340,7 @@ static void refill(struct vg_inserter *s, uint32_t p)
     cell->link[3] = f->link;
     if (f->link != VG_NONE)
       t->cell[f->link >> 2].link[f->link & 3] = 4 * c + 3;
-    link_edge(s, f->v[1], f->v[2], 4 * c);
-    link_edge(s, f->v[2], f->v[0], 4 * c + 1);
-    link_edge(s, f->v[0], f->v[1], 4 * c + 2);
+    f->link = c;
     s->last = c;
   }
   /* A star-shaped cavity of n vertices has 2n - 4 faces; with n - 3 cells or
@@ -311,20 +348,51 @@ static void refill(struct vg_inserter *s, uint32_t p)
   while (used < s->n_cell) vg_tets_drop(t, s->cell[used++]);
 }
 
+/* Each edge of the cavity's hull has two faces, which run along it in opposite
+ * senses. */
+static void link_by_table(struct vg_inserter *s)
+{
+  for (size_t k = 0; k < s->n_face; k++) {
+    const struct vg_cavity_face *f = &s->face[k];
+
+    for (uint32_t i = 0; i < 3; i++)
+      s->table[f->at[(i + 1) % 3]][f->at[(i + 2) % 3]] = 4 * f->link + i;
+  }
+  for (size_t k = 0; k < s->n_face; k++) {
+    const struct vg_cavity_face *f = &s->face[k];
+    uint32_t *link = s->t->cell[f->link].link;
+
+    for (int i = 0; i < 3; i++)
+      link[i] = s->table[f->at[(i + 2) % 3]][f->at[(i + 1) % 3]];
+  }
+}
+
+static void link_by_edges(struct vg_inserter *s)
+{
+  for (size_t k = 0; k < s->n_face; k++) {
+    const struct vg_cavity_face *f = &s->face[k];
+
+    for (uint32_t i = 0; i < 3; i++)
+      link_edge(s, f->v[(i + 1) % 3], f->v[(i + 2) % 3], 4 * f->link + i);
+  }
+}
+
 vg_status vg_insert(struct vg_inserter *s, uint32_t p, uint32_t at,
                     double clearance, double nearest, struct vg_error *err)
 {
   struct vg_tets *t = s->t;
   double x[3];
-  int state;
+  int state, is_small = 0;
 
   memcpy(x, t->x[p], sizeof x);
   state = add_cell(s, at) || flood(s, x) ? -1 : 0;
   if (!state && too_near(s, x, nearest)) state = 1;
   for (int cut = 0; !state; cut++) state = cut == CUT_MAX ? 1 : cut_back(s, x);
   if (state == 2) state = too_low_anywhere(s, x, clearance, 2 * nearest);
+  if (!state && grow_local(s)) state = -1;
+  if (!state) is_small = number_vertices(s);
   if (!state &&
-      (grow_edges(s) || vg_tets_reserve_cells(t, s->n_face) ||
+      ((!is_small && grow_edges(s)) || vg_tets_reserve_cells(t, s->n_face) ||
        vg_reserve(&t->free, &t->cap_free, t->n_free + s->n_cell,
                   sizeof *t->free)))
     state = -1;
@@ -333,7 +401,9 @@ vg_status vg_insert(struct vg_inserter *s, uint32_t p, uint32_t at,
     return state > 0 ? VG_BLOCKED
                      : vg_fail_memory(err, "the cells of the volume mesh");
   }
-  refill(s, p);
+  make_cells(s, p);
+  if (is_small) link_by_table(s);
+  else link_by_edges(s);
   for (size_t k = 0; k < s->n_tried; k++)
     t->flag[s->tried[k]] &= (uint8_t)~VG_TRIED;
   s->n_cell = s->n_tried = s->n_face = 0;

@@ -21,7 +21,11 @@ struct vg_cavity_face {
   uint32_t link;             /* what lies behind, VG_NONE at the hull */
   uint8_t fixed;             /* constrained */
   uint8_t outside;           /* of the cell in front */
+  uint8_t at[3];             /* numbers of v within the cavity */
 };
+
+/* Cavities of up to so many vertices are linked by a table. */
+enum { VG_CAVITY_TABLE = 64 };
 
 /** Scratch of insertions, reused from one to the next; one per thread. */
 struct vg_inserter {
@@ -30,7 +34,12 @@ struct vg_inserter {
   uint32_t *cell;            /* the cavity */
   uint32_t *tried;           /* cells found not to be in it */
   struct vg_cavity_face *face;
-  size_t n_edge, cap_edge;
+  size_t cap_local;
+  uint32_t *local;           /* [points] number within the cavity, sure where
+                                vertex[] tells the same */
+  uint32_t vertex[VG_CAVITY_TABLE];
+  uint32_t table[VG_CAVITY_TABLE][VG_CAVITY_TABLE];  /* link of an edge */
+  size_t cap_edge;           /* of larger cavities */
   struct vg_edge_slot { uint64_t key; uint32_t link, epoch; } *edge;
   uint32_t epoch;
   uint32_t last;             /* a cell made by the last insertion */

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/unite.h"
 #include "core/judge_slices_parts.h"
 
 /* --- faces --------------------------------------------------------------- */
@@ -70,7 +71,7 @@ static void match_face(const struct vg_slices_judgement *j,
   if (!vg_figures_face(w->figures[q], n_cell, n_boundary,
                        !((pair[0]->flags ^ pair[1]->flags) &
                          VG_FACE_WINDING))) return;
-  vg_join_sets(w->parent[q], pair[0]->component, pair[1]->component);
+  vg_unite(w->parent[q], pair[0]->component, pair[1]->component);
   vg_figures_ratio(w->figures[q], pair[0]->volume, pair[1]->volume);
 }
 
@@ -342,7 +343,7 @@ static vg_status list_links(const struct vg_slices_judgement *j, int q,
 
   for (int w = 1; w < j->n_worker; w++)
     for (uint32_t i = 0; i < j->n_all; i++)
-      vg_join_sets(parent, i, j->worker[w].parent[q][i]);
+      vg_unite(parent, i, j->worker[w].parent[q][i]);
   for (uint32_t i = 0; i < j->n_all; i++) n += parent[i] != i;
   link = vg_alloc(n, sizeof *link);
   if (!link) return vg_fail_memory(err, "the parts of the mesh");
@@ -366,7 +367,7 @@ static size_t join_links(uint32_t *parent, uint64_t n_all,
     const struct link *link = (const void *)all[r].data;
 
     for (size_t i = 0; i < all[r].n / sizeof *link; i++)
-      n_joined += (size_t)vg_join_sets(parent, link[i].a, link[i].b);
+      n_joined += (size_t)vg_unite(parent, link[i].a, link[i].b);
   }
   return n_joined;
 }

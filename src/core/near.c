@@ -8,12 +8,12 @@
 
 #define VG_NONE UINT32_MAX
 
-/* Level k has cells of side 2^k, between 1.1 and 2.2 of the spacing. */
+/* Level k has cells of side 2^k, between 1.4 and 2.8 of the spacing. */
 static int level_of(double h)
 {
   int e;
 
-  frexp(2.2 * h, &e);
+  frexp(2.8 * h, &e);
   return e - 1;
 }
 
@@ -30,6 +30,16 @@ static uint64_t block_key(int level, const int64_t i[3])
 static uint32_t cell_in_block(const int64_t i[3])
 {
   return (uint32_t)((i[0] & 3) << 4 | (i[1] & 3) << 2 | (i[2] & 3));
+}
+
+/* The cells of a block from `from` to `to` on each axis, 0 to 3, as bits. */
+static uint64_t cells_between(const int from[3], const int to[3])
+{
+  uint64_t x = UINT64_MAX << 16 * from[0] & UINT64_MAX >> 16 * (3 - to[0]);
+  uint64_t y = 0xffffu << 4 * from[1] & 0xffffu >> 4 * (3 - to[1]);
+  uint64_t z = 0xfu << from[2] & 0xfu >> (3 - to[2]);
+
+  return x & y * 0x0001000100010001u & z * 0x1111111111111111u;
 }
 
 static size_t find_slot(const struct vg_near *s, uint64_t key)
@@ -61,6 +71,7 @@ static int resize(struct vg_near *s, size_t size)
 static uint32_t *cell_head(struct vg_near *s, int level, const int64_t i[3])
 {
   uint64_t key = block_key(level, i);
+  struct vg_near_block *block;
   size_t at;
 
   if (2 * s->n_block >= s->n_slot && resize(s, 2 * s->n_slot))
@@ -70,11 +81,14 @@ static uint32_t *cell_head(struct vg_near *s, int level, const int64_t i[3])
     if (vg_reserve(&s->block, &s->cap_block, s->n_block + 1,
                    sizeof *s->block))
       return NULL;
-    memset(s->block[s->n_block], 0xff, sizeof *s->block);
+    memset(&s->block[s->n_block], 0xff, sizeof *s->block);
+    s->block[s->n_block].used = 0;
     s->slot[at].key = key;
     s->slot[at].block = (uint32_t)s->n_block++;
   }
-  return &s->block[s->slot[at].block][cell_in_block(i)];
+  block = &s->block[s->slot[at].block];
+  block->used |= (uint64_t)1 << cell_in_block(i);
+  return &block->page[cell_in_block(i)];
 }
 
 static uint32_t new_page(struct vg_near *s, uint32_t next)
@@ -112,38 +126,45 @@ int vg_near_add(struct vg_near *s, const double x[3], double h)
 }
 
 /* A grid cell met by a search: its pages are on their way to the cache while
- * the other cells are looked up. d: its corner relative to the centre. */
-static void find_cell(struct vg_near *s, uint32_t page, const double d[3])
+ * the other cells are looked up. x, y, z: its corner, from the centre. */
+static void find_cell(struct vg_near *s, uint32_t page, double x, double y,
+                      double z)
 {
   struct vg_near_cell *f = &s->cell[s->n_cell];
 
-  if (page == VG_NONE || s->n_cell == VG_NEAR_CELLS) return;
+  if (s->n_cell == VG_NEAR_CELLS) return;
   __builtin_prefetch(&s->page[page]);
   __builtin_prefetch((const char *)(&s->page[page] + 1) - 1);
   f->page = page;
-  for (int k = 0; k < 3; k++) f->d[k] = (float)d[k];
+  f->d[0] = (float)x;
+  f->d[1] = (float)y;
+  f->d[2] = (float)z;
   s->n_cell++;
 }
 
+/* Every point is written, only those within r are counted: which they are is
+ * hard to predict. */
 static void gather_cell(struct vg_near *s, const struct vg_near_cell *f,
                         float r2)
 {
   float x = f->d[0], y = f->d[1], z = f->d[2];
+  size_t n = s->n;
 
-  for (uint32_t at = f->page; at != VG_NONE; at = s->page[at].next) {
+  for (uint32_t at = f->page; at != VG_NONE && n < VG_NEAR_MAX;
+       at = s->page[at].next) {
     const struct vg_near_page *page = &s->page[at];
 
     for (uint32_t k = 0; k < page->n; k++) {
       float u = page->x[0][k] + x, v = page->x[1][k] + y;
       float w = page->x[2][k] + z;
 
-      if (u * u + v * v + w * w > r2 || s->n == VG_NEAR_MAX) continue;
-      s->x[0][s->n] = u;
-      s->x[1][s->n] = v;
-      s->x[2][s->n] = w;
-      s->n++;
+      s->x[0][n] = u;
+      s->x[1][n] = v;
+      s->x[2][n] = w;
+      n += u * u + v * v + w * w <= r2;
     }
   }
+  s->n = n;
 }
 
 /* Distance along one axis from the centre to a cell that starts at d. */
@@ -152,34 +173,71 @@ static double gap(double d, double side)
   return d > 0 ? d : d + side < 0 ? -(d + side) : 0;
 }
 
-static void find_level(struct vg_near *s, const double c[3], double r,
-                         int level)
+struct query {
+  double c[3], side, r2;     /* centre, side of a cell, radius squared */
+  int64_t lo[3], hi[3];      /* cells in question */
+};
+
+/* Along axis k, from cell i: its corner relative to the centre, and the square
+ * of its distance. */
+static double along(const struct vg_near *s, const struct query *q, int k,
+                    int64_t i, double side, double *d)
 {
-  double inverse = ldexp(1, -level), side = ldexp(1, level), d[3], g[3];
-  int64_t lo[3], hi[3], i[3];
-  uint64_t key = UINT64_MAX;
-  uint32_t block = VG_NONE;
+  double g;
+
+  *d = s->lo[k] + q->side * (double)i - q->c[k];
+  g = gap(*d, side);
+  return g * g;
+}
+
+static void find_in_block(struct vg_near *s, const struct query *q,
+                          const int64_t b[3],
+                          const struct vg_near_block *block)
+{
+  double d[3][4], g[3][4];
+  int from[3], to[3];
+  uint64_t left;
 
   for (int k = 0; k < 3; k++) {
-    lo[k] = (int64_t)floor((c[k] - r - s->lo[k]) * inverse);
-    hi[k] = (int64_t)floor((c[k] + r - s->lo[k]) * inverse);
+    from[k] = (int)(q->lo[k] > 4 * b[k] ? q->lo[k] - 4 * b[k] : 0);
+    to[k] = (int)(q->hi[k] < 4 * b[k] + 3 ? q->hi[k] - 4 * b[k] : 3);
+    for (int i = from[k]; i <= to[k]; i++)
+      g[k][i] = along(s, q, k, 4 * b[k] + i, q->side, &d[k][i]);
   }
-  for (i[0] = lo[0]; i[0] <= hi[0]; i[0]++) {
-    d[0] = s->lo[0] + side * (double)i[0] - c[0];
-    g[0] = gap(d[0], side);
-    for (i[1] = lo[1]; i[1] <= hi[1]; i[1]++) {
-      d[1] = s->lo[1] + side * (double)i[1] - c[1];
-      g[1] = gap(d[1], side);
-      for (i[2] = lo[2]; i[2] <= hi[2]; i[2]++) {
-        d[2] = s->lo[2] + side * (double)i[2] - c[2];
-        g[2] = gap(d[2], side);
-        if (g[0] * g[0] + g[1] * g[1] + g[2] * g[2] > r * r) continue;
-        if (block_key(level, i) != key) {
-          key = block_key(level, i);
-          block = s->slot[find_slot(s, key)].block;
-        }
-        if (block != VG_NONE)
-          find_cell(s, s->block[block][cell_in_block(i)], d);
+  for (left = block->used & cells_between(from, to); left;
+       left &= left - 1) {
+    int at = __builtin_ctzll(left), x = at >> 4, y = at >> 2 & 3, z = at & 3;
+
+    if (g[0][x] + g[1][y] + g[2][z] > q->r2) continue;
+    find_cell(s, block->page[at], d[0][x], d[1][y], d[2][z]);
+  }
+}
+
+static void find_level(struct vg_near *s, const double c[3], double r,
+                       int level)
+{
+  double inverse = ldexp(1, -level), d;
+  struct query q = { { c[0], c[1], c[2] }, ldexp(1, level), r * r, { 0 },
+                     { 0 } };
+  int64_t b[3];
+
+  for (int k = 0; k < 3; k++) {
+    q.lo[k] = (int64_t)floor((c[k] - r - s->lo[k]) * inverse);
+    q.hi[k] = (int64_t)floor((c[k] + r - s->lo[k]) * inverse);
+  }
+  for (b[0] = q.lo[0] >> 2; b[0] <= q.hi[0] >> 2; b[0]++) {
+    double gx = along(s, &q, 0, 4 * b[0], 4 * q.side, &d);
+
+    for (b[1] = q.lo[1] >> 2; b[1] <= q.hi[1] >> 2; b[1]++) {
+      double gxy = gx + along(s, &q, 1, 4 * b[1], 4 * q.side, &d);
+
+      for (b[2] = q.lo[2] >> 2; b[2] <= q.hi[2] >> 2; b[2]++) {
+        int64_t i[3] = { 4 * b[0], 4 * b[1], 4 * b[2] };
+        uint32_t block;
+
+        if (gxy + along(s, &q, 2, i[2], 4 * q.side, &d) > q.r2) continue;
+        block = s->slot[find_slot(s, block_key(level, i))].block;
+        if (block != VG_NONE) find_in_block(s, &q, b, &s->block[block]);
       }
     }
   }
@@ -198,6 +256,7 @@ void vg_near_gather(struct vg_near *s, const double c[3], double h, double r)
       find_level(s, c, r, level);
   for (size_t k = 0; k < s->n_cell; k++)
     gather_cell(s, &s->cell[k], (float)(r * r));
+  if (s->n > VG_NEAR_MAX) s->n = VG_NEAR_MAX;
 }
 
 int vg_near_init(struct vg_near *s, const double lo[3], double h_min,

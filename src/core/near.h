@@ -24,13 +24,16 @@ struct vg_near {
   size_t n_slot;             /* open addressing, a power of 2 */
   struct vg_near_slot { uint64_t key; uint32_t block; } *slot;
   size_t n_block, cap_block;
-  uint32_t (*block)[64];     /* first page of each cell */
+  struct vg_near_block {     /* 4 x 4 x 4 cells */
+    uint64_t used;           /* bit i: cell i has points */
+    uint32_t page[64];       /* first of each cell */
+  } *block;
   size_t n_page, cap_page;
   struct vg_near_page *page;
   size_t n_cell;             /* cells of the query under way */
   struct vg_near_cell { uint32_t page; float d[3]; } cell[VG_NEAR_CELLS];
   size_t n;                  /* the list: [3][n], relative to the centre */
-  float x[3][VG_NEAR_MAX];
+  float x[3][VG_NEAR_MAX + VG_NEAR_PAGE];
 };
 
 /** Start *s, which must be zeroed. h_min, h_max: range of spacings.

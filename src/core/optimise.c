@@ -47,15 +47,20 @@ static int is_live(const struct vg_tets *t, uint32_t c)
   return !(t->flag[c] & (VG_DEAD | VG_OUTSIDE));
 }
 
-/* Is cell c one that should get better? */
+/* Is cell c one that should get better? The answer no, which bad cells at the
+ * rim get again and again, is kept until the cell changes. */
 static int concerns(const struct vg_optimiser *o, uint32_t c)
 {
   const struct vg_tets *t = o->t;
   const uint32_t *v = t->cell[c].v;
 
-  return !o->region ||
-         vg_region_has_cell(o->region, o->sizing, t->x[v[0]], t->x[v[1]],
-                            t->x[v[2]], t->x[v[3]]);
+  if (!o->region) return 1;
+  if (o->vain_cell[c] & VG_NO_CONCERN) return 0;
+  if (vg_region_has_cell(o->region, o->sizing, t->x[v[0]], t->x[v[1]],
+                         t->x[v[2]], t->x[v[3]]))
+    return 1;
+  o->vain_cell[c] |= VG_NO_CONCERN;
+  return 0;
 }
 
 /* least[p]: shape of the worst cell around p that concerns us. */

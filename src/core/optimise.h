@@ -34,15 +34,25 @@ vg_status vg_optimise_bad(struct vg_tets *t, size_t n_fixed, size_t n_keep,
                           struct vg_optimise_report *report,
                           struct vg_error *err);
 
+/** Swap faces and edges of the cells of a shape below `below`, in one pass.
+ * No point moves; fixed faces stay.
+ *
+ * *q in, out: [t.n_cell] shapes (vg_shape) of the cells, from vg_alloc
+ * Deterministic. VG_ERR_MEMORY on refusal (t is then still valid). */
+vg_status vg_optimise_swaps(struct vg_tets *t, float below, float **q,
+                            struct vg_optimise_report *report,
+                            struct vg_error *err);
+
 /** Smooth points of cells that need not hang together: one sweep over
- * point [n], in that order.
+ * point [n], in that order, but for those that have no cell of a shape below
+ * `below` when it begins.
  *
  * t: its links are not looked at, its cells positive; each of those points
  * has all its cells there, none of them with a fixed face.
- * q out: [t.n_cell] shapes of the cells as they end
+ * q in, out: [t.n_cell] shapes (vg_shape) of the cells
  * Deterministic. VG_ERR_MEMORY on refusal. */
 vg_status vg_optimise_points(struct vg_tets *t, size_t n,
-                             const uint32_t *point, float *q,
+                             const uint32_t *point, float below, float *q,
                              struct vg_optimise_report *report,
                              struct vg_error *err);
 

@@ -11,7 +11,8 @@ enum { VG_BALL_MAX = 256, VG_SHELL_MAX = 10, VG_NEW_MAX = VG_CAVITY_MAX,
 
 enum {                       /* what was tried in vain, until a change */
   VG_VAIN_SMOOTH = 1, VG_VAIN_MERGE = 2,   /* of a point */
-  VG_VAIN_SPLIT = 4                        /* of a cell */
+  VG_VAIN_SPLIT = 4,                       /* of a cell */
+  VG_NO_CONCERN = 8          /* likewise: does not belong to the region */
 };
 
 struct vg_optimiser {

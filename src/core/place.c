@@ -17,6 +17,10 @@ static const double exclusion_level = 0.72;
 /* Height of the apex over a surface face: regular tetrahedron. */
 static const double apex = 0.8165;
 
+/* How much farther than points are placed, in spacings, others may stand that
+ * propose them: steps of the pattern lead so far across planes of the axes. */
+static const double sideways = 0.65;
+
 /* A field that changes less than this over one edge counts as level. */
 static const double level_within = 1e-3;
 
@@ -88,6 +92,13 @@ static int reserve(struct placer *p, size_t n)
                     sizeof *p->queue);
 }
 
+/* Are points to be placed at x? */
+static int is_wanted(const struct placer *p, const double x[3])
+{
+  return !p->region ||
+         vg_region_near(p->region, p->sizing, x, VG_BAND_PLACE);
+}
+
 /* Let a point stand at c + d with spacing h, unless it is outside. */
 static int stand(struct placer *p, const double c[3], const double d[3],
                  double h, uint32_t start)
@@ -95,8 +106,7 @@ static int stand(struct placer *p, const double c[3], const double d[3],
   double x[3] = {c[0] + d[0], c[1] + d[1], c[2] + d[2]};
   uint32_t cell, point = (uint32_t)p->n;
 
-  if (p->region && !vg_region_near(p->region, p->sizing, x, VG_BAND_PLACE))
-    return 0;
+  if (!is_wanted(p, x)) return 0;
   cell = vg_tets_locate(p->t, start, x);
   if (cell == VG_NONE || p->t->flag[cell] & VG_OUTSIDE) return 0;
   if (reserve(p, p->n + 1)) return -1;
@@ -110,20 +120,28 @@ static int stand(struct placer *p, const double c[3], const double d[3],
   return 0;
 }
 
+/* d out: unit * length, with the spacing taken half way from c, where it is h.
+ * Returns the spacing at the end of unit * h. */
+static double aim(const struct placer *p, const double c[3],
+                  const double unit[3], double h, double d[3])
+{
+  double x[3], there;
+
+  for (int k = 0; k < 3; k++) x[k] = c[k] + unit[k] * h;
+  there = vg_sizing_at(p->sizing, x);
+  for (int k = 0; k < 3; k++) d[k] = unit[k] * 0.5 * (h + there);
+  return there;
+}
+
 /* Propose c + unit * length(h), the spacing taken half way. */
 static int propose(struct placer *p, const double c[3], const double unit[3],
                    double h, uint32_t start)
 {
-  double d[3], x[3], there;
+  double d[3], there;
 
   for (int k = 0; k < 3; k++) d[k] = unit[k] * h;
   if (vg_near_count(&p->near, d, 0.9 * exclusion * h)) return 0;
-  for (int k = 0; k < 3; k++) x[k] = c[k] + d[k];
-  there = vg_sizing_at(p->sizing, x);
-  for (int k = 0; k < 3; k++) {
-    d[k] = unit[k] * 0.5 * (h + there);
-    x[k] = c[k] + d[k];
-  }
+  there = aim(p, c, unit, h, d);
   if (vg_near_count(&p->near, d, exclusion * there)) return 0;
   return stand(p, c, d, there, start);
 }
@@ -254,6 +272,13 @@ static int grow_face(struct placer *p, uint32_t link)
   h = vg_sizing_at(p->sizing, c);
   if (on_lattice(v[0], h) && on_lattice(v[1], h) && on_lattice(v[2], h))
     return 0;
+  if (p->region) {           /* saves the search where nothing is wanted */
+    double d[3];
+
+    aim(p, c, unit, h, d);
+    for (int k = 0; k < 3; k++) d[k] += c[k];
+    if (!is_wanted(p, d)) return 0;
+  }
   vg_near_gather(&p->near, c, h, (apex + exclusion) * 1.1 * h);
   return propose(p, c, unit, h, link >> 2);
 }
@@ -359,7 +384,7 @@ vg_status vg_place_seeds(size_t n, const double (*x)[3],
 static int may_propose(const struct placer *p, const double x[3])
 {
   return !p->region ||
-         vg_region_near(p->region, p->sizing, x, VG_BAND_PLACE + lattice);
+         vg_region_near(p->region, p->sizing, x, VG_BAND_PLACE + sideways);
 }
 
 static int start_points(struct placer *p)

@@ -1,4 +1,7 @@
-/* The undecided calls of predicates.h, in two steps:
+/* The undecided calls of predicates.h, in steps:
+ *   0. for spheres, the filter's own formula in numbers of 64 bits, where the
+ *      target has them: points of a round surface differ from a sphere by the
+ *      rounding of their coordinates, which that much settles;
  *   1. double-double arithmetic on the (exact) coordinate differences, with
  *      a bound of about 1e-30 times the permanent: what is left after it is
  *      exactly zero, or nearly always so;
@@ -7,6 +10,7 @@
  *      component = sign of the whole. */
 #include "core/predicates.h"
 
+#include <float.h>
 #include <string.h>
 
 #define U 1.1102230246251565e-16 /* 2^-53, half an ulp of 1 */
@@ -388,6 +392,29 @@ static double insphere_permanent(double v[4][3])
   return per;
 }
 
+#if LDBL_MANT_DIG == 64
+/* As in vg_insphere. */
+static double insphere_64(const double *const p[5])
+{
+  long double v[4][3], l[4], ab, bc, cd, da, ac, bd;
+
+  for (int i = 0; i < 4; i++) {
+    for (int k = 0; k < 3; k++) v[i][k] = (long double)p[i][k] - p[4][k];
+    l[i] = v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2];
+  }
+  ab = v[0][0] * v[1][1] - v[1][0] * v[0][1];
+  bc = v[1][0] * v[2][1] - v[2][0] * v[1][1];
+  cd = v[2][0] * v[3][1] - v[3][0] * v[2][1];
+  da = v[3][0] * v[0][1] - v[0][0] * v[3][1];
+  ac = v[0][0] * v[2][1] - v[2][0] * v[0][1];
+  bd = v[1][0] * v[3][1] - v[3][0] * v[1][1];
+  return (double)((l[2] * (v[3][2] * ab + v[0][2] * bd + v[1][2] * da)
+                   - l[3] * (v[0][2] * bc - v[1][2] * ac + v[2][2] * ab))
+                  + (l[0] * (v[1][2] * cd - v[2][2] * bd + v[3][2] * bc)
+                     - l[1] * (v[2][2] * da + v[3][2] * ac + v[0][2] * cd)));
+}
+#endif
+
 double vg_insphere_exact(const double a[3], const double b[3],
                          const double c[3], const double d[3],
                          const double e[3])
@@ -396,18 +423,25 @@ double vg_insphere_exact(const double a[3], const double b[3],
   double v[4][3], per, det;
   int is_short = 1;
 
-  for (int i = 0; i < 4; i++) {
-    struct vec w = vec_diff(p[i], e, 3);
-
-    is_short = is_short && vec_is_short(&w);
+  for (int i = 0; i < 4; i++)
     for (int k = 0; k < 3; k++) v[i][k] = p[i][k] - e[k];
-  }
   per = insphere_permanent(v);
   if (per == 0) return 0;
+#if LDBL_MANT_DIG == 64
+  /* (16 + 224 u) u times the permanent with u = 2^-64, and what the sum of that
+   * in doubles may lack. */
+  det = insphere_64(p);
+  if (fabs(det) > 17 * (0x1p-64 * per)) return det;
+#endif
   /* To first order 8 + 4 + 8 + 12 for the 3x3, 8 + 8 for the lift, 8 for
    * their product and 16 for the sum: 72 u^2 per; tripled and more. */
   det = insphere_dd(p);
   if (fabs(det) > (256 * U * U) * per) return det;
+  for (int i = 0; i < 4; i++) {
+    struct vec w = vec_diff(p[i], e, 3);
+
+    is_short = is_short && vec_is_short(&w);
+  }
   return is_short ? insphere_short(v) : insphere_long(p);
 }
 

@@ -71,26 +71,6 @@ void vg_figures_report(const struct vg_figures *f, size_t n_component,
  * mesh is valid. */
 void vg_report_conclude(struct vg_mesh_report *r);
 
-/** Disjoint sets, the lowest of each its root. */
-static inline uint32_t vg_root_of(uint32_t *parent, uint32_t i)
-{
-  while (parent[i] != i) {
-    parent[i] = parent[parent[i]];
-    i = parent[i];
-  }
-  return i;
-}
-
-/** Returns whether they were two. */
-static inline int vg_join_sets(uint32_t *parent, uint32_t a, uint32_t b)
-{
-  a = vg_root_of(parent, a);
-  b = vg_root_of(parent, b);
-  if (a < b) parent[b] = a;
-  else parent[a] = b;
-  return a != b;
-}
-
 /** Faces of one kind of cell, normals out of the cell: n_face of them, the
  * first n_tri are triangles (fourth entry unused), the others quads. */
 struct vg_cell_faces {

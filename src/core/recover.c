@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/unite.h"
 #include "core/cdt_tetgen.h"
 #include "core/hilbert.h"
 #include "core/predicates.h"
@@ -61,28 +62,10 @@ static int passes_through(const struct vg_tets *t, const uint32_t tri[3],
   return 1;
 }
 
-static uint32_t root_of(struct recovery *r, uint32_t k)
-{
-  while (r->parent[k] != k) {
-    r->parent[k] = r->parent[r->parent[k]];
-    k = r->parent[k];
-  }
-  return k;
-}
-
-/* The lower root wins, so that the outcome is the same in any order. */
-static void merge(struct recovery *r, uint32_t a, uint32_t b)
-{
-  a = root_of(r, a);
-  b = root_of(r, b);
-  if (a < b) r->parent[b] = a;
-  else r->parent[a] = b;
-}
-
 static int claim(struct recovery *r, uint32_t c, uint32_t k)
 {
   if (r->owner[c] != VG_NONE) {
-    merge(r, r->owner[c], k);
+    vg_unite(r->parent, r->owner[c], k);
     return 0;
   }
   if (vg_reserve(&r->cell, &r->cap_cell, r->n_cell + 1, sizeof *r->cell))
@@ -422,11 +405,11 @@ static vg_status close_pockets(struct recovery *r, struct vg_error *err)
 
   if (!cell || !tri || !pocket) st = vg_fail_memory(err, "boundary recovery");
   for (uint32_t m = 0; st == VG_OK && m < r->n_missing; m++) {
-    tri[m].key = root_of(r, m);
+    tri[m].key = vg_root_of(r->parent, m);
     tri[m].index = m;
   }
   for (size_t m = 0; st == VG_OK && m < r->n_cell; m++) {
-    cell[m].key = root_of(r, r->owner[r->cell[m]]);
+    cell[m].key = vg_root_of(r->parent, r->owner[r->cell[m]]);
     cell[m].index = r->cell[m];
   }
   if (st == VG_OK) st = vg_sort_keys(r->n_missing, tri, err);
@@ -534,6 +517,8 @@ vg_status vg_recover(struct vg_tets *t, size_t n_tri, const uint32_t (*tri)[3],
   if (st == VG_OK && r.n_missing)
     st = vg_fail(err, VG_ERR_GEOMETRY, "%zu surface triangles could not be "
                  "recovered in pockets", r.n_missing);
+  if (st == VG_OK && report->n_face_lost)
+    st = vg_recover_delaunay(t, &report->n_restored, err);
   free(missing);
   free(r.missing);
   free(r.parent);

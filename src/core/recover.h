@@ -21,4 +21,12 @@
 vg_status vg_recover(struct vg_tets *t, size_t n_tri, const uint32_t (*tri)[3],
                      struct vg_boundary_report *report, struct vg_error *err);
 
+/** Flip faces of t that are not locally Delaunay, fixed ones excepted, until
+ * none is left that a flip brings nearer to it: points inserted afterwards
+ * (core/insert.h) start from Delaunay cells. No edge or face of the surface is
+ * lost while all its triangles are fixed faces.
+ * n_flip out: flips made */
+vg_status vg_recover_delaunay(struct vg_tets *t, size_t *n_flip,
+                              struct vg_error *err);
+
 #endif

@@ -142,22 +142,31 @@ static double longest(const double *const corner[3])
 /* A triangle much larger than the cells here may cross the planes, and the
  * walls, each at another place, so its part within reach is cut out: by the
  * largest spacing found at it, and then, to be sure, by that found there. */
-static int meets(const struct vg_region *r, const struct vg_sizing *sizing,
-                 const double *const corner[3], double band, int is_sure)
+static int large_meets(const struct vg_region *r,
+                       const struct vg_sizing *sizing,
+                       const double *const corner[3], double most,
+                       double band, int is_sure)
 {
-  double d = gap(r, 3, corner), most = 0, middle[3];
+  double middle[3];
 
-  for (int k = 0; k < 3; k++) {
-    double h = vg_region_spacing(r, sizing, corner[k]);
-
-    if (h > most) most = h;
+  for (int k = 0; k < 3; k++)
     middle[k] = (corner[0][k] + corner[1][k] + corner[2][k]) / 3;
-  }
-  if (longest(corner) <= 2 * most) return d <= vg_region_band(r, band) * most;
   most = fmax(most, vg_region_spacing(r, sizing, middle));
   if (!reaches(r, corner, vg_region_band(r, band) * most, middle)) return 0;
   return !is_sure || reaches(r, corner, vg_region_band(r, band) *
                                vg_region_spacing(r, sizing, middle), middle);
+}
+
+static int meets(const struct vg_region *r, const struct vg_sizing *sizing,
+                 const double *const corner[3], double band, int is_sure)
+{
+  double most = 0;
+
+  for (int k = 0; k < 3; k++)
+    most = fmax(most, vg_region_spacing(r, sizing, corner[k]));
+  if (longest(corner) <= 2 * most)
+    return gap(r, 3, corner) <= vg_region_band(r, band) * most;
+  return large_meets(r, sizing, corner, most, band, is_sure);
 }
 
 int vg_region_meets(const struct vg_region *r, const struct vg_sizing *sizing,
@@ -176,33 +185,6 @@ int vg_region_may_meet(const struct vg_region *r,
   const double *corner[3] = {a, b, c};
 
   return meets(r, sizing, corner, band, 0);
-}
-
-int vg_region_meets_box(const struct vg_region *r,
-                        const struct vg_sizing *sizing, const double lo[3],
-                        const double hi[3], double band)
-{
-  double middle[3], half[3], h, diagonal = 0, far = 0;
-
-  for (int k = 0; k < 3; k++) {
-    middle[k] = 0.5 * (lo[k] + hi[k]);
-    half[k] = 0.5 * (hi[k] - lo[k]);
-    diagonal += half[k] * half[k];
-  }
-  for (int i = 0; i < r->n_plane + r->n_wall; i++) {
-    int is_wall = i >= r->n_plane;
-    const struct vg_plane *p = is_wall ? &r->wall[i - r->n_plane]
-                                       : &r->plane[i];
-    double s = side(p, middle), out = 0;
-
-    for (int k = 0; k < 3; k++) out += fabs(p->normal[k]) * half[k];
-    s = (is_wall ? -s : fabs(s)) - out;
-    if (s > far) far = s;
-  }
-  if (far == 0) return 1;
-  h = vg_region_spacing(r, sizing, middle) +
-      vg_sizing_slope(sizing) * sqrt(diagonal);
-  return far <= vg_region_band(r, band) * h;
 }
 
 int vg_region_has_cell(const struct vg_region *r,
@@ -230,7 +212,8 @@ vg_status vg_ruler_init(struct vg_ruler *ruler, const struct vg_region *region,
 {
   int m = region->n_plane + region->n_wall;
 
-  *ruler = (struct vg_ruler){region, sizing, x, m, NULL, NULL};
+  *ruler = (struct vg_ruler){region, sizing, x, vg_sizing_slope(sizing), m,
+                             NULL, NULL};
   ruler->side = vg_alloc(n, (size_t)(m ? m : 1) * sizeof *ruler->side);
   ruler->spacing = vg_alloc(n, sizeof *ruler->spacing);
   if (!ruler->side || !ruler->spacing)
@@ -259,7 +242,8 @@ static const double *sides_of(const struct vg_ruler *ruler, uint32_t p)
   return ruler->side + p * (size_t)ruler->n_side;
 }
 
-/* As gap(), for three corners of a ruler. */
+/* As gap(), for three corners of a ruler; without fmin() and fmax(), which are
+ * calls. */
 static double gap_of(const struct vg_ruler *ruler, const uint32_t v[3])
 {
   const double *a = sides_of(ruler, v[0]), *b = sides_of(ruler, v[1]);
@@ -267,9 +251,10 @@ static double gap_of(const struct vg_ruler *ruler, const uint32_t v[3])
   double far = 0;
 
   for (int i = 0; i < ruler->n_side; i++) {
-    double lo = fmin(fmin(a[i], b[i]), c[i]);
-    double hi = fmax(fmax(a[i], b[i]), c[i]);
+    double lo = a[i] < b[i] ? a[i] : b[i], hi = a[i] < b[i] ? b[i] : a[i];
 
+    if (c[i] < lo) lo = c[i];
+    if (c[i] > hi) hi = c[i];
     if (-hi > far) far = -hi;
     if (i < ruler->region->n_plane && lo > far) far = lo;
   }
@@ -277,25 +262,24 @@ static double gap_of(const struct vg_ruler *ruler, const uint32_t v[3])
 }
 
 /* Large triangles are looked at as in vg_region_meets once their sides do not
- * rule them out. */
+ * rule them out, by the most that the spacing may be in their middle or is. */
 int vg_ruler_meets(const struct vg_ruler *ruler, const uint32_t v[3],
                    double band)
 {
+  const struct vg_region *r = ruler->region;
   const double (*x)[3] = ruler->x;
   const double *corner[3] = {x[v[0]], x[v[1]], x[v[2]]};
   const double *h = ruler->spacing;
   double most = fmax(fmax(h[v[0]], h[v[1]]), h[v[2]]);
-  double reach = vg_region_band(ruler->region, band);
-  double far = gap_of(ruler, v), middle[3];
+  double reach = vg_region_band(r, band);
+  double far = gap_of(ruler, v), size = longest(corner), middle[3];
 
-  if (longest(corner) <= 2 * most) return far <= reach * most;
-  if (far > 0) {
+  if (size <= 2 * most) return far <= reach * most;
+  if (far > reach * (most + ruler->slope * size)) return 0;
+  if (far > reach * most) {
     for (int k = 0; k < 3; k++)
       middle[k] = (corner[0][k] + corner[1][k] + corner[2][k]) / 3;
-    if (far > reach * most &&
-        far > reach * vg_region_spacing(ruler->region, ruler->sizing, middle))
-      return 0;
+    if (far > reach * vg_region_spacing(r, ruler->sizing, middle)) return 0;
   }
-  return vg_region_meets(ruler->region, ruler->sizing, corner[0], corner[1],
-                         corner[2], band);
+  return large_meets(r, ruler->sizing, corner, most, band, 1);
 }

@@ -72,17 +72,13 @@ int vg_region_may_meet(const struct vg_region *r,
                        const struct vg_sizing *sizing, const double a[3],
                        const double b[3], const double c[3], double band);
 
-/** May a triangle within the box come as near? Never no where one does. */
-int vg_region_meets_box(const struct vg_region *r,
-                        const struct vg_sizing *sizing, const double lo[3],
-                        const double hi[3], double band);
-
 /** Distances of many points from a region, measured once: questions about
  * their triangles then cost no look-up of sizes. */
 struct vg_ruler {
   const struct vg_region *region;    /* borrowed, as the next two */
   const struct vg_sizing *sizing;
   const double (*x)[3];
+  double slope;              /* of the sizing */
   int n_side;                /* of a point: of all planes, then all walls */
   double *side;              /* [points][n_side] */
   double *spacing;           /* [points] at the foot */

@@ -95,7 +95,7 @@ static vg_status build(const struct vg_sizing_options *o,
                        const struct vg_samples *samples, struct vg_sizing *s,
                        struct vg_error *err)
 {
-  size_t n = samples->n, limit = LEAF_BASE;
+  size_t n = samples->n_sized, limit = LEAF_BASE;
   double lo[3] = { 0, 0, 0 }, cap = largest(&f->set, samples), side;
 
   if (!(cap > 0) && !(o->h_max > 0 && isfinite(o->h_max)))
@@ -118,6 +118,24 @@ static vg_status build(const struct vg_sizing_options *o,
   return vg_octree_build(f, lo, side, limit, o->threads, &s->octree, err);
 }
 
+/* The growth of the surface from above or from below. */
+static vg_status make_near(const struct vg_sizing_options *o,
+                           const struct vg_mesh *surface,
+                           const struct vg_samples *all, int below,
+                           struct vg_near **out, struct vg_error *err)
+{
+  struct vg_samples s = VG_SAMPLES_INIT;
+  vg_status st;
+
+  VG_TRY(vg_samples_thin(surface, all, o->growth - 1, below, o->threads, &s,
+                         err));
+  st = vg_near_new(s.n, (const double (*)[3])s.p, s.h, o->growth - 1,
+                   o->threads, out, err);
+done:
+  vg_samples_release(&s);
+  return st;
+}
+
 vg_status vg_sizing_new(const struct vg_sizing_options *options, size_t n,
                         const struct vg_source *source,
                         const struct vg_mesh *surface,
@@ -126,7 +144,7 @@ vg_status vg_sizing_new(const struct vg_sizing_options *options, size_t n,
   vg_status st = VG_OK;
   struct vg_field f = { .set = VG_SOURCE_SET_INIT };
   struct vg_samples samples = VG_SAMPLES_INIT;
-  struct vg_near *near = NULL;
+  struct vg_near *near = NULL, *under = NULL;
   struct vg_sizing *s = NULL;
 
   VG_TRY(check_options(options, err));
@@ -139,11 +157,13 @@ vg_status vg_sizing_new(const struct vg_sizing_options *options, size_t n,
   }
   VG_TRY(vg_source_prepare(options, n, source, 1, &f.set, err));
   if (surface && options->from_surface)
-    VG_TRY(vg_samples_make(surface, &samples, err));
-  if (samples.n)
-    VG_TRY(vg_near_new(samples.n, (const double (*)[3])samples.p, samples.h,
-                       options->growth - 1, options->threads, &near, err));
+    VG_TRY(vg_samples_make(surface, options->threads, &samples, err));
+  if (samples.n_sized)
+    VG_TRY(make_near(options, surface, &samples, 0, &near, err));
+  if (samples.n_sized && n)
+    VG_TRY(make_near(options, surface, &samples, 1, &under, err));
   f.near = near;
+  f.under = under;
   VG_TRY(build(options, surface, &f, &samples, s, err));
   find_range(s);
   *out = s;
@@ -152,6 +172,7 @@ done:
   vg_source_release(&f.set);
   vg_samples_release(&samples);
   vg_near_free(near);
+  vg_near_free(under);
   vg_sizing_free(s);
   return st;
 }
@@ -159,7 +180,8 @@ done:
 void vg_sizing_free(struct vg_sizing *s)
 {
   if (!s) return;
-  vg_octree_release(&s->octree);
+  if (s->common.data) vg_common_release(&s->common);
+  else vg_octree_release(&s->octree);
   free(s);
 }
 

@@ -80,18 +80,16 @@ vg_status vg_sizing_new(const struct vg_sizing_options *options, size_t n,
 /** Free a field; NULL is accepted. */
 void vg_sizing_free(struct vg_sizing *s);
 
-/** All of a field as bytes, for other ranks on machines of the same kind.
+/** The field of the first rank of a node on all of its ranks, in one copy if
+ * they can have memory in common (base/comm.h). Collective over the node.
  *
- * @param out  replaced on success, free(out->data); untouched on failure */
-vg_status vg_sizing_pack(const struct vg_sizing *s, struct vg_bytes *out,
-                         struct vg_error *err);
+ * @param s  the field, or NULL on other ranks; replaced by the common one,
+ *           which has the same values bit by bit. Untouched on failure */
+vg_status vg_sizing_share(struct vg_comm *c, struct vg_sizing **s,
+                          struct vg_error *err);
 
-/** The field that was packed; the same values bit by bit. VG_ERR_FORMAT for
- * bytes that are no field: whatever they are, what is returned can be used.
- *
- * @param out  owned by the caller, vg_sizing_free; untouched on failure */
-vg_status vg_sizing_unpack(const struct vg_bytes *bytes,
-                           struct vg_sizing **out, struct vg_error *err);
+/** Bytes of it that the ranks of a node have in common. */
+size_t vg_sizing_common(const struct vg_sizing *s);
 
 /** Target edge length at x, > 0. Outside the root cube: that of the nearest
  * point of it, grown with the distance, up to h_max if one is given, or the

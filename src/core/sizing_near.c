@@ -1,53 +1,13 @@
-#include "core/sizing_near.h"
+#include "core/sizing_near_parts.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#ifdef __SSE2__
-#include <emmintrin.h>
-#endif
-
 #include "base/memory.h"
 #include "base/parallel.h"
 
-/* Samples are classed by size, so that large and small ones do not spoil each
- * other's bounds; each class is a tree: samples in the order of a k-d tree,
- * eight to a block, blocks eight to a group, groups eight to a group above,
- * up to one root. Eight lanes each, in
- * loops that compilers turn into vectors. Positions are single precision and
- * relative to an origin of the block or group, so that rounding is relative
- * to the distance itself, however wide the span of sizes is; SHY allows for
- * it where a bound must not be too high. */
-#define LANES 8
-#define MAX_LEVEL 12
-#define MAX_CLASS 16     /* sizes within a factor of four; the last: others */
-#define SHY 2e-6f
-
-struct block {
-  double origin[3];
-  float p[3][LANES], h[LANES];
-};
-
-struct group {
-  double origin[3];
-  float mid[3][LANES], half[3][LANES], h_min[LANES], h_max[LANES];
-};
-
-struct tree {
-  const struct block *block;
-  const struct group *group[MAX_LEVEL]; /* the lowest level first */
-  int n_level;
-  float h_min, h_max;
-};
-
-struct vg_near {
-  struct block *block;   /* of all trees, one after the other */
-  struct group *group;
-  struct tree tree[MAX_CLASS];
-  int n_tree;
-  float slope, offset;
-};
+#define LANES VG_NEAR_LANES
 
 /* Order of the samples: medians of the longest side, again and again. */
 
@@ -156,8 +116,9 @@ static void order_keys(struct key *a, size_t n, size_t unit)
   order_keys(a + m, n - m, unit);
 }
 
-/* Keys that one thread orders alone. */
+/* Keys that one thread orders alone, and blocks or groups that it fills. */
 #define RANGE 8192
+#define GRAIN 256
 
 struct range {
   struct key *key;
@@ -222,43 +183,27 @@ static int size_class(double h, double least)
 {
   int c = 0;
 
-  for (least *= 4; h > least && c < MAX_CLASS - 1; least *= 4) c++;
+  for (least *= 4; h > least && c < VG_NEAR_CLASSES - 1; least *= 4) c++;
   return c;
 }
 
 /* Keys by class of size, the classes in order; count gets how many each. */
 static void classify(size_t n, const double (*p)[3], const double *h,
-                     struct key *key, size_t count[MAX_CLASS])
+                     struct key *key, size_t count[VG_NEAR_CLASSES])
 {
   double least = h[0];
-  size_t at[MAX_CLASS];
+  size_t at[VG_NEAR_CLASSES];
 
   for (size_t i = 1; i < n; i++) least = h[i] < least ? h[i] : least;
-  memset(count, 0, MAX_CLASS * sizeof *count);
+  memset(count, 0, VG_NEAR_CLASSES * sizeof *count);
   for (size_t i = 0; i < n; i++) count[size_class(h[i], least)]++;
   at[0] = 0;
-  for (int c = 1; c < MAX_CLASS; c++) at[c] = at[c - 1] + count[c - 1];
+  for (int c = 1; c < VG_NEAR_CLASSES; c++) at[c] = at[c - 1] + count[c - 1];
   for (size_t i = 0; i < n; i++) {
     struct key *a = key + at[size_class(h[i], least)]++;
 
     a->at = (uint32_t)i;
     for (int k = 0; k < 3; k++) a->p[k] = (float)(p[i][k] - p[0][k]);
-  }
-}
-
-/* The last block is padded by repeating its last sample. */
-static void fill_blocks(struct block *block, size_t n, const double (*p)[3],
-                        const double *h, const struct key *key)
-{
-  for (size_t i = 0; i < n || i % LANES; i++) {
-    size_t from = key[i < n ? i : n - 1].at;
-    struct block *b = block + i / LANES;
-
-    b->h[i % LANES] = (float)h[from];
-    for (int k = 0; k < 3; k++) {
-      if (!(i % LANES)) b->origin[k] = p[from][k];
-      b->p[k][i % LANES] = (float)(p[from][k] - b->origin[k]);
-    }
   }
 }
 
@@ -268,7 +213,7 @@ struct bound {
   float h_min, h_max;
 };
 
-static void bound_block(const struct block *b, struct bound *out)
+static void bound_block(const struct vg_near_block *b, struct bound *out)
 {
   out->h_min = out->h_max = b->h[0];
   for (int k = 0; k < 3; k++) out->lo[k] = out->hi[k] = b->origin[k];
@@ -295,70 +240,111 @@ static void join(struct bound *a, const struct bound *b)
 }
 
 /* Group of n <= LANES bounds; an empty lane is never entered. */
-static void fill_group(const struct bound *from, size_t n, struct group *g)
+static void fill_group(const struct bound *from, size_t n,
+                       struct vg_near_group *g)
 {
   memset(g, 0, sizeof *g);
   for (int k = 0; k < 3; k++)
     g->origin[k] = 0.5 * (from[0].lo[k] + from[0].hi[k]);
   for (size_t j = 0; j < LANES; j++) {
-    g->h_min[j] = j < n ? from[j].h_min : INFINITY;
+    g->h_min[j] = j < n ? from[j].h_min : VG_NEAR_NEVER;
     g->h_max[j] = j < n ? from[j].h_max : -INFINITY;
     for (int k = 0; k < 3 && j < n; k++) {
       double half = 0.5 * (from[j].hi[k] - from[j].lo[k]);
       double mid = from[j].lo[k] + half - g->origin[k];
 
       g->mid[k][j] = (float)mid;
-      g->half[k][j] = (float)((half + fabs(mid) * (double)SHY) * 1.000001);
+      half += fabs(mid) * (double)VG_NEAR_SHY;
+      g->half[k][j] = (float)(half * 1.000001);
     }
   }
 }
 
-/* Groups level by level, over n blocks; bound[] shrinks to the bounds of the
- * level above. Returns the number of groups. */
-static size_t fill_groups(struct tree *t, size_t n, struct group *group,
-                          struct bound *bound)
+struct filling {
+  const double (*p)[3], *h;
+  const struct key *key;
+  size_t n;
+  struct vg_near_block *block;
+  struct vg_near_group *group;
+  struct bound *bound, *up;     /* of what goes in, and of what comes out */
+};
+
+/* The last block is padded by repeating its last sample. */
+static void block_body(void *context, size_t first, size_t end, int worker)
 {
-  size_t at = 0;
+  const struct filling *f = context;
 
-  for (size_t i = 0; i < n; i++) bound_block(t->block + i, bound + i);
-  do {
-    size_t n_up = (n + LANES - 1) / LANES;
+  (void)worker;
+  for (size_t i = first * LANES; i < end * LANES; i++) {
+    size_t from = f->key[i < f->n ? i : f->n - 1].at, lane;
+    struct vg_near_block *b = f->block + i / LANES;
 
-    t->group[t->n_level++] = group + at;
-    for (size_t i = 0; i < n_up; i++) {
-      size_t m = n - i * LANES < LANES ? n - i * LANES : LANES;
-      struct bound all = bound[i * LANES];
-
-      fill_group(bound + i * LANES, m, group + at + i);
-      for (size_t j = 1; j < m; j++) join(&all, bound + i * LANES + j);
-      bound[i] = all;
+    lane = i % LANES;
+    b->h[lane] = (float)f->h[from];
+    for (int k = 0; k < 3; k++) {
+      if (!lane) b->origin[k] = f->p[from][k];
+      b->p[k][lane] = (float)(f->p[from][k] - b->origin[k]);
     }
-    at += n_up;
-    n = n_up;
+  }
+  for (size_t i = first; i < end; i++)
+    bound_block(f->block + i, f->up + i);
+}
+
+static void group_body(void *context, size_t first, size_t end, int worker)
+{
+  const struct filling *f = context;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++) {
+    const struct bound *from = f->bound + i * LANES;
+    size_t n = f->n - i * LANES;
+
+    if (n > LANES) n = LANES;
+    fill_group(from, n, f->group + i);
+    f->up[i] = from[0];
+    for (size_t j = 1; j < n; j++) join(f->up + i, from + j);
+  }
+}
+
+/* A tree of f->n samples: its blocks, and groups level by level. Moves *f on
+ * behind them. */
+static void fill_tree(struct filling *f, struct vg_near_tree *t, int threads)
+{
+  struct bound *bound = f->up;
+  size_t n = (f->n + LANES - 1) / LANES;
+
+  t->block = f->block;
+  vg_parallel_for(threads, n, GRAIN, block_body, f);
+  f->key += f->n;
+  f->block += n;
+  do {
+    f->bound = f->up;
+    f->up += n;
+    f->n = n;
+    n = (n + LANES - 1) / LANES;
+    t->group[t->n_level++] = f->group;
+    vg_parallel_for(threads, n, GRAIN, group_body, f);
+    f->group += n;
   } while (n > 1);
-  t->h_min = bound[0].h_min;
-  t->h_max = bound[0].h_max;
-  return at;
+  t->h_min = f->up->h_min;
+  t->h_max = f->up->h_max;
+  f->up = bound;
 }
 
 static int fill_trees(struct vg_near *t, const double (*p)[3],
                       const double *h, struct key *key,
-                      const size_t count[MAX_CLASS], struct bound *bound,
-                      int threads)
+                      const size_t count[VG_NEAR_CLASSES],
+                      struct bound *bound, int threads)
 {
-  struct block *block = t->block;
-  struct group *group = t->group;
+  struct filling f = { .p = p, .h = h, .key = key, .block = t->block,
+                       .group = t->group, .up = bound };
 
-  for (int c = 0; c < MAX_CLASS; c++) {
-    size_t n_block = (count[c] + LANES - 1) / LANES;
-
-    if (!n_block) continue;
+  for (int c = 0; c < VG_NEAR_CLASSES; c++) {
+    if (!count[c]) continue;
     if (order_samples(key, count[c], threads)) return -1;
-    fill_blocks(block, count[c], p, h, key);
-    t->tree[t->n_tree].block = block;
-    group += fill_groups(t->tree + t->n_tree++, n_block, group, bound);
-    block += n_block;
     key += count[c];
+    f.n = count[c];
+    fill_tree(&f, t->tree + t->n_tree++, threads);
   }
   return 0;
 }
@@ -369,17 +355,16 @@ vg_status vg_near_new(size_t n, const double (*p)[3], const double *h,
 {
   struct vg_near *t = vg_calloc(1, sizeof *t);
   struct key *key = vg_alloc(n, sizeof *key);
-  size_t count[MAX_CLASS], n_block = n / LANES + MAX_CLASS;
-  struct bound *bound = vg_alloc(n_block, sizeof *bound);
+  size_t count[VG_NEAR_CLASSES], n_block = n / LANES + VG_NEAR_CLASSES;
+  size_t n_group = n_block / 7 + VG_NEAR_CLASSES * VG_NEAR_LEVELS;
+  struct bound *bound = vg_alloc(n_block + n_group, sizeof *bound);
 
   if (!t || !key || !bound || n > UINT32_MAX / 2) goto refused;
   t->slope = (float)slope;
-  t->offset = (float)(slope * VG_NEAR_PLATEAU < VG_NEAR_OFFSET
-                        ? slope * VG_NEAR_PLATEAU : VG_NEAR_OFFSET);
+  t->offset = (float)vg_near_offset(slope);
   t->block = vg_alloc(n_block, sizeof *t->block);
   /* a seventh of the blocks, and what is not full on each level */
-  t->group = vg_alloc(n_block / 7 + MAX_CLASS * MAX_LEVEL,
-                      sizeof *t->group);
+  t->group = vg_alloc(n_group, sizeof *t->group);
   if (!t->block || !t->group) goto refused;
   classify(n, p, h, key, count);
   if (fill_trees(t, p, h, key, count, bound, threads)) goto refused;
@@ -400,210 +385,4 @@ void vg_near_free(struct vg_near *t)
   free(t->block);
   free(t->group);
   free(t);
-}
-
-/* Searches. Recursion is as deep as the hierarchy: 8^12 samples at most. */
-
-struct search {
-  const struct vg_near *t;
-  const struct tree *tree;
-  double mid[3];
-  float half[3], best, sloppy; /* sloppy: relative error allowed */
-  uint32_t hint;
-};
-
-/* Four lanes at once, in the vectors of gcc and clang; sqrt alone needs help.
- * Every operation rounds as its scalar form does, so machines agree. */
-typedef float lanes __attribute__((vector_size(16)));
-typedef int32_t masks __attribute__((vector_size(16)));
-
-static inline lanes load(const float *p)
-{
-  lanes v;
-
-  memcpy(&v, p, sizeof v);
-  return v;
-}
-
-static inline void store(float *p, lanes v)
-{
-  memcpy(p, &v, sizeof v);
-}
-
-static inline lanes lanes_abs(lanes v)
-{
-  return (lanes)((masks)v & 0x7fffffff);
-}
-
-static inline lanes lanes_max0(lanes v)
-{
-  return (lanes)((masks)v & (masks)(v > 0));
-}
-
-static inline lanes lanes_max(lanes a, lanes b)
-{
-  masks m = (masks)(a > b);
-
-  return (lanes)(((masks)a & m) | ((masks)b & ~m));
-}
-
-static inline lanes lanes_sqrt(lanes v)
-{
-#ifdef __SSE2__
-  return (lanes)_mm_sqrt_ps((__m128)v);
-#else
-  for (int j = 0; j < 4; j++) v[j] = sqrtf(v[j]);
-  return v;
-#endif
-}
-
-/* Distances between the box of the search and eight boxes (half NULL: points)
- * around mid, relative to an origin. */
-static inline void distances(const struct search *q, const double origin[3],
-                             const float mid[3][LANES],
-                             const float (*half)[LANES], float d[LANES])
-{
-  lanes x[3], h[3];
-
-  for (int k = 0; k < 3; k++) {
-    x[k] = (float)(q->mid[k] - origin[k]) - (lanes){ 0 };
-    h[k] = q->half[k] - (lanes){ 0 };
-  }
-  for (int j = 0; j < LANES; j += 4) {
-    lanes sum = { 0 };
-
-    for (int k = 0; k < 3; k++) {
-      lanes a = lanes_abs(x[k] - load(mid[k] + j)) - h[k];
-
-      if (half) a -= load(half[k] + j);
-      a = lanes_max0(a);
-      sum += a * a;
-    }
-    store(d + j, lanes_sqrt(sum));
-  }
-}
-
-static void visit_block(struct search *q, const struct block *b)
-{
-  const float keep = 1 - q->t->offset, slope = q->t->slope;
-  float v[LANES], best = q->best;
-
-  distances(q, b->origin, b->p, NULL, v);
-  for (int j = 0; j < LANES; j += 4) {
-    lanes h = load(b->h + j);
-
-    store(v + j, lanes_max(h * keep + slope * load(v + j), h));
-  }
-  for (int j = 0; j < LANES; j++) best = v[j] < best ? v[j] : best;
-  if (!(best < q->best)) return;
-  q->best = best;
-  q->hint = (uint32_t)(b - q->t->block);
-}
-
-/* Nearest child first, so that the rest is seldom entered. */
-static void descend_above(struct search *q, int level, size_t at)
-{
-  const struct vg_near *t = q->t;
-  const struct group *g = q->tree->group[level] + at;
-  const float keep = 1 - t->offset, slope = t->slope;
-  float bound[LANES];
-
-  distances(q, g->origin, g->mid, g->half, bound);
-  for (int j = 0; j < LANES; j += 4) {
-    lanes h = load(g->h_min + j);
-
-    store(bound + j, lanes_max(h * keep + slope * load(bound + j), h) *
-                     (1 - SHY));
-  }
-  for (;;) {
-    float least = q->best * (1 - q->sloppy);
-    int first = LANES;
-
-    for (int j = 0; j < LANES; j++)
-      if (bound[j] < least) {
-        least = bound[j];
-        first = j;
-      }
-    if (first == LANES) return;
-    bound[first] = INFINITY;
-    if (level) descend_above(q, level - 1, at * LANES + (size_t)first);
-    else visit_block(q, q->tree->block + at * LANES + first);
-  }
-}
-
-double vg_near_above(const struct vg_near *t, const double lo[3],
-                     const double hi[3], double below, double sloppy,
-                     uint32_t *hint)
-{
-  struct search q = { .t = t, .best = (float)below, .hint = *hint,
-                      .sloppy = (float)sloppy };
-
-  for (int k = 0; k < 3; k++) {
-    q.half[k] = (float)(0.5 * (hi[k] - lo[k]));
-    q.mid[k] = 0.5 * (lo[k] + hi[k]);
-  }
-  visit_block(&q, t->block + *hint);
-  for (int c = 0; c < t->n_tree; c++) {
-    q.tree = t->tree + c;
-    if (q.tree->h_min * (1 - q.sloppy) > q.best) break;
-    descend_above(&q, q.tree->n_level - 1, 0);
-  }
-  *hint = q.hint;
-  return (double)q.best;
-}
-
-static void visit_block_below(struct search *q, const struct block *b)
-{
-  float d[LANES];
-
-  distances(q, b->origin, b->p, NULL, d);
-  for (int j = 0; j < LANES; j++) {
-    float left = b->h[j] * (1 + q->t->offset) - q->t->slope * d[j];
-
-    left = left < b->h[j] ? left : b->h[j];
-    q->best = left > q->best ? left : q->best;
-  }
-}
-
-static void descend_below(struct search *q, int level, size_t at)
-{
-  const struct vg_near *t = q->t;
-  const struct group *g = q->tree->group[level] + at;
-  const float keep = 1 + t->offset, slope = t->slope;
-  float bound[LANES];
-
-  distances(q, g->origin, g->mid, g->half, bound);
-  for (int j = 0; j < LANES; j++) {
-    float left = g->h_max[j] * keep - slope * bound[j];
-
-    bound[j] = left < g->h_max[j] ? left : g->h_max[j];
-  }
-  for (;;) {
-    float most = q->best * (1 + q->sloppy);
-    int first = LANES;
-
-    for (int j = 0; j < LANES; j++)
-      if (bound[j] > most) {
-        most = bound[j];
-        first = j;
-      }
-    if (first == LANES) return;
-    bound[first] = -INFINITY;
-    if (level) descend_below(q, level - 1, at * LANES + (size_t)first);
-    else visit_block_below(q, q->tree->block + at * LANES + first);
-  }
-}
-
-double vg_near_below(const struct vg_near *t, const double x[3],
-                     double above, double sloppy)
-{
-  struct search q = { .t = t, .best = (float)above, .sloppy = (float)sloppy,
-                      .mid = { x[0], x[1], x[2] } };
-
-  for (int c = t->n_tree - 1; c >= 0; c--) {
-    q.tree = t->tree + c;
-    if (q.tree->h_max <= q.best) break;
-    descend_below(&q, q.tree->n_level - 1, 0);
-  }
-  return (double)q.best;
 }

@@ -17,8 +17,16 @@
 
 #define VG_NEAR_PLATEAU 0.25
 #define VG_NEAR_OFFSET 0.05
+#define VG_NEAR_CLASSES 16 /* sizes within a factor of 4; the last: others */
 
 struct vg_near;
+
+/** s p, as a share of h_i. */
+static inline double vg_near_offset(double slope)
+{
+  return slope * VG_NEAR_PLATEAU < VG_NEAR_OFFSET ? slope * VG_NEAR_PLATEAU
+                                                  : VG_NEAR_OFFSET;
+}
 
 /** Build over n >= 1 samples; p [n][3] and h [n] are copied. threads: as
  * vg_parallel_for's; the same for any number. */
@@ -32,17 +40,26 @@ void vg_near_free(struct vg_near *t);
 /** Least "from above" value in the box lo..hi (a point: lo == hi).
  *
  * @param below   only values under this matter; it is returned if none is
- * @param sloppy  relative error allowed upwards; some spares much searching
  * @param hint    in/out: where the search starts, and where it ended; any
- *                value that an earlier call returned, 0 at first
- * The result depends on the arguments alone. */
+ *                value that an earlier call returned, 0 at first. It is for
+ *                speed: the result does not depend on it. */
 double vg_near_above(const struct vg_near *t, const double lo[3],
-                     const double hi[3], double below, double sloppy,
-                     uint32_t *hint);
+                     const double hi[3], double below, uint32_t *hint);
 
-/** Greatest "from below" value at x; `above` if none exceeds it. The result
- * may be too low by the relative error `sloppy`. */
+/** What classes of samples give from below at some point near those where it
+ * is asked for, which tells what they can give there; made when it is first
+ * of use. is_known is 0 at first. */
+struct vg_near_reach {
+  double mid[3];
+  float trifle;            /* less than that need not be known */
+  int is_known;
+  float most[VG_NEAR_CLASSES];
+};
+
+/** Greatest "from below" value at x; `above` if none exceeds it, or any that
+ * is not below `enough`. reach: for speed, or NULL. */
 double vg_near_below(const struct vg_near *t, const double x[3],
-                     double above, double sloppy);
+                     double above, double enough,
+                     struct vg_near_reach *reach);
 
 #endif

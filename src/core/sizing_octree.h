@@ -10,7 +10,8 @@
  * below are the growth of the surface (sizing_near.h). So the field equals
  * the local size on the surface, and departs from it at the growth rate. */
 struct vg_field {
-  const struct vg_near *near;  /* NULL: no surface */
+  const struct vg_near *near;  /* from above; NULL: no surface */
+  const struct vg_near *under; /* from below; NULL: nor any source */
   struct vg_source_set set;
   double slope;                /* growth - 1 */
   double h_min, h_max;         /* clamp, 0 and INFINITY for none */
@@ -28,9 +29,23 @@ struct vg_octree {
 };
 #define VG_OCTREE_INIT { 0 }
 
-/** Value of the field at x before its gradient is limited. */
+double vg_field_clamp(const struct vg_field *f, double h);
+
+/** Value of the field at x before its gradient is limited. reach, hint: for
+ * the searches (sizing_near.h), without influence. */
 double vg_field_at(const struct vg_field *f, const double x[3],
-                   uint32_t *hint);
+                   struct vg_near_reach *reach, uint32_t *hint);
+
+/** The surface's bounds applied to the sources' size at x. */
+double vg_field_combine(const struct vg_field *f, const double x[3],
+                        double source, struct vg_near_reach *reach,
+                        uint32_t *hint);
+
+/** Lower bound of the field within a cube; of VGRID's mean an estimate from
+ * the centre, which is good in a cube that resolves its sources. */
+double vg_field_floor(const struct vg_field *f, const double lo[3],
+                      double side, struct vg_near_reach *reach,
+                      uint32_t *hint);
 
 /** Build over the cube lo, side with about max_leaf leaves at most. *out is
  * empty before, and on failure. threads: as vg_parallel_for's; the same tree

@@ -10,6 +10,7 @@ struct vg_sizing {
   struct vg_octree octree;
   double slope, cap;       /* of sizes outside the octree */
   double least, most;      /* over the octree */
+  struct vg_common common; /* where the octree's arrays are, if anywhere */
 };
 
 #endif

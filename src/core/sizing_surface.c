@@ -1,10 +1,15 @@
 #include "core/sizing_surface.h"
 
 #include <math.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/parallel.h"
+#include "core/sizing_near.h"
+
+#define GRAIN 4096      /* points or faces for a thread at a time */
 
 /* Ratio of the longest edge to the size above which the centroid of a face
  * is no sample. */
@@ -102,34 +107,69 @@ static double point_size(const struct sum *s)
   return h > least ? h : least;
 }
 
-static void add_centroid(const struct vg_mesh *m, const uint32_t *v, int n,
-                         const struct sum *sum, struct vg_samples *out)
+/* The corners of face i, triangles before quadrilaterals; returns how many. */
+static int corners(const struct vg_mesh *m, size_t i, const uint32_t **v)
 {
-  double p[3] = { 0, 0, 0 }, h = 0, longest = 0;
+  *v = i < m->n_tri ? m->tri[i] : m->quad[i - m->n_tri];
+  return i < m->n_tri ? 3 : 4;
+}
 
+static void set_centroid(const struct vg_mesh *m, size_t face,
+                         const struct vg_samples *s)
+{
+  double *p = s->p[m->n_point + face], h = 0, longest = 0;
+  const uint32_t *v;
+  int n = corners(m, face, &v);
+
+  for (int k = 0; k < 3; k++) p[k] = 0;
+  s->h[m->n_point + face] = 0;
   for (int i = 0; i < n; i++) {
     const double *a = m->point[v[i]];
     double edge = length(a, m->point[v[(i + 1) % n]]);
 
-    if (!sum[v[i]].n_edge) return;
-    h += point_size(sum + v[i]) / n;
+    if (!(s->h[v[i]] > 0)) return;
+    h += s->h[v[i]] / n;
     if (edge > longest) longest = edge;
     for (int k = 0; k < 3; k++) p[k] += a[k] / n;
   }
   if (longest > STRETCHED * h) return;
-  memcpy(out->p[out->n], p, sizeof p);
-  out->h[out->n++] = h;
+  s->h[m->n_point + face] = h;
 }
 
-vg_status vg_samples_make(const struct vg_mesh *m, struct vg_samples *out,
-                          struct vg_error *err)
+struct making {
+  const struct vg_mesh *m;
+  const struct sum *sum;
+  const struct vg_samples *s;
+};
+
+static void point_body(void *context, size_t first, size_t end, int worker)
+{
+  const struct making *a = context;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++) {
+    memcpy(a->s->p[i], a->m->point[i], sizeof *a->s->p);
+    a->s->h[i] = a->sum[i].n_edge ? point_size(a->sum + i) : 0;
+  }
+}
+
+static void centroid_body(void *context, size_t first, size_t end, int worker)
+{
+  const struct making *a = context;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++) set_centroid(a->m, i, a->s);
+}
+
+vg_status vg_samples_make(const struct vg_mesh *m, int threads,
+                          struct vg_samples *out, struct vg_error *err)
 {
   size_t n = m->n_point + m->n_tri + m->n_quad;
   struct sum *sum = vg_calloc(m->n_point, sizeof *sum);
+  struct making a = { m, sum, out };
 
-  out->n = 0;
-  out->p = vg_alloc(n, sizeof *out->p);
-  out->h = vg_alloc(n, sizeof *out->h);
+  *out = (struct vg_samples){ vg_alloc(n, sizeof *out->p),
+                              vg_alloc(n, sizeof *out->h), n, 0 };
   if (!sum || !out->p || !out->h) {
     free(sum);
     vg_samples_release(out);
@@ -137,16 +177,82 @@ vg_status vg_samples_make(const struct vg_mesh *m, struct vg_samples *out,
   }
   for (size_t i = 0; i < m->n_tri; i++) add_face(m, m->tri[i], 3, sum);
   for (size_t i = 0; i < m->n_quad; i++) add_face(m, m->quad[i], 4, sum);
-  for (size_t i = 0; i < m->n_point; i++) {
-    if (!sum[i].n_edge) continue;
-    memcpy(out->p[out->n], m->point[i], sizeof *out->p);
-    out->h[out->n++] = point_size(sum + i);
-  }
-  for (size_t i = 0; i < m->n_tri; i++)
-    add_centroid(m, m->tri[i], 3, sum, out);
-  for (size_t i = 0; i < m->n_quad; i++)
-    add_centroid(m, m->quad[i], 4, sum, out);
+  vg_parallel_for(threads, m->n_point, GRAIN, point_body, &a);
+  vg_parallel_for(threads, m->n_tri + m->n_quad, GRAIN, centroid_body, &a);
+  for (size_t i = 0; i < n; i++) out->n_sized += out->h[i] > 0;
   free(sum);
+  return VG_OK;
+}
+
+/* Samples that are never felt. With c the cone's size at its tip, (1 -+ offset)
+ * h, sample i is above sample j everywhere where c_j + slope |p_i p_j| <= c_i,
+ * and h_j < h_i; from below likewise. That is so along chains of samples, so
+ * what is left holds for all. MARGIN keeps it so in single precision. */
+#define MARGIN 1e-5
+
+struct thinning {
+  const struct vg_mesh *m;
+  const struct vg_samples *s;
+  _Atomic unsigned char *idle;
+  double slope, keep;
+};
+
+static void compare(const struct thinning *t, size_t i, size_t j)
+{
+  double c, h[2] = { t->s->h[i], t->s->h[j] };
+  size_t low = h[0] < h[1] ? i : j, high = low == i ? j : i;
+
+  if (!(h[0] > 0 && h[1] > 0)) return;
+  c = t->keep * fabs(h[0] - h[1]);
+  c -= MARGIN * (h[0] + h[1]);
+  if (!(c > 0) || c < t->slope * length(t->s->p[i], t->s->p[j])) return;
+  atomic_store_explicit(t->idle + (t->keep < 1 ? high : low), 1,
+                        memory_order_relaxed);
+}
+
+static void thin_body(void *context, size_t first, size_t end, int worker)
+{
+  const struct thinning *t = context;
+
+  (void)worker;
+  for (size_t f = first; f < end; f++) {
+    const uint32_t *v;
+    int n = corners(t->m, f, &v);
+
+    for (int i = 0; i < n; i++) {
+      compare(t, v[i], v[(i + 1) % n]);
+      compare(t, v[i], t->m->n_point + f);
+    }
+  }
+}
+
+vg_status vg_samples_thin(const struct vg_mesh *m,
+                          const struct vg_samples *all, double slope,
+                          int below, int threads, struct vg_samples *out,
+                          struct vg_error *err)
+{
+  double offset = vg_near_offset(slope);
+  struct thinning t = { m, all, vg_calloc(all->n, sizeof *t.idle), slope,
+                        below ? 1 + offset : 1 - offset };
+
+  out->n = 0;
+  out->p = vg_alloc(all->n_sized, sizeof *out->p);
+  out->h = vg_alloc(all->n_sized, sizeof *out->h);
+  if (!t.idle || !out->p || !out->h) {
+    free(t.idle);
+    vg_samples_release(out);
+    return vg_fail_memory(err, "the sizes on the surface");
+  }
+  vg_parallel_for(threads, m->n_tri + m->n_quad, GRAIN, thin_body, &t);
+  for (size_t i = 0; i < all->n; i++) {
+    if (!(all->h[i] > 0) ||
+        atomic_load_explicit(t.idle + i, memory_order_relaxed))
+      continue;
+    memcpy(out->p[out->n], all->p[i], sizeof *out->p);
+    out->h[out->n++] = all->h[i];
+  }
+  out->n_sized = out->n;
+  free(t.idle);
   return VG_OK;
 }
 

@@ -432,6 +432,22 @@ done:
   return st;
 }
 
+static void turn_tri(uint32_t node[3])
+{
+  uint32_t n = node[1];
+
+  node[1] = node[2];
+  node[2] = n;
+}
+
+static void turn_quad(uint32_t node[4])
+{
+  uint32_t n = node[1];
+
+  node[1] = node[3];
+  node[3] = n;
+}
+
 /* Halves of a quadrilateral turn together, or it stays as it is. */
 static void apply_flips(struct check *c)
 {
@@ -439,20 +455,27 @@ static void apply_flips(struct check *c)
 
   for (size_t t = 0; t < m->n_tri; t++)
     if (c->flip[t]) {
-      uint32_t n = m->tri[t][1];
-
-      m->tri[t][1] = m->tri[t][2];
-      m->tri[t][2] = n;
+      turn_tri(m->tri[t]);
       c->r->n_flipped++;
     }
   for (size_t q = 0; q < m->n_quad; q++)
     if (c->flip[m->n_tri + 2 * q] && c->flip[m->n_tri + 2 * q + 1]) {
-      uint32_t n = m->quad[q][1];
-
-      m->quad[q][1] = m->quad[q][3];
-      m->quad[q][3] = n;
+      turn_quad(m->quad[q]);
       c->r->n_flipped++;
     }
+}
+
+int vg_surface_turn(struct vg_mesh *m, struct vg_surface_report *report)
+{
+  if (report->n_defect || report->n_shell != 1 || !report->is_closed ||
+      !report->shell[0].is_closed)
+    return 0;
+  for (size_t t = 0; t < m->n_tri; t++) turn_tri(m->tri[t]);
+  for (size_t q = 0; q < m->n_quad; q++) turn_quad(m->quad[q]);
+  report->shell[0].volume = -report->shell[0].volume;
+  report->n_flipped = m->n_tri + m->n_quad;
+  report->turned_inside_out = 1;
+  return 1;
 }
 
 static vg_status run(struct check *c)

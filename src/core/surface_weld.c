@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/unite.h"
 
 #define NONE UINT32_MAX
 
@@ -106,21 +107,6 @@ vg_status vg_points_same(const struct vg_mesh *m, uint32_t **same,
 
 /* --- within a tolerance -------------------------------------------------- */
 
-static uint32_t root_of(uint32_t *map, uint32_t i)
-{
-  while (map[i] != i) i = map[i] = map[map[i]];
-  return i;
-}
-
-/* The lower index stays the root, so that map[i] <= i. */
-static void join(uint32_t *map, uint32_t a, uint32_t b)
-{
-  a = root_of(map, a);
-  b = root_of(map, b);
-  if (a < b) map[b] = a;
-  else map[a] = b;
-}
-
 /* Cells of which the tolerance is the diagonal, and blocks of BLOCK^3 cells,
  * which tell at once of most cells that nothing is near. */
 #define BLOCK 16
@@ -142,14 +128,14 @@ struct grid {
 static void link_cells(const struct grid *g, uint32_t *map, uint32_t a,
                        uint32_t b)
 {
-  if (root_of(map, a) == root_of(map, b)) return;
+  if (vg_root_of(map, a) == vg_root_of(map, b)) return;
   for (uint32_t i = a; i != NONE; i = g->next[i])
     for (uint32_t j = b; j != NONE; j = g->next[j]) {
       const double *p = g->point[i], *q = g->point[j];
       double x = p[0] - q[0], y = p[1] - q[1], z = p[2] - q[2];
 
       if (x * x + y * y + z * z <= g->limit2) {
-        join(map, a, b);
+        vg_unite(map, a, b);
         return;
       }
     }
@@ -254,7 +240,7 @@ static void link_grid(struct grid *g, uint32_t *map, size_t n, double side)
   }
   for (uint32_t i = 0; i < n; i++)
     if (g->n_cell[i]) link_neighbours(g, map, i);
-  for (size_t i = 0; i < n; i++) map[i] = root_of(map, (uint32_t)i);
+  for (size_t i = 0; i < n; i++) map[i] = vg_root_of(map, (uint32_t)i);
 }
 
 static double largest_coordinate(const struct vg_mesh *m)

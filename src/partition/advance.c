@@ -55,9 +55,9 @@ static vg_status run_work(struct vg_partition *p, struct vg_work *w,
   o->node = w->node;
   o->index = w->index;
   if (w->what == VG_WORK_ZONE) return vg_work_zone(p, w, &o->change, e, err);
-  if (w->what == VG_WORK_JOIN) return vg_node_join(p, w->node, err);
+  if (w->what == VG_WORK_JOIN) return vg_node_join(p, w->node, e, err);
   w->node = NULL;
-  return vg_node_start(p, o->node, err);
+  return vg_node_start(p, o->node, e, err);
 }
 
 static vg_status run(void *user, const struct vg_engine *e,

@@ -53,7 +53,8 @@ struct vg_partition_report {
   uint64_t n_outgrown;       /* leaves that outgrew their estimate and were
                                 cut again */
   uint64_t n_found;          /* tasks whose outcome was in the store */
-  uint64_t n_repair_moved;   /* points on interfaces that were smoothed */
+  uint64_t n_repair_moved;   /* moves of points on interfaces: some twice */
+  uint64_t n_repair_swapped; /* swaps of faces and edges across interfaces */
   uint64_t n_repair;         /* bad regions beside interfaces; those that got
                                 better */
   uint64_t n_repaired;

@@ -5,19 +5,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "base/clock.h"
 #include "base/memory.h"
 #include "partition/engine_parts.h"
-
-double vg_engine_thread_time(void)
-{
-  struct timespec t;
-
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 void vg_engine_lock(struct vg_engine *e)
 {
@@ -209,34 +200,50 @@ static vg_status verdict(const struct vg_engine *e, struct vg_error *err)
   return vg_fail(err, (vg_status)v->status, "rank %d: %s", v->from, v->text);
 }
 
-/* All spans of the job to rank 0; other ranks keep their own. Collective. */
-static vg_status gather(struct vg_engine *e, struct vg_error *err)
+/* Lists of other ranks to the end of that of rank 0. list: address of the
+ * pointer to its items of `size` bytes. Collective. */
+static vg_status gather_list(struct vg_engine *e, void *list, size_t *count,
+                             size_t *cap, size_t size, struct vg_error *err)
 {
-  size_t n = (size_t)e->size, size = sizeof *e->spans.span;
+  size_t n = (size_t)e->size;
   struct vg_bytes *to = vg_calloc(n, sizeof *to);
   struct vg_bytes *from = vg_calloc(n, sizeof *from);
+  unsigned char *item;
   vg_status st = VG_OK;
 
   if (!to || !from) st = vg_fail_memory(err, "the record of tasks");
   VG_TRY(vg_comm_agree(e->comm, st, err));
-  if (e->rank)
-    to[0] = (struct vg_bytes){ e->spans.n * size, (void *)e->spans.span };
+  memcpy(&item, list, sizeof item);
+  if (e->rank) to[0] = (struct vg_bytes){ *count * size, item };
   VG_TRY(vg_comm_exchange(e->comm, to, from, err));
   for (size_t r = 1; r < n && !e->rank; r++) {
-    size_t more = from[r].n / size, at = e->spans.n;
+    size_t more = from[r].n / size;
 
-    if (vg_reserve(&e->spans.span, &e->spans.cap, at + more, size)) {
+    if (vg_reserve(list, cap, *count + more, size)) {
       st = vg_fail_memory(err, "the record of tasks");
       goto done;
     }
-    if (more) memcpy(e->spans.span + at, from[r].data, more * size);
-    e->spans.n += more;
+    memcpy(&item, list, sizeof item);
+    if (more) memcpy(item + *count * size, from[r].data, more * size);
+    *count += more;
   }
 done:
   for (size_t r = 0; from && r < n; r++) free(from[r].data);
   free(from);
   free(to);
   return vg_comm_agree(e->comm, st, err);
+}
+
+/* All spans of the job to rank 0; other ranks keep their own. Collective. */
+static vg_status gather(struct vg_engine *e, struct vg_error *err)
+{
+  struct vg_spans *s = &e->spans;
+  vg_status st = gather_list(e, &s->span, &s->n, &s->cap, sizeof *s->span,
+                             err);
+
+  if (st) return st;
+  return gather_list(e, &s->help, &s->n_help, &s->cap_help, sizeof *s->help,
+                     err);
 }
 
 /* Make ready what may fail, on all ranks or none. */

@@ -15,6 +15,7 @@
 #include <stdint.h>
 
 #include "base/comm.h"
+#include "base/parallel.h"
 #include "base/status.h"
 #include "partition/spans.h"
 
@@ -103,5 +104,18 @@ vg_status vg_engine_submit(struct vg_engine *e, const struct vg_task *task,
 /** 1 when the job is being stopped (by a failure, too): for a long `run` to
  * ask now and then. Threads: safe. */
 int vg_engine_stopping(const struct vg_engine *e);
+
+/** As vg_parallel_for, in the calling worker and in those of this rank that
+ * have nothing else to do: for `run`.
+ *
+ * worker < the rank's threads; bodies that run at the same time have different
+ * ones, also those of loops in other tasks, and in the calling thread it is
+ * that of `run`. Runs to its end also when the job is being stopped. A loop of
+ * one chunk costs nothing; others some microseconds, and as much again until
+ * help is there: chunks should be tens of microseconds and more. In a body a
+ * further loop is done by its thread alone.
+ * e: NULL: in the calling thread alone, worker 0. */
+void vg_engine_loop(const struct vg_engine *e, size_t n, size_t grain,
+                    vg_loop_body body, void *context);
 
 #endif

@@ -147,7 +147,7 @@ static void finish(struct vg_engine *e)
   }
   e->verdict = l->verdict;
   e->ending = 1;
-  pthread_cond_signal(&e->serve);
+  vg_engine_wake(e);
 }
 
 static void dispatch(struct vg_engine *e)

@@ -142,8 +142,14 @@ struct vg_worker {
   struct vg_engine *e;
   int number;
   int owes;                  /* has not said yet that it is free */
+  const char *doing;         /* path of its task */
+  double loops, helped;      /* s of processor time that its task has had in
+                                loops, and of these in other threads */
+  int in_loop;               /* a body runs */
   pthread_t thread;
 };
+
+struct vg_loop;              /* engine_loop.c */
 
 struct vg_engine {
   struct vg_comm *comm;
@@ -163,6 +169,8 @@ struct vg_engine {
   int hurry;                 /* something was posted: poll soon */
 
   struct vg_heap *queue[2];  /* jobs to be done here: free, pinned */
+  struct vg_loop *loops;     /* that workers may help with */
+  size_t n_idle;             /* workers that sleep */
   struct vg_jobs ended;      /* home jobs, to be told to `done` */
   struct vg_jobs out;        /* jobs whose input goes to job->to */
   int in_done;               /* a thread is there, or first tasks are made */
@@ -184,12 +192,12 @@ struct vg_engine {
 /* All below want the lock to be held, unless said otherwise. */
 
 /* engine.c */
-double vg_engine_thread_time(void);  /* s of the caller, without lock */
 void vg_engine_lock(struct vg_engine *e);
 void vg_engine_unlock(struct vg_engine *e);
 void vg_job_free(struct vg_engine *e, struct vg_job *j);  /* without lock too */
 
-/* engine_tell.c: to the list, wherever it is. */
+/* engine_tell.c: to the list, wherever it is; and the thread that serves. */
+void vg_engine_wake(struct vg_engine *e);
 void vg_engine_post(struct vg_engine *e, int to, int kind, struct vg_bytes *b);
 void vg_engine_say(struct vg_engine *e, int to, int kind, struct vg_say say);
 void vg_tell_news(struct vg_engine *e, const struct vg_job *ended);
@@ -205,6 +213,10 @@ void vg_work_end(struct vg_engine *e, struct vg_job *j);
 void vg_work_drop(struct vg_engine *e, struct vg_job *j);  /* without lock */
 void *vg_work_thread(void *worker);
 void *vg_work_clerk(void *worker);
+
+/* engine_loop.c */
+void vg_loop_enter(struct vg_worker *w);      /* without lock: this thread */
+int vg_loop_help(struct vg_worker *w);        /* 1: it did; lock left for it */
 
 /* engine_serve.c: what the list says, and the loop (without lock). */
 void vg_serve_assign(struct vg_engine *e, uint64_t handle, int to);

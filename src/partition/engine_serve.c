@@ -4,7 +4,8 @@
  * sleeps between polls: briefly after something came or was sent, longer and
  * longer while nothing happens, until the polls take SHARE of a core. What one
  * takes is measured, as it differs tenfold between machines: so where waking
- * is cheap, messages wait less. Alone it is only woken for the caller's. */
+ * is cheap, messages wait less. Those from the same node wait for nothing, as
+ * the sender rings. Alone it is only woken for the caller's. */
 #define _GNU_SOURCE
 #include <math.h>
 #include <stdlib.h>
@@ -33,7 +34,7 @@ static void push_out(struct vg_engine *e, struct vg_job *j, int to)
   if (e->out.last) e->out.last->next = j;
   else e->out.first = j;
   e->out.last = j;
-  pthread_cond_signal(&e->serve);
+  vg_engine_wake(e);
 }
 
 void vg_serve_assign(struct vg_engine *e, uint64_t handle, int to)
@@ -342,7 +343,7 @@ static void set_pace(struct pace *p, int active)
   }
   p->n++;
   if (p->n % SAMPLE) return;
-  cpu = vg_engine_thread_time();
+  cpu = vg_clock_thread();
   if (p->n)
     p->longest = fmax(SLEEP_LOW, fmin((cpu - p->cpu) / (SAMPLE * SHARE),
                                       SLEEP_HIGH));
@@ -350,11 +351,28 @@ static void set_pace(struct pace *p, int active)
   p->n = 0;
 }
 
-/* Sleep, unless over or something is to be sent. Returns 1 when over. */
-static int doze(struct vg_engine *e, struct pace *pace, int active)
+/* With the lock. Among ranks it is given back meanwhile. */
+static void sleep_so_long(struct vg_engine *e, double seconds, unsigned bell)
 {
   struct timespec until;
-  double t;
+  double t = vg_clock() + seconds;
+
+  if (e->size > 1) {
+    vg_engine_unlock(e);
+    vg_comm_listen(e->comm, bell, seconds);
+    vg_engine_lock(e);
+    return;
+  }
+  until.tv_sec = (time_t)t;
+  until.tv_nsec = (long)(1e9 * (t - (double)until.tv_sec));
+  pthread_cond_timedwait(&e->serve, &e->lock, &until);
+}
+
+/* Sleep, unless over, something is to be sent, or the bell has rung since it
+ * was heard. Returns 1 when over. */
+static int doze(struct vg_engine *e, struct pace *pace, int active,
+                unsigned bell)
+{
   int over;
 
   vg_engine_lock(e);
@@ -362,10 +380,7 @@ static int doze(struct vg_engine *e, struct pace *pace, int active)
   e->hurry = 0;
   over = all_over(e);
   if (!over && !e->out.first) {
-    t = vg_clock() + pace->sleep;
-    until.tv_sec = (time_t)t;
-    until.tv_nsec = (long)(1e9 * (t - (double)until.tv_sec));
-    pthread_cond_timedwait(&e->serve, &e->lock, &until);
+    sleep_so_long(e, pace->sleep, bell);
     over = all_over(e);
   }
   vg_engine_unlock(e);
@@ -377,11 +392,13 @@ void vg_serve(struct vg_engine *e)
   struct pace pace = { .sleep = e->size > 1 ? SLEEP_MIN : SLEEP_ALONE,
                        .longest = SLEEP_LOW };
   double failing = 0, stop = 0, progress = e->begin;
+  unsigned bell = 0;
   int active;
 
   do {
     double now = vg_clock();
 
+    if (e->size > 1) bell = vg_comm_bell(e->comm);
     active = e->size > 1 ? receive(e, &failing) : 0;
     active += send_inputs(e);
     if (now - stop >= STOP_EVERY) {
@@ -392,6 +409,6 @@ void vg_serve(struct vg_engine *e)
       show_progress(e);
       progress = now;
     }
-  } while (!doze(e, &pace, active));
+  } while (!doze(e, &pace, active, bell));
   show_progress(e);
 }

@@ -5,6 +5,12 @@
 #include "base/memory.h"
 #include "partition/engine_parts.h"
 
+void vg_engine_wake(struct vg_engine *e)
+{
+  if (e->size > 1) vg_comm_ring(e->comm);
+  else pthread_cond_signal(&e->serve);
+}
+
 /* A message that cannot even be posted would leave the others waiting for
  * ever: then the job ends here. */
 void vg_engine_post(struct vg_engine *e, int to, int kind, struct vg_bytes *b)
@@ -13,7 +19,7 @@ void vg_engine_post(struct vg_engine *e, int to, int kind, struct vg_bytes *b)
     vg_comm_abort(e->comm, 1);
   e->sent[to]++;
   e->hurry = 1;
-  pthread_cond_signal(&e->serve);
+  vg_engine_wake(e);
 }
 
 static void post_copy(struct vg_engine *e, int to, int kind, const void *what,

@@ -92,7 +92,8 @@ static void record(struct vg_worker *w, const struct vg_job *j,
   span->home = j->home;
   span->start = start - w->e->begin;
   span->end = vg_clock() - w->e->begin;
-  span->cpu = vg_engine_thread_time() - cpu;
+  span->cpu = vg_clock_thread() - cpu + w->helped;
+  span->loops = w->loops;
   span->estimate = j->task.weight;
   span->n_cell = j->n_cell;
 }
@@ -142,7 +143,7 @@ static void do_job(struct vg_worker *w, struct vg_job *j)
 {
   struct vg_engine *e = w->e;
   struct vg_error err = VG_ERROR_INIT;
-  double start = vg_clock(), cpu = vg_engine_thread_time();
+  double start = vg_clock(), cpu = vg_clock_thread();
   struct vg_span span;
   vg_status st;
 
@@ -151,6 +152,8 @@ static void do_job(struct vg_worker *w, struct vg_job *j)
     return;
   }
   memset(&span, 0, sizeof span);
+  w->doing = j->task.path;
+  w->loops = w->helped = 0;
   st = run(w, j, &span, &err);
   if (st) {
     fail(e, j, st, &err);
@@ -208,9 +211,11 @@ void *vg_work_thread(void *worker)
   struct vg_engine *e = w->e;
   struct vg_job *j;
 
+  vg_loop_enter(w);
   vg_engine_lock(e);
   while (!e->over) {
     if (e->ended.first && !e->in_done) {
+      w->doing = e->doing;
       end_one(e);
     } else if (w->owes) {
       w->owes = 0;
@@ -220,8 +225,10 @@ void *vg_work_thread(void *worker)
       vg_engine_unlock(e);
       do_job(w, j);
       vg_engine_lock(e);
-    } else {
+    } else if (!vg_loop_help(w)) {
+      e->n_idle++;
       pthread_cond_wait(&e->work, &e->lock);
+      e->n_idle--;
     }
   }
   vg_engine_unlock(e);

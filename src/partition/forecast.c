@@ -10,27 +10,28 @@
 
 /* Measured: docs/performance.md, Model. */
 const struct vg_rates vg_rates_measured = {
-  .pencil = { 0, 3.6e-6, 5.3e-6, 8e-6, 0, 0 },
-  .tile = { 0, 2.35e-6, 5.6e-6, 6e-6, 0, 0 },
-  .leaf = { 0, 1.45e-6, 2.6e-6, 3.5e-6, 0, 0 },
-  .closing = { 13e-3, 0, 0, 0, 0, 0 },
-  .plan = { 1e-4, 0, 0, 0.036e-6, 0, 0.09e-6 },
-  .join = { 1e-4, 0, 0, 0.009e-6, 0.135e-3, 0.09e-6 },
-  .close = { 1e-4, 0, 0, 0.06e-6, 0.45e-3, 0 },
-  .split = { 1e-4, 0, 0, 0.08e-6, 0, 0 },
+  .pencil = { 0, 1.8e-6, 4.1e-6, 4.8e-6, 0, 0, 0 },
+  .rib = { 0, 9e-6, 14e-6, 3.5e-6, 0, 0, 0 },
+  .tile = { 0, 2.65e-6, 5.2e-6, 3.4e-6, 0, 0, 0 },
+  .leaf = { 0, 1.3e-6, 2.1e-6, 3e-6, 0, 0, 0 },
+  .closing = { 7.5e-3, 0, 0, 0, 0, 0, 0 },
+  .plan = { 0, 0, 0, 0.021e-6, 0, 0.12e-6, 0.98 },
+  .join = { 0, 0, 0, 0.04e-6, 0, 0.12e-6, 0.98 },
+  .close = { 0, 0, 0, 0.025e-6, 0.8e-3, 0, 0.98 },
+  .split = { 0, 0, 0, 0.09e-6, 0, 0, 0.98 },
 };
+
+/* Loops over fewer faces are of one chunk or two (node_split.c). */
+static const double loop_faces = 5000;
 
 /* Where three planes meet, so many places are left where parts hang together,
  * with so many faces beside them; their cells, some 200, count as the tiles'. */
-static const double places_per_corner = 1.8, place_faces = 900;
+static const double places_per_corner = 0.5, place_faces = 900;
 
 /* Cells of a zone reach this many spacings to each side of its plane, those of
  * a pencil of both of its planes: as measured over boxes. */
-static const double tile_reach = 0.68, pencil_reach = 1.45;
-
-/* Beyond the zone, in spacings: front that its growth must know (region.h). */
-static const double pencil_band = 1 + VG_BAND_FRONT;
-static const double tile_band = VG_BAND_FRONT;
+static const double tile_reach = 0.68, pencil_reach = 2.05;
+static const double rib_reach = 0.56;
 
 /* Faces of a triangle's own spacing to a square of it, 4 / sqrt(3). */
 static const double faces_per_square = 2.309;
@@ -152,6 +153,8 @@ static vg_status add_task(struct forecast *c, const char *path,
   snprintf(span.path, sizeof span.path, "%s", path);
   snprintf(span.after, sizeof span.after, "%s", after);
   span.cpu = seconds(rate, makes ? a : (struct amount){0, 0}, faces);
+  if (faces > loop_faces)
+    span.loops = rate->loops * (1 - loop_faces / faces) * span.cpu;
   if (makes) span.n_cell = (uint64_t)(a.cells + 0.5);
   span.bytes_in = (uint64_t)(bytes_per_face * faces +
                              cubes * sizeof(struct vg_load_cube));
@@ -168,24 +171,43 @@ static int axis_of(const struct vg_plane *p)
   return p->normal[0] > 0.5 ? 0 : p->normal[1] > 0.5 ? 1 : 2;
 }
 
+static double side_of_plane(const struct vg_plane *p, const float x[3])
+{
+  return p->normal[0] * (double)x[0] + p->normal[1] * (double)x[1] +
+         p->normal[2] * (double)x[2] - p->offset;
+}
+
+/* Half the extent of a cube across a plane. */
+static double half_across(const struct vg_load_cube *c,
+                          const struct vg_plane *p)
+{
+  return (double)c->half *
+         (fabs(p->normal[0]) + fabs(p->normal[1]) + fabs(p->normal[2]));
+}
+
 /* Part of the cube within `width` of the plane. */
 static double overlap(const struct vg_load_cube *c, const struct vg_plane *p,
                       double width)
 {
-  int axis = axis_of(p);
-  double x = (double)c->at[axis] - p->offset, half = (double)c->half;
+  double x = side_of_plane(p, c->at), half = half_across(c, p);
   double lo = fmax(x - half, -width), hi = fmin(x + half, width);
 
   return hi > lo ? (hi - lo) / (2 * half) : 0;
 }
 
+/* Spacings from its planes that a zone's cells reach. */
+static double reach_of(const struct vg_region *r)
+{
+  return r->n_plane == 1 ? tile_reach : r->reach > 0 ? pencil_reach
+                                                     : rib_reach;
+}
+
 /* Is the foot of x on the planes within the walls, moved out by `band`? */
 static int is_over(const struct vg_region *r, const float x[3], double band)
 {
-  double foot[3] = {(double)x[0], (double)x[1], (double)x[2]};
+  double at[3] = {(double)x[0], (double)x[1], (double)x[2]}, foot[3];
 
-  for (int k = 0; k < r->n_plane; k++)
-    foot[axis_of(&r->plane[k])] = r->plane[k].offset;
+  vg_region_foot(r, at, foot);
   for (int k = 0; k < r->n_wall; k++) {
     const double *n = r->wall[k].normal;
 
@@ -199,8 +221,7 @@ static int is_over(const struct vg_region *r, const float x[3], double band)
 static int is_near(const struct vg_region *r, const float x[3], double band)
 {
   for (int k = 0; k < r->n_plane; k++)
-    if (fabs((double)x[axis_of(&r->plane[k])] - r->plane[k].offset) > band)
-      return 0;
+    if (fabs(side_of_plane(&r->plane[k], x)) > band) return 0;
   return 1;
 }
 
@@ -211,15 +232,17 @@ static vg_status add_sides(const struct vg_load_cube *c,
                            struct vg_error *err)
 {
   double side = 2 * (double)c->half, h = (double)c->h;
-  double reach = (r->n_plane > 1 ? pencil_reach : tile_reach) * h;
+  double reach = reach_of(r) * h;
   double area = (double)c->part * side * side;
   struct bit b = { .h = c->h };
   vg_status st = VG_OK;
 
   memcpy(b.x, c->at, sizeof b.x);
   if (r->n_plane > 1) {
-    for (int k = 0; k < 2; k++)
-      b.x[axis_of(&r->plane[k])] = (float)r->plane[k].offset;
+    double at[3] = {(double)b.x[0], (double)b.x[1], (double)b.x[2]}, foot[3];
+
+    vg_region_foot(r, at, foot);
+    for (int k = 0; k < 3; k++) b.x[k] = (float)foot[k];
     area = (double)c->part * side * 8 * reach;
     b.n = (float)(area * faces_per_square / (h * h));
     return add_bit(f, &b, err);
@@ -236,7 +259,7 @@ static vg_status add_sides(const struct vg_load_cube *c,
 /* Front that a zone has closed in. */
 static void cover(struct front *f, size_t n, const struct vg_region *r)
 {
-  double reach = r->n_plane > 1 ? pencil_reach : tile_reach;
+  double reach = reach_of(r);
   size_t left = 0;
 
   for (size_t i = 0; i < f->n; i++)
@@ -249,7 +272,7 @@ static void cover(struct front *f, size_t n, const struct vg_region *r)
 static double faces_near(const struct front *f, size_t n,
                          const struct vg_region *r)
 {
-  double band = r->n_plane > 1 ? pencil_band : tile_band, sum = 0;
+  double band = vg_region_band(r, VG_BAND_FRONT), sum = 0;
 
   for (size_t i = 0; i < n; i++) {
     const struct bit *b = &f->bit[i];
@@ -271,15 +294,15 @@ static vg_status take(struct part *p, const struct vg_region *r,
   *a = (struct amount){0, 0};
   for (size_t i = 0; st >= 0 && i < p->load.n; i++) {
     struct vg_load_cube *c = &p->load.cube[i];
-    double reach = r->n_plane > 1 ? pencil_reach : tile_reach, share = 1;
+    double reach = reach_of(r), share = 1;
     int passes = 1;
 
     for (int k = 0; share > 0 && k < r->n_plane; k++)
       share *= overlap(c, &r->plane[k], reach * (double)c->h);
     if (!(share > 0) || !is_over(r, c->at, 0)) continue;
     for (int k = 0; k < r->n_plane; k++)
-      passes &= fabs((double)c->at[axis_of(&r->plane[k])] -
-                     r->plane[k].offset) <= (double)c->half;
+      passes &= fabs(side_of_plane(&r->plane[k], c->at)) <=
+                half_across(c, &r->plane[k]);
     if (passes) st = add_sides(c, r, made, err);
     add_amount(a, c, share);
     c->cells *= (float)(1 - share);
@@ -301,7 +324,10 @@ static vg_status grow_stage(struct forecast *c, struct part *p,
 
   snprintf(maker, sizeof maker, "%s", after);
   for (size_t k = 0; k < count; k++) {
-    char kind = stage < 2 ? VG_SPAN_PENCIL : VG_SPAN_TILE;
+    char kind = stage < VG_LATTICE_TILES ? VG_SPAN_PENCIL : VG_SPAN_TILE;
+    const struct vg_task_rate *rate = kind == VG_SPAN_TILE ? &c->rates->tile
+                                      : stage < 2 ? &c->rates->pencil
+                                                  : &c->rates->rib;
     struct amount a;
     struct vg_region r;
     double faces;
@@ -313,9 +339,7 @@ static vg_status grow_stage(struct forecast *c, struct part *p,
     snprintf(path, sizeof path, "%.*s%c%zu", VG_PATH_MAX - 24, p->path, kind,
              kind == VG_SPAN_PENCIL ? *n_pencil : k);
     *n_pencil += kind == VG_SPAN_PENCIL;
-    VG_TRY(add_task(c, path, maker, kind, stage < 2 ? &c->rates->pencil
-                                                    : &c->rates->tile,
-                    a, faces, 0));
+    VG_TRY(add_task(c, path, maker, kind, rate, a, faces, 0));
     memcpy(after, path, sizeof path);
     c->n_handed++;
     c->handed += faces;
@@ -366,7 +390,7 @@ static vg_status share_load(struct blocks *b, const struct vg_load *load,
   vg_status st = out ? VG_OK : vg_fail_memory(err, "a forecast");
 
   if (st >= 0)
-    st = vg_load_split_blocks(load, b->l->n, at, 0, 1, 1, out, err);
+    st = vg_load_split_blocks(load, b->l->n, at, 0, 1, NULL, out, err);
   for (size_t i = 0; st >= 0 && i < b->n; i++) b->part[i].load = out[i];
   free(out);
   return st;
@@ -484,8 +508,12 @@ static vg_status add_join(struct forecast *c, const struct part *p, int number,
 static void pay_tasks(struct forecast *c, size_t index,
                       const struct vg_task_rate *rate)
 {
-  c->out->spans.span[index].cpu += rate->made * c->n_handed +
-                                   rate->hand * c->handed;
+  struct vg_span *join = &c->out->spans.span[index];
+  double share = join->cpu > 0 ? join->loops / join->cpu : 0;
+  double took = rate->made * c->n_handed + rate->hand * c->handed;
+
+  join->cpu += took;
+  join->loops += share * took;
 }
 
 /* Where three planes meet parts may still hang together. */
@@ -629,8 +657,13 @@ static vg_status go_down(struct forecast *c, struct part *p,
 
   if (p->retry < RETRIES && strlen(p->path) + 8 < VG_PATH_MAX)
     used = vg_lattice_plan(&p->load, c->rule, p->levels, p->retry, &l);
-  return used > 0 ? cut(c, p, &l, used, after)
-                  : add_leaf(c, p, amount_of(&p->load), after);
+  if (used <= 0) return add_leaf(c, p, amount_of(&p->load), after);
+  if (!p->retry) {
+    vg_status st = vg_lattice_add_ribs(&p->load, &l, c->err);
+
+    if (st < 0) return st;
+  }
+  return cut(c, p, &l, used, after);
 }
 
 /* --- the whole ----------------------------------------------------------- */

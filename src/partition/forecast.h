@@ -14,11 +14,13 @@
 
 /** Seconds of one core that a task of a kind takes: at all, per cell made where
  * spacing is even and where it varies, per face of the front it is given; for
- * joins, per task that it makes and per face of the fronts of these. */
-struct vg_task_rate { double task, even, graded, face, made, hand; };
+ * joins, per task that it makes and per face of the fronts of these, and the
+ * share of their time, where fronts are large, in loops that idle threads of
+ * the rank help with. */
+struct vg_task_rate { double task, even, graded, face, made, hand, loops; };
 
 struct vg_rates {
-  struct vg_task_rate pencil, tile, leaf;
+  struct vg_task_rate pencil, rib, tile, leaf;
   struct vg_task_rate closing;   /* where parts still hang together */
   struct vg_task_rate plan, join, close, split;  /* joins: the first of a node,
                                     those between stages, the one that looks

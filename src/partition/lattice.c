@@ -5,7 +5,7 @@
 
 /* Cells within so many spacings of a line belong to its pencil: more than
  * tiles are thick, so that tiles end at pencils and not at each other. */
-static const double pencil_reach = 1.0;
+static const double pencil_reach = 1.3;
 /* Parallel planes are this many of the largest spacings on them apart. */
 static const double apart = 10;
 /* Where a second and a third attempt put a plane, as shares of the load. */
@@ -287,6 +287,53 @@ static int tile(const struct vg_lattice *l, size_t k, struct vg_region *r)
   return axis;
 }
 
+/* Halfway between two ribs of a tile, on the side that sign tells. */
+static void halfway(struct vg_region *r, const struct vg_plane *a,
+                    const struct vg_plane *b, int sign)
+{
+  double normal[3], length = 0;
+
+  for (int k = 0; k < 3; k++) {
+    normal[k] = a->normal[k] + b->normal[k];
+    length += normal[k] * normal[k];
+  }
+  length = sign * sqrt(length);
+  for (int k = 0; k < 3; k++) normal[k] /= length;
+  add_wall(r, normal, (a->offset + b->offset) / length);
+}
+
+static int rib(const struct vg_lattice *l, size_t k, struct vg_region *r)
+{
+  const struct vg_rib *rib = &l->rib[k], *end = l->rib + l->n_rib;
+  int axis = tile(l, (size_t)rib->tile, r);
+
+  r->plane[r->n_plane++] = rib->plane;
+  if (rib > l->rib && rib[-1].tile == rib->tile)
+    halfway(r, &rib[-1].plane, &rib->plane, 1);
+  if (rib + 1 < end && rib[1].tile == rib->tile)
+    halfway(r, &rib->plane, &rib[1].plane, -1);
+  return axis;
+}
+
+/* Between ribs: rib i has piece rib[i].tile + i before it. */
+static int piece(const struct vg_lattice *l, size_t k, struct vg_region *r)
+{
+  size_t n = 0, n_rib = (size_t)l->n_rib;
+  int axis;
+
+  while (n < n_rib && (size_t)l->rib[n].tile + n < k) n++;
+  axis = tile(l, k - n, r);
+  if (n > 0 && (size_t)l->rib[n - 1].tile == k - n)
+    add_wall(r, l->rib[n - 1].plane.normal, l->rib[n - 1].plane.offset);
+  if (n < n_rib && (size_t)l->rib[n].tile == k - n) {
+    double normal[3];
+
+    for (int i = 0; i < 3; i++) normal[i] = -l->rib[n].plane.normal[i];
+    add_wall(r, normal, -l->rib[n].plane.offset);
+  }
+  return axis;
+}
+
 size_t vg_lattice_count(const struct vg_lattice *l, int stage)
 {
   size_t x_y = segments_along(l, 0) + segments_along(l, 1);
@@ -294,15 +341,18 @@ size_t vg_lattice_count(const struct vg_lattice *l, int stage)
   if (stage == 0 && l->lines_at_once) return x_y + segments_along(l, 2);
   if (stage == 0) return (size_t)(l->n[0] * l->n[1]);
   if (stage == 1) return l->lines_at_once ? 0 : x_y;
-  return tiles_across(l, 0) + tiles_across(l, 1) + tiles_across(l, 2);
+  if (stage == 2) return (size_t)l->n_rib;
+  return tiles_across(l, 0) + tiles_across(l, 1) + tiles_across(l, 2) +
+         (size_t)l->n_rib;
 }
 
 int vg_lattice_region(const struct vg_lattice *l, int stage, size_t k,
                       struct vg_region *r)
 {
   memset(r, 0, sizeof *r);
-  if (stage < 2) r->reach = pencil_reach;
-  if (stage == 2) return tile(l, k, r);
+  if (stage == VG_LATTICE_TILES) return piece(l, k, r);
+  if (stage == 2) return rib(l, k, r);
+  r->reach = pencil_reach;
   return stage || l->lines_at_once ? segment(l, k, r) : line(l, k, r);
 }
 

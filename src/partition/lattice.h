@@ -3,8 +3,10 @@
  * Planes across one, two or three axes at weighted quantiles of the load make
  * blocks. Where planes meet, lines are grown first, as pencils, so that the
  * tiles of the planes between them can be grown at the same time, and then
- * the blocks. Walls between the regions of a stage keep them apart: midway
- * between parallel planes, and at 45 degrees where planes meet. */
+ * the blocks. Large tiles are grown in pieces: between them ribs are grown
+ * first, pencils along lines across the tile, which cut nothing else. Walls
+ * between the regions of a stage keep them apart: midway between parallel
+ * planes, and at 45 degrees where planes meet. */
 #ifndef VG_PARTITION_LATTICE_H
 #define VG_PARTITION_LATTICE_H
 
@@ -13,14 +15,25 @@
 
 enum {
   VG_LATTICE_PLANES = 7,
-  VG_LATTICE_STAGES = 3,
+  VG_LATTICE_RIBS = 64,
+  VG_LATTICE_STAGES = 4,
+  VG_LATTICE_TILES = 3,      /* the stage of tiles; those before: pencils */
   VG_LATTICE_BLOCKS = 512    /* (VG_LATTICE_PLANES + 1)^3 */
+};
+
+/* A line across a tile. */
+struct vg_rib {
+  int tile;                  /* whole ones count */
+  struct vg_plane plane;     /* at right angles to the tile's */
 };
 
 struct vg_lattice {
   int n[3];                  /* planes across each axis */
   int lines_at_once;         /* 1: n is 1 1 1, and the planes meet in a body */
   double at[3][VG_LATTICE_PLANES];
+  int n_rib;
+  struct vg_rib rib[VG_LATTICE_RIBS];  /* rising by tile; of a tile
+                                in order, normals towards the next one */
 };
 
 struct vg_cut_rule {
@@ -36,9 +49,14 @@ struct vg_cut_rule {
 int vg_lattice_plan(const struct vg_load *load, const struct vg_cut_rule *rule,
                     int levels, int retry, struct vg_lattice *out);
 
+/** Ribs for large tiles, so that both sides can be grown at the same time.
+ * O(cubes + dots log dots) for cubes that planes pass. VG_ERR_MEMORY. */
+vg_status vg_lattice_add_ribs(const struct vg_load *load,
+                              struct vg_lattice *l, struct vg_error *err);
+
 /** Number of regions of a stage: 0: lines along z (the last axis with lines
- * across all), 1: segments of the other lines, 2: tiles. lines_at_once: 0:
- * segments of all lines, 1: none. */
+ * across all), 1: segments of the other lines, 2: ribs, 3: tiles in pieces.
+ * lines_at_once: 0: segments of all lines, 1: none. */
 size_t vg_lattice_count(const struct vg_lattice *l, int stage);
 
 /** Region k of a stage. Returns the axis of the line, or of the plane. */

@@ -28,6 +28,7 @@ struct vg_load_cube {
 };
 
 struct vg_load_index;
+struct vg_engine;
 
 struct vg_load {
   size_t n;
@@ -66,22 +67,23 @@ vg_status vg_load_new(const struct vg_void *v, const struct vg_sizing *sizing,
  * too small for the cubes gets one around it. Shares are made to fit the
  * volumes of the fronts; nothing drifts over generations. The cubes' cells are
  * multiplied by `correction`, the ratio of cells made to cells expected in the
- * ancestors' zones.
+ * ancestors' zones. Children are looked at in a loop of e, which may be NULL.
  * O(cubes + fronts) times a logarithm. */
 vg_status vg_load_split(const struct vg_load *parent, size_t n,
                         const struct vg_void *child, double correction,
-                        struct vg_load *out, struct vg_error *err);
+                        const struct vg_engine *e, struct vg_load *out,
+                        struct vg_error *err);
 
 /** What lies in each block of a lattice of planes.
  *
  * n: planes across each axis; at: their places, rising; out: [blocks] loads,
  * x first: block i + (n[0] + 1) (j + (n[1] + 1) k) is behind i planes across
  * x. A cube that planes pass goes to several blocks, by volume; what lies
- * within `reach` target edges of a plane goes to none (zones).
- * O(cubes + blocks). */
+ * within `reach` target edges of a plane goes to none (zones). In loops of e,
+ * which may be NULL. O(cubes + blocks). */
 vg_status vg_load_split_blocks(const struct vg_load *parent, const int n[3],
                                const double *const at[3], double reach,
-                               double correction, int threads,
+                               double correction, const struct vg_engine *e,
                                struct vg_load *out, struct vg_error *err);
 
 /** Make the index for the questions below anew, after cubes were changed by

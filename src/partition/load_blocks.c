@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "base/parallel.h"
+#include "partition/engine.h"
 #include "partition/load.h"
 #include "partition/load_tree.h"
 
@@ -165,7 +165,7 @@ static void release_all(struct vg_load *l, size_t n)
 }
 
 /* Loads without index or sum, or NULL. */
-static struct vg_load *deal_out(struct deal *d, int threads)
+static struct vg_load *deal_out(struct deal *d, const struct vg_engine *e)
 {
   d->n_block = blocks_of(d->n);
   d->n_chunk = (d->parent->n + CHUNK - 1) / CHUNK;
@@ -173,10 +173,10 @@ static struct vg_load *deal_out(struct deal *d, int threads)
   d->count = vg_calloc(d->n_chunk * d->n_block + 1, sizeof *d->count);
   d->is_counting = 1;
   if (d->out && d->count) {
-    vg_parallel_for(threads, d->n_chunk, 1, deal_part, d);
+    vg_engine_loop(e, d->n_chunk, 1, deal_part, d);
     if (!make_room(d)) {
       d->is_counting = 0;
-      vg_parallel_for(threads, d->n_chunk, 1, deal_part, d);
+      vg_engine_loop(e, d->n_chunk, 1, deal_part, d);
       free(d->count);
       return d->out;
     }
@@ -202,12 +202,12 @@ static void finish_part(void *context, size_t first, size_t end, int worker)
 }
 
 /* Sums and indices. */
-static int finish(struct vg_load *l, size_t n, int threads)
+static int finish(struct vg_load *l, size_t n, const struct vg_engine *e)
 {
   struct finish f = { l, vg_calloc(n, sizeof *f.bad) };
   int bad = f.bad == NULL;
 
-  if (f.bad) vg_parallel_for(threads, n, 1, finish_part, &f);
+  if (f.bad) vg_engine_loop(e, n, 1, finish_part, &f);
   for (size_t i = 0; f.bad && i < n; i++) bad |= f.bad[i];
   free(f.bad);
   return bad;
@@ -215,14 +215,14 @@ static int finish(struct vg_load *l, size_t n, int threads)
 
 vg_status vg_load_split_blocks(const struct vg_load *parent, const int n[3],
                                const double *const at[3], double reach,
-                               double correction, int threads,
+                               double correction, const struct vg_engine *e,
                                struct vg_load *out, struct vg_error *err)
 {
   struct deal d = { .parent = parent, .n = n, .at = at, .reach = reach,
                     .correction = correction };
-  struct vg_load *made = deal_out(&d, threads);
+  struct vg_load *made = deal_out(&d, e);
 
-  if (!made || finish(made, d.n_block, threads)) {
+  if (!made || finish(made, d.n_block, e)) {
     release_all(made, made ? d.n_block : 0);
     return vg_fail_memory(err, "the estimate of cells");
   }

@@ -1,39 +1,39 @@
-/* Outline: the parent's cubes are descended along with the children's fronts.
- * Where no front is left in a node, all of its cubes have the same owner; in a
- * cube that fronts cross, samples are counted for each. The samples of a cube
- * are always the same ones, so what earlier cuts have dropped was outside the
+/* Outline: the parent's cubes are descended along with the front of each child.
+ * Where no front is left in a node, all of its cubes are inside or none; in a
+ * cube that the front crosses, samples are counted. The samples of a cube are
+ * always the same ones, so what earlier cuts have dropped was outside the
  * children too, and errors do not pile up over generations. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
+#include "partition/engine.h"
 #include "partition/load.h"
 #include "partition/load_tree.h"
 
 struct share {
-  uint32_t cube, child;
+  uint32_t cube;
   double part;
 };
 
+/* One child. */
 struct split {
   const struct vg_load *parent;
   struct vg_load_tree tree;
   struct vg_load_stack stack;
-  size_t n_share, cap_share, n_child;
+  size_t n_share, cap_share;
   struct share *share;       /* by cube */
 };
 
-static int add_share(struct split *s, size_t cube, int32_t owner, int samples)
+static int add_share(struct split *s, size_t cube, int samples)
 {
   struct share *to;
 
-  if (owner < 1 || (size_t)owner > s->n_child) return 0;
   if (vg_reserve(&s->share, &s->cap_share, s->n_share + 1, sizeof *to))
     return -1;
   to = &s->share[s->n_share++];
   to->cube = (uint32_t)cube;
-  to->child = (uint32_t)owner - 1;
   to->part = (double)samples / VG_LOAD_SAMPLES;
   return 0;
 }
@@ -43,19 +43,11 @@ static int share_cube(struct split *s, const struct vg_load_node *node,
 {
   int32_t owner[VG_LOAD_SAMPLES];
   uint32_t at[3];
+  int n = 0;
 
   vg_load_sample(&s->tree, &s->stack, node, owner, at);
-  for (int i = 0; i < VG_LOAD_SAMPLES; i++) {
-    int n = 1;
-
-    for (int j = i + 1; j < VG_LOAD_SAMPLES && owner[i]; j++)
-      if (owner[j] == owner[i]) {
-        owner[j] = 0;
-        n++;
-      }
-    if (add_share(s, cube, owner[i], n)) return -1;
-  }
-  return 0;
+  for (int i = 0; i < VG_LOAD_SAMPLES; i++) n += owner[i] == 1;
+  return n ? add_share(s, cube, n) : 0;
 }
 
 /* Octant of a node whose centre is mid that holds a cube. */
@@ -106,10 +98,9 @@ static int descend(struct split *s, const struct vg_load_node *node,
   double mid[3];
   int bad = 0;
 
-  if (a == b || (!node->n && node->owner < 1)) return 0;
+  if (a == b || (!node->n && node->owner != 1)) return 0;
   if (!node->n) {
-    for (; a < b && !bad; a++)
-      bad = add_share(s, a, node->owner, VG_LOAD_SAMPLES);
+    for (; a < b && !bad; a++) bad = add_share(s, a, VG_LOAD_SAMPLES);
     return bad;
   }
   if (is_cube(s, node, a, b)) return share_cube(s, node, a);
@@ -125,7 +116,7 @@ static int descend(struct split *s, const struct vg_load_node *node,
   return bad;
 }
 
-/* The smallest node around all children that is no smaller than the parent's
+/* The smallest node around the child that is no smaller than the parent's
  * cube there, and the parent's cubes a .. b - 1 in it. */
 static void find_start(const struct split *s, struct vg_load_node *node,
                        size_t *a, size_t *b)
@@ -255,54 +246,65 @@ static void take_share(const struct split *s, const struct share *from,
 static int deal(const struct split *s, const struct vg_void *child,
                 double correction, struct vg_load *made)
 {
-  for (size_t i = 0; i < s->n_share; i++) made[s->share[i].child].n++;
-  for (size_t c = 0; c < s->n_child; c++) {
-    struct vg_load *l = &made[c];
+  const double volume = vg_load_volume(child);
 
-    l->cube = l->n ? vg_alloc(l->n, sizeof *l->cube) : NULL;
-    if (l->n && !l->cube) return -1;
-    l->n = 0;
-    vg_load_copy_frame(s->parent, l);
-  }
-  for (size_t i = 0; i < s->n_share; i++) {
-    struct vg_load *l = &made[s->share[i].child];
+  vg_load_copy_frame(s->parent, made);
+  made->n = s->n_share;
+  made->cube = made->n ? vg_alloc(made->n, sizeof *made->cube) : NULL;
+  if (made->n && !made->cube) return -1;
+  for (size_t i = 0; i < made->n; i++)
+    take_share(s, &s->share[i], correction, &made->cube[i]);
+  if (made->n) vg_load_fit(made, volume);
+  else if (lone_cube(s, child, volume, correction, made)) return -1;
+  return vg_load_index(made, 1, NULL) < 0 ? -1 : 0;
+}
 
-    take_share(s, &s->share[i], correction, &l->cube[l->n++]);
-  }
-  for (size_t c = 0; c < s->n_child; c++) {
-    const double volume = vg_load_volume(&child[c]);
+struct children {
+  const struct vg_load *parent;
+  const struct vg_void *child;
+  double correction;
+  struct vg_load *made;
+  int *bad;
+};
 
-    if (made[c].n) vg_load_fit(&made[c], volume);
-    else if (lone_cube(s, &child[c], volume, correction, &made[c])) return -1;
-    if (vg_load_index(&made[c], 1, NULL) < 0) return -1;
-  }
-  return 0;
+static int split_child(const struct children *w, size_t c)
+{
+  struct split s = { .parent = w->parent, .stack = VG_LOAD_STACK_INIT };
+  int bad;
+
+  memcpy(s.tree.lo, w->parent->lo, sizeof s.tree.lo);
+  s.tree.unit = w->parent->unit > 0 ? w->parent->unit : 1;
+  bad = vg_load_tree_new(&s.tree, 1, &w->child[c], 1, NULL) < 0 ||
+        share_all(&s) || deal(&s, &w->child[c], w->correction, &w->made[c]);
+  free(s.share);
+  vg_load_tree_release(&s.tree);
+  vg_load_stack_release(&s.stack);
+  return bad;
+}
+
+static void split_part(void *context, size_t first, size_t end, int worker)
+{
+  const struct children *w = context;
+
+  (void)worker;
+  for (size_t c = first; c < end; c++) w->bad[c] = split_child(w, c);
 }
 
 vg_status vg_load_split(const struct vg_load *parent, size_t n,
                         const struct vg_void *child, double correction,
-                        struct vg_load *out, struct vg_error *err)
+                        const struct vg_engine *e, struct vg_load *out,
+                        struct vg_error *err)
 {
-  struct split s = { .parent = parent, .n_child = n,
-                     .stack = VG_LOAD_STACK_INIT };
-  struct vg_load *made = vg_calloc(n, sizeof *made);
-  vg_status st = VG_OK;
+  struct children w = { parent, child, correction,
+                        vg_calloc(n, sizeof *w.made),
+                        vg_calloc(n, sizeof *w.bad) };
+  int bad = !w.made || !w.bad;
 
-  memcpy(s.tree.lo, parent->lo, sizeof s.tree.lo);
-  s.tree.unit = parent->unit > 0 ? parent->unit : 1;
-  if (!made) return vg_fail_memory(err, "the estimate of cells");
-  VG_TRY(vg_load_tree_new(&s.tree, n, child, 1, err));
-  if (share_all(&s) || deal(&s, child, correction, made)) {
-    st = vg_fail_memory(err, "the estimate of cells");
-    goto done;
-  }
-  memcpy(out, made, n * sizeof *out);
-  memset(made, 0, n * sizeof *made);
-done:
-  for (size_t c = 0; c < n; c++) vg_load_release(&made[c]);
-  free(made);
-  free(s.share);
-  vg_load_tree_release(&s.tree);
-  vg_load_stack_release(&s.stack);
-  return st;
+  if (!bad) vg_engine_loop(e, n, 1, split_part, &w);
+  for (size_t c = 0; c < n && !bad; c++) bad = w.bad[c];
+  if (!bad && n) memcpy(out, w.made, n * sizeof *out);
+  for (size_t c = 0; bad && w.made && c < n; c++) vg_load_release(&w.made[c]);
+  free(w.made);
+  free(w.bad);
+  return bad ? vg_fail_memory(err, "the estimate of cells") : VG_OK;
 }

@@ -44,6 +44,10 @@ struct sim {
   /* Joins that wait for their rank: leftist heaps, first[ranks] on top. */
   uint32_t *first, *left_of, *right_of, *depth;
   struct links all, own;
+  uint32_t *n_idle;          /* [ranks] */
+  uint32_t *n_looping;       /* [ranks] tasks with loops under way */
+  uint32_t n_started, *started;  /* [n_started] handed out at this moment */
+  struct vg_spans *helps;    /* who helped; may be NULL */
   struct event *event;       /* heap by time, kind, task */
   uint32_t n_event, n_ended;
   double *sent, *received;   /* [ranks] until when a rank's link is in use */
@@ -236,6 +240,7 @@ static void set_idle(struct sim *s, uint32_t worker)
 
   link_last(&s->all, s->n_worker + ranks, worker);
   link_last(&s->own, s->n_worker + rank, worker);
+  s->n_idle[rank]++;
   touch(s, rank);
 }
 
@@ -278,16 +283,71 @@ static void hand_out(struct sim *s, uint32_t task, uint32_t worker)
 
   unlink_item(&s->all, worker);
   unlink_item(&s->own, worker);
+  s->n_idle[rank]--;
+  s->n_looping[rank] += span->loops > 0;
   s->worker[task] = worker;
   span->rank = (int32_t)rank;
   span->thread = (int32_t)(worker % (uint32_t)s->machine->threads);
   span->home = (int32_t)home;
   span->start = rank == home ? s->now : send(s, home, rank, s->in[task]);
   span->cpu /= s->machine->rate;
-  span->end = span->start + span->cpu;
+  span->loops /= s->machine->rate;
   if (s->g.moves[task]) s->home[task] = rank;
-  s->busy[worker] += span->cpu;
-  event_push(s, span->end, EVENT_COMPUTED, task);
+  s->started[s->n_started++] = task;
+}
+
+/* How many times as fast loops are that may have so much help. */
+static double sped_up(const struct sim *s, double helpers)
+{
+  return fmin(1 + helpers, s->machine->loop_threads);
+}
+
+/* `helped` seconds of a task's loops to workers that are idle, evenly. */
+static vg_status add_help(struct sim *s, const struct vg_span *task,
+                          double helped, double helpers, struct vg_error *err)
+{
+  uint32_t n = (uint32_t)ceil(helpers), left = n;
+  uint32_t head = s->n_worker + (uint32_t)task->rank;
+  vg_status st = VG_OK;
+
+  for (uint32_t w = s->own.next[head]; left && w != head && !st;
+       w = s->own.next[w], left--) {
+    struct vg_help h;
+
+    s->busy[w] += helped / n;
+    if (!s->helps) continue;
+    memset(&h, 0, sizeof h);
+    memcpy(h.path, task->path, sizeof h.path);
+    h.rank = task->rank;
+    h.thread = (int32_t)(w % (uint32_t)s->machine->threads);
+    h.start = task->start;
+    h.end = task->start + helped / n;
+    st = vg_spans_add_help(s->helps, &h, err);
+  }
+  return st;
+}
+
+/* Now it is known who stays idle. */
+static vg_status set_durations(struct sim *s, struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  for (uint32_t i = 0; i < s->n_started && !st; i++) {
+    struct vg_span *span = &s->g.span[s->started[i]];
+    uint32_t rank = (uint32_t)span->rank;
+    double took = span->cpu, k;
+
+    if (span->loops > 0 && s->n_idle[rank]) {
+      k = sped_up(s, (double)s->n_idle[rank] / s->n_looping[rank]);
+      took -= span->loops - span->loops / k;
+      st = add_help(s, span, span->cpu - took, k - 1, err);
+    }
+    span->end = span->start + took;
+    s->busy[s->worker[s->started[i]]] += took;
+    event_push(s, span->end, EVENT_COMPUTED, s->started[i]);
+  }
+  s->n_started = 0;
+  return st;
 }
 
 static void make_ready(struct sim *s, uint32_t task)
@@ -320,7 +380,7 @@ static void hand_out_joins(struct sim *s, uint32_t rank)
 
 /* Joins first: no kind comes before them. The others go to a worker of their
  * home if one is idle. */
-static void hand_out_all(struct sim *s)
+static vg_status hand_out_all(struct sim *s, struct vg_error *err)
 {
   while (s->n_touched) {
     uint32_t rank = s->touched[--s->n_touched];
@@ -334,6 +394,15 @@ static void hand_out_all(struct sim *s)
 
     hand_out(s, task, worker != NONE ? worker : idle_any(s));
   }
+  return set_durations(s, err);
+}
+
+/* What a task takes at least: with all the help that its rank can give. */
+static double least_time(const struct sim *s, const struct vg_span *span)
+{
+  double k = sped_up(s, s->machine->threads - 1);
+
+  return (span->cpu - span->loops + span->loops / k) / s->machine->rate;
 }
 
 static void end_task(struct sim *s, uint32_t task)
@@ -351,7 +420,7 @@ static void end_task(struct sim *s, uint32_t task)
       uint32_t next = g->dep[j];
 
       s->chain[next] = s->group_chain[group] +
-        g->span[next].cpu / s->machine->rate;
+        least_time(s, &g->span[next]);
       make_ready(s, next);
     }
   }
@@ -363,6 +432,7 @@ static void computed(struct sim *s, uint32_t task)
   uint32_t rank = (uint32_t)span->rank, home = s->home[task];
 
   set_idle(s, s->worker[task]);
+  s->n_looping[rank] -= span->loops > 0;
   if (is_cut(span->kind) && s->cuts_wall < span->end)
     s->cuts_wall = span->end;
   if (rank == home)
@@ -394,6 +464,9 @@ static void sim_release(struct sim *s)
   free(s->all.next);
   free(s->own.prev);
   free(s->own.next);
+  free(s->n_idle);
+  free(s->n_looping);
+  free(s->started);
   free(s->event);
   free(s->sent);
   free(s->received);
@@ -425,6 +498,9 @@ static vg_status sim_allocate(struct sim *s, struct vg_error *err)
   s->all.next = vg_alloc(n_link, sizeof *s->all.next);
   s->own.prev = vg_alloc(n_link, sizeof *s->own.prev);
   s->own.next = vg_alloc(n_link, sizeof *s->own.next);
+  s->n_idle = vg_calloc(ranks, sizeof *s->n_idle);
+  s->n_looping = vg_calloc(ranks, sizeof *s->n_looping);
+  s->started = vg_alloc(n, sizeof *s->started);
   s->event = vg_alloc(n, sizeof *s->event);
   s->sent = vg_calloc(ranks, sizeof *s->sent);
   s->received = vg_calloc(ranks, sizeof *s->received);
@@ -435,8 +511,8 @@ static vg_status sim_allocate(struct sim *s, struct vg_error *err)
       !s->in || !s->out || !s->worker || !s->ready.place || !s->home ||
       !s->first || !s->left_of || !s->right_of || !s->depth ||
       !s->all.prev || !s->all.next || !s->own.prev || !s->own.next ||
-      !s->event || !s->sent || !s->received || !s->busy || !s->touched ||
-      !s->is_touched)
+      !s->n_idle || !s->n_looping || !s->started || !s->event ||
+      !s->sent || !s->received || !s->busy || !s->touched || !s->is_touched)
     return vg_fail_memory(err, "the simulation");
   return VG_OK;
 }
@@ -484,14 +560,16 @@ static void set_lists(struct sim *s)
 
 static vg_status simulate(struct sim *s, struct vg_error *err)
 {
+  vg_status st = VG_OK;
+
   memcpy(s->left, s->g.size, s->g.n_group * sizeof *s->left);
   set_lists(s);
   for (uint32_t i = 0; i < s->g.n; i++) {
     if (s->g.wait[i] != NONE) continue;
-    s->chain[i] = s->g.span[i].cpu / s->machine->rate;
+    s->chain[i] = least_time(s, &s->g.span[i]);
     make_ready(s, i);
   }
-  hand_out_all(s);
+  VG_TRY(hand_out_all(s, err));
   while (s->n_event) {
     s->now = s->event[0].time;
     while (s->n_event && s->event[0].time == s->now) {
@@ -500,13 +578,14 @@ static vg_status simulate(struct sim *s, struct vg_error *err)
       if (e.kind == EVENT_ENDED) end_task(s, e.task);
       else computed(s, e.task);
     }
-    hand_out_all(s);
+    VG_TRY(hand_out_all(s, err));
   }
   for (uint32_t i = 0; i < s->g.n && s->n_ended < s->g.n; i++)
     if (s->left[i])
       return vg_fail(err, VG_ERR_INPUT, "task '%s' of the record waits for "
                      "tasks that wait for it", s->g.span[i].path);
-  return VG_OK;
+done:
+  return st;
 }
 
 static vg_status check_machine(const struct vg_machine *m,
@@ -520,6 +599,9 @@ static vg_status check_machine(const struct vg_machine *m,
   if (m->ranks_per_node < 1)
     return vg_fail(err, VG_ERR_INPUT, "%d ranks on a node: at least 1",
                    m->ranks_per_node);
+  if (m->loop_threads < 1)
+    return vg_fail(err, VG_ERR_INPUT, "loops in %d threads: at least 1",
+                   m->loop_threads);
   if (!(m->latency >= 0) || !(m->bandwidth > 0) || !(m->rate > 0) ||
       !(m->serial >= 0) || isinf(m->latency) || isinf(m->serial))
     return vg_fail(err, VG_ERR_INPUT, "latency %g s, bandwidth %g bytes/s, "
@@ -586,6 +668,7 @@ static void hand_over(struct sim *s, struct vg_spans *timeline)
     one->bytes_in = away ? (uint64_t)fmin(s->in[i] + 0.5, most) : 0;
     one->bytes_out = away ? (uint64_t)fmin(s->out[i] + 0.5, most) : 0;
   }
+  *timeline = *s->helps;
   timeline->n = timeline->cap = s->g.n;
   timeline->span = s->g.span;
   timeline->n_rank = s->machine->ranks;
@@ -599,7 +682,8 @@ vg_status vg_model_replay(const struct vg_spans *spans,
                           struct vg_forecast *out, struct vg_spans *timeline,
                           struct vg_error *err)
 {
-  struct sim s = { .machine = machine };
+  struct vg_spans helps = VG_SPANS_INIT;
+  struct sim s = { .machine = machine, .helps = timeline ? &helps : NULL };
   vg_status st;
 
   VG_TRY(check_machine(machine, err));
@@ -610,8 +694,13 @@ vg_status vg_model_replay(const struct vg_spans *spans,
   find_bytes(&s);
   VG_TRY(simulate(&s, err));
   *out = judge(&s);
-  if (timeline) hand_over(&s, timeline);
+  if (timeline) {
+    hand_over(&s, timeline);
+    vg_spans_sort(timeline);
+    memset(&helps, 0, sizeof helps);
+  }
 done:
+  vg_spans_release(&helps);
   sim_release(&s);
   return st;
 }

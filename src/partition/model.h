@@ -19,7 +19,15 @@
  * their own, modulo the number of ranks. Leaves, and joins that start a node
  * (made by a task of another node, or by none), move: they are done by any
  * rank, which is their home from then on, and nothing goes back. Other joins
- * are done at home. The rest is done by any rank and returns. */
+ * are done at home. The rest is done by any rank and returns.
+ *
+ * Loops inside a task (engine.h) are helped with by workers of its rank that
+ * are idle: the task takes cpu - loops + loops / k, where k is 1 and the
+ * workers that are idle when it starts, once all that is ready has been handed
+ * out, over the tasks with loops that the rank does at that time; at most
+ * loop_threads. It stays so: these tasks, joins, are short against those that
+ * workers come from and go to. Who helps still takes a task that becomes
+ * ready, as in the engine. */
 #ifndef VG_PARTITION_MODEL_H
 #define VG_PARTITION_MODEL_H
 
@@ -42,14 +50,17 @@ struct vg_machine {
                                 after the last task, done once (reading,
                                 sizes, layers, files) */
   int joins_roam;            /* 1: all joins are done by any rank */
+  int loop_threads;          /* most that a loop is sped up by more workers:
+                                they share the rank's memory; 16 */
 };
-#define VG_MACHINE_INIT { 1, 1, 1, 2e-6, 1e10, 1, 0, 0 }
+#define VG_MACHINE_INIT { 1, 1, 1, 2e-6, 1e10, 1, 0, 0, 16 }
 
 struct vg_forecast {
   double wall;               /* s, serial part included */
   double work;               /* s of all tasks on one worker, serial included */
   double speedup, efficiency;/* work / wall; over workers */
-  double critical;           /* s, longest chain of tasks, serial included */
+  double critical;           /* s, longest chain of tasks, serial included,
+                                loops with all the help they may have */
   double cuts;               /* share of the busy time spent on P, T and J */
   double cuts_extra;         /* share of it that their cells, final ones, would
                                 not have cost in leaves: the price of cutting */
@@ -60,14 +71,15 @@ struct vg_forecast {
   double bytes;              /* sent between ranks */
 };
 
-/** Which task made which is in span.after; span.cpu is its duration.
+/** Which task made which is in span.after; span.cpu is its duration without
+ * help, span.loops how much of that help can share.
  *
  * Sizes of messages are the recorded ones. A task that was done at home has
  * none: what it would have sent follows from its cells, as bytes per
  * cells^(2/3) of the tasks of its kind that did travel, or of a void of equal
  * cells in all.
- * @param timeline  out: where each span ran on the machine, by path; may be
- *                  NULL
+ * @param timeline  out: where each span ran on the machine, by path; help, as
+ *                  if helpers had come at the start; may be NULL
  * VG_ERR_INPUT when the record contradicts itself (names the path), or for a
  * machine that cannot be. Deterministic. O(n log n). */
 vg_status vg_model_replay(const struct vg_spans *spans,

@@ -8,6 +8,9 @@
 
 #define NONE VG_MODEL_NONE
 
+/* Times of a record are rounded, to the microsecond in files. */
+#define LOOPS_ROUNDED 2e-6
+
 /* A task in a group: a pair that is sorted into lists later. */
 struct member { uint32_t task, group; };
 
@@ -89,6 +92,9 @@ static vg_status check_span(const struct vg_span *s, struct vg_error *err)
   if (!(s->cpu >= 0 && s->cpu <= 1e9))
     return vg_fail(err, VG_ERR_INPUT, "task '%s' of the record took %g "
                    "seconds", s->path, s->cpu);
+  if (!(s->loops >= 0 && s->loops <= s->cpu + LOOPS_ROUNDED))
+    return vg_fail(err, VG_ERR_INPUT, "task '%s' of the record took %g "
+                   "seconds, of which %g in loops", s->path, s->cpu, s->loops);
   if (s->home < 0)
     return vg_fail(err, VG_ERR_INPUT, "task '%s' of the record has the home "
                    "rank %d", s->path, (int)s->home);
@@ -107,8 +113,11 @@ static vg_status copy_spans(const struct vg_spans *spans,
   g->span = vg_alloc(g->n, sizeof *g->span);
   if (!g->span) return vg_fail_memory(err, "the tasks of the record");
   for (uint32_t i = 0; i < g->n && st >= 0; i++) {
-    g->span[i] = spans->span[i];
-    st = check_span(&g->span[i], err);
+    struct vg_span *one = &g->span[i];
+
+    *one = spans->span[i];
+    st = check_span(one, err);
+    if (one->loops > one->cpu) one->loops = one->cpu;
   }
   if (st < 0) return st;
   qsort(g->span, g->n, sizeof *g->span, by_path);

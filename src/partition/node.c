@@ -33,6 +33,7 @@ void vg_node_free(struct vg_node *n)
   free(n->child);
   vg_select_release(&n->select);
   free(n->block);
+  free(n->open);
   vg_front_release(&n->front);
   vg_load_release(&n->load);
   free(n);
@@ -91,38 +92,101 @@ static vg_status make_room(struct vg_node *n, size_t n_work,
 /* Its number among the pencils or tiles of the node. */
 static size_t number_of(struct vg_node *n, size_t k)
 {
-  if (n->stage < 2) return n->n_pencil++;
+  if (n->stage < VG_LATTICE_TILES) return n->n_pencil++;
   if (n->stage < VG_LATTICE_STAGES) return k;
-  return vg_lattice_count(&n->lattice, 2) + n->n_patch++;
+  return vg_lattice_count(&n->lattice, VG_LATTICE_TILES) + n->n_patch++;
 }
 
-static vg_status add_work(struct vg_partition *p, struct vg_node *n,
-                          size_t k, const struct vg_region *region,
-                          struct vg_error *err)
+/* More faces than this cost more than the patches that they save. */
+enum { MOST_WIDE = 100000 };
+
+/* The part of the front for work i, which is to know the front as far as the
+ * faces reach that cross the lattice's planes there. */
+static vg_status select_part(struct vg_node *n, struct vg_work *w, size_t i,
+                             struct vg_error *err)
 {
-  struct vg_work *w = vg_calloc(1, sizeof *w);
-  size_t i = n->n_work;
   vg_status st;
 
-  if (!w) return vg_fail_memory(err, "cutting a front");
-  w->what = VG_WORK_ZONE;
-  w->kind = n->stage < 2 ? VG_SPAN_PENCIL : VG_SPAN_TILE;
-  w->node = n;
-  w->index = i;
-  w->region = *region;
+  if (n->stage < VG_LATTICE_STAGES)
+    VG_TRY(vg_select_widen(&n->select, &w->region, err));
+  VG_TRY(vg_select_part(&n->select, &w->region, &w->part, &n->point[i],
+                        &n->face[i], err));
+  if (w->region.wide == 0 || w->part.n_face <= MOST_WIDE ||
+      n->stage >= VG_LATTICE_STAGES)
+    goto done;
+  vg_front_release(&w->part);
+  free(n->point[i]);
+  free(n->face[i]);
+  w->region.wide = 0;
   st = vg_select_part(&n->select, &w->region, &w->part, &n->point[i],
                       &n->face[i], err);
-  if (st < 0 || !w->part.n_face) {
-    free(n->point[i]);
-    free(n->face[i]);
-    n->point[i] = n->face[i] = NULL;
-    vg_work_free(w);
-    return st;
+done:
+  return st;
+}
+
+struct stage {
+  struct vg_node *n;
+  const struct vg_region *region;  /* [n->n_work] of the works */
+};
+
+/* What of the front each region needs. On failure n->work[k] is NULL. */
+static void make_works(void *context, size_t first, size_t end, int worker)
+{
+  const struct stage *s = context;
+  struct vg_node *n = s->n;
+
+  (void)worker;
+  for (size_t k = first; k < end; k++) {
+    struct vg_work *w = vg_calloc(1, sizeof *w);
+
+    if (!w) continue;
+    w->what = VG_WORK_ZONE;
+    w->kind = n->stage < VG_LATTICE_TILES ? VG_SPAN_PENCIL : VG_SPAN_TILE;
+    w->node = n;
+    w->region = s->region[k];
+    if (select_part(n, w, k, NULL) < 0)
+      vg_work_free(w);
+    else
+      n->work[k] = w;
   }
-  snprintf(w->path, sizeof w->path, "%.*s%c%zu", VG_PATH_MAX - 12, n->path,
-           w->kind, number_of(n, k));
-  w->serial = vg_partition_serial(p);
-  n->work[n->n_work++] = w;
+}
+
+/* Keep the works that have a front, and name them. */
+static void name_works(struct vg_partition *p, struct vg_node *n)
+{
+  size_t left = 0;
+
+  for (size_t k = 0; k < n->n_work; k++) {
+    struct vg_work *w = n->work[k];
+
+    if (!w->part.n_face) {
+      vg_work_free(w);
+      free(n->point[k]);
+      free(n->face[k]);
+      continue;
+    }
+    snprintf(w->path, sizeof w->path, "%.*s%c%zu", VG_PATH_MAX - 12, n->path,
+             w->kind, number_of(n, k));
+    w->serial = vg_partition_serial(p);
+    w->index = left;
+    n->work[left] = w;
+    n->point[left] = n->point[k];
+    n->face[left++] = n->face[k];
+  }
+  n->n_work = left;
+}
+
+static vg_status add_works(struct vg_partition *p, struct vg_node *n,
+                           size_t count, const struct vg_region *region,
+                           const struct vg_engine *e, struct vg_error *err)
+{
+  struct stage s = { n, region };
+
+  n->n_work = count;
+  vg_engine_loop(e, count, 1, make_works, &s);
+  for (size_t k = 0; k < count; k++)
+    if (!n->work[k]) return vg_fail_memory(err, "cutting a front");
+  name_works(p, n);
   return VG_OK;
 }
 
@@ -149,15 +213,15 @@ static void estimate_works(struct vg_node *n)
 }
 
 /* Regions of the node's stage. */
-static vg_status list_regions(const struct vg_partition *p,
-                              const struct vg_node *n,
+static vg_status list_regions(const struct vg_partition *p, struct vg_node *n,
+                              const struct vg_engine *e,
                               struct vg_region **region, size_t *count,
                               struct vg_error *err)
 {
   *region = NULL;
   if (n->stage >= VG_LATTICE_STAGES)
-    return vg_node_open_places(p, n, n->stage - VG_LATTICE_STAGES - 1, region,
-                               count, err);
+    return vg_node_open_places(p, n, n->stage - VG_LATTICE_STAGES - 1, e,
+                               region, count, err);
   *count = vg_lattice_count(&n->lattice, n->stage);
   *region = vg_alloc(*count, sizeof **region);
   if (!*region) return vg_fail_memory(err, "cutting a front");
@@ -167,29 +231,29 @@ static vg_status list_regions(const struct vg_partition *p,
 }
 
 static vg_status prepare_stage(struct vg_partition *p, struct vg_node *n,
+                               const struct vg_engine *e,
                                struct vg_error *err)
 {
   struct vg_region *region;
   size_t count;
-  vg_status st = list_regions(p, n, &region, &count, err);
+  vg_status st = list_regions(p, n, e, &region, &count, err);
 
-  if (st == VG_OK && count) st = vg_select_update(&n->select, err);
+  if (st == VG_OK && count) st = vg_select_update(&n->select, e, err);
   if (st == VG_OK && count) st = make_room(n, count, err);
-  for (size_t k = 0; st == VG_OK && k < count; k++)
-    st = add_work(p, n, k, &region[k], err);
+  if (st == VG_OK && count) st = add_works(p, n, count, region, e, err);
   if (st == VG_OK) estimate_works(n);
   free(region);
   return st;
 }
 
 static vg_status prepare(struct vg_partition *p, struct vg_node *n,
-                         struct vg_error *err)
+                         const struct vg_engine *e, struct vg_error *err)
 {
   vg_status st = VG_OK;
 
   for (; !n->n_work && n->stage < STAGES && st == VG_OK; n->stage++) {
     drop_stage(n);
-    st = prepare_stage(p, n, err);
+    st = prepare_stage(p, n, e, err);
   }
   n->n_left = n->n_work;
   return st;
@@ -207,14 +271,15 @@ static vg_status keep_whole(struct vg_node *n, struct vg_error *err)
 }
 
 vg_status vg_node_start(struct vg_partition *p, struct vg_node *n,
-                        struct vg_error *err)
+                        const struct vg_engine *e, struct vg_error *err)
 {
   vg_status st;
 
   n->stage = 0;
   if (!vg_node_wants_cut(p, n)) return keep_whole(n, err);
+  if (!n->retry) VG_TRY(vg_lattice_add_ribs(&n->load, &n->lattice, err));
   vg_select_init(&n->select, &n->front, p->sizing);
-  VG_TRY(prepare(p, n, err));
+  VG_TRY(prepare(p, n, e, err));
   if (!n->n_work) {
     vg_select_release(&n->select);
     st = keep_whole(n, err);
@@ -223,89 +288,17 @@ done:
   return st;
 }
 
-/* --- putting a stage into the front -------------------------------------- */
-
-static uint32_t point_of(const struct vg_node *n, size_t i, size_t base,
-                         uint32_t v, size_t n_part)
-{
-  return v < n_part ? n->point[i][v] : (uint32_t)(base + v - n_part);
-}
-
-/* Points and faces that the stage made, behind those that stay. */
-static void add_change(struct vg_node *n, size_t i, size_t n_part)
-{
-  const struct vg_change *c = &n->change[i];
-  struct vg_front *f = &n->front;
-  size_t base = f->n_point;
-
-  if (c->n_point) memcpy(f->x + base, c->x, c->n_point * sizeof *f->x);
-  for (size_t k = 0; k < c->n_point; k++)
-    f->name[base + k] = VG_POINT_NAME(c->serial, k);
-  f->n_point += c->n_point;
-  for (size_t k = 0; k < c->n_face; k++, f->n_face++)
-    for (int j = 0; j < 3; j++)
-      f->face[f->n_face][j] = point_of(n, i, base, c->face[k][j], n_part);
-}
-
-/* Faces that have a cell now. */
-static void drop_gone(struct vg_node *n)
-{
-  for (size_t i = 0; i < n->n_work; i++)
-    for (size_t k = 0; k < n->change[i].n_gone; k++)
-      n->front.face[n->face[i][n->change[i].gone[k]]][0] = VG_FACE_GONE;
-}
-
-/* Blocks of the points that are new. */
-static vg_status label_points(struct vg_node *n, struct vg_error *err)
-{
-  const struct vg_front *f = &n->front;
-
-  if (vg_reserve(&n->block, &n->cap_block, f->n_point, sizeof *n->block))
-    return vg_fail_memory(err, "cutting a front");
-  for (; n->n_block < f->n_point; n->n_block++) {
-    const double *x = f->x[n->n_block];
-    uint32_t b = vg_lattice_block(&n->lattice, x, 0);
-
-    if (vg_lattice_block(&n->lattice, x, 1) != b) b |= VG_ON_PLANE;
-    n->block[n->n_block] = (uint16_t)b;
-  }
-  return VG_OK;
-}
-
-static vg_status put_in(struct vg_node *n, struct vg_error *err)
-{
-  struct vg_front *f = &n->front;
-  size_t np = f->n_point, nf = f->n_face, cap_x = np, cap_name = np;
-  size_t cap_face = nf;
-
-  drop_gone(n);
-  for (size_t i = 0; i < n->n_work; i++) {
-    np += n->change[i].n_point;
-    nf += n->change[i].n_face;
-    n->zone_cells += (double)n->change[i].n_cell;
-    n->zone_volume += n->change[i].volume;
-    n->n_blocked += n->change[i].blocked != 0;
-  }
-  if (vg_reserve(&f->x, &cap_x, np, sizeof *f->x) ||
-      vg_reserve(&f->name, &cap_name, np, sizeof *f->name) ||
-      vg_reserve(&f->face, &cap_face, nf, sizeof *f->face))
-    return vg_fail_memory(err, "cutting a front");
-  for (size_t i = 0; i < n->n_work; i++)
-    add_change(n, i, n->change[i].n_part);
-  return label_points(n, err);
-}
-
 vg_status vg_node_join(struct vg_partition *p, struct vg_node *n,
-                       struct vg_error *err)
+                       const struct vg_engine *e, struct vg_error *err)
 {
   vg_status st;
 
-  VG_TRY(put_in(n, err));
+  VG_TRY(vg_node_put(n, e, err));
   drop_stage(n);
-  VG_TRY(prepare(p, n, err));
+  VG_TRY(prepare(p, n, e, err));
   if (!n->n_work) {
     vg_select_release(&n->select);
-    st = vg_node_split(p, n, err);
+    st = vg_node_split(p, n, e, err);
   }
 done:
   return st;

@@ -33,10 +33,15 @@ struct vg_node {
   int retry;                 /* attempts that failed */
   int is_final;              /* a leaf whatever it needs */
   /* while it is being cut: faces stay where they are, with VG_FACE_GONE */
+  size_t cap_x, cap_name, cap_face;  /* of the front; 0: just its size */
   struct vg_select select;
   size_t n_block, cap_block;
   uint16_t *block;           /* [n_block] of the front's points: the block that
                                 each is in, with VG_ON_PLANE or not */
+  size_t n_seen;             /* faces that were looked at for the next list */
+  size_t n_open, cap_open;
+  uint32_t *open;            /* [n_open] faces that lie in no block, rising;
+                                of those seen, some may be gone */
   int is_planned;            /* the next two are of this load, this retry */
   int n_bisection;
   struct vg_lattice lattice;
@@ -108,12 +113,17 @@ int vg_node_wants_cut(const struct vg_partition *p, struct vg_node *n);
 /** The works of the first stage that has some. Without any, n->n_work is 0
  * and n->n_child 1 (itself, to be filled). */
 vg_status vg_node_start(struct vg_partition *p, struct vg_node *n,
-                        struct vg_error *err);
+                        const struct vg_engine *e, struct vg_error *err);
 
 /** Put the changes of a stage into the front; then the works of the next
  * stage, or, when there is none, the children. */
 vg_status vg_node_join(struct vg_partition *p, struct vg_node *n,
-                       struct vg_error *err);
+                       const struct vg_engine *e, struct vg_error *err);
+
+/** Put the changes of the works into the front; these, and what they were
+ * given, are released. (node_put.c) */
+vg_status vg_node_put(struct vg_node *n, const struct vg_engine *e,
+                      struct vg_error *err);
 
 /** Does a face with these points lie within one block, off all planes? */
 static inline int vg_node_is_in_block(const uint16_t *block,
@@ -123,18 +133,23 @@ static inline int vg_node_is_in_block(const uint16_t *block,
          !(block[v[0]] & VG_ON_PLANE);
 }
 
+/** Bring n->open up to date: O(faces added since, and listed). (node_put.c) */
+vg_status vg_node_list_open(struct vg_node *n, const struct vg_engine *e,
+                            struct vg_error *err);
+
 /** Where the void hangs together across planes of the lattice after its
  * stages: boxes to be filled, for axis -1, then patches of the planes across
  * an axis. They are few, or none are given.
  * region out: [*n_region], to be freed by the caller. (node_close.c) */
 vg_status vg_node_open_places(const struct vg_partition *p,
-                              const struct vg_node *n, int axis,
+                              struct vg_node *n, int axis,
+                              const struct vg_engine *e,
                               struct vg_region **region, size_t *n_region,
                               struct vg_error *err);
 
-/** Part the front by blocks: n->child. (node_split.c) */
+/** Part the front by blocks: n->child, planned. (node_split.c) */
 vg_status vg_node_split(struct vg_partition *p, struct vg_node *n,
-                        struct vg_error *err);
+                        const struct vg_engine *e, struct vg_error *err);
 
 /** Grow what a zone's or a leaf's work asks for; keeps the piece.
  * change out: what its home hears. outgrown out: 1: too large, nothing was

@@ -13,6 +13,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/unite.h"
 #include "partition/node.h"
 
 /* A box ends so many spacings beyond the faces that it is made for. */
@@ -83,10 +84,9 @@ static int add_planes(struct search *s, uint32_t face)
 
 static vg_status list_touching(struct search *s, struct vg_error *err)
 {
-  for (uint32_t i = 0; i < s->n->front.n_face; i++) {
-    const uint32_t *v = s->n->front.face[i];
+  for (size_t k = 0; k < s->n->n_open; k++) {
+    uint32_t i = s->n->open[k];
 
-    if (v[0] == VG_FACE_GONE || vg_node_is_in_block(s->n->block, v)) continue;
     if (s->n_touching >= MOST_TOUCHING) {
       s->n_touching = 0;
       return VG_OK;
@@ -95,12 +95,6 @@ static vg_status list_touching(struct search *s, struct vg_error *err)
       return vg_fail_memory(err, "cutting a front");
   }
   return VG_OK;
-}
-
-static uint32_t root_of(uint32_t *parent, uint32_t k)
-{
-  while (parent[k] != k) k = parent[k] = parent[parent[k]];
-  return k;
 }
 
 static int by_point(const void *a, const void *b)
@@ -135,9 +129,7 @@ static vg_status unite_touching(struct search *s, struct vg_error *err)
     if (key[i - 1] >> 32 != key[i] >> 32 ||
         s->touching[a].plane != s->touching[b].plane)
       continue;
-    a = root_of(s->parent, a);
-    b = root_of(s->parent, b);
-    s->parent[a > b ? a : b] = a > b ? b : a;
+    vg_unite(s->parent, a, b);
   }
   free(key);
   return VG_OK;
@@ -196,7 +188,7 @@ static vg_status make_places(struct search *s, struct vg_error *err)
   vg_status st = place ? VG_OK : vg_fail_memory(err, "cutting a front");
 
   for (uint32_t i = 0; st == VG_OK && i < s->n_touching; i++) {
-    uint32_t root = root_of(s->parent, i);
+    uint32_t root = vg_root_of(s->parent, i);
     struct place one;
 
     place_of_face(s, &s->touching[i], &one);
@@ -343,7 +335,8 @@ static vg_status to_regions(const struct search *s, struct vg_region **region,
 }
 
 vg_status vg_node_open_places(const struct vg_partition *p,
-                              const struct vg_node *n, int axis,
+                              struct vg_node *n, int axis,
+                              const struct vg_engine *e,
                               struct vg_region **region, size_t *n_region,
                               struct vg_error *err)
 {
@@ -354,6 +347,7 @@ vg_status vg_node_open_places(const struct vg_partition *p,
   *region = NULL;
   *n_region = 0;
   if (axis >= 0 && !n->lattice.n[axis]) return VG_OK;
+  VG_TRY(vg_node_list_open(n, e, err));
   VG_TRY(list_touching(&s, err));
   if (!s.n_touching) goto done;
   VG_TRY(unite_touching(&s, err));

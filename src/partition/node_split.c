@@ -10,7 +10,12 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/unite.h"
 #include "partition/node.h"
+#include "partition/room.h"
+
+/* Faces or points to a chunk of a loop. */
+enum { CHUNK = 8192 };
 
 /* Voids below this share of a leaf are filled together. */
 static const double small_share = 0.02;
@@ -23,7 +28,11 @@ enum { NONE = 0xffff };
 
 struct split {
   struct vg_node *n;
-  uint16_t root[VG_LATTICE_BLOCKS];   /* union-find of blocks */
+  const struct vg_engine *e;
+  size_t n_block, n_chunk;   /* chunks of faces */
+  uint32_t *count;           /* [n_chunk][n_block] faces, then where the first
+                                of a child goes: at the child's first block */
+  uint32_t root[VG_LATTICE_BLOCKS];   /* of blocks (base/unite.h) */
   uint16_t child[VG_LATTICE_BLOCKS];  /* of a root, or NONE */
   int is_merged;
   size_t n_part;
@@ -31,21 +40,6 @@ struct split {
 };
 
 /* --- blocks that hang together -------------------------------------------- */
-
-static uint16_t root_of(struct split *s, uint32_t b)
-{
-  while (s->root[b] != b) b = s->root[b] = s->root[s->root[b]];
-  return (uint16_t)b;
-}
-
-static void unite(struct split *s, uint32_t a, uint32_t b)
-{
-  a = root_of(s, a);
-  b = root_of(s, b);
-  if (a == b) return;
-  s->is_merged = 1;
-  s->root[a < b ? b : a] = (uint16_t)(a < b ? a : b);
-}
 
 static uint32_t block_of(const struct split *s, uint32_t point)
 {
@@ -57,119 +51,233 @@ static void unite_corners(struct split *s, const uint32_t v[3])
   const struct vg_node *n = s->n;
 
   for (int k = 0; k < 3; k++) {
-    unite(s, block_of(s, v[k]), block_of(s, v[0]));
+    s->is_merged |= vg_unite(s->root, block_of(s, v[k]), block_of(s, v[0]));
     if (n->block[v[k]] & VG_ON_PLANE)
-      unite(s, block_of(s, v[k]),
-            vg_lattice_block(&n->lattice, n->front.x[v[k]], 1));
+      s->is_merged |= vg_unite(s->root, block_of(s, v[k]),
+                               vg_lattice_block(&n->lattice,
+                                                n->front.x[v[k]], 1));
   }
 }
 
-/* Blocks that hang together become one; those without faces none. */
-static void find_children(struct split *s)
+static void count_part(void *context, size_t first, size_t end, int worker)
 {
-  const struct vg_front *f = &s->n->front;
-  uint8_t is_used[VG_LATTICE_BLOCKS] = {0};
+  const struct split *s = context;
+  uint32_t *count = s->count + first / CHUNK * s->n_block;
 
-  for (uint32_t b = 0; b < VG_LATTICE_BLOCKS; b++) s->root[b] = (uint16_t)b;
-  for (size_t i = 0; i < f->n_face; i++) {
-    const uint32_t *v = f->face[i];
+  (void)worker;
+  for (size_t i = first; i < end; i++) {
+    uint32_t p = s->n->front.face[i][0];
 
-    if (v[0] == VG_FACE_GONE) continue;
-    if (!vg_node_is_in_block(s->n->block, v)) unite_corners(s, v);
-    is_used[block_of(s, v[0])] = 1;
+    if (p != VG_FACE_GONE) count[block_of(s, p)]++;
   }
+}
+
+/* Faces of each chunk and block, those of all chunks in sum[]. */
+static vg_status count_faces(struct split *s, size_t *sum,
+                             struct vg_error *err)
+{
+  s->n_block = vg_lattice_blocks(&s->n->lattice);
+  s->n_chunk = (s->n->front.n_face + CHUNK - 1) / CHUNK;
+  s->count = vg_calloc(s->n_chunk * s->n_block, sizeof *s->count);
+  if (!s->count) return vg_fail_memory(err, "the parts of a front");
+  vg_engine_loop(s->e, s->n->front.n_face, CHUNK, count_part, s);
+  for (size_t c = 0; c < s->n_chunk; c++)
+    for (size_t b = 0; b < s->n_block; b++)
+      sum[b] += s->count[c * s->n_block + b];
+  return VG_OK;
+}
+
+/* Blocks that hang together become one; those without faces none. */
+static void number_children(struct split *s, const size_t *n_face)
+{
+  for (uint32_t b = 0; b < VG_LATTICE_BLOCKS; b++) s->root[b] = b;
+  for (size_t k = 0; k < s->n->n_open; k++)
+    unite_corners(s, s->n->front.face[s->n->open[k]]);
   s->n_part = 0;
   memset(s->child, 0xff, sizeof s->child);
-  for (uint32_t b = 0; b < VG_LATTICE_BLOCKS; b++) {
-    uint16_t r = root_of(s, b);
+  for (uint32_t b = 0; b < s->n_block; b++) {
+    uint32_t r = vg_root_of(s->root, b);
 
-    if (is_used[b] && s->child[r] == NONE)
+    if (n_face[b] && s->child[r] == NONE)
       s->child[r] = (uint16_t)s->n_part++;
   }
   for (uint32_t b = 0; b < VG_LATTICE_BLOCKS; b++)
-    s->child[b] = s->child[root_of(s, b)];
+    s->child[b] = s->child[vg_root_of(s->root, b)];
+}
+
+static vg_status find_children(struct split *s, struct vg_error *err)
+{
+  size_t n_face[VG_LATTICE_BLOCKS] = {0};
+  vg_status st;
+
+  VG_TRY(vg_node_list_open(s->n, s->e, err));
+  VG_TRY(count_faces(s, n_face, err));
+  number_children(s, n_face);
+  s->part = vg_calloc(s->n_part, sizeof *s->part);
+  if (!s->part) return vg_fail_memory(err, "the parts of a front");
+  for (size_t b = 0; b < s->n_block; b++)
+    if (n_face[b]) s->part[s->child[b]].n_face += n_face[b];
+done:
+  return st;
 }
 
 /* --- fronts of the children ---------------------------------------------- */
 
-static vg_status make_room(struct split *s, const size_t *n_face,
-                           const size_t *n_point, struct vg_error *err)
+/* Where each chunk puts its first face of each child. */
+static void place_chunks(struct split *s)
 {
-  s->part = vg_calloc(s->n_part, sizeof *s->part);
-  if (!s->part) return vg_fail_memory(err, "the parts of a front");
-  for (size_t k = 0; k < s->n_part; k++) {
-    struct vg_front *part = &s->part[k];
+  uint32_t at[VG_LATTICE_BLOCKS] = {0};
 
-    part->x = vg_alloc(n_point[k], sizeof *part->x);
-    part->name = vg_alloc(n_point[k], sizeof *part->name);
-    part->face = vg_alloc(n_face[k], sizeof *part->face);
-    if (!part->x || !part->name || !part->face)
-      return vg_fail_memory(err, "the parts of a front");
-  }
-  return VG_OK;
-}
+  for (size_t c = 0; c < s->n_chunk; c++) {
+    uint32_t *count = s->count + c * s->n_block;
+    uint32_t n[VG_LATTICE_BLOCKS] = {0};
 
-/* Points in the order in which faces use them. */
-static void deal_out(struct split *s, uint32_t *number)
-{
-  const struct vg_front *f = &s->n->front;
-
-  for (size_t i = 0; i < f->n_face; i++) {
-    struct vg_front *part;
-    uint32_t *to;
-
-    if (f->face[i][0] == VG_FACE_GONE) continue;
-    part = &s->part[s->child[block_of(s, f->face[i][0])]];
-    to = part->face[part->n_face++];
-    for (int k = 0; k < 3; k++) {
-      uint32_t p = f->face[i][k];
-
-      if (number[p] == UINT32_MAX) {
-        memcpy(part->x[part->n_point], f->x[p], sizeof *part->x);
-        part->name[part->n_point] = f->name[p];
-        number[p] = (uint32_t)part->n_point++;
-      }
-      to[k] = number[p];
+    for (size_t b = 0; b < s->n_block; b++)
+      if (count[b]) n[s->child[b]] += count[b];
+    for (size_t k = 0; k < s->n_part; k++) {
+      count[k] = at[k];
+      at[k] += n[k];
     }
   }
+}
+
+struct deal {
+  struct split *s;
+  uint32_t *number;          /* [points of the front] in their child */
+  int *is_short;             /* [n_part] of memory */
+};
+
+/* Children are not more than blocks, so count[] has their places. */
+static void deal_faces(void *context, size_t first, size_t end, int worker)
+{
+  const struct deal *d = context;
+  const struct split *s = d->s;
+  const struct vg_front *f = &s->n->front;
+  uint32_t *at = s->count + first / CHUNK * s->n_block;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++) {
+    uint16_t c;
+
+    if (f->face[i][0] == VG_FACE_GONE) continue;
+    c = s->child[block_of(s, f->face[i][0])];
+    memcpy(s->part[c].face[at[c]++], f->face[i], sizeof *f->face);
+  }
+}
+
+static void clear_numbers(void *context, size_t first, size_t end, int worker)
+{
+  const struct deal *d = context;
+
+  (void)worker;
+  memset(d->number + first, 0xff, (end - first) * sizeof *d->number);
+}
+
+/* Points in the order in which faces use them. All corners of a face are in
+ * blocks of one child (unite_corners), so a point has one child, and its
+ * number one writer. */
+static int number_points(const struct deal *d, struct vg_front *part)
+{
+  const struct vg_front *f = &d->s->n->front;
+  size_t n = 0, cap = 0;
+  uint32_t *point = NULL;
+  int bad = 0;
+
+  for (size_t i = 0; i < part->n_face && !bad; i++) {
+    bad = vg_reserve(&point, &cap, n + 3, sizeof *point);
+    for (int k = 0; k < 3 && !bad; k++) {
+      uint32_t *p = &part->face[i][k];
+
+      if (d->number[*p] == UINT32_MAX) {
+        point[n] = *p;
+        d->number[*p] = (uint32_t)n++;
+      }
+      *p = d->number[*p];
+    }
+  }
+  part->x = bad ? NULL : vg_alloc(n, sizeof *part->x);
+  part->name = bad ? NULL : vg_alloc(n, sizeof *part->name);
+  bad = !part->x || !part->name;
+  for (size_t k = 0; k < n && !bad; k++) {
+    memcpy(part->x[k], f->x[point[k]], sizeof *part->x);
+    part->name[k] = f->name[point[k]];
+  }
+  part->n_point = bad ? 0 : n;
+  free(point);
+  return bad;
+}
+
+static void deal_points(void *context, size_t first, size_t end, int worker)
+{
+  const struct deal *d = context;
+
+  (void)worker;
+  for (size_t c = first; c < end; c++)
+    d->is_short[c] = number_points(d, &d->s->part[c]);
+}
+
+static vg_status deal_out(struct deal *d, struct vg_error *err)
+{
+  struct split *s = d->s;
+  const struct vg_front *f = &s->n->front;
+
+  for (size_t k = 0; k < s->n_part; k++) {
+    s->part[k].face = vg_alloc(s->part[k].n_face, sizeof *f->face);
+    if (!s->part[k].face) return vg_fail_memory(err, "the parts of a front");
+  }
+  place_chunks(s);
+  vg_engine_loop(s->e, f->n_face, CHUNK, deal_faces, d);
+  vg_engine_loop(s->e, f->n_point, CHUNK, clear_numbers, d);
+  vg_engine_loop(s->e, s->n_part, 1, deal_points, d);
+  for (size_t k = 0; k < s->n_part; k++)
+    if (d->is_short[k]) return vg_fail_memory(err, "the parts of a front");
+  return VG_OK;
 }
 
 static vg_status split_front(struct split *s, struct vg_error *err)
 {
-  const struct vg_front *f = &s->n->front;
-  uint32_t *number = vg_alloc(f->n_point, sizeof *number);
-  size_t *count = vg_calloc(2 * s->n_part + 1, sizeof *count);
-  vg_status st = VG_OK;
+  struct deal d = { s, vg_alloc(s->n->front.n_point, sizeof *d.number),
+                    vg_calloc(s->n_part, sizeof *d.is_short) };
+  struct vg_front *f = &s->n->front;
+  vg_status st = d.number && d.is_short
+                   ? deal_out(&d, err)
+                   : vg_fail_memory(err, "the parts of a front");
+  void *const whole[] = {f->x, f->name, f->face, d.number, d.is_short};
 
-  if (!number || !count) st = vg_fail_memory(err, "the parts of a front");
-  if (st == VG_OK) {
-    for (size_t i = 0; i < f->n_face; i++)
-      if (f->face[i][0] != VG_FACE_GONE)
-        count[s->child[block_of(s, f->face[i][0])]]++;
-    for (size_t p = 0; p < f->n_point; p++) {
-      uint16_t c = s->child[block_of(s, (uint32_t)p)];
-
-      if (c != NONE) count[s->n_part + c]++;
-    }
-    st = make_room(s, count, count + s->n_part, err);
-  }
-  if (st == VG_OK) {
-    memset(number, 0xff, f->n_point * sizeof *number);
-    deal_out(s, number);
-    vg_front_release(&s->n->front);
-  }
-  free(number);
-  free(count);
+  vg_room_free(s->e, sizeof whole / sizeof *whole, whole);
+  memset(f, 0, sizeof *f);
   return st;
+}
+
+struct volumes {
+  const struct split *s;
+  double *of;                /* [n_part] */
+};
+
+static void measure_part(void *context, size_t first, size_t end, int worker)
+{
+  const struct volumes *v = context;
+
+  (void)worker;
+  for (size_t k = first; k < end; k++)
+    v->of[k] = vg_front_volume(&v->s->part[k]);
 }
 
 /* Where nothing could be grown beside a block, a body in it may have lost its
  * void: then the front stays as it is. */
-static int bounds_nothing(const struct split *s)
+static vg_status find_nothing(const struct split *s, int *found,
+                              struct vg_error *err)
 {
-  for (size_t k = 0; s->n->n_blocked && k < s->n_part; k++)
-    if (!(vg_front_volume(&s->part[k]) > 0)) return 1;
-  return 0;
+  struct volumes v = { s, vg_alloc(s->n_part, sizeof *v.of) };
+
+  *found = 0;
+  if (!v.of) return vg_fail_memory(err, "the parts of a front");
+  if (s->n->n_blocked) {
+    vg_engine_loop(s->e, s->n_part, 1, measure_part, &v);
+    for (size_t k = 0; k < s->n_part; k++) *found |= !(v.of[k] > 0);
+  }
+  free(v.of);
+  return VG_OK;
 }
 
 /* One part again. */
@@ -244,7 +352,7 @@ static vg_status load_of_blocks(struct split *s, struct vg_error *err)
   if (!load) return vg_fail_memory(err, "the load of a void");
   for (int k = 0; k < 3; k++) at[k] = n->lattice.at[k];
   st = vg_load_split_blocks(&n->load, n->lattice.n, at, zone_reach,
-                            correction(n), 1, load, err);
+                            correction(n), s->e, load, err);
   for (size_t b = 0; st == VG_OK && b < n_block; b++) {
     if (s->child[b] == NONE) {
       vg_load_release(&load[b]);
@@ -257,7 +365,8 @@ static vg_status load_of_blocks(struct split *s, struct vg_error *err)
   return st;
 }
 
-static vg_status load_of_fronts(struct vg_node *n, struct vg_error *err)
+static vg_status load_of_fronts(struct vg_node *n, const struct vg_engine *e,
+                                struct vg_error *err)
 {
   struct vg_void *v = vg_calloc(n->n_child, sizeof *v);
   struct vg_load *load = vg_calloc(n->n_child, sizeof *load);
@@ -271,7 +380,7 @@ static vg_status load_of_fronts(struct vg_node *n, struct vg_error *err)
     v[k].face = n->child[k]->front.face;
   }
   if (st == VG_OK)
-    st = vg_load_split(&n->load, n->n_child, v, correction(n), load, err);
+    st = vg_load_split(&n->load, n->n_child, v, correction(n), e, load, err);
   for (size_t k = 0; st == VG_OK && k < n->n_child; k++) {
     n->child[k]->load = load[k];
     n->child[k]->per_cube = n->per_cube;
@@ -333,22 +442,42 @@ static vg_status bundle(struct vg_partition *p, struct vg_node *n,
   return st;
 }
 
-vg_status vg_node_split(struct vg_partition *p, struct vg_node *n,
-                        struct vg_error *err)
+struct plans {
+  const struct vg_partition *p;
+  struct vg_node **child;
+};
+
+static void plan_part(void *context, size_t first, size_t end, int worker)
 {
-  struct split s = { .n = n };
+  const struct plans *q = context;
+
+  (void)worker;
+  for (size_t k = first; k < end; k++)
+    (void)vg_node_wants_cut(q->p, q->child[k]);
+}
+
+vg_status vg_node_split(struct vg_partition *p, struct vg_node *n,
+                        const struct vg_engine *e, struct vg_error *err)
+{
+  struct split s = { .n = n, .e = e };
+  struct plans plans = { p, NULL };
+  int nothing;
   vg_status st;
 
-  find_children(&s);
+  VG_TRY(find_children(&s, err));
   VG_TRY(split_front(&s, err));
-  if (bounds_nothing(&s)) VG_TRY(undo(&s, err));
+  VG_TRY(find_nothing(&s, &nothing, err));
+  if (nothing) VG_TRY(undo(&s, err));
   VG_TRY(make_children(&s, err));
-  VG_TRY(s.is_merged ? load_of_fronts(n, err) : load_of_blocks(&s, err));
+  VG_TRY(s.is_merged ? load_of_fronts(n, e, err) : load_of_blocks(&s, err));
   count_retry(p, n);
-  st = bundle(p, n, err);
+  VG_TRY(bundle(p, n, err));
+  plans.child = n->child;
+  vg_engine_loop(e, n->n_child, 1, plan_part, &plans);
 done:
   for (size_t k = 0; s.part && k < s.n_part; k++)
     vg_front_release(&s.part[k]);
   free(s.part);
+  free(s.count);
   return st;
 }

@@ -346,40 +346,14 @@ static vg_status tell(struct repair *r, struct vg_comm *comm,
 static vg_status shrink(struct vg_piece *q, const struct picks *s,
                         const uint64_t *better, struct vg_error *err)
 {
-  size_t n = q->n_in + q->n_point, kept = 0, n_in = 0;
-  uint8_t *gone = vg_calloc(q->n_cell, 1);
-  uint32_t *to = vg_alloc(n, sizeof *to);
+  struct vg_edit e = { .gone = vg_calloc(q->n_cell, 1) };
+  vg_status st = e.gone ? VG_OK : VG_ERR_MEMORY;
 
-  if (!gone || !to) {
-    free(gone);
-    free(to);
-    return vg_fail_memory(err, "repairs");
-  }
-  memset(to, 0xff, n * sizeof *to);
-  for (size_t k = 0; k < s->n; k++)
-    gone[s->at[k].index] = (uint8_t)better[s->at[k].key];
-  for (size_t c = 0; c < q->n_cell; c++) {
-    if (gone[c]) continue;
-    memmove(q->cell[kept], q->cell[c], sizeof *q->cell);
-    for (int i = 0; i < 4; i++) to[q->cell[kept][i]] = 0;
-    kept++;
-  }
-  q->n_cell = kept;
-  for (size_t k = 0; k < q->n_in; k++) {
-    if (to[k] == UINT32_MAX) continue;
-    to[k] = (uint32_t)n_in;
-    q->in[n_in] = q->in[k];
-    memmove(q->x[n_in++], q->x[k], sizeof *q->x);
-  }
-  for (size_t k = 0; k < q->n_point; k++)
-    to[q->n_in + k] = (uint32_t)(n_in + k);
-  memmove(q->x + n_in, q->x + q->n_in, q->n_point * sizeof *q->x);
-  q->n_in = n_in;
-  for (size_t c = 0; c < kept; c++)
-    for (int i = 0; i < 4; i++) q->cell[c][i] = to[q->cell[c][i]];
-  free(gone);
-  free(to);
-  return VG_OK;
+  for (size_t k = 0; st == VG_OK && k < s->n; k++)
+    e.gone[s->at[k].index] = (uint8_t)better[s->at[k].key];
+  if (st == VG_OK) st = vg_piece_edit(q, &e);
+  vg_edit_release(&e);
+  return st == VG_OK ? st : vg_fail_memory(err, "repairs");
 }
 
 static vg_status remove_cells(struct repair *r, struct vg_error *err)
@@ -539,10 +513,10 @@ static vg_status agree_report(struct vg_partition *p, struct vg_comm *comm,
                               struct vg_error *err)
 {
   struct vg_partition_report *r = &p->report;
-  uint64_t v[4] = {r->n_repair_cell, r->n_repair_bad, r->n_repair_bad_left,
-                   r->n_repair_moved};
+  uint64_t v[5] = {r->n_repair_cell, r->n_repair_bad, r->n_repair_bad_left,
+                   r->n_repair_moved, r->n_repair_swapped};
   double least[2] = {-r->repair_worst, -r->repair_worst_left};
-  vg_status st = vg_comm_sum(comm, 4, v, err);
+  vg_status st = vg_comm_sum(comm, 5, v, err);
 
   if (st == VG_OK) st = vg_comm_max(comm, 2, least, err);
   if (st < 0) return st;
@@ -550,6 +524,7 @@ static vg_status agree_report(struct vg_partition *p, struct vg_comm *comm,
   r->n_repair_bad = v[1];
   r->n_repair_bad_left = v[2];
   r->n_repair_moved = v[3];
+  r->n_repair_swapped = v[4];
   r->repair_worst = -least[0];
   r->repair_worst_left = -least[1];
   return VG_OK;

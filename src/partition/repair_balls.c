@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/unite.h"
 #include "partition/repair_parts.h"
 
 /* Grid cells to a length. A ball of a level is smaller than a cell of its
@@ -121,12 +122,6 @@ struct forest {
   size_t n_near, cap_near;
 };
 
-static uint32_t root(const struct forest *f, uint32_t i)
-{
-  while (f->up[i] != i) i = f->up[i] = f->up[f->up[i]];
-  return i;
-}
-
 static int overlaps(const struct vg_spot *a, const struct vg_spot *b)
 {
   double r = a->radius + b->radius;
@@ -182,7 +177,7 @@ static void join(const struct vg_balls *b, struct forest *f, uint32_t i,
     size_t m = 0;
 
     if (b->cluster[j] == VG_NO_CLUSTER) continue;
-    r = root(f, j);
+    r = vg_root_of(f->up, j);
     while (m < f->n_near && f->near[m] != r) m++;
     if (m < f->n_near) continue;
     f->near[f->n_near++] = r;
@@ -202,7 +197,7 @@ static void number(struct vg_balls *b, const struct forest *f)
     uint32_t r;
 
     if (b->cluster[i] == VG_NO_CLUSTER) continue;
-    r = root(f, (uint32_t)i);
+    r = vg_root_of(f->up, (uint32_t)i);
     if (f->size[r] == VG_NO_CLUSTER) f->size[r] = (uint32_t)b->n_cluster++;
     b->cluster[i] = f->size[r];
   }

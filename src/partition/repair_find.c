@@ -163,6 +163,16 @@ struct vg_spot vg_spot_around(const struct vg_sizing *sizing,
   return s;
 }
 
+vg_status vg_spots_add(struct vg_spots *s, const struct vg_sizing *sizing,
+                       const double *const x[4], double shape)
+{
+  if (vg_reserve(&s->at, &s->cap, s->n + 1, sizeof *s->at))
+    return VG_ERR_MEMORY;
+  s->at[s->n++] = vg_spot_around(
+      sizing, x, shape < VG_SHAPE_BAD ? VG_BALL_MIDDLE : VG_BALL_SMALL);
+  return VG_OK;
+}
+
 /* --- of all ranks -------------------------------------------------------- */
 
 static int by_place(const void *a, const void *b)

@@ -52,6 +52,11 @@ enum vg_ball_size { VG_BALL_SMALL, VG_BALL_MIDDLE, VG_BALL_LARGE,
 struct vg_spot vg_spot_around(const struct vg_sizing *sizing,
                               const double *const x[4], enum vg_ball_size k);
 
+/** Add one around a cell of a shape below VG_SHAPE_AIM. */
+struct vg_spots { size_t n, cap; struct vg_spot *at; };
+vg_status vg_spots_add(struct vg_spots *s, const struct vg_sizing *sizing,
+                       const double *const x[4], double shape);
+
 /** The balls that ranks wrote, on all of them: in an order that does not
  * depend on ranks, thinned. out: owned by the caller, also on failure.
  * Collective. */
@@ -62,7 +67,7 @@ vg_status vg_spots_gather(struct vg_writer *w, int n_rank,
 /** As vg_shape: dihedral angles below 18 or above 162 degrees. */
 #define VG_SHAPE_BAD 0.0955
 
-/** Smooth the points on interfaces, and list balls around the cells with a
+/** Swap and smooth across interfaces, and list balls around the cells with a
  * corner there that stay bad, of all ranks, by their coordinates. Collective.
  * spans: this rank's tasks are added. (repair_smooth.c) */
 vg_status vg_repair_smooth(struct vg_partition *p, struct vg_comm *comm,
@@ -78,24 +83,105 @@ struct vg_seam {
   uint32_t order;            /* of its path */
   uint32_t n_known, n_other, n_cell;
   uint32_t *known;           /* [n_known] places of the owner's points */
-  uint32_t *vertex;          /* [n_known] in the piece that has the cells */
+  uint32_t *vertex;          /* [n_known] in the piece that has the cells;
+                                not sent: [n_known + n_other] */
   double (*x)[3];            /* [n_other] corners that are not the owner's */
-  uint8_t *before;           /* [n_other] whose points may move first: */
+  uint64_t *name;            /* [n_other] */
+  uint32_t *zone;            /* [n_other] order of the zone whose they are */
   uint32_t (*cell)[4];       /* [n_cell] 0 ... n_known - 1 known, then other */
+  uint32_t *place;           /* [n_cell] in the piece that has them */
+  uint32_t n_gone;           /* not sent. place [n_gone] once all is done:
+                                those that the owner has others for */
 };
-enum { VG_BEFORE_NOT, VG_BEFORE_OWN,  /* of the piece that has the cells */
-       VG_BEFORE_OTHER };
+#define VG_NO_ZONE UINT32_MAX
 
 void vg_seam_release(struct vg_seam *s);
 void vg_seam_put(struct vg_writer *w, const struct vg_seam *s);
 /** Sets r->bad, and leaves *s empty, where the data cannot be. */
 void vg_seam_get(struct vg_reader *r, struct vg_seam *s);
 
-/** The seams of piece k of this rank. out: owned by the caller, also on
- * failure. */
+/** The seams of piece k of this rank. hit out: [n_hit] its cells with a corner
+ * among the points of zones, in rising order. out, hit: owned by the caller,
+ * also on failure. */
 vg_status vg_seams_of(const struct vg_partition *p, size_t k,
                       const struct vg_owners *owners, size_t *n,
-                      struct vg_seam **out);
+                      struct vg_seam **out, size_t *n_hit, uint32_t **hit);
+
+/** The corners of a seam as they are now. */
+void vg_seam_refresh(const struct vg_piece *q, struct vg_seam *s);
+
+/** As vg_shape. Points with a cell below the first (42 degrees) around them
+ * are smoothed, cells below the second (39) swapped. */
+#define VG_SHAPE_BESIDE 0.45f
+#define VG_SHAPE_SWAP 0.4f
+
+/** Smooth the points of a piece that are corners of the cells hit [n], which
+ * are those with a corner on an interface in rising order; but not those that
+ * are shared [q.n_point], NULL: none is. out: cells that it spoiled, but for
+ * those hit. (repair_beside.c) */
+vg_status vg_repair_beside(const struct vg_piece *q,
+                           const struct vg_sizing *sizing, size_t n,
+                           const uint32_t *hit, const uint8_t *shared,
+                           struct vg_spots *out);
+
+enum {                       /* what is known of a cell of a field */
+  VG_FIELD_TOLD = 1,         /* an earlier owner looks at it */
+  VG_FIELD_LATER = 2,        /* an earlier owner may move a point of it */
+  VG_FIELD_NEW = 4 };
+
+/* All cells with a corner among an owner's points on interfaces.
+ * (repair_field.c) */
+struct vg_field {
+  const struct vg_piece *q;
+  const struct vg_owner *self;
+  int first;                 /* as below */
+  size_t n_seam;
+  struct vg_seam *const *seam;
+  uint8_t *shared;           /* [q.n_point] on an interface */
+  uint8_t *stays;            /* [q.n_point] an earlier owner's point is near */
+  size_t n_base, n_other;    /* vertices of q, then those of the seams */
+  uint64_t *other;           /* [n_other] their names */
+  uint64_t mask;
+  uint32_t *slot;            /* [mask + 1] vertices by the hash of names */
+  size_t n_own;              /* cells of q come first */
+  uint32_t *place;           /* [n_own] in q */
+  struct vg_tets t;          /* without links */
+  size_t cap_kind, cap_shape;
+  uint8_t *kind;             /* [t.n_cell] */
+  float *shape;              /* [t.n_cell] */
+  size_t n_point;
+  uint32_t *point;           /* [n_point] that may move */
+};
+
+/** first: those who come first in the order may move points; or who come
+ * last. */
+vg_status vg_field_new(struct vg_field *f, const struct vg_owners *owners,
+                       int first);
+void vg_field_release(struct vg_field *f);
+
+/* Cells of a piece that others take the place of. */
+struct vg_edit {
+  uint8_t *gone;             /* [q.n_cell] or NULL: none */
+  size_t n_cell, n_point;
+  uint32_t (*cell)[4];       /* [n_cell] vertices of q, then further ones: */
+  uint64_t *name;            /* [n_point] */
+  double (*x)[3];            /* [n_point] */
+};
+
+void vg_edit_release(struct vg_edit *c);
+
+/** Put a change into a piece; points of others that are not used any more are
+ * dropped. (repair_edit.c) */
+vg_status vg_piece_edit(struct vg_piece *q, const struct vg_edit *c);
+
+/** Swap in a field, where no other owner does and no earlier one moves a
+ * point. What goes is noted in out->gone and in the seams, what comes is part
+ * of the field. (repair_swap.c) */
+vg_status vg_field_swap(struct vg_field *f, struct vg_edit *out,
+                        size_t *n_swap);
+
+/** The new cells, as they end. */
+vg_status vg_field_take(const struct vg_field *f, struct vg_edit *out);
 
 enum { VG_LEVEL_MAX = 64 };
 

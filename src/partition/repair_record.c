@@ -3,19 +3,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "base/clock.h"
 #include "base/memory.h"
 #include "partition/repair_parts.h"
-
-static double thread_time(void)
-{
-  struct timespec t;
-
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 void vg_repair_begin(struct vg_span *s, int worker)
 {
@@ -23,14 +14,14 @@ void vg_repair_begin(struct vg_span *s, int worker)
   s->kind = VG_SPAN_REPAIR;
   s->thread = worker;
   s->start = vg_clock();
-  s->cpu = thread_time();
+  s->cpu = vg_clock_thread();
 }
 
 void vg_repair_end(struct vg_span *s, const char *what, size_t number,
                    size_t n_cell)
 {
   s->end = vg_clock();
-  s->cpu = thread_time() - s->cpu;
+  s->cpu = vg_clock_thread() - s->cpu;
   s->n_cell = n_cell;
   s->estimate = (double)n_cell;
   snprintf(s->path, sizeof s->path, "0R%s%06zu", what, number);

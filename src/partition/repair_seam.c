@@ -13,8 +13,10 @@ void vg_seam_release(struct vg_seam *s)
   free(s->known);
   free(s->vertex);
   free(s->x);
-  free(s->before);
+  free(s->name);
+  free(s->zone);
   free(s->cell);
+  free(s->place);
   memset(s, 0, sizeof *s);
 }
 
@@ -29,8 +31,10 @@ void vg_seam_put(struct vg_writer *w, const struct vg_seam *s)
   vg_put(w, s->n_known, sizeof *s->known, s->known);
   vg_put(w, s->n_known, sizeof *s->vertex, s->vertex);
   vg_put(w, s->n_other, sizeof *s->x, s->x);
-  vg_put(w, s->n_other, sizeof *s->before, s->before);
+  vg_put(w, s->n_other, sizeof *s->name, s->name);
+  vg_put(w, s->n_other, sizeof *s->zone, s->zone);
   vg_put(w, s->n_cell, sizeof *s->cell, s->cell);
+  vg_put(w, s->n_cell, sizeof *s->place, s->place);
 }
 
 void vg_seam_get(struct vg_reader *r, struct vg_seam *s)
@@ -45,8 +49,10 @@ void vg_seam_get(struct vg_reader *r, struct vg_seam *s)
   s->known = vg_get_array(r, s->n_known, sizeof *s->known);
   s->vertex = vg_get_array(r, s->n_known, sizeof *s->vertex);
   s->x = vg_get_array(r, s->n_other, sizeof *s->x);
-  s->before = vg_get_array(r, s->n_other, sizeof *s->before);
+  s->name = vg_get_array(r, s->n_other, sizeof *s->name);
+  s->zone = vg_get_array(r, s->n_other, sizeof *s->zone);
   s->cell = vg_get_array(r, s->n_cell, sizeof *s->cell);
+  s->place = vg_get_array(r, s->n_cell, sizeof *s->place);
   if (r->bad) vg_seam_release(s);
 }
 
@@ -179,17 +185,15 @@ static size_t number_vertices(struct user *u, uint32_t owner, size_t n,
   return n_list;
 }
 
-/* May a point that is not the owner's move before the owner's do? */
-static uint8_t before(const struct user *u, uint32_t v, uint32_t order)
+static uint32_t zone_of(const struct user *u, uint32_t v)
 {
   const struct vg_owner *o = u->self;
 
   if (v < u->q->n_in) {
-    if (u->of[v] == VG_NO_CLUSTER) return VG_BEFORE_NOT;
+    if (u->of[v] == VG_NO_CLUSTER) return VG_NO_ZONE;
     o = u->owner[u->of[v]];
   }
-  if (!o->is_zone || o->order > order) return VG_BEFORE_NOT;
-  return o == u->self ? VG_BEFORE_OWN : VG_BEFORE_OTHER;
+  return o->is_zone ? o->order : VG_NO_ZONE;
 }
 
 static vg_status fill_seam(struct user *u, uint32_t owner, size_t n,
@@ -204,25 +208,31 @@ static vg_status fill_seam(struct user *u, uint32_t owner, size_t n,
     .rank = u->self->rank, .order = u->self->order, .n_cell = (uint32_t)n };
   n_list = number_vertices(u, owner, n, cell, s);
   s->known = vg_alloc(s->n_known, sizeof *s->known);
-  s->vertex = vg_alloc(s->n_known, sizeof *s->vertex);
+  s->vertex = vg_alloc(n_list, sizeof *s->vertex);
   s->x = vg_alloc(s->n_other, sizeof *s->x);
-  s->before = vg_alloc(s->n_other, sizeof *s->before);
+  s->name = vg_alloc(s->n_other, sizeof *s->name);
+  s->zone = vg_alloc(s->n_other, sizeof *s->zone);
   s->cell = vg_alloc(n, sizeof *s->cell);
-  if (!s->known || !s->vertex || !s->x || !s->before || !s->cell)
+  s->place = vg_alloc(n, sizeof *s->place);
+  if (!s->known || !s->vertex || !s->x || !s->name || !s->zone ||
+      !s->cell || !s->place)
     return VG_ERR_MEMORY;
-  for (size_t k = 0; k < s->n_known; k++) {
-    s->vertex[k] = u->list[k];
+  memcpy(s->vertex, u->list, n_list * sizeof *s->vertex);
+  for (size_t k = 0; k < s->n_known; k++)
     s->known[k] = (uint32_t)q->in[u->list[k]];
-  }
   for (size_t k = 0; k < s->n_other; k++) {
     uint32_t v = u->list[s->n_known + k];
 
     memcpy(s->x[k], q->x[v], sizeof *s->x);
-    s->before[k] = before(u, v, o->order);
+    s->name[k] = v < q->n_in ? q->in[v]
+                             : VG_POINT_NAME(q->serial, v - q->n_in);
+    s->zone[k] = zone_of(u, v);
   }
-  for (size_t c = 0; c < n; c++)
+  for (size_t c = 0; c < n; c++) {
+    s->place[c] = cell[c];
     for (int i = 0; i < 4; i++)
       s->cell[c][i] = u->number[q->cell[cell[c]][i]];
+  }
   for (size_t k = 0; k < n_list; k++) u->number[u->list[k]] = VG_NO_CLUSTER;
   return VG_OK;
 }
@@ -245,9 +255,20 @@ static vg_status fill_seams(struct user *u, size_t *n, struct vg_seam *out)
   return VG_OK;
 }
 
+static vg_status list_hits(const struct user *u, size_t *n, uint32_t **hit)
+{
+  *hit = vg_alloc(u->n_hit, sizeof **hit);
+  if (!*hit) return VG_ERR_MEMORY;
+  for (size_t k = 0; k < u->n_hit; k++)
+    if (u->owner[u->hit[k].owner]->is_zone &&
+        (!*n || (*hit)[*n - 1] != u->hit[k].cell))
+      (*hit)[(*n)++] = u->hit[k].cell;
+  return VG_OK;
+}
+
 vg_status vg_seams_of(const struct vg_partition *p, size_t k,
                       const struct vg_owners *owners, size_t *n,
-                      struct vg_seam **out)
+                      struct vg_seam **out, size_t *n_hit, uint32_t **hit)
 {
   const struct vg_piece *q = &p->piece[k];
   struct user u = { .q = q,
@@ -255,15 +276,23 @@ vg_status vg_seams_of(const struct vg_partition *p, size_t k,
                                            VG_POINT_NAME(q->serial, 0)) };
   vg_status st;
 
-  *n = 0;
+  *n = *n_hit = 0;
   *out = NULL;
+  *hit = NULL;
   u.of = vg_alloc(q->n_in, sizeof *u.of);
   st = u.of ? find_owners(&u, owners) : VG_ERR_MEMORY;
   if (st == VG_OK && u.n_owner) {
     *out = vg_calloc(u.n_owner, sizeof **out);
     st = *out ? list_cells(&u) : VG_ERR_MEMORY;
     if (st == VG_OK) st = fill_seams(&u, n, *out);
+    if (st == VG_OK) st = list_hits(&u, n_hit, hit);
   }
   user_release(&u);
   return st;
+}
+
+void vg_seam_refresh(const struct vg_piece *q, struct vg_seam *s)
+{
+  for (size_t k = 0; k < s->n_other; k++)
+    memcpy(s->x[k], q->x[s->vertex[s->n_known + k]], sizeof *s->x);
 }

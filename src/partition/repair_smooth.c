@@ -1,11 +1,16 @@
-/* Points on interfaces smoothed, and bad cells beside them found.
+/* Swaps and smoothing across interfaces, and bad cells that are left there.
  *
  * A task cannot move the points of the front that it is given, nor those that
- * its own zone leaves to others: here they get the sweep that they lack. Each
- * piece sends its cells with corners among the points of another to that one's
- * rank, where the owner moves its points one by one. Of two points of
- * different owners with a cell in common, that of the earlier path may move:
- * so owners do not depend on each other, and the outcome not on ranks. */
+ * its own zone leaves to others, nor swap across that front: here that is made
+ * up for. Each piece sends its cells with corners among the points of another
+ * to that one's rank. The owner smooths its points there; then the other points
+ * of those cells are smoothed, each where it is; then the owner swaps what is
+ * not good, and smooths again. In a level field the first time is enough.
+ *
+ * Of two points of different zones with a cell in common, that of the earlier
+ * path may move, the second time that of the later one, and swaps are made
+ * only among cells with which no other zone has to do: so owners do not depend
+ * on each other, and the outcome not on ranks. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -15,28 +20,39 @@
 #include "core/tets.h"
 #include "partition/repair_parts.h"
 
+/* A field is level when fewer than one in so many cells beside interfaces
+ * would be swapped: it is one in 50 on a box, one in 8 where sizes vary. */
+enum { LEVEL = 30 };
+
+enum { FIND, SMOOTH, BESIDE, SWAP, N_SPAN };
+
 /* What came of a piece. */
 struct outcome {
   size_t n_seam;
   struct vg_seam *seam;      /* [n_seam] its cells around others' points */
+  size_t n_hit;
+  uint32_t *hit;             /* [n_hit] those with a corner on an interface */
   uint8_t *moved;            /* [n_point] or NULL: no seams */
-  size_t n_spot, cap_spot;
-  struct vg_spot *spot;
-  size_t n_moved;
-  struct vg_span span[2];    /* its seams found, its points smoothed */
+  uint8_t *shared;           /* [n_point] of a zone, or NULL */
+  struct vg_spots bad;
+  size_t n_moved, n_swap;
+  size_t n_cell, n_fair;     /* around its points; below VG_SHAPE_SWAP */
+  struct vg_edit edit;       /* cells swapped */
+  struct vg_span span[N_SPAN];  /* what is done for it, in turn */
   vg_status st;
 };
 
 struct smoothing {
   struct vg_partition *p;
   const struct vg_owners *owners;
+  int first;                 /* the first time of two */
   struct outcome *out;       /* [n_piece] */
   size_t n_far, cap_far;
   struct vg_seam *far;       /* [n_far] that came from other ranks */
   size_t n_seam;
   struct vg_seam **seam;     /* [n_seam] around points of this rank, by owner
                                 and the path of those who have the cells */
-  size_t *first;             /* [n_piece + 1] seam */
+  size_t *first_seam;        /* [n_piece + 1] seam */
 };
 
 static void smoothing_free(struct smoothing *s)
@@ -47,13 +63,16 @@ static void smoothing_free(struct smoothing *s)
     for (size_t i = 0; i < o->n_seam; i++) vg_seam_release(&o->seam[i]);
     free(o->seam);
     free(o->moved);
-    free(o->spot);
+    free(o->shared);
+    free(o->hit);
+    free(o->bad.at);
+    vg_edit_release(&o->edit);
   }
   for (size_t i = 0; i < s->n_far; i++) vg_seam_release(&s->far[i]);
   free(s->out);
   free(s->far);
   free(s->seam);
-  free(s->first);
+  free(s->first_seam);
 }
 
 /* --- seams to the owners of the points ----------------------------------- */
@@ -66,9 +85,10 @@ static void seam_body(void *context, size_t first, size_t end, int worker)
     struct outcome *o = &s->out[k];
     const struct vg_piece *q = &s->p->piece[k];
 
-    vg_repair_begin(&o->span[0], worker);
-    o->st = vg_seams_of(s->p, k, s->owners, &o->n_seam, &o->seam);
-    vg_repair_end(&o->span[0], "C", q->serial, q->n_cell);
+    vg_repair_begin(&o->span[FIND], worker);
+    o->st = vg_seams_of(s->p, k, s->owners, &o->n_seam, &o->seam, &o->n_hit,
+                        &o->hit);
+    vg_repair_end(&o->span[FIND], "C", q->serial, q->n_cell);
   }
 }
 
@@ -133,8 +153,8 @@ static vg_status sort_seams(struct smoothing *s, struct vg_error *err)
 
   s->n_seam += s->n_far;
   s->seam = vg_alloc(s->n_seam, sizeof *s->seam);
-  s->first = vg_calloc(n_piece + 1, sizeof *s->first);
-  if (!s->seam || !s->first) return vg_fail_memory(err, "repairs");
+  s->first_seam = vg_calloc(n_piece + 1, sizeof *s->first_seam);
+  if (!s->seam || !s->first_seam) return vg_fail_memory(err, "repairs");
   for (size_t k = 0; k < n_piece; k++)
     for (size_t i = 0; i < s->out[k].n_seam; i++) {
       struct vg_seam *seam = &s->out[k].seam[i];
@@ -143,9 +163,10 @@ static vg_status sort_seams(struct smoothing *s, struct vg_error *err)
     }
   for (size_t i = 0; i < s->n_far; i++) s->seam[n++] = &s->far[i];
   if (n) qsort(s->seam, n, sizeof *s->seam, by_owner);
-  for (size_t i = 0; i < n; i++) s->first[s->seam[i]->owner + 1] = i + 1;
+  for (size_t i = 0; i < n; i++) s->first_seam[s->seam[i]->owner + 1] = i + 1;
   for (size_t k = 0; k < n_piece; k++)
-    if (s->first[k + 1] < s->first[k]) s->first[k + 1] = s->first[k];
+    if (s->first_seam[k + 1] < s->first_seam[k])
+      s->first_seam[k + 1] = s->first_seam[k];
   return VG_OK;
 }
 
@@ -166,143 +187,17 @@ static vg_status send_seams(struct smoothing *s, struct vg_comm *comm,
 
 /* --- the points of one owner --------------------------------------------- */
 
-/* All cells with a corner among the owner's points on interfaces. */
-struct field {
-  const struct vg_piece *q;
-  const struct vg_owner *self;
-  size_t n, n_seam;
-  struct vg_seam *const *seam;
-  uint8_t *shared;           /* [q.n_point] on an interface */
-  uint8_t *stays;            /* [q.n_point] an earlier owner's point is near */
-  uint8_t *told;             /* [t.n_cell] an earlier owner looks at it */
-  struct vg_tets t;          /* vertices of q, then those of the seams */
-  uint32_t *point;           /* [n] that may move */
-  float *shape;              /* [t.n_cell] */
-};
-
-static void field_release(struct field *f)
-{
-  vg_tets_release(&f->t);
-  free(f->shared);
-  free(f->stays);
-  free(f->told);
-  free(f->point);
-  free(f->shape);
-}
-
-static int is_shared(const struct field *f, uint32_t v)
-{
-  return v >= f->q->n_in && v - f->q->n_in < f->q->n_point &&
-         f->shared[v - f->q->n_in];
-}
-
-static int has_shared(const struct field *f, const uint32_t *v)
-{
-  return is_shared(f, v[0]) || is_shared(f, v[1]) || is_shared(f, v[2]) ||
-         is_shared(f, v[3]);
-}
-
-static vg_status field_new(struct field *f)
-{
-  const struct vg_piece *q = f->q;
-  size_t n_point = q->n_in + q->n_point, n_cell = 0;
-
-  f->shared = vg_calloc(q->n_point, 1);
-  f->stays = vg_calloc(q->n_point, 1);
-  if (!f->shared || !f->stays) return VG_ERR_MEMORY;
-  for (size_t k = 0; k < f->n_seam; k++) {
-    const struct vg_seam *s = f->seam[k];
-
-    for (size_t i = 0; i < s->n_known; i++) f->shared[s->known[i]] = 1;
-    n_cell += s->n_cell;
-    n_point += s->n_other;
-  }
-  for (size_t c = 0; c < q->n_cell; c++)
-    n_cell += (size_t)has_shared(f, q->cell[c]);
-  f->t.x = vg_alloc(n_point, sizeof *f->t.x);
-  f->t.cell = vg_alloc(n_cell, sizeof *f->t.cell);
-  f->t.flag = vg_calloc(n_cell, 1);
-  f->told = vg_calloc(n_cell, 1);
-  f->shape = vg_alloc(n_cell, sizeof *f->shape);
-  if (!f->t.x || !f->t.cell || !f->t.flag || !f->told || !f->shape)
-    return VG_ERR_MEMORY;
-  f->t.n_point = q->n_in + q->n_point;
-  memcpy(f->t.x, q->x, f->t.n_point * sizeof *q->x);
-  return VG_OK;
-}
-
-static void hold(struct field *f, const uint32_t *v)
-{
-  for (int i = 0; i < 4; i++)
-    if (is_shared(f, v[i])) f->stays[v[i] - f->q->n_in] = 1;
-}
-
-/* Does a point of an earlier zone stand at vertex v < q.n_in? */
-static int is_before(const struct field *f, const struct vg_owners *owners,
-                     uint32_t v, const struct vg_owner **last)
-{
-  uint64_t name = f->q->in[v];
-
-  if (!(name >> 32)) return 0;
-  if (!*last || (*last)->serial != name >> 32)
-    *last = vg_owners_find(owners, name);
-  return *last && (*last)->is_zone && (*last)->order < f->self->order;
-}
-
-static void add_own(struct field *f, const struct vg_owners *owners)
-{
-  const struct vg_owner *last = NULL;
-
-  for (size_t c = 0; c < f->q->n_cell; c++) {
-    const uint32_t *v = f->q->cell[c];
-    int earlier = 0;
-
-    if (!has_shared(f, v)) continue;
-    for (int i = 0; i < 4; i++)
-      if (v[i] < f->q->n_in) earlier |= is_before(f, owners, v[i], &last);
-    if (earlier) hold(f, v);
-    f->told[f->t.n_cell] = (uint8_t)earlier;
-    memcpy(f->t.cell[f->t.n_cell++].v, v, sizeof f->t.cell->v);
-  }
-}
-
-static void add_seam(struct field *f, const struct vg_seam *s)
-{
-  uint32_t at = (uint32_t)f->t.n_point, n_in = (uint32_t)f->q->n_in;
-
-  if (s->n_other) memcpy(f->t.x + at, s->x, s->n_other * sizeof *s->x);
-  f->t.n_point += s->n_other;
-  for (size_t c = 0; c < s->n_cell; c++) {
-    uint32_t *v = f->t.cell[f->t.n_cell].v;
-    int earlier = VG_BEFORE_NOT;
-
-    for (int i = 0; i < 4; i++) {
-      uint32_t k = s->cell[c][i], o = k - s->n_known;
-
-      if (k < s->n_known) {
-        v[i] = n_in + s->known[k];
-        continue;
-      }
-      v[i] = at + o;
-      if (s->before[o] > earlier) earlier = s->before[o];
-    }
-    if (earlier) hold(f, v);
-    f->told[f->t.n_cell++] = earlier == VG_BEFORE_OTHER;
-  }
-}
-
-static vg_status smooth(struct field *f, struct outcome *out)
+static vg_status smooth(struct vg_field *f, struct outcome *out)
 {
   struct vg_optimise_report r;
   size_t n_in = f->q->n_in;
 
-  f->point = vg_alloc(f->q->n_point, sizeof *f->point);
-  if (!f->point) return VG_ERR_MEMORY;
-  for (size_t i = 0; f->self->is_zone && i < f->q->n_point; i++)
-    if (f->shared[i] && !f->stays[i]) f->point[f->n++] = (uint32_t)(n_in + i);
-  if (vg_optimise_points(&f->t, f->n, f->point, f->shape, &r, NULL) < 0)
+  f->t.flag = vg_calloc(f->t.n_cell, 1);
+  if (!f->t.flag ||
+      vg_optimise_points(&f->t, f->n_point, f->point, VG_SHAPE_BESIDE,
+                         f->shape, &r, NULL) < 0)
     return VG_ERR_MEMORY;
-  for (size_t i = 0; i < f->n; i++) {
+  for (size_t i = 0; i < f->n_point; i++) {
     uint32_t v = f->point[i];
     double *x = f->q->x[v];
 
@@ -314,22 +209,46 @@ static vg_status smooth(struct field *f, struct outcome *out)
   return VG_OK;
 }
 
-static vg_status list_bad(const struct field *f, const struct vg_sizing *sizing,
-                          struct outcome *out)
+/* Bad cells, and how many would be swapped. */
+static vg_status list_bad(const struct vg_field *f,
+                          const struct vg_sizing *sizing, struct outcome *out)
 {
+  out->n_cell = f->t.n_cell;
+  out->n_fair = 0;
   for (size_t c = 0; c < f->t.n_cell; c++) {
     const uint32_t *v = f->t.cell[c].v;
     const double *x[4];
 
-    if (f->told[c] || f->shape[c] >= VG_SHAPE_AIM) continue;
+    out->n_fair += f->shape[c] < VG_SHAPE_SWAP;
+    if (f->kind[c] & VG_FIELD_TOLD || f->shape[c] >= VG_SHAPE_AIM) continue;
     for (int i = 0; i < 4; i++) x[i] = f->t.x[v[i]];
-    if (vg_reserve(&out->spot, &out->cap_spot, out->n_spot + 1,
-                   sizeof *out->spot))
+    if (vg_spots_add(&out->bad, sizing, x, f->shape[c]) < 0)
       return VG_ERR_MEMORY;
-    out->spot[out->n_spot++] =
-        vg_spot_around(sizing, x, f->shape[c] < VG_SHAPE_BAD
-                                      ? VG_BALL_MIDDLE : VG_BALL_SMALL);
   }
+  return VG_OK;
+}
+
+/* What a zone has at its own points on interfaces, beside what it has at those
+ * of others; and those points. */
+static vg_status keep_hits(struct vg_field *f, struct outcome *out)
+{
+  size_t n = out->n_hit, k = 0, m = 0, n_all = 0;
+  uint32_t *all = vg_alloc(n + f->n_own, sizeof *all);
+
+  if (!all) return VG_ERR_MEMORY;
+  while (k < n || m < f->n_own) {
+    uint32_t a = k < n ? out->hit[k] : UINT32_MAX;
+    uint32_t b = m < f->n_own ? f->place[m] : UINT32_MAX;
+
+    k += a <= b;
+    m += b <= a;
+    all[n_all++] = a < b ? a : b;
+  }
+  free(out->hit);
+  out->hit = all;
+  out->n_hit = n_all;
+  out->shared = f->shared;
+  f->shared = NULL;
   return VG_OK;
 }
 
@@ -337,21 +256,22 @@ static vg_status smooth_piece(const struct smoothing *s, size_t k,
                               struct outcome *out)
 {
   const struct vg_piece *q = &s->p->piece[k];
-  struct field f = { .q = q, .seam = s->seam + s->first[k],
-                     .n_seam = s->first[k + 1] - s->first[k],
-                     .self = vg_owners_find(s->owners,
-                                            VG_POINT_NAME(q->serial, 0)) };
+  struct vg_field f = {
+    .q = q, .seam = s->seam + s->first_seam[k],
+    .n_seam = s->first_seam[k + 1] - s->first_seam[k],
+    .self = vg_owners_find(s->owners, VG_POINT_NAME(q->serial, 0)) };
   vg_status st;
 
+  free(out->moved);
   out->moved = vg_calloc(q->n_point, 1);
-  st = out->moved ? field_new(&f) : VG_ERR_MEMORY;
-  if (st == VG_OK) {
-    add_own(&f, s->owners);
-    for (size_t i = 0; i < f.n_seam; i++) add_seam(&f, f.seam[i]);
-    st = smooth(&f, out);
-  }
+  st = out->moved ? vg_field_new(&f, s->owners, s->first) : VG_ERR_MEMORY;
+  if (st == VG_OK && !s->first && f.self->is_zone)
+    st = vg_field_swap(&f, &out->edit, &out->n_swap);
+  if (st == VG_OK) st = smooth(&f, out);
   if (st == VG_OK) st = list_bad(&f, s->p->sizing, out);
-  field_release(&f);
+  if (st == VG_OK && out->n_swap) st = vg_field_take(&f, &out->edit);
+  if (st == VG_OK && s->first && f.self->is_zone) st = keep_hits(&f, out);
+  vg_field_release(&f);
   return st;
 }
 
@@ -361,11 +281,14 @@ static void smooth_body(void *context, size_t first, size_t end, int worker)
 
   for (size_t k = first; k < end; k++) {
     struct outcome *o = &s->out[k];
+    struct vg_span *span = &o->span[s->first ? SMOOTH : SWAP];
+    size_t before = o->n_moved;
 
-    if (s->first[k + 1] == s->first[k]) continue;
-    vg_repair_begin(&o->span[1], worker);
+    if (s->first_seam[k + 1] == s->first_seam[k]) continue;
+    vg_repair_begin(span, worker);
     o->st = smooth_piece(s, k, o);
-    vg_repair_end(&o->span[1], "S", s->p->piece[k].serial, o->n_moved);
+    vg_repair_end(span, s->first ? "S" : "W", s->p->piece[k].serial,
+                  o->n_moved - before);
   }
 }
 
@@ -374,18 +297,62 @@ static void smooth_body(void *context, size_t first, size_t end, int worker)
 /* A point of a piece that is another's, and where it is now. */
 struct news { uint32_t piece, vertex; double x[3]; };
 
+/* What the owner says of a seam: the points that moved, and the cells that it
+ * has others for. */
 static void put_news(const struct smoothing *s, const struct vg_seam *seam,
                      struct vg_writer *w)
 {
   const struct vg_piece *q = &s->p->piece[seam->owner];
+  const uint8_t *moved = s->out[seam->owner].moved;
+  uint32_t head[3] = {seam->from, 0, seam->n_gone};
 
+  for (size_t i = 0; i < seam->n_known; i++) head[1] += moved[seam->known[i]];
+  if (!head[1] && !head[2]) return;
+  vg_put(w, 3, sizeof *head, head);
   for (size_t i = 0; i < seam->n_known; i++) {
     struct news n = { .piece = seam->from, .vertex = seam->vertex[i] };
 
-    if (!s->out[seam->owner].moved[seam->known[i]]) continue;
+    if (!moved[seam->known[i]]) continue;
     memcpy(n.x, q->x[q->n_in + seam->known[i]], sizeof n.x);
     vg_put(w, 1, sizeof n, &n);
   }
+  vg_put(w, seam->n_gone, sizeof *seam->place, seam->place);
+}
+
+static vg_status drop_cells(struct smoothing *s, uint32_t piece, size_t n,
+                            const uint32_t *cell)
+{
+  struct vg_edit *e = &s->out[piece].edit;
+
+  if (n && !e->gone) e->gone = vg_calloc(s->p->piece[piece].n_cell, 1);
+  if (n && !e->gone) return VG_ERR_MEMORY;
+  for (size_t k = 0; k < n; k++) e->gone[cell[k]] = 1;
+  return VG_OK;
+}
+
+static vg_status take_news(struct smoothing *s, const struct vg_bytes *from)
+{
+  for (int r = 0; r < s->p->size; r++) {
+    struct vg_reader in = { .data = from[r].data, .n = from[r].n };
+
+    while (in.at < in.n) {
+      uint32_t head[3] = {0}, *cell;
+      struct news n;
+      vg_status st;
+
+      vg_get(&in, 3, sizeof *head, head);
+      for (uint32_t k = 0; k < head[1]; k++) {
+        vg_get(&in, 1, sizeof n, &n);
+        if (in.bad) return VG_ERR_MEMORY;
+        memcpy(s->p->piece[n.piece].x[n.vertex], n.x, sizeof n.x);
+      }
+      cell = vg_get_array(&in, head[2], sizeof *cell);
+      st = in.bad ? VG_ERR_MEMORY : drop_cells(s, head[0], head[2], cell);
+      free(cell);
+      if (st < 0) return st;
+    }
+  }
+  return VG_OK;
 }
 
 /* On this rank: nobody else writes to those vertices. */
@@ -419,18 +386,132 @@ static vg_status tell(struct smoothing *s, struct vg_comm *comm,
   st = vg_post_send(&post, comm, st, &from, err);
   if (st < 0) return st;
   vg_parallel_for(s->p->options.threads, s->n_seam, 16, tell_body, s);
-  for (int r = 0; r < s->p->size; r++) {
-    struct vg_reader in = { .data = from[r].data, .n = from[r].n };
-    struct news n;
-
-    while (in.at < in.n) {
-      vg_get(&in, 1, sizeof n, &n);
-      if (in.bad) break;
-      memcpy(s->p->piece[n.piece].x[n.vertex], n.x, sizeof n.x);
-    }
-  }
+  st = take_news(s, from);
+  for (size_t k = 0; st == VG_OK && k < s->n_seam; k++)
+    if (s->seam[k]->rank == (uint32_t)s->p->rank)
+      st = drop_cells(s, s->seam[k]->from, s->seam[k]->n_gone,
+                      s->seam[k]->place);
   vg_bytes_release(from, s->p->size);
+  return st == VG_OK ? st : vg_fail_memory(err, "repairs");
+}
+
+/* --- between the two times ------------------------------------------------ */
+
+static void beside_body(void *context, size_t first, size_t end, int worker)
+{
+  struct smoothing *s = context;
+
+  for (size_t k = first; k < end; k++) {
+    struct outcome *o = &s->out[k];
+    const struct vg_piece *q = &s->p->piece[k];
+
+    o->bad.n = 0;
+    if (!o->n_seam && !o->n_hit) continue;
+    vg_repair_begin(&o->span[BESIDE], worker);
+    o->st = vg_repair_beside(q, s->p->sizing, o->n_hit, o->hit, o->shared,
+                             &o->bad);
+    for (size_t i = 0; i < o->n_seam; i++) vg_seam_refresh(q, &o->seam[i]);
+    vg_repair_end(&o->span[BESIDE], "B", q->serial, o->n_hit);
+  }
+}
+
+/* Seams of a rank came in the order in which it has them. */
+static vg_status refresh_far(struct smoothing *s, const struct vg_bytes *from)
+{
+  struct vg_reader in = {0};
+
+  for (size_t i = 0; i < s->n_far; i++) {
+    struct vg_seam *seam = &s->far[i];
+
+    if (!i || seam->rank != seam[-1].rank)
+      in = (struct vg_reader){ .data = from[seam->rank].data,
+                               .n = from[seam->rank].n };
+    vg_get(&in, seam->n_other, sizeof *seam->x, seam->x);
+    if (in.bad) return VG_ERR_MEMORY;
+  }
   return VG_OK;
+}
+
+static vg_status go_between(struct smoothing *s, struct vg_comm *comm,
+                            struct vg_error *err)
+{
+  struct vg_post post = {0};
+  struct vg_bytes *from = NULL;
+  vg_status st;
+
+  vg_parallel_for(s->p->options.threads, s->p->n_piece, 1, beside_body, s);
+  st = agreed(s, err);
+  if (st == VG_OK) st = vg_post_new(&post, s->p->size, err);
+  for (size_t k = 0; st == VG_OK && k < s->p->n_piece; k++)
+    for (size_t i = 0; i < s->out[k].n_seam; i++) {
+      const struct vg_seam *seam = &s->out[k].seam[i];
+
+      if (seam->to != (uint32_t)s->p->rank)
+        vg_put(&post.to[seam->to], seam->n_other, sizeof *seam->x, seam->x);
+    }
+  st = vg_post_send(&post, comm, st, &from, err);
+  if (st < 0) return st;
+  if (refresh_far(s, from) < 0) st = vg_fail_memory(err, "repairs");
+  vg_bytes_release(from, s->p->size);
+  return vg_comm_agree(comm, st, err);
+}
+
+/* --- the whole ----------------------------------------------------------- */
+
+static void edit_body(void *context, size_t first, size_t end, int worker)
+{
+  struct smoothing *s = context;
+
+  (void)worker;
+  for (size_t k = first; k < end; k++)
+    if (s->out[k].edit.gone)
+      s->out[k].st = vg_piece_edit(&s->p->piece[k], &s->out[k].edit);
+}
+
+static vg_status once(struct smoothing *s, int first, struct vg_comm *comm,
+                      struct vg_error *err)
+{
+  vg_status st;
+
+  s->first = first;
+  vg_parallel_for(s->p->options.threads, s->p->n_piece, 1, smooth_body, s);
+  st = tell(s, comm, agreed(s, err), err);
+  return vg_comm_agree(comm, st, err);
+}
+
+/* Where the field is level, one sweep is all that it takes. */
+static vg_status is_level(const struct smoothing *s, struct vg_comm *comm,
+                          int *level, struct vg_error *err)
+{
+  uint64_t n[2] = {0, 0};
+  vg_status st;
+
+  for (size_t k = 0; k < s->p->n_piece; k++) {
+    n[0] += s->out[k].n_fair;
+    n[1] += s->out[k].n_cell;
+  }
+  st = vg_comm_sum(comm, 2, n, err);
+  *level = n[0] * LEVEL < n[1];
+  return st;
+}
+
+static vg_status report(const struct smoothing *s, struct vg_spans *spans,
+                        struct vg_writer *w, struct vg_error *err)
+{
+  struct vg_partition_report *r = &s->p->report;
+  vg_status st = VG_OK;
+
+  for (size_t k = 0; k < s->p->n_piece; k++) {
+    const struct outcome *o = &s->out[k];
+
+    r->n_repair_moved += o->n_moved;
+    r->n_repair_swapped += o->n_swap;
+    vg_put(w, o->bad.n, sizeof *o->bad.at, o->bad.at);
+    for (int i = 0; i < N_SPAN; i++)
+      if (o->span[i].kind) VG_TRY(vg_spans_add(spans, &o->span[i], err));
+  }
+done:
+  return st;
 }
 
 vg_status vg_repair_smooth(struct vg_partition *p, struct vg_comm *comm,
@@ -440,20 +521,21 @@ vg_status vg_repair_smooth(struct vg_partition *p, struct vg_comm *comm,
 {
   struct smoothing s = { .p = p, .owners = owners };
   struct vg_writer w = { .cap = 0 };
+  int level = 1;
   vg_status st = send_seams(&s, comm, err);
 
   *n = 0;
-  if (st == VG_OK) {
-    vg_parallel_for(p->options.threads, p->n_piece, 1, smooth_body, &s);
-    st = tell(&s, comm, agreed(&s, err), err);
+  if (st == VG_OK) st = once(&s, 1, comm, err);
+  if (st == VG_OK) st = is_level(&s, comm, &level, err);
+  if (st == VG_OK && !level) {
+    st = go_between(&s, comm, err);
+    if (st == VG_OK) st = once(&s, 0, comm, err);
   }
-  for (size_t k = 0; st == VG_OK && k < p->n_piece; k++) {
-    vg_put(&w, s.out[k].n_spot, sizeof **out, s.out[k].spot);
-    p->report.n_repair_moved += s.out[k].n_moved;
-    for (int i = 0; i < 2 && !w.refused; i++)
-      if (s.out[k].span[i].kind &&
-          vg_spans_add(spans, &s.out[k].span[i], err) < 0)
-        w.refused = 1;
+  if (st == VG_OK) {
+    vg_parallel_for(p->options.threads, p->n_piece, 1, edit_body, &s);
+    st = agreed(&s, err);
+    if (st == VG_OK) st = report(&s, spans, &w, err);
+    st = vg_comm_agree(comm, st, err);
   }
   if (st == VG_OK) st = vg_spots_gather(&w, p->size, comm, n, out, err);
   free(w.bytes.data);

@@ -6,9 +6,15 @@
 
 #include "base/memory.h"
 #include "core/hilbert.h"
+#include "partition/room.h"
 
-/* Faces to a box, and boxes to one of the next level. */
-enum { RUN = 16, FAN = 8 };
+/* Faces to a box, and boxes to one of the next level; boxes to a chunk of a
+ * loop. */
+enum { RUN = 16, FAN = 8, CHUNK = 512 };
+
+/* Spacings: so near a plane a face counts as crossing it; so far beyond the
+ * faces that cross it what is around them is to be known. */
+static const double crossing = 0.1, margin = 1.5;
 
 void vg_select_init(struct vg_select *s, const struct vg_front *front,
                     const struct vg_sizing *sizing)
@@ -21,21 +27,16 @@ void vg_select_init(struct vg_select *s, const struct vg_front *front,
 void vg_select_release(struct vg_select *s)
 {
   for (int k = 0; k < VG_SELECT_LEVELS; k++) free(s->level[k].box);
-  free(s->local);
   memset(s, 0, sizeof *s);
 }
+
+/* Spacings that differ by less are not told apart. */
+static const double close_enough = 1.1;
 
 /* --- boxes --------------------------------------------------------------- */
 
 static const struct vg_select_box empty = {
   {INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
-
-static int make_boxes(struct vg_select_level *l, size_t n)
-{
-  if (vg_reserve(&l->box, &l->cap, n, sizeof *l->box)) return -1;
-  while (l->n < n) l->box[l->n++] = empty;
-  return 0;
-}
 
 static void widen(struct vg_select_box *b, const double lo[3],
                   const double hi[3])
@@ -46,45 +47,71 @@ static void widen(struct vg_select_box *b, const double lo[3],
   }
 }
 
-/* Faces from..end - 1, all of one run. */
-static void widen_run(struct vg_select *s, size_t from, size_t end)
+/* Boxes of a level from `first` on have something new below, which begins at
+ * `from`; those from n on are new themselves. */
+struct update {
+  struct vg_select *s;
+  int level;
+  size_t first, from, n;
+};
+
+static void widen_run(const struct update *u, size_t run,
+                      struct vg_select_box *b)
 {
-  const struct vg_front *f = s->front;
-  struct vg_select_box b = s->level[0].box[from / RUN];
+  const struct vg_front *f = u->s->front;
+  size_t end = (run + 1) * RUN < f->n_face ? (run + 1) * RUN : f->n_face;
+  size_t from = run * RUN > u->from ? run * RUN : u->from;
 
   for (size_t i = from; i < end; i++)
     for (int j = 0; j < 3 && f->face[i][0] != VG_FACE_GONE; j++)
-      widen(&b, f->x[f->face[i][j]], f->x[f->face[i][j]]);
-  s->level[0].box[from / RUN] = b;
+      widen(b, f->x[f->face[i][j]], f->x[f->face[i][j]]);
 }
 
-vg_status vg_select_update(struct vg_select *s, struct vg_error *err)
+static void widen_box(const struct update *u, size_t box,
+                      struct vg_select_box *b)
 {
-  const struct vg_front *f = s->front;
-  size_t from = s->n_face / RUN, n = (f->n_face + RUN - 1) / RUN;
+  const struct vg_select_level *below = &u->s->level[u->level - 1];
+  size_t end = (box + 1) * FAN < below->n ? (box + 1) * FAN : below->n;
+  size_t from = box * FAN > u->from ? box * FAN : u->from;
 
-  if (vg_reserve(&s->local, &s->cap_local, f->n_point, sizeof *s->local) ||
-      make_boxes(&s->level[0], n))
-    return vg_fail_memory(err, "cutting a front");
-  for (; s->n_local < f->n_point; s->n_local++)
-    s->local[s->n_local] = UINT32_MAX;
-  while (s->n_face < f->n_face) {
-    size_t end = (s->n_face / RUN + 1) * RUN;
+  for (size_t i = from; i < end; i++)
+    widen(b, below->box[i].lo, below->box[i].hi);
+}
 
-    if (end > f->n_face) end = f->n_face;
-    widen_run(s, s->n_face, end);
-    s->n_face = end;
+static void update_part(void *context, size_t first, size_t end, int worker)
+{
+  const struct update *u = context;
+  struct vg_select_box *box = u->s->level[u->level].box;
+
+  (void)worker;
+  for (size_t i = u->first + first; i < u->first + end; i++) {
+    struct vg_select_box b = i < u->n ? box[i] : empty;
+
+    if (u->level) widen_box(u, i, &b);
+    else widen_run(u, i, &b);
+    box[i] = b;
   }
-  for (int k = 1; k < VG_SELECT_LEVELS && n > 1; k++) {
-    const struct vg_select_level *below = &s->level[k - 1];
+}
 
-    n = (n + FAN - 1) / FAN;
-    if (make_boxes(&s->level[k], n))
+vg_status vg_select_update(struct vg_select *s, const struct vg_engine *e,
+                           struct vg_error *err)
+{
+  size_t from = s->n_face, below = s->front->n_face;
+
+  for (int k = 0; k < VG_SELECT_LEVELS && (!k || below > 1); k++) {
+    struct vg_select_level *l = &s->level[k];
+    size_t fan = k ? FAN : RUN, n = (below + fan - 1) / fan;
+    struct update u = { s, k, 0, l->n ? from : 0, l->n };
+
+    u.first = u.from / fan;
+    if (vg_room_reserve(e, &l->box, &l->cap, l->n, n, sizeof *l->box))
       return vg_fail_memory(err, "cutting a front");
-    for (size_t b = from; b < below->n; b++)
-      widen(&s->level[k].box[b / FAN], below->box[b].lo, below->box[b].hi);
-    from /= FAN;
+    if (n > u.first) vg_engine_loop(e, n - u.first, CHUNK, update_part, &u);
+    l->n = n;
+    from = u.first;
+    below = n;
   }
+  s->n_face = s->front->n_face;
   return VG_OK;
 }
 
@@ -93,6 +120,8 @@ vg_status vg_select_update(struct vg_select *s, struct vg_error *err)
 struct list {
   const struct vg_select *s;
   const struct vg_region *region;
+  double band, least;        /* in spacings, the region's reach included; the
+                                least spacing anywhere */
   size_t n, cap;
   uint32_t *face;
 };
@@ -110,12 +139,40 @@ static double most_spacing(const struct list *l, const struct vg_select_box *b)
          vg_sizing_slope(l->s->sizing) * sqrt(d2);
 }
 
+/* How far n . x, sign times, is below sign * offset in all of a box. */
+static double beyond(const struct vg_plane *p, double sign,
+                     const struct vg_select_box *b)
+{
+  double far = sign * p->offset;
+
+  for (int k = 0; k < 3; k++) {
+    double n = sign * p->normal[k];
+
+    far -= n * (n > 0 ? b->hi[k] : b->lo[k]);
+  }
+  return far;
+}
+
+/* Distance of a box from the planes, or beyond a wall, whichever is most; no
+ * further once it is more than `enough`. */
+static double distance(const struct vg_region *r,
+                       const struct vg_select_box *b, double enough)
+{
+  double far = 0;
+
+  for (int i = 0; i < r->n_plane && far <= enough; i++)
+    far = fmax(far, fmax(beyond(&r->plane[i], 1, b),
+                         beyond(&r->plane[i], -1, b)));
+  for (int i = 0; i < r->n_wall && far <= enough; i++)
+    far = fmax(far, beyond(&r->wall[i], 1, b));
+  return far;
+}
+
 /* The planes and walls of a region beyond which a triangle of a box may lie:
  * normal . x < least for all corners. */
 struct limits {
   int n;
-  struct { const double *normal; double sign, least; } of[2 * 2 +
-                                                          VG_REGION_WALLS];
+  struct { double normal[3], least; } of[2 * 2 + VG_REGION_WALLS];
 };
 
 static void add_limit(struct limits *l, const struct vg_plane *p, double sign,
@@ -124,46 +181,42 @@ static void add_limit(struct limits *l, const struct vg_plane *p, double sign,
   double least = sign * p->offset - most, nearest = 0;
 
   for (int k = 0; k < 3; k++) {
-    double n = sign * p->normal[k];
+    double n = l->of[l->n].normal[k] = sign * p->normal[k];
 
     nearest += n * (n > 0 ? b->lo[k] : b->hi[k]);
   }
-  if (nearest >= least) return;
-  l->of[l->n].normal = p->normal;
-  l->of[l->n].sign = sign;
-  l->of[l->n++].least = least;
+  if (nearest < least) l->of[l->n++].least = least;
 }
 
 static int is_far(const struct limits *l, const double *const x[3])
 {
   for (int i = 0; i < l->n; i++) {
     const double *n = l->of[i].normal;
-    int beyond = 0;
+    int k = 0;
 
-    for (int k = 0; k < 3; k++)
-      beyond += l->of[i].sign * (n[0] * x[k][0] + n[1] * x[k][1] +
-                                 n[2] * x[k][2]) < l->of[i].least;
-    if (beyond == 3) return 1;
+    while (k < 3 && n[0] * x[k][0] + n[1] * x[k][1] + n[2] * x[k][2] <
+                      l->of[i].least)
+      k++;
+    if (k == 3) return 1;
   }
   return 0;
 }
 
-static int list_run(struct list *l, size_t run)
+static int list_run(struct list *l, size_t run, double most)
 {
   const struct vg_front *f = l->s->front;
   const struct vg_region *r = l->region;
   const struct vg_select_box *b = &l->s->level[0].box[run];
   size_t end = (run + 1) * RUN < f->n_face ? (run + 1) * RUN : f->n_face;
-  double most = vg_region_band(r, VG_BAND_FRONT) * most_spacing(l, b);
   struct limits limits = { .n = 0 };
 
   if (vg_reserve(&l->face, &l->cap, l->n + RUN, sizeof *l->face)) return -1;
   for (int i = 0; i < r->n_plane; i++) {
-    add_limit(&limits, &r->plane[i], 1, most, b);
-    add_limit(&limits, &r->plane[i], -1, most, b);
+    add_limit(&limits, &r->plane[i], 1, l->band * most, b);
+    add_limit(&limits, &r->plane[i], -1, l->band * most, b);
   }
   for (int i = 0; i < r->n_wall; i++)
-    add_limit(&limits, &r->wall[i], 1, most, b);
+    add_limit(&limits, &r->wall[i], 1, l->band * most, b);
   for (size_t i = run * RUN; i < end; i++) {
     const double *x[3];
 
@@ -174,87 +227,205 @@ static int list_run(struct list *l, size_t run)
   return 0;
 }
 
-static int list_box(struct list *l, int level, size_t b)
+/* most: no spacing in the box is larger, by the boxes around it; looked up
+ * only where it matters. */
+static int list_box(struct list *l, int level, size_t b, double most)
 {
   const struct vg_select_level *at = &l->s->level[level];
+  const struct vg_select_box *box = &at->box[b];
+  double far;
 
-  if (!(at->box[b].lo[0] <= at->box[b].hi[0]) ||
-      !vg_region_meets_box(l->region, l->s->sizing, at->box[b].lo,
-                           at->box[b].hi, VG_BAND_FRONT))
-    return 0;
-  if (!level) return list_run(l, b);
+  if (!(box->lo[0] <= box->hi[0])) return 0;
+  far = distance(l->region, box, l->band * most);
+  if (far > l->band * most) return 0;
+  if (most > close_enough * l->least && (!level || far > l->band * l->least)) {
+    most = fmin(most, most_spacing(l, box));
+    if (far > l->band * most) return 0;
+  }
+  if (!level) return list_run(l, b, most);
   for (size_t k = b * FAN; k < (b + 1) * FAN && k < (at - 1)->n; k++)
-    if (list_box(l, level - 1, k)) return -1;
+    if (list_box(l, level - 1, k, most)) return -1;
   return 0;
 }
 
 static int list_faces(struct list *l)
 {
   int top = VG_SELECT_LEVELS - 1;
+  double most;
 
+  vg_sizing_range(l->s->sizing, &l->least, &most);
   while (top > 0 && !l->s->level[top].n) top--;
   for (size_t b = 0; b < l->s->level[top].n; b++)
-    if (list_box(l, top, b)) return -1;
+    if (list_box(l, top, b, most)) return -1;
   return 0;
 }
 
-/* Points of the listed faces, numbered as they come. local: [points of the
- * front] all UINT32_MAX, before and after. */
-static void number_points(const struct vg_front *f, uint32_t *local, size_t n,
-                          const uint32_t *face, struct vg_front *part,
-                          uint32_t *point)
-{
-  for (size_t i = 0; i < n; i++)
-    for (int k = 0; k < 3; k++) {
-      uint32_t p = f->face[face[i]][k];
+/* Which number a point has among those listed: a hash table with linear
+ * probing, of the size of the part; a list by point would be as long as the
+ * front, in each thread. */
+struct numbers {
+  int bits;
+  size_t n;                  /* points listed */
+  uint32_t *slot;            /* [2^bits] number + 1, 0: free */
+  uint32_t *point;           /* [n] */
+};
 
-      if (local[p] == UINT32_MAX) {
-        point[part->n_point] = p;
-        memcpy(part->x[part->n_point], f->x[p], sizeof *part->x);
-        part->name[part->n_point] = f->name[p];
-        local[p] = (uint32_t)part->n_point++;
-      }
-      part->face[i][k] = local[p];
-    }
-  part->n_face = n;
-  for (size_t i = 0; i < part->n_point; i++) local[point[i]] = UINT32_MAX;
+/* Where the point is, or belongs. */
+static uint32_t *slot_of(const struct numbers *t, uint32_t p)
+{
+  uint32_t mask = (uint32_t)(((uint64_t)1 << t->bits) - 1);
+  uint32_t i = p * UINT32_C(0x9e3779b1) >> (32 - t->bits);
+
+  while (t->slot[i] && t->point[t->slot[i] - 1] != p) i = (i + 1) & mask;
+  return &t->slot[i];
 }
 
-static vg_status take(const struct vg_front *f, uint32_t *local, size_t n,
+static int set_bits(struct numbers *t, int bits)
+{
+  free(t->slot);
+  t->bits = bits;
+  t->slot = vg_calloc((size_t)1 << bits, sizeof *t->slot);
+  if (!t->slot) return -1;
+  for (uint32_t k = 0; k < t->n; k++) *slot_of(t, t->point[k]) = k + 1;
+  return 0;
+}
+
+/* Points of the listed faces, numbered as they come. to out: [n] the faces in
+ * these numbers. */
+static int number_points(struct numbers *t, const uint32_t (*from)[3],
+                         size_t n, const uint32_t *face, uint32_t (*to)[3])
+{
+  int bits = 4;
+
+  while (bits < 32 && 2 * ((uint64_t)1 << bits) < 3 * (uint64_t)n) bits++;
+  if (set_bits(t, bits)) return -1;
+  for (size_t i = 0; i < n; i++) {
+    if (2 * t->n > (uint64_t)1 << t->bits && t->bits < 32 &&
+        set_bits(t, t->bits + 1))
+      return -1;
+    for (int k = 0; k < 3; k++) {
+      uint32_t p = from[face[i]][k], *slot = slot_of(t, p);
+
+      if (!*slot) {
+        t->point[t->n++] = p;
+        *slot = (uint32_t)t->n;
+      }
+      to[i][k] = *slot - 1;
+    }
+  }
+  return 0;
+}
+
+static int gather(const struct vg_front *f, const struct numbers *t,
+                  struct vg_front *part)
+{
+  part->x = vg_alloc(t->n, sizeof *part->x);
+  part->name = vg_alloc(t->n, sizeof *part->name);
+  if (!part->x || !part->name) return -1;
+  part->n_point = t->n;
+  for (size_t k = 0; k < t->n; k++) {
+    memcpy(part->x[k], f->x[t->point[k]], sizeof *part->x);
+    part->name[k] = f->name[t->point[k]];
+  }
+  return 0;
+}
+
+static vg_status take(const struct vg_front *f, size_t n,
                       const uint32_t *face, struct vg_front *part,
                       uint32_t **point, struct vg_error *err)
 {
-  size_t n_point = 3 * n < f->n_point ? 3 * n : f->n_point;
+  struct numbers t = { .n = 0 };
+  int bad;
 
   memset(part, 0, sizeof *part);
-  part->x = vg_alloc(n_point, sizeof *part->x);
-  part->name = vg_alloc(n_point, sizeof *part->name);
+  t.point = vg_alloc(3 * n < f->n_point ? 3 * n : f->n_point,
+                     sizeof *t.point);
   part->face = vg_alloc(n, sizeof *part->face);
-  *point = vg_alloc(n_point, sizeof **point);
-  if (part->x && part->name && part->face && *point) {
-    number_points(f, local, n, face, part, *point);
+  part->n_face = n;
+  bad = !t.point || !part->face ||
+        number_points(&t, (const uint32_t (*)[3])f->face, n, face,
+                      part->face) ||
+        gather(f, &t, part);
+  free(t.slot);
+  if (!bad) {
+    uint32_t *less = vg_realloc(t.point, t.n, sizeof *t.point);
+
+    *point = less ? less : t.point;
     return VG_OK;
   }
   vg_front_release(part);
-  free(*point);
+  free(t.point);
   *point = NULL;
   return vg_fail_memory(err, "cutting a front");
 }
 
-vg_status vg_select_part(struct vg_select *s, const struct vg_region *region,
+/* The list of faces, without room to spare, goes to the caller. */
+static uint32_t *shrunk(struct list *l)
+{
+  uint32_t *less = vg_realloc(l->face, l->n, sizeof *l->face);
+
+  return less ? less : l->face;
+}
+
+vg_status vg_select_part(const struct vg_select *s,
+                         const struct vg_region *region,
                          struct vg_front *part, uint32_t **point,
                          uint32_t **face, struct vg_error *err)
 {
-  struct list l = { .s = s, .region = region };
+  struct list l = { .s = s, .region = region,
+                    .band = vg_region_band(region, VG_BAND_FRONT) };
   vg_status st;
 
   memset(part, 0, sizeof *part);
   *point = *face = NULL;
   st = list_faces(&l) ? vg_fail_memory(err, "cutting a front") : VG_OK;
   if (st == VG_OK)
-    st = take(s->front, s->local, l.n, l.face, part, point, err);
-  if (st == VG_OK) *face = l.face;
+    st = take(s->front, l.n, l.face, part, point, err);
+  if (st == VG_OK) *face = shrunk(&l);
   else free(l.face);
+  return st;
+}
+
+/* The corner of a face farthest from a plane, in spacings at its foot. */
+static double farthest(const struct list *l, const double *const x[3])
+{
+  const struct vg_region *r = l->region;
+  double most = 0;
+
+  for (int k = 0; k < 3; k++) {
+    double h = vg_region_spacing(r, l->s->sizing, x[k]);
+
+    for (int i = 0; i < r->n_plane; i++) {
+      const double *n = r->plane[i].normal;
+      double d = n[0] * x[k][0] + n[1] * x[k][1] + n[2] * x[k][2] -
+                 r->plane[i].offset;
+
+      most = fmax(most, fabs(d) / h);
+    }
+  }
+  return most;
+}
+
+vg_status vg_select_widen(const struct vg_select *s, struct vg_region *region,
+                          struct vg_error *err)
+{
+  double band = crossing - region->reach;
+  struct list l = { .s = s, .region = region,
+                    .band = vg_region_band(region, band) };
+  vg_status st = VG_OK;
+  double most = 0;
+
+  if (list_faces(&l)) st = vg_fail_memory(err, "cutting a front");
+  for (size_t i = 0; st == VG_OK && i < l.n; i++) {
+    const double *x[3];
+
+    for (int k = 0; k < 3; k++)
+      x[k] = s->front->x[s->front->face[l.face[i]][k]];
+    if (vg_region_meets(region, s->sizing, x[0], x[1], x[2], band))
+      most = fmax(most, farthest(&l, x));
+  }
+  free(l.face);
+  region->wide = most > VG_BAND_FLUID ? most + margin - VG_BAND_FLUID : 0;
   return st;
 }
 
@@ -264,14 +435,13 @@ vg_status vg_select_near(const struct vg_front *part,
                          struct vg_front *near, uint32_t **point,
                          uint32_t **face, struct vg_error *err)
 {
-  uint32_t *local = vg_alloc(part->n_point, sizeof *local);
   size_t n = 0;
   vg_status st = VG_OK;
 
   memset(near, 0, sizeof *near);
   *point = NULL;
   *face = vg_alloc(part->n_face, sizeof **face);
-  if (!local || !*face) st = vg_fail_memory(err, "cutting a front");
+  if (!*face) st = vg_fail_memory(err, "cutting a front");
   for (size_t i = 0; st == VG_OK && i < part->n_face; i++) {
     const uint32_t *v = part->face[i];
 
@@ -279,11 +449,7 @@ vg_status vg_select_near(const struct vg_front *part,
                            part->x[v[2]], VG_BAND_FRONT))
       (*face)[n++] = (uint32_t)i;
   }
-  if (st == VG_OK) {
-    memset(local, 0xff, part->n_point * sizeof *local);
-    st = take(part, local, n, *face, near, point, err);
-  }
-  free(local);
+  if (st == VG_OK) st = take(part, n, *face, near, point, err);
   if (st == VG_OK) return VG_OK;
   free(*face);
   *face = NULL;

@@ -124,6 +124,8 @@ static void make(int ranks, int threads, struct vg_timeline *t)
     snprintf(path, sizeof path, "0R%d", i);
     add(&s, path, "0.1.1.1.1.1L", 0.05 + 0.1 * drawn(&seed));
   }
+  for (size_t i = 0; i < s.n; i++)
+    if (s.span[i].kind == VG_SPAN_JOIN) s.span[i].loops = s.span[i].cpu / 2;
   m.ranks = ranks;
   m.threads = threads;
   assert_int_equal(vg_model_replay(&s, &m, &f, &t->spans, NULL), VG_OK);
@@ -152,6 +154,7 @@ static void a_timeline_is_drawn(void **state)
   assert_non_null(strstr(text, "4 ranks x 2 threads, 5,234,567 cells"));
   assert_non_null(strstr(text, ">leaf "));
   assert_non_null(strstr(text, ">pencil "));
+  assert_non_null(strstr(text, ">help "));
   assert_non_null(strstr(text, "seconds"));
   if (vg_plot_timeline(path, &t, &err) < 0) fail_msg("%s", err.text);
   again = contents(path);
@@ -183,7 +186,7 @@ static void odd_records_are_drawn(void **state)
 {
   const char *path = VG_TMP_DIR "/odd.svg";
   struct vg_timeline t = VG_TIMELINE_INIT;
-  struct vg_span far = { "0L", "", 'Q', 7, 7, 0, 1e9, 1e9, 1, 1e15,
+  struct vg_span far = { "0L", "", 'Q', 7, 7, 0, 1e9, 1e9, 1, 0, 1e15,
                          (uint64_t)1 << 53, 0, 0 };
   char *text;
 

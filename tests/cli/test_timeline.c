@@ -1,4 +1,5 @@
 /* The timeline of a run: round trip, columns in any order, and messages. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -16,6 +17,9 @@
   "\"bytes_in\",\"bytes_out\"]"
 #define HEAD "{\"vanguard_timeline\": 1, \"facts\": {\"ranks\": 2, " \
   "\"threads\": 3}, "
+
+#define HELP "\"help_columns\": [\"path\",\"rank\",\"thread\",\"start\"," \
+  "\"end\"], \"help\": "
 
 static void refuse(const char *text, const char *expected)
 {
@@ -40,8 +44,11 @@ static void accept(const char *text, struct vg_timeline *t)
 static void fill(struct vg_timeline *t)
 {
   static const struct vg_span span[] = {
-    { "0.1L", "0J", 'L', 1, 0, 0, 1.25, 3.5, 2.125, 400, 500, 60, 7 },
-    { "0J", "", 'J', 0, 2, 0, 0, 1.000001, 0.75, 0, 0, 0, 0 },
+    { "0.1L", "0J", 'L', 1, 0, 0, 1.25, 3.5, 2.125, 0, 400, 500, 60, 7 },
+    { "0J", "", 'J', 0, 2, 0, 0, 1.000001, 1.75, 1.25, 300, 0, 0, 0 },
+  };
+  static const struct vg_help help[] = {
+    { "0J", 0, 1, 0.125, 0.875 }, { "0J", 0, 0, 0.25, 0.5 },
   };
 
   snprintf(t->title, sizeof t->title, "a \"wing\"\n\\ \xc3\xbc");
@@ -54,6 +61,8 @@ static void fill(struct vg_timeline *t)
   t->spans.wall = t->seconds[VG_PHASE_ENGINE];
   for (int i = 0; i < 2; i++)
     assert_int_equal(vg_spans_add(&t->spans, &span[i], NULL), VG_OK);
+  for (int i = 0; i < 2; i++)
+    assert_int_equal(vg_spans_add_help(&t->spans, &help[i], NULL), VG_OK);
 }
 
 static void what_is_written_is_read(void **state)
@@ -76,7 +85,14 @@ static void what_is_written_is_read(void **state)
   assert_int_equal(u.spans.n_thread, 3);
   assert_true(u.spans.wall == t.spans.wall);
   assert_memory_equal(t.spans.span, u.spans.span, 2 * sizeof *t.spans.span);
+  assert_int_equal(u.spans.n_help, 2);
+  vg_spans_sort(&t.spans);
+  assert_int_equal(t.spans.help[0].thread, 0);
+  assert_memory_equal(t.spans.help, u.spans.help, 2 * sizeof *u.spans.help);
   assert_true(vg_timeline_serial(&u) == 4);
+  /* 2.25 and 1.000001 s of tasks, 1 s of help, by 6 workers */
+  assert_true(fabs(vg_spans_busy(&u.spans) * 6 * u.spans.wall - 4.250001) <
+              1e-12);
   vg_timeline_release(&t);
   vg_timeline_release(&u);
   remove(path);
@@ -120,6 +136,19 @@ static void columns_come_in_any_order(void **state)
   vg_timeline_release(&t);
 }
 
+/* Records from before there were loops, and of versions to come. */
+static void what_is_absent_is_zero(void **state)
+{
+  struct vg_timeline t = VG_TIMELINE_INIT;
+
+  (void)state;
+  accept(HEAD COLUMNS ", \"spans\": [[\"0L\",\"\",\"L\",1,2,0,1,2,1,0,0,0,"
+         "0]], \"help\": []}", &t);
+  assert_true(t.spans.span[0].loops == 0 && t.spans.span[0].cpu == 1);
+  assert_int_equal(t.spans.n_help, 0);
+  vg_timeline_release(&t);
+}
+
 static void faults_are_named(void **state)
 {
   (void)state;
@@ -141,6 +170,19 @@ static void faults_are_named(void **state)
   refuse(HEAD COLUMNS "}", "\"spans\" is missing");
   refuse(HEAD COLUMNS ", \"spans\": [[\"0L\"]]}", "span 1 has no \"after\"");
   refuse(HEAD COLUMNS ", \"spans\": [7]}", "span 1 has no \"path\"");
+  refuse(HEAD "\"columns\": [\"path\",\"after\",\"kind\",\"rank\","
+         "\"thread\",\"home\",\"start\",\"end\",\"cpu\",\"loops\","
+         "\"estimate\",\"cells\",\"bytes_in\",\"bytes_out\"], \"spans\": "
+         "[[\"0J\",\"\",\"J\",0,0,0,0,2,1,1.5,0,0,0,0]]}",
+         "span 1, task 0J: \"loops\" is not within \"cpu\"");
+  refuse(HEAD COLUMNS ", \"spans\": [], \"help\": [[\"0J\",0,0,1,2]]}",
+         "no column \"path\" in \"help_columns\"");
+  refuse(HEAD COLUMNS ", \"spans\": [], " HELP "[[\"0J\",0,0,1]]}",
+         "help 1 has no \"end\"");
+  refuse(HEAD COLUMNS ", \"spans\": [], " HELP "[[\"0J\",0,3,1,2]]}",
+         "help 1, task 0J: \"thread\" is not a whole number from 0 to 2");
+  refuse(HEAD COLUMNS ", \"spans\": [], " HELP "[[\"0J\",0,2,3,2]]}",
+         "help 1, task 0J: \"end\" is not after");
 }
 
 /* A span with one value replaced. */
@@ -193,6 +235,7 @@ int main(void)
     cmocka_unit_test(what_is_written_is_read),
     cmocka_unit_test(any_title_can_be_written),
     cmocka_unit_test(columns_come_in_any_order),
+    cmocka_unit_test(what_is_absent_is_zero),
     cmocka_unit_test(faults_are_named),
     cmocka_unit_test(faults_of_spans_are_named),
     cmocka_unit_test(a_missing_file_is_named),

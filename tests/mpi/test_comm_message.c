@@ -153,6 +153,35 @@ static void wrong_addresses_are_refused(void **state)
 
 enum { THREADS = 3, POSTS = 300 };
 
+/* A turn around all ranks of one node: each posts to the next when it has
+ * heard from the one before, and looks only when its bell rings. One that is
+ * not rung, or that finds nothing when it is, sleeps for minutes. */
+static void who_listens_is_woken(void **state)
+{
+  int size = vg_comm_size(job), rank = vg_comm_rank(job);
+
+  (void)state;
+  if (vg_comm_node_size(job) < size || job->apart) skip();
+  meet();
+  for (uint32_t turn = 0; turn < 50; turn++) {
+    struct vg_bytes b = body((uint32_t)rank, turn, 9);
+    struct vg_message m;
+    unsigned bell;
+
+    if (!rank)
+      assert_int_equal(vg_comm_post(job, 1 % size, 1, &b, NULL), VG_OK);
+    for (bell = vg_comm_bell(job); vg_comm_poll(job, &m, NULL) != VG_OK;
+         bell = vg_comm_bell(job))
+      vg_comm_listen(job, bell, 600);
+    assert_int_equal(open_body(&m.bytes, 9).number, turn);
+    free(m.bytes.data);
+    if (rank)
+      assert_int_equal(vg_comm_post(job, (rank + 1) % size, 1, &b, NULL),
+                       VG_OK);
+  }
+  meet();
+}
+
 static void *post_many(void *data)
 {
   int size = vg_comm_size(job), kind = *(int *)data;
@@ -234,6 +263,7 @@ int main(void)
     cmocka_unit_test(in_parts),
     cmocka_unit_test(memory_of_what_was_sent_is_given_back),
     cmocka_unit_test(wrong_addresses_are_refused),
+    cmocka_unit_test(who_listens_is_woken),
     cmocka_unit_test(from_threads),
     cmocka_unit_test(of_more_than_two_gigabytes),
   };

@@ -118,6 +118,34 @@ static void homes_move(void **state)
   if (vg_comm_size(job) > 1) assert_true(total(elsewhere) > 0);
 }
 
+/* Loops in tasks of several ranks; rank 0 hears who helped. */
+static void ranks_have_loops(void **state)
+{
+  struct forest f = { .threads = 2, .depth = 3, .loop = 13,
+                      .spin_item = 2e-4 };
+  struct vg_spans s = VG_SPANS_INIT;
+  uint64_t sum = 0, helped[2] = { 0, 0 };
+  long n = 0;
+
+  (void)state;
+  forest_expect(&f, "a", &n, &sum);
+  assert_true(forest_grow(&f, job, 1, 0, &s, NULL) == VG_OK);
+  assert_true(total((uint64_t)f.n_done) == (uint64_t)n);
+  check_rest(&f);
+  for (size_t i = 0; i < s.n_help; i++) {
+    const struct vg_help *h = &s.help[i];
+
+    assert_true(h->path[0] == 'a' && h->start <= h->end);
+    assert_true(h->rank >= 0 && h->rank < f.size);
+    assert_true(h->thread >= 0 && h->thread < 2);
+    helped[0] += h->rank == f.rank;
+  }
+  helped[1] = total(helped[0]);
+  if (!f.rank) assert_true(helped[1] == s.n_help);
+  assert_true((total((uint64_t)f.n_foreign) > 0) == (helped[1] > 0));
+  vg_spans_release(&s);
+}
+
 /* Moved tasks that fail, or are stopped, leave nothing on any rank. */
 static void moved_and_stopped(void **state)
 {
@@ -366,6 +394,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(all_ways),
     cmocka_unit_test(homes_move),
+    cmocka_unit_test(ranks_have_loops),
     cmocka_unit_test(moved_and_stopped),
     cmocka_unit_test(a_failure_is_heard),
     cmocka_unit_test(other_failures),

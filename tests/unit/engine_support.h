@@ -24,6 +24,9 @@ struct forest {
   size_t ballast;            /* bytes more in each input */
   int pin;                   /* every pin-th task (by its path) is pinned */
   int move;                  /* every move-th one moves its home */
+  int loop;                  /* items of loops in each task, no power of 2:
+                                none is of one chunk; 0: no loops */
+  double spin_item;          /* s of work per item */
   const char *fail_at;       /* path of a task whose run fails */
   const char *done_fails_at; /* whose done fails */
   const char *pack_fails_at;
@@ -34,6 +37,8 @@ struct forest {
   atomic_long alive;         /* inputs and outcomes on this rank */
   atomic_long n_run, n_done, n_moved;
   atomic_int busy[64];       /* by worker */
+  atomic_int inside[64];     /* a body of a loop runs, by worker */
+  atomic_long n_body, n_foreign; /* bodies, and those in another worker */
   uint64_t sum;              /* of all tasks' digests, in done */
   double last_done, last_known;
 };
@@ -94,6 +99,56 @@ static inline struct vg_task forest_task(struct forest *f, const char *path)
   return t;
 }
 
+/* A loop counts its items; each worker has a number of its own, a body that
+ * itself has a loop runs that alone. */
+struct forest_loop {
+  struct forest *f;
+  const struct vg_engine *e;
+  int worker;                /* of the task */
+  int count[64];             /* by item: no lock, but for the loop's own */
+};
+
+static inline void forest_inner(void *context, size_t first, size_t end,
+                                int worker)
+{
+  int *seen = context;
+
+  for (size_t i = first; i < end; i++) seen[i] += 1 + worker;
+}
+
+static inline void forest_body(void *context, size_t first, size_t end,
+                               int worker)
+{
+  struct forest_loop *l = context;
+  struct forest *f = l->f;
+  int seen[5] = { 0 };
+
+  if (worker < 0 || worker >= f->threads) abort();
+  if (atomic_fetch_add(&f->inside[worker], 1)) f->bad++;
+  f->n_body++;
+  if (worker != l->worker) f->n_foreign++;
+  for (size_t i = first; i < end; i++) {
+    l->count[i]++;
+    forest_spin(f->spin_item);
+  }
+  vg_engine_loop(l->e, 5, 2, forest_inner, seen);
+  for (int i = 0; i < 5; i++)
+    if (seen[i] != 1 + worker) f->bad++;
+  atomic_fetch_sub(&f->inside[worker], 1);
+}
+
+static inline void forest_loops(struct forest *f, const struct vg_engine *e,
+                                int worker)
+{
+  for (size_t grain = 1; f->loop && grain <= (size_t)f->loop; grain *= 2) {
+    struct forest_loop l = { .f = f, .e = e, .worker = worker };
+
+    vg_engine_loop(e, (size_t)f->loop, grain, forest_body, &l);
+    for (int i = 0; i < f->loop; i++)
+      if (l.count[i] != 1) f->bad++;
+  }
+}
+
 static inline vg_status forest_run(void *user, const struct vg_engine *e,
                                    const struct vg_task *task, int worker,
                                    void **outcome, size_t *n_cell,
@@ -109,12 +164,14 @@ static inline vg_status forest_run(void *user, const struct vg_engine *e,
   for (size_t i = 0; i < in->n; i++)
     if (in->data[i] != (in->digest & 255)) f->bad++;
   forest_spin(f->spin);
+  forest_loops(f, e, worker);
   atomic_fetch_sub(&f->busy[worker], 1);
   if (f->fail_at && !strcmp(task->path, f->fail_at))
     return vg_fail(err, VG_ERR_GEOMETRY, "task %s fails", task->path);
   if (f->stop_at && !strcmp(task->path, f->stop_at)) {
     atomic_store(&f->stop, 1);
     while (!vg_engine_stopping(e)) forest_spin(1e-4);
+    forest_loops(f, e, worker);
     return VG_BLOCKED;
   }
   out = vg_alloc(1, sizeof *out);

@@ -7,15 +7,10 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/unite.h"
 #include "partition/job.h"
 
 /* --- parts --------------------------------------------------------------- */
-
-static uint32_t part_root_of(uint32_t *parent, uint32_t k)
-{
-  while (parent[k] != k) k = parent[k] = parent[parent[k]];
-  return k;
-}
 
 /* Half edges by their lower point. */
 struct part_edges {
@@ -49,14 +44,6 @@ static int part_edges_init(struct part_edges *e, const struct vg_front *f)
     e->half[e->first[(a < b ? a : b) + 1]++] = h;
   }
   return 0;
-}
-
-static void part_unite(uint32_t *parent, uint32_t a, uint32_t b)
-{
-  a = part_root_of(parent, a);
-  b = part_root_of(parent, b);
-  if (a < b) parent[b] = a;
-  else parent[a] = b;
 }
 
 /* The corner of a half edge's face that is not on the edge. */
@@ -124,7 +111,7 @@ static void part_unite_crowd(const struct vg_front *f, uint32_t *parent,
         best = half[j];
       }
     }
-    if (best != UINT32_MAX) part_unite(parent, half[i] / 3, best / 3);
+    if (best != UINT32_MAX) vg_unite(parent, half[i] / 3, best / 3);
   }
 }
 
@@ -150,7 +137,7 @@ static void part_unite_around(const struct vg_front *f,
       list[j] = list[same];
       list[same++] = keep;
     }
-    if (same == 2) part_unite(parent, list[0] / 3, list[1] / 3);
+    if (same == 2) vg_unite(parent, list[0] / 3, list[1] / 3);
     else part_unite_crowd(f, parent, same, list);
   }
 }
@@ -172,7 +159,7 @@ static inline vg_status front_parts(const struct vg_front *f, uint32_t *part,
   for (uint32_t i = 0; i < f->n_face; i++) parent[i] = i;
   for (size_t p = 0; p < f->n_point; p++) part_unite_around(f, &e, parent, p);
   for (uint32_t i = 0; i < f->n_face; i++) {
-    uint32_t r = part_root_of(parent, i);
+    uint32_t r = vg_root_of(parent, i);
 
     part[i] = r == i ? (uint32_t)(*n)++ : part[r];
   }

@@ -5,6 +5,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <cmocka.h>
+#include <math.h>
 #include <sys/resource.h>
 
 #include "engine_support.h"
@@ -139,6 +140,88 @@ static void it_stops_when_told(void **state)
   }
 }
 
+/* Loops in tasks that come from each other, several open at a time. */
+static void loops_are_done_once(void **state)
+{
+  (void)state;
+  for (int threads = 1; threads < 5; threads++) {
+    struct forest f = { .threads = threads, .depth = 4, .loop = 13,
+                        .spin_item = 2e-5 };
+    struct vg_spans s = VG_SPANS_INIT;
+    uint64_t sum = 0;
+    long n = 0, chunks = 13 + 7 + 4 + 2;
+
+    for (int t = 0; t < 3; t++)
+      forest_expect(&f, (char[]){ (char)('a' + t), 0 }, &n, &sum);
+    assert_int_equal(forest_grow(&f, NULL, 3, 0, &s, NULL), VG_OK);
+    assert_int_equal(f.n_done, n);
+    assert_true(f.sum == sum);
+    assert_int_equal(f.bad, 0);
+    assert_int_equal(f.n_body, n * chunks);
+    if (threads == 1) assert_int_equal(f.n_foreign, 0);
+    vg_spans_release(&s);
+  }
+}
+
+/* One task with a long loop, all other workers idle: they help, and the record
+ * says so: no time is lost or counted twice. */
+static void idle_workers_help(void **state)
+{
+  struct forest f = { .threads = 3, .loop = 60, .spin_item = 2e-3 };
+  struct vg_spans s = VG_SPANS_INIT;
+  double help = 0, wall;
+  const struct vg_span *a;
+
+  (void)state;
+  assert_int_equal(forest_grow(&f, NULL, 1, 0, &s, NULL), VG_OK);
+  a = &s.span[0];
+  assert_int_equal(f.bad, 0);
+  assert_true(f.n_foreign > 0);
+  assert_true(s.n_help > 0);
+  for (size_t i = 0; i < s.n_help; i++) {
+    const struct vg_help *h = &s.help[i];
+
+    assert_string_equal(h->path, a->path);
+    assert_true(h->rank == 0 && h->thread != a->thread);
+    assert_in_range(h->thread, 0, 2);
+    assert_true(a->start <= h->start && h->start <= h->end &&
+                h->end <= a->end);
+    help += h->end - h->start;
+  }
+  wall = a->end - a->start;
+  assert_true(a->loops > 0 && a->loops <= a->cpu);
+  /* clocks of three threads, of which one may be sampled between ticks */
+  assert_true(a->cpu <= wall + help + 5e-3);
+  assert_true(fabs(vg_spans_busy(&s) - (wall + help) / (3 * s.wall)) < 1e-9);
+  vg_spans_release(&s);
+}
+
+static void loops_are_finished_after_a_stop(void **state)
+{
+  (void)state;
+  for (int threads = 1; threads < 4; threads++) {
+    struct forest f = { .threads = threads, .depth = 5, .stop_at = "a12",
+                        .loop = 9, .spin_item = 2e-5 };
+
+    assert_int_equal(forest_grow(&f, NULL, 3, 0, NULL, NULL), VG_BLOCKED);
+    assert_int_equal(f.alive, 0);
+    assert_int_equal(f.n_run, f.n_done);
+    assert_int_equal(f.bad, 0);
+  }
+}
+
+/* Without an engine, and where there is nothing to do. */
+static void a_loop_alone(void **state)
+{
+  int seen[7] = { 0 };
+
+  (void)state;
+  vg_engine_loop(NULL, 0, 1, forest_inner, NULL);
+  vg_engine_loop(NULL, 7, 3, forest_inner, seen);
+  vg_engine_loop(NULL, 7, 0, forest_inner, seen);
+  for (int i = 0; i < 7; i++) assert_int_equal(seen[i], 2);
+}
+
 static vg_status nop_run(void *user, const struct vg_engine *e,
                          const struct vg_task *task, int worker,
                          void **outcome, size_t *n_cell, struct vg_error *err)
@@ -210,6 +293,10 @@ int main(void)
     cmocka_unit_test(spans_say_what_happened),
     cmocka_unit_test(a_failure_is_told),
     cmocka_unit_test(it_stops_when_told),
+    cmocka_unit_test(loops_are_done_once),
+    cmocka_unit_test(idle_workers_help),
+    cmocka_unit_test(loops_are_finished_after_a_stop),
+    cmocka_unit_test(a_loop_alone),
     cmocka_unit_test(tasks_without_input),
     cmocka_unit_test(refuses_bad_tasks),
   };

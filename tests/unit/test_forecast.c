@@ -108,7 +108,7 @@ static void a_box_has_a_regular_tree(void **state)
   o = look(&s, rule, 3);
   assert_int_equal(o.n_leaf, 8);
   assert_int_equal(o.n_node, 9);
-  assert_int_equal(o.n_tile, 12 + 2);       /* two places where three meet */
+  assert_int_equal(o.n_tile, 12 + 1);       /* a place where three meet */
   assert_int_equal(o.n_pencil, 5);
   assert_int_equal(o.node[0].n_child, 8);
   assert_true(o.node[0].parent == SIZE_MAX);
@@ -175,6 +175,36 @@ static void the_model_runs_its_tasks(void **state)
     before = f.wall;
   }
   assert_true(fabs(one - o.spans.wall) < 1e-9 * one && before < one / 3);
+  vg_outlook_release(&o);
+  release(&s);
+}
+
+/* Threads of a rank share the loops of joins, ranks of one thread do not. */
+static void threads_share_joins(void **state)
+{
+  struct vg_machine ranks = VG_MACHINE_INIT, threads = VG_MACHINE_INIT;
+  struct vg_forecast f, g;
+  struct vg_outlook o;
+  struct scene s;
+
+  (void)state;
+  make(&s, "box", 200000);
+  o = look(&s, leaves_of(2000), 0);
+  for (size_t i = 0; i < o.spans.n; i++) {
+    const struct vg_span *one = &o.spans.span[i];
+
+    assert_true(one->kind == VG_SPAN_JOIN
+                  ? one->loops >= 0 && one->loops < one->cpu
+                  : one->loops == 0);
+    if (!strcmp(one->path, "0J1")) assert_true(one->loops > 0);
+  }
+  ranks.ranks = threads.threads = 16;
+  ranks.latency = threads.latency = 0;
+  assert_int_equal(vg_model_replay(&o.spans, &ranks, &f, NULL, NULL), VG_OK);
+  assert_int_equal(vg_model_replay(&o.spans, &threads, &g, NULL, NULL),
+                   VG_OK);
+  assert_true(fabs(g.work - f.work) < 1e-9 * f.work);
+  assert_true(g.critical < f.critical && g.wall < f.wall);
   vg_outlook_release(&o);
   release(&s);
 }
@@ -318,6 +348,7 @@ int main(void)
     cmocka_unit_test(a_box_has_a_regular_tree),
     cmocka_unit_test(sums_are_the_loads),
     cmocka_unit_test(the_model_runs_its_tasks),
+    cmocka_unit_test(threads_share_joins),
     cmocka_unit_test(it_is_the_same_twice),
     cmocka_unit_test(levels_and_axes_are_obeyed),
     cmocka_unit_test(a_faster_core_needs_less),

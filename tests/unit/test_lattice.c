@@ -270,6 +270,64 @@ static void nothing_to_cut(void **state)
   scene_end(&s);
 }
 
+/* --- ribs ---------------------------------------------------------------- */
+
+/* One plane across z, with ribs. */
+static void one_plane(const struct scene *s, struct vg_lattice *l)
+{
+  const struct vg_cut_rule rule = { s->load.cells / 2, 2, 0 };
+  struct vg_error err = VG_ERROR_INIT;
+
+  assert_int_equal(vg_lattice_plan(&s->load, &rule, 0, 0, l), 1);
+  planes_are(l, 0, 0, 1);
+  if (vg_lattice_add_ribs(&s->load, l, &err) != VG_OK) fail_msg("%s", err.text);
+}
+
+/* 12 cells to a square of a plane, 12,000 to a piece; a rib counts as 25 to an
+ * edge of it, and the ribs of a tile may be 7 % of it. */
+static void large_tiles_are_parted(void **state)
+{
+  static const struct { int nx, ny, pieces; } is[] = {
+    {32, 32, 1}, {64, 64, 3}, {60, 20, 1}, {200, 16, 3}, {16, 120, 2} };
+
+  (void)state;
+  for (size_t k = 0; k < sizeof is / sizeof *is; k++) {
+    struct vg_lattice l;
+    struct scene s;
+
+    block_scene(&s, is[k].nx, is[k].ny, 12);
+    one_plane(&s, &l);
+    if (l.n_rib + 1 != is[k].pieces)
+      fail_msg("%d x %d: %d pieces instead of %d", is[k].nx, is[k].ny,
+               l.n_rib + 1, is[k].pieces);
+    for (int i = 0; i < l.n_rib; i++) {
+      int across = is[k].ny > is[k].nx;
+      double length = across ? is[k].ny : is[k].nx;
+
+      assert_int_equal(l.rib[i].tile, 0);
+      if (is[k].nx != is[k].ny)
+        assert_true(l.rib[i].plane.normal[across] == 1);
+      /* shares of cubes of up to 3 spacings, counted by their middles */
+      if (fabs(l.rib[i].plane.offset - length * (i + 1) / is[k].pieces) > 3)
+        fail_msg("rib %d of %d x %d is at %g", i, is[k].nx, is[k].ny,
+                 l.rib[i].plane.offset);
+    }
+    scene_end(&s);
+  }
+}
+
+static void small_tiles_stay_whole(void **state)
+{
+  struct vg_lattice l;
+  struct scene s;
+
+  (void)state;
+  sphere_scene(&s);
+  one_plane(&s, &l);
+  assert_int_equal(l.n_rib, 0);
+  scene_end(&s);
+}
+
 /* --- regions ------------------------------------------------------------- */
 
 static const struct vg_lattice two = {
@@ -281,6 +339,11 @@ static const struct vg_lattice four = {
   .at = {{-0.5, 0.1, 0.45}, {-0.6, -0.2, 0.5}, {-0.4, 0, 0.55}} };
 static const struct vg_lattice flat = {
   .n = {2, 1, 0}, .at = {{-0.3, 0.4}, {0.1}, {0}} };
+/* Tiles in pieces: one of `flat`'s by two parallel ribs, and one by a fan. */
+static const struct vg_lattice ribbed = {
+  .n = {2, 1, 0}, .at = {{-0.3, 0.4}, {0.1}, {0}}, .n_rib = 4,
+  .rib = { {1, {{0, 0, 1}, -0.5}}, {1, {{0, 0, 1}, 0.4}},
+           {3, {{0, -0.6, 0.8}, -0.86}}, {3, {{0, -0.8, 0.6}, -0.68}} } };
 static const struct vg_lattice row = {
   .n = {0, 7, 0}, .at = {{0}, {-.6, -.4, -.2, 0, .2, .4, .6}, {0}} };
 
@@ -289,7 +352,9 @@ static void counts_are(const struct vg_lattice *l, size_t lines,
 {
   assert_int_equal(vg_lattice_count(l, 0), lines);
   assert_int_equal(vg_lattice_count(l, 1), segments);
-  assert_int_equal(vg_lattice_count(l, 2), tiles);
+  assert_int_equal(vg_lattice_count(l, 2), l->n_rib);
+  assert_int_equal(vg_lattice_count(l, VG_LATTICE_TILES),
+                   tiles + (size_t)l->n_rib);
 }
 
 static void numbers_of_regions(void **state)
@@ -300,6 +365,7 @@ static void numbers_of_regions(void **state)
   counts_are(&four, 9, 72, 144);
   counts_are(&flat, 2, 0, 7);
   counts_are(&row, 0, 0, 7);
+  counts_are(&ribbed, 2, 0, 7);
 }
 
 static double length_of(const double v[3])
@@ -311,19 +377,19 @@ static double length_of(const double v[3])
 static void is_well_made(const struct vg_lattice *l, int stage, int axis,
                          const struct vg_region *r)
 {
-  int is_tile = stage == 2;
+  int is_tile = stage == VG_LATTICE_TILES, is_rib = stage == 2;
 
   assert_int_equal(r->n_plane, is_tile ? 1 : 2);
   assert_in_range(r->n_wall, 0, VG_REGION_WALLS);
-  assert_true(is_tile ? r->reach >= 0 : r->reach > 0);
+  assert_true(is_tile || is_rib ? r->reach >= 0 : r->reach > 0);
   assert_in_range(axis, 0, 2);
-  for (int i = 0; i < r->n_plane; i++) {
+  for (int i = 0; i < (is_rib ? 1 : r->n_plane); i++) {
     int across = -1, found = 0;
 
     assert_true(fabs(length_of(r->plane[i].normal) - 1) < 1e-15);
     for (int k = 0; k < 3; k++)
       if (r->plane[i].normal[k] != 0) across = k;
-    assert_true(across >= 0 && (across == axis) == is_tile);
+    assert_true(across >= 0 && (across == axis) == (is_tile || is_rib));
     for (int k = 0; k < l->n[across]; k++)
       found |= l->at[across][k] == r->plane[i].offset;
     assert_true(found);
@@ -396,6 +462,16 @@ static int is_on(const struct vg_region *r, const double x[3])
   return off < 1e-12;
 }
 
+static int is_on_tile(const struct vg_lattice *l, int tile, const double x[3])
+{
+  struct vg_lattice whole = *l;
+  struct vg_region r;
+
+  whole.n_rib = 0;
+  vg_lattice_region(&whole, VG_LATTICE_TILES, (size_t)tile, &r);
+  return is_on(&r, x) && vg_region_within(&r, x);
+}
+
 /* Where the planes of a region meet, some region has the point: the whole of
  * a plane is cut, the whole of a line grown. Points between crossings only. */
 static void nothing_is_left_out(const struct vg_lattice *l)
@@ -414,6 +490,7 @@ static void nothing_is_left_out(const struct vg_lattice *l)
 
       for (int k = 0; k < 3; k++) x[k] = 2 * tets_random(&seed) - 1;
       vg_region_foot(&r[of], x, foot);
+      if (stage == 2 && !is_on_tile(l, l->rib[of].tile, foot)) continue;
       for (size_t k = 0; k < n; k++) {
         found += is_on(&r[k], foot) && vg_region_within(&r[k], foot);
       }
@@ -425,10 +502,11 @@ static void nothing_is_left_out(const struct vg_lattice *l)
 
 static void regions_are_apart_and_complete(void **state)
 {
-  const struct vg_lattice *all[5] = { &two, &once, &four, &flat, &row };
+  const struct vg_lattice *all[6] = { &two, &once, &four, &flat, &row,
+                                      &ribbed };
 
   (void)state;
-  for (int k = 0; k < 5; k++) {
+  for (int k = 0; k < 6; k++) {
     walls_keep_apart(all[k]);
     nothing_is_left_out(all[k]);
   }
@@ -498,6 +576,8 @@ int main(void)
     cmocka_unit_test(leaves_have_their_size),
     cmocka_unit_test(attempts_differ),
     cmocka_unit_test(nothing_to_cut),
+    cmocka_unit_test(large_tiles_are_parted),
+    cmocka_unit_test(small_tiles_stay_whole),
     cmocka_unit_test(numbers_of_regions),
     cmocka_unit_test(regions_are_apart_and_complete),
     cmocka_unit_test(points_have_blocks),

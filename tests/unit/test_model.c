@@ -382,6 +382,72 @@ static void a_faster_core_takes_less(void **state)
   vg_spans_release(&s);
 }
 
+/* One task of 10 s, 8 of them in loops. */
+static void idle_workers_help(void **state)
+{
+  struct vg_spans s = VG_SPANS_INIT, t = VG_SPANS_INIT;
+  struct vg_machine m = machine_of(1, 4);
+  struct vg_forecast f;
+
+  (void)state;
+  add(&s, "0J0", "", 10);
+  s.span[0].loops = 8;
+  f = replay(&s, &m, &t);            /* 2 + 8 / 4 */
+  assert_true(f.wall == 4 && f.critical == 4 && f.cuts_wall == 4);
+  assert_true(f.work == 10 && f.speedup == 2.5 && f.cuts == 1);
+  assert_true(f.idle == 1 - 10.0 / 16 && f.imbalance == 4 / 2.5);
+  assert_true(t.span[0].end == 4 && t.span[0].cpu == 10);
+  assert_int_equal(t.n_help, 3);
+  for (int i = 0; i < 3; i++) {
+    assert_int_equal(t.help[i].thread, i + 1);
+    assert_string_equal(t.help[i].path, "0J0");
+    assert_true(t.help[i].start == 0 && t.help[i].end == 2);
+  }
+  assert_true(vg_spans_busy(&t) == 10.0 / 16);
+  vg_spans_release(&t);
+  m.loop_threads = 2;                /* 2 + 8 / 2 */
+  f = replay(&s, &m, NULL);
+  assert_true(f.wall == 6 && f.critical == 6 && f.imbalance == 6 / 2.5);
+  m = machine_of(4, 1);              /* other ranks cannot help */
+  f = replay(&s, &m, NULL);
+  assert_true(f.wall == 10 && f.critical == 10);
+  m = machine_of(1, 4);
+  m.rate = 2;
+  f = replay(&s, &m, NULL);
+  assert_true(f.wall == 2 && f.work == 5 && f.critical == 2);
+  vg_spans_release(&s);
+}
+
+/* Tasks that begin together share who is left, those under way count. */
+static void help_is_shared(void **state)
+{
+  struct vg_spans s = VG_SPANS_INIT, t = VG_SPANS_INIT;
+  struct vg_machine m = machine_of(1, 6);
+
+  (void)state;
+  add(&s, "0J0", "", 1);
+  add(&s, "0.0J0", "0J0", 8);
+  add(&s, "0.1J0", "0J0", 4);
+  add(&s, "0.2J0", "0J0", 1);
+  add(&s, "0.2.0J0", "0.2J0", 2);
+  add(&s, "0.2.1L", "0.2J0", 16);
+  for (size_t i = 0; i < s.n; i++)
+    if (s.span[i].kind == 'J') s.span[i].loops = s.span[i].cpu;
+  s.span[0].loops = s.span[3].loops = 0;
+  s.span[2].loops = 3;
+  replay(&s, &m, &t);
+  /* at 1: three tasks, two with loops, three are idle: k = 1 + 3/2 */
+  assert_true(find(&t, "0.0J0")->start == 1);
+  assert_true(fabs(find(&t, "0.0J0")->end - (1 + 8 / 2.5)) < 1e-12);
+  assert_true(fabs(find(&t, "0.1J0")->end - (1 + 1 + 3 / 2.5)) < 1e-12);
+  /* at 2: four tasks, three with loops, two are idle: k = 1 + 2/3 */
+  assert_true(find(&t, "0.2.0J0")->start == 2);
+  assert_true(fabs(find(&t, "0.2.0J0")->end - (2 + 2 * 3 / 5.)) < 1e-12);
+  assert_true(find(&t, "0.2.1L")->end == 18);
+  vg_spans_release(&t);
+  vg_spans_release(&s);
+}
+
 /* A join, a zone of 500 cells in 2 s, two leaves of 4000 cells in 4 s each:
  * the zone's cells would have taken 0.5 s in leaves. */
 static void zones_make_cells_too(void **state)
@@ -492,6 +558,12 @@ static void contradictions_are_named(void **state)
   refuses(&s, &m, "waits for tasks that wait for it");
   add(&s, "0L", "", -1);
   refuses(&s, &m, "'0L' of the record took -1 seconds");
+  add(&s, "0J", "", 1);
+  s.span[0].loops = 1.5;
+  refuses(&s, &m, "took 1 seconds, of which 1.5 in loops");
+  m.loop_threads = 0;
+  refuses(&s, &m, "loops in 0 threads");
+  m.loop_threads = 16;
   m.ranks = 0;
   refuses(&s, &m, "0 ranks");
   m.ranks = m.threads = 1 << 16;
@@ -531,6 +603,8 @@ int main(void)
     cmocka_unit_test(nodes_move_and_joins_stay),
     cmocka_unit_test(joins_wait_for_their_rank),
     cmocka_unit_test(a_faster_core_takes_less),
+    cmocka_unit_test(idle_workers_help),
+    cmocka_unit_test(help_is_shared),
     cmocka_unit_test(zones_make_cells_too),
     cmocka_unit_test(nothing_takes_no_time),
     cmocka_unit_test(the_same_record_gives_the_same),

@@ -8,7 +8,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "core/sizing.h"
+#include "core/sizing_parts.h"
 
 #define assert_near(a, b, tolerance) \
   assert_true(fabs((a) - (b)) <= (tolerance))
@@ -573,95 +573,24 @@ static void threads_give_the_same_bytes(void **state)
   struct vg_mesh m = VG_MESH_INIT;
   struct vg_sizing_options o = plain;
   struct vg_source source[9];
-  struct vg_bytes bytes[3];
+  struct vg_sizing *s[3];
 
   (void)state;
   busy_field(&m, source);
   for (int i = 0; i < 3; i++) {
-    struct vg_sizing *s;
-
     o.threads = i + 1;
-    s = field(&o, 9, source, &m);
-    assert_true(vg_sizing_leaves(s) > 20000);
-    assert_int_equal(vg_sizing_pack(s, &bytes[i], NULL), VG_OK);
-    vg_sizing_free(s);
+    s[i] = field(&o, 9, source, &m);
+    assert_true(vg_sizing_leaves(s[i]) > 20000);
   }
   for (int i = 1; i < 3; i++) {
-    assert_int_equal(bytes[i].n, bytes[0].n);
-    assert_memory_equal(bytes[i].data, bytes[0].data, bytes[0].n);
+    const struct vg_octree *a = &s[0]->octree, *b = &s[i]->octree;
+
+    assert_int_equal(a->n_split, b->n_split);
+    assert_int_equal(a->n_leaf, b->n_leaf);
+    assert_memory_equal(a->child, b->child, a->n_split * sizeof *a->child);
+    assert_memory_equal(a->leaf, b->leaf, a->n_leaf * sizeof *a->leaf);
   }
-  for (int i = 0; i < 3; i++) free(bytes[i].data);
-  vg_mesh_release(&m);
-}
-
-static void a_packed_field_is_the_field(void **state)
-{
-  struct vg_mesh m = VG_MESH_INIT;
-  struct vg_source source[9];
-  struct vg_sizing *s[2] = { NULL, NULL };
-  struct vg_bytes bytes, again;
-  double lo[2][3], h[2][2];
-  uint64_t seed = 3;
-
-  (void)state;
-  busy_field(&m, source);
-  s[0] = field(&plain, 9, source, &m);
-  assert_int_equal(vg_sizing_pack(s[0], &bytes, NULL), VG_OK);
-  assert_int_equal(vg_sizing_unpack(&bytes, &s[1], NULL), VG_OK);
-  assert_int_equal(vg_sizing_pack(s[1], &again, NULL), VG_OK);
-  assert_int_equal(bytes.n, again.n);
-  assert_memory_equal(bytes.data, again.data, bytes.n);
-  for (int i = 0; i < 2; i++) vg_sizing_range(s[i], &h[i][0], &h[i][1]);
-  assert_memory_equal(h[0], h[1], sizeof h[0]);
-  assert_true(vg_sizing_cube(s[0], lo[0]) == vg_sizing_cube(s[1], lo[1]));
-  assert_memory_equal(lo[0], lo[1], sizeof lo[0]);
-  assert_true(vg_sizing_slope(s[0]) == vg_sizing_slope(s[1]));
-  for (int i = 0; i < 5000; i++) {
-    double x[3];
-
-    random_in(x, 20, &seed);  /* outside too */
-    assert_true(vg_sizing_at(s[0], x) == vg_sizing_at(s[1], x));
-  }
-  for (int i = 0; i < 2; i++) vg_sizing_free(s[i]);
-  free(bytes.data);
-  free(again.data);
-  vg_mesh_release(&m);
-}
-
-/* Cut short anywhere it is refused; with any byte changed it is refused, or
- * what comes out can be used. */
-static void damaged_bytes_are_refused_or_harmless(void **state)
-{
-  struct vg_mesh m = VG_MESH_INIT;
-  struct vg_sizing *s, *got;
-  struct vg_bytes bytes;
-  size_t n_bad = 0;
-
-  (void)state;
-  two_sizes(&m);
-  s = field(&plain, 0, NULL, &m);
-  assert_int_equal(vg_sizing_pack(s, &bytes, NULL), VG_OK);
-  vg_sizing_free(s);
-  for (size_t n = 0; n < bytes.n; n += n < 200 ? 1 : 97) {
-    struct vg_bytes cut = { n, bytes.data };
-    struct vg_error err = VG_ERROR_INIT;
-
-    got = NULL;
-    assert_int_equal(vg_sizing_unpack(&cut, &got, &err), VG_ERR_FORMAT);
-    assert_null(got);
-  }
-  for (size_t i = 0; i < bytes.n && i < 20000; i++) {
-    unsigned char was = bytes.data[i];
-
-    bytes.data[i] ^= (unsigned char)(1u << i % 8);
-    got = NULL;
-    if (vg_sizing_unpack(&bytes, &got, NULL) < 0) n_bad++;
-    else assert_true(vg_sizing_at(got, origin) > 0);
-    vg_sizing_free(got);
-    bytes.data[i] = was;
-  }
-  assert_true(n_bad > 100);
-  free(bytes.data);
+  for (int i = 0; i < 3; i++) vg_sizing_free(s[i]);
   vg_mesh_release(&m);
 }
 
@@ -772,9 +701,7 @@ int main(void)
     cmocka_unit_test(sources_alone_need_no_limit),
     cmocka_unit_test(the_same_input_gives_the_same_bytes),
     cmocka_unit_test(threads_give_the_same_bytes),
-    cmocka_unit_test(a_packed_field_is_the_field),
-    cmocka_unit_test(damaged_bytes_are_refused_or_harmless),
-    cmocka_unit_test(bad_sources_are_named),
+        cmocka_unit_test(bad_sources_are_named),
     cmocka_unit_test(bad_options_and_surfaces_are_refused),
     cmocka_unit_test(degenerate_faces_are_passed_over)
   };

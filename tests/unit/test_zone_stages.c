@@ -105,12 +105,12 @@ static void a_pencil_and_four_tiles(void **state)
   (void)state;
   box_scene(&s, 14);
   cut_by(&s, &l, made);
-  assert_true(made[0] > 14 * 10 && made[0] < made[2]);
+  assert_true(made[0] > 14 * 10 && made[0] < made[VG_LATTICE_TILES]);
   assert_int_equal(made[1], 0);
   parts_are(&s, 4);
   assert_true(smallest_angle(&s.v, 0) > 5);
   print_message("pencil %zu, tiles %zu, smallest angle %.1f\n", made[0],
-                made[2], smallest_angle(&s.v, 0));
+                made[VG_LATTICE_TILES], smallest_angle(&s.v, 0));
   is_filled(&s);
   scene_end(&s);
 }
@@ -126,10 +126,11 @@ static void a_lattice_in_a_box(void **state)
   (void)state;
   box_scene(&s, 14);
   cut_by(&s, &l, made);
-  assert_true(made[0] > 100 && made[1] > 200 && made[2] > made[1]);
+  assert_true(made[0] > 100 && made[1] > 200 &&
+              made[VG_LATTICE_TILES] > made[1]);
   parts_are(&s, 8);
   print_message("lines %zu and %zu, tiles %zu, smallest angle %.1f\n", made[0],
-                made[1], made[2], smallest_angle(&s.v, 0));
+                made[1], made[VG_LATTICE_TILES], smallest_angle(&s.v, 0));
   assert_true(smallest_angle(&s.v, 0) > 5);
   is_filled(&s);
   scene_end(&s);
@@ -146,10 +147,10 @@ static void a_lattice_around_a_sphere(void **state)
   (void)state;
   sphere_scene(&s);
   cut_by(&s, &l, made);
-  assert_true(made[0] > 0 && made[1] > 0 && made[2] > 0);
+  assert_true(made[0] > 0 && made[1] > 0 && made[VG_LATTICE_TILES] > 0);
   parts_are(&s, 8);
   print_message("lines %zu and %zu, tiles %zu, smallest angle %.1f\n", made[0],
-                made[1], made[2], smallest_angle(&s.v, 0));
+                made[1], made[VG_LATTICE_TILES], smallest_angle(&s.v, 0));
   assert_true(smallest_angle(&s.v, 0) > 5);
   is_filled(&s);
   scene_end(&s);
@@ -167,8 +168,54 @@ static void all_lines_at_once(void **state)
   sphere_scene(&s);
   assert_int_equal(vg_lattice_count(&l, 0), 6);
   cut_by(&s, &l, made);
-  assert_true(made[0] > 0 && made[2] > 0);
+  assert_true(made[0] > 0 && made[VG_LATTICE_TILES] > 0);
   assert_int_equal(made[1], 0);
+  parts_are(&s, 8);
+  assert_true(smallest_angle(&s.v, 0) > 5);
+  is_filled(&s);
+  scene_end(&s);
+}
+
+/* A plane in three pieces, two ribs first: as if it were whole. */
+static void a_plane_in_pieces(void **state)
+{
+  const struct vg_lattice l = {
+    .n = {0, 0, 1}, .at = {{0}, {0}, {0.03}}, .n_rib = 2,
+    .rib = {{0, {{1, 0, 0}, -0.18}}, {0, {{1, 0, 0}, 0.17}}} };
+  size_t made[VG_LATTICE_STAGES];
+  struct scene s;
+
+  (void)state;
+  box_scene(&s, 16);
+  cut_by(&s, &l, made);
+  assert_int_equal(made[0] + made[1], 0);
+  assert_true(made[2] > 16 * 2 * 4 && made[2] < made[VG_LATTICE_TILES] / 4);
+  parts_are(&s, 2);
+  assert_true(smallest_angle(&s.v, 0) > 5);
+  is_filled(&s);
+  scene_end(&s);
+}
+
+/* Between lines that come out of a body a rib goes on from it aslant. */
+static void ribs_from_a_body(void **state)
+{
+  const double u = 0.7071067811865476;
+  struct vg_lattice l = { .n = {1, 1, 1}, .lines_at_once = 1, .n_rib = 12 };
+  size_t made[VG_LATTICE_STAGES];
+  struct scene s;
+
+  (void)state;
+  assert_int_equal(vg_lattice_count(&l, VG_LATTICE_TILES), 24);
+  for (int t = 0; t < 12; t++) {
+    int axis = t / 4, b = (axis + 1) % 3, c = (axis + 2) % 3;
+
+    l.rib[t].tile = t;
+    l.rib[t].plane.normal[b] = -u;
+    l.rib[t].plane.normal[c] = t % 4 == 0 || t % 4 == 3 ? u : -u;
+  }
+  sphere_scene(&s);
+  cut_by(&s, &l, made);
+  assert_true(made[0] > 0 && made[2] > 0 && made[VG_LATTICE_TILES] > made[2]);
   parts_are(&s, 8);
   assert_true(smallest_angle(&s.v, 0) > 5);
   is_filled(&s);
@@ -192,7 +239,7 @@ static void planes_close_what_is_left(void **state)
       l.at[k][0] = ((q * 37 + k * 53 + 11) % 97 / 97.0 - 0.5) *
                    (q % 2 ? 3 : 0.3);
     cut_by(&s, &l, made);
-    n_tile = made[2];
+    n_tile = made[VG_LATTICE_TILES];
     for (int axis = 0; axis < 3; axis++) {
       struct vg_region r = plane_at(axis, l.at[axis][0]);
 
@@ -213,6 +260,8 @@ int main(void)
     cmocka_unit_test(a_lattice_in_a_box),
     cmocka_unit_test(a_lattice_around_a_sphere),
     cmocka_unit_test(all_lines_at_once),
+    cmocka_unit_test(a_plane_in_pieces),
+    cmocka_unit_test(ribs_from_a_body),
     cmocka_unit_test(planes_close_what_is_left),
   };
 

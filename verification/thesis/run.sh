@@ -139,9 +139,10 @@ nozzle() {
   }'
 }
 
-# The nozzle stands near the corner of a box of 40 lengths; its plume is a cone
-# of fine cells. Spacing for a number of cells: nearly all are in the cone and
-# in the layer in which cells grow to twice its spacing.
+# The nozzle stands near the corner of a box of 80 lengths; its plume is a cone
+# of fine cells, ten lengths from the faces of the box, from which cells can
+# shrink to its spacing at a growth of 1.2. Spacing for a number of cells: nearly
+# all are in the cone and in the layer in which cells grow to twice its spacing.
 jet_project() {
   local d=$work/input/jet h
   mkdir -p "$d"
@@ -157,7 +158,7 @@ growth
 
 farfield
 kind  spacing  xlo  ylo  zlo  xhi  yhi  zhi
-box   2.5      -4   -4   -4   36   36   36
+box   2        -9   -11  -11  71   69   69
 
 sources
 kind      x0  y0  z0  x1  y1  z1  r0    r1   h0
@@ -190,15 +191,15 @@ halved() {
     --leaf-cells "$(cells 40000)" > "$work/boxes.json"
   jq -r '
     def f($d): . * pow(10; $d) | round / pow(10; $d);
-    def in($lo; $hi; $k; $n):
-      [0, ([$hi, 40 * ($k + 1) / $n - 4] | min) -
-          ([$lo, 40 * $k / $n - 4] | max)] | max;
+    def in($lo; $hi; $k; $n; $from):
+      [0, ([$hi, 80 * ($k + 1) / $n + $from] | min) -
+          ([$lo, 80 * $k / $n + $from] | max)] | max;
     [.tree.nodes[] | select(.leaf)] as $l |
     def most($nx): [range($nx) as $i | range(2) as $j | range(2) as $k |
-      [$l[] | .cells * in(.lo[0]; .hi[0]; $i; $nx) *
-        in(.lo[1]; .hi[1]; $j; 2) * in(.lo[2]; .hi[2]; $k; 2) /
-        in(.lo[0]; .hi[0]; 0; 1) / in(.lo[1]; .hi[1]; 0; 1) /
-        in(.lo[2]; .hi[2]; 0; 1)] | add] | max / add;
+      [$l[] | .cells * in(.lo[0]; .hi[0]; $i; $nx; -9) *
+        in(.lo[1]; .hi[1]; $j; 2; -11) * in(.lo[2]; .hi[2]; $k; 2; -11) /
+        in(.lo[0]; .hi[0]; 0; 1; -9) / in(.lo[1]; .hi[1]; 0; 1; -11) /
+        in(.lo[2]; .hi[2]; 0; 1; -11)] | add] | max / add;
     "| halved in the middle, as PVGRID does (forecast) | " +
     "\(.mesh.cells | round) | 16 | \(100 * most(4) | f(1)) | - | - | - | " +
     "at most \(1 / most(2) | f(2)) | at most \(1 / most(4) | f(2)) | " +

@@ -38,6 +38,20 @@ vanguard plan -r r.timeline.json -n 2 --latency 0.5 --serial 0 \
   --ranks-per-node 2
 says out "      2       1       2      5.0"
 
+# A record with loops: the threads of a rank share the 0.75 s of its join.
+sed -e 's/"bytes_out"\]/"bytes_out", "loops"]/' -e 's/0,0\],$/0,0,0],/' \
+  -e 's/0,0\]$/0,0,0]/' -e 's/0,1,1,0,0,0,0,0\]/0,1,1,0,0,0,0,0.75]/' \
+  r.timeline.json >l.timeline.json
+vanguard plan -r l.timeline.json -n 1 -t 1,4 --serial 0
+exits 0
+says out "idle threads of a rank help with: 0.750 s"
+says out "      1       1       1      9.000      1.00       100.0      3.000"
+says out "      1       4       4      2.438      3.69        92.3      2.438"
+vanguard plan -r l.timeline.json -n 1 -t 4 --serial 0 --loop-threads 3 -j
+exits 0
+says out '"seconds": 2.5,'
+says out '"loops": 0.75'
+
 vanguard plan -r r.timeline.json --plot speedup.svg
 exits 0
 says out "    512       1     512"

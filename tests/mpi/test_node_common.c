@@ -1,0 +1,129 @@
+/* One copy for the ranks of a node: bytes, and the field of sizes. */
+#include "base/comm_parts.h"
+#include "core/sizing_parts.h"
+#include "mpi_support.h"
+
+static const size_t length[] = { 0, 1, 63, 64, 65, 4097, 3000001, 0, 7 };
+enum { N_LENGTH = sizeof length / sizeof *length };
+
+static unsigned char value(size_t part, size_t i)
+{
+  return (unsigned char)(31 * part + i + i / 251);
+}
+
+/* Ranks but the first give nothing, and read after others let go. */
+static void share_parts(int is_mapped)
+{
+  int leads = vg_comm_node_rank(job) == 0;
+  struct vg_bytes part[N_LENGTH];
+  struct vg_common common;
+  const unsigned char *at;
+
+  for (size_t p = 0; p < N_LENGTH && leads; p++) {
+    part[p].n = length[p];
+    part[p].data = vg_alloc(length[p], 1);
+    for (size_t i = 0; i < length[p]; i++) part[p].data[i] = value(p, i);
+  }
+  assert_int_equal(vg_comm_node_common(job, leads ? N_LENGTH : 0,
+                                       leads ? part : NULL, &common, NULL),
+                   VG_OK);
+  for (size_t p = 0; p < N_LENGTH && leads; p++) free(part[p].data);
+  assert_int_equal(common.is_mapped, is_mapped);
+  at = common.data;
+  for (size_t p = 0; p < N_LENGTH; p++) {
+    size_t n_bad = 0;
+
+    for (size_t i = 0; i < length[p]; i++) n_bad += at[i] != value(p, i);
+    assert_int_equal(n_bad, 0);
+    at += vg_common_padded(length[p]);
+  }
+  assert_true(at == common.data + common.n);
+  vg_common_release(&common);
+  assert_null(common.data);
+}
+
+static void parts_are_in_common(void **state)
+{
+  (void)state;
+  for (int i = 0; i < 5; i++) share_parts(vg_comm_node_size(job) > 1);
+}
+
+static void or_copied(void **state)
+{
+  (void)state;
+  if (job) job->apart = 1;
+  share_parts(0);
+  if (job) job->apart = 0;
+}
+
+static void nothing_can_be_shared(void **state)
+{
+  struct vg_common common;
+
+  (void)state;
+  assert_int_equal(vg_comm_node_common(job, 0, NULL, &common, NULL), VG_OK);
+  vg_common_release(&common);
+}
+
+/* --- sizes --------------------------------------------------------------- */
+
+static struct vg_sizing *field(void)
+{
+  const struct vg_sizing_options o = VG_SIZING_OPTIONS_INIT;
+  const struct vg_source source[2] = {
+    { .kind = VG_SOURCE_POINT, .h0 = 0.01, .p0 = { 1, 2, 3 } },
+    { .kind = VG_SOURCE_SPHERE, .h0 = 0.3, .r0 = 2, .p0 = { 9, 0, 0 } } };
+  struct vg_sizing *s = NULL;
+  struct vg_error err = VG_ERROR_INIT;
+
+  if (vg_sizing_new(&o, 2, source, NULL, &s, &err)) fail_msg("%s", err.text);
+  return s;
+}
+
+/* Every rank knows what it has to be by making it as well. */
+static void share_field(void)
+{
+  struct vg_sizing *own = field();
+  struct vg_sizing *s = vg_comm_node_rank(job) ? NULL : field();
+  double h[2][2], lo[2][3];
+
+  assert_int_equal(vg_sizing_share(job, &s, NULL), VG_OK);
+  assert_int_equal(vg_sizing_leaves(s), vg_sizing_leaves(own));
+  assert_memory_equal(s->octree.child, own->octree.child,
+                      own->octree.n_split * sizeof *own->octree.child);
+  assert_memory_equal(s->octree.leaf, own->octree.leaf,
+                      own->octree.n_leaf * sizeof *own->octree.leaf);
+  vg_sizing_range(s, &h[0][0], &h[0][1]);
+  vg_sizing_range(own, &h[1][0], &h[1][1]);
+  assert_memory_equal(h[0], h[1], sizeof h[0]);
+  assert_true(vg_sizing_cube(s, lo[0]) == vg_sizing_cube(own, lo[1]));
+  assert_memory_equal(lo[0], lo[1], sizeof lo[0]);
+  assert_true(vg_sizing_slope(s) == vg_sizing_slope(own));
+  for (int i = 0; i < 2000; i++) {
+    const double x[3] = { 0.01 * i - 8, 2, 0.3 * (i % 11) };
+
+    assert_true(vg_sizing_at(s, x) == vg_sizing_at(own, x));
+  }
+  vg_sizing_free(own);
+  vg_sizing_free(s);
+}
+
+static void a_field_is_in_common(void **state)
+{
+  (void)state;
+  share_field();
+  if (job) job->apart = 1;
+  share_field();
+  if (job) job->apart = 0;
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(parts_are_in_common), cmocka_unit_test(or_copied),
+    cmocka_unit_test(nothing_can_be_shared),
+    cmocka_unit_test(a_field_is_in_common)
+  };
+
+  return RUN_IN_JOB(tests);
+}

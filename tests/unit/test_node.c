@@ -1,0 +1,388 @@
+/* What happens to the front of a void that is being cut, on fronts that are
+ * drawn by hand: changes put in, places found where it hangs together, and the
+ * parts that it falls into. */
+#include "io_support.h"
+
+#include <pthread.h>
+
+#include "fill_shapes.h"
+#include "partition/node.h"
+#include "partition/room.h"
+
+/* --- scenes -------------------------------------------------------------- */
+
+struct scene {
+  struct vg_partition p;
+  struct vg_sizing *sizing;
+  struct vg_node *n;
+  struct vg_front was;       /* a copy of the front */
+};
+
+static void copy_front(struct vg_front *to, const struct vg_front *from)
+{
+  *to = (struct vg_front)VG_FRONT_INIT;
+  assert_int_equal(vg_front_append(to, from, NULL), VG_OK);
+}
+
+/* Cut at x = 0 and y = 0. */
+static void scene_of(struct scene *s, struct vg_mesh *m)
+{
+  struct vg_void v = VG_VOID_INIT;
+  struct vg_front f = VG_FRONT_INIT;
+
+  memset(s, 0, sizeof *s);
+  pthread_mutex_init(&s->p.lock, NULL);
+  s->p.options = (struct vg_partition_options)VG_PARTITION_OPTIONS_INIT;
+  s->p.options.rule.leaf_cells = 10;
+  s->p.size = 1;
+  s->sizing = shape_sizing(m, 1.2, 1);
+  s->p.sizing = s->sizing;
+  f.n_point = m->n_point;
+  f.n_face = m->n_tri;
+  f.x = vg_alloc(m->n_point, sizeof *f.x);
+  f.name = vg_alloc(m->n_point, sizeof *f.name);
+  f.face = vg_alloc(m->n_tri, sizeof *f.face);
+  assert_true(f.x && f.name && f.face);
+  memcpy(f.x, m->point, m->n_point * sizeof *f.x);
+  memcpy(f.face, m->tri, m->n_tri * sizeof *f.face);
+  for (size_t k = 0; k < m->n_point; k++) f.name[k] = VG_POINT_NAME(0, k);
+  copy_front(&s->was, &f);
+  s->n = vg_node_new("0", &f);
+  assert_non_null(s->n);
+  assert_int_equal(vg_void_from_mesh(&v, m, NULL), VG_OK);
+  assert_int_equal(vg_load_new(&v, s->sizing, VG_LOAD_CELLS_PER_CUBE, 1,
+                               &s->n->load, NULL), VG_OK);
+  s->n->lattice.n[0] = s->n->lattice.n[1] = 1;
+  vg_void_release(&v);
+  vg_mesh_release(m);
+}
+
+static void scene_end(struct scene *s)
+{
+  vg_node_free(s->n);
+  vg_front_release(&s->was);
+  vg_sizing_free(s->sizing);
+  pthread_mutex_destroy(&s->p.lock);
+}
+
+static void add_box(struct vg_mesh *m, int n, double x, double y, double half)
+{
+  const int count[3] = {n, n, n};
+  const double lo[3] = {x - half, y - half, -half};
+  const double hi[3] = {x + half, y + half, half};
+
+  shape_block(m, count, lo, hi, shape_all);
+}
+
+/* A box in each of the four blocks, n edges of length 1 wide. */
+static void four_boxes(struct vg_mesh *m, int n)
+{
+  *m = (struct vg_mesh)VG_MESH_INIT;
+  for (int k = 0; k < 4; k++)
+    add_box(m, n, k % 2 ? n : -n, k / 2 ? n : -n, 0.5 * n);
+}
+
+/* A small one that reaches from block 0 to block 1. */
+static void bridge(struct vg_mesh *m, double y)
+{
+  add_box(m, 2, 0.1, y, 1);
+}
+
+/* --- what must hold ------------------------------------------------------ */
+
+/* Each child has the faces of its blocks in their order, and points as these
+ * use them. child: of each block. */
+static void dealt_out(const struct scene *s, const struct vg_front *was,
+                      const int child[4])
+{
+  const struct vg_node *n = s->n;
+  size_t at[4] = {0}, seen[4] = {0};
+
+  for (size_t i = 0; i < was->n_face; i++) {
+    const uint32_t *v = was->face[i];
+    const struct vg_front *c;
+    uint32_t b;
+
+    if (v[0] == VG_FACE_GONE) continue;
+    b = vg_lattice_block(&n->lattice, was->x[v[0]], 0);
+    c = &n->child[child[b]]->front;
+    assert_true(at[child[b]] < c->n_face);
+    for (int k = 0; k < 3; k++) {
+      uint32_t p = c->face[at[child[b]]][k];
+
+      assert_true(p <= seen[child[b]]);
+      seen[child[b]] += p == seen[child[b]];
+      assert_int_equal(c->name[p], was->name[v[k]]);
+      assert_memory_equal(c->x[p], was->x[v[k]], sizeof *c->x);
+    }
+    at[child[b]]++;
+  }
+  for (size_t k = 0; k < n->n_child; k++) {
+    assert_int_equal(n->child[k]->front.n_face, at[k]);
+    assert_int_equal(n->child[k]->front.n_point, seen[k]);
+    assert_true(n->child[k]->is_planned);
+  }
+}
+
+static int crosses(const struct vg_front *f, size_t i)
+{
+  int below[2] = {0, 0};
+
+  if (f->face[i][0] == VG_FACE_GONE) return 0;
+  for (int axis = 0; axis < 2; axis++)
+    for (int k = 0; k < 3; k++) {
+      double x = f->x[f->face[i][k]][axis];
+
+      below[axis] |= x < 0 ? 1 : x > 0 ? 2 : 3;
+    }
+  return below[0] == 3 || below[1] == 3;
+}
+
+/* As many as a look at all of them finds, rising. */
+static void lists_open(struct vg_node *n)
+{
+  size_t k = 0;
+
+  assert_int_equal(vg_node_list_open(n, NULL, NULL), VG_OK);
+  for (size_t i = 0; i < n->front.n_face; i++)
+    if (crosses(&n->front, i)) {
+      assert_true(k < n->n_open);
+      assert_int_equal(n->open[k++], i);
+    }
+  assert_int_equal(n->n_open, k);
+}
+
+/* --- parts --------------------------------------------------------------- */
+
+/* n 20: 19,200 faces, several chunks of each loop. */
+static void falls_into_blocks(void **state)
+{
+  const int child[4] = {0, 1, 2, 3};
+
+  (void)state;
+  for (int n = 4; n <= 20; n += 16) {
+    struct vg_mesh m;
+    struct scene s;
+
+    four_boxes(&m, n);
+    scene_of(&s, &m);
+    assert_int_equal(vg_node_put(s.n, NULL, NULL), VG_OK);
+    lists_open(s.n);
+    assert_int_equal(s.n->n_open, 0);
+    assert_int_equal(vg_node_split(&s.p, s.n, NULL, NULL), VG_OK);
+    assert_int_equal(s.n->n_child, 4);
+    dealt_out(&s, &s.was, child);
+    for (int k = 0; k < 4; k++) {
+      const struct vg_node *c = s.n->child[k];
+
+      assert_int_equal(c->path[2], '0' + k);
+      assert_true(fabs(vg_front_volume(&c->front) / pow(n, 3) - 1) < 1e-12);
+      assert_true(fabs(c->load.cells / pow(n, 3) / VG_LOAD_CELLS_PER_CUBE - 1)
+                  < 0.1);
+    }
+    scene_end(&s);
+  }
+}
+
+/* Blocks 0 and 1, one void now, have a load by their fronts. */
+static void what_hangs_together_stays(void **state)
+{
+  const int child[4] = {0, 0, 1, 2};
+  struct vg_mesh m;
+  struct scene s;
+
+  (void)state;
+  four_boxes(&m, 20);
+  bridge(&m, -5);
+  scene_of(&s, &m);
+  assert_int_equal(vg_node_put(s.n, NULL, NULL), VG_OK);
+  lists_open(s.n);
+  assert_true(s.n->n_open > 0);
+  assert_int_equal(vg_node_split(&s.p, s.n, NULL, NULL), VG_OK);
+  assert_int_equal(s.n->n_child, 3);
+  dealt_out(&s, &s.was, child);
+  for (int k = 0; k < 3; k++) {
+    double volume = vg_front_volume(&s.n->child[k]->front);
+
+    assert_true(fabs(s.n->child[k]->load.cells / volume /
+                     VG_LOAD_CELLS_PER_CUBE - 1) < 0.1);
+  }
+  scene_end(&s);
+}
+
+/* --- places -------------------------------------------------------------- */
+
+/* Is each face that crosses, but those farther than `most` from the bridge,
+ * within a region with room to spare? */
+static void covered(const struct vg_node *n, const struct vg_region *r,
+                    size_t n_region)
+{
+  for (size_t i = 0; i < n->front.n_face; i++) {
+    int found = 0;
+
+    if (!crosses(&n->front, i)) continue;
+    for (size_t k = 0; k < n_region; k++) {
+      int within = 1;
+
+      for (int j = 0; j < 3; j++)
+        within &= vg_region_within(&r[k],
+                                   n->front.x[n->front.face[i][j]]);
+      found += within;
+    }
+    assert_int_equal(found, 1);
+  }
+}
+
+/* Two bridges apart: two boxes, or two patches of the plane x = 0; none of
+ * y = 0. Gone faces are no reason for any. */
+static void places_are_found(void **state)
+{
+  struct vg_region *r;
+  struct vg_mesh m;
+  struct scene s;
+  size_t n_region;
+
+  (void)state;
+  four_boxes(&m, 30);
+  bridge(&m, -5);
+  bridge(&m, 8);
+  scene_of(&s, &m);
+  assert_int_equal(vg_node_put(s.n, NULL, NULL), VG_OK);
+  for (int axis = -1; axis < 1; axis++) {
+    assert_int_equal(vg_node_open_places(&s.p, s.n, axis, NULL, &r, &n_region,
+                                         NULL), VG_OK);
+    assert_int_equal(n_region, 2);
+    covered(s.n, r, n_region);
+    for (size_t k = 0; k < n_region; k++)
+      assert_int_equal(r[k].n_plane, axis + 1);
+    free(r);
+  }
+  for (int axis = 1; axis < 3; axis++) {
+    assert_int_equal(vg_node_open_places(&s.p, s.n, axis, NULL, &r, &n_region,
+                                         NULL), VG_OK);
+    assert_int_equal(n_region, 0);
+    free(r);
+  }
+  for (size_t k = 0; k < s.n->n_open; k++) {
+    uint32_t *v = s.n->front.face[s.n->open[k]];
+
+    if (s.n->front.x[v[0]][1] < 0) v[0] = VG_FACE_GONE;
+  }
+  assert_int_equal(vg_node_open_places(&s.p, s.n, -1, NULL, &r, &n_region,
+                                       NULL), VG_OK);
+  assert_int_equal(n_region, 1);
+  covered(s.n, r, n_region);
+  free(r);
+  lists_open(s.n);
+  scene_end(&s);
+}
+
+/* --- changes ------------------------------------------------------------- */
+
+/* Work i has given a cell to face `gone` of the front and put a new point
+ * above it, with the three other faces of that cell. */
+static void cell_on(struct vg_node *n, size_t i, uint32_t gone,
+                    uint32_t serial)
+{
+  struct vg_change *c = &n->change[i];
+
+  *c = (struct vg_change){ .serial = serial, .n_part = 3, .n_point = 1,
+                           .n_face = 3, .n_gone = 1, .n_cell = 1,
+                           .volume = 0.25 };
+  n->point[i] = vg_alloc(3, sizeof **n->point);
+  n->face[i] = vg_alloc(1, sizeof **n->face);
+  c->x = vg_calloc(1, sizeof *c->x);
+  c->face = vg_alloc(3, sizeof *c->face);
+  c->gone = vg_calloc(1, sizeof *c->gone);
+  assert_true(n->point[i] && n->face[i] && c->x && c->face && c->gone);
+  n->face[i][0] = gone;
+  memcpy(n->point[i], n->front.face[gone], 3 * sizeof **n->point);
+  for (int k = 0; k < 3; k++) {
+    c->face[k][0] = (uint32_t)k;
+    c->face[k][1] = (uint32_t)(k + 1) % 3;
+    c->face[k][2] = 3;
+    for (int j = 0; j < 3; j++)
+      c->x[0][j] += n->front.x[n->point[i][k]][j] / 3;
+  }
+}
+
+/* In the order of the works; faces added cross planes too, and are listed
+ * without a look at those seen before. */
+static void changes_are_put_in(void **state)
+{
+  enum { WORKS = 5 };
+  struct vg_mesh m;
+  struct scene s;
+  struct vg_node *n;
+
+  (void)state;
+  four_boxes(&m, 8);
+  bridge(&m, -5);
+  scene_of(&s, &m);
+  n = s.n;
+  assert_int_equal(vg_node_put(n, NULL, NULL), VG_OK);
+  lists_open(n);
+  n->n_work = WORKS;
+  n->work = vg_calloc(WORKS, sizeof *n->work);
+  n->point = vg_calloc(WORKS, sizeof *n->point);
+  n->face = vg_calloc(WORKS, sizeof *n->face);
+  n->change = vg_calloc(WORKS, sizeof *n->change);
+  assert_true(n->work && n->point && n->face && n->change);
+  for (uint32_t i = 0; i < WORKS; i++)
+    cell_on(n, i, i < 2 ? n->open[3 * i] : 7 * i, 9 - i);
+  n->change[WORKS - 1].blocked = 1;
+  assert_int_equal(vg_node_put(n, NULL, NULL), VG_OK);
+  assert_int_equal(n->front.n_point, s.was.n_point + WORKS);
+  assert_int_equal(n->front.n_face, s.was.n_face + 3 * WORKS);
+  assert_true(n->zone_cells == WORKS && n->zone_volume == WORKS * 0.25);
+  assert_int_equal(n->n_blocked, 1);
+  for (uint32_t i = 0; i < WORKS; i++) {
+    size_t new = s.was.n_point + i;
+    uint32_t gone = i < 2 ? n->open[3 * i] : 7 * i;
+
+    assert_int_equal(n->front.name[new], VG_POINT_NAME(9 - i, 0));
+    assert_int_equal(n->front.face[gone][0], VG_FACE_GONE);
+    for (uint32_t k = 0; k < 3; k++) {
+      const uint32_t *v = n->front.face[s.was.n_face + 3 * i + k];
+
+      assert_int_equal(v[0], s.was.face[gone][k]);
+      assert_int_equal(v[1], s.was.face[gone][(k + 1) % 3]);
+      assert_int_equal(v[2], new);
+    }
+  }
+  lists_open(n);
+  scene_end(&s);
+}
+
+/* --- arrays -------------------------------------------------------------- */
+
+static void arrays_keep_what_is_in_use(void **state)
+{
+  size_t cap = 0, n = 0;
+  uint32_t *a = NULL;
+
+  (void)state;
+  for (size_t need = 1; need < 3000000; need = 3 * need + 1) {
+    assert_int_equal(vg_room_reserve(NULL, &a, &cap, n, need, sizeof *a), 0);
+    assert_true(cap >= need);
+    for (size_t k = 0; k < n; k++) assert_true(a[k] == 5 * (uint32_t)k);
+    for (; n < need; n++) a[n] = 5 * (uint32_t)n;
+  }
+  assert_int_equal(vg_room_reserve(NULL, &a, &cap, n, SIZE_MAX / 2,
+                                   sizeof *a), -1);
+  assert_true(a[n - 1] == 5 * (uint32_t)(n - 1));
+  vg_room_free(NULL, 1, (void *const[]){ a });
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(falls_into_blocks),
+    cmocka_unit_test(what_hangs_together_stays),
+    cmocka_unit_test(places_are_found),
+    cmocka_unit_test(changes_are_put_in),
+    cmocka_unit_test(arrays_keep_what_is_in_use),
+  };
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,297 @@
+/* Which faces of a front a region is given: all that may meet it, whatever was
+ * added when, in numbers that lead back to the front. */
+#define _GNU_SOURCE
+#include "advance_support.h"
+
+#include "base/memory.h"
+#include "partition/lattice.h"
+#include "partition/select.h"
+
+/* --- fronts and regions -------------------------------------------------- */
+
+static void front_of(const struct vg_mesh *m, struct vg_front *f)
+{
+  memset(f, 0, sizeof *f);
+  f->n_point = m->n_point;
+  f->n_face = m->n_tri;
+  f->x = vg_alloc(m->n_point, sizeof *f->x);
+  f->name = vg_alloc(m->n_point, sizeof *f->name);
+  f->face = vg_alloc(m->n_tri, sizeof *f->face);
+  assert_non_null(f->x);
+  assert_non_null(f->name);
+  assert_non_null(f->face);
+  memcpy(f->x, m->point, m->n_point * sizeof *f->x);
+  memcpy(f->face, m->tri, m->n_tri * sizeof *f->face);
+  for (size_t k = 0; k < m->n_point; k++)
+    f->name[k] = VG_POINT_NAME(3, 7 * k);
+  assert_int_equal(vg_select_sort(f, NULL), VG_OK);
+}
+
+/* Of the box [0, 1]^3 or the sphere's, [-20, 20]^3. */
+static struct vg_lattice lattice_of(double lo, double hi)
+{
+  struct vg_lattice l = { .n = {3, 1, 2} };
+
+  for (int axis = 0; axis < 3; axis++)
+    for (int i = 0; i < l.n[axis]; i++)
+      l.at[axis][i] = lo + (hi - lo) * (i + 1.03) / (l.n[axis] + 1);
+  return l;
+}
+
+struct part {
+  struct vg_front f;
+  uint32_t *point, *face;
+};
+
+static void part_end(struct part *p)
+{
+  vg_front_release(&p->f);
+  free(p->point);
+  free(p->face);
+}
+
+static void select_part(const struct vg_select *s, const struct vg_region *r,
+                        struct part *p)
+{
+  assert_int_equal(vg_select_part(s, r, &p->f, &p->point, &p->face, NULL),
+                   VG_OK);
+}
+
+/* --- what must hold ------------------------------------------------------ */
+
+/* Points are the front's, numbered in the order in which faces use them. */
+static void numbers_lead_back(const struct vg_front *f, const struct part *p)
+{
+  uint32_t seen = 0;
+
+  for (size_t i = 0; i < p->f.n_face; i++) {
+    if (i) assert_true(p->face[i - 1] < p->face[i]);
+    for (int k = 0; k < 3; k++) {
+      uint32_t v = p->f.face[i][k];
+
+      assert_true(v <= seen);
+      seen += v == seen;
+      assert_int_equal(p->point[v], f->face[p->face[i]][k]);
+    }
+  }
+  assert_int_equal(seen, p->f.n_point);
+  for (size_t v = 0; v < p->f.n_point; v++) {
+    assert_memory_equal(p->f.x[v], f->x[p->point[v]], sizeof *f->x);
+    assert_int_equal(p->f.name[v], f->name[p->point[v]]);
+  }
+}
+
+static int may_meet(const struct vg_front *f, size_t i,
+                    const struct vg_region *r, const struct vg_sizing *sizing)
+{
+  const uint32_t *v = f->face[i];
+
+  return v[0] != VG_FACE_GONE &&
+         vg_region_may_meet(r, sizing, f->x[v[0]], f->x[v[1]], f->x[v[2]],
+                            VG_BAND_FRONT);
+}
+
+/* All that may meet are there. Returns how many these are. */
+static size_t is_complete(const struct vg_front *f, const struct part *p,
+                          const struct vg_region *r,
+                          const struct vg_sizing *sizing)
+{
+  size_t n = 0, k = 0;
+
+  for (size_t i = 0; i < f->n_face; i++) {
+    int has;
+
+    while (k < p->f.n_face && p->face[k] < i) k++;
+    has = k < p->f.n_face && p->face[k] == i;
+    if (has) assert_true(f->face[i][0] != VG_FACE_GONE);
+    if (!may_meet(f, i, r, sizing)) continue;
+    assert_true(has);
+    n++;
+  }
+  return n;
+}
+
+/* What select_near leaves are those that may meet, and no others. */
+static void near_is_exact(const struct part *p, const struct vg_region *r,
+                          const struct vg_sizing *sizing, size_t n)
+{
+  struct part near;
+
+  assert_int_equal(vg_select_near(&p->f, r, sizing, &near.f, &near.point,
+                                  &near.face, NULL), VG_OK);
+  assert_int_equal(near.f.n_face, n);
+  numbers_lead_back(&p->f, &near);
+  for (size_t i = 0; i < n; i++)
+    assert_true(may_meet(&p->f, near.face[i], r, sizing));
+  part_end(&near);
+}
+
+/* Regions of all stages, and wider ones as patches are. most: faces there are
+ * for one that may meet. */
+static void regions_get_what_they_need(const char *name, size_t cells,
+                                       double lo, double hi, double most)
+{
+  struct vg_lattice l = lattice_of(lo, hi);
+  size_t given = 0, needed = 0;
+  struct vg_select s;
+  struct vg_front f;
+  struct scene scene;
+
+  scene_demo(&scene, name, cells);
+  front_of(&scene.m, &f);
+  vg_select_init(&s, &f, scene.sizing);
+  assert_int_equal(vg_select_update(&s, NULL, NULL), VG_OK);
+  for (size_t i = 0; i < f.n_face; i += 5) f.face[i][0] = VG_FACE_GONE;
+  for (int stage = 0; stage < VG_LATTICE_STAGES; stage++)
+    for (size_t k = 0; k < vg_lattice_count(&l, stage); k++) {
+      struct vg_region r;
+      struct part p;
+      size_t n;
+
+      vg_lattice_region(&l, stage, k, &r);
+      r.wide = k % 3 == 2 ? 2.5 : 0;
+      select_part(&s, &r, &p);
+      numbers_lead_back(&f, &p);
+      n = is_complete(&f, &p, &r, scene.sizing);
+      near_is_exact(&p, &r, scene.sizing, n);
+      given += p.f.n_face;
+      needed += n;
+      part_end(&p);
+    }
+  assert_true(needed > 100);
+  assert_true((double)given < most * (double)needed);
+  vg_select_release(&s);
+  vg_front_release(&f);
+  scene_end(&scene);
+}
+
+/* --- tests --------------------------------------------------------------- */
+
+/* Even spacing: boxes of 16 faces are about as wide as what is looked for, so
+ * what is given too much is at most half as much again. */
+static void even_spacing(void **state)
+{
+  (void)state;
+  regions_get_what_they_need("box", 100000, 0, 1, 1.5);
+}
+
+/* Faces from 0.06 to 4 in size; spacing is bounded by its growth there. */
+static void spacing_varies(void **state)
+{
+  (void)state;
+  regions_get_what_they_need("sphere", 100000, -20, 20, 2);
+}
+
+static void same_boxes(const struct vg_select *a, const struct vg_select *b)
+{
+  for (int k = 0; k < VG_SELECT_LEVELS; k++) {
+    assert_int_equal(a->level[k].n, b->level[k].n);
+    if (a->level[k].n)
+      assert_memory_equal(a->level[k].box, b->level[k].box,
+                          a->level[k].n * sizeof *a->level[k].box);
+  }
+}
+
+/* However the front came, in runs that are full or not, the boxes are the same:
+ * from one face on, over several levels. */
+static void added_in_pieces(void **state)
+{
+  const size_t upto[] = {1, 15, 16, 17, 128, 130, 2000, 2048, 4001};
+  struct vg_select s, once;
+  struct vg_front f;
+  struct scene scene;
+  size_t all;
+
+  (void)state;
+  scene_demo(&scene, "box", 100000);
+  front_of(&scene.m, &f);
+  all = f.n_face;
+  vg_select_init(&s, &f, scene.sizing);
+  for (size_t i = 0; i < sizeof upto / sizeof *upto; i++) {
+    assert_true(upto[i] < all);
+    f.n_face = upto[i];
+    assert_int_equal(vg_select_update(&s, NULL, NULL), VG_OK);
+    vg_select_init(&once, &f, scene.sizing);
+    assert_int_equal(vg_select_update(&once, NULL, NULL), VG_OK);
+    same_boxes(&s, &once);
+    vg_select_release(&once);
+  }
+  vg_select_release(&s);
+  vg_front_release(&f);
+  scene_end(&scene);
+}
+
+/* No points in common: as many as there can be, far more than in a surface. */
+static void triangles_of_their_own(void **state)
+{
+  const struct vg_region all = VG_REGION_ALL;
+  struct vg_select s;
+  struct vg_front f, own = VG_FRONT_INIT;
+  struct scene scene;
+  struct part p;
+
+  (void)state;
+  scene_demo(&scene, "box", 20000);
+  front_of(&scene.m, &f);
+  own.n_face = f.n_face;
+  own.n_point = 3 * f.n_face;
+  own.x = vg_alloc(own.n_point, sizeof *own.x);
+  own.name = vg_alloc(own.n_point, sizeof *own.name);
+  own.face = vg_alloc(own.n_face, sizeof *own.face);
+  for (size_t i = 0; i < f.n_face; i++)
+    for (size_t k = 0; k < 3; k++) {
+      size_t v = own.n_point - 1 - (3 * i + k);
+
+      own.face[i][k] = (uint32_t)v;
+      own.name[v] = VG_POINT_NAME(1, v);
+      memcpy(own.x[v], f.x[f.face[i][k]], sizeof *own.x);
+    }
+  vg_select_init(&s, &own, scene.sizing);
+  assert_int_equal(vg_select_update(&s, NULL, NULL), VG_OK);
+  select_part(&s, &all, &p);
+  assert_int_equal(p.f.n_face, own.n_face);
+  assert_int_equal(p.f.n_point, own.n_point);
+  numbers_lead_back(&own, &p);
+  part_end(&p);
+  vg_select_release(&s);
+  vg_front_release(&f);
+  vg_front_release(&own);
+  scene_end(&scene);
+}
+
+static void nothing_near(void **state)
+{
+  struct vg_region r = { .n_plane = 1 };
+  struct vg_select s;
+  struct vg_front f;
+  struct scene scene;
+  struct part p;
+
+  (void)state;
+  scene_demo(&scene, "box", 20000);
+  front_of(&scene.m, &f);
+  vg_select_init(&s, &f, scene.sizing);
+  assert_int_equal(vg_select_update(&s, NULL, NULL), VG_OK);
+  r.plane[0] = (struct vg_plane){ {0, 0, 1}, 0.5 };
+  r.wall[r.n_wall++] = (struct vg_plane){ {1, 0, 0}, 3 };
+  select_part(&s, &r, &p);
+  assert_int_equal(p.f.n_face, 0);
+  assert_int_equal(p.f.n_point, 0);
+  part_end(&p);
+  vg_select_release(&s);
+  vg_front_release(&f);
+  scene_end(&scene);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(even_spacing),
+    cmocka_unit_test(spacing_varies),
+    cmocka_unit_test(added_in_pieces),
+    cmocka_unit_test(triangles_of_their_own),
+    cmocka_unit_test(nothing_near),
+  };
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
