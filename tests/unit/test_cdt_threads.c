@@ -276,6 +276,7 @@ static void it_ends_with_its_parent(void **state)
   assert_int_equal(prctl(PR_SET_CHILD_SUBREAPER, 1), 0);
   assert_int_equal(pipe(ends), 0);
   pid = fork();
+  assert_true(pid >= 0);           /* kill would take -1 for everybody */
   if (pid == 0) {
     vg_cdt_server_start(NULL);
     server = child_of(getpid());

@@ -430,6 +430,7 @@ static void one_run_at_a_time(void **state)
   (void)state;
   assert_int_equal(pipe(ends), 0);
   pid = fork();
+  assert_true(pid >= 0);           /* kill would take -1 for everybody */
   if (pid == 0) {
     s = opened(1, 0);
     vg_store_keep(s, key_of(1), 3, "abc");
