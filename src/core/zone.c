@@ -1,4 +1,5 @@
 /* A zone or a pencil: cells along a plane or a line, from the front nearby. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -138,6 +139,42 @@ static double shape_of(const struct vg_tets *t, uint32_t c)
   return vg_shape(t->x[v[0]], t->x[v[1]], t->x[v[2]], t->x[v[3]]);
 }
 
+static void cross(const double a[3], const double b[3], double n[3])
+{
+  for (int k = 0; k < 3; k++) {
+    int l = (k + 1) % 3, m = (k + 2) % 3;
+
+    n[k] = a[l] * b[m] - a[m] * b[l];
+  }
+}
+
+/* Does the sphere around cell c lie where points are placed? One that reaches
+ * farther would hold points that are placed later: the cell is larger than any
+ * that should be there. */
+static int is_settled(const struct zone *g, uint32_t c)
+{
+  const double (*x)[3] = (const double (*)[3])g->k.t.x;
+  const uint32_t *v = g->k.t.cell[c].v;
+  const struct vg_region *region = g->k.region;
+  double e[3][3], n[3][3], d2[3] = {0}, det = 0, r2 = 0, r, middle[3];
+
+  for (int i = 0; i < 3; i++)
+    for (int k = 0; k < 3; k++) {
+      e[i][k] = x[v[i + 1]][k] - x[v[0]][k];
+      d2[i] += e[i][k] * e[i][k];
+    }
+  for (int i = 0; i < 3; i++) cross(e[(i + 1) % 3], e[(i + 2) % 3], n[i]);
+  for (int k = 0; k < 3; k++) det += e[0][k] * n[0][k];
+  for (int k = 0; k < 3; k++) {
+    double d = (d2[0] * n[0][k] + d2[1] * n[1][k] + d2[2] * n[2][k]) / det / 2;
+
+    middle[k] = x[v[0]][k] + d;
+    r2 += d * d;
+  }
+  r = sqrt(r2) / vg_region_spacing(region, g->k.sizing, middle);
+  return vg_region_near(region, g->k.sizing, middle, VG_BAND_PLACE - r);
+}
+
 /* VG_MARK on the cells that become final: those that belong, and those that
  * fill the dents between them without a further point, which leaves a smooth
  * front. */
@@ -154,7 +191,7 @@ static vg_status choose(struct zone *g, struct vg_error *err)
   }
   for (uint32_t c = 0; c < t->n_cell; c++)
     if (!(t->flag[c] & (VG_DEAD | VG_MARK)) && all_four(g, used, c) &&
-        is_within(g, c) && shape_of(t, c) > dent)
+        is_within(g, c) && shape_of(t, c) > dent && is_settled(g, c))
       take(g, c);
   free(used);
   return VG_OK;
