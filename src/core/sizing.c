@@ -111,7 +111,7 @@ static vg_status build(const struct vg_sizing_options *o,
   f->h_min = o->h_min;
   f->h_max = o->h_max > 0 ? o->h_max : n ? cap : INFINITY;
   if (f->h_max < f->h_min) f->h_max = f->h_min;
-  s->slope = f->slope;
+  s->growth = f->slope;
   s->cap = o->h_max > 0 ? o->h_max : f->set.n_mean ? cap : INFINITY;
   if (n < (VG_OCTREE_LEAF - LEAF_BASE) / LEAF_PER_SAMPLE)
     limit += n * LEAF_PER_SAMPLE;
@@ -142,7 +142,8 @@ vg_status vg_sizing_new(const struct vg_sizing_options *options, size_t n,
                         struct vg_sizing **out, struct vg_error *err)
 {
   vg_status st = VG_OK;
-  struct vg_field f = { .set = VG_SOURCE_SET_INIT };
+  atomic_int is_steep = 0;
+  struct vg_field f = { .set = VG_SOURCE_SET_INIT, .is_steep = &is_steep };
   struct vg_samples samples = VG_SAMPLES_INIT;
   struct vg_near *near = NULL, *under = NULL;
   struct vg_sizing *s = NULL;
@@ -166,6 +167,7 @@ vg_status vg_sizing_new(const struct vg_sizing_options *options, size_t n,
   f.under = under;
   VG_TRY(build(options, surface, &f, &samples, s, err));
   find_range(s);
+  s->slope = is_steep ? vg_near_steep(s->growth) : s->growth;
   *out = s;
   s = NULL;
 done:
@@ -190,7 +192,7 @@ double vg_sizing_at(const struct vg_sizing *s, const double x[3])
   double outside, h = vg_octree_at(&s->octree, x, &outside);
 
   if (!(outside > 0)) return h;
-  h += s->slope * outside;
+  h += s->growth * outside;
   return h < s->cap ? h : s->cap;
 }
 
@@ -209,6 +211,11 @@ void vg_sizing_range(const struct vg_sizing *s, double *h_min, double *h_max)
 double vg_sizing_slope(const struct vg_sizing *s)
 {
   return s->slope;
+}
+
+double vg_sizing_growth(const struct vg_sizing *s)
+{
+  return s->growth;
 }
 
 double vg_sizing_cube(const struct vg_sizing *s, double lo[3])

@@ -12,10 +12,12 @@
  *   min( min_v(h_v + (g-1) r_v), max( S, max_v(h_v - (g-1) r_v) ) ):
  * the size on the boundary is the boundary's own, since the cells must fit
  * it, and departs from there at the growth rate, upwards, or downwards to a
- * source that is finer than the boundary near it. Sizes of the boundary that
- * jump faster than the growth rate are lowered likewise.
+ * source that is finer than the boundary near it. Beyond 1.5 h_v it falls by
+ * 0.5 r_v, if g is less than 1.5, so that sources have what they ask for three
+ * lengths h_v away from any face. Sizes of the boundary that jump faster than
+ * the growth rate are lowered likewise.
  * What is evaluated is an octree built from input alone: trilinear, within a
- * few per cent, continuous, its gradient bounded by about (growth - 1). */
+ * few per cent, continuous, its gradient bounded by vg_sizing_slope. */
 #ifndef VG_CORE_SIZING_H
 #define VG_CORE_SIZING_H
 
@@ -104,8 +106,12 @@ void vg_sizing_eval(const struct vg_sizing *s, size_t n, const double (*x)[3],
 /** Bounds of vg_sizing_at within the root cube, both attained. Cost O(1). */
 void vg_sizing_range(const struct vg_sizing *s, double *h_min, double *h_max);
 
-/** Bound on the gradient of vg_sizing_at: growth - 1 (octree errors aside). */
+/** Bound on the gradient of vg_sizing_at, octree errors aside: growth - 1, or
+ * 0.5 if that is more and faces hold sources back somewhere. */
 double vg_sizing_slope(const struct vg_sizing *s);
+
+/** growth - 1. */
+double vg_sizing_growth(const struct vg_sizing *s);
 
 /** Lower corner of the root cube, which encloses surface points and, where
  * there are none, the sources; returns its side. */

@@ -13,12 +13,14 @@ double vg_field_combine(const struct vg_field *f, const double x[3],
                         double source, struct vg_near_reach *reach,
                         uint32_t *hint)
 {
-  double h = source < f->h_max ? source : f->h_max, most;
+  double h = source < f->h_max ? source : f->h_max, most, by;
 
   if (!f->near) return vg_field_clamp(f, h);
   most = vg_near_above(f->near, x, x, f->h_max, hint);
   if (most <= h) return vg_field_clamp(f, most);
-  h = vg_near_below(f->under, x, h, most, reach);
+  h = vg_near_below(f->under, x, h, most, reach, &by);
+  if (h < most && h < vg_near_knee(f->under, by))
+    atomic_store_explicit(f->is_steep, 1, memory_order_relaxed);
   return vg_field_clamp(f, h < most ? h : most);
 }
 
@@ -32,8 +34,8 @@ double vg_field_floor(const struct vg_field *f, const double lo[3],
                       double side, struct vg_near_reach *reach,
                       uint32_t *hint)
 {
-  double hi[3], mid[3], h, most;
-  double fall = 0.8660254037844387 * side * f->slope;
+  const double far = 0.8660254037844387 * side;
+  double hi[3], mid[3], h, most, below, by, more, fall = far * f->slope;
 
   for (int k = 0; k < 3; k++) {
     hi[k] = lo[k] + side;
@@ -49,7 +51,10 @@ double vg_field_floor(const struct vg_field *f, const double lo[3],
   if (!f->near) return vg_field_clamp(f, h);
   most = vg_near_above(f->near, lo, hi, f->h_max, hint);
   if (most <= h) return vg_field_clamp(f, most);
-  h = vg_near_below(f->under, mid, h + fall, most + fall,
-                    reach) - fall;
+  below = vg_near_below(f->under, mid, h + fall, most + fall, reach, &by);
+  more = vg_near_falls(f->under, by, below, far);
+  below -= fall;
+  if (more > 0 && below - more > h) h = below - more;
+  else if (!(more > 0)) h = below;
   return vg_field_clamp(f, h < most ? h : most);
 }

@@ -362,6 +362,8 @@ vg_status vg_near_new(size_t n, const double (*p)[3], const double *h,
   if (!t || !key || !bound || n > UINT32_MAX / 2) goto refused;
   t->slope = (float)slope;
   t->offset = (float)vg_near_offset(slope);
+  t->steep = (float)vg_near_steep(slope);
+  t->rise = (float)vg_near_rise(slope);
   t->block = vg_alloc(n_block, sizeof *t->block);
   /* a seventh of the blocks, and what is not full on each level */
   t->group = vg_alloc(n_group, sizeof *t->group);

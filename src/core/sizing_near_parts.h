@@ -44,6 +44,7 @@ struct vg_near {
   struct vg_near_tree tree[VG_NEAR_CLASSES];
   int n_tree;
   float slope, offset;
+  float steep, rise;            /* from below, beyond the knee */
 };
 
 #endif

@@ -3,17 +3,22 @@
 #ifndef VG_CORE_SIZING_OCTREE_H
 #define VG_CORE_SIZING_OCTREE_H
 
+#include <stdatomic.h>
+
 #include "core/sizing_near.h"
 #include "core/sizing_source.h"
 
 /** What is cached: min(above, max(below, sources)), then clamped; above and
  * below are the growth of the surface (sizing_near.h). So the field equals
- * the local size on the surface, and departs from it at the growth rate. */
+ * the local size on the surface, and departs from it at the growth rate; down
+ * to sources that are much finer than faces nearby, faster in the end. */
 struct vg_field {
   const struct vg_near *near;  /* from above; NULL: no surface */
   const struct vg_near *under; /* from below; NULL: nor any source */
   struct vg_source_set set;
   double slope;                /* growth - 1 */
+  atomic_int *is_steep;        /* out: faces hold sources back beyond the knee
+                                  somewhere (sizing_near.h) */
   double h_min, h_max;         /* clamp, 0 and INFINITY for none */
 };
 

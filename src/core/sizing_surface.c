@@ -186,26 +186,31 @@ vg_status vg_samples_make(const struct vg_mesh *m, int threads,
 
 /* Samples that are never felt. With c the cone's size at its tip, (1 -+ offset)
  * h, sample i is above sample j everywhere where c_j + slope |p_i p_j| <= c_i,
- * and h_j < h_i; from below likewise. That is so along chains of samples, so
- * what is left holds for all. MARGIN keeps it so in single precision. */
+ * and h_j < h_i; from below likewise, with both of its slopes. That is so along
+ * chains of samples, so what is left holds for all. MARGIN keeps it so in
+ * single precision. */
 #define MARGIN 1e-5
 
 struct thinning {
   const struct vg_mesh *m;
   const struct vg_samples *s;
   _Atomic unsigned char *idle;
-  double slope, keep;
+  double slope, keep;       /* of the growth, and share of h at its tip */
+  double steep, rise;       /* from below beyond the knee; else as these */
 };
 
 static void compare(const struct thinning *t, size_t i, size_t j)
 {
-  double c, h[2] = { t->s->h[i], t->s->h[j] };
+  double c, far, h[2] = { t->s->h[i], t->s->h[j] };
   size_t low = h[0] < h[1] ? i : j, high = low == i ? j : i;
 
   if (!(h[0] > 0 && h[1] > 0)) return;
   c = t->keep * fabs(h[0] - h[1]);
   c -= MARGIN * (h[0] + h[1]);
-  if (!(c > 0) || c < t->slope * length(t->s->p[i], t->s->p[j])) return;
+  far = length(t->s->p[i], t->s->p[j]);
+  if (!(c > 0) || c < t->slope * far) return;
+  c = t->rise * fabs(h[0] - h[1]) - MARGIN * (h[0] + h[1]);
+  if (c < t->steep * far) return;
   atomic_store_explicit(t->idle + (t->keep < 1 ? high : low), 1,
                         memory_order_relaxed);
 }
@@ -233,8 +238,13 @@ vg_status vg_samples_thin(const struct vg_mesh *m,
 {
   double offset = vg_near_offset(slope);
   struct thinning t = { m, all, vg_calloc(all->n, sizeof *t.idle), slope,
-                        below ? 1 + offset : 1 - offset };
+                        1 - offset, slope, 1 - offset };
 
+  if (below) {
+    t.keep = 1 + offset;
+    t.steep = vg_near_steep(slope);
+    t.rise = vg_near_rise(slope);
+  }
   out->n = 0;
   out->p = vg_alloc(all->n_sized, sizeof *out->p);
   out->h = vg_alloc(all->n_sized, sizeof *out->h);

@@ -21,7 +21,7 @@ struct search {
   const struct vg_near *t;
   const struct vg_near_tree *tree;
   double mid[3];
-  float half[3], best, enough;
+  float half[3], best, enough, by;
   uint32_t hint;
 };
 
@@ -107,7 +107,8 @@ static inline lanes grown(const struct vg_near *t, lanes h, lanes d)
 
 static inline lanes fallen(const struct vg_near *t, lanes h, lanes d)
 {
-  lanes v = h * (1 + t->offset) - t->slope * d;
+  lanes v = lanes_min(h * (1 + t->offset) - t->slope * d,
+                      h * t->rise - t->steep * d);
 
   return lanes_choose((masks)(v < h), v, h);
 }
@@ -228,7 +229,11 @@ static void visit_below(struct search *q, const struct vg_near_block *b)
 
     store(v + j, fallen(q->t, load(b->h + j), d));
   }
-  for (int j = 0; j < LANES; j++) q->best = v[j] > q->best ? v[j] : q->best;
+  for (int j = 0; j < LANES; j++) {
+    if (!(v[j] > q->best)) continue;
+    q->best = v[j];
+    q->by = b->h[j];
+  }
 }
 
 /* Only what is above the best so far matters, which is above 0. Signs are
@@ -274,7 +279,7 @@ static void know_reach(const struct vg_near *t, struct vg_near_reach *r)
 
 double vg_near_below(const struct vg_near *t, const double x[3],
                      double above, double enough,
-                     struct vg_near_reach *reach)
+                     struct vg_near_reach *reach, double *by)
 {
   struct search q = { .t = t, .best = (float)above, .enough = (float)enough,
                       .mid = { x[0], x[1], x[2] } };
@@ -286,7 +291,7 @@ double vg_near_below(const struct vg_near *t, const double x[3],
     if (!reach->is_known) know_reach(t, reach);
     for (int k = 0; k < 3; k++)
       d2 += (x[k] - reach->mid[k]) * (x[k] - reach->mid[k]);
-    more = t->slope * (float)sqrt(d2);
+    more = t->steep * (float)sqrt(d2);
   }
   for (int c = t->n_tree - 1; c >= 0; c--) {
     q.tree = t->tree + c;
@@ -294,5 +299,20 @@ double vg_near_below(const struct vg_near *t, const double x[3],
     if (reach && (reach->most[c] + more) * (1 + SHY) <= q.best) continue;
     descend_below(&q, q.tree->n_level - 1, 0);
   }
+  *by = (double)q.by;
   return (double)q.best;
+}
+
+double vg_near_knee(const struct vg_near *t, double by)
+{
+  return by * (1 + (double)t->offset - VG_NEAR_KNEE * (double)t->slope);
+}
+
+double vg_near_falls(const struct vg_near *t, double by, double v, double far)
+{
+  double slope = (double)t->slope, more = (double)t->steep - slope;
+  double over = v - vg_near_knee(t, by);
+
+  if (over > 0) far -= over / slope;
+  return by > 0 && far > 0 ? more * far : 0;
 }

@@ -308,7 +308,7 @@ static void gradients_are_bounded(void **state)
         d += y[k] * y[k];
         y[k] += x[k];
       }
-      g = fabs(vg_sizing_at(s, y) - h) / (0.2 * sqrt(d));
+      g = fabs(vg_sizing_at(s, y) - h) / (vg_sizing_slope(s) * sqrt(d));
       beyond += g > 1.1;
       /* along the edges of a leaf at most 1, within it at most sqrt(3) */
       assert_true(g < 1.75);
@@ -418,12 +418,41 @@ static void the_surface_prevails_on_itself(void **state)
   (void)state;
   add_octahedron(&m, origin, 10, 10);
   s = field(&plain, 1, &source, &m);
-  for (double d = 0; d < 3; d += 0.1) {
+  for (double d = 0; d < 1.5 * h; d += 0.1) {
     double c = (10 - d * sqrt(3)) / 3, x[3] = { c, c, c };
     double left = h - 0.2 * d;
 
     assert_near(vg_sizing_at(s, x), left, 0.08 * h);
   }
+  vg_sizing_free(s);
+  vg_mesh_release(&m);
+}
+
+/* Three lengths away from faces a source has what it asks for; on the way
+ * there the field falls at the growth rate first, then by 0.5. */
+static void sources_prevail_away_from_coarse_faces(void **state)
+{
+  struct vg_mesh m = VG_MESH_INIT;
+  struct vg_source source = { .kind = VG_SOURCE_POINT, .h0 = 0.02 };
+  const double h = sqrt(2);
+  struct vg_sizing *s;
+
+  (void)state;
+  add_octahedron(&m, origin, 10, 10);
+  s = field(&plain, 1, &source, &m);
+  assert_near(vg_sizing_at(s, origin), 0.02, 0.005);
+  for (double d = 0; d < 5.7; d += 0.1) {
+    double r = 10 / sqrt(3) - d, c = r / sqrt(3), x[3] = { c, c, c };
+    double left = fmin(h - 0.2 * d, 1.45 * h - 0.5 * d);
+
+    assert_near(vg_sizing_at(s, x), fmax(left, 0.02 + 0.2 * r), 0.08 * h);
+  }
+  assert_near(vg_sizing_slope(s), 0.5, 1e-12);
+  assert_near(vg_sizing_growth(s), 0.2, 1e-12);
+  vg_sizing_free(s);
+  source.h0 = 1;
+  s = field(&plain, 1, &source, &m);
+  assert_near(vg_sizing_slope(s), 0.2, 1e-12);
   vg_sizing_free(s);
   vg_mesh_release(&m);
 }
@@ -695,6 +724,7 @@ int main(void)
     cmocka_unit_test(the_cache_follows_the_law),
     cmocka_unit_test(vgrid_sources_alone_define_a_field),
     cmocka_unit_test(the_surface_prevails_on_itself),
+    cmocka_unit_test(sources_prevail_away_from_coarse_faces),
     cmocka_unit_test(sizes_may_span_five_decades),
     cmocka_unit_test(stretched_faces_take_their_short_edges),
     cmocka_unit_test(options_clamp),
