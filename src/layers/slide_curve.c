@@ -214,7 +214,7 @@ struct end { uint32_t v; double s, h; };
 static double size_at(const struct vg_slide_work *w, const struct chain *c,
                       const struct end end[2], double s)
 {
-  const double slope = vg_sizing_slope(w->sizing);
+  const double slope = vg_sizing_growth(w->sizing);
   double x[3], h;
 
   on_chain(w, c, s, x);

@@ -35,7 +35,7 @@ vg_status vg_slide_law_floor(struct vg_slide_work *w,
 {
   size_t n = 0;
 
-  l->slope = vg_sizing_slope(w->sizing);
+  l->slope = vg_sizing_growth(w->sizing);
   l->top = vg_alloc(loops->n, sizeof *l->top);
   l->box = vg_alloc(loops->n, sizeof *l->box);
   if (!l->top || !l->box) return vg_fail_memory(w->err, "a slide patch");
