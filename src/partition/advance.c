@@ -320,6 +320,8 @@ static struct vg_node *get_node(struct vg_reader *r)
   vg_get(r, sizeof n->path, 1, n->path);
   vg_get(r, 5, sizeof *number, number);
   vg_get(r, 1, sizeof n->lattice, &n->lattice);
+  n->lattice.n_rib = 0;      /* made where the void is cut */
+  n->lattice.rib = NULL;
   vg_get(r, 1, sizeof n->per_cube, &n->per_cube);
   vg_get(r, 1, sizeof size, &size);
   n->levels = number[0];

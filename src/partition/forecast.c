@@ -469,6 +469,8 @@ static vg_status add_node(struct forecast *c, const struct part *p,
   n->cells = p->load.cells;
   n->faces = faces_of(&p->front);
   if (l) n->lattice = *l;
+  n->lattice.n_rib = 0;
+  n->lattice.rib = NULL;
   if (p->parent != SIZE_MAX) o->node[p->parent].n_child++;
   return VG_OK;
 }
@@ -653,17 +655,16 @@ static vg_status go_down(struct forecast *c, struct part *p,
                          const char *after)
 {
   struct vg_lattice l;
+  vg_status st = VG_OK;
   int used = 0;
 
   if (p->retry < RETRIES && strlen(p->path) + 8 < VG_PATH_MAX)
     used = vg_lattice_plan(&p->load, c->rule, p->levels, p->retry, &l);
   if (used <= 0) return add_leaf(c, p, amount_of(&p->load), after);
-  if (!p->retry) {
-    vg_status st = vg_lattice_add_ribs(&p->load, &l, c->err);
-
-    if (st < 0) return st;
-  }
-  return cut(c, p, &l, used, after);
+  if (!p->retry) st = vg_lattice_add_ribs(&p->load, c->rule, &l, c->err);
+  if (st >= 0) st = cut(c, p, &l, used, after);
+  vg_lattice_release(&l);
+  return st;
 }
 
 /* --- the whole ----------------------------------------------------------- */

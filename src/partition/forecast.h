@@ -39,7 +39,7 @@ struct vg_outlook_node {
   double cells;              /* expected, zones to come included */
   double zone;               /* cells of its own zones */
   double faces;              /* of its front */
-  struct vg_lattice lattice; /* without planes: a leaf */
+  struct vg_lattice lattice; /* without planes: a leaf; ribs are not kept */
   size_t n_child;
 };
 

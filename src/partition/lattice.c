@@ -1,6 +1,7 @@
 #include "partition/lattice.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Cells within so many spacings of a line belong to its pencil: more than
@@ -19,6 +20,13 @@ static const double leaf_slack = 1.25;
 static const double few_leaves = 80;
 
 enum { HALVINGS = 6, PER_AXIS = 2 };
+
+void vg_lattice_release(struct vg_lattice *l)
+{
+  free(l->rib);
+  l->rib = NULL;
+  l->n_rib = 0;
+}
 
 /* --- planes -------------------------------------------------------------- */
 

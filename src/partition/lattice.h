@@ -15,7 +15,6 @@
 
 enum {
   VG_LATTICE_PLANES = 7,
-  VG_LATTICE_RIBS = 64,
   VG_LATTICE_STAGES = 4,
   VG_LATTICE_TILES = 3,      /* the stage of tiles; those before: pencils */
   VG_LATTICE_BLOCKS = 512    /* (VG_LATTICE_PLANES + 1)^3 */
@@ -32,9 +31,12 @@ struct vg_lattice {
   int lines_at_once;         /* 1: n is 1 1 1, and the planes meet in a body */
   double at[3][VG_LATTICE_PLANES];
   int n_rib;
-  struct vg_rib rib[VG_LATTICE_RIBS];  /* rising by tile; of a tile
-                                in order, normals towards the next one */
+  struct vg_rib *rib;        /* [n_rib] rising by tile; of a tile in order,
+                                normals towards the next one; owned */
 };
+
+/** Without ribs. */
+void vg_lattice_release(struct vg_lattice *l);
 
 struct vg_cut_rule {
   double leaf_cells;         /* cut while more are expected; 0: by levels */
@@ -42,16 +44,21 @@ struct vg_cut_rule {
   int constant;              /* 1: across first_axis only */
 };
 
-/** Planes for a void.
+/** Planes for a void, without ribs yet.
  * @param levels  bisections left, for a rule by levels
  * @param retry   0, 1, ...: after a failed attempt, other planes
+ * @param out     overwritten; release an old one before
  * Returns the bisections used (as levels): 0 when no plane makes sense. */
 int vg_lattice_plan(const struct vg_load *load, const struct vg_cut_rule *rule,
                     int levels, int retry, struct vg_lattice *out);
 
-/** Ribs for large tiles, so that both sides can be grown at the same time.
- * O(cubes + dots log dots) for cubes that planes pass. VG_ERR_MEMORY. */
+/** Ribs for large tiles, so that both sides can be grown at the same time: the
+ * smaller the leaves, the more workers are expected, and the smaller are the
+ * pieces. O(cubes + dots log dots) for cubes that planes pass.
+ * @param l  without ribs; these are to be released (vg_lattice_release)
+ * VG_ERR_MEMORY. */
 vg_status vg_lattice_add_ribs(const struct vg_load *load,
+                              const struct vg_cut_rule *rule,
                               struct vg_lattice *l, struct vg_error *err);
 
 /** Number of regions of a stage: 0: lines along z (the last axis with lines

@@ -11,10 +11,12 @@
 #include "base/memory.h"
 #include "partition/lattice.h"
 
-/* Cells of a tile to a piece. */
-static const double piece_cells = 12000;
+/* Cells of a piece to those of a leaf, so that it takes about half the time;
+ * ribs of pieces with fewer than the least would cost too much, those with
+ * more than the most would keep the workers of large leaves waiting. */
+static const double piece_share = 0.2, least_piece = 4000, most_piece = 12000;
 /* Cells of its ribs to those of a tile. */
-static const double rib_share = 0.07;
+static const double rib_share = 0.12;
 /* A rib is this many spacings from what keeps it apart from the next one. */
 static const double room = 2;
 /* Spacings that tiles reach to each side of their plane, as measured. */
@@ -43,6 +45,14 @@ struct line { double normal[2], offset; };
 /* How keys are: along axis `way` of two, or, from 2 on, by the angle at a
  * corner: share of the way from the one side of the tile to the other. */
 enum { WAYS = 6 };
+
+/* What is being added to. */
+struct ribs {
+  double piece_cells;        /* of a tile to a piece */
+  size_t cap;
+  struct vg_lattice *lattice;
+  struct vg_error *err;
+};
 
 struct lines {
   double cost;               /* cells, infinite without room */
@@ -165,10 +175,15 @@ static void lines_of(const struct tile *t, int way, int n, double cells,
   look_at(t, way, out);
 }
 
-static void add_ribs(const struct tile *t, int tile, const struct lines *all,
-                     struct vg_lattice *l)
+static vg_status add_ribs(struct ribs *to, const struct tile *t, int tile,
+                          const struct lines *all)
 {
-  for (int k = 0; k < all->n && l->n_rib < VG_LATTICE_RIBS; k++) {
+  struct vg_lattice *l = to->lattice;
+
+  if (vg_reserve(&l->rib, &to->cap, (size_t)(l->n_rib + all->n),
+                 sizeof *l->rib))
+    return vg_fail_memory(to->err, "cutting a front");
+  for (int k = 0; k < all->n; k++) {
     struct vg_rib *r = &l->rib[l->n_rib++];
 
     memset(r, 0, sizeof *r);
@@ -177,17 +192,18 @@ static void add_ribs(const struct tile *t, int tile, const struct lines *all,
       r->plane.normal[t->axis[j]] = all->line[k].normal[j];
     r->plane.offset = all->line[k].offset;
   }
+  return VG_OK;
 }
 
-static void part_tile(struct tile *t, int number, struct vg_lattice *l)
+static vg_status part_tile(struct ribs *to, struct tile *t, int number)
 {
   struct lines best[MOST_PIECES + 1];
   double cells = 0;
   int most;
 
   for (size_t i = 0; i < t->n; i++) cells += t->dot[i].cells;
-  most = (int)fmin(cells / piece_cells + 0.5, MOST_PIECES);
-  if (most < 2) return;
+  most = (int)fmin(cells / to->piece_cells + 0.5, MOST_PIECES);
+  if (most < 2) return VG_OK;
   for (int n = 2; n <= most; n++) best[n].cost = INFINITY;
   for (int way = 0; way < WAYS; way++) {
     for (size_t i = 0; i < t->n; i++)
@@ -201,7 +217,7 @@ static void part_tile(struct tile *t, int number, struct vg_lattice *l)
     }
   }
   while (most > 1 && !(best[most].cost <= rib_share * cells)) most--;
-  if (most > 1) add_ribs(t, number, &best[most], l);
+  return most > 1 ? add_ribs(to, t, number, &best[most]) : VG_OK;
 }
 
 /* --- dots ---------------------------------------------------------------- */
@@ -266,14 +282,14 @@ static void bound_tile(const struct vg_load *load, const struct vg_lattice *l,
 }
 
 /* first: the number of its first tile. */
-static vg_status part_plane(const struct vg_load *load, int axis, int i,
-                            int first, struct vg_lattice *l,
-                            struct vg_error *err)
+static vg_status part_plane(struct ribs *to, const struct vg_load *load,
+                            int axis, int i, int first)
 {
+  const struct vg_lattice *l = to->lattice;
   struct tile t = { axis, {(axis + 1) % 3, (axis + 2) % 3}, {0}, {0}, 0, NULL };
   struct dot *dot = NULL;
   size_t n = 0, at = 0;
-  vg_status st = find_dots(load, l, axis, i, &n, &dot, err);
+  vg_status st = find_dots(load, l, axis, i, &n, &dot, to->err);
 
   while (st == VG_OK && at < n) {
     size_t number = dot[at].tile;
@@ -281,22 +297,25 @@ static vg_status part_plane(const struct vg_load *load, int axis, int i,
     t.dot = &dot[at];
     for (t.n = 0; at < n && dot[at].tile == number; at++) t.n++;
     bound_tile(load, l, number, &t);
-    part_tile(&t, first + (int)number, l);
+    st = part_tile(to, &t, first + (int)number);
   }
   free(dot);
   return st;
 }
 
 vg_status vg_lattice_add_ribs(const struct vg_load *load,
+                              const struct vg_cut_rule *rule,
                               struct vg_lattice *l, struct vg_error *err)
 {
+  double piece = rule->leaf_cells > 0 ? piece_share * rule->leaf_cells
+                                      : most_piece;
+  struct ribs to = { fmin(fmax(piece, least_piece), most_piece), 0, l, err };
   int tile = 0;
   vg_status st = VG_OK;
 
-  l->n_rib = 0;
   for (int axis = 0; axis < 3; axis++)
     for (int i = 0; i < l->n[axis] && st == VG_OK; i++) {
-      st = part_plane(load, axis, i, tile, l, err);
+      st = part_plane(&to, load, axis, i, tile);
       tile += (l->n[(axis + 1) % 3] + 1) * (l->n[(axis + 2) % 3] + 1);
     }
   return st;

@@ -32,6 +32,7 @@ void vg_node_free(struct vg_node *n)
     if (n->child[k] != n) vg_node_free(n->child[k]);
   free(n->child);
   vg_select_release(&n->select);
+  vg_lattice_release(&n->lattice);
   free(n->block);
   free(n->open);
   vg_front_release(&n->front);
@@ -65,9 +66,11 @@ int vg_node_wants_cut(const struct vg_partition *p, struct vg_node *n)
   if (n->is_final || n->retry >= VG_RETRIES ||
       strlen(n->path) + 8 >= VG_PATH_MAX)
     return 0;
-  if (!n->is_planned)
+  if (!n->is_planned) {
+    vg_lattice_release(&n->lattice);
     n->n_bisection = vg_lattice_plan(&n->load, &p->options.rule, n->levels,
                                      n->retry, &n->lattice);
+  }
   n->is_planned = 1;
   return n->n_bisection > 0;
 }
@@ -277,7 +280,8 @@ vg_status vg_node_start(struct vg_partition *p, struct vg_node *n,
 
   n->stage = 0;
   if (!vg_node_wants_cut(p, n)) return keep_whole(n, err);
-  if (!n->retry) VG_TRY(vg_lattice_add_ribs(&n->load, &n->lattice, err));
+  if (!n->retry)
+    VG_TRY(vg_lattice_add_ribs(&n->load, &p->options.rule, &n->lattice, err));
   vg_select_init(&n->select, &n->front, p->sizing);
   VG_TRY(prepare(p, n, e, err));
   if (!n->n_work) {

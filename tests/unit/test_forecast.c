@@ -84,7 +84,7 @@ static void few_leaves_have_whole_planes(void **state)
   struct scene s;
 
   (void)state;
-  make(&s, "box", 200000);
+  make(&s, "box", 60000);
   o = look(&s, leaves_of(s.load.cells / 16), 0);
   assert_int_equal(o.n_leaf, 16);
   assert_int_equal(o.n_node, 31);

@@ -272,23 +272,33 @@ static void nothing_to_cut(void **state)
 
 /* --- ribs ---------------------------------------------------------------- */
 
-/* One plane across z, with ribs. */
+static void ribs_for(const struct scene *s, double leaf_cells,
+                     struct vg_lattice *l)
+{
+  const struct vg_cut_rule rule = { leaf_cells, -1, 0 };
+  struct vg_error err = VG_ERROR_INIT;
+
+  vg_lattice_release(l);
+  if (vg_lattice_add_ribs(&s->load, &rule, l, &err) != VG_OK)
+    fail_msg("%s", err.text);
+}
+
+/* One plane across z, with ribs as for leaves of half of it. */
 static void one_plane(const struct scene *s, struct vg_lattice *l)
 {
   const struct vg_cut_rule rule = { s->load.cells / 2, 2, 0 };
-  struct vg_error err = VG_ERROR_INIT;
 
   assert_int_equal(vg_lattice_plan(&s->load, &rule, 0, 0, l), 1);
   planes_are(l, 0, 0, 1);
-  if (vg_lattice_add_ribs(&s->load, l, &err) != VG_OK) fail_msg("%s", err.text);
+  ribs_for(s, s->load.cells / 2, l);
 }
 
 /* 12 cells to a square of a plane, 12,000 to a piece; a rib counts as 25 to an
- * edge of it, and the ribs of a tile may be 7 % of it. */
+ * edge of it, and the ribs of a tile may be 12 % of it. */
 static void large_tiles_are_parted(void **state)
 {
   static const struct { int nx, ny, pieces; } is[] = {
-    {32, 32, 1}, {64, 64, 3}, {60, 20, 1}, {200, 16, 3}, {16, 120, 2} };
+    {32, 32, 1}, {64, 64, 4}, {60, 20, 1}, {200, 16, 3}, {16, 120, 2} };
 
   (void)state;
   for (size_t k = 0; k < sizeof is / sizeof *is; k++) {
@@ -312,8 +322,31 @@ static void large_tiles_are_parted(void **state)
         fail_msg("rib %d of %d x %d is at %g", i, is[k].nx, is[k].ny,
                  l.rib[i].plane.offset);
     }
+    vg_lattice_release(&l);
     scene_end(&s);
   }
+}
+
+/* A fifth of a leaf to a piece, from 4,000 to 12,000. */
+static void small_leaves_have_small_pieces(void **state)
+{
+  static const struct { double leaf; int pieces; } is[] = {
+    {0, 3}, {1e6, 3}, {60000, 3}, {40000, 5}, {32000, 6}, {20000, 8},
+    {5000, 8} };
+  struct vg_lattice l;
+  struct scene s;
+
+  (void)state;
+  block_scene(&s, 200, 16, 12);
+  one_plane(&s, &l);
+  for (size_t k = 0; k < sizeof is / sizeof *is; k++) {
+    ribs_for(&s, is[k].leaf, &l);
+    if (l.n_rib + 1 != is[k].pieces)
+      fail_msg("leaves of %g: %d pieces instead of %d", is[k].leaf,
+               l.n_rib + 1, is[k].pieces);
+  }
+  vg_lattice_release(&l);
+  scene_end(&s);
 }
 
 static void small_tiles_stay_whole(void **state)
@@ -342,8 +375,9 @@ static const struct vg_lattice flat = {
 /* Tiles in pieces: one of `flat`'s by two parallel ribs, and one by a fan. */
 static const struct vg_lattice ribbed = {
   .n = {2, 1, 0}, .at = {{-0.3, 0.4}, {0.1}, {0}}, .n_rib = 4,
-  .rib = { {1, {{0, 0, 1}, -0.5}}, {1, {{0, 0, 1}, 0.4}},
-           {3, {{0, -0.6, 0.8}, -0.86}}, {3, {{0, -0.8, 0.6}, -0.68}} } };
+  .rib = (struct vg_rib[]){
+    {1, {{0, 0, 1}, -0.5}}, {1, {{0, 0, 1}, 0.4}},
+    {3, {{0, -0.6, 0.8}, -0.86}}, {3, {{0, -0.8, 0.6}, -0.68}} } };
 static const struct vg_lattice row = {
   .n = {0, 7, 0}, .at = {{0}, {-.6, -.4, -.2, 0, .2, .4, .6}, {0}} };
 
@@ -577,6 +611,7 @@ int main(void)
     cmocka_unit_test(attempts_differ),
     cmocka_unit_test(nothing_to_cut),
     cmocka_unit_test(large_tiles_are_parted),
+    cmocka_unit_test(small_leaves_have_small_pieces),
     cmocka_unit_test(small_tiles_stay_whole),
     cmocka_unit_test(numbers_of_regions),
     cmocka_unit_test(regions_are_apart_and_complete),

@@ -181,7 +181,8 @@ static void a_plane_in_pieces(void **state)
 {
   const struct vg_lattice l = {
     .n = {0, 0, 1}, .at = {{0}, {0}, {0.03}}, .n_rib = 2,
-    .rib = {{0, {{1, 0, 0}, -0.18}}, {0, {{1, 0, 0}, 0.17}}} };
+    .rib = (struct vg_rib[]){{0, {{1, 0, 0}, -0.18}},
+                             {0, {{1, 0, 0}, 0.17}}} };
   size_t made[VG_LATTICE_STAGES];
   struct scene s;
 
@@ -200,7 +201,9 @@ static void a_plane_in_pieces(void **state)
 static void ribs_from_a_body(void **state)
 {
   const double u = 0.7071067811865476;
-  struct vg_lattice l = { .n = {1, 1, 1}, .lines_at_once = 1, .n_rib = 12 };
+  struct vg_rib rib[12] = {{0}};
+  struct vg_lattice l = { .n = {1, 1, 1}, .lines_at_once = 1, .n_rib = 12,
+                          .rib = rib };
   size_t made[VG_LATTICE_STAGES];
   struct scene s;
 
