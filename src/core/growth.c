@@ -17,7 +17,7 @@ static const double least_distance = 0.5;
 static const double least_height = 0.3;
 /* Cells so near to those of a region, in spacings, are optimised too: what is
  * bad there would be left as a notch in the front. */
-static const double rim = 0.6;
+static const double rim = 0.3;
 /* The first points of all keep farther off: the front decides near it. */
 static const double seed_distance = 0.8;
 
