@@ -283,6 +283,120 @@ static void nothing_near(void **state)
   scene_end(&scene);
 }
 
+/* One triangle in a field, from corners in spacings off the plane z = 0.5;
+ * `beside` of its corners along x too. */
+struct lone {
+  struct vg_select select;
+  struct vg_front f;
+  double x[3][3];
+  uint64_t name[3];
+  uint32_t face[1][3];
+};
+
+static void lone_face(struct lone *t, const struct scene *scene,
+                      const struct vg_region *r, double a, double b,
+                      double c, double beside)
+{
+  const double middle[3] = {0.5, 0.5, 0.5}, z[3] = {a, b, c};
+  double h = vg_region_spacing(r, scene->sizing, middle);
+
+  memset(t, 0, sizeof *t);
+  for (int k = 0; k < 3; k++) {
+    t->x[k][0] = 0.5 + (beside + (k == 1)) * h;
+    t->x[k][1] = 0.5 + (k == 2) * h;
+    t->x[k][2] = 0.5 + z[k] * h;
+    t->face[0][k] = (uint32_t)k;
+  }
+  t->f = (struct vg_front){ .n_point = 3, .x = t->x, .name = t->name,
+                            .n_face = 1, .face = t->face };
+  vg_select_init(&t->select, &t->f, scene->sizing);
+  assert_int_equal(vg_select_update(&t->select, NULL, NULL), VG_OK);
+}
+
+/* What a region that had another width before is told. */
+static double width_for(const struct scene *scene, struct vg_region r,
+                        double a, double b, double c, double beside)
+{
+  struct lone t;
+
+  lone_face(&t, scene, &r, a, b, c, beside);
+  r.wide = 7;
+  assert_int_equal(vg_select_widen(&t.select, &r, NULL), VG_OK);
+  vg_select_release(&t.select);
+  return r.wide;
+}
+
+static void is_about(double is, double want)
+{
+  if (fabs(is - want) > 0.01) fail_msg("%g instead of %g", is, want);
+}
+
+/* Faces that cross all planes of a region, or nearly so, ask for as much as
+ * their farthest corner is off, and 1.5 spacings, beyond what is known
+ * anyway: those of usual length for nothing. */
+static void long_faces_widen(void **state)
+{
+  struct vg_region zone = { .n_plane = 1 }, pencil, walled;
+  struct scene scene;
+
+  (void)state;
+  scene_demo(&scene, "box", 20000);
+  zone.plane[0] = (struct vg_plane){ {0, 0, 1}, 0.5 };
+  is_about(width_for(&scene, zone, -0.5, 0.6, -0.4, 0), 0);
+  is_about(width_for(&scene, zone, 0.1 - VG_BAND_FLUID, 0.6, 0, 0), 0);
+  is_about(width_for(&scene, zone, -3, 0.6, -0.4, 0), 3 + 1.5 - VG_BAND_FLUID);
+  is_about(width_for(&scene, zone, 0.2, 0.1, 4, 0), 4 + 1.5 - VG_BAND_FLUID);
+  is_about(width_for(&scene, zone, 0.08, 0.3, 4, 0), 4 + 1.5 - VG_BAND_FLUID);
+  is_about(width_for(&scene, zone, 0.15, 0.3, 4, 0), 0);
+
+  walled = zone;                       /* beyond what a wall ends */
+  walled.wall[walled.n_wall++] = (struct vg_plane){ {1, 0, 0}, 0.9 };
+  is_about(width_for(&scene, walled, -3, 0.6, -0.4, 0), 0);
+
+  pencil = zone;                       /* however thick it is */
+  pencil.reach = 1.3;
+  pencil.plane[pencil.n_plane++] = (struct vg_plane){ {1, 0, 0}, 0.5 };
+  is_about(width_for(&scene, pencil, -3, 0.6, -0.4, -0.5),
+           3 + 1.5 - VG_BAND_FLUID);
+  is_about(width_for(&scene, pencil, -3, 0.6, -0.4, 1), 0);
+  scene_end(&scene);
+}
+
+/* Of many faces the longest counts, and none that is gone. */
+static void the_longest_face_counts(void **state)
+{
+  const struct vg_region r = { .n_plane = 1, .plane = {{{0, 0, 1}, 0.5}} };
+  struct vg_region none = r, some = r;
+  struct vg_select s;
+  struct scene scene;
+  struct lone t;
+  uint32_t face[3][3] = { {0, 1, 2}, {3, 4, 5}, {VG_FACE_GONE, 7, 8} };
+  double x[9][3];
+  static const double z[9] = { -1, 1, 0, -4, 1, 0, -6, 1, 0 };
+
+  (void)state;
+  scene_demo(&scene, "box", 20000);
+  lone_face(&t, &scene, &r, 1, 1, 1, 0);
+  for (int k = 0; k < 9; k++) {
+    memcpy(x[k], t.x[k % 3], sizeof x[k]);
+    x[k][2] = 0.5 + z[k] * (t.x[0][2] - 0.5);
+  }
+  vg_select_release(&t.select);
+  t.f.n_point = 9;
+  t.f.x = x;
+  t.f.face = face;
+  t.f.n_face = 3;
+  vg_select_init(&s, &t.f, scene.sizing);
+  none.wide = 7;
+  assert_int_equal(vg_select_widen(&s, &none, NULL), VG_OK);
+  assert_true(none.wide == 0);         /* nothing was looked at yet */
+  assert_int_equal(vg_select_update(&s, NULL, NULL), VG_OK);
+  assert_int_equal(vg_select_widen(&s, &some, NULL), VG_OK);
+  is_about(some.wide, 4 + 1.5 - VG_BAND_FLUID);
+  vg_select_release(&s);
+  scene_end(&scene);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -291,6 +405,8 @@ int main(void)
     cmocka_unit_test(added_in_pieces),
     cmocka_unit_test(triangles_of_their_own),
     cmocka_unit_test(nothing_near),
+    cmocka_unit_test(long_faces_widen),
+    cmocka_unit_test(the_longest_face_counts),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);
