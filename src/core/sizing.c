@@ -218,6 +218,25 @@ double vg_sizing_growth(const struct vg_sizing *s)
   return s->growth;
 }
 
+double vg_sizing_below(double growth, double h, double d)
+{
+  double slope = growth - 1;
+  double even = h * (1 + vg_near_offset(slope)) - slope * d;
+  double steep = h * vg_near_rise(slope) - vg_near_steep(slope) * d;
+  double v = fmin(h, fmin(even, steep));
+
+  return v > 0 ? v : 0;
+}
+
+double vg_sizing_below_edge(double growth, double h, double d)
+{
+  double slope = growth - 1;
+  double even = (h + slope * d) / (1 + vg_near_offset(slope));
+  double steep = (h + vg_near_steep(slope) * d) / vg_near_rise(slope);
+
+  return fmax(h, fmax(even, steep));
+}
+
 double vg_sizing_cube(const struct vg_sizing *s, double lo[3])
 {
   for (int k = 0; k < 3; k++) lo[k] = s->octree.lo[k];

@@ -113,6 +113,13 @@ double vg_sizing_slope(const struct vg_sizing *s);
 /** growth - 1. */
 double vg_sizing_growth(const struct vg_sizing *s);
 
+/** What a boundary edge of length h asks for at least at a distance of d
+ * (above): the bound from below, 0 where there is none. */
+double vg_sizing_below(double growth, double h, double d);
+
+/** The longest edge for which that is h at most. */
+double vg_sizing_below_edge(double growth, double h, double d);
+
 /** Lower corner of the root cube, which encloses surface points and, where
  * there are none, the sources; returns its side. */
 double vg_sizing_cube(const struct vg_sizing *s, double lo[3]);
