@@ -146,6 +146,13 @@ static json_t *files_json(const struct run *r)
   return list;
 }
 
+/* What bounds the field. */
+static const struct vg_mesh *front_of(const struct run *r)
+{
+  return r->layers.is_on ? &r->layers.layers.front.mesh
+                         : &r->problem.surface;
+}
+
 static json_t *report_json(const struct run *r, int ok,
                            const struct vg_error *err)
 {
@@ -163,6 +170,8 @@ static json_t *report_json(const struct run *r, int ok,
   json_object_set_new(o, "domain", vg_report_domain_json(&p->domain));
   json_object_set_new(o, "notes", strings(&p->notes));
   if (ok) {
+    json_object_set_new(o, "sources", vg_held_json(&r->mesh.held, front_of(r),
+                                                   &p->settings));
     json_object_set_new(o, "mesh", vg_report_mesh_json(&r->mesh.judge));
     json_object_set_new(o, "fill",
                         vg_report_fill_json(&r->mesh.partition.fill,
@@ -396,6 +405,7 @@ static vg_status run_stages(struct run *r, const struct arguments *a,
   VG_TRY(vg_comm_agree(m->comm, read_project(r, a, err), err));
   VG_TRY(close_surface(r, err));
   VG_TRY(vg_run_mesh(m, &r->problem, &r->layers, &r->show, err));
+  vg_held_note(&m->held, front_of(r), &r->problem);
   st = write_all(r, a, err);
 done:
   return st;

@@ -5,6 +5,7 @@
 #ifndef VG_CLI_PLAN_ESTIMATE_H
 #define VG_CLI_PLAN_ESTIMATE_H
 
+#include "cli/held.h"
 #include "cli/layers.h"
 #include "cli/plan.h"
 #include "partition/forecast.h"
@@ -28,6 +29,7 @@ struct vg_plan {
   struct vg_mesh lifted;        /* the surface on top of estimated layers */
   const struct vg_mesh *front;  /* what bounds the field; borrowed */
   struct vg_sizing *sizing;     /* over the front */
+  struct vg_held held;
   struct vg_load load;
   struct vg_cut_rule rule;
   struct vg_outlook outlook;

@@ -138,6 +138,20 @@ static vg_status measure_sizes(struct vg_run *r, const struct vg_problem *p,
   return st < 0 ? st : vg_run_stopped(err);
 }
 
+/* Which sources have no effect; by rank 0. Collective. */
+static vg_status look_at_sources(struct vg_run *r, const struct vg_problem *p,
+                                 const struct vg_mesh *front,
+                                 const struct vg_sizing *sizing,
+                                 struct vg_error *err)
+{
+  double t = vg_display_now();
+  vg_status st = VG_OK;
+
+  if (!r->rank) st = vg_problem_held(p, front, sizing, &r->held, err);
+  r->time_size += vg_display_now() - t;
+  return vg_comm_agree(r->comm, st, err);
+}
+
 /* --- the run directory --------------------------------------------------- */
 
 /* Everything that the tasks' outcomes follow from, besides their input. */
@@ -283,6 +297,7 @@ static vg_status mesh_plain(struct vg_run *r, const struct vg_problem *p,
     vg_comm_node_cores(r->comm, 0);
   }
   VG_TRY(share_with_node(r, st, surface, NULL, &sizing, err));
+  VG_TRY(look_at_sources(r, p, surface, sizing, err));
   VG_TRY(fill(r, p, surface, sizing, show, err));
   r->slices = *vg_partition_slices(r->field);
   st = judge(r, 0, sizing, show, err);
@@ -348,6 +363,7 @@ static vg_status mesh_layers(struct vg_run *r, const struct vg_problem *p,
 
   if (leads_node(r)) st = grow_layers(r, p, layers, show, &sizing, err);
   VG_TRY(share_with_node(r, st, &p->surface, &layers->layers, &sizing, err));
+  VG_TRY(look_at_sources(r, p, front, sizing, err));
   VG_TRY(fill(r, p, front, sizing, show, err));
   st = vg_layer_slices_open(&p->surface, &layers->layers,
                             vg_partition_slices(r->field),
@@ -376,6 +392,7 @@ void vg_run_release(struct vg_run *r, int success)
 {
   vg_layer_slices_close(r->layers);
   vg_partition_free(r->field);
+  vg_held_release(&r->held);
   vg_spans_release(&r->spans);
   vg_store_close(r->store, success && !r->options.keep);
 }

@@ -7,6 +7,7 @@
 #include <stdio.h>
 
 #include "base/comm.h"
+#include "cli/held.h"
 #include "cli/input.h"
 #include "cli/layers.h"
 #include "core/judge_slices.h"
@@ -34,6 +35,7 @@ struct vg_run {
   uint64_t n_field_cell;
   struct vg_mesh_report judge, field_judge;  /* of all; with layers: of the
                                                  field */
+  struct vg_held held;       /* of rank 0 */
   double time_size, time_layers, time_judge;
   double time_fill;          /* cuts, leaves and repairs */
   size_t common;             /* bytes of sizes, one copy on the node */

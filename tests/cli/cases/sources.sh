@@ -1,0 +1,58 @@
+# Sources that coarse faces hold back, or that lie nowhere in the fluid, are
+# named with a remedy; those of the demos are not.
+vanguard demo sphere --cells 20000 --out p
+exits 0
+vanguard mesh -q -p p/sphere --out plain
+exits 0
+lacks out "source "
+says plain/sphere.report.json '"held": []'
+says plain/sphere.report.json '"inside": []'
+vanguard demo wing --out w
+exits 0
+vanguard plan -q -p w/wing -n 1
+exits 0
+lacks out "source "
+
+sed -i '/^sources$/,$d' p/sphere.deck
+cat >>p/sphere.deck <<'END'
+sources
+kind      x0  y0  z0  x1  y1  z1  h0   r0   r1   group
+sphere    0   0   0   -   -   -   0.25 1    -    body
+cylinder  2   0   0   18  0   0   0.3  0.5  0.5  wake
+point     0   17  0   -   -   -   0.1  0.1  -    far
+point     0   0   0   -   -   -   0.1  0.1  -    within
+point     90  0   0   -   -   -   0.1  0.1  -    away
+point     0   0   -12 -   -   -   0.1  0.1  -    below
+END
+vanguard mesh -q -p p/sphere --out held
+exits 0
+lacks out "source 1 "
+says out "source 2 (cylinder of wake, from 2 0 0) is held back in"
+says out "source 3 (point of far, from 0 17 0) gets nowhere what it asks for: "
+says out "on patch 2 (farfield)"
+says out "hold it back; make them no longer than"
+says out "1 source (number 4) lies wholly inside a body"
+says out "1 source (number 5) lies wholly outside the domain"
+says held/sphere.report.json '"patch_name": "farfield"'
+says held/sphere.report.json '"edge_wanted": '
+grep note out >notes
+
+# The same by all ranks and threads of one, and by plan.
+vanguard mesh -q -p p/sphere --out held2 --threads 2
+exits 0
+grep note out | diff - notes || fail "notes depend on threads"
+vanguard plan -q -p p/sphere -n 1
+exits 0
+says out "source 3 (point of far, from 0 17 0) gets nowhere what it asks for"
+says out "1 source (number 5) lies wholly outside the domain"
+vanguard plan -q -p p/sphere -n 1 --json
+exits 0
+says out '"wholly": true'
+says out '"beyond": ['
+
+# What is advised helps.
+growth=$(sed -n 's/.*source 6 .*set growth to //p' notes)
+[ -n "$growth" ] || fail "no growth rate is advised"
+vanguard mesh -q -p p/sphere --out grown --growth "$growth"
+exits 0
+lacks out "source 6 "
