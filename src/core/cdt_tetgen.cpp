@@ -25,13 +25,15 @@ const size_t patience = 2000, patience_each = 5;
 
 /* On the socket, in the byte order of the machine: */
 struct question {            /* before x and tri */
-  uint64_t n, n_tri;
+  uint64_t n, n_tri, way;    /* way: first of those below to be tried */
 };
 struct answer {              /* before the added points and the tetrahedra */
   uint64_t n_added, n_tet;
 };
 
 const uint64_t n_max = 1u << 31;   /* TetGen counts in int */
+
+const uint64_t ways = 2;     /* for TetGen to do a job */
 
 bool put(int to, const void *data, size_t size)
 {
@@ -93,23 +95,39 @@ bool take_input(tetgenio &in, const question &q, int from)
   return true;
 }
 
-bool run(const question &q, int fd)
+bool give_output(const tetgenio &out, const question &q, int to)
 {
-  /* p: keep facets; Y: without points on them; c: all of the hull;
-   * M: coplanar neighbours stay separate facets; T: relative tolerance of
-   * coplanarity, small because our predicates are exact. */
-  char switches[] = "pYcMQT1e-13";
-  tetgenio in, out;
   answer a;
 
-  if (!take_input(in, q, fd)) return false;
-  tetrahedralize(switches, &in, &out);
-  if (out.numberofcorners != 4) return false;
   a.n_added = static_cast<uint64_t>(out.numberofpoints) - q.n;
   a.n_tet = static_cast<uint64_t>(out.numberoftetrahedra);
-  return put(fd, &a, sizeof a) &&
-         put(fd, out.pointlist + 3 * q.n, 3 * a.n_added * sizeof(REAL)) &&
-         put(fd, out.tetrahedronlist, 4 * a.n_tet * sizeof(int));
+  return put(to, &a, sizeof a) &&
+         put(to, out.pointlist + 3 * q.n, 3 * a.n_added * sizeof(REAL)) &&
+         put(to, out.tetrahedronlist, 4 * a.n_tet * sizeof(int));
+}
+
+/* p: keep facets; Y: without points on them, in either of two ways; c: all of
+ * the hull; M: coplanar neighbours stay separate facets; T: relative tolerance
+ * of coplanarity, small because our predicates are exact.
+ *
+ * Points that TetGen puts on edges of facets it moves off them afterwards;
+ * where one stays there, and where it ends its process, the other way most
+ * often succeeds. */
+bool run(const question &q, int fd)
+{
+  char switches[ways][16] = {"pYcMQT1e-13", "pY/2cMQT1e-13"};
+  tetgenio in;
+
+  if (!take_input(in, q, fd)) return false;
+  for (uint64_t way = q.way; way < ways; way++) {
+    tetgenio out;
+
+    tetrahedralize(switches[way], &in, &out);
+    if (out.numberofcorners != 4) return false;
+    if (way + 1 == ways || out.numberoftrifaces == in.numberoffacets)
+      return give_output(out, q, fd);
+  }
+  return false;
 }
 
 void be_patient(size_t n_tri)
@@ -124,9 +142,9 @@ void be_patient(size_t n_tri)
 
 /* --- in the parent ------------------------------------------------------- */
 
-bool ask(const vg_cdt_job &job, int to)
+bool ask(const vg_cdt_job &job, uint64_t way, int to)
 {
-  question q = {job.n, job.n_tri};
+  question q = {job.n, job.n_tri, way};
 
   return put(to, &q, sizeof q) && put(to, job.x, job.n * sizeof *job.x) &&
          put(to, job.tri, job.n_tri * sizeof *job.tri);
@@ -179,8 +197,8 @@ int fork_here(pid_t *pid)
 }
 
 /* A child works through the jobs until one ends it. Returns how many need not
- * be tried again, or a negative status. */
-long run_child(size_t n_job, vg_cdt_job *job)
+ * be tried again in this way, or a negative status. */
+long run_child(size_t n_job, vg_cdt_job *job, uint64_t way)
 {
   int fd = vg_cdt_server_ask();
   long done = 0, n = static_cast<long>(n_job);
@@ -188,7 +206,7 @@ long run_child(size_t n_job, vg_cdt_job *job)
 
   if (fd < 0) fd = fork_here(&pid);
   if (fd < 0) return VG_ERR_MEMORY;
-  while (done < n && ask(job[done], fd) && receive(job[done], fd)) done++;
+  while (done < n && ask(job[done], way, fd) && receive(job[done], fd)) done++;
   /* blame the job, unless the child was taken along by the server's end */
   if (done < n && (pid || vg_cdt_server_answers())) done++;
   shutdown(fd, SHUT_RDWR);
@@ -230,10 +248,16 @@ extern "C" vg_status vg_cdt_tetgen(size_t n_job, struct vg_cdt_job *job,
                      "exceeds TetGen's indices", job[k].n);
   }
   while (next < n_job) {
-    long done = run_child(n_job - next, job + next);
+    long done = run_child(n_job - next, job + next, 0);
 
     if (done < 0) return vg_fail_memory(err, "a process for TetGen");
     next += static_cast<size_t>(done);
+  }
+  for (size_t k = 0; k < n_job;) {
+    long done = job[k].st == VG_OK ? 1 : run_child(1, job + k, ways - 1);
+
+    if (done < 0) return vg_fail_memory(err, "a process for TetGen");
+    k += static_cast<size_t>(done);
   }
   return VG_OK;
 }
