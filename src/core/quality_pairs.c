@@ -2,9 +2,10 @@
  *
  * A face waits in a hash table until its other side comes, and leaves with it:
  * cells are written in an order in which neighbours follow each other closely,
- * so that few faces wait at a time and the table stays in the cache. This
- * takes two thirds of the time of quality_faces.c, which sees all sides of a
- * face together.
+ * so that few faces wait at a time and the table stays in the cache. Of cells
+ * one upon the other in a column of layers, each shares a face with the next,
+ * which never gets there. This takes half of the time of quality_faces.c, which
+ * sees all sides of a face together.
  *
  * What it does not see is a face with four sides, two and two. If cells are
  * positive and their faces leave in pairs of opposite sides, then they cover
@@ -22,7 +23,7 @@
 #define SLOTS 4
 
 /* Tetrahedra whose faces are asked for from memory before they are needed. */
-#define AHEAD 8
+#define AHEAD 16
 
 struct face {
   uint64_t key;              /* lowest node << 32 | next */
@@ -188,6 +189,34 @@ static struct face face_of_tri(const uint32_t n[3], uint32_t owner)
   return (struct face){ (uint64_t)a << 32 | b, c, side };
 }
 
+/* The face that leaves out a node, of those of faces_of_tet. */
+static struct face *opposite(struct face f[4], const uint32_t n[4],
+                             uint32_t node)
+{
+  return f + 3 - ((n[0] < node) + (n[1] < node) + (n[2] < node) +
+                  (n[3] < node));
+}
+
+/* In a column a cell stands on the one before: two nodes stay in their places
+ * and the top takes that of the third. Keys of what has met: VACANT. */
+static void meet_in_columns(struct pairing *p, uint32_t (*n)[4], size_t n_cell,
+                            struct face *f)
+{
+  for (size_t i = 1; i < n_cell; i++) {
+    const uint32_t *was = n[i - 1], *is = n[i];
+    int same[3] = { is[0] == was[0], is[1] == was[1], is[2] == was[2] };
+    int gone = !same[0] ? 0 : !same[1] ? 1 : 2;
+    struct face *a, *b;
+
+    if (same[0] + same[1] + same[2] != 2 || is[gone] != was[3]) continue;
+    a = opposite(f + 4 * i - 4, was, was[gone]);
+    b = opposite(f + 4 * i, is, is[3]);
+    if (a->key != b->key || a->high != b->high) continue;
+    meet(p, a->owner, b->owner);
+    a->key = b->key = VACANT;
+  }
+}
+
 static void come_all(struct pairing *p)
 {
   const struct vg_mesh *m = p->m;
@@ -197,9 +226,11 @@ static void come_all(struct pairing *p)
     n = m->n_tet - i < AHEAD ? m->n_tet - i : AHEAD;
     for (size_t k = 0; k < n; k++)
       faces_of_tet(m->tet[i + k], (uint32_t)(i + k), f + 4 * k);
+    meet_in_columns(p, m->tet + i, n, f);
     for (size_t k = 0; k < 4 * n; k++)
       __builtin_prefetch(&p->bucket[home(p, f[k].key, f[k].high)], 1);
-    for (size_t k = 0; k < 4 * n && !p->refused; k++) come(p, &f[k]);
+    for (size_t k = 0; k < 4 * n && !p->refused; k++)
+      if (f[k].key != VACANT) come(p, &f[k]);
   }
   for (size_t i = 0; i < m->n_tri && !p->refused; i++) {
     f[0] = face_of_tri(m->tri[i], (uint32_t)(p->n_cell + i));
