@@ -8,6 +8,7 @@
 #ifndef VG_CORE_EXACT_SUM_H
 #define VG_CORE_EXACT_SUM_H
 
+#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -43,6 +44,9 @@ static inline void vg_exact_add(struct vg_exact *s, double x)
   limb[1] += ((m << shift >> 32) ^ minus) - minus;
   limb[2] += (((m >> 1) >> (63 - shift)) ^ minus) - minus;
 }
+
+/** Add n of them: as vg_exact_add for each, in less time. */
+void vg_exact_add_all(struct vg_exact *s, size_t n, const double *x);
 
 /** The sum as the nearest double; NaN when a summand was not finite. */
 double vg_exact_value(const struct vg_exact *s);

@@ -12,8 +12,9 @@
 #define DEGREE 57.295779513082320877
 
 /* Tetrahedra are measured a few at a time, each step for all of them, which
- * compilers make vector instructions of. */
+ * compilers make vector instructions of, and counted when there are BATCH. */
 #define GROUP 4
+#define BATCH 256
 
 typedef double lanes[GROUP];
 
@@ -22,6 +23,13 @@ struct tet_shapes {
   lanes cos_max, cos_min;    /* of the smallest and largest dihedral angle */
   lanes volume6;             /* |6 V| */
   lanes radius_ratio, edge2_sum;
+};
+
+/* Of up to BATCH. */
+struct batch {
+  double least[BATCH], most[BATCH];  /* angles */
+  double volume[BATCH];
+  double radius_ratio[BATCH], mean_ratio[BATCH];
 };
 
 static void dot(lanes a[3], lanes b[3], lanes out)
@@ -158,19 +166,31 @@ static size_t bin_of(double x, double per_unit, size_t n)
   return at < (double)n ? (size_t)at : n - 1;
 }
 
-static void count_angles(struct vg_figures *f, double least, double most)
+static void count_angles(struct vg_figures *f, size_t n, const double *least,
+                         const double *most)
 {
   static const double low[5] = { 5, 10, 15, 20, 30 };
   static const double high[3] = { 150, 160, 170 };
-  struct vg_counts *n = &f->n;
 
-  if (least < f->angle_min) f->angle_min = least;
-  if (most > f->angle_max) f->angle_max = most;
-  for (int k = 0; k < 5; k++) n->below[k] += least < low[k];
-  for (int k = 0; k < 3; k++) n->above[k] += most > high[k];
-  n->angle_min[bin_of(least, 1 / 5., VG_HIST_ANGLE)]++;
-  n->angle_max[bin_of(most, 1 / 5., VG_HIST_ANGLE)]++;
-  n->fine[bin_of(least, VG_FINE_PER_DEGREE, VG_N_FINE)]++;
+  for (size_t i = 0; i < n; i++) {
+    if (least[i] < f->angle_min) f->angle_min = least[i];
+    if (most[i] > f->angle_max) f->angle_max = most[i];
+    f->n.angle_min[bin_of(least[i], 1 / 5., VG_HIST_ANGLE)]++;
+    f->n.angle_max[bin_of(most[i], 1 / 5., VG_HIST_ANGLE)]++;
+    f->n.fine[bin_of(least[i], VG_FINE_PER_DEGREE, VG_N_FINE)]++;
+  }
+  for (int k = 0; k < 5; k++)
+    for (size_t i = 0; i < n; i++) f->n.below[k] += least[i] < low[k];
+  for (int k = 0; k < 3; k++)
+    for (size_t i = 0; i < n; i++) f->n.above[k] += most[i] > high[k];
+}
+
+static void count_ratios(struct vg_figures *f, size_t n, const double *ratio)
+{
+  for (size_t i = 0; i < n; i++) {
+    if (ratio[i] < f->radius_ratio_min) f->radius_ratio_min = ratio[i];
+    f->n.radius_ratio[bin_of(ratio[i], VG_HIST_UNIT, VG_HIST_UNIT)]++;
+  }
 }
 
 static void note_worst(struct vg_figures *f, const struct vg_mesh *m,
@@ -184,24 +204,58 @@ static void note_worst(struct vg_figures *f, const struct vg_mesh *m,
   vg_figures_worst(f, &w);
 }
 
-/* Tetrahedron i, measured as t of a group. */
-static void judge_tet(const struct vg_mesh *m, size_t i, size_t cell,
-                      const struct tet_shapes *s, size_t t,
-                      struct vg_figures *f)
+/* Tetrahedra first .. first + n - 1 of m, n <= GROUP. */
+static void measure_group(const struct vg_mesh *m, size_t first, size_t n,
+                          double *least, double *most, double *radius_ratio,
+                          double *mean_ratio)
 {
-  double least = angle_of(s->cos_max[t]), most = angle_of(s->cos_min[t]);
-  double ratio = s->radius_ratio[t], volume6 = s->volume6[t];
+  struct tet_shapes s;
 
-  f->n.n_tet++;
-  count_angles(f, least, most);
-  note_worst(f, m, i, cell, least);
-  vg_exact_add(&f->n.sum_radius, ratio);
-  if (ratio < f->radius_ratio_min) f->radius_ratio_min = ratio;
-  f->n.radius_ratio[bin_of(ratio, VG_HIST_UNIT, VG_HIST_UNIT)]++;
-  /* (3 V)^2 = volume6^2 / 4 */
-  if (s->edge2_sum[t] > 0)
-    vg_exact_add(&f->n.sum_mean,
-                 12 * cbrt(volume6 * volume6 / 4) / s->edge2_sum[t]);
+  measure_some(m, first, n, &s);
+  for (size_t t = 0; t < n; t++) {
+    least[t] = angle_of(s.cos_max[t]);
+    most[t] = angle_of(s.cos_min[t]);
+    radius_ratio[t] = s.radius_ratio[t];
+    /* (3 V)^2 = volume6^2 / 4 */
+    mean_ratio[t] = s.edge2_sum[t] > 0
+                    ? 12 * cbrt(s.volume6[t] * s.volume6[t] / 4) /
+                      s.edge2_sum[t] : 0;
+  }
+}
+
+/* Signed volumes; first: of m. */
+static void measure_volumes(const struct vg_mesh *m, size_t first, size_t n,
+                            double *volume, struct vg_figures *f)
+{
+  for (size_t i = 0; i < n; i++) {
+    const uint32_t *v = m->tet[first + i];
+    double six = vg_orient3d(m->point[v[0]], m->point[v[1]], m->point[v[2]],
+                             m->point[v[3]]);
+
+    f->n.not_positive += !(six > 0);
+    volume[i] = six / 6;
+  }
+}
+
+/* n tetrahedra of m from `first` on; cell: number of that. */
+static void judge_batch(const struct vg_mesh *m, size_t first, size_t n,
+                        size_t cell, float *volume, struct vg_figures *f)
+{
+  struct batch b;
+
+  measure_volumes(m, first, n, b.volume, f);
+  for (size_t i = 0; i < n; i++) volume[first + i] = (float)b.volume[i];
+  for (size_t i = 0; i < n; i += GROUP)
+    measure_group(m, first + i, n - i < GROUP ? n - i : GROUP, b.least + i,
+                  b.most + i, b.radius_ratio + i, b.mean_ratio + i);
+  f->n.n_tet += n;
+  count_angles(f, n, b.least, b.most);
+  count_ratios(f, n, b.radius_ratio);
+  for (size_t i = 0; i < n; i++)
+    note_worst(f, m, first + i, cell + i, b.least[i]);
+  vg_exact_add_all(&f->n.volume, n, b.volume);
+  vg_exact_add_all(&f->n.sum_radius, n, b.radius_ratio);
+  vg_exact_add_all(&f->n.sum_mean, n, b.mean_ratio);
 }
 
 /* A corner tetrahedron of a prism, pyramid or hexahedron is spanned by a node
@@ -273,21 +327,9 @@ static void judge_mixed(const struct vg_mesh *m, int kind, float *volume,
 void vg_judge_shape(const struct vg_mesh *m, size_t first, float *volume,
                     struct vg_figures *f)
 {
-  for (size_t i = 0; i < m->n_tet; i++) {
-    const uint32_t *n = m->tet[i];
-    double six = vg_orient3d(m->point[n[0]], m->point[n[1]], m->point[n[2]],
-                             m->point[n[3]]);
-
-    f->n.not_positive += !(six > 0);
-    vg_exact_add(&f->n.volume, six / 6);
-    volume[i] = (float)(six / 6);
-  }
   for (size_t i = 0, n; i < m->n_tet; i += n) {
-    struct tet_shapes s;
-
-    n = m->n_tet - i < GROUP ? m->n_tet - i : GROUP;
-    measure_some(m, i, n, &s);
-    for (size_t t = 0; t < n; t++) judge_tet(m, i + t, first + i + t, &s, t, f);
+    n = m->n_tet - i < BATCH ? m->n_tet - i : BATCH;
+    judge_batch(m, i, n, first + i, volume, f);
   }
   for (int kind = VG_CELL_PYR; kind < VG_CELL_KINDS; kind++)
     judge_mixed(m, kind, volume, f);
