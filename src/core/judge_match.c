@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "base/unite.h"
 #include "core/judge_slices_parts.h"
 
@@ -94,15 +95,30 @@ static int is_whole_face(const void *context, const unsigned char *item,
   return n == 2 && !j->n_suspect;
 }
 
-/* Of the boundary, which all ranks know, what meets others here. */
-static vg_status add_boundary(struct vg_slices_judgement *j,
-                              const struct vg_meeting *m,
+static vg_status worst_status(struct vg_slices_judgement *j,
                               struct vg_error *err)
 {
-  const struct vg_mesh *b = j->s->boundary;
-  int me = vg_comm_rank(j->comm);
+  for (int i = 0; i < j->n_worker; i++) {
+    if (j->worker[i].st >= 0) continue;
+    if (err) *err = j->worker[i].err;
+    return j->worker[i].st;
+  }
+  return VG_OK;
+}
 
-  for (size_t i = 0; i < b->n_tri + b->n_quad; i++) {
+struct boundary {
+  struct vg_slices_judgement *j;
+  const struct vg_meeting *m;
+};
+
+static void boundary_body(void *context, size_t first, size_t end, int worker)
+{
+  const struct boundary *c = context;
+  const struct vg_mesh *b = c->j->s->boundary;
+  struct vg_judge_worker *w = &c->j->worker[worker];
+  int me = vg_comm_rank(c->j->comm);
+
+  for (size_t i = first; i < end && w->st >= 0; i++) {
     uint32_t node[4];
     struct vg_face_item f = { .component = 0 }, *to;
 
@@ -111,13 +127,24 @@ static vg_status add_boundary(struct vg_slices_judgement *j,
       node[3] = VG_NO_NODE;
     } else memcpy(node, b->quad[i - b->n_tri], sizeof *b->quad);
     vg_face_item_set(&f, node);
-    if (vg_meet_rank(m, &f) != me) continue;
+    if (vg_meet_rank(c->m, &f) != me) continue;
     f.flags |= VG_FACE_BOUNDARY;
-    to = vg_items_add(&j->worker[0].face, sizeof f);
-    if (!to) return vg_fail_memory(err, "the faces of the boundary");
-    *to = f;
+    to = vg_items_add(&w->face, sizeof f);
+    if (to) *to = f;
+    else w->st = vg_fail_memory(&w->err, "the faces of the boundary");
   }
-  return VG_OK;
+}
+
+/* Of the boundary, which all ranks know, what meets others here. */
+static vg_status add_boundary(struct vg_slices_judgement *j,
+                              const struct vg_meeting *m,
+                              struct vg_error *err)
+{
+  struct boundary c = { j, m };
+
+  vg_parallel_for(j->threads, j->s->boundary->n_tri + j->s->boundary->n_quad,
+                  4096, boundary_body, &c);
+  return worst_status(j, err);
 }
 
 /* Numbers of components from those of each slice to those of all. */
@@ -132,17 +159,6 @@ static void number_components(struct vg_slices_judgement *j)
       f[k].flags &= (1u << VG_FACE_BITS) - 1;
     }
   }
-}
-
-static vg_status worst_status(struct vg_slices_judgement *j,
-                              struct vg_error *err)
-{
-  for (int i = 0; i < j->n_worker; i++) {
-    if (j->worker[i].st >= 0) continue;
-    if (err) *err = j->worker[i].err;
-    return j->worker[i].st;
-  }
-  return VG_OK;
 }
 
 static vg_status meet_faces(struct vg_slices_judgement *j,
