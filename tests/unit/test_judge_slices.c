@@ -306,6 +306,32 @@ static void sums_are_exact(void **state)
   assert_true(isnan(vg_exact_value(&s)));
 }
 
+/* All at once is one after the other. */
+static void sums_of_many_are_those_of_each(void **state)
+{
+  static double x[1500];
+  struct vg_exact s = { .n_odd = 0 }, t = { .n_odd = 0 };
+  size_t n = sizeof x / sizeof *x;
+  uint64_t seed = 1;
+
+  (void)state;
+  for (size_t i = 0; i < n; i++) {
+    seed = seed * UINT64_C(6364136223846793005) + 1;
+    x[i] = ldexp((double)(int64_t)seed, i < 700 ? -70 : (int)(i % 2000) - 1130);
+    vg_exact_add(&s, x[i]);
+  }
+  vg_exact_add_all(&t, n, x);
+  assert_true(vg_exact_value(&s) == vg_exact_value(&t));
+  vg_exact_add_all(&t, 0, x);
+  assert_true(vg_exact_value(&s) == vg_exact_value(&t));
+  for (size_t i = 0; i < n; i++) x[i] = -x[i];
+  vg_exact_add_all(&t, n, x);
+  assert_true(vg_exact_value(&t) == 0);
+  x[7] = INFINITY;
+  vg_exact_add_all(&t, 8, x);
+  assert_int_equal(t.n_odd, 1);
+}
+
 /* Halfway cases go to the even neighbour, unless something far below tips
  * them. */
 static void sums_are_rounded_once(void **state)
@@ -339,6 +365,7 @@ int main(void)
     cmocka_unit_test(failures_are_told),
     cmocka_unit_test(nothing_is_not_valid),
     cmocka_unit_test(sums_are_exact),
+    cmocka_unit_test(sums_of_many_are_those_of_each),
     cmocka_unit_test(sums_are_rounded_once),
   };
 
