@@ -26,6 +26,10 @@
 #define POINT_MAX (UINT32_MAX - 1)
 #define FAMILIES 16     /* of eight cells, for a thread at a time */
 
+/* Room from the beginning. Blocks of tens of megabytes grow by new addresses,
+ * smaller ones by copies, which one thread would make. */
+#define ROOM ((size_t)1 << 20)
+
 /* Neighbours of a split cell that share a middle of it, as directions, and
  * what the middle is in their lattices of 3 x 3 x 3 points. */
 struct share {
@@ -466,8 +470,8 @@ static int grow_level(struct vg_octree_build *b, int level,
 
 static int make_root(struct vg_octree_build *b)
 {
-  if (vg_reserve(&b->cell, &b->cap_cell, 1, sizeof *b->cell) ||
-      vg_reserve(&b->point, &b->cap_point, 8, sizeof *b->point))
+  if (vg_reserve(&b->cell, &b->cap_cell, ROOM, sizeof *b->cell) ||
+      vg_reserve(&b->point, &b->cap_point, ROOM, sizeof *b->point))
     return -1;
   memset(b->cell, 0, sizeof *b->cell);
   b->n_cell = 1;
