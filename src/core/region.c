@@ -39,8 +39,8 @@ int vg_region_within(const struct vg_region *r, const double x[3])
   return 1;
 }
 
-/* How far n corners all lie from a plane, or beyond a wall: the most of
- * these. */
+/* How far n corners all lie from a plane, or beyond a wall, where distances
+ * count for more: the most of these. */
 static double gap(const struct vg_region *r, int n, const double *const *x)
 {
   double far = 0;
@@ -58,6 +58,7 @@ static double gap(const struct vg_region *r, int n, const double *const *x)
       below |= s <= 0;
       if (fabs(s) < near) near = fabs(s);
     }
+    if (is_wall) near *= 1 / VG_BEYOND_WALLS;
     if (is_wall ? !above : !(above && below))
       if (near > far) far = near;
   }
@@ -100,8 +101,8 @@ static int clip(int n, double (*x)[3], const struct vg_plane *p, double sign,
   return m;
 }
 
-/* Is there anything of the triangle within `most` of every plane, and no
- * farther beyond a wall? middle out: of what there is. */
+/* Is there anything of the triangle within `most` of every plane, and of it no
+ * farther beyond a wall than it may? middle out: of what there is. */
 static int reaches(const struct vg_region *r, const double *const corner[3],
                    double most, double middle[3])
 {
@@ -114,7 +115,7 @@ static int reaches(const struct vg_region *r, const double *const corner[3],
     if (n) n = clip(n, x, &r->plane[i], -1, most);
   }
   for (int i = 0; i < r->n_wall && n; i++)
-    n = clip(n, x, &r->wall[i], -1, most);
+    n = clip(n, x, &r->wall[i], -1, VG_BEYOND_WALLS * most);
   for (int k = 0; k < 3; k++) {
     middle[k] = 0;
     for (int i = 0; i < n; i++) middle[k] += x[i][k] / n;
@@ -255,8 +256,12 @@ static double gap_of(const struct vg_ruler *ruler, const uint32_t v[3])
 
     if (c[i] < lo) lo = c[i];
     if (c[i] > hi) hi = c[i];
+    if (i >= ruler->region->n_plane) {
+      lo = 0;
+      hi *= 1 / VG_BEYOND_WALLS;
+    }
     if (-hi > far) far = -hi;
-    if (i < ruler->region->n_plane && lo > far) far = lo;
+    if (lo > far) far = lo;
   }
   return far;
 }

@@ -37,8 +37,13 @@ struct vg_region {
  * that the region's cells get their final shape; how far cells are told from
  * outside; how far front faces must be known. */
 #define VG_BAND_PLACE 1.3
-#define VG_BAND_FLUID 2.2
-#define VG_BAND_FRONT 3.5
+#define VG_BAND_FLUID 1.9
+#define VG_BAND_FRONT 2.6
+
+/* The share of it all beyond walls. No cell may cross them, so only what is
+ * next to them matters; farther off is what other regions have made, whose
+ * other side would have to be told from outside through them. */
+#define VG_BEYOND_WALLS 0.5
 
 /** A band of the region, in spacings from its planes. */
 static inline double vg_region_band(const struct vg_region *r, double band)
@@ -58,7 +63,7 @@ void vg_region_foot(const struct vg_region *r, const double x[3],
 int vg_region_within(const struct vg_region *r, const double x[3]);
 
 /** Is x within reach + band spacings of every plane, and no farther beyond any
- * wall? */
+ * wall than VG_BEYOND_WALLS of it? */
 int vg_region_near(const struct vg_region *r, const struct vg_sizing *sizing,
                    const double x[3], double band);
 

@@ -153,8 +153,8 @@ static double beyond(const struct vg_plane *p, double sign,
   return far;
 }
 
-/* Distance of a box from the planes, or beyond a wall, whichever is most; no
- * further once it is more than `enough`. */
+/* Distance of a box from the planes, or beyond a wall, where distances count
+ * for more: whichever is most; no further once it is more than `enough`. */
 static double distance(const struct vg_region *r,
                        const struct vg_select_box *b, double enough)
 {
@@ -164,7 +164,7 @@ static double distance(const struct vg_region *r,
     far = fmax(far, fmax(beyond(&r->plane[i], 1, b),
                          beyond(&r->plane[i], -1, b)));
   for (int i = 0; i < r->n_wall && far <= enough; i++)
-    far = fmax(far, beyond(&r->wall[i], 1, b));
+    far = fmax(far, beyond(&r->wall[i], 1, b) / VG_BEYOND_WALLS);
   return far;
 }
 
@@ -216,7 +216,7 @@ static int list_run(struct list *l, size_t run, double most)
     add_limit(&limits, &r->plane[i], -1, l->band * most, b);
   }
   for (int i = 0; i < r->n_wall; i++)
-    add_limit(&limits, &r->wall[i], 1, l->band * most, b);
+    add_limit(&limits, &r->wall[i], 1, VG_BEYOND_WALLS * l->band * most, b);
   for (size_t i = run * RUN; i < end; i++) {
     const double *x[3];
 
