@@ -35,7 +35,7 @@ vg_status vg_layer_slices_open(const struct vg_mesh *surface,
                                struct vg_error *err);
 
 /** Share the slices of the layers out anew, so that with the field's all ranks
- * serve nearly as many cells. The same call on every rank.
+ * take nearly as long to judge theirs. The same call on every rank.
  * @param n_field  [size] cells of the field that each rank serves
  * @param out      as from vg_layer_slices_open */
 void vg_layer_slices_share(struct vg_layer_slices *keep,
