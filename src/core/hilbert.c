@@ -7,10 +7,21 @@
 
 enum { BITS = 20 };
 
+/* The 20 bits of q, two clear ones between any two. */
+static uint64_t spread(uint64_t q)
+{
+  q = (q | q << 32) & 0x001f00000000ffffu;
+  q = (q | q << 16) & 0x001f0000ff0000ffu;
+  q = (q | q << 8) & 0x100f00f00f00f00fu;
+  q = (q | q << 4) & 0x10c30c30c30c30c3u;
+  return (q | q << 2) & 0x1249249249249249u;
+}
+
+/* Skilling's transposed key ("Programming the Hilbert curve", 2004), without
+ * branches: bits of coordinates are not to be predicted. */
 uint64_t vg_hilbert_key(const double x[3], const double lo[3], double scale)
 {
   uint32_t q[3], t;
-  uint64_t key = 0;
 
   for (int k = 0; k < 3; k++) {
     double cell = (x[k] - lo[k]) * scale;
@@ -18,27 +29,20 @@ uint64_t vg_hilbert_key(const double x[3], const double lo[3], double scale)
     q[k] = !(cell > 0) ? 0
            : cell >= (1u << BITS) - 1 ? (1u << BITS) - 1 : (uint32_t)cell;
   }
-  for (uint32_t bit = 1u << (BITS - 1); bit > 1; bit >>= 1)
+  for (int b = BITS - 1; b > 0; b--)
     for (int k = 0; k < 3; k++) {
-      uint32_t low = bit - 1;
+      uint32_t low = (1u << b) - 1, is_set = 0u - (q[k] >> b & 1);
+      uint32_t exchange = (q[0] ^ q[k]) & low & ~is_set;
 
-      if (q[k] & bit) {
-        q[0] ^= low;
-      } else {
-        t = (q[0] ^ q[k]) & low;
-        q[0] ^= t;
-        q[k] ^= t;
-      }
+      q[k] ^= exchange;
+      q[0] ^= exchange ^ (low & is_set);
     }
   q[1] ^= q[0];
   q[2] ^= q[1];
-  t = 0;
-  for (uint32_t bit = 1u << (BITS - 1); bit > 1; bit >>= 1)
-    if (q[2] & bit) t ^= bit - 1;
-  for (int k = 0; k < 3; k++) q[k] ^= t;
-  for (int b = BITS - 1; b >= 0; b--)
-    for (int k = 0; k < 3; k++) key = key << 1 | (q[k] >> b & 1);
-  return key;
+  t = q[2];                  /* of each bit the parity of those above it */
+  for (int shift = 1; shift < BITS; shift *= 2) t ^= t >> shift;
+  t >>= 1;
+  return spread(q[0] ^ t) << 2 | spread(q[1] ^ t) << 1 | spread(q[2] ^ t);
 }
 
 vg_status vg_sort_keys(size_t n, struct vg_key *key, struct vg_error *err)
