@@ -6,9 +6,11 @@
  * cells; points that a zone made and that have cells of other tasks are on
  * interfaces, before and after repairs.
  * One line each for all cells, for those within two rings of an interface
- * (repairs included), and for the others: number, smallest angle, first and
- * fifth hundredth and mean of the smallest dihedral angle, 99th hundredth of
- * the largest; mean, first and 99th hundredth of the mean edge over the
+ * (repairs included), and for the others; then for all and those near among
+ * the inner cells, without a corner on the surface, whose angles are others
+ * and of which interfaces have fewer. In a line: number, smallest angle, first
+ * and fifth hundredth and mean of the smallest dihedral angle, 99th hundredth
+ * of the largest; mean, first and 99th hundredth of the mean edge over the
  * target. */
 #include <math.h>
 #include <stdio.h>
@@ -56,7 +58,8 @@ struct census {
   uint8_t *is_zone;          /* [n_point] made by a zone */
   uint8_t *ring;             /* [n_point] rings from an interface, + 1 */
   int now;                   /* ring that is looked for */
-  struct share all, near, rest;
+  uint64_t n_boundary_point; /* they come first */
+  struct share all, near, rest, inner, inner_near;
 };
 
 /* --- rings --------------------------------------------------------------- */
@@ -174,18 +177,21 @@ static vg_status tally(void *context, const struct vg_slice *s,
   for (size_t c = 0; c < s->n_cell[VG_SLICE_TET]; c++, v += 4) {
     const double *x[4];
     double low, high, size;
-    int near = s->kind == REPAIR;
+    int near = s->kind == REPAIR, inner = 1;
 
     for (int i = 0; i < 4; i++) {
       uint8_t ring = k->ring[s->id[v[i]]];
 
       x[i] = s->x[v[i]];
+      inner &= s->id[v[i]] >= k->n_boundary_point;
       near |= ring && ring <= k->now;
     }
     angles(x, &low, &high);
     size = edge_over_target(k->sizing, x);
     count(&k->all, low, high, size);
     count(near ? &k->near : &k->rest, low, high, size);
+    if (inner) count(&k->inner, low, high, size);
+    if (inner && near) count(&k->inner_near, low, high, size);
   }
   return VG_OK;
 }
@@ -228,7 +234,9 @@ static void measure(const struct vg_slices *s, const struct vg_sizing *sizing)
   k->is_zone = vg_calloc(s->n_point, 1);
   k->ring = vg_calloc(s->n_point, 1);
   if (!k->task || !k->is_zone || !k->ring) exit(1);
+  k->n_boundary_point = s->n_boundary_point;
   k->all.least = k->near.least = k->rest.least = 180;
+  k->inner.least = k->inner_near.least = 180;
   for (size_t p = 0; p < s->n_point; p++) k->task[p] = NOBODY;
   must(vg_slices_each(s, 1, mark, k, &err), &err);
   for (size_t p = s->n_boundary_point; p < s->n_point; p++)
@@ -240,6 +248,8 @@ static void measure(const struct vg_slices *s, const struct vg_sizing *sizing)
   show("all", &k->all);
   show("near", &k->near);
   show("other", &k->rest);
+  show("inner", &k->inner);
+  show("near", &k->inner_near);
   free(k->task);
   free(k->is_zone);
   free(k->ring);
