@@ -191,6 +191,20 @@ static size_t bucket_of(const struct hall *h, const unsigned char *item,
   return (size_t)(vg_meet_hash(item, h->m->key) >> 20) & (n_bucket - 1);
 }
 
+/* Any order of keys of n bytes will do. */
+static inline int key_order(const unsigned char *a, const unsigned char *b,
+                            size_t n)
+{
+  for (size_t i = 0; i < n; i += sizeof(uint32_t)) {
+    uint32_t x, y;
+
+    memcpy(&x, a + i, sizeof x);
+    memcpy(&y, b + i, sizeof y);
+    if (x != y) return x < y ? -1 : 1;
+  }
+  return 0;
+}
+
 /* Insertion by key; equal keys stay where they are, so that a crowd of them
  * is no trouble. */
 static void sort_bucket(const struct vg_meeting *m, unsigned char *item,
@@ -201,7 +215,7 @@ static void sort_bucket(const struct vg_meeting *m, unsigned char *item,
   for (size_t i = 1; i < n; i++) {
     size_t j = i;
 
-    while (j && memcmp(item + size * (j - 1), item + size * i, m->key) > 0)
+    while (j && key_order(item + size * (j - 1), item + size * i, m->key) > 0)
       j--;
     if (j == i) continue;
     memcpy(spare, item + size * i, size);
@@ -236,7 +250,7 @@ static void look_at_all(struct hall *h, const unsigned char *item, size_t n,
     const unsigned char *first = item + m->size * i;
 
     for (j = i + 1; j < n; j++)
-      if (memcmp(first, item + m->size * j, m->key)) break;
+      if (key_order(first, item + m->size * j, m->key)) break;
     look_at(h, first, j - i, worker);
   }
 }
