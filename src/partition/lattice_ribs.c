@@ -18,7 +18,7 @@ static const double piece_share = 0.2, least_piece = 4000, most_piece = 12000;
 /* Cells of its ribs to those of a tile. */
 static const double rib_share = 0.12;
 /* A rib is this many spacings from what keeps it apart from the next one. */
-static const double room = 2;
+static const double room = 2.5;
 /* Spacings that tiles reach to each side of their plane, as measured. */
 static const double tile_reach = 0.68;
 
