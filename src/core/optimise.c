@@ -47,18 +47,36 @@ static int is_live(const struct vg_tets *t, uint32_t c)
   return !(t->flag[c] & (VG_DEAD | VG_OUTSIDE));
 }
 
-/* Is cell c one that should get better? The answer no, which bad cells at the
- * rim get again and again, is kept until the cell changes. */
-static int concerns(const struct vg_optimiser *o, uint32_t c)
+static int is_in_region(const struct vg_optimiser *o, uint32_t c)
 {
   const struct vg_tets *t = o->t;
   const uint32_t *v = t->cell[c].v;
 
+  return vg_region_has_cell(o->region, o->sizing, t->x[v[0]], t->x[v[1]],
+                            t->x[v[2]], t->x[v[3]]);
+}
+
+/* A flat cell between the front and the region: if its neighbours become
+ * final, nothing but it can fill the slit that they leave. */
+static int makes_slit(const struct vg_optimiser *o, uint32_t c)
+{
+  const struct vg_tets *t = o->t;
+
+  if (o->q[c] >= desperate || !(t->flag[c] & VG_FIXED_FACES)) return 0;
+  for (int i = 0; i < 4; i++)
+    if (!(t->flag[c] >> i & 1) && t->cell[c].link[i] != VG_NONE &&
+        is_in_region(o, t->cell[c].link[i] >> 2))
+      return 1;
+  return 0;
+}
+
+/* Is cell c one that should get better? The answer no, which bad cells at the
+ * rim get again and again, is kept until the cell changes. */
+static int concerns(const struct vg_optimiser *o, uint32_t c)
+{
   if (!o->region) return 1;
   if (o->vain_cell[c] & VG_NO_CONCERN) return 0;
-  if (vg_region_has_cell(o->region, o->sizing, t->x[v[0]], t->x[v[1]],
-                         t->x[v[2]], t->x[v[3]]))
-    return 1;
+  if (is_in_region(o, c) || makes_slit(o, c)) return 1;
   o->vain_cell[c] |= VG_NO_CONCERN;
   return 0;
 }
