@@ -339,31 +339,38 @@ static vg_status face_build(struct face_table *t, const struct vg_mesh *m,
   return VG_OK;
 }
 
-/* Does the cycle a[0..w) run through the same nodes in the direction of b? */
-static int same_direction(const uint32_t *a, const uint32_t *b, int w)
+/* Do the cycles a and b of w nodes run through the same edges, b forwards
+ * (step 1) or backwards (step w - 1)? */
+static int same_cycle(const uint32_t *a, const uint32_t *b, int w, int step)
 {
-  int i = 0;
+  for (int i = 0; i < w; i++) {
+    int k = 0;
 
-  while (i < w && b[i] != a[0]) i++;
-  return i < w && b[(i + 1) % w] == a[1];
+    while (k < w && a[k] == b[(i + k * step) % w]) k++;
+    if (k == w) return 1;
+  }
+  return 0;
 }
 
 /* One face of a cell, listed inward: turn the boundary face on its nodes,
- * unless a cell has met it before. */
+ * unless a cell has met it before. A quadrilateral that goes through the
+ * same corners across the diagonals is another face and stays loose. */
 static void meet_face(struct vg_mesh *m, struct face_table *t,
                       const uint32_t *inward, int width,
                       struct vg_turned *turned)
 {
   uint32_t key[4], *node;
   size_t f;
-  int w;
+  int w, forwards;
 
   make_key(inward, width, key);
   f = find_face(m, t, key, NULL);
   if (f == SIZE_MAX || t->found[f]) return;
-  t->found[f] = 1;
   node = (uint32_t *)face_nodes(m, f, &w);
-  if (same_direction(node, inward, w)) return;
+  forwards = same_cycle(node, inward, w, 1);
+  if (!forwards && !same_cycle(node, inward, w, w - 1)) return;
+  t->found[f] = 1;
+  if (forwards) return;
   swap(node, 1, w - 1);
   turned->face++;
 }

@@ -50,6 +50,31 @@ static void turns_cells_and_faces(void **state)
   vg_mesh_release(&m);
 }
 
+/* A boundary quadrilateral that runs across the diagonals of the base of a
+ * pyramid is no face of it: it stays as it was read. */
+static void crossed_quads_are_kept(void **state)
+{
+  static const uint32_t quad[4] = {2, 0, 1, 3};
+  struct vg_mesh m = VG_MESH_INIT;
+
+  (void)state;
+  for (int crossed = 0; crossed < 2; crossed++) {
+    io_accept(vg_medit_parse, crossed ?
+              "MeshVersionFormatted 2 Dimension 3 Vertices 5 0 0 0 0 1 0 0 0 "
+              "1 1 0 0 0 1 0 0 .5 .5 1 0 Quadrilaterals 1 3 1 2 4 1 "
+              "Pyramids 1 1 2 3 4 5 0 End" :
+              "MeshVersionFormatted 2 Dimension 3 Vertices 5 0 0 0 0 1 0 0 0 "
+              "1 1 0 0 0 1 0 0 .5 .5 1 0 Quadrilaterals 1 1 4 3 2 1 "
+              "Pyramids 1 1 2 3 4 5 0 End", &m);
+    assert_int_equal(m.n_quad, 1);
+    if (crossed)
+      assert_memory_equal(m.quad[0], quad, sizeof quad);
+    else
+      assert_int_equal(m.quad[0][1], 1); /* turned into the pyramid */
+    vg_mesh_release(&m);
+  }
+}
+
 static void surfaces_are_kept(void **state)
 {
   static const uint32_t tri[3] = { 0, 2, 1 };
@@ -267,6 +292,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(reads_the_sample),
     cmocka_unit_test(turns_cells_and_faces),
+    cmocka_unit_test(crossed_quads_are_kept),
     cmocka_unit_test(surfaces_are_kept),
     cmocka_unit_test(text_round_trip_is_exact),
     cmocka_unit_test(binary_round_trips),
