@@ -22,13 +22,23 @@ enum help_column {
   HELP_PATH, HELP_RANK, HELP_THREAD, HELP_START, HELP_END, HELP_N
 };
 
-static const char *const columns[COLUMN_N] = {
-  "path", "after", "kind", "rank", "thread", "home", "start", "end", "cpu",
-  "estimate", "cells", "bytes_in", "bytes_out", "loops"
+/* A list of rows, and the list that names their columns, of which the last
+ * n - n_must may be absent. */
+struct table {
+  const char *rows, *row, *columns;
+  int n, n_must;
+  const char *column[COLUMN_N];
 };
 
-static const char *const help_columns[HELP_N] = {
-  "path", "rank", "thread", "start", "end"
+static const struct table span_table = {
+  "spans", "span", "columns", COLUMN_N, COLUMN_LOOPS,
+  { "path", "after", "kind", "rank", "thread", "home", "start", "end", "cpu",
+    "estimate", "cells", "bytes_in", "bytes_out", "loops" }
+};
+
+static const struct table help_table = {
+  "help", "help", "help_columns", HELP_N, HELP_N,
+  { "path", "rank", "thread", "start", "end" }
 };
 
 /* The keys of phases in the facts. */
@@ -92,13 +102,12 @@ static void put_facts(struct vg_output *out, const struct vg_timeline *t)
 }
 
 /* Names of columns, and the beginning of the rows. */
-static void put_head(struct vg_output *out, const char *before, int n,
-                     const char *const *name, const char *rows)
+static void put_head(struct vg_output *out, const struct table *t)
 {
-  vg_output_format(out, "\"%scolumns\": [", before);
-  for (int i = 0; i < n; i++)
-    vg_output_format(out, "%s\"%s\"", i ? ", " : "", name[i]);
-  vg_output_format(out, "],\n\"%s\": [", rows);
+  vg_output_format(out, "\"%s\": [", t->columns);
+  for (int i = 0; i < t->n; i++)
+    vg_output_format(out, "%s\"%s\"", i ? ", " : "", t->column[i]);
+  vg_output_format(out, "],\n\"%s\": [", t->rows);
 }
 
 static void put_span(struct vg_output *out, const struct vg_span *s)
@@ -146,13 +155,13 @@ vg_status vg_timeline_write(const char *path, const struct vg_timeline *t,
 
   VG_TRY(vg_output_open(path, &out, err));
   put_facts(&out, t);
-  put_head(&out, "", COLUMN_N, columns, "spans");
+  put_head(&out, &span_table);
   for (size_t i = 0; i < t->spans.n; i++) {
     vg_output_text(&out, i ? ",\n" : "\n");
     put_span(&out, &t->spans.span[i]);
   }
   vg_output_text(&out, "\n],\n");
-  put_head(&out, "help_", HELP_N, help_columns, "help");
+  put_head(&out, &help_table);
   for (size_t i = 0; i < t->spans.n_help; i++) {
     vg_output_text(&out, i ? ",\n" : "\n");
     put_help(&out, &t->spans.help[i]);
@@ -265,42 +274,40 @@ done:
   return st;
 }
 
-/* In which place of a row each column is; the last n - n_must may be absent:
- * SIZE_MAX. */
+/* In which place of a row each column is; SIZE_MAX where it is absent. */
 static vg_status get_columns(const char *name, const json_t *root,
-                             const char *key, int n, int n_must,
-                             const char *const *column, size_t *place,
+                             const struct table *t, size_t *place,
                              struct vg_error *err)
 {
-  const json_t *list = json_object_get(root, key);
+  const json_t *list = json_object_get(root, t->columns);
 
-  for (int c = 0; c < n; c++) {
+  for (int c = 0; c < t->n; c++) {
     size_t i, n_word = json_array_size(list);
 
     for (i = 0; i < n_word; i++) {
       const char *word = json_string_value(json_array_get(list, i));
 
-      if (word && !strcmp(word, column[c])) break;
+      if (word && !strcmp(word, t->column[c])) break;
     }
-    if (i == n_word && c < n_must)
+    if (i == n_word && c < t->n_must)
       return vg_fail(err, VG_ERR_FORMAT, "%s: no column \"%s\" in \"%s\"",
-                     name, column[c], key);
+                     name, t->column[c], t->columns);
     place[c] = i < n_word ? i : SIZE_MAX;
   }
   return VG_OK;
 }
 
 /* The values of a row by column; NULL for one that is absent. */
-static vg_status get_row(const struct place *at, const json_t *row, int n,
-                         const char *const *column, const size_t *place,
-                         const char *key, json_t **v, struct vg_error *err)
+static vg_status get_row(const struct place *at, const json_t *row,
+                         const struct table *t, const size_t *place,
+                         json_t **v, struct vg_error *err)
 {
-  for (int c = 0; c < n; c++) {
+  for (int c = 0; c < t->n; c++) {
     v[c] = place[c] == SIZE_MAX ? NULL : json_array_get(row, place[c]);
     if (!v[c] && place[c] != SIZE_MAX)
       return vg_fail(err, VG_ERR_FORMAT, "%s: %s %zu has no \"%s\": it is "
                      "not a list as long as \"%s\"", at->name, at->list,
-                     at->number, column[c], key);
+                     at->number, t->column[c], t->columns);
   }
   return VG_OK;
 }
@@ -372,79 +379,67 @@ done:
   return st;
 }
 
-static vg_status get_span(struct place *at, const json_t *row,
-                          const size_t place[COLUMN_N],
-                          const struct vg_spans *all, struct vg_span *s,
-                          struct vg_error *err)
+static vg_status get_span(struct place *at, json_t *const *v,
+                          struct vg_spans *out, struct vg_error *err)
 {
-  json_t *v[COLUMN_N] = { NULL };
+  struct vg_span s;
   char kind[2];
   vg_status st;
 
-  memset(s, 0, sizeof *s);
-  VG_TRY(get_row(at, row, COLUMN_N, columns, place, "columns", v, err));
-  VG_TRY(get_path(at, v[COLUMN_PATH], s->path, err));
-  at->path = s->path;
-  VG_TRY(get_text(at, v[COLUMN_AFTER], "after", sizeof s->after, s->after,
-                  err));
+  memset(&s, 0, sizeof s);
+  VG_TRY(get_path(at, v[COLUMN_PATH], s.path, err));
+  at->path = s.path;
+  VG_TRY(get_text(at, v[COLUMN_AFTER], "after", sizeof s.after, s.after, err));
   VG_TRY(get_text(at, v[COLUMN_KIND], "kind", sizeof kind, kind, err));
   if (kind[0] < 'A' || kind[0] > 'Z')
     return bad_value(at, "kind", "a letter from A to Z", err);
-  s->kind = kind[0];
-  VG_TRY(get_numbers(at, v, all, s, err));
+  s.kind = kind[0];
+  VG_TRY(get_numbers(at, v, out, &s, err));
+  VG_TRY(vg_spans_add(out, &s, err));
 done:
   return st;
 }
 
-static vg_status get_spans(const char *name, const json_t *root,
-                           struct vg_spans *out, struct vg_error *err)
+static vg_status get_help(struct place *at, json_t *const *v,
+                          struct vg_spans *out, struct vg_error *err)
 {
-  const json_t *list = json_object_get(root, "spans");
+  struct vg_help h;
+  int32_t who[2];
+  vg_status st;
+
+  memset(&h, 0, sizeof h);
+  VG_TRY(get_path(at, v[HELP_PATH], h.path, err));
+  at->path = h.path;
+  VG_TRY(get_worker(at, v[HELP_RANK], v[HELP_THREAD], out, who, err));
+  VG_TRY(get_times(at, v[HELP_START], v[HELP_END], &h.start, &h.end, err));
+  h.rank = who[0];
+  h.thread = who[1];
+  VG_TRY(vg_spans_add_help(out, &h, err));
+done:
+  return st;
+}
+
+static vg_status get_rows(const char *name, const json_t *root,
+                          const struct table *t,
+                          vg_status (*get)(struct place *, json_t *const *,
+                                           struct vg_spans *,
+                                           struct vg_error *),
+                          struct vg_spans *out, struct vg_error *err)
+{
+  const json_t *list = json_object_get(root, t->rows);
+  json_t *v[COLUMN_N] = { NULL };
   size_t place[COLUMN_N];
   vg_status st;
 
-  VG_TRY(get_columns(name, root, "columns", COLUMN_N, COLUMN_LOOPS, columns,
-                     place, err));
+  VG_TRY(get_columns(name, root, t, place, err));
   if (!json_is_array(list))
-    return vg_fail(err, VG_ERR_FORMAT, "%s: \"spans\" is missing", name);
+    return vg_fail(err, VG_ERR_FORMAT, "%s: \"%s\" is missing", name,
+                   t->rows);
   for (size_t i = 0; i < json_array_size(list); i++) {
-    struct place at = { name, "span", i + 1, NULL };
-    struct vg_span span;
+    struct place at = { name, t->row, i + 1, NULL };
 
-    VG_TRY(get_span(&at, json_array_get(list, i), place, out, &span, err));
-    VG_TRY(vg_spans_add(out, &span, err));
-  }
-done:
-  return st;
-}
-
-/* Records of earlier versions have none. */
-static vg_status get_helps(const char *name, const json_t *root,
-                           struct vg_spans *out, struct vg_error *err)
-{
-  const json_t *list = json_object_get(root, "help");
-  size_t place[HELP_N];
-  vg_status st = VG_OK;
-
-  if (!json_array_size(list)) return VG_OK;
-  VG_TRY(get_columns(name, root, "help_columns", HELP_N, HELP_N, help_columns,
-                     place, err));
-  for (size_t i = 0; i < json_array_size(list); i++) {
-    struct place at = { name, "help", i + 1, NULL };
-    struct vg_help h;
-    json_t *v[HELP_N] = { NULL };
-    int32_t who[2];
-
-    memset(&h, 0, sizeof h);
-    VG_TRY(get_row(&at, json_array_get(list, i), HELP_N, help_columns, place,
-                   "help_columns", v, err));
-    VG_TRY(get_path(&at, v[HELP_PATH], h.path, err));
-    at.path = h.path;
-    VG_TRY(get_worker(&at, v[HELP_RANK], v[HELP_THREAD], out, who, err));
-    VG_TRY(get_times(&at, v[HELP_START], v[HELP_END], &h.start, &h.end, err));
-    h.rank = who[0];
-    h.thread = who[1];
-    VG_TRY(vg_spans_add_help(out, &h, err));
+    VG_TRY(get_row(&at, json_array_get(list, i), t, place, v, err));
+    VG_TRY(get(&at, v, out, err));
   }
 done:
   return st;
@@ -469,8 +464,9 @@ vg_status vg_timeline_parse(const char *name, const void *data, size_t size,
     goto done;
   }
   VG_TRY(get_facts(name, root, &t, err));
-  VG_TRY(get_spans(name, root, &t.spans, err));
-  VG_TRY(get_helps(name, root, &t.spans, err));
+  VG_TRY(get_rows(name, root, &span_table, get_span, &t.spans, err));
+  if (json_array_size(json_object_get(root, help_table.rows)))
+    VG_TRY(get_rows(name, root, &help_table, get_help, &t.spans, err));
   vg_spans_sort(&t.spans);
   *out = t;
   memset(&t, 0, sizeof t);
