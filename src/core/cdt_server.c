@@ -183,15 +183,14 @@ void vg_cdt_server_stop(void)
   wait_for(0);
 }
 
-int vg_cdt_server_lives(void)
+static void remember_death(void)
 {
   struct pollfd p = {.fd = control, .events = 0};
 
-  if (p.fd < 0 || server_died) return 0;
-  if (poll(&p, 1, 0) <= 0 || !(p.revents & (POLLHUP | POLLERR))) return 1;
+  if (p.fd < 0 || server_died) return;
+  if (poll(&p, 1, 0) <= 0 || !(p.revents & (POLLHUP | POLLERR))) return;
   server_died = 1;
   wait_for(0);               /* its socket is closed: it is about to end */
-  return 0;
 }
 
 static int send_ticket(int to, int fd)
@@ -231,7 +230,7 @@ int vg_cdt_server_ask(void)
   }
   if (n == 1) return ends[0];
   close(ends[0]);
-  vg_cdt_server_lives();     /* remembers it when the server died */
+  remember_death();
   return -1;
 }
 

@@ -40,10 +40,6 @@ void vg_cdt_server_stop(void);
  * affinity of the calling thread. Threads: safe. */
 int vg_cdt_server_ask(void);
 
-/** 1 while the server lives; 0: none was started, or it died and was waited
- * for. Threads: safe. */
-int vg_cdt_server_lives(void);
-
 /** 1 when the server has just given proof of life by a fresh child: then one
  * that is gone went by itself. The socket of a server is no such proof, since
  * it may stay open for a moment after its children were told of its end.
