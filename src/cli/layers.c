@@ -385,9 +385,10 @@ static void note_missing(const struct vg_layer_stage *s, struct vg_problem *p,
   char list[12 * SHOWN_PATCHES + 24];
 
   wall_numbers(s, &p->surface, list, sizeof list);
-  vg_note(&p->notes, "%zu patches are viscous walls (number%s) and get no "
-          "layers, for no first height is known: give --first, or --y-plus "
-          "with --reynolds and --reference-length", n_wall, list);
+  vg_note(&p->notes, "no layers on %zu viscous wall%s (patch%s%s), for no "
+          "first height is known: give --first, or --y-plus with --reynolds "
+          "and --reference-length", n_wall, n_wall > 1 ? "s" : "",
+          n_wall > 1 ? "es" : "", list);
 }
 
 /* A wall with layers and without a condition is a viscous one; left open, it
@@ -408,19 +409,18 @@ static void give_conditions(const struct vg_layer_stage *s,
     n++;
   }
   if (n)
-    vg_note(&p->notes, "%zu patches with layers have no boundary condition "
-            "and are written as viscous walls (4, FUN3D 4000)", n);
+    vg_note(&p->notes, "%zu patch%s with layers, but without a boundary "
+            "condition, %s written as viscous (4, FUN3D 4000)", n,
+            n > 1 ? "es" : "", n > 1 ? "are" : "is");
 }
 
 static void note_choice(const struct vg_layer_stage *s, struct vg_problem *p)
 {
   const struct vg_layer_settings *l = &p->settings.layer;
   double ratio = choose(l->ratio, 0), cap = law_cap(l->cap);
-  char list[12 * SHOWN_PATCHES + 24];
   size_t n = 0;
 
   for (size_t i = 0; i < s->n_patch; i++) n += s->reason[i] == VG_WALL_BODY;
-  wall_numbers(s, &p->surface, list, sizeof list);
   if (n)
     vg_note(&p->notes, "no patch has a condition: layers grow on the whole "
             "body (--walls, --slip or the table layers settle it)");

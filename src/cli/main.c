@@ -85,6 +85,14 @@ static void keep_memory(void)
 #endif
 }
 
+/* A report that could not be written is a failure like any other. */
+static int written(int status)
+{
+  if (!fflush(stdout) && !ferror(stdout)) return status;
+  fprintf(stderr, "vanguard: standard output could not be written whole\n");
+  return status == VG_EXIT_USAGE ? status : VG_EXIT_FAILED;
+}
+
 /* Before threads and MPI: while this process is small. Without the server
  * TetGen is dearer to start, so a refusal ends nothing. */
 static int run(const struct command *c, int argc, char **argv)
@@ -95,7 +103,7 @@ static int run(const struct command *c, int argc, char **argv)
   if (c->meshes) vg_cdt_server_start(NULL);
   status = c->run(argc, argv);
   vg_cdt_server_stop();
-  return status;
+  return written(status);
 }
 
 int main(int argc, char **argv)

@@ -110,14 +110,23 @@ static int cause_words(FILE *to, const char *lead, const size_t *count)
   return shown;
 }
 
+/* Faces that are full without any layer: the law asks for none there. */
+static size_t bare_faces(const struct vg_patch_layers *w)
+{
+  double percent = w->full - w->any;
+
+  return percent > 0 ? (size_t)((double)w->n_face * percent / 100 + 0.5) : 0;
+}
+
 static void causes(FILE *to, const struct vg_layer_stage *s,
                    const struct vg_mesh *surface)
 {
   size_t shown = 0;
+  char count[32];
 
   for (size_t i = 0; i < s->n_wall && shown < VG_SHOWN_PATCHES; i++) {
     const struct vg_patch_layers *w = &s->wall[i];
-    size_t sum = 0;
+    size_t bare = bare_faces(w), sum = bare;
 
     for (int c = VG_CAUSE_PROXIMITY; c < VG_CAUSE_N; c++)
       sum += w->cause[c] + w->squeezed[c];
@@ -127,6 +136,9 @@ static void causes(FILE *to, const struct vg_layer_stage *s,
     row_name(to, surface, w);
     if (cause_words(to, " fewer: ", w->cause)) fprintf(to, ";");
     cause_words(to, " thinner: ", w->squeezed);
+    if (bare)
+      fprintf(to, " none: %s (first height above layer_end times the edge)",
+              vg_cli_count(bare, count));
     fprintf(to, "\n");
   }
 }

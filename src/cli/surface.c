@@ -255,9 +255,9 @@ void vg_problem_note_unset(struct vg_problem *p)
                              (int)patch->id);
   }
   if (n)
-    vg_note(&p->notes, "%zu patches have no boundary condition and are written "
-            "as inviscid walls (5, FUN3D 3000): number%s%s; give conditions "
-            "in a .mapbc file or the deck", n, list,
+    vg_note(&p->notes, "%zu patch%s no boundary condition (number%s%s), "
+            "written as inviscid (5, FUN3D 3000): give conditions in a .mapbc "
+            "file or the deck", n, n > 1 ? "es have" : " has", list,
             n > SHOWN_PATCHES ? " ..." : "");
 }
 

@@ -296,13 +296,14 @@ static void find_note(const char *path, struct vg_sweep_case *c)
 
   snprintf(c->note, sizeof c->note, "see %.200s", path);
   while (f && getline(&line, &cap, f) > 0) {
-    int ours = !strncmp(line, "vanguard: ", 10);
+    size_t ours = !strncmp(line, "vanguard: ", 10) ? 10
+                : !strncmp(line, "vanguard mesh: ", 15) ? 15 : 0;
 
     line[strcspn(line, "\r\n")] = 0;
     if (kept == LAST && !strncmp(line, "-----", 5)) kept = RULE;
     if (!line[strspn(line, " \t-")] || (kept >= FRAMED && !ours)) continue;
     kept = ours ? OURS : kept == RULE ? FRAMED : kept;
-    snprintf(c->note, sizeof c->note, "%s", line + (ours ? 10 : 0));
+    snprintf(c->note, sizeof c->note, "%s", line + ours);
   }
   free(line);
   if (f) fclose(f);

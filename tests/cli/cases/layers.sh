@@ -48,7 +48,7 @@ cp p/box.lb8.ugrid p/box.deck viscous
 cp viscous.mapbc viscous/box.mapbc
 vanguard mesh -q -p viscous/box --out v1
 exits 0
-says out "1 patches are viscous walls (number 5) and get no layers"
+says out "no layers on 1 viscous wall (patch 5), for no first height"
 same plain/box.b8.ugrid v1/box.b8.ugrid
 vanguard mesh -q -p viscous/box --first 1e-3 --out v2
 exits 0
@@ -57,6 +57,11 @@ says v2/box.report.json '"wall_by": "condition"'
 vanguard mesh -q -p viscous/box --first 1e-3 --slip 5 --out v3
 exits 0
 absent v3/box.wall.vtu
+
+# A first height above all edges leaves no layer, which is said as well.
+vanguard mesh -q -p p/box --walls 5 --first 10 --out high
+exits 0
+says out "(first height above layer_end times the edge)"
 
 # Own values of a patch; a limit that cannot be met: all files are written,
 # the patch is named, and the status is 4.

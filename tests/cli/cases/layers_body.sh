@@ -16,7 +16,7 @@ facet() {
 # Asked for: the whole body, not the farfield.
 vanguard mesh -q -p body --first 0.01
 exits 0
-says out "2 patches with layers have no boundary condition"
+says out "2 patches with layers, but without a boundary condition"
 lacks out "inviscid"
 says body.mapbc "4"
 rm body.mapbc

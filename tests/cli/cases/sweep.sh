@@ -79,6 +79,10 @@ says out "2 of 3 cases done"
 says s/sweep.csv ',failed,3,'
 absent s/c100-n1-t2/box.report.json
 
+vanguard sweep -q -p box -o bad -- --no-such-option
+exits 1
+says out "failed, status 2: unrecognized option '--no-such-option'"
+
 # Files that differ are an error of their own.
 sweep -p box --leaf-cells 100 -n 1,2 -o w -- --wrong
 exits 4

@@ -60,3 +60,11 @@ vanguard demo
 exits 2
 vanguard demo box --cells many
 exits 2
+
+# What cannot be written to standard output is a failure, and said.
+if [ -w /dev/full ]; then
+  "$program" demo --list >/dev/full 2>err
+  status=$?
+  exits 1
+  says err "standard output could not be written whole"
+fi
