@@ -111,6 +111,9 @@ vg_status vg_comm_agree(struct vg_comm *c, vg_status mine,
  * from then on. Returns the cores at hand, hyperthreads not counted. Local. */
 int vg_comm_node_cores(struct vg_comm *c, int on);
 
+/** The same without counting, which takes milliseconds. */
+void vg_comm_bind_node(struct vg_comm *c, int on);
+
 /** Threads that suit this rank's binding: the cores (not their hyperthreads)
  * it may use, divided among the ranks of the node that are bound to the same
  * ones; all of them where the launcher binds nothing. At least 1. Local. */

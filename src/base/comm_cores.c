@@ -82,18 +82,23 @@ vg_status vg_comm_cores_open(struct vg_comm *c, struct vg_error *err)
   return rc ? vg_comm_fail(err, "cannot join the node", rc) : VG_OK;
 }
 
+void vg_comm_bind_node(struct vg_comm *c, int on)
+{
+  struct vg_cores_mask m;
+
+  if (!c) return;
+  m = c->core[c->node_rank];
+  for (int i = 0; on && i < c->node_size; i++)
+    for (size_t w = 0; w < WORDS; w++) m.word[w] |= c->core[i].word[w];
+  /* refused: the cores stay what they are */
+  if (n_processors(&m)) sched_setaffinity(0, sizeof m, (cpu_set_t *)m.word);
+}
+
 int vg_comm_node_cores(struct vg_comm *c, int on)
 {
   struct vg_cores_mask m = { { 0 } };
 
-  if (c) {
-    m = c->core[c->node_rank];
-    for (int i = 0; on && i < c->node_size; i++)
-      for (size_t w = 0; w < WORDS; w++) m.word[w] |= c->core[i].word[w];
-    /* refused: the cores stay what they are, and what they are is said */
-    if (n_processors(&m))
-      sched_setaffinity(0, sizeof m, (cpu_set_t *)m.word);
-  }
+  vg_comm_bind_node(c, on);
   own_mask(&m);
   return n_cores(&m);
 }

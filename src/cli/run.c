@@ -47,9 +47,9 @@ static int leads_node(const struct vg_run *r)
 
 static int node_threads(struct vg_run *r, const struct vg_settings *s)
 {
-  int n = vg_comm_node_cores(r->comm, 1);
-
-  return s->threads ? (int)s->threads * vg_comm_node_size(r->comm) : n;
+  if (!s->threads) return vg_comm_node_cores(r->comm, 1);
+  vg_comm_bind_node(r->comm, 1);
+  return (int)s->threads * vg_comm_node_size(r->comm);
 }
 
 static vg_status settle_surface(struct vg_problem *p,
@@ -77,7 +77,7 @@ vg_status vg_run_surface(struct vg_run *r, struct vg_problem *p,
   if (leads_node(r)) {
     p->threads = node_threads(r, &p->settings);
     st = settle_surface(p, layers, show, err);
-    vg_comm_node_cores(r->comm, 0);
+    vg_comm_bind_node(r->comm, 0);
     if (st >= 0 && vg_comm_node_size(r->comm) > 1)
       st = vg_surface_pack(&p->surface, (uint64_t)layers->is_on, &b, err);
   }
@@ -294,7 +294,7 @@ static vg_status mesh_plain(struct vg_run *r, const struct vg_problem *p,
   if (leads_node(r)) {
     st = measure_sizes(r, p, surface, node_threads(r, &p->settings), show,
                        &sizing, err);
-    vg_comm_node_cores(r->comm, 0);
+    vg_comm_bind_node(r->comm, 0);
   }
   VG_TRY(share_with_node(r, st, surface, NULL, &sizing, err));
   VG_TRY(look_at_sources(r, p, surface, sizing, err));
@@ -330,7 +330,7 @@ static vg_status grow_layers(struct vg_run *r, const struct vg_problem *p,
   st = measure_sizes(r, p, &layers->layers.front.mesh, threads, show, sizing,
                      err);
 done:
-  vg_comm_node_cores(r->comm, 0);
+  vg_comm_bind_node(r->comm, 0);
   free(view.tri);
   free(view.tri_patch);
   return st;

@@ -470,9 +470,10 @@ static int stop(void *user)
   return p->options.stop && p->options.stop(p->options.user);
 }
 
-/* The root: the whole void, with its load. */
-static vg_status make_root(struct vg_partition *p, struct vg_node **out,
-                           struct vg_error *err)
+/* The root: the whole void, with its load. By rank 0, on the cores of its
+ * node, as all others wait for it. */
+static vg_status make_root(struct vg_partition *p, struct vg_comm *comm,
+                           struct vg_node **out, struct vg_error *err)
 {
   const struct vg_mesh *m = p->boundary;
   struct vg_front f = VG_FRONT_INIT;
@@ -496,8 +497,12 @@ static vg_status make_root(struct vg_partition *p, struct vg_node **out,
   for (size_t k = 0; k < m->n_point; k++)
     n->front.name[k] = VG_POINT_NAME(0, k);
   n->levels = p->options.levels;
-  VG_TRY(vg_load_new(&v, p->sizing, n->per_cube, p->options.threads,
-                     &n->load, err));
+  vg_comm_bind_node(comm, 1);
+  st = vg_load_new(&v, p->sizing, n->per_cube,
+                   p->options.threads * vg_comm_node_size(comm), &n->load,
+                   err);
+  vg_comm_bind_node(comm, 0);
+  VG_TRY(st);
   p->report.estimate = n->load.cells;
   /* a void that is not cut is filled as it is, in the order it came in */
   if (vg_node_wants_cut(p, n)) VG_TRY(vg_select_sort(&n->front, err));
@@ -531,7 +536,7 @@ static vg_status run_tasks(struct vg_partition *p, struct vg_comm *comm,
   size_t n_first = 0;
   vg_status st = VG_OK;
 
-  if (p->rank == 0) st = make_root(p, &root, err);
+  if (p->rank == 0) st = make_root(p, comm, &root, err);
   /* no estimate is off by more than half */
   if (st == VG_OK && p->rank == 0)
     st = within_limit(p, p->report.estimate / 1.5, "would have", err);
