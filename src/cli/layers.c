@@ -361,30 +361,34 @@ static int first_is_known(const struct vg_layer_stage *s,
   return 1;
 }
 
-/* Numbers of the walls, as " 3 4 7". */
-static void wall_numbers(const struct vg_layer_stage *s,
-                         const struct vg_mesh *m, char *list, size_t size)
+/* How many walls there are, and their numbers as " 3 4 7"; `odd`: those alone
+ * whose condition says that they are none. */
+static size_t wall_numbers(const struct vg_layer_stage *s,
+                           const struct vg_mesh *m, int odd, char *list,
+                           size_t size)
 {
   size_t n = 0, at = 0;
 
   *list = 0;
-  for (size_t i = 0; i < s->n_patch && at + 16 < size; i++) {
-    if (s->reason[i] == VG_WALL_NOT) continue;
-    if (n++ == SHOWN_PATCHES) {
-      snprintf(list + at, size - at, " ...");
-      break;
-    }
-    at += (size_t)snprintf(list + at, size - at, " %d", (int)m->patch[i].id);
+  for (size_t i = 0; i < s->n_patch; i++) {
+    const struct vg_patch *p = &m->patch[i];
+
+    if (s->reason[i] == VG_WALL_NOT ||
+        (odd && (vg_is_viscous(p) || p->bc == VG_BC_NONE)))
+      continue;
+    if (n++ < SHOWN_PATCHES)
+      at += (size_t)snprintf(list + at, size - at, " %d", (int)p->id);
   }
+  if (n > SHOWN_PATCHES) snprintf(list + at, size - at, " ...");
+  return n;
 }
 
 /* Layers that conditions suggest but nobody has given a height for. */
-static void note_missing(const struct vg_layer_stage *s, struct vg_problem *p,
-                         size_t n_wall)
+static void note_missing(const struct vg_layer_stage *s, struct vg_problem *p)
 {
   char list[12 * SHOWN_PATCHES + 24];
+  size_t n_wall = wall_numbers(s, &p->surface, 0, list, sizeof list);
 
-  wall_numbers(s, &p->surface, list, sizeof list);
   vg_note(&p->notes, "no layers on %zu viscous wall%s (patch%s%s), for no "
           "first height is known: give --first, or --y-plus with --reynolds "
           "and --reference-length", n_wall, n_wall > 1 ? "s" : "",
@@ -418,9 +422,13 @@ static void note_choice(const struct vg_layer_stage *s, struct vg_problem *p)
 {
   const struct vg_layer_settings *l = &p->settings.layer;
   double ratio = choose(l->ratio, 0), cap = law_cap(l->cap);
-  size_t n = 0;
+  char list[12 * SHOWN_PATCHES + 24];
+  size_t n = 0, n_odd = wall_numbers(s, &p->surface, 1, list, sizeof list);
 
   for (size_t i = 0; i < s->n_patch; i++) n += s->reason[i] == VG_WALL_BODY;
+  if (n_odd)
+    vg_note(&p->notes, "%zu patch%s layers, but a condition that is not "
+            "viscous: number%s", n_odd, n_odd > 1 ? "es have" : " has", list);
   if (n)
     vg_note(&p->notes, "no patch has a condition: layers grow on the whole "
             "body (--walls, --slip or the table layers settle it)");
@@ -508,7 +516,7 @@ vg_status vg_layer_stage_plan(struct vg_layer_stage *s, struct vg_problem *p,
   VG_TRY(vg_walls_find(p, s->reason, &n_wall, err));
   if (n_wall && !vg_walls_asked(&p->settings) &&
       !first_is_known(s, p, least)) {
-    note_missing(s, p, n_wall);
+    note_missing(s, p);
     n_wall = 0;
   }
   if (!n_wall) {

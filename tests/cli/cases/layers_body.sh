@@ -21,6 +21,7 @@ lacks out "inviscid"
 says body.mapbc "4"
 rm body.mapbc
 says out "no patch has a condition: layers grow on the whole body"
+lacks out "not viscous"
 [ "$(grep -c '"wall_by": "body"' body.report.json)" = 2 ] ||
   fail "not both patches of the body are walls"
 sed -n '/^layers$/,/^$/p' body.resolved.deck >rows
@@ -33,6 +34,11 @@ vanguard mesh -q -p body --first 0.01 --slip 2 --out slip
 exits 0
 [ "$(grep -c '"wall_by"' slip/body.report.json)" = 1 ] ||
   fail "a slip patch has layers"
+
+# The farfield, caught by a range: as said, and noted.
+vanguard mesh -q -p body --first 0.01 --walls 1-3 --out far
+exits 0
+says out "1 patch has layers, but a condition that is not viscous: number 3"
 
 # Not asked for: none.
 vanguard mesh -q -p body --out none
