@@ -10,15 +10,16 @@
 
 /* Measured: docs/performance.md, Model. */
 const struct vg_rates vg_rates_measured = {
-  .pencil = { 0, 1.8e-6, 4.1e-6, 4.8e-6, 0, 0, 0 },
-  .rib = { 0, 9e-6, 14e-6, 3.5e-6, 0, 0, 0 },
-  .tile = { 0, 2.65e-6, 5.2e-6, 3.4e-6, 0, 0, 0 },
-  .leaf = { 0, 1.3e-6, 2.1e-6, 3e-6, 0, 0, 0 },
-  .closing = { 7.5e-3, 0, 0, 0, 0, 0, 0 },
+  .pencil = { 0, 1.6e-6, 2.9e-6, 5e-6, 0, 0, 0 },
+  .rib = { 0, 5.5e-6, 10.5e-6, 5e-6, 0, 0, 0 },
+  .tile = { 0, 2.5e-6, 4.6e-6, 1.9e-6, 0, 0, 0 },
+  .leaf = { 0, 1e-6, 1.6e-6, 2.3e-6, 0, 0, 0 },
+  .closing = { 2.5e-3, 0, 0, 0, 0, 0, 0 },
+  .repair = { 0, 0.2e-6, 1.9e-6, 0, 0, 0, 0 },
   .plan = { 0, 0, 0, 0.021e-6, 0, 0.12e-6, 0.98 },
   .join = { 0, 0, 0, 0.04e-6, 0, 0.12e-6, 0.98 },
-  .close = { 0, 0, 0, 0.025e-6, 0.8e-3, 0, 0.98 },
-  .split = { 0, 0, 0, 0.09e-6, 0, 0, 0.98 },
+  .close = { 0, 0, 0, 0.025e-6, 0.3e-3, 0, 0.98 },
+  .split = { 0, 0, 0, 0.045e-6, 0, 0, 0.98 },
 };
 
 /* Loops over fewer faces are of one chunk or two (node_split.c). */
@@ -29,9 +30,9 @@ static const double loop_faces = 5000;
 static const double places_per_corner = 0.5, place_faces = 900;
 
 /* Cells of a zone reach this many spacings to each side of its plane, those of
- * a pencil of both of its planes: as measured over boxes. */
-static const double tile_reach = 0.68, pencil_reach = 2.05;
-static const double rib_reach = 0.56;
+ * a pencil of both of its planes: as measured over boxes and spheres. */
+static const double tile_reach = 0.57, pencil_reach = 1.9;
+static const double rib_reach = 0.5;
 
 /* Faces of a triangle's own spacing to a square of it, 4 / sqrt(3). */
 static const double faces_per_square = 2.309;
@@ -52,6 +53,9 @@ struct bit { float x[3], h, n; };
 
 struct front { size_t n, cap; struct bit *bit; };
 
+/* Cells, and how many of them lie where spacing varies. */
+struct amount { double cells, graded; };
+
 /* A void on its way down the tree. */
 struct part {
   struct vg_load load;
@@ -65,6 +69,8 @@ struct part {
 struct forecast {
   struct vg_outlook *out;
   double n_handed, handed;   /* tasks since the last join, faces they got */
+  struct amount zones;       /* made by pencils and tiles */
+  char leaf[VG_PATH_MAX];    /* one of the leaves */
   const struct vg_cut_rule *rule;
   const struct vg_rates *rates;
   struct vg_error *err;
@@ -109,9 +115,6 @@ static vg_status add_bit(struct front *f, const struct bit *b,
 }
 
 /* --- tasks --------------------------------------------------------------- */
-
-/* Cells, and how many of them lie where spacing varies. */
-struct amount { double cells, graded; };
 
 /* Of a share of a cube. */
 static void add_amount(struct amount *a, const struct vg_load_cube *c,
@@ -346,6 +349,8 @@ static vg_status grow_stage(struct forecast *c, struct part *p,
     c->out->n_pencil += kind == VG_SPAN_PENCIL;
     c->out->n_tile += kind == VG_SPAN_TILE;
     c->out->zone_cells += a.cells;
+    c->zones.cells += a.cells;
+    c->zones.graded += a.graded;
   }
   for (size_t k = 0; k < count; k++) {
     struct vg_region r;
@@ -487,7 +492,27 @@ static vg_status add_leaf(struct forecast *c, const struct part *p,
   snprintf(path, sizeof path, "%.*sL", VG_PATH_MAX - 2, p->path);
   st = add_task(c, path, after, VG_SPAN_LEAF, &c->rates->leaf, a,
                 c->out->node[index].faces, (double)p->load.n);
+  memcpy(c->leaf, path, sizeof path);
 done:
+  return st;
+}
+
+/* Cells beside interfaces get better when all leaves are there: as many tasks
+ * as zones, each with an equal share of their cells. */
+static vg_status add_repairs(struct forecast *c)
+{
+  size_t n = c->out->n_pencil + c->out->n_tile;
+  char path[VG_PATH_MAX];
+  vg_status st = VG_OK;
+
+  for (size_t k = 0; st >= 0 && k < n && c->leaf[0]; k++) {
+    struct amount a = { c->zones.cells / (double)n,
+                        c->zones.graded / (double)n };
+
+    snprintf(path, sizeof path, "0R%zu", k);
+    st = add_task(c, path, c->leaf, VG_SPAN_REPAIR, &c->rates->repair, a,
+                  a.cells, 0);
+  }
   return st;
 }
 
@@ -745,6 +770,7 @@ vg_status vg_outlook_new(const struct vg_void *v, const struct vg_load *load,
   VG_TRY(add_load(load, &root, err));
   VG_TRY(add_surface(v, &root, err));
   VG_TRY(go_down(&c, &root, ""));
+  VG_TRY(add_repairs(&c));
   line_up(&o.spans);
   vg_spans_sort(&o.spans);
   o.spans.n_rank = o.spans.n_thread = 1;

@@ -299,6 +299,33 @@ static int has(const struct vg_spans *s, const struct vg_span *one)
   return 0;
 }
 
+/* One for each zone, after all leaves; none where nothing is cut. */
+static void repairs_come_last(void **state)
+{
+  struct vg_outlook o, whole;
+  struct scene s;
+  size_t n = 0;
+
+  (void)state;
+  make(&s, "sphere", 100000);
+  o = look(&s, leaves_of(s.load.cells / 8), 0);
+  whole = look(&s, leaves_of(2 * s.load.cells), 0);
+  for (size_t i = 0; i < o.spans.n; i++) {
+    const struct vg_span *one = &o.spans.span[i];
+
+    if (one->kind != VG_SPAN_REPAIR) continue;
+    n++;
+    assert_true(one->cpu > 0);
+    assert_true(one->after[strlen(one->after) - 1] == VG_SPAN_LEAF);
+  }
+  assert_int_equal(n, o.n_pencil + o.n_tile);
+  assert_true(n > 0);
+  assert_int_equal(whole.spans.n, 1);
+  vg_outlook_release(&o);
+  vg_outlook_release(&whole);
+  release(&s);
+}
+
 /* A uniform box is cut by the same planes: every pencil and tile of the whole
  * by its name, as many of each kind, cells of zones within a fifth (they were
  * fitted over boxes ten times as large) and of leaves within a tenth. */
@@ -322,7 +349,8 @@ static void a_run_has_these_tasks(void **state)
   assert_int_equal(r.n_pencil, o.n_pencil);
   assert_int_equal(r.n_tile, o.n_tile);
   for (size_t i = 0; i < o.spans.n; i++)
-    if (o.spans.span[i].kind != VG_SPAN_LEAF)
+    if (o.spans.span[i].kind != VG_SPAN_LEAF &&
+        o.spans.span[i].kind != VG_SPAN_REPAIR)
       assert_true(has(&spans, &o.spans.span[i]));
   assert_true(fabs(made(&o.spans, 'L') / made(&spans, 'L') - 1) < 0.1);
   assert_true(fabs(o.zone_cells / (double)r.n_zone_cell - 1) < 0.2);
@@ -352,6 +380,7 @@ int main(void)
     cmocka_unit_test(it_is_the_same_twice),
     cmocka_unit_test(levels_and_axes_are_obeyed),
     cmocka_unit_test(a_faster_core_needs_less),
+    cmocka_unit_test(repairs_come_last),
     cmocka_unit_test(a_run_has_these_tasks),
     cmocka_unit_test(points_follow_from_cells),
   };
