@@ -92,21 +92,23 @@ static int reserve(struct placer *p, size_t n)
                     sizeof *p->queue);
 }
 
-/* Are points to be placed at x? */
-static int is_wanted(const struct placer *p, const double x[3])
+/* Are points to be placed at x? h: the spacing, not farther off than `off`. */
+static int is_wanted(const struct placer *p, const double x[3], double h,
+                     double off)
 {
   return !p->region ||
-         vg_region_near(p->region, p->sizing, x, VG_BAND_PLACE);
+         vg_region_near_by(p->region, p->sizing, x, VG_BAND_PLACE, h, off);
 }
 
-/* Let a point stand at c + d with spacing h, unless it is outside. */
+/* Let a point stand at c + d with spacing h, that of a place not farther off
+ * than `off`, unless it is outside. */
 static int stand(struct placer *p, const double c[3], const double d[3],
-                 double h, uint32_t start)
+                 double h, double off, uint32_t start)
 {
   double x[3] = {c[0] + d[0], c[1] + d[1], c[2] + d[2]};
   uint32_t cell, point = (uint32_t)p->n;
 
-  if (!is_wanted(p, x)) return 0;
+  if (!is_wanted(p, x, h, off)) return 0;
   cell = vg_tets_locate(p->t, start, x);
   if (cell == VG_NONE || p->t->flag[cell] & VG_OUTSIDE) return 0;
   if (reserve(p, p->n + 1)) return -1;
@@ -143,7 +145,7 @@ static int propose(struct placer *p, const double c[3], const double unit[3],
   if (vg_near_count(&p->near, d, 0.9 * exclusion * h)) return 0;
   there = aim(p, c, unit, h, d);
   if (vg_near_count(&p->near, d, exclusion * there)) return 0;
-  return stand(p, c, d, there, start);
+  return stand(p, c, d, there, fabs(there - h), start);
 }
 
 static const double pattern[8][3] = {
@@ -210,7 +212,7 @@ static int grow_level(struct placer *p, const double c[3], double h,
             vg_near_count(&p->near, d, exclusion_level * h) ||
             (!everywhere && !is_level(p, x, h)))
           continue;
-        if (stand(p, c, d, h, start)) return -1;
+        if (stand(p, c, d, h, 0, start)) return -1;
       }
     }
   return 0;
@@ -273,11 +275,10 @@ static int grow_face(struct placer *p, uint32_t link)
   if (on_lattice(v[0], h) && on_lattice(v[1], h) && on_lattice(v[2], h))
     return 0;
   if (p->region) {           /* saves the search where nothing is wanted */
-    double d[3];
+    double d[3], there = aim(p, c, unit, h, d);
 
-    aim(p, c, unit, h, d);
     for (int k = 0; k < 3; k++) d[k] += c[k];
-    if (!is_wanted(p, d)) return 0;
+    if (!is_wanted(p, d, there, fabs(there - h))) return 0;
   }
   vg_near_gather(&p->near, c, h, (apex + exclusion) * 1.1 * h);
   return propose(p, c, unit, h, link >> 2);
@@ -381,10 +382,10 @@ vg_status vg_place_seeds(size_t n, const double (*x)[3],
 /* --- the front ----------------------------------------------------------- */
 
 /* May what stands at x propose points that are near the region? */
-static int may_propose(const struct placer *p, const double x[3])
+static int may_propose(const struct placer *p, const double x[3], double h)
 {
-  return !p->region ||
-         vg_region_near(p->region, p->sizing, x, VG_BAND_PLACE + sideways);
+  return !p->region || vg_region_near_by(p->region, p->sizing, x,
+                                         VG_BAND_PLACE + sideways, h, 0);
 }
 
 static int start_points(struct placer *p)
@@ -400,7 +401,7 @@ static int start_points(struct placer *p)
   for (uint32_t i = 0; i < p->n; i++) {
     p->h[i] = (float)vg_sizing_at(p->sizing, p->x[i]);
     if (vg_near_add(&p->near, p->x[i], p->h[i])) return -1;
-    if (p->cell[i] != VG_NONE && may_propose(p, p->x[i]))
+    if (p->cell[i] != VG_NONE && may_propose(p, p->x[i], p->h[i]))
       push(p, (uint32_t)p->n_face + i, p->h[i]);
   }
   return 0;
@@ -430,12 +431,13 @@ static int push_faces(struct placer *p)
 {
   for (uint32_t i = 0; i < p->n_face; i++) {
     const struct vg_cell *cell = &p->t->cell[p->face[i] >> 2];
-    double c[3] = {0};
+    double c[3] = {0}, h;
 
     for (int j = 0; j < 3; j++)
       for (int k = 0; k < 3; k++)
         c[k] += p->t->x[cell->v[vg_face[p->face[i] & 3][j]]][k] / 3;
-    if (may_propose(p, c)) push(p, i, vg_sizing_at(p->sizing, c));
+    h = vg_sizing_at(p->sizing, c);
+    if (may_propose(p, c, h)) push(p, i, h);
   }
   return 0;
 }

@@ -65,6 +65,23 @@ static double gap(const struct vg_region *r, int n, const double *const *x)
   return far;
 }
 
+int vg_region_near_by(const struct vg_region *r, const struct vg_sizing *sizing,
+                      const double x[3], double band, double h, double d)
+{
+  double far = gap(r, 1, &x), most = vg_region_band(r, band), foot2 = 0, off;
+
+  if (far == 0) return 1;
+  for (int i = 0; i < r->n_plane; i++) {
+    double s = side(&r->plane[i], x);
+
+    foot2 += s * s;
+  }
+  off = vg_sizing_slope(sizing) * (sqrt(foot2) + d);
+  if (far <= most * (h - off)) return 1;
+  if (far > most * (h + off)) return 0;
+  return far <= most * vg_region_spacing(r, sizing, x);
+}
+
 int vg_region_near(const struct vg_region *r, const struct vg_sizing *sizing,
                    const double x[3], double band)
 {
@@ -142,7 +159,8 @@ static double longest(const double *const corner[3])
 
 /* A triangle much larger than the cells here may cross the planes, and the
  * walls, each at another place, so its part within reach is cut out: by the
- * largest spacing found at it, and then, to be sure, by that found there. */
+ * largest spacing found at it, and then, to be sure, by that found there.
+ * most: of its corners and its middle. */
 static int large_meets(const struct vg_region *r,
                        const struct vg_sizing *sizing,
                        const double *const corner[3], double most,
@@ -150,12 +168,20 @@ static int large_meets(const struct vg_region *r,
 {
   double middle[3];
 
-  for (int k = 0; k < 3; k++)
-    middle[k] = (corner[0][k] + corner[1][k] + corner[2][k]) / 3;
-  most = fmax(most, vg_region_spacing(r, sizing, middle));
   if (!reaches(r, corner, vg_region_band(r, band) * most, middle)) return 0;
   return !is_sure || reaches(r, corner, vg_region_band(r, band) *
                                vg_region_spacing(r, sizing, middle), middle);
+}
+
+static double spacing_amid(const struct vg_region *r,
+                           const struct vg_sizing *sizing,
+                           const double *const corner[3])
+{
+  double middle[3];
+
+  for (int k = 0; k < 3; k++)
+    middle[k] = (corner[0][k] + corner[1][k] + corner[2][k]) / 3;
+  return vg_region_spacing(r, sizing, middle);
 }
 
 static int meets(const struct vg_region *r, const struct vg_sizing *sizing,
@@ -167,6 +193,7 @@ static int meets(const struct vg_region *r, const struct vg_sizing *sizing,
     most = fmax(most, vg_region_spacing(r, sizing, corner[k]));
   if (longest(corner) <= 2 * most)
     return gap(r, 3, corner) <= vg_region_band(r, band) * most;
+  most = fmax(most, spacing_amid(r, sizing, corner));
   return large_meets(r, sizing, corner, most, band, is_sure);
 }
 
@@ -267,9 +294,9 @@ static double gap_of(const struct vg_ruler *ruler, const uint32_t v[3])
 }
 
 /* Large triangles are looked at as in vg_region_meets once their sides do not
- * rule them out, by the most that the spacing may be in their middle or is. */
-int vg_ruler_meets(const struct vg_ruler *ruler, const uint32_t v[3],
-                   double band)
+ * tell, by the least and the most that the spacing may be anywhere on them. */
+static int ruler_meets(const struct vg_ruler *ruler, const uint32_t v[3],
+                       double band, int is_sure)
 {
   const struct vg_region *r = ruler->region;
   const double (*x)[3] = ruler->x;
@@ -277,14 +304,25 @@ int vg_ruler_meets(const struct vg_ruler *ruler, const uint32_t v[3],
   const double *h = ruler->spacing;
   double most = fmax(fmax(h[v[0]], h[v[1]]), h[v[2]]);
   double reach = vg_region_band(r, band);
-  double far = gap_of(ruler, v), size = longest(corner), middle[3];
+  double far = gap_of(ruler, v), size = longest(corner), rise;
 
   if (size <= 2 * most) return far <= reach * most;
-  if (far > reach * (most + ruler->slope * size)) return 0;
-  if (far > reach * most) {
-    for (int k = 0; k < 3; k++)
-      middle[k] = (corner[0][k] + corner[1][k] + corner[2][k]) / 3;
-    if (far > reach * vg_region_spacing(r, ruler->sizing, middle)) return 0;
-  }
-  return large_meets(r, ruler->sizing, corner, most, band, 1);
+  rise = ruler->slope * size;
+  if (far > reach * (most + rise)) return 0;
+  if (ruler->n_side == 1 && far <= reach * fmax(most - rise, 0)) return 1;
+  most = fmax(most, spacing_amid(r, ruler->sizing, corner));
+  return far <= reach * most &&
+         large_meets(r, ruler->sizing, corner, most, band, is_sure);
+}
+
+int vg_ruler_meets(const struct vg_ruler *ruler, const uint32_t v[3],
+                   double band)
+{
+  return ruler_meets(ruler, v, band, 1);
+}
+
+int vg_ruler_may_meet(const struct vg_ruler *ruler, const uint32_t v[3],
+                      double band)
+{
+  return ruler_meets(ruler, v, band, 0);
 }

@@ -62,6 +62,11 @@ void vg_region_foot(const struct vg_region *r, const double x[3],
 /** Is x on the inner side of all walls? */
 int vg_region_within(const struct vg_region *r, const double x[3]);
 
+/** vg_region_near, where h is the spacing at most d from x: it is looked up
+ * only where that does not tell. */
+int vg_region_near_by(const struct vg_region *r, const struct vg_sizing *sizing,
+                      const double x[3], double band, double h, double d);
+
 /** Is x within reach + band spacings of every plane, and no farther beyond any
  * wall than VG_BEYOND_WALLS of it? */
 int vg_region_near(const struct vg_region *r, const struct vg_sizing *sizing,
@@ -98,6 +103,10 @@ void vg_ruler_release(struct vg_ruler *ruler);
 /** vg_region_meets of points by their numbers. */
 int vg_ruler_meets(const struct vg_ruler *ruler, const uint32_t v[3],
                    double band);
+
+/** vg_region_may_meet likewise. */
+int vg_ruler_may_meet(const struct vg_ruler *ruler, const uint32_t v[3],
+                      double band);
 
 /** Does the cell a b c d, within the walls, cross every plane or have a corner
  * within reach? */
