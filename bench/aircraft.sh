@@ -12,18 +12,20 @@ onera_m6      transport/onera_m6_sharp_te_farfield.lb8.ugrid.xz 3-12 0.646 11.72
 30p30n_medium highlift/30p30n_swept_wing_in_box_medium.lb8.ugrid.xz 1-10 1000 9e6
 falcon        bizjet/falcon_full_mirrored.lb8.ugrid.xz all 2.9 5e6
 f16           supersonic/f16_full.lb8.ugrid.xz all 3.4 5e6
+tmx1242       supersonic/tmx1242_wing_body.lb8.ugrid.xz all 8 5e6
 "
 
-# aircraft DATA NAME FOLDER: its surface in FOLDER, if there is one; `project`
-# and `options` say how it is meshed. Status 1: no such file.
+# aircraft DATA NAME FOLDER: its surface in FOLDER, if there is one, packed or
+# not; `project` and `options` say how it is meshed. Status 1: no such file.
 aircraft() {
   local name file walls length reynolds
   read -r name file walls length reynolds < <(
     awk -v n="$2" '$1 == n' <<< "$aircraft_table") || return 1
-  [ -e "$1/$file" ] || return 1
   mkdir -p "$3"
   project=$3/$name.lb8.ugrid
-  [ -e "$project" ] || xz -dc "$1/$file" > "$project"
+  if [ -e "$1/${file%.xz}" ]; then cp -f "$1/${file%.xz}" "$project"
+  elif [ -e "$1/$file" ]; then xz -dc "$1/$file" > "$project"
+  else return 1; fi
   options=(--layers yes --y-plus 1 --reynolds "$reynolds"
     --reference-length "$length" --ratio 1.2)
   case $walls in

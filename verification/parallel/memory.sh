@@ -1,0 +1,76 @@
+#!/usr/bin/env bash
+# verification/parallel/memory.sh: memory of a large mesh with layers, on one
+# rank and on several.
+#
+# usage: verification/parallel/memory.sh [--quick] [--build DIR] [--cells N]
+#          [--least N] [--ranks LIST] [--work DIR] [--out FILE]
+#   --quick  a mesh of 2 million cells
+#   --build  build folder (default build/release, made when missing)
+#   --cells  of the demo "wing" without its layers (default 12000000, with them
+#            53 million)
+#   --least  cells that there must be in all (default 50000000)
+#   --ranks  numbers of ranks (default "1 2 4"); each has threads for its share
+#            of the cores
+#   --work   scratch folder, kept (default: a temporary one, removed)
+#   --out    write the table to FILE too (markdown)
+#
+# Bars: all ranks together within 24 GiB; a rank within its share of 1.3 x 150
+# bytes a cell and the shared part, what any rank holds whatever their number
+# (surface, tops of layers, load, sizes, program), as vanguard plan has it.
+# Peaks are of resident memory, as the system has it of the largest process and
+# as the ranks report it for their sum.
+# Exit status: 0 all bars kept, 1 one missed or a run failed, 2 usage. Needs:
+# jq, time, openmpi-bin. By default about 3 minutes on two cores, and 2 GB of
+# disk.
+set -euo pipefail
+
+root=$(cd "$(dirname "$0")/../.." && pwd)
+# shellcheck source=bench/common.sh
+. "$root/bench/common.sh"
+# shellcheck source=bench/aircraft.sh
+. "$root/bench/aircraft.sh"
+build=$root/build/release
+work='' cells='' least='' ranks='1 2 4' quick=0 project='' options=() failed=0
+take_options "build cells least ranks work out" quick "$@"
+if [ "$quick" = 1 ]; then cells=${cells:-250000} least=${least:-1000000}; fi
+: "${cells:=12000000}" "${least:=50000000}"
+need jq jq
+need /usr/bin/time time
+need mpirun openmpi-bin
+make_programs "$build" vanguard
+vanguard=$build/bin/vanguard
+work_folder memory
+[ -z "$out" ] || : > "$out"
+
+demo_project wing "$cells" "$work/input"
+"$vanguard" plan -q -j -n 1 -p "$project" > "$work/plan.json"
+shared=$(get "$work/plan.json" '.memory.shared / 1048576')
+say << HEAD
+Vanguard $("$vanguard" --version | awk 'NR == 1 { print $2 }'), $(nproc) cores, $(date -u +%Y-%m-%d); wing with layers; shared part $(calc "int($shared + 0.5)") MB. Bars: all ranks 24576 MB, a rank 1.3 x 150 bytes x cells / ranks + shared part.
+
+| ranks x threads | cells | s | peak of a rank, MB | bar | beside the shared part, bytes per cell of a rank | all ranks, MB | bars |
+|---|---|---|---|---|---|---|---|
+HEAD
+for n in $ranks; do
+  threads=$(($(nproc) > n ? $(nproc) / n : 1))
+  run_mesh "$vanguard" "$work/run" "$n" "$threads" -p "$project" \
+    --write b8.ugrid ||
+    die "$n x $threads failed: $(grep -a '^vanguard' "$work/run/log" | tail -1)"
+  rm -f "$work"/run/out/*.ugrid
+  line=$(jq -r --argjson n "$n" --argjson t "$threads" \
+    --argjson shared "$shared" --argjson least "$least" '
+    (.cells / $n / 1048576) as $share | ($shared + 195 * $share) as $bar |
+    ([if .cells < $least then "too few cells" else empty end,
+      if .valid then empty else "not valid" end,
+      if .peak_mb > $bar then "a rank" else empty end,
+      if .memory_mb > 24576 then "all ranks" else empty end] |
+     join(", ")) as $missed |
+    "| \($n) x \($t) | \(.cells) | \(.wall | round) | \(.peak_mb | round) | " +
+    "\($bar | round) | \((.peak_mb - $shared) / $share | round) | " +
+    "\(.memory_mb | round) | " +
+    "\(if $missed == "" then "kept" else "missed: " + $missed end) |"' \
+    "$work/run/row.json")
+  echo "$line" | say
+  case $line in *missed*) failed=1 ;; esac
+done
+exit $failed
