@@ -8,6 +8,10 @@
  * of the volume: 8/9 for the regular tetrahedron, 0 for a flat one. Both small
  * and large angles spoil it. Uses + - * / only.
  *
+ * Not 0 only where the sign is the exact one, and rounding has no say in the
+ * areas: 0 where the volume is that small a share of three edges' product.
+ * Of points in a line all areas are rounding, and so is any sine of them.
+ *
  * The sine at edge kl, between faces i and j, is det l_kl / (|n_i| |n_j|)
  * with det six times the volume and n twice the area vectors. */
 static inline double vg_shape(const double a[3], const double b[3],
@@ -27,11 +31,13 @@ static inline double vg_shape(const double a[3], const double b[3],
   double px = vx - ux, py = vy - uy, pz = vz - uz;
   double qx = wx - ux, qy = wy - uy, qz = wz - uz;
   double rx = wx - vx, ry = wy - vy, rz = wz - vz;
-  double least = (ux * ux + uy * uy + uz * uz) * na * nb, next;
+  double uu = ux * ux + uy * uy + uz * uz, vv = vx * vx + vy * vy + vz * vz;
+  double ww = wx * wx + wy * wy + wz * wz, square = det * fabs(det);
+  double least = uu * na * nb, next;
 
-  next = (vx * vx + vy * vy + vz * vz) * na * nc;
+  next = vv * na * nc;
   least = next < least ? next : least;
-  next = (wx * wx + wy * wy + wz * wz) * na * nd;
+  next = ww * na * nd;
   least = next < least ? next : least;
   next = (px * px + py * py + pz * pz) * nb * nc;
   least = next < least ? next : least;
@@ -40,7 +46,8 @@ static inline double vg_shape(const double a[3], const double b[3],
   next = (rx * rx + ry * ry + rz * rz) * nc * nd;
   least = next < least ? next : least;
   next = na * nb * nc * nd;
-  return next > 0 ? det * (det < 0 ? -det : det) * least / next : 0;
+  return next > 0 && fabs(square) > 1e-24 * uu * vv * ww
+         ? square * least / next : 0;
 }
 
 /** Below this a cell counts as flat: its sign in plain arithmetic, and its
