@@ -266,7 +266,7 @@ int vg_near_init(struct vg_near *s, const double lo[3], double h_min,
   s->slope = slope;
   s->level_lo = level_of(h_min) - 1;
   s->level_hi = level_of(h_max) + 1;
-  return resize(s, 1 << 16);
+  return resize(s, 1 << 10);
 }
 
 void vg_near_release(struct vg_near *s)
