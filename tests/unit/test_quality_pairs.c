@@ -1,0 +1,166 @@
+/* The judge on tetrahedra alone: faces matched as they come
+ * (core/quality_pairs.c), when many wait and in columns of layers. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "base/memory.h"
+#include "core/quality.h"
+
+static struct vg_mesh room_for(size_t n_point, size_t n_tet, size_t n_tri)
+{
+  struct vg_mesh m = VG_MESH_INIT;
+
+  m.n_point = n_point;
+  m.n_tet = n_tet;
+  m.n_tri = n_tri;
+  m.point = vg_calloc(n_point, sizeof *m.point);
+  m.tet = vg_calloc(n_tet, sizeof *m.tet);
+  m.tri = vg_calloc(n_tri, sizeof *m.tri);
+  m.tri_patch = vg_calloc(n_tri, sizeof *m.tri_patch);
+  assert_true(m.point && m.tet && m.tri && m.tri_patch);
+  assert_true(vg_mesh_add_patch(&m, 1, "wall") == 0);
+  return m;
+}
+
+static struct vg_mesh_report judge(const struct vg_mesh *m)
+{
+  struct vg_mesh_report r;
+  struct vg_error err = VG_ERROR_INIT;
+
+  assert_int_equal(vg_mesh_judge(m, NULL, &r, &err), VG_OK);
+  return r;
+}
+
+static void turn_over(uint32_t t[4])
+{
+  uint32_t first = t[0];
+
+  t[0] = t[1];
+  t[1] = first;
+}
+
+/* n pairs of tetrahedra on a common face, each apart from the others: the
+ * second ones come when all first ones wait, and the boundary after them. */
+static struct vg_mesh pairs_apart(uint32_t n)
+{
+  static const double x[5][3] =
+    {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, -1}};
+  static const uint32_t tri[6][3] =
+    {{0, 3, 1}, {1, 3, 2}, {2, 3, 0}, {0, 1, 4}, {1, 2, 4}, {2, 0, 4}};
+  struct vg_mesh m = room_for(5 * n, 2 * n, 6 * n);
+
+  for (uint32_t i = 0; i < n; i++) {
+    const uint32_t first[4] = {0, 1, 2, 3}, second[4] = {0, 2, 1, 4};
+
+    for (uint32_t k = 0; k < 5; k++)
+      for (int d = 0; d < 3; d++)
+        m.point[5 * i + k][d] = x[k][d] + (d ? 0 : 2 * (double)i);
+    for (int k = 0; k < 4; k++) {
+      m.tet[i][k] = 5 * i + first[k];
+      m.tet[n + i][k] = 5 * i + second[k];
+    }
+    for (int k = 0; k < 18; k++)
+      m.tri[6 * i + (uint32_t)k / 3][k % 3] = 5 * i + tri[k / 3][k % 3];
+  }
+  return m;
+}
+
+static void many_faces_may_wait(void **state)
+{
+  const uint32_t n = 6000;
+  struct vg_mesh m = pairs_apart(n);
+  struct vg_mesh_report r = judge(&m);
+
+  (void)state;
+  assert_true(r.is_valid);
+  assert_int_equal(r.n_inner_face, n);
+  assert_int_equal(r.n_component, n);
+  assert_true(fabs(r.volume - n / 3.) < 1e-9);
+  turn_over(m.tet[n + 17]);
+  r = judge(&m);
+  assert_int_equal(r.not_positive, 1);
+  assert_int_equal(r.same_side_face, 1);
+  assert_int_equal(r.outward_boundary, 3);
+  assert_int_equal(r.n_component, n);
+  m.n_tri -= 4;                          /* of the last pair */
+  r = judge(&m);
+  assert_int_equal(r.open_face, 4);
+  vg_mesh_release(&m);
+}
+
+#define LEVELS 6
+#define RAISED (3 * LEVELS)
+
+/* A column: its corners are raised in turn, and each time a cell stands on
+ * the one before. Numbers of points are spread by `by`, prime to 21. */
+static struct vg_mesh column(uint32_t by)
+{
+  struct vg_mesh m = room_for(21, RAISED, 2 * RAISED + 2);
+  uint32_t top[3] = {0, by % 21, 2 * by % 21};
+  uint32_t (*t)[3] = m.tri;
+
+  for (uint32_t i = 0; i < 21; i++) {
+    double *x = m.point[i * by % 21];
+
+    x[0] = i % 3 == 1;
+    x[1] = i % 3 == 2;
+    x[2] = i / 3;
+  }
+  memcpy(t++, top, sizeof top);
+  for (uint32_t i = 0; i < RAISED; i++) {
+    uint32_t k = i % 3, next = (i + 3) * by % 21;
+    uint32_t a = top[(k + 1) % 3], b = top[(k + 2) % 3];
+
+    memcpy(m.tet[i], top, sizeof top);
+    m.tet[i][3] = next;
+    memcpy(t++, (uint32_t[3]){ top[k], next, a }, sizeof *t);
+    memcpy(t++, (uint32_t[3]){ top[k], b, next }, sizeof *t);
+    top[k] = next;
+  }
+  memcpy(t, (uint32_t[3]){ top[0], top[2], top[1] }, sizeof *t);
+  return m;
+}
+
+static void cells_of_a_column_are_matched(void **state)
+{
+  (void)state;
+  for (uint32_t by = 1; by < 21; by++) {
+    struct vg_mesh m;
+    struct vg_mesh_report r;
+
+    if (by % 3 == 0 || by % 7 == 0) continue;
+    m = column(by);
+    r = judge(&m);
+    assert_true(r.is_valid);
+    assert_int_equal(r.n_inner_face, RAISED - 1);
+    assert_true(fabs(r.volume - LEVELS / 2.) < 1e-12);
+    for (size_t i = 0; i < RAISED; i++) {
+      int n_inner = 2 - (i == 0) - (i == RAISED - 1);
+
+      turn_over(m.tet[i]);
+      r = judge(&m);
+      assert_int_equal(r.not_positive, 1);
+      assert_int_equal(r.same_side_face, n_inner);
+      assert_int_equal(r.outward_boundary, 4 - n_inner);
+      assert_int_equal(r.open_face + r.crowded_face + r.orphan_boundary, 0);
+      turn_over(m.tet[i]);
+    }
+    vg_mesh_release(&m);
+  }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(many_faces_may_wait),
+    cmocka_unit_test(cells_of_a_column_are_matched),
+  };
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
