@@ -141,7 +141,7 @@ static vg_status write_project(const char *stem, const char *name,
          demo->surface.n_patch);
   printf("%s: settings, for about %s cells%s\n", path[2],
          vg_cli_count((unsigned long long)demo->n_cell, cells),
-         has_layers ? " and the viscous layers" : "");
+         has_layers ? " without the viscous layers" : "");
   if (wanted && demo->n_cell > 1.05 * (double)wanted)
     printf("  %s cells were asked for: the geometry needs more\n",
            vg_cli_count(wanted, cells));
@@ -176,7 +176,8 @@ done:
 int vg_cmd_demo(int argc, char **argv)
 {
   const struct argp_option options[] = {
-    { "cells", 'c', "N", 0, "wanted number of cells [default by case]", 0 },
+    { "cells", 'c', "N", 0, "wanted number of cells, without layers [default "
+      "by case]", 0 },
     { "out", 'o', "DIR", 0, "folder for the project, made where absent "
       "[default here]", 0 },
     { "list", 'l', NULL, 0, "list the cases", 0 },

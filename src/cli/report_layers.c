@@ -154,7 +154,7 @@ static void times(FILE *to, const struct vg_layer_stage *s)
   char a[32], b[32];
 
   fprintf(to, "\n  seconds: topology %.2f, directions %.2f, heights %.2f, "
-          "clearance %.2f, slide\n  patches %.2f, total %.2f (%s columns/s, "
+          "clearance %.2f,\n  slide patches %.2f, total %.2f (%s columns/s, "
           "%s layer cells/s); measure %.2f, join %.2f\n", r->time_topology,
           r->time_direction, r->time_height, r->time_clear, r->time_slide,
           r->time_total, vg_cli_count(rate(r->n_column, r->time_total), a),
@@ -187,6 +187,7 @@ void vg_report_layers_text(FILE *to, const struct vg_layer_stage *s,
   const char *with_y_plus = "    total: least, mean, most   growth: mean, max"
                             "   y+: min mean max";
   const char *without = "    total: least, mean, most   growth: mean, max";
+  char a[32], b[32];
 
   sizes(to, s);
   table(to, s, surface, "      faces  full %  as law   any %  levels: min, "
@@ -196,9 +197,10 @@ void vg_report_layers_text(FILE *to, const struct vg_layer_stage *s,
   table(to, s, surface, s->all.y_plus.max > 0 ? with_y_plus : without,
         row_total, is_any);
   causes(to, s, surface);
-  fprintf(to, "\n  smallest angle of a top %.1f degrees; whole prisms %zu, "
-          "with a bad corner %zu\n", s->judgement.angle_of_top_min,
-          s->judgement.n_prism, s->judgement.n_bad_corner);
+  fprintf(to, "\n  smallest angle of a top %.1f degrees; whole prisms %s, "
+          "with a bad corner %s\n", s->judgement.angle_of_top_min,
+          vg_cli_count(s->judgement.n_prism, a),
+          vg_cli_count(s->judgement.n_bad_corner, b));
   times(to, s);
 }
 
