@@ -441,6 +441,7 @@ static int run(const struct arguments *a)
 
   r.start = vg_display_now();
   if (vg_comm_open(&r.mesh.comm, &err) < 0) return vg_cli_fail(&err);
+  r.mesh.outputs = &r.outputs;
   r.mesh.rank = vg_comm_rank(r.mesh.comm);
   r.mesh.size = vg_comm_size(r.mesh.comm);
   vg_display_init(&r.show, a->quiet || r.mesh.rank);

@@ -288,6 +288,59 @@ done:
   return st;
 }
 
+/* --- while slices are at hand --- */
+
+static vg_status open_item(struct vg_outputs *o, const struct vg_problem *p,
+                           struct vg_comm *comm, const struct vg_slices *mesh,
+                           const char *item, struct vg_error *err)
+{
+  struct vg_slices_options options = { .tail = p->settings.ugrid_tail };
+  char *path = vg_outputs_aside(o, item);
+  vg_status st = path ? vg_outputs_add(o, item, err)
+                      : vg_fail_memory(err, "the output paths");
+
+  st = vg_comm_agree(comm, st, err);
+  if (st >= 0)
+    st = vg_slices_ugrid_open(comm, mesh, path, &options, &o->open[o->n_open],
+                              err);
+  if (st >= 0) o->n_open++;
+  free(path);
+  return st;
+}
+
+vg_status vg_outputs_open(struct vg_outputs *o, const struct vg_problem *p,
+                          struct vg_comm *comm, const struct vg_slices *mesh,
+                          struct vg_error *err)
+{
+  vg_status st = begin(o, comm, err);
+
+  for (size_t i = 0; i < o->n_item && st >= 0; i++)
+    if (vg_slices_is_ugrid(o->item[i]))
+      st = open_item(o, p, comm, mesh, o->item[i], err);
+  return st < 0 ? vg_outputs_close(o, st, err) : st;
+}
+
+vg_status vg_outputs_put(void *outputs, const struct vg_slice *slice,
+                         struct vg_error *err)
+{
+  const struct vg_outputs *o = outputs;
+  vg_status st = VG_OK;
+
+  for (size_t i = 0; i < o->n_open && st >= 0; i++)
+    st = vg_slices_ugrid_put(o->open[i], slice, err);
+  return st;
+}
+
+vg_status vg_outputs_close(struct vg_outputs *o, vg_status st,
+                           struct vg_error *err)
+{
+  while (o->n_open)
+    st = vg_slices_ugrid_close(o->open[--o->n_open], st, err);
+  return st;
+}
+
+/* --- the rest --- */
+
 /* The mesh on its way out. */
 struct writing {
   struct vg_outputs *o;
@@ -453,10 +506,11 @@ vg_status vg_outputs_mesh(struct vg_outputs *o, const struct vg_problem *p,
                           int threads, struct vg_error *err)
 {
   struct writing w = { o, p, layers, comm, mesh, threads, VG_MESH_INIT };
-  vg_status st = begin(o, comm, err);
+  vg_status st = VG_OK;
 
   for (size_t i = 0; i < o->n_item && st >= 0; i++)
-    st = write_item(&w, o->item[i], err);
+    if (!vg_slices_is_ugrid(o->item[i]))
+      st = write_item(&w, o->item[i], err);
   if (st >= 0 && !o->is_guest && layers->is_on)
     st = write_walls(o, p, layers, err);
   if (st >= 0 && !o->is_guest) st = write_deck(o, p, err);

@@ -12,12 +12,16 @@
 /** Kinds of file in a write list. */
 enum { VG_OUTPUT_ITEMS = 16 };
 
+struct vg_slices_ugrid;
+
 struct vg_outputs {
   char *dir, *name;           /* target folder ("." if none), base name */
   char *aside;                /* hidden folder while writing, or NULL */
   int is_guest;               /* 1: another rank makes and removes it */
   size_t n_item;
   char item[VG_OUTPUT_ITEMS][24];
+  size_t n_open;              /* of `item` */
+  struct vg_slices_ugrid *open[VG_OUTPUT_ITEMS];
   size_t n_file, cap_file;
   /* is_case: a folder with an OpenFOAM mesh. A suffix that begins with '_'
    * follows the name without a dot. */
@@ -50,10 +54,23 @@ char *vg_outputs_aside(struct vg_outputs *o, const char *suffix);
 /** Path of STEM.suffix when all is done; free() it. */
 char *vg_outputs_final(const struct vg_outputs *o, const char *suffix);
 
-/** Write the mesh in every form asked for, the resolved deck, and the walls
- * with their layers where there are some. Collective; what is no form of
+/** Start the hidden folder and, in it, the files that can be written slice by
+ * slice while slices are at hand for something else. Between this and closing
+ * every slice must be put once: vg_outputs_put is a vg_slice_body. What stays
+ * open is closed with st, how this rank fared. Open and close: collective; the
+ * same answer on all ranks. */
+vg_status vg_outputs_open(struct vg_outputs *o, const struct vg_problem *p,
+                          struct vg_comm *comm, const struct vg_slices *mesh,
+                          struct vg_error *err);
+vg_status vg_outputs_put(void *outputs, const struct vg_slice *slice,
+                         struct vg_error *err);
+vg_status vg_outputs_close(struct vg_outputs *o, vg_status st,
+                           struct vg_error *err);
+
+/** Write the mesh in every other form asked for, the resolved deck, and the
+ * walls with their layers where there are some. Collective; what is no form of
  * io/slices.h is written from a copy of the whole mesh, by one rank alone.
- * Starts the hidden folder. */
+ * After vg_outputs_close. */
 vg_status vg_outputs_mesh(struct vg_outputs *o, const struct vg_problem *p,
                           const struct vg_layer_stage *layers,
                           struct vg_comm *comm, const struct vg_slices *mesh,

@@ -260,21 +260,10 @@ done:
 
 /* --- judgement ----------------------------------------------------------- */
 
-/* Edges are held against the field's sizes; within layers there is no
- * isotropic size to meet. */
-static vg_status judge(struct vg_run *r, size_t front_faces,
-                       const struct vg_sizing *sizing, struct vg_display *show,
-                       struct vg_error *err)
+static vg_status accept(const struct vg_run *r, struct vg_error *err)
 {
-  double t = vg_display_now();
   char faults[300];
-  vg_status st;
 
-  vg_display_update(show, "judge", vg_run_cells(r), 0);
-  st = vg_slices_judge(r->comm, &r->slices, front_faces, sizing, r->threads,
-                       &r->judge, r->layers ? &r->field_judge : NULL, err);
-  r->time_judge += vg_display_now() - t;
-  if (st < 0) return st;
   if (r->judge.is_valid && (!r->layers || r->field_judge.is_valid))
     return VG_OK;
   vg_report_faults(r->judge.is_valid ? &r->field_judge : &r->judge, faults,
@@ -282,6 +271,27 @@ static vg_status judge(struct vg_run *r, size_t front_faces,
   return vg_fail(err, VG_ERR_GEOMETRY, "the mesh did not pass its own check "
                  "(%s) and was not written; please report this with the "
                  "project files", faults);
+}
+
+/* Edges are held against the field's sizes; within layers there is no
+ * isotropic size to meet. A file of a mesh that is not valid goes again. */
+static vg_status judge(struct vg_run *r, const struct vg_problem *p,
+                       size_t front_faces, const struct vg_sizing *sizing,
+                       struct vg_display *show, struct vg_error *err)
+{
+  double t = vg_display_now();
+  vg_status st;
+
+  vg_display_update(show, "judge", vg_run_cells(r), 0);
+  VG_TRY(vg_outputs_open(r->outputs, p, r->comm, &r->slices, err));
+  st = vg_slices_judge_with(r->comm, &r->slices, front_faces, sizing,
+                            r->threads, vg_outputs_put, r->outputs, &r->judge,
+                            r->layers ? &r->field_judge : NULL, err);
+  if (st >= 0) st = accept(r, err);
+  st = vg_outputs_close(r->outputs, st, err);
+done:
+  r->time_judge += vg_display_now() - t;
+  return st;
 }
 
 static vg_status mesh_plain(struct vg_run *r, const struct vg_problem *p,
@@ -300,7 +310,7 @@ static vg_status mesh_plain(struct vg_run *r, const struct vg_problem *p,
   VG_TRY(look_at_sources(r, p, surface, sizing, err));
   VG_TRY(fill(r, p, surface, sizing, show, err));
   r->slices = *vg_partition_slices(r->field);
-  st = judge(r, 0, sizing, show, err);
+  st = judge(r, p, 0, sizing, show, err);
 done:
   vg_sizing_free(sizing);
   return st;
@@ -372,7 +382,7 @@ static vg_status mesh_layers(struct vg_run *r, const struct vg_problem *p,
                             &layers->join, err);
   VG_TRY(vg_comm_agree(r->comm, st, err));
   VG_TRY(share_layers(r, err));
-  st = judge(r, front->n_tri, sizing, show, err);
+  st = judge(r, p, front->n_tri, sizing, show, err);
 done:
   vg_sizing_free(sizing);
   return st;

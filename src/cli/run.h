@@ -10,6 +10,7 @@
 #include "cli/held.h"
 #include "cli/input.h"
 #include "cli/layers.h"
+#include "cli/output.h"
 #include "core/judge_slices.h"
 #include "layers/slices.h"
 #include "partition/advance.h"
@@ -23,6 +24,7 @@ struct vg_run_options {
 
 struct vg_run {
   struct vg_run_options options;
+  struct vg_outputs *outputs; /* written in part while the mesh is judged */
   struct vg_comm *comm;      /* NULL: one rank without a launcher */
   int rank, size, threads;
   struct vg_partition *field;
@@ -53,7 +55,8 @@ vg_status vg_run_surface(struct vg_run *r, struct vg_problem *p,
                          struct vg_layer_stage *layers,
                          struct vg_display *show, struct vg_error *err);
 
-/** Sizes, layers, field, judgement. Collective; the mesh is r->slices.
+/** Sizes, layers, field, judgement, and what of r->outputs is written slice
+ * by slice. Collective; the mesh is r->slices.
  * p->surface and layers are needed as long as it is. */
 vg_status vg_run_mesh(struct vg_run *r, const struct vg_problem *p,
                       struct vg_layer_stage *layers, struct vg_display *show,

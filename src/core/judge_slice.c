@@ -221,6 +221,7 @@ static vg_status judge_slice(struct vg_slices_judgement *j,
   k.f->n.n_cell += k.n_cell;
   k.f->n.n_point += slice.n_own;
   if (!check(&k)) goto done;
+  if (j->body) VG_TRY(j->body(j->context, &slice, err));
   VG_TRY(note_points(&k, err));
   if (k.n_cell) VG_TRY(judge_cells(&k, err));
 done:

@@ -523,8 +523,22 @@ vg_status vg_slices_judge(struct vg_comm *comm, const struct vg_slices *s,
                           int threads, struct vg_mesh_report *whole,
                           struct vg_mesh_report *field, struct vg_error *err)
 {
+  return vg_slices_judge_with(comm, s, front_faces, sizing, threads, NULL,
+                              NULL, whole, field, err);
+}
+
+vg_status vg_slices_judge_with(struct vg_comm *comm,
+                               const struct vg_slices *s,
+                               uint64_t front_faces,
+                               const struct vg_sizing *sizing, int threads,
+                               vg_slice_body body, void *context,
+                               struct vg_mesh_report *whole,
+                               struct vg_mesh_report *field,
+                               struct vg_error *err)
+{
   struct vg_slices_judgement j = {
     .comm = comm, .s = s, .sizing = sizing, .threads = threads,
+    .body = body, .context = context,
     .n_judged = field ? VG_JUDGED : 1,
     .edges_of = field ? VG_JUDGED_FIELD : VG_JUDGED_WHOLE
   };

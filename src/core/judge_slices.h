@@ -41,4 +41,17 @@ vg_status vg_slices_judge(struct vg_comm *comm, const struct vg_slices *s,
                           int threads, struct vg_mesh_report *whole,
                           struct vg_mesh_report *field, struct vg_error *err);
 
+/** The same, and body (may be NULL) for each slice of this rank while it is at
+ * hand, once if the mesh is valid: so a slice needs to be made once only. As
+ * in vg_slices_each; where its indices are bad or places not finite a slice is
+ * left out. A failure of body fails the call, on all ranks. */
+vg_status vg_slices_judge_with(struct vg_comm *comm,
+                               const struct vg_slices *s,
+                               uint64_t front_faces,
+                               const struct vg_sizing *sizing, int threads,
+                               vg_slice_body body, void *context,
+                               struct vg_mesh_report *whole,
+                               struct vg_mesh_report *field,
+                               struct vg_error *err);
+
 #endif

@@ -63,6 +63,8 @@ struct vg_slices_judgement {
   const struct vg_sizing *sizing;
   int threads, n_judged;     /* n_judged 1: no report of the field */
   int edges_of;              /* VG_JUDGED_...: whose edges are measured */
+  vg_slice_body body;        /* or NULL: for slices that are sound */
+  void *context;             /* of body */
   int n_worker;
   struct vg_judge_worker *worker;
   size_t n_word;             /* one bit for each point of the mesh */

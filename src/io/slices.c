@@ -33,6 +33,24 @@ vg_status vg_slice_file_size(const struct vg_slice_file *f, uint64_t *size,
   return st;
 }
 
+vg_status vg_slice_file_put(const struct vg_slice_file *f,
+                            struct vg_shared_file *to,
+                            const struct vg_slice *slice,
+                            struct vg_error *err)
+{
+  struct vg_output out = VG_OUTPUT_INIT;
+  vg_status st = vg_output_shared(to, &out, err);
+
+  set_limit(f, &out);
+  if (st >= 0) {
+    if (slice) f->slice(f->of, slice, &out);
+    else f->frame(f->of, &out);
+    st = vg_output_flush(&out, err);
+  }
+  vg_output_release(&out);
+  return st;
+}
+
 struct fill {
   const struct vg_slice_file *f;
   struct vg_shared_file *to;
@@ -42,16 +60,8 @@ static vg_status fill_slice(void *context, const struct vg_slice *slice,
                             struct vg_error *err)
 {
   const struct fill *fill = context;
-  struct vg_output out = VG_OUTPUT_INIT;
-  vg_status st = vg_output_shared(fill->to, &out, err);
 
-  set_limit(fill->f, &out);
-  if (st >= 0) {
-    fill->f->slice(fill->f->of, slice, &out);
-    st = vg_output_flush(&out, err);
-  }
-  vg_output_release(&out);
-  return st;
+  return vg_slice_file_put(fill->f, fill->to, slice, err);
 }
 
 vg_status vg_slice_file_fill(const struct vg_slice_file *f,
@@ -60,19 +70,21 @@ vg_status vg_slice_file_fill(const struct vg_slice_file *f,
                              struct vg_error *err)
 {
   struct fill fill = { f, to };
-  struct vg_output out = VG_OUTPUT_INIT;
   vg_status st = VG_OK;
 
-  if (!vg_comm_rank(comm)) {
-    VG_TRY(vg_output_shared(to, &out, err));
-    set_limit(f, &out);
-    f->frame(f->of, &out);
-    VG_TRY(vg_output_flush(&out, err));
-  }
-  st = vg_slices_each(s, threads, fill_slice, &fill, err);
-done:
-  vg_output_release(&out);
-  return st;
+  if (!vg_comm_rank(comm)) st = vg_slice_file_put(f, to, NULL, err);
+  return st < 0 ? st : vg_slices_each(s, threads, fill_slice, &fill, err);
+}
+
+vg_status vg_slice_file_open(const struct vg_slice_file *f,
+                             struct vg_comm *comm, struct vg_shared_file **to,
+                             struct vg_error *err)
+{
+  uint64_t size = 0;
+  vg_status st = vg_slice_file_size(f, &size, err);
+
+  st = vg_comm_agree(comm, st, err);
+  return st < 0 ? st : vg_shared_open(comm, f->path, size, to, err);
 }
 
 vg_status vg_slice_file_write(const struct vg_slice_file *f,
@@ -80,11 +92,8 @@ vg_status vg_slice_file_write(const struct vg_slice_file *f,
                               int threads, struct vg_error *err)
 {
   struct vg_shared_file *to;
-  uint64_t size = 0;
-  vg_status st = vg_slice_file_size(f, &size, err);
+  vg_status st = vg_slice_file_open(f, comm, &to, err);
 
-  st = vg_comm_agree(comm, st, err);
-  if (st >= 0) st = vg_shared_open(comm, f->path, size, &to, err);
   if (st < 0) return st;
   st = vg_slice_file_fill(f, comm, s, threads, to, err);
   return vg_shared_close(to, st, err);
@@ -268,6 +277,19 @@ static vg_status write_boundary(struct vg_comm *comm,
   return vg_comm_agree(comm, st, err);
 }
 
+static vg_status write_ugrid(struct vg_comm *comm, const struct vg_slices *s,
+                             const char *path,
+                             const struct vg_slices_options *o,
+                             struct vg_error *err)
+{
+  struct vg_slices_ugrid *u = NULL;
+  vg_status st = vg_slices_ugrid_open(comm, s, path, o, &u, err);
+
+  if (st < 0) return st;
+  st = vg_slices_each(s, o->threads, vg_slices_ugrid_put, u, err);
+  return vg_slices_ugrid_close(u, st, err);
+}
+
 vg_status vg_slices_write_with(struct vg_comm *comm,
                                const struct vg_slices *s, const char *stem,
                                const char *form,
@@ -285,7 +307,7 @@ vg_status vg_slices_write_with(struct vg_comm *comm,
   if (st >= 0)
     switch (form_of(form)) {
     case FORM_UGRID:
-      st = vg_slices_write_ugrid(comm, s, path, o, err);
+      st = write_ugrid(comm, s, path, o, err);
       break;
     case FORM_COGSG:
       st = vg_slices_write_cogsg(comm, s, stem, o, err);

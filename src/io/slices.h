@@ -43,6 +43,23 @@ vg_status vg_slices_write_with(struct vg_comm *comm,
                                const struct vg_slices_options *o,
                                struct vg_error *err);
 
+/** A binary .ugrid at `path`, written slice by slice by whoever has these at
+ * hand for something else as well. Open and close are collective and have the
+ * same answer on all ranks; put is a vg_slice_body for any number of threads,
+ * and every slice must be put once. close: st says how this rank fared; the
+ * file appears, complete, if all ranks are well. s: needed until closed. */
+struct vg_slices_ugrid;
+int vg_slices_is_ugrid(const char *form);
+vg_status vg_slices_ugrid_open(struct vg_comm *comm,
+                               const struct vg_slices *s, const char *path,
+                               const struct vg_slices_options *o,
+                               struct vg_slices_ugrid **out,
+                               struct vg_error *err);
+vg_status vg_slices_ugrid_put(void *ugrid, const struct vg_slice *slice,
+                              struct vg_error *err);
+vg_status vg_slices_ugrid_close(struct vg_slices_ugrid *u, vg_status st,
+                                struct vg_error *err);
+
 /** Path of piece k of STEM.pvtu, STEM_k.vtu as ParaView has it; they are
  * numbered from 0 without gaps. To be freed; NULL: no memory. */
 char *vg_slices_piece(const char *stem, size_t k);

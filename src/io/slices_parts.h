@@ -113,10 +113,22 @@ struct vg_slice_file {
 vg_status vg_slice_file_size(const struct vg_slice_file *f, uint64_t *size,
                              struct vg_error *err);
 
+/** A slice, or the frame for NULL, into an open file. Local. Threads: any
+ * number at once. */
+vg_status vg_slice_file_put(const struct vg_slice_file *f,
+                            struct vg_shared_file *to,
+                            const struct vg_slice *slice,
+                            struct vg_error *err);
+
 /** Frame (by rank 0) and slices into an open file. Not collective. */
 vg_status vg_slice_file_fill(const struct vg_slice_file *f,
                              struct vg_comm *comm, const struct vg_slices *s,
                              int threads, struct vg_shared_file *to,
+                             struct vg_error *err);
+
+/** Collective; the file has its size. */
+vg_status vg_slice_file_open(const struct vg_slice_file *f,
+                             struct vg_comm *comm, struct vg_shared_file **to,
                              struct vg_error *err);
 
 /** Open, fill, close. Collective. */
@@ -150,10 +162,6 @@ vg_status vg_boundary_points_share(struct vg_comm *comm,
 
 /* --- the forms --- */
 
-vg_status vg_slices_write_ugrid(struct vg_comm *comm,
-                                const struct vg_slices *s, const char *path,
-                                const struct vg_slices_options *o,
-                                struct vg_error *err);
 vg_status vg_slices_write_cogsg(struct vg_comm *comm,
                                 const struct vg_slices *s, const char *stem,
                                 const struct vg_slices_options *o,

@@ -1,25 +1,31 @@
+#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
+#include "io/shared_file.h"
 #include "io/slices_parts.h"
 
 #define BLOCK 3840 /* a multiple of 3, 4, 5 and 6 */
 
-struct ugrid {
+struct vg_slices_ugrid {
   struct vg_ugrid_kind kind;
   struct vg_mesh mesh;       /* the frame */
   uint64_t count[7];
-  const size_t *n_layer_tet; /* NULL: no tail */
+  size_t n_layer_tet;
+  const size_t *tail;        /* NULL: none */
+  struct vg_slice_file file;
+  struct vg_shared_file *to;
 };
 
 static void put_frame(const void *of, struct vg_output *out)
 {
-  const struct ugrid *u = of;
+  const struct vg_slices_ugrid *u = of;
 
-  vg_ugrid_put(out, &u->kind, &u->mesh, u->n_layer_tet);
+  vg_ugrid_put(out, &u->kind, &u->mesh, u->tail);
 }
 
-static void put_points(const struct ugrid *u, const struct vg_slice *slice,
-                       struct vg_output *out)
+static void put_points(const struct vg_slices_ugrid *u,
+                       const struct vg_slice *slice, struct vg_output *out)
 {
   double x[BLOCK / 3][3];
 
@@ -31,8 +37,9 @@ static void put_points(const struct ugrid *u, const struct vg_slice *slice,
   }
 }
 
-static void put_cells(const struct ugrid *u, const struct vg_slice *slice,
-                      int kind, size_t width, struct vg_output *out)
+static void put_cells(const struct vg_slices_ugrid *u,
+                      const struct vg_slice *slice, int kind, size_t width,
+                      struct vg_output *out)
 {
   const uint32_t *node = slice->cell[kind];
   size_t n = width * slice->n_cell[kind];
@@ -49,7 +56,7 @@ static void put_cells(const struct ugrid *u, const struct vg_slice *slice,
 static void put_slice(void *of, const struct vg_slice *slice,
                       struct vg_output *out)
 {
-  const struct ugrid *u = of;
+  const struct vg_slices_ugrid *u = of;
 
   put_points(u, slice, out);
   put_cells(u, slice, VG_SLICE_TET, 4, out);
@@ -57,24 +64,71 @@ static void put_slice(void *of, const struct vg_slice *slice,
   put_cells(u, slice, VG_SLICE_PRI, 6, out);
 }
 
-vg_status vg_slices_write_ugrid(struct vg_comm *comm,
-                                const struct vg_slices *s, const char *path,
-                                const struct vg_slices_options *o,
-                                struct vg_error *err)
+int vg_slices_is_ugrid(const char *form)
 {
-  struct ugrid u = { .mesh = vg_slices_frame(s) };
-  struct vg_slice_file f = { path, o->record_limit, &u, put_frame, put_slice };
-  const uint64_t count[7] = {
-    s->n_point, u.mesh.n_tri, u.mesh.n_quad, s->n_cell[VG_SLICE_TET],
-    s->n_cell[VG_SLICE_PYR], s->n_cell[VG_SLICE_PRI], 0
-  };
-  size_t n_layer_tet = (size_t)s->n_layer_cell[VG_SLICE_TET];
+  struct vg_ugrid_kind kind;
+
+  return vg_ugrid_kind(form, &kind) && !kind.is_text;
+}
+
+static vg_status new_ugrid(const struct vg_slices *s, const char *path,
+                           const struct vg_slices_options *o,
+                           struct vg_slices_ugrid **out, struct vg_error *err)
+{
+  struct vg_slices_ugrid *u = vg_calloc(1, sizeof *u);
   vg_status st;
 
-  vg_ugrid_kind(path, &u.kind);
-  memcpy(u.count, count, sizeof count);
-  if (o->tail) u.n_layer_tet = &n_layer_tet;
-  st = vg_ugrid_check(path, &u.kind, &u.mesh, u.n_layer_tet, err);
-  if (st < 0) return st;   /* the same on all ranks */
-  return vg_slice_file_write(&f, comm, s, o->threads, err);
+  if (!u) return vg_fail_memory(err, "a file in slices");
+  u->mesh = vg_slices_frame(s);
+  u->count[0] = s->n_point;
+  u->count[1] = u->mesh.n_tri;
+  u->count[2] = u->mesh.n_quad;
+  for (int k = 0; k < VG_SLICE_KINDS; k++) u->count[3 + k] = s->n_cell[k];
+  u->n_layer_tet = (size_t)s->n_layer_cell[VG_SLICE_TET];
+  if (o->tail) u->tail = &u->n_layer_tet;
+  u->file = (struct vg_slice_file){ path, o->record_limit, u, put_frame,
+                                    put_slice };
+  vg_ugrid_kind(path, &u->kind);
+  st = vg_ugrid_check(path, &u->kind, &u->mesh, u->tail, err);
+  if (st < 0) free(u);
+  else *out = u;
+  return st;
+}
+
+vg_status vg_slices_ugrid_open(struct vg_comm *comm,
+                               const struct vg_slices *s, const char *path,
+                               const struct vg_slices_options *o,
+                               struct vg_slices_ugrid **out,
+                               struct vg_error *err)
+{
+  struct vg_slices_ugrid *u = NULL;
+  vg_status st = vg_comm_agree(comm, new_ugrid(s, path, o, &u, err), err);
+
+  if (st >= 0) st = vg_slice_file_open(&u->file, comm, &u->to, err);
+  if (st < 0) {
+    free(u);
+    return st;
+  }
+  if (!vg_comm_rank(comm)) st = vg_slice_file_put(&u->file, u->to, NULL, err);
+  st = vg_comm_agree(comm, st, err);
+  if (st < 0) return vg_slices_ugrid_close(u, st, err);
+  u->file.path = NULL;       /* the caller's */
+  *out = u;
+  return VG_OK;
+}
+
+vg_status vg_slices_ugrid_put(void *ugrid, const struct vg_slice *slice,
+                              struct vg_error *err)
+{
+  const struct vg_slices_ugrid *u = ugrid;
+
+  return vg_slice_file_put(&u->file, u->to, slice, err);
+}
+
+vg_status vg_slices_ugrid_close(struct vg_slices_ugrid *u, vg_status st,
+                                struct vg_error *err)
+{
+  st = vg_shared_close(u->to, st, err);
+  free(u);
+  return st;
 }

@@ -267,6 +267,39 @@ static void failures_are_told(void **state)
   vg_mesh_release(&m);
 }
 
+static vg_status count_cells(void *context, const struct vg_slice *slice,
+                             struct vg_error *err)
+{
+  size_t *n = context;
+
+  for (size_t i = 0; i < slice->n_cell[VG_SLICE_TET]; i++)
+    n[slice->cell_at[VG_SLICE_TET] + i]++;
+  return n[0] < 2 ? VG_OK : vg_fail(err, VG_ERR_IO, "no more room");
+}
+
+static void others_are_shown_each_slice(void **state)
+{
+  struct vg_mesh m = judge_mesh(VG_LAYER_TETS);
+  size_t *n = vg_calloc(m.n_tet, sizeof *n);
+  struct vg_error err = VG_ERROR_INIT;
+  struct vg_mesh_report r;
+  struct cut c;
+
+  (void)state;
+  assert_non_null(n);
+  cut_make(&c, &m, 6, 0, NULL, 5);
+  assert_int_equal(vg_slices_judge_with(NULL, &c.s, 0, NULL, 2, count_cells, n,
+                                        &r, NULL, &err), VG_OK);
+  assert_true(r.is_valid);
+  for (size_t i = 0; i < m.n_tet; i++) assert_int_equal(n[i], 1);
+  assert_int_equal(vg_slices_judge_with(NULL, &c.s, 0, NULL, 2, count_cells, n,
+                                        &r, NULL, &err), VG_ERR_IO);
+  assert_string_equal(err.text, "no more room");
+  cut_release(&c);
+  vg_mesh_release(&m);
+  free(n);
+}
+
 static void nothing_is_not_valid(void **state)
 {
   struct vg_mesh m = VG_MESH_INIT;
@@ -363,6 +396,7 @@ int main(void)
     cmocka_unit_test(points_that_are_nowhere),
     cmocka_unit_test(indices_that_point_nowhere),
     cmocka_unit_test(failures_are_told),
+    cmocka_unit_test(others_are_shown_each_slice),
     cmocka_unit_test(nothing_is_not_valid),
     cmocka_unit_test(sums_are_exact),
     cmocka_unit_test(sums_of_many_are_those_of_each),
