@@ -1,4 +1,5 @@
 /* .cogsg and the triple it belongs to (formats.md 1.2). */
+#define _GNU_SOURCE
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -220,12 +221,7 @@ static char *beside(const char *path, const char *suffix)
 
   if (n > 3 && !strcasecmp(path + n - 3, ".gz")) n -= 3;
   if (n > 6 && !strncasecmp(path + n - 6, ".cogsg", 6)) n -= 6;
-  to = vg_alloc(n + strlen(suffix) + 1, 1);
-  if (to) {
-    memcpy(to, path, n);
-    strcpy(to + n, suffix);
-  }
-  return to;
+  return asprintf(&to, "%.*s%s", (int)n, path, suffix) < 0 ? NULL : to;
 }
 
 static vg_status open_bc(const char *path, struct vg_input *bc,

@@ -1,6 +1,8 @@
 /* The table of formats: io/format.h. */
+#define _GNU_SOURCE
 #include "io/format.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -51,13 +53,9 @@ static vg_status read_cogsg(const char *path, struct vg_mesh *out,
 static char *beside(const char *path, const char *suffix)
 {
   size_t n = strlen(path) - vg_format_suffix_length(path);
-  char *to = vg_alloc(n + strlen(suffix) + 1, 1);
+  char *to;
 
-  if (to) {
-    memcpy(to, path, n);
-    strcpy(to + n, suffix);
-  }
-  return to;
+  return asprintf(&to, "%.*s%s", (int)n, path, suffix) < 0 ? NULL : to;
 }
 
 /* STEM.suffix or STEM.suffix.gz, whichever is there; "" where neither is;

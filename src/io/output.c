@@ -1,5 +1,6 @@
 /* Buffered output under a temporary name, records and numbers:
  * io/stream.h. */
+#define _GNU_SOURCE
 #include "io/stream.h"
 
 #include <errno.h>
@@ -17,16 +18,11 @@
 #define CAPACITY ((size_t)1 << 20)
 #define BLOCK 2048
 
-static char *join(const char *a, const char *b)
+char *vg_output_part(const char *path)
 {
-  size_t n = strlen(a), m = strlen(b) + 1;
-  char *to = vg_alloc(n + m, 1);
+  char *part;
 
-  if (to) {
-    memcpy(to, a, n);
-    memcpy(to + n, b, m);
-  }
-  return to;
+  return asprintf(&part, "%s.part", path) < 0 ? NULL : part;
 }
 
 void vg_output_release(struct vg_output *out)
@@ -50,8 +46,8 @@ vg_status vg_output_open(const char *path, struct vg_output *out,
   vg_status st;
 
   made.record_limit = out->record_limit;
-  made.path = join(path, "");
-  made.part = join(path, ".part");
+  made.path = strdup(path);
+  made.part = vg_output_part(path);
   made.buffer = vg_alloc(CAPACITY, 1);
   if (!made.path || !made.part || !made.buffer) {
     st = vg_fail_memory(err, "a write buffer");
@@ -60,7 +56,7 @@ vg_status vg_output_open(const char *path, struct vg_output *out,
   }
   made.fd = open(made.part, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (made.fd < 0) {
-    st = vg_fail(err, VG_ERR_IO, "%s: cannot write: %s", made.part,
+    st = vg_fail(err, VG_ERR_IO, "%s: cannot write: %s", path,
                  strerror(errno));
     vg_output_release(&made);
     return st;

@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "base/memory.h"
+#include "io/stream.h"
 
 /* Bytes in one call, far below the 2^31 of MPI's counts and of write(2). */
 #define CHUNK ((uint64_t)1 << 28)
@@ -26,18 +27,6 @@ struct vg_shared_file {
   uint64_t size;
   char *path, *part;
 };
-
-static char *join(const char *a, const char *b)
-{
-  size_t n = strlen(a), m = strlen(b) + 1;
-  char *to = vg_alloc(n + m, 1);
-
-  if (to) {
-    memcpy(to, a, n);
-    memcpy(to + n, b, m);
-  }
-  return to;
-}
 
 static void release(struct vg_shared_file *f)
 {
@@ -141,8 +130,8 @@ static vg_status prepare(struct vg_comm *comm, const char *path,
   f->comm = comm;
   f->fd = -1;
   f->size = size;
-  f->path = join(path, "");
-  f->part = join(path, ".part");
+  f->path = strdup(path);
+  f->part = vg_output_part(path);
   *out = f;
   if (!f->path || !f->part) return vg_fail_memory(err, "a file's name");
   if (size > INT64_MAX)

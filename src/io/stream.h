@@ -147,6 +147,9 @@ struct vg_output {
 };
 #define VG_OUTPUT_INIT { .fd = -1, .record_limit = VG_RECORD_LIMIT }
 
+/** PATH.part, the name of a file until it is complete. NULL: no memory. */
+char *vg_output_part(const char *path);
+
 /** Start writing PATH.part. Write calls below cannot fail visibly: the first
  * error is kept and reported by vg_output_commit. */
 vg_status vg_output_open(const char *path, struct vg_output *out,
