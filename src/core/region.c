@@ -277,21 +277,53 @@ int vg_region_may_meet(const struct vg_region *r,
   return meets(r, sizing, corner, band, 0);
 }
 
+/* Is a corner within reach of all planes? far: [4] how far corners are from the
+ * farthest. Sizes change too little from one corner to the next for all of them
+ * to be looked up. */
+static int has_corner(const struct vg_region *r, const struct vg_sizing *sizing,
+                      const double *const corner[4], const double far[4])
+{
+  double slope = vg_sizing_slope(sizing);
+  double first = vg_region_spacing(r, sizing, corner[0]);
+
+  if (far[0] <= r->reach * first) return 1;
+  for (int k = 1; k < 4; k++) {
+    double d2 = 0;
+
+    for (int i = 0; i < 3; i++)
+      d2 += (corner[k][i] - corner[0][i]) * (corner[k][i] - corner[0][i]);
+    if (far[k] <= r->reach * (first + slope * sqrt(d2)) &&
+        far[k] <= r->reach * vg_region_spacing(r, sizing, corner[k]))
+      return 1;
+  }
+  return 0;
+}
+
 int vg_region_has_cell(const struct vg_region *r,
                        const struct vg_sizing *sizing, const double a[3],
                        const double b[3], const double c[3],
                        const double d[3])
 {
   const double *corner[4] = {a, b, c, d};
+  double far[4] = {0};
+  int crosses = 1;
 
+  for (int i = 0; i < r->n_plane; i++) {
+    int above = 0, below = 0;
+
+    for (int k = 0; k < 4; k++) {
+      double s = side(&r->plane[i], corner[k]);
+
+      above |= s >= 0;
+      below |= s <= 0;
+      if (fabs(s) > far[k]) far[k] = fabs(s);
+    }
+    crosses &= above && below;
+  }
+  if (!crosses && !(r->reach > 0)) return 0;
   for (int k = 0; k < 4; k++)
     if (!vg_region_within(r, corner[k])) return 0;
-  if (gap(r, 4, corner) == 0) return 1;
-  for (int k = 0; k < 4 && r->reach > 0; k++)
-    if (gap(r, 1, &corner[k]) <=
-        r->reach * vg_region_spacing(r, sizing, corner[k]))
-      return 1;
-  return 0;
+  return crosses || has_corner(r, sizing, corner, far);
 }
 
 /* --- many points --------------------------------------------------------- */
