@@ -44,6 +44,36 @@ static int plan_merge(const struct vg_optimiser *o, uint32_t to, double need,
   return m->n_new > 0;
 }
 
+/* The same where cells of the ball are flat, `most` of them: fewer are left,
+ * if they are positive at all. That undoes several flat cells side by side,
+ * as there are between points in a line, one by one. Their number, or `most`
+ * when it is not to be. */
+static int plan_flat_merge(const struct vg_optimiser *o, uint32_t to,
+                           int most, struct merger *m)
+{
+  const struct vg_tets *t = o->t;
+  int n_flat = 0;
+
+  m->n_new = 0;
+  for (size_t k = 0; k < o->n_ball; k++) {
+    const uint32_t *v = t->cell[o->ball[k] >> 2].v;
+    uint32_t *w = m->v[m->n_new];
+    double q;
+
+    if (v[0] == to || v[1] == to || v[2] == to || v[3] == to) continue;
+    memcpy(w, v, 4 * sizeof *w);
+    w[o->ball[k] & 3] = to;
+    q = vg_shape(t->x[w[0]], t->x[w[1]], t->x[w[2]], t->x[w[3]]);
+    n_flat += q < VG_SHAPE_FLAT;
+    if (n_flat >= most ||
+        (q < VG_SHAPE_FLAT && !(vg_orient3d(t->x[w[0]], t->x[w[1]],
+                                            t->x[w[2]], t->x[w[3]]) > 0)))
+      return most;
+    m->q[m->n_new++] = (float)q;
+  }
+  return m->n_new > 0 ? n_flat : most;
+}
+
 /* The points that share an edge with the centre of the ball, each once. */
 static int neighbours(const struct vg_optimiser *o, uint32_t *to)
 {
@@ -66,13 +96,14 @@ static int merge_point(struct vg_optimiser *o, uint32_t p)
   struct merger plan[2];
   uint32_t old[VG_OLD_MAX], to[3 * VG_OLD_MAX];
   double need = 2, worst;
-  int best = -1, now = 0, n;
+  int best = -1, now = 0, n_flat = 0, n;
 
   if (p < o->n_keep || o->vain[p] & VG_VAIN_MERGE) return 0;
   o->vain[p] |= VG_VAIN_MERGE;
   if (!vg_ball(o, p) || o->n_ball > VG_OLD_MAX) return 0;
   for (size_t k = 0; k < o->n_ball; k++) {
     old[k] = o->ball[k] >> 2;
+    n_flat += o->q[old[k]] < VG_SHAPE_FLAT;
     if (o->q[old[k]] < need) need = o->q[old[k]];
   }
   need = worth(need);
@@ -80,6 +111,14 @@ static int merge_point(struct vg_optimiser *o, uint32_t p)
   for (int k = 0; k < n; k++) {
     if (!plan_merge(o, to[k], need, &plan[now], &worst)) continue;
     need = worst;
+    best = now;
+    now = !now;
+  }
+  for (int k = 0; k < n && need <= VG_SHAPE_FLAT && n_flat > 1; k++) {
+    int left = plan_flat_merge(o, to[k], n_flat, &plan[now]);
+
+    if (left == n_flat) continue;
+    n_flat = left;
     best = now;
     now = !now;
   }

@@ -259,6 +259,37 @@ static void points_in_a_line_are_flat(void **state)
   }
 }
 
+/* Two points as good as on an edge of four cells, and what is between them and
+ * that edge: five flat cells, one of them of four points in a line. No step
+ * leaves cells that are all better, but one after the other they go. */
+static void flat_cells_side_by_side_go(void **state)
+{
+  static const double at[8][3] = {
+    {0, 0, -1}, {0, 0, 1}, {1, 1, 0}, {-1, 1, 0}, {-1, -1, 0}, {1, -1, 0},
+    {1e-17, -1e-18, -0.3}, {1e-17, 1e-18, 0.3}};
+  enum { A, B, R, C = 6, D };
+  static const uint32_t v[11][4] = {
+    {A, B, R, R + 1}, {A, B, R + 1, R + 2}, {A, B, R + 2, R + 3},
+    {A, C, R, R + 3}, {C, D, R, R + 3}, {D, B, R, R + 3},
+    {A, C, D, R}, {A, D, B, R}, {A, C, B, R + 3}, {C, D, B, R + 3},
+    {A, C, D, B}};
+  struct vg_tets t = VG_TETS_INIT;
+  double (*x)[3] = vg_alloc(8, sizeof *x);
+
+  (void)state;
+  assert_non_null(x);
+  memcpy(x, at, sizeof at);
+  assert_int_equal(vg_tets_adopt(&t, 8, x, 11, v, NULL), VG_OK);
+  for (uint32_t c = 0; c < t.n_cell; c++)
+    for (int i = 0; i < 4; i++)
+      if (t.cell[c].link[i] == VG_NONE) t.flag[c] |= (uint8_t)(1 << i);
+  assert_int_equal(vg_tets_defects(&t), 0);
+  assert_int_equal(count_below(&t, VG_SHAPE_FLAT), 5);
+  optimise(&t, 6, 2);
+  assert_int_equal(count_below(&t, VG_SHAPE_FLAT), 0);
+  vg_tets_release(&t);
+}
+
 /* --- slivers on purpose -------------------------------------------------- */
 
 /* Four points around the equator of a small sphere, two of them lifted by a
@@ -446,6 +477,7 @@ int main(void)
     cmocka_unit_test(a_second_time_does_no_harm),
     cmocka_unit_test(the_same_bytes_again),
     cmocka_unit_test(points_in_a_line_are_flat),
+    cmocka_unit_test(flat_cells_side_by_side_go),
     cmocka_unit_test(a_sliver_is_removed),
     cmocka_unit_test(a_shaken_grid),
     cmocka_unit_test(points_too_many_are_taken_away),
