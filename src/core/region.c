@@ -91,68 +91,6 @@ int vg_region_near(const struct vg_region *r, const struct vg_sizing *sizing,
          far <= vg_region_band(r, band) * vg_region_spacing(r, sizing, x);
 }
 
-/* --- cells --------------------------------------------------------------- */
-
-/* Pieces of a cell whose edges are so many spacings long are as near as their
- * corners, since spacing hardly changes along them. At most so many are made.
- */
-static const double piece = 1;
-enum { MOST_PIECES = 4096 };
-
-/* The corners of the longest edge, and its length. */
-static double longest_edge(const double x[4][3], int *from, int *to)
-{
-  double most = -1;
-
-  for (int i = 0; i < 4; i++)
-    for (int j = i + 1; j < 4; j++) {
-      double d2 = 0;
-
-      for (int k = 0; k < 3; k++)
-        d2 += (x[j][k] - x[i][k]) * (x[j][k] - x[i][k]);
-      if (d2 > most) {
-        most = d2;
-        *from = i;
-        *to = j;
-      }
-    }
-  return sqrt(most);
-}
-
-static int near_piece(const struct vg_region *r,
-                      const struct vg_sizing *sizing, const double x[4][3],
-                      double band, int *left)
-{
-  double part[4][3], middle[3], far, h, size;
-  const double *at = middle;
-  int a = 0, b = 1;
-
-  if (--*left < 0) return 0;
-  size = longest_edge(x, &a, &b);
-  for (int k = 0; k < 3; k++) middle[k] = 0.5 * (x[a][k] + x[b][k]);
-  h = vg_region_spacing(r, sizing, middle);
-  if (size <= piece * h) return 1;
-  far = gap(r, 1, &at);
-  if (far > vg_region_band(r, band) * h) return 0;
-  memcpy(part, x, sizeof part);
-  memcpy(part[b], middle, sizeof middle);
-  if (!near_piece(r, sizing, (const double (*)[3])part, band, left)) return 0;
-  memcpy(part, x, sizeof part);
-  memcpy(part[a], middle, sizeof middle);
-  return near_piece(r, sizing, (const double (*)[3])part, band, left);
-}
-
-int vg_region_near_cell(const struct vg_region *r,
-                        const struct vg_sizing *sizing,
-                        const double *const x[4], double band)
-{
-  double corner[4][3];
-  int left = MOST_PIECES;
-
-  for (int i = 0; i < 4; i++) memcpy(corner[i], x[i], sizeof *corner);
-  return near_piece(r, sizing, (const double (*)[3])corner, band, &left);
-}
-
 /* --- triangles ----------------------------------------------------------- */
 
 enum { CORNERS = 3 + 2 * 2 + VG_REGION_WALLS };

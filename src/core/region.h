@@ -72,13 +72,6 @@ int vg_region_near_by(const struct vg_region *r, const struct vg_sizing *sizing,
 int vg_region_near(const struct vg_region *r, const struct vg_sizing *sizing,
                    const double x[3], double band);
 
-/** Is the whole of a cell, all of whose corners are? Where spacing grows along
- * a region its band is wider at both ends than between them, and a long cell
- * leaves it there. No also in doubt. */
-int vg_region_near_cell(const struct vg_region *r,
-                        const struct vg_sizing *sizing,
-                        const double *const x[4], double band);
-
 /** Does the triangle come as near? By the spacing where it does. */
 int vg_region_meets(const struct vg_region *r, const struct vg_sizing *sizing,
                     const double a[3], const double b[3], const double c[3],

@@ -55,19 +55,8 @@ static int belongs(const struct zone *g, uint32_t c)
                             t->x[v[2]], t->x[v[3]]);
 }
 
-/* Does cell c, whose corners do, lie where the front is known? */
-static int is_known_within(const struct zone *g, uint32_t c)
-{
-  const struct vg_tets *t = &g->k.t;
-  const double *x[4];
-
-  for (int i = 0; i < 4; i++) x[i] = t->x[t->cell[c].v[i]];
-  return vg_region_near_cell(g->k.region, g->k.sizing, x, VG_BAND_FRONT);
-}
-
-/* Only cells near the region stay, none of them at a corner of the box; those
- * that leave it between their corners might cross a front that is not known.
- * The faces around them are fixed. */
+/* Only cells near the region stay, none of them at a corner of the box. The
+ * faces around them are fixed. */
 static vg_status narrow(struct zone *g, struct vg_error *err)
 {
   struct vg_tets *t = &g->k.t;
@@ -81,8 +70,7 @@ static vg_status narrow(struct zone *g, struct vg_error *err)
                   vg_region_near(g->k.region, g->k.sizing, t->x[p],
                                  band);
   for (uint32_t c = 0; c < t->n_cell; c++) {
-    if (t->flag[c] & (VG_DEAD | VG_OUTSIDE) ||
-        (all_four(g, is_known, c) && is_known_within(g, c)))
+    if (t->flag[c] & (VG_DEAD | VG_OUTSIDE) || all_four(g, is_known, c))
       continue;
     t->flag[c] |= VG_OUTSIDE;
     g->z->n_hole += (size_t)belongs(g, c);
