@@ -194,7 +194,8 @@ static vg_status smooth(struct vg_field *f, struct outcome *out)
 
   f->t.flag = vg_calloc(f->t.n_cell, 1);
   if (!f->t.flag ||
-      vg_optimise_points(&f->t, f->n_point, f->point, VG_SHAPE_BESIDE,
+      vg_optimise_points(&f->t, f->n_point, f->point,
+                         f->first ? VG_SHAPE_LEVEL : VG_SHAPE_BESIDE,
                          f->shape, &r, NULL) < 0)
     return VG_ERR_MEMORY;
   for (size_t i = 0; i < f->n_point; i++) {
