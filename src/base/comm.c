@@ -5,10 +5,12 @@
 #include <netinet/tcp.h>
 #include <sched.h>
 #include <stdlib.h>
+#include <sys/prctl.h>
 #include <sys/socket.h>
 #include <time.h>
 #include <unistd.h>
 
+#include "base/clock.h"
 #include "base/comm_parts.h"
 #include "base/memory.h"
 
@@ -18,12 +20,15 @@
 /* Files that are looked at for the launcher's socket. */
 #define MOST_SOCKETS 64
 
-/* Sleep between looks. The first looks are close together for what is nearly
- * there; a rank that waits long looks seldom enough to use no core. While
- * bytes flow it is the looks that move them, so there a rank sleeps only
- * after LOOKS of them. */
-enum { NAP_FIRST_NS = 2000, NAP_BRISK_NS = 16000, NAP_LAST_NS = 200000,
-       NAP_IDLE_NS = 2000000, NAPS_UNTIL_IDLE = 200, LOOKS = 64 };
+/* Sleep between looks: a share of what was waited so far, so that waits take
+ * at most so much longer, and long ones use no core. While bytes flow it is
+ * the looks that move them, so there a rank sleeps only after LOOKS of them. */
+enum { NAP_FIRST_NS = 2000, NAP_BRISK_NS = 16000, NAP_LAST_NS = 2000000,
+       NAP_SHARE = 32, LOOKS = 64 };
+
+/* Sleeps end at most so long after their time; the kernel's own 50 us are as
+ * long as most waits. */
+enum { SLACK_NS = 1000 };
 
 vg_status vg_comm_fail(struct vg_error *err, const char *what, int rc)
 {
@@ -41,30 +46,30 @@ static void nap(long ns)
   nanosleep(&t, NULL);
 }
 
-/* The n-th time, from 0. */
-static void nap_idle(int n)
+static void nap_idle(double waited)
 {
-  long ns = n < 16 ? (long)NAP_FIRST_NS << n : NAP_LAST_NS;
+  double ns = 1e9 * waited / NAP_SHARE;
 
-  if (ns > NAP_LAST_NS) ns = NAP_LAST_NS;
-  nap(n < NAPS_UNTIL_IDLE ? ns : NAP_IDLE_NS);
+  nap(ns < NAP_FIRST_NS ? NAP_FIRST_NS : ns > NAP_LAST_NS ? NAP_LAST_NS
+                                                          : (long)ns);
 }
 
-static void nap_brisk(int n)
+static void nap_brisk(unsigned n)
 {
-  if (n % LOOKS == LOOKS - 1) nap(NAP_BRISK_NS);
+  if (n == LOOKS - 1) nap(NAP_BRISK_NS);
   else sched_yield();
 }
 
 int vg_comm_wait(int n, MPI_Request *request, int brisk)
 {
-  int done = 0, rc, looks = 0;
+  int done = 0, rc;
+  unsigned looks = 0;
+  double begun = brisk ? 0 : vg_clock();
 
   while (!(rc = MPI_Testall(n, request, &done, MPI_STATUSES_IGNORE)) &&
          !done) {
-    if (brisk) nap_brisk(looks);
-    else nap_idle(looks);
-    looks = looks < NAPS_UNTIL_IDLE ? looks + 1 : brisk ? 0 : looks;
+    if (brisk) nap_brisk(looks++ % LOOKS);
+    else nap_idle(vg_clock() - begun);
   }
   return rc;
 }
@@ -232,6 +237,7 @@ vg_status vg_comm_open(struct vg_comm **out, struct vg_error *err)
   c->chunk = CHUNK;
   c->last = &c->first;
   pthread_mutex_init(&c->lock, NULL);
+  prctl(PR_SET_TIMERSLACK, (unsigned long)SLACK_NS); /* and threads to come */
   VG_TRY(start(c, err));
   VG_TRY(join(c, err));
   VG_TRY(check_size(c, announced, err));
