@@ -76,7 +76,7 @@ int vg_ball_shapes(const struct vg_ball_faces *b, const double x[3],
 
     for (size_t k = at; k < end; k++) {
       struct cone c;
-      double s = b->area2[k], least, all;
+      double s = b->area2[k], least, all, square;
 
       raise(b, k, x, &c);
       least = least_of(least_of(c.l[0] * c.s[0], c.l[1] * c.s[1]),
@@ -85,7 +85,11 @@ int vg_ball_shapes(const struct vg_ball_faces *b, const double x[3],
       least = least_of(least, b->edge2[1][k] * c.s[2] * c.s[0]);
       least = least_of(least, b->edge2[2][k] * c.s[0] * c.s[1]);
       all = c.s[0] * c.s[1] * c.s[2] * s;
-      q[k] = all > 0 ? c.det * fabs(c.det) * least / all : 0;
+      square = c.det * fabs(c.det);
+      /* As vg_shape: not 0 only where rounding has no say in the sign. */
+      q[k] = (all > 0) & (fabs(square) > 1e-24 * c.l[0] * b->edge2[0][k] *
+                                         b->edge2[1][k])
+             ? square * least / all : 0;
     }
     for (size_t k = at; k < end; k++) worst = least_of(worst, q[k]);
     if (worst <= stop) return 0;
