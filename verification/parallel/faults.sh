@@ -146,7 +146,9 @@ case_random() {
     until_open
     sleep "$wait_s"
     mapfile -t victims < <(ranks_of $ranks)
-    kill -9 "${victims[RANDOM % ${#victims[@]}]}" 2> /dev/null || true
+    # None: it ended before.
+    [ ${#victims[@]} = 0 ] ||
+      kill -9 "${victims[RANDOM % ${#victims[@]}]}" 2> /dev/null || true
     finish
     killed=$status
     [ $hung = 0 ] || bad "hung"
