@@ -87,8 +87,8 @@ int vg_ball_shapes(const struct vg_ball_faces *b, const double x[3],
       all = c.s[0] * c.s[1] * c.s[2] * s;
       square = c.det * fabs(c.det);
       /* As vg_shape: not 0 only where rounding has no say in the sign. */
-      q[k] = (all > 0) & (fabs(square) > 1e-24 * c.l[0] * b->edge2[0][k] *
-                                         b->edge2[1][k])
+      q[k] = ((all > 0) & (fabs(square) > 1e-24 * c.l[0] * b->edge2[0][k] *
+                                          b->edge2[1][k]))
              ? square * least / all : 0;
     }
     for (size_t k = at; k < end; k++) worst = least_of(worst, q[k]);
