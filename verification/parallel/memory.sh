@@ -6,8 +6,8 @@
 #          [--least N] [--ranks LIST] [--work DIR] [--out FILE]
 #   --quick  a mesh of 2 million cells
 #   --build  build folder (default build/release, made when missing)
-#   --cells  of the demo "wing" without its layers (default 12000000, with them
-#            53 million)
+#   --cells  of the demo "wing" without its layers (default 14000000, with them
+#            56 million)
 #   --least  cells that there must be in all (default 50000000)
 #   --ranks  numbers of ranks (default "1 2 4"); each has threads for its share
 #            of the cores
@@ -33,7 +33,7 @@ build=$root/build/release
 work='' cells='' least='' ranks='1 2 4' quick=0 project='' options=() failed=0
 take_options "build cells least ranks work out" quick "$@"
 if [ "$quick" = 1 ]; then cells=${cells:-250000} least=${least:-1000000}; fi
-: "${cells:=12000000}" "${least:=50000000}"
+: "${cells:=14000000}" "${least:=50000000}"
 need jq jq
 need /usr/bin/time time
 need mpirun openmpi-bin
