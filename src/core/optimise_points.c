@@ -20,23 +20,31 @@ struct merger {
   float q[VG_OLD_MAX];
 };
 
+/* Cell k of the ball of p with p moved onto its neighbour `to`, and its shape;
+ * 0 when it goes, having that corner already. */
+static int move_cell(const struct vg_optimiser *o, size_t k, uint32_t to,
+                     uint32_t w[4], double *q)
+{
+  const struct vg_tets *t = o->t;
+  const uint32_t *v = t->cell[o->ball[k] >> 2].v;
+
+  if (v[0] == to || v[1] == to || v[2] == to || v[3] == to) return 0;
+  memcpy(w, v, 4 * sizeof *w);
+  w[o->ball[k] & 3] = to;
+  *q = vg_shape(t->x[w[0]], t->x[w[1]], t->x[w[2]], t->x[w[3]]);
+  return 1;
+}
+
 /* The ball of p with p moved onto its neighbour `to`; 0 when not better. */
 static int plan_merge(const struct vg_optimiser *o, uint32_t to, double need,
                       struct merger *m, double *worst)
 {
-  const struct vg_tets *t = o->t;
-
   m->n_new = 0;
   *worst = 2;
   for (size_t k = 0; k < o->n_ball; k++) {
-    const uint32_t *v = t->cell[o->ball[k] >> 2].v;
-    uint32_t *w = m->v[m->n_new];
     double q;
 
-    if (v[0] == to || v[1] == to || v[2] == to || v[3] == to) continue;
-    memcpy(w, v, 4 * sizeof *w);
-    w[o->ball[k] & 3] = to;
-    q = vg_shape(t->x[w[0]], t->x[w[1]], t->x[w[2]], t->x[w[3]]);
+    if (!move_cell(o, k, to, m->v[m->n_new], &q)) continue;
     if (q <= need) return 0;
     if (q < *worst) *worst = q;
     m->q[m->n_new++] = (float)q;
@@ -56,14 +64,10 @@ static int plan_flat_merge(const struct vg_optimiser *o, uint32_t to,
 
   m->n_new = 0;
   for (size_t k = 0; k < o->n_ball; k++) {
-    const uint32_t *v = t->cell[o->ball[k] >> 2].v;
-    uint32_t *w = m->v[m->n_new];
+    const uint32_t *w = m->v[m->n_new];
     double q;
 
-    if (v[0] == to || v[1] == to || v[2] == to || v[3] == to) continue;
-    memcpy(w, v, 4 * sizeof *w);
-    w[o->ball[k] & 3] = to;
-    q = vg_shape(t->x[w[0]], t->x[w[1]], t->x[w[2]], t->x[w[3]]);
+    if (!move_cell(o, k, to, m->v[m->n_new], &q)) continue;
     n_flat += q < VG_SHAPE_FLAT;
     if (n_flat >= most ||
         (q < VG_SHAPE_FLAT && !(vg_orient3d(t->x[w[0]], t->x[w[1]],

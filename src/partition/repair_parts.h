@@ -111,8 +111,8 @@ vg_status vg_seams_of(const struct vg_partition *p, size_t k,
 void vg_seam_refresh(const struct vg_piece *q, struct vg_seam *s);
 
 /** As vg_shape. Points with a cell below the first (42 degrees) around them
- * are smoothed, where sizes vary below the second (48); cells below the third
- * (39) are swapped. */
+ * are smoothed in the first round, below the second (48) in the second and
+ * beside; cells below the third (39) are swapped. */
 #define VG_SHAPE_LEVEL 0.45f
 #define VG_SHAPE_BESIDE 0.55f
 #define VG_SHAPE_SWAP 0.4f
