@@ -283,9 +283,10 @@ void vg_repair_end(struct vg_span *s, const char *what, size_t number,
                    size_t n_cell);
 
 /** Put the tasks of all ranks, own and others', into the record of the run.
- * begin: when repairs began. Collective. */
+ * begin: when repairs began on this rank. own: its times are since then, and
+ * its rank is told, afterwards. Collective. */
 vg_status vg_repair_record(const struct vg_partition *p, struct vg_comm *comm,
-                           double begin, const struct vg_spans *own,
+                           double begin, struct vg_spans *own,
                            struct vg_spans *spans, struct vg_error *err);
 
 #endif

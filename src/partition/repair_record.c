@@ -27,15 +27,21 @@ void vg_repair_end(struct vg_span *s, const char *what, size_t number,
   snprintf(s->path, sizeof s->path, "0R%s%06zu", what, number);
 }
 
-/* Lists of all ranks in that of rank 0; others keep their own. */
+/* Lists of all ranks in that of rank 0; others keep their own. Clocks of two
+ * nodes have nothing in common: times are told since the repairs began. */
 static vg_status collect(const struct vg_partition *p, struct vg_comm *comm,
-                         const struct vg_spans *own, struct vg_spans *spans,
-                         struct vg_error *err)
+                         double begin, struct vg_spans *own,
+                         struct vg_spans *spans, struct vg_error *err)
 {
   struct vg_bytes *all = vg_calloc((size_t)p->size, sizeof *all);
   struct vg_bytes mine = { own->n * sizeof *own->span, (void *)own->span };
   vg_status st = all ? VG_OK : vg_fail_memory(err, "the record of tasks");
 
+  for (size_t k = 0; k < own->n; k++) {
+    own->span[k].rank = own->span[k].home = p->rank;
+    own->span[k].start -= begin;
+    own->span[k].end -= begin;
+  }
   st = vg_comm_agree(comm, st, err);
   if (st == VG_OK) st = vg_comm_allgather(comm, &mine, all, err);
   for (int r = 0; st == VG_OK && r < p->size; r++)
@@ -52,19 +58,18 @@ static vg_status collect(const struct vg_partition *p, struct vg_comm *comm,
 }
 
 vg_status vg_repair_record(const struct vg_partition *p, struct vg_comm *comm,
-                           double begin, const struct vg_spans *own,
+                           double begin, struct vg_spans *own,
                            struct vg_spans *spans, struct vg_error *err)
 {
-  double shift = spans->wall - begin;
   size_t first = spans->n, leaf = 0;
-  vg_status st = collect(p, comm, own, spans, err);
+  vg_status st = collect(p, comm, begin, own, spans, err);
 
   while (leaf < first && spans->span[leaf].kind != VG_SPAN_LEAF) leaf++;
   for (size_t k = first; k < spans->n; k++) {
     struct vg_span *s = &spans->span[k];
 
-    s->start += shift;
-    s->end += shift;
+    s->start += spans->wall;
+    s->end += spans->wall;
     if (s->thread >= spans->n_thread) s->thread = spans->n_thread - 1;
     if (leaf < first) memcpy(s->after, spans->span[leaf].path,
                              sizeof s->after);
