@@ -54,6 +54,35 @@ static void test_zones_as_alone(void **state)
   same_as_alone(1);
 }
 
+/* In the record each task is of the rank that did it, and after what was there
+ * before. */
+static void test_recorded(void **state)
+{
+  struct vg_spans spans = { .n_rank = vg_comm_size(job), .n_thread = 1,
+                            .wall = 3 };
+  int done[64] = {0};
+  struct scene s;
+
+  (void)state;
+  scene_new(&s, 16, 6, 6);
+  scene_shake(&s, 0.45, 7);
+  scene_cut(&s, job, 1);
+  scene_zones(&s);
+  assert_int_equal(vg_partition_repair(&s.p, job, &spans, NULL), VG_OK);
+  for (size_t i = 0; i < spans.n; i++) {
+    const struct vg_span *t = &spans.span[i];
+
+    assert_in_range(t->rank, 0, spans.n_rank - 1);
+    assert_int_equal(t->home, t->rank);
+    assert_true(t->start >= 3 && t->start <= t->end && t->end <= spans.wall);
+    done[t->rank]++;
+  }
+  for (int r = 0; r < spans.n_rank && r < s.p.size && r < 64; r++)
+    assert_int_equal(done[r] > 0, r == s.p.rank || !s.p.rank);
+  vg_spans_release(&spans);
+  scene_end(&s);
+}
+
 /* Ranks without any piece take part. */
 static void test_empty(void **state)
 {
@@ -76,6 +105,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_same_as_alone),
     cmocka_unit_test(test_zones_as_alone),
+    cmocka_unit_test(test_recorded),
     cmocka_unit_test(test_empty),
   };
 
