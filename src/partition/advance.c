@@ -590,7 +590,7 @@ static vg_status sum_report(struct vg_partition *p, struct vg_comm *comm,
     &f->n_inserted, &f->n_refused, &f->n_smoothed, &f->n_flip,
     &f->n_collapse, &f->n_split};
   uint64_t *more[] = {&r->n_node, &r->n_pencil, &r->n_tile, &r->n_leaf,
-    &r->n_zone_cell, &r->n_blocked, &r->n_retry, &r->n_uncut,
+    &r->n_zone_cell, &r->n_blocked, &r->n_crossing, &r->n_retry, &r->n_uncut,
     &r->n_outgrown, &r->n_found, &whole};
   enum { N_COUNT = sizeof count / sizeof *count,
          N_MORE = sizeof more / sizeof *more };
@@ -640,6 +640,7 @@ static vg_status grow(struct vg_comm *comm, const struct vg_mesh *front,
   if (p->options.threads < 1) p->options.threads = 1;
   st = run_tasks(p, comm, spans, err);
   p->report.wall = vg_clock() - t0;
+  if (st == VG_OK) st = vg_partition_drop(p, comm, err);
   if (st == VG_OK) st = vg_partition_repair(p, comm, spans, err);
   if (st == VG_OK) st = vg_partition_number(p, comm, err);
   if (st == VG_OK) st = sum_report(p, comm, err);
@@ -710,6 +711,7 @@ void vg_partition_free(struct vg_partition *p)
   }
   for (size_t k = 0; k < p->n_piece; k++) vg_piece_release(&p->piece[k]);
   free(p->piece);
+  free(p->drop);
   free(p->place);
   free(p->point_at);
   free(p->cell_at);

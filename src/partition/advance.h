@@ -47,6 +47,8 @@ struct vg_partition_report {
   uint64_t n_node, n_pencil, n_tile, n_leaf;
   uint64_t n_zone_cell;      /* cells of pencils and tiles */
   uint64_t n_blocked;        /* pencils and tiles that could not be grown */
+  uint64_t n_crossing;       /* among these, those whose cells crossed a front
+                                that they had not been given */
   uint64_t n_retry;          /* cuts that did not part their void */
   uint64_t n_uncut;          /* leaves filled although larger than asked for,
                                 because no plane parts them */

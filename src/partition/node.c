@@ -15,10 +15,12 @@ static void drop_stage(struct vg_node *n)
     vg_change_release(&n->change[k]);
   }
   free(n->work);
+  free(n->region);
   free(n->point);
   free(n->face);
   free(n->change);
   n->work = NULL;
+  n->region = NULL;
   n->point = n->face = NULL;
   n->change = NULL;
   n->n_work = 0;
@@ -85,10 +87,12 @@ static vg_status make_room(struct vg_node *n, size_t n_work,
                            struct vg_error *err)
 {
   n->work = vg_calloc(n_work, sizeof *n->work);
+  n->region = vg_calloc(n_work, sizeof *n->region);
   n->point = vg_calloc(n_work, sizeof *n->point);
   n->face = vg_calloc(n_work, sizeof *n->face);
   n->change = vg_calloc(n_work, sizeof *n->change);
-  if (n->work && n->point && n->face && n->change) return VG_OK;
+  if (n->work && n->region && n->point && n->face && n->change)
+    return VG_OK;
   return vg_fail_memory(err, "cutting a front");
 }
 
@@ -173,6 +177,7 @@ static void name_works(struct vg_partition *p, struct vg_node *n)
     w->serial = vg_partition_serial(p);
     w->index = left;
     n->work[left] = w;
+    n->region[left] = w->region;
     n->point[left] = n->point[k];
     n->face[left++] = n->face[k];
   }
@@ -297,7 +302,7 @@ vg_status vg_node_join(struct vg_partition *p, struct vg_node *n,
 {
   vg_status st;
 
-  VG_TRY(vg_node_put(n, e, err));
+  VG_TRY(vg_node_put(p, n, e, err));
   drop_stage(n);
   VG_TRY(prepare(p, n, e, err));
   if (!n->n_work) {

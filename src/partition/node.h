@@ -49,12 +49,14 @@ struct vg_node {
   int stage;                 /* the next one to be looked at */
   size_t n_work, n_left;     /* of this stage; not yet done */
   struct vg_work **work;     /* [n_work] until submitted */
+  struct vg_region *region;  /* [n_work] theirs */
   uint32_t **point, **face;  /* [n_work] what of the front each was given */
   struct vg_change *change;  /* [n_work] what came of it */
   double zone_cells, zone_volume;
   size_t n_pencil;           /* pencils so far: numbers go on */
   size_t n_patch;            /* boxes that closed what was left, likewise */
-  size_t n_blocked;          /* works that made nothing */
+  size_t n_blocked;          /* works that made nothing, or what crosses the
+                                front */
   size_t n_child;
   struct vg_node **child;    /* [n_child] what it fell into */
 };
@@ -85,6 +87,9 @@ struct vg_partition {
   pthread_mutex_t lock;      /* of what follows */
   size_t n_piece, cap_piece;
   struct vg_piece *piece;    /* what this rank made */
+  size_t n_drop, cap_drop;
+  uint32_t *drop;            /* serials of the zones of nodes of this rank whose
+                                changes were not put in */
   struct vg_partition_report report;
   struct vg_node *cutting;   /* what a stopped job leaves */
   /* numbering */
@@ -120,10 +125,36 @@ vg_status vg_node_start(struct vg_partition *p, struct vg_node *n,
 vg_status vg_node_join(struct vg_partition *p, struct vg_node *n,
                        const struct vg_engine *e, struct vg_error *err);
 
-/** Put the changes of the works into the front; these, and what they were
- * given, are released. (node_put.c) */
-vg_status vg_node_put(struct vg_node *n, const struct vg_engine *e,
-                      struct vg_error *err);
+/** Put the changes of the works into the front, but those that cross it: these
+ * count as blocked, and their cells are dropped. All changes, and what the works
+ * were given, are released. (node_put.c) */
+vg_status vg_node_put(struct vg_partition *p, struct vg_node *n,
+                      const struct vg_engine *e, struct vg_error *err);
+
+/** The point of the front that is v in the change of work i, whose new points
+ * are in the front from `first` on. */
+static inline uint32_t vg_node_point(const struct vg_node *n, size_t i,
+                                     size_t first, uint32_t v)
+{
+  size_t n_part = n->change[i].n_part;
+
+  return v < n_part ? n->point[i][v] : (uint32_t)(first + v - n_part);
+}
+
+/** Does a new face in the change of work i, whose points are in the front
+ * already, meet a face of it beyond what the work was given, corners and edges
+ * that they have in common aside? Exact. Cost: of faces that leave the band
+ * that the work was given, which are few. Threads: safe. (node_cross.c) */
+int vg_node_crosses(const struct vg_node *n, size_t i, size_t first);
+
+/** Forget the cells of this zone when all tasks are done. Threads: safe. */
+vg_status vg_partition_note_drop(struct vg_partition *p,
+                                 const struct vg_change *c,
+                                 struct vg_error *err);
+
+/** Now they are. Collective. (drop.c) */
+vg_status vg_partition_drop(struct vg_partition *p, struct vg_comm *comm,
+                            struct vg_error *err);
 
 /** Does a face with these points lie within one block, off all planes? */
 static inline int vg_node_is_in_block(const uint16_t *block,

@@ -1,6 +1,7 @@
 /* Putting what a stage made into the front of its node. Outline: works get
- * places behind the front in their order; then all are copied, and points and
- * faces looked at, in loops whose chunks write what is theirs. */
+ * places behind the front in their order; then points are copied, and faces
+ * that are new tested against the front, then put into it, in loops whose
+ * chunks write what is theirs. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,32 +17,43 @@ enum { CHUNK = 8192 };
 struct put {
   struct vg_node *n;
   struct place { size_t point, face; } *at;  /* [n->n_work] of what is new */
+  uint8_t *crosses;          /* [n->n_work] the front */
 };
 
-static uint32_t point_of(const uint32_t *point, size_t base, uint32_t v,
-                         size_t n_part)
+/* Its points; then faces can be tested, while all of the front is there. */
+static void test_part(void *context, size_t first, size_t end, int worker)
 {
-  return v < n_part ? point[v] : (uint32_t)(base + v - n_part);
+  const struct put *p = context;
+  struct vg_front *f = &p->n->front;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++) {
+    const struct vg_change *c = &p->n->change[i];
+
+    if (c->n_point)
+      memcpy(f->x + p->at[i].point, c->x, c->n_point * sizeof *f->x);
+    for (size_t k = 0; k < c->n_point; k++)
+      f->name[p->at[i].point + k] = VG_POINT_NAME(c->serial, k);
+    p->crosses[i] = (uint8_t)vg_node_crosses(p->n, i, p->at[i].point);
+  }
 }
 
-/* Points and faces that the work made, behind those that stay; faces that have
- * a cell now are gone. No two works of a stage make cells of the same face:
- * walls keep them apart. */
-static void put_change(struct vg_node *n, size_t i, const struct place *at)
+/* Faces that the work made, behind those that stay; faces that have a cell now
+ * are gone. No two works of a stage make cells of the same face: walls keep
+ * them apart. Of one that crosses the front nothing stays. */
+static void put_change(struct vg_node *n, size_t i, const struct place *at,
+                       int crosses)
 {
   struct vg_change *c = &n->change[i];
   struct vg_front *f = &n->front;
 
-  for (size_t k = 0; k < c->n_gone; k++)
+  for (size_t k = 0; k < c->n_gone && !crosses; k++)
     f->face[n->face[i][c->gone[k]]][0] = VG_FACE_GONE;
-  if (c->n_point)
-    memcpy(f->x + at->point, c->x, c->n_point * sizeof *f->x);
-  for (size_t k = 0; k < c->n_point; k++)
-    f->name[at->point + k] = VG_POINT_NAME(c->serial, k);
   for (size_t k = 0; k < c->n_face; k++)
     for (int j = 0; j < 3; j++)
-      f->face[at->face + k][j] = point_of(n->point[i], at->point,
-                                          c->face[k][j], c->n_part);
+      f->face[at->face + k][j] =
+        crosses ? VG_FACE_GONE
+                : vg_node_point(n, i, at->point, c->face[k][j]);
 }
 
 static void put_part(void *context, size_t first, size_t end, int worker)
@@ -51,7 +63,7 @@ static void put_part(void *context, size_t first, size_t end, int worker)
 
   (void)worker;
   for (size_t i = first; i < end; i++) {
-    put_change(n, i, &p->at[i]);
+    put_change(n, i, &p->at[i], p->crosses[i]);
     vg_change_release(&n->change[i]);
     free(n->point[i]);
     free(n->face[i]);
@@ -68,14 +80,12 @@ static vg_status make_room(struct put *p, const struct vg_engine *e,
   size_t np = f->n_point, nf = f->n_face;
 
   p->at = vg_alloc(n->n_work, sizeof *p->at);
-  if (!p->at) return vg_fail_memory(err, "cutting a front");
+  p->crosses = vg_calloc(n->n_work, sizeof *p->crosses);
+  if (!p->at || !p->crosses) return vg_fail_memory(err, "cutting a front");
   for (size_t i = 0; i < n->n_work; i++) {
     p->at[i] = (struct place){ np, nf };
     np += n->change[i].n_point;
     nf += n->change[i].n_face;
-    n->zone_cells += (double)n->change[i].n_cell;
-    n->zone_volume += n->change[i].volume;
-    n->n_blocked += n->change[i].blocked != 0;
   }
   if (!n->cap_x) n->cap_x = n->cap_name = f->n_point;
   if (!n->cap_face) n->cap_face = f->n_face;
@@ -88,6 +98,27 @@ static vg_status make_room(struct put *p, const struct vg_engine *e,
   f->n_point = np;
   f->n_face = nf;
   return VG_OK;
+}
+
+/* What the stage made is counted, and what cannot stay given up. */
+static vg_status count_changes(const struct put *put, struct vg_partition *p,
+                               struct vg_error *err)
+{
+  struct vg_node *n = put->n;
+  vg_status st = VG_OK;
+
+  for (size_t i = 0; i < n->n_work && st == VG_OK; i++) {
+    const struct vg_change *c = &n->change[i];
+
+    n->n_blocked += c->blocked || put->crosses[i];
+    if (put->crosses[i]) {
+      st = vg_partition_note_drop(p, c, err);
+      continue;
+    }
+    n->zone_cells += (double)c->n_cell;
+    n->zone_volume += c->volume;
+  }
+  return st;
 }
 
 /* --- blocks of points ---------------------------------------------------- */
@@ -120,17 +151,22 @@ static vg_status label_points(struct vg_node *n, const struct vg_engine *e,
   return VG_OK;
 }
 
-vg_status vg_node_put(struct vg_node *n, const struct vg_engine *e,
-                      struct vg_error *err)
+vg_status vg_node_put(struct vg_partition *p, struct vg_node *n,
+                      const struct vg_engine *e, struct vg_error *err)
 {
-  struct put p = { .n = n };
-  vg_status st = make_room(&p, e, err);
+  struct put put = { .n = n };
+  vg_status st = make_room(&put, e, err);
 
   if (st == VG_OK) {
-    vg_engine_loop(e, n->n_work, 1, put_part, &p);
+    vg_engine_loop(e, n->n_work, 1, test_part, &put);
+    st = count_changes(&put, p, err);
+  }
+  if (st == VG_OK) {
+    vg_engine_loop(e, n->n_work, 1, put_part, &put);
     st = label_points(n, e, err);
   }
-  free(p.at);
+  free(put.at);
+  free(put.crosses);
   return st;
 }
 

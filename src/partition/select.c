@@ -455,6 +455,100 @@ vg_status vg_select_near(const struct vg_front *part,
   return st;
 }
 
+/* --- faces that a triangle may touch ------------------------------------- */
+
+struct touch {
+  const struct vg_select *s;
+  const double *const *x;
+  double lo[3], hi[3], normal[3];
+  double size, most;         /* no side is longer; no coordinate is more */
+  int (*visit)(void *context, uint32_t face);
+  void *context;
+};
+
+static void touch_init(struct touch *t)
+{
+  const double *const *x = t->x;
+
+  for (int k = 0; k < 3; k++) {
+    int l = (k + 1) % 3, m = (k + 2) % 3;
+
+    t->lo[k] = fmin(fmin(x[0][k], x[1][k]), x[2][k]);
+    t->hi[k] = fmax(fmax(x[0][k], x[1][k]), x[2][k]);
+    t->normal[k] = (x[1][l] - x[0][l]) * (x[2][m] - x[0][m]) -
+                   (x[1][m] - x[0][m]) * (x[2][l] - x[0][l]);
+    t->size += t->hi[k] - t->lo[k];
+    t->most = fmax(t->most, fmax(fabs(t->lo[k]), fabs(t->hi[k])));
+  }
+}
+
+/* Does the box lie beside the triangle's own, or on one side of its plane?
+ * Rounding aside, for which there is more than enough. */
+static int is_beside(const struct touch *t, const double lo[3],
+                     const double hi[3])
+{
+  double middle = 0, reach = 0, size = t->size;
+
+  for (int k = 0; k < 3; k++) {
+    double x = 0.5 * (lo[k] + hi[k]) - t->x[0][k], half = 0.5 * (hi[k] - lo[k]);
+
+    if (lo[k] > t->hi[k] || hi[k] < t->lo[k]) return 1;
+    middle += t->normal[k] * x;
+    reach += fabs(t->normal[k]) * half;
+    size += fabs(x) + half;
+  }
+  return fabs(middle) > reach + 1e-14 * (t->most + size) * t->size * size;
+}
+
+static int touch_run(const struct touch *t, size_t run)
+{
+  const struct vg_front *f = t->s->front;
+  size_t end = (run + 1) * RUN < t->s->n_face ? (run + 1) * RUN
+                                              : t->s->n_face;
+
+  for (size_t i = run * RUN; i < end; i++) {
+    struct vg_select_box b = empty;
+    int found;
+
+    if (f->face[i][0] == VG_FACE_GONE) continue;
+    for (int j = 0; j < 3; j++)
+      widen(&b, f->x[f->face[i][j]], f->x[f->face[i][j]]);
+    if (is_beside(t, b.lo, b.hi)) continue;
+    found = t->visit(t->context, (uint32_t)i);
+    if (found) return found;
+  }
+  return 0;
+}
+
+static int touch_box(const struct touch *t, int level, size_t b)
+{
+  const struct vg_select_level *at = &t->s->level[level];
+  const struct vg_select_box *box = &at->box[b];
+
+  if (!(box->lo[0] <= box->hi[0]) || is_beside(t, box->lo, box->hi)) return 0;
+  if (!level) return touch_run(t, b);
+  for (size_t k = b * FAN; k < (b + 1) * FAN && k < (at - 1)->n; k++) {
+    int found = touch_box(t, level - 1, k);
+
+    if (found) return found;
+  }
+  return 0;
+}
+
+int vg_select_touched(const struct vg_select *s, const double *const x[3],
+                      int (*visit)(void *context, uint32_t face),
+                      void *context)
+{
+  struct touch t = { .s = s, .x = x, .visit = visit, .context = context };
+  int top = VG_SELECT_LEVELS - 1, found = 0;
+
+  touch_init(&t);
+  while (top > 0 && !s->level[top].n) top--;
+  for (size_t b = 0; b < s->level[top].n && !found; b++)
+    found = touch_box(&t, top, b);
+  return found;
+}
+
 vg_status vg_select_sort(struct vg_front *f, struct vg_error *err)
 {
   double (*middle)[3] = vg_alloc(f->n_face, sizeof *middle);

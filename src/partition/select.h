@@ -54,6 +54,13 @@ vg_status vg_select_near(const struct vg_front *part,
                          struct vg_front *near, uint32_t **point,
                          uint32_t **face, struct vg_error *err);
 
+/** Call visit(context, f) for the faces of the front that the triangle x may
+ * touch, without those that are gone; stops when it returns other than 0, and
+ * returns that. Threads: safe. */
+int vg_select_touched(const struct vg_select *s, const double *const x[3],
+                      int (*visit)(void *context, uint32_t face),
+                      void *context);
+
 /** Put the faces of a front into an order that keeps neighbours together. */
 vg_status vg_select_sort(struct vg_front *f, struct vg_error *err);
 

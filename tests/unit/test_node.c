@@ -166,7 +166,7 @@ static void falls_into_blocks(void **state)
 
     four_boxes(&m, n);
     scene_of(&s, &m);
-    assert_int_equal(vg_node_put(s.n, NULL, NULL), VG_OK);
+    assert_int_equal(vg_node_put(&s.p, s.n, NULL, NULL), VG_OK);
     lists_open(s.n);
     assert_int_equal(s.n->n_open, 0);
     assert_int_equal(vg_node_split(&s.p, s.n, NULL, NULL), VG_OK);
@@ -195,7 +195,7 @@ static void what_hangs_together_stays(void **state)
   four_boxes(&m, 20);
   bridge(&m, -5);
   scene_of(&s, &m);
-  assert_int_equal(vg_node_put(s.n, NULL, NULL), VG_OK);
+  assert_int_equal(vg_node_put(&s.p, s.n, NULL, NULL), VG_OK);
   lists_open(s.n);
   assert_true(s.n->n_open > 0);
   assert_int_equal(vg_node_split(&s.p, s.n, NULL, NULL), VG_OK);
@@ -247,7 +247,7 @@ static void places_are_found(void **state)
   bridge(&m, -5);
   bridge(&m, 8);
   scene_of(&s, &m);
-  assert_int_equal(vg_node_put(s.n, NULL, NULL), VG_OK);
+  assert_int_equal(vg_node_put(&s.p, s.n, NULL, NULL), VG_OK);
   for (int axis = -1; axis < 1; axis++) {
     assert_int_equal(vg_node_open_places(&s.p, s.n, axis, NULL, &r, &n_region,
                                          NULL), VG_OK);
@@ -306,6 +306,17 @@ static void cell_on(struct vg_node *n, size_t i, uint32_t gone,
   }
 }
 
+static void works_of(struct vg_node *n, size_t count)
+{
+  n->n_work = count;
+  n->work = vg_calloc(count, sizeof *n->work);
+  n->region = vg_calloc(count, sizeof *n->region);
+  n->point = vg_calloc(count, sizeof *n->point);
+  n->face = vg_calloc(count, sizeof *n->face);
+  n->change = vg_calloc(count, sizeof *n->change);
+  assert_true(n->work && n->region && n->point && n->face && n->change);
+}
+
 /* In the order of the works; faces added cross planes too, and are listed
  * without a look at those seen before. */
 static void changes_are_put_in(void **state)
@@ -320,18 +331,13 @@ static void changes_are_put_in(void **state)
   bridge(&m, -5);
   scene_of(&s, &m);
   n = s.n;
-  assert_int_equal(vg_node_put(n, NULL, NULL), VG_OK);
+  assert_int_equal(vg_node_put(&s.p, n, NULL, NULL), VG_OK);
   lists_open(n);
-  n->n_work = WORKS;
-  n->work = vg_calloc(WORKS, sizeof *n->work);
-  n->point = vg_calloc(WORKS, sizeof *n->point);
-  n->face = vg_calloc(WORKS, sizeof *n->face);
-  n->change = vg_calloc(WORKS, sizeof *n->change);
-  assert_true(n->work && n->point && n->face && n->change);
+  works_of(n, WORKS);
   for (uint32_t i = 0; i < WORKS; i++)
     cell_on(n, i, i < 2 ? n->open[3 * i] : 7 * i, 9 - i);
   n->change[WORKS - 1].blocked = 1;
-  assert_int_equal(vg_node_put(n, NULL, NULL), VG_OK);
+  assert_int_equal(vg_node_put(&s.p, n, NULL, NULL), VG_OK);
   assert_int_equal(n->front.n_point, s.was.n_point + WORKS);
   assert_int_equal(n->front.n_face, s.was.n_face + 3 * WORKS);
   assert_true(n->zone_cells == WORKS && n->zone_volume == WORKS * 0.25);
@@ -352,6 +358,123 @@ static void changes_are_put_in(void **state)
   }
   lists_open(n);
   scene_end(&s);
+}
+
+/* --- changes that cross the front ---------------------------------------- */
+
+/* A box with edges of 1 at x = -6, and a fine one at the origin, 1 away from
+ * the zone: by the spacing there, more than a zone is given. */
+static void coarse_and_fine(struct scene *s)
+{
+  struct vg_mesh m = VG_MESH_INIT;
+
+  add_box(&m, 2, -6, 0, 1);
+  add_box(&m, 2, 0, 0, 0.2);
+  scene_of(s, &m);
+  vg_select_init(&s->n->select, &s->n->front, s->sizing);
+  assert_int_equal(vg_node_put(&s->p, s->n, NULL, NULL), VG_OK);
+  assert_int_equal(vg_select_update(&s->n->select, NULL, NULL), VG_OK);
+}
+
+/* The face of the coarse box towards the fine one with its middle nearest to
+ * (-5, -0.5, -0.5). */
+static uint32_t face_towards(const struct vg_front *f)
+{
+  uint32_t best = 0;
+  double least = 1e9;
+
+  for (size_t i = 0; i < f->n_face; i++) {
+    double d = 0;
+
+    for (int k = 0; k < 3; k++) {
+      const uint32_t *v = f->face[i];
+      double x = (f->x[v[0]][k] + f->x[v[1]][k] + f->x[v[2]][k]) / 3;
+
+      d += fabs(x + (k ? 0.5 : 5));
+    }
+    if (d < least) best = (uint32_t)i;
+    least = fmin(least, d);
+  }
+  return best;
+}
+
+/* A cell on that face with its tip at x, and one on another face: put in. */
+static void put_long_cell(struct scene *s, double x, double y, double z,
+                          const struct vg_region *region)
+{
+  const double tip[3] = {x, y, z};
+  struct vg_node *n = s->n;
+
+  works_of(n, 2);
+  cell_on(n, 0, face_towards(&n->front), 5);
+  cell_on(n, 1, 0, 6);
+  memcpy(n->change[0].x, tip, sizeof tip);
+  n->region[0] = n->region[1] = *region;
+  s->p.report.n_zone_cell = 2;
+  assert_int_equal(vg_node_put(&s->p, n, NULL, NULL), VG_OK);
+}
+
+/* What crosses a front that the zone was not given is not put in; the other
+ * change of the stage is, and both where nothing is crossed. */
+static void what_crosses_stays_out(void **state)
+{
+  const struct vg_region r = { .n_plane = 1, .plane = {{{0, 1, 0}, -1}} };
+
+  (void)state;
+  for (int is_crossing = 0; is_crossing < 2; is_crossing++) {
+    struct scene s;
+    size_t left = 0;
+    uint32_t gone;
+
+    coarse_and_fine(&s);
+    gone = face_towards(&s.n->front);
+    put_long_cell(&s, 5, is_crossing ? 0.5 : -1.5, 0.5, &r);
+    assert_int_equal(s.n->front.face[gone][0] == VG_FACE_GONE, !is_crossing);
+    assert_int_equal(s.n->front.face[0][0], VG_FACE_GONE);
+    for (size_t i = 0; i < s.n->front.n_face; i++)
+      left += s.n->front.face[i][0] != VG_FACE_GONE;
+    assert_int_equal(left, s.was.n_face + (is_crossing ? 2 : 4));
+    assert_int_equal(s.n->n_blocked, is_crossing);
+    assert_true(s.n->zone_cells == 2 - is_crossing);
+    assert_int_equal(s.p.report.n_crossing, is_crossing);
+    assert_int_equal(s.p.report.n_blocked, is_crossing);
+    assert_int_equal(s.p.report.n_zone_cell, 2 - is_crossing);
+    assert_int_equal(s.p.n_drop, is_crossing);
+    if (is_crossing) assert_int_equal(s.p.drop[0], 5);
+    lists_open(s.n);
+    free(s.p.drop);
+    scene_end(&s);
+  }
+}
+
+/* Cells of zones that were not put in are forgotten, others kept in order. */
+static void dropped_cells_are_forgotten(void **state)
+{
+  struct vg_partition p = { .size = 1 };
+  const struct vg_change c = { .serial = 5, .n_cell = 3 };
+
+  (void)state;
+  pthread_mutex_init(&p.lock, NULL);
+  p.report.n_zone_cell = 10;
+  p.n_piece = p.cap_piece = 3;
+  p.piece = vg_calloc(3, sizeof *p.piece);
+  assert_non_null(p.piece);
+  for (uint32_t k = 0; k < 3; k++) {
+    p.piece[k].serial = 4 + k;
+    p.piece[k].cell = vg_alloc(1, sizeof *p.piece[k].cell);
+  }
+  assert_int_equal(vg_partition_drop(&p, NULL, NULL), VG_OK);
+  assert_int_equal(p.n_piece, 3);
+  assert_int_equal(vg_partition_note_drop(&p, &c, NULL), VG_OK);
+  assert_int_equal(p.report.n_zone_cell, 7);
+  assert_int_equal(vg_partition_drop(&p, NULL, NULL), VG_OK);
+  assert_int_equal(p.n_piece, 2);
+  assert_int_equal(p.piece[0].serial, 4);
+  assert_int_equal(p.piece[1].serial, 6);
+  for (int k = 0; k < 2; k++) vg_piece_release(&p.piece[k]);
+  free(p.piece);
+  free(p.drop);
+  pthread_mutex_destroy(&p.lock);
 }
 
 /* --- arrays -------------------------------------------------------------- */
@@ -381,6 +504,8 @@ int main(void)
     cmocka_unit_test(what_hangs_together_stays),
     cmocka_unit_test(places_are_found),
     cmocka_unit_test(changes_are_put_in),
+    cmocka_unit_test(what_crosses_stays_out),
+    cmocka_unit_test(dropped_cells_are_forgotten),
     cmocka_unit_test(arrays_keep_what_is_in_use),
   };
 

@@ -4,6 +4,7 @@
 #include "advance_support.h"
 
 #include "base/memory.h"
+#include "core/surface_parts.h"
 #include "partition/lattice.h"
 #include "partition/select.h"
 
@@ -397,6 +398,102 @@ static void the_longest_face_counts(void **state)
   scene_end(&scene);
 }
 
+/* --- faces that a triangle touches ---------------------------------------- */
+
+struct seen {
+  size_t n;
+  uint8_t *face;
+};
+
+static int see(void *context, uint32_t face)
+{
+  struct seen *s = context;
+
+  s->face[face]++;
+  s->n++;
+  return 0;
+}
+
+static int stop_at_once(void *context, uint32_t face)
+{
+  size_t *n = context;
+
+  (void)face;
+  ++*n;
+  return 7;
+}
+
+static double any(uint64_t *state, double lo, double hi)
+{
+  *state = *state * UINT64_C(6364136223846793005) + 1442695040888963407u;
+  return lo + (hi - lo) * (double)(*state >> 11) / 9007199254740992.0;
+}
+
+/* Three points behind those of the front: small, long or flat. */
+static void any_triangle(struct vg_front *f, uint64_t *state, int how)
+{
+  double size = how % 3 == 0 ? 1 : 20;
+
+  for (int k = 0; k < 3; k++) f->x[f->n_point][k] = any(state, -15, 15);
+  for (size_t i = 1; i < 3; i++)
+    for (int k = 0; k < 3; k++)
+      f->x[f->n_point + i][k] = f->x[f->n_point][k] +
+                                size * any(state, -1, 1);
+  for (int i = 0; i < 3 && how % 4 == 1; i++)
+    f->x[f->n_point + (size_t)i][how % 5 % 3] = f->x[0][how % 5 % 3];
+}
+
+/* All that meet it, once, and of the others few; no face that is gone. */
+static void all_that_a_triangle_meets(void **state)
+{
+  struct vg_select s;
+  struct vg_front f;
+  struct scene scene;
+  struct seen seen = { .n = 0 };
+  uint64_t random = 1;
+  size_t met = 0;
+
+  (void)state;
+  scene_demo(&scene, "sphere", 100000);
+  front_of(&scene.m, &f);
+  f.x = vg_realloc(f.x, f.n_point + 3, sizeof *f.x);
+  seen.face = vg_alloc(f.n_face, 1);
+  assert_true(f.x && seen.face);
+  for (size_t i = 0; i < f.n_face; i += 9) f.face[i][0] = VG_FACE_GONE;
+  vg_select_init(&s, &f, scene.sizing);
+  assert_int_equal(vg_select_update(&s, NULL, NULL), VG_OK);
+  for (int n = 0; n < 300; n++) {
+    const uint32_t p = (uint32_t)f.n_point, v[3] = {p, p + 1, p + 2};
+    const double *x[3];
+    size_t stopped = 0, here = 0;
+
+    any_triangle(&f, &random, n);
+    for (int k = 0; k < 3; k++) x[k] = f.x[v[k]];
+    memset(seen.face, 0, f.n_face);
+    assert_int_equal(vg_select_touched(&s, x, see, &seen), 0);
+    for (size_t i = 0; i < f.n_face; i++) {
+      int is_gone = f.face[i][0] == VG_FACE_GONE;
+
+      assert_true(seen.face[i] <= !is_gone);
+      if (is_gone || !vg_triangles_meet((const double (*)[3])f.x, v,
+                                        f.face[i], v, f.face[i]))
+        continue;
+      assert_int_equal(seen.face[i], 1);
+      here++;
+    }
+    met += here;
+    if (here) {
+      assert_int_equal(vg_select_touched(&s, x, stop_at_once, &stopped), 7);
+      assert_int_equal(stopped, 1);
+    }
+  }
+  assert_true(met > 1000 && seen.n < 10 * met);
+  free(seen.face);
+  vg_select_release(&s);
+  vg_front_release(&f);
+  scene_end(&scene);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -407,6 +504,7 @@ int main(void)
     cmocka_unit_test(nothing_near),
     cmocka_unit_test(long_faces_widen),
     cmocka_unit_test(the_longest_face_counts),
+    cmocka_unit_test(all_that_a_triangle_meets),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);
