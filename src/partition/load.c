@@ -4,6 +4,7 @@
 #include "partition/load.h"
 
 #include <math.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,6 +22,8 @@
 #define EDGES_MOST 280.0
 #define WIDE_ROUGH 12.0
 #define FILLED 0.35
+/* More cubes, of 2,500 cells each, are a mistake in the sizes. */
+#define CUBES_MOST 4000000
 /* With fewer cubes than this, narrower ones are tried, down to LEAST edges. */
 #define FEW_CUBES 64
 #define LEAST 1.0
@@ -47,6 +50,7 @@ struct maker {
   double per_cube;
   double narrow, wide;       /* divides, multiplies the widths allowed */
   size_t n_branch, cap_branch, large;
+  _Atomic size_t *emitted;   /* cubes of all branches */
   struct branch {
     struct vg_load_node node;
     uint32_t *item;          /* [node.n] */
@@ -144,6 +148,7 @@ static int emit(const struct maker *m, struct branch *b,
 
   if (node->n) b->crossed += volume * volume;
   if (!inside) return 0;
+  if (atomic_fetch_add(m->emitted, 1) >= CUBES_MOST) return -1;
   if (vg_reserve(&b->out.cube, &b->out.cap, b->out.n + 1, sizeof *c))
     return -1;
   c = &b->out.cube[b->out.n++];
@@ -262,47 +267,57 @@ static int plan_all(struct maker *m, int threads)
   return bad;
 }
 
+struct rough_job {
+  const struct maker *m;
+  double *sum;               /* [branch] */
+  _Atomic uint64_t seen;     /* whole cubes of all; from ROUGH_MOST on no more
+                                are looked for: widths would be the same */
+};
+#define ROUGH_MOST (MANY_CUBES * EDGES_MOST)
+
 /* Cubes of the target edge in a node, whatever is the void. */
-static double rough(const struct maker *m, const struct vg_load_node *node)
+static double rough(struct rough_job *job, const struct vg_load_node *node)
 {
+  const struct maker *m = job->m;
   const double side = vg_load_side(node) * m->tree->unit;
   const double n = mean_density(m, node).cubes * side * side * side;
   struct vg_load_node part = *node;
   double sum = 0;
 
   if (node->level >= VG_LOAD_LEVELS
-      || n <= WIDE_ROUGH * WIDE_ROUGH * WIDE_ROUGH)
+      || n <= WIDE_ROUGH * WIDE_ROUGH * WIDE_ROUGH) {
+    atomic_fetch_add(&job->seen, (uint64_t)fmin(n, ROUGH_MOST));
     return n;
+  }
   part.level++;
-  for (int o = 0; o < 8; o++) {
+  for (int o = 0; o < 8 && (double)job->seen < ROUGH_MOST; o++) {
     for (int k = 0; k < 3; k++)
       part.at[k] = node->at[k] + (o >> k & 1 ? vg_load_side(&part) : 0);
-    sum += rough(m, &part);
+    sum += rough(job, &part);
   }
   return sum;
 }
 
-struct rough_job { const struct maker *m; double *sum; };
-
 static void rough_part(void *context, size_t first, size_t end, int worker)
 {
-  const struct rough_job *job = context;
+  struct rough_job *job = context;
 
   (void)worker;
   for (size_t i = first; i < end; i++)
-    job->sum[i] = rough(job->m, &job->m->branch[i].node);
+    job->sum[i] = rough(job, &job->m->branch[i].node);
 }
 
 /* Choose the widths for a tolerable number of cubes. */
 static int widen(struct maker *m, int threads)
 {
-  struct rough_job job = { m, vg_alloc(m->n_branch, sizeof *job.sum) };
+  struct rough_job job = { m, vg_alloc(m->n_branch, sizeof *job.sum), 0 };
   double sum = 0, wide;
 
   if (!job.sum) return -1;
   vg_parallel_for(threads, m->n_branch, 1, rough_part, &job);
   for (size_t i = 0; i < m->n_branch; i++) sum += job.sum[i];
   free(job.sum);
+  if ((double)job.seen >= ROUGH_MOST) sum = ROUGH_MOST;
   sum = fmin(sum / MANY_CUBES, EDGES_MOST);
   wide = cube_root(sum / FILLED) / WIDE_FREE;
   m->wide = wide > 1 ? wide : 1;
@@ -339,6 +354,7 @@ static int make(struct maker *m, int threads, struct vg_load *out,
 
   m->n_branch = 0;
   m->wide = 1;
+  *m->emitted = 0;
   bad = plan_all(m, threads) || (m->n_branch && widen(m, threads));
   if (!bad) {
     vg_parallel_for(threads, m->n_branch, 1, refine_part, m);
@@ -402,6 +418,15 @@ static int lone_cube(const struct maker *m, const double lo[3],
   return 0;
 }
 
+static vg_status refused(const struct maker *m, struct vg_error *err)
+{
+  if (atomic_load(m->emitted) <= CUBES_MOST)
+    return vg_fail_memory(err, "the estimate of cells");
+  return vg_fail(err, VG_ERR_UNSUPPORTED, "the sizes ask for more than %.0f "
+                 "billion cells; are hmin, hmax and the sources in the unit of "
+                 "the surface?", CUBES_MOST * EDGES_MOST * m->per_cube * 1e-9);
+}
+
 /* The best of several places of the root cube; nearly always the first. */
 static vg_status build(struct maker *m, struct vg_load_tree *t,
                        const struct vg_void *v, double volume, int threads,
@@ -421,7 +446,7 @@ static vg_status build(struct maker *m, struct vg_load_tree *t,
     if (st < 0) return st;
     bad = make(m, threads, &l, &crossed);
     vg_load_tree_release(t);
-    if (bad) return vg_fail_memory(err, "the estimate of cells");
+    if (bad) return refused(m, err);
     memcpy(l.lo, t->lo, sizeof l.lo);
     l.unit = t->unit;
     off = fabs(vg_load_parts(&l) - volume);
@@ -443,8 +468,10 @@ vg_status vg_load_new(const struct vg_void *v, const struct vg_sizing *sizing,
                       struct vg_error *err)
 {
   struct vg_load_tree t = { .unit = 1 };
+  _Atomic size_t emitted = 0;
   struct maker m = { .tree = &t, .sizing = sizing,
-                     .per_cube = cells_per_cube, .narrow = 1 };
+                     .per_cube = cells_per_cube, .narrow = 1,
+                     .emitted = &emitted };
   struct vg_load l = VG_LOAD_INIT;
   const double volume = vg_load_volume(v);
   vg_status st = VG_OK;

@@ -54,7 +54,8 @@ void vg_load_release(struct vg_load *l);
  * than 10 M cells, to have about 40,000 cubes or one for 2,500 cells, and as
  * narrow as 1 h in voids with fewer than 64. Cubes outside are dropped.
  * Cost: O(front + cubes) times a logarithm. Result follows from the arguments
- * alone, bit by bit. VG_ERR_MEMORY. */
+ * alone, bit by bit. VG_ERR_UNSUPPORTED beyond 4 M cubes, some 10 billion
+ * cells: sizes in another unit than the surface. VG_ERR_MEMORY. */
 vg_status vg_load_new(const struct vg_void *v, const struct vg_sizing *sizing,
                       double cells_per_cube, int threads, struct vg_load *out,
                       struct vg_error *err);

@@ -352,6 +352,26 @@ static void tiny_and_empty_children(void **state)
   release_scene(&s);
 }
 
+/* Millimetres for metres: that nothing can be made of it is told at once. */
+static void sizes_in_another_unit_are_named(void **state)
+{
+  struct vg_mesh m = VG_MESH_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+  struct vg_load l = VG_LOAD_INIT;
+  struct scene s;
+
+  (void)state;
+  shape_box(&m, 2, 1);
+  make_scene(&s, &m, 1e-6);
+  for (int threads = 1; threads <= 2; threads++) {
+    assert_int_equal(vg_load_new(&s.v, s.sizing, VG_LOAD_CELLS_PER_CUBE,
+                                 threads, &l, &err), VG_ERR_UNSUPPORTED);
+    assert_non_null(strstr(err.text, "10 billion cells"));
+    assert_null(l.cube);
+  }
+  release_scene(&s);
+}
+
 /* A void smaller than an edge still has a load of its volume. */
 static void a_small_void_has_cubes(void **state)
 {
@@ -622,6 +642,7 @@ int main(void)
     cmocka_unit_test(zones_belong_to_no_block),
     cmocka_unit_test(quantiles_halve_a_mesh),
     cmocka_unit_test(messages_come_back),
+    cmocka_unit_test(sizes_in_another_unit_are_named),
     cmocka_unit_test(real_surfaces_keep_their_volume),
   };
 
