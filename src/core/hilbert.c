@@ -17,32 +17,54 @@ static uint64_t spread(uint64_t q)
   return (q | q << 2) & 0x1249249249249249u;
 }
 
-/* Skilling's transposed key ("Programming the Hilbert curve", 2004), without
- * branches: bits of coordinates are not to be predicted. */
+/* The curve through the eight parts of a cube, in each of its 24 positions:
+ * 8 times the position in a part, plus when it is passed. The positions of
+ * Skilling's key ("Programming the Hilbert curve", 2004). */
+static const uint8_t passed[24][8] = {
+  {8, 17, 27, 2, 39, 46, 52, 5},
+  {56, 71, 73, 86, 91, 20, 10, 13},
+  {48, 1, 103, 110, 115, 18, 12, 21},
+  {126, 129, 29, 26, 79, 80, 140, 3},
+  {148, 43, 37, 34, 127, 128, 78, 81},
+  {156, 45, 35, 42, 31, 6, 160, 105},
+  {72, 87, 139, 4, 57, 70, 50, 53},
+  {0, 171, 111, 76, 49, 58, 102, 61},
+  {180, 143, 83, 184, 69, 54, 66, 97},
+  {16, 123, 9, 74, 47, 60, 38, 77},
+  {132, 95, 85, 14, 67, 144, 82, 33},
+  {142, 55, 185, 96, 93, 116, 90, 11},
+  {188, 107, 175, 176, 101, 98, 62, 65},
+  {164, 109, 119, 22, 99, 106, 152, 41},
+  {174, 177, 63, 64, 117, 114, 92, 19},
+  {30, 125, 161, 122, 7, 172, 104, 75},
+  {130, 25, 133, 166, 179, 136, 84, 191},
+  {94, 15, 141, 28, 145, 32, 138, 51},
+  {146, 155, 149, 36, 137, 24, 190, 167},
+  {154, 157, 147, 44, 169, 182, 120, 135},
+  {162, 165, 121, 134, 187, 108, 168, 183},
+  {118, 173, 23, 124, 153, 170, 40, 59},
+  {178, 113, 131, 88, 181, 158, 68, 151},
+  {186, 163, 89, 112, 189, 100, 150, 159}};
+
 uint64_t vg_hilbert_key(const double x[3], const double lo[3], double scale)
 {
-  uint32_t q[3], t;
+  uint64_t part = 0, key = 0;
+  unsigned position = 0;
 
   for (int k = 0; k < 3; k++) {
     double cell = (x[k] - lo[k]) * scale;
+    uint32_t q = !(cell > 0) ? 0
+                 : cell >= (1u << BITS) - 1 ? (1u << BITS) - 1 : (uint32_t)cell;
 
-    q[k] = !(cell > 0) ? 0
-           : cell >= (1u << BITS) - 1 ? (1u << BITS) - 1 : (uint32_t)cell;
+    part = part << 1 | spread(q);
   }
-  for (int b = BITS - 1; b > 0; b--)
-    for (int k = 0; k < 3; k++) {
-      uint32_t low = (1u << b) - 1, is_set = 0u - (q[k] >> b & 1);
-      uint32_t exchange = (q[0] ^ q[k]) & low & ~is_set;
+  for (int shift = 3 * (BITS - 1); shift >= 0; shift -= 3) {
+    unsigned to = passed[position][part >> shift & 7];
 
-      q[k] ^= exchange;
-      q[0] ^= exchange ^ (low & is_set);
-    }
-  q[1] ^= q[0];
-  q[2] ^= q[1];
-  t = q[2];                  /* of each bit the parity of those above it */
-  for (int shift = 1; shift < BITS; shift *= 2) t ^= t >> shift;
-  t >>= 1;
-  return spread(q[0] ^ t) << 2 | spread(q[1] ^ t) << 1 | spread(q[2] ^ t);
+    key = key << 3 | (to & 7);
+    position = to >> 3;
+  }
+  return key;
 }
 
 vg_status vg_sort_keys(size_t n, struct vg_key *key, struct vg_error *err)
