@@ -489,10 +489,23 @@ static vg_status flip_first(struct recovery *r, uint8_t *missing,
   return st;
 }
 
+/* Dead ones are like no other. */
+static struct vg_cell *copy_of_cells(const struct vg_tets *t)
+{
+  struct vg_cell *copy = vg_alloc(t->n_cell, sizeof *copy);
+
+  if (!copy) return NULL;
+  memcpy(copy, t->cell, t->n_cell * sizeof *copy);
+  for (size_t k = 0; k < t->n_free; k++) copy[t->free[k]].v[0] = VG_NONE;
+  return copy;
+}
+
 vg_status vg_recover(struct vg_tets *t, size_t n_tri, const uint32_t (*tri)[3],
                      struct vg_boundary_report *report, struct vg_error *err)
 {
   struct recovery r = {0};
+  struct vg_cell *before = NULL;
+  size_t n_before = 0;
   uint8_t *missing = vg_alloc(n_tri, 1);
   vg_status st = VG_OK;
 
@@ -506,6 +519,11 @@ vg_status vg_recover(struct vg_tets *t, size_t n_tri, const uint32_t (*tri)[3],
     st = vg_fail_memory(err, "boundary recovery");
   if (st == VG_OK) st = list_missing(&r, missing, err);
   report->n_face_lost = r.n_missing;
+  if (st == VG_OK && r.n_missing) {
+    n_before = t->n_cell;
+    before = copy_of_cells(t);
+    if (!before) st = vg_fail_memory(err, "boundary recovery");
+  }
   if (st == VG_OK && r.n_missing) st = flip_first(&r, missing, err);
   report->n_face_left = r.n_missing;
   for (int round = 0; st == VG_OK && r.n_missing && round < ROUNDS; round++) {
@@ -518,7 +536,8 @@ vg_status vg_recover(struct vg_tets *t, size_t n_tri, const uint32_t (*tri)[3],
     st = vg_fail(err, VG_ERR_GEOMETRY, "%zu surface triangles could not be "
                  "recovered in pockets", r.n_missing);
   if (st == VG_OK && report->n_face_lost)
-    st = vg_recover_delaunay(t, &report->n_restored, err);
+    st = vg_recover_delaunay(t, n_before, before, &report->n_restored, err);
+  free(before);
   free(missing);
   free(r.missing);
   free(r.parent);

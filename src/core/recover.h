@@ -25,8 +25,11 @@ vg_status vg_recover(struct vg_tets *t, size_t n_tri, const uint32_t (*tri)[3],
  * none is left that a flip brings nearer to it: points inserted afterwards
  * (core/insert.h) start from Delaunay cells. No edge or face of the surface is
  * lost while all its triangles are fixed faces.
+ * n_before, before  cells as they were when all faces were locally Delaunay;
+ *                   those that still are the same are not looked at again
  * n_flip out: flips made */
-vg_status vg_recover_delaunay(struct vg_tets *t, size_t *n_flip,
+vg_status vg_recover_delaunay(struct vg_tets *t, size_t n_before,
+                              const struct vg_cell *before, size_t *n_flip,
                               struct vg_error *err);
 
 #endif

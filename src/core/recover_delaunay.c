@@ -190,16 +190,39 @@ static void mend(struct restorer *r, uint32_t c, int i)
     if (!is_in[k] && remove_edge(r, c, v[k], v[(k + 1) % 3])) return;
 }
 
-vg_status vg_recover_delaunay(struct vg_tets *t, size_t *n_flip,
+static int is_as_before(const struct vg_tets *t, size_t n,
+                        const struct vg_cell *before, uint32_t c)
+{
+  return c < n && !memcmp(t->cell[c].v, before[c].v, sizeof before[c].v);
+}
+
+/* Faces between cells that are as they were need no look. */
+static void list_wrong(struct restorer *r, size_t n,
+                       const struct vg_cell *before)
+{
+  const struct vg_tets *t = r->t;
+
+  for (uint32_t c = 0; c < t->n_cell; c++) {
+    int is_old = is_as_before(t, n, before, c);
+
+    for (int i = 0; i < 4 && !(t->flag[c] & VG_DEAD); i++) {
+      uint32_t other = t->cell[c].link[i] >> 2;
+
+      if (other > c &&
+          !(is_old && is_as_before(t, n, before, other)) && is_wrong(t, c, i))
+        add(r, 4 * c + (uint32_t)i);
+    }
+  }
+}
+
+vg_status vg_recover_delaunay(struct vg_tets *t, size_t n_before,
+                              const struct vg_cell *before, size_t *n_flip,
                               struct vg_error *err)
 {
   struct restorer r = { .t = t };
   struct faces now = {0};
 
-  for (uint32_t c = 0; c < t->n_cell; c++)
-    for (int i = 0; i < 4 && !(t->flag[c] & VG_DEAD); i++)
-      if (t->cell[c].link[i] >> 2 > c && is_wrong(t, c, i))
-        add(&r, 4 * c + (uint32_t)i);
+  list_wrong(&r, n_before, before);
   for (int round = 0; round < ROUNDS && r.next.n && !r.refused; round++) {
     struct faces keep = now;
 

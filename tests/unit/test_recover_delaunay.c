@@ -133,7 +133,7 @@ static void flips_are_undone(void **state)
     spoil(&t, seed + 50);
     spoilt = tets_not_delaunay(&t);
     assert_true(spoilt > N_SPOILT);
-    assert_int_equal(vg_recover_delaunay(&t, &n_flip, NULL), VG_OK);
+    assert_int_equal(vg_recover_delaunay(&t, 0, NULL, &n_flip, NULL), VG_OK);
     is_sound(&t);
     nothing_is_left(&t);
     assert_true(n_flip > 0);
@@ -198,7 +198,7 @@ static void fixed_faces_stay(void **state)
   assert_non_null(face);
   n = fix_some(&t, face);
   assert_true(n > 100);
-  assert_int_equal(vg_recover_delaunay(&t, &n_flip, NULL), VG_OK);
+  assert_int_equal(vg_recover_delaunay(&t, 0, NULL, &n_flip, NULL), VG_OK);
   assert_true(n_flip > 0);
   is_sound(&t);
   nothing_is_left(&t);
@@ -218,7 +218,7 @@ static void equals_stay(void **state)
 
   (void)state;
   tets_grid(&t, n);
-  assert_int_equal(vg_recover_delaunay(&t, &n_flip, NULL), VG_OK);
+  assert_int_equal(vg_recover_delaunay(&t, 0, NULL, &n_flip, NULL), VG_OK);
   assert_int_equal(n_flip, 0);
   assert_int_equal(vg_tets_defects(&t), 0);
   vg_tets_release(&t);
