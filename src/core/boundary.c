@@ -112,18 +112,34 @@ struct sides {
   double band;               /* sides are told so near the region */
   int is_strict;             /* 1: a contradiction is an error */
   uint8_t *side;             /* [n_cell] */
+  uint8_t *front;            /* [n_cell] bit i: face i is a triangle that faces
+                                the cell; bit 4 + i: that faces away */
+  uint8_t *near;             /* [n_cell] bit i: face i was found to lie in the
+                                band; bit 4 + i: not to */
   uint32_t *queue;           /* [n_cell] cells with a side, as they got it */
   size_t n_queue, next;
 };
 
-/* Is face i of cell c where sides are to be told? */
+/* Is face i of cell c where sides are to be told? Kept for both its cells. */
 static int matters(const struct sides *s, uint32_t c, int i)
 {
   const uint32_t *v = s->t->cell[c].v;
   const uint8_t *f = vg_face[i];
-  uint32_t tri[3] = {v[f[0]], v[f[1]], v[f[2]]};
+  uint32_t tri[3] = {v[f[0]], v[f[1]], v[f[2]]}, link = s->t->cell[c].link[i];
+  int known = s->ruler ? s->near[c] >> i & 0x11 : 1;
 
-  return !s->ruler || vg_ruler_meets(s->ruler, tri, s->band);
+  if (known) return known & 1;
+  known = vg_ruler_meets(s->ruler, tri, s->band) ? 1 : 0x10;
+  s->near[c] |= (uint8_t)(known << i);
+  if (link != VG_NONE) s->near[link >> 2] |= (uint8_t)(known << (link & 3));
+  return known & 1;
+}
+
+/* Another band: what was found is to be found again, but for some bits. */
+static void set_band(struct sides *s, double band, uint8_t keep)
+{
+  s->band = band;
+  for (size_t c = 0; c < s->t->n_cell && s->ruler; c++) s->near[c] &= keep;
 }
 
 static void set_side(struct sides *s, uint32_t c, uint8_t is)
@@ -132,29 +148,43 @@ static void set_side(struct sides *s, uint32_t c, uint8_t is)
   s->queue[s->n_queue++] = c;
 }
 
-/* Seeds: the cells on both sides of every surface triangle. */
-static vg_status seed_sides(struct sides *s, const struct tri_table *table,
-                            struct vg_error *err)
+static void find_front(struct sides *s, const struct tri_table *table)
 {
   const struct vg_tets *t = s->t;
 
   for (uint32_t c = 0; c < t->n_cell; c++)
-    for (int i = 0; i < 4; i++) {
-      uint32_t v[3];
+    for (uint32_t i = 0; t->flag[c] & VG_FIXED_FACES && i < 4; i++) {
+      uint32_t link = t->cell[c].link[i], v[3];
       int sense = 0;
-      uint8_t is;
 
-      if (!(t->flag[c] >> i & 1) || (s->side[c] && !s->is_strict) ||
-          !matters(s, c, i))
-        continue;
+      if (!(t->flag[c] >> i & 1) || link < 4 * c + i) continue;
       for (int k = 0; k < 3; k++) v[k] = t->cell[c].v[vg_face[i][k]];
       if (tri_table_find(table, v, &sense) == VG_NONE) continue;
-      is = sense > 0 ? SIDE_FLUID : SIDE_SOLID;
+      s->front[c] |= (uint8_t)((sense > 0 ? 1 : 0x10) << i);
+      if (link != VG_NONE)
+        s->front[link >> 2] |=
+          (uint8_t)((sense > 0 ? 0x10 : 1) << (link & 3));
+    }
+}
+
+/* Seeds: the cells on both sides of every surface triangle. */
+static vg_status seed_sides(struct sides *s, struct vg_error *err)
+{
+  const struct vg_tets *t = s->t;
+
+  for (uint32_t c = 0; c < t->n_cell; c++)
+    for (int i = 0; s->front[c] && i < 4; i++) {
+      const double *x = t->x[t->cell[c].v[vg_face[i][0]]];
+      uint8_t is = s->front[c] >> i & 1 ? SIDE_FLUID : SIDE_SOLID;
+
+      if (!(s->front[c] >> i & 0x11) || (s->side[c] && !s->is_strict) ||
+          !matters(s, c, i))
+        continue;
       if (s->side[c] == SIDE_UNKNOWN) set_side(s, c, is);
       else if (s->side[c] != is && s->is_strict) return vg_fail(
           err, VG_ERR_GEOMETRY, "the surface turns inside out at point %u "
-          "(%g %g %g); run 'vanguard check' on it", v[0] + 1, t->x[v[0]][0],
-          t->x[v[0]][1], t->x[v[0]][2]);
+          "(%g %g %g); run 'vanguard check' on it",
+          t->cell[c].v[vg_face[i][0]] + 1, x[0], x[1], x[2]);
     }
   return VG_OK;
 }
@@ -165,21 +195,19 @@ static vg_status spread_over(struct sides *s, uint32_t c, int i,
   struct vg_tets *t = s->t;
   uint32_t link = t->cell[c].link[i], other = link >> 2;
   const double *x = t->x[t->cell[c].v[0]];
+  uint8_t is = link == VG_NONE ? SIDE_SOLID : s->side[other];
 
-  if (t->flag[c] >> i & 1 ||
-      (link != VG_NONE && s->side[other] == s->side[c]) || !matters(s, c, i))
+  if (t->flag[c] >> i & 1 || is == s->side[c] || (is && !s->is_strict) ||
+      !matters(s, c, i))
     return VG_OK;
-  if (link == VG_NONE) {
-    if (s->side[c] != SIDE_FLUID || !s->is_strict) return VG_OK;
-    return vg_fail(err, VG_ERR_GEOMETRY,
-                   "the fluid is not enclosed near (%g %g %g): the outer "
-                   "boundary must point inward", x[0], x[1], x[2]);
-  }
-  if (s->side[other] == SIDE_UNKNOWN) {
+  if (is == SIDE_UNKNOWN) {
     set_side(s, other, s->side[c]);
     return VG_OK;
   }
-  if (!s->is_strict) return VG_OK;
+  if (link == VG_NONE)
+    return vg_fail(err, VG_ERR_GEOMETRY,
+                   "the fluid is not enclosed near (%g %g %g): the outer "
+                   "boundary must point inward", x[0], x[1], x[2]);
   return vg_fail(err, VG_ERR_GEOMETRY,
                  "fluid and solid meet without a surface between them near "
                  "(%g %g %g); run 'vanguard check' on the surface", x[0], x[1],
@@ -199,20 +227,19 @@ static vg_status spread_sides(struct sides *s, struct vg_error *err)
 /* On the region itself every front face is known, so what is reached along it
  * is sure. From there sides spread over the band; where they contradict each
  * other, for want of faces, the nearest wins. */
-static vg_status tell_sides(struct sides *s, const struct tri_table *table,
-                            struct vg_error *err)
+static vg_status tell_sides(struct sides *s, struct vg_error *err)
 {
   vg_status st;
 
   s->band = s->ruler ? -s->ruler->region->reach + 1e-6 : 0;
   s->is_strict = 1;
-  VG_TRY(seed_sides(s, table, err));
+  VG_TRY(seed_sides(s, err));
   VG_TRY(spread_sides(s, err));
   if (!s->ruler) goto done;
-  s->band = VG_BAND_FLUID;
+  set_band(s, VG_BAND_FLUID, 0x0f);
   s->is_strict = 0;
   s->next = 0;
-  VG_TRY(seed_sides(s, table, err));
+  VG_TRY(seed_sides(s, err));
   st = spread_sides(s, err);
 done:
   return st;
@@ -234,7 +261,7 @@ static void wall_off(struct sides *s)
 {
   struct vg_tets *t = s->t;
 
-  s->band = VG_BAND_PLACE;
+  set_band(s, VG_BAND_PLACE, 0);
   for (uint32_t c = 0; c < t->n_cell; c++)
     if (s->side[c] == SIDE_UNKNOWN && !(t->flag[c] & VG_DEAD))
       s->side[c] = meets_region(s, c) ? SIDE_SOLID : SIDE_FLUID;
@@ -261,13 +288,17 @@ vg_status vg_boundary_sides(struct vg_tets *t, size_t n_tri,
   vg_status st = VG_OK;
 
   s.side = vg_calloc(t->n_cell, 1);
+  s.front = vg_calloc(t->n_cell, 1);
+  s.near = vg_calloc(region ? t->n_cell : 1, 1);
   s.queue = vg_alloc(t->n_cell, sizeof *s.queue);
-  if (!s.side || !s.queue) st = vg_fail_memory(err, "boundary recovery");
+  if (!s.side || !s.front || !s.near || !s.queue)
+    st = vg_fail_memory(err, "boundary recovery");
   if (st == VG_OK) st = tri_table_init(&table, n_tri, tri, err);
   if (st == VG_OK && region)
     st = vg_ruler_init(&ruler, region, sizing, t->n_point,
                        (const double (*)[3])t->x, err);
-  if (st == VG_OK) st = tell_sides(&s, &table, err);
+  if (st == VG_OK) find_front(&s, &table);
+  if (st == VG_OK) st = tell_sides(&s, err);
   if (st == VG_OK && region) wall_off(&s);
   for (size_t c = 0; st == VG_OK && c < t->n_cell; c++) {
     if (s.side[c] == SIDE_FLUID) n_fluid++;
@@ -276,6 +307,8 @@ vg_status vg_boundary_sides(struct vg_tets *t, size_t n_tri,
   if (st == VG_OK && !n_fluid)
     st = vg_fail(err, VG_ERR_GEOMETRY, "the surface encloses no fluid");
   free(s.side);
+  free(s.front);
+  free(s.near);
   free(s.queue);
   vg_ruler_release(&ruler);
   free(table.slot);
