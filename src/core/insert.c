@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "core/predicates.h"
+#include "core/cell_signs.h"
 
 enum { CUT_MAX = 16 };       /* times a cavity may be cut back */
 
@@ -31,114 +31,121 @@ void vg_inserter_release(struct vg_inserter *s)
 
 /* --- the cavity ---------------------------------------------------------- */
 
-static int add_cell(struct vg_inserter *s, uint32_t c)
+/* Room for what one cell of the cavity can add to the lists. */
+static int make_room(struct vg_inserter *s)
 {
-  if (s->n_cell == s->cap_cell &&
-      vg_reserve(&s->cell, &s->cap_cell, s->n_cell + 1, sizeof *s->cell))
-    return -1;
-  s->t->flag[c] |= VG_MARK;
-  s->cell[s->n_cell++] = c;
-  return 0;
+  return (s->n_cell + 4 > s->cap_cell &&
+          vg_reserve(&s->cell, &s->cap_cell, s->n_cell + 4,
+                     sizeof *s->cell)) ||
+         (s->n_tried + 4 > s->cap_tried &&
+          vg_reserve(&s->tried, &s->cap_tried, s->n_tried + 4,
+                     sizeof *s->tried)) ||
+         (s->n_face + 4 > s->cap_face &&
+          vg_reserve(&s->face, &s->cap_face, s->n_face + 4,
+                     sizeof *s->face));
 }
 
 static int add_tried(struct vg_inserter *s, uint32_t c)
 {
-  if (s->n_tried == s->cap_tried &&
-      vg_reserve(&s->tried, &s->cap_tried, s->n_tried + 1, sizeof *s->tried))
+  if (vg_reserve(&s->tried, &s->cap_tried, s->n_tried + 1, sizeof *s->tried))
     return -1;
   s->t->flag[c] |= VG_TRIED;
   s->tried[s->n_tried++] = c;
   return 0;
 }
 
-static int add_face(struct vg_inserter *s, uint32_t c, int i)
+/* Face i of a cell of the cavity with these flags and signs. */
+static inline void add_face(struct vg_inserter *s, const struct vg_cell *cell,
+                            int i, uint8_t flag, unsigned signs)
 {
-  const struct vg_cell *cell = &s->t->cell[c];
-  struct vg_cavity_face *f;
+  struct vg_cavity_face *f = &s->face[s->n_face++];
 
-  if (s->n_face == s->cap_face &&
-      vg_reserve(&s->face, &s->cap_face, s->n_face + 1, sizeof *s->face))
-    return -1;
-  f = &s->face[s->n_face++];
   for (int k = 0; k < 3; k++) f->v[k] = cell->v[vg_face[i][k]];
   f->link = cell->link[i];
-  f->fixed = s->t->flag[c] >> i & 1;
-  f->outside = s->t->flag[c] & VG_OUTSIDE;
-  return 0;
+  f->fixed = flag >> i & 1;
+  f->hidden = !(signs & VG_SIDE_IN << i);
+  f->outside = flag & VG_OUTSIDE;
 }
 
 static void clear_marks(struct vg_inserter *s)
 {
   for (size_t k = 0; k < s->n_cell; k++)
-    s->t->flag[s->cell[k]] &= (uint8_t)~VG_MARK;
+    s->t->flag[s->cell[k].at] &= (uint8_t)~VG_MARK;
   for (size_t k = 0; k < s->n_tried; k++)
     s->t->flag[s->tried[k]] &= (uint8_t)~VG_TRIED;
   s->n_cell = s->n_tried = s->n_face = 0;
 }
 
-static int in_sphere(const struct vg_tets *t, uint32_t c, const double x[3])
+/* Leave out faces, from a first one on, that have turned out to be inside. */
+static void drop_faces(struct vg_inserter *s, size_t first)
 {
-  const uint32_t *v = t->cell[c].v;
+  size_t n = first;
 
-  return vg_insphere(t->x[v[0]], t->x[v[1]], t->x[v[2]], t->x[v[3]], x) > 0;
+  for (size_t k = first; k < s->n_face; k++) {
+    struct vg_cavity_face f = s->face[k];
+
+    if (f.fixed || f.link == VG_NONE ||
+        !(s->t->flag[f.link >> 2] & VG_MARK))
+      s->face[n++] = f;
+  }
+  s->n_face = n;
 }
 
-/* Is x on the inner side of face i of cell c, or in its plane? */
-static int sees(const struct vg_tets *t, uint32_t c, int i, const double x[3])
+/* All cells that can be reached from those in the list, and the faces around
+ * them. Cells marked TRIED before stay out. Only faces that the point sees are
+ * crossed: among Delaunay cells every cell of the cavity is reached so. Where
+ * recovery has left slivers, whose spheres are huge, it keeps the search from
+ * running all over them. */
+static int flood(struct vg_inserter *s, const vg_d2 p[3])
 {
-  const uint32_t *v = t->cell[c].v;
-  const uint8_t *f = vg_face[i];
-
-  return vg_orient3d(t->x[v[f[0]]], t->x[v[f[1]]], t->x[v[f[2]]], x) >= 0;
-}
-
-/* Cells reachable from those already in the list; cells marked TRIED before
- * the call stay out. Only faces that x sees are crossed: among Delaunay cells
- * every cell of the cavity is reached so. Where recovery has left slivers,
- * whose spheres are huge, it keeps the search from running all over them. */
-static int flood_cells(struct vg_inserter *s, const double x[3])
-{
-  struct vg_tets *t = s->t;
+  const double (*x)[3] = (const double (*)[3])s->t->x;
+  const struct vg_cell *cells = s->t->cell;
+  uint8_t *flag = s->t->flag;
+  size_t late = SIZE_MAX;    /* the first face that may yet turn out inside */
 
   for (size_t k = 0; k < s->n_cell; k++) {
-    uint32_t c = s->cell[k];
+    struct vg_cavity_cell c = s->cell[k];
+    const struct vg_cell *cell = &cells[c.at];
+    uint8_t own = flag[c.at];
 
+    if (make_room(s)) return -1;
     for (int i = 0; i < 4; i++) {
-      uint32_t link = t->cell[c].link[i], other = link >> 2;
+      uint32_t link = cell->link[i], other = link >> 2;
 
-      if (link == VG_NONE || t->flag[c] >> i & 1 ||
-          t->flag[other] & (VG_MARK | VG_TRIED) || !sees(t, c, i, x))
-        continue;
-      if (in_sphere(t, other, x) ? add_cell(s, other) : add_tried(s, other))
-        return -1;
+      if (link != VG_NONE && !(own >> i & 1) && !(flag[other] & VG_TRIED)) {
+        if (flag[other] & VG_MARK) continue;
+        if (c.signs & VG_SIDE_SEES << i) {
+          unsigned told = vg_cell_signs(x, cells[other].v, p);
+
+          flag[other] |= told & VG_IN_SPHERE ? VG_MARK : VG_TRIED;
+          if (told & VG_IN_SPHERE) {
+            s->cell[s->n_cell++] = (struct vg_cavity_cell){ other, told };
+            continue;
+          }
+          s->tried[s->n_tried++] = other;
+        } else if (s->n_face < late) {
+          late = s->n_face;
+        }
+      }
+      add_face(s, cell, i, own, c.signs);
     }
   }
+  if (late < s->n_face) drop_faces(s, late);
   return 0;
 }
 
-static int flood(struct vg_inserter *s, const double x[3])
+static int start_flood(struct vg_inserter *s, uint32_t seed,
+                       const vg_d2 p[3])
 {
-  struct vg_tets *t = s->t;
+  const double (*x)[3] = (const double (*)[3])s->t->x;
+  const uint32_t *v = s->t->cell[seed].v;
+  unsigned told = vg_cell_signs(x, v, p);
 
-  if (flood_cells(s, x)) return -1;
-  for (size_t k = 0; k < s->n_cell; k++)
-    for (int i = 0; i < 4; i++) {
-      uint32_t c = s->cell[k], link = t->cell[c].link[i];
-
-      if ((link == VG_NONE || t->flag[c] >> i & 1 ||
-           !(t->flag[link >> 2] & VG_MARK)) &&
-          add_face(s, c, i))
-        return -1;
-    }
-  return 0;
-}
-
-static int is_hidden(const struct vg_inserter *s, size_t f, const double x[3])
-{
-  const struct vg_tets *t = s->t;
-  const uint32_t *v = s->face[f].v;
-
-  return !(vg_orient3d(t->x[v[0]], t->x[v[1]], t->x[v[2]], x) > 0);
+  if (!(told & VG_IN_SPHERE)) told = vg_cell_sides(x, v, p, 0, 0);
+  if (make_room(s)) return -1;
+  s->t->flag[seed] |= VG_MARK;
+  s->cell[s->n_cell++] = (struct vg_cavity_cell){ seed, told };
+  return flood(s, p);
 }
 
 /* The cavity cell in front of face f. */
@@ -149,37 +156,72 @@ static uint32_t cell_before(const struct vg_inserter *s, size_t f)
   if (face->link != VG_NONE)
     return s->t->cell[face->link >> 2].link[face->link & 3] >> 2;
   for (size_t k = 0; k < s->n_cell; k++) {
-    const struct vg_cell *c = &s->t->cell[s->cell[k]];
+    const struct vg_cell *c = &s->t->cell[s->cell[k].at];
 
     for (int i = 0; i < 4; i++)
       if (c->link[i] == VG_NONE && c->v[vg_face[i][0]] == face->v[0] &&
           c->v[vg_face[i][1]] == face->v[1] &&
           c->v[vg_face[i][2]] == face->v[2])
-        return s->cell[k];
+        return s->cell[k].at;
   }
   return VG_NONE;
 }
 
 /* Leave the cells before all hidden faces out and flood again from the seed.
  * 0: done; 1: a face of the seed itself is hidden; 2: nothing was hidden. */
-static int cut_back(struct vg_inserter *s, const double x[3])
+static int cut_back(struct vg_inserter *s, const vg_d2 p[3])
 {
-  uint32_t seed = s->cell[0];
+  uint32_t seed = s->cell[0].at;
   size_t n_tried = s->n_tried;
 
   for (size_t f = 0; f < s->n_face; f++) {
     uint32_t out;
 
-    if (!is_hidden(s, f, x)) continue;
+    if (!s->face[f].hidden) continue;
     out = cell_before(s, f);
     if (out == seed || out == VG_NONE) return 1;
     if (!(s->t->flag[out] & VG_TRIED) && add_tried(s, out)) return -1;
   }
   if (s->n_tried == n_tried) return 2;
   for (size_t k = 0; k < s->n_cell; k++)
-    s->t->flag[s->cell[k]] &= (uint8_t)~VG_MARK;
+    s->t->flag[s->cell[k].at] &= (uint8_t)~VG_MARK;
   s->n_cell = s->n_face = 0;
-  return add_cell(s, seed) || flood(s, x) ? -1 : 0;
+  return start_flood(s, seed, p);
+}
+
+static int grow_local(struct vg_inserter *s)
+{
+  size_t old = s->cap_local;
+
+  if (s->t->n_point <= old) return 0;
+  if (vg_reserve(&s->local, &s->cap_local, s->t->n_point, sizeof *s->local))
+    return -1;
+  memset(s->local + old, 0, (s->cap_local - old) * sizeof *s->local);
+  return 0;
+}
+
+/* Number the vertices of the cavity as they come; none where there are too
+ * many. */
+static void number_vertices(struct vg_inserter *s)
+{
+  uint32_t n = 0;
+
+  s->n_vertex = 0;
+  for (size_t k = 0; k < s->n_face; k++) {
+    struct vg_cavity_face *f = &s->face[k];
+
+    for (int i = 0; i < 3; i++) {
+      uint32_t v = f->v[i], at = s->local[v];
+
+      if (at >= n || s->vertex[at] != v) {
+        if (n == VG_CAVITY_TABLE) return;
+        at = s->local[v] = n;
+        s->vertex[n++] = v;
+      }
+      f->at[i] = (uint8_t)at;
+    }
+  }
+  s->n_vertex = n;
 }
 
 /* --- is the point welcome? ----------------------------------------------- */
@@ -218,10 +260,14 @@ static int too_low(const double a[3], const double b[3], const double c[3],
 static int too_near(const struct vg_inserter *s, const double x[3],
                     double nearest)
 {
-  for (size_t k = 0; k < s->n_face && nearest > 0; k++)
+  const double (*at)[3] = (const double (*)[3])s->t->x;
+  double least = nearest * nearest;
+
+  for (uint32_t i = 0; i < s->n_vertex; i++)
+    if (distance2(at[s->vertex[i]], x) < least) return 1;
+  for (size_t k = 0; k < s->n_face && !s->n_vertex; k++)
     for (int i = 0; i < 3; i++)
-      if (distance2(s->t->x[s->face[k].v[i]], x) < nearest * nearest)
-        return 1;
+      if (distance2(at[s->face[k].v[i]], x) < least) return 1;
   return 0;
 }
 
@@ -241,39 +287,6 @@ static int too_low_anywhere(const struct vg_inserter *s, const double x[3],
 }
 
 /* --- refilling ----------------------------------------------------------- */
-
-static int grow_local(struct vg_inserter *s)
-{
-  size_t old = s->cap_local;
-
-  if (s->t->n_point <= old) return 0;
-  if (vg_reserve(&s->local, &s->cap_local, s->t->n_point, sizeof *s->local))
-    return -1;
-  memset(s->local + old, 0, (s->cap_local - old) * sizeof *s->local);
-  return 0;
-}
-
-/* Number the vertices of the cavity as they come. 0: there are too many. */
-static int number_vertices(struct vg_inserter *s)
-{
-  uint32_t n = 0;
-
-  for (size_t k = 0; k < s->n_face; k++) {
-    struct vg_cavity_face *f = &s->face[k];
-
-    for (int i = 0; i < 3; i++) {
-      uint32_t v = f->v[i], at = s->local[v];
-
-      if (at >= n || s->vertex[at] != v) {
-        if (n == VG_CAVITY_TABLE) return 0;
-        at = s->local[v] = n;
-        s->vertex[n++] = v;
-      }
-      f->at[i] = (uint8_t)at;
-    }
-  }
-  return 1;
-}
 
 static int grow_edges(struct vg_inserter *s)
 {
@@ -329,7 +342,7 @@ static void make_cells(struct vg_inserter *s, uint32_t p)
 
   for (size_t k = 0; k < s->n_face; k++) {
     struct vg_cavity_face *f = &s->face[k];
-    uint32_t c = used < s->n_cell ? s->cell[used++] : vg_tets_take(t);
+    uint32_t c = used < s->n_cell ? s->cell[used++].at : vg_tets_take(t);
     struct vg_cell *cell = &t->cell[c];
 
     cell->v[0] = f->v[0];
@@ -345,7 +358,7 @@ static void make_cells(struct vg_inserter *s, uint32_t p)
   }
   /* A star-shaped cavity of n vertices has 2n - 4 faces; with n - 3 cells or
    * more there can be fewer faces than cells only around flat ones. */
-  while (used < s->n_cell) vg_tets_drop(t, s->cell[used++]);
+  while (used < s->n_cell) vg_tets_drop(t, s->cell[used++].at);
 }
 
 /* Each edge of the cavity's hull has two faces, which run along it in opposite
@@ -382,17 +395,22 @@ vg_status vg_insert(struct vg_inserter *s, uint32_t p, uint32_t at,
 {
   struct vg_tets *t = s->t;
   double x[3];
-  int state, is_small = 0;
+  vg_d2 both[3];
+  int state;
 
   memcpy(x, t->x[p], sizeof x);
-  state = add_cell(s, at) || flood(s, x) ? -1 : 0;
-  if (!state && too_near(s, x, nearest)) state = 1;
-  for (int cut = 0; !state; cut++) state = cut == CUT_MAX ? 1 : cut_back(s, x);
-  if (state == 2) state = too_low_anywhere(s, x, clearance, 2 * nearest);
+  for (int k = 0; k < 3; k++) both[k] = (vg_d2){ x[k], x[k] };
+  state = start_flood(s, at, both);
   if (!state && grow_local(s)) state = -1;
-  if (!state) is_small = number_vertices(s);
+  if (!state) number_vertices(s);
+  if (!state && nearest > 0) state = too_near(s, x, nearest);
+  for (int cut = 0; !state; cut++) {
+    if (cut) number_vertices(s);
+    state = cut == CUT_MAX ? 1 : cut_back(s, both);
+  }
+  if (state == 2) state = too_low_anywhere(s, x, clearance, 2 * nearest);
   if (!state &&
-      ((!is_small && grow_edges(s)) || vg_tets_reserve_cells(t, s->n_face) ||
+      ((!s->n_vertex && grow_edges(s)) || vg_tets_reserve_cells(t, s->n_face) ||
        vg_reserve(&t->free, &t->cap_free, t->n_free + s->n_cell,
                   sizeof *t->free)))
     state = -1;
@@ -402,7 +420,7 @@ vg_status vg_insert(struct vg_inserter *s, uint32_t p, uint32_t at,
                      : vg_fail_memory(err, "the cells of the volume mesh");
   }
   make_cells(s, p);
-  if (is_small) link_by_table(s);
+  if (s->n_vertex) link_by_table(s);
   else link_by_edges(s);
   for (size_t k = 0; k < s->n_tried; k++)
     t->flag[s->tried[k]] &= (uint8_t)~VG_TRIED;
