@@ -149,9 +149,8 @@ static void print_head(const struct vg_sweep *s)
 static void print_case(const struct vg_sweep *s,
                        const struct vg_sweep_case *c)
 {
-  const struct vg_sweep_case *base = vg_sweep_base(s);
   double seconds = c->is_done ? vg_sweep_seconds(c) : NAN;
-  double speedup = base ? vg_sweep_seconds(base) / seconds : NAN;
+  double speedup = vg_sweep_speedup(s, seconds);
   const struct vg_spans *t = c->has_timeline ? &c->t.spans : NULL;
   char cells[32];
   int width = 4;
@@ -277,7 +276,8 @@ int vg_cmd_sweep(int argc, char **argv)
       "balance and digests, figures of speed-up, phases, each run's timeline "
       "and sizes of its leaves.\v"
       "Options after '--' go to vanguard mesh. Speed-ups are against the "
-      "first case on one worker. A case that fails is listed with its "
+      "first case on one worker; if none is, those of the fewest stand for "
+      "it. A case that fails is listed with its "
       "message; its log is DIR/CASE/run.log. Exit status: 0 done, 1 a case "
       "failed, 2 wrong usage, 4 equal mesh options gave different files." };
   struct vg_sweep_options o = { .dir = "sweep" };

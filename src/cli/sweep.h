@@ -63,9 +63,13 @@ void vg_sweep_collect(const struct vg_sweep_options *o,
 /** Seconds of a case that is done: of its record, else measured outside. */
 double vg_sweep_seconds(const struct vg_sweep_case *c);
 
-/** The case that speed-ups are against: the first on one worker that is done;
- * NULL: there is none. */
+/** The case that speed-ups are against: the first of those with the fewest
+ * workers that is done; NULL: there is none. */
 const struct vg_sweep_case *vg_sweep_base(const struct vg_sweep *s);
+
+/** Against one worker, for which the fewest workers stand if there are more: w
+ * of them are taken to be w times as fast. NAN: there is no base. */
+double vg_sweep_speedup(const struct vg_sweep *s, double seconds);
 
 /** 1 when two cases ask for the same mesh. */
 int vg_sweep_same_mesh(const struct vg_sweep_case *a,

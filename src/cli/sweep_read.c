@@ -2,6 +2,7 @@
 #define _GNU_SOURCE
 #include <dirent.h>
 #include <jansson.h>
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -143,10 +144,24 @@ double vg_sweep_seconds(const struct vg_sweep_case *c)
 
 const struct vg_sweep_case *vg_sweep_base(const struct vg_sweep *s)
 {
+  int fewest = INT_MAX;
+
   for (size_t i = 0; i < s->n; i++)
-    if (s->item[i].is_done && s->item[i].ranks * s->item[i].threads == 1)
+    if (s->item[i].ranks * s->item[i].threads < fewest)
+      fewest = s->item[i].ranks * s->item[i].threads;
+  for (size_t i = 0; i < s->n; i++)
+    if (s->item[i].is_done &&
+        s->item[i].ranks * s->item[i].threads == fewest)
       return &s->item[i];
   return NULL;
+}
+
+double vg_sweep_speedup(const struct vg_sweep *s, double seconds)
+{
+  const struct vg_sweep_case *base = vg_sweep_base(s);
+
+  if (!base || !(seconds > 0)) return NAN;
+  return base->ranks * base->threads * vg_sweep_seconds(base) / seconds;
 }
 
 int vg_sweep_same_mesh(const struct vg_sweep_case *a,

@@ -41,17 +41,13 @@ static size_t leaf_count(const struct vg_spans *s)
 static void values_of(const struct vg_sweep *s, const struct vg_sweep_case *c,
                       double v[N_VALUE])
 {
-  const struct vg_sweep_case *base = vg_sweep_base(s);
-
   for (int i = 0; i < N_VALUE; i++) v[i] = NAN;
   if (!c->is_run) return;
   v[1] = c->wall;
   if (!c->is_done) return;
   v[0] = vg_sweep_seconds(c);
-  if (base && v[0] > 0) {
-    v[2] = vg_sweep_seconds(base) / v[0];
-    v[3] = v[2] / (c->ranks * c->threads);
-  }
+  v[2] = vg_sweep_speedup(s, v[0]);
+  v[3] = v[2] / (c->ranks * c->threads);
   if (c->has_timeline) {
     v[4] = vg_spans_busy(&c->t.spans);
     v[5] = vg_spans_imbalance(&c->t.spans);
@@ -445,6 +441,8 @@ static vg_status draw_speedup(const struct vg_sweep *s, struct vg_error *err)
 
   if (!base) return VG_OK;
   VG_TRY(median(s, base, &time, err));
+  seconds[vg_format_real(floor(time * 100 + 0.5) / 100, seconds)] = 0;
+  time *= base->ranks * base->threads;   /* of one worker */
   for (size_t i = 0; i < s->n; i++) {
     double workers = s->item[i].ranks * s->item[i].threads;
 
@@ -465,7 +463,6 @@ static vg_status draw_speedup(const struct vg_sweep *s, struct vg_error *err)
     l.series[i] = (struct vg_plot_series){
       l.line[i].label, l.line[i].colour, i >= n_measured,
       l.line[i].n, l.line[i].workers, l.line[i].speedup };
-  seconds[vg_format_real(floor(time * 100 + 0.5) / 100, seconds)] = 0;
   snprintf(subtitle, sizeof subtitle, "against %s: %s s", base->name,
            seconds);
   VG_TRY(path_of(s, "speedup.svg", &path, err));

@@ -62,6 +62,14 @@ says s/speedup.svg "leaves of 200, 2 ranks"
 says s/speedup.svg "leaves of 100, model"
 says s/c100-n1-t1/run.log progress
 
+# Where no case has one worker, the fewest stand for it.
+sweep -p box -n 2 -t 1,2 -o f
+exits 0
+says out "n2-t1     2       1      5.00     2.00   100.0     4.00"
+says out "n2-t2     2       2      3.00     3.33    83.3     2.00"
+exists f/speedup.svg
+says f/speedup.svg "against n2-t1: 5 s"
+
 # Levels beside leaf sizes, repeats, meshes kept, nothing but JSON on stdout.
 sweep -p box -L 3:4 --leaf-cells 100 --repeat 2 -o k --keep -q -j
 exits 0
