@@ -109,6 +109,7 @@ static int run(const struct command *c, int argc, char **argv)
 int main(int argc, char **argv)
 {
   const char *word = argc > 1 ? argv[1] : "";
+  char help[] = "--help";
 
   if (argc < 2) {
     usage(stderr);
@@ -117,8 +118,13 @@ int main(int argc, char **argv)
   if (!strcmp(word, "--version") || !strcmp(word, "-V")) return version();
   if (!strcmp(word, "--help") || !strcmp(word, "-h") ||
       !strcmp(word, "help")) {
-    usage(stdout);
-    return VG_EXIT_DONE;
+    if (argc < 3) {
+      usage(stdout);
+      return VG_EXIT_DONE;
+    }
+    word = argv[1] = argv[2];   /* of a command, as COMMAND --help has it */
+    argv[2] = help;
+    argc = 3;
   }
   for (size_t i = 0; i < N_COMMAND; i++)
     if (!strcmp(word, commands[i].name)) {

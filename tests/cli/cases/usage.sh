@@ -36,10 +36,18 @@ is err <<'END'
 vanguard: no command 'chekc'; did you mean 'check'?
 END
 
+vanguard help chekc
+exits 2
+says err "did you mean 'check'?"
+
 for command in mesh check sweep plan deck demo; do
   vanguard $command --help
   exits 0
   says out "Usage: vanguard $command [OPTION...]"
+  cp out help
+  vanguard help $command
+  exits 0
+  is out <help
   vanguard $command --no-such-option
   exits 2
   says err "--no-such-option"
