@@ -7,10 +7,10 @@
 #include "base/memory.h"
 #include "cli/cli.h"
 #include "cli/deck.h"
+#include "cli/ranges.h"
 #include "core/demo.h"
 #include "io/format.h"
 #include "io/mapbc.h"
-#include "io/stream.h"
 
 struct arguments {
   const char *name, *dir;
@@ -27,7 +27,7 @@ static error_t option(int key, char *arg, struct argp_state *state)
   case 'o': a->dir = arg; return 0;
   case 'l': a->list = 1; return 0;
   case 'c':
-    if (!vg_parse_int(arg, strlen(arg), &n) || n < 1)
+    if (!vg_parse_count(arg, strlen(arg), &n) || n < 1)
       argp_error(state, "--cells takes a whole number, not '%s'", arg);
     a->n_cell = (size_t)n;
     return 0;

@@ -7,6 +7,7 @@
 #include "cli/cli.h"
 #include "cli/layers.h"
 #include "cli/output.h"
+#include "cli/ranges.h"
 #include "cli/report.h"
 #include "cli/run.h"
 #include "cli/timeline.h"
@@ -37,7 +38,7 @@ static error_t limit(const char *text, uint64_t *to,
 {
   int64_t v;
 
-  if (!vg_parse_int(text, strlen(text), &v) || v < 0)
+  if (!vg_parse_count(text, strlen(text), &v) || v < 0)
     argp_error(state, "'%s' is no number from 0 up", text);
   *to = (uint64_t)v;
   return 0;

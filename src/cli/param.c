@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/ranges.h"
 #include "cli/settings.h"
 #include "io/stream.h"
 
@@ -46,7 +47,8 @@ static vg_status set_int(const struct vg_param *p, void *at, const char *text,
   int64_t v;
   int32_t id;
 
-  if (!vg_parse_int(text, len, &v))
+  if (!(p->type == VG_PARAM_COUNT ? vg_parse_count : vg_parse_int)(text, len,
+                                                                   &v))
     return vg_fail(err, VG_ERR_INPUT, "%s must be a whole number, found "
                    "'%.*s'", p->name, (int)len, text);
   if (!in_range(p, (double)v)) return out_of_range(p, text, len, err);

@@ -1,5 +1,6 @@
 #include "cli/ranges.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -14,6 +15,16 @@ void vg_range_release(struct vg_range_list *r)
   memset(r, 0, sizeof *r);
 }
 
+int vg_parse_count(const char *text, size_t len, int64_t *out)
+{
+  double v;
+
+  if (vg_parse_int(text, len, out)) return 1;
+  if (!vg_parse_real(text, len, &v) || fabs(v) > 9e15) return 0;
+  *out = (int64_t)v;
+  return (double)*out == v;
+}
+
 /* "a", "a:b", "a:b:step" or "a:b:xfactor". */
 static int parse_one(const char *text, size_t len, struct span *s)
 {
@@ -22,19 +33,20 @@ static int parse_one(const char *text, size_t len, struct span *s)
   memset(s, 0, sizeof *s);
   s->step = 1;
   if (!colon) {
-    if (!vg_parse_int(text, len, &s->first)) return 0;
+    if (!vg_parse_count(text, len, &s->first)) return 0;
     s->last = s->first;
     return 1;
   }
   second = memchr(colon + 1, ':', (size_t)(end - colon) - 1);
-  if (!vg_parse_int(text, (size_t)(colon - text), &s->first) ||
-      !vg_parse_int(colon + 1, (size_t)((second ? second : end) - colon) - 1,
-                    &s->last))
+  if (!vg_parse_count(text, (size_t)(colon - text), &s->first) ||
+      !vg_parse_count(colon + 1,
+                      (size_t)((second ? second : end) - colon) - 1,
+                      &s->last))
     return 0;
   if (!second++) return 1;
   s->is_factor = second < end && *second == 'x';
   second += s->is_factor;
-  return vg_parse_int(second, (size_t)(end - second), &s->step) &&
+  return vg_parse_count(second, (size_t)(end - second), &s->step) &&
     s->step > s->is_factor;
 }
 

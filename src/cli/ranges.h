@@ -15,6 +15,9 @@
 struct vg_range_list { size_t n, cap; int64_t *v; };
 #define VG_RANGE_INIT { 0, 0, NULL }
 
+/** A whole number, also as 2e6 or 1.5e6: 1 on success. */
+int vg_parse_count(const char *text, size_t len, int64_t *out);
+
 void vg_range_release(struct vg_range_list *r);
 
 /** Numbers from lo to hi in the order given, each once.

@@ -31,6 +31,8 @@ static void lists_and_ranges(void **state)
   gives("1:20:x3", 3, (const int64_t[]){ 1, 3, 9 });
   gives("1:3,2,10", 4, (const int64_t[]){ 1, 2, 3, 10 });
   gives("5:5", 1, (const int64_t[]){ 5 });
+  gives("1e2,2.5e2,4.0", 3, (const int64_t[]){ 100, 250, 4 });
+  gives("1e2:1E3:x2", 4, (const int64_t[]){ 100, 200, 400, 800 });
   gives("1:1000:x9223372036854775807", 1, (const int64_t[]){ 1 });
 }
 
@@ -53,6 +55,8 @@ static void slips_are_named(void **state)
   refuses("", 1000, "not ''");
   refuses("1,", 1000, "not ''");
   refuses("a", 1000, "not 'a'");
+  refuses("1.5", 1000, "not '1.5'");
+  refuses("1e99", 1000, "not '1e99'");
   refuses("1:", 1000, "not '1:'");
   refuses(":3", 1000, "not ':3'");
   refuses("1:3:", 1000, "not '1:3:'");

@@ -59,6 +59,12 @@ says err "which project?"
 vanguard mesh -p x --growth 0.5
 exits 2
 says err "growth is 0.5; it must be above 1"
+vanguard mesh -p x --max-cells 2.5
+exits 2
+says err "max_cells must be a whole number, found '2.5'"
+vanguard mesh -p x --max-cells 2.5e6 --leaf-cells 1e5
+exits 1
+says err "no project here"
 vanguard mesh -p x --farfield sphree
 exits 2
 says err "did you mean 'sphere'?"
