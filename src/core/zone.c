@@ -22,6 +22,8 @@ struct zone {
   size_t n_face;
   const uint32_t (*face)[3];
   struct vg_zone *z;
+  uint8_t *at;               /* [t.n_point] bits 2 i and 2 i + 1: not below and
+                                not above plane i */
   uint32_t *number;          /* [t.n_point] in the result, or VG_NONE */
 };
 
@@ -46,11 +48,37 @@ static int all_four(const struct zone *g, const uint8_t *flag, uint32_t c)
   return flag[v[0]] && flag[v[1]] && flag[v[2]] && flag[v[3]];
 }
 
+/* Where the points are now: g->at. */
+static vg_status look_at_points(struct zone *g, struct vg_error *err)
+{
+  const struct vg_tets *t = &g->k.t;
+
+  free(g->at);
+  g->at = vg_calloc(t->n_point, 1);
+  if (!g->at) return vg_fail_memory(err, "the points of a zone");
+  for (int i = 0; i < g->k.region->n_plane; i++) {
+    const struct vg_plane *plane = &g->k.region->plane[i];
+    const double *n = plane->normal;
+
+    for (size_t p = 0; p < t->n_point; p++) {
+      const double *x = t->x[p];
+      double s = n[0] * x[0] + n[1] * x[1] + n[2] * x[2] - plane->offset;
+
+      g->at[p] |= (uint8_t)(((s >= 0) | (s <= 0) << 1) << 2 * i);
+    }
+  }
+  return VG_OK;
+}
+
+/* Most cells cross no plane; that is told before anything is measured. */
 static int belongs(const struct zone *g, uint32_t c)
 {
   const struct vg_tets *t = &g->k.t;
   const uint32_t *v = t->cell[c].v;
+  int at = g->at[v[0]] | g->at[v[1]] | g->at[v[2]] | g->at[v[3]];
 
+  if (!(g->k.region->reach > 0) && at != (1 << 2 * g->k.region->n_plane) - 1)
+    return 0;
   return vg_region_has_cell(g->k.region, g->k.sizing, t->x[v[0]], t->x[v[1]],
                             t->x[v[2]], t->x[v[3]]);
 }
@@ -65,6 +93,10 @@ static vg_status narrow(struct zone *g, struct vg_error *err)
   double band = r->n_plane > 1 || r->n_wall ? VG_BAND_FLUID : whole_band;
 
   if (!is_known) return vg_fail_memory(err, "the points of a zone");
+  if (look_at_points(g, err)) {
+    free(is_known);
+    return VG_ERR_MEMORY;
+  }
   for (uint32_t p = 0; p < t->n_point; p++)
     is_known[p] = !is_corner(g, p) &&
                   vg_region_near(g->k.region, g->k.sizing, t->x[p],
@@ -184,6 +216,10 @@ static vg_status choose(struct zone *g, struct vg_error *err)
   uint8_t *used = vg_calloc(t->n_point, 1);
 
   if (!used) return vg_fail_memory(err, "the points of a zone");
+  if (look_at_points(g, err)) {
+    free(used);
+    return VG_ERR_MEMORY;
+  }
   for (uint32_t c = 0; c < t->n_cell; c++) {
     if (t->flag[c] & VG_DEAD || !belongs(g, c)) continue;
     take(g, c);
@@ -380,6 +416,7 @@ vg_status vg_zone_grow(size_t n_point, const double (*x)[3], size_t n_face,
   if (st == VG_OK) st = commit(&g, err);
   if (st != VG_OK) vg_zone_release(z);
   vg_tets_release(&g.k.t);
+  free(g.at);
   free(g.number);
   report->time_total += vg_clock() - t0;
   return st;
