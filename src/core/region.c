@@ -271,9 +271,11 @@ vg_status vg_ruler_init(struct vg_ruler *ruler, const struct vg_region *region,
                         const double (*x)[3], struct vg_error *err)
 {
   int m = region->n_plane + region->n_wall;
+  double least, most;
 
-  *ruler = (struct vg_ruler){region, sizing, x, vg_sizing_slope(sizing), m,
-                             NULL, NULL};
+  vg_sizing_range(sizing, &least, &most);
+  *ruler = (struct vg_ruler){region, sizing, x, vg_sizing_slope(sizing),
+                             most - least, m, NULL, NULL};
   ruler->side = vg_alloc(n, (size_t)(m ? m : 1) * sizeof *ruler->side);
   ruler->spacing = vg_alloc(n, sizeof *ruler->spacing);
   if (!ruler->side || !ruler->spacing)
@@ -326,7 +328,8 @@ static double gap_of(const struct vg_ruler *ruler, const uint32_t v[3])
 }
 
 /* Large triangles are looked at as in vg_region_meets once their sides do not
- * tell, by the least and the most that the spacing may be anywhere on them. */
+ * tell, by the least and the most that the spacing may be anywhere on them, or
+ * at their middle, which is two thirds of an edge from the corners at most. */
 static int ruler_meets(const struct vg_ruler *ruler, const uint32_t v[3],
                        double band, int is_sure)
 {
@@ -334,13 +337,18 @@ static int ruler_meets(const struct vg_ruler *ruler, const uint32_t v[3],
   const double (*x)[3] = ruler->x;
   const double *corner[3] = {x[v[0]], x[v[1]], x[v[2]]};
   const double *h = ruler->spacing;
-  double most = fmax(fmax(h[v[0]], h[v[1]]), h[v[2]]);
+  double least = h[v[0]] < h[v[1]] ? h[v[0]] : h[v[1]];
+  double most = h[v[0]] < h[v[1]] ? h[v[1]] : h[v[0]];
   double reach = vg_region_band(r, band);
-  double far = gap_of(ruler, v), size = longest(corner), rise;
+  double far = gap_of(ruler, v), size = longest(corner), rise, up;
 
+  if (h[v[2]] < least) least = h[v[2]];
+  if (h[v[2]] > most) most = h[v[2]];
   if (size <= 2 * most) return far <= reach * most;
   rise = ruler->slope * size;
-  if (far > reach * (most + rise)) return 0;
+  up = 0.67 * rise < ruler->range ? 0.67 * rise : ruler->range;
+  if (rise > ruler->range) rise = ruler->range;
+  if (far > reach * most && far > reach * (least + up)) return 0;
   if (ruler->n_side == 1 && far <= reach * fmax(most - rise, 0)) return 1;
   most = fmax(most, spacing_amid(r, ruler->sizing, corner));
   return far <= reach * most &&

@@ -88,7 +88,8 @@ struct vg_ruler {
   const struct vg_region *region;    /* borrowed, as the next two */
   const struct vg_sizing *sizing;
   const double (*x)[3];
-  double slope;              /* of the sizing */
+  double slope, range;       /* of the sizing: bounds of its change with the
+                                distance, and of any */
   int n_side;                /* of a point: of all planes, then all walls */
   double *side;              /* [points][n_side] */
   double *spacing;           /* [points] at the foot */
