@@ -84,6 +84,10 @@ void vg_report_partition_text(FILE *to, const struct vg_run *r)
           vg_cli_count(p->n_node, a), vg_cli_count(p->n_pencil, b),
           vg_cli_count(p->n_tile, c), share_of(r, p->n_zone_cell));
   print_leaves(to, &r->spans);
+  if (p->cuts_elsewhere)
+    fprintf(to, "  all cuts were made at other places %d time%s: a part between "
+            "them could not be filled\n", p->cuts_elsewhere,
+            p->cuts_elsewhere > 1 ? "s" : "");
   if (p->cuts_given_up)
     fprintf(to, "  cuts were given up: a part between them could not be "
             "filled, so the whole was filled by one worker\n");
@@ -138,6 +142,7 @@ json_t *vg_report_partition_json(const struct vg_run *r)
     json_array_append_new(leaves, count(l.cells[i]));
   free(l.cells);
   json_object_set_new(o, "leaf_cells", leaves);
+  json_object_set_new(o, "cuts_elsewhere", json_integer(p->cuts_elsewhere));
   json_object_set_new(o, "cuts_given_up", json_boolean(p->cuts_given_up));
   json_object_set_new(o, "repair_seconds", json_real(p->repair));
   json_object_set_new(o, "estimate", json_real(p->estimate));

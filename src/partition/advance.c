@@ -497,6 +497,7 @@ static vg_status make_root(struct vg_partition *p, struct vg_comm *comm,
   for (size_t k = 0; k < m->n_point; k++)
     n->front.name[k] = VG_POINT_NAME(0, k);
   n->levels = p->options.levels;
+  n->retry = p->attempt;
   vg_comm_bind_node(comm, 1);
   st = vg_load_new(&v, p->sizing, n->per_cube,
                    p->options.threads * vg_comm_node_size(comm), &n->load,
@@ -617,7 +618,7 @@ static vg_status sum_report(struct vg_partition *p, struct vg_comm *comm,
 static vg_status grow(struct vg_comm *comm, const struct vg_mesh *front,
                       const struct vg_sizing *sizing,
                       const struct vg_partition_options *options,
-                      struct vg_partition **out,
+                      int attempt, struct vg_partition **out,
                       struct vg_partition_report *report,
                       struct vg_spans *spans, struct vg_error *err)
 {
@@ -637,6 +638,7 @@ static vg_status grow(struct vg_comm *comm, const struct vg_mesh *front,
   p->boundary = front;
   p->sizing = sizing;
   p->options = *options;
+  p->attempt = attempt;
   if (p->options.threads < 1) p->options.threads = 1;
   st = run_tasks(p, comm, spans, err);
   p->report.wall = vg_clock() - t0;
@@ -653,8 +655,12 @@ static vg_status grow(struct vg_comm *comm, const struct vg_mesh *front,
   return st;
 }
 
-/* Where a part between cuts cannot be filled, the void is filled uncut: that
- * takes longer, but only a boundary that bounds nothing fails a run. */
+/* To cut a void, before it is filled uncut. */
+enum { ATTEMPTS = 3 };
+
+/* Where a part between cuts cannot be filled, all cuts are made elsewhere; in
+ * the end the void is filled uncut: that takes longer, but only a boundary that
+ * bounds nothing fails a run. */
 vg_status vg_partition_grow(struct vg_comm *comm, const struct vg_mesh *front,
                             const struct vg_sizing *sizing,
                             const struct vg_partition_options *options,
@@ -662,24 +668,28 @@ vg_status vg_partition_grow(struct vg_comm *comm, const struct vg_mesh *front,
                             struct vg_partition_report *report,
                             struct vg_spans *spans, struct vg_error *err)
 {
-  struct vg_partition_options uncut = *options;
+  struct vg_partition_options o = *options;
   struct vg_error why = VG_ERROR_INIT;
   uint64_t n_cut;
   vg_status st, sum;
 
-  st = grow(comm, front, sizing, options, out, report, spans, &why);
-  n_cut = report->n_node;
-  sum = vg_comm_sum(comm, 1, &n_cut, err);
-  if (sum < 0) return sum;
-  if (st != VG_ERR_GEOMETRY || !n_cut) {
-    if (err) *err = why;
-    return st;
+  for (int attempt = 0;; attempt++) {
+    st = grow(comm, front, sizing, &o, attempt, out, report, spans, &why);
+    report->cuts_elsewhere = attempt < ATTEMPTS ? attempt : ATTEMPTS - 1;
+    report->cuts_given_up = attempt == ATTEMPTS;
+    n_cut = report->n_node;
+    sum = vg_comm_sum(comm, 1, &n_cut, err);
+    if (sum < 0) return sum;
+    if (st != VG_ERR_GEOMETRY || attempt == ATTEMPTS || (!attempt && !n_cut))
+      break;
+    if (attempt + 1 == ATTEMPTS) {
+      o.rule.leaf_cells = 0;
+      o.levels = 0;
+    }
+    if (spans) vg_spans_release(spans);
+    why = (struct vg_error)VG_ERROR_INIT;
   }
-  uncut.rule.leaf_cells = 0;
-  uncut.levels = 0;
-  if (spans) vg_spans_release(spans);
-  st = grow(comm, front, sizing, &uncut, out, report, spans, err);
-  report->cuts_given_up = 1;
+  if (err) *err = why;
   return st;
 }
 

@@ -66,6 +66,8 @@ struct vg_partition_report {
   double repair_worst;       /* and the worst one (core/shape.h) */
   double repair_worst_left;
   double repair;             /* seconds of repairs */
+  int cuts_elsewhere;        /* times that all cuts were made at other places,
+                                because a part could not be filled */
   int cuts_given_up;         /* 1: a part could not be filled; the void was
                                 filled uncut, by one worker */
   double estimate;           /* cells expected at the start */

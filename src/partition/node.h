@@ -83,6 +83,7 @@ struct vg_partition {
   const struct vg_mesh *boundary;
   const struct vg_sizing *sizing;
   struct vg_partition_options options;
+  int attempt;               /* to cut the whole void: 0, 1, ... */
   atomic_uint_fast32_t n_serial;
   pthread_mutex_t lock;      /* of what follows */
   size_t n_piece, cap_piece;
@@ -126,8 +127,8 @@ vg_status vg_node_join(struct vg_partition *p, struct vg_node *n,
                        const struct vg_engine *e, struct vg_error *err);
 
 /** Put the changes of the works into the front, but those that cross it: these
- * count as blocked, and their cells are dropped. All changes, and what the works
- * were given, are released. (node_put.c) */
+ * count as blocked, and their cells are dropped. All changes, and what the
+ * works were given, are released. (node_put.c) */
 vg_status vg_node_put(struct vg_partition *p, struct vg_node *n,
                       const struct vg_engine *e, struct vg_error *err);
 

@@ -307,7 +307,8 @@ static void too_many_cells(void **state)
   scene_end(&s);
 }
 
-static void refused(const struct scene *s, double leaf)
+/* Cut at three places, then not at all. */
+static void refused(const struct scene *s, double leaf, int cuts)
 {
   for (uint64_t shuffle = 0; shuffle < 2; shuffle++) {
     struct vg_partition_options o = options_of(leaf, 2, shuffle);
@@ -318,6 +319,8 @@ static void refused(const struct scene *s, double leaf)
     assert_int_equal(grow(NULL, s, &o, &p, &r, &err), VG_ERR_GEOMETRY);
     assert_null(p);
     assert_true(strlen(err.text) > 0);
+    assert_int_equal(r.cuts_elsewhere, cuts ? 2 : 0);
+    assert_int_equal(r.cuts_given_up, cuts);
   }
 }
 
@@ -328,12 +331,12 @@ static void fronts_that_bound_nothing(void **state)
   (void)state;
   scene_demo(&s, "box", 20000);
   scene_turn(&s.m);
-  refused(&s, 4000);
-  refused(&s, 1e9);
+  refused(&s, 4000, 0);
+  refused(&s, 1e9, 0);
   scene_turn(&s.m);
   s.m.n_tri--;               /* a hole */
-  refused(&s, 4000);
-  refused(&s, 1e9);
+  refused(&s, 4000, 1);
+  refused(&s, 1e9, 0);
   s.m.n_tri++;
   scene_end(&s);
 }
