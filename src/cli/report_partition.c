@@ -85,8 +85,8 @@ void vg_report_partition_text(FILE *to, const struct vg_run *r)
           vg_cli_count(p->n_tile, c), share_of(r, p->n_zone_cell));
   print_leaves(to, &r->spans);
   if (p->cuts_elsewhere)
-    fprintf(to, "  all cuts were made at other places %d time%s: a part between "
-            "them could not be filled\n", p->cuts_elsewhere,
+    fprintf(to, "  all cuts were made at other places %d time%s: a part "
+            "between them could not be filled\n", p->cuts_elsewhere,
             p->cuts_elsewhere > 1 ? "s" : "");
   if (p->cuts_given_up)
     fprintf(to, "  cuts were given up: a part between them could not be "
