@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "core/near.h"
+#include "core/sites.h"
 
 /* Side of the cubic pattern over the spacing: mean edge of a body-centred
  * lattice of side 1 is (8 sqrt(3)/2 + 6) / 14 = 0.923. */
@@ -40,6 +41,8 @@ struct placer {
   uint32_t first[N_BUCKET], last[N_BUCKET];
   int lowest;                /* no bucket below it has items */
   struct vg_near near;
+  int is_listed;             /* near has what is around the growing point */
+  struct vg_sites sites;     /* that stand or never will */
 };
 
 /* --- queue --------------------------------------------------------------- */
@@ -187,34 +190,92 @@ static double shake(const int64_t i[3], int k)
   return ((double)(mix & 0xffff) / 65536 - 0.5) * 2e-4;
 }
 
+/* What stands around point c: once for all that it proposes. */
+static void list_around(struct placer *p, const double c[3], double h)
+{
+  if (p->is_listed) return;
+  vg_near_gather(&p->near, c, h, (lattice + exclusion_level) * 1.05 * h);
+  p->is_listed = 1;
+}
+
+/* Propose site i of the lattice. Returns 1 where that need not be done again,
+ * whoever proposes it: it stands, or never will. */
+static int propose_site(struct placer *p, const double c[3], double h,
+                        const int64_t i[3], uint32_t start, int everywhere)
+{
+  double half = 0.5 * lattice * h, d[3], x[3];
+
+  for (int k = 0; k < 3; k++) {
+    x[k] = half * ((double)i[k] + shake(i, k));
+    d[k] = x[k] - c[k];
+  }
+  if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] > 4.84 * half * half) return 0;
+  list_around(p, c, h);
+  if (vg_near_count(&p->near, d, exclusion_level * h)) return 1;
+  if (!everywhere && !is_level(p, x, h)) return 0;
+  return stand(p, c, d, h, 0, start) ? -1 : 1;
+}
+
 /* Where the field is level, neighbours are points of one body-centred cubic
  * lattice through the origin: fronts that started anywhere meet without a
  * fault. In units of half the side, its points are all even or all odd. */
 static int grow_level(struct placer *p, const double c[3], double h,
                       uint32_t start, int everywhere)
 {
-  double half = 0.5 * lattice * h, reach2 = 4.84 * half * half;
+  double half = 0.5 * lattice * h;
   int64_t base[3], i[3];
 
   for (int k = 0; k < 3; k++) base[k] = (int64_t)floor(c[k] / half + 0.5);
   for (i[0] = base[0] - 2; i[0] <= base[0] + 2; i[0]++)
     for (i[1] = base[1] - 2; i[1] <= base[1] + 2; i[1]++) {
       if ((i[0] ^ i[1]) & 1) continue;
-      for (i[2] = base[2] - 2; i[2] <= base[2] + 2; i[2]++) {
-        double d[3], x[3];
-
-        if ((i[0] ^ i[2]) & 1) continue;
-        for (int k = 0; k < 3; k++) {
-          x[k] = half * ((double)i[k] + shake(i, k));
-          d[k] = x[k] - c[k];
-        }
-        if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] > reach2 ||
-            vg_near_count(&p->near, d, exclusion_level * h) ||
-            (!everywhere && !is_level(p, x, h)))
-          continue;
-        if (stand(p, c, d, h, 0, start)) return -1;
-      }
+      for (i[2] = base[2] - 2; i[2] <= base[2] + 2; i[2]++)
+        if (!((i[0] ^ i[2]) & 1) &&
+            propose_site(p, c, h, i, start, everywhere) < 0)
+          return -1;
     }
+  return 0;
+}
+
+/* Index of the site at x, where the spacing is h. 0: there is none, or it is
+ * farther from the origin than indices tell. */
+static int find_site(const double x[3], double h, int64_t i[3])
+{
+  double half = 0.5 * lattice * h;
+
+  for (int k = 0; k < 3; k++) {
+    double at = floor(x[k] / half + 0.5);
+
+    if (!(fabs(at) < 1e9) || fabs(x[k] - half * at) > level_within * half)
+      return 0;
+    i[k] = (int64_t)at;
+  }
+  return !((i[0] ^ i[1]) & 1) && !((i[0] ^ i[2]) & 1);
+}
+
+/* grow_level from a point of the lattice: of its neighbours, in the same order,
+ * those that nobody has proposed for good. */
+static int grow_site(struct placer *p, const double c[3], double h,
+                     const int64_t base[3], uint32_t start, int everywhere)
+{
+  static const int8_t step[14][3] = {
+    {-2, 0, 0}, {-1, -1, -1}, {-1, -1, 1}, {-1, 1, -1}, {-1, 1, 1},
+    {0, -2, 0}, {0, 0, -2}, {0, 0, 2}, {0, 2, 0},
+    {1, -1, -1}, {1, -1, 1}, {1, 1, -1}, {1, 1, 1}, {2, 0, 0}};
+  struct vg_site_block *b = NULL;
+
+  for (int j = 0; j < 14; j++) {
+    int64_t i[3] = { base[0] + step[j][0], base[1] + step[j][1],
+                     base[2] + step[j][2] };
+    int done;
+
+    if (!b || !vg_site_is_in(b, i)) b = vg_sites_block(&p->sites, i, (float)h);
+    if (!b) return -1;
+    if (b->bit[i[0] & 7] & vg_site_bit(i)) continue;
+    done = propose_site(p, c, h, i, start, everywhere);
+    if (done < 0) return -1;
+    if (done) b->bit[i[0] & 7] |= vg_site_bit(i);
+  }
   return 0;
 }
 
@@ -222,13 +283,17 @@ static int grow_point(struct placer *p, uint32_t point)
 {
   double c[3], h = p->h[point];
   uint32_t start = p->cell[point];
-  int level;
+  int64_t site[3];
+  int level, bad = 0;
 
   memcpy(c, p->x[point], sizeof c);
-  vg_near_gather(&p->near, c, h, (lattice + exclusion_level) * 1.05 * h);
+  p->is_listed = 0;
   level = level_around(p, c, h);
-  if (level && grow_level(p, c, h, start, level == 6)) return -1;
-  if (level == 6) return 0;
+  if (level)
+    bad = find_site(c, h, site) ? grow_site(p, c, h, site, start, level == 6)
+                                : grow_level(p, c, h, start, level == 6);
+  if (bad || level == 6) return bad;
+  list_around(p, c, h);
   for (int i = 0; i < 8; i++) {
     double unit[3];
 
@@ -238,19 +303,6 @@ static int grow_point(struct placer *p, uint32_t point)
   return 0;
 }
 
-/* Is x, where the spacing is h, a point of the lattice? */
-static int on_lattice(const double x[3], double h)
-{
-  double half = 0.5 * lattice * h;
-  int64_t i[3];
-
-  for (int k = 0; k < 3; k++) {
-    i[k] = (int64_t)floor(x[k] / half + 0.5);
-    if (fabs(x[k] - half * (double)i[k]) > level_within * half) return 0;
-  }
-  return !((i[0] ^ i[1]) & 1) && !((i[0] ^ i[2]) & 1);
-}
-
 /* A face whose corners are all of the lattice is a zone's: its points go on
  * with the lattice, an apex would only disturb it. */
 static int grow_face(struct placer *p, uint32_t link)
@@ -258,6 +310,7 @@ static int grow_face(struct placer *p, uint32_t link)
   const struct vg_cell *cell = &p->t->cell[link >> 2];
   const double *v[3];
   double a[3], b[3], n[3], c[3], unit[3], length, h;
+  int64_t site[3];
 
   for (int k = 0; k < 3; k++) v[k] = p->t->x[cell->v[vg_face[link & 3][k]]];
   for (int k = 0; k < 3; k++) {
@@ -272,7 +325,8 @@ static int grow_face(struct placer *p, uint32_t link)
   if (!(length > 0)) return 0;
   for (int k = 0; k < 3; k++) unit[k] = apex * n[k] / length;
   h = vg_sizing_at(p->sizing, c);
-  if (on_lattice(v[0], h) && on_lattice(v[1], h) && on_lattice(v[2], h))
+  if (find_site(v[0], h, site) && find_site(v[1], h, site) &&
+      find_site(v[2], h, site))
     return 0;
   if (p->region) {           /* saves the search where nothing is wanted */
     double d[3], there = aim(p, c, unit, h, d);
@@ -450,6 +504,7 @@ static void release(struct placer *p)
   free(p->queue);
   free(p->face);
   vg_near_release(&p->near);
+  vg_sites_release(&p->sites);
   free(p);
 }
 
