@@ -10,9 +10,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { VG_NEAR_MAX = 2048, VG_NEAR_CELLS = 4096, VG_NEAR_PAGE = 6 };
+enum { VG_NEAR_MAX = 2048, VG_NEAR_CELLS = 4096, VG_NEAR_PAGE = 8 };
 
-struct vg_near_page {        /* some points of a cell, from its corner */
+struct vg_near_page {        /* some points of a cell, from its corner; what
+                                is not used is 0 */
   uint32_t next, n;
   float x[3][VG_NEAR_PAGE];
 };
