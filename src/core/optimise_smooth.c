@@ -118,8 +118,10 @@ static double gradient(const struct vg_optimiser *o, uint32_t p, size_t worst,
   return sqrt(length);
 }
 
+/* Beside a flat cell far smaller steps help too: any sign is a gain. */
 static int climb(struct vg_optimiser *o, uint32_t p, struct ball_state *now)
 {
+  const double least = now->worst < VG_SHAPE_FLAT ? 1e-5 : 0.01;
   float q[VG_BALL_MAX];
   size_t worst = 0;
   double g[3], length, scale = 0, x[3];
@@ -138,7 +140,7 @@ static int climb(struct vg_optimiser *o, uint32_t p, struct ball_state *now)
   scale = sqrt(scale);
   length = gradient(o, p, worst, 1e-3 * scale, g);
   if (!(length > 0)) return 0;
-  for (double step = 0.25; step > 0.01; step *= 0.4) {
+  for (double step = 0.25; step > least; step *= 0.4) {
     for (int i = 0; i < 3; i++)
       x[i] = o->t->x[p][i] + g[i] / length * step * scale;
     if (!try_at(o, x, now->worst * 1.001 + VG_SHAPE_FLAT, q, &s)) continue;
