@@ -85,10 +85,11 @@ int vg_region_near_by(const struct vg_region *r, const struct vg_sizing *sizing,
 int vg_region_near(const struct vg_region *r, const struct vg_sizing *sizing,
                    const double x[3], double band)
 {
-  double far = gap(r, 1, &x);
+  double far = gap(r, 1, &x), most = vg_region_band(r, band), h_min, h_max;
 
-  return far == 0 ||
-         far <= vg_region_band(r, band) * vg_region_spacing(r, sizing, x);
+  vg_sizing_range(sizing, &h_min, &h_max);
+  if (far == 0 || far <= most * h_min) return 1;
+  return far <= most * h_max && far <= most * vg_region_spacing(r, sizing, x);
 }
 
 /* --- triangles ----------------------------------------------------------- */
