@@ -217,21 +217,45 @@ static vg_status join_cells(struct joint *j, struct vg_error *err)
 
 /* --- what came of it ----------------------------------------------------- */
 
-static double measure(const struct vg_tets *t, uint64_t *n_bad)
-{
-  double worst = 2;
+enum { CLASSES = 3 };
 
-  *n_bad = 0;
+/* The worst cell, and cells below 5, 10 and 25 degrees. */
+struct tally {
+  double worst;
+  uint64_t n[CLASSES];
+};
+
+static struct tally measure(const struct vg_tets *t)
+{
+  static const double below[CLASSES] = {0.0076, 0.03, VG_SHAPE_AIM};
+  struct tally s = { .worst = 2 };
+
   for (size_t c = 0; c < t->n_cell; c++) {
     const uint32_t *v = t->cell[c].v;
     double q;
 
     if (t->flag[c] & VG_DEAD) continue;
     q = vg_shape(t->x[v[0]], t->x[v[1]], t->x[v[2]], t->x[v[3]]);
-    if (q < worst) worst = q;
-    *n_bad += q < VG_SHAPE_AIM;
+    if (q < s.worst) s.worst = q;
+    for (int k = 0; k < CLASSES; k++) s.n[k] += q < below[k];
   }
-  return worst;
+  return s;
+}
+
+/* The worst cell and the very bad ones decide: a point put in for them may
+ * leave a few more cells that are only bad. */
+static int is_better(const struct tally *now, const struct tally *old)
+{
+  int fewer = 0;
+
+  if (now->worst < old->worst) return 0;
+  for (int k = 0; k < CLASSES - 1; k++) {
+    if (now->n[k] > old->n[k]) return 0;
+    fewer |= now->n[k] < old->n[k];
+  }
+  if (fewer || now->n[CLASSES - 1] != old->n[CLASSES - 1])
+    return fewer || now->n[CLASSES - 1] < old->n[CLASSES - 1];
+  return now->worst > old->worst;
 }
 
 /* Numbers of the points that cells use, in a piece: those of others first.
@@ -311,15 +335,16 @@ static vg_status list_left(const struct joint *j,
   return VG_OK;
 }
 
-static vg_status take(const struct joint *j, struct vg_mended *m,
-                      struct vg_error *err)
+static vg_status take(const struct joint *j, const struct tally *old,
+                      struct vg_mended *m, struct vg_error *err)
 {
+  struct tally now = measure(&j->t);
   uint32_t *to;
   vg_status st = VG_OK;
 
-  m->worst_left = measure(&j->t, &m->n_bad_left);
-  m->better = m->worst_left >= m->worst && m->n_bad_left <= m->n_bad &&
-              (m->worst_left > m->worst || m->n_bad_left < m->n_bad);
+  m->worst_left = now.worst;
+  m->n_bad_left = now.n[CLASSES - 1];
+  m->better = is_better(&now, old);
   if (!m->better) {
     m->worst_left = m->worst;
     m->n_bad_left = m->n_bad;
@@ -343,6 +368,7 @@ vg_status vg_repair_mend(size_t n, const struct vg_block *block,
                      .rim = rim };
   struct vg_optimise_report r;
   struct vg_mended m = { .better = 0 };
+  struct tally old;
   vg_status st = joint_new(&j, err);
 
   m.n_cell = j.n_cell;
@@ -351,11 +377,12 @@ vg_status vg_repair_mend(size_t n, const struct vg_block *block,
     st = join_cells(&j, err);
   }
   if (st == VG_OK) {
-    m.worst = m.worst_left = measure(&j.t, &m.n_bad);
-    m.n_bad_left = m.n_bad;
+    old = measure(&j.t);
+    m.worst = m.worst_left = old.worst;
+    m.n_bad = m.n_bad_left = old.n[CLASSES - 1];
     st = vg_optimise_bad(&j.t, j.n_fixed, j.n_point, &r, err);
   }
-  if (st == VG_OK) st = take(&j, &m, err);
+  if (st == VG_OK) st = take(&j, &old, &m, err);
   if (st == VG_OK) st = list_left(&j, sizing, &m, err);
   if (st == VG_ERR_GEOMETRY) {
     /* cells that do not fit together, or flat ones, are left to the judge */
