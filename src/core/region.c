@@ -160,7 +160,9 @@ static double longest(const double *const corner[3])
 
 /* A triangle much larger than the cells here may cross the planes, and the
  * walls, each at another place, so its part within reach is cut out: by the
- * largest spacing found at it, and then, to be sure, by that found there.
+ * largest spacing found at it, and then, to be sure, by that found there. Where
+ * sizes vary that may be elsewhere than at a corner that is within reach by
+ * its own spacing, so corners are asked first.
  * most: of its corners and its middle. */
 static int large_meets(const struct vg_region *r,
                        const struct vg_sizing *sizing,
@@ -188,12 +190,15 @@ static double spacing_amid(const struct vg_region *r,
 static int meets(const struct vg_region *r, const struct vg_sizing *sizing,
                  const double *const corner[3], double band, int is_sure)
 {
-  double most = 0;
+  double reach = vg_region_band(r, band), h[3], most = 0;
 
+  for (int k = 0; k < 3; k++) {
+    h[k] = vg_region_spacing(r, sizing, corner[k]);
+    most = fmax(most, h[k]);
+  }
+  if (longest(corner) <= 2 * most) return gap(r, 3, corner) <= reach * most;
   for (int k = 0; k < 3; k++)
-    most = fmax(most, vg_region_spacing(r, sizing, corner[k]));
-  if (longest(corner) <= 2 * most)
-    return gap(r, 3, corner) <= vg_region_band(r, band) * most;
+    if (gap(r, 1, &corner[k]) <= reach * h[k]) return 1;
   most = fmax(most, spacing_amid(r, sizing, corner));
   return large_meets(r, sizing, corner, most, band, is_sure);
 }
@@ -331,6 +336,17 @@ static double gap_of(const struct vg_ruler *ruler, const uint32_t v[3])
 /* Large triangles are looked at as in vg_region_meets once their sides do not
  * tell, by the least and the most that the spacing may be anywhere on them, or
  * at their middle, which is two thirds of an edge from the corners at most. */
+static double gap_of_point(const struct vg_ruler *ruler, uint32_t p)
+{
+  const double *s = sides_of(ruler, p);
+  double far = 0;
+
+  for (int i = 0; i < ruler->n_side; i++)
+    far = fmax(far, i < ruler->region->n_plane ? fabs(s[i])
+                                               : -s[i] / VG_BEYOND_WALLS);
+  return far;
+}
+
 static int ruler_meets(const struct vg_ruler *ruler, const uint32_t v[3],
                        double band, int is_sure)
 {
@@ -350,6 +366,8 @@ static int ruler_meets(const struct vg_ruler *ruler, const uint32_t v[3],
   up = 0.67 * rise < ruler->range ? 0.67 * rise : ruler->range;
   if (rise > ruler->range) rise = ruler->range;
   if (far > reach * most && far > reach * (least + up)) return 0;
+  for (int k = 0; k < 3; k++)
+    if (gap_of_point(ruler, v[k]) <= reach * h[v[k]]) return 1;
   if (ruler->n_side == 1 && far <= reach * fmax(most - rise, 0)) return 1;
   most = fmax(most, spacing_amid(r, ruler->sizing, corner));
   return far <= reach * most &&
