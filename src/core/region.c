@@ -333,9 +333,6 @@ static double gap_of(const struct vg_ruler *ruler, const uint32_t v[3])
   return far;
 }
 
-/* Large triangles are looked at as in vg_region_meets once their sides do not
- * tell, by the least and the most that the spacing may be anywhere on them, or
- * at their middle, which is two thirds of an edge from the corners at most. */
 static double gap_of_point(const struct vg_ruler *ruler, uint32_t p)
 {
   const double *s = sides_of(ruler, p);
@@ -347,6 +344,9 @@ static double gap_of_point(const struct vg_ruler *ruler, uint32_t p)
   return far;
 }
 
+/* Large triangles are looked at as in vg_region_meets once their sides do not
+ * tell, by the least and the most that the spacing may be anywhere on them, or
+ * at their middle, which is two thirds of an edge from the corners at most. */
 static int ruler_meets(const struct vg_ruler *ruler, const uint32_t v[3],
                        double band, int is_sure)
 {
