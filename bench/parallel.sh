@@ -334,7 +334,7 @@ part_replay() {
 ROW
   n=$(cells 23000000)
   demo_project box "$n" "$work/input"
-  replay_case box "$(calc "int($n / 82)")"
+  replay_case box "$(calc "int($n / 153)")"
   n=$(cells 12000000)
   demo_project sphere "$n" "$work/input"
   replay_case sphere "$(calc "int($n / 430)")"
