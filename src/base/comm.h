@@ -97,6 +97,9 @@ vg_status vg_comm_allgather(struct vg_comm *c, const struct vg_bytes *mine,
 vg_status vg_comm_exchange(struct vg_comm *c, const struct vg_bytes *to,
                            struct vg_bytes *from, struct vg_error *err);
 
+/** Free such a list of n, and what is in it. NULL is accepted. */
+void vg_bytes_release(struct vg_bytes *list, size_t n);
+
 /** All ranks take the worst status of all; where that is another rank's, *err
  * becomes its message with "rank N: " before it. So one rank's failure ends a
  * stage on all of them. Of several failures the lowest rank's, one with a

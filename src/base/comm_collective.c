@@ -281,6 +281,12 @@ vg_status vg_comm_exchange(struct vg_comm *c, const struct vg_bytes *to,
 
 /* An exchange in which all get the same: as many bytes on the way as MPI's
  * own gathering moves, of any length, and no copy of them beside. */
+void vg_bytes_release(struct vg_bytes *list, size_t n)
+{
+  for (size_t k = 0; list && k < n; k++) free(list[k].data);
+  free(list);
+}
+
 vg_status vg_comm_allgather(struct vg_comm *c, const struct vg_bytes *mine,
                             struct vg_bytes *out, struct vg_error *err)
 {

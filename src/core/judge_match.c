@@ -263,8 +263,7 @@ static vg_status gather_crowds(struct vg_slices_judgement *j,
   got.data = NULL;
   st = vg_comm_agree(j->comm, st, err);
 done:
-  for (size_t r = 0; all && r < size; r++) free(all[r].data);
-  free(all);
+  vg_bytes_release(all, size);
   vg_items_release(&mine);
   vg_items_release(&got);
   return st;
@@ -401,8 +400,7 @@ static vg_status count_joined(struct vg_slices_judgement *j, int q,
   VG_TRY(vg_comm_allgather(j->comm, &mine, all, err));
   *n_joined = join_links(j->worker[0].parent[q], j->n_all, all, size);
 done:
-  for (int r = 0; all && r < size; r++) free(all[r].data);
-  free(all);
+  vg_bytes_release(all, size);
   free(mine.data);
   return st;
 }

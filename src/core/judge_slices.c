@@ -262,8 +262,7 @@ static vg_status unite_used(struct vg_slices_judgement *j, uint64_t *used,
       used[first + i] |= word;
     }
 done:
-  for (int r = 0; from && r < size; r++) free(from[r].data);
-  free(from);
+  vg_bytes_release(from, size);
   free(to);
   return st;
 }
@@ -321,8 +320,7 @@ static vg_status gather_worst(struct vg_comm *comm, struct vg_figures *f,
       vg_figures_worst(f, &w);
     }
 done:
-  for (size_t r = 0; all && r < size; r++) free(all[r].data);
-  free(all);
+  vg_bytes_release(all, size);
   return st;
 }
 
@@ -490,8 +488,7 @@ static vg_status gather_suspects(struct vg_slices_judgement *j, size_t *n,
   st = unpack_suspects(all, size, n, key, err);
   st = vg_comm_agree(j->comm, st, err);
 done:
-  for (size_t r = 0; all && r < size; r++) free(all[r].data);
-  free(all);
+  vg_bytes_release(all, size);
   free(mine.data);
   return st;
 }

@@ -6,18 +6,12 @@
 
 #include "base/memory.h"
 
-static double side(const struct vg_plane *p, const double x[3])
-{
-  return p->normal[0] * x[0] + p->normal[1] * x[1] + p->normal[2] * x[2] -
-         p->offset;
-}
-
 void vg_region_foot(const struct vg_region *r, const double x[3],
                     double foot[3])
 {
   memcpy(foot, x, 3 * sizeof *x);
   for (int i = 0; i < r->n_plane; i++) {
-    double s = side(&r->plane[i], foot);
+    double s = vg_plane_side(&r->plane[i], foot);
 
     for (int k = 0; k < 3; k++) foot[k] -= s * r->plane[i].normal[k];
   }
@@ -35,7 +29,7 @@ double vg_region_spacing(const struct vg_region *r,
 int vg_region_within(const struct vg_region *r, const double x[3])
 {
   for (int i = 0; i < r->n_wall; i++)
-    if (!(side(&r->wall[i], x) > 0)) return 0;
+    if (!(vg_plane_side(&r->wall[i], x) > 0)) return 0;
   return 1;
 }
 
@@ -52,7 +46,7 @@ static double gap(const struct vg_region *r, int n, const double *const *x)
     double near = INFINITY;
 
     for (int k = 0; k < n; k++) {
-      double s = side(p, x[k]);
+      double s = vg_plane_side(p, x[k]);
 
       above |= s >= 0;
       below |= s <= 0;
@@ -72,7 +66,7 @@ int vg_region_near_by(const struct vg_region *r, const struct vg_sizing *sizing,
 
   if (far == 0) return 1;
   for (int i = 0; i < r->n_plane; i++) {
-    double s = side(&r->plane[i], x);
+    double s = vg_plane_side(&r->plane[i], x);
 
     foot2 += s * s;
   }
@@ -105,7 +99,8 @@ static int clip(int n, double (*x)[3], const struct vg_plane *p, double sign,
 
   for (int i = 0; i < n; i++) {
     const double *a = x[i], *b = x[(i + 1) % n];
-    double s = sign * side(p, a) - most, t = sign * side(p, b) - most;
+    double s = sign * vg_plane_side(p, a) - most;
+    double t = sign * vg_plane_side(p, b) - most;
 
     if (s <= 0) memcpy(out[m++], a, sizeof *out);
     if ((s < 0 && t > 0) || (s > 0 && t < 0)) {
@@ -256,7 +251,7 @@ int vg_region_has_cell(const struct vg_region *r,
     int above = 0, below = 0;
 
     for (int k = 0; k < 4; k++) {
-      double s = side(&r->plane[i], corner[k]);
+      double s = vg_plane_side(&r->plane[i], corner[k]);
 
       above |= s >= 0;
       below |= s <= 0;
@@ -290,9 +285,9 @@ vg_status vg_ruler_init(struct vg_ruler *ruler, const struct vg_region *region,
     double *s = ruler->side + p * (size_t)m;
 
     for (int i = 0; i < region->n_plane; i++)
-      s[i] = side(&region->plane[i], x[p]);
+      s[i] = vg_plane_side(&region->plane[i], x[p]);
     for (int i = region->n_plane; i < m; i++)
-      s[i] = side(&region->wall[i - region->n_plane], x[p]);
+      s[i] = vg_plane_side(&region->wall[i - region->n_plane], x[p]);
     ruler->spacing[p] = vg_region_spacing(region, sizing, x[p]);
   }
   return VG_OK;

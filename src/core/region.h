@@ -45,6 +45,13 @@ struct vg_region {
  * other side would have to be told from outside through them. */
 #define VG_BEYOND_WALLS 0.5
 
+/** How far x is above the plane. */
+static inline double vg_plane_side(const struct vg_plane *p, const double x[3])
+{
+  return p->normal[0] * x[0] + p->normal[1] * x[1] + p->normal[2] * x[2] -
+         p->offset;
+}
+
 /** A band of the region, in spacings from its planes. */
 static inline double vg_region_band(const struct vg_region *r, double band)
 {

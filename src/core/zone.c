@@ -58,11 +58,9 @@ static vg_status look_at_points(struct zone *g, struct vg_error *err)
   if (!g->at) return vg_fail_memory(err, "the points of a zone");
   for (int i = 0; i < g->k.region->n_plane; i++) {
     const struct vg_plane *plane = &g->k.region->plane[i];
-    const double *n = plane->normal;
 
     for (size_t p = 0; p < t->n_point; p++) {
-      const double *x = t->x[p];
-      double s = n[0] * x[0] + n[1] * x[1] + n[2] * x[2] - plane->offset;
+      double s = vg_plane_side(plane, t->x[p]);
 
       g->at[p] |= (uint8_t)(((s >= 0) | (s <= 0) << 1) << 2 * i);
     }

@@ -191,8 +191,7 @@ vg_status vg_boundary_points_share(struct vg_comm *comm,
   st = vg_comm_agree(comm, st, err);
   if (st >= 0) st = vg_comm_allgather(comm, &mine, all, err);
   for (size_t r = 0; r < n && st >= 0; r++) take_points(b, &all[r]);
-  for (size_t r = 0; r < n && all; r++) free(all[r].data);
-  free(all);
+  vg_bytes_release(all, n);
   free(mine.data);
   for (size_t i = 0; i < b->n && st >= 0; i++)
     if (!b->known[i])

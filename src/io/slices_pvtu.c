@@ -115,8 +115,7 @@ static vg_status list_all(struct vg_comm *comm, const struct vg_slices *s,
   mine = (struct vg_bytes){ l.n * sizeof *l.entry, (unsigned char *)l.entry };
   if (st >= 0) st = vg_comm_allgather(comm, &mine, all, err);
   if (st >= 0) st = join_lists(p, n_rank, all, err);
-  for (size_t r = 0; r < n_rank && all; r++) free(all[r].data);
-  free(all);
+  vg_bytes_release(all, n_rank);
   free(l.entry);
   return st;
 }

@@ -1,7 +1,5 @@
 /* Cells that were made for nothing: of zones whose changes cross the front.
  * Their home found that, when they were kept elsewhere already. */
-#include <stdlib.h>
-
 #include "base/memory.h"
 #include "partition/node.h"
 
@@ -50,7 +48,6 @@ vg_status vg_partition_drop(struct vg_partition *p, struct vg_comm *comm,
     for (size_t k = 0; k < all[r].n / sizeof *serial; k++) drop(p, serial[k]);
   }
 done:
-  for (int r = 0; all && r < p->size; r++) free(all[r].data);
-  free(all);
+  vg_bytes_release(all, p->size);
   return st;
 }

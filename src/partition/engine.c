@@ -228,8 +228,7 @@ static vg_status gather_list(struct vg_engine *e, void *list, size_t *count,
     *count += more;
   }
 done:
-  for (size_t r = 0; from && r < n; r++) free(from[r].data);
-  free(from);
+  vg_bytes_release(from, n);
   free(to);
   return vg_comm_agree(e->comm, st, err);
 }

@@ -20,12 +20,6 @@ struct band {
   double x[3], h;
 };
 
-static double gap(const struct vg_plane *p, const double x[3])
-{
-  return fabs(p->normal[0] * x[0] + p->normal[1] * x[1] +
-              p->normal[2] * x[2] - p->offset);
-}
-
 /* Is no point of a triangle so far from the planes as `most`, by the spacing
  * that was looked up? Between the feet of two points lies no more than between
  * them. */
@@ -51,7 +45,8 @@ static int stays(struct band *b, const double *const x[3])
   double most = 0;
 
   for (int i = 0; i < r->n_plane; i++)
-    for (int k = 0; k < 3; k++) most = fmax(most, gap(&r->plane[i], x[k]));
+    for (int k = 0; k < 3; k++)
+      most = fmax(most, fabs(vg_plane_side(&r->plane[i], x[k])));
   if (is_within(b, x, most)) return 1;
   for (int k = 0; k < 3; k++) b->x[k] = (x[0][k] + x[1][k] + x[2][k]) / 3;
   b->h = vg_region_spacing(r, b->sizing, b->x);

@@ -67,14 +67,12 @@ static vg_status gather(const struct vg_partition *p, struct vg_comm *comm,
     *out = vg_alloc(bytes, 1);
     if (!*out) st = vg_fail_memory(err, "numbering the mesh");
   }
-  for (int r = 0; all && r < p->size; r++) {
-    if (st == VG_OK && all[r].n) {
+  for (int r = 0; st == VG_OK && r < p->size; r++)
+    if (all[r].n) {
       memcpy(*out + *n, all[r].data, all[r].n);
       *n += all[r].n / sizeof **out;
     }
-    free(all[r].data);
-  }
-  free(all);
+  vg_bytes_release(all, (size_t)p->size);
   free(mine.data);
   if (st == VG_OK && *n) qsort(*out, *n, sizeof **out, by_path);
   return st;

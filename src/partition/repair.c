@@ -272,7 +272,7 @@ static vg_status send_cells(struct repair *r, struct vg_comm *comm,
     if (r->pick[k].n) st = put_piece(r, k, &post, err);
   st = vg_post_send(&post, comm, st, &from, err);
   if (st == VG_OK) st = take_blocks(r, from, err);
-  vg_bytes_release(from, r->p->size);
+  vg_bytes_release(from, (size_t)r->p->size);
   return st;
 }
 
@@ -438,7 +438,7 @@ static vg_status put_back(struct repair *r, struct vg_comm *comm,
   st = vg_post_send(&post, comm, st, &from, err);
   if (st < 0) return st;
   take_moves(r, from);
-  vg_bytes_release(from, r->p->size);
+  vg_bytes_release(from, (size_t)r->p->size);
   /* the picks were those of the pieces there were */
   for (size_t k = 0; k < r->p->n_piece; k++) picks_release(&r->pick[k]);
   free(r->pick);

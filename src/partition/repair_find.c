@@ -78,7 +78,7 @@ vg_status vg_owners_gather(const struct vg_partition *p, struct vg_comm *comm,
   st = vg_comm_agree(comm, st, err);
   if (st == VG_OK) st = vg_comm_allgather(comm, &mine, all, err);
   if (st == VG_OK) st = list_owners(all, p->size, out, err);
-  if (all) vg_bytes_release(all, p->size);
+  vg_bytes_release(all, (size_t)p->size);
   free(own);
   return vg_comm_agree(comm, st, err);
 }
@@ -108,12 +108,6 @@ void vg_post_release(struct vg_post *post)
   post->to = NULL;
 }
 
-void vg_bytes_release(struct vg_bytes *b, int size)
-{
-  for (int r = 0; b && r < size; r++) free(b[r].data);
-  free(b);
-}
-
 vg_status vg_post_send(struct vg_post *post, struct vg_comm *comm,
                        vg_status st, struct vg_bytes **from,
                        struct vg_error *err)
@@ -131,7 +125,7 @@ vg_status vg_post_send(struct vg_post *post, struct vg_comm *comm,
   free(to);
   vg_post_release(post);
   if (st == VG_OK) *from = got;
-  else vg_bytes_release(got, post->size);
+  else vg_bytes_release(got, (size_t)post->size);
   return st;
 }
 

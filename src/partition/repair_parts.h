@@ -37,7 +37,6 @@ void vg_post_release(struct vg_post *post);
 vg_status vg_post_send(struct vg_post *post, struct vg_comm *comm,
                        vg_status st, struct vg_bytes **from,
                        struct vg_error *err);
-void vg_bytes_release(struct vg_bytes *b, int size);
 
 /* --- where (repair_smooth.c, repair_balls.c) ----------------------------- */
 

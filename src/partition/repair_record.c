@@ -53,7 +53,7 @@ static vg_status collect(const struct vg_partition *p, struct vg_comm *comm,
       memcpy(&s, all[r].data + at, sizeof s);
       st = vg_spans_add(spans, &s, err);
     }
-  vg_bytes_release(all, p->size);
+  vg_bytes_release(all, (size_t)p->size);
   return st;
 }
 

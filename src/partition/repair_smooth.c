@@ -181,7 +181,7 @@ static vg_status send_seams(struct smoothing *s, struct vg_comm *comm,
   if (st < 0) return st;
   st = take_far(s, from, err);
   if (st == VG_OK) st = sort_seams(s, err);
-  vg_bytes_release(from, s->p->size);
+  vg_bytes_release(from, (size_t)s->p->size);
   return vg_comm_agree(comm, st, err);
 }
 
@@ -392,7 +392,7 @@ static vg_status tell(struct smoothing *s, struct vg_comm *comm,
     if (s->seam[k]->rank == (uint32_t)s->p->rank)
       st = drop_cells(s, s->seam[k]->from, s->seam[k]->n_gone,
                       s->seam[k]->place);
-  vg_bytes_release(from, s->p->size);
+  vg_bytes_release(from, (size_t)s->p->size);
   return st == VG_OK ? st : vg_fail_memory(err, "repairs");
 }
 
@@ -453,7 +453,7 @@ static vg_status go_between(struct smoothing *s, struct vg_comm *comm,
   st = vg_post_send(&post, comm, st, &from, err);
   if (st < 0) return st;
   if (refresh_far(s, from) < 0) st = vg_fail_memory(err, "repairs");
-  vg_bytes_release(from, s->p->size);
+  vg_bytes_release(from, (size_t)s->p->size);
   return vg_comm_agree(comm, st, err);
 }
 
