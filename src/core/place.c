@@ -375,7 +375,7 @@ static int on_region(const struct vg_region *r, double side, double x[3])
   for (int i = 0; i < r->n_wall; i++) {
     const double *n = r->wall[i].normal;
 
-    if (n[0] * x[0] + n[1] * x[1] + n[2] * x[2] - r->wall[i].offset <
+    if (vg_plane_side(&r->wall[i], x) <
         -0.5 * side * (fabs(n[0]) + fabs(n[1]) + fabs(n[2])))
       return 0;
   }

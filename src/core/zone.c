@@ -23,7 +23,8 @@ struct zone {
   const uint32_t (*face)[3];
   struct vg_zone *z;
   uint8_t *at;               /* [t.n_point] bits 2 i and 2 i + 1: not below and
-                                not above plane i */
+                                not above plane i; NULL: cells within reach
+                                belong too */
   uint32_t *number;          /* [t.n_point] in the result, or VG_NONE */
 };
 
@@ -53,6 +54,7 @@ static vg_status look_at_points(struct zone *g, struct vg_error *err)
 {
   const struct vg_tets *t = &g->k.t;
 
+  if (g->k.region->reach > 0) return VG_OK;
   free(g->at);
   g->at = vg_calloc(t->n_point, 1);
   if (!g->at) return vg_fail_memory(err, "the points of a zone");
@@ -73,9 +75,10 @@ static int belongs(const struct zone *g, uint32_t c)
 {
   const struct vg_tets *t = &g->k.t;
   const uint32_t *v = t->cell[c].v;
-  int at = g->at[v[0]] | g->at[v[1]] | g->at[v[2]] | g->at[v[3]];
+  const uint8_t *at = g->at;
 
-  if (!(g->k.region->reach > 0) && at != (1 << 2 * g->k.region->n_plane) - 1)
+  if (at && (at[v[0]] | at[v[1]] | at[v[2]] | at[v[3]]) !=
+              (1 << 2 * g->k.region->n_plane) - 1)
     return 0;
   return vg_region_has_cell(g->k.region, g->k.sizing, t->x[v[0]], t->x[v[1]],
                             t->x[v[2]], t->x[v[3]]);
