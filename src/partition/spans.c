@@ -57,6 +57,30 @@ void vg_spans_sort(struct vg_spans *s)
   if (s->n) qsort(s->span, s->n, sizeof *s->span, by_path);
 }
 
+vg_status vg_spans_append(struct vg_spans *s, const struct vg_spans *more,
+                          struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  for (size_t k = 0; k < more->n && st == VG_OK; k++) {
+    struct vg_span span = more->span[k];
+
+    span.start += s->wall;
+    span.end += s->wall;
+    st = vg_spans_add(s, &span, err);
+  }
+  for (size_t k = 0; k < more->n_help && st == VG_OK; k++) {
+    struct vg_help help = more->help[k];
+
+    help.start += s->wall;
+    help.end += s->wall;
+    st = vg_spans_add_help(s, &help, err);
+  }
+  s->wall += more->wall;
+  vg_spans_sort(s);
+  return st;
+}
+
 /* Sum and maximum of the workers' busy time. */
 static void busy(const struct vg_spans *s, double *sum, double *most)
 {

@@ -62,6 +62,10 @@ vg_status vg_spans_add(struct vg_spans *s, const struct vg_span *span,
 vg_status vg_spans_add_help(struct vg_spans *s, const struct vg_help *help,
                             struct vg_error *err);
 
+/** What the same workers did afterwards: its times begin where *s ends. */
+vg_status vg_spans_append(struct vg_spans *s, const struct vg_spans *more,
+                          struct vg_error *err);
+
 /** By path, then kind: the order of every list of tasks. */
 void vg_spans_sort(struct vg_spans *s);
 
