@@ -32,13 +32,21 @@ static void free_outcome(struct outcome *o)
   free(o);
 }
 
+/* One that cannot be filled is laid aside, unless it is the whole that is to
+ * be cut again. */
 static vg_status run_leaf(struct vg_partition *p, struct vg_work *w,
                           struct outcome *o, const struct vg_engine *e,
                           struct vg_error *err)
 {
+  char path[VG_PATH_MAX];
   int outgrown;
   vg_status st = vg_work_leaf(p, w, &outgrown, &o->change.n_cell, e, err);
 
+  if (st == VG_ERR_GEOMETRY && vg_redo_path(w->node->path, path)) {
+    st = vg_redo_note_leaf(p, w->node, err, err);
+    if (st == VG_OK) w->node = NULL;
+    return st;
+  }
   if (st == VG_OK && outgrown) {
     o->node = w->node;
     w->node = NULL;
@@ -192,9 +200,12 @@ static vg_status follow(struct vg_partition *p, struct vg_engine *e,
   }
   if (n_work || st < 0) return st;
   let_go(p, n);
-  pthread_mutex_lock(&p->lock);
-  p->report.n_node += n->n_child != 1 || n->child[0] != n;
-  pthread_mutex_unlock(&p->lock);
+  if (n->n_child != 1 || n->child[0] != n) {
+    pthread_mutex_lock(&p->lock);
+    p->report.n_node++;
+    pthread_mutex_unlock(&p->lock);
+    st = vg_redo_note_cut(p, n, err);
+  }
   for (size_t k = 0; st == VG_OK && k < n->n_child; k++) {
     struct vg_node *c = n->child[k];
 
@@ -524,7 +535,31 @@ static vg_status within_limit(const struct vg_partition *p, double cells,
                  cells, (unsigned long long)p->options.max_cells);
 }
 
+/* A void's, which takes it over. */
+static vg_status first_task(struct vg_partition *p, struct vg_node *n,
+                            struct vg_task *t, struct vg_error *err)
+{
+  int cut = vg_node_wants_cut(p, n);
+  struct vg_work *w = new_work(cut ? VG_WORK_START : VG_WORK_LEAF, n);
+
+  if (!w) {
+    vg_node_free(n);
+    return vg_fail_memory(err, "a task");
+  }
+  *t = (struct vg_task){ .kind = cut ? VG_SPAN_JOIN : VG_SPAN_LEAF,
+                         .moves = 1, .weight = n->load.cells, .input = w };
+  t->priority = vg_model_priority(t->kind, t->weight);
+  snprintf(t->path, sizeof t->path, cut ? "%.*sJ0" : "%.*sL",
+           VG_PATH_MAX - 3, n->path);
+  if (cut) return VG_OK;
+  w->serial = vg_partition_serial(p);
+  p->report.n_leaf++;
+  return VG_OK;
+}
+
+/* The tasks that these voids lead to; the voids are taken over. Collective. */
 static vg_status run_tasks(struct vg_partition *p, struct vg_comm *comm,
+                           size_t n, struct vg_node **node,
                            struct vg_spans *spans, struct vg_error *err)
 {
   static const struct vg_engine_ops ops = {
@@ -532,9 +567,28 @@ static vg_status run_tasks(struct vg_partition *p, struct vg_comm *comm,
     release_input, release_outcome };
   struct vg_engine_options o = { p->options.threads, p->options.shuffle,
                                  progress, stop, p };
-  struct vg_task first = { .kind = VG_SPAN_JOIN, .moves = 1 };
+  struct vg_task *first = vg_calloc(n, sizeof *first);
+  vg_status st = first ? VG_OK : vg_fail_memory(err, "a task");
+
+  for (size_t k = 0; k < n; k++) {
+    if (st == VG_OK) st = first_task(p, node[k], &first[k], err);
+    else vg_node_free(node[k]);
+    node[k] = NULL;
+  }
+  st = vg_comm_agree(comm, st, err);
+  if (st == VG_OK) {
+    st = vg_engine_run(comm, &o, &ops, p, n, first, spans, err);
+  } else {
+    for (size_t k = 0; first && k < n; k++) vg_work_free(first[k].input);
+  }
+  free(first);
+  return st;
+}
+
+static vg_status run_whole(struct vg_partition *p, struct vg_comm *comm,
+                           struct vg_spans *spans, struct vg_error *err)
+{
   struct vg_node *root = NULL;
-  size_t n_first = 0;
   vg_status st = VG_OK;
 
   if (p->rank == 0) st = make_root(p, comm, &root, err);
@@ -546,28 +600,37 @@ static vg_status run_tasks(struct vg_partition *p, struct vg_comm *comm,
     vg_node_free(root);
     return st;
   }
-  if (root) {
-    int cut = vg_node_wants_cut(p, root);
-    struct vg_work *w = new_work(cut ? VG_WORK_START : VG_WORK_LEAF, root);
+  return run_tasks(p, comm, root != NULL, &root, spans, err);
+}
 
-    n_first = 1;
-    first.kind = cut ? VG_SPAN_JOIN : VG_SPAN_LEAF;
-    first.weight = root->load.cells;
-    first.input = w;
-    snprintf(first.path, sizeof first.path, cut ? "0J0" : "0L");
-    if (!cut) {
-      p->report.n_leaf++;
-      if (w) w->serial = vg_partition_serial(p);
+/* Voids with parts that could not be filled are cut again, and what that
+ * leads to, until there is none. */
+static vg_status run_again(struct vg_partition *p, struct vg_comm *comm,
+                           struct vg_spans *spans, struct vg_error *err)
+{
+  struct vg_spans more = VG_SPANS_INIT;
+  size_t n_void = 1;
+  vg_status st = VG_OK;
+
+  while (st == VG_OK && n_void) {
+    double t0 = vg_clock();
+    struct vg_node **node;
+    size_t n;
+
+    st = vg_partition_drop(p, comm, err);
+    if (st < 0) break;
+    st = vg_redo_voids(p, comm, spans, &n_void, &node, &n, err);
+    if (st == VG_OK && n_void) {
+      st = run_tasks(p, comm, n, node, spans ? &more : NULL, err);
+      if (spans && st == VG_OK) st = vg_spans_append(spans, &more, err);
+      st = vg_comm_agree(comm, st, err);
+      p->report.elsewhere += vg_clock() - t0;
     }
-    if (!w) vg_node_free(root);
+    for (size_t k = 0; k < n; k++) vg_node_free(node[k]);
+    free(node);
+    vg_spans_release(&more);
   }
-  st = vg_comm_agree(comm, n_first && !first.input
-                             ? vg_fail_memory(err, "a task") : VG_OK, err);
-  if (st < 0) {
-    vg_work_free(first.input);
-    return st;
-  }
-  return vg_engine_run(comm, &o, &ops, p, n_first, &first, spans, err);
+  return st;
 }
 
 uint32_t vg_partition_serial(struct vg_partition *p)
@@ -592,7 +655,8 @@ static vg_status sum_report(struct vg_partition *p, struct vg_comm *comm,
     &f->n_collapse, &f->n_split};
   uint64_t *more[] = {&r->n_node, &r->n_pencil, &r->n_tile, &r->n_leaf,
     &r->n_zone_cell, &r->n_blocked, &r->n_crossing, &r->n_retry, &r->n_uncut,
-    &r->n_outgrown, &r->n_found, &whole};
+    &r->n_outgrown, &r->n_found, &r->n_elsewhere, &r->n_elsewhere_cell,
+    &whole};
   enum { N_COUNT = sizeof count / sizeof *count,
          N_MORE = sizeof more / sizeof *more };
   uint64_t v[N_COUNT + N_MORE + 5];
@@ -640,9 +704,9 @@ static vg_status grow(struct vg_comm *comm, const struct vg_mesh *front,
   p->options = *options;
   p->attempt = attempt;
   if (p->options.threads < 1) p->options.threads = 1;
-  st = run_tasks(p, comm, spans, err);
+  st = run_whole(p, comm, spans, err);
+  if (st == VG_OK) st = run_again(p, comm, spans, err);
   p->report.wall = vg_clock() - t0;
-  if (st == VG_OK) st = vg_partition_drop(p, comm, err);
   if (st == VG_OK) st = vg_partition_repair(p, comm, spans, err);
   if (st == VG_OK) st = vg_partition_number(p, comm, err);
   if (st == VG_OK) st = sum_report(p, comm, err);
@@ -658,7 +722,8 @@ static vg_status grow(struct vg_comm *comm, const struct vg_mesh *front,
 /* To cut a void, before it is filled uncut. */
 enum { ATTEMPTS = 3 };
 
-/* Where a part between cuts cannot be filled, all cuts are made elsewhere; in
+/* Where a part between the first cuts cannot be filled, or all larger voids
+ * around a part were cut elsewhere (redo.c), all cuts are made elsewhere; in
  * the end the void is filled uncut: that takes longer, but only a boundary that
  * bounds nothing fails a run. */
 vg_status vg_partition_grow(struct vg_comm *comm, const struct vg_mesh *front,
@@ -720,6 +785,7 @@ void vg_partition_free(struct vg_partition *p)
     vg_node_free(n);
   }
   for (size_t k = 0; k < p->n_piece; k++) vg_piece_release(&p->piece[k]);
+  vg_redo_release(p);
   free(p->piece);
   free(p->drop);
   free(p->place);

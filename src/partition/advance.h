@@ -66,6 +66,10 @@ struct vg_partition_report {
   double repair_worst;       /* and the worst one (core/shape.h) */
   double repair_worst_left;
   double repair;             /* seconds of repairs */
+  uint64_t n_elsewhere;      /* voids that were cut at other places, because a
+                                part could not be filled */
+  uint64_t n_elsewhere_cell; /* cells in them, made for nothing */
+  double elsewhere;          /* seconds, in wall */
   int cuts_elsewhere;        /* times that all cuts were made at other places,
                                 because a part could not be filled */
   int cuts_given_up;         /* 1: a part could not be filled; the void was

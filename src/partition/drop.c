@@ -47,6 +47,7 @@ vg_status vg_partition_drop(struct vg_partition *p, struct vg_comm *comm,
 
     for (size_t k = 0; k < all[r].n / sizeof *serial; k++) drop(p, serial[k]);
   }
+  p->n_drop = 0;
 done:
   vg_bytes_release(all, p->size);
   return st;
