@@ -84,6 +84,11 @@ void vg_report_partition_text(FILE *to, const struct vg_run *r)
           vg_cli_count(p->n_node, a), vg_cli_count(p->n_pencil, b),
           vg_cli_count(p->n_tile, c), share_of(r, p->n_zone_cell));
   print_leaves(to, &r->spans);
+  if (p->n_elsewhere)
+    fprintf(to, "  voids cut at other places %s, since a part could not be "
+            "filled: %s cells made again, %.2f s\n",
+            vg_cli_count(p->n_elsewhere, a),
+            vg_cli_count(p->n_elsewhere_cell, b), p->elsewhere);
   if (p->cuts_elsewhere)
     fprintf(to, "  all cuts were made at other places %d time%s: a part "
             "between them could not be filled\n", p->cuts_elsewhere,
@@ -133,6 +138,8 @@ json_t *vg_report_partition_json(const struct vg_run *r)
     { "cells_in_regions", p->n_repair_cell },
     { "points_moved_across", p->n_repair_moved },
     { "swaps_across", p->n_repair_swapped },
+    { "voids_elsewhere", p->n_elsewhere },
+    { "cells_made_again", p->n_elsewhere_cell },
   };
   json_t *o = json_object(), *leaves = json_array();
 
@@ -142,6 +149,7 @@ json_t *vg_report_partition_json(const struct vg_run *r)
     json_array_append_new(leaves, count(l.cells[i]));
   free(l.cells);
   json_object_set_new(o, "leaf_cells", leaves);
+  json_object_set_new(o, "voids_elsewhere_seconds", json_real(p->elsewhere));
   json_object_set_new(o, "cuts_elsewhere", json_integer(p->cuts_elsewhere));
   json_object_set_new(o, "cuts_given_up", json_boolean(p->cuts_given_up));
   json_object_set_new(o, "repair_seconds", json_real(p->repair));
