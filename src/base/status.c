@@ -35,6 +35,7 @@ const char *vg_status_name(vg_status code)
   case VG_ERR_GEOMETRY: return "geometry";
   case VG_ERR_UNSUPPORTED: return "unsupported";
   case VG_ERR_REMOTE: return "remote";
+  case VG_ERR_USAGE: return "usage";
   }
   return "unknown";
 }
