@@ -57,6 +57,24 @@ static vg_status enter(struct vg_store *s, int resume, struct vg_error *err)
                  strerror_r(error, text, sizeof text));
 }
 
+static vg_status no_run(const struct vg_store *s, struct vg_error *err)
+{
+  return vg_fail(err, VG_ERR_INPUT, "%s: holds no run that could be resumed; "
+                 "check its name, or start without resuming", s->dir);
+}
+
+vg_status vg_store_has_run(const char *dir, struct vg_error *err)
+{
+  struct vg_store s = {.dir = (char *)dir};
+  struct vg_store_run run;
+  vg_status st = enter(&s, 1, err);
+
+  if (st < 0) return st;
+  st = vg_store_read_run(&s, &run, err);
+  close(s.fd);
+  return st == VG_BLOCKED ? no_run(&s, err) : st;
+}
+
 /* The run in the directory against ours. */
 static vg_status compare(const struct vg_store *s,
                          const struct vg_store_options *o,
@@ -106,10 +124,7 @@ static vg_status claim(struct vg_store *s, const struct vg_store_options *o,
   vg_status st = vg_store_read_run(s, &there, err);
 
   if (st < 0) return st;
-  if (st == VG_BLOCKED && o->resume)
-    return vg_fail(err, VG_ERR_INPUT, "%s: holds no run that could be "
-                   "resumed; check its name, or start without resuming",
-                   s->dir);
+  if (st == VG_BLOCKED && o->resume) return no_run(s, err);
   *tally = vg_store_walk(s->fd, 0);
   if (st == VG_OK) {
     st = compare(s, o, &there, &ours, tally->n, err);

@@ -59,6 +59,10 @@ vg_status vg_store_open(struct vg_comm *comm,
                         const struct vg_store_options *options,
                         struct vg_store **out, struct vg_error *err);
 
+/** VG_ERR_INPUT where the directory holds no run to be resumed, as opening it
+ * would say; to be asked before a long preparation. Not collective. */
+vg_status vg_store_has_run(const char *dir, struct vg_error *err);
+
 /** Look a record up. VG_OK: bytes out; VG_BLOCKED: there is none, or a damaged
  * one (which is counted and removed). Threads: safe. */
 vg_status vg_store_find(struct vg_store *s, struct vg_digest key,
