@@ -82,17 +82,9 @@ static int row_length(const struct row *r, int k, double *v)
   return vg_parse_real(r->token[k], r->len[k], v) && *v >= 0;
 }
 
-/* Control characters would upset the files that a name is written to. */
 static void row_name(const struct row *r, int k, char name[VG_NAME_MAX])
 {
-  size_t n = r->len[k] < VG_NAME_MAX ? r->len[k] : VG_NAME_MAX - 1;
-
-  for (size_t i = 0; i < n; i++) {
-    unsigned char c = (unsigned char)r->token[k][i];
-
-    name[i] = c < 32 || c == 127 ? '_' : r->token[k][i];
-  }
-  name[n] = 0;
+  vg_name_from_file(r->token[k], r->len[k], name, VG_NAME_MAX);
 }
 
 static vg_status append(struct vg_aflr *a, size_t *cap,

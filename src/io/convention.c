@@ -464,3 +464,26 @@ void vg_mesh_keep_boundary(struct vg_mesh *m)
   m->n_point = n;
   free(new_index);
 }
+
+/* Not the first byte of a UTF-8 character. */
+static int is_inside(char c)
+{
+  return ((unsigned char)c & 0xc0) == 0x80;
+}
+
+void vg_name_from_file(const char *text, size_t len, char *name, size_t size)
+{
+  if (len > size - 1) {
+    size_t back = 0;
+
+    len = size - 1;
+    while (back < 4 && back < len && is_inside(text[len - back])) back++;
+    if (back < 4) len -= back;
+  }
+  for (size_t i = 0; i < len; i++) {
+    unsigned char c = (unsigned char)text[i];
+
+    name[i] = c < 32 || c == 127 ? '_' : text[i];
+  }
+  name[len] = 0;
+}

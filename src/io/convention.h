@@ -43,6 +43,11 @@ vg_status vg_index_from_file(const char *path, const char *element, size_t n,
 vg_status vg_patches_from_tags(struct vg_mesh *m, const int32_t *tag,
                                struct vg_error *err);
 
+/** A name as it is kept, cut to size - 1 bytes, yet never within a UTF-8
+ * character, which would leave text that no reader takes. Control characters,
+ * which would upset the files that it is written to, become '_'. */
+void vg_name_from_file(const char *text, size_t len, char *name, size_t size);
+
 /** Drop cells and the points that no boundary face uses; order is kept. */
 void vg_mesh_keep_boundary(struct vg_mesh *m);
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "io/convention.h"
 #include "io/vgrid.h"
 
 /* --- numbers of points and curves, which need not run from 1 --- */
@@ -121,7 +122,7 @@ static vg_status int_value(struct vg_input *in, const char *what, int32_t *out,
 static void copy_rest(struct vg_input *line, char *to, size_t size)
 {
   const char *text;
-  size_t len, n = 0;
+  size_t len;
 
   *to = 0;
   if (!vg_input_line(line, &text, &len)) return;
@@ -130,9 +131,7 @@ static void copy_rest(struct vg_input *line, char *to, size_t size)
     len--;
   }
   while (len && (unsigned char)text[len - 1] <= 32) len--;
-  for (; n < len && n + 1 < size; n++)
-    to[n] = (unsigned char)text[n] < 32 || text[n] == 127 ? '_' : text[n];
-  to[n] = 0;
+  vg_name_from_file(text, len, to, size);
 }
 
 /* --- blocks --- */

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "io/convention.h"
 
 /* --- codes --- */
 
@@ -123,20 +124,16 @@ static int token_int(const struct line *l, int k, int32_t *v)
   return 1;
 }
 
-/* Name from token k to the end of the line; control characters (which would
- * upset the files that the name is written to) become '_'. */
+/* Name from token k to the end of the line. */
 static void set_name(struct vg_patch *p, const struct line *l, int k)
 {
-  const char *from, *end;
-  size_t n = 0;
+  const char *end;
 
   p->name[0] = 0;
   if (k >= l->n) return;
-  from = l->token[k];
   end = l->token[l->n - 1] + l->rest;
-  for (; from < end && n + 1 < sizeof p->name; from++, n++)
-    p->name[n] = (unsigned char)*from < 32 || *from == 127 ? '_' : *from;
-  p->name[n] = 0;
+  vg_name_from_file(l->token[k], (size_t)(end - l->token[k]), p->name,
+                    sizeof p->name);
 }
 
 static int is_full_row(const struct line *l)

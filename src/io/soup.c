@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "io/convention.h"
 
 void vg_soup_release(struct vg_soup *s)
 {
@@ -135,21 +136,11 @@ static int is_blank(char c)
   return c == ' ' || (c >= '\t' && c <= '\r');
 }
 
-/* `name` is zeroed and has VG_NAME_MAX bytes. A cut in the middle of a UTF-8
- * character would leave text that no reader takes: cut before it. */
 static void clean_name(char *name, const char *text, size_t len)
 {
   while (len && is_blank(text[len - 1])) len--;
   while (len && is_blank(*text)) text++, len--;
-  if (len > VG_NAME_MAX - 1) {
-    len = VG_NAME_MAX - 1;
-    while (len && ((unsigned char)text[len] & 0xc0) == 0x80) len--;
-  }
-  for (size_t i = 0; i < len; i++) {
-    unsigned char c = (unsigned char)text[i];
-
-    name[i] = c < 32 || c == 127 ? '_' : text[i];
-  }
+  vg_name_from_file(text, len, name, VG_NAME_MAX);
 }
 
 static vg_status append_patch(struct vg_soup *s, const struct vg_patch *p,
