@@ -13,8 +13,7 @@
 
 #define VG_SHOWN_DEFECTS 20   /* first ones of a kind put in words */
 
-/** A string for JSON; bytes that are no UTF-8 (names from old files) become
- * '?'. */
+/** A string for JSON, as vg_text_clean has it. */
 json_t *vg_report_string(const char *text);
 
 /** Counts of a mesh, its box and its patches. */

@@ -5,6 +5,7 @@
 #include "cli/cli.h"
 #include "cli/layers.h"
 #include "cli/report.h"
+#include "cli/text.h"
 
 #define FIRST_SHOWN 1e-3   /* relative difference of first heights */
 
@@ -18,9 +19,12 @@ static const struct vg_patch *patch_of(const struct vg_mesh *surface,
 static void row_name(FILE *to, const struct vg_mesh *surface,
                      const struct vg_patch_layers *w)
 {
+  char name[VG_NAME_MAX];
+
   if (surface)
-    fprintf(to, "  %5d %-16.16s", (int)patch_of(surface, w)->id,
-            patch_of(surface, w)->name);
+    fprintf(to, "  %5d %s", (int)patch_of(surface, w)->id,
+            vg_text_column(patch_of(surface, w)->name, 16, name,
+                           sizeof name));
   else
     fprintf(to, "  %5s %-16s", "all", "");
 }

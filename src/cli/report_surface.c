@@ -5,19 +5,14 @@
 #include "base/memory.h"
 #include "cli/cli.h"
 #include "cli/report.h"
+#include "cli/text.h"
 
 json_t *vg_report_string(const char *text)
 {
-  json_t *o = json_string(text);
-  char *plain;
+  char *clean = vg_text_copy(text);
+  json_t *o = clean ? json_string(clean) : NULL;
 
-  if (o) return o;
-  plain = strdup(text);
-  if (!plain) return json_null();
-  for (char *c = plain; *c; c++)
-    if ((unsigned char)*c >= 128) *c = '?';
-  o = json_string(plain);
-  free(plain);
+  free(clean);
   return o ? o : json_null();
 }
 
@@ -89,7 +84,7 @@ vg_status vg_report_patches_text(FILE *to, const struct vg_mesh *m,
                                  struct vg_error *err)
 {
   size_t *faces = patch_faces(m);
-  char count[32], bc[16], fun3d[16];
+  char count[32], bc[16], fun3d[16], name[VG_NAME_MAX];
 
   if (!faces) return vg_fail_memory(err, "a report");
   fprintf(to, "  %8s %15s %6s %6s  %s\n", "patch", "faces", "USM3D", "FUN3D",
@@ -98,7 +93,8 @@ vg_status vg_report_patches_text(FILE *to, const struct vg_mesh *m,
     code_text(m->patch[i].bc, bc, sizeof bc);
     code_text(m->patch[i].bc_fun3d, fun3d, sizeof fun3d);
     fprintf(to, "  %8d %15s %6s %6s  %s\n", (int)m->patch[i].id,
-            vg_cli_count(faces[i], count), bc, fun3d, m->patch[i].name);
+            vg_cli_count(faces[i], count), bc, fun3d,
+            vg_text_clean(m->patch[i].name, name, sizeof name));
   }
   if (m->n_patch > VG_SHOWN_PATCHES)
     fprintf(to, "  ... and %zu more\n", m->n_patch - VG_SHOWN_PATCHES);

@@ -2,7 +2,10 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+
+#include "cli/text.h"
 
 #define FONT "font-family=\"Helvetica, Arial, 'DejaVu Sans', sans-serif\""
 #define LABEL_SIZE 11.0
@@ -32,52 +35,21 @@ static void attribute(struct vg_svg *s, const char *name, double v)
   vg_output_text(&s->out, "\"");
 }
 
-/* Text as XML allows it: no control characters, markup escaped. */
-static void put_escaped(struct vg_svg *s, const char *text)
-{
-  for (; *text; text++) {
-    char one[2] = { *text, 0 };
-    unsigned char c = (unsigned char)*text;
-
-    if (c == '&') vg_output_text(&s->out, "&amp;");
-    else if (c == '<') vg_output_text(&s->out, "&lt;");
-    else if (c == '>') vg_output_text(&s->out, "&gt;");
-    else if (c == '"') vg_output_text(&s->out, "&quot;");
-    else vg_output_text(&s->out, c < 32 ? " " : one);
-  }
-}
-
-/* 1 when text is UTF-8 as XML wants it. */
-static int is_utf8(const char *text)
-{
-  const unsigned char *c = (const unsigned char *)text;
-
-  while (*c) {
-    int more = *c < 0x80 ? 0 : (*c & 0xe0) == 0xc0 && *c >= 0xc2 ? 1
-             : (*c & 0xf0) == 0xe0 ? 2 : (*c & 0xf8) == 0xf0 ? 3 : -1;
-
-    if (more < 0 || (*c == 0xe0 && c[1] < 0xa0) ||
-        (*c == 0xed && c[1] > 0x9f) || (*c == 0xf0 && c[1] < 0x90) ||
-        *c > 0xf4 || (*c == 0xf4 && c[1] > 0x8f) ||
-        (*c == 0xef && c[1] == 0xbf && c[2] >= 0xbe))
-      return 0;
-    for (c++; more > 0; more--, c++)
-      if ((*c & 0xc0) != 0x80) return 0;
-  }
-  return 1;
-}
-
+/* Text as XML allows it: UTF-8, no control characters, markup escaped. */
 static void put_text(struct vg_svg *s, const char *text)
 {
-  if (is_utf8(text)) {
-    put_escaped(s, text);
-    return;
-  }
-  for (; *text; text++) {
-    char one[2] = { (unsigned char)*text < 0x80 ? *text : '?', 0 };
+  char *clean = vg_text_copy(text);
 
-    put_escaped(s, one);
+  for (const char *c = clean ? clean : ""; *c; c++) {
+    const char one[2] = { *c, 0 };
+
+    if (*c == '&') vg_output_text(&s->out, "&amp;");
+    else if (*c == '<') vg_output_text(&s->out, "&lt;");
+    else if (*c == '>') vg_output_text(&s->out, "&gt;");
+    else if (*c == '"') vg_output_text(&s->out, "&quot;");
+    else vg_output_text(&s->out, one);
   }
+  free(clean);
 }
 
 vg_status vg_svg_open(const char *path, double w, double h, const char *title,
