@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cli/cli.h"
+#include "cli/progress.h"
 #include "core/cdt_server.h"
 
 static const struct command {
@@ -99,6 +100,7 @@ static int run(const struct command *c, int argc, char **argv)
 {
   int status;
 
+  if (c->meshes) vg_display_watch();
   keep_memory();
   if (c->meshes) vg_cdt_server_start(NULL);
   status = c->run(argc, argv);

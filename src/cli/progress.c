@@ -29,13 +29,12 @@ double vg_display_now(void)
   return vg_clock();
 }
 
-void vg_display_init(struct vg_display *d, int quiet)
+void vg_display_watch(void)
 {
+  static int watches;
   struct sigaction action;
 
-  memset(d, 0, sizeof *d);
-  d->quiet = quiet;
-  d->live = !quiet && isatty(STDERR_FILENO);
+  if (watches++) return;
   memset(&action, 0, sizeof action);
   action.sa_handler = on_signal;
   sigemptyset(&action.sa_mask);
@@ -44,6 +43,14 @@ void vg_display_init(struct vg_display *d, int quiet)
   action.sa_flags |= (int)SA_RESETHAND;
   sigaction(SIGINT, &action, NULL);
   sigaction(SIGTERM, &action, NULL);
+}
+
+void vg_display_init(struct vg_display *d, int quiet)
+{
+  memset(d, 0, sizeof *d);
+  d->quiet = quiet;
+  d->live = !quiet && isatty(STDERR_FILENO);
+  vg_display_watch();
 }
 
 void vg_display_clear(struct vg_display *d)
@@ -69,7 +76,8 @@ static void show(struct vg_display *d, size_t done, size_t expected,
   char count[32], of[32], rate_text[32], eta[32], line[160];
   double elapsed = now - d->stage_start;
   double rate = elapsed > 0 ? (double)done / elapsed : 0;
-  int n = snprintf(line, sizeof line, "%-24s", d->stage);
+  int n = snprintf(line, sizeof line, done || expected ? "%-24s" : "%s",
+                   d->stage);
 
   if (done || expected)
     n += snprintf(line + n, sizeof line - (size_t)n, " %12s",

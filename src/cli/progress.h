@@ -12,7 +12,10 @@ struct vg_display {
   char stage[40];
 };
 
-/** quiet: show nothing. Installs the signal handlers. */
+/** Take note of signals from now on; before anything that takes time. Once. */
+void vg_display_watch(void);
+
+/** quiet: show nothing. Watches signals, if that has not begun. */
 void vg_display_init(struct vg_display *d, int quiet);
 
 /** A vg_progress callback (core/fill.h); user is the display. Returns 1 when
