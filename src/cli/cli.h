@@ -22,8 +22,10 @@ int vg_cmd_demo(int argc, char **argv);
 /** argp_parse with exit status 2 for wrong usage and help on stdout. */
 void vg_cli_parse(const struct argp *argp, int argc, char **argv, void *input);
 
-/** Print "vanguard: message" to stderr; returns VG_EXIT_FAILED. */
+/** Print "vanguard: message" to stderr; returns the exit status of its code,
+ * which vg_cli_exit tells without printing. */
 int vg_cli_fail(const struct vg_error *err);
+int vg_cli_exit(const struct vg_error *err);
 
 /** Help line "[unit; default x]" parts for the settings and their options.
  *
@@ -63,7 +65,8 @@ struct vg_cli_kept {
 error_t vg_cli_keep(struct vg_cli_kept *kept, int key, const char *text,
                     const struct argp_state *state);
 
-/** Set all of them, and check that the settings go together. */
+/** Set all of them, and check that the settings go together: VG_ERR_USAGE
+ * where those of the deck alone did. */
 vg_status vg_cli_apply(const struct vg_cli_kept *kept, struct vg_settings *s,
                        struct vg_error *err);
 

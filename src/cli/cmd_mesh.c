@@ -86,6 +86,7 @@ static vg_status read_project(struct run *r, const struct arguments *a,
   double t = vg_display_now();
   vg_status st;
 
+  VG_TRY(vg_run_stopped(err));
   vg_display_update(&r->show, "read", 0, 0);
   VG_TRY(vg_input_find(a->project, a->deck, &p->files, err));
   VG_TRY(vg_problem_deck(p, err));
@@ -403,6 +404,7 @@ static vg_status run_stages(struct run *r, const struct arguments *a,
   vg_status st;
 
   r->mesh.options = a->run;
+  VG_TRY(vg_run_resumable(m, err));
   VG_TRY(vg_comm_agree(m->comm, read_project(r, a, err), err));
   VG_TRY(close_surface(r, err));
   VG_TRY(vg_run_mesh(m, &r->problem, &r->layers, &r->show, err));
@@ -415,7 +417,7 @@ done:
 static int report_failure(struct run *r, const struct arguments *a,
                           const struct vg_error *err)
 {
-  if (r->mesh.rank) return VG_EXIT_FAILED;
+  if (r->mesh.rank) return vg_cli_exit(err);
   show_defects(r, a);
   if (a->json) print_json(r, 0, err);
   return vg_cli_fail(err);

@@ -119,8 +119,10 @@ int vg_cmd_plan(int argc, char **argv)
     { "rate", KEY_RATE, "X", 0, "speed of a core over the recorded one; "
       "without a record over the one that the times were measured on "
       "[default 1]", 1 },
-    { "target", KEY_TARGET, "S", 0, "seconds: find the smallest machine that "
-      "needs no more [default: the largest that is 80 % efficient]", 1 },
+    { "target", KEY_TARGET, "S", 0, "find the smallest machine that needs no "
+      "more than S seconds; of a project only, a --replay shows all of "
+      "--ranks and --threads [default: the largest that is 80 % efficient]",
+      1 },
     { "serial", KEY_SERIAL, "S", 0, "seconds done once, before and after the "
       "tasks [default as in the record; without one what reading, checking "
       "and sizes took now]", 1 },

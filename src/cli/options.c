@@ -25,11 +25,16 @@ void vg_cli_parse(const struct argp *argp, int argc, char **argv, void *input)
     exit(VG_EXIT_USAGE);
 }
 
+int vg_cli_exit(const struct vg_error *err)
+{
+  return err->code == VG_ERR_USAGE ? VG_EXIT_USAGE : VG_EXIT_FAILED;
+}
+
 int vg_cli_fail(const struct vg_error *err)
 {
   fflush(stdout);
   fprintf(stderr, "vanguard: %s\n", err->text);
-  return VG_EXIT_FAILED;
+  return vg_cli_exit(err);
 }
 
 vg_status vg_cli_make_folder(const char *path, struct vg_error *err)
@@ -205,5 +210,7 @@ vg_status vg_cli_apply(const struct vg_cli_kept *kept, struct vg_settings *s,
 
   for (size_t i = 0; i < kept->n && st >= 0; i++)
     st = vg_cli_option_set(kept->set[i].key, kept->set[i].text, s, err);
-  return st < 0 ? st : vg_settings_check(s, err);
+  if (st >= 0) st = vg_settings_check(s, err);
+  if (st == VG_ERR_INPUT && err) err->code = VG_ERR_USAGE;
+  return st == VG_ERR_INPUT ? VG_ERR_USAGE : st;
 }

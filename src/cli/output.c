@@ -126,6 +126,15 @@ static vg_status plan_items(struct vg_outputs *o, const char *list,
   return st;
 }
 
+vg_status vg_outputs_list_check(const char *name, const char *list,
+                                struct vg_error *err)
+{
+  struct vg_outputs o = VG_OUTPUTS_INIT;
+
+  (void)name;
+  return strcmp(list, "auto") ? plan_items(&o, list, err) : VG_OK;
+}
+
 static int same_file(const char *a, const char *b)
 {
   struct stat x, y;
@@ -170,11 +179,18 @@ static vg_status refuse_hit(const struct vg_outputs *o,
                  "%s; use --out DIR or another --write list", suffix, hit);
 }
 
+static vg_status cannot_write(const struct vg_outputs *o, struct vg_error *err)
+{
+  return vg_fail(err, VG_ERR_IO, "%s: cannot write in this folder: %s; choose "
+                 "another one with --out", o->dir, strerror(errno));
+}
+
 static vg_status plan_place(const struct vg_problem *p, const char *dir,
                             struct vg_outputs *o, struct vg_error *err)
 {
   const char *slash = strrchr(p->files.stem, '/');
   const char *base = slash ? slash + 1 : p->files.stem;
+  vg_status st = VG_OK;
 
   if (dir) o->dir = strdup(dir);
   else if (!slash) o->dir = strdup(".");
@@ -185,7 +201,9 @@ static vg_status plan_place(const struct vg_problem *p, const char *dir,
   if (!*base)
     return vg_fail(err, VG_ERR_INPUT, "%s: the project has no name",
                    p->files.stem);
-  return dir ? vg_cli_make_folder(dir, err) : VG_OK;
+  if (dir) st = vg_cli_make_folder(dir, err);
+  if (st >= 0 && access(o->dir, W_OK | X_OK)) st = cannot_write(o, err);
+  return st;
 }
 
 static vg_status refuse_ranks(const char *item, int ranks,
@@ -247,8 +265,7 @@ static vg_status make_aside(struct vg_outputs *o, struct vg_error *err)
   if (mkdtemp(o->aside)) return VG_OK;
   free(o->aside);
   o->aside = NULL;
-  return vg_fail(err, VG_ERR_IO, "%s: cannot write in this folder: %s",
-                 o->dir, strerror(errno));
+  return cannot_write(o, err);
 }
 
 vg_status vg_outputs_add(struct vg_outputs *o, const char *suffix,

@@ -35,6 +35,11 @@ struct vg_outputs {
 
 void vg_outputs_release(struct vg_outputs *o);
 
+/** VG_ERR_INPUT where a write list names what is no format: a check of settings
+ * (struct vg_param). */
+vg_status vg_outputs_list_check(const char *name, const char *list,
+                                struct vg_error *err);
+
 /** Understand the write list and where files go, and refuse at once what
  * would overwrite an input, or cannot be written by several ranks.
  *

@@ -102,7 +102,7 @@ static vg_status set_text(const struct vg_param *p, char *at,
                      p->name);
   memset(at, 0, p->size);
   memcpy(at, text, len);
-  return VG_OK;
+  return p->check ? p->check(p->name, at, err) : VG_OK;
 }
 
 vg_status vg_param_set(const struct vg_param *p, void *base, const char *text,

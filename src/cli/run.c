@@ -184,6 +184,15 @@ static struct vg_digest job_digest(const struct vg_problem *p,
                       boundary->tri);
 }
 
+vg_status vg_run_resumable(struct vg_run *r, struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  if (!r->options.resume) return VG_OK;
+  if (!r->rank) st = vg_store_has_run(r->options.dir, err);
+  return vg_comm_agree(r->comm, st, err);
+}
+
 static vg_status open_store(struct vg_run *r, const struct vg_problem *p,
                             const struct vg_mesh *boundary,
                             struct vg_partition_options *o,

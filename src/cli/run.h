@@ -62,6 +62,10 @@ vg_status vg_run_mesh(struct vg_run *r, const struct vg_problem *p,
                       struct vg_layer_stage *layers, struct vg_display *show,
                       struct vg_error *err);
 
+/** With --resume: that the run directory has a run, before anything is read.
+ * Whether it is this one shows later. Collective. */
+vg_status vg_run_resumable(struct vg_run *r, struct vg_error *err);
+
 /** Cells of all kinds. */
 uint64_t vg_run_cells(const struct vg_run *r);
 

@@ -7,6 +7,8 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "cli/output.h"
+#include "cli/walls.h"
 #include "core/fill.h"
 #include "layers/join.h"
 #include "partition/advance.h"
@@ -60,6 +62,7 @@ static const struct vg_param params[] = {
   { "max_cells", AT(max_cells), .type = VG_PARAM_COUNT, .hi = 9e15,
     .unit = "cells", .help = "stop rather than make more; 0: no limit" },
   { "write", AT(write), .type = VG_PARAM_TEXT, .unit = "",
+    .check = vg_outputs_list_check,
     .help = "files to write, separated by commas; auto: cogsg,b8.ugrid, for "
             "mixed cells b8.ugrid" },
   { "cells", AT(cells), .type = VG_PARAM_WORD, .words = cell_words,
@@ -119,9 +122,11 @@ static const struct vg_param params[] = {
     .optional = 1, .unit = "", .help = "largest growth of any layer; 0: "
     "none; -: 1.3, none where the .d3m gives the law" },
   { "walls", AT(layer.walls), .type = VG_PARAM_TEXT, .unit = "",
+    .check = vg_patch_list_check,
     .help = "patches with layers, and no others, as in 3-12,15; \"\": by "
             "their conditions" },
   { "slip", AT(layer.slip), .type = VG_PARAM_TEXT, .unit = "",
+    .check = vg_patch_list_check,
     .help = "patches without layers whatever their condition, as in 4,7-9" },
   { "fan_angle", AT(layer.fan_angle), .type = VG_PARAM_REAL, .lo = 20,
     .hi = 180, .unit = "degrees", .help = "convex edges that turn by more "

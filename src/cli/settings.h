@@ -118,6 +118,9 @@ struct vg_param {
   int optional;             /* 1: "-" stands for "not given" */
   int required;             /* 1: a table must have this column */
   const char *const *words; /* NULL-ended, for VG_PARAM_WORD */
+  /* Of a text: whether it says what it should; NULL: any will do. */
+  vg_status (*check)(const char *name, const char *text,
+                     struct vg_error *err);
   const char *unit;         /* "" for pure numbers */
   const char *help;
 };

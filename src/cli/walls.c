@@ -86,29 +86,46 @@ static vg_status mark(const char *name, const struct vg_mesh *m, int64_t from,
                  (long long)from, (long long)to);
 }
 
+/* The next range of a list; 0: the list is at its end, or what follows is
+ * none. */
+static int take_range(const char **text, int64_t *from, int64_t *to)
+{
+  const char *at = *text;
+
+  at += strspn(at, ", ");
+  *text = at;
+  if (!*at || !take_number(&at, from)) return 0;
+  *to = *from;
+  if (*at == '-' && (at++, !take_number(&at, to))) return 0;
+  if ((*at && !strchr(", ", *at)) || *to < *from) return 0;
+  *text = at;
+  return 1;
+}
+
+vg_status vg_patch_list_check(const char *name, const char *list,
+                              struct vg_error *err)
+{
+  const char *at = list;
+  int64_t from, to;
+
+  while (take_range(&at, &from, &to)) continue;
+  if (!*at) return VG_OK;
+  return vg_fail(err, VG_ERR_INPUT, "%s: '%s' is no list of patches; numbers "
+                 "and ranges are separated by commas, as in 3-12,15", name,
+                 list);
+}
+
 vg_status vg_patch_list(const char *name, const char *list,
                         const struct vg_mesh *m, uint8_t *on,
                         struct vg_error *err)
 {
   const char *at = list;
-  vg_status st = VG_OK;
+  int64_t from, to;
+  vg_status st = vg_patch_list_check(name, list, err);
 
-  while (st >= 0) {
-    int64_t from, to;
-
-    at += strspn(at, ", ");
-    if (!*at) break;
-    if (!take_number(&at, &from)) goto bad;
-    to = from;
-    if (*at == '-' && (at++, !take_number(&at, &to))) goto bad;
-    if ((*at && !strchr(", ", *at)) || to < from) goto bad;
+  while (st >= 0 && take_range(&at, &from, &to))
     st = mark(name, m, from, to, on, err);
-  }
   return st;
-bad:
-  return vg_fail(err, VG_ERR_INPUT, "%s: '%s' is no list of patches; numbers "
-                 "and ranges are separated by commas, as in 3-12,15", name,
-                 list);
 }
 
 /* Meshing class of patch id in the project, 0 where it says nothing. */

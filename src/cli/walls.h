@@ -32,6 +32,10 @@ vg_status vg_patch_list(const char *name, const char *list,
                         const struct vg_mesh *m, uint8_t *on,
                         struct vg_error *err);
 
+/** Whether it is such a list, of any surface: a check of settings. */
+vg_status vg_patch_list_check(const char *name, const char *list,
+                              struct vg_error *err);
+
 /** The walls of a closed problem. The layers table decides, then the lists
  * `walls` and `slip`, then meshing class and condition; a body without any
  * condition is all wall when layers are asked for.

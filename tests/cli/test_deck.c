@@ -140,7 +140,7 @@ static void everything_survives_a_round_trip(void **state)
   s.weld = 1e-9;
   s.optimise = 0;
   s.max_cells = 9000000000000000;
-  snprintf(s.write, sizeof s.write, "vtu,with blank,#");
+  snprintf(s.write, sizeof s.write, "vtu, meshb");
   vg_settings_add(&s, VG_TABLE_FARFIELD, &far, NULL);
   vg_settings_add(&s, VG_TABLE_PATCHES, &patch, NULL);
   patch.id = 8;

@@ -83,17 +83,17 @@ refuse() { # TEXT OPTIONS...
   local text=$1
   shift
   vanguard mesh -q -p p/box --out refused "$@"
-  exits 1
+  exits "${wrong:-1}"
   says err "$text"
   absent refused/box.b8.ugrid
 }
 refuse "no first height is known; give --first" --layers yes --walls 5
 refuse "walls: patch 77 is not in the surface" --walls 77 --first 1
 refuse "walls: no patch of the surface is within 77-99" --walls 77-99 --first 1
-refuse "'3-x' is no list of patches" --walls 3-x --first 1
-refuse "'3-1' is no list of patches" --walls 3-1 --first 1
+wrong=2 refuse "'3-x' is no list of patches" --walls 3-x --first 1
+wrong=2 refuse "'3-1' is no list of patches" --walls 3-1 --first 1
 refuse "patch 5 is in both lists" --walls 5 --slip 4-6 --first 1
-refuse "y_plus needs reynolds" --walls 5 --y-plus 1
+wrong=2 refuse "y_plus needs reynolds" --walls 5 --y-plus 1
 refuse "layers are asked for, but no patch is known to be a wall" \
   --layers yes --first 1e-3
 refuse "name them with --walls" --layers yes --first 1e-3

@@ -95,7 +95,7 @@ exits 0
 says out '"leaves": 1,'
 says out '"cuts": 0,'
 vanguard mesh -q -p p/box --constant-direction yes --out none
-exits 1
+exits 2
 says err "constant_direction needs a split_direction of 1, 2 or 3"
 
 # What is filled as one leaf because it is little is counted apart.

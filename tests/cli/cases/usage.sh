@@ -68,6 +68,17 @@ says err "no project here"
 vanguard mesh -p x --farfield sphree
 exits 2
 says err "did you mean 'sphere'?"
+for command in mesh plan; do
+  vanguard $command -p x --write nonsense
+  exits 2
+  says err "write: 'nonsense' is no format"
+  vanguard $command -p x --walls 3-a
+  exits 2
+  says err "walls: '3-a' is no list of patches"
+done
+vanguard plan --replay x --target 5
+exits 2
+says err "takes no settings, deck or target"
 vanguard check
 exits 2
 vanguard demo
@@ -81,4 +92,40 @@ if [ -w /dev/full ]; then
   status=$?
   exits 1
   says err "standard output could not be written whole"
+fi
+
+# Settings that do not go together: wrong usage where options make it so, a bad
+# input where the deck alone does.
+vanguard demo box --cells 2000 --out p
+for command in mesh plan; do
+  vanguard $command -q -p p/box --constant-direction yes
+  exits 2
+  says err "constant_direction needs a split_direction"
+done
+printf 'A deck\nconstant_direction\nyes\n' >bad.deck
+vanguard mesh -q -p p/box --deck bad.deck
+exits 1
+says err "bad.deck: constant_direction needs a split_direction"
+printf 'A deck\nwrite\nnonsense\n' >bad.deck
+vanguard mesh -q -p p/box --deck bad.deck
+exits 1
+says err "bad.deck:3: write: 'nonsense' is no format"
+
+# What a run needs beside its input is looked at before the input is read.
+echo "not a surface" >p/broken.stl
+vanguard mesh -q -p p/broken.stl --run-dir nowhere --resume
+exits 1
+says err "nowhere: there is no such run directory to resume from"
+absent nowhere
+mkdir empty
+vanguard mesh -q -p p/broken.stl --run-dir empty --resume
+exits 1
+says err "empty: holds no run that could be resumed"
+if [ "$(id -u)" = 0 ]; then
+  echo "a folder that cannot be written: not tested as root"
+else
+  mkdir -m 555 closed
+  vanguard mesh -q -p p/broken.stl --out closed
+  exits 1
+  says err "closed: cannot write in this folder: Permission denied"
 fi
