@@ -20,8 +20,10 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/unite.h"
 #include "cli/deck.h"
 #include "core/quality.h"
+#include "core/vector.h"
 #include "io/stream.h"
 #include "io/ugrid.h"
 #include "peers.h"
@@ -66,24 +68,6 @@ static size_t boundary_points(const struct vg_mesh *m)
 
 /* --- shells and a point in each body --- */
 
-static uint32_t root_of(uint32_t *parent, uint32_t i)
-{
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-
-static void cross(const double a[3], const double b[3], double c[3])
-{
-  c[0] = a[1] * b[2] - a[2] * b[1];
-  c[1] = a[2] * b[0] - a[0] * b[2];
-  c[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-static double dot(const double a[3], const double b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* Distance along a ray to a triangle, or infinity (Moeller and Trumbore). */
 static double ray_hit(const double o[3], const double d[3], const double a[3],
                       const double b[3], const double c[3])
@@ -95,13 +79,13 @@ static double ray_hit(const double o[3], const double d[3], const double a[3],
     f[k] = c[k] - a[k];
     s[k] = o[k] - a[k];
   }
-  cross(d, f, p);
-  det = dot(e, p);
+  vg_cross(d, f, p);
+  det = vg_dot(e, p);
   if (det == 0) return INFINITY;
-  cross(s, e, q);
-  u = dot(s, p) / det;
-  v = dot(d, q) / det;
-  t = dot(f, q) / det;
+  vg_cross(s, e, q);
+  u = vg_dot(s, p) / det;
+  v = vg_dot(d, q) / det;
+  t = vg_dot(f, q) / det;
   return u < 0 || v < 0 || u + v > 1 ? INFINITY : t;
 }
 
@@ -117,8 +101,8 @@ static void point_behind(const struct vg_mesh *m, size_t face, double x[3])
     f[k] = p[2][k] - p[0][k];
     o[k] = (p[0][k] + p[1][k] + p[2][k]) / 3;
   }
-  cross(f, e, d);
-  length = sqrt(dot(d, d));
+  vg_cross(f, e, d);
+  length = sqrt(vg_dot(d, d));
   for (int k = 0; k < 3; k++) d[k] /= length;
   for (size_t i = 0; i < m->n_tri; i++) {
     const uint32_t *t = m->tri[i];
@@ -152,9 +136,9 @@ static vg_status find_holes(const struct vg_mesh *m, size_t *n,
   for (size_t i = 0; i < np; i++) parent[i] = (uint32_t)i;
   for (size_t i = 0; i < m->n_tri; i++)
     for (int k = 1; k < 3; k++)
-      parent[root_of(parent, m->tri[i][k])] = root_of(parent, m->tri[i][0]);
+      parent[vg_root_of(parent, m->tri[i][k])] = vg_root_of(parent, m->tri[i][0]);
   for (size_t i = 0; i < m->n_tri; i++) {
-    uint32_t r = root_of(parent, m->tri[i][0]);
+    uint32_t r = vg_root_of(parent, m->tri[i][0]);
     const double *a = m->point[m->tri[i][0]], *b = m->point[m->tri[i][1]];
     const double *c = m->point[m->tri[i][2]];
     double e[3], f[3], w[3], bc[3];
@@ -163,11 +147,11 @@ static vg_status find_holes(const struct vg_mesh *m, size_t *n,
       e[k] = b[k] - a[k];
       f[k] = c[k] - a[k];
     }
-    cross(e, f, w);
-    cross(b, c, bc);
-    volume[r] += dot(a, bc);
-    if (dot(w, w) <= area[r]) continue;
-    area[r] = dot(w, w);
+    vg_cross(e, f, w);
+    vg_cross(b, c, bc);
+    volume[r] += vg_dot(a, bc);
+    if (vg_dot(w, w) <= area[r]) continue;
+    area[r] = vg_dot(w, w);
     face[r] = i;
   }
   for (size_t i = 0; i < np; i++) {

@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "core/farfield.h"
 #include "core/planar.h"
+#include "core/vector.h"
 
 /* Open edges this close to a coordinate plane, in body lengths, are in it. */
 #define PLANE_TOLERANCE 1e-5
@@ -199,9 +200,7 @@ static vg_status check_orientation(const struct domain *d,
 
     for (int j = 0; j < 3; j++)
       for (int k = 0; k < 3; k++) a[j][k] = p[j][k] - o[k];
-    sum += a[0][0] * (a[1][1] * a[2][2] - a[1][2] * a[2][1])
-           + a[0][1] * (a[1][2] * a[2][0] - a[1][0] * a[2][2])
-           + a[0][2] * (a[1][0] * a[2][1] - a[1][1] * a[2][0]);
+    sum += vg_triple(a[0], a[1], a[2]);
   }
   if (sum > 0) return VG_OK;
   return vg_fail(err, VG_ERR_INPUT, "the triangles of the surface point into "

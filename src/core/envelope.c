@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/vector.h"
 
 #define REACH 3         /* directions: the integer points of a cube's faces */
 #define N_DIRECTION (7 * 7 * 7 - 5 * 5 * 5)
@@ -30,11 +31,6 @@ struct envelope {
   double sign;            /* -1 where normals point inward */
 };
 
-static double dot(const double a[3], const double b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* Twice the vector area, turned outward; returns the longest edge, squared. */
 static double face(const struct envelope *e, size_t i, double n[3])
 {
@@ -44,7 +40,7 @@ static double face(const struct envelope *e, size_t i, double n[3])
   for (int k = 0; k < 3; k++) p[k] = e->m->point[e->m->tri[i][k]];
   for (int k = 0; k < 3; k++) {
     for (int c = 0; c < 3; c++) u[k][c] = p[(k + 1) % 3][c] - p[k][c];
-    if (dot(u[k], u[k]) > longest) longest = dot(u[k], u[k]);
+    if (vg_dot(u[k], u[k]) > longest) longest = vg_dot(u[k], u[k]);
   }
   for (int c = 0; c < 3; c++) {
     const int a = (c + 1) % 3, b = (c + 2) % 3;
@@ -65,7 +61,7 @@ static void find_extremes(struct envelope *e)
 
         if (abs(i) != REACH && abs(j) != REACH && abs(k) != REACH) continue;
         for (uint32_t p = 0; p < e->m->n_point; p++) {
-          const double s = dot(d, e->m->point[p]);
+          const double s = vg_dot(d, e->m->point[p]);
 
           if (s > best) best = s, at = p;
         }
@@ -79,12 +75,12 @@ static int is_on_hull(const struct envelope *e, size_t i)
   double n[3], most;
 
   most = face(e, i, n);
-  most = SLACK * sqrt(most * dot(n, n));
+  most = SLACK * sqrt(most * vg_dot(n, n));
   for (size_t k = 0; k < e->n_extreme; k++) {
     const double *x = e->m->point[e->extreme[k]];
     const double d[3] = { x[0] - o[0], x[1] - o[1], x[2] - o[2] };
 
-    if (dot(d, n) > most) return 0;
+    if (vg_dot(d, n) > most) return 0;
   }
   return 1;
 }
@@ -146,7 +142,7 @@ static void measure_pieces(struct envelope *e)
     double n[3];
 
     face(e, i, n);
-    p->area += sqrt(dot(n, n));
+    p->area += sqrt(vg_dot(n, n));
     for (int c = 0; c < 3; c++) p->vector[c] += n[c];
     p->n++;
   }
@@ -221,7 +217,7 @@ static void judge(const struct envelope *e, uint8_t *outer,
 
   for (uint32_t i = 0; i < e->m->n_tri; i++) {
     const struct piece *p = &e->piece[i];
-    const double lid = sqrt(dot(p->vector, p->vector));
+    const double lid = sqrt(vg_dot(p->vector, p->vector));
 
     if (!p->n) continue;
     if (e->on[i]) {
@@ -252,7 +248,7 @@ static double signed_volume(const struct envelope *e)
     double n[3];
 
     face(e, i, n);
-    sum += dot(d, n);
+    sum += vg_dot(d, n);
   }
   return sum;
 }

@@ -5,6 +5,7 @@
 
 #include "base/memory.h"
 #include "core/cell_signs.h"
+#include "core/vector.h"
 
 enum { CUT_MAX = 16 };       /* times a cavity may be cut back */
 
@@ -226,33 +227,20 @@ static void number_vertices(struct vg_inserter *s)
 
 /* --- is the point welcome? ----------------------------------------------- */
 
-static double distance2(const double a[3], const double b[3])
-{
-  double u = a[0] - b[0], v = a[1] - b[1], w = a[2] - b[2];
-
-  return u * u + v * v + w * w;
-}
-
 /* Height over the face, squared, against the square of its mean edge, or of
  * `most` (0: none) where that is shorter, as above a needle. */
 static int too_low(const double a[3], const double b[3], const double c[3],
                    const double x[3], double clearance, double most)
 {
-  double u[3], v[3], w[3], n[3], dot = 0, n2 = 0, e2;
+  double u[3], v[3], w[3], n[3], dot, n2, e2;
 
-  for (int k = 0; k < 3; k++) {
-    u[k] = b[k] - a[k];
-    v[k] = c[k] - a[k];
-    w[k] = x[k] - a[k];
-  }
-  n[0] = u[1] * v[2] - u[2] * v[1];
-  n[1] = u[2] * v[0] - u[0] * v[2];
-  n[2] = u[0] * v[1] - u[1] * v[0];
-  for (int k = 0; k < 3; k++) {
-    dot += n[k] * w[k];
-    n2 += n[k] * n[k];
-  }
-  e2 = (distance2(a, b) + distance2(b, c) + distance2(c, a)) / 3;
+  vg_sub(b, a, u);
+  vg_sub(c, a, v);
+  vg_sub(x, a, w);
+  vg_cross(u, v, n);
+  dot = vg_dot(n, w);
+  n2 = vg_dot(n, n);
+  e2 = (vg_distance2(a, b) + vg_distance2(b, c) + vg_distance2(c, a)) / 3;
   if (most > 0 && e2 > most * most) e2 = most * most;
   return dot * dot < clearance * clearance * e2 * n2;
 }
@@ -264,10 +252,10 @@ static int too_near(const struct vg_inserter *s, const double x[3],
   double least = nearest * nearest;
 
   for (uint32_t i = 0; i < s->n_vertex; i++)
-    if (distance2(at[s->vertex[i]], x) < least) return 1;
+    if (vg_distance2(at[s->vertex[i]], x) < least) return 1;
   for (size_t k = 0; k < s->n_face && !s->n_vertex; k++)
     for (int i = 0; i < 3; i++)
-      if (distance2(at[s->face[k].v[i]], x) < least) return 1;
+      if (vg_distance2(at[s->face[k].v[i]], x) < least) return 1;
   return 0;
 }
 

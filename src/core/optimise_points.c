@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "core/optimise_parts.h"
+#include "core/vector.h"
 
 static double worth(double old)
 {
@@ -295,14 +296,12 @@ static void above(const struct vg_tets *t, uint32_t c, int i, double share,
   const uint32_t *v = t->cell[c].v;
   const double *a = t->x[v[vg_face[i][0]]], *b = t->x[v[vg_face[i][1]]];
   const double *d = t->x[v[vg_face[i][2]]];
-  double n[3], size;
+  double e[3], f[3], n[3], size;
 
-  for (int k = 0; k < 3; k++) {
-    int l = (k + 1) % 3, m = (k + 2) % 3;
-
-    n[k] = (b[l] - a[l]) * (d[m] - a[m]) - (b[m] - a[m]) * (d[l] - a[l]);
-  }
-  size = sqrt(sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]));
+  vg_sub(b, a, e);
+  vg_sub(d, a, f);
+  vg_cross(e, f, n);
+  size = sqrt(vg_norm(n));
   for (int k = 0; k < 3; k++)
     x[k] = (a[k] + b[k] + d[k]) / 3 + (size > 0 ? share * n[k] / size : 0);
 }

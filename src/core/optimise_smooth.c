@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "core/optimise_parts.h"
+#include "core/vector.h"
 
 struct ball_state {
   double worst, sum;
@@ -68,16 +69,8 @@ static void target(const struct vg_optimiser *o, const double x[3],
     const uint32_t *v = t->cell[o->ball[k] >> 2].v;
     const uint8_t *f = vg_face[o->ball[k] & 3];
     const double *a = t->x[v[f[0]]], *b = t->x[v[f[1]]], *c = t->x[v[f[2]]];
-    double u[3], w[3], z[3], volume;
+    double volume = vg_det(a, b, c, x);
 
-    for (int i = 0; i < 3; i++) {
-      u[i] = b[i] - a[i];
-      w[i] = c[i] - a[i];
-      z[i] = x[i] - a[i];
-    }
-    volume = (u[1] * w[2] - u[2] * w[1]) * z[0] +
-             (u[2] * w[0] - u[0] * w[2]) * z[1] +
-             (u[0] * w[1] - u[1] * w[0]) * z[2];
     total += volume;
     for (int i = 0; i < 3; i++) sum[i] += volume * (a[i] + b[i] + c[i]);
   }

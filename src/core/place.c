@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "core/near.h"
 #include "core/sites.h"
+#include "core/vector.h"
 
 /* Side of the cubic pattern over the spacing: mean edge of a body-centred
  * lattice of side 1 is (8 sqrt(3)/2 + 6) / 14 = 0.923. */
@@ -209,7 +210,7 @@ static int propose_site(struct placer *p, const double c[3], double h,
     x[k] = half * ((double)i[k] + shake(i, k));
     d[k] = x[k] - c[k];
   }
-  if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] > 4.84 * half * half) return 0;
+  if (vg_dot(d, d) > 4.84 * half * half) return 0;
   list_around(p, c, h);
   if (vg_near_count(&p->near, d, exclusion_level * h)) return 1;
   if (!everywhere && !is_level(p, x, h)) return 0;
@@ -313,15 +314,11 @@ static int grow_face(struct placer *p, uint32_t link)
   int64_t site[3];
 
   for (int k = 0; k < 3; k++) v[k] = p->t->x[cell->v[vg_face[link & 3][k]]];
-  for (int k = 0; k < 3; k++) {
-    a[k] = v[1][k] - v[0][k];
-    b[k] = v[2][k] - v[0][k];
-    c[k] = (v[0][k] + v[1][k] + v[2][k]) / 3;
-  }
-  n[0] = a[1] * b[2] - a[2] * b[1];
-  n[1] = a[2] * b[0] - a[0] * b[2];
-  n[2] = a[0] * b[1] - a[1] * b[0];
-  length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+  for (int k = 0; k < 3; k++) c[k] = (v[0][k] + v[1][k] + v[2][k]) / 3;
+  vg_sub(v[1], v[0], a);
+  vg_sub(v[2], v[0], b);
+  vg_cross(a, b, n);
+  length = vg_norm(n);
   if (!(length > 0)) return 0;
   for (int k = 0; k < 3; k++) unit[k] = apex * n[k] / length;
   h = vg_sizing_at(p->sizing, c);

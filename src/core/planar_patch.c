@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 #include "core/planar.h"
+#include "core/vector.h"
 
 /* A point off the plane by more than this part of the extent is an error. */
 #define FLATNESS 1e-6
@@ -19,18 +20,6 @@ struct frame {
   const struct vg_size_law *size;
 };
 
-static void cross(const double a[3], const double b[3], double c[3])
-{
-  c[0] = a[1] * b[2] - a[2] * b[1];
-  c[1] = a[2] * b[0] - a[0] * b[2];
-  c[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-static double dot(const double a[3], const double b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static void to_plane(const struct frame *f, const double x[3], double p[2])
 {
   const double d[3] = { x[0] - f->o[0], x[1] - f->o[1], x[2] - f->o[2] };
@@ -39,8 +28,8 @@ static void to_plane(const struct frame *f, const double x[3], double p[2])
     p[0] = x[f->iu];
     p[1] = x[f->iv];
   } else {
-    p[0] = dot(d, f->u);
-    p[1] = dot(d, f->v);
+    p[0] = vg_dot(d, f->u);
+    p[1] = vg_dot(d, f->v);
   }
 }
 
@@ -96,10 +85,10 @@ static vg_status make_frame(const struct vg_mesh *m, size_t n_edge,
       b[k] = m->point[edge[i][1]][k] - f->o[k];
       extent = fmax(extent, fabs(a[k]));
     }
-    cross(a, b, c);
+    vg_cross(a, b, c);
     for (int k = 0; k < 3; k++) n[k] += c[k];
   }
-  len = sqrt(dot(n, n));
+  len = sqrt(vg_dot(n, n));
   if (!(len > 0))
     return vg_fail(err, VG_ERR_GEOMETRY, "plane patch near (%.9g, %.9g, "
                    "%.9g): its boundary encloses no area", f->o[0], f->o[1],
@@ -120,19 +109,19 @@ static vg_status make_frame(const struct vg_mesh *m, size_t n_edge,
   if (fabs(f->n[2]) < fabs(f->n[low])) low = 2;
   memset(c, 0, sizeof c);
   c[low] = 1;
-  cross(c, f->n, f->u);
-  len = sqrt(dot(f->u, f->u));
+  vg_cross(c, f->n, f->u);
+  len = sqrt(vg_dot(f->u, f->u));
   for (int k = 0; k < 3; k++) f->u[k] /= len;
-  cross(f->n, f->u, f->v);
+  vg_cross(f->n, f->u, f->v);
   for (size_t i = 0; i < n_edge; i++) {
     const double *x = m->point[edge[i][0]];
     const double d[3] = { x[0] - f->o[0], x[1] - f->o[1], x[2] - f->o[2] };
 
-    if (fabs(dot(d, f->n)) > FLATNESS * extent)
+    if (fabs(vg_dot(d, f->n)) > FLATNESS * extent)
       return vg_fail(err, VG_ERR_GEOMETRY, "patch with a curved boundary: "
                      "point (%.9g, %.9g, %.9g) is %.3g off its plane; only "
                      "planar patches are triangulated, give a surface mesh",
-                     x[0], x[1], x[2], fabs(dot(d, f->n)));
+                     x[0], x[1], x[2], fabs(vg_dot(d, f->n)));
   }
   return VG_OK;
 }

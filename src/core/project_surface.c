@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "core/planar.h"
 #include "core/planar_patch.h"
+#include "core/vector.h"
 
 /* A chain of points that turns by more than 30 degrees has a corner there,
  * which the mesh keeps. */
@@ -37,13 +38,6 @@ static double size_at(void *user, const double x[3])
                               x);
 }
 
-static double distance(const double a[3], const double b[3])
-{
-  const double x = b[0] - a[0], y = b[1] - a[1], z = b[2] - a[2];
-
-  return sqrt(x * x + y * y + z * z);
-}
-
 static uint32_t add_point(struct builder *b, const double x[3])
 {
   struct vg_mesh *m = &b->m;
@@ -64,7 +58,7 @@ static int is_corner(const struct vg_project *p, const struct vg_curve *c,
   double dot = 0;
 
   for (int k = 0; k < 3; k++) dot += (y[k] - x[k]) * (z[k] - y[k]);
-  return dot < CORNER_COSINE * distance(x, y) * distance(y, z);
+  return dot < CORNER_COSINE * vg_distance(x, y) * vg_distance(y, z);
 }
 
 static vg_status check_project(const struct vg_project *p,
@@ -82,7 +76,7 @@ static vg_status check_project(const struct vg_project *p,
                      "points; it needs at least 2", p->name, c->id, c->n);
     for (size_t k = 0; k < c->n; k++)
       if (c->point[k] >= p->n_point
-          || (k && !(distance(p->point[c->point[k - 1]],
+          || (k && !(vg_distance(p->point[c->point[k - 1]],
                               p->point[c->point[k]]) > 0)))
         return vg_fail(err, VG_ERR_INPUT, "%s: curve %" PRId32 ": point %zu "
                        "of it does not exist or repeats the one before",
@@ -215,7 +209,7 @@ static vg_status trace_curve(struct builder *b, size_t i,
   t->point[t->n++] = b->corner[c->point[0]];
   along[0] = 0;
   for (size_t k = 1; st == VG_OK && k < c->n; k++) {
-    along[k] = along[k - 1] + distance(b->project->point[c->point[k - 1]],
+    along[k] = along[k - 1] + vg_distance(b->project->point[c->point[k - 1]],
                                        b->project->point[c->point[k]]);
     if (b->corner[c->point[k]] != UINT32_MAX) {
       struct run r = { b->project, c->point + from, along + from,

@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 #include "core/quality_parts.h"
+#include "core/vector.h"
 
 /* Inward faces of formats.md 2.3, each turned around. */
 const struct vg_cell_faces vg_cell_faces[VG_CELL_KINDS] = {
@@ -133,14 +134,10 @@ static double triple(const double o[3], const double a[3], const double b[3],
 {
   double u[3], v[3], w[3];
 
-  for (int k = 0; k < 3; k++) {
-    u[k] = a[k] - o[k];
-    v[k] = b[k] - o[k];
-    w[k] = c[k] - o[k];
-  }
-  return u[0] * (v[1] * w[2] - v[2] * w[1]) +
-         u[1] * (v[2] * w[0] - v[0] * w[2]) +
-         u[2] * (v[0] * w[1] - v[1] * w[0]);
+  vg_sub(a, o, u);
+  vg_sub(b, o, v);
+  vg_sub(c, o, w);
+  return vg_triple(u, v, w);
 }
 
 double vg_tri_cone(const double o[3], const double a[3], const double b[3],

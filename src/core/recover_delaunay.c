@@ -13,6 +13,7 @@
 #include "base/memory.h"
 #include "core/cavity.h"
 #include "core/predicates.h"
+#include "core/vector.h"
 
 enum { RING = 10, NEW_MAX = 2 * (RING - 2), ROUNDS = 64 };
 
@@ -97,9 +98,7 @@ static double lifted(const struct ring *r, uint32_t p, uint32_t q, uint32_t s,
     }
   for (int i = 0; i < 3; i++)
     for (int k = 0; k < 3; k++) e[i][k] -= e[3][k];
-  return sum * fabs(e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) +
-                    e[0][1] * (e[1][2] * e[2][0] - e[1][0] * e[2][2]) +
-                    e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0]));
+  return sum * fabs(vg_triple(e[0], e[1], e[2]));
 }
 
 static void try_split(struct ring *r, int i, int k, int j)

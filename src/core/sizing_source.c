@@ -5,16 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-
-static double dot(const double a[3], const double b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void sub(double c[3], const double a[3], const double b[3])
-{
-  for (int k = 0; k < 3; k++) c[k] = a[k] - b[k];
-}
+#include "core/vector.h"
 
 static double least(double a, double b)
 {
@@ -76,8 +67,8 @@ static const char *defect(const struct vg_source *s)
   if (s->kind != VG_SOURCE_CYLINDER) return NULL;
   if (!isfinite(s->r1) || s->r1 < 0)
     return "its second radius is negative or not finite; give zero or more";
-  sub(d, s->p1, s->p0);
-  return dot(d, d) > 0 ? NULL : "its axis has no length; use a sphere";
+  vg_sub(s->p1, s->p0, d);
+  return vg_dot(d, d) > 0 ? NULL : "its axis has no length; use a sphere";
 }
 
 vg_status vg_source_check(size_t n, const struct vg_source *source,
@@ -154,12 +145,12 @@ static int line_kernel(const struct vg_source *s, const double x[3],
 {
   double d[3], u[3], v[3], len2, c, q, r0, r1, cosine, j;
 
-  sub(d, s->p1, s->p0);
-  sub(u, x, s->p0);
-  len2 = dot(d, d);
-  c = dot(u, d) / len2;
+  vg_sub(s->p1, s->p0, d);
+  vg_sub(x, s->p0, u);
+  len2 = vg_dot(d, d);
+  c = vg_dot(u, d) / len2;
   for (int k = 0; k < 3; k++) v[k] = u[k] - c * d[k];
-  q = dot(v, v) / len2;
+  q = vg_dot(v, v) / len2;
   if (q <= 1e-24 && c >= 0 && c <= 1) {
     *size = s->h0 + c * (s->h1 - s->h0);
     return 0;
@@ -192,8 +183,8 @@ double vg_source_mean(size_t n, const struct vg_source *source,
     if (s->kind == VG_SOURCE_VGRID_LINE) {
       if (!line_kernel(s, x, &w, &h)) return h;
     } else {
-      sub(d, x, s->p0);
-      w = dot(d, d);
+      vg_sub(x, s->p0, d);
+      w = vg_dot(d, d);
       if (w <= 0) return s->h0;
       w = 1 / w;
       h = s->h0 * w;
@@ -211,12 +202,12 @@ static double segment_distance(const double a[3], const double b[3],
 {
   double d[3], u[3], len2;
 
-  sub(d, b, a);
-  sub(u, x, a);
-  len2 = dot(d, d);
-  *t = len2 > 0 ? within(dot(u, d) / len2, 0, 1) : 0;
+  vg_sub(b, a, d);
+  vg_sub(x, a, u);
+  len2 = vg_dot(d, d);
+  *t = len2 > 0 ? within(vg_dot(u, d) / len2, 0, 1) : 0;
   for (int k = 0; k < 3; k++) u[k] -= *t * d[k];
-  return sqrt(dot(u, u));
+  return sqrt(vg_dot(u, u));
 }
 
 /* Inside the three edge planes the distance is to the plane, otherwise to the
@@ -227,19 +218,15 @@ static double triangle_distance(const struct vg_source *s, const double x[3])
   double e[3][3], n[3], u[3], m[3], d, t;
   int inside = 1;
 
-  for (int k = 0; k < 3; k++) sub(e[k], p[(k + 1) % 3], p[k]);
-  for (int k = 0; k < 3; k++)
-    n[k] = e[0][(k + 1) % 3] * e[1][(k + 2) % 3] -
-           e[0][(k + 2) % 3] * e[1][(k + 1) % 3];
+  for (int k = 0; k < 3; k++) vg_sub(p[(k + 1) % 3], p[k], e[k]);
+  vg_cross(e[0], e[1], n);
   for (int i = 0; i < 3 && inside; i++) {
-    sub(u, x, p[i]);
-    for (int k = 0; k < 3; k++)
-      m[k] = n[(k + 1) % 3] * e[i][(k + 2) % 3] -
-             n[(k + 2) % 3] * e[i][(k + 1) % 3];
-    inside = dot(m, u) >= 0;
+    vg_sub(x, p[i], u);
+    vg_cross(n, e[i], m);
+    inside = vg_dot(m, u) >= 0;
   }
-  sub(u, x, s->p0);
-  if (inside && dot(n, n) > 0) return fabs(dot(u, n)) / sqrt(dot(n, n));
+  vg_sub(x, s->p0, u);
+  if (inside && vg_dot(n, n) > 0) return fabs(vg_dot(u, n)) / sqrt(vg_dot(n, n));
   d = segment_distance(p[0], p[1], x, &t);
   d = least(d, segment_distance(p[1], p[2], x, &t));
   return least(d, segment_distance(p[2], p[0], x, &t));
@@ -266,12 +253,12 @@ static double cone_distance(const struct vg_source *s, const double x[3],
   double foot[3], rim0[3] = { 0, s->r0, 0 }, rim1[3], mid0[3] = { 0, 0, 0 };
   double mid1[3], at[3], f;
 
-  sub(d, s->p1, s->p0);
-  sub(u, x, s->p0);
-  len = sqrt(dot(d, d));
-  z = dot(u, d) / len;
+  vg_sub(s->p1, s->p0, d);
+  vg_sub(x, s->p0, u);
+  len = sqrt(vg_dot(d, d));
+  z = vg_dot(u, d) / len;
   for (int k = 0; k < 3; k++) foot[k] = u[k] - z * (d[k] / len);
-  r = sqrt(dot(foot, foot));
+  r = sqrt(vg_dot(foot, foot));
   *t = within(z / len, 0, 1);
   r_at = s->r0 + *t * (s->r1 - s->r0);
   if (z >= 0 && z <= len && r <= r_at) return 0;
@@ -358,8 +345,8 @@ static void prepare_bounded(const struct vg_sizing_options *o,
       b->law.p1[k] = b->hi[k];
     }
   if (!has_axis(s->kind)) return;
-  sub(d, s->p1, s->p0);
-  along = dot(d, d);
+  vg_sub(s->p1, s->p0, d);
+  along = vg_dot(d, d);
   if (along <= 0) {
     b->law.h0 = b->law.h1 = b->least;
     return;
@@ -378,8 +365,8 @@ static void prepare_mean(const struct vg_sizing_options *o,
   m->h0 *= o->scale;
   m->h1 *= o->scale;
   if (m->kind != VG_SOURCE_VGRID_LINE) return;
-  sub(d, m->p1, m->p0);
-  if (dot(d, d) > 0) return;
+  vg_sub(m->p1, m->p0, d);
+  if (vg_dot(d, d) > 0) return;
   m->kind = VG_SOURCE_VGRID_NODE;
   m->h0 = 0.5 * (m->h0 + m->h1);
 }

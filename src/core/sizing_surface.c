@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "core/sizing_near.h"
+#include "core/vector.h"
 
 #define GRAIN 4096      /* points or faces for a thread at a time */
 
@@ -51,29 +52,14 @@ vg_status vg_samples_check(const struct vg_mesh *m, struct vg_error *err)
   return VG_OK;
 }
 
-static double length(const double a[3], const double b[3])
-{
-  double d2 = 0;
-
-  for (int k = 0; k < 3; k++) d2 += (b[k] - a[k]) * (b[k] - a[k]);
-  return sqrt(d2);
-}
-
 static double area(const double a[3], const double b[3], const double c[3])
 {
-  double u[3], v[3], n2 = 0;
+  double u[3], v[3], n[3];
 
-  for (int k = 0; k < 3; k++) {
-    u[k] = b[k] - a[k];
-    v[k] = c[k] - a[k];
-  }
-  for (int k = 0; k < 3; k++) {
-    double n = u[(k + 1) % 3] * v[(k + 2) % 3] -
-               u[(k + 2) % 3] * v[(k + 1) % 3];
-
-    n2 += n * n;
-  }
-  return 0.5 * sqrt(n2);
+  vg_sub(b, a, u);
+  vg_sub(c, a, v);
+  vg_cross(u, v, n);
+  return 0.5 * vg_norm(n);
 }
 
 /* Edges of no length belong to degenerate faces and say nothing. */
@@ -87,7 +73,7 @@ static void add_face(const struct vg_mesh *m, const uint32_t *v, int n,
                    area(m->point[v[0]], m->point[v[2]], m->point[v[3]]));
   for (int i = 0; i < n; i++) {
     struct sum *a = sum + v[i], *b = sum + v[(i + 1) % n];
-    double edge = length(m->point[v[i]], m->point[v[(i + 1) % n]]);
+    double edge = vg_distance(m->point[v[i]], m->point[v[(i + 1) % n]]);
 
     a->area += whole;
     a->n_face++;
@@ -125,7 +111,7 @@ static void set_centroid(const struct vg_mesh *m, size_t face,
   s->h[m->n_point + face] = 0;
   for (int i = 0; i < n; i++) {
     const double *a = m->point[v[i]];
-    double edge = length(a, m->point[v[(i + 1) % n]]);
+    double edge = vg_distance(a, m->point[v[(i + 1) % n]]);
 
     if (!(s->h[v[i]] > 0)) return;
     h += s->h[v[i]] / n;
@@ -207,7 +193,7 @@ static void compare(const struct thinning *t, size_t i, size_t j)
   if (!(h[0] > 0 && h[1] > 0)) return;
   c = t->keep * fabs(h[0] - h[1]);
   c -= MARGIN * (h[0] + h[1]);
-  far = length(t->s->p[i], t->s->p[j]);
+  far = vg_distance(t->s->p[i], t->s->p[j]);
   if (!(c > 0) || c < t->slope * far) return;
   c = t->rise * fabs(h[0] - h[1]) - MARGIN * (h[0] + h[1]);
   if (c < t->steep * far) return;

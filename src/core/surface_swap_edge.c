@@ -4,6 +4,8 @@
 
 #include <math.h>
 
+#include "core/vector.h"
+
 /* Least gain of the square of the sine: rounding and the two diagonals of a
  * square must not count. */
 #define GAIN 1.01
@@ -20,22 +22,14 @@ static const double *at(const struct vg_swapper *w, uint32_t p)
 void vg_shape_of(const double *a, const double *b, const double *c,
                  struct vg_shape *s)
 {
-  double u[3], v[3], uu = 0, vv = 0, ww = 0;
+  double u[3], v[3], uu, vv, ww = vg_distance2(c, b);
 
-  for (int k = 0; k < 3; k++) {
-    u[k] = b[k] - a[k];
-    v[k] = c[k] - a[k];
-    uu += u[k] * u[k];
-    vv += v[k] * v[k];
-    ww += (c[k] - b[k]) * (c[k] - b[k]);
-  }
-  for (int k = 0; k < 3; k++) {
-    int i = (k + 1) % 3, j = (k + 2) % 3;
-
-    s->normal[k] = u[i] * v[j] - u[j] * v[i];
-  }
-  s->area = sqrt(s->normal[0] * s->normal[0] + s->normal[1] * s->normal[1]
-                 + s->normal[2] * s->normal[2]);
+  vg_sub(b, a, u);
+  vg_sub(c, a, v);
+  uu = vg_dot(u, u);
+  vv = vg_dot(v, v);
+  vg_cross(u, v, s->normal);
+  s->area = vg_norm(s->normal);
   s->longest2 = uu > vv ? uu : vv;
   s->shortest2 = uu > vv ? vv : uu;
   s->middle2 = ww;
@@ -53,8 +47,7 @@ void vg_shape_of(const double *a, const double *b, const double *c,
 int vg_shape_agree(const struct vg_swapper *w, const struct vg_shape *a,
                    const struct vg_shape *b)
 {
-  double dot = a->normal[0] * b->normal[0] + a->normal[1] * b->normal[1]
-               + a->normal[2] * b->normal[2];
+  double dot = vg_dot(a->normal, b->normal);
 
   return dot > 0 && dot >= w->cosine * a->area * b->area;
 }
@@ -102,20 +95,14 @@ static int joined(const struct vg_swapper *w, uint32_t c, uint32_t d)
 static double distance(const double *a, const double *b, const double *c,
                        const double *d)
 {
-  double u[3], v[3], x[3], dot = 0, size = 0;
+  double u[3], v[3], x[3], y[3], size;
 
-  for (int k = 0; k < 3; k++) {
-    u[k] = b[k] - a[k];
-    v[k] = d[k] - c[k];
-  }
-  for (int k = 0; k < 3; k++) {
-    int i = (k + 1) % 3, j = (k + 2) % 3;
-
-    x[k] = u[i] * v[j] - u[j] * v[i];
-    size += x[k] * x[k];
-    dot += x[k] * (c[k] - a[k]);
-  }
-  return size > 0 ? fabs(dot) / sqrt(size) : INFINITY;
+  vg_sub(b, a, u);
+  vg_sub(d, c, v);
+  vg_sub(c, a, y);
+  vg_cross(u, v, x);
+  size = vg_dot(x, x);
+  return size > 0 ? fabs(vg_dot(x, y)) / sqrt(size) : INFINITY;
 }
 
 /* Normals of the old pair: the larger one is the surface's; the other says

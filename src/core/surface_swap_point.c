@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/vector.h"
 
 #define RING 64             /* points with more edges stay */
 
@@ -18,13 +19,6 @@ struct ring {
 static const double *from(const struct vg_swapper *w, uint32_t h)
 {
   return w->point[vg_half_from(w, h)];
-}
-
-static double length2(const double *a, const double *b)
-{
-  double x = b[0] - a[0], y = b[1] - a[1], z = b[2] - a[2];
-
-  return x * x + y * y + z * z;
 }
 
 static double dot_of(const double *a, const double *b, const double n[3])
@@ -86,7 +80,7 @@ static int edge_fits(const struct vg_swapper *w, const struct ring *r,
   for (int k = 0; k < 3; k++) u[k] = b[k] - a[k];
   if (!(dot_of(a, x, u) < 0)) return 0;
   vg_shape_of(b, a, x, &s);
-  *by = s.area / sqrt(length2(b, x));
+  *by = s.area / sqrt(vg_distance2(b, x));
   return 1;
 }
 
@@ -182,7 +176,7 @@ static void measure(const struct vg_swapper *w, double *sum, uint32_t *n)
 {
   for (uint32_t h = 0; h < 3 * w->n_tri; h++) {
     if (vg_tri_removed(w, h / 3)) continue;
-    sum[vg_half_from(w, h)] += sqrt(length2(from(w, h), from(w, w->mate[h])));
+    sum[vg_half_from(w, h)] += sqrt(vg_distance2(from(w, h), from(w, w->mate[h])));
     n[vg_half_from(w, h)]++;
   }
 }
@@ -194,7 +188,7 @@ static int at_cap(const struct vg_swapper *w, uint32_t h)
   struct vg_shape s;
 
   vg_shape_of(a, b, from(w, vg_half_prev(h)), &s);
-  return vg_shape_cap(&s) && length2(a, b) < s.longest2;
+  return vg_shape_cap(&s) && vg_distance2(a, b) < s.longest2;
 }
 
 vg_status vg_swap_points(struct vg_swapper *w, size_t *n_removed,
@@ -216,7 +210,7 @@ vg_status vg_swap_points(struct vg_swapper *w, size_t *n_removed,
 
     if (vg_tri_removed(w, h / 3) || h > w->mate[h]) continue;
     b = vg_half_from(w, w->mate[h]);
-    own = sqrt(length2(w->point[a], w->point[b]));
+    own = sqrt(vg_distance2(w->point[a], w->point[b]));
     mean = (sum[a] + sum[b] - 2 * own) / (double)(n[a] + n[b] - 2);
     if (own < w->o->short_edge * mean || at_cap(w, h)
         || at_cap(w, w->mate[h]))

@@ -9,6 +9,7 @@
 #include "core/grow.h"
 #include "core/growth.h"
 #include "core/shape.h"
+#include "core/vector.h"
 
 /* A plane without walls may use all that is known of the front, which large
  * triangles of the surface ask for; where others grow beside it, less. */
@@ -119,30 +120,16 @@ static vg_status narrow(struct zone *g, struct vg_error *err)
   return VG_OK;
 }
 
-static double volume(const double a[3], const double b[3], const double c[3],
-                     const double d[3])
-{
-  double e[3][3];
-
-  for (int k = 0; k < 3; k++) {
-    e[0][k] = b[k] - a[k];
-    e[1][k] = c[k] - a[k];
-    e[2][k] = d[k] - a[k];
-  }
-  return (e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) +
-          e[0][1] * (e[1][2] * e[2][0] - e[1][0] * e[2][2]) +
-          e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0])) / 6;
-}
-
 static double shares_of_spacing(const struct vg_sizing *sizing,
                                 const double *const x[4])
 {
-  double middle[3], h;
+  double e[3][3], middle[3], h;
 
+  for (int i = 0; i < 3; i++) vg_sub(x[i + 1], x[0], e[i]);
   for (int k = 0; k < 3; k++)
     middle[k] = (x[0][k] + x[1][k] + x[2][k] + x[3][k]) / 4;
   h = vg_sizing_at(sizing, middle);
-  return volume(x[0], x[1], x[2], x[3]) / (h * h * h);
+  return vg_triple(e[0], e[1], e[2]) / 6 / (h * h * h);
 }
 
 static void take(struct zone *g, uint32_t c)
@@ -172,15 +159,6 @@ static double shape_of(const struct vg_tets *t, uint32_t c)
   return vg_shape(t->x[v[0]], t->x[v[1]], t->x[v[2]], t->x[v[3]]);
 }
 
-static void cross(const double a[3], const double b[3], double n[3])
-{
-  for (int k = 0; k < 3; k++) {
-    int l = (k + 1) % 3, m = (k + 2) % 3;
-
-    n[k] = a[l] * b[m] - a[m] * b[l];
-  }
-}
-
 /* Does the sphere around cell c lie where points are placed? One that reaches
  * farther would hold points that are placed later: the cell is larger than any
  * that should be there. */
@@ -189,15 +167,14 @@ static int is_settled(const struct zone *g, uint32_t c)
   const double (*x)[3] = (const double (*)[3])g->k.t.x;
   const uint32_t *v = g->k.t.cell[c].v;
   const struct vg_region *region = g->k.region;
-  double e[3][3], n[3][3], d2[3] = {0}, det = 0, r2 = 0, r, middle[3];
+  double e[3][3], n[3][3], d2[3], det, r2 = 0, r, middle[3];
 
-  for (int i = 0; i < 3; i++)
-    for (int k = 0; k < 3; k++) {
-      e[i][k] = x[v[i + 1]][k] - x[v[0]][k];
-      d2[i] += e[i][k] * e[i][k];
-    }
-  for (int i = 0; i < 3; i++) cross(e[(i + 1) % 3], e[(i + 2) % 3], n[i]);
-  for (int k = 0; k < 3; k++) det += e[0][k] * n[0][k];
+  for (int i = 0; i < 3; i++) {
+    vg_sub(x[v[i + 1]], x[v[0]], e[i]);
+    d2[i] = vg_dot(e[i], e[i]);
+  }
+  for (int i = 0; i < 3; i++) vg_cross(e[(i + 1) % 3], e[(i + 2) % 3], n[i]);
+  det = vg_dot(e[0], n[0]);
   for (int k = 0; k < 3; k++) {
     double d = (d2[0] * n[0][k] + d2[1] * n[1][k] + d2[2] * n[2][k]) / det / 2;
 

@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "base/memory.h"
+#include "core/vector.h"
 #include "io/boundary.h"
 #include "io/foam_parts.h"
 #include "io/mapbc.h"
@@ -70,17 +71,12 @@ static void unit_normal(const struct vg_mesh *m, size_t face, double n[3])
   const double *a = m->point[node[0]], *c = m->point[node[2]];
   const double *b = m->point[node[1]];
   const double *d = face < m->n_tri ? a : m->point[node[3]];
-  double u[3], v[3], length;
+  double u[3], v[3];
 
-  for (int k = 0; k < 3; k++) {
-    u[k] = c[k] - a[k];
-    v[k] = d[k] - b[k];
-  }
-  n[0] = u[1] * v[2] - u[2] * v[1];
-  n[1] = u[2] * v[0] - u[0] * v[2];
-  n[2] = u[0] * v[1] - u[1] * v[0];
-  length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-  for (int k = 0; k < 3; k++) n[k] = length > 0 ? n[k] / length : 0;
+  vg_sub(c, a, u);
+  vg_sub(d, b, v);
+  vg_cross(u, v, n);
+  if (!(vg_unit(n) > 0)) memset(n, 0, 3 * sizeof *n);
 }
 
 /* OpenFOAM refuses a symmetryPlane where the square of the difference between

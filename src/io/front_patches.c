@@ -15,6 +15,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/vector.h"
 #include "io/vgrid.h"
 
 #define NONE UINT32_MAX
@@ -189,14 +190,6 @@ static int degree(const struct front *w, uint32_t p)
   return n;
 }
 
-static double distance2(const double a[3], const double b[3])
-{
-  double s = 0;
-
-  for (int k = 0; k < 3; k++) s += (a[k] - b[k]) * (a[k] - b[k]);
-  return s;
-}
-
 struct by_x {
   double x;
   uint32_t p;
@@ -225,7 +218,7 @@ static uint32_t nearest(const struct front *w, const struct by_x *list,
     else hi = mid;
   }
   for (; lo < n && list[lo].x <= c[0] + tolerance; lo++) {
-    double d = distance2(w->m->point[list[lo].p], c);
+    double d = vg_distance2(w->m->point[list[lo].p], c);
 
     if (d < best || (d == best && found == NONE)) {
       best = d;
@@ -304,13 +297,13 @@ static double along(const struct vg_project *p, const struct vg_curve *c,
   *where = 0;
   for (size_t i = 0; i + 1 < c->n; i++) {
     const double *a = p->point[c->point[i]], *b = p->point[c->point[i + 1]];
-    double length = distance2(a, b), t = 0, at[3], d;
+    double length = vg_distance2(a, b), t = 0, at[3], d;
 
     for (int k = 0; k < 3; k++) t += (x[k] - a[k]) * (b[k] - a[k]);
     t = length > 0 ? t / length : 0;
     t = t < 0 ? 0 : t > 1 ? 1 : t;
     for (int k = 0; k < 3; k++) at[k] = a[k] + t * (b[k] - a[k]);
-    d = distance2(at, x);
+    d = vg_distance2(at, x);
     if (d < best) {
       best = d;
       *where = (double)i + t;

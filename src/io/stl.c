@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/vector.h"
 #include "io/boundary.h"
 #include "io/convention.h"
 #include "io/soup.h"
@@ -212,13 +213,8 @@ static void normal_of(const double *a, const double *b, const double *c,
     u[k] /= size;
     v[k] /= size;
   }
-  for (int k = 0; k < 3; k++) {
-    int i = (k + 1) % 3, j = (k + 2) % 3;
-
-    normal[k] = u[i] * v[j] - u[j] * v[i];
-  }
-  length = sqrt(normal[0] * normal[0] + normal[1] * normal[1] +
-                normal[2] * normal[2]);
+  vg_cross(u, v, normal);
+  length = vg_norm(normal);
   for (int k = 0; k < 3; k++)
     normal[k] = length > 0 ? floor(1e6 * normal[k] / length + 0.5) / 1e6 : 0;
 }

@@ -9,8 +9,8 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "core/vector.h"
 #include "layers/direct.h"
-#include "layers/vector.h"
 
 #define CONVERGE 0.75      /* a face that would shrink to less is bent apart */
 #define BEND_MAX 0.995

@@ -6,8 +6,8 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "core/vector.h"
 #include "layers/join.h"
-#include "layers/vector.h"
 #include "layers/work.h"
 
 #define GRAIN 1024

@@ -27,8 +27,8 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "core/vector.h"
 #include "layers/clear_parts.h"
-#include "layers/vector.h"
 
 #define FACING 0.2
 #define SAME_STACK 0.3

@@ -8,8 +8,8 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "core/vector.h"
 #include "layers/gram.h"
-#include "layers/vector.h"
 
 #define SMOOTH_WALL 0.95   /* least cosine at which the mean normal will do */
 #define CAP 0.05           /* height of a triangle over its longest edge */

@@ -5,8 +5,8 @@
 
 #include "base/memory.h"
 #include "core/predicates.h"
+#include "core/vector.h"
 #include "layers/gram.h"
-#include "layers/vector.h"
 
 /* As in direct.c: where all faces are seen this well the mean normal is the
  * direction, elsewhere the most normal one. */

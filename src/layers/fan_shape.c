@@ -1,9 +1,9 @@
 /* Directions of the columns at one point of a convex edge. */
 #include <string.h>
 
+#include "core/vector.h"
 #include "layers/fan.h"
 #include "layers/gram.h"
-#include "layers/vector.h"
 
 #define COS_STEP 0.7660444431189780   /* of 40 degrees */
 #define SLACK 1e-9            /* a turn of 40 degrees sharp takes one step */

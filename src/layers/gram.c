@@ -3,7 +3,7 @@
 #include <lapacke.h>
 #include <string.h>
 
-#include "layers/vector.h"
+#include "core/vector.h"
 
 #define STEPS_MAX 200
 #define SLACK 1e-9        /* of a constraint that counts as kept */

@@ -11,7 +11,7 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "layers/vector.h"
+#include "core/vector.h"
 #include "layers/work.h"
 
 #define GRAIN 2048

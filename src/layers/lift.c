@@ -6,8 +6,8 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "core/vector.h"
 #include "layers/direct.h"
-#include "layers/vector.h"
 
 #define VIEW_LEAST 0.2     /* share of the first view that is left where cells
                               would be lost otherwise */

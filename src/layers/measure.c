@@ -12,7 +12,7 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "layers/vector.h"
+#include "core/vector.h"
 
 enum { GRAIN = 512 };       /* wall points per chunk */
 
@@ -86,9 +86,7 @@ static double to_triangle2(const double x[3], const double a[3],
     vg_sub(v, u, w);
     return off_line2(q, (d4 - d3) / (d4 - d3 + d5 - d6), w);
   }
-  n[0] = u[1] * v[2] - u[2] * v[1];
-  n[1] = u[2] * v[0] - u[0] * v[2];
-  n[2] = u[0] * v[1] - u[1] * v[0];
+  vg_cross(u, v, n);
   height = vg_dot(n, p);
   return height * height / vg_dot(n, n);
 }

@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/vector.h"
 #include "layers/slide_parts.h"
-#include "layers/vector.h"
 
 /* A curve that turns by more than 60 degrees at a point has a corner there,
  * which stays. */

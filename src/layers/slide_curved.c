@@ -6,8 +6,8 @@
 
 #include "base/memory.h"
 #include "core/predicates.h"
+#include "core/vector.h"
 #include "layers/slide_parts.h"
-#include "layers/vector.h"
 
 /* No triangle may be tilted by more than 60 degrees against the mean. */
 #define TILT 0.5

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "layers/vector.h"
+#include "core/vector.h"
 
 /* A plane patch's points are no farther from it than this of its extent. */
 #define FLATNESS 1e-6

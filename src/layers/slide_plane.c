@@ -6,8 +6,8 @@
 
 #include "base/memory.h"
 #include "core/planar.h"
+#include "core/vector.h"
 #include "layers/slide_parts.h"
-#include "layers/vector.h"
 
 /* A triangle with its corners on the boundary and a height below this share
  * of its longest edge is a sliver between tops that nearly line up. */

@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/vector.h"
 #include "layers/slide_parts.h"
-#include "layers/vector.h"
 
 /* A curved patch is re-meshed as far as this many edges from the tops. */
 #define BEYOND 4

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
+#include "core/vector.h"
 #include "layers/slide_parts.h"
-#include "layers/vector.h"
 
 void vg_slide_law_release(struct vg_slide_law *l)
 {

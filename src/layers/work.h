@@ -4,11 +4,11 @@
 #ifndef VG_LAYERS_WORK_H
 #define VG_LAYERS_WORK_H
 
+#include "core/vector.h"
 #include "layers/clear.h"
 #include "layers/layers.h"
 #include "layers/slide.h"
 #include "layers/topology.h"
-#include "layers/vector.h"
 
 #define VG_VIEW_MIN 0.0002    /* least cosine between a column and a face */
 #define VG_FACTOR_MAX 1000.0  /* longest dir: a wedge of 0.1 degrees */

@@ -14,8 +14,8 @@
 #include "base/memory.h"
 #include "core/predicates.h"
 #include "core/surface_check.h"
+#include "core/vector.h"
 #include "layers/slide.h"
-#include "layers/vector.h"
 
 /* Surfaces ----------------------------------------------------------------*/
 

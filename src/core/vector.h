@@ -1,6 +1,7 @@
-/* layers/vector.h: three-vectors. Private to layers. */
-#ifndef VG_LAYERS_VECTOR_H
-#define VG_LAYERS_VECTOR_H
+/* core/vector.h: three-vectors in plain arithmetic. Where a sign must be right,
+ * core/predicates.h. */
+#ifndef VG_CORE_VECTOR_H
+#define VG_CORE_VECTOR_H
 
 #include <math.h>
 
@@ -27,6 +28,16 @@ static inline void vg_cross(const double a[3], const double b[3],
   out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
+/** a . (b x c). */
+static inline double vg_triple(const double a[3], const double b[3],
+                               const double c[3])
+{
+  double n[3];
+
+  vg_cross(b, c, n);
+  return vg_dot(a, n);
+}
+
 /** Scale to length 1; the length it had (0: left as it is). */
 static inline double vg_unit(double a[3])
 {
@@ -36,25 +47,29 @@ static inline double vg_unit(double a[3])
   return l;
 }
 
-static inline double vg_distance(const double a[3], const double b[3])
+static inline double vg_distance2(const double a[3], const double b[3])
 {
   double d[3];
 
   vg_sub(a, b, d);
-  return vg_norm(d);
+  return vg_dot(d, d);
+}
+
+static inline double vg_distance(const double a[3], const double b[3])
+{
+  return sqrt(vg_distance2(a, b));
 }
 
 /** Six times the volume of the tetrahedron o, a, b, c. */
 static inline double vg_det(const double o[3], const double a[3],
                             const double b[3], const double c[3])
 {
-  double u[3], v[3], w[3], x[3];
+  double u[3], v[3], w[3];
 
   vg_sub(a, o, u);
   vg_sub(b, o, v);
   vg_sub(c, o, w);
-  vg_cross(u, v, x);
-  return vg_dot(x, w);
+  return vg_triple(w, u, v);
 }
 
 /** Distance of p + v (v a unit vector) from the triangle p, a, b with unit
