@@ -48,21 +48,29 @@ static struct leaves leaves_of(const struct vg_spans *s)
   return l;
 }
 
-static void print_leaves(FILE *to, const struct vg_spans *s)
+static void print_leaves(FILE *to, const struct leaves *l)
 {
-  struct leaves l = leaves_of(s);
   char a[32], b[32], c[32];
 
-  fprintf(to, "leaves %s", vg_cli_count(l.n, a));
-  if (l.n > 1)
+  fprintf(to, "leaves %s", vg_cli_count(l->n, a));
+  if (l->n > 1)
     fprintf(to, " of %s to %s cells, median %s",
-            vg_cli_count(l.cells[0], a), vg_cli_count(l.cells[l.n - 1], b),
-            vg_cli_count(l.cells[(l.n - 1) / 2], c));
+            vg_cli_count(l->cells[0], a), vg_cli_count(l->cells[l->n - 1], b),
+            vg_cli_count(l->cells[(l->n - 1) / 2], c));
   fprintf(to, "\n");
-  if (l.n_crumb)
+  if (l->n_crumb)
     fprintf(to, "  and %s of crumbs filled together, %s cells\n",
-            vg_cli_count(l.n_crumb, a), vg_cli_count(l.crumb_cells, b));
-  free(l.cells);
+            vg_cli_count(l->n_crumb, a), vg_cli_count(l->crumb_cells, b));
+}
+
+/* What repairs and swaps across interfaces have added to the cells of tasks, or,
+ * below 0, taken away. */
+static int64_t repair_cells(const struct vg_run *r, const struct leaves *l)
+{
+  uint64_t tasks = r->partition.n_zone_cell + l->crumb_cells;
+
+  for (size_t i = 0; i < l->n; i++) tasks += l->cells[i];
+  return (int64_t)(r->n_field_cell - tasks);
 }
 
 static double share_of(const struct vg_run *r, uint64_t n)
@@ -73,6 +81,7 @@ static double share_of(const struct vg_run *r, uint64_t n)
 void vg_report_partition_text(FILE *to, const struct vg_run *r)
 {
   const struct vg_partition_report *p = &r->partition;
+  struct leaves l = leaves_of(&r->spans);
   char a[32], b[32], c[32];
 
   fprintf(to, "  %d rank%s x %d thread%s; %s cells expected, %s made\n",
@@ -83,7 +92,7 @@ void vg_report_partition_text(FILE *to, const struct vg_run *r)
   fprintf(to, "  cuts %s, pencils %s, tiles %s: %.1f %% of the cells; ",
           vg_cli_count(p->n_node, a), vg_cli_count(p->n_pencil, b),
           vg_cli_count(p->n_tile, c), share_of(r, p->n_zone_cell));
-  print_leaves(to, &r->spans);
+  print_leaves(to, &l);
   if (p->n_elsewhere)
     fprintf(to, "  voids cut at other places %s, since a part could not be "
             "filled: %s cells made again, %.2f s\n",
@@ -104,9 +113,10 @@ void vg_report_partition_text(FILE *to, const struct vg_run *r)
   fprintf(to, "  across interfaces: points moved %s times, %s swaps; ",
           vg_cli_count(p->n_repair_moved, a),
           vg_cli_count(p->n_repair_swapped, b));
-  fprintf(to, "repaired %s of %s regions, %.2f s\n",
+  fprintf(to, "repaired %s of %s regions, %+lld cells, %.2f s\n",
           vg_cli_count(p->n_repaired, a), vg_cli_count(p->n_repair, b),
-          p->repair);
+          (long long)repair_cells(r, &l), p->repair);
+  free(l.cells);
   fprintf(to, "  workers busy %.1f %%, imbalance %.3f (most over mean)\n",
           100 * vg_spans_busy(&r->spans), vg_spans_imbalance(&r->spans));
   if (!r->store) return;
@@ -142,6 +152,7 @@ json_t *vg_report_partition_json(const struct vg_run *r)
     { "cells_made_again", p->n_elsewhere_cell },
   };
   json_t *o = json_object(), *leaves = json_array();
+  json_int_t by_repair = repair_cells(r, &l);
 
   for (size_t i = 0; i < sizeof row / sizeof *row; i++)
     json_object_set_new(o, row[i].name, count(row[i].n));
@@ -149,6 +160,7 @@ json_t *vg_report_partition_json(const struct vg_run *r)
     json_array_append_new(leaves, count(l.cells[i]));
   free(l.cells);
   json_object_set_new(o, "leaf_cells", leaves);
+  json_object_set_new(o, "repair_cells", json_integer(by_repair));
   json_object_set_new(o, "voids_elsewhere_seconds", json_real(p->elsewhere));
   json_object_set_new(o, "cuts_elsewhere", json_integer(p->cuts_elsewhere));
   json_object_set_new(o, "cuts_given_up", json_boolean(p->cuts_given_up));

@@ -98,6 +98,14 @@ vanguard mesh -q -p p/box --constant-direction yes --out none
 exits 2
 says err "constant_direction needs a split_direction of 1, 2 or 3"
 
+# Cells of leaves, crumbs and cuts, and what repairs did, are those of the mesh.
+parts=$(sed -n '/"leaf_cells": \[/,/\]/s/^ *\([0-9]*\),*$/\1/p
+  s/.*"\(crumb_cells\|zone_cells\|repair_cells\)": \([-0-9]*\).*/\2/p' \
+  two/box.report.json | paste -sd+)
+cells=$(sed -n 's/^    "cells": \([0-9]*\).*/\1/p' two/box.report.json | tail -1)
+[ "$((parts))" = "$cells" ] || fail "$parts are not $cells cells"
+grep -q '"repair_cells": -*[1-9]' two/box.report.json || fail "no repair"
+
 # What is filled as one leaf because it is little is counted apart.
 vanguard demo sphere --cells 60000 --out p
 vanguard mesh -q -p p/sphere --leaf-cells 6000 --json --out crumbs
@@ -114,7 +122,7 @@ exits 2
 says err "--resume needs the --run-dir of the run"
 vanguard mesh $cut --run-dir none --resume --out none
 exits 1
-says err "none: holds no run that could be resumed"
+says err "none: there is no such run directory to resume from"
 absent none/box.b8.ugrid
 vanguard mesh $cut -t 2 --run-dir run --keep-run --out kept
 agrees kept
