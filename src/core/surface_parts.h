@@ -1,5 +1,5 @@
 /* core/surface_parts.h: the steps of vg_surface_check, each in the file named
- * above its functions. Not for users of the library. */
+ * above its functions. Private to core and its tests. */
 #ifndef VG_CORE_SURFACE_PARTS_H
 #define VG_CORE_SURFACE_PARTS_H
 
@@ -154,13 +154,6 @@ vg_status vg_tree_ray(const struct vg_tree *t, const double p[3],
                       vg_status (*visit)(void *, uint32_t), void *context);
 
 /* surface_intersect.c -----------------------------------------------------*/
-
-/** Whether triangles a and b (nodes into point[], none degenerate) have a
- * point in common besides common corners and the edges between them; corners
- * are common when their fans are the same number. Exact. */
-int vg_triangles_meet(const double (*point)[3], const uint32_t a[3],
-                      const uint32_t b[3], const uint32_t fan_a[3],
-                      const uint32_t fan_b[3]);
 
 struct vg_crossing {
   size_t n_pair;

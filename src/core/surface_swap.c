@@ -10,6 +10,7 @@
 #include "base/memory.h"
 #include "core/surface_parts.h"
 #include "core/surface_swap_parts.h"
+#include "core/triangles.h"
 
 #define ROUNDS 16           /* then the surface stays as it is */
 #define PASSES 8            /* of collapses, each followed by swaps */

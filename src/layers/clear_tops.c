@@ -11,7 +11,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "core/predicates.h"
-#include "core/surface_parts.h"
+#include "core/triangles.h"
 #include "layers/clear_parts.h"
 
 enum {

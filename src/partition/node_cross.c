@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/surface_parts.h"
+#include "core/triangles.h"
 #include "partition/node.h"
 
 /* --- faces that leave the band ------------------------------------------- */

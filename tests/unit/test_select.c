@@ -4,7 +4,7 @@
 #include "advance_support.h"
 
 #include "base/memory.h"
-#include "core/surface_parts.h"
+#include "core/triangles.h"
 #include "partition/lattice.h"
 #include "partition/select.h"
 

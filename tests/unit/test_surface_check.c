@@ -13,6 +13,7 @@
 
 #include "core/surface_check.h"
 #include "core/surface_parts.h"
+#include "core/triangles.h"
 
 /* --- surfaces ------------------------------------------------------------ */
 
