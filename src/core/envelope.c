@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/unite.h"
 #include "core/vector.h"
 
 #define REACH 3         /* directions: the integer points of a cube's faces */
@@ -87,20 +88,6 @@ static int is_on_hull(const struct envelope *e, size_t i)
 
 /* --- pieces -------------------------------------------------------------- */
 
-static uint32_t find(uint32_t *root, uint32_t i)
-{
-  while (root[i] != i) i = root[i] = root[root[i]];
-  return i;
-}
-
-static void join(uint32_t *root, uint32_t a, uint32_t b)
-{
-  a = find(root, a);
-  b = find(root, b);
-  if (a < b) root[b] = a;
-  else root[a] = b;
-}
-
 struct side {
   uint32_t lo, hi, tri;
 };
@@ -130,7 +117,7 @@ static vg_status join_pieces(struct envelope *e, struct vg_error *err)
   for (size_t i = 1; i < n; i++)
     if (side[i].lo == side[i - 1].lo && side[i].hi == side[i - 1].hi
         && e->on[side[i].tri] == e->on[side[i - 1].tri])
-      join(e->root, side[i].tri, side[i - 1].tri);
+      vg_unite(e->root, side[i].tri, side[i - 1].tri);
   free(side);
   return VG_OK;
 }
@@ -138,7 +125,7 @@ static vg_status join_pieces(struct envelope *e, struct vg_error *err)
 static void measure_pieces(struct envelope *e)
 {
   for (uint32_t i = 0; i < e->m->n_tri; i++) {
-    struct piece *p = &e->piece[e->root[i] = find(e->root, i)];
+    struct piece *p = &e->piece[e->root[i] = vg_root_of(e->root, i)];
     double n[3];
 
     face(e, i, n);
