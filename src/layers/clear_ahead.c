@@ -19,47 +19,23 @@
  *     stands on it and must not be kept away from it.
  * The distance to the others is counted along u. This is no proof that
  * columns do not meet, only a good first height: vg_clear_tops is exact. */
-#include "layers/clear.h"
+#include "layers/clear_ahead.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "base/parallel.h"
 #include "core/vector.h"
-#include "layers/clear_parts.h"
 
 #define FACING 0.2
 #define SAME_STACK 0.3
-#define SHARP 0.5             /* cosine of a column to its triangle */
 #define SQRT_2 1.41421356237309505
 
 enum { GRAIN = 512, STACK = 96, CENTRE_MAX = 64, TEAM = 16, LEAF_MAX = 64 };
 
-/* Of the children of a node: half the diagonals, and boxes about the unit
- * normals of what is in them. */
-struct sides { union vg_f8 radius, mid[3], half[3]; };
-
-struct ahead {
-  const struct vg_mesh *surface;
-  const struct vg_columns *columns;
-  const struct vg_topology *topology;
-  double gap;
-  const double *reach;
-  double *allowed;
-  uint32_t *face_of;        /* [n_tri] its face, or VG_NO_INDEX */
-  uint32_t *column_of;      /* [n_point + 1] first column of each point */
-  uint8_t *slid;            /* [n_patch] columns slide in it */
-  struct vg_boxes boxes;
-  struct sides *sides;      /* [nodes] */
-  float (*normal)[3];       /* [boxes.n] unit, 0 without an area */
-  uint32_t *order;          /* [n_column] neighbours close together */
-};
-
 /* One column. Lengths are along u, in the unit of the surface. */
 struct query {
-  const struct ahead *x;
+  const struct vg_ahead *x;
   uint32_t column;
   double root[3], u[3];
   double reach;             /* nothing beyond it matters; shrinks */
@@ -72,91 +48,6 @@ struct query {
 };
 
 /* --- one triangle -------------------------------------------------------- */
-
-/* Does the line from o along u pass through a triangle (corners p, unit normal
- * n), or nearly so, nearer than *along? Where: *along. The slack closes the
- * seams between triangles. */
-static int line_hits(const double o[3], const double u[3],
-                     const double (*p)[3], const double n[3], double *along)
-{
-  double d = vg_dot(n, u), q[3], s;
-
-  if (!(d < 0)) return 0;
-  s = (n[0] * (p[0][0] - o[0]) + n[1] * (p[0][1] - o[1])
-       + n[2] * (p[0][2] - o[2])) / d;
-  if (!(s >= 0 && s < *along)) return 0;
-  for (int k = 0; k < 3; k++) q[k] = o[k] + s * u[k];
-  for (int i = 0; i < 3; i++) {
-    const double *a = p[i], *b = p[(i + 1) % 3];
-    double e[3], f[3], c[3];
-
-    for (int k = 0; k < 3; k++) {
-      e[k] = b[k] - a[k];
-      f[k] = q[k] - a[k];
-    }
-    vg_cross(e, f, c);
-    if (vg_dot(c, n) < -1e-6 * vg_dot(e, e)) return 0;
-  }
-  *along = s;
-  return 1;
-}
-
-/* Least u . x over x on the edge a b within the cone of 45 degrees. */
-static double edge_in_cone(const double u[3], const double a[3],
-                           const double b[3])
-{
-  double e[3], ua = vg_dot(u, a), ue, qa, qb, qc, root, t[4] = { 0, 1 };
-  double best = INFINITY;
-  int n = 2;
-
-  for (int k = 0; k < 3; k++) e[k] = b[k] - a[k];
-  ue = vg_dot(u, e);
-  /* |a + t e|^2 - 2 (u . (a + t e))^2 = qa t^2 + 2 qb t + qc <= 0 */
-  qa = vg_dot(e, e) - 2 * ue * ue;
-  qb = vg_dot(a, e) - 2 * ua * ue;
-  qc = vg_dot(a, a) - 2 * ua * ua;
-  root = qb * qb - qa * qc;
-  if (root >= 0) {
-    double q = -(qb + copysign(sqrt(root), qb));
-
-    if (qa != 0) t[n++] = q / qa;
-    if (q != 0) t[n++] = qc / q;
-  }
-  for (int i = 0; i < n; i++) {
-    double s = ua + t[i] * ue;
-
-    if (!(t[i] >= 0 && t[i] <= 1) || s < 0 || s >= best) continue;
-    if (i < 2 && (i ? qa + 2 * qb + qc : qc) > 0) continue;
-    best = s;
-  }
-  return best;
-}
-
-/* Least u . x over x in the triangle (corners p relative to the apex, unit
- * normal n, facing the apex) within the cone; INFINITY: none below `most`. */
-static double nearest_in_cone(const double u[3], const double (*p)[3],
-                              const double n[3], double most)
-{
-  double g = -vg_dot(n, u), h = -vg_dot(n, p[0]);
-  double flat, w[3], s, best = INFINITY;
-  static const double apex[3] = { 0, 0, 0 };
-
-  if (!(h > 0)) return INFINITY;
-  /* The plane is nearest along the generator that heads for it most. */
-  flat = sqrt(g * g < 1 ? 1 - g * g : 0);
-  s = h / (g + flat);
-  if (s >= most) return INFINITY;
-  for (int k = 0; k < 3; k++)
-    w[k] = u[k] - (flat > 1e-9 ? (n[k] + g * u[k]) / flat : 0);
-  s = most;
-  if (line_hits(apex, w, p, n, &s)) return s;
-  for (int i = 0; i < 3; i++) {
-    double e = edge_in_cone(u, p[i], p[(i + 1) % 3]);
-
-    if (e < best) best = e;
-  }
-  return best;
-}
 
 static int shares_point(const struct query *q, const uint32_t t[3])
 {
@@ -175,18 +66,10 @@ static int shares_point(const struct query *q, const uint32_t t[3])
   return 0;
 }
 
-static void add_direction(const struct vg_column *c, double sum[3])
-{
-  double l = sqrt(vg_dot(c->dir, c->dir));
-
-  if (l > 0)
-    for (int k = 0; k < 3; k++) sum[k] += c->dir[k] / l;
-}
-
 /* Do the columns of triangle t grow the same way as the one asked for? */
 static int same_stack(const struct query *q, uint32_t t)
 {
-  const struct ahead *x = q->x;
+  const struct vg_ahead *x = q->x;
   uint32_t f = x->face_of[t];
   double sum[3] = { 0, 0, 0 };
 
@@ -194,10 +77,10 @@ static int same_stack(const struct query *q, uint32_t t)
     uint32_t p = x->surface->tri[t][k];
 
     if (f != VG_NO_INDEX)
-      add_direction(&x->columns->column[x->columns->face[f][k]], sum);
+      vg_add_direction(&x->columns->column[x->columns->face[f][k]], sum);
     else
       for (uint32_t i = x->column_of[p]; i < x->column_of[p + 1]; i++)
-        add_direction(&x->columns->column[i], sum);
+        vg_add_direction(&x->columns->column[i], sum);
   }
   return vg_dot(sum, q->u) > SAME_STACK * sqrt(vg_dot(sum, sum));
 }
@@ -220,7 +103,7 @@ static double nearest_on_lines(const struct query *q, const double (*p)[3],
   off = vg_dot(c, c) - along * along;
   if (off > 2.01 * (q->widest + far)) return near;
   for (int j = 0; j < q->n_centre; j++)
-    line_hits(q->centre[j], q->u, p, n, &near);
+    vg_line_hits(q->centre[j], q->u, p, n, &near);
   return near;
 }
 
@@ -246,7 +129,7 @@ static int is_aside(const struct query *q, const double (*p)[3])
 static void consider(struct query *q, size_t i)
 {
   static const double root[3] = { 0, 0, 0 };
-  const struct ahead *x = q->x;
+  const struct vg_ahead *x = q->x;
   const struct vg_column *c = &x->columns->column[q->column];
   const uint32_t *t = x->boxes.tri[i];
   uint32_t patch = x->surface->tri_patch[x->boxes.item[i]];
@@ -267,9 +150,9 @@ static void consider(struct query *q, size_t i)
   for (int k = 0; k < 3; k++) n[k] /= l;
   near = q->reach;
   if (x->slid[patch])
-    line_hits(root, q->u, (const double (*)[3])p, n, &near);
+    vg_line_hits(root, q->u, (const double (*)[3])p, n, &near);
   else
-    near = nearest_in_cone(q->u, (const double (*)[3])p, n, q->reach);
+    near = vg_nearest_in_cone(q->u, (const double (*)[3])p, n, q->reach);
   s = nearest_on_lines(q, (const double (*)[3])p, n);
   if (s < near) near = s;
   if (near < q->reach && !shares_point(q, t)
@@ -289,9 +172,8 @@ static inline vg_f4 all4(float x)
   return (vg_f4){ x, x, x, x };
 }
 
-
 /* Children with a normal n for which n . u < -FACING + spread. */
-static inline vg_i4 facing4(const struct sides *s, int h, const float u[3],
+static inline vg_i4 facing4(const struct vg_sides *s, int h, const float u[3],
                             float spread)
 {
   vg_f4 least = all4(0);
@@ -303,7 +185,7 @@ static inline vg_i4 facing4(const struct sides *s, int h, const float u[3],
 
 /* Children whose balls touch the cone with its apex `back` below the root,
  * and whose boxes lie between lo and hi along it; where they begin: *first. */
-static inline vg_i4 in_cone4(const struct vg_box8 *n, const struct sides *s,
+static inline vg_i4 in_cone4(const struct vg_box8 *n, const struct vg_sides *s,
                              int h, const struct cone *c, vg_f4 *first)
 {
   vg_f4 along = all4(0), half = all4(0), far = all4(0), reach;
@@ -327,11 +209,11 @@ static inline vg_i4 in_cone4(const struct vg_box8 *n, const struct sides *s,
          & facing4(s, h, c->u, 0);
 }
 
-static inline unsigned in_cone(const struct ahead *x, size_t node,
+static inline unsigned in_cone(const struct vg_ahead *x, size_t node,
                                const struct cone *c, union vg_f8 *first)
 {
   const struct vg_box8 *n = &x->boxes.node[node];
-  const struct sides *s = &x->sides[node];
+  const struct vg_sides *s = &x->sides[node];
 
   return vg_lanes(in_cone4(n, s, 0, c, &first->v[0]),
                   in_cone4(n, s, 1, c, &first->v[1]));
@@ -435,7 +317,7 @@ static void find_centres(struct query *q)
 /* 0: nothing to ask. */
 static int start_query(struct query *q, uint32_t i)
 {
-  const struct ahead *x = q->x;
+  const struct vg_ahead *x = q->x;
   const struct vg_column *c = &x->columns->column[i];
   double l = sqrt(vg_dot(c->dir, c->dir));
 
@@ -453,7 +335,7 @@ static int start_query(struct query *q, uint32_t i)
 
 static void end_query(const struct query *q, double wanted)
 {
-  const struct ahead *x = q->x;
+  const struct vg_ahead *x = q->x;
   const double *d = x->columns->column[q->column].dir;
   double h = x->gap * q->reach / sqrt(vg_dot(d, d));
 
@@ -506,7 +388,7 @@ static void gather_team(struct team *t, const struct vg_boxes *b)
   t->spread = (float)sqrt(spread);
 }
 
-static inline unsigned in_team(const struct ahead *x, size_t node,
+static inline unsigned in_team(const struct vg_ahead *x, size_t node,
                                const struct team *t)
 {
   const struct vg_box8 *n = &x->boxes.node[node];
@@ -523,7 +405,7 @@ static inline unsigned in_team(const struct ahead *x, size_t node,
 
 /* Leaves that any of the team may have to look into; LEAF_MAX + 1: more than
  * is worth listing. */
-static int leaves_of_team(const struct ahead *x, const struct team *t,
+static int leaves_of_team(const struct vg_ahead *x, const struct team *t,
                           size_t leaf[LEAF_MAX])
 {
   const struct vg_boxes *b = &x->boxes;
@@ -549,7 +431,7 @@ static int leaves_of_team(const struct ahead *x, const struct team *t,
   return n;
 }
 
-static void ask(const struct ahead *x, struct team *t)
+static void ask(const struct vg_ahead *x, struct team *t)
 {
   size_t leaf[LEAF_MAX];
   int n;
@@ -572,7 +454,7 @@ static void ask(const struct ahead *x, struct team *t)
 
 static void look_ahead(void *context, size_t first, size_t end, int worker)
 {
-  const struct ahead *x = context;
+  const struct vg_ahead *x = context;
   struct team t;
 
   (void)worker;
@@ -588,219 +470,23 @@ static void look_ahead(void *context, size_t first, size_t end, int worker)
 
 /* --- all ----------------------------------------------------------------- */
 
-static void ahead_release(struct ahead *x)
-{
-  free(x->face_of);
-  free(x->column_of);
-  free(x->slid);
-  free(x->sides);
-  free(x->order);
-  free(x->normal);
-  vg_boxes_release(&x->boxes);
-}
-
-/* Two sharp edges that point at each other face each other with their
- * columns, not with their triangles, whose normals n are across. Such columns
- * lean out of the triangle: n is turned towards them. */
-static void turn_to_edge(const struct ahead *x, size_t tri, double n[3])
-{
-  double (*p)[3] = x->surface->point, out[3] = { 0, 0, 0 }, l;
-  const uint32_t *t = x->surface->tri[tri];
-  uint32_t f = x->face_of[tri];
-
-  if (f == VG_NO_INDEX) return;
-  for (int k = 0; k < 3; k++) {
-    const struct vg_column *c = &x->columns->column[x->columns->face[f][k]];
-    double unit[3] = { 0, 0, 0 }, lean = 0;
-
-    add_direction(c, unit);
-    for (int j = 0; j < 3; j++)
-      lean += unit[j] * (2 * p[t[k]][j] - p[t[(k + 1) % 3]][j] -
-                         p[t[(k + 2) % 3]][j]);
-    if (lean > 0 && vg_dot(unit, n) < SHARP) add_direction(c, out);
-  }
-  for (int k = 0; k < 3; k++) n[k] += out[k];
-  l = sqrt(vg_dot(n, n));
-  for (int k = 0; l > 0 && k < 3; k++) n[k] /= l;
-}
-
-static void measure_normals(void *context, size_t first, size_t end,
-                            int worker)
-{
-  struct ahead *x = context;
-  double (*p)[3] = x->surface->point;
-
-  (void)worker;
-  for (size_t i = first; i < end; i++) {
-    const uint32_t *t = x->boxes.tri[i];
-    double e[3], f[3], n[3], l;
-
-    for (int k = 0; k < 3; k++) {
-      e[k] = p[t[1]][k] - p[t[0]][k];
-      f[k] = p[t[2]][k] - p[t[0]][k];
-    }
-    vg_cross(e, f, n);
-    l = sqrt(vg_dot(n, n));
-    for (int k = 0; k < 3; k++) n[k] = l > 0 ? n[k] / l : 0;
-    if (l > 0) turn_to_edge(x, x->boxes.item[i], n);
-    for (int k = 0; k < 3; k++) x->normal[i][k] = (float)n[k];
-  }
-}
-
-static void range_of(const float *lo, const float *hi, struct sides *s, int i)
-{
-  for (int k = 0; k < 3; k++) {
-    s->mid[k].f[i] = 0.5f * (lo[k] + hi[k]);
-    s->half[k].f[i] = 0.5f * (hi[k] - lo[k]);
-  }
-}
-
-/* Empty children face nothing: their mid - half is NaN. */
-static void measure_child(struct ahead *x, int level, size_t j, int i)
-{
-  const struct vg_boxes *b = &x->boxes;
-  size_t node = b->first[level] + j, child = 8 * j + (size_t)i;
-  float lo[3] = { INFINITY, INFINITY, INFINITY };
-  float hi[3] = { -INFINITY, -INFINITY, -INFINITY }, d = 0;
-  struct sides *s = &x->sides[node];
-
-  for (int k = 0; k < 3; k++) {
-    float h = 0.5f * (b->node[node].hi[k].f[i] - b->node[node].lo[k].f[i]);
-
-    d += h * h;
-  }
-  s->radius.f[i] = sqrtf(d);
-  if (!level && child < b->n) {
-    range_of(x->normal[child], x->normal[child], s, i);
-    return;
-  }
-  if (level && b->first[level - 1] + child < b->first[level]) {
-    const struct sides *below = &x->sides[b->first[level - 1] + child];
-
-    for (int l = 0; l < 8; l++)
-      for (int k = 0; k < 3; k++) {
-        float m = below->mid[k].f[l], h = below->half[k].f[l];
-
-        if (m - h < lo[k]) lo[k] = m - h;
-        if (m + h > hi[k]) hi[k] = m + h;
-      }
-  }
-  range_of(lo, hi, s, i);
-}
-
-struct level { struct ahead *x; int level; };
-
-static void measure_level(void *context, size_t first, size_t end, int worker)
-{
-  const struct level *l = context;
-
-  (void)worker;
-  for (size_t j = first; j < end; j++)
-    for (int i = 0; i < 8; i++) measure_child(l->x, l->level, j, i);
-}
-
-static void measure_sides(struct ahead *x, size_t n_node, int threads)
-{
-  const struct vg_boxes *b = &x->boxes;
-
-  vg_parallel_for(threads, b->n, GRAIN, measure_normals, x);
-  for (int i = 0; i < b->n_level; i++) {
-    struct level l = { x, i };
-    size_t end = i + 1 < b->n_level ? b->first[i + 1] : n_node;
-
-    vg_parallel_for(threads, end - b->first[i], GRAIN, measure_level, &l);
-  }
-}
-
-/* As their faces come in the tree; those without one come last. */
-static vg_status order_columns(struct ahead *x, struct vg_error *err)
-{
-  const struct vg_columns *c = x->columns;
-  uint8_t *seen = vg_calloc(c->n_column, 1);
-  size_t n = 0;
-
-  if (!seen) return vg_fail_memory(err, "an order of the columns");
-  for (size_t i = 0; i < x->boxes.n; i++) {
-    uint32_t f = x->face_of[x->boxes.item[i]];
-
-    for (int k = 0; k < 3 && f != VG_NO_INDEX; k++) {
-      uint32_t column = c->face[f][k];
-
-      if (!seen[column]) x->order[n++] = column;
-      seen[column] = 1;
-    }
-  }
-  for (size_t i = 0; i < c->n_column; i++)
-    if (!seen[i]) x->order[n++] = (uint32_t)i;
-  free(seen);
-  return VG_OK;
-}
-
-/* Columns come by rising root, so those of point p are column_of[p] to
- * column_of[p + 1] - 1. */
-static void index_columns(struct ahead *x)
-{
-  const struct vg_columns *c = x->columns;
-  const struct vg_mesh *m = x->surface;
-  size_t i = 0;
-
-  for (size_t p = 0; p <= m->n_point; p++) {
-    while (i < c->n_column && c->column[i].root < p) i++;
-    x->column_of[p] = (uint32_t)i;
-  }
-  for (size_t t = 0; t < m->n_tri; t++) x->face_of[t] = VG_NO_INDEX;
-  for (size_t f = 0; f < c->n_face; f++)
-    if (c->face_tri[f] != VG_NO_INDEX)
-      x->face_of[c->face_tri[f]] = (uint32_t)f;
-  for (i = 0; i < c->n_column; i++)
-    for (int k = 0; k < 2; k++)
-      if (c->column[i].slide[k] < m->n_patch)
-        x->slid[c->column[i].slide[k]] = 1;
-}
-
-static vg_status prepare(struct ahead *x, int threads, struct vg_error *err)
-{
-  const struct vg_mesh *m = x->surface;
-  struct vg_boxes *b = &x->boxes;
-  vg_status st;
-  size_t n_node;
-
-  st = vg_boxes_build(b, (const double (*)[3])m->point,
-                      (const uint32_t (*)[3])m->tri, m->n_tri, NULL, 0,
-                      threads, err);
-  if (st < 0) return st;
-  n_node = b->n ? b->first[b->n_level - 1] + 1 : 0;
-  x->face_of = vg_alloc(m->n_tri, sizeof *x->face_of);
-  x->column_of = vg_alloc(m->n_point + 1, sizeof *x->column_of);
-  x->slid = vg_calloc(m->n_patch, 1);
-  x->sides = vg_alloc(n_node, sizeof *x->sides);
-  x->normal = vg_alloc(b->n, sizeof *x->normal);
-  x->order = vg_alloc(x->columns->n_column, sizeof *x->order);
-  if (!x->face_of || !x->column_of || !x->slid || !x->sides || !x->normal
-      || !x->order)
-    return vg_fail_memory(err, "what stands in front of the layers");
-  index_columns(x);
-  measure_sides(x, n_node, threads);
-  return order_columns(x, err);
-}
-
 vg_status vg_clear_ahead(const struct vg_mesh *surface,
                          const struct vg_columns *columns,
                          const struct vg_topology *topology, double gap,
                          int threads, const double *reach, double *allowed,
                          struct vg_error *err)
 {
-  struct ahead x = { .surface = surface, .columns = columns,
-                     .topology = topology, .gap = gap, .reach = reach,
-                     .allowed = allowed };
+  struct vg_ahead x = { .surface = surface, .columns = columns,
+                        .topology = topology, .gap = gap, .reach = reach,
+                        .allowed = allowed };
   vg_status st;
 
   if (!(gap > 0))
     return vg_fail(err, VG_ERR_INPUT, "a gap of %g leaves no room for layers: "
                    "it must be more than 0", gap);
-  st = prepare(&x, threads, err);
+  st = vg_ahead_prepare(&x, threads, err);
   if (st == VG_OK && x.boxes.n)
     vg_parallel_for(threads, columns->n_column, GRAIN, look_ahead, &x);
-  ahead_release(&x);
+  vg_ahead_release(&x);
   return st;
 }
