@@ -409,6 +409,7 @@ static vg_status run_stages(struct run *r, const struct arguments *a,
   VG_TRY(close_surface(r, err));
   VG_TRY(vg_run_mesh(m, &r->problem, &r->layers, &r->show, err));
   vg_held_note(&m->held, front_of(r), &r->problem);
+  vg_report_layers_note(&r->layers, &r->problem.surface, &r->problem.notes);
   st = write_all(r, a, err);
 done:
   return st;

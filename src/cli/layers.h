@@ -77,7 +77,13 @@ vg_status vg_layer_stage_write(const struct vg_layer_stage *s,
                                const struct vg_mesh *surface,
                                const char *path, struct vg_error *err);
 
-/** cli/report_layers.c: tables by patch, causes in words, times and rates. */
+/** cli/report_layers.c: a note where whole patches stay without layers since
+ * the first height is larger than their edges allow. On rank 0. */
+void vg_report_layers_note(const struct vg_layer_stage *s,
+                           const struct vg_mesh *surface,
+                           struct vg_notes *notes);
+
+/** Tables by patch, causes in words, times and rates. */
 void vg_report_layers_text(FILE *to, const struct vg_layer_stage *s,
                            const struct vg_mesh *surface);
 json_t *vg_report_layers_json(const struct vg_layer_stage *s,

@@ -122,6 +122,31 @@ static size_t bare_faces(const struct vg_patch_layers *w)
   return percent > 0 ? (size_t)((double)w->n_face * percent / 100 + 0.5) : 0;
 }
 
+void vg_report_layers_note(const struct vg_layer_stage *s,
+                           const struct vg_mesh *surface,
+                           struct vg_notes *notes)
+{
+  char list[12 * VG_SHOWN_DEFECTS + 8] = "";
+  size_t n = 0, at = 0;
+  double first = 0;
+
+  for (size_t i = 0; i < s->n_wall; i++) {
+    const struct vg_patch_layers *w = &s->wall[i];
+
+    if (!w->n_face || bare_faces(w) < w->n_face) continue;
+    if (n++ < VG_SHOWN_DEFECTS)
+      at += (size_t)snprintf(list + at, sizeof list - at, " %d",
+                             (int)patch_of(surface, w)->id);
+    if (n == VG_SHOWN_DEFECTS + 1) snprintf(list + at, sizeof list - at, " ...");
+    first = fmax(first, s->request[w->patch].law.delta1);
+  }
+  if (n)
+    vg_note(notes, "no layers on %zu of %zu walls (patch%s%s): their first "
+            "height, %g, is above layer_end times the edge there; is it in "
+            "the unit of the surface?", n, s->n_wall, n > 1 ? "es" : "", list,
+            first);
+}
+
 static void causes(FILE *to, const struct vg_layer_stage *s,
                    const struct vg_mesh *surface)
 {

@@ -11,6 +11,7 @@
 #include "cli/walls.h"
 #include "core/fill.h"
 #include "layers/join.h"
+#include "layers/law.h"
 #include "partition/advance.h"
 
 #define HUGE_SIZE 1e60 /* beyond this the predicates are not safe */
@@ -502,6 +503,9 @@ static vg_status check_layers(const struct vg_settings *s,
                               struct vg_error *err)
 {
   const struct vg_layer_settings *l = &s->layer;
+  double first = l->y_plus > 0 && l->reynolds > 0 && l->length > 0
+                 ? vg_first_height(l->y_plus, l->reynolds, l->length)
+                 : l->first;
 
   if (l->first > 0 && l->y_plus > 0)
     return vg_fail(err, VG_ERR_INPUT, "first and y_plus are both given; give "
@@ -518,6 +522,10 @@ static vg_status check_layers(const struct vg_settings *s,
   if (!isnan(l->cap) && l->cap > 0 && l->cap < 1)
     return vg_fail(err, VG_ERR_INPUT, "layer_cap is %g; it must be at least "
                    "1, or 0 for none", l->cap);
+  if (l->total > 0 && first > l->total)
+    return vg_fail(err, VG_ERR_INPUT, "the first height, %g, is above "
+                   "layer_total, %g: no layer has room; lower it or raise the "
+                   "total", first, l->total);
   return check_layer_rows(s, err);
 }
 

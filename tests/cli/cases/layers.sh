@@ -93,6 +93,8 @@ refuse "walls: no patch of the surface is within 77-99" --walls 77-99 --first 1
 wrong=2 refuse "'3-x' is no list of patches" --walls 3-x --first 1
 wrong=2 refuse "'3-1' is no list of patches" --walls 3-1 --first 1
 refuse "patch 5 is in both lists" --walls 5 --slip 4-6 --first 1
+wrong=2 refuse "the first height, 0.1, is above layer_total, 0.01" --walls 5 \
+  --first 0.1 --layer-total 0.01
 wrong=2 refuse "y_plus needs reynolds" --walls 5 --y-plus 1
 refuse "layers are asked for, but no patch is known to be a wall" \
   --layers yes --first 1e-3
@@ -161,3 +163,8 @@ done
 exists foam/box.openfoam/constant/polyMesh/owner foam/box.b8.ugrid
 same foam/box.b8.ugrid mixed/box.b8.ugrid
 [ "$(ls -A foam | grep -c '^\.')" = 0 ] || fail "a hidden folder is left"
+
+# A first height in another unit than the surface: no layers, and a question.
+vanguard mesh -q -p p/box --walls 5 --first 100 --out huge
+exits 0
+says out "no layers on 1 of 1 walls (patch 5): their first height, 100"
