@@ -220,17 +220,30 @@ int vg_format_holds_cells(const char *path)
   return has;
 }
 
+vg_status vg_format_unknown(const char *path, struct vg_error *err)
+{
+  static const char *const cad[] = { "stp", "step", "igs", "iges", "brep",
+                                     "x_t", "x_b", "catpart", "sldprt" };
+  const struct format *f = find(path, without_gz(path));
+
+  for (size_t i = 0; i < sizeof cad / sizeof *cad; i++)
+    if (ends_in(path, without_gz(path), cad[i]))
+      return vg_fail(err, VG_ERR_FORMAT, "%s: this is CAD geometry; mesh its "
+                     "surface first, as 'gmsh -2 FILE -o NAME.stl' does, and "
+                     "give the triangles; read are %s", path,
+                     vg_format_list());
+  return vg_fail(err, VG_ERR_FORMAT, "%s: %s; known are %s", path,
+                 f ? "this format is written only"
+                   : "the suffix names no format", vg_format_list());
+}
+
 static vg_status read_by_name(const char *path, struct vg_mesh *out,
                               struct vg_read_info *info, struct vg_error *err)
 {
   const struct format *f = find(path, without_gz(path));
   vg_status st;
 
-  if (!f || !f->read)
-    return vg_fail(err, VG_ERR_FORMAT,
-                   "%s: %s; known are %s", path,
-                   f ? "this format is written only"
-                     : "the suffix names no format", vg_format_list());
+  if (!f || !f->read) return vg_format_unknown(path, err);
   st = f->read(path, out, &info->turned, err);
   if (st < 0) return st;
   info->format = f->suffix;

@@ -40,6 +40,10 @@ int vg_format_holds_cells(const char *path);
 /** "stl, tri, ...": all suffixes for a message. Static string. */
 const char *vg_format_list(void);
 
+/** VG_ERR_FORMAT: the suffix of path is none that is read, with what is; of CAD
+ * geometry with what to do. */
+vg_status vg_format_unknown(const char *path, struct vg_error *err);
+
 /** Read a file by its suffix: boundary and cells. A .cogsg needs its .bc
  * beside it; a .front uses the .d3m beside it, if any, for its patches.
  * *out is untouched on failure; an unknown suffix is VG_ERR_FORMAT and the
