@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/memory.h"
@@ -68,6 +69,13 @@ void vg_problem_release(struct vg_problem *p)
 static int exists(const char *path)
 {
   return access(path, F_OK) == 0;
+}
+
+static int is_file(const char *path)
+{
+  struct stat s;
+
+  return stat(path, &s) == 0 && S_ISREG(s.st_mode);
 }
 
 /* Path of stem.suffix where that file exists, else "". NULL: no memory. */
@@ -154,6 +162,7 @@ static vg_status find_stem(const char *name, struct vg_input_files *f,
   }
   st = find_surface(name, &f->surface, err);
   if (st < 0 || *f->surface || *f->d3m) return st;
+  if (is_file(name)) return vg_format_unknown(name, err);
   return vg_fail(err, VG_ERR_INPUT, "%s: no project here: neither %s.d3m nor "
                  "%s.front nor a surface such as %s.lb8.ugrid or %s.stl; give "
                  "the stem of a project or the full name of a surface file",

@@ -37,6 +37,16 @@ int vg_cli_fail(const struct vg_error *err)
   return vg_cli_exit(err);
 }
 
+/* errno says why not. */
+static int is_folder(const char *path)
+{
+  struct stat s;
+
+  if (stat(path, &s)) return 0;
+  errno = ENOTDIR;
+  return S_ISDIR(s.st_mode);
+}
+
 vg_status vg_cli_make_folder(const char *path, struct vg_error *err)
 {
   char *part = strdup(path);
@@ -49,7 +59,7 @@ vg_status vg_cli_make_folder(const char *path, struct vg_error *err)
     while (*end && *end != '/') end++;
     kept = *end;
     *end = 0;
-    if (mkdir(part, 0777) && errno != EEXIST)
+    if (mkdir(part, 0777) && (errno != EEXIST || !is_folder(part)))
       st = vg_fail(err, VG_ERR_IO, "%s: cannot create this folder: %s", part,
                    strerror(errno));
     *end = kept;

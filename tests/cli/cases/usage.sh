@@ -129,3 +129,18 @@ else
   exits 1
   says err "closed: cannot write in this folder: Permission denied"
 fi
+
+# What is no surface, and what is no folder.
+: >wing.step
+for command in check mesh; do
+  vanguard $command -q wing.step
+  exits 1
+  says err "wing.step: this is CAD geometry; mesh its surface first"
+done
+: >wing.txt
+vanguard mesh -q wing.txt
+exits 1
+says err "wing.txt: the suffix names no format; known are .stl"
+vanguard mesh -q -p p/box --out wing.txt
+exits 1
+says err "wing.txt: cannot create this folder: Not a directory"
