@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "core/surface_parts.h"
 
 struct check {
@@ -20,6 +21,7 @@ struct check {
   struct vg_edges e;
   struct vg_tree tree;
   struct vg_crossing cross;
+  uint32_t *first;          /* [s.n] lowest face with the same nodes */
   uint32_t (*fan)[3];       /* [s.n] */
   uint8_t *flip;            /* [s.n] faces to turn */
   uint32_t *shell;          /* [s.n] */
@@ -30,6 +32,7 @@ static void release(struct check *c)
 {
   free(c->same);
   free(c->owner);
+  free(c->first);
   free(c->fan);
   free(c->flip);
   free(c->shell);
@@ -188,11 +191,10 @@ done:
 
 static vg_status look_at_faces(struct check *c)
 {
-  uint32_t *first = NULL;
+  const uint32_t *first = c->first;
   double at[3];
-  vg_status st;
+  vg_status st = VG_OK;
 
-  VG_TRY(vg_faces_duplicate(&c->s, &first, c->err));
   for (size_t f = 0; f < c->s.n; f++) {
     size_t g = source(c, (uint32_t)f);
 
@@ -207,7 +209,6 @@ static vg_status look_at_faces(struct check *c)
                  SIZE_MAX, SIZE_MAX, at));
   }
 done:
-  free(first);
   return st;
 }
 
@@ -373,6 +374,56 @@ static vg_status list_owners(struct check *c)
   return VG_OK;
 }
 
+/* What follows from the nodes of the faces. */
+static vg_status build_topology(struct check *c, struct vg_error *err)
+{
+  struct vg_surface_report *r = c->r;
+  vg_status st;
+
+  VG_TRY(vg_edges_build(&c->e, &c->s, err));
+  VG_TRY(vg_orient_faces(&c->s, &c->e, c->flip, err));
+  VG_TRY(vg_label_fans(&c->s, &c->e, c->flip, &c->fan, err));
+  if (!c->o->repair) memset(c->flip, 0, c->s.n);
+  VG_TRY(vg_count_pieces(&c->s, &r->n_piece, err));
+  VG_TRY(vg_label_shells(&c->s, &c->e, c->shell, &r->n_shell, err));
+  for (size_t t = 0; t < c->m->n_tri; t++) r->tri_shell[t] = c->shell[t];
+  VG_TRY(vg_faces_duplicate(&c->s, &c->first, err));
+done:
+  return st;
+}
+
+/* The tree follows from coordinates and has its own threads; what follows from
+ * the nodes is of one, beside them. */
+struct halves {
+  struct check *c;
+  vg_status st[2];
+  struct vg_error err[2];
+};
+
+static void build_half(void *context, size_t first, size_t end, int worker)
+{
+  struct halves *h = context;
+  struct check *c = h->c;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++)
+    h->st[i] = i ? vg_tree_build(&c->tree, &c->s, c->o->threads, &h->err[i])
+                 : build_topology(c, &h->err[i]);
+}
+
+static vg_status build_halves(struct check *c)
+{
+  struct halves h = { .c = c };
+
+  vg_parallel_for(c->o->threads, 2, 1, build_half, &h);
+  for (int i = 0; i < 2; i++)
+    if (h.st[i] < 0) {
+      if (c->err) *c->err = h.err[i];
+      return h.st[i];
+    }
+  return VG_OK;
+}
+
 static vg_status build(struct check *c)
 {
   struct vg_surface_report *r = c->r;
@@ -381,8 +432,6 @@ static vg_status build(struct check *c)
   VG_TRY(vg_points_same(c->m, &c->same, c->err));
   VG_TRY(list_owners(c));
   VG_TRY(vg_faces_build(&c->s, c->m, c->same, c->err));
-  VG_TRY(vg_edges_build(&c->e, &c->s, c->err));
-  VG_TRY(vg_tree_build(&c->tree, &c->s, c->o->threads, c->err));
   c->flip = vg_calloc(c->s.n, 1);
   c->shell = vg_alloc(c->s.n, sizeof *c->shell);
   r->face_kinds = vg_calloc(c->m->n_tri + c->m->n_quad,
@@ -390,12 +439,7 @@ static vg_status build(struct check *c)
   r->tri_shell = vg_alloc(c->m->n_tri, sizeof *r->tri_shell);
   if (!c->flip || !c->shell || !r->face_kinds || !r->tri_shell)
     VG_TRY(vg_fail_memory(c->err, "the surface check"));
-  VG_TRY(vg_orient_faces(&c->s, &c->e, c->flip, c->err));
-  VG_TRY(vg_label_fans(&c->s, &c->e, c->flip, &c->fan, c->err));
-  if (!c->o->repair) memset(c->flip, 0, c->s.n);
-  VG_TRY(vg_count_pieces(&c->s, &r->n_piece, c->err));
-  VG_TRY(vg_label_shells(&c->s, &c->e, c->shell, &r->n_shell, c->err));
-  for (size_t t = 0; t < c->m->n_tri; t++) r->tri_shell[t] = c->shell[t];
+  st = build_halves(c);
 done:
   return st;
 }
