@@ -94,8 +94,9 @@ done:
   return st;
 }
 
-/* What the first rank of the node made, with status st, on the others too.
- * Collective; without layers NULL. */
+/* What the first rank of the node made, with status st, on the others too:
+ * layers first, which those unpack while it writes the sizes. Collective;
+ * without layers NULL. */
 static vg_status share_with_node(struct vg_run *r, vg_status st,
                                  const struct vg_mesh *surface,
                                  struct vg_layers *layers,
@@ -104,15 +105,16 @@ static vg_status share_with_node(struct vg_run *r, vg_status st,
 {
   int makes = leads_node(r) && vg_comm_node_size(r->comm) > 1;
   struct vg_bytes layer = {0, NULL};
+  vg_status own = VG_OK;
 
   if (st >= 0 && makes && layers) st = vg_layers_pack(layers, &layer, err);
   VG_TRY(vg_comm_agree(r->comm, st, err));
+  if (layers) own = vg_comm_node_bcast(r->comm, &layer, err);
+  if (own >= 0 && layers && !leads_node(r))
+    own = vg_layers_unpack(&layer, surface, layers, err);
   st = vg_sizing_share(r->comm, sizing, err);
-  VG_TRY(vg_comm_agree(r->comm, st, err));
-  r->common = vg_sizing_common(*sizing);
-  if (layers) st = vg_comm_node_bcast(r->comm, &layer, err);
-  if (st >= 0 && layers && !leads_node(r))
-    st = vg_layers_unpack(&layer, surface, layers, err);
+  if (st >= 0) r->common = vg_sizing_common(*sizing);
+  if (st >= 0) st = own;
   if (st >= 0) st = vg_run_stopped(err);
   st = vg_comm_agree(r->comm, st, err);
 done:
