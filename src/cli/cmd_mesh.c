@@ -257,10 +257,7 @@ static vg_status finish(struct run *r, const struct arguments *a,
   json_t *report = NULL;
   vg_status st;
 
-  vg_comm_bind_node(r->mesh.comm, 1);   /* the others wait asleep */
-  st = vg_outputs_digest(&r->outputs, r->problem.threads, err);
-  vg_comm_bind_node(r->mesh.comm, 0);
-  if (st < 0) goto done;
+  VG_TRY(vg_outputs_digest(&r->outputs, err));
   r->time_digest = vg_display_now() - t;
   if (a->timeline) VG_TRY(write_timeline(r, err));
   VG_TRY(vg_outputs_add(&r->outputs, "report.json", err));

@@ -42,8 +42,7 @@ struct vg_problem {
   size_t n_welded, n_dropped;      /* by the weld */
   struct vg_surface_report check;
   int require_bc;                  /* the input gives conditions */
-  int threads;                     /* of the node, for its first rank
-                                      alone; 0: one per core */
+  int threads;                     /* for the check; 0: one per core */
   struct vg_domain_report domain;
   struct vg_notes notes;
 };

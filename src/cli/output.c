@@ -539,13 +539,13 @@ vg_status vg_outputs_mesh(struct vg_outputs *o, const struct vg_problem *p,
   return vg_comm_agree(comm, st, err);
 }
 
-static vg_status digest_file(const char *path, int threads,
-                             struct vg_outputs_file *f, struct vg_error *err)
+static vg_status digest_file(const char *path, struct vg_outputs_file *f,
+                             struct vg_error *err)
 {
   struct vg_digest d = {{0, 0}};
   int fd = open(path, O_RDONLY), bad = 1, why;
 
-  if (fd >= 0) bad = vg_digest_file(fd, threads, &d, &f->bytes);
+  if (fd >= 0) bad = vg_digest_file(fd, &d, &f->bytes);
   why = errno;
   if (fd >= 0) close(fd);
   if (bad) return vg_fail(err, VG_ERR_IO, "%s: cannot be read back: %s", path,
@@ -554,8 +554,7 @@ static vg_status digest_file(const char *path, int threads,
   return VG_OK;
 }
 
-vg_status vg_outputs_digest(struct vg_outputs *o, int threads,
-                            struct vg_error *err)
+vg_status vg_outputs_digest(struct vg_outputs *o, struct vg_error *err)
 {
   vg_status st = VG_OK;
 
@@ -563,8 +562,7 @@ vg_status vg_outputs_digest(struct vg_outputs *o, int threads,
     char *path = vg_outputs_aside(o, o->file[i].suffix);
 
     if (!path) st = vg_fail_memory(err, "the output paths");
-    else if (!o->file[i].is_case)
-      st = digest_file(path, threads, &o->file[i], err);
+    else if (!o->file[i].is_case) st = digest_file(path, &o->file[i], err);
     free(path);
   }
   return st;

@@ -82,8 +82,7 @@ vg_status vg_outputs_mesh(struct vg_outputs *o, const struct vg_problem *p,
                           int threads, struct vg_error *err);
 
 /** Size and XXH3 digest of every file there is. On rank 0. */
-vg_status vg_outputs_digest(struct vg_outputs *o, int threads,
-                            struct vg_error *err);
+vg_status vg_outputs_digest(struct vg_outputs *o, struct vg_error *err);
 
 /** Register a file that the caller writes into the hidden folder. */
 vg_status vg_outputs_add(struct vg_outputs *o, const char *suffix,

@@ -25,9 +25,8 @@ struct vg_digest vg_digest_of(struct vg_digest seed, size_t n,
                               const void *data);
 
 /** XXH3-128 of what is left in a file, as xxhsum -H2 prints it, and the number
- * of bytes. With threads > 1 the next part is read while one is hashed.
- * 0, or -1 with errno set. Threads: safe. */
-int vg_digest_file(int fd, int threads, struct vg_digest *d, uint64_t *bytes);
+ * of bytes. 0, or -1 with errno set. Threads: safe. */
+int vg_digest_file(int fd, struct vg_digest *d, uint64_t *bytes);
 
 struct vg_store;
 

@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include "base/memory.h"
-#include "base/parallel.h"
 #include "partition/store_parts.h"
 
 #define XXH_INLINE_ALL
@@ -16,74 +15,38 @@ static struct vg_digest hash(const void *data, size_t n)
   return (struct vg_digest){{h.high64, h.low64}};
 }
 
-/* Read in parts: a mapped file would count as memory of the program. One part
- * is hashed while the next is read; parts are large since each takes a thread
- * to be started. */
-enum { PART = 4 << 20 };
+enum { PART = 1 << 20 };
 
-struct reading {
-  int fd, now;               /* part[now] is hashed */
-  XXH3_state_t *state;
-  char *part[2];
-  size_t n[2];
-  int why;                   /* errno of a read that failed */
-};
-
-static void read_part(struct reading *r, int k)
-{
-  r->n[k] = 0;
-  while (r->n[k] < PART) {
-    ssize_t n = read(r->fd, r->part[k] + r->n[k], PART - r->n[k]);
-
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0) r->why = errno;
-    if (n <= 0) return;
-    r->n[k] += (size_t)n;
-  }
-}
-
-static void step(void *context, size_t first, size_t end, int worker)
-{
-  struct reading *r = context;
-
-  (void)worker;
-  for (size_t i = first; i < end; i++)
-    if (i) read_part(r, !r->now);
-    else XXH3_128bits_update(r->state, r->part[r->now], r->n[r->now]);
-}
-
-static int digest_parts(struct reading *r, int threads, struct vg_digest *d,
-                        uint64_t *bytes)
+/* Read in parts: a mapped file would count as memory of the program. */
+static int digest_parts(int fd, XXH3_state_t *state, char *part,
+                        struct vg_digest *d, uint64_t *bytes)
 {
   XXH128_hash_t h;
+  ssize_t n;
 
   *bytes = 0;
-  XXH3_128bits_reset(r->state);
-  read_part(r, 0);
-  for (; r->n[r->now] && !r->why; r->now = !r->now) {
-    vg_parallel_for(threads, 2, 1, step, r);
-    *bytes += r->n[r->now];
+  XXH3_128bits_reset(state);
+  while ((n = read(fd, part, PART)) != 0) {
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) return -1;
+    XXH3_128bits_update(state, part, (size_t)n);
+    *bytes += (uint64_t)n;
   }
-  if (r->why) {
-    errno = r->why;
-    return -1;
-  }
-  h = XXH3_128bits_digest(r->state);
+  h = XXH3_128bits_digest(state);
   *d = (struct vg_digest){{h.high64, h.low64}};
   return 0;
 }
 
-int vg_digest_file(int fd, int threads, struct vg_digest *d, uint64_t *bytes)
+int vg_digest_file(int fd, struct vg_digest *d, uint64_t *bytes)
 {
-  struct reading r = { .fd = fd, .state = XXH3_createState(),
-                       .part = { vg_alloc(PART, 1), vg_alloc(PART, 1) } };
+  XXH3_state_t *state = XXH3_createState();
+  char *part = vg_alloc(PART, 1);
   int bad = -1;
 
-  if (r.state && r.part[0] && r.part[1])
-    bad = digest_parts(&r, threads, d, bytes);
+  if (state && part) bad = digest_parts(fd, state, part, d, bytes);
   else errno = ENOMEM;
-  for (int k = 0; k < 2; k++) free(r.part[k]);
-  XXH3_freeState(r.state);
+  free(part);
+  XXH3_freeState(state);
   return bad;
 }
 

@@ -1,7 +1,6 @@
 /* What finished tasks left is found again, whole or not at all; directories
  * that are not for this run are refused in words. */
 #define _GNU_SOURCE
-#include <errno.h>
 #include <fcntl.h>
 #include <ftw.h>
 #include <pthread.h>
@@ -176,44 +175,6 @@ static void digest_depends_on_all(void **state)
       vg_digest_of(vg_digest_of(zero, 2, "ab"), 1, "c"),
       vg_digest_of(vg_digest_of(zero, 1, "a"), 2, "bc")));
   assert_false(digests_equal(vg_digest_of(zero, 0, NULL), zero));
-}
-
-/* Parts are read ahead by another thread; sizes around those of the parts. */
-static void digest_of_a_file(void **state)
-{
-  static const size_t part = 4 << 20;
-  const size_t size[] = { 0, 1, part - 1, part, part + 1, 2 * part,
-                          3 * part + 7 };
-  unsigned char *data = malloc(3 * part + 7);
-  FILE *f = tmpfile();
-
-  (void)state;
-  assert_true(data && f);
-  for (size_t i = 0; i < 3 * part + 7; i++)
-    data[i] = (unsigned char)(i * 2654435761u >> 24);
-  for (size_t k = 0; k < sizeof size / sizeof *size; k++) {
-    struct vg_digest want = zero, got = zero;
-    uint64_t bytes = 0;
-
-    rewind(f);
-    assert_int_equal(ftruncate(fileno(f), 0), 0);
-    assert_int_equal(fwrite(data, 1, size[k], f), size[k]);
-    assert_int_equal(fflush(f), 0);
-    for (int threads = 1; threads < 4; threads++) {
-      assert_int_equal(lseek(fileno(f), 0, SEEK_SET), 0);
-      assert_int_equal(vg_digest_file(fileno(f), threads, &got, &bytes), 0);
-      assert_int_equal(bytes, size[k]);
-      if (threads == 1) want = got;
-      assert_true(digests_equal(got, want));
-    }
-    /* XXH3-128 of nothing */
-    if (!size[k]) assert_int_equal(got.word[0], 0x99aa06d3014798d8u);
-  }
-  assert_int_equal(vg_digest_file(-1, 2, &(struct vg_digest){{0, 0}},
-                                  &(uint64_t){0}), -1);
-  assert_int_equal(errno, EBADF);
-  fclose(f);
-  free(data);
 }
 
 /* --- records ------------------------------------------------------------- */
@@ -589,7 +550,6 @@ int main(void)
 #define TEST(name) cmocka_unit_test_setup_teardown(name, clean, clean)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(digest_depends_on_all),
-    cmocka_unit_test(digest_of_a_file),
     TEST(kept_and_found),
     TEST(a_damaged_record_is_none),
     TEST(a_record_of_another_key),
