@@ -76,6 +76,7 @@ static int is_leaf(const struct vg_outlook_node *n)
 
 static void print_mesh(const struct vg_plan *p)
 {
+  const struct vg_notes *notes = &p->problem.notes;
   char a[32], b[32];
 
   printf("%s\n\nMesh expected\n", p->problem.settings.title);
@@ -94,6 +95,7 @@ static void print_mesh(const struct vg_plan *p)
     printf("  %-24s %15s\n", "  of layers", count(p->layer_point, a));
   printf("  %-24s %15s\n", "triangles around it",
          count((double)p->front->n_tri, a));
+  for (size_t i = 0; i < notes->n; i++) printf("  note: %s\n", notes->text[i]);
   printf("\nMemory\n  shared, on every rank %s; cells of a rank %.0f B each; "
          "a thread %s\n", bytes(p->shared, a), p->per_cell,
          bytes(p->per_thread, b));
@@ -217,11 +219,8 @@ static void print_best(const struct vg_plan *p)
 
 void vg_plan_text(const struct vg_plan *p)
 {
-  const struct vg_notes *notes = &p->problem.notes;
-
   print_mesh(p);
   print_files(p);
-  for (size_t i = 0; i < notes->n; i++) printf("  note: %s\n", notes->text[i]);
   print_tree(p);
   printf("\nForecast: on one core %.2f s before the tasks, %.2f s of tasks, "
          "%.2f s behind them\n  (shared by all workers but for %.2f s); of "

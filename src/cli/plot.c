@@ -231,9 +231,10 @@ vg_status vg_plot_timeline(const char *path, const struct vg_timeline *t,
 
   VG_TRY(measure(t, &l, err));
   bottom = l.top + l.height * (double)l.n;
-  snprintf(subtitle, sizeof subtitle, "%d ranks x %d threads, %s cells, %zu "
+  snprintf(subtitle, sizeof subtitle, "%d rank%s x %d thread%s, %s cells, %zu "
            "tasks; cut and fill %s s, workers %d %% busy, imbalance %s",
-           (int)t->spans.n_rank, (int)t->spans.n_thread,
+           (int)t->spans.n_rank, t->spans.n_rank > 1 ? "s" : "",
+           (int)t->spans.n_thread, t->spans.n_thread > 1 ? "s" : "",
            vg_cli_count((unsigned long long)t->n_cell, count), t->spans.n,
            two_decimals(t->spans.wall, wall),
            percent(vg_spans_busy(&t->spans), 1),
@@ -322,7 +323,8 @@ static void draw_bins(struct vg_svg *svg, const struct sizes *z,
                   from - 1, 370 - top, VG_SVG_ORANGE);
   }
   if (z->n)
-    mark(svg, &x, z->sum / (double)z->n, 105, VG_SVG_BLUE, "mean");
+    mark(svg, &x, floor(z->sum / (double)z->n + 0.5), 105, VG_SVG_BLUE,
+         "mean");
   if (target > 0) mark(svg, &x, target, 89, VG_SVG_RED, "asked for");
 }
 

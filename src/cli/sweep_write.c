@@ -359,14 +359,15 @@ static vg_status add_measured(const struct vg_sweep *s,
                               struct vg_error *err)
 {
   const struct vg_sweep_options *o = s->o;
+  int fixed = by_ranks ? first->threads : first->ranks;
   struct line *to;
   vg_status st;
 
   VG_TRY(new_line(l, first, s->n, &to, err));
   name_mesh(first, to->label, sizeof to->label);
   if ((by_ranks ? o->threads.n : o->ranks.n) > 1)
-    snprintf(to->label + strlen(to->label), 24, by_ranks ? ", %d threads"
-             : ", %d ranks", by_ranks ? first->threads : first->ranks);
+    snprintf(to->label + strlen(to->label), 24, ", %d %s%s", fixed,
+             by_ranks ? "thread" : "rank", fixed > 1 ? "s" : "");
   for (size_t i = 0; i < s->n; i++) {
     const struct vg_sweep_case *c = &s->item[i];
     double seconds = NAN;
