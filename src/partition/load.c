@@ -32,6 +32,18 @@
  * Full from this gradient on. */
 #define GRADED 0.21
 #define GRADIENT 0.05
+/* Where h changes by more than this times itself across a cube, the cube's
+ * parts are added up, to this depth. */
+#define STEEP 1.2
+#define STEEP_DEPTH 4
+/* Cells next to a front follow its edges: away from it theirs grow by no more
+ * than this for each length, however fast the field lets them. */
+#define PACE 1.5
+/* From here to PACE the share that GRADED adds goes down to none. */
+#define PACE_FROM 1.0
+/* Cells for each face of the front at least: what meshes have in which hardly
+ * a point is away from the front. */
+#define CELLS_PER_FACE 1.5
 /* A cube with more triangles holds details that its density need not know. */
 #define CROWD 400
 /* Places of the root cube that are tried when volumes do not agree. */
@@ -47,6 +59,8 @@ struct cubes {
 struct maker {
   const struct vg_load_tree *tree;
   const struct vg_sizing *sizing;
+  const struct vg_sizing *pace;  /* what cells next to the front can follow,
+                                where the field is steeper; else NULL */
   double per_cube;
   double narrow, wide;       /* divides, multiplies the widths allowed */
   size_t n_branch, cap_branch, large;
@@ -60,33 +74,82 @@ struct maker {
   } *branch;
 };
 
-/* Of a node: mean of 1 / h^3 and that times the correction for a gradient. A
- * rule of four points, exact for quadratics. */
-struct density { double cubes, cells; };
+/* Of a node: mean of 1 / h^3, that times the correction for a gradient, and
+ * the gradient. */
+struct density { double cubes, cells, slope; };
 
-static struct density mean_density(const struct maker *m,
-                                   const struct vg_load_node *node)
+static double edge_at(const struct maker *m, const double x[3])
+{
+  const double h = vg_sizing_at(m->sizing, x);
+
+  return m->pace ? fmin(h, vg_sizing_at(m->pace, x)) : h;
+}
+
+/* Of a cube around mid. A rule of four points, exact for quadratics. */
+static struct density density_around(const struct maker *m,
+                                     const double mid[3], double half)
 {
   static const int sign[4][3] = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1},
                                  {-1, -1, 1}};
-  const struct vg_load_tree *t = m->tree;
-  const double half = 0.5 * vg_load_side(node) * t->unit;
   const double off = 0.57735026918962576 * half;
-  double sum = 0, g[3] = { 0, 0, 0 }, gg = 0, slope;
+  double sum = 0, g[3] = { 0, 0, 0 }, gg = 0, slope, graded;
 
   for (int i = 0; i < 4; i++) {
     double x[3], h;
 
-    for (int k = 0; k < 3; k++)
-      x[k] = t->lo[k] + node->at[k] * t->unit + half + sign[i][k] * off;
-    h = vg_sizing_at(m->sizing, x);
+    for (int k = 0; k < 3; k++) x[k] = mid[k] + sign[i][k] * off;
+    h = edge_at(m, x);
     sum += 1 / (h * h * h);
     for (int k = 0; k < 3; k++) g[k] += sign[i][k] * h;
   }
   for (int k = 0; k < 3; k++) gg += g[k] * g[k];
-  slope = sqrt(gg) / (4 * off * GRADIENT);
+  slope = sqrt(gg) / (4 * off);
   sum /= 4;
-  return (struct density){ sum, sum * (1 + GRADED * fmin(slope, 1)) };
+  graded = fmin(slope / GRADIENT, 1)
+           * fmax(0, fmin((PACE - slope) / (PACE - PACE_FROM), 1));
+  return (struct density){ sum, sum * (1 + GRADED * graded), slope };
+}
+
+static struct density mean_density(const struct maker *m,
+                                   const struct vg_load_node *node)
+{
+  const struct vg_load_tree *t = m->tree;
+  const double half = 0.5 * vg_load_side(node) * t->unit;
+  double mid[3];
+
+  for (int k = 0; k < 3; k++)
+    mid[k] = t->lo[k] + node->at[k] * t->unit + half;
+  return density_around(m, mid, half);
+}
+
+/* Whether h changes so much across a cube that the rule misses what is near
+ * its finest end. */
+static int is_steep(struct density d, double half)
+{
+  const double change = 2 * half * d.slope;
+
+  return change * change * change * d.cubes > STEEP * STEEP * STEEP;
+}
+
+/* The same from parts of the cube. */
+static struct density add_up(const struct maker *m, const double mid[3],
+                             double half, int depth)
+{
+  struct density sum = density_around(m, mid, half);
+
+  if (!depth || !is_steep(sum, half)) return sum;
+  sum = (struct density){ 0, 0, 0 };
+  for (int o = 0; o < 8; o++) {
+    struct density d;
+    double x[3];
+
+    for (int k = 0; k < 3; k++)
+      x[k] = mid[k] + (o >> k & 1 ? 0.5 : -0.5) * half;
+    d = add_up(m, x, 0.5 * half, depth - 1);
+    sum.cubes += d.cubes / 8;
+    sum.cells += d.cells / 8;
+  }
+  return sum;
 }
 
 /* Cube root to single precision: h is of no use beyond. */
@@ -104,6 +167,37 @@ static double cube_root(double x)
   return ldexp(y, e / 3);
 }
 
+/* The parts of a cube around samples of it that lie inside, of all of one that
+ * is: how many, and the density there. */
+static int sample_steep(const struct maker *m, const struct vg_load_node *node,
+                        const int32_t owner[VG_LOAD_SAMPLES],
+                        struct density *density)
+{
+  const struct vg_load_tree *t = m->tree;
+  const double half = 0.25 * vg_load_side(node) * t->unit;
+  struct density sum = { 0, 0, density->slope };
+  int inside = 0;
+
+  for (int i = 0; i < VG_LOAD_SAMPLES; i++) {
+    struct density d;
+    double x[3];
+
+    if (owner[i] < 1) continue;
+    for (int k = 0; k < 3; k++)
+      x[k] = t->lo[k] + node->at[k] * t->unit + (i >> k & 1 ? 3 : 1) * half;
+    d = add_up(m, x, half, STEEP_DEPTH - 1);
+    sum.cubes += d.cubes;
+    sum.cells += d.cells;
+    inside++;
+  }
+  if (inside) {
+    sum.cubes /= inside;
+    sum.cells /= inside;
+    *density = sum;
+  }
+  return inside;
+}
+
 /* Samples of a cube that the front passes: how many are inside, and the
  * density there. Without bias, however wide the cube is. */
 static int sample(const struct maker *m, const struct vg_load_stack *s,
@@ -111,12 +205,15 @@ static int sample(const struct maker *m, const struct vg_load_stack *s,
 {
   const struct vg_load_tree *t = m->tree;
   const double more = density->cells / density->cubes;
-  int32_t owner[VG_LOAD_SAMPLES];
+  int32_t owner[VG_LOAD_SAMPLES] = { 1, 1, 1, 1, 1, 1, 1, 1 };
   uint32_t at[3];
   double sum = 0;
   int inside = 0;
 
-  vg_load_sample(t, s, node, owner, at);
+  if (node->n) vg_load_sample(t, s, node, owner, at);
+  if (is_steep(*density, 0.5 * vg_load_side(node) * t->unit))
+    return sample_steep(m, node, owner, density);
+  if (!node->n) return VG_LOAD_SAMPLES;
   for (int i = 0; i < VG_LOAD_SAMPLES; i++) {
     double x[3], h;
 
@@ -126,7 +223,7 @@ static int sample(const struct maker *m, const struct vg_load_stack *s,
 
       x[k] = t->lo[k] + p * t->unit;
     }
-    h = vg_sizing_at(m->sizing, x);
+    h = edge_at(m, x);
     sum += 1 / (h * h * h);
     inside++;
   }
@@ -184,9 +281,8 @@ static int refine(const struct maker *m, struct branch *b,
   if (!node->n && node->owner < 1) return 0;
   density = mean_density(m, node);
   if (is_leaf(m, node, density.cubes)) {
-    int inside = VG_LOAD_SAMPLES;
+    const int inside = sample(m, s, node, &density);
 
-    if (node->n) inside = sample(m, s, node, &density);
     if (is_leaf(m, node, density.cubes))
       return emit(m, b, node, density, inside);
   }
@@ -406,7 +502,7 @@ static int lone_cube(const struct maker *m, const double lo[3],
     c->at[k] = (float)x[k];
     if (hi[k] - lo[k] > side) side = hi[k] - lo[k];
   }
-  h = vg_sizing_at(m->sizing, x);
+  h = edge_at(m, x);
   c->half = (float)(0.5 * side);
   c->h = (float)h;
   c->part = (float)(volume / (side * side * side));
@@ -463,12 +559,46 @@ static vg_status build(struct maker *m, struct vg_load_tree *t,
   return VG_OK;
 }
 
+/* The field of sizes that the front alone asks for, if it is left faster than
+ * cells can follow. */
+static vg_status find_pace(const struct vg_void *v,
+                           const struct vg_sizing *sizing, int threads,
+                           struct vg_sizing **out, struct vg_error *err)
+{
+  struct vg_sizing_options o = VG_SIZING_OPTIONS_INIT;
+  struct vg_mesh m = VG_MESH_INIT;
+
+  if (vg_sizing_growth(sizing) <= PACE) return VG_OK;
+  o.growth = 1 + PACE;
+  o.h_max = INFINITY;
+  o.threads = threads;
+  m.n_point = v->n_point;
+  m.point = v->x;
+  m.n_tri = v->n_face;
+  m.tri = v->face;
+  return vg_sizing_new(&o, 0, NULL, &m, out, err);
+}
+
+/* To no fewer cells than this. */
+static void raise_to(struct vg_load *l, double least)
+{
+  const double by = least / l->cells;
+
+  if (!(l->cells > 0 && by > 1)) return;
+  l->cells = 0;
+  for (size_t i = 0; i < l->n; i++) {
+    l->cube[i].cells *= (float)by;
+    l->cells += (double)l->cube[i].cells;
+  }
+}
+
 vg_status vg_load_new(const struct vg_void *v, const struct vg_sizing *sizing,
                       double cells_per_cube, int threads, struct vg_load *out,
                       struct vg_error *err)
 {
   struct vg_load_tree t = { .unit = 1 };
   _Atomic size_t emitted = 0;
+  struct vg_sizing *pace = NULL;
   struct maker m = { .tree = &t, .sizing = sizing,
                      .per_cube = cells_per_cube, .narrow = 1,
                      .emitted = &emitted };
@@ -481,17 +611,21 @@ vg_status vg_load_new(const struct vg_void *v, const struct vg_sizing *sizing,
     *out = l;
     return VG_OK;
   }
+  st = find_pace(v, sizing, threads, &pace, err);
+  m.pace = pace;
   for (; st == VG_OK; m.narrow *= 2) {
     vg_load_release(&l);
     st = build(&m, &t, v, volume, threads, &l, err);
     if (l.n >= FEW_CUBES || WIDE_FREE / m.narrow <= LEAST) break;
   }
   free(m.branch);
+  vg_sizing_free(pace);
   if (st < 0) {
     vg_load_release(&l);
     return st;
   }
   vg_load_fit(&l, volume);
+  raise_to(&l, CELLS_PER_FACE * (double)v->n_face);
   st = vg_load_index(&l, threads, err);
   if (st < 0) vg_load_release(&l);
   else *out = l;

@@ -53,6 +53,9 @@ void vg_load_release(struct vg_load *l);
  * the front passes (the part inside is then sampled); wider in meshes of more
  * than 10 M cells, to have about 40,000 cubes or one for 2,500 cells, and as
  * narrow as 1 h in voids with fewer than 64. Cubes outside are dropped.
+ * Where h changes much across a cube, 1 / h^3 is summed over its parts. h is
+ * taken to grow from the front's own edges by 1.5 for each length at most,
+ * which is what meshes do, and there are 1.5 cells for each face at least.
  * Cost: O(front + cubes) times a logarithm. Result follows from the arguments
  * alone, bit by bit. VG_ERR_UNSUPPORTED beyond 4 M cubes, some 10 billion
  * cells: sizes in another unit than the surface. VG_ERR_MEMORY. */
@@ -104,6 +107,10 @@ double vg_load_zone(const struct vg_load *l, int axis, double at,
 
 /** Largest target edge met on the plane (0: the plane misses the void). */
 double vg_load_coarsest(const struct vg_load *l, int axis, double at);
+
+/** Cells expected in the box lo ... hi. O(cubes). */
+double vg_load_within(const struct vg_load *l, const double lo[3],
+                      const double hi[3]);
 
 /** Flat bytes and back, for messages: VG_ERR_FORMAT when damaged. */
 struct vg_bytes;

@@ -29,29 +29,43 @@ static double enclosed(const struct vg_void *v)
   return sum / 6;
 }
 
-/* Takes the triangles of m; m is released. even: the edge everywhere; 0: as
- * the triangles have it. */
+/* Takes the triangles of m; m is released. */
+static void make_sized(struct scene *s, struct vg_mesh *m,
+                       const struct vg_sizing_options *o)
+{
+  memset(s, 0, sizeof *s);
+  assert_int_equal(vg_void_from_mesh(&s->v, m, NULL), VG_OK);
+  assert_int_equal(vg_sizing_new(o, 0, NULL, m, &s->sizing, NULL), VG_OK);
+  s->volume = enclosed(&s->v);
+  assert_true(s->volume > 0);
+  vg_mesh_release(m);
+}
+
+/* even: the edge everywhere; 0: as the triangles have it. */
 static void make_scene(struct scene *s, struct vg_mesh *m, double even)
 {
   struct vg_sizing_options o = VG_SIZING_OPTIONS_INIT;
 
   o.h_max = even;
   o.from_surface = !(even > 0);
-  memset(s, 0, sizeof *s);
-  assert_int_equal(vg_void_from_mesh(&s->v, m, NULL), VG_OK);
-  assert_int_equal(vg_sizing_new(&o, 0, NULL, m, &s->sizing, NULL), VG_OK);
-  s->volume = enclosed(&s->v);
-  assert_true(s->volume > 0);
-  vg_mesh_release(m);
+  make_sized(s, m, &o);
+}
+
+static void make_grown(struct scene *s, const char *name, size_t n_cell,
+                       double growth)
+{
+  struct vg_sizing_options o = VG_SIZING_OPTIONS_INIT;
+  struct vg_demo d = VG_DEMO_INIT;
+
+  o.growth = growth;
+  assert_int_equal(vg_demo_make(name, n_cell, &d, NULL), VG_OK);
+  make_sized(s, &d.surface, &o);
+  vg_demo_release(&d);
 }
 
 static void make_demo(struct scene *s, const char *name, size_t n_cell)
 {
-  struct vg_demo d = VG_DEMO_INIT;
-
-  assert_int_equal(vg_demo_make(name, n_cell, &d, NULL), VG_OK);
-  make_scene(s, &d.surface, 0);
-  vg_demo_release(&d);
+  make_grown(s, name, n_cell, 1.2);
 }
 
 static void release_scene(struct scene *s)
@@ -184,7 +198,8 @@ static void threads_do_not_matter(void **state)
 
 /* --- against the mesher -------------------------------------------------- */
 
-static void compare_with_mesh(const char *name, size_t n_cell)
+static void compare_with_mesh(const char *name, size_t n_cell, double growth,
+                              double most)
 {
   struct vg_fill_options o = VG_FILL_OPTIONS_INIT;
   struct vg_fill_report r;
@@ -194,7 +209,7 @@ static void compare_with_mesh(const char *name, size_t n_cell)
   struct scene s;
   double ratio;
 
-  make_demo(&s, name, n_cell);
+  make_grown(&s, name, n_cell, growth);
   estimate(&s, 1, &l);
   assert_int_equal(vg_demo_make(name, n_cell, &d, NULL), VG_OK);
   memset(&r, 0, sizeof r);
@@ -202,7 +217,7 @@ static void compare_with_mesh(const char *name, size_t n_cell)
   ratio = (double)out.n_tet / l.cells;
   print_message("%s: %zu cells made, %.0f expected: %.3f\n", name, out.n_tet,
                 l.cells, ratio);
-  assert_true(ratio > 1 / 1.15 && ratio < 1.15);
+  assert_true(ratio > 1 / most && ratio < most);
   vg_mesh_release(&out);
   vg_demo_release(&d);
   vg_load_release(&l);
@@ -213,9 +228,37 @@ static void compare_with_mesh(const char *name, size_t n_cell)
 static void expects_what_is_made(void **state)
 {
   (void)state;
-  compare_with_mesh("box", 20000);
-  compare_with_mesh("box", 200000);
-  compare_with_mesh("sphere", 200000);
+  compare_with_mesh("box", 20000, 1.2, 1.15);
+  compare_with_mesh("box", 200000, 1.2, 1.15);
+  compare_with_mesh("sphere", 200000, 1.2, 1.15);
+}
+
+/* Where the field lets cells grow faster than they can, edges of the front,
+ * not the size in a wide cube next to it, tell how many there are. */
+static void steep_fields_do_not_outrun_the_front(void **state)
+{
+  (void)state;
+  compare_with_mesh("sphere", 200000, 2, 1.15);
+  compare_with_mesh("sphere", 1000000, 2.5, 1.2);
+  compare_with_mesh("sphere", 500000, 4, 1.2);
+  compare_with_mesh("sphere", 1000000, 4, 1.2);
+}
+
+/* As many as faces alone ask for, where the field would have next to none. */
+static void faces_have_cells_of_their_own(void **state)
+{
+  struct vg_load l;
+  struct scene s;
+  double sum = 0;
+
+  (void)state;
+  make_grown(&s, "sphere", 20000, 4);
+  estimate(&s, 1, &l);
+  assert_true(l.cells >= 1.499 * (double)s.v.n_face);
+  for (size_t i = 0; i < l.n; i++) sum += (double)l.cube[i].cells;
+  assert_true(fabs(sum / l.cells - 1) < 1e-6);
+  vg_load_release(&l);
+  release_scene(&s);
 }
 
 /* --- split --------------------------------------------------------------- */
@@ -632,6 +675,8 @@ int main(void)
     cmocka_unit_test(a_body_is_left_out),
     cmocka_unit_test(threads_do_not_matter),
     cmocka_unit_test(expects_what_is_made),
+    cmocka_unit_test(steep_fields_do_not_outrun_the_front),
+    cmocka_unit_test(faces_have_cells_of_their_own),
     cmocka_unit_test(children_get_their_share),
     cmocka_unit_test(generations_do_not_drift),
     cmocka_unit_test(tiny_and_empty_children),
