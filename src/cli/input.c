@@ -71,11 +71,11 @@ static int exists(const char *path)
   return access(path, F_OK) == 0;
 }
 
-static int is_file(const char *path)
+static int has_mode(const char *path, mode_t kind)
 {
   struct stat s;
 
-  return stat(path, &s) == 0 && S_ISREG(s.st_mode);
+  return stat(path, &s) == 0 && (s.st_mode & S_IFMT) == kind;
 }
 
 /* Path of stem.suffix where that file exists, else "". NULL: no memory. */
@@ -162,7 +162,11 @@ static vg_status find_stem(const char *name, struct vg_input_files *f,
   }
   st = find_surface(name, &f->surface, err);
   if (st < 0 || *f->surface || *f->d3m) return st;
-  if (is_file(name)) return vg_format_unknown(name, err);
+  if (has_mode(name, S_IFREG)) return vg_format_unknown(name, err);
+  if (has_mode(name, S_IFDIR))
+    return vg_fail(err, VG_ERR_INPUT, "%s: this is a folder; give the stem of "
+                   "a project, or the full name of a surface file, in it",
+                   name);
   return vg_fail(err, VG_ERR_INPUT, "%s: no project here: neither %s.d3m nor "
                  "%s.front nor a surface such as %s.lb8.ugrid or %s.stl; give "
                  "the stem of a project or the full name of a surface file",

@@ -499,14 +499,16 @@ static vg_status write_deck(struct vg_outputs *o, const struct vg_problem *p,
 {
   const struct vg_input_files *f = &p->files;
   struct vg_settings settings = p->settings;
+  const char *input = *f->surface ? f->surface : f->stem;
+  const char *quote = strchr(input, ' ') ? "'" : "";   /* for a shell */
   char *path = vg_outputs_aside(o, "resolved.deck"), *comment = NULL;
   vg_status st;
 
   if (!path ||
       asprintf(&comment, "# Settings of a run, complete: to repeat it,\n"
-               "#   vanguard mesh -p %s --deck %s.resolved.deck\n"
+               "#   vanguard mesh -p %s%s%s --deck %s%s.resolved.deck%s\n"
                "# (sources of a .d3m are listed below and not read again)\n",
-               *f->surface ? f->surface : f->stem, o->name) < 0) {
+               quote, input, quote, quote, o->name, quote) < 0) {
     free(path);
     return vg_fail_memory(err, "the settings");
   }

@@ -141,6 +141,9 @@ done
 vanguard mesh -q wing.txt
 exits 1
 says err "wing.txt: the suffix names no format; known are .stl"
+vanguard mesh -q -p p
+exits 1
+says err "p: this is a folder; give the stem of a project"
 vanguard mesh -q -p p/box --out wing.txt
 exits 1
 says err "wing.txt: cannot create this folder: Not a directory"
