@@ -152,8 +152,9 @@ static inline uint32_t vg_node_point(const struct vg_node *n, size_t i,
 
 /** Does a new face in the change of work i, whose points are in the front
  * already, meet a face of it beyond what the work was given, corners and edges
- * that they have in common aside? Exact. Cost: of faces that leave the band
- * that the work was given, which are few. Threads: safe. (node_cross.c) */
+ * that they have in common aside, or do its cells hold such a face? Exact.
+ * Cost: of faces that leave the band that the work was given, which are few.
+ * Threads: safe. (node_cross.c) */
 int vg_node_crosses(const struct vg_node *n, size_t i, size_t first);
 
 /** Forget the cells of this zone when all tasks are done. Threads: safe. */

@@ -364,12 +364,12 @@ static void changes_are_put_in(void **state)
 
 /* A box with edges of 1 at x = -6, and a fine one at the origin, 1 away from
  * the zone: by the spacing there, more than a zone is given. */
-static void coarse_and_fine(struct scene *s)
+static void coarse_and_fine(struct scene *s, double half)
 {
   struct vg_mesh m = VG_MESH_INIT;
 
   add_box(&m, 2, -6, 0, 1);
-  add_box(&m, 2, 0, 0, 0.2);
+  add_box(&m, 2, 0, 0, half);
   scene_of(s, &m);
   vg_select_init(&s->n->select, &s->n->front, s->sizing);
   assert_int_equal(vg_node_put(&s->p, s->n, NULL, NULL), VG_OK);
@@ -426,7 +426,7 @@ static void what_crosses_stays_out(void **state)
     size_t left = 0;
     uint32_t gone;
 
-    coarse_and_fine(&s);
+    coarse_and_fine(&s, 0.2);
     gone = face_towards(&s.n->front);
     put_long_cell(&s, 5, is_crossing ? 0.5 : -1.5, 0.5, &r);
     assert_int_equal(s.n->front.face[gone][0] == VG_FACE_GONE, !is_crossing);
@@ -442,6 +442,35 @@ static void what_crosses_stays_out(void **state)
     assert_int_equal(s.p.n_drop, is_crossing);
     if (is_crossing) assert_int_equal(s.p.drop[0], 5);
     lists_open(s.n);
+    free(s.p.drop);
+    scene_end(&s);
+  }
+}
+
+/* A body that the zone was not given may meet no face of a cell, and lie in
+ * it all the same, or just beside. */
+static void what_holds_a_body_stays_out(void **state)
+{
+  static const struct { double half, aside[2]; int is_held; } is[] = {
+    { 0.05, {0, 0}, 1 }, { 1e-3, {0, 0}, 1 }, { 1e-3, {0.1, 0.1}, 1 },
+    { 1e-3, {0.5, 0}, 0 }, { 1e-3, {-0.4, 0.4}, 0 }, { 1e-3, {0, -0.9}, 0 } };
+  const struct vg_region r = { .n_plane = 1, .plane = {{{0, 1, 0}, -1}} };
+
+  (void)state;
+  for (size_t k = 0; k < sizeof is / sizeof *is; k++) {
+    struct scene s;
+    double tip[2] = {0, 0};
+    uint32_t gone;
+
+    coarse_and_fine(&s, is[k].half);
+    gone = face_towards(&s.n->front);
+    for (int j = 0; j < 6; j++)
+      tip[j % 2] -= s.n->front.x[s.n->front.face[gone][j / 2]][1 + j % 2] / 3;
+    put_long_cell(&s, 5, tip[0] + 2 * is[k].aside[0],
+                  tip[1] + 2 * is[k].aside[1], &r);
+    assert_int_equal(s.p.report.n_crossing, is[k].is_held);
+    assert_int_equal(s.n->front.face[gone][0] == VG_FACE_GONE,
+                     !is[k].is_held);
     free(s.p.drop);
     scene_end(&s);
   }
@@ -505,6 +534,7 @@ int main(void)
     cmocka_unit_test(places_are_found),
     cmocka_unit_test(changes_are_put_in),
     cmocka_unit_test(what_crosses_stays_out),
+    cmocka_unit_test(what_holds_a_body_stays_out),
     cmocka_unit_test(dropped_cells_are_forgotten),
     cmocka_unit_test(arrays_keep_what_is_in_use),
   };
