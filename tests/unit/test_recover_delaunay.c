@@ -7,6 +7,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 #include <cmocka.h>
 
 #include "core/cavity.h"
@@ -224,12 +225,55 @@ static void equals_stay(void **state)
   vg_tets_release(&t);
 }
 
+/* A turned, graded grid of points that lie in a plane but for their rounding:
+ * whole rings of cells there are flat, and sums over them are noise. */
+static void start_flat(struct vg_tets *t)
+{
+  enum { SIDE = 20 };
+  struct vg_inserter s;
+
+  tets_box(t, -1, 2);
+  assert_int_equal(vg_inserter_init(&s, t, NULL), VG_OK);
+  for (int i = 0; i < SIDE; i++)
+    for (int j = 0; j < SIDE; j++) {
+      double u = 0.03 * i / SIDE, v = (double)j / SIDE, x[3];
+
+      u *= u;
+      x[0] = 0.5 + 0.48 * u - 0.36 * v;
+      x[1] = 0.2 + 0.6 * u + 0.8 * v;
+      x[2] = 0.7 - 0.64 * u + 0.48 * v;
+      assert_int_equal(tets_insert(&s, x, 0, 0), VG_OK);
+    }
+  vg_inserter_release(&s);
+}
+
+/* Flips by such sums undo those by exact signs, over and over: the signal ends
+ * the test then. */
+static void flat_rings_come_to_rest(void **state)
+{
+  (void)state;
+  alarm(60);
+  for (uint64_t seed = 1; seed <= 7; seed++) {
+    struct vg_tets t = VG_TETS_INIT;
+    size_t n_flip;
+
+    start_flat(&t);
+    spoil(&t, seed);
+    assert_int_equal(vg_recover_delaunay(&t, 0, NULL, &n_flip, NULL), VG_OK);
+    is_sound(&t);
+    assert_true(n_flip < 10 * N_SPOILT);
+    vg_tets_release(&t);
+  }
+  alarm(0);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(flips_are_undone),
     cmocka_unit_test(fixed_faces_stay),
     cmocka_unit_test(equals_stay),
+    cmocka_unit_test(flat_rings_come_to_rest),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);
