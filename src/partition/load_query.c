@@ -357,3 +357,24 @@ double vg_load_coarsest(const struct vg_load *l, int axis, double at)
     most = fmax(most, (double)l->index->axis[axis].most[bin[i]]);
   return most;
 }
+
+double vg_load_within(const struct vg_load *l, const double lo[3],
+                      const double hi[3])
+{
+  double sum = 0;
+
+  for (size_t i = 0; i < l->n; i++) {
+    double part = (double)l->cube[i].cells;
+
+    for (int k = 0; k < 3 && part > 0; k++) {
+      double from, to;
+
+      reach_of(l, &l->cube[i], k, &from, &to);
+      part *= to > from ? fmax(fmin(to, hi[k]) - fmax(from, lo[k]), 0) /
+                            (to - from)
+                        : 0;
+    }
+    sum += part;
+  }
+  return sum;
+}

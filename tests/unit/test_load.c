@@ -471,6 +471,23 @@ static void answers_on_two_cubes(void **state)
   release_index(&l);
 }
 
+static void boxes_hold_shares_of_cubes(void **state)
+{
+  const double all[2][3] = { { -1, 0, -4 }, { 9, 9, 4 } };
+  const double both[2][3] = { { 1, 3, 0 }, { 4, 5, 2 } };
+  const double low[2][3] = { { 0, 0, -4 }, { 1, 9, 4 } };
+  struct vg_load l;
+
+  (void)state;
+  two_cubes(&l);
+  assert_true(fabs(vg_load_within(&l, all[0], all[1]) - 400) < 1e-9);
+  assert_true(fabs(vg_load_within(&l, both[0], both[1]) -
+                   (300 / 8.0 + 100 / 8.0)) < 1e-9);
+  assert_true(fabs(vg_load_within(&l, low[0], low[1]) - 150) < 1e-9);
+  assert_true(vg_load_within(&l, all[1], all[1]) == 0);
+  release_index(&l);
+}
+
 /* The same questions, asked of all cubes one after another. */
 static double cells_below(const struct vg_load *l, int axis, double x)
 {
@@ -682,6 +699,7 @@ int main(void)
     cmocka_unit_test(tiny_and_empty_children),
     cmocka_unit_test(a_small_void_has_cubes),
     cmocka_unit_test(answers_on_two_cubes),
+    cmocka_unit_test(boxes_hold_shares_of_cubes),
     cmocka_unit_test(bins_answer_as_cubes_do),
     cmocka_unit_test(blocks_share_a_load),
     cmocka_unit_test(zones_belong_to_no_block),
