@@ -22,6 +22,9 @@ static const double margin = 1.5, patch_margin = 2.5;
 static const double most_volume = 1500;
 /* There is more in a box where spacings below this share of its own are. */
 static const double finer = 0.4;
+/* Nor are those where the load expects more cells: what is fine may lie in a
+ * corner of a box. */
+static const double most_cells = 20000;
 /* Patches with more faces are where a region was given up, fewer may hang
  * together all along a body; more places: the planes do not suit this void. */
 enum { MOST_FACES = 4000, MOST_PLACES = 512, MOST_TOUCHING = 16384 };
@@ -208,8 +211,8 @@ static vg_status make_places(struct search *s, struct vg_error *err)
   return st;
 }
 
-/* Is there little in the box, by the spacing at the faces and by what is found
- * elsewhere in it? */
+/* Is there little in the box, by the spacing at the faces, by what is found
+ * elsewhere in it, and by the load? */
 static int is_small(const struct search *s, const struct place *p)
 {
   double volume = 1, x[3];
@@ -222,7 +225,8 @@ static int is_small(const struct search *s, const struct place *p)
       x[k] = p->lo[k] + 0.5 * at[k] * (p->hi[k] - p->lo[k]);
     if (vg_sizing_at(s->sizing, x) < finer * p->spacing) return 0;
   }
-  return volume <= most_volume;
+  return volume <= most_volume &&
+         vg_load_within(&s->n->load, p->lo, p->hi) <= most_cells;
 }
 
 static int overlap(const struct place *a, const struct place *b)

@@ -277,6 +277,35 @@ static void places_are_found(void **state)
   scene_end(&s);
 }
 
+/* Where the load expects much in a corner of a box, there is none, but for
+ * patches. */
+static void full_places_stay_open(void **state)
+{
+  const double at[3] = {0.1 + 1.3, -5 + 1.9, 1.9};
+  struct vg_region *r;
+  struct vg_mesh m;
+  struct scene s;
+  size_t n_region;
+
+  (void)state;
+  four_boxes(&m, 30);
+  bridge(&m, -5);
+  scene_of(&s, &m);
+  assert_int_equal(vg_node_put(&s.p, s.n, NULL, NULL), VG_OK);
+  for (int k = 0; k < 3; k++) {
+    struct vg_load_cube *c = &s.n->load.cube[0];
+
+    if (k)
+      *c = (struct vg_load_cube){ {(float)at[0], (float)at[1], (float)at[2]},
+                                  0.1f, 0.01f, 1, 1e6f };
+    assert_int_equal(vg_node_open_places(&s.p, s.n, k > 1 ? 0 : -1, NULL, &r,
+                                         &n_region, NULL), VG_OK);
+    assert_int_equal(n_region, k != 1);
+    free(r);
+  }
+  scene_end(&s);
+}
+
 /* --- changes ------------------------------------------------------------- */
 
 /* Work i has given a cell to face `gone` of the front and put a new point
@@ -532,6 +561,7 @@ int main(void)
     cmocka_unit_test(falls_into_blocks),
     cmocka_unit_test(what_hangs_together_stays),
     cmocka_unit_test(places_are_found),
+    cmocka_unit_test(full_places_stay_open),
     cmocka_unit_test(changes_are_put_in),
     cmocka_unit_test(what_crosses_stays_out),
     cmocka_unit_test(what_holds_a_body_stays_out),
