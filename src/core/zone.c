@@ -17,6 +17,8 @@ static const double whole_band = VG_BAND_FRONT - 0.2;
 /* Dents are not filled with cells worse than this (dihedral angles of about
  * 30 and 150 degrees). */
 static const double dent = 0.25;
+/* Edges of more than so many spacings stay out of a pencil. */
+static const double overlong = 4;
 
 struct zone {
   struct vg_growth k;
@@ -71,18 +73,54 @@ static vg_status look_at_points(struct zone *g, struct vg_error *err)
   return VG_OK;
 }
 
-/* Most cells cross no plane; that is told before anything is measured. */
+/* Is the longest edge of cell c much longer than the spacing along it, and not
+ * one of the front? Where spacing grows away along a line, points are placed in
+ * the shape of a trumpet; cells across the air beside it hold no points yet. */
+static int is_overlong(const struct zone *g, uint32_t c)
+{
+  const struct vg_tets *t = &g->k.t;
+  const uint32_t *v = t->cell[c].v;
+  double most = 0, middle[3] = {0}, h;
+  int is_new = 0;
+
+  for (int i = 0; i < 4; i++)
+    for (int j = 0; j < i; j++) {
+      double d2 = 0;
+
+      for (int k = 0; k < 3; k++) {
+        double d = t->x[v[i]][k] - t->x[v[j]][k];
+
+        d2 += d * d;
+      }
+      if (d2 <= most) continue;
+      most = d2;
+      is_new = v[i] >= g->k.n_front || v[j] >= g->k.n_front;
+      for (int k = 0; k < 3; k++)
+        middle[k] = 0.5 * (t->x[v[i]][k] + t->x[v[j]][k]);
+    }
+  h = vg_sizing_at(g->k.sizing, middle);
+  return is_new && most > overlong * overlong * h * h;
+}
+
+/* Most cells cross no plane; that is told before anything is measured. What
+ * does not cross all of them, but is within reach, can wait. */
 static int belongs(const struct zone *g, uint32_t c)
 {
   const struct vg_tets *t = &g->k.t;
   const uint32_t *v = t->cell[c].v;
   const uint8_t *at = g->at;
+  struct vg_region r = *g->k.region;
 
   if (at && (at[v[0]] | at[v[1]] | at[v[2]] | at[v[3]]) !=
               (1 << 2 * g->k.region->n_plane) - 1)
     return 0;
-  return vg_region_has_cell(g->k.region, g->k.sizing, t->x[v[0]], t->x[v[1]],
-                            t->x[v[2]], t->x[v[3]]);
+  if (!vg_region_has_cell(&r, g->k.sizing, t->x[v[0]], t->x[v[1]], t->x[v[2]],
+                          t->x[v[3]]))
+    return 0;
+  if (!(r.reach > 0) || !is_overlong(g, c)) return 1;
+  r.reach = 0;
+  return vg_region_has_cell(&r, g->k.sizing, t->x[v[0]], t->x[v[1]], t->x[v[2]],
+                            t->x[v[3]]);
 }
 
 /* Only cells near the region stay, none of them at a corner of the box. The

@@ -241,6 +241,66 @@ static void what_a_zone_says_of_itself(void **state)
   scene_end(&s);
 }
 
+static int passes(const struct scene *s, size_t c, const struct vg_region *r)
+{
+  const uint32_t *v = s->v.cell[c];
+  struct vg_region line = *r;
+
+  line.reach = 0;
+  return vg_region_has_cell(&line, s->sizing, s->v.x[v[0]], s->v.x[v[1]],
+                            s->v.x[v[2]], s->v.x[v[3]]);
+}
+
+/* Longest edge over the spacing in its middle, of cells that a line does not
+ * pass through. */
+static double longest_edge(const struct scene *s, const struct vg_region *r)
+{
+  double most = 0;
+
+  for (size_t c = 0; c < s->v.n_cell; c++)
+    for (int i = 0; i < 4 && !passes(s, c, r); i++)
+      for (int j = 0; j < i; j++) {
+        const double *a = s->v.x[s->v.cell[c][i]];
+        const double *b = s->v.x[s->v.cell[c][j]];
+        double middle[3], d2 = 0, ratio;
+
+        for (int k = 0; k < 3; k++) {
+          middle[k] = 0.5 * (a[k] + b[k]);
+          d2 += (a[k] - b[k]) * (a[k] - b[k]);
+        }
+        ratio = sqrt(d2) / vg_sizing_at(s->sizing, middle);
+        if (ratio > most) most = ratio;
+      }
+  return most;
+}
+
+/* Where a pencil leaves a plume in a corner of a box, points stand in the shape
+ * of a trumpet: no cell spans the air beside that, as far as it is known. */
+static void a_pencil_leaves_a_plume(void **state)
+{
+  const struct vg_source plume = { .kind = VG_SOURCE_CYLINDER,
+                                   .p0 = {1, 0, 0}, .p1 = {11, 0, 0},
+                                   .r0 = 0.25, .r1 = 1,
+                                   .h0 = 0.041, .h1 = 0.041 };
+  const int count[3] = {40, 40, 40};
+  const double lo[3] = {-9, -11, -11}, hi[3] = {71, 69, 69};
+  struct vg_sizing_options o = VG_SIZING_OPTIONS_INIT;
+  struct vg_region line = line_at(0, 8.276, 1, 0.0562);
+  struct scene s;
+
+  (void)state;
+  memset(&s.m, 0, sizeof s.m);
+  shape_block(&s.m, count, lo, hi, shape_all);
+  scene_void(&s, 1.2, 0);
+  vg_sizing_free(s.sizing);
+  assert_int_equal(vg_sizing_new(&o, 1, &plume, &s.m, &s.sizing, NULL), VG_OK);
+  line.reach = 1.3;
+  line.wide = 1;
+  assert_true(cut(&s, &line) > 5000);
+  assert_true(longest_edge(&s, &line) < 5);
+  scene_end(&s);
+}
+
 /* Without reach, a pencil is the cells that the line passes through. */
 static void a_pencil_is_thin(void **state)
 {
@@ -465,6 +525,7 @@ int main(void)
     cmocka_unit_test(a_zone_costs_what_is_near),
     cmocka_unit_test(the_same_bytes_again),
     cmocka_unit_test(what_a_zone_says_of_itself),
+    cmocka_unit_test(a_pencil_leaves_a_plume),
     cmocka_unit_test(a_pencil_is_thin),
     cmocka_unit_test(a_real_surface),
     cmocka_unit_test(no_front_near),
