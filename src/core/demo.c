@@ -116,10 +116,12 @@ static double count_block(const struct estimate *e, const double lo[3],
   return sum;
 }
 
-double vg_demo_cubes(const double lo[3], const double hi[3],
-                        double (*size)(void *user, const double x[3]),
-                        int (*inside)(void *user, const double x[3]),
-                        void *user)
+/* Integral of 1 / h^3 over the points of a box for which `inside` (may be NULL:
+ * all) is not 0; size(user, x) > 0. Times cells per cube, the size of the mesh
+ * that the field h leads to. */
+static double cubes(const double lo[3], const double hi[3],
+                    double (*size)(void *user, const double x[3]),
+                    int (*inside)(void *user, const double x[3]), void *user)
 {
   const struct estimate e = { size, inside, user };
   const double side[3] = { hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2] };
@@ -199,7 +201,7 @@ static double n_cell_of(struct scaled *s,
   const double hi[3] = { FARFIELD, FARFIELD, FARFIELD };
 
   return VG_DEMO_CELLS_PER_CUBE * VG_DEMO_GRADED
-         * vg_demo_cubes(lo, hi, size, in_fluid, s);
+         * cubes(lo, hi, size, in_fluid, s);
 }
 
 static double law_estimate(struct scaled *s)

@@ -57,12 +57,4 @@ vg_status vg_demo_make(const char *name, size_t n_cell, struct vg_demo *out,
 
 void vg_demo_release(struct vg_demo *d);
 
-/** Integral of 1 / h^3 over the points of a box for which `inside` (may be
- * NULL: all) is not 0; times cells per cube, the size of the mesh that the
- * field h leads to. size(user, x) > 0. */
-double vg_demo_cubes(const double lo[3], const double hi[3],
-                        double (*size)(void *user, const double x[3]),
-                        int (*inside)(void *user, const double x[3]),
-                        void *user);
-
 #endif

@@ -73,9 +73,6 @@ int vg_replace(struct vg_optimiser *o, int n_old, const uint32_t *old,
  * that leave every cell above aim count by their mean shape instead. */
 int vg_smooth(struct vg_optimiser *o, uint32_t p, double aim);
 
-/** The same for a point whose ball is in o->ball already. */
-int vg_smooth_ball(struct vg_optimiser *o, uint32_t p, double aim);
-
 /** Remove faces and edges of cell c where the worst of the cells concerned
  * gets better by it. */
 int vg_swap(struct vg_optimiser *o, uint32_t c);

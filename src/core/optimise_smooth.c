@@ -144,7 +144,7 @@ static int climb(struct vg_optimiser *o, uint32_t p, struct ball_state *now)
   return 0;
 }
 
-int vg_smooth_ball(struct vg_optimiser *o, uint32_t p, double aim)
+static int smooth_ball(struct vg_optimiser *o, uint32_t p, double aim)
 {
   float q[VG_BALL_MAX];
   struct ball_state now, s;
@@ -174,7 +174,7 @@ int vg_smooth(struct vg_optimiser *o, uint32_t p, double aim)
 {
   if (p < o->n_fixed || o->vain[p] & VG_VAIN_SMOOTH || !vg_ball(o, p))
     return 0;
-  if (vg_smooth_ball(o, p, aim)) return 1;
+  if (smooth_ball(o, p, aim)) return 1;
   o->vain[p] |= VG_VAIN_SMOOTH;
   return 0;
 }

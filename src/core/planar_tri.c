@@ -321,7 +321,8 @@ uint32_t vg_tri2_find(const struct vg_tri2 *t, uint32_t a, uint32_t b)
   return VG_T2_NONE;
 }
 
-void vg_tri2_flip(struct vg_tri2 *t, uint32_t e)
+/* Exchange the diagonal e. */
+static void flip(struct vg_tri2 *t, uint32_t e)
 {
   /* a -> b with apex c on the left and d on the right becomes d -> c. */
   const uint32_t o = vg_t2_twin(t, e), l = e >> 2, r = o >> 2;
@@ -472,7 +473,7 @@ vg_status vg_tri2_constrain(struct vg_tri2 *t, uint32_t a, uint32_t b,
     }
     c = vg_t2_apex(t, e);
     d = vg_t2_apex(t, vg_t2_twin(t, e));
-    vg_tri2_flip(t, e);
+    flip(t, e);
     if (c == a || c == b || d == a || d == b) continue;
     if ((vg_orient2d(t->x[a], t->x[b], t->x[c]) > 0)
         != (vg_orient2d(t->x[a], t->x[b], t->x[d]) > 0)
@@ -505,7 +506,7 @@ static long settle(struct vg_tri2 *t, uint32_t e)
                    r = vg_t2_twin(t, at) >> 2;
 
     if (!is_illegal(t, at)) continue;
-    vg_tri2_flip(t, at);
+    flip(t, at);
     flips++;
     if (vg_reserve(&t->stack, &t->cap_stack, n + 4, sizeof *t->stack))
       return -1;

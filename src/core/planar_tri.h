@@ -134,9 +134,6 @@ uint32_t vg_tri2_add_point(struct vg_tri2 *t, const double x[2], double h);
 /** Flip until every free edge is Delaunay. Number of flips, -1 no memory. */
 long vg_tri2_legalise(struct vg_tri2 *t);
 
-/** Exchange the diagonal e. */
-void vg_tri2_flip(struct vg_tri2 *t, uint32_t e);
-
 /** Kill every face without VG_T2_INSIDE and rebuild vt. 0 or -1. */
 int vg_tri2_carve(struct vg_tri2 *t);
 

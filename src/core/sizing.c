@@ -237,12 +237,6 @@ double vg_sizing_below_edge(double growth, double h, double d)
   return fmax(h, fmax(even, steep));
 }
 
-double vg_sizing_cube(const struct vg_sizing *s, double lo[3])
-{
-  for (int k = 0; k < 3; k++) lo[k] = s->octree.lo[k];
-  return s->octree.side;
-}
-
 size_t vg_sizing_leaves(const struct vg_sizing *s)
 {
   return s->octree.n_leaf;

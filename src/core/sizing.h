@@ -120,10 +120,6 @@ double vg_sizing_below(double growth, double h, double d);
 /** The longest edge for which that is h at most. */
 double vg_sizing_below_edge(double growth, double h, double d);
 
-/** Lower corner of the root cube, which encloses surface points and, where
- * there are none, the sources; returns its side. */
-double vg_sizing_cube(const struct vg_sizing *s, double lo[3]);
-
 /** Leaves of the octree, 32 bytes and 4.6 of tree each. */
 size_t vg_sizing_leaves(const struct vg_sizing *s);
 

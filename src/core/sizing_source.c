@@ -272,7 +272,8 @@ static double cone_distance(const struct vg_source *s, const double x[3],
   return least(f, segment_distance(mid1, rim1, at, &r_at));
 }
 
-double vg_source_bounded(const struct vg_bounded *b, const double x[3])
+/* Spacing of one bounded source at x. */
+static double bounded_at(const struct vg_bounded *b, const double x[3])
 {
   const struct vg_source *s = &b->law;
   double d = 0, t = 0;
@@ -437,7 +438,7 @@ double vg_source_at(const struct vg_source_set *set, const double x[3])
     if (b->least >= h ||
         b->least + b->slope * box_distance(b->lo, b->hi, x) >= h)
       continue;
-    h = least(h, vg_source_bounded(b, x));
+    h = least(h, bounded_at(b, x));
   }
   return h;
 }
@@ -465,7 +466,7 @@ double vg_source_floor(const struct vg_source_set *set, const double lo[3],
     }
     bound = b->least + b->slope * sqrt(d2);
     if (bound >= h) continue;
-    bound = most(bound, vg_source_bounded(b, mid) - b->steep * r);
+    bound = most(bound, bounded_at(b, mid) - b->steep * r);
     h = least(h, bound);
   }
   return h;

@@ -43,9 +43,6 @@ void vg_source_release(struct vg_source_set *set);
 double vg_source_mean(size_t n, const struct vg_source *source,
                       const double x[3]);
 
-/** Spacing of one bounded source at x. */
-double vg_source_bounded(const struct vg_bounded *b, const double x[3]);
-
 /** Minimum of mean and bounded sources at x; INFINITY for an empty set. */
 double vg_source_at(const struct vg_source_set *set, const double x[3]);
 

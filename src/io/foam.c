@@ -29,8 +29,11 @@ int vg_foam_word(const char *word, struct vg_foam_options *options)
 
 /* --- patches --- */
 
-const char *vg_foam_patch_type(const struct vg_patch *p, int is_planar,
-                               const char **physical)
+/* OpenFOAM's type of a patch by its condition; is_planar says whether its faces
+ * lie in one plane. Walls are viscous and inviscid ones, "symmetry" also other
+ * slip surfaces. *physical out: "" where there is none. */
+static const char *patch_type(const struct vg_patch *p, int is_planar,
+                              const char **physical)
 {
   static const struct {
     int32_t code;
@@ -341,7 +344,7 @@ static vg_status put_boundary(struct writing *w, struct vg_error *err)
   vg_output_format(o, "\n%zu\n(\n", w->m->n_patch);
   for (size_t i = 0; i < w->m->n_patch; i++) {
     size_t first = w->start[i], n = w->start[i + 1] - first;
-    const char *physical, *type = vg_foam_patch_type(
+    const char *physical, *type = patch_type(
         w->m->patch + i, is_planar(w->m, w->order + first, n), &physical);
 
     vg_output_format(o, "    %s\n    {\n        type            %s;\n",

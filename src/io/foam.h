@@ -49,12 +49,4 @@ vg_status vg_foam_place(const char *from_case, const char *to_case,
  * folders that this leaves empty. Absent ones are no error. */
 void vg_foam_remove(const char *case_dir);
 
-/** OpenFOAM's type of a patch ("wall", "symmetryPlane", "symmetry", "patch")
- * by its condition; is_planar says whether its faces lie in one plane. Walls
- * are viscous and inviscid ones, "symmetry" also other slip surfaces. A patch
- * without a condition is "patch". *physical: "viscousWall", "inviscidWall",
- * "symmetry", "farfield", "inflow", "outflow" or "" . Static strings. */
-const char *vg_foam_patch_type(const struct vg_patch *p, int is_planar,
-                               const char **physical);
-
 #endif

@@ -53,7 +53,8 @@ void vg_constrain(int n_slide, double n[2][3], double v[3])
   }
 }
 
-int vg_face_counts(const struct vg_layer_work *w, size_t i, uint32_t f)
+/* Does face f say where the wall looks at column i? */
+static int counts(const struct vg_layer_work *w, size_t i, uint32_t f)
 {
   if (w->c->face_tri[f] == VG_NO_INDEX) return 0;
   if (!(w->cap[f] & VG_CAP_NOISY)) return 1;
@@ -74,7 +75,7 @@ int vg_face_normals(const struct vg_layer_work *w, size_t i,
   for (uint32_t j = w->t.first[i]; j < w->t.first[i + 1]; j++) {
     uint32_t f = w->t.corner[j] / 3;
 
-    if (vg_face_counts(w, i, f)) memcpy(n[k++], w->normal[f], sizeof *n);
+    if (counts(w, i, f)) memcpy(n[k++], w->normal[f], sizeof *n);
   }
   return k;
 }
@@ -151,7 +152,7 @@ static void mean_normal(const struct vg_layer_work *w, size_t i, double v[3])
     uint32_t f = w->t.corner[j] / 3, tri = w->c->face_tri[f];
     double a;
 
-    if (!vg_face_counts(w, i, f)) continue;
+    if (!counts(w, i, f)) continue;
     a = corner_weight(w->m, w->m->tri[tri], (int)(w->t.corner[j] % 3));
     for (int k = 0; k < 3; k++) v[k] += a * w->normal[f][k];
   }

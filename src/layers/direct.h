@@ -39,9 +39,6 @@ void vg_constrain(int n_slide, double n[2][3], double v[3]);
  * virtual ones, nor of noisy caps where there is better. Their number. */
 int vg_face_normals(const struct vg_layer_work *w, size_t i, double (*n)[3]);
 
-/** Whether face f is one of these. */
-int vg_face_counts(const struct vg_layer_work *w, size_t i, uint32_t f);
-
 double vg_least_view(int k, const double (*n)[3], const double v[3]);
 
 #endif

@@ -51,17 +51,6 @@ void vg_law_heights(const struct vg_law *law, double cap, int n, double *d)
   }
 }
 
-double vg_law_thickness(const struct vg_law *law, int j)
-{
-  double t = 0, b = 0;
-
-  for (int i = 1; i <= j; i++) {
-    b = bare_next(law, i, b);
-    t = next(b, law->cap, i, t);
-  }
-  return t;
-}
-
 /* Height of n layers of thickness b[1 .. n] by the law alone; adds as
  * vg_law_heights does, to the last bit. */
 static double sum(const double *b, double cap, int n)

@@ -27,9 +27,6 @@ struct vg_law {
  * repeated multiplication: no libm, the same bits everywhere. O(n log n). */
 void vg_law_heights(const struct vg_law *law, double cap, int n, double *d);
 
-/** Thickness of layer j >= 1 under the law's own cap. O(j log j). */
-double vg_law_thickness(const struct vg_law *law, int j);
-
 /** Largest cap (to 1e-8) in [1, law's own] under which n layers are together no
  * higher than `height`; 0 when even layers of equal thickness are higher. */
 double vg_law_squeeze(const struct vg_law *law, int n, double height);

@@ -333,7 +333,8 @@ static void leaves_join_continuously(void **state)
   (void)state;
   two_sizes(&m);
   s = field(&plain, 1, &source, &m);
-  side = vg_sizing_cube(s, lo);
+  memcpy(lo, s->octree.lo, sizeof lo);
+  side = s->octree.side;
   for (int i = 0; i < 300000; i++) {
     double x[3], a, b;
     int k = i % 3, cuts = 4 << i / 3 % 8;
