@@ -73,6 +73,16 @@ work_folder() {
   mkdir -p "$work"
 }
 
+# to_measure NAME: what run_mesh needs, `vanguard` in $build, $work.
+to_measure() {
+  need jq jq
+  need /usr/bin/time time
+  need mpirun openmpi-bin
+  make_programs "$build" vanguard
+  vanguard=$build/bin/vanguard
+  work_folder "$1"
+}
+
 # Standard output, and the file --out as well.
 say() { if [ -n "$out" ]; then tee -a "$out"; else cat; fi; }
 

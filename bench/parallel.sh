@@ -53,12 +53,7 @@ if [ "$quick" = 1 ]; then
   runs=1 scale=$(calc "$scale / 20") aircraft=dlr_f6_coarse
   leaf_cells='10000 20000 50000'
 fi
-need jq jq
-need /usr/bin/time time
-need mpirun openmpi-bin
-make_programs "$build" vanguard
-vanguard=$build/bin/vanguard
-work_folder parallel
+to_measure parallel
 rows=$work/rows.json figures=$work/figures.json
 : > "$rows"
 : > "$figures"

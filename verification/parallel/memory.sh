@@ -34,12 +34,7 @@ work='' cells='' least='' ranks='1 2 4' quick=0 project='' options=() failed=0
 take_options "build cells least ranks work out" quick "$@"
 if [ "$quick" = 1 ]; then cells=${cells:-250000} least=${least:-1000000}; fi
 : "${cells:=14000000}" "${least:=50000000}"
-need jq jq
-need /usr/bin/time time
-need mpirun openmpi-bin
-make_programs "$build" vanguard
-vanguard=$build/bin/vanguard
-work_folder memory
+to_measure memory
 [ -z "$out" ] || : > "$out"
 
 demo_project wing "$cells" "$work/input"

@@ -37,12 +37,7 @@ work='' json='' data='' meshcheck='' quick=0 scale=1
 project='' options=() options_all=() this=''
 take_options "scale data build meshcheck work out json" quick "$@"
 [ "$quick" = 0 ] || scale=$(calc "$scale / 100")
-need jq jq
-need /usr/bin/time time
-need mpirun openmpi-bin
-make_programs "$build" vanguard
-vanguard=$build/bin/vanguard
-work_folder thesis
+to_measure thesis
 rows=$work/rows.json failed=0
 : > "$rows"
 [ -z "$out" ] || : > "$out"
