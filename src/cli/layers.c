@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "base/parallel.h"
 #include "io/vtu.h"
 
 #define DEFAULT_RATE 0.2   /* RANS practice; growth 1.2 */
@@ -632,51 +631,6 @@ static vg_status check_limits(struct vg_layer_stage *s, struct vg_error *err)
   return st;
 }
 
-static vg_status measure(struct vg_layer_stage *s,
-                         const struct vg_mesh *surface, struct vg_error *err)
-{
-  vg_status st;
-
-  VG_TRY(vg_layers_fields(surface, &s->layers.columns, s->options.threads,
-                          &s->fields, err));
-  st = vg_layers_patches(surface, &s->layers.columns, &s->fields, s->reynolds,
-                         s->length, &s->n_wall, &s->wall, &s->all, err);
-done:
-  return st;
-}
-
-/* What comes out is judged, and measured, which is partly of one thread, at
- * the same time. */
-struct looks {
-  struct vg_layer_stage *s;
-  const struct vg_mesh *surface;
-  vg_status st[2];
-  struct vg_error err[2];
-};
-
-static void look(void *context, size_t first, size_t end, int worker)
-{
-  struct looks *l = context;
-
-  (void)worker;
-  for (size_t i = first; i < end; i++)
-    l->st[i] = i ? judge(l->s, l->surface, &l->err[i])
-                 : measure(l->s, l->surface, &l->err[i]);
-}
-
-/* Where both fail, it is the judge who is heard. */
-static vg_status look_at(struct vg_layer_stage *s,
-                         const struct vg_mesh *surface, struct vg_error *err)
-{
-  struct looks l = { .s = s, .surface = surface };
-  int told;
-
-  vg_parallel_for(s->options.threads, 2, 1, look, &l);
-  told = l.st[1] < 0;
-  if (l.st[told] < 0) *err = l.err[told];
-  return l.st[told];
-}
-
 vg_status vg_layer_stage_grow(struct vg_layer_stage *s,
                               const struct vg_mesh *surface,
                               const struct vg_sizing *sizing,
@@ -695,7 +649,12 @@ vg_status vg_layer_stage_grow(struct vg_layer_stage *s,
   }
   t = vg_display_now();
   vg_display_update(show, "measure layers", s->report.n_cell, 0);
-  VG_TRY(look_at(s, surface, err));
+  VG_TRY(judge(s, surface, err));
+  VG_TRY(vg_layers_fields(surface, &s->layers.columns, s->options.threads,
+                          &s->fields, err));
+  VG_TRY(vg_layers_patches(surface, &s->layers.columns, &s->fields,
+                           s->reynolds, s->length, &s->n_wall, &s->wall,
+                           &s->all, err));
   s->time_measure = vg_display_now() - t;
   st = check_limits(s, err);
 done:
