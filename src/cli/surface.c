@@ -12,6 +12,7 @@
 #include "io/vtu.h"
 
 #define SHOWN_PATCHES 20   /* numbers in a note */
+#define FARFIELD_TRIANGLES 1e8
 
 /* Codes of patches that bound a fluid from outside: freestream, outflow,
  * characteristic and internal-flow ends. */
@@ -205,6 +206,29 @@ static int is_only_open(const struct vg_surface_report *r)
          r->count[VG_DEFECT_OPEN_EDGE] == r->n_defect;
 }
 
+/* An edge in another unit would ask for more triangles than fit anywhere. */
+static vg_status check_farfield(const struct vg_problem *p,
+                                const struct vg_farfield *far,
+                                struct vg_error *err)
+{
+  double edge = far->spacing, lo[3], hi[3], size = 0, n;
+
+  if (p->settings.hmax > 0 && !(edge > 0 && edge < p->settings.hmax))
+    edge = p->settings.hmax;
+  vg_mesh_bounds(&p->surface, lo, hi);
+  for (int k = 0; k < 3; k++) {
+    size = fmax(size, far->lengths * (hi[k] - lo[k]));
+    if (far->has_box) size = fmax(size, (far->hi[k] - far->lo[k]) / 2);
+  }
+  if (far->size > 0) size = far->size;
+  /* The area of a sphere over that of a triangle. */
+  n = edge > 0 ? 29 * (size / edge) * (size / edge) : 0;
+  if (far->kind == VG_FARFIELD_NONE || n < FARFIELD_TRIANGLES) return VG_OK;
+  return vg_fail(err, VG_ERR_INPUT, "a farfield of size %g with edges of %g "
+                 "has some %.2g triangles; are its spacing and hmax in the "
+                 "unit of the surface?", size, edge, n);
+}
+
 static vg_status complete(struct vg_problem *p, struct vg_error *err)
 {
   struct vg_settings *s = &p->settings;
@@ -216,6 +240,7 @@ static vg_status complete(struct vg_problem *p, struct vg_error *err)
 
   if (assumed) s->farfield.kind = VG_DOMAIN_SPHERE;
   far = vg_settings_farfield(s);
+  VG_TRY(check_farfield(p, &far, err));
   /* What is built here lies away from the body, whose own largest edge is no
    * limit for it. */
   if (!(options.h_max > 0)) options.h_max = INFINITY;

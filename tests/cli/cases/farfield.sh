@@ -42,3 +42,11 @@ says out "added: symmetry plane y = 0"
 says out "added: farfield"
 says out "validity: valid"
 says half.mapbc "symmetry"
+
+# An edge in another unit: refused before it fills the memory.
+vanguard demo sphere --cells 2000 --out unit
+for option in --farfield-spacing --hmax; do
+  vanguard mesh -q -p unit/sphere --farfield sphere $option 1e-3
+  exits 1
+  says err "are its spacing and hmax in the unit of the surface?"
+done
