@@ -13,7 +13,7 @@
 
 #define VG_SHOWN_DEFECTS 20   /* first ones of a kind put in words */
 
-/** A string for JSON, as vg_text_clean has it. */
+/** A string for JSON; what is no UTF-8 as vg_text_clean has it. */
 json_t *vg_report_string(const char *text);
 
 /** Counts of a mesh, its box and its patches. */

@@ -9,9 +9,10 @@
 
 json_t *vg_report_string(const char *text)
 {
-  char *clean = vg_text_copy(text);
-  json_t *o = clean ? json_string(clean) : NULL;
+  json_t *o = json_string(text);
+  char *clean = o ? NULL : vg_text_copy(text);
 
+  if (clean) o = json_string(clean);
   free(clean);
   return o ? o : json_null();
 }
