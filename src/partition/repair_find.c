@@ -11,10 +11,6 @@
  * stayed bad needs much room. */
 static const struct { double reach, most; } ball[VG_BALL_SIZES] = {
   { 1.2, 1.01 }, { 2.5, 1.01 }, { 4, 2 } };
-/* A ball of more than so many of the least spacing at a corner, where another
- * corner's is `coarser` times as large, holds too much of what is fine: only
- * the coarse end of the cell gets one. */
-static const double most_radius = 10, coarser = 2;
 
 /* --- owners -------------------------------------------------------------- */
 
@@ -146,14 +142,8 @@ struct vg_spot vg_spot_around(const struct vg_sizing *sizing,
                               const double *const x[4], enum vg_ball_size k)
 {
   struct vg_spot s;
-  double far = 0, reach, h[4];
-  int fine = 0, coarse = 0;
+  double far = 0, reach;
 
-  for (int i = 0; i < 4; i++) {
-    h[i] = vg_sizing_at(sizing, x[i]);
-    if (h[i] < h[fine]) fine = i;
-    if (h[i] > h[coarse]) coarse = i;
-  }
   for (int a = 0; a < 3; a++)
     s.at[a] = 0.25 * (x[0][a] + x[1][a] + x[2][a] + x[3][a]);
   for (int i = 0; i < 4; i++) {
@@ -164,10 +154,6 @@ struct vg_spot vg_spot_around(const struct vg_sizing *sizing,
   reach = ball[k].reach * vg_sizing_at(sizing, s.at);
   s.radius = ball[k].most * sqrt(far);
   if (s.radius < reach) s.radius = reach;
-  if (s.radius > most_radius * h[fine] && h[coarse] > coarser * h[fine]) {
-    memcpy(s.at, x[coarse], sizeof s.at);
-    s.radius = ball[k].reach * h[coarse];
-  }
   return s;
 }
 

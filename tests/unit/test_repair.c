@@ -422,38 +422,6 @@ static void test_thin(void **state)
   }
 }
 
-/* A long cell from what is fine to what is coarse: its ball is at its coarse
- * end. One as long where spacing is even is all in its ball. */
-static void test_ball_of_contrast(void **state)
-{
-  static const double corner[4][3] = {
-    {0, 0, 0}, {0.1, 0, 0}, {0, 0.1, 0}, {0, 0, 30}};
-  const double *const x[4] = {corner[0], corner[1], corner[2], corner[3]};
-  struct vg_source source[2] = {
-    { .kind = VG_SOURCE_SPHERE, .r0 = 1, .h0 = 0.1 },
-    { .kind = VG_SOURCE_BOX, .p0 = {-40, -40, -40}, .p1 = {40, 40, 40} } };
-  struct vg_sizing_options o = VG_SIZING_OPTIONS_INIT;
-
-  (void)state;
-  for (int even = 0; even < 2; even++) {
-    struct vg_sizing *sizing = NULL;
-
-    source[1].h0 = even ? 0.1 : 4;
-    assert_int_equal(vg_sizing_new(&o, 2, source, NULL, &sizing, NULL), VG_OK);
-    for (int k = 0; k < VG_BALL_SIZES; k++) {
-      struct vg_spot s = vg_spot_around(sizing, x, (enum vg_ball_size)k);
-
-      for (int i = 0; i < 4; i++) {
-        struct vg_spot p = { .radius = 0 };
-
-        memcpy(p.at, x[i], sizeof p.at);
-        assert_int_equal(touch(&s, &p), even || i == 3);
-      }
-    }
-    vg_sizing_free(sizing);
-  }
-}
-
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -467,7 +435,6 @@ int main(void)
     cmocka_unit_test(test_balls),
     cmocka_unit_test(test_balls_capped),
     cmocka_unit_test(test_thin),
-    cmocka_unit_test(test_ball_of_contrast),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);
