@@ -219,6 +219,8 @@ vg_status vg_node_list_open(struct vg_node *n, const struct vg_engine *e,
                     vg_alloc(n_chunk, sizeof *l.count) };
   int bad = !l.face || !l.count;
 
+  /* where no region held a face, nothing was put in that labelled them */
+  if (!bad) bad = label_points(n, e, err) != VG_OK;
   for (size_t k = 0; k < n->n_open; k++)
     if (n->front.face[n->open[k]][0] != VG_FACE_GONE)
       n->open[left++] = n->open[k];
