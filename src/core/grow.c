@@ -59,7 +59,21 @@ done:
   return st;
 }
 
-/* --- and into the mesh ---------------------------------------------------- */
+/* --- what is kept -------------------------------------------------------- */
+
+/* VG_MARK on the cells that become final. */
+static size_t choose(struct growth *g)
+{
+  struct vg_tets *t = &g->k.t;
+  size_t n = 0, most = g->k.options->max_cells;
+
+  for (size_t c = 0; c < t->n_cell && (!most || n < most); c++) {
+    if (t->flag[c] & VG_DEAD) continue;
+    t->flag[c] |= VG_MARK;
+    n++;
+  }
+  return n;
+}
 
 static vg_status number_points(struct growth *g, struct vg_error *err)
 {
@@ -75,7 +89,7 @@ static vg_status number_points(struct growth *g, struct vg_error *err)
   for (size_t p = 0; p < v->n_point; p++)
     if (g->local[p] != VG_NONE) g->global[g->local[p]] = (uint32_t)p;
   for (size_t c = 0; c < t->n_cell; c++)
-    for (int i = 0; i < 4 && !(t->flag[c] & VG_DEAD); i++)
+    for (int i = 0; i < 4 && t->flag[c] & VG_MARK; i++)
       if (t->cell[c].v[i] >= g->k.n_front) g->global[t->cell[c].v[i]] = 0;
   for (size_t p = g->k.n_front; p < t->n_point; p++)
     if (g->global[p] != VG_NONE) {
@@ -85,24 +99,49 @@ static vg_status number_points(struct growth *g, struct vg_error *err)
   return VG_OK;
 }
 
+/* The new front: faces between a kept cell and one that is not, and old front
+ * faces before a cell that is not kept. All face the cell that is not kept. */
+static size_t new_front(const struct growth *g, uint32_t (*face)[3])
+{
+  const struct vg_tets *t = &g->k.t;
+  size_t n = 0;
+
+  for (size_t c = 0; c < t->n_cell; c++) {
+    if (t->flag[c] & (VG_MARK | VG_DEAD)) continue;
+    for (int i = 0; i < 4; i++) {
+      uint32_t link = t->cell[c].link[i];
+
+      if (!(t->flag[c] >> i & 1) &&
+          (link == VG_NONE || !(t->flag[link >> 2] & VG_MARK)))
+        continue;
+      for (int k = 0; face && k < 3; k++)
+        face[n][k] = g->global[t->cell[c].v[vg_face[i][k]]];
+      n++;
+    }
+  }
+  return n;
+}
+
 static vg_status commit(struct growth *g, struct vg_error *err)
 {
   struct vg_tets *t = &g->k.t;
   struct vg_void *v = g->v;
-  size_t n = 0;
+  size_t n = choose(g), n_face;
   vg_status st;
 
-  for (size_t c = 0; c < t->n_cell; c++) n += !(t->flag[c] & VG_DEAD);
   if (vg_reserve(&v->cell, &v->cap_cell, v->n_cell + n, sizeof *v->cell))
     return vg_fail_memory(err, "the cells of the mesh");
+  n_face = new_front(g, NULL);
+  if (vg_reserve(&v->face, &v->cap_face, n_face, sizeof *v->face))
+    return vg_fail_memory(err, "the front");
   VG_TRY(number_points(g, err));
   for (size_t c = 0; c < t->n_cell; c++)
-    if (!(t->flag[c] & VG_DEAD)) {
+    if (t->flag[c] & VG_MARK) {
       for (int i = 0; i < 4; i++)
         v->cell[v->n_cell][i] = g->global[t->cell[c].v[i]];
       v->n_cell++;
     }
-  v->n_face = 0;
+  v->n_face = new_front(g, v->face);
 done:
   return st;
 }

@@ -2,11 +2,11 @@
  *
  * The front is tetrahedralised (core/boundary.h), points are placed by their
  * own front (core/place.h) and inserted (core/insert.h), the cells are
- * optimised (core/optimise.h). Everywhere, that is the fill: vg_grow. Along a
- * plane or a line it makes a zone or a pencil out of the front nearby, which
+ * optimised (core/optimise.h); those that the region admits are kept, the
+ * rest is left with a new front. Everywhere, that is the fill: vg_grow. Along
+ * a plane or a line it makes a zone or a pencil out of the front nearby, which
  * need not be closed, and at a cost that does not depend on the rest of the
- * front: vg_zone_grow keeps what belongs to the region, and leaves a new
- * front. */
+ * front: vg_zone_grow. */
 #ifndef VG_CORE_GROW_H
 #define VG_CORE_GROW_H
 
@@ -19,16 +19,18 @@
 
 struct vg_grow_options {
   int sweeps;                /* of optimisation over all cells; 0: none */
+  size_t max_cells;          /* keep at most so many; 0: all */
   uint64_t point_limit;      /* refuse to place more points; 0: none */
   vg_progress progress;
   void *user;
 };
-#define VG_GROW_OPTIONS_INIT { 2, 0, NULL, NULL }
+#define VG_GROW_OPTIONS_INIT { 2, 0, 0, NULL, NULL }
 
-/** Fill v. Counts and times are added to *report.
+/** Grow cells in v. Counts and times are added to *report.
  *
  * On return the cells were appended to v->cell, new points to v->x, and
- * v->face is empty. Deterministic, re-entrant.
+ * v->face is the front of what is left: empty when all was filled.
+ * Deterministic, re-entrant.
  * Returns VG_BLOCKED when the progress callback asked to stop (v unchanged),
  * VG_ERR_GEOMETRY when the front does not bound a fluid (v unchanged). */
 vg_status vg_grow(struct vg_void *v, const struct vg_sizing *sizing,

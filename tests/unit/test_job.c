@@ -1,7 +1,9 @@
-/* Fronts as tasks get them: joined, their volume, bytes and back. */
+/* Fronts as tasks get them: their parts where voids touch, splitting and
+ * joining, their volume, bytes and back. */
 #include "io_support.h"
 
 #include "fill_shapes.h"
+#include "front_parts.h"
 #include "base/bytes.h"
 #include "partition/job.h"
 #include "tets_support.h"
@@ -36,7 +38,154 @@ static struct vg_front block(int nx, int ny, int nz, int (*in)(const int at[3]))
   return front_of(&m);
 }
 
-/* --- joining ------------------------------------------------------------- */
+/* Turned and stretched, so that nothing is along an axis. */
+static void turn(struct vg_front *f)
+{
+  for (size_t k = 0; k < f->n_point; k++) {
+    double *x = f->x[k];
+    double y[3] = { 0.6 * x[0] - 0.8 * x[1], 0.8 * x[0] + 0.6 * x[1], x[2] };
+
+    x[0] = 0.28 * y[0] - 0.96 * y[2] + 0.1 * y[1];
+    x[1] = y[1];
+    x[2] = 0.96 * y[0] + 0.28 * y[2];
+  }
+}
+
+/* Another corner of each face comes first. */
+static void turn_faces(struct vg_front *f)
+{
+  for (size_t i = 0; i < f->n_face; i++)
+    for (size_t k = 0; k < i % 3; k++) {
+      uint32_t first = f->face[i][0];
+
+      f->face[i][0] = f->face[i][1];
+      f->face[i][1] = f->face[i][2];
+      f->face[i][2] = first;
+    }
+}
+
+static uint32_t *parts_of(const struct vg_front *f, size_t *n)
+{
+  uint32_t *part = vg_alloc(f->n_face, sizeof *part), next = 0;
+
+  assert_non_null(part);
+  assert_int_equal(front_parts(f, part, n, NULL), VG_OK);
+  for (size_t i = 0; i < f->n_face; i++) {     /* by their first faces */
+    assert_true(part[i] <= next);
+    next += part[i] == next;
+  }
+  assert_int_equal(next, *n);
+  return part;
+}
+
+/* How many, whichever way the front is turned. */
+static void parts_are(struct vg_front f, size_t want)
+{
+  for (int k = 0; k < 3; k++) {
+    size_t n;
+    uint32_t *part = parts_of(&f, &n);
+
+    assert_int_equal(n, want);
+    free(part);
+    if (k == 0) turn(&f);
+    else turn_faces(&f);
+  }
+  vg_front_release(&f);
+}
+
+/* --- parts --------------------------------------------------------------- */
+
+static int two_apart(const int at[3])
+{
+  return at[0] != 1;
+}
+
+static int two_at_an_edge(const int at[3])
+{
+  return at[0] == at[1];
+}
+
+static int two_at_a_point(const int at[3])
+{
+  return at[0] == at[1] && at[1] == at[2];
+}
+
+static int every_other(const int at[3])
+{
+  return (at[0] + at[1] + at[2]) % 2 == 0;
+}
+
+static int is_body(const int at[3])
+{
+  return at[2] == 1 && (at[0] == 1 || at[0] == 2) && at[0] == at[1];
+}
+
+static int around_two_bodies(const int at[3])
+{
+  return !is_body(at);
+}
+
+static int a_passage_wide(const int at[3])
+{
+  return !(at[0] == 1 && at[1] == 0);
+}
+
+static void parts_that_are_apart(void **state)
+{
+  (void)state;
+  parts_are(block(2, 3, 1, shape_all), 1);
+  parts_are(block(3, 1, 1, two_apart), 2);
+  parts_are(block(3, 2, 1, a_passage_wide), 1);
+}
+
+/* Edges with four faces: voids that touch there are parts of their own. */
+static void parts_that_touch(void **state)
+{
+  (void)state;
+  parts_are(block(2, 2, 1, two_at_an_edge), 2);
+  parts_are(block(2, 2, 2, two_at_a_point), 2);
+  parts_are(block(3, 3, 1, every_other), 5);
+  parts_are(block(4, 4, 4, every_other), 32);
+  parts_are(block(5, 4, 3, every_other), 30);
+}
+
+/* Two bodies that touch in an edge are one shell of the void around them. */
+static void bodies_that_touch(void **state)
+{
+  struct vg_front f = block(4, 4, 3, around_two_bodies);
+  size_t n, size[2] = {0, 0};
+  uint32_t *part = parts_of(&f, &n);
+
+  (void)state;
+  assert_int_equal(n, 2);
+  for (size_t i = 0; i < f.n_face; i++) size[part[i]]++;
+  assert_int_equal(size[0] < size[1] ? size[0] : size[1], 24);
+  free(part);
+  parts_are(f, 2);
+}
+
+static void a_sphere_in_a_box(void **state)
+{
+  const double centre[3] = {0.1, 0, 0};
+  struct vg_mesh m = VG_MESH_INIT;
+
+  (void)state;
+  shape_box(&m, 4, 3);
+  shape_sphere(&m, 6, centre, 1, 7);
+  parts_are(front_of(&m), 2);
+}
+
+static void no_front_has_no_parts(void **state)
+{
+  struct vg_front f = VG_FRONT_INIT;
+  size_t n = 5;
+
+  (void)state;
+  assert_int_equal(front_parts(&f, NULL, &n, NULL), VG_OK);
+  assert_int_equal(n, 0);
+}
+
+/* --- splitting and joining ----------------------------------------------- */
 
 static int by_name(const void *a, const void *b)
 {
@@ -93,48 +242,76 @@ static void is_part_of(const struct vg_front *f, const struct vg_front *whole)
   free(used);
 }
 
-/* The faces k, k + n, ... with their points. */
-static struct vg_front some_of(const struct vg_front *f, size_t k, size_t n)
+static int is_closed(const struct vg_front *f)
 {
-  struct vg_front out = VG_FRONT_INIT;
-  uint32_t *to = vg_calloc(f->n_point, sizeof *to);
+  struct vg_void v = { .n_point = f->n_point, .x = f->x,
+                       .n_face = f->n_face, .face = f->face };
 
-  out.x = vg_alloc(f->n_point, sizeof *out.x);
-  out.name = vg_alloc(f->n_point, sizeof *out.name);
-  out.face = vg_alloc(f->n_face, sizeof *out.face);
-  assert_true(to && out.x && out.name && out.face);
-  for (size_t i = k; i < f->n_face; i += n, out.n_face++)
-    for (int j = 0; j < 3; j++) {
-      uint32_t p = f->face[i][j];
-
-      if (!to[p]) {
-        memcpy(out.x[out.n_point], f->x[p], sizeof *out.x);
-        out.name[out.n_point] = f->name[p];
-        to[p] = (uint32_t)++out.n_point;
-      }
-      out.face[out.n_face][j] = to[p] - 1;
-    }
-  free(to);
-  return out;
+  return !vg_void_defects(&v);
 }
 
-/* Points of several parts are there once; one part has no face. */
-static void parts_are_joined(void **state)
+/* Split into parts and joined again. */
+static void split_and_join(struct vg_front f)
 {
-  struct vg_front f = block(4, 4, 3, shape_all), all = VG_FRONT_INIT;
-  const size_t first[4] = {0, 2, f.n_face, 1};
+  struct vg_front all = VG_FRONT_INIT, *out;
+  size_t n, n_face = 0;
+  uint32_t *part = parts_of(&f, &n);
+  double volume = 0;
 
-  (void)state;
-  for (int k = 0; k < 4; k++) {
-    struct vg_front part = some_of(&f, first[k], 3);
-
-    assert_int_equal(vg_front_append(&all, &part, NULL), VG_OK);
+  out = vg_calloc(n, sizeof *out);
+  assert_non_null(out);
+  assert_int_equal(front_split(&f, part, n, out, NULL), VG_OK);
+  for (size_t k = 0; k < n; k++) {
+    is_part_of(&out[k], &f);
+    assert_true(is_closed(&out[k]));
+    n_face += out[k].n_face;
+    volume += vg_front_volume(&out[k]);
+    assert_int_equal(vg_front_append(&all, &out[k], NULL), VG_OK);
     is_part_of(&all, &f);
-    vg_front_release(&part);
+    vg_front_release(&out[k]);
   }
+  assert_int_equal(n_face, f.n_face);
+  assert_true(fabs(volume - vg_front_volume(&f)) < 1e-12 * fabs(volume));
   same_front(&all, &f);
   vg_front_release(&all);
   vg_front_release(&f);
+  free(out);
+  free(part);
+}
+
+static void parts_are_split_and_joined(void **state)
+{
+  const double centre[3] = {0.1, 0, 0};
+  struct vg_mesh m = VG_MESH_INIT;
+
+  (void)state;
+  shape_box(&m, 4, 3);
+  shape_sphere(&m, 6, centre, 1, 7);
+  split_and_join(front_of(&m));
+  split_and_join(block(2, 2, 1, two_at_an_edge));
+  split_and_join(block(4, 4, 4, every_other));   /* points of 8 parts */
+  split_and_join(block(4, 4, 3, around_two_bodies));
+}
+
+/* Parts may be without faces. */
+static void an_empty_part(void **state)
+{
+  struct vg_front f = block(1, 1, 1, shape_all), out[3];
+  uint32_t *part = vg_calloc(f.n_face, sizeof *part);
+
+  (void)state;
+  assert_non_null(part);
+  for (size_t i = 0; i < f.n_face; i++) part[i] = 2 * (i > 5);
+  assert_int_equal(front_split(&f, part, 3, out, NULL), VG_OK);
+  assert_int_equal(out[0].n_face, 6);
+  assert_int_equal(out[1].n_face + out[1].n_point, 0);
+  assert_int_equal(out[2].n_face, 6);
+  for (int k = 1; k < 3; k++)
+    assert_int_equal(vg_front_append(&out[0], &out[k], NULL), VG_OK);
+  same_front(&out[0], &f);
+  for (int k = 0; k < 3; k++) vg_front_release(&out[k]);
+  vg_front_release(&f);
+  free(part);
 }
 
 /* --- what a front encloses ----------------------------------------------- */
@@ -237,7 +414,7 @@ static void fronts_as_bytes(void **state)
 static void several_in_a_row(void **state)
 {
   struct vg_front f[3] = { block(1, 1, 1, shape_all), VG_FRONT_INIT,
-                           block(2, 2, 1, shape_all) }, back;
+                           block(2, 2, 1, two_at_an_edge) }, back;
   struct vg_writer w = { .cap = 0 };
   struct vg_reader r = { .bad = 0 };
 
@@ -325,7 +502,13 @@ static void an_empty_change(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(parts_are_joined),
+    cmocka_unit_test(parts_that_are_apart),
+    cmocka_unit_test(parts_that_touch),
+    cmocka_unit_test(bodies_that_touch),
+    cmocka_unit_test(a_sphere_in_a_box),
+    cmocka_unit_test(no_front_has_no_parts),
+    cmocka_unit_test(parts_are_split_and_joined),
+    cmocka_unit_test(an_empty_part),
     cmocka_unit_test(volumes),
     cmocka_unit_test(fronts_as_bytes),
     cmocka_unit_test(several_in_a_row),

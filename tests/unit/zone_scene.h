@@ -5,10 +5,8 @@
 
 #include "io_support.h"
 
-#include "base/unite.h"
-#include "core/hilbert.h"
-#include "core/predicates.h"
 #include "fill_shapes.h"
+#include "front_parts.h"
 #include "partition/job.h"
 #include "zone_support.h"
 
@@ -34,6 +32,7 @@ static inline void scene_void(struct scene *s, double growth, double h_max)
   memset(&s->report, 0, sizeof s->report);
   s->sizing = shape_sizing(&s->m, growth, h_max);
   assert_int_equal(vg_void_from_mesh(&s->v, &s->m, NULL), VG_OK);
+  assert_int_equal(vg_void_defects(&s->v), 0);
   s->volume = volume_of_front(&s->v);
   assert_true(s->volume > 0);
 }
@@ -84,90 +83,54 @@ static inline struct vg_region line_at(int a, double at, int b, double there)
 
 /* --- what must hold at any moment ---------------------------------------- */
 
-/* Edges of the front in a row, of faces 2 i and their turned ones 2 i + 1. */
-static inline struct vg_key *sorted_edges(const struct vg_void *v)
+static inline double volume_of_cell(const struct vg_void *v, size_t c)
 {
-  struct vg_key *edge = vg_alloc(3 * v->n_face, sizeof *edge);
-  size_t n = 0;
+  const double *a = v->x[v->cell[c][0]];
+  double e[3][3];
 
-  assert_non_null(edge);
-  for (uint32_t i = 0; i < v->n_face; i++)
-    for (int k = 0; k < 3; k++) {
-      uint32_t a = v->face[i][k], b = v->face[i][(k + 1) % 3];
-
-      edge[n].key = a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
-      edge[n++].index = 2 * i + (a < b);
-    }
-  assert_int_equal(vg_sort_keys(n, edge, NULL), VG_OK);
-  return edge;
-}
-
-/* Every edge is used equally often in both directions. */
-static inline void is_closed(const struct vg_void *v)
-{
-  struct vg_key *edge = sorted_edges(v);
-  size_t n = 3 * v->n_face;
-
-  for (size_t i = 0, j; i < n; i = j) {
-    long balance = 0;
-
-    for (j = i; j < n && edge[j].key == edge[i].key; j++)
-      balance += edge[j].index & 1 ? 1 : -1;
-    assert_int_equal(balance, 0);
-  }
-  free(edge);
-}
-
-/* All are positive. */
-static inline double volume_of_cells(const struct vg_void *v)
-{
-  double sum = 0;
-
-  for (size_t c = 0; c < v->n_cell; c++) {
-    const uint32_t *p = v->cell[c];
-    double det = vg_orient3d(v->x[p[0]], v->x[p[1]], v->x[p[2]], v->x[p[3]]);
-
-    assert_true(det > 0);
-    sum += det / 6;
-  }
-  return sum;
+  for (int i = 0; i < 3; i++)
+    for (int k = 0; k < 3; k++) e[i][k] = v->x[v->cell[c][i + 1]][k] - a[k];
+  return (e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) +
+          e[0][1] * (e[1][2] * e[2][0] - e[1][0] * e[2][2]) +
+          e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0])) / 6;
 }
 
 /* A closed front, positive cells, and together the volume of the domain. */
 static inline void is_valid(const struct scene *s)
 {
-  double sum = volume_of_front(&s->v) + volume_of_cells(&s->v);
+  double sum = volume_of_front(&s->v);
 
-  is_closed(&s->v);
+  assert_int_equal(vg_void_defects(&s->v), 0);
+  for (size_t c = 0; c < s->v.n_cell; c++) sum += volume_of_cell(&s->v, c);
   if (!(fabs(sum - s->volume) < 1e-10 * s->volume))
     fail_msg("volume %.17g instead of %.17g", sum, s->volume);
 }
 
-/* Parts of the front that share no edge of two faces: how many, crumbs apart,
- * the small cavities left where cells of a zone are not well shaped. */
+/* Parts of the front that share no edge: how many, crumbs apart, the small
+ * cavities left where cells of a zone are not well shaped. */
 enum { CRUMB = 20 };
 
 static inline size_t parts_of(const struct vg_void *v, size_t *n_crumb)
 {
-  struct vg_key *edge = sorted_edges(v);
-  uint32_t *up = vg_alloc(v->n_face, sizeof *up);
-  size_t *size = vg_calloc(v->n_face, sizeof *size), n = 3 * v->n_face;
-  size_t large = 0;
+  struct vg_front f = { .n_point = v->n_point, .n_face = v->n_face,
+                        .x = v->x, .face = v->face };
+  uint32_t *part = vg_alloc(v->n_face, sizeof *part);
+  size_t n, large = 0, *size;
 
-  assert_true(up && size);
-  for (uint32_t i = 0; i < v->n_face; i++) up[i] = i;
-  for (size_t i = 0, j; i < n; i = j) {
-    for (j = i; j < n && edge[j].key == edge[i].key; j++) continue;
-    if (j - i == 2) vg_unite(up, edge[i].index / 2, edge[i + 1].index / 2);
-  }
-  for (uint32_t i = 0; i < v->n_face; i++) size[vg_root_of(up, i)]++;
-  *n_crumb = 0;
+  assert_non_null(part);
+  assert_int_equal(front_parts(&f, part, &n, NULL), VG_OK);
+  size = vg_calloc(n, sizeof *size);
+  assert_non_null(size);
   for (size_t i = 0; i < v->n_face; i++) {
-    *n_crumb += size[i] && size[i] <= CRUMB;
-    large += size[i] > CRUMB;
+    assert_true(part[i] < n);
+    size[part[i]]++;
   }
-  free(edge);
-  free(up);
+  for (size_t k = 0; k < n; k++) {
+    assert_true(size[k] >= 4);
+    large += size[k] > CRUMB;
+  }
+  *n_crumb = n - large;
+  free(part);
   free(size);
   return large;
 }
