@@ -45,14 +45,16 @@ vg_status vg_optimise_swaps(struct vg_tets *t, float below, float **q,
 
 /** Smooth points of cells that need not hang together: one sweep over
  * point [n], in that order, but for those that have no cell of a shape below
- * `below` when it begins.
+ * `below` when it begins. Shapes decide, and how near edges come to the length
+ * that is wanted; sizing NULL: shapes alone.
  *
  * t: its links are not looked at, its cells positive; each of those points
  * has all its cells there, none of them with a fixed face.
  * q in, out: [t.n_cell] shapes (vg_shape) of the cells
  * Deterministic. VG_ERR_MEMORY on refusal. */
 vg_status vg_optimise_points(struct vg_tets *t, size_t n,
-                             const uint32_t *point, float below, float *q,
+                             const uint32_t *point, float below,
+                             const struct vg_sizing *sizing, float *q,
                              struct vg_optimise_report *report,
                              struct vg_error *err);
 

@@ -4,6 +4,13 @@
 
 #include <math.h>
 
+#include "core/sizing.h"
+
+/* Shares of vg_ball_other: of volume^2 / E^3 over a regular cell's, of what
+ * sizes are off, squared; and in slopes, beside the logarithm of the shape. */
+static const double round_share = 0.3, size_share = 0.5;
+static const double round_slope = 1.2, size_slope = 0.5;
+
 void vg_ball_faces(const struct vg_tets *t, size_t n, const uint32_t *link,
                    struct vg_ball_faces *out)
 {
@@ -33,7 +40,16 @@ void vg_ball_faces(const struct vg_tets *t, size_t n, const uint32_t *link,
       area2 += s * s;
     }
     out->area2[k] = area2;
+    out->rim2[k] = out->edge2[0][k] + out->edge2[1][k] + out->edge2[2][k];
   }
+}
+
+void vg_ball_target(const struct vg_sizing *sizing, const double x[3],
+                    struct vg_ball_faces *b)
+{
+  double h = sizing ? vg_sizing_at(sizing, x) : 0;
+
+  b->per = sizing ? 1 / (6 * h * h) : 0;
 }
 
 /* Of cell k with the point at x: edges to the corners of the face, and of the
@@ -97,6 +113,29 @@ int vg_ball_shapes(const struct vg_ball_faces *b, const double x[3],
   return 1;
 }
 
+double vg_ball_other(const struct vg_ball_faces *b, const double x[3])
+{
+  double sum = 0;
+
+  for (size_t at = 0; at < b->n; at += BLOCK) {
+    size_t n = b->n - at < BLOCK ? b->n - at : BLOCK;
+    double of[BLOCK];
+
+    for (size_t k = 0; k < n; k++) {
+      struct cone c;
+      double e, off;
+
+      raise(b, at + k, x, &c);
+      e = c.l[0] + c.l[1] + c.l[2] + b->rim2[at + k];
+      off = e * b->per - 1;
+      of[k] = round_share * 432 * c.det * c.det / (e * e * e) -
+              size_share * off * off;
+    }
+    for (size_t k = 0; k < n; k++) sum += of[k];
+  }
+  return sum;
+}
+
 void vg_ball_ideal(const struct vg_ball_faces *b, const double *q,
                    const double x[3], double to[3])
 {
@@ -123,7 +162,7 @@ static inline void slope_of(const struct vg_ball_faces *b, size_t k,
                             const double x[3], double g[3])
 {
   struct cone c;
-  double up[3], rim[3], least;
+  double up[3], rim[3], least, edges2, wide, high;
 
   raise(b, k, x, &c);
   for (int i = 0; i < 3; i++) {
@@ -136,7 +175,13 @@ static inline void slope_of(const struct vg_ball_faces *b, size_t k,
     up[i] = up[i] <= least ? 1.0 : 0.0;
     rim[i] = rim[i] <= least ? 1.0 : 0.0;
   }
-  for (int a = 0; a < 3; a++) g[a] = b->normal[a][k] * (1 / c.det);
+  edges2 = c.l[0] + c.l[1] + c.l[2] + b->rim2[k];
+  wide = 3 * round_slope / edges2 +
+         2 * size_slope * b->per * (edges2 * b->per - 1);
+  high = (1 + round_slope) / c.det;
+  for (int a = 0; a < 3; a++)
+    g[a] = high * b->normal[a][k] +
+           wide * (c.u[0][a] + c.u[1][a] + c.u[2][a]);
   for (int i = 0; i < 3; i++) {
     const double *p = c.u[(i + 1) % 3], *r = c.u[(i + 2) % 3];
     double edge = up[i] / c.l[i];

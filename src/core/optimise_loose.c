@@ -66,7 +66,8 @@ static vg_status balls_new(const struct vg_tets *t, size_t n,
 
 /* --- one point ------------------------------------------------------------ */
 
-/* Where a point stands, and the shapes around it there. */
+/* Where a point stands, the shapes around it there, and their sum with what
+ * else is to be said for the place. */
 struct stand {
   double x[3], q[VG_BALL_MAX], worst, sum;
   size_t at;                 /* the worst cell */
@@ -95,19 +96,21 @@ static void weigh(struct stand *s, size_t n)
  * positive cannot be told there. */
 static int take_ball(struct mover *m, const struct vg_tets *t, size_t n,
                      const uint32_t *link, uint32_t p, float below,
-                     const float *q)
+                     const struct vg_sizing *sizing, const float *q)
 {
   if (!n || n > VG_BALL_MAX) return 0;
   for (size_t k = 0; k < n; k++) m->now.q[k] = q[link[k] >> 2];
   weigh(&m->now, n);
   if (m->now.worst <= VG_SHAPE_FLAT || m->now.worst >= (double)below) return 0;
   vg_ball_faces(t, n, link, &m->faces);
+  vg_ball_target(sizing, t->x[p], &m->faces);
   memcpy(m->now.x, t->x[p], sizeof m->now.x);
+  m->now.sum += vg_ball_other(&m->faces, m->now.x);
   return 1;
 }
 
 /* To x + length g, where that is better: the worst shape is, or it is no worse
- * than what is aimed at and their mean is better. */
+ * than what is aimed at and the sum is better. */
 static int move(struct mover *m, const double g[3], double length)
 {
   const double aim = VG_SHAPE_AIM;
@@ -118,6 +121,7 @@ static int move(struct mover *m, const double g[3], double length)
                       to.q))
     return 0;
   weigh(&to, m->faces.n);
+  to.sum += vg_ball_other(&m->faces, to.x);
   if (to.worst < aim ? to.worst <= m->now.worst * 1.001 + VG_SHAPE_FLAT
                      : m->now.worst >= aim && to.sum <= m->now.sum * 1.0005)
     return 0;
@@ -146,8 +150,8 @@ static int climb(struct mover *m, size_t first, size_t end, double share,
 }
 
 /* Towards where the point is of the best use to its cells, then up the slope
- * of the worst of them where that is bad, else of all: their logarithms, which
- * the bad ones count for most in. */
+ * of the worst of them where that is bad, and up that of all: their logarithms,
+ * which the bad ones count for most in, and sizes. */
 static int improve(struct mover *m)
 {
   double to[3], g[3];
@@ -161,11 +165,14 @@ static int improve(struct mover *m)
     if (!climb(m, m->now.at, m->now.at + 1, 0.25, 0.01)) return better;
     better = 1;
   }
-  return climb(m, 0, m->faces.n, 0.05, 0.015) || better;
+  for (int k = 0; k < 2 && climb(m, 0, m->faces.n, 0.05, 0.015); k++)
+    better = 1;
+  return better;
 }
 
 vg_status vg_optimise_points(struct vg_tets *t, size_t n,
-                             const uint32_t *point, float below, float *q,
+                             const uint32_t *point, float below,
+                             const struct vg_sizing *sizing, float *q,
                              struct vg_optimise_report *report,
                              struct vg_error *err)
 {
@@ -180,7 +187,7 @@ vg_status vg_optimise_points(struct vg_tets *t, size_t n,
     const uint32_t *link = b.link + b.first[k];
 
     if (!take_ball(m, t, b.first[k + 1] - b.first[k], link, point[k], below,
-                   q) || !improve(m))
+                   sizing, q) || !improve(m))
       continue;
     memcpy(t->x[point[k]], m->now.x, sizeof m->now.x);
     for (size_t c = 0; c < m->faces.n; c++)

@@ -109,8 +109,8 @@ vg_status vg_repair_beside(const struct vg_piece *q,
     st = VG_ERR_MEMORY;
   if (st == VG_OK) {
     if (s.t.n_cell) memcpy(s.old, s.shape, s.t.n_cell * sizeof *s.old);
-    st = vg_optimise_points(&s.t, s.n, s.point, VG_SHAPE_BESIDE, s.shape, &r,
-                            NULL);
+    st = vg_optimise_points(&s.t, s.n, s.point, VG_SHAPE_BESIDE, sizing,
+                            s.shape, &r, NULL);
   }
   if (st == VG_OK) st = list_bad(&s, sizing, out);
   free(s.moves);

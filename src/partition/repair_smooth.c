@@ -187,7 +187,8 @@ static vg_status send_seams(struct smoothing *s, struct vg_comm *comm,
 
 /* --- the points of one owner --------------------------------------------- */
 
-static vg_status smooth(struct vg_field *f, struct outcome *out)
+static vg_status smooth(struct vg_field *f, const struct vg_sizing *sizing,
+                        struct outcome *out)
 {
   struct vg_optimise_report r;
   size_t n_in = f->q->n_in;
@@ -196,7 +197,7 @@ static vg_status smooth(struct vg_field *f, struct outcome *out)
   if (!f->t.flag ||
       vg_optimise_points(&f->t, f->n_point, f->point,
                          f->first ? VG_SHAPE_LEVEL : VG_SHAPE_BESIDE,
-                         f->shape, &r, NULL) < 0)
+                         sizing, f->shape, &r, NULL) < 0)
     return VG_ERR_MEMORY;
   for (size_t i = 0; i < f->n_point; i++) {
     uint32_t v = f->point[i];
@@ -268,7 +269,7 @@ static vg_status smooth_piece(const struct smoothing *s, size_t k,
   st = out->moved ? vg_field_new(&f, s->owners, s->first) : VG_ERR_MEMORY;
   if (st == VG_OK && !s->first && f.self->is_zone)
     st = vg_field_swap(&f, &out->edit, &out->n_swap);
-  if (st == VG_OK) st = smooth(&f, out);
+  if (st == VG_OK) st = smooth(&f, s->p->sizing, out);
   if (st == VG_OK) st = list_bad(&f, s->p->sizing, out);
   if (st == VG_OK && out->n_swap) st = vg_field_take(&f, &out->edit);
   if (st == VG_OK && s->first && f.self->is_zone) st = keep_hits(&f, out);

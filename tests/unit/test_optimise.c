@@ -339,6 +339,86 @@ static void a_shaken_grid(void **state)
   subject_end(&s);
 }
 
+/* --- points alone -------------------------------------------------------- */
+
+/* How far squared edges of cells are from what the field says, squared. */
+static double size_error(const struct subject *s)
+{
+  double sum = 0;
+
+  for (size_t c = 0; c < s->t.n_cell; c++) {
+    const uint32_t *v = s->t.cell[c].v;
+    double middle[3], e = 0, h;
+
+    for (int a = 0; a < 3; a++) {
+      middle[a] = 0;
+      for (int i = 0; i < 4; i++) {
+        middle[a] += s->t.x[v[i]][a] / 4;
+        for (int j = 0; j < i; j++)
+          e += pow(s->t.x[v[i]][a] - s->t.x[v[j]][a], 2);
+      }
+    }
+    h = vg_sizing_at(s->sizing, middle);
+    sum += pow(e / (6 * h * h) - 1, 2);
+  }
+  return sum / (double)s->t.n_cell;
+}
+
+/* Smooth all points but the surface's, from the same begin, by shapes alone or
+ * by sizes too; returns what sizes are off then. */
+static double smooth_points(int by_size, double *mean)
+{
+  struct subject s;
+  struct vg_optimise_report r;
+  uint32_t point[125];
+  uint64_t seed = 5;
+  double before, off;
+  float *q;
+  size_t n = 0;
+
+  box_subject(&s, 6);
+  for (int i = 0; i < 125; i++) {
+    double x[3] = {i % 5 - 2, i / 5 % 5 - 2, i / 25 - 2};
+
+    for (int k = 0; k < 3; k++)
+      x[k] = x[k] / 6 + 0.06 * (tets_random(&seed) - 0.5);
+    put(&s, x[0], x[1], x[2]);
+  }
+  ready(&s);
+  optimise(&s.t, s.m.n_point, 0);
+  before = worst(&s.t);
+  q = calloc(s.t.n_cell, sizeof *q);
+  for (size_t c = 0; c < s.t.n_cell; c++) {
+    const uint32_t *v = s.t.cell[c].v;
+
+    q[c] = (float)vg_shape(s.t.x[v[0]], s.t.x[v[1]], s.t.x[v[2]], s.t.x[v[3]]);
+  }
+  for (size_t p = s.m.n_point; p < s.t.n_point; p++) point[n++] = (uint32_t)p;
+  for (int k = 0; k < 3; k++)
+    assert_int_equal(vg_optimise_points(&s.t, n, point, 0.7f,
+                                        by_size ? s.sizing : NULL, q, &r,
+                                        NULL), VG_OK);
+  assert_true(worst(&s.t) >= fmin(before, aim) * (1 - 1e-6));
+  *mean = 0;
+  for (size_t c = 0; c < s.t.n_cell; c++) *mean += q[c] / (double)s.t.n_cell;
+  off = size_error(&s);
+  free(q);
+  subject_end(&s);
+  return off;
+}
+
+static void sizes_count_beside_shapes(void **state)
+{
+  double shape[2], off[2];
+
+  (void)state;
+  for (int k = 0; k < 2; k++) off[k] = smooth_points(k, &shape[k]);
+  assert_true(off[1] < 0.99 * off[0]);
+  assert_true(shape[1] > 0.97 * shape[0]);
+}
+
+/* --- further ------------------------------------------------------------- */
+
 /* A crowd of points in one spot can only be thinned out. */
 static void points_too_many_are_taken_away(void **state)
 {
@@ -480,6 +560,7 @@ int main(void)
     cmocka_unit_test(flat_cells_side_by_side_go),
     cmocka_unit_test(a_sliver_is_removed),
     cmocka_unit_test(a_shaken_grid),
+    cmocka_unit_test(sizes_count_beside_shapes),
     cmocka_unit_test(points_too_many_are_taken_away),
     cmocka_unit_test(cells_outside_stay),
     cmocka_unit_test(a_fixed_plane_stays),

@@ -227,7 +227,7 @@ static void test_smooths(void **state)
     assert_in_range(s.p.report.n_repair_moved, moved, 2 * moved);
     assert_in_range(moved, k ? 40 : 60, 75);
     assert_true(k || beside > 60);
-    assert_true(s.p.report.n_repair_swapped > 0);
+    assert_true(!k || s.p.report.n_repair_swapped > 0);
     vg_tets_release(&before);
     vg_tets_release(&after);
     scene_end(&s);
