@@ -1,0 +1,36 @@
+# The space between two boxes, a 40th of an edge wide, cut into far more parts
+# than it holds cells: regions of a lattice without any face of the front.
+awk '
+function corner(axis, side, u, v, half,  w) {
+  w[axis] = side * half
+  w[(axis + 1) % 3] = u * half
+  w[(axis + 2) % 3] = v * half
+  return sprintf("vertex %.17g %.17g %.17g\n", w[0], w[1], w[2])
+}
+function facet(a, b, c) {
+  print "facet normal 0 0 0\nouter loop\n" a b c "endloop\nendfacet"
+}
+# n by n quadrilaterals a side; normals along `out`.
+function box(name, n, half, out,  k, s, i, j, d, a, b, c, e) {
+  print "solid " name
+  d = 2 / n
+  for (k = 0; k < 3; k++)
+    for (s = -1; s <= 1; s += 2)
+      for (i = 0; i < n; i++)
+        for (j = 0; j < n; j++) {
+          a = corner(k, s, -1 + i * d, -1 + j * d, half)
+          b = corner(k, s, -1 + (i + 1) * d, -1 + j * d, half)
+          c = corner(k, s, -1 + (i + 1) * d, -1 + (j + 1) * d, half)
+          e = corner(k, s, -1 + i * d, -1 + (j + 1) * d, half)
+          if (s * out > 0) { facet(a, b, c); facet(a, c, e) }
+          else { facet(a, c, b); facet(a, e, c) }
+        }
+  print "endsolid " name
+}
+BEGIN { box("hull", 4, 1, -1); box("core", 10, 0.998344, 1) }' >gap.stl
+vanguard mesh -p gap.stl -L 7 --split-direction 2 --farfield none \
+  --hmax 0.0446684 --quiet --write b8.ugrid --out o
+exits 0
+vanguard check o/gap.b8.ugrid
+exits 0
+says out valid
