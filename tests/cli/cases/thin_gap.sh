@@ -1,5 +1,5 @@
-# The space between two boxes, a 40th of an edge wide, cut into far more parts
-# than it holds cells: regions of a lattice without any face of the front.
+# The space between two boxes, far narrower than their edges, cut into far more
+# parts than it holds cells: regions of a lattice without any face of the front.
 awk '
 function corner(axis, side, u, v, half,  w) {
   w[axis] = side * half
