@@ -27,7 +27,7 @@ exits 1
 absent c/box.cogsg
 
 vanguard mesh -q -p a/box --out e --write nonsense
-exits 1
+exits 2
 says err "'nonsense' is no format"
 vanguard mesh -q -p a/none
 exits 1
