@@ -85,13 +85,8 @@ static int is_overlong(const struct zone *g, uint32_t c)
 
   for (int i = 0; i < 4; i++)
     for (int j = 0; j < i; j++) {
-      double d2 = 0;
+      double d2 = vg_distance2(t->x[v[i]], t->x[v[j]]);
 
-      for (int k = 0; k < 3; k++) {
-        double d = t->x[v[i]][k] - t->x[v[j]][k];
-
-        d2 += d * d;
-      }
       if (d2 <= most) continue;
       most = d2;
       is_new = v[i] >= g->k.n_front || v[j] >= g->k.n_front;

@@ -94,7 +94,7 @@ static vg_status find_twins(const struct vg_front *f, uint32_t *to,
   return st;
 }
 
-static vg_status weld(struct vg_front *f, struct vg_error *err)
+vg_status vg_front_weld(struct vg_front *f, struct vg_error *err)
 {
   uint32_t *to = vg_alloc(f->n_point, sizeof *to);
   size_t n = 0;
@@ -116,8 +116,8 @@ static vg_status weld(struct vg_front *f, struct vg_error *err)
   return st;
 }
 
-vg_status vg_front_append(struct vg_front *to, const struct vg_front *from,
-                          struct vg_error *err)
+vg_status vg_front_join(struct vg_front *to, const struct vg_front *from,
+                        struct vg_error *err)
 {
   size_t cap_x = to->n_point, cap_name = to->n_point, cap_face = to->n_face;
   size_t np = to->n_point + from->n_point, nf = to->n_face + from->n_face;
@@ -137,7 +137,15 @@ vg_status vg_front_append(struct vg_front *to, const struct vg_front *from,
         (uint32_t)to->n_point + from->face[i][k];
   to->n_point = np;
   to->n_face = nf;
-  return weld(to, err);
+  return VG_OK;
+}
+
+vg_status vg_front_append(struct vg_front *to, const struct vg_front *from,
+                          struct vg_error *err)
+{
+  vg_status st = vg_front_join(to, from, err);
+
+  return st == VG_OK ? vg_front_weld(to, err) : st;
 }
 
 /* --- outcomes ------------------------------------------------------------ */

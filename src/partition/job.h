@@ -39,8 +39,11 @@ void vg_front_put(struct vg_writer *w, const struct vg_front *f, int names);
 /** Sets r->bad, and leaves *f empty, where the data cannot be. */
 void vg_front_get(struct vg_reader *r, struct vg_front *f, int names);
 
-/** Add the faces of `from`, and its points but those that are there already,
- * by their names, to a front. */
+/** Add the faces and points of `from` to a front; make points of one name one;
+ * both. *to is released by the caller also on failure. VG_ERR_MEMORY. */
+vg_status vg_front_join(struct vg_front *to, const struct vg_front *from,
+                        struct vg_error *err);
+vg_status vg_front_weld(struct vg_front *f, struct vg_error *err);
 vg_status vg_front_append(struct vg_front *to, const struct vg_front *from,
                           struct vg_error *err);
 

@@ -189,15 +189,12 @@ vg_status vg_redo_voids(struct vg_partition *p, struct vg_comm *comm,
                         struct vg_node ***node, size_t *n,
                         struct vg_error *err);
 
-/** The front that the cells of a piece fill, *f empty before; add a front to
- * another without a look at its names; of faces that look both ways keep none,
- * and bring faces and points into an order that follows from their places
- * alone: VG_ERR_GEOMETRY where a face is there twice. *f and *to are released
- * by the caller also on failure. (redo_front.c) */
+/** The front that the cells of a piece fill, *f empty before; of faces that look
+ * both ways keep none, and bring faces and points into an order that follows
+ * from their places alone: VG_ERR_GEOMETRY where a face is there twice. *f is
+ * released by the caller also on failure. (redo_front.c) */
 vg_status vg_redo_front(const struct vg_piece *q, struct vg_front *f,
                         struct vg_error *err);
-vg_status vg_redo_join(struct vg_front *to, const struct vg_front *from,
-                       struct vg_error *err);
 vg_status vg_redo_settle(struct vg_front *f, struct vg_error *err);
 
 /** Does a face with these points lie within one block, off all planes? */

@@ -243,7 +243,7 @@ static vg_status receive(struct parcels *q, struct redo *redo,
       continue;
     }
     vg_front_get(&r, &f, 1);
-    if (!r.bad) st = vg_redo_join(&redo[head[0]].front, &f, err);
+    if (!r.bad) st = vg_front_join(&redo[head[0]].front, &f, err);
     vg_front_release(&f);
   }
   return r.bad ? vg_fail_memory(err, "a message") : st;
@@ -289,14 +289,13 @@ done:
 static vg_status new_node(struct vg_partition *p, struct redo *redo,
                           struct vg_node **out, struct vg_error *err)
 {
-  const struct vg_front none = VG_FRONT_INIT;
   struct vg_front *f = &redo->front;
   char path[VG_PATH_MAX];
   struct vg_node *n;
   struct vg_void v;
   vg_status st;
 
-  VG_TRY(vg_front_append(f, &none, err));    /* welds */
+  VG_TRY(vg_front_weld(f, err));
   VG_TRY(vg_redo_settle(f, err));
   snprintf(path, sizeof path, "%.*s%c", VG_PATH_MAX - 2, redo->cut.path,
            again);

@@ -133,26 +133,3 @@ vg_status vg_redo_front(const struct vg_piece *q, struct vg_front *f,
       f->face[k][i] = q->cell[k / 4][vg_face[k % 4][i]];
   return vg_redo_settle(f, err);
 }
-
-vg_status vg_redo_join(struct vg_front *to, const struct vg_front *from,
-                       struct vg_error *err)
-{
-  size_t np = to->n_point + from->n_point, nf = to->n_face + from->n_face;
-  size_t cap_x = to->n_point, cap_name = cap_x, cap_face = to->n_face;
-
-  if (vg_reserve(&to->x, &cap_x, np, sizeof *to->x) ||
-      vg_reserve(&to->name, &cap_name, np, sizeof *to->name) ||
-      vg_reserve(&to->face, &cap_face, nf, sizeof *to->face))
-    return vg_fail_memory(err, "a front");
-  if (from->n_point) {
-    memcpy(to->x + to->n_point, from->x, from->n_point * sizeof *to->x);
-    memcpy(to->name + to->n_point, from->name,
-           from->n_point * sizeof *to->name);
-  }
-  for (size_t k = to->n_face; k < nf; k++)
-    for (int i = 0; i < 3; i++)
-      to->face[k][i] = from->face[k - to->n_face][i] + (uint32_t)to->n_point;
-  to->n_point = np;
-  to->n_face = nf;
-  return VG_OK;
-}

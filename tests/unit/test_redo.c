@@ -52,7 +52,7 @@ static void what_bounds_cells(void **state)
 {
   static const uint32_t cell[2][4] = { {0, 1, 2, 3}, {0, 2, 1, 4} };
   struct vg_piece both = piece_of(2, cell);
-  struct vg_front whole = VG_FRONT_INIT, none = VG_FRONT_INIT;
+  struct vg_front whole = VG_FRONT_INIT;
 
   (void)state;
   assert_int_equal(vg_redo_front(&both, &whole, NULL), VG_OK);
@@ -67,8 +67,8 @@ static void what_bounds_cells(void **state)
     assert_int_equal(vg_redo_front(&two, &g, NULL), VG_OK);
     assert_int_equal(f.n_face + g.n_face, 8);
     assert_int_equal(f.n_point + g.n_point, 8);
-    assert_int_equal(vg_redo_join(&f, &g, NULL), VG_OK);
-    assert_int_equal(vg_front_append(&f, &none, NULL), VG_OK);
+    assert_int_equal(vg_front_join(&f, &g, NULL), VG_OK);
+    assert_int_equal(vg_front_weld(&f, NULL), VG_OK);
     assert_int_equal(vg_redo_settle(&f, NULL), VG_OK);
     assert_int_equal(f.n_face, whole.n_face);
     assert_int_equal(f.n_point, whole.n_point);
@@ -80,8 +80,8 @@ static void what_bounds_cells(void **state)
     vg_piece_release(&one);
     vg_piece_release(&two);
   }
-  assert_int_equal(vg_redo_join(&whole, &whole, NULL), VG_OK);
-  assert_int_equal(vg_front_append(&whole, &none, NULL), VG_OK);
+  assert_int_equal(vg_front_join(&whole, &whole, NULL), VG_OK);
+  assert_int_equal(vg_front_weld(&whole, NULL), VG_OK);
   assert_int_equal(vg_redo_settle(&whole, NULL), VG_ERR_GEOMETRY);
   vg_front_release(&whole);
   vg_piece_release(&both);
