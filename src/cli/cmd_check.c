@@ -97,6 +97,7 @@ static vg_status write_defects(const struct arguments *a,
   vg_status st;
 
   if (!a->defects || !r->n_defect) return VG_OK;
+  vg_display_end_at_once(0);
   st = vg_write_defects(a->defects, m, r, err);
   if (st >= 0 && !a->json)
     printf("  all faces with a defect: %s\n", a->defects);
@@ -172,6 +173,7 @@ int vg_cmd_check(int argc, char **argv)
 
   vg_cli_parse(&argp, argc, argv, &a);
   vg_display_init(&show, a.quiet);
+  vg_display_end_at_once(1);
   vg_display_update(&show, "read", 0, 0);
   st = vg_mesh_read(a.file, &m, NULL, &err);
   if (st >= 0) {

@@ -252,10 +252,12 @@ static vg_status mesh_patches(struct vg_problem *p, struct vg_error *err)
                    p->files.d3m);
   VG_TRY(vg_sizing_new(&options, p->settings.n_source, p->settings.source,
                        &corners, &sizing, err));
-  VG_TRY(vg_project_surface(&p->project, sizing, &p->surface, err));
+  VG_TRY(vg_project_surface(&p->project, sizing, vg_display_stop, NULL,
+                            &p->surface, err));
 done:
   vg_sizing_free(sizing);
-  return st;
+  /* the library's message says less */
+  return st < 0 && vg_display_interrupted() ? vg_display_stopped(err) : st;
 }
 
 /* Sources of the project come first, those of the deck after them; the sum of

@@ -165,12 +165,6 @@ static vg_status count_wall_points(struct vg_plan *p, struct vg_error *err)
 
 /* --- the surface and its sizes ------------------------------------------- */
 
-static vg_status stopped(struct vg_error *err)
-{
-  if (!vg_display_interrupted()) return VG_OK;
-  return vg_fail(err, VG_ERR_IO, "interrupted");
-}
-
 static vg_status read_project(struct vg_plan *p, struct vg_error *err)
 {
   const struct vg_plan_options *o = p->o;
@@ -185,8 +179,7 @@ static vg_status read_project(struct vg_plan *p, struct vg_error *err)
   VG_TRY(vg_problem_surface(q, err));
   VG_TRY(vg_problem_close(q, &p->show, err));
   VG_TRY(vg_layer_stage_plan(&p->layers, q, err));
-  VG_TRY(vg_walls_swap(q, p->layers.is_on ? p->layers.reason : NULL, err));
-  st = stopped(err);
+  st = vg_walls_swap(q, p->layers.is_on ? p->layers.reason : NULL, err);
 done:
   return st;
 }
@@ -196,13 +189,11 @@ static vg_status measure_sizes(struct vg_plan *p, const struct vg_mesh *m,
 {
   const struct vg_settings *s = &p->problem.settings;
   struct vg_sizing_options options = vg_settings_sizing(s);
-  vg_status st;
 
   vg_display_update(&p->show, "sizes", 0, 0);
   vg_sizing_free(p->sizing);
   p->sizing = NULL;
-  st = vg_sizing_new(&options, s->n_source, s->source, m, &p->sizing, err);
-  return st < 0 ? st : stopped(err);
+  return vg_sizing_new(&options, s->n_source, s->source, m, &p->sizing, err);
 }
 
 static vg_status make_layers(struct vg_plan *p, struct vg_error *err)
@@ -414,7 +405,6 @@ static vg_status make(struct vg_plan *p, struct vg_error *err)
   count_memory(p);
   p->spread = spread_per_cell * p->cell;
   p->digest = digest_per_byte * bytes_written(p);
-  VG_TRY(stopped(err));
   st = run_all(p, err);
 done:
   return st;
@@ -439,7 +429,9 @@ int vg_plan_estimate(const struct vg_plan_options *o)
   vg_status st;
 
   vg_display_init(&p.show, o->quiet);
+  vg_display_end_at_once(1);
   st = make(&p, &err);
+  vg_display_end_at_once(0);
   vg_display_clear(&p.show);
   if (st >= 0 && o->json) st = vg_plan_json(&p, &err);
   else if (st >= 0) vg_plan_text(&p);

@@ -11,17 +11,47 @@
 #define LIVE_EVERY_S 0.2
 #define PLAIN_EVERY_S 10.0
 
-static volatile sig_atomic_t interrupted;
+static volatile sig_atomic_t interrupted, ends_at_once, shows_line;
+
+/* In a signal's handler: only what is safe there. */
+static void end_at_once(void)
+{
+  static const char line[] = "\r\033[K";
+  static const char text[] = "vanguard: interrupted; nothing was written\n";
+  int failed = shows_line && write(STDERR_FILENO, line, sizeof line - 1) < 0;
+
+  if (!failed) failed = write(STDERR_FILENO, text, sizeof text - 1) < 0;
+  _exit(VG_EXIT_FAILED);
+}
 
 static void on_signal(int number)
 {
   (void)number;
   interrupted = 1;
+  if (ends_at_once) end_at_once();
+}
+
+void vg_display_end_at_once(int on)
+{
+  ends_at_once = on;
+  if (on && interrupted) end_at_once();
 }
 
 int vg_display_interrupted(void)
 {
   return interrupted != 0;
+}
+
+vg_status vg_display_stopped(struct vg_error *err)
+{
+  if (!interrupted) return VG_OK;
+  return vg_fail(err, VG_ERR_IO, "interrupted; nothing was written");
+}
+
+int vg_display_stop(void *user)
+{
+  (void)user;
+  return vg_display_interrupted();
 }
 
 double vg_display_now(void)
@@ -50,6 +80,7 @@ void vg_display_init(struct vg_display *d, int quiet)
   memset(d, 0, sizeof *d);
   d->quiet = quiet;
   d->live = !quiet && isatty(STDERR_FILENO);
+  shows_line = d->live;
   vg_display_watch();
 }
 

@@ -6,6 +6,8 @@
 
 #include <stddef.h>
 
+#include "base/status.h"
+
 struct vg_display {
   int quiet, live, open;    /* open: a live line stands without its end */
   double stage_start, last_shown;
@@ -30,6 +32,17 @@ void vg_display_clear(struct vg_display *d);
  * at once; SIGUSR1, a batch system's warning, which may come again and by
  * several ways, never does. */
 int vg_display_interrupted(void);
+
+/** VG_ERR_IO from then on, with a message. */
+vg_status vg_display_stopped(struct vg_error *err);
+
+/** vg_display_interrupted for libraries that ask. */
+int vg_display_stop(void *user);
+
+/** on: from now on the first of these signals ends the process at once, with a
+ * message and VG_EXIT_FAILED, wherever it is. For commands, or parts of them,
+ * that leave nothing half-written. */
+void vg_display_end_at_once(int on);
 
 /** Wall clock in seconds, from any start. */
 double vg_display_now(void);

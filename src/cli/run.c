@@ -10,12 +10,6 @@
 #include "cli/walls.h"
 #include "layers/pack.h"
 
-vg_status vg_run_stopped(struct vg_error *err)
-{
-  if (!vg_display_interrupted()) return VG_OK;
-  return vg_fail(err, VG_ERR_IO, "interrupted; nothing was written");
-}
-
 uint64_t vg_run_cells(const struct vg_run *r)
 {
   uint64_t n = 0;
@@ -115,7 +109,7 @@ static vg_status share_with_node(struct vg_run *r, vg_status st,
   st = vg_sizing_share(r->comm, sizing, err);
   if (st >= 0) r->common = vg_sizing_common(*sizing);
   if (st >= 0) st = own;
-  if (st >= 0) st = vg_run_stopped(err);
+  if (st >= 0) st = vg_display_stopped(err);
   st = vg_comm_agree(r->comm, st, err);
 done:
   free(layer.data);
@@ -137,7 +131,7 @@ static vg_status measure_sizes(struct vg_run *r, const struct vg_problem *p,
   vg_display_update(show, "sizes", 0, 0);
   st = vg_sizing_new(&options, s->n_source, s->source, boundary, sizing, err);
   r->time_size += vg_display_now() - t;
-  return st < 0 ? st : vg_run_stopped(err);
+  return st < 0 ? st : vg_display_stopped(err);
 }
 
 /* Which sources have no effect; by rank 0. Collective. */
@@ -228,12 +222,6 @@ static vg_status say_stopped(const struct vg_run *r, struct vg_error *err)
 
 /* --- the field ----------------------------------------------------------- */
 
-static int wants_stop(void *user)
-{
-  (void)user;
-  return vg_display_interrupted();
-}
-
 static vg_status fill(struct vg_run *r, const struct vg_problem *p,
                       const struct vg_mesh *boundary,
                       const struct vg_sizing *sizing, struct vg_display *show,
@@ -253,7 +241,7 @@ static vg_status fill(struct vg_run *r, const struct vg_problem *p,
   o.max_cells = (uint64_t)s->max_cells;
   o.shuffle = r->options.shuffle;
   o.progress = vg_display_update;
-  o.stop = wants_stop;
+  o.stop = vg_display_stop;
   o.user = show;
   VG_TRY(open_store(r, p, boundary, &o, err));
   o.store = r->store;
@@ -345,7 +333,7 @@ static vg_status grow_layers(struct vg_run *r, const struct vg_problem *p,
   layers->options.threads = threads;
   VG_TRY(vg_layer_stage_grow(layers, &p->surface, *sizing, show, err));
   r->time_layers = vg_display_now() - t;
-  VG_TRY(vg_run_stopped(err));
+  VG_TRY(vg_display_stopped(err));
   vg_sizing_free(*sizing);
   *sizing = NULL;
   st = measure_sizes(r, p, &layers->layers.front.mesh, threads, show, sizing,

@@ -45,9 +45,6 @@ struct vg_run {
   double memory_sum;         /* of all, what a node has in common once */
 };
 
-/** VG_ERR_IO once the user or the system asked to stop. */
-vg_status vg_run_stopped(struct vg_error *err);
-
 /** Close the surface as read, settle its layers and swap its slivers. By the
  * first rank of each node on the cores of all; the others get the surface and
  * whether layers grow, no notes, reports or settings. Collective. */

@@ -247,6 +247,7 @@ static vg_status complete(struct vg_problem *p, struct vg_error *err)
   options.threads = p->threads;
   VG_TRY(vg_sizing_new(&options, s->n_source, s->source, &p->surface, &sizing,
                        err));
+  far.stop = vg_display_stop;
   VG_TRY(vg_domain_complete(&p->surface, &far, sizing, &p->domain, err));
   if (assumed)
     vg_note(&p->notes, "the surface was taken as a body in open air: a "
@@ -255,7 +256,8 @@ static vg_status complete(struct vg_problem *p, struct vg_error *err)
             far.lengths);
 done:
   vg_sizing_free(sizing);
-  return st;
+  /* the library's message says less */
+  return st < 0 && vg_display_interrupted() ? vg_display_stopped(err) : st;
 }
 
 /* Names and conditions of the patches as they are now, for the resolved

@@ -267,7 +267,8 @@ static vg_status box_surface(const struct scaled *s, struct vg_mesh *m,
                                        "z-min", "z-max" };
   const double lo[3] = { 0, 0, 0 }, hi[3] = { 1, 1, 1 };
   const uint32_t patch[6] = { 0, 1, 2, 3, 4, 5 };
-  const struct vg_size_law law = { vg_demo_size, (void *)&s->law };
+  const struct vg_size_law law = { .at = vg_demo_size,
+                                   .user = (void *)&s->law };
   vg_status st;
 
   for (int i = 0; i < 6; i++)
@@ -281,7 +282,8 @@ static vg_status sphere_surface(const struct scaled *s, struct vg_mesh *m,
                                 struct vg_error *err)
 {
   const double centre[3] = { 0, 0, 0 };
-  const struct vg_size_law law = { vg_demo_size, (void *)&s->law };
+  const struct vg_size_law law = { .at = vg_demo_size,
+                                   .user = (void *)&s->law };
   vg_status st = name_patch(m, 1, "sphere", 4, 4000, err);
 
   if (st == VG_OK)
@@ -292,7 +294,8 @@ static vg_status sphere_surface(const struct scaled *s, struct vg_mesh *m,
 static vg_status add_farfield(const struct scaled *s, struct vg_demo *d,
                               struct vg_error *err)
 {
-  const struct vg_size_law law = { vg_demo_size, (void *)&s->law };
+  const struct vg_size_law law = { .at = vg_demo_size,
+                                   .user = (void *)&s->law };
   struct vg_farfield far = VG_FARFIELD_INIT;
 
   far.size = FARFIELD;

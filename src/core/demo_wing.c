@@ -454,6 +454,7 @@ static vg_status fill_skin(struct frame *f, struct vg_error *err)
   size_t n_new = 0, n_tri = 0;
   double (*add)[2] = NULL;
   uint32_t (*tri)[3] = NULL, first;
+  const struct vg_planar_law law = { size_on_cone, NULL, &f->c };
   vg_status st = VG_OK;
 
   if (make_outline(f, &o)) {
@@ -461,8 +462,8 @@ static vg_status fill_skin(struct frame *f, struct vg_error *err)
     goto done;
   }
   VG_TRY(vg_planar_mesh(o.n, (const double (*)[2])o.p, o.n,
-                        (const uint32_t (*)[2])o.edge, size_on_cone, &f->c,
-                        &n_new, &add, &n_tri, &tri, err));
+                        (const uint32_t (*)[2])o.edge, &law, &n_new, &add,
+                        &n_tri, &tri, err));
   first = (uint32_t)m->n_point;
   m->tri_patch = vg_calloc(n_tri, sizeof *m->tri_patch);
   if (!m->tri_patch) st = vg_fail_memory(err, "the wing");
@@ -503,7 +504,8 @@ static size_t chain(const uint32_t *list, size_t n, int back,
 /* The flat tip and the blunt trailing edge. */
 static vg_status fill_caps(struct frame *f, struct vg_error *err)
 {
-  const struct vg_size_law law = { vg_demo_size, (void *)f->c.law };
+  const struct vg_size_law law = { .at = vg_demo_size,
+                                   .user = (void *)f->c.law };
   const size_t room = 2 * f->n_side[1] + 2 * f->n_tail + 2 * f->n_base;
   uint32_t (*edge)[2] = vg_alloc(room, sizeof *edge);
   size_t n;

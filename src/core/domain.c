@@ -225,6 +225,13 @@ static double domain_size(void *user, const double x[3])
   return h < d->radius / 4 ? h : d->radius / 4;
 }
 
+static int domain_stop(void *user)
+{
+  const struct domain *d = user;
+
+  return d->farfield->stop && d->farfield->stop(d->farfield->user);
+}
+
 static vg_status place_farfield(struct domain *d, struct vg_error *err)
 {
   const struct vg_farfield *f = d->farfield;
@@ -258,7 +265,7 @@ static vg_status outside(const struct domain *d, size_t i,
 static vg_status add_sphere(struct domain *d, uint32_t patch,
                             struct vg_rim *rim, struct vg_error *err)
 {
-  const struct vg_size_law law = { domain_size, d };
+  const struct vg_size_law law = { domain_size, domain_stop, d };
   const double most = FARFIELD_ROOM * d->radius;
 
   for (size_t i = 0; i < d->m.n_point; i++) {
@@ -278,7 +285,7 @@ static vg_status add_box(struct domain *d, uint32_t patch,
                          struct vg_rim *rim, struct vg_error *err)
 {
   const struct vg_farfield *f = d->farfield;
-  const struct vg_size_law law = { domain_size, d };
+  const struct vg_size_law law = { domain_size, domain_stop, d };
   const uint32_t of[6] = { patch, patch, patch, patch, patch, patch };
   const int open = d->axis < 0 ? -1 : 2 * d->axis + !d->side;
   double lo[3], hi[3];
@@ -331,7 +338,7 @@ static vg_status add_patch(struct vg_mesh *m, const char *name, int32_t bc,
 static vg_status add_symmetry(struct domain *d, struct vg_rim *rim,
                               struct vg_error *err)
 {
-  const struct vg_size_law law = { domain_size, d };
+  const struct vg_size_law law = { domain_size, domain_stop, d };
   struct vg_error inner = VG_ERROR_INIT;
   uint32_t patch = 0;
   vg_status st;
@@ -415,7 +422,8 @@ vg_status vg_domain_complete(struct vg_mesh *surface,
                              struct vg_domain_report *report,
                              struct vg_error *err)
 {
-  const struct vg_size_law law = { size_of_field, (void *)sizing };
+  const struct vg_size_law law = { .at = size_of_field,
+                                   .user = (void *)sizing };
 
   return vg_domain_complete_by(surface, farfield, sizing ? &law : NULL,
                                report, err);

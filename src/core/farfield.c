@@ -36,6 +36,19 @@ static vg_status add_points(struct vg_mesh *m, size_t n, struct vg_error *err)
   return VG_OK;
 }
 
+/* vg_graded_steps; of a law that stops sizes are 0, which ends the division. */
+static vg_status divide(double len, double (*size)(void *user, double s),
+                        void *user, const struct vg_size_law *law,
+                        size_t least, size_t *n, double **s,
+                        struct vg_error *err)
+{
+  vg_status st = vg_graded_steps(len, size, user, least, n, s, err);
+
+  if (st < 0 && vg_size_law_stops(law))
+    st = vg_fail(err, VG_ERR_IO, "interrupted");
+  return st;
+}
+
 /* --- sphere --------------------------------------------------------------
  * A half sphere is the stereographic image of the unit disc. The map is
  * conformal and takes circles to circles, so a good Delaunay triangulation of
@@ -68,6 +81,11 @@ static double size_on_disc(void *user, const double p[2])
          * (1 + p[0] * p[0] + p[1] * p[1]) / (2 * s->radius);
 }
 
+static int stop_on_disc(void *user)
+{
+  return vg_size_law_stops(((const struct half_sphere *)user)->size);
+}
+
 /* Point of the unit circle, turn in quarters, 0 <= turn < 4. */
 static void on_circle(double turn, double p[2])
 {
@@ -84,6 +102,7 @@ static double size_on_circle(void *user, double turn)
   const struct half_sphere *s = user;
   double p[2], x[3];
 
+  if (vg_size_law_stops(s->size)) return 0;
   on_circle(turn >= 4 ? 0 : turn, p);
   to_sphere(s, p, x);
   return s->size->at(s->size->user, x) / (s->radius * 1.57079632679489662);
@@ -97,7 +116,7 @@ static vg_status add_equator(struct vg_mesh *m, const struct half_sphere *s,
   double *turn = NULL;
   vg_status st;
 
-  VG_TRY(vg_graded_steps(4, size_on_circle, (void *)s, 8, n, &turn, err));
+  VG_TRY(divide(4, size_on_circle, (void *)s, s->size, 8, n, &turn, err));
   *disc = vg_alloc(*n, sizeof **disc);
   if (!*disc) {
     st = vg_fail_memory(err, "the farfield");
@@ -125,6 +144,7 @@ static vg_status add_half(struct vg_mesh *m, const struct half_sphere *s,
   double (*add)[2] = NULL;
   uint32_t (*edge)[2] = vg_alloc(n, sizeof *edge), (*tri)[3] = NULL;
   uint32_t (*list)[3], *of, base;
+  const struct vg_planar_law law = { size_on_disc, stop_on_disc, (void *)s };
   vg_status st = VG_OK;
 
   if (!edge) {
@@ -135,8 +155,8 @@ static vg_status add_half(struct vg_mesh *m, const struct half_sphere *s,
     edge[i][0] = i;
     edge[i][1] = i + 1 < n ? i + 1 : 0;
   }
-  VG_TRY(vg_planar_mesh(n, disc, n, (const uint32_t (*)[2])edge, size_on_disc,
-                        (void *)s, &n_new, &add, &n_tri, &tri, err));
+  VG_TRY(vg_planar_mesh(n, disc, n, (const uint32_t (*)[2])edge, &law, &n_new,
+                        &add, &n_tri, &tri, err));
   VG_TRY(add_points(m, n_new, err));
   list = vg_realloc(m->tri, m->n_tri + n_tri, sizeof *list);
   if (list) m->tri = list;
@@ -213,6 +233,7 @@ static double size_on_line(void *user, double s)
   const struct line *l = user;
   double x[3] = { l->a[0], l->a[1], l->a[2] };
 
+  if (vg_size_law_stops(l->size)) return 0;
   x[l->axis] += s;
   return l->size->at(l->size->user, x);
 }
@@ -234,7 +255,7 @@ static vg_status add_edge(struct vg_mesh *m, uint32_t a, uint32_t b, int axis,
   vg_status st;
 
   memcpy(from, m->point[a], sizeof from);
-  VG_TRY(vg_graded_steps(l.len, size_on_line, &l, 1, &n, &s, err));
+  VG_TRY(divide(l.len, size_on_line, &l, size, 1, &n, &s, err));
   e->point = vg_alloc(n + 1, sizeof *e->point);
   if (!e->point) {
     st = vg_fail_memory(err, "the farfield");

@@ -249,12 +249,12 @@ static vg_status hand_over(struct region *r, size_t *n_new,
 
 vg_status vg_planar_mesh(size_t n, const double (*p)[2], size_t n_edge,
                          const uint32_t (*edge)[2],
-                         double (*size)(void *user, const double x[2]),
-                         void *user, size_t *n_new, double (**add)[2],
-                         size_t *n_tri, uint32_t (**tri)[3],
-                         struct vg_error *err)
+                         const struct vg_planar_law *law, size_t *n_new,
+                         double (**add)[2], size_t *n_tri,
+                         uint32_t (**tri)[3], struct vg_error *err)
 {
   struct region r = { .n = n, .n_edge = n_edge, .p = p, .edge = edge };
+  int bad;
   vg_status st;
 
   VG_TRY(check_input(&r, err));
@@ -262,8 +262,13 @@ vg_status vg_planar_mesh(size_t n, const double (*p)[2], size_t n_edge,
   VG_TRY(insert_segments(&r, err));
   VG_TRY(mark_inside(&r, err));
   VG_TRY(boundary_size(&r, err));
-  if (vg_tri2_fill(&r.t, size, user)
-      || vg_tri2_improve(&r.t, (uint32_t)n + 3, N_SWEEP)) {
+  bad = vg_tri2_fill(&r.t, law);
+  if (!bad) bad = vg_tri2_improve(&r.t, (uint32_t)n + 3, N_SWEEP, law);
+  if (bad > 0) {
+    st = vg_fail(err, VG_ERR_IO, "interrupted");
+    goto done;
+  }
+  if (bad) {
     st = vg_fail(err, VG_ERR_MEMORY, "plane region with %zu boundary segments: "
                  "not enough memory, or more than %u points; the spacing may "
                  "be far too small in it", n_edge, VG_T2_POINT_MAX);

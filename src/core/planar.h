@@ -11,30 +11,40 @@
 #include "core/project.h"
 #include "core/sizing.h"
 
+/** Target edge length at a point of a plane. stop, which may be NULL, is asked
+ * now and then and costs next to nothing: non-zero ends the work, VG_ERR_IO. */
+struct vg_planar_law {
+  double (*at)(void *user, const double x[2]);
+  int (*stop)(void *user);
+  void *user;
+};
+
 /** Triangulate a plane region bounded by closed loops of segments.
  *
  * @param n, p       points in the plane's own 2-D coordinates
  * @param n_edge     boundary segments; region on their LEFT; several loops,
  *                   holes and touching loops allowed
- * @param size       target edge length at a point of the plane
+ * @param law        target edge length
  * @param n_new, add out: points added inside, owned by the caller
  * @param n_tri, tri out: counter-clockwise triangles over the n + n_new
  *                   points, owned by the caller
  * Boundary segments are kept as they are. No minimum angle is promised where
  * the boundary itself is sharp. Same bytes for the same input.
- * VG_ERR_GEOMETRY names the first pair of crossing segments. */
+ * VG_ERR_GEOMETRY names the first pair of crossing segments; VG_ERR_IO:
+ * stopped. */
 vg_status vg_planar_mesh(size_t n, const double (*p)[2], size_t n_edge,
                          const uint32_t (*edge)[2],
-                         double (*size)(void *user, const double x[2]),
-                         void *user, size_t *n_new, double (**add)[2],
-                         size_t *n_tri, uint32_t (**tri)[3],
-                         struct vg_error *err);
+                         const struct vg_planar_law *law, size_t *n_new,
+                         double (**add)[2], size_t *n_tri,
+                         uint32_t (**tri)[3], struct vg_error *err);
 
 /** Surface of a project made of planar patches: curves are marched as VGRID
  * does (formats.md 1.7), then each patch is triangulated.
- * Point order as VGRID's: configuration points, curve points, others. */
+ * Point order as VGRID's: configuration points, curve points, others.
+ * @param stop  asked now and then, may be NULL; non-zero: VG_ERR_IO */
 vg_status vg_project_surface(const struct vg_project *project,
                              const struct vg_sizing *sizing,
+                             int (*stop)(void *user), void *user,
                              struct vg_mesh *out, struct vg_error *err);
 
 enum vg_farfield_kind { VG_FARFIELD_NONE, VG_FARFIELD_SPHERE,
@@ -51,8 +61,12 @@ struct vg_farfield {
   int has_box;
   double spacing;         /* edge length on the farfield; 0: from the growth
                              of the field */
+  int (*stop)(void *user); /* asked now and then, may be NULL; non-zero:
+                             VG_ERR_IO */
+  void *user;
 };
-#define VG_FARFIELD_INIT { VG_FARFIELD_SPHERE, 0, 20, {0}, 0, {0}, {0}, 0, 0 }
+#define VG_FARFIELD_INIT \
+  { VG_FARFIELD_SPHERE, 0, 20, {0}, 0, {0}, {0}, 0, 0, NULL, NULL }
 
 struct vg_domain_report {
   int added_farfield, added_symmetry;

@@ -32,8 +32,7 @@ struct entry {
 
 struct front {
   struct vg_tri2 *t;
-  double (*size)(void *user, const double x[2]);
-  void *user;
+  const struct vg_planar_law *law;
   struct entry *entry;
   size_t n, cap;
   uint32_t free;                       /* recycled entries */
@@ -156,7 +155,7 @@ static double target(const struct front *f, const double x[2], uint32_t at)
 {
   const struct vg_tri2 *t = f->t;
   const uint32_t *v = t->face[at].v;
-  double lo = 0, hi = INFINITY, h = f->size(f->user, x);
+  double lo = 0, hi = INFINITY, h = f->law->at(f->law->user, x);
 
   for (int k = 0; k < 3; k++) {
     const double reach = VG_T2_GROWTH * distance(x, t->x[v[k]]);
@@ -269,11 +268,14 @@ static int give_up(struct front *f, uint32_t at)
 
 static int advance(struct front *f)
 {
+  size_t n_step = 0;
+
   for (uint32_t at; (at = pop(f)) != VG_T2_NONE;) {
     double x[2], len, h;
     const uint32_t e = front_edge(f->t, at, &len);
     int ok;
 
+    if (vg_tri2_stops(f->law, n_step++)) return 1;
     if (e == VG_T2_NONE) continue;
     h = place(f, e, x);
     f->t->walk = at;
@@ -295,16 +297,14 @@ static double shortest_fixed(const struct vg_tri2 *t)
   return least;
 }
 
-int vg_tri2_fill(struct vg_tri2 *t, double (*size)(void *, const double *),
-                 void *user)
+int vg_tri2_fill(struct vg_tri2 *t, const struct vg_planar_law *law)
 {
   struct front *f = vg_calloc(1, sizeof *f);
   int bad = !f;
 
   if (bad) return -1;
   f->t = t;
-  f->size = size;
-  f->user = user;
+  f->law = law;
   f->free = VG_T2_NONE;
   f->low = N_BUCKET;
   f->scale = 1.41421356 / shortest_fixed(t);

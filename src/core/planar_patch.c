@@ -54,6 +54,11 @@ static double size_in_plane(void *user, const double p[2])
   return f->size->at(f->size->user, x);
 }
 
+static int stop_in_plane(void *user)
+{
+  return vg_size_law_stops(((const struct frame *)user)->size);
+}
+
 /* Axis that all points share exactly, or -1. */
 static int shared_axis(const struct vg_mesh *m, size_t n_edge,
                        const uint32_t (*edge)[2], const double n[3])
@@ -196,6 +201,7 @@ vg_status vg_planar_patch(struct vg_mesh *m, size_t n_edge,
 {
   vg_status st;
   struct frame f = { .size = size };
+  const struct vg_planar_law law = { size_in_plane, stop_in_plane, &f };
   struct local l = { 0 };
   size_t n_new = 0, n_tri = 0;
   double (*add)[2] = NULL;
@@ -207,8 +213,8 @@ vg_status vg_planar_patch(struct vg_mesh *m, size_t n_edge,
   VG_TRY(make_frame(m, n_edge, edge, &f, err));
   VG_TRY(make_local(m, n_edge, edge, &f, &l, err));
   VG_TRY(vg_planar_mesh(l.n, (const double (*)[2])l.p, n_edge,
-                        (const uint32_t (*)[2])l.edge, size_in_plane, &f,
-                        &n_new, &add, &n_tri, &tri, err));
+                        (const uint32_t (*)[2])l.edge, &law, &n_new, &add,
+                        &n_tri, &tri, err));
   st = append(m, &f, &l, n_new, (const double (*)[2])add, n_tri,
               (const uint32_t (*)[3])tri, patch, err);
 done:

@@ -145,21 +145,26 @@ static int lift_vertex(struct vg_tri2 *t, uint32_t v)
   return moved;
 }
 
-int vg_tri2_improve(struct vg_tri2 *t, uint32_t first_free, int n_sweep)
+int vg_tri2_improve(struct vg_tri2 *t, uint32_t first_free, int n_sweep,
+                    const struct vg_planar_law *law)
 {
   for (int sweep = 0; sweep < n_sweep; sweep++) {
     size_t n_moved = 0;
 
-    for (uint32_t v = first_free; v < t->n_point; v++)
+    for (uint32_t v = first_free; v < t->n_point; v++) {
+      if (vg_tri2_stops(law, v)) return 1;
       n_moved += (size_t)smooth_vertex(t, v);
+    }
     if (vg_tri2_legalise(t) < 0) return -1;
     if (!n_moved) break;
   }
   for (int sweep = 0; sweep < N_LIFT; sweep++) {
     size_t n_moved = 0;
 
-    for (uint32_t v = first_free; v < t->n_point; v++)
+    for (uint32_t v = first_free; v < t->n_point; v++) {
+      if (vg_tri2_stops(law, v)) return 1;
       n_moved += (size_t)lift_vertex(t, v);
+    }
     if (vg_tri2_legalise(t) < 0) return -1;
     if (!n_moved) break;
   }

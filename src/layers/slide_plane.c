@@ -171,10 +171,11 @@ static vg_status fill(struct vg_slide_work *w, size_t s,
   double (*add)[2] = NULL;
   uint32_t (*tri)[3] = NULL;
   size_t n_add = 0, n_tri = 0;
+  const struct vg_planar_law sizes = { vg_slide_size, NULL, law };
   struct vg_error err = VG_ERROR_INIT;
   vg_status st = vg_planar_mesh(r->n, (const double (*)[2])r->p, n_edge,
-                                (const uint32_t (*)[2])r->edge, vg_slide_size,
-                                law, &n_add, &add, &n_tri, &tri, &err);
+                                (const uint32_t (*)[2])r->edge, &sizes,
+                                &n_add, &add, &n_tri, &tri, &err);
 
   if (st == VG_ERR_GEOMETRY || st == VG_ERR_INPUT) {
     vg_slide_blame_all(w, s, "its new boundary encloses no region");

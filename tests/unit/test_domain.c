@@ -98,7 +98,7 @@ static struct vg_mesh ball(int half, double h)
 {
   struct vg_mesh m = VG_MESH_INIT;
   struct vg_rim rim = VG_RIM_INIT;
-  const struct vg_size_law law = { even, &h };
+  const struct vg_size_law law = { .at = even, .user = &h };
   const double centre[3] = { 0, 0, 0 };
   struct vg_error err = VG_ERROR_INIT;
 
@@ -107,6 +107,13 @@ static struct vg_mesh ball(int half, double h)
                    VG_OK);
   vg_rim_release(&rim);
   return m;
+}
+
+static int counts_down(void *user)
+{
+  size_t *left = user;
+
+  return *left == 0 || --*left == 0;
 }
 
 static struct vg_sizing *field(const struct vg_mesh *m, double growth)
@@ -177,7 +184,7 @@ static void puts_a_box_around_a_body(void **state)
   struct vg_mesh m = ball(-1, 0.1);
   struct vg_sizing *s = field(&m, 1.2);
   struct vg_farfield far = { VG_FARFIELD_BOX, 0, 0, { 0 }, 0, { -9, -5, -4 },
-                             { 7, 5, 4 }, 1, 0.8 };
+                             { 7, 5, 4 }, 1, 0.8, NULL, NULL };
   struct vg_error err = VG_ERROR_INIT;
   double body, lo[3], hi[3];
 
@@ -395,7 +402,7 @@ static void marches_curves_as_vgrid_does(void **state)
 
   (void)state;
   box_project(&p);
-  assert_int_equal(vg_project_surface(&p, NULL, &m, &err), VG_OK);
+  assert_int_equal(vg_project_surface(&p, NULL, NULL, NULL, &m, &err), VG_OK);
   for (int i = 0; i < 8; i++)
     assert_memory_equal(m.point[i], p.point[i], sizeof m.point[i]);
   for (int i = 0; i < 18; i++)
@@ -419,7 +426,7 @@ static void meshes_a_project_of_planes(void **state)
   box_project(&p);
   assert_int_equal(vg_sizing_new(&o, p.n_source, p.source, NULL, &s, &err),
                    VG_OK);
-  assert_int_equal(vg_project_surface(&p, s, &m, &err), VG_OK);
+  assert_int_equal(vg_project_surface(&p, s, NULL, NULL, &m, &err), VG_OK);
   check_closed(&m);
   assert_true(fabs(volume(&m) - 8000) < 1e-8);
   assert_true(angle_min_deg(&m) > 30);
@@ -453,7 +460,7 @@ static void meshes_the_box_of_vgrid(void **state)
   if (!f) skip();
   fclose(f);
   assert_int_equal(vg_d3m_read(path, &p, &err), VG_OK);
-  assert_int_equal(vg_project_surface(&p, NULL, &m, &err), VG_OK);
+  assert_int_equal(vg_project_surface(&p, NULL, NULL, NULL, &m, &err), VG_OK);
   check_closed(&m);
   assert_true(fabs(volume(&m) - 8000) < 1e-8);
   assert_int_equal(m.n_patch, 6);
@@ -482,6 +489,7 @@ static void keeps_corners_of_chains(void **state)
   struct vg_mesh m = VG_MESH_INIT;
   struct vg_error err = VG_ERROR_INIT;
   double h = 0.21, area = 0;
+  size_t n_asked = SIZE_MAX;
 
   (void)state;
   p.n_point = 41;
@@ -510,7 +518,7 @@ static void keeps_corners_of_chains(void **state)
     p.curve->point[i] = i < 40 ? i : 0;
   }
   p.n_point = 40;
-  assert_int_equal(vg_project_surface(&p, NULL, &m, &err), VG_OK);
+  assert_int_equal(vg_project_surface(&p, NULL, NULL, NULL, &m, &err), VG_OK);
   for (size_t i = 0; i < m.n_tri; i++) {
     const double *a = m.point[m.tri[i][0]], *b = m.point[m.tri[i][1]],
                  *c = m.point[m.tri[i][2]];
@@ -520,18 +528,68 @@ static void keeps_corners_of_chains(void **state)
   }
   assert_true(fabs(area - 1) < 1e-9);
   vg_mesh_release(&m);
+  assert_int_equal(vg_project_surface(&p, NULL, counts_down, &n_asked, &m,
+                                      &err), VG_OK);
+  vg_mesh_release(&m);
+  n_asked = SIZE_MAX - n_asked;
+  for (int last = 0; last < 2; last++) {   /* on a curve; inside the patch */
+    size_t left = last ? n_asked : 1;
+
+    assert_int_equal(vg_project_surface(&p, NULL, counts_down, &left, &m,
+                                        &err), VG_ERR_IO);
+    assert_null(m.tri);
+  }
   p.point[5][2] += 1;   /* no longer plane */
   p.point[6][2] += 1;
-  assert_int_equal(vg_project_surface(&p, NULL, &m, &err), VG_ERR_GEOMETRY);
+  assert_int_equal(vg_project_surface(&p, NULL, NULL, NULL, &m, &err),
+                   VG_ERR_GEOMETRY);
   p.curve->point[3] = 77;
-  assert_int_equal(vg_project_surface(&p, NULL, &m, &err), VG_ERR_INPUT);
+  assert_int_equal(vg_project_surface(&p, NULL, NULL, NULL, &m, &err),
+                   VG_ERR_INPUT);
   assert_null(m.tri);
   vg_project_release(&p);
+}
+
+/* Around a body, on its symmetry plane, and for planes of a project: asked at
+ * every turn, and what was there stays as it was. */
+static void stops_when_asked(void **state)
+{
+  static const enum vg_farfield_kind kind[2] = { VG_FARFIELD_SPHERE,
+                                                 VG_FARFIELD_BOX };
+
+  (void)state;
+  for (int k = 0; k < 2; k++)
+    for (int half = -1; half < 1; half++) {
+      struct vg_mesh m = ball(half, 0.1);
+      const size_t n_tri = m.n_tri, n_patch = m.n_patch;
+      struct vg_farfield far = VG_FARFIELD_INIT;
+      struct vg_error err = VG_ERROR_INIT;
+      size_t left = SIZE_MAX, n;
+
+      far.kind = kind[k];
+      far.lengths = 2;
+      far.spacing = 0.2;
+      far.stop = counts_down;
+      far.user = &left;
+      for (n = 1; n < 1000; n *= 3) {
+        vg_status st;
+
+        left = n;
+        st = vg_domain_complete(&m, &far, NULL, NULL, &err);
+        assert_int_equal(st, left ? VG_OK : VG_ERR_IO);
+        if (left) break;
+        assert_int_equal(m.n_tri, n_tri);
+        assert_int_equal(m.n_patch, n_patch);
+      }
+      assert_true(n >= 27);
+      vg_mesh_release(&m);
+    }
 }
 
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+    cmocka_unit_test(stops_when_asked),
     cmocka_unit_test(makes_even_spheres),
     cmocka_unit_test(puts_a_sphere_around_a_body),
     cmocka_unit_test(puts_a_box_around_a_body),

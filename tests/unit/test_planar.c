@@ -115,9 +115,11 @@ static void circle(struct plane *s, double x, double y, double r, int n,
 
 static vg_status run(struct plane *s, const struct law *l)
 {
+  const struct vg_planar_law law = { size_of, NULL, (void *)l };
+
   return vg_planar_mesh(s->n, (const double (*)[2])s->p, s->n_edge,
-                        (const uint32_t (*)[2])s->edge, size_of, (void *)l,
-                        &s->n_new, &s->add, &s->n_tri, &s->tri, &s->err);
+                        (const uint32_t (*)[2])s->edge, &law, &s->n_new,
+                        &s->add, &s->n_tri, &s->tri, &s->err);
 }
 
 static const double *at(const struct plane *s, uint32_t i)
@@ -416,9 +418,66 @@ static void refuses_bad_loops(void **state)
   }
 }
 
+/* One who asks to stop after so many questions. */
+struct patience {
+  struct law l;
+  size_t n_size, n_asked, most;
+};
+
+static double size_counted(void *user, const double x[2])
+{
+  struct patience *p = user;
+
+  p->n_size++;
+  return size_of(&p->l, x);
+}
+
+static int is_over(void *user)
+{
+  struct patience *p = user;
+
+  return ++p->n_asked > p->most;
+}
+
+/* Asked all along, while points are placed and while they are moved, and
+ * stopped at once; the answers of one who does not stop change nothing. */
+static void stops_when_asked(void **state)
+{
+  struct patience p = { .l = { { 0 }, 0.005, 0, 1 }, .most = SIZE_MAX };
+  const struct vg_planar_law law = { size_counted, is_over, &p };
+  const struct law rim = { { 0 }, 0.05, 0, 1 };
+  size_t n_size = 0, n_asked = 0;
+
+  (void)state;
+  for (int pass = 0; pass < 4; pass++) {
+    struct plane s;
+    vg_status st;
+
+    begin(&s);
+    square(&s, &rim, 1);
+    if (pass) p.most = pass == 1 ? 0 : pass == 2 ? n_asked / 2 : n_asked - 1;
+    p.n_size = p.n_asked = 0;
+    st = vg_planar_mesh(s.n, (const double (*)[2])s.p, s.n_edge,
+                        (const uint32_t (*)[2])s.edge, &law, &s.n_new,
+                        &s.add, &s.n_tri, &s.tri, &s.err);
+    assert_int_equal(st, pass ? VG_ERR_IO : VG_OK);
+    if (!pass) {
+      n_size = p.n_size;
+      n_asked = p.n_asked;
+      assert_true(n_asked > s.n_tri / 2000);
+    } else {
+      assert_null(s.tri);
+      assert_int_equal(p.n_asked, p.most + 1);
+      assert_true(pass == 3 ? p.n_size == n_size : pass == 2 || !p.n_size);
+    }
+    end(&s);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+    cmocka_unit_test(stops_when_asked),
     cmocka_unit_test(fills_a_square_evenly),
     cmocka_unit_test(follows_sizes_over_five_decades),
     cmocka_unit_test(keeps_loops_that_touch),

@@ -42,3 +42,53 @@ for launch in "" "$launcher"; do
   says err "interrupted; nothing was written"
   lacks err "sizes"
 done
+
+# Sizes far too fine for any machine: what would take an hour stops, wherever
+# it is: the field of sizes and the load of a plan, and a farfield.
+unset OMPI_MCA_rmaps_base_oversubscribe
+cat >fine.deck <<'END'
+Far too fine
+
+sources
+kind    x0   y0   z0   r0   h0
+sphere  0.5  0.5  0.5  0.4  2e-5
+END
+cat >octa.obj <<'END'
+v 1 0 0
+v -1 0 0
+v 0 1 0
+v 0 -1 0
+v 0 0 1
+v 0 0 -1
+f 1 3 5
+f 3 2 5
+f 2 4 5
+f 4 1 5
+f 3 1 6
+f 2 3 6
+f 4 2 6
+f 1 4 6
+END
+
+# stopped STAGE ARGS...: told to stop once the stage has begun.
+stopped() {
+  stage=$1
+  shift
+  timeout -k 20 60 "$program" "$@" >out 2>err &
+  job=$!
+  for _ in $(seq 400); do
+    ! grep -q "^$stage" err || break
+    sleep 0.05
+  done
+  sleep 0.3
+  kill -TERM $job 2>/dev/null
+  wait $job
+  status=$?
+  exits 1
+  says err "vanguard: interrupted; nothing was written"
+}
+
+stopped sizes plan -p p/box --deck fine.deck --farfield none
+stopped farfield plan -p octa --farfield-spacing 0.03
+stopped farfield mesh -p octa --farfield-spacing 0.03 --out o
+[ -z "$(ls -A o)" ] || fail "left behind: $(ls -A o)"
