@@ -9,6 +9,7 @@
 #include "cli/input.h"
 #include "cli/report.h"
 #include "io/format.h"
+#include "io/ugrid.h"
 
 struct arguments {
   const char *file, *deck, *defects;
@@ -60,7 +61,28 @@ static void print_json(json_t *o)
   json_decref(o);
 }
 
+/* Cells that were the wrong way round are mirrored on reading. In a mesh that
+ * is not valid, those of a file of 4-byte reals may be what rounding made. */
+static vg_status not_valid(const struct arguments *a,
+                           const struct vg_turned *turned,
+                           struct vg_error *err)
+{
+  struct vg_ugrid_kind kind;
+  char cells[80] = "";
+
+  if (!vg_ugrid_kind(a->file, &kind) || kind.real_size != 4)
+    return vg_fail(err, VG_ERR_GEOMETRY, "%s: the mesh is not valid", a->file);
+  if (turned->cell)
+    snprintf(cells, sizeof cells, " (inverted cells in it: %zu)",
+             turned->cell);
+  return vg_fail(err, VG_ERR_GEOMETRY, "%s: the mesh is not valid%s; its "
+                 "coordinates are 4-byte reals: where it was valid before it "
+                 "was written, rounding spoilt it; write 8-byte reals, as "
+                 ".lb8.ugrid has", a->file, cells);
+}
+
 static vg_status check_mesh(const struct arguments *a, struct vg_mesh *m,
+                            const struct vg_turned *turned,
                             struct vg_error *err)
 {
   struct vg_mesh_report r;
@@ -71,19 +93,21 @@ static vg_status check_mesh(const struct arguments *a, struct vg_mesh *m,
   VG_TRY(field(a, m, &sizing, err));
   VG_TRY(vg_mesh_judge(m, sizing, &r, err));
   if (a->json) {
-    print_json(json_pack("{s:o s:b s:o s:o s:o}", "file",
-                         vg_report_string(a->file), "ok",
-                         r.is_valid, "size", vg_report_size_json(m), "patches",
+    print_json(json_pack("{s:o s:b s:I s:o s:o s:o}", "file",
+                         vg_report_string(a->file), "ok", r.is_valid,
+                         "cells_turned", (json_int_t)turned->cell, "size", vg_report_size_json(m), "patches",
                          vg_report_patches_json(m), "mesh",
                          vg_report_mesh_json(&r)));
   } else {
     printf("%s: volume mesh\n", a->file);
     vg_report_size_text(stdout, m);
     VG_TRY(vg_report_patches_text(stdout, m, err));
+    if (turned->cell)
+      printf("  cells of negative volume, mirrored on reading: %zu\n",
+             turned->cell);
     vg_report_mesh_text(stdout, &r, 1);
   }
-  if (!r.is_valid)
-    st = vg_fail(err, VG_ERR_GEOMETRY, "%s: the mesh is not valid", a->file);
+  if (!r.is_valid) st = not_valid(a, turned, err);
 done:
   vg_sizing_free(sizing);
   return st;
@@ -168,6 +192,7 @@ int vg_cmd_check(int argc, char **argv)
   struct arguments a = { 0 };
   struct vg_display show;
   struct vg_mesh m = VG_MESH_INIT;
+  struct vg_read_info info = { 0 };
   struct vg_error err = VG_ERROR_INIT;
   vg_status st;
 
@@ -175,12 +200,13 @@ int vg_cmd_check(int argc, char **argv)
   vg_display_init(&show, a.quiet);
   vg_display_end_at_once(1);
   vg_display_update(&show, "read", 0, 0);
-  st = vg_mesh_read(a.file, &m, NULL, &err);
+  st = vg_mesh_read(a.file, &m, &info, &err);
   if (st >= 0) {
     vg_display_update(&show, "check", 0, 0);
     vg_display_clear(&show);
-    st = m.n_tet + m.n_pyr + m.n_pri + m.n_hex ? check_mesh(&a, &m, &err)
-                                               : check_surface(&a, &m, &err);
+    st = m.n_tet + m.n_pyr + m.n_pri + m.n_hex
+           ? check_mesh(&a, &m, &info.turned, &err)
+           : check_surface(&a, &m, &err);
   }
   vg_display_clear(&show);
   vg_mesh_release(&m);

@@ -57,6 +57,13 @@ struct vg_mesh_report {
 vg_status vg_mesh_judge(const struct vg_mesh *m, const struct vg_sizing *sizing,
                         struct vg_mesh_report *report, struct vg_error *err);
 
+/** Whether the judge takes a cell for positive: the volume of a tetrahedron,
+ * exactly; of others theirs and that of the tetrahedra at all corners.
+ *
+ * @param kind  0 tetrahedron, 1 pyramid, 2 prism, 3 hexahedron
+ * @param node  its points in x */
+int vg_cell_positive(const double (*x)[3], int kind, const uint32_t *node);
+
 /** Per-tetrahedron figures for output: smallest dihedral angle in degrees and
  * radius ratio, each [n_tet], may be NULL. */
 void vg_mesh_cell_quality(const struct vg_mesh *m, float *angle_min,

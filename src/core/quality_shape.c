@@ -272,7 +272,7 @@ static const uint8_t hex_corner[8][4] = {
   {4, 7, 5, 0}, {5, 4, 6, 1}, {6, 5, 7, 2}, {7, 6, 4, 3}
 };
 
-static int corners_positive(const struct vg_mesh *m, int kind,
+static int corners_positive(const double (*x)[3], int kind,
                             const uint32_t *n)
 {
   static const int count[VG_CELL_KINDS] = { 0, 4, 6, 8 };
@@ -283,44 +283,50 @@ static int corners_positive(const struct vg_mesh *m, int kind,
   for (int i = 0; i < count[kind]; i++) {
     const uint8_t *c = corner[kind][i];
 
-    if (!(vg_orient3d(m->point[n[c[0]]], m->point[n[c[1]]],
-                      m->point[n[c[2]]], m->point[n[c[3]]]) > 0)) return 0;
+    if (!(vg_orient3d(x[n[c[0]]], x[n[c[1]]], x[n[c[2]]], x[n[c[3]]]) > 0))
+      return 0;
   }
   return 1;
 }
 
 /* By the divergence theorem, each quad as the mean of its two diagonals. */
-static double mixed_volume(const struct vg_mesh *m, int kind,
-                           const uint32_t *n)
+static double mixed_volume(const double (*x)[3], int kind, const uint32_t *n)
 {
   const struct vg_cell_faces *f = &vg_cell_faces[kind];
-  const double *o = m->point[n[0]];
+  const double *o = x[n[0]];
   double six = 0;
 
   for (int i = 0; i < f->n_face; i++) {
-    const double *a = m->point[n[f->node[i][0]]];
-    const double *b = m->point[n[f->node[i][1]]];
-    const double *c = m->point[n[f->node[i][2]]];
+    const double *a = x[n[f->node[i][0]]], *b = x[n[f->node[i][1]]];
+    const double *c = x[n[f->node[i][2]]];
 
     if (i < f->n_tri) six += vg_tri_cone(o, a, b, c);
-    else six += vg_quad_cone(o, a, b, c, m->point[n[f->node[i][3]]]);
+    else six += vg_quad_cone(o, a, b, c, x[n[f->node[i][3]]]);
   }
   return six / 6;
+}
+
+int vg_cell_positive(const double (*x)[3], int kind, const uint32_t *n)
+{
+  if (kind == VG_CELL_TET)
+    return vg_orient3d(x[n[0]], x[n[1]], x[n[2]], x[n[3]]) > 0;
+  return mixed_volume(x, kind, n) > 0 && corners_positive(x, kind, n);
 }
 
 static void judge_mixed(const struct vg_mesh *m, int kind, float *volume,
                         struct vg_figures *f)
 {
+  const double (*x)[3] = (const double (*)[3])m->point;
   struct vg_cells c = vg_mesh_cells(m, kind);
   size_t width = (size_t)vg_cell_faces[kind].n_node;
 
   for (size_t i = 0; i < c.n; i++) {
     const uint32_t *n = c.node + width * i;
-    double v = mixed_volume(m, kind, n);
+    double v = mixed_volume(x, kind, n);
 
     vg_exact_add(&f->n.volume, v);
     volume[c.first + i] = (float)v;
-    f->n.not_positive += !(v > 0) || !corners_positive(m, kind, n);
+    f->n.not_positive += !(v > 0) || !corners_positive(x, kind, n);
   }
 }
 

@@ -47,7 +47,9 @@ vg_status vg_slices_write_with(struct vg_comm *comm,
  * hand for something else as well. Open and close are collective and have the
  * same answer on all ranks; put is a vg_slice_body for any number of threads,
  * and every slice must be put once. close: st says how this rank fared; the
- * file appears, complete, if all ranks are well. s: needed until closed. */
+ * file appears, complete, if all ranks are well. s: needed until closed.
+ * Of 4-byte reals, close gives VG_ERR_GEOMETRY where rounding makes cells flat
+ * or inverted, or points one. */
 struct vg_slices_ugrid;
 int vg_slices_is_ugrid(const char *form);
 vg_status vg_slices_ugrid_open(struct vg_comm *comm,

@@ -9,6 +9,7 @@
 #define VG_IO_SLICES_PARTS_H
 
 #include "core/slices.h"
+#include "io/narrow.h"
 #include "io/slices.h"
 #include "io/stream.h"
 #include "io/ugrid.h"
@@ -22,6 +23,10 @@
 vg_status vg_ugrid_check(const char *path, const struct vg_ugrid_kind *kind,
                          const struct vg_mesh *m, const size_t *n_layer_tet,
                          struct vg_error *err);
+
+/** Is what rounding to the kind's reals left of a mesh fit for a file? */
+vg_status vg_ugrid_accept(const struct vg_ugrid_kind *kind,
+                          const struct vg_narrow *n, struct vg_error *err);
 
 /** A mesh, or a frame of a binary kind. */
 void vg_ugrid_put(struct vg_output *out, const struct vg_ugrid_kind *kind,

@@ -1,3 +1,4 @@
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -15,6 +16,13 @@ struct vg_slices_ugrid {
   const size_t *tail;        /* NULL: none */
   struct vg_slice_file file;
   struct vg_shared_file *to;
+  struct vg_comm *comm;
+  /* Of 4-byte reals: what rounding does. Points that coincide where cells stay
+   * positive are on the boundary, on two sides of a thin body. */
+  int is_narrow;
+  atomic_flag busy;          /* somebody adds to: */
+  struct vg_narrow narrow;
+  struct vg_boundary_points rim;
 };
 
 static void put_frame(const void *of, struct vg_output *out)
@@ -64,6 +72,50 @@ static void put_slice(void *of, const struct vg_slice *slice,
   put_cells(u, slice, VG_SLICE_PRI, 6, out);
 }
 
+/* --- rounding ------------------------------------------------------------ */
+
+static vg_status note_rounded(struct vg_slices_ugrid *u,
+                              const struct vg_slice *slice,
+                              struct vg_error *err)
+{
+  double (*rounded)[3] = vg_alloc(slice->n_point, sizeof *rounded);
+  struct vg_narrow n = VG_NARROW_INIT;
+
+  if (!rounded) return vg_fail_memory(err, "the points of a slice");
+  vg_narrow_round(slice->n_point, slice->x, rounded);
+  for (int k = 0; k < VG_SLICE_KINDS; k++)
+    vg_narrow_cells(slice->x, (const double (*)[3])rounded, k,
+                    slice->n_cell[k], slice->cell[k], slice->cell_at[k], &n);
+  free(rounded);
+  vg_boundary_points_add(&u->rim, slice);
+  while (atomic_flag_test_and_set(&u->busy)) continue;   /* a few stores */
+  vg_narrow_add(&u->narrow, &n);
+  atomic_flag_clear(&u->busy);
+  return VG_OK;
+}
+
+/* Collective. */
+static vg_status accept_rounded(struct vg_slices_ugrid *u, vg_status st,
+                                struct vg_error *err)
+{
+  VG_TRY(vg_comm_agree(u->comm, st, err));
+  VG_TRY(vg_narrow_share(u->comm, &u->narrow, err));
+  VG_TRY(vg_boundary_points_share(u->comm, &u->rim, err));
+  VG_TRY(vg_narrow_points(u->rim.n, (const double (*)[3])u->rim.x, &u->narrow,
+                          err));
+  st = vg_ugrid_accept(&u->kind, &u->narrow, err);
+done:
+  return st;
+}
+
+static void release(struct vg_slices_ugrid *u)
+{
+  if (u) vg_boundary_points_release(&u->rim);
+  free(u);
+}
+
+/* --- the file ------------------------------------------------------------ */
+
 int vg_slices_is_ugrid(const char *form)
 {
   struct vg_ugrid_kind kind;
@@ -90,7 +142,12 @@ static vg_status new_ugrid(const struct vg_slices *s, const char *path,
                                     put_slice };
   vg_ugrid_kind(path, &u->kind);
   st = vg_ugrid_check(path, &u->kind, &u->mesh, u->tail, err);
-  if (st < 0) free(u);
+  if (st >= 0 && u->kind.real_size == 4) {
+    u->is_narrow = 1;
+    atomic_flag_clear(&u->busy);
+    st = vg_boundary_points_new(s, &u->rim, err);
+  }
+  if (st < 0) release(u);
   else *out = u;
   return st;
 }
@@ -106,9 +163,10 @@ vg_status vg_slices_ugrid_open(struct vg_comm *comm,
 
   if (st >= 0) st = vg_slice_file_open(&u->file, comm, &u->to, err);
   if (st < 0) {
-    free(u);
+    release(u);
     return st;
   }
+  u->comm = comm;
   if (!vg_comm_rank(comm)) st = vg_slice_file_put(&u->file, u->to, NULL, err);
   st = vg_comm_agree(comm, st, err);
   if (st < 0) return vg_slices_ugrid_close(u, st, err);
@@ -120,15 +178,17 @@ vg_status vg_slices_ugrid_open(struct vg_comm *comm,
 vg_status vg_slices_ugrid_put(void *ugrid, const struct vg_slice *slice,
                               struct vg_error *err)
 {
-  const struct vg_slices_ugrid *u = ugrid;
+  struct vg_slices_ugrid *u = ugrid;
+  vg_status st = u->is_narrow ? note_rounded(u, slice, err) : VG_OK;
 
-  return vg_slice_file_put(&u->file, u->to, slice, err);
+  return st < 0 ? st : vg_slice_file_put(&u->file, u->to, slice, err);
 }
 
 vg_status vg_slices_ugrid_close(struct vg_slices_ugrid *u, vg_status st,
                                 struct vg_error *err)
 {
+  if (u->is_narrow) st = accept_rounded(u, st, err);
   st = vg_shared_close(u->to, st, err);
-  free(u);
+  release(u);
   return st;
 }

@@ -650,6 +650,36 @@ vg_status vg_ugrid_check(const char *path, const struct vg_ugrid_kind *kind,
   return VG_OK;
 }
 
+vg_status vg_ugrid_accept(const struct vg_ugrid_kind *kind,
+                          const struct vg_narrow *n, struct vg_error *err)
+{
+  struct vg_ugrid_kind wide = *kind;
+
+  wide.real_size = 8;
+  return vg_narrow_accept(n, kind_name(kind), kind_name(&wide), err);
+}
+
+/* Of a mesh in one piece. */
+static vg_status check_rounded(const struct vg_ugrid_kind *kind,
+                               const struct vg_mesh *m, struct vg_error *err)
+{
+  const double (*x)[3] = (const double (*)[3])m->point;
+  struct vg_narrow n = VG_NARROW_INIT;
+  double (*rounded)[3];
+  vg_status st;
+
+  if (kind->real_size != 4) return VG_OK;
+  rounded = vg_alloc(m->n_point, sizeof *rounded);
+  if (!rounded) return vg_fail_memory(err, "the points of a file");
+  vg_narrow_round(m->n_point, x, rounded);
+  for (int e = 2; e < 6; e++)
+    vg_narrow_cells(x, (const double (*)[3])rounded, e - 2, count_of(m, e),
+                    nodes_of(m, e), 0, &n);
+  free(rounded);
+  st = vg_narrow_points(m->n_point, x, &n, err);
+  return st < 0 ? st : vg_ugrid_accept(kind, &n, err);
+}
+
 void vg_ugrid_put(struct vg_output *out, const struct vg_ugrid_kind *kind,
                   const struct vg_mesh *m, const size_t *n_layer_tet)
 {
@@ -685,6 +715,7 @@ static vg_status write_mesh(const char *path, const struct vg_mesh *m,
 
   if (!vg_ugrid_kind(path, &kind)) return not_a_name(path, err);
   st = vg_ugrid_check(path, &kind, m, n_layer_tet, err);
+  if (st >= 0) st = check_rounded(&kind, m, err);
   if (st >= 0) st = vg_output_open(path, &out, err);
   if (st < 0) return st;
   vg_ugrid_put(&out, &kind, m, n_layer_tet);

@@ -47,7 +47,8 @@ vg_status vg_ugrid_peek(const char *path, uint64_t count[7],
                         struct vg_error *err);
 
 /** Write in the kind that the name says; no tail. Single precision kinds
- * round the coordinates. VG_ERR_UNSUPPORTED when counts exceed the integers
+ * round the coordinates: VG_ERR_GEOMETRY where that makes cells flat or
+ * inverted, or points one. VG_ERR_UNSUPPORTED when counts exceed the integers
  * of the kind. The file appears complete or not at all. */
 vg_status vg_ugrid_write(const char *path, const struct vg_mesh *m,
                          struct vg_error *err);

@@ -154,6 +154,105 @@ static void every_kind_of_ugrid(void **state)
   }
 }
 
+/* What the message of a kind of 4-byte reals must say of a mesh, by the judge
+ * of the mesh so rounded. */
+static void rounded_message(const struct vg_mesh *m, char *text, size_t size)
+{
+  struct vg_mesh_report r;
+  struct vg_mesh copy = VG_MESH_INIT;
+
+  memset(&r, 0, sizeof r);
+  assert_int_equal(vg_mesh_copy(&copy, m, NULL), VG_OK);
+  for (size_t i = 0; i < 3 * m->n_point; i++)
+    copy.point[i / 3][i % 3] = (double)(float)m->point[i / 3][i % 3];
+  assert_int_equal(vg_mesh_judge(&copy, NULL, &r, NULL), VG_OK);
+  assert_true(r.not_positive > 1);
+  snprintf(text, size, "would make %zu cells flat or inverted, the first",
+           r.not_positive);
+  vg_mesh_release(&copy);
+}
+
+/* A valid mesh so far from the origin that 4-byte reals cannot tell its cells
+ * from flat ones: said with their number, the same by both writers, and no
+ * file is left. With 8 bytes it is written as ever. */
+static void rounding_that_spoils_cells_is_refused(void **state)
+{
+  static const char *const form[] = { "b4.ugrid", "lb4.ugrid", "r4.ugrid",
+                                      "lr4.ugrid" };
+
+  (void)state;
+  for (size_t i = 0; i < 8; i++) {
+    struct vg_slices_options o = { .threads = (int)(i % 3) + 1 };
+    const char *f = form[i / 2];
+    struct vg_error err = VG_ERROR_INIT, whole = VG_ERROR_INIT;
+    struct vg_mesh far = VG_MESH_INIT;
+    char want[200], instead[20];
+    struct cut c;
+
+    assert_int_equal(vg_mesh_copy(&far, &mesh[i % 2], NULL), VG_OK);
+    for (size_t k = 0; k < far.n_point; k++) far.point[k][i % 3] += 1e6;
+    rounded_message(&far, want, sizeof want);
+    cut_make(&c, &far, N_SLICE, 0, &info[i % 2], i);
+    assert_int_equal(vg_slices_write_with(NULL, &c.s, io_temp("slices_cut"), f,
+                                          &o, &err), VG_ERR_GEOMETRY);
+    assert_non_null(strstr(err.text, want));
+    snprintf(instead, sizeof instead, "as .%.*s8.", (int)strlen(f) - 7, f);
+    assert_non_null(strstr(err.text, instead));
+    assert_absent(cut_file(f));
+    assert_int_equal(vg_ugrid_write(ugrid_file(f), &far, &whole),
+                     VG_ERR_GEOMETRY);
+    assert_memory_equal(whole.text, err.text,
+                        (size_t)(strstr(err.text, ")") - err.text));
+    assert_absent(ugrid_file(f));
+    assert_int_equal(vg_slices_write_with(NULL, &c.s, io_temp("slices_cut"),
+                                          "lb8.ugrid", &o, &err), VG_OK);
+    unlink(cut_file("lb8.ugrid"));
+    cut_release(&c);
+    vg_mesh_release(&far);
+  }
+}
+
+/* Both sides of a thin body: cells stay positive, points become one. Places
+ * that were the same before are no fault of the file. */
+static void rounding_that_joins_points_is_refused(void **state)
+{
+  static const uint32_t face[4][3] = { {0, 1, 2}, {0, 3, 1}, {1, 3, 2},
+                                       {0, 2, 3} };
+
+  (void)state;
+  for (int thin = 0; thin < 2; thin++) {
+    double x[8][3] = { {0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {0, 0, 2},
+                       {0, 0, 1}, {0, 1, 1}, {1, 0, 1}, {0, 0, 0} };
+    uint32_t tet[2][4] = { {0, 1, 2, 3}, {4, 5, 6, 7} }, tri[8][3];
+    uint32_t of[8] = { 0 };
+    struct vg_patch patch = { .id = 1 };
+    struct vg_mesh m = { .n_point = 8, .point = x, .n_tet = 2, .tet = tet,
+                         .n_tri = 8, .tri = tri, .tri_patch = of,
+                         .n_patch = 1, .patch = &patch };
+    const struct vg_slices_options o = { .threads = 1 };
+    struct vg_join_info none = { 0 };
+    struct vg_error err = VG_ERROR_INIT;
+    struct cut c;
+
+    for (uint32_t i = 0; i < 24; i++)
+      tri[i / 3][i % 3] = face[i / 3 % 4][i % 3] + (i < 12 ? 0 : 4);
+    for (int i = 4; thin && i < 7; i++) x[i][2] -= 1e-9;
+    cut_make(&c, &m, 2, 0, &none, 1);
+    c.s.n_boundary_point = 8;
+    assert_int_equal(vg_slices_write_with(NULL, &c.s, io_temp("slices_cut"),
+                                          "lb4.ugrid", &o, &err),
+                     thin ? VG_ERR_GEOMETRY : VG_OK);
+    assert_true(exists(cut_file("lb4.ugrid")) == !thin);
+    if (thin)
+      assert_non_null(strstr(err.text, "would make 3 points one with others, "
+                             "the first point 5 (0, 0, 0.999999999)"));
+    assert_int_equal(vg_ugrid_write(cut_file("lb4.ugrid"), &m, &err),
+                     thin ? VG_ERR_GEOMETRY : VG_OK);
+    unlink(cut_file("lb4.ugrid"));
+    cut_release(&c);
+  }
+}
+
 /* Lengths that make slices end before, on and behind markers. */
 static void records_in_parts(void **state)
 {
@@ -512,6 +611,8 @@ int main(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(collect_is_the_mesh),
     cmocka_unit_test(every_kind_of_ugrid),
+    cmocka_unit_test(rounding_that_spoils_cells_is_refused),
+    cmocka_unit_test(rounding_that_joins_points_is_refused),
     cmocka_unit_test(records_in_parts),
     cmocka_unit_test(places_beyond_two_gigabytes),
     cmocka_unit_test(one_vtu),
