@@ -16,6 +16,8 @@
 
 /* Seconds of one core; docs/performance.md, Model. */
 static const double spread_per_cell = 0.35e-6;  /* number, judge, encode */
+static const double before_alone = 0.1;   /* by one thread, of what is before
+                                             the tasks; the rest by a node */
 static const double digest_per_byte = 0.4e-9;   /* the files once more */
 static const double layer_per_cell = 0.1e-6;    /* growing and measuring */
 
@@ -289,19 +291,20 @@ static vg_status run_on(const struct vg_plan *p, const struct vg_outlook *o,
                         struct vg_error *err)
 {
   struct vg_machine m = p->o->machine;
-  double workers = (double)ranks * threads, alone;
+  double before = p->serial, alone = p->o->serial >= 0 ? 1 : before_alone;
   vg_status st;
 
   m.ranks = row->ranks = ranks;
   m.threads = row->threads = threads;
-  m.serial = 0;
   st = vg_model_replay(&o->spans, &m, &row->tasks, NULL, err);
   if (st < 0) return st;
-  alone = (p->serial + p->digest + p->spread) / m.rate;
-  row->wall = row->tasks.wall + alone -
-              p->spread / m.rate * (1 - 1 / workers);
-  row->speedup = (row->tasks.work + alone) / row->wall;
-  row->efficiency = row->speedup / workers;
+  m.serial = alone * before + p->digest;
+  m.by_node = (1 - alone) * before;
+  m.by_all = p->spread;
+  row->wall = row->tasks.wall + vg_model_outside(&m);
+  row->speedup = (row->tasks.work + (before + p->digest + p->spread) / m.rate) /
+                 row->wall;
+  row->efficiency = row->speedup / ranks / threads;
   row->memory = p->shared + p->per_cell * p->cell / ranks +
                 threads * p->per_thread;
   return VG_OK;

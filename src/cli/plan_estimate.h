@@ -37,7 +37,8 @@ struct vg_plan {
   size_t n_wall_point;
   double layer_tet, layer_point;   /* if all are tetrahedra */
   double cell, point, prism, tet;  /* of the mesh; cell: of all kinds */
-  double serial;                /* s of one core before the first task */
+  double serial;                /* s of one core before the first task,
+                                   most of it shared by a node */
   double spread;                /* s of one core, shared by all workers */
   double digest;                /* s of one core, behind all */
   double shared, per_cell, per_thread;  /* bytes: of any rank; of the mesh */

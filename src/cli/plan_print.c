@@ -222,10 +222,10 @@ void vg_plan_text(const struct vg_plan *p)
   print_mesh(p);
   print_files(p);
   print_tree(p);
-  printf("\nForecast: on one core %.2f s before the tasks, %.2f s of tasks, "
-         "%.2f s behind them\n  (shared by all workers but for %.2f s); of "
-         "the tasks %.2f s in loops of joins\n  that idle threads of a rank "
-         "help with\n", p->serial, p->outlook.spans.wall,
+  printf("\nForecast: on one core %.2f s before the tasks (shared by a node), "
+         "%.2f s of tasks,\n  %.2f s behind them (shared by all but for %.2f "
+         "s); of the tasks %.2f s in loops of joins\n  that idle threads of a "
+         "rank help with\n", p->serial, p->outlook.spans.wall,
          p->spread + p->digest, p->digest, vg_spans_loops(&p->outlook.spans));
   printf("  ranks threads workers       time  speed-up  efficiency      tasks "
          " speed-up   critical  cuts end  cuts extra    a rank\n");

@@ -1,5 +1,6 @@
 /* vanguard plan --replay: the tasks of a run on other machines. */
 #include <jansson.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -45,11 +46,14 @@ static vg_status replay_all(struct plan *p, struct vg_error *err)
   vg_status st;
 
   p->machine = o->machine;
-  p->machine.serial = o->serial >= 0 ? o->serial : vg_timeline_serial(&p->t);
+  p->machine.serial = o->serial;
+  if (o->serial < 0) vg_timeline_outside(&p->t, &p->machine);
   p->machine.ranks_per_node = p->t.spans.n_rank;
   VG_TRY(replay(p, p->t.spans.n_rank, p->t.spans.n_thread, &p->recorded,
                 err));
-  p->measured = p->t.spans.wall + p->machine.serial;
+  p->measured = o->serial >= 0 ? p->t.spans.wall + o->serial
+                               : fmax(p->t.spans.wall,
+                                      p->t.seconds[VG_PHASE_TOTAL]);
   p->machine.ranks_per_node = per_node;
   p->row = vg_alloc(o->ranks.n * o->threads.n, sizeof *p->row);
   if (!p->row) return vg_fail_memory(err, "the forecast");
@@ -74,11 +78,12 @@ static void print_text(const struct plan *p)
   char cells[32];
 
   printf("%s\n\nRecord %s\n  %d rank%s x %d thread%s, %zu tasks, %s cells; cut "
-         "and fill %.3f s\n  once on one core (reading to files): %.3f s\n",
+         "and fill %.3f s\n  outside, of one core: %.3f s once, %.3f s shared "
+         "by a node, %.3f s by all\n",
          p->t.title, p->o->replay, (int)s->n_rank, s->n_rank > 1 ? "s" : "",
          (int)s->n_thread, s->n_thread > 1 ? "s" : "", s->n,
          vg_cli_count((unsigned long long)p->t.n_cell, cells), s->wall,
-         p->machine.serial);
+         p->machine.serial, p->machine.by_node, p->machine.by_all);
   printf("  in loops of joins that idle threads of a rank help with: %.3f s\n",
          vg_spans_loops(s));
   printf("  the same machine replayed: %.3f s, measured %.3f s (%+.1f %%)\n",
@@ -121,6 +126,8 @@ static vg_status print_json(const struct plan *p, struct vg_error *err)
   json_object_set_new(o, "record", vg_report_string(p->o->replay));
   json_object_set_new(o, "tasks", json_integer((json_int_t)p->t.spans.n));
   json_object_set_new(o, "serial", json_real(p->machine.serial));
+  json_object_set_new(o, "by_node", json_real(p->machine.by_node));
+  json_object_set_new(o, "by_all", json_real(p->machine.by_all));
   json_object_set_new(o, "loops", json_real(vg_spans_loops(&p->t.spans)));
   json_object_set_new(o, "machine", json_pack("{s:i s:f s:f s:f s:b s:i}",
     "ranks_per_node", p->machine.ranks_per_node, "latency",

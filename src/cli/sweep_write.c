@@ -410,7 +410,7 @@ static vg_status add_model(const struct vg_sweep *s,
     struct vg_forecast f;
 
     m.ranks = m.ranks_per_node = n;
-    m.serial = vg_timeline_serial(&c->t);
+    vg_timeline_outside(&c->t, &m);
     VG_TRY(vg_model_replay(&c->t.spans, &m, &f, NULL, err));
     if (!(f.wall > 0)) break;
     add_point(to, n, base / f.wall);

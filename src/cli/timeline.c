@@ -41,13 +41,23 @@ static const struct table help_table = {
   { "path", "rank", "thread", "start", "end" }
 };
 
-/* The keys of phases in the facts. */
-static const struct { const char *name, *key; } phases[VG_PHASE_N] = {
-  { "read", "seconds_read" }, { "check", "seconds_check" },
-  { "sizes", "seconds_sizes" }, { "layers", "seconds_layers" },
-  { "cut+fill", "seconds_cut_fill" }, { "number", "seconds_number" },
-  { "judge", "seconds_judge" }, { "write", "seconds_write" },
-  { "total", "seconds_total" },
+/* The keys of phases in the facts, who shares them, and the part of them that
+ * one thread does. */
+enum share { ALONE, BY_NODE, BY_ALL };
+static const struct {
+  const char *name, *key;
+  enum share share;
+  double alone;
+} phases[VG_PHASE_N] = {
+  { "read", "seconds_read", ALONE, 1 },
+  { "check", "seconds_check", BY_NODE, 0.2 },
+  { "sizes", "seconds_sizes", BY_NODE, 0.05 },
+  { "layers", "seconds_layers", BY_NODE, 0.1 },
+  { "cut+fill", "seconds_cut_fill", ALONE, 1 },
+  { "number", "seconds_number", ALONE, 1 },
+  { "judge", "seconds_judge", BY_ALL, 0.02 },
+  { "write", "seconds_write", BY_ALL, 0.4 },
+  { "total", "seconds_total", ALONE, 1 },
 };
 
 const char *vg_phase_name(enum vg_phase phase)
@@ -61,11 +71,25 @@ void vg_timeline_release(struct vg_timeline *t)
   memset(t, 0, sizeof *t);
 }
 
-double vg_timeline_serial(const struct vg_timeline *t)
+void vg_timeline_outside(const struct vg_timeline *t, struct vg_machine *m)
 {
+  double workers = (double)t->spans.n_rank * t->spans.n_thread;
   double rest = t->seconds[VG_PHASE_TOTAL] - t->spans.wall;
+  double shared[3] = {0};
 
-  return rest > 0 ? rest : 0;
+  m->serial = 0;
+  for (int k = 0; k < VG_PHASE_N; k++) {
+    double alone = phases[k].alone, one;
+
+    if (phases[k].share == ALONE) continue;
+    one = t->seconds[k] / (alone + (1 - alone) / workers);
+    m->serial += alone * one;
+    shared[phases[k].share] += (1 - alone) * one;
+    rest -= t->seconds[k];
+  }
+  m->by_node = shared[BY_NODE];
+  m->by_all = shared[BY_ALL];
+  if (rest > 0) m->serial += rest;
 }
 
 /* --- writing ------------------------------------------------------------- */

@@ -1,6 +1,6 @@
 /* cli/timeline.h: a run's record as a file, STEM.timeline.json: facts of the
  * run and what each worker did when. It is what vanguard plan replays and
- * vanguard sweep draws. Uses partition/spans.h.
+ * vanguard sweep draws. Uses partition/model.h.
  *
  *   {"vanguard_timeline": 1,
  *    "facts": {"title": "wing", "ranks": 2, "threads": 4, "cells": 123,
@@ -22,7 +22,7 @@
 #include <stdint.h>
 
 #include "base/status.h"
-#include "partition/spans.h"
+#include "partition/model.h"
 
 /* Phases of a run in their order. VG_PHASE_ENGINE is cutting and filling. */
 enum vg_phase {
@@ -49,8 +49,11 @@ struct vg_timeline {
 
 void vg_timeline_release(struct vg_timeline *t);
 
-/** Seconds outside of the engine: total - cut+fill, at least 0. */
-double vg_timeline_serial(const struct vg_timeline *t);
+/** What a run does outside the engine, as serial, by_node and by_all of *m, in
+ * seconds of one core. The ranks of the record are taken as those of one node,
+ * and of each phase the same part is taken to be done by one thread
+ * (docs/performance.md, "Model"). */
+void vg_timeline_outside(const struct vg_timeline *t, struct vg_machine *m);
 
 /** Write; the engine's time is spans.wall. Spans in their order. */
 vg_status vg_timeline_write(const char *path, const struct vg_timeline *t,

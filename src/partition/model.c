@@ -588,6 +588,21 @@ done:
   return st;
 }
 
+/* s of one recorded core outside the tasks. */
+static double once(const struct vg_machine *m)
+{
+  return m->serial + m->by_node + m->by_all;
+}
+
+double vg_model_outside(const struct vg_machine *m)
+{
+  double all = (double)m->ranks * m->threads, node = all;
+
+  if (m->ranks > m->ranks_per_node)
+    node = (double)m->ranks_per_node * m->threads;
+  return (m->serial + m->by_node / node + m->by_all / all) / m->rate;
+}
+
 static vg_status check_machine(const struct vg_machine *m,
                                struct vg_error *err)
 {
@@ -603,11 +618,12 @@ static vg_status check_machine(const struct vg_machine *m,
     return vg_fail(err, VG_ERR_INPUT, "loops in %d threads: at least 1",
                    m->loop_threads);
   if (!(m->latency >= 0) || !(m->bandwidth > 0) || !(m->rate > 0) ||
-      !(m->serial >= 0) || isinf(m->latency) || isinf(m->serial))
+      !(m->serial >= 0) || !(m->by_node >= 0) || !(m->by_all >= 0) ||
+      isinf(m->latency) || isinf(once(m)))
     return vg_fail(err, VG_ERR_INPUT, "latency %g s, bandwidth %g bytes/s, "
                    "rate %g and serial time %g s do not make a machine: "
                    "bandwidth and rate are above 0, the others not below it",
-                   m->latency, m->bandwidth, m->rate, m->serial);
+                   m->latency, m->bandwidth, m->rate, once(m));
   return VG_OK;
 }
 
@@ -629,7 +645,7 @@ static double extra_of_cuts(const struct sim *s, double cuts)
 
 static struct vg_forecast judge(const struct sim *s)
 {
-  double serial = s->machine->serial / s->machine->rate, sum = 0, most = 0;
+  double outside = vg_model_outside(s->machine), sum = 0, most = 0;
   double cuts = 0, workers = s->n_worker, longest = 0;
   struct vg_forecast f = { .imbalance = 1 };
 
@@ -640,11 +656,11 @@ static struct vg_forecast judge(const struct sim *s)
   }
   for (uint32_t w = 0; w < s->n_worker; w++)
     if (s->busy[w] > most) most = s->busy[w];
-  f.wall = s->now + serial;
-  f.work = sum + serial;
+  f.wall = s->now + outside;
+  f.work = sum + once(s->machine) / s->machine->rate;
   f.speedup = f.wall > 0 ? f.work / f.wall : 1;
   f.efficiency = f.speedup / workers;
-  f.critical = longest + serial;
+  f.critical = longest + outside;
   f.cuts_wall = s->cuts_wall;
   f.bytes = s->bytes;
   if (sum > 0) {

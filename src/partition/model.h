@@ -47,20 +47,23 @@ struct vg_machine {
                                 Messages of a rank wait for each other */
   double rate;               /* speed of a core over the recorded one; 1 */
   double serial;             /* s of the recorded core, before the first and
-                                after the last task, done once (reading,
-                                sizes, layers, files) */
+                                after the last task, done once */
+  double by_node;            /* the same, shared by the workers of a node
+                                (check, sizes, layers) */
+  double by_all;             /* the same, shared by all (judge, files) */
   int joins_roam;            /* 1: all joins are done by any rank */
   int loop_threads;          /* most that a loop is sped up by more workers:
                                 they share the rank's memory; 16 */
 };
-#define VG_MACHINE_INIT { 1, 1, 1, 2e-6, 1e10, 1, 0, 0, 16 }
+#define VG_MACHINE_INIT { .ranks = 1, .threads = 1, .ranks_per_node = 1, \
+  .latency = 2e-6, .bandwidth = 1e10, .rate = 1, .loop_threads = 16 }
 
 struct vg_forecast {
-  double wall;               /* s, serial part included */
-  double work;               /* s of all tasks on one worker, serial included */
+  double wall;               /* s, what is outside the tasks included */
+  double work;               /* s of all that on one worker */
   double speedup, efficiency;/* work / wall; over workers */
-  double critical;           /* s, longest chain of tasks, serial included,
-                                loops with all the help they may have */
+  double critical;           /* s, longest chain of tasks, loops with all the
+                                help they may have, and what is outside */
   double cuts;               /* share of the busy time spent on P, T and J */
   double cuts_extra;         /* share of it that their cells, final ones, would
                                 not have cost in leaves: the price of cutting */
@@ -86,6 +89,9 @@ vg_status vg_model_replay(const struct vg_spans *spans,
                           const struct vg_machine *machine,
                           struct vg_forecast *out, struct vg_spans *timeline,
                           struct vg_error *err);
+
+/** Seconds that the machine takes outside the tasks. */
+double vg_model_outside(const struct vg_machine *machine);
 
 /** The priority of a task as the advancing partition gives it (advance.h):
  * cuts before fills (J, P, T, L, R, then others), heavier first. */

@@ -382,6 +382,29 @@ static void a_faster_core_takes_less(void **state)
   vg_spans_release(&s);
 }
 
+/* Of 1 + 8 + 32 s outside, nodes of two ranks share 8 and all ranks 32. */
+static void what_is_outside_the_tasks_is_shared(void **state)
+{
+  struct vg_spans s = VG_SPANS_INIT;
+  struct vg_machine m = machine_of(4, 2);
+  struct vg_forecast f;
+
+  (void)state;
+  add(&s, "0.1L", "", 6);
+  m.ranks_per_node = 2;
+  m.serial = 1;
+  m.by_node = 8;
+  m.by_all = 32;
+  assert_true(vg_model_outside(&m) == 1 + 2 + 4);
+  f = replay(&s, &m, NULL);
+  assert_true(f.wall == 13 && f.critical == 13 && f.work == 47);
+  m.ranks = m.threads = 1;           /* a node has one rank of the two */
+  assert_true(vg_model_outside(&m) == 41);
+  m.rate = 2;
+  assert_true(vg_model_outside(&m) == 20.5);
+  vg_spans_release(&s);
+}
+
 /* One task of 10 s, 8 of them in loops. */
 static void idle_workers_help(void **state)
 {
@@ -603,6 +626,7 @@ int main(void)
     cmocka_unit_test(nodes_move_and_joins_stay),
     cmocka_unit_test(joins_wait_for_their_rank),
     cmocka_unit_test(a_faster_core_takes_less),
+    cmocka_unit_test(what_is_outside_the_tasks_is_shared),
     cmocka_unit_test(idle_workers_help),
     cmocka_unit_test(help_is_shared),
     cmocka_unit_test(zones_make_cells_too),

@@ -20,8 +20,9 @@ exits 0
 says out "1 rank x 1 thread, 5 tasks, 4,000 cells; cut and fill 9.000 s"
 says out "replayed: 11.000 s, measured 11.000 s (+0.0 %)"
 says out "      1       1       1     11.000      1.00       100.0      5.000"
-says out "      2       1       2      7.000      1.57        78.6      5.000"
-says out "      4       2       8      5.000      2.20        27.5      5.000"
+says out "outside, of one core: 1.400 s once, 0.000 s shared by a node, 0.600 s by all"
+says out "      2       1       2      6.700      1.64        82.1      4.700"
+says out "      4       2       8      4.475      2.46        30.7      4.475"
 [ "$(grep -c '^ *[0-9][0-9]* *[0-9][0-9]* *[0-9][0-9]* ' out)" = 6 ] || fail "not 6 rows"
 
 # The serial part can be left out; a faster core takes less.
