@@ -339,6 +339,13 @@ static int grow_face(struct placer *p, uint32_t link)
 
 /* Side of the cells that get one seed, over the spacing: from half of it. */
 static const double seed_cell = 8;
+/* Fronts come to all places of finer spacing while that falls by no more than
+ * this for each length. They step over what is steeper ... */
+static const double steepest = 0.5;
+/* ... so where the spacing is less than this share of what the seed of a cell
+ * has, it gets seeds of its own, but not on the way down to what is finer
+ * still: where it falls by this share over half of itself. */
+static const double hidden = 0.5, falls = 0.1;
 
 struct seeder {
   const struct vg_sizing *sizing;
@@ -346,6 +353,14 @@ struct seeder {
   struct vg_placed *out;
   size_t cap;
 };
+
+static int add_seed(struct seeder *s, const double x[3])
+{
+  if (vg_reserve(&s->out->x, &s->cap, s->out->n + 1, sizeof *s->out->x))
+    return -1;
+  memcpy(s->out->x[s->out->n++], x, sizeof *s->out->x);
+  return 0;
+}
 
 /* x moved to the lattice of spacing h when the field is level around it. */
 static void snap_to_lattice(const struct vg_sizing *sizing, double h,
@@ -383,6 +398,13 @@ static int on_region(const struct vg_region *r, double side, double x[3])
   return 1;
 }
 
+static void octant_of(const double lo[3], double side, int octant,
+                      double child[3])
+{
+  for (int k = 0; k < 3; k++)
+    child[k] = lo[k] + (octant >> k & 1 ? 0.5 * side : 0);
+}
+
 static int seed(struct seeder *s, const double lo[3], double side)
 {
   double x[3], h, child[3];
@@ -391,16 +413,83 @@ static int seed(struct seeder *s, const double lo[3], double side)
   if (s->region && !on_region(s->region, side, x)) return 0;
   h = vg_sizing_at(s->sizing, x);
   if (side <= seed_cell * h) {
-    if (vg_reserve(&s->out->x, &s->cap, s->out->n + 1, sizeof *s->out->x))
-      return -1;
     snap_to_lattice(s->sizing, h, x);
-    memcpy(s->out->x[s->out->n++], x, sizeof x);
-    return 0;
+    return add_seed(s, x);
   }
   for (int octant = 0; octant < 8; octant++) {
-    for (int k = 0; k < 3; k++)
-      child[k] = lo[k] + (octant >> k & 1 ? 0.5 * side : 0);
+    octant_of(lo, side, octant, child);
     if (seed(s, child, 0.5 * side)) return -1;
+  }
+  return 0;
+}
+
+/* May points be wanted in the cube? */
+static int near_region(const struct seeder *s, const double mid[3],
+                       double side)
+{
+  const struct vg_region *r = s->region;
+  double foot[3], least, most, h, reach;
+
+  vg_region_foot(r, mid, foot);
+  vg_sizing_range(s->sizing, &least, &most);
+  h = vg_sizing_at(s->sizing, foot) +
+      0.8660254037844387 * side * vg_sizing_slope(s->sizing);
+  reach = vg_region_band(r, VG_BAND_PLACE) * fmin(h, most);
+  for (int i = 0; i < r->n_plane + r->n_wall; i++) {
+    const struct vg_plane *p = i < r->n_plane ? &r->plane[i]
+                                              : &r->wall[i - r->n_plane];
+    const double *n = p->normal;
+    double d = vg_plane_side(p, mid);
+    double far = reach + 0.5 * side * (fabs(n[0]) + fabs(n[1]) + fabs(n[2]));
+
+    if (d < -far || (i < r->n_plane && d > far)) return 0;
+  }
+  return 1;
+}
+
+/* Is a seed wanted at x, where the spacing is h? */
+static int is_dip(const struct seeder *s, const double x[3], double h)
+{
+  if (s->region && !vg_region_near(s->region, s->sizing, x, VG_BAND_PLACE))
+    return 0;
+  for (int k = 0; k < 3; k++)
+    for (int side = -1; side <= 1; side += 2) {
+      double y[3] = {x[0], x[1], x[2]};
+
+      y[k] += 0.5 * side * h;
+      if (vg_sizing_at(s->sizing, y) < (1 - falls) * h) return 0;
+    }
+  return 1;
+}
+
+/* One seed in each cube that is as small as those of other seeds where the
+ * field is hidden by one that is larger. below: no more than that is; 0: no
+ * larger cube has its seed. Of a region the finest place may be too far off:
+ * others are looked for. Returns 1 where there is one now. */
+static int seed_hidden(struct seeder *s, const double lo[3], double side,
+                       double below)
+{
+  double x[3], mid[3], child[3], least, h;
+  int is_small;
+
+  for (int k = 0; k < 3; k++) mid[k] = lo[k] + 0.5 * side;
+  if (s->region && !near_region(s, mid, side)) return 0;
+  least = vg_sizing_least(s->sizing, lo, side, x);
+  h = vg_sizing_at(s->sizing, mid);
+  if (!(below > 0) && side <= seed_cell * h) below = hidden * h;
+  if (below > 0 && least >= below) return 0;
+  is_small = below > 0 && side <= seed_cell * least;
+  if (is_small) {
+    snap_to_lattice(s->sizing, least, x);
+    if (is_dip(s, x, least)) return add_seed(s, x) ? -1 : 1;
+    if (!s->region || side <= least) return 0;
+  }
+  for (int octant = 0; octant < 8; octant++) {
+    int got;
+
+    octant_of(lo, side, octant, child);
+    got = seed_hidden(s, child, 0.5 * side, below);
+    if (got < 0 || (got && is_small)) return got;
   }
   return 0;
 }
@@ -424,7 +513,11 @@ vg_status vg_place_seeds(size_t n, const double (*x)[3],
     }
     if (hi - lo[k] > side) side = hi - lo[k];
   }
-  if (!(side > 0) || !seed(&s, lo, side)) return VG_OK;
+  if (!(side > 0) ||
+      (!seed(&s, lo, side) &&
+       (vg_sizing_slope(sizing) <= steepest ||
+        seed_hidden(&s, lo, side, 0) >= 0)))
+    return VG_OK;
   free(out->x);
   memset(out, 0, sizeof *out);
   return vg_fail_memory(err, "placing points");

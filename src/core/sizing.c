@@ -202,6 +202,22 @@ void vg_sizing_eval(const struct vg_sizing *s, size_t n, const double (*x)[3],
   for (size_t i = 0; i < n; i++) h[i] = vg_sizing_at(s, x[i]);
 }
 
+double vg_sizing_least(const struct vg_sizing *s, const double lo[3],
+                       double side, double x[3])
+{
+  const struct vg_octree *t = &s->octree;
+  double h = vg_octree_least(t, lo, side, x), gap2 = 0;
+
+  for (int k = 0; k < 3; k++) {
+    double gap = fmax(t->lo[k] - lo[k] - side, lo[k] - t->lo[k] - t->side);
+
+    if (gap > 0) gap2 += gap * gap;
+  }
+  if (!(gap2 > 0)) return h;
+  h += s->growth * sqrt(gap2);
+  return h < s->cap ? h : s->cap;
+}
+
 void vg_sizing_range(const struct vg_sizing *s, double *h_min, double *h_max)
 {
   *h_min = s->least;

@@ -103,6 +103,13 @@ double vg_sizing_at(const struct vg_sizing *s, const double x[3]);
 void vg_sizing_eval(const struct vg_sizing *s, size_t n, const double (*x)[3],
                     double *h);
 
+/** Least size within the cube lo, side, and a place x where it is had. Of a
+ * cube that lies outside the root cube a lower bound, and the place there that
+ * it grows from.
+ * Threads: safe on a shared field. Cost: a few evaluations. */
+double vg_sizing_least(const struct vg_sizing *s, const double lo[3],
+                       double side, double x[3]);
+
 /** Bounds of vg_sizing_at within the root cube, both attained. Cost O(1). */
 void vg_sizing_range(const struct vg_sizing *s, double *h_min, double *h_max);
 
@@ -120,7 +127,7 @@ double vg_sizing_below(double growth, double h, double d);
 /** The longest edge for which that is h at most. */
 double vg_sizing_below_edge(double growth, double h, double d);
 
-/** Leaves of the octree, 32 bytes and 4.6 of tree each. */
+/** Leaves of the octree, 32 bytes and 5.1 of tree each. */
 size_t vg_sizing_leaves(const struct vg_sizing *s);
 
 /** The exact source law at x, clamped, without octree, surface or bound on

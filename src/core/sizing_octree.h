@@ -29,6 +29,7 @@ struct vg_octree {
   double lo[3], side;          /* root cube */
   uint32_t root;               /* as an entry of child */
   uint32_t (*child)[8];        /* [n_split] VG_OCTREE_LEAF | leaf, or split */
+  float *least;                /* [n_split] of the corners below */
   float (*leaf)[8];            /* [n_leaf] corner sizes; x fastest, then y */
   size_t n_split, n_leaf;
 };
@@ -65,5 +66,10 @@ void vg_octree_release(struct vg_octree *t);
  * *outside gets the distance (0 inside). */
 double vg_octree_at(const struct vg_octree *t, const double x[3],
                     double *outside);
+
+/** Least value within the cube lo, side, and a place x where it is: that in
+ * the root cube nearest to it, where it is outside. */
+double vg_octree_least(const struct vg_octree *t, const double lo[3],
+                       double side, double x[3]);
 
 #endif

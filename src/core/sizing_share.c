@@ -5,8 +5,8 @@
 #include "base/memory.h"
 #include "core/sizing_parts.h"
 
-/* The field's figures, the tree, the leaves. */
-enum { PARTS = 3 };
+/* The field's figures, the tree, its least sizes, the leaves. */
+enum { PARTS = 4 };
 
 static struct vg_bytes part(size_t n, const void *data)
 {
@@ -19,7 +19,8 @@ static void list_parts(const struct vg_sizing *s, struct vg_bytes p[PARTS])
 
   p[0] = part(sizeof *s, s);
   p[1] = part(t->n_split * sizeof *t->child, t->child);
-  p[2] = part(t->n_leaf * sizeof *t->leaf, t->leaf);
+  p[2] = part(t->n_split * sizeof *t->least, t->least);
+  p[3] = part(t->n_leaf * sizeof *t->leaf, t->leaf);
 }
 
 /* Takes over what is common. NULL: no memory. */
@@ -36,6 +37,8 @@ static struct vg_sizing *view(const struct vg_common *common)
   at += vg_common_padded(p[0].n);
   s->octree.child = (void *)at;
   at += vg_common_padded(p[1].n);
+  s->octree.least = (void *)at;
+  at += vg_common_padded(p[2].n);
   s->octree.leaf = (void *)at;
   return s;
 }

@@ -91,6 +91,8 @@ static void share_field(void)
   assert_int_equal(vg_sizing_leaves(s), vg_sizing_leaves(own));
   assert_memory_equal(s->octree.child, own->octree.child,
                       own->octree.n_split * sizeof *own->octree.child);
+  assert_memory_equal(s->octree.least, own->octree.least,
+                      own->octree.n_split * sizeof *own->octree.least);
   assert_memory_equal(s->octree.leaf, own->octree.leaf,
                       own->octree.n_leaf * sizeof *own->octree.leaf);
   vg_sizing_range(s, &h[0][0], &h[0][1]);

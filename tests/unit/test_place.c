@@ -346,6 +346,90 @@ static void seeds_are_few_and_spread(void **state)
   scene_end(&s);
 }
 
+/* Seeds of a box of spacing 1/16 with a source in it. */
+static struct vg_placed seeds_of(const struct vg_source *source, double growth,
+                                 const struct vg_region *region)
+{
+  struct vg_sizing_options o = VG_SIZING_OPTIONS_INIT;
+  struct vg_sizing *sizing = NULL;
+  struct vg_placed p = {0};
+  struct vg_mesh m;
+
+  memset(&m, 0, sizeof m);
+  shape_box(&m, 16, 0.5);
+  o.growth = growth;
+  assert_int_equal(vg_sizing_new(&o, 1, source, &m, &sizing, NULL), VG_OK);
+  assert_int_equal(vg_place_seeds(m.n_point, (const double (*)[3])m.point,
+                                  sizing, region, &p, NULL), VG_OK);
+  for (size_t i = 0; region && i < p.n; i++)
+    assert_true(vg_region_near(region, sizing, p.x[i], VG_BAND_PLACE));
+  vg_sizing_free(sizing);
+  vg_mesh_release(&m);
+  return p;
+}
+
+/* How near the nearest of them comes to x. */
+static double seed_near(const struct vg_source *source, double growth,
+                        const struct vg_region *region, const double x[3])
+{
+  struct vg_placed p = seeds_of(source, growth, region);
+  double d = nearest(p.n, (const double (*)[3])p.x, x);
+
+  free(p.x);
+  return d;
+}
+
+/* Where sizes grow fast, no front comes by a source that is small beside the
+ * spacing around it: it has seeds of its own; also where a plane passes within
+ * the points that are placed along it, but not farther off. */
+static void steep_places_have_seeds(void **state)
+{
+  const struct vg_source source = { .kind = VG_SOURCE_SPHERE, .h0 = 0.001,
+    .r0 = 0.02, .p0 = {0.187, -0.083, 0.289} };
+  static const struct { double at; int is_near; } list[] = {
+    {0.187, 1}, {0.2, 1}, {0.25, 1}, {0.13, 1}, {0.35, 0}, {0, 0} };
+
+  (void)state;
+  assert_true(seed_near(&source, 4, NULL, source.p0) < 0.021);
+  assert_true(seed_near(&source, 2, NULL, source.p0) < 0.021);
+  for (size_t i = 0; i < sizeof list / sizeof *list; i++) {
+    const struct vg_region zone = {
+      .n_plane = 1, .plane = {{{1, 0, 0}, list[i].at}} };
+
+    assert_int_equal(seed_near(&source, 4, &zone, source.p0) < 0.021,
+                     list[i].is_near);
+  }
+}
+
+/* A thin line has some all along it; a plane that crosses it, where it does,
+ * and a pencil too. */
+static void thin_lines_have_seeds(void **state)
+{
+  const struct vg_source source = { .kind = VG_SOURCE_LINE, .h0 = 5e-4,
+    .h1 = 5e-4, .p0 = {-0.31, -0.17, -0.23}, .p1 = {0.29, 0.15, 0.33} };
+  const struct vg_region zone = {
+    .n_plane = 1, .plane = {{{0, 0, 1}, 0.05}} };
+  struct vg_region pencil = zone;
+  struct vg_placed p;
+  double x[3];
+
+  (void)state;
+  p = seeds_of(&source, 3, NULL);
+  for (int i = 0; i < 200; i++) {
+    for (int k = 0; k < 3; k++)
+      x[k] = source.p0[k] + (i + 0.5) / 200 * (source.p1[k] - source.p0[k]);
+    assert_true(nearest(p.n, (const double (*)[3])p.x, x) <
+                8 * 1.8 * source.h0);
+  }
+  free(p.x);
+  for (int k = 0; k < 3; k++)
+    x[k] = source.p0[k] + 0.5 * (source.p1[k] - source.p0[k]);
+  assert_true(seed_near(&source, 3, &zone, x) < 2 * source.h0);
+  pencil.n_plane = 2;
+  pencil.plane[1] = (struct vg_plane){{1, 0, 0}, x[0] + source.h0};
+  assert_true(seed_near(&source, 3, &pencil, x) < 3 * source.h0);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -358,6 +442,8 @@ int main(void)
     cmocka_unit_test(cells_of_regions),
     cmocka_unit_test(walls_of_regions),
     cmocka_unit_test(seeds_are_few_and_spread),
+    cmocka_unit_test(steep_places_have_seeds),
+    cmocka_unit_test(thin_lines_have_seeds)
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

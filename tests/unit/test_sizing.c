@@ -618,9 +618,44 @@ static void threads_give_the_same_bytes(void **state)
     assert_int_equal(a->n_split, b->n_split);
     assert_int_equal(a->n_leaf, b->n_leaf);
     assert_memory_equal(a->child, b->child, a->n_split * sizeof *a->child);
+    assert_memory_equal(a->least, b->least, a->n_split * sizeof *a->least);
     assert_memory_equal(a->leaf, b->leaf, a->n_leaf * sizeof *a->leaf);
   }
   for (int i = 0; i < 3; i++) vg_sizing_free(s[i]);
+  vg_mesh_release(&m);
+}
+
+/* No sample of a cube is below its least, which is the field's where it is
+ * said to be; cubes that the field does not cover are as its border is. */
+static void the_least_of_a_cube_is_found(void **state)
+{
+  struct vg_mesh m = VG_MESH_INIT;
+  struct vg_source source[9];
+  struct vg_sizing *s;
+  double most[2], all, at[3];
+  uint64_t seed = 5;
+
+  (void)state;
+  busy_field(&m, source);
+  s = field(&plain, 9, source, &m);
+  for (int i = 0; i < 400; i++) {
+    double lo[3], x[3], side = 30 * pow(0.5, i % 14), least;
+
+    random_in(lo, i % 2 ? 4 : 12, &seed);
+    least = vg_sizing_least(s, lo, side, at);
+    assert_true(vg_sizing_at(s, at) <= (1 + 1e-6) * least);
+    if (i % 2) assert_near(vg_sizing_at(s, at), least, 1e-6 * least);
+    for (int j = 0; j < 500; j++) {
+      for (int k = 0; k < 3; k++)
+        x[k] = lo[k] + side * random_unit(&seed);
+      assert_true(vg_sizing_at(s, x) >= (1 - 1e-6) * least);
+    }
+  }
+  vg_sizing_range(s, &most[0], &most[1]);
+  for (int k = 0; k < 3; k++) at[k] = -1e3;
+  all = vg_sizing_least(s, at, 2e3, at);
+  assert_true(all <= most[0] && all >= most[0]);
+  vg_sizing_free(s);
   vg_mesh_release(&m);
 }
 
@@ -732,6 +767,7 @@ int main(void)
     cmocka_unit_test(sources_alone_need_no_limit),
     cmocka_unit_test(the_same_input_gives_the_same_bytes),
     cmocka_unit_test(threads_give_the_same_bytes),
+    cmocka_unit_test(the_least_of_a_cube_is_found),
         cmocka_unit_test(bad_sources_are_named),
     cmocka_unit_test(bad_options_and_surfaces_are_refused),
     cmocka_unit_test(degenerate_faces_are_passed_over)
