@@ -123,30 +123,40 @@ digest() {
     sort -z | xargs -0r sha256sum | sha256sum | cut -c1-16)
 }
 
+# Seconds of processor time that the host took from this virtual machine so far.
+stolen() {
+  awk -v hz="$(getconf CLK_TCK)" '$1 == "cpu" { print $9 / hz }' /proc/stat
+}
+
 # run_mesh VANGUARD FOLDER RANKS THREADS OPTION...: vanguard mesh with its
 # record, timed. FOLDER/row.json: wall, cpu (user and system time of all
-# ranks), peak_mb (of the largest process), and what report and record say.
+# ranks), stolen (the share of all cores that the host took meanwhile), peak_mb
+# (of the largest process), and what report and record say.
 # Status as the mesher's; its words are in FOLDER/log.
 run_mesh() {
-  local vanguard=$1 d=$2 ranks=$3 threads=$4 status=0 report record
+  local vanguard=$1 d=$2 ranks=$3 threads=$4 status=0 report record host
   shift 4
   rm -rf "$d"
   mkdir -p "$d/out"
   # Around all of it: a launcher's time is that of its ranks.
   local script_text
   script_text=$(declare -f launch)
+  host=$(stolen)
   /usr/bin/time -o "$d/time" -f '%e %U %S %M' bash -c "$script_text
     launch \"\$@\"" - "$ranks" "$threads" "$vanguard" mesh --quiet --out \
     "$d/out" --threads "$threads" --timeline "$@" > "$d/log" 2>&1 || status=$?
   [ $status = 0 ] || return $status
+  host=$(calc "($(stolen) - $host) / $(nproc)")
   report=$(echo "$d"/out/*.report.json)
   record=$(echo "$d"/out/*.timeline.json)
   cp "$record" "$d/record.json"
   jq -n -c --slurpfile r "$report" --slurpfile t "$record" \
-    --arg time "$(tail -1 "$d/time")" --arg options "$*" '
+    --arg time "$(tail -1 "$d/time")" --arg options "$*" \
+    --argjson stolen "$host" '
     ($time | split(" ") | map(tonumber)) as $s | $r[0].partition as $p |
     {ranks: $t[0].facts.ranks, threads: $t[0].facts.threads,
      options: $options, wall: $s[0], cpu: ($s[1] + $s[2]),
+     stolen: (if $s[0] > 0 then $stolen / $s[0] else 0 end),
      peak_mb: ($s[3] / 1024), cells: $t[0].facts.cells,
      points: $t[0].facts.points, estimate: $p.estimate, leaves: $p.leaves,
      cuts: $p.cuts, tasks: ($t[0].spans | length),

@@ -131,6 +131,7 @@ two_case() {   # two_case NAME: rows of `project`
       "$(fmt "$(middle "$1-uncut" .wall)") | $(fmt "$w") |" \
       "$(fmt "$(calc "$best / $w")") | $(fmt "$(calc "$one / $w")") |" \
       "$(fmt "$(calc "$(middle "$1-$how" .cpu) / $w")") |" \
+      "$(fmt "$(calc "100 * $(middle "$1-$how" .stolen)")" 1) |" \
       "$(fmt "$(middle "$1-$how" .imbalance)" 3) | $(fmt "$error" 1) |" | say
   done
 }
@@ -139,8 +140,8 @@ part_two() {
 
 ## Two cores (bar: speed-up at least 1.75)
 
-| case | cells | ranks x threads | 1x1, s | 1x1 uncut, s | s | speed-up against the better | against 1x1 | cores in use | imbalance | forecast off by, % |
-|---|---|---|---|---|---|---|---|---|---|---|
+| case | cells | ranks x threads | 1x1, s | 1x1 uncut, s | s | speed-up against the better | against 1x1 | cores in use | taken by the host, % | imbalance | forecast off by, % |
+|---|---|---|---|---|---|---|---|---|---|---|---|
 ROW
   demo_project box "$(cells 10000000)" "$work/input"
   two_case box
