@@ -95,7 +95,8 @@ static vg_status check_mesh(const struct arguments *a, struct vg_mesh *m,
   if (a->json) {
     print_json(json_pack("{s:o s:b s:I s:o s:o s:o}", "file",
                          vg_report_string(a->file), "ok", r.is_valid,
-                         "cells_turned", (json_int_t)turned->cell, "size", vg_report_size_json(m), "patches",
+                         "cells_turned", (json_int_t)turned->cell, "size",
+                         vg_report_size_json(m), "patches",
                          vg_report_patches_json(m), "mesh",
                          vg_report_mesh_json(&r)));
   } else {

@@ -617,7 +617,7 @@ static vg_status run_again(struct vg_partition *p, struct vg_comm *comm,
     struct vg_node **node;
     size_t n;
 
-    st = vg_partition_drop(p, comm, err);
+    st = vg_partition_drop(p, comm, spans, err);
     if (st < 0) break;
     st = vg_redo_voids(p, comm, spans, &n_void, &node, &n, err);
     if (st == VG_OK && n_void) {

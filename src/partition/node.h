@@ -162,9 +162,10 @@ vg_status vg_partition_note_drop(struct vg_partition *p,
                                  const struct vg_change *c,
                                  struct vg_error *err);
 
-/** Now they are. Collective. (drop.c) */
+/** Now they are: forget them, also in *spans, which may be NULL. Collective.
+ * (drop.c) */
 vg_status vg_partition_drop(struct vg_partition *p, struct vg_comm *comm,
-                            struct vg_error *err);
+                            struct vg_spans *spans, struct vg_error *err);
 
 /** The path of the void that is cut again when the leaf of a node cannot be
  * filled: that which the leaf was cut from, or, where that was done, the next

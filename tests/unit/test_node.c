@@ -510,6 +510,7 @@ static void dropped_cells_are_forgotten(void **state)
 {
   struct vg_partition p = { .size = 1 };
   const struct vg_change c = { .serial = 5, .n_cell = 3 };
+  struct vg_spans spans = VG_SPANS_INIT;
 
   (void)state;
   pthread_mutex_init(&p.lock, NULL);
@@ -518,15 +519,24 @@ static void dropped_cells_are_forgotten(void **state)
   p.piece = vg_calloc(3, sizeof *p.piece);
   assert_non_null(p.piece);
   for (uint32_t k = 0; k < 3; k++) {
+    struct vg_span span = { .kind = VG_SPAN_TILE, .n_cell = 3 + k };
+
+    snprintf(span.path, sizeof span.path, "0T%d", (int)k);
+    assert_int_equal(vg_spans_add(&spans, &span, NULL), VG_OK);
+    memcpy(p.piece[k].path, span.path, sizeof span.path);
     p.piece[k].serial = 4 + k;
     p.piece[k].cell = vg_alloc(1, sizeof *p.piece[k].cell);
   }
-  assert_int_equal(vg_partition_drop(&p, NULL, NULL), VG_OK);
+  assert_int_equal(vg_partition_drop(&p, NULL, &spans, NULL), VG_OK);
   assert_int_equal(p.n_piece, 3);
+  assert_int_equal(spans.span[1].n_cell, 4);
   assert_int_equal(vg_partition_note_drop(&p, &c, NULL), VG_OK);
   assert_int_equal(p.report.n_zone_cell, 7);
-  assert_int_equal(vg_partition_drop(&p, NULL, NULL), VG_OK);
+  assert_int_equal(vg_partition_drop(&p, NULL, &spans, NULL), VG_OK);
   assert_int_equal(p.n_piece, 2);
+  for (size_t k = 0; k < 3; k++)
+    assert_int_equal(spans.span[k].n_cell, k == 1 ? 0 : 3 + k);
+  vg_spans_release(&spans);
   assert_int_equal(p.piece[0].serial, 4);
   assert_int_equal(p.piece[1].serial, 6);
   for (int k = 0; k < 2; k++) vg_piece_release(&p.piece[k]);
