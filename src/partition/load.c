@@ -36,6 +36,12 @@
  * parts are added up, to this depth. */
 #define STEEP 1.2
 #define STEEP_DEPTH 4
+/* A field whose gradient is more than HIDES can have edges that no sample of a
+ * cube shows: it is looked at closer while the least is below this share. */
+#define HIDES 0.5
+#define HIDDEN 0.5
+/* Narrower parts, in the least edge, are never divided. */
+#define CLOSE 0.25
 /* Cells next to a front follow its edges: away from it theirs grow by no more
  * than this for each length, however fast the field lets them. */
 #define PACE 1.5
@@ -61,6 +67,7 @@ struct maker {
   const struct vg_sizing *sizing;
   const struct vg_sizing *pace;  /* what cells next to the front can follow,
                                 where the field is steeper; else NULL */
+  int is_steep;              /* the field is, somewhere */
   double per_cube;
   double narrow, wide;       /* divides, multiplies the widths allowed */
   size_t n_branch, cap_branch, large;
@@ -110,15 +117,23 @@ static struct density density_around(const struct maker *m,
   return (struct density){ sum, sum * (1 + GRADED * graded), slope };
 }
 
-static struct density mean_density(const struct maker *m,
-                                   const struct vg_load_node *node)
+/* Its middle; returns half its side. */
+static double middle_of(const struct maker *m, const struct vg_load_node *node,
+                        double mid[3])
 {
   const struct vg_load_tree *t = m->tree;
   const double half = 0.5 * vg_load_side(node) * t->unit;
-  double mid[3];
 
   for (int k = 0; k < 3; k++)
     mid[k] = t->lo[k] + node->at[k] * t->unit + half;
+  return half;
+}
+
+static struct density mean_density(const struct maker *m,
+                                   const struct vg_load_node *node)
+{
+  double mid[3], half = middle_of(m, node, mid);
+
   return density_around(m, mid, half);
 }
 
@@ -131,13 +146,32 @@ static int is_steep(struct density d, double half)
   return change * change * change * d.cubes > STEEP * STEEP * STEEP;
 }
 
-/* The same from parts of the cube. */
+/* Whether there are edges in a cube that are much finer than its density
+ * shows, and of which it is more than `wide` wide. */
+static int hides(const struct maker *m, const double mid[3], double half,
+                 double density, double wide)
+{
+  double lo[3], x[3], least;
+
+  if (!m->is_steep) return 0;
+  for (int k = 0; k < 3; k++) lo[k] = mid[k] - half;
+  least = vg_sizing_least(m->sizing, lo, 2 * half, x);
+  return 2 * half > wide * least &&
+         least * least * least * density < HIDDEN * HIDDEN * HIDDEN;
+}
+
+/* The same from parts of the cube. left: cubes of the target edge that matter;
+ * where there are more, the node is divided in any case. */
 static struct density add_up(const struct maker *m, const double mid[3],
-                             double half, int depth)
+                             double half, int depth, double *left)
 {
   struct density sum = density_around(m, mid, half);
 
-  if (!depth || !is_steep(sum, half)) return sum;
+  if (*left < 0 || ((depth <= 0 || !is_steep(sum, half)) &&
+                    !hides(m, mid, half, sum.cubes, CLOSE))) {
+    *left -= 8 * half * half * half * sum.cubes;
+    return sum;
+  }
   sum = (struct density){ 0, 0, 0 };
   for (int o = 0; o < 8; o++) {
     struct density d;
@@ -145,11 +179,19 @@ static struct density add_up(const struct maker *m, const double mid[3],
 
     for (int k = 0; k < 3; k++)
       x[k] = mid[k] + (o >> k & 1 ? 0.5 : -0.5) * half;
-    d = add_up(m, x, 0.5 * half, depth - 1);
+    d = add_up(m, x, 0.5 * half, depth - 1, left);
     sum.cubes += d.cubes / 8;
     sum.cells += d.cells / 8;
   }
   return sum;
+}
+
+/* Most cubes of the target edge that a leaf has. */
+static double most_in(const struct maker *m, const struct vg_load_node *node)
+{
+  const double wide = m->wide * (node->n ? WIDE_FRONT : WIDE_FREE) / m->narrow;
+
+  return wide * wide * wide;
 }
 
 /* Cube root to single precision: h is of no use beyond. */
@@ -176,6 +218,8 @@ static int sample_steep(const struct maker *m, const struct vg_load_node *node,
   const struct vg_load_tree *t = m->tree;
   const double half = 0.25 * vg_load_side(node) * t->unit;
   struct density sum = { 0, 0, density->slope };
+  double left = node->level < VG_LOAD_LEVELS ? 1.01 * most_in(m, node)
+                                             : INFINITY;
   int inside = 0;
 
   for (int i = 0; i < VG_LOAD_SAMPLES; i++) {
@@ -185,7 +229,7 @@ static int sample_steep(const struct maker *m, const struct vg_load_node *node,
     if (owner[i] < 1) continue;
     for (int k = 0; k < 3; k++)
       x[k] = t->lo[k] + node->at[k] * t->unit + (i >> k & 1 ? 3 : 1) * half;
-    d = add_up(m, x, half, STEEP_DEPTH - 1);
+    d = add_up(m, x, half, STEEP_DEPTH - 1, &left);
     sum.cubes += d.cubes;
     sum.cells += d.cells;
     inside++;
@@ -207,11 +251,12 @@ static int sample(const struct maker *m, const struct vg_load_stack *s,
   const double more = density->cells / density->cubes;
   int32_t owner[VG_LOAD_SAMPLES] = { 1, 1, 1, 1, 1, 1, 1, 1 };
   uint32_t at[3];
-  double sum = 0;
+  double sum = 0, mid[3], half;
   int inside = 0;
 
   if (node->n) vg_load_sample(t, s, node, owner, at);
-  if (is_steep(*density, 0.5 * vg_load_side(node) * t->unit))
+  half = middle_of(m, node, mid);
+  if (is_steep(*density, half) || hides(m, mid, half, density->cubes, CLOSE))
     return sample_steep(m, node, owner, density);
   if (!node->n) return VG_LOAD_SAMPLES;
   for (int i = 0; i < VG_LOAD_SAMPLES; i++) {
@@ -262,12 +307,11 @@ static int emit(const struct maker *m, struct branch *b,
 static int is_leaf(const struct maker *m, const struct vg_load_node *node,
                    double density)
 {
-  const double side = vg_load_side(node) * m->tree->unit * m->narrow;
-  const double wide = m->wide * (node->n ? WIDE_FRONT : WIDE_FREE);
+  const double side = vg_load_side(node) * m->tree->unit;
 
   return node->level >= VG_LOAD_LEVELS
          || (node->n <= CROWD
-             && side * side * side * density <= wide * wide * wide);
+             && side * side * side * density <= most_in(m, node));
 }
 
 static int refine(const struct maker *m, struct branch *b,
@@ -378,10 +422,12 @@ static double rough(struct rough_job *job, const struct vg_load_node *node)
   const double side = vg_load_side(node) * m->tree->unit;
   const double n = mean_density(m, node).cubes * side * side * side;
   struct vg_load_node part = *node;
-  double sum = 0;
+  double sum = 0, mid[3], half;
 
+  half = middle_of(m, node, mid);
   if (node->level >= VG_LOAD_LEVELS
-      || n <= WIDE_ROUGH * WIDE_ROUGH * WIDE_ROUGH) {
+      || (n <= WIDE_ROUGH * WIDE_ROUGH * WIDE_ROUGH
+          && !hides(m, mid, half, n / (side * side * side), WIDE_ROUGH))) {
     atomic_fetch_add(&job->seen, (uint64_t)fmin(n, ROUGH_MOST));
     return n;
   }
@@ -600,6 +646,7 @@ vg_status vg_load_new(const struct vg_void *v, const struct vg_sizing *sizing,
   _Atomic size_t emitted = 0;
   struct vg_sizing *pace = NULL;
   struct maker m = { .tree = &t, .sizing = sizing,
+                     .is_steep = vg_sizing_slope(sizing) > HIDES,
                      .per_cube = cells_per_cube, .narrow = 1,
                      .emitted = &emitted };
   struct vg_load l = VG_LOAD_INIT;

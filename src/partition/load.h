@@ -53,7 +53,9 @@ void vg_load_release(struct vg_load *l);
  * the front passes (the part inside is then sampled); wider in meshes of more
  * than 10 M cells, to have about 40,000 cubes or one for 2,500 cells, and as
  * narrow as 1 h in voids with fewer than 64. Cubes outside are dropped.
- * Where h changes much across a cube, 1 / h^3 is summed over its parts. h is
+ * Where h changes much across a cube, 1 / h^3 is summed over its parts; of a
+ * field that changes by more than half of a length over it, down to the least
+ * h in them. h is
  * taken to grow from the front's own edges by 1.5 for each length at most,
  * which is what meshes do, and there are 1.5 cells for each face at least.
  * Cost: O(front + cubes) times a logarithm. Result follows from the arguments

@@ -31,11 +31,13 @@ static double enclosed(const struct vg_void *v)
 
 /* Takes the triangles of m; m is released. */
 static void make_sized(struct scene *s, struct vg_mesh *m,
-                       const struct vg_sizing_options *o)
+                       const struct vg_sizing_options *o,
+                       const struct vg_source *source)
 {
   memset(s, 0, sizeof *s);
   assert_int_equal(vg_void_from_mesh(&s->v, m, NULL), VG_OK);
-  assert_int_equal(vg_sizing_new(o, 0, NULL, m, &s->sizing, NULL), VG_OK);
+  assert_int_equal(vg_sizing_new(o, source != NULL, source, m, &s->sizing,
+                                 NULL), VG_OK);
   s->volume = enclosed(&s->v);
   assert_true(s->volume > 0);
   vg_mesh_release(m);
@@ -48,19 +50,25 @@ static void make_scene(struct scene *s, struct vg_mesh *m, double even)
 
   o.h_max = even;
   o.from_surface = !(even > 0);
-  make_sized(s, m, &o);
+  make_sized(s, m, &o, NULL);
 }
 
-static void make_grown(struct scene *s, const char *name, size_t n_cell,
-                       double growth)
+static void make_sourced(struct scene *s, const char *name, size_t n_cell,
+                         double growth, const struct vg_source *source)
 {
   struct vg_sizing_options o = VG_SIZING_OPTIONS_INIT;
   struct vg_demo d = VG_DEMO_INIT;
 
   o.growth = growth;
   assert_int_equal(vg_demo_make(name, n_cell, &d, NULL), VG_OK);
-  make_sized(s, &d.surface, &o);
+  make_sized(s, &d.surface, &o, source);
   vg_demo_release(&d);
+}
+
+static void make_grown(struct scene *s, const char *name, size_t n_cell,
+                       double growth)
+{
+  make_sourced(s, name, n_cell, growth, NULL);
 }
 
 static void make_demo(struct scene *s, const char *name, size_t n_cell)
@@ -198,8 +206,8 @@ static void threads_do_not_matter(void **state)
 
 /* --- against the mesher -------------------------------------------------- */
 
-static void compare_with_mesh(const char *name, size_t n_cell, double growth,
-                              double most)
+static void compare_sourced(const char *name, size_t n_cell, double growth,
+                            const struct vg_source *source, double most)
 {
   struct vg_fill_options o = VG_FILL_OPTIONS_INIT;
   struct vg_fill_report r;
@@ -209,7 +217,7 @@ static void compare_with_mesh(const char *name, size_t n_cell, double growth,
   struct scene s;
   double ratio;
 
-  make_grown(&s, name, n_cell, growth);
+  make_sourced(&s, name, n_cell, growth, source);
   estimate(&s, 1, &l);
   assert_int_equal(vg_demo_make(name, n_cell, &d, NULL), VG_OK);
   memset(&r, 0, sizeof r);
@@ -222,6 +230,12 @@ static void compare_with_mesh(const char *name, size_t n_cell, double growth,
   vg_demo_release(&d);
   vg_load_release(&l);
   release_scene(&s);
+}
+
+static void compare_with_mesh(const char *name, size_t n_cell, double growth,
+                              double most)
+{
+  compare_sourced(name, n_cell, growth, NULL, most);
 }
 
 /* 15 %: what choosing a decomposition can bear. */
@@ -242,6 +256,20 @@ static void steep_fields_do_not_outrun_the_front(void **state)
   compare_with_mesh("sphere", 1000000, 2.5, 1.2);
   compare_with_mesh("sphere", 500000, 4, 1.2);
   compare_with_mesh("sphere", 1000000, 4, 1.2);
+}
+
+/* What is so small that no sample of a wide cube would meet it. */
+static void small_sources_count(void **state)
+{
+  const struct vg_source line = { .kind = VG_SOURCE_LINE, .h0 = 0.001,
+    .h1 = 0.001, .p0 = { 0.2, 0.3, 0.25 }, .p1 = { 0.8, 0.62, 0.7 } };
+  const struct vg_source ball = { .kind = VG_SOURCE_SPHERE, .h0 = 0.02,
+    .r0 = 0.2, .p0 = { 9.3, 4, 3 } };
+
+  (void)state;
+  compare_sourced("box", 20000, 2, &line, 1.15);
+  compare_sourced("sphere", 50000, 2, &ball, 1.15);
+  compare_sourced("sphere", 50000, 4, &ball, 1.15);
 }
 
 /* As many as faces alone ask for, where the field would have next to none. */
@@ -693,6 +721,7 @@ int main(void)
     cmocka_unit_test(threads_do_not_matter),
     cmocka_unit_test(expects_what_is_made),
     cmocka_unit_test(steep_fields_do_not_outrun_the_front),
+    cmocka_unit_test(small_sources_count),
     cmocka_unit_test(faces_have_cells_of_their_own),
     cmocka_unit_test(children_get_their_share),
     cmocka_unit_test(generations_do_not_drift),
