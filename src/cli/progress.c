@@ -62,7 +62,7 @@ double vg_display_now(void)
 void vg_display_watch(void)
 {
   static int watches;
-  struct sigaction action;
+  struct sigaction action, before;
 
   if (watches++) return;
   memset(&action, 0, sizeof action);
@@ -73,6 +73,12 @@ void vg_display_watch(void)
   action.sa_flags |= (int)SA_RESETHAND;
   sigaction(SIGINT, &action, NULL);
   sigaction(SIGTERM, &action, NULL);
+  /* A terminal that is gone; under nohup it is ignored, and stays so. */
+  if (!sigaction(SIGHUP, NULL, &before) && before.sa_handler != SIG_IGN)
+    sigaction(SIGHUP, &action, NULL);
+  /* A file too large for ulimit -f: an error of write like any other. */
+  action.sa_handler = SIG_IGN;
+  sigaction(SIGXFSZ, &action, NULL);
 }
 
 void vg_display_init(struct vg_display *d, int quiet)

@@ -14,6 +14,35 @@ exits 1
 says err "interrupted; nothing was written"
 [ -z "$(ls -A o)" ] || fail "left behind: $(ls -A o)"
 
+# The terminal goes away: the same; under nohup the run goes on.
+vanguard demo box --cells 30000 --out f
+for launch in "" nohup; do
+  stem=p/box
+  [ -z "$launch" ] || stem=f/box
+  rm -f err
+  $launch "$program" mesh -p $stem --out n >out 2>err </dev/null &
+  pid=$!
+  for _ in $(seq 600); do
+    ! grep -qs '^sizes' err || break
+    sleep 0.05
+  done
+  kill -HUP $pid 2>/dev/null
+  wait $pid
+  status=$?
+  [ -z "$launch" ] || break
+  exits 1
+  says err "interrupted; nothing was written"
+  [ -z "$(ls -A n)" ] || fail "left behind: $(ls -A n)"
+done
+exits 0
+exists n/box.b8.ugrid
+
+# A limit of the size of files is like a full disk.
+status=$(ulimit -f 200; "$program" mesh -p f/box --out fo >out 2>err; echo $?)
+exits 1
+says err "File too large"
+[ -z "$(ls -A fo)" ] || fail "left behind: $(ls -A fo)"
+
 # Told to stop while it starts, MPI included: the same message.
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
   OMPI_MCA_rmaps_base_oversubscribe=1
