@@ -100,8 +100,8 @@ static vg_status build(const struct vg_sizing_options *o,
 
   if (!(cap > 0) && !(o->h_max > 0 && isfinite(o->h_max)))
     return vg_fail(err, VG_ERR_INPUT,
-                   "nothing defines a size: no source, no surface triangle "
-                   "and no largest size; give one of them");
+                   "nothing defines a size: no source, no edge of the surface "
+                   "(surface_sizes) and no largest size; give one of them");
   side = root_cube(surface, &f->set, cap > 0 ? cap : o->h_max, lo);
   if (!isfinite(side) || !isfinite(lo[0] + lo[1] + lo[2]))
     return vg_fail(err, VG_ERR_INPUT,
