@@ -48,10 +48,6 @@ void vg_cli_options_free(struct vg_cli_options *o);
  * no setting has the name. */
 int vg_cli_option_key(const char *name);
 
-/** Set what the option with `key` names; VG_BLOCKED when it names none. */
-vg_status vg_cli_option_set(int key, const char *text, struct vg_settings *s,
-                            struct vg_error *err);
-
 /** Settings from the command line: they wait until the deck has been read,
  * which they win over. */
 struct vg_cli_kept {

@@ -177,7 +177,8 @@ int vg_cli_option_key(const char *name)
   return 0;
 }
 
-vg_status vg_cli_option_set(int key, const char *text, struct vg_settings *s,
+/* What the option with `key` names; VG_BLOCKED when it names none. */
+static vg_status set_option(int key, const char *text, struct vg_settings *s,
                             struct vg_error *err)
 {
   size_t n, i = (size_t)(key - VG_KEY_SETTING);
@@ -202,7 +203,7 @@ error_t vg_cli_keep(struct vg_cli_kept *kept, int key, const char *text,
   vg_status st;
 
   vg_settings_default(&scratch);
-  st = vg_cli_option_set(key, text, &scratch, &err);
+  st = set_option(key, text, &scratch, &err);
   vg_settings_release(&scratch);
   if (st == VG_BLOCKED) return ARGP_ERR_UNKNOWN;
   if (st < 0) argp_error(state, "%s", err.text);
@@ -219,7 +220,7 @@ vg_status vg_cli_apply(const struct vg_cli_kept *kept, struct vg_settings *s,
   vg_status st = VG_OK;
 
   for (size_t i = 0; i < kept->n && st >= 0; i++)
-    st = vg_cli_option_set(kept->set[i].key, kept->set[i].text, s, err);
+    st = set_option(kept->set[i].key, kept->set[i].text, s, err);
   if (st >= 0) st = vg_settings_check(s, err);
   if (st == VG_ERR_INPUT && err) err->code = VG_ERR_USAGE;
   return st == VG_ERR_INPUT ? VG_ERR_USAGE : st;

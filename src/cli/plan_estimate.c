@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 #include "cli/cli.h"
+#include "core/vector.h"
 #include "partition/advance.h"
 
 /* Walls with more points get their layers estimated, not grown. */
@@ -53,21 +54,11 @@ static void add_triangle(struct lift *l, size_t i)
   double d[3][3], n[3];
 
   for (int k = 0; k < 3; k++) {
-    const double *a = l->m->point[t[k]], *b = l->m->point[t[(k + 1) % 3]];
-    double length = 0;
-
-    for (int j = 0; j < 3; j++) {
-      d[k][j] = b[j] - a[j];
-      length += d[k][j] * d[k][j];
-    }
-    l->edge[t[k]] += sqrt(length);
+    vg_sub(l->m->point[t[(k + 1) % 3]], l->m->point[t[k]], d[k]);
+    l->edge[t[k]] += vg_norm(d[k]);
     l->n_edge[t[k]]++;
   }
-  for (int j = 0; j < 3; j++) {
-    int a = (j + 1) % 3, b = (j + 2) % 3;
-
-    n[j] = d[0][a] * d[1][b] - d[0][b] * d[1][a];
-  }
+  vg_cross(d[0], d[1], n);
   for (int k = 0; k < 3; k++) {
     uint32_t *rules = &l->patch[t[k]];
 
@@ -89,7 +80,7 @@ static void lift_point(struct lift *l, size_t i, double x[3])
   struct vg_law law = q->law;
 
   if (o->law_at) o->law_at(o->law_user, l->m->point[i], &law);
-  length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+  length = vg_norm(v);
   if (!(length > 0) || !(law.delta1 > 0)) return;
   vg_law_heights(&law, INFINITY, most, d);
   while (n < most &&

@@ -8,6 +8,7 @@
 #include "cli/deck.h"
 #include "cli/input.h"
 #include "core/envelope.h"
+#include "core/vector.h"
 #include "io/convention.h"
 #include "io/vtu.h"
 
@@ -33,12 +34,8 @@ static double signed_volume(const struct vg_mesh *m)
   for (size_t i = 0; i < m->n_tri; i++) {
     double v[3][3];
 
-    for (int k = 0; k < 3; k++)
-      for (int c = 0; c < 3; c++)
-        v[k][c] = m->point[m->tri[i][k]][c] - o[c];
-    sum += v[0][0] * (v[1][1] * v[2][2] - v[1][2] * v[2][1])
-         + v[0][1] * (v[1][2] * v[2][0] - v[1][0] * v[2][2])
-         + v[0][2] * (v[1][0] * v[2][1] - v[1][1] * v[2][0]);
+    for (int k = 0; k < 3; k++) vg_sub(m->point[m->tri[i][k]], o, v[k]);
+    sum += vg_triple(v[0], v[1], v[2]);
   }
   return sum;
 }

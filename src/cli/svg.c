@@ -164,7 +164,8 @@ void vg_svg_text(struct vg_svg *s, double x, double y, double size,
   vg_output_text(&s->out, "</text>\n");
 }
 
-void vg_svg_text_up(struct vg_svg *s, double x, double y, double size,
+/* Text that reads upwards, about its middle. */
+static void text_up(struct vg_svg *s, double x, double y, double size,
                     const char *fill, const char *text)
 {
   vg_output_text(&s->out, "<g transform=\"translate(");
@@ -298,7 +299,7 @@ void vg_axis_draw_y(struct vg_svg *s, const struct vg_axis *a, double x,
     vg_svg_text(s, x - 6, y + 4, LABEL_SIZE, VG_SVG_END, VG_SVG_TEXT,
                 vg_svg_number(v, text));
   }
-  vg_svg_text_up(s, x - 42, (a->from + a->to) / 2, 12, VG_SVG_TEXT, label);
+  text_up(s, x - 42, (a->from + a->to) / 2, 12, VG_SVG_TEXT, label);
 }
 
 char *vg_svg_number(double v, char *text)

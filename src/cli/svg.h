@@ -50,9 +50,6 @@ void vg_svg_dot(struct vg_svg *s, double x, double y, double radius,
 void vg_svg_text(struct vg_svg *s, double x, double y, double size,
                  enum vg_svg_anchor anchor, const char *fill,
                  const char *text);
-/** Text that reads upwards, about its middle. */
-void vg_svg_text_up(struct vg_svg *s, double x, double y, double size,
-                    const char *fill, const char *text);
 
 /** Many boxes of one colour in one element; gap: width of the white line
  * around each. */

@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 #include "core/surface_swap.h"
+#include "core/vector.h"
 #include "io/mapbc.h"
 #include "io/stream.h"
 
@@ -115,9 +116,11 @@ vg_status vg_patch_list_check(const char *name, const char *list,
                  list);
 }
 
-vg_status vg_patch_list(const char *name, const char *list,
-                        const struct vg_mesh *m, uint8_t *on,
-                        struct vg_error *err)
+/* Patches in the list: on[i] is set to 1. VG_ERR_INPUT for a number or range
+ * that the surface does not have. */
+static vg_status patch_list(const char *name, const char *list,
+                            const struct vg_mesh *m, uint8_t *on,
+                            struct vg_error *err)
 {
   const char *at = list;
   int64_t from, to;
@@ -189,8 +192,8 @@ static vg_status by_settings(const struct vg_problem *p, uint8_t *wall,
   const struct vg_mesh *m = &p->surface;
   vg_status st;
 
-  VG_TRY(vg_patch_list("walls", s->layer.walls, m, wall, err));
-  VG_TRY(vg_patch_list("slip", s->layer.slip, m, slip, err));
+  VG_TRY(patch_list("walls", s->layer.walls, m, wall, err));
+  VG_TRY(patch_list("slip", s->layer.slip, m, slip, err));
   for (size_t i = 0; i < m->n_patch; i++) {
     if (wall[i] && slip[i]) {
       st = vg_fail(err, VG_ERR_INPUT, "patch %d is in both lists, walls and "
@@ -279,19 +282,11 @@ static int is_sliver(const struct vg_mesh *m, const uint32_t t[3])
   double e[3][3], n[3], longest = 0;
 
   for (int k = 0; k < 3; k++) {
-    double square = 0;
-
-    for (int c = 0; c < 3; c++) {
-      e[k][c] = m->point[t[(k + 1) % 3]][c] - m->point[t[k]][c];
-      square += e[k][c] * e[k][c];
-    }
-    if (square > longest) longest = square;
+    vg_sub(m->point[t[(k + 1) % 3]], m->point[t[k]], e[k]);
+    longest = fmax(longest, vg_dot(e[k], e[k]));
   }
-  n[0] = e[0][1] * e[1][2] - e[0][2] * e[1][1];
-  n[1] = e[0][2] * e[1][0] - e[0][0] * e[1][2];
-  n[2] = e[0][0] * e[1][1] - e[0][1] * e[1][0];
-  return sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) <
-         VG_SWAP_SLIVER * longest;
+  vg_cross(e[0], e[1], n);
+  return vg_norm(n) < VG_SWAP_SLIVER * longest;
 }
 
 /* Patches beside the walls are meshed anew in any case. */

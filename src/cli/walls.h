@@ -22,17 +22,8 @@ const char *vg_wall_reason_name(enum vg_wall_reason reason);
  * BCWallViscous. */
 int vg_is_viscous(const struct vg_patch *p);
 
-/** Numbers as in "3-12,15": ranges are inclusive, numbers may be negative.
- *
- * @param name  of the list, for messages
- * @param on    in/out: [m->n_patch] set to 1 for patches in the list
- * VG_ERR_INPUT for what is no number, and for a number or range that the
- * surface does not have. */
-vg_status vg_patch_list(const char *name, const char *list,
-                        const struct vg_mesh *m, uint8_t *on,
-                        struct vg_error *err);
-
-/** Whether it is such a list, of any surface: a check of settings. */
+/** Whether a list has numbers as in "3-12,15": ranges are inclusive, numbers
+ * may be negative. A check of settings; VG_ERR_INPUT names the list. */
 vg_status vg_patch_list_check(const char *name, const char *list,
                               struct vg_error *err);
 

@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 #include "core/predicates.h"
+#include "core/vector.h"
 #include "io/cell_faces.h"
 
 vg_status vg_check_points(const char *path, size_t n, const double (*p)[3],
@@ -174,18 +175,6 @@ done:
 
 /* --- orientation --- */
 
-static void sub(const double a[3], const double b[3], double c[3])
-{
-  for (int k = 0; k < 3; k++) c[k] = a[k] - b[k];
-}
-
-static double triple(const double a[3], const double b[3], const double c[3])
-{
-  return a[0] * (b[1] * c[2] - b[2] * c[1]) +
-         a[1] * (b[2] * c[0] - b[0] * c[2]) +
-         a[2] * (b[0] * c[1] - b[1] * c[0]);
-}
-
 /* Six times the volume by inward faces, seen from node 0. Quadrilaterals
  * count as the mean of their two triangulations. */
 static double volume6(const struct vg_mesh *m, const uint32_t *c,
@@ -197,12 +186,13 @@ static double volume6(const struct vg_mesh *m, const uint32_t *c,
     const unsigned char *q = face[f];
 
     for (int k = 0; k < 4; k++)
-      sub(m->point[c[q[k]]], m->point[c[0]], p[k]);
+      vg_sub(m->point[c[q[k]]], m->point[c[0]], p[k]);
     if (q[2] == q[3])
-      volume -= triple(p[0], p[1], p[2]);
+      volume -= vg_triple(p[0], p[1], p[2]);
     else
-      volume -= (triple(p[0], p[1], p[2]) + triple(p[0], p[2], p[3]) +
-                 triple(p[0], p[1], p[3]) + triple(p[1], p[2], p[3])) / 2;
+      volume -= (vg_triple(p[0], p[1], p[2]) + vg_triple(p[0], p[2], p[3]) +
+                 vg_triple(p[0], p[1], p[3]) + vg_triple(p[1], p[2], p[3])) /
+                2;
   }
   return volume;
 }

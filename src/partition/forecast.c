@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/vector.h"
 #include "partition/model.h"
 
 /* Measured: docs/performance.md, Model. */
@@ -413,17 +414,13 @@ static vg_status add_surface(const struct vg_void *v, struct vg_part *p,
     struct vg_bit *f = &p->front.bit[i];
     double u[3], w[3], n[3];
 
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; k++)
       f->x[k] = (float)((a[k] + b[k] + d[k]) / 3);
-      u[k] = b[k] - a[k];
-      w[k] = d[k] - a[k];
-    }
-    n[0] = u[1] * w[2] - u[2] * w[1];
-    n[1] = u[2] * w[0] - u[0] * w[2];
-    n[2] = u[0] * w[1] - u[1] * w[0];
+    vg_sub(b, a, u);
+    vg_sub(d, a, w);
+    vg_cross(u, w, n);
     f->n = 1;
-    f->h = (float)sqrt(0.5 * VG_FACES_PER_SQUARE *
-                       sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]));
+    f->h = (float)sqrt(0.5 * VG_FACES_PER_SQUARE * vg_norm(n));
   }
   return VG_OK;
 }

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/vector.h"
 #include "partition/forecast_parts.h"
 
 /* Where spacing varies a load has this share more cells to a cube of it
@@ -94,13 +95,9 @@ static int is_over(const struct vg_region *r, const float x[3], double band)
   double at[3] = {(double)x[0], (double)x[1], (double)x[2]}, foot[3];
 
   vg_region_foot(r, at, foot);
-  for (int k = 0; k < r->n_wall; k++) {
-    const double *n = r->wall[k].normal;
-
-    if (!(n[0] * foot[0] + n[1] * foot[1] + n[2] * foot[2] >
-          r->wall[k].offset - band))
+  for (int k = 0; k < r->n_wall; k++)
+    if (!(vg_dot(r->wall[k].normal, foot) > r->wall[k].offset - band))
       return 0;
-  }
   return 1;
 }
 

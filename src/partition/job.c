@@ -3,9 +3,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/bytes.h"
 #include "base/memory.h"
 #include "core/hilbert.h"
-#include "base/bytes.h"
+#include "core/vector.h"
 
 void vg_front_release(struct vg_front *f)
 {
@@ -48,18 +49,6 @@ void vg_front_get(struct vg_reader *r, struct vg_front *f, int names)
   if (r->bad) vg_front_release(f);
 }
 
-static void minus(const double a[3], const double b[3], double d[3])
-{
-  for (int k = 0; k < 3; k++) d[k] = a[k] - b[k];
-}
-
-static double triple(const double a[3], const double b[3], const double c[3])
-{
-  return a[0] * (b[1] * c[2] - b[2] * c[1]) +
-         a[1] * (b[2] * c[0] - b[0] * c[2]) +
-         a[2] * (b[0] * c[1] - b[1] * c[0]);
-}
-
 double vg_front_volume(const struct vg_front *f)
 {
   double sum = 0;
@@ -67,10 +56,10 @@ double vg_front_volume(const struct vg_front *f)
   for (size_t i = 0; i < f->n_face; i++) {
     double a[3], b[3], c[3];
 
-    minus(f->x[f->face[i][0]], f->x[0], a);
-    minus(f->x[f->face[i][1]], f->x[0], b);
-    minus(f->x[f->face[i][2]], f->x[0], c);
-    sum -= triple(a, b, c) / 6;
+    vg_sub(f->x[f->face[i][0]], f->x[0], a);
+    vg_sub(f->x[f->face[i][1]], f->x[0], b);
+    vg_sub(f->x[f->face[i][2]], f->x[0], c);
+    sum -= vg_triple(a, b, c) / 6;
   }
   return sum;
 }
