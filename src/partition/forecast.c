@@ -36,6 +36,8 @@ static const double bytes_per_face = 28;
 /* As node.h and node_split.c have them. */
 enum { RETRIES = 5 };
 static const double small_share = 0.02, not_parted = 0.9;
+/* Of less than a cell, what zones leave of a block is no void. */
+static const double least_void = 1;
 
 struct forecast {
   struct vg_outlook *out;
@@ -320,7 +322,8 @@ static vg_status add_rest(struct forecast *c, const struct vg_part *from,
     for (size_t k = 0; st >= 0 && k < p->front.n; k++)
       st = vg_bits_add(&rest.front, &p->front.bit[k], c->err);
   }
-  if (st >= 0 && rest.load.cells > 0) st = add_leaf(c, &rest, a, after);
+  if (st >= 0 && rest.load.cells >= least_void)
+    st = add_leaf(c, &rest, a, after);
   free(rest.front.bit);
   return st;
 }
@@ -329,7 +332,7 @@ static vg_status add_children(struct forecast *c, const struct vg_part *from,
                               size_t parent, struct vg_blocks *b, int used,
                               const char *after)
 {
-  double sum = 0, least = small_share * c->rule->leaf_cells;
+  double sum = 0, least = fmax(small_share * c->rule->leaf_cells, least_void);
   size_t number = 0;
   vg_status st = VG_OK;
 
