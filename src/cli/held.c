@@ -83,6 +83,19 @@ static void note_held(const struct vg_held_source *h,
             h->n_place, h->at[0], h->at[1], h->at[2], h->asked, h->got, why);
 }
 
+static void note_unmet(const struct vg_unmet_source *u, struct vg_problem *p)
+{
+  const struct vg_source *s = p->settings.source + u->source;
+
+  vg_note(&p->notes, "source %zu (%s%s%.32s) has no effect in %zu of %zu "
+          "places: at %.4g %.4g %.4g the size is %.3g, and no point of the "
+          "mesh is within twice that, for sizes grow faster around it than "
+          "cells can; a larger radius or growth of 2 or less would help",
+          u->source + 1, kind_of(s), s->group[0] ? " of " : "", s->group,
+          u->n_unmet, u->n_place, u->place.x[0], u->place.x[1],
+          u->place.x[2], u->place.got);
+}
+
 static void note_lost(const struct vg_held *h, int is_beyond,
                       struct vg_problem *p)
 {
@@ -115,6 +128,11 @@ void vg_held_note(const struct vg_held *h, const struct vg_mesh *front,
   if (h->n > VG_SHOWN_HELD)
     vg_note(&p->notes, "%zu more sources are held back; the JSON report has "
             "them all", h->n - VG_SHOWN_HELD);
+  for (size_t i = 0; i < h->n_unmet && i < VG_SHOWN_HELD; i++)
+    note_unmet(h->unmet + i, p);
+  if (h->n_unmet > VG_SHOWN_HELD)
+    vg_note(&p->notes, "%zu more sources have no effect; the JSON report has "
+            "them all", h->n_unmet - VG_SHOWN_HELD);
   note_lost(h, 0, p);
   note_lost(h, 1, p);
 }
@@ -148,6 +166,7 @@ json_t *vg_held_json(const struct vg_held *h, const struct vg_mesh *front,
                      const struct vg_settings *s)
 {
   json_t *o = json_object(), *held = json_array(), *lost[2];
+  json_t *unmet = json_array();
 
   for (size_t i = 0; i < h->n; i++)
     json_array_append_new(held, item_json(h->item + i, front,
@@ -156,7 +175,18 @@ json_t *vg_held_json(const struct vg_held *h, const struct vg_mesh *front,
   for (size_t i = 0; i < h->n_lost; i++)
     json_array_append_new(lost[h->lost[i].is_beyond],
                           json_integer((json_int_t)h->lost[i].source + 1));
+  for (size_t i = 0; i < h->n_unmet; i++) {
+    const struct vg_unmet_source *u = h->unmet + i;
+
+    json_array_append_new(unmet, json_pack(
+      "{s:I s:s s:I s:I s:[f,f,f] s:f}", "source",
+      (json_int_t)u->source + 1, "kind", kind_of(s->source + u->source),
+      "places", (json_int_t)u->n_place, "places_unmet",
+      (json_int_t)u->n_unmet, "at", u->place.x[0], u->place.x[1],
+      u->place.x[2], "gets", u->place.got));
+  }
   json_object_set_new(o, "held", held);
+  json_object_set_new(o, "unmet", unmet);
   json_object_set_new(o, "inside", lost[0]);
   json_object_set_new(o, "beyond", lost[1]);
   return o;

@@ -286,6 +286,8 @@ static vg_status judge(struct vg_run *r, const struct vg_problem *p,
   st = vg_slices_judge_with(r->comm, &r->slices, front_faces, sizing,
                             r->threads, vg_outputs_put, r->outputs, &r->judge,
                             r->layers ? &r->field_judge : NULL, err);
+  if (st >= 0) st = vg_held_meet(r->comm, &r->slices, r->threads, &r->held,
+                                 err);
   if (st >= 0) st = accept(r, err);
   st = vg_outputs_close(r->outputs, st, err);
 done:

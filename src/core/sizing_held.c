@@ -16,7 +16,7 @@ struct finder {
   const struct vg_mesh *front;
   const struct vg_sizing *sizing;
   struct vg_held *out;
-  size_t cap, cap_lost;
+  size_t cap, cap_lost, cap_place;
 };
 
 /* Faces that hold a source back. */
@@ -29,6 +29,8 @@ void vg_held_release(struct vg_held *h)
 {
   free(h->item);
   free(h->lost);
+  free(h->place);
+  free(h->unmet);
   memset(h, 0, sizeof *h);
 }
 
@@ -151,6 +153,29 @@ static int is_held(const struct vg_held_source *h, int is_wide)
            (double)h->n_held >= VG_HELD_SHARE * (double)h->n_place));
 }
 
+/* Keep a place around which sizes are more than twice as large, four of them
+ * off. */
+static int keep_place(struct finder *f, size_t i, const double x[3],
+                      double got)
+{
+  struct vg_held_place p = { .got = got, .source = i };
+  int is_small = 0;
+
+  if (vg_sizing_slope(f->sizing) <= VG_MET_STEEP) return 0;
+  for (int k = 0; k < 6 && !is_small; k++) {
+    memcpy(p.x, x, sizeof p.x);
+    p.x[k / 2] += (k % 2 ? 4 : -4) * got;
+    is_small = vg_sizing_at(f->sizing, p.x) > 2 * got;
+  }
+  if (!is_small) return 0;
+  if (vg_reserve(&f->out->place, &f->cap_place, f->out->n_place + 1,
+                 sizeof p))
+    return -1;
+  memcpy(p.x, x, sizeof p.x);
+  f->out->place[f->out->n_place++] = p;
+  return 0;
+}
+
 /* Ask source i at its places from .. to that are in the void. is_wide: they
  * are around it. */
 static vg_status ask(struct finder *f, size_t i, const struct vg_places *p,
@@ -170,6 +195,9 @@ static vg_status ask(struct finder *f, size_t i, const struct vg_places *p,
     best.n_held += got > VG_HELD_RATIO * asked;
     if (got > most * asked) take(&worst, q->x, asked, got);
     if (got < least * asked) take(&best, q->x, asked, got);
+    if (!is_wide && got <= VG_HELD_RATIO * asked &&
+        keep_place(f, i, q->x, got))
+      return vg_fail_memory(err, "the sources");
     most = worst.got / worst.asked;
     least = best.got / best.asked;
   }

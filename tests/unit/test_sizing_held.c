@@ -225,6 +225,67 @@ static void lost_sources_are_told_apart(void **state)
   vg_mesh_release(&m);
 }
 
+/* A mesh of points alone, in two slices. */
+static vg_status half_of(const struct vg_slices *s, size_t i,
+                         struct vg_slice *out, struct vg_error *err)
+{
+  const struct vg_mesh *m = s->user;
+  size_t half = m->n_point / 2;
+
+  (void)err;
+  memset(out, 0, sizeof *out);
+  out->n_point = i ? m->n_point - half : half;
+  out->x = (const double (*)[3])m->point + i * half;
+  return VG_OK;
+}
+
+static void put_half(const struct vg_slices *s, struct vg_slice *slice)
+{
+  (void)s;
+  (void)slice;
+}
+
+/* Points near two sources of three, within twice the size there or a bit
+ * farther off. The third is wide: it is asked for on its border only. */
+static void what_a_mesh_does_not_meet_is_told(void **state)
+{
+  const struct vg_source source[] = {
+    { .kind = VG_SOURCE_POINT, .p0 = { 5, 0, 0 }, .h0 = 0.01 },
+    { .kind = VG_SOURCE_POINT, .p0 = { 0, 5, 0 }, .h0 = 0.01 },
+    { .kind = VG_SOURCE_SPHERE, .p0 = { 0, 0, 9 }, .r0 = 2, .h0 = 0.2 } };
+  double point[3][3] = { { 5.015, 0, 0 }, { 0, 5.03, 0 }, { 7, 7, 7 } };
+  struct vg_mesh points = { .n_point = 3, .point = point };
+  const struct vg_slices slices = { .n_slice = 2, .get = half_of,
+                                    .put = put_half, .user = &points };
+  struct vg_sizing_options steep = plain;
+  struct vg_sizing *s = NULL;
+  struct vg_mesh m = VG_MESH_INIT;
+  struct vg_held h;
+
+  (void)state;
+  make_domain(&m);
+  h = look(3, source, &m);
+  assert_int_equal(h.n_place, 0);        /* cells follow growth of 1.2 */
+  vg_held_release(&h);
+  steep.growth = 3;
+  assert_int_equal(vg_sizing_new(&steep, 3, source, &m, &s, NULL), VG_OK);
+  assert_int_equal(vg_held_find(&steep, 3, source, &m, &m, s, &h, NULL),
+                   VG_OK);
+  assert_int_equal(vg_held_meet(NULL, &slices, 2, &h, NULL), VG_OK);
+  assert_int_equal(h.n_unmet, 2);
+  assert_int_equal(h.unmet[0].source, 1);
+  assert_int_equal(h.unmet[0].n_place, 1);
+  assert_int_equal(h.unmet[0].n_unmet, 1);
+  assert_true(h.unmet[0].place.got < 0.015);
+  assert_near(h.unmet[0].place.x[1], 5, 1e-12);
+  assert_int_equal(h.unmet[1].source, 2);
+  assert_int_equal(h.unmet[1].n_place, 14);
+  assert_int_equal(h.unmet[1].n_unmet, 14);
+  vg_held_release(&h);
+  vg_sizing_free(s);
+  vg_mesh_release(&m);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -233,6 +294,7 @@ int main(void)
     cmocka_unit_test(free_sources_are_no_news),
     cmocka_unit_test(held_sources_are_found),
     cmocka_unit_test(lost_sources_are_told_apart),
+    cmocka_unit_test(what_a_mesh_does_not_meet_is_told),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

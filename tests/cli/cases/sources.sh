@@ -56,3 +56,29 @@ growth=$(sed -n 's/.*source 6 .*set growth to //p' notes)
 vanguard mesh -q -p p/sphere --out grown --growth "$growth"
 exits 0
 lacks out "source 6 "
+
+# Fast growth passes by a small sphere no more; a point that cells cannot grow
+# from as fast is named.
+vanguard demo box --cells 20000 --out b
+exits 0
+sed -i '/^sources$/,$d' b/box.deck
+cat >>b/box.deck <<'END'
+sources
+kind    x0    y0    z0    h0     r0
+sphere  0.313 0.217 0.411 0.002  0.02
+END
+vanguard mesh -q -p b/box --out ball --growth 4
+exits 0
+lacks out "source "
+says ball/box.report.json '"unmet": []'
+cells=$(sed -n 's/^ *"cells": \([0-9]*\),/\1/p' ball/box.report.json |
+        sort -n | tail -n 1)
+[ "$cells" -gt 30000 ] || fail "only $cells cells"
+cat >>b/box.deck <<'END'
+point   0.7   0.6   0.5   0.0005 0
+END
+vanguard mesh -q -p b/box --out point --growth 4
+exits 0
+lacks out "source 1 "
+says out "source 2 (point) has no effect in 1 of 1 places: at 0.7 0.6 0.5"
+says point/box.report.json '"places_unmet": 1'
