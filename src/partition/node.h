@@ -1,5 +1,5 @@
 /* partition/node.h: one void on its way through the advancing partition.
- * Private to node*.c, advance.c and number.c. */
+ * Private to node*.c, advance*.c and number.c. */
 #ifndef VG_PARTITION_NODE_H
 #define VG_PARTITION_NODE_H
 
