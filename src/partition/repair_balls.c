@@ -5,6 +5,7 @@
 
 #include "base/memory.h"
 #include "base/unite.h"
+#include "core/vector.h"
 #include "partition/repair_parts.h"
 
 /* Grid cells to a length. A ball of a level is smaller than a cell of its
@@ -89,13 +90,6 @@ static vg_status fill_grid(struct vg_balls *b, struct vg_error *err)
   return VG_OK;
 }
 
-static double distance2(const double a[3], const double b[3])
-{
-  double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
-
-  return x * x + y * y + z * z;
-}
-
 uint32_t vg_balls_at(const struct vg_balls *b, const double x[3])
 {
   for (int l = 0; l < b->n_level; l++) {
@@ -107,7 +101,7 @@ uint32_t vg_balls_at(const struct vg_balls *b, const double x[3])
       const struct vg_spot *t = &b->spot[b->ball[k]];
 
       if (b->cluster[b->ball[k]] != VG_NO_CLUSTER &&
-          distance2(t->at, x) <= t->radius * t->radius)
+          vg_distance2(t->at, x) <= t->radius * t->radius)
         return b->cluster[b->ball[k]];
     }
   }
@@ -126,7 +120,7 @@ static int overlaps(const struct vg_spot *a, const struct vg_spot *b)
 {
   double r = a->radius + b->radius;
 
-  return distance2(a->at, b->at) <= r * r;
+  return vg_distance2(a->at, b->at) <= r * r;
 }
 
 /* Pairs of balls that overlap, the later one first. */
@@ -268,7 +262,7 @@ static int is_covered(const struct vg_balls *b, uint32_t i)
 
       if (b->cluster[b->ball[k]] != VG_NO_CLUSTER && b->ball[k] < i &&
           t->radius > 0.8 * s->radius &&
-          distance2(s->at, t->at) < 0.2 * t->radius * t->radius)
+          vg_distance2(s->at, t->at) < 0.2 * t->radius * t->radius)
         return 1;
     }
   }
