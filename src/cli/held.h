@@ -15,7 +15,8 @@ vg_status vg_problem_held(const struct vg_problem *p,
                           struct vg_error *err);
 
 /** A note for each source that is held back, or that the mesh does not meet,
- * the first VG_SHOWN_HELD of them, and one for all that are lost. front: as for vg_held_find. */
+ * the first VG_SHOWN_HELD of them, and one for all that are lost. front: as
+ * for vg_held_find. */
 #define VG_SHOWN_HELD 10
 void vg_held_note(const struct vg_held *h, const struct vg_mesh *front,
                   struct vg_problem *p);
