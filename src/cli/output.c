@@ -179,6 +179,24 @@ static vg_status refuse_hit(const struct vg_outputs *o,
                  "%s; use --out DIR or another --write list", suffix, hit);
 }
 
+/* A folder where a file is to stand: found by renaming, it would leave some
+ * files of this mesh beside some of another. */
+static vg_status refuse_folder(const struct vg_outputs *o, const char *suffix,
+                               struct vg_error *err)
+{
+  char *path = vg_outputs_final(o, suffix);
+  vg_status st = VG_OK;
+  struct stat is;
+
+  if (!path)
+    st = vg_fail_memory(err, "the output paths");
+  else if (!lstat(path, &is) && S_ISDIR(is.st_mode))
+    st = vg_fail(err, VG_ERR_IO, "%s: a folder stands where a file is to be "
+                 "written; move it, or choose another --out DIR", path);
+  free(path);
+  return st;
+}
+
 static vg_status cannot_write(const struct vg_outputs *o, struct vg_error *err)
 {
   return vg_fail(err, VG_ERR_IO, "%s: cannot write in this folder: %s; choose "
@@ -225,6 +243,8 @@ vg_status vg_outputs_plan(const struct vg_problem *p, const char *dir,
   for (size_t i = 0; i < o->n_item && st >= 0; i++) {
     if (strcmp(o->item[i], "mapbc") != 0)
       st = refuse_hit(o, p, o->item[i], err);
+    if (st >= 0 && !is_case(o->item[i]))
+      st = refuse_folder(o, o->item[i], err);
     if (st >= 0 && !strcmp(o->item[i], "cogsg"))
       st = refuse_hit(o, p, "bc", err);
     if (st >= 0) st = refuse_mixed(o->item[i], &p->settings, err);
@@ -574,6 +594,9 @@ vg_status vg_outputs_commit(struct vg_outputs *o, struct vg_error *err)
 {
   vg_status st = VG_OK;
 
+  for (size_t i = 0; i < o->n_file && st >= 0; i++)
+    if (!o->file[i].is_case && !o->file[i].keep_old)
+      st = refuse_folder(o, o->file[i].suffix, err);
   for (size_t i = 0; i < o->n_file && st >= 0; i++) {
     char *from = vg_outputs_aside(o, o->file[i].suffix);
     char *to = vg_outputs_final(o, o->file[i].suffix);
