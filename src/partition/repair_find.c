@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/vector.h"
 #include "partition/repair_parts.h"
 
 /* The worse a cell, the larger its ball: `reach` local spacings, and `most`
@@ -131,13 +132,6 @@ vg_status vg_post_send(struct vg_post *post, struct vg_comm *comm,
 
 /* --- bad cells ----------------------------------------------------------- */
 
-static double distance2(const double a[3], const double b[3])
-{
-  double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
-
-  return x * x + y * y + z * z;
-}
-
 struct vg_spot vg_spot_around(const struct vg_sizing *sizing,
                               const double *const x[4], enum vg_ball_size k)
 {
@@ -147,7 +141,7 @@ struct vg_spot vg_spot_around(const struct vg_sizing *sizing,
   for (int a = 0; a < 3; a++)
     s.at[a] = 0.25 * (x[0][a] + x[1][a] + x[2][a] + x[3][a]);
   for (int i = 0; i < 4; i++) {
-    double d = distance2(s.at, x[i]);
+    double d = vg_distance2(s.at, x[i]);
 
     if (d > far) far = d;
   }
