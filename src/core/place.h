@@ -26,7 +26,9 @@ struct vg_placed {
 
 /** A sparse set of points, one for every few hundred of the field, to stand
  * first. They break up the long cells that span a void from surface to
- * surface, across which location would walk for ever.
+ * surface, across which location would walk for ever. Where the field changes
+ * by more than half of a length over it, what is much finer than around it has
+ * some of its own: a front of points would step over it.
  * @param x    in: [n][3] the points that bound the void
  * @param out  owned by the caller: free(out->x); some may lie outside */
 vg_status vg_place_seeds(size_t n, const double (*x)[3],
