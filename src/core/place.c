@@ -14,6 +14,12 @@
 static const double lattice = 1.083;
 /* Least distance between points over the spacing of the later one. */
 static const double exclusion = 0.66;
+/* The same in a region, where fronts from all sides meet after a few steps and
+ * leave cells shorter than a void's; but not where the front itself proposes:
+ * beside its long faces a point that is missing makes a bad cell. */
+static const double exclusion_region = 0.68;
+/* Proposals that lead from the front to where it counts. */
+static const int far_from_front = 2;
 /* The same between points of the lattice and others, where it is level. */
 static const double exclusion_level = 0.72;
 /* Height of the apex over a surface face: regular tetrahedron. */
@@ -32,10 +38,13 @@ struct placer {
   const struct vg_tets *t;
   const struct vg_sizing *sizing;
   const struct vg_region *region;
-  size_t n, cap, cap_h, cap_cell, cap_queue;
+  size_t n, cap, cap_h, cap_cell, cap_steps, cap_queue;
   double (*x)[3];            /* surface points first */
   float *h;
   uint32_t *cell;            /* cell of t that holds the point */
+  uint8_t *steps;            /* proposals that lead to the point from points
+                                of the front or from what its faces propose,
+                                which have 0; UINT8_MAX: that many or more */
   uint32_t *queue;           /* next item in the same bucket */
   size_t n_face;
   uint32_t *face;            /* links 4 * cell + face of the surface */
@@ -43,6 +52,7 @@ struct placer {
   int lowest;                /* no bucket below it has items */
   struct vg_near near;
   int is_listed;             /* near has what is around the growing point */
+  int now;                   /* steps of what is proposed now */
   struct vg_sites sites;     /* that stand or never will */
 };
 
@@ -92,6 +102,7 @@ static int reserve(struct placer *p, size_t n)
   return vg_reserve(&p->x, &p->cap, n, sizeof *p->x) ||
          vg_reserve(&p->h, &p->cap_h, n, sizeof *p->h) ||
          vg_reserve(&p->cell, &p->cap_cell, n, sizeof *p->cell) ||
+         vg_reserve(&p->steps, &p->cap_steps, n, sizeof *p->steps) ||
          vg_reserve(&p->queue, &p->cap_queue, p->n_face + n,
                     sizeof *p->queue);
 }
@@ -119,6 +130,7 @@ static int stand(struct placer *p, const double c[3], const double d[3],
   memcpy(p->x[point], x, sizeof x);
   p->h[point] = (float)h;
   p->cell[point] = cell;
+  p->steps[point] = (uint8_t)p->now;
   p->n++;
   if (vg_near_add(&p->near, x, h)) return -1;
   push(p, (uint32_t)p->n_face + point, h);
@@ -143,12 +155,15 @@ static double aim(const struct placer *p, const double c[3],
 static int propose(struct placer *p, const double c[3], const double unit[3],
                    double h, uint32_t start)
 {
+  int is_far = p->region && p->now >= far_from_front;
   double d[3], there;
 
   for (int k = 0; k < 3; k++) d[k] = unit[k] * h;
   if (vg_near_count(&p->near, d, 0.9 * exclusion * h)) return 0;
   there = aim(p, c, unit, h, d);
-  if (vg_near_count(&p->near, d, exclusion * there)) return 0;
+  if (vg_near_count(&p->near, d,
+                    (is_far ? exclusion_region : exclusion) * there))
+    return 0;
   return stand(p, c, d, there, fabs(there - h), start);
 }
 
@@ -289,6 +304,7 @@ static int grow_point(struct placer *p, uint32_t point)
 
   memcpy(c, p->x[point], sizeof c);
   p->is_listed = 0;
+  p->now = p->steps[point] < UINT8_MAX ? p->steps[point] + 1 : UINT8_MAX;
   level = level_around(p, c, h);
   if (level)
     bad = find_site(c, h, site) ? grow_site(p, c, h, site, start, level == 6)
@@ -331,6 +347,7 @@ static int grow_face(struct placer *p, uint32_t link)
     for (int k = 0; k < 3; k++) d[k] += c[k];
     if (!is_wanted(p, d, there, fabs(there - h))) return 0;
   }
+  p->now = 0;
   vg_near_gather(&p->near, c, h, (apex + exclusion) * 1.1 * h);
   return propose(p, c, unit, h, link >> 2);
 }
@@ -532,12 +549,25 @@ static int may_propose(const struct placer *p, const double x[3], double h)
                                          VG_BAND_PLACE + sideways, h, 0);
 }
 
+/* Points of no face, seeds that is, count as far from the front. */
+static void start_steps(struct placer *p)
+{
+  memset(p->steps, UINT8_MAX, p->n * sizeof *p->steps);
+  for (size_t i = 0; i < p->n_face; i++) {
+    const struct vg_cell *cell = &p->t->cell[p->face[i] >> 2];
+
+    for (int k = 0; k < 3; k++)
+      p->steps[cell->v[vg_face[p->face[i] & 3][k]]] = 0;
+  }
+}
+
 static int start_points(struct placer *p)
 {
   const struct vg_tets *t = p->t;
 
   memcpy(p->x, t->x, t->n_point * sizeof *t->x);
   p->n = t->n_point;
+  start_steps(p);
   for (size_t i = 0; i < p->n; i++) p->cell[i] = VG_NONE;
   for (uint32_t c = 0; c < t->n_cell; c++)
     for (int k = 0; k < 4 && !(t->flag[c] & (VG_OUTSIDE | VG_DEAD)); k++)
@@ -591,6 +621,7 @@ static void release(struct placer *p)
   free(p->x);
   free(p->h);
   free(p->cell);
+  free(p->steps);
   free(p->queue);
   free(p->face);
   vg_near_release(&p->near);

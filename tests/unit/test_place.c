@@ -252,6 +252,48 @@ static void a_slab_gets_its_points_only(void **state)
   scene_end(&s);
 }
 
+/* Least distance to those before it, over the spacing, of any point that the
+ * front does not propose: farther from it than 1.6 spacings. */
+static double least_within(const struct scene *s,
+                           const struct vg_region *region)
+{
+  struct vg_placed p = place(s, region, 0);
+  const double (*x)[3] = (const double (*)[3])p.x;
+  const double (*front)[3] = (const double (*)[3])s->m.point;
+  double least = INFINITY;
+  size_t n = 0;
+
+  for (size_t i = 0; i < p.n; i++) {
+    double h = vg_sizing_at(s->sizing, x[i]);
+
+    if (nearest(s->m.n_point, front, x[i]) < 1.6 * h) continue;
+    least = fmin(least, nearest(i, x, x[i]) / h);
+    n++;
+  }
+  assert_true(n > 100);
+  free(p.x);
+  return least;
+}
+
+/* In a region, away from the front, points are 0.68 spacings apart, elsewhere
+ * 0.66; the field is so gentle that it matters little where it is read. */
+static void regions_keep_more_distance(void **state)
+{
+  const struct vg_region zone = {
+    .n_plane = 1, .plane = {{{0, 0, 1}, 0.3}} };
+  const double centre[3] = {0, 0, 0};
+  struct scene s;
+
+  (void)state;
+  memset(&s.m, 0, sizeof s.m);
+  shape_box(&s.m, 5, 4);
+  shape_sphere(&s.m, 8, centre, 1, 7);
+  scene_of(&s, 1.1, 0);
+  assert_true(least_within(&s, &zone) > 0.675);
+  assert_true(least_within(&s, NULL) < 0.67);
+  scene_end(&s);
+}
+
 /* The spacing is 0.25 everywhere: a reach of 1 is 0.25. */
 static void cells_of_regions(void **state)
 {
@@ -439,6 +481,7 @@ int main(void)
     cmocka_unit_test(the_limit_is_exact),
     cmocka_unit_test(points_that_stand_count),
     cmocka_unit_test(a_slab_gets_its_points_only),
+    cmocka_unit_test(regions_keep_more_distance),
     cmocka_unit_test(cells_of_regions),
     cmocka_unit_test(walls_of_regions),
     cmocka_unit_test(seeds_are_few_and_spread),
