@@ -60,6 +60,7 @@ static vg_status make_root(struct vg_partition *p, struct vg_comm *comm,
     n->front.name[k] = VG_POINT_NAME(0, k);
   n->levels = p->options.levels;
   n->retry = p->attempt;
+  n->per_cube = p->options.cells_per_cube;
   vg_comm_bind_node(comm, 1);
   st = vg_load_new(&v, p->sizing, n->per_cube,
                    p->options.threads * vg_comm_node_size(comm), &n->load,

@@ -27,6 +27,8 @@
 struct vg_partition_options {
   struct vg_cut_rule rule;
   int levels;                /* bisections, where rule.leaf_cells is 0 */
+  double cells_per_cube;     /* expected (load.h); what zones hold corrects it,
+                                and leaves that outgrow it are cut again */
   int threads;
   int sweeps;                /* of optimisation */
   uint64_t max_cells;        /* refuse to make more; 0: no limit */
@@ -38,8 +40,8 @@ struct vg_partition_options {
   void *user;
 };
 #define VG_PARTITION_OPTIONS_INIT \
-  { { VG_LEAF_CELLS, -1, 0 }, 0, 1, 2, 0, 0, NULL, {{0, 0}}, NULL, NULL, \
-    NULL }
+  { .rule = { VG_LEAF_CELLS, -1, 0 }, .threads = 1, .sweeps = 2, \
+    .cells_per_cube = VG_LOAD_CELLS_PER_CUBE }
 
 /** What happened, summed over all ranks. */
 struct vg_partition_report {

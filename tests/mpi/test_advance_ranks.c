@@ -43,31 +43,36 @@ static struct mesh_digest tell(const struct mesh_digest *d)
 }
 
 /* The mesh that rank 0 makes alone, in one thread. */
-static struct mesh_digest alone(const struct scene *s, double leaf)
+static struct mesh_digest alone(const struct scene *s,
+                                const struct vg_partition_options *o)
 {
-  struct vg_partition_options o = options_of(leaf, 1, 0);
   struct vg_partition_report r;
   struct mesh_digest d = { 0 };
 
-  if (is_first()) d = run_of(NULL, s, &o, 0, &r);
+  if (is_first()) d = run_of(NULL, s, o, 0, &r);
   return tell(&d);
 }
 
-static void compare(const struct scene *s, double leaf, int n_way)
+static void compare_with(const struct scene *s, struct vg_partition_options o,
+                         int n_way)
 {
   static const struct { int threads; uint64_t shuffle; } way[] = {
     { 1, 0 }, { 2, 5 }, { 3, 77 } };
-  struct mesh_digest expect = alone(s, leaf), d;
+  struct mesh_digest expect = alone(s, &o), d;
   struct vg_partition_report r;
 
   for (int w = 0; w < n_way; w++) {
-    struct vg_partition_options o = options_of(leaf, way[w].threads,
-                                               way[w].shuffle);
-
+    o.threads = way[w].threads;
+    o.shuffle = way[w].shuffle;
     d = run_of(job, s, &o, w == n_way - 1, &r);
     same_digest(&expect, &d);
     assert_true(r.n_node > 0 && r.n_leaf > 4);
   }
+}
+
+static void compare(const struct scene *s, double leaf, int n_way)
+{
+  compare_with(s, options_of(leaf, 1, 0), n_way);
 }
 
 static void as_one_rank_makes_it(void **state)
@@ -88,8 +93,8 @@ static void leaves_that_outgrow(void **state)
   struct scene s;
 
   (void)state;
-  scene_surprise(&s);
-  compare(&s, 4000, 2);
+  scene_demo(&s, "box", 80000);
+  compare_with(&s, surprise_of(4000), 2);
   scene_end(&s);
 }
 
@@ -204,12 +209,13 @@ static uint64_t resumed(struct vg_comm *comm, const struct scene *s,
 static void resumed_elsewhere(void **state)
 {
   const double leaf = 3000;
+  const struct vg_partition_options o = options_of(leaf, 1, 0);
   struct mesh_digest expect;
   struct scene s;
 
   (void)state;
   scene_demo(&s, "sphere", 40000);
-  expect = alone(&s, leaf);
+  expect = alone(&s, &o);
   clean();
   stopped(job, &s, leaf);
   if (is_first()) assert_true(resumed(NULL, &s, leaf, &expect, 0) > 0);

@@ -68,24 +68,6 @@ static inline void scene_file(struct scene *s, const char *path)
   s->volume = scene_volume(&s->m);
 }
 
-/* A coarse box with a ball of far smaller cells, that grow so steeply around
- * it that the four samples of the cube of the load that holds it pass it by:
- * twice as many cells are made as were expected. */
-static inline void scene_surprise(struct scene *s)
-{
-  const struct vg_source ball = { .kind = VG_SOURCE_SPHERE, .p0 = {1, 1, 1},
-                                  .h0 = 0.06, .r0 = 0.5, .an = 1 };
-  struct vg_sizing_options o = VG_SIZING_OPTIONS_INIT;
-
-  memset(s, 0, sizeof *s);
-  shape_box(&s->m, 12, 6);
-  o.growth = 4;
-  o.h_max = 1;
-  assert_int_equal(vg_sizing_new(&o, 1, &ball, &s->m, &s->sizing, NULL),
-                   VG_OK);
-  s->volume = scene_volume(&s->m);
-}
-
 static inline void scene_end(struct scene *s)
 {
   vg_mesh_release(&s->m);
@@ -102,6 +84,15 @@ static inline struct vg_partition_options options_of(double leaf, int threads,
   o.rule.leaf_cells = leaf;
   o.threads = threads;
   o.shuffle = shuffle;
+  return o;
+}
+
+/* Of a mesh that is expected to have a tenth of its cells. */
+static inline struct vg_partition_options surprise_of(double leaf)
+{
+  struct vg_partition_options o = options_of(leaf, 1, 0);
+
+  o.cells_per_cube = 0.1 * VG_LOAD_CELLS_PER_CUBE;
   return o;
 }
 

@@ -252,14 +252,14 @@ static void all_is_found_again(void **state)
 static void leaves_that_outgrow(void **state)
 {
   const char *dir = VG_TMP_DIR "/advance_outgrown";
-  struct vg_partition_options o = options_of(4000, 1, 0);
+  struct vg_partition_options o = surprise_of(4000);
   struct vg_partition_report first, r;
   struct mesh_digest expect, d;
   struct scene s;
 
   (void)state;
   remove_folder(dir);
-  scene_surprise(&s);
+  scene_demo(&s, "box", 80000);
   expect = run_of(NULL, &s, &o, 1, &first);
   assert_true(first.n_outgrown > 0);
   assert_true((double)expect.n_cell > 1.5 * first.estimate);
