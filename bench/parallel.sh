@@ -325,7 +325,7 @@ part_replay() {
 
 ## Forecasts from the record of one thread (bars: 45 at 64 workers, decomposing adds at most 10 %; PVGRID: 22.95 for the box, 15.47 for the sphere)
 
-| case | cells | decomposing adds to the time uncut, % | cuts, % of the work | beyond the price of their cells in leaves, % | threads | s | speed-up of cutting and filling | speed-up with reading and writing on one core | critical path, s | cuts end at % of the time | imbalance |
+| case | cells | decomposing adds to the time uncut, % | cuts, % of the work | beyond the price of their cells in leaves, % | threads | s | speed-up of cutting and filling | speed-up of all, reading to files | critical path, s | cuts end at % of the time | imbalance |
 |---|---|---|---|---|---|---|---|---|---|---|---|
 ROW
   n=$(cells 23000000)
