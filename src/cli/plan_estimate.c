@@ -15,7 +15,7 @@
 /* Least efficiency for which more workers are taken, without a target. */
 #define EFFICIENT 0.8
 
-/* Seconds of one core; docs/performance.md, Model. */
+/* Seconds of one core; docs/performance-parallel.md, Model. */
 static const double spread_per_cell = 0.35e-6;  /* number, judge, encode */
 static const double before_alone = 0.1;   /* by one thread, of what is before
                                              the tasks; the rest by a node */

@@ -21,7 +21,7 @@
 #include "partition/spans.h"
 #include "partition/store.h"
 
-/** Cells to a leaf, by default: measured, docs/performance.md. */
+/** Cells to a leaf, by default: measured, docs/performance-parallel.md. */
 #define VG_LEAF_CELLS 300000.0
 
 struct vg_partition_options {

@@ -16,7 +16,8 @@
 #include "core/void.h"
 
 /** Cells per cube of the target edge where spacing is even, measured over
- * boxes (docs/performance.md); corrected by what a void's zones turned out. */
+ * boxes (docs/performance-parallel.md); corrected by what a void's zones turned
+ * out. */
 #define VG_LOAD_CELLS_PER_CUBE 9.0
 
 struct vg_load_cube {
