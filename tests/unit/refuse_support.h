@@ -15,9 +15,9 @@
  * the leaf was cut from goes; the next larger one; only the whole, at the
  * second attempt; none. near: of points of the front. */
 struct refusal { double at[3], near; };
-static const struct refusal refuse_once = { {0.6, 0.2, 0.6}, 0.061 };
-static const struct refusal refuse_once_too = { {0.35, 0.65, 0.3}, 0.07 };
-static const struct refusal refuse_twice = { {0.6, 0.6, 0.2}, 0.061 };
+static const struct refusal refuse_once = { {0.6, 0.35, 0.2}, 0.061 };
+static const struct refusal refuse_once_too = { {0.15, 0.3, 0.85}, 0.061 };
+static const struct refusal refuse_twice = { {0.6, 0.2, 0.2}, 0.061 };
 static const struct refusal refuse_often = { {0.4, 0.4, 0.8}, 0.07 };
 static const struct refusal refuse_all = { {0.6, 0.6, 0.6}, 0.07 };
 
