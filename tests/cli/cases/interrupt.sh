@@ -1,39 +1,37 @@
 # Ctrl-C ends cleanly: a message, status 1, and nothing half-written. Sent
 # when the work has begun, with the whole fill still to come.
 vanguard demo box --cells 400000 --out p
-"$program" mesh -p p/box --out o >out 2>err &
-pid=$!
-for _ in $(seq 600); do
-  ! grep -q '^sizes' err || break
-  sleep 0.05
-done
-kill -INT $pid 2>/dev/null
-wait $pid
-status=$?
+
+# signalled SIGNAL STAGE COMMAND...: sent once the stage has begun, and $late.
+late=0
+signalled() {
+  signal=$1 stage=$2
+  shift 2
+  rm -f err
+  "$@" >out 2>err </dev/null &
+  job=$!
+  for _ in $(seq 600); do
+    ! grep -qs "^$stage" err || break
+    sleep 0.05
+  done
+  sleep $late
+  kill "-$signal" $job 2>/dev/null
+  wait $job
+  status=$?
+}
+
+signalled INT sizes "$program" mesh -p p/box --out o
 exits 1
 says err "interrupted; nothing was written"
 [ -z "$(ls -A o)" ] || fail "left behind: $(ls -A o)"
 
 # The terminal goes away: the same; under nohup the run goes on.
+signalled HUP sizes "$program" mesh -p p/box --out n
+exits 1
+says err "interrupted; nothing was written"
+[ -z "$(ls -A n)" ] || fail "left behind: $(ls -A n)"
 vanguard demo box --cells 30000 --out f
-for launch in "" nohup; do
-  stem=p/box
-  [ -z "$launch" ] || stem=f/box
-  rm -f err
-  $launch "$program" mesh -p $stem --out n >out 2>err </dev/null &
-  pid=$!
-  for _ in $(seq 600); do
-    ! grep -qs '^sizes' err || break
-    sleep 0.05
-  done
-  kill -HUP $pid 2>/dev/null
-  wait $pid
-  status=$?
-  [ -z "$launch" ] || break
-  exits 1
-  says err "interrupted; nothing was written"
-  [ -z "$(ls -A n)" ] || fail "left behind: $(ls -A n)"
-done
+signalled HUP sizes nohup "$program" mesh -p f/box --out n
 exits 0
 exists n/box.b8.ugrid
 
@@ -99,20 +97,12 @@ f 4 2 6
 f 1 4 6
 END
 
-# stopped STAGE ARGS...: told to stop once the stage has begun.
+# stopped STAGE ARGS...: told to stop in the midst of the stage.
+late=0.3
 stopped() {
   stage=$1
   shift
-  timeout -k 20 60 "$program" "$@" >out 2>err &
-  job=$!
-  for _ in $(seq 400); do
-    ! grep -q "^$stage" err || break
-    sleep 0.05
-  done
-  sleep 0.3
-  kill -TERM $job 2>/dev/null
-  wait $job
-  status=$?
+  signalled TERM "$stage" timeout -k 20 60 "$program" "$@"
   exits 1
   says err "vanguard: interrupted; nothing was written"
 }
