@@ -5,6 +5,7 @@
 
 #include "base/memory.h"
 #include "core/sizing_held.h"
+#include "core/vector.h"
 
 struct meeting {
   const struct vg_held *held;
@@ -24,13 +25,8 @@ static void box_of(const struct vg_slice *s, double lo[3], double hi[3])
 
 static int has_point(const struct vg_slice *s, const double x[3], double far)
 {
-  for (size_t i = 0; i < s->n_point; i++) {
-    double d2 = 0;
-
-    for (int k = 0; k < 3; k++)
-      d2 += (s->x[i][k] - x[k]) * (s->x[i][k] - x[k]);
-    if (d2 <= far * far) return 1;
-  }
+  for (size_t i = 0; i < s->n_point; i++)
+    if (vg_distance2(s->x[i], x) <= far * far) return 1;
   return 0;
 }
 
