@@ -44,6 +44,14 @@ is() { diff -u - "$1" || fail "$1 is not as expected"; }
 exists() { for f; do [ -e "$f" ] || fail "$f is absent"; done; }
 absent() { for f; do [ ! -e "$f" ] || fail "$f is there"; done; }
 same() { cmp "$1" "$2" || fail "$1 and $2 differ"; }
+# octahedron: a body with its corners at 1, as an .obj of one group.
+octahedron() {
+  printf 'v %s\n' "1 0 0" "-1 0 0" "0 1 0" "0 -1 0" "0 0 1" "0 0 -1"
+  echo "g body"
+  printf 'f %s\n' "1 3 5" "3 2 5" "2 4 5" "4 1 5" "3 1 6" "2 3 6" "4 2 6" \
+    "1 4 6"
+}
+
 skip() { echo "skipped: $*"; exit 77; }
 
 # shellcheck source=/dev/null

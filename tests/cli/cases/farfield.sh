@@ -1,21 +1,5 @@
 # Bodies alone get a farfield; half bodies a symmetry plane too.
-cat >octa.obj <<'END'
-v 1 0 0
-v -1 0 0
-v 0 1 0
-v 0 -1 0
-v 0 0 1
-v 0 0 -1
-g body
-f 1 3 5
-f 3 2 5
-f 2 4 5
-f 4 1 5
-f 3 1 6
-f 2 3 6
-f 4 2 6
-f 1 4 6
-END
+octahedron >octa.obj
 vanguard mesh -q -p octa --farfield-lengths 4 --growth 1.5
 exits 0
 says out "taken as a body in open air"

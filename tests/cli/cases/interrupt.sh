@@ -80,22 +80,7 @@ sources
 kind    x0   y0   z0   r0   h0
 sphere  0.5  0.5  0.5  0.4  2e-5
 END
-cat >octa.obj <<'END'
-v 1 0 0
-v -1 0 0
-v 0 1 0
-v 0 -1 0
-v 0 0 1
-v 0 0 -1
-f 1 3 5
-f 3 2 5
-f 2 4 5
-f 4 1 5
-f 3 1 6
-f 2 3 6
-f 4 2 6
-f 1 4 6
-END
+octahedron >octa.obj
 
 # stopped STAGE ARGS...: told to stop in the midst of the stage.
 late=0.3
