@@ -111,7 +111,8 @@ int vg_cmd_plan(int argc, char **argv)
       "that are idle help with joins, so that a node's cores as one rank do "
       "more than as ranks of one thread", 1 },
     { "ranks-per-node", KEY_RANKS_PER_NODE, "N", 0, "ranks that share a "
-      "node: no latency between them [default 1]", 1 },
+      "node: no latency between them, check, sizes and layers made together "
+      "[default 1]", 1 },
     { "latency", KEY_LATENCY, "S", 0, "seconds per message [default 2e-6]",
       1 },
     { "bandwidth", KEY_BANDWIDTH, "B", 0, "bytes per second of a rank's link "
@@ -123,9 +124,10 @@ int vg_cmd_plan(int argc, char **argv)
       "more than S seconds; of a project only, a --replay shows all of "
       "--ranks and --threads [default: the largest that is 80 % efficient]",
       1 },
-    { "serial", KEY_SERIAL, "S", 0, "seconds done once, before and after the "
-      "tasks [default as in the record; without one what reading, checking "
-      "and sizes took now]", 1 },
+    { "serial", KEY_SERIAL, "S", 0, "seconds outside the tasks, which no "
+      "workers share [default: phases of the record, shared by a node or by "
+      "all; without one what reading, checking and sizes took now, shared by a "
+      "node]", 1 },
     { "joins-roam", KEY_ROAM, NULL, 0, "joins are done by any rank, not at "
       "their home", 1 },
     { "loop-threads", KEY_LOOPS, "N", 0, "most threads that make loops of "

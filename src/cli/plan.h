@@ -14,8 +14,10 @@ struct vg_plan_options {
   double target;                /* s; 0: none */
   int depth;                    /* of the tree as text */
   struct vg_range_list ranks, threads;
-  struct vg_machine machine;    /* all but ranks, threads and serial */
-  double serial;                /* s; below 0: as in the record */
+  struct vg_machine machine;    /* all but ranks, threads and what is
+                                   outside the tasks */
+  double serial;                /* s that nobody shares; below 0: phases as
+                                   in the record */
   const char *plot;             /* file for a figure of speed-up, or NULL */
   int json, quiet;
 };

@@ -262,7 +262,7 @@ if [ ${#forecasts[@]} -gt 0 ]; then
 
 ## On more workers, forecast from the record of one thread
 
-| case | workers | last cut, s | cutting and filling, s | with reading and writing on one core, s | speed-up of cutting and filling | of all | imbalance |
+| case | workers | last cut, s | cutting and filling, s | reading to files, s | speed-up of cutting and filling | of all | imbalance |
 |---|---|---|---|---|---|---|---|
 HEAD
   for name in "${forecasts[@]}"; do
