@@ -1,8 +1,10 @@
 #include "cli/progress.h"
 
 #include <signal.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "base/clock.h"
@@ -11,7 +13,12 @@
 #define LIVE_EVERY_S 0.2
 #define PLAIN_EVERY_S 10.0
 
+/* Signals that come together are one wish: timeout(1) sends its own twice,
+ * launchers to a process and to its group. */
+#define SAME_WISH_MS 1000
+
 static volatile sig_atomic_t interrupted, ends_at_once, shows_line;
+static atomic_llong interrupted_ms;
 
 /* In a signal's handler: only what is safe there. */
 static void end_at_once(void)
@@ -24,11 +31,24 @@ static void end_at_once(void)
   _exit(VG_EXIT_FAILED);
 }
 
+static long long now_ms(void)
+{
+  struct timespec t;
+
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (long long)t.tv_sec * 1000 + t.tv_nsec / 1000000;
+}
+
 static void on_signal(int number)
 {
-  (void)number;
-  interrupted = 1;
-  if (ends_at_once) end_at_once();
+  if (!interrupted) {
+    interrupted_ms = now_ms();
+    interrupted = 1;
+    if (ends_at_once) end_at_once();
+  } else if (number != SIGUSR1 && now_ms() - interrupted_ms > SAME_WISH_MS) {
+    signal(number, SIG_DFL);
+    raise(number);
+  }
 }
 
 void vg_display_end_at_once(int on)
@@ -70,7 +90,6 @@ void vg_display_watch(void)
   sigemptyset(&action.sa_mask);
   action.sa_flags = SA_RESTART;
   sigaction(SIGUSR1, &action, NULL);
-  action.sa_flags |= (int)SA_RESETHAND;
   sigaction(SIGINT, &action, NULL);
   sigaction(SIGTERM, &action, NULL);
   /* A terminal that is gone; under nohup it is ignored, and stays so. */

@@ -28,9 +28,9 @@ int vg_display_update(void *user, const char *stage, size_t done,
 /** Remove the live line, before something else is printed. */
 void vg_display_clear(struct vg_display *d);
 
-/** 1 after one of these signals. A second SIGINT or SIGTERM ends the process
- * at once; SIGUSR1, a batch system's warning, which may come again and by
- * several ways, never does. */
+/** 1 after one of these signals. Another SIGINT, SIGTERM or SIGHUP more than a
+ * second later ends the process at once; SIGUSR1, a batch system's warning,
+ * never does. */
 int vg_display_interrupted(void);
 
 /** VG_ERR_IO from then on, with a message. */

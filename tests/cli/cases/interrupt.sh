@@ -2,8 +2,9 @@
 # when the work has begun, with the whole fill still to come.
 vanguard demo box --cells 400000 --out p
 
-# signalled SIGNAL STAGE COMMAND...: sent once the stage has begun, and $late.
-late=0
+# signalled SIGNAL STAGE COMMAND...: sent $late s after the stage has begun, and
+# once more $again s later if that is set.
+late=0 again=
 signalled() {
   signal=$1 stage=$2
   shift 2
@@ -16,11 +17,23 @@ signalled() {
   done
   sleep $late
   kill "-$signal" $job 2>/dev/null
+  if [ -n "$again" ]; then
+    sleep "$again"
+    kill "-$signal" $job 2>/dev/null
+  fi
   wait $job
   status=$?
 }
 
 signalled INT sizes "$program" mesh -p p/box --out o
+exits 1
+says err "interrupted; nothing was written"
+[ -z "$(ls -A o)" ] || fail "left behind: $(ls -A o)"
+
+# Told twice at nearly the same time, as timeout(1) does: that is one wish.
+again=0.02
+signalled TERM sizes "$program" mesh -p p/box --out o
+again=
 exits 1
 says err "interrupted; nothing was written"
 [ -z "$(ls -A o)" ] || fail "left behind: $(ls -A o)"

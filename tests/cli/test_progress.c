@@ -1,0 +1,74 @@
+/* Signals: which end the process, and when. Each in a process of its own. */
+#include <setjmp.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "cli/progress.h"
+
+enum { WENT_ON = 7, NOT_TOLD = 8 };
+
+/* How a process ends that gets `first`, and `second` so much later. */
+static int ends(int first, int second, long later_ms)
+{
+  const struct timespec wait = { later_ms / 1000, later_ms % 1000 * 1000000 };
+  pid_t child = fork();
+  int status = -1;
+
+  if (!child) {
+    vg_display_watch();
+    raise(first);
+    nanosleep(&wait, NULL);
+    raise(second);
+    _exit(vg_display_interrupted() ? WENT_ON : NOT_TOLD);
+  }
+  assert_true(child > 0);
+  assert_int_equal(waitpid(child, &status, 0), child);
+  return status;
+}
+
+static void assert_goes_on(int status)
+{
+  assert_true(WIFEXITED(status));
+  assert_int_equal(WEXITSTATUS(status), WENT_ON);
+}
+
+static void signals_that_come_together_are_one_wish(void **state)
+{
+  (void)state;
+  assert_goes_on(ends(SIGTERM, SIGTERM, 0));
+  assert_goes_on(ends(SIGTERM, SIGTERM, 50));
+  assert_goes_on(ends(SIGINT, SIGTERM, 50));
+  assert_goes_on(ends(SIGUSR1, SIGHUP, 50));
+}
+
+static void one_that_comes_later_ends_at_once(void **state)
+{
+  int status = ends(SIGINT, SIGTERM, 1200);
+
+  (void)state;
+  assert_true(WIFSIGNALED(status));
+  assert_int_equal(WTERMSIG(status), SIGTERM);
+}
+
+static void warnings_of_batch_systems_never_end_it(void **state)
+{
+  (void)state;
+  assert_goes_on(ends(SIGUSR1, SIGUSR1, 1200));
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(signals_that_come_together_are_one_wish),
+    cmocka_unit_test(one_that_comes_later_ends_at_once),
+    cmocka_unit_test(warnings_of_batch_systems_never_end_it),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
