@@ -25,6 +25,7 @@
 #include "core/demo.h"
 #include "core/surface_check.h"
 #include "io/format.h"
+#include "layers/grow.h"
 #include "layers/join.h"
 
 #define RUNS_MAX 99

@@ -5,9 +5,12 @@
 #include <string.h>
 
 #include "cli/cli.h"
+#include "cli/commands.h"
+#include "cli/options.h"
 #include "cli/deck.h"
 #include "cli/input.h"
 #include "cli/report.h"
+#include "cli/text.h"
 #include "io/format.h"
 #include "io/ugrid.h"
 
@@ -94,7 +97,7 @@ static vg_status check_mesh(const struct arguments *a, struct vg_mesh *m,
   VG_TRY(vg_mesh_judge(m, sizing, &r, err));
   if (a->json) {
     print_json(json_pack("{s:o s:b s:I s:o s:o s:o}", "file",
-                         vg_report_string(a->file), "ok", r.is_valid,
+                         vg_text_json(a->file), "ok", r.is_valid,
                          "cells_turned", (json_int_t)turned->cell, "size",
                          vg_report_size_json(m), "patches",
                          vg_report_patches_json(m), "mesh",
@@ -142,7 +145,7 @@ static vg_status check_surface(const struct arguments *a, struct vg_mesh *m,
   VG_TRY(vg_surface_examine(m, &o, &external, &r, &notes, err));
   if (a->json) {
     print_json(json_pack("{s:o s:b s:s s:o s:o s:o}", "file",
-                         vg_report_string(a->file), "ok",
+                         vg_text_json(a->file), "ok",
                          r.n_defect == 0, "taken_as",
                          external ? "bodies" : "domain",
                          "size", vg_report_size_json(m), "patches",

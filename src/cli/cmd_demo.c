@@ -6,6 +6,8 @@
 
 #include "base/memory.h"
 #include "cli/cli.h"
+#include "cli/commands.h"
+#include "cli/options.h"
 #include "cli/deck.h"
 #include "cli/ranges.h"
 #include "core/demo.h"

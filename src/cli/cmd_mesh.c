@@ -5,11 +5,14 @@
 #include <unistd.h>
 
 #include "cli/cli.h"
+#include "cli/commands.h"
+#include "cli/options.h"
 #include "cli/layers.h"
 #include "cli/output.h"
 #include "cli/ranges.h"
 #include "cli/report.h"
 #include "cli/run.h"
+#include "cli/text.h"
 #include "cli/timeline.h"
 #include "io/stream.h"
 
@@ -121,7 +124,7 @@ static json_t *strings(const struct vg_notes *notes)
   json_t *list = json_array();
 
   for (size_t i = 0; i < notes->n; i++)
-    json_array_append_new(list, vg_report_string(notes->text[i]));
+    json_array_append_new(list, vg_text_json(notes->text[i]));
   return list;
 }
 
@@ -134,7 +137,7 @@ static json_t *files_json(const struct run *r)
     char *path = vg_outputs_final(&r->outputs, f->suffix), digest[36];
     json_t *one = json_object();
 
-    json_object_set_new(one, "path", vg_report_string(path ? path : ""));
+    json_object_set_new(one, "path", vg_text_json(path ? path : ""));
     if (f->digest[0] || f->digest[1]) {
       snprintf(digest, sizeof digest, "%016llx%016llx",
                (unsigned long long)f->digest[0],
@@ -162,9 +165,9 @@ static json_t *report_json(const struct run *r, int ok,
   json_t *o = json_object();
 
   json_object_set_new(o, "vanguard", json_string(VG_VERSION));
-  json_object_set_new(o, "title", vg_report_string(p->settings.title));
+  json_object_set_new(o, "title", vg_text_json(p->settings.title));
   json_object_set_new(o, "ok", json_boolean(ok));
-  if (!ok) json_object_set_new(o, "error", vg_report_string(err->text));
+  if (!ok) json_object_set_new(o, "error", vg_text_json(err->text));
   json_object_set_new(o, "input", vg_report_size_json(&p->surface));
   json_object_set_new(o, "patches", vg_report_patches_json(&p->surface));
   json_object_set_new(o, "surface", vg_report_surface_json(&p->surface,

@@ -4,6 +4,8 @@
 #include <string.h>
 
 #include "cli/cli.h"
+#include "cli/commands.h"
+#include "cli/options.h"
 #include "cli/plan.h"
 #include "io/stream.h"
 

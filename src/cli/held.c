@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "cli/report.h"
+#include "cli/text.h"
 
 vg_status vg_problem_held(const struct vg_problem *p,
                           const struct vg_mesh *front,
@@ -150,10 +150,10 @@ static json_t *item_json(const struct vg_held_source *h,
                         h->at[2], "asks", h->asked, "gets", h->got);
 
   if (s->group[0])
-    json_object_set_new(o, "group", vg_report_string(s->group));
+    json_object_set_new(o, "group", vg_text_json(s->group));
   if (!patch) return o;
   json_object_set_new(o, "patch", json_integer(patch->id));
-  json_object_set_new(o, "patch_name", vg_report_string(patch->name));
+  json_object_set_new(o, "patch_name", vg_text_json(patch->name));
   json_object_set_new(o, "edge", json_real(h->edge));
   json_object_set_new(o, "distance", json_real(h->distance));
   json_object_set_new(o, "edge_wanted", json_real(h->edge_wanted));

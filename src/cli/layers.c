@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "io/vtu.h"
+#include "layers/grow.h"
 
 #define DEFAULT_RATE 0.2   /* RANS practice; growth 1.2 */
 #define DEFAULT_CAP 1.3

@@ -1,11 +1,7 @@
 /* cli/layers.h: the layer stage of vanguard mesh: from settings to what each
- * patch asks for, growing, measuring, limits, and its reports. Uses layers,
- * cli/walls.h. */
+ * patch asks for, growing, measuring, limits. Uses layers, cli/walls.h. */
 #ifndef VG_CLI_LAYERS_H
 #define VG_CLI_LAYERS_H
-
-#include <jansson.h>
-#include <stdio.h>
 
 #include "cli/walls.h"
 #include "layers/join.h"
@@ -76,21 +72,5 @@ vg_status vg_layer_stage_grow(struct vg_layer_stage *s,
 vg_status vg_layer_stage_write(const struct vg_layer_stage *s,
                                const struct vg_mesh *surface,
                                const char *path, struct vg_error *err);
-
-/** cli/report_layers.c: a note where whole patches stay without layers since
- * the first height is larger than their edges allow. On rank 0. */
-void vg_report_layers_note(const struct vg_layer_stage *s,
-                           const struct vg_mesh *surface,
-                           struct vg_notes *notes);
-
-/** Tables by patch, causes in words, times and rates. */
-void vg_report_layers_text(FILE *to, const struct vg_layer_stage *s,
-                           const struct vg_mesh *surface);
-json_t *vg_report_layers_json(const struct vg_layer_stage *s,
-                              const struct vg_mesh *surface);
-
-/** Limits that are not met, one line each. */
-void vg_report_missed_text(FILE *to, const struct vg_layer_stage *s,
-                           const struct vg_mesh *surface);
 
 #endif

@@ -6,7 +6,9 @@
 #include <string.h>
 
 #include "cli/cli.h"
+#include "cli/commands.h"
 #include "cli/progress.h"
+#include "cli/settings.h"
 #include "core/cdt_server.h"
 
 static const struct command {

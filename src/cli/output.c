@@ -12,6 +12,7 @@
 #include "base/memory.h"
 #include "cli/cli.h"
 #include "cli/deck.h"
+#include "cli/lists.h"
 #include "io/foam.h"
 #include "io/format.h"
 #include "io/mapbc.h"
@@ -76,63 +77,6 @@ static int is_case(const char *item)
   struct vg_foam_options options;
 
   return vg_foam_word(item, &options);
-}
-
-/* Words of the write list that are no suffix of a mesh format. */
-static int is_own_item(const char *item)
-{
-  return !strcmp(item, "cogsg") || !strcmp(item, "mapbc") ||
-         !strcmp(item, "fun3d.mapbc") || !strcmp(item, "vtu") ||
-         !strcmp(item, "pvtu") || is_case(item);
-}
-
-static vg_status plan_item(struct vg_outputs *o, const char *item, size_t len,
-                           struct vg_error *err)
-{
-  char *to = o->item[o->n_item];
-
-  if (!len) return VG_OK;
-  if (o->n_item == VG_OUTPUT_ITEMS || len >= sizeof o->item[0])
-    return vg_fail(err, VG_ERR_INPUT, "write: too many or too long names");
-  memcpy(to, item, len);
-  to[len] = 0;
-  for (size_t i = 0; i < o->n_item; i++)
-    if (!strcmp(o->item[i], to)) return VG_OK;
-  for (size_t i = 0; i < o->n_item; i++)
-    if (is_case(to) && is_case(o->item[i]))
-      return vg_fail(err, VG_ERR_INPUT, "write: foam and foam-ascii go into "
-                     "the same folder; name one");
-  if (!is_own_item(to) && !vg_format_can_write(to))
-    return vg_fail(err, VG_ERR_INPUT, "write: '%s' is no format; known are "
-                   "cogsg (with bc and mapbc), mapbc, fun3d.mapbc, vtu, "
-                   "pvtu, foam, foam-ascii and suffixes such as b8.ugrid, "
-                   "lb8.ugrid, ugrid, meshb", to);
-  o->n_item++;
-  return VG_OK;
-}
-
-static vg_status plan_items(struct vg_outputs *o, const char *list,
-                            struct vg_error *err)
-{
-  vg_status st = VG_OK;
-
-  while (*list && st >= 0) {
-    size_t len = strcspn(list, ", ");
-
-    st = plan_item(o, list, len, err);
-    list += len;
-    list += strspn(list, ", ");
-  }
-  return st;
-}
-
-vg_status vg_outputs_list_check(const char *name, const char *list,
-                                struct vg_error *err)
-{
-  struct vg_outputs o = VG_OUTPUTS_INIT;
-
-  (void)name;
-  return strcmp(list, "auto") ? plan_items(&o, list, err) : VG_OK;
 }
 
 static int same_file(const char *a, const char *b)
@@ -239,7 +183,7 @@ vg_status vg_outputs_plan(const struct vg_problem *p, const char *dir,
 {
   vg_status st = plan_place(p, dir, o, err);
 
-  if (st >= 0) st = plan_items(o, p->settings.write, err);
+  if (st >= 0) st = vg_write_list(p->settings.write, &o->n_item, o->item, err);
   for (size_t i = 0; i < o->n_item && st >= 0; i++) {
     if (strcmp(o->item[i], "mapbc") != 0)
       st = refuse_hit(o, p, o->item[i], err);

@@ -7,10 +7,8 @@
 #include "base/comm.h"
 #include "cli/input.h"
 #include "cli/layers.h"
+#include "cli/lists.h"
 #include "core/slices.h"
-
-/** Kinds of file in a write list. */
-enum { VG_OUTPUT_ITEMS = 16 };
 
 struct vg_slices_ugrid;
 
@@ -19,9 +17,9 @@ struct vg_outputs {
   char *aside;                /* hidden folder while writing, or NULL */
   int is_guest;               /* 1: another rank makes and removes it */
   size_t n_item;
-  char item[VG_OUTPUT_ITEMS][24];
+  char item[VG_WRITE_ITEMS][VG_WRITE_NAME];
   size_t n_open;              /* of `item` */
-  struct vg_slices_ugrid *open[VG_OUTPUT_ITEMS];
+  struct vg_slices_ugrid *open[VG_WRITE_ITEMS];
   size_t n_file, cap_file;
   /* is_case: a folder with an OpenFOAM mesh. A suffix that begins with '_'
    * follows the name without a dot. */
@@ -34,11 +32,6 @@ struct vg_outputs {
 #define VG_OUTPUTS_INIT { .n_item = 0 }
 
 void vg_outputs_release(struct vg_outputs *o);
-
-/** VG_ERR_INPUT where a write list names what is no format: a check of settings
- * (struct vg_param). */
-vg_status vg_outputs_list_check(const char *name, const char *list,
-                                struct vg_error *err);
 
 /** Understand the write list and where files go, and refuse at once what
  * would overwrite an input, or cannot be written by several ranks.

@@ -4,6 +4,7 @@
 #define VG_CLI_PLAN_H
 
 #include "cli/cli.h"
+#include "cli/options.h"
 #include "cli/ranges.h"
 #include "partition/model.h"
 

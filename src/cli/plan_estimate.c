@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 #include "cli/cli.h"
+#include "cli/options.h"
 #include "core/vector.h"
 #include "partition/advance.h"
 

@@ -11,6 +11,7 @@
 #include "cli/plan_estimate.h"
 #include "cli/plot.h"
 #include "cli/report.h"
+#include "cli/text.h"
 #include "io/foam.h"
 
 /* --- files --------------------------------------------------------------- */
@@ -332,7 +333,7 @@ vg_status vg_plan_json(const struct vg_plan *p, struct vg_error *err)
   json_t *o = json_object(), *rows = json_array();
   int bad;
 
-  json_object_set_new(o, "title", vg_report_string(p->problem.settings.title));
+  json_object_set_new(o, "title", vg_text_json(p->problem.settings.title));
   json_object_set_new(o, "mesh", mesh_json(p));
   json_object_set_new(o, "sources", vg_held_json(&p->held, p->front,
                                                  &p->problem.settings));

@@ -10,6 +10,7 @@
 #include "cli/plan.h"
 #include "cli/plot.h"
 #include "cli/report.h"
+#include "cli/text.h"
 #include "cli/timeline.h"
 
 struct row { int ranks, threads; struct vg_forecast f; };
@@ -122,8 +123,8 @@ static vg_status print_json(const struct plan *p, struct vg_error *err)
   json_t *o = json_object(), *list = json_array();
   int bad;
 
-  json_object_set_new(o, "title", vg_report_string(p->t.title));
-  json_object_set_new(o, "record", vg_report_string(p->o->replay));
+  json_object_set_new(o, "title", vg_text_json(p->t.title));
+  json_object_set_new(o, "record", vg_text_json(p->o->replay));
   json_object_set_new(o, "tasks", json_integer((json_int_t)p->t.spans.n));
   json_object_set_new(o, "serial", json_real(p->machine.serial));
   json_object_set_new(o, "by_node", json_real(p->machine.by_node));

@@ -5,6 +5,7 @@
 #include <jansson.h>
 #include <stdio.h>
 
+#include "cli/layers.h"
 #include "core/fill.h"
 #include "core/mesh.h"
 #include "core/planar.h"
@@ -12,9 +13,6 @@
 #include "core/surface_check.h"
 
 #define VG_SHOWN_DEFECTS 20   /* first ones of a kind put in words */
-
-/** A string for JSON; what is no UTF-8 as vg_text_clean has it. */
-json_t *vg_report_string(const char *text);
 
 /** Counts of a mesh, its box and its patches. */
 void vg_report_size_text(FILE *to, const struct vg_mesh *m);
@@ -58,5 +56,21 @@ json_t *vg_report_domain_json(const struct vg_domain_report *r);
 
 /** Largest memory of this process so far, bytes. */
 double vg_report_peak_memory(void);
+
+/** A note where whole patches stay without layers since
+ * the first height is larger than their edges allow. On rank 0. */
+void vg_report_layers_note(const struct vg_layer_stage *s,
+                           const struct vg_mesh *surface,
+                           struct vg_notes *notes);
+
+/** Tables by patch, causes in words, times and rates. */
+void vg_report_layers_text(FILE *to, const struct vg_layer_stage *s,
+                           const struct vg_mesh *surface);
+json_t *vg_report_layers_json(const struct vg_layer_stage *s,
+                              const struct vg_mesh *surface);
+
+/** Limits that are not met, one line each. */
+void vg_report_missed_text(FILE *to, const struct vg_layer_stage *s,
+                           const struct vg_mesh *surface);
 
 #endif

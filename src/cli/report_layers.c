@@ -304,7 +304,7 @@ static json_t *walls_json(const struct vg_layer_stage *s,
     json_t *o = wall_json(&s->wall[i]);
 
     json_object_set_new(o, "patch", json_integer(p->id));
-    json_object_set_new(o, "name", vg_report_string(p->name));
+    json_object_set_new(o, "name", vg_text_json(p->name));
     json_object_set_new(o, "wall_by", json_string(
       vg_wall_reason_name(s->reason[s->wall[i].patch])));
     json_array_append_new(list, o);
@@ -322,7 +322,7 @@ static json_t *missed_json(const struct vg_layer_stage *s,
     const struct vg_patch *p = &surface->patch[m->patch];
 
     json_array_append_new(list, json_pack("{s:i s:o s:s s:o s:o}", "patch",
-      (int)p->id, "name", vg_report_string(p->name), "limit", m->name,
+      (int)p->id, "name", vg_text_json(p->name), "limit", m->name,
       "wanted", real(m->wanted), "got", real(m->got)));
   }
   return list;

@@ -7,16 +7,6 @@
 #include "cli/report.h"
 #include "cli/text.h"
 
-json_t *vg_report_string(const char *text)
-{
-  json_t *o = json_string(text);
-  char *clean = o ? NULL : vg_text_copy(text);
-
-  if (clean) o = json_string(clean);
-  free(clean);
-  return o ? o : json_null();
-}
-
 static size_t n_cell(const struct vg_mesh *m)
 {
   return m->n_tet + m->n_pyr + m->n_pri + m->n_hex;
@@ -116,7 +106,7 @@ json_t *vg_report_patches_json(const struct vg_mesh *m)
   for (size_t i = 0; faces && i < m->n_patch; i++)
     json_array_append_new(list,
       json_pack("{s:i s:o s:o s:o s:I}", "id", (int)m->patch[i].id, "name",
-                vg_report_string(m->patch[i].name), "usm3d",
+                vg_text_json(m->patch[i].name), "usm3d",
                 code_json(m->patch[i].bc), "fun3d",
                 code_json(m->patch[i].bc_fun3d), "faces",
                 (json_int_t)faces[i]));
@@ -204,7 +194,7 @@ static json_t *defects_json(const struct vg_mesh *m,
     if (said[d->kind]++ >= shown) continue;
     vg_defect_text(m, d, text, sizeof text);
     one = json_pack("{s:s s:o}", "kind", vg_defect_name(d->kind), "text",
-                    vg_report_string(text));
+                    vg_text_json(text));
     /* NaN has no JSON form: such a defect goes without its place. */
     json_object_set_new(one, "at", json_pack("[fff]", d->at[0], d->at[1],
                                              d->at[2]));

@@ -7,8 +7,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "cli/output.h"
-#include "cli/walls.h"
+#include "cli/lists.h"
 #include "core/fill.h"
 #include "layers/join.h"
 #include "layers/law.h"
@@ -63,7 +62,7 @@ static const struct vg_param params[] = {
   { "max_cells", AT(max_cells), .type = VG_PARAM_COUNT, .hi = 9e15,
     .unit = "cells", .help = "stop rather than make more; 0: no limit" },
   { "write", AT(write), .type = VG_PARAM_TEXT, .unit = "",
-    .check = vg_outputs_list_check,
+    .check = vg_write_list_check,
     .help = "files to write, separated by commas; auto: cogsg,b8.ugrid, for "
             "mixed cells b8.ugrid" },
   { "cells", AT(cells), .type = VG_PARAM_WORD, .words = cell_words,

@@ -10,6 +10,7 @@
 #include "cli/plot.h"
 #include "cli/report.h"
 #include "cli/sweep.h"
+#include "cli/text.h"
 #include "io/stream.h"
 #include "partition/model.h"
 
@@ -149,7 +150,7 @@ static json_t *case_json(const struct vg_sweep *s,
   double v[N_VALUE];
 
   values_of(s, c, v);
-  json_object_set_new(o, "case", vg_report_string(c->name));
+  json_object_set_new(o, "case", vg_text_json(c->name));
   json_object_set_new(o, "levels", whole_or_null(c->levels));
   json_object_set_new(o, "leaf_cells", whole_or_null(c->leaf_cells));
   json_object_set_new(o, "ranks", json_integer(c->ranks));
@@ -157,14 +158,14 @@ static json_t *case_json(const struct vg_sweep *s,
   json_object_set_new(o, "repeat", json_integer(c->repeat));
   json_object_set_new(o, "state", json_string(state_of(c)));
   json_object_set_new(o, "exit", json_integer(c->exit_status));
-  json_object_set_new(o, "note", vg_report_string(c->note));
+  json_object_set_new(o, "note", vg_text_json(c->note));
   for (int i = 0; i < N_VALUE; i++)
     json_object_set_new(o, value_names[i], real_or_null(v[i]));
   for (int i = 0; i < VG_PHASE_N && c->has_timeline; i++)
     json_object_set_new(phases, vg_phase_name((enum vg_phase)i),
                         json_real(c->t.seconds[i]));
   json_object_set_new(o, "phases", phases);
-  json_object_set_new(o, "digest", vg_report_string(c->digest));
+  json_object_set_new(o, "digest", vg_text_json(c->digest));
   return o;
 }
 
@@ -180,7 +181,7 @@ static vg_status write_json(const struct vg_sweep *s, struct vg_error *err)
 
   for (size_t i = 0; i < s->n; i++)
     json_array_append_new(list, case_json(s, &s->item[i]));
-  json_object_set_new(root, "project", vg_report_string(s->o->project));
+  json_object_set_new(root, "project", vg_text_json(s->o->project));
   json_object_set_new(root, "digests", json_string(differ ? "differ"
     : compared ? "agree" : "not compared"));
   json_object_set_new(root, "cases", list);

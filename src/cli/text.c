@@ -107,3 +107,13 @@ void vg_text_mend_end(char *text)
   if (back < n && announced((unsigned char)text[n - 1 - back]) > back + 1)
     text[n - 1 - back] = 0;
 }
+
+json_t *vg_text_json(const char *text)
+{
+  json_t *o = json_string(text);
+  char *clean = o ? NULL : vg_text_copy(text);
+
+  if (clean) o = json_string(clean);
+  free(clean);
+  return o ? o : json_null();
+}

@@ -1,8 +1,9 @@
 /* cli/text.h: names from files as they are shown: UTF-8 stays, what is no UTF-8
- * becomes '?', columns of tables stay straight. Uses nothing. */
+ * becomes '?', columns of tables stay straight. Uses jansson. */
 #ifndef VG_CLI_TEXT_H
 #define VG_CLI_TEXT_H
 
+#include <jansson.h>
 #include <stddef.h>
 
 /** Bytes of the character at text, 1 to 4; 0 where no UTF-8 is (as Unicode and
@@ -20,6 +21,9 @@ char *vg_text_column(const char *text, size_t columns, char *out, size_t size);
 
 /** A copy that the caller frees; NULL: no memory. */
 char *vg_text_copy(const char *text);
+
+/** A string for JSON; what is no UTF-8 as vg_text_clean has it. */
+json_t *vg_text_json(const char *text);
 
 /** Take away the part of a character that a cut has left at the end. */
 void vg_text_mend_end(char *text);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cli/report.h"
+#include "cli/text.h"
 #include "io/stream.h"
 
 #define SECONDS_MAX 1e9
@@ -96,7 +97,7 @@ void vg_timeline_outside(const struct vg_timeline *t, struct vg_machine *m)
 
 static void put_string(struct vg_output *out, const char *text)
 {
-  json_t *string = vg_report_string(text);
+  json_t *string = vg_text_json(text);
   char *quoted = json_dumps(string, JSON_ENCODE_ANY);
 
   vg_output_text(out, quoted ? quoted : "\"\"");

@@ -6,6 +6,7 @@
 #include <strings.h>
 
 #include "base/memory.h"
+#include "cli/lists.h"
 #include "core/surface_swap.h"
 #include "core/vector.h"
 #include "io/mapbc.h"
@@ -57,16 +58,6 @@ int vg_walls_asked(const struct vg_settings *s)
 }
 
 /* A whole number at *text, which moves behind it; 0 when there is none. */
-static int take_number(const char **text, int64_t *out)
-{
-  size_t n = **text == '-';
-
-  n += strspn(*text + n, "0123456789");
-  if (!vg_parse_int(*text, n, out)) return 0;
-  *text += n;
-  return 1;
-}
-
 static vg_status mark(const char *name, const struct vg_mesh *m, int64_t from,
                       int64_t to, uint8_t *on, struct vg_error *err)
 {
@@ -87,35 +78,6 @@ static vg_status mark(const char *name, const struct vg_mesh *m, int64_t from,
                  (long long)from, (long long)to);
 }
 
-/* The next range of a list; 0: the list is at its end, or what follows is
- * none. */
-static int take_range(const char **text, int64_t *from, int64_t *to)
-{
-  const char *at = *text;
-
-  at += strspn(at, ", ");
-  *text = at;
-  if (!*at || !take_number(&at, from)) return 0;
-  *to = *from;
-  if (*at == '-' && (at++, !take_number(&at, to))) return 0;
-  if ((*at && !strchr(", ", *at)) || *to < *from) return 0;
-  *text = at;
-  return 1;
-}
-
-vg_status vg_patch_list_check(const char *name, const char *list,
-                              struct vg_error *err)
-{
-  const char *at = list;
-  int64_t from, to;
-
-  while (take_range(&at, &from, &to)) continue;
-  if (!*at) return VG_OK;
-  return vg_fail(err, VG_ERR_INPUT, "%s: '%s' is no list of patches; numbers "
-                 "and ranges are separated by commas, as in 3-12,15", name,
-                 list);
-}
-
 /* Patches in the list: on[i] is set to 1. VG_ERR_INPUT for a number or range
  * that the surface does not have. */
 static vg_status patch_list(const char *name, const char *list,
@@ -126,7 +88,7 @@ static vg_status patch_list(const char *name, const char *list,
   int64_t from, to;
   vg_status st = vg_patch_list_check(name, list, err);
 
-  while (st >= 0 && take_range(&at, &from, &to))
+  while (st >= 0 && vg_patch_list_next(&at, &from, &to))
     st = mark(name, m, from, to, on, err);
   return st;
 }

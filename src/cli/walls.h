@@ -22,11 +22,6 @@ const char *vg_wall_reason_name(enum vg_wall_reason reason);
  * BCWallViscous. */
 int vg_is_viscous(const struct vg_patch *p);
 
-/** Whether a list has numbers as in "3-12,15": ranges are inclusive, numbers
- * may be negative. A check of settings; VG_ERR_INPUT names the list. */
-vg_status vg_patch_list_check(const char *name, const char *list,
-                              struct vg_error *err);
-
 /** The walls of a closed problem. The layers table decides, then the lists
  * `walls` and `slip`, then meshing class and condition; a body without any
  * condition is all wall when layers are asked for.

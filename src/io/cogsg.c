@@ -8,7 +8,7 @@
 
 #include "base/memory.h"
 #include "io/mapbc.h"
-#include "io/slices_parts.h"
+#include "io/cogsg_put.h"
 #include "io/vgrid.h"
 
 #define BLOCK 4096

@@ -6,7 +6,7 @@
 #include <strings.h>
 
 #include "base/memory.h"
-#include "io/slices_parts.h"
+#include "io/ugrid_put.h"
 
 #define BLOCK 3072 /* a multiple of 3 and 4 */
 

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "io/slices_parts.h"
+#include "io/vtu_put.h"
 #include "io/stream.h"
 
 /* Elements of one kind. The file's slot k is our node slot[k]. node NULL:

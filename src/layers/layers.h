@@ -82,22 +82,4 @@ struct vg_layers {
 
 void vg_layers_release(struct vg_layers *l);
 
-/** Grow layers on the walls of a closed, checked surface (triangles only).
- *
- * @param sizing  over `surface`; sets where layers end and the size of new
- *                triangles on slide patches
- * @param out     untouched on failure
- * Columns never lose their first height: where room lacks, growth is lowered
- * first, then levels, and each column says why.
- * On return every cell that the columns imply is positive, every prism among
- * them has positive corners, and the front does not touch itself.
- * Same bytes for any number of threads.
- * VG_ERR_INPUT for settings that cannot be (names the patch), VG_BLOCKED when
- * stopped, VG_ERR_GEOMETRY, VG_ERR_MEMORY. */
-vg_status vg_layers_grow(const struct vg_mesh *surface,
-                         const struct vg_sizing *sizing,
-                         const struct vg_layer_options *options,
-                         struct vg_layers *out, struct vg_layer_report *report,
-                         struct vg_error *err);
-
 #endif

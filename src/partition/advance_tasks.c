@@ -461,13 +461,6 @@ const struct vg_engine_ops vg_tasks_ops = {
   run, done, pack_input, unpack_input, pack_outcome, unpack_outcome,
   release_input, release_outcome };
 
-uint32_t vg_partition_serial(struct vg_partition *p)
-{
-  uint32_t k = (uint32_t)atomic_fetch_add(&p->n_serial, 1);
-
-  return 1 + k * (uint32_t)p->size + (uint32_t)p->rank;
-}
-
 vg_status vg_tasks_first(struct vg_partition *p, struct vg_node *n,
                          struct vg_task *t, struct vg_error *err)
 {

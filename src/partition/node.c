@@ -6,6 +6,13 @@
 
 #include "base/memory.h"
 
+uint32_t vg_partition_serial(struct vg_partition *p)
+{
+  uint32_t k = (uint32_t)atomic_fetch_add(&p->n_serial, 1);
+
+  return 1 + k * (uint32_t)p->size + (uint32_t)p->rank;
+}
+
 static void drop_stage(struct vg_node *n)
 {
   for (size_t k = 0; k < n->n_work; k++) {

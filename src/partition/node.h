@@ -6,9 +6,13 @@
 #include <pthread.h>
 #include <stdatomic.h>
 
-#include "partition/advance.h"
+#include "base/comm.h"
+#include "core/slices.h"
+#include "partition/engine.h"
 #include "partition/job.h"
+#include "partition/partition.h"
 #include "partition/select.h"
+#include "partition/spans.h"
 
 /* A leaf that needs this many times the points that were expected is cut
  * again, as is one beyond this many times the leaf size. */

@@ -10,6 +10,7 @@
 #include <cmocka.h>
 
 #include "layer_cases.h"
+#include "layers/grow.h"
 #include "layers/pack.h"
 
 struct bench {

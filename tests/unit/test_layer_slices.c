@@ -11,6 +11,7 @@
 #include "base/parallel.h"
 #include "join_support.h"
 #include "layer_cases.h"
+#include "layers/grow.h"
 #include "layers/slices.h"
 #include "layers/slices_parts.h"
 

@@ -16,6 +16,7 @@
 #include "core/surface_check.h"
 #include "layer_cases.h"
 #include "layers/join.h"
+#include "layers/grow.h"
 #include "layers/layers.h"
 #include "layers/measure.h"
 
