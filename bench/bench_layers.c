@@ -22,11 +22,11 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "core/demo.h"
-#include "core/surface_check.h"
-#include "io/format.h"
-#include "layers/grow.h"
-#include "layers/join.h"
+#include "cli/examples/demo.h"
+#include "core/surface/surface_check.h"
+#include "io/mesh/format.h"
+#include "layers/expand/join.h"
+#include "layers/grow/grow.h"
 
 #define RUNS_MAX 99
 

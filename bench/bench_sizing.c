@@ -10,7 +10,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "core/sizing.h"
+#include "core/sizing/sizing.h"
 
 static double clock_of(clockid_t id)
 {

@@ -20,11 +20,11 @@
 #include <time.h>
 
 #include "base/memory.h"
-#include "core/cdt_server.h"
-#include "core/demo.h"
-#include "core/surface_check.h"
-#include "io/format.h"
-#include "partition/advance.h"
+#include "cli/examples/demo.h"
+#include "core/recover/cdt_server.h"
+#include "core/surface/surface_check.h"
+#include "io/mesh/format.h"
+#include "partition/advance/advance.h"
 
 enum { BINS = 1800, N_SIZE = 4000, LEAF = 1, ZONE = 2, REPAIR = 3 };
 

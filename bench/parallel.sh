@@ -19,8 +19,9 @@
 #
 #   price         CPU of 64 leaves over CPU of no cut, one thread, box 5 M
 #   two           start to files closed: 2 ranks, or 2 threads, against the
-#                 best single thread, cut or not: box 10 M, sphere 12 M, aircraft;
-#                 what vanguard plan makes of the record of one for two
+#                 best single thread, cut or not: box 10 M, sphere 12 M,
+#                 aircraft; what vanguard plan makes of the record of one for
+#                 two
 #   balance       most over mean of the workers' time, 8 leaves per worker
 #   leaf          time, memory and forecast for 64 workers over leaf sizes
 #   memory        of the largest rank, over ranks

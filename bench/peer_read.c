@@ -4,9 +4,9 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "core/predicates.h"
-#include "io/convention.h"
-#include "io/stream.h"
+#include "core/geometry/predicates.h"
+#include "io/stream/convention.h"
+#include "io/stream/stream.h"
 #include "peers.h"
 
 #define NAME_MAX_LEN 4096

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "io/stream.h"
+#include "io/stream/stream.h"
 #include "peers.h"
 
 /* Relative difference below which a field counts as uniform in a cell. */

@@ -11,8 +11,8 @@
  *                              of .node and .ele; optionally written as UGRID
  *   seconds REPORT.json        time of the fill that a run of Vanguard reports
  *
- * DECK is a run deck (cli/deck.h), "-" for all defaults. Exit status 0 done,
- * 1 failed, 2 usage. */
+ * DECK is a run deck (cli/settings/deck.h), "-" for all defaults. Exit status 0
+ * done, 1 failed, 2 usage. */
 #include <jansson.h>
 #include <math.h>
 #include <stdio.h>
@@ -21,11 +21,11 @@
 
 #include "base/memory.h"
 #include "base/unite.h"
-#include "cli/deck.h"
-#include "core/quality.h"
-#include "core/vector.h"
-#include "io/stream.h"
-#include "io/ugrid.h"
+#include "cli/settings/deck.h"
+#include "core/geometry/vector.h"
+#include "core/judge/quality.h"
+#include "io/mesh/ugrid.h"
+#include "io/stream/stream.h"
 #include "peers.h"
 
 #define NAME_MAX_LEN 4096

@@ -2,8 +2,8 @@
 #ifndef VG_BENCH_PEERS_H
 #define VG_BENCH_PEERS_H
 
-#include "core/mesh.h"
-#include "core/sizing.h"
+#include "core/mesh/mesh.h"
+#include "core/sizing/sizing.h"
 
 /** Read the mesh STEM.node, STEM.ele of TetGen. Its boundary is that of
  * `surface`, whose points TetGen keeps as its first. */

@@ -9,8 +9,8 @@ install(TARGETS vanguard EXPORT vanguard-targets
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(DIRECTORY src/base src/core src/layers src/partition src/io
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/vanguard FILES_MATCHING PATTERN "*.h"
-  PATTERN "*_parts.h" EXCLUDE PATTERN "partition/node.h" EXCLUDE
-  PATTERN "partition/repair.h" EXCLUDE)
+  PATTERN "*_parts.h" EXCLUDE PATTERN "node.h" EXCLUDE
+  PATTERN "repair.h" EXCLUDE)
 
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/vanguard)
 install(EXPORT vanguard-targets NAMESPACE vanguard:: DESTINATION ${package})

@@ -7,10 +7,11 @@
 #   --cells     of the box that is meshed (default 2000000)
 # Starts munged, slurmctld and slurmd of its own on free ports, with all state
 # in the scratch folder, and ends them again. Jobs of two ranks: one in peace,
-# and, by mpirun and by srun, one that is told by Slurm that its time is up, goes
-# back into the queue and continues. All must write the same files. Needs root
-# (slurmd has to change users) and Debian's slurm-wlm, munge and openmpi-bin.
-# Exit status: 0 as it should be, 1 a failure, 2 usage, 77 cannot be tried.
+# and, by mpirun and by srun, one that is told by Slurm that its time is up,
+# goes back into the queue and continues. All must write the same files. Needs
+# root (slurmd has to change users) and Debian's slurm-wlm, munge and
+# openmpi-bin. Exit status: 0 as it should be, 1 a failure, 2 usage, 77 cannot
+# be tried.
 set -euo pipefail
 
 root=$(cd "$(dirname "$0")/.." && pwd)

@@ -13,7 +13,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "io/format.h"
+#include "io/mesh/format.h"
 #include "png.h"
 
 #define SAMPLES 3

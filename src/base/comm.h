@@ -42,7 +42,7 @@ int vg_comm_node_rank(const struct vg_comm *c);
 int vg_comm_node_size(const struct vg_comm *c);
 
 /** The MPI_Comm, as a pointer to it; NULL in a job without MPI. For adapters
- * that need MPI themselves (io/shared_file.c). */
+ * that need MPI themselves (io/stream/shared_file.c). */
 const void *vg_comm_mpi(const struct vg_comm *c);
 
 /* --- collectives --------------------------------------------------------- */

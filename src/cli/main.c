@@ -5,11 +5,11 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "cli/cli.h"
-#include "cli/commands.h"
-#include "cli/progress.h"
-#include "cli/settings.h"
-#include "core/cdt_server.h"
+#include "cli/commands/commands.h"
+#include "cli/common/cli.h"
+#include "cli/common/progress.h"
+#include "cli/settings/settings.h"
+#include "core/recover/cdt_server.h"
 
 static const struct command {
   const char *name, *summary;

@@ -1,42 +1,99 @@
 #!/bin/bash
-# Includes go one way: base <- core <- layers <- partition <- cli and core <-
-# io <- cli.
-# Fails on an include against the arrows, without a folder, or of a
-# third-party header outside the file that adapts it.
-# architecture.sh SOURCE_ROOT
+# Holds the source against src/CMakeLists.txt, the list of rooms from the bottom
+# up with those that each one sees. Fails on
+#   - a folder of sources that is no room, a room of more than 40 files
+#   - a room that sees what its part of the program must not (io knows core
+#     only), or sees another without need
+#   - an include without its folder, of a room that is not seen, or of a private
+#     header (NAME_parts.h, or "Private to" in it) of another room
+#   - headers that include each other
+#   - a third-party header outside the file that adapts it
+#   - a symbol of a room further up, with a BUILD folder to look into
+# architecture.sh SOURCE_ROOT [BUILD]
 set -u
+build=${2:+$(realpath "$2")}
 cd "$1/src" || exit 1
 bad=0
-
-declare -A rank=([base]=0 [core]=1 [layers]=2 [io]=3 [partition]=3
-  [cli]=4)
+MOST_FILES=40
 
 complain() {
   echo "$*"
   bad=1
 }
 
-for folder in *; do
-  [ -n "${rank[$folder]:-}" ] ||
-    complain "src/$folder: a folder without a place in the order"
+# --- rooms ---
+
+declare -A place sees used
+rooms=()
+while read -r room seen; do
+  place[$room]=${#rooms[@]}
+  rooms+=("$room")
+  sees[$room]=" $seen "
+done < <(awk '/^vg_room\(/ { on = 1; line = "" }
+  on { line = line " " $0 }
+  on && /\)/ { gsub(/vg_room\(|\)/, " ", line); print line; on = 0 }' \
+  CMakeLists.txt)
+
+# The parts of the program that a part may see, besides base.
+declare -A parts=([base]="" [core]="core" [layers]="core layers"
+  [partition]="core layers partition" [io]="core io"
+  [cli]="core layers partition io cli")
+for room in "${rooms[@]}"; do
+  part=${room%%/*}
+  for seen in ${sees[$room]}; do
+    [[ " base ${parts[$part]-} " = *" ${seen%%/*} "* ]] ||
+      complain "src/CMakeLists.txt: $part must not see $seen"
+  done
 done
 
+while read -r n folder; do
+  [ -n "${place[$folder]-}" ] ||
+    complain "src/$folder: a folder without a place in src/CMakeLists.txt"
+  [ "$n" -le $MOST_FILES ] ||
+    complain "src/$folder: $n files, at most $MOST_FILES in a room"
+done < <(find . -mindepth 2 -name '*.[ch]*' -printf '%P\n' |
+  grep -v '^cli/main\.c$' | sed 's,/[^/]*$,,' | sort | uniq -c)
+
+# --- includes ---
+
+declare -A is_private
+while IFS= read -r file; do
+  is_private[$file]=1
+done < <({ find . -name '*_parts.h'; grep -rl --include='*.h' 'Private to' .
+         } | sed 's,^\./,,' | sort -u)
+
+includes=$(grep -rnE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' \
+  --include='*.[ch]' --include='*.cpp' . | sed 's,^\./,,')
 while IFS=: read -r file line text; do
   target=${text#*\"}
   target=${target%%\"*}
-  from=${file%%/*}
-  to=${target%%/*}
+  from=${file%/*}
+  [ "$from" != cli ] || from=cli/commands   # main.c
+  to=${target%/*}
+  used["$from $to"]=1
   if [ "$to" = "$target" ]; then
     complain "src/$file:$line: \"$target\" does not name its folder"
   elif [ ! -e "$target" ]; then
     complain "src/$file:$line: \"$target\" does not exist"
-  elif [ "${rank[$to]:-9}" -gt "${rank[$from]:-9}" ]; then
+  elif [ "$from" = "$to" ]; then
+    continue
+  elif [[ ${sees[$from]-} != *" $to "* ]]; then
     complain "src/$file:$line: $from must not include $to ($target)"
-  elif [ "$from" = io ] && [[ $to = layers || $to = partition ]]; then
-    complain "src/$file:$line: io knows the types of core only ($target)"
+  elif [ -n "${is_private[$target]-}" ]; then
+    complain "src/$file:$line: $target is private to its room"
   fi
-done < <(grep -rnE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' \
-  --include='*.[ch]' --include='*.cpp' .  | sed 's,^\./,,')
+done <<< "$includes"
+
+for room in "${rooms[@]}"; do
+  for seen in ${sees[$room]}; do
+    [ -n "${used["$room $seen"]-}" ] ||
+      complain "src/CMakeLists.txt: $room sees $seen, and includes nothing of it"
+  done
+done
+
+loop=$(sed -nE 's,^([^:]*\.h):[0-9]*:[^"]*"([^"]*)".*,\1 \2,p' \
+  <<< "$includes" | tsort 2>&1 >/dev/null | sed -n 's/^tsort: \([^-]\)/\1/p')
+[ -z "$loop" ] || complain "headers include each other:" $loop
 
 # Third-party headers and the files that may see them.
 adapter() {
@@ -46,15 +103,39 @@ adapter() {
   done < <(grep -rlE "#[[:space:]]*include[[:space:]]*[<\"]${header}[>\"]" . |
     sed 's,^\./,,')
 }
-adapter tetgen.h '^core/cdt_tetgen\.cpp$'
-adapter zlib.h '^io/[a-z_]+\.c$'
+adapter tetgen.h '^core/recover/cdt_tetgen\.cpp$'
+adapter zlib.h '^io/[a-z]+/[a-z_]+\.c$'
 adapter jansson.h '^cli/'
 adapter argp.h '^cli/'
-adapter lapacke.h '^layers/gram\.c$'
+adapter lapacke.h '^layers/topology/gram\.c$'
 adapter pthread.h '^(base|partition)/'
-adapter mpi.h '^(base/comm(_[a-z]+)?\.c|base/comm_parts\.h|io/shared_file\.c)$'
+adapter mpi.h \
+  '^(base/comm(_[a-z]+)?\.c|base/comm_parts\.h|io/stream/shared_file\.c)$'
 adapter hwloc.h '^base/comm_cores\.c$'
-adapter xxhash.h '^partition/store[a-z_]*\.c$'
+adapter xxhash.h '^partition/store/store[a-z_]*\.c$'
+
+# --- symbols ---
+
+# "ROOM SYMBOL kind" of every object, kind U where it is used only.
+symbols() {
+  local room
+  for room in "${rooms[@]}"; do
+    find "$build/src/CMakeFiles/vg_${room//\//_}.dir" -name '*.o' -print0 \
+      2>/dev/null | xargs -0r nm -g 2>/dev/null |
+      awk -v room="$room" -v at="${place[$room]}" 'NF >= 2 && $NF ~ /^vg_/ {
+        print at, room, $NF, $(NF - 1) }'
+  done
+}
+if [ -n "$build" ]; then
+  upward=$(symbols | sort -u | awk '$4 != "U" { at[$3] = $1; room[$3] = $2 }
+    $4 == "U" { user[++n] = $1; from[n] = $2; what[n] = $3 }
+    END {
+      for (i = 1; i <= n; i++)
+        if (what[i] in at && at[what[i]] + 0 > user[i] + 0)
+          print from[i] " uses " what[i] " of " room[what[i]]
+    }')
+  [ -z "$upward" ] || complain "$upward"
+fi
 
 [ "$bad" = 0 ] && echo "all includes follow the arrows"
 exit $bad

@@ -11,9 +11,9 @@
 
 #include <cmocka.h>
 
-#include "cli/plot.h"
-#include "cli/svg.h"
-#include "partition/model.h"
+#include "cli/plot/plot.h"
+#include "cli/plot/svg.h"
+#include "partition/model/model.h"
 
 static char *contents(const char *path)
 {

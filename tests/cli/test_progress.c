@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "cli/progress.h"
+#include "cli/common/progress.h"
 
 enum { WENT_ON = 7, NOT_TOLD = 8 };
 

@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "cli/text.h"
+#include "cli/common/text.h"
 
 static void test_characters(void **state)
 {

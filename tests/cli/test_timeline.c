@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "cli/timeline.h"
+#include "cli/plot/timeline.h"
 
 #define COLUMNS "\"columns\": [\"path\",\"after\",\"kind\",\"rank\"," \
   "\"thread\",\"home\",\"start\",\"end\",\"cpu\",\"estimate\",\"cells\"," \

@@ -10,8 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/mesh.h"
-#include "io/stream.h"
+#include "core/mesh/mesh.h"
+#include "io/stream/stream.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

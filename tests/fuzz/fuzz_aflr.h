@@ -4,7 +4,7 @@
 
 #include "fuzz.h"
 
-#include "io/aflr.h"
+#include "io/mesh/aflr.h"
 
 static int fuzz_aflr(const uint8_t *data, size_t size,
                      vg_status (*parse)(struct vg_input *, struct vg_aflr *,

@@ -1,7 +1,7 @@
 #include "fuzz.h"
 
 #include "base/memory.h"
-#include "io/vgrid.h"
+#include "io/vgrid/vgrid.h"
 
 #define N_POINT 40
 

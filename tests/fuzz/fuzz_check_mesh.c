@@ -1,7 +1,7 @@
 #include "fuzz.h"
 
-#include "core/quality.h"
-#include "io/medit.h"
+#include "core/judge/quality.h"
+#include "io/mesh/medit.h"
 
 /* What follows reading a volume mesh: the judgement of validity and
  * quality. */

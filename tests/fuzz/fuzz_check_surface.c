@@ -1,7 +1,7 @@
 #include "fuzz.h"
 
-#include "core/surface_check.h"
-#include "io/tri.h"
+#include "core/surface/surface_check.h"
+#include "io/mesh/tri.h"
 
 /* What follows reading a surface: the check with repair, and the text of
  * every defect. */

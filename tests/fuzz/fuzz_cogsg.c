@@ -1,6 +1,6 @@
 #include "fuzz.h"
 
-#include "io/vgrid.h"
+#include "io/vgrid/vgrid.h"
 
 static const uint8_t *bc_data;
 static size_t bc_size;

@@ -1,6 +1,6 @@
 #include "fuzz.h"
 
-#include "io/vgrid.h"
+#include "io/vgrid/vgrid.h"
 
 static void check(const struct vg_project *p)
 {

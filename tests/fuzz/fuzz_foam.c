@@ -2,8 +2,8 @@
  * must end in a table that is complete or in words. */
 #include "fuzz.h"
 
-#include "io/foam_parts.h"
-#include "io/medit.h"
+#include "io/mesh/foam_parts.h"
+#include "io/mesh/medit.h"
 
 static void check_table(const struct vg_foam_faces *f)
 {

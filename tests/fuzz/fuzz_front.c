@@ -1,6 +1,6 @@
 #include "fuzz.h"
 
-#include "io/vgrid.h"
+#include "io/vgrid/vgrid.h"
 
 static vg_status parse(struct vg_input *in, struct vg_mesh *m,
                        struct vg_error *err)

@@ -1,6 +1,6 @@
 #include "fuzz.h"
 
-#include "io/mapbc.h"
+#include "io/vgrid/mapbc.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {

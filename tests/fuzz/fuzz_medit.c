@@ -1,6 +1,6 @@
 #include "fuzz.h"
 
-#include "io/medit.h"
+#include "io/mesh/medit.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {

@@ -1,6 +1,6 @@
 #include "fuzz.h"
 
-#include "io/obj.h"
+#include "io/mesh/obj.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {

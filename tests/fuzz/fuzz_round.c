@@ -2,10 +2,10 @@
 
 #include <unistd.h>
 
-#include "io/medit.h"
-#include "io/obj.h"
-#include "io/stl.h"
-#include "io/tri.h"
+#include "io/mesh/medit.h"
+#include "io/mesh/obj.h"
+#include "io/mesh/stl.h"
+#include "io/mesh/tri.h"
 
 /* Write, read, compare: whatever mesh a reader makes of the data must come
  * back from our own writers, bit by bit where the format can hold it. */

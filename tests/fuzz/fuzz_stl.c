@@ -1,6 +1,6 @@
 #include "fuzz.h"
 
-#include "io/stl.h"
+#include "io/mesh/stl.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {

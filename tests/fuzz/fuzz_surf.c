@@ -1,6 +1,6 @@
 #include "fuzz.h"
 
-#include "io/aflr.h"
+#include "io/mesh/aflr.h"
 
 static struct vg_aflr settings;
 

@@ -1,7 +1,7 @@
 #include "fuzz.h"
 
-#include "cli/timeline.h"
-#include "partition/model.h"
+#include "cli/plot/timeline.h"
+#include "partition/model/model.h"
 
 /* What a reader lets through can be replayed, or is refused by name. */
 static void replay(const struct vg_timeline *t)

@@ -1,6 +1,6 @@
 #include "fuzz.h"
 
-#include "io/tri.h"
+#include "io/mesh/tri.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {

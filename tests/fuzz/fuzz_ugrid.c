@@ -1,6 +1,6 @@
 #include "fuzz.h"
 
-#include "io/ugrid.h"
+#include "io/mesh/ugrid.h"
 
 static struct vg_ugrid_kind kind;
 

@@ -4,8 +4,8 @@
 #include "mpi_support.h"
 
 #include "../unit/advance_support.h"
-#include "core/cdt_server.h"
-#include "io/slices.h"
+#include "core/recover/cdt_server.h"
+#include "io/slices/slices.h"
 
 static char dir[4096], alone_stem[4096], all_stem[4096];
 static struct scene real;    /* read before the job begins; may be empty */

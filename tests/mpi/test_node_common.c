@@ -1,6 +1,6 @@
 /* One copy for the ranks of a node: bytes, and the field of sizes. */
 #include "base/comm_parts.h"
-#include "core/sizing_parts.h"
+#include "core/sizing/sizing_parts.h"
 #include "mpi_support.h"
 
 static const size_t length[] = { 0, 1, 63, 64, 65, 4097, 3000001, 0, 7 };

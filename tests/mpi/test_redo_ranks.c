@@ -4,7 +4,7 @@
 
 #include "../unit/advance_support.h"
 #include "../unit/refuse_support.h"
-#include "core/cdt_server.h"
+#include "core/recover/cdt_server.h"
 
 static struct mesh_digest tell(const struct mesh_digest *d)
 {

@@ -9,7 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "io/shared_file.h"
+#include "io/stream/shared_file.h"
 
 enum { PIECES = 4000, THREADS = 2, TOTAL = 4000 * 3999 / 2 };
 

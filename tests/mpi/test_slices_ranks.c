@@ -5,9 +5,9 @@
 #include <unistd.h>
 
 #include "../unit/slices_support.h"
-#include "io/mapbc.h"
-#include "io/slices.h"
-#include "io/slices_parts.h"
+#include "io/slices/slices.h"
+#include "io/slices/slices_parts.h"
+#include "io/vgrid/mapbc.h"
 
 #define N_SLICE 19
 #define N_PIECE 12           /* more than there are */

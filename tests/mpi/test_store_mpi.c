@@ -6,7 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "partition/store.h"
+#include "partition/store/store.h"
 
 #define N_KEY 60
 

@@ -8,12 +8,12 @@
 #include <ftw.h>
 #include <math.h>
 
-#include "core/demo.h"
-#include "core/judge_slices.h"
-#include "io/format.h"
-#include "partition/advance.h"
+#include "cli/examples/demo.h"
+#include "core/judge/judge_slices.h"
 #include "fill_shapes.h"
-#include "partition/job.h"
+#include "io/mesh/format.h"
+#include "partition/advance/advance.h"
+#include "partition/cut/job.h"
 
 struct scene {
   struct vg_mesh m;

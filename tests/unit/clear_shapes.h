@@ -12,7 +12,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "layers/clear.h"
+#include "layers/clear/clear.h"
 
 enum { MAX = 20000, PATCHES = 3 };
 

@@ -13,7 +13,7 @@
 #include <time.h>
 
 #include "base/memory.h"
-#include "partition/engine.h"
+#include "partition/engine/engine.h"
 
 enum { ANY = -1 };
 

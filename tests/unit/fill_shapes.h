@@ -8,8 +8,8 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "core/fill.h"
-#include "core/quality.h"
+#include "core/fill/fill.h"
+#include "core/judge/quality.h"
 
 static inline void shape_need(const void *p)
 {

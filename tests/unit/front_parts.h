@@ -8,7 +8,7 @@
 
 #include "base/memory.h"
 #include "base/unite.h"
-#include "partition/job.h"
+#include "partition/cut/job.h"
 
 /* --- parts --------------------------------------------------------------- */
 

@@ -15,8 +15,8 @@
 
 #include <cmocka.h>
 
-#include "core/mesh.h"
-#include "io/stream.h"
+#include "core/mesh/mesh.h"
+#include "io/stream/stream.h"
 
 typedef vg_status (*io_parse)(struct vg_input *, struct vg_mesh *,
                               struct vg_error *);

@@ -4,7 +4,7 @@
 #define TESTS_UNIT_JOIN_SUPPORT_H
 
 #include "fill_shapes.h"
-#include "layers/join.h"
+#include "layers/expand/join.h"
 
 struct model {
   struct vg_mesh surface, field;

@@ -5,8 +5,8 @@
 
 #include <math.h>
 
-#include "core/judge_slices.h"
-#include "core/quality_parts.h"
+#include "core/judge/judge_slices.h"
+#include "core/judge/quality_parts.h"
 #include "slices_support.h"
 
 /* --- closing ------------------------------------------------------------- */

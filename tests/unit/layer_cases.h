@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/planar_patch.h"
+#include "core/domain/planar_patch.h"
 #include "fill_shapes.h"
 
 enum { CASE_SYMMETRY = 1, CASE_FARFIELD = 3, CASE_WALL = 4 };

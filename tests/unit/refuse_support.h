@@ -9,7 +9,7 @@
 #include <math.h>
 #include <stdatomic.h>
 
-#include "core/grow.h"
+#include "core/fill/grow.h"
 
 /* In the box of 40,000 cells, in leaves of 2,000: cut elsewhere, the void that
  * the leaf was cut from goes; the next larger one; only the whole, at the

@@ -6,9 +6,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "core/shape.h"
-#include "partition/repair.h"
-#include "partition/store.h"
+#include "core/geometry/shape.h"
+#include "partition/repair/repair.h"
+#include "partition/store/store.h"
 #include "tets_support.h"
 
 enum { SLABS = 4 };

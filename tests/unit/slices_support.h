@@ -1,6 +1,6 @@
 /* A mesh in memory, cut at random into slices with numbers of their own, as
- * a server of core/slices.h; for the tests of what reads slices. Header only.
- * Slice g of the cut is served by rank g % size. */
+ * a server of core/mesh/slices.h; for the tests of what reads slices. Header
+ * only. Slice g of the cut is served by rank g % size. */
 #ifndef TESTS_UNIT_SLICES_SUPPORT_H
 #define TESTS_UNIT_SLICES_SUPPORT_H
 
@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "core/slices.h"
+#include "core/mesh/slices.h"
 #include "join_support.h"
 
 struct cut {

@@ -3,7 +3,7 @@
 #define _GNU_SOURCE
 #include "advance_support.h"
 
-#include "core/cdt_server.h"
+#include "core/recover/cdt_server.h"
 
 /* --- without cuts it is the fill ----------------------------------------- */
 

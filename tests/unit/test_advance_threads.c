@@ -3,7 +3,7 @@
 #define _GNU_SOURCE
 #include "advance_support.h"
 
-#include "core/cdt_server.h"
+#include "core/recover/cdt_server.h"
 
 static void any_number_in_any_order(void **state)
 {

@@ -1,7 +1,7 @@
 #include "io_support.h"
 
-#include "io/aflr.h"
-#include "io/format.h"
+#include "io/mesh/aflr.h"
+#include "io/mesh/format.h"
 
 static vg_status parse_mesh(struct vg_input *in, struct vg_mesh *m,
                             struct vg_error *err)

@@ -18,8 +18,8 @@
 #include <cmocka.h>
 
 #include "base/parallel.h"
-#include "core/cdt_server.h"
-#include "core/cdt_tetgen.h"
+#include "core/recover/cdt_server.h"
+#include "core/recover/cdt_tetgen.h"
 
 #define N_JOB 3
 #define N_MAX 4000

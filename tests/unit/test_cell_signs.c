@@ -1,4 +1,4 @@
-/* core/cell_signs.h beside the predicates that it stands for. */
+/* core/delaunay/cell_signs.h beside the predicates that it stands for. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -7,8 +7,8 @@
 
 #include <cmocka.h>
 
-#include "core/cell_signs.h"
-#include "core/predicates.h"
+#include "core/delaunay/cell_signs.h"
+#include "core/geometry/predicates.h"
 
 static double draw(uint64_t *seed)
 {

@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "core/demo.h"
+#include "cli/examples/demo.h"
 
 struct side {
   uint32_t a, b;

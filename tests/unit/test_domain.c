@@ -9,10 +9,10 @@
 
 #include <cmocka.h>
 
-#include "core/farfield.h"
-#include "core/planar.h"
-#include "core/project.h"
-#include "io/vgrid.h"
+#include "core/domain/farfield.h"
+#include "core/domain/planar.h"
+#include "core/domain/project.h"
+#include "io/vgrid/vgrid.h"
 
 static double even(void *user, const double x[3])
 {

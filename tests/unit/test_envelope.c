@@ -3,10 +3,10 @@
 
 #include <string.h>
 
-#include "core/demo.h"
-#include "core/envelope.h"
-#include "io/format.h"
+#include "cli/examples/demo.h"
+#include "core/surface/envelope.h"
 #include "fill_shapes.h"
+#include "io/mesh/format.h"
 
 static struct vg_envelope measure(const struct vg_mesh *m)
 {

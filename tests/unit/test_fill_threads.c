@@ -9,8 +9,8 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "core/cdt_server.h"
-#include "core/demo.h"
+#include "cli/examples/demo.h"
+#include "core/recover/cdt_server.h"
 #include "fill_shapes.h"
 
 struct job {

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <sys/stat.h>
 
-#include "io/foam.h"
+#include "io/mesh/foam.h"
 
 /* --- a reader of what was written, apart from the writer --- */
 

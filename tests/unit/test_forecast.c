@@ -9,10 +9,10 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "core/demo.h"
-#include "partition/advance.h"
-#include "partition/forecast.h"
-#include "partition/model.h"
+#include "cli/examples/demo.h"
+#include "partition/advance/advance.h"
+#include "partition/model/forecast.h"
+#include "partition/model/model.h"
 
 struct scene {
   struct vg_demo demo;

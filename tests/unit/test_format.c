@@ -1,7 +1,7 @@
 #include "io_support.h"
 
-#include "io/format.h"
-#include "io/vgrid.h"
+#include "io/mesh/format.h"
+#include "io/vgrid/vgrid.h"
 
 static void suffixes_are_known(void **state)
 {

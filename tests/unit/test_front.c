@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "io/vgrid.h"
+#include "io/vgrid/vgrid.h"
 
 /* The worked example of formats.md 1.6. */
 static const char t1_d3m[] =

@@ -10,7 +10,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "core/grow.h"
+#include "core/fill/grow.h"
 #include "fill_shapes.h"
 #include "zone_support.h"
 

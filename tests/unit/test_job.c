@@ -2,10 +2,10 @@
  * joining, their volume, bytes and back. */
 #include "io_support.h"
 
+#include "base/bytes.h"
 #include "fill_shapes.h"
 #include "front_parts.h"
-#include "base/bytes.h"
-#include "partition/job.h"
+#include "partition/cut/job.h"
 #include "tets_support.h"
 
 /* A front of the triangles of m, which is released. Names are not in the order

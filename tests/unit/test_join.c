@@ -8,7 +8,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "core/quality.h"
+#include "core/judge/quality.h"
 #include "join_support.h"
 
 static double volume6(const struct vg_mesh *m, uint32_t a, uint32_t b,

@@ -3,7 +3,7 @@
 #include "io_support.h"
 
 #include "fill_shapes.h"
-#include "partition/lattice.h"
+#include "partition/cut/lattice.h"
 #include "tets_support.h"
 
 struct scene {
@@ -211,7 +211,8 @@ static void an_axis_can_be_asked_for(void **state)
 }
 
 /* Cut while more cells are expected than a leaf should have, a little more let
- * pass: one plane at a time where few leaves come of it, else as many as make them. */
+ * pass: one plane at a time where few leaves come of it, else as many as make
+ * them. */
 static void leaves_have_their_size(void **state)
 {
   static const struct { double leaves; int planes; } is[] = {

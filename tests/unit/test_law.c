@@ -7,7 +7,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "layers/columns.h"
+#include "layers/columns/columns.h"
 
 static const struct vg_law laws[] = {
   { 0.001, 0.15, 0.02, INFINITY, 1 },

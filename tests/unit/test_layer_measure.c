@@ -10,7 +10,7 @@
 
 #include "base/memory.h"
 #include "fill_shapes.h"
-#include "layers/measure.h"
+#include "layers/measure/measure.h"
 
 enum { SIDE = 8 };          /* the plate is SIDE x SIDE squares of size 1 */
 

@@ -10,8 +10,8 @@
 #include <cmocka.h>
 
 #include "layer_cases.h"
-#include "layers/grow.h"
-#include "layers/pack.h"
+#include "layers/columns/pack.h"
+#include "layers/grow/grow.h"
 
 struct bench {
   struct vg_mesh surface;

@@ -11,9 +11,9 @@
 #include "base/parallel.h"
 #include "join_support.h"
 #include "layer_cases.h"
-#include "layers/grow.h"
-#include "layers/slices.h"
-#include "layers/slices_parts.h"
+#include "layers/expand/slices.h"
+#include "layers/expand/slices_parts.h"
+#include "layers/grow/grow.h"
 
 /* --- a mesh of tetrahedra served in pieces ------------------------------- */
 

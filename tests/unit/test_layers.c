@@ -10,15 +10,15 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "core/fill.h"
-#include "core/predicates.h"
-#include "core/quality.h"
-#include "core/surface_check.h"
+#include "core/fill/fill.h"
+#include "core/geometry/predicates.h"
+#include "core/judge/quality.h"
+#include "core/surface/surface_check.h"
 #include "layer_cases.h"
-#include "layers/join.h"
-#include "layers/grow.h"
-#include "layers/layers.h"
-#include "layers/measure.h"
+#include "layers/columns/layers.h"
+#include "layers/expand/join.h"
+#include "layers/grow/grow.h"
+#include "layers/measure/measure.h"
 
 /* A case at work. All walls ask for the same: a first layer of 1/1000 of the
  * edge, ratio 1.25, which takes about 30 levels and 4.4 edges. */

@@ -3,10 +3,10 @@
 #include "io_support.h"
 
 #include "base/comm.h"
-#include "core/demo.h"
+#include "cli/examples/demo.h"
 #include "fill_shapes.h"
-#include "io/ugrid.h"
-#include "partition/load.h"
+#include "io/mesh/ugrid.h"
+#include "partition/load/load.h"
 
 struct scene {
   struct vg_void v;

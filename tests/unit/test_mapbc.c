@@ -1,6 +1,6 @@
 #include "io_support.h"
 
-#include "io/mapbc.h"
+#include "io/vgrid/mapbc.h"
 
 static const char vgrid_sample[] =
   "#case T1\n#bc.map\n"

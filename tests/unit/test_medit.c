@@ -1,6 +1,6 @@
 #include "io_support.h"
 
-#include "io/medit.h"
+#include "io/mesh/medit.h"
 
 static const char sample[] =
   "MeshVersionFormatted 2\nDimension 3\nVertices\n4\n0 0 0 0\n1 0 0 0\n"

@@ -11,7 +11,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "partition/model.h"
+#include "partition/model/model.h"
 
 static void add(struct vg_spans *s, const char *path, const char *after,
                 double cpu)

@@ -6,8 +6,8 @@
 #include <pthread.h>
 
 #include "fill_shapes.h"
-#include "partition/node.h"
-#include "partition/room.h"
+#include "partition/cut/node.h"
+#include "partition/engine/room.h"
 
 /* --- scenes -------------------------------------------------------------- */
 

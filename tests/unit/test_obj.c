@@ -1,6 +1,6 @@
 #include "io_support.h"
 
-#include "io/obj.h"
+#include "io/mesh/obj.h"
 
 static const char sample[] =
   "v 0 0 0\nv 1 0 0\nv 0 1 0\ng floor\nf 1 3 2\n";

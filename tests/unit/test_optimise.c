@@ -9,9 +9,9 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "core/boundary.h"
-#include "core/optimise.h"
-#include "core/shape.h"
+#include "core/geometry/shape.h"
+#include "core/optimise/optimise.h"
+#include "core/recover/boundary.h"
 #include "fill_shapes.h"
 #include "tets_support.h"
 

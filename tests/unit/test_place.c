@@ -9,8 +9,8 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "core/boundary.h"
-#include "core/place.h"
+#include "core/fill/place.h"
+#include "core/recover/boundary.h"
 #include "fill_shapes.h"
 #include "tets_support.h"
 

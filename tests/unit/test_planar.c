@@ -8,8 +8,8 @@
 
 #include <cmocka.h>
 
-#include "core/planar.h"
-#include "core/predicates.h"
+#include "core/domain/planar.h"
+#include "core/geometry/predicates.h"
 
 enum { MAX_POINT = 20000 };
 

@@ -1,5 +1,5 @@
-/* Signs of core/predicates.h against integer arithmetic of any length: every
- * coordinate here is a whole number, so the reference has no rounding. */
+/* Signs of core/geometry/predicates.h against integer arithmetic of any length:
+ * every coordinate here is a whole number, so the reference has no rounding. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "core/predicates.h"
+#include "core/geometry/predicates.h"
 
 /* --- signed integers of LIMB 32-bit digits, two's complement ------------- */
 

@@ -5,9 +5,9 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "core/quality.h"
-#include "io/ugrid.h"
-#include "io/vgrid.h"
+#include "core/judge/quality.h"
+#include "io/mesh/ugrid.h"
+#include "io/vgrid/vgrid.h"
 #include "io_support.h"
 
 #define N 4   /* cells per side of the test cube */

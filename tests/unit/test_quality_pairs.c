@@ -1,5 +1,5 @@
 /* The judge on tetrahedra alone: faces matched as they come
- * (core/quality_pairs.c), when many wait and in columns of layers. */
+ * (core/judge/quality_pairs.c), when many wait and in columns of layers. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "base/memory.h"
-#include "core/quality.h"
+#include "core/judge/quality.h"
 
 static struct vg_mesh room_for(size_t n_point, size_t n_tet, size_t n_tri)
 {

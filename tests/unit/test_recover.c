@@ -12,9 +12,9 @@
 #include <unistd.h>
 #include <cmocka.h>
 
-#include "core/boundary.h"
-#include "core/cdt_tetgen.h"
-#include "core/recover.h"
+#include "core/recover/boundary.h"
+#include "core/recover/cdt_tetgen.h"
+#include "core/recover/recover.h"
 #include "fill_shapes.h"
 #include "tets_support.h"
 

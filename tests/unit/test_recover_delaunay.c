@@ -10,8 +10,8 @@
 #include <unistd.h>
 #include <cmocka.h>
 
-#include "core/cavity.h"
-#include "core/recover.h"
+#include "core/delaunay/cavity.h"
+#include "core/recover/recover.h"
 #include "tets_support.h"
 
 enum { N_POINT = 400, N_SPOILT = 600 };

@@ -9,9 +9,9 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "core/boundary.h"
-#include "core/recover.h"
-#include "core/recover_flip.h"
+#include "core/recover/boundary.h"
+#include "core/recover/recover.h"
+#include "core/recover/recover_flip.h"
 #include "tets_support.h"
 
 enum { N_POINT = 300 };

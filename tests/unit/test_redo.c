@@ -6,8 +6,8 @@
 
 #include <pthread.h>
 
-#include "core/cdt_server.h"
-#include "partition/node.h"
+#include "core/recover/cdt_server.h"
+#include "partition/cut/node.h"
 
 /* --- which void ---------------------------------------------------------- */
 

@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "core/region.h"
+#include "core/front/region.h"
 
 /* Fine beside the origin, growing away from there. */
 static struct vg_sizing *graded(void)

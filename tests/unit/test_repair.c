@@ -9,7 +9,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "partition/repair_parts.h"
+#include "partition/repair/repair_parts.h"
 #include "repair_support.h"
 
 static const double aim = VG_SHAPE_AIM;

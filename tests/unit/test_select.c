@@ -4,9 +4,9 @@
 #include "advance_support.h"
 
 #include "base/memory.h"
-#include "core/triangles.h"
-#include "partition/lattice.h"
-#include "partition/select.h"
+#include "core/geometry/triangles.h"
+#include "partition/cut/lattice.h"
+#include "partition/cut/select.h"
 
 /* --- fronts and regions -------------------------------------------------- */
 

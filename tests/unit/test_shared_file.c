@@ -15,7 +15,7 @@
 #include <cmocka.h>
 
 #include "base/memory.h"
-#include "io/shared_file.h"
+#include "io/stream/shared_file.h"
 
 #define NAME VG_TMP_DIR "/shared_file"
 

@@ -1,4 +1,4 @@
-/* core/sites.h: bits of a lattice beside a plain table of them. */
+/* core/fill/sites.h: bits of a lattice beside a plain table of them. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "core/sites.h"
+#include "core/fill/sites.h"
 
 enum { HALF = 20, SIDE = 2 * HALF };
 

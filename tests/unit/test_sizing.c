@@ -8,7 +8,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "core/sizing_parts.h"
+#include "core/sizing/sizing_parts.h"
 
 #define assert_near(a, b, tolerance) \
   assert_true(fabs((a) - (b)) <= (tolerance))

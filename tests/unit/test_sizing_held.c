@@ -8,8 +8,8 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "core/sizing_held.h"
-#include "core/sizing_places.h"
+#include "core/sizing/sizing_held.h"
+#include "core/sizing/sizing_places.h"
 
 #define assert_near(a, b, tolerance) \
   assert_true(fabs((a) - (b)) <= (tolerance))

@@ -8,10 +8,10 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 
-#include "core/quality.h"
-#include "io/mapbc.h"
-#include "io/slices.h"
-#include "io/slices_parts.h"
+#include "core/judge/quality.h"
+#include "io/slices/slices.h"
+#include "io/slices/slices_parts.h"
+#include "io/vgrid/mapbc.h"
 
 #define N_SLICE 23
 

@@ -12,10 +12,10 @@
 #include <cmocka.h>
 
 #include "base/memory.h"
-#include "core/predicates.h"
-#include "core/surface_check.h"
-#include "core/vector.h"
-#include "layers/slide.h"
+#include "core/geometry/predicates.h"
+#include "core/geometry/vector.h"
+#include "core/surface/surface_check.h"
+#include "layers/slide/slide.h"
 
 /* Surfaces ----------------------------------------------------------------*/
 

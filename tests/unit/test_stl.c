@@ -1,6 +1,6 @@
 #include "io_support.h"
 
-#include "io/stl.h"
+#include "io/mesh/stl.h"
 
 static const char floor_sample[] =
   "solid floor\n facet normal 0 0 -1\n  outer loop\n   vertex 0 0 0\n"

@@ -21,7 +21,7 @@
 #include <cmocka.h>
 
 #include "base/parallel.h"
-#include "partition/store.h"
+#include "partition/store/store.h"
 
 #define RUN_DIR VG_TMP_DIR "/store_run"
 

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <sys/stat.h>
 
-#include "io/stream.h"
+#include "io/stream/stream.h"
 
 /* Numbers without a pattern, the same on every run. */
 static uint64_t next_random(uint64_t *state)

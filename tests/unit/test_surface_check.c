@@ -11,9 +11,9 @@
 
 #include <cmocka.h>
 
-#include "core/surface_check.h"
-#include "core/surface_parts.h"
-#include "core/triangles.h"
+#include "core/geometry/triangles.h"
+#include "core/surface/surface_check.h"
+#include "core/surface/surface_parts.h"
 
 /* --- surfaces ------------------------------------------------------------ */
 

@@ -3,12 +3,12 @@
  * which were found with other programs. */
 #include "io_support.h"
 
-#include "core/surface_check.h"
-#include "io/medit.h"
-#include "io/obj.h"
-#include "io/stl.h"
-#include "io/tri.h"
-#include "io/ugrid.h"
+#include "core/surface/surface_check.h"
+#include "io/mesh/medit.h"
+#include "io/mesh/obj.h"
+#include "io/mesh/stl.h"
+#include "io/mesh/tri.h"
+#include "io/mesh/ugrid.h"
 
 static vg_status read_any(const char *path, struct vg_mesh *m,
                           struct vg_error *err)

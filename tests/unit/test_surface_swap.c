@@ -4,10 +4,10 @@
 
 #include "io_support.h"
 
-#include "core/surface_check.h"
-#include "core/surface_parts.h"
-#include "core/surface_swap.h"
-#include "io/ugrid.h"
+#include "core/surface/surface_check.h"
+#include "core/surface/surface_parts.h"
+#include "core/surface/surface_swap.h"
+#include "io/mesh/ugrid.h"
 
 /* --- surfaces ------------------------------------------------------------ */
 

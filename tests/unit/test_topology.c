@@ -9,9 +9,9 @@
 #include <cmocka.h>
 
 #include "base/memory.h"
-#include "core/vector.h"
-#include "layers/gram.h"
-#include "layers/topology.h"
+#include "core/geometry/vector.h"
+#include "layers/topology/gram.h"
+#include "layers/topology/topology.h"
 #include "topology_shapes.h"
 
 #define LEVELS 3

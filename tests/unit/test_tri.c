@@ -1,6 +1,6 @@
 #include "io_support.h"
 
-#include "io/tri.h"
+#include "io/mesh/tri.h"
 
 static const char t1_sample[] =
   "4 4\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 3 2\n1 2 4\n1 4 3\n2 3 4\n1\n1\n1\n1\n";

@@ -1,6 +1,6 @@
 #include "mixed_support.h"
 
-#include "io/ugrid.h"
+#include "io/mesh/ugrid.h"
 
 static const char *const suffix[] = {
   "ugrid", "b8.ugrid", "lb8.ugrid", "b4.ugrid", "lb4.ugrid", "r8.ugrid",

@@ -1,6 +1,6 @@
 #include "io_support.h"
 
-#include "io/vgrid.h"
+#include "io/vgrid/vgrid.h"
 
 /* T1 as formats.md 1.2 prints it, with VGRID's one trailing record. */
 static const unsigned char t1_cogsg[172] = {

@@ -1,6 +1,6 @@
 #include "io_support.h"
 
-#include "io/vtu.h"
+#include "io/mesh/vtu.h"
 
 /* A written file taken apart: attributes by plain text search, arrays by the
  * offsets that they declare. */

@@ -1,6 +1,6 @@
 /* Zones: final cells along planes, made from the part of a front near them;
  * what they part, what they cost, what stops them. */
-#include "io/ugrid.h"
+#include "io/mesh/ugrid.h"
 #include "zone_scene.h"
 
 /* --- planes, one after the other ----------------------------------------- */

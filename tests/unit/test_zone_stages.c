@@ -1,6 +1,6 @@
 /* Pencils, tiles and blocks of a lattice of planes: all regions of a stage are
  * grown from the same front, kept apart by walls. */
-#include "partition/lattice.h"
+#include "partition/cut/lattice.h"
 #include "zone_scene.h"
 
 struct stage {

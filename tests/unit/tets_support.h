@@ -7,10 +7,10 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "core/hilbert.h"
-#include "core/insert.h"
-#include "core/predicates.h"
-#include "core/tets.h"
+#include "core/delaunay/insert.h"
+#include "core/delaunay/tets.h"
+#include "core/geometry/hilbert.h"
+#include "core/geometry/predicates.h"
 
 /* Uniform in [0, 1), the same on every machine. */
 static inline double tets_random(uint64_t *seed)

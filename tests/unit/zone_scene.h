@@ -7,7 +7,7 @@
 
 #include "fill_shapes.h"
 #include "front_parts.h"
-#include "partition/job.h"
+#include "partition/cut/job.h"
 #include "zone_support.h"
 
 struct scene {

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "core/grow.h"
+#include "core/fill/grow.h"
 
 /* The part of a void's front that a region needs. */
 struct zone_part {

@@ -16,9 +16,9 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "core/quality.h"
-#include "io/format.h"
-#include "io/vgrid.h"
+#include "core/judge/quality.h"
+#include "io/mesh/format.h"
+#include "io/vgrid/vgrid.h"
 
 #define LEVELS 256
 #define SAME_FOOT 1e-4     /* of two columns: VGRID's are a tenth apart */

@@ -38,8 +38,9 @@ finish() {
 }
 
 # Wait until the run directory is open, or the run has ended. Its lock must not
-# be there before. Before that there is nothing to be resumed, and Open MPI 4.1's
-# mpirun may wait for ever when a rank is killed while ranks connect to it.
+# be there before. Before that there is nothing to be resumed, and Open MPI
+# 4.1's mpirun may wait for ever when a rank is killed while ranks connect to
+# it.
 until_open() {
   until [ -e "$run_dir/run.lock" ] || ! kill -0 "$pid" 2> /dev/null; do
     sleep 0.01

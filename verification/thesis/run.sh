@@ -137,8 +137,9 @@ nozzle() {
 
 # The nozzle stands near the corner of a box of 80 lengths; its plume is a cone
 # of fine cells, ten lengths from the faces of the box, from which cells can
-# shrink to its spacing at a growth of 1.2. Spacing for a number of cells: nearly
-# all are in the cone and in the layer in which cells grow to twice its spacing.
+# shrink to its spacing at a growth of 1.2. Spacing for a number of cells:
+# nearly all are in the cone and in the layer in which cells grow to twice its
+# spacing.
 jet_project() {
   local d=$work/input/jet h
   mkdir -p "$d"

@@ -1,26 +1,77 @@
-# The test of includes can fail.
+# The test of the architecture can fail, for each of its reasons.
 check="$here/architecture.sh"
-mkdir -p good/src/base good/src/core
-echo '#include "base/x.h"' >good/src/core/x.c
-touch good/src/base/x.h
+mkdir -p good/src/base good/src/core/mesh good/src/core/fill
+cat >good/src/CMakeLists.txt <<'END'
+vg_room(base)
+vg_room(core/mesh base)
+vg_room(core/fill core/mesh)
+END
+touch good/src/base/x.h good/src/core/mesh/m_parts.h
+echo '#include "base/x.h"' >good/src/core/mesh/m.h
+echo '#include "core/mesh/m.h"' >good/src/core/fill/f.c
 "$check" good >out 2>err; status=$?
 exits 0
 
+# refused NAME TEXT: the copy of the good tree with this name, for this reason.
+refused() {
+  "$check" "$1" >out 2>err; status=$?
+  exits 1
+  says out "$2"
+}
+
 cp -r good upward
-echo '#include "core/x.h"' >upward/src/base/x.c
-touch upward/src/core/x.h
-"$check" upward >out 2>err; status=$?
-exits 1
-says out "src/base/x.c:1: base must not include core"
+echo '#include "core/mesh/m.h"' >upward/src/base/x.c
+refused upward "src/base/x.c:1: base must not include core/mesh"
+
+cp -r good unseen
+echo '#include "base/x.h"' >>unseen/src/core/fill/f.c
+refused unseen "src/core/fill/f.c:2: core/fill must not include base"
+
+cp -r good idle
+: >idle/src/core/mesh/m.h
+refused idle "core/mesh sees base, and includes nothing of it"
+
+cp -r good private
+echo '#include "core/mesh/m_parts.h"' >>private/src/core/fill/f.c
+refused private "core/mesh/m_parts.h is private to its room"
 
 cp -r good bare
-echo '#include "x.h"' >bare/src/core/x.c
-"$check" bare >out 2>err; status=$?
-exits 1
-says out "does not name its folder"
+echo '#include "m.h"' >>bare/src/core/fill/f.c
+refused bare "does not name its folder"
 
 cp -r good foreign
-echo '#include <tetgen.h>' >foreign/src/core/x.c
-"$check" foreign >out 2>err; status=$?
+echo '#include <tetgen.h>' >>foreign/src/core/fill/f.c
+refused foreign "includes <tetgen.h>"
+
+cp -r good circle
+echo '#include "core/mesh/m_parts.h"' >>circle/src/core/mesh/m.h
+echo '#include "core/mesh/m.h"' >circle/src/core/mesh/m_parts.h
+refused circle "headers include each other"
+
+cp -r good homeless
+mkdir homeless/src/core/odd
+touch homeless/src/core/odd/o.c
+refused homeless "src/core/odd: a folder without a place"
+
+cp -r good full
+for i in $(seq 41); do touch full/src/core/fill/f$i.c; done
+refused full "src/core/fill: 42 files, at most 40 in a room"
+
+cp -r good part
+cat >>part/src/CMakeLists.txt <<'END'
+vg_room(layers/grow core/fill)
+vg_room(io/mesh layers/grow)
+END
+refused part "io must not see layers/grow"
+
+# A symbol that is declared below and defined above.
+cp -r good symbol
+objects=build/src/CMakeFiles
+mkdir -p $objects/vg_base.dir $objects/vg_core_mesh.dir
+echo 'int vg_above(void); int vg_x(void) { return vg_above(); }' |
+  ${CC:-cc} -c -x c - -o $objects/vg_base.dir/x.o
+echo 'int vg_above(void) { return 1; }' |
+  ${CC:-cc} -c -x c - -o $objects/vg_core_mesh.dir/m.o
+"$check" symbol build >out 2>err; status=$?
 exits 1
-says out "includes <tetgen.h>"
+says out "base uses vg_above of core/mesh"

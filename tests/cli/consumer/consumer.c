@@ -4,9 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/mesh.h"
-#include "core/sizing.h"
-#include "core/surface_check.h"
+#include "core/mesh/mesh.h"
+#include "core/sizing/sizing.h"
+#include "core/surface/surface_check.h"
 
 static int make_surface(struct vg_mesh *m)
 {

@@ -1,0 +1,218 @@
+/* vanguard check: is this surface fit for meshing, is this mesh valid and how
+ * good is it? */
+#define _GNU_SOURCE
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/commands/commands.h"
+#include "cli/common/cli.h"
+#include "cli/common/text.h"
+#include "cli/input/input.h"
+#include "cli/report/report.h"
+#include "cli/settings/deck.h"
+#include "cli/settings/options.h"
+#include "io/mesh/format.h"
+#include "io/mesh/ugrid.h"
+
+struct arguments {
+  const char *file, *deck, *defects;
+  int json, quiet;
+};
+
+static error_t option(int key, char *arg, struct argp_state *state)
+{
+  struct arguments *a = state->input;
+
+  switch (key) {
+  case 'd': a->deck = arg; return 0;
+  case 'f': a->defects = arg; return 0;
+  case 'j': a->json = 1; return 0;
+  case 'q': a->quiet = 1; return 0;
+  case ARGP_KEY_ARG:
+    if (a->file) argp_error(state, "one file at a time: %s", arg);
+    a->file = arg;
+    return 0;
+  case ARGP_KEY_END:
+    if (!a->file) argp_error(state, "which file?");
+    return 0;
+  default: return ARGP_ERR_UNKNOWN;
+  }
+}
+
+/* Spacing against which edges are held: that of the deck. */
+static vg_status field(const struct arguments *a, const struct vg_mesh *m,
+                       struct vg_sizing **out, struct vg_error *err)
+{
+  struct vg_settings s;
+  struct vg_sizing_options options;
+  vg_status st;
+
+  if (!a->deck) return VG_OK;
+  vg_settings_default(&s);
+  VG_TRY(vg_deck_read(a->deck, &s, err));
+  options = vg_settings_sizing(&s);
+  VG_TRY(vg_sizing_new(&options, s.n_source, s.source, m, out, err));
+done:
+  vg_settings_release(&s);
+  return st;
+}
+
+static void print_json(json_t *o)
+{
+  json_dumpf(o, stdout, JSON_INDENT(2));
+  printf("\n");
+  json_decref(o);
+}
+
+/* Cells that were the wrong way round are mirrored on reading. In a mesh that
+ * is not valid, those of a file of 4-byte reals may be what rounding made. */
+static vg_status not_valid(const struct arguments *a,
+                           const struct vg_turned *turned,
+                           struct vg_error *err)
+{
+  struct vg_ugrid_kind kind;
+  char cells[80] = "";
+
+  if (!vg_ugrid_kind(a->file, &kind) || kind.real_size != 4)
+    return vg_fail(err, VG_ERR_GEOMETRY, "%s: the mesh is not valid", a->file);
+  if (turned->cell)
+    snprintf(cells, sizeof cells, " (inverted cells in it: %zu)",
+             turned->cell);
+  return vg_fail(err, VG_ERR_GEOMETRY, "%s: the mesh is not valid%s; its "
+                 "coordinates are 4-byte reals: where it was valid before it "
+                 "was written, rounding spoilt it; write 8-byte reals, as "
+                 ".lb8.ugrid has", a->file, cells);
+}
+
+static vg_status check_mesh(const struct arguments *a, struct vg_mesh *m,
+                            const struct vg_turned *turned,
+                            struct vg_error *err)
+{
+  struct vg_mesh_report r;
+  struct vg_sizing *sizing = NULL;
+  vg_status st;
+
+  memset(&r, 0, sizeof r);
+  VG_TRY(field(a, m, &sizing, err));
+  VG_TRY(vg_mesh_judge(m, sizing, &r, err));
+  if (a->json) {
+    print_json(json_pack("{s:o s:b s:I s:o s:o s:o}", "file",
+                         vg_text_json(a->file), "ok", r.is_valid,
+                         "cells_turned", (json_int_t)turned->cell, "size",
+                         vg_report_size_json(m), "patches",
+                         vg_report_patches_json(m), "mesh",
+                         vg_report_mesh_json(&r)));
+  } else {
+    printf("%s: volume mesh\n", a->file);
+    vg_report_size_text(stdout, m);
+    VG_TRY(vg_report_patches_text(stdout, m, err));
+    if (turned->cell)
+      printf("  cells of negative volume, mirrored on reading: %zu\n",
+             turned->cell);
+    vg_report_mesh_text(stdout, &r, 1);
+  }
+  if (!r.is_valid) st = not_valid(a, turned, err);
+done:
+  vg_sizing_free(sizing);
+  return st;
+}
+
+static vg_status write_defects(const struct arguments *a,
+                               const struct vg_mesh *m,
+                               const struct vg_surface_report *r,
+                               struct vg_error *err)
+{
+  vg_status st;
+
+  if (!a->defects || !r->n_defect) return VG_OK;
+  vg_display_end_at_once(0);
+  st = vg_write_defects(a->defects, m, r, err);
+  if (st >= 0 && !a->json)
+    printf("  all faces with a defect: %s\n", a->defects);
+  return st;
+}
+
+static vg_status check_surface(const struct arguments *a, struct vg_mesh *m,
+                               struct vg_error *err)
+{
+  struct vg_surface_check_options o = VG_SURFACE_CHECK_OPTIONS_INIT;
+  struct vg_surface_report r = VG_SURFACE_REPORT_INIT;
+  struct vg_notes notes = { 0 };
+  int external = -1;
+  vg_status st;
+
+  o.require_bc = vg_surface_has_conditions(m);
+  VG_TRY(vg_surface_examine(m, &o, &external, &r, &notes, err));
+  if (a->json) {
+    print_json(json_pack("{s:o s:b s:s s:o s:o s:o}", "file",
+                         vg_text_json(a->file), "ok",
+                         r.n_defect == 0, "taken_as",
+                         external ? "bodies" : "domain",
+                         "size", vg_report_size_json(m), "patches",
+                         vg_report_patches_json(m),
+                         "surface",
+                         vg_report_surface_json(m, &r, VG_SHOWN_DEFECTS)));
+  } else {
+    printf("%s: surface, %s\n", a->file,
+           external ? "taken as bodies in a fluid around them"
+                      : "taken as the boundary of a fluid inside it");
+    vg_report_size_text(stdout, m);
+    VG_TRY(vg_report_patches_text(stdout, m, err));
+    vg_report_surface_text(stdout, m, &r, VG_SHOWN_DEFECTS);
+    for (size_t i = 0; i < notes.n; i++)
+      printf("  note: %s\n", notes.text[i]);
+    if (!r.n_defect) printf("  no defects\n");
+  }
+  VG_TRY(write_defects(a, m, &r, err));
+  if (r.n_defect)
+    st = vg_fail(err, VG_ERR_GEOMETRY, "%s: the surface has %zu defects",
+                 a->file, r.n_defect);
+  else if (!m->n_tri)
+    st = vg_fail(err, VG_ERR_GEOMETRY, "%s: no surface is left: all its "
+                 "triangles are degenerate", a->file);
+done:
+  vg_notes_release(&notes);
+  vg_surface_report_release(&r);
+  return st;
+}
+
+int vg_cmd_check(int argc, char **argv)
+{
+  const struct argp_option options[] = {
+    { "deck", 'd', "FILE", 0, "hold the edges of a volume mesh against the "
+      "spacing of this deck (of a run: PROJECT.resolved.deck)", 0 },
+    { "defects", 'f', "FILE", 0, "write all faces with a defect to this .vtu "
+      "file", 0 },
+    { "json", 'j', NULL, 0, "report as JSON", 0 },
+    { "quiet", 'q', NULL, 0, "no progress", 0 },
+    { 0 }
+  };
+  const struct argp argp = { .options = options, .parser = option,
+    .args_doc = "FILE",
+    .doc = "Judge FILE: a volume mesh (validity, dihedral angles, radius "
+      "ratio, histograms, worst cells) or a surface (open and non-manifold "
+      "edges, orientation, duplicates, intersections, shells, conditions).\v"
+      "Exit status 0 when nothing is wrong, 1 otherwise." };
+  struct arguments a = { 0 };
+  struct vg_display show;
+  struct vg_mesh m = VG_MESH_INIT;
+  struct vg_read_info info = { 0 };
+  struct vg_error err = VG_ERROR_INIT;
+  vg_status st;
+
+  vg_cli_parse(&argp, argc, argv, &a);
+  vg_display_init(&show, a.quiet);
+  vg_display_end_at_once(1);
+  vg_display_update(&show, "read", 0, 0);
+  st = vg_mesh_read(a.file, &m, &info, &err);
+  if (st >= 0) {
+    vg_display_update(&show, "check", 0, 0);
+    vg_display_clear(&show);
+    st = m.n_tet + m.n_pyr + m.n_pri + m.n_hex
+           ? check_mesh(&a, &m, &info.turned, &err)
+           : check_surface(&a, &m, &err);
+  }
+  vg_display_clear(&show);
+  vg_mesh_release(&m);
+  return st < 0 ? vg_cli_fail(&err) : VG_EXIT_DONE;
+}

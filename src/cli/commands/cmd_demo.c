@@ -1,0 +1,198 @@
+/* vanguard demo: complete example projects that need no foreign data. */
+#define _GNU_SOURCE
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/memory.h"
+#include "cli/commands/commands.h"
+#include "cli/common/cli.h"
+#include "cli/common/ranges.h"
+#include "cli/examples/demo.h"
+#include "cli/settings/deck.h"
+#include "cli/settings/options.h"
+#include "io/mesh/format.h"
+#include "io/vgrid/mapbc.h"
+
+struct arguments {
+  const char *name, *dir;
+  size_t n_cell;
+  int list;
+};
+
+static error_t option(int key, char *arg, struct argp_state *state)
+{
+  struct arguments *a = state->input;
+  int64_t n;
+
+  switch (key) {
+  case 'o': a->dir = arg; return 0;
+  case 'l': a->list = 1; return 0;
+  case 'c':
+    if (!vg_parse_count(arg, strlen(arg), &n) || n < 1)
+      argp_error(state, "--cells takes a whole number, not '%s'", arg);
+    a->n_cell = (size_t)n;
+    return 0;
+  case ARGP_KEY_ARG:
+    if (a->name) argp_error(state, "one demo at a time: %s", arg);
+    a->name = arg;
+    return 0;
+  case ARGP_KEY_END:
+    if (!a->name && !a->list)
+      argp_error(state, "which demo? --list shows them");
+    return 0;
+  default: return ARGP_ERR_UNKNOWN;
+  }
+}
+
+static int list_cases(void)
+{
+  size_t n;
+  const struct vg_demo_case *c = vg_demo_cases(&n);
+  char count[32];
+
+  for (size_t i = 0; i < n; i++)
+    printf("%-16s %s (%s cells)\n", c[i].name, c[i].summary,
+           vg_cli_count(c[i].n_cell, count));
+  return VG_EXIT_DONE;
+}
+
+/* Cases with viscous layers: a flow at Re 5 million of the mean chord. */
+static const struct rans {
+  const char *name;
+  double y_plus, reynolds, length;
+} rans_cases[] = {
+  { "wing", 1, 5e6, 0.7 }, { "wing-half", 1, 5e6, 0.7 },
+  { "wing-sharp", 1, 5e6, 0.7 }, { "wing-sharp-half", 1, 5e6, 0.7 },
+};
+
+static const char layer_comment[] =
+  "# Viscous layers grow on the patches of condition 4 in the .mapbc. Their\n"
+  "# first height follows from y_plus, reynolds and reference_length (the\n"
+  "# mean chord) below; 'vanguard mesh --layers no' makes isotropic cells\n"
+  "# only, '--cells mixed' leaves prisms whole.\n";
+
+/* 1 when the case has layers. */
+static int set_layers(const char *name, struct vg_settings *s)
+{
+  for (size_t i = 0; i < sizeof rans_cases / sizeof *rans_cases; i++) {
+    if (strcmp(rans_cases[i].name, name) != 0) continue;
+    s->layer.y_plus = rans_cases[i].y_plus;
+    s->layer.reynolds = rans_cases[i].reynolds;
+    s->layer.length = rans_cases[i].length;
+    return 1;
+  }
+  return 0;
+}
+
+/* The recommended settings of the case as a deck. */
+static vg_status settings_of(const char *name, const struct vg_demo *demo,
+                             struct vg_settings *s, struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  vg_settings_default(s);
+  snprintf(s->title, sizeof s->title, "Vanguard demo: %s", name);
+  s->scale = demo->sizing.scale;
+  s->growth = demo->sizing.growth;
+  s->hmin = demo->sizing.h_min;
+  s->hmax = demo->sizing.h_max;
+  s->surface_sizes = demo->sizing.from_surface;
+  s->farfield.kind = VG_DOMAIN_NONE;
+  for (size_t i = 0; i < demo->n_source && st >= 0; i++)
+    st = vg_settings_add(s, VG_TABLE_SOURCES, &demo->source[i], err);
+  return st;
+}
+
+/* STEM.suffix, which must not be there yet. */
+static vg_status new_path(const char *stem, const char *suffix, char **out,
+                          struct vg_error *err)
+{
+  if (asprintf(out, "%s.%s", stem, suffix) < 0) {
+    *out = NULL;
+    return vg_fail_memory(err, "a path");
+  }
+  if (access(*out, F_OK)) return VG_OK;
+  return vg_fail(err, VG_ERR_INPUT, "%s exists and is not overwritten; remove "
+                 "it or choose another folder with --out", *out);
+}
+
+static vg_status write_project(const char *stem, const char *name,
+                               size_t wanted, const struct vg_demo *demo,
+                               struct vg_error *err)
+{
+  char *path[3] = { NULL }, points[32], triangles[32], cells[32];
+  struct vg_settings s = VG_SETTINGS_INIT;
+  int has_layers;
+  vg_status st;
+
+  VG_TRY(new_path(stem, "lb8.ugrid", &path[0], err));
+  VG_TRY(new_path(stem, "mapbc", &path[1], err));
+  VG_TRY(new_path(stem, "deck", &path[2], err));
+  VG_TRY(settings_of(name, demo, &s, err));
+  VG_TRY(vg_format_write(path[0], &demo->surface, err));
+  VG_TRY(vg_mapbc_write(path[1], &demo->surface, VG_MAPBC_VGRID, name, NULL,
+                        err));
+  has_layers = set_layers(name, &s);
+  VG_TRY(vg_deck_write(path[2], &s, has_layers ? layer_comment : NULL,
+                       has_layers, err));
+  printf("%s: surface of %s points, %s triangles\n", path[0],
+         vg_cli_count(demo->surface.n_point, points),
+         vg_cli_count(demo->surface.n_tri, triangles));
+  printf("%s: boundary conditions of %zu patches\n", path[1],
+         demo->surface.n_patch);
+  printf("%s: settings, for about %s cells%s\n", path[2],
+         vg_cli_count((unsigned long long)demo->n_cell, cells),
+         has_layers ? " without the viscous layers" : "");
+  if (wanted && demo->n_cell > 1.05 * (double)wanted)
+    printf("  %s cells were asked for: the geometry needs more\n",
+           vg_cli_count(wanted, cells));
+  printf("Next: vanguard mesh -p %s\n", stem);
+done:
+  for (int i = 0; i < 3; i++) free(path[i]);
+  vg_settings_release(&s);
+  return st;
+}
+
+static vg_status make(const struct arguments *a, struct vg_error *err)
+{
+  struct vg_demo demo = VG_DEMO_INIT;
+  char *stem = NULL;
+  vg_status st;
+
+  VG_TRY(vg_demo_make(a->name, a->n_cell, &demo, err));
+  if (a->dir) VG_TRY(vg_cli_make_folder(a->dir, err));
+  if (asprintf(&stem, "%s%s%s", a->dir ? a->dir : "", a->dir ? "/" : "",
+               a->name) < 0) {
+    stem = NULL;
+    st = vg_fail_memory(err, "a path");
+    goto done;
+  }
+  VG_TRY(write_project(stem, a->name, a->n_cell, &demo, err));
+done:
+  free(stem);
+  vg_demo_release(&demo);
+  return st;
+}
+
+int vg_cmd_demo(int argc, char **argv)
+{
+  const struct argp_option options[] = {
+    { "cells", 'c', "N", 0, "wanted number of cells, without layers [default "
+      "by case]", 0 },
+    { "out", 'o', "DIR", 0, "folder for the project, made where absent "
+      "[default here]", 0 },
+    { "list", 'l', NULL, 0, "list the cases", 0 },
+    { 0 }
+  };
+  const struct argp argp = { .options = options, .parser = option,
+    .args_doc = "NAME",
+    .doc = "Write the project NAME: NAME.lb8.ugrid (surface), NAME.mapbc "
+      "(conditions) and NAME.deck (settings), ready for vanguard mesh." };
+  struct arguments a = { 0 };
+  struct vg_error err = VG_ERROR_INIT;
+
+  vg_cli_parse(&argp, argc, argv, &a);
+  if (a.list) return list_cases();
+  return make(&a, &err) < 0 ? vg_cli_fail(&err) : VG_EXIT_DONE;
+}

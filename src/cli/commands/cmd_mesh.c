@@ -1,0 +1,524 @@
+/* vanguard mesh: a project in, a volume mesh out. */
+#define _GNU_SOURCE
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cli/commands/commands.h"
+#include "cli/common/cli.h"
+#include "cli/common/ranges.h"
+#include "cli/common/text.h"
+#include "cli/input/layers.h"
+#include "cli/plot/timeline.h"
+#include "cli/report/report.h"
+#include "cli/run/output.h"
+#include "cli/run/run.h"
+#include "cli/settings/options.h"
+#include "io/stream/stream.h"
+
+struct arguments {
+  const char *project, *deck, *dir;
+  int json, quiet, timeline;
+  struct vg_run_options run;
+  struct vg_cli_kept kept;
+};
+
+struct run {
+  struct vg_problem problem;
+  struct vg_outputs outputs;
+  struct vg_display show;
+  struct vg_layer_stage layers;
+  struct vg_run mesh;
+  double start, time_read, time_check, time_write, time_digest;
+};
+
+/* Options that are no settings: they do not change the mesh. */
+enum { KEY_TIMELINE = 1, KEY_RUN_DIR, KEY_RESUME, KEY_KEEP, KEY_LIMIT,
+       KEY_SHUFFLE };
+
+static error_t limit(const char *text, uint64_t *to,
+                     const struct argp_state *state)
+{
+  int64_t v;
+
+  if (!vg_parse_count(text, strlen(text), &v) || v < 0)
+    argp_error(state, "'%s' is no number from 0 up", text);
+  *to = (uint64_t)v;
+  return 0;
+}
+
+static error_t option(int key, char *arg, struct argp_state *state)
+{
+  struct arguments *a = state->input;
+
+  switch (key) {
+  case 'p': a->project = arg; return 0;
+  case 'd': a->deck = arg; return 0;
+  case 'o': a->dir = arg; return 0;
+  case 'j': a->json = 1; return 0;
+  case 'q': a->quiet = 1; return 0;
+  case KEY_TIMELINE: a->timeline = 1; return 0;
+  case KEY_RUN_DIR: a->run.dir = arg; return 0;
+  case KEY_RESUME: a->run.resume = 1; return 0;
+  case KEY_KEEP: a->run.keep = 1; return 0;
+  case KEY_LIMIT: return limit(arg, &a->run.limit, state);
+  case KEY_SHUFFLE: return limit(arg, &a->run.shuffle, state);
+  case 'L': key = vg_cli_option_key("levels"); break;
+  case 't': key = vg_cli_option_key("threads"); break;
+  case ARGP_KEY_ARG:
+    if (a->project) argp_error(state, "one project at a time: %s", arg);
+    a->project = arg;
+    return 0;
+  case ARGP_KEY_END:
+    if (!a->project)
+      argp_error(state, "which project? give -p PROJECT");
+    if (a->run.resume && !a->run.dir)
+      argp_error(state, "--resume needs the --run-dir of the run");
+    return 0;
+  default:
+    break;
+  }
+  return vg_cli_keep(&a->kept, key, arg, state);
+}
+
+/* Stages up to a surface as read, by each rank. */
+static vg_status read_project(struct run *r, const struct arguments *a,
+                              struct vg_error *err)
+{
+  struct vg_problem *p = &r->problem;
+  double t = vg_display_now();
+  vg_status st;
+
+  VG_TRY(vg_display_stopped(err));
+  vg_display_update(&r->show, "read", 0, 0);
+  VG_TRY(vg_input_find(a->project, a->deck, &p->files, err));
+  VG_TRY(vg_problem_deck(p, err));
+  VG_TRY(vg_cli_apply(&a->kept, &p->settings, err));
+  vg_settings_write(&p->settings);
+  VG_TRY(vg_outputs_plan(p, a->dir, vg_comm_size(r->mesh.comm), &r->outputs,
+                         err));
+  VG_TRY(vg_problem_surface(p, err));
+  r->time_read = vg_display_now() - t;
+  VG_TRY(vg_display_stopped(err));
+done:
+  return st;
+}
+
+static vg_status close_surface(struct run *r, struct vg_error *err)
+{
+  struct vg_run *m = &r->mesh;
+  double t = vg_display_now();
+  vg_status st;
+
+  VG_TRY(vg_run_surface(m, &r->problem, &r->layers, &r->show, err));
+  r->time_check = vg_display_now() - t;
+  st = vg_outputs_check(&r->problem, &r->outputs, err);
+  if (st >= 0) st = vg_display_stopped(err);
+  st = vg_comm_agree(m->comm, st, err);
+done:
+  return st;
+}
+
+static json_t *strings(const struct vg_notes *notes)
+{
+  json_t *list = json_array();
+
+  for (size_t i = 0; i < notes->n; i++)
+    json_array_append_new(list, vg_text_json(notes->text[i]));
+  return list;
+}
+
+static json_t *files_json(const struct run *r)
+{
+  json_t *list = json_array();
+
+  for (size_t i = 0; i < r->outputs.n_file; i++) {
+    const struct vg_outputs_file *f = &r->outputs.file[i];
+    char *path = vg_outputs_final(&r->outputs, f->suffix), digest[36];
+    json_t *one = json_object();
+
+    json_object_set_new(one, "path", vg_text_json(path ? path : ""));
+    if (f->digest[0] || f->digest[1]) {
+      snprintf(digest, sizeof digest, "%016llx%016llx",
+               (unsigned long long)f->digest[0],
+               (unsigned long long)f->digest[1]);
+      json_object_set_new(one, "bytes", json_integer((json_int_t)f->bytes));
+      json_object_set_new(one, "xxh3", json_string(digest));
+    }
+    json_array_append_new(list, one);
+    free(path);
+  }
+  return list;
+}
+
+/* What bounds the field. */
+static const struct vg_mesh *front_of(const struct run *r)
+{
+  return r->layers.is_on ? &r->layers.layers.front.mesh
+                         : &r->problem.surface;
+}
+
+static json_t *report_json(const struct run *r, int ok,
+                           const struct vg_error *err)
+{
+  const struct vg_problem *p = &r->problem;
+  json_t *o = json_object();
+
+  json_object_set_new(o, "vanguard", json_string(VG_VERSION));
+  json_object_set_new(o, "title", vg_text_json(p->settings.title));
+  json_object_set_new(o, "ok", json_boolean(ok));
+  if (!ok) json_object_set_new(o, "error", vg_text_json(err->text));
+  json_object_set_new(o, "input", vg_report_size_json(&p->surface));
+  json_object_set_new(o, "patches", vg_report_patches_json(&p->surface));
+  json_object_set_new(o, "surface", vg_report_surface_json(&p->surface,
+                      &p->check, VG_SHOWN_DEFECTS));
+  json_object_set_new(o, "domain", vg_report_domain_json(&p->domain));
+  json_object_set_new(o, "notes", strings(&p->notes));
+  if (ok) {
+    json_object_set_new(o, "sources", vg_held_json(&r->mesh.held, front_of(r),
+                                                   &p->settings));
+    json_object_set_new(o, "mesh", vg_report_mesh_json(&r->mesh.judge));
+    json_object_set_new(o, "fill",
+                        vg_report_fill_json(&r->mesh.partition.fill,
+                                            r->mesh.n_field_cell));
+    json_object_set_new(o, "partition", vg_report_partition_json(&r->mesh));
+    if (r->layers.is_on) {
+      json_object_set_new(o, "field",
+                          vg_report_mesh_json(&r->mesh.field_judge));
+      json_object_set_new(o, "layers",
+                          vg_report_layers_json(&r->layers, &p->surface));
+    }
+    json_object_set_new(o, "files", files_json(r));
+  }
+  json_object_set_new(o, "seconds", json_pack(
+    "{s:f s:f s:f s:f s:f s:f s:f s:f s:f s:f}",
+    "read", r->time_read, "check", r->time_check, "sizes", r->mesh.time_size,
+    "layers", r->mesh.time_layers, "fill", r->mesh.time_fill,
+    "number", r->mesh.partition.number,
+    "judge", r->mesh.time_judge, "write", r->time_write,
+    "digest", r->time_digest, "total", vg_display_now() - r->start));
+  json_object_set_new(o, "peak_memory_bytes",
+                      json_real(r->mesh.memory > 0 ? r->mesh.memory
+                                : vg_report_peak_memory()));
+  return o;
+}
+
+static vg_status write_json(const char *path, const json_t *o,
+                            struct vg_error *err)
+{
+  struct vg_output out = VG_OUTPUT_INIT;
+  char *text = json_dumps(o, JSON_INDENT(2));
+  vg_status st;
+
+  if (!text) return vg_fail_memory(err, "the report");
+  st = vg_output_open(path, &out, err);
+  if (st >= 0) {
+    vg_output_text(&out, text);
+    vg_output_text(&out, "\n");
+    st = vg_output_commit(&out, err);
+  }
+  vg_output_release(&out);
+  free(text);
+  return st;
+}
+
+/* Phases as the record of the run has them. */
+static vg_status write_timeline(struct run *r, struct vg_error *err)
+{
+  struct vg_timeline t = VG_TIMELINE_INIT;
+  const struct vg_slices *m = &r->mesh.slices;
+  char *path;
+  vg_status st;
+
+  VG_TRY(vg_outputs_add(&r->outputs, "timeline.json", err));
+  snprintf(t.title, sizeof t.title, "%s", r->problem.settings.title);
+  t.seconds[VG_PHASE_READ] = r->time_read;
+  t.seconds[VG_PHASE_CHECK] = r->time_check;
+  t.seconds[VG_PHASE_SIZES] = r->mesh.time_size;
+  t.seconds[VG_PHASE_LAYERS] = r->mesh.time_layers;
+  t.seconds[VG_PHASE_NUMBER] = r->mesh.partition.number;
+  t.seconds[VG_PHASE_JUDGE] = r->mesh.time_judge;
+  t.seconds[VG_PHASE_WRITE] = r->time_write + r->time_digest;
+  t.seconds[VG_PHASE_TOTAL] = vg_display_now() - r->start;
+  t.n_cell = vg_run_cells(&r->mesh);
+  t.n_point = m->n_point;
+  t.spans = r->mesh.spans;
+  path = vg_outputs_aside(&r->outputs, "timeline.json");
+  st = path ? vg_timeline_write(path, &t, err)
+            : vg_fail_memory(err, "the record of tasks");
+  free(path);
+done:
+  return st;
+}
+
+/* Rank 0's part: the reports, and putting everything into its place. */
+static vg_status finish(struct run *r, const struct arguments *a,
+                        struct vg_error *err)
+{
+  double t = vg_display_now();
+  char *path = NULL;
+  json_t *report = NULL;
+  vg_status st;
+
+  VG_TRY(vg_outputs_digest(&r->outputs, err));
+  r->time_digest = vg_display_now() - t;
+  if (a->timeline) VG_TRY(write_timeline(r, err));
+  VG_TRY(vg_outputs_add(&r->outputs, "report.json", err));
+  path = vg_outputs_aside(&r->outputs, "report.json");
+  report = report_json(r, 1, NULL);
+  st = path && report ? write_json(path, report, err)
+                      : vg_fail_memory(err, "the report");
+  if (st < 0) goto done;
+  VG_TRY(vg_display_stopped(err));
+  VG_TRY(vg_outputs_commit(&r->outputs, err));
+done:
+  json_decref(report);
+  free(path);
+  return st;
+}
+
+static vg_status write_all(struct run *r, const struct arguments *a,
+                           struct vg_error *err)
+{
+  struct vg_run *m = &r->mesh;
+  double t = vg_display_now();
+  vg_status st;
+
+  vg_display_update(&r->show, "write", vg_run_cells(m), 0);
+  VG_TRY(vg_outputs_mesh(&r->outputs, &r->problem, &r->layers, m->comm,
+                         &m->slices, m->threads, err));
+  r->time_write = vg_display_now() - t;
+  VG_TRY(vg_run_memory(m, err));
+  st = m->rank ? VG_OK : finish(r, a, err);
+  st = vg_comm_agree(m->comm, st, err);
+done:
+  return st;
+}
+
+static void print_surface(const struct run *r)
+{
+  const struct vg_problem *p = &r->problem;
+
+  printf("%s\n\nSurface\n", p->settings.title);
+  vg_report_size_text(stdout, &p->surface);
+  if (p->n_welded || p->n_dropped)
+    printf("  welded: %zu points merged, %zu triangles dropped\n",
+           p->n_welded, p->n_dropped);
+  vg_report_domain_text(stdout, &p->domain);
+  vg_report_surface_text(stdout, &p->surface, &p->check, VG_SHOWN_DEFECTS);
+  for (size_t i = 0; i < p->notes.n; i++)
+    printf("  note: %s\n", p->notes.text[i]);
+}
+
+static void print_count(const char *name, size_t n)
+{
+  char count[32];
+
+  printf("  %-24s %15s\n", name, vg_cli_count(n, count));
+}
+
+static void print_times(const struct run *r)
+{
+  printf("\nTime in seconds: read %.2f, check %.2f, sizes %.2f, ",
+         r->time_read, r->time_check, r->mesh.time_size);
+  if (r->layers.is_on) printf("layers %.2f, ", r->mesh.time_layers);
+  printf("fill %.2f, number %.2f, judge %.2f, write %.2f, total %.2f\n",
+         r->mesh.time_fill, r->mesh.partition.number,
+         r->mesh.time_judge, r->time_write, vg_display_now() - r->start);
+  printf("Peak memory%s: %.0f MB\n",
+         r->mesh.size > 1 ? " of a rank" : "", r->mesh.memory / 1e6);
+}
+
+static void print_files(const struct run *r)
+{
+  printf("\nFiles\n");
+  for (size_t i = 0; i < r->outputs.n_file; i++) {
+    char *path = vg_outputs_final(&r->outputs, r->outputs.file[i].suffix);
+
+    printf("  %s%s\n", path ? path : "",
+           r->outputs.file[i].keep_old ? "  (input, kept)" : "");
+    free(path);
+  }
+}
+
+static void print_report(const struct run *r)
+{
+  const struct vg_run *m = &r->mesh;
+
+  print_surface(r);
+  if (r->layers.is_on) {
+    printf("\nLayers\n");
+    vg_report_layers_text(stdout, &r->layers, &r->problem.surface);
+  }
+  printf("\nPartition\n");
+  vg_report_partition_text(stdout, m);
+  printf("\nFill\n");
+  vg_report_fill_text(stdout, &m->partition.fill, m->n_field_cell);
+  if (r->layers.is_on) {
+    printf("\nField outside the layers\n");
+    print_count("tetrahedra", m->n_field_cell);
+    vg_report_mesh_text(stdout, &m->field_judge, 0);
+  }
+  printf("\nMesh\n");
+  print_count("points", m->slices.n_point);
+  print_count("tetrahedra", m->slices.n_cell[VG_SLICE_TET]);
+  if (m->slices.n_cell[VG_SLICE_PYR])
+    print_count("pyramids", m->slices.n_cell[VG_SLICE_PYR]);
+  if (m->slices.n_cell[VG_SLICE_PRI])
+    print_count("prisms", m->slices.n_cell[VG_SLICE_PRI]);
+  if (r->layers.is_on) vg_report_whole_text(stdout, &m->judge);
+  else vg_report_mesh_text(stdout, &m->judge, 0);
+  print_times(r);
+  print_files(r);
+}
+
+/* All faces with a defect go into STEM.defects.vtu. */
+static void show_defects(struct run *r, const struct arguments *a)
+{
+  struct vg_error err = VG_ERROR_INIT;
+  char *path;
+
+  if (!r->problem.check.n_defect || !r->outputs.dir) return;
+  if (!a->json) print_surface(r);
+  path = vg_outputs_final(&r->outputs, "defects.vtu");
+  if (!path) return;
+  if (vg_write_defects(path, &r->problem.surface, &r->problem.check,
+                       &err) < 0)
+    vg_cli_fail(&err);
+  else if (!a->json)
+    printf("  all faces with a defect: %s\n", path);
+  free(path);
+}
+
+static int print_json(const struct run *r, int ok, const struct vg_error *err)
+{
+  json_t *o = report_json(r, ok, err);
+  int bad = !o || json_dumpf(o, stdout, JSON_INDENT(2));
+
+  printf("\n");
+  json_decref(o);
+  return bad || fflush(stdout) ? VG_EXIT_FAILED : VG_EXIT_DONE;
+}
+
+static vg_status run_stages(struct run *r, const struct arguments *a,
+                            struct vg_error *err)
+{
+  struct vg_run *m = &r->mesh;
+  vg_status st;
+
+  r->mesh.options = a->run;
+  VG_TRY(vg_run_resumable(m, err));
+  VG_TRY(vg_comm_agree(m->comm, read_project(r, a, err), err));
+  VG_TRY(close_surface(r, err));
+  VG_TRY(vg_run_mesh(m, &r->problem, &r->layers, &r->show, err));
+  vg_held_note(&m->held, front_of(r), &r->problem);
+  vg_report_layers_note(&r->layers, &r->problem.surface, &r->problem.notes);
+  st = write_all(r, a, err);
+done:
+  return st;
+}
+
+static int report_failure(struct run *r, const struct arguments *a,
+                          const struct vg_error *err)
+{
+  if (r->mesh.rank) return vg_cli_exit(err);
+  show_defects(r, a);
+  if (a->json) print_json(r, 0, err);
+  return vg_cli_fail(err);
+}
+
+static int report_success(struct run *r, const struct arguments *a)
+{
+  int status = VG_EXIT_DONE;
+
+  if (r->mesh.rank) return status;
+  if (a->json) status = print_json(r, 1, NULL);
+  else print_report(r);
+  if (!r->layers.n_missed || status != VG_EXIT_DONE) return status;
+  fflush(stdout);
+  vg_report_missed_text(stderr, &r->layers, &r->problem.surface);
+  return VG_EXIT_LIMIT;
+}
+
+static int run(const struct arguments *a)
+{
+  struct run r = { .problem = VG_PROBLEM_INIT };
+  struct vg_error err = VG_ERROR_INIT;
+  int status;
+
+  r.start = vg_display_now();
+  if (vg_comm_open(&r.mesh.comm, &err) < 0) return vg_cli_fail(&err);
+  r.mesh.outputs = &r.outputs;
+  r.mesh.rank = vg_comm_rank(r.mesh.comm);
+  r.mesh.size = vg_comm_size(r.mesh.comm);
+  vg_display_init(&r.show, a->quiet || r.mesh.rank);
+  if (run_stages(&r, a, &err) < 0) {
+    vg_display_clear(&r.show);
+    status = report_failure(&r, a, &err);
+  } else {
+    vg_display_clear(&r.show);
+    status = report_success(&r, a);
+  }
+  vg_run_release(&r.mesh, status == VG_EXIT_DONE || status == VG_EXIT_LIMIT);
+  vg_outputs_release(&r.outputs);
+  vg_layer_stage_release(&r.layers);
+  vg_problem_release(&r.problem);
+  vg_comm_close(r.mesh.comm);
+  return status;
+}
+
+int vg_cmd_mesh(int argc, char **argv)
+{
+  const struct argp_option own[] = {
+    { "project", 'p', "PROJECT", 0, "stem of the project files, or the full "
+      "name of a surface file", 1 },
+    { "deck", 'd', "FILE", 0, "run deck [default PROJECT.deck if there is "
+      "one]", 1 },
+    { "out", 'o', "DIR", 0, "folder for the results [default beside the "
+      "input]", 1 },
+    { "json", 'j', NULL, 0, "report as JSON on standard output", 1 },
+    { "quiet", 'q', NULL, 0, "no progress", 1 },
+    { "timeline", KEY_TIMELINE, NULL, 0, "write what each worker did when, "
+      "PROJECT.timeline.json, for 'vanguard plan' and 'vanguard sweep'", 1 },
+    { "run-dir", KEY_RUN_DIR, "DIR", 0, "keep finished tasks here, so that a "
+      "run that is stopped or killed can be resumed; removed at success", 1 },
+    { "resume", KEY_RESUME, NULL, 0, "go on with what is kept in --run-dir, "
+      "on any number of ranks and threads", 1 },
+    { "keep-run", KEY_KEEP, NULL, 0, "keep --run-dir at success", 1 },
+    { "run-limit", KEY_LIMIT, "BYTES", 0, "keep no more in --run-dir, over all "
+      "ranks [default 0: no limit]", 1 },
+    { "shuffle-tasks", KEY_SHUFFLE, "SEED", 0, "do tasks in another order; "
+      "the files stay the same (a test) [default 0: heaviest first]", 1 },
+    { NULL, 't', "N", 0, "the same as --threads", 1 },
+    { NULL, 'L', "N", 0, "the same as --levels", 1 },
+    { 0 }
+  };
+  struct vg_cli_options options;
+  struct argp argp = { .parser = option, .args_doc = "-p PROJECT",
+    .doc = "Mesh the volume of a project: viscous layers on its walls "
+      "where they are asked for, tetrahedra in the rest.\v"
+      "A project is a VGRID project (PROJECT.d3m with PROJECT.front, or "
+      "planar patches alone) or a surface (UGRID, AFLR, STL, Cart3D, OBJ, "
+      "Medit), with conditions in PROJECT.mapbc and settings in PROJECT.deck. "
+      "Written are PROJECT.cogsg, .bc, .mapbc and .b8.ugrid, "
+      "PROJECT.resolved.deck with all settings, and PROJECT.report.json; a "
+      "surface with defects is refused and its bad faces are put into "
+      "PROJECT.defects.vtu. Layers "
+      "grow on viscous walls (condition 4, class 2 of a .d3m, --walls) once "
+      "a first height is known (--first, or --y-plus with --reynolds and "
+      "--reference-length); PROJECT.wall.vtu shows them. Under mpirun or srun "
+      "all ranks mesh together; the files are the same, byte for byte, for "
+      "any number of ranks and threads. Exit status: 0 "
+      "done, 1 failed, 2 wrong usage, 4 done but a limit on the layers "
+      "(--min-full, ...) is not met." };
+  struct arguments a = { 0 };
+  int status;
+
+  if (vg_cli_options(own, &options) < 0) return VG_EXIT_FAILED;
+  argp.options = options.option;
+  vg_cli_parse(&argp, argc, argv, &a);
+  status = run(&a);
+  free(a.kept.set);
+  vg_cli_options_free(&options);
+  return status;
+}

@@ -1,0 +1,298 @@
+/* vanguard sweep: the mesher over a grid of parameters. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/commands/commands.h"
+#include "cli/common/cli.h"
+#include "cli/common/progress.h"
+#include "cli/input/input.h"
+#include "cli/settings/deck.h"
+#include "cli/settings/options.h"
+#include "cli/sweep/sweep.h"
+#include "io/stream/stream.h"
+
+enum { KEY_LEAF_CELLS = 300, KEY_REPEAT, KEY_LAUNCHER, KEY_KEEP,
+       KEY_PROGRAM };
+
+/* Lists, from an option or from the deck. */
+enum { RANKS, THREADS, LEVELS, LEAF_CELLS, N_LIST };
+static const struct {
+  const char *option, *column;
+  int64_t lo, hi;
+} lists[N_LIST] = {
+  { "--ranks", "ranks", 1, 1000000 }, { "--threads", "threads", 1, 1000 },
+  { "--levels", "levels", 0, 40 },
+  { "--leaf-cells", "leaf_cells", 1, 1000000000000 } };
+
+static struct vg_range_list *list_of(struct vg_sweep_options *o, int k)
+{
+  return k == RANKS ? &o->ranks : k == THREADS ? &o->threads
+       : k == LEVELS ? &o->levels : &o->leaf_cells;
+}
+
+static void range(int k, const char *text, struct vg_sweep_options *o,
+                  const struct argp_state *state)
+{
+  struct vg_error err = VG_ERROR_INIT;
+
+  if (vg_range_parse(lists[k].option, text, lists[k].lo, lists[k].hi,
+                     list_of(o, k), &err) < 0)
+    argp_error(state, "%s", err.text);
+}
+
+static error_t option(int key, char *arg, struct argp_state *state)
+{
+  struct vg_sweep_options *o = state->input;
+  int64_t n;
+
+  switch (key) {
+  case 'p': o->project = arg; return 0;
+  case 'd': o->deck = arg; return 0;
+  case 'o': o->dir = arg; return 0;
+  case 'L': range(LEVELS, arg, o, state); return 0;
+  case KEY_LEAF_CELLS: range(LEAF_CELLS, arg, o, state); return 0;
+  case 'n': range(RANKS, arg, o, state); return 0;
+  case 't': range(THREADS, arg, o, state); return 0;
+  case KEY_REPEAT:
+    if (!vg_parse_int(arg, strlen(arg), &n) || n < 1 || n > 1000)
+      argp_error(state, "--repeat takes a number from 1 to 1000, not '%s'",
+                 arg);
+    o->repeat = (int)n;
+    return 0;
+  case KEY_LAUNCHER: o->launcher = arg; return 0;
+  case KEY_PROGRAM: o->program = arg; return 0;
+  case KEY_KEEP: o->keep = 1; return 0;
+  case 'j': o->json = 1; return 0;
+  case 'q': o->quiet = 1; return 0;
+  case ARGP_KEY_ARG:
+    if (o->project) argp_error(state, "one project at a time: %s; options "
+                               "for vanguard mesh come after '--'", arg);
+    o->project = arg;
+    return 0;
+  case ARGP_KEY_END:
+    if (!o->project) argp_error(state, "which project? give -p PROJECT");
+    return 0;
+  default: return ARGP_ERR_UNKNOWN;
+  }
+}
+
+/* --- what the deck says -------------------------------------------------- */
+
+/* A list of the deck, where no option gave one. */
+static vg_status take_list(const char *deck, int k, const char *text,
+                           struct vg_sweep_options *o, struct vg_error *err)
+{
+  char what[400];
+
+  if (!*text) return VG_OK;
+  snprintf(what, sizeof what, "%.300s: sweep: %s", deck, lists[k].column);
+  return vg_range_parse(what, text, lists[k].lo, lists[k].hi, list_of(o, k),
+                        err);
+}
+
+/* Options win over the deck; levels and leaf sizes are one question. */
+static vg_status take_row(const char *deck, const struct vg_sweep_row *row,
+                          struct vg_sweep_options *o, struct vg_error *err)
+{
+  const char *text[N_LIST] = { row->ranks, row->threads, row->levels,
+                               row->leaf_cells };
+  int given[N_LIST];
+  vg_status st = VG_OK;
+
+  for (int k = 0; k < N_LIST; k++) given[k] = list_of(o, k)->n > 0;
+  given[LEVELS] = given[LEAF_CELLS] = given[LEVELS] || given[LEAF_CELLS];
+  for (int k = 0; k < N_LIST && st >= 0; k++)
+    if (!given[k]) st = take_list(deck, k, text[k], o, err);
+  if (!o->repeat) o->repeat = (int)row->repeat;
+  return st;
+}
+
+/* A project that is not found is for its runs to tell. */
+static vg_status take_deck(struct vg_sweep_options *o, struct vg_error *err)
+{
+  struct vg_problem p = VG_PROBLEM_INIT;
+  const char *deck = o->deck;
+  vg_status st = VG_OK;
+
+  vg_settings_default(&p.settings);
+  if (!deck && vg_input_find(o->project, NULL, &p.files, NULL) >= 0)
+    deck = p.files.deck;
+  if (deck && *deck) st = vg_deck_read(deck, &p.settings, err);
+  if (st >= 0 && p.settings.n_sweep)
+    st = take_row(deck, &p.settings.sweep, o, err);
+  if (st >= 0 && !o->ranks.n)
+    st = vg_range_parse("--ranks", "1", 1, 1, &o->ranks, err);
+  if (st >= 0 && !o->threads.n)
+    st = vg_range_parse("--threads", "1", 1, 1, &o->threads, err);
+  if (!o->repeat) o->repeat = 1;
+  vg_problem_release(&p);
+  return st;
+}
+
+static void print_value(double v, int width, int digits)
+{
+  if (isfinite(v)) printf(" %*.*f", width, digits, v);
+  else printf(" %*s", width, "-");
+}
+
+static void print_head(const struct vg_sweep *s)
+{
+  int width = 4;
+
+  for (size_t i = 0; i < s->n; i++)
+    if ((int)strlen(s->item[i].name) > width)
+      width = (int)strlen(s->item[i].name);
+  printf("%-*s ranks threads   seconds speed-up  eff. %% cut+fill imbal. "
+         "idle %%       cells digest\n", width, "case");
+}
+
+static void print_case(const struct vg_sweep *s,
+                       const struct vg_sweep_case *c)
+{
+  double seconds = c->is_done ? vg_sweep_seconds(c) : NAN;
+  double speedup = vg_sweep_speedup(s, seconds);
+  const struct vg_spans *t = c->has_timeline ? &c->t.spans : NULL;
+  char cells[32];
+  int width = 4;
+
+  for (size_t i = 0; i < s->n; i++)
+    if ((int)strlen(s->item[i].name) > width)
+      width = (int)strlen(s->item[i].name);
+  printf("%-*s %5d %7d", width, c->name, c->ranks, c->threads);
+  if (!c->is_done) {
+    printf(" %s, status %d: %s\n", c->is_run ? "failed" : "not run",
+           c->exit_status, c->note);
+    return;
+  }
+  print_value(seconds, 9, 2);
+  print_value(speedup, 8, 2);
+  print_value(100 * speedup / (c->ranks * c->threads), 7, 1);
+  print_value(t ? t->wall : NAN, 8, 2);
+  print_value(t ? vg_spans_imbalance(t) : NAN, 6, 3);
+  print_value(t ? 100 * (1 - vg_spans_busy(t)) : NAN, 6, 1);
+  printf(" %11s %.8s%s%s\n", t ? vg_cli_count(c->t.n_cell, cells) : "-",
+         c->digest[0] ? c->digest : "-", c->note[0] ? "  " : "", c->note);
+}
+
+/* Returns the exit status. */
+static int conclude(const struct vg_sweep *s)
+{
+  const struct vg_sweep_case *a, *b;
+  size_t n_done = 0, compared;
+  char file[64];
+  FILE *to = s->o->json ? stderr : stdout;
+
+  for (size_t i = 0; i < s->n; i++) n_done += (size_t)s->item[i].is_done;
+  fprintf(to, "\n%zu of %zu cases done; tables and figures in %s\n", n_done,
+          s->n, s->o->dir);
+  if (vg_sweep_differ(s, &compared, &a, &b, file)) {
+    fprintf(to, "Digests DIFFER: %s is not the same in %s and %s\n", file,
+            a->name, b->name);
+    return VG_EXIT_LIMIT;
+  }
+  if (compared)
+    fprintf(to, "Digests agree: equal mesh options gave the same files "
+            "(%zu compared)\n", compared);
+  else
+    fprintf(to, "Digests were not compared: no two cases with equal mesh "
+            "options gave digests\n");
+  return n_done == s->n ? VG_EXIT_DONE : VG_EXIT_FAILED;
+}
+
+static vg_status run_all(struct vg_sweep *s, struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  for (size_t i = 0; i < s->n && st >= 0; i++) {
+    struct vg_sweep_case *c = &s->item[i];
+
+    if (!s->o->quiet)
+      fprintf(stderr, "%zu of %zu: %s\n", i + 1, s->n, c->name);
+    st = vg_sweep_run(s->o, c, err);
+    if (c->is_run) vg_sweep_collect(s->o, c);
+  }
+  return st;
+}
+
+/* A sweep that was stopped shows what there is. */
+static int run(struct vg_sweep_options *o)
+{
+  struct vg_sweep s = { .n = 0 };
+  struct vg_display show;
+  struct vg_error err = VG_ERROR_INIT, why = VG_ERROR_INIT;
+  int status = VG_EXIT_FAILED;
+  vg_status st, ran;
+
+  vg_display_init(&show, o->quiet);
+  VG_TRY(take_deck(o, &err));
+  VG_TRY(vg_sweep_plan(o, &s, &err));
+  VG_TRY(vg_cli_make_folder(o->dir, &err));
+  ran = run_all(&s, &why);
+  VG_TRY(vg_sweep_write(&s, &err));
+  VG_TRY(vg_sweep_draw(&s, &err));
+  if (!o->json) {
+    print_head(&s);
+    for (size_t i = 0; i < s.n; i++) print_case(&s, &s.item[i]);
+  }
+  status = conclude(&s);
+  if (ran < 0) status = vg_cli_fail(&why);
+done:
+  vg_sweep_release(&s);
+  return st < 0 ? vg_cli_fail(&err) : status;
+}
+
+int vg_cmd_sweep(int argc, char **argv)
+{
+  const struct argp_option options[] = {
+    { "project", 'p', "PROJECT", 0, "as for vanguard mesh", 1 },
+    { "deck", 'd', "FILE", 0, "run deck, for vanguard mesh too; lists that no "
+      "option gives come from its table sweep [default PROJECT.deck if there "
+      "is one]", 1 },
+    { "levels", 'L', "LIST", 0, "levels of bisection: 1,2,4 or 3:7 or "
+      "2:10:2", 2 },
+    { "leaf-cells", KEY_LEAF_CELLS, "LIST", 0, "cells to a leaf; both lists "
+      "make cases of their own [default as vanguard mesh has it]", 2 },
+    { "ranks", 'n', "LIST", 0, "numbers of ranks [default 1]", 2 },
+    { "threads", 't', "LIST", 0, "threads of each rank [default 1]", 2 },
+    { "repeat", KEY_REPEAT, "K", 0, "times that each case is run [default "
+      "1]", 2 },
+    { "launcher", KEY_LAUNCHER, "COMMAND", 0, "how ranks are started, e.g. "
+      "'srun -n {ranks} -c {threads}' [default 'mpirun -n {ranks} --bind-to "
+      "none', nothing for one rank]", 3 },
+    { "out", 'o', "DIR", 0, "folder for tables, figures and a folder for "
+      "each case [default sweep]", 3 },
+    { "keep", KEY_KEEP, NULL, 0, "keep all meshes [default: reports, records "
+      "and logs only]", 3 },
+    { "json", 'j', NULL, 0, "table as JSON on standard output", 3 },
+    { "quiet", 'q', NULL, 0, "no progress", 3 },
+    { "program", KEY_PROGRAM, "FILE", OPTION_HIDDEN, "instead of this "
+      "program", 3 },
+    { 0 }
+  };
+  const struct argp argp = { .options = options, .parser = option,
+    .args_doc = "-p PROJECT [-- MESH-OPTION...]",
+    .doc = "Run vanguard mesh for all combinations of levels or leaf sizes, "
+      "ranks and threads, and compare: sweep.csv and sweep.json with times, "
+      "balance and digests, figures of speed-up, phases, each run's timeline "
+      "and sizes of its leaves.\v"
+      "Options after '--' go to vanguard mesh. Speed-ups are against the "
+      "first case on one worker; if none is, those of the fewest stand for "
+      "it. A case that fails is listed with its "
+      "message; its log is DIR/CASE/run.log. Exit status: 0 done, 1 a case "
+      "failed, 2 wrong usage, 4 equal mesh options gave different files." };
+  struct vg_sweep_options o = { .dir = "sweep" };
+  int status;
+
+  for (int i = 1; i < argc && !o.extra; i++) {
+    if (strcmp(argv[i], "--") != 0) continue;
+    o.extra = argv + i + 1;
+    o.n_extra = argc - i - 1;
+    argc = i;
+  }
+  vg_cli_parse(&argp, argc, argv, &o);
+  status = run(&o);
+  for (int k = 0; k < N_LIST; k++) vg_range_release(list_of(&o, k));
+  return status;
+}

@@ -1,0 +1,14 @@
+/* cli/commands/commands.h: the subcommands. Each is one file with one entry
+ * that takes its own argc, argv and returns an exit status (cli/common/cli.h).
+ * */
+#ifndef VG_CLI_COMMANDS_COMMANDS_H
+#define VG_CLI_COMMANDS_COMMANDS_H
+
+int vg_cmd_mesh(int argc, char **argv);
+int vg_cmd_check(int argc, char **argv);
+int vg_cmd_sweep(int argc, char **argv);
+int vg_cmd_plan(int argc, char **argv);
+int vg_cmd_deck(int argc, char **argv);
+int vg_cmd_demo(int argc, char **argv);
+
+#endif

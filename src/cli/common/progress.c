@@ -1,0 +1,177 @@
+#include "cli/common/progress.h"
+
+#include <signal.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "cli/common/cli.h"
+
+#define LIVE_EVERY_S 0.2
+#define PLAIN_EVERY_S 10.0
+
+/* Signals that come together are one wish: timeout(1) sends its own twice,
+ * launchers to a process and to its group. */
+#define SAME_WISH_MS 1000
+
+static volatile sig_atomic_t interrupted, ends_at_once, shows_line;
+static atomic_llong interrupted_ms;
+
+/* In a signal's handler: only what is safe there. */
+static void end_at_once(void)
+{
+  static const char line[] = "\r\033[K";
+  static const char text[] = "vanguard: interrupted; nothing was written\n";
+  int failed = shows_line && write(STDERR_FILENO, line, sizeof line - 1) < 0;
+
+  if (!failed) failed = write(STDERR_FILENO, text, sizeof text - 1) < 0;
+  _exit(VG_EXIT_FAILED);
+}
+
+static long long now_ms(void)
+{
+  struct timespec t;
+
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (long long)t.tv_sec * 1000 + t.tv_nsec / 1000000;
+}
+
+static void on_signal(int number)
+{
+  if (!interrupted) {
+    interrupted_ms = now_ms();
+    interrupted = 1;
+    if (ends_at_once) end_at_once();
+  } else if (number != SIGUSR1 && now_ms() - interrupted_ms > SAME_WISH_MS) {
+    signal(number, SIG_DFL);
+    raise(number);
+  }
+}
+
+void vg_display_end_at_once(int on)
+{
+  ends_at_once = on;
+  if (on && interrupted) end_at_once();
+}
+
+int vg_display_interrupted(void)
+{
+  return interrupted != 0;
+}
+
+vg_status vg_display_stopped(struct vg_error *err)
+{
+  if (!interrupted) return VG_OK;
+  return vg_fail(err, VG_ERR_IO, "interrupted; nothing was written");
+}
+
+int vg_display_stop(void *user)
+{
+  (void)user;
+  return vg_display_interrupted();
+}
+
+double vg_display_now(void)
+{
+  return vg_clock();
+}
+
+void vg_display_watch(void)
+{
+  static int watches;
+  struct sigaction action, before;
+
+  if (watches++) return;
+  memset(&action, 0, sizeof action);
+  action.sa_handler = on_signal;
+  sigemptyset(&action.sa_mask);
+  action.sa_flags = SA_RESTART;
+  sigaction(SIGUSR1, &action, NULL);
+  sigaction(SIGINT, &action, NULL);
+  sigaction(SIGTERM, &action, NULL);
+  /* A terminal that is gone; under nohup it is ignored, and stays so. */
+  if (!sigaction(SIGHUP, NULL, &before) && before.sa_handler != SIG_IGN)
+    sigaction(SIGHUP, &action, NULL);
+  /* A file too large for ulimit -f: an error of write like any other. */
+  action.sa_handler = SIG_IGN;
+  sigaction(SIGXFSZ, &action, NULL);
+}
+
+void vg_display_init(struct vg_display *d, int quiet)
+{
+  memset(d, 0, sizeof *d);
+  d->quiet = quiet;
+  d->live = !quiet && isatty(STDERR_FILENO);
+  shows_line = d->live;
+  vg_display_watch();
+}
+
+void vg_display_clear(struct vg_display *d)
+{
+  if (!d->open) return;
+  fputs("\r\033[K", stderr);
+  d->open = 0;
+}
+
+/* "3 s", "2 min 10 s", "1 h 05 min". */
+static void duration(double s, char *text, size_t size)
+{
+  unsigned long t = s > 0 ? (unsigned long)(s + 0.5) : 0;
+
+  if (t < 60) snprintf(text, size, "%lu s", t);
+  else if (t < 3600) snprintf(text, size, "%lu min %02lu s", t / 60, t % 60);
+  else snprintf(text, size, "%lu h %02lu min", t / 3600, t / 60 % 60);
+}
+
+static void show(struct vg_display *d, size_t done, size_t expected,
+                 double now)
+{
+  char count[32], of[32], rate_text[32], eta[32], line[160];
+  double elapsed = now - d->stage_start;
+  double rate = elapsed > 0 ? (double)done / elapsed : 0;
+  int n = snprintf(line, sizeof line, done || expected ? "%-24s" : "%s",
+                   d->stage);
+
+  if (done || expected)
+    n += snprintf(line + n, sizeof line - (size_t)n, " %12s",
+                  vg_cli_count(done, count));
+  if (expected)
+    n += snprintf(line + n, sizeof line - (size_t)n, " of ~%s  %3.0f%%",
+                  vg_cli_count(expected, of),
+                  done < expected ? 100.0 * (double)done / (double)expected
+                                  : 100.0);
+  if (done && elapsed > 0.5) {
+    n += snprintf(line + n, sizeof line - (size_t)n, "  %s/s",
+                  vg_cli_count((unsigned long long)rate, rate_text));
+    if (expected > done && rate > 0) {
+      duration((double)(expected - done) / rate, eta, sizeof eta);
+      snprintf(line + n, sizeof line - (size_t)n, "  ETA %s", eta);
+    }
+  }
+  if (d->live) fprintf(stderr, "\r\033[K%s", line);
+  else fprintf(stderr, "%s\n", line);
+  fflush(stderr);
+  d->open = d->live;
+  d->last_shown = now;
+}
+
+int vg_display_update(void *user, const char *stage, size_t done,
+                      size_t expected)
+{
+  struct vg_display *d = user;
+  double now;
+
+  if (d->quiet) return vg_display_interrupted();
+  now = vg_display_now();
+  if (strncmp(stage, d->stage, sizeof d->stage - 1) != 0) {
+    snprintf(d->stage, sizeof d->stage, "%s", stage);
+    d->stage_start = now;
+    show(d, done, expected, now);
+  } else if (now - d->last_shown > (d->live ? LIVE_EVERY_S : PLAIN_EVERY_S)) {
+    show(d, done, expected, now);
+  }
+  return vg_display_interrupted();
+}

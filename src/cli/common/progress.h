@@ -1,0 +1,50 @@
+/* cli/common/progress.h: what the user sees while waiting, on stderr: one live
+ * line on a terminal, plain lines elsewhere; and the wish to stop (SIGINT,
+ * SIGTERM, SIGUSR1). Times are for people only and decide nothing. */
+#ifndef VG_CLI_COMMON_PROGRESS_H
+#define VG_CLI_COMMON_PROGRESS_H
+
+#include <stddef.h>
+
+#include "base/status.h"
+
+struct vg_display {
+  int quiet, live, open;    /* open: a live line stands without its end */
+  double stage_start, last_shown;
+  char stage[40];
+};
+
+/** Take note of signals from now on; before anything that takes time. Once. */
+void vg_display_watch(void);
+
+/** quiet: show nothing. Watches signals, if that has not begun. */
+void vg_display_init(struct vg_display *d, int quiet);
+
+/** A vg_progress callback (core/fill/fill.h); user is the display. Returns 1
+ * when the user asked to stop. */
+int vg_display_update(void *user, const char *stage, size_t done,
+                      size_t expected);
+
+/** Remove the live line, before something else is printed. */
+void vg_display_clear(struct vg_display *d);
+
+/** 1 after one of these signals. Another SIGINT, SIGTERM or SIGHUP more than a
+ * second later ends the process at once; SIGUSR1, a batch system's warning,
+ * never does. */
+int vg_display_interrupted(void);
+
+/** VG_ERR_IO from then on, with a message. */
+vg_status vg_display_stopped(struct vg_error *err);
+
+/** vg_display_interrupted for libraries that ask. */
+int vg_display_stop(void *user);
+
+/** on: from now on the first of these signals ends the process at once, with a
+ * message and VG_EXIT_FAILED, wherever it is. For commands, or parts of them,
+ * that leave nothing half-written. */
+void vg_display_end_at_once(int on);
+
+/** Wall clock in seconds, from any start. */
+double vg_display_now(void);
+
+#endif

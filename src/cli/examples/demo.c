@@ -1,0 +1,405 @@
+#include "cli/examples/demo.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "cli/examples/demo_parts.h"
+#include "core/domain/farfield.h"
+
+#define FARFIELD 20.0      /* radius or half width, body lengths or chords */
+/* Largest factor on the spacings below that still resolves the geometry. */
+#define FACTOR_MAX 12.0
+/* The estimate comes this close to the number wanted, within these turns. */
+#define FIT_CLOSE 0.02
+#define FIT_TURNS 5
+/* Sphere in a box, as in the comparisons of docs/performance.md. */
+#define SPHERE_FINE 0.02
+#define SPHERE_COARSE 1.5
+
+enum kind { BOX, SPHERE, WING };
+
+static const struct vg_demo_case cases[] = {
+  { "box", "unit cube, even spacing", 100000 },
+  { "sphere", "sphere in a box 20 times its size", 500000 },
+  { "wing", "swept tapered wing, blunt trailing edge", 1000000 },
+  { "wing-half", "the same, half of it on a symmetry plane", 500000 },
+  { "wing-sharp", "swept tapered wing, sharp trailing edge", 1000000 },
+  { "wing-sharp-half", "the same, half of it on a symmetry plane", 500000 },
+};
+
+enum { N_ENTRY = sizeof cases / sizeof *cases };
+
+/* In the order of cases[]. */
+static const struct entry {
+  enum kind kind;
+  struct vg_demo_wing wing;
+} entries[N_ENTRY] = {
+  { BOX, { 0, 0 } }, { SPHERE, { 0, 0 } }, { WING, { 0, 0 } },
+  { WING, { 0, 1 } }, { WING, { 1, 0 } }, { WING, { 1, 1 } },
+};
+
+const struct vg_demo_case *vg_demo_cases(size_t *n)
+{
+  *n = N_ENTRY;
+  return cases;
+}
+
+void vg_demo_release(struct vg_demo *d)
+{
+  vg_mesh_release(&d->surface);
+  free(d->source);
+  memset(d, 0, sizeof *d);
+}
+
+double vg_demo_size(void *user, const double x[3])
+{
+  const struct vg_demo_law *law = user;
+  struct vg_sizing_options o = VG_SIZING_OPTIONS_INIT;
+  double h;
+
+  o.growth = law->growth;
+  h = vg_sizing_sources_at(&o, law->n, law->source, x);
+  return h < law->h_max ? h : law->h_max;
+}
+
+/* --- estimate ------------------------------------------------------------ */
+
+struct estimate {
+  double (*size)(void *, const double *);
+  int (*inside)(void *, const double *);
+  void *user;
+};
+
+/* Halve a block until it is at most this many edges long, then take two Gauss
+ * points along each axis: over such a block h changes by as much as itself. */
+#define BLOCK_EDGES 3.0
+#define GAUSS 0.28867513459481288225   /* 1 / (2 sqrt(3)) */
+
+static double count_leaf(const struct estimate *e, const double mid[3],
+                         const double size[3])
+{
+  double sum = 0;
+
+  for (int c = 0; c < 8; c++) {
+    double x[3], h;
+
+    for (int k = 0; k < 3; k++)
+      x[k] = mid[k] + (c >> k & 1 ? GAUSS : -GAUSS) * size[k];
+    if (e->inside && !e->inside(e->user, x)) continue;
+    h = e->size(e->user, x);
+    sum += 1 / (h * h * h);
+  }
+  return sum / 8 * size[0] * size[1] * size[2];
+}
+
+static double count_block(const struct estimate *e, const double lo[3],
+                          const double size[3], int depth)
+{
+  double mid[3], half[3], longest = 0, sum = 0;
+
+  for (int k = 0; k < 3; k++) {
+    half[k] = 0.5 * size[k];
+    mid[k] = lo[k] + half[k];
+    longest = fmax(longest, size[k]);
+  }
+  if (depth == 0 || longest <= BLOCK_EDGES * e->size(e->user, mid))
+    return count_leaf(e, mid, size);
+  for (int c = 0; c < 8; c++) {
+    double corner[3];
+
+    for (int k = 0; k < 3; k++) corner[k] = c >> k & 1 ? mid[k] : lo[k];
+    sum += count_block(e, corner, half, depth - 1);
+  }
+  return sum;
+}
+
+/* Integral of 1 / h^3 over the points of a box for which `inside` (may be NULL:
+ * all) is not 0; size(user, x) > 0. Times cells per cube, the size of the mesh
+ * that the field h leads to. */
+static double cubes(const double lo[3], const double hi[3],
+                    double (*size)(void *user, const double x[3]),
+                    int (*inside)(void *user, const double x[3]), void *user)
+{
+  const struct estimate e = { size, inside, user };
+  const double side[3] = { hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2] };
+
+  return count_block(&e, lo, side, 24);
+}
+
+/* --- laws ---------------------------------------------------------------- */
+
+/* A case with its spacings multiplied by a factor. */
+struct scaled {
+  const struct entry *entry;
+  double factor;
+  struct vg_demo_law law;
+  struct vg_sizing *field;   /* borrowed; while its cells are counted */
+};
+
+static void make_law(struct scaled *s)
+{
+  struct vg_demo_law *law = &s->law;
+  const double f = s->factor;
+
+  memset(law, 0, sizeof *law);
+  law->growth = 1.2;
+  law->n = 1;
+  switch (s->entry->kind) {
+  case BOX:
+    law->h_max = f;
+    law->source[0].kind = VG_SOURCE_BOX;
+    for (int k = 0; k < 3; k++) law->source[0].p1[k] = 1;
+    law->source[0].h0 = law->source[0].h1 = f;
+    break;
+  case SPHERE:
+    law->h_max = SPHERE_COARSE * f;
+    law->source[0].kind = VG_SOURCE_SPHERE;
+    law->source[0].r0 = 1;
+    law->source[0].h0 = law->source[0].h1 = SPHERE_FINE * f;
+    break;
+  case WING:
+    vg_demo_wing_law(&s->entry->wing, f, law);
+    law->h_max = 0.2 * FARFIELD * (f < 1 ? f : 1);
+    break;
+  }
+  for (size_t i = 0; i < law->n; i++) law->source[i].an = 1;
+}
+
+static double field_size(void *user, const double x[3])
+{
+  const struct scaled *s = user;
+
+  return vg_sizing_at(s->field, x);
+}
+
+static double scaled_size(void *user, const double x[3])
+{
+  struct scaled *s = user;
+
+  return vg_demo_size(&s->law, x);
+}
+
+static int in_fluid(void *user, const double x[3])
+{
+  const struct scaled *s = user;
+  const double rr = x[0] * x[0] + x[1] * x[1] + x[2] * x[2];
+
+  if (s->entry->kind == BOX) return 1;
+  if (s->entry->kind == SPHERE) return rr > 1;
+  return rr < FARFIELD * FARFIELD && !vg_demo_wing_holds(&s->entry->wing, x);
+}
+
+/* Cells of a graded case where edges have these sizes. */
+static double n_cell_of(struct scaled *s,
+                        double (*size)(void *user, const double x[3]))
+{
+  const double lo[3] = { -FARFIELD, s->entry->wing.is_half ? 0 : -FARFIELD,
+                         -FARFIELD };
+  const double hi[3] = { FARFIELD, FARFIELD, FARFIELD };
+
+  return VG_DEMO_CELLS_PER_CUBE * VG_DEMO_GRADED
+         * cubes(lo, hi, size, in_fluid, s);
+}
+
+static double law_estimate(struct scaled *s)
+{
+  make_law(s);
+  return n_cell_of(s, scaled_size);
+}
+
+static double cube_root(double x)
+{
+  double y = 1;
+
+  for (int i = 0; i < 200; i++) y = (2 * y + x / (y * y)) / 3;
+  return y;
+}
+
+/* From the factor that s has. Cells fall by the first to the third power of the
+ * factor: the cube root of the excess is a step that never overshoots. */
+static double fit_factor(struct scaled *s, double n_cell)
+{
+  double n = 0;
+
+  if (s->entry->kind == BOX) {
+    s->factor = cube_root(VG_DEMO_CELLS_PER_CUBE / n_cell);
+    if (s->factor > 0.5) s->factor = 0.5;
+    make_law(s);
+    return VG_DEMO_CELLS_PER_CUBE / (s->factor * s->factor * s->factor);
+  }
+  for (int i = 0; i < 30; i++) {
+    double step;
+
+    n = law_estimate(s);
+    step = cube_root(n / n_cell);
+    if (fabs(step - 1) < 0.003) break;
+    if (s->factor * step > FACTOR_MAX) {
+      if (s->factor == FACTOR_MAX) break;
+      step = FACTOR_MAX / s->factor;
+    }
+    s->factor *= step;
+  }
+  make_law(s);
+  return n;
+}
+
+/* --- surfaces ------------------------------------------------------------ */
+
+static vg_status name_patch(struct vg_mesh *m, int32_t id, const char *name,
+                            int32_t bc, int32_t bc_fun3d,
+                            struct vg_error *err)
+{
+  const size_t at = vg_mesh_add_patch(m, id, name);
+
+  if (at == SIZE_MAX) return vg_fail_memory(err, "a patch");
+  m->patch[at].bc = m->patch[at].family = bc;
+  m->patch[at].bc_fun3d = bc_fun3d;
+  return VG_OK;
+}
+
+static vg_status box_surface(const struct scaled *s, struct vg_mesh *m,
+                             struct vg_error *err)
+{
+  static const char *const name[6] = { "x-min", "x-max", "y-min", "y-max",
+                                       "z-min", "z-max" };
+  const double lo[3] = { 0, 0, 0 }, hi[3] = { 1, 1, 1 };
+  const uint32_t patch[6] = { 0, 1, 2, 3, 4, 5 };
+  const struct vg_size_law law = { .at = vg_demo_size,
+                                   .user = (void *)&s->law };
+  vg_status st;
+
+  for (int i = 0; i < 6; i++)
+    VG_TRY(name_patch(m, i + 1, name[i], 3, 5000, err));
+  st = vg_add_box(m, lo, hi, -1, &law, patch, NULL, err);
+done:
+  return st;
+}
+
+static vg_status sphere_surface(const struct scaled *s, struct vg_mesh *m,
+                                struct vg_error *err)
+{
+  const double centre[3] = { 0, 0, 0 };
+  const struct vg_size_law law = { .at = vg_demo_size,
+                                   .user = (void *)&s->law };
+  vg_status st = name_patch(m, 1, "sphere", 4, 4000, err);
+
+  if (st == VG_OK)
+    st = vg_add_sphere(m, centre, 1, -1, 0, &law, 0, NULL, err);
+  return st;
+}
+
+static vg_status add_farfield(const struct scaled *s, struct vg_demo *d,
+                              struct vg_error *err)
+{
+  const struct vg_size_law law = { .at = vg_demo_size,
+                                   .user = (void *)&s->law };
+  struct vg_farfield far = VG_FARFIELD_INIT;
+
+  far.size = FARFIELD;
+  far.has_centre = 1;
+  far.kind = s->entry->kind == SPHERE ? VG_FARFIELD_BOX : VG_FARFIELD_SPHERE;
+  return vg_domain_complete_by(&d->surface, &far, &law, NULL, err);
+}
+
+/* All of *d by the law of s, but its n_cell. */
+static vg_status build(const struct scaled *s, struct vg_demo *d,
+                       struct vg_error *err)
+{
+  vg_status st;
+
+  vg_demo_release(d);
+  d->sizing = (struct vg_sizing_options)VG_SIZING_OPTIONS_INIT;
+  d->sizing.growth = s->law.growth;
+  d->sizing.h_max = s->law.h_max;
+  d->source = vg_alloc(s->law.n, sizeof *d->source);
+  if (!d->source) return vg_fail_memory(err, "the sources");
+  memcpy(d->source, s->law.source, s->law.n * sizeof *d->source);
+  d->n_source = s->law.n;
+  switch (s->entry->kind) {
+  case BOX: return box_surface(s, &d->surface, err);
+  case SPHERE: st = sphere_surface(s, &d->surface, err); break;
+  default:
+    st = vg_demo_wing_surface(&s->entry->wing, &s->law, &d->surface, err);
+  }
+  if (st != VG_OK) return st;
+  d->n_body_tri = d->surface.n_tri;
+  return add_farfield(s, d, err);
+}
+
+/* The mesh follows the field, in which edges of the surface have their say:
+ * about leading edges and on coarse spheres cells are smaller than by the
+ * sources alone. */
+static vg_status field_estimate(struct scaled *s, const struct vg_demo *d,
+                                double *n_cell, struct vg_error *err)
+{
+  vg_status st = vg_sizing_new(&d->sizing, d->n_source, d->source, &d->surface,
+                               &s->field, err);
+
+  if (st < 0) return st;
+  *n_cell = n_cell_of(s, field_size);
+  vg_sizing_free(s->field);
+  s->field = NULL;
+  return VG_OK;
+}
+
+/* What the law gives too much, it is asked for less: two or three turns. */
+static vg_status make(struct scaled *s, double n_cell, struct vg_demo *d,
+                      struct vg_error *err)
+{
+  double ask = n_cell, n = 0;
+  vg_status st = VG_OK;
+
+  s->factor = FACTOR_MAX;
+  if (s->entry->kind == BOX) {
+    n = fit_factor(s, n_cell);
+    VG_TRY(build(s, d, err));
+  }
+  for (int turn = 0; s->entry->kind != BOX && turn < FIT_TURNS; turn++) {
+    fit_factor(s, ask);
+    VG_TRY(build(s, d, err));
+    VG_TRY(field_estimate(s, d, &n, err));
+    if (fabs(n / n_cell - 1) < FIT_CLOSE || s->factor == FACTOR_MAX) break;
+    ask *= n_cell / n;
+  }
+  d->n_cell = n;
+done:
+  return st;
+}
+
+static vg_status unknown(const char *name, struct vg_error *err)
+{
+  char list[256] = "";
+  size_t at = 0;
+
+  for (size_t i = 0; i < N_ENTRY; i++)
+    at += (size_t)snprintf(list + at, sizeof list - at, "%s%s", i ? ", " : "",
+                           cases[i].name);
+  return vg_fail(err, VG_ERR_INPUT, "no example is called '%s'; there are %s",
+                 name, list);
+}
+
+vg_status vg_demo_make(const char *name, size_t n_cell, struct vg_demo *out,
+                       struct vg_error *err)
+{
+  struct scaled s = { 0 };
+  struct vg_demo d = VG_DEMO_INIT;
+  vg_status st;
+
+  for (size_t i = 0; i < N_ENTRY; i++)
+    if (!strcmp(cases[i].name, name)) s.entry = &entries[i];
+  if (!s.entry) return unknown(name, err);
+  if (n_cell > 2000000000)
+    return vg_fail(err, VG_ERR_INPUT, "%zu cells are more than one mesh can "
+                   "number; ask for 2000000000 at most", n_cell);
+  if (!n_cell) n_cell = cases[s.entry - entries].n_cell;
+  st = make(&s, (double)n_cell, &d, err);
+  if (st == VG_OK) {
+    *out = d;
+    d = (struct vg_demo)VG_DEMO_INIT;
+  }
+  vg_demo_release(&d);
+  return st;
+}

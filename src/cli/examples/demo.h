@@ -1,0 +1,61 @@
+/* cli/examples/demo.h: the geometry of `vanguard demo`: complete flow domains
+ * that need no foreign data, at any size. Uses core/mesh/mesh.h,
+ * core/sizing/sizing.h. */
+#ifndef VG_CLI_EXAMPLES_DEMO_H
+#define VG_CLI_EXAMPLES_DEMO_H
+
+#include <stddef.h>
+
+#include "core/domain/planar.h"
+#include "core/mesh/mesh.h"
+#include "core/sizing/sizing.h"
+
+/** Cells per cube of the target edge length in a finished mesh; what turns
+ * a number of cells into spacings, and back in estimates. Measured: 8.9 to 9.2
+ * on the box (20 thousand to a million cells), where spacing is even. */
+#define VG_DEMO_CELLS_PER_CUBE 9.0
+
+/** As much more where spacing varies: 10.3 to 10.8 per cube on the sphere,
+ * 10.8 to 11.1 on the wings. */
+#define VG_DEMO_GRADED 1.2
+
+/** A case of the list. */
+struct vg_demo_case {
+  const char *name;        /* as on the command line */
+  const char *summary;     /* one line */
+  size_t n_cell;           /* default size */
+};
+
+/** All cases. *n out: their number. Static. */
+const struct vg_demo_case *vg_demo_cases(size_t *n);
+
+/** A case ready to be meshed. */
+struct vg_demo {
+  struct vg_mesh surface;  /* closed, triangles point into the fluid; patches
+                              named, with conditions of both solvers */
+  size_t n_body_tri;       /* of surface.tri, the first ones: the body; 0
+                              where there is none */
+  struct vg_sizing_options sizing;  /* recommended, with from_surface */
+  size_t n_source;
+  struct vg_source *source;
+  double n_cell;           /* estimated size of the mesh: within 5 % of it */
+};
+#define VG_DEMO_INIT { .n_body_tri = 0 }
+
+/** Make a case.
+ *
+ * @param name    "box" unit cube, even spacing; "sphere" of radius 1 in a box
+ *                of half width 20; "wing", "wing-half" swept tapered wing
+ *                with a blunt trailing edge, whole and on a symmetry plane;
+ *                "wing-sharp", "wing-sharp-half" with a sharp one
+ * @param n_cell  wanted number of cells, 0: the default. Geometry sets a
+ *                lower bound: see the estimate in *out
+ * @param out     owned by the caller, vg_demo_release; untouched on failure
+ * VG_ERR_INPUT names the known cases when there is no such case, or when
+ * n_cell is above 2e9. Same bytes for the same arguments. */
+vg_status vg_demo_make(const char *name, size_t n_cell, struct vg_demo *out,
+                       struct vg_error *err);
+
+void vg_demo_release(struct vg_demo *d);
+
+#endif

@@ -1,0 +1,37 @@
+/* cli/examples/demo_parts.h: what demo*.c share. Private to them. */
+#ifndef VG_CLI_EXAMPLES_DEMO_PARTS_H
+#define VG_CLI_EXAMPLES_DEMO_PARTS_H
+
+#include "cli/examples/demo.h"
+#include "core/domain/planar_patch.h"
+
+/** Sources of a case, all spacings times `factor`. */
+enum { VG_DEMO_SOURCE_MAX = 10 };
+
+struct vg_demo_law {
+  size_t n;
+  struct vg_source source[VG_DEMO_SOURCE_MAX];
+  double h_max, growth;
+};
+
+/** Spacing of a law; for vg_size_law. user: const struct vg_demo_law. */
+double vg_demo_size(void *user, const double x[3]);
+
+/** A wing: all lengths in root chords. */
+struct vg_demo_wing {
+  int is_sharp, is_half;
+};
+
+/** Sources of the wing for a factor on all spacings. */
+void vg_demo_wing_law(const struct vg_demo_wing *w, double factor,
+                      struct vg_demo_law *law);
+
+/** 1 for a point in the wing, at y >= 0 where it is a half model. */
+int vg_demo_wing_holds(const struct vg_demo_wing *w, const double x[3]);
+
+/** Surface of the wing alone, closed, or open along y = 0. */
+vg_status vg_demo_wing_surface(const struct vg_demo_wing *w,
+                               const struct vg_demo_law *law,
+                               struct vg_mesh *out, struct vg_error *err);
+
+#endif

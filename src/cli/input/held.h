@@ -1,0 +1,29 @@
+/* cli/input/held.h: sources without effect, for people and programs. Uses
+ * core/sizing/sizing_held.h, cli/input/input.h. */
+#ifndef VG_CLI_INPUT_HELD_H
+#define VG_CLI_INPUT_HELD_H
+
+#include <jansson.h>
+
+#include "cli/input/input.h"
+#include "core/sizing/sizing_held.h"
+
+/** vg_held_find with the settings of a problem. */
+vg_status vg_problem_held(const struct vg_problem *p,
+                          const struct vg_mesh *front,
+                          const struct vg_sizing *sizing, struct vg_held *out,
+                          struct vg_error *err);
+
+/** A note for each source that is held back, or that the mesh does not meet,
+ * the first VG_SHOWN_HELD of them, and one for all that are lost. front: as
+ * for vg_held_find. */
+#define VG_SHOWN_HELD 10
+void vg_held_note(const struct vg_held *h, const struct vg_mesh *front,
+                  struct vg_problem *p);
+
+/** All of them: "held", "unmet" (by the mesh), "inside" (a body), "beyond"
+ * (the domain). */
+json_t *vg_held_json(const struct vg_held *h, const struct vg_mesh *front,
+                     const struct vg_settings *s);
+
+#endif

@@ -1,0 +1,77 @@
+/* cli/input/layers.h: the layer stage of vanguard mesh: from settings to what
+ * each patch asks for, growing, measuring, limits. Uses layers,
+ * cli/input/walls.h. */
+#ifndef VG_CLI_INPUT_LAYERS_H
+#define VG_CLI_INPUT_LAYERS_H
+
+#include "cli/input/walls.h"
+#include "layers/columns/layers.h"
+#include "layers/expand/join.h"
+#include "layers/measure/measure.h"
+
+/** What must be reached on a patch; NAN: nothing. In per cent. */
+struct vg_layer_limits {
+  double min_full, min_any, max_first_error;
+};
+
+struct vg_limit_missed {
+  uint32_t patch;           /* index in the surface */
+  const char *name;         /* of the limit; static */
+  double wanted, got;
+};
+
+struct vg_layer_laws;       /* laws by source, private to cli/input/layers.c */
+
+struct vg_layer_stage {
+  int is_on;                /* layers are grown */
+  size_t n_patch;
+  enum vg_wall_reason *reason;       /* [n_patch] */
+  struct vg_layer_request *request;  /* [n_patch] */
+  struct vg_layer_limits *limit;     /* [n_patch] */
+  struct vg_layer_laws *laws;        /* NULL: by patch */
+  double reynolds, length;           /* 0: no y+ */
+  struct vg_layer_options options;
+  struct vg_layers layers;
+  struct vg_layer_report report;
+  struct vg_layer_judgement judgement;
+  struct vg_wall_fields fields;
+  size_t n_wall;                     /* patches measured */
+  struct vg_patch_layers *wall, all; /* wall: [n_wall] */
+  size_t n_missed, cap_missed;
+  struct vg_limit_missed *missed;
+  struct vg_join_info join;
+  double time_measure;
+};
+#define VG_LAYER_STAGE_INIT { .is_on = 0 }
+
+void vg_layer_stage_release(struct vg_layer_stage *s);
+
+/** Settle whether layers are grown, on which patches and by which laws, once
+ * the problem is closed. p->settings are resolved: run again with them, the
+ * same layers grow. Notes tell what was assumed or is missing. */
+vg_status vg_layer_stage_plan(struct vg_layer_stage *s, struct vg_problem *p,
+                              struct vg_error *err);
+
+/** The triangles that say how large edges are before layers grow. All, but
+ * for a VGRID front with layers: there VGRID has put the layers' points on
+ * the patches beside the walls already, a thousandth of an edge apart, and
+ * these patches are left out.
+ * @param out  borrows points and patches of the surface; tri and tri_patch
+ *             are its own: free them, nothing else */
+vg_status vg_layer_stage_sizes(const struct vg_layer_stage *s,
+                               const struct vg_problem *p,
+                               struct vg_mesh *out, struct vg_error *err);
+
+/** Grow, judge and measure. What is left to fill is s->layers.front.mesh.
+ * VG_ERR_GEOMETRY when cells are wrong: a fault of the program. */
+vg_status vg_layer_stage_grow(struct vg_layer_stage *s,
+                              const struct vg_mesh *surface,
+                              const struct vg_sizing *sizing,
+                              struct vg_display *show, struct vg_error *err);
+
+/** Triangles of the walls with, per point, levels, heights and causes. */
+vg_status vg_layer_stage_write(const struct vg_layer_stage *s,
+                               const struct vg_mesh *surface,
+                               const char *path, struct vg_error *err);
+
+#endif

@@ -1,0 +1,436 @@
+/* vanguard plan: a project's mesh and run, from surface and sizes alone. */
+#include "cli/plan/plan_estimate.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "cli/common/cli.h"
+#include "cli/settings/options.h"
+#include "core/geometry/vector.h"
+#include "partition/advance/advance.h"
+
+/* Walls with more points get their layers estimated, not grown. */
+#define GROW_LIMIT 50000
+/* Least efficiency for which more workers are taken, without a target. */
+#define EFFICIENT 0.8
+
+/* Seconds of one core; docs/performance-parallel.md, Model. */
+static const double spread_per_cell = 0.35e-6;  /* number, judge, encode */
+static const double before_alone = 0.1;   /* by one thread, of what is before
+                                             the tasks; the rest by a node */
+static const double digest_per_byte = 0.4e-9;   /* the files once more */
+static const double layer_per_cell = 0.1e-6;    /* growing and measuring */
+
+/* Bytes: of a mesh in pieces; of a void that is filled, per cell; of front,
+ * load and sizes, per triangle of the front, per cube and per leaf of the
+ * sizes' octree (vg_sizing_leaves); of the program. */
+static const double mesh_per_cell = 40, fill_per_cell = 60;
+static const double per_triangle = 280, per_cube = 28, per_leaf = 37;
+static const double program = 18e6;
+
+/* --- layers that are not grown ------------------------------------------- */
+
+struct lift {
+  const struct vg_layer_stage *s;
+  const struct vg_mesh *m;
+  const struct vg_sizing *sizing;
+  double (*normal)[3];          /* [n_point] */
+  double *edge;                 /* [n_point] sum, then mean of edges at it */
+  uint32_t *n_edge;             /* [n_point] */
+  uint32_t *patch;              /* [n_point] the wall whose law rules */
+  uint16_t *level;              /* [n_point] */
+};
+
+static int is_wall(const struct lift *l, size_t tri)
+{
+  return l->s->reason[l->m->tri_patch[tri]] != VG_WALL_NOT;
+}
+
+static void add_triangle(struct lift *l, size_t i)
+{
+  const uint32_t *t = l->m->tri[i], patch = l->m->tri_patch[i];
+  const struct vg_layer_request *q = l->s->request;
+  double d[3][3], n[3];
+
+  for (int k = 0; k < 3; k++) {
+    vg_sub(l->m->point[t[(k + 1) % 3]], l->m->point[t[k]], d[k]);
+    l->edge[t[k]] += vg_norm(d[k]);
+    l->n_edge[t[k]]++;
+  }
+  vg_cross(d[0], d[1], n);
+  for (int k = 0; k < 3; k++) {
+    uint32_t *rules = &l->patch[t[k]];
+
+    for (int j = 0; j < 3; j++) l->normal[t[k]][j] += n[j];
+    if (*rules == VG_NO_INDEX ||
+        q[patch].law.delta1 < q[*rules].law.delta1) *rules = patch;
+  }
+}
+
+/* As the layers do: until the next one would be thicker than the local cell,
+ * at the wall and at the top. */
+static void lift_point(struct lift *l, size_t i, double x[3])
+{
+  const struct vg_layer_request *q = &l->s->request[l->patch[i]];
+  const struct vg_layer_options *o = &l->s->options;
+  double d[VG_LEVELS_MAX + 1], *v = l->normal[i], length;
+  int n = 0, most = q->n_max > 0 && q->n_max < VG_LEVELS_MAX ? q->n_max
+                                                             : VG_LEVELS_MAX;
+  struct vg_law law = q->law;
+
+  if (o->law_at) o->law_at(o->law_user, l->m->point[i], &law);
+  length = vg_norm(v);
+  if (!(length > 0) || !(law.delta1 > 0)) return;
+  vg_law_heights(&law, INFINITY, most, d);
+  while (n < most &&
+         (q->n_exact || d[n + 1] - d[n] <= o->end * l->edge[i]) &&
+         !(q->total > 0 && d[n + 1] > q->total)) n++;
+  for (;; n--) {
+    for (int k = 0; k < 3; k++)
+      x[k] = l->m->point[i][k] + v[k] / length * d[n];
+    if (n == 0 || q->n_exact ||
+        d[n] - d[n - 1] <= o->end * vg_sizing_at(l->sizing, x)) break;
+  }
+  l->level[i] = (uint16_t)n;
+}
+
+static void measure_lift(struct vg_plan *p, struct lift *l)
+{
+  for (size_t i = 0; i < l->m->n_tri; i++)
+    if (is_wall(l, i)) add_triangle(l, i);
+  for (size_t i = 0; i < l->m->n_point; i++) {
+    if (l->patch[i] == VG_NO_INDEX) continue;
+    l->edge[i] /= l->n_edge[i];
+    lift_point(l, i, p->lifted.point[i]);
+    p->layer_point += l->level[i];
+  }
+  for (size_t i = 0; i < l->m->n_tri; i++)
+    for (int k = 0; k < 3 && is_wall(l, i); k++)
+      p->layer_tet += l->level[l->m->tri[i][k]];
+}
+
+/* The surface with its walls moved onto the layers' tops: what is left to
+ * fill, but for details. */
+static vg_status estimate_layers(struct vg_plan *p, struct vg_error *err)
+{
+  const struct vg_mesh *m = &p->problem.surface;
+  struct lift l = { .s = &p->layers, .m = m, .sizing = p->sizing };
+  vg_status st;
+
+  VG_TRY(vg_mesh_copy(&p->lifted, m, err));
+  l.normal = vg_calloc(m->n_point, sizeof *l.normal);
+  l.edge = vg_calloc(m->n_point, sizeof *l.edge);
+  l.n_edge = vg_calloc(m->n_point, sizeof *l.n_edge);
+  l.patch = vg_alloc(m->n_point, sizeof *l.patch);
+  l.level = vg_calloc(m->n_point, sizeof *l.level);
+  if (!l.normal || !l.edge || !l.n_edge || !l.patch || !l.level) {
+    st = vg_fail_memory(err, "the layers");
+    goto done;
+  }
+  memset(l.patch, 0xff, m->n_point * sizeof *l.patch);
+  measure_lift(p, &l);
+  p->serial += layer_per_cell * p->layer_tet;
+  p->front = &p->lifted;
+done:
+  free(l.normal);
+  free(l.edge);
+  free(l.n_edge);
+  free(l.patch);
+  free(l.level);
+  return st;
+}
+
+static vg_status count_wall_points(struct vg_plan *p, struct vg_error *err)
+{
+  const struct vg_mesh *m = &p->problem.surface;
+  uint8_t *on = vg_calloc(m->n_point, 1);
+
+  if (!on) return vg_fail_memory(err, "the walls");
+  for (size_t i = 0; i < m->n_tri; i++)
+    for (int k = 0; k < 3; k++)
+      if (p->layers.reason[m->tri_patch[i]] != VG_WALL_NOT)
+        on[m->tri[i][k]] = 1;
+  for (size_t i = 0; i < m->n_point; i++) p->n_wall_point += on[i];
+  free(on);
+  return VG_OK;
+}
+
+/* --- the surface and its sizes ------------------------------------------- */
+
+static vg_status read_project(struct vg_plan *p, struct vg_error *err)
+{
+  const struct vg_plan_options *o = p->o;
+  struct vg_problem *q = &p->problem;
+  vg_status st;
+
+  vg_display_update(&p->show, "read", 0, 0);
+  VG_TRY(vg_input_find(o->project, o->deck, &q->files, err));
+  VG_TRY(vg_problem_deck(q, err));
+  VG_TRY(vg_cli_apply(&o->kept, &q->settings, err));
+  vg_settings_write(&q->settings);
+  VG_TRY(vg_problem_surface(q, err));
+  VG_TRY(vg_problem_close(q, &p->show, err));
+  VG_TRY(vg_layer_stage_plan(&p->layers, q, err));
+  st = vg_walls_swap(q, p->layers.is_on ? p->layers.reason : NULL, err);
+done:
+  return st;
+}
+
+static vg_status measure_sizes(struct vg_plan *p, const struct vg_mesh *m,
+                               struct vg_error *err)
+{
+  const struct vg_settings *s = &p->problem.settings;
+  struct vg_sizing_options options = vg_settings_sizing(s);
+
+  vg_display_update(&p->show, "sizes", 0, 0);
+  vg_sizing_free(p->sizing);
+  p->sizing = NULL;
+  return vg_sizing_new(&options, s->n_source, s->source, m, &p->sizing, err);
+}
+
+static vg_status make_layers(struct vg_plan *p, struct vg_error *err)
+{
+  const struct vg_mesh *surface = &p->problem.surface;
+  struct vg_mesh view = VG_MESH_INIT;
+  vg_status st;
+
+  VG_TRY(vg_layer_stage_sizes(&p->layers, &p->problem, &view, err));
+  VG_TRY(measure_sizes(p, &view, err));
+  VG_TRY(count_wall_points(p, err));
+  p->is_grown = p->n_wall_point < GROW_LIMIT;
+  if (p->is_grown) {
+    p->layers.options.threads = 1;
+    VG_TRY(vg_layer_stage_grow(&p->layers, surface, p->sizing, &p->show,
+                               err));
+    p->layer_tet = (double)p->layers.report.n_cell;
+    p->layer_point = (double)p->layers.report.n_layer_point;
+    p->front = &p->layers.layers.front.mesh;
+  } else {
+    VG_TRY(estimate_layers(p, err));
+  }
+  st = measure_sizes(p, p->front, err);
+done:
+  free(view.tri);
+  free(view.tri_patch);
+  return st;
+}
+
+/* --- the mesh ------------------------------------------------------------ */
+
+static void count_mesh(struct vg_plan *p)
+{
+  double faces = (double)p->front->n_tri, field = p->load.cells;
+
+  p->tet = field;
+  if (p->problem.settings.cells == VG_LAYER_MIXED)
+    p->prism = p->layer_tet / 3;
+  else
+    p->tet += p->layer_tet;
+  p->cell = p->tet + p->prism;
+  p->point = vg_outlook_points(field, faces) + p->layer_point;
+}
+
+static double bytes_written(const struct vg_plan *p)
+{
+  char list[VG_WRITE_MAX], *save = NULL;
+  double sum = 0;
+
+  memcpy(list, p->problem.settings.write, sizeof list);
+  for (char *word = strtok_r(list, " ,", &save); word;
+       word = strtok_r(NULL, " ,", &save)) sum += vg_plan_bytes(p, word);
+  return sum;
+}
+
+/* Memory: what any rank holds, and what each cell and thread adds. */
+static void count_memory(struct vg_plan *p)
+{
+  double most = 0;
+
+  for (size_t i = 0; i < p->outlook.n_node; i++) {
+    const struct vg_outlook_node *n = &p->outlook.node[i];
+
+    if (!n->lattice.n[0] && !n->lattice.n[1] && !n->lattice.n[2] &&
+        n->cells > most) most = n->cells;
+  }
+  p->shared = program + per_triangle * (double)p->front->n_tri +
+              per_cube * (double)p->load.n +
+              per_leaf * (double)vg_sizing_leaves(p->sizing) +
+              24 * p->layer_point;
+  p->per_cell = mesh_per_cell;
+  p->per_thread = fill_per_cell * most;
+}
+
+/* --- the run ------------------------------------------------------------- */
+
+static vg_status outlook(const struct vg_plan *p, double leaf_cells,
+                         struct vg_outlook *out, struct vg_error *err)
+{
+  const struct vg_void v = { .n_point = p->front->n_point,
+                             .x = p->front->point,
+                             .n_face = p->front->n_tri,
+                             .face = p->front->tri };
+  struct vg_cut_rule rule = p->rule;
+
+  rule.leaf_cells = leaf_cells;
+  return vg_outlook_new(&v, &p->load, &rule, (int)p->problem.settings.levels,
+                        &vg_rates_measured, out, err);
+}
+
+static vg_status run_on(const struct vg_plan *p, const struct vg_outlook *o,
+                        int ranks, int threads, struct vg_plan_row *row,
+                        struct vg_error *err)
+{
+  struct vg_machine m = p->o->machine;
+  double before = p->serial, alone = p->o->serial >= 0 ? 1 : before_alone;
+  vg_status st;
+
+  m.ranks = row->ranks = ranks;
+  m.threads = row->threads = threads;
+  st = vg_model_replay(&o->spans, &m, &row->tasks, NULL, err);
+  if (st < 0) return st;
+  m.serial = alone * before + p->digest;
+  m.by_node = (1 - alone) * before;
+  m.by_all = p->spread;
+  row->wall = row->tasks.wall + vg_model_outside(&m);
+  row->speedup = (row->tasks.work + (before + p->digest + p->spread) / m.rate) /
+                 row->wall;
+  row->efficiency = row->speedup / ranks / threads;
+  row->memory = p->shared + p->per_cell * p->cell / ranks +
+                threads * p->per_thread;
+  return VG_OK;
+}
+
+/* The fewest workers that reach the target; else the most that work well. */
+static void choose(struct vg_plan *p)
+{
+  double target = p->o->target;
+
+  p->best = SIZE_MAX;
+  for (size_t i = 0; i < p->n_row; i++) {
+    const struct vg_plan_row *r = &p->row[i];
+    const struct vg_plan_row *b = p->best == SIZE_MAX ? NULL
+                                                      : &p->row[p->best];
+    long n = (long)r->ranks * r->threads;
+    long most = b ? (long)b->ranks * b->threads : 0;
+    int fits = target > 0 ? r->wall <= target : r->efficiency >= EFFICIENT;
+    int better = !b || (target > 0 ? n < most : n > most) ||
+                 (n == most && r->wall < b->wall);
+
+    if (fits && better) p->best = i;
+  }
+}
+
+/* Other leaf sizes on the machine that was chosen, or on the largest. */
+static vg_status try_leaves(struct vg_plan *p, struct vg_error *err)
+{
+  static const double sizes[VG_PLAN_LEAVES] = { 4e4, 7e4, 1e5, 1.5e5, 2e5, 3e5,
+                                                4.5e5, 7e5 };
+  const struct vg_plan_row *at = &p->row[p->best == SIZE_MAX ? p->n_row - 1
+                                                             : p->best];
+  vg_status st = VG_OK;
+
+  for (int i = 0; st >= 0 && i < VG_PLAN_LEAVES; i++) {
+    struct vg_outlook o = VG_OUTLOOK_INIT;
+
+    st = outlook(p, sizes[i], &o, err);
+    if (st >= 0) st = run_on(p, &o, at->ranks, at->threads,
+                             &p->leaf[p->n_leaf].row, err);
+    p->leaf[p->n_leaf].cells = sizes[i];
+    p->leaf[p->n_leaf].n = o.n_leaf;
+    vg_outlook_release(&o);
+    if (st < 0) break;
+    if (p->leaf[p->n_leaf].row.wall < p->leaf[p->best_leaf].row.wall)
+      p->best_leaf = p->n_leaf;
+    p->n_leaf++;
+  }
+  return st;
+}
+
+static vg_status run_all(struct vg_plan *p, struct vg_error *err)
+{
+  const struct vg_plan_options *o = p->o;
+  vg_status st;
+
+  p->row = vg_alloc(o->ranks.n * o->threads.n, sizeof *p->row);
+  if (!p->row) return vg_fail_memory(err, "the forecast");
+  for (size_t t = 0; t < o->threads.n; t++)
+    for (size_t r = 0; r < o->ranks.n; r++) {
+      VG_TRY(run_on(p, &p->outlook, (int)o->ranks.v[r], (int)o->threads.v[t],
+                    &p->row[p->n_row], err));
+      p->n_row++;
+    }
+  choose(p);
+  st = try_leaves(p, err);
+done:
+  return st;
+}
+
+/* Read, check and size as vanguard mesh does, grow or estimate the layers, and
+ * forecast. */
+static vg_status make(struct vg_plan *p, struct vg_error *err)
+{
+  const struct vg_settings *s = &p->problem.settings;
+  double start = vg_display_now();
+  struct vg_void v = { .n_point = 0 };
+  vg_status st;
+
+  VG_TRY(read_project(p, err));
+  p->front = &p->problem.surface;
+  if (p->layers.is_on) VG_TRY(make_layers(p, err));
+  else VG_TRY(measure_sizes(p, p->front, err));
+  VG_TRY(vg_problem_held(&p->problem, p->front, p->sizing, &p->held, err));
+  vg_held_note(&p->held, p->front, &p->problem);
+  v.n_point = p->front->n_point;
+  v.x = p->front->point;
+  v.n_face = p->front->n_tri;
+  v.face = p->front->tri;
+  vg_display_update(&p->show, "forecast", 0, 0);
+  VG_TRY(vg_load_new(&v, p->sizing, VG_LOAD_CELLS_PER_CUBE, 1, &p->load,
+                     err));
+  /* what has been done so far the run does too */
+  p->serial += vg_display_now() - start;
+  if (p->o->serial >= 0) p->serial = p->o->serial;
+  p->rule.leaf_cells = s->levels ? 0 : (double)s->leaf_cells;
+  p->rule.first_axis = (int)s->split_direction - 1;
+  p->rule.constant = s->constant_direction;
+  VG_TRY(outlook(p, p->rule.leaf_cells, &p->outlook, err));
+  count_mesh(p);
+  count_memory(p);
+  p->spread = spread_per_cell * p->cell;
+  p->digest = digest_per_byte * bytes_written(p);
+  st = run_all(p, err);
+done:
+  return st;
+}
+
+static void release(struct vg_plan *p)
+{
+  vg_outlook_release(&p->outlook);
+  vg_load_release(&p->load);
+  vg_held_release(&p->held);
+  vg_sizing_free(p->sizing);
+  vg_mesh_release(&p->lifted);
+  vg_layer_stage_release(&p->layers);
+  vg_problem_release(&p->problem);
+  free(p->row);
+}
+
+int vg_plan_estimate(const struct vg_plan_options *o)
+{
+  struct vg_plan p = { .o = o, .problem = VG_PROBLEM_INIT };
+  struct vg_error err = VG_ERROR_INIT;
+  vg_status st;
+
+  vg_display_init(&p.show, o->quiet);
+  vg_display_end_at_once(1);
+  st = make(&p, &err);
+  vg_display_end_at_once(0);
+  vg_display_clear(&p.show);
+  if (st >= 0 && o->json) st = vg_plan_json(&p, &err);
+  else if (st >= 0) vg_plan_text(&p);
+  if (st >= 0 && o->plot) st = vg_plan_draw(&p, &err);
+  release(&p);
+  return st < 0 ? vg_cli_fail(&err) : VG_EXIT_DONE;
+}

@@ -1,0 +1,64 @@
+/* cli/plan/plan_estimate.h: the forecast of a project, for plan_*.c. Uses
+ * cli/input/layers.h, partition/model/forecast.h.
+ *
+ * plan_estimate.c computes it, plan_print.c tells it. */
+#ifndef VG_CLI_PLAN_PLAN_ESTIMATE_H
+#define VG_CLI_PLAN_PLAN_ESTIMATE_H
+
+#include "cli/input/held.h"
+#include "cli/input/layers.h"
+#include "cli/plan/plan.h"
+#include "partition/model/forecast.h"
+
+enum { VG_PLAN_LEAVES = 8 };
+
+/** A whole run on a machine. */
+struct vg_plan_row {
+  int ranks, threads;
+  struct vg_forecast tasks;     /* cutting and filling alone */
+  double wall;                  /* s, of everything */
+  double speedup, efficiency;   /* of everything, against one worker */
+  double memory;                /* bytes of a rank */
+};
+
+struct vg_plan {
+  const struct vg_plan_options *o;
+  struct vg_display show;
+  struct vg_problem problem;
+  struct vg_layer_stage layers;
+  struct vg_mesh lifted;        /* the surface on top of estimated layers */
+  const struct vg_mesh *front;  /* what bounds the field; borrowed */
+  struct vg_sizing *sizing;     /* over the front */
+  struct vg_held held;
+  struct vg_load load;
+  struct vg_cut_rule rule;
+  struct vg_outlook outlook;
+  int is_grown;                 /* layers were; else they are estimated */
+  size_t n_wall_point;
+  double layer_tet, layer_point;   /* if all are tetrahedra */
+  double cell, point, prism, tet;  /* of the mesh; cell: of all kinds */
+  double serial;                /* s of one core before the first task,
+                                   most of it shared by a node */
+  double spread;                /* s of one core, shared by all workers */
+  double digest;                /* s of one core, behind all */
+  double shared, per_cell, per_thread;  /* bytes: of any rank; of the mesh */
+  size_t n_row;
+  struct vg_plan_row *row;      /* [n_row] */
+  size_t best;                  /* row; SIZE_MAX: none reaches the target */
+  size_t n_leaf;
+  struct { double cells; size_t n; struct vg_plan_row row; }
+    leaf[VG_PLAN_LEAVES];       /* other leaf sizes at the best row */
+  size_t best_leaf;
+};
+
+/** Bytes of the files that a word of the write list stands for; 0: not
+ * known. */
+double vg_plan_bytes(const struct vg_plan *p, const char *item);
+
+/** Speed-up over workers as a figure. */
+vg_status vg_plan_draw(const struct vg_plan *p, struct vg_error *err);
+
+void vg_plan_text(const struct vg_plan *p);
+vg_status vg_plan_json(const struct vg_plan *p, struct vg_error *err);
+
+#endif

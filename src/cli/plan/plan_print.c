@@ -1,0 +1,397 @@
+/* What vanguard plan tells about a project: text, JSON, figure. */
+#include <jansson.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "base/memory.h"
+#include "cli/common/cli.h"
+#include "cli/common/text.h"
+#include "cli/plan/plan_estimate.h"
+#include "cli/plot/plot.h"
+#include "cli/report/report.h"
+#include "io/mesh/foam.h"
+
+/* --- files --------------------------------------------------------------- */
+
+/* Bytes per item of a mesh in some form: of points, tetrahedra and prisms, and
+ * triangles of the boundary. Binary forms: as their layouts have it. Text: as
+ * written for meshes of some million cells. */
+static const struct form {
+  const char *word;
+  double point, tet, prism, face;
+} forms[] = {
+  { "b8.ugrid", 24, 16, 24, 16 }, { "lb8.ugrid", 24, 16, 24, 16 },
+  { "r8.ugrid", 24, 16, 24, 16 }, { "lr8.ugrid", 24, 16, 24, 16 },
+  { "b4.ugrid", 12, 16, 24, 16 }, { "lb4.ugrid", 12, 16, 24, 16 },
+  { "r4.ugrid", 12, 16, 24, 16 }, { "lr4.ugrid", 12, 16, 24, 16 },
+  { "b8l.ugrid", 24, 32, 48, 32 }, { "lb8l.ugrid", 24, 32, 48, 32 },
+  { "b8.ugrid64", 24, 32, 48, 32 }, { "lb8.ugrid64", 24, 32, 48, 32 },
+  { "ugrid", 51, 28, 42, 24 }, { "cogsg", 24, 16, 0, 41 },
+  { "vtu", 24, 49, 57, 49 }, { "pvtu", 28, 49, 57, 0 },
+  { "meshb", 28, 20, 28, 16 }, { "mesh", 56, 30, 44, 26 },
+};
+
+double vg_plan_bytes(const struct vg_plan *p, const char *item)
+{
+  struct vg_foam_options foam;
+  double boundary = (double)p->problem.surface.n_tri;
+
+  if (!strcmp(item, "auto")) return 0;
+  for (size_t i = 0; i < sizeof forms / sizeof *forms; i++) {
+    const struct form *f = &forms[i];
+
+    if (!strcasecmp(item, f->word))
+      return f->point * p->point + f->tet * p->tet + f->prism * p->prism +
+             f->face * boundary;
+  }
+  if (vg_foam_word(item, &foam)) {
+    double faces = 2 * p->tet + 2.5 * p->prism + 0.5 * boundary;
+
+    return foam.is_ascii ? 58 * p->point + 46 * faces
+                         : 24 * p->point + 24 * faces;
+  }
+  return 0;
+}
+
+/* --- text ---------------------------------------------------------------- */
+
+static const char *count(double n, char text[32])
+{
+  return vg_cli_count((unsigned long long)(n + 0.5), text);
+}
+
+static const char *bytes(double n, char text[32])
+{
+  if (n < 1e9) snprintf(text, 32, "%.1f MB", n / 1e6);
+  else snprintf(text, 32, "%.2f GB", n / 1e9);
+  return text;
+}
+
+static int is_leaf(const struct vg_outlook_node *n)
+{
+  return !n->lattice.n[0] && !n->lattice.n[1] && !n->lattice.n[2];
+}
+
+static void print_mesh(const struct vg_plan *p)
+{
+  const struct vg_notes *notes = &p->problem.notes;
+  char a[32], b[32];
+
+  printf("%s\n\nMesh expected\n", p->problem.settings.title);
+  printf("  %-24s %15s\n", "cells", count(p->cell, a));
+  if (p->layers.is_on) {
+    printf("  %-24s %15s  %s\n", "  of layers",
+           count(p->prism > 0 ? p->prism : p->layer_tet, a),
+           p->is_grown ? "layers have been grown"
+                       : "estimated from the walls and the law");
+    printf("  %-24s %15s\n", "  of the field", count(p->load.cells, a));
+    printf("  %-24s %15s\n", "points of the walls",
+           count((double)p->n_wall_point, a));
+  }
+  printf("  %-24s %15s\n", "points", count(p->point, a));
+  if (p->layers.is_on)
+    printf("  %-24s %15s\n", "  of layers", count(p->layer_point, a));
+  printf("  %-24s %15s\n", "triangles around it",
+         count((double)p->front->n_tri, a));
+  for (size_t i = 0; i < notes->n; i++) printf("  note: %s\n", notes->text[i]);
+  printf("\nMemory\n  shared, on every rank %s; cells of a rank %.0f B each; "
+         "a thread %s\n", bytes(p->shared, a), p->per_cell,
+         bytes(p->per_thread, b));
+}
+
+static void print_files(const struct vg_plan *p)
+{
+  char list[VG_WRITE_MAX], *save = NULL, text[32];
+
+  printf("\nFiles\n");
+  memcpy(list, p->problem.settings.write, sizeof list);
+  for (char *word = strtok_r(list, " ,", &save); word;
+       word = strtok_r(NULL, " ,", &save)) {
+    double size = vg_plan_bytes(p, word);
+
+    printf("  %-24s %15s\n", word, size > 0 ? bytes(size, text) : "small");
+  }
+}
+
+static void print_planes(const struct vg_lattice *l)
+{
+  for (int axis = 0; axis < 3; axis++) {
+    if (!l->n[axis]) continue;
+    printf("  %c =", 'x' + axis);
+    for (int k = 0; k < l->n[axis]; k++) printf(" %.6g", l->at[axis][k]);
+  }
+}
+
+/* Leaves of a node in one line. */
+static void print_leaves(const struct vg_outlook *o, size_t parent, int indent)
+{
+  double least = INFINITY, most = 0;
+  char a[32], b[32];
+  size_t n = 0;
+
+  for (size_t i = parent + 1; i < o->n_node; i++) {
+    const struct vg_outlook_node *c = &o->node[i];
+
+    if (c->parent != parent || !is_leaf(c)) continue;
+    least = fmin(least, c->cells);
+    most = fmax(most, c->cells);
+    n++;
+  }
+  if (!n) return;
+  printf("  %*s%zu %s %s", 2 * indent, "", n, n > 1 ? "leaves:" : "leaf:",
+         count(least, a));
+  if (n > 1) printf(" to %s", count(most, b));
+  printf(" cells\n");
+}
+
+static void print_number(size_t n, const char *what)
+{
+  printf("%zu %s%s", n, what, n == 1 ? "" : "s");
+}
+
+static void print_tree(const struct vg_plan *p)
+{
+  const struct vg_outlook *o = &p->outlook;
+  char a[32], b[32];
+
+  printf("\nCuts\n  ");
+  print_number(o->n_node - o->n_leaf, "cut");
+  printf(" into ");
+  if (o->n_leaf == 1) printf("1 leaf; ");
+  else printf("%zu leaves; ", o->n_leaf);
+  print_number(o->n_pencil, "pencil");
+  printf(" and ");
+  print_number(o->n_tile, "tile");
+  printf(" with %s cells (%.1f %%)\n", count(o->zone_cells, a),
+         o->cells > 0 ? 100 * o->zone_cells / o->cells : 0);
+  for (size_t i = 0; i < o->n_node; i++) {
+    const struct vg_outlook_node *n = &o->node[i];
+
+    if (n->depth >= p->o->depth || (is_leaf(n) && i)) continue;
+    printf("  %*s%s: %s cells, %s in zones", 2 * n->depth, "", n->path,
+           count(n->cells, a), count(n->zone, b));
+    print_planes(&n->lattice);
+    printf("\n");
+    print_leaves(o, i, n->depth + 1);
+  }
+}
+
+static void print_row(const struct vg_plan_row *r)
+{
+  printf("  %5d %7d %7d %10.2f %9.2f %11.1f %10.2f %9.2f %10.3f %9.3f %5.1f "
+         "%5.1f %9.0f\n",
+         r->ranks, r->threads, r->ranks * r->threads, r->wall, r->speedup,
+         100 * r->efficiency, r->tasks.wall, r->tasks.speedup,
+         r->tasks.critical, r->tasks.cuts_wall, 100 * r->tasks.cuts,
+         100 * r->tasks.cuts_extra, r->memory / 1e6);
+}
+
+static void print_best(const struct vg_plan *p)
+{
+  const struct vg_plan_row *r;
+  const char *why = "the most that keep 80 % efficiency";
+  char text[64] = "", cells[32];
+
+  if (p->best == SIZE_MAX) {
+    if (p->o->target > 0)
+      printf("\nNo machine of the list takes %g s or less.\n", p->o->target);
+    else
+      printf("\nNo machine of the list keeps 80 %% efficiency.\n");
+    r = &p->row[p->n_row - 1];
+    snprintf(text, sizeof text, "With");
+  } else {
+    r = &p->row[p->best];
+    if (p->o->target > 0) why = "the fewest within the target";
+    printf("\nBest: %d rank%s x %d thread%s, %.2f s (%s)\n", r->ranks,
+           r->ranks > 1 ? "s" : "", r->threads, r->threads > 1 ? "s" : "",
+           r->wall, why);
+    snprintf(text, sizeof text, "There");
+  }
+  printf("%s %d x %d by leaf size:\n   leaf cells  leaves       time      tasks"
+         "\n", text, r->ranks, r->threads);
+  for (size_t i = 0; i < p->n_leaf; i++)
+    printf("  %11s %7zu %10.2f %10.2f%s\n", count(p->leaf[i].cells, cells),
+           p->leaf[i].n, p->leaf[i].row.wall, p->leaf[i].row.tasks.wall,
+           i == p->best_leaf ? "  best" : "");
+}
+
+void vg_plan_text(const struct vg_plan *p)
+{
+  print_mesh(p);
+  print_files(p);
+  print_tree(p);
+  printf("\nForecast: on one core %.2f s before the tasks (shared by a node), "
+         "%.2f s of tasks,\n  %.2f s behind them (shared by all but for %.2f "
+         "s); of the tasks %.2f s in loops of joins\n  that idle threads of a "
+         "rank help with\n", p->serial, p->outlook.spans.wall,
+         p->spread + p->digest, p->digest, vg_spans_loops(&p->outlook.spans));
+  printf("  ranks threads workers       time  speed-up  efficiency      tasks "
+         " speed-up   critical  cuts end  cuts extra    a rank\n");
+  printf("                               s                     %%          s  "
+         "                  s         s     %%     %%        MB\n");
+  for (size_t i = 0; i < p->n_row; i++) print_row(&p->row[i]);
+  print_best(p);
+}
+
+/* --- JSON ---------------------------------------------------------------- */
+
+static json_t *row_json(const struct vg_plan_row *r)
+{
+  return json_pack("{s:i s:i s:i s:f s:f s:f s:f s:{s:f s:f s:f s:f s:f s:f "
+                   "s:f s:f}}", "ranks", r->ranks, "threads", r->threads,
+                   "workers", r->ranks * r->threads, "seconds", r->wall,
+                   "speedup", r->speedup, "efficiency", r->efficiency,
+                   "memory_bytes", r->memory, "tasks", "seconds",
+                   r->tasks.wall, "speedup", r->tasks.speedup, "critical",
+                   r->tasks.critical, "cuts", r->tasks.cuts,
+                   "cuts_extra", r->tasks.cuts_extra, "cuts_end",
+                   r->tasks.cuts_wall, "idle", r->tasks.idle, "bytes_sent",
+                   r->tasks.bytes);
+}
+
+static json_t *node_json(const struct vg_outlook_node *n)
+{
+  json_t *o = json_pack("{s:s s:f s:f s:f s:[f,f,f] s:[f,f,f]}", "path",
+                        n->path, "cells", n->cells, "zone_cells", n->zone,
+                        "front_faces", n->faces, "lo", n->lo[0], n->lo[1],
+                        n->lo[2], "hi", n->hi[0], n->hi[1], n->hi[2]);
+  json_t *planes = json_object();
+
+  for (int axis = 0; axis < 3; axis++) {
+    const char name[2] = { (char)('x' + axis), 0 };
+    json_t *list = json_array();
+
+    for (int k = 0; k < n->lattice.n[axis]; k++)
+      json_array_append_new(list, json_real(n->lattice.at[axis][k]));
+    if (n->lattice.n[axis]) json_object_set(planes, name, list);
+    json_decref(list);
+  }
+  json_object_set_new(o, "leaf", json_boolean(is_leaf(n)));
+  if (!is_leaf(n)) json_object_set(o, "planes", planes);
+  json_decref(planes);
+  return o;
+}
+
+static json_t *mesh_json(const struct vg_plan *p)
+{
+  json_t *o = json_pack("{s:f s:f s:f s:f s:f}", "cells", p->cell, "points",
+                        p->point, "tetrahedra", p->tet, "prisms", p->prism,
+                        "field_cells", p->load.cells);
+
+  if (!p->layers.is_on) return o;
+  json_object_set_new(o, "layers", json_pack("{s:f s:f s:s s:I}", "tetrahedra",
+    p->layer_tet, "points", p->layer_point, "source",
+    p->is_grown ? "grown" : "estimated", "wall_points",
+    (json_int_t)p->n_wall_point));
+  return o;
+}
+
+static json_t *files_json(const struct vg_plan *p)
+{
+  char list[VG_WRITE_MAX], *save = NULL;
+  json_t *o = json_object();
+
+  memcpy(list, p->problem.settings.write, sizeof list);
+  for (char *word = strtok_r(list, " ,", &save); word;
+       word = strtok_r(NULL, " ,", &save))
+    json_object_set_new(o, word, json_real(vg_plan_bytes(p, word)));
+  return o;
+}
+
+static json_t *tree_json(const struct vg_plan *p)
+{
+  const struct vg_outlook *t = &p->outlook;
+  json_t *o = json_pack("{s:I s:I s:I s:I s:f}", "cuts",
+                        (json_int_t)(t->n_node - t->n_leaf), "leaves",
+                        (json_int_t)t->n_leaf, "pencils",
+                        (json_int_t)t->n_pencil, "tiles",
+                        (json_int_t)t->n_tile, "zone_cells", t->zone_cells);
+  json_t *list = json_array();
+
+  for (size_t i = 0; i < t->n_node; i++)
+    json_array_append_new(list, node_json(&t->node[i]));
+  json_object_set_new(o, "nodes", list);
+  return o;
+}
+
+static json_t *leaves_json(const struct vg_plan *p)
+{
+  json_t *list = json_array();
+
+  for (size_t i = 0; i < p->n_leaf; i++)
+    json_array_append_new(list, json_pack("{s:f s:I s:f s:f}", "leaf_cells",
+      p->leaf[i].cells, "leaves", (json_int_t)p->leaf[i].n, "seconds",
+      p->leaf[i].row.wall, "tasks_seconds", p->leaf[i].row.tasks.wall));
+  return list;
+}
+
+vg_status vg_plan_json(const struct vg_plan *p, struct vg_error *err)
+{
+  json_t *o = json_object(), *rows = json_array();
+  int bad;
+
+  json_object_set_new(o, "title", vg_text_json(p->problem.settings.title));
+  json_object_set_new(o, "mesh", mesh_json(p));
+  json_object_set_new(o, "sources", vg_held_json(&p->held, p->front,
+                                                 &p->problem.settings));
+  json_object_set_new(o, "files", files_json(p));
+  json_object_set_new(o, "memory", json_pack("{s:f s:f s:f}", "shared",
+    p->shared, "per_cell", p->per_cell, "per_thread", p->per_thread));
+  json_object_set_new(o, "tree", tree_json(p));
+  json_object_set_new(o, "one_core", json_pack("{s:f s:f s:f s:f s:f}",
+    "before", p->serial, "tasks", p->outlook.spans.wall, "loops",
+    vg_spans_loops(&p->outlook.spans), "spread", p->spread, "digest", p->digest));
+  for (size_t i = 0; i < p->n_row; i++)
+    json_array_append_new(rows, row_json(&p->row[i]));
+  json_object_set_new(o, "forecast", rows);
+  if (p->best != SIZE_MAX)
+    json_object_set_new(o, "best", row_json(&p->row[p->best]));
+  json_object_set_new(o, "leaf_sizes", leaves_json(p));
+  if (p->n_leaf)
+    json_object_set_new(o, "best_leaf_cells",
+                        json_real(p->leaf[p->best_leaf].cells));
+  bad = !o || json_dumpf(o, stdout, JSON_INDENT(2)) || puts("") < 0;
+  json_decref(o);
+  return bad ? vg_fail_memory(err, "the forecast") : VG_OK;
+}
+
+/* --- figure -------------------------------------------------------------- */
+
+static int by_workers(const void *a, const void *b)
+{
+  const struct vg_plan_row *s = a, *t = b;
+  int n = s->ranks * s->threads, m = t->ranks * t->threads;
+
+  return n != m ? n - m : s->ranks - t->ranks;
+}
+
+vg_status vg_plan_draw(const struct vg_plan *p, struct vg_error *err)
+{
+  size_t n = p->n_row;
+  struct vg_plan_row *row = vg_alloc(n, sizeof *row);
+  double *v = vg_alloc(3 * n, sizeof *v);
+  struct vg_plot_series line[] = { { "whole run", 0, 1, n, v, v + n },
+                                   { "tasks", 1, 1, n, v, v + 2 * n } };
+  vg_status st;
+
+  if (!v || !row) {
+    st = vg_fail_memory(err, "a figure");
+    goto done;
+  }
+  memcpy(row, p->row, n * sizeof *row);
+  qsort(row, n, sizeof *row, by_workers);
+  for (size_t i = 0; i < n; i++) {
+    v[i] = row[i].ranks * row[i].threads;
+    v[n + i] = row[i].speedup;
+    v[2 * n + i] = row[i].tasks.speedup;
+  }
+  st = vg_plot_speedup(p->o->plot, p->problem.settings.title,
+                       "forecast from the load", 2, line, err);
+done:
+  free(row);
+  free(v);
+  return st;
+}

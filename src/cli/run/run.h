@@ -1,0 +1,84 @@
+/* cli/run/run.h: the stages of vanguard mesh between a closed surface and
+ * files, by all ranks together. Uses partition, layers. */
+#ifndef VG_CLI_RUN_RUN_H
+#define VG_CLI_RUN_RUN_H
+
+#include <jansson.h>
+#include <stdio.h>
+
+#include "base/comm.h"
+#include "cli/input/held.h"
+#include "cli/input/input.h"
+#include "cli/input/layers.h"
+#include "cli/run/output.h"
+#include "core/judge/judge_slices.h"
+#include "layers/expand/slices.h"
+#include "partition/advance/advance.h"
+
+/** What does not change the mesh. */
+struct vg_run_options {
+  const char *dir;           /* where finished tasks are kept, or NULL */
+  int resume, keep;
+  uint64_t limit, shuffle;
+};
+
+struct vg_run {
+  struct vg_run_options options;
+  struct vg_outputs *outputs; /* written in part while the mesh is judged */
+  struct vg_comm *comm;      /* NULL: one rank without a launcher */
+  int rank, size, threads;
+  struct vg_partition *field;
+  struct vg_partition_report partition;
+  struct vg_spans spans;
+  struct vg_store *store;
+  struct vg_store_report stored;
+  struct vg_layer_slices *layers;  /* NULL without layers */
+  struct vg_slices slices;   /* the mesh */
+  uint64_t n_field_cell;
+  struct vg_mesh_report judge, field_judge;  /* of all; with layers: of the
+                                                 field */
+  struct vg_held held;       /* of rank 0 */
+  double time_size, time_layers, time_judge;
+  double time_fill;          /* cuts, leaves and repairs */
+  size_t common;             /* bytes of sizes, one copy on the node */
+  double memory;             /* bytes, of the rank that needs most */
+  double memory_sum;         /* of all, what a node has in common once */
+};
+
+/** Close the surface as read, settle its layers and swap its slivers. By the
+ * first rank of each node on the cores of all; the others get the surface and
+ * whether layers grow, no notes, reports or settings. Collective. */
+vg_status vg_run_surface(struct vg_run *r, struct vg_problem *p,
+                         struct vg_layer_stage *layers,
+                         struct vg_display *show, struct vg_error *err);
+
+/** Sizes, layers, field, judgement, and what of r->outputs is written slice
+ * by slice. Collective; the mesh is r->slices.
+ * p->surface and layers are needed as long as it is. */
+vg_status vg_run_mesh(struct vg_run *r, const struct vg_problem *p,
+                      struct vg_layer_stage *layers, struct vg_display *show,
+                      struct vg_error *err);
+
+/** With --resume: that the run directory has a run, before anything is read.
+ * Whether it is this one shows later. Collective. */
+vg_status vg_run_resumable(struct vg_run *r, struct vg_error *err);
+
+/** Cells of all kinds. */
+uint64_t vg_run_cells(const struct vg_run *r);
+
+/** Largest memory so far of any rank, and of all together. Collective. */
+vg_status vg_run_memory(struct vg_run *r, struct vg_error *err);
+
+/** Collective. success: what was kept for a resume is removed. */
+void vg_run_release(struct vg_run *r, int success);
+
+/** cli/run/run_settings.c: lines of name=value for vg_store_options; the caller
+ * frees them. NULL: no memory. */
+char *vg_run_settings(const struct vg_settings *s,
+                      const struct vg_mesh *boundary);
+
+/** cli/run/report_partition.c: cuts, tasks, balance. */
+void vg_report_partition_text(FILE *to, const struct vg_run *r);
+json_t *vg_report_partition_json(const struct vg_run *r);
+
+#endif

@@ -1,0 +1,90 @@
+/* cli/sweep/sweep.h: the parts of vanguard sweep: one run of vanguard mesh for
+ * each point of a grid of parameters, and what comes out. Uses
+ * cli/common/ranges.h, cli/plot/timeline.h. */
+#ifndef VG_CLI_SWEEP_SWEEP_H
+#define VG_CLI_SWEEP_SWEEP_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "cli/common/ranges.h"
+#include "cli/plot/timeline.h"
+
+struct vg_sweep_options {
+  const char *project, *dir;
+  const char *deck;              /* NULL: PROJECT.deck where there is one */
+  const char *launcher;          /* words with {ranks}, {threads}; NULL:
+                                    mpirun from 2 ranks on */
+  const char *program;           /* NULL: this one */
+  struct vg_range_list levels, leaf_cells, ranks, threads;
+  int repeat, keep, json, quiet;
+  int n_extra;
+  char **extra;                  /* [n_extra] for vanguard mesh */
+};
+
+struct vg_sweep_case {
+  int64_t levels, leaf_cells;    /* -1: not given */
+  int ranks, threads, repeat;
+  char name[96], *dir;
+  int is_run, is_done;
+  int exit_status;               /* 128 + n: ended by signal n */
+  char note[256];                /* why it failed */
+  double wall;                   /* s, from start to exit */
+  int has_timeline;
+  struct vg_timeline t;
+  double angle_min, peak_memory; /* NAN where the report does not say */
+  char *files;                   /* "name digest" lines, or NULL */
+  char digest[40];               /* of all files, or "" */
+};
+
+struct vg_sweep {
+  const struct vg_sweep_options *o;
+  size_t n;
+  struct vg_sweep_case *item;    /* [n] */
+};
+
+void vg_sweep_release(struct vg_sweep *s);
+
+/** Lay the cases out: repeats around decompositions around threads around
+ * ranks. */
+vg_status vg_sweep_plan(const struct vg_sweep_options *o, struct vg_sweep *s,
+                        struct vg_error *err);
+
+/** Run one case; its output goes to dir/run.log. A run that fails is no
+ * failure of this: see is_done and note. VG_ERR_IO when nothing can be
+ * started at all, or the user stopped the sweep. */
+vg_status vg_sweep_run(const struct vg_sweep_options *o,
+                       struct vg_sweep_case *c, struct vg_error *err);
+
+/** Take over what the run wrote, and remove its meshes unless o->keep. */
+void vg_sweep_collect(const struct vg_sweep_options *o,
+                      struct vg_sweep_case *c);
+
+/** Seconds of a case that is done: of its record, else measured outside. */
+double vg_sweep_seconds(const struct vg_sweep_case *c);
+
+/** The case that speed-ups are against: the first of those with the fewest
+ * workers that is done; NULL: there is none. */
+const struct vg_sweep_case *vg_sweep_base(const struct vg_sweep *s);
+
+/** Against one worker, for which the fewest workers stand if there are more: w
+ * of them are taken to be w times as fast. NAN: there is no base. */
+double vg_sweep_speedup(const struct vg_sweep *s, double seconds);
+
+/** 1 when two cases ask for the same mesh. */
+int vg_sweep_same_mesh(const struct vg_sweep_case *a,
+                       const struct vg_sweep_case *b);
+
+/** Of all cases that ask for the same mesh, one whose files differ from the
+ * first's, and that one; 0 when there is none. *n_compared: files' digests
+ * that were held against each other.
+ * @param file  out: the first file that differs: [64] */
+int vg_sweep_differ(const struct vg_sweep *s, size_t *n_compared,
+                    const struct vg_sweep_case **a,
+                    const struct vg_sweep_case **b, char *file);
+
+/** sweep.csv, sweep.json and the figures. */
+vg_status vg_sweep_write(const struct vg_sweep *s, struct vg_error *err);
+vg_status vg_sweep_draw(const struct vg_sweep *s, struct vg_error *err);
+
+#endif

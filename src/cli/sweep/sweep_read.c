@@ -1,0 +1,211 @@
+/* What a run of a sweep left: its report and record; and comparing runs. */
+#define _GNU_SOURCE
+#include <dirent.h>
+#include <jansson.h>
+#include <limits.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/memory.h"
+#include "cli/sweep/sweep.h"
+#include "partition/store/store.h"
+
+static int ends_with(const char *text, const char *end)
+{
+  size_t n = strlen(text), m = strlen(end);
+
+  return n >= m && !strcmp(text + n - m, end);
+}
+
+/* The file in a folder whose name ends so, the first by name; free() it. */
+static char *find_file(const char *dir, const char *end)
+{
+  struct dirent **list = NULL;
+  int n = scandir(dir, &list, NULL, alphasort);
+  char *path = NULL;
+
+  for (int i = 0; i < n; i++) {
+    if (!path && ends_with(list[i]->d_name, end) &&
+        asprintf(&path, "%s/%s", dir, list[i]->d_name) < 0)
+      path = NULL;
+    free(list[i]);
+  }
+  free(list);
+  return path;
+}
+
+static double number_at(const json_t *o, const char *key)
+{
+  const json_t *v = json_object_get(o, key);
+
+  return json_is_number(v) ? json_number_value(v) : NAN;
+}
+
+/* "files": paths alone, or objects with path and digest. */
+static const char *file_name(const json_t *file)
+{
+  const char *path = json_is_string(file) ? json_string_value(file)
+    : json_string_value(json_object_get(file, "path"));
+
+  if (!path) return NULL;
+  return strrchr(path, '/') ? strrchr(path, '/') + 1 : path;
+}
+
+static void take_digests(const json_t *files, struct vg_sweep_case *c)
+{
+  struct vg_digest zero = { { 0, 0 } }, d;
+  size_t size = 0, i;
+  const json_t *file;
+  FILE *to = open_memstream(&c->files, &size);
+
+  if (!to) return;
+  json_array_foreach(files, i, file) {
+    const char *name = file_name(file);
+    const char *xxh3 = json_string_value(json_object_get(file, "xxh3"));
+
+    /* Reports hold times, which differ. */
+    if (name && xxh3 && !ends_with(name, ".json"))
+      fprintf(to, "%s %s\n", name, xxh3);
+  }
+  if (fclose(to) || !size) {
+    free(c->files);
+    c->files = NULL;
+    return;
+  }
+  d = vg_digest_of(zero, size, c->files);
+  snprintf(c->digest, sizeof c->digest, "%016llx%016llx",
+           (unsigned long long)d.word[0], (unsigned long long)d.word[1]);
+}
+
+static void remove_meshes(const json_t *files, const char *dir)
+{
+  const json_t *file;
+  size_t i;
+
+  json_array_foreach(files, i, file) {
+    const char *name = file_name(file);
+    char *path;
+
+    if (!name || !*name || ends_with(name, ".json") ||
+        ends_with(name, ".deck") || asprintf(&path, "%s/%s", dir, name) < 0)
+      continue;
+    unlink(path);
+    free(path);
+  }
+}
+
+static void read_report(const struct vg_sweep_options *o,
+                        struct vg_sweep_case *c)
+{
+  char *path = find_file(c->dir, ".report.json");
+  json_t *root = path ? json_load_file(path, 0, NULL) : NULL;
+  const json_t *mesh = json_object_get(root, "field");
+  const json_t *files = json_object_get(root, "files");
+
+  if (!mesh) mesh = json_object_get(root, "mesh");
+  c->angle_min = number_at(mesh, "angle_min");
+  c->peak_memory = number_at(root, "peak_memory_bytes");
+  if (c->is_done) {
+    take_digests(files, c);
+    if (!o->keep) remove_meshes(files, c->dir);
+  }
+  json_decref(root);
+  free(path);
+}
+
+void vg_sweep_collect(const struct vg_sweep_options *o,
+                      struct vg_sweep_case *c)
+{
+  char *path = find_file(c->dir, ".timeline.json");
+  struct vg_error err = VG_ERROR_INIT;
+
+  read_report(o, c);
+  if (path && c->is_done) {
+    c->has_timeline = vg_timeline_read(path, &c->t, &err) >= 0;
+    if (!c->has_timeline)
+      snprintf(c->note, sizeof c->note, "%.250s", err.text);
+  }
+  if (c->has_timeline && !c->digest[0])
+    snprintf(c->digest, sizeof c->digest, "%.39s", c->t.digest);
+  free(path);
+}
+
+/* --- comparing ----------------------------------------------------------- */
+
+double vg_sweep_seconds(const struct vg_sweep_case *c)
+{
+  double total = c->t.seconds[VG_PHASE_TOTAL];
+
+  return c->has_timeline && total > 0 ? total : c->wall;
+}
+
+const struct vg_sweep_case *vg_sweep_base(const struct vg_sweep *s)
+{
+  int fewest = INT_MAX;
+
+  for (size_t i = 0; i < s->n; i++)
+    if (s->item[i].ranks * s->item[i].threads < fewest)
+      fewest = s->item[i].ranks * s->item[i].threads;
+  for (size_t i = 0; i < s->n; i++)
+    if (s->item[i].is_done &&
+        s->item[i].ranks * s->item[i].threads == fewest)
+      return &s->item[i];
+  return NULL;
+}
+
+double vg_sweep_speedup(const struct vg_sweep *s, double seconds)
+{
+  const struct vg_sweep_case *base = vg_sweep_base(s);
+
+  if (!base || !(seconds > 0)) return NAN;
+  return base->ranks * base->threads * vg_sweep_seconds(base) / seconds;
+}
+
+int vg_sweep_same_mesh(const struct vg_sweep_case *a,
+                       const struct vg_sweep_case *b)
+{
+  return a->levels == b->levels && a->leaf_cells == b->leaf_cells;
+}
+
+/* Name of the first file whose line is not the same in both lists. */
+static void first_difference(const char *a, const char *b, char *file)
+{
+  snprintf(file, 64, "some file");
+  while (a && b && *a && *b) {
+    size_t n = strcspn(a, "\n"), m = strcspn(b, "\n");
+
+    if (n != m || strncmp(a, b, n)) {
+      snprintf(file, 64, "%.*s", (int)strcspn(a, " \n"), a);
+      return;
+    }
+    a += n + 1;
+    b += n + 1;
+  }
+}
+
+int vg_sweep_differ(const struct vg_sweep *s, size_t *n_compared,
+                    const struct vg_sweep_case **a,
+                    const struct vg_sweep_case **b, char *file)
+{
+  *n_compared = 0;
+  for (size_t i = 0; i < s->n; i++) {
+    const struct vg_sweep_case *c = &s->item[i], *first = NULL;
+
+    if (!c->is_done || !c->digest[0]) continue;
+    for (size_t k = 0; k < i && !first; k++)
+      if (s->item[k].is_done && s->item[k].digest[0] &&
+          vg_sweep_same_mesh(c, &s->item[k]))
+        first = &s->item[k];
+    if (!first) continue;
+    ++*n_compared;
+    if (!strcmp(first->digest, c->digest)) continue;
+    *a = first;
+    *b = c;
+    first_difference(first->files, c->files, file);
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,346 @@
+/* The cases of a sweep, and running them one after the other. */
+#define _GNU_SOURCE
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "base/memory.h"
+#include "cli/common/cli.h"
+#include "cli/common/progress.h"
+#include "cli/sweep/sweep.h"
+
+struct words { size_t n, cap; char **word; };
+
+void vg_sweep_release(struct vg_sweep *s)
+{
+  for (size_t i = 0; i < s->n; i++) {
+    free(s->item[i].dir);
+    free(s->item[i].files);
+    vg_timeline_release(&s->item[i].t);
+  }
+  free(s->item);
+  memset(s, 0, sizeof *s);
+}
+
+static vg_status add_case(struct vg_sweep *s, const struct vg_sweep_case *c,
+                          struct vg_error *err)
+{
+  struct vg_sweep_case *to = &s->item[s->n];
+  char part[40] = "";
+
+  *to = *c;
+  if (c->levels >= 0)
+    snprintf(part, sizeof part, "L%lld-", (long long)c->levels);
+  if (c->leaf_cells >= 0)
+    snprintf(part, sizeof part, "c%lld-", (long long)c->leaf_cells);
+  snprintf(to->name, sizeof to->name, "%sn%d-t%d", part, c->ranks,
+           c->threads);
+  if (s->o->repeat > 1)
+    snprintf(to->name + strlen(to->name), 16, "-r%d", c->repeat);
+  to->angle_min = to->peak_memory = NAN;
+  if (asprintf(&to->dir, "%s/%s", s->o->dir, to->name) < 0) {
+    to->dir = NULL;
+    return vg_fail_memory(err, "a path");
+  }
+  s->n++;
+  return VG_OK;
+}
+
+static vg_status add_machines(struct vg_sweep *s, struct vg_sweep_case *c,
+                              struct vg_error *err)
+{
+  const struct vg_sweep_options *o = s->o;
+  vg_status st = VG_OK;
+
+  for (size_t t = 0; t < o->threads.n; t++)
+    for (size_t n = 0; n < o->ranks.n && st >= 0; n++) {
+      c->ranks = (int)o->ranks.v[n];
+      c->threads = (int)o->threads.v[t];
+      st = add_case(s, c, err);
+    }
+  return st;
+}
+
+vg_status vg_sweep_plan(const struct vg_sweep_options *o, struct vg_sweep *s,
+                        struct vg_error *err)
+{
+  size_t n_mesh = o->levels.n + o->leaf_cells.n, n;
+  vg_status st = VG_OK;
+
+  s->o = o;
+  if (!n_mesh) n_mesh = 1;
+  n = n_mesh * (size_t)o->repeat;
+  if (n <= VG_RANGE_MAX) n *= o->ranks.n;
+  if (n <= VG_RANGE_MAX) n *= o->threads.n;
+  if (n > VG_RANGE_MAX)
+    return vg_fail(err, VG_ERR_INPUT, "that is more than %d cases",
+                   VG_RANGE_MAX);
+  s->item = vg_calloc(n, sizeof *s->item);
+  if (!s->item) return vg_fail_memory(err, "the cases");
+  for (int k = 1; k <= o->repeat; k++)
+    for (size_t i = 0; i < n_mesh; i++) {
+      struct vg_sweep_case c = { .levels = -1, .leaf_cells = -1,
+                                 .repeat = k };
+
+      if (i < o->levels.n) c.levels = o->levels.v[i];
+      else if (i - o->levels.n < o->leaf_cells.n)
+        c.leaf_cells = o->leaf_cells.v[i - o->levels.n];
+      VG_TRY(add_machines(s, &c, err));
+    }
+done:
+  return st;
+}
+
+/* --- command lines ------------------------------------------------------- */
+
+static void words_release(struct words *w)
+{
+  for (size_t i = 0; i < w->n; i++) free(w->word[i]);
+  free(w->word);
+}
+
+/* Takes `text` over; NULL stands for refused memory. */
+static vg_status add_word(struct words *w, char *text, struct vg_error *err)
+{
+  if (!text || vg_reserve(&w->word, &w->cap, w->n + 2, sizeof *w->word)) {
+    free(text);
+    return vg_fail_memory(err, "a command line");
+  }
+  w->word[w->n++] = text;
+  w->word[w->n] = NULL;
+  return VG_OK;
+}
+
+static vg_status add_pair(struct words *w, const char *name, int64_t v,
+                          struct vg_error *err)
+{
+  char text[32];
+  vg_status st = add_word(w, strdup(name), err);
+
+  snprintf(text, sizeof text, "%lld", (long long)v);
+  return st < 0 ? st : add_word(w, strdup(text), err);
+}
+
+/* A word of the launcher with its places filled in. */
+static char *fill_in(const char *word, size_t len,
+                     const struct vg_sweep_case *c)
+{
+  char *out = vg_alloc(len * 4 + 32, 1);
+  size_t at = 0;
+
+  for (size_t i = 0; out && i < len; ) {
+    if (len - i >= 7 && !strncmp(word + i, "{ranks}", 7)) {
+      at += (size_t)snprintf(out + at, 16, "%d", c->ranks);
+      i += 7;
+    } else if (len - i >= 9 && !strncmp(word + i, "{threads}", 9)) {
+      at += (size_t)snprintf(out + at, 16, "%d", c->threads);
+      i += 9;
+    } else {
+      out[at++] = word[i++];
+    }
+  }
+  if (out) out[at] = 0;
+  return out;
+}
+
+static vg_status add_launcher(struct words *w, const char *text,
+                              const struct vg_sweep_case *c,
+                              struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  while (st >= 0) {
+    size_t len;
+
+    text += strspn(text, " \t");
+    len = strcspn(text, " \t");
+    if (!len) break;
+    st = add_word(w, fill_in(text, len, c), err);
+    text += len;
+  }
+  return st;
+}
+
+static char *own_path(void)
+{
+  char path[4096];
+  ssize_t n = readlink("/proc/self/exe", path, sizeof path - 1);
+
+  if (n <= 0) return strdup("vanguard");
+  path[n] = 0;
+  return strdup(path);
+}
+
+static vg_status command_line(const struct vg_sweep_options *o,
+                              const struct vg_sweep_case *c, struct words *w,
+                              struct vg_error *err)
+{
+  const char *launcher = o->launcher;
+  vg_status st;
+
+  if (!launcher && c->ranks > 1)
+    launcher = "mpirun -n {ranks} --bind-to none";
+  if (launcher) VG_TRY(add_launcher(w, launcher, c, err));
+  VG_TRY(add_word(w, o->program ? strdup(o->program) : own_path(), err));
+  VG_TRY(add_word(w, strdup("mesh"), err));
+  VG_TRY(add_word(w, strdup("-p"), err));
+  VG_TRY(add_word(w, strdup(o->project), err));
+  if (o->deck) {
+    VG_TRY(add_word(w, strdup("--deck"), err));
+    VG_TRY(add_word(w, strdup(o->deck), err));
+  }
+  VG_TRY(add_pair(w, "--threads", c->threads, err));
+  if (c->levels >= 0) VG_TRY(add_pair(w, "--levels", c->levels, err));
+  if (c->leaf_cells >= 0)
+    VG_TRY(add_pair(w, "--leaf-cells", c->leaf_cells, err));
+  VG_TRY(add_word(w, strdup("--timeline"), err));
+  VG_TRY(add_word(w, strdup("-o"), err));
+  VG_TRY(add_word(w, strdup(c->dir), err));
+  for (int i = 0; i < o->n_extra; i++)
+    VG_TRY(add_word(w, strdup(o->extra[i]), err));
+done:
+  return st;
+}
+
+/* --- child processes ----------------------------------------------------- */
+
+static int ends_with(const char *text, const char *end)
+{
+  size_t n = strlen(text), m = strlen(end);
+
+  return n >= m && !strcmp(text + n - m, end);
+}
+
+/* Reports of an earlier sweep must not be taken for this one's. */
+static void remove_stale(const char *dir)
+{
+  DIR *d = opendir(dir);
+  struct dirent *e;
+
+  while (d && (e = readdir(d)))
+    if (ends_with(e->d_name, ".report.json") ||
+        ends_with(e->d_name, ".timeline.json"))
+      unlinkat(dirfd(d), e->d_name, 0);
+  if (d) closedir(d);
+}
+
+/* In the child: never returns. */
+static void become(char **word, int log, const sigset_t *mask)
+{
+  sigprocmask(SIG_SETMASK, mask, NULL);
+  signal(SIGINT, SIG_DFL);
+  signal(SIGTERM, SIG_DFL);
+  dup2(log, STDOUT_FILENO);
+  dup2(log, STDERR_FILENO);
+  execvp(word[0], word);
+  dprintf(STDERR_FILENO, "cannot start %s: %s\n", word[0], strerror(errno));
+  _exit(127);
+}
+
+/* Sleep until a child ends; SIGTERM is for the child too, which did not get
+ * it (it got a Ctrl-C itself). */
+static int wait_for(pid_t child, const sigset_t *chld)
+{
+  const struct timespec pause = { 0, 200000000 };
+  int status = 0, told = 0;
+
+  for (;;) {
+    pid_t got = waitpid(child, &status, WNOHANG);
+
+    if (got == child) break;
+    if (got < 0 && errno != EINTR) return 127;
+    if (vg_display_interrupted() && !told++) kill(child, SIGTERM);
+    sigtimedwait(chld, NULL, &pause);
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+static vg_status spawn(struct vg_sweep_case *c, char **word, int log,
+                       struct vg_error *err)
+{
+  sigset_t chld, before;
+  double start = vg_display_now();
+  pid_t child;
+
+  sigemptyset(&chld);
+  sigaddset(&chld, SIGCHLD);
+  sigprocmask(SIG_BLOCK, &chld, &before);
+  fflush(NULL);
+  child = fork();
+  if (child == 0) become(word, log, &before);
+  if (child > 0) c->exit_status = wait_for(child, &chld);
+  sigprocmask(SIG_SETMASK, &before, NULL);
+  if (child < 0)
+    return vg_fail(err, VG_ERR_IO, "cannot start another process: %s",
+                   strerror(errno));
+  c->wall = vg_display_now() - start;
+  c->is_run = 1;
+  return VG_OK;
+}
+
+/* What went wrong: the last line that vanguard wrote; or else what follows
+ * the first rule, as launchers put round their messages; or the last line. */
+static void find_note(const char *path, struct vg_sweep_case *c)
+{
+  enum { LAST, RULE, FRAMED, OURS } kept = LAST;
+  FILE *f = fopen(path, "r");
+  char *line = NULL;
+  size_t cap = 0;
+
+  snprintf(c->note, sizeof c->note, "see %.200s", path);
+  while (f && getline(&line, &cap, f) > 0) {
+    size_t ours = !strncmp(line, "vanguard: ", 10) ? 10
+                : !strncmp(line, "vanguard mesh: ", 15) ? 15 : 0;
+
+    line[strcspn(line, "\r\n")] = 0;
+    if (kept == LAST && !strncmp(line, "-----", 5)) kept = RULE;
+    if (!line[strspn(line, " \t-")] || (kept >= FRAMED && !ours)) continue;
+    kept = ours ? OURS : kept == RULE ? FRAMED : kept;
+    snprintf(c->note, sizeof c->note, "%s", line + ours);
+  }
+  free(line);
+  if (f) fclose(f);
+}
+
+vg_status vg_sweep_run(const struct vg_sweep_options *o,
+                       struct vg_sweep_case *c, struct vg_error *err)
+{
+  struct words w = { 0, 0, NULL };
+  char *path = NULL;
+  int log = -1;
+  vg_status st;
+
+  VG_TRY(vg_cli_make_folder(c->dir, err));
+  remove_stale(c->dir);
+  VG_TRY(command_line(o, c, &w, err));
+  if (asprintf(&path, "%s/run.log", c->dir) < 0) {
+    path = NULL;
+    st = vg_fail_memory(err, "a path");
+    goto done;
+  }
+  log = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (log < 0) {
+    st = vg_fail(err, VG_ERR_IO, "%s: cannot write: %s", path,
+                 strerror(errno));
+    goto done;
+  }
+  VG_TRY(spawn(c, w.word, log, err));
+  /* Missed limits on the layers leave a mesh that is whole. */
+  c->is_done = c->exit_status == VG_EXIT_DONE ||
+    c->exit_status == VG_EXIT_LIMIT;
+  if (!c->is_done) find_note(path, c);
+  if (vg_display_interrupted())
+    st = vg_fail(err, VG_ERR_IO, "interrupted during %s", c->name);
+done:
+  if (log >= 0) close(log);
+  words_release(&w);
+  free(path);
+  return st;
+}

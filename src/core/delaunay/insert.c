@@ -1,0 +1,417 @@
+#include "core/delaunay/insert.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/delaunay/cell_signs.h"
+#include "core/geometry/vector.h"
+
+enum { CUT_MAX = 16 };       /* times a cavity may be cut back */
+
+vg_status vg_inserter_init(struct vg_inserter *s, struct vg_tets *t,
+                           struct vg_error *err)
+{
+  memset(s, 0, sizeof *s);
+  s->t = t;
+  s->last = VG_NONE;
+  s->cap_local = t->cap_point;
+  s->local = vg_calloc(s->cap_local, sizeof *s->local);
+  return s->local ? VG_OK : vg_fail_memory(err, "the cavity table");
+}
+
+void vg_inserter_release(struct vg_inserter *s)
+{
+  free(s->cell);
+  free(s->tried);
+  free(s->face);
+  free(s->local);
+  free(s->edge);
+  memset(s, 0, sizeof *s);
+}
+
+/* --- the cavity ---------------------------------------------------------- */
+
+/* Room for what one cell of the cavity can add to the lists. */
+static int make_room(struct vg_inserter *s)
+{
+  return (s->n_cell + 4 > s->cap_cell &&
+          vg_reserve(&s->cell, &s->cap_cell, s->n_cell + 4,
+                     sizeof *s->cell)) ||
+         (s->n_tried + 4 > s->cap_tried &&
+          vg_reserve(&s->tried, &s->cap_tried, s->n_tried + 4,
+                     sizeof *s->tried)) ||
+         (s->n_face + 4 > s->cap_face &&
+          vg_reserve(&s->face, &s->cap_face, s->n_face + 4,
+                     sizeof *s->face));
+}
+
+static int add_tried(struct vg_inserter *s, uint32_t c)
+{
+  if (vg_reserve(&s->tried, &s->cap_tried, s->n_tried + 1, sizeof *s->tried))
+    return -1;
+  s->t->flag[c] |= VG_TRIED;
+  s->tried[s->n_tried++] = c;
+  return 0;
+}
+
+/* Face i of a cell of the cavity with these flags and signs. */
+static inline void add_face(struct vg_inserter *s, const struct vg_cell *cell,
+                            int i, uint8_t flag, unsigned signs)
+{
+  struct vg_cavity_face *f = &s->face[s->n_face++];
+
+  for (int k = 0; k < 3; k++) f->v[k] = cell->v[vg_face[i][k]];
+  f->link = cell->link[i];
+  f->fixed = flag >> i & 1;
+  f->hidden = !(signs & VG_SIDE_IN << i);
+  f->outside = flag & VG_OUTSIDE;
+}
+
+static void clear_marks(struct vg_inserter *s)
+{
+  for (size_t k = 0; k < s->n_cell; k++)
+    s->t->flag[s->cell[k].at] &= (uint8_t)~VG_MARK;
+  for (size_t k = 0; k < s->n_tried; k++)
+    s->t->flag[s->tried[k]] &= (uint8_t)~VG_TRIED;
+  s->n_cell = s->n_tried = s->n_face = 0;
+}
+
+/* Leave out faces, from a first one on, that have turned out to be inside. */
+static void drop_faces(struct vg_inserter *s, size_t first)
+{
+  size_t n = first;
+
+  for (size_t k = first; k < s->n_face; k++) {
+    struct vg_cavity_face f = s->face[k];
+
+    if (f.fixed || f.link == VG_NONE ||
+        !(s->t->flag[f.link >> 2] & VG_MARK))
+      s->face[n++] = f;
+  }
+  s->n_face = n;
+}
+
+/* All cells that can be reached from those in the list, and the faces around
+ * them. Cells marked TRIED before stay out. Only faces that the point sees are
+ * crossed: among Delaunay cells every cell of the cavity is reached so. Where
+ * recovery has left slivers, whose spheres are huge, it keeps the search from
+ * running all over them. */
+static int flood(struct vg_inserter *s, const vg_d2 p[3])
+{
+  const double (*x)[3] = (const double (*)[3])s->t->x;
+  const struct vg_cell *cells = s->t->cell;
+  uint8_t *flag = s->t->flag;
+  size_t late = SIZE_MAX;    /* the first face that may yet turn out inside */
+
+  for (size_t k = 0; k < s->n_cell; k++) {
+    struct vg_cavity_cell c = s->cell[k];
+    const struct vg_cell *cell = &cells[c.at];
+    uint8_t own = flag[c.at];
+
+    if (make_room(s)) return -1;
+    for (int i = 0; i < 4; i++) {
+      uint32_t link = cell->link[i], other = link >> 2;
+
+      if (link != VG_NONE && !(own >> i & 1) && !(flag[other] & VG_TRIED)) {
+        if (flag[other] & VG_MARK) continue;
+        if (c.signs & VG_SIDE_SEES << i) {
+          unsigned told = vg_cell_signs(x, cells[other].v, p);
+
+          flag[other] |= told & VG_IN_SPHERE ? VG_MARK : VG_TRIED;
+          if (told & VG_IN_SPHERE) {
+            s->cell[s->n_cell++] = (struct vg_cavity_cell){ other, told };
+            continue;
+          }
+          s->tried[s->n_tried++] = other;
+        } else if (s->n_face < late) {
+          late = s->n_face;
+        }
+      }
+      add_face(s, cell, i, own, c.signs);
+    }
+  }
+  if (late < s->n_face) drop_faces(s, late);
+  return 0;
+}
+
+static int start_flood(struct vg_inserter *s, uint32_t seed,
+                       const vg_d2 p[3])
+{
+  const double (*x)[3] = (const double (*)[3])s->t->x;
+  const uint32_t *v = s->t->cell[seed].v;
+  unsigned told = vg_cell_signs(x, v, p);
+
+  if (!(told & VG_IN_SPHERE)) told = vg_cell_sides(x, v, p, 0, 0);
+  if (make_room(s)) return -1;
+  s->t->flag[seed] |= VG_MARK;
+  s->cell[s->n_cell++] = (struct vg_cavity_cell){ seed, told };
+  return flood(s, p);
+}
+
+/* The cavity cell in front of face f. */
+static uint32_t cell_before(const struct vg_inserter *s, size_t f)
+{
+  const struct vg_cavity_face *face = &s->face[f];
+
+  if (face->link != VG_NONE)
+    return s->t->cell[face->link >> 2].link[face->link & 3] >> 2;
+  for (size_t k = 0; k < s->n_cell; k++) {
+    const struct vg_cell *c = &s->t->cell[s->cell[k].at];
+
+    for (int i = 0; i < 4; i++)
+      if (c->link[i] == VG_NONE && c->v[vg_face[i][0]] == face->v[0] &&
+          c->v[vg_face[i][1]] == face->v[1] &&
+          c->v[vg_face[i][2]] == face->v[2])
+        return s->cell[k].at;
+  }
+  return VG_NONE;
+}
+
+/* Leave the cells before all hidden faces out and flood again from the seed.
+ * 0: done; 1: a face of the seed itself is hidden; 2: nothing was hidden. */
+static int cut_back(struct vg_inserter *s, const vg_d2 p[3])
+{
+  uint32_t seed = s->cell[0].at;
+  size_t n_tried = s->n_tried;
+
+  for (size_t f = 0; f < s->n_face; f++) {
+    uint32_t out;
+
+    if (!s->face[f].hidden) continue;
+    out = cell_before(s, f);
+    if (out == seed || out == VG_NONE) return 1;
+    if (!(s->t->flag[out] & VG_TRIED) && add_tried(s, out)) return -1;
+  }
+  if (s->n_tried == n_tried) return 2;
+  for (size_t k = 0; k < s->n_cell; k++)
+    s->t->flag[s->cell[k].at] &= (uint8_t)~VG_MARK;
+  s->n_cell = s->n_face = 0;
+  return start_flood(s, seed, p);
+}
+
+static int grow_local(struct vg_inserter *s)
+{
+  size_t old = s->cap_local;
+
+  if (s->t->n_point <= old) return 0;
+  if (vg_reserve(&s->local, &s->cap_local, s->t->n_point, sizeof *s->local))
+    return -1;
+  memset(s->local + old, 0, (s->cap_local - old) * sizeof *s->local);
+  return 0;
+}
+
+/* Number the vertices of the cavity as they come; none where there are too
+ * many. */
+static void number_vertices(struct vg_inserter *s)
+{
+  uint32_t n = 0;
+
+  s->n_vertex = 0;
+  for (size_t k = 0; k < s->n_face; k++) {
+    struct vg_cavity_face *f = &s->face[k];
+
+    for (int i = 0; i < 3; i++) {
+      uint32_t v = f->v[i], at = s->local[v];
+
+      if (at >= n || s->vertex[at] != v) {
+        if (n == VG_CAVITY_TABLE) return;
+        at = s->local[v] = n;
+        s->vertex[n++] = v;
+      }
+      f->at[i] = (uint8_t)at;
+    }
+  }
+  s->n_vertex = n;
+}
+
+/* --- is the point welcome? ----------------------------------------------- */
+
+/* Height over the face, squared, against the square of its mean edge, or of
+ * `most` (0: none) where that is shorter, as above a needle. */
+static int too_low(const double a[3], const double b[3], const double c[3],
+                   const double x[3], double clearance, double most)
+{
+  double u[3], v[3], w[3], n[3], dot, n2, e2;
+
+  vg_sub(b, a, u);
+  vg_sub(c, a, v);
+  vg_sub(x, a, w);
+  vg_cross(u, v, n);
+  dot = vg_dot(n, w);
+  n2 = vg_dot(n, n);
+  e2 = (vg_distance2(a, b) + vg_distance2(b, c) + vg_distance2(c, a)) / 3;
+  if (most > 0 && e2 > most * most) e2 = most * most;
+  return dot * dot < clearance * clearance * e2 * n2;
+}
+
+static int too_near(const struct vg_inserter *s, const double x[3],
+                    double nearest)
+{
+  const double (*at)[3] = (const double (*)[3])s->t->x;
+  double least = nearest * nearest;
+
+  for (uint32_t i = 0; i < s->n_vertex; i++)
+    if (vg_distance2(at[s->vertex[i]], x) < least) return 1;
+  for (size_t k = 0; k < s->n_face && !s->n_vertex; k++)
+    for (int i = 0; i < 3; i++)
+      if (vg_distance2(at[s->face[k].v[i]], x) < least) return 1;
+  return 0;
+}
+
+static int too_low_anywhere(const struct vg_inserter *s, const double x[3],
+                            double clearance, double most)
+{
+  const struct vg_tets *t = s->t;
+
+  for (size_t k = 0; k < s->n_face && clearance > 0; k++) {
+    const uint32_t *v = s->face[k].v;
+
+    if (s->face[k].fixed &&
+        too_low(t->x[v[0]], t->x[v[1]], t->x[v[2]], x, clearance, most))
+      return 1;
+  }
+  return 0;
+}
+
+/* --- refilling ----------------------------------------------------------- */
+
+static int grow_edges(struct vg_inserter *s)
+{
+  size_t need = 1024;
+
+  while (need < 6 * s->n_face) need *= 2;
+  if (need > s->cap_edge) {
+    struct vg_edge_slot *table = vg_calloc(need, sizeof *table);
+
+    if (!table) return -1;
+    free(s->edge);
+    s->edge = table;
+    s->cap_edge = need;
+    s->epoch = 0;
+  }
+  if (++s->epoch == 0) {
+    memset(s->edge, 0, s->cap_edge * sizeof *s->edge);
+    s->epoch = 1;
+  }
+  return 0;
+}
+
+/* Link the face of `link` whose edge away from the new point is (a, b). */
+static void link_edge(struct vg_inserter *s, uint32_t a, uint32_t b,
+                      uint32_t link)
+{
+  uint64_t key = a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
+  size_t mask = s->cap_edge - 1;
+  size_t at = key * 0x9e3779b97f4a7c15u >> 40 & mask;
+
+  for (;; at = (at + 1) & mask) {
+    struct vg_edge_slot *e = &s->edge[at];
+
+    if (e->epoch != s->epoch) {
+      e->epoch = s->epoch;
+      e->key = key;
+      e->link = link;
+      return;
+    }
+    if (e->key == key) {
+      vg_tets_join(s->t, e->link, link);
+      return;
+    }
+  }
+}
+
+/* A cell before each face of the cavity, which learns its number instead of
+ * what lies behind it. */
+static void make_cells(struct vg_inserter *s, uint32_t p)
+{
+  struct vg_tets *t = s->t;
+  size_t used = 0;
+
+  for (size_t k = 0; k < s->n_face; k++) {
+    struct vg_cavity_face *f = &s->face[k];
+    uint32_t c = used < s->n_cell ? s->cell[used++].at : vg_tets_take(t);
+    struct vg_cell *cell = &t->cell[c];
+
+    cell->v[0] = f->v[0];
+    cell->v[1] = f->v[1];
+    cell->v[2] = f->v[2];
+    cell->v[3] = p;
+    t->flag[c] = (uint8_t)(f->outside | f->fixed << 3);
+    cell->link[3] = f->link;
+    if (f->link != VG_NONE)
+      t->cell[f->link >> 2].link[f->link & 3] = 4 * c + 3;
+    f->link = c;
+    s->last = c;
+  }
+  /* A star-shaped cavity of n vertices has 2n - 4 faces; with n - 3 cells or
+   * more there can be fewer faces than cells only around flat ones. */
+  while (used < s->n_cell) vg_tets_drop(t, s->cell[used++].at);
+}
+
+/* Each edge of the cavity's hull has two faces, which run along it in opposite
+ * senses. */
+static void link_by_table(struct vg_inserter *s)
+{
+  for (size_t k = 0; k < s->n_face; k++) {
+    const struct vg_cavity_face *f = &s->face[k];
+
+    for (uint32_t i = 0; i < 3; i++)
+      s->table[f->at[(i + 1) % 3]][f->at[(i + 2) % 3]] = 4 * f->link + i;
+  }
+  for (size_t k = 0; k < s->n_face; k++) {
+    const struct vg_cavity_face *f = &s->face[k];
+    uint32_t *link = s->t->cell[f->link].link;
+
+    for (int i = 0; i < 3; i++)
+      link[i] = s->table[f->at[(i + 2) % 3]][f->at[(i + 1) % 3]];
+  }
+}
+
+static void link_by_edges(struct vg_inserter *s)
+{
+  for (size_t k = 0; k < s->n_face; k++) {
+    const struct vg_cavity_face *f = &s->face[k];
+
+    for (uint32_t i = 0; i < 3; i++)
+      link_edge(s, f->v[(i + 1) % 3], f->v[(i + 2) % 3], 4 * f->link + i);
+  }
+}
+
+vg_status vg_insert(struct vg_inserter *s, uint32_t p, uint32_t at,
+                    double clearance, double nearest, struct vg_error *err)
+{
+  struct vg_tets *t = s->t;
+  double x[3];
+  vg_d2 both[3];
+  int state;
+
+  memcpy(x, t->x[p], sizeof x);
+  for (int k = 0; k < 3; k++) both[k] = (vg_d2){ x[k], x[k] };
+  state = start_flood(s, at, both);
+  if (!state && grow_local(s)) state = -1;
+  if (!state) number_vertices(s);
+  if (!state && nearest > 0) state = too_near(s, x, nearest);
+  for (int cut = 0; !state; cut++) {
+    if (cut) number_vertices(s);
+    state = cut == CUT_MAX ? 1 : cut_back(s, both);
+  }
+  if (state == 2) state = too_low_anywhere(s, x, clearance, 2 * nearest);
+  if (!state &&
+      ((!s->n_vertex && grow_edges(s)) || vg_tets_reserve_cells(t, s->n_face) ||
+       vg_reserve(&t->free, &t->cap_free, t->n_free + s->n_cell,
+                  sizeof *t->free)))
+    state = -1;
+  if (state) {
+    clear_marks(s);
+    return state > 0 ? VG_BLOCKED
+                     : vg_fail_memory(err, "the cells of the volume mesh");
+  }
+  make_cells(s, p);
+  if (s->n_vertex) link_by_table(s);
+  else link_by_edges(s);
+  for (size_t k = 0; k < s->n_tried; k++)
+    t->flag[s->tried[k]] &= (uint8_t)~VG_TRIED;
+  s->n_cell = s->n_tried = s->n_face = 0;
+  return VG_OK;
+}

@@ -1,0 +1,336 @@
+#include "core/delaunay/tets.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/geometry/hilbert.h"
+#include "core/geometry/predicates.h"
+
+const uint8_t vg_face[4][3] = {{1, 3, 2}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2}};
+
+void vg_tets_release(struct vg_tets *t)
+{
+  free(t->x);
+  free(t->cell);
+  free(t->flag);
+  free(t->free);
+  memset(t, 0, sizeof *t);
+}
+
+int vg_tets_reserve_points(struct vg_tets *t, size_t n)
+{
+  return vg_reserve(&t->x, &t->cap_point, t->n_point + n, sizeof *t->x);
+}
+
+int vg_tets_reserve_cells(struct vg_tets *t, size_t n)
+{
+  size_t cap = t->cap_cell, need;
+
+  if (t->n_free >= n) return 0;
+  need = t->n_cell + n - t->n_free;
+  if (need <= cap) return 0;
+  if (need >= VG_CELL_MAX) return -1;
+  if (vg_reserve(&t->cell, &cap, need, sizeof *t->cell)) return -1;
+  cap = t->cap_cell;
+  if (vg_reserve(&t->flag, &cap, need, sizeof *t->flag)) return -1;
+  t->cap_cell = cap;
+  return 0;
+}
+
+int vg_tets_drop(struct vg_tets *t, uint32_t cell)
+{
+  if (vg_reserve(&t->free, &t->cap_free, t->n_free + 1, sizeof *t->free))
+    return -1;
+  t->flag[cell] = VG_DEAD;
+  t->free[t->n_free++] = cell;
+  return 0;
+}
+
+/* --- links --------------------------------------------------------------- */
+
+static void sort3(uint32_t v[3])
+{
+#define ORDER(a, b) \
+  if (v[a] > v[b]) { uint32_t keep = v[a]; v[a] = v[b]; v[b] = keep; }
+  ORDER(0, 1)
+  ORDER(1, 2)
+  ORDER(0, 1)
+#undef ORDER
+}
+
+static uint64_t face_key(const struct vg_cell *c, int i, uint32_t v[3])
+{
+  for (int k = 0; k < 3; k++) v[k] = c->v[vg_face[i][k]];
+  sort3(v);
+  return (v[0] * 0x9e3779b97f4a7c15u) ^ (v[1] * 0xc2b2ae3d27d4eb4fu) ^
+         (v[2] * 0x165667b19e3779f9u);
+}
+
+/* Faces met once wait in an open-addressing table; the second visit takes
+ * them out again as a tombstone, so load is bounded by faces, not pairs. */
+static vg_status link_faces(struct vg_tets *t, uint32_t *table, size_t mask,
+                            struct vg_error *err)
+{
+  for (uint32_t c = 0; c < t->n_cell; c++) {
+    if (t->flag[c] & VG_DEAD) continue;
+    for (uint32_t i = 0; i < 4; i++) {
+      uint32_t v[3], w[3];
+      uint64_t key = face_key(&t->cell[c], (int)i, v);
+      size_t at = (key ^ key >> 29) & mask;
+
+      for (;; at = (at + 1) & mask) {
+        uint32_t other = table[at];
+
+        if (other == VG_NONE) {
+          table[at] = 4 * c + i;
+          break;
+        }
+        face_key(&t->cell[other >> 2], other & 3, w);
+        if (memcmp(v, w, sizeof v)) continue;
+        if (t->cell[other >> 2].link[other & 3] != VG_NONE)
+          return vg_fail(err, VG_ERR_GEOMETRY,
+                         "face of points %u %u %u has more than two cells",
+                         v[0] + 1, v[1] + 1, v[2] + 1);
+        vg_tets_join(t, other, 4 * c + i);
+        break;
+      }
+    }
+  }
+  return VG_OK;
+}
+
+vg_status vg_tets_link(struct vg_tets *t, struct vg_error *err)
+{
+  size_t size = 64;
+  uint32_t *table;
+  vg_status st;
+
+  while (size < 5 * t->n_cell) size *= 2;
+  table = vg_alloc(size, sizeof *table);
+  if (!table) return vg_fail_memory(err, "the neighbour table");
+  memset(table, 0xff, size * sizeof *table);
+  for (size_t c = 0; c < t->n_cell; c++)
+    memset(t->cell[c].link, 0xff, sizeof t->cell[c].link);
+  st = link_faces(t, table, size - 1, err);
+  free(table);
+  return st;
+}
+
+vg_status vg_tets_adopt(struct vg_tets *t, size_t n_point, double (*x)[3],
+                        size_t n_cell, const uint32_t (*v)[4],
+                        struct vg_error *err)
+{
+  t->x = x;
+  t->n_point = t->cap_point = n_point;
+  if (vg_tets_reserve_cells(t, n_cell))
+    return vg_fail_memory(err, "tetrahedra");
+  for (size_t c = 0; c < n_cell; c++) {
+    struct vg_cell *cell = &t->cell[c];
+    const double *at = x[v[c][0]];
+    double sign = vg_orient3d(at, x[v[c][1]], x[v[c][2]], x[v[c][3]]);
+
+    if (sign == 0)
+      return vg_fail(err, VG_ERR_GEOMETRY, "a flat cell at (%g %g %g)", at[0],
+                     at[1], at[2]);
+    memcpy(cell->v, v[c], sizeof cell->v);
+    if (sign < 0) {
+      cell->v[0] = v[c][1];
+      cell->v[1] = v[c][0];
+    }
+    t->flag[c] = 0;
+  }
+  t->n_cell = n_cell;
+  return vg_tets_link(t, err);
+}
+
+/* --- location ------------------------------------------------------------ */
+
+static uint32_t search_all(const struct vg_tets *t, const double x[3])
+{
+  for (uint32_t c = 0; c < t->n_cell; c++) {
+    const uint32_t *v = t->cell[c].v;
+    int i = 0;
+
+    if (t->flag[c] & VG_DEAD) continue;
+    for (; i < 4; i++)
+      if (vg_orient3d(t->x[v[vg_face[i][0]]], t->x[v[vg_face[i][1]]],
+                      t->x[v[vg_face[i][2]]], x) < 0)
+        break;
+    if (i == 4) return c;
+  }
+  return VG_NONE;
+}
+
+uint32_t vg_tets_locate(const struct vg_tets *t, uint32_t start,
+                        const double x[3])
+{
+  uint32_t c = start, from = VG_NONE;
+
+  /* The first face tried turns with the step: a walk in a mesh that is not
+   * Delaunay cannot circle for ever in step with a fixed order. */
+  for (uint32_t step = 0; step < 4096; step++) {
+    const struct vg_cell *cell = &t->cell[c];
+    uint32_t turn = step * 0x9e3779b1u >> 30, k = 0;
+
+    for (; k < 4; k++) {
+      uint32_t i = (turn + k) & 3;
+      const uint8_t *f = vg_face[i];
+
+      if (cell->link[i] == from && from != VG_NONE) continue;
+      if (vg_orient3d(t->x[cell->v[f[0]]], t->x[cell->v[f[1]]],
+                      t->x[cell->v[f[2]]], x) >= 0)
+        continue;
+      if (cell->link[i] == VG_NONE) return VG_NONE;
+      from = 4 * c + i;
+      c = cell->link[i] >> 2;
+      break;
+    }
+    if (k == 4) return c;
+  }
+  return search_all(t, x);
+}
+
+/* --- housekeeping -------------------------------------------------------- */
+
+/* to[old] = new number of each point, VG_NONE for unused ones from n_keep on;
+ * t->x is put into the new order. */
+static vg_status order_points(struct vg_tets *t, size_t n_keep, uint32_t *to,
+                              struct vg_error *err)
+{
+  size_t n = t->n_point - n_keep, used = n_keep;
+  uint32_t *order = vg_alloc(n, sizeof *order);
+  double (*x)[3] = vg_alloc(n, sizeof *x);
+  vg_status st = VG_OK;
+
+  if (!order || !x) st = vg_fail_memory(err, "renumbering points");
+  for (size_t c = 0; st == VG_OK && c < t->n_cell; c++)
+    for (int i = 0; i < 4 && !(t->flag[c] & (VG_DEAD | VG_OUTSIDE)); i++)
+      to[t->cell[c].v[i]] = 0;
+  for (size_t p = 0; st == VG_OK && p < n_keep; p++) to[p] = (uint32_t)p;
+  if (st == VG_OK) {
+    memcpy(x, t->x + n_keep, n * sizeof *x);
+    st = vg_hilbert_order(n, (const double (*)[3])x, order, err);
+  }
+  for (size_t k = 0; st == VG_OK && k < n; k++) {
+    size_t p = n_keep + order[k];
+
+    if (to[p] == VG_NONE) continue;
+    memcpy(t->x[used], x[order[k]], sizeof *x);
+    to[p] = (uint32_t)used++;
+  }
+  if (st == VG_OK) t->n_point = used;
+  free(order);
+  free(x);
+  return st;
+}
+
+/* to[old] = new number of each cell, VG_NONE for removed ones: counting sort
+ * by the highest point. Returns the number that stay. */
+static size_t order_cells(const struct vg_tets *t, uint32_t *start,
+                          uint32_t *to)
+{
+  size_t n = 0;
+
+  for (size_t c = 0; c < t->n_cell; c++) {
+    const uint32_t *v = t->cell[c].v;
+    uint32_t top = v[0];
+
+    for (int i = 1; i < 4; i++) top = v[i] > top ? v[i] : top;
+    to[c] = t->flag[c] & (VG_DEAD | VG_OUTSIDE) ? VG_NONE : top;
+    if (to[c] != VG_NONE) start[top + 1]++;
+  }
+  for (size_t p = 0; p < t->n_point; p++) start[p + 1] += start[p];
+  for (size_t c = 0; c < t->n_cell; c++)
+    if (to[c] != VG_NONE) {
+      to[c] = start[to[c]]++;
+      n++;
+    }
+  return n;
+}
+
+static void move_cells(struct vg_tets *t, size_t n, const uint32_t *to,
+                       struct vg_cell *cell, uint8_t *flag)
+{
+  for (size_t c = 0; c < t->n_cell; c++) {
+    struct vg_cell at = t->cell[c];
+
+    if (to[c] == VG_NONE) continue;
+    for (int i = 0; i < 4; i++) {
+      uint32_t other = at.link[i] == VG_NONE ? VG_NONE : to[at.link[i] >> 2];
+
+      at.link[i] = other == VG_NONE ? VG_NONE : 4 * other + (at.link[i] & 3);
+    }
+    cell[to[c]] = at;
+    flag[to[c]] = t->flag[c];
+  }
+  free(t->cell);
+  free(t->flag);
+  t->cell = cell;
+  t->flag = flag;
+  t->n_cell = t->cap_cell = n;
+  t->n_free = 0;
+}
+
+vg_status vg_tets_tidy(struct vg_tets *t, size_t n_keep, struct vg_error *err)
+{
+  uint32_t *point = vg_alloc(t->n_point, sizeof *point), *start = NULL;
+  uint32_t *to = vg_alloc(t->n_cell, sizeof *to);
+  struct vg_cell *cell = NULL;
+  uint8_t *flag = NULL;
+  size_t n;
+  vg_status st = VG_OK;
+
+  if (!point || !to) {
+    st = vg_fail_memory(err, "renumbering cells");
+    goto done;
+  }
+  memset(point, 0xff, t->n_point * sizeof *point);
+  VG_TRY(order_points(t, n_keep, point, err));
+  for (size_t c = 0; c < t->n_cell; c++)
+    for (int i = 0; i < 4; i++)
+      if (!(t->flag[c] & (VG_DEAD | VG_OUTSIDE)))
+        t->cell[c].v[i] = point[t->cell[c].v[i]];
+  start = vg_calloc(t->n_point + 1, sizeof *start);
+  if (start) {
+    n = order_cells(t, start, to);
+    cell = vg_alloc(n, sizeof *cell);
+    flag = vg_alloc(n, sizeof *flag);
+  }
+  if (!cell || !flag) {
+    free(cell);
+    free(flag);
+    st = vg_fail_memory(err, "renumbering cells");
+    goto done;
+  }
+  move_cells(t, n, to, cell, flag);
+done:
+  free(point);
+  free(to);
+  free(start);
+  return st;
+}
+
+size_t vg_tets_defects(const struct vg_tets *t)
+{
+  size_t bad = 0;
+
+  for (uint32_t c = 0; c < t->n_cell; c++) {
+    const struct vg_cell *cell = &t->cell[c];
+
+    if (t->flag[c] & VG_DEAD) continue;
+    bad += !(vg_orient3d(t->x[cell->v[0]], t->x[cell->v[1]],
+                         t->x[cell->v[2]], t->x[cell->v[3]]) > 0);
+    for (uint32_t i = 0; i < 4; i++) {
+      uint32_t l = cell->link[i], v[3], w[3];
+
+      if (l == VG_NONE) continue;
+      face_key(cell, (int)i, v);
+      face_key(&t->cell[l >> 2], l & 3, w);
+      bad += t->cell[l >> 2].link[l & 3] != 4 * c + i ||
+             memcmp(v, w, sizeof v) || t->flag[l >> 2] & VG_DEAD ||
+             (t->flag[c] >> i & 1) != (t->flag[l >> 2] >> (l & 3) & 1);
+    }
+  }
+  return bad;
+}

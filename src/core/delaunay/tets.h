@@ -1,0 +1,92 @@
+/* core/delaunay/tets.h: a tetrahedralisation that can be changed: cells with
+ * their neighbours, constrained faces, and a location walk. The working state
+ * of boundary recovery, point insertion and optimisation. Uses base only.
+ *
+ * Cell v0 v1 v2 v3 is positive: v0 v1 v2 counter-clockwise seen from v3. Face
+ * i is the one opposite vertex i. A link is 4 * cell + face of the neighbour,
+ * VG_NONE where there is none; so one void holds fewer than 2^30 cells. */
+#ifndef VG_CORE_DELAUNAY_TETS_H
+#define VG_CORE_DELAUNAY_TETS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/status.h"
+
+#define VG_NONE UINT32_MAX
+#define VG_CELL_MAX (1u << 30)
+
+struct vg_cell {
+  uint32_t v[4];
+  uint32_t link[4];
+};
+
+enum {                       /* bits of vg_tets.flag */
+  VG_FIXED_FACES = 0x0f,     /* bit i: face i is constrained */
+  VG_OUTSIDE = 0x10,         /* not in the fluid */
+  VG_DEAD = 0x20,            /* slot on the free list */
+  VG_MARK = 0x40,            /* scratch of one operation, else clear */
+  VG_TRIED = 0x80            /* likewise */
+};
+
+struct vg_tets {
+  size_t n_point, cap_point;
+  double (*x)[3];            /* [n_point] */
+  size_t n_cell, cap_cell;   /* slots, dead ones included */
+  struct vg_cell *cell;
+  uint8_t *flag;             /* [n_cell] */
+  size_t n_free, cap_free;
+  uint32_t *free;            /* dead slots, used last in first out */
+};
+#define VG_TETS_INIT { 0 }
+
+/* Vertices of face i in the order that sees vertex i on its positive side. */
+extern const uint8_t vg_face[4][3];
+
+void vg_tets_release(struct vg_tets *t);
+
+/** Room for n more points or cells. 0, or -1 when refused. */
+int vg_tets_reserve_points(struct vg_tets *t, size_t n);
+int vg_tets_reserve_cells(struct vg_tets *t, size_t n);
+
+/** A slot for a new cell: a dead one, else the next. Room must be there. */
+static inline uint32_t vg_tets_take(struct vg_tets *t)
+{
+  return t->n_free ? t->free[--t->n_free] : (uint32_t)t->n_cell++;
+}
+
+/** Put a cell on the free list. 0, or -1 when memory is refused. */
+int vg_tets_drop(struct vg_tets *t, uint32_t cell);
+
+static inline void vg_tets_join(struct vg_tets *t, uint32_t a, uint32_t b)
+{
+  t->cell[a >> 2].link[a & 3] = b;
+  t->cell[b >> 2].link[b & 3] = a;
+}
+
+/** Fill all links from the vertices, in O(n) expected time.
+ * VG_ERR_GEOMETRY when a face has more than two cells. */
+vg_status vg_tets_link(struct vg_tets *t, struct vg_error *err);
+
+/** Make *t (empty) of points and cells in either orientation, and link them.
+ * x becomes t's, also on failure. VG_ERR_GEOMETRY for a flat cell. */
+vg_status vg_tets_adopt(struct vg_tets *t, size_t n_point, double (*x)[3],
+                        size_t n_cell, const uint32_t (*v)[4],
+                        struct vg_error *err);
+
+/** Walk from `start` to a cell that contains x (boundary included), through
+ * constrained faces, ignoring dead cells. VG_NONE when x is outside all: sure
+ * only where the cells fill a convex hull (before vg_tets_tidy drops some). */
+uint32_t vg_tets_locate(const struct vg_tets *t, uint32_t start,
+                        const double x[3]);
+
+/** Remove dead and outside cells, and put what stays into an order that keeps
+ * neighbours together: points from n_keep on along a Hilbert curve, unused
+ * ones dropped (earlier ones keep their place), cells by their highest point.
+ * Links to removed cells become VG_NONE. VG_ERR_MEMORY on refusal. */
+vg_status vg_tets_tidy(struct vg_tets *t, size_t n_keep, struct vg_error *err);
+
+/** Test aid: number of inconsistencies (links, orientation). O(n). */
+size_t vg_tets_defects(const struct vg_tets *t);
+
+#endif

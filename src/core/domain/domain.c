@@ -1,0 +1,430 @@
+/* Outline: find the open edges of the body; none: a whole farfield; all in
+ * one coordinate plane: snap them to it, half a farfield whose rim lies in
+ * the plane, and the plane itself between rim and footprints. */
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/domain/farfield.h"
+#include "core/domain/planar.h"
+#include "core/geometry/vector.h"
+
+/* Open edges this close to a coordinate plane, in body lengths, are in it. */
+#define PLANE_TOLERANCE 1e-5
+/* Part of a farfield's radius that the body may reach: chords of the
+ * triangulated sphere come this near. */
+#define FARFIELD_ROOM 0.9
+
+struct domain {
+  struct vg_mesh m;
+  const struct vg_farfield *farfield;
+  const struct vg_size_law *law;
+  double lo[3], hi[3], length;   /* of the body */
+  double centre[3], radius;
+  int axis, side;                /* symmetry; axis -1: none; side 1: above */
+  double at;
+  struct vg_rim open;            /* as the new surface runs along them */
+};
+
+/* --- open edges ---------------------------------------------------------- */
+
+struct edge_end {
+  uint32_t other;
+  int32_t way;   /* +1 from the lower to the higher vertex, -1 back */
+};
+
+static int by_other(const void *pa, const void *pb)
+{
+  const struct edge_end *a = pa, *b = pb;
+
+  if (a->other != b->other) return a->other < b->other ? -1 : 1;
+  return a->way - b->way;
+}
+
+static size_t n_side(const struct vg_mesh *m)
+{
+  return 3 * m->n_tri + 4 * m->n_quad;
+}
+
+static void side_at(const struct vg_mesh *m, size_t i, uint32_t *a,
+                    uint32_t *b)
+{
+  if (i < 3 * m->n_tri) {
+    *a = m->tri[i / 3][i % 3];
+    *b = m->tri[i / 3][(i + 1) % 3];
+  } else {
+    i -= 3 * m->n_tri;
+    *a = m->quad[i / 4][i % 4];
+    *b = m->quad[i / 4][(i + 1) % 4];
+  }
+}
+
+/* Edges of a vertex whose two directions do not cancel. */
+static vg_status open_of_vertex(struct domain *d, uint32_t v, size_t n,
+                                struct edge_end *list, struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  qsort(list, n, sizeof *list, by_other);
+  for (size_t i = 0, j; st == VG_OK && i < n; i = j) {
+    const double *x = d->m.point[v], *y = d->m.point[list[i].other];
+    int32_t sum = 0;
+
+    for (j = i; j < n && list[j].other == list[i].other; j++)
+      sum += list[j].way;
+    if (sum < -1 || sum > 1)
+      return vg_fail(err, VG_ERR_GEOMETRY, "edge from (%.9g, %.9g, %.9g) to "
+                     "(%.9g, %.9g, %.9g): its triangles run the same way; "
+                     "run `vanguard check` on the surface", x[0], x[1], x[2],
+                     y[0], y[1], y[2]);
+    if (sum > 0) st = vg_rim_add(&d->open, list[i].other, v, err);
+    if (sum < 0) st = vg_rim_add(&d->open, v, list[i].other, err);
+  }
+  return st;
+}
+
+static vg_status find_open_edges(struct domain *d, struct vg_error *err)
+{
+  const struct vg_mesh *m = &d->m;
+  const size_t n = n_side(m);
+  size_t *start = vg_calloc(m->n_point + 2, sizeof *start);
+  struct edge_end *list = vg_alloc(n, sizeof *list);
+  vg_status st = VG_OK;
+  uint32_t a, b;
+
+  if (!start || !list) {
+    st = vg_fail_memory(err, "the edges of the surface");
+    goto done;
+  }
+  for (size_t i = 0; i < n; i++) {
+    side_at(m, i, &a, &b);
+    start[(a < b ? a : b) + 2]++;
+  }
+  for (size_t v = 2; v < m->n_point + 2; v++) start[v] += start[v - 1];
+  for (size_t i = 0; i < n; i++) {
+    side_at(m, i, &a, &b);
+    if (a < b) list[start[a + 1]++] = (struct edge_end){ b, 1 };
+    else list[start[b + 1]++] = (struct edge_end){ a, -1 };
+  }
+  for (uint32_t v = 0; st == VG_OK && v < m->n_point; v++)
+    st = open_of_vertex(d, v, start[v + 1] - start[v], list + start[v], err);
+done:
+  free(start);
+  free(list);
+  return st;
+}
+
+/* --- the symmetry plane -------------------------------------------------- */
+
+static void open_range(const struct domain *d, int k, double *lo, double *hi)
+{
+  *lo = INFINITY;
+  *hi = -INFINITY;
+  for (size_t i = 0; i < d->open.n; i++) {
+    const double x = d->m.point[d->open.edge[i][0]][k];
+
+    if (x < *lo) *lo = x;
+    if (x > *hi) *hi = x;
+  }
+}
+
+/* Coordinate axis across which the open edges are flat and the body lies on
+ * one side; -1 where there is none. */
+static int symmetry_axis(const struct domain *d)
+{
+  const double tol = PLANE_TOLERANCE * d->length;
+
+  for (int i = 0; i < 3; i++) {
+    const int k = (i + 1) % 3;   /* y first: the usual one */
+    double lo, hi;
+
+    open_range(d, k, &lo, &hi);
+    if (hi - lo <= tol && d->hi[k] - d->lo[k] > 4 * tol
+        && (lo - d->lo[k] <= tol || d->hi[k] - hi <= tol))
+      return k;
+  }
+  return -1;
+}
+
+static vg_status find_symmetry(struct domain *d, struct vg_error *err)
+{
+  const double tol = PLANE_TOLERANCE * d->length;
+  const double *x;
+  double hi;
+
+  d->axis = -1;
+  if (!d->open.n) return VG_OK;
+  x = d->m.point[d->open.edge[0][0]];
+  d->axis = symmetry_axis(d);
+  if (d->axis < 0)
+    return vg_fail(err, VG_ERR_GEOMETRY, "the surface has %zu open edges that "
+                   "do not lie in one coordinate plane at an end of the body "
+                   "(one starts at (%.9g, %.9g, %.9g)); close the surface, or "
+                   "cut a half model along x, y or z = constant", d->open.n,
+                   x[0], x[1], x[2]);
+  open_range(d, d->axis, &d->at, &hi);
+  if (fabs(d->at) <= tol && fabs(hi) <= tol) d->at = 0;
+  d->side = d->hi[d->axis] - d->at > d->at - d->lo[d->axis];
+  for (size_t i = 0; i < 2 * d->open.n; i++)
+    d->m.point[d->open.edge[i / 2][i % 2]][d->axis] = d->at;
+  for (size_t i = 0; i < d->m.n_point; i++) {
+    x = d->m.point[i];
+    if (d->side ? x[d->axis] < d->at : x[d->axis] > d->at)
+      return vg_fail(err, VG_ERR_GEOMETRY, "point %zu (%.9g, %.9g, %.9g) lies "
+                     "beyond the symmetry plane %c = %.9g that the open edges "
+                     "are in; move it onto the plane or cut it off", i + 1,
+                     x[0], x[1], x[2], "xyz"[d->axis], d->at);
+  }
+  return VG_OK;
+}
+
+/* Fluid lies outside a body: six times the volume behind its triangles, seen
+ * from a point of the symmetry plane, must be positive. */
+static vg_status check_orientation(const struct domain *d,
+                                   struct vg_error *err)
+{
+  const struct vg_mesh *m = &d->m;
+  double sum = 0, o[3];
+
+  for (int k = 0; k < 3; k++) o[k] = 0.5 * (d->lo[k] + d->hi[k]);
+  if (d->axis >= 0) o[d->axis] = d->at;
+  for (size_t i = 0; i < m->n_tri + 2 * m->n_quad; i++) {
+    const uint32_t *q = i < m->n_tri ? m->tri[i]
+                                     : m->quad[(i - m->n_tri) / 2];
+    const int second = i >= m->n_tri && (i - m->n_tri) % 2;
+    const double *p[3] = { m->point[q[0]], m->point[q[second ? 2 : 1]],
+                           m->point[q[second ? 3 : 2]] };
+    double a[3][3];
+
+    for (int j = 0; j < 3; j++)
+      for (int k = 0; k < 3; k++) a[j][k] = p[j][k] - o[k];
+    sum += vg_triple(a[0], a[1], a[2]);
+  }
+  if (sum > 0) return VG_OK;
+  return vg_fail(err, VG_ERR_INPUT, "the triangles of the surface point into "
+                 "the body, not into the fluid: either it already is a whole "
+                 "flow domain, which takes no farfield (farfield none), or it "
+                 "has to be turned inside out");
+}
+
+/* --- the farfield -------------------------------------------------------- */
+
+static double domain_size(void *user, const double x[3])
+{
+  const struct domain *d = user;
+  double h = d->farfield->spacing > 0 ? d->farfield->spacing : INFINITY;
+
+  if (d->law) {
+    const double s = d->law->at(d->law->user, x);
+
+    if (s < h) h = s;
+  }
+  /* a farfield is round, or has room, with this many edges across it */
+  return h < d->radius / 4 ? h : d->radius / 4;
+}
+
+static int domain_stop(void *user)
+{
+  const struct domain *d = user;
+
+  return d->farfield->stop && d->farfield->stop(d->farfield->user);
+}
+
+static vg_status place_farfield(struct domain *d, struct vg_error *err)
+{
+  const struct vg_farfield *f = d->farfield;
+
+  if (!(f->size >= 0) || !isfinite(f->size)
+      || (f->size == 0 && !(f->lengths > 0 && isfinite(f->lengths))))
+    return vg_fail(err, VG_ERR_INPUT, "farfield: size %g, %g body lengths; "
+                   "one of them must be a positive number", f->size,
+                   f->lengths);
+  if (!(f->spacing >= 0) || (f->spacing == 0 && !d->law))
+    return vg_fail(err, VG_ERR_INPUT, "farfield: the spacing %g is not a "
+                   "positive length", f->spacing);
+  d->radius = f->size > 0 ? f->size : f->lengths * d->length;
+  for (int k = 0; k < 3; k++)
+    d->centre[k] = f->has_centre ? f->centre[k]
+                                 : 0.5 * (d->lo[k] + d->hi[k]);
+  if (d->axis >= 0) d->centre[d->axis] = d->at;
+  return VG_OK;
+}
+
+static vg_status outside(const struct domain *d, size_t i,
+                         struct vg_error *err)
+{
+  const double *x = d->m.point[i];
+
+  return vg_fail(err, VG_ERR_GEOMETRY, "point %zu (%.9g, %.9g, %.9g) of the "
+                 "body is not well inside the farfield; enlarge it (body "
+                 "length %.9g)", i + 1, x[0], x[1], x[2], d->length);
+}
+
+static vg_status add_sphere(struct domain *d, uint32_t patch,
+                            struct vg_rim *rim, struct vg_error *err)
+{
+  const struct vg_size_law law = { domain_size, domain_stop, d };
+  const double most = FARFIELD_ROOM * d->radius;
+
+  for (size_t i = 0; i < d->m.n_point; i++) {
+    const double *x = d->m.point[i];
+    double rr = 0;
+
+    for (int k = 0; k < 3; k++)
+      rr += (x[k] - d->centre[k]) * (x[k] - d->centre[k]);
+    if (!(rr < most * most)) return outside(d, i, err);
+  }
+  return vg_add_sphere(&d->m, d->centre, d->radius,
+                       d->axis < 0 ? -1 : 2 * d->axis + d->side, 1, &law,
+                       patch, rim, err);
+}
+
+static vg_status add_box(struct domain *d, uint32_t patch,
+                         struct vg_rim *rim, struct vg_error *err)
+{
+  const struct vg_farfield *f = d->farfield;
+  const struct vg_size_law law = { domain_size, domain_stop, d };
+  const uint32_t of[6] = { patch, patch, patch, patch, patch, patch };
+  const int open = d->axis < 0 ? -1 : 2 * d->axis + !d->side;
+  double lo[3], hi[3];
+
+  d->radius = INFINITY;
+  for (int k = 0; k < 3; k++) {
+    const double half = f->size > 0 ? f->size : f->lengths * d->length;
+
+    lo[k] = f->has_box ? f->lo[k] : d->centre[k] - half;
+    hi[k] = f->has_box ? f->hi[k] : d->centre[k] + half;
+    if (k == d->axis) *(d->side ? &lo[k] : &hi[k]) = d->at;
+    if (!(hi[k] > lo[k]))
+      return vg_fail(err, VG_ERR_INPUT, "farfield box: %c from %g to %g is "
+                     "empty", "xyz"[k], lo[k], hi[k]);
+    d->radius = fmin(d->radius, 0.5 * (hi[k] - lo[k]));
+  }
+  for (size_t i = 0; i < d->m.n_point; i++)
+    for (int k = 0; k < 3; k++) {
+      const double x = d->m.point[i][k];
+
+      if ((open != 2 * k && !(x > lo[k])) || (open != 2 * k + 1
+                                              && !(x < hi[k])))
+        return outside(d, i, err);
+    }
+  return vg_add_box(&d->m, lo, hi, open, &law, of, rim, err);
+}
+
+/* --- patches ------------------------------------------------------------- */
+
+static vg_status add_patch(struct vg_mesh *m, const char *name, int32_t bc,
+                           int32_t bc_fun3d, uint32_t *at,
+                           struct vg_error *err)
+{
+  int32_t id = 0;
+  size_t i;
+
+  for (i = 0; i < m->n_patch; i++)
+    if (m->patch[i].id > id) id = m->patch[i].id;
+  if (id == INT32_MAX)
+    return vg_fail(err, VG_ERR_UNSUPPORTED, "patch number %" PRId32 " leaves "
+                   "none for the %s; renumber the patches", id, name);
+  i = vg_mesh_add_patch(m, id + 1, name);
+  if (i == SIZE_MAX) return vg_fail_memory(err, "a patch");
+  m->patch[i].bc = m->patch[i].family = bc;
+  m->patch[i].bc_fun3d = bc_fun3d;
+  *at = (uint32_t)i;
+  return VG_OK;
+}
+
+static vg_status add_symmetry(struct domain *d, struct vg_rim *rim,
+                              struct vg_error *err)
+{
+  const struct vg_size_law law = { domain_size, domain_stop, d };
+  struct vg_error inner = VG_ERROR_INIT;
+  uint32_t patch = 0;
+  vg_status st;
+
+  VG_TRY(add_patch(&d->m, "symmetry", 1, 6661 + d->axis, &patch, err));
+  for (size_t i = 0; i < d->open.n; i++)
+    VG_TRY(vg_rim_add(rim, d->open.edge[i][0], d->open.edge[i][1], err));
+  st = vg_planar_patch(&d->m, rim->n, (const uint32_t (*)[2])rim->edge, &law,
+                       patch, &inner);
+  if (st < 0)
+    st = vg_fail(err, st, "symmetry plane %c = %.9g: %s", "xyz"[d->axis],
+                 d->at, inner.text);
+done:
+  return st;
+}
+
+static vg_status build(struct domain *d, struct vg_error *err)
+{
+  struct vg_rim rim = VG_RIM_INIT;
+  uint32_t patch = 0;
+  vg_status st;
+
+  VG_TRY(find_open_edges(d, err));
+  VG_TRY(find_symmetry(d, err));
+  if (d->farfield->kind == VG_FARFIELD_NONE) {
+    if (d->axis >= 0)
+      st = vg_fail(err, VG_ERR_GEOMETRY, "the surface is open along %c = %.9g "
+                   "(%zu edges) and no farfield is asked for; choose farfield "
+                   "sphere or box", "xyz"[d->axis], d->at, d->open.n);
+    goto done;
+  }
+  VG_TRY(check_orientation(d, err));
+  VG_TRY(place_farfield(d, err));
+  VG_TRY(add_patch(&d->m, "farfield", 3, 5000, &patch, err));
+  VG_TRY(d->farfield->kind == VG_FARFIELD_SPHERE
+           ? add_sphere(d, patch, &rim, err) : add_box(d, patch, &rim, err));
+  if (d->axis >= 0) VG_TRY(add_symmetry(d, &rim, err));
+done:
+  vg_rim_release(&rim);
+  return st;
+}
+
+vg_status vg_domain_complete_by(struct vg_mesh *surface,
+                                const struct vg_farfield *farfield,
+                                const struct vg_size_law *law,
+                                struct vg_domain_report *report,
+                                struct vg_error *err)
+{
+  struct domain d = { .farfield = farfield, .law = law, .axis = -1 };
+  vg_status st;
+
+  if (!surface->n_tri && !surface->n_quad)
+    return vg_fail(err, VG_ERR_INPUT, "the surface has no triangles: there is "
+                   "no body to put a farfield around");
+  VG_TRY(vg_mesh_copy(&d.m, surface, err));
+  vg_mesh_bounds(&d.m, d.lo, d.hi);
+  for (int k = 0; k < 3; k++) d.length = fmax(d.length, d.hi[k] - d.lo[k]);
+  VG_TRY(build(&d, err));
+  if (report) {
+    report->added_farfield = farfield->kind != VG_FARFIELD_NONE;
+    report->added_symmetry = d.axis >= 0;
+    report->symmetry_axis = d.axis;
+    report->symmetry_at = d.at;
+    report->n_added_tri = d.m.n_tri - surface->n_tri;
+  }
+  vg_mesh_move(surface, &d.m);
+done:
+  vg_mesh_release(&d.m);
+  vg_rim_release(&d.open);
+  return st;
+}
+
+static double size_of_field(void *user, const double x[3])
+{
+  return vg_sizing_at(user, x);
+}
+
+vg_status vg_domain_complete(struct vg_mesh *surface,
+                             const struct vg_farfield *farfield,
+                             const struct vg_sizing *sizing,
+                             struct vg_domain_report *report,
+                             struct vg_error *err)
+{
+  const struct vg_size_law law = { .at = size_of_field,
+                                   .user = (void *)sizing };
+
+  return vg_domain_complete_by(surface, farfield, sizing ? &law : NULL,
+                               report, err);
+}

@@ -1,0 +1,39 @@
+/* core/domain/planar_patch.h: a plane patch of a surface in space, triangulated
+ * inside its boundary by vg_planar_mesh. Uses core/mesh/mesh.h. */
+#ifndef VG_CORE_DOMAIN_PLANAR_PATCH_H
+#define VG_CORE_DOMAIN_PLANAR_PATCH_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "core/mesh/mesh.h"
+
+/** Target edge length in space; stop as in vg_planar_law. */
+struct vg_size_law {
+  double (*at)(void *user, const double x[3]);
+  int (*stop)(void *user);
+  void *user;
+};
+
+/** Does the law's user want to stop? */
+static inline int vg_size_law_stops(const struct vg_size_law *law)
+{
+  return law->stop && law->stop(law->user);
+}
+
+/** Append the triangles of the plane region on the left of `edge` to m.
+ *
+ * @param m       in/out: points used by edge[]; new points and triangles are
+ *                appended, present ones stay bit by bit. Unchanged on failure
+ * @param edge    directed segments between points of m, closed loops,
+ *                counter-clockwise seen from the side the normals point to
+ * @param patch   index in m->patch of the new triangles
+ * A region whose points share one coordinate exactly keeps it in every new
+ * point. VG_ERR_GEOMETRY: points off the plane by more than 1e-6 of the
+ * extent, or loops that cross. VG_ERR_IO: stopped. */
+vg_status vg_planar_patch(struct vg_mesh *m, size_t n_edge,
+                          const uint32_t (*edge)[2],
+                          const struct vg_size_law *size, uint32_t patch,
+                          struct vg_error *err);
+
+#endif

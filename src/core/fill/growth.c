@@ -1,0 +1,142 @@
+#include "core/fill/growth.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/memory.h"
+#include "core/delaunay/insert.h"
+#include "core/fill/place.h"
+#include "core/geometry/hilbert.h"
+#include "core/optimise/optimise.h"
+
+/* Least distance of a new point to any other, over the spacing, and least
+ * height over a front face, over its mean edge: points that fail would make
+ * cells worse than those of the coarser mesh without them. */
+static const double least_distance = 0.5;
+static const double least_height = 0.3;
+/* Cells so near to those of a region, in spacings, are optimised too: what is
+ * bad there would be left as a notch in the front. */
+static const double rim = 0.3;
+/* The first points of all keep farther off: the front decides near it. */
+static const double seed_distance = 0.8;
+
+enum { PROGRESS_STEP = 1 << 15 };
+
+int vg_growth_stopped(const struct vg_growth *g, const char *stage,
+                      size_t done, size_t expected)
+{
+  return g->options->progress &&
+         g->options->progress(g->options->user, stage, done, expected);
+}
+
+static vg_status insert_one(struct vg_growth *g, struct vg_inserter *s,
+                            const double x[3], double nearest, uint32_t *at,
+                            struct vg_error *err)
+{
+  struct vg_tets *t = &g->t;
+  uint32_t p = (uint32_t)t->n_point, c;
+  vg_status st;
+
+  c = vg_tets_locate(t, *at, x);
+  if (c == VG_NONE || t->flag[c] & VG_OUTSIDE) return VG_BLOCKED;
+  if (vg_tets_reserve_points(t, 1))
+    return vg_fail_memory(err, "the points of the mesh");
+  memcpy(t->x[p], x, sizeof *t->x);
+  t->n_point++;
+  st = vg_insert(s, p, c, least_height,
+                 nearest * vg_sizing_at(g->sizing, x), err);
+  if (st == VG_OK) *at = s->last;
+  else t->n_point--;
+  return st;
+}
+
+static vg_status insert_all(struct vg_growth *g, const struct vg_placed *placed,
+                            const uint32_t *order, double nearest,
+                            struct vg_error *err)
+{
+  struct vg_inserter s;
+  uint32_t at = 0;
+  vg_status st = vg_inserter_init(&s, &g->t, err);
+
+  while (g->t.flag[at] & (VG_OUTSIDE | VG_DEAD)) at++;
+  if (st == VG_OK && vg_tets_reserve_points(&g->t, placed->n))
+    st = vg_fail_memory(err, "the points of the mesh");
+  for (size_t i = 0; st >= 0 && i < placed->n; i++) {
+    st = insert_one(g, &s, placed->x[order[i]], nearest, &at, err);
+    g->report->n_inserted += st == VG_OK;
+    g->report->n_refused += st == VG_BLOCKED;
+    if (i % PROGRESS_STEP == 0 &&
+        vg_growth_stopped(g, "inserting", i, placed->n)) {
+      vg_inserter_release(&s);
+      return VG_BLOCKED;
+    }
+  }
+  vg_inserter_release(&s);
+  return st < 0 ? st : VG_OK;
+}
+
+static vg_status insert_placed(struct vg_growth *g, struct vg_placed *placed,
+                               double nearest, struct vg_error *err)
+{
+  uint32_t *order = vg_alloc(placed->n, sizeof *order);
+  double t0 = vg_clock();
+  vg_status st;
+
+  if (!order) {
+    st = vg_fail_memory(err, "ordering points");
+    goto done;
+  }
+  VG_TRY(vg_insertion_order(placed->n, (const double (*)[3])placed->x, order,
+                            err));
+  st = insert_all(g, placed, order, nearest, err);
+done:
+  free(order);
+  free(placed->x);
+  g->report->n_placed += placed->n;
+  g->report->time_insert += vg_clock() - t0;
+  return st;
+}
+
+vg_status vg_growth_populate(struct vg_growth *g, struct vg_error *err)
+{
+  struct vg_placed placed = {0};
+  double t0;
+  vg_status st;
+
+  VG_TRY(vg_place_seeds(g->n_front, (const double (*)[3])g->t.x, g->sizing,
+                        g->region, &placed, err));
+  st = insert_placed(g, &placed, seed_distance, err);
+  if (st != VG_OK) goto done;
+  t0 = vg_clock();
+  VG_TRY(vg_place(&g->t, g->sizing, g->region, g->options->point_limit,
+                  &placed, err));
+  g->report->time_place += vg_clock() - t0;
+  st = insert_placed(g, &placed, least_distance, err);
+done:
+  return st;
+}
+
+vg_status vg_growth_improve(struct vg_growth *g, struct vg_error *err)
+{
+  struct vg_optimise_report r = {0};
+  struct vg_region near = {0};
+  double t0 = vg_clock();
+  vg_status st = VG_OK;
+
+  VG_TRY(vg_tets_tidy(&g->t, g->n_front, err));
+  if (vg_growth_stopped(g, "optimising", 0, 1)) return VG_BLOCKED;
+  if (g->region) near = *g->region;
+  near.reach += rim;
+  if (g->options->sweeps > 0) {
+    st = vg_optimise(&g->t, g->n_front, g->options->sweeps,
+                     g->region ? &near : NULL, g->sizing, &r, err);
+    g->report->n_smoothed += r.n_smoothed;
+    g->report->n_flip += r.n_flip;
+    g->report->n_collapse += r.n_collapse;
+    g->report->n_split += r.n_split;
+  }
+  g->report->time_optimise += vg_clock() - t0;
+done:
+  return st;
+}

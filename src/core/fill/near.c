@@ -1,0 +1,313 @@
+#include "core/fill/near.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
+
+#include "base/memory.h"
+
+#define VG_NONE UINT32_MAX
+
+/* Level k has cells of side 2^k, between 1.4 and 2.8 of the spacing. */
+static int level_of(double h)
+{
+  int e;
+
+  frexp(2.8 * h, &e);
+  return e - 1;
+}
+
+/* Cells are kept in blocks of 4 x 4 x 4, which share a hash entry and lie
+ * together in memory: the surroundings of a point touch few of them. */
+static uint64_t block_key(int level, const int64_t i[3])
+{
+  return ((uint64_t)(level + 512) << 54) ^
+         ((uint64_t)(i[0] >> 2) & 0x3ffff) << 36 ^
+         ((uint64_t)(i[1] >> 2) & 0x3ffff) << 18 ^
+         ((uint64_t)(i[2] >> 2) & 0x3ffff);
+}
+
+static uint32_t cell_in_block(const int64_t i[3])
+{
+  return (uint32_t)((i[0] & 3) << 4 | (i[1] & 3) << 2 | (i[2] & 3));
+}
+
+/* The cells of a block from `from` to `to` on each axis, 0 to 3, as bits. */
+static uint64_t cells_between(const int from[3], const int to[3])
+{
+  uint64_t x = UINT64_MAX << 16 * from[0] & UINT64_MAX >> 16 * (3 - to[0]);
+  uint64_t y = 0xffffu << 4 * from[1] & 0xffffu >> 4 * (3 - to[1]);
+  uint64_t z = 0xfu << from[2] & 0xfu >> (3 - to[2]);
+
+  return x & y * 0x0001000100010001u & z * 0x1111111111111111u;
+}
+
+static size_t find_slot(const struct vg_near *s, uint64_t key)
+{
+  uint64_t mix = (key ^ key >> 31) * 0x9e3779b97f4a7c15u;
+  size_t at = (mix ^ mix >> 29) * 0xbf58476d1ce4e5b9u >> 32 & (s->n_slot - 1);
+
+  while (s->slot[at].block != VG_NONE && s->slot[at].key != key)
+    at = (at + 1) & (s->n_slot - 1);
+  return at;
+}
+
+static int resize(struct vg_near *s, size_t size)
+{
+  struct vg_near_slot *old = s->slot, *slot = vg_alloc(size, sizeof *slot);
+  size_t n = s->n_slot;
+
+  if (!slot) return -1;
+  memset(slot, 0xff, size * sizeof *slot);
+  s->slot = slot;
+  s->n_slot = size;
+  for (size_t i = 0; i < n; i++)
+    if (old[i].block != VG_NONE) s->slot[find_slot(s, old[i].key)] = old[i];
+  free(old);
+  return 0;
+}
+
+/* Head of the pages of cell i, made if need be; NULL: memory refused. */
+static uint32_t *cell_head(struct vg_near *s, int level, const int64_t i[3])
+{
+  uint64_t key = block_key(level, i);
+  struct vg_near_block *block;
+  size_t at;
+
+  if (2 * s->n_block >= s->n_slot && resize(s, 2 * s->n_slot))
+    return NULL;
+  at = find_slot(s, key);
+  if (s->slot[at].block == VG_NONE) {
+    if (vg_reserve(&s->block, &s->cap_block, s->n_block + 1,
+                   sizeof *s->block))
+      return NULL;
+    memset(&s->block[s->n_block], 0xff, sizeof *s->block);
+    s->block[s->n_block].used = 0;
+    s->slot[at].key = key;
+    s->slot[at].block = (uint32_t)s->n_block++;
+  }
+  block = &s->block[s->slot[at].block];
+  block->used |= (uint64_t)1 << cell_in_block(i);
+  return &block->page[cell_in_block(i)];
+}
+
+static uint32_t new_page(struct vg_near *s, uint32_t next)
+{
+  if (vg_reserve(&s->page, &s->cap_page, s->n_page + 1, sizeof *s->page))
+    return VG_NONE;
+  s->page[s->n_page] = (struct vg_near_page){ .next = next };
+  return (uint32_t)s->n_page++;
+}
+
+int vg_near_add(struct vg_near *s, const double x[3], double h)
+{
+  int level = level_of(h);
+  double inverse = ldexp(1, -level), side = ldexp(1, level);
+  int64_t i[3];
+  struct vg_near_page *page;
+  uint32_t *head;
+
+  for (int k = 0; k < 3; k++)
+    i[k] = (int64_t)floor((x[k] - s->lo[k]) * inverse);
+  head = cell_head(s, level, i);
+  if (!head) return -1;
+  if (*head == VG_NONE || s->page[*head].n == VG_NEAR_PAGE) {
+    uint32_t fresh = new_page(s, *head);
+
+    if (fresh == VG_NONE) return -1;
+    *head = fresh;
+  }
+  page = &s->page[*head];
+  for (int k = 0; k < 3; k++)
+    page->x[k][page->n] = (float)(x[k] - s->lo[k] - side * (double)i[k]);
+  page->n++;
+  return 0;
+}
+
+/* A grid cell met by a search: its pages are on their way to the cache while
+ * the other cells are looked up. x, y, z: its corner, from the centre. */
+static void find_cell(struct vg_near *s, uint32_t page, double x, double y,
+                      double z)
+{
+  struct vg_near_cell *f = &s->cell[s->n_cell];
+
+  if (s->n_cell == VG_NEAR_CELLS) return;
+  __builtin_prefetch(&s->page[page]);
+  __builtin_prefetch((const char *)(&s->page[page] + 1) - 1);
+  f->page = page;
+  f->d[0] = (float)x;
+  f->d[1] = (float)y;
+  f->d[2] = (float)z;
+  s->n_cell++;
+}
+
+/* Four lanes, as GCC and Clang spell it for any processor. */
+typedef float f4 __attribute__((vector_size(16)));
+typedef int32_t i4 __attribute__((vector_size(16)));
+
+static inline unsigned lanes(i4 m)
+{
+#ifdef __SSE2__
+  return (unsigned)_mm_movemask_ps((__m128)m);
+#else
+  m &= (i4){ 1, 2, 4, 8 };
+  return (unsigned)(m[0] | m[1] | m[2] | m[3]);
+#endif
+}
+
+static inline f4 four(const float *from)
+{
+  f4 v;
+
+  memcpy(&v, from, sizeof v);
+  return v;
+}
+
+/* Bit k: point k of the page, moved by d, is within a distance. */
+static inline unsigned within(const struct vg_near_page *page,
+                              const float d[3], float r2)
+{
+  unsigned bits = 0;
+
+  for (int k = 0; k < VG_NEAR_PAGE; k += 4) {
+    f4 u = four(page->x[0] + k) + d[0], v = four(page->x[1] + k) + d[1];
+    f4 w = four(page->x[2] + k) + d[2];
+
+    bits |= lanes(u * u + v * v + w * w <= r2) << k;
+  }
+  return bits & ((1u << page->n) - 1);
+}
+
+static void gather_cell(struct vg_near *s, const struct vg_near_cell *f,
+                        float r2)
+{
+  float x = f->d[0], y = f->d[1], z = f->d[2];
+  size_t n = s->n;
+
+  for (uint32_t at = f->page; at != VG_NONE && n < VG_NEAR_MAX;
+       at = s->page[at].next) {
+    const struct vg_near_page *page = &s->page[at];
+
+    for (unsigned left = within(page, f->d, r2); left; left &= left - 1) {
+      int k = __builtin_ctz(left);
+
+      s->x[0][n] = page->x[0][k] + x;
+      s->x[1][n] = page->x[1][k] + y;
+      s->x[2][n++] = page->x[2][k] + z;
+    }
+  }
+  s->n = n;
+}
+
+/* Distance along one axis from the centre to a cell that starts at d. */
+static double gap(double d, double side)
+{
+  return d > 0 ? d : d + side < 0 ? -(d + side) : 0;
+}
+
+struct query {
+  double c[3], side, r2;     /* centre, side of a cell, radius squared */
+  int64_t lo[3], hi[3];      /* cells in question */
+};
+
+/* Along axis k, from cell i: its corner relative to the centre, and the square
+ * of its distance. */
+static double along(const struct vg_near *s, const struct query *q, int k,
+                    int64_t i, double side, double *d)
+{
+  double g;
+
+  *d = s->lo[k] + q->side * (double)i - q->c[k];
+  g = gap(*d, side);
+  return g * g;
+}
+
+static void find_in_block(struct vg_near *s, const struct query *q,
+                          const int64_t b[3],
+                          const struct vg_near_block *block)
+{
+  double d[3][4], g[3][4];
+  int from[3], to[3];
+  uint64_t left;
+
+  for (int k = 0; k < 3; k++) {
+    from[k] = (int)(q->lo[k] > 4 * b[k] ? q->lo[k] - 4 * b[k] : 0);
+    to[k] = (int)(q->hi[k] < 4 * b[k] + 3 ? q->hi[k] - 4 * b[k] : 3);
+    for (int i = from[k]; i <= to[k]; i++)
+      g[k][i] = along(s, q, k, 4 * b[k] + i, q->side, &d[k][i]);
+  }
+  for (left = block->used & cells_between(from, to); left;
+       left &= left - 1) {
+    int at = __builtin_ctzll(left), x = at >> 4, y = at >> 2 & 3, z = at & 3;
+
+    if (g[0][x] + g[1][y] + g[2][z] > q->r2) continue;
+    find_cell(s, block->page[at], d[0][x], d[1][y], d[2][z]);
+  }
+}
+
+static void find_level(struct vg_near *s, const double c[3], double r,
+                       int level)
+{
+  double inverse = ldexp(1, -level), d;
+  struct query q = { { c[0], c[1], c[2] }, ldexp(1, level), r * r, { 0 },
+                     { 0 } };
+  int64_t b[3];
+
+  for (int k = 0; k < 3; k++) {
+    q.lo[k] = (int64_t)floor((c[k] - r - s->lo[k]) * inverse);
+    q.hi[k] = (int64_t)floor((c[k] + r - s->lo[k]) * inverse);
+  }
+  for (b[0] = q.lo[0] >> 2; b[0] <= q.hi[0] >> 2; b[0]++) {
+    double gx = along(s, &q, 0, 4 * b[0], 4 * q.side, &d);
+
+    for (b[1] = q.lo[1] >> 2; b[1] <= q.hi[1] >> 2; b[1]++) {
+      double gxy = gx + along(s, &q, 1, 4 * b[1], 4 * q.side, &d);
+
+      for (b[2] = q.lo[2] >> 2; b[2] <= q.hi[2] >> 2; b[2]++) {
+        int64_t i[3] = { 4 * b[0], 4 * b[1], 4 * b[2] };
+        uint32_t block;
+
+        if (gxy + along(s, &q, 2, i[2], 4 * q.side, &d) > q.r2) continue;
+        block = s->slot[find_slot(s, block_key(level, i))].block;
+        if (block != VG_NONE) find_in_block(s, &q, b, &s->block[block]);
+      }
+    }
+  }
+}
+
+/* All points within r of c, r about twice the spacing h there. They are on
+ * the levels that the gradient of the field allows. */
+void vg_near_gather(struct vg_near *s, const double c[3], double h, double r)
+{
+  double change = fmin(s->slope * r, 0.6 * h);
+
+  s->n = s->n_cell = 0;
+  for (int level = level_of(h - change); level <= level_of(h + change);
+       level++)
+    if (level >= s->level_lo && level <= s->level_hi)
+      find_level(s, c, r, level);
+  for (size_t k = 0; k < s->n_cell; k++)
+    gather_cell(s, &s->cell[k], (float)(r * r));
+  if (s->n > VG_NEAR_MAX) s->n = VG_NEAR_MAX;
+}
+
+int vg_near_init(struct vg_near *s, const double lo[3], double h_min,
+                 double h_max, double slope)
+{
+  memcpy(s->lo, lo, sizeof s->lo);
+  s->slope = slope;
+  s->level_lo = level_of(h_min) - 1;
+  s->level_hi = level_of(h_max) + 1;
+  return resize(s, 1 << 10);
+}
+
+void vg_near_release(struct vg_near *s)
+{
+  free(s->slot);
+  free(s->block);
+  free(s->page);
+}

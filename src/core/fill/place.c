@@ -1,0 +1,682 @@
+#include "core/fill/place.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/fill/near.h"
+#include "core/fill/sites.h"
+#include "core/geometry/vector.h"
+
+/* Side of the cubic pattern over the spacing: mean edge of a body-centred
+ * lattice of side 1 is (8 sqrt(3)/2 + 6) / 14 = 0.923. */
+static const double lattice = 1.083;
+/* Least distance between points over the spacing of the later one. */
+static const double exclusion = 0.66;
+/* The same in a region, where fronts from all sides meet after a few steps and
+ * leave cells shorter than a void's; but not where the front itself proposes:
+ * beside its long faces a point that is missing makes a bad cell. */
+static const double exclusion_region = 0.68;
+/* Proposals that lead from the front to where it counts. */
+static const int far_from_front = 2;
+/* The same between points of the lattice and others, where it is level. */
+static const double exclusion_level = 0.72;
+/* Height of the apex over a surface face: regular tetrahedron. */
+static const double apex = 0.8165;
+
+/* How much farther than points are placed, in spacings, others may stand that
+ * propose them: steps of the pattern lead so far across planes of the axes. */
+static const double sideways = 0.65;
+
+/* A field that changes less than this over one edge counts as level. */
+static const double level_within = 1e-3;
+
+enum { N_BUCKET = 8192, BUCKET_ZERO = 4096 };
+
+struct placer {
+  const struct vg_tets *t;
+  const struct vg_sizing *sizing;
+  const struct vg_region *region;
+  size_t n, cap, cap_h, cap_cell, cap_steps, cap_queue;
+  double (*x)[3];            /* surface points first */
+  float *h;
+  uint32_t *cell;            /* cell of t that holds the point */
+  uint8_t *steps;            /* proposals that lead to the point from points
+                                of the front or from what its faces propose,
+                                which have 0; UINT8_MAX: that many or more */
+  uint32_t *queue;           /* next item in the same bucket */
+  size_t n_face;
+  uint32_t *face;            /* links 4 * cell + face of the surface */
+  uint32_t first[N_BUCKET], last[N_BUCKET];
+  int lowest;                /* no bucket below it has items */
+  struct vg_near near;
+  int is_listed;             /* near has what is around the growing point */
+  int now;                   /* steps of what is proposed now */
+  struct vg_sites sites;     /* that stand or never will */
+};
+
+/* --- queue --------------------------------------------------------------- */
+
+/* Eight buckets per doubling of the spacing, first in first out. */
+static int bucket_of(double h)
+{
+  static const double step[8] = {0.5, 0.5452538663326288, 0.5946035575013605,
+    0.6484197773255048, 0.7071067811865476, 0.7711054127039704,
+    0.8408964152537145, 0.9170040432046712};
+  int e, k = 7;
+  double m = frexp(h, &e);
+
+  while (k && m < step[k]) k--;
+  e = 8 * e + k + BUCKET_ZERO;
+  return e < 0 ? 0 : e >= N_BUCKET ? N_BUCKET - 1 : e;
+}
+
+static void push(struct placer *p, uint32_t item, double h)
+{
+  int b = bucket_of(h);
+
+  p->queue[item] = VG_NONE;
+  if (p->first[b] == VG_NONE) p->first[b] = item;
+  else p->queue[p->last[b]] = item;
+  p->last[b] = item;
+  if (b < p->lowest) p->lowest = b;
+}
+
+static uint32_t pop(struct placer *p)
+{
+  for (; p->lowest < N_BUCKET; p->lowest++) {
+    uint32_t item = p->first[p->lowest];
+
+    if (item == VG_NONE) continue;
+    p->first[p->lowest] = p->queue[item];
+    return item;
+  }
+  return VG_NONE;
+}
+
+/* --- proposals ----------------------------------------------------------- */
+
+static int reserve(struct placer *p, size_t n)
+{
+  return vg_reserve(&p->x, &p->cap, n, sizeof *p->x) ||
+         vg_reserve(&p->h, &p->cap_h, n, sizeof *p->h) ||
+         vg_reserve(&p->cell, &p->cap_cell, n, sizeof *p->cell) ||
+         vg_reserve(&p->steps, &p->cap_steps, n, sizeof *p->steps) ||
+         vg_reserve(&p->queue, &p->cap_queue, p->n_face + n,
+                    sizeof *p->queue);
+}
+
+/* Are points to be placed at x? h: the spacing, not farther off than `off`. */
+static int is_wanted(const struct placer *p, const double x[3], double h,
+                     double off)
+{
+  return !p->region ||
+         vg_region_near_by(p->region, p->sizing, x, VG_BAND_PLACE, h, off);
+}
+
+/* Let a point stand at c + d with spacing h, that of a place not farther off
+ * than `off`, unless it is outside. */
+static int stand(struct placer *p, const double c[3], const double d[3],
+                 double h, double off, uint32_t start)
+{
+  double x[3] = {c[0] + d[0], c[1] + d[1], c[2] + d[2]};
+  uint32_t cell, point = (uint32_t)p->n;
+
+  if (!is_wanted(p, x, h, off)) return 0;
+  cell = vg_tets_locate(p->t, start, x);
+  if (cell == VG_NONE || p->t->flag[cell] & VG_OUTSIDE) return 0;
+  if (reserve(p, p->n + 1)) return -1;
+  memcpy(p->x[point], x, sizeof x);
+  p->h[point] = (float)h;
+  p->cell[point] = cell;
+  p->steps[point] = (uint8_t)p->now;
+  p->n++;
+  if (vg_near_add(&p->near, x, h)) return -1;
+  push(p, (uint32_t)p->n_face + point, h);
+  vg_near_note(&p->near, d);
+  return 0;
+}
+
+/* d out: unit * length, with the spacing taken half way from c, where it is h.
+ * Returns the spacing at the end of unit * h. */
+static double aim(const struct placer *p, const double c[3],
+                  const double unit[3], double h, double d[3])
+{
+  double x[3], there;
+
+  for (int k = 0; k < 3; k++) x[k] = c[k] + unit[k] * h;
+  there = vg_sizing_at(p->sizing, x);
+  for (int k = 0; k < 3; k++) d[k] = unit[k] * 0.5 * (h + there);
+  return there;
+}
+
+/* Propose c + unit * length(h), the spacing taken half way. */
+static int propose(struct placer *p, const double c[3], const double unit[3],
+                   double h, uint32_t start)
+{
+  int is_far = p->region && p->now >= far_from_front;
+  double d[3], there;
+
+  for (int k = 0; k < 3; k++) d[k] = unit[k] * h;
+  if (vg_near_count(&p->near, d, 0.9 * exclusion * h)) return 0;
+  there = aim(p, c, unit, h, d);
+  if (vg_near_count(&p->near, d,
+                    (is_far ? exclusion_region : exclusion) * there))
+    return 0;
+  return stand(p, c, d, there, fabs(there - h), start);
+}
+
+static const double pattern[8][3] = {
+  {.5, .5, .5}, {-.5, -.5, -.5}, {.5, .5, -.5}, {-.5, -.5, .5},
+  {.5, -.5, .5}, {-.5, .5, -.5}, {-.5, .5, .5}, {.5, -.5, -.5}};
+
+static int is_level(const struct placer *p, const double x[3], double h)
+{
+  return fabs(vg_sizing_at(p->sizing, x) - h) <= level_within * h;
+}
+
+/* In how many of six directions does the field keep its value? */
+static int level_around(const struct placer *p, const double c[3], double h)
+{
+  int n = 0;
+
+  for (int k = 0; k < 3; k++)
+    for (int side = -1; side <= 1; side += 2) {
+      double x[3] = {c[0], c[1], c[2]};
+
+      x[k] += side * h;
+      n += is_level(p, x, h);
+    }
+  return n;
+}
+
+/* A displacement of up to 1e-4, fixed for each point of the lattice: without it
+ * points lie on common spheres and planes while the lattice is being built, and
+ * every predicate would have to be exact. */
+static double shake(const int64_t i[3], int k)
+{
+  uint64_t mix = (uint64_t)i[0] * 0x9e3779b97f4a7c15u +
+                 (uint64_t)i[1] * 0xc2b2ae3d27d4eb4fu +
+                 (uint64_t)i[2] * 0x165667b19e3779f9u + (uint64_t)k;
+
+  mix ^= mix >> 32;
+  mix *= 0xd6e8feb86659fd93u;
+  mix ^= mix >> 32;
+  return ((double)(mix & 0xffff) / 65536 - 0.5) * 2e-4;
+}
+
+/* What stands around point c: once for all that it proposes. */
+static void list_around(struct placer *p, const double c[3], double h)
+{
+  if (p->is_listed) return;
+  vg_near_gather(&p->near, c, h, (lattice + exclusion_level) * 1.05 * h);
+  p->is_listed = 1;
+}
+
+/* Propose site i of the lattice. Returns 1 where that need not be done again,
+ * whoever proposes it: it stands, or never will. */
+static int propose_site(struct placer *p, const double c[3], double h,
+                        const int64_t i[3], uint32_t start, int everywhere)
+{
+  double half = 0.5 * lattice * h, d[3], x[3];
+
+  for (int k = 0; k < 3; k++) {
+    x[k] = half * ((double)i[k] + shake(i, k));
+    d[k] = x[k] - c[k];
+  }
+  if (vg_dot(d, d) > 4.84 * half * half) return 0;
+  list_around(p, c, h);
+  if (vg_near_count(&p->near, d, exclusion_level * h)) return 1;
+  if (!everywhere && !is_level(p, x, h)) return 0;
+  return stand(p, c, d, h, 0, start) ? -1 : 1;
+}
+
+/* Where the field is level, neighbours are points of one body-centred cubic
+ * lattice through the origin: fronts that started anywhere meet without a
+ * fault. In units of half the side, its points are all even or all odd. */
+static int grow_level(struct placer *p, const double c[3], double h,
+                      uint32_t start, int everywhere)
+{
+  double half = 0.5 * lattice * h;
+  int64_t base[3], i[3];
+
+  for (int k = 0; k < 3; k++) base[k] = (int64_t)floor(c[k] / half + 0.5);
+  for (i[0] = base[0] - 2; i[0] <= base[0] + 2; i[0]++)
+    for (i[1] = base[1] - 2; i[1] <= base[1] + 2; i[1]++) {
+      if ((i[0] ^ i[1]) & 1) continue;
+      for (i[2] = base[2] - 2; i[2] <= base[2] + 2; i[2]++)
+        if (!((i[0] ^ i[2]) & 1) &&
+            propose_site(p, c, h, i, start, everywhere) < 0)
+          return -1;
+    }
+  return 0;
+}
+
+/* Index of the site at x, where the spacing is h. 0: there is none, or it is
+ * farther from the origin than indices tell. */
+static int find_site(const double x[3], double h, int64_t i[3])
+{
+  double half = 0.5 * lattice * h;
+
+  for (int k = 0; k < 3; k++) {
+    double at = floor(x[k] / half + 0.5);
+
+    if (!(fabs(at) < 1e9) || fabs(x[k] - half * at) > level_within * half)
+      return 0;
+    i[k] = (int64_t)at;
+  }
+  return !((i[0] ^ i[1]) & 1) && !((i[0] ^ i[2]) & 1);
+}
+
+/* grow_level from a point of the lattice: of its neighbours, in the same order,
+ * those that nobody has proposed for good. */
+static int grow_site(struct placer *p, const double c[3], double h,
+                     const int64_t base[3], uint32_t start, int everywhere)
+{
+  static const int8_t step[14][3] = {
+    {-2, 0, 0}, {-1, -1, -1}, {-1, -1, 1}, {-1, 1, -1}, {-1, 1, 1},
+    {0, -2, 0}, {0, 0, -2}, {0, 0, 2}, {0, 2, 0},
+    {1, -1, -1}, {1, -1, 1}, {1, 1, -1}, {1, 1, 1}, {2, 0, 0}};
+  struct vg_site_block *b = NULL;
+
+  for (int j = 0; j < 14; j++) {
+    int64_t i[3] = { base[0] + step[j][0], base[1] + step[j][1],
+                     base[2] + step[j][2] };
+    int done;
+
+    if (!b || !vg_site_is_in(b, i)) b = vg_sites_block(&p->sites, i, (float)h);
+    if (!b) return -1;
+    if (b->bit[i[0] & 7] & vg_site_bit(i)) continue;
+    done = propose_site(p, c, h, i, start, everywhere);
+    if (done < 0) return -1;
+    if (done) b->bit[i[0] & 7] |= vg_site_bit(i);
+  }
+  return 0;
+}
+
+static int grow_point(struct placer *p, uint32_t point)
+{
+  double c[3], h = p->h[point];
+  uint32_t start = p->cell[point];
+  int64_t site[3];
+  int level, bad = 0;
+
+  memcpy(c, p->x[point], sizeof c);
+  p->is_listed = 0;
+  p->now = p->steps[point] < UINT8_MAX ? p->steps[point] + 1 : UINT8_MAX;
+  level = level_around(p, c, h);
+  if (level)
+    bad = find_site(c, h, site) ? grow_site(p, c, h, site, start, level == 6)
+                                : grow_level(p, c, h, start, level == 6);
+  if (bad || level == 6) return bad;
+  list_around(p, c, h);
+  for (int i = 0; i < 8; i++) {
+    double unit[3];
+
+    for (int k = 0; k < 3; k++) unit[k] = lattice * pattern[i][k];
+    if (propose(p, c, unit, h, start)) return -1;
+  }
+  return 0;
+}
+
+/* A face whose corners are all of the lattice is a zone's: its points go on
+ * with the lattice, an apex would only disturb it. */
+static int grow_face(struct placer *p, uint32_t link)
+{
+  const struct vg_cell *cell = &p->t->cell[link >> 2];
+  const double *v[3];
+  double a[3], b[3], n[3], c[3], unit[3], length, h;
+  int64_t site[3];
+
+  for (int k = 0; k < 3; k++) v[k] = p->t->x[cell->v[vg_face[link & 3][k]]];
+  for (int k = 0; k < 3; k++) c[k] = (v[0][k] + v[1][k] + v[2][k]) / 3;
+  vg_sub(v[1], v[0], a);
+  vg_sub(v[2], v[0], b);
+  vg_cross(a, b, n);
+  length = vg_norm(n);
+  if (!(length > 0)) return 0;
+  for (int k = 0; k < 3; k++) unit[k] = apex * n[k] / length;
+  h = vg_sizing_at(p->sizing, c);
+  if (find_site(v[0], h, site) && find_site(v[1], h, site) &&
+      find_site(v[2], h, site))
+    return 0;
+  if (p->region) {           /* saves the search where nothing is wanted */
+    double d[3], there = aim(p, c, unit, h, d);
+
+    for (int k = 0; k < 3; k++) d[k] += c[k];
+    if (!is_wanted(p, d, there, fabs(there - h))) return 0;
+  }
+  p->now = 0;
+  vg_near_gather(&p->near, c, h, (apex + exclusion) * 1.1 * h);
+  return propose(p, c, unit, h, link >> 2);
+}
+
+/* --- seeds --------------------------------------------------------------- */
+
+/* Side of the cells that get one seed, over the spacing: from half of it. */
+static const double seed_cell = 8;
+/* Fronts come to all places of finer spacing while that falls by no more than
+ * this for each length. They step over what is steeper ... */
+static const double steepest = 0.5;
+/* ... so where the spacing is less than this share of what the seed of a cell
+ * has, it gets seeds of its own, but not on the way down to what is finer
+ * still: where it falls by this share over half of itself. */
+static const double hidden = 0.5, falls = 0.1;
+
+struct seeder {
+  const struct vg_sizing *sizing;
+  const struct vg_region *region;
+  struct vg_placed *out;
+  size_t cap;
+};
+
+static int add_seed(struct seeder *s, const double x[3])
+{
+  if (vg_reserve(&s->out->x, &s->cap, s->out->n + 1, sizeof *s->out->x))
+    return -1;
+  memcpy(s->out->x[s->out->n++], x, sizeof *s->out->x);
+  return 0;
+}
+
+/* x moved to the lattice of spacing h when the field is level around it. */
+static void snap_to_lattice(const struct vg_sizing *sizing, double h,
+                            double x[3])
+{
+  double a = lattice * h, to[3], step[3];
+
+  for (int k = 0; k < 3; k++) to[k] = a * floor(x[k] / a + 0.5);
+  for (int k = 0; k < 3; k++)
+    for (int side = -1; side <= 1; side += 2) {
+      memcpy(step, to, sizeof step);
+      step[k] += 2 * side * h;
+      if (fabs(vg_sizing_at(sizing, step) - h) > level_within * h) return;
+    }
+  memcpy(x, to, sizeof to);
+}
+
+/* Does the cube meet the planes of the region, between its walls? Then x, its
+ * middle, is moved onto them. */
+static int on_region(const struct vg_region *r, double side, double x[3])
+{
+  double foot[3];
+
+  for (int i = 0; i < r->n_wall; i++) {
+    const double *n = r->wall[i].normal;
+
+    if (vg_plane_side(&r->wall[i], x) <
+        -0.5 * side * (fabs(n[0]) + fabs(n[1]) + fabs(n[2])))
+      return 0;
+  }
+  vg_region_foot(r, x, foot);
+  for (int k = 0; k < 3; k++)
+    if (fabs(foot[k] - x[k]) > 0.5 * side) return 0;
+  memcpy(x, foot, sizeof foot);
+  return 1;
+}
+
+static void octant_of(const double lo[3], double side, int octant,
+                      double child[3])
+{
+  for (int k = 0; k < 3; k++)
+    child[k] = lo[k] + (octant >> k & 1 ? 0.5 * side : 0);
+}
+
+static int seed(struct seeder *s, const double lo[3], double side)
+{
+  double x[3], h, child[3];
+
+  for (int k = 0; k < 3; k++) x[k] = lo[k] + 0.5 * side;
+  if (s->region && !on_region(s->region, side, x)) return 0;
+  h = vg_sizing_at(s->sizing, x);
+  if (side <= seed_cell * h) {
+    snap_to_lattice(s->sizing, h, x);
+    return add_seed(s, x);
+  }
+  for (int octant = 0; octant < 8; octant++) {
+    octant_of(lo, side, octant, child);
+    if (seed(s, child, 0.5 * side)) return -1;
+  }
+  return 0;
+}
+
+/* May points be wanted in the cube? */
+static int near_region(const struct seeder *s, const double mid[3],
+                       double side)
+{
+  const struct vg_region *r = s->region;
+  double foot[3], least, most, h, reach;
+
+  vg_region_foot(r, mid, foot);
+  vg_sizing_range(s->sizing, &least, &most);
+  h = vg_sizing_at(s->sizing, foot) +
+      0.8660254037844387 * side * vg_sizing_slope(s->sizing);
+  reach = vg_region_band(r, VG_BAND_PLACE) * fmin(h, most);
+  for (int i = 0; i < r->n_plane + r->n_wall; i++) {
+    const struct vg_plane *p = i < r->n_plane ? &r->plane[i]
+                                              : &r->wall[i - r->n_plane];
+    const double *n = p->normal;
+    double d = vg_plane_side(p, mid);
+    double far = reach + 0.5 * side * (fabs(n[0]) + fabs(n[1]) + fabs(n[2]));
+
+    if (d < -far || (i < r->n_plane && d > far)) return 0;
+  }
+  return 1;
+}
+
+/* Is a seed wanted at x, where the spacing is h? */
+static int is_dip(const struct seeder *s, const double x[3], double h)
+{
+  if (s->region && !vg_region_near(s->region, s->sizing, x, VG_BAND_PLACE))
+    return 0;
+  for (int k = 0; k < 3; k++)
+    for (int side = -1; side <= 1; side += 2) {
+      double y[3] = {x[0], x[1], x[2]};
+
+      y[k] += 0.5 * side * h;
+      if (vg_sizing_at(s->sizing, y) < (1 - falls) * h) return 0;
+    }
+  return 1;
+}
+
+/* One seed in each cube that is as small as those of other seeds where the
+ * field is hidden by one that is larger. below: no more than that is; 0: no
+ * larger cube has its seed. Of a region the finest place may be too far off:
+ * others are looked for. Returns 1 where there is one now. */
+static int seed_hidden(struct seeder *s, const double lo[3], double side,
+                       double below)
+{
+  double x[3], mid[3], child[3], least, h;
+  int is_small;
+
+  for (int k = 0; k < 3; k++) mid[k] = lo[k] + 0.5 * side;
+  if (s->region && !near_region(s, mid, side)) return 0;
+  least = vg_sizing_least(s->sizing, lo, side, x);
+  h = vg_sizing_at(s->sizing, mid);
+  if (!(below > 0) && side <= seed_cell * h) below = hidden * h;
+  if (below > 0 && least >= below) return 0;
+  is_small = below > 0 && side <= seed_cell * least;
+  if (is_small) {
+    snap_to_lattice(s->sizing, least, x);
+    if (is_dip(s, x, least)) return add_seed(s, x) ? -1 : 1;
+    if (!s->region || side <= least) return 0;
+  }
+  for (int octant = 0; octant < 8; octant++) {
+    int got;
+
+    octant_of(lo, side, octant, child);
+    got = seed_hidden(s, child, 0.5 * side, below);
+    if (got < 0 || (got && is_small)) return got;
+  }
+  return 0;
+}
+
+vg_status vg_place_seeds(size_t n, const double (*x)[3],
+                         const struct vg_sizing *sizing,
+                         const struct vg_region *region,
+                         struct vg_placed *out, struct vg_error *err)
+{
+  struct seeder s = {sizing, region, out, 0};
+  double lo[3] = {0}, side = 0;
+
+  memset(out, 0, sizeof *out);
+  for (int k = 0; k < 3; k++) {
+    double hi = n ? x[0][k] : 0;
+
+    lo[k] = hi;
+    for (size_t i = 0; i < n; i++) {
+      if (x[i][k] < lo[k]) lo[k] = x[i][k];
+      if (x[i][k] > hi) hi = x[i][k];
+    }
+    if (hi - lo[k] > side) side = hi - lo[k];
+  }
+  if (!(side > 0) ||
+      (!seed(&s, lo, side) &&
+       (vg_sizing_slope(sizing) <= steepest ||
+        seed_hidden(&s, lo, side, 0) >= 0)))
+    return VG_OK;
+  free(out->x);
+  memset(out, 0, sizeof *out);
+  return vg_fail_memory(err, "placing points");
+}
+
+/* --- the front ----------------------------------------------------------- */
+
+/* May what stands at x propose points that are near the region? */
+static int may_propose(const struct placer *p, const double x[3], double h)
+{
+  return !p->region || vg_region_near_by(p->region, p->sizing, x,
+                                         VG_BAND_PLACE + sideways, h, 0);
+}
+
+/* Points of no face, seeds that is, count as far from the front. */
+static void start_steps(struct placer *p)
+{
+  memset(p->steps, UINT8_MAX, p->n * sizeof *p->steps);
+  for (size_t i = 0; i < p->n_face; i++) {
+    const struct vg_cell *cell = &p->t->cell[p->face[i] >> 2];
+
+    for (int k = 0; k < 3; k++)
+      p->steps[cell->v[vg_face[p->face[i] & 3][k]]] = 0;
+  }
+}
+
+static int start_points(struct placer *p)
+{
+  const struct vg_tets *t = p->t;
+
+  memcpy(p->x, t->x, t->n_point * sizeof *t->x);
+  p->n = t->n_point;
+  start_steps(p);
+  for (size_t i = 0; i < p->n; i++) p->cell[i] = VG_NONE;
+  for (uint32_t c = 0; c < t->n_cell; c++)
+    for (int k = 0; k < 4 && !(t->flag[c] & (VG_OUTSIDE | VG_DEAD)); k++)
+      p->cell[t->cell[c].v[k]] = c;
+  for (uint32_t i = 0; i < p->n; i++) {
+    p->h[i] = (float)vg_sizing_at(p->sizing, p->x[i]);
+    if (vg_near_add(&p->near, p->x[i], p->h[i])) return -1;
+    if (p->cell[i] != VG_NONE && may_propose(p, p->x[i], p->h[i]))
+      push(p, (uint32_t)p->n_face + i, p->h[i]);
+  }
+  return 0;
+}
+
+static int start_faces(struct placer *p)
+{
+  const struct vg_tets *t = p->t;
+  size_t n = 0;
+
+  for (size_t c = 0; c < t->n_cell; c++)
+    if (!(t->flag[c] & (VG_OUTSIDE | VG_DEAD)))
+      n += (size_t)__builtin_popcount(t->flag[c] & VG_FIXED_FACES);
+  p->face = vg_alloc(n, sizeof *p->face);
+  if (!p->face) return -1;
+  p->n_face = n;
+  n = 0;
+  for (uint32_t c = 0; c < t->n_cell; c++)
+    for (uint32_t i = 0; i < 4; i++)
+      if (!(t->flag[c] & (VG_OUTSIDE | VG_DEAD)) && t->flag[c] >> i & 1)
+        p->face[n++] = 4 * c + i;
+  return reserve(p, t->n_point);
+}
+
+/* Faces come before points of equal size: they are pushed first. */
+static int push_faces(struct placer *p)
+{
+  for (uint32_t i = 0; i < p->n_face; i++) {
+    const struct vg_cell *cell = &p->t->cell[p->face[i] >> 2];
+    double c[3] = {0}, h;
+
+    for (int j = 0; j < 3; j++)
+      for (int k = 0; k < 3; k++)
+        c[k] += p->t->x[cell->v[vg_face[p->face[i] & 3][j]]][k] / 3;
+    h = vg_sizing_at(p->sizing, c);
+    if (may_propose(p, c, h)) push(p, i, h);
+  }
+  return 0;
+}
+
+static void release(struct placer *p)
+{
+  free(p->x);
+  free(p->h);
+  free(p->cell);
+  free(p->steps);
+  free(p->queue);
+  free(p->face);
+  vg_near_release(&p->near);
+  vg_sites_release(&p->sites);
+  free(p);
+}
+
+static struct placer *start(const struct vg_tets *t,
+                            const struct vg_sizing *sizing,
+                            const struct vg_region *region)
+{
+  struct placer *p = vg_calloc(1, sizeof *p);
+  double origin[3] = {0}, h_min, h_max;
+
+  if (!p) return NULL;
+  p->t = t;
+  p->sizing = sizing;
+  p->region = region;
+  p->lowest = N_BUCKET;
+  memset(p->first, 0xff, sizeof p->first);
+  if (t->n_point) memcpy(origin, t->x[0], sizeof origin);
+  vg_sizing_range(sizing, &h_min, &h_max);
+  if (vg_near_init(&p->near, origin, h_min, h_max, vg_sizing_slope(sizing)) ||
+      start_faces(p) || push_faces(p) || start_points(p)) {
+    release(p);
+    return NULL;
+  }
+  return p;
+}
+
+vg_status vg_place(const struct vg_tets *t, const struct vg_sizing *sizing,
+                   const struct vg_region *region, size_t limit,
+                   struct vg_placed *out, struct vg_error *err)
+{
+  struct placer *p = start(t, sizing, region);
+  uint32_t item;
+  int bad = 0;
+
+  if (!p) return vg_fail_memory(err, "placing points");
+  while (!bad && (item = pop(p)) != VG_NONE) {
+    bad = item < p->n_face ? grow_face(p, p->face[item])
+                           : grow_point(p, item - (uint32_t)p->n_face);
+    if (limit && p->n - t->n_point > limit) break;
+  }
+  if (bad || (limit && p->n - t->n_point > limit)) {
+    release(p);
+    return bad ? vg_fail_memory(err, "placing points")
+               : vg_fail(err, VG_ERR_UNSUPPORTED,
+                         "more than %zu field points are needed; use a "
+                         "coarser spacing or raise the limit", limit);
+  }
+  out->n = p->n - t->n_point;
+  memmove(p->x, p->x + t->n_point, out->n * sizeof *p->x);
+  out->x = p->x;
+  p->x = NULL;
+  release(p);
+  return VG_OK;
+}

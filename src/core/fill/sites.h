@@ -1,0 +1,41 @@
+/* core/fill/sites.h: which points of a body-centred cubic lattice are dealt
+ * with? A bit for each, in blocks of 8 x 8 x 8 half sides, a cache line of
+ * bits. Uses base only. */
+#ifndef VG_CORE_FILL_SITES_H
+#define VG_CORE_FILL_SITES_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+struct vg_sites {
+  size_t n, size;            /* blocks; slots, a power of 2, or 0 */
+  struct vg_site_block {
+    int32_t at[3];           /* of the block, in 8 half sides */
+    float h;                 /* spacing that the lattice is of; 0: free */
+    uint64_t bit[8];
+  } *slot;                   /* open addressing */
+};
+
+void vg_sites_release(struct vg_sites *s);
+
+/** The block that site i of the lattice of spacing h > 0 is in, made if need
+ * be; NULL when memory is refused. It stays where it is until the next call.
+ * i: below 2^33 in magnitude. */
+struct vg_site_block *vg_sites_block(struct vg_sites *s, const int64_t i[3],
+                                     float h);
+
+/** Is site i in block b? */
+static inline int vg_site_is_in(const struct vg_site_block *b,
+                                const int64_t i[3])
+{
+  return !((i[0] >> 3 ^ b->at[0]) | (i[1] >> 3 ^ b->at[1]) |
+           (i[2] >> 3 ^ b->at[2]));
+}
+
+/* Its bit, in bit[i[0] & 7]. */
+static inline uint64_t vg_site_bit(const int64_t i[3])
+{
+  return (uint64_t)1 << ((i[1] & 7) << 3 | (i[2] & 7));
+}
+
+#endif

@@ -1,0 +1,382 @@
+#include "core/front/region.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+
+void vg_region_foot(const struct vg_region *r, const double x[3],
+                    double foot[3])
+{
+  memcpy(foot, x, 3 * sizeof *x);
+  for (int i = 0; i < r->n_plane; i++) {
+    double s = vg_plane_side(&r->plane[i], foot);
+
+    for (int k = 0; k < 3; k++) foot[k] -= s * r->plane[i].normal[k];
+  }
+}
+
+double vg_region_spacing(const struct vg_region *r,
+                         const struct vg_sizing *sizing, const double x[3])
+{
+  double foot[3];
+
+  vg_region_foot(r, x, foot);
+  return vg_sizing_at(sizing, foot);
+}
+
+int vg_region_within(const struct vg_region *r, const double x[3])
+{
+  for (int i = 0; i < r->n_wall; i++)
+    if (!(vg_plane_side(&r->wall[i], x) > 0)) return 0;
+  return 1;
+}
+
+/* How far n corners all lie from a plane, or beyond a wall, where distances
+ * count for more: the most of these. */
+static double gap(const struct vg_region *r, int n, const double *const *x)
+{
+  double far = 0;
+
+  for (int i = 0; i < r->n_plane + r->n_wall; i++) {
+    int is_wall = i >= r->n_plane, above = 0, below = 0;
+    const struct vg_plane *p = is_wall ? &r->wall[i - r->n_plane]
+                                       : &r->plane[i];
+    double near = INFINITY;
+
+    for (int k = 0; k < n; k++) {
+      double s = vg_plane_side(p, x[k]);
+
+      above |= s >= 0;
+      below |= s <= 0;
+      if (fabs(s) < near) near = fabs(s);
+    }
+    if (is_wall) near *= 1 / VG_BEYOND_WALLS;
+    if (is_wall ? !above : !(above && below))
+      if (near > far) far = near;
+  }
+  return far;
+}
+
+int vg_region_near_by(const struct vg_region *r, const struct vg_sizing *sizing,
+                      const double x[3], double band, double h, double d)
+{
+  double far = gap(r, 1, &x), most = vg_region_band(r, band), foot2 = 0, off;
+
+  if (far == 0) return 1;
+  for (int i = 0; i < r->n_plane; i++) {
+    double s = vg_plane_side(&r->plane[i], x);
+
+    foot2 += s * s;
+  }
+  off = vg_sizing_slope(sizing) * (sqrt(foot2) + d);
+  if (far <= most * (h - off)) return 1;
+  if (far > most * (h + off)) return 0;
+  return far <= most * vg_region_spacing(r, sizing, x);
+}
+
+int vg_region_near(const struct vg_region *r, const struct vg_sizing *sizing,
+                   const double x[3], double band)
+{
+  double far = gap(r, 1, &x), most = vg_region_band(r, band), h_min, h_max;
+
+  vg_sizing_range(sizing, &h_min, &h_max);
+  if (far == 0 || far <= most * h_min) return 1;
+  return far <= most * h_max && far <= most * vg_region_spacing(r, sizing, x);
+}
+
+/* --- triangles ----------------------------------------------------------- */
+
+enum { CORNERS = 3 + 2 * 2 + VG_REGION_WALLS };
+
+/* Keep what lies at sign * side <= most. Returns the corners left. */
+static int clip(int n, double (*x)[3], const struct vg_plane *p, double sign,
+                double most)
+{
+  double out[CORNERS][3];
+  int m = 0;
+
+  for (int i = 0; i < n; i++) {
+    const double *a = x[i], *b = x[(i + 1) % n];
+    double s = sign * vg_plane_side(p, a) - most;
+    double t = sign * vg_plane_side(p, b) - most;
+
+    if (s <= 0) memcpy(out[m++], a, sizeof *out);
+    if ((s < 0 && t > 0) || (s > 0 && t < 0)) {
+      for (int k = 0; k < 3; k++)
+        out[m][k] = a[k] + (b[k] - a[k]) * (s / (s - t));
+      m++;
+    }
+    if (m > CORNERS - 2) break;
+  }
+  memcpy(x, out, (size_t)m * sizeof *out);
+  return m;
+}
+
+/* Is there anything of the triangle within `most` of every plane, and of it no
+ * farther beyond a wall than it may? middle out: of what there is. */
+static int reaches(const struct vg_region *r, const double *const corner[3],
+                   double most, double middle[3])
+{
+  double x[CORNERS][3];
+  int n = 3;
+
+  for (int k = 0; k < 3; k++) memcpy(x[k], corner[k], sizeof *x);
+  for (int i = 0; i < r->n_plane && n; i++) {
+    n = clip(n, x, &r->plane[i], 1, most);
+    if (n) n = clip(n, x, &r->plane[i], -1, most);
+  }
+  for (int i = 0; i < r->n_wall && n; i++)
+    n = clip(n, x, &r->wall[i], -1, VG_BEYOND_WALLS * most);
+  for (int k = 0; k < 3; k++) {
+    middle[k] = 0;
+    for (int i = 0; i < n; i++) middle[k] += x[i][k] / n;
+  }
+  return n > 0;
+}
+
+static double longest(const double *const corner[3])
+{
+  double most = 0;
+
+  for (int i = 0; i < 3; i++) {
+    double d2 = 0;
+
+    for (int k = 0; k < 3; k++) {
+      double d = corner[(i + 1) % 3][k] - corner[i][k];
+
+      d2 += d * d;
+    }
+    if (d2 > most) most = d2;
+  }
+  return sqrt(most);
+}
+
+/* A triangle much larger than the cells here may cross the planes, and the
+ * walls, each at another place, so its part within reach is cut out: by the
+ * largest spacing found at it, and then, to be sure, by that found there. Where
+ * sizes vary that may be elsewhere than at a corner that is within reach by
+ * its own spacing, so corners are asked first.
+ * most: of its corners and its middle. */
+static int large_meets(const struct vg_region *r,
+                       const struct vg_sizing *sizing,
+                       const double *const corner[3], double most,
+                       double band, int is_sure)
+{
+  double middle[3];
+
+  if (!reaches(r, corner, vg_region_band(r, band) * most, middle)) return 0;
+  return !is_sure || reaches(r, corner, vg_region_band(r, band) *
+                               vg_region_spacing(r, sizing, middle), middle);
+}
+
+static double spacing_amid(const struct vg_region *r,
+                           const struct vg_sizing *sizing,
+                           const double *const corner[3])
+{
+  double middle[3];
+
+  for (int k = 0; k < 3; k++)
+    middle[k] = (corner[0][k] + corner[1][k] + corner[2][k]) / 3;
+  return vg_region_spacing(r, sizing, middle);
+}
+
+static int meets(const struct vg_region *r, const struct vg_sizing *sizing,
+                 const double *const corner[3], double band, int is_sure)
+{
+  double reach = vg_region_band(r, band), h[3], most = 0;
+
+  for (int k = 0; k < 3; k++) {
+    h[k] = vg_region_spacing(r, sizing, corner[k]);
+    most = fmax(most, h[k]);
+  }
+  if (longest(corner) <= 2 * most) return gap(r, 3, corner) <= reach * most;
+  for (int k = 0; k < 3; k++)
+    if (gap(r, 1, &corner[k]) <= reach * h[k]) return 1;
+  most = fmax(most, spacing_amid(r, sizing, corner));
+  return large_meets(r, sizing, corner, most, band, is_sure);
+}
+
+int vg_region_meets(const struct vg_region *r, const struct vg_sizing *sizing,
+                    const double a[3], const double b[3], const double c[3],
+                    double band)
+{
+  const double *corner[3] = {a, b, c};
+
+  return meets(r, sizing, corner, band, 1);
+}
+
+int vg_region_may_meet(const struct vg_region *r,
+                       const struct vg_sizing *sizing, const double a[3],
+                       const double b[3], const double c[3], double band)
+{
+  const double *corner[3] = {a, b, c};
+
+  return meets(r, sizing, corner, band, 0);
+}
+
+/* Is a corner within reach of all planes? far: [4] how far corners are from the
+ * farthest. Sizes change too little from one corner to the next for all of them
+ * to be looked up. */
+static int has_corner(const struct vg_region *r, const struct vg_sizing *sizing,
+                      const double *const corner[4], const double far[4])
+{
+  double slope = vg_sizing_slope(sizing);
+  double first = vg_region_spacing(r, sizing, corner[0]);
+
+  if (far[0] <= r->reach * first) return 1;
+  for (int k = 1; k < 4; k++) {
+    double d2 = 0;
+
+    for (int i = 0; i < 3; i++)
+      d2 += (corner[k][i] - corner[0][i]) * (corner[k][i] - corner[0][i]);
+    if (far[k] <= r->reach * (first + slope * sqrt(d2)) &&
+        far[k] <= r->reach * vg_region_spacing(r, sizing, corner[k]))
+      return 1;
+  }
+  return 0;
+}
+
+int vg_region_has_cell(const struct vg_region *r,
+                       const struct vg_sizing *sizing, const double a[3],
+                       const double b[3], const double c[3],
+                       const double d[3])
+{
+  const double *corner[4] = {a, b, c, d};
+  double far[4] = {0};
+  int crosses = 1;
+
+  for (int i = 0; i < r->n_plane; i++) {
+    int above = 0, below = 0;
+
+    for (int k = 0; k < 4; k++) {
+      double s = vg_plane_side(&r->plane[i], corner[k]);
+
+      above |= s >= 0;
+      below |= s <= 0;
+      if (fabs(s) > far[k]) far[k] = fabs(s);
+    }
+    crosses &= above && below;
+  }
+  if (!crosses && !(r->reach > 0)) return 0;
+  for (int k = 0; k < 4; k++)
+    if (!vg_region_within(r, corner[k])) return 0;
+  return crosses || has_corner(r, sizing, corner, far);
+}
+
+/* --- many points --------------------------------------------------------- */
+
+vg_status vg_ruler_init(struct vg_ruler *ruler, const struct vg_region *region,
+                        const struct vg_sizing *sizing, size_t n,
+                        const double (*x)[3], struct vg_error *err)
+{
+  int m = region->n_plane + region->n_wall;
+  double least, most;
+
+  vg_sizing_range(sizing, &least, &most);
+  *ruler = (struct vg_ruler){region, sizing, x, vg_sizing_slope(sizing),
+                             most - least, m, NULL, NULL};
+  ruler->side = vg_alloc(n, (size_t)(m ? m : 1) * sizeof *ruler->side);
+  ruler->spacing = vg_alloc(n, sizeof *ruler->spacing);
+  if (!ruler->side || !ruler->spacing)
+    return vg_fail_memory(err, "measuring a front");
+  for (size_t p = 0; p < n; p++) {
+    double *s = ruler->side + p * (size_t)m;
+
+    for (int i = 0; i < region->n_plane; i++)
+      s[i] = vg_plane_side(&region->plane[i], x[p]);
+    for (int i = region->n_plane; i < m; i++)
+      s[i] = vg_plane_side(&region->wall[i - region->n_plane], x[p]);
+    ruler->spacing[p] = vg_region_spacing(region, sizing, x[p]);
+  }
+  return VG_OK;
+}
+
+void vg_ruler_release(struct vg_ruler *ruler)
+{
+  free(ruler->side);
+  free(ruler->spacing);
+  memset(ruler, 0, sizeof *ruler);
+}
+
+static const double *sides_of(const struct vg_ruler *ruler, uint32_t p)
+{
+  return ruler->side + p * (size_t)ruler->n_side;
+}
+
+/* As gap(), for three corners of a ruler; without fmin() and fmax(), which are
+ * calls. */
+static double gap_of(const struct vg_ruler *ruler, const uint32_t v[3])
+{
+  const double *a = sides_of(ruler, v[0]), *b = sides_of(ruler, v[1]);
+  const double *c = sides_of(ruler, v[2]);
+  double far = 0;
+
+  for (int i = 0; i < ruler->n_side; i++) {
+    double lo = a[i] < b[i] ? a[i] : b[i], hi = a[i] < b[i] ? b[i] : a[i];
+
+    if (c[i] < lo) lo = c[i];
+    if (c[i] > hi) hi = c[i];
+    if (i >= ruler->region->n_plane) {
+      lo = 0;
+      hi *= 1 / VG_BEYOND_WALLS;
+    }
+    if (-hi > far) far = -hi;
+    if (lo > far) far = lo;
+  }
+  return far;
+}
+
+static double gap_of_point(const struct vg_ruler *ruler, uint32_t p)
+{
+  const double *s = sides_of(ruler, p);
+  double far = 0;
+
+  for (int i = 0; i < ruler->n_side; i++)
+    far = fmax(far, i < ruler->region->n_plane ? fabs(s[i])
+                                               : -s[i] / VG_BEYOND_WALLS);
+  return far;
+}
+
+/* Large triangles are looked at as in vg_region_meets once their sides do not
+ * tell, by the least and the most that the spacing may be anywhere on them, or
+ * at their middle, which is two thirds of an edge from the corners at most. */
+static int ruler_meets(const struct vg_ruler *ruler, const uint32_t v[3],
+                       double band, int is_sure)
+{
+  const struct vg_region *r = ruler->region;
+  const double (*x)[3] = ruler->x;
+  const double *corner[3] = {x[v[0]], x[v[1]], x[v[2]]};
+  const double *h = ruler->spacing;
+  double least = h[v[0]] < h[v[1]] ? h[v[0]] : h[v[1]];
+  double most = h[v[0]] < h[v[1]] ? h[v[1]] : h[v[0]];
+  double reach = vg_region_band(r, band);
+  double far = gap_of(ruler, v), size = longest(corner), rise, up;
+
+  if (h[v[2]] < least) least = h[v[2]];
+  if (h[v[2]] > most) most = h[v[2]];
+  if (size <= 2 * most) return far <= reach * most;
+  rise = ruler->slope * size;
+  up = 0.67 * rise < ruler->range ? 0.67 * rise : ruler->range;
+  if (rise > ruler->range) rise = ruler->range;
+  if (far > reach * most && far > reach * (least + up)) return 0;
+  for (int k = 0; k < 3; k++)
+    if (gap_of_point(ruler, v[k]) <= reach * h[v[k]]) return 1;
+  if (ruler->n_side == 1 && far <= reach * fmax(most - rise, 0)) return 1;
+  most = fmax(most, spacing_amid(r, ruler->sizing, corner));
+  return far <= reach * most &&
+         large_meets(r, ruler->sizing, corner, most, band, is_sure);
+}
+
+int vg_ruler_meets(const struct vg_ruler *ruler, const uint32_t v[3],
+                   double band)
+{
+  return ruler_meets(ruler, v, band, 1);
+}
+
+int vg_ruler_may_meet(const struct vg_ruler *ruler, const uint32_t v[3],
+                      double band)
+{
+  return ruler_meets(ruler, v, band, 0);
+}

@@ -1,0 +1,31 @@
+/* core/geometry/hilbert.h: points in an order that keeps neighbours together.
+ * */
+#ifndef VG_CORE_GEOMETRY_HILBERT_H
+#define VG_CORE_GEOMETRY_HILBERT_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/status.h"
+
+struct vg_key { uint64_t key; uint32_t index; };
+
+/** Position of x along the Hilbert curve of the cube at lo with 2^20 cells
+ * per side of length 1 / scale. Coordinates outside are clamped.
+ * (Skilling, "Programming the Hilbert curve", AIP Conf. Proc. 707, 2004.) */
+uint64_t vg_hilbert_key(const double x[3], const double lo[3], double scale);
+
+/** Sort by key, equal keys in the order given (radix sort, O(n)). */
+vg_status vg_sort_keys(size_t n, struct vg_key *key, struct vg_error *err);
+
+/** order out: [n] the points along the curve through their bounding cube. */
+vg_status vg_hilbert_order(size_t n, const double (*x)[3], uint32_t *order,
+                           struct vg_error *err);
+
+/** Order that makes point insertion fast: rounds of eightfold size, each along
+ * the curve (Amenta, Choi, Rote, "Incremental constructions con BRIO", 2003).
+ * order out: [n] a permutation of 0..n-1. */
+vg_status vg_insertion_order(size_t n, const double (*x)[3], uint32_t *order,
+                             struct vg_error *err);
+
+#endif

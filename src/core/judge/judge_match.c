@@ -1,0 +1,421 @@
+/* Faces, edges and places that slices have in common. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/unite.h"
+#include "core/judge/judge_slices_parts.h"
+
+/* --- faces --------------------------------------------------------------- */
+
+static void add_edge(struct vg_judge_worker *w, uint32_t a, uint32_t b)
+{
+  struct vg_edge_item *e = vg_items_add(&w->edge, sizeof *e);
+
+  if (!e) {
+    w->st = vg_fail_memory(&w->err, "the edges between slices");
+    return;
+  }
+  e->node[0] = a < b ? a : b;
+  e->node[1] = a < b ? b : a;
+  e->ratio = -1;
+}
+
+/* Edges of a face that bounds what is judged are not to be counted. */
+static void bar_edges(struct vg_judge_worker *w, const struct vg_face_item *f)
+{
+  const uint32_t *n = f->node;
+
+  add_edge(w, n[0], n[1]);
+  add_edge(w, n[0], n[2]);
+  if (n[3] == VG_NO_NODE) {
+    add_edge(w, n[1], n[2]);
+    return;
+  }
+  add_edge(w, n[1], n[3]);
+  add_edge(w, n[2], n[3]);
+}
+
+/* A face that does not join two things may have more cells, which a slice has
+ * matched with each other. */
+static void suspect(struct vg_judge_worker *w, const struct vg_face_item *f)
+{
+  struct vg_face_key *key = vg_items_add(&w->suspect, sizeof *key);
+
+  if (key) memcpy(key, f->node, sizeof *key);
+  else w->st = vg_fail_memory(&w->err, "the faces between slices");
+}
+
+/* The face as it is in the whole mesh (q 0), or in the field alone. */
+static void match_face(const struct vg_slices_judgement *j,
+                       struct vg_judge_worker *w, int q,
+                       const struct vg_face_item *f, size_t n)
+{
+  const struct vg_face_item *pair[2] = { f, f };
+  size_t n_cell = 0, n_boundary = 0, n_seen;
+
+  for (size_t i = 0; i < n; i++) {
+    int is_cell = !(f[i].flags & VG_FACE_BOUNDARY);
+
+    if (q == VG_JUDGED_FIELD && !(f[i].flags & VG_FACE_FIELD)) continue;
+    n_seen = n_cell + n_boundary;
+    if (n_seen < 2) pair[n_seen] = &f[i];
+    n_cell += is_cell;
+    n_boundary += !is_cell;
+  }
+  n_seen = n_cell + n_boundary;
+  if (!n_seen) return;
+  if (q == VG_JUDGED_WHOLE && (n_seen != 2 || !n_cell)) suspect(w, f);
+  if (j->sizing && j->edges_of == q &&
+      (q == VG_JUDGED_FIELD ? n_cell == 1 : n_boundary > 0)) bar_edges(w, f);
+  if (!vg_figures_face(w->figures[q], n_cell, n_boundary,
+                       !((pair[0]->flags ^ pair[1]->flags) &
+                         VG_FACE_WINDING))) return;
+  vg_unite(w->parent[q], pair[0]->component, pair[1]->component);
+  vg_figures_ratio(w->figures[q], pair[0]->volume, pair[1]->volume);
+}
+
+static void meet_face(void *context, const unsigned char *item, size_t n,
+                      int worker)
+{
+  struct vg_slices_judgement *j = context;
+
+  for (int q = 0; q < j->n_judged; q++)
+    match_face(j, &j->worker[worker], q, (const void *)item, n);
+}
+
+/* Two sides of a face are all, unless it is suspect. */
+static int is_whole_face(const void *context, const unsigned char *item,
+                         size_t n)
+{
+  const struct vg_slices_judgement *j = context;
+
+  (void)item;
+  return n == 2 && !j->n_suspect;
+}
+
+static vg_status worst_status(struct vg_slices_judgement *j,
+                              struct vg_error *err)
+{
+  for (int i = 0; i < j->n_worker; i++) {
+    if (j->worker[i].st >= 0) continue;
+    if (err) *err = j->worker[i].err;
+    return j->worker[i].st;
+  }
+  return VG_OK;
+}
+
+struct boundary {
+  struct vg_slices_judgement *j;
+  const struct vg_meeting *m;
+};
+
+static void boundary_body(void *context, size_t first, size_t end, int worker)
+{
+  const struct boundary *c = context;
+  const struct vg_mesh *b = c->j->s->boundary;
+  struct vg_judge_worker *w = &c->j->worker[worker];
+  int me = vg_comm_rank(c->j->comm);
+
+  for (size_t i = first; i < end && w->st >= 0; i++) {
+    uint32_t node[4];
+    struct vg_face_item f = { .component = 0 }, *to;
+
+    if (i < b->n_tri) {
+      memcpy(node, b->tri[i], sizeof *b->tri);
+      node[3] = VG_NO_NODE;
+    } else memcpy(node, b->quad[i - b->n_tri], sizeof *b->quad);
+    vg_face_item_set(&f, node);
+    if (vg_meet_rank(c->m, &f) != me) continue;
+    f.flags |= VG_FACE_BOUNDARY;
+    to = vg_items_add(&w->face, sizeof f);
+    if (to) *to = f;
+    else w->st = vg_fail_memory(&w->err, "the faces of the boundary");
+  }
+}
+
+/* Of the boundary, which all ranks know, what meets others here. */
+static vg_status add_boundary(struct vg_slices_judgement *j,
+                              const struct vg_meeting *m,
+                              struct vg_error *err)
+{
+  struct boundary c = { j, m };
+
+  vg_parallel_for(j->threads, j->s->boundary->n_tri + j->s->boundary->n_quad,
+                  4096, boundary_body, &c);
+  return worst_status(j, err);
+}
+
+/* Numbers of components from those of each slice to those of all. */
+static void number_components(struct vg_slices_judgement *j)
+{
+  for (int i = 0; i < j->n_worker; i++) {
+    struct vg_items *list = &j->worker[i].face;
+    struct vg_face_item *f = (void *)list->data;
+
+    for (size_t k = 0; k < list->n; k++) {
+      f[k].component += j->n_component[f[k].flags >> VG_FACE_BITS];
+      f[k].flags &= (1u << VG_FACE_BITS) - 1;
+    }
+  }
+}
+
+static vg_status meet_faces(struct vg_slices_judgement *j,
+                            struct vg_error *err)
+{
+  struct vg_meeting m = {
+    j->comm, j->threads, sizeof(struct vg_face_item), 4 * sizeof(uint32_t),
+    meet_face, j, is_whole_face
+  };
+  vg_status st;
+
+  number_components(j);
+  st = add_boundary(j, &m, err);
+  VG_TRY(vg_comm_agree(j->comm, st, err));
+  VG_TRY(vg_meet(&m, &j->worker[0].face, (size_t)j->n_worker,
+                 sizeof *j->worker, err));
+  st = vg_comm_agree(j->comm, worst_status(j, err), err);
+done:
+  return st;
+}
+
+/* --- edges and places ---------------------------------------------------- */
+
+static void meet_edge(void *context, const unsigned char *item, size_t n,
+                      int worker)
+{
+  struct vg_slices_judgement *j = context;
+  const struct vg_edge_item *e = (const void *)item;
+  double least = e[0].ratio;
+
+  for (size_t i = 1; i < n; i++)
+    if (e[i].ratio < least) least = e[i].ratio;
+  if (least >= 0)
+    vg_figures_edge(j->worker[worker].figures[j->edges_of], least);
+}
+
+static void meet_place(void *context, const unsigned char *item, size_t n,
+                       int worker)
+{
+  struct vg_slices_judgement *j = context;
+
+  (void)item;
+  j->worker[worker].figures[VG_JUDGED_WHOLE]->n.duplicate_point += n - 1;
+}
+
+/* Points that may be at one place. */
+static void meet_place_key(void *context, const unsigned char *item, size_t n,
+                           int worker)
+{
+  struct vg_slices_judgement *j = context;
+  struct vg_judge_worker *w = &j->worker[worker];
+  uint64_t *key;
+
+  if (n == 1) return;
+  key = vg_items_add(&w->crowd, sizeof *key);
+  if (key) memcpy(key, item, sizeof *key);
+  else w->st = vg_fail_memory(&w->err, "points at one place");
+}
+
+static vg_status meet_edges(struct vg_slices_judgement *j,
+                            struct vg_error *err)
+{
+  struct vg_meeting m = {
+    j->comm, j->threads, sizeof(struct vg_edge_item), 2 * sizeof(uint32_t),
+    meet_edge, j, NULL
+  };
+
+  return vg_meet(&m, &j->worker[0].edge, (size_t)j->n_worker,
+                 sizeof *j->worker, err);
+}
+
+static int by_key(const void *a, const void *b)
+{
+  uint64_t x, y;
+
+  memcpy(&x, a, sizeof x);
+  memcpy(&y, b, sizeof y);
+  return (x > y) - (x < y);
+}
+
+/* Keys of the places, of all ranks, at which there may be several points. */
+static vg_status gather_crowds(struct vg_slices_judgement *j,
+                               struct vg_bytes *out, struct vg_error *err)
+{
+  size_t size = (size_t)vg_comm_size(j->comm);
+  struct vg_items mine = { 0 }, got = { 0 };
+  struct vg_bytes *all = vg_calloc(size, sizeof *all), b;
+  vg_status st = all ? VG_OK : vg_fail_memory(err, "points at one place");
+
+  for (int i = 0; i < j->n_worker && st >= 0; i++)
+    st = vg_items_append(&mine, &j->worker[i].crowd, sizeof(uint64_t), err);
+  VG_TRY(vg_comm_agree(j->comm, st, err));
+  b = (struct vg_bytes){ mine.n * sizeof(uint64_t), mine.data };
+  VG_TRY(vg_comm_allgather(j->comm, &b, all, err));
+  for (size_t r = 0; r < size && st >= 0; r++) {
+    struct vg_items one = { all[r].n / sizeof(uint64_t), 0, all[r].data };
+
+    st = vg_items_append(&got, &one, sizeof(uint64_t), err);
+  }
+  if (got.n) qsort(got.data, got.n, sizeof(uint64_t), by_key);
+  *out = (struct vg_bytes){ got.n, got.data };
+  got.data = NULL;
+  st = vg_comm_agree(j->comm, st, err);
+done:
+  vg_bytes_release(all, size);
+  vg_items_release(&mine);
+  vg_items_release(&got);
+  return st;
+}
+
+/* Places themselves, of the points that may be at one with another. */
+struct crowd {
+  struct vg_slices_judgement *j;
+  const struct vg_bytes *key;    /* n keys, sorted */
+  struct vg_items place;
+};
+
+static vg_status list_crowded(void *context, const struct vg_slice *s,
+                              struct vg_error *err)
+{
+  struct crowd *c = context;
+
+  for (size_t i = 0; i < s->n_own; i++) {
+    struct vg_place_item place = vg_place_item(s->x[s->own[i]]), *to;
+    uint64_t key = vg_meet_hash(&place, sizeof place);
+
+    if (!bsearch(&key, c->key->data, c->key->n, sizeof key, by_key)) continue;
+    to = vg_items_add(&c->place, sizeof *to);
+    if (!to) return vg_fail_memory(err, "points at one place");
+    *to = place;
+  }
+  return VG_OK;
+}
+
+static vg_status count_duplicates(struct vg_slices_judgement *j,
+                                  const struct vg_bytes *key,
+                                  struct vg_error *err)
+{
+  struct vg_meeting m = {
+    j->comm, j->threads, sizeof(struct vg_place_item),
+    sizeof(struct vg_place_item), meet_place, j, NULL
+  };
+  struct crowd c = { j, key, { 0 } };
+  vg_status st = vg_slices_each(j->s, 1, list_crowded, &c, err);
+
+  VG_TRY(vg_comm_agree(j->comm, st, err));
+  st = vg_meet(&m, &c.place, 1, sizeof c.place, err);
+done:
+  vg_items_release(&c.place);
+  return st;
+}
+
+/* Only keys of places meet, a third of their bytes; where these are equal,
+ * which in a good mesh is chance, the places do. */
+static vg_status meet_places(struct vg_slices_judgement *j,
+                             struct vg_error *err)
+{
+  struct vg_meeting m = {
+    j->comm, j->threads, sizeof(uint64_t), sizeof(uint64_t), meet_place_key,
+    j, NULL
+  };
+  struct vg_bytes crowd = { 0, NULL };
+  vg_status st;
+
+  VG_TRY(vg_meet(&m, &j->worker[0].place, (size_t)j->n_worker,
+                 sizeof *j->worker, err));
+  st = vg_comm_agree(j->comm, worst_status(j, err), err);
+  if (st >= 0) st = gather_crowds(j, &crowd, err);
+  if (st >= 0 && crowd.n) st = count_duplicates(j, &crowd, err);
+done:
+  free(crowd.data);
+  return st;
+}
+
+vg_status vg_judge_match(struct vg_slices_judgement *j, struct vg_error *err)
+{
+  vg_status st;
+
+  VG_TRY(meet_faces(j, err));
+  if (j->sizing) VG_TRY(meet_edges(j, err));
+  VG_TRY(meet_places(j, err));
+done:
+  return st;
+}
+
+/* --- components ---------------------------------------------------------- */
+
+struct link { uint32_t a, b; };
+
+/* Links that the ranks found: what joins components of slices. */
+static vg_status list_links(const struct vg_slices_judgement *j, int q,
+                            struct vg_bytes *out, struct vg_error *err)
+{
+  uint32_t *parent = j->worker[0].parent[q];
+  struct link *link;
+  size_t n = 0;
+
+  for (int w = 1; w < j->n_worker; w++)
+    for (uint32_t i = 0; i < j->n_all; i++)
+      vg_unite(parent, i, j->worker[w].parent[q][i]);
+  for (uint32_t i = 0; i < j->n_all; i++) n += parent[i] != i;
+  link = vg_alloc(n, sizeof *link);
+  if (!link) return vg_fail_memory(err, "the parts of the mesh");
+  n = 0;
+  for (uint32_t i = 0; i < j->n_all; i++) {
+    if (parent[i] == i) continue;
+    link[n++] = (struct link){ i, parent[i] };
+  }
+  out->data = (unsigned char *)link;
+  out->n = n * sizeof *link;
+  return VG_OK;
+}
+
+static size_t join_links(uint32_t *parent, uint64_t n_all,
+                         const struct vg_bytes *all, int size)
+{
+  size_t n_joined = 0;
+
+  for (uint32_t i = 0; i < n_all; i++) parent[i] = i;
+  for (int r = 0; r < size; r++) {
+    const struct link *link = (const void *)all[r].data;
+
+    for (size_t i = 0; i < all[r].n / sizeof *link; i++)
+      n_joined += (size_t)vg_unite(parent, link[i].a, link[i].b);
+  }
+  return n_joined;
+}
+
+static vg_status count_joined(struct vg_slices_judgement *j, int q,
+                              size_t *n_joined, struct vg_error *err)
+{
+  int size = vg_comm_size(j->comm);
+  struct vg_bytes mine = { 0, NULL };
+  struct vg_bytes *all = vg_calloc((size_t)size, sizeof *all);
+  vg_status st = all ? list_links(j, q, &mine, err)
+                     : vg_fail_memory(err, "the parts of the mesh");
+
+  VG_TRY(vg_comm_agree(j->comm, st, err));
+  VG_TRY(vg_comm_allgather(j->comm, &mine, all, err));
+  *n_joined = join_links(j->worker[0].parent[q], j->n_all, all, size);
+done:
+  vg_bytes_release(all, size);
+  free(mine.data);
+  return st;
+}
+
+vg_status vg_judge_components(struct vg_slices_judgement *j,
+                              size_t *n_component, struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  for (int q = 0; q < j->n_judged; q++) {
+    size_t n_joined = 0;
+
+    VG_TRY(count_joined(j, q, &n_joined, err));
+    n_component[q] = (q ? j->n_all_field : j->n_all) - n_joined;
+  }
+done:
+  return st;
+}

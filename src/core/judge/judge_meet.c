@@ -1,0 +1,388 @@
+#include "core/judge/judge_meet.h"
+
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/parallel.h"
+
+/* Items of a part fit the second-level cache; in it they are put into buckets
+ * of few and compared. */
+#define PART_ITEMS 4096
+#define BUCKET_ITEMS 4
+#define MOST_PARTS ((size_t)1 << 20)
+
+void *vg_items_add(struct vg_items *list, size_t size)
+{
+  if (vg_reserve(&list->data, &list->room, list->n + 1, size)) return NULL;
+  return list->data + size * list->n++;
+}
+
+vg_status vg_items_append(struct vg_items *to, const struct vg_items *more,
+                          size_t size, struct vg_error *err)
+{
+  if (!more->n) return VG_OK;
+  if (vg_reserve(&to->data, &to->room, to->n + more->n, size))
+    return vg_fail_memory(err, "what slices share");
+  memcpy(to->data + size * to->n, more->data, size * more->n);
+  to->n += more->n;
+  return VG_OK;
+}
+
+void vg_items_release(struct vg_items *list)
+{
+  free(list->data);
+  memset(list, 0, sizeof *list);
+}
+
+/* Ranks, parts and buckets are named by different bits of the hash: upper
+ * half, lower 20, the next 12. */
+static int rank_of(uint64_t h, int size)
+{
+  return (int)((h >> 32) * (uint64_t)size >> 32);
+}
+
+int vg_meet_rank(const struct vg_meeting *m, const void *key)
+{
+  return rank_of(vg_meet_hash(key, m->key), vg_comm_size(m->comm));
+}
+
+/* --- counting sort ------------------------------------------------------- */
+
+/* Items of several sources, put in order of bins: ranks or parts. */
+struct sorting {
+  const struct vg_meeting *m;
+  size_t (*bin)(const struct sorting *s, uint64_t h);
+  struct vg_bytes *from;     /* [n_from], freed as they are done with */
+  size_t n_from, n_bin;
+  size_t *at;                /* [n_from][n_bin] */
+  size_t *first;             /* [n_bin + 1] */
+  unsigned char *item;
+};
+
+static size_t rank_bin(const struct sorting *s, uint64_t h)
+{
+  return (size_t)rank_of(h, (int)s->n_bin);
+}
+
+static size_t part_bin(const struct sorting *s, uint64_t h)
+{
+  return (size_t)h & (s->n_bin - 1);
+}
+
+static void count_sources(void *context, size_t first, size_t end, int worker)
+{
+  const struct sorting *s = context;
+  size_t size = s->m->size;
+
+  (void)worker;
+  for (size_t r = first; r < end; r++) {
+    const struct vg_bytes *from = &s->from[r];
+
+    for (size_t i = 0; i < from->n; i += size)
+      s->at[r * s->n_bin +
+            s->bin(s, vg_meet_hash(from->data + i, s->m->key))]++;
+  }
+}
+
+static void move_sources(void *context, size_t first, size_t end, int worker)
+{
+  const struct sorting *s = context;
+  size_t size = s->m->size;
+
+  (void)worker;
+  for (size_t r = first; r < end; r++) {
+    struct vg_bytes *from = &s->from[r];
+    size_t *at = s->at + r * s->n_bin;
+
+    for (size_t i = 0; i < from->n; i += size) {
+      size_t bin = s->bin(s, vg_meet_hash(from->data + i, s->m->key));
+
+      memcpy(s->item + size * at[bin]++, from->data + i, size);
+    }
+    free(from->data);
+    *from = (struct vg_bytes){ 0, NULL };
+  }
+}
+
+static vg_status sort_items(struct sorting *s, struct vg_error *err)
+{
+  size_t n = 0, at = 0;
+
+  for (size_t r = 0; r < s->n_from; r++) n += s->from[r].n / s->m->size;
+  s->at = vg_calloc(s->n_from, s->n_bin * sizeof *s->at);
+  s->first = vg_alloc(s->n_bin + 1, sizeof *s->first);
+  s->item = vg_alloc(n, s->m->size);
+  if (!s->at || !s->first || !s->item)
+    return vg_fail_memory(err, "what slices share");
+  vg_parallel_for(s->m->threads, s->n_from, 1, count_sources, s);
+  for (size_t b = 0; b < s->n_bin; b++) {
+    s->first[b] = at;
+    for (size_t r = 0; r < s->n_from; r++) {
+      size_t count = s->at[r * s->n_bin + b];
+
+      s->at[r * s->n_bin + b] = at;
+      at += count;
+    }
+  }
+  s->first[s->n_bin] = at;
+  vg_parallel_for(s->m->threads, s->n_from, 1, move_sources, s);
+  return VG_OK;
+}
+
+static void end_sorting(struct sorting *s)
+{
+  free(s->at);
+  free(s->first);
+  free(s->item);
+}
+
+/* --- to their ranks ------------------------------------------------------ */
+
+static void release(struct vg_bytes *b, size_t n)
+{
+  for (size_t i = 0; b && i < n; i++) free(b[i].data);
+  free(b);
+}
+
+/* *out: [size], what all ranks had for this one. */
+static vg_status send(const struct vg_meeting *m, struct vg_bytes *list,
+                      size_t n_list, struct vg_bytes **out,
+                      struct vg_error *err)
+{
+  size_t size = (size_t)vg_comm_size(m->comm);
+  struct sorting s = { .m = m, .bin = rank_bin, .from = list,
+                       .n_from = n_list, .n_bin = size };
+  struct vg_bytes *to = vg_calloc(size, sizeof *to);
+  struct vg_bytes *from = vg_calloc(size, sizeof *from);
+  vg_status st = VG_OK;
+
+  if (!to || !from || !list) st = vg_fail_memory(err, "what slices share");
+  else st = sort_items(&s, err);
+  VG_TRY(vg_comm_agree(m->comm, st, err));
+  for (size_t r = 0; r < size; r++) {
+    to[r].data = s.item + m->size * s.first[r];
+    to[r].n = m->size * (s.first[r + 1] - s.first[r]);
+  }
+  VG_TRY(vg_comm_exchange(m->comm, to, from, err));
+  *out = from;
+  from = NULL;
+done:
+  end_sorting(&s);
+  free(to);
+  release(from, size);
+  return st;
+}
+
+/* --- on their rank ------------------------------------------------------- */
+
+struct hall {
+  const struct vg_meeting *m;
+  struct sorting s;          /* by part, a power of two of them */
+  size_t most;               /* items of the largest part */
+  struct vg_items *left;     /* NULL, or [threads]: groups not whole go here */
+  atomic_int refused;
+};
+
+static size_t bucket_of(const struct hall *h, const unsigned char *item,
+                        size_t n_bucket)
+{
+  return (size_t)(vg_meet_hash(item, h->m->key) >> 20) & (n_bucket - 1);
+}
+
+/* Any order of keys of n bytes will do. */
+static inline int key_order(const unsigned char *a, const unsigned char *b,
+                            size_t n)
+{
+  for (size_t i = 0; i < n; i += sizeof(uint32_t)) {
+    uint32_t x, y;
+
+    memcpy(&x, a + i, sizeof x);
+    memcpy(&y, b + i, sizeof y);
+    if (x != y) return x < y ? -1 : 1;
+  }
+  return 0;
+}
+
+/* Insertion by key; equal keys stay where they are, so that a crowd of them
+ * is no trouble. */
+static void sort_bucket(const struct vg_meeting *m, unsigned char *item,
+                        size_t n, unsigned char *spare)
+{
+  size_t size = m->size;
+
+  for (size_t i = 1; i < n; i++) {
+    size_t j = i;
+
+    while (j && key_order(item + size * (j - 1), item + size * i, m->key) > 0)
+      j--;
+    if (j == i) continue;
+    memcpy(spare, item + size * i, size);
+    memmove(item + size * (j + 1), item + size * j, size * (i - j));
+    memcpy(item + size * j, spare, size);
+  }
+}
+
+static void look_at(struct hall *h, const unsigned char *item, size_t n,
+                    int worker)
+{
+  const struct vg_meeting *m = h->m;
+
+  if (!h->left || m->is_whole(m->context, item, n)) {
+    m->group(m->context, item, n, worker);
+    return;
+  }
+  for (size_t i = 0; i < n; i++) {
+    unsigned char *to = vg_items_add(&h->left[worker], m->size);
+
+    if (to) memcpy(to, item + m->size * i, m->size);
+    else atomic_store(&h->refused, 1);
+  }
+}
+
+static void look_at_all(struct hall *h, const unsigned char *item, size_t n,
+                        int worker)
+{
+  const struct vg_meeting *m = h->m;
+
+  for (size_t i = 0, j; i < n; i = j) {
+    const unsigned char *first = item + m->size * i;
+
+    for (j = i + 1; j < n; j++)
+      if (key_order(first, item + m->size * j, m->key)) break;
+    look_at(h, first, j - i, worker);
+  }
+}
+
+/* room: of the largest part and one item; bucket: [n_bucket]. */
+static void meet_part(struct hall *h, size_t p, unsigned char *room,
+                      size_t *bucket, size_t n_bucket, int worker)
+{
+  size_t size = h->m->size, first = h->s.first[p];
+  size_t n = h->s.first[p + 1] - first, at = 0;
+  const unsigned char *item = h->s.item + size * first;
+
+  memset(bucket, 0, n_bucket * sizeof *bucket);
+  for (size_t i = 0; i < n; i++)
+    bucket[bucket_of(h, item + size * i, n_bucket)]++;
+  for (size_t b = 0; b < n_bucket; b++) {
+    size_t count = bucket[b];
+
+    bucket[b] = at;
+    at += count;
+  }
+  for (size_t i = 0; i < n; i++) {
+    size_t b = bucket_of(h, item + size * i, n_bucket);
+
+    memcpy(room + size * bucket[b]++, item + size * i, size);
+  }
+  for (size_t b = 0; b < n_bucket; b++) {
+    size_t begin = b ? bucket[b - 1] : 0;
+
+    sort_bucket(h->m, room + size * begin, bucket[b] - begin,
+                room + size * h->most);
+    look_at_all(h, room + size * begin, bucket[b] - begin, worker);
+  }
+}
+
+static void meet_parts(void *context, size_t first, size_t end, int worker)
+{
+  struct hall *h = context;
+  size_t n_bucket = PART_ITEMS / BUCKET_ITEMS;
+  unsigned char *room = vg_alloc(h->most + 1, h->m->size);
+  size_t *bucket = vg_alloc(n_bucket, sizeof *bucket);
+
+  if (!room || !bucket) atomic_store(&h->refused, 1);
+  else
+    for (size_t p = first; p < end; p++)
+      meet_part(h, p, room, bucket, n_bucket, worker);
+  free(room);
+  free(bucket);
+}
+
+static vg_status meet_here(const struct vg_meeting *m, struct vg_bytes *from,
+                           size_t n_from, struct vg_items *left,
+                           struct vg_error *err)
+{
+  struct hall h = { .m = m, .left = left,
+                    .s = { .m = m, .bin = part_bin, .from = from,
+                           .n_from = n_from, .n_bin = 1 } };
+  size_t n = 0;
+  vg_status st;
+
+  for (size_t r = 0; r < n_from; r++) n += from[r].n / m->size;
+  while (h.s.n_bin < MOST_PARTS && h.s.n_bin * PART_ITEMS < n)
+    h.s.n_bin *= 2;
+  VG_TRY(sort_items(&h.s, err));
+  for (size_t p = 0; p < h.s.n_bin; p++) {
+    size_t count = h.s.first[p + 1] - h.s.first[p];
+
+    if (count > h.most) h.most = count;
+  }
+  vg_parallel_for(m->threads, h.s.n_bin, 8, meet_parts, &h);
+  if (atomic_load(&h.refused)) st = vg_fail_memory(err, "what slices share");
+done:
+  end_sorting(&h.s);
+  return st;
+}
+
+/* The lists' memory as sources; NULL when refused. */
+static struct vg_bytes *take_lists(const struct vg_meeting *m,
+                                   struct vg_items *list, size_t n_list,
+                                   size_t stride)
+{
+  struct vg_bytes *from = vg_calloc(n_list, sizeof *from);
+
+  for (size_t l = 0; l < n_list; l++) {
+    struct vg_items *one =
+      (void *)((unsigned char *)list + l * stride);
+
+    if (from) from[l] = (struct vg_bytes){ one->n * m->size, one->data };
+    else free(one->data);
+    memset(one, 0, sizeof *one);
+  }
+  return from;
+}
+
+/* Look at what is whole on this rank. *from, *n_from: what is not. Local. */
+static vg_status meet_first(const struct vg_meeting *m, struct vg_bytes **from,
+                            size_t *n_from, struct vg_error *err)
+{
+  size_t n = (size_t)(m->threads > 0 ? m->threads : 1);
+  struct vg_items *left = vg_calloc(n, sizeof *left);
+  struct vg_meeting one = *m;
+  vg_status st = *from && left ? VG_OK
+                               : vg_fail_memory(err, "what slices share");
+
+  one.threads = (int)n;
+  if (st >= 0) st = meet_here(&one, *from, *n_from, left, err);
+  release(*from, *n_from);
+  *from = left ? take_lists(m, left, n, sizeof *left) : NULL;
+  *n_from = n;
+  free(left);
+  return st;
+}
+
+vg_status vg_meet(const struct vg_meeting *m, struct vg_items *list,
+                  size_t n_list, size_t stride, struct vg_error *err)
+{
+  struct vg_bytes *from = take_lists(m, list, n_list, stride), *got = NULL;
+  size_t n_from = n_list;
+  vg_status st = VG_OK;
+
+  if (vg_comm_size(m->comm) > 1) {
+    if (m->is_whole) st = meet_first(m, &from, &n_from, err);
+    VG_TRY(vg_comm_agree(m->comm, st, err));
+    VG_TRY(send(m, from, n_from, &got, err));
+    release(from, n_from);
+    from = got;
+    n_from = (size_t)vg_comm_size(m->comm);
+  }
+  st = from ? meet_here(m, from, n_from, NULL, err)
+            : vg_fail_memory(err, "what slices share");
+  st = vg_comm_agree(m->comm, st, err);
+done:
+  release(from, n_from);
+  return st;
+}

@@ -1,0 +1,240 @@
+/* One slice: what is judged within it, and what is kept for others. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/judge/judge_slices_parts.h"
+
+struct work {
+  struct vg_slices_judgement *j;
+  struct vg_judge_worker *w;
+  const struct vg_slice *slice;
+  struct vg_mesh view;       /* of the slice: borrowed points and cells */
+  struct vg_figures *f;
+  struct vg_loose loose;
+  size_t at, n_cell;         /* number of the slice; its cells */
+  int is_field;
+};
+
+static int has_field(const struct vg_slices_judgement *j)
+{
+  return j->n_judged > 1;
+}
+
+void vg_face_item_set(struct vg_face_item *f, const uint32_t node[4])
+{
+  int n = node[3] == VG_NO_NODE ? 3 : 4, low = 0;
+  uint32_t next, last;
+
+  for (int i = 1; i < n; i++) if (node[i] < node[low]) low = i;
+  next = node[(low + 1) % n];
+  last = node[(low + n - 1) % n];
+  f->node[0] = node[low];
+  f->node[1] = next < last ? next : last;
+  f->node[2] = next < last ? last : next;
+  f->node[3] = n == 3 ? VG_NO_NODE : node[(low + 2) % n];
+  f->flags = next > last ? VG_FACE_WINDING : 0;
+}
+
+int vg_face_key_order(const void *a, const void *b)
+{
+  return memcmp(a, b, sizeof(struct vg_face_key));
+}
+
+static void item_of_local(const struct work *k, const uint32_t local[4],
+                          struct vg_face_item *f)
+{
+  uint32_t node[4];
+
+  for (int c = 0; c < 4; c++)
+    node[c] = local[c] == VG_NO_NODE ? VG_NO_NODE : k->slice->id[local[c]];
+  vg_face_item_set(f, node);
+}
+
+static int is_suspect(const void *context, const uint32_t local[4])
+{
+  const struct work *k = context;
+  struct vg_face_item f;
+
+  item_of_local(k, local, &f);
+  return bsearch(f.node, k->j->suspect, k->j->n_suspect,
+                 sizeof *k->j->suspect, vg_face_key_order) != NULL;
+}
+
+/* The arrays of a mesh are not const, but none of the judges writes. */
+static void make_view(struct work *k)
+{
+  const struct vg_slice *s = k->slice;
+  struct vg_mesh *m = &k->view;
+
+  m->n_point = s->n_point;
+  m->n_tet = s->n_cell[VG_SLICE_TET];
+  m->n_pyr = s->n_cell[VG_SLICE_PYR];
+  m->n_pri = s->n_cell[VG_SLICE_PRI];
+  memcpy(&m->point, &s->x, sizeof m->point);
+  memcpy(&m->tet, &s->cell[VG_SLICE_TET], sizeof m->tet);
+  memcpy(&m->pyr, &s->cell[VG_SLICE_PYR], sizeof m->pyr);
+  memcpy(&m->pri, &s->cell[VG_SLICE_PRI], sizeof m->pri);
+}
+
+/* Indices and numbers that point nowhere, points that are nowhere. Returns
+ * whether there are none. */
+static int check(struct work *k)
+{
+  const struct vg_slice *s = k->slice;
+  uint64_t n_point = k->j->s->n_point, bad = vg_count_bad_index(&k->view);
+  size_t lost = vg_count_not_finite(s->n_point, s->x), own = 0;
+
+  for (size_t i = 0; i < s->n_point; i++) bad += s->id[i] >= n_point;
+  for (size_t i = 0; i < s->n_own; i++) {
+    if (s->own[i] >= s->n_point || s->id[s->own[i]] != s->point_at + i) {
+      bad++;
+      continue;
+    }
+    own += vg_count_not_finite(1, s->x + s->own[i]);
+  }
+  k->f->n.bad_index += bad;
+  /* Those of others are counted by these. */
+  k->f->n.not_finite += own;
+  return !bad && !lost;
+}
+
+/* --- points -------------------------------------------------------------- */
+
+static void extend_box(struct vg_judge_worker *w, const double x[3])
+{
+  for (int c = 0; c < 3; c++) {
+    if (x[c] < w->lo[c]) w->lo[c] = x[c];
+    if (x[c] > w->hi[c]) w->hi[c] = x[c];
+  }
+}
+
+static vg_status note_points(struct work *k, struct vg_error *err)
+{
+  const struct vg_slice *s = k->slice;
+
+  for (size_t i = 0; i < s->n_own; i++) {
+    const double *x = s->x[s->own[i]];
+    struct vg_place_item place = vg_place_item(x);
+    uint64_t *key = vg_items_add(&k->w->place, sizeof *key);
+
+    if (!key) return vg_fail_memory(err, "the points of slices");
+    *key = vg_meet_hash(&place, sizeof place);
+    extend_box(k->w, x);
+    if (s->point_at + i < k->j->n_place)
+      memcpy(k->j->place[s->point_at + i], x, sizeof *k->j->place);
+  }
+  return VG_OK;
+}
+
+static vg_status note_used(struct work *k, struct vg_error *err)
+{
+  const struct vg_slice *s = k->slice;
+  uint8_t *used = vg_calloc(s->n_point, 1);
+
+  if (!used) return vg_fail_memory(err, "the points in use");
+  vg_mark_used(&k->view, used);
+  for (size_t i = 0; i < s->n_point; i++) {
+    uint64_t bit = UINT64_C(1) << (s->id[i] & 63);
+
+    if (!used[i]) continue;
+    for (int q = 0; q <= (k->is_field && has_field(k->j)); q++)
+      __atomic_fetch_or(&k->j->used[q][s->id[i] >> 6], bit, __ATOMIC_RELAXED);
+  }
+  free(used);
+  return VG_OK;
+}
+
+/* --- what others must know ----------------------------------------------- */
+
+static vg_status keep_faces(struct work *k, struct vg_error *err)
+{
+  for (size_t i = 0; i < k->loose.n_face; i++) {
+    const struct vg_loose_face *from = &k->loose.face[i];
+    struct vg_face_item *f = vg_items_add(&k->w->face, sizeof *f);
+
+    if (!f) return vg_fail_memory(err, "the faces between slices");
+    item_of_local(k, from->node, f);
+    f->component = from->component;
+    f->volume = from->volume;
+    f->flags |= (uint32_t)k->at << VG_FACE_BITS |
+                (k->is_field ? VG_FACE_FIELD : 0);
+  }
+  return VG_OK;
+}
+
+static vg_status keep_edges(struct work *k, struct vg_error *err)
+{
+  for (size_t i = 0; i < k->loose.n_edge; i++) {
+    const struct vg_loose_edge *from = &k->loose.edge[i];
+    struct vg_edge_item *e = vg_items_add(&k->w->edge, sizeof *e);
+    uint32_t a = k->slice->id[from->node[0]], b = k->slice->id[from->node[1]];
+
+    if (!e) return vg_fail_memory(err, "the edges between slices");
+    e->node[0] = a < b ? a : b;
+    e->node[1] = a < b ? b : a;
+    e->ratio = from->ratio;
+  }
+  return VG_OK;
+}
+
+static vg_status judge_cells(struct work *k, struct vg_error *err)
+{
+  struct vg_slices_judgement *j = k->j;
+  float *volume = vg_alloc(k->n_cell, sizeof *volume);
+  size_t n_component = 0;
+  vg_status st = VG_OK;
+
+  if (!volume) return vg_fail_memory(err, "the volumes of the cells");
+  vg_judge_shape(&k->view, k->slice->cell_at[VG_SLICE_TET], volume, k->f);
+  VG_TRY(vg_judge_faces(&k->view, volume, k->f, &k->loose, &n_component, err));
+  j->n_component[k->at] = (uint32_t)n_component;
+  if (k->is_field) k->w->n_field_component += n_component;
+  if (j->sizing && (k->is_field || j->edges_of == VG_JUDGED_WHOLE))
+    VG_TRY(vg_judge_edges(&k->view, j->sizing, k->f, &k->loose, err));
+  VG_TRY(note_used(k, err));
+  VG_TRY(keep_faces(k, err));
+  VG_TRY(keep_edges(k, err));
+done:
+  free(volume);
+  return st;
+}
+
+static vg_status judge_slice(struct vg_slices_judgement *j,
+                             struct vg_judge_worker *w, size_t at,
+                             struct vg_error *err)
+{
+  struct vg_slice slice;
+  struct work k = { .j = j, .w = w, .slice = &slice, .at = at };
+  vg_status st = j->s->get(j->s, at, &slice, err);
+
+  if (st < 0) return st;
+  k.is_field = slice.kind != 0;
+  k.f = w->figures[k.is_field && has_field(j)];
+  make_view(&k);
+  k.loose.context = &k;
+  k.loose.is_shared = j->n_suspect ? is_suspect : NULL;
+  for (int kind = 0; kind < VG_SLICE_KINDS; kind++) {
+    w->n_cell[kind] += slice.n_cell[kind];
+    k.n_cell += slice.n_cell[kind];
+  }
+  k.f->n.n_cell += k.n_cell;
+  k.f->n.n_point += slice.n_own;
+  if (!check(&k)) goto done;
+  if (j->body) VG_TRY(j->body(j->context, &slice, err));
+  VG_TRY(note_points(&k, err));
+  if (k.n_cell) VG_TRY(judge_cells(&k, err));
+done:
+  vg_loose_release(&k.loose);
+  j->s->put(j->s, &slice);
+  return st;
+}
+
+void vg_judge_some_slices(void *context, size_t first, size_t end, int worker)
+{
+  struct vg_slices_judgement *j = context;
+  struct vg_judge_worker *w = &j->worker[worker];
+
+  for (size_t i = first; i < end && w->st >= 0; i++)
+    w->st = judge_slice(j, w, i, &w->err);
+}

@@ -1,0 +1,553 @@
+/* Judging slices: shares the work out and puts the report together. */
+#include "core/judge/judge_slices.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "core/judge/judge_slices_parts.h"
+
+#define MOST_WORKERS 256     /* of vg_parallel_for */
+
+/* Slices on one rank, by the bits left for their number. */
+#define MOST_SLICES ((size_t)1 << (32 - VG_FACE_BITS))
+
+/* --- preparing ----------------------------------------------------------- */
+
+static vg_status make_workers(struct vg_slices_judgement *j,
+                              struct vg_error *err)
+{
+  int n = j->threads > 0 ? j->threads : vg_cores();
+
+  if (n > MOST_WORKERS) n = MOST_WORKERS;
+  j->worker = vg_calloc((size_t)n, sizeof *j->worker);
+  if (!j->worker) return vg_fail_memory(err, "the figures of slices");
+  j->threads = j->n_worker = n;
+  for (int i = 0; i < n; i++) {
+    struct vg_judge_worker *w = &j->worker[i];
+
+    for (int k = 0; k < 3; k++) {
+      w->lo[k] = INFINITY;
+      w->hi[k] = -INFINITY;
+    }
+    for (int q = 0; q < j->n_judged; q++) {
+      w->figures[q] = vg_figures_new();
+      if (!w->figures[q]) return vg_fail_memory(err, "the figures of slices");
+    }
+  }
+  return VG_OK;
+}
+
+static size_t behind_last(const uint32_t *node, size_t n, uint64_t n_point)
+{
+  size_t end = 0;
+
+  for (size_t i = 0; i < n; i++)
+    if (node[i] >= end && node[i] < n_point) end = (size_t)node[i] + 1;
+  return end;
+}
+
+/* Places of the boundary's points are to be known everywhere; nowhere yet. */
+static vg_status make_places(struct vg_slices_judgement *j,
+                             struct vg_error *err)
+{
+  const struct vg_mesh *b = j->s->boundary;
+  size_t tri = behind_last((const uint32_t *)b->tri, 3 * b->n_tri,
+                           j->s->n_point);
+  size_t quad = behind_last((const uint32_t *)b->quad, 4 * b->n_quad,
+                            j->s->n_point);
+
+  j->n_place = tri > quad ? tri : quad;
+  j->place = vg_alloc(j->n_place, sizeof *j->place);
+  if (!j->place) return vg_fail_memory(err, "the points of the boundary");
+  for (size_t i = 0; i < j->n_place; i++)
+    for (int k = 0; k < 3; k++) j->place[i][k] = -INFINITY;
+  return VG_OK;
+}
+
+static vg_status prepare(struct vg_slices_judgement *j, struct vg_error *err)
+{
+  vg_status st;
+
+  if (j->s->n_slice >= MOST_SLICES || j->s->n_point > UINT32_MAX)
+    return vg_fail(err, VG_ERR_UNSUPPORTED, "%zu slices of %llu points are "
+                   "too many for the check of the mesh (limits 2^29 and "
+                   "2^32)", j->s->n_slice, (unsigned long long)j->s->n_point);
+  VG_TRY(make_workers(j, err));
+  VG_TRY(make_places(j, err));
+  j->n_word = (size_t)(j->s->n_point / 64 + 1);
+  j->n_component = vg_calloc(j->s->n_slice, sizeof *j->n_component);
+  for (int q = 0; q < j->n_judged; q++) {
+    j->used[q] = vg_calloc(j->n_word, sizeof *j->used[q]);
+    if (!j->used[q]) st = VG_ERR_MEMORY;
+  }
+  if (!j->n_component || st < 0)
+    st = vg_fail_memory(err, "the points in use");
+done:
+  return st;
+}
+
+static void release(struct vg_slices_judgement *j)
+{
+  for (int i = 0; i < j->n_worker; i++) {
+    struct vg_judge_worker *w = &j->worker[i];
+
+    vg_items_release(&w->face);
+    vg_items_release(&w->edge);
+    vg_items_release(&w->place);
+    vg_items_release(&w->crowd);
+    vg_items_release(&w->suspect);
+    for (int q = 0; q < VG_JUDGED; q++) {
+      free(w->figures[q]);
+      free(w->parent[q]);
+    }
+  }
+  free(j->worker);
+  for (int q = 0; q < VG_JUDGED; q++) free(j->used[q]);
+  free(j->place);
+  free(j->n_component);
+  free(j->suspect);
+}
+
+/* --- slices -------------------------------------------------------------- */
+
+static vg_status judge_all_slices(struct vg_slices_judgement *j,
+                                  struct vg_error *err)
+{
+  vg_parallel_for(j->threads, j->s->n_slice, 1, vg_judge_some_slices, j);
+  for (int i = 0; i < j->n_worker; i++) {
+    struct vg_judge_worker *w = &j->worker[i];
+
+    /* from here on the first figures are those of the whole mesh */
+    if (j->n_judged > 1)
+      vg_figures_add(w->figures[VG_JUDGED_WHOLE], w->figures[VG_JUDGED_FIELD]);
+    if (w->st >= 0) continue;
+    if (err) *err = w->err;
+    return w->st;
+  }
+  return VG_OK;
+}
+
+/* What decides whether to go on, of all ranks. */
+struct census {
+  uint64_t n_point, n_cell[VG_SLICE_KINDS], bad_index, not_finite;
+};
+
+static vg_status take_census(struct vg_slices_judgement *j, struct census *c,
+                             struct vg_error *err)
+{
+  const struct vg_slices *s = j->s;
+  vg_status st;
+
+  memset(c, 0, sizeof *c);
+  if (!vg_comm_rank(j->comm)) {
+    struct vg_mesh b = *s->boundary;
+
+    b.n_point = (size_t)s->n_point;
+    b.n_tet = b.n_pyr = b.n_pri = b.n_hex = 0;
+    j->worker[0].figures[VG_JUDGED_WHOLE]->n.bad_index +=
+      vg_count_bad_index(&b);
+  }
+  for (int i = 0; i < j->n_worker; i++) {
+    const struct vg_judge_worker *w = &j->worker[i];
+    const struct vg_counts *n = &w->figures[VG_JUDGED_WHOLE]->n;
+
+    c->n_point += n->n_point;
+    c->bad_index += n->bad_index;
+    c->not_finite += n->not_finite;
+    for (int k = 0; k < VG_SLICE_KINDS; k++) c->n_cell[k] += w->n_cell[k];
+  }
+  st = vg_comm_sum(j->comm, sizeof *c / sizeof(uint64_t), (uint64_t *)c, err);
+  if (st < 0) return st;
+  if (c->n_point == s->n_point &&
+      !memcmp(c->n_cell, s->n_cell, sizeof c->n_cell)) return VG_OK;
+  return vg_fail(err, VG_ERR_INPUT, "the slices own %llu points, %llu "
+                 "tetrahedra, %llu pyramids and %llu prisms, but the mesh has "
+                 "%llu, %llu, %llu and %llu",
+                 (unsigned long long)c->n_point,
+                 (unsigned long long)c->n_cell[0],
+                 (unsigned long long)c->n_cell[1],
+                 (unsigned long long)c->n_cell[2],
+                 (unsigned long long)s->n_point,
+                 (unsigned long long)s->n_cell[0],
+                 (unsigned long long)s->n_cell[1],
+                 (unsigned long long)s->n_cell[2]);
+}
+
+/* Turns numbers of components of each slice into the number of the first,
+ * over all ranks. */
+static vg_status number_slices(struct vg_slices_judgement *j,
+                               struct vg_error *err)
+{
+  size_t size = (size_t)vg_comm_size(j->comm);
+  size_t me = (size_t)vg_comm_rank(j->comm);
+  uint64_t *n = vg_calloc(size + 1, sizeof *n), at = 0;
+  vg_status st = VG_OK;
+
+  if (!n) st = vg_fail_memory(err, "the parts of the mesh");
+  VG_TRY(vg_comm_agree(j->comm, st, err));
+  for (size_t i = 0; i < j->s->n_slice; i++) n[me] += j->n_component[i];
+  for (int i = 0; i < j->n_worker; i++)
+    n[size] += j->worker[i].n_field_component;
+  VG_TRY(vg_comm_sum(j->comm, size + 1, n, err));
+  for (size_t r = 0; r < size; r++) {
+    if (r == me) at = j->n_all;
+    j->n_all += n[r];
+  }
+  j->n_all_field = n[size];
+  if (j->n_all > UINT32_MAX) {
+    st = vg_fail(err, VG_ERR_UNSUPPORTED, "the mesh falls into too many "
+                 "parts for its check (limit 2^32)");
+    goto done;
+  }
+  for (size_t i = 0; i < j->s->n_slice; i++) {
+    uint32_t count = j->n_component[i];
+
+    j->n_component[i] = (uint32_t)at;
+    at += count;
+  }
+done:
+  free(n);
+  return st;
+}
+
+static vg_status make_parents(struct vg_slices_judgement *j,
+                              struct vg_error *err)
+{
+  for (int i = 0; i < j->n_worker; i++)
+    for (int q = 0; q < j->n_judged; q++) {
+      uint32_t *parent = vg_alloc((size_t)j->n_all, sizeof *parent);
+
+      if (!parent) return vg_fail_memory(err, "the parts of the mesh");
+      for (uint32_t k = 0; k < j->n_all; k++) parent[k] = k;
+      j->worker[i].parent[q] = parent;
+    }
+  return VG_OK;
+}
+
+/* --- points in use ------------------------------------------------------- */
+
+static size_t first_word(const struct vg_slices_judgement *j, int rank)
+{
+  return (size_t)((uint64_t)j->n_word * (uint64_t)rank /
+                  (uint64_t)vg_comm_size(j->comm));
+}
+
+/* Each rank gets its share of the words of all others. */
+static vg_status unite_used(struct vg_slices_judgement *j, uint64_t *used,
+                            struct vg_error *err)
+{
+  int size = vg_comm_size(j->comm);
+  size_t first = first_word(j, vg_comm_rank(j->comm));
+  struct vg_bytes *to = vg_calloc((size_t)size, sizeof *to);
+  struct vg_bytes *from = vg_calloc((size_t)size, sizeof *from);
+  vg_status st = VG_OK;
+
+  if (!to || !from) st = vg_fail_memory(err, "the points in use");
+  VG_TRY(vg_comm_agree(j->comm, st, err));
+  for (int r = 0; r < size; r++) {
+    size_t at = first_word(j, r);
+
+    to[r].data = (unsigned char *)(used + at);
+    to[r].n = (first_word(j, r + 1) - at) * sizeof *used;
+  }
+  VG_TRY(vg_comm_exchange(j->comm, to, from, err));
+  for (int r = 0; r < size; r++)
+    for (size_t i = 0; i < from[r].n / sizeof *used; i++) {
+      uint64_t word;
+
+      memcpy(&word, from[r].data + i * sizeof word, sizeof word);
+      used[first + i] |= word;
+    }
+done:
+  vg_bytes_release(from, size);
+  free(to);
+  return st;
+}
+
+static vg_status count_used(struct vg_slices_judgement *j,
+                            struct vg_error *err)
+{
+  int me = vg_comm_rank(j->comm);
+  size_t first = first_word(j, me), end = first_word(j, me + 1);
+  vg_status st = VG_OK;
+
+  for (int q = 0; q < j->n_judged; q++) {
+    struct vg_counts *n = &j->worker[0].figures[q]->n;
+    uint64_t n_used = 0, n_here = 64 * (uint64_t)(end - first);
+
+    if (vg_comm_size(j->comm) > 1) VG_TRY(unite_used(j, j->used[q], err));
+    for (size_t i = first; i < end; i++)
+      n_used += (uint64_t)__builtin_popcountll(j->used[q][i]);
+    /* the last word is longer than the points */
+    if (end == j->n_word && end > first)
+      n_here -= 64 * (uint64_t)j->n_word - j->s->n_point;
+    if (q == VG_JUDGED_WHOLE) {
+      n->unused_point = n_here - n_used;
+      continue;
+    }
+    /* the field's points are those that its cells use */
+    for (int i = 0; i < j->n_worker; i++)
+      j->worker[i].figures[q]->n.n_point = 0;
+    n->n_point = n_used;
+  }
+done:
+  return st;
+}
+
+/* --- sums and reports ---------------------------------------------------- */
+
+static vg_status gather_worst(struct vg_comm *comm, struct vg_figures *f,
+                              struct vg_error *err)
+{
+  size_t size = (size_t)vg_comm_size(comm);
+  struct vg_worst_cell own[VG_WORST];
+  struct vg_bytes mine = { f->n_worst * sizeof *own, (unsigned char *)own };
+  struct vg_bytes *all = vg_calloc(size, sizeof *all);
+  vg_status st = all ? VG_OK : vg_fail_memory(err, "the worst cells");
+
+  memcpy(own, f->worst, sizeof own);
+  VG_TRY(vg_comm_agree(comm, st, err));
+  VG_TRY(vg_comm_allgather(comm, &mine, all, err));
+  f->n_worst = 0;
+  for (size_t r = 0; r < size; r++)
+    for (size_t i = 0; i < all[r].n / sizeof *own; i++) {
+      struct vg_worst_cell w;
+
+      memcpy(&w, all[r].data + i * sizeof w, sizeof w);
+      vg_figures_worst(f, &w);
+    }
+done:
+  vg_bytes_release(all, size);
+  return st;
+}
+
+/* All threads' and ranks' into the first worker's. */
+static vg_status sum_figures(struct vg_slices_judgement *j, int q,
+                             struct vg_error *err)
+{
+  struct vg_figures *f = j->worker[0].figures[q];
+  double extreme[3];
+  vg_status st;
+
+  for (int i = 1; i < j->n_worker; i++)
+    vg_figures_add(f, j->worker[i].figures[q]);
+  if (vg_comm_size(j->comm) == 1) return VG_OK;
+  extreme[0] = -f->angle_min;
+  extreme[1] = f->angle_max;
+  extreme[2] = -f->radius_ratio_min;
+  VG_TRY(vg_comm_sum(j->comm, sizeof f->n / sizeof(uint64_t),
+                     (uint64_t *)&f->n, err));
+  VG_TRY(vg_comm_max(j->comm, 3, extreme, err));
+  VG_TRY(gather_worst(j->comm, f, err));
+  f->angle_min = -extreme[0];
+  f->angle_max = extreme[1];
+  f->radius_ratio_min = -extreme[2];
+done:
+  return st;
+}
+
+static vg_status enclose(struct vg_slices_judgement *j, double *enclosed,
+                         struct vg_error *err)
+{
+  struct vg_mesh b = *j->s->boundary;
+  double box[6], lo[3];
+  vg_status st;
+
+  for (int k = 0; k < 6; k++) box[k] = -INFINITY;
+  for (int i = 0; i < j->n_worker; i++)
+    for (int k = 0; k < 3; k++) {
+      box[k] = fmax(box[k], -j->worker[i].lo[k]);
+      box[3 + k] = fmax(box[3 + k], j->worker[i].hi[k]);
+    }
+  VG_TRY(vg_comm_max(j->comm, 6, box, err));
+  VG_TRY(vg_comm_max(j->comm, 3 * j->n_place, (double *)j->place, err));
+  for (int k = 0; k < 3; k++) lo[k] = -box[k];
+  b.point = j->place;
+  *enclosed = vg_enclosed_volume(&b, lo, box + 3);
+done:
+  return st;
+}
+
+static void report_all(struct vg_slices_judgement *j,
+                       const size_t *n_component, uint64_t front_faces,
+                       double enclosed, struct vg_mesh_report *r)
+{
+  for (int q = 0; q < j->n_judged; q++)
+    vg_figures_report(j->worker[0].figures[q], n_component[q],
+                      j->sizing && j->edges_of == q, &r[q]);
+  r[VG_JUDGED_WHOLE].enclosed = enclosed;
+  vg_report_conclude(&r[VG_JUDGED_WHOLE]);
+  if (j->n_judged == 1) return;
+  r += VG_JUDGED_FIELD;
+  r->open_face = (size_t)(r->open_face > front_faces
+                          ? r->open_face - front_faces
+                          : front_faces - r->open_face);
+  r->enclosed = r->volume;
+  vg_report_conclude(r);
+}
+
+/* Without indices and places nothing else means anything. */
+static vg_status report_unsound(struct vg_slices_judgement *j,
+                                struct vg_mesh_report *r,
+                                struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  for (int q = 0; q < j->n_judged; q++) {
+    const struct vg_counts *n = &j->worker[0].figures[q]->n;
+
+    VG_TRY(sum_figures(j, q, err));
+    memset(&r[q], 0, sizeof r[q]);
+    r[q].n_point = (size_t)n->n_point;
+    r[q].n_cell = (size_t)n->n_cell;
+    r[q].bad_index = (size_t)n->bad_index;
+    r[q].not_finite = (size_t)n->not_finite;
+  }
+done:
+  return st;
+}
+
+static vg_status judge(struct vg_slices_judgement *j, uint64_t front_faces,
+                       struct vg_mesh_report *r, struct vg_error *err)
+{
+  size_t n_component[VG_JUDGED] = { 0, 0 };
+  struct census c;
+  double enclosed = 0;
+  vg_status st = judge_all_slices(j, err);
+
+  VG_TRY(vg_comm_agree(j->comm, st, err));
+  VG_TRY(take_census(j, &c, err));
+  if (c.bad_index || c.not_finite ||
+      !(c.n_cell[0] + c.n_cell[1] + c.n_cell[2]))
+    return report_unsound(j, r, err);
+  VG_TRY(number_slices(j, err));
+  st = make_parents(j, err);
+  VG_TRY(vg_comm_agree(j->comm, st, err));
+  VG_TRY(vg_judge_match(j, err));
+  VG_TRY(vg_judge_components(j, n_component, err));
+  VG_TRY(count_used(j, err));
+  for (int q = 0; q < j->n_judged; q++) VG_TRY(sum_figures(j, q, err));
+  VG_TRY(enclose(j, &enclosed, err));
+  report_all(j, n_component, front_faces, enclosed, r);
+done:
+  return st;
+}
+
+/* --- suspects ------------------------------------------------------------ */
+
+static vg_status pack_suspects(struct vg_slices_judgement *j,
+                               struct vg_bytes *mine, struct vg_error *err)
+{
+  const size_t size = sizeof(struct vg_face_key);
+  size_t n = 0;
+
+  for (int i = 0; i < j->n_worker; i++) n += size * j->worker[i].suspect.n;
+  mine->data = vg_alloc(n, 1);
+  if (!mine->data) return vg_fail_memory(err, "the faces between slices");
+  for (int i = 0; i < j->n_worker; i++) {
+    const struct vg_items *s = &j->worker[i].suspect;
+
+    if (s->n) memcpy(mine->data + mine->n, s->data, size * s->n);
+    mine->n += size * s->n;
+  }
+  return VG_OK;
+}
+
+static vg_status unpack_suspects(const struct vg_bytes *all, size_t size,
+                                 size_t *n, struct vg_face_key **key,
+                                 struct vg_error *err)
+{
+  size_t n_byte = 0;
+
+  for (size_t r = 0; r < size; r++) n_byte += all[r].n;
+  *key = vg_alloc(n_byte, 1);
+  if (!*key) return vg_fail_memory(err, "the faces between slices");
+  for (size_t r = 0, at = 0; r < size; at += all[r++].n)
+    if (all[r].n) memcpy((unsigned char *)*key + at, all[r].data, all[r].n);
+  *n = n_byte / sizeof **key;
+  qsort(*key, *n, sizeof **key, vg_face_key_order);
+  return VG_OK;
+}
+
+/* Of all ranks. Each is named once: its items met on one rank. */
+static vg_status gather_suspects(struct vg_slices_judgement *j, size_t *n,
+                                 struct vg_face_key **key,
+                                 struct vg_error *err)
+{
+  size_t size = (size_t)vg_comm_size(j->comm);
+  struct vg_bytes mine = { 0, NULL };
+  struct vg_bytes *all = vg_calloc(size, sizeof *all);
+  vg_status st = all ? pack_suspects(j, &mine, err)
+                     : vg_fail_memory(err, "the faces between slices");
+
+  VG_TRY(vg_comm_agree(j->comm, st, err));
+  VG_TRY(vg_comm_allgather(j->comm, &mine, all, err));
+  st = unpack_suspects(all, size, n, key, err);
+  st = vg_comm_agree(j->comm, st, err);
+done:
+  vg_bytes_release(all, size);
+  free(mine.data);
+  return st;
+}
+
+/* Once more where faces are suspect: slices then leave these to be matched
+ * with all others. Only in a mesh that is not valid. */
+static vg_status judge_again(struct vg_slices_judgement *j,
+                             uint64_t front_faces, struct vg_mesh_report *r,
+                             struct vg_error *err)
+{
+  struct vg_slices_judgement again = {
+    .comm = j->comm, .s = j->s, .sizing = j->sizing, .threads = j->threads,
+    .n_judged = j->n_judged, .edges_of = j->edges_of
+  };
+  vg_status st;
+
+  VG_TRY(gather_suspects(j, &again.n_suspect, &again.suspect, err));
+  if (!again.n_suspect) goto done;
+  st = prepare(&again, err);
+  VG_TRY(vg_comm_agree(j->comm, st, err));
+  VG_TRY(judge(&again, front_faces, r, err));
+done:
+  release(&again);
+  return st;
+}
+
+vg_status vg_slices_judge(struct vg_comm *comm, const struct vg_slices *s,
+                          uint64_t front_faces, const struct vg_sizing *sizing,
+                          int threads, struct vg_mesh_report *whole,
+                          struct vg_mesh_report *field, struct vg_error *err)
+{
+  return vg_slices_judge_with(comm, s, front_faces, sizing, threads, NULL,
+                              NULL, whole, field, err);
+}
+
+vg_status vg_slices_judge_with(struct vg_comm *comm,
+                               const struct vg_slices *s,
+                               uint64_t front_faces,
+                               const struct vg_sizing *sizing, int threads,
+                               vg_slice_body body, void *context,
+                               struct vg_mesh_report *whole,
+                               struct vg_mesh_report *field,
+                               struct vg_error *err)
+{
+  struct vg_slices_judgement j = {
+    .comm = comm, .s = s, .sizing = sizing, .threads = threads,
+    .body = body, .context = context,
+    .n_judged = field ? VG_JUDGED : 1,
+    .edges_of = field ? VG_JUDGED_FIELD : VG_JUDGED_WHOLE
+  };
+  struct vg_mesh_report r[VG_JUDGED];
+  vg_status st = prepare(&j, err);
+
+  VG_TRY(vg_comm_agree(comm, st, err));
+  VG_TRY(judge(&j, front_faces, r, err));
+  VG_TRY(judge_again(&j, front_faces, r, err));
+  *whole = r[VG_JUDGED_WHOLE];
+  if (field) *field = r[VG_JUDGED_FIELD];
+done:
+  release(&j);
+  return st;
+}

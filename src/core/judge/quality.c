@@ -1,0 +1,230 @@
+/* The judge: calls the sweeps in turn and draws the conclusion. */
+#include "core/judge/quality.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/geometry/vector.h"
+#include "core/judge/quality_parts.h"
+
+/* Inward faces of formats.md 2.3, each turned around. */
+const struct vg_cell_faces vg_cell_faces[VG_CELL_KINDS] = {
+  { 4, 4, 4, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}} },
+  { 5, 5, 4, {{0, 2, 1}, {1, 2, 4}, {2, 3, 4}, {0, 3, 2}, {0, 1, 4, 3}} },
+  { 6, 5, 2, {{0, 2, 1}, {3, 4, 5}, {0, 1, 4, 3}, {1, 2, 5, 4},
+              {0, 3, 5, 2}} },
+  { 8, 6, 0, {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5},
+              {2, 3, 7, 6}, {0, 4, 7, 3}} },
+};
+
+struct vg_cells vg_mesh_cells(const struct vg_mesh *m, int kind)
+{
+  const struct vg_cells all[VG_CELL_KINDS] = {
+    { (const uint32_t *)m->tet, m->n_tet, 0 },
+    { (const uint32_t *)m->pyr, m->n_pyr, m->n_tet },
+    { (const uint32_t *)m->pri, m->n_pri, m->n_tet + m->n_pyr },
+    { (const uint32_t *)m->hex, m->n_hex, m->n_tet + m->n_pyr + m->n_pri },
+  };
+
+  return all[kind];
+}
+
+static size_t out_of_range(const uint32_t *node, size_t n, size_t n_point)
+{
+  size_t bad = 0;
+
+  for (size_t i = 0; i < n; i++) bad += node[i] >= n_point;
+  return bad;
+}
+
+size_t vg_count_bad_index(const struct vg_mesh *m)
+{
+  size_t bad = out_of_range((const uint32_t *)m->tri, 3 * m->n_tri,
+                            m->n_point) +
+               out_of_range((const uint32_t *)m->quad, 4 * m->n_quad,
+                            m->n_point);
+
+  for (int kind = 0; kind < VG_CELL_KINDS; kind++) {
+    struct vg_cells c = vg_mesh_cells(m, kind);
+    size_t n = c.n * (size_t)vg_cell_faces[kind].n_node;
+
+    bad += out_of_range(c.node, n, m->n_point);
+  }
+  return bad;
+}
+
+size_t vg_count_not_finite(size_t n, const double (*x)[3])
+{
+  size_t bad = 0;
+
+  for (size_t i = 0; i < n; i++)
+    bad += !isfinite(x[i][0]) || !isfinite(x[i][1]) || !isfinite(x[i][2]);
+  return bad;
+}
+
+void vg_mark_used(const struct vg_mesh *m, uint8_t *used)
+{
+  for (int kind = 0; kind < VG_CELL_KINDS; kind++) {
+    struct vg_cells c = vg_mesh_cells(m, kind);
+    size_t n = c.n * (size_t)vg_cell_faces[kind].n_node;
+
+    for (size_t i = 0; i < n; i++) used[c.node[i]] = 1;
+  }
+}
+
+static vg_status count_unused(const struct vg_mesh *m, struct vg_counts *n,
+                              struct vg_error *err)
+{
+  uint8_t *used = vg_calloc(m->n_point, 1);
+
+  if (!used) return vg_fail_memory(err, "the points in use");
+  vg_mark_used(m, used);
+  for (size_t i = 0; i < m->n_point; i++) n->unused_point += !used[i];
+  free(used);
+  return VG_OK;
+}
+
+static uint64_t hash_point(const double x[3])
+{
+  uint64_t h = 0, bits;
+
+  for (int k = 0; k < 3; k++) {
+    double v = x[k] + 0.0;   /* -0 and +0 are the same place */
+
+    memcpy(&bits, &v, sizeof bits);
+    h = (h ^ bits) * UINT64_C(0x9E3779B97F4A7C15);
+    h ^= h >> 29;
+  }
+  return h;
+}
+
+static int same_place(const double a[3], const double b[3])
+{
+  return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
+/* Points at the place of an earlier one. Open addressing with at most half
+ * the slots taken; a slot holds index + 1. Points that coincide with one in
+ * the table are not entered, so a crowd at one place stays cheap. */
+static vg_status count_duplicates(const struct vg_mesh *m,
+                                  struct vg_counts *n, struct vg_error *err)
+{
+  size_t n_slot = 16;
+  uint32_t *slot;
+
+  while (n_slot < 2 * m->n_point) n_slot *= 2;
+  slot = vg_calloc(n_slot, sizeof *slot);
+  if (!slot) return vg_fail_memory(err, "the table of points");
+  for (size_t i = 0; i < m->n_point; i++) {
+    size_t at = (size_t)hash_point(m->point[i]) & (n_slot - 1);
+
+    while (slot[at] && !same_place(m->point[slot[at] - 1], m->point[i]))
+      at = (at + 1) & (n_slot - 1);
+    if (slot[at]) n->duplicate_point++;
+    else slot[at] = (uint32_t)(i + 1);
+  }
+  free(slot);
+  return VG_OK;
+}
+
+static double triple(const double o[3], const double a[3], const double b[3],
+                     const double c[3])
+{
+  double u[3], v[3], w[3];
+
+  vg_sub(a, o, u);
+  vg_sub(b, o, v);
+  vg_sub(c, o, w);
+  return vg_triple(u, v, w);
+}
+
+double vg_tri_cone(const double o[3], const double a[3], const double b[3],
+                   const double c[3])
+{
+  return triple(o, a, b, c);
+}
+
+double vg_quad_cone(const double o[3], const double a[3], const double b[3],
+                    const double c[3], const double d[3])
+{
+  return (triple(o, a, b, c) + triple(o, a, c, d) + triple(o, a, b, d) +
+          triple(o, b, c, d)) / 2;
+}
+
+/* The cones start at the middle of the box: the least cancellation. */
+double vg_enclosed_volume(const struct vg_mesh *m, const double lo[3],
+                          const double hi[3])
+{
+  const double (*x)[3] = (const double (*)[3])m->point;
+  struct vg_exact sum = { .n_odd = 0 };
+  double o[3];
+
+  for (int k = 0; k < 3; k++) o[k] = lo[k] + (hi[k] - lo[k]) / 2;
+  for (size_t i = 0; i < m->n_tri; i++) {
+    const uint32_t *n = m->tri[i];
+
+    vg_exact_add(&sum, -vg_tri_cone(o, x[n[0]], x[n[1]], x[n[2]]));
+  }
+  for (size_t i = 0; i < m->n_quad; i++) {
+    const uint32_t *n = m->quad[i];
+
+    vg_exact_add(&sum, -vg_quad_cone(o, x[n[0]], x[n[1]], x[n[2]],
+                                     x[n[3]]));
+  }
+  return vg_exact_value(&sum) / 6;
+}
+
+static vg_status judge_all(const struct vg_mesh *m,
+                           const struct vg_sizing *sizing,
+                           struct vg_figures *f, size_t *n_component,
+                           struct vg_error *err)
+{
+  float *volume = NULL;
+  vg_status st;
+
+  VG_TRY(count_unused(m, &f->n, err));
+  VG_TRY(count_duplicates(m, &f->n, err));
+  volume = vg_alloc(f->n.n_cell, sizeof *volume);
+  if (!volume) {
+    st = vg_fail_memory(err, "the volumes of the cells");
+    goto done;
+  }
+  vg_judge_shape(m, 0, volume, f);
+  VG_TRY(vg_judge_faces(m, volume, f, NULL, n_component, err));
+  free(volume);
+  volume = NULL;
+  if (sizing) VG_TRY(vg_judge_edges(m, sizing, f, NULL, err));
+done:
+  free(volume);
+  return st;
+}
+
+vg_status vg_mesh_judge(const struct vg_mesh *m, const struct vg_sizing *sizing,
+                        struct vg_mesh_report *report, struct vg_error *err)
+{
+  struct vg_figures *f = vg_figures_new();
+  size_t n_component = 0;
+  double lo[3], hi[3];
+  int sound;
+  vg_status st = VG_OK;
+
+  if (!f) return vg_fail_memory(err, "the figures of the mesh");
+  f->n.n_point = m->n_point;
+  f->n.n_cell = m->n_tet + m->n_pyr + m->n_pri + m->n_hex;
+  f->n.bad_index = vg_count_bad_index(m);
+  f->n.not_finite = vg_count_not_finite(m->n_point,
+                                        (const double (*)[3])m->point);
+  /* Without indices and places nothing else means anything. */
+  sound = !f->n.bad_index && !f->n.not_finite && f->n.n_cell;
+  if (sound) VG_TRY(judge_all(m, sizing, f, &n_component, err));
+  vg_figures_report(f, n_component, sound && sizing, report);
+  if (!sound) goto done;
+  vg_mesh_bounds(m, lo, hi);
+  report->enclosed = vg_enclosed_volume(m, lo, hi);
+  vg_report_conclude(report);
+done:
+  free(f);
+  return st;
+}

@@ -1,0 +1,264 @@
+/* Conformity to the size field: length of every interior edge once.
+ *
+ * The two ends of an edge are entered in the bucket of the lower one; the
+ * second and later entries of the same edge are recognised by a mark that its
+ * upper node carries. As in quality_faces.c the buckets of one range of nodes
+ * after the other are made, to keep memory small. Edges of boundary faces are
+ * entered first and only leave their mark. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/memory.h"
+#include "core/judge/quality_parts.h"
+
+#define LEAST_ENTRIES ((size_t)1 << 21)
+#define N_PASS 4
+
+/* Targets are asked for in groups: one call for many points. */
+#define GROUP 256
+
+struct edges {
+  const struct vg_mesh *m;
+  const struct vg_sizing *sizing;
+  uint32_t *count;       /* [n_point] entries by lower node; then ends */
+  uint32_t *n_boundary;  /* [n_point] of these from boundary faces */
+  uint32_t *mark;        /* [n_point] lower node + 1 of the last edge here */
+  uint32_t *entry;
+  uint32_t lo, n;
+  int pass;              /* 0 counts, 1 enters */
+  struct vg_figures *f;
+  struct vg_loose *loose;  /* NULL: m has its boundary */
+  int refused;           /* memory for loose edges */
+  uint32_t pair[GROUP][2];
+  size_t n_group;
+};
+
+static const uint8_t tet_edge[6][2] =
+  {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+static const uint8_t pyr_edge[8][2] =
+  {{0, 3}, {3, 4}, {4, 1}, {1, 0}, {0, 2}, {3, 2}, {4, 2}, {1, 2}};
+static const uint8_t pri_edge[9][2] =
+  {{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}};
+static const uint8_t hex_edge[12][2] =
+  {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4},
+   {0, 4}, {1, 5}, {2, 6}, {3, 7}};
+static const uint8_t tri_edge[3][2] = {{0, 1}, {1, 2}, {2, 0}};
+static const uint8_t quad_edge[4][2] = {{0, 1}, {1, 2}, {2, 3}, {3, 0}};
+
+static void enter_all(struct edges *e, const uint32_t *node, size_t n_cell,
+                      size_t width, const uint8_t (*edge)[2], int n_edge)
+{
+  for (size_t i = 0; i < n_cell; i++, node += width)
+    for (int j = 0; j < n_edge; j++) {
+      uint32_t a = node[edge[j][0]], b = node[edge[j][1]];
+      uint32_t low = a < b ? a : b, high = a < b ? b : a;
+
+      if (low - e->lo >= e->n) continue;
+      if (e->pass) e->entry[e->count[low]++] = high;
+      else e->count[low]++;
+    }
+}
+
+static void enter_boundary(struct edges *e)
+{
+  const struct vg_mesh *m = e->m;
+
+  enter_all(e, (const uint32_t *)m->tri, m->n_tri, 3, tri_edge, 3);
+  enter_all(e, (const uint32_t *)m->quad, m->n_quad, 4, quad_edge, 4);
+  for (size_t i = 0; e->loose && i < e->loose->n_face; i++) {
+    const uint32_t *n = e->loose->face[i].node;
+    int quad = n[3] != VG_NO_NODE;
+
+    enter_all(e, n, 1, 4, quad ? quad_edge : tri_edge, quad ? 4 : 3);
+  }
+}
+
+static void enter_cells(struct edges *e)
+{
+  const struct vg_mesh *m = e->m;
+
+  enter_all(e, (const uint32_t *)m->tet, m->n_tet, 4, tet_edge, 6);
+  enter_all(e, (const uint32_t *)m->pyr, m->n_pyr, 5, pyr_edge, 8);
+  enter_all(e, (const uint32_t *)m->pri, m->n_pri, 6, pri_edge, 9);
+  enter_all(e, (const uint32_t *)m->hex, m->n_hex, 8, hex_edge, 12);
+}
+
+static void count_entries(struct edges *e)
+{
+  e->pass = 0;
+  e->lo = 0;
+  e->n = (uint32_t)e->m->n_point;
+  enter_boundary(e);
+  for (size_t i = 0; i < e->m->n_point; i++)
+    e->n_boundary[i] = e->count[i];
+  enter_cells(e);
+  e->pass = 1;
+}
+
+/* Length / target of up to GROUP edges; the ends of an edge may be told in
+ * either order. */
+static void measure(const struct vg_mesh *m, const struct vg_sizing *sizing,
+                    size_t n, const uint32_t (*pair)[2], double *ratio)
+{
+  double mid[GROUP][3], target[GROUP];
+
+  for (size_t i = 0; i < n; i++) {
+    const double *p = m->point[pair[i][0]], *q = m->point[pair[i][1]];
+    double sum = 0;
+
+    for (int k = 0; k < 3; k++) {
+      double d = q[k] - p[k];
+
+      mid[i][k] = p[k] / 2 + q[k] / 2;
+      sum += d * d;
+    }
+    ratio[i] = sqrt(sum);
+  }
+  vg_sizing_eval(sizing, n, (const double (*)[3])mid, target);
+  for (size_t i = 0; i < n; i++) ratio[i] /= target[i];
+}
+
+static void flush(struct edges *e)
+{
+  double ratio[GROUP];
+
+  measure(e->m, e->sizing, e->n_group, (const uint32_t (*)[2])e->pair, ratio);
+  for (size_t i = 0; i < e->n_group; i++) vg_figures_edge(e->f, ratio[i]);
+  e->n_group = 0;
+}
+
+static void add(struct edges *e, uint32_t a, uint32_t b)
+{
+  e->pair[e->n_group][0] = a;
+  e->pair[e->n_group++][1] = b;
+  if (e->n_group == GROUP) flush(e);
+}
+
+static void add_loose(struct edges *e, uint32_t a, uint32_t b)
+{
+  struct vg_loose *loose = e->loose;
+
+  if (vg_reserve(&loose->edge, &loose->room_edge, loose->n_edge + 1,
+                 sizeof *loose->edge)) {
+    e->refused = 1;
+    return;
+  }
+  loose->edge[loose->n_edge++] = (struct vg_loose_edge){ { a, b }, 0 };
+}
+
+static void measure_loose(struct edges *e)
+{
+  uint32_t pair[GROUP][2];
+  double ratio[GROUP];
+
+  for (size_t at = 0, n; at < e->loose->n_edge; at += n) {
+    struct vg_loose_edge *edge = e->loose->edge + at;
+
+    n = e->loose->n_edge - at;
+    if (n > GROUP) n = GROUP;
+    for (size_t i = 0; i < n; i++)
+      for (int k = 0; k < 2; k++) pair[i][k] = edge[i].node[k];
+    measure(e->m, e->sizing, n, (const uint32_t (*)[2])pair, ratio);
+    for (size_t i = 0; i < n; i++) edge[i].ratio = ratio[i];
+  }
+}
+
+static void measure_range(struct edges *e)
+{
+  size_t at = 0;
+
+  for (uint32_t v = e->lo; v < e->lo + e->n; v++) {
+    size_t inner = at + e->n_boundary[v], end = e->count[v];
+
+    for (; at < inner; at++) {
+      if (e->loose && e->mark[e->entry[at]] != v + 1)
+        add_loose(e, v, e->entry[at]);
+      e->mark[e->entry[at]] = v + 1;
+    }
+    for (; at < end; at++) {
+      if (e->mark[e->entry[at]] == v + 1) continue;
+      e->mark[e->entry[at]] = v + 1;
+      add(e, v, e->entry[at]);
+    }
+  }
+}
+
+/* As in quality_faces.c: the nodes of the next range. */
+static uint32_t make_range(struct edges *e, uint32_t lo, size_t room,
+                           int change, size_t *n_entry)
+{
+  size_t n = 0, hi = lo;
+
+  for (; hi < e->m->n_point; hi++) {
+    uint32_t count = e->count[hi];
+
+    if (hi > lo && n + count > room) break;
+    if (change) e->count[hi] = (uint32_t)n;
+    n += count;
+  }
+  *n_entry = n;
+  return (uint32_t)hi;
+}
+
+static vg_status prepare(struct edges *e, size_t *room, struct vg_error *err)
+{
+  const struct vg_mesh *m = e->m;
+  size_t total = 6 * m->n_tet + 8 * m->n_pyr + 9 * m->n_pri + 12 * m->n_hex +
+                 3 * m->n_tri + 4 * m->n_quad +
+                 (e->loose ? 4 * e->loose->n_face : 0);
+  size_t most = 0, n;
+
+  e->count = vg_calloc(m->n_point, sizeof *e->count);
+  e->n_boundary = vg_calloc(m->n_point, sizeof *e->n_boundary);
+  e->mark = vg_calloc(m->n_point, sizeof *e->mark);
+  if (!e->count || !e->n_boundary || !e->mark)
+    return vg_fail_memory(err, "the edges of the mesh");
+  count_entries(e);
+  *room = total / N_PASS;
+  if (*room < LEAST_ENTRIES) *room = LEAST_ENTRIES;
+  for (uint32_t lo = 0; lo < m->n_point;) {
+    lo = make_range(e, lo, *room, 0, &n);
+    if (n > most) most = n;
+  }
+  e->entry = vg_alloc(most, sizeof *e->entry);
+  if (!e->entry) return vg_fail_memory(err, "the table of edges");
+  return VG_OK;
+}
+
+vg_status vg_judge_edges(const struct vg_mesh *m,
+                         const struct vg_sizing *sizing,
+                         struct vg_figures *f, struct vg_loose *loose,
+                         struct vg_error *err)
+{
+  struct edges *e = vg_calloc(1, sizeof *e);
+  size_t room = 0, n;
+  vg_status st = VG_OK;
+
+  if (!e) return vg_fail_memory(err, "the edges of the mesh");
+  e->m = m;
+  e->sizing = sizing;
+  e->f = f;
+  e->loose = loose;
+  VG_TRY(prepare(e, &room, err));
+  for (uint32_t lo = 0, hi; lo < m->n_point; lo = hi) {
+    hi = make_range(e, lo, room, 1, &n);
+    e->lo = lo;
+    e->n = hi - lo;
+    enter_boundary(e);
+    enter_cells(e);
+    measure_range(e);
+  }
+  flush(e);
+  if (e->refused) {
+    st = vg_fail_memory(err, "the rim of a part of the mesh");
+    goto done;
+  }
+  if (loose) measure_loose(e);
+done:
+  free(e->count);
+  free(e->n_boundary);
+  free(e->mark);
+  free(e->entry);
+  free(e);
+  return st;
+}

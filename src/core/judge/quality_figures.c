@@ -1,0 +1,203 @@
+/* Figures of a judgement: added up in any order, and made into a report. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/judge/quality_parts.h"
+
+/* Share of the volume by which cells and boundary may differ: far above the
+ * rounding of each cell's volume, far below any cell that matters. */
+#define VOLUME_TOLERANCE 1e-9
+
+struct vg_figures *vg_figures_new(void)
+{
+  struct vg_figures *f = vg_calloc(1, sizeof *f);
+
+  if (!f) return NULL;
+  f->angle_min = 180;
+  f->radius_ratio_min = 1;
+  return f;
+}
+
+static int is_worse(const struct vg_worst_cell *a,
+                    const struct vg_worst_cell *b)
+{
+  return a->value < b->value || (a->value == b->value && a->cell < b->cell);
+}
+
+void vg_figures_worst(struct vg_figures *f, const struct vg_worst_cell *w)
+{
+  size_t i = f->n_worst;
+
+  if (i == VG_WORST) {
+    if (!is_worse(w, &f->worst[VG_WORST - 1])) return;
+    i--;
+  } else f->n_worst++;
+  while (i && is_worse(w, &f->worst[i - 1])) {
+    f->worst[i] = f->worst[i - 1];
+    i--;
+  }
+  f->worst[i] = *w;
+}
+
+void vg_figures_add(struct vg_figures *f, const struct vg_figures *more)
+{
+  uint64_t *to = (uint64_t *)&f->n;
+  const uint64_t *from = (const uint64_t *)&more->n;
+
+  for (size_t i = 0; i < sizeof f->n / sizeof *to; i++) to[i] += from[i];
+  if (more->angle_min < f->angle_min) f->angle_min = more->angle_min;
+  if (more->angle_max > f->angle_max) f->angle_max = more->angle_max;
+  if (more->radius_ratio_min < f->radius_ratio_min)
+    f->radius_ratio_min = more->radius_ratio_min;
+  for (size_t i = 0; i < more->n_worst; i++)
+    vg_figures_worst(f, &more->worst[i]);
+}
+
+int vg_figures_face(struct vg_figures *f, size_t n_cell, size_t n_boundary,
+                    int same_side)
+{
+  struct vg_counts *n = &f->n;
+
+  if (!n_cell) n->orphan_boundary += n_boundary;
+  else if (n_cell + n_boundary > 2) n->crowded_face++;
+  else if (n_cell + n_boundary == 1) n->open_face++;
+  else if (n_boundary)   /* inwards: winds against its cell's outward face */
+    n->outward_boundary += same_side;
+  else {
+    n->n_inner_face++;
+    n->same_side_face += same_side;
+    return 1;
+  }
+  return 0;
+}
+
+void vg_figures_ratio(struct vg_figures *f, float v, float w)
+{
+  float ratio;
+  uint32_t bits;
+
+  if (!(v > 0) || !(w > 0)) return;
+  ratio = v > w ? v / w : w / v;
+  memcpy(&bits, &ratio, sizeof bits);
+  bits = (bits - VG_ONE_BITS) >> VG_RATIO_SHIFT;
+  f->n.ratio[bits < VG_N_RATIO ? bits : VG_N_RATIO - 1]++;
+}
+
+void vg_figures_edge(struct vg_figures *f, double ratio)
+{
+  double bin = ratio * 10;
+
+  vg_exact_add(&f->n.sum_edge, ratio);
+  f->n.n_edge++;
+  f->n.edge_within += ratio >= 0.7 && ratio <= 1.5;
+  f->n.edge[bin < VG_HIST_UNIT ? (size_t)bin : VG_HIST_UNIT - 1]++;
+}
+
+static void copy(size_t *to, const uint64_t *from, size_t n)
+{
+  for (size_t i = 0; i < n; i++) to[i] = (size_t)from[i];
+}
+
+static void report_validity(const struct vg_counts *n,
+                            struct vg_mesh_report *r)
+{
+  r->bad_index = n->bad_index;
+  r->unused_point = n->unused_point;
+  r->not_finite = n->not_finite;
+  r->duplicate_point = n->duplicate_point;
+  r->not_positive = n->not_positive;
+  r->open_face = n->open_face;
+  r->crowded_face = n->crowded_face;
+  r->same_side_face = n->same_side_face;
+  r->orphan_boundary = n->orphan_boundary;
+  r->outward_boundary = n->outward_boundary;
+  r->volume = vg_exact_value(&n->volume);
+  r->n_point = n->n_point;
+  r->n_cell = n->n_cell;
+  r->n_inner_face = n->n_inner_face;
+}
+
+static void report_shape(const struct vg_figures *f, struct vg_mesh_report *r)
+{
+  const struct vg_counts *n = &f->n;
+  double n_tet = (double)n->n_tet;
+  uint64_t at = 0, seen = n->fine[0];
+
+  if (!n->n_tet) return;
+  r->angle_min = f->angle_min;
+  r->angle_max = f->angle_max;
+  r->radius_ratio_min = f->radius_ratio_min;
+  for (int k = 0; k < 5; k++) r->below[k] = 100 * (double)n->below[k] / n_tet;
+  for (int k = 0; k < 3; k++) r->above[k] = 100 * (double)n->above[k] / n_tet;
+  r->radius_ratio_mean = vg_exact_value(&n->sum_radius) / n_tet;
+  r->mean_ratio_mean = vg_exact_value(&n->sum_mean) / n_tet;
+  while (100 * seen < n->n_tet) seen += n->fine[++at];
+  r->angle_min_p1 = (double)at / VG_FINE_PER_DEGREE;
+  copy(r->hist_angle_min, n->angle_min, VG_HIST_ANGLE);
+  copy(r->hist_angle_max, n->angle_max, VG_HIST_ANGLE);
+  copy(r->hist_radius_ratio, n->radius_ratio, VG_HIST_UNIT);
+  memcpy(r->worst, f->worst, sizeof r->worst);
+  r->n_worst = f->n_worst;
+}
+
+static double ratio_at(const struct vg_counts *n, uint64_t rank)
+{
+  uint64_t seen = 0;
+
+  for (uint32_t i = 0; i < VG_N_RATIO; i++) {
+    uint32_t bits = VG_ONE_BITS + (i << VG_RATIO_SHIFT);
+    float value;
+
+    seen += n->ratio[i];
+    if (seen < rank) continue;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+  }
+  return 0;
+}
+
+static void report_ratios(const struct vg_counts *c, struct vg_mesh_report *r)
+{
+  uint64_t n = 0;
+
+  for (uint32_t i = 0; i < VG_N_RATIO; i++) n += c->ratio[i];
+  if (!n) return;
+  r->volume_ratio[0] = ratio_at(c, n / 2 + n % 2);
+  r->volume_ratio[1] = ratio_at(c, n - n / 20);
+  r->volume_ratio[2] = ratio_at(c, n);
+}
+
+static void report_edges(const struct vg_counts *n, struct vg_mesh_report *r)
+{
+  r->has_sizing = 1;
+  copy(r->hist_edge, n->edge, VG_HIST_UNIT);
+  if (!n->n_edge) return;
+  r->edge_mean = vg_exact_value(&n->sum_edge) / (double)n->n_edge;
+  r->edge_within = 100 * (double)n->edge_within / (double)n->n_edge;
+}
+
+void vg_figures_report(const struct vg_figures *f, size_t n_component,
+                       int has_sizing, struct vg_mesh_report *r)
+{
+  memset(r, 0, sizeof *r);
+  report_validity(&f->n, r);
+  report_shape(f, r);
+  report_ratios(&f->n, r);
+  if (has_sizing) report_edges(&f->n, r);
+  r->n_component = n_component;
+}
+
+void vg_report_conclude(struct vg_mesh_report *r)
+{
+  double scale = fabs(r->enclosed);
+
+  if (fabs(r->volume) > scale) scale = fabs(r->volume);
+  /* not a number counts as a difference, too */
+  r->volume_error = scale != 0 ? fabs(r->volume - r->enclosed) / scale : 0;
+  r->is_valid = r->n_cell && !r->unused_point && !r->duplicate_point &&
+                !r->not_positive && !r->open_face && !r->crowded_face &&
+                !r->same_side_face && !r->orphan_boundary &&
+                !r->outward_boundary && r->volume_error < VOLUME_TOLERANCE;
+}

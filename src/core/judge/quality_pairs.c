@@ -1,0 +1,288 @@
+/* Faces of tetrahedra matched as they come.
+ *
+ * A face waits in a hash table until its other side comes, and leaves with it:
+ * cells are written in an order in which neighbours follow each other closely,
+ * so that few faces wait at a time and the table stays in the cache. Of cells
+ * one upon the other in a column of layers, each shares a face with the next,
+ * which never gets there. This takes less than two thirds of the time of
+ * quality_faces.c, which sees all sides of a face together.
+ *
+ * What it does not see is a face with four sides, two and two. If cells are
+ * positive and their faces leave in pairs of opposite sides, then they cover
+ * each place equally often, so that such a mesh has a multiple of the volume
+ * that its boundary encloses and is found out by that. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/unite.h"
+#include "core/judge/quality_parts.h"
+
+#define VACANT UINT64_MAX
+#define FIRST_BITS 10
+#define SLOTS 4
+
+/* Tetrahedra whose faces are asked for from memory before they are needed. */
+#define AHEAD 16
+
+struct face {
+  uint64_t key;              /* lowest node << 32 | next */
+  uint32_t high, owner;
+};
+
+/* Faces that wait, side by side in one line of the cache. */
+struct bucket {
+  uint64_t key[SLOTS];       /* lowest node << 32 | next; or VACANT */
+  uint32_t high[SLOTS];      /* highest node */
+  uint32_t owner[SLOTS];     /* 2 * (cell, or n_cell + boundary face) + side */
+};
+
+struct pairing {
+  const struct vg_mesh *m;
+  const float *volume;
+  struct vg_figures *f;
+  uint32_t *parent;          /* [n_cell] components */
+  size_t n_cell;
+  size_t n, mask;            /* faces that wait; buckets - 1 */
+  unsigned shift;
+  struct bucket *bucket;
+  uint8_t *is_over;          /* [buckets] had one that waits in the next */
+  int refused, is_odd;       /* memory; a boundary face met another */
+};
+
+static size_t home(const struct pairing *p, uint64_t key, uint32_t high)
+{
+  return (size_t)((key * UINT64_C(0x9E3779B97F4A7C15) +
+                   high * UINT64_C(0xC2B2AE3D27D4EB4F)) >> p->shift);
+}
+
+static int make_buckets(struct pairing *p, unsigned bits)
+{
+  size_t n = (size_t)1 << bits;
+
+  p->bucket = vg_alloc(n, sizeof *p->bucket);
+  p->is_over = vg_calloc(n, 1);
+  if (!p->bucket || !p->is_over) return 0;
+  memset(p->bucket, 0xff, n * sizeof *p->bucket);
+  p->mask = n - 1;
+  p->shift = 64 - bits;
+  return 1;
+}
+
+/* Bit k: slot k has this key. */
+static unsigned keyed(const struct bucket *b, uint64_t key)
+{
+  unsigned found = 0;
+
+  for (unsigned k = 0; k < SLOTS; k++)
+    found |= (unsigned)(b->key[k] == key) << k;
+  return found;
+}
+
+static unsigned that_have(const struct bucket *b, uint64_t key, uint32_t high)
+{
+  unsigned found = 0;
+
+  for (unsigned k = 0; k < SLOTS; k++)
+    found |= (unsigned)((b->key[k] == key) & (b->high[k] == high)) << k;
+  return found;
+}
+
+static void wait_at(struct pairing *p, size_t i, const struct face *f)
+{
+  unsigned vacant;
+
+  while (!(vacant = keyed(&p->bucket[i], VACANT))) {
+    p->is_over[i] = 1;
+    i = (i + 1) & p->mask;
+  }
+  vacant = (unsigned)__builtin_ctz(vacant);
+  p->bucket[i].key[vacant] = f->key;
+  p->bucket[i].high[vacant] = f->high;
+  p->bucket[i].owner[vacant] = f->owner;
+}
+
+/* Twice the buckets, so that at most half of the slots are taken. */
+static void grow(struct pairing *p)
+{
+  struct bucket *old = p->bucket;
+  uint8_t *over = p->is_over;
+  size_t n = p->mask + 1;
+
+  if (!make_buckets(p, 65 - p->shift)) p->refused = 1;
+  for (size_t i = 0; i < n && !p->refused; i++)
+    for (unsigned k = 0; k < SLOTS; k++) {
+      struct face f = { old[i].key[k], old[i].high[k], old[i].owner[k] };
+
+      if (f.key != VACANT) wait_at(p, home(p, f.key, f.high), &f);
+    }
+  free(old);
+  free(over);
+}
+
+static void meet(struct pairing *p, uint32_t first, uint32_t second)
+{
+  int same_side = (first & 1) == (second & 1);
+  uint32_t a = first >> 1, b = second >> 1;
+  size_t n_boundary = (size_t)(a >= p->n_cell) + (b >= p->n_cell);
+
+  p->is_odd |= n_boundary > 1;
+  if (!vg_figures_face(p->f, 2 - n_boundary, n_boundary, same_side)) return;
+  vg_unite(p->parent, a, b);
+  vg_figures_ratio(p->f, p->volume[a], p->volume[b]);
+}
+
+static void come(struct pairing *p, const struct face *f)
+{
+  size_t first = home(p, f->key, f->high), i = first;
+  unsigned found;
+
+  while (!(found = that_have(&p->bucket[i], f->key, f->high)) &&
+         p->is_over[i])
+    i = (i + 1) & p->mask;
+  if (found) {
+    found = (unsigned)__builtin_ctz(found);
+    p->bucket[i].key[found] = VACANT;
+    p->n--;
+    meet(p, p->bucket[i].owner[found], f->owner);
+    return;
+  }
+  wait_at(p, first, f);
+  if (++p->n > p->mask * (SLOTS / 2)) grow(p);
+}
+
+/* Returns whether the two were exchanged. */
+static uint32_t put_in_order(uint32_t *a, uint32_t *b)
+{
+  uint32_t low = *a < *b ? *a : *b, high = *a < *b ? *b : *a;
+  uint32_t turned = *a > *b;
+
+  *a = low;
+  *b = high;
+  return turned;
+}
+
+/* With the nodes a < b < c < d of a tetrahedron in a positive order, b c d and
+ * a b d wind by rising numbers seen from outside, the others the other way;
+ * each exchange turns all four. The side is 1 as in quality_faces.c: the
+ * cycle goes on from its lowest node to the higher of the others. */
+static void faces_of_tet(const uint32_t n[4], uint32_t cell, struct face f[4])
+{
+  uint32_t a = n[0], b = n[1], c = n[2], d = n[3];
+  uint32_t side = 2 * cell;
+
+  side ^= put_in_order(&a, &b) ^ put_in_order(&c, &d);
+  side ^= put_in_order(&a, &c) ^ put_in_order(&b, &d);
+  side ^= put_in_order(&b, &c);
+  f[0] = (struct face){ (uint64_t)a << 32 | b, c, side ^ 1 };
+  f[1] = (struct face){ (uint64_t)a << 32 | b, d, side };
+  f[2] = (struct face){ (uint64_t)a << 32 | c, d, side ^ 1 };
+  f[3] = (struct face){ (uint64_t)b << 32 | c, d, side };
+}
+
+static struct face face_of_tri(const uint32_t n[3], uint32_t owner)
+{
+  uint32_t a = n[0], b = n[1], c = n[2], side = 2 * owner;
+
+  side ^= put_in_order(&a, &b) ^ put_in_order(&b, &c);
+  side ^= put_in_order(&a, &b);
+  return (struct face){ (uint64_t)a << 32 | b, c, side };
+}
+
+/* The face that leaves out a node, of those of faces_of_tet. */
+static struct face *opposite(struct face f[4], const uint32_t n[4],
+                             uint32_t node)
+{
+  return f + 3 - ((n[0] < node) + (n[1] < node) + (n[2] < node) +
+                  (n[3] < node));
+}
+
+/* In a column a cell stands on the one before: two nodes stay in their places
+ * and the top takes that of the third. Keys of what has met: VACANT. */
+static void meet_in_columns(struct pairing *p, uint32_t (*n)[4], size_t n_cell,
+                            struct face *f)
+{
+  for (size_t i = 1; i < n_cell; i++) {
+    const uint32_t *was = n[i - 1], *is = n[i];
+    int same[3] = { is[0] == was[0], is[1] == was[1], is[2] == was[2] };
+    int gone = !same[0] ? 0 : !same[1] ? 1 : 2;
+    struct face *a, *b;
+
+    if (same[0] + same[1] + same[2] != 2 || is[gone] != was[3]) continue;
+    a = opposite(f + 4 * i - 4, was, was[gone]);
+    b = opposite(f + 4 * i, is, is[3]);
+    if (a->key != b->key || a->high != b->high) continue;
+    meet(p, a->owner, b->owner);
+    a->key = b->key = VACANT;
+  }
+}
+
+static void come_all(struct pairing *p)
+{
+  const struct vg_mesh *m = p->m;
+  struct face f[4 * AHEAD];
+
+  for (size_t i = 0, n; i < m->n_tet && !p->refused; i += n) {
+    n = m->n_tet - i < AHEAD ? m->n_tet - i : AHEAD;
+    for (size_t k = 0; k < n; k++)
+      faces_of_tet(m->tet[i + k], (uint32_t)(i + k), f + 4 * k);
+    meet_in_columns(p, m->tet + i, n, f);
+    for (size_t k = 0; k < 4 * n; k++)
+      __builtin_prefetch(&p->bucket[home(p, f[k].key, f[k].high)], 1);
+    for (size_t k = 0; k < 4 * n && !p->refused; k++)
+      if (f[k].key != VACANT) come(p, &f[k]);
+  }
+  for (size_t i = 0; i < m->n_tri && !p->refused; i++) {
+    f[0] = face_of_tri(m->tri[i], (uint32_t)(p->n_cell + i));
+    come(p, &f[0]);
+  }
+}
+
+/* What waits in vain is for others to match. */
+static vg_status list_loose(const struct pairing *p, struct vg_loose *loose,
+                            struct vg_error *err)
+{
+  if (vg_reserve(&loose->face, &loose->room_face, loose->n_face + p->n,
+                 sizeof *loose->face))
+    return vg_fail_memory(err, "the rim of a part of the mesh");
+  for (size_t i = 0; i <= p->mask; i++)
+    for (unsigned k = 0; k < SLOTS; k++) {
+      const struct bucket *b = &p->bucket[i];
+      uint32_t cell = b->owner[k] >> 1, node[2] = { (uint32_t)b->key[k],
+                                                    b->high[k] };
+
+      if (b->key[k] == VACANT) continue;
+      loose->face[loose->n_face++] = (struct vg_loose_face){
+        { (uint32_t)(b->key[k] >> 32), node[b->owner[k] & 1],
+          node[~b->owner[k] & 1], VG_NO_NODE }, cell, p->volume[cell]
+      };
+    }
+  return VG_OK;
+}
+
+int vg_faces_can_pair(const struct vg_mesh *m, const struct vg_loose *loose)
+{
+  return !(m->n_pyr + m->n_pri + m->n_hex + m->n_quad) &&
+         !(loose && (loose->is_shared || m->n_tri));
+}
+
+vg_status vg_pair_faces(const struct vg_mesh *m, const float *volume,
+                        struct vg_figures *f, struct vg_loose *loose,
+                        uint32_t *parent, struct vg_error *err)
+{
+  struct pairing p = { .m = m, .volume = volume, .parent = parent,
+                       .n_cell = m->n_tet };
+  vg_status st = VG_OK;
+
+  p.f = vg_figures_new();
+  if (!p.f || !make_buckets(&p, FIRST_BITS)) p.refused = 1;
+  else come_all(&p);
+  if (p.refused) st = vg_fail_memory(err, "the table of faces");
+  else if (loose) st = list_loose(&p, loose, err);
+  else if (p.n || p.is_odd) st = VG_BLOCKED;
+  if (st == VG_OK) vg_figures_add(f, p.f);
+  free(p.f);
+  free(p.bucket);
+  free(p.is_over);
+  return st;
+}

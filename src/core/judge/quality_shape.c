@@ -1,0 +1,357 @@
+/* Shape of cells: sign and size of volumes, dihedral angles, radius ratio.
+ *
+ * For a tetrahedron a b c d with u = b - a, v = c - a, w = d - a:
+ *   V = u x v . w / 6,
+ *   circumradius = | |u|^2 v x w + |v|^2 w x u + |w|^2 u x v | / (12 V),
+ *   inradius = 3 V / (sum of face areas). */
+#include <math.h>
+
+#include "core/geometry/predicates.h"
+#include "core/judge/quality_parts.h"
+
+#define DEGREE 57.295779513082320877
+
+/* Tetrahedra are measured a few at a time, each step for all of them, which
+ * compilers make vector instructions of, and counted when there are BATCH. */
+#define GROUP 4
+#define BATCH 256
+
+typedef double lanes[GROUP];
+
+/* Of GROUP tetrahedra. */
+struct tet_shapes {
+  lanes cos_max, cos_min;    /* of the smallest and largest dihedral angle */
+  lanes volume6;             /* |6 V| */
+  lanes radius_ratio, edge2_sum;
+};
+
+/* Of up to BATCH. */
+struct batch {
+  double least[BATCH], most[BATCH];  /* angles */
+  double volume[BATCH];
+  double radius_ratio[BATCH], mean_ratio[BATCH];
+};
+
+static void dot(lanes a[3], lanes b[3], lanes out)
+{
+  for (int t = 0; t < GROUP; t++)
+    out[t] = a[0][t] * b[0][t] + a[1][t] * b[1][t] + a[2][t] * b[2][t];
+}
+
+static void cross(lanes a[3], lanes b[3], lanes c[3])
+{
+  for (int t = 0; t < GROUP; t++) {
+    c[0][t] = a[1][t] * b[2][t] - a[2][t] * b[1][t];
+    c[1][t] = a[2][t] * b[0][t] - a[0][t] * b[2][t];
+    c[2][t] = a[0][t] * b[1][t] - a[1][t] * b[0][t];
+  }
+}
+
+/* Extreme cosines of the angles between the faces of outward normals n. A
+ * face without area makes the worst of both kinds, so that it cannot hide.
+ * area2: sum of the lengths of the normals, which are normalised. */
+static void add_angles(lanes n[4][3], struct tet_shapes *s, lanes area2)
+{
+  lanes length[4], c;
+
+  for (int i = 0; i < 4; i++) {
+    dot(n[i], n[i], length[i]);
+    for (int t = 0; t < GROUP; t++) length[i][t] = sqrt(length[i][t]);
+  }
+  for (int t = 0; t < GROUP; t++) {
+    s->cos_max[t] = -2;
+    s->cos_min[t] = 2;
+    area2[t] = length[0][t] + length[1][t] + length[2][t] + length[3][t];
+  }
+  for (int i = 0; i < 4; i++) {
+    lanes scale;
+
+    for (int t = 0; t < GROUP; t++) scale[t] = 1 / length[i][t];
+    for (int k = 0; k < 3; k++)
+      for (int t = 0; t < GROUP; t++) n[i][k][t] *= scale[t];
+    for (int j = 0; j < i; j++) {
+      dot(n[i], n[j], c);
+      for (int t = 0; t < GROUP; t++) {
+        s->cos_max[t] = -c[t] > s->cos_max[t] ? -c[t] : s->cos_max[t];
+        s->cos_min[t] = -c[t] < s->cos_min[t] ? -c[t] : s->cos_min[t];
+      }
+    }
+  }
+  for (int t = 0; t < GROUP; t++) {
+    if (length[0][t] > 0 && length[1][t] > 0 && length[2][t] > 0 &&
+        length[3][t] > 0) continue;
+    s->cos_max[t] = 1;
+    s->cos_min[t] = -1;
+    area2[t] = 0;
+  }
+}
+
+/* Normals of faces, |q| = |6 V| * twice the circumradius. */
+static void add_edges(lanes u[3], lanes v[3], lanes w[3], lanes n[4][3],
+                      lanes q[3], struct tet_shapes *s)
+{
+  lanes uu, vv, ww;
+
+  dot(u, u, uu);
+  dot(v, v, vv);
+  dot(w, w, ww);
+  for (int t = 0; t < GROUP; t++) s->edge2_sum[t] = 0;
+  for (int k = 0; k < 3; k++)
+    for (int t = 0; t < GROUP; t++) {
+      double e = v[k][t] - u[k][t], f = w[k][t] - u[k][t];
+      double g = w[k][t] - v[k][t];
+
+      q[k][t] = uu[t] * n[1][k][t] + vv[t] * n[2][k][t] + ww[t] * n[3][k][t];
+      s->edge2_sum[t] += e * e + f * f + g * g;
+    }
+  for (int t = 0; t < GROUP; t++) s->edge2_sum[t] += uu[t] + vv[t] + ww[t];
+}
+
+/* x: corners, [4][3] of GROUP tetrahedra. */
+static void measure_tets(lanes x[4][3], struct tet_shapes *s)
+{
+  lanes u[3], v[3], w[3], n[4][3], q[3], area2, qq;
+
+  for (int k = 0; k < 3; k++)
+    for (int t = 0; t < GROUP; t++) {
+      u[k][t] = x[1][k][t] - x[0][k][t];
+      v[k][t] = x[2][k][t] - x[0][k][t];
+      w[k][t] = x[3][k][t] - x[0][k][t];
+    }
+  cross(v, w, n[1]);
+  cross(w, u, n[2]);
+  cross(u, v, n[3]);
+  for (int k = 0; k < 3; k++)
+    for (int t = 0; t < GROUP; t++)
+      n[0][k][t] = -n[1][k][t] - n[2][k][t] - n[3][k][t];
+  add_edges(u, v, w, n, q, s);
+  dot(n[3], w, s->volume6);
+  dot(q, q, qq);
+  add_angles(n, s, area2);
+  /* 3 (3 V / A) (12 V / |q|) with A = area2 / 2 and V = volume6 / 6 */
+  for (int t = 0; t < GROUP; t++) {
+    double ratio = area2[t] * sqrt(qq[t]);
+
+    s->volume6[t] = fabs(s->volume6[t]);
+    s->radius_ratio[t] = ratio > 0
+                         ? 6 * s->volume6[t] * s->volume6[t] / ratio : ratio;
+  }
+}
+
+/* Tetrahedra first .. first + n - 1 of m, n <= GROUP. */
+static void measure_some(const struct vg_mesh *m, size_t first, size_t n,
+                         struct tet_shapes *s)
+{
+  lanes x[4][3];
+
+  for (size_t t = 0; t < GROUP; t++)
+    for (int i = 0; i < 4; i++)
+      for (int k = 0; k < 3; k++)
+        x[i][k][t] = m->point[m->tet[first + (t < n ? t : 0)][i]][k];
+  measure_tets(x, s);
+}
+
+static double angle_of(double cosine)
+{
+  if (cosine >= 1) return 0;
+  if (cosine <= -1) return 180;
+  return cosine == cosine ? acos(cosine) * DEGREE : 0;
+}
+
+static size_t bin_of(double x, double per_unit, size_t n)
+{
+  double at = x * per_unit;
+
+  if (!(at > 0)) return 0;
+  return at < (double)n ? (size_t)at : n - 1;
+}
+
+static void count_angles(struct vg_figures *f, size_t n, const double *least,
+                         const double *most)
+{
+  static const double low[5] = { 5, 10, 15, 20, 30 };
+  static const double high[3] = { 150, 160, 170 };
+
+  for (size_t i = 0; i < n; i++) {
+    if (least[i] < f->angle_min) f->angle_min = least[i];
+    if (most[i] > f->angle_max) f->angle_max = most[i];
+    f->n.angle_min[bin_of(least[i], 1 / 5., VG_HIST_ANGLE)]++;
+    f->n.angle_max[bin_of(most[i], 1 / 5., VG_HIST_ANGLE)]++;
+    f->n.fine[bin_of(least[i], VG_FINE_PER_DEGREE, VG_N_FINE)]++;
+  }
+  for (int k = 0; k < 5; k++)
+    for (size_t i = 0; i < n; i++) f->n.below[k] += least[i] < low[k];
+  for (int k = 0; k < 3; k++)
+    for (size_t i = 0; i < n; i++) f->n.above[k] += most[i] > high[k];
+}
+
+static void count_ratios(struct vg_figures *f, size_t n, const double *ratio)
+{
+  for (size_t i = 0; i < n; i++) {
+    if (ratio[i] < f->radius_ratio_min) f->radius_ratio_min = ratio[i];
+    f->n.radius_ratio[bin_of(ratio[i], VG_HIST_UNIT, VG_HIST_UNIT)]++;
+  }
+}
+
+static void note_worst(struct vg_figures *f, const struct vg_mesh *m,
+                       size_t i, size_t cell, double angle)
+{
+  struct vg_worst_cell w = { .cell = cell, .value = angle };
+
+  if (f->n_worst == VG_WORST && angle > f->worst[VG_WORST - 1].value) return;
+  for (int k = 0; k < 3; k++)
+    for (int j = 0; j < 4; j++) w.at[k] += m->point[m->tet[i][j]][k] / 4;
+  vg_figures_worst(f, &w);
+}
+
+/* Tetrahedra first .. first + n - 1 of m, n <= GROUP. */
+static void measure_group(const struct vg_mesh *m, size_t first, size_t n,
+                          double *least, double *most, double *radius_ratio,
+                          double *mean_ratio)
+{
+  struct tet_shapes s;
+
+  measure_some(m, first, n, &s);
+  for (size_t t = 0; t < n; t++) {
+    least[t] = angle_of(s.cos_max[t]);
+    most[t] = angle_of(s.cos_min[t]);
+    radius_ratio[t] = s.radius_ratio[t];
+    /* (3 V)^2 = volume6^2 / 4 */
+    mean_ratio[t] = s.edge2_sum[t] > 0
+                    ? 12 * cbrt(s.volume6[t] * s.volume6[t] / 4) /
+                      s.edge2_sum[t] : 0;
+  }
+}
+
+/* Signed volumes; first: of m. */
+static void measure_volumes(const struct vg_mesh *m, size_t first, size_t n,
+                            double *volume, struct vg_figures *f)
+{
+  for (size_t i = 0; i < n; i++) {
+    const uint32_t *v = m->tet[first + i];
+    double six = vg_orient3d(m->point[v[0]], m->point[v[1]], m->point[v[2]],
+                             m->point[v[3]]);
+
+    f->n.not_positive += !(six > 0);
+    volume[i] = six / 6;
+  }
+}
+
+/* n tetrahedra of m from `first` on; cell: number of that. */
+static void judge_batch(const struct vg_mesh *m, size_t first, size_t n,
+                        size_t cell, float *volume, struct vg_figures *f)
+{
+  struct batch b;
+
+  measure_volumes(m, first, n, b.volume, f);
+  for (size_t i = 0; i < n; i++) volume[first + i] = (float)b.volume[i];
+  for (size_t i = 0; i < n; i += GROUP)
+    measure_group(m, first + i, n - i < GROUP ? n - i : GROUP, b.least + i,
+                  b.most + i, b.radius_ratio + i, b.mean_ratio + i);
+  f->n.n_tet += n;
+  count_angles(f, n, b.least, b.most);
+  count_ratios(f, n, b.radius_ratio);
+  for (size_t i = 0; i < n; i++)
+    note_worst(f, m, first + i, cell + i, b.least[i]);
+  vg_exact_add_all(&f->n.volume, n, b.volume);
+  vg_exact_add_all(&f->n.sum_radius, n, b.radius_ratio);
+  vg_exact_add_all(&f->n.sum_mean, n, b.mean_ratio);
+}
+
+/* A corner tetrahedron of a prism, pyramid or hexahedron is spanned by a node
+ * and its three neighbours; a cell is sound when all of them are positive. */
+static const uint8_t pri_corner[6][4] = {
+  {0, 1, 2, 3}, {1, 2, 0, 4}, {2, 0, 1, 5},
+  {3, 5, 4, 0}, {4, 3, 5, 1}, {5, 4, 3, 2}
+};
+static const uint8_t pyr_corner[4][4] = { /* of the base, with the apex */
+  {0, 3, 1, 2}, {3, 4, 0, 2}, {4, 1, 3, 2}, {1, 0, 4, 2}
+};
+static const uint8_t hex_corner[8][4] = {
+  {0, 1, 3, 4}, {1, 2, 0, 5}, {2, 3, 1, 6}, {3, 0, 2, 7},
+  {4, 7, 5, 0}, {5, 4, 6, 1}, {6, 5, 7, 2}, {7, 6, 4, 3}
+};
+
+static int corners_positive(const double (*x)[3], int kind,
+                            const uint32_t *n)
+{
+  static const int count[VG_CELL_KINDS] = { 0, 4, 6, 8 };
+  static const uint8_t (*const corner[VG_CELL_KINDS])[4] = {
+    NULL, pyr_corner, pri_corner, hex_corner
+  };
+
+  for (int i = 0; i < count[kind]; i++) {
+    const uint8_t *c = corner[kind][i];
+
+    if (!(vg_orient3d(x[n[c[0]]], x[n[c[1]]], x[n[c[2]]], x[n[c[3]]]) > 0))
+      return 0;
+  }
+  return 1;
+}
+
+/* By the divergence theorem, each quad as the mean of its two diagonals. */
+static double mixed_volume(const double (*x)[3], int kind, const uint32_t *n)
+{
+  const struct vg_cell_faces *f = &vg_cell_faces[kind];
+  const double *o = x[n[0]];
+  double six = 0;
+
+  for (int i = 0; i < f->n_face; i++) {
+    const double *a = x[n[f->node[i][0]]], *b = x[n[f->node[i][1]]];
+    const double *c = x[n[f->node[i][2]]];
+
+    if (i < f->n_tri) six += vg_tri_cone(o, a, b, c);
+    else six += vg_quad_cone(o, a, b, c, x[n[f->node[i][3]]]);
+  }
+  return six / 6;
+}
+
+int vg_cell_positive(const double (*x)[3], int kind, const uint32_t *n)
+{
+  if (kind == VG_CELL_TET)
+    return vg_orient3d(x[n[0]], x[n[1]], x[n[2]], x[n[3]]) > 0;
+  return mixed_volume(x, kind, n) > 0 && corners_positive(x, kind, n);
+}
+
+static void judge_mixed(const struct vg_mesh *m, int kind, float *volume,
+                        struct vg_figures *f)
+{
+  const double (*x)[3] = (const double (*)[3])m->point;
+  struct vg_cells c = vg_mesh_cells(m, kind);
+  size_t width = (size_t)vg_cell_faces[kind].n_node;
+
+  for (size_t i = 0; i < c.n; i++) {
+    const uint32_t *n = c.node + width * i;
+    double v = mixed_volume(x, kind, n);
+
+    vg_exact_add(&f->n.volume, v);
+    volume[c.first + i] = (float)v;
+    f->n.not_positive += !(v > 0) || !corners_positive(x, kind, n);
+  }
+}
+
+void vg_judge_shape(const struct vg_mesh *m, size_t first, float *volume,
+                    struct vg_figures *f)
+{
+  for (size_t i = 0, n; i < m->n_tet; i += n) {
+    n = m->n_tet - i < BATCH ? m->n_tet - i : BATCH;
+    judge_batch(m, i, n, first + i, volume, f);
+  }
+  for (int kind = VG_CELL_PYR; kind < VG_CELL_KINDS; kind++)
+    judge_mixed(m, kind, volume, f);
+}
+
+void vg_mesh_cell_quality(const struct vg_mesh *m, float *angle_min,
+                          float *radius_ratio)
+{
+  for (size_t i = 0, n; i < m->n_tet; i += n) {
+    struct tet_shapes s;
+
+    n = m->n_tet - i < GROUP ? m->n_tet - i : GROUP;
+    measure_some(m, i, n, &s);
+    for (size_t t = 0; t < n; t++) {
+      if (angle_min) angle_min[i + t] = (float)angle_of(s.cos_max[t]);
+      if (radius_ratio) radius_ratio[i + t] = (float)s.radius_ratio[t];
+    }
+  }
+}

@@ -1,0 +1,69 @@
+/* core/mesh/mesh.h: the mesh that readers fill, the mesher consumes and
+ * produces, and writers store. A surface is a mesh without cells. Uses base
+ * only.
+ *
+ * Conventions inside the program, whatever a file says (readers convert):
+ *   - indices are 0-based and 32-bit within one mesh;
+ *   - boundary faces point INTO the fluid (right-hand normal), as VGRID's;
+ *   - cells have UGRID's node order: tet 0 1 2 counter-clockwise seen from 3;
+ *     pyramid base 0 3 4 1 with apex 2; prism 0 1 2 below 3 4 5; hex 0..3
+ *     below 4..7 (formats: AFLR UGRID), all of positive volume. */
+#ifndef VG_CORE_MESH_MESH_H
+#define VG_CORE_MESH_MESH_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/status.h"
+
+#define VG_NAME_MAX 80
+
+/* Boundary conditions are kept as codes of both solvers; 0 is a valid USM3D
+ * code, so "not given" has a value of its own. */
+#define VG_BC_NONE INT32_MIN
+
+/** A named part of the boundary. */
+struct vg_patch {
+  int32_t id;               /* number in the files, any value, unique */
+  int32_t bc;               /* USM3D code (formats.md 1.4), or VG_BC_NONE */
+  int32_t bc_fun3d;         /* FUN3D code, or VG_BC_NONE */
+  int32_t family;           /* VGRID family column; bc where unknown */
+  char name[VG_NAME_MAX];   /* "" where the file gives none */
+};
+
+struct vg_mesh {
+  size_t n_point, n_tri, n_quad, n_tet, n_pyr, n_pri, n_hex, n_patch;
+  double (*point)[3];       /* [n_point], length unit of the input */
+  uint32_t (*tri)[3];       /* [n_tri] boundary triangles */
+  uint32_t (*quad)[4];      /* [n_quad] boundary quadrilaterals */
+  uint32_t *tri_patch;      /* [n_tri] index into patch[] */
+  uint32_t *quad_patch;     /* [n_quad] index into patch[] */
+  uint32_t (*tet)[4];       /* [n_tet] */
+  uint32_t (*pyr)[5];       /* [n_pyr] */
+  uint32_t (*pri)[6];       /* [n_pri] */
+  uint32_t (*hex)[8];       /* [n_hex] */
+  struct vg_patch *patch;   /* [n_patch] */
+};
+#define VG_MESH_INIT { 0 }  /* releasing this is a no-op */
+
+/** Free all arrays and leave *m empty. Accepts an empty mesh. */
+void vg_mesh_release(struct vg_mesh *m);
+
+/** Move *from into *to: `to` is released first, `from` left empty. */
+void vg_mesh_move(struct vg_mesh *to, struct vg_mesh *from);
+
+/** Deep copy of `from` into the empty mesh *to. VG_ERR_MEMORY on refusal. */
+vg_status vg_mesh_copy(struct vg_mesh *to, const struct vg_mesh *from,
+                       struct vg_error *err);
+
+/** Index in m->patch of the patch with number id, or SIZE_MAX. */
+size_t vg_mesh_find_patch(const struct vg_mesh *m, int32_t id);
+
+/** Index of patch `id`, appended with the given name (NULL: "") and no
+ * boundary condition when absent; SIZE_MAX when memory is refused. */
+size_t vg_mesh_add_patch(struct vg_mesh *m, int32_t id, const char *name);
+
+/** Lower and upper corner of all points; both zero for an empty mesh. */
+void vg_mesh_bounds(const struct vg_mesh *m, double lo[3], double hi[3]);
+
+#endif

@@ -1,0 +1,227 @@
+#include "core/optimise/optimise.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/geometry/hilbert.h"
+#include "core/optimise/optimise_parts.h"
+
+/* As vg_shape. Cells below `aim` (dihedral angles below 25 or above 155
+ * degrees) are worked on one by one; sweeps swap below `fair` (30, 150);
+ * `good` (45, 135) cells are not touched. */
+static const double aim = VG_SHAPE_AIM;
+static const float fair = 0.25, good = VG_SHAPE_GOOD;
+/* Below this (15, 165) points are taken away or put in. */
+static const double desperate = 0.067;
+
+/* Rounds of mending, ended early when less than a hundredth got better. */
+enum { ROUNDS = 8, CLASSES = 8 };
+
+static vg_status start(struct vg_optimiser *o, struct vg_tets *t,
+                       struct vg_error *err)
+{
+  o->t = t;
+  o->star = vg_alloc(t->n_point, sizeof *o->star);
+  o->cap_star = t->n_point;
+  if (o->star) memset(o->star, 0xff, t->n_point * sizeof *o->star);
+  o->vain = vg_calloc(t->n_point, sizeof *o->vain);
+  o->cap_vain = t->n_point;
+  if (!o->star || !o->vain ||
+      vg_reserve(&o->q, &o->cap_q, t->cap_cell, sizeof *o->q) ||
+      vg_reserve(&o->vain_cell, &o->cap_vain_cell, t->cap_cell,
+                 sizeof *o->vain_cell))
+    return vg_fail_memory(err, "optimisation");
+  for (uint32_t c = 0; c < t->n_cell; c++) {
+    o->q[c] = 1;
+    o->vain_cell[c] = 0;
+    if (t->flag[c] & (VG_DEAD | VG_OUTSIDE)) continue;
+    o->q[c] = (float)vg_cell_shape(t, c);
+    for (int i = 0; i < 4; i++) o->star[t->cell[c].v[i]] = c;
+  }
+  return VG_OK;
+}
+
+static int is_live(const struct vg_tets *t, uint32_t c)
+{
+  return !(t->flag[c] & (VG_DEAD | VG_OUTSIDE));
+}
+
+static int is_in_region(const struct vg_optimiser *o, uint32_t c)
+{
+  const struct vg_tets *t = o->t;
+  const uint32_t *v = t->cell[c].v;
+
+  return vg_region_has_cell(o->region, o->sizing, t->x[v[0]], t->x[v[1]],
+                            t->x[v[2]], t->x[v[3]]);
+}
+
+/* A flat cell between the front and the region: if its neighbours become
+ * final, nothing but it can fill the slit that they leave. */
+static int makes_slit(const struct vg_optimiser *o, uint32_t c)
+{
+  const struct vg_tets *t = o->t;
+
+  if (o->q[c] >= desperate || !(t->flag[c] & VG_FIXED_FACES)) return 0;
+  for (int i = 0; i < 4; i++)
+    if (!(t->flag[c] >> i & 1) && t->cell[c].link[i] != VG_NONE &&
+        is_in_region(o, t->cell[c].link[i] >> 2))
+      return 1;
+  return 0;
+}
+
+/* Is cell c one that should get better? The answer no, which bad cells at the
+ * rim get again and again, is kept until the cell changes. */
+static int concerns(const struct vg_optimiser *o, uint32_t c)
+{
+  if (!o->region) return 1;
+  if (o->vain_cell[c] & VG_NO_CONCERN) return 0;
+  if (is_in_region(o, c) || makes_slit(o, c)) return 1;
+  o->vain_cell[c] |= VG_NO_CONCERN;
+  return 0;
+}
+
+/* least[p]: shape of the worst cell around p that concerns us. */
+static void worst_around(const struct vg_optimiser *o, float *least)
+{
+  const struct vg_tets *t = o->t;
+
+  for (size_t p = 0; p < t->n_point; p++) least[p] = 2;
+  for (uint32_t c = 0; c < t->n_cell; c++)
+    if (is_live(t, c) && o->q[c] < good && concerns(o, c))
+      for (int i = 0; i < 4; i++)
+        if (o->q[c] < least[t->cell[c].v[i]])
+          least[t->cell[c].v[i]] = o->q[c];
+}
+
+/* Swaps first: a sliver that is smoothed spoils its neighbours. Points whose
+ * cells are all good are left where they are: in a level field that is nearly
+ * all of them. Those of a region stay where they stand, on the lattice that the
+ * voids beside it go on with: moved off it they would cost these more than
+ * smoothing gains here. */
+static vg_status sweep(struct vg_optimiser *o, struct vg_error *err)
+{
+  struct vg_tets *t = o->t;
+  float *least;
+
+  for (uint32_t c = 0; c < t->n_cell; c++)
+    if (is_live(t, c) && o->q[c] < fair && concerns(o, c)) vg_swap(o, c);
+  if (o->region) return VG_OK;
+  least = vg_alloc(t->n_point, sizeof *least);
+  if (!least) return vg_fail_memory(err, "optimisation");
+  worst_around(o, least);
+  for (uint32_t p = (uint32_t)o->n_fixed; p < t->n_point; p++)
+    if (least[p] < good) vg_smooth(o, p, aim);
+  free(least);
+  return VG_OK;
+}
+
+/* A cell on which everything failed is flagged VG_TRIED until it changes. */
+static int wants_mending(const struct vg_optimiser *o, uint32_t c)
+{
+  return is_live(o->t, c) && o->q[c] < aim &&
+         !(o->t->flag[c] & VG_TRIED) && concerns(o, c);
+}
+
+/* The cells that want mending: the worst first in a few classes, and within
+ * a class as they lie in memory, where neighbours are near each other. */
+static vg_status list_bad(const struct vg_optimiser *o, size_t *n,
+                          struct vg_key **list, struct vg_error *err)
+{
+  size_t k = 0, n_cell = o->t->n_cell;
+
+  *n = 0;
+  for (uint32_t c = 0; c < n_cell; c++)
+    *n += (size_t)wants_mending(o, c);
+  *list = vg_alloc(*n, sizeof **list);
+  if (!*list) return vg_fail_memory(err, "optimisation");
+  for (uint32_t c = 0; c < n_cell; c++)
+    if (wants_mending(o, c)) {
+      double q = o->q[c] > 0 ? o->q[c] : 0;
+
+      (*list)[k].key = q < desperate ? (uint64_t)(CLASSES * q / desperate)
+                                     : CLASSES;
+      (*list)[k++].index = c;
+    }
+  return vg_sort_keys(*n, *list, err);
+}
+
+/* One bad cell: the cheapest step that helps. */
+static int mend_cell(struct vg_optimiser *o, uint32_t c)
+{
+  int better = 0;
+
+  if (vg_swap(o, c)) return 1;
+  for (int i = 0; i < 4 && o->q[c] < aim; i++)
+    better |= vg_smooth(o, o->t->cell[c].v[i], aim);
+  if (better || o->q[c] >= desperate) return better;
+  return vg_collapse(o, c) || vg_split(o, c, aim);
+}
+
+static vg_status mend(struct vg_optimiser *o, int *again,
+                      struct vg_error *err)
+{
+  struct vg_key *list = NULL;
+  size_t n, n_better = 0;
+  vg_status st = list_bad(o, &n, &list, err);
+
+  for (size_t k = 0; st == VG_OK && k < n; k++) {
+    uint32_t c = list[k].index;
+
+    if (!wants_mending(o, c)) continue;
+    if (mend_cell(o, c)) n_better++;
+    else o->t->flag[c] |= VG_TRIED;
+  }
+  free(list);
+  *again = n_better > n / 100;
+  return st;
+}
+
+static vg_status optimise(struct vg_optimiser *o, struct vg_tets *t,
+                          int sweeps, struct vg_error *err)
+{
+  int again = 1;
+  vg_status st = start(o, t, err);
+
+  for (int k = 0; st == VG_OK && k < sweeps; k++) st = sweep(o, err);
+  for (int k = 0; st == VG_OK && k < ROUNDS && again; k++)
+    st = mend(o, &again, err);
+  for (size_t c = 0; c < t->n_cell; c++) t->flag[c] &= (uint8_t)~VG_TRIED;
+  if (st == VG_OK && o->refused) st = vg_fail_memory(err, "optimisation");
+  free(o->q);
+  free(o->star);
+  free(o->vain);
+  free(o->vain_cell);
+  free(o);
+  return st;
+}
+
+vg_status vg_optimise(struct vg_tets *t, size_t n_fixed, int sweeps,
+                      const struct vg_region *region,
+                      const struct vg_sizing *sizing,
+                      struct vg_optimise_report *report, struct vg_error *err)
+{
+  struct vg_optimiser *o = vg_calloc(1, sizeof *o);
+
+  memset(report, 0, sizeof *report);
+  if (!o) return vg_fail_memory(err, "optimisation");
+  o->n_fixed = o->n_keep = n_fixed;
+  o->region = region;
+  o->sizing = sizing;
+  o->report = report;
+  return optimise(o, t, sweeps, err);
+}
+
+vg_status vg_optimise_bad(struct vg_tets *t, size_t n_fixed, size_t n_keep,
+                          struct vg_optimise_report *report,
+                          struct vg_error *err)
+{
+  struct vg_optimiser *o = vg_calloc(1, sizeof *o);
+
+  memset(report, 0, sizeof *report);
+  if (!o) return vg_fail_memory(err, "optimisation");
+  o->n_fixed = n_fixed;
+  o->n_keep = n_keep;
+  o->report = report;
+  return optimise(o, t, 0, err);
+}

@@ -1,0 +1,219 @@
+/* Shapes of the cells around a point and their slopes. Loops without branches
+ * over arrays, which compilers turn into vector instructions. */
+#include "core/optimise/optimise_ball.h"
+
+#include <math.h>
+
+#include "core/sizing/sizing.h"
+
+/* Shares of vg_ball_other: of volume^2 / E^3 over a regular cell's, of what
+ * sizes are off, squared; and in slopes, beside the logarithm of the shape. */
+static const double round_share = 0.3, size_share = 0.5;
+static const double round_slope = 1.2, size_slope = 0.5;
+
+void vg_ball_faces(const struct vg_tets *t, size_t n, const uint32_t *link,
+                   struct vg_ball_faces *out)
+{
+  out->n = n;
+  for (size_t k = 0; k < n; k++) {
+    const uint32_t *v = t->cell[link[k] >> 2].v;
+    const uint8_t *f = vg_face[link[k] & 3];
+
+    for (int i = 0; i < 3; i++)
+      for (int a = 0; a < 3; a++) out->x[i][a][k] = t->x[v[f[i]]][a];
+  }
+  for (size_t k = 0; k < n; k++) {
+    double e[3][3], area2 = 0;
+
+    for (int i = 0; i < 3; i++) {
+      out->edge2[i][k] = 0;
+      for (int a = 0; a < 3; a++) {
+        e[i][a] = out->x[(i + 2) % 3][a][k] - out->x[(i + 1) % 3][a][k];
+        out->edge2[i][k] += e[i][a] * e[i][a];
+      }
+    }
+    for (int a = 0; a < 3; a++) {
+      int b = (a + 1) % 3, c = (a + 2) % 3;
+      double s = e[0][b] * e[1][c] - e[0][c] * e[1][b];
+
+      out->normal[a][k] = s;
+      area2 += s * s;
+    }
+    out->area2[k] = area2;
+    out->rim2[k] = out->edge2[0][k] + out->edge2[1][k] + out->edge2[2][k];
+  }
+}
+
+void vg_ball_target(const struct vg_sizing *sizing, const double x[3],
+                    struct vg_ball_faces *b)
+{
+  double h = sizing ? vg_sizing_at(sizing, x) : 0;
+
+  b->per = sizing ? 1 / (6 * h * h) : 0;
+}
+
+/* Of cell k with the point at x: edges to the corners of the face, and of the
+ * faces between them, each opposite a corner, normals and their squares. */
+struct cone { double u[3][3], l[3], n[3][3], s[3], det; };
+
+static inline void raise(const struct vg_ball_faces *b, size_t k,
+                         const double x[3], struct cone *c)
+{
+  for (int i = 0; i < 3; i++) {
+    for (int a = 0; a < 3; a++) c->u[i][a] = b->x[i][a][k] - x[a];
+    c->l[i] = c->u[i][0] * c->u[i][0] + c->u[i][1] * c->u[i][1] +
+              c->u[i][2] * c->u[i][2];
+  }
+  for (int i = 0; i < 3; i++) {
+    const double *p = c->u[(i + 1) % 3], *q = c->u[(i + 2) % 3];
+
+    for (int a = 0; a < 3; a++) {
+      int d = (a + 1) % 3, e = (a + 2) % 3;
+
+      c->n[i][a] = p[d] * q[e] - p[e] * q[d];
+    }
+    c->s[i] = c->n[i][0] * c->n[i][0] + c->n[i][1] * c->n[i][1] +
+              c->n[i][2] * c->n[i][2];
+  }
+  c->det = -(c->u[0][0] * b->normal[0][k] + c->u[0][1] * b->normal[1][k] +
+             c->u[0][2] * b->normal[2][k]);
+}
+
+static inline double least_of(double a, double b) { return a < b ? a : b; }
+
+enum { BLOCK = 8 };
+
+int vg_ball_shapes(const struct vg_ball_faces *b, const double x[3],
+                   double stop, double *q)
+{
+  for (size_t at = 0; at < b->n; at += BLOCK) {
+    size_t end = at + BLOCK < b->n ? at + BLOCK : b->n;
+    double worst = 2;
+
+    for (size_t k = at; k < end; k++) {
+      struct cone c;
+      double s = b->area2[k], least, all, square;
+
+      raise(b, k, x, &c);
+      least = least_of(least_of(c.l[0] * c.s[0], c.l[1] * c.s[1]),
+                       c.l[2] * c.s[2]) * s;
+      least = least_of(least, b->edge2[0][k] * c.s[1] * c.s[2]);
+      least = least_of(least, b->edge2[1][k] * c.s[2] * c.s[0]);
+      least = least_of(least, b->edge2[2][k] * c.s[0] * c.s[1]);
+      all = c.s[0] * c.s[1] * c.s[2] * s;
+      square = c.det * fabs(c.det);
+      /* As vg_shape: not 0 only where rounding has no say in the sign. */
+      q[k] = ((all > 0) & (fabs(square) > 1e-24 * c.l[0] * b->edge2[0][k] *
+                                          b->edge2[1][k]))
+             ? square * least / all : 0;
+    }
+    for (size_t k = at; k < end; k++) worst = least_of(worst, q[k]);
+    if (worst <= stop) return 0;
+  }
+  return 1;
+}
+
+double vg_ball_other(const struct vg_ball_faces *b, const double x[3])
+{
+  double sum = 0;
+
+  for (size_t at = 0; at < b->n; at += BLOCK) {
+    size_t n = b->n - at < BLOCK ? b->n - at : BLOCK;
+    double of[BLOCK];
+
+    for (size_t k = 0; k < n; k++) {
+      struct cone c;
+      double e, off;
+
+      raise(b, at + k, x, &c);
+      e = c.l[0] + c.l[1] + c.l[2] + b->rim2[at + k];
+      off = e * b->per - 1;
+      of[k] = round_share * 432 * c.det * c.det / (e * e * e) -
+              size_share * off * off;
+    }
+    for (size_t k = 0; k < n; k++) sum += of[k];
+  }
+  return sum;
+}
+
+void vg_ball_ideal(const struct vg_ball_faces *b, const double *q,
+                   const double x[3], double to[3])
+{
+  static const double height = 0.81649658092772603;  /* regular: of an edge */
+  double sum[3] = {0}, total = 0;
+
+  for (size_t k = 0; k < b->n; k++) {
+    double w = 1 - q[k], l2 = b->edge2[0][k] + b->edge2[1][k] + b->edge2[2][k];
+    double h = b->area2[k] > 0 ? height * sqrt(l2 / (3 * b->area2[k])) : 0;
+
+    total += w;
+    for (int a = 0; a < 3; a++)
+      sum[a] += w * ((b->x[0][a][k] + b->x[1][a][k] + b->x[2][a][k]) / 3 +
+                     h * b->normal[a][k]);
+  }
+  for (int a = 0; a < 3; a++) to[a] = total > 0 ? sum[a] / total : x[a];
+}
+
+/* The shape is det^2 l / (s s') of the edge, of length sqrt(l) between faces
+ * of areas sqrt(s), at which that is least. An edge up to corner i is of the
+ * two faces opposite the other corners, the one of the rim opposite corner i
+ * of face i alone. */
+static inline void slope_of(const struct vg_ball_faces *b, size_t k,
+                            const double x[3], double g[3])
+{
+  struct cone c;
+  double up[3], rim[3], least, edges2, wide, high;
+
+  raise(b, k, x, &c);
+  for (int i = 0; i < 3; i++) {
+    up[i] = c.l[i] * c.s[i] * b->area2[k];
+    rim[i] = b->edge2[i][k] * c.s[(i + 1) % 3] * c.s[(i + 2) % 3];
+  }
+  least = least_of(least_of(least_of(up[0], up[1]), least_of(up[2], rim[0])),
+                   least_of(rim[1], rim[2]));
+  for (int i = 0; i < 3; i++) {
+    up[i] = up[i] <= least ? 1.0 : 0.0;
+    rim[i] = rim[i] <= least ? 1.0 : 0.0;
+  }
+  edges2 = c.l[0] + c.l[1] + c.l[2] + b->rim2[k];
+  wide = 3 * round_slope / edges2 +
+         2 * size_slope * b->per * (edges2 * b->per - 1);
+  high = (1 + round_slope) / c.det;
+  for (int a = 0; a < 3; a++)
+    g[a] = high * b->normal[a][k] +
+           wide * (c.u[0][a] + c.u[1][a] + c.u[2][a]);
+  for (int i = 0; i < 3; i++) {
+    const double *p = c.u[(i + 1) % 3], *r = c.u[(i + 2) % 3];
+    double edge = up[i] / c.l[i];
+    double face = (up[(i + 1) % 3] + up[(i + 2) % 3] + rim[i]) / c.s[i];
+
+    for (int a = 0; a < 3; a++) {
+      int d = (a + 1) % 3, e = (a + 2) % 3;
+
+      g[a] -= edge * c.u[i][a] +
+              face * ((p[d] - r[d]) * c.n[i][e] - (p[e] - r[e]) * c.n[i][d]);
+    }
+  }
+}
+
+void vg_ball_slope(const struct vg_ball_faces *b, size_t first, size_t end,
+                   const double x[3], double g[3])
+{
+  double of[3][BLOCK];
+
+  g[0] = g[1] = g[2] = 0;
+  for (size_t at = first; at < end; at += BLOCK) {
+    size_t n = end - at < BLOCK ? end - at : BLOCK;
+
+    for (size_t k = 0; k < n; k++) {
+      double h[3];
+
+      slope_of(b, at + k, x, h);
+      of[0][k] = h[0];
+      of[1][k] = h[1];
+      of[2][k] = h[2];
+    }
+    for (size_t k = 0; k < n; k++)
+      for (int a = 0; a < 3; a++) g[a] += of[a][k];
+  }
+}

@@ -1,0 +1,200 @@
+/* Points smoothed among cells that are only listed, without the links between
+ * them. They are few, so each gets more than in a sweep of the optimisation. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/optimise/optimise_ball.h"
+
+/* Balls of the points, one after the other. */
+struct balls {
+  uint32_t *slot;            /* [t.n_point] place in the list, or VG_NONE */
+  size_t *first;             /* [n + 2] */
+  uint32_t *link;            /* 4 * cell + index of the point */
+};
+
+static void balls_release(struct balls *b)
+{
+  free(b->slot);
+  free(b->first);
+  free(b->link);
+}
+
+/* Place in the list of the points that have a cell below. */
+static vg_status find_slots(const struct vg_tets *t, size_t n,
+                            const uint32_t *point, float below,
+                            const float *q, uint32_t *slot)
+{
+  uint8_t *wants = vg_calloc(t->n_point, 1);
+
+  if (!wants) return VG_ERR_MEMORY;
+  for (size_t c = 0; c < t->n_cell; c++)
+    for (int i = 0; i < 4 && q[c] < below; i++) wants[t->cell[c].v[i]] = 1;
+  memset(slot, 0xff, t->n_point * sizeof *slot);
+  for (size_t k = 0; k < n; k++)
+    if (wants[point[k]]) slot[point[k]] = (uint32_t)k;
+  free(wants);
+  return VG_OK;
+}
+
+static vg_status balls_new(const struct vg_tets *t, size_t n,
+                           const uint32_t *point, float below, const float *q,
+                           struct balls *b)
+{
+  b->slot = vg_alloc(t->n_point, sizeof *b->slot);
+  b->first = vg_calloc(n + 2, sizeof *b->first);
+  if (!b->slot || !b->first) return VG_ERR_MEMORY;
+  if (find_slots(t, n, point, below, q, b->slot) < 0) return VG_ERR_MEMORY;
+  for (size_t c = 0; c < t->n_cell; c++)
+    for (int i = 0; i < 4; i++) {
+      uint32_t k = b->slot[t->cell[c].v[i]];
+
+      if (k != VG_NONE) b->first[k + 2]++;
+    }
+  for (size_t k = 0; k < n; k++) b->first[k + 2] += b->first[k + 1];
+  b->link = vg_alloc(b->first[n + 1], sizeof *b->link);
+  if (!b->link) return VG_ERR_MEMORY;
+  for (uint32_t c = 0; c < t->n_cell; c++)
+    for (uint32_t i = 0; i < 4; i++) {
+      uint32_t k = b->slot[t->cell[c].v[i]];
+
+      if (k != VG_NONE) b->link[b->first[k + 1]++] = 4 * c + i;
+    }
+  return VG_OK;
+}
+
+/* --- one point ------------------------------------------------------------ */
+
+/* Where a point stands, the shapes around it there, and their sum with what
+ * else is to be said for the place. */
+struct stand {
+  double x[3], q[VG_BALL_MAX], worst, sum;
+  size_t at;                 /* the worst cell */
+};
+
+struct mover {
+  struct vg_ball_faces faces;
+  struct stand now;
+};
+
+static void weigh(struct stand *s, size_t n)
+{
+  s->worst = 2;
+  s->sum = 0;
+  s->at = 0;
+  for (size_t k = 0; k < n; k++) {
+    if (s->q[k] < s->worst) {
+      s->worst = s->q[k];
+      s->at = k;
+    }
+    s->sum += s->q[k];
+  }
+}
+
+/* Points with a cell that is flat in plain arithmetic are left alone: what is
+ * positive cannot be told there. */
+static int take_ball(struct mover *m, const struct vg_tets *t, size_t n,
+                     const uint32_t *link, uint32_t p, float below,
+                     const struct vg_sizing *sizing, const float *q)
+{
+  if (!n || n > VG_BALL_MAX) return 0;
+  for (size_t k = 0; k < n; k++) m->now.q[k] = q[link[k] >> 2];
+  weigh(&m->now, n);
+  if (m->now.worst <= VG_SHAPE_FLAT || m->now.worst >= (double)below) return 0;
+  vg_ball_faces(t, n, link, &m->faces);
+  vg_ball_target(sizing, t->x[p], &m->faces);
+  memcpy(m->now.x, t->x[p], sizeof m->now.x);
+  m->now.sum += vg_ball_other(&m->faces, m->now.x);
+  return 1;
+}
+
+/* To x + length g, where that is better: the worst shape is, or it is no worse
+ * than what is aimed at and the sum is better. */
+static int move(struct mover *m, const double g[3], double length)
+{
+  const double aim = VG_SHAPE_AIM;
+  struct stand to;
+
+  for (int a = 0; a < 3; a++) to.x[a] = m->now.x[a] + length * g[a];
+  if (!vg_ball_shapes(&m->faces, to.x, m->now.worst < aim ? m->now.worst : aim,
+                      to.q))
+    return 0;
+  weigh(&to, m->faces.n);
+  to.sum += vg_ball_other(&m->faces, to.x);
+  if (to.worst < aim ? to.worst <= m->now.worst * 1.001 + VG_SHAPE_FLAT
+                     : m->now.worst >= aim && to.sum <= m->now.sum * 1.0005)
+    return 0;
+  m->now = to;
+  return 1;
+}
+
+/* Up the slope of cells first ... end - 1, by a share of an edge. */
+static int climb(struct mover *m, size_t first, size_t end, double share,
+                 double least)
+{
+  const struct stand *s = &m->now;
+  double g[3], size, edge2 = 0;
+
+  for (int a = 0; a < 3; a++) {
+    double d = m->faces.x[0][a][s->at] - s->x[a];
+
+    edge2 += d * d;
+  }
+  vg_ball_slope(&m->faces, first, end, s->x, g);
+  size = g[0] * g[0] + g[1] * g[1] + g[2] * g[2];
+  if (!(size > 0)) return 0;
+  for (; share > least; share *= 0.4)
+    if (move(m, g, share * sqrt(edge2 / size))) return 1;
+  return 0;
+}
+
+/* Towards where the point is of the best use to its cells, then up the slope
+ * of the worst of them where that is bad, and up that of all: their logarithms,
+ * which the bad ones count for most in, and sizes. */
+static int improve(struct mover *m)
+{
+  double to[3], g[3];
+  int better = 0;
+
+  vg_ball_ideal(&m->faces, m->now.q, m->now.x, to);
+  for (int a = 0; a < 3; a++) g[a] = to[a] - m->now.x[a];
+  for (double share = 1; share > 0.2 && !better; share *= 0.5)
+    better = move(m, g, share);
+  for (int k = 0; k < 4 && m->now.worst < VG_SHAPE_AIM; k++) {
+    if (!climb(m, m->now.at, m->now.at + 1, 0.25, 0.01)) return better;
+    better = 1;
+  }
+  for (int k = 0; k < 2 && climb(m, 0, m->faces.n, 0.05, 0.015); k++)
+    better = 1;
+  return better;
+}
+
+vg_status vg_optimise_points(struct vg_tets *t, size_t n,
+                             const uint32_t *point, float below,
+                             const struct vg_sizing *sizing, float *q,
+                             struct vg_optimise_report *report,
+                             struct vg_error *err)
+{
+  struct mover *m = vg_alloc(1, sizeof *m);
+  struct balls b = { NULL, NULL, NULL };
+  vg_status st = VG_OK;
+
+  memset(report, 0, sizeof *report);
+  if (!m || balls_new(t, n, point, below, q, &b) < 0)
+    st = vg_fail_memory(err, "optimisation");
+  for (size_t k = 0; st == VG_OK && k < n; k++) {
+    const uint32_t *link = b.link + b.first[k];
+
+    if (!take_ball(m, t, b.first[k + 1] - b.first[k], link, point[k], below,
+                   sizing, q) || !improve(m))
+      continue;
+    memcpy(t->x[point[k]], m->now.x, sizeof m->now.x);
+    for (size_t c = 0; c < m->faces.n; c++)
+      q[link[c] >> 2] = (float)m->now.q[c];
+    report->n_smoothed++;
+  }
+  balls_release(&b);
+  free(m);
+  return st;
+}

@@ -1,0 +1,87 @@
+/* core/optimise/optimise_parts.h: what the steps of the optimisation share. */
+#ifndef VG_CORE_OPTIMISE_OPTIMISE_PARTS_H
+#define VG_CORE_OPTIMISE_OPTIMISE_PARTS_H
+
+#include "core/delaunay/cavity.h"
+#include "core/geometry/shape.h"
+#include "core/optimise/optimise.h"
+
+enum { VG_BALL_MAX = 256, VG_SHELL_MAX = 10, VG_NEW_MAX = VG_CAVITY_MAX,
+       VG_OLD_MAX = VG_CAVITY_MAX };
+
+enum {                       /* what was tried in vain, until a change */
+  VG_VAIN_SMOOTH = 1, VG_VAIN_MERGE = 2,   /* of a point */
+  VG_VAIN_SPLIT = 4,                       /* of a cell */
+  VG_NO_CONCERN = 8          /* likewise: does not belong to the region */
+};
+
+struct vg_optimiser {
+  struct vg_tets *t;
+  size_t n_fixed;            /* points below stay */
+  size_t n_keep;             /* points below are not taken away */
+  const struct vg_region *region;  /* NULL: all cells matter */
+  const struct vg_sizing *sizing;  /* of the region */
+  float *q;                  /* [cap_cell] shape of each cell */
+  size_t cap_q;
+  uint8_t *vain_cell;        /* [cap_cell] steps of no use to each cell */
+  size_t cap_vain_cell;
+  uint32_t *star;            /* [n_point] a cell of each point, or VG_NONE */
+  size_t cap_star;
+  uint8_t *vain;             /* [n_point] and to each point, until a change */
+  size_t cap_vain;
+  size_t n_ball;
+  uint32_t ball[VG_BALL_MAX];  /* links 4 * cell + index of the centre */
+  int refused;               /* memory was refused */
+  struct vg_optimise_report *report;
+};
+
+/** A cell of a shape from here on is as good as it need be (45, 135). */
+#define VG_SHAPE_GOOD 0.5f
+
+static inline double vg_cell_shape(const struct vg_tets *t, uint32_t c)
+{
+  const uint32_t *v = t->cell[c].v;
+
+  return vg_shape(t->x[v[0]], t->x[v[1]], t->x[v[2]], t->x[v[3]]);
+}
+
+/** Cell c changed: what was in vain for it and its points may work now. */
+static inline void vg_changed(struct vg_optimiser *o, uint32_t c)
+{
+  const uint32_t *v = o->t->cell[c].v;
+
+  o->t->flag[c] &= (uint8_t)~VG_TRIED;
+  o->vain_cell[c] = 0;
+  o->vain[v[0]] = o->vain[v[1]] = o->vain[v[2]] = o->vain[v[3]] = 0;
+}
+
+/** Collect the cells around point p in o->ball. 0 when there are more than
+ * VG_BALL_MAX, or when the ball is cut by a fixed face. */
+int vg_ball(struct vg_optimiser *o, uint32_t p);
+
+/** Replace n_old cells by n_new ones that fill the same cavity.
+ * The first slots of old are reused; shapes, stars, links and fixed faces are
+ * brought up to date. made out: [n_new] the slots used; may be NULL.
+ * Returns 0; -1 when memory was refused, t unchanged. */
+int vg_replace(struct vg_optimiser *o, int n_old, const uint32_t *old,
+               int n_new, const uint32_t (*v)[4], const float *q,
+               uint32_t *made);
+
+/* Steps. Each returns 1 when the mesh became better, else 0. */
+
+/** Move p so that the worst cell around it gets better; `aim` > 0: positions
+ * that leave every cell above aim count by their mean shape instead. */
+int vg_smooth(struct vg_optimiser *o, uint32_t p, double aim);
+
+/** Remove faces and edges of cell c where the worst of the cells concerned
+ * gets better by it. */
+int vg_swap(struct vg_optimiser *o, uint32_t c);
+
+/** Take away a vertex of the bad cell c, into one of its neighbours. */
+int vg_collapse(struct vg_optimiser *o, uint32_t c);
+
+/** Put a point into the bad cell c, in a cavity opened for it, and smooth it
+ * towards `aim`. */
+int vg_split(struct vg_optimiser *o, uint32_t c, double aim);
+
+#endif

@@ -1,0 +1,350 @@
+/* For bad cells that neither swaps nor smoothing mend: a point is taken away,
+ * or one is put in (Klingner, Shewchuk, "Aggressive tetrahedral mesh
+ * improvement", 2007). Both are made only when the worst cell gets better. */
+#include <math.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/geometry/vector.h"
+#include "core/optimise/optimise_parts.h"
+
+static double worth(double old)
+{
+  return old < VG_SHAPE_FLAT ? VG_SHAPE_FLAT : old * 1.01;
+}
+
+/* --- taking a point away ------------------------------------------------- */
+
+struct merger {
+  int n_new;
+  uint32_t v[VG_OLD_MAX][4];
+  float q[VG_OLD_MAX];
+};
+
+/* Cell k of the ball of p with p moved onto its neighbour `to`, and its shape;
+ * 0 when it goes, having that corner already. */
+static int move_cell(const struct vg_optimiser *o, size_t k, uint32_t to,
+                     uint32_t w[4], double *q)
+{
+  const struct vg_tets *t = o->t;
+  const uint32_t *v = t->cell[o->ball[k] >> 2].v;
+
+  if (v[0] == to || v[1] == to || v[2] == to || v[3] == to) return 0;
+  memcpy(w, v, 4 * sizeof *w);
+  w[o->ball[k] & 3] = to;
+  *q = vg_shape(t->x[w[0]], t->x[w[1]], t->x[w[2]], t->x[w[3]]);
+  return 1;
+}
+
+/* The ball of p with p moved onto its neighbour `to`; 0 when not better. */
+static int plan_merge(const struct vg_optimiser *o, uint32_t to, double need,
+                      struct merger *m, double *worst)
+{
+  m->n_new = 0;
+  *worst = 2;
+  for (size_t k = 0; k < o->n_ball; k++) {
+    double q;
+
+    if (!move_cell(o, k, to, m->v[m->n_new], &q)) continue;
+    if (q <= need) return 0;
+    if (q < *worst) *worst = q;
+    m->q[m->n_new++] = (float)q;
+  }
+  return m->n_new > 0;
+}
+
+/* The same where cells of the ball are flat, `most` of them: fewer are left,
+ * if they are positive at all. That undoes several flat cells side by side,
+ * as there are between points in a line, one by one. Their number, or `most`
+ * when it is not to be. */
+static int plan_flat_merge(const struct vg_optimiser *o, uint32_t to,
+                           int most, struct merger *m)
+{
+  const struct vg_tets *t = o->t;
+  int n_flat = 0;
+
+  m->n_new = 0;
+  for (size_t k = 0; k < o->n_ball; k++) {
+    const uint32_t *w = m->v[m->n_new];
+    double q;
+
+    if (!move_cell(o, k, to, m->v[m->n_new], &q)) continue;
+    n_flat += q < VG_SHAPE_FLAT;
+    if (n_flat >= most ||
+        (q < VG_SHAPE_FLAT && !(vg_orient3d(t->x[w[0]], t->x[w[1]],
+                                            t->x[w[2]], t->x[w[3]]) > 0)))
+      return most;
+    m->q[m->n_new++] = (float)q;
+  }
+  return m->n_new > 0 ? n_flat : most;
+}
+
+/* The points that share an edge with the centre of the ball, each once. */
+static int neighbours(const struct vg_optimiser *o, uint32_t *to)
+{
+  int n = 0;
+
+  for (size_t k = 0; k < o->n_ball; k++)
+    for (uint32_t i = 0; i < 4; i++) {
+      uint32_t v = o->t->cell[o->ball[k] >> 2].v[i];
+      int m = 0;
+
+      if (i == (o->ball[k] & 3)) continue;
+      while (m < n && to[m] != v) m++;
+      if (m == n) to[n++] = v;
+    }
+  return n;
+}
+
+static int merge_point(struct vg_optimiser *o, uint32_t p)
+{
+  struct merger plan[2];
+  uint32_t old[VG_OLD_MAX], to[3 * VG_OLD_MAX];
+  double need = 2, worst;
+  int best = -1, now = 0, n_flat = 0, n;
+
+  if (p < o->n_keep || o->vain[p] & VG_VAIN_MERGE) return 0;
+  o->vain[p] |= VG_VAIN_MERGE;
+  if (!vg_ball(o, p) || o->n_ball > VG_OLD_MAX) return 0;
+  for (size_t k = 0; k < o->n_ball; k++) {
+    old[k] = o->ball[k] >> 2;
+    n_flat += o->q[old[k]] < VG_SHAPE_FLAT;
+    if (o->q[old[k]] < need) need = o->q[old[k]];
+  }
+  need = worth(need);
+  n = neighbours(o, to);
+  for (int k = 0; k < n; k++) {
+    if (!plan_merge(o, to[k], need, &plan[now], &worst)) continue;
+    need = worst;
+    best = now;
+    now = !now;
+  }
+  for (int k = 0; k < n && need <= VG_SHAPE_FLAT && n_flat > 1; k++) {
+    int left = plan_flat_merge(o, to[k], n_flat, &plan[now]);
+
+    if (left == n_flat) continue;
+    n_flat = left;
+    best = now;
+    now = !now;
+  }
+  if (best < 0) return 0;
+  if (vg_replace(o, (int)o->n_ball, old, plan[best].n_new,
+                 (const uint32_t (*)[4])plan[best].v, plan[best].q, NULL))
+    return 0;
+  o->star[p] = VG_NONE;
+  o->report->n_collapse++;
+  return 1;
+}
+
+int vg_collapse(struct vg_optimiser *o, uint32_t c)
+{
+  uint32_t v[4];
+
+  memcpy(v, o->t->cell[c].v, sizeof v);
+  for (int i = 0; i < 4; i++)
+    if (merge_point(o, v[i])) return 1;
+  return 0;
+}
+
+/* --- putting a point in -------------------------------------------------- */
+
+/* Over stretched boundary triangles a point needs a large cavity. */
+enum { CAVITY_MAX = 44 };
+
+/* As vg_shape: angles below 10 or above 170 degrees. */
+static const float worst_of_all = 0.03F;
+
+struct cavity {
+  int n_old, n_new;
+  uint32_t old[VG_OLD_MAX];
+  uint32_t v[VG_NEW_MAX][4];
+  uint32_t from[VG_NEW_MAX]; /* faces, as links */
+  float q[VG_NEW_MAX];
+};
+
+static int in_cavity(const struct cavity *h, uint32_t c)
+{
+  for (int k = 0; k < h->n_old; k++)
+    if (h->old[k] == c) return 1;
+  return 0;
+}
+
+/* Cell `c` joined the cavity: drop the face it shares with a cell that was in
+ * before. 0: the two are separated by a fixed face. */
+static int drop_shared(const struct vg_tets *t, uint32_t c, struct cavity *h)
+{
+  for (int m = 0; m < h->n_new;) {
+    uint32_t from = h->from[m], link = t->cell[from >> 2].link[from & 3];
+
+    if (link == VG_NONE || link >> 2 != c) {
+      m++;
+      continue;
+    }
+    if (t->flag[c] >> (link & 3) & 1) return 0;
+    h->n_new--;
+    memcpy(h->v[m], h->v[h->n_new], sizeof h->v[m]);
+    h->q[m] = h->q[h->n_new];
+    h->from[m] = h->from[h->n_new];
+  }
+  return 1;
+}
+
+/* Faces of the cavity joined with x. A face that makes a cell no better than
+ * `need` is opened: the cell behind it joins the cavity. 0: cannot be done. */
+static int open_cavity(const struct vg_optimiser *o, const double x[3],
+                       double need, struct cavity *h)
+{
+  const struct vg_tets *t = o->t;
+
+  h->n_new = 0;
+  for (int k = 0; k < h->n_old; k++) {
+    uint32_t c = h->old[k];
+
+    if (!drop_shared(t, c, h)) return 0;
+    for (uint32_t i = 0; i < 4; i++) {
+      uint32_t link = t->cell[c].link[i], *w;
+      const uint8_t *f = vg_face[i];
+      double q;
+
+      if (link != VG_NONE && in_cavity(h, link >> 2)) {
+        if (t->flag[c] >> i & 1) return 0;
+        continue;
+      }
+      if (h->n_new == VG_NEW_MAX) return 0;
+      w = h->v[h->n_new];
+      for (int j = 0; j < 3; j++) w[j] = t->cell[c].v[f[j]];
+      q = vg_shape(t->x[w[0]], t->x[w[1]], t->x[w[2]], x);
+      if (q > need) {
+        h->from[h->n_new] = 4 * c + i;
+        h->q[h->n_new++] = (float)q;
+        continue;
+      }
+      if (link == VG_NONE || t->flag[c] >> i & 1 || h->n_old == CAVITY_MAX)
+        return 0;
+      h->old[h->n_old++] = link >> 2;
+    }
+  }
+  return 1;
+}
+
+/* Would a point of the old cells be in none of the new ones? */
+static int swallows(const struct vg_tets *t, const struct cavity *h)
+{
+  for (int k = 0; k < h->n_old; k++)
+    for (int i = 0; i < 4; i++) {
+      uint32_t p = t->cell[h->old[k]].v[i];
+      int found = 0;
+
+      for (int m = 0; m < h->n_new && !found; m++)
+        found = h->v[m][0] == p || h->v[m][1] == p || h->v[m][2] == p;
+      if (!found) return 1;
+    }
+  return 0;
+}
+
+static int put_point(struct vg_optimiser *o, const double x[3],
+                     struct cavity *h)
+{
+  struct vg_tets *t = o->t;
+  uint32_t p = (uint32_t)t->n_point;
+
+  if (swallows(t, h)) return 0;
+  if (vg_tets_reserve_points(t, 1) ||
+      vg_reserve(&o->star, &o->cap_star, t->n_point + 1, sizeof *o->star) ||
+      vg_reserve(&o->vain, &o->cap_vain, t->n_point + 1, sizeof *o->vain)) {
+    o->refused = 1;
+    return 0;
+  }
+  memcpy(t->x[p], x, sizeof *t->x);
+  for (int k = 0; k < h->n_new; k++) h->v[k][3] = p;
+  if (vg_replace(o, h->n_old, h->old, h->n_new, (const uint32_t (*)[4])h->v,
+                 h->q, NULL))
+    return 0;
+  t->n_point++;
+  o->report->n_split++;
+  return 1;
+}
+
+static int split_at(struct vg_optimiser *o, uint32_t c, const double x[3],
+                    double aim)
+{
+  struct cavity h;
+
+  h.n_old = 1;
+  h.old[0] = c;
+  if (!open_cavity(o, x, worth(o->q[c]), &h) || !put_point(o, x, &h)) return 0;
+  for (int k = 0;
+       k < 3 && vg_smooth(o, (uint32_t)o->t->n_point - 1, aim); k++) {
+  }
+  return 1;
+}
+
+static void centre(const struct vg_tets *t, uint32_t c, const double share[4],
+                   double x[3])
+{
+  for (int k = 0; k < 3; k++) {
+    x[k] = 0;
+    for (int i = 0; i < 4; i++) x[k] += share[i] * t->x[t->cell[c].v[i]][k];
+  }
+}
+
+/* A place above the middle of face i of cell c, as high over it as `share` of
+ * the root of twice its area: 1.3 would be a regular tetrahedron. */
+static void above(const struct vg_tets *t, uint32_t c, int i, double share,
+                  double x[3])
+{
+  const uint32_t *v = t->cell[c].v;
+  const double *a = t->x[v[vg_face[i][0]]], *b = t->x[v[vg_face[i][1]]];
+  const double *d = t->x[v[vg_face[i][2]]];
+  double e[3], f[3], n[3], size;
+
+  vg_sub(b, a, e);
+  vg_sub(d, a, f);
+  vg_cross(e, f, n);
+  size = sqrt(vg_norm(n));
+  for (int k = 0; k < 3; k++)
+    x[k] = (a[k] + b[k] + d[k]) / 3 + (size > 0 ? share * n[k] / size : 0);
+}
+
+/* Where the cell lies on a fixed face: a point above that face, with room
+ * below it, in a cavity that is opened as far as that takes. */
+static int split_above(struct vg_optimiser *o, uint32_t c, double aim)
+{
+  double x[3];
+
+  for (int i = 0; i < 4; i++) {
+    if (!(o->t->flag[c] >> i & 1)) continue;
+    for (double share = 1; share > 0.2; share *= 0.5) {
+      above(o->t, c, i, share, x);
+      if (split_at(o, c, x, aim)) return 1;
+    }
+  }
+  return 0;
+}
+
+/* Further places: the centre of its neighbours (for a flat cell that lies on
+ * the boundary), of the cell, and for the worst of its edges. */
+int vg_split(struct vg_optimiser *o, uint32_t c, double aim)
+{
+  static const double share[7][4] = {
+    {.25, .25, .25, .25}, {.5, .5, 0, 0}, {.5, 0, .5, 0}, {.5, 0, 0, .5},
+    {0, .5, .5, 0}, {0, .5, 0, .5}, {0, 0, .5, .5}};
+  int n = o->q[c] < worst_of_all ? 7 : 1;
+  double x[3];
+
+  if (o->vain_cell[c] & VG_VAIN_SPLIT) return 0;
+  if (split_above(o, c, aim)) return 1;
+  for (int i = 0; i < 4; i++) {
+    uint32_t link = o->t->cell[c].link[i];
+
+    if (link == VG_NONE || o->t->flag[c] >> i & 1) continue;
+    centre(o->t, link >> 2, share[0], x);
+    if (split_at(o, c, x, aim)) return 1;
+  }
+  for (int k = 0; k < n; k++) {
+    centre(o->t, c, share[k], x);
+    if (split_at(o, c, x, aim)) return 1;
+  }
+  o->vain_cell[c] |= VG_VAIN_SPLIT;
+  return 0;
+}

@@ -1,0 +1,180 @@
+/* Smoothing: a point moves within its ball when that makes the worst cell
+ * around it better; where all are good already, when it makes their mean
+ * better. Targets: the volume-weighted mean of the cells' centroids, which
+ * evens out sizes and shapes together (Chen, "Mesh smoothing schemes based on
+ * optimal Delaunay triangulations", 2004), then steps along the gradient of
+ * the worst cell. */
+#include <math.h>
+#include <string.h>
+
+#include "core/geometry/vector.h"
+#include "core/optimise/optimise_parts.h"
+
+struct ball_state {
+  double worst, sum;
+};
+
+/* The shapes around p if it stood at x; stops below `stop`. */
+static int try_at(const struct vg_optimiser *o, const double x[3],
+                  double stop, float *q, struct ball_state *s)
+{
+  const struct vg_tets *t = o->t;
+
+  s->worst = 2;
+  s->sum = 0;
+  for (size_t k = 0; k < o->n_ball; k++) {
+    const uint32_t *v = t->cell[o->ball[k] >> 2].v;
+    const uint8_t *f = vg_face[o->ball[k] & 3];
+    double shape = vg_shape(t->x[v[f[0]]], t->x[v[f[1]]], t->x[v[f[2]]], x);
+
+    if (shape <= stop) return 0;
+    q[k] = (float)shape;
+    if (shape < s->worst) s->worst = shape;
+    s->sum += shape;
+  }
+  return 1;
+}
+
+/* The worst cell becomes the first of the ball: it decides soonest. */
+static void present(struct vg_optimiser *o, struct ball_state *s)
+{
+  size_t worst = 0;
+  uint32_t first;
+
+  s->worst = 2;
+  s->sum = 0;
+  for (size_t k = 0; k < o->n_ball; k++) {
+    double q = o->q[o->ball[k] >> 2];
+
+    if (q < s->worst) {
+      s->worst = q;
+      worst = k;
+    }
+    s->sum += q;
+  }
+  first = o->ball[worst];
+  o->ball[worst] = o->ball[0];
+  o->ball[0] = first;
+}
+
+/* Volume-weighted mean of centroids: sum (V_i (x + y1 + y2 + y3) / 4) / V.
+ * The volume of the ball does not depend on x. */
+static void target(const struct vg_optimiser *o, const double x[3],
+                   double to[3])
+{
+  const struct vg_tets *t = o->t;
+  double sum[3] = {0}, total = 0;
+
+  for (size_t k = 0; k < o->n_ball; k++) {
+    const uint32_t *v = t->cell[o->ball[k] >> 2].v;
+    const uint8_t *f = vg_face[o->ball[k] & 3];
+    const double *a = t->x[v[f[0]]], *b = t->x[v[f[1]]], *c = t->x[v[f[2]]];
+    double volume = vg_det(a, b, c, x);
+
+    total += volume;
+    for (int i = 0; i < 3; i++) sum[i] += volume * (a[i] + b[i] + c[i]);
+  }
+  for (int i = 0; i < 3; i++)
+    to[i] = total > 0 ? 0.25 * x[i] + 0.25 * sum[i] / total : x[i];
+}
+
+static void keep(struct vg_optimiser *o, uint32_t p, const double x[3],
+                 const float *q)
+{
+  memcpy(o->t->x[p], x, 3 * sizeof *x);
+  for (size_t k = 0; k < o->n_ball; k++) {
+    o->q[o->ball[k] >> 2] = q[k];
+    vg_changed(o, o->ball[k] >> 2);
+  }
+  o->report->n_smoothed++;
+}
+
+/* Direction in which the worst cell's shape grows, by central differences. */
+static double gradient(const struct vg_optimiser *o, uint32_t p, size_t worst,
+                       double step, double g[3])
+{
+  const struct vg_tets *t = o->t;
+  const uint32_t *v = t->cell[o->ball[worst] >> 2].v;
+  const uint8_t *f = vg_face[o->ball[worst] & 3];
+  double length = 0;
+
+  for (int i = 0; i < 3; i++) {
+    double x[3], up;
+
+    memcpy(x, t->x[p], sizeof x);
+    x[i] += step;
+    up = vg_shape(t->x[v[f[0]]], t->x[v[f[1]]], t->x[v[f[2]]], x);
+    x[i] -= 2 * step;
+    g[i] = up - vg_shape(t->x[v[f[0]]], t->x[v[f[1]]], t->x[v[f[2]]], x);
+    length += g[i] * g[i];
+  }
+  return sqrt(length);
+}
+
+/* Beside a flat cell far smaller steps help too: any sign is a gain. */
+static int climb(struct vg_optimiser *o, uint32_t p, struct ball_state *now)
+{
+  const double least = now->worst < VG_SHAPE_FLAT ? 1e-5 : 0.01;
+  float q[VG_BALL_MAX];
+  size_t worst = 0;
+  double g[3], length, scale = 0, x[3];
+  const double *other;
+  struct ball_state s;
+
+  for (size_t k = 1; k < o->n_ball; k++)
+    if (o->q[o->ball[k] >> 2] < o->q[o->ball[worst] >> 2]) worst = k;
+  other = o->t->x[o->t->cell[o->ball[worst] >> 2]
+                      .v[vg_face[o->ball[worst] & 3][0]]];
+  for (int i = 0; i < 3; i++) {
+    double d = other[i] - o->t->x[p][i];
+
+    scale += d * d;
+  }
+  scale = sqrt(scale);
+  length = gradient(o, p, worst, 1e-3 * scale, g);
+  if (!(length > 0)) return 0;
+  for (double step = 0.25; step > least; step *= 0.4) {
+    for (int i = 0; i < 3; i++)
+      x[i] = o->t->x[p][i] + g[i] / length * step * scale;
+    if (!try_at(o, x, now->worst * 1.001 + VG_SHAPE_FLAT, q, &s)) continue;
+    keep(o, p, x, q);
+    *now = s;
+    return 1;
+  }
+  return 0;
+}
+
+static int smooth_ball(struct vg_optimiser *o, uint32_t p, double aim)
+{
+  float q[VG_BALL_MAX];
+  struct ball_state now, s;
+  double to[3], x[3], stop;
+  int better = 0;
+
+  present(o, &now);
+  target(o, o->t->x[p], to);
+  for (double share = 1; share > 0.2 && !better; share *= 0.5) {
+    for (int i = 0; i < 3; i++)
+      x[i] = o->t->x[p][i] + share * (to[i] - o->t->x[p][i]);
+    stop = now.worst < aim ? now.worst : aim;
+    if (!try_at(o, x, stop, q, &s)) continue;
+    if (s.worst < aim ? s.worst > now.worst * 1.001 + VG_SHAPE_FLAT
+                      : now.worst < aim || s.sum > now.sum * 1.0005) {
+      keep(o, p, x, q);
+      now = s;
+      better = 1;
+    }
+  }
+  for (int k = 0; k < 4 && now.worst < aim && climb(o, p, &now); k++)
+    better = 1;
+  return better;
+}
+
+int vg_smooth(struct vg_optimiser *o, uint32_t p, double aim)
+{
+  if (p < o->n_fixed || o->vain[p] & VG_VAIN_SMOOTH || !vg_ball(o, p))
+    return 0;
+  if (smooth_ball(o, p, aim)) return 1;
+  o->vain[p] |= VG_VAIN_SMOOTH;
+  return 0;
+}

@@ -1,0 +1,157 @@
+/* Swaps: a face replaced by an edge (2-3), an edge by the best triangulation
+ * of the ring around it (3-2, 4-4, ... by dynamic programming: Shewchuk, "Two
+ * discrete optimization algorithms for the topological improvement of
+ * tetrahedral meshes", 2002). A swap is made when the worst cell of the new
+ * configuration is better than the worst of the old. */
+#include "core/optimise/optimise_parts.h"
+
+static double shape_of(const struct vg_tets *t, uint32_t a, uint32_t b,
+                       uint32_t c, uint32_t d)
+{
+  return vg_shape(t->x[a], t->x[b], t->x[c], t->x[d]);
+}
+
+/* Gain that is worth the work; also keeps rounding from swapping for ever. */
+static double worth(double old)
+{
+  return old < VG_SHAPE_FLAT ? VG_SHAPE_FLAT : old * 1.0001;
+}
+
+/* --- face removal: 2 cells to 3 ------------------------------------------ */
+
+static int swap_face(struct vg_optimiser *o, uint32_t c, int i)
+{
+  const struct vg_tets *t = o->t;
+  uint32_t link = t->cell[c].link[i], other = link >> 2, old[2] = {c, other};
+  uint32_t a, b, v[3][4];
+  double need;
+  float q[3];
+
+  if (link == VG_NONE || t->flag[c] >> i & 1) return 0;
+  need = worth(o->q[c] < o->q[other] ? o->q[c] : o->q[other]);
+  a = t->cell[c].v[i];
+  b = t->cell[other].v[link & 3];
+  for (int k = 0; k < 3; k++) {
+    uint32_t from = t->cell[c].v[vg_face[i][k]];
+    uint32_t to = t->cell[c].v[vg_face[i][(k + 1) % 3]];
+    double s = shape_of(t, from, to, b, a);
+
+    if (s <= need) return 0;
+    q[k] = (float)s;
+    v[k][0] = from;
+    v[k][1] = to;
+    v[k][2] = b;
+    v[k][3] = a;
+  }
+  if (vg_replace(o, 2, old, 3, (const uint32_t (*)[4])v, q, NULL)) return 0;
+  o->report->n_flip++;
+  return 1;
+}
+
+/* --- edge removal -------------------------------------------------------- */
+
+struct ring_plan {
+  const struct vg_tets *t;
+  uint32_t a, b, ring[VG_SHELL_MAX];
+  double need;
+  double best[VG_SHELL_MAX][VG_SHELL_MAX];  /* of the polygon i..j */
+  int split[VG_SHELL_MAX][VG_SHELL_MAX];
+  int n_new;
+  uint32_t v[2 * VG_SHELL_MAX][4];
+  float q[2 * VG_SHELL_MAX];
+};
+
+/* Worse of the two cells that triangle i k j of the ring makes. */
+static double triangle_shape(const struct ring_plan *r, int i, int k, int j)
+{
+  const uint32_t *v = r->ring;
+  double lo = shape_of(r->t, v[i], v[k], v[j], r->b), hi;
+
+  if (lo <= r->need) return 0;
+  hi = shape_of(r->t, v[i], v[j], v[k], r->a);
+  return hi < lo ? hi : lo;
+}
+
+/* Best triangulation of every sub-polygon, short ones first. */
+static int plan_ring(struct ring_plan *r, int n)
+{
+  for (int i = 0; i + 1 < n; i++) r->best[i][i + 1] = 1;
+  for (int span = 2; span < n; span++)
+    for (int i = 0; i + span < n; i++) {
+      int j = i + span;
+
+      r->best[i][j] = 0;
+      for (int k = i + 1; k < j; k++) {
+        double q = r->best[i][k] < r->best[k][j] ? r->best[i][k]
+                                                 : r->best[k][j];
+
+        if (q <= r->need || q <= r->best[i][j]) continue;
+        {
+          double s = triangle_shape(r, i, k, j);
+
+          if (s < q) q = s;
+        }
+        if (q <= r->need || q <= r->best[i][j]) continue;
+        r->best[i][j] = q;
+        r->split[i][j] = k;
+      }
+    }
+  return r->best[0][n - 1] > r->need;
+}
+
+static void emit(struct ring_plan *r, uint32_t a, uint32_t b, uint32_t c,
+                 uint32_t d)
+{
+  r->q[r->n_new] = (float)shape_of(r->t, a, b, c, d);
+  r->v[r->n_new][0] = a;
+  r->v[r->n_new][1] = b;
+  r->v[r->n_new][2] = c;
+  r->v[r->n_new++][3] = d;
+}
+
+static void emit_polygon(struct ring_plan *r, int i, int j)
+{
+  int k;
+
+  if (j - i < 2) return;
+  k = r->split[i][j];
+  emit(r, r->ring[i], r->ring[k], r->ring[j], r->b);
+  emit(r, r->ring[i], r->ring[j], r->ring[k], r->a);
+  emit_polygon(r, i, k);
+  emit_polygon(r, k, j);
+}
+
+static int remove_edge(struct vg_optimiser *o, uint32_t c, int i, int j)
+{
+  struct ring_plan r;
+  uint32_t cell[VG_SHELL_MAX];
+  double worst;
+  int n;
+
+  r.t = o->t;
+  r.a = o->t->cell[c].v[i];
+  r.b = o->t->cell[c].v[j];
+  n = vg_cavity_ring(o->t, c, r.a, r.b, VG_SHELL_MAX, 0, cell, r.ring);
+  if (n < 3) return 0;
+  worst = o->q[cell[0]];
+  for (int k = 1; k < n; k++)
+    if (o->q[cell[k]] < worst) worst = o->q[cell[k]];
+  r.need = worth(worst);
+  if (!plan_ring(&r, n)) return 0;
+  r.n_new = 0;
+  emit_polygon(&r, 0, n - 1);
+  if (vg_replace(o, n, cell, r.n_new, (const uint32_t (*)[4])r.v, r.q, NULL))
+    return 0;
+  o->report->n_flip++;
+  return 1;
+}
+
+int vg_swap(struct vg_optimiser *o, uint32_t c)
+{
+  for (int i = 0; i < 4; i++)
+    for (int j = i + 1; j < 4; j++)
+      if (remove_edge(o, c, i, j)) return 1;
+  for (int i = 0; i < 4; i++)
+    if (swap_face(o, c, i)) return 1;
+  return 0;
+}

@@ -1,0 +1,447 @@
+#include "core/recover/boundary.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/delaunay/insert.h"
+#include "core/geometry/hilbert.h"
+#include "core/recover/cdt_tetgen.h"
+#include "core/recover/recover.h"
+
+/* --- surface triangles found among cell faces ---------------------------- */
+
+struct tri_table {
+  size_t mask;
+  uint32_t *slot;            /* index of a triangle, or VG_NONE */
+  const uint32_t (*tri)[3];
+};
+
+static uint64_t hash3(const uint32_t v[3])
+{
+  uint64_t a = v[0], b = v[1], c = v[2];
+
+  /* symmetric in the three, so no sorting is needed to look up */
+  a = (a + b + c) * 0x9e3779b97f4a7c15u ^ (a * b + b * c + c * a);
+  return (a ^ a >> 31) * 0xc2b2ae3d27d4eb4fu >> 20;
+}
+
+/* 1: same turning sense, -1: opposite, 0: other points. */
+static int same_triangle(const uint32_t a[3], const uint32_t b[3])
+{
+  for (int k = 0; k < 3; k++) {
+    if (a[k] != b[0]) continue;
+    if (a[(k + 1) % 3] == b[1] && a[(k + 2) % 3] == b[2]) return 1;
+    if (a[(k + 1) % 3] == b[2] && a[(k + 2) % 3] == b[1]) return -1;
+  }
+  return 0;
+}
+
+static vg_status tri_table_init(struct tri_table *table, size_t n,
+                                const uint32_t (*tri)[3], struct vg_error *err)
+{
+  size_t size = 16;
+
+  while (size < 2 * n) size *= 2;
+  table->mask = size - 1;
+  table->tri = tri;
+  table->slot = vg_alloc(size, sizeof *table->slot);
+  if (!table->slot) return vg_fail_memory(err, "the surface table");
+  memset(table->slot, 0xff, size * sizeof *table->slot);
+  for (uint32_t i = 0; i < n; i++) {
+    size_t at = hash3(tri[i]) & table->mask;
+
+    while (table->slot[at] != VG_NONE) at = (at + 1) & table->mask;
+    table->slot[at] = i;
+  }
+  return VG_OK;
+}
+
+static uint32_t tri_table_find(const struct tri_table *table,
+                               const uint32_t v[3], int *sense)
+{
+  size_t at = hash3(v) & table->mask;
+
+  for (; table->slot[at] != VG_NONE; at = (at + 1) & table->mask) {
+    *sense = same_triangle(v, table->tri[table->slot[at]]);
+    if (*sense) return table->slot[at];
+  }
+  return VG_NONE;
+}
+
+vg_status vg_boundary_fix(struct vg_tets *t, size_t n_tri,
+                          const uint32_t (*tri)[3], uint8_t *missing,
+                          size_t *n_missing, struct vg_error *err)
+{
+  struct tri_table table;
+  uint8_t *found = vg_calloc(n_tri, 1);
+  vg_status st = tri_table_init(&table, n_tri, tri, err);
+
+  *n_missing = n_tri;
+  if (!found && st == VG_OK) st = vg_fail_memory(err, "the surface table");
+  for (uint32_t c = 0; st == VG_OK && c < t->n_cell; c++) {
+    if (t->flag[c] & VG_DEAD) continue;
+    for (uint32_t i = 0; i < 4; i++) {
+      uint32_t link = t->cell[c].link[i], v[3], at;
+      int sense;
+
+      if (link < 4 * c + i) continue;    /* seen from there */
+      for (int k = 0; k < 3; k++) v[k] = t->cell[c].v[vg_face[i][k]];
+      at = tri_table_find(&table, v, &sense);
+      if (at == VG_NONE) continue;
+      t->flag[c] |= (uint8_t)(1 << i);
+      if (link != VG_NONE) t->flag[link >> 2] |= (uint8_t)(1 << (link & 3));
+      *n_missing -= !found[at];
+      found[at] = 1;
+    }
+  }
+  for (size_t i = 0; missing && st == VG_OK && i < n_tri; i++)
+    missing[i] = !found[i];
+  free(found);
+  free(table.slot);
+  return st;
+}
+
+/* --- which side is fluid ------------------------------------------------- */
+
+enum { SIDE_UNKNOWN, SIDE_FLUID, SIDE_SOLID };
+
+struct sides {
+  struct vg_tets *t;
+  const struct vg_ruler *ruler;      /* NULL: everywhere */
+  double band;               /* sides are told so near the region */
+  int is_strict;             /* 1: a contradiction is an error */
+  uint8_t *side;             /* [n_cell] */
+  uint8_t *front;            /* [n_cell] bit i: face i is a triangle that faces
+                                the cell; bit 4 + i: that faces away */
+  uint8_t *near;             /* [n_cell] bit i: face i was found to lie in the
+                                band; bit 4 + i: not to */
+  uint32_t *queue;           /* [n_cell] cells with a side, as they got it */
+  size_t n_queue, next;
+};
+
+/* Is face i of cell c where sides are to be told? Kept for both its cells. */
+static int matters(const struct sides *s, uint32_t c, int i)
+{
+  const uint32_t *v = s->t->cell[c].v;
+  const uint8_t *f = vg_face[i];
+  uint32_t tri[3] = {v[f[0]], v[f[1]], v[f[2]]}, link = s->t->cell[c].link[i];
+  int known = s->ruler ? s->near[c] >> i & 0x11 : 1;
+
+  if (known) return known & 1;
+  known = vg_ruler_meets(s->ruler, tri, s->band) ? 1 : 0x10;
+  s->near[c] |= (uint8_t)(known << i);
+  if (link != VG_NONE) s->near[link >> 2] |= (uint8_t)(known << (link & 3));
+  return known & 1;
+}
+
+/* Another band: what was found is to be found again, but for some bits. */
+static void set_band(struct sides *s, double band, uint8_t keep)
+{
+  s->band = band;
+  for (size_t c = 0; c < s->t->n_cell && s->ruler; c++) s->near[c] &= keep;
+}
+
+static void set_side(struct sides *s, uint32_t c, uint8_t is)
+{
+  s->side[c] = is;
+  s->queue[s->n_queue++] = c;
+}
+
+static void find_front(struct sides *s, const struct tri_table *table)
+{
+  const struct vg_tets *t = s->t;
+
+  for (uint32_t c = 0; c < t->n_cell; c++)
+    for (uint32_t i = 0; t->flag[c] & VG_FIXED_FACES && i < 4; i++) {
+      uint32_t link = t->cell[c].link[i], v[3];
+      int sense = 0;
+
+      if (!(t->flag[c] >> i & 1) || link < 4 * c + i) continue;
+      for (int k = 0; k < 3; k++) v[k] = t->cell[c].v[vg_face[i][k]];
+      if (tri_table_find(table, v, &sense) == VG_NONE) continue;
+      s->front[c] |= (uint8_t)((sense > 0 ? 1 : 0x10) << i);
+      if (link != VG_NONE)
+        s->front[link >> 2] |=
+          (uint8_t)((sense > 0 ? 0x10 : 1) << (link & 3));
+    }
+}
+
+/* Seeds: the cells on both sides of every surface triangle. */
+static vg_status seed_sides(struct sides *s, struct vg_error *err)
+{
+  const struct vg_tets *t = s->t;
+
+  for (uint32_t c = 0; c < t->n_cell; c++)
+    for (int i = 0; s->front[c] && i < 4; i++) {
+      const double *x = t->x[t->cell[c].v[vg_face[i][0]]];
+      uint8_t is = s->front[c] >> i & 1 ? SIDE_FLUID : SIDE_SOLID;
+
+      if (!(s->front[c] >> i & 0x11) || (s->side[c] && !s->is_strict) ||
+          !matters(s, c, i))
+        continue;
+      if (s->side[c] == SIDE_UNKNOWN) set_side(s, c, is);
+      else if (s->side[c] != is && s->is_strict) return vg_fail(
+          err, VG_ERR_GEOMETRY, "the surface turns inside out at point %u "
+          "(%g %g %g); run 'vanguard check' on it",
+          t->cell[c].v[vg_face[i][0]] + 1, x[0], x[1], x[2]);
+    }
+  return VG_OK;
+}
+
+static vg_status spread_over(struct sides *s, uint32_t c, int i,
+                             struct vg_error *err)
+{
+  struct vg_tets *t = s->t;
+  uint32_t link = t->cell[c].link[i], other = link >> 2;
+  const double *x = t->x[t->cell[c].v[0]];
+  uint8_t is = link == VG_NONE ? SIDE_SOLID : s->side[other];
+
+  if (t->flag[c] >> i & 1 || is == s->side[c] || (is && !s->is_strict) ||
+      !matters(s, c, i))
+    return VG_OK;
+  if (is == SIDE_UNKNOWN) {
+    set_side(s, other, s->side[c]);
+    return VG_OK;
+  }
+  if (link == VG_NONE)
+    return vg_fail(err, VG_ERR_GEOMETRY,
+                   "the fluid is not enclosed near (%g %g %g): the outer "
+                   "boundary must point inward", x[0], x[1], x[2]);
+  return vg_fail(err, VG_ERR_GEOMETRY,
+                 "fluid and solid meet without a surface between them near "
+                 "(%g %g %g); run 'vanguard check' on the surface", x[0], x[1],
+                 x[2]);
+}
+
+static vg_status spread_sides(struct sides *s, struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  for (; st == VG_OK && s->next < s->n_queue; s->next++)
+    for (int i = 0; st == VG_OK && i < 4; i++)
+      st = spread_over(s, s->queue[s->next], i, err);
+  return st;
+}
+
+/* On the region itself every front face is known, so what is reached along it
+ * is sure. From there sides spread over the band; where they contradict each
+ * other, for want of faces, the nearest wins. */
+static vg_status tell_sides(struct sides *s, struct vg_error *err)
+{
+  vg_status st;
+
+  s->band = s->ruler ? -s->ruler->region->reach + 1e-6 : 0;
+  s->is_strict = 1;
+  VG_TRY(seed_sides(s, err));
+  VG_TRY(spread_sides(s, err));
+  if (!s->ruler) goto done;
+  set_band(s, VG_BAND_FLUID, 0x0f);
+  s->is_strict = 0;
+  s->next = 0;
+  VG_TRY(seed_sides(s, err));
+  st = spread_sides(s, err);
+done:
+  return st;
+}
+
+static int meets_region(const struct sides *s, uint32_t c)
+{
+  for (int i = 0; i < 4; i++)
+    if (matters(s, c, i)) return 1;
+  return 0;
+}
+
+/* With a region, cells that were not reached lie away from it: they count as
+ * fluid, so that they do not hinder insertion, but faces between these and
+ * what is known to be solid are fixed, since no surface was. Cells that were
+ * not reached although they meet the region have no front nearby that could
+ * tell: nothing is to grow there. */
+static void wall_off(struct sides *s)
+{
+  struct vg_tets *t = s->t;
+
+  set_band(s, VG_BAND_PLACE, 0);
+  for (uint32_t c = 0; c < t->n_cell; c++)
+    if (s->side[c] == SIDE_UNKNOWN && !(t->flag[c] & VG_DEAD))
+      s->side[c] = meets_region(s, c) ? SIDE_SOLID : SIDE_FLUID;
+  for (uint32_t c = 0; c < t->n_cell; c++)
+    for (int i = 0; i < 4 && s->side[c] == SIDE_SOLID; i++) {
+      uint32_t link = t->cell[c].link[i];
+
+      if (link == VG_NONE || s->side[link >> 2] == SIDE_SOLID) continue;
+      t->flag[c] |= (uint8_t)(1 << i);
+      t->flag[link >> 2] |= (uint8_t)(1 << (link & 3));
+    }
+}
+
+vg_status vg_boundary_sides(struct vg_tets *t, size_t n_tri,
+                            const uint32_t (*tri)[3],
+                            const struct vg_region *region,
+                            const struct vg_sizing *sizing,
+                            struct vg_error *err)
+{
+  struct tri_table table = {0};
+  struct vg_ruler ruler = {0};
+  struct sides s = { .t = t, .ruler = region ? &ruler : NULL };
+  size_t n_fluid = 0;
+  vg_status st = VG_OK;
+
+  s.side = vg_calloc(t->n_cell, 1);
+  s.front = vg_calloc(t->n_cell, 1);
+  s.near = vg_calloc(region ? t->n_cell : 1, 1);
+  s.queue = vg_alloc(t->n_cell, sizeof *s.queue);
+  if (!s.side || !s.front || !s.near || !s.queue)
+    st = vg_fail_memory(err, "boundary recovery");
+  if (st == VG_OK) st = tri_table_init(&table, n_tri, tri, err);
+  if (st == VG_OK && region)
+    st = vg_ruler_init(&ruler, region, sizing, t->n_point,
+                       (const double (*)[3])t->x, err);
+  if (st == VG_OK) find_front(&s, &table);
+  if (st == VG_OK) st = tell_sides(&s, err);
+  if (st == VG_OK && region) wall_off(&s);
+  for (size_t c = 0; st == VG_OK && c < t->n_cell; c++) {
+    if (s.side[c] == SIDE_FLUID) n_fluid++;
+    else t->flag[c] |= VG_OUTSIDE;
+  }
+  if (st == VG_OK && !n_fluid)
+    st = vg_fail(err, VG_ERR_GEOMETRY, "the surface encloses no fluid");
+  free(s.side);
+  free(s.front);
+  free(s.near);
+  free(s.queue);
+  vg_ruler_release(&ruler);
+  free(table.slot);
+  return st;
+}
+
+/* --- Delaunay tetrahedra of the points ----------------------------------- */
+
+/* The five tetrahedra of a box with corner bits x, y, z = 1, 2, 4. */
+static const uint32_t box_cell[5][4] = {
+  {0, 1, 2, 4}, {3, 2, 1, 7}, {5, 4, 7, 1}, {6, 7, 4, 2}, {1, 2, 4, 7}};
+
+static vg_status start_in_box(struct vg_tets *t, size_t n,
+                              const double (*x)[3], struct vg_error *err)
+{
+  double lo[3], hi[3], side = 0;
+
+  if (vg_tets_reserve_points(t, n + 8) || vg_tets_reserve_cells(t, 7 * n + 5))
+    return vg_fail_memory(err, "boundary recovery");
+  memcpy(t->x, x, n * sizeof *x);
+  t->n_point = n + 8;
+  for (int k = 0; k < 3; k++) {
+    lo[k] = hi[k] = x[0][k];
+    for (size_t i = 1; i < n; i++) {
+      if (x[i][k] < lo[k]) lo[k] = x[i][k];
+      if (x[i][k] > hi[k]) hi[k] = x[i][k];
+    }
+    if (hi[k] - lo[k] > side) side = hi[k] - lo[k];
+  }
+  for (size_t corner = 0; corner < 8; corner++)
+    for (int k = 0; k < 3; k++)
+      t->x[n + corner][k] = corner >> k & 1 ? hi[k] + side : lo[k] - side;
+  for (int c = 0; c < 5; c++) {
+    for (int i = 0; i < 4; i++)
+      t->cell[c].v[i] = (uint32_t)n + box_cell[c][i];
+    t->flag[c] = 0;
+  }
+  t->n_cell = 5;
+  return vg_tets_link(t, err);
+}
+
+static vg_status delaunay(struct vg_tets *t, size_t n, const double (*x)[3],
+                          struct vg_error *err)
+{
+  struct vg_inserter s = {0};
+  uint32_t *order = vg_alloc(n, sizeof *order), at = 0;
+  vg_status st = order ? VG_OK : vg_fail_memory(err, "boundary recovery");
+
+  if (st == VG_OK) st = vg_insertion_order(n, x, order, err);
+  if (st == VG_OK) st = start_in_box(t, n, x, err);
+  if (st == VG_OK) st = vg_inserter_init(&s, t, err);
+  for (size_t i = 0; st == VG_OK && i < n; i++) {
+    at = vg_tets_locate(t, at, x[order[i]]);
+    st = vg_insert(&s, order[i], at, 0, 0, err);
+    at = s.last;
+    if (st == VG_BLOCKED)
+      st = vg_fail(err, VG_ERR_GEOMETRY,
+                   "point %u (%.17g %.17g %.17g) coincides with another; "
+                   "weld the surface", order[i] + 1, x[order[i]][0],
+                   x[order[i]][1], x[order[i]][2]);
+  }
+  vg_inserter_release(&s);
+  free(order);
+  return st;
+}
+
+/* --- the whole void at once ---------------------------------------------- */
+
+static vg_status whole_void(size_t n, const double (*x)[3], size_t n_tri,
+                            const uint32_t (*tri)[3], struct vg_tets *out,
+                            struct vg_boundary_report *report,
+                            struct vg_error *err)
+{
+  struct vg_cdt_job job = {.n = n, .n_tri = n_tri, .x = x, .tri = tri};
+  size_t n_missing = n_tri;
+  vg_status st;
+
+  report->whole_void = 1;
+  VG_TRY(vg_cdt_tetgen(1, &job, err));
+  if (job.st == VG_OK) {
+    report->n_steiner = job.n_all - n;
+    report->n_pocket = 1;
+    report->n_pocket_cell = job.n_tet;
+    st = vg_tets_adopt(out, job.n_all, job.all, job.n_tet,
+                       (const uint32_t (*)[4])job.tet, err);
+    free(job.tet);
+    VG_TRY(st);
+    VG_TRY(vg_boundary_fix(out, n_tri, tri, NULL, &n_missing, err));
+  }
+  if (n_missing)
+    st = vg_fail(err, VG_ERR_GEOMETRY,
+                 "%zu of %zu surface triangles could not be recovered; run "
+                 "'vanguard check' on the surface", n_missing, n_tri);
+done:
+  return st;
+}
+
+vg_status vg_boundary_tets(size_t n, const double (*x)[3], size_t n_tri,
+                           const uint32_t (*tri)[3], struct vg_tets *out,
+                           struct vg_boundary_report *report,
+                           struct vg_error *err)
+{
+  vg_status st;
+
+  memset(report, 0, sizeof *report);
+  VG_TRY(delaunay(out, n, x, err));
+  st = vg_recover(out, n_tri, tri, report, err);
+  if (st == VG_ERR_GEOMETRY) {
+    vg_tets_release(out);
+    st = whole_void(n, x, n_tri, tri, out, report, err);
+  }
+  VG_TRY(st);
+  VG_TRY(vg_boundary_sides(out, n_tri, tri, NULL, NULL, err));
+done:
+  if (st < 0) vg_tets_release(out);
+  return st;
+}
+
+vg_status vg_boundary_open(size_t n, const double (*x)[3], size_t n_tri,
+                           const uint32_t (*tri)[3],
+                           const struct vg_region *region,
+                           const struct vg_sizing *sizing,
+                           struct vg_tets *out,
+                           struct vg_boundary_report *report,
+                           struct vg_error *err)
+{
+  vg_status st;
+
+  memset(report, 0, sizeof *report);
+  VG_TRY(delaunay(out, n, x, err));
+  VG_TRY(vg_recover(out, n_tri, tri, report, err));
+  VG_TRY(vg_boundary_sides(out, n_tri, tri, region, sizing, err));
+done:
+  if (st < 0) vg_tets_release(out);
+  return st;
+}

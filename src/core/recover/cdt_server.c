@@ -1,0 +1,243 @@
+#define _GNU_SOURCE
+#include "core/recover/cdt_server.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <sched.h>
+#include <signal.h>
+#include <stdatomic.h>
+#include <string.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "core/recover/cdt_tetgen.h"
+
+/* One message asks for one child; a socket to it comes along. */
+struct request {
+  int has_affinity;
+  cpu_set_t affinity;
+};
+
+union ticket {               /* control data that carries one descriptor */
+  char bytes[CMSG_SPACE(sizeof(int))];
+  struct cmsghdr aligned;
+};
+
+static atomic_int control = -1;  /* our end; closed by stop alone */
+static atomic_int server;        /* its process; 0: none, or waited for */
+static atomic_int server_died;
+
+/* --- a process that shares nothing --------------------------------------- */
+
+static void close_from(unsigned first, unsigned end)
+{
+  struct rlimit limit;
+
+  if (first >= end) return;
+#ifdef SYS_close_range
+  if (!syscall(SYS_close_range, first, end - 1, 0)) return;
+#endif
+  /* an older kernel; few processes have opened that many */
+  if (getrlimit(RLIMIT_NOFILE, &limit) || limit.rlim_cur > 65536)
+    limit.rlim_cur = 65536;
+  for (unsigned fd = first; fd < end && fd < limit.rlim_cur; fd++)
+    close((int)fd);
+}
+
+/* Descriptors of others would keep their files, pipes and sockets open. */
+static void keep_only(int fd)
+{
+  int nowhere = open("/dev/null", O_RDWR);
+
+  for (int k = 0; k <= STDERR_FILENO; k++)
+    if (k != fd && nowhere >= 0 && k != nowhere) dup2(nowhere, k);
+  close_from(STDERR_FILENO + 1, fd > STDERR_FILENO ? (unsigned)fd : 0);
+  close_from(fd > STDERR_FILENO ? (unsigned)fd + 1 : STDERR_FILENO + 1,
+             ~0u);
+}
+
+/* What a terminal or a batch system sends to a whole group: our user decides.
+ * All else as at the start of a program; no signal blocked. */
+static void set_signals(void)
+{
+  static const int others[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGUSR1,
+                               SIGUSR2};
+  static const int own[] = {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGPROF,
+                            SIGPIPE, SIGCHLD, SIGALRM};
+  sigset_t none;
+
+  for (size_t k = 0; k < sizeof others / sizeof *others; k++)
+    signal(others[k], SIG_IGN);
+  for (size_t k = 0; k < sizeof own / sizeof *own; k++)
+    signal(own[k], SIG_DFL);
+  sigemptyset(&none);
+  sigprocmask(SIG_SETMASK, &none, NULL);
+}
+
+void vg_cdt_server_part(pid_t parent, int fd)
+{
+  struct rlimit none = {0, 0};
+
+  set_signals();
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(1);   /* it ended before it could matter */
+  setrlimit(RLIMIT_CORE, &none);
+  keep_only(fd);
+}
+
+/* --- the server ---------------------------------------------------------- */
+
+/* Returns the size of the message, 0 at the end, -1 on failure; *fd is -1
+ * when none came. */
+static ssize_t take_request(int from, struct request *r, int *fd)
+{
+  union ticket t;
+  struct iovec part = {r, sizeof *r};
+  struct msghdr m = {.msg_iov = &part, .msg_iovlen = 1,
+                     .msg_control = t.bytes, .msg_controllen = sizeof t};
+  struct cmsghdr *c;
+  ssize_t n;
+
+  *fd = -1;
+  do n = recvmsg(from, &m, MSG_CMSG_CLOEXEC);
+  while (n < 0 && errno == EINTR);
+  c = n > 0 ? CMSG_FIRSTHDR(&m) : NULL;
+  if (c && c->cmsg_level == SOL_SOCKET && c->cmsg_type == SCM_RIGHTS &&
+      c->cmsg_len == CMSG_LEN(sizeof *fd))
+    memcpy(fd, CMSG_DATA(c), sizeof *fd);
+  return n;
+}
+
+__attribute__((noreturn))
+static void be_child(pid_t parent, int fd, const struct request *r)
+{
+  vg_cdt_server_part(parent, fd);
+  if (r->has_affinity)
+    sched_setaffinity(0, sizeof r->affinity, &r->affinity);
+  if (send(fd, "", 1, MSG_NOSIGNAL) != 1) _exit(1);
+  vg_cdt_serve(fd);
+}
+
+__attribute__((noreturn)) static void serve(int from)
+{
+  struct request r;
+  pid_t self = getpid();
+  ssize_t n;
+  int fd;
+
+  set_signals();
+  signal(SIGPIPE, SIG_IGN);
+  signal(SIGCHLD, SIG_IGN);  /* children leave no zombies */
+  prctl(PR_SET_NAME, "vanguard-tetgen");
+  keep_only(from);
+  while ((n = take_request(from, &r, &fd)) > 0) {
+    if (fd < 0) continue;
+    if (n == sizeof r && fork() == 0) be_child(self, fd, &r);
+    close(fd);
+  }
+  _exit(0);
+}
+
+vg_status vg_cdt_server_start(struct vg_error *err)
+{
+  int ends[2];
+  pid_t pid;
+
+  if (control >= 0) return VG_OK;
+  if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends))
+    return vg_fail_memory(err, "a socket for TetGen");
+  pid = fork();
+  if (pid == 0) serve(ends[1]);
+  close(ends[1]);
+  if (pid < 0) {
+    close(ends[0]);
+    return vg_fail_memory(err, "a process for TetGen");
+  }
+  server = pid;
+  server_died = 0;
+  control = ends[0];
+  return VG_OK;
+}
+
+/* --- its users ----------------------------------------------------------- */
+
+static void wait_for(int options)
+{
+  pid_t pid = atomic_exchange(&server, 0);
+
+  while (pid > 0 && waitpid(pid, NULL, options) < 0 && errno == EINTR) {}
+}
+
+void vg_cdt_server_stop(void)
+{
+  int fd = atomic_exchange(&control, -1);
+
+  if (fd < 0) return;
+  shutdown(fd, SHUT_RDWR);   /* ends it even where a copy of fd is about */
+  close(fd);
+  wait_for(0);
+}
+
+static void remember_death(void)
+{
+  struct pollfd p = {.fd = control, .events = 0};
+
+  if (p.fd < 0 || server_died) return;
+  if (poll(&p, 1, 0) <= 0 || !(p.revents & (POLLHUP | POLLERR))) return;
+  server_died = 1;
+  wait_for(0);               /* its socket is closed: it is about to end */
+}
+
+static int send_ticket(int to, int fd)
+{
+  struct request r = {0};
+  struct iovec part = {&r, sizeof r};
+  union ticket t = {{0}};
+  struct msghdr m = {.msg_iov = &part, .msg_iovlen = 1,
+                     .msg_control = t.bytes, .msg_controllen = sizeof t};
+  struct cmsghdr *c = CMSG_FIRSTHDR(&m);
+  ssize_t n;
+
+  /* refused on machines with more processors than a cpu_set_t has */
+  r.has_affinity = !sched_getaffinity(0, sizeof r.affinity, &r.affinity);
+  c->cmsg_level = SOL_SOCKET;
+  c->cmsg_type = SCM_RIGHTS;
+  c->cmsg_len = CMSG_LEN(sizeof fd);
+  memcpy(CMSG_DATA(c), &fd, sizeof fd);
+  do n = sendmsg(to, &m, MSG_NOSIGNAL);
+  while (n < 0 && errno == EINTR);
+  return n == sizeof r;
+}
+
+int vg_cdt_server_ask(void)
+{
+  int ends[2], to = control, sent;
+  ssize_t n = 0;
+  char hello;
+
+  if (to < 0 || server_died) return -1;
+  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends)) return -1;
+  sent = send_ticket(to, ends[1]);
+  close(ends[1]);
+  if (sent) {
+    do n = read(ends[0], &hello, 1);
+    while (n < 0 && errno == EINTR);
+  }
+  if (n == 1) return ends[0];
+  close(ends[0]);
+  remember_death();
+  return -1;
+}
+
+int vg_cdt_server_answers(void)
+{
+  int fd = vg_cdt_server_ask();
+
+  if (fd >= 0) close(fd);
+  return fd >= 0;
+}

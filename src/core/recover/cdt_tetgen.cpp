@@ -1,0 +1,263 @@
+#include "core/recover/cdt_tetgen.h"
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <vector>
+
+#include <signal.h>
+#include <sys/socket.h>
+#include <sys/time.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "core/recover/cdt_server.h"
+
+#define TETLIBRARY
+#include <tetgen.h>
+
+namespace {
+
+/* On some input TetGen turns in circles. A job is given up after this time on
+ * the processor, milliseconds and so many more for each triangle: hundreds
+ * of times what pockets need, so that the outcome is the same everywhere. */
+const size_t patience = 2000, patience_each = 5;
+
+/* On the socket, in the byte order of the machine: */
+struct question {            /* before x and tri */
+  uint64_t n, n_tri, way;    /* way: first of those below to be tried */
+};
+struct answer {              /* before the added points and the tetrahedra */
+  uint64_t n_added, n_tet;
+};
+
+const uint64_t n_max = 1u << 31;   /* TetGen counts in int */
+
+const uint64_t ways = 2;     /* for TetGen to do a job */
+
+bool put(int to, const void *data, size_t size)
+{
+  const char *at = static_cast<const char *>(data);
+
+  while (size) {
+    ssize_t n = send(to, at, size, MSG_NOSIGNAL);
+
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return false;
+    at += n;
+    size -= static_cast<size_t>(n);
+  }
+  return true;
+}
+
+bool get(int from, void *data, size_t size)
+{
+  char *at = static_cast<char *>(data);
+
+  while (size) {
+    ssize_t n = recv(from, at, size, 0);
+
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return false;
+    at += n;
+    size -= static_cast<size_t>(n);
+  }
+  return true;
+}
+
+/* --- in the child -------------------------------------------------------- */
+
+void take_facet(tetgenio::facet *f, const uint32_t tri[3])
+{
+  tetgenio::init(f);
+  f->numberofpolygons = 1;
+  f->polygonlist = new tetgenio::polygon[1];
+  tetgenio::init(f->polygonlist);
+  f->polygonlist->numberofvertices = 3;
+  f->polygonlist->vertexlist = new int[3];
+  for (int k = 0; k < 3; k++)
+    f->polygonlist->vertexlist[k] = static_cast<int>(tri[k]);
+}
+
+bool take_input(tetgenio &in, const question &q, int from)
+{
+  std::vector<uint32_t> tri(3 * q.n_tri);
+
+  in.firstnumber = 0;
+  in.numberofpoints = static_cast<int>(q.n);
+  in.pointlist = new REAL[3 * q.n];
+  in.facetlist = new tetgenio::facet[q.n_tri];
+  if (!get(from, in.pointlist, 3 * q.n * sizeof(REAL)) ||
+      !get(from, tri.data(), tri.size() * sizeof tri[0])) return false;
+  in.numberoffacets = static_cast<int>(q.n_tri);
+  for (size_t i = 0; i < q.n_tri; i++)
+    take_facet(&in.facetlist[i], &tri[3 * i]);
+  return true;
+}
+
+bool give_output(const tetgenio &out, const question &q, int to)
+{
+  answer a;
+
+  a.n_added = static_cast<uint64_t>(out.numberofpoints) - q.n;
+  a.n_tet = static_cast<uint64_t>(out.numberoftetrahedra);
+  return put(to, &a, sizeof a) &&
+         put(to, out.pointlist + 3 * q.n, 3 * a.n_added * sizeof(REAL)) &&
+         put(to, out.tetrahedronlist, 4 * a.n_tet * sizeof(int));
+}
+
+/* p: keep facets; Y: without points on them, in either of two ways; c: all of
+ * the hull; M: coplanar neighbours stay separate facets; T: relative tolerance
+ * of coplanarity, small because our predicates are exact.
+ *
+ * Points that TetGen puts on edges of facets it moves off them afterwards;
+ * where one stays there, and where it ends its process, the other way most
+ * often succeeds. */
+bool run(const question &q, int fd)
+{
+  char switches[ways][16] = {"pYcMQT1e-13", "pY/2cMQT1e-13"};
+  tetgenio in;
+
+  if (!take_input(in, q, fd)) return false;
+  for (uint64_t way = q.way; way < ways; way++) {
+    tetgenio out;
+
+    tetrahedralize(switches[way], &in, &out);
+    if (out.numberofcorners != 4) return false;
+    if (way + 1 == ways || out.numberoftrifaces == in.numberoffacets)
+      return give_output(out, q, fd);
+  }
+  return false;
+}
+
+void be_patient(size_t n_tri)
+{
+  size_t limit = patience + patience_each * n_tri;
+  itimerval time = {};
+
+  time.it_value.tv_sec = static_cast<time_t>(limit / 1000);
+  time.it_value.tv_usec = static_cast<suseconds_t>(limit % 1000 * 1000);
+  setitimer(ITIMER_PROF, &time, nullptr);
+}
+
+/* --- in the parent ------------------------------------------------------- */
+
+bool ask(const vg_cdt_job &job, uint64_t way, int to)
+{
+  question q = {job.n, job.n_tri, way};
+
+  return put(to, &q, sizeof q) && put(to, job.x, job.n * sizeof *job.x) &&
+         put(to, job.tri, job.n_tri * sizeof *job.tri);
+}
+
+/* One answer; false when the child is gone. */
+bool receive(vg_cdt_job &job, int from)
+{
+  answer a;
+
+  if (!get(from, &a, sizeof a)) return false;
+  if (a.n_added > n_max || a.n_tet > n_max) return false;
+  job.n_all = job.n + a.n_added;
+  job.n_tet = a.n_tet;
+  job.all = static_cast<double(*)[3]>(
+      std::malloc((job.n_all + 1) * sizeof *job.all));
+  job.tet = static_cast<uint32_t(*)[4]>(
+      std::malloc((job.n_tet + 1) * sizeof *job.tet));
+  if (job.all && job.tet) {
+    std::memcpy(job.all, job.x, job.n * sizeof *job.all);
+    if (get(from, job.all + job.n, a.n_added * sizeof *job.all) &&
+        get(from, job.tet, a.n_tet * sizeof *job.tet)) {
+      job.st = VG_OK;
+      return true;
+    }
+  }
+  std::free(job.all);
+  std::free(job.tet);
+  job.all = nullptr;
+  job.tet = nullptr;
+  return false;
+}
+
+/* A child of this process; -1 when refused. */
+int fork_here(pid_t *pid)
+{
+  int ends[2];
+  pid_t self = getpid();
+
+  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends)) return -1;
+  *pid = fork();
+  if (*pid == 0) {
+    vg_cdt_server_part(self, ends[1]);
+    vg_cdt_serve(ends[1]);
+  }
+  close(ends[1]);
+  if (*pid > 0) return ends[0];
+  close(ends[0]);
+  return -1;
+}
+
+/* A child works through the jobs until one ends it. Returns how many need not
+ * be tried again in this way, or a negative status. */
+long run_child(size_t n_job, vg_cdt_job *job, uint64_t way)
+{
+  int fd = vg_cdt_server_ask();
+  long done = 0, n = static_cast<long>(n_job);
+  pid_t pid = 0;
+
+  if (fd < 0) fd = fork_here(&pid);
+  if (fd < 0) return VG_ERR_MEMORY;
+  while (done < n && ask(job[done], way, fd) && receive(job[done], fd)) done++;
+  /* blame the job, unless the child was taken along by the server's end */
+  if (done < n && (pid || vg_cdt_server_answers())) done++;
+  shutdown(fd, SHUT_RDWR);
+  close(fd);
+  while (pid && waitpid(pid, nullptr, 0) < 0 && errno == EINTR) {
+  }
+  return done;
+}
+
+}  // namespace
+
+extern "C" void vg_cdt_serve(int fd)
+{
+  question q;
+
+  while (get(fd, &q, sizeof q)) {
+    be_patient(q.n_tri);
+    try {
+      if (!run(q, fd)) _exit(1);
+    } catch (...) {
+      _exit(1);
+    }
+  }
+  _exit(0);
+}
+
+extern "C" vg_status vg_cdt_tetgen(size_t n_job, struct vg_cdt_job *job,
+                                   struct vg_error *err)
+{
+  size_t next = 0;
+
+  for (size_t k = 0; k < n_job; k++) {
+    job[k].st = VG_ERR_GEOMETRY;
+    job[k].n_all = job[k].n_tet = 0;
+    job[k].all = nullptr;
+    job[k].tet = nullptr;
+    if (job[k].n > 100000000 || job[k].n_tri > 200000000)
+      return vg_fail(err, VG_ERR_UNSUPPORTED, "boundary recovery of %zu points "
+                     "exceeds TetGen's indices", job[k].n);
+  }
+  while (next < n_job) {
+    long done = run_child(n_job - next, job + next, 0);
+
+    if (done < 0) return vg_fail_memory(err, "a process for TetGen");
+    next += static_cast<size_t>(done);
+  }
+  for (size_t k = 0; k < n_job;) {
+    long done = job[k].st == VG_OK ? 1 : run_child(1, job + k, ways - 1);
+
+    if (done < 0) return vg_fail_memory(err, "a process for TetGen");
+    k += static_cast<size_t>(done);
+  }
+  return VG_OK;
+}

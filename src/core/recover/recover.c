@@ -1,0 +1,548 @@
+#include "core/recover/recover.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/unite.h"
+#include "core/geometry/hilbert.h"
+#include "core/geometry/predicates.h"
+#include "core/recover/cdt_tetgen.h"
+#include "core/recover/recover_flip.h"
+
+/* A pocket with more triangles is no pocket: where flips leave that many, the
+ * triangles of the surface are easier to recover than the rim of what they made
+ * of Delaunay tetrahedra. Some of 10,000 triangles were worth it. */
+enum { ROUNDS = 4, POCKET_MAX = 40000 };
+
+struct recovery {
+  struct vg_tets *t;
+  size_t n_tri;
+  const uint32_t (*tri)[3];
+  size_t n_missing;
+  uint32_t *missing;         /* [n_missing] triangles not in t */
+  uint32_t *parent;          /* [n_missing] pockets, as a union-find forest */
+  uint32_t *owner;           /* [cells] missing triangle of each cell */
+  uint32_t *star;            /* [points] a cell of each point */
+  size_t n_cell, cap_cell;
+  uint32_t *cell;            /* cells of all pockets, as they are found */
+  struct vg_boundary_report *report;
+};
+
+/* --- cells that a triangle passes through -------------------------------- */
+
+/* Conservative: touching at a corner or along an edge does not count, but a
+ * cell beside the triangle may. Counts a cell with a face in the triangle's
+ * plane, because that face is then to be replaced. */
+static int passes_through(const struct vg_tets *t, const uint32_t tri[3],
+                          uint32_t c)
+{
+  const double *a = t->x[tri[0]], *b = t->x[tri[1]], *d = t->x[tri[2]];
+  const uint32_t *v = t->cell[c].v;
+  int above = 0, below = 0, skip = -1;
+
+  for (int i = 0; i < 4; i++) {
+    double side = vg_orient3d(a, b, d, t->x[v[i]]);
+
+    above += side > 0;
+    below += side < 0;
+    if (side != 0) skip = i;
+  }
+  if (!(above && below) && above + below != 1) return 0;
+  if (above && below) skip = -1;
+  for (int i = 0; i < 4; i++) {
+    const double *p = t->x[v[vg_face[i][0]]], *q = t->x[v[vg_face[i][1]]];
+    const double *r = t->x[v[vg_face[i][2]]];
+
+    if (i == skip) continue;
+    if (!(vg_orient3d(p, q, r, a) > 0) && !(vg_orient3d(p, q, r, b) > 0) &&
+        !(vg_orient3d(p, q, r, d) > 0))
+      return 0;
+  }
+  return 1;
+}
+
+static int claim(struct recovery *r, uint32_t c, uint32_t k)
+{
+  if (r->owner[c] != VG_NONE) {
+    vg_unite(r->parent, r->owner[c], k);
+    return 0;
+  }
+  if (vg_reserve(&r->cell, &r->cap_cell, r->n_cell + 1, sizeof *r->cell))
+    return -1;
+  r->owner[c] = k;
+  r->cell[r->n_cell++] = c;
+  return 0;
+}
+
+/* Cells seen for one triangle, flagged VG_MARK while it is searched. */
+struct visit { size_t n, cap; uint32_t *cell; };
+
+static int visit(struct recovery *r, struct visit *list, uint32_t c)
+{
+  if (r->t->flag[c] & VG_MARK) return 0;
+  if (vg_reserve(&list->cell, &list->cap, list->n + 1, sizeof *list->cell))
+    return -1;
+  r->t->flag[c] |= VG_MARK;
+  list->cell[list->n++] = c;
+  return 0;
+}
+
+/* Do a cell and its neighbour behind face i share a corner of the triangle? */
+static int share_corner(const struct vg_cell *c, int i, const uint32_t tri[3])
+{
+  for (int k = 0; k < 3; k++)
+    for (int j = 0; j < 3; j++)
+      if (c->v[vg_face[i][k]] == tri[j]) return 1;
+  return 0;
+}
+
+/* The search goes around the corners of the triangle and through its pocket,
+ * which is connected and begins at a corner. */
+static int find_pocket(struct recovery *r, struct visit *list, uint32_t k)
+{
+  struct vg_tets *t = r->t;
+  const uint32_t *tri = r->tri[r->missing[k]];
+  int bad = 0;
+
+  list->n = 0;
+  for (int i = 0; i < 3 && !bad; i++) bad = visit(r, list, r->star[tri[i]]);
+  for (size_t m = 0; m < list->n && !bad; m++) {
+    uint32_t c = list->cell[m];
+    int inside = passes_through(t, tri, c);
+
+    if (inside) bad = claim(r, c, k);
+    for (int i = 0; i < 4 && !bad; i++) {
+      uint32_t link = t->cell[c].link[i];
+
+      if (link != VG_NONE && (inside || share_corner(&t->cell[c], i, tri)))
+        bad = visit(r, list, link >> 2);
+    }
+  }
+  for (size_t m = 0; m < list->n; m++)
+    t->flag[list->cell[m]] &= (uint8_t)~VG_MARK;
+  return bad;
+}
+
+/* One more ring of cells around every pocket. */
+static int add_ring(struct recovery *r)
+{
+  size_t n = r->n_cell;
+
+  for (size_t m = 0; m < n; m++)
+    for (int i = 0; i < 4; i++) {
+      uint32_t link = r->t->cell[r->cell[m]].link[i];
+
+      if (link != VG_NONE && claim(r, link >> 2, r->owner[r->cell[m]]))
+        return -1;
+    }
+  return 0;
+}
+
+/* --- closing one pocket -------------------------------------------------- */
+
+struct pocket {
+  size_t n_cell, n_tri, cap_tri, n_rim, n_point;
+  const struct vg_key *cell; /* index: cells of the pocket */
+  uint32_t (*tri)[3];        /* rim, fixed faces inside, missing triangles */
+  uint32_t *point;           /* [n_point] sorted numbers in t */
+  double (*x)[3];            /* [n_point]; NULL: not to be closed now */
+};
+
+static int add_tri(struct pocket *p, const uint32_t v[3])
+{
+  if (vg_reserve(&p->tri, &p->cap_tri, p->n_tri + 1, sizeof *p->tri))
+    return -1;
+  memcpy(p->tri[p->n_tri++], v, 3 * sizeof *v);
+  return 0;
+}
+
+static int add_faces(const struct vg_tets *t, struct pocket *p, int rim)
+{
+  for (size_t m = 0; m < p->n_cell; m++) {
+    uint32_t c = p->cell[m].index, v[3];
+
+    for (int i = 0; i < 4; i++) {
+      uint32_t link = t->cell[c].link[i], other = link >> 2;
+      int is_rim = link == VG_NONE || !(t->flag[other] & VG_MARK);
+
+      if (is_rim != rim) continue;
+      if (!rim && (!(t->flag[c] >> i & 1) || c > other)) continue;
+      for (int k = 0; k < 3; k++) v[k] = t->cell[c].v[vg_face[i][k]];
+      if (add_tri(p, v)) return -1;
+    }
+  }
+  if (rim) p->n_rim = p->n_tri;
+  return 0;
+}
+
+static int by_number(const void *a, const void *b)
+{
+  uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
+
+  return (x > y) - (x < y);
+}
+
+/* The points used, and the triangles in terms of them. */
+static int number_points(const struct vg_tets *t, struct pocket *p)
+{
+  size_t n = 0;
+
+  p->point = vg_alloc(4 * p->n_cell, sizeof *p->point);
+  if (!p->point) return -1;
+  for (size_t m = 0; m < p->n_cell; m++)
+    for (int i = 0; i < 4; i++)
+      p->point[n++] = t->cell[p->cell[m].index].v[i];
+  qsort(p->point, n, sizeof *p->point, by_number);
+  for (size_t m = 0; m < n; m++)
+    if (!m || p->point[m] != p->point[m - 1])
+      p->point[p->n_point++] = p->point[m];
+  for (size_t m = 0; m < p->n_tri; m++)
+    for (int k = 0; k < 3; k++) {
+      const uint32_t *at = bsearch(&p->tri[m][k], p->point, p->n_point,
+                                   sizeof *at, by_number);
+
+      if (!at) return 1;     /* a corner outside: the pocket is too small */
+      p->tri[m][k] = (uint32_t)(at - p->point);
+    }
+  return 0;
+}
+
+/* Do two cells lie on the same side of the face between them? */
+static int is_folded(const struct vg_tets *t)
+{
+  for (uint32_t c = 0; c < t->n_cell; c++)
+    for (int i = 0; i < 4; i++) {
+      uint32_t link = t->cell[c].link[i], v[3], w[3];
+      int k = 0;
+
+      if (link == VG_NONE) continue;
+      for (int m = 0; m < 3; m++) {
+        v[m] = t->cell[c].v[vg_face[i][m]];
+        w[m] = t->cell[link >> 2].v[vg_face[link & 3][m]];
+      }
+      while (w[k] != v[0]) k++;
+      if (w[(k + 1) % 3] == v[1]) return 1;
+    }
+  return 0;
+}
+
+/* Cells outside the rim are flagged; then: is every triangle there? */
+static vg_status verify(struct vg_tets *local, const struct pocket *p,
+                        struct vg_error *err)
+{
+  const uint32_t (*tri)[3] = (const uint32_t (*)[3])p->tri;
+  size_t n_missing;
+  vg_status st = vg_boundary_fix(local, p->n_rim, tri, NULL, &n_missing, err);
+
+  if (st == VG_OK && !n_missing)
+    st = vg_boundary_sides(local, p->n_rim, tri, NULL, NULL, err);
+  if (st == VG_OK && !n_missing)
+    st = vg_boundary_fix(local, p->n_tri, tri, NULL, &n_missing, err);
+  if (st == VG_OK && (n_missing || is_folded(local)))
+    st = vg_fail(err, VG_ERR_GEOMETRY, "a pocket was not closed faithfully");
+  return st;
+}
+
+/* Put the local cells in place of the pocket's; links are renewed later. */
+static vg_status replace(struct recovery *r, const struct pocket *p,
+                         const struct vg_tets *local, struct vg_error *err)
+{
+  struct vg_tets *t = r->t;
+  size_t added = local->n_point - p->n_point, first = t->n_point;
+
+  if (vg_tets_reserve_points(t, added) ||
+      vg_tets_reserve_cells(t, local->n_cell))
+    return vg_fail_memory(err, "boundary recovery");
+  memcpy(t->x + first, local->x + p->n_point, added * sizeof *t->x);
+  t->n_point += added;
+  for (size_t m = 0; m < p->n_cell; m++)
+    if (vg_tets_drop(t, p->cell[m].index))
+      return vg_fail_memory(err, "boundary recovery");
+  for (size_t c = 0; c < local->n_cell; c++) {
+    uint32_t slot;
+
+    if (local->flag[c] & VG_OUTSIDE) continue;
+    slot = vg_tets_take(t);
+    for (int i = 0; i < 4; i++) {
+      uint32_t v = local->cell[c].v[i];
+
+      t->cell[slot].v[i] = v < p->n_point ? p->point[v]
+                                    : (uint32_t)(first + v - p->n_point);
+    }
+    t->flag[slot] = 0;
+  }
+  r->report->n_pocket++;
+  r->report->n_pocket_cell += local->n_cell;
+  r->report->n_steiner += added;
+  return VG_OK;
+}
+
+/* What TetGen needs of one pocket. tri: its missing triangles.
+ * VG_BLOCKED when a corner of them lies outside. */
+static vg_status describe(struct recovery *r, struct pocket *p, size_t n_tri,
+                          const struct vg_key *tri, struct vg_error *err)
+{
+  double (*x)[3] = NULL;
+  int bad;
+
+  for (size_t m = 0; m < p->n_cell; m++)
+    r->t->flag[p->cell[m].index] |= VG_MARK;
+  bad = add_faces(r->t, p, 1) || add_faces(r->t, p, 0);
+  for (size_t m = 0; m < p->n_cell; m++)
+    r->t->flag[p->cell[m].index] &= (uint8_t)~VG_MARK;
+  for (size_t m = 0; m < n_tri && !bad; m++)
+    bad = add_tri(p, r->tri[r->missing[tri[m].index]]);
+  if (!bad) bad = number_points(r->t, p);
+  if (!bad) {
+    x = vg_alloc(p->n_point, sizeof *x);
+    bad = x ? 0 : -1;
+  }
+  if (bad) return bad > 0 ? VG_BLOCKED
+                          : vg_fail_memory(err, "boundary recovery");
+  for (size_t k = 0; k < p->n_point; k++)
+    memcpy(x[k], r->t->x[p->point[k]], sizeof *x);
+  p->x = x;
+  return VG_OK;
+}
+
+/* Take the answer for one pocket, if it is faithful. */
+static vg_status accept(struct recovery *r, struct pocket *p,
+                        struct vg_cdt_job *job, struct vg_error *err)
+{
+  struct vg_tets local = VG_TETS_INIT;
+  vg_status st = job->st;
+
+  if (st == VG_OK)
+    st = vg_tets_adopt(&local, job->n_all, job->all, job->n_tet,
+                       (const uint32_t (*)[4])job->tet, err);
+  if (st == VG_OK) st = verify(&local, p, err);
+  if (st == VG_OK) st = replace(r, p, &local, err);
+  vg_tets_release(&local);
+  free(job->tet);
+  if (st != VG_ERR_GEOMETRY) return st;
+  r->report->n_retry++;
+  return VG_OK;
+}
+
+/* --- rounds -------------------------------------------------------------- */
+
+/* Cells and missing triangles, both sorted by pocket, are cut up in step. */
+static vg_status describe_all(struct recovery *r, const struct vg_key *cell,
+                              const struct vg_key *tri, struct pocket *pocket,
+                              size_t *n_pocket, struct vg_error *err)
+{
+  size_t c = 0, k = 0;
+  vg_status st = VG_OK;
+
+  *n_pocket = 0;
+  while (st == VG_OK && c < r->n_cell) {
+    struct pocket *p = &pocket[*n_pocket];
+    uint64_t id = cell[c].key;
+    size_t c1 = c, k1;
+
+    memset(p, 0, sizeof *p);
+    while (c1 < r->n_cell && cell[c1].key == id) c1++;
+    while (k < r->n_missing && tri[k].key < id) k++;
+    for (k1 = k; k1 < r->n_missing && tri[k1].key == id; k1++) {}
+    p->cell = cell + c;
+    p->n_cell = c1 - c;
+    ++*n_pocket;
+    st = describe(r, p, k1 - k, tri + k, err);
+    if (st == VG_BLOCKED) {
+      p->n_tri = 0;          /* not closed in this round */
+      r->report->n_retry++;
+      st = VG_OK;
+    }
+    c = c1;
+    k = k1;
+  }
+  for (size_t m = 0; st == VG_OK && m < *n_pocket; m++)
+    if (pocket[m].n_tri > POCKET_MAX)
+      st = vg_fail(err, VG_ERR_GEOMETRY, "%zu of %zu surface triangles are "
+                   "missing, too many for pockets", r->n_missing, r->n_tri);
+  return st;
+}
+
+/* A pocket that TetGen refuses waits for the next round. */
+static vg_status close_all(struct recovery *r, size_t n,
+                           struct pocket *pocket, struct vg_error *err)
+{
+  struct vg_cdt_job *job = vg_calloc(n, sizeof *job);
+  size_t n_job = 0;
+  vg_status st = VG_OK;
+
+  if (!job) return vg_fail_memory(err, "boundary recovery");
+  for (size_t k = 0; k < n; k++)
+    if (pocket[k].x)
+      job[n_job++] = (struct vg_cdt_job){
+        .n = pocket[k].n_point, .n_tri = pocket[k].n_tri,
+        .x = (const double (*)[3])pocket[k].x,
+        .tri = (const uint32_t (*)[3])pocket[k].tri};
+  st = vg_cdt_tetgen(n_job, job, err);
+  n_job = 0;
+  for (size_t k = 0; k < n; k++) {
+    if (!pocket[k].x) continue;
+    if (st == VG_OK) {
+      st = accept(r, &pocket[k], &job[n_job], err);
+    } else {
+      free(job[n_job].all);
+      free(job[n_job].tet);
+    }
+    n_job++;
+  }
+  free(job);
+  return st;
+}
+
+static vg_status close_pockets(struct recovery *r, struct vg_error *err)
+{
+  struct vg_key *cell = vg_alloc(r->n_cell, sizeof *cell);
+  struct vg_key *tri = vg_alloc(r->n_missing, sizeof *tri);
+  struct pocket *pocket = vg_alloc(r->n_missing, sizeof *pocket);
+  size_t n = 0;
+  vg_status st = VG_OK;
+
+  if (!cell || !tri || !pocket) st = vg_fail_memory(err, "boundary recovery");
+  for (uint32_t m = 0; st == VG_OK && m < r->n_missing; m++) {
+    tri[m].key = vg_root_of(r->parent, m);
+    tri[m].index = m;
+  }
+  for (size_t m = 0; st == VG_OK && m < r->n_cell; m++) {
+    cell[m].key = vg_root_of(r->parent, r->owner[r->cell[m]]);
+    cell[m].index = r->cell[m];
+  }
+  if (st == VG_OK) st = vg_sort_keys(r->n_missing, tri, err);
+  if (st == VG_OK) st = vg_sort_keys(r->n_cell, cell, err);
+  if (st == VG_OK) st = describe_all(r, cell, tri, pocket, &n, err);
+  if (st == VG_OK) st = close_all(r, n, pocket, err);
+  for (size_t k = 0; k < n; k++) {
+    free(pocket[k].x);
+    free(pocket[k].tri);
+    free(pocket[k].point);
+  }
+  free(pocket);
+  free(cell);
+  free(tri);
+  return st;
+}
+
+static vg_status find_pockets(struct recovery *r, int rings,
+                              struct vg_error *err)
+{
+  struct visit list = {0};
+  struct vg_tets *t = r->t;
+  int bad = 0;
+
+  r->n_cell = 0;
+  free(r->owner);
+  free(r->star);
+  r->owner = vg_alloc(t->n_cell, sizeof *r->owner);
+  r->star = vg_alloc(t->n_point, sizeof *r->star);
+  if (!r->owner || !r->star) return vg_fail_memory(err, "boundary recovery");
+  memset(r->owner, 0xff, t->n_cell * sizeof *r->owner);
+  for (uint32_t c = 0; c < t->n_cell; c++)
+    for (int i = 0; i < 4 && !(t->flag[c] & VG_DEAD); i++)
+      r->star[t->cell[c].v[i]] = c;
+  for (uint32_t k = 0; k < r->n_missing; k++) r->parent[k] = k;
+  for (uint32_t k = 0; k < r->n_missing && !bad; k++)
+    bad = find_pocket(r, &list, k);
+  for (int k = 0; k < rings && !bad; k++) bad = add_ring(r);
+  free(list.cell);
+  return bad ? vg_fail_memory(err, "boundary recovery") : VG_OK;
+}
+
+static vg_status list_missing(struct recovery *r, uint8_t *missing,
+                              struct vg_error *err)
+{
+  size_t n = 0;
+  vg_status st;
+
+  for (size_t c = 0; c < r->t->n_cell; c++)
+    r->t->flag[c] &= (uint8_t)~VG_FIXED_FACES;
+  st = vg_boundary_fix(r->t, r->n_tri, r->tri, missing, &r->n_missing, err);
+  for (size_t k = 0; st == VG_OK && k < r->n_tri; k++)
+    if (missing[k]) r->missing[n++] = (uint32_t)k;
+  return st;
+}
+
+/* Fixed faces were kept up by every flip; so their number tells whether all
+ * triangles are there, if each comes once. */
+static int is_complete(const struct recovery *r)
+{
+  static const uint8_t bits[16] = {0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3,
+                                   4};
+  size_t n = 0;
+
+  for (size_t c = 0; c < r->t->n_cell; c++)
+    n += bits[r->t->flag[c] & VG_FIXED_FACES];
+  return !r->n_missing && n == 2 * r->n_tri;
+}
+
+static vg_status flip_first(struct recovery *r, uint8_t *missing,
+                            struct vg_error *err)
+{
+  vg_status st = vg_recover_flips(r->t, r->n_tri, r->tri, &r->n_missing,
+                                  r->missing, err);
+
+  if (st == VG_OK && !is_complete(r)) st = list_missing(r, missing, err);
+  return st;
+}
+
+/* Dead ones are like no other. */
+static struct vg_cell *copy_of_cells(const struct vg_tets *t)
+{
+  struct vg_cell *copy = vg_alloc(t->n_cell, sizeof *copy);
+
+  if (!copy) return NULL;
+  memcpy(copy, t->cell, t->n_cell * sizeof *copy);
+  for (size_t k = 0; k < t->n_free; k++) copy[t->free[k]].v[0] = VG_NONE;
+  return copy;
+}
+
+vg_status vg_recover(struct vg_tets *t, size_t n_tri, const uint32_t (*tri)[3],
+                     struct vg_boundary_report *report, struct vg_error *err)
+{
+  struct recovery r = {0};
+  struct vg_cell *before = NULL;
+  size_t n_before = 0;
+  uint8_t *missing = vg_alloc(n_tri, 1);
+  vg_status st = VG_OK;
+
+  r.t = t;
+  r.n_tri = n_tri;
+  r.tri = tri;
+  r.report = report;
+  r.missing = vg_alloc(n_tri, sizeof *r.missing);
+  r.parent = vg_alloc(n_tri, sizeof *r.parent);
+  if (!missing || !r.missing || !r.parent)
+    st = vg_fail_memory(err, "boundary recovery");
+  if (st == VG_OK) st = list_missing(&r, missing, err);
+  report->n_face_lost = r.n_missing;
+  if (st == VG_OK && r.n_missing) {
+    n_before = t->n_cell;
+    before = copy_of_cells(t);
+    if (!before) st = vg_fail_memory(err, "boundary recovery");
+  }
+  if (st == VG_OK && r.n_missing) st = flip_first(&r, missing, err);
+  report->n_face_left = r.n_missing;
+  for (int round = 0; st == VG_OK && r.n_missing && round < ROUNDS; round++) {
+    st = find_pockets(&r, round, err);
+    if (st == VG_OK) st = close_pockets(&r, err);
+    if (st == VG_OK) st = vg_tets_link(t, err);
+    if (st == VG_OK) st = list_missing(&r, missing, err);
+  }
+  if (st == VG_OK && r.n_missing)
+    st = vg_fail(err, VG_ERR_GEOMETRY, "%zu surface triangles could not be "
+                 "recovered in pockets", r.n_missing);
+  if (st == VG_OK && report->n_face_lost)
+    st = vg_recover_delaunay(t, n_before, before, &report->n_restored, err);
+  free(before);
+  free(missing);
+  free(r.missing);
+  free(r.parent);
+  free(r.owner);
+  free(r.star);
+  free(r.cell);
+  return st;
+}

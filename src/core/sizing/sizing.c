@@ -1,0 +1,274 @@
+#include "core/sizing/sizing.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/memory.h"
+#include "core/sizing/sizing_parts.h"
+#include "core/sizing/sizing_surface.h"
+
+/* Leaves beyond those that a surface accounts for: sources may need some. */
+#define LEAF_BASE (1u << 20)
+#define LEAF_PER_SAMPLE 8
+
+static vg_status check_options(const struct vg_sizing_options *o,
+                               struct vg_error *err)
+{
+  if (!isfinite(o->growth) || o->growth <= 1)
+    return vg_fail(err, VG_ERR_INPUT,
+                   "growth rate %g of sizes is not above 1; 1.2 is usual",
+                   o->growth);
+  if (!isfinite(o->scale) || o->scale <= 0)
+    return vg_fail(err, VG_ERR_INPUT,
+                   "scale %g of source spacings is not positive; 1 leaves "
+                   "them as they are", o->scale);
+  if (!isfinite(o->h_min) || o->h_min < 0)
+    return vg_fail(err, VG_ERR_INPUT,
+                   "smallest size %g is not a length; 0 means none",
+                   o->h_min);
+  if (!(o->h_max >= 0))
+    return vg_fail(err, VG_ERR_INPUT,
+                   "largest size %g is not a length; 0 means the largest "
+                   "of the input", o->h_max);
+  if (o->h_max > 0 && o->h_min > o->h_max)
+    return vg_fail(err, VG_ERR_INPUT,
+                   "smallest size %g is above the largest, %g; exchange "
+                   "them", o->h_min, o->h_max);
+  return VG_OK;
+}
+
+/* Largest size in the input. With a surface it is the cap where none is given:
+ * cells larger than any face of the boundary are of no use, and a uniform
+ * boundary should give a uniform mesh. VGRID's mean never exceeds it. */
+static double largest(const struct vg_source_set *set,
+                      const struct vg_samples *s)
+{
+  double h = 0;
+
+  for (size_t i = 0; i < s->n; i++)
+    if (s->h[i] > h) h = s->h[i];
+  for (size_t i = 0; i < set->n_bounded; i++) {
+    if (set->bounded[i].law.h0 > h) h = set->bounded[i].law.h0;
+    if (set->bounded[i].law.h1 > h) h = set->bounded[i].law.h1;
+  }
+  return h;
+}
+
+/* Cube around the surface, or around the sources where there is none; a bit
+ * larger, so that no point of the domain is beyond it by rounding. */
+static double root_cube(const struct vg_mesh *surface,
+                        const struct vg_source_set *set, double h,
+                        double lo[3])
+{
+  double hi[3] = { 0, 0, 0 }, side = 0, far = 0;
+  int on_surface = surface && surface->n_point;
+
+  if (on_surface) vg_mesh_bounds(surface, lo, hi);
+  else vg_source_bounds(set, lo, hi);
+  for (int k = 0; k < 3; k++) {
+    if (hi[k] - lo[k] > side) side = hi[k] - lo[k];
+    if (fabs(lo[k]) > far) far = fabs(lo[k]);
+    if (fabs(hi[k]) > far) far = fabs(hi[k]);
+  }
+  side = on_surface && side > 0 ? 1.001 * side : 3 * side + 20 * h;
+  if (side < 1e-6 * far) side = 1e-6 * far;
+  for (int k = 0; k < 3; k++) lo[k] = 0.5 * (lo[k] + hi[k]) - 0.5 * side;
+  return side;
+}
+
+static void find_range(struct vg_sizing *s)
+{
+  const float *h = s->octree.leaf[0];
+  float least = h[0], most = h[0];
+
+  for (size_t i = 0; i < 8 * s->octree.n_leaf; i++) {
+    if (h[i] < least) least = h[i];
+    if (h[i] > most) most = h[i];
+  }
+  s->least = (double)least;
+  s->most = (double)most;
+}
+
+/* The part of vg_sizing_new that has checked input and owns nothing. */
+static vg_status build(const struct vg_sizing_options *o,
+                       const struct vg_mesh *surface, struct vg_field *f,
+                       const struct vg_samples *samples, struct vg_sizing *s,
+                       struct vg_error *err)
+{
+  size_t n = samples->n_sized, limit = LEAF_BASE;
+  double lo[3] = { 0, 0, 0 }, cap = largest(&f->set, samples), side;
+
+  if (!(cap > 0) && !(o->h_max > 0 && isfinite(o->h_max)))
+    return vg_fail(err, VG_ERR_INPUT,
+                   "nothing defines a size: no source, no edge of the surface "
+                   "(surface_sizes) and no largest size; give one of them");
+  side = root_cube(surface, &f->set, cap > 0 ? cap : o->h_max, lo);
+  if (!isfinite(side) || !isfinite(lo[0] + lo[1] + lo[2]))
+    return vg_fail(err, VG_ERR_INPUT,
+                   "coordinates are too large for a field of sizes (extent "
+                   "%g); use another unit of length", side);
+  f->slope = o->growth - 1;
+  f->h_min = o->h_min;
+  f->h_max = o->h_max > 0 ? o->h_max : n ? cap : INFINITY;
+  if (f->h_max < f->h_min) f->h_max = f->h_min;
+  s->growth = f->slope;
+  s->cap = o->h_max > 0 ? o->h_max : f->set.n_mean ? cap : INFINITY;
+  if (n < (VG_OCTREE_LEAF - LEAF_BASE) / LEAF_PER_SAMPLE)
+    limit += n * LEAF_PER_SAMPLE;
+  return vg_octree_build(f, lo, side, limit, o->threads, &s->octree, err);
+}
+
+/* The growth of the surface from above or from below. */
+static vg_status make_near(const struct vg_sizing_options *o,
+                           const struct vg_mesh *surface,
+                           const struct vg_samples *all, int below,
+                           struct vg_near **out, struct vg_error *err)
+{
+  struct vg_samples s = VG_SAMPLES_INIT;
+  vg_status st;
+
+  VG_TRY(vg_samples_thin(surface, all, o->growth - 1, below, o->threads, &s,
+                         err));
+  st = vg_near_new(s.n, (const double (*)[3])s.p, s.h, o->growth - 1,
+                   o->threads, out, err);
+done:
+  vg_samples_release(&s);
+  return st;
+}
+
+vg_status vg_sizing_new(const struct vg_sizing_options *options, size_t n,
+                        const struct vg_source *source,
+                        const struct vg_mesh *surface,
+                        struct vg_sizing **out, struct vg_error *err)
+{
+  vg_status st = VG_OK;
+  atomic_int is_steep = 0;
+  struct vg_field f = { .set = VG_SOURCE_SET_INIT, .is_steep = &is_steep };
+  struct vg_samples samples = VG_SAMPLES_INIT;
+  struct vg_near *near = NULL, *under = NULL;
+  struct vg_sizing *s = NULL;
+
+  VG_TRY(check_options(options, err));
+  VG_TRY(vg_source_check(n, source, err));
+  if (surface) VG_TRY(vg_samples_check(surface, err));
+  s = vg_calloc(1, sizeof *s);
+  if (!s) {
+    st = vg_fail_memory(err, "the field of sizes");
+    goto done;
+  }
+  VG_TRY(vg_source_prepare(options, n, source, 1, &f.set, err));
+  if (surface && options->from_surface)
+    VG_TRY(vg_samples_make(surface, options->threads, &samples, err));
+  if (samples.n_sized)
+    VG_TRY(make_near(options, surface, &samples, 0, &near, err));
+  if (samples.n_sized && n)
+    VG_TRY(make_near(options, surface, &samples, 1, &under, err));
+  f.near = near;
+  f.under = under;
+  VG_TRY(build(options, surface, &f, &samples, s, err));
+  find_range(s);
+  s->slope = is_steep ? vg_near_steep(s->growth) : s->growth;
+  *out = s;
+  s = NULL;
+done:
+  vg_source_release(&f.set);
+  vg_samples_release(&samples);
+  vg_near_free(near);
+  vg_near_free(under);
+  vg_sizing_free(s);
+  return st;
+}
+
+void vg_sizing_free(struct vg_sizing *s)
+{
+  if (!s) return;
+  if (s->common.data) vg_common_release(&s->common);
+  else vg_octree_release(&s->octree);
+  free(s);
+}
+
+double vg_sizing_at(const struct vg_sizing *s, const double x[3])
+{
+  double outside, h = vg_octree_at(&s->octree, x, &outside);
+
+  if (!(outside > 0)) return h;
+  h += s->growth * outside;
+  return h < s->cap ? h : s->cap;
+}
+
+void vg_sizing_eval(const struct vg_sizing *s, size_t n, const double (*x)[3],
+                    double *h)
+{
+  for (size_t i = 0; i < n; i++) h[i] = vg_sizing_at(s, x[i]);
+}
+
+double vg_sizing_least(const struct vg_sizing *s, const double lo[3],
+                       double side, double x[3])
+{
+  const struct vg_octree *t = &s->octree;
+  double h = vg_octree_least(t, lo, side, x), gap2 = 0;
+
+  for (int k = 0; k < 3; k++) {
+    double gap = fmax(t->lo[k] - lo[k] - side, lo[k] - t->lo[k] - t->side);
+
+    if (gap > 0) gap2 += gap * gap;
+  }
+  if (!(gap2 > 0)) return h;
+  h += s->growth * sqrt(gap2);
+  return h < s->cap ? h : s->cap;
+}
+
+void vg_sizing_range(const struct vg_sizing *s, double *h_min, double *h_max)
+{
+  *h_min = s->least;
+  *h_max = s->most;
+}
+
+double vg_sizing_slope(const struct vg_sizing *s)
+{
+  return s->slope;
+}
+
+double vg_sizing_growth(const struct vg_sizing *s)
+{
+  return s->growth;
+}
+
+double vg_sizing_below(double growth, double h, double d)
+{
+  double slope = growth - 1;
+  double even = h * (1 + vg_near_offset(slope)) - slope * d;
+  double steep = h * vg_near_rise(slope) - vg_near_steep(slope) * d;
+  double v = fmin(h, fmin(even, steep));
+
+  return v > 0 ? v : 0;
+}
+
+double vg_sizing_below_edge(double growth, double h, double d)
+{
+  double slope = growth - 1;
+  double even = (h + slope * d) / (1 + vg_near_offset(slope));
+  double steep = (h + vg_near_steep(slope) * d) / vg_near_rise(slope);
+
+  return fmax(h, fmax(even, steep));
+}
+
+size_t vg_sizing_leaves(const struct vg_sizing *s)
+{
+  return s->octree.n_leaf;
+}
+
+double vg_sizing_sources_at(const struct vg_sizing_options *options, size_t n,
+                            const struct vg_source *source,
+                            const double x[3])
+{
+  struct vg_source_set set = VG_SOURCE_SET_INIT;
+  double h;
+
+  if (!n || vg_source_prepare(options, n, source, 0, &set, NULL) < 0)
+    return INFINITY;
+  h = vg_source_at(&set, x);
+  vg_source_release(&set);
+  if (options->h_max > 0 && h > options->h_max) h = options->h_max;
+  return h > options->h_min ? h : options->h_min;
+}

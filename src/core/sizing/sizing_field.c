@@ -1,0 +1,60 @@
+/* The exact field: sources, and the growth of the surface. */
+#include "core/sizing/sizing_octree.h"
+
+double vg_field_clamp(const struct vg_field *f, double h)
+{
+  h = h < f->h_max ? h : f->h_max;
+  return h > f->h_min ? h : f->h_min;
+}
+
+/* Where the upper bound is below the sources it holds, and the lower one,
+ * which costs most, need not be known. */
+double vg_field_combine(const struct vg_field *f, const double x[3],
+                        double source, struct vg_near_reach *reach,
+                        uint32_t *hint)
+{
+  double h = source < f->h_max ? source : f->h_max, most, by;
+
+  if (!f->near) return vg_field_clamp(f, h);
+  most = vg_near_above(f->near, x, x, f->h_max, hint);
+  if (most <= h) return vg_field_clamp(f, most);
+  h = vg_near_below(f->under, x, h, most, reach, &by);
+  if (h < most && h < vg_near_knee(f->under, by))
+    atomic_store_explicit(f->is_steep, 1, memory_order_relaxed);
+  return vg_field_clamp(f, h < most ? h : most);
+}
+
+double vg_field_at(const struct vg_field *f, const double x[3],
+                   struct vg_near_reach *reach, uint32_t *hint)
+{
+  return vg_field_combine(f, x, vg_source_at(&f->set, x), reach, hint);
+}
+
+double vg_field_floor(const struct vg_field *f, const double lo[3],
+                      double side, struct vg_near_reach *reach,
+                      uint32_t *hint)
+{
+  const double far = 0.8660254037844387 * side;
+  double hi[3], mid[3], h, most, below, by, more, fall = far * f->slope;
+
+  for (int k = 0; k < 3; k++) {
+    hi[k] = lo[k] + side;
+    mid[k] = lo[k] + 0.5 * side;
+  }
+  h = vg_source_floor(&f->set, lo, hi);
+  if (f->set.n_mean) {
+    double mean = vg_source_mean(f->set.n_mean, f->set.mean, mid);
+
+    h = mean < h ? mean : h;
+  }
+  if (!(h < f->h_max)) h = f->h_max;
+  if (!f->near) return vg_field_clamp(f, h);
+  most = vg_near_above(f->near, lo, hi, f->h_max, hint);
+  if (most <= h) return vg_field_clamp(f, most);
+  below = vg_near_below(f->under, mid, h + fall, most + fall, reach, &by);
+  more = vg_near_falls(f->under, by, below, far);
+  below -= fall;
+  if (more > 0 && below - more > h) h = below - more;
+  else if (!(more > 0)) h = below;
+  return vg_field_clamp(f, h < most ? h : most);
+}

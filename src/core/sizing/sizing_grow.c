@@ -1,0 +1,505 @@
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "core/sizing/sizing_build.h"
+
+/* The octree is made level by level. A cell is split where trilinear
+ * interpolation between its corners would miss the field by more than
+ * TOLERANCE, but not below the size found in it (floor of it): there the
+ * field varies by a few per cent only.
+ *
+ * A split makes up to 19 new points: middles of 12 edges and 6 faces, and the
+ * centre. A middle that is a corner of all cells around it is sampled; one
+ * that is not, because a neighbour is not split, hangs: it takes the mean of
+ * the ends of its edge or the corners of its face, which is what the
+ * neighbour's interpolation gives there, so the result is continuous. Parents
+ * of a hanging point are corners of split cells: points of levels before.
+ *
+ * Cells know those around them by their parents', so a middle that several
+ * cells have belongs to the first of them, and each counts its own: no table
+ * of points is searched, and threads share nothing. */
+#define TOLERANCE 0.03
+#define NONE UINT32_MAX
+#define POINT_MAX (UINT32_MAX - 1)
+#define FAMILIES 16     /* of eight cells, for a thread at a time */
+
+/* Room from the beginning. Blocks of tens of megabytes grow by new addresses,
+ * smaller ones by copies, which one thread would make. */
+#define ROOM ((size_t)1 << 20)
+
+/* Neighbours of a split cell that share a middle of it, as directions, and
+ * what the middle is in their lattices of 3 x 3 x 3 points. */
+struct share {
+  uint8_t n, way[3], at[3];
+};
+
+struct level {
+  struct vg_octree_build *b;
+  size_t first, n;      /* cells */
+  uint32_t half;        /* of the side */
+  double side;
+  uint8_t *mark;        /* [n] split */
+  float *centre;        /* [n] the field there, NAN where not asked for */
+  size_t n_split;
+  uint32_t *which;      /* [n_split] cells */
+  uint32_t (*around)[27];       /* [n_split] cells by direction, itself at
+                                   13; only across faces and edges */
+  const uint32_t (*above)[27];  /* the same of their parents */
+  uint32_t *own, *base; /* [n_split] middles that it owns, first point */
+  struct share share[27];
+};
+
+static const int stride[3] = { 1, 3, 9 };
+
+static void coordinates(int i, int at[3])
+{
+  for (int k = 0; k < 3; k++, i /= 3) at[k] = i % 3;
+}
+
+/* Decisions, for the eight children of a cell together. */
+
+struct family {
+  const struct level *l;
+  struct vg_near_reach reach;
+  float face[125];      /* field at the centres of their faces; NAN */
+};
+
+/* Cells around this one are next. */
+static void start_family(struct family *y, const struct vg_octree_cell *c)
+{
+  const struct level *l = y->l;
+
+  vg_octree_place(l->b, c->at, y->reach.mid);
+  for (int k = 0; k < 3; k++) y->reach.mid[k] += l->side;
+  y->reach.trifle = 0.25f * c->floor;
+  y->reach.is_known = 0;
+}
+
+/* At point i of the lattice of a cell. */
+static float sample(struct family *y, const struct vg_octree_cell *c, int i)
+{
+  const struct level *l = y->l;
+  uint32_t hint = c->hint, q[3];
+  double x[3];
+  int at[3];
+
+  coordinates(i, at);
+  for (int k = 0; k < 3; k++) q[k] = c->at[k] + l->half * (uint32_t)at[k];
+  vg_octree_place(l->b, q, x);
+  return (float)vg_field_at(l->b->f, x, &y->reach, &hint);
+}
+
+/* Siblings share faces. */
+static float sample_face(struct family *y, const struct vg_octree_cell *c,
+                         int sibling, int i)
+{
+  static const int wide[3] = { 1, 5, 25 };
+  int at[3], slot = 0;
+
+  coordinates(i, at);
+  for (int k = 0; k < 3; k++)
+    slot += wide[k] * (at[k] + 2 * (sibling >> k & 1));
+  if (isnan(y->face[slot])) y->face[slot] = sample(y, c, i);
+  return y->face[slot];
+}
+
+/* Mean of the corners that lie on face (axis, end); of all where axis < 0. */
+static float corner_mean(const float h[8], int axis, int end)
+{
+  float sum = 0;
+
+  for (int i = 0; i < 8; i++)
+    if (axis < 0 || (i >> axis & 1) == end) sum += h[i];
+  return axis < 0 ? sum / 8 : sum / 4;
+}
+
+static int misses(float interpolated, float exact)
+{
+  return fabsf(interpolated - exact) > (float)TOLERANCE * exact;
+}
+
+static int test_cell(struct family *y, const struct vg_octree_cell *c,
+                     int sibling, const float h[8], float *centre)
+{
+  *centre = sample(y, c, 13);
+  if (misses(corner_mean(h, -1, 0), *centre)) return 1;
+  for (int i = 0; i < 6; i++) {
+    int at = 13 + stride[i / 2] * (i % 2 ? 1 : -1);
+
+    if (misses(corner_mean(h, i / 2, i % 2), sample_face(y, c, sibling, at)))
+      return 1;
+  }
+  return 0;
+}
+
+static int wants_split(struct family *y, struct vg_octree_cell *c,
+                       int sibling, float *centre)
+{
+  const struct level *l = y->l;
+  const struct vg_octree_build *b = l->b;
+  float h[8], low = INFINITY;
+  double lo[3], hi[3];
+
+  if (l->side <= b->floor * (double)c->floor) return 0;
+  vg_octree_place(b, c->at, lo);
+  for (int k = 0; k < 3; k++) hi[k] = lo[k] + l->side;
+  c->floor = (float)vg_field_floor(b->f, lo, l->side, &y->reach,
+                                   &c->hint);
+  if (l->side <= b->floor * (double)c->floor) return 0;
+  if (!b->f->set.n_mean && b->f->h_max <= c->floor * (1 + TOLERANCE))
+    return 0;
+  for (int i = 0; i < 8; i++) {
+    h[i] = b->point[c->corner[i]].h;
+    if (h[i] < low) low = h[i];
+  }
+  if (low > c->floor * (1 + 2 * TOLERANCE)) return 1;
+  if (!vg_source_resolved(&b->f->set, lo, hi, l->side)) return 1;
+  return test_cell(y, c, sibling, h, centre);
+}
+
+/* The root has no siblings. */
+static void decide_body(void *context, size_t first, size_t end, int worker)
+{
+  const struct level *l = context;
+  struct vg_octree_build *b = l->b;
+  struct family y = { .l = l };
+
+  (void)worker;
+  for (size_t k = first; k < end; k++) {
+    start_family(&y, b->cell + l->first + 8 * k);
+    for (int i = 0; i < 125; i++) y.face[i] = NAN;
+    for (size_t i = 8 * k; i < 8 * k + 8 && i < l->n; i++) {
+      l->centre[i] = NAN;
+      l->mark[i] = (uint8_t)wants_split(&y, b->cell + l->first + i,
+                                        (int)(i % 8), l->centre + i);
+    }
+  }
+}
+
+/* Which cells are split. Where the tree would become too large for its limit
+ * the floor rises: a coarser field, but one that covers everything alike. */
+static void decide(struct level *l)
+{
+  struct vg_octree_build *b = l->b;
+  size_t n = 0;
+
+  vg_parallel_for(b->threads, (l->n + 7) / 8, FAMILIES, decide_body, l);
+  for (size_t i = 0; i < l->n; i++) n += l->mark[i];
+  while (n && b->n_cell + 8 * n > b->max_cell) {
+    b->floor *= 1.25;
+    n = 0;
+    for (size_t i = 0; i < l->n; i++) {
+      if (l->side <= b->floor * (double)b->cell[l->first + i].floor)
+        l->mark[i] = 0;
+      n += l->mark[i];
+    }
+  }
+  l->n_split = n;
+}
+
+/* Splitting. */
+
+static uint32_t neighbour(const struct level *l, size_t cell, const int d[3])
+{
+  size_t of_level = cell - l->first;
+  uint32_t parent, child = 0;
+  int way = 13;
+
+  if (!l->above) return NONE;
+  for (int k = 0; k < 3; k++) {
+    int v = (int)(of_level % 8 >> k & 1) + d[k];
+
+    way += v < 0 ? -stride[k] : v > 1 ? stride[k] : 0;
+    child |= (uint32_t)(v & 1) << k;
+  }
+  parent = l->above[of_level / 8][way];
+  if (parent == NONE || !l->b->cell[parent].child) return NONE;
+  return l->b->cell[parent].child + child;
+}
+
+static void around_body(void *context, size_t first, size_t end, int worker)
+{
+  const struct level *l = context;
+
+  (void)worker;
+  for (size_t s = first; s < end; s++) {
+    l->b->cell[l->which[s]].child = (uint32_t)(l->b->n_cell + 8 * s);
+    for (int way = 0; way < 27; way++) {
+      int d[3], off = 0;
+
+      coordinates(way, d);
+      for (int k = 0; k < 3; k++) off += --d[k] != 0;
+      l->around[s][way] = off < 3 ? neighbour(l, l->which[s], d) : NONE;
+    }
+    l->around[s][13] = l->which[s];
+  }
+}
+
+/* Middles have one coordinate that is odd, or two; the centre has three, and
+ * nobody to share with. */
+static void make_shares(struct level *l)
+{
+  for (int i = 0; i < 27; i++) {
+    int at[3], axis[3], n = 0;
+
+    coordinates(i, at);
+    for (int k = 0; k < 3; k++)
+      if (at[k] != 1) axis[n++] = k;
+    l->share[i] = (struct share){ .n = 0 };
+    for (int some = 1; n < 3 && some < 1 << n; some++) {
+      struct share *s = l->share + i;
+      int way = 13, there = i;
+
+      for (int k = 0; k < n; k++)
+        if (some >> k & 1) {
+          int sign = at[axis[k]] - 1;
+
+          way += sign * stride[axis[k]];
+          there -= 2 * sign * stride[axis[k]];
+        }
+      s->way[s->n] = (uint8_t)way;
+      s->at[s->n++] = (uint8_t)there;
+    }
+  }
+}
+
+/* Splits that have middle i of split s, and the first of them. */
+struct sharing {
+  size_t first;
+  int at;               /* the middle in its lattice */
+  unsigned n;
+};
+
+static struct sharing find_sharing(const struct level *l, size_t s, int i)
+{
+  const struct vg_octree_build *b = l->b;
+  const struct share *all = l->share + i;
+  struct sharing found = { s, i, 1 };
+
+  for (int k = 0; k < all->n; k++) {
+    uint32_t cell = l->around[s][all->way[k]];
+    size_t other;
+
+    if (cell == NONE || !b->cell[cell].child) continue;
+    found.n++;
+    other = (b->cell[cell].child - b->n_cell) / 8;
+    if (other > found.first) continue;
+    found.first = other;
+    found.at = all->at[k];
+  }
+  return found;
+}
+
+static int is_corner(int i)
+{
+  int at[3];
+
+  coordinates(i, at);
+  return at[0] != 1 && at[1] != 1 && at[2] != 1;
+}
+
+static void own_body(void *context, size_t first, size_t end, int worker)
+{
+  const struct level *l = context;
+
+  (void)worker;
+  for (size_t s = first; s < end; s++) {
+    l->own[s] = 0;
+    for (int i = 0; i < 27; i++)
+      if (!is_corner(i) && find_sharing(l, s, i).first == s)
+        l->own[s] |= 1u << i;
+  }
+}
+
+/* Cells inside the root that have a middle when all of them are split. */
+static unsigned full_count(const struct vg_octree_point *p)
+{
+  unsigned n = p->n_parent == 2 ? 4 : p->n_parent == 4 ? 2 : 1;
+  unsigned on_side = 0;
+
+  if (!p->n_parent) return 0;
+  for (int k = 0; k < 3; k++)
+    on_side += p->at[k] == 0 || p->at[k] == VG_OCTREE_TOP;
+  return n >> on_side;
+}
+
+/* Middle i that split s owns. Its parents are what its odd coordinates span:
+ * points of levels before, known by now. */
+static void make_point(const struct level *l, struct family *y, size_t s,
+                       int i, unsigned n_cell, struct vg_octree_point *p)
+{
+  struct vg_octree_build *b = l->b;
+  const struct vg_octree_cell *c = b->cell + l->which[s];
+  float known = l->centre[l->which[s] - l->first];
+  int at[3];
+
+  coordinates(i, at);
+  *p = (struct vg_octree_point){ .hint = c->hint };
+  for (int k = 0; k < 3; k++)
+    p->at[k] = c->at[k] + l->half * (uint32_t)at[k];
+  for (int j = 0; j < 8 && i != 13; j++) {
+    int on = 1;
+
+    for (int k = 0; k < 3; k++)
+      on = on && (at[k] == 1 || at[k] / 2 == (j >> k & 1));
+    if (on && p->n_parent < 4) p->parent[p->n_parent++] = c->corner[j];
+  }
+  p->hangs = n_cell < full_count(p);
+  if (p->hangs) p->h = vg_octree_hang(b, p);
+  else if (i == 13 && !isnan(known)) p->h = known;
+  else p->h = sample(y, c, i);
+}
+
+static void make_children(const struct level *l, size_t s,
+                          const uint32_t id[27])
+{
+  struct vg_octree_build *b = l->b;
+  const struct vg_octree_cell *c = b->cell + l->which[s];
+
+  for (int j = 0; j < 8; j++) {
+    struct vg_octree_cell *d = b->cell + c->child + j;
+    int base = (j & 1) + (j >> 1 & 1) * 3 + (j >> 2) * 9;
+
+    *d = *c;
+    d->child = 0;
+    for (int k = 0; k < 3; k++) d->at[k] += l->half * (uint32_t)(j >> k & 1);
+    for (int i = 0; i < 8; i++)
+      d->corner[i] = id[base + (i & 1) + (i >> 1 & 1) * 3 + (i >> 2) * 9];
+  }
+}
+
+static void split_body(void *context, size_t first, size_t end, int worker)
+{
+  const struct level *l = context;
+  struct vg_octree_build *b = l->b;
+  struct family y = { .l = l };
+  size_t family = SIZE_MAX;
+
+  (void)worker;
+  for (size_t s = first; s < end; s++) {
+    const struct vg_octree_cell *c = b->cell + l->which[s];
+    uint32_t id[27], next = l->base[s];
+
+    if ((l->which[s] - l->first) / 8 != family) start_family(&y, c);
+    family = (l->which[s] - l->first) / 8;
+    for (int j = 0; j < 8; j++)
+      id[2 * (j & 1) + 6 * (j >> 1 & 1) + 18 * (j >> 2)] = c->corner[j];
+    for (int i = 0; i < 27; i++) {
+      struct sharing all;
+
+      if (is_corner(i)) continue;
+      all = find_sharing(l, s, i);
+      id[i] = l->base[all.first] + (uint32_t)__builtin_popcount(
+                l->own[all.first] & ((1u << all.at) - 1));
+      if (all.first != s) continue;
+      make_point(l, &y, s, i, all.n, b->point + next++);
+    }
+    make_children(l, s, id);
+  }
+}
+
+/* Numbers of the splits, of their points and children. */
+static int number_splits(struct level *l)
+{
+  struct vg_octree_build *b = l->b;
+  size_t n = 0, n_point = b->n_point;
+
+  for (size_t i = 0; i < l->n; i++)
+    if (l->mark[i]) l->which[n++] = (uint32_t)(l->first + i);
+  vg_parallel_for(b->threads, n, VG_OCTREE_GRAIN, around_body, l);
+  vg_parallel_for(b->threads, n, VG_OCTREE_GRAIN, own_body, l);
+  for (size_t s = 0; s < n; s++) {
+    l->base[s] = (uint32_t)n_point;
+    n_point += (size_t)__builtin_popcount(l->own[s]);
+    if (n_point > POINT_MAX) return -1;
+  }
+  if (vg_reserve(&b->point, &b->cap_point, n_point, sizeof *b->point) ||
+      vg_reserve(&b->cell, &b->cap_cell, b->n_cell + 8 * n, sizeof *b->cell))
+    return -1;
+  b->n_point = n_point;
+  return 0;
+}
+
+static int split_level(struct level *l)
+{
+  struct vg_octree_build *b = l->b;
+  int bad;
+
+  decide(l);
+  l->which = vg_alloc(l->n_split, sizeof *l->which);
+  l->around = vg_alloc(l->n_split, sizeof *l->around);
+  l->own = vg_alloc(l->n_split, sizeof *l->own);
+  l->base = vg_alloc(l->n_split, sizeof *l->base);
+  bad = !l->which || !l->around || !l->own || !l->base || number_splits(l);
+  if (!bad) {
+    vg_parallel_for(b->threads, l->n_split, FAMILIES, split_body, l);
+    b->n_cell += 8 * l->n_split;
+  }
+  free(l->which);
+  free(l->own);
+  free(l->base);
+  return bad ? -1 : 0;
+}
+
+/* *above: around[] of the level above, replaced by that of this one. */
+static int grow_level(struct vg_octree_build *b, int level,
+                      uint32_t (**above)[27])
+{
+  size_t first = b->level[level], n = b->level[level + 1] - first;
+  uint32_t half = VG_OCTREE_TOP >> (level + 1);
+  struct level l = { .b = b, .first = first, .n = n, .half = half,
+                     .side = b->unit * 2 * half,
+                     .mark = vg_alloc(n, sizeof *l.mark),
+                     .centre = vg_alloc(n, sizeof *l.centre),
+                     .above = (const uint32_t (*)[27])*above };
+  int bad = 1;
+
+  if (l.mark && l.centre) {
+    make_shares(&l);
+    bad = split_level(&l);
+  }
+  free(l.mark);
+  free(l.centre);
+  free(*above);
+  *above = l.around;
+  return bad;
+}
+
+static int make_root(struct vg_octree_build *b)
+{
+  if (vg_reserve(&b->cell, &b->cap_cell, ROOM, sizeof *b->cell) ||
+      vg_reserve(&b->point, &b->cap_point, ROOM, sizeof *b->point))
+    return -1;
+  memset(b->cell, 0, sizeof *b->cell);
+  b->n_cell = 1;
+  for (uint32_t i = 0; i < 8; i++) {
+    struct vg_octree_point *p = b->point + b->n_point++;
+    double x[3];
+
+    *p = (struct vg_octree_point){ .hint = 0 };
+    for (int k = 0; k < 3; k++) p->at[k] = (i >> k & 1) * VG_OCTREE_TOP;
+    vg_octree_place(b, p->at, x);
+    p->h = (float)vg_field_at(b->f, x, NULL, &p->hint);
+    b->cell->corner[i] = i;
+  }
+  return 0;
+}
+
+int vg_octree_grow(struct vg_octree_build *b)
+{
+  uint32_t (*above)[27] = NULL;
+  int bad = make_root(b);
+
+  b->level[1] = 1;
+  b->n_level = 1;
+  while (!bad && b->n_level <= VG_OCTREE_DEPTH) {
+    bad = grow_level(b, b->n_level - 1, &above);
+    if (b->n_cell == b->level[b->n_level]) break;
+    b->level[++b->n_level] = b->n_cell;
+  }
+  free(above);
+  return bad;
+}

@@ -1,0 +1,358 @@
+#include "core/sizing/sizing_held.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/sizing/sizing_places.h"
+
+#define NEARBY 3        /* spacings around a source that has no place */
+#define MANY 200        /* more sources are looked at in less detail */
+
+struct finder {
+  const struct vg_sizing_options *options;
+  const struct vg_source *source;
+  const struct vg_mesh *front;
+  const struct vg_sizing *sizing;
+  struct vg_held *out;
+  size_t cap, cap_lost, cap_place;
+};
+
+/* Faces that hold a source back. */
+struct holders {
+  size_t n, cap;
+  struct holder { double edge, distance; } *item;
+};
+
+void vg_held_release(struct vg_held *h)
+{
+  free(h->item);
+  free(h->lost);
+  free(h->place);
+  free(h->unmet);
+  memset(h, 0, sizeof *h);
+}
+
+/* What a source asks for at x, its growth included. One of VGRID's does by
+ * itself only where it is: there the mean is its spacing. */
+static double asked_at(const struct finder *f, size_t i, const double x[3])
+{
+  struct vg_source s = f->source[i];
+
+  if (s.kind == VG_SOURCE_VGRID_NODE) s.kind = VG_SOURCE_POINT;
+  if (s.kind == VG_SOURCE_VGRID_LINE) s.kind = VG_SOURCE_LINE;
+  if (s.kind != f->source[i].kind) s.r0 = s.growth = 0;
+  return vg_sizing_sources_at(f->options, 1, &s, x);
+}
+
+/* Mean edge of a triangle, and how far its corners and its middle are. */
+static void measure(const struct vg_mesh *m, size_t tri, const double x[3],
+                    double *edge, double *distance)
+{
+  double mid[3] = { 0, 0, 0 }, near2 = INFINITY;
+
+  *edge = 0;
+  for (int c = 0; c < 4; c++) {
+    const double *a = c < 3 ? m->point[m->tri[tri][c]] : mid;
+    const double *b = m->point[m->tri[tri][(c + 1) % 3]];
+    double d2 = 0, e2 = 0;
+
+    for (int k = 0; k < 3; k++) {
+      d2 += (a[k] - x[k]) * (a[k] - x[k]);
+      e2 += (b[k] - a[k]) * (b[k] - a[k]);
+      if (c < 3) mid[k] += a[k] / 3;
+    }
+    if (c < 3) *edge += sqrt(e2) / 3;
+    near2 = fmin(near2, d2);
+  }
+  *distance = sqrt(near2);
+}
+
+/* The face that asks for most, and all that ask for more than the source. */
+static int find_faces(const struct finder *f, struct vg_held_source *h,
+                      struct holders *all)
+{
+  const double growth = f->options->growth;
+  double most = 0;
+
+  h->face = SIZE_MAX;
+  all->n = 0;
+  for (size_t i = 0; i < f->front->n_tri; i++) {
+    struct holder g;
+    double v;
+
+    measure(f->front, i, h->at, &g.edge, &g.distance);
+    v = vg_sizing_below(growth, g.edge, g.distance);
+    if (!(v > h->asked)) continue;
+    if (vg_reserve(&all->item, &all->cap, all->n + 1, sizeof g)) return -1;
+    all->item[all->n++] = g;
+    if (!(v > most)) continue;
+    most = v;
+    h->face = i;
+    h->edge = g.edge;
+    h->distance = g.distance;
+  }
+  if (most < 0.5 * h->got) h->face = SIZE_MAX;
+  return 0;
+}
+
+/* Whether none of them would with another growth rate. */
+static int lets_go(const struct holders *all, double growth, double asked)
+{
+  for (size_t i = 0; i < all->n; i++)
+    if (vg_sizing_below(growth, all->item[i].edge, all->item[i].distance) >
+        asked) return 0;
+  return 1;
+}
+
+static void find_remedy(const struct finder *f, struct vg_held_source *h,
+                        const struct holders *all)
+{
+  double nearest = h->distance;
+
+  h->edge_wanted = h->growth_wanted = 0;
+  if (h->face == SIZE_MAX) return;
+  for (size_t i = 0; i < all->n; i++)
+    nearest = fmin(nearest, all->item[i].distance);
+  h->edge_wanted = vg_sizing_below_edge(f->options->growth, h->asked, nearest);
+  for (int k = 21; k <= 40; k++)
+    if (0.05 * k > f->options->growth && lets_go(all, 0.05 * k, h->asked)) {
+      h->growth_wanted = 0.05 * k;
+      return;
+    }
+}
+
+static vg_status blame(const struct finder *f, struct vg_held_source *h,
+                       struct vg_error *err)
+{
+  struct holders all = { 0 };
+  vg_status st = VG_OK;
+
+  if (find_faces(f, h, &all)) st = vg_fail_memory(err, "the sources");
+  else find_remedy(f, h, &all);
+  free(all.item);
+  return st;
+}
+
+static void take(struct vg_held_source *h, const double x[3], double asked,
+                 double got)
+{
+  memcpy(h->at, x, sizeof h->at);
+  h->asked = asked;
+  h->got = got;
+}
+
+/* Whether that is worth telling. What is around a source need not follow it
+ * everywhere. */
+static int is_held(const struct vg_held_source *h, int is_wide)
+{
+  return h->n_held &&
+         (h->n_held == h->n_place ||
+          (!is_wide &&
+           (double)h->n_held >= VG_HELD_SHARE * (double)h->n_place));
+}
+
+/* Keep a place around which sizes are more than twice as large, four of them
+ * off. */
+static int keep_place(struct finder *f, size_t i, const double x[3],
+                      double got)
+{
+  struct vg_held_place p = { .got = got, .source = i };
+  int is_small = 0;
+
+  if (vg_sizing_slope(f->sizing) <= VG_MET_STEEP) return 0;
+  for (int k = 0; k < 6 && !is_small; k++) {
+    memcpy(p.x, x, sizeof p.x);
+    p.x[k / 2] += (k % 2 ? 4 : -4) * got;
+    is_small = vg_sizing_at(f->sizing, p.x) > 2 * got;
+  }
+  if (!is_small) return 0;
+  if (vg_reserve(&f->out->place, &f->cap_place, f->out->n_place + 1,
+                 sizeof p))
+    return -1;
+  memcpy(p.x, x, sizeof p.x);
+  f->out->place[f->out->n_place++] = p;
+  return 0;
+}
+
+/* Ask source i at its places from .. to that are in the void. is_wide: they
+ * are around it. */
+static vg_status ask(struct finder *f, size_t i, const struct vg_places *p,
+                     size_t from, size_t to, int is_wide, struct vg_error *err)
+{
+  struct vg_held_source best = { .source = i }, worst = best, *h = &best;
+  double least = INFINITY, most = 0;
+
+  for (size_t j = from; j < to; j++) {
+    const struct vg_place *q = p->item + j;
+    double asked, got;
+
+    if (q->crossings >= 0) continue;
+    asked = asked_at(f, i, q->x);
+    got = vg_sizing_at(f->sizing, q->x);
+    best.n_place++;
+    best.n_held += got > VG_HELD_RATIO * asked;
+    if (got > most * asked) take(&worst, q->x, asked, got);
+    if (got < least * asked) take(&best, q->x, asked, got);
+    if (!is_wide && got <= VG_HELD_RATIO * asked &&
+        keep_place(f, i, q->x, got))
+      return vg_fail_memory(err, "the sources");
+    most = worst.got / worst.asked;
+    least = best.got / best.asked;
+  }
+  if (!is_held(&best, is_wide)) return VG_OK;
+  worst.n_place = best.n_place;
+  worst.n_held = best.n_held;
+  if (best.n_held < best.n_place) h = &worst;
+  if (blame(f, h, err) < 0) return VG_ERR_MEMORY;
+  if (vg_reserve(&f->out->item, &f->cap, f->out->n + 1, sizeof *h))
+    return vg_fail_memory(err, "the sources");
+  f->out->item[f->out->n++] = *h;
+  return VG_OK;
+}
+
+static int any_inside(const struct vg_places *p, size_t from, size_t to)
+{
+  for (size_t j = from; j < to; j++)
+    if (p->item[j].crossings < 0) return 1;
+  return 0;
+}
+
+static size_t end_of(const struct vg_places *p, size_t from)
+{
+  size_t to = from;
+
+  while (to < p->n && p->item[to].source == p->item[from].source) to++;
+  return to;
+}
+
+static vg_status ask_all(struct finder *f, const struct vg_places *p,
+                         uint8_t *is_met, int is_wide, struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  for (size_t j = 0, end; st >= 0 && j < p->n; j = end) {
+    uint32_t i = p->item[j].source;
+
+    end = end_of(p, j);
+    if (is_met[i] || !any_inside(p, j, end)) continue;
+    is_met[i] = 1;
+    st = ask(f, i, p, j, end, is_wide, err);
+  }
+  return st;
+}
+
+/* Sources without a place in the void: places around them. */
+static void look_around(const struct finder *f, const struct vg_places *p,
+                        const uint8_t *is_met, struct vg_places *wide)
+{
+  for (size_t j = 0, end; j < p->n; j = end) {
+    const struct vg_source *s = f->source + p->item[j].source;
+    double h = f->options->scale * s->h0;
+    size_t from = wide->n, to;
+
+    end = end_of(p, j);
+    if (is_met[p->item[j].source]) continue;
+    vg_places_shape(wide, s, p->item[j].source, 0);
+    to = wide->n;
+    vg_places_around(wide, from, to, h);
+    vg_places_around(wide, from, to, NEARBY * h);
+  }
+}
+
+static int is_beyond(const struct vg_places *p, size_t from, size_t to,
+                     const double lo[3], const double hi[3])
+{
+  for (size_t j = from; j < to; j++) {
+    int within = 1;
+
+    for (int k = 0; k < 3; k++)
+      within = within && p->item[j].x[k] >= lo[k] && p->item[j].x[k] <= hi[k];
+    if (within) return 0;
+  }
+  return 1;
+}
+
+/* What has no place in the fluid either, layers included. */
+static vg_status list_lost(struct finder *f, const struct vg_places *p,
+                           const struct vg_mesh *surface,
+                           const uint8_t *is_met, struct vg_error *err)
+{
+  double lo[3], hi[3];
+
+  vg_mesh_bounds(surface, lo, hi);
+  for (size_t j = 0, end; j < p->n; j = end) {
+    uint32_t i = p->item[j].source;
+
+    end = end_of(p, j);
+    if (is_met[i] || any_inside(p, j, end)) continue;
+    if (vg_reserve(&f->out->lost, &f->cap_lost, f->out->n_lost + 1,
+                   sizeof *f->out->lost))
+      return vg_fail_memory(err, "the sources");
+    f->out->lost[f->out->n_lost++] =
+      (struct vg_lost_source){ i, is_beyond(p, j, end, lo, hi) };
+  }
+  return VG_OK;
+}
+
+static int by_source(const void *a, const void *b)
+{
+  const struct vg_held_source *h = a, *g = b;
+
+  return h->source < g->source ? -1 : h->source > g->source;
+}
+
+static vg_status find(struct finder *f, struct vg_places *p,
+                      struct vg_places *wide, uint8_t *is_met,
+                      const struct vg_mesh *surface, struct vg_error *err)
+{
+  vg_status st;
+
+  VG_TRY(vg_places_cross(p, f->front, err));
+  VG_TRY(ask_all(f, p, is_met, 0, err));
+  look_around(f, p, is_met, wide);
+  if (wide->refused) {
+    st = vg_fail_memory(err, "the places of sources");
+    goto done;
+  }
+  if (!wide->n) goto done;
+  VG_TRY(vg_places_cross(wide, f->front, err));
+  VG_TRY(ask_all(f, wide, is_met, 1, err));
+  if (surface != f->front) VG_TRY(vg_places_cross(wide, surface, err));
+  VG_TRY(list_lost(f, wide, surface, is_met, err));
+  if (f->out->n)
+    qsort(f->out->item, f->out->n, sizeof *f->out->item, by_source);
+done:
+  return st;
+}
+
+vg_status vg_held_find(const struct vg_sizing_options *options, size_t n,
+                       const struct vg_source *source,
+                       const struct vg_mesh *front,
+                       const struct vg_mesh *surface,
+                       const struct vg_sizing *sizing, struct vg_held *out,
+                       struct vg_error *err)
+{
+  struct vg_places p = VG_PLACES_INIT, wide = VG_PLACES_INIT;
+  struct vg_held found = VG_HELD_INIT;
+  struct finder f = { .options = options, .source = source, .front = front,
+                      .sizing = sizing, .out = &found };
+  uint8_t *is_met;
+  vg_status st;
+
+  if (!n || !front->n_tri) return VG_OK;
+  is_met = vg_calloc(n, 1);
+  for (size_t i = 0; i < n; i++)
+    vg_places_shape(&p, source + i, (uint32_t)i, n <= MANY);
+  if (!is_met || p.refused)
+    st = vg_fail_memory(err, "the places of sources");
+  else
+    st = find(&f, &p, &wide, is_met, surface, err);
+  vg_places_release(&p);
+  vg_places_release(&wide);
+  free(is_met);
+  if (st >= 0) *out = found;
+  else vg_held_release(&found);
+  return st;
+}

@@ -1,0 +1,71 @@
+/* One field of sizes for the ranks of a node. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/sizing/sizing_parts.h"
+
+/* The field's figures, the tree, its least sizes, the leaves. */
+enum { PARTS = 4 };
+
+static struct vg_bytes part(size_t n, const void *data)
+{
+  return (struct vg_bytes){ n, (unsigned char *)(uintptr_t)data };
+}
+
+static void list_parts(const struct vg_sizing *s, struct vg_bytes p[PARTS])
+{
+  const struct vg_octree *t = &s->octree;
+
+  p[0] = part(sizeof *s, s);
+  p[1] = part(t->n_split * sizeof *t->child, t->child);
+  p[2] = part(t->n_split * sizeof *t->least, t->least);
+  p[3] = part(t->n_leaf * sizeof *t->leaf, t->leaf);
+}
+
+/* Takes over what is common. NULL: no memory. */
+static struct vg_sizing *view(const struct vg_common *common)
+{
+  struct vg_sizing *s = vg_alloc(1, sizeof *s);
+  unsigned char *at = (unsigned char *)(uintptr_t)common->data;
+  struct vg_bytes p[PARTS];
+
+  if (!s) return NULL;
+  memcpy(s, at, sizeof *s);
+  s->common = *common;
+  list_parts(s, p);
+  at += vg_common_padded(p[0].n);
+  s->octree.child = (void *)at;
+  at += vg_common_padded(p[1].n);
+  s->octree.least = (void *)at;
+  at += vg_common_padded(p[2].n);
+  s->octree.leaf = (void *)at;
+  return s;
+}
+
+vg_status vg_sizing_share(struct vg_comm *c, struct vg_sizing **s,
+                          struct vg_error *err)
+{
+  struct vg_bytes p[PARTS];
+  struct vg_common common;
+  struct vg_sizing *got;
+  vg_status st;
+
+  if (vg_comm_node_size(c) == 1) return VG_OK;
+  if (!vg_comm_node_rank(c)) list_parts(*s, p);
+  st = vg_comm_node_common(c, PARTS, p, &common, err);
+  if (st < 0) return st;
+  got = view(&common);
+  if (!got) {
+    vg_common_release(&common);
+    return vg_fail_memory(err, "the field of sizes");
+  }
+  vg_sizing_free(*s);
+  *s = got;
+  return VG_OK;
+}
+
+size_t vg_sizing_common(const struct vg_sizing *s)
+{
+  return s->common.is_mapped ? s->common.n : 0;
+}

@@ -1,0 +1,506 @@
+#include "core/sizing/sizing_source.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/geometry/vector.h"
+
+static double least(double a, double b)
+{
+  return a < b ? a : b;
+}
+
+static double most(double a, double b)
+{
+  return a > b ? a : b;
+}
+
+static double within(double t, double lo, double hi)
+{
+  return t < lo ? lo : t > hi ? hi : t;
+}
+
+/* Checks. */
+
+static int is_finite3(const double p[3])
+{
+  return isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2]);
+}
+
+static int has_axis(enum vg_source_kind kind)
+{
+  return kind == VG_SOURCE_VGRID_LINE || kind == VG_SOURCE_LINE ||
+         kind == VG_SOURCE_CYLINDER;
+}
+
+static int is_vgrid(enum vg_source_kind kind)
+{
+  return kind == VG_SOURCE_VGRID_NODE || kind == VG_SOURCE_VGRID_LINE;
+}
+
+/* What is wrong with a source and how to mend it, or NULL. */
+static const char *defect(const struct vg_source *s)
+{
+  double d[3];
+
+  if (s->kind < VG_SOURCE_VGRID_NODE || s->kind > VG_SOURCE_CYLINDER)
+    return "its kind is unknown; use one of the documented kinds";
+  if (!is_finite3(s->p0)) return "point 1 is not finite; give numbers";
+  if ((has_axis(s->kind) || s->kind == VG_SOURCE_TRIANGLE ||
+       s->kind == VG_SOURCE_BOX) && !is_finite3(s->p1))
+    return "point 2 is not finite; give numbers";
+  if (s->kind == VG_SOURCE_TRIANGLE && !is_finite3(s->p2))
+    return "point 3 is not finite; give numbers";
+  if (!isfinite(s->h0) || s->h0 <= 0)
+    return "its spacing is not positive; give a length above zero";
+  if (has_axis(s->kind) && (!isfinite(s->h1) || s->h1 <= 0))
+    return "its spacing at point 2 is not positive; give a length above zero";
+  if (is_vgrid(s->kind))
+    return !isfinite(s->an) || s->an <= 0
+             ? "its intensity an is not positive; 1 is usual" : NULL;
+  if (!isfinite(s->r0) || s->r0 < 0)
+    return "its radius is negative or not finite; give zero or more";
+  if (s->growth != 0 && !(isfinite(s->growth) && s->growth > 1))
+    return "its growth rate is not above 1; use 0 for the global rate";
+  if (s->kind != VG_SOURCE_CYLINDER) return NULL;
+  if (!isfinite(s->r1) || s->r1 < 0)
+    return "its second radius is negative or not finite; give zero or more";
+  vg_sub(s->p1, s->p0, d);
+  return vg_dot(d, d) > 0 ? NULL : "its axis has no length; use a sphere";
+}
+
+vg_status vg_source_check(size_t n, const struct vg_source *source,
+                          struct vg_error *err)
+{
+  for (size_t i = 0; i < n; i++) {
+    const struct vg_source *s = source + i;
+    const char *what = defect(s);
+
+    if (!what) continue;
+    return vg_fail(err, VG_ERR_INPUT,
+                   "source %zu%s%.32s%s at (%g, %g, %g): %s", i + 1,
+                   s->group[0] ? " (" : "", s->group, s->group[0] ? ")" : "",
+                   s->p0[0], s->p0[1], s->p0[2], what);
+  }
+  return VG_OK;
+}
+
+/* Arctangent and logarithm of our own: libm's differ between systems in the
+ * last bit, and meshes would with them. Both are good to a few ulp. */
+
+/* atan(z) / z for z >= 0, finite at 0. Two halvings of the angle bring z
+ * below 0.2, where eleven terms of the series reach rounding. */
+static double atan_ratio(double z)
+{
+  double w = z, sum = 0, y;
+
+  if (z > 1)
+    return (1.57079632679489661923 - atan_ratio(1 / z) / z) / z;
+  for (int k = 0; k < 2; k++) w = w / (1 + sqrt(1 + w * w));
+  y = -w * w;
+  for (int k = 12; k >= 0; k--) sum = sum * y + 1.0 / (2 * k + 1);
+  return z > 0 ? 4 * w * sum / z : 1;
+}
+
+/* 2 atanh(z) for |z| <= 0.18. */
+static double log_series(double z)
+{
+  double y = z * z, sum = 0;
+
+  for (int k = 12; k >= 0; k--) sum = sum * y + 1.0 / (2 * k + 1);
+  return 2 * z * sum;
+}
+
+/* log(a / b), without cancellation where a and b are near. */
+static double log_ratio(double a, double b)
+{
+  double z = (a - b) / (a + b), m;
+  int e;
+
+  if (z > -0.17 && z < 0.17) return log_series(z);
+  m = frexp(a / b, &e);
+  if (m < 0.70710678118654752440) {
+    m *= 2;
+    e--;
+  }
+  return log_series((m - 1) / (m + 1)) + e * 0.69314718055994530942;
+}
+
+/* VGRID's inverse-square mean. */
+
+/* Kernel 1/r^2 averaged over a segment, plain in *weight and times the linear
+ * spacing in *size. Averaged, not integrated over length: an integral would
+ * make the mesh depend on the unit of length as soon as nodes and lines meet
+ * (formats.md 1.7 leaves the law open). Returns 0 on the segment itself, with
+ * the spacing there in *size.
+ *
+ * With foot t = c and squared distance q |d|^2 of the axis,
+ *   int dt / ((t-c)^2 + q)   = angle / sqrt(q),
+ *   int t dt / ((t-c)^2 + q) = c times that + log(r1^2 / r0^2) / 2,
+ * where angle is the one under which x sees the segment. */
+static int line_kernel(const struct vg_source *s, const double x[3],
+                       double *weight, double *size)
+{
+  double d[3], u[3], v[3], len2, c, q, r0, r1, cosine, j;
+
+  vg_sub(s->p1, s->p0, d);
+  vg_sub(x, s->p0, u);
+  len2 = vg_dot(d, d);
+  c = vg_dot(u, d) / len2;
+  for (int k = 0; k < 3; k++) v[k] = u[k] - c * d[k];
+  q = vg_dot(v, v) / len2;
+  if (q <= 1e-24 && c >= 0 && c <= 1) {
+    *size = s->h0 + c * (s->h1 - s->h0);
+    return 0;
+  }
+  r0 = c * c + q;
+  r1 = (1 - c) * (1 - c) + q;
+  cosine = q + c * (c - 1);
+  if (cosine > 0)
+    j = atan_ratio(sqrt(q) / cosine) / cosine;
+  else
+    j = (3.14159265358979323846 -
+         (cosine < 0 ? atan_ratio(sqrt(q) / -cosine) * (sqrt(q) / -cosine)
+                     : 1.57079632679489661923)) / sqrt(q);
+  *weight = j / len2;
+  *size = ((s->h0 + c * (s->h1 - s->h0)) * j +
+           0.5 * (s->h1 - s->h0) * log_ratio(r1, r0)) / len2;
+  return 1;
+}
+
+double vg_source_mean(size_t n, const struct vg_source *source,
+                      const double x[3])
+{
+  double top = 0, bottom = 0;
+
+  if (!n) return INFINITY;
+  for (size_t i = 0; i < n; i++) {
+    const struct vg_source *s = source + i;
+    double d[3], w, h;
+
+    if (s->kind == VG_SOURCE_VGRID_LINE) {
+      if (!line_kernel(s, x, &w, &h)) return h;
+    } else {
+      vg_sub(x, s->p0, d);
+      w = vg_dot(d, d);
+      if (w <= 0) return s->h0;
+      w = 1 / w;
+      h = s->h0 * w;
+    }
+    top += s->an * h;
+    bottom += s->an * w;
+  }
+  return top / bottom;
+}
+
+/* Distances to shapes. */
+
+static double segment_distance(const double a[3], const double b[3],
+                               const double x[3], double *t)
+{
+  double d[3], u[3], len2;
+
+  vg_sub(b, a, d);
+  vg_sub(x, a, u);
+  len2 = vg_dot(d, d);
+  *t = len2 > 0 ? within(vg_dot(u, d) / len2, 0, 1) : 0;
+  for (int k = 0; k < 3; k++) u[k] -= *t * d[k];
+  return sqrt(vg_dot(u, u));
+}
+
+/* Inside the three edge planes the distance is to the plane, otherwise to the
+ * nearest edge. A degenerate triangle has only edges. */
+static double triangle_distance(const struct vg_source *s, const double x[3])
+{
+  const double *p[3] = { s->p0, s->p1, s->p2 };
+  double e[3][3], n[3], u[3], m[3], d, t;
+  int inside = 1;
+
+  for (int k = 0; k < 3; k++) vg_sub(p[(k + 1) % 3], p[k], e[k]);
+  vg_cross(e[0], e[1], n);
+  for (int i = 0; i < 3 && inside; i++) {
+    vg_sub(x, p[i], u);
+    vg_cross(n, e[i], m);
+    inside = vg_dot(m, u) >= 0;
+  }
+  vg_sub(x, s->p0, u);
+  if (inside && vg_dot(n, n) > 0) return fabs(vg_dot(u, n)) / sqrt(vg_dot(n, n));
+  d = segment_distance(p[0], p[1], x, &t);
+  d = least(d, segment_distance(p[1], p[2], x, &t));
+  return least(d, segment_distance(p[2], p[0], x, &t));
+}
+
+static double box_distance(const double lo[3], const double hi[3],
+                           const double x[3])
+{
+  double d2 = 0;
+
+  for (int k = 0; k < 3; k++) {
+    double d = x[k] - within(x[k], lo[k], hi[k]);
+
+    d2 += d * d;
+  }
+  return sqrt(d2);
+}
+
+/* In the half plane (axial z, radial r) the cone is a trapezium. */
+static double cone_distance(const struct vg_source *s, const double x[3],
+                            double *t)
+{
+  double d[3], u[3], len, z, r, r_at;
+  double foot[3], rim0[3] = { 0, s->r0, 0 }, rim1[3], mid0[3] = { 0, 0, 0 };
+  double mid1[3], at[3], f;
+
+  vg_sub(s->p1, s->p0, d);
+  vg_sub(x, s->p0, u);
+  len = sqrt(vg_dot(d, d));
+  z = vg_dot(u, d) / len;
+  for (int k = 0; k < 3; k++) foot[k] = u[k] - z * (d[k] / len);
+  r = sqrt(vg_dot(foot, foot));
+  *t = within(z / len, 0, 1);
+  r_at = s->r0 + *t * (s->r1 - s->r0);
+  if (z >= 0 && z <= len && r <= r_at) return 0;
+  rim1[0] = mid1[0] = len;
+  rim1[1] = s->r1;
+  at[0] = z;
+  at[1] = r;
+  rim1[2] = mid1[1] = mid1[2] = at[2] = 0;
+  f = segment_distance(rim0, rim1, at, &r_at);
+  f = least(f, segment_distance(mid0, rim0, at, &r_at));
+  return least(f, segment_distance(mid1, rim1, at, &r_at));
+}
+
+/* Spacing of one bounded source at x. */
+static double bounded_at(const struct vg_bounded *b, const double x[3])
+{
+  const struct vg_source *s = &b->law;
+  double d = 0, t = 0;
+
+  switch (s->kind) {
+  case VG_SOURCE_VGRID_LINE:
+  case VG_SOURCE_LINE:
+    d = segment_distance(s->p0, s->p1, x, &t) - s->r0;
+    break;
+  case VG_SOURCE_TRIANGLE:
+    d = triangle_distance(s, x) - s->r0;
+    break;
+  case VG_SOURCE_BOX:
+    d = box_distance(s->p0, s->p1, x);
+    break;
+  case VG_SOURCE_CYLINDER:
+    d = cone_distance(s, x, &t);
+    break;
+  case VG_SOURCE_VGRID_NODE:
+  case VG_SOURCE_POINT:
+  case VG_SOURCE_SPHERE:
+    d = segment_distance(s->p0, s->p0, x, &t) - s->r0;
+    break;
+  }
+  return s->h0 + t * (s->h1 - s->h0) + b->slope * most(d, 0);
+}
+
+/* Lists of sources. */
+
+/* Box around the shape; a slanted cone's is larger than need be. */
+static void bound_shape(struct vg_bounded *b)
+{
+  const struct vg_source *s = &b->law;
+  double r = s->kind == VG_SOURCE_BOX ? 0 : s->r0;
+
+  if (s->kind == VG_SOURCE_CYLINDER) r = most(s->r0, s->r1);
+  for (int k = 0; k < 3; k++) {
+    b->lo[k] = b->hi[k] = s->p0[k];
+    if (has_axis(s->kind) || s->kind == VG_SOURCE_TRIANGLE ||
+        s->kind == VG_SOURCE_BOX) {
+      b->lo[k] = least(b->lo[k], s->p1[k]);
+      b->hi[k] = most(b->hi[k], s->p1[k]);
+    }
+    if (s->kind == VG_SOURCE_TRIANGLE) {
+      b->lo[k] = least(b->lo[k], s->p2[k]);
+      b->hi[k] = most(b->hi[k], s->p2[k]);
+    }
+    b->lo[k] -= r;
+    b->hi[k] += r;
+  }
+}
+
+static void prepare_bounded(const struct vg_sizing_options *o,
+                            const struct vg_source *s, struct vg_bounded *b)
+{
+  double d[3], along;
+
+  b->law = *s;
+  b->law.h0 *= o->scale;
+  b->law.h1 = has_axis(s->kind) ? s->h1 * o->scale : b->law.h0;
+  if (is_vgrid(s->kind)) b->law.r0 = b->law.r1 = 0;
+  b->slope = !is_vgrid(s->kind) && s->growth > 0 ? s->growth - 1
+                                                 : o->growth - 1;
+  b->least = least(b->law.h0, b->law.h1);
+  b->steep = b->slope;
+  bound_shape(b);
+  if (s->kind == VG_SOURCE_BOX)
+    for (int k = 0; k < 3; k++) {
+      b->law.p0[k] = b->lo[k];
+      b->law.p1[k] = b->hi[k];
+    }
+  if (!has_axis(s->kind)) return;
+  vg_sub(s->p1, s->p0, d);
+  along = vg_dot(d, d);
+  if (along <= 0) {
+    b->law.h0 = b->law.h1 = b->least;
+    return;
+  }
+  along = (b->law.h1 - b->law.h0) * (b->law.h1 - b->law.h0) / along;
+  b->steep = sqrt(b->slope * b->slope + along);
+}
+
+/* A VGRID line without length is a node of its mean spacing. */
+static void prepare_mean(const struct vg_sizing_options *o,
+                         const struct vg_source *s, struct vg_source *m)
+{
+  double d[3];
+
+  *m = *s;
+  m->h0 *= o->scale;
+  m->h1 *= o->scale;
+  if (m->kind != VG_SOURCE_VGRID_LINE) return;
+  vg_sub(m->p1, m->p0, d);
+  if (vg_dot(d, d) > 0) return;
+  m->kind = VG_SOURCE_VGRID_NODE;
+  m->h0 = 0.5 * (m->h0 + m->h1);
+}
+
+/* The mean varies next to a node over a fraction of the distance to the next
+ * source, next to a line over a fraction of its length. Quadratic, as is the
+ * use of the sources by then: every sample of the field costs all of them. */
+static void find_reach(struct vg_source_set *set)
+{
+  for (size_t i = 0; i < set->n_mean; i++) {
+    const struct vg_source *s = set->mean + i;
+    double d = INFINITY, t;
+
+    if (s->kind == VG_SOURCE_VGRID_LINE)
+      d = segment_distance(s->p0, s->p0, s->p1, &t);
+    else
+      for (size_t j = 0; j < set->n_mean; j++) {
+        const struct vg_source *o = set->mean + j;
+        int is_line = o->kind == VG_SOURCE_VGRID_LINE;
+
+        if (j == i) continue;
+        d = least(d, segment_distance(o->p0, is_line ? o->p1 : o->p0, s->p0,
+                                      &t));
+      }
+    set->reach[i] = 0.25 * d;
+  }
+}
+
+vg_status vg_source_prepare(const struct vg_sizing_options *options, size_t n,
+                            const struct vg_source *source, int cones,
+                            struct vg_source_set *set, struct vg_error *err)
+{
+  if (!n) return VG_OK;
+  set->bounded = vg_alloc(n, sizeof *set->bounded);
+  set->mean = vg_alloc(n, sizeof *set->mean);
+  set->reach = vg_alloc(n, sizeof *set->reach);
+  if (!set->bounded || !set->mean || !set->reach) {
+    vg_source_release(set);
+    return vg_fail_memory(err, "the sources");
+  }
+  for (size_t i = 0; i < n; i++)
+    if (is_vgrid(source[i].kind))
+      prepare_mean(options, source + i, set->mean + set->n_mean++);
+    else
+      prepare_bounded(options, source + i, set->bounded + set->n_bounded++);
+  for (size_t i = 0; cones && i < n; i++)
+    if (is_vgrid(source[i].kind))
+      prepare_bounded(options, source + i, set->bounded + set->n_bounded++);
+  if (cones) find_reach(set);
+  return VG_OK;
+}
+
+void vg_source_release(struct vg_source_set *set)
+{
+  free(set->bounded);
+  free(set->mean);
+  free(set->reach);
+  memset(set, 0, sizeof *set);
+}
+
+double vg_source_at(const struct vg_source_set *set, const double x[3])
+{
+  double h = vg_source_mean(set->n_mean, set->mean, x);
+
+  for (size_t i = 0; i < set->n_bounded; i++) {
+    const struct vg_bounded *b = set->bounded + i;
+
+    if (b->least >= h ||
+        b->least + b->slope * box_distance(b->lo, b->hi, x) >= h)
+      continue;
+    h = least(h, bounded_at(b, x));
+  }
+  return h;
+}
+
+/* Two bounds per source: the box around its shape, coarse at any size, and
+ * the law at the centre less what it can fall within the box, which becomes
+ * exact as the box shrinks. */
+double vg_source_floor(const struct vg_source_set *set, const double lo[3],
+                       const double hi[3])
+{
+  double h = INFINITY, mid[3], r2 = 0, r;
+
+  for (int k = 0; k < 3; k++) {
+    mid[k] = 0.5 * (lo[k] + hi[k]);
+    r2 += (hi[k] - mid[k]) * (hi[k] - mid[k]);
+  }
+  r = sqrt(r2);
+  for (size_t i = 0; i < set->n_bounded; i++) {
+    const struct vg_bounded *b = set->bounded + i;
+    double d2 = 0, d, bound;
+
+    for (int k = 0; k < 3; k++) {
+      d = most(most(b->lo[k] - hi[k], lo[k] - b->hi[k]), 0);
+      d2 += d * d;
+    }
+    bound = b->least + b->slope * sqrt(d2);
+    if (bound >= h) continue;
+    bound = most(bound, bounded_at(b, mid) - b->steep * r);
+    h = least(h, bound);
+  }
+  return h;
+}
+
+int vg_source_resolved(const struct vg_source_set *set, const double lo[3],
+                       const double hi[3], double side)
+{
+  double mid[3], r2 = 0, t;
+
+  if (set->n_mean < 2) return 1; /* one node: constant; one line: bounded */
+  for (int k = 0; k < 3; k++) {
+    mid[k] = 0.5 * (lo[k] + hi[k]);
+    r2 += (hi[k] - mid[k]) * (hi[k] - mid[k]);
+  }
+  for (size_t i = 0; i < set->n_mean; i++) {
+    const struct vg_source *s = set->mean + i;
+    int is_line = s->kind == VG_SOURCE_VGRID_LINE;
+    double d = segment_distance(s->p0, is_line ? s->p1 : s->p0, mid, &t);
+
+    if (side > most(d - sqrt(r2), set->reach[i])) return 0;
+  }
+  return 1;
+}
+
+int vg_source_bounds(const struct vg_source_set *set, double lo[3],
+                     double hi[3])
+{
+  for (size_t i = 0; i < set->n_bounded; i++)
+    for (int k = 0; k < 3; k++) {
+      const struct vg_bounded *b = set->bounded + i;
+
+      if (!i || b->lo[k] < lo[k]) lo[k] = b->lo[k];
+      if (!i || b->hi[k] > hi[k]) hi[k] = b->hi[k];
+    }
+  return set->n_bounded > 0;
+}

@@ -1,0 +1,319 @@
+/* Searches in the hierarchy of samples (core/sizing/sizing_near_parts.h). Four
+ * lanes at once, in the vectors of gcc and clang; sqrt and masks alone need
+ * help. Every operation rounds as its scalar form does, so machines agree.
+ * Wider vectors do not pay: what takes time is to know which child comes next.
+ * */
+#include <math.h>
+#include <string.h>
+
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
+
+#include "core/sizing/sizing_near_parts.h"
+
+#define LANES VG_NEAR_LANES
+#define SHY (2 * VG_NEAR_SHY)
+
+typedef float lanes __attribute__((vector_size(16)));
+typedef int32_t masks __attribute__((vector_size(16)));
+
+struct search {
+  const struct vg_near *t;
+  const struct vg_near_tree *tree;
+  double mid[3];
+  float half[3], best, enough, by;
+  uint32_t hint;
+};
+
+static inline lanes load(const float *p)
+{
+  lanes v;
+
+  memcpy(&v, p, sizeof v);
+  return v;
+}
+
+static inline void store(float *p, lanes v)
+{
+  memcpy(p, &v, sizeof v);
+}
+
+static inline lanes lanes_abs(lanes v)
+{
+  return (lanes)((masks)v & 0x7fffffff);
+}
+
+static inline lanes lanes_max0(lanes v)
+{
+  return (lanes)((masks)v & (masks)(v > 0));
+}
+
+static inline lanes lanes_choose(masks m, lanes a, lanes b)
+{
+  return (lanes)(((masks)a & m) | ((masks)b & ~m));
+}
+
+static inline lanes lanes_sqrt(lanes v)
+{
+#ifdef __SSE2__
+  return (lanes)_mm_sqrt_ps((__m128)v);
+#else
+  for (int j = 0; j < 4; j++) v[j] = sqrtf(v[j]);
+  return v;
+#endif
+}
+
+static inline lanes lanes_min(lanes a, lanes b)
+{
+#ifdef __SSE2__
+  return (lanes)_mm_min_ps((__m128)a, (__m128)b);
+#else
+  return lanes_choose((masks)(a < b), a, b);
+#endif
+}
+
+static inline float least_lane(lanes v)
+{
+  v = lanes_min(v, __builtin_shufflevector(v, v, 2, 3, 0, 1));
+  v = lanes_min(v, __builtin_shufflevector(v, v, 1, 0, 3, 2));
+  return v[0];
+}
+
+/* Distances between a box x +- reach and four boxes mid +- half (NULL:
+ * points); lanes of axis k are `step` floats behind those of k - 1. */
+static inline lanes distances(const float x[3], const float reach[3],
+                              const float *mid, const float *half,
+                              size_t step)
+{
+  lanes sum = { 0 };
+
+  for (size_t k = 0; k < 3; k++) {
+    lanes a = lanes_abs(x[k] - load(mid + k * step)) - reach[k];
+
+    if (half) a -= load(half + k * step);
+    a = lanes_max0(a);
+    sum += a * a;
+  }
+  return lanes_sqrt(sum);
+}
+
+/* What sizes h become at distance d, from above and from below. */
+static inline lanes grown(const struct vg_near *t, lanes h, lanes d)
+{
+  lanes v = h * (1 - t->offset) + t->slope * d;
+
+  return lanes_choose((masks)(v > h), v, h);
+}
+
+static inline lanes fallen(const struct vg_near *t, lanes h, lanes d)
+{
+  lanes v = lanes_min(h * (1 + t->offset) - t->slope * d,
+                      h * t->rise - t->steep * d);
+
+  return lanes_choose((masks)(v < h), v, h);
+}
+
+static inline void relative(const struct search *q, const double origin[3],
+                            float x[3])
+{
+  for (int k = 0; k < 3; k++) x[k] = (float)(q->mid[k] - origin[k]);
+}
+
+static void visit_above(struct search *q, const struct vg_near_block *b)
+{
+  lanes v[2];
+  float x[3], least;
+
+  relative(q, b->origin, x);
+  for (int j = 0; j < 2; j++) {
+    lanes d = distances(x, q->half, b->p[0] + 4 * j, NULL, LANES);
+
+    v[j] = grown(q->t, load(b->h + 4 * j), d);
+  }
+  least = least_lane(lanes_min(v[0], v[1]));
+  if (!(least < q->best)) return;
+  q->best = least;
+  q->hint = (uint32_t)(b - q->t->block);
+}
+
+/* Bounds of the children of a group. They allow for rounding, so what is found
+ * is the best of all samples, wherever a search began; the last bits of each
+ * are the number of the child. */
+static inline void bounds_above(const struct search *q,
+                                const struct vg_near_group *g, lanes bound[2])
+{
+  static const masks child[2] = { { 0, 1, 2, 3 }, { 4, 5, 6, 7 } };
+  float x[3];
+
+  relative(q, g->origin, x);
+  for (int j = 0; j < 2; j++) {
+    lanes d = distances(x, q->half, g->mid[0] + 4 * j, g->half[0] + 4 * j,
+                        LANES);
+
+    d = grown(q->t, load(g->h_min + 4 * j), d) * (1 - SHY);
+    bound[j] = (lanes)(((masks)d & ~7) | child[j]);
+  }
+}
+
+/* The child with the least bound, which is INFINITY from then on; LANES when
+ * none is below `best`. */
+static inline unsigned take_least(lanes bound[2], float best)
+{
+  float least = least_lane(lanes_min(bound[0], bound[1]));
+  const lanes none = INFINITY - (lanes){ 0 };
+  uint32_t bits;
+
+  if (!(least < best)) return LANES;
+  for (int j = 0; j < 2; j++)
+    bound[j] = lanes_choose((masks)(bound[j] == least), none, bound[j]);
+  memcpy(&bits, &least, sizeof bits);
+  return bits & 7;
+}
+
+/* Nearest child first, so that the rest is seldom entered. Recursion is as
+ * deep as the hierarchy: 8^12 samples at most. */
+static void descend_above(struct search *q, int level, size_t at)
+{
+  lanes bound[2];
+  unsigned j;
+
+  bounds_above(q, q->tree->group[level] + at, bound);
+  while ((j = take_least(bound, q->best)) < LANES) {
+    if (level) descend_above(q, level - 1, at * LANES + j);
+    else visit_above(q, q->tree->block + at * LANES + j);
+  }
+}
+
+static void above_all(struct search *q)
+{
+  const struct vg_near *t = q->t;
+
+  for (int c = 0; c < t->n_tree; c++) {
+    q->tree = t->tree + c;
+    if (q->tree->h_min > q->best) break;
+    descend_above(q, q->tree->n_level - 1, 0);
+  }
+}
+
+static void set_box(struct search *q, const double lo[3], const double hi[3])
+{
+  for (int k = 0; k < 3; k++) {
+    q->half[k] = (float)(0.5 * (hi[k] - lo[k]));
+    q->mid[k] = 0.5 * (lo[k] + hi[k]);
+  }
+}
+
+double vg_near_above(const struct vg_near *t, const double lo[3],
+                     const double hi[3], double below, uint32_t *hint)
+{
+  const float start = below < 0.1 * (double)VG_NEAR_NEVER
+                    ? (float)below : 0.1f * VG_NEAR_NEVER;
+  struct search q = { .t = t, .best = start, .hint = *hint };
+
+  set_box(&q, lo, hi);
+  visit_above(&q, t->block + *hint);
+  above_all(&q);
+  *hint = q.hint;
+  return q.best < start ? (double)q.best : below;
+}
+
+/* From below. */
+
+static void visit_below(struct search *q, const struct vg_near_block *b)
+{
+  float x[3], v[LANES];
+
+  relative(q, b->origin, x);
+  for (int j = 0; j < LANES; j += 4) {
+    lanes d = distances(x, q->half, b->p[0] + j, NULL, LANES);
+
+    store(v + j, fallen(q->t, load(b->h + j), d));
+  }
+  for (int j = 0; j < LANES; j++) {
+    if (!(v[j] > q->best)) continue;
+    q->best = v[j];
+    q->by = b->h[j];
+  }
+}
+
+/* Only what is above the best so far matters, which is above 0. Signs are
+ * turned, so that the best bound is the least. */
+static void descend_below(struct search *q, int level, size_t at)
+{
+  static const masks child[2] = { { 0, 1, 2, 3 }, { 4, 5, 6, 7 } };
+  const struct vg_near_group *g = q->tree->group[level] + at;
+  const lanes none = INFINITY - (lanes){ 0 };
+  lanes bound[2];
+  float x[3];
+  unsigned i;
+
+  relative(q, g->origin, x);
+  for (int j = 0; j < 2; j++) {
+    lanes h = load(g->h_max + 4 * j);
+    lanes d = distances(x, q->half, g->mid[0] + 4 * j, g->half[0] + 4 * j,
+                        LANES);
+
+    d = fallen(q->t, h, d) + h * SHY;
+    bound[j] = lanes_choose((masks)(d > 0),
+                            -(lanes)(((masks)d & ~7) | child[j]), none);
+  }
+  while (q->best < q->enough &&
+         (i = take_least(bound, -q->best)) < LANES) {
+    if (level) descend_below(q, level - 1, at * LANES + i);
+    else visit_below(q, q->tree->block + at * LANES + i);
+  }
+}
+
+static void know_reach(const struct vg_near *t, struct vg_near_reach *r)
+{
+  for (int c = 0; c < t->n_tree; c++) {
+    struct search q = { .t = t, .tree = t->tree + c, .best = r->trifle,
+                        .enough = INFINITY,
+                        .mid = { r->mid[0], r->mid[1], r->mid[2] } };
+
+    descend_below(&q, q.tree->n_level - 1, 0);
+    r->most[c] = q.best;
+  }
+  r->is_known = 1;
+}
+
+double vg_near_below(const struct vg_near *t, const double x[3],
+                     double above, double enough,
+                     struct vg_near_reach *reach, double *by)
+{
+  struct search q = { .t = t, .best = (float)above, .enough = (float)enough,
+                      .mid = { x[0], x[1], x[2] } };
+  float more = 0;
+
+  if (reach) {
+    double d2 = 0;
+
+    if (!reach->is_known) know_reach(t, reach);
+    for (int k = 0; k < 3; k++)
+      d2 += (x[k] - reach->mid[k]) * (x[k] - reach->mid[k]);
+    more = t->steep * (float)sqrt(d2);
+  }
+  for (int c = t->n_tree - 1; c >= 0; c--) {
+    q.tree = t->tree + c;
+    if (q.tree->h_max <= q.best || q.best >= q.enough) break;
+    if (reach && (reach->most[c] + more) * (1 + SHY) <= q.best) continue;
+    descend_below(&q, q.tree->n_level - 1, 0);
+  }
+  *by = (double)q.by;
+  return (double)q.best;
+}
+
+double vg_near_knee(const struct vg_near *t, double by)
+{
+  return by * (1 + (double)t->offset - VG_NEAR_KNEE * (double)t->slope);
+}
+
+double vg_near_falls(const struct vg_near *t, double by, double v, double far)
+{
+  double slope = (double)t->slope, more = (double)t->steep - slope;
+  double over = v - vg_near_knee(t, by);
+
+  if (over > 0) far -= over / slope;
+  return by > 0 && far > 0 ? more * far : 0;
+}

@@ -1,0 +1,272 @@
+/* Outline: points extreme in many directions stand for the convex hull;
+ * triangles are on it or off it; pieces of either kind by union-find over the
+ * edges; the largest piece on the hull is measured against the hull's
+ * silhouettes, every piece off it against its lid. A closed surface has vector
+ * area 0, so the lid of a piece has the vector area of the piece. */
+#include "core/surface/envelope.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/unite.h"
+#include "core/geometry/vector.h"
+
+#define REACH 3         /* directions: the integer points of a cube's faces */
+#define N_DIRECTION (7 * 7 * 7 - 5 * 5 * 5)
+#define SLACK 0.1       /* of the longest edge: rounding, chords, diagonals */
+
+struct piece {
+  double area, vector[3];
+  size_t n;
+};
+
+struct envelope {
+  const struct vg_mesh *m;
+  size_t n_extreme;
+  uint32_t extreme[N_DIRECTION];
+  uint8_t *on;            /* [n_tri] on the hull */
+  uint32_t *root;         /* [n_tri] union-find, then piece of the triangle */
+  struct piece *piece;    /* [n_tri] at the roots */
+  double sign;            /* -1 where normals point inward */
+};
+
+/* Twice the vector area, turned outward; returns the longest edge, squared. */
+static double face(const struct envelope *e, size_t i, double n[3])
+{
+  const double *p[3];
+  double u[3][3], longest = 0;
+
+  for (int k = 0; k < 3; k++) p[k] = e->m->point[e->m->tri[i][k]];
+  for (int k = 0; k < 3; k++) {
+    for (int c = 0; c < 3; c++) u[k][c] = p[(k + 1) % 3][c] - p[k][c];
+    if (vg_dot(u[k], u[k]) > longest) longest = vg_dot(u[k], u[k]);
+  }
+  for (int c = 0; c < 3; c++) {
+    const int a = (c + 1) % 3, b = (c + 2) % 3;
+
+    n[c] = e->sign * (u[0][a] * u[1][b] - u[0][b] * u[1][a]);
+  }
+  return longest;
+}
+
+static void find_extremes(struct envelope *e)
+{
+  for (int i = -REACH; i <= REACH; i++)
+    for (int j = -REACH; j <= REACH; j++)
+      for (int k = -REACH; k <= REACH; k++) {
+        const double d[3] = { i, j, k };
+        double best = -INFINITY;
+        uint32_t at = 0;
+
+        if (abs(i) != REACH && abs(j) != REACH && abs(k) != REACH) continue;
+        for (uint32_t p = 0; p < e->m->n_point; p++) {
+          const double s = vg_dot(d, e->m->point[p]);
+
+          if (s > best) best = s, at = p;
+        }
+        e->extreme[e->n_extreme++] = at;
+      }
+}
+
+static int is_on_hull(const struct envelope *e, size_t i)
+{
+  const double *o = e->m->point[e->m->tri[i][0]];
+  double n[3], most;
+
+  most = face(e, i, n);
+  most = SLACK * sqrt(most * vg_dot(n, n));
+  for (size_t k = 0; k < e->n_extreme; k++) {
+    const double *x = e->m->point[e->extreme[k]];
+    const double d[3] = { x[0] - o[0], x[1] - o[1], x[2] - o[2] };
+
+    if (vg_dot(d, n) > most) return 0;
+  }
+  return 1;
+}
+
+/* --- pieces -------------------------------------------------------------- */
+
+struct side {
+  uint32_t lo, hi, tri;
+};
+
+static int by_nodes(const void *pa, const void *pb)
+{
+  const struct side *a = pa, *b = pb;
+
+  if (a->lo != b->lo) return a->lo < b->lo ? -1 : 1;
+  if (a->hi != b->hi) return a->hi < b->hi ? -1 : 1;
+  return (a->tri > b->tri) - (a->tri < b->tri);
+}
+
+static vg_status join_pieces(struct envelope *e, struct vg_error *err)
+{
+  const size_t n = 3 * e->m->n_tri;
+  struct side *side = vg_alloc(n, sizeof *side);
+
+  if (!side) return vg_fail_memory(err, "the pieces of the surface");
+  for (size_t i = 0; i < n; i++) {
+    const uint32_t a = e->m->tri[i / 3][i % 3];
+    const uint32_t b = e->m->tri[i / 3][(i + 1) % 3];
+
+    side[i] = (struct side){ a < b ? a : b, a < b ? b : a, (uint32_t)(i / 3) };
+  }
+  qsort(side, n, sizeof *side, by_nodes);
+  for (size_t i = 1; i < n; i++)
+    if (side[i].lo == side[i - 1].lo && side[i].hi == side[i - 1].hi
+        && e->on[side[i].tri] == e->on[side[i - 1].tri])
+      vg_unite(e->root, side[i].tri, side[i - 1].tri);
+  free(side);
+  return VG_OK;
+}
+
+static void measure_pieces(struct envelope *e)
+{
+  for (uint32_t i = 0; i < e->m->n_tri; i++) {
+    struct piece *p = &e->piece[e->root[i] = vg_root_of(e->root, i)];
+    double n[3];
+
+    face(e, i, n);
+    p->area += sqrt(vg_dot(n, n));
+    for (int c = 0; c < 3; c++) p->vector[c] += n[c];
+    p->n++;
+  }
+}
+
+/* --- silhouettes --------------------------------------------------------- */
+
+static int by_position(const void *pa, const void *pb)
+{
+  const double *a = pa, *b = pb;
+
+  if (a[0] != b[0]) return a[0] < b[0] ? -1 : 1;
+  return (a[1] > b[1]) - (a[1] < b[1]);
+}
+
+static double turn(const double a[2], const double b[2], const double c[2])
+{
+  return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
+
+/* Twice the area of the convex hull of sorted points: monotone chains below
+ * and above, summed as triangles about the first point. */
+static double hull_area(size_t n, const double (*p)[2])
+{
+  double chain[N_DIRECTION][2], sum = 0;
+
+  for (int way = 1; way >= -1; way -= 2) {
+    size_t k = 0;
+
+    for (size_t i = 0; i < n; i++) {
+      while (k > 1 && way * turn(chain[k - 2], chain[k - 1], p[i]) <= 0) k--;
+      memcpy(chain[k++], p[i], sizeof chain[0]);
+    }
+    for (size_t i = 1; i + 1 < k; i++)
+      sum += way * turn(chain[0], chain[i], chain[i + 1]);
+  }
+  return sum;
+}
+
+/* Least share of the silhouette that a piece covers, over six views. */
+static double least_cover(const struct envelope *e, uint32_t piece)
+{
+  double seen[6] = { 0 }, least = INFINITY;
+
+  for (size_t i = 0; i < e->m->n_tri; i++) {
+    double n[3];
+
+    if (e->root[i] != piece) continue;
+    face(e, i, n);
+    for (int k = 0; k < 3; k++) seen[2 * k + (n[k] > 0)] += fabs(n[k]);
+  }
+  for (int k = 0; k < 3; k++) {
+    double p[N_DIRECTION][2], area;
+
+    for (size_t i = 0; i < e->n_extreme; i++) {
+      p[i][0] = e->m->point[e->extreme[i]][(k + 1) % 3];
+      p[i][1] = e->m->point[e->extreme[i]][(k + 2) % 3];
+    }
+    qsort(p, e->n_extreme, sizeof *p, by_position);
+    area = hull_area(e->n_extreme, (const double (*)[2])p);
+    for (int s = 0; s < 2; s++)
+      if (!(seen[2 * k + s] >= least * area))
+        least = area > 0 ? seen[2 * k + s] / area : 0;
+  }
+  return least;
+}
+
+static void judge(const struct envelope *e, uint8_t *outer,
+                  struct vg_envelope *out)
+{
+  uint32_t main = UINT32_MAX;
+
+  for (uint32_t i = 0; i < e->m->n_tri; i++) {
+    const struct piece *p = &e->piece[i];
+    const double lid = sqrt(vg_dot(p->vector, p->vector));
+
+    if (!p->n) continue;
+    if (e->on[i]) {
+      if (main == UINT32_MAX || p->area > e->piece[main].area) main = i;
+    } else if (p->area > out->depth * lid) {
+      out->depth = p->area / lid;
+      out->n_pocket_tri = p->n;
+    }
+  }
+  for (size_t i = 0; outer && i < e->m->n_tri; i++)
+    outer[i] = e->root[i] == main;
+  if (main == UINT32_MAX) return;
+  out->n_outer = e->piece[main].n;
+  out->covered = least_cover(e, main);
+  out->is_domain = out->covered >= VG_ENVELOPE_COVERED
+                   && out->depth >= VG_ENVELOPE_DEPTH;
+}
+
+/* Six times the volume behind the triangles, about the first point. */
+static double signed_volume(const struct envelope *e)
+{
+  const double *o = e->m->point[0];
+  double sum = 0;
+
+  for (size_t i = 0; i < e->m->n_tri; i++) {
+    const double *x = e->m->point[e->m->tri[i][0]];
+    const double d[3] = { x[0] - o[0], x[1] - o[1], x[2] - o[2] };
+    double n[3];
+
+    face(e, i, n);
+    sum += vg_dot(d, n);
+  }
+  return sum;
+}
+
+vg_status vg_envelope_measure(const struct vg_mesh *m, uint8_t *outer,
+                              struct vg_envelope *out, struct vg_error *err)
+{
+  struct envelope e = { .m = m, .sign = 1 };
+  struct vg_envelope found = { 0 };
+  vg_status st = VG_OK;
+
+  if (m->n_tri) {
+    e.on = vg_alloc(m->n_tri, 1);
+    e.root = vg_alloc(m->n_tri, sizeof *e.root);
+    e.piece = vg_calloc(m->n_tri, sizeof *e.piece);
+    if (!e.on || !e.root || !e.piece)
+      VG_TRY(vg_fail_memory(err, "the pieces of the surface"));
+    if (signed_volume(&e) < 0) e.sign = -1;
+    find_extremes(&e);
+    for (uint32_t i = 0; i < m->n_tri; i++) {
+      e.on[i] = (uint8_t)is_on_hull(&e, i);
+      e.root[i] = i;
+    }
+    VG_TRY(join_pieces(&e, err));
+    measure_pieces(&e);
+    judge(&e, outer, &found);
+  }
+  *out = found;
+done:
+  free(e.on);
+  free(e.root);
+  free(e.piece);
+  return st;
+}

@@ -1,0 +1,206 @@
+/* core/surface/surface_parts.h: the steps of vg_surface_check, each in the file
+ * named above its functions. Private to core and its tests. */
+#ifndef VG_CORE_SURFACE_SURFACE_PARTS_H
+#define VG_CORE_SURFACE_SURFACE_PARTS_H
+
+#include "core/surface/surface_check.h"
+
+/* All faces as triangles: the n_tri of the mesh, then two halves of each
+ * quadrilateral. Nodes are the lowest index with the same coordinates, so
+ * that a surface need not be welded to be judged. */
+struct vg_faces {
+  size_t n, n_tri, n_point;
+  const double (*point)[3];
+  uint32_t (*node)[3];      /* [n] */
+  uint8_t *state;           /* [n] bits below */
+};
+#define VG_FACES_INIT { 0 }
+
+enum {
+  VG_FACE_COLLAPSED = 1,    /* a repeated node: no part of the topology */
+  VG_FACE_FLAT = 2,         /* exactly zero area, nodes distinct */
+  VG_FACE_NOT_FINITE = 4
+};
+
+/* Index of face f as vg_defect counts: quadrilaterals after the triangles. */
+static inline size_t vg_faces_source(const struct vg_faces *s, size_t f)
+{
+  return f < s->n_tri ? f : s->n_tri + (f - s->n_tri) / 2;
+}
+
+/* surface_faces.c ---------------------------------------------------------*/
+
+/** Build *s (empty) over m, which is borrowed; `same` as from
+ * vg_points_same. */
+vg_status vg_faces_build(struct vg_faces *s, const struct vg_mesh *m,
+                         const uint32_t *same, struct vg_error *err);
+
+void vg_faces_release(struct vg_faces *s);
+
+/** Faces of the same three nodes: (*first)[f] is the lowest such face, f
+ * itself for most, collapsed ones included. The caller frees it. O(n). */
+vg_status vg_faces_duplicate(const struct vg_faces *s, uint32_t **first,
+                             struct vg_error *err);
+
+/** Whether two faces with the same nodes look to the same side. */
+int vg_faces_same_side(const uint32_t a[3], const uint32_t b[3]);
+
+/* surface_weld.c ----------------------------------------------------------*/
+
+/** (*same)[p] is the lowest index with the coordinates of p; points that are
+ * not finite equal only themselves. The caller frees it. O(n). */
+vg_status vg_points_same(const struct vg_mesh *m, uint32_t **same,
+                         struct vg_error *err);
+
+/** VG_ERR_INPUT naming the first boundary face or cell with a node that is
+ * no point, or face without a patch. */
+vg_status vg_mesh_check_index(const struct vg_mesh *m, struct vg_error *err);
+
+/** Replace node p by map[p] everywhere, drop the points with keep[p] == 0
+ * (none is used any more) and close the gaps. Cannot fail; map is used as
+ * scratch and holds the new index of every kept point afterwards. */
+void vg_mesh_renumber(struct vg_mesh *m, uint32_t *map, const uint8_t *keep);
+
+/** Drop the triangles with drop[t] != 0, keeping the order of the others. */
+size_t vg_mesh_drop_tri(struct vg_mesh *m, const uint8_t *drop);
+
+/* surface_edges.c ---------------------------------------------------------*/
+
+/* Half-edge 3 f + k runs from node[f][k] to node[f][(k + 1) % 3]. Edge e has
+ * half[start[e]] .. half[start[e + 1] - 1], by rising number. */
+struct vg_edges {
+  size_t n;
+  uint32_t *start;          /* [n + 1] */
+  uint32_t *half;           /* [3 * n_face] at most */
+  uint32_t *of_half;        /* [3 * n_face] edge, UINT32_MAX if collapsed */
+};
+#define VG_EDGES_INIT { 0 }
+
+vg_status vg_edges_build(struct vg_edges *e, const struct vg_faces *s,
+                         struct vg_error *err);
+
+void vg_edges_release(struct vg_edges *e);
+
+/** The two faces of edge e (which has two) run along it the same way. */
+int vg_edges_disagree(const struct vg_edges *e, const struct vg_faces *s,
+                      size_t edge);
+
+/* surface_orient.c --------------------------------------------------------*/
+
+/** Decide which faces to turn so that neighbours agree: flip[f] ^= 1 for the
+ * fewer faces of each two-manifold component, the one with the lowest face
+ * staying on a tie; one-sided components are left as they are. O(n). */
+vg_status vg_orient_faces(const struct vg_faces *s, const struct vg_edges *e,
+                          uint8_t *flip, struct vg_error *err);
+
+/** (*fan)[f][k]: corners with the same number belong to faces that hang
+ * together around their node, through edges of two faces that agree once
+ * flip[] is applied. A node of a clean surface has one fan; where a node or
+ * an edge joins several sheets, each has its own. The caller frees it. O(n).
+ */
+vg_status vg_label_fans(const struct vg_faces *s, const struct vg_edges *e,
+                        const uint8_t *flip, uint32_t (**fan)[3],
+                        struct vg_error *err);
+
+/** Number of components connected by nodes. O(n). */
+vg_status vg_count_pieces(const struct vg_faces *s, size_t *n_piece,
+                          struct vg_error *err);
+
+/** Number the edge-connected components by their lowest face: shell[f],
+ * UINT32_MAX for collapsed faces. O(n). */
+vg_status vg_label_shells(const struct vg_faces *s, const struct vg_edges *e,
+                          uint32_t *shell, size_t *n_shell,
+                          struct vg_error *err);
+
+/* surface_tree.c: boxes about triangles -----------------------------------*/
+
+struct vg_tree_node {
+  double lo[3], hi[3];
+  uint32_t first, n;        /* items of a leaf; n = 0: inner node */
+  uint32_t right;           /* the left child is the next node */
+};
+
+struct vg_tree {
+  size_t n_item, n_node;
+  uint32_t *item;           /* [n_item] faces, near ones close together */
+  double (*box)[6];         /* [n_item] lo, hi of item[i] */
+  struct vg_tree_node *node;
+};
+#define VG_TREE_INIT { 0 }
+
+/** Over the faces whose state is 0. O(n log n). threads: as
+ * vg_parallel_for's; the same tree for any number. */
+vg_status vg_tree_build(struct vg_tree *t, const struct vg_faces *s,
+                        int threads, struct vg_error *err);
+
+void vg_tree_release(struct vg_tree *t);
+
+/* worker < vg_tree_workers(threads) names scratch space. */
+typedef vg_status (*vg_tree_visit)(void *context, int worker, uint32_t a,
+                                   uint32_t b);
+
+int vg_tree_workers(int threads);
+
+/** Call visit for all pairs of faces whose boxes touch, once each, from
+ * several threads at once. With one thread in an order that depends on the
+ * geometry alone. Stops soon after visit returned < 0, and returns one such
+ * status; VG_ERR_MEMORY without a message. */
+vg_status vg_tree_pairs(const struct vg_tree *t, int threads,
+                        vg_tree_visit visit, void *context);
+
+/** Call visit(context, f) for all faces whose box touches the line from p
+ * towards -x. Stops when visit returns < 0, and returns that. */
+vg_status vg_tree_ray(const struct vg_tree *t, const double p[3],
+                      vg_status (*visit)(void *, uint32_t), void *context);
+
+/* surface_intersect.c -----------------------------------------------------*/
+
+struct vg_crossing {
+  size_t n_pair;
+  size_t n_listed;          /* n_pair, or 0 beyond VG_SURFACE_PAIR_MAX */
+  uint32_t (*pair)[2];      /* [n_listed] lower face first, sorted */
+  uint32_t *partner;        /* [n_face] lowest face met, UINT32_MAX: none */
+  uint8_t *other_shell;     /* [n_shell] meets another shell */
+};
+#define VG_CROSSING_INIT { 0 }
+
+vg_status vg_find_crossings(struct vg_crossing *c, const struct vg_faces *s,
+                            const uint32_t (*fan)[3], const struct vg_tree *t,
+                            const uint32_t *shell, size_t n_shell,
+                            int threads, struct vg_error *err);
+
+void vg_crossing_release(struct vg_crossing *c);
+
+/* surface_shell.c ---------------------------------------------------------*/
+
+/* What is known of a shell, or wrong with it; bits. */
+enum {
+  VG_SHELL_FLAT = 1,        /* encloses no volume */
+  VG_SHELL_MIXED = 2,       /* neighbours disagree: it has no sides */
+  VG_SHELL_REVERSED = 4,    /* solid and fluid exchanged */
+  VG_SHELL_STRAY = 8        /* within another, solid on the same side */
+};
+
+/** All of shell[] but parent and depth, and state[] (FLAT and MIXED); faces
+ * with flip[f] count as turned. O(n). */
+vg_status vg_measure_shells(struct vg_shell *shell, uint8_t *state,
+                            size_t n_shell, const struct vg_faces *s,
+                            const struct vg_edges *e, const uint32_t *of_face,
+                            const uint8_t *flip, struct vg_error *err);
+
+/** parent and depth of the closed shells by exact ray parity. */
+vg_status vg_nest_shells(struct vg_shell *shell, size_t n_shell,
+                         const struct vg_faces *s, const struct vg_tree *t,
+                         const uint32_t *of_face, struct vg_error *err);
+
+/** Judge the side of each closed shell: state[] (REVERSED and STRAY), and
+ * when `repair`, turn[i] for those to turn; their volume changes sign.
+ * @param crossed  [n_shell] shells that meet another: only turned when
+ *                 outermost and never called stray, since where they lie is
+ *                 not defined */
+vg_status vg_side_shells(struct vg_shell *shell, uint8_t *state,
+                         size_t n_shell, int external, int repair,
+                         const uint8_t *crossed, uint8_t *turn,
+                         struct vg_error *err);
+
+#endif

@@ -1,0 +1,111 @@
+/* Findings of the surface check in words. */
+#include <stdio.h>
+
+#include "core/surface/surface_check.h"
+
+const char *vg_defect_name(enum vg_defect_kind kind)
+{
+  static const char *const name[VG_DEFECT_N] = {
+    "open edge",            "non-manifold edge",  "orientation",
+    "duplicate point",      "unused point",       "degenerate triangle",
+    "duplicate triangle",   "self-intersection",  "shell nesting",
+    "no boundary condition", "coordinate not finite", "quadrilateral"
+  };
+
+  return (unsigned)kind < VG_DEFECT_N ? name[kind] : "unknown";
+}
+
+/* "patch 3 (wing), face 17", or "" where there is none. */
+static void face_text(const struct vg_mesh *m, size_t f, char *text,
+                      size_t size)
+{
+  int is_tri = f < m->n_tri;
+  size_t q = f - m->n_tri;
+  const struct vg_patch *p;
+
+  text[0] = 0;
+  if (f == SIZE_MAX || (!is_tri && q >= m->n_quad)) return;
+  p = &m->patch[is_tri ? m->tri_patch[f] : m->quad_patch[q]];
+  snprintf(text, size, "patch %d%s%.*s%s, %s %zu", (int)p->id,
+           p->name[0] ? " (" : "", VG_NAME_MAX, p->name,
+           p->name[0] ? ")" : "", is_tri ? "face" : "quadrilateral",
+           is_tri ? f + 1 : q + 1);
+}
+
+static void where(const double at[3], char *text, size_t size)
+{
+  snprintf(text, size, "(%.9g, %.9g, %.9g)", at[0], at[1], at[2]);
+}
+
+static void points_text(const struct vg_defect *d, char *text, size_t size)
+{
+  text[0] = 0;
+  if (d->point[0] != SIZE_MAX && d->point[1] != SIZE_MAX)
+    snprintf(text, size, "points %zu and %zu", d->point[0] + 1,
+             d->point[1] + 1);
+  else if (d->point[0] != SIZE_MAX)
+    snprintf(text, size, "point %zu", d->point[0] + 1);
+}
+
+static const char *shell_text(const struct vg_defect *d)
+{
+  if (d->face[1] != SIZE_MAX)
+    return "this closed shell lies within another one with the solid on the "
+           "same side; remove it, or turn it if it is a cavity with fluid";
+  return "this closed shell encloses no volume, or has solid and fluid "
+         "exchanged; remove or turn it";
+}
+
+static const char *remedy(const struct vg_defect *d)
+{
+  switch (d->kind) {
+  case VG_DEFECT_OPEN_EDGE:
+    return "only one face has this edge; close the gap, or weld the points "
+           "with a tolerance";
+  case VG_DEFECT_NONMANIFOLD_EDGE:
+    return "three or more faces meet in this edge; remove inner walls and "
+           "doubled faces, or separate the bodies";
+  case VG_DEFECT_ORIENTATION:
+    return "the faces on this edge look to different sides; turn one part of "
+           "the surface (a one-sided surface bounds no volume)";
+  case VG_DEFECT_DUPLICATE_POINT:
+    return "two points have the same coordinates; weld the surface";
+  case VG_DEFECT_UNUSED_POINT:
+    return "no face uses this point; remove it";
+  case VG_DEFECT_DEGENERATE_TRIANGLE:
+    return "the triangle has no area; remove it by swapping or collapsing an "
+           "edge";
+  case VG_DEFECT_DUPLICATE_TRIANGLE:
+    return "two triangles have the same points; remove one, or both if they "
+           "are a wall without thickness";
+  case VG_DEFECT_INTERSECTION:
+    return "these faces cross, overlap or touch; unite the bodies or "
+           "move the surface apart there";
+  case VG_DEFECT_SHELL:
+    return shell_text(d);
+  case VG_DEFECT_NO_BC:
+    return "this patch has no boundary condition; give it one in the .mapbc "
+           "file or the deck";
+  case VG_DEFECT_NOT_FINITE:
+    return "a coordinate is NaN or infinite; repair the file";
+  case VG_DEFECT_QUAD:
+    return "the surface may have triangles only; split the quadrilateral";
+  default:
+    return "";
+  }
+}
+
+void vg_defect_text(const struct vg_mesh *m, const struct vg_defect *d,
+                    char *text, size_t size)
+{
+  char one[VG_NAME_MAX + 64], two[VG_NAME_MAX + 64], points[64], at[96];
+
+  face_text(m, d->face[0], one, sizeof one);
+  face_text(m, d->face[1], two, sizeof two);
+  points_text(d, points, sizeof points);
+  where(d->at, at, sizeof at);
+  snprintf(text, size, "%s: %s%s%s%s%s%s at %s: %s", vg_defect_name(d->kind),
+           one, *one && *two ? "; " : "", two,
+           (*one || *two) && *points ? "; " : "", points,
+           *one || *two || *points ? "" : "surface", at, remedy(d));
+}

@@ -1,0 +1,447 @@
+/* The five files of an OpenFOAM mesh: io/mesh/foam.h, formats.md 4.3. A list is
+ * text, one item a line, or its length, '(', the bytes and ')'; binary faces
+ * are two lists of labels: where each face starts, and the nodes of all. */
+#include "io/mesh/foam.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <unistd.h>
+
+#include "base/memory.h"
+#include "core/geometry/vector.h"
+#include "io/mesh/foam_parts.h"
+#include "io/stream/boundary.h"
+#include "io/stream/stream.h"
+#include "io/vgrid/mapbc.h"
+
+int vg_foam_word(const char *word, struct vg_foam_options *options)
+{
+  int is_ascii = !strcasecmp(word, "foam-ascii");
+
+  if (!is_ascii && strcasecmp(word, "foam")) return 0;
+  options->is_ascii = is_ascii;
+  return 1;
+}
+
+/* --- patches --- */
+
+/* OpenFOAM's type of a patch by its condition; is_planar says whether its faces
+ * lie in one plane. Walls are viscous and inviscid ones, "symmetry" also other
+ * slip surfaces. *physical out: "" where there is none. */
+static const char *patch_type(const struct vg_patch *p, int is_planar,
+                              const char **physical)
+{
+  static const struct {
+    int32_t code;
+    const char *type, *physical;
+  } known[] = {
+    {4, "wall", "viscousWall"},     {41, "wall", "viscousWall"},
+    {44, "wall", "viscousWall"},    {5, "wall", "inviscidWall"},
+    {55, "wall", "inviscidWall"},   {1, "symmetry", "symmetry"},
+    {3, "patch", "farfield"},       {0, "patch", "inflow"},
+    {2, "patch", "outflow"},        {1001, "patch", "inflow"},
+    {1002, "patch", "outflow"},     {11002, "patch", "outflow"},
+    {11003, "patch", "outflow"},    {101, "patch", "outflow"},
+    {102, "patch", "inflow"},       {103, "patch", "inflow"},
+  };
+  int32_t code = p->bc;
+
+  *physical = "";
+  if (code == VG_BC_NONE && p->bc_fun3d != VG_BC_NONE)
+    code = vg_bc_to_usm3d(p->bc_fun3d);
+  for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
+    if (known[i].code != code) continue;
+    *physical = known[i].physical;
+    return code == 1 && is_planar ? "symmetryPlane" : known[i].type;
+  }
+  return "patch";
+}
+
+static const uint32_t *boundary_nodes(const struct vg_mesh *m, size_t face)
+{
+  return face < m->n_tri ? m->tri[face] : m->quad[face - m->n_tri];
+}
+
+/* Unit normal, zero for a face without area. The cross product of the
+ * diagonals is that of the two sides for a triangle. */
+static void unit_normal(const struct vg_mesh *m, size_t face, double n[3])
+{
+  const uint32_t *node = boundary_nodes(m, face);
+  const double *a = m->point[node[0]], *c = m->point[node[2]];
+  const double *b = m->point[node[1]];
+  const double *d = face < m->n_tri ? a : m->point[node[3]];
+  double u[3], v[3];
+
+  vg_sub(c, a, u);
+  vg_sub(d, b, v);
+  vg_cross(u, v, n);
+  if (!(vg_unit(n) > 0)) memset(n, 0, 3 * sizeof *n);
+}
+
+/* OpenFOAM refuses a symmetryPlane where the square of the difference between
+ * a face's normal and their mean exceeds 1e-15; ask for ten times less. */
+static int is_planar(const struct vg_mesh *m, const size_t *face, size_t n)
+{
+  double mean[3] = {0, 0, 0}, one[3];
+
+  for (size_t i = 0; i < n; i++) {
+    unit_normal(m, face[i], one);
+    for (int k = 0; k < 3; k++) mean[k] += one[k];
+  }
+  for (int k = 0; k < 3; k++) mean[k] /= n ? (double)n : 1;
+  for (size_t i = 0; i < n; i++) {
+    double square = 0;
+
+    unit_normal(m, face[i], one);
+    for (int k = 0; k < 3; k++)
+      square += (one[k] - mean[k]) * (one[k] - mean[k]);
+    if (!(square < 1e-16)) return 0;
+  }
+  return 1;
+}
+
+/* What OpenFOAM takes as a word anywhere in a dictionary. */
+static void clean_name(const struct vg_patch *p, char name[VG_NAME_MAX + 32])
+{
+  size_t n = 0;
+
+  if (!isalpha((unsigned char)p->name[0]) && p->name[0] != '_')
+    n = (size_t)sprintf(name, p->name[0] ? "patch_" : "patch_%d", p->id);
+  for (const char *s = p->name; *s; s++) {
+    unsigned char c = (unsigned char)*s;
+
+    name[n++] = c < 128 && (isalnum(c) || strchr("_-.", c)) ? *s : '_';
+  }
+  name[n] = 0;
+}
+
+struct named { char name[VG_NAME_MAX + 32]; size_t patch; };
+
+static int by_name(const void *a, const void *b)
+{
+  const struct named *p = a, *q = b;
+  int order = strcmp(p->name, q->name);
+
+  return order ? order : (p->patch > q->patch) - (p->patch < q->patch);
+}
+
+static int by_patch(const void *a, const void *b)
+{
+  const struct named *p = a, *q = b;
+
+  return (p->patch > q->patch) - (p->patch < q->patch);
+}
+
+/* Names of all patches, unique: of equal ones all but the first get their
+ * patch number, and '_' until nothing clashes any more. */
+static struct named *make_names(const struct vg_mesh *m)
+{
+  struct named *list = vg_alloc(m->n_patch, sizeof *list);
+  int again = 1;
+
+  if (!list) return NULL;
+  for (size_t i = 0; i < m->n_patch; i++) {
+    list[i].patch = i;
+    clean_name(m->patch + i, list[i].name);
+  }
+  for (int turn = 0; again && turn < 8; turn++) {
+    qsort(list, m->n_patch, sizeof *list, by_name);
+    again = 0;
+    for (size_t i = 1, first = 0; i < m->n_patch; i++) {
+      char *name = list[i].name;
+
+      if (strcmp(list[first].name, name)) {
+        first = i;
+        continue;
+      }
+      again = 1;
+      name[VG_NAME_MAX - 1] = 0;
+      sprintf(name + strlen(name), "_%d", m->patch[list[i].patch].id);
+    }
+  }
+  qsort(list, m->n_patch, sizeof *list, by_patch);
+  return list;
+}
+
+/* --- lists --- */
+
+enum { BUFFER = 4096 };
+
+struct labels {
+  struct vg_output *out;
+  int is_ascii;
+  size_t n;
+  int32_t v[BUFFER];
+};
+
+static void flush_labels(struct labels *l)
+{
+  vg_output_i32(l->out, l->n, l->v);
+  l->n = 0;
+}
+
+static inline void put_label(struct labels *l, uint32_t v)
+{
+  if (l->is_ascii) {
+    vg_output_int(l->out, v);
+    vg_output_bytes(l->out, "\n", 1);
+    return;
+  }
+  if (l->n == BUFFER) flush_labels(l);
+  l->v[l->n++] = (int32_t)v;
+}
+
+static void open_list(struct labels *l, uint64_t n)
+{
+  vg_output_format(l->out, l->is_ascii ? "\n%llu\n(\n" : "\n%llu\n(",
+                   (unsigned long long)n);
+}
+
+static void close_list(struct labels *l)
+{
+  flush_labels(l);
+  vg_output_text(l->out, ")\n");
+}
+
+static void put_face(struct labels *l, const struct vg_foam_faces *f,
+                     uint32_t code)
+{
+  uint32_t node[4];
+  int width = vg_foam_face_nodes(f, code, node);
+
+  if (!l->is_ascii) {
+    for (int k = 0; k < width; k++) put_label(l, node[k]);
+    return;
+  }
+  vg_output_bytes(l->out, width == 3 ? "3(" : "4(", 2);
+  for (int k = 0; k < width; k++) {
+    if (k) vg_output_bytes(l->out, " ", 1);
+    vg_output_int(l->out, node[k]);
+  }
+  vg_output_bytes(l->out, ")\n", 2);
+}
+
+/* --- the files --- */
+
+struct writing {
+  const struct vg_mesh *m;
+  struct vg_foam_faces faces;
+  size_t *start, *order;        /* boundary faces by patch */
+  const char *folder;
+  int is_ascii;
+  char note[160];
+  struct vg_output out[VG_FOAM_FILES];
+};
+enum { POINTS, FACES, OWNER, NEIGHBOUR, BOUNDARY };
+
+static const char location[] = "constant/polyMesh";
+
+static void put_points(struct writing *w)
+{
+  struct vg_output *o = w->out + POINTS;
+  const struct vg_mesh *m = w->m;
+
+  vg_foam_header(o, "vectorField", location, "points", w->is_ascii, NULL);
+  vg_output_format(o, "\n%zu\n(", m->n_point);
+  if (!w->is_ascii) {
+    vg_output_f64(o, 3 * m->n_point, (const double *)m->point);
+  } else {
+    for (size_t i = 0; i < m->n_point; i++)
+      for (int k = 0; k < 3; k++) {
+        vg_output_text(o, k ? " " : "\n(");
+        vg_output_real(o, m->point[i][k]);
+        if (k == 2) vg_output_bytes(o, ")", 1);
+      }
+    vg_output_bytes(o, "\n", 1);
+  }
+  vg_output_text(o, ")\n");
+}
+
+/* Owners and neighbours, and for a binary mesh where each face starts. */
+static void put_cells(struct writing *w, struct labels l[3])
+{
+  const struct vg_foam_faces *f = &w->faces;
+  uint64_t n_boundary = w->m->n_tri + w->m->n_quad;
+  uint32_t code[6], neighbour[6], node[4], at = 0;
+
+  for (int i = 0; i < 3; i++) {
+    l[i].out = w->out + FACES + i;
+    l[i].is_ascii = w->is_ascii;
+    l[i].n = 0;
+  }
+  open_list(l + 1, f->n_internal + n_boundary);
+  open_list(l + 2, f->n_internal);
+  if (!w->is_ascii) open_list(l, f->n_internal + n_boundary + 1);
+  for (uint32_t cell = 0; cell < f->n_cell; cell++) {
+    int n = vg_foam_upper(f, cell, code, neighbour);
+
+    for (int i = 0; i < n; i++) {
+      put_label(l + 1, cell);
+      put_label(l + 2, neighbour[i]);
+      if (w->is_ascii) continue;
+      put_label(l, at);
+      at += (uint32_t)vg_foam_face_nodes(f, code[i], node);
+    }
+  }
+  for (size_t i = 0; i < n_boundary; i++) {
+    put_label(l + 1, f->boundary[w->order[i]] >> 3);
+    if (w->is_ascii) continue;
+    put_label(l, at);
+    at += w->order[i] < w->m->n_tri ? 3 : 4;
+  }
+  close_list(l + 1);
+  close_list(l + 2);
+  if (w->is_ascii) return;
+  put_label(l, at);
+  close_list(l);
+}
+
+static void put_faces(struct writing *w, struct labels *l)
+{
+  const struct vg_foam_faces *f = &w->faces;
+  uint64_t n_boundary = w->m->n_tri + w->m->n_quad;
+  uint32_t code[6], neighbour[6];
+
+  open_list(l, w->is_ascii ? f->n_internal + n_boundary : f->n_corner);
+  for (uint32_t cell = 0; cell < f->n_cell; cell++) {
+    int n = vg_foam_upper(f, cell, code, neighbour);
+
+    for (int i = 0; i < n; i++) put_face(l, f, code[i]);
+  }
+  for (size_t i = 0; i < n_boundary; i++)
+    put_face(l, f, f->boundary[w->order[i]]);
+  close_list(l);
+}
+
+static vg_status put_topology(struct writing *w, struct vg_error *err)
+{
+  struct labels *l = vg_alloc(3, sizeof *l);
+
+  if (!l) return vg_fail_memory(err, "writing an OpenFOAM mesh");
+  vg_foam_header(w->out + FACES, w->is_ascii ? "faceList" : "faceCompactList",
+                 location, "faces", w->is_ascii, NULL);
+  vg_foam_header(w->out + OWNER, "labelList", location, "owner", w->is_ascii,
+                 w->note);
+  vg_foam_header(w->out + NEIGHBOUR, "labelList", location, "neighbour",
+                 w->is_ascii, w->note);
+  put_cells(w, l);
+  put_faces(w, l);
+  free(l);
+  return VG_OK;
+}
+
+static vg_status put_boundary(struct writing *w, struct vg_error *err)
+{
+  struct vg_output *o = w->out + BOUNDARY;
+  struct named *name = make_names(w->m);
+
+  if (!name) return vg_fail_memory(err, "the names of the patches");
+  vg_foam_header(o, "polyBoundaryMesh", location, "boundary", 1, NULL);
+  vg_output_format(o, "\n%zu\n(\n", w->m->n_patch);
+  for (size_t i = 0; i < w->m->n_patch; i++) {
+    size_t first = w->start[i], n = w->start[i + 1] - first;
+    const char *physical, *type = patch_type(
+        w->m->patch + i, is_planar(w->m, w->order + first, n), &physical);
+
+    vg_output_format(o, "    %s\n    {\n        type            %s;\n",
+                     name[i].name, type);
+    if (*physical)
+      vg_output_format(o, "        physicalType    %s;\n", physical);
+    vg_output_format(o, "        nFaces          %zu;\n"
+                     "        startFace       %llu;\n    }\n", n,
+                     (unsigned long long)(w->faces.n_internal + first));
+  }
+  vg_output_text(o, ")\n");
+  free(name);
+  return VG_OK;
+}
+
+/* All five files, complete, in w->folder. */
+static vg_status put_mesh(struct writing *w, struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  for (int i = 0; i < VG_FOAM_FILES; i++) {
+    char *path = vg_foam_path(w->folder, vg_foam_file[i]);
+
+    st = path ? vg_output_open(path, w->out + i, err)
+              : vg_fail_memory(err, "a file name");
+    free(path);
+    if (st < 0) return st;
+  }
+  snprintf(w->note, sizeof w->note,
+           "nPoints:%zu  nCells:%u  nFaces:%llu  nInternalFaces:%llu",
+           w->m->n_point, w->faces.n_cell,
+           (unsigned long long)(w->faces.n_internal + w->m->n_tri +
+                                w->m->n_quad),
+           (unsigned long long)w->faces.n_internal);
+  put_points(w);
+  if ((st = put_topology(w, err)) < 0) return st;
+  if ((st = put_boundary(w, err)) < 0) return st;
+  for (int i = 0; i < VG_FOAM_FILES; i++)
+    if ((st = vg_output_commit(w->out + i, err)) < 0) return st;
+  return VG_OK;
+}
+
+static vg_status write_into(const char *case_dir, const char *constant,
+                            struct writing *w, struct vg_error *err)
+{
+  char *part = vg_foam_path(constant, "polyMesh.part");
+  char *mesh = vg_foam_path(constant, "polyMesh");
+  vg_status st;
+
+  if (!part || !mesh) {
+    st = vg_fail_memory(err, "a file name");
+    goto done;
+  }
+  VG_TRY(vg_foam_folder(case_dir, err));
+  VG_TRY(vg_foam_folder(constant, err));
+  VG_TRY(vg_foam_folder(part, err));
+  w->folder = part;
+  st = put_mesh(w, err);
+  for (int i = 0; i < VG_FOAM_FILES; i++) vg_output_release(w->out + i);
+  if (st == VG_OK) st = vg_foam_surroundings(case_dir, err);
+  if (st == VG_OK) st = vg_foam_place_mesh(part, mesh, err);
+  vg_foam_remove_mesh(part);
+done:
+  free(part);
+  free(mesh);
+  return st;
+}
+
+vg_status vg_foam_write(const char *case_dir, const struct vg_mesh *m,
+                        const struct vg_foam_options *options,
+                        struct vg_error *err)
+{
+  const struct vg_output none = VG_OUTPUT_INIT;
+  struct writing w = { .m = m, .faces = VG_FOAM_FACES_INIT,
+                       .is_ascii = options && options->is_ascii };
+  char *constant = vg_foam_path(case_dir, "constant");
+  vg_status st;
+
+  for (int i = 0; i < VG_FOAM_FILES; i++) w.out[i] = none;
+  if (!constant) return vg_fail_memory(err, "a file name");
+  if (!(m->n_tet + m->n_pyr + m->n_pri + m->n_hex)) {
+    st = vg_fail(err, VG_ERR_INPUT, "%s: a mesh without cells cannot be an "
+                 "OpenFOAM case; write the surface as .stl", case_dir);
+    goto done;
+  }
+  VG_TRY(vg_boundary_by_patch(m, &w.start, &w.order, err));
+  VG_TRY(vg_foam_faces_build(&w.faces, m, case_dir, err));
+  st = write_into(case_dir, constant, &w, err);
+  if (st < 0) {
+    /* Leave no folders behind that are empty. */
+    rmdir(constant);
+    rmdir(case_dir);
+  }
+done:
+  vg_foam_faces_release(&w.faces);
+  free(w.start);
+  free(w.order);
+  free(constant);
+  return st;
+}

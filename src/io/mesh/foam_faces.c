@@ -1,0 +1,341 @@
+/* The faces of a mesh for OpenFOAM: io/mesh/foam_parts.h.
+ *
+ * Cells are passed once, in order. A half-face whose mate has not been met
+ * waits in a chain; its entry of link[] holds the next in the chain until the
+ * mate comes, then the mate. So the table costs one word per half-face and
+ * the heads. Heads lie near the number of the face's lowest point: cells that
+ * are numbered near each other share cache lines, and a point with very many
+ * faces spreads over a window of heads. */
+#include "io/mesh/foam_parts.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "io/stream/cell_faces.h"
+
+#define NONE UINT32_MAX
+#define HEADS 4u        /* per point */
+#define WINDOW 4096u    /* power of two */
+/* 8 * cell + face stays below NONE. */
+#define MAX_CELL ((UINT32_MAX >> 3) - 1)
+
+struct heads {
+  uint32_t *head;       /* [n] */
+  size_t n;
+};
+
+void vg_foam_faces_release(struct vg_foam_faces *f)
+{
+  const struct vg_foam_faces empty = VG_FOAM_FACES_INIT;
+
+  free(f->link);
+  free(f->boundary);
+  *f = empty;
+}
+
+/* Nodes of a cell, its faces and their number. */
+static inline const uint32_t *cell_nodes(const struct vg_foam_faces *f,
+                                         uint32_t cell,
+                                         const unsigned char (**face)[4],
+                                         int *n_face)
+{
+  *n_face = 5;
+  if (cell < f->end_tet) {
+    *n_face = 4;
+    *face = vg_tet_face;
+    return f->m->tet[cell];
+  }
+  if (cell < f->end_pyr) {
+    *face = vg_pyr_face;
+    return f->m->pyr[cell - f->end_tet];
+  }
+  if (cell < f->end_pri) {
+    *face = vg_pri_face;
+    return f->m->pri[cell - f->end_pyr];
+  }
+  *n_face = 6;
+  *face = vg_hex_face;
+  return f->m->hex[cell - f->end_pri];
+}
+
+/* Place of a cell's first half-face in link[]. */
+static inline size_t first_half(const struct vg_foam_faces *f, uint32_t cell)
+{
+  if (cell < f->end_tet) return 4 * (size_t)cell;
+  if (cell < f->end_pri)
+    return 4 * (size_t)f->end_tet + 5 * (size_t)(cell - f->end_tet);
+  return 4 * (size_t)f->end_tet + 5 * (size_t)(f->end_pri - f->end_tet) +
+         6 * (size_t)(cell - f->end_pri);
+}
+
+static inline uint32_t *link_of(const struct vg_foam_faces *f, uint32_t code)
+{
+  return f->link + first_half(f, code >> 3) + (code & 7);
+}
+
+int vg_foam_face_nodes(const struct vg_foam_faces *f, uint32_t code,
+                       uint32_t node[4])
+{
+  const unsigned char (*face)[4], *q;
+  int n_face, width;
+  const uint32_t *c = cell_nodes(f, code >> 3, &face, &n_face);
+
+  q = face[code & 7];
+  width = q[2] == q[3] ? 3 : 4;
+  for (int k = 0; k < width; k++) node[k] = c[q[width - 1 - k]];
+  return width;
+}
+
+/* --- keys: sorted nodes, NONE behind those of a triangle --- */
+
+static inline void order(uint32_t *a, uint32_t *b)
+{
+  uint32_t lo = *a < *b ? *a : *b, hi = *a < *b ? *b : *a;
+
+  *a = lo;
+  *b = hi;
+}
+
+static inline void make_key(const uint32_t *c, const unsigned char *q,
+                            uint32_t key[4])
+{
+  for (int k = 0; k < 3; k++) key[k] = c[q[k]];
+  order(&key[0], &key[1]);
+  if (q[2] == q[3]) {
+    order(&key[1], &key[2]);
+    order(&key[0], &key[1]);
+    key[3] = NONE;
+    return;
+  }
+  key[3] = c[q[3]];
+  order(&key[2], &key[3]);
+  order(&key[0], &key[2]);
+  order(&key[1], &key[3]);
+  order(&key[1], &key[2]);
+}
+
+static inline size_t slot_of(const uint32_t key[4])
+{
+  uint32_t h = (key[1] * 0x9e3779b1u) ^ (key[2] * 0x85ebca6bu);
+
+  h ^= h >> 15;
+  return HEADS * (size_t)key[0] + (h & (WINDOW - 1));
+}
+
+static inline int has_key(const struct vg_foam_faces *f, uint32_t code,
+                          const uint32_t key[4])
+{
+  const unsigned char (*face)[4];
+  uint32_t other[4];
+  int n_face;
+  const uint32_t *c = cell_nodes(f, code >> 3, &face, &n_face);
+
+  make_key(c, face[code & 7], other);
+  return !((key[0] ^ other[0]) | (key[1] ^ other[1]) | (key[2] ^ other[2]) |
+           (key[3] ^ other[3]));
+}
+
+/* Take the waiting half-face with this key out of its chain; NONE if there
+ * is none. */
+static inline uint32_t take(const struct vg_foam_faces *f, struct heads *h,
+                            size_t slot, const uint32_t key[4])
+{
+  uint32_t *at = h->head + slot, code;
+
+  while ((code = *at) != NONE) {
+    uint32_t *next = link_of(f, code);
+
+    if (has_key(f, code, key)) {
+      *at = *next;
+      return code;
+    }
+    at = next;
+  }
+  return NONE;
+}
+
+/* --- building --- */
+
+static void pass_cells(struct vg_foam_faces *f, struct heads *h)
+{
+  for (uint32_t cell = 0; cell < f->n_cell; cell++) {
+    const unsigned char (*face)[4];
+    int n_face;
+    const uint32_t *c = cell_nodes(f, cell, &face, &n_face);
+    uint32_t *link = f->link + first_half(f, cell);
+
+    for (int i = 0; i < n_face; i++) {
+      uint32_t key[4], code = cell << 3 | (uint32_t)i, mate;
+      size_t slot;
+
+      make_key(c, face[i], key);
+      slot = slot_of(key);
+      mate = take(f, h, slot, key);
+      if (mate != NONE && mate >> 3 == cell) {
+        /* A collapsed cell is no neighbour of itself: both stay. */
+        *link_of(f, mate) = h->head[slot];
+        h->head[slot] = mate;
+        mate = NONE;
+      }
+      if (mate == NONE) {
+        link[i] = h->head[slot];
+        h->head[slot] = code;
+        continue;
+      }
+      link[i] = mate;
+      *link_of(f, mate) = code;
+      f->n_internal++;
+      f->n_corner += key[3] == NONE ? 3 : 4;
+    }
+  }
+}
+
+static const uint32_t *boundary_nodes(const struct vg_mesh *m, size_t face,
+                                      int *width)
+{
+  *width = face < m->n_tri ? 3 : 4;
+  return face < m->n_tri ? m->tri[face] : m->quad[face - m->n_tri];
+}
+
+static vg_status loose_face(const struct vg_mesh *m, size_t face,
+                            const char *name, struct vg_error *err)
+{
+  int width;
+  const uint32_t *node = boundary_nodes(m, face, &width);
+  const double *p = m->point[node[0]];
+
+  return vg_fail(err, VG_ERR_INPUT,
+                 "%s: boundary %s %zu of the mesh, at (%g, %g, %g), is the "
+                 "face of no cell, or of one that has another; OpenFOAM needs "
+                 "a closed mesh: see `vanguard check`", name,
+                 width == 3 ? "triangle" : "quadrilateral",
+                 (width == 3 ? face : face - m->n_tri) + 1, p[0], p[1], p[2]);
+}
+
+static vg_status pass_boundary(struct vg_foam_faces *f, struct heads *h,
+                               const char *name, struct vg_error *err)
+{
+  static const unsigned char tri[4] = {0, 1, 2, 2}, quad[4] = {0, 1, 2, 3};
+
+  for (size_t i = 0; i < f->m->n_tri + f->m->n_quad; i++) {
+    int width;
+    const uint32_t *node = boundary_nodes(f->m, i, &width);
+    uint32_t key[4], code;
+
+    make_key(node, width == 3 ? tri : quad, key);
+    code = take(f, h, slot_of(key), key);
+    if (code == NONE) return loose_face(f->m, i, name, err);
+    f->boundary[i] = code;
+    *link_of(f, code) = VG_FOAM_BOUNDARY;
+    f->n_corner += (uint64_t)width;
+  }
+  return VG_OK;
+}
+
+/* Any half-face still waiting? The lowest is named. */
+static vg_status check_left(const struct vg_foam_faces *f,
+                            const struct heads *h, const char *name,
+                            struct vg_error *err)
+{
+  const char *kind = "tetrahedron";
+  uint32_t lowest = NONE, cell, node[4];
+  const double *p;
+
+  for (size_t i = 0; i < h->n; i++)
+    for (uint32_t c = h->head[i]; c != NONE; c = *link_of(f, c))
+      if (c < lowest) lowest = c;
+  if (lowest == NONE) return VG_OK;
+  vg_foam_face_nodes(f, lowest, node);
+  p = f->m->point[node[0]];
+  cell = lowest >> 3;
+  if (cell >= f->end_pri) {
+    kind = "hexahedron";
+    cell -= f->end_pri;
+  } else if (cell >= f->end_pyr) {
+    kind = "prism";
+    cell -= f->end_pyr;
+  } else if (cell >= f->end_tet) {
+    kind = "pyramid";
+    cell -= f->end_tet;
+  }
+  return vg_fail(err, VG_ERR_INPUT,
+                 "%s: the face of points %u, %u, %u at (%g, %g, %g) of %s %u "
+                 "meets neither one other cell nor a boundary face; OpenFOAM "
+                 "needs a closed mesh: see `vanguard check`", name,
+                 node[0] + 1, node[1] + 1, node[2] + 1, p[0], p[1], p[2],
+                 kind, cell + 1);
+}
+
+static vg_status make_room(struct vg_foam_faces *f, struct heads *h,
+                           const struct vg_mesh *m, const char *name,
+                           struct vg_error *err)
+{
+  uint64_t n_cell = (uint64_t)m->n_tet + m->n_pyr + m->n_pri + m->n_hex;
+  size_t n_face = m->n_tri + m->n_quad;
+
+  if (n_cell > MAX_CELL || m->n_point > INT32_MAX || n_face > INT32_MAX)
+    return vg_fail(err, VG_ERR_UNSUPPORTED,
+                   "%s: %llu cells and %zu points are beyond OpenFOAM's 32-bit "
+                   "labels", name, (unsigned long long)n_cell, m->n_point);
+  f->m = m;
+  f->n_cell = (uint32_t)n_cell;
+  f->end_tet = (uint32_t)m->n_tet;
+  f->end_pyr = f->end_tet + (uint32_t)m->n_pyr;
+  f->end_pri = f->end_pyr + (uint32_t)m->n_pri;
+  f->link = vg_alloc(first_half(f, f->n_cell), sizeof *f->link);
+  f->boundary = vg_alloc(n_face, sizeof *f->boundary);
+  h->n = HEADS * m->n_point + WINDOW;
+  h->head = vg_alloc(h->n, sizeof *h->head);
+  if (!f->link || !f->boundary || !h->head)
+    return vg_fail_memory(err, "the faces of an OpenFOAM mesh");
+  memset(h->head, 0xff, h->n * sizeof *h->head);
+  return VG_OK;
+}
+
+vg_status vg_foam_faces_build(struct vg_foam_faces *f, const struct vg_mesh *m,
+                              const char *name, struct vg_error *err)
+{
+  struct vg_foam_faces made = VG_FOAM_FACES_INIT;
+  struct heads h = {NULL, 0};
+  vg_status st;
+
+  VG_TRY(make_room(&made, &h, m, name, err));
+  pass_cells(&made, &h);
+  VG_TRY(pass_boundary(&made, &h, name, err));
+  VG_TRY(check_left(&made, &h, name, err));
+  if (made.n_corner > INT32_MAX) {
+    st = vg_fail(err, VG_ERR_UNSUPPORTED,
+                 "%s: %llu corners of faces are beyond OpenFOAM's 32-bit "
+                 "labels", name, (unsigned long long)made.n_corner);
+    goto done;
+  }
+  *f = made;
+  memset(&made, 0, sizeof made);
+done:
+  free(h.head);
+  vg_foam_faces_release(&made);
+  return st;
+}
+
+int vg_foam_upper(const struct vg_foam_faces *f, uint32_t cell,
+                  uint32_t code[6], uint32_t neighbour[6])
+{
+  size_t at = first_half(f, cell);
+  int n_face = cell < f->end_tet ? 4 : cell < f->end_pri ? 5 : 6, n = 0;
+
+  for (int i = 0; i < n_face; i++) {
+    uint32_t mate = f->link[at + (size_t)i];
+    int k = n;
+
+    if (mate == VG_FOAM_BOUNDARY || mate >> 3 <= cell) continue;
+    for (; k > 0 && neighbour[k - 1] > mate >> 3; k--) {
+      code[k] = code[k - 1];
+      neighbour[k] = neighbour[k - 1];
+    }
+    code[k] = cell << 3 | (uint32_t)i;
+    neighbour[k] = mate >> 3;
+    n++;
+  }
+  return n;
+}

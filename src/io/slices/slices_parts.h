@@ -1,0 +1,94 @@
+/* io/slices/slices_parts.h: what writers of whole meshes share with those of
+ * meshes in slices.
+ *
+ * A file is its frame and what slices put into it. The frame is what the
+ * writer of whole meshes makes of a mesh that has boundary and counts, but
+ * NULL for its points and cells: their bytes are skipped, headers and markers
+ * fall where they belong. Slices seek in it and use the same encoders. */
+#ifndef VG_IO_SLICES_SLICES_PARTS_H
+#define VG_IO_SLICES_SLICES_PARTS_H
+
+#include "core/mesh/slices.h"
+#include "io/mesh/ugrid_put.h"
+#include "io/mesh/vtu_put.h"
+#include "io/slices/slices.h"
+#include "io/stream/narrow.h"
+#include "io/stream/stream.h"
+#include "io/vgrid/cogsg_put.h"
+
+/* How a kind of file is written; `of` is its own. */
+struct vg_slice_file {
+  const char *path;
+  uint32_t record_limit;     /* 0: VG_RECORD_LIMIT */
+  void *of;
+  void (*frame)(const void *of, struct vg_output *out);
+  void (*slice)(void *of, const struct vg_slice *slice,
+                struct vg_output *out);
+};
+
+/** Bytes of the file. */
+vg_status vg_slice_file_size(const struct vg_slice_file *f, uint64_t *size,
+                             struct vg_error *err);
+
+/** A slice, or the frame for NULL, into an open file. Local. Threads: any
+ * number at once. */
+vg_status vg_slice_file_put(const struct vg_slice_file *f,
+                            struct vg_shared_file *to,
+                            const struct vg_slice *slice,
+                            struct vg_error *err);
+
+/** Frame (by rank 0) and slices into an open file. Not collective. */
+vg_status vg_slice_file_fill(const struct vg_slice_file *f,
+                             struct vg_comm *comm, const struct vg_slices *s,
+                             int threads, struct vg_shared_file *to,
+                             struct vg_error *err);
+
+/** Collective; the file has its size. */
+vg_status vg_slice_file_open(const struct vg_slice_file *f,
+                             struct vg_comm *comm, struct vg_shared_file **to,
+                             struct vg_error *err);
+
+/** Open, fill, close. Collective. */
+vg_status vg_slice_file_write(const struct vg_slice_file *f,
+                              struct vg_comm *comm, const struct vg_slices *s,
+                              int threads, struct vg_error *err);
+
+/** Counts and boundary of a mesh in slices; nothing to be released. */
+struct vg_mesh vg_slices_frame(const struct vg_slices *s);
+
+/** Coordinates [n][3] of the points `own` of a slice from its k-th on. */
+void vg_slice_points(const struct vg_slice *slice, size_t k, size_t n,
+                     double (*x)[3]);
+
+/* Coordinates of boundary points as slices deliver them; [n_boundary_point].
+ * add: from several threads at once; share: collective, between all ranks. */
+struct vg_boundary_points {
+  size_t n;
+  double (*x)[3];
+  unsigned char *known;      /* delivered on this rank */
+};
+vg_status vg_boundary_points_new(const struct vg_slices *s,
+                                 struct vg_boundary_points *b,
+                                 struct vg_error *err);
+void vg_boundary_points_release(struct vg_boundary_points *b);
+void vg_boundary_points_add(struct vg_boundary_points *b,
+                            const struct vg_slice *slice);
+vg_status vg_boundary_points_share(struct vg_comm *comm,
+                                   struct vg_boundary_points *b,
+                                   struct vg_error *err);
+
+/* --- the forms --- */
+
+vg_status vg_slices_write_cogsg(struct vg_comm *comm,
+                                const struct vg_slices *s, const char *stem,
+                                const struct vg_slices_options *o,
+                                struct vg_error *err);
+vg_status vg_slices_write_vtu(struct vg_comm *comm, const struct vg_slices *s,
+                              const char *path, int threads,
+                              struct vg_error *err);
+vg_status vg_slices_write_pvtu(struct vg_comm *comm, const struct vg_slices *s,
+                               const char *stem,
+                               const struct vg_slices_options *o,
+                               struct vg_error *err);
+
+#endif

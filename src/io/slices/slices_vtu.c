@@ -1,0 +1,90 @@
+/* A mesh in slices as one .vtu: bytes of vg_vtu_write. */
+#include "core/judge/quality.h"
+#include "io/slices/slices_parts.h"
+
+/* Each is a write of its own; twice 128 kB on the stack. */
+#define BLOCK 32768
+
+static const int cell_width[VG_SLICE_KINDS] = { 4, 5, 6 };
+
+struct whole {
+  struct vg_mesh mesh;       /* the frame */
+  struct vg_vtu_field field[2];
+  size_t n_field;            /* 0 or 2: quality of tetrahedra */
+  struct vg_vtu_places at;
+};
+
+static void put_whole_frame(const void *of, struct vg_output *out)
+{
+  const struct whole *w = of;
+
+  vg_vtu_put(out, &w->mesh, w->field, w->n_field);
+}
+
+static void put_quality(const struct whole *w, const struct vg_slice *slice,
+                        struct vg_output *out)
+{
+  size_t n = slice->n_cell[VG_SLICE_TET];
+  float figure[2][BLOCK];
+
+  for (size_t i = 0; i < n; i += BLOCK) {
+    const struct vg_mesh part = {
+      .n_point = slice->n_point, .point = (double (*)[3])slice->x,
+      .n_tet = n - i < BLOCK ? n - i : BLOCK,
+      .tet = (uint32_t (*)[4])slice->cell[VG_SLICE_TET] + i
+    };
+
+    vg_mesh_cell_quality(&part, figure[0], figure[1]);
+    for (int f = 0; f < 2; f++) {
+      vg_output_seek(out, w->at.field[f] + sizeof **figure *
+                     (slice->cell_at[VG_SLICE_TET] + i));
+      vg_output_bytes(out, figure[f], part.n_tet * sizeof **figure);
+    }
+  }
+}
+
+static void put_whole_slice(void *of, const struct vg_slice *slice,
+                            struct vg_output *out)
+{
+  const struct whole *w = of;
+  const uint64_t n[VG_SLICE_KINDS] = { w->mesh.n_tet, w->mesh.n_pyr,
+                                       w->mesh.n_pri };
+  uint64_t first = 0, first_node = 0;
+
+  vg_output_seek(out, w->at.points + 24 * slice->point_at);
+  for (size_t k = 0; k < slice->n_own; k++)
+    vg_output_f64(out, 3, slice->x[slice->own[k]]);
+  for (int k = 0; k < VG_SLICE_KINDS; k++) {
+    const struct vg_vtu_cells c = {
+      k, slice->n_cell[k], slice->cell[k], slice->id, 0,
+      first + slice->cell_at[k],
+      first_node + slice->cell_at[k] * (uint64_t)cell_width[k]
+    };
+
+    if (c.n) vg_vtu_put_cells(out, &w->at, &c);
+    first += n[k];
+    first_node += n[k] * (uint64_t)cell_width[k];
+  }
+  if (w->n_field) put_quality(w, slice, out);
+}
+
+vg_status vg_slices_write_vtu(struct vg_comm *comm, const struct vg_slices *s,
+                              const char *path, int threads,
+                              struct vg_error *err)
+{
+  struct whole w = {
+    .mesh = vg_slices_frame(s),
+    .field = { { "angle_min", VG_VTU_CELL, VG_VTU_FLOAT32, 1, NULL },
+               { "radius_ratio", VG_VTU_CELL, VG_VTU_FLOAT32, 1, NULL } }
+  };
+  struct vg_slice_file f = { path, 0, &w, put_whole_frame, put_whole_slice };
+  uint64_t size = 0;
+  vg_status st;
+
+  if (!(s->n_cell[VG_SLICE_PYR] + s->n_cell[VG_SLICE_PRI])) w.n_field = 2;
+  st = vg_slice_file_size(&f, &size, err);
+  st = vg_comm_agree(comm, st, err);
+  if (st < 0) return st;
+  vg_vtu_find(&w.mesh, size, w.field, w.n_field, &w.at);
+  return vg_slice_file_write(&f, comm, s, threads, err);
+}

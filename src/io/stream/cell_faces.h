@@ -1,0 +1,21 @@
+/* io/stream/cell_faces.h: faces of the cells of core/mesh/mesh.h (formats.md
+ * 2.3), normals into the cell; a triangle repeats its last node. Of io alone.
+ * */
+#ifndef VG_IO_STREAM_CELL_FACES_H
+#define VG_IO_STREAM_CELL_FACES_H
+
+static const unsigned char vg_tet_face[4][4] = {
+  {1, 3, 2, 2}, {0, 2, 3, 3}, {0, 3, 1, 1}, {0, 1, 2, 2}
+};
+static const unsigned char vg_pyr_face[5][4] = {
+  {0, 1, 2, 2}, {1, 4, 2, 2}, {2, 4, 3, 3}, {0, 2, 3, 3}, {0, 3, 4, 1}
+};
+static const unsigned char vg_pri_face[5][4] = {
+  {0, 3, 4, 1}, {1, 4, 5, 2}, {0, 2, 5, 3}, {0, 1, 2, 2}, {3, 5, 4, 4}
+};
+static const unsigned char vg_hex_face[6][4] = {
+  {0, 3, 7, 4}, {1, 5, 6, 2}, {0, 4, 5, 1}, {2, 6, 7, 3}, {0, 1, 2, 3},
+  {4, 7, 6, 5}
+};
+
+#endif

@@ -1,0 +1,479 @@
+/* Orientation, index base and patches of meshes from files. */
+#include "io/stream/convention.h"
+
+#include <float.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/geometry/predicates.h"
+#include "core/geometry/vector.h"
+#include "io/stream/cell_faces.h"
+
+vg_status vg_check_points(const char *path, size_t n, const double (*p)[3],
+                          struct vg_error *err)
+{
+  for (size_t i = 0; i < n; i++)
+    for (int k = 0; k < 3; k++) {
+      double x = p[i][k];
+
+      if (x >= -VG_COORDINATE_MAX && x <= VG_COORDINATE_MAX) continue;
+      if (!(x >= -DBL_MAX && x <= DBL_MAX))
+        return vg_fail(err, VG_ERR_INPUT,
+                       "%s: coordinate %c of point %zu is not a finite "
+                       "number (%g); mend the file or check its byte order",
+                       path, "xyz"[k], i + 1, x);
+      return vg_fail(err, VG_ERR_INPUT,
+                     "%s: coordinate %c of point %zu is %g: beyond %g no "
+                     "volume can be computed; check the byte order or use "
+                     "another unit of length", path, "xyz"[k], i + 1, x,
+                     VG_COORDINATE_MAX);
+    }
+  return VG_OK;
+}
+
+vg_status vg_index_from_file(const char *path, const char *element, size_t n,
+                             int width, size_t n_point, uint32_t *index,
+                             struct vg_error *err)
+{
+  size_t count = n * (size_t)width;
+  uint32_t limit = n_point < UINT32_MAX ? (uint32_t)n_point : UINT32_MAX;
+  uint32_t bad = 0;
+
+  for (size_t i = 0; i < count; i++) {
+    index[i] -= 1;
+    bad |= index[i] >= limit;
+  }
+  if (!bad) return VG_OK;
+  for (size_t i = 0; i < count; i++)
+    if (index[i] >= limit)
+      return vg_fail(err, VG_ERR_INPUT,
+                     "%s: %s %zu refers to point %lld; points are numbered 1 "
+                     "to %zu", path, element, i / (size_t)width + 1,
+                     (long long)(int32_t)(index[i] + 1), n_point);
+  return VG_OK;
+}
+
+/* --- patches --- */
+
+static uint32_t mix(uint32_t x)
+{
+  x ^= x >> 16;
+  x *= 0x7feb352du;
+  x ^= x >> 15;
+  x *= 0x846ca68bu;
+  return x ^ x >> 16;
+}
+
+struct tag_table {
+  size_t mask, n, cap;
+  uint32_t *slot;   /* [mask + 1] index into id + 1; 0: free */
+  int32_t *id;      /* [n] */
+};
+
+static int tag_grow(struct tag_table *t)
+{
+  size_t mask = t->mask ? 2 * t->mask + 1 : 255;
+  uint32_t *slot = vg_calloc(mask + 1, sizeof *slot);
+
+  if (!slot) return -1;
+  for (size_t i = 0; i < t->n; i++) {
+    size_t at = mix((uint32_t)t->id[i]) & mask;
+
+    while (slot[at]) at = (at + 1) & mask;
+    slot[at] = (uint32_t)i + 1;
+  }
+  free(t->slot);
+  t->slot = slot;
+  t->mask = mask;
+  return 0;
+}
+
+/* Index of a tag, added when new; -1 when memory is refused. */
+static int64_t tag_index(struct tag_table *t, int32_t id)
+{
+  size_t at;
+
+  if (2 * t->n >= t->mask && tag_grow(t) < 0) return -1;
+  at = mix((uint32_t)id) & t->mask;
+  for (; t->slot[at]; at = (at + 1) & t->mask)
+    if (t->id[t->slot[at] - 1] == id) return t->slot[at] - 1;
+  if (vg_reserve(&t->id, &t->cap, t->n + 1, sizeof *t->id) < 0) return -1;
+  t->id[t->n++] = id;
+  t->slot[at] = (uint32_t)t->n;
+  return (int64_t)t->n - 1;
+}
+
+static int compare_patch(const void *a, const void *b)
+{
+  const struct vg_patch *p = a, *q = b;
+
+  return (p->id > q->id) - (p->id < q->id);
+}
+
+/* Patches sorted by id; rank[i] is the place of the i-th tag found. */
+static vg_status make_patches(struct vg_mesh *m, const struct tag_table *t,
+                              uint32_t *rank, struct vg_error *err)
+{
+  struct vg_patch *patch = vg_calloc(t->n, sizeof *patch);
+
+  if (!patch) return vg_fail_memory(err, "the patches");
+  for (size_t i = 0; i < t->n; i++) {
+    patch[i].id = t->id[i];
+    patch[i].bc = (int32_t)i;
+  }
+  qsort(patch, t->n, sizeof *patch, compare_patch);
+  for (size_t i = 0; i < t->n; i++) {
+    rank[patch[i].bc] = (uint32_t)i;
+    patch[i].bc = patch[i].bc_fun3d = patch[i].family = VG_BC_NONE;
+  }
+  free(m->patch);
+  m->patch = patch;
+  m->n_patch = t->n;
+  return VG_OK;
+}
+
+vg_status vg_patches_from_tags(struct vg_mesh *m, const int32_t *tag,
+                               struct vg_error *err)
+{
+  struct tag_table t = {0};
+  size_t n = m->n_tri + m->n_quad;
+  uint32_t *of = vg_alloc(n, sizeof *of), *rank = NULL;
+  uint32_t *tri = vg_alloc(m->n_tri, sizeof *tri);
+  uint32_t *quad = vg_alloc(m->n_quad, sizeof *quad);
+  vg_status st = VG_OK;
+  int64_t last = -1;
+
+  if (!of || !tri || !quad) goto refused;
+  for (size_t i = 0; i < n; i++) {
+    if (last < 0 || t.id[last] != tag[i]) last = tag_index(&t, tag[i]);
+    if (last < 0) goto refused;
+    of[i] = (uint32_t)last;
+  }
+  rank = vg_alloc(t.n, sizeof *rank);
+  if (!rank) goto refused;
+  VG_TRY(make_patches(m, &t, rank, err));
+  for (size_t i = 0; i < m->n_tri; i++) tri[i] = rank[of[i]];
+  for (size_t i = 0; i < m->n_quad; i++) quad[i] = rank[of[m->n_tri + i]];
+  free(m->tri_patch);
+  free(m->quad_patch);
+  m->tri_patch = tri;
+  m->quad_patch = quad;
+  tri = quad = NULL;
+  goto done;
+refused:
+  st = vg_fail_memory(err, "the patches of the boundary faces");
+done:
+  free(of);
+  free(rank);
+  free(tri);
+  free(quad);
+  free(t.slot);
+  free(t.id);
+  return st;
+}
+
+/* --- orientation --- */
+
+/* Six times the volume by inward faces, seen from node 0. Quadrilaterals
+ * count as the mean of their two triangulations. */
+static double volume6(const struct vg_mesh *m, const uint32_t *c,
+                      const unsigned char (*face)[4], int n_face)
+{
+  double volume = 0, p[4][3];
+
+  for (int f = 0; f < n_face; f++) {
+    const unsigned char *q = face[f];
+
+    for (int k = 0; k < 4; k++)
+      vg_sub(m->point[c[q[k]]], m->point[c[0]], p[k]);
+    if (q[2] == q[3])
+      volume -= vg_triple(p[0], p[1], p[2]);
+    else
+      volume -= (vg_triple(p[0], p[1], p[2]) + vg_triple(p[0], p[2], p[3]) +
+                 vg_triple(p[0], p[1], p[3]) + vg_triple(p[1], p[2], p[3])) /
+                2;
+  }
+  return volume;
+}
+
+static void swap(uint32_t *c, int a, int b)
+{
+  uint32_t t = c[a];
+
+  c[a] = c[b];
+  c[b] = t;
+}
+
+static size_t turn_cells(struct vg_mesh *m)
+{
+  size_t n = 0;
+
+  for (size_t i = 0; i < m->n_tet; i++) {
+    uint32_t *c = m->tet[i];
+
+    if (vg_orient3d(m->point[c[0]], m->point[c[1]], m->point[c[2]],
+                    m->point[c[3]]) < 0) {
+      swap(c, 1, 2);
+      n++;
+    }
+  }
+  for (size_t i = 0; i < m->n_pyr; i++)
+    if (volume6(m, m->pyr[i], vg_pyr_face, 5) < 0) {
+      swap(m->pyr[i], 1, 3);
+      n++;
+    }
+  for (size_t i = 0; i < m->n_pri; i++)
+    if (volume6(m, m->pri[i], vg_pri_face, 5) < 0) {
+      swap(m->pri[i], 1, 2);
+      swap(m->pri[i], 4, 5);
+      n++;
+    }
+  for (size_t i = 0; i < m->n_hex; i++)
+    if (volume6(m, m->hex[i], vg_hex_face, 6) < 0) {
+      swap(m->hex[i], 1, 3);
+      swap(m->hex[i], 5, 7);
+      n++;
+    }
+  return n;
+}
+
+/* Boundary faces by their sorted nodes; a triangle has UINT32_MAX last. Of
+ * several faces on the same nodes the first is kept. */
+struct face_table {
+  size_t mask;
+  uint32_t *slot;          /* face + 1 */
+  unsigned char *found;    /* [n_tri + n_quad] */
+  unsigned char *on;       /* [n_point] the point is on the boundary */
+};
+
+static void order(uint32_t *k, int a, int b)
+{
+  if (k[a] > k[b]) swap(k, a, b);
+}
+
+static void make_key(const uint32_t *n, int width, uint32_t key[4])
+{
+  for (int i = 0; i < width; i++) key[i] = n[i];
+  if (width == 3) key[3] = UINT32_MAX;
+  order(key, 0, 1);
+  order(key, 2, 3);
+  order(key, 0, 2);
+  order(key, 1, 3);
+  order(key, 1, 2);
+}
+
+static const uint32_t *face_nodes(const struct vg_mesh *m, size_t f,
+                                  int *width)
+{
+  *width = f < m->n_tri ? 3 : 4;
+  return f < m->n_tri ? m->tri[f] : m->quad[f - m->n_tri];
+}
+
+static size_t slot_of(const struct face_table *t, const uint32_t key[4])
+{
+  uint32_t h = mix(key[0] ^ mix(key[1] ^ mix(key[2] ^ mix(key[3]))));
+
+  return h & t->mask;
+}
+
+/* The boundary face with this key, or SIZE_MAX and the free slot for it. */
+static size_t find_face(const struct vg_mesh *m, const struct face_table *t,
+                        const uint32_t key[4], size_t *free_slot)
+{
+  size_t at = slot_of(t, key);
+
+  for (; t->slot[at]; at = (at + 1) & t->mask) {
+    int width;
+    const uint32_t *node = face_nodes(m, t->slot[at] - 1, &width);
+    uint32_t other[4];
+
+    make_key(node, width, other);
+    if (!memcmp(key, other, sizeof other)) return t->slot[at] - 1;
+  }
+  if (free_slot) *free_slot = at;
+  return SIZE_MAX;
+}
+
+static void face_release(struct face_table *t)
+{
+  free(t->slot);
+  free(t->found);
+  free(t->on);
+}
+
+static vg_status face_build(struct face_table *t, const struct vg_mesh *m,
+                            struct vg_error *err)
+{
+  size_t n = m->n_tri + m->n_quad, size = 16;
+
+  while (size < 2 * n) size *= 2;
+  t->mask = size - 1;
+  t->slot = vg_calloc(size, sizeof *t->slot);
+  t->found = vg_calloc(n, 1);
+  t->on = vg_calloc(m->n_point, 1);
+  if (!t->slot || !t->found || !t->on || n >= UINT32_MAX) {
+    face_release(t);
+    return vg_fail_memory(err, "a table of the boundary faces");
+  }
+  for (size_t f = 0; f < n; f++) {
+    int width;
+    const uint32_t *node = face_nodes(m, f, &width);
+    uint32_t key[4];
+    size_t at;
+
+    for (int k = 0; k < width; k++) t->on[node[k]] = 1;
+    make_key(node, width, key);
+    if (find_face(m, t, key, &at) == SIZE_MAX) t->slot[at] = (uint32_t)f + 1;
+  }
+  return VG_OK;
+}
+
+/* Do the cycles a and b of w nodes run through the same edges, b forwards
+ * (step 1) or backwards (step w - 1)? */
+static int same_cycle(const uint32_t *a, const uint32_t *b, int w, int step)
+{
+  for (int i = 0; i < w; i++) {
+    int k = 0;
+
+    while (k < w && a[k] == b[(i + k * step) % w]) k++;
+    if (k == w) return 1;
+  }
+  return 0;
+}
+
+/* One face of a cell, listed inward: turn the boundary face on its nodes,
+ * unless a cell has met it before. A quadrilateral that goes through the
+ * same corners across the diagonals is another face and stays loose. */
+static void meet_face(struct vg_mesh *m, struct face_table *t,
+                      const uint32_t *inward, int width,
+                      struct vg_turned *turned)
+{
+  uint32_t key[4], *node;
+  size_t f;
+  int w, forwards;
+
+  make_key(inward, width, key);
+  f = find_face(m, t, key, NULL);
+  if (f == SIZE_MAX || t->found[f]) return;
+  node = (uint32_t *)face_nodes(m, f, &w);
+  forwards = same_cycle(node, inward, w, 1);
+  if (!forwards && !same_cycle(node, inward, w, w - 1)) return;
+  t->found[f] = 1;
+  if (forwards) return;
+  swap(node, 1, w - 1);
+  turned->face++;
+}
+
+static void meet_cells(struct vg_mesh *m, struct face_table *t, size_t n,
+                       const uint32_t *cell, int width,
+                       const unsigned char (*face)[4], int n_face,
+                       struct vg_turned *turned)
+{
+  for (size_t i = 0; i < n; i++) {
+    const uint32_t *c = cell + i * (size_t)width;
+    int on = 0;
+
+    for (int k = 0; k < width; k++) on += t->on[c[k]];
+    if (on < 3) continue;
+    for (int f = 0; f < n_face; f++) {
+      int w = face[f][2] == face[f][3] ? 3 : 4, all = 1;
+      uint32_t node[4];
+
+      for (int k = 0; k < w; k++) {
+        node[k] = c[face[f][k]];
+        all &= t->on[node[k]];
+      }
+      if (all) meet_face(m, t, node, w, turned);
+    }
+  }
+}
+
+vg_status vg_mesh_turn(struct vg_mesh *m, struct vg_turned *turned,
+                       struct vg_error *err)
+{
+  struct vg_turned result = {0, 0, 0};
+  struct face_table t = {0};
+  vg_status st;
+
+  if (m->n_tet + m->n_pyr + m->n_pri + m->n_hex) {
+    st = face_build(&t, m, err);
+    if (st < 0) return st;
+    result.cell = turn_cells(m);
+    meet_cells(m, &t, m->n_tet, (const uint32_t *)m->tet, 4, vg_tet_face, 4,
+               &result);
+    meet_cells(m, &t, m->n_pyr, (const uint32_t *)m->pyr, 5, vg_pyr_face, 5,
+               &result);
+    meet_cells(m, &t, m->n_pri, (const uint32_t *)m->pri, 6, vg_pri_face, 5,
+               &result);
+    meet_cells(m, &t, m->n_hex, (const uint32_t *)m->hex, 8, vg_hex_face, 6,
+               &result);
+    for (size_t f = 0; f < m->n_tri + m->n_quad; f++)
+      result.loose_face += !t.found[f];
+    face_release(&t);
+  }
+  if (turned) *turned = result;
+  return VG_OK;
+}
+
+static void mark_used(size_t n, const uint32_t *node, uint32_t *mark)
+{
+  for (size_t i = 0; i < n; i++) mark[node[i]] = 0;
+}
+
+static void renumber(size_t n, uint32_t *node, const uint32_t *new_index)
+{
+  for (size_t i = 0; i < n; i++) node[i] = new_index[node[i]];
+}
+
+void vg_mesh_keep_boundary(struct vg_mesh *m)
+{
+  uint32_t *new_index = vg_alloc(m->n_point, sizeof *new_index);
+  size_t n = 0;
+
+  free(m->tet);
+  free(m->pyr);
+  free(m->pri);
+  free(m->hex);
+  m->tet = NULL;
+  m->pyr = NULL;
+  m->pri = NULL;
+  m->hex = NULL;
+  m->n_tet = m->n_pyr = m->n_pri = m->n_hex = 0;
+  if (!new_index) return; /* unused points stay: harmless */
+  memset(new_index, 0xff, m->n_point * sizeof *new_index);
+  mark_used(3 * m->n_tri, (uint32_t *)m->tri, new_index);
+  mark_used(4 * m->n_quad, (uint32_t *)m->quad, new_index);
+  for (size_t i = 0; i < m->n_point; i++)
+    if (!new_index[i]) {
+      memmove(m->point[n], m->point[i], sizeof m->point[n]);
+      new_index[i] = (uint32_t)n++;
+    }
+  renumber(3 * m->n_tri, (uint32_t *)m->tri, new_index);
+  renumber(4 * m->n_quad, (uint32_t *)m->quad, new_index);
+  m->n_point = n;
+  free(new_index);
+}
+
+/* Not the first byte of a UTF-8 character. */
+static int is_inside(char c)
+{
+  return ((unsigned char)c & 0xc0) == 0x80;
+}
+
+void vg_name_from_file(const char *text, size_t len, char *name, size_t size)
+{
+  if (len > size - 1) {
+    size_t back = 0;
+
+    len = size - 1;
+    while (back < 4 && back < len && is_inside(text[len - back])) back++;
+    if (back < 4) len -= back;
+  }
+  for (size_t i = 0; i < len; i++) {
+    unsigned char c = (unsigned char)text[i];
+
+    name[i] = c < 32 || c == 127 ? '_' : text[i];
+  }
+  name[len] = 0;
+}

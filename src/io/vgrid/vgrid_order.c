@@ -1,0 +1,230 @@
+/* VGRID's order of points (formats.md 1.2): corners, points along the curves
+ * between patches, other surface points, field points. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "io/vgrid/vgrid.h"
+
+enum { ON_CURVE, ON_SURFACE, IN_FIELD, PLACED };
+
+/* An edge between two patches; each is stored once from either end. */
+struct link {
+  uint32_t from, to;
+};
+
+struct walk {
+  const struct vg_mesh *m;
+  unsigned char *class;   /* [n_point] */
+  uint32_t *new_to_old;
+  size_t n;               /* points placed so far */
+  struct link *link;      /* sorted by from, to */
+  size_t n_link;
+};
+
+static vg_status classify(const struct vg_mesh *m, unsigned char *class,
+                          struct vg_error *err)
+{
+  uint32_t *first = vg_alloc(m->n_point, sizeof *first);
+
+  if (!first) return vg_fail_memory(err, "the order of the points");
+  memset(class, IN_FIELD, m->n_point);
+  for (size_t f = 0; f < m->n_tri; f++)
+    for (int k = 0; k < 3; k++) {
+      uint32_t p = m->tri[f][k];
+
+      if (class[p] == IN_FIELD) {
+        class[p] = ON_SURFACE;
+        first[p] = m->tri_patch[f];
+      } else if (first[p] != m->tri_patch[f]) {
+        class[p] = ON_CURVE;
+      }
+    }
+  free(first);
+  return VG_OK;
+}
+
+struct edge {
+  uint32_t a, b, patch;
+};
+
+static int compare_edge(const void *x, const void *y)
+{
+  const struct edge *p = x, *q = y;
+
+  if (p->a != q->a) return p->a < q->a ? -1 : 1;
+  if (p->b != q->b) return p->b < q->b ? -1 : 1;
+  return (p->patch > q->patch) - (p->patch < q->patch);
+}
+
+static int compare_link(const void *x, const void *y)
+{
+  const struct link *p = x, *q = y;
+
+  if (p->from != q->from) return p->from < q->from ? -1 : 1;
+  return (p->to > q->to) - (p->to < q->to);
+}
+
+/* Links from the edges whose triangles belong to different patches. */
+static int keep_links(struct walk *w, struct edge *e, size_t n)
+{
+  qsort(e, n, sizeof *e, compare_edge);
+  w->link = vg_alloc(2 * n, sizeof *w->link);
+  if (!w->link) return -1;
+  for (size_t i = 0, j; i < n; i = j) {
+    for (j = i + 1; j < n && e[j].a == e[i].a && e[j].b == e[i].b; j++) {}
+    if (e[j - 1].patch == e[i].patch) continue;
+    w->link[w->n_link++] = (struct link){e[i].a, e[i].b};
+    w->link[w->n_link++] = (struct link){e[i].b, e[i].a};
+  }
+  qsort(w->link, w->n_link, sizeof *w->link, compare_link);
+  return 0;
+}
+
+static vg_status find_links(struct walk *w, struct vg_error *err)
+{
+  const struct vg_mesh *m = w->m;
+  struct edge *e = NULL;
+  size_t n = 0, cap = 0;
+  int bad = 0;
+
+  for (size_t f = 0; f < m->n_tri && !bad; f++)
+    for (int k = 0; k < 3 && !bad; k++) {
+      uint32_t a = m->tri[f][k], b = m->tri[f][(k + 1) % 3];
+
+      if (w->class[a] != ON_CURVE || w->class[b] != ON_CURVE || a == b)
+        continue;
+      bad = vg_reserve(&e, &cap, n + 1, sizeof *e);
+      if (!bad)
+        e[n++] = (struct edge){a < b ? a : b, a < b ? b : a,
+                               m->tri_patch[f]};
+    }
+  if (!bad) bad = keep_links(w, e, n);
+  free(e);
+  return bad ? vg_fail_memory(err, "the curves between patches") : VG_OK;
+}
+
+static size_t first_link(const struct walk *w, uint32_t from)
+{
+  size_t lo = 0, hi = w->n_link;
+
+  while (lo < hi) {
+    size_t mid = lo + (hi - lo) / 2;
+
+    if (w->link[mid].from < from) lo = mid + 1;
+    else hi = mid;
+  }
+  return lo;
+}
+
+static size_t degree(const struct walk *w, uint32_t p)
+{
+  size_t i = first_link(w, p), n = 0;
+
+  while (i + n < w->n_link && w->link[i + n].from == p) n++;
+  return n;
+}
+
+static void place(struct walk *w, uint32_t p)
+{
+  w->class[p] = PLACED;
+  w->new_to_old[w->n++] = p;
+}
+
+/* Follow a curve from p, which is placed, through points not placed yet. */
+static void follow(struct walk *w, uint32_t p)
+{
+  for (;;) {
+    size_t i = first_link(w, p);
+
+    while (i < w->n_link && w->link[i].from == p &&
+           w->class[w->link[i].to] == PLACED)
+      i++;
+    if (i == w->n_link || w->link[i].from != p) return;
+    p = w->link[i].to;
+    place(w, p);
+  }
+}
+
+/* Corners are where curves end, meet, or touch: not exactly two links. */
+static void place_curves(struct walk *w)
+{
+  size_t n_corner;
+
+  for (size_t p = 0; p < w->m->n_point; p++)
+    if (w->class[p] == ON_CURVE && degree(w, (uint32_t)p) != 2)
+      place(w, (uint32_t)p);
+  n_corner = w->n;
+  for (size_t i = 0; i < n_corner; i++) {
+    uint32_t p = w->new_to_old[i];
+    size_t n = degree(w, p), at = first_link(w, p);
+
+    for (size_t k = at; k < at + n; k++) {
+      uint32_t q = w->link[k].to;
+
+      if (w->class[q] == PLACED) continue;
+      place(w, q);
+      follow(w, q);
+    }
+  }
+  for (size_t p = 0; p < w->m->n_point; p++)
+    if (w->class[p] == ON_CURVE) {
+      place(w, (uint32_t)p);
+      follow(w, (uint32_t)p);
+    }
+}
+
+static void place_class(struct walk *w, int class)
+{
+  for (size_t p = 0; p < w->m->n_point; p++)
+    if (w->class[p] == class) w->new_to_old[w->n++] = (uint32_t)p;
+}
+
+static void count_classes(const struct walk *w, size_t *n_curve,
+                          size_t *n_boundary, int *in_order)
+{
+  *n_curve = *n_boundary = 0;
+  *in_order = 1;
+  for (size_t p = 0; p < w->m->n_point; p++) {
+    *n_curve += w->class[p] == ON_CURVE;
+    *n_boundary += w->class[p] != IN_FIELD;
+    if (p && w->class[p] < w->class[p - 1]) *in_order = 0;
+  }
+}
+
+vg_status vg_vgrid_order(const struct vg_mesh *m, uint32_t **new_to_old,
+                         uint32_t **old_to_new, size_t *n_curve_point,
+                         size_t *n_boundary, struct vg_error *err)
+{
+  struct walk w = {m, NULL, NULL, 0, NULL, 0};
+  uint32_t *inverse = NULL;
+  vg_status st = VG_OK;
+  int in_order;
+
+  *new_to_old = *old_to_new = NULL;
+  w.class = vg_alloc(m->n_point, 1);
+  if (!w.class) return vg_fail_memory(err, "the order of the points");
+  VG_TRY(classify(m, w.class, err));
+  count_classes(&w, n_curve_point, n_boundary, &in_order);
+  if (in_order) goto done;
+  w.new_to_old = vg_alloc(m->n_point, sizeof *w.new_to_old);
+  inverse = vg_alloc(m->n_point, sizeof *inverse);
+  if (!w.new_to_old || !inverse) {
+    st = vg_fail_memory(err, "the order of the points");
+    goto done;
+  }
+  VG_TRY(find_links(&w, err));
+  place_curves(&w);
+  place_class(&w, ON_SURFACE);
+  place_class(&w, IN_FIELD);
+  for (size_t i = 0; i < w.n; i++) inverse[w.new_to_old[i]] = (uint32_t)i;
+  *new_to_old = w.new_to_old;
+  *old_to_new = inverse;
+  w.new_to_old = inverse = NULL;
+done:
+  free(w.class);
+  free(w.new_to_old);
+  free(inverse);
+  free(w.link);
+  return st;
+}

@@ -1,0 +1,132 @@
+#include "layers/columns/law.h"
+
+#include <math.h>
+
+/* A rate that no layers have. */
+#define RATE_MAX 1e6
+
+static double power(double x, int n)
+{
+  double y = 1;
+
+  for (; n > 0; n >>= 1, x *= x)
+    if (n & 1) y *= x;
+  return y;
+}
+
+/* Thickness of layer j by the law alone. */
+static double bare(const struct vg_law *law, int j)
+{
+  int k = law->n_constant > 1 ? j - law->n_constant : j - 1;
+
+  if (k <= 0) return law->delta1;
+  return law->delta1 *
+         power(1 + law->rate1 * (law->rate2 > 0 ? power(1 + law->rate2, k)
+                                                : 1), k);
+}
+
+/* The same, given that of layer j - 1: one product for a geometric law. */
+static double bare_next(const struct vg_law *law, int j, double before)
+{
+  if (j <= 1 || j <= law->n_constant) return law->delta1;
+  return law->rate2 > 0 ? bare(law, j) : before * (1 + law->rate1);
+}
+
+/* Thickness of layer j under a cap, given that of j - 1. */
+static double next(double bare, double cap, int j, double before)
+{
+  return j > 1 && bare > cap * before ? cap * before : bare;
+}
+
+void vg_law_heights(const struct vg_law *law, double cap, int n, double *d)
+{
+  double t = 0, b = 0;
+
+  if (cap > law->cap) cap = law->cap;
+  d[0] = 0;
+  for (int j = 1; j <= n; j++) {
+    b = bare_next(law, j, b);
+    t = next(b, cap, j, t);
+    d[j] = d[j - 1] + t;
+  }
+}
+
+/* Height of n layers of thickness b[1 .. n] by the law alone; adds as
+ * vg_law_heights does, to the last bit. */
+static double sum(const double *b, double cap, int n)
+{
+  double total = 0, t = 0;
+
+  for (int j = 1; j <= n; j++) {
+    t = next(b[j], cap, j, t);
+    total += t;
+  }
+  return total;
+}
+
+double vg_law_squeeze(const struct vg_law *law, int n, double height)
+{
+  double lo = 1, hi = law->cap, b[VG_LEVELS_MAX + 1];
+
+  if (n > VG_LEVELS_MAX) n = VG_LEVELS_MAX;
+  b[0] = 0;
+  for (int j = 1; j <= n; j++) b[j] = bare_next(law, j, b[j - 1]);
+  if (sum(b, hi, n) <= height) return hi;
+  if (sum(b, lo, n) > height) return 0;
+  /* An unlimited law still has a largest ratio among its n layers. */
+  if (!isfinite(hi)) {
+    hi = 2;
+    while (sum(b, hi, n) <= height) hi *= 2;
+  }
+  for (int i = 0; i < 28; i++) {   /* 4e-9 of the cap */
+    double mid = 0.5 * (lo + hi);
+
+    if (sum(b, mid, n) <= height) lo = mid;
+    else hi = mid;
+  }
+  return lo;
+}
+
+/* Friction velocity over that of the stream. */
+static double friction(double reynolds)
+{
+  return sqrt(0.5 * 0.026 / pow(reynolds, 1.0 / 7));
+}
+
+double vg_first_height(double y_plus, double reynolds, double length)
+{
+  return y_plus * length / (reynolds * friction(reynolds));
+}
+
+double vg_y_plus(double y, double reynolds, double length)
+{
+  return y * reynolds * friction(reynolds) / length;
+}
+
+static double total_at(double delta1, int n_constant, int n, double rate)
+{
+  struct vg_law law = { delta1, rate, 0, INFINITY, n_constant };
+  double total = 0;
+
+  for (int j = 1; j <= n; j++) total += bare(&law, j);
+  return total;
+}
+
+double vg_law_rate_for_total(double delta1, int n_constant, int n,
+                             double total)
+{
+  double lo = 0, hi = 1;
+
+  if (total_at(delta1, n_constant, n, 0) > total) return -1;
+  while (total_at(delta1, n_constant, n, hi) < total) {
+    if (hi > RATE_MAX) return INFINITY;
+    hi *= 2;
+  }
+  for (int i = 0; i < 60; i++) {
+    double mid = 0.5 * (lo + hi);
+
+    if (total_at(delta1, n_constant, n, mid) < total) lo = mid;
+    else hi = mid;
+  }
+  return 0.5 * (lo + hi);
+}

@@ -1,0 +1,85 @@
+/* layers/columns/layers.h: viscous layers on the walls of a closed surface,
+ * before anything else is meshed. Uses core, layers/columns/columns.h.
+ *
+ * vg_layers_grow turns walls into columns and leaves the front: the tops of
+ * the columns, the slide patches re-meshed around their footprint, and all
+ * other patches as they were. The front bounds what vg_fill has to fill;
+ * vg_layers_join then puts layers and field together. */
+#ifndef VG_LAYERS_COLUMNS_LAYERS_H
+#define VG_LAYERS_COLUMNS_LAYERS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "core/fill/fill.h"
+#include "core/mesh/mesh.h"
+#include "core/sizing/sizing.h"
+#include "layers/columns/columns.h"
+
+/** What one patch asks for. */
+struct vg_layer_request {
+  int is_wall;              /* grow layers on it */
+  struct vg_law law;
+  int n_max;                /* levels at most; 0: VG_LEVELS_MAX */
+  double total;             /* no higher than this; 0: no limit */
+  int n_exact;              /* 1: n_max levels also where the local size is
+                               reached earlier */
+};
+
+struct vg_layer_options {
+  const struct vg_layer_request *patch;  /* [surface->n_patch] */
+  /* Law at a point of a wall (VGRID's grid=2), or NULL: the patch's. */
+  void (*law_at)(void *user, const double x[3], struct vg_law *law);
+  void *law_user;
+  double fan_angle;         /* edges that turn by more than this, in degrees,
+                               get fans; 180: none */
+  double end;               /* a column ends where its next layer would be
+                               thicker than this times the local edge */
+  double gap;               /* share of the distance to the nearest surface in
+                               front that a column may take, < 0.5 */
+  int smooth;               /* sweeps over the directions */
+  int threads;              /* 0: one per core */
+  vg_progress progress;
+  void *user;
+};
+#define VG_LAYER_OPTIONS_INIT { NULL, NULL, NULL, 180, 0.95, 0.4, 100, 1, \
+                                NULL, NULL }
+
+/** What happened. Times are wall seconds. */
+struct vg_layer_report {
+  size_t n_wall_point, n_wall_tri, n_column, n_virtual_face;
+  size_t n_cell;            /* layer cells if all are tetrahedra */
+  size_t n_layer_point;     /* points above the wall, flanks included */
+  size_t cause[VG_CAUSE_N], squeezed[VG_CAUSE_N];  /* columns */
+  size_t n_round;           /* of lowering until clear */
+  size_t n_slide_patch, n_slide_tri;  /* patches beside walls; triangles they
+                                         have in the front */
+  double time_topology, time_direction, time_height, time_clear, time_slide,
+         time_total;
+};
+
+/** The boundary of what is left to fill. */
+struct vg_layer_front {
+  struct vg_mesh mesh;      /* closed; patches are those of the surface */
+  uint32_t *column;         /* [mesh.n_point] the column whose top it is (n >=
+                               1), else VG_NO_INDEX */
+  uint32_t *point;          /* [mesh.n_point] the point of the surface that it
+                               is (n = 0, or off the walls); VG_NO_INDEX for
+                               tops and new points of re-meshed patches */
+  uint32_t *face;           /* [mesh.n_tri] the face of the columns of which it
+                               is the top, VG_NO_INDEX: none (a triangle of a
+                               patch that is boundary of the result too) */
+};
+#define VG_LAYER_FRONT_INIT { { 0 }, NULL, NULL, NULL }
+
+void vg_layer_front_release(struct vg_layer_front *f);
+
+struct vg_layers {
+  struct vg_columns columns;
+  struct vg_layer_front front;
+};
+#define VG_LAYERS_INIT { VG_COLUMNS_INIT, VG_LAYER_FRONT_INIT }
+
+void vg_layers_release(struct vg_layers *l);
+
+#endif

@@ -1,0 +1,399 @@
+/* Cells of faces and flanks of rims, one face or rim at a time, upwards.
+ *
+ * All tetrahedra: columns rise one by one, by rising number. Mixed: they rise
+ * together, which makes a prism, a pyramid over the two that rise or one
+ * tetrahedron. But two columns of one root are one point at level 0, and a
+ * prism over a face with two of them has five points and two quadrilaterals
+ * that share two edges: no cell. So, at level 0, columns that share their root
+ * rise after the others, one by one: whatever of the face's points is equal,
+ * what they leave are tetrahedra, or cells with a repeated point that vanish.
+ * The columns alone decide, so both sides of a flank agree. */
+#include "layers/expand/expand.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "layers/expand/expand_parts.h"
+#include "layers/expand/join.h"
+
+/* Blocks of faces that a thread takes at a time. */
+#define BLOCK_GRAIN 8
+
+/* Corners of a face by rising column, by which of f0 < f1, f1 < f2, f2 < f0
+ * hold (bits 0, 1, 2; none or all cannot be). */
+static const uint8_t rising[8][3] = {
+  {0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {0, 1, 2},
+  {2, 1, 0}, {2, 0, 1}, {1, 2, 0}, {0, 1, 2},
+};
+
+static const uint8_t *order_of(const uint32_t f[3])
+{
+  return rising[(f[0] < f[1]) | (f[1] < f[2]) << 1 | (f[2] < f[0]) << 2];
+}
+
+static inline void put_tet(struct vg_cell_sink *s, const uint32_t p[3],
+                           uint32_t top)
+{
+  uint32_t *n = *s->tet++;
+
+  n[0] = p[0];
+  n[1] = p[1];
+  n[2] = p[2];
+  n[3] = top;
+}
+
+/* Who splits a prism's quadrilaterals from node 0 on (0 1 2 3, 1 2 3 4,
+ * 2 3 4 5) should agree with his neighbours. By rising columns he would, but
+ * half of the faces turn the other way round; there one of two edges must
+ * disagree, and they take turns, so that warped sides add up to nothing. */
+static int first_corner(const uint32_t f[3])
+{
+  const uint8_t *o = order_of(f);
+  int turns_well = (o[0] + 1) % 3 == o[1];
+
+  return turns_well || ((f[0] ^ f[1] ^ f[2]) & 1) ? o[0] : o[1];
+}
+
+static inline void put_prism(struct vg_cell_sink *s, int first,
+                             const uint32_t p[3], const uint32_t h[3])
+{
+  uint32_t *n = *s->pri++;
+
+  for (int k = 0; k < 3; k++) {
+    n[k] = p[(first + k) % 3];
+    n[3 + k] = h[(first + k) % 3];
+  }
+}
+
+/* A prism of which corner w does not rise. */
+static void put_pyramid(struct vg_cell_sink *s, const uint32_t p[3],
+                        const uint32_t h[3], int w)
+{
+  uint32_t *n = *s->pyr++;
+  int u = (w + 1) % 3, v = (w + 2) % 3;
+
+  n[0] = p[u];
+  n[1] = p[v];
+  n[2] = p[w];
+  n[3] = h[u];
+  n[4] = h[v];
+}
+
+/* The lift rule where points may be equal. */
+static void lift(struct vg_cell_sink *s, uint32_t p[3], uint32_t top, int k)
+{
+  if (p[0] != p[1] && p[1] != p[2] && p[2] != p[0]) put_tet(s, p, top);
+  p[k] = top;
+}
+
+/* Corners of the mask that rise rise together; their roots differ. */
+static void rise_together(struct vg_cell_sink *s, const uint32_t f[3],
+                          uint32_t p[3], const uint32_t h[3], unsigned mask)
+{
+  int n = 0, last = 0, rest = 0;
+
+  for (int k = 0; k < 3; k++)
+    if (mask >> k & 1 && h[k] != VG_NO_INDEX) n++, last = k;
+    else rest = k;
+  if (n == 3) put_prism(s, first_corner(f), p, h);
+  else if (n == 2) put_pyramid(s, p, h, rest);
+  else if (n == 1) put_tet(s, p, h[last]);
+  for (int k = 0; k < 3; k++)
+    if (mask >> k & 1 && h[k] != VG_NO_INDEX) p[k] = h[k];
+}
+
+/* Points p stand at level 0; corners in the mask share their root with no
+ * other column, so with two of them all points differ. */
+static void rise_from_wall(const uint32_t f[3], unsigned together,
+                           uint32_t p[3], const uint32_t h[3],
+                           struct vg_cell_sink *s)
+{
+  const uint8_t *order = order_of(f);
+
+  if (together & (together - 1)) rise_together(s, f, p, h, together);
+  else
+    for (int k = 0; k < 3; k++)
+      if (together >> k & 1 && h[k] != VG_NO_INDEX) lift(s, p, h[k], k);
+  for (int i = 0; i < 3; i++) {
+    int k = order[i];
+
+    if (!(together >> k & 1) && h[k] != VG_NO_INDEX) lift(s, p, h[k], k);
+  }
+}
+
+static inline void rise_one_by_one(const uint32_t f[3], uint32_t p[3],
+                                   const uint32_t h[3], struct vg_cell_sink *s)
+{
+  const uint8_t *order = order_of(f);
+
+  for (int i = 0; i < 3; i++) {
+    int k = order[i];
+
+    if (h[k] == VG_NO_INDEX) continue;
+    put_tet(s, p, h[k]);
+    p[k] = h[k];
+  }
+}
+
+/* Corners of a face whose root has no other column, where that matters. */
+static unsigned alone(const struct vg_expand *e, const uint32_t f[3])
+{
+  unsigned mask = 0;
+
+  for (int k = 0; k < 3 && e->mixed; k++)
+    mask |= (unsigned)!(e->mark[f[k]] & VG_MARK_SHARED) << k;
+  return mask;
+}
+
+static unsigned levels_of(const struct vg_expand *e, const uint32_t f[3],
+                          unsigned n[3])
+{
+  unsigned low = VG_LEVELS_MAX;
+
+  for (int k = 0; k < 3; k++) {
+    n[k] = vg_mark_n(e->mark[f[k]]);
+    if (n[k] < low) low = n[k];
+  }
+  return low;
+}
+
+/* n_level levels of which all three columns have the next as well. */
+static void whole_levels(int mixed, const uint32_t f[3], unsigned n_level,
+                         uint32_t p[3], struct vg_cell_sink *s)
+{
+  const uint8_t *order = order_of(f);
+  int first = first_corner(f);
+
+  for (unsigned l = 0; l < n_level; l++)
+    if (mixed) {
+      const uint32_t h[3] = { p[0] + 1, p[1] + 1, p[2] + 1 };
+
+      put_prism(s, first, p, h);
+      memcpy(p, h, sizeof h);
+    } else
+      for (int i = 0; i < 3; i++) {
+        uint32_t *v = &p[order[i]];
+
+        put_tet(s, p, *v + 1);
+        ++*v;
+      }
+}
+
+void vg_expand_face(const struct vg_expand *e, size_t face,
+                    const uint32_t foot[3], const uint32_t base[3],
+                    struct vg_cell_sink *s)
+{
+  const uint32_t *f = e->columns->face[face];
+  uint32_t p[3] = { foot[0], foot[1], foot[2] }, h[3];
+  unsigned n[3], low = levels_of(e, f, n);
+
+  for (int k = 0; k < 3; k++) h[k] = n[k] ? base[k] : VG_NO_INDEX;
+  rise_from_wall(f, alone(e, f), p, h, s);
+  if (!low) return;
+  whole_levels(e->mixed, f, low - 1, p, s);
+  for (int k = 0; k < 3; k++) h[k] = n[k] > low ? p[k] + 1 : VG_NO_INDEX;
+  if (e->mixed) rise_together(s, f, p, h, 7);
+  else rise_one_by_one(f, p, h, s);
+}
+
+int vg_join_wall_cells(const struct vg_columns *c, size_t face,
+                       struct vg_wall_cell cell[3])
+{
+  const uint32_t *f = c->face[face];
+  uint32_t tet[3][4], pyr[1][5], pri[1][6], p[3], h[3];
+  struct vg_cell_sink s = { tet, pyr, pri };
+  unsigned together = 0;
+  int n = 0;
+
+  for (int k = 2; k >= 0; k--) {
+    p[k] = (uint32_t)k;
+    for (int i = 2; i > k; i--)
+      if (c->column[f[i]].root == c->column[f[k]].root) p[i] = p[k];
+    h[k] = c->column[f[k]].n ? (uint32_t)k + 3 : VG_NO_INDEX;
+    together |= (unsigned)!vg_shares_root(c, f[k]) << k;
+  }
+  rise_from_wall(f, together, p, h, &s);
+  for (; tet + n < s.tet; n++) {
+    cell[n].n_node = 4;
+    memcpy(cell[n].node, tet[n], sizeof tet[n]);
+  }
+  if (s.pyr > pyr) {
+    cell[n].n_node = 5;
+    memcpy(cell[n++].node, pyr, sizeof pyr);
+  }
+  if (s.pri > pri) {
+    cell[n].n_node = 6;
+    memcpy(cell[n++].node, pri, sizeof pri);
+  }
+  return n;
+}
+
+/* Cells of a face; -1: its columns differ by more than a level. */
+static int count_face(const struct vg_expand *e, const uint32_t f[3],
+                      size_t count[VG_N_KIND])
+{
+  uint32_t tet[3][4], pyr[1][5], pri[1][6], p[3], h[3];
+  struct vg_cell_sink s = { tet, pyr, pri };
+  unsigned n[3], low = levels_of(e, f, n), more = 0;
+
+  for (int k = 0; k < 3; k++) {
+    if (n[k] > low + 1) return -1;
+    more += n[k] - low;
+    p[k] = e->foot[f[k]];
+    h[k] = n[k] ? e->base[f[k]] : VG_NO_INDEX;
+  }
+  rise_from_wall(f, alone(e, f), p, h, &s);
+  count[VG_KIND_TET] += (size_t)(s.tet - tet);
+  count[VG_KIND_PYR] += (size_t)(s.pyr - pyr);
+  count[VG_KIND_PRI] += (size_t)(s.pri - pri);
+  if (!low) return 0;
+  if (e->mixed) {
+    count[VG_KIND_PRI] += low - 1;
+    count[VG_KIND_PYR] += more == 2;
+    count[VG_KIND_TET] += more == 1;
+  } else count[VG_KIND_TET] += 3 * (low - 1) + more;
+  return 0;
+}
+
+struct counting {
+  struct vg_expand *e;
+  uint8_t *bad;              /* [n_block] has a face with a jump */
+};
+
+static void count_blocks(void *context, size_t first, size_t end, int worker)
+{
+  const struct counting *c = context;
+  struct vg_expand *e = c->e;
+
+  (void)worker;
+  for (size_t b = first; b < end; b++) {
+    size_t count[VG_N_KIND] = {0}, i = b * VG_FACE_BLOCK;
+
+    for (; i < (b + 1) * VG_FACE_BLOCK && i < e->columns->n_face; i++)
+      if (count_face(e, e->columns->face[i], count)) c->bad[b] = 1;
+    for (int k = 0; k < VG_N_KIND; k++) e->cell[k][b] = count[k];
+  }
+}
+
+static vg_status report_jump(const struct vg_expand *e, struct vg_error *err)
+{
+  const struct vg_columns *c = e->columns;
+
+  for (size_t i = 0; i < c->n_face; i++) {
+    const uint32_t *f = c->face[i];
+    size_t count[VG_N_KIND] = {0};
+
+    if (count_face(e, f, count) == 0) continue;
+    return vg_fail(err, VG_ERR_INPUT,
+                   "the columns on points %zu, %zu and %zu have %u, %u and %u "
+                   "levels; neighbours may differ by one",
+                   (size_t)c->column[f[0]].root + 1,
+                   (size_t)c->column[f[1]].root + 1,
+                   (size_t)c->column[f[2]].root + 1, c->column[f[0]].n,
+                   c->column[f[1]].n, c->column[f[2]].n);
+  }
+  return VG_OK;
+}
+
+/* Counts into first indices. */
+static void add_up(struct vg_expand *e)
+{
+  for (int k = 0; k < VG_N_KIND; k++) {
+    size_t sum = 0;
+
+    for (size_t b = 0; b < e->n_block; b++) {
+      size_t here = e->cell[k][b];
+
+      e->cell[k][b] = sum;
+      sum += here;
+    }
+    e->cell[k][e->n_block] = e->n_cell[k] = sum;
+  }
+}
+
+vg_status vg_expand_count(struct vg_expand *e, struct vg_error *err)
+{
+  struct counting c = { e, vg_calloc(e->n_block, 1) };
+  size_t bad = 0;
+
+  if (!c.bad) return vg_fail_memory(err, "the numbers of the layer cells");
+  vg_parallel_for(e->threads, e->n_block, BLOCK_GRAIN, count_blocks, &c);
+  for (size_t b = 0; b < e->n_block; b++) bad += c.bad[b];
+  free(c.bad);
+  add_up(e);
+  return bad ? report_jump(e, err) : VG_OK;
+}
+
+/* Columns of a rim rise together at this level. */
+static int rim_together(const struct vg_expand *e, const uint32_t rim[2],
+                        size_t level)
+{
+  unsigned shared = (e->mark[rim[0]] | e->mark[rim[1]]) & VG_MARK_SHARED;
+
+  return e->mixed && (level || !shared);
+}
+
+/* The second column of a rim rises before the first. */
+static int rim_second_first(const struct vg_expand *e, const uint32_t rim[2],
+                            size_t level)
+{
+  int late[2];
+
+  for (int k = 0; k < 2; k++)
+    late[k] = e->mixed && !level && e->mark[rim[k]] & VG_MARK_SHARED;
+  return late[0] != late[1] ? late[0] : rim[1] < rim[0];
+}
+
+void vg_expand_count_flank(const struct vg_expand *e, size_t r, size_t *tri,
+                           size_t *quad)
+{
+  const uint32_t *rim = e->columns->rim[r];
+  const struct vg_column *c = e->columns->column;
+  size_t a = vg_mark_n(e->mark[rim[0]]), b = vg_mark_n(e->mark[rim[1]]);
+  size_t both = a < b ? a : b;
+
+  *tri = a + b - 2 * both;
+  *quad = 0;
+  for (size_t l = 0; l < both; l++)
+    if (rim_together(e, rim, l)) ++*quad;
+    else *tri += 2;
+  /* What rises first from a common root makes no face. */
+  if ((a || b) && c[rim[0]].root == c[rim[1]].root) --*tri;
+}
+
+/* Faces of one level of a flank; p: the points it stands on, in/out; h: those
+ * that rise; first: the column to rise first, where they do one by one. */
+static void rise_rim(uint32_t p[2], const uint32_t h[2], int first,
+                     uint32_t (**to)[3])
+{
+  for (int i = 0; i < 2; i++) {
+    int k = first ^ i;
+    const uint32_t tri[3] = { p[1], p[0], h[k] };
+
+    if (h[k] == VG_NO_INDEX) continue;
+    if (p[0] != p[1]) memcpy(*(*to)++, tri, sizeof tri);
+    p[k] = h[k];
+  }
+}
+
+void vg_expand_flank(const struct vg_expand *e, size_t r, uint32_t (*tri)[3],
+                     uint32_t (*quad)[4])
+{
+  const uint32_t *rim = e->columns->rim[r];
+  unsigned a = vg_mark_n(e->mark[rim[0]]), b = vg_mark_n(e->mark[rim[1]]);
+  uint32_t p[2] = { e->foot[rim[0]], e->foot[rim[1]] };
+
+  for (unsigned l = 0; l < a || l < b; l++) {
+    const uint32_t h[2] = { l < a ? e->base[rim[0]] + l : VG_NO_INDEX,
+                            l < b ? e->base[rim[1]] + l : VG_NO_INDEX };
+
+    if (l < a && l < b && rim_together(e, rim, l)) {
+      const uint32_t side[4] = { p[1], p[0], h[0], h[1] };
+
+      memcpy(*quad++, side, sizeof side);
+      memcpy(p, h, sizeof h);
+    } else rise_rim(p, h, rim_second_first(e, rim, l), &tri);
+  }
+}

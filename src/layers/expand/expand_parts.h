@@ -1,0 +1,10 @@
+/* layers/expand/expand_parts.h: private to expand*.c. */
+#ifndef VG_LAYERS_EXPAND_EXPAND_PARTS_H
+#define VG_LAYERS_EXPAND_EXPAND_PARTS_H
+
+#include "layers/expand/expand.h"
+
+/** cell[] and n_cell. */
+vg_status vg_expand_count(struct vg_expand *e, struct vg_error *err);
+
+#endif

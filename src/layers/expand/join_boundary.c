@@ -1,0 +1,216 @@
+/* The boundary of layers and field: what stays of the surface, flanks, and
+ * re-meshed patches. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "layers/expand/join_plan.h"
+
+struct work {
+  const struct vg_join_plan *p;
+  struct vg_mesh *m;
+  uint8_t *stays;          /* [surface->n_tri] */
+  uint8_t *changed;        /* [n_patch] re-meshed */
+  size_t *tri, *quad;      /* [n_patch] where the next new face goes */
+};
+
+/* Is front triangle f, point for point, triangle s of the surface? */
+static int same_tri(const struct work *w, size_t f, size_t s)
+{
+  for (int k = 0; k < 3; k++) {
+    uint32_t p = w->p->front->mesh.tri[f][k];
+
+    if (w->p->front->column[p] != VG_NO_INDEX ||
+        w->p->front->point[p] != w->p->surface->tri[s][k])
+      return 0;
+  }
+  return 1;
+}
+
+/* A patch off the walls stays when the front has the same triangles of it in
+ * the same order; a wall stays, also where no column rises.
+ * at: [n_patch + 1]; list: [surface->n_tri] its triangles, by patch. */
+static void compare_patches(struct work *w, const uint8_t *is_wall, size_t *at,
+                            uint32_t *list)
+{
+  const struct vg_mesh *s = w->p->surface, *f = &w->p->front->mesh;
+  size_t sum = 0;
+
+  for (size_t i = 0; i < s->n_tri; i++)
+    if (!w->stays[i]) at[s->tri_patch[i]]++;
+  for (size_t q = 0; q <= s->n_patch; q++) {
+    size_t here = at[q];
+
+    at[q] = sum;
+    sum += here;
+  }
+  for (size_t i = 0; i < s->n_tri; i++)
+    if (!w->stays[i]) list[at[s->tri_patch[i]]++] = (uint32_t)i;
+  for (size_t q = s->n_patch; q; q--) at[q] = at[q - 1];
+  at[0] = 0;
+  for (size_t i = 0; i < f->n_tri; i++) {
+    uint32_t q = f->tri_patch[i];
+
+    if (w->p->front->face[i] != VG_NO_INDEX || is_wall[q]) continue;
+    if (at[q] < sum && s->tri_patch[list[at[q]]] == q &&
+        same_tri(w, i, list[at[q]]))
+      at[q]++;
+    else w->changed[q] = 1;
+  }
+  for (size_t i = 0; i < sum; i++) {
+    uint32_t q = s->tri_patch[list[i]];
+
+    if (i >= at[q]) w->changed[q] = 1;
+  }
+}
+
+static vg_status find_changes(struct work *w, struct vg_error *err)
+{
+  const struct vg_mesh *s = w->p->surface;
+  size_t *at = vg_calloc(s->n_patch + 1, sizeof *at);
+  uint32_t *list = vg_alloc(s->n_tri, sizeof *list);
+  uint8_t *is_wall = vg_calloc(s->n_patch, 1);
+  vg_status st = VG_OK;
+
+  for (size_t i = 0; is_wall && i < w->p->columns->n_face; i++) {
+    uint32_t tri = w->p->columns->face_tri[i];
+
+    if (tri == VG_NO_INDEX) continue;
+    w->stays[tri] = 1;
+    is_wall[s->tri_patch[tri]] = 1;
+  }
+  if (at && list && is_wall) {
+    compare_patches(w, is_wall, at, list);
+    for (size_t i = 0; i < s->n_tri; i++)
+      if (!w->changed[s->tri_patch[i]]) w->stays[i] = 1;
+  } else st = vg_fail_memory(err, "the boundary of the mesh");
+  free(at);
+  free(list);
+  free(is_wall);
+  return st;
+}
+
+static vg_status reserve_boundary(struct vg_mesh *m, struct vg_error *err)
+{
+  m->tri = vg_alloc(m->n_tri, sizeof *m->tri);
+  m->tri_patch = vg_alloc(m->n_tri, sizeof *m->tri_patch);
+  if (m->n_quad) {
+    m->quad = vg_alloc(m->n_quad, sizeof *m->quad);
+    m->quad_patch = vg_alloc(m->n_quad, sizeof *m->quad_patch);
+  }
+  if (m->tri && m->tri_patch &&
+      (!m->n_quad || (m->quad && m->quad_patch)))
+    return VG_OK;
+  return vg_fail_memory(err, "the boundary of the mesh");
+}
+
+/* Is triangle i of the front boundary of the mesh, and none of the surface? */
+static int is_new(const struct work *w, size_t i)
+{
+  return w->p->front->face[i] == VG_NO_INDEX &&
+         w->changed[w->p->front->mesh.tri_patch[i]];
+}
+
+/* Counts faces by patch, then turns them into where each patch begins. */
+static void count_boundary(struct work *w)
+{
+  const struct vg_columns *c = w->p->columns;
+  const struct vg_mesh *f = &w->p->front->mesh, *s = w->p->surface;
+  size_t n_tri = 0, n_quad = 0;
+
+  for (size_t r = 0; r < c->n_rim; r++) {
+    size_t tri, quad;
+
+    vg_expand_count_flank(&w->p->expand, r, &tri, &quad);
+    w->tri[c->rim_patch[r]] += tri;
+    w->quad[c->rim_patch[r]] += quad;
+  }
+  for (size_t i = 0; i < f->n_tri; i++)
+    if (is_new(w, i)) w->tri[f->tri_patch[i]]++;
+  for (size_t i = 0; i < s->n_tri; i++) n_tri += w->stays[i];
+  for (size_t q = 0; q < s->n_patch; q++) {
+    size_t tri = w->tri[q], quad = w->quad[q];
+
+    w->tri[q] = n_tri;
+    w->quad[q] = n_quad;
+    n_tri += tri;
+    n_quad += quad;
+  }
+  w->m->n_tri = n_tri;
+  w->m->n_quad = n_quad;
+}
+
+static void fill_flanks(struct work *w)
+{
+  const struct vg_columns *c = w->p->columns;
+  struct vg_mesh *m = w->m;
+
+  for (size_t r = 0; r < c->n_rim; r++) {
+    uint32_t q = c->rim_patch[r];
+    size_t n_tri, n_quad;
+
+    vg_expand_count_flank(&w->p->expand, r, &n_tri, &n_quad);
+    vg_expand_flank(&w->p->expand, r, m->tri + w->tri[q],
+                    n_quad ? m->quad + w->quad[q] : NULL);
+    while (n_tri--) m->tri_patch[w->tri[q]++] = q;
+    while (n_quad--) m->quad_patch[w->quad[q]++] = q;
+  }
+}
+
+static void fill_boundary(struct work *w)
+{
+  const struct vg_mesh *s = w->p->surface, *f = &w->p->front->mesh;
+  struct vg_mesh *m = w->m;
+  size_t at = 0;
+
+  for (size_t i = 0; i < s->n_tri; i++)
+    if (w->stays[i]) {
+      for (int k = 0; k < 3; k++) m->tri[at][k] = w->p->root[s->tri[i][k]];
+      m->tri_patch[at++] = s->tri_patch[i];
+    }
+  fill_flanks(w);
+  for (size_t i = 0; i < f->n_tri; i++)
+    if (is_new(w, i)) {
+      size_t to = w->tri[f->tri_patch[i]]++;
+
+      for (int k = 0; k < 3; k++) m->tri[to][k] = w->p->id[f->tri[i][k]];
+      m->tri_patch[to] = f->tri_patch[i];
+    }
+}
+
+static vg_status copy_patches(struct work *w, struct vg_error *err)
+{
+  size_t n = w->p->surface->n_patch;
+
+  if (!n) return VG_OK;
+  w->m->patch = vg_alloc(n, sizeof *w->m->patch);
+  if (!w->m->patch) return vg_fail_memory(err, "the patches of the mesh");
+  memcpy(w->m->patch, w->p->surface->patch, n * sizeof *w->m->patch);
+  w->m->n_patch = n;
+  return VG_OK;
+}
+
+vg_status vg_join_boundary(struct vg_join_plan *p, struct vg_error *err)
+{
+  size_t n = p->surface->n_patch;
+  struct work w = { p, &p->boundary, vg_calloc(p->surface->n_tri, 1),
+                    vg_calloc(n, 1), vg_calloc(n, sizeof *w.tri),
+                    vg_calloc(n, sizeof *w.quad) };
+  vg_status st;
+
+  if (!w.stays || !w.changed || !w.tri || !w.quad) {
+    st = vg_fail_memory(err, "the boundary of the mesh");
+    goto done;
+  }
+  VG_TRY(find_changes(&w, err));
+  count_boundary(&w);
+  VG_TRY(reserve_boundary(w.m, err));
+  fill_boundary(&w);
+  VG_TRY(copy_patches(&w, err));
+done:
+  free(w.stays);
+  free(w.changed);
+  free(w.tri);
+  free(w.quad);
+  return st;
+}

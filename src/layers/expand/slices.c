@@ -1,0 +1,314 @@
+/* Layers and field in slices: what slices there are, and which is whose. */
+#include "layers/expand/slices.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/memory.h"
+#include "layers/expand/slices_parts.h"
+
+/* Cells that make a slice, and points of the boundary in one. */
+#define SLICE_CELLS 262144
+#define SLICE_POINTS 16384
+
+_Static_assert((int)VG_SLICE_TET == VG_KIND_TET &&
+               (int)VG_SLICE_PYR == VG_KIND_PYR &&
+               (int)VG_SLICE_PRI == VG_KIND_PRI, "kinds by the same number");
+
+struct vg_layer_slices {
+  struct vg_join_plan plan;
+  const struct vg_slices *field;
+  double (*point)[3];      /* of the boundary */
+  size_t rank, size;
+  size_t n_part;           /* of the boundary's points */
+  size_t n_run, room_run;
+  size_t *run;             /* [n_run + 1] first block of faces */
+  size_t first, n_mine;    /* served here, of parts and runs */
+};
+
+/* Close a run where it has its cells. Blocks at the end on which nothing
+ * stands make no slice. */
+static vg_status find_runs(struct vg_layer_slices *k, struct vg_error *err)
+{
+  const struct vg_expand *e = &k->plan.expand;
+  size_t begin = 0;
+
+  for (size_t b = 1; b <= e->n_block; b++) {
+    size_t n = 0, n_point = e->inner[b] - e->inner[begin];
+
+    for (int i = 0; i < VG_N_KIND; i++)
+      n += e->cell[i][b] - e->cell[i][begin];
+    if (n < SLICE_CELLS && (b < e->n_block || !(n || n_point))) continue;
+    if (vg_reserve(&k->run, &k->room_run, k->n_run + 2, sizeof *k->run))
+      return vg_fail_memory(err, "the slices of the layers");
+    k->run[k->n_run++] = begin;
+    k->run[k->n_run] = begin = b;
+  }
+  return VG_OK;
+}
+
+static vg_status find_slices(struct vg_layer_slices *k, struct vg_error *err)
+{
+  size_t n = k->plan.first_inner;
+  vg_status st = find_runs(k, err);
+
+  if (st < 0) return st;
+  k->point = vg_alloc(n, sizeof *k->point);
+  if (!k->point) return vg_fail_memory(err, "the points of the boundary");
+  vg_join_plan_points(&k->plan, 1, k->point);
+  k->n_part = (n + SLICE_POINTS - 1) / SLICE_POINTS;
+  return VG_OK;
+}
+
+static uint64_t cells_of(const struct vg_layer_slices *k, size_t slice)
+{
+  const struct vg_expand *e = &k->plan.expand;
+  size_t run = slice - k->n_part;
+  uint64_t n = 0;
+
+  for (int i = 0; i < VG_N_KIND && slice >= k->n_part; i++)
+    n += e->cell[i][k->run[run + 1]] - e->cell[i][k->run[run]];
+  return n;
+}
+
+/* What a slice weighs, in cells of the field: one of the layers, which has no
+ * edges to be measured, is judged in half of the time; the making of a point
+ * takes a few of these. */
+static uint64_t weight_of(const struct vg_layer_slices *k, size_t slice)
+{
+  return slice < k->n_part ? SLICE_POINTS / 8 : cells_of(k, slice) / 2;
+}
+
+/* Up to where all ranks are to be filled, so that `n` more find room: as water
+ * in vessels of which some hold more than that already. */
+static double level_of(size_t size, const uint64_t *n_field, uint64_t n)
+{
+  double level = INFINITY;
+
+  for (size_t r = 0; r < size; r++) {  /* vessels as full as r hold water */
+    double sum = (double)n, wet = 0;
+
+    for (size_t i = 0; i < size; i++) {
+      if (n_field[i] > n_field[r]) continue;
+      sum += (double)n_field[i];
+      wet++;
+    }
+    if (sum / wet < level) level = sum / wet;
+  }
+  return level;
+}
+
+/* A slice is served by the rank whose share its middle lies in. */
+static void share_out(struct vg_layer_slices *k, const uint64_t *n_field)
+{
+  size_t n = k->n_part + k->n_run, rank = 0;
+  uint64_t total = 0, at = 0;
+  double level, end;
+
+  for (size_t i = 0; i < n; i++) total += weight_of(k, i);
+  level = level_of(k->size, n_field, total);
+  end = fmax(level - (double)n_field[0], 0);
+  k->first = k->n_mine = 0;
+  for (size_t i = 0; i < n; i++) {
+    uint64_t w = weight_of(k, i);
+
+    while (rank + 1 < k->size && (double)at + (double)w / 2 >= end)
+      end += fmax(level - (double)n_field[++rank], 0);
+    if (rank == k->rank && !k->n_mine++) k->first = i;
+    at += w;
+  }
+}
+
+static vg_status get_part(const struct vg_layer_slices *k, size_t part,
+                          struct vg_layer_slice *at, struct vg_slice *s,
+                          struct vg_error *err)
+{
+  size_t first = part * SLICE_POINTS, n = k->plan.first_inner - first;
+
+  if (n > SLICE_POINTS) n = SLICE_POINTS;
+  at->id = vg_alloc(n, sizeof *at->id);
+  at->own = vg_alloc(n, sizeof *at->own);
+  if (!at->id || !at->own)
+    return vg_fail_memory(err, "a slice of the boundary's points");
+  for (size_t i = 0; i < n; i++) {
+    at->id[i] = (uint32_t)(first + i);
+    at->own[i] = (uint32_t)i;
+  }
+  s->n_point = s->n_own = n;
+  s->point_at = first;
+  s->x = (const double (*)[3])(k->point + first);
+  s->id = at->id;
+  s->own = at->own;
+  return VG_OK;
+}
+
+/* Take the points of the front out of what a slice of the field owns. What
+ * had nothing else is left empty. */
+static void leave_front(const struct vg_layer_slices *k, struct vg_slice *s)
+{
+  uint64_t n_front = k->plan.front->mesh.n_point;
+  size_t n_cell = 0;
+
+  if (s->point_at < n_front) {
+    uint64_t n = n_front - s->point_at;
+
+    if (n > s->n_own) n = s->n_own;
+    s->own += n;
+    s->n_own -= n;
+    s->point_at = n_front;
+  }
+  s->point_at += k->plan.first_field - n_front;
+  for (int i = 0; i < VG_SLICE_KINDS; i++) {
+    s->cell_at[i] += k->plan.expand.n_cell[i];
+    n_cell += s->n_cell[i];
+  }
+  if (!s->n_own && !n_cell) s->n_point = 0;
+}
+
+static vg_status get_field(const struct vg_layer_slices *k, size_t i,
+                           struct vg_layer_slice *at, struct vg_slice *s,
+                           struct vg_error *err)
+{
+  size_t n_front = k->plan.front->mesh.n_point;
+  vg_status st = k->field->get(k->field, i, &at->field, err);
+
+  if (st < 0) return st;
+  at->is_field = 1;
+  *s = at->field;
+  leave_front(k, s);
+  at->id = vg_alloc(s->n_point, sizeof *at->id);
+  if (!at->id) return vg_fail_memory(err, "the numbers of a slice");
+  for (size_t p = 0; p < s->n_point; p++) {
+    uint32_t v = s->id[p];
+
+    at->id[p] = v < n_front ? k->plan.id[v]
+                            : (uint32_t)(k->plan.first_field + (v - n_front));
+  }
+  s->id = at->id;
+  return VG_OK;
+}
+
+static void release(const struct vg_layer_slices *k, struct vg_layer_slice *at)
+{
+  if (at->is_field) k->field->put(k->field, &at->field);
+  free(at->x);
+  free(at->id);
+  free(at->own);
+  for (int i = 0; i < VG_SLICE_KINDS; i++) free(at->cell[i]);
+  free(at);
+}
+
+static vg_status get_slice(const struct vg_slices *slices, size_t i,
+                           struct vg_slice *out, struct vg_error *err)
+{
+  const struct vg_layer_slices *k = slices->user;
+  size_t n = k->first + i;             /* of parts and runs */
+  struct vg_layer_slice *at = vg_calloc(1, sizeof *at);
+  struct vg_slice s = { 0 };
+  vg_status st;
+
+  if (!at) return vg_fail_memory(err, "a slice of the mesh");
+  if (i >= k->n_mine) st = get_field(k, i - k->n_mine, at, &s, err);
+  else if (n < k->n_part) st = get_part(k, n, at, &s, err);
+  else {
+    n -= k->n_part;
+    st = vg_layer_slice_expand(&k->plan, k->run[n], k->run[n + 1], at, &s,
+                               err);
+  }
+  s.keep = at;
+  if (st < 0) release(k, at);
+  else *out = s;
+  return st;
+}
+
+static void put_slice(const struct vg_slices *slices, struct vg_slice *slice)
+{
+  if (slice->keep) release(slices->user, slice->keep);
+  memset(slice, 0, sizeof *slice);
+}
+
+static void describe(struct vg_layer_slices *k, struct vg_slices *out)
+{
+  const struct vg_join_plan *p = &k->plan;
+
+  memset(out, 0, sizeof *out);
+  out->n_point = p->n_point;
+  out->n_boundary_point = p->first_inner;
+  out->n_layer_point = p->first_field;
+  for (int i = 0; i < VG_SLICE_KINDS; i++) {
+    out->n_layer_cell[i] = p->expand.n_cell[i];
+    out->n_cell[i] = p->expand.n_cell[i] + k->field->n_cell[i];
+  }
+  out->boundary = &p->boundary;
+  out->n_slice = k->n_mine + k->field->n_slice;
+  out->n_served = k->field->n_served;
+  for (size_t i = 0; i < k->n_mine; i++)
+    out->n_served += cells_of(k, k->first + i);
+  out->get = get_slice;
+  out->put = put_slice;
+  out->user = k;
+}
+
+static vg_status share_equally(struct vg_layer_slices *k,
+                               struct vg_error *err)
+{
+  uint64_t *none = vg_calloc(k->size, sizeof *none);
+
+  if (!none) return vg_fail_memory(err, "the slices of the mesh");
+  share_out(k, none);
+  free(none);
+  return VG_OK;
+}
+
+vg_status vg_layer_slices_open(const struct vg_mesh *surface,
+                               const struct vg_layers *layers,
+                               const struct vg_slices *field,
+                               enum vg_layer_cells cells, int rank, int size,
+                               int threads, struct vg_slices *out,
+                               struct vg_layer_slices **keep,
+                               struct vg_join_info *info,
+                               struct vg_error *err)
+{
+  double start = vg_clock();
+  struct vg_layer_slices *k = vg_calloc(1, sizeof *k);
+  vg_status st;
+
+  if (!k) return vg_fail_memory(err, "the slices of the mesh");
+  k->field = field;
+  k->rank = (size_t)rank;
+  k->size = (size_t)size;
+  VG_TRY(vg_join_check_field(&layers->front, field->n_point,
+                             field->boundary ? field->boundary->n_tri : 0,
+                             field->n_cell[VG_SLICE_PYR] +
+                             field->n_cell[VG_SLICE_PRI], err));
+  VG_TRY(vg_join_plan_open(&k->plan, surface, layers,
+                           field->n_point - layers->front.mesh.n_point, cells,
+                           threads, err));
+  VG_TRY(find_slices(k, err));
+  VG_TRY(share_equally(k, err));
+  vg_join_plan_describe(&k->plan, vg_clock() - start, info);
+  describe(k, out);
+  *keep = k;
+  k = NULL;
+done:
+  vg_layer_slices_close(k);
+  return st;
+}
+
+void vg_layer_slices_share(struct vg_layer_slices *k,
+                           const uint64_t *n_field, struct vg_slices *out)
+{
+  share_out(k, n_field);
+  describe(k, out);
+}
+
+void vg_layer_slices_close(struct vg_layer_slices *k)
+{
+  if (!k) return;
+  vg_join_plan_close(&k->plan);
+  free(k->point);
+  free(k->run);
+  free(k);
+}

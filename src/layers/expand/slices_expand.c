@@ -1,0 +1,227 @@
+/* One slice of the layers: a run of faces with all that stands on them.
+ *
+ * Local points: first the new ones inside, in the mesh's order, so that what
+ * the slice owns is 0, 1, ...; then columns that belong to the boundary or to
+ * an earlier slice; then the points at level 0. A column's points stand one
+ * after the other here too, so cells are made as they are in the mesh. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "layers/expand/slices_parts.h"
+
+/* From numbers to 0, 1, 2, ... by first appearance. */
+struct table {
+  uint32_t *key, *value;   /* value VG_NO_INDEX: vacant */
+  unsigned shift;
+  size_t mask;
+};
+
+struct run {
+  const struct vg_join_plan *p;
+  size_t first, end;       /* blocks */
+  size_t n_face;           /* with levels */
+  size_t n_column;
+  uint32_t *face;          /* [n_face] */
+  uint32_t (*corner)[3];   /* [n_face] local columns */
+  uint32_t *column;        /* [n_column] of the plan */
+  uint32_t *foot, *base;   /* [n_column] local points at levels 0 and 1 */
+  struct table table;
+};
+
+static int reserve_table(struct table *t, size_t n)
+{
+  size_t size = 16;
+
+  t->shift = 28;
+  for (; size < 2 * n; size *= 2) t->shift--;
+  t->mask = size - 1;
+  t->key = vg_alloc(size, sizeof *t->key);
+  t->value = vg_alloc(size, sizeof *t->value);
+  return t->key && t->value;
+}
+
+static void clear_table(struct table *t)
+{
+  memset(t->value, 0xff, (t->mask + 1) * sizeof *t->value);
+}
+
+/* The value of a key; `next` where the key is new. */
+static uint32_t look_up(struct table *t, uint32_t key, uint32_t next)
+{
+  size_t i = (key * UINT32_C(2654435769)) >> t->shift;  /* 2^32 / golden r. */
+
+  while (t->value[i] != VG_NO_INDEX && t->key[i] != key) i = (i + 1) & t->mask;
+  if (t->value[i] != VG_NO_INDEX) return t->value[i];
+  t->key[i] = key;
+  return t->value[i] = next;
+}
+
+static int has_levels(const struct vg_expand *e, size_t face)
+{
+  const uint32_t *f = e->columns->face[face];
+
+  return vg_mark_n(e->mark[f[0]] | e->mark[f[1]] | e->mark[f[2]]) > 0;
+}
+
+static size_t end_face(const struct run *r)
+{
+  size_t end = r->end * VG_FACE_BLOCK, n = r->p->columns->n_face;
+
+  return end < n ? end : n;
+}
+
+static vg_status reserve_run(struct run *r, struct vg_error *err)
+{
+  const struct vg_expand *e = &r->p->expand;
+  size_t most;
+
+  for (size_t i = r->first * VG_FACE_BLOCK; i < end_face(r); i++)
+    r->n_face += (size_t)has_levels(e, i);
+  most = 3 * r->n_face < e->columns->n_column ? 3 * r->n_face
+                                              : e->columns->n_column;
+  r->face = vg_alloc(r->n_face, sizeof *r->face);
+  r->corner = vg_alloc(r->n_face, sizeof *r->corner);
+  r->column = vg_alloc(most, sizeof *r->column);
+  r->foot = vg_alloc(most, sizeof *r->foot);
+  r->base = vg_alloc(most, sizeof *r->base);
+  if (r->face && r->corner && r->column && r->foot && r->base &&
+      reserve_table(&r->table, most))
+    return VG_OK;
+  return vg_fail_memory(err, "a slice of the layers");
+}
+
+static void release_run(struct run *r)
+{
+  free(r->face);
+  free(r->corner);
+  free(r->column);
+  free(r->foot);
+  free(r->base);
+  free(r->table.key);
+  free(r->table.value);
+}
+
+static void list_columns(struct run *r)
+{
+  const struct vg_expand *e = &r->p->expand;
+  size_t n = 0;
+
+  clear_table(&r->table);
+  for (size_t i = r->first * VG_FACE_BLOCK; i < end_face(r); i++) {
+    if (!has_levels(e, i)) continue;
+    for (int k = 0; k < 3; k++) {
+      uint32_t c = e->columns->face[i][k];
+      uint32_t at = look_up(&r->table, c, (uint32_t)r->n_column);
+
+      if (at == r->n_column) r->column[r->n_column++] = c;
+      r->corner[n][k] = at;
+    }
+    r->face[n++] = (uint32_t)i;
+  }
+}
+
+/* Local points; returns their number. */
+static size_t number_points(struct run *r)
+{
+  const struct vg_expand *e = &r->p->expand;
+  size_t mine = e->inner[r->first], n = e->inner[r->end] - mine, n_own = n;
+
+  for (size_t i = 0; i < r->n_column; i++) {
+    uint32_t base = e->base[r->column[i]];
+
+    r->base[i] = VG_NO_INDEX;
+    if (base == VG_NO_INDEX) continue;
+    if (base >= mine && base - mine < n_own) r->base[i] = base - (uint32_t)mine;
+    else {
+      r->base[i] = (uint32_t)n;
+      n += vg_mark_n(e->mark[r->column[i]]);
+    }
+  }
+  clear_table(&r->table);
+  for (size_t i = 0; i < r->n_column; i++) {
+    r->foot[i] = look_up(&r->table, e->foot[r->column[i]], (uint32_t)n);
+    n += r->foot[i] == n;
+  }
+  return n;
+}
+
+static vg_status reserve_slice(const struct run *r, size_t n_point,
+                               struct vg_layer_slice *at, struct vg_slice *s,
+                               struct vg_error *err)
+{
+  static const size_t n_node[VG_SLICE_KINDS] = { 4, 5, 6 };
+  const struct vg_expand *e = &r->p->expand;
+  int refused;
+
+  s->n_point = n_point;
+  s->point_at = e->inner[r->first];
+  s->n_own = e->inner[r->end] - e->inner[r->first];
+  at->x = vg_alloc(n_point, sizeof *at->x);
+  at->id = vg_alloc(n_point, sizeof *at->id);
+  at->own = vg_alloc(s->n_own, sizeof *at->own);
+  refused = !at->x || !at->id || !at->own;
+  for (int k = 0; k < VG_SLICE_KINDS; k++) {
+    s->cell_at[k] = e->cell[k][r->first];
+    s->n_cell[k] = e->cell[k][r->end] - e->cell[k][r->first];
+    at->cell[k] = vg_alloc(s->n_cell[k], n_node[k] * sizeof *at->cell[k]);
+    refused |= !at->cell[k];
+    s->cell[k] = at->cell[k];
+  }
+  s->x = (const double (*)[3])at->x;
+  s->id = at->id;
+  s->own = at->own;
+  return refused ? vg_fail_memory(err, "a slice of the layers") : VG_OK;
+}
+
+static void place_points(const struct run *r, struct vg_layer_slice *at,
+                         size_t n_own)
+{
+  const struct vg_expand *e = &r->p->expand;
+  const struct vg_mesh *surface = r->p->surface;
+
+  for (size_t i = 0; i < n_own; i++) at->own[i] = (uint32_t)i;
+  for (size_t i = 0; i < r->n_column; i++) {
+    uint32_t c = r->column[i], foot = r->foot[i];
+    unsigned n = vg_mark_n(e->mark[c]);
+
+    memcpy(at->x[foot], surface->point[e->columns->column[c].root],
+           sizeof *at->x);
+    at->id[foot] = e->foot[c];
+    if (!n) continue;
+    vg_expand_column(e, surface, c, at->x + r->base[i]);
+    for (unsigned l = 0; l < n; l++) at->id[r->base[i] + l] = e->base[c] + l;
+  }
+}
+
+static void make_cells(const struct run *r, struct vg_layer_slice *at)
+{
+  struct vg_cell_sink s = { (uint32_t (*)[4])at->cell[VG_SLICE_TET],
+                            (uint32_t (*)[5])at->cell[VG_SLICE_PYR],
+                            (uint32_t (*)[6])at->cell[VG_SLICE_PRI] };
+
+  for (size_t i = 0; i < r->n_face; i++) {
+    const uint32_t *c = r->corner[i];
+    const uint32_t foot[3] = { r->foot[c[0]], r->foot[c[1]], r->foot[c[2]] };
+    const uint32_t base[3] = { r->base[c[0]], r->base[c[1]], r->base[c[2]] };
+
+    vg_expand_face(&r->p->expand, r->face[i], foot, base, &s);
+  }
+}
+
+vg_status vg_layer_slice_expand(const struct vg_join_plan *p, size_t first,
+                                size_t end, struct vg_layer_slice *at,
+                                struct vg_slice *s, struct vg_error *err)
+{
+  struct run r = { .p = p, .first = first, .end = end };
+  vg_status st;
+
+  VG_TRY(reserve_run(&r, err));
+  list_columns(&r);
+  VG_TRY(reserve_slice(&r, number_points(&r), at, s, err));
+  place_points(&r, at, s->n_own);
+  make_cells(&r, at);
+done:
+  release_run(&r);
+  return st;
+}

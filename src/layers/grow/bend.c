@@ -1,0 +1,208 @@
+/* Directions bent apart. Declared in layers/grow/work.h.
+ *
+ * Where columns converge (a concave corner, a wall at an acute angle to a
+ * slide plane), directions within BAND heights are relaxed towards the mean
+ * of their neighbours as far as it takes, so that the turn is spread. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "core/geometry/vector.h"
+#include "layers/grow/direct.h"
+
+#define CONVERGE 0.75      /* a face that would shrink to less is bent apart */
+#define BEND_MAX 0.995
+#define STILL 1e-3         /* a direction that changes by less has settled */
+#define BAND 2.5           /* heights that bending reaches to */
+
+
+static void mean_of_near(const struct vg_layer_work *w, size_t i,
+                         double (*from)[3], double v[3])
+{
+  const double *root = w->m->point[w->c->column[i].root];
+
+  memset(v, 0, 3 * sizeof *v);
+  for (uint32_t j = w->t.near_first[i]; j < w->t.near_first[i + 1]; j++) {
+    uint32_t o = w->t.near[j];
+    double d = vg_distance(root, w->m->point[w->c->column[o].root]);
+
+    if (!(d > 0)) continue;   /* another column of the same fan */
+    for (int k = 0; k < 3; k++) v[k] += from[o][k] / d;
+  }
+}
+
+/* What is left of the area of a face, seen along its normal, when its columns
+ * have risen by h along the unit vectors dir. */
+static double top_share(const struct vg_layer_work *w, uint32_t f,
+                        double (*dir)[3], double h)
+{
+  double x[3][3], a[3], b[3], base[3], top[3], n2;
+
+  for (int k = 0; k < 3; k++)
+    memcpy(x[k], w->m->point[w->c->column[w->c->face[f][k]].root],
+           sizeof x[k]);
+  vg_sub(x[1], x[0], a);
+  vg_sub(x[2], x[0], b);
+  vg_cross(a, b, base);
+  n2 = vg_dot(base, base);
+  if (!(n2 > 0)) return 1;
+  for (int k = 0; k < 3; k++) {
+    const double *v = dir[w->c->face[f][0]];
+
+    a[k] += h * (dir[w->c->face[f][1]][k] - v[k]);
+    b[k] += h * (dir[w->c->face[f][2]][k] - v[k]);
+  }
+  vg_cross(a, b, top);
+  return vg_dot(base, top) / n2;
+}
+
+static double tallest(const struct vg_layer_work *w, uint32_t f)
+{
+  const uint32_t *c = w->c->face[f];
+
+  return fmax(w->wanted[c[0]], fmax(w->wanted[c[1]], w->wanted[c[2]]));
+}
+
+/* How strongly a column is bent: not at all while its faces keep their area
+ * up to the tops, wholly once one would shrink to half. So columns far from a
+ * corner, and those on its convex side, stay normal to the wall. */
+static double urge(const struct vg_turn *l, size_t i)
+{
+  const struct vg_layer_work *w = l->w;
+  double least = 1;
+
+  for (uint32_t j = w->t.first[i]; j < w->t.first[i + 1]; j++) {
+    uint32_t f = w->t.corner[j] / 3;
+
+    if (w->c->face_tri[f] != VG_NO_INDEX)
+      least = fmin(least, top_share(w, f, l->from, tallest(w, f)));
+  }
+  return fmax(0, fmin(BEND_MAX, (CONVERGE - least) / (CONVERGE - 0.5)));
+}
+
+/* Nothing has moved around column i, so it will not move either. */
+static int is_still(const struct vg_turn *l, size_t i)
+{
+  const struct vg_layer_work *w = l->w;
+
+  if (l->stirred[i]) return 0;
+  for (uint32_t j = w->t.near_first[i]; j < w->t.near_first[i + 1]; j++)
+    if (l->stirred[w->t.near[j]]) return 0;
+  return 1;
+}
+
+/* One damped Jacobi step; where the mean loses the faces from view, half of
+ * the way to it, and so on. */
+static void relax(const struct vg_turn *l, size_t i, double (*n)[3])
+{
+  const struct vg_layer_work *w = l->w;
+  double slide[2][3], mean[3], step, v[3];
+  int n_slide = vg_slide_normals(w, i, slide), k;
+
+  memcpy(l->to[i], l->from[i], sizeof *l->to);
+  l->stirs[i] = 0;
+  if (vg_shares_root(w->c, i) || w->view[i] == 0 || is_still(l, i)) return;
+  mean_of_near(w, i, l->from, mean);
+  if (!(vg_unit(mean) > 0)) return;
+  k = vg_face_normals(w, i, n);
+  step = urge(l, i);
+  for (int try = 0; try < 4; try++, step *= 0.5) {
+    for (int c = 0; c < 3; c++)
+      v[c] = l->from[i][c] + step * mean[c] +
+             (1 - step) * w->root_dir[i][c];
+    vg_constrain(n_slide, slide, v);
+    if (!(vg_unit(v) > 0)) continue;
+    if (vg_least_view(k, n, v) < VG_VIEW_KEPT * w->view[i]) continue;
+    memcpy(l->to[i], v, sizeof v);
+    l->stirs[i] = vg_distance(v, l->from[i]) > STILL;
+    return;
+  }
+}
+
+static void relax_body(void *context, size_t first, size_t end, int worker)
+{
+  struct vg_turn *l = context;
+
+  for (size_t k = first; k < end; k++)
+    relax(l, l->list[k], l->scratch + (size_t)worker * l->w->max_valence);
+}
+
+static vg_status sweeps(struct vg_layer_work *w, const uint32_t *list,
+                        size_t n, struct vg_error *err)
+{
+  struct vg_turn l = { .list = list };
+  vg_status st;
+
+  VG_TRY(vg_turn_scratch(w, &l, err));
+  VG_TRY(vg_turn_new(w, &l, err));
+  l.stirs = vg_calloc(w->c->n_column, 1);
+  l.stirred = vg_calloc(w->c->n_column, 1);
+  if (!l.stirs || !l.stirred) {
+    st = vg_fail_memory(err, "the smoothing");
+    goto done;
+  }
+  for (size_t k = 0; k < n; k++) l.stirred[list[k]] = 1;
+  for (int s = 0; s < w->o->smooth; s++) {
+    uint8_t *swap = l.stirs;
+
+    vg_parallel_for(w->o->threads, n, VG_GRAIN / 4, relax_body, &l);
+    vg_turn_swap(&l);
+    l.stirs = l.stirred;
+    l.stirred = swap;
+  }
+  for (size_t i = 0; i < w->c->n_column; i++)
+    memcpy(w->c->column[i].dir, l.from[i], sizeof *l.from);
+done:
+  vg_turn_free(&l);
+  return st;
+}
+
+static void converging(const struct vg_layer_work *w, double *reach)
+{
+  for (uint32_t f = 0; f < w->c->n_face; f++) {
+    double h = tallest(w, f);
+
+    if (w->c->face_tri[f] == VG_NO_INDEX ||
+        top_share(w, f, w->root_dir, h) >= CONVERGE) continue;
+    for (int k = 0; k < 3; k++)
+      reach[w->c->face[f][k]] = fmax(reach[w->c->face[f][k]], BAND * h);
+  }
+}
+
+/* What is left of the reach of column i at its neighbour. */
+static int carry(struct vg_layer_work *w, void *context, uint32_t i,
+                 uint32_t j)
+{
+  double *reach = context, left;
+  uint32_t o = w->t.near[j];
+
+  if (!(reach[i] > reach[o])) return 0;
+  left = reach[i] - vg_root_distance(w, i, o);
+  if (!(left > reach[o])) return 0;
+  reach[o] = left;
+  return 1;
+}
+
+vg_status vg_directions_smooth(struct vg_layer_work *w, struct vg_error *err)
+{
+  size_t n = 0;
+  double *reach = vg_calloc(w->c->n_column, sizeof *reach);
+  uint32_t *list = vg_alloc(w->c->n_column, sizeof *list);
+  vg_status st = VG_OK;
+
+  if (!reach || !list) {
+    st = vg_fail_memory(err, "the smoothing");
+    goto done;
+  }
+  converging(w, reach);
+  VG_TRY(vg_columns_spread(w, carry, reach, err));
+  for (uint32_t i = 0; i < w->c->n_column; i++)
+    if (reach[i] > 0) list[n++] = i;
+  VG_TRY(sweeps(w, list, n, err));
+done:
+  free(reach);
+  free(list);
+  return st;
+}

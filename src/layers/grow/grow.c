@@ -1,0 +1,501 @@
+#include "layers/grow/grow.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/memory.h"
+#include "core/surface/surface_check.h"
+#include "layers/grow/work.h"
+
+#define ROUNDS_MAX 300
+#define HASTE 150          /* rounds after which what is bad gets no layers */
+#define GENTLE 40          /* sound rounds in which rooms lose a share only */
+#define SHARE 0.75
+#define TURNS_MAX 12       /* rounds that may turn columns */
+
+static void work_release(struct vg_layer_work *w)
+{
+  vg_topology_release(&w->t);
+  free(w->slide);
+  free(w->is_wall);
+  free(w->is_slide);
+  free(w->noise);
+  free(w->normal);
+  free(w->cap);
+  free(w->root_dir);
+  free(w->view);
+  free(w->edge);
+  free(w->wanted);
+  free(w->room);
+  free(w->slack);
+  free(w->settled);
+  free(w->own);
+  free(w->why);
+  free(w->by_size);
+}
+
+static vg_status check_request(const struct vg_mesh *m, size_t p,
+                               const struct vg_layer_request *r,
+                               struct vg_error *err)
+{
+  const struct vg_law *l = &r->law;
+
+  if (!r->is_wall) return VG_OK;
+  if (!(l->delta1 > 0 && l->delta1 < 1e60))
+    return vg_fail(err, VG_ERR_INPUT, "patch %d: the first layer is %g thick; "
+                   "give a height above 0", (int)m->patch[p].id, l->delta1);
+  if (!(l->rate1 >= 0 && l->rate1 <= 10 && l->rate2 >= 0 && l->rate2 <= 10))
+    return vg_fail(err, VG_ERR_INPUT, "patch %d: growth rates %g and %g; they "
+                   "must lie in 0 to 10", (int)m->patch[p].id, l->rate1,
+                   l->rate2);
+  if (!(l->cap >= 1))
+    return vg_fail(err, VG_ERR_INPUT, "patch %d: the cap on growth is %g; it "
+                   "must be 1 or more", (int)m->patch[p].id, l->cap);
+  return VG_OK;
+}
+
+static double off_plane(const struct vg_slide *s, const double x[3])
+{
+  return s->normal[0] * x[0] + s->normal[1] * x[1] + s->normal[2] * x[2] -
+         s->at;
+}
+
+static vg_status roughness(struct vg_layer_work *w, struct vg_error *err)
+{
+  w->noise = vg_alloc(w->n_slide, sizeof *w->noise);
+  if (!w->noise) return vg_fail_memory(err, "the layers");
+  for (size_t s = 0; s < w->n_slide; s++) {
+    const struct vg_slide *slide = &w->slide[s];
+
+    w->is_slide[slide->patch] = 1;
+    w->noise[s] = slide->is_plane ? 0 : INFINITY;
+    for (size_t t = 0; slide->is_plane && t < w->m->n_tri; t++)
+      for (int k = 0; w->m->tri_patch[t] == slide->patch && k < 3; k++)
+        w->noise[s] = fmax(w->noise[s], fabs(off_plane(slide,
+                             w->m->point[w->m->tri[t][k]])));
+  }
+  return VG_OK;
+}
+
+static vg_status walls(struct vg_layer_work *w, struct vg_error *err)
+{
+  size_t n = 0;
+  vg_status st = VG_OK;
+
+  w->is_wall = vg_calloc(w->m->n_patch, 1);
+  w->is_slide = vg_calloc(w->m->n_patch, 1);
+  if (!w->is_wall || !w->is_slide) return vg_fail_memory(err, "the layers");
+  for (size_t p = 0; p < w->m->n_patch; p++) {
+    VG_TRY(check_request(w->m, p, &w->o->patch[p], err));
+    w->is_wall[p] = w->o->patch[p].is_wall != 0;
+    n += w->is_wall[p];
+  }
+  if (!n)
+    return vg_fail(err, VG_ERR_INPUT, "layers were asked for, but no patch is "
+                   "a wall that grows them");
+  if (!(w->o->gap > 0 && w->o->gap < 0.5 && w->o->end > 0))
+    return vg_fail(err, VG_ERR_INPUT, "the share of a gap that a layer may "
+                   "take is %g and the end of layers %g; the first must lie "
+                   "in 0 to 0.5, the second above 0", w->o->gap, w->o->end);
+  VG_TRY(vg_slides_find(w->m, w->is_wall, &w->n_slide, &w->slide, err));
+  st = roughness(w, err);
+done:
+  return st;
+}
+
+static vg_status arrays(struct vg_layer_work *w, struct vg_error *err)
+{
+  size_t n = w->c->n_column;
+
+  w->normal = vg_alloc(w->c->n_face, sizeof *w->normal);
+  w->cap = vg_calloc(w->c->n_face, 1);
+  w->root_dir = vg_alloc(n, sizeof *w->root_dir);
+  w->view = vg_alloc(n, sizeof *w->view);
+  w->edge = vg_alloc(n, sizeof *w->edge);
+  w->wanted = vg_alloc(n, sizeof *w->wanted);
+  w->room = vg_alloc(n, sizeof *w->room);
+  w->settled = vg_alloc(n, sizeof *w->settled);
+  w->own = vg_calloc(n, sizeof *w->own);
+  w->why = vg_calloc(n, 1);
+  w->by_size = vg_calloc(n, 1);
+  if (w->normal && w->cap && w->root_dir && w->view && w->edge && w->wanted &&
+      w->room && w->settled && w->own && w->why && w->by_size) return VG_OK;
+  return vg_fail_memory(err, "the layers");
+}
+
+/* Rooms before anything is tried: no view, corners, what stands ahead. */
+static vg_status first_rooms(struct vg_layer_work *w,
+                             struct vg_layer_report *r, struct vg_error *err)
+{
+  size_t n = w->c->n_column;
+  double *allowed = vg_alloc(n, sizeof *allowed), t = vg_clock();
+  vg_status st;
+
+  if (!allowed) return vg_fail_memory(err, "the layers");
+  for (size_t i = 0; i < n; i++) {
+    if (w->view[i] == 0) vg_heights_lower(w, i, 0, VG_CAUSE_NO_VIEW);
+    if (w->t.blocked && w->t.blocked[i])
+      vg_heights_lower(w, i, 0, VG_CAUSE_SLIDE);
+  }
+  VG_TRY(vg_heights_slack(w, err));
+  VG_TRY(vg_heights_corner(w, err));
+  r->time_height += vg_clock() - t;
+  t = vg_clock();
+  VG_TRY(vg_clear_ahead(w->m, w->c, &w->t, w->o->gap, w->o->threads, w->room,
+                        allowed, err));
+  for (size_t i = 0; i < n; i++)
+    vg_heights_lower(w, i, allowed[i], VG_CAUSE_PROXIMITY);
+  r->time_clear += vg_clock() - t;
+done:
+  free(allowed);
+  return st;
+}
+
+/* What one round lowers the columns in question to. */
+static double lowered(const struct vg_layer_work *w, size_t i, size_t round)
+{
+  const struct vg_column *c = &w->c->column[i];
+  double d[VG_LEVELS_MAX + 1], h;
+
+  if (round >= GENTLE || w->haste) return 0;
+  vg_law_heights(&w->c->law[c->law], c->cap, c->n, d);
+  h = d[c->n] < w->room[i] ? d[c->n] : w->room[i];
+  return SHARE * h;
+}
+
+static vg_status try_tops(struct vg_layer_work *w, const uint8_t *active,
+                          uint8_t *bad, size_t round, size_t *n_bad,
+                          struct vg_error *err)
+{
+  vg_status st = vg_clear_tops(w->m, w->c, w->is_slide, active, w->o->threads,
+                               bad, n_bad, err);
+
+  for (size_t i = 0; st >= 0 && *n_bad && i < w->c->n_column; i++)
+    if (bad[i])
+      vg_heights_lower(w, i, lowered(w, i, round), VG_CAUSE_COLLISION);
+  return st;
+}
+
+static vg_status try_slides(struct vg_layer_work *w,
+                            struct vg_layer_front *front, size_t round,
+                            size_t *n_bad, struct vg_error *err)
+{
+  struct vg_slide_trouble trouble = { 0 };
+  vg_status st = vg_slide_front(w->m, w->n_slide, w->slide, w->c, w->sizing,
+                                front, &trouble, err);
+
+  *n_bad = st == VG_BLOCKED ? trouble.n : 0;
+  for (size_t i = 0; st == VG_BLOCKED && i < trouble.n; i++)
+    vg_heights_lower(w, trouble.column[i], trouble.never[i]
+                     ? 0 : lowered(w, trouble.column[i], round),
+                     VG_CAUSE_SLIDE);
+  free(trouble.column);
+  return st == VG_BLOCKED ? VG_OK : st;
+}
+
+/* Column i, which does not slide in patch p, starts in front of its plane and
+ * ends on it or behind: 1. 2: the patch is too rough for its plane to tell. */
+static int crosses(const struct vg_layer_work *w, uint32_t p, uint32_t i)
+{
+  const struct vg_column *c = &w->c->column[i];
+  size_t s = 0;
+  double top[3], root;
+
+  if (c->slide[0] == p || c->slide[1] == p || !c->n) return 0;
+  while (w->slide[s].patch != p) s++;
+  root = off_plane(&w->slide[s], w->m->point[c->root]);
+  if (fabs(root) <= 2 * w->noise[s]) return w->noise[s] > 0 ? 2 : 0;
+  vg_column_top(w->c, w->m, i, top);
+  return root > 0 && !(off_plane(&w->slide[s], top) > 2 * w->noise[s]);
+}
+
+/* Tops that stand on a slide plane with one edge or corner and cross it with
+ * the others. vg_clear_tops has tested all other pairs, so that the front is
+ * clear when there are none, unless a patch was too rough. */
+static void try_sides(struct vg_layer_work *w, uint8_t *bad, size_t round,
+                      size_t *n_bad, int *is_unsure)
+{
+  memset(bad, 0, w->c->n_column);
+  *n_bad = 0;
+  *is_unsure = 0;
+  for (size_t f = 0; f < w->c->n_face; f++)
+    for (int k = 0; k < 3; k++) {
+      const struct vg_column *c = &w->c->column[w->c->face[f][k]];
+
+      for (int q = 0; q < 2 && c->slide[q] != VG_NO_INDEX; q++)
+        for (int o = 1; o < 3; o++) {
+          int how = crosses(w, c->slide[q], w->c->face[f][(k + o) % 3]);
+
+          if (how == 1) bad[w->c->face[f][(k + o) % 3]] = 1;
+          if (how == 2) *is_unsure = 1;
+        }
+    }
+  for (size_t i = 0; i < w->c->n_column; i++) {
+    if (!bad[i]) continue;
+    vg_heights_lower(w, i, lowered(w, i, round), VG_CAUSE_COLLISION);
+    ++*n_bad;
+  }
+}
+
+/* The front as it will be filled: re-meshed patches against tops. */
+static vg_status try_front(struct vg_layer_work *w,
+                           struct vg_layer_front *front, uint8_t *bad,
+                           size_t round, size_t *n_bad, struct vg_error *err)
+{
+  struct vg_surface_check_options o = VG_SURFACE_CHECK_OPTIONS_INIT;
+  struct vg_surface_report r = VG_SURFACE_REPORT_INIT;
+  size_t n_cross;
+  vg_status st;
+
+  o.repair = 0;
+  o.threads = w->o->threads;
+  *n_bad = 0;
+  memset(bad, 0, w->c->n_column);
+  VG_TRY(vg_surface_check(&front->mesh, &o, &r, err));
+  n_cross = r.count[VG_DEFECT_INTERSECTION] +
+            r.count[VG_DEFECT_DEGENERATE_TRIANGLE];
+  for (size_t t = 0; n_cross && t < front->mesh.n_tri; t++) {
+    const uint32_t bits = 1u << VG_DEFECT_INTERSECTION |
+                          1u << VG_DEFECT_DEGENERATE_TRIANGLE;
+
+    if (!(r.face_kinds[t] & bits)) continue;
+    for (int k = 0; k < 3; k++) {
+      uint32_t c = front->column[front->mesh.tri[t][k]];
+
+      if (c != VG_NO_INDEX) bad[c] = 1;
+    }
+  }
+  for (size_t i = 0; n_cross && i < w->c->n_column; i++) {
+    if (!bad[i]) continue;
+    vg_heights_lower(w, i, lowered(w, i, round), VG_CAUSE_COLLISION);
+    ++*n_bad;
+  }
+  if (n_cross && !*n_bad)
+    st = vg_fail(err, VG_ERR_GEOMETRY, "the surface crosses itself where no "
+                 "layers are; check it with `vanguard check`");
+done:
+  vg_surface_report_release(&r);
+  return st;
+}
+
+/* Columns on curved patches were bent onto them: are their cells still
+ * sound? */
+static vg_status try_bent(struct vg_layer_work *w, uint8_t *bent,
+                          uint8_t *turned, size_t *n_bad, struct vg_error *err)
+{
+  for (size_t i = 0; i < w->c->n_column; i++)
+    bent[i] = w->c->column[i].bent != SIZE_MAX;
+  return vg_cells_lower(w, bent, 0, turned, n_bad, err);
+}
+
+/* Straight again, until the patches are re-meshed the next time. */
+static void unbend(struct vg_columns *c)
+{
+  for (size_t i = 0; c->n_path && i < c->n_column; i++)
+    c->column[i].bent = SIZE_MAX;
+  free(c->path);
+  c->path = NULL;
+  c->n_path = 0;
+}
+
+struct rounds {
+  uint8_t *moved, *turned, *cells, *tops, *bad;  /* cells, tops: to be looked
+                                                    at */
+  size_t sound;             /* rounds in which all cells were sound */
+};
+
+static vg_status settle(struct vg_layer_work *w, struct rounds *q,
+                        struct vg_error *err)
+{
+  vg_status st = vg_heights_settle(w, q->moved, err);
+
+  for (size_t i = 0; st >= 0 && i < w->c->n_column; i++) {
+    q->moved[i] |= q->turned[i];
+    q->turned[i] = 0;
+    q->cells[i] |= q->moved[i];
+    q->tops[i] |= q->moved[i];
+  }
+  return st;
+}
+
+/* The first test that fails lowers columns, and the round begins again with
+ * those that moved. Rooms only ever shrink, so it ends. */
+static vg_status one_round(struct vg_layer_work *w, struct rounds *q,
+                           struct vg_layer_front *front,
+                           struct vg_layer_report *r, size_t *n_bad,
+                           struct vg_error *err)
+{
+  size_t round = q->sound;
+  double t = vg_clock();
+  int is_unsure = 0;
+  vg_status st;
+
+  VG_TRY(vg_cells_lower(w, r->n_round ? q->cells : NULL,
+                        r->n_round < TURNS_MAX, q->turned, n_bad, err));
+  memset(q->cells, 0, w->c->n_column);
+  if (!*n_bad) {
+    VG_TRY(try_tops(w, q->sound ? q->tops : NULL, q->bad, q->sound, n_bad,
+                    err));
+    memset(q->tops, 0, w->c->n_column);
+    round = q->sound++;
+  }
+  r->time_clear += vg_clock() - t;
+  t = vg_clock();
+  if (!*n_bad) VG_TRY(try_slides(w, front, round, n_bad, err));
+  if (!*n_bad && w->c->n_path)
+    VG_TRY(try_bent(w, q->bad, q->turned, n_bad, err));
+  r->time_slide += vg_clock() - t;
+  t = vg_clock();
+  if (!*n_bad) try_sides(w, q->bad, round, n_bad, &is_unsure);
+  if (!*n_bad && is_unsure)
+    VG_TRY(try_front(w, front, q->bad, round, n_bad, err));
+  r->time_clear += vg_clock() - t;
+done:
+  return st;
+}
+
+static vg_status until_clear(struct vg_layer_work *w,
+                             struct vg_layer_front *front,
+                             struct vg_layer_report *r, struct vg_error *err)
+{
+  size_t n = w->c->n_column, n_bad = 1;
+  struct rounds q = { vg_calloc(n, 1), vg_calloc(n, 1), vg_calloc(n, 1),
+                      vg_calloc(n, 1), vg_calloc(n, 1), 0 };
+  double t;
+  vg_status st = VG_OK;
+
+  if (!q.moved || !q.turned || !q.cells || !q.tops || !q.bad) {
+    st = vg_fail_memory(err, "the layers");
+    goto done;
+  }
+  for (r->n_round = 0; n_bad && r->n_round < ROUNDS_MAX; r->n_round++) {
+    if (w->o->progress && w->o->progress(w->o->user, "layers", r->n_round, 0)) {
+      st = VG_BLOCKED;
+      goto done;
+    }
+    w->haste = r->n_round >= HASTE;
+    t = vg_clock();
+    vg_layer_front_release(front);
+    unbend(w->c);
+    VG_TRY(settle(w, &q, err));
+    r->time_height += vg_clock() - t;
+    VG_TRY(one_round(w, &q, front, r, &n_bad, err));
+  }
+  if (n_bad)
+    st = vg_fail(err, VG_ERR_GEOMETRY, "the layers could not be cleared in "
+                 "%d rounds; please report this with the project files",
+                 ROUNDS_MAX);
+done:
+  free(q.moved);
+  free(q.turned);
+  free(q.cells);
+  free(q.tops);
+  free(q.bad);
+  return st;
+}
+
+/* Cells of a face by the lift rule; those at the wall in which columns of one
+ * root are one point vanish. */
+static size_t face_cells(const struct vg_columns *c, const uint32_t face[3])
+{
+  const struct vg_column *k[3];
+  size_t n = 0;
+  int up[3] = { 0, 0, 0 };
+
+  for (int i = 0; i < 3; i++) n += (k[i] = &c->column[face[i]])->n;
+  for (int step = 0; step < 3; step++) {
+    int a = -1, q, r;
+
+    for (int i = 0; i < 3; i++)
+      if (!up[i] && (a < 0 || face[i] < face[a])) a = i;
+    up[a] = 1;
+    q = (a + 1) % 3, r = (a + 2) % 3;
+    if (k[a]->n && ((k[q]->root == k[a]->root && !(up[q] && k[q]->n)) ||
+                    (k[r]->root == k[a]->root && !(up[r] && k[r]->n)) ||
+                    (k[q]->root == k[r]->root && !(up[q] && k[q]->n) &&
+                     !(up[r] && k[r]->n)))) n--;
+  }
+  return n;
+}
+
+static void count(const struct vg_layer_work *w,
+                  const struct vg_layer_front *front,
+                  struct vg_layer_report *r)
+{
+  const struct vg_columns *c = w->c;
+
+  r->n_column = c->n_column;
+  for (size_t i = 0; i < c->n_column; i++) {
+    r->n_wall_point += i == 0 || c->column[i].root != c->column[i - 1].root;
+    r->n_layer_point += c->column[i].n;
+    r->cause[c->column[i].cause]++;
+    r->squeezed[c->column[i].squeezed]++;
+  }
+  for (size_t f = 0; f < c->n_face; f++) {
+    if (c->face_tri[f] == VG_NO_INDEX) r->n_virtual_face++;
+    else r->n_wall_tri++;
+    r->n_cell += face_cells(c, c->face[f]);
+  }
+  r->n_slide_patch = w->n_slide;
+  for (size_t t = 0; t < front->mesh.n_tri; t++)
+    r->n_slide_tri += front->face[t] == VG_NO_INDEX &&
+                      w->is_slide[front->mesh.tri_patch[t]];
+}
+
+static vg_status columns(struct vg_layer_work *w, struct vg_layer_report *r,
+                         struct vg_error *err)
+{
+  double t = vg_clock();
+  vg_status st;
+
+  VG_TRY(walls(w, err));
+  VG_TRY(vg_topology_build(w->m, w->is_wall, w->n_slide, w->slide,
+                           w->o->fan_angle, w->c, &w->t, err));
+  VG_TRY(arrays(w, err));
+  r->time_topology = vg_clock() - t;
+  t = vg_clock();
+  VG_TRY(vg_directions_first(w, err));
+  r->time_direction = vg_clock() - t;
+  t = vg_clock();
+  VG_TRY(vg_heights_wanted(w, err));
+  r->time_height = vg_clock() - t;
+  t = vg_clock();
+  VG_TRY(vg_directions_smooth(w, err));
+  VG_TRY(vg_directions_scale(w, err));
+  vg_directions_shift(w, NULL);
+  r->time_direction += vg_clock() - t;
+done:
+  return st;
+}
+
+vg_status vg_layers_grow(const struct vg_mesh *surface,
+                         const struct vg_sizing *sizing,
+                         const struct vg_layer_options *options,
+                         struct vg_layers *out, struct vg_layer_report *report,
+                         struct vg_error *err)
+{
+  struct vg_layers l = VG_LAYERS_INIT;
+  struct vg_layer_work w = { .m = surface, .sizing = sizing, .o = options,
+                             .c = &l.columns, .t = VG_TOPOLOGY_INIT };
+  struct vg_layer_report r = { 0 };
+  double start = vg_clock();
+  vg_status st;
+
+  VG_TRY(columns(&w, &r, err));
+  VG_TRY(first_rooms(&w, &r, err));
+  VG_TRY(until_clear(&w, &l.front, &r, err));
+  if (st == VG_BLOCKED) goto done;
+  count(&w, &l.front, &r);
+  VG_TRY(vg_layers_order(surface, &l, err));
+  r.time_total = vg_clock() - start;
+  *report = r;
+  vg_layers_release(out);
+  *out = l;
+  l = (struct vg_layers)VG_LAYERS_INIT;
+done:
+  work_release(&w);
+  vg_layers_release(&l);
+  return st;
+}

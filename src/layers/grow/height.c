@@ -1,0 +1,437 @@
+/* Heights: how many layers, how high, and how much less where room lacks.
+ * Declared in layers/grow/work.h.
+ *
+ * Room is lost to the growth first: a column keeps its first height and its
+ * number of layers and grows more slowly (the cap of its law is lowered).
+ * Only where layers of equal thickness would still be too high are levels
+ * dropped. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "core/geometry/vector.h"
+#include "layers/grow/work.h"
+
+#define GRAIN 2048
+#define EDGE_SWEEPS 3
+#define KEEP_EDGE 0.3      /* of an edge's length at the top, along itself */
+#define LEAN 0.3           /* of a triangle's height that a corner may lean */
+#define SLOPE 1.0          /* of rooms over the wall, where they are limited */
+
+/* Edge of the equilateral triangle with the mean area of the faces. */
+static void edge_body(void *context, size_t first, size_t end, int worker)
+{
+  struct vg_layer_work *w = context;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++) {
+    double area = 0;
+    int n = 0;
+
+    for (uint32_t j = w->t.first[i]; j < w->t.first[i + 1]; j++) {
+      uint32_t tri = w->c->face_tri[w->t.corner[j] / 3];
+      double a[3], b[3], x[3];
+
+      if (tri == VG_NO_INDEX) continue;
+      vg_sub(w->m->point[w->m->tri[tri][1]], w->m->point[w->m->tri[tri][0]],
+             a);
+      vg_sub(w->m->point[w->m->tri[tri][2]], w->m->point[w->m->tri[tri][0]],
+             b);
+      vg_cross(a, b, x);
+      area += 0.5 * vg_norm(x);
+      n++;
+    }
+    w->edge[i] = n ? sqrt(4 / sqrt(3) * area / n) : 0;
+  }
+}
+
+struct relax {
+  const struct vg_layer_work *w;
+  const double *from;
+  double *to;
+};
+
+/* Columns within a fan, which have no face of their own, take the mean. */
+static void even_body(void *context, size_t first, size_t end, int worker)
+{
+  struct relax *r = context;
+  const struct vg_layer_work *w = r->w;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++) {
+    double sum = 0;
+    int n = 0;
+
+    for (uint32_t j = w->t.near_first[i]; j < w->t.near_first[i + 1]; j++)
+      if (r->from[w->t.near[j]] > 0) sum += r->from[w->t.near[j]], n++;
+    if (!n) r->to[i] = r->from[i];
+    else if (r->from[i] > 0) r->to[i] = 0.5 * (r->from[i] + sum / n);
+    else r->to[i] = sum / n;
+  }
+}
+
+static vg_status local_edges(struct vg_layer_work *w, struct vg_error *err)
+{
+  size_t n = w->c->n_column;
+  double *other = vg_alloc(n, sizeof *other);
+
+  if (!other) return vg_fail_memory(err, "the layers");
+  vg_parallel_for(w->o->threads, n, GRAIN, edge_body, w);
+  for (int s = 0; s < EDGE_SWEEPS; s++) {
+    struct relax r = { w, w->edge, other };
+
+    vg_parallel_for(w->o->threads, n, GRAIN, even_body, &r);
+    other = w->edge;
+    w->edge = r.to;
+  }
+  free(other);
+  return VG_OK;
+}
+
+/* Of the patches that meet at a point, the one with the thinnest first layer
+ * rules, for all columns of a fan, so that they rise together. */
+static uint32_t patch_of(const struct vg_layer_work *w, uint32_t i)
+{
+  uint32_t first, end, best = VG_NO_INDEX;
+
+  vg_root_range(w->c, i, &first, &end);
+  for (uint32_t j = w->t.first[first]; j < w->t.first[end]; j++) {
+    uint32_t tri = w->c->face_tri[w->t.corner[j] / 3], p;
+
+    if (tri == VG_NO_INDEX) continue;
+    p = w->m->tri_patch[tri];
+    if (best == VG_NO_INDEX || w->o->patch[p].law.delta1 <
+        w->o->patch[best].law.delta1 || (w->o->patch[p].law.delta1 ==
+        w->o->patch[best].law.delta1 && p < best)) best = p;
+  }
+  return best;
+}
+
+/* Levels until the next would be thicker than the local cell. */
+static int levels(const struct vg_layer_work *w, uint32_t i,
+                  const struct vg_layer_request *r, const struct vg_law *law)
+{
+  const struct vg_column *c = &w->c->column[i];
+  int max = r->n_max > 0 && r->n_max < VG_LEVELS_MAX ? r->n_max
+                                                     : VG_LEVELS_MAX;
+  double d[VG_LEVELS_MAX + 1], end = w->o->end * w->edge[i];
+  int n = 0;
+
+  vg_law_heights(law, INFINITY, max, d);
+  while (n < max && (r->n_exact || d[n + 1] - d[n] <= end) &&
+         !(r->total > 0 && d[n + 1] > r->total)) n++;
+  for (; n > 0 && !r->n_exact; n--) {
+    double x[3];
+
+    for (int k = 0; k < 3; k++)
+      x[k] = w->m->point[c->root][k] + c->dir[k] * d[n];
+    if (d[n] - d[n - 1] <= w->o->end * vg_sizing_at(w->sizing, x)) break;
+  }
+  return n;
+}
+
+static void wanted_body(void *context, size_t first, size_t end, int worker)
+{
+  struct vg_layer_work *w = context;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++) {
+    struct vg_column *c = &w->c->column[i];
+    uint32_t p = patch_of(w, (uint32_t)i);
+    struct vg_law *law;
+
+    c->law = w->o->law_at ? (uint32_t)i : p;
+    law = &w->c->law[c->law];
+    if (w->o->law_at) {
+      *law = w->o->patch[p].law;
+      w->o->law_at(w->o->law_user, w->m->point[c->root], law);
+    }
+    c->cap = law->cap;
+    c->bent = SIZE_MAX;
+    c->n_wanted = (uint16_t)levels(w, (uint32_t)i, &w->o->patch[p], law);
+    w->by_size[i] = !w->o->patch[p].n_exact &&
+                    c->n_wanted != w->o->patch[p].n_max;
+  }
+}
+
+vg_status vg_columns_spread(struct vg_layer_work *w,
+                            int (*change)(struct vg_layer_work *, void *,
+                                          uint32_t, uint32_t),
+                            void *context, struct vg_error *err)
+{
+  uint32_t n = (uint32_t)w->c->n_column, n_now = n, n_next;
+  uint32_t *now = vg_alloc(n, sizeof *now), *next = vg_alloc(n, sizeof *next);
+  uint8_t *queued = vg_calloc(n, 1);
+
+  for (uint32_t i = 0; now && i < n; i++) now[i] = i;
+  for (; now && next && queued && n_now; n_now = n_next) {
+    uint32_t *swap = now;
+
+    n_next = 0;
+    for (uint32_t k = 0; k < n_now; k++) queued[now[k]] = 0;
+    for (uint32_t k = 0; k < n_now; k++) {
+      uint32_t i = now[k];
+
+      for (uint32_t j = w->t.near_first[i]; j < w->t.near_first[i + 1]; j++) {
+        uint32_t o = w->t.near[j];
+
+        if (change(w, context, i, j) && !queued[o])
+          queued[o] = 1, next[n_next++] = o;
+      }
+    }
+    now = next;
+    next = swap;
+  }
+  n_now = now && next && queued;
+  free(now);
+  free(next);
+  free(queued);
+  return n_now ? VG_OK : vg_fail_memory(err, "the layers");
+}
+
+/* Neighbours differ by one level at most, columns of one root by none. */
+static int lower_wanted(struct vg_layer_work *w, void *unused, uint32_t i,
+                        uint32_t j)
+{
+  uint32_t o = w->t.near[j];
+  struct vg_column *a = &w->c->column[i], *b = &w->c->column[o];
+  int most = a->n_wanted + (a->root != b->root);
+
+  (void)unused;
+  if (b->n_wanted <= most) return 0;
+  b->n_wanted = (uint16_t)most;
+  w->by_size[o] = w->by_size[i];
+  return 1;
+}
+
+static int lower_level(struct vg_layer_work *w, void *unused, uint32_t i,
+                        uint32_t j)
+{
+  uint32_t o = w->t.near[j];
+  struct vg_column *a = &w->c->column[i], *b = &w->c->column[o];
+  int most = a->n + (a->root != b->root);
+
+  (void)unused;
+  if (b->n <= most) return 0;
+  b->n = (uint16_t)most;
+  b->cause = a->cause;
+  return 1;
+}
+
+static int lower_room(struct vg_layer_work *w, void *unused, uint32_t i,
+                        uint32_t j)
+{
+  uint32_t o = w->t.near[j];
+  double limit = w->room[i] + w->slack[j];
+
+  (void)unused;
+  if (w->why[i] == VG_CAUSE_NONE) return 0;
+  if (!(w->room[o] > limit)) return 0;
+  w->room[o] = limit;
+  w->why[o] = w->why[i];
+  return 1;
+}
+
+vg_status vg_heights_wanted(struct vg_layer_work *w, struct vg_error *err)
+{
+  struct vg_columns *c = w->c;
+  vg_status st;
+
+  c->n_law = w->o->law_at ? c->n_column : w->m->n_patch;
+  c->law = vg_alloc(c->n_law, sizeof *c->law);
+  if (!c->law) return vg_fail_memory(err, "the layers");
+  for (size_t p = 0; !w->o->law_at && p < c->n_law; p++)
+    c->law[p] = w->o->patch[p].law;
+  VG_TRY(local_edges(w, err));
+  vg_parallel_for(w->o->threads, c->n_column, GRAIN, wanted_body, w);
+  VG_TRY(vg_columns_spread(w, lower_wanted, NULL, err));
+  for (size_t i = 0; i < c->n_column; i++) {
+    double d[VG_LEVELS_MAX + 1];
+
+    vg_law_heights(&c->law[c->column[i].law], INFINITY, c->column[i].n_wanted,
+                   d);
+    w->wanted[i] = w->room[i] = d[c->column[i].n_wanted];
+    w->why[i] = VG_CAUSE_NONE;
+    w->settled[i] = -1;
+  }
+done:
+  return st;
+}
+
+void vg_heights_lower(struct vg_layer_work *w, size_t i, double limit,
+                      enum vg_layer_cause why)
+{
+  if (!(limit < w->room[i])) return;
+  w->room[i] = limit > 0 ? limit : 0;
+  w->why[i] = (uint8_t)why;
+}
+
+/* In a face whose columns lean, one that is higher by d moves its corner by
+ * d times the leaning part; across the longest edge that must stay below
+ * LEAN of the height of the triangle. */
+static double face_slack(const struct vg_layer_work *w, uint32_t f)
+{
+  const uint32_t *c = w->c->face[f];
+  const double *x[3], *n = w->normal[f];
+  double lean[3] = { 0, 0, 0 }, longest[3] = { 0, 0, 0 };
+  double e[3], across[3], area[3];
+  double most = 0, side;
+
+  for (int k = 0; k < 3; k++) x[k] = w->m->point[w->c->column[c[k]].root];
+  for (int k = 0; k < 3; k++) {
+    double l;
+
+    vg_sub(x[(k + 1) % 3], x[k], e);
+    l = vg_dot(e, e);
+    if (l > most) most = l, memcpy(longest, e, sizeof e);
+    for (int i = 0; i < 3; i++) lean[i] += w->c->column[c[k]].dir[i] / 3;
+  }
+  vg_sub(x[1], x[0], e);
+  vg_sub(x[2], x[0], across);
+  vg_cross(e, across, area);
+  vg_cross(n, longest, across);
+  side = fabs(vg_dot(lean, across));    /* times the longest edge */
+  return side > 0 ? LEAN * vg_norm(area) / side : INFINITY;
+}
+
+static void slack_body(void *context, size_t first, size_t end, int worker)
+{
+  struct vg_layer_work *w = context;
+
+  (void)worker;
+  for (uint32_t i = (uint32_t)first; i < end; i++) {
+    for (uint32_t j = w->t.near_first[i]; j < w->t.near_first[i + 1]; j++)
+      w->slack[j] = SLOPE * vg_root_distance(w, i, w->t.near[j]);
+    for (uint32_t k = w->t.first[i]; k < w->t.first[i + 1]; k++) {
+      uint32_t f = w->t.corner[k] / 3;
+      double s;
+
+      if (w->c->face_tri[f] == VG_NO_INDEX) continue;
+      s = face_slack(w, f);
+      for (uint32_t j = w->t.near_first[i]; j < w->t.near_first[i + 1]; j++)
+        if ((w->t.near[j] == w->c->face[f][0] ||
+             w->t.near[j] == w->c->face[f][1] ||
+             w->t.near[j] == w->c->face[f][2]) && s < w->slack[j])
+          w->slack[j] = s;
+    }
+  }
+}
+
+vg_status vg_heights_slack(struct vg_layer_work *w, struct vg_error *err)
+{
+  w->slack = vg_alloc(w->t.near_first[w->c->n_column], sizeof *w->slack);
+  if (!w->slack) return vg_fail_memory(err, "the layers");
+  vg_parallel_for(w->o->threads, w->c->n_column, GRAIN, slack_body, w);
+  return VG_OK;
+}
+
+/* Ratio by which steps of height h_i, h_j along the dirs of columns i and j
+ * change the edge between their roots, along itself, less 1. 0 for columns of
+ * one root. */
+static double edge_change(const struct vg_layer_work *w, uint32_t i,
+                          uint32_t j, double h_i, double h_j)
+{
+  const struct vg_column *a = &w->c->column[i], *b = &w->c->column[j];
+  double e[3], l, sum = 0;
+
+  vg_sub(w->m->point[b->root], w->m->point[a->root], e);
+  l = vg_dot(e, e);
+  if (!(l > 0)) return 0;
+  for (int k = 0; k < 3; k++)
+    sum += (h_j * b->dir[k] - h_i * a->dir[k]) * e[k];
+  return sum / l;
+}
+
+struct corner {
+  const struct vg_layer_work *w;
+  double *limit;
+};
+
+/* Where the edge to a neighbour would shrink to less than KEEP_EDGE, both
+ * heights are scaled alike. */
+static void corner_body(void *context, size_t first, size_t end, int worker)
+{
+  struct corner *c = context;
+  const struct vg_layer_work *w = c->w;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++) {
+    c->limit[i] = INFINITY;
+    for (uint32_t j = w->t.near_first[i]; j < w->t.near_first[i + 1]; j++) {
+      uint32_t o = w->t.near[j];
+      double s = edge_change(w, (uint32_t)i, o, w->room[i], w->room[o]);
+      double h = (1 - KEEP_EDGE) / -s * w->room[i];
+
+      if (1 + s < KEEP_EDGE && h < c->limit[i]) c->limit[i] = h;
+    }
+  }
+}
+
+vg_status vg_heights_corner(struct vg_layer_work *w, struct vg_error *err)
+{
+  struct corner c = { w, vg_alloc(w->c->n_column, sizeof (double)) };
+
+  if (!c.limit) return vg_fail_memory(err, "the layers");
+  vg_parallel_for(w->o->threads, w->c->n_column, GRAIN, corner_body, &c);
+  for (size_t i = 0; i < w->c->n_column; i++)
+    vg_heights_lower(w, i, c.limit[i], VG_CAUSE_CORNER);
+  free(c.limit);
+  return VG_OK;
+}
+
+/* Growth and levels that fit into the room of a column. */
+static void fit(struct vg_layer_work *w, size_t i)
+{
+  struct vg_column *c = &w->c->column[i];
+  const struct vg_law *law = &w->c->law[c->law];
+
+  w->settled[i] = w->room[i];
+  w->own[i] = c->n_wanted;
+  c->cap = law->cap;
+  if (w->room[i] >= w->wanted[i]) return;
+  c->cap = vg_law_squeeze(law, c->n_wanted, w->room[i]);
+  if (c->cap > 0) return;
+  c->cap = 1;
+  w->own[i] = (uint16_t)(w->room[i] / law->delta1);
+}
+
+static void settle_body(void *context, size_t first, size_t end, int worker)
+{
+  struct vg_layer_work *w = context;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++) {
+    struct vg_column *c = &w->c->column[i];
+
+    if (w->room[i] != w->settled[i]) fit(w, i);
+    c->n = w->own[i];
+    c->squeezed = w->room[i] < w->wanted[i] ? w->why[i] : VG_CAUSE_NONE;
+    c->cause = c->n < c->n_wanted ? w->why[i]
+             : w->by_size[i] ? VG_CAUSE_SIZE : VG_CAUSE_NONE;
+  }
+}
+
+vg_status vg_heights_settle(struct vg_layer_work *w, uint8_t *moved,
+                            struct vg_error *err)
+{
+  size_t n = w->c->n_column;
+  struct { double cap; uint16_t n; } *before = vg_alloc(n, sizeof *before);
+  vg_status st = VG_OK;
+
+  if (!before) return vg_fail_memory(err, "the layers");
+  for (size_t i = 0; i < n; i++) {
+    before[i].cap = w->c->column[i].cap;
+    before[i].n = w->c->column[i].n;
+  }
+  VG_TRY(vg_columns_spread(w, lower_room, NULL, err));
+  vg_parallel_for(w->o->threads, n, GRAIN, settle_body, w);
+  VG_TRY(vg_columns_spread(w, lower_level, NULL, err));
+  for (size_t i = 0; moved && i < n; i++)
+    moved[i] = before[i].cap != w->c->column[i].cap ||
+               before[i].n != w->c->column[i].n;
+done:
+  free(before);
+  return st;
+}

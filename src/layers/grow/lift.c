@@ -1,0 +1,233 @@
+/* Lengths of the columns, first points, and columns made more alike.
+ * Declared in layers/grow/work.h. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "core/geometry/vector.h"
+#include "layers/grow/direct.h"
+
+#define VIEW_LEAST 0.2     /* share of the first view that is left where cells
+                              would be lost otherwise */
+#define CAP_SWEEPS 8       /* caps lie in chains */
+
+/* How far a small step of length 1 along v gets away from the wall: from the
+ * triangles at the root, whichever columns of a fan they belong to. */
+static double gain(const struct vg_layer_work *w, uint32_t i,
+                   const double v[3])
+{
+  uint32_t first, end;
+  double least = 1;
+
+  vg_root_range(w->c, i, &first, &end);
+  for (uint32_t j = w->t.first[first]; j < w->t.first[end]; j++) {
+    uint32_t f = w->t.corner[j] / 3, k = w->t.corner[j] % 3;
+    uint32_t tri = w->c->face_tri[f], *t;
+    double d;
+
+    if (tri == VG_NO_INDEX) continue;
+    t = w->m->tri[tri];
+    d = vg_off_corner(w->m->point[t[k]], w->m->point[t[(k + 1) % 3]],
+                      w->m->point[t[(k + 2) % 3]], w->normal[f], v);
+    if (d < least) least = d;
+  }
+  return least;
+}
+
+static void scale_body(void *context, size_t first, size_t end, int worker)
+{
+  struct vg_layer_work *w = ((struct vg_turn *)context)->w;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++) {
+    double d = gain(w, (uint32_t)i, w->c->column[i].dir);
+    double length = fmin(1 / d, VG_FACTOR_WHOLE);
+
+    if (d * VG_FACTOR_MAX < 1) w->view[i] = 0;
+    else
+      for (int k = 0; k < 3; k++) w->c->column[i].dir[k] *= length;
+  }
+}
+
+static int same_slides(const struct vg_column *a, const struct vg_column *b)
+{
+  return a->slide[0] == b->slide[0] && a->slide[1] == b->slide[1];
+}
+
+/* Mean over the caps of which i is the apex, of what the ends of the edges
+ * say: a flat triangle stays flat, instead of turning over. */
+static void follow(const struct vg_turn *l, uint32_t i, double (*normal)[3])
+{
+  const struct vg_layer_work *w = l->w;
+  double sum[3] = { 0, 0, 0 };
+  int n = 0;
+
+  memcpy(l->to[i], l->from[i], sizeof *l->to);
+  for (uint32_t j = w->t.first[i]; j < w->t.first[i + 1]; j++) {
+    uint32_t f = w->t.corner[j] / 3, k = w->t.corner[j] % 3;
+    uint32_t a = w->c->face[f][(k + 1) % 3], b = w->c->face[f][(k + 2) % 3];
+    const double *p = w->m->point[w->c->column[a].root];
+    double e[3], x[3], t;
+
+    if ((w->cap[f] & 3) != 1 + k || w->view[a] == 0 || w->view[b] == 0)
+      continue;
+    if (w->c->column[i].slide[0] != VG_NO_INDEX &&
+        !(same_slides(&w->c->column[i], &w->c->column[a]) &&
+          same_slides(&w->c->column[i], &w->c->column[b]))) continue;
+    vg_sub(w->m->point[w->c->column[b].root], p, e);
+    vg_sub(w->m->point[w->c->column[i].root], p, x);
+    t = vg_dot(x, e) / vg_dot(e, e);
+    for (int c = 0; c < 3; c++)
+      sum[c] += (1 - t) * l->from[a][c] + t * l->from[b][c];
+    n++;
+  }
+  if (!n) return;
+  for (int c = 0; c < 3; c++) sum[c] /= n;
+  if (vg_least_view(vg_face_normals(w, i, normal), normal, sum) >=
+      VG_VIEW_KEPT * w->view[i] * vg_norm(sum))
+    memcpy(l->to[i], sum, sizeof sum);
+}
+
+static void follow_body(void *context, size_t first, size_t end, int worker)
+{
+  struct vg_turn *l = context;
+
+  for (size_t k = first; k < end; k++)
+    follow(l, l->list[k], l->scratch + (size_t)worker * l->w->max_valence);
+}
+
+/* Columns at the apex of a cap that may follow, by rising number; their
+ * number. list: [n_column]. */
+static size_t apices(const struct vg_layer_work *w, uint32_t *list)
+{
+  size_t n = 0;
+
+  for (uint32_t i = 0; i < w->c->n_column; i++) {
+    int is_apex = 0;
+
+    if (w->view[i] == 0 || vg_shares_root(w->c, i)) continue;
+    for (uint32_t j = w->t.first[i]; j < w->t.first[i + 1] && !is_apex; j++)
+      is_apex = (w->cap[w->t.corner[j] / 3] & 3) == 1 + w->t.corner[j] % 3;
+    if (is_apex) list[n++] = i;
+  }
+  return n;
+}
+
+struct shift {
+  struct vg_layer_work *w;
+  const uint8_t *which;
+};
+
+/* Along dir, or, where that leaves the first point no room, along the
+ * direction from before smoothing. */
+static void shift_body(void *context, size_t first, size_t end, int worker)
+{
+  const struct shift *s = context;
+  struct vg_layer_work *w = s->w;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++) {
+    struct vg_column *c = &w->c->column[i];
+    double v[3], delta1 = w->c->law[c->law].delta1, d;
+
+    if (s->which && !s->which[i]) continue;
+    memset(c->shift, 0, sizeof c->shift);
+    if (w->view[i] == 0) continue;
+    memcpy(v, c->dir, sizeof v);
+    vg_unit(v);
+    d = gain(w, (uint32_t)i, v);
+    if (d * VG_FACTOR_MAX < 1) {
+      memcpy(v, w->root_dir[i], sizeof v);
+      d = gain(w, (uint32_t)i, v);
+    }
+    if (d * VG_FACTOR_MAX < 1) w->view[i] = 0;
+    else if (fabs(d * vg_norm(c->dir) - 1) > 1e-9)
+      for (int k = 0; k < 3; k++)
+        c->shift[k] = delta1 * (v[k] / d - c->dir[k]);
+  }
+}
+
+void vg_directions_shift(struct vg_layer_work *w, const uint8_t *which)
+{
+  struct shift s = { w, which };
+
+  vg_parallel_for(w->o->threads, w->c->n_column, VG_GRAIN, shift_body, &s);
+}
+
+vg_status vg_directions_scale(struct vg_layer_work *w, struct vg_error *err)
+{
+  struct vg_turn l = { .w = w };
+  uint32_t *list = vg_alloc(w->c->n_column, sizeof *list);
+  size_t n;
+  vg_status st;
+
+  if (!list) return vg_fail_memory(err, "the directions");
+  vg_parallel_for(w->o->threads, w->c->n_column, VG_GRAIN, scale_body, &l);
+  l.list = list;
+  n = apices(w, list);
+  VG_TRY(vg_turn_scratch(w, &l, err));
+  VG_TRY(vg_turn_new(w, &l, err));
+  for (int s = 0; s < CAP_SWEEPS; s++) {
+    vg_parallel_for(w->o->threads, n, VG_GRAIN, follow_body, &l);
+    vg_turn_swap(&l);
+  }
+  for (size_t i = 0; i < w->c->n_column; i++)
+    memcpy(w->c->column[i].dir, l.from[i], sizeof *l.from);
+done:
+  vg_turn_free(&l);
+  free(list);
+  return st;
+}
+
+/* Half of the way to the mean over the faces to turn, or less. */
+static int even(struct vg_layer_work *w, size_t i, const uint8_t *turn,
+                double (*from)[3], double (*n)[3], double v[3])
+{
+  double slide[2][3], mean[3] = { 0, 0, 0 }, step = 0.5;
+  int n_slide = vg_slide_normals(w, i, slide), n_mean = 0, k;
+
+  for (uint32_t j = w->t.first[i]; j < w->t.first[i + 1]; j++) {
+    uint32_t f = w->t.corner[j] / 3;
+
+    for (int c = 0; turn[f] && c < 3; c++) {
+      for (int x = 0; x < 3; x++) mean[x] += from[w->c->face[f][c]][x];
+      n_mean++;
+    }
+  }
+  if (!n_mean || w->view[i] == 0 || vg_shares_root(w->c, i)) return 0;
+  k = vg_face_normals(w, i, n);
+  for (int try = 0; try < 4; try++, step *= 0.5) {
+    for (int x = 0; x < 3; x++)
+      v[x] = (1 - step) * from[i][x] + step * mean[x] / n_mean;
+    vg_constrain(n_slide, slide, v);
+    if (vg_least_view(k, n, v) >= VIEW_LEAST * w->view[i] * vg_norm(v))
+      return 1;
+  }
+  return 0;
+}
+
+vg_status vg_directions_even(struct vg_layer_work *w, const uint8_t *turn,
+                             uint8_t *turned, struct vg_error *err)
+{
+  struct vg_turn l = { 0 };
+  vg_status st;
+
+  VG_TRY(vg_turn_scratch(w, &l, err));
+  VG_TRY(vg_turn_new(w, &l, err));
+  for (size_t i = 0; i < w->c->n_column; i++)
+    if (even(w, i, turn, l.from, l.scratch, l.to[i])) {
+      memcpy(w->c->column[i].dir, l.to[i], sizeof *l.to);
+      turned[i] = 1;
+    }
+  vg_directions_shift(w, turned);
+  for (size_t i = 0; i < w->c->n_column; i++)
+    if (w->view[i] == 0 && w->room[i] > 0) {
+      vg_heights_lower(w, i, 0, VG_CAUSE_NO_VIEW);
+      turned[i] = 1;
+    }
+done:
+  vg_turn_free(&l);
+  return st;
+}

@@ -1,0 +1,301 @@
+/* Fields over the wall: levels and distances, measured on points.
+ *
+ * The distance of a point from the wall is that to triangles near its root:
+ * for the first level those at the root; for the top the walk goes on from
+ * the nearest triangle to those around it until none is nearer, since in a
+ * concave corner the foot of a top lies several edges away from its root. */
+#include "layers/measure/measure.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "core/geometry/vector.h"
+
+enum { GRAIN = 512 };       /* wall points per chunk */
+
+struct fields_job {
+  const struct vg_mesh *surface;
+  const struct vg_columns *columns;
+  size_t *tri_first;        /* [surface->n_point + 1] into tri[] */
+  uint32_t *tri;            /* wall triangles at each point, rising */
+  size_t *column_first;     /* [w->n + 1] into columns->column */
+  struct vg_wall_fields *w;
+};
+
+struct nearest {
+  double d2;
+  uint32_t tri;
+};
+
+void vg_wall_fields_release(struct vg_wall_fields *w)
+{
+  free(w->point);
+  free(w->level);
+  free(w->wanted);
+  free(w->first);
+  free(w->asked);
+  free(w->total);
+  free(w->growth);
+  free(w->cause);
+  free(w->squeezed);
+  memset(w, 0, sizeof *w);
+}
+
+/* Square of |p - t u|. */
+static double off_line2(const double p[3], double t, const double u[3])
+{
+  double q[3] = { p[0] - t * u[0], p[1] - t * u[1], p[2] - t * u[2] };
+
+  return vg_dot(q, q);
+}
+
+/* Square of the distance of x from triangle a b c by the region of the plane
+ * that its foot lies in (Ericson, Real-Time Collision Detection, 5.1.5). Most
+ * accurate where x is close to a: all is relative to a. */
+static double to_triangle2(const double x[3], const double a[3],
+                           const double b[3], const double c[3])
+{
+  double u[3], v[3], p[3], q[3], r[3], n[3];
+  double d1, d2, d3, d4, d5, d6, va, vb, vc, height;
+
+  vg_sub(b, a, u);
+  vg_sub(c, a, v);
+  vg_sub(x, a, p);
+  d1 = vg_dot(u, p);
+  d2 = vg_dot(v, p);
+  if (d1 <= 0 && d2 <= 0) return vg_dot(p, p);
+  vg_sub(p, u, q);
+  d3 = vg_dot(u, q);
+  d4 = vg_dot(v, q);
+  if (d3 >= 0 && d4 <= d3) return vg_dot(q, q);
+  vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return off_line2(p, d1 / (d1 - d3), u);
+  vg_sub(p, v, r);
+  d5 = vg_dot(u, r);
+  d6 = vg_dot(v, r);
+  if (d6 >= 0 && d5 <= d6) return vg_dot(r, r);
+  vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return off_line2(p, d2 / (d2 - d6), v);
+  va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 >= d3 && d5 >= d6) {
+    double w[3];
+
+    vg_sub(v, u, w);
+    return off_line2(q, (d4 - d3) / (d4 - d3 + d5 - d6), w);
+  }
+  vg_cross(u, v, n);
+  height = vg_dot(n, p);
+  return height * height / vg_dot(n, n);
+}
+
+/* Take the wall triangles at point `at` into account. */
+static void scan(const struct fields_job *j, uint32_t at, const double x[3],
+                 struct nearest *best)
+{
+  const struct vg_mesh *m = j->surface;
+
+  for (size_t i = j->tri_first[at]; i < j->tri_first[at + 1]; i++) {
+    const uint32_t *t = m->tri[j->tri[i]];
+    int k = t[0] == at ? 0 : t[1] == at ? 1 : 2;
+    double d2 = to_triangle2(x, m->point[t[k]], m->point[t[(k + 1) % 3]],
+                             m->point[t[(k + 2) % 3]]);
+
+    if (d2 >= best->d2) continue;
+    best->d2 = d2;
+    best->tri = j->tri[i];
+  }
+}
+
+static double distance_at(const struct fields_job *j, uint32_t root,
+                          const double x[3])
+{
+  struct nearest best = { INFINITY, VG_NO_INDEX };
+
+  scan(j, root, x, &best);
+  return best.tri == VG_NO_INDEX ? 0 : sqrt(best.d2);
+}
+
+/* Each turn comes nearer or is the last. */
+static double distance_near(const struct fields_job *j, uint32_t root,
+                            const double x[3])
+{
+  struct nearest best = { INFINITY, VG_NO_INDEX };
+  uint32_t done[3] = { root, root, root };
+  double before = INFINITY;
+
+  scan(j, root, x, &best);
+  while (best.d2 < before) {
+    const uint32_t *t = j->surface->tri[best.tri];
+    uint32_t corner[3] = { t[0], t[1], t[2] };
+
+    before = best.d2;
+    for (int k = 0; k < 3; k++)
+      if (corner[k] != done[0] && corner[k] != done[1] && corner[k] != done[2])
+        scan(j, corner[k], x, &best);
+    memcpy(done, corner, sizeof done);
+  }
+  return best.tri == VG_NO_INDEX ? 0 : sqrt(best.d2);
+}
+
+/* Largest ratio of neighbouring layers of a column, 1 for a single one. */
+static double growth_of(const double (*x)[3], int n)
+{
+  double before = 0, most = 0;
+
+  for (int l = 1; l <= n; l++) {
+    double e[3], now;
+
+    vg_sub(x[l], x[l - 1], e);
+    now = vg_dot(e, e);
+    if (l > 1 && now > most * before) most = now / before;
+    before = now;
+  }
+  return n > 1 ? sqrt(most) : 1;
+}
+
+static void measure_column(const struct fields_job *j, size_t c, size_t i)
+{
+  const struct vg_column *col = &j->columns->column[c];
+  struct vg_wall_fields *w = j->w;
+  double d[VG_LEVELS_MAX + 1], x[VG_LEVELS_MAX + 1][3];
+  double asked = j->columns->law[col->law].delta1, first, total, growth;
+
+  if (col->n < w->level[i]) w->level[i] = col->n;
+  if (col->n_wanted < w->wanted[i]) w->wanted[i] = col->n_wanted;
+  if (!col->n) {
+    w->total[i] = 0;
+    return;
+  }
+  vg_column_points(j->columns, j->surface, c, d, x);
+  first = distance_at(j, col->root, x[1]);
+  total = distance_near(j, col->root, x[col->n]);
+  growth = growth_of((const double (*)[3])x, col->n);
+  if (w->asked[i] == 0 || fabs(first - asked) * w->asked[i] >
+                          fabs(w->first[i] - w->asked[i]) * asked) {
+    w->first[i] = first;
+    w->asked[i] = asked;
+  }
+  if (total < w->total[i]) w->total[i] = total;
+  if (growth > w->growth[i]) w->growth[i] = growth;
+}
+
+/* Columns short of what they wanted go before those that are not; of equals
+ * the one with fewest levels. */
+int vg_column_is_worse(const struct vg_column *a, const struct vg_column *b)
+{
+  int a_short = a->n < a->n_wanted, b_short = b->n < b->n_wanted;
+
+  return a_short != b_short ? a_short : a->n < b->n;
+}
+
+int vg_column_is_tighter(const struct vg_column *a, const struct vg_column *b)
+{
+  int a_tight = a->squeezed != VG_CAUSE_NONE;
+  int b_tight = b->squeezed != VG_CAUSE_NONE;
+
+  return a_tight != b_tight ? a_tight : a_tight && a->cap < b->cap;
+}
+
+static void measure_points(void *context, size_t first, size_t end, int worker)
+{
+  const struct fields_job *j = context;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++) {
+    size_t c = j->column_first[i];
+    const struct vg_column *worst = &j->columns->column[c], *tightest = worst;
+
+    j->w->point[i] = worst->root;
+    j->w->level[i] = j->w->wanted[i] = INT32_MAX;
+    j->w->first[i] = j->w->asked[i] = j->w->growth[i] = 0;
+    j->w->total[i] = INFINITY;
+    for (; c < j->column_first[i + 1]; c++) {
+      const struct vg_column *col = &j->columns->column[c];
+
+      if (vg_column_is_worse(col, worst)) worst = col;
+      if (vg_column_is_tighter(col, tightest)) tightest = col;
+      measure_column(j, c, i);
+    }
+    j->w->cause[i] = worst->cause;
+    j->w->squeezed[i] = tightest->squeezed;
+  }
+}
+
+/* Wall triangles at each point. */
+static vg_status find_triangles(struct fields_job *j, struct vg_error *err)
+{
+  const struct vg_columns *c = j->columns;
+  const struct vg_mesh *m = j->surface;
+  size_t *first = vg_calloc(m->n_point + 2, sizeof *first);
+
+  j->tri_first = first;
+  j->tri = vg_alloc(3 * c->n_face, sizeof *j->tri);
+  if (!first || !j->tri) return vg_fail_memory(err, "triangles at the wall");
+  for (size_t f = 0; f < c->n_face; f++)
+    for (int k = 0; k < 3; k++)
+      if (c->face_tri[f] != VG_NO_INDEX)
+        first[m->tri[c->face_tri[f]][k] + 2]++;
+  for (size_t p = 2; p <= m->n_point + 1; p++) first[p] += first[p - 1];
+  /* Filling moves first[p + 1] to the end of p: the start of p + 1. */
+  for (size_t f = 0; f < c->n_face; f++)
+    for (int k = 0; k < 3; k++)
+      if (c->face_tri[f] != VG_NO_INDEX)
+        j->tri[first[m->tri[c->face_tri[f]][k] + 1]++] = c->face_tri[f];
+  return VG_OK;
+}
+
+/* Wall points and their columns, which are sorted by root. */
+static vg_status find_points(struct fields_job *j, struct vg_error *err)
+{
+  const struct vg_columns *c = j->columns;
+  struct vg_wall_fields *w = j->w;
+
+  j->column_first = vg_alloc(c->n_column + 1, sizeof *j->column_first);
+  if (!j->column_first) return vg_fail_memory(err, "points of the wall");
+  for (size_t i = 0; i < c->n_column; i++) {
+    if (c->column[i].n > VG_LEVELS_MAX)
+      return vg_fail(err, VG_ERR_INPUT, "column %zu has %d levels, more than "
+                     "the %d that are possible", i + 1, c->column[i].n,
+                     VG_LEVELS_MAX);
+    if (!i || c->column[i].root != c->column[i - 1].root)
+      j->column_first[w->n++] = i;
+  }
+  j->column_first[w->n] = c->n_column;
+  w->point = vg_alloc(w->n, sizeof *w->point);
+  w->level = vg_alloc(w->n, sizeof *w->level);
+  w->wanted = vg_alloc(w->n, sizeof *w->wanted);
+  w->first = vg_alloc(w->n, sizeof *w->first);
+  w->asked = vg_alloc(w->n, sizeof *w->asked);
+  w->total = vg_alloc(w->n, sizeof *w->total);
+  w->growth = vg_alloc(w->n, sizeof *w->growth);
+  w->cause = vg_alloc(w->n, sizeof *w->cause);
+  w->squeezed = vg_alloc(w->n, sizeof *w->squeezed);
+  if (!w->point || !w->level || !w->wanted || !w->first || !w->asked ||
+      !w->total || !w->growth || !w->cause || !w->squeezed)
+    return vg_fail_memory(err, "fields over the wall");
+  return VG_OK;
+}
+
+vg_status vg_layers_fields(const struct vg_mesh *surface,
+                           const struct vg_columns *columns, int threads,
+                           struct vg_wall_fields *out, struct vg_error *err)
+{
+  vg_status st = VG_OK;
+  struct vg_wall_fields w = VG_WALL_FIELDS_INIT;
+  struct fields_job j = { .surface = surface, .columns = columns, .w = &w };
+
+  VG_TRY(find_points(&j, err));
+  VG_TRY(find_triangles(&j, err));
+  vg_parallel_for(threads, w.n, GRAIN, measure_points, &j);
+  *out = w;
+  memset(&w, 0, sizeof w);
+done:
+  free(j.tri_first);
+  free(j.tri);
+  free(j.column_first);
+  vg_wall_fields_release(&w);
+  return st;
+}

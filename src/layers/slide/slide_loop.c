@@ -1,0 +1,369 @@
+/* The new boundary of a slide patch: its former one with rims raised to the
+ * tops, and whether it encloses what it should. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/geometry/predicates.h"
+#include "layers/slide/slide_parts.h"
+
+static int compare_key(const void *a, const void *b)
+{
+  const uint64_t p = *(const uint64_t *)a, q = *(const uint64_t *)b;
+
+  return (p > q) - (p < q);
+}
+
+static int has_key(const uint64_t *key, size_t n, uint64_t k)
+{
+  return n && bsearch(&k, key, n, sizeof *key, compare_key) != NULL;
+}
+
+static vg_status add_edge(struct vg_slide_work *w, struct vg_slide_loops *l,
+                          uint32_t a, uint32_t b)
+{
+  if (vg_reserve(&l->edge, &l->cap, l->n + 1, sizeof *l->edge))
+    return vg_fail_memory(w->err, "the boundary of a slide patch");
+  l->edge[l->n][0] = a;
+  l->edge[l->n++][1] = b;
+  return VG_OK;
+}
+
+/* Half-edges of the part's triangles without a partner in it, that neither
+ * columns nor curves replace. */
+static vg_status former_edges(struct vg_slide_work *w, size_t s,
+                              const uint64_t *rim, size_t n_rim,
+                              struct vg_slide_loops *l)
+{
+  for (uint32_t i = w->tri_first[s]; i < w->tri_first[s + 1]; i++)
+    for (int k = 0; k < 3; k++) {
+      const uint32_t *v = w->m->tri[w->tri[i]];
+      const uint32_t a = v[k], b = v[k < 2 ? k + 1 : 0];
+      const uint32_t twin = vg_slide_twin(w, a, b);
+
+      if (twin != VG_NO_INDEX && w->part_of[twin / 3] == s) continue;
+      if (has_key(rim, n_rim, (uint64_t)b << 32 | a)
+          || has_key(w->gone, w->n_gone, vg_slide_key(a, b)))
+        continue;
+      if (add_edge(w, l, a, b)) return VG_ERR_MEMORY;
+    }
+  return VG_OK;
+}
+
+static vg_status new_edges(struct vg_slide_work *w, size_t s,
+                           struct vg_slide_loops *l)
+{
+  for (uint32_t i = w->rim_first[s]; i < w->rim_first[s + 1]; i++) {
+    const uint32_t *r = w->c->rim[w->rim[i]];
+    const uint32_t a = vg_slide_top(w, r[0]), b = vg_slide_top(w, r[1]);
+
+    if (a != b && add_edge(w, l, b, a)) return VG_ERR_MEMORY;
+  }
+  for (size_t i = 0; i < w->n_edge; i++)
+    if (w->edge[i].part == s
+        && add_edge(w, l, w->edge[i].v[0], w->edge[i].v[1]))
+      return VG_ERR_MEMORY;
+  return VG_OK;
+}
+
+static void blame_point(struct vg_slide_work *w, size_t s, uint32_t p,
+                        const char *what)
+{
+  const uint32_t patch = w->part[s].patch;
+  const uint32_t i = vg_slide_column(w, p);
+
+  if (i != VG_NO_INDEX) vg_slide_blame(w, i, patch, w->x[p], what);
+  for (uint32_t r = w->rim_first[s]; i == VG_NO_INDEX
+                                     && r < w->rim_first[s + 1]; r++)
+    for (int k = 0; k < 2; k++) {
+      const uint32_t j = w->c->rim[w->rim[r]][k];
+
+      if (w->c->column[j].root == p)
+        vg_slide_blame(w, j, patch, w->x[p], what);
+    }
+}
+
+static int compare_point(const void *a, const void *b)
+{
+  const uint32_t p = *(const uint32_t *)a, q = *(const uint32_t *)b;
+
+  return (p > q) - (p < q);
+}
+
+/* Each point must be left as often as it is reached. */
+static vg_status check_closed(struct vg_slide_work *w, size_t s,
+                              const struct vg_slide_loops *l, int *is_closed)
+{
+  uint32_t *from = vg_alloc(l->n, sizeof *from);
+  uint32_t *to = vg_alloc(l->n, sizeof *to);
+  const char *what = "columns do not follow the border of the patch";
+
+  *is_closed = 1;
+  if (!from || !to) {
+    free(from);
+    free(to);
+    return vg_fail_memory(w->err, "the boundary of a slide patch");
+  }
+  for (size_t i = 0; i < l->n; i++) {
+    from[i] = l->edge[i][0];
+    to[i] = l->edge[i][1];
+  }
+  qsort(from, l->n, sizeof *from, compare_point);
+  qsort(to, l->n, sizeof *to, compare_point);
+  for (size_t i = 0, j = 0; i < l->n || j < l->n;) {
+    if (i < l->n && j < l->n && from[i] == to[j]) {
+      i++, j++;
+      continue;
+    }
+    *is_closed = 0;
+    if (j == l->n || (i < l->n && from[i] < to[j]))
+      blame_point(w, s, from[i++], what);
+    else
+      blame_point(w, s, to[j++], what);
+  }
+  if (!*is_closed && !w->n_bad) vg_slide_blame_all(w, s, what);
+  free(from);
+  free(to);
+  return VG_OK;
+}
+
+vg_status vg_slide_boundary(struct vg_slide_work *w, size_t s,
+                            struct vg_slide_loops *out)
+{
+  const size_t n_rim = w->rim_first[s + 1] - w->rim_first[s];
+  uint64_t *rim = vg_alloc(n_rim, sizeof *rim);
+  int is_closed = 0;
+  vg_status st = VG_OK;
+
+  out->n = 0;
+  if (!rim) return vg_fail_memory(w->err, "the boundary of a slide patch");
+  for (size_t i = 0; i < n_rim; i++) {
+    const uint32_t *r = w->c->rim[w->rim[w->rim_first[s] + i]];
+
+    rim[i] = (uint64_t)w->c->column[r[0]].root << 32
+             | w->c->column[r[1]].root;
+  }
+  qsort(rim, n_rim, sizeof *rim, compare_key);
+  VG_TRY(former_edges(w, s, rim, n_rim, out));
+  VG_TRY(new_edges(w, s, out));
+  VG_TRY(check_closed(w, s, out, &is_closed));
+  if (!is_closed) out->n = 0;
+done:
+  free(rim);
+  return st;
+}
+
+/* Crossings ---------------------------------------------------------------*/
+
+struct cross {
+  struct vg_slide_work *w;
+  size_t s, n_bad;
+  const struct vg_slide_loops *l;
+  const double (*p)[2];
+  uint32_t edge;            /* compared with those behind it */
+  int n;                    /* corners of the flank at hand */
+  uint32_t rim, corner[4];
+  double q[4][2];
+};
+
+static int sign(double x)
+{
+  return (x > 0) - (x < 0);
+}
+
+static int in_box(const double a[2], const double b[2], const double x[2])
+{
+  for (int k = 0; k < 2; k++)
+    if (x[k] < fmin(a[k], b[k]) || x[k] > fmax(a[k], b[k])) return 0;
+  return 1;
+}
+
+/* Do segments without a common end touch? Exact. */
+static int touch(const double a[2], const double b[2], const double c[2],
+                 const double d[2])
+{
+  const int abc = sign(vg_orient2d(a, b, c)), abd = sign(vg_orient2d(a, b, d));
+  const int cda = sign(vg_orient2d(c, d, a)), cdb = sign(vg_orient2d(c, d, b));
+
+  if (abc * abd < 0 && cda * cdb < 0) return 1;
+  return (!abc && in_box(a, b, c)) || (!abd && in_box(a, b, d))
+         || (!cda && in_box(c, d, a)) || (!cdb && in_box(c, d, b));
+}
+
+/* Do a - b and a - c run the same way? */
+static int overlap(const double a[2], const double b[2], const double c[2])
+{
+  return vg_orient2d(a, b, c) == 0
+         && (b[0] - a[0]) * (c[0] - a[0]) + (b[1] - a[1]) * (c[1] - a[1]) >= 0;
+}
+
+static void visit_edge(void *user, uint32_t j)
+{
+  struct cross *x = user;
+  const uint32_t *e = x->l->edge[x->edge], *f = x->l->edge[j];
+  const double *at[4];
+  int k, is_bad;
+
+  if (j <= x->edge) return;
+  for (k = 0; k < 2; k++) {
+    at[k] = x->p[x->w->local[e[k]]];
+    at[2 + k] = x->p[x->w->local[f[k]]];
+  }
+  if ((e[0] == f[0] && e[1] == f[1]) || (e[0] == f[1] && e[1] == f[0]))
+    is_bad = 1;
+  else if (e[0] == f[0]) is_bad = overlap(at[0], at[1], at[3]);
+  else if (e[0] == f[1]) is_bad = overlap(at[0], at[1], at[2]);
+  else if (e[1] == f[0]) is_bad = overlap(at[1], at[0], at[3]);
+  else if (e[1] == f[1]) is_bad = overlap(at[1], at[0], at[2]);
+  else is_bad = touch(at[0], at[1], at[2], at[3]);
+  if (!is_bad) return;
+  x->n_bad++;
+  for (k = 0; k < 2; k++) {
+    blame_point(x->w, x->s, e[k], "the tops' outline crosses itself");
+    blame_point(x->w, x->s, f[k], "the tops' outline crosses itself");
+  }
+}
+
+static void blame_flank(struct cross *x, const char *what)
+{
+  const uint32_t *r = x->w->c->rim[x->rim];
+
+  x->n_bad++;
+  for (int k = 0; k < 2; k++)
+    vg_slide_blame(x->w, r[k], x->w->part[x->s].patch,
+                   x->w->m->point[x->w->c->column[r[k]].root], what);
+}
+
+/* No point of the boundary may stand within a flank. */
+static void visit_flank(void *user, uint32_t j)
+{
+  struct cross *x = user;
+  const uint32_t v = x->l->edge[j][0];
+  const double *p = x->p[x->w->local[v]];
+
+  for (int i = 0; i < x->n; i++)
+    if (x->corner[i] == v) return;
+  for (int i = 0; i < x->n; i++)
+    if (vg_orient2d(x->q[i], x->q[i + 1 < x->n ? i + 1 : 0], p) < 0) return;
+  blame_flank(x, "a flank runs into another part of the boundary");
+  blame_point(x->w, x->s, v, "a flank runs into another part of the boundary");
+}
+
+/* The point of column i at level 1, in the plane. */
+static void risen(const struct vg_slide_work *w,
+                  const struct vg_slide_frame *f, uint32_t i, double q[2])
+{
+  const struct vg_column *c = &w->c->column[i];
+  const double *root = w->m->point[c->root];
+  double x[3], d[2];
+
+  if (c->bent != SIZE_MAX) {
+    memcpy(x, w->c->path[c->bent + 1], sizeof x);
+  } else {
+    vg_law_heights(&w->c->law[c->law], c->cap, 1, d);
+    for (int k = 0; k < 3; k++) x[k] = root[k] + c->dir[k] * d[1];
+  }
+  vg_slide_to_plane(f, x, q);
+}
+
+/* The flank over a rim, counter-clockwise; 0 corners where it is none. */
+static void set_flank(struct cross *x, const struct vg_slide_frame *f,
+                      uint32_t rim)
+{
+  const struct vg_slide_work *w = x->w;
+  const uint32_t *r = w->c->rim[rim];
+  const uint32_t v[4] = { w->c->column[r[1]].root, w->c->column[r[0]].root,
+                          vg_slide_top(w, r[0]), vg_slide_top(w, r[1]) };
+
+  x->rim = rim;
+  x->n = 0;
+  for (int i = 0; i < 4; i++) {
+    if (x->n && (v[i] == x->corner[x->n - 1] || v[i] == x->corner[0]))
+      continue;
+    x->corner[x->n] = v[i];
+    vg_slide_to_plane(f, w->x[v[i]], x->q[x->n++]);
+  }
+  if (x->n < 3) x->n = 0;
+}
+
+static int is_convex(const struct cross *x)
+{
+  for (int i = 0; i < x->n; i++)
+    if (!(vg_orient2d(x->q[i], x->q[(i + 1) % x->n], x->q[(i + 2) % x->n])
+          > 0))
+      return 0;
+  return 1;
+}
+
+/* Which columns of a flank that folds leave the patch at once? */
+static void give_up(struct cross *x, const struct vg_slide_frame *f)
+{
+  const struct vg_slide_work *w = x->w;
+  const uint32_t *r = w->c->rim[x->rim];
+  const uint32_t a = w->c->column[r[0]].root, b = w->c->column[r[1]].root;
+  double pa[2], pb[2], q[2];
+
+  vg_slide_to_plane(f, w->x[a], pa);
+  vg_slide_to_plane(f, w->x[b], pb);
+  for (int k = 0; k < 2 && a != b; k++) {
+    if (!w->bad[r[k]]) continue;
+    risen(w, f, r[k], q);
+    if (!(vg_orient2d(pb, pa, q) > 0)) w->bad[r[k]] = 2;
+  }
+}
+
+static void box_of(size_t n, const double (*q)[2], struct vg_box2 *box)
+{
+  for (int k = 0; k < 2; k++) {
+    box->lo[k] = box->hi[k] = q[0][k];
+    for (size_t i = 1; i < n; i++) {
+      box->lo[k] = fmin(box->lo[k], q[i][k]);
+      box->hi[k] = fmax(box->hi[k], q[i][k]);
+    }
+  }
+}
+
+vg_status vg_slide_cross(struct vg_slide_work *w, size_t s,
+                         const struct vg_slide_frame *frame,
+                         const struct vg_slide_loops *loops,
+                         const double (*p)[2], size_t *n_bad)
+{
+  struct cross x = { .w = w, .s = s, .l = loops, .p = p };
+  struct vg_box2 *box = vg_alloc(loops->n, sizeof *box), b;
+  struct vg_tree2 tree = VG_TREE2_INIT;
+  vg_status st = VG_OK;
+
+  *n_bad = 0;
+  for (size_t i = 0; box && i < loops->n; i++) {
+    const double *a = p[w->local[loops->edge[i][0]]];
+    const double *c = p[w->local[loops->edge[i][1]]];
+    const double q[2][2] = { { a[0], a[1] }, { c[0], c[1] } };
+
+    box_of(2, q, &box[i]);
+  }
+  if (!box || vg_tree2_build(&tree, loops->n, box)) {
+    st = vg_fail_memory(w->err, "the boundary of a slide patch");
+    goto done;
+  }
+  for (size_t i = 0; i < loops->n; i++) {
+    x.edge = (uint32_t)i;
+    vg_tree2_query(&tree, &box[i], visit_edge, &x);
+  }
+  for (uint32_t i = w->rim_first[s]; i < w->rim_first[s + 1]; i++) {
+    set_flank(&x, frame, w->rim[i]);
+    if (!x.n) continue;
+    if (!is_convex(&x)) {
+      blame_flank(&x, "a flank folds over");
+      give_up(&x, frame);
+      continue;
+    }
+    box_of((size_t)x.n, (const double (*)[2])x.q, &b);
+    vg_tree2_query(&tree, &b, visit_flank, &x);
+  }
+  *n_bad = x.n_bad;
+done:
+  vg_tree2_release(&tree);
+  free(box);
+  return st;
+}

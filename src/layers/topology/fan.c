@@ -1,0 +1,390 @@
+#include "layers/topology/fan.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/geometry/predicates.h"
+#include "core/geometry/vector.h"
+#include "layers/topology/gram.h"
+
+/* As in direct.c: where all faces are seen this well the mean normal is the
+ * direction, elsewhere the most normal one. */
+#define LEAST_CLEAR 0.3    /* of a step, that it leads away from the wall */
+#define SMOOTH_WALL 0.95
+#define LEAST_VIEW 0.1        /* cosine between a sector's column and faces */
+
+struct build {
+  const struct vg_wall *w;
+  size_t n_slide;
+  const struct vg_slide *slide;
+  struct vg_fans *f;
+  double cos_fan, cos_half; /* of the fan angle and of half of it */
+  double (*normal)[3];      /* [n_face] unit; 0: a face without area */
+  uint8_t *ridge;           /* [3 * n_face] */
+  uint8_t *n_ridge;         /* [n_point] from the point, 255 for more */
+  double (*ring)[3];        /* normals around one point, sector by sector */
+  size_t cap_ring, cap_chain, cap_fan, cap_preset;
+};
+
+void vg_fans_release(struct vg_fans *f)
+{
+  free(f->first);
+  free(f->at);
+  free(f->chain_of);
+  free(f->chain);
+  free(f->fan);
+  free(f->preset);
+  free(f->face);
+  free(f->rim);
+  free(f->rim_patch);
+  memset(f, 0, sizeof *f);
+}
+
+/* Cosine of an angle in degrees, 0 to 180, the same on every machine: the
+ * series of a quarter of it (x < 0.79, the first term left out is 1e-15),
+ * doubled twice. */
+static double cos_degrees(double angle)
+{
+  double x = angle * (3.14159265358979323846 / 720), x2 = x * x, c = 1;
+
+  for (int n = 16; n > 0; n -= 2) c = 1 - c * x2 / (n * (n - 1));
+  c = 2 * c * c - 1;
+  return 2 * c * c - 1;
+}
+
+static void find_normals(struct build *b)
+{
+  const struct vg_mesh *m = b->w->surface;
+
+  for (size_t f = 0; f < b->w->n_face; f++) {
+    const uint32_t *t = m->tri[b->w->tri[f]];
+    double u[3], v[3];
+
+    vg_sub(m->point[t[1]], m->point[t[0]], u);
+    vg_sub(m->point[t[2]], m->point[t[0]], v);
+    vg_cross(u, v, b->normal[f]);
+    vg_unit(b->normal[f]);
+  }
+}
+
+static const double *wall_point(const struct vg_wall *w, uint32_t h)
+{
+  return w->surface->point[w->point[w->face[h / 3][h % 3]]];
+}
+
+/* Sharper than the fan angle, and the fluid is outside: the neighbour's far
+ * point lies behind the face, exactly. */
+static int is_ridge(const struct build *b, uint32_t h, uint32_t g)
+{
+  const double *n = b->normal[h / 3], *o = b->normal[g / 3];
+  uint32_t next = vg_half_next(h);
+
+  if (!(vg_dot(n, n) > 0) || !(vg_dot(o, o) > 0)) return 0;
+  if (vg_dot(n, o) >= b->cos_fan) return 0;
+  return vg_orient3d(wall_point(b->w, h), wall_point(b->w, next),
+                     wall_point(b->w, vg_half_next(next)),
+                     wall_point(b->w, vg_half_previous(g))) < 0;
+}
+
+static size_t find_ridges(struct build *b)
+{
+  const struct vg_wall *w = b->w;
+  size_t n = 0;
+
+  for (uint32_t h = 0; h < 3 * w->n_face; h++) {
+    uint32_t g = w->opposite[h];
+
+    if (g == VG_NO_INDEX || g < h || !is_ridge(b, h, g)) continue;
+    b->ridge[h] = b->ridge[g] = 1;
+    for (int k = 0; k < 2; k++) {
+      uint8_t *count = &b->n_ridge[w->face[(k ? g : h) / 3][(k ? g : h) % 3]];
+
+      *count = (uint8_t)(*count + (*count < 255));
+    }
+    n++;
+  }
+  return n;
+}
+
+/* Weight of a face at corner h: the chord of its angle. */
+static double corner_weight(const struct vg_wall *w, uint32_t h)
+{
+  double a[3], b[3];
+
+  vg_sub(wall_point(w, vg_half_next(h)), wall_point(w, h), a);
+  vg_sub(wall_point(w, vg_half_previous(h)), wall_point(w, h), b);
+  vg_unit(a);
+  vg_unit(b);
+  return vg_distance(a, b);
+}
+
+static void into_plane(const struct vg_fan_shape *s, double v[3])
+{
+  double d;
+
+  if (!s->has_plane) return;
+  d = vg_dot(v, s->plane);
+  for (int k = 0; k < 3; k++)
+    v[k] = fabs(s->plane[k]) == 1 ? 0 : v[k] - d * s->plane[k];
+}
+
+static double least_view(size_t n, const double (*normal)[3], const double *v)
+{
+  double least = 1;
+
+  for (size_t i = 0; i < n; i++) {
+    double d = vg_dot(normal[i], v);
+
+    if (d < least) least = d;
+  }
+  return least;
+}
+
+/* Direction for faces of the ring from corner h on, `n` of them: the one
+ * that their column will start from. 0: none sees them all. */
+static int direct(struct build *b, const struct vg_fan_shape *s, uint32_t h,
+                  size_t n, double dir[3])
+{
+  size_t k = 0;
+  double best[3];
+
+  memset(dir, 0, 3 * sizeof *dir);
+  for (size_t i = 0; i < n; i++, h = vg_wall_turn(b->w, h)) {
+    const double *normal = b->normal[h / 3];
+    double weight = corner_weight(b->w, h);
+
+    if (!(vg_dot(normal, normal) > 0)) continue;
+    memcpy(b->ring[k++], normal, sizeof *b->ring);
+    for (int c = 0; c < 3; c++) dir[c] += weight * normal[c];
+  }
+  into_plane(s, dir);
+  if (vg_unit(dir) > 0
+      && least_view(k, (const double (*)[3])b->ring, dir) >= SMOOTH_WALL)
+    return 1;
+  for (size_t i = 0; i < k; i++) into_plane(s, b->ring[i]);
+  if (!vg_most_normal((int)k, (const double (*)[3])b->ring, best)) return 0;
+  into_plane(s, best);
+  if (!(vg_unit(best) > 0)) return 0;
+  memcpy(dir, best, sizeof best);
+  return least_view(k, (const double (*)[3])b->ring, dir) >= LEAST_VIEW;
+}
+
+/* The ring of p cut at its ridges: first corner of each sector and how many
+ * faces it has. Closed rings start behind a ridge. Returns the sectors. */
+static int cut(const struct build *b, uint32_t p,
+               uint32_t corner[VG_FAN_SECTORS], size_t size[VG_FAN_SECTORS],
+               int *is_open)
+{
+  const struct vg_wall *w = b->w;
+  uint32_t start = w->start[p], h;
+  int n = 0;
+
+  *is_open = w->opposite[start] == VG_NO_INDEX;
+  while (!*is_open && !b->ridge[start]) start = vg_wall_turn(w, start);
+  h = start;
+  do {
+    if (h == start || b->ridge[h]) {
+      if (n == VG_FAN_SECTORS) return 0;
+      corner[n] = h;
+      size[n++] = 0;
+    }
+    size[n - 1]++;
+    h = vg_wall_turn(w, h);
+  } while (h != VG_NO_INDEX && h != start);
+  return n;
+}
+
+/* One direction is enough when it is as near to those of all sectors as that
+ * of an edge just below the fan angle. */
+static int one_will_do(struct build *b, const struct vg_fan_shape *s,
+                       uint32_t start, size_t n)
+{
+  double dir[3];
+
+  if (!direct(b, s, start, n, dir)) return 0;
+  for (int i = 0; i < s->n_sector; i++)
+    if (vg_dot(dir, s->sector[i]) < b->cos_half) return 0;
+  return 1;
+}
+
+static void set_plane(const struct build *b, uint32_t p,
+                      struct vg_fan_shape *s)
+{
+  s->has_plane = b->w->slide[p][0] != VG_NO_INDEX;
+  for (size_t i = 0; s->has_plane && i < b->n_slide; i++)
+    if (b->slide[i].patch == b->w->slide[p][0])
+      vg_slide_normal(&b->slide[i], b->w->surface, b->w->point[p], s->plane);
+}
+
+static vg_status reserve(struct build *b, const struct vg_fan_shape *s,
+                         struct vg_error *err)
+{
+  struct vg_fans *f = b->f;
+
+  if (vg_reserve(&f->fan, &b->cap_fan, f->n_fan + 1, sizeof *f->fan) < 0
+      || vg_reserve(&f->preset, &b->cap_preset,
+                    f->n_preset + (size_t)s->n_column, sizeof *f->preset) < 0
+      || vg_reserve(&f->chain, &b->cap_chain,
+                    f->n_chain + (size_t)s->n_sector, sizeof *f->chain) < 0)
+    return vg_fail_memory(err, "the fans at convex edges");
+  return VG_OK;
+}
+
+/* Write a fan down: columns of its corners, chains, preset directions. */
+static void keep(struct build *b, uint32_t p, const struct vg_fan_shape *s,
+                 const uint32_t *corner, const size_t *size)
+{
+  struct vg_fans *f = b->f;
+  uint8_t is_sector[VG_FAN_COLUMNS] = { 0 };
+
+  f->fan[f->n_fan++] = (struct vg_fan_point){
+    p, (uint8_t)s->n_column, (uint8_t)s->n_polygon, (uint8_t)s->has_centre,
+    (uint8_t)s->is_open };
+  f->first[p + 1] = (uint32_t)s->n_column;
+  for (int i = 0; i < s->n_sector; i++) {
+    int o = (i + s->n_sector - 1) % s->n_sector;
+    uint32_t h = corner[i];
+
+    for (size_t j = 0; j < size[i]; j++, h = vg_wall_turn(b->w, h))
+      f->at[h] = (uint8_t)s->at[i];
+    is_sector[s->at[i]] = 1;
+    if (s->is_open && i == 0) continue;
+    f->chain_of[corner[i]] = (uint32_t)f->n_chain;
+    f->chain[f->n_chain++] = (struct vg_fan_chain){
+      (uint8_t)s->at[o], (uint8_t)s->at[i], (uint8_t)s->n_step[o],
+      o == s->shared };
+  }
+  for (int i = 0; i < s->n_column; i++) {
+    struct vg_fan_preset *preset = &f->preset[f->n_preset];
+
+    if (is_sector[i]) continue;
+    preset->point = p;
+    preset->at = (uint32_t)i;
+    memcpy(preset->dir, s->dir[i], sizeof preset->dir);
+    f->n_preset++;
+  }
+}
+
+/* Do all directions lead away from all triangles at p? At a ridge that ends
+ * in a concave corner some may lead into the other wall. */
+static int is_clear(const struct build *b, uint32_t p,
+                    const struct vg_fan_shape *s)
+{
+  const struct vg_wall *w = b->w;
+  uint32_t h = w->start[p];
+
+  do {
+    const double *o = wall_point(w, h), *a = wall_point(w, vg_half_next(h));
+    const double *c = wall_point(w, vg_half_previous(h));
+    double e[3], f[3], n[3];
+
+    vg_sub(a, o, e);
+    vg_sub(c, o, f);
+    vg_cross(e, f, n);
+    vg_unit(n);
+    for (int i = 0; i < s->n_column; i++)
+      if (vg_off_corner(o, a, c, n, s->dir[i]) < LEAST_CLEAR) return 0;
+    h = vg_wall_turn(w, h);
+  } while (h != VG_NO_INDEX && h != w->start[p]);
+  return 1;
+}
+
+static vg_status visit(struct build *b, uint32_t p, struct vg_error *err)
+{
+  const struct vg_wall *w = b->w;
+  struct vg_fan_shape s = { .n_sector = 0 };
+  uint32_t corner[VG_FAN_SECTORS];
+  size_t size[VG_FAN_SECTORS], n = 0;
+  vg_status st;
+
+  if (w->blocked[p] || w->slide[p][1] != VG_NO_INDEX) return VG_OK;
+  s.n_sector = cut(b, p, corner, size, &s.is_open);
+  if (s.n_sector < 2) return VG_OK;
+  set_plane(b, p, &s);
+  for (int i = 0; i < s.n_sector; i++) n += size[i];
+  if (vg_reserve(&b->ring, &b->cap_ring, n, sizeof *b->ring) < 0)
+    return vg_fail_memory(err, "the fans at convex edges");
+  for (int i = 0; i < s.n_sector; i++) {
+    uint32_t at = corner[(i + 1) % s.n_sector];
+
+    if (!direct(b, &s, corner[i], size[i], s.sector[i])) return VG_OK;
+    vg_sub(wall_point(w, vg_half_next(at)), wall_point(w, at), s.ridge[i]);
+    vg_unit(s.ridge[i]);
+  }
+  if (one_will_do(b, &s, corner[0], n) || !vg_fan_spread(&s) ||
+      !is_clear(b, p, &s)) return VG_OK;
+  if ((st = reserve(b, &s, err)) < 0) return st;
+  keep(b, p, &s, corner, size);
+  return VG_OK;
+}
+
+static vg_status start(struct build *b, double fan_angle,
+                       struct vg_error *err)
+{
+  const struct vg_wall *w = b->w;
+  struct vg_fans *f = b->f;
+
+  b->cos_fan = cos_degrees(fan_angle);
+  b->cos_half = cos_degrees(0.5 * fan_angle);
+  b->normal = vg_alloc(w->n_face, sizeof *b->normal);
+  b->ridge = vg_calloc(3 * w->n_face, sizeof *b->ridge);
+  b->n_ridge = vg_calloc(w->n_point, sizeof *b->n_ridge);
+  f->at = vg_calloc(3 * w->n_face, sizeof *f->at);
+  f->chain_of = vg_alloc(3 * w->n_face, sizeof *f->chain_of);
+  if (!b->normal || !b->ridge || !b->n_ridge || !f->at || !f->chain_of)
+    return vg_fail_memory(err, "the fans at convex edges");
+  memset(f->chain_of, 0xff, 3 * w->n_face * sizeof *f->chain_of);
+  return VG_OK;
+}
+
+static vg_status find_fans(struct build *b, double fan_angle,
+                           struct vg_error *err)
+{
+  vg_status st = start(b, fan_angle, err);
+
+  if (st < 0) return st;
+  find_normals(b);
+  if (!find_ridges(b)) return VG_OK;
+  for (uint32_t p = 0; p < b->w->n_point; p++)
+    if (b->n_ridge[p]) VG_TRY(visit(b, p, err));
+done:
+  return st;
+}
+
+vg_status vg_fans_build(const struct vg_wall *w, size_t n_slide,
+                        const struct vg_slide *slide, double fan_angle,
+                        struct vg_fans *out, struct vg_error *err)
+{
+  struct vg_fans f = VG_FANS_INIT;
+  struct build b = { .w = w, .n_slide = n_slide, .slide = slide, .f = &f };
+  vg_status st = VG_OK;
+  size_t total = 0;
+
+  if (!(fan_angle > 0))
+    return vg_fail(err, VG_ERR_INPUT, "the fan angle is %g degrees; it has to "
+                   "be above 0 (180: no fans)", fan_angle);
+  f.first = vg_alloc(w->n_point + 1, sizeof *f.first);
+  if (!f.first) return vg_fail_memory(err, "the columns");
+  for (size_t p = 0; p <= w->n_point; p++) f.first[p] = p > 0;
+  if (fan_angle < 180) VG_TRY(find_fans(&b, fan_angle, err));
+  for (size_t p = 0; p <= w->n_point; p++) {
+    total += f.first[p];
+    f.first[p] = (uint32_t)total;
+  }
+  if (total > UINT32_MAX / 8) {
+    st = vg_fail(err, VG_ERR_UNSUPPORTED, "%zu columns, %u at most; raise the "
+                 "fan angle or coarsen the surface", total, UINT32_MAX / 8);
+    goto done;
+  }
+  if (f.n_fan) VG_TRY(vg_fans_close(w, &f, err));
+  *out = f;
+  f = (struct vg_fans)VG_FANS_INIT;
+done:
+  free(b.normal);
+  free(b.ridge);
+  free(b.n_ridge);
+  free(b.ring);
+  vg_fans_release(&f);
+  return st;
+}

@@ -1,0 +1,116 @@
+/* Virtual faces along ridges and at points, and rims of fans. */
+#include "base/memory.h"
+#include "layers/topology/fan.h"
+
+struct faces {
+  const struct vg_wall *w;
+  struct vg_fans *f;
+  size_t cap_face, cap_rim, cap_patch;
+};
+
+static vg_status add_face(struct faces *s, uint32_t a, uint32_t b, uint32_t c,
+                          struct vg_error *err)
+{
+  struct vg_fans *f = s->f;
+  uint32_t *face;
+
+  if (vg_reserve(&f->face, &s->cap_face, f->n_face + 1, sizeof *f->face) < 0)
+    return vg_fail_memory(err, "the virtual faces");
+  face = f->face[f->n_face++];
+  face[0] = a;
+  face[1] = b;
+  face[2] = c;
+  return VG_OK;
+}
+
+/* Chain of a ridge as seen from the point that half-edge h starts from; a
+ * single column where the point has no fan. */
+static struct vg_fan_chain chain_at(const struct faces *s, uint32_t h)
+{
+  struct vg_fan_chain none = { 0, 0, 0, 0 };
+  uint32_t i = s->f->chain_of[h];
+
+  return i == VG_NO_INDEX ? none : s->f->chain[i];
+}
+
+/* The strip of ridge h, from p to q: its left face has p to q, its right one
+ * q to p. Both chains are followed from left to right, that of p against its
+ * sense, and whichever lags behind takes the next step. */
+static vg_status strip(struct faces *s, uint32_t h, struct vg_error *err)
+{
+  const struct vg_wall *w = s->w;
+  uint32_t g = w->opposite[h];
+  struct vg_fan_chain p = chain_at(s, h), q = chain_at(s, g);
+  uint32_t p0 = s->f->first[w->face[h / 3][h % 3]];
+  uint32_t q0 = s->f->first[w->face[g / 3][g % 3]];
+  uint32_t i = 0, j = 0;
+  vg_status st = VG_OK;
+
+  while (i < p.n_step || j < q.n_step) {
+    uint32_t at_p = p0 + vg_fan_at(&p, p.n_step - i);
+    uint32_t at_q = q0 + vg_fan_at(&q, j);
+
+    if (j == q.n_step
+        || (i < p.n_step && (i + 1) * q.n_step <= (j + 1) * p.n_step))
+      VG_TRY(add_face(s, at_p, p0 + vg_fan_at(&p, p.n_step - ++i), at_q, err));
+    else
+      VG_TRY(add_face(s, at_p, q0 + vg_fan_at(&q, ++j), at_q, err));
+  }
+done:
+  return st;
+}
+
+/* What is left around a point where three sectors or more meet. */
+static vg_status polygon(struct faces *s, const struct vg_fan_point *fan,
+                         struct vg_error *err)
+{
+  uint32_t o = s->f->first[fan->point], n = fan->n_polygon;
+  vg_status st = VG_OK;
+
+  if (!fan->has_centre) return n ? add_face(s, o, o + 1, o + 2, err) : VG_OK;
+  for (uint32_t i = 0; i < n; i++)
+    VG_TRY(add_face(s, o + i, o + (i + 1) % n, o + n, err));
+done:
+  return st;
+}
+
+/* Where a fan meets a slide patch its chains have strips on one side only:
+ * the other one is the rim, in the sense of the strips. */
+static vg_status fan_rims(struct faces *s, const struct vg_fan_point *fan,
+                          struct vg_error *err)
+{
+  struct vg_fans *f = s->f;
+  uint32_t o = f->first[fan->point];
+
+  for (uint32_t i = fan->n_column - 1u; fan->is_open && i > 0; i--) {
+    if (vg_reserve(&f->rim, &s->cap_rim, f->n_rim + 1, sizeof *f->rim) < 0
+        || vg_reserve(&f->rim_patch, &s->cap_patch, f->n_rim + 1,
+                      sizeof *f->rim_patch) < 0)
+      return vg_fail_memory(err, "the rims of fans");
+    f->rim[f->n_rim][0] = o + i;
+    f->rim[f->n_rim][1] = o + i - 1;
+    f->rim_patch[f->n_rim++] = s->w->slide[fan->point][0];
+  }
+  return VG_OK;
+}
+
+vg_status vg_fans_close(const struct vg_wall *w, struct vg_fans *f,
+                        struct vg_error *err)
+{
+  struct faces s = { .w = w, .f = f };
+  vg_status st = VG_OK;
+
+  for (uint32_t h = 0; h < 3 * w->n_face; h++) {
+    uint32_t g = w->opposite[h];
+
+    if (g == VG_NO_INDEX) continue;
+    if (h > g) continue;
+    if (f->chain_of[h] == VG_NO_INDEX && f->chain_of[g] == VG_NO_INDEX)
+      continue;
+    VG_TRY(strip(&s, h, err));
+  }
+  for (size_t i = 0; i < f->n_fan; i++) VG_TRY(polygon(&s, &f->fan[i], err));
+  for (size_t i = 0; i < f->n_fan; i++) VG_TRY(fan_rims(&s, &f->fan[i], err));
+done:
+  return st;
+}

@@ -1,0 +1,78 @@
+#include "layers/topology/gram.h"
+
+#include <lapacke.h>
+#include <string.h>
+
+#include "core/geometry/vector.h"
+
+#define STEPS_MAX 200
+#define SLACK 1e-9        /* of a constraint that counts as kept */
+
+/* w over the active normals; 0 unless all weights are positive. */
+static int solve(const double (*n)[3], const int *active, int k, double w[3])
+{
+  double g[9], c[3] = { 1, 1, 1 };
+
+  for (int i = 0; i < k; i++)
+    for (int j = 0; j < k; j++)
+      g[i * k + j] = vg_dot(n[active[i]], n[active[j]]);
+  if (k == 1) c[0] = g[0] > 0 ? 1 / g[0] : -1;
+  else if (LAPACKE_dposv_work(LAPACK_COL_MAJOR, 'U', k, 1, g, k, c, k))
+    return 0;
+  memset(w, 0, 3 * sizeof *w);
+  for (int i = 0; i < k; i++) {
+    if (!(c[i] > 0) || c[i] > 1e12) return 0;
+    for (int x = 0; x < 3; x++) w[x] += c[i] * n[active[i]][x];
+  }
+  return 1;
+}
+
+static int keeps(const double (*n)[3], const int *among, int k,
+                 const double w[3])
+{
+  for (int i = 0; i < k; i++)
+    if (vg_dot(n[among[i]], w) < 1 - SLACK) return 0;
+  return 1;
+}
+
+/* The optimum over old[] and the normal that it violates: that one is active,
+ * with at most two of the others. */
+static int exchange(const double (*n)[3], int old[3], int *n_old, int worst,
+                    double w[3])
+{
+  int all[4] = { worst }, k = *n_old;
+
+  memcpy(all + 1, old, (size_t)k * sizeof *old);
+  for (int mask = 0; mask < 1 << k; mask++) {
+    int set[4] = { worst }, size = 1;
+
+    for (int i = 0; i < k; i++)
+      if (mask >> i & 1) set[size++] = old[i];
+    if (size > 3 || !solve(n, set, size, w) || !keeps(n, all, k + 1, w))
+      continue;
+    memcpy(old, set, (size_t)size * sizeof *old);
+    *n_old = size;
+    return 1;
+  }
+  return 0;
+}
+
+int vg_most_normal(int k, const double (*n)[3], double w[3])
+{
+  int active[3] = { 0 }, n_active = 1;
+
+  if (!k || !solve(n, active, 1, w)) return 0;
+  for (int step = 0; step < STEPS_MAX; step++) {
+    int worst = 0;
+    double least = vg_dot(n[0], w);
+
+    for (int i = 1; i < k; i++) {
+      double d = vg_dot(n[i], w);
+
+      if (d < least) least = d, worst = i;
+    }
+    if (least >= 1 - SLACK) return 1;
+    if (!exchange(n, active, &n_active, worst, w)) return 0;
+  }
+  return 0;
+}

@@ -1,0 +1,318 @@
+#include "partition/advance/advance.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/memory.h"
+#include "partition/advance/advance_tasks.h"
+#include "partition/cut/node.h"
+#include "partition/cut/select.h"
+#include "partition/repair/repair.h"
+
+static int progress(void *user, double done_cells, double known,
+                    size_t n_done, size_t n_known)
+{
+  struct vg_partition *p = user;
+  double all = p->report.estimate;
+
+  (void)known;
+  (void)n_done;
+  (void)n_known;
+  if (!p->options.progress) return 0;
+  if (done_cells > all) all = done_cells;
+  return p->options.progress(p->options.user, "fill", (size_t)done_cells,
+                             (size_t)all);
+}
+
+static int stop(void *user)
+{
+  struct vg_partition *p = user;
+
+  return p->options.stop && p->options.stop(p->options.user);
+}
+
+/* The root: the whole void, with its load. By rank 0, on the cores of its
+ * node, as all others wait for it. */
+static vg_status make_root(struct vg_partition *p, struct vg_comm *comm,
+                           struct vg_node **out, struct vg_error *err)
+{
+  const struct vg_mesh *m = p->boundary;
+  struct vg_front f = VG_FRONT_INIT;
+  struct vg_void v = { .n_point = m->n_point, .x = m->point,
+                       .n_face = m->n_tri, .face = m->tri };
+  struct vg_node *n = NULL;
+  vg_status st = VG_OK;
+
+  f.n_point = m->n_point;
+  f.n_face = m->n_tri;
+  f.x = vg_alloc(m->n_point, sizeof *f.x);
+  f.name = vg_alloc(m->n_point, sizeof *f.name);
+  f.face = vg_alloc(m->n_tri, sizeof *f.face);
+  if (f.x && f.name && f.face) n = vg_node_new("0", &f);
+  if (!n) {
+    vg_front_release(&f);
+    return vg_fail_memory(err, "the front");
+  }
+  memcpy(n->front.x, m->point, m->n_point * sizeof *n->front.x);
+  memcpy(n->front.face, m->tri, m->n_tri * sizeof *n->front.face);
+  for (size_t k = 0; k < m->n_point; k++)
+    n->front.name[k] = VG_POINT_NAME(0, k);
+  n->levels = p->options.levels;
+  n->retry = p->attempt;
+  n->per_cube = p->options.cells_per_cube;
+  vg_comm_bind_node(comm, 1);
+  st = vg_load_new(&v, p->sizing, n->per_cube,
+                   p->options.threads * vg_comm_node_size(comm), &n->load,
+                   err);
+  vg_comm_bind_node(comm, 0);
+  VG_TRY(st);
+  p->report.estimate = n->load.cells;
+  /* a void that is not cut is filled as it is, in the order it came in */
+  if (vg_node_wants_cut(p, n)) VG_TRY(vg_select_sort(&n->front, err));
+  *out = n;
+  n = NULL;
+done:
+  vg_node_free(n);
+  return st;
+}
+
+static vg_status within_limit(const struct vg_partition *p, double cells,
+                              const char *how, struct vg_error *err)
+{
+  if (!p->options.max_cells || cells <= (double)p->options.max_cells)
+    return VG_OK;
+  return vg_fail(err, VG_ERR_UNSUPPORTED, "the mesh %s %.0f cells, %llu are "
+                 "allowed; use a coarser spacing or raise the limit", how,
+                 cells, (unsigned long long)p->options.max_cells);
+}
+
+/* The tasks that these voids lead to; the voids are taken over. Collective. */
+static vg_status run_tasks(struct vg_partition *p, struct vg_comm *comm,
+                           size_t n, struct vg_node **node,
+                           struct vg_spans *spans, struct vg_error *err)
+{
+  struct vg_engine_options o = { p->options.threads, p->options.shuffle,
+                                 progress, stop, p };
+  struct vg_task *first = vg_calloc(n, sizeof *first);
+  vg_status st = first ? VG_OK : vg_fail_memory(err, "a task");
+
+  for (size_t k = 0; k < n; k++) {
+    if (st == VG_OK) st = vg_tasks_first(p, node[k], &first[k], err);
+    else vg_node_free(node[k]);
+    node[k] = NULL;
+  }
+  st = vg_comm_agree(comm, st, err);
+  if (st == VG_OK) {
+    st = vg_engine_run(comm, &o, &vg_tasks_ops, p, n, first, spans, err);
+  } else {
+    for (size_t k = 0; first && k < n; k++) vg_work_free(first[k].input);
+  }
+  free(first);
+  return st;
+}
+
+static vg_status run_whole(struct vg_partition *p, struct vg_comm *comm,
+                           struct vg_spans *spans, struct vg_error *err)
+{
+  struct vg_node *root = NULL;
+  vg_status st = VG_OK;
+
+  if (p->rank == 0) st = make_root(p, comm, &root, err);
+  /* no estimate is off by more than half */
+  if (st == VG_OK && p->rank == 0)
+    st = within_limit(p, p->report.estimate / 1.5, "would have", err);
+  st = vg_comm_agree(comm, st, err);
+  if (st < 0) {
+    vg_node_free(root);
+    return st;
+  }
+  return run_tasks(p, comm, root != NULL, &root, spans, err);
+}
+
+/* Voids with parts that could not be filled are cut again, and what that
+ * leads to, until there is none. */
+static vg_status run_again(struct vg_partition *p, struct vg_comm *comm,
+                           struct vg_spans *spans, struct vg_error *err)
+{
+  struct vg_spans more = VG_SPANS_INIT;
+  size_t n_void = 1;
+  vg_status st = VG_OK;
+
+  while (st == VG_OK && n_void) {
+    double t0 = vg_clock();
+    struct vg_node **node;
+    size_t n;
+
+    st = vg_partition_drop(p, comm, spans, err);
+    if (st < 0) break;
+    st = vg_redo_voids(p, comm, spans, &n_void, &node, &n, err);
+    if (st == VG_OK && n_void) {
+      st = run_tasks(p, comm, n, node, spans ? &more : NULL, err);
+      if (spans && st == VG_OK) st = vg_spans_append(spans, &more, err);
+      st = vg_comm_agree(comm, st, err);
+      p->report.elsewhere += vg_clock() - t0;
+    }
+    for (size_t k = 0; k < n; k++) vg_node_free(node[k]);
+    free(node);
+    vg_spans_release(&more);
+  }
+  return st;
+}
+
+/* Counts and times of all ranks together. */
+static vg_status sum_report(struct vg_partition *p, struct vg_comm *comm,
+                            struct vg_error *err)
+{
+  struct vg_partition_report *r = &p->report;
+  struct vg_fill_report *f = &r->fill;
+  uint64_t whole = (uint64_t)f->whole_void;
+  double *time[5] = {&f->time_boundary, &f->time_place, &f->time_insert,
+                     &f->time_optimise, &f->time_total};
+  size_t *count[] = {&f->n_surface_face_lost, &f->n_pocket,
+    &f->n_pocket_cell, &f->n_retry, &f->n_steiner, &f->n_placed,
+    &f->n_inserted, &f->n_refused, &f->n_smoothed, &f->n_flip,
+    &f->n_collapse, &f->n_split};
+  uint64_t *more[] = {&r->n_node, &r->n_pencil, &r->n_tile, &r->n_leaf,
+    &r->n_zone_cell, &r->n_blocked, &r->n_crossing, &r->n_retry, &r->n_uncut,
+    &r->n_outgrown, &r->n_found, &r->n_elsewhere, &r->n_elsewhere_cell,
+    &whole};
+  enum { N_COUNT = sizeof count / sizeof *count,
+         N_MORE = sizeof more / sizeof *more };
+  uint64_t v[N_COUNT + N_MORE + 5];
+  double estimate = r->estimate;
+  vg_status st;
+
+  for (size_t k = 0; k < N_COUNT; k++) v[k] = *count[k];
+  for (size_t k = 0; k < N_MORE; k++) v[N_COUNT + k] = *more[k];
+  for (size_t k = 0; k < 5; k++)
+    v[N_COUNT + N_MORE + k] = (uint64_t)(*time[k] * 1e6);
+  st = vg_comm_sum(comm, sizeof v / sizeof *v, v, err);
+  if (st == VG_OK) st = vg_comm_max(comm, 1, &estimate, err);
+  if (st < 0) return st;
+  for (size_t k = 0; k < N_COUNT; k++) *count[k] = v[k];
+  for (size_t k = 0; k < N_MORE; k++) *more[k] = v[N_COUNT + k];
+  for (size_t k = 0; k < 5; k++)
+    *time[k] = 1e-6 * (double)v[N_COUNT + N_MORE + k];
+  f->whole_void = (int)whole;
+  r->estimate = estimate;
+  return VG_OK;
+}
+
+static vg_status grow(struct vg_comm *comm, const struct vg_mesh *front,
+                      const struct vg_sizing *sizing,
+                      const struct vg_partition_options *options,
+                      int attempt, struct vg_partition **out,
+                      struct vg_partition_report *report,
+                      struct vg_spans *spans, struct vg_error *err)
+{
+  struct vg_partition *p = vg_calloc(1, sizeof *p);
+  double t0 = vg_clock();
+  vg_status st;
+
+  st = vg_comm_agree(comm, p ? VG_OK : vg_fail_memory(err, "the partition"),
+                     err);
+  if (st < 0) {
+    free(p);
+    return st;
+  }
+  pthread_mutex_init(&p->lock, NULL);
+  p->rank = vg_comm_rank(comm);
+  p->size = vg_comm_size(comm);
+  p->boundary = front;
+  p->sizing = sizing;
+  p->options = *options;
+  p->attempt = attempt;
+  if (p->options.threads < 1) p->options.threads = 1;
+  st = run_whole(p, comm, spans, err);
+  if (st == VG_OK) st = run_again(p, comm, spans, err);
+  p->report.wall = vg_clock() - t0;
+  if (st == VG_OK) st = vg_partition_repair(p, comm, spans, err);
+  if (st == VG_OK) st = vg_partition_number(p, comm, err);
+  if (st == VG_OK) st = sum_report(p, comm, err);
+  p->report.number = vg_clock() - t0 - p->report.wall - p->report.repair;
+  if (st == VG_OK)
+    st = within_limit(p, (double)p->slices.n_cell[VG_SLICE_TET], "has", err);
+  *report = p->report;
+  if (st == VG_OK) *out = p;
+  else vg_partition_free(p);
+  return st;
+}
+
+/* To cut a void, before it is filled uncut. */
+enum { ATTEMPTS = 3 };
+
+/* Where a part between the first cuts cannot be filled, or all larger voids
+ * around a part were cut elsewhere (redo.c), all cuts are made elsewhere; in
+ * the end the void is filled uncut: that takes longer, but only a boundary that
+ * bounds nothing fails a run. */
+vg_status vg_partition_grow(struct vg_comm *comm, const struct vg_mesh *front,
+                            const struct vg_sizing *sizing,
+                            const struct vg_partition_options *options,
+                            struct vg_partition **out,
+                            struct vg_partition_report *report,
+                            struct vg_spans *spans, struct vg_error *err)
+{
+  struct vg_partition_options o = *options;
+  struct vg_error why = VG_ERROR_INIT;
+  uint64_t n_cut;
+  vg_status st, sum;
+
+  for (int attempt = 0;; attempt++) {
+    st = grow(comm, front, sizing, &o, attempt, out, report, spans, &why);
+    report->cuts_elsewhere = attempt < ATTEMPTS ? attempt : ATTEMPTS - 1;
+    report->cuts_given_up = attempt == ATTEMPTS;
+    n_cut = report->n_node;
+    sum = vg_comm_sum(comm, 1, &n_cut, err);
+    if (sum < 0) return sum;
+    if (st != VG_ERR_GEOMETRY || attempt == ATTEMPTS || (!attempt && !n_cut))
+      break;
+    if (attempt + 1 == ATTEMPTS) {
+      o.rule.leaf_cells = 0;
+      o.levels = 0;
+    }
+    if (spans) vg_spans_release(spans);
+    why = (struct vg_error)VG_ERROR_INIT;
+  }
+  if (err) *err = why;
+  return st;
+}
+
+const struct vg_slices *vg_partition_slices(const struct vg_partition *p)
+{
+  return &p->slices;
+}
+
+vg_status vg_partition_leaves(const struct vg_partition *p, size_t *n,
+                              uint64_t **sizes, struct vg_error *err)
+{
+  *n = 0;
+  *sizes = vg_alloc(p->n_piece, sizeof **sizes);
+  if (!*sizes) return vg_fail_memory(err, "sizes of leaves");
+  for (size_t k = 0; k < p->n_piece; k++)
+    if (p->piece[k].kind == VG_SPAN_LEAF)
+      (*sizes)[(*n)++] = p->piece[k].n_cell;
+  return VG_OK;
+}
+
+void vg_partition_free(struct vg_partition *p)
+{
+  struct vg_node *n;
+
+  if (!p) return;
+  while ((n = p->cutting)) {
+    p->cutting = n->next;
+    vg_node_free(n);
+  }
+  for (size_t k = 0; k < p->n_piece; k++) vg_piece_release(&p->piece[k]);
+  vg_redo_release(p);
+  free(p->piece);
+  free(p->drop);
+  free(p->place);
+  free(p->point_at);
+  free(p->cell_at);
+  free(p->domain);
+  free(p->front_id);
+  pthread_mutex_destroy(&p->lock);
+  free(p);
+}

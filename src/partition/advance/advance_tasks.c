@@ -1,0 +1,483 @@
+/* Tasks of the advancing partition: what is done, what follows from it, and how
+ * it gets to other ranks and back. */
+#include "partition/advance/advance_tasks.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/bytes.h"
+#include "base/memory.h"
+#include "partition/model/model.h"
+
+/* --- doing tasks --------------------------------------------------------- */
+
+/* What a task's home hears. Where that is another rank, `node` is its own
+ * pointer coming back to it. */
+struct outcome {
+  int what;
+  struct vg_node *node;      /* START, and LEAF that outgrew: owned; JOIN, ZONE:
+                                borrowed */
+  size_t index;
+  struct vg_change change;
+};
+
+static void free_outcome(struct outcome *o)
+{
+  if (o->what == VG_WORK_START || o->what == VG_WORK_LEAF)
+    vg_node_free(o->node);
+  vg_change_release(&o->change);
+  free(o);
+}
+
+/* One that cannot be filled is laid aside, unless it is the whole that is to
+ * be cut again. */
+static vg_status run_leaf(struct vg_partition *p, struct vg_work *w,
+                          struct outcome *o, const struct vg_engine *e,
+                          struct vg_error *err)
+{
+  char path[VG_PATH_MAX];
+  int outgrown;
+  vg_status st = vg_work_leaf(p, w, &outgrown, &o->change.n_cell, e, err);
+
+  if (st == VG_ERR_GEOMETRY && vg_redo_path(w->node->path, path)) {
+    st = vg_redo_note_leaf(p, w->node, err, err);
+    if (st == VG_OK) w->node = NULL;
+    return st;
+  }
+  if (st == VG_OK && outgrown) {
+    o->node = w->node;
+    w->node = NULL;
+  }
+  return st;
+}
+
+static vg_status run_work(struct vg_partition *p, struct vg_work *w,
+                          struct outcome *o, const struct vg_engine *e,
+                          struct vg_error *err)
+{
+  o->what = w->what;
+  if (w->what == VG_WORK_LEAF) return run_leaf(p, w, o, e, err);
+  o->node = w->node;
+  o->index = w->index;
+  if (w->what == VG_WORK_ZONE) return vg_work_zone(p, w, &o->change, e, err);
+  if (w->what == VG_WORK_JOIN) return vg_node_join(p, w->node, e, err);
+  w->node = NULL;
+  return vg_node_start(p, o->node, e, err);
+}
+
+static vg_status run(void *user, const struct vg_engine *e,
+                     const struct vg_task *task, int worker, void **outcome,
+                     size_t *n_cell, struct vg_error *err)
+{
+  struct outcome *o = vg_calloc(1, sizeof *o);
+  vg_status st;
+
+  (void)worker;
+  if (!o) return vg_fail_memory(err, "the outcome of a task");
+  st = run_work(user, task->input, o, e, err);
+  *n_cell = o->change.n_cell;
+  if (st == VG_OK) *outcome = o;
+  else free_outcome(o);
+  return st;
+}
+
+/* --- what follows from them ---------------------------------------------- */
+
+static vg_status submit(struct vg_engine *e, const char *path, char kind,
+                        int pinned, int moves, double estimate,
+                        struct vg_work *w, struct vg_error *err)
+{
+  struct vg_task t = { .kind = kind, .pinned = pinned, .moves = moves,
+                       .priority = vg_model_priority(kind, estimate),
+                       .weight = estimate, .input = w };
+
+  snprintf(t.path, sizeof t.path, "%s", path);
+  return vg_engine_submit(e, &t, err);
+}
+
+static struct vg_work *new_work(int what, struct vg_node *n)
+{
+  struct vg_work *w = vg_calloc(1, sizeof *w);
+
+  if (!w) return NULL;
+  w->what = what;
+  w->node = n;
+  return w;
+}
+
+static vg_status submit_start(struct vg_engine *e, struct vg_node *n,
+                              struct vg_error *err)
+{
+  struct vg_work *w = new_work(VG_WORK_START, n);
+  char path[VG_PATH_MAX];
+
+  if (!w) {
+    vg_node_free(n);
+    return vg_fail_memory(err, "a task");
+  }
+  snprintf(path, sizeof path, "%.*sJ0", VG_PATH_MAX - 3, n->path);
+  return submit(e, path, VG_SPAN_JOIN, 0, 1, n->load.cells, w, err);
+}
+
+static vg_status submit_leaf(struct vg_partition *p, struct vg_engine *e,
+                             struct vg_node *n, struct vg_error *err)
+{
+  struct vg_work *w = new_work(VG_WORK_LEAF, n);
+  char path[VG_PATH_MAX];
+
+  if (!w) {
+    vg_node_free(n);
+    return vg_fail_memory(err, "a task");
+  }
+  w->serial = vg_partition_serial(p);
+  snprintf(path, sizeof path, "%.*sL", VG_PATH_MAX - 2, n->path);
+  return submit(e, path, VG_SPAN_LEAF, 0, 1, n->load.cells, w, err);
+}
+
+static vg_status submit_join(struct vg_engine *e, struct vg_node *n,
+                             struct vg_error *err)
+{
+  struct vg_work *w = new_work(VG_WORK_JOIN, n);
+  char path[VG_PATH_MAX];
+
+  if (!w) return vg_fail_memory(err, "a task");
+  snprintf(path, sizeof path, "%.*sJ%d", VG_PATH_MAX - 14, n->path,
+           ++n->n_join);
+  return submit(e, path, VG_SPAN_JOIN, 1, 0, n->load.cells, w, err);
+}
+
+static vg_status submit_child(struct vg_partition *p, struct vg_engine *e,
+                              struct vg_node *c, struct vg_error *err)
+{
+  double leaf = p->options.rule.leaf_cells;
+
+  if (vg_node_wants_cut(p, c)) return submit_start(e, c, err);
+  pthread_mutex_lock(&p->lock);
+  p->report.n_leaf++;
+  p->report.n_uncut += leaf > 0 && c->load.cells > VG_OUTGROWN * leaf;
+  pthread_mutex_unlock(&p->lock);
+  return submit_leaf(p, e, c, err);
+}
+
+/* From its first stage to its last a node is held by this rank alone. */
+static void hold(struct vg_partition *p, struct vg_node *n)
+{
+  pthread_mutex_lock(&p->lock);
+  n->next = p->cutting;
+  n->link = &p->cutting;
+  if (n->next) n->next->link = &n->next;
+  p->cutting = n;
+  pthread_mutex_unlock(&p->lock);
+}
+
+static void let_go(struct vg_partition *p, struct vg_node *n)
+{
+  pthread_mutex_lock(&p->lock);
+  *n->link = n->next;
+  if (n->next) n->next->link = n->link;
+  pthread_mutex_unlock(&p->lock);
+}
+
+/* A node whose planning or joining is over: its works, or its children. */
+static vg_status follow(struct vg_partition *p, struct vg_engine *e,
+                        struct vg_node *n, struct vg_error *err)
+{
+  size_t n_work = n->n_work;
+  vg_status st = VG_OK;
+
+  for (size_t k = 0; st == VG_OK && k < n_work; k++) {
+    struct vg_work *w = n->work[k];
+
+    n->work[k] = NULL;
+    pthread_mutex_lock(&p->lock);
+    p->report.n_pencil += w->kind == VG_SPAN_PENCIL;
+    p->report.n_tile += w->kind == VG_SPAN_TILE;
+    pthread_mutex_unlock(&p->lock);
+    st = submit(e, w->path, w->kind, 0, 0, w->estimate, w, err);
+  }
+  if (n_work || st < 0) return st;
+  let_go(p, n);
+  if (n->n_child != 1 || n->child[0] != n) {
+    pthread_mutex_lock(&p->lock);
+    p->report.n_node++;
+    pthread_mutex_unlock(&p->lock);
+    st = vg_redo_note_cut(p, n, err);
+  }
+  for (size_t k = 0; st == VG_OK && k < n->n_child; k++) {
+    struct vg_node *c = n->child[k];
+
+    n->child[k] = NULL;
+    if (c == n) {
+      n->n_child = 0;
+      return submit_child(p, e, c, err);
+    }
+    st = submit_child(p, e, c, err);
+  }
+  vg_node_free(n);
+  return st;
+}
+
+/* The last outcome of a stage lets the node go on. */
+static vg_status zone_done(struct vg_partition *p, struct vg_engine *e,
+                           struct outcome *o, struct vg_error *err)
+{
+  struct vg_node *n = o->node;
+  struct vg_change *change = &n->change[o->index];
+
+  *change = o->change;
+  memset(&o->change, 0, sizeof o->change);
+  pthread_mutex_lock(&p->lock);
+  p->report.n_blocked += (uint64_t)change->blocked;
+  p->report.n_zone_cell += change->n_cell;
+  pthread_mutex_unlock(&p->lock);
+  return --n->n_left ? VG_OK : submit_join(e, n, err);
+}
+
+/* A leaf that outgrew its estimate becomes a node: its front is what it was,
+ * and there are at least as many cells in it as it was stopped for. */
+static vg_status leaf_done(struct vg_partition *p, struct vg_engine *e,
+                           struct outcome *o, struct vg_error *err)
+{
+  struct vg_node *n = o->node;
+  double leaf = p->options.rule.leaf_cells, more;
+
+  if (!n) return VG_OK;
+  o->node = NULL;
+  pthread_mutex_lock(&p->lock);
+  p->report.n_outgrown++;
+  p->report.n_leaf--;
+  pthread_mutex_unlock(&p->lock);
+  more = VG_OUTGROWN * (n->load.cells > leaf ? n->load.cells : leaf) /
+         (n->load.cells > 1 ? n->load.cells : 1);
+  for (size_t k = 0; k < n->load.n; k++)
+    n->load.cube[k].cells *= (float)more;
+  n->load.cells *= more;
+  n->is_planned = 0;
+  snprintf(n->path + strlen(n->path), sizeof n->path - strlen(n->path), "+");
+  return submit_child(p, e, n, err);
+}
+
+static vg_status done(void *user, struct vg_engine *e,
+                      const struct vg_task *task, void *outcome, int rank,
+                      struct vg_error *err)
+{
+  struct vg_partition *p = user;
+  struct outcome *o = outcome;
+  struct vg_node *n = o->node;
+  vg_status st;
+
+  (void)task;
+  (void)rank;
+  if (o->what == VG_WORK_ZONE) {
+    st = zone_done(p, e, o, err);
+  } else if (o->what == VG_WORK_LEAF) {
+    st = leaf_done(p, e, o, err);
+  } else {
+    o->node = NULL;          /* goes on by itself */
+    if (o->what == VG_WORK_START) hold(p, n);
+    st = follow(p, e, n, err);
+  }
+  free_outcome(o);
+  return st;
+}
+
+/* --- to other ranks ------------------------------------------------------ */
+
+static vg_status packed(struct vg_writer *w, struct vg_bytes *out,
+                        struct vg_error *err)
+{
+  if (w->refused) {
+    free(w->bytes.data);
+    return vg_fail_memory(err, "a message");
+  }
+  *out = w->bytes;
+  return VG_OK;
+}
+
+static vg_status put_node(struct vg_writer *w, const struct vg_node *n,
+                          struct vg_error *err)
+{
+  int32_t number[5] = {n->levels, n->retry, n->is_final, n->is_planned,
+                       n->n_bisection};
+  struct vg_bytes load = {0, NULL};
+  uint64_t size;
+  vg_status st = vg_load_pack(&n->load, &load, err);
+
+  if (st < 0) return st;
+  size = load.n;
+  vg_put(w, sizeof n->path, 1, n->path);
+  vg_put(w, 5, sizeof *number, number);
+  vg_put(w, 1, sizeof n->lattice, &n->lattice);
+  vg_put(w, 1, sizeof n->per_cube, &n->per_cube);
+  vg_put(w, 1, sizeof size, &size);
+  vg_put(w, load.n, 1, load.data);
+  vg_front_put(w, &n->front, 1);
+  free(load.data);
+  return VG_OK;
+}
+
+static struct vg_node *get_node(struct vg_reader *r)
+{
+  struct vg_front empty = VG_FRONT_INIT;
+  struct vg_node *n = vg_node_new("", &empty);
+  int32_t number[5] = {0};
+  struct vg_bytes load = {0, NULL};
+  uint64_t size = 0;
+
+  if (!n) return NULL;
+  vg_get(r, sizeof n->path, 1, n->path);
+  vg_get(r, 5, sizeof *number, number);
+  vg_get(r, 1, sizeof n->lattice, &n->lattice);
+  n->lattice.n_rib = 0;      /* made where the void is cut */
+  n->lattice.rib = NULL;
+  vg_get(r, 1, sizeof n->per_cube, &n->per_cube);
+  vg_get(r, 1, sizeof size, &size);
+  n->levels = number[0];
+  n->retry = number[1];
+  n->is_final = number[2];
+  n->is_planned = number[3];
+  n->n_bisection = number[4];
+  load.n = size;
+  load.data = vg_get_array(r, size, 1);
+  if (!r->bad) r->bad = vg_load_unpack(&load, &n->load, NULL) < 0;
+  free(load.data);
+  vg_front_get(r, &n->front, 1);
+  if (!r->bad) return n;
+  vg_node_free(n);
+  return NULL;
+}
+
+static vg_status pack_input(void *user, const void *input,
+                            struct vg_bytes *out, struct vg_error *err)
+{
+  const struct vg_work *k = input;
+  struct vg_writer w = { .cap = 0 };
+  int32_t what = k->what;
+  uint64_t home[2] = {(uint64_t)(uintptr_t)k->node, k->index};
+
+  (void)user;
+  vg_put(&w, 1, sizeof what, &what);
+  vg_put(&w, 1, sizeof k->serial, &k->serial);
+  if (k->what == VG_WORK_ZONE) {
+    vg_put(&w, sizeof k->path, 1, k->path);
+    vg_put(&w, 1, 1, &k->kind);
+    vg_put(&w, 2, sizeof *home, home);
+    vg_put(&w, 1, sizeof k->region, &k->region);
+    vg_front_put(&w, &k->part, 1);
+  } else {
+    vg_status st = put_node(&w, k->node, err);
+
+    if (st < 0) {
+      free(w.bytes.data);
+      return st;
+    }
+  }
+  return packed(&w, out, err);
+}
+
+static vg_status unpack_input(void *user, const struct vg_bytes *in,
+                              void **input, struct vg_error *err)
+{
+  struct vg_reader r = { .data = in->data, .n = in->n };
+  struct vg_work *k = new_work(0, NULL);
+  int32_t what = 0;
+  uint64_t home[2] = {0, 0};
+
+  (void)user;
+  if (!k) return vg_fail_memory(err, "a message");
+  vg_get(&r, 1, sizeof what, &what);
+  vg_get(&r, 1, sizeof k->serial, &k->serial);
+  k->what = what;
+  if (what == VG_WORK_ZONE) {
+    vg_get(&r, sizeof k->path, 1, k->path);
+    vg_get(&r, 1, 1, &k->kind);
+    vg_get(&r, 2, sizeof *home, home);
+    vg_get(&r, 1, sizeof k->region, &k->region);
+    vg_front_get(&r, &k->part, 1);
+    k->node = (struct vg_node *)(uintptr_t)home[0];
+    k->index = home[1];
+  } else if (!r.bad && !(k->node = get_node(&r))) {
+    r.bad = 1;
+  }
+  if (r.bad) {
+    free(k);
+    return vg_fail_memory(err, "a message");
+  }
+  *input = k;
+  return VG_OK;
+}
+
+static vg_status pack_outcome(void *user, const void *outcome,
+                              struct vg_bytes *out, struct vg_error *err)
+{
+  const struct outcome *o = outcome;
+  struct vg_writer w = { .cap = 0 };
+  uint64_t home[2] = {(uint64_t)(uintptr_t)o->node, o->index};
+
+  (void)user;                /* only those of zones travel */
+  vg_put(&w, 2, sizeof *home, home);
+  vg_change_put(&w, &o->change);
+  return packed(&w, out, err);
+}
+
+static vg_status unpack_outcome(void *user, const struct vg_bytes *in,
+                                void **outcome, struct vg_error *err)
+{
+  struct vg_reader r = { .data = in->data, .n = in->n };
+  struct outcome *o = vg_calloc(1, sizeof *o);
+  uint64_t home[2] = {0, 0};
+
+  (void)user;
+  if (!o) return vg_fail_memory(err, "a message");
+  vg_get(&r, 2, sizeof *home, home);
+  vg_change_get(&r, &o->change);
+  if (r.bad) {
+    free(o);
+    return vg_fail_memory(err, "a message");
+  }
+  o->what = VG_WORK_ZONE;
+  o->node = (struct vg_node *)(uintptr_t)home[0];
+  o->index = home[1];
+  *outcome = o;
+  return VG_OK;
+}
+
+static void release_input(void *user, void *input)
+{
+  (void)user;
+  vg_work_free(input);
+}
+
+static void release_outcome(void *user, void *outcome)
+{
+  (void)user;
+  free_outcome(outcome);
+}
+
+/* --- for the engine ------------------------------------------------------ */
+
+const struct vg_engine_ops vg_tasks_ops = {
+  run, done, pack_input, unpack_input, pack_outcome, unpack_outcome,
+  release_input, release_outcome };
+
+vg_status vg_tasks_first(struct vg_partition *p, struct vg_node *n,
+                         struct vg_task *t, struct vg_error *err)
+{
+  int cut = vg_node_wants_cut(p, n);
+  struct vg_work *w = new_work(cut ? VG_WORK_START : VG_WORK_LEAF, n);
+
+  if (!w) {
+    vg_node_free(n);
+    return vg_fail_memory(err, "a task");
+  }
+  *t = (struct vg_task){ .kind = cut ? VG_SPAN_JOIN : VG_SPAN_LEAF,
+                         .moves = 1, .weight = n->load.cells, .input = w };
+  t->priority = vg_model_priority(t->kind, t->weight);
+  snprintf(t->path, sizeof t->path, cut ? "%.*sJ0" : "%.*sL",
+           VG_PATH_MAX - 3, n->path);
+  if (cut) return VG_OK;
+  w->serial = vg_partition_serial(p);
+  p->report.n_leaf++;
+  return VG_OK;
+}

@@ -1,0 +1,103 @@
+/* Cells that were made for nothing: of zones whose changes cross the front.
+ * Their home found that, when they were kept elsewhere already. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "partition/cut/node.h"
+
+vg_status vg_partition_note_drop(struct vg_partition *p,
+                                 const struct vg_change *c,
+                                 struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  pthread_mutex_lock(&p->lock);
+  if (vg_reserve(&p->drop, &p->cap_drop, p->n_drop + 1, sizeof *p->drop)) {
+    st = vg_fail_memory(err, "cutting a front");
+  } else {
+    p->drop[p->n_drop++] = c->serial;
+    p->report.n_crossing++;
+    p->report.n_blocked++;
+    p->report.n_zone_cell -= c->n_cell;
+  }
+  pthread_mutex_unlock(&p->lock);
+  return st;
+}
+
+typedef char path_type[VG_PATH_MAX];
+
+/* Pieces with this serial go; their path is added to `path`. */
+static void drop(struct vg_partition *p, uint32_t serial, path_type *path,
+                 size_t *n_path)
+{
+  size_t left = 0;
+
+  for (size_t k = 0; k < p->n_piece; k++) {
+    if (p->piece[k].serial != serial) {
+      p->piece[left++] = p->piece[k];
+      continue;
+    }
+    memcpy(path[(*n_path)++], p->piece[k].path, sizeof *path);
+    vg_piece_release(&p->piece[k]);
+  }
+  p->n_piece = left;
+}
+
+/* Their tasks made no cells of the mesh. */
+static void forget_span(struct vg_spans *s, const char *path)
+{
+  for (size_t i = 0; i < s->n; i++)
+    if (!strcmp(s->span[i].path, path)) s->span[i].n_cell = 0;
+}
+
+/* Only the rank that had a piece knows its path; spans of all are on rank 0.
+ * Collective. */
+static vg_status forget_spans(struct vg_partition *p, struct vg_comm *comm,
+                              size_t n_path, path_type *path,
+                              struct vg_spans *spans, struct vg_error *err)
+{
+  struct vg_bytes mine = { n_path * sizeof *path, (unsigned char *)path };
+  struct vg_bytes *all = vg_calloc((size_t)p->size, sizeof *all);
+  vg_status st = all ? VG_OK : vg_fail_memory(err, "the record of tasks");
+
+  VG_TRY(vg_comm_agree(comm, st, err));
+  VG_TRY(vg_comm_allgather(comm, &mine, all, err));
+  for (int r = 0; spans && r < p->size; r++)
+    for (size_t at = 0; at < all[r].n; at += sizeof *path)
+      forget_span(spans, (const char *)all[r].data + at);
+done:
+  vg_bytes_release(all, p->size);
+  return st;
+}
+
+vg_status vg_partition_drop(struct vg_partition *p, struct vg_comm *comm,
+                            struct vg_spans *spans, struct vg_error *err)
+{
+  struct vg_bytes mine = { p->n_drop * sizeof *p->drop,
+                           (unsigned char *)p->drop };
+  struct vg_bytes *all = vg_calloc((size_t)p->size, sizeof *all);
+  path_type *path = NULL;
+  size_t n = 0, n_path = 0;
+  vg_status st = all ? VG_OK : vg_fail_memory(err, "the cells of a task");
+
+  VG_TRY(vg_comm_agree(comm, st, err));
+  VG_TRY(vg_comm_allgather(comm, &mine, all, err));
+  for (int r = 0; r < p->size; r++) n += all[r].n / sizeof *p->drop;
+  if (!n) goto done;
+  path = vg_calloc(n, sizeof *path);
+  if (!path) st = vg_fail_memory(err, "the cells of a task");
+  VG_TRY(vg_comm_agree(comm, st, err));
+  for (int r = 0; r < p->size; r++) {
+    const uint32_t *serial = (const uint32_t *)(const void *)all[r].data;
+
+    for (size_t k = 0; k < all[r].n / sizeof *serial; k++)
+      drop(p, serial[k], path, &n_path);
+  }
+  p->n_drop = 0;
+  st = forget_spans(p, comm, n_path, path, spans, err);
+done:
+  free(path);
+  vg_bytes_release(all, p->size);
+  return st;
+}

@@ -1,0 +1,321 @@
+#include "partition/cut/node.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+
+uint32_t vg_partition_serial(struct vg_partition *p)
+{
+  uint32_t k = (uint32_t)atomic_fetch_add(&p->n_serial, 1);
+
+  return 1 + k * (uint32_t)p->size + (uint32_t)p->rank;
+}
+
+static void drop_stage(struct vg_node *n)
+{
+  for (size_t k = 0; k < n->n_work; k++) {
+    vg_work_free(n->work[k]);
+    free(n->point[k]);
+    free(n->face[k]);
+    vg_change_release(&n->change[k]);
+  }
+  free(n->work);
+  free(n->region);
+  free(n->point);
+  free(n->face);
+  free(n->change);
+  n->work = NULL;
+  n->region = NULL;
+  n->point = n->face = NULL;
+  n->change = NULL;
+  n->n_work = 0;
+}
+
+void vg_node_free(struct vg_node *n)
+{
+  if (!n) return;
+  drop_stage(n);
+  for (size_t k = 0; k < n->n_child; k++)
+    if (n->child[k] != n) vg_node_free(n->child[k]);
+  free(n->child);
+  vg_select_release(&n->select);
+  vg_lattice_release(&n->lattice);
+  free(n->block);
+  free(n->open);
+  vg_front_release(&n->front);
+  vg_load_release(&n->load);
+  free(n);
+}
+
+void vg_work_free(struct vg_work *w)
+{
+  if (!w) return;
+  if (w->what == VG_WORK_START || w->what == VG_WORK_LEAF)
+    vg_node_free(w->node);
+  vg_front_release(&w->part);
+  free(w);
+}
+
+struct vg_node *vg_node_new(const char *path, struct vg_front *front)
+{
+  struct vg_node *n = vg_calloc(1, sizeof *n);
+
+  if (!n) return NULL;
+  snprintf(n->path, sizeof n->path, "%s", path);
+  n->front = *front;
+  memset(front, 0, sizeof *front);
+  n->per_cube = VG_LOAD_CELLS_PER_CUBE;
+  return n;
+}
+
+int vg_node_wants_cut(const struct vg_partition *p, struct vg_node *n)
+{
+  if (n->is_final || n->retry >= VG_RETRIES ||
+      strlen(n->path) + 8 >= VG_PATH_MAX)
+    return 0;
+  if (!n->is_planned) {
+    vg_lattice_release(&n->lattice);
+    n->n_bisection = vg_lattice_plan(&n->load, &p->options.rule, n->levels,
+                                     n->retry, &n->lattice);
+  }
+  n->is_planned = 1;
+  return n->n_bisection > 0;
+}
+
+/* --- the works of a stage ------------------------------------------------ */
+
+/* Behind the stages of the lattice: places that hang together, as boxes, then
+ * across x, y and z. */
+enum { STAGES = VG_LATTICE_STAGES + 4 };
+
+static vg_status make_room(struct vg_node *n, size_t n_work,
+                           struct vg_error *err)
+{
+  n->work = vg_calloc(n_work, sizeof *n->work);
+  n->region = vg_calloc(n_work, sizeof *n->region);
+  n->point = vg_calloc(n_work, sizeof *n->point);
+  n->face = vg_calloc(n_work, sizeof *n->face);
+  n->change = vg_calloc(n_work, sizeof *n->change);
+  if (n->work && n->region && n->point && n->face && n->change)
+    return VG_OK;
+  return vg_fail_memory(err, "cutting a front");
+}
+
+/* Its number among the pencils or tiles of the node. */
+static size_t number_of(struct vg_node *n, size_t k)
+{
+  if (n->stage < VG_LATTICE_TILES) return n->n_pencil++;
+  if (n->stage < VG_LATTICE_STAGES) return k;
+  return vg_lattice_count(&n->lattice, VG_LATTICE_TILES) + n->n_patch++;
+}
+
+/* More faces than this cost more than the patches that they save. */
+enum { MOST_WIDE = 100000 };
+
+/* The part of the front for work i, which is to know the front as far as the
+ * faces reach that cross the lattice's planes there. */
+static vg_status select_part(struct vg_node *n, struct vg_work *w, size_t i,
+                             struct vg_error *err)
+{
+  vg_status st;
+
+  if (n->stage < VG_LATTICE_STAGES)
+    VG_TRY(vg_select_widen(&n->select, &w->region, err));
+  VG_TRY(vg_select_part(&n->select, &w->region, &w->part, &n->point[i],
+                        &n->face[i], err));
+  if (w->region.wide == 0 || w->part.n_face <= MOST_WIDE ||
+      n->stage >= VG_LATTICE_STAGES)
+    goto done;
+  vg_front_release(&w->part);
+  free(n->point[i]);
+  free(n->face[i]);
+  w->region.wide = 0;
+  st = vg_select_part(&n->select, &w->region, &w->part, &n->point[i],
+                      &n->face[i], err);
+done:
+  return st;
+}
+
+struct stage {
+  struct vg_node *n;
+  const struct vg_region *region;  /* [n->n_work] of the works */
+};
+
+/* What of the front each region needs. On failure n->work[k] is NULL. */
+static void make_works(void *context, size_t first, size_t end, int worker)
+{
+  const struct stage *s = context;
+  struct vg_node *n = s->n;
+
+  (void)worker;
+  for (size_t k = first; k < end; k++) {
+    struct vg_work *w = vg_calloc(1, sizeof *w);
+
+    if (!w) continue;
+    w->what = VG_WORK_ZONE;
+    w->kind = n->stage < VG_LATTICE_TILES ? VG_SPAN_PENCIL : VG_SPAN_TILE;
+    w->node = n;
+    w->region = s->region[k];
+    if (select_part(n, w, k, NULL) < 0)
+      vg_work_free(w);
+    else
+      n->work[k] = w;
+  }
+}
+
+/* Keep the works that have a front, and name them. */
+static void name_works(struct vg_partition *p, struct vg_node *n)
+{
+  size_t left = 0;
+
+  for (size_t k = 0; k < n->n_work; k++) {
+    struct vg_work *w = n->work[k];
+
+    if (!w->part.n_face) {
+      vg_work_free(w);
+      free(n->point[k]);
+      free(n->face[k]);
+      continue;
+    }
+    snprintf(w->path, sizeof w->path, "%.*s%c%zu", VG_PATH_MAX - 12, n->path,
+             w->kind, number_of(n, k));
+    w->serial = vg_partition_serial(p);
+    w->index = left;
+    n->work[left] = w;
+    n->region[left] = w->region;
+    n->point[left] = n->point[k];
+    n->face[left++] = n->face[k];
+  }
+  n->n_work = left;
+}
+
+static vg_status add_works(struct vg_partition *p, struct vg_node *n,
+                           size_t count, const struct vg_region *region,
+                           const struct vg_engine *e, struct vg_error *err)
+{
+  struct stage s = { n, region };
+
+  n->n_work = count;
+  vg_engine_loop(e, count, 1, make_works, &s);
+  for (size_t k = 0; k < count; k++)
+    if (!n->work[k]) return vg_fail_memory(err, "cutting a front");
+  name_works(p, n);
+  return VG_OK;
+}
+
+/* What the tiles of a plane are expected to make, shared out evenly: it
+ * decides the order of tasks only. */
+static void estimate_works(struct vg_node *n)
+{
+  for (size_t i = 0; i < n->n_work; i++) {
+    struct vg_work *w = n->work[i];
+    const struct vg_plane *plane = &w->region.plane[0];
+    int axis = plane->normal[0] > 0 ? 0 : plane->normal[1] > 0 ? 1 : 2;
+    int b = (axis + 1) % 3, c = (axis + 2) % 3;
+    double cells;
+
+    if (n->stage >= VG_LATTICE_STAGES) {
+      w->estimate = (double)w->part.n_face;
+      continue;
+    }
+    cells = vg_load_zone(&n->load, axis, plane->offset, 1);
+    w->estimate = w->kind == VG_SPAN_TILE
+                    ? cells / ((n->lattice.n[b] + 1) * (n->lattice.n[c] + 1))
+                    : 0.1 * cells / (n->lattice.n[b] + n->lattice.n[c] + 1);
+  }
+}
+
+/* Regions of the node's stage. */
+static vg_status list_regions(const struct vg_partition *p, struct vg_node *n,
+                              const struct vg_engine *e,
+                              struct vg_region **region, size_t *count,
+                              struct vg_error *err)
+{
+  *region = NULL;
+  if (n->stage >= VG_LATTICE_STAGES)
+    return vg_node_open_places(p, n, n->stage - VG_LATTICE_STAGES - 1, e,
+                               region, count, err);
+  *count = vg_lattice_count(&n->lattice, n->stage);
+  *region = vg_alloc(*count, sizeof **region);
+  if (!*region) return vg_fail_memory(err, "cutting a front");
+  for (size_t k = 0; k < *count; k++)
+    vg_lattice_region(&n->lattice, n->stage, k, &(*region)[k]);
+  return VG_OK;
+}
+
+static vg_status prepare_stage(struct vg_partition *p, struct vg_node *n,
+                               const struct vg_engine *e,
+                               struct vg_error *err)
+{
+  struct vg_region *region;
+  size_t count;
+  vg_status st = list_regions(p, n, e, &region, &count, err);
+
+  if (st == VG_OK && count) st = vg_select_update(&n->select, e, err);
+  if (st == VG_OK && count) st = make_room(n, count, err);
+  if (st == VG_OK && count) st = add_works(p, n, count, region, e, err);
+  if (st == VG_OK) estimate_works(n);
+  free(region);
+  return st;
+}
+
+static vg_status prepare(struct vg_partition *p, struct vg_node *n,
+                         const struct vg_engine *e, struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  for (; !n->n_work && n->stage < STAGES && st == VG_OK; n->stage++) {
+    drop_stage(n);
+    st = prepare_stage(p, n, e, err);
+  }
+  n->n_left = n->n_work;
+  return st;
+}
+
+/* Nothing to cut: the void is its own only part, to be filled as it is. */
+static vg_status keep_whole(struct vg_node *n, struct vg_error *err)
+{
+  n->child = vg_alloc(1, sizeof *n->child);
+  if (!n->child) return vg_fail_memory(err, "cutting a front");
+  n->child[0] = n;
+  n->n_child = 1;
+  n->is_final = 1;
+  return VG_OK;
+}
+
+vg_status vg_node_start(struct vg_partition *p, struct vg_node *n,
+                        const struct vg_engine *e, struct vg_error *err)
+{
+  vg_status st;
+
+  n->stage = 0;
+  if (!vg_node_wants_cut(p, n)) return keep_whole(n, err);
+  if (!n->retry)
+    VG_TRY(vg_lattice_add_ribs(&n->load, &p->options.rule, &n->lattice, err));
+  vg_select_init(&n->select, &n->front, p->sizing);
+  VG_TRY(prepare(p, n, e, err));
+  if (!n->n_work) {
+    vg_select_release(&n->select);
+    st = keep_whole(n, err);
+  }
+done:
+  return st;
+}
+
+vg_status vg_node_join(struct vg_partition *p, struct vg_node *n,
+                       const struct vg_engine *e, struct vg_error *err)
+{
+  vg_status st;
+
+  VG_TRY(vg_node_put(p, n, e, err));
+  drop_stage(n);
+  VG_TRY(prepare(p, n, e, err));
+  if (!n->n_work) {
+    vg_select_release(&n->select);
+    st = vg_node_split(p, n, e, err);
+  }
+done:
+  return st;
+}

@@ -1,0 +1,264 @@
+/* Changes that cross the front. Outline: a zone is given the front within a
+ * band of its planes, so many of the spacings there, and keeps cells by their
+ * corners. A long cell can leave that band between them, where the spacing is
+ * less, and pass through a front that the zone never saw. Its new faces there
+ * are few; they are tested against the whole front, as it was before the
+ * stage.
+ *
+ * A small body may lie wholly within such cells, and meet no face. From it,
+ * straight away from the plane, the band ends before the cells do, since foot
+ * and so the band stay what they are: so it lies between the plane and a face
+ * around the cells, new or gone, that leaves the band. Points there that the
+ * zone was not given must be outside all faces around its cells. */
+#include <math.h>
+#include <string.h>
+
+#include "core/geometry/predicates.h"
+#include "core/geometry/triangles.h"
+#include "partition/cut/node.h"
+
+/* --- faces that leave the band ------------------------------------------- */
+
+/* Where the spacing was looked up last: it tells about faces nearby too. */
+struct band {
+  const struct vg_region *region;
+  const struct vg_sizing *sizing;
+  double width, slope;       /* in spacings; of the sizing */
+  double x[3], h;
+};
+
+/* Is no point of a triangle so far from the planes as `most`, by the spacing
+ * that was looked up? Between the feet of two points lies no more than between
+ * them. */
+static int is_within(const struct band *b, const double *const x[3],
+                     double most)
+{
+  double far2 = 0;
+
+  for (int i = 0; i < 3; i++) {
+    double d2 = 0;
+
+    for (int k = 0; k < 3; k++)
+      d2 += (x[i][k] - b->x[k]) * (x[i][k] - b->x[k]);
+    far2 = fmax(far2, d2);
+  }
+  return most <= b->width * (b->h - b->slope * sqrt(far2));
+}
+
+/* Does the triangle stay where the front is known? No also in doubt. */
+static int stays(struct band *b, const double *const x[3])
+{
+  const struct vg_region *r = b->region;
+  double most = 0;
+
+  for (int i = 0; i < r->n_plane; i++)
+    for (int k = 0; k < 3; k++)
+      most = fmax(most, fabs(vg_plane_side(&r->plane[i], x[k])));
+  if (is_within(b, x, most)) return 1;
+  for (int k = 0; k < 3; k++) b->x[k] = (x[0][k] + x[1][k] + x[2][k]) / 3;
+  b->h = vg_region_spacing(r, b->sizing, b->x);
+  return is_within(b, x, most);
+}
+
+/* --- faces that cross the front ------------------------------------------ */
+
+struct crossing {
+  const struct vg_node *n;
+  size_t work, first;        /* its new points are there in the front */
+  uint32_t v[3];             /* the face at hand */
+};
+
+/* Faces around the cells: new ones, then those that are gone. */
+static size_t n_around(const struct crossing *c)
+{
+  return c->n->change[c->work].n_face + c->n->change[c->work].n_gone;
+}
+
+static void face_around(const struct crossing *c, size_t k, uint32_t v[3])
+{
+  const struct vg_change *change = &c->n->change[c->work];
+
+  if (k < change->n_face) {
+    for (int j = 0; j < 3; j++)
+      v[j] = vg_node_point(c->n, c->work, c->first, change->face[k][j]);
+  } else {
+    uint32_t face = change->gone[k - change->n_face];
+
+    memcpy(v, c->n->front.face[c->n->face[c->work][face]], 3 * sizeof *v);
+  }
+}
+
+/* Faces that have a cell of the zone now are no longer there. */
+static int is_gone(const struct crossing *c, uint32_t face)
+{
+  const struct vg_change *change = &c->n->change[c->work];
+
+  for (size_t k = 0; k < change->n_gone; k++)
+    if (c->n->face[c->work][change->gone[k]] == face) return 1;
+  return 0;
+}
+
+static int crosses(void *context, uint32_t face)
+{
+  const struct crossing *c = context;
+  const struct vg_front *f = &c->n->front;
+  const uint32_t *v = c->v, *w = f->face[face];
+  int common = 0;
+
+  for (int k = 0; k < 9; k++) common += v[k / 3] == w[k % 3];
+  return common < 3 &&
+         vg_triangles_meet((const double (*)[3])f->x, v, w, v, w) &&
+         !is_gone(c, face);
+}
+
+/* --- bodies within cells ------------------------------------------------- */
+
+struct body {
+  const struct crossing *c;
+  double lo[3], hi[3];       /* where it may lie */
+  double size;               /* of what is around the cells */
+  uint32_t seen[32];         /* points lately found outside, by their numbers */
+};
+
+/* Does the way from x to y pass the triangle? -1: it touches its rim, or
+ * begins on it. */
+static int passes(const double x[3], const double y[3],
+                  const double *const t[3])
+{
+  int up = 0, down = 0, zero = 0;
+  double from, to;
+
+  for (int k = 0; k < 3; k++) {
+    double side = vg_orient3d(x, y, t[k], t[(k + 1) % 3]);
+
+    up |= side > 0;
+    down |= side < 0;
+    zero |= side == 0;
+    if (up && down) return 0;
+  }
+  from = vg_orient3d(t[0], t[1], t[2], x);
+  to = vg_orient3d(t[0], t[1], t[2], y);
+  if ((from > 0 && to > 0) || (from < 0 && to < 0)) return 0;
+  return zero || from == 0 || to == 0 ? -1 : 1;
+}
+
+/* Is x within the cells? Exact, by the faces that a way out passes. */
+static int is_within_cells(const struct body *b, const double x[3])
+{
+  static const double way[][3] = { {0.4, 0.7, 1.1}, {-1.1, 0.5, 0.3},
+    {0.3, -0.9, -0.8}, {1.1, -0.2, 0.6}, {-0.6, -0.5, 1.2} };
+
+  for (size_t k = 0; k < sizeof way / sizeof *way; k++) {
+    double y[3];
+    int sum = 0, one = 0;
+
+    for (int j = 0; j < 3; j++) y[j] = x[j] + 2 * b->size * way[k][j];
+    for (size_t i = 0; i < n_around(b->c) && one >= 0; i++) {
+      const double *t[3];
+      uint32_t v[3];
+
+      face_around(b->c, i, v);
+      for (int j = 0; j < 3; j++) t[j] = b->c->n->front.x[v[j]];
+      one = passes(x, y, t);
+      sum += one;
+    }
+    if (one >= 0) return sum % 2;
+  }
+  return 1;
+}
+
+static int was_given(const struct crossing *c, uint32_t point)
+{
+  for (size_t k = 0; k < c->n->change[c->work].n_part; k++)
+    if (c->n->point[c->work][k] == point) return 1;
+  return 0;
+}
+
+static int is_body(void *context, uint32_t face)
+{
+  enum { SEEN = sizeof ((struct body *)0)->seen / sizeof (uint32_t) };
+  struct body *b = context;
+  const struct vg_front *f = &b->c->n->front;
+
+  for (int k = 0; k < 3; k++) {
+    uint32_t p = f->face[face][k];
+    const double *x = f->x[p];
+    int is_beside = b->seen[p % SEEN] == p;
+
+    for (int j = 0; j < 3; j++)
+      is_beside |= x[j] < b->lo[j] || x[j] > b->hi[j];
+    if (is_beside) continue;
+    if (!was_given(b->c, p) && is_within_cells(b, x)) return 1;
+    b->seen[p % SEEN] = p;
+  }
+  return 0;
+}
+
+/* Is there a body between this face around the cells and the planes? */
+static int holds_body(struct body *b, const struct vg_region *r,
+                      const double *const x[3])
+{
+  const double *box[3] = {b->lo, b->hi, b->lo};  /* flat: only its box counts */
+
+  for (int k = 0; k < 3; k++) {
+    b->lo[k] = fmin(x[0][k], fmin(x[1][k], x[2][k]));
+    b->hi[k] = fmax(x[0][k], fmax(x[1][k], x[2][k]));
+  }
+  for (int i = 0; i < 3 * r->n_plane; i++) {
+    const struct vg_plane *plane = &r->plane[i / 3];
+    double side = vg_plane_side(plane, x[i % 3]);
+
+    for (int k = 0; k < 3; k++) {
+      double foot = x[i % 3][k] - side * plane->normal[k];
+
+      b->lo[k] = fmin(b->lo[k], foot);
+      b->hi[k] = fmax(b->hi[k], foot);
+    }
+  }
+  return vg_select_touched(&b->c->n->select, box, is_body, b);
+}
+
+/* No way out is longer. */
+static double size_of(const struct crossing *c)
+{
+  double lo[3] = {INFINITY, INFINITY, INFINITY};
+  double hi[3] = {-INFINITY, -INFINITY, -INFINITY};
+
+  for (size_t k = 0; k < n_around(c); k++) {
+    uint32_t v[3];
+
+    face_around(c, k, v);
+    for (int j = 0; j < 9; j++) {
+      lo[j % 3] = fmin(lo[j % 3], c->n->front.x[v[j / 3]][j % 3]);
+      hi[j % 3] = fmax(hi[j % 3], c->n->front.x[v[j / 3]][j % 3]);
+    }
+  }
+  return hi[0] - lo[0] + hi[1] - lo[1] + hi[2] - lo[2];
+}
+
+int vg_node_crosses(const struct vg_node *n, size_t i, size_t first)
+{
+  const struct vg_sizing *sizing = n->select.sizing;
+  const struct vg_region *r = &n->region[i];
+  struct crossing c = { .n = n, .work = i, .first = first };
+  struct body body = { .c = &c };
+  struct band b = { .region = r, .sizing = sizing,
+                    .width = vg_region_band(r, VG_BAND_FRONT) };
+
+  if (!r->n_plane || !sizing) return 0;
+  b.slope = vg_sizing_slope(sizing);
+  memset(body.seen, 0xff, sizeof body.seen);
+  for (size_t k = 0; k < n_around(&c); k++) {
+    const double *x[3];
+
+    face_around(&c, k, c.v);
+    for (int j = 0; j < 3; j++) x[j] = n->front.x[c.v[j]];
+    if (stays(&b, x)) continue;
+    if (k < n->change[i].n_face &&
+        vg_select_touched(&n->select, x, crosses, &c))
+      return 1;
+    if (!(body.size > 0)) body.size = size_of(&c);
+    if (holds_body(&body, r, x)) return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,237 @@
+/* Putting what a stage made into the front of its node. Outline: works get
+ * places behind the front in their order; then points are copied, and faces
+ * that are new tested against the front, then put into it, in loops whose
+ * chunks write what is theirs. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "partition/cut/node.h"
+#include "partition/engine/room.h"
+
+/* Points or faces to a chunk of a loop. */
+enum { CHUNK = 8192 };
+
+/* --- changes ------------------------------------------------------------- */
+
+struct put {
+  struct vg_node *n;
+  struct place { size_t point, face; } *at;  /* [n->n_work] of what is new */
+  uint8_t *crosses;          /* [n->n_work] the front */
+};
+
+/* Its points; then faces can be tested, while all of the front is there. */
+static void test_part(void *context, size_t first, size_t end, int worker)
+{
+  const struct put *p = context;
+  struct vg_front *f = &p->n->front;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++) {
+    const struct vg_change *c = &p->n->change[i];
+
+    if (c->n_point)
+      memcpy(f->x + p->at[i].point, c->x, c->n_point * sizeof *f->x);
+    for (size_t k = 0; k < c->n_point; k++)
+      f->name[p->at[i].point + k] = VG_POINT_NAME(c->serial, k);
+    p->crosses[i] = (uint8_t)vg_node_crosses(p->n, i, p->at[i].point);
+  }
+}
+
+/* Faces that the work made, behind those that stay; faces that have a cell now
+ * are gone. No two works of a stage make cells of the same face: walls keep
+ * them apart. Of one that crosses the front nothing stays. */
+static void put_change(struct vg_node *n, size_t i, const struct place *at,
+                       int crosses)
+{
+  struct vg_change *c = &n->change[i];
+  struct vg_front *f = &n->front;
+
+  for (size_t k = 0; k < c->n_gone && !crosses; k++)
+    f->face[n->face[i][c->gone[k]]][0] = VG_FACE_GONE;
+  for (size_t k = 0; k < c->n_face; k++)
+    for (int j = 0; j < 3; j++)
+      f->face[at->face + k][j] =
+        crosses ? VG_FACE_GONE
+                : vg_node_point(n, i, at->point, c->face[k][j]);
+}
+
+static void put_part(void *context, size_t first, size_t end, int worker)
+{
+  const struct put *p = context;
+  struct vg_node *n = p->n;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++) {
+    put_change(n, i, &p->at[i], p->crosses[i]);
+    vg_change_release(&n->change[i]);
+    free(n->point[i]);
+    free(n->face[i]);
+    n->point[i] = n->face[i] = NULL;
+  }
+}
+
+/* Room for all, and where each begins. */
+static vg_status make_room(struct put *p, const struct vg_engine *e,
+                           struct vg_error *err)
+{
+  struct vg_node *n = p->n;
+  struct vg_front *f = &n->front;
+  size_t np = f->n_point, nf = f->n_face;
+
+  p->at = vg_alloc(n->n_work, sizeof *p->at);
+  p->crosses = vg_calloc(n->n_work, sizeof *p->crosses);
+  if (!p->at || !p->crosses) return vg_fail_memory(err, "cutting a front");
+  for (size_t i = 0; i < n->n_work; i++) {
+    p->at[i] = (struct place){ np, nf };
+    np += n->change[i].n_point;
+    nf += n->change[i].n_face;
+  }
+  if (!n->cap_x) n->cap_x = n->cap_name = f->n_point;
+  if (!n->cap_face) n->cap_face = f->n_face;
+  if (vg_room_reserve(e, &f->x, &n->cap_x, f->n_point, np, sizeof *f->x) ||
+      vg_room_reserve(e, &f->name, &n->cap_name, f->n_point, np,
+                      sizeof *f->name) ||
+      vg_room_reserve(e, &f->face, &n->cap_face, f->n_face, nf,
+                      sizeof *f->face))
+    return vg_fail_memory(err, "cutting a front");
+  f->n_point = np;
+  f->n_face = nf;
+  return VG_OK;
+}
+
+/* What the stage made is counted, and what cannot stay given up. */
+static vg_status count_changes(const struct put *put, struct vg_partition *p,
+                               struct vg_error *err)
+{
+  struct vg_node *n = put->n;
+  vg_status st = VG_OK;
+
+  for (size_t i = 0; i < n->n_work && st == VG_OK; i++) {
+    const struct vg_change *c = &n->change[i];
+
+    n->n_blocked += c->blocked || put->crosses[i];
+    if (put->crosses[i]) {
+      st = vg_partition_note_drop(p, c, err);
+      continue;
+    }
+    n->zone_cells += (double)c->n_cell;
+    n->zone_volume += c->volume;
+  }
+  return st;
+}
+
+/* --- blocks of points ---------------------------------------------------- */
+
+static void label_part(void *context, size_t first, size_t end, int worker)
+{
+  struct vg_node *n = context;
+
+  (void)worker;
+  for (size_t i = n->n_block + first; i < n->n_block + end; i++) {
+    const double *x = n->front.x[i];
+    uint32_t b = vg_lattice_block(&n->lattice, x, 0);
+
+    if (vg_lattice_block(&n->lattice, x, 1) != b) b |= VG_ON_PLANE;
+    n->block[i] = (uint16_t)b;
+  }
+}
+
+/* Blocks of the points that are new. */
+static vg_status label_points(struct vg_node *n, const struct vg_engine *e,
+                              struct vg_error *err)
+{
+  size_t all = n->front.n_point;
+
+  if (vg_room_reserve(e, &n->block, &n->cap_block, n->n_block, all,
+                      sizeof *n->block))
+    return vg_fail_memory(err, "cutting a front");
+  vg_engine_loop(e, all - n->n_block, CHUNK, label_part, n);
+  n->n_block = all;
+  return VG_OK;
+}
+
+vg_status vg_node_put(struct vg_partition *p, struct vg_node *n,
+                      const struct vg_engine *e, struct vg_error *err)
+{
+  struct put put = { .n = n };
+  vg_status st = make_room(&put, e, err);
+
+  if (st == VG_OK) {
+    vg_engine_loop(e, n->n_work, 1, test_part, &put);
+    st = count_changes(&put, p, err);
+  }
+  if (st == VG_OK) {
+    vg_engine_loop(e, n->n_work, 1, put_part, &put);
+    st = label_points(n, e, err);
+  }
+  free(put.at);
+  free(put.crosses);
+  return st;
+}
+
+/* --- faces in no block --------------------------------------------------- */
+
+/* Each chunk lists from the place of its first face on. */
+struct look {
+  const struct vg_node *n;
+  uint32_t *face;            /* [faces not yet seen] */
+  size_t *count;             /* [chunks] */
+};
+
+static void look_part(void *context, size_t first, size_t end, int worker)
+{
+  const struct look *l = context;
+  const struct vg_node *n = l->n;
+  size_t m = first;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++) {
+    const uint32_t *v = n->front.face[n->n_seen + i];
+
+    if (v[0] != VG_FACE_GONE && !vg_node_is_in_block(n->block, v))
+      l->face[m++] = (uint32_t)(n->n_seen + i);
+  }
+  l->count[first / CHUNK] = m - first;
+}
+
+static int append_open(struct vg_node *n, const struct look *l, size_t n_chunk)
+{
+  size_t all = n->n_open;
+
+  for (size_t c = 0; c < n_chunk; c++) all += l->count[c];
+  if (vg_reserve(&n->open, &n->cap_open, all, sizeof *n->open)) return -1;
+  for (size_t c = 0; c < n_chunk; c++) {
+    if (!l->count[c]) continue;
+    memcpy(n->open + n->n_open, l->face + c * CHUNK,
+           l->count[c] * sizeof *n->open);
+    n->n_open += l->count[c];
+  }
+  return 0;
+}
+
+vg_status vg_node_list_open(struct vg_node *n, const struct vg_engine *e,
+                            struct vg_error *err)
+{
+  size_t new = n->front.n_face - n->n_seen, left = 0;
+  size_t n_chunk = (new + CHUNK - 1) / CHUNK;
+  struct look l = { n, vg_alloc(new, sizeof *l.face),
+                    vg_alloc(n_chunk, sizeof *l.count) };
+  int bad = !l.face || !l.count;
+
+  /* where no region held a face, nothing was put in that labelled them */
+  if (!bad) bad = label_points(n, e, err) != VG_OK;
+  for (size_t k = 0; k < n->n_open; k++)
+    if (n->front.face[n->open[k]][0] != VG_FACE_GONE)
+      n->open[left++] = n->open[k];
+  n->n_open = left;
+  if (!bad) {
+    vg_engine_loop(e, new, CHUNK, look_part, &l);
+    bad = append_open(n, &l, n_chunk);
+  }
+  free(l.face);
+  free(l.count);
+  if (bad) return vg_fail_memory(err, "cutting a front");
+  n->n_seen = n->front.n_face;
+  return VG_OK;
+}

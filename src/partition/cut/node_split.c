@@ -1,0 +1,483 @@
+/* What a cut leaves: the front, parted by the blocks of the lattice. Outline:
+ * faces that are left lie on one side of every plane (node_close.c), so the
+ * block of a point tells that of its faces, and what bounds a void within a
+ * block never shares a point with another block. Where a face still touches
+ * planes, the blocks on both sides are one void. A void's parts, a body in it
+ * or a crumb that a zone went around, need not be told apart: cutting and
+ * filling take any number of them. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/unite.h"
+#include "partition/cut/node.h"
+#include "partition/engine/room.h"
+
+/* Faces or points to a chunk of a loop. */
+enum { CHUNK = 8192 };
+
+/* Voids below this share of a leaf are filled together. */
+static const double small_share = 0.02;
+/* A cut that leaves more than this in one part did not part its void. */
+static const double not_parted = 0.9;
+/* Cells that zones make of it are not the blocks': spacings to each side. */
+static const double zone_reach = 0.68;
+
+enum { NONE = 0xffff };
+
+struct split {
+  struct vg_node *n;
+  const struct vg_engine *e;
+  size_t n_block, n_chunk;   /* chunks of faces */
+  uint32_t *count;           /* [n_chunk][n_block] faces, then where the first
+                                of a child goes: at the child's first block */
+  uint32_t root[VG_LATTICE_BLOCKS];   /* of blocks (base/unite.h) */
+  uint16_t child[VG_LATTICE_BLOCKS];  /* of a root, or NONE */
+  int is_merged;
+  size_t n_part;
+  struct vg_front *part;     /* [n_part] of the children, in their order */
+};
+
+/* --- blocks that hang together -------------------------------------------- */
+
+static uint32_t block_of(const struct split *s, uint32_t point)
+{
+  return s->n->block[point] & ~VG_ON_PLANE;
+}
+
+static void unite_corners(struct split *s, const uint32_t v[3])
+{
+  const struct vg_node *n = s->n;
+
+  for (int k = 0; k < 3; k++) {
+    s->is_merged |= vg_unite(s->root, block_of(s, v[k]), block_of(s, v[0]));
+    if (n->block[v[k]] & VG_ON_PLANE)
+      s->is_merged |= vg_unite(s->root, block_of(s, v[k]),
+                               vg_lattice_block(&n->lattice,
+                                                n->front.x[v[k]], 1));
+  }
+}
+
+static void count_part(void *context, size_t first, size_t end, int worker)
+{
+  const struct split *s = context;
+  uint32_t *count = s->count + first / CHUNK * s->n_block;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++) {
+    uint32_t p = s->n->front.face[i][0];
+
+    if (p != VG_FACE_GONE) count[block_of(s, p)]++;
+  }
+}
+
+/* Faces of each chunk and block, those of all chunks in sum[]. */
+static vg_status count_faces(struct split *s, size_t *sum,
+                             struct vg_error *err)
+{
+  s->n_block = vg_lattice_blocks(&s->n->lattice);
+  s->n_chunk = (s->n->front.n_face + CHUNK - 1) / CHUNK;
+  s->count = vg_calloc(s->n_chunk * s->n_block, sizeof *s->count);
+  if (!s->count) return vg_fail_memory(err, "the parts of a front");
+  vg_engine_loop(s->e, s->n->front.n_face, CHUNK, count_part, s);
+  for (size_t c = 0; c < s->n_chunk; c++)
+    for (size_t b = 0; b < s->n_block; b++)
+      sum[b] += s->count[c * s->n_block + b];
+  return VG_OK;
+}
+
+/* Blocks that hang together become one; those without faces none. */
+static void number_children(struct split *s, const size_t *n_face)
+{
+  for (uint32_t b = 0; b < VG_LATTICE_BLOCKS; b++) s->root[b] = b;
+  for (size_t k = 0; k < s->n->n_open; k++)
+    unite_corners(s, s->n->front.face[s->n->open[k]]);
+  s->n_part = 0;
+  memset(s->child, 0xff, sizeof s->child);
+  for (uint32_t b = 0; b < s->n_block; b++) {
+    uint32_t r = vg_root_of(s->root, b);
+
+    if (n_face[b] && s->child[r] == NONE)
+      s->child[r] = (uint16_t)s->n_part++;
+  }
+  for (uint32_t b = 0; b < VG_LATTICE_BLOCKS; b++)
+    s->child[b] = s->child[vg_root_of(s->root, b)];
+}
+
+static vg_status find_children(struct split *s, struct vg_error *err)
+{
+  size_t n_face[VG_LATTICE_BLOCKS] = {0};
+  vg_status st;
+
+  VG_TRY(vg_node_list_open(s->n, s->e, err));
+  VG_TRY(count_faces(s, n_face, err));
+  number_children(s, n_face);
+  s->part = vg_calloc(s->n_part, sizeof *s->part);
+  if (!s->part) return vg_fail_memory(err, "the parts of a front");
+  for (size_t b = 0; b < s->n_block; b++)
+    if (n_face[b]) s->part[s->child[b]].n_face += n_face[b];
+done:
+  return st;
+}
+
+/* --- fronts of the children ---------------------------------------------- */
+
+/* Where each chunk puts its first face of each child. */
+static void place_chunks(struct split *s)
+{
+  uint32_t at[VG_LATTICE_BLOCKS] = {0};
+
+  for (size_t c = 0; c < s->n_chunk; c++) {
+    uint32_t *count = s->count + c * s->n_block;
+    uint32_t n[VG_LATTICE_BLOCKS] = {0};
+
+    for (size_t b = 0; b < s->n_block; b++)
+      if (count[b]) n[s->child[b]] += count[b];
+    for (size_t k = 0; k < s->n_part; k++) {
+      count[k] = at[k];
+      at[k] += n[k];
+    }
+  }
+}
+
+struct deal {
+  struct split *s;
+  uint32_t *number;          /* [points of the front] in their child */
+  int *is_short;             /* [n_part] of memory */
+};
+
+/* Children are not more than blocks, so count[] has their places. */
+static void deal_faces(void *context, size_t first, size_t end, int worker)
+{
+  const struct deal *d = context;
+  const struct split *s = d->s;
+  const struct vg_front *f = &s->n->front;
+  uint32_t *at = s->count + first / CHUNK * s->n_block;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++) {
+    uint16_t c;
+
+    if (f->face[i][0] == VG_FACE_GONE) continue;
+    c = s->child[block_of(s, f->face[i][0])];
+    memcpy(s->part[c].face[at[c]++], f->face[i], sizeof *f->face);
+  }
+}
+
+static void clear_numbers(void *context, size_t first, size_t end, int worker)
+{
+  const struct deal *d = context;
+
+  (void)worker;
+  memset(d->number + first, 0xff, (end - first) * sizeof *d->number);
+}
+
+/* Points in the order in which faces use them. All corners of a face are in
+ * blocks of one child (unite_corners), so a point has one child, and its
+ * number one writer. */
+static int number_points(const struct deal *d, struct vg_front *part)
+{
+  const struct vg_front *f = &d->s->n->front;
+  size_t n = 0, cap = 0;
+  uint32_t *point = NULL;
+  int bad = 0;
+
+  for (size_t i = 0; i < part->n_face && !bad; i++) {
+    bad = vg_reserve(&point, &cap, n + 3, sizeof *point);
+    for (int k = 0; k < 3 && !bad; k++) {
+      uint32_t *p = &part->face[i][k];
+
+      if (d->number[*p] == UINT32_MAX) {
+        point[n] = *p;
+        d->number[*p] = (uint32_t)n++;
+      }
+      *p = d->number[*p];
+    }
+  }
+  part->x = bad ? NULL : vg_alloc(n, sizeof *part->x);
+  part->name = bad ? NULL : vg_alloc(n, sizeof *part->name);
+  bad = !part->x || !part->name;
+  for (size_t k = 0; k < n && !bad; k++) {
+    memcpy(part->x[k], f->x[point[k]], sizeof *part->x);
+    part->name[k] = f->name[point[k]];
+  }
+  part->n_point = bad ? 0 : n;
+  free(point);
+  return bad;
+}
+
+static void deal_points(void *context, size_t first, size_t end, int worker)
+{
+  const struct deal *d = context;
+
+  (void)worker;
+  for (size_t c = first; c < end; c++)
+    d->is_short[c] = number_points(d, &d->s->part[c]);
+}
+
+static vg_status deal_out(struct deal *d, struct vg_error *err)
+{
+  struct split *s = d->s;
+  const struct vg_front *f = &s->n->front;
+
+  for (size_t k = 0; k < s->n_part; k++) {
+    s->part[k].face = vg_alloc(s->part[k].n_face, sizeof *f->face);
+    if (!s->part[k].face) return vg_fail_memory(err, "the parts of a front");
+  }
+  place_chunks(s);
+  vg_engine_loop(s->e, f->n_face, CHUNK, deal_faces, d);
+  vg_engine_loop(s->e, f->n_point, CHUNK, clear_numbers, d);
+  vg_engine_loop(s->e, s->n_part, 1, deal_points, d);
+  for (size_t k = 0; k < s->n_part; k++)
+    if (d->is_short[k]) return vg_fail_memory(err, "the parts of a front");
+  return VG_OK;
+}
+
+static vg_status split_front(struct split *s, struct vg_error *err)
+{
+  struct deal d = { s, vg_alloc(s->n->front.n_point, sizeof *d.number),
+                    vg_calloc(s->n_part, sizeof *d.is_short) };
+  struct vg_front *f = &s->n->front;
+  vg_status st = d.number && d.is_short
+                   ? deal_out(&d, err)
+                   : vg_fail_memory(err, "the parts of a front");
+  void *const whole[] = {f->x, f->name, f->face, d.number, d.is_short};
+
+  vg_room_free(s->e, sizeof whole / sizeof *whole, whole);
+  memset(f, 0, sizeof *f);
+  return st;
+}
+
+struct volumes {
+  const struct split *s;
+  double *of;                /* [n_part] */
+};
+
+static void measure_part(void *context, size_t first, size_t end, int worker)
+{
+  const struct volumes *v = context;
+
+  (void)worker;
+  for (size_t k = first; k < end; k++)
+    v->of[k] = vg_front_volume(&v->s->part[k]);
+}
+
+/* Where nothing could be grown beside a block, a body in it may have lost its
+ * void: then the front stays as it is. */
+static vg_status find_nothing(const struct split *s, int *found,
+                              struct vg_error *err)
+{
+  struct volumes v = { s, vg_alloc(s->n_part, sizeof *v.of) };
+
+  *found = 0;
+  if (!v.of) return vg_fail_memory(err, "the parts of a front");
+  if (s->n->n_blocked) {
+    vg_engine_loop(s->e, s->n_part, 1, measure_part, &v);
+    for (size_t k = 0; k < s->n_part; k++) *found |= !(v.of[k] > 0);
+  }
+  free(v.of);
+  return VG_OK;
+}
+
+/* One part again. */
+static vg_status undo(struct split *s, struct vg_error *err)
+{
+  for (size_t k = 1; k < s->n_part; k++) {
+    vg_status st = vg_front_append(&s->part[0], &s->part[k], err);
+
+    if (st < 0) return st;
+    vg_front_release(&s->part[k]);
+  }
+  s->n_part = 1;
+  s->is_merged = 1;
+  return VG_OK;
+}
+
+/* --- children ------------------------------------------------------------ */
+
+/* The child's name, number k or, for what is put together, "r"; path[] has
+ * room (vg_node_wants_cut). */
+static struct vg_node *new_child(const struct vg_node *n, size_t k, int is_rest,
+                                 struct vg_front *front)
+{
+  char path[VG_PATH_MAX];
+  struct vg_node *child;
+
+  if (is_rest) snprintf(path, sizeof path, "%.*s.r", VG_PATH_MAX - 8, n->path);
+  else snprintf(path, sizeof path, "%.*s.%zu", VG_PATH_MAX - 24, n->path, k);
+  child = vg_node_new(path, front);
+  if (!child) return NULL;
+  child->per_cube = n->per_cube;
+  child->levels = n->levels - n->n_bisection;
+  if (child->levels < 0) child->levels = 0;
+  return child;
+}
+
+static vg_status make_children(struct split *s, struct vg_error *err)
+{
+  struct vg_node *n = s->n;
+
+  n->child = vg_calloc(s->n_part + 1, sizeof *n->child);
+  if (!n->child) return vg_fail_memory(err, "the parts of a front");
+  for (size_t k = 0; k < s->n_part; k++) {
+    n->child[k] = new_child(n, k, 0, &s->part[k]);
+    if (!n->child[k]) return vg_fail_memory(err, "the parts of a front");
+    n->n_child++;
+  }
+  return VG_OK;
+}
+
+/* How many cells a cube of the spacing gets is read off the zones; halfway,
+ * since these are along planes. */
+static double correction(struct vg_node *n)
+{
+  double was = n->per_cube, seen = n->zone_cells / n->zone_volume;
+
+  if (!(n->zone_cells > 1000) || !(seen > 0.5 * was && seen < 2 * was))
+    return 1;
+  n->per_cube = 0.5 * (was + seen);
+  return n->per_cube / was;
+}
+
+/* Every child is what was left of one block. */
+static vg_status load_of_blocks(struct split *s, struct vg_error *err)
+{
+  struct vg_node *n = s->n;
+  const double *at[3];
+  size_t n_block = vg_lattice_blocks(&n->lattice);
+  struct vg_load *load = vg_calloc(n_block, sizeof *load);
+  vg_status st;
+
+  if (!load) return vg_fail_memory(err, "the load of a void");
+  for (int k = 0; k < 3; k++) at[k] = n->lattice.at[k];
+  st = vg_load_split_blocks(&n->load, n->lattice.n, at, zone_reach,
+                            correction(n), s->e, load, err);
+  for (size_t b = 0; st == VG_OK && b < n_block; b++) {
+    if (s->child[b] == NONE) {
+      vg_load_release(&load[b]);
+      continue;
+    }
+    n->child[s->child[b]]->load = load[b];
+    n->child[s->child[b]]->per_cube = n->per_cube;
+  }
+  free(load);
+  return st;
+}
+
+static vg_status load_of_fronts(struct vg_node *n, const struct vg_engine *e,
+                                struct vg_error *err)
+{
+  struct vg_void *v = vg_calloc(n->n_child, sizeof *v);
+  struct vg_load *load = vg_calloc(n->n_child, sizeof *load);
+  vg_status st = VG_OK;
+
+  if (!v || !load) st = vg_fail_memory(err, "the load of a void");
+  for (size_t k = 0; st == VG_OK && k < n->n_child; k++) {
+    v[k].n_point = n->child[k]->front.n_point;
+    v[k].x = n->child[k]->front.x;
+    v[k].n_face = n->child[k]->front.n_face;
+    v[k].face = n->child[k]->front.face;
+  }
+  if (st == VG_OK)
+    st = vg_load_split(&n->load, n->n_child, v, correction(n), e, load, err);
+  for (size_t k = 0; st == VG_OK && k < n->n_child; k++) {
+    n->child[k]->load = load[k];
+    n->child[k]->per_cube = n->per_cube;
+  }
+  free(v);
+  free(load);
+  return st;
+}
+
+/* A void that a cut left nearly whole is cut elsewhere next time. */
+static void count_retry(struct vg_partition *p, struct vg_node *n)
+{
+  double sum = 0;
+
+  for (size_t k = 0; k < n->n_child; k++) sum += n->child[k]->load.cells;
+  for (size_t k = 0; k < n->n_child; k++)
+    if (n->child[k]->load.cells > not_parted * sum) {
+      n->child[k]->retry = n->retry + 1;
+      n->child[k]->levels = n->levels;
+      pthread_mutex_lock(&p->lock);
+      p->report.n_retry++;
+      pthread_mutex_unlock(&p->lock);
+    }
+}
+
+/* Put small children together. */
+static vg_status bundle(struct vg_partition *p, struct vg_node *n,
+                        struct vg_error *err)
+{
+  double least = small_share * p->options.rule.leaf_cells, cells = 0;
+  struct vg_front rest = VG_FRONT_INIT;
+  size_t left = 0;
+  vg_status st = VG_OK;
+
+  for (size_t k = 0; k < n->n_child; k++) {
+    struct vg_node *c = n->child[k];
+
+    n->child[k] = NULL;
+    if (st < 0 || c->load.cells >= least) {
+      n->child[left++] = c;
+      continue;
+    }
+    cells += c->load.cells;
+    st = vg_front_append(&rest, &c->front, err);
+    vg_node_free(c);
+  }
+  n->n_child = left;
+  if (st == VG_OK && rest.n_face) {
+    struct vg_node *r = new_child(n, 0, 1, &rest);
+
+    if (!r) st = vg_fail_memory(err, "the parts of a front");
+    else {
+      r->is_final = 1;
+      r->load.cells = cells;
+      n->child[n->n_child++] = r;
+    }
+  }
+  vg_front_release(&rest);
+  return st;
+}
+
+struct plans {
+  const struct vg_partition *p;
+  struct vg_node **child;
+};
+
+static void plan_part(void *context, size_t first, size_t end, int worker)
+{
+  const struct plans *q = context;
+
+  (void)worker;
+  for (size_t k = first; k < end; k++)
+    (void)vg_node_wants_cut(q->p, q->child[k]);
+}
+
+vg_status vg_node_split(struct vg_partition *p, struct vg_node *n,
+                        const struct vg_engine *e, struct vg_error *err)
+{
+  struct split s = { .n = n, .e = e };
+  struct plans plans = { p, NULL };
+  int nothing;
+  vg_status st;
+
+  VG_TRY(find_children(&s, err));
+  VG_TRY(split_front(&s, err));
+  VG_TRY(find_nothing(&s, &nothing, err));
+  if (nothing) VG_TRY(undo(&s, err));
+  VG_TRY(make_children(&s, err));
+  VG_TRY(s.is_merged ? load_of_fronts(n, e, err) : load_of_blocks(&s, err));
+  count_retry(p, n);
+  VG_TRY(bundle(p, n, err));
+  plans.child = n->child;
+  vg_engine_loop(e, n->n_child, 1, plan_part, &plans);
+done:
+  for (size_t k = 0; s.part && k < s.n_part; k++)
+    vg_front_release(&s.part[k]);
+  free(s.part);
+  free(s.count);
+  return st;
+}

@@ -1,0 +1,215 @@
+/* Numbers for what all ranks made: tasks in the order of their paths, each
+ * with its points and cells in its own order. One exchange of counts. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "partition/cut/node.h"
+
+/* One task's share, as the ranks tell each other. */
+struct share {
+  char path[VG_PATH_MAX];
+  uint32_t serial, index;    /* index: among the pieces of its rank */
+  uint64_t n_point, n_cell;
+  uint64_t rank;
+};
+
+static int by_path(const void *a, const void *b)
+{
+  const struct share *s = a, *t = b;
+  int order = strcmp(s->path, t->path);
+
+  return order ? order : s->serial < t->serial ? -1 : 1;
+}
+
+static int by_serial(const void *a, const void *b)
+{
+  const struct vg_place_of *s = a, *t = b;
+
+  return s->serial < t->serial ? -1 : s->serial > t->serial;
+}
+
+static vg_status list_own(const struct vg_partition *p, struct vg_bytes *out,
+                          struct vg_error *err)
+{
+  struct share *s = vg_calloc(p->n_piece, sizeof *s);
+
+  if (!s) return vg_fail_memory(err, "numbering the mesh");
+  for (size_t k = 0; k < p->n_piece; k++) {
+    memcpy(s[k].path, p->piece[k].path, sizeof s[k].path);
+    s[k].serial = p->piece[k].serial;
+    s[k].index = (uint32_t)k;
+    s[k].n_point = p->piece[k].n_point;
+    s[k].n_cell = p->piece[k].n_cell;
+    s[k].rank = (uint64_t)p->rank;
+  }
+  out->n = p->n_piece * sizeof *s;
+  out->data = (unsigned char *)s;
+  return VG_OK;
+}
+
+/* All shares of all ranks, by path. */
+static vg_status gather(const struct vg_partition *p, struct vg_comm *comm,
+                        struct share **out, size_t *n, struct vg_error *err)
+{
+  struct vg_bytes mine = {0, NULL};
+  struct vg_bytes *all = vg_calloc((size_t)p->size, sizeof *all);
+  size_t bytes = 0;
+  vg_status st = all ? list_own(p, &mine, err)
+                     : vg_fail_memory(err, "numbering the mesh");
+
+  *out = NULL;
+  *n = 0;
+  st = vg_comm_agree(comm, st, err);
+  if (st == VG_OK) st = vg_comm_allgather(comm, &mine, all, err);
+  for (int r = 0; st == VG_OK && r < p->size; r++) bytes += all[r].n;
+  if (st == VG_OK) {
+    *out = vg_alloc(bytes, 1);
+    if (!*out) st = vg_fail_memory(err, "numbering the mesh");
+  }
+  for (int r = 0; st == VG_OK && r < p->size; r++)
+    if (all[r].n) {
+      memcpy(*out + *n, all[r].data, all[r].n);
+      *n += all[r].n / sizeof **out;
+    }
+  vg_bytes_release(all, (size_t)p->size);
+  free(mine.data);
+  if (st == VG_OK && *n) qsort(*out, *n, sizeof **out, by_path);
+  return st;
+}
+
+static vg_status number(struct vg_partition *p, size_t n,
+                        const struct share *s, struct vg_error *err)
+{
+  uint64_t point = p->boundary->n_point, cell = 0;
+
+  p->place = vg_alloc(n, sizeof *p->place);
+  p->point_at = vg_alloc(p->n_piece, sizeof *p->point_at);
+  p->cell_at = vg_alloc(p->n_piece, sizeof *p->cell_at);
+  p->domain = vg_alloc(p->n_piece, sizeof *p->domain);
+  if (!p->place || !p->point_at || !p->cell_at || !p->domain)
+    return vg_fail_memory(err, "numbering the mesh");
+  for (size_t k = 0; k < n; k++) {
+    p->place[k].serial = s[k].serial;
+    p->place[k].point = point;
+    if (s[k].rank == (uint64_t)p->rank) {
+      p->point_at[s[k].index] = point;
+      p->cell_at[s[k].index] = cell;
+      p->domain[s[k].index] = (uint32_t)(k + 1);
+    }
+    point += s[k].n_point;
+    cell += s[k].n_cell;
+  }
+  p->n_place = n;
+  if (n) qsort(p->place, n, sizeof *p->place, by_serial);
+  p->slices.n_point = point;
+  p->slices.n_cell[VG_SLICE_TET] = cell;
+  if (point <= UINT32_MAX) return VG_OK;
+  return vg_fail(err, VG_ERR_UNSUPPORTED, "the mesh would have %llu points; "
+                 "at most %u can be numbered: use a coarser spacing",
+                 (unsigned long long)point, UINT32_MAX);
+}
+
+/* --- serving slices ------------------------------------------------------ */
+
+static uint32_t id_of(const struct vg_partition *p, uint64_t name)
+{
+  struct vg_place_of key = { .serial = (uint32_t)(name >> 32) };
+  const struct vg_place_of *at;
+
+  if (!key.serial) return (uint32_t)name;
+  at = bsearch(&key, p->place, p->n_place, sizeof key, by_serial);
+  return at ? (uint32_t)(at->point + (uint32_t)name) : UINT32_MAX;
+}
+
+static int kind_of(char kind)
+{
+  return kind == VG_SPAN_LEAF ? 1 : kind == VG_SPAN_REPAIR ? 3 : 2;
+}
+
+/* The slice without cells that owns the points of the front. */
+static void serve_front(const struct vg_partition *p, struct vg_slice *out)
+{
+  out->n_point = out->n_own = p->boundary->n_point;
+  out->x = (const double (*)[3])p->boundary->point;
+  out->id = out->own = p->front_id;
+}
+
+static vg_status serve(const struct vg_slices *s, size_t i,
+                       struct vg_slice *out, struct vg_error *err)
+{
+  const struct vg_partition *p = s->user;
+  const struct vg_piece *piece;
+  uint32_t *id, *own;
+
+  memset(out, 0, sizeof *out);
+  if (p->rank == 0 && i-- == 0) {
+    serve_front(p, out);
+    return VG_OK;
+  }
+  piece = &p->piece[i];
+  out->n_point = piece->n_in + piece->n_point;
+  out->n_own = piece->n_point;
+  id = vg_alloc(out->n_point + out->n_own, sizeof *id);
+  if (!id) return vg_fail_memory(err, "a slice of the mesh");
+  own = id + out->n_point;
+  for (size_t k = 0; k < piece->n_in; k++) id[k] = id_of(p, piece->in[k]);
+  for (size_t k = 0; k < piece->n_point; k++) {
+    id[piece->n_in + k] = (uint32_t)(p->point_at[i] + k);
+    own[k] = (uint32_t)(piece->n_in + k);
+  }
+  out->x = (const double (*)[3])piece->x;
+  out->id = out->keep = id;
+  out->own = own;
+  out->point_at = p->point_at[i];
+  out->cell_at[VG_SLICE_TET] = p->cell_at[i];
+  out->n_cell[VG_SLICE_TET] = piece->n_cell;
+  out->cell[VG_SLICE_TET] = piece->cell[0];
+  out->domain = p->domain[i];
+  out->kind = (uint8_t)kind_of(piece->kind);
+  return VG_OK;
+}
+
+static void put_back(const struct vg_slices *s, struct vg_slice *slice)
+{
+  (void)s;
+  free(slice->keep);
+  slice->keep = NULL;
+}
+
+static vg_status open_slices(struct vg_partition *p, struct vg_error *err)
+{
+  struct vg_slices *s = &p->slices;
+
+  p->rim = *p->boundary;     /* arrays borrowed */
+  p->rim.n_point = 0;
+  p->rim.point = NULL;
+  p->front_id = vg_alloc(p->boundary->n_point, sizeof *p->front_id);
+  if (!p->front_id) return vg_fail_memory(err, "numbering the mesh");
+  for (size_t k = 0; k < p->boundary->n_point; k++)
+    p->front_id[k] = (uint32_t)k;
+  s->n_boundary_point = p->boundary->n_point;
+  s->boundary = &p->rim;
+  s->n_slice = p->n_piece + (p->rank == 0);
+  for (size_t k = 0; k < p->n_piece; k++) s->n_served += p->piece[k].n_cell;
+  s->get = serve;
+  s->put = put_back;
+  s->user = p;
+  return VG_OK;
+}
+
+vg_status vg_partition_number(struct vg_partition *p, struct vg_comm *comm,
+                              struct vg_error *err)
+{
+  struct share *s = NULL;
+  size_t n;
+  vg_status st;
+
+  VG_TRY(vg_comm_agree(comm, gather(p, comm, &s, &n, err), err));
+  st = number(p, n, s, err);
+  if (st == VG_OK) st = open_slices(p, err);
+  st = vg_comm_agree(comm, st, err);
+done:
+  free(s);
+  return st;
+}

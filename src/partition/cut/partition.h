@@ -1,0 +1,75 @@
+/* partition/cut/partition.h: a void that is cut into parts and filled:
+ * settings, report and what comes of it. Uses core, lattice.h, store.h. */
+#ifndef VG_PARTITION_CUT_PARTITION_H
+#define VG_PARTITION_CUT_PARTITION_H
+
+#include <stdint.h>
+
+#include "core/fill/fill.h"
+#include "partition/cut/lattice.h"
+#include "partition/store/store.h"
+
+/** Cells to a leaf, by default: measured, docs/performance-parallel.md. */
+#define VG_LEAF_CELLS 300000.0
+
+struct vg_partition_options {
+  struct vg_cut_rule rule;
+  int levels;                /* bisections, where rule.leaf_cells is 0 */
+  double cells_per_cube;     /* expected (load.h); what zones hold corrects it,
+                                and leaves that outgrow it are cut again */
+  int threads;
+  int sweeps;                /* of optimisation */
+  uint64_t max_cells;        /* refuse to make more; 0: no limit */
+  uint64_t shuffle;          /* see engine.h */
+  struct vg_store *store;    /* may be NULL */
+  struct vg_digest job;      /* of size field and options, for the store */
+  vg_progress progress;      /* on rank 0; cells done, expected */
+  int (*stop)(void *user);
+  void *user;
+};
+#define VG_PARTITION_OPTIONS_INIT \
+  { .rule = { VG_LEAF_CELLS, -1, 0 }, .threads = 1, .sweeps = 2, \
+    .cells_per_cube = VG_LOAD_CELLS_PER_CUBE }
+
+/** What happened, summed over all ranks. */
+struct vg_partition_report {
+  struct vg_fill_report fill;  /* times are seconds of all workers together */
+  uint64_t n_node, n_pencil, n_tile, n_leaf;
+  uint64_t n_zone_cell;      /* cells of pencils and tiles */
+  uint64_t n_blocked;        /* pencils and tiles that could not be grown */
+  uint64_t n_crossing;       /* among these, those whose cells crossed a front
+                                that they had not been given */
+  uint64_t n_retry;          /* cuts that did not part their void */
+  uint64_t n_uncut;          /* leaves filled although larger than asked for,
+                                because no plane parts them */
+  uint64_t n_outgrown;       /* leaves that outgrew their estimate and were
+                                cut again */
+  uint64_t n_found;          /* tasks whose outcome was in the store */
+  uint64_t n_repair_moved;   /* moves of points on interfaces: some twice */
+  uint64_t n_repair_swapped; /* swaps of faces and edges across interfaces */
+  uint64_t n_repair;         /* bad regions beside interfaces; those that got
+                                better */
+  uint64_t n_repaired;
+  uint64_t n_repair_cell;    /* cells in all those regions */
+  uint64_t n_repair_bad;     /* below VG_SHAPE_AIM among them, before, after */
+  uint64_t n_repair_bad_left;
+  double repair_worst;       /* and the worst one (core/geometry/shape.h) */
+  double repair_worst_left;
+  double repair;             /* seconds of repairs */
+  uint64_t n_elsewhere;      /* voids that were cut at other places, because a
+                                part could not be filled */
+  uint64_t n_elsewhere_cell; /* cells in them, made for nothing */
+  double elsewhere;          /* seconds, in wall */
+  int cuts_elsewhere;        /* times that all cuts were made at other places,
+                                because a part could not be filled */
+  int cuts_given_up;         /* 1: a part could not be filled; the void was
+                                filled uncut, by one worker */
+  double estimate;           /* cells expected at the start */
+  double wall;               /* seconds of the engine */
+  double number;             /* seconds of numbering */
+};
+
+/** The cells of a void, on the ranks that made them. */
+struct vg_partition;
+
+#endif

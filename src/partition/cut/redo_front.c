@@ -1,0 +1,135 @@
+/* The front of a void, from the cells that were made in it: faces that only
+ * one of them has. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/delaunay/tets.h"
+#include "partition/cut/node.h"
+
+/* A face by its corners, rising; sense: 1 or -1, as they were turned. */
+struct side { uint32_t v[3]; int32_t sense; };
+
+static struct side side_of(const uint32_t v[3])
+{
+  struct side s = { {v[0], v[1], v[2]}, 1 };
+
+  for (int k = 0; k < 3; k++) {
+    int i = k % 2;           /* 0 1, 1 2, 0 1 */
+    uint32_t swap = s.v[i];
+
+    if (swap < s.v[i + 1]) continue;
+    s.v[i] = s.v[i + 1];
+    s.v[i + 1] = swap;
+    s.sense = -s.sense;
+  }
+  return s;
+}
+
+static int by_corners(const void *a, const void *b)
+{
+  const struct side *s = a, *t = b;
+
+  for (int k = 0; k < 3; k++)
+    if (s->v[k] != t->v[k]) return s->v[k] < t->v[k] ? -1 : 1;
+  return 0;
+}
+
+/* Faces that look both ways are between two cells: only others stay, rising.
+ * VG_ERR_GEOMETRY where one is there twice. */
+static vg_status cancel(struct vg_front *f, struct vg_error *err)
+{
+  struct side *s = vg_alloc(f->n_face, sizeof *s);
+  size_t left = 0;
+  vg_status st = s ? VG_OK : vg_fail_memory(err, "a front");
+
+  for (size_t k = 0; s && k < f->n_face; k++) s[k] = side_of(f->face[k]);
+  if (s && f->n_face) qsort(s, f->n_face, sizeof *s, by_corners);
+  for (size_t k = 0, end; st == VG_OK && k < f->n_face; k = end) {
+    int sum = 0;
+
+    for (end = k; end < f->n_face && !by_corners(&s[k], &s[end]); end++)
+      sum += s[end].sense;
+    if (!sum) continue;
+    if (abs(sum) > 1)
+      st = vg_fail(err, VG_ERR_GEOMETRY, "a void that was cut has a face "
+                   "twice");
+    f->face[left][0] = s[k].v[0];
+    f->face[left][1] = s[k].v[sum > 0 ? 1 : 2];
+    f->face[left++][2] = s[k].v[sum > 0 ? 2 : 1];
+  }
+  if (st == VG_OK) f->n_face = left;
+  free(s);
+  return st;
+}
+
+struct spot { double x[3]; uint64_t name; uint32_t was; };
+
+/* By their places: names depend on timing. No two have one place, but for
+ * points of the boundary, whose names do not. */
+static int by_place(const void *a, const void *b)
+{
+  const struct spot *s = a, *t = b;
+
+  for (int k = 0; k < 3; k++)
+    if (s->x[k] != t->x[k]) return s->x[k] < t->x[k] ? -1 : 1;
+  return s->name < t->name ? -1 : s->name > t->name;
+}
+
+/* Only points that faces use, by their places. to: [f->n_point] scratch. */
+static void place_points(struct vg_front *f, struct spot *s, uint32_t *to)
+{
+  size_t n = 0;
+
+  memset(to, 0xff, f->n_point * sizeof *to);
+  for (size_t k = 0; k < f->n_face; k++)
+    for (int i = 0; i < 3; i++) {
+      uint32_t v = f->face[k][i];
+
+      if (to[v] != UINT32_MAX) continue;
+      to[v] = 0;
+      s[n] = (struct spot){ .name = f->name[v], .was = v };
+      memcpy(s[n++].x, f->x[v], sizeof s->x);
+    }
+  if (n) qsort(s, n, sizeof *s, by_place);
+  for (size_t k = 0; k < n; k++) {
+    to[s[k].was] = (uint32_t)k;
+    memcpy(f->x[k], s[k].x, sizeof *f->x);
+    f->name[k] = s[k].name;
+  }
+  f->n_point = n;
+  for (size_t k = 0; k < f->n_face; k++)
+    for (int i = 0; i < 3; i++) f->face[k][i] = to[f->face[k][i]];
+}
+
+vg_status vg_redo_settle(struct vg_front *f, struct vg_error *err)
+{
+  struct spot *s = vg_alloc(f->n_point, sizeof *s);
+  uint32_t *to = vg_alloc(f->n_point, sizeof *to);
+  vg_status st = s && to ? cancel(f, err) : vg_fail_memory(err, "a front");
+
+  if (st == VG_OK) place_points(f, s, to);
+  free(s);
+  free(to);
+  /* faces in the order of their new corners */
+  return st == VG_OK ? cancel(f, err) : st;
+}
+
+vg_status vg_redo_front(const struct vg_piece *q, struct vg_front *f,
+                        struct vg_error *err)
+{
+  f->n_point = q->n_in + q->n_point;
+  f->n_face = 4 * q->n_cell;
+  f->x = vg_alloc(f->n_point, sizeof *f->x);
+  f->name = vg_alloc(f->n_point, sizeof *f->name);
+  f->face = vg_alloc(f->n_face, sizeof *f->face);
+  if (!f->x || !f->name || !f->face) return vg_fail_memory(err, "a front");
+  memcpy(f->x, q->x, f->n_point * sizeof *f->x);
+  for (size_t k = 0; k < f->n_point; k++)
+    f->name[k] = k < q->n_in ? q->in[k]
+                             : VG_POINT_NAME(q->serial, k - q->n_in);
+  for (size_t k = 0; k < f->n_face; k++)
+    for (int i = 0; i < 3; i++)
+      f->face[k][i] = q->cell[k / 4][vg_face[k % 4][i]];
+  return vg_redo_settle(f, err);
+}

@@ -1,0 +1,251 @@
+/* The list of ready tasks, on rank 0: who gets what.
+ *
+ * A rank is given a task while it has fewer than workers. It is given one more
+ * per worker, to have its input while the worker is busy, only while at least
+ * twice as many tasks are ready as the job has workers: as long as tasks are
+ * scarce, what is ready next may be more urgent than what would be given
+ * ahead. And when nothing is ready any more, a rank that holds a task it has
+ * not started passes it on to one that waits (RECALL). */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "partition/engine/engine_parts.h"
+
+/* Tasks of a rank's own are preferred while their priority is within this
+ * factor of the highest: saves two messages and an input on its way. */
+#define NEARLY 0.9
+
+/* What the list knows of RECALL to a rank. */
+enum { NOT_ASKED, ASKED, DECLINED };
+
+vg_status vg_list_init(struct vg_list *l, int size, struct vg_error *err)
+{
+  size_t n = (size_t)size;
+
+  l->ready = vg_calloc(n, sizeof *l->ready);
+  l->threads = vg_calloc(n, sizeof *l->threads);
+  l->load = vg_calloc(n, sizeof *l->load);
+  l->asked = vg_calloc(n, sizeof *l->asked);
+  if (!l->ready || !l->threads || !l->load || !l->asked)
+    return vg_fail_memory(err, "the list of tasks");
+  return VG_OK;
+}
+
+void vg_list_release(struct vg_list *l, int size)
+{
+  for (int r = 0; l->ready && r < size; r++)
+    while (l->ready[r]) free(vg_heap_pop(&l->ready[r]));
+  free(l->ready);
+  free(l->threads);
+  free(l->load);
+  free(l->asked);
+  memset(l, 0, sizeof *l);
+}
+
+static void add_load(struct vg_list *l, int r, int d)
+{
+  l->n_room -= l->load[r] < l->threads[r];
+  l->load[r] += d;
+  l->n_room += l->load[r] < l->threads[r];
+  if (d > 0 && l->asked[r] == DECLINED) l->asked[r] = NOT_ASKED;
+}
+
+/* Has rank r a worker without a task, or, ahead, one without a second? Rank 0
+ * needs no tasks of its own ahead: they are at hand. */
+static int room(const struct vg_list *l, int r, int ahead)
+{
+  if (!ahead) return l->threads[r] - l->load[r];
+  if (!r && l->ready[0]) return 0;
+  return 2 * l->threads[r] - l->load[r];
+}
+
+static int roomiest(const struct vg_list *l, int size, int ahead)
+{
+  int best = -1;
+
+  if (!ahead && !l->n_room) return -1;
+  for (int r = 0; r < size; r++)
+    if (room(l, r, ahead) > (best < 0 ? 0 : room(l, best, ahead))) best = r;
+  return best;
+}
+
+static int first_home(const struct vg_list *l, int size)
+{
+  int best = -1;
+
+  for (int r = 0; r < size; r++)
+    if (l->ready[r] && (best < 0 || vg_heap_before(l->ready[r],
+                                                   l->ready[best])))
+      best = r;
+  return best;
+}
+
+/* Priorities may be negative: nearer to zero is higher, then. */
+static int nearly(double key, double best)
+{
+  return key >= (best > 0 ? best * NEARLY : best / NEARLY);
+}
+
+/* Give one task to somebody; 0 when nobody takes one. */
+static int give(struct vg_engine *e, int ahead)
+{
+  struct vg_list *l = &e->list;
+  int home = first_home(l, e->size), to;
+  struct vg_ready *task;
+
+  if (home < 0) return 0;
+  to = room(l, home, ahead) > 0 ? home : roomiest(l, e->size, ahead);
+  if (to < 0) return 0;
+  if (!e->options->shuffle && l->ready[to] &&
+      nearly(l->ready[to]->key, l->ready[home]->key))
+    home = to;
+  task = (struct vg_ready *)vg_heap_pop(&l->ready[home]);
+  l->n_ready--;
+  l->n_out++;
+  add_load(l, to, 1);
+  if (home == e->rank) vg_serve_assign(e, task->handle, to);
+  else vg_engine_say(e, home, VG_SAY_ASSIGN,
+                     (struct vg_say){ .handle = task->handle, .to = to });
+  free(task);
+  return 1;
+}
+
+/* Workers wait and nothing is ready: have those who hold tasks that they have
+ * not started pass them on. Whether one does is known to itself only; load
+ * counts more tasks than workers is a hint, and it may decline. */
+static void recall(struct vg_engine *e)
+{
+  struct vg_list *l = &e->list;
+
+  for (int r = 0; r < e->size && l->n_room; r++) {
+    int to;
+
+    if (l->load[r] <= l->threads[r] || l->asked[r] != NOT_ASKED) continue;
+    to = roomiest(l, e->size, 0);
+    add_load(l, to, 1);
+    l->asked[r] = ASKED;
+    if (r == e->rank) vg_serve_recall(e, to);
+    else vg_engine_say(e, r, VG_SAY_RECALL, (struct vg_say){ .to = to });
+  }
+}
+
+static void finish(struct vg_engine *e)
+{
+  struct vg_list *l = &e->list;
+
+  l->ended = 1;
+  for (int r = 1; r < e->size; r++) {
+    struct vg_verdict *v = vg_alloc(1, sizeof *v);
+    struct vg_bytes b = { sizeof *v, (unsigned char *)v };
+
+    if (v) {
+      *v = l->verdict;
+      v->sent = e->sent[r] + 1;
+    }
+    vg_engine_post(e, r, VG_SAY_END, &b);
+  }
+  e->verdict = l->verdict;
+  e->ending = 1;
+  vg_engine_wake(e);
+}
+
+static void dispatch(struct vg_engine *e)
+{
+  struct vg_list *l = &e->list;
+
+  if (l->ended) return;
+  if (!l->draining) {
+    while (l->n_ready && l->n_room && give(e, 0)) ;
+    while (e->size > 1 && l->n_ready >= 2 * l->n_worker && give(e, 1)) ;
+    if (e->size > 1 && !l->n_ready && l->n_room) recall(e);
+  }
+  if (!l->ended && l->n_hello == (size_t)e->size && !l->n_out &&
+      (l->draining || !l->n_ready))
+    finish(e);
+}
+
+static void add_ready(struct vg_engine *e, int from, const struct vg_notice *n)
+{
+  struct vg_list *l = &e->list;
+  struct vg_ready *task = vg_alloc(1, sizeof *task);
+
+  if (!task) {
+    struct vg_error err = VG_ERROR_INIT;
+
+    vg_fail_memory(&err, "the list of tasks");
+    vg_tell_fail(e, err.code, n->path, &err);
+    return;
+  }
+  *task = (struct vg_ready){ .handle = n->handle };
+  memcpy(task->path, n->path, sizeof task->path);
+  task->place.key = n->key;
+  task->place.path = task->path;
+  vg_heap_push(&l->ready[from], &task->place);
+  l->n_ready++;
+}
+
+/* Pinned tasks are with their rank already. */
+void vg_list_news(struct vg_engine *e, int from, const struct vg_news *news,
+                  const struct vg_notice *notice)
+{
+  struct vg_list *l = &e->list;
+
+  if (news->ended) {
+    l->n_done++;
+    l->n_out--;
+    l->cells += (double)news->n_cell;
+    l->open -= news->weight;
+  } else {
+    l->n_hello++;
+    l->threads[from] = news->threads;
+    l->n_worker += (size_t)news->threads;
+    l->n_room += l->load[from] < news->threads;
+  }
+  for (uint64_t i = 0; i < news->n; i++) {
+    l->n_known++;
+    l->open += notice[i].weight;
+    if (notice[i].pinned) {
+      l->n_out++;
+      add_load(l, from, 1);
+    } else {
+      add_ready(e, from, &notice[i]);
+    }
+  }
+  dispatch(e);
+}
+
+void vg_list_free(struct vg_engine *e, int from)
+{
+  add_load(&e->list, from, -1);
+  dispatch(e);
+}
+
+void vg_list_moved(struct vg_engine *e, int from, int to, int ok)
+{
+  struct vg_list *l = &e->list;
+
+  l->asked[from] = ok ? NOT_ASKED : DECLINED;
+  add_load(l, ok ? from : to, -1);
+  dispatch(e);
+}
+
+/* Of several failures the one with the lowest path is told, so that messages
+ * repeat as far as can be; any failure rather than a mere stop. */
+void vg_list_fail(struct vg_engine *e, const struct vg_verdict *v)
+{
+  struct vg_list *l = &e->list;
+  struct vg_verdict *w = &l->verdict;
+
+  if (l->ended) return;
+  if (!w->status || (v->status < 0 && w->status > 0) ||
+      (v->status < 0 && strcmp(v->path, w->path) < 0))
+    *w = *v;
+  if (!l->draining) {
+    l->draining = 1;
+    for (int r = 1; r < e->size; r++)
+      vg_engine_say(e, r, VG_SAY_DRAIN, (struct vg_say){ 0 });
+  }
+  vg_serve_drain(e);
+  dispatch(e);
+}

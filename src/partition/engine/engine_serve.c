@@ -1,0 +1,414 @@
+/* The calling thread of vg_engine_run: messages, and what the caller polls.
+ *
+ * MPI has no wait for a message that leaves the core to others, so this thread
+ * sleeps between polls: briefly after something came or was sent, longer and
+ * longer while nothing happens, until the polls take SHARE of a core. What one
+ * takes is measured, as it differs tenfold between machines: so where waking
+ * is cheap, messages wait less. Those from the same node wait for nothing, as
+ * the sender rings. Alone it is only woken for the caller's. */
+#define _GNU_SOURCE
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "base/clock.h"
+#include "base/memory.h"
+#include "partition/engine/engine_parts.h"
+
+/* Seconds. */
+#define SLEEP_MIN 50e-6      /* and as much again, by the kernel's slack */
+#define SLEEP_MORE 1.5
+#define SLEEP_LOW 300e-6     /* bounds of the longest sleep */
+#define SLEEP_HIGH 5e-3
+#define SLEEP_ALONE 20e-3
+#define SHARE 0.005
+#define STOP_EVERY 20e-3
+#define PROGRESS_EVERY 0.2
+#define PATIENCE 30.0         /* with a mailbox that fails */
+
+static void push_out(struct vg_engine *e, struct vg_job *j, int to)
+{
+  j->to = to;
+  j->next = NULL;
+  if (e->out.last) e->out.last->next = j;
+  else e->out.first = j;
+  e->out.last = j;
+  vg_engine_wake(e);
+}
+
+void vg_serve_assign(struct vg_engine *e, uint64_t handle, int to)
+{
+  struct vg_job *j = e->home[handle];
+
+  if (to == e->rank) vg_work_queue(e, j);
+  else push_out(e, j, to);
+}
+
+void vg_serve_recall(struct vg_engine *e, int to)
+{
+  struct vg_job *j = (struct vg_job *)vg_heap_pop(&e->queue[0]);
+
+  if (j) push_out(e, j, to);
+  vg_tell_moved(e, to, j != NULL);
+}
+
+void vg_serve_drain(struct vg_engine *e)
+{
+  atomic_store(&e->stopping, 1);
+  pthread_cond_broadcast(&e->work);
+}
+
+/* --- inputs on their way ------------------------------------------------- */
+
+static vg_status pack(struct vg_engine *e, struct vg_job *j,
+                      struct vg_error *err)
+{
+  struct vg_bytes *b = &j->bytes;
+  struct vg_carry c;
+  unsigned char *data;
+
+  memset(&c, 0, sizeof c);
+  if (!j->packed && j->task.input) {
+    vg_status st = e->ops->pack_input(e->user, j->task.input, b, err);
+
+    if (st) return st;
+    j->packed = 1;
+  }
+  data = vg_realloc(b->data, b->n + sizeof c, 1);
+  if (!data) return vg_fail_memory(err, "the input of a task");
+  b->data = data;
+  memcpy(c.path, j->task.path, sizeof c.path);
+  memcpy(c.after, j->after, sizeof c.after);
+  c.key = j->place.key;
+  c.priority = j->task.priority;
+  c.weight = j->task.weight;
+  c.handle = j->handle;
+  c.home = j->home;
+  c.kind = j->task.kind;
+  c.moves = j->task.moves;
+  c.has = j->packed;
+  memcpy(data + b->n, &c, sizeof c);
+  b->n += sizeof c;
+  return VG_OK;
+}
+
+static void send_input(struct vg_engine *e, struct vg_job *j)
+{
+  struct vg_error err = VG_ERROR_INIT;
+  vg_status st = VG_OK;
+  int at_home = j->home == e->rank, to = j->to;
+
+  if (vg_engine_stopping(e) || (st = pack(e, j, &err))) {
+    vg_engine_lock(e);
+    if (st) vg_tell_fail(e, st < 0 ? st : VG_BLOCKED, j->task.path, &err);
+    vg_engine_unlock(e);
+    vg_work_drop(e, j);
+    return;
+  }
+  if (at_home && j->task.input) {
+    e->ops->release_input(e->user, j->task.input);
+    j->task.input = NULL;
+  }
+  j->packed = 0;
+  vg_engine_lock(e);
+  vg_engine_post(e, to, VG_SAY_INPUT, &j->bytes);
+  j->bytes = (struct vg_bytes){ 0 };
+  vg_engine_unlock(e);
+  if (!at_home) vg_job_free(e, j);
+}
+
+static int send_inputs(struct vg_engine *e)
+{
+  struct vg_job *j;
+  int n = 0;
+
+  for (;; n++) {
+    vg_engine_lock(e);
+    j = e->out.first;
+    if (j && !(e->out.first = j->next)) e->out.last = NULL;
+    vg_engine_unlock(e);
+    if (!j) return n;
+    send_input(e, j);
+  }
+}
+
+/* --- messages ------------------------------------------------------------ */
+
+/* Cut what is at the end of the bytes off. */
+static void cut(struct vg_bytes *b, void *end, size_t n)
+{
+  b->n -= n;
+  memcpy(end, b->data + b->n, n);
+}
+
+/* A task to be done here; one of our own may come back unstarted. */
+static void take_input(struct vg_engine *e, struct vg_bytes *b)
+{
+  struct vg_carry c;
+  struct vg_job *j;
+
+  cut(b, &c, sizeof c);
+  j = c.home == e->rank ? e->home[c.handle] : vg_calloc(1, sizeof *j);
+  if (!j) {
+    struct vg_error err = VG_ERROR_INIT;
+
+    vg_fail_memory(&err, "a task");
+    vg_tell_fail(e, err.code, c.path, &err);
+    vg_tell_dropped(e, c.weight);
+    return;
+  }
+  memcpy(j->task.path, c.path, sizeof c.path);
+  memcpy(j->after, c.after, sizeof c.after);
+  j->task.kind = (char)c.kind;
+  j->task.moves = c.moves;
+  j->task.priority = c.priority;
+  j->task.weight = c.weight;
+  j->handle = c.handle;
+  j->home = c.home;
+  j->place.key = c.key;
+  j->place.path = j->task.path;
+  j->packed = c.has;
+  j->bytes = *b;
+  *b = (struct vg_bytes){ 0 };
+  vg_work_queue(e, j);
+}
+
+static void take_outcome(struct vg_engine *e, int from, struct vg_bytes *b)
+{
+  struct vg_return ret;
+  struct vg_job *j;
+
+  cut(b, &ret, sizeof ret);
+  j = e->home[ret.handle];
+  j->n_cell = ret.n_cell;
+  j->runner = from;
+  j->packed = ret.has != 0;
+  j->bytes = *b;
+  *b = (struct vg_bytes){ 0 };
+  vg_work_end(e, j);
+  pthread_cond_signal(&e->clerk);
+}
+
+static void take_news(struct vg_engine *e, int from, const struct vg_bytes *b)
+{
+  struct vg_news news;
+
+  memcpy(&news, b->data, sizeof news);
+  vg_list_news(e, from, &news,
+               (const struct vg_notice *)(b->data + sizeof news));
+}
+
+static void take_verdict(struct vg_engine *e, const struct vg_message *m)
+{
+  struct vg_verdict v;
+
+  memcpy(&v, m->bytes.data, sizeof v);
+  if (m->kind == VG_SAY_FAIL) {
+    vg_list_fail(e, &v);
+    return;
+  }
+  e->verdict = v;
+  e->said[0] = v.sent;
+  e->ending = 1;
+}
+
+static void take_say(struct vg_engine *e, const struct vg_message *m)
+{
+  struct vg_say say;
+
+  memcpy(&say, m->bytes.data, sizeof say);
+  switch (m->kind) {
+  case VG_SAY_FREE: vg_list_free(e, m->from); break;
+  case VG_SAY_MOVED: vg_list_moved(e, m->from, say.to, say.ok); break;
+  case VG_SAY_ASSIGN: vg_serve_assign(e, say.handle, say.to); break;
+  case VG_SAY_RECALL: vg_serve_recall(e, say.to); break;
+  case VG_SAY_DRAIN: vg_serve_drain(e); break;
+  case VG_SAY_BYE: e->said[m->from] = say.handle; break;
+  }
+}
+
+/* There was no memory for a message, as poll has said before. If it was a task
+ * on its way, that is dropped. */
+static void lose(struct vg_engine *e, const struct vg_message *m)
+{
+  if (m->kind != VG_SAY_INPUT && m->kind != VG_SAY_OUTCOME)
+    vg_comm_abort(e->comm, 1);
+  vg_tell_dropped(e, 0);
+}
+
+static void take(struct vg_engine *e, struct vg_message *m)
+{
+  vg_engine_lock(e);
+  e->received[m->from]++;
+  if (!m->bytes.data) lose(e, m);
+  else switch (m->kind) {
+  case VG_SAY_NEWS: take_news(e, m->from, &m->bytes); break;
+  case VG_SAY_INPUT: take_input(e, &m->bytes); break;
+  case VG_SAY_OUTCOME: take_outcome(e, m->from, &m->bytes); break;
+  case VG_SAY_FAIL: case VG_SAY_END: take_verdict(e, m); break;
+  default: take_say(e, m);
+  }
+  vg_engine_unlock(e);
+  free(m->bytes.data);
+}
+
+/* Take all messages. When one cannot be taken the job fails, and may get the
+ * memory that this wants while tasks are dropped; after PATIENCE the rank
+ * gives up, since the others would wait for it. Returns how many came. */
+static int receive(struct vg_engine *e, double *failing)
+{
+  struct vg_error err = VG_ERROR_INIT;
+  struct vg_message m;
+  vg_status st;
+  int n = 0;
+
+  for (; (st = vg_comm_poll(e->comm, &m, &err)) == VG_OK; n++) take(e, &m);
+  if (st > 0) {
+    *failing = 0;
+    return n;
+  }
+  if (!*failing) {
+    *failing = vg_clock();
+    vg_engine_lock(e);
+    vg_tell_fail(e, st, "", &err);
+    vg_engine_unlock(e);
+  } else if (vg_clock() - *failing > PATIENCE) {
+    vg_comm_abort(e->comm, 1);
+  }
+  return n;
+}
+
+/* --- the loop ------------------------------------------------------------ */
+
+static void ask_stop(struct vg_engine *e)
+{
+  const struct vg_engine_options *o = e->options;
+
+  if (!o->stop || vg_engine_stopping(e) || !o->stop(o->user)) return;
+  vg_engine_lock(e);
+  vg_tell_fail(e, VG_BLOCKED, "", NULL);
+  vg_engine_unlock(e);
+}
+
+static void show_progress(struct vg_engine *e)
+{
+  const struct vg_engine_options *o = e->options;
+  struct vg_list *l = &e->list;
+  double cells, known;
+  size_t n_done, n_known;
+
+  if (e->rank || !o->progress) return;
+  vg_engine_lock(e);
+  cells = l->cells;
+  known = l->cells + (l->open > 0 && l->n_done < l->n_known ? l->open : 0);
+  n_done = l->n_done;
+  n_known = l->n_known;
+  vg_engine_unlock(e);
+  if (!o->progress(o->user, cells, known, n_done, n_known) ||
+      vg_engine_stopping(e))
+    return;
+  vg_engine_lock(e);
+  vg_tell_fail(e, VG_BLOCKED, "", NULL);
+  vg_engine_unlock(e);
+}
+
+/* Nothing is left, and no message is on its way to this rank. */
+static int all_over(const struct vg_engine *e)
+{
+  int first = e->rank ? 0 : 1, end = e->rank ? 1 : e->size;
+
+  if (!e->ending) return 0;
+  for (int r = first; r < end; r++)
+    if (!e->said[r] || e->said[r] != e->received[r]) return 0;
+  return 1;
+}
+
+struct pace {
+  double sleep, longest;     /* s */
+  double cpu;                /* of this thread, when counting began */
+  int n;                     /* polls in vain since */
+};
+
+static void set_pace(struct pace *p, int active)
+{
+  enum { SAMPLE = 32 };
+  double cpu;
+
+  if (active) {
+    p->sleep = SLEEP_MIN;
+    p->n = -1;
+  } else {
+    p->sleep = fmin(SLEEP_MORE * p->sleep, p->longest);
+  }
+  p->n++;
+  if (p->n % SAMPLE) return;
+  cpu = vg_clock_thread();
+  if (p->n)
+    p->longest = fmax(SLEEP_LOW, fmin((cpu - p->cpu) / (SAMPLE * SHARE),
+                                      SLEEP_HIGH));
+  p->cpu = cpu;
+  p->n = 0;
+}
+
+/* With the lock. Among ranks it is given back meanwhile. */
+static void sleep_so_long(struct vg_engine *e, double seconds, unsigned bell)
+{
+  struct timespec until;
+  double t = vg_clock() + seconds;
+
+  if (e->size > 1) {
+    vg_engine_unlock(e);
+    vg_comm_listen(e->comm, bell, seconds);
+    vg_engine_lock(e);
+    return;
+  }
+  until.tv_sec = (time_t)t;
+  until.tv_nsec = (long)(1e9 * (t - (double)until.tv_sec));
+  pthread_cond_timedwait(&e->serve, &e->lock, &until);
+}
+
+/* Sleep, unless over, something is to be sent, or the bell has rung since it
+ * was heard. Returns 1 when over. */
+static int doze(struct vg_engine *e, struct pace *pace, int active,
+                unsigned bell)
+{
+  int over;
+
+  vg_engine_lock(e);
+  if (e->size > 1) set_pace(pace, active || e->hurry);
+  e->hurry = 0;
+  over = all_over(e);
+  if (!over && !e->out.first) {
+    sleep_so_long(e, pace->sleep, bell);
+    over = all_over(e);
+  }
+  vg_engine_unlock(e);
+  return over;
+}
+
+void vg_serve(struct vg_engine *e)
+{
+  struct pace pace = { .sleep = e->size > 1 ? SLEEP_MIN : SLEEP_ALONE,
+                       .longest = SLEEP_LOW };
+  double failing = 0, stop = 0, progress = e->begin;
+  unsigned bell = 0;
+  int active;
+
+  do {
+    double now = vg_clock();
+
+    if (e->size > 1) bell = vg_comm_bell(e->comm);
+    active = e->size > 1 ? receive(e, &failing) : 0;
+    active += send_inputs(e);
+    if (now - stop >= STOP_EVERY) {
+      ask_stop(e);
+      stop = now;
+    }
+    if (now - progress >= PROGRESS_EVERY) {
+      show_progress(e);
+      progress = now;
+    }
+  } while (!doze(e, &pace, active, bell));
+  show_progress(e);
+}

@@ -1,0 +1,125 @@
+/* What a rank tells the list: by a call on rank 0, by a message elsewhere. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "partition/engine/engine_parts.h"
+
+void vg_engine_wake(struct vg_engine *e)
+{
+  if (e->size > 1) vg_comm_ring(e->comm);
+  else pthread_cond_signal(&e->serve);
+}
+
+/* A message that cannot even be posted would leave the others waiting for
+ * ever: then the job ends here. */
+void vg_engine_post(struct vg_engine *e, int to, int kind, struct vg_bytes *b)
+{
+  if (!b->data || vg_comm_post(e->comm, to, kind, b, NULL) < 0)
+    vg_comm_abort(e->comm, 1);
+  e->sent[to]++;
+  e->hurry = 1;
+  vg_engine_wake(e);
+}
+
+static void post_copy(struct vg_engine *e, int to, int kind, const void *what,
+                      size_t n)
+{
+  struct vg_bytes b = { n, vg_alloc(n, 1) };
+
+  if (b.data) memcpy(b.data, what, n);
+  vg_engine_post(e, to, kind, &b);
+}
+
+void vg_engine_say(struct vg_engine *e, int to, int kind, struct vg_say say)
+{
+  post_copy(e, to, kind, &say, sizeof say);
+}
+
+/* Give the fresh tasks their numbers; room was made when they were
+ * submitted. Pinned ones need not wait for the list. */
+static uint64_t enter_fresh(struct vg_engine *e)
+{
+  size_t n = e->n_fresh;
+
+  for (size_t i = 0; i < n; i++) {
+    struct vg_job *j = e->fresh[i];
+    struct vg_notice *notice = &e->notice[i];
+
+    j->handle = e->n_home;
+    e->home[e->n_home++] = j;
+    memcpy(notice->path, j->task.path, sizeof notice->path);
+    notice->key = j->place.key;
+    notice->weight = j->task.weight;
+    notice->handle = j->handle;
+    notice->pinned = j->task.pinned != 0;
+    if (j->task.pinned) vg_work_queue(e, j);
+  }
+  e->n_fresh = 0;
+  return n;
+}
+
+static void send_news(struct vg_engine *e, const struct vg_news *news)
+{
+  size_t head = sizeof *news, tail = news->n * sizeof *e->notice;
+  struct vg_bytes b = { head + tail, NULL };
+
+  if (!e->rank) {
+    vg_list_news(e, 0, news, e->notice);
+    return;
+  }
+  b.data = vg_alloc(b.n, 1);
+  if (b.data) {
+    memcpy(b.data, news, head);
+    if (tail) memcpy(b.data + head, e->notice, tail);
+  }
+  vg_engine_post(e, 0, VG_SAY_NEWS, &b);
+}
+
+void vg_tell_news(struct vg_engine *e, const struct vg_job *ended)
+{
+  struct vg_news news = { .threads = e->threads };
+
+  if (ended) {
+    news.ended = 1;
+    news.weight = ended->task.weight;
+    news.n_cell = ended->n_cell;
+  }
+  news.n = enter_fresh(e);
+  send_news(e, &news);
+}
+
+void vg_tell_dropped(struct vg_engine *e, double weight)
+{
+  struct vg_news news = { .ended = 1, .weight = weight };
+
+  send_news(e, &news);
+}
+
+void vg_tell_free(struct vg_engine *e)
+{
+  if (!e->rank) vg_list_free(e, 0);
+  else vg_engine_say(e, 0, VG_SAY_FREE, (struct vg_say){ 0 });
+}
+
+void vg_tell_moved(struct vg_engine *e, int to, int ok)
+{
+  if (!e->rank) vg_list_moved(e, 0, to, ok);
+  else vg_engine_say(e, 0, VG_SAY_MOVED,
+                     (struct vg_say){ .to = to, .ok = ok });
+}
+
+void vg_tell_fail(struct vg_engine *e, vg_status status, const char *path,
+                  const struct vg_error *err)
+{
+  struct vg_verdict v;
+
+  memset(&v, 0, sizeof v);
+  v.status = status;
+  v.from = e->rank;
+  memcpy(v.path, path, strlen(path));
+  if (err) memcpy(v.text, err->text, sizeof v.text);
+  vg_serve_drain(e);
+  if (!e->rank) vg_list_fail(e, &v);
+  else post_copy(e, 0, VG_SAY_FAIL, &v, sizeof v);
+}

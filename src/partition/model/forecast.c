@@ -1,0 +1,482 @@
+#include "partition/model/forecast_parts.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/geometry/vector.h"
+#include "partition/model/model.h"
+
+/* Measured: docs/performance-parallel.md, Model. */
+const struct vg_rates vg_rates_measured = {
+  .pencil = { 0, 1.3e-6, 2.5e-6, 4.2e-6, 0, 0, 0 },
+  .rib = { 0, 3.9e-6, 9.6e-6, 4.2e-6, 0, 0, 0 },
+  .tile = { 0, 1.7e-6, 4.3e-6, 1.6e-6, 0, 0, 0 },
+  .leaf = { 0, 0.8e-6, 1.5e-6, 1.85e-6, 0, 0, 0 },
+  .closing = { 2.5e-3, 0, 0, 0, 0, 0, 0 },
+  .repair = { 0, 0.2e-6, 1.9e-6, 0, 0, 0, 0 },
+  .plan = { 0, 0, 0, 0.021e-6, 0, 0.12e-6, 0.98 },
+  .join = { 0, 0, 0, 0.04e-6, 0, 0.12e-6, 0.98 },
+  .close = { 0, 0, 0, 0.025e-6, 0.3e-3, 0, 0.98 },
+  .split = { 0, 0, 0, 0.045e-6, 0, 0, 0.98 },
+};
+
+/* Loops over fewer faces are of one chunk or two (node_split.c). */
+static const double loop_faces = 5000;
+
+/* Where three planes meet, so many places are left where parts hang together,
+ * with so many faces beside them; their cells, about 200, are the tiles'. */
+static const double places_per_corner = 0.5, place_faces = 900;
+
+/* Bytes of a front per face: three indices, half a point and its name. */
+static const double bytes_per_face = 28;
+
+/* As node.h and node_split.c have them. */
+enum { RETRIES = 5 };
+static const double small_share = 0.02, not_parted = 0.9;
+/* Of less than a cell, what zones leave of a block is no void. */
+static const double least_void = 1;
+
+struct forecast {
+  struct vg_outlook *out;
+  double n_handed, handed;   /* tasks since the last join, faces they got */
+  struct vg_amount zones;       /* made by pencils and tiles */
+  char leaf[VG_PATH_MAX];    /* one of the leaves */
+  const struct vg_cut_rule *rule;
+  const struct vg_rates *rates;
+  struct vg_error *err;
+};
+
+void vg_outlook_release(struct vg_outlook *o)
+{
+  free(o->node);
+  vg_spans_release(&o->spans);
+  memset(o, 0, sizeof *o);
+}
+
+/* Inner points have 6 cells each in the lattice that fills make (12 in a cube
+ * of two points), points on the boundary fewer, as measured. */
+double vg_outlook_points(double cells, double faces)
+{
+  return cells / 6 + 0.2 * faces;
+}
+
+/* --- tasks --------------------------------------------------------------- */
+
+static struct vg_amount amount_of(const struct vg_load *l)
+{
+  struct vg_amount a = {0, 0};
+
+  for (size_t i = 0; i < l->n; i++) vg_amount_add(&a, &l->cube[i], 1);
+  return a;
+}
+
+static double seconds(const struct vg_task_rate *r, struct vg_amount a,
+                      double faces)
+{
+  return r->task + r->even * (a.cells - a.graded) + r->graded * a.graded +
+         r->face * faces;
+}
+
+/* a: what it makes; for joins what is in the void. */
+static vg_status add_task(struct forecast *c, const char *path,
+                          const char *after, char kind,
+                          const struct vg_task_rate *rate, struct vg_amount a,
+                          double faces, double cubes)
+{
+  struct vg_spans *s = &c->out->spans;
+  int makes = kind != VG_SPAN_JOIN;
+  struct vg_span span = { .kind = kind, .estimate = a.cells };
+
+  snprintf(span.path, sizeof span.path, "%s", path);
+  snprintf(span.after, sizeof span.after, "%s", after);
+  span.cpu = seconds(rate, makes ? a : (struct vg_amount){0, 0}, faces);
+  if (faces > loop_faces)
+    span.loops = rate->loops * (1 - loop_faces / faces) * span.cpu;
+  if (makes) span.n_cell = (uint64_t)(a.cells + 0.5);
+  span.bytes_in = (uint64_t)(bytes_per_face * faces +
+                             cubes * sizeof(struct vg_load_cube));
+  if (kind == VG_SPAN_PENCIL || kind == VG_SPAN_TILE)
+    span.bytes_out = span.bytes_in;
+  return vg_spans_add(s, &span, c->err);
+}
+/* --- the tree ------------------------------------------------------------ */
+
+static vg_status add_node(struct forecast *c, const struct vg_part *p,
+                          const struct vg_lattice *l, size_t *index)
+{
+  struct vg_outlook *o = c->out;
+  struct vg_outlook_node *n;
+
+  if (vg_reserve(&o->node, &o->cap_node, o->n_node + 1, sizeof *o->node))
+    return vg_fail_memory(c->err, "a forecast");
+  *index = o->n_node;
+  n = &o->node[o->n_node++];
+  memset(n, 0, sizeof *n);
+  memcpy(n->path, p->path, sizeof n->path);
+  memcpy(n->lo, p->lo, sizeof n->lo);
+  memcpy(n->hi, p->hi, sizeof n->hi);
+  n->parent = p->parent;
+  n->depth = p->depth;
+  n->cells = p->load.cells;
+  n->faces = vg_bits_faces(&p->front);
+  if (l) n->lattice = *l;
+  n->lattice.n_rib = 0;
+  n->lattice.rib = NULL;
+  if (p->parent != SIZE_MAX) o->node[p->parent].n_child++;
+  return VG_OK;
+}
+
+static vg_status add_leaf(struct forecast *c, const struct vg_part *p,
+                          struct vg_amount a, const char *after)
+{
+  char path[VG_PATH_MAX];
+  size_t index = 0;
+  vg_status st;
+
+  VG_TRY(add_node(c, p, NULL, &index));
+  c->out->n_leaf++;
+  snprintf(path, sizeof path, "%.*sL", VG_PATH_MAX - 2, p->path);
+  st = add_task(c, path, after, VG_SPAN_LEAF, &c->rates->leaf, a,
+                c->out->node[index].faces, (double)p->load.n);
+  memcpy(c->leaf, path, sizeof path);
+done:
+  return st;
+}
+
+/* Cells beside interfaces get better when all leaves are there: as many tasks
+ * as zones, each with an equal share of their cells. */
+static vg_status add_repairs(struct forecast *c)
+{
+  size_t n = c->out->n_pencil + c->out->n_tile;
+  char path[VG_PATH_MAX];
+  vg_status st = VG_OK;
+
+  for (size_t k = 0; st >= 0 && k < n && c->leaf[0]; k++) {
+    struct vg_amount a = { c->zones.cells / (double)n,
+                        c->zones.graded / (double)n };
+
+    snprintf(path, sizeof path, "0R%zu", k);
+    st = add_task(c, path, c->leaf, VG_SPAN_REPAIR, &c->rates->repair, a,
+                  a.cells, 0);
+  }
+  return st;
+}
+
+static vg_status add_join(struct forecast *c, const struct vg_part *p,
+                          int number, const struct vg_task_rate *rate,
+                          char *after)
+{
+  char path[VG_PATH_MAX];
+  vg_status st;
+
+  snprintf(path, sizeof path, "%.*sJ%d", VG_PATH_MAX - 14, p->path, number);
+  st = add_task(c, path, after, VG_SPAN_JOIN, rate,
+                (struct vg_amount){p->load.cells, 0}, vg_bits_faces(&p->front),
+                (double)p->load.n);
+  memcpy(after, path, sizeof path);
+  c->n_handed = c->handed = 0;
+  return st;
+}
+
+/* What a join, the span `index`, spends on the tasks that it makes. */
+static void pay_tasks(struct forecast *c, size_t index,
+                      const struct vg_task_rate *rate)
+{
+  struct vg_span *join = &c->out->spans.span[index];
+  double share = join->cpu > 0 ? join->loops / join->cpu : 0;
+  double took = rate->made * c->n_handed + rate->hand * c->handed;
+
+  join->cpu += took;
+  join->loops += share * took;
+}
+
+/* The zones of a stage. All see the front that the stage before left.
+ * after in: the task that makes them; out: one of them, if there is any. */
+static vg_status grow_stage(struct forecast *c, struct vg_part *p,
+                            const struct vg_lattice *l, int stage,
+                            size_t *n_pencil, char *after)
+{
+  size_t count = vg_lattice_count(l, stage), n_front = p->front.n;
+  char maker[VG_PATH_MAX], path[VG_PATH_MAX];
+  struct vg_bits made = { .n = 0 };
+  vg_status st = VG_OK;
+
+  snprintf(maker, sizeof maker, "%s", after);
+  for (size_t k = 0; k < count; k++) {
+    char kind = stage < VG_LATTICE_TILES ? VG_SPAN_PENCIL : VG_SPAN_TILE;
+    const struct vg_task_rate *rate = kind == VG_SPAN_TILE ? &c->rates->tile
+                                      : stage < 2 ? &c->rates->pencil
+                                                  : &c->rates->rib;
+    struct vg_amount a;
+    struct vg_region r;
+    double faces;
+
+    vg_lattice_region(l, stage, k, &r);
+    VG_TRY(vg_bits_take(p, &r, &made, &a, c->err));
+    faces = vg_bits_near(&p->front, n_front, &r);
+    if (!(a.cells >= 1) || !(faces > 0)) continue;
+    snprintf(path, sizeof path, "%.*s%c%zu", VG_PATH_MAX - 24, p->path, kind,
+             kind == VG_SPAN_PENCIL ? *n_pencil : k);
+    *n_pencil += kind == VG_SPAN_PENCIL;
+    VG_TRY(add_task(c, path, maker, kind, rate, a, faces, 0));
+    memcpy(after, path, sizeof path);
+    c->n_handed++;
+    c->handed += faces;
+    c->out->n_pencil += kind == VG_SPAN_PENCIL;
+    c->out->n_tile += kind == VG_SPAN_TILE;
+    c->out->zone_cells += a.cells;
+    c->zones.cells += a.cells;
+    c->zones.graded += a.graded;
+  }
+  for (size_t k = 0; k < count; k++) {
+    struct vg_region r;
+
+    vg_lattice_region(l, stage, k, &r);
+    vg_bits_cover(&p->front, p->front.n, &r);
+  }
+  for (size_t i = 0; st >= 0 && i < made.n; i++)
+    st = vg_bits_add(&p->front, &made.bit[i], c->err);
+done:
+  free(made.bit);
+  return st;
+}
+
+/* Where three planes meet parts may still hang together. */
+static vg_status close_places(struct forecast *c, const struct vg_part *p,
+                              const struct vg_lattice *l, char *after)
+{
+  double corners = (double)l->n[0] * l->n[1] * l->n[2];
+  size_t n = (size_t)ceil(places_per_corner * corners);
+  char maker[VG_PATH_MAX], path[VG_PATH_MAX];
+  vg_status st = VG_OK;
+
+  snprintf(maker, sizeof maker, "%s", after);
+  for (size_t k = 0; st >= 0 && k < n; k++) {
+    snprintf(path, sizeof path, "%.*sT%zu", VG_PATH_MAX - 24, p->path,
+             vg_lattice_count(l, VG_LATTICE_STAGES - 1) + k);
+    st = add_task(c, path, maker, VG_SPAN_TILE, &c->rates->closing,
+                  (struct vg_amount){0, 0}, place_faces, 0);
+    memcpy(after, path, sizeof path);
+    c->n_handed++;
+    c->out->n_tile++;
+  }
+  return st;
+}
+
+/* Joins and zones of a void. */
+static vg_status grow_zones(struct forecast *c, struct vg_part *p,
+                            const struct vg_lattice *l, char *after)
+{
+  int has_corners = l->n[0] && l->n[1] && l->n[2], n_join = 0;
+  const struct vg_rates *r = c->rates;
+  const struct vg_task_rate *last = &r->plan;
+  size_t n_pencil = 0, join = c->out->spans.n;
+  vg_status st;
+
+  VG_TRY(add_join(c, p, n_join++, last, after));
+  for (int stage = 0; stage <= VG_LATTICE_STAGES; stage++) {
+    size_t n = c->out->spans.n;
+
+    if (stage < VG_LATTICE_STAGES)
+      VG_TRY(grow_stage(c, p, l, stage, &n_pencil, after));
+    else VG_TRY(close_places(c, p, l, after));
+    if (c->out->spans.n == n) continue;
+    pay_tasks(c, join, last);
+    last = stage + 1 < VG_LATTICE_STAGES ? &r->join
+           : stage < VG_LATTICE_STAGES && has_corners ? &r->close
+                                                      : &r->split;
+    join = c->out->spans.n;
+    VG_TRY(add_join(c, p, n_join++, last, after));
+  }
+done:
+  return st;
+}
+
+static vg_status go_down(struct forecast *c, struct vg_part *p,
+                         const char *after);
+
+/* Small voids are filled together. */
+static vg_status add_rest(struct forecast *c, const struct vg_part *from,
+                          size_t parent, struct vg_blocks *b, double least,
+                          const char *after)
+{
+  struct vg_part rest = { .parent = parent, .depth = from->depth + 1 };
+  struct vg_amount a = {0, 0};
+  vg_status st = VG_OK;
+
+  snprintf(rest.path, sizeof rest.path, "%.*s.r", VG_PATH_MAX - 8,
+           from->path);
+  memcpy(rest.lo, from->lo, sizeof rest.lo);
+  memcpy(rest.hi, from->hi, sizeof rest.hi);
+  for (size_t i = 0; st >= 0 && i < b->n; i++) {
+    struct vg_part *p = &b->part[i];
+
+    if (p->load.cells >= least) continue;
+    rest.load.cells += p->load.cells;
+    for (size_t k = 0; k < p->load.n; k++)
+      vg_amount_add(&a, &p->load.cube[k], 1);
+    rest.load.n += p->load.n;
+    for (size_t k = 0; st >= 0 && k < p->front.n; k++)
+      st = vg_bits_add(&rest.front, &p->front.bit[k], c->err);
+  }
+  if (st >= 0 && rest.load.cells >= least_void)
+    st = add_leaf(c, &rest, a, after);
+  free(rest.front.bit);
+  return st;
+}
+
+static vg_status add_children(struct forecast *c, const struct vg_part *from,
+                              size_t parent, struct vg_blocks *b, int used,
+                              const char *after)
+{
+  double sum = 0, least = fmax(small_share * c->rule->leaf_cells, least_void);
+  size_t number = 0;
+  vg_status st = VG_OK;
+
+  for (size_t i = 0; i < b->n; i++) sum += b->part[i].load.cells;
+  for (size_t i = 0; st >= 0 && i < b->n; i++) {
+    struct vg_part *p = &b->part[i];
+
+    if (!(p->load.cells > 0)) continue;
+    snprintf(p->path, sizeof p->path, "%.*s.%zu", VG_PATH_MAX - 24,
+             from->path, number++);
+    if (p->load.cells < least) continue;
+    p->parent = parent;
+    p->depth = from->depth + 1;
+    p->levels = from->levels > used ? from->levels - used : 0;
+    if (p->load.cells > not_parted * sum) {
+      p->levels = from->levels;
+      p->retry = from->retry + 1;
+    }
+    st = go_down(c, p, after);
+    vg_part_release(p);
+  }
+  return st < 0 ? st : add_rest(c, from, parent, b, least, after);
+}
+
+static vg_status cut(struct forecast *c, struct vg_part *p,
+                     const struct vg_lattice *l, int used, const char *maker)
+{
+  struct vg_blocks b = { .n = 0 };
+  double before = c->out->zone_cells;
+  char after[VG_PATH_MAX];
+  size_t index = 0;
+  vg_status st;
+
+  snprintf(after, sizeof after, "%s", maker);
+  VG_TRY(add_node(c, p, l, &index));
+  VG_TRY(grow_zones(c, p, l, after));
+  c->out->node[index].zone = c->out->zone_cells - before;
+  VG_TRY(vg_blocks_open(&b, l, p, c->err));
+  vg_part_release(p);
+  st = add_children(c, p, index, &b, used, after);
+done:
+  vg_blocks_release(&b);
+  return st;
+}
+
+static vg_status go_down(struct forecast *c, struct vg_part *p,
+                         const char *after)
+{
+  struct vg_lattice l;
+  vg_status st = VG_OK;
+  int used = 0;
+
+  if (p->retry < RETRIES && strlen(p->path) + 8 < VG_PATH_MAX)
+    used = vg_lattice_plan(&p->load, c->rule, p->levels, p->retry, &l);
+  if (used <= 0) return add_leaf(c, p, amount_of(&p->load), after);
+  if (!p->retry) st = vg_lattice_add_ribs(&p->load, c->rule, &l, c->err);
+  if (st >= 0) st = cut(c, p, &l, used, after);
+  vg_lattice_release(&l);
+  return st;
+}
+
+/* --- the whole ----------------------------------------------------------- */
+
+/* One task after the other, as they were made. */
+static void line_up(struct vg_spans *s)
+{
+  for (size_t i = 0; i < s->n; i++) {
+    s->span[i].start = s->wall;
+    s->span[i].end = s->wall += s->span[i].cpu;
+  }
+}
+
+static vg_status add_surface(const struct vg_void *v, struct vg_part *p,
+                             struct vg_error *err)
+{
+  p->front.bit = vg_alloc(v->n_face, sizeof *p->front.bit);
+  if (!p->front.bit) return vg_fail_memory(err, "a forecast");
+  p->front.cap = p->front.n = v->n_face;
+  for (size_t i = 0; i < v->n_face; i++) {
+    const double *a = v->x[v->face[i][0]], *b = v->x[v->face[i][1]];
+    const double *d = v->x[v->face[i][2]];
+    struct vg_bit *f = &p->front.bit[i];
+    double u[3], w[3], n[3];
+
+    for (int k = 0; k < 3; k++)
+      f->x[k] = (float)((a[k] + b[k] + d[k]) / 3);
+    vg_sub(b, a, u);
+    vg_sub(d, a, w);
+    vg_cross(u, w, n);
+    f->n = 1;
+    f->h = (float)sqrt(0.5 * VG_FACES_PER_SQUARE * vg_norm(n));
+  }
+  return VG_OK;
+}
+
+static vg_status add_load(const struct vg_load *load, struct vg_part *p,
+                          struct vg_error *err)
+{
+  p->load = *load;
+  p->load.index = NULL;
+  p->load.cube = vg_alloc(load->n, sizeof *p->load.cube);
+  if (!p->load.cube) {
+    p->load.n = 0;
+    return vg_fail_memory(err, "a forecast");
+  }
+  if (load->n)
+    memcpy(p->load.cube, load->cube, load->n * sizeof *load->cube);
+  for (int k = 0; k < 3; k++) {
+    p->lo[k] = INFINITY;
+    p->hi[k] = -INFINITY;
+  }
+  for (size_t i = 0; i < load->n; i++)
+    for (int k = 0; k < 3; k++) {
+      double x = (double)load->cube[i].at[k], half = (double)load->cube[i].half;
+
+      p->lo[k] = fmin(p->lo[k], x - half);
+      p->hi[k] = fmax(p->hi[k], x + half);
+    }
+  return vg_load_index(&p->load, 1, err);
+}
+
+vg_status vg_outlook_new(const struct vg_void *v, const struct vg_load *load,
+                         const struct vg_cut_rule *rule, int levels,
+                         const struct vg_rates *rates, struct vg_outlook *out,
+                         struct vg_error *err)
+{
+  struct vg_outlook o = VG_OUTLOOK_INIT;
+  struct forecast c = { .out = &o, .rule = rule, .rates = rates, .err = err };
+  struct vg_part root = { .path = "0", .parent = SIZE_MAX, .levels = levels };
+  vg_status st;
+
+  o.cells = load->cells;
+  VG_TRY(add_load(load, &root, err));
+  VG_TRY(add_surface(v, &root, err));
+  VG_TRY(go_down(&c, &root, ""));
+  VG_TRY(add_repairs(&c));
+  line_up(&o.spans);
+  vg_spans_sort(&o.spans);
+  o.spans.n_rank = o.spans.n_thread = 1;
+  vg_outlook_release(out);
+  *out = o;
+  memset(&o, 0, sizeof o);
+done:
+  vg_part_release(&root);
+  vg_outlook_release(&o);
+  return st;
+}

@@ -1,0 +1,195 @@
+/* The coarse front of a forecast, and what zones take and leave of it. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/geometry/vector.h"
+#include "partition/model/forecast_parts.h"
+
+/* Where spacing varies a load has this share more cells to a cube of it
+ * (load.c); there they cost more as well. */
+static const double graded_more = 0.21;
+
+/* Cells of a zone reach this many spacings to each side of its plane, those of
+ * a pencil of both of its planes: as measured over boxes and spheres. */
+static const double tile_reach = 0.57, pencil_reach = 1.9;
+static const double rib_reach = 0.5;
+
+void vg_part_release(struct vg_part *p)
+{
+  vg_load_release(&p->load);
+  free(p->front.bit);
+  memset(&p->front, 0, sizeof p->front);
+}
+
+double vg_bits_faces(const struct vg_bits *f)
+{
+  double sum = 0;
+
+  for (size_t i = 0; i < f->n; i++) sum += (double)f->bit[i].n;
+  return sum;
+}
+
+vg_status vg_bits_add(struct vg_bits *f, const struct vg_bit *b,
+                      struct vg_error *err)
+{
+  if (vg_reserve(&f->bit, &f->cap, f->n + 1, sizeof *f->bit))
+    return vg_fail_memory(err, "a forecast");
+  f->bit[f->n++] = *b;
+  return VG_OK;
+}
+
+/* Of a share of a cube. */
+void vg_amount_add(struct vg_amount *a, const struct vg_load_cube *c,
+                   double share)
+{
+  double side = 2 * (double)c->half / (double)c->h, cells = (double)c->cells;
+  double cubes = (double)c->part * side * side * side;
+  double more = cubes > 0 ? cells / (cubes * VG_LOAD_CELLS_PER_CUBE) - 1 : 0;
+
+  a->cells += share * cells;
+  a->graded += share * cells * fmin(fmax(more / graded_more, 0), 1);
+}
+
+/* The axis of a plane of a lattice. */
+static int axis_of(const struct vg_plane *p)
+{
+  return p->normal[0] > 0.5 ? 0 : p->normal[1] > 0.5 ? 1 : 2;
+}
+
+static double side_of_plane(const struct vg_plane *p, const float x[3])
+{
+  return p->normal[0] * (double)x[0] + p->normal[1] * (double)x[1] +
+         p->normal[2] * (double)x[2] - p->offset;
+}
+
+/* Half the extent of a cube across a plane. */
+static double half_across(const struct vg_load_cube *c,
+                          const struct vg_plane *p)
+{
+  return (double)c->half *
+         (fabs(p->normal[0]) + fabs(p->normal[1]) + fabs(p->normal[2]));
+}
+
+/* Part of the cube within `width` of the plane. */
+static double overlap(const struct vg_load_cube *c, const struct vg_plane *p,
+                      double width)
+{
+  double x = side_of_plane(p, c->at), half = half_across(c, p);
+  double lo = fmax(x - half, -width), hi = fmin(x + half, width);
+
+  return hi > lo ? (hi - lo) / (2 * half) : 0;
+}
+
+/* Spacings from its planes that a zone's cells reach. */
+static double reach_of(const struct vg_region *r)
+{
+  return r->n_plane == 1 ? tile_reach : r->reach > 0 ? pencil_reach
+                                                     : rib_reach;
+}
+
+/* Is the foot of x on the planes within the walls, moved out by `band`? */
+static int is_over(const struct vg_region *r, const float x[3], double band)
+{
+  double at[3] = {(double)x[0], (double)x[1], (double)x[2]}, foot[3];
+
+  vg_region_foot(r, at, foot);
+  for (int k = 0; k < r->n_wall; k++)
+    if (!(vg_dot(r->wall[k].normal, foot) > r->wall[k].offset - band))
+      return 0;
+  return 1;
+}
+
+static int is_near(const struct vg_region *r, const float x[3], double band)
+{
+  for (int k = 0; k < r->n_plane; k++)
+    if (fabs(side_of_plane(&r->plane[k], x)) > band) return 0;
+  return 1;
+}
+
+/* Faces that a zone leaves where it passes the cube: on both sides of its
+ * plane, or all around a pencil. */
+static vg_status add_sides(const struct vg_load_cube *c,
+                           const struct vg_region *r, struct vg_bits *f,
+                           struct vg_error *err)
+{
+  double side = 2 * (double)c->half, h = (double)c->h;
+  double reach = reach_of(r) * h;
+  double area = (double)c->part * side * side;
+  struct vg_bit b = { .h = c->h };
+  vg_status st = VG_OK;
+
+  memcpy(b.x, c->at, sizeof b.x);
+  if (r->n_plane > 1) {
+    double at[3] = {(double)b.x[0], (double)b.x[1], (double)b.x[2]}, foot[3];
+
+    vg_region_foot(r, at, foot);
+    for (int k = 0; k < 3; k++) b.x[k] = (float)foot[k];
+    area = (double)c->part * side * 8 * reach;
+    b.n = (float)(area * VG_FACES_PER_SQUARE / (h * h));
+    return vg_bits_add(f, &b, err);
+  }
+  b.n = (float)(area * VG_FACES_PER_SQUARE / (h * h));
+  for (int sign = -1; st >= 0 && sign <= 1; sign += 2) {
+    b.x[axis_of(&r->plane[0])] =
+      (float)(r->plane[0].offset + sign * 1.01 * reach);
+    st = vg_bits_add(f, &b, err);
+  }
+  return st;
+}
+
+/* Front that a zone has closed in. */
+void vg_bits_cover(struct vg_bits *f, size_t n, const struct vg_region *r)
+{
+  double reach = reach_of(r);
+  size_t left = 0;
+
+  for (size_t i = 0; i < f->n; i++)
+    if (i >= n || !is_near(r, f->bit[i].x, reach * (double)f->bit[i].h) ||
+        !is_over(r, f->bit[i].x, 0))
+      f->bit[left++] = f->bit[i];
+  f->n = left;
+}
+
+double vg_bits_near(const struct vg_bits *f, size_t n,
+                    const struct vg_region *r)
+{
+  double band = vg_region_band(r, VG_BAND_FRONT), sum = 0;
+
+  for (size_t i = 0; i < n; i++) {
+    const struct vg_bit *b = &f->bit[i];
+
+    if (is_near(r, b->x, band * (double)b->h) &&
+        is_over(r, b->x, VG_BAND_FRONT * (double)b->h))
+      sum += (double)b->n;
+  }
+  return sum;
+}
+
+/* Cells of the region leave the load and, if it has a front, make sides. */
+vg_status vg_bits_take(struct vg_part *p, const struct vg_region *r,
+                       struct vg_bits *made, struct vg_amount *a,
+                       struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  *a = (struct vg_amount){0, 0};
+  for (size_t i = 0; st >= 0 && i < p->load.n; i++) {
+    struct vg_load_cube *c = &p->load.cube[i];
+    double reach = reach_of(r), share = 1;
+    int passes = 1;
+
+    for (int k = 0; share > 0 && k < r->n_plane; k++)
+      share *= overlap(c, &r->plane[k], reach * (double)c->h);
+    if (!(share > 0) || !is_over(r, c->at, 0)) continue;
+    for (int k = 0; k < r->n_plane; k++)
+      passes &= fabs(side_of_plane(&r->plane[k], c->at)) <=
+                half_across(c, &r->plane[k]);
+    if (passes) st = add_sides(c, r, made, err);
+    vg_amount_add(a, c, share);
+    c->cells *= (float)(1 - share);
+    c->part *= (float)(1 - share);
+  }
+  return st;
+}

@@ -1,0 +1,72 @@
+/* partition/model/forecast_parts.h: a void on its way down the forecast's tree,
+ * with its load and a coarse front (forecast_front.c), parted into blocks
+ * (forecast_blocks.c). Private to forecast*.c. Every function is a function of
+ * its arguments alone; VG_ERR_MEMORY is their only error. */
+#ifndef VG_PARTITION_MODEL_FORECAST_PARTS_H
+#define VG_PARTITION_MODEL_FORECAST_PARTS_H
+
+#include "core/front/region.h"
+#include "partition/load/load.h"
+#include "partition/model/forecast.h"
+
+/* Faces of a triangle's own spacing to a square of it, 4 / sqrt(3). */
+#define VG_FACES_PER_SQUARE 2.309
+
+/* A stretch of front: n faces about x. */
+struct vg_bit { float x[3], h, n; };
+
+struct vg_bits { size_t n, cap; struct vg_bit *bit; };
+
+/* Cells, and how many of them lie where spacing varies. */
+struct vg_amount { double cells, graded; };
+
+/* A void on its way down the tree. */
+struct vg_part {
+  struct vg_load load;
+  struct vg_bits front;
+  double lo[3], hi[3];
+  char path[VG_PATH_MAX];
+  size_t parent;
+  int depth, levels, retry;
+};
+
+/* --- front and load (forecast_front.c) ------------------------------------ */
+
+void vg_part_release(struct vg_part *p);
+
+vg_status vg_bits_add(struct vg_bits *f, const struct vg_bit *b,
+                      struct vg_error *err);
+double vg_bits_faces(const struct vg_bits *f);
+
+/** What a share of the cube holds, added to a. */
+void vg_amount_add(struct vg_amount *a, const struct vg_load_cube *c,
+                   double share);
+
+/** Cells of the region leave the load, counted in a; where it has some, the
+ * faces that it leaves go to made. */
+vg_status vg_bits_take(struct vg_part *p, const struct vg_region *r,
+                       struct vg_bits *made, struct vg_amount *a,
+                       struct vg_error *err);
+
+/** Front that a zone has closed in goes; of the first n bits only. */
+void vg_bits_cover(struct vg_bits *f, size_t n, const struct vg_region *r);
+
+/** Faces of the first n bits that the region must know. */
+double vg_bits_near(const struct vg_bits *f, size_t n,
+                    const struct vg_region *r);
+
+/* --- blocks (forecast_blocks.c) ------------------------------------------- */
+
+struct vg_blocks {
+  const struct vg_lattice *l;    /* borrowed */
+  size_t n;
+  struct vg_part *part;          /* [n] x first */
+};
+
+/** Load, front and box of p dealt out to the blocks of a lattice. Call
+ * vg_blocks_release in any case. */
+vg_status vg_blocks_open(struct vg_blocks *b, const struct vg_lattice *l,
+                         const struct vg_part *p, struct vg_error *err);
+void vg_blocks_release(struct vg_blocks *b);
+
+#endif

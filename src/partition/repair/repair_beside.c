@@ -1,0 +1,124 @@
+/* Points beside interfaces: their neighbours there moved, so they get a sweep
+ * more. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/delaunay/tets.h"
+#include "core/geometry/shape.h"
+#include "partition/repair/repair_parts.h"
+
+struct strip {
+  const struct vg_piece *q;
+  size_t n_hit;
+  const uint32_t *hit;       /* [n_hit] cells with a corner on an interface */
+  const uint8_t *shared;     /* [q.n_point] that stay; or NULL: none */
+  uint8_t *moves;            /* [q.n_in + q.n_point] */
+  size_t n;
+  uint32_t *point;           /* [n] that may move */
+  struct vg_tets t;          /* cells around them, without links; x is q's */
+  size_t cap_flag, cap_shape, cap_on;
+  float *shape, *old;        /* [t.n_cell] now, before */
+  uint8_t *on;               /* [t.n_cell] has a corner on an interface */
+};
+
+static vg_status find_points(struct strip *s)
+{
+  const struct vg_piece *q = s->q;
+
+  s->t.n_point = q->n_in + q->n_point;
+  s->t.x = q->x;
+  s->moves = vg_calloc(s->t.n_point, 1);
+  s->point = vg_alloc(q->n_point, sizeof *s->point);
+  if (!s->moves || !s->point) return VG_ERR_MEMORY;
+  for (size_t k = 0; k < s->n_hit; k++)
+    for (int i = 0; i < 4; i++) {
+      uint32_t v = q->cell[s->hit[k]][i];
+
+      s->moves[v] = v >= q->n_in && !(s->shared && s->shared[v - q->n_in]);
+    }
+  for (size_t v = q->n_in; v < s->t.n_point; v++)
+    if (s->moves[v]) s->point[s->n++] = (uint32_t)v;
+  return VG_OK;
+}
+
+static int add_cell(struct strip *s, const uint32_t *v, int on)
+{
+  double (*x)[3] = s->t.x;
+  size_t n = s->t.n_cell;
+
+  if (vg_reserve(&s->t.cell, &s->t.cap_cell, n + 1, sizeof *s->t.cell) ||
+      vg_reserve(&s->t.flag, &s->cap_flag, n + 1, 1) ||
+      vg_reserve(&s->on, &s->cap_on, n + 1, 1) ||
+      vg_reserve(&s->shape, &s->cap_shape, n + 1, sizeof *s->shape))
+    return -1;
+  memcpy(s->t.cell[n].v, v, sizeof s->t.cell->v);
+  s->t.flag[n] = 0;
+  s->on[n] = (uint8_t)on;
+  s->shape[n] = (float)vg_shape(x[v[0]], x[v[1]], x[v[2]], x[v[3]]);
+  s->t.n_cell++;
+  return 0;
+}
+
+static vg_status take_cells(struct strip *s)
+{
+  const struct vg_piece *q = s->q;
+  size_t k = 0;
+
+  for (size_t c = 0; c < q->n_cell; c++) {
+    const uint32_t *v = q->cell[c];
+
+    while (k < s->n_hit && s->hit[k] < c) k++;
+    if ((s->moves[v[0]] | s->moves[v[1]] | s->moves[v[2]] |
+         s->moves[v[3]]) &&
+        add_cell(s, v, k < s->n_hit && s->hit[k] == c))
+      return VG_ERR_MEMORY;
+  }
+  return VG_OK;
+}
+
+/* What makes a bad cell better may spoil one off the interface, where nobody
+ * else looks. */
+static vg_status list_bad(const struct strip *s, const struct vg_sizing *sizing,
+                          struct vg_spots *out)
+{
+  for (size_t c = 0; c < s->t.n_cell; c++) {
+    const double *x[4];
+
+    if (s->shape[c] >= VG_SHAPE_AIM || s->shape[c] >= s->old[c] || s->on[c])
+      continue;
+    for (int i = 0; i < 4; i++) x[i] = s->t.x[s->t.cell[c].v[i]];
+    if (vg_spots_add(out, sizing, x, s->shape[c]) < 0) return VG_ERR_MEMORY;
+  }
+  return VG_OK;
+}
+
+vg_status vg_repair_beside(const struct vg_piece *q,
+                           const struct vg_sizing *sizing, size_t n,
+                           const uint32_t *hit, const uint8_t *shared,
+                           struct vg_spots *out)
+{
+  struct strip s = { .q = q, .n_hit = n, .hit = hit, .shared = shared };
+  struct vg_optimise_report r;
+  vg_status st = VG_OK;
+
+  if (!n) return VG_OK;
+  st = find_points(&s);
+  if (st == VG_OK) st = take_cells(&s);
+  if (st == VG_OK && !(s.old = vg_alloc(s.t.n_cell, sizeof *s.old)))
+    st = VG_ERR_MEMORY;
+  if (st == VG_OK) {
+    if (s.t.n_cell) memcpy(s.old, s.shape, s.t.n_cell * sizeof *s.old);
+    st = vg_optimise_points(&s.t, s.n, s.point, VG_SHAPE_BESIDE, sizing,
+                            s.shape, &r, NULL);
+  }
+  if (st == VG_OK) st = list_bad(&s, sizing, out);
+  free(s.moves);
+  free(s.point);
+  free(s.t.cell);
+  free(s.t.flag);
+  free(s.shape);
+  free(s.old);
+  free(s.on);
+  return st;
+}

@@ -1,0 +1,219 @@
+/* The cells around an owner's points on interfaces, those of other pieces
+ * joined to its own by the names of their points. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/geometry/shape.h"
+#include "partition/repair/repair_parts.h"
+
+void vg_field_release(struct vg_field *f)
+{
+  vg_tets_release(&f->t);
+  free(f->shared);
+  free(f->stays);
+  free(f->other);
+  free(f->slot);
+  free(f->place);
+  free(f->kind);
+  free(f->shape);
+  free(f->point);
+}
+
+static int is_shared(const struct vg_field *f, uint32_t v)
+{
+  return v >= f->q->n_in && v - f->q->n_in < f->q->n_point &&
+         f->shared[v - f->q->n_in];
+}
+
+static int has_shared(const struct vg_field *f, const uint32_t *v)
+{
+  return is_shared(f, v[0]) || is_shared(f, v[1]) || is_shared(f, v[2]) ||
+         is_shared(f, v[3]);
+}
+
+/* The vertex of that name, which is added when it is new. */
+static uint32_t vertex_of(struct vg_field *f, uint64_t name, const double x[3])
+{
+  const struct vg_piece *q = f->q;
+  uint64_t h = name * 0x9e3779b97f4a7c15u;
+
+  if (name >> 32 == q->serial) return (uint32_t)(q->n_in + (uint32_t)name);
+  for (h = (h ^ h >> 32) & f->mask; f->slot[h] != VG_NONE;
+       h = (h + 1) & f->mask) {
+    uint32_t v = f->slot[h];
+
+    if ((v < q->n_in ? q->in[v] : f->other[v - f->n_base]) == name) return v;
+  }
+  f->slot[h] = (uint32_t)f->t.n_point;
+  f->other[f->n_other++] = name;
+  memcpy(f->t.x[f->t.n_point], x, sizeof *f->t.x);
+  return (uint32_t)f->t.n_point++;
+}
+
+static vg_status new_names(struct vg_field *f, size_t n_other)
+{
+  const struct vg_piece *q = f->q;
+
+  f->mask = 63;
+  while (f->mask < 2 * (q->n_in + n_other)) f->mask = 2 * f->mask + 1;
+  f->slot = vg_alloc(f->mask + 1, sizeof *f->slot);
+  f->other = vg_alloc(n_other, sizeof *f->other);
+  if (!f->slot || !f->other) return VG_ERR_MEMORY;
+  memset(f->slot, 0xff, (f->mask + 1) * sizeof *f->slot);
+  for (uint32_t v = 0; v < q->n_in; v++) {
+    uint64_t h = q->in[v] * 0x9e3779b97f4a7c15u;
+
+    h = (h ^ h >> 32) & f->mask;
+    while (f->slot[h] != VG_NONE) h = (h + 1) & f->mask;
+    f->slot[h] = v;
+  }
+  return VG_OK;
+}
+
+static vg_status make_room(struct vg_field *f)
+{
+  const struct vg_piece *q = f->q;
+  size_t n_other = 0, n_cell = 0;
+
+  f->n_base = q->n_in + q->n_point;
+  f->shared = vg_calloc(q->n_point, 1);
+  f->stays = vg_calloc(q->n_point, 1);
+  if (!f->shared || !f->stays) return VG_ERR_MEMORY;
+  for (size_t k = 0; k < f->n_seam; k++) {
+    const struct vg_seam *s = f->seam[k];
+
+    for (size_t i = 0; i < s->n_known; i++) f->shared[s->known[i]] = 1;
+    n_cell += s->n_cell;
+    n_other += s->n_other;
+  }
+  for (size_t c = 0; c < q->n_cell; c++)
+    f->n_own += (size_t)has_shared(f, q->cell[c]);
+  n_cell += f->n_own;
+  f->t.x = vg_alloc(f->n_base + n_other, sizeof *f->t.x);
+  f->t.cell = vg_alloc(n_cell, sizeof *f->t.cell);
+  f->t.cap_cell = f->cap_kind = f->cap_shape = n_cell;
+  f->place = vg_alloc(f->n_own, sizeof *f->place);
+  f->kind = vg_calloc(n_cell, 1);
+  f->shape = vg_alloc(n_cell, sizeof *f->shape);
+  if (!f->t.x || !f->t.cell || !f->place || !f->kind || !f->shape)
+    return VG_ERR_MEMORY;
+  f->t.n_point = f->n_base;
+  memcpy(f->t.x, q->x, f->n_base * sizeof *q->x);
+  return new_names(f, n_other);
+}
+
+static void hold(struct vg_field *f, const uint32_t *v)
+{
+  for (int i = 0; i < 4; i++)
+    if (is_shared(f, v[i])) f->stays[v[i] - f->q->n_in] = 1;
+}
+
+/* Is a zone's turn before that of the owner? */
+static int is_before(const struct vg_field *f, uint32_t order)
+{
+  if (order == VG_NO_ZONE) return 0;
+  return f->first ? order < f->self->order : order > f->self->order;
+}
+
+/* The zone that vertex v < q.n_in is of. */
+static uint32_t zone_of(const struct vg_field *f,
+                        const struct vg_owners *owners, uint32_t v,
+                        const struct vg_owner **last)
+{
+  uint64_t name = f->q->in[v];
+
+  if (!(name >> 32)) return VG_NO_ZONE;
+  if (!*last || (*last)->serial != name >> 32)
+    *last = vg_owners_find(owners, name);
+  return *last && (*last)->is_zone ? (*last)->order : VG_NO_ZONE;
+}
+
+static void add_own(struct vg_field *f, const struct vg_owners *owners)
+{
+  const struct vg_owner *last = NULL;
+
+  for (size_t c = 0; c < f->q->n_cell; c++) {
+    const uint32_t *v = f->q->cell[c];
+    int later = 0;
+
+    if (!has_shared(f, v)) continue;
+    for (int i = 0; i < 4; i++)
+      if (v[i] < f->q->n_in)
+        later |= is_before(f, zone_of(f, owners, v[i], &last));
+    if (later) hold(f, v);
+    f->kind[f->t.n_cell] = later ? VG_FIELD_TOLD | VG_FIELD_LATER : 0;
+    f->place[f->t.n_cell] = (uint32_t)c;
+    memcpy(f->t.cell[f->t.n_cell++].v, v, sizeof f->t.cell->v);
+  }
+}
+
+static void add_seam(struct vg_field *f, const struct vg_seam *s,
+                     uint32_t *vertex)
+{
+  for (size_t k = 0; k < s->n_known; k++)
+    vertex[k] = (uint32_t)f->q->n_in + s->known[k];
+  for (size_t k = 0; k < s->n_other; k++)
+    vertex[s->n_known + k] = vertex_of(f, s->name[k], s->x[k]);
+  for (size_t c = 0; c < s->n_cell; c++) {
+    uint32_t *v = f->t.cell[f->t.n_cell].v;
+    uint8_t kind = 0;
+
+    for (int i = 0; i < 4; i++) {
+      uint32_t k = s->cell[c][i];
+
+      v[i] = vertex[k];
+      if (k < s->n_known || !is_before(f, s->zone[k - s->n_known])) continue;
+      kind |= VG_FIELD_LATER;
+      /* the one that has the cell looks at it only where others use that
+       * point */
+      if (s->zone[k - s->n_known] != s->order) kind |= VG_FIELD_TOLD;
+    }
+    if (kind) hold(f, v);
+    f->kind[f->t.n_cell++] = kind;
+  }
+}
+
+static void find_shapes(const struct vg_tets *t, float *q)
+{
+  for (size_t c = 0; c < t->n_cell; c++) {
+    const uint32_t *v = t->cell[c].v;
+
+    q[c] = (float)vg_shape(t->x[v[0]], t->x[v[1]], t->x[v[2]], t->x[v[3]]);
+  }
+}
+
+static vg_status list_points(struct vg_field *f)
+{
+  size_t n = f->self->is_zone ? f->q->n_point : 0;
+
+  f->point = vg_alloc(n, sizeof *f->point);
+  if (!f->point) return VG_ERR_MEMORY;
+  for (size_t i = 0; i < n; i++)
+    if (f->shared[i] && !f->stays[i])
+      f->point[f->n_point++] = (uint32_t)(f->q->n_in + i);
+  return VG_OK;
+}
+
+vg_status vg_field_new(struct vg_field *f, const struct vg_owners *owners,
+                       int first)
+{
+  uint32_t *vertex;
+  size_t most = 0;
+  vg_status st = make_room(f);
+
+  f->first = first;
+  if (st < 0) return st;
+  for (size_t k = 0; k < f->n_seam; k++) {
+    size_t n = (size_t)f->seam[k]->n_known + f->seam[k]->n_other;
+
+    if (n > most) most = n;
+  }
+  vertex = vg_alloc(most, sizeof *vertex);
+  if (!vertex) return VG_ERR_MEMORY;
+  add_own(f, owners);
+  for (size_t k = 0; k < f->n_seam; k++) add_seam(f, f->seam[k], vertex);
+  free(vertex);
+  find_shapes(&f->t, f->shape);
+  return list_points(f);
+}

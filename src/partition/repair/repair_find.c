@@ -1,0 +1,199 @@
+/* Balls around bad cells, who has which piece, and letters to other ranks. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/geometry/vector.h"
+#include "partition/repair/repair_parts.h"
+
+/* The worse a cell, the larger its ball: `reach` local spacings, and `most`
+ * times as far as its own corners. Beside long triangles of a sharp edge, what
+ * stayed bad needs much room. */
+static const struct { double reach, most; } ball[VG_BALL_SIZES] = {
+  { 1.2, 1.01 }, { 2.5, 1.01 }, { 4, 2 } };
+
+/* --- owners -------------------------------------------------------------- */
+
+static int by_serial(const void *a, const void *b)
+{
+  const struct vg_owner *s = a, *t = b;
+
+  return s->serial < t->serial ? -1 : s->serial > t->serial;
+}
+
+/* As it travels. */
+struct listed { struct vg_owner o; char path[VG_PATH_MAX]; };
+
+static int by_listed_path(const void *a, const void *b)
+{
+  return strcmp(((const struct listed *)a)->path,
+                ((const struct listed *)b)->path);
+}
+
+static vg_status list_owners(struct vg_bytes *all, int size,
+                             struct vg_owners *out, struct vg_error *err)
+{
+  struct listed *l;
+  size_t bytes = 0, at = 0;
+
+  for (int r = 0; r < size; r++) bytes += all[r].n;
+  l = vg_alloc(bytes, 1);
+  out->n = bytes / sizeof *l;
+  out->at = vg_alloc(out->n, sizeof *out->at);
+  if (!l || !out->at) {
+    free(l);
+    return vg_fail_memory(err, "repairs");
+  }
+  for (int r = 0; r < size; r++) {
+    if (all[r].n) memcpy((char *)l + at, all[r].data, all[r].n);
+    at += all[r].n;
+  }
+  if (out->n) qsort(l, out->n, sizeof *l, by_listed_path);
+  for (size_t k = 0; k < out->n; k++) {
+    out->at[k] = l[k].o;
+    out->at[k].order = (uint32_t)k;
+  }
+  if (out->n) qsort(out->at, out->n, sizeof *out->at, by_serial);
+  free(l);
+  return VG_OK;
+}
+
+vg_status vg_owners_gather(const struct vg_partition *p, struct vg_comm *comm,
+                           struct vg_owners *out, struct vg_error *err)
+{
+  struct listed *own = vg_calloc(p->n_piece, sizeof *own);
+  struct vg_bytes *all = vg_calloc((size_t)p->size, sizeof *all);
+  struct vg_bytes mine = {p->n_piece * sizeof *own, (unsigned char *)own};
+  vg_status st = own && all ? VG_OK : vg_fail_memory(err, "repairs");
+
+  memset(out, 0, sizeof *out);
+  for (size_t k = 0; st == VG_OK && k < p->n_piece; k++) {
+    const struct vg_piece *q = &p->piece[k];
+
+    own[k].o = (struct vg_owner){
+      .serial = q->serial, .rank = (uint32_t)p->rank, .piece = (uint32_t)k,
+      .is_zone = q->kind == VG_SPAN_PENCIL || q->kind == VG_SPAN_TILE };
+    memcpy(own[k].path, q->path, sizeof own[k].path);
+  }
+  st = vg_comm_agree(comm, st, err);
+  if (st == VG_OK) st = vg_comm_allgather(comm, &mine, all, err);
+  if (st == VG_OK) st = list_owners(all, p->size, out, err);
+  vg_bytes_release(all, (size_t)p->size);
+  free(own);
+  return vg_comm_agree(comm, st, err);
+}
+
+const struct vg_owner *vg_owners_find(const struct vg_owners *o, uint64_t name)
+{
+  struct vg_owner key = { .serial = (uint32_t)(name >> 32) };
+
+  if (!key.serial) return NULL;
+  return bsearch(&key, o->at, o->n, sizeof key, by_serial);
+}
+
+/* --- letters ------------------------------------------------------------- */
+
+vg_status vg_post_new(struct vg_post *post, int size, struct vg_error *err)
+{
+  post->size = size;
+  post->to = vg_calloc((size_t)size, sizeof *post->to);
+  return post->to ? VG_OK : vg_fail_memory(err, "repairs");
+}
+
+void vg_post_release(struct vg_post *post)
+{
+  for (int r = 0; post->to && r < post->size; r++)
+    free(post->to[r].bytes.data);
+  free(post->to);
+  post->to = NULL;
+}
+
+vg_status vg_post_send(struct vg_post *post, struct vg_comm *comm,
+                       vg_status st, struct vg_bytes **from,
+                       struct vg_error *err)
+{
+  struct vg_bytes *to = vg_calloc((size_t)post->size, sizeof *to);
+  struct vg_bytes *got = vg_calloc((size_t)post->size, sizeof *got);
+
+  if (st == VG_OK && (!to || !got)) st = vg_fail_memory(err, "repairs");
+  for (int r = 0; st == VG_OK && r < post->size; r++) {
+    if (post->to[r].refused) st = vg_fail_memory(err, "repairs");
+    to[r] = post->to[r].bytes;
+  }
+  st = vg_comm_agree(comm, st, err);
+  if (st == VG_OK) st = vg_comm_exchange(comm, to, got, err);
+  free(to);
+  vg_post_release(post);
+  if (st == VG_OK) *from = got;
+  else vg_bytes_release(got, (size_t)post->size);
+  return st;
+}
+
+/* --- bad cells ----------------------------------------------------------- */
+
+struct vg_spot vg_spot_around(const struct vg_sizing *sizing,
+                              const double *const x[4], enum vg_ball_size k)
+{
+  struct vg_spot s;
+  double far = 0, reach;
+
+  for (int a = 0; a < 3; a++)
+    s.at[a] = 0.25 * (x[0][a] + x[1][a] + x[2][a] + x[3][a]);
+  for (int i = 0; i < 4; i++) {
+    double d = vg_distance2(s.at, x[i]);
+
+    if (d > far) far = d;
+  }
+  reach = ball[k].reach * vg_sizing_at(sizing, s.at);
+  s.radius = ball[k].most * sqrt(far);
+  if (s.radius < reach) s.radius = reach;
+  return s;
+}
+
+vg_status vg_spots_add(struct vg_spots *s, const struct vg_sizing *sizing,
+                       const double *const x[4], double shape)
+{
+  if (vg_reserve(&s->at, &s->cap, s->n + 1, sizeof *s->at))
+    return VG_ERR_MEMORY;
+  s->at[s->n++] = vg_spot_around(
+      sizing, x, shape < VG_SHAPE_BAD ? VG_BALL_MIDDLE : VG_BALL_SMALL);
+  return VG_OK;
+}
+
+/* --- of all ranks -------------------------------------------------------- */
+
+static int by_place(const void *a, const void *b)
+{
+  const struct vg_spot *s = a, *t = b;
+
+  for (int k = 0; k < 3; k++)
+    if (s->at[k] != t->at[k]) return s->at[k] < t->at[k] ? -1 : 1;
+  return s->radius < t->radius ? -1 : s->radius > t->radius;
+}
+
+vg_status vg_spots_gather(struct vg_writer *w, int n_rank, struct vg_comm *comm,
+                          size_t *n, struct vg_spot **out,
+                          struct vg_error *err)
+{
+  struct vg_bytes *all = vg_calloc((size_t)n_rank, sizeof *all);
+  size_t bytes = 0, at = 0;
+  vg_status st;
+
+  *out = NULL;
+  st = vg_comm_agree(comm, w->refused || !all ? vg_fail_memory(err, "repairs")
+                                              : VG_OK, err);
+  if (st == VG_OK) st = vg_comm_allgather(comm, &w->bytes, all, err);
+  for (int r = 0; st == VG_OK && r < n_rank; r++) bytes += all[r].n;
+  if (st == VG_OK && !(*out = vg_alloc(bytes, 1)))
+    st = vg_fail_memory(err, "repairs");
+  for (int r = 0; st == VG_OK && r < n_rank; r++) {
+    if (all[r].n) memcpy((char *)*out + at, all[r].data, all[r].n);
+    at += all[r].n;
+  }
+  vg_bytes_release(all, n_rank);
+  *n = at / sizeof **out;
+  if (*n) qsort(*out, *n, sizeof **out, by_place);
+  if (st == VG_OK) st = vg_spots_thin(n, *out, err);
+  return vg_comm_agree(comm, st, err);
+}

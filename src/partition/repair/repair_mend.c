@@ -1,0 +1,397 @@
+/* Cells of several pieces joined by the names of their points, and mended. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/delaunay/tets.h"
+#include "core/geometry/shape.h"
+#include "partition/repair/repair_parts.h"
+
+/* As vg_shape: what stays below 5 degrees, or above 175, is tried again. */
+static const double hopeless = 0.0076;
+
+/* --- as they travel ------------------------------------------------------ */
+
+void vg_block_release(struct vg_block *b)
+{
+  free(b->name);
+  free(b->x);
+  free(b->hold);
+  free(b->cell);
+  memset(b, 0, sizeof *b);
+}
+
+void vg_block_put(struct vg_writer *w, const struct vg_block *b)
+{
+  uint64_t count[2] = {b->n_point, b->n_cell};
+
+  vg_put(w, 1, sizeof b->cluster, &b->cluster);
+  vg_put(w, 1, sizeof b->path, b->path);
+  vg_put(w, 2, sizeof *count, count);
+  vg_put(w, b->n_point, sizeof *b->name, b->name);
+  vg_put(w, b->n_point, sizeof *b->x, b->x);
+  vg_put(w, b->n_point, sizeof *b->hold, b->hold);
+  vg_put(w, b->n_cell, sizeof *b->cell, b->cell);
+}
+
+void vg_block_get(struct vg_reader *r, struct vg_block *b)
+{
+  uint64_t count[2] = {0, 0};
+
+  memset(b, 0, sizeof *b);
+  vg_get(r, 1, sizeof b->cluster, &b->cluster);
+  vg_get(r, 1, sizeof b->path, b->path);
+  vg_get(r, 2, sizeof *count, count);
+  b->n_point = count[0];
+  b->n_cell = count[1];
+  b->name = vg_get_array(r, b->n_point, sizeof *b->name);
+  b->x = vg_get_array(r, b->n_point, sizeof *b->x);
+  b->hold = vg_get_array(r, b->n_point, sizeof *b->hold);
+  b->cell = vg_get_array(r, b->n_cell, sizeof *b->cell);
+  if (r->bad) vg_block_release(b);
+}
+
+void vg_mended_release(struct vg_mended *m)
+{
+  vg_piece_release(&m->piece);
+  free(m->moved);
+  free(m->x);
+  free(m->spot);
+  memset(m, 0, sizeof *m);
+}
+
+/* --- joining ------------------------------------------------------------- */
+
+struct joint {
+  size_t n_block;
+  const struct vg_block *block;
+  const struct vg_balls *balls;
+  const struct vg_repair_rim *rim;
+  /* points in the order in which they are first met */
+  size_t n_point, n_fixed, n_cell;
+  uint64_t *name;
+  double (*x)[3];
+  uint8_t *fixed;
+  uint32_t *number;          /* [n_point] in the tetrahedra, fixed ones first */
+  uint32_t *point;           /* [n_point] and back */
+  uint64_t mask;
+  uint32_t *slot;            /* [mask + 1] points by the hash of their name */
+  uint32_t **local;          /* [n_block][block.n_point] */
+  struct vg_tets t;
+};
+
+static void joint_free(struct joint *j)
+{
+  for (size_t k = 0; j->local && k < j->n_block; k++) free(j->local[k]);
+  free(j->local);
+  free(j->name);
+  free(j->x);
+  free(j->fixed);
+  free(j->number);
+  free(j->point);
+  free(j->slot);
+  vg_tets_release(&j->t);
+}
+
+static vg_status joint_new(struct joint *j, struct vg_error *err)
+{
+  size_t n = 0;
+
+  for (size_t k = 0; k < j->n_block; k++) {
+    n += j->block[k].n_point;
+    j->n_cell += j->block[k].n_cell;
+  }
+  j->mask = 63;
+  while (j->mask < 2 * n) j->mask = 2 * j->mask + 1;
+  j->name = vg_alloc(n, sizeof *j->name);
+  j->x = vg_alloc(n, sizeof *j->x);
+  j->fixed = vg_calloc(n, 1);
+  j->number = vg_alloc(n, sizeof *j->number);
+  j->point = vg_alloc(n, sizeof *j->point);
+  j->slot = vg_alloc(j->mask + 1, sizeof *j->slot);
+  j->local = vg_calloc(j->n_block, sizeof *j->local);
+  if (!j->name || !j->x || !j->fixed || !j->number || !j->point ||
+      !j->slot || !j->local)
+    return vg_fail_memory(err, "repairs");
+  memset(j->slot, 0xff, (j->mask + 1) * sizeof *j->slot);
+  for (size_t k = 0; k < j->n_block; k++) {
+    j->local[k] = vg_alloc(j->block[k].n_point, sizeof **j->local);
+    if (!j->local[k]) return vg_fail_memory(err, "repairs");
+  }
+  return VG_OK;
+}
+
+/* The point of that name, which is added when it is new. */
+static uint32_t point_of(struct joint *j, uint64_t name, const double x[3])
+{
+  uint64_t h = name * 0x9e3779b97f4a7c15u;
+
+  for (h = (h ^ h >> 32) & j->mask; j->slot[h] != VG_NONE;
+       h = (h + 1) & j->mask)
+    if (j->name[j->slot[h]] == name) return j->slot[h];
+  j->slot[h] = (uint32_t)j->n_point;
+  j->name[j->n_point] = name;
+  memcpy(j->x[j->n_point], x, sizeof *j->x);
+  return (uint32_t)j->n_point++;
+}
+
+/* Points of the boundary, points outside the balls, and those that another
+ * cluster has cells of, stay. */
+static void join_points(struct joint *j)
+{
+  size_t n_free = 0;
+
+  for (size_t k = 0; k < j->n_block; k++) {
+    const struct vg_block *b = &j->block[k];
+
+    for (size_t i = 0; i < b->n_point; i++) {
+      uint32_t q = j->local[k][i] = point_of(j, b->name[i], b->x[i]);
+
+      j->fixed[q] |= b->hold[i];
+    }
+  }
+  for (size_t q = 0; q < j->n_point; q++) {
+    if (!(j->name[q] >> 32) ||
+        vg_balls_at(j->balls, j->x[q]) != j->block[0].cluster)
+      j->fixed[q] = 1;
+    j->n_fixed += j->fixed[q];
+  }
+  for (size_t q = 0, n = 0; q < j->n_point; q++) {
+    j->number[q] = (uint32_t)(j->fixed[q] ? n++ : j->n_fixed + n_free++);
+    j->point[j->number[q]] = (uint32_t)q;
+  }
+}
+
+/* Is face i of cell c a triangle of the boundary? */
+static int on_rim(const struct joint *j, uint32_t c, int i)
+{
+  const uint32_t *v = j->t.cell[c].v;
+  uint32_t at[3];
+
+  for (int m = 0; m < 3; m++) {
+    uint64_t name = j->name[j->point[v[vg_face[i][m]]]];
+
+    if (name >> 32) return 0;
+    at[m] = (uint32_t)name;
+  }
+  return vg_repair_rim_has(j->rim, at);
+}
+
+/* Faces around the cells and sheets of the boundary are fixed. Other faces of
+ * three boundary points are not: between them lie flat cells over edges that
+ * the boundary has the other way round. */
+static void fix_faces(struct joint *j)
+{
+  struct vg_tets *t = &j->t;
+
+  for (uint32_t c = 0; c < t->n_cell; c++)
+    for (int i = 0; i < 4; i++)
+      if (t->cell[c].link[i] == VG_NONE || on_rim(j, c, i))
+        t->flag[c] |= (uint8_t)(1 << i);
+}
+
+static vg_status join_cells(struct joint *j, struct vg_error *err)
+{
+  double (*x)[3] = vg_alloc(j->n_point, sizeof *x);
+  uint32_t (*cell)[4] = vg_alloc(j->n_cell, sizeof *cell);
+  size_t n = 0;
+  vg_status st;
+
+  if (!x || !cell) {
+    free(x);
+    free(cell);
+    return vg_fail_memory(err, "repairs");
+  }
+  for (size_t q = 0; q < j->n_point; q++)
+    memcpy(x[j->number[q]], j->x[q], sizeof *x);
+  for (size_t k = 0; k < j->n_block; k++)
+    for (size_t c = 0; c < j->block[k].n_cell; c++, n++)
+      for (int i = 0; i < 4; i++)
+        cell[n][i] = j->number[j->local[k][j->block[k].cell[c][i]]];
+  st = vg_tets_adopt(&j->t, j->n_point, x, n, (const uint32_t (*)[4])cell,
+                     err);
+  free(cell);
+  if (st == VG_OK) fix_faces(j);
+  return st;
+}
+
+/* --- what came of it ----------------------------------------------------- */
+
+enum { CLASSES = 3 };
+
+/* The worst cell, and cells below 5, 10 and 25 degrees. */
+struct tally {
+  double worst;
+  uint64_t n[CLASSES];
+};
+
+static struct tally measure(const struct vg_tets *t)
+{
+  static const double below[CLASSES] = {0.0076, 0.03, VG_SHAPE_AIM};
+  struct tally s = { .worst = 2 };
+
+  for (size_t c = 0; c < t->n_cell; c++) {
+    const uint32_t *v = t->cell[c].v;
+    double q;
+
+    if (t->flag[c] & VG_DEAD) continue;
+    q = vg_shape(t->x[v[0]], t->x[v[1]], t->x[v[2]], t->x[v[3]]);
+    if (q < s.worst) s.worst = q;
+    for (int k = 0; k < CLASSES; k++) s.n[k] += q < below[k];
+  }
+  return s;
+}
+
+/* The worst cell and the very bad ones decide: a point put in for them may
+ * leave a few more cells that are only bad. */
+static int is_better(const struct tally *now, const struct tally *old)
+{
+  int fewer = 0;
+
+  if (now->worst < old->worst) return 0;
+  for (int k = 0; k < CLASSES - 1; k++) {
+    if (now->n[k] > old->n[k]) return 0;
+    fewer |= now->n[k] < old->n[k];
+  }
+  if (fewer || now->n[CLASSES - 1] != old->n[CLASSES - 1])
+    return fewer || now->n[CLASSES - 1] < old->n[CLASSES - 1];
+  return now->worst > old->worst;
+}
+
+/* Numbers of the points that cells use, in a piece: those of others first.
+ * to out: [t.n_point] or VG_NONE. 0: a point of others lost all its cells. */
+static int number_points(const struct joint *j, struct vg_piece *piece,
+                         uint32_t *to)
+{
+  const struct vg_tets *t = &j->t;
+
+  memset(to, 0xff, t->n_point * sizeof *to);
+  for (size_t c = 0; c < t->n_cell; c++) {
+    if (t->flag[c] & VG_DEAD) continue;
+    piece->n_cell++;
+    for (int i = 0; i < 4; i++) to[t->cell[c].v[i]] = 0;
+  }
+  for (size_t q = 0; q < j->n_point; q++) {
+    if (to[q] != VG_NONE) to[q] = (uint32_t)piece->n_in++;
+    else if (q >= j->n_fixed) return 0;
+  }
+  for (size_t q = j->n_point; q < t->n_point; q++)
+    if (to[q] != VG_NONE)
+      to[q] = (uint32_t)(piece->n_in + piece->n_point++);
+  return 1;
+}
+
+static vg_status to_piece(const struct joint *j, struct vg_mended *m,
+                          const uint32_t *to, struct vg_error *err)
+{
+  const struct vg_tets *t = &j->t;
+  struct vg_piece *p = &m->piece;
+  size_t n = 0;
+
+  p->in = vg_alloc(p->n_in, sizeof *p->in);
+  p->x = vg_alloc(p->n_in + p->n_point, sizeof *p->x);
+  p->cell = vg_alloc(p->n_cell, sizeof *p->cell);
+  m->moved = vg_alloc(p->n_in, sizeof *m->moved);
+  m->x = vg_alloc(p->n_in, sizeof *m->x);
+  if (!p->in || !p->x || !p->cell || !m->moved || !m->x)
+    return vg_fail_memory(err, "repairs");
+  for (size_t q = 0; q < t->n_point; q++)
+    if (to[q] != VG_NONE) memcpy(p->x[to[q]], t->x[q], sizeof *p->x);
+  for (size_t q = 0; q < j->n_point; q++) {
+    const double *old = j->x[j->point[q]];
+
+    if (to[q] == VG_NONE) continue;
+    p->in[to[q]] = j->name[j->point[q]];
+    if (t->x[q][0] == old[0] && t->x[q][1] == old[1] && t->x[q][2] == old[2])
+      continue;
+    m->moved[m->n_moved] = p->in[to[q]];
+    memcpy(m->x[m->n_moved++], t->x[q], sizeof *m->x);
+  }
+  for (size_t c = 0; c < t->n_cell; c++) {
+    if (t->flag[c] & VG_DEAD) continue;
+    for (int i = 0; i < 4; i++) p->cell[n][i] = to[t->cell[c].v[i]];
+    n++;
+  }
+  return VG_OK;
+}
+
+/* Where another attempt needs more room. */
+static vg_status list_left(const struct joint *j,
+                           const struct vg_sizing *sizing,
+                           struct vg_mended *m, struct vg_error *err)
+{
+  const struct vg_tets *t = &j->t;
+
+  for (size_t c = 0; c < t->n_cell; c++) {
+    const double *x[4];
+
+    if (t->flag[c] & VG_DEAD) continue;
+    for (int i = 0; i < 4; i++) x[i] = t->x[t->cell[c].v[i]];
+    if (vg_shape(x[0], x[1], x[2], x[3]) >= hopeless) continue;
+    if (vg_reserve(&m->spot, &m->cap_spot, m->n_spot + 1, sizeof *m->spot))
+      return vg_fail_memory(err, "repairs");
+    m->spot[m->n_spot++] = vg_spot_around(sizing, x, VG_BALL_LARGE);
+  }
+  return VG_OK;
+}
+
+static vg_status take(const struct joint *j, const struct tally *old,
+                      struct vg_mended *m, struct vg_error *err)
+{
+  struct tally now = measure(&j->t);
+  uint32_t *to;
+  vg_status st = VG_OK;
+
+  m->worst_left = now.worst;
+  m->n_bad_left = now.n[CLASSES - 1];
+  m->better = is_better(&now, old);
+  if (!m->better) {
+    m->worst_left = m->worst;
+    m->n_bad_left = m->n_bad;
+    return VG_OK;
+  }
+  to = vg_alloc(j->t.n_point, sizeof *to);
+  if (!to) return vg_fail_memory(err, "repairs");
+  m->better = number_points(j, &m->piece, to);
+  if (m->better) st = to_piece(j, m, to, err);
+  free(to);
+  return st;
+}
+
+vg_status vg_repair_mend(size_t n, const struct vg_block *block,
+                         const struct vg_balls *balls,
+                         const struct vg_repair_rim *rim,
+                         const struct vg_sizing *sizing,
+                         struct vg_mended *out, struct vg_error *err)
+{
+  struct joint j = { .n_block = n, .block = block, .balls = balls,
+                     .rim = rim };
+  struct vg_optimise_report r;
+  struct vg_mended m = { .better = 0 };
+  struct tally old;
+  vg_status st = joint_new(&j, err);
+
+  m.n_cell = j.n_cell;
+  if (st == VG_OK) {
+    join_points(&j);
+    st = join_cells(&j, err);
+  }
+  if (st == VG_OK) {
+    old = measure(&j.t);
+    m.worst = m.worst_left = old.worst;
+    m.n_bad = m.n_bad_left = old.n[CLASSES - 1];
+    st = vg_optimise_bad(&j.t, j.n_fixed, j.n_point, &r, err);
+  }
+  if (st == VG_OK) st = take(&j, &old, &m, err);
+  if (st == VG_OK) st = list_left(&j, sizing, &m, err);
+  if (st == VG_ERR_GEOMETRY) {
+    /* cells that do not fit together, or flat ones, are left to the judge */
+    m.better = 0;
+    m.worst_left = m.worst;
+    st = VG_OK;
+  }
+  joint_free(&j);
+  if (st == VG_OK) *out = m;
+  else vg_mended_release(&m);
+  return st;
+}

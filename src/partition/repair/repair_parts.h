@@ -1,0 +1,291 @@
+/* partition/repair/repair_parts.h: what the steps of the repair share. */
+#ifndef VG_PARTITION_REPAIR_REPAIR_PARTS_H
+#define VG_PARTITION_REPAIR_REPAIR_PARTS_H
+
+#include "base/bytes.h"
+#include "core/optimise/optimise.h"
+#include "partition/repair/repair.h"
+
+#define VG_NO_CLUSTER UINT32_MAX
+
+/* --- who has which piece (repair_find.c) --------------------------------- */
+
+struct vg_owner {
+  uint32_t serial, rank, piece;
+  uint32_t order;            /* in the order of the paths */
+  int is_zone;               /* its points may have cells elsewhere */
+};
+
+struct vg_owners { size_t n; struct vg_owner *at; };  /* by serial */
+
+/** Pieces of all ranks. Collective. */
+vg_status vg_owners_gather(const struct vg_partition *p, struct vg_comm *comm,
+                           struct vg_owners *out, struct vg_error *err);
+
+/** Whose point is this? NULL: the boundary's. */
+const struct vg_owner *vg_owners_find(const struct vg_owners *o,
+                                      uint64_t name);
+
+/** A list for each of the ranks. */
+struct vg_post { int size; struct vg_writer *to; };
+
+vg_status vg_post_new(struct vg_post *post, int size, struct vg_error *err);
+void vg_post_release(struct vg_post *post);
+
+/** Give each rank its list. from out: [size], see vg_bytes_release.
+ * Collective; st: this rank's status so far. */
+vg_status vg_post_send(struct vg_post *post, struct vg_comm *comm,
+                       vg_status st, struct vg_bytes **from,
+                       struct vg_error *err);
+
+/* --- where (repair_smooth.c, repair_balls.c) ----------------------------- */
+
+/* A ball around a bad cell. */
+struct vg_spot { double at[3], radius; };
+
+/* For cells that are not good, bad ones, and what stayed bad. */
+enum vg_ball_size { VG_BALL_SMALL, VG_BALL_MIDDLE, VG_BALL_LARGE,
+                    VG_BALL_SIZES };
+
+/** A ball around a cell: a few spacings, and all of the cell. */
+struct vg_spot vg_spot_around(const struct vg_sizing *sizing,
+                              const double *const x[4], enum vg_ball_size k);
+
+/** Add one around a cell of a shape below VG_SHAPE_AIM. */
+struct vg_spots { size_t n, cap; struct vg_spot *at; };
+vg_status vg_spots_add(struct vg_spots *s, const struct vg_sizing *sizing,
+                       const double *const x[4], double shape);
+
+/** The balls that ranks wrote, on all of them: in an order that does not
+ * depend on ranks, thinned. out: owned by the caller, also on failure.
+ * Collective. */
+vg_status vg_spots_gather(struct vg_writer *w, int n_rank,
+                          struct vg_comm *comm, size_t *n,
+                          struct vg_spot **out, struct vg_error *err);
+
+/** As vg_shape: dihedral angles below 18 or above 162 degrees. */
+#define VG_SHAPE_BAD 0.0955
+
+/** Swap and smooth across interfaces, and list balls around the cells with a
+ * corner there that stay bad, of all ranks, by their coordinates. Collective.
+ * spans: this rank's tasks are added. (repair_smooth.c) */
+vg_status vg_repair_smooth(struct vg_partition *p, struct vg_comm *comm,
+                           const struct vg_owners *owners,
+                           struct vg_spans *spans, size_t *n,
+                           struct vg_spot **out, struct vg_error *err);
+
+/* Cells of one piece that have a corner among the points of another, as its
+ * owner needs them. (repair_seam.c) */
+struct vg_seam {
+  uint32_t owner, to;        /* whose points: piece and rank */
+  uint32_t from, rank;       /* who has the cells: likewise */
+  uint32_t order;            /* of its path */
+  uint32_t n_known, n_other, n_cell;
+  uint32_t *known;           /* [n_known] places of the owner's points */
+  uint32_t *vertex;          /* [n_known] in the piece that has the cells;
+                                not sent: [n_known + n_other] */
+  double (*x)[3];            /* [n_other] corners that are not the owner's */
+  uint64_t *name;            /* [n_other] */
+  uint32_t *zone;            /* [n_other] order of the zone whose they are */
+  uint32_t (*cell)[4];       /* [n_cell] 0 ... n_known - 1 known, then other */
+  uint32_t *place;           /* [n_cell] in the piece that has them */
+  uint32_t n_gone;           /* not sent. place [n_gone] once all is done:
+                                those that the owner has others for */
+};
+#define VG_NO_ZONE UINT32_MAX
+
+void vg_seam_release(struct vg_seam *s);
+void vg_seam_put(struct vg_writer *w, const struct vg_seam *s);
+/** Sets r->bad, and leaves *s empty, where the data cannot be. */
+void vg_seam_get(struct vg_reader *r, struct vg_seam *s);
+
+/** The seams of piece k of this rank. hit out: [n_hit] its cells with a corner
+ * among the points of zones, in rising order. out, hit: owned by the caller,
+ * also on failure. */
+vg_status vg_seams_of(const struct vg_partition *p, size_t k,
+                      const struct vg_owners *owners, size_t *n,
+                      struct vg_seam **out, size_t *n_hit, uint32_t **hit);
+
+/** The corners of a seam as they are now. */
+void vg_seam_refresh(const struct vg_piece *q, struct vg_seam *s);
+
+/** As vg_shape. Points with a cell below the first (42 degrees) around them
+ * are smoothed in the first round, below the second (48) in the second and
+ * beside; cells below the third (39) are swapped. */
+#define VG_SHAPE_LEVEL 0.45f
+#define VG_SHAPE_BESIDE 0.55f
+#define VG_SHAPE_SWAP 0.4f
+
+/** Smooth the points of a piece that are corners of the cells hit [n], which
+ * are those with a corner on an interface in rising order; but not those that
+ * are shared [q.n_point], NULL: none is. out: cells that it spoiled, but for
+ * those hit. (repair_beside.c) */
+vg_status vg_repair_beside(const struct vg_piece *q,
+                           const struct vg_sizing *sizing, size_t n,
+                           const uint32_t *hit, const uint8_t *shared,
+                           struct vg_spots *out);
+
+enum {                       /* what is known of a cell of a field */
+  VG_FIELD_TOLD = 1,         /* an earlier owner looks at it */
+  VG_FIELD_LATER = 2,        /* an earlier owner may move a point of it */
+  VG_FIELD_NEW = 4 };
+
+/* All cells with a corner among an owner's points on interfaces.
+ * (repair_field.c) */
+struct vg_field {
+  const struct vg_piece *q;
+  const struct vg_owner *self;
+  int first;                 /* as below */
+  size_t n_seam;
+  struct vg_seam *const *seam;
+  uint8_t *shared;           /* [q.n_point] on an interface */
+  uint8_t *stays;            /* [q.n_point] an earlier owner's point is near */
+  size_t n_base, n_other;    /* vertices of q, then those of the seams */
+  uint64_t *other;           /* [n_other] their names */
+  uint64_t mask;
+  uint32_t *slot;            /* [mask + 1] vertices by the hash of names */
+  size_t n_own;              /* cells of q come first */
+  uint32_t *place;           /* [n_own] in q */
+  struct vg_tets t;          /* without links */
+  size_t cap_kind, cap_shape;
+  uint8_t *kind;             /* [t.n_cell] */
+  float *shape;              /* [t.n_cell] */
+  size_t n_point;
+  uint32_t *point;           /* [n_point] that may move */
+};
+
+/** first: those who come first in the order may move points; or who come
+ * last. */
+vg_status vg_field_new(struct vg_field *f, const struct vg_owners *owners,
+                       int first);
+void vg_field_release(struct vg_field *f);
+
+/* Cells of a piece that others take the place of. */
+struct vg_edit {
+  uint8_t *gone;             /* [q.n_cell] or NULL: none */
+  size_t n_cell, n_point;
+  uint32_t (*cell)[4];       /* [n_cell] vertices of q, then further ones: */
+  uint64_t *name;            /* [n_point] */
+  double (*x)[3];            /* [n_point] */
+};
+
+void vg_edit_release(struct vg_edit *c);
+
+/** Put a change into a piece; points of others that are not used any more are
+ * dropped. (repair_edit.c) */
+vg_status vg_piece_edit(struct vg_piece *q, const struct vg_edit *c);
+
+/** Swap in a field, where no other owner does and no earlier one moves a
+ * point. What goes is noted in out->gone and in the seams, what comes is part
+ * of the field. (repair_swap.c) */
+vg_status vg_field_swap(struct vg_field *f, struct vg_edit *out,
+                        size_t *n_swap);
+
+/** The new cells, as they end. */
+vg_status vg_field_take(const struct vg_field *f, struct vg_edit *out);
+
+enum { VG_LEVEL_MAX = 64 };
+
+/* Balls, to be found by points in them. */
+struct vg_balls {
+  size_t n;
+  const struct vg_spot *spot;  /* [n] borrowed */
+  uint32_t *cluster;         /* [n] or VG_NO_CLUSTER: to be done later */
+  size_t n_cluster;
+  int n_level, level[VG_LEVEL_MAX];  /* binary exponents of the radii */
+  double share[VG_LEVEL_MAX];  /* grid cells of each level to a length */
+  uint64_t mask;
+  uint32_t *first, *ball;    /* [mask + 2] into ball: by hash of grid cells */
+};
+
+/** Leave out balls around what is deep in others. */
+vg_status vg_spots_thin(size_t *n, struct vg_spot *spot, struct vg_error *err);
+
+/** Join balls that overlap to clusters, numbered by their first ball. Balls
+ * that would make a cluster of more than `most` are left for later. */
+vg_status vg_balls_new(size_t n, const struct vg_spot *spot, size_t most,
+                       struct vg_balls *out, struct vg_error *err);
+void vg_balls_release(struct vg_balls *b);
+
+/** The cluster in whose balls x is, or VG_NO_CLUSTER. Threads: safe. */
+uint32_t vg_balls_at(const struct vg_balls *b, const double x[3]);
+
+/* --- what (repair_mend.c) ------------------------------------------------ */
+
+/* Cells of one piece for a cluster, as they travel. */
+struct vg_block {
+  uint32_t cluster;
+  char path[VG_PATH_MAX];    /* of the piece */
+  uint64_t n_point, n_cell;
+  uint64_t *name;            /* [n_point] */
+  double (*x)[3];            /* [n_point] */
+  uint8_t *hold;             /* [n_point] 1: in a ball, but not all its cells
+                                are the cluster's */
+  uint32_t (*cell)[4];       /* [n_cell] */
+};
+
+void vg_block_release(struct vg_block *b);
+void vg_block_put(struct vg_writer *w, const struct vg_block *b);
+/** Sets r->bad, and leaves *b empty, where the data cannot be. */
+void vg_block_get(struct vg_reader *r, struct vg_block *b);
+
+/* --- the boundary (repair_rim.c) ------------------------------------------ */
+
+/* Its triangles between points that clusters have: a sheet with cells on both
+ * sides cannot be told from other faces of three boundary points by the cells
+ * alone. */
+struct vg_repair_rim {
+  size_t n;
+  uint32_t (*tri)[3];        /* [n] smallest point first, in rising order */
+};
+
+/** Triangles between the points of block [n]; boundary may be NULL. */
+vg_status vg_repair_rim_new(const struct vg_mesh *boundary, size_t n,
+                            const struct vg_block *block,
+                            struct vg_repair_rim *out, struct vg_error *err);
+void vg_repair_rim_release(struct vg_repair_rim *r);
+
+/** Is there a triangle of these points, of the front? */
+int vg_repair_rim_has(const struct vg_repair_rim *r, const uint32_t v[3]);
+
+/* --- what came of it (repair_mend.c) -------------------------------------- */
+
+/* What became of a cluster. */
+struct vg_mended {
+  int better;                /* 0: the cells stay as they were */
+  uint64_t n_cell;           /* of the cluster */
+  uint64_t n_bad, n_bad_left;  /* cells below VG_SHAPE_AIM before, after */
+  double worst, worst_left;  /* as vg_shape */
+  struct vg_piece piece;     /* without path and serial */
+  size_t n_moved;
+  uint64_t *moved;           /* [n_moved] points of others that moved */
+  double (*x)[3];            /* [n_moved] to here */
+  size_t n_spot, cap_spot;
+  struct vg_spot *spot;      /* [n_spot] around cells that stayed bad */
+};
+
+void vg_mended_release(struct vg_mended *m);
+
+/** Mend the cells of a cluster. block: [n] by path. */
+vg_status vg_repair_mend(size_t n, const struct vg_block *block,
+                         const struct vg_balls *balls,
+                         const struct vg_repair_rim *rim,
+                         const struct vg_sizing *sizing,
+                         struct vg_mended *out, struct vg_error *err);
+
+/* --- how long (repair_record.c) ------------------------------------------- */
+
+/** A task's time, from its begin to its end in the same thread. what: part of
+ * the path, with which and number it is one of its kind. */
+void vg_repair_begin(struct vg_span *s, int worker);
+void vg_repair_end(struct vg_span *s, const char *what, size_t number,
+                   size_t n_cell);
+
+/** Put the tasks of all ranks, own and others', into the record of the run.
+ * begin: when repairs began on this rank. own: its times are since then, and
+ * its rank is told, afterwards. Collective. */
+vg_status vg_repair_record(const struct vg_partition *p, struct vg_comm *comm,
+                           double begin, struct vg_spans *own,
+                           struct vg_spans *spans, struct vg_error *err);
+
+#endif

@@ -1,0 +1,83 @@
+/* Triangles of the boundary, between some of its points. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "partition/repair/repair_parts.h"
+
+static void sort3(const uint32_t v[3], uint32_t out[3])
+{
+  uint32_t a = v[0], b = v[1], c = v[2], keep;
+
+  if (a > b) { keep = a; a = b; b = keep; }
+  if (b > c) { keep = b; b = c; c = keep; }
+  if (a > b) { keep = a; a = b; b = keep; }
+  out[0] = a;
+  out[1] = b;
+  out[2] = c;
+}
+
+static int by_points(const void *a, const void *b)
+{
+  const uint32_t *s = a, *t = b;
+
+  for (int k = 0; k < 3; k++)
+    if (s[k] != t[k]) return s[k] < t[k] ? -1 : 1;
+  return 0;
+}
+
+static vg_status list(const struct vg_mesh *m, const uint8_t *in,
+                      struct vg_repair_rim *r)
+{
+  size_t n = 0;
+
+  for (size_t k = 0; k < m->n_tri; k++) {
+    const uint32_t *v = m->tri[k];
+
+    n += in[v[0]] && in[v[1]] && in[v[2]];
+  }
+  r->tri = vg_alloc(n, sizeof *r->tri);
+  if (!r->tri) return VG_ERR_MEMORY;
+  for (size_t k = 0; k < m->n_tri; k++) {
+    const uint32_t *v = m->tri[k];
+
+    if (in[v[0]] && in[v[1]] && in[v[2]]) sort3(v, r->tri[r->n++]);
+  }
+  if (r->n) qsort(r->tri, r->n, sizeof *r->tri, by_points);
+  return VG_OK;
+}
+
+vg_status vg_repair_rim_new(const struct vg_mesh *boundary, size_t n,
+                            const struct vg_block *block,
+                            struct vg_repair_rim *out, struct vg_error *err)
+{
+  size_t n_point = boundary ? boundary->n_point : 0;
+  uint8_t *in;
+  vg_status st = VG_OK;
+  int any = 0;
+
+  memset(out, 0, sizeof *out);
+  in = vg_calloc(n_point, 1);
+  if (!in) return vg_fail_memory(err, "repairs");
+  for (size_t k = 0; k < n; k++)
+    for (size_t i = 0; i < block[k].n_point; i++)
+      if (block[k].name[i] < n_point) any = in[block[k].name[i]] = 1;
+  if (any && list(boundary, in, out) < 0)
+    st = vg_fail_memory(err, "repairs");
+  free(in);
+  return st;
+}
+
+void vg_repair_rim_release(struct vg_repair_rim *r)
+{
+  free(r->tri);
+  memset(r, 0, sizeof *r);
+}
+
+int vg_repair_rim_has(const struct vg_repair_rim *r, const uint32_t v[3])
+{
+  uint32_t key[3];
+
+  sort3(v, key);
+  return r->n && bsearch(key, r->tri, r->n, sizeof *r->tri, by_points);
+}

@@ -1,0 +1,546 @@
+/* Swaps and smoothing across interfaces, and bad cells that are left there.
+ *
+ * A task cannot move the points of the front that it is given, nor those that
+ * its own zone leaves to others, nor swap across that front: here that is made
+ * up for. Each piece sends its cells with corners among the points of another
+ * to that one's rank. The owner smooths its points there; then the other points
+ * of those cells are smoothed, each where it is; then the owner swaps what is
+ * not good, and smooths again. In a level field the first time is enough.
+ *
+ * Of two points of different zones with a cell in common, that of the earlier
+ * path may move, the second time that of the later one, and swaps are made
+ * only among cells with which no other zone has to do: so owners do not depend
+ * on each other, and the outcome not on ranks. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "core/delaunay/tets.h"
+#include "core/geometry/shape.h"
+#include "partition/repair/repair_parts.h"
+
+/* A field is level when fewer than one in so many cells beside interfaces
+ * would be swapped: it is one in 50 on a box, one in 8 where sizes vary. */
+enum { LEVEL = 30 };
+
+enum { FIND, SMOOTH, BESIDE, SWAP, N_SPAN };
+
+/* What came of a piece. */
+struct outcome {
+  size_t n_seam;
+  struct vg_seam *seam;      /* [n_seam] its cells around others' points */
+  size_t n_hit;
+  uint32_t *hit;             /* [n_hit] those with a corner on an interface */
+  uint8_t *moved;            /* [n_point] or NULL: no seams */
+  uint8_t *shared;           /* [n_point] of a zone, or NULL */
+  struct vg_spots bad;
+  size_t n_moved, n_swap;
+  size_t n_cell, n_fair;     /* around its points; below VG_SHAPE_SWAP */
+  struct vg_edit edit;       /* cells swapped */
+  struct vg_span span[N_SPAN];  /* what is done for it, in turn */
+  vg_status st;
+};
+
+struct smoothing {
+  struct vg_partition *p;
+  const struct vg_owners *owners;
+  int first;                 /* the first time of two */
+  struct outcome *out;       /* [n_piece] */
+  size_t n_far, cap_far;
+  struct vg_seam *far;       /* [n_far] that came from other ranks */
+  size_t n_seam;
+  struct vg_seam **seam;     /* [n_seam] around points of this rank, by owner
+                                and the path of those who have the cells */
+  size_t *first_seam;        /* [n_piece + 1] seam */
+};
+
+static void smoothing_free(struct smoothing *s)
+{
+  for (size_t k = 0; s->out && k < s->p->n_piece; k++) {
+    struct outcome *o = &s->out[k];
+
+    for (size_t i = 0; i < o->n_seam; i++) vg_seam_release(&o->seam[i]);
+    free(o->seam);
+    free(o->moved);
+    free(o->shared);
+    free(o->hit);
+    free(o->bad.at);
+    vg_edit_release(&o->edit);
+  }
+  for (size_t i = 0; i < s->n_far; i++) vg_seam_release(&s->far[i]);
+  free(s->out);
+  free(s->far);
+  free(s->seam);
+  free(s->first_seam);
+}
+
+/* --- seams to the owners of the points ----------------------------------- */
+
+static void seam_body(void *context, size_t first, size_t end, int worker)
+{
+  struct smoothing *s = context;
+
+  for (size_t k = first; k < end; k++) {
+    struct outcome *o = &s->out[k];
+    const struct vg_piece *q = &s->p->piece[k];
+
+    vg_repair_begin(&o->span[FIND], worker);
+    o->st = vg_seams_of(s->p, k, s->owners, &o->n_seam, &o->seam, &o->n_hit,
+                        &o->hit);
+    vg_repair_end(&o->span[FIND], "C", q->serial, q->n_cell);
+  }
+}
+
+static vg_status agreed(const struct smoothing *s, struct vg_error *err)
+{
+  for (size_t k = 0; k < s->p->n_piece; k++)
+    if (s->out[k].st < 0) return vg_fail_memory(err, "repairs");
+  return VG_OK;
+}
+
+static vg_status make_seams(struct smoothing *s, struct vg_post *post,
+                            struct vg_error *err)
+{
+  vg_status st;
+
+  s->out = vg_calloc(s->p->n_piece, sizeof *s->out);
+  if (!s->out) return vg_fail_memory(err, "repairs");
+  vg_parallel_for(s->p->options.threads, s->p->n_piece, 1, seam_body, s);
+  st = agreed(s, err);
+  if (st == VG_OK) st = vg_post_new(post, s->p->size, err);
+  for (size_t k = 0; st == VG_OK && k < s->p->n_piece; k++)
+    for (size_t i = 0; i < s->out[k].n_seam; i++) {
+      const struct vg_seam *seam = &s->out[k].seam[i];
+
+      if (seam->to != (uint32_t)s->p->rank)
+        vg_seam_put(&post->to[seam->to], seam);
+      else s->n_seam++;
+    }
+  return st;
+}
+
+static vg_status take_far(struct smoothing *s, const struct vg_bytes *from,
+                          struct vg_error *err)
+{
+  for (int r = 0; r < s->p->size; r++) {
+    struct vg_reader in = { .data = from[r].data, .n = from[r].n };
+
+    while (in.at < in.n) {
+      if (vg_reserve(&s->far, &s->cap_far, s->n_far + 1, sizeof *s->far))
+        return vg_fail_memory(err, "repairs");
+      vg_seam_get(&in, &s->far[s->n_far]);
+      if (in.bad) return vg_fail_memory(err, "repairs");
+      s->n_far++;
+    }
+  }
+  return VG_OK;
+}
+
+static int by_owner(const void *a, const void *b)
+{
+  const struct vg_seam *s = *(struct vg_seam *const *)a;
+  const struct vg_seam *t = *(struct vg_seam *const *)b;
+
+  if (s->owner != t->owner) return s->owner < t->owner ? -1 : 1;
+  return s->order < t->order ? -1 : s->order > t->order;
+}
+
+/* Own seams stay where they are. */
+static vg_status sort_seams(struct smoothing *s, struct vg_error *err)
+{
+  size_t n = 0, n_piece = s->p->n_piece;
+
+  s->n_seam += s->n_far;
+  s->seam = vg_alloc(s->n_seam, sizeof *s->seam);
+  s->first_seam = vg_calloc(n_piece + 1, sizeof *s->first_seam);
+  if (!s->seam || !s->first_seam) return vg_fail_memory(err, "repairs");
+  for (size_t k = 0; k < n_piece; k++)
+    for (size_t i = 0; i < s->out[k].n_seam; i++) {
+      struct vg_seam *seam = &s->out[k].seam[i];
+
+      if (seam->to == (uint32_t)s->p->rank) s->seam[n++] = seam;
+    }
+  for (size_t i = 0; i < s->n_far; i++) s->seam[n++] = &s->far[i];
+  if (n) qsort(s->seam, n, sizeof *s->seam, by_owner);
+  for (size_t i = 0; i < n; i++) s->first_seam[s->seam[i]->owner + 1] = i + 1;
+  for (size_t k = 0; k < n_piece; k++)
+    if (s->first_seam[k + 1] < s->first_seam[k])
+      s->first_seam[k + 1] = s->first_seam[k];
+  return VG_OK;
+}
+
+static vg_status send_seams(struct smoothing *s, struct vg_comm *comm,
+                            struct vg_error *err)
+{
+  struct vg_post post = {0};
+  struct vg_bytes *from = NULL;
+  vg_status st = make_seams(s, &post, err);
+
+  st = vg_post_send(&post, comm, st, &from, err);
+  if (st < 0) return st;
+  st = take_far(s, from, err);
+  if (st == VG_OK) st = sort_seams(s, err);
+  vg_bytes_release(from, (size_t)s->p->size);
+  return vg_comm_agree(comm, st, err);
+}
+
+/* --- the points of one owner --------------------------------------------- */
+
+static vg_status smooth(struct vg_field *f, const struct vg_sizing *sizing,
+                        struct outcome *out)
+{
+  struct vg_optimise_report r;
+  size_t n_in = f->q->n_in;
+
+  f->t.flag = vg_calloc(f->t.n_cell, 1);
+  if (!f->t.flag ||
+      vg_optimise_points(&f->t, f->n_point, f->point,
+                         f->first ? VG_SHAPE_LEVEL : VG_SHAPE_BESIDE,
+                         sizing, f->shape, &r, NULL) < 0)
+    return VG_ERR_MEMORY;
+  for (size_t i = 0; i < f->n_point; i++) {
+    uint32_t v = f->point[i];
+    double *x = f->q->x[v];
+
+    if (!memcmp(x, f->t.x[v], sizeof *f->t.x)) continue;
+    memcpy(x, f->t.x[v], sizeof *f->t.x);
+    out->moved[v - n_in] = 1;
+    out->n_moved++;
+  }
+  return VG_OK;
+}
+
+/* Bad cells, and how many would be swapped. */
+static vg_status list_bad(const struct vg_field *f,
+                          const struct vg_sizing *sizing, struct outcome *out)
+{
+  out->n_cell = f->t.n_cell;
+  out->n_fair = 0;
+  for (size_t c = 0; c < f->t.n_cell; c++) {
+    const uint32_t *v = f->t.cell[c].v;
+    const double *x[4];
+
+    out->n_fair += f->shape[c] < VG_SHAPE_SWAP;
+    if (f->kind[c] & VG_FIELD_TOLD || f->shape[c] >= VG_SHAPE_AIM) continue;
+    for (int i = 0; i < 4; i++) x[i] = f->t.x[v[i]];
+    if (vg_spots_add(&out->bad, sizing, x, f->shape[c]) < 0)
+      return VG_ERR_MEMORY;
+  }
+  return VG_OK;
+}
+
+/* What a zone has at its own points on interfaces, beside what it has at those
+ * of others; and those points. */
+static vg_status keep_hits(struct vg_field *f, struct outcome *out)
+{
+  size_t n = out->n_hit, k = 0, m = 0, n_all = 0;
+  uint32_t *all = vg_alloc(n + f->n_own, sizeof *all);
+
+  if (!all) return VG_ERR_MEMORY;
+  while (k < n || m < f->n_own) {
+    uint32_t a = k < n ? out->hit[k] : UINT32_MAX;
+    uint32_t b = m < f->n_own ? f->place[m] : UINT32_MAX;
+
+    k += a <= b;
+    m += b <= a;
+    all[n_all++] = a < b ? a : b;
+  }
+  free(out->hit);
+  out->hit = all;
+  out->n_hit = n_all;
+  out->shared = f->shared;
+  f->shared = NULL;
+  return VG_OK;
+}
+
+static vg_status smooth_piece(const struct smoothing *s, size_t k,
+                              struct outcome *out)
+{
+  const struct vg_piece *q = &s->p->piece[k];
+  struct vg_field f = {
+    .q = q, .seam = s->seam + s->first_seam[k],
+    .n_seam = s->first_seam[k + 1] - s->first_seam[k],
+    .self = vg_owners_find(s->owners, VG_POINT_NAME(q->serial, 0)) };
+  vg_status st;
+
+  free(out->moved);
+  out->moved = vg_calloc(q->n_point, 1);
+  st = out->moved ? vg_field_new(&f, s->owners, s->first) : VG_ERR_MEMORY;
+  if (st == VG_OK && !s->first && f.self->is_zone)
+    st = vg_field_swap(&f, &out->edit, &out->n_swap);
+  if (st == VG_OK) st = smooth(&f, s->p->sizing, out);
+  if (st == VG_OK) st = list_bad(&f, s->p->sizing, out);
+  if (st == VG_OK && out->n_swap) st = vg_field_take(&f, &out->edit);
+  if (st == VG_OK && s->first && f.self->is_zone) st = keep_hits(&f, out);
+  vg_field_release(&f);
+  return st;
+}
+
+static void smooth_body(void *context, size_t first, size_t end, int worker)
+{
+  struct smoothing *s = context;
+
+  for (size_t k = first; k < end; k++) {
+    struct outcome *o = &s->out[k];
+    struct vg_span *span = &o->span[s->first ? SMOOTH : SWAP];
+    size_t before = o->n_moved;
+
+    if (s->first_seam[k + 1] == s->first_seam[k]) continue;
+    vg_repair_begin(span, worker);
+    o->st = smooth_piece(s, k, o);
+    vg_repair_end(span, s->first ? "S" : "W", s->p->piece[k].serial,
+                  o->n_moved - before);
+  }
+}
+
+/* --- back to those who use the points ------------------------------------ */
+
+/* A point of a piece that is another's, and where it is now. */
+struct news { uint32_t piece, vertex; double x[3]; };
+
+/* What the owner says of a seam: the points that moved, and the cells that it
+ * has others for. */
+static void put_news(const struct smoothing *s, const struct vg_seam *seam,
+                     struct vg_writer *w)
+{
+  const struct vg_piece *q = &s->p->piece[seam->owner];
+  const uint8_t *moved = s->out[seam->owner].moved;
+  uint32_t head[3] = {seam->from, 0, seam->n_gone};
+
+  for (size_t i = 0; i < seam->n_known; i++) head[1] += moved[seam->known[i]];
+  if (!head[1] && !head[2]) return;
+  vg_put(w, 3, sizeof *head, head);
+  for (size_t i = 0; i < seam->n_known; i++) {
+    struct news n = { .piece = seam->from, .vertex = seam->vertex[i] };
+
+    if (!moved[seam->known[i]]) continue;
+    memcpy(n.x, q->x[q->n_in + seam->known[i]], sizeof n.x);
+    vg_put(w, 1, sizeof n, &n);
+  }
+  vg_put(w, seam->n_gone, sizeof *seam->place, seam->place);
+}
+
+static vg_status drop_cells(struct smoothing *s, uint32_t piece, size_t n,
+                            const uint32_t *cell)
+{
+  struct vg_edit *e = &s->out[piece].edit;
+
+  if (n && !e->gone) e->gone = vg_calloc(s->p->piece[piece].n_cell, 1);
+  if (n && !e->gone) return VG_ERR_MEMORY;
+  for (size_t k = 0; k < n; k++) e->gone[cell[k]] = 1;
+  return VG_OK;
+}
+
+static vg_status take_news(struct smoothing *s, const struct vg_bytes *from)
+{
+  for (int r = 0; r < s->p->size; r++) {
+    struct vg_reader in = { .data = from[r].data, .n = from[r].n };
+
+    while (in.at < in.n) {
+      uint32_t head[3] = {0}, *cell;
+      struct news n;
+      vg_status st;
+
+      vg_get(&in, 3, sizeof *head, head);
+      for (uint32_t k = 0; k < head[1]; k++) {
+        vg_get(&in, 1, sizeof n, &n);
+        if (in.bad) return VG_ERR_MEMORY;
+        memcpy(s->p->piece[n.piece].x[n.vertex], n.x, sizeof n.x);
+      }
+      cell = vg_get_array(&in, head[2], sizeof *cell);
+      st = in.bad ? VG_ERR_MEMORY : drop_cells(s, head[0], head[2], cell);
+      free(cell);
+      if (st < 0) return st;
+    }
+  }
+  return VG_OK;
+}
+
+/* On this rank: nobody else writes to those vertices. */
+static void tell_body(void *context, size_t first, size_t end, int worker)
+{
+  struct smoothing *s = context;
+
+  (void)worker;
+  for (size_t k = first; k < end; k++) {
+    const struct vg_seam *seam = s->seam[k];
+    const struct vg_piece *q = &s->p->piece[seam->owner];
+    const struct vg_piece *to = &s->p->piece[seam->from];
+
+    if (seam->rank != (uint32_t)s->p->rank) continue;
+    for (size_t i = 0; i < seam->n_known; i++)
+      if (s->out[seam->owner].moved[seam->known[i]])
+        memcpy(to->x[seam->vertex[i]], q->x[q->n_in + seam->known[i]],
+               sizeof *to->x);
+  }
+}
+
+static vg_status tell(struct smoothing *s, struct vg_comm *comm,
+                      vg_status st, struct vg_error *err)
+{
+  struct vg_post post = {0};
+  struct vg_bytes *from = NULL;
+
+  if (st == VG_OK) st = vg_post_new(&post, s->p->size, err);
+  for (size_t i = 0; st == VG_OK && i < s->n_far; i++)
+    put_news(s, &s->far[i], &post.to[s->far[i].rank]);
+  st = vg_post_send(&post, comm, st, &from, err);
+  if (st < 0) return st;
+  vg_parallel_for(s->p->options.threads, s->n_seam, 16, tell_body, s);
+  st = take_news(s, from);
+  for (size_t k = 0; st == VG_OK && k < s->n_seam; k++)
+    if (s->seam[k]->rank == (uint32_t)s->p->rank)
+      st = drop_cells(s, s->seam[k]->from, s->seam[k]->n_gone,
+                      s->seam[k]->place);
+  vg_bytes_release(from, (size_t)s->p->size);
+  return st == VG_OK ? st : vg_fail_memory(err, "repairs");
+}
+
+/* --- between the two times ------------------------------------------------ */
+
+static void beside_body(void *context, size_t first, size_t end, int worker)
+{
+  struct smoothing *s = context;
+
+  for (size_t k = first; k < end; k++) {
+    struct outcome *o = &s->out[k];
+    const struct vg_piece *q = &s->p->piece[k];
+
+    o->bad.n = 0;
+    if (!o->n_seam && !o->n_hit) continue;
+    vg_repair_begin(&o->span[BESIDE], worker);
+    o->st = vg_repair_beside(q, s->p->sizing, o->n_hit, o->hit, o->shared,
+                             &o->bad);
+    for (size_t i = 0; i < o->n_seam; i++) vg_seam_refresh(q, &o->seam[i]);
+    vg_repair_end(&o->span[BESIDE], "B", q->serial, o->n_hit);
+  }
+}
+
+/* Seams of a rank came in the order in which it has them. */
+static vg_status refresh_far(struct smoothing *s, const struct vg_bytes *from)
+{
+  struct vg_reader in = {0};
+
+  for (size_t i = 0; i < s->n_far; i++) {
+    struct vg_seam *seam = &s->far[i];
+
+    if (!i || seam->rank != seam[-1].rank)
+      in = (struct vg_reader){ .data = from[seam->rank].data,
+                               .n = from[seam->rank].n };
+    vg_get(&in, seam->n_other, sizeof *seam->x, seam->x);
+    if (in.bad) return VG_ERR_MEMORY;
+  }
+  return VG_OK;
+}
+
+static vg_status go_between(struct smoothing *s, struct vg_comm *comm,
+                            struct vg_error *err)
+{
+  struct vg_post post = {0};
+  struct vg_bytes *from = NULL;
+  vg_status st;
+
+  vg_parallel_for(s->p->options.threads, s->p->n_piece, 1, beside_body, s);
+  st = agreed(s, err);
+  if (st == VG_OK) st = vg_post_new(&post, s->p->size, err);
+  for (size_t k = 0; st == VG_OK && k < s->p->n_piece; k++)
+    for (size_t i = 0; i < s->out[k].n_seam; i++) {
+      const struct vg_seam *seam = &s->out[k].seam[i];
+
+      if (seam->to != (uint32_t)s->p->rank)
+        vg_put(&post.to[seam->to], seam->n_other, sizeof *seam->x, seam->x);
+    }
+  st = vg_post_send(&post, comm, st, &from, err);
+  if (st < 0) return st;
+  if (refresh_far(s, from) < 0) st = vg_fail_memory(err, "repairs");
+  vg_bytes_release(from, (size_t)s->p->size);
+  return vg_comm_agree(comm, st, err);
+}
+
+/* --- the whole ----------------------------------------------------------- */
+
+static void edit_body(void *context, size_t first, size_t end, int worker)
+{
+  struct smoothing *s = context;
+
+  (void)worker;
+  for (size_t k = first; k < end; k++)
+    if (s->out[k].edit.gone)
+      s->out[k].st = vg_piece_edit(&s->p->piece[k], &s->out[k].edit);
+}
+
+static vg_status once(struct smoothing *s, int first, struct vg_comm *comm,
+                      struct vg_error *err)
+{
+  vg_status st;
+
+  s->first = first;
+  vg_parallel_for(s->p->options.threads, s->p->n_piece, 1, smooth_body, s);
+  st = tell(s, comm, agreed(s, err), err);
+  return vg_comm_agree(comm, st, err);
+}
+
+/* Where the field is level, one sweep is all that it takes. */
+static vg_status is_level(const struct smoothing *s, struct vg_comm *comm,
+                          int *level, struct vg_error *err)
+{
+  uint64_t n[2] = {0, 0};
+  vg_status st;
+
+  for (size_t k = 0; k < s->p->n_piece; k++) {
+    n[0] += s->out[k].n_fair;
+    n[1] += s->out[k].n_cell;
+  }
+  st = vg_comm_sum(comm, 2, n, err);
+  *level = n[0] * LEVEL < n[1];
+  return st;
+}
+
+static vg_status report(const struct smoothing *s, struct vg_spans *spans,
+                        struct vg_writer *w, struct vg_error *err)
+{
+  struct vg_partition_report *r = &s->p->report;
+  vg_status st = VG_OK;
+
+  for (size_t k = 0; k < s->p->n_piece; k++) {
+    const struct outcome *o = &s->out[k];
+
+    r->n_repair_moved += o->n_moved;
+    r->n_repair_swapped += o->n_swap;
+    vg_put(w, o->bad.n, sizeof *o->bad.at, o->bad.at);
+    for (int i = 0; i < N_SPAN; i++)
+      if (o->span[i].kind) VG_TRY(vg_spans_add(spans, &o->span[i], err));
+  }
+done:
+  return st;
+}
+
+vg_status vg_repair_smooth(struct vg_partition *p, struct vg_comm *comm,
+                           const struct vg_owners *owners,
+                           struct vg_spans *spans, size_t *n,
+                           struct vg_spot **out, struct vg_error *err)
+{
+  struct smoothing s = { .p = p, .owners = owners };
+  struct vg_writer w = { .cap = 0 };
+  int level = 1;
+  vg_status st = send_seams(&s, comm, err);
+
+  *n = 0;
+  if (st == VG_OK) st = once(&s, 1, comm, err);
+  if (st == VG_OK) st = is_level(&s, comm, &level, err);
+  if (st == VG_OK && !level) {
+    st = go_between(&s, comm, err);
+    if (st == VG_OK) st = once(&s, 0, comm, err);
+  }
+  if (st == VG_OK) {
+    vg_parallel_for(p->options.threads, p->n_piece, 1, edit_body, &s);
+    st = agreed(&s, err);
+    if (st == VG_OK) st = report(&s, spans, &w, err);
+    st = vg_comm_agree(comm, st, err);
+  }
+  if (st == VG_OK) st = vg_spots_gather(&w, p->size, comm, n, out, err);
+  free(w.bytes.data);
+  smoothing_free(&s);
+  return st;
+}
