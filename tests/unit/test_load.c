@@ -1,139 +1,9 @@
-/* Estimates of cells: volumes on shapes and real surfaces, cells against the
- * mesher's, the split among children, quantiles, messages. */
-#include "io_support.h"
+/* Estimates of cells: volumes on shapes, cells against the mesher's,
+ * the split among children, quantiles, messages. */
+#include "load_support.h"
 
 #include "base/comm.h"
-#include "cli/examples/demo.h"
 #include "fill_shapes.h"
-#include "io/mesh/ugrid.h"
-#include "partition/load/load.h"
-
-struct scene {
-  struct vg_void v;
-  struct vg_sizing *sizing;
-  double volume;
-};
-
-static double enclosed(const struct vg_void *v)
-{
-  double sum = 0;
-
-  for (size_t i = 0; i < v->n_face; i++) {
-    const double *a = v->x[v->face[i][0]], *b = v->x[v->face[i][1]];
-    const double *c = v->x[v->face[i][2]];
-
-    sum -= a[0] * (b[1] * c[2] - b[2] * c[1])
-           + a[1] * (b[2] * c[0] - b[0] * c[2])
-           + a[2] * (b[0] * c[1] - b[1] * c[0]);
-  }
-  return sum / 6;
-}
-
-/* Takes the triangles of m; m is released. */
-static void make_sized(struct scene *s, struct vg_mesh *m,
-                       const struct vg_sizing_options *o,
-                       const struct vg_source *source)
-{
-  memset(s, 0, sizeof *s);
-  assert_int_equal(vg_void_from_mesh(&s->v, m, NULL), VG_OK);
-  assert_int_equal(vg_sizing_new(o, source != NULL, source, m, &s->sizing,
-                                 NULL), VG_OK);
-  s->volume = enclosed(&s->v);
-  assert_true(s->volume > 0);
-  vg_mesh_release(m);
-}
-
-/* even: the edge everywhere; 0: as the triangles have it. */
-static void make_scene(struct scene *s, struct vg_mesh *m, double even)
-{
-  struct vg_sizing_options o = VG_SIZING_OPTIONS_INIT;
-
-  o.h_max = even;
-  o.from_surface = !(even > 0);
-  make_sized(s, m, &o, NULL);
-}
-
-static void make_sourced(struct scene *s, const char *name, size_t n_cell,
-                         double growth, const struct vg_source *source)
-{
-  struct vg_sizing_options o = VG_SIZING_OPTIONS_INIT;
-  struct vg_demo d = VG_DEMO_INIT;
-
-  o.growth = growth;
-  assert_int_equal(vg_demo_make(name, n_cell, &d, NULL), VG_OK);
-  make_sized(s, &d.surface, &o, source);
-  vg_demo_release(&d);
-}
-
-static void make_grown(struct scene *s, const char *name, size_t n_cell,
-                       double growth)
-{
-  make_sourced(s, name, n_cell, growth, NULL);
-}
-
-static void make_demo(struct scene *s, const char *name, size_t n_cell)
-{
-  make_grown(s, name, n_cell, 1.2);
-}
-
-static void release_scene(struct scene *s)
-{
-  vg_void_release(&s->v);
-  vg_sizing_free(s->sizing);
-}
-
-static void estimate(const struct scene *s, int threads, struct vg_load *l)
-{
-  struct vg_error err = VG_ERROR_INIT;
-
-  *l = (struct vg_load)VG_LOAD_INIT;
-  if (vg_load_new(&s->v, s->sizing, VG_LOAD_CELLS_PER_CUBE, threads, l, &err)
-      < 0)
-    fail_msg("%s", err.text);
-}
-
-static double volume_of(const struct vg_load_cube *c)
-{
-  return 8 * pow((double)c->half, 3);
-}
-
-/* Volume by samples alone, before it was made to fit: the fit changes a part
- * by far less than a sample (1/8) is worth. */
-static double sampled(const struct vg_load *l)
-{
-  double sum = 0;
-
-  for (size_t i = 0; i < l->n; i++)
-    sum += volume_of(&l->cube[i]) * round(8 * (double)l->cube[i].part) / 8;
-  return sum;
-}
-
-static double fitted(const struct vg_load *l)
-{
-  double sum = 0;
-
-  for (size_t i = 0; i < l->n; i++)
-    sum += volume_of(&l->cube[i]) * (double)l->cube[i].part;
-  return sum;
-}
-
-/* A branch on the wrong side would be worth many per cent, and a farfield has
- * few cubes: what three standard deviations of samples are worth, where a
- * part is known to about 0.12. */
-static void check_volume(const struct scene *s, const struct vg_load *l)
-{
-  double cells = 0, crossed = 0;
-
-  assert_true(l->n > 0);
-  for (size_t i = 0; i < l->n; i++)
-    if (round(8 * (double)l->cube[i].part) < 8)
-      crossed += volume_of(&l->cube[i]) * volume_of(&l->cube[i]);
-  if (fabs(sampled(l) - s->volume) > 0.01 * s->volume + 0.36 * sqrt(crossed))
-    fail_msg("volume %g of %g", sampled(l), s->volume);
-  assert_true(fabs(fitted(l) / s->volume - 1) < 1e-5);
-  for (size_t i = 0; i < l->n; i++) cells += (double)l->cube[i].cells;
-  assert_true(fabs(cells / l->cells - 1) < 1e-9);
-}
 
 static void demos_keep_their_volume(void **state)
 {
@@ -206,38 +76,6 @@ static void threads_do_not_matter(void **state)
 
 /* --- against the mesher -------------------------------------------------- */
 
-static void compare_sourced(const char *name, size_t n_cell, double growth,
-                            const struct vg_source *source, double most)
-{
-  struct vg_fill_options o = VG_FILL_OPTIONS_INIT;
-  struct vg_fill_report r;
-  struct vg_mesh out = VG_MESH_INIT;
-  struct vg_demo d = VG_DEMO_INIT;
-  struct vg_load l;
-  struct scene s;
-  double ratio;
-
-  make_sourced(&s, name, n_cell, growth, source);
-  estimate(&s, 1, &l);
-  assert_int_equal(vg_demo_make(name, n_cell, &d, NULL), VG_OK);
-  memset(&r, 0, sizeof r);
-  assert_int_equal(vg_fill(&d.surface, s.sizing, &o, &out, &r, NULL), VG_OK);
-  ratio = (double)out.n_tet / l.cells;
-  print_message("%s: %zu cells made, %.0f expected: %.3f\n", name, out.n_tet,
-                l.cells, ratio);
-  assert_true(ratio > 1 / most && ratio < most);
-  vg_mesh_release(&out);
-  vg_demo_release(&d);
-  vg_load_release(&l);
-  release_scene(&s);
-}
-
-static void compare_with_mesh(const char *name, size_t n_cell, double growth,
-                              double most)
-{
-  compare_sourced(name, n_cell, growth, NULL, most);
-}
-
 /* 15 %: what choosing a decomposition can bear. */
 static void expects_what_is_made(void **state)
 {
@@ -245,17 +83,6 @@ static void expects_what_is_made(void **state)
   compare_with_mesh("box", 20000, 1.2, 1.15);
   compare_with_mesh("box", 200000, 1.2, 1.15);
   compare_with_mesh("sphere", 200000, 1.2, 1.15);
-}
-
-/* Where the field lets cells grow faster than they can, edges of the front,
- * not the size in a wide cube next to it, tell how many there are. */
-static void steep_fields_do_not_outrun_the_front(void **state)
-{
-  (void)state;
-  compare_with_mesh("sphere", 200000, 2, 1.15);
-  compare_with_mesh("sphere", 1000000, 2.5, 1.2);
-  compare_with_mesh("sphere", 500000, 4, 1.2);
-  compare_with_mesh("sphere", 1000000, 4, 1.2);
 }
 
 /* What is so small that no sample of a wide cube would meet it. */
@@ -675,44 +502,6 @@ static void messages_come_back(void **state)
 
 /* --- real surfaces ------------------------------------------------------- */
 
-/* As a domain, or, of walls alone, what they enclose. */
-static void check_real(const char *name)
-{
-  struct vg_error err = VG_ERROR_INIT;
-  struct vg_mesh m = VG_MESH_INIT;
-  struct vg_void v = VG_VOID_INIT;
-  const char *path = io_real(name);
-  vg_status st = vg_ugrid_read(path, &m, NULL, &err);
-  struct vg_load l;
-  struct scene s;
-
-  if (!strncmp(path, VG_TMP_DIR, strlen(VG_TMP_DIR))) remove(path);
-  if (st < 0) fail_msg("%s: %s", name, err.text);
-  assert_int_equal(vg_void_from_mesh(&v, &m, NULL), VG_OK);
-  for (size_t i = 0; enclosed(&v) < 0 && i < m.n_tri; i++) {
-    const uint32_t a = m.tri[i][0];
-
-    m.tri[i][0] = m.tri[i][1];
-    m.tri[i][1] = a;
-  }
-  vg_void_release(&v);
-  make_scene(&s, &m, 0);
-  estimate(&s, 2, &l);
-  print_message("%s: %zu triangles, %zu cubes, %.0f cells, volume %.4f\n",
-                name, s.v.n_face, l.n, l.cells, sampled(&l) / s.volume);
-  check_volume(&s, &l);
-  vg_load_release(&l);
-  release_scene(&s);
-}
-
-static void real_surfaces_keep_their_volume(void **state)
-{
-  (void)state;
-  check_real("transport/dlr_f6_wbnp_half_coarse.lb8.ugrid.xz");
-  check_real("transport/onera_m6_sharp_te_farfield.lb8.ugrid.xz");
-  check_real("bizjet/falcon_full_mirrored.lb8.ugrid.xz");
-}
-
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -720,7 +509,6 @@ int main(void)
     cmocka_unit_test(a_body_is_left_out),
     cmocka_unit_test(threads_do_not_matter),
     cmocka_unit_test(expects_what_is_made),
-    cmocka_unit_test(steep_fields_do_not_outrun_the_front),
     cmocka_unit_test(small_sources_count),
     cmocka_unit_test(faces_have_cells_of_their_own),
     cmocka_unit_test(children_get_their_share),
@@ -735,7 +523,6 @@ int main(void)
     cmocka_unit_test(quantiles_halve_a_mesh),
     cmocka_unit_test(messages_come_back),
     cmocka_unit_test(sizes_in_another_unit_are_named),
-    cmocka_unit_test(real_surfaces_keep_their_volume),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);
