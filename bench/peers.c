@@ -20,7 +20,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "base/unite.h"
+#include "base/union_find.h"
 #include "cli/settings/deck.h"
 #include "core/geometry/vector.h"
 #include "core/judge/quality.h"

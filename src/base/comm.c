@@ -200,7 +200,7 @@ static void leave(struct vg_comm *c)
   if (c->all != MPI_COMM_NULL) MPI_Comm_free(&c->all);
   if (c->owns_mpi) MPI_Finalize();
   vg_comm_messages_release(c);
-  vg_comm_bells_close(c);
+  vg_comm_wakeups_close(c);
   pthread_mutex_destroy(&c->lock);
   free(c->core);
   free(c);
@@ -242,7 +242,7 @@ vg_status vg_comm_open(struct vg_comm **out, struct vg_error *err)
   VG_TRY(join(c, err));
   VG_TRY(check_size(c, announced, err));
   VG_TRY(vg_comm_cores_open(c, err));
-  VG_TRY(vg_comm_bells_open(c, err));
+  VG_TRY(vg_comm_wakeups_open(c, err));
   *out = c;
   return VG_OK;
 done:

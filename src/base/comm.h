@@ -141,15 +141,15 @@ vg_status vg_comm_poll(struct vg_comm *c, struct vg_message *m,
                        struct vg_error *err);
 
 /** A count that changes when a rank of this node has posted to this one, or a
- * thread of this one has rung: to be taken before vg_comm_poll. Messages from
- * other nodes do not ring. Not in a job without MPI. */
-unsigned vg_comm_bell(const struct vg_comm *c);
+ * thread of this one has woken it: to be taken before vg_comm_poll. Messages
+ * from other nodes do not count. Not in a job without MPI. */
+unsigned vg_comm_wake_count(const struct vg_comm *c);
 
-/** Sleep so long, or until the bell has rung since it was heard; it may also
+/** Sleep so long, or until the count is not `heard` any more; it may also
  * return without either. One thread only. */
-void vg_comm_listen(struct vg_comm *c, unsigned heard, double seconds);
+void vg_comm_sleep(struct vg_comm *c, unsigned heard, double seconds);
 
-/** Wake the thread that listens. Threads: safe. */
-void vg_comm_ring(struct vg_comm *c);
+/** Wake the thread that sleeps. Threads: safe. */
+void vg_comm_wake(struct vg_comm *c);
 
 #endif

@@ -76,7 +76,7 @@ static vg_status post_to_self(struct vg_comm *c, int kind, struct vg_bytes *b,
   c->last = &q->next;
   pthread_mutex_unlock(&c->lock);
   *b = (struct vg_bytes){ 0, NULL };
-  vg_comm_ring(c);
+  vg_comm_wake(c);
   return VG_OK;
 }
 
@@ -96,7 +96,7 @@ static vg_status post(struct vg_comm *c, int to, int kind, struct vg_bytes *b,
   else *b = (struct vg_bytes){ 0, NULL };
   if (rc) return vg_comm_fail(err, "cannot send a message", rc);
   c->posted++;
-  vg_comm_ring_at(c, to);
+  vg_comm_wake_rank(c, to);
   return VG_OK;
 }
 

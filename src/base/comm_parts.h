@@ -16,7 +16,7 @@ enum { VG_TAG_EXCHANGE = 1, VG_TAG_PART = 2 };
 
 enum { VG_ARRIVING = 64 };
 
-struct vg_bell;              /* comm_bell.c */
+struct vg_wakeup;            /* comm_wake.c */
 struct vg_sent;              /* memory under way, until all requests are done */
 struct vg_queued;            /* a message to oneself */
 
@@ -35,9 +35,9 @@ struct vg_comm {
   int apart;                 /* ranks of a node have no memory in common */
   size_t chunk;              /* bytes that go in one call of MPI, <= INT_MAX */
   struct vg_cores_mask *core; /* [node_size], their binding when opened */
-  struct vg_common bells;    /* what holds the bells */
-  struct vg_bell *bell;      /* [node_size] */
-  int *bell_at;              /* [size] which is a rank's */
+  struct vg_common wakeups;  /* memory of these: */
+  struct vg_wakeup *wakeup;  /* [node_size] */
+  int *wakeup_at;            /* [size] which is a rank's */
 
   pthread_mutex_t lock;      /* of what follows, to `received` */
   MPI_Request *request;      /* [n_request] of sends under way */
@@ -73,11 +73,11 @@ vg_status vg_comm_node_memory(struct vg_comm *c, size_t n_part,
                               struct vg_common *out, struct vg_error *err);
 
 /** Bells of the node. Collective. */
-vg_status vg_comm_bells_open(struct vg_comm *c, struct vg_error *err);
-void vg_comm_bells_close(struct vg_comm *c);
+vg_status vg_comm_wakeups_open(struct vg_comm *c, struct vg_error *err);
+void vg_comm_wakeups_close(struct vg_comm *c);
 
 /** Ring that of another rank, if there is a way. Threads: safe. */
-void vg_comm_ring_at(struct vg_comm *c, int rank);
+void vg_comm_wake_rank(struct vg_comm *c, int rank);
 
 /** Take and drop messages until none is under way. Collective. */
 void vg_comm_drain(struct vg_comm *c);

@@ -170,9 +170,9 @@ static void who_listens_is_woken(void **state)
 
     if (!rank)
       assert_int_equal(vg_comm_post(job, 1 % size, 1, &b, NULL), VG_OK);
-    for (bell = vg_comm_bell(job); vg_comm_poll(job, &m, NULL) != VG_OK;
-         bell = vg_comm_bell(job))
-      vg_comm_listen(job, bell, 600);
+    for (bell = vg_comm_wake_count(job); vg_comm_poll(job, &m, NULL) != VG_OK;
+         bell = vg_comm_wake_count(job))
+      vg_comm_sleep(job, bell, 600);
     assert_int_equal(open_body(&m.bytes, 9).number, turn);
     free(m.bytes.data);
     if (rank)

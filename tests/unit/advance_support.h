@@ -13,7 +13,7 @@
 #include "fill_shapes.h"
 #include "io/mesh/format.h"
 #include "partition/advance/advance.h"
-#include "partition/cut/job.h"
+#include "partition/cut/task_data.h"
 
 struct scene {
   struct vg_mesh m;

@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "base/unite.h"
-#include "partition/cut/job.h"
+#include "base/union_find.h"
+#include "partition/cut/task_data.h"
 
 /* --- parts --------------------------------------------------------------- */
 
@@ -111,7 +111,7 @@ static void part_unite_crowd(const struct vg_front *f, uint32_t *parent,
         best = half[j];
       }
     }
-    if (best != UINT32_MAX) vg_unite(parent, half[i] / 3, best / 3);
+    if (best != UINT32_MAX) vg_union(parent, half[i] / 3, best / 3);
   }
 }
 
@@ -137,7 +137,7 @@ static void part_unite_around(const struct vg_front *f,
       list[j] = list[same];
       list[same++] = keep;
     }
-    if (same == 2) vg_unite(parent, list[0] / 3, list[1] / 3);
+    if (same == 2) vg_union(parent, list[0] / 3, list[1] / 3);
     else part_unite_crowd(f, parent, same, list);
   }
 }

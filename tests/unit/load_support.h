@@ -56,7 +56,8 @@ static inline void make_scene(struct scene *s, struct vg_mesh *m, double even)
   make_sized(s, m, &o, NULL);
 }
 
-static inline void make_sourced(struct scene *s, const char *name, size_t n_cell,
+static inline void make_sourced(struct scene *s, const char *name,
+                                size_t n_cell,
                          double growth, const struct vg_source *source)
 {
   struct vg_sizing_options o = VG_SIZING_OPTIONS_INIT;
@@ -85,7 +86,8 @@ static inline void release_scene(struct scene *s)
   vg_sizing_free(s->sizing);
 }
 
-static inline void estimate(const struct scene *s, int threads, struct vg_load *l)
+static inline void estimate(const struct scene *s, int threads,
+                            struct vg_load *l)
 {
   struct vg_error err = VG_ERROR_INIT;
 
@@ -138,7 +140,8 @@ static inline void check_volume(const struct scene *s, const struct vg_load *l)
   assert_true(fabs(cells / l->cells - 1) < 1e-9);
 }
 
-static inline void compare_sourced(const char *name, size_t n_cell, double growth,
+static inline void compare_sourced(const char *name, size_t n_cell,
+                                   double growth,
                             const struct vg_source *source, double most)
 {
   struct vg_fill_options o = VG_FILL_OPTIONS_INIT;
@@ -164,7 +167,8 @@ static inline void compare_sourced(const char *name, size_t n_cell, double growt
   release_scene(&s);
 }
 
-static inline void compare_with_mesh(const char *name, size_t n_cell, double growth,
+static inline void compare_with_mesh(const char *name, size_t n_cell,
+                                     double growth,
                               double most)
 {
   compare_sourced(name, n_cell, growth, NULL, most);

@@ -109,7 +109,7 @@ static void real_surface(void **state)
 
 /* --- rules --------------------------------------------------------------- */
 
-/* Leaves with more cells than crumbs have. */
+/* Leaves with more cells than fragments have. */
 static size_t large_leaves(const struct vg_partition *p, double least)
 {
   uint64_t *size;
@@ -122,7 +122,7 @@ static size_t large_leaves(const struct vg_partition *p, double least)
 }
 
 /* Even spacing: bisections halve the cells, and zones take some of them. So
- * leaves are alike; a crumb is far below a quarter of the mean. */
+ * leaves are alike; a fragment is far below a quarter of the mean. */
 static void levels_double_the_leaves(void **state)
 {
   struct scene s;

@@ -7,7 +7,7 @@
 
 #include "fill_shapes.h"
 #include "partition/cut/node.h"
-#include "partition/engine/room.h"
+#include "partition/engine/engine_memory.h"
 
 /* --- scenes -------------------------------------------------------------- */
 
@@ -480,7 +480,7 @@ static void what_crosses_stays_out(void **state)
  * it all the same, or just beside. */
 static void what_holds_a_body_stays_out(void **state)
 {
-  static const struct { double half, aside[2]; int is_held; } is[] = {
+  static const struct { double half, aside[2]; int is_limited; } is[] = {
     { 0.05, {0, 0}, 1 }, { 1e-3, {0, 0}, 1 }, { 1e-3, {0.1, 0.1}, 1 },
     { 1e-3, {0.5, 0}, 0 }, { 1e-3, {-0.4, 0.4}, 0 }, { 1e-3, {0, -0.9}, 0 } };
   const struct vg_region r = { .n_plane = 1, .plane = {{{0, 1, 0}, -1}} };
@@ -497,9 +497,9 @@ static void what_holds_a_body_stays_out(void **state)
       tip[j % 2] -= s.n->front.x[s.n->front.face[gone][j / 2]][1 + j % 2] / 3;
     put_long_cell(&s, 5, tip[0] + 2 * is[k].aside[0],
                   tip[1] + 2 * is[k].aside[1], &r);
-    assert_int_equal(s.p.report.n_crossing, is[k].is_held);
+    assert_int_equal(s.p.report.n_crossing, is[k].is_limited);
     assert_int_equal(s.n->front.face[gone][0] == VG_FACE_GONE,
-                     !is[k].is_held);
+                     !is[k].is_limited);
     free(s.p.drop);
     scene_end(&s);
   }
@@ -554,15 +554,15 @@ static void arrays_keep_what_is_in_use(void **state)
 
   (void)state;
   for (size_t need = 1; need < 3000000; need = 3 * need + 1) {
-    assert_int_equal(vg_room_reserve(NULL, &a, &cap, n, need, sizeof *a), 0);
+    assert_int_equal(vg_engine_reserve(NULL, &a, &cap, n, need, sizeof *a), 0);
     assert_true(cap >= need);
     for (size_t k = 0; k < n; k++) assert_true(a[k] == 5 * (uint32_t)k);
     for (; n < need; n++) a[n] = 5 * (uint32_t)n;
   }
-  assert_int_equal(vg_room_reserve(NULL, &a, &cap, n, SIZE_MAX / 2,
-                                   sizeof *a), -1);
+  assert_int_equal(vg_engine_reserve(NULL, &a, &cap, n, SIZE_MAX / 2,
+                                     sizeof *a), -1);
   assert_true(a[n - 1] == 5 * (uint32_t)(n - 1));
-  vg_room_free(NULL, 1, (void *const[]){ a });
+  vg_engine_free(NULL, 1, (void *const[]){ a });
 }
 
 int main(void)

@@ -345,11 +345,11 @@ static void a_real_surface(void **state)
   vg_mesh_bounds(&s.m, lo, hi);
   for (int axis = 0; axis < 3; axis++) {
     struct vg_region r = plane_at(axis, lo[axis] + 0.4 * (hi[axis] - lo[axis]));
-    size_t n_crumb, made = cut(&s, &r);
+    size_t n_fragment, made = cut(&s, &r);
 
     print_message("axis %d: %zu cells, %zu parts", axis, made,
-                  parts_of(&s.v, &n_crumb));
-    print_message(", %zu crumbs\n", n_crumb);
+                  parts_of(&s.v, &n_fragment));
+    print_message(", %zu fragments\n", n_fragment);
   }
   is_filled(&s);
   scene_end(&s);

@@ -7,7 +7,7 @@
 
 #include "fill_shapes.h"
 #include "front_parts.h"
-#include "partition/cut/job.h"
+#include "partition/cut/task_data.h"
 #include "zone_support.h"
 
 struct scene {
@@ -106,11 +106,11 @@ static inline void is_valid(const struct scene *s)
     fail_msg("volume %.17g instead of %.17g", sum, s->volume);
 }
 
-/* Parts of the front that share no edge: how many, crumbs apart, the small
+/* Parts of the front that share no edge: how many, fragments apart, the small
  * cavities left where cells of a zone are not well shaped. */
 enum { CRUMB = 20 };
 
-static inline size_t parts_of(const struct vg_void *v, size_t *n_crumb)
+static inline size_t parts_of(const struct vg_void *v, size_t *n_fragment)
 {
   struct vg_front f = { .n_point = v->n_point, .n_face = v->n_face,
                         .x = v->x, .face = v->face };
@@ -129,20 +129,20 @@ static inline size_t parts_of(const struct vg_void *v, size_t *n_crumb)
     assert_true(size[k] >= 4);
     large += size[k] > CRUMB;
   }
-  *n_crumb = n - large;
+  *n_fragment = n - large;
   free(part);
   free(size);
   return large;
 }
 
-/* Crumbs: at most one to 200 cells made, and two. */
+/* Fragments: at most one to 200 cells made, and two. */
 static inline void parts_are(const struct scene *s, size_t want)
 {
-  size_t n_crumb, n = parts_of(&s->v, &n_crumb);
+  size_t n_fragment, n = parts_of(&s->v, &n_fragment);
 
-  if (n != want || n_crumb > 2 + s->v.n_cell / 200)
-    fail_msg("%zu parts and %zu crumbs of %zu cells instead of %zu parts", n,
-             n_crumb, s->v.n_cell, want);
+  if (n != want || n_fragment > 2 + s->v.n_cell / 200)
+    fail_msg("%zu parts and %zu fragments of %zu cells instead of %zu parts", n,
+             n_fragment, s->v.n_cell, want);
 }
 
 /* The rest is filled: what was made is a mesh of the surface, so no cell

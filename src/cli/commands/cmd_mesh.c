@@ -175,8 +175,9 @@ static json_t *report_json(const struct run *r, int ok,
   json_object_set_new(o, "domain", vg_report_domain_json(&p->domain));
   json_object_set_new(o, "notes", strings(&p->notes));
   if (ok) {
-    json_object_set_new(o, "sources", vg_held_json(&r->mesh.held, front_of(r),
-                                                   &p->settings));
+    json_object_set_new(o, "sources",
+                        vg_effects_json(&r->mesh.effects, front_of(r),
+                                        &p->settings));
     json_object_set_new(o, "mesh", vg_report_mesh_json(&r->mesh.judge));
     json_object_set_new(o, "fill",
                         vg_report_fill_json(&r->mesh.partition.fill,
@@ -411,7 +412,7 @@ static vg_status run_stages(struct run *r, const struct arguments *a,
   VG_TRY(vg_comm_agree(m->comm, read_project(r, a, err), err));
   VG_TRY(close_surface(r, err));
   VG_TRY(vg_run_mesh(m, &r->problem, &r->layers, &r->show, err));
-  vg_held_note(&m->held, front_of(r), &r->problem);
+  vg_effects_note(&m->effects, front_of(r), &r->problem);
   vg_report_layers_note(&r->layers, &r->problem.surface, &r->problem.notes);
   st = write_all(r, a, err);
 done:

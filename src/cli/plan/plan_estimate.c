@@ -380,8 +380,9 @@ static vg_status make(struct vg_plan *p, struct vg_error *err)
   p->front = &p->problem.surface;
   if (p->layers.is_on) VG_TRY(make_layers(p, err));
   else VG_TRY(measure_sizes(p, p->front, err));
-  VG_TRY(vg_problem_held(&p->problem, p->front, p->sizing, &p->held, err));
-  vg_held_note(&p->held, p->front, &p->problem);
+  VG_TRY(vg_problem_effects(&p->problem, p->front, p->sizing, &p->effects,
+                            err));
+  vg_effects_note(&p->effects, p->front, &p->problem);
   v.n_point = p->front->n_point;
   v.x = p->front->point;
   v.n_face = p->front->n_tri;
@@ -409,7 +410,7 @@ static void release(struct vg_plan *p)
 {
   vg_outlook_release(&p->outlook);
   vg_load_release(&p->load);
-  vg_held_release(&p->held);
+  vg_effects_release(&p->effects);
   vg_sizing_free(p->sizing);
   vg_mesh_release(&p->lifted);
   vg_layer_stage_release(&p->layers);

@@ -5,8 +5,8 @@
 #ifndef VG_CLI_PLAN_PLAN_ESTIMATE_H
 #define VG_CLI_PLAN_PLAN_ESTIMATE_H
 
-#include "cli/input/held.h"
 #include "cli/input/layers.h"
+#include "cli/input/source_effect.h"
 #include "cli/plan/plan.h"
 #include "partition/model/forecast.h"
 
@@ -29,7 +29,7 @@ struct vg_plan {
   struct vg_mesh lifted;        /* the surface on top of estimated layers */
   const struct vg_mesh *front;  /* what bounds the field; borrowed */
   struct vg_sizing *sizing;     /* over the front */
-  struct vg_held held;
+  struct vg_effects effects;
   struct vg_load load;
   struct vg_cut_rule rule;
   struct vg_outlook outlook;

@@ -335,8 +335,8 @@ vg_status vg_plan_json(const struct vg_plan *p, struct vg_error *err)
 
   json_object_set_new(o, "title", vg_text_json(p->problem.settings.title));
   json_object_set_new(o, "mesh", mesh_json(p));
-  json_object_set_new(o, "sources", vg_held_json(&p->held, p->front,
-                                                 &p->problem.settings));
+  json_object_set_new(o, "sources", vg_effects_json(&p->effects, p->front,
+                                                    &p->problem.settings));
   json_object_set_new(o, "files", files_json(p));
   json_object_set_new(o, "memory", json_pack("{s:f s:f s:f}", "shared",
     p->shared, "per_cell", p->per_cell, "per_thread", p->per_thread));

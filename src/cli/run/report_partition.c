@@ -6,12 +6,13 @@
 #include "cli/common/cli.h"
 #include "cli/run/run.h"
 
-/* Leaves by what they were filled with. Crumbs are parts of a void that are too
- * small for a task each and are filled together: ".r" at the end of a path. */
+/* Leaves by what they were filled with. Fragments are parts of a void that are
+ * too small for a task each and are filled together: ".r" at the end of a path.
+ * */
 struct leaves {
-  size_t n, n_crumb;
-  uint64_t *cells;           /* [n] rising; of no crumbs */
-  uint64_t crumb_cells;
+  size_t n, n_fragment;
+  uint64_t *cells;           /* [n] rising; of no fragments */
+  uint64_t fragment_cells;
 };
 
 static int by_size(const void *a, const void *b)
@@ -21,7 +22,7 @@ static int by_size(const void *a, const void *b)
   return (x > y) - (x < y);
 }
 
-static int is_crumb(const struct vg_span *s)
+static int is_fragment(const struct vg_span *s)
 {
   size_t n = strlen(s->path);
 
@@ -37,9 +38,9 @@ static struct leaves leaves_of(const struct vg_spans *s)
     const struct vg_span *span = &s->span[i];
 
     if (span->kind != VG_SPAN_LEAF || !span->n_cell) continue;
-    if (is_crumb(span)) {
-      l.n_crumb++;
-      l.crumb_cells += span->n_cell;
+    if (is_fragment(span)) {
+      l.n_fragment++;
+      l.fragment_cells += span->n_cell;
     } else {
       l.cells[l.n++] = span->n_cell;
     }
@@ -58,16 +59,16 @@ static void print_leaves(FILE *to, const struct leaves *l)
             vg_cli_count(l->cells[0], a), vg_cli_count(l->cells[l->n - 1], b),
             vg_cli_count(l->cells[(l->n - 1) / 2], c));
   fprintf(to, "\n");
-  if (l->n_crumb)
-    fprintf(to, "  and %s of crumbs filled together, %s cells\n",
-            vg_cli_count(l->n_crumb, a), vg_cli_count(l->crumb_cells, b));
+  if (l->n_fragment)
+    fprintf(to, "  and %s of fragments filled together, %s cells\n",
+            vg_cli_count(l->n_fragment, a), vg_cli_count(l->fragment_cells, b));
 }
 
 /* What repairs and swaps across interfaces have added to the cells of tasks,
  * or, below 0, taken away. */
 static int64_t repair_cells(const struct vg_run *r, const struct leaves *l)
 {
-  uint64_t tasks = r->partition.n_zone_cell + l->crumb_cells;
+  uint64_t tasks = r->partition.n_zone_cell + l->fragment_cells;
 
   for (size_t i = 0; i < l->n; i++) tasks += l->cells[i];
   return (int64_t)(r->n_field_cell - tasks);
@@ -138,8 +139,8 @@ json_t *vg_report_partition_json(const struct vg_run *r)
   const struct { const char *name; uint64_t n; } row[] = {
     { "ranks", (uint64_t)r->size }, { "threads", (uint64_t)r->threads },
     { "cuts", p->n_node }, { "pencils", p->n_pencil }, { "tiles", p->n_tile },
-    { "leaves", l.n }, { "crumb_leaves", l.n_crumb },
-    { "crumb_cells", l.crumb_cells }, { "zone_cells", p->n_zone_cell },
+    { "leaves", l.n }, { "fragment_leaves", l.n_fragment },
+    { "fragment_cells", l.fragment_cells }, { "zone_cells", p->n_zone_cell },
     { "zones_given_up", p->n_blocked },
     { "zones_crossing", p->n_crossing }, { "cuts_repeated", p->n_retry },
     { "leaves_cut_again", p->n_outgrown }, { "leaves_left_large", p->n_uncut },

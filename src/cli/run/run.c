@@ -143,7 +143,7 @@ static vg_status look_at_sources(struct vg_run *r, const struct vg_problem *p,
   double t = vg_display_now();
   vg_status st = VG_OK;
 
-  if (!r->rank) st = vg_problem_held(p, front, sizing, &r->held, err);
+  if (!r->rank) st = vg_problem_effects(p, front, sizing, &r->effects, err);
   r->time_size += vg_display_now() - t;
   return vg_comm_agree(r->comm, st, err);
 }
@@ -272,7 +272,7 @@ static vg_status accept(const struct vg_run *r, struct vg_error *err)
                  "project files", faults);
 }
 
-/* Edges are held against the field's sizes; within layers there is no
+/* Edges are effects against the field's sizes; within layers there is no
  * isotropic size to meet. A file of a mesh that is not valid goes again. */
 static vg_status judge(struct vg_run *r, const struct vg_problem *p,
                        size_t front_faces, const struct vg_sizing *sizing,
@@ -286,8 +286,9 @@ static vg_status judge(struct vg_run *r, const struct vg_problem *p,
   st = vg_slices_judge_with(r->comm, &r->slices, front_faces, sizing,
                             r->threads, vg_outputs_put, r->outputs, &r->judge,
                             r->layers ? &r->field_judge : NULL, err);
-  if (st >= 0) st = vg_held_meet(r->comm, &r->slices, r->threads, &r->held,
-                                 err);
+  if (st >= 0)
+    st = vg_effects_in_mesh(r->comm, &r->slices, r->threads, &r->effects,
+                            err);
   if (st >= 0) st = accept(r, err);
   st = vg_outputs_close(r->outputs, st, err);
 done:
@@ -403,7 +404,7 @@ void vg_run_release(struct vg_run *r, int success)
 {
   vg_layer_slices_close(r->layers);
   vg_partition_free(r->field);
-  vg_held_release(&r->held);
+  vg_effects_release(&r->effects);
   vg_spans_release(&r->spans);
   vg_store_close(r->store, success && !r->options.keep);
 }

@@ -7,9 +7,9 @@
 #include <stdio.h>
 
 #include "base/comm.h"
-#include "cli/input/held.h"
 #include "cli/input/input.h"
 #include "cli/input/layers.h"
+#include "cli/input/source_effect.h"
 #include "cli/run/output.h"
 #include "core/judge/judge_slices.h"
 #include "layers/expand/slices.h"
@@ -37,7 +37,7 @@ struct vg_run {
   uint64_t n_field_cell;
   struct vg_mesh_report judge, field_judge;  /* of all; with layers: of the
                                                  field */
-  struct vg_held held;       /* of rank 0 */
+  struct vg_effects effects;       /* of rank 0 */
   double time_size, time_layers, time_judge;
   double time_fill;          /* cuts, leaves and repairs */
   size_t common;             /* bytes of sizes, one copy on the node */

@@ -17,7 +17,7 @@ static const double least_distance = 0.5;
 static const double least_height = 0.3;
 /* Cells so near to those of a region, in spacings, are optimised too: what is
  * bad there would be left as a notch in the front. */
-static const double rim = 0.3;
+static const double margin = 0.3;
 /* The first points of all keep farther off: the front decides near it. */
 static const double seed_distance = 0.8;
 
@@ -127,7 +127,7 @@ vg_status vg_growth_improve(struct vg_growth *g, struct vg_error *err)
   VG_TRY(vg_tets_tidy(&g->t, g->n_front, err));
   if (vg_growth_stopped(g, "optimising", 0, 1)) return VG_BLOCKED;
   if (g->region) near = *g->region;
-  near.reach += rim;
+  near.reach += margin;
   if (g->options->sweeps > 0) {
     st = vg_optimise(&g->t, g->n_front, g->options->sweeps,
                      g->region ? &near : NULL, g->sizing, &r, err);

@@ -4,7 +4,7 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "base/unite.h"
+#include "base/union_find.h"
 #include "core/judge/judge_slices_parts.h"
 
 /* --- faces --------------------------------------------------------------- */
@@ -72,7 +72,7 @@ static void match_face(const struct vg_slices_judgement *j,
   if (!vg_figures_face(w->figures[q], n_cell, n_boundary,
                        !((pair[0]->flags ^ pair[1]->flags) &
                          VG_FACE_WINDING))) return;
-  vg_unite(w->parent[q], pair[0]->component, pair[1]->component);
+  vg_union(w->parent[q], pair[0]->component, pair[1]->component);
   vg_figures_ratio(w->figures[q], pair[0]->volume, pair[1]->volume);
 }
 
@@ -108,7 +108,7 @@ static vg_status worst_status(struct vg_slices_judgement *j,
 
 struct boundary {
   struct vg_slices_judgement *j;
-  const struct vg_meeting *m;
+  const struct vg_rendezvous *m;
 };
 
 static void boundary_body(void *context, size_t first, size_t end, int worker)
@@ -127,7 +127,7 @@ static void boundary_body(void *context, size_t first, size_t end, int worker)
       node[3] = VG_NO_NODE;
     } else memcpy(node, b->quad[i - b->n_tri], sizeof *b->quad);
     vg_face_item_set(&f, node);
-    if (vg_meet_rank(c->m, &f) != me) continue;
+    if (vg_rendezvous_rank(c->m, &f) != me) continue;
     f.flags |= VG_FACE_BOUNDARY;
     to = vg_items_add(&w->face, sizeof f);
     if (to) *to = f;
@@ -137,7 +137,7 @@ static void boundary_body(void *context, size_t first, size_t end, int worker)
 
 /* Of the boundary, which all ranks know, what meets others here. */
 static vg_status add_boundary(struct vg_slices_judgement *j,
-                              const struct vg_meeting *m,
+                              const struct vg_rendezvous *m,
                               struct vg_error *err)
 {
   struct boundary c = { j, m };
@@ -164,7 +164,7 @@ static void number_components(struct vg_slices_judgement *j)
 static vg_status meet_faces(struct vg_slices_judgement *j,
                             struct vg_error *err)
 {
-  struct vg_meeting m = {
+  struct vg_rendezvous m = {
     j->comm, j->threads, sizeof(struct vg_face_item), 4 * sizeof(uint32_t),
     meet_face, j, is_whole_face
   };
@@ -173,8 +173,8 @@ static vg_status meet_faces(struct vg_slices_judgement *j,
   number_components(j);
   st = add_boundary(j, &m, err);
   VG_TRY(vg_comm_agree(j->comm, st, err));
-  VG_TRY(vg_meet(&m, &j->worker[0].face, (size_t)j->n_worker,
-                 sizeof *j->worker, err));
+  VG_TRY(vg_rendezvous_run(&m, &j->worker[0].face, (size_t)j->n_worker,
+                           sizeof *j->worker, err));
   st = vg_comm_agree(j->comm, worst_status(j, err), err);
 done:
   return st;
@@ -221,13 +221,13 @@ static void meet_place_key(void *context, const unsigned char *item, size_t n,
 static vg_status meet_edges(struct vg_slices_judgement *j,
                             struct vg_error *err)
 {
-  struct vg_meeting m = {
+  struct vg_rendezvous m = {
     j->comm, j->threads, sizeof(struct vg_edge_item), 2 * sizeof(uint32_t),
     meet_edge, j, NULL
   };
 
-  return vg_meet(&m, &j->worker[0].edge, (size_t)j->n_worker,
-                 sizeof *j->worker, err);
+  return vg_rendezvous_run(&m, &j->worker[0].edge, (size_t)j->n_worker,
+                           sizeof *j->worker, err);
 }
 
 static int by_key(const void *a, const void *b)
@@ -283,7 +283,7 @@ static vg_status list_crowded(void *context, const struct vg_slice *s,
 
   for (size_t i = 0; i < s->n_own; i++) {
     struct vg_place_item place = vg_place_item(s->x[s->own[i]]), *to;
-    uint64_t key = vg_meet_hash(&place, sizeof place);
+    uint64_t key = vg_rendezvous_hash(&place, sizeof place);
 
     if (!bsearch(&key, c->key->data, c->key->n, sizeof key, by_key)) continue;
     to = vg_items_add(&c->place, sizeof *to);
@@ -297,7 +297,7 @@ static vg_status count_duplicates(struct vg_slices_judgement *j,
                                   const struct vg_bytes *key,
                                   struct vg_error *err)
 {
-  struct vg_meeting m = {
+  struct vg_rendezvous m = {
     j->comm, j->threads, sizeof(struct vg_place_item),
     sizeof(struct vg_place_item), meet_place, j, NULL
   };
@@ -305,7 +305,7 @@ static vg_status count_duplicates(struct vg_slices_judgement *j,
   vg_status st = vg_slices_each(j->s, 1, list_crowded, &c, err);
 
   VG_TRY(vg_comm_agree(j->comm, st, err));
-  st = vg_meet(&m, &c.place, 1, sizeof c.place, err);
+  st = vg_rendezvous_run(&m, &c.place, 1, sizeof c.place, err);
 done:
   vg_items_release(&c.place);
   return st;
@@ -316,15 +316,15 @@ done:
 static vg_status meet_places(struct vg_slices_judgement *j,
                              struct vg_error *err)
 {
-  struct vg_meeting m = {
+  struct vg_rendezvous m = {
     j->comm, j->threads, sizeof(uint64_t), sizeof(uint64_t), meet_place_key,
     j, NULL
   };
   struct vg_bytes crowd = { 0, NULL };
   vg_status st;
 
-  VG_TRY(vg_meet(&m, &j->worker[0].place, (size_t)j->n_worker,
-                 sizeof *j->worker, err));
+  VG_TRY(vg_rendezvous_run(&m, &j->worker[0].place, (size_t)j->n_worker,
+                           sizeof *j->worker, err));
   st = vg_comm_agree(j->comm, worst_status(j, err), err);
   if (st >= 0) st = gather_crowds(j, &crowd, err);
   if (st >= 0 && crowd.n) st = count_duplicates(j, &crowd, err);
@@ -358,7 +358,7 @@ static vg_status list_links(const struct vg_slices_judgement *j, int q,
 
   for (int w = 1; w < j->n_worker; w++)
     for (uint32_t i = 0; i < j->n_all; i++)
-      vg_unite(parent, i, j->worker[w].parent[q][i]);
+      vg_union(parent, i, j->worker[w].parent[q][i]);
   for (uint32_t i = 0; i < j->n_all; i++) n += parent[i] != i;
   link = vg_alloc(n, sizeof *link);
   if (!link) return vg_fail_memory(err, "the parts of the mesh");
@@ -382,7 +382,7 @@ static size_t join_links(uint32_t *parent, uint64_t n_all,
     const struct link *link = (const void *)all[r].data;
 
     for (size_t i = 0; i < all[r].n / sizeof *link; i++)
-      n_joined += (size_t)vg_unite(parent, link[i].a, link[i].b);
+      n_joined += (size_t)vg_union(parent, link[i].a, link[i].b);
   }
   return n_joined;
 }

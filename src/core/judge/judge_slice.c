@@ -119,7 +119,7 @@ static vg_status note_points(struct work *k, struct vg_error *err)
     uint64_t *key = vg_items_add(&k->w->place, sizeof *key);
 
     if (!key) return vg_fail_memory(err, "the points of slices");
-    *key = vg_meet_hash(&place, sizeof place);
+    *key = vg_rendezvous_hash(&place, sizeof place);
     extend_box(k->w, x);
     if (s->point_at + i < k->j->n_place)
       memcpy(k->j->place[s->point_at + i], x, sizeof *k->j->place);

@@ -13,7 +13,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "base/unite.h"
+#include "base/union_find.h"
 #include "core/judge/quality_parts.h"
 
 /* Records per pass: a quarter of all, never fewer than this. */
@@ -273,7 +273,7 @@ static void match(struct table *t, uint32_t lowest, const struct record *r,
   for (size_t i = 0; i < n; i++) n_boundary += r[i].owner >> 1 >= t->n_cell;
   if (!vg_figures_face(t->f, n - n_boundary, n_boundary, same_side)) return;
   b = r[1].owner >> 1;
-  vg_unite(t->parent, a, b);
+  vg_union(t->parent, a, b);
   vg_figures_ratio(t->f, t->volume[a], t->volume[b]);
 }
 

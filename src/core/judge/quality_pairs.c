@@ -15,7 +15,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "base/unite.h"
+#include "base/union_find.h"
 #include "core/judge/quality_parts.h"
 
 #define VACANT UINT64_MAX
@@ -128,7 +128,7 @@ static void meet(struct pairing *p, uint32_t first, uint32_t second)
 
   p->is_odd |= n_boundary > 1;
   if (!vg_figures_face(p->f, 2 - n_boundary, n_boundary, same_side)) return;
-  vg_unite(p->parent, a, b);
+  vg_union(p->parent, a, b);
   vg_figures_ratio(p->f, p->volume[a], p->volume[b]);
 }
 

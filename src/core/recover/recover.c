@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "base/unite.h"
+#include "base/union_find.h"
 #include "core/geometry/hilbert.h"
 #include "core/geometry/predicates.h"
 #include "core/recover/cdt_tetgen.h"
@@ -65,7 +65,7 @@ static int passes_through(const struct vg_tets *t, const uint32_t tri[3],
 static int claim(struct recovery *r, uint32_t c, uint32_t k)
 {
   if (r->owner[c] != VG_NONE) {
-    vg_unite(r->parent, r->owner[c], k);
+    vg_union(r->parent, r->owner[c], k);
     return 0;
   }
   if (vg_reserve(&r->cell, &r->cap_cell, r->n_cell + 1, sizeof *r->cell))

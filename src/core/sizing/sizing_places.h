@@ -1,5 +1,5 @@
 /* core/sizing/sizing_places.h: places in and around a source, and which of them
- * are in a void. For core/sizing/sizing_held.c. */
+ * are in a void. For core/sizing/sizing_effect.c. */
 #ifndef VG_CORE_SIZING_SIZING_PLACES_H
 #define VG_CORE_SIZING_SIZING_PLACES_H
 

@@ -10,7 +10,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "base/unite.h"
+#include "base/union_find.h"
 #include "core/geometry/vector.h"
 
 #define REACH 3         /* directions: the integer points of a cube's faces */
@@ -117,7 +117,7 @@ static vg_status join_pieces(struct envelope *e, struct vg_error *err)
   for (size_t i = 1; i < n; i++)
     if (side[i].lo == side[i - 1].lo && side[i].hi == side[i - 1].hi
         && e->on[side[i].tri] == e->on[side[i - 1].tri])
-      vg_unite(e->root, side[i].tri, side[i - 1].tri);
+      vg_union(e->root, side[i].tri, side[i - 1].tri);
   free(side);
   return VG_OK;
 }

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "base/unite.h"
+#include "base/union_find.h"
 
 /* Half-edge on the other side of h where its edge has two, else UINT32_MAX. */
 static uint32_t opposite(const struct vg_edges *e, uint32_t h)
@@ -105,8 +105,8 @@ vg_status vg_label_fans(const struct vg_faces *s, const struct vg_edges *e,
     h = e->half[e->start[i] + 1];
     same_way = vg_edges_disagree(e, s, i);
     if (same_way ^ flip[g / 3] ^ flip[h / 3]) continue;
-    vg_unite(up, g, same_way ? h : next_corner(h));
-    vg_unite(up, next_corner(g), same_way ? next_corner(h) : h);
+    vg_union(up, g, same_way ? h : next_corner(h));
+    vg_union(up, next_corner(g), same_way ? next_corner(h) : h);
   }
   for (uint32_t i = 0; i < 3 * s->n; i++) up[i] = vg_root_of(up, i);
   *fan = (uint32_t (*)[3])up;
@@ -127,8 +127,8 @@ vg_status vg_count_pieces(const struct vg_faces *s, size_t *n_piece,
   for (size_t f = 0; f < s->n; f++) {
     const uint32_t *n = s->node[f];
 
-    vg_unite(up, n[0], n[1]);
-    vg_unite(up, n[0], n[2]);
+    vg_union(up, n[0], n[1]);
+    vg_union(up, n[0], n[2]);
     used[n[0]] = used[n[1]] = used[n[2]] = 1;
   }
   *n_piece = 0;
@@ -147,7 +147,7 @@ vg_status vg_label_shells(const struct vg_faces *s, const struct vg_edges *e,
   if (!up) return vg_fail_memory(err, "the shells of the surface");
   for (size_t i = 0; i < e->n; i++)
     for (uint32_t k = e->start[i] + 1; k < e->start[i + 1]; k++)
-      vg_unite(up, e->half[k - 1] / 3, e->half[k] / 3);
+      vg_union(up, e->half[k - 1] / 3, e->half[k] / 3);
   for (size_t f = 0; f < s->n; f++) { /* a root is the lowest of its shell */
     uint32_t r = vg_root_of(up, (uint32_t)f);
 

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "base/unite.h"
+#include "base/union_find.h"
 
 #define NONE UINT32_MAX
 
@@ -135,7 +135,7 @@ static void link_cells(const struct grid *g, uint32_t *map, uint32_t a,
       double x = p[0] - q[0], y = p[1] - q[1], z = p[2] - q[2];
 
       if (x * x + y * y + z * z <= g->limit2) {
-        vg_unite(map, a, b);
+        vg_union(map, a, b);
         return;
       }
     }

@@ -13,7 +13,7 @@
 #define GRAIN 1024
 #define FLAT (0.25 * VG_VIEW_MIN)  /* least sine of a column on a layer */
 #define SHRUNK 0.04        /* least area of a layer, of that at the wall */
-#define LOWER 0.75         /* of the room, when a cell is bad */
+#define LOWER 0.75         /* of the height allowed, when a cell is bad */
 #define RESERVE 2.0        /* times the least height of all levels */
 #define NEAR_FARTHEST 0.5  /* share of the farthest reach at a bad cell */
 
@@ -244,7 +244,7 @@ static void search_body(void *context, size_t first, size_t end, int worker)
 /* A cell that fails at some height will fail there however many layers lead
  * up to it: what is lowered are the columns that reach farthest, of those to
  * blame, not one that already keeps low. One that fails on the wall itself
- * leaves no room at all. least: [3] out, INFINITY where not lowered. */
+ * leaves no height at all. least: [3] out, INFINITY where not lowered. */
 static void limits(const struct vg_layer_work *w, const uint32_t face[3],
                    int level, int blame, double least[3])
 {
@@ -258,7 +258,7 @@ static void limits(const struct vg_layer_work *w, const uint32_t face[3],
     least[k] = level && !w->haste ? INFINITY : 0;
     if (least[k] == 0 || !(blame >> k & 1)) continue;
     vg_law_heights(&w->c->law[c->law], c->cap, top, d);
-    least[k] = fmin(LOWER * w->room[face[k]], d[top]);
+    least[k] = fmin(LOWER * w->allowed[face[k]], d[top]);
     reach[k] = d[top] * vg_norm(c->dir);
     far = fmax(far, reach[k]);
   }

@@ -11,7 +11,7 @@
 
 #define ROUNDS_MAX 300
 #define HASTE 150          /* rounds after which what is bad gets no layers */
-#define GENTLE 40          /* sound rounds in which rooms lose a share only */
+#define GENTLE 40          /* sound rounds in which heights lose a share only */
 #define SHARE 0.75
 #define TURNS_MAX 12       /* rounds that may turn columns */
 
@@ -28,7 +28,7 @@ static void work_release(struct vg_layer_work *w)
   free(w->view);
   free(w->edge);
   free(w->wanted);
-  free(w->room);
+  free(w->allowed);
   free(w->slack);
   free(w->settled);
   free(w->own);
@@ -115,19 +115,19 @@ static vg_status arrays(struct vg_layer_work *w, struct vg_error *err)
   w->view = vg_alloc(n, sizeof *w->view);
   w->edge = vg_alloc(n, sizeof *w->edge);
   w->wanted = vg_alloc(n, sizeof *w->wanted);
-  w->room = vg_alloc(n, sizeof *w->room);
+  w->allowed = vg_alloc(n, sizeof *w->allowed);
   w->settled = vg_alloc(n, sizeof *w->settled);
   w->own = vg_calloc(n, sizeof *w->own);
   w->why = vg_calloc(n, 1);
   w->by_size = vg_calloc(n, 1);
   if (w->normal && w->cap && w->root_dir && w->view && w->edge && w->wanted &&
-      w->room && w->settled && w->own && w->why && w->by_size) return VG_OK;
+      w->allowed && w->settled && w->own && w->why && w->by_size) return VG_OK;
   return vg_fail_memory(err, "the layers");
 }
 
 /* Rooms before anything is tried: no view, corners, what stands ahead. */
-static vg_status first_rooms(struct vg_layer_work *w,
-                             struct vg_layer_report *r, struct vg_error *err)
+static vg_status first_allowed(struct vg_layer_work *w,
+                               struct vg_layer_report *r, struct vg_error *err)
 {
   size_t n = w->c->n_column;
   double *allowed = vg_alloc(n, sizeof *allowed), t = vg_clock();
@@ -143,7 +143,7 @@ static vg_status first_rooms(struct vg_layer_work *w,
   VG_TRY(vg_heights_corner(w, err));
   r->time_height += vg_clock() - t;
   t = vg_clock();
-  VG_TRY(vg_clear_ahead(w->m, w->c, &w->t, w->o->gap, w->o->threads, w->room,
+  VG_TRY(vg_clear_ahead(w->m, w->c, &w->t, w->o->gap, w->o->threads, w->allowed,
                         allowed, err));
   for (size_t i = 0; i < n; i++)
     vg_heights_lower(w, i, allowed[i], VG_CAUSE_PROXIMITY);
@@ -161,7 +161,7 @@ static double lowered(const struct vg_layer_work *w, size_t i, size_t round)
 
   if (round >= GENTLE || w->haste) return 0;
   vg_law_heights(&w->c->law[c->law], c->cap, c->n, d);
-  h = d[c->n] < w->room[i] ? d[c->n] : w->room[i];
+  h = d[c->n] < w->allowed[i] ? d[c->n] : w->allowed[i];
   return SHARE * h;
 }
 
@@ -484,7 +484,7 @@ vg_status vg_layers_grow(const struct vg_mesh *surface,
   vg_status st;
 
   VG_TRY(columns(&w, &r, err));
-  VG_TRY(first_rooms(&w, &r, err));
+  VG_TRY(first_allowed(&w, &r, err));
   VG_TRY(until_clear(&w, &l.front, &r, err));
   if (st == VG_BLOCKED) goto done;
   count(&w, &l.front, &r);

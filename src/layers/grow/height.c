@@ -18,7 +18,7 @@
 #define EDGE_SWEEPS 3
 #define KEEP_EDGE 0.3      /* of an edge's length at the top, along itself */
 #define LEAN 0.3           /* of a triangle's height that a corner may lean */
-#define SLOPE 1.0          /* of rooms over the wall, where they are limited */
+#define SLOPE 1.0          /* of `allowed` over the wall, where it is limited */
 
 /* Edge of the equilateral triangle with the mean area of the faces. */
 static void edge_body(void *context, size_t first, size_t end, int worker)
@@ -220,16 +220,16 @@ static int lower_level(struct vg_layer_work *w, void *unused, uint32_t i,
   return 1;
 }
 
-static int lower_room(struct vg_layer_work *w, void *unused, uint32_t i,
-                        uint32_t j)
+static int lower_allowed(struct vg_layer_work *w, void *unused, uint32_t i,
+                         uint32_t j)
 {
   uint32_t o = w->t.near[j];
-  double limit = w->room[i] + w->slack[j];
+  double limit = w->allowed[i] + w->slack[j];
 
   (void)unused;
   if (w->why[i] == VG_CAUSE_NONE) return 0;
-  if (!(w->room[o] > limit)) return 0;
-  w->room[o] = limit;
+  if (!(w->allowed[o] > limit)) return 0;
+  w->allowed[o] = limit;
   w->why[o] = w->why[i];
   return 1;
 }
@@ -252,7 +252,7 @@ vg_status vg_heights_wanted(struct vg_layer_work *w, struct vg_error *err)
 
     vg_law_heights(&c->law[c->column[i].law], INFINITY, c->column[i].n_wanted,
                    d);
-    w->wanted[i] = w->room[i] = d[c->column[i].n_wanted];
+    w->wanted[i] = w->allowed[i] = d[c->column[i].n_wanted];
     w->why[i] = VG_CAUSE_NONE;
     w->settled[i] = -1;
   }
@@ -263,8 +263,8 @@ done:
 void vg_heights_lower(struct vg_layer_work *w, size_t i, double limit,
                       enum vg_layer_cause why)
 {
-  if (!(limit < w->room[i])) return;
-  w->room[i] = limit > 0 ? limit : 0;
+  if (!(limit < w->allowed[i])) return;
+  w->allowed[i] = limit > 0 ? limit : 0;
   w->why[i] = (uint8_t)why;
 }
 
@@ -361,8 +361,8 @@ static void corner_body(void *context, size_t first, size_t end, int worker)
     c->limit[i] = INFINITY;
     for (uint32_t j = w->t.near_first[i]; j < w->t.near_first[i + 1]; j++) {
       uint32_t o = w->t.near[j];
-      double s = edge_change(w, (uint32_t)i, o, w->room[i], w->room[o]);
-      double h = (1 - KEEP_EDGE) / -s * w->room[i];
+      double s = edge_change(w, (uint32_t)i, o, w->allowed[i], w->allowed[o]);
+      double h = (1 - KEEP_EDGE) / -s * w->allowed[i];
 
       if (1 + s < KEEP_EDGE && h < c->limit[i]) c->limit[i] = h;
     }
@@ -381,20 +381,20 @@ vg_status vg_heights_corner(struct vg_layer_work *w, struct vg_error *err)
   return VG_OK;
 }
 
-/* Growth and levels that fit into the room of a column. */
+/* Growth and levels that fit into what a column is allowed. */
 static void fit(struct vg_layer_work *w, size_t i)
 {
   struct vg_column *c = &w->c->column[i];
   const struct vg_law *law = &w->c->law[c->law];
 
-  w->settled[i] = w->room[i];
+  w->settled[i] = w->allowed[i];
   w->own[i] = c->n_wanted;
   c->cap = law->cap;
-  if (w->room[i] >= w->wanted[i]) return;
-  c->cap = vg_law_squeeze(law, c->n_wanted, w->room[i]);
+  if (w->allowed[i] >= w->wanted[i]) return;
+  c->cap = vg_law_squeeze(law, c->n_wanted, w->allowed[i]);
   if (c->cap > 0) return;
   c->cap = 1;
-  w->own[i] = (uint16_t)(w->room[i] / law->delta1);
+  w->own[i] = (uint16_t)(w->allowed[i] / law->delta1);
 }
 
 static void settle_body(void *context, size_t first, size_t end, int worker)
@@ -405,9 +405,9 @@ static void settle_body(void *context, size_t first, size_t end, int worker)
   for (size_t i = first; i < end; i++) {
     struct vg_column *c = &w->c->column[i];
 
-    if (w->room[i] != w->settled[i]) fit(w, i);
+    if (w->allowed[i] != w->settled[i]) fit(w, i);
     c->n = w->own[i];
-    c->squeezed = w->room[i] < w->wanted[i] ? w->why[i] : VG_CAUSE_NONE;
+    c->squeezed = w->allowed[i] < w->wanted[i] ? w->why[i] : VG_CAUSE_NONE;
     c->cause = c->n < c->n_wanted ? w->why[i]
              : w->by_size[i] ? VG_CAUSE_SIZE : VG_CAUSE_NONE;
   }
@@ -425,7 +425,7 @@ vg_status vg_heights_settle(struct vg_layer_work *w, uint8_t *moved,
     before[i].cap = w->c->column[i].cap;
     before[i].n = w->c->column[i].n;
   }
-  VG_TRY(vg_columns_spread(w, lower_room, NULL, err));
+  VG_TRY(vg_columns_spread(w, lower_allowed, NULL, err));
   vg_parallel_for(w->o->threads, n, GRAIN, settle_body, w);
   VG_TRY(vg_columns_spread(w, lower_level, NULL, err));
   for (size_t i = 0; moved && i < n; i++)

@@ -34,14 +34,14 @@ struct vg_layer_work {
                                0: no direction sees them all */
   double *edge;             /* local isotropic edge */
   double *wanted;           /* height of n_wanted levels by the law */
-  double *room;             /* height it may take, <= wanted */
-  double *slack;            /* [like t.near] by how much rooms may differ */
-  double *settled;          /* room for which cap and ... */
+  double *allowed;          /* height it may take, <= wanted */
+  double *slack;            /* [like t.near] by how much `allowed` may differ */
+  double *settled;          /* `allowed` for which cap and ... */
   uint16_t *own;            /* ... levels were found last */
-  uint8_t *why;             /* enum vg_layer_cause: what set room */
+  uint8_t *why;             /* enum vg_layer_cause: what set `allowed` */
   uint8_t *by_size;         /* n_wanted is where the local size is reached */
   size_t max_valence;       /* faces at a column */
-  int haste;                /* too many rounds: what is bad loses all room */
+  int haste;                /* too many rounds: what is bad loses all height */
 };
 
 /** Columns first .. end - 1 have the root of column i. */
@@ -95,23 +95,23 @@ vg_status vg_columns_spread(struct vg_layer_work *w,
                                           uint32_t, uint32_t),
                             void *context, struct vg_error *err);
 
-/** edge, law, n_wanted and wanted; room = wanted. */
+/** edge, law, n_wanted and wanted; allowed = wanted. */
 vg_status vg_heights_wanted(struct vg_layer_work *w, struct vg_error *err);
 
 /** slack: no more than the distance of the roots, and in thin faces whose
  * columns lean over so little that the face does not turn over. */
 vg_status vg_heights_slack(struct vg_layer_work *w, struct vg_error *err);
 
-/** Lower room where columns converge. */
+/** Lower `allowed` where columns converge. */
 vg_status vg_heights_corner(struct vg_layer_work *w, struct vg_error *err);
 
-/** Lower room to at most `limit` for the reason `why`. */
+/** Lower `allowed` to at most `limit` for the reason `why`. */
 void vg_heights_lower(struct vg_layer_work *w, size_t column, double limit,
                       enum vg_layer_cause why);
 
-/** From room to cap, n and causes: rooms of neighbours differ by no more than
- * their distance, levels by one. `moved` out: [n_column], may be NULL: 1
- * where n or cap changed. */
+/** From `allowed` to cap, n and causes: allowed heights of neighbours differ by
+ * no more than their distance, levels by one. `moved` out: [n_column], may be
+ * NULL: 1 where n or cap changed. */
 vg_status vg_heights_settle(struct vg_layer_work *w, uint8_t *moved,
                             struct vg_error *err);
 

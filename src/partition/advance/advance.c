@@ -146,7 +146,7 @@ static vg_status run_again(struct vg_partition *p, struct vg_comm *comm,
 
     st = vg_partition_drop(p, comm, spans, err);
     if (st < 0) break;
-    st = vg_redo_voids(p, comm, spans, &n_void, &node, &n, err);
+    st = vg_recut_voids(p, comm, spans, &n_void, &node, &n, err);
     if (st == VG_OK && n_void) {
       st = run_tasks(p, comm, n, node, spans ? &more : NULL, err);
       if (spans && st == VG_OK) st = vg_spans_append(spans, &more, err);
@@ -243,7 +243,7 @@ static vg_status grow(struct vg_comm *comm, const struct vg_mesh *front,
 enum { ATTEMPTS = 3 };
 
 /* Where a part between the first cuts cannot be filled, or all larger voids
- * around a part were cut elsewhere (redo.c), all cuts are made elsewhere; in
+ * around a part were cut elsewhere (recut.c), all cuts are made elsewhere; in
  * the end the void is filled uncut: that takes longer, but only a boundary that
  * bounds nothing fails a run. */
 vg_status vg_partition_grow(struct vg_comm *comm, const struct vg_mesh *front,
@@ -305,7 +305,7 @@ void vg_partition_free(struct vg_partition *p)
     vg_node_free(n);
   }
   for (size_t k = 0; k < p->n_piece; k++) vg_piece_release(&p->piece[k]);
-  vg_redo_release(p);
+  vg_recut_release(p);
   free(p->piece);
   free(p->drop);
   free(p->place);

@@ -40,8 +40,8 @@ static vg_status run_leaf(struct vg_partition *p, struct vg_work *w,
   int outgrown;
   vg_status st = vg_work_leaf(p, w, &outgrown, &o->change.n_cell, e, err);
 
-  if (st == VG_ERR_GEOMETRY && vg_redo_path(w->node->path, path)) {
-    st = vg_redo_note_leaf(p, w->node, err, err);
+  if (st == VG_ERR_GEOMETRY && vg_recut_path(w->node->path, path)) {
+    st = vg_recut_note_leaf(p, w->node, err, err);
     if (st == VG_OK) w->node = NULL;
     return st;
   }
@@ -202,7 +202,7 @@ static vg_status follow(struct vg_partition *p, struct vg_engine *e,
     pthread_mutex_lock(&p->lock);
     p->report.n_node++;
     pthread_mutex_unlock(&p->lock);
-    st = vg_redo_note_cut(p, n, err);
+    st = vg_recut_note_cut(p, n, err);
   }
   for (size_t k = 0; st == VG_OK && k < n->n_child; k++) {
     struct vg_node *c = n->child[k];

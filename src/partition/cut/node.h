@@ -8,9 +8,9 @@
 
 #include "base/comm.h"
 #include "core/mesh/slices.h"
-#include "partition/cut/job.h"
 #include "partition/cut/partition.h"
 #include "partition/cut/select.h"
+#include "partition/cut/task_data.h"
 #include "partition/engine/engine.h"
 #include "partition/engine/spans.h"
 
@@ -98,7 +98,7 @@ struct vg_partition {
   size_t n_unfilled, cap_unfilled;
   struct { struct vg_node *node; struct vg_error why; } *unfilled;
   size_t n_cut, cap_cut;     /* voids that were cut here, but for the whole */
-  struct vg_redo_cut {
+  struct vg_recut_cut {
     char path[VG_PATH_MAX];
     int32_t levels, retry;
     double per_cube;
@@ -173,34 +173,34 @@ vg_status vg_partition_drop(struct vg_partition *p, struct vg_comm *comm,
 
 /** The path of the void that is cut again when the leaf of a node cannot be
  * filled: that which the leaf was cut from, or, where that was done, the next
- * larger one. 0: it is the whole, which is another attempt. (redo.c) */
-int vg_redo_path(const char *path, char void_path[VG_PATH_MAX]);
+ * larger one. 0: it is the whole, which is another attempt. (recut.c) */
+int vg_recut_path(const char *path, char void_path[VG_PATH_MAX]);
 
 /** Lay such a leaf's node aside; it is taken over, but on failure. Note what a
  * void was like when it was cut. Threads: safe. */
-vg_status vg_redo_note_leaf(struct vg_partition *p, struct vg_node *n,
-                            const struct vg_error *why, struct vg_error *err);
-vg_status vg_redo_note_cut(struct vg_partition *p, const struct vg_node *n,
-                           struct vg_error *err);
-void vg_redo_release(struct vg_partition *p);
+vg_status vg_recut_note_leaf(struct vg_partition *p, struct vg_node *n,
+                             const struct vg_error *why, struct vg_error *err);
+vg_status vg_recut_note_cut(struct vg_partition *p, const struct vg_node *n,
+                            struct vg_error *err);
+void vg_recut_release(struct vg_partition *p);
 
 /** When all tasks are done: voids to be cut again. Their cells are forgotten,
  * also in *spans, which may be NULL. Collective.
  * n_void out: of all ranks; node out: [*n] this rank's, *node to be freed by
  * the caller also on failure, with the nodes.
  * VG_ERR_GEOMETRY where the whole must be cut again. */
-vg_status vg_redo_voids(struct vg_partition *p, struct vg_comm *comm,
-                        struct vg_spans *spans, size_t *n_void,
-                        struct vg_node ***node, size_t *n,
-                        struct vg_error *err);
+vg_status vg_recut_voids(struct vg_partition *p, struct vg_comm *comm,
+                         struct vg_spans *spans, size_t *n_void,
+                         struct vg_node ***node, size_t *n,
+                         struct vg_error *err);
 
 /** The front that the cells of a piece fill, *f empty before; of faces that
  * look both ways keep none, and bring faces and points into an order that
  * follows from their places alone: VG_ERR_GEOMETRY where a face is there twice.
- * *f is released by the caller also on failure. (redo_front.c) */
-vg_status vg_redo_front(const struct vg_piece *q, struct vg_front *f,
-                        struct vg_error *err);
-vg_status vg_redo_settle(struct vg_front *f, struct vg_error *err);
+ * *f is released by the caller also on failure. (recut_front.c) */
+vg_status vg_recut_front(const struct vg_piece *q, struct vg_front *f,
+                         struct vg_error *err);
+vg_status vg_recut_settle(struct vg_front *f, struct vg_error *err);
 
 /** Does a face with these points lie within one block, off all planes? */
 static inline int vg_node_is_in_block(const uint16_t *block,

@@ -13,7 +13,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "base/unite.h"
+#include "base/union_find.h"
 #include "partition/cut/node.h"
 
 /* A box ends so many spacings beyond the faces that it is made for. */
@@ -132,7 +132,7 @@ static vg_status unite_touching(struct search *s, struct vg_error *err)
     if (key[i - 1] >> 32 != key[i] >> 32 ||
         s->touching[a].plane != s->touching[b].plane)
       continue;
-    vg_unite(s->parent, a, b);
+    vg_union(s->parent, a, b);
   }
   free(key);
   return VG_OK;

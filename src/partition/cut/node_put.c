@@ -7,7 +7,7 @@
 
 #include "base/memory.h"
 #include "partition/cut/node.h"
-#include "partition/engine/room.h"
+#include "partition/engine/engine_memory.h"
 
 /* Points or faces to a chunk of a loop. */
 enum { CHUNK = 8192 };
@@ -89,11 +89,11 @@ static vg_status make_room(struct put *p, const struct vg_engine *e,
   }
   if (!n->cap_x) n->cap_x = n->cap_name = f->n_point;
   if (!n->cap_face) n->cap_face = f->n_face;
-  if (vg_room_reserve(e, &f->x, &n->cap_x, f->n_point, np, sizeof *f->x) ||
-      vg_room_reserve(e, &f->name, &n->cap_name, f->n_point, np,
-                      sizeof *f->name) ||
-      vg_room_reserve(e, &f->face, &n->cap_face, f->n_face, nf,
-                      sizeof *f->face))
+  if (vg_engine_reserve(e, &f->x, &n->cap_x, f->n_point, np, sizeof *f->x) ||
+      vg_engine_reserve(e, &f->name, &n->cap_name, f->n_point, np,
+                        sizeof *f->name) ||
+      vg_engine_reserve(e, &f->face, &n->cap_face, f->n_face, nf,
+                        sizeof *f->face))
     return vg_fail_memory(err, "cutting a front");
   f->n_point = np;
   f->n_face = nf;
@@ -143,8 +143,8 @@ static vg_status label_points(struct vg_node *n, const struct vg_engine *e,
 {
   size_t all = n->front.n_point;
 
-  if (vg_room_reserve(e, &n->block, &n->cap_block, n->n_block, all,
-                      sizeof *n->block))
+  if (vg_engine_reserve(e, &n->block, &n->cap_block, n->n_block, all,
+                        sizeof *n->block))
     return vg_fail_memory(err, "cutting a front");
   vg_engine_loop(e, all - n->n_block, CHUNK, label_part, n);
   n->n_block = all;

@@ -3,16 +3,16 @@
  * block of a point tells that of its faces, and what bounds a void within a
  * block never shares a point with another block. Where a face still touches
  * planes, the blocks on both sides are one void. A void's parts, a body in it
- * or a crumb that a zone went around, need not be told apart: cutting and
+ * or a fragment that a zone went around, need not be told apart: cutting and
  * filling take any number of them. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
-#include "base/unite.h"
+#include "base/union_find.h"
 #include "partition/cut/node.h"
-#include "partition/engine/room.h"
+#include "partition/engine/engine_memory.h"
 
 /* Faces or points to a chunk of a loop. */
 enum { CHUNK = 8192 };
@@ -32,7 +32,7 @@ struct split {
   size_t n_block, n_chunk;   /* chunks of faces */
   uint32_t *count;           /* [n_chunk][n_block] faces, then where the first
                                 of a child goes: at the child's first block */
-  uint32_t root[VG_LATTICE_BLOCKS];   /* of blocks (base/unite.h) */
+  uint32_t root[VG_LATTICE_BLOCKS];   /* of blocks (base/union_find.h) */
   uint16_t child[VG_LATTICE_BLOCKS];  /* of a root, or NONE */
   int is_merged;
   size_t n_part;
@@ -51,9 +51,9 @@ static void unite_corners(struct split *s, const uint32_t v[3])
   const struct vg_node *n = s->n;
 
   for (int k = 0; k < 3; k++) {
-    s->is_merged |= vg_unite(s->root, block_of(s, v[k]), block_of(s, v[0]));
+    s->is_merged |= vg_union(s->root, block_of(s, v[k]), block_of(s, v[0]));
     if (n->block[v[k]] & VG_ON_PLANE)
-      s->is_merged |= vg_unite(s->root, block_of(s, v[k]),
+      s->is_merged |= vg_union(s->root, block_of(s, v[k]),
                                vg_lattice_block(&n->lattice,
                                                 n->front.x[v[k]], 1));
   }
@@ -244,7 +244,7 @@ static vg_status split_front(struct split *s, struct vg_error *err)
                    : vg_fail_memory(err, "the parts of a front");
   void *const whole[] = {f->x, f->name, f->face, d.number, d.is_short};
 
-  vg_room_free(s->e, sizeof whole / sizeof *whole, whole);
+  vg_engine_free(s->e, sizeof whole / sizeof *whole, whole);
   memset(f, 0, sizeof *f);
   return st;
 }

@@ -6,7 +6,7 @@
 
 #include "base/memory.h"
 #include "core/geometry/hilbert.h"
-#include "partition/engine/room.h"
+#include "partition/engine/engine_memory.h"
 
 /* Faces to a box, and boxes to one of the next level; boxes to a chunk of a
  * loop. */
@@ -104,7 +104,7 @@ vg_status vg_select_update(struct vg_select *s, const struct vg_engine *e,
     struct update u = { s, k, 0, l->n ? from : 0, l->n };
 
     u.first = u.from / fan;
-    if (vg_room_reserve(e, &l->box, &l->cap, l->n, n, sizeof *l->box))
+    if (vg_engine_reserve(e, &l->box, &l->cap, l->n, n, sizeof *l->box))
       return vg_fail_memory(err, "cutting a front");
     if (n > u.first) vg_engine_loop(e, n - u.first, CHUNK, update_part, &u);
     l->n = n;

@@ -1,9 +1,9 @@
-/* partition/cut/select.h: the part of a front that a region needs. Uses job.h,
- * engine.h. */
+/* partition/cut/select.h: the part of a front that a region needs. Uses
+ * task_data.h, engine.h. */
 #ifndef VG_PARTITION_CUT_SELECT_H
 #define VG_PARTITION_CUT_SELECT_H
 
-#include "partition/cut/job.h"
+#include "partition/cut/task_data.h"
 #include "partition/engine/engine.h"
 
 enum { VG_SELECT_LEVELS = 12 };

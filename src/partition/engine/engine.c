@@ -118,7 +118,7 @@ static vg_status init(struct vg_engine *e, struct vg_error *err)
 
   pthread_mutex_init(&e->lock, NULL);
   pthread_cond_init(&e->work, NULL);
-  pthread_cond_init(&e->clerk, NULL);
+  pthread_cond_init(&e->handler, NULL);
   pthread_condattr_init(&clock);
   pthread_condattr_setclock(&clock, CLOCK_MONOTONIC);
   pthread_cond_init(&e->serve, &clock);
@@ -128,7 +128,7 @@ static vg_status init(struct vg_engine *e, struct vg_error *err)
   e->said = vg_calloc(n, sizeof *e->said);
   if (!e->sent || !e->received || !e->said)
     return vg_fail_memory(err, "the list of ranks");
-  return e->rank ? VG_OK : vg_list_init(&e->list, e->size, err);
+  return e->rank ? VG_OK : vg_schedule_init(&e->schedule, e->size, err);
 }
 
 static void release(struct vg_engine *e)
@@ -143,26 +143,26 @@ static void release(struct vg_engine *e)
   free(e->received);
   free(e->said);
   vg_spans_release(&e->spans);
-  if (!e->rank) vg_list_release(&e->list, e->size);
+  if (!e->rank) vg_schedule_release(&e->schedule, e->size);
   pthread_mutex_destroy(&e->lock);
   pthread_cond_destroy(&e->work);
-  pthread_cond_destroy(&e->clerk);
+  pthread_cond_destroy(&e->handler);
   pthread_cond_destroy(&e->serve);
 }
 
-/* As many workers as can be had, and the clerk as worker[threads]. */
+/* As many workers as can be had, and the handler as worker[threads]. */
 static vg_status start(struct vg_engine *e, int threads, struct vg_error *err)
 {
-  int n = 0, clerk = e->size > 1, bad = 0;
+  int n = 0, handler = e->size > 1, bad = 0;
 
   e->worker = vg_calloc((size_t)threads + 1, sizeof *e->worker);
   if (!e->worker) return vg_fail_memory(err, "threads");
-  if (clerk) {
+  if (handler) {
     struct vg_worker *w = &e->worker[threads];
 
     w->e = e;
-    bad = pthread_create(&w->thread, NULL, vg_work_clerk, w);
-    e->clerk_at = bad ? 0 : threads;
+    bad = pthread_create(&w->thread, NULL, vg_work_handler, w);
+    e->handler_at = bad ? 0 : threads;
   }
   for (; n < threads && !bad; n++) {
     struct vg_worker *w = &e->worker[n];
@@ -181,12 +181,12 @@ static void stop_threads(struct vg_engine *e)
   vg_engine_lock(e);
   e->over = 1;
   pthread_cond_broadcast(&e->work);
-  pthread_cond_broadcast(&e->clerk);
+  pthread_cond_broadcast(&e->handler);
   vg_engine_unlock(e);
   for (int i = 0; i < e->threads; i++)
     pthread_join(e->worker[i].thread, NULL);
-  if (e->clerk_at) pthread_join(e->worker[e->clerk_at].thread, NULL);
-  e->threads = e->clerk_at = 0;
+  if (e->handler_at) pthread_join(e->worker[e->handler_at].thread, NULL);
+  e->threads = e->handler_at = 0;
 }
 
 /* What rank 0 has said about how it went. */
@@ -267,13 +267,13 @@ static vg_status conduct(struct vg_engine *e, struct vg_error *err)
 
   e->begin = vg_clock();
   vg_engine_lock(e);
-  vg_tell_news(e, NULL);
+  vg_notify_update(e, NULL);
   vg_engine_unlock(e);
   vg_serve(e);
   stop_threads(e);
   if (e->rank)
-    vg_engine_say(e, 0, VG_SAY_BYE,
-                  (struct vg_say){ .handle = e->sent[0] + 1 });
+    vg_engine_send(e, 0, VG_MSG_BYE,
+                   (struct vg_msg){ .handle = e->sent[0] + 1 });
   e->spans.wall = vg_clock() - e->begin;
   if (e->size > 1) st = gather(e, err);
   return st < 0 ? st : verdict(e, err);

@@ -84,7 +84,7 @@ static void record(struct vg_worker *w, struct vg_help *h)
   h->start -= e->begin;
   h->end -= e->begin;
   if (vg_spans_add_help(&e->spans, h, &err))
-    vg_tell_fail(e, err.code, h->path, &err);
+    vg_notify_fail(e, err.code, h->path, &err);
 }
 
 int vg_loop_help(struct vg_worker *w)

@@ -1,14 +1,14 @@
 /* partition/engine/engine_parts.h: what the files of the engine share.
  *
  * Threads of a rank: the calling one serves messages (engine_serve.c), the
- * workers do tasks (engine_work.c), and in a job of several ranks a clerk
+ * workers do tasks (engine_work.c), and in a job of several ranks a handler
  * calls `done` for outcomes that came from elsewhere while workers are busy.
  * One lock per rank guards all of it; user code runs outside the lock.
  *
- * The list of what is ready lives on rank 0 (engine_list.c), guarded by that
- * rank's lock. Its own rank calls it; others send messages:
+ * The schedule, a list of what is ready, lives on rank 0 (engine_schedule.c),
+ * guarded by that rank's lock. Its own rank calls it; others send messages:
  *
- *   a home       NEWS     a task has ended; new ones it led to
+ *   a home       UPDATE   a task has ended; new ones it led to
  *   a runner     FREE     a worker of mine has ended a task
  *   a runner     MOVED    answer to RECALL
  *   anyone       FAIL     stop everything, and why
@@ -21,8 +21,8 @@
  *   R -> home    OUTCOME  what came of it; not of tasks that move
  *
  * So a remote task costs two small messages before its input is on the way,
- * and the news of an outcome carry the new tasks with them: when no task is
- * out, none can appear. News of one rank must arrive in the order in which
+ * and the update on an outcome carries the new tasks with it: when no task is
+ * out, none can appear. Updates of one rank must arrive in the order in which
  * they were posted, as MPI has it; nothing else depends on any order. */
 #ifndef VG_PARTITION_ENGINE_ENGINE_PARTS_H
 #define VG_PARTITION_ENGINE_ENGINE_PARTS_H
@@ -35,9 +35,9 @@
 #include "partition/engine/engine.h"
 
 enum {
-  VG_SAY_NEWS = 1, VG_SAY_FREE, VG_SAY_MOVED, VG_SAY_FAIL, VG_SAY_BYE,
-  VG_SAY_ASSIGN, VG_SAY_RECALL, VG_SAY_DRAIN, VG_SAY_END, VG_SAY_INPUT,
-  VG_SAY_OUTCOME
+  VG_MSG_UPDATE = 1, VG_MSG_FREE, VG_MSG_MOVED, VG_MSG_FAIL, VG_MSG_BYE,
+  VG_MSG_ASSIGN, VG_MSG_RECALL, VG_MSG_DRAIN, VG_MSG_END, VG_MSG_INPUT,
+  VG_MSG_OUTCOME
 };
 
 /* --- a heap that needs no memory of its own ------------------------------ */
@@ -57,14 +57,14 @@ int vg_heap_before(const struct vg_heap *a, const struct vg_heap *b);
 /* --- messages ------------------------------------------------------------ */
 
 /* FREE, MOVED, BYE, ASSIGN, RECALL, DRAIN. */
-struct vg_say {
+struct vg_msg {
   uint64_t handle;           /* ASSIGN: of the task; BYE: as END's sent */
   int32_t to;                /* ASSIGN, RECALL, MOVED: to which rank */
   int32_t ok;                /* MOVED: there was one to give */
 };
 
-/* NEWS, followed by `n` notices. */
-struct vg_news {
+/* UPDATE, followed by `n` notices. */
+struct vg_update {
   double weight;             /* of the task that ended */
   uint64_t n_cell;
   int32_t ended;             /* 1: of a task; 0: of a rank that begins */
@@ -126,7 +126,7 @@ struct vg_ready {
   uint64_t handle;
 };
 
-struct vg_list {
+struct vg_schedule {
   struct vg_heap **ready;    /* [size] free tasks, by home */
   int *threads, *load;       /* [size] workers; tasks it has, pinned too */
   unsigned char *asked;      /* [size] see recall */
@@ -160,9 +160,9 @@ struct vg_engine {
   double begin;              /* s on the monotonic clock */
 
   pthread_mutex_t lock;
-  pthread_cond_t work, clerk, serve;
-  struct vg_worker *worker;  /* [threads], and the clerk */
-  int clerk_at;              /* there; 0: none, in a job of one rank */
+  pthread_cond_t work, handler, serve;
+  struct vg_worker *worker;  /* [threads], and the handler */
+  int handler_at;              /* there; 0: none, in a job of one rank */
   atomic_int stopping;
   int over;                  /* threads are to leave */
   int ending;                /* END has been said (rank 0) or heard */
@@ -186,7 +186,7 @@ struct vg_engine {
   uint64_t *sent, *received; /* [size] messages to and from each rank */
   uint64_t *said;            /* [size] messages a rank says it has sent */
   struct vg_verdict verdict; /* as heard */
-  struct vg_list list;       /* rank 0 */
+  struct vg_schedule schedule;       /* rank 0 */
 };
 
 /* All below want the lock to be held, unless said otherwise. */
@@ -196,23 +196,23 @@ void vg_engine_lock(struct vg_engine *e);
 void vg_engine_unlock(struct vg_engine *e);
 void vg_job_free(struct vg_engine *e, struct vg_job *j);  /* without lock too */
 
-/* engine_tell.c: to the list, wherever it is; and the thread that serves. */
+/* engine_notify.c: to the list, wherever it is; and the thread that serves. */
 void vg_engine_wake(struct vg_engine *e);
 void vg_engine_post(struct vg_engine *e, int to, int kind, struct vg_bytes *b);
-void vg_engine_say(struct vg_engine *e, int to, int kind, struct vg_say say);
-void vg_tell_news(struct vg_engine *e, const struct vg_job *ended);
-void vg_tell_dropped(struct vg_engine *e, double weight);
-void vg_tell_free(struct vg_engine *e);
-void vg_tell_moved(struct vg_engine *e, int to, int ok);
-void vg_tell_fail(struct vg_engine *e, vg_status status, const char *path,
-                  const struct vg_error *err);
+void vg_engine_send(struct vg_engine *e, int to, int kind, struct vg_msg msg);
+void vg_notify_update(struct vg_engine *e, const struct vg_job *ended);
+void vg_notify_dropped(struct vg_engine *e, double weight);
+void vg_notify_free(struct vg_engine *e);
+void vg_notify_moved(struct vg_engine *e, int to, int ok);
+void vg_notify_fail(struct vg_engine *e, vg_status status, const char *path,
+                    const struct vg_error *err);
 
 /* engine_work.c */
 void vg_work_queue(struct vg_engine *e, struct vg_job *j);
 void vg_work_end(struct vg_engine *e, struct vg_job *j);
 void vg_work_drop(struct vg_engine *e, struct vg_job *j);  /* without lock */
 void *vg_work_thread(void *worker);
-void *vg_work_clerk(void *worker);
+void *vg_work_handler(void *worker);
 
 /* engine_loop.c */
 void vg_loop_enter(struct vg_worker *w);      /* without lock: this thread */
@@ -224,13 +224,15 @@ void vg_serve_recall(struct vg_engine *e, int to);
 void vg_serve_drain(struct vg_engine *e);
 void vg_serve(struct vg_engine *e);
 
-/* engine_list.c: rank 0. */
-vg_status vg_list_init(struct vg_list *l, int size, struct vg_error *err);
-void vg_list_release(struct vg_list *l, int size);
-void vg_list_news(struct vg_engine *e, int from, const struct vg_news *news,
-                  const struct vg_notice *notice);
-void vg_list_free(struct vg_engine *e, int from);
-void vg_list_moved(struct vg_engine *e, int from, int to, int ok);
-void vg_list_fail(struct vg_engine *e, const struct vg_verdict *v);
+/* engine_schedule.c: rank 0. */
+vg_status vg_schedule_init(struct vg_schedule *l, int size,
+                           struct vg_error *err);
+void vg_schedule_release(struct vg_schedule *l, int size);
+void vg_schedule_update(struct vg_engine *e, int from,
+                        const struct vg_update *update,
+                        const struct vg_notice *notice);
+void vg_schedule_free(struct vg_engine *e, int from);
+void vg_schedule_moved(struct vg_engine *e, int from, int to, int ok);
+void vg_schedule_fail(struct vg_engine *e, const struct vg_verdict *v);
 
 #endif

@@ -50,7 +50,7 @@ void vg_serve_recall(struct vg_engine *e, int to)
   struct vg_job *j = (struct vg_job *)vg_heap_pop(&e->queue[0]);
 
   if (j) push_out(e, j, to);
-  vg_tell_moved(e, to, j != NULL);
+  vg_notify_moved(e, to, j != NULL);
 }
 
 void vg_serve_drain(struct vg_engine *e)
@@ -101,7 +101,7 @@ static void send_input(struct vg_engine *e, struct vg_job *j)
 
   if (vg_engine_stopping(e) || (st = pack(e, j, &err))) {
     vg_engine_lock(e);
-    if (st) vg_tell_fail(e, st < 0 ? st : VG_BLOCKED, j->task.path, &err);
+    if (st) vg_notify_fail(e, st < 0 ? st : VG_BLOCKED, j->task.path, &err);
     vg_engine_unlock(e);
     vg_work_drop(e, j);
     return;
@@ -112,7 +112,7 @@ static void send_input(struct vg_engine *e, struct vg_job *j)
   }
   j->packed = 0;
   vg_engine_lock(e);
-  vg_engine_post(e, to, VG_SAY_INPUT, &j->bytes);
+  vg_engine_post(e, to, VG_MSG_INPUT, &j->bytes);
   j->bytes = (struct vg_bytes){ 0 };
   vg_engine_unlock(e);
   if (!at_home) vg_job_free(e, j);
@@ -154,8 +154,8 @@ static void take_input(struct vg_engine *e, struct vg_bytes *b)
     struct vg_error err = VG_ERROR_INIT;
 
     vg_fail_memory(&err, "a task");
-    vg_tell_fail(e, err.code, c.path, &err);
-    vg_tell_dropped(e, c.weight);
+    vg_notify_fail(e, err.code, c.path, &err);
+    vg_notify_dropped(e, c.weight);
     return;
   }
   memcpy(j->task.path, c.path, sizeof c.path);
@@ -187,16 +187,16 @@ static void take_outcome(struct vg_engine *e, int from, struct vg_bytes *b)
   j->bytes = *b;
   *b = (struct vg_bytes){ 0 };
   vg_work_end(e, j);
-  pthread_cond_signal(&e->clerk);
+  pthread_cond_signal(&e->handler);
 }
 
-static void take_news(struct vg_engine *e, int from, const struct vg_bytes *b)
+static void take_update(struct vg_engine *e, int from, const struct vg_bytes *b)
 {
-  struct vg_news news;
+  struct vg_update update;
 
-  memcpy(&news, b->data, sizeof news);
-  vg_list_news(e, from, &news,
-               (const struct vg_notice *)(b->data + sizeof news));
+  memcpy(&update, b->data, sizeof update);
+  vg_schedule_update(e, from, &update,
+                     (const struct vg_notice *)(b->data + sizeof update));
 }
 
 static void take_verdict(struct vg_engine *e, const struct vg_message *m)
@@ -204,8 +204,8 @@ static void take_verdict(struct vg_engine *e, const struct vg_message *m)
   struct vg_verdict v;
 
   memcpy(&v, m->bytes.data, sizeof v);
-  if (m->kind == VG_SAY_FAIL) {
-    vg_list_fail(e, &v);
+  if (m->kind == VG_MSG_FAIL) {
+    vg_schedule_fail(e, &v);
     return;
   }
   e->verdict = v;
@@ -213,18 +213,18 @@ static void take_verdict(struct vg_engine *e, const struct vg_message *m)
   e->ending = 1;
 }
 
-static void take_say(struct vg_engine *e, const struct vg_message *m)
+static void take_short(struct vg_engine *e, const struct vg_message *m)
 {
-  struct vg_say say;
+  struct vg_msg msg;
 
-  memcpy(&say, m->bytes.data, sizeof say);
+  memcpy(&msg, m->bytes.data, sizeof msg);
   switch (m->kind) {
-  case VG_SAY_FREE: vg_list_free(e, m->from); break;
-  case VG_SAY_MOVED: vg_list_moved(e, m->from, say.to, say.ok); break;
-  case VG_SAY_ASSIGN: vg_serve_assign(e, say.handle, say.to); break;
-  case VG_SAY_RECALL: vg_serve_recall(e, say.to); break;
-  case VG_SAY_DRAIN: vg_serve_drain(e); break;
-  case VG_SAY_BYE: e->said[m->from] = say.handle; break;
+  case VG_MSG_FREE: vg_schedule_free(e, m->from); break;
+  case VG_MSG_MOVED: vg_schedule_moved(e, m->from, msg.to, msg.ok); break;
+  case VG_MSG_ASSIGN: vg_serve_assign(e, msg.handle, msg.to); break;
+  case VG_MSG_RECALL: vg_serve_recall(e, msg.to); break;
+  case VG_MSG_DRAIN: vg_serve_drain(e); break;
+  case VG_MSG_BYE: e->said[m->from] = msg.handle; break;
   }
 }
 
@@ -232,9 +232,9 @@ static void take_say(struct vg_engine *e, const struct vg_message *m)
  * on its way, that is dropped. */
 static void lose(struct vg_engine *e, const struct vg_message *m)
 {
-  if (m->kind != VG_SAY_INPUT && m->kind != VG_SAY_OUTCOME)
+  if (m->kind != VG_MSG_INPUT && m->kind != VG_MSG_OUTCOME)
     vg_comm_abort(e->comm, 1);
-  vg_tell_dropped(e, 0);
+  vg_notify_dropped(e, 0);
 }
 
 static void take(struct vg_engine *e, struct vg_message *m)
@@ -243,11 +243,11 @@ static void take(struct vg_engine *e, struct vg_message *m)
   e->received[m->from]++;
   if (!m->bytes.data) lose(e, m);
   else switch (m->kind) {
-  case VG_SAY_NEWS: take_news(e, m->from, &m->bytes); break;
-  case VG_SAY_INPUT: take_input(e, &m->bytes); break;
-  case VG_SAY_OUTCOME: take_outcome(e, m->from, &m->bytes); break;
-  case VG_SAY_FAIL: case VG_SAY_END: take_verdict(e, m); break;
-  default: take_say(e, m);
+  case VG_MSG_UPDATE: take_update(e, m->from, &m->bytes); break;
+  case VG_MSG_INPUT: take_input(e, &m->bytes); break;
+  case VG_MSG_OUTCOME: take_outcome(e, m->from, &m->bytes); break;
+  case VG_MSG_FAIL: case VG_MSG_END: take_verdict(e, m); break;
+  default: take_short(e, m);
   }
   vg_engine_unlock(e);
   free(m->bytes.data);
@@ -271,7 +271,7 @@ static int receive(struct vg_engine *e, double *failing)
   if (!*failing) {
     *failing = vg_clock();
     vg_engine_lock(e);
-    vg_tell_fail(e, st, "", &err);
+    vg_notify_fail(e, st, "", &err);
     vg_engine_unlock(e);
   } else if (vg_clock() - *failing > PATIENCE) {
     vg_comm_abort(e->comm, 1);
@@ -287,14 +287,14 @@ static void ask_stop(struct vg_engine *e)
 
   if (!o->stop || vg_engine_stopping(e) || !o->stop(o->user)) return;
   vg_engine_lock(e);
-  vg_tell_fail(e, VG_BLOCKED, "", NULL);
+  vg_notify_fail(e, VG_BLOCKED, "", NULL);
   vg_engine_unlock(e);
 }
 
 static void show_progress(struct vg_engine *e)
 {
   const struct vg_engine_options *o = e->options;
-  struct vg_list *l = &e->list;
+  struct vg_schedule *l = &e->schedule;
   double cells, known;
   size_t n_done, n_known;
 
@@ -309,7 +309,7 @@ static void show_progress(struct vg_engine *e)
       vg_engine_stopping(e))
     return;
   vg_engine_lock(e);
-  vg_tell_fail(e, VG_BLOCKED, "", NULL);
+  vg_notify_fail(e, VG_BLOCKED, "", NULL);
   vg_engine_unlock(e);
 }
 
@@ -359,7 +359,7 @@ static void sleep_so_long(struct vg_engine *e, double seconds, unsigned bell)
 
   if (e->size > 1) {
     vg_engine_unlock(e);
-    vg_comm_listen(e->comm, bell, seconds);
+    vg_comm_sleep(e->comm, bell, seconds);
     vg_engine_lock(e);
     return;
   }
@@ -398,7 +398,7 @@ void vg_serve(struct vg_engine *e)
   do {
     double now = vg_clock();
 
-    if (e->size > 1) bell = vg_comm_bell(e->comm);
+    if (e->size > 1) bell = vg_comm_wake_count(e->comm);
     active = e->size > 1 ? receive(e, &failing) : 0;
     active += send_inputs(e);
     if (now - stop >= STOP_EVERY) {

@@ -21,7 +21,7 @@ static struct vg_job *next_job(struct vg_engine *e)
 }
 
 /* A worker that ends a task of its own rank calls `done` itself, or leaves it
- * to the thread that is there; the clerk is woken by others. */
+ * to the thread that is there; the handler is woken by others. */
 void vg_work_end(struct vg_engine *e, struct vg_job *j)
 {
   j->next = NULL;
@@ -41,7 +41,7 @@ void vg_work_drop(struct vg_engine *e, struct vg_job *j)
   vg_engine_unlock(e);
   vg_job_free(e, j);
   vg_engine_lock(e);
-  vg_tell_dropped(e, weight);
+  vg_notify_dropped(e, weight);
   vg_engine_unlock(e);
 }
 
@@ -122,7 +122,7 @@ static vg_status run(struct vg_worker *w, struct vg_job *j,
   if (st || stays(e, j)) return st;
   vg_engine_lock(e);
   w->owes = 0;
-  vg_tell_free(e);
+  vg_notify_free(e);
   vg_engine_unlock(e);
   st = pack_return(e, j, err);
   span->bytes_out = st ? 0 : j->bytes.n - sizeof(struct vg_return);
@@ -134,8 +134,8 @@ static void fail(struct vg_engine *e, const struct vg_job *j, vg_status st,
                  const struct vg_error *err)
 {
   vg_engine_lock(e);
-  if (st < 0) vg_tell_fail(e, st, j->task.path, err);
-  else if (!vg_engine_stopping(e)) vg_tell_fail(e, VG_BLOCKED, "", NULL);
+  if (st < 0) vg_notify_fail(e, st, j->task.path, err);
+  else if (!vg_engine_stopping(e)) vg_notify_fail(e, VG_BLOCKED, "", NULL);
   vg_engine_unlock(e);
 }
 
@@ -163,13 +163,13 @@ static void do_job(struct vg_worker *w, struct vg_job *j)
   record(w, j, &span, start, cpu);
   vg_engine_lock(e);
   if (vg_spans_add(&e->spans, &span, &err))
-    vg_tell_fail(e, err.code, j->task.path, &err);
+    vg_notify_fail(e, err.code, j->task.path, &err);
   if (stays(e, j)) {
     j->runner = e->rank;
     vg_work_end(e, j);       /* whoever calls done frees it */
     j = NULL;
   } else {
-    vg_engine_post(e, j->home, VG_SAY_OUTCOME, &j->bytes);
+    vg_engine_post(e, j->home, VG_MSG_OUTCOME, &j->bytes);
   }
   vg_engine_unlock(e);
   vg_job_free(e, j);
@@ -198,7 +198,7 @@ static void end_one(struct vg_engine *e)
   if (st) fail(e, j, st, &err);
   vg_engine_lock(e);
   if (j->home == e->rank) e->home[j->handle] = NULL;
-  vg_tell_news(e, j);
+  vg_notify_update(e, j);
   e->in_done = 0;
   vg_engine_unlock(e);
   vg_job_free(e, j);
@@ -219,7 +219,7 @@ void *vg_work_thread(void *worker)
       end_one(e);
     } else if (w->owes) {
       w->owes = 0;
-      vg_tell_free(e);
+      vg_notify_free(e);
     } else if ((j = next_job(e))) {
       w->owes = 1;
       vg_engine_unlock(e);
@@ -235,14 +235,14 @@ void *vg_work_thread(void *worker)
   return NULL;
 }
 
-void *vg_work_clerk(void *worker)
+void *vg_work_handler(void *worker)
 {
   struct vg_engine *e = ((struct vg_worker *)worker)->e;
 
   vg_engine_lock(e);
   while (!e->over) {
     if (e->ended.first && !e->in_done) end_one(e);
-    else pthread_cond_wait(&e->clerk, &e->lock);
+    else pthread_cond_wait(&e->handler, &e->lock);
   }
   vg_engine_unlock(e);
   return NULL;

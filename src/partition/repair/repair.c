@@ -1,4 +1,4 @@
-/* Repairs: cells gathered by cluster, mended, and put back as pieces. */
+/* Repairs: cells gathered by cluster, repaired, and put back as pieces. */
 #include "partition/repair/repair.h"
 
 #include <stdio.h>
@@ -19,8 +19,8 @@ enum { MOST_BALLS = 100, ROUNDS = 3 };
 struct picks {
   size_t n, cap;
   struct vg_key *at;         /* [n] cells by cluster */
-  size_t n_held, cap_held;
-  struct vg_key *held;       /* [n_held] cells with a corner in the balls of a
+  size_t n_taken, cap_taken;
+  struct vg_key *taken;      /* [n_taken] cells with a corner in the balls of a
                                 further cluster, by the one that has them */
   vg_status st;
 };
@@ -28,7 +28,7 @@ struct picks {
 static void picks_release(struct picks *s)
 {
   free(s->at);
-  free(s->held);
+  free(s->taken);
   memset(s, 0, sizeof *s);
 }
 
@@ -41,10 +41,10 @@ struct repair {
   size_t n_block, cap_block;
   struct vg_block *block;    /* of the clusters of this rank, by cluster and
                                 path */
-  struct vg_repair_rim rim;         /* between their points */
+  struct vg_repair_boundary rim;         /* between their points */
   size_t n_job;
   size_t *first;             /* [n_job + 1] block */
-  struct vg_mended *mended;  /* [n_job] */
+  struct vg_repaired *repaired;  /* [n_job] */
   struct vg_span *span;      /* [n_job] */
   vg_status *st;             /* [n_job] */
   uint64_t *better;          /* [n_cluster] on all ranks */
@@ -57,18 +57,18 @@ static void repair_free(struct repair *r)
   for (size_t k = 0; r->pick && k < r->p->n_piece; k++)
     picks_release(&r->pick[k]);
   for (size_t k = 0; k < r->n_block; k++) vg_block_release(&r->block[k]);
-  for (size_t k = 0; r->mended && k < r->n_job; k++)
-    vg_mended_release(&r->mended[k]);
+  for (size_t k = 0; r->repaired && k < r->n_job; k++)
+    vg_repaired_release(&r->repaired[k]);
   free(r->pick);
   free(r->block);
   free(r->first);
-  free(r->mended);
+  free(r->repaired);
   free(r->span);
   free(r->st);
   free(r->better);
   free(r->owners.at);
   vg_balls_release(&r->balls);
-  vg_repair_rim_release(&r->rim);
+  vg_repair_boundary_release(&r->rim);
 }
 
 /* --- which cells --------------------------------------------------------- */
@@ -88,7 +88,7 @@ static vg_status pick_in(const struct vg_piece *q, const uint32_t *in,
   for (size_t c = 0; c < q->n_cell; c++) {
     const uint32_t *v = q->cell[c];
     uint32_t least = VG_NO_CLUSTER, all = VG_NO_CLUSTER;
-    int held = 0;
+    int taken = 0;
 
     for (int i = 0; i < 4; i++) {
       all &= in[v[i]];
@@ -96,9 +96,9 @@ static vg_status pick_in(const struct vg_piece *q, const uint32_t *in,
     }
     if (all == VG_NO_CLUSTER) continue;
     for (int i = 0; i < 4; i++)
-      held |= in[v[i]] != least && in[v[i]] != VG_NO_CLUSTER;
+      taken |= in[v[i]] != least && in[v[i]] != VG_NO_CLUSTER;
     if (add(&s->n, &s->cap, &s->at, least, c) ||
-        (held && add(&s->n_held, &s->cap_held, &s->held, least, c)))
+        (taken && add(&s->n_taken, &s->cap_taken, &s->taken, least, c)))
       return VG_ERR_MEMORY;
   }
   return vg_sort_keys(s->n, s->at, NULL);
@@ -146,18 +146,18 @@ static uint64_t name_of(const struct vg_piece *q, uint32_t v)
 
 /* Corners in the ball of a further cluster: that one does not get the cell, so
  * it must hold them. */
-static void put_held(struct repair *r, const struct vg_piece *q,
-                     const struct vg_key *held, struct vg_post *post)
+static void put_taken(struct repair *r, const struct vg_piece *q,
+                      const struct vg_key *taken, struct vg_outbox *post)
 {
   for (int i = 0; i < 4; i++) {
-    uint32_t v = q->cell[held->index][i];
+    uint32_t v = q->cell[taken->index][i];
     uint32_t cluster = vg_balls_at(&r->balls, q->x[v]);
     uint64_t name = name_of(q, v);
     uint8_t hold = 1;
     struct vg_block b = { .cluster = cluster, .n_point = 1, .name = &name,
                           .x = &q->x[v], .hold = &hold };
 
-    if (cluster == VG_NO_CLUSTER || cluster == held->key) continue;
+    if (cluster == VG_NO_CLUSTER || cluster == taken->key) continue;
     memcpy(b.path, q->path, sizeof b.path);
     vg_block_put(&post->to[cluster % (uint32_t)r->p->size], &b);
   }
@@ -188,7 +188,7 @@ static void fill_block(const struct vg_piece *q, size_t n,
       number[q->cell[pick[c].index][i]] = VG_NO_CLUSTER;
 }
 
-static vg_status put_piece(struct repair *r, size_t k, struct vg_post *post,
+static vg_status put_piece(struct repair *r, size_t k, struct vg_outbox *post,
                            struct vg_error *err)
 {
   const struct vg_piece *q = &r->p->piece[k];
@@ -214,13 +214,13 @@ static vg_status put_piece(struct repair *r, size_t k, struct vg_post *post,
     fill_block(q, end - first, &s->at[first], number, &b);
     vg_block_put(&post->to[b.cluster % (uint32_t)r->p->size], &b);
   }
-  for (size_t c = 0; c < s->n_held; c++) put_held(r, q, &s->held[c], post);
+  for (size_t c = 0; c < s->n_taken; c++) put_taken(r, q, &s->taken[c], post);
   free(number);
   vg_block_release(&b);
   return VG_OK;
 }
 
-/* What is only held comes last: its points have no cells of their own, so
+/* What is only taken comes last: its points have no cells of their own, so
  * their order does not matter. */
 static int by_path(const void *a, const void *b)
 {
@@ -254,23 +254,24 @@ static vg_status take_blocks(struct repair *r, const struct vg_bytes *from,
     if (!k || r->block[k].cluster != r->block[k - 1].cluster)
       r->first[r->n_job++] = k;
   r->first[r->n_job] = r->n_block;
-  r->mended = vg_calloc(r->n_job, sizeof *r->mended);
+  r->repaired = vg_calloc(r->n_job, sizeof *r->repaired);
   r->span = vg_calloc(r->n_job, sizeof *r->span);
   r->st = vg_calloc(r->n_job, sizeof *r->st);
-  return r->mended && r->span && r->st ? VG_OK : vg_fail_memory(err, "repairs");
+  return r->repaired && r->span && r->st ? VG_OK
+                                         : vg_fail_memory(err, "repairs");
 }
 
 static vg_status send_cells(struct repair *r, struct vg_comm *comm,
                             struct vg_error *err)
 {
-  struct vg_post post = { 0 };
+  struct vg_outbox post = { 0 };
   struct vg_bytes *from = NULL;
   vg_status st = pick(r, err);
 
-  if (st == VG_OK) st = vg_post_new(&post, r->p->size, err);
+  if (st == VG_OK) st = vg_outbox_new(&post, r->p->size, err);
   for (size_t k = 0; st == VG_OK && k < r->p->n_piece; k++)
     if (r->pick[k].n) st = put_piece(r, k, &post, err);
-  st = vg_post_send(&post, comm, st, &from, err);
+  st = vg_outbox_send(&post, comm, st, &from, err);
   if (st == VG_OK) st = take_blocks(r, from, err);
   vg_bytes_release(from, (size_t)r->p->size);
   return st;
@@ -278,7 +279,7 @@ static vg_status send_cells(struct repair *r, struct vg_comm *comm,
 
 /* --- mending ------------------------------------------------------------- */
 
-static void mend_body(void *context, size_t first, size_t end, int worker)
+static void cluster_body(void *context, size_t first, size_t end, int worker)
 {
   struct repair *r = context;
 
@@ -286,20 +287,20 @@ static void mend_body(void *context, size_t first, size_t end, int worker)
     const struct vg_block *b = &r->block[r->first[k]];
 
     vg_repair_begin(&r->span[k], worker);
-    r->st[k] = vg_repair_mend(r->first[k + 1] - r->first[k], b, &r->balls,
-                              &r->rim, r->p->sizing, &r->mended[k], NULL);
+    r->st[k] = vg_repair_cluster(r->first[k + 1] - r->first[k], b, &r->balls,
+                                 &r->rim, r->p->sizing, &r->repaired[k], NULL);
     vg_repair_end(&r->span[k], "", r->number + b->cluster,
-                  r->mended[k].n_cell);
+                  r->repaired[k].n_cell);
   }
 }
 
 static vg_status mend(struct repair *r, struct vg_error *err)
 {
-  vg_status st = vg_repair_rim_new(r->p->boundary, r->n_block, r->block,
-                                   &r->rim, err);
+  vg_status st = vg_repair_boundary_new(r->p->boundary, r->n_block, r->block,
+                                        &r->rim, err);
 
   if (st < 0) return st;
-  vg_parallel_for(r->p->options.threads, r->n_job, 1, mend_body, r);
+  vg_parallel_for(r->p->options.threads, r->n_job, 1, cluster_body, r);
   for (size_t k = 0; k < r->n_job; k++) {
     if (r->st[k] < 0)
       return vg_fail(err, r->st[k], "cells beside interfaces could not be "
@@ -311,8 +312,8 @@ done:
 }
 
 /* Which clusters got better, and what that came to, on all ranks. */
-static vg_status tell(struct repair *r, struct vg_comm *comm,
-                      struct vg_error *err)
+static vg_status share_outcomes(struct repair *r, struct vg_comm *comm,
+                                struct vg_error *err)
 {
   struct vg_partition_report *to = &r->p->report;
   size_t n = r->balls.n_cluster;
@@ -323,7 +324,7 @@ static vg_status tell(struct repair *r, struct vg_comm *comm,
                      err);
   if (st < 0) return st;
   for (size_t k = 0; k < r->n_job; k++) {
-    const struct vg_mended *m = &r->mended[k];
+    const struct vg_repaired *m = &r->repaired[k];
 
     r->better[r->block[r->first[k]].cluster] = (uint64_t)m->better;
     to->n_repair_cell += m->n_cell;
@@ -374,10 +375,10 @@ static vg_status remove_cells(struct repair *r, struct vg_error *err)
 /* Points that moved, to those who own them. */
 struct move { uint64_t name; double x[3]; };
 
-static void put_moves(const struct repair *r, struct vg_post *post)
+static void put_moves(const struct repair *r, struct vg_outbox *post)
 {
   for (size_t k = 0; k < r->n_job; k++) {
-    const struct vg_mended *m = &r->mended[k];
+    const struct vg_repaired *m = &r->repaired[k];
 
     for (size_t i = 0; m->better && i < m->n_moved; i++) {
       const struct vg_owner *o = vg_owners_find(&r->owners, m->moved[i]);
@@ -413,9 +414,9 @@ static vg_status add_pieces(struct repair *r, struct vg_error *err)
                  sizeof *p->piece))
     return vg_fail_memory(err, "repairs");
   for (size_t k = 0; k < r->n_job; k++) {
-    struct vg_piece *q = &r->mended[k].piece;
+    struct vg_piece *q = &r->repaired[k].piece;
 
-    if (!r->mended[k].better) continue;
+    if (!r->repaired[k].better) continue;
     q->kind = VG_SPAN_REPAIR;
     q->serial = vg_partition_serial(p);
     snprintf(q->path, sizeof q->path, "R%06zu",
@@ -429,13 +430,13 @@ static vg_status add_pieces(struct repair *r, struct vg_error *err)
 static vg_status put_back(struct repair *r, struct vg_comm *comm,
                           struct vg_error *err)
 {
-  struct vg_post post = { 0 };
+  struct vg_outbox post = { 0 };
   struct vg_bytes *from = NULL;
   vg_status st = remove_cells(r, err);
 
-  if (st == VG_OK) st = vg_post_new(&post, r->p->size, err);
+  if (st == VG_OK) st = vg_outbox_new(&post, r->p->size, err);
   if (st == VG_OK) put_moves(r, &post);
-  st = vg_post_send(&post, comm, st, &from, err);
+  st = vg_outbox_send(&post, comm, st, &from, err);
   if (st < 0) return st;
   take_moves(r, from);
   vg_bytes_release(from, (size_t)r->p->size);
@@ -457,7 +458,7 @@ static vg_status round_of(struct repair *r, struct vg_comm *comm, size_t n,
   if (st == VG_OK)
     st = vg_comm_agree(comm, send_cells(r, comm, err), err);
   if (st == VG_OK) st = vg_comm_agree(comm, mend(r, err), err);
-  if (st == VG_OK) st = tell(r, comm, err);
+  if (st == VG_OK) st = share_outcomes(r, comm, err);
   return st == VG_OK ? put_back(r, comm, err) : st;
 }
 
@@ -475,7 +476,7 @@ static vg_status next_round(struct repair *r, struct vg_comm *comm, int first,
     if (r->balls.cluster[k] == VG_NO_CLUSTER)
       vg_put(&w, 1, sizeof **spot, &(*spot)[k]);
   for (size_t k = 0; first && k < r->n_job; k++)
-    vg_put(&w, r->mended[k].n_spot, sizeof **spot, r->mended[k].spot);
+    vg_put(&w, r->repaired[k].n_spot, sizeof **spot, r->repaired[k].spot);
   st = vg_spots_gather(&w, r->p->size, comm, n, &more, err);
   free(w.bytes.data);
   free(*spot);

@@ -6,7 +6,7 @@
  * interfaces before the second, and those beside them one (repair_smooth.c).
  * What is bad then may need changes on both sides. Such cells are found, each
  * with a ball around it; balls that overlap are a cluster. The cells with a
- * corner in a cluster's balls are taken from their pieces and mended on one
+ * corner in a cluster's balls are taken from their pieces and repaired on one
  * rank: points in the balls may move, all others stay, so that clusters do not
  * depend on each other. What got better becomes a piece of its own, else the
  * cells stay where they are.

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "base/unite.h"
+#include "base/union_find.h"
 #include "core/geometry/vector.h"
 #include "partition/repair/repair_parts.h"
 

@@ -80,8 +80,8 @@ static vg_status make_room(struct vg_field *f)
   f->shared = vg_calloc(q->n_point, 1);
   f->stays = vg_calloc(q->n_point, 1);
   if (!f->shared || !f->stays) return VG_ERR_MEMORY;
-  for (size_t k = 0; k < f->n_seam; k++) {
-    const struct vg_seam *s = f->seam[k];
+  for (size_t k = 0; k < f->n_halo; k++) {
+    const struct vg_halo *s = f->halo[k];
 
     for (size_t i = 0; i < s->n_known; i++) f->shared[s->known[i]] = 1;
     n_cell += s->n_cell;
@@ -148,7 +148,7 @@ static void add_own(struct vg_field *f, const struct vg_owners *owners)
   }
 }
 
-static void add_seam(struct vg_field *f, const struct vg_seam *s,
+static void add_halo(struct vg_field *f, const struct vg_halo *s,
                      uint32_t *vertex)
 {
   for (size_t k = 0; k < s->n_known; k++)
@@ -204,15 +204,15 @@ vg_status vg_field_new(struct vg_field *f, const struct vg_owners *owners,
 
   f->first = first;
   if (st < 0) return st;
-  for (size_t k = 0; k < f->n_seam; k++) {
-    size_t n = (size_t)f->seam[k]->n_known + f->seam[k]->n_other;
+  for (size_t k = 0; k < f->n_halo; k++) {
+    size_t n = (size_t)f->halo[k]->n_known + f->halo[k]->n_other;
 
     if (n > most) most = n;
   }
   vertex = vg_alloc(most, sizeof *vertex);
   if (!vertex) return VG_ERR_MEMORY;
   add_own(f, owners);
-  for (size_t k = 0; k < f->n_seam; k++) add_seam(f, f->seam[k], vertex);
+  for (size_t k = 0; k < f->n_halo; k++) add_halo(f, f->halo[k], vertex);
   free(vertex);
   find_shapes(&f->t, f->shape);
   return list_points(f);

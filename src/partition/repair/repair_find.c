@@ -94,14 +94,14 @@ const struct vg_owner *vg_owners_find(const struct vg_owners *o, uint64_t name)
 
 /* --- letters ------------------------------------------------------------- */
 
-vg_status vg_post_new(struct vg_post *post, int size, struct vg_error *err)
+vg_status vg_outbox_new(struct vg_outbox *post, int size, struct vg_error *err)
 {
   post->size = size;
   post->to = vg_calloc((size_t)size, sizeof *post->to);
   return post->to ? VG_OK : vg_fail_memory(err, "repairs");
 }
 
-void vg_post_release(struct vg_post *post)
+void vg_outbox_release(struct vg_outbox *post)
 {
   for (int r = 0; post->to && r < post->size; r++)
     free(post->to[r].bytes.data);
@@ -109,9 +109,9 @@ void vg_post_release(struct vg_post *post)
   post->to = NULL;
 }
 
-vg_status vg_post_send(struct vg_post *post, struct vg_comm *comm,
-                       vg_status st, struct vg_bytes **from,
-                       struct vg_error *err)
+vg_status vg_outbox_send(struct vg_outbox *post, struct vg_comm *comm,
+                         vg_status st, struct vg_bytes **from,
+                         struct vg_error *err)
 {
   struct vg_bytes *to = vg_calloc((size_t)post->size, sizeof *to);
   struct vg_bytes *got = vg_calloc((size_t)post->size, sizeof *got);
@@ -124,7 +124,7 @@ vg_status vg_post_send(struct vg_post *post, struct vg_comm *comm,
   st = vg_comm_agree(comm, st, err);
   if (st == VG_OK) st = vg_comm_exchange(comm, to, got, err);
   free(to);
-  vg_post_release(post);
+  vg_outbox_release(post);
   if (st == VG_OK) *from = got;
   else vg_bytes_release(got, (size_t)post->size);
   return st;

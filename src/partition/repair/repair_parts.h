@@ -27,16 +27,16 @@ const struct vg_owner *vg_owners_find(const struct vg_owners *o,
                                       uint64_t name);
 
 /** A list for each of the ranks. */
-struct vg_post { int size; struct vg_writer *to; };
+struct vg_outbox { int size; struct vg_writer *to; };
 
-vg_status vg_post_new(struct vg_post *post, int size, struct vg_error *err);
-void vg_post_release(struct vg_post *post);
+vg_status vg_outbox_new(struct vg_outbox *post, int size, struct vg_error *err);
+void vg_outbox_release(struct vg_outbox *post);
 
 /** Give each rank its list. from out: [size], see vg_bytes_release.
  * Collective; st: this rank's status so far. */
-vg_status vg_post_send(struct vg_post *post, struct vg_comm *comm,
-                       vg_status st, struct vg_bytes **from,
-                       struct vg_error *err);
+vg_status vg_outbox_send(struct vg_outbox *post, struct vg_comm *comm,
+                         vg_status st, struct vg_bytes **from,
+                         struct vg_error *err);
 
 /* --- where (repair_smooth.c, repair_balls.c) ----------------------------- */
 
@@ -75,8 +75,8 @@ vg_status vg_repair_smooth(struct vg_partition *p, struct vg_comm *comm,
                            struct vg_spot **out, struct vg_error *err);
 
 /* Cells of one piece that have a corner among the points of another, as its
- * owner needs them. (repair_seam.c) */
-struct vg_seam {
+ * owner needs them. (repair_halo.c) */
+struct vg_halo {
   uint32_t owner, to;        /* whose points: piece and rank */
   uint32_t from, rank;       /* who has the cells: likewise */
   uint32_t order;            /* of its path */
@@ -94,36 +94,36 @@ struct vg_seam {
 };
 #define VG_NO_ZONE UINT32_MAX
 
-void vg_seam_release(struct vg_seam *s);
-void vg_seam_put(struct vg_writer *w, const struct vg_seam *s);
+void vg_halo_release(struct vg_halo *s);
+void vg_halo_put(struct vg_writer *w, const struct vg_halo *s);
 /** Sets r->bad, and leaves *s empty, where the data cannot be. */
-void vg_seam_get(struct vg_reader *r, struct vg_seam *s);
+void vg_halo_get(struct vg_reader *r, struct vg_halo *s);
 
-/** The seams of piece k of this rank. hit out: [n_hit] its cells with a corner
+/** The halos of piece k of this rank. hit out: [n_hit] its cells with a corner
  * among the points of zones, in rising order. out, hit: owned by the caller,
  * also on failure. */
-vg_status vg_seams_of(const struct vg_partition *p, size_t k,
+vg_status vg_halos_of(const struct vg_partition *p, size_t k,
                       const struct vg_owners *owners, size_t *n,
-                      struct vg_seam **out, size_t *n_hit, uint32_t **hit);
+                      struct vg_halo **out, size_t *n_hit, uint32_t **hit);
 
-/** The corners of a seam as they are now. */
-void vg_seam_refresh(const struct vg_piece *q, struct vg_seam *s);
+/** The corners of a halo as they are now. */
+void vg_halo_refresh(const struct vg_piece *q, struct vg_halo *s);
 
 /** As vg_shape. Points with a cell below the first (42 degrees) around them
  * are smoothed in the first round, below the second (48) in the second and
  * beside; cells below the third (39) are swapped. */
 #define VG_SHAPE_LEVEL 0.45f
-#define VG_SHAPE_BESIDE 0.55f
+#define VG_SHAPE_ADJACENT 0.55f
 #define VG_SHAPE_SWAP 0.4f
 
 /** Smooth the points of a piece that are corners of the cells hit [n], which
  * are those with a corner on an interface in rising order; but not those that
  * are shared [q.n_point], NULL: none is. out: cells that it spoiled, but for
- * those hit. (repair_beside.c) */
-vg_status vg_repair_beside(const struct vg_piece *q,
-                           const struct vg_sizing *sizing, size_t n,
-                           const uint32_t *hit, const uint8_t *shared,
-                           struct vg_spots *out);
+ * those hit. (repair_adjacent.c) */
+vg_status vg_repair_adjacent(const struct vg_piece *q,
+                             const struct vg_sizing *sizing, size_t n,
+                             const uint32_t *hit, const uint8_t *shared,
+                             struct vg_spots *out);
 
 enum {                       /* what is known of a cell of a field */
   VG_FIELD_TOLD = 1,         /* an earlier owner looks at it */
@@ -136,11 +136,11 @@ struct vg_field {
   const struct vg_piece *q;
   const struct vg_owner *self;
   int first;                 /* as below */
-  size_t n_seam;
-  struct vg_seam *const *seam;
+  size_t n_halo;
+  struct vg_halo *const *halo;
   uint8_t *shared;           /* [q.n_point] on an interface */
   uint8_t *stays;            /* [q.n_point] an earlier owner's point is near */
-  size_t n_base, n_other;    /* vertices of q, then those of the seams */
+  size_t n_base, n_other;    /* vertices of q, then those of the halos */
   uint64_t *other;           /* [n_other] their names */
   uint64_t mask;
   uint32_t *slot;            /* [mask + 1] vertices by the hash of names */
@@ -176,7 +176,7 @@ void vg_edit_release(struct vg_edit *c);
 vg_status vg_piece_edit(struct vg_piece *q, const struct vg_edit *c);
 
 /** Swap in a field, where no other owner does and no earlier one moves a
- * point. What goes is noted in out->gone and in the seams, what comes is part
+ * point. What goes is noted in out->gone and in the halos, what comes is part
  * of the field. (repair_swap.c) */
 vg_status vg_field_swap(struct vg_field *f, struct vg_edit *out,
                         size_t *n_swap);
@@ -210,7 +210,7 @@ void vg_balls_release(struct vg_balls *b);
 /** The cluster in whose balls x is, or VG_NO_CLUSTER. Threads: safe. */
 uint32_t vg_balls_at(const struct vg_balls *b, const double x[3]);
 
-/* --- what (repair_mend.c) ------------------------------------------------ */
+/* --- what (repair_cluster.c) --------------------------------------------- */
 
 /* Cells of one piece for a cluster, as they travel. */
 struct vg_block {
@@ -229,29 +229,32 @@ void vg_block_put(struct vg_writer *w, const struct vg_block *b);
 /** Sets r->bad, and leaves *b empty, where the data cannot be. */
 void vg_block_get(struct vg_reader *r, struct vg_block *b);
 
-/* --- the boundary (repair_rim.c) ------------------------------------------ */
+/* --- the boundary (repair_boundary.c)
+ * ------------------------------------------ */
 
 /* Its triangles between points that clusters have: a sheet with cells on both
  * sides cannot be told from other faces of three boundary points by the cells
  * alone. */
-struct vg_repair_rim {
+struct vg_repair_boundary {
   size_t n;
   uint32_t (*tri)[3];        /* [n] smallest point first, in rising order */
 };
 
 /** Triangles between the points of block [n]; boundary may be NULL. */
-vg_status vg_repair_rim_new(const struct vg_mesh *boundary, size_t n,
-                            const struct vg_block *block,
-                            struct vg_repair_rim *out, struct vg_error *err);
-void vg_repair_rim_release(struct vg_repair_rim *r);
+vg_status vg_repair_boundary_new(const struct vg_mesh *boundary, size_t n,
+                                 const struct vg_block *block,
+                                 struct vg_repair_boundary *out,
+                                 struct vg_error *err);
+void vg_repair_boundary_release(struct vg_repair_boundary *r);
 
 /** Is there a triangle of these points, of the front? */
-int vg_repair_rim_has(const struct vg_repair_rim *r, const uint32_t v[3]);
+int vg_repair_boundary_has(const struct vg_repair_boundary *r,
+                           const uint32_t v[3]);
 
-/* --- what came of it (repair_mend.c) -------------------------------------- */
+/* --- what came of it (repair_cluster.c) ---------------------------------- */
 
 /* What became of a cluster. */
-struct vg_mended {
+struct vg_repaired {
   int better;                /* 0: the cells stay as they were */
   uint64_t n_cell;           /* of the cluster */
   uint64_t n_bad, n_bad_left;  /* cells below VG_SHAPE_AIM before, after */
@@ -264,14 +267,14 @@ struct vg_mended {
   struct vg_spot *spot;      /* [n_spot] around cells that stayed bad */
 };
 
-void vg_mended_release(struct vg_mended *m);
+void vg_repaired_release(struct vg_repaired *m);
 
 /** Mend the cells of a cluster. block: [n] by path. */
-vg_status vg_repair_mend(size_t n, const struct vg_block *block,
-                         const struct vg_balls *balls,
-                         const struct vg_repair_rim *rim,
-                         const struct vg_sizing *sizing,
-                         struct vg_mended *out, struct vg_error *err);
+vg_status vg_repair_cluster(size_t n, const struct vg_block *block,
+                            const struct vg_balls *balls,
+                            const struct vg_repair_boundary *rim,
+                            const struct vg_sizing *sizing,
+                            struct vg_repaired *out, struct vg_error *err);
 
 /* --- how long (repair_record.c) ------------------------------------------- */
 

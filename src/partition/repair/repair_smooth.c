@@ -24,15 +24,15 @@
  * would be swapped: it is one in 50 on a box, one in 8 where sizes vary. */
 enum { LEVEL = 30 };
 
-enum { FIND, SMOOTH, BESIDE, SWAP, N_SPAN };
+enum { FIND, SMOOTH, ADJACENT, SWAP, N_SPAN };
 
 /* What came of a piece. */
 struct outcome {
-  size_t n_seam;
-  struct vg_seam *seam;      /* [n_seam] its cells around others' points */
+  size_t n_halo;
+  struct vg_halo *halo;      /* [n_halo] its cells around others' points */
   size_t n_hit;
   uint32_t *hit;             /* [n_hit] those with a corner on an interface */
-  uint8_t *moved;            /* [n_point] or NULL: no seams */
+  uint8_t *moved;            /* [n_point] or NULL: no halos */
   uint8_t *shared;           /* [n_point] of a zone, or NULL */
   struct vg_spots bad;
   size_t n_moved, n_swap;
@@ -48,11 +48,11 @@ struct smoothing {
   int first;                 /* the first time of two */
   struct outcome *out;       /* [n_piece] */
   size_t n_far, cap_far;
-  struct vg_seam *far;       /* [n_far] that came from other ranks */
-  size_t n_seam;
-  struct vg_seam **seam;     /* [n_seam] around points of this rank, by owner
+  struct vg_halo *far;       /* [n_far] that came from other ranks */
+  size_t n_halo;
+  struct vg_halo **halo;     /* [n_halo] around points of this rank, by owner
                                 and the path of those who have the cells */
-  size_t *first_seam;        /* [n_piece + 1] seam */
+  size_t *first_halo;        /* [n_piece + 1] halo */
 };
 
 static void smoothing_free(struct smoothing *s)
@@ -60,24 +60,24 @@ static void smoothing_free(struct smoothing *s)
   for (size_t k = 0; s->out && k < s->p->n_piece; k++) {
     struct outcome *o = &s->out[k];
 
-    for (size_t i = 0; i < o->n_seam; i++) vg_seam_release(&o->seam[i]);
-    free(o->seam);
+    for (size_t i = 0; i < o->n_halo; i++) vg_halo_release(&o->halo[i]);
+    free(o->halo);
     free(o->moved);
     free(o->shared);
     free(o->hit);
     free(o->bad.at);
     vg_edit_release(&o->edit);
   }
-  for (size_t i = 0; i < s->n_far; i++) vg_seam_release(&s->far[i]);
+  for (size_t i = 0; i < s->n_far; i++) vg_halo_release(&s->far[i]);
   free(s->out);
   free(s->far);
-  free(s->seam);
-  free(s->first_seam);
+  free(s->halo);
+  free(s->first_halo);
 }
 
-/* --- seams to the owners of the points ----------------------------------- */
+/* --- halos to the owners of the points ----------------------------------- */
 
-static void seam_body(void *context, size_t first, size_t end, int worker)
+static void halo_body(void *context, size_t first, size_t end, int worker)
 {
   struct smoothing *s = context;
 
@@ -86,7 +86,7 @@ static void seam_body(void *context, size_t first, size_t end, int worker)
     const struct vg_piece *q = &s->p->piece[k];
 
     vg_repair_begin(&o->span[FIND], worker);
-    o->st = vg_seams_of(s->p, k, s->owners, &o->n_seam, &o->seam, &o->n_hit,
+    o->st = vg_halos_of(s->p, k, s->owners, &o->n_halo, &o->halo, &o->n_hit,
                         &o->hit);
     vg_repair_end(&o->span[FIND], "C", q->serial, q->n_cell);
   }
@@ -99,23 +99,23 @@ static vg_status agreed(const struct smoothing *s, struct vg_error *err)
   return VG_OK;
 }
 
-static vg_status make_seams(struct smoothing *s, struct vg_post *post,
+static vg_status make_halos(struct smoothing *s, struct vg_outbox *post,
                             struct vg_error *err)
 {
   vg_status st;
 
   s->out = vg_calloc(s->p->n_piece, sizeof *s->out);
   if (!s->out) return vg_fail_memory(err, "repairs");
-  vg_parallel_for(s->p->options.threads, s->p->n_piece, 1, seam_body, s);
+  vg_parallel_for(s->p->options.threads, s->p->n_piece, 1, halo_body, s);
   st = agreed(s, err);
-  if (st == VG_OK) st = vg_post_new(post, s->p->size, err);
+  if (st == VG_OK) st = vg_outbox_new(post, s->p->size, err);
   for (size_t k = 0; st == VG_OK && k < s->p->n_piece; k++)
-    for (size_t i = 0; i < s->out[k].n_seam; i++) {
-      const struct vg_seam *seam = &s->out[k].seam[i];
+    for (size_t i = 0; i < s->out[k].n_halo; i++) {
+      const struct vg_halo *halo = &s->out[k].halo[i];
 
-      if (seam->to != (uint32_t)s->p->rank)
-        vg_seam_put(&post->to[seam->to], seam);
-      else s->n_seam++;
+      if (halo->to != (uint32_t)s->p->rank)
+        vg_halo_put(&post->to[halo->to], halo);
+      else s->n_halo++;
     }
   return st;
 }
@@ -129,7 +129,7 @@ static vg_status take_far(struct smoothing *s, const struct vg_bytes *from,
     while (in.at < in.n) {
       if (vg_reserve(&s->far, &s->cap_far, s->n_far + 1, sizeof *s->far))
         return vg_fail_memory(err, "repairs");
-      vg_seam_get(&in, &s->far[s->n_far]);
+      vg_halo_get(&in, &s->far[s->n_far]);
       if (in.bad) return vg_fail_memory(err, "repairs");
       s->n_far++;
     }
@@ -139,48 +139,48 @@ static vg_status take_far(struct smoothing *s, const struct vg_bytes *from,
 
 static int by_owner(const void *a, const void *b)
 {
-  const struct vg_seam *s = *(struct vg_seam *const *)a;
-  const struct vg_seam *t = *(struct vg_seam *const *)b;
+  const struct vg_halo *s = *(struct vg_halo *const *)a;
+  const struct vg_halo *t = *(struct vg_halo *const *)b;
 
   if (s->owner != t->owner) return s->owner < t->owner ? -1 : 1;
   return s->order < t->order ? -1 : s->order > t->order;
 }
 
-/* Own seams stay where they are. */
-static vg_status sort_seams(struct smoothing *s, struct vg_error *err)
+/* Own halos stay where they are. */
+static vg_status sort_halos(struct smoothing *s, struct vg_error *err)
 {
   size_t n = 0, n_piece = s->p->n_piece;
 
-  s->n_seam += s->n_far;
-  s->seam = vg_alloc(s->n_seam, sizeof *s->seam);
-  s->first_seam = vg_calloc(n_piece + 1, sizeof *s->first_seam);
-  if (!s->seam || !s->first_seam) return vg_fail_memory(err, "repairs");
+  s->n_halo += s->n_far;
+  s->halo = vg_alloc(s->n_halo, sizeof *s->halo);
+  s->first_halo = vg_calloc(n_piece + 1, sizeof *s->first_halo);
+  if (!s->halo || !s->first_halo) return vg_fail_memory(err, "repairs");
   for (size_t k = 0; k < n_piece; k++)
-    for (size_t i = 0; i < s->out[k].n_seam; i++) {
-      struct vg_seam *seam = &s->out[k].seam[i];
+    for (size_t i = 0; i < s->out[k].n_halo; i++) {
+      struct vg_halo *halo = &s->out[k].halo[i];
 
-      if (seam->to == (uint32_t)s->p->rank) s->seam[n++] = seam;
+      if (halo->to == (uint32_t)s->p->rank) s->halo[n++] = halo;
     }
-  for (size_t i = 0; i < s->n_far; i++) s->seam[n++] = &s->far[i];
-  if (n) qsort(s->seam, n, sizeof *s->seam, by_owner);
-  for (size_t i = 0; i < n; i++) s->first_seam[s->seam[i]->owner + 1] = i + 1;
+  for (size_t i = 0; i < s->n_far; i++) s->halo[n++] = &s->far[i];
+  if (n) qsort(s->halo, n, sizeof *s->halo, by_owner);
+  for (size_t i = 0; i < n; i++) s->first_halo[s->halo[i]->owner + 1] = i + 1;
   for (size_t k = 0; k < n_piece; k++)
-    if (s->first_seam[k + 1] < s->first_seam[k])
-      s->first_seam[k + 1] = s->first_seam[k];
+    if (s->first_halo[k + 1] < s->first_halo[k])
+      s->first_halo[k + 1] = s->first_halo[k];
   return VG_OK;
 }
 
-static vg_status send_seams(struct smoothing *s, struct vg_comm *comm,
+static vg_status send_halos(struct smoothing *s, struct vg_comm *comm,
                             struct vg_error *err)
 {
-  struct vg_post post = {0};
+  struct vg_outbox post = {0};
   struct vg_bytes *from = NULL;
-  vg_status st = make_seams(s, &post, err);
+  vg_status st = make_halos(s, &post, err);
 
-  st = vg_post_send(&post, comm, st, &from, err);
+  st = vg_outbox_send(&post, comm, st, &from, err);
   if (st < 0) return st;
   st = take_far(s, from, err);
-  if (st == VG_OK) st = sort_seams(s, err);
+  if (st == VG_OK) st = sort_halos(s, err);
   vg_bytes_release(from, (size_t)s->p->size);
   return vg_comm_agree(comm, st, err);
 }
@@ -196,7 +196,7 @@ static vg_status smooth(struct vg_field *f, const struct vg_sizing *sizing,
   f->t.flag = vg_calloc(f->t.n_cell, 1);
   if (!f->t.flag ||
       vg_optimise_points(&f->t, f->n_point, f->point,
-                         f->first ? VG_SHAPE_LEVEL : VG_SHAPE_BESIDE,
+                         f->first ? VG_SHAPE_LEVEL : VG_SHAPE_ADJACENT,
                          sizing, f->shape, &r, NULL) < 0)
     return VG_ERR_MEMORY;
   for (size_t i = 0; i < f->n_point; i++) {
@@ -259,8 +259,8 @@ static vg_status smooth_piece(const struct smoothing *s, size_t k,
 {
   const struct vg_piece *q = &s->p->piece[k];
   struct vg_field f = {
-    .q = q, .seam = s->seam + s->first_seam[k],
-    .n_seam = s->first_seam[k + 1] - s->first_seam[k],
+    .q = q, .halo = s->halo + s->first_halo[k],
+    .n_halo = s->first_halo[k + 1] - s->first_halo[k],
     .self = vg_owners_find(s->owners, VG_POINT_NAME(q->serial, 0)) };
   vg_status st;
 
@@ -286,7 +286,7 @@ static void smooth_body(void *context, size_t first, size_t end, int worker)
     struct vg_span *span = &o->span[s->first ? SMOOTH : SWAP];
     size_t before = o->n_moved;
 
-    if (s->first_seam[k + 1] == s->first_seam[k]) continue;
+    if (s->first_halo[k + 1] == s->first_halo[k]) continue;
     vg_repair_begin(span, worker);
     o->st = smooth_piece(s, k, o);
     vg_repair_end(span, s->first ? "S" : "W", s->p->piece[k].serial,
@@ -297,28 +297,28 @@ static void smooth_body(void *context, size_t first, size_t end, int worker)
 /* --- back to those who use the points ------------------------------------ */
 
 /* A point of a piece that is another's, and where it is now. */
-struct news { uint32_t piece, vertex; double x[3]; };
+struct update { uint32_t piece, vertex; double x[3]; };
 
-/* What the owner says of a seam: the points that moved, and the cells that it
+/* What the owner says of a halo: the points that moved, and the cells that it
  * has others for. */
-static void put_news(const struct smoothing *s, const struct vg_seam *seam,
-                     struct vg_writer *w)
+static void put_updates(const struct smoothing *s, const struct vg_halo *halo,
+                        struct vg_writer *w)
 {
-  const struct vg_piece *q = &s->p->piece[seam->owner];
-  const uint8_t *moved = s->out[seam->owner].moved;
-  uint32_t head[3] = {seam->from, 0, seam->n_gone};
+  const struct vg_piece *q = &s->p->piece[halo->owner];
+  const uint8_t *moved = s->out[halo->owner].moved;
+  uint32_t head[3] = {halo->from, 0, halo->n_gone};
 
-  for (size_t i = 0; i < seam->n_known; i++) head[1] += moved[seam->known[i]];
+  for (size_t i = 0; i < halo->n_known; i++) head[1] += moved[halo->known[i]];
   if (!head[1] && !head[2]) return;
   vg_put(w, 3, sizeof *head, head);
-  for (size_t i = 0; i < seam->n_known; i++) {
-    struct news n = { .piece = seam->from, .vertex = seam->vertex[i] };
+  for (size_t i = 0; i < halo->n_known; i++) {
+    struct update n = { .piece = halo->from, .vertex = halo->vertex[i] };
 
-    if (!moved[seam->known[i]]) continue;
-    memcpy(n.x, q->x[q->n_in + seam->known[i]], sizeof n.x);
+    if (!moved[halo->known[i]]) continue;
+    memcpy(n.x, q->x[q->n_in + halo->known[i]], sizeof n.x);
     vg_put(w, 1, sizeof n, &n);
   }
-  vg_put(w, seam->n_gone, sizeof *seam->place, seam->place);
+  vg_put(w, halo->n_gone, sizeof *halo->place, halo->place);
 }
 
 static vg_status drop_cells(struct smoothing *s, uint32_t piece, size_t n,
@@ -332,14 +332,14 @@ static vg_status drop_cells(struct smoothing *s, uint32_t piece, size_t n,
   return VG_OK;
 }
 
-static vg_status take_news(struct smoothing *s, const struct vg_bytes *from)
+static vg_status take_updates(struct smoothing *s, const struct vg_bytes *from)
 {
   for (int r = 0; r < s->p->size; r++) {
     struct vg_reader in = { .data = from[r].data, .n = from[r].n };
 
     while (in.at < in.n) {
       uint32_t head[3] = {0}, *cell;
-      struct news n;
+      struct update n;
       vg_status st;
 
       vg_get(&in, 3, sizeof *head, head);
@@ -358,48 +358,48 @@ static vg_status take_news(struct smoothing *s, const struct vg_bytes *from)
 }
 
 /* On this rank: nobody else writes to those vertices. */
-static void tell_body(void *context, size_t first, size_t end, int worker)
+static void put_back_body(void *context, size_t first, size_t end, int worker)
 {
   struct smoothing *s = context;
 
   (void)worker;
   for (size_t k = first; k < end; k++) {
-    const struct vg_seam *seam = s->seam[k];
-    const struct vg_piece *q = &s->p->piece[seam->owner];
-    const struct vg_piece *to = &s->p->piece[seam->from];
+    const struct vg_halo *halo = s->halo[k];
+    const struct vg_piece *q = &s->p->piece[halo->owner];
+    const struct vg_piece *to = &s->p->piece[halo->from];
 
-    if (seam->rank != (uint32_t)s->p->rank) continue;
-    for (size_t i = 0; i < seam->n_known; i++)
-      if (s->out[seam->owner].moved[seam->known[i]])
-        memcpy(to->x[seam->vertex[i]], q->x[q->n_in + seam->known[i]],
+    if (halo->rank != (uint32_t)s->p->rank) continue;
+    for (size_t i = 0; i < halo->n_known; i++)
+      if (s->out[halo->owner].moved[halo->known[i]])
+        memcpy(to->x[halo->vertex[i]], q->x[q->n_in + halo->known[i]],
                sizeof *to->x);
   }
 }
 
-static vg_status tell(struct smoothing *s, struct vg_comm *comm,
-                      vg_status st, struct vg_error *err)
+static vg_status send_back(struct smoothing *s, struct vg_comm *comm,
+                           vg_status st, struct vg_error *err)
 {
-  struct vg_post post = {0};
+  struct vg_outbox post = {0};
   struct vg_bytes *from = NULL;
 
-  if (st == VG_OK) st = vg_post_new(&post, s->p->size, err);
+  if (st == VG_OK) st = vg_outbox_new(&post, s->p->size, err);
   for (size_t i = 0; st == VG_OK && i < s->n_far; i++)
-    put_news(s, &s->far[i], &post.to[s->far[i].rank]);
-  st = vg_post_send(&post, comm, st, &from, err);
+    put_updates(s, &s->far[i], &post.to[s->far[i].rank]);
+  st = vg_outbox_send(&post, comm, st, &from, err);
   if (st < 0) return st;
-  vg_parallel_for(s->p->options.threads, s->n_seam, 16, tell_body, s);
-  st = take_news(s, from);
-  for (size_t k = 0; st == VG_OK && k < s->n_seam; k++)
-    if (s->seam[k]->rank == (uint32_t)s->p->rank)
-      st = drop_cells(s, s->seam[k]->from, s->seam[k]->n_gone,
-                      s->seam[k]->place);
+  vg_parallel_for(s->p->options.threads, s->n_halo, 16, put_back_body, s);
+  st = take_updates(s, from);
+  for (size_t k = 0; st == VG_OK && k < s->n_halo; k++)
+    if (s->halo[k]->rank == (uint32_t)s->p->rank)
+      st = drop_cells(s, s->halo[k]->from, s->halo[k]->n_gone,
+                      s->halo[k]->place);
   vg_bytes_release(from, (size_t)s->p->size);
   return st == VG_OK ? st : vg_fail_memory(err, "repairs");
 }
 
 /* --- between the two times ------------------------------------------------ */
 
-static void beside_body(void *context, size_t first, size_t end, int worker)
+static void adjacent_body(void *context, size_t first, size_t end, int worker)
 {
   struct smoothing *s = context;
 
@@ -408,12 +408,12 @@ static void beside_body(void *context, size_t first, size_t end, int worker)
     const struct vg_piece *q = &s->p->piece[k];
 
     o->bad.n = 0;
-    if (!o->n_seam && !o->n_hit) continue;
-    vg_repair_begin(&o->span[BESIDE], worker);
-    o->st = vg_repair_beside(q, s->p->sizing, o->n_hit, o->hit, o->shared,
-                             &o->bad);
-    for (size_t i = 0; i < o->n_seam; i++) vg_seam_refresh(q, &o->seam[i]);
-    vg_repair_end(&o->span[BESIDE], "B", q->serial, o->n_hit);
+    if (!o->n_halo && !o->n_hit) continue;
+    vg_repair_begin(&o->span[ADJACENT], worker);
+    o->st = vg_repair_adjacent(q, s->p->sizing, o->n_hit, o->hit, o->shared,
+                               &o->bad);
+    for (size_t i = 0; i < o->n_halo; i++) vg_halo_refresh(q, &o->halo[i]);
+    vg_repair_end(&o->span[ADJACENT], "B", q->serial, o->n_hit);
   }
 }
 
@@ -423,12 +423,12 @@ static vg_status refresh_far(struct smoothing *s, const struct vg_bytes *from)
   struct vg_reader in = {0};
 
   for (size_t i = 0; i < s->n_far; i++) {
-    struct vg_seam *seam = &s->far[i];
+    struct vg_halo *halo = &s->far[i];
 
-    if (!i || seam->rank != seam[-1].rank)
-      in = (struct vg_reader){ .data = from[seam->rank].data,
-                               .n = from[seam->rank].n };
-    vg_get(&in, seam->n_other, sizeof *seam->x, seam->x);
+    if (!i || halo->rank != halo[-1].rank)
+      in = (struct vg_reader){ .data = from[halo->rank].data,
+                               .n = from[halo->rank].n };
+    vg_get(&in, halo->n_other, sizeof *halo->x, halo->x);
     if (in.bad) return VG_ERR_MEMORY;
   }
   return VG_OK;
@@ -437,21 +437,21 @@ static vg_status refresh_far(struct smoothing *s, const struct vg_bytes *from)
 static vg_status go_between(struct smoothing *s, struct vg_comm *comm,
                             struct vg_error *err)
 {
-  struct vg_post post = {0};
+  struct vg_outbox post = {0};
   struct vg_bytes *from = NULL;
   vg_status st;
 
-  vg_parallel_for(s->p->options.threads, s->p->n_piece, 1, beside_body, s);
+  vg_parallel_for(s->p->options.threads, s->p->n_piece, 1, adjacent_body, s);
   st = agreed(s, err);
-  if (st == VG_OK) st = vg_post_new(&post, s->p->size, err);
+  if (st == VG_OK) st = vg_outbox_new(&post, s->p->size, err);
   for (size_t k = 0; st == VG_OK && k < s->p->n_piece; k++)
-    for (size_t i = 0; i < s->out[k].n_seam; i++) {
-      const struct vg_seam *seam = &s->out[k].seam[i];
+    for (size_t i = 0; i < s->out[k].n_halo; i++) {
+      const struct vg_halo *halo = &s->out[k].halo[i];
 
-      if (seam->to != (uint32_t)s->p->rank)
-        vg_put(&post.to[seam->to], seam->n_other, sizeof *seam->x, seam->x);
+      if (halo->to != (uint32_t)s->p->rank)
+        vg_put(&post.to[halo->to], halo->n_other, sizeof *halo->x, halo->x);
     }
-  st = vg_post_send(&post, comm, st, &from, err);
+  st = vg_outbox_send(&post, comm, st, &from, err);
   if (st < 0) return st;
   if (refresh_far(s, from) < 0) st = vg_fail_memory(err, "repairs");
   vg_bytes_release(from, (size_t)s->p->size);
@@ -477,7 +477,7 @@ static vg_status once(struct smoothing *s, int first, struct vg_comm *comm,
 
   s->first = first;
   vg_parallel_for(s->p->options.threads, s->p->n_piece, 1, smooth_body, s);
-  st = tell(s, comm, agreed(s, err), err);
+  st = send_back(s, comm, agreed(s, err), err);
   return vg_comm_agree(comm, st, err);
 }
 
@@ -524,7 +524,7 @@ vg_status vg_repair_smooth(struct vg_partition *p, struct vg_comm *comm,
   struct smoothing s = { .p = p, .owners = owners };
   struct vg_writer w = { .cap = 0 };
   int level = 1;
-  vg_status st = send_seams(&s, comm, err);
+  vg_status st = send_halos(&s, comm, err);
 
   *n = 0;
   if (st == VG_OK) st = once(&s, 1, comm, err);

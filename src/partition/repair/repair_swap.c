@@ -159,7 +159,7 @@ static size_t find_gone(struct patch *p)
   return n;
 }
 
-/* In the seams, and in out->gone. */
+/* In the halos, and in out->gone. */
 static vg_status note_gone(const struct patch *p, struct vg_edit *out)
 {
   const struct vg_field *f = p->f;
@@ -169,8 +169,8 @@ static vg_status note_gone(const struct patch *p, struct vg_edit *out)
   if (!out->gone) return VG_ERR_MEMORY;
   for (size_t c = 0; c < f->n_own; c++)
     if (p->gone[c]) out->gone[f->place[c]] = 1;
-  for (size_t k = 0; k < f->n_seam; k++) {
-    struct vg_seam *s = f->seam[k];
+  for (size_t k = 0; k < f->n_halo; k++) {
+    struct vg_halo *s = f->halo[k];
 
     for (size_t c = 0; c < s->n_cell; c++)
       if (p->gone[at + c]) s->place[s->n_gone++] = s->place[c];

@@ -98,9 +98,9 @@ vanguard mesh -q -p p/box --constant-direction yes --out none
 exits 2
 says err "constant_direction needs a split_direction of 1, 2 or 3"
 
-# Cells of leaves, crumbs and cuts, and what repairs did, are those of the mesh.
+# Cells of leaves, fragments and cuts, and what repairs did, are those of the mesh.
 parts=$(sed -n '/"leaf_cells": \[/,/\]/s/^ *\([0-9]*\),*$/\1/p
-  s/.*"\(crumb_cells\|zone_cells\|repair_cells\)": \([-0-9]*\).*/\2/p' \
+  s/.*"\(fragment_cells\|zone_cells\|repair_cells\)": \([-0-9]*\).*/\2/p' \
   two/box.report.json | paste -sd+)
 cells=$(sed -n 's/^    "cells": \([0-9]*\).*/\1/p' two/box.report.json | tail -1)
 [ "$((parts))" = "$cells" ] || fail "$parts are not $cells cells"
@@ -108,12 +108,12 @@ grep -q '"repair_cells": -*[1-9]' two/box.report.json || fail "no repair"
 
 # What is filled as one leaf because it is little is counted apart.
 vanguard demo sphere --cells 60000 --out p
-vanguard mesh -q -p p/sphere --leaf-cells 6000 --json --out crumbs
+vanguard mesh -q -p p/sphere --leaf-cells 6000 --json --out fragments
 exits 0
-crumbs=$(sed -n 's/.*"crumb_leaves": \([0-9]*\).*/\1/p' out)
-cells=$(sed -n 's/.*"crumb_cells": \([0-9]*\).*/\1/p' out)
+fragments=$(sed -n 's/.*"fragment_leaves": \([0-9]*\).*/\1/p' out)
+cells=$(sed -n 's/.*"fragment_cells": \([0-9]*\).*/\1/p' out)
 least=$(sed -n '/"leaf_cells"/{n;s/[^0-9]//g;p}' out)
-[ "$((crumbs == 0))" = "$((cells == 0))" ] || fail "$crumbs crumbs: $cells cells"
+[ "$((fragments == 0))" = "$((cells == 0))" ] || fail "$fragments fragments: $cells cells"
 [ "$least" -ge 300 ] || fail "a leaf of $least cells"
 
 # Tasks kept, and found again by another number of workers.

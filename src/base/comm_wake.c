@@ -13,82 +13,82 @@
 #include "base/memory.h"
 
 /* A line of the cache each. */
-struct vg_bell {
+struct vg_wakeup {
   atomic_uint count, sleeps;
   char rest[VG_COMMON_ALIGN - 2 * sizeof(atomic_uint)];
 };
 
-/* bell_at [size]: places of the ranks among those of the node, or
+/* wakeup_at [size]: places of the ranks among those of the node, or
  * MPI_UNDEFINED. Local. */
 static int find_neighbours(struct vg_comm *c)
 {
   MPI_Group all = MPI_GROUP_NULL, node = MPI_GROUP_NULL;
   int *rank = vg_alloc((size_t)c->size, sizeof *rank), rc;
 
-  if (!rank || !c->bell_at) {
+  if (!rank || !c->wakeup_at) {
     free(rank);
     return MPI_ERR_NO_MEM;
   }
   for (int i = 0; i < c->size; i++) rank[i] = i;
   if (!(rc = MPI_Comm_group(c->all, &all)) &&
       !(rc = MPI_Comm_group(c->node, &node)))
-    rc = MPI_Group_translate_ranks(all, c->size, rank, node, c->bell_at);
+    rc = MPI_Group_translate_ranks(all, c->size, rank, node, c->wakeup_at);
   if (all != MPI_GROUP_NULL) MPI_Group_free(&all);
   if (node != MPI_GROUP_NULL) MPI_Group_free(&node);
   free(rank);
   return rc;
 }
 
-vg_status vg_comm_bells_open(struct vg_comm *c, struct vg_error *err)
+vg_status vg_comm_wakeups_open(struct vg_comm *c, struct vg_error *err)
 {
-  size_t n = (size_t)c->node_size * sizeof *c->bell;
+  size_t n = (size_t)c->node_size * sizeof *c->wakeup;
   struct vg_bytes none = { n, vg_calloc(n, 1) };
   vg_status st = VG_OK;
 
-  c->bell_at = vg_alloc((size_t)c->size, sizeof *c->bell_at);
+  c->wakeup_at = vg_alloc((size_t)c->size, sizeof *c->wakeup_at);
   if (!none.data || find_neighbours(c)) st = vg_fail_memory(err, "the bells");
   st = vg_comm_agree_in(c, c->all, st, err);
   if (st >= 0)
-    st = vg_comm_node_memory(c, 1, &none, 1, &c->bells, err);
+    st = vg_comm_node_memory(c, 1, &none, 1, &c->wakeups, err);
   free(none.data);
-  if (st >= 0) c->bell = (void *)(uintptr_t)c->bells.data;
+  if (st >= 0) c->wakeup = (void *)(uintptr_t)c->wakeups.data;
   return vg_comm_agree_in(c, c->all, st, err);
 }
 
-void vg_comm_bells_close(struct vg_comm *c)
+void vg_comm_wakeups_close(struct vg_comm *c)
 {
-  vg_common_release(&c->bells);
-  free(c->bell_at);
+  vg_common_release(&c->wakeups);
+  free(c->wakeup_at);
 }
 
-static void ring(struct vg_bell *b)
+static void wake(struct vg_wakeup *b)
 {
   atomic_fetch_add(&b->count, 1);
   if (atomic_load(&b->sleeps))
     syscall(SYS_futex, &b->count, FUTEX_WAKE, 1, NULL, NULL, 0);
 }
 
-/* Where memory is not in common, each has all bells for itself: only its own
+/* Where memory is not in common, each has all wakeups for itself: only its own
  * rings. */
-void vg_comm_ring_at(struct vg_comm *c, int rank)
+void vg_comm_wake_rank(struct vg_comm *c, int rank)
 {
-  if (c->bell_at[rank] != MPI_UNDEFINED && c->bells.is_mapped)
-    ring(&c->bell[c->bell_at[rank]]);
+  if (c->wakeup_at[rank] != MPI_UNDEFINED && c->wakeups.is_mapped)
+    wake(&c->wakeup[c->wakeup_at[rank]]);
 }
 
-void vg_comm_ring(struct vg_comm *c)
+void vg_comm_wake(struct vg_comm *c)
 {
-  ring(&c->bell[c->node_rank]);
+  wake(&c->wakeup[c->node_rank]);
 }
 
-unsigned vg_comm_bell(const struct vg_comm *c)
+unsigned vg_comm_wake_count(const struct vg_comm *c)
 {
-  return atomic_load(&c->bell[c->node_rank].count);
+  return atomic_load(&c->wakeup[c->node_rank].count);
 }
 
-void vg_comm_listen(struct vg_comm *c, unsigned heard, double seconds)
+void vg_comm_sleep(struct vg_comm *c, unsigned heard, double seconds)
 {
-  struct vg_bell *b = &c->bell[c->node_rank];
+  struct vg_wakeup *b = &c->wakeup[c->node_rank];
   const struct timespec t = { (time_t)seconds,
     (long)(1e9 * (seconds - (double)(time_t)seconds)) };
 

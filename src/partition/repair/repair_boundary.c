@@ -27,7 +27,7 @@ static int by_points(const void *a, const void *b)
 }
 
 static vg_status list(const struct vg_mesh *m, const uint8_t *in,
-                      struct vg_repair_rim *r)
+                      struct vg_repair_boundary *r)
 {
   size_t n = 0;
 
@@ -47,9 +47,10 @@ static vg_status list(const struct vg_mesh *m, const uint8_t *in,
   return VG_OK;
 }
 
-vg_status vg_repair_rim_new(const struct vg_mesh *boundary, size_t n,
-                            const struct vg_block *block,
-                            struct vg_repair_rim *out, struct vg_error *err)
+vg_status vg_repair_boundary_new(const struct vg_mesh *boundary, size_t n,
+                                 const struct vg_block *block,
+                                 struct vg_repair_boundary *out,
+                                 struct vg_error *err)
 {
   size_t n_point = boundary ? boundary->n_point : 0;
   uint8_t *in;
@@ -68,13 +69,14 @@ vg_status vg_repair_rim_new(const struct vg_mesh *boundary, size_t n,
   return st;
 }
 
-void vg_repair_rim_release(struct vg_repair_rim *r)
+void vg_repair_boundary_release(struct vg_repair_boundary *r)
 {
   free(r->tri);
   memset(r, 0, sizeof *r);
 }
 
-int vg_repair_rim_has(const struct vg_repair_rim *r, const uint32_t v[3])
+int vg_repair_boundary_has(const struct vg_repair_boundary *r,
+                           const uint32_t v[3])
 {
   uint32_t key[3];
 

@@ -1,4 +1,4 @@
-#include "core/sizing/sizing_held.h"
+#include "core/sizing/sizing_effect.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -15,7 +15,7 @@ struct finder {
   const struct vg_source *source;
   const struct vg_mesh *front;
   const struct vg_sizing *sizing;
-  struct vg_held *out;
+  struct vg_effects *out;
   size_t cap, cap_lost, cap_place;
 };
 
@@ -25,7 +25,7 @@ struct holders {
   struct holder { double edge, distance; } *item;
 };
 
-void vg_held_release(struct vg_held *h)
+void vg_effects_release(struct vg_effects *h)
 {
   free(h->item);
   free(h->lost);
@@ -70,7 +70,7 @@ static void measure(const struct vg_mesh *m, size_t tri, const double x[3],
 }
 
 /* The face that asks for most, and all that ask for more than the source. */
-static int find_faces(const struct finder *f, struct vg_held_source *h,
+static int find_faces(const struct finder *f, struct vg_limited_source *h,
                       struct holders *all)
 {
   const double growth = f->options->growth;
@@ -106,7 +106,7 @@ static int lets_go(const struct holders *all, double growth, double asked)
   return 1;
 }
 
-static void find_remedy(const struct finder *f, struct vg_held_source *h,
+static void find_remedy(const struct finder *f, struct vg_limited_source *h,
                         const struct holders *all)
 {
   double nearest = h->distance;
@@ -123,7 +123,7 @@ static void find_remedy(const struct finder *f, struct vg_held_source *h,
     }
 }
 
-static vg_status blame(const struct finder *f, struct vg_held_source *h,
+static vg_status blame(const struct finder *f, struct vg_limited_source *h,
                        struct vg_error *err)
 {
   struct holders all = { 0 };
@@ -135,7 +135,7 @@ static vg_status blame(const struct finder *f, struct vg_held_source *h,
   return st;
 }
 
-static void take(struct vg_held_source *h, const double x[3], double asked,
+static void take(struct vg_limited_source *h, const double x[3], double asked,
                  double got)
 {
   memcpy(h->at, x, sizeof h->at);
@@ -145,12 +145,12 @@ static void take(struct vg_held_source *h, const double x[3], double asked,
 
 /* Whether that is worth telling. What is around a source need not follow it
  * everywhere. */
-static int is_held(const struct vg_held_source *h, int is_wide)
+static int is_limited(const struct vg_limited_source *h, int is_wide)
 {
-  return h->n_held &&
-         (h->n_held == h->n_place ||
+  return h->n_limited &&
+         (h->n_limited == h->n_place ||
           (!is_wide &&
-           (double)h->n_held >= VG_HELD_SHARE * (double)h->n_place));
+           (double)h->n_limited >= VG_LIMITED_SHARE * (double)h->n_place));
 }
 
 /* Keep a place around which sizes are more than twice as large, four of them
@@ -158,7 +158,7 @@ static int is_held(const struct vg_held_source *h, int is_wide)
 static int keep_place(struct finder *f, size_t i, const double x[3],
                       double got)
 {
-  struct vg_held_place p = { .got = got, .source = i };
+  struct vg_steep_place p = { .got = got, .source = i };
   int is_small = 0;
 
   if (vg_sizing_slope(f->sizing) <= VG_MET_STEEP) return 0;
@@ -181,7 +181,7 @@ static int keep_place(struct finder *f, size_t i, const double x[3],
 static vg_status ask(struct finder *f, size_t i, const struct vg_places *p,
                      size_t from, size_t to, int is_wide, struct vg_error *err)
 {
-  struct vg_held_source best = { .source = i }, worst = best, *h = &best;
+  struct vg_limited_source best = { .source = i }, worst = best, *h = &best;
   double least = INFINITY, most = 0;
 
   for (size_t j = from; j < to; j++) {
@@ -192,19 +192,19 @@ static vg_status ask(struct finder *f, size_t i, const struct vg_places *p,
     asked = asked_at(f, i, q->x);
     got = vg_sizing_at(f->sizing, q->x);
     best.n_place++;
-    best.n_held += got > VG_HELD_RATIO * asked;
+    best.n_limited += got > VG_LIMITED_RATIO * asked;
     if (got > most * asked) take(&worst, q->x, asked, got);
     if (got < least * asked) take(&best, q->x, asked, got);
-    if (!is_wide && got <= VG_HELD_RATIO * asked &&
+    if (!is_wide && got <= VG_LIMITED_RATIO * asked &&
         keep_place(f, i, q->x, got))
       return vg_fail_memory(err, "the sources");
     most = worst.got / worst.asked;
     least = best.got / best.asked;
   }
-  if (!is_held(&best, is_wide)) return VG_OK;
+  if (!is_limited(&best, is_wide)) return VG_OK;
   worst.n_place = best.n_place;
-  worst.n_held = best.n_held;
-  if (best.n_held < best.n_place) h = &worst;
+  worst.n_limited = best.n_limited;
+  if (best.n_limited < best.n_place) h = &worst;
   if (blame(f, h, err) < 0) return VG_ERR_MEMORY;
   if (vg_reserve(&f->out->item, &f->cap, f->out->n + 1, sizeof *h))
     return vg_fail_memory(err, "the sources");
@@ -298,7 +298,7 @@ static vg_status list_lost(struct finder *f, const struct vg_places *p,
 
 static int by_source(const void *a, const void *b)
 {
-  const struct vg_held_source *h = a, *g = b;
+  const struct vg_limited_source *h = a, *g = b;
 
   return h->source < g->source ? -1 : h->source > g->source;
 }
@@ -327,15 +327,16 @@ done:
   return st;
 }
 
-vg_status vg_held_find(const struct vg_sizing_options *options, size_t n,
-                       const struct vg_source *source,
-                       const struct vg_mesh *front,
-                       const struct vg_mesh *surface,
-                       const struct vg_sizing *sizing, struct vg_held *out,
-                       struct vg_error *err)
+vg_status vg_effects_find(const struct vg_sizing_options *options, size_t n,
+                          const struct vg_source *source,
+                          const struct vg_mesh *front,
+                          const struct vg_mesh *surface,
+                          const struct vg_sizing *sizing,
+                          struct vg_effects *out,
+                          struct vg_error *err)
 {
   struct vg_places p = VG_PLACES_INIT, wide = VG_PLACES_INIT;
-  struct vg_held found = VG_HELD_INIT;
+  struct vg_effects found = VG_EFFECTS_INIT;
   struct finder f = { .options = options, .source = source, .front = front,
                       .sizing = sizing, .out = &found };
   uint8_t *is_met;
@@ -353,6 +354,6 @@ vg_status vg_held_find(const struct vg_sizing_options *options, size_t n,
   vg_places_release(&wide);
   free(is_met);
   if (st >= 0) *out = found;
-  else vg_held_release(&found);
+  else vg_effects_release(&found);
   return st;
 }

@@ -1,8 +1,8 @@
-/* base/unite.h: sets that become one (union-find). up: [n] at first each number
- * itself, later another one of its set; that which is its own is the root.
- * Threads: one at a time. */
-#ifndef VG_BASE_UNITE_H
-#define VG_BASE_UNITE_H
+/* base/union_find.h: sets that become one (union-find). up: [n] at first each
+ * number itself, later another one of its set; that which is its own is the
+ * root. Threads: one at a time. */
+#ifndef VG_BASE_UNION_FIND_H
+#define VG_BASE_UNION_FIND_H
 
 #include <stdint.h>
 
@@ -15,7 +15,7 @@ static inline uint32_t vg_root_of(uint32_t *up, uint32_t k)
 
 /** Make the sets of a and b one, with the lower root, so that the outcome is
  * the same in any order. Returns 0 when they were one. */
-static inline int vg_unite(uint32_t *up, uint32_t a, uint32_t b)
+static inline int vg_union(uint32_t *up, uint32_t a, uint32_t b)
 {
   a = vg_root_of(up, a);
   b = vg_root_of(up, b);

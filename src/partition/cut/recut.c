@@ -18,7 +18,7 @@ static const char again = '~';
 
 /* --- which void ---------------------------------------------------------- */
 
-int vg_redo_path(const char *path, char void_path[VG_PATH_MAX])
+int vg_recut_path(const char *path, char void_path[VG_PATH_MAX])
 {
   const char *mark = strchr(path, again);
   char *dot;
@@ -38,8 +38,8 @@ static int is_of(const char *path, const char *void_path)
   return !strncmp(path, void_path, n) && !(path[n] >= '0' && path[n] <= '9');
 }
 
-vg_status vg_redo_note_leaf(struct vg_partition *p, struct vg_node *n,
-                            const struct vg_error *why, struct vg_error *err)
+vg_status vg_recut_note_leaf(struct vg_partition *p, struct vg_node *n,
+                             const struct vg_error *why, struct vg_error *err)
 {
   vg_status st = VG_OK;
 
@@ -55,10 +55,10 @@ vg_status vg_redo_note_leaf(struct vg_partition *p, struct vg_node *n,
   return st;
 }
 
-vg_status vg_redo_note_cut(struct vg_partition *p, const struct vg_node *n,
-                           struct vg_error *err)
+vg_status vg_recut_note_cut(struct vg_partition *p, const struct vg_node *n,
+                            struct vg_error *err)
 {
-  struct vg_redo_cut cut = { .levels = n->levels, .retry = n->retry,
+  struct vg_recut_cut cut = { .levels = n->levels, .retry = n->retry,
                              .per_cube = n->per_cube };
   vg_status st = VG_OK;
 
@@ -73,7 +73,7 @@ vg_status vg_redo_note_cut(struct vg_partition *p, const struct vg_node *n,
   return st;
 }
 
-void vg_redo_release(struct vg_partition *p)
+void vg_recut_release(struct vg_partition *p)
 {
   for (size_t k = 0; k < p->n_unfilled; k++)
     vg_node_free(p->unfilled[k].node);
@@ -116,7 +116,7 @@ static vg_status list_voids(struct vg_partition *p, struct vg_comm *comm,
   vg_status st = all && path ? VG_OK : vg_fail_memory(err, "a void");
 
   for (size_t k = 0; st == VG_OK && k < p->n_unfilled; k++)
-    if (!vg_redo_path(p->unfilled[k].node->path, path[k]))
+    if (!vg_recut_path(p->unfilled[k].node->path, path[k]))
       st = vg_fail(err, VG_ERR_GEOMETRY, "%s", p->unfilled[k].why.text);
   mine.data = (unsigned char *)path;
   VG_TRY(vg_comm_agree(comm, st, err));
@@ -140,9 +140,9 @@ done:
 /* --- what the ranks have of the voids ------------------------------------ */
 
 /* On the rank that cuts it again. */
-struct redo {
+struct recut {
   struct vg_front front;
-  struct vg_redo_cut cut;
+  struct vg_recut_cut cut;
 };
 
 enum { CUT, FRONT };
@@ -172,7 +172,7 @@ static struct vg_writer *address(const struct parcels *q, const char *path,
 static void send_cuts(const struct parcels *q)
 {
   for (size_t k = 0; k < q->p->n_cut; k++) {
-    const struct vg_redo_cut *c = &q->p->cut[k];
+    const struct vg_recut_cut *c = &q->p->cut[k];
 
     for (size_t i = 0; i < q->n; i++)
       if (!strcmp(c->path, q->path[i]))
@@ -216,7 +216,7 @@ static vg_status send_pieces(const struct parcels *q, struct vg_error *err)
       p->piece[left++] = p->piece[k];
       continue;
     }
-    st = vg_redo_front(&p->piece[k], &f, err);
+    st = vg_recut_front(&p->piece[k], &f, err);
     if (st == VG_OK) vg_front_put(w, &f, 1);
     vg_front_release(&f);
     count_forgotten(p, &p->piece[k]);
@@ -226,7 +226,7 @@ static vg_status send_pieces(const struct parcels *q, struct vg_error *err)
   return st;
 }
 
-static vg_status receive(struct parcels *q, struct redo *redo,
+static vg_status receive(struct parcels *q, struct recut *recut,
                          const struct vg_bytes *b, struct vg_error *err)
 {
   struct vg_reader r = { .data = b->data, .n = b->n };
@@ -239,20 +239,20 @@ static vg_status receive(struct parcels *q, struct redo *redo,
     vg_get(&r, 2, sizeof *head, head);
     if (r.bad || head[0] >= q->n) break;
     if (head[1] == CUT) {
-      vg_get(&r, 1, sizeof redo->cut, &redo[head[0]].cut);
+      vg_get(&r, 1, sizeof recut->cut, &recut[head[0]].cut);
       continue;
     }
     vg_front_get(&r, &f, 1);
-    if (!r.bad) st = vg_front_join(&redo[head[0]].front, &f, err);
+    if (!r.bad) st = vg_front_join(&recut[head[0]].front, &f, err);
     vg_front_release(&f);
   }
   return r.bad ? vg_fail_memory(err, "a message") : st;
 }
 
-/* What all ranks have of the voids to those that cut them. redo: [q->n].
+/* What all ranks have of the voids to those that cut them. recut: [q->n].
  * Collective. */
 static vg_status exchange(struct parcels *q, struct vg_comm *comm,
-                          struct redo *redo, struct vg_error *err)
+                          struct recut *recut, struct vg_error *err)
 {
   size_t size = (size_t)q->p->size;
   struct vg_bytes *to = vg_calloc(size, sizeof *to);
@@ -274,7 +274,7 @@ static vg_status exchange(struct parcels *q, struct vg_comm *comm,
   VG_TRY(vg_comm_agree(comm, st, err));
   VG_TRY(vg_comm_exchange(comm, to, from, err));
   for (size_t r = 0; r < size && st == VG_OK; r++)
-    st = receive(q, redo, &from[r], err);
+    st = receive(q, recut, &from[r], err);
   st = vg_comm_agree(comm, st, err);
 done:
   for (size_t r = 0; q->to && r < size; r++) free(q->to[r].bytes.data);
@@ -286,24 +286,24 @@ done:
 
 /* --- to be cut again ----------------------------------------------------- */
 
-static vg_status new_node(struct vg_partition *p, struct redo *redo,
+static vg_status new_node(struct vg_partition *p, struct recut *recut,
                           struct vg_node **out, struct vg_error *err)
 {
-  struct vg_front *f = &redo->front;
+  struct vg_front *f = &recut->front;
   char path[VG_PATH_MAX];
   struct vg_node *n;
   struct vg_void v;
   vg_status st;
 
   VG_TRY(vg_front_weld(f, err));
-  VG_TRY(vg_redo_settle(f, err));
-  snprintf(path, sizeof path, "%.*s%c", VG_PATH_MAX - 2, redo->cut.path,
+  VG_TRY(vg_recut_settle(f, err));
+  snprintf(path, sizeof path, "%.*s%c", VG_PATH_MAX - 2, recut->cut.path,
            again);
   n = *out = vg_node_new(path, f);
   if (!n) return vg_fail_memory(err, "a void");
-  n->levels = redo->cut.levels;
-  n->retry = redo->cut.retry + 1;
-  n->per_cube = redo->cut.per_cube;
+  n->levels = recut->cut.levels;
+  n->retry = recut->cut.retry + 1;
+  n->per_cube = recut->cut.per_cube;
   v = (struct vg_void){ .n_point = n->front.n_point, .x = n->front.x,
                         .n_face = n->front.n_face, .face = n->front.face };
   VG_TRY(vg_load_new(&v, p->sizing, n->per_cube, p->options.threads,
@@ -321,34 +321,34 @@ static void forget_spans(struct vg_spans *s, size_t n, path_type *path)
       if (is_of(s->span[i].path, path[k])) s->span[i].n_cell = 0;
 }
 
-vg_status vg_redo_voids(struct vg_partition *p, struct vg_comm *comm,
-                        struct vg_spans *spans, size_t *n_void,
-                        struct vg_node ***node, size_t *n,
-                        struct vg_error *err)
+vg_status vg_recut_voids(struct vg_partition *p, struct vg_comm *comm,
+                         struct vg_spans *spans, size_t *n_void,
+                         struct vg_node ***node, size_t *n,
+                         struct vg_error *err)
 {
   struct parcels q = { .p = p };
-  struct redo *redo = NULL;
+  struct recut *recut = NULL;
   vg_status st;
 
   *n_void = *n = 0;
   *node = NULL;
   VG_TRY(list_voids(p, comm, &q.path, &q.n, err));
   if (!q.n) goto done;
-  redo = vg_calloc(q.n, sizeof *redo);
+  recut = vg_calloc(q.n, sizeof *recut);
   *node = vg_calloc(q.n, sizeof **node);
-  st = redo && *node ? VG_OK : vg_fail_memory(err, "a void");
+  st = recut && *node ? VG_OK : vg_fail_memory(err, "a void");
   VG_TRY(vg_comm_agree(comm, st, err));
-  VG_TRY(exchange(&q, comm, redo, err));
+  VG_TRY(exchange(&q, comm, recut, err));
   for (size_t k = (size_t)p->rank; k < q.n && st == VG_OK;
        k += (size_t)p->size)
-    st = new_node(p, &redo[k], &(*node)[(*n)++], err);
+    st = new_node(p, &recut[k], &(*node)[(*n)++], err);
   VG_TRY(vg_comm_agree(comm, st, err));
   if (spans) forget_spans(spans, q.n, q.path);
   if (!p->rank) p->report.n_elsewhere += q.n;
   *n_void = q.n;
 done:
-  for (size_t k = 0; redo && k < q.n; k++) vg_front_release(&redo[k].front);
-  free(redo);
+  for (size_t k = 0; recut && k < q.n; k++) vg_front_release(&recut[k].front);
+  free(recut);
   free(q.path);
   return st;
 }

@@ -1,4 +1,4 @@
-#include "cli/input/held.h"
+#include "cli/input/source_effect.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -6,15 +6,16 @@
 
 #include "cli/common/text.h"
 
-vg_status vg_problem_held(const struct vg_problem *p,
-                          const struct vg_mesh *front,
-                          const struct vg_sizing *sizing, struct vg_held *out,
-                          struct vg_error *err)
+vg_status vg_problem_effects(const struct vg_problem *p,
+                             const struct vg_mesh *front,
+                             const struct vg_sizing *sizing,
+                             struct vg_effects *out,
+                             struct vg_error *err)
 {
   const struct vg_sizing_options o = vg_settings_sizing(&p->settings);
 
-  return vg_held_find(&o, p->settings.n_source, p->settings.source, front,
-                      &p->surface, sizing, out, err);
+  return vg_effects_find(&o, p->settings.n_source, p->settings.source, front,
+                         &p->surface, sizing, out, err);
 }
 
 static const char *kind_of(const struct vg_source *s)
@@ -29,20 +30,20 @@ static const char *kind_of(const struct vg_source *s)
   return name[s->kind];
 }
 
-static const struct vg_patch *patch_of(const struct vg_held_source *h,
+static const struct vg_patch *patch_of(const struct vg_limited_source *h,
                                        const struct vg_mesh *front)
 {
   return h->face == SIZE_MAX || !front->tri_patch
     ? NULL : front->patch + front->tri_patch[h->face];
 }
 
-static int is_wholly(const struct vg_held_source *h)
+static int is_wholly(const struct vg_limited_source *h)
 {
-  return h->n_held == h->n_place;
+  return h->n_limited == h->n_place;
 }
 
 /* What holds it back, and what would help. */
-static void explain(const struct vg_held_source *h,
+static void explain(const struct vg_limited_source *h,
                     const struct vg_mesh *front, char *text, size_t size)
 {
   const struct vg_patch *patch = patch_of(h, front);
@@ -63,8 +64,8 @@ static void explain(const struct vg_held_source *h,
              h->growth_wanted);
 }
 
-static void note_held(const struct vg_held_source *h,
-                      const struct vg_mesh *front, struct vg_problem *p)
+static void note_limited(const struct vg_limited_source *h,
+                         const struct vg_mesh *front, struct vg_problem *p)
 {
   const struct vg_source *s = p->settings.source + h->source;
   char name[160], why[320];
@@ -79,7 +80,7 @@ static void note_held(const struct vg_held_source *h,
             h->asked, h->at[0], h->at[1], h->at[2], why);
   else
     vg_note(&p->notes, "%s is held back in %zu of %zu places: at %.4g %.4g "
-            "%.4g it asks for %.3g and gets %.3g, where %s", name, h->n_held,
+            "%.4g it asks for %.3g and gets %.3g, where %s", name, h->n_limited,
             h->n_place, h->at[0], h->at[1], h->at[2], h->asked, h->got, why);
 }
 
@@ -96,7 +97,7 @@ static void note_unmet(const struct vg_unmet_source *u, struct vg_problem *p)
           u->place.x[2], u->place.got);
 }
 
-static void note_lost(const struct vg_held *h, int is_beyond,
+static void note_lost(const struct vg_effects *h, int is_beyond,
                       struct vg_problem *p)
 {
   char list[200] = "";
@@ -120,24 +121,24 @@ static void note_lost(const struct vg_held *h, int is_beyond,
           n > 1 ? "them" : "it");
 }
 
-void vg_held_note(const struct vg_held *h, const struct vg_mesh *front,
-                  struct vg_problem *p)
+void vg_effects_note(const struct vg_effects *h, const struct vg_mesh *front,
+                     struct vg_problem *p)
 {
-  for (size_t i = 0; i < h->n && i < VG_SHOWN_HELD; i++)
-    note_held(h->item + i, front, p);
-  if (h->n > VG_SHOWN_HELD)
+  for (size_t i = 0; i < h->n && i < VG_SHOWN_LIMITED; i++)
+    note_limited(h->item + i, front, p);
+  if (h->n > VG_SHOWN_LIMITED)
     vg_note(&p->notes, "%zu more sources are held back; the JSON report has "
-            "them all", h->n - VG_SHOWN_HELD);
-  for (size_t i = 0; i < h->n_unmet && i < VG_SHOWN_HELD; i++)
+            "them all", h->n - VG_SHOWN_LIMITED);
+  for (size_t i = 0; i < h->n_unmet && i < VG_SHOWN_LIMITED; i++)
     note_unmet(h->unmet + i, p);
-  if (h->n_unmet > VG_SHOWN_HELD)
+  if (h->n_unmet > VG_SHOWN_LIMITED)
     vg_note(&p->notes, "%zu more sources have no effect; the JSON report has "
-            "them all", h->n_unmet - VG_SHOWN_HELD);
+            "them all", h->n_unmet - VG_SHOWN_LIMITED);
   note_lost(h, 0, p);
   note_lost(h, 1, p);
 }
 
-static json_t *item_json(const struct vg_held_source *h,
+static json_t *item_json(const struct vg_limited_source *h,
                          const struct vg_mesh *front,
                          const struct vg_source *s)
 {
@@ -146,7 +147,7 @@ static json_t *item_json(const struct vg_held_source *h,
                         (json_int_t)h->source + 1, "kind", kind_of(s),
                         "wholly", is_wholly(h), "places",
                         (json_int_t)h->n_place, "places_held",
-                        (json_int_t)h->n_held, "at", h->at[0], h->at[1],
+                        (json_int_t)h->n_limited, "at", h->at[0], h->at[1],
                         h->at[2], "asks", h->asked, "gets", h->got);
 
   if (s->group[0])
@@ -162,8 +163,8 @@ static json_t *item_json(const struct vg_held_source *h,
   return o;
 }
 
-json_t *vg_held_json(const struct vg_held *h, const struct vg_mesh *front,
-                     const struct vg_settings *s)
+json_t *vg_effects_json(const struct vg_effects *h, const struct vg_mesh *front,
+                        const struct vg_settings *s)
 {
   json_t *o = json_object(), *held = json_array(), *lost[2];
   json_t *unmet = json_array();

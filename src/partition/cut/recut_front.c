@@ -102,7 +102,7 @@ static void place_points(struct vg_front *f, struct spot *s, uint32_t *to)
     for (int i = 0; i < 3; i++) f->face[k][i] = to[f->face[k][i]];
 }
 
-vg_status vg_redo_settle(struct vg_front *f, struct vg_error *err)
+vg_status vg_recut_settle(struct vg_front *f, struct vg_error *err)
 {
   struct spot *s = vg_alloc(f->n_point, sizeof *s);
   uint32_t *to = vg_alloc(f->n_point, sizeof *to);
@@ -115,8 +115,8 @@ vg_status vg_redo_settle(struct vg_front *f, struct vg_error *err)
   return st == VG_OK ? cancel(f, err) : st;
 }
 
-vg_status vg_redo_front(const struct vg_piece *q, struct vg_front *f,
-                        struct vg_error *err)
+vg_status vg_recut_front(const struct vg_piece *q, struct vg_front *f,
+                         struct vg_error *err)
 {
   f->n_point = q->n_in + q->n_point;
   f->n_face = 4 * q->n_cell;
@@ -131,5 +131,5 @@ vg_status vg_redo_front(const struct vg_piece *q, struct vg_front *f,
   for (size_t k = 0; k < f->n_face; k++)
     for (int i = 0; i < 3; i++)
       f->face[k][i] = q->cell[k / 4][vg_face[k % 4][i]];
-  return vg_redo_settle(f, err);
+  return vg_recut_settle(f, err);
 }

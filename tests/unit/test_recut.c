@@ -23,7 +23,7 @@ static void the_next_larger_void(void **state)
 
   (void)state;
   for (size_t k = 0; k < sizeof is / sizeof *is; k++) {
-    assert_int_equal(vg_redo_path(is[k].leaf, path), is[k].is_part);
+    assert_int_equal(vg_recut_path(is[k].leaf, path), is[k].is_part);
     assert_string_equal(path, is[k].path);
   }
 }
@@ -55,7 +55,7 @@ static void what_bounds_cells(void **state)
   struct vg_front whole = VG_FRONT_INIT;
 
   (void)state;
-  assert_int_equal(vg_redo_front(&both, &whole, NULL), VG_OK);
+  assert_int_equal(vg_recut_front(&both, &whole, NULL), VG_OK);
   assert_int_equal(whole.n_face, 6);
   assert_int_equal(whole.n_point, 5);
   assert_true(fabs(vg_front_volume(&whole) - 1. / 6 - 1. / 6) < 1e-12);
@@ -63,13 +63,13 @@ static void what_bounds_cells(void **state)
     struct vg_piece one = piece_of(1, &cell[k]), two = piece_of(1, &cell[!k]);
     struct vg_front f = VG_FRONT_INIT, g = VG_FRONT_INIT;
 
-    assert_int_equal(vg_redo_front(&one, &f, NULL), VG_OK);
-    assert_int_equal(vg_redo_front(&two, &g, NULL), VG_OK);
+    assert_int_equal(vg_recut_front(&one, &f, NULL), VG_OK);
+    assert_int_equal(vg_recut_front(&two, &g, NULL), VG_OK);
     assert_int_equal(f.n_face + g.n_face, 8);
     assert_int_equal(f.n_point + g.n_point, 8);
     assert_int_equal(vg_front_join(&f, &g, NULL), VG_OK);
     assert_int_equal(vg_front_weld(&f, NULL), VG_OK);
-    assert_int_equal(vg_redo_settle(&f, NULL), VG_OK);
+    assert_int_equal(vg_recut_settle(&f, NULL), VG_OK);
     assert_int_equal(f.n_face, whole.n_face);
     assert_int_equal(f.n_point, whole.n_point);
     assert_memory_equal(f.x, whole.x, 5 * sizeof *f.x);
@@ -82,7 +82,7 @@ static void what_bounds_cells(void **state)
   }
   assert_int_equal(vg_front_join(&whole, &whole, NULL), VG_OK);
   assert_int_equal(vg_front_weld(&whole, NULL), VG_OK);
-  assert_int_equal(vg_redo_settle(&whole, NULL), VG_ERR_GEOMETRY);
+  assert_int_equal(vg_recut_settle(&whole, NULL), VG_ERR_GEOMETRY);
   vg_front_release(&whole);
   vg_piece_release(&both);
 }

@@ -8,7 +8,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "core/sizing/sizing_held.h"
+#include "core/sizing/sizing_effect.h"
 #include "core/sizing/sizing_places.h"
 
 #define assert_near(a, b, tolerance) \
@@ -63,15 +63,16 @@ static void make_domain(struct vg_mesh *m)
   add_cube(m, origin, 1, 10, 1);
 }
 
-static struct vg_held look(size_t n, const struct vg_source *source,
-                           const struct vg_mesh *m)
+static struct vg_effects look(size_t n, const struct vg_source *source,
+                              const struct vg_mesh *m)
 {
   struct vg_sizing *s = NULL;
-  struct vg_held h = VG_HELD_INIT;
+  struct vg_effects h = VG_EFFECTS_INIT;
   struct vg_error err = VG_ERROR_INIT;
 
   assert_int_equal(vg_sizing_new(&plain, n, source, m, &s, &err), VG_OK);
-  assert_int_equal(vg_held_find(&plain, n, source, m, m, s, &h, &err), VG_OK);
+  assert_int_equal(vg_effects_find(&plain, n, source, m, m, s, &h, &err),
+                   VG_OK);
   vg_sizing_free(s);
   return h;
 }
@@ -151,14 +152,14 @@ static void free_sources_are_no_news(void **state)
     { .kind = VG_SOURCE_VGRID_NODE, .p0 = { 0, 4, 0 }, .h0 = 0.3, .an = 1 },
     { .kind = VG_SOURCE_VGRID_NODE, .p0 = { 19, 0, 0 }, .h0 = 5, .an = 1 } };
   struct vg_mesh m = VG_MESH_INIT;
-  struct vg_held h;
+  struct vg_effects h;
 
   (void)state;
   make_domain(&m);
   h = look(sizeof source / sizeof *source, source, &m);
   assert_int_equal(h.n, 0);
   assert_int_equal(h.n_lost, 0);
-  vg_held_release(&h);
+  vg_effects_release(&h);
   vg_mesh_release(&m);
 }
 
@@ -170,8 +171,8 @@ static void held_sources_are_found(void **state)
     { .kind = VG_SOURCE_LINE, .p0 = { 2, 0, 0 }, .p1 = { 19, 0, 0 },
       .h0 = 0.2, .h1 = 0.2 } };
   struct vg_mesh m = VG_MESH_INIT;
-  const struct vg_held_source *a, *b;
-  struct vg_held h;
+  const struct vg_limited_source *a, *b;
+  struct vg_effects h;
 
   (void)state;
   make_domain(&m);
@@ -182,7 +183,7 @@ static void held_sources_are_found(void **state)
   b = h.item + 1;
   assert_int_equal(a->source, 1);
   assert_int_equal(a->n_place, 1);
-  assert_int_equal(a->n_held, 1);
+  assert_int_equal(a->n_limited, 1);
   assert_near(a->asked, 0.1, 1e-12);
   assert_true(a->got > 1 && a->got < 4);
   assert_true(a->at[0] == 0 && a->at[1] == 14 && a->at[2] == 1);
@@ -196,9 +197,9 @@ static void held_sources_are_found(void **state)
   assert_true(a->growth_wanted > 1.5 && a->growth_wanted < 2);
   /* the line only where it ends */
   assert_int_equal(b->source, 2);
-  assert_true(b->n_held >= 4 && b->n_held < b->n_place);
+  assert_true(b->n_limited >= 4 && b->n_limited < b->n_place);
   assert_true(b->at[0] > 17 && b->got > 1.5 * b->asked);
-  vg_held_release(&h);
+  vg_effects_release(&h);
   vg_mesh_release(&m);
 }
 
@@ -210,7 +211,7 @@ static void lost_sources_are_told_apart(void **state)
     { .kind = VG_SOURCE_BOX, .p0 = { 30, 0, 0 }, .p1 = { 40, 1, 1 },
       .h0 = 0.5 } };
   struct vg_mesh m = VG_MESH_INIT;
-  struct vg_held h;
+  struct vg_effects h;
 
   (void)state;
   make_domain(&m);
@@ -221,7 +222,7 @@ static void lost_sources_are_told_apart(void **state)
   assert_int_equal(h.lost[0].is_beyond, 0);
   assert_int_equal(h.lost[1].source, 2);
   assert_int_equal(h.lost[1].is_beyond, 1);
-  vg_held_release(&h);
+  vg_effects_release(&h);
   vg_mesh_release(&m);
 }
 
@@ -260,18 +261,18 @@ static void what_a_mesh_does_not_meet_is_told(void **state)
   struct vg_sizing_options steep = plain;
   struct vg_sizing *s = NULL;
   struct vg_mesh m = VG_MESH_INIT;
-  struct vg_held h;
+  struct vg_effects h;
 
   (void)state;
   make_domain(&m);
   h = look(3, source, &m);
   assert_int_equal(h.n_place, 0);        /* cells follow growth of 1.2 */
-  vg_held_release(&h);
+  vg_effects_release(&h);
   steep.growth = 3;
   assert_int_equal(vg_sizing_new(&steep, 3, source, &m, &s, NULL), VG_OK);
-  assert_int_equal(vg_held_find(&steep, 3, source, &m, &m, s, &h, NULL),
+  assert_int_equal(vg_effects_find(&steep, 3, source, &m, &m, s, &h, NULL),
                    VG_OK);
-  assert_int_equal(vg_held_meet(NULL, &slices, 2, &h, NULL), VG_OK);
+  assert_int_equal(vg_effects_in_mesh(NULL, &slices, 2, &h, NULL), VG_OK);
   assert_int_equal(h.n_unmet, 2);
   assert_int_equal(h.unmet[0].source, 1);
   assert_int_equal(h.unmet[0].n_place, 1);
@@ -281,7 +282,7 @@ static void what_a_mesh_does_not_meet_is_told(void **state)
   assert_int_equal(h.unmet[1].source, 2);
   assert_int_equal(h.unmet[1].n_place, 14);
   assert_int_equal(h.unmet[1].n_unmet, 14);
-  vg_held_release(&h);
+  vg_effects_release(&h);
   vg_sizing_free(s);
   vg_mesh_release(&m);
 }

@@ -1,4 +1,4 @@
-#include "partition/cut/job.h"
+#include "partition/cut/task_data.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,5 @@
-/* What a rank tells the list: by a call on rank 0, by a message elsewhere. */
+/* What a rank tells the schedule: by a call on rank 0, by a message elsewhere.
+ * */
 #include <stdlib.h>
 #include <string.h>
 
@@ -7,7 +8,7 @@
 
 void vg_engine_wake(struct vg_engine *e)
 {
-  if (e->size > 1) vg_comm_ring(e->comm);
+  if (e->size > 1) vg_comm_wake(e->comm);
   else pthread_cond_signal(&e->serve);
 }
 
@@ -31,9 +32,9 @@ static void post_copy(struct vg_engine *e, int to, int kind, const void *what,
   vg_engine_post(e, to, kind, &b);
 }
 
-void vg_engine_say(struct vg_engine *e, int to, int kind, struct vg_say say)
+void vg_engine_send(struct vg_engine *e, int to, int kind, struct vg_msg msg)
 {
-  post_copy(e, to, kind, &say, sizeof say);
+  post_copy(e, to, kind, &msg, sizeof msg);
 }
 
 /* Give the fresh tasks their numbers; room was made when they were
@@ -59,58 +60,58 @@ static uint64_t enter_fresh(struct vg_engine *e)
   return n;
 }
 
-static void send_news(struct vg_engine *e, const struct vg_news *news)
+static void send_update(struct vg_engine *e, const struct vg_update *update)
 {
-  size_t head = sizeof *news, tail = news->n * sizeof *e->notice;
+  size_t head = sizeof *update, tail = update->n * sizeof *e->notice;
   struct vg_bytes b = { head + tail, NULL };
 
   if (!e->rank) {
-    vg_list_news(e, 0, news, e->notice);
+    vg_schedule_update(e, 0, update, e->notice);
     return;
   }
   b.data = vg_alloc(b.n, 1);
   if (b.data) {
-    memcpy(b.data, news, head);
+    memcpy(b.data, update, head);
     if (tail) memcpy(b.data + head, e->notice, tail);
   }
-  vg_engine_post(e, 0, VG_SAY_NEWS, &b);
+  vg_engine_post(e, 0, VG_MSG_UPDATE, &b);
 }
 
-void vg_tell_news(struct vg_engine *e, const struct vg_job *ended)
+void vg_notify_update(struct vg_engine *e, const struct vg_job *ended)
 {
-  struct vg_news news = { .threads = e->threads };
+  struct vg_update update = { .threads = e->threads };
 
   if (ended) {
-    news.ended = 1;
-    news.weight = ended->task.weight;
-    news.n_cell = ended->n_cell;
+    update.ended = 1;
+    update.weight = ended->task.weight;
+    update.n_cell = ended->n_cell;
   }
-  news.n = enter_fresh(e);
-  send_news(e, &news);
+  update.n = enter_fresh(e);
+  send_update(e, &update);
 }
 
-void vg_tell_dropped(struct vg_engine *e, double weight)
+void vg_notify_dropped(struct vg_engine *e, double weight)
 {
-  struct vg_news news = { .ended = 1, .weight = weight };
+  struct vg_update update = { .ended = 1, .weight = weight };
 
-  send_news(e, &news);
+  send_update(e, &update);
 }
 
-void vg_tell_free(struct vg_engine *e)
+void vg_notify_free(struct vg_engine *e)
 {
-  if (!e->rank) vg_list_free(e, 0);
-  else vg_engine_say(e, 0, VG_SAY_FREE, (struct vg_say){ 0 });
+  if (!e->rank) vg_schedule_free(e, 0);
+  else vg_engine_send(e, 0, VG_MSG_FREE, (struct vg_msg){ 0 });
 }
 
-void vg_tell_moved(struct vg_engine *e, int to, int ok)
+void vg_notify_moved(struct vg_engine *e, int to, int ok)
 {
-  if (!e->rank) vg_list_moved(e, 0, to, ok);
-  else vg_engine_say(e, 0, VG_SAY_MOVED,
-                     (struct vg_say){ .to = to, .ok = ok });
+  if (!e->rank) vg_schedule_moved(e, 0, to, ok);
+  else vg_engine_send(e, 0, VG_MSG_MOVED,
+                      (struct vg_msg){ .to = to, .ok = ok });
 }
 
-void vg_tell_fail(struct vg_engine *e, vg_status status, const char *path,
-                  const struct vg_error *err)
+void vg_notify_fail(struct vg_engine *e, vg_status status, const char *path,
+                    const struct vg_error *err)
 {
   struct vg_verdict v;
 
@@ -120,6 +121,6 @@ void vg_tell_fail(struct vg_engine *e, vg_status status, const char *path,
   memcpy(v.path, path, strlen(path));
   if (err) memcpy(v.text, err->text, sizeof v.text);
   vg_serve_drain(e);
-  if (!e->rank) vg_list_fail(e, &v);
-  else post_copy(e, 0, VG_SAY_FAIL, &v, sizeof v);
+  if (!e->rank) vg_schedule_fail(e, &v);
+  else post_copy(e, 0, VG_MSG_FAIL, &v, sizeof v);
 }

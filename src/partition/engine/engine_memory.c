@@ -1,4 +1,4 @@
-#include "partition/engine/room.h"
+#include "partition/engine/engine_memory.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -18,8 +18,8 @@ static void copy_part(void *context, size_t first, size_t end, int worker)
   memcpy(c->to + first, c->from + first, end - first);
 }
 
-int vg_room_reserve(const struct vg_engine *e, void *block, size_t *cap,
-                    size_t n, size_t need, size_t size)
+int vg_engine_reserve(const struct vg_engine *e, void *block, size_t *cap,
+                      size_t n, size_t need, size_t size)
 {
   size_t more = *cap + *cap / 2, new_cap = 0;
   char *old, *new = NULL;
@@ -45,7 +45,7 @@ static void free_part(void *context, size_t first, size_t end, int worker)
   for (size_t i = first; i < end; i++) free(block[i]);
 }
 
-void vg_room_free(const struct vg_engine *e, size_t n, void *const *block)
+void vg_engine_free(const struct vg_engine *e, size_t n, void *const *block)
 {
   vg_engine_loop(e, n, 1, free_part, (void *)(uintptr_t)block);
 }

@@ -1,4 +1,4 @@
-#include "core/judge/judge_meet.h"
+#include "core/judge/judge_rendezvous.h"
 
 #include <stdatomic.h>
 #include <stdlib.h>
@@ -43,16 +43,16 @@ static int rank_of(uint64_t h, int size)
   return (int)((h >> 32) * (uint64_t)size >> 32);
 }
 
-int vg_meet_rank(const struct vg_meeting *m, const void *key)
+int vg_rendezvous_rank(const struct vg_rendezvous *m, const void *key)
 {
-  return rank_of(vg_meet_hash(key, m->key), vg_comm_size(m->comm));
+  return rank_of(vg_rendezvous_hash(key, m->key), vg_comm_size(m->comm));
 }
 
 /* --- counting sort ------------------------------------------------------- */
 
 /* Items of several sources, put in order of bins: ranks or parts. */
 struct sorting {
-  const struct vg_meeting *m;
+  const struct vg_rendezvous *m;
   size_t (*bin)(const struct sorting *s, uint64_t h);
   struct vg_bytes *from;     /* [n_from], freed as they are done with */
   size_t n_from, n_bin;
@@ -82,7 +82,7 @@ static void count_sources(void *context, size_t first, size_t end, int worker)
 
     for (size_t i = 0; i < from->n; i += size)
       s->at[r * s->n_bin +
-            s->bin(s, vg_meet_hash(from->data + i, s->m->key))]++;
+            s->bin(s, vg_rendezvous_hash(from->data + i, s->m->key))]++;
   }
 }
 
@@ -97,7 +97,7 @@ static void move_sources(void *context, size_t first, size_t end, int worker)
     size_t *at = s->at + r * s->n_bin;
 
     for (size_t i = 0; i < from->n; i += size) {
-      size_t bin = s->bin(s, vg_meet_hash(from->data + i, s->m->key));
+      size_t bin = s->bin(s, vg_rendezvous_hash(from->data + i, s->m->key));
 
       memcpy(s->item + size * at[bin]++, from->data + i, size);
     }
@@ -147,7 +147,7 @@ static void release(struct vg_bytes *b, size_t n)
 }
 
 /* *out: [size], what all ranks had for this one. */
-static vg_status send(const struct vg_meeting *m, struct vg_bytes *list,
+static vg_status send(const struct vg_rendezvous *m, struct vg_bytes *list,
                       size_t n_list, struct vg_bytes **out,
                       struct vg_error *err)
 {
@@ -178,7 +178,7 @@ done:
 /* --- on their rank ------------------------------------------------------- */
 
 struct hall {
-  const struct vg_meeting *m;
+  const struct vg_rendezvous *m;
   struct sorting s;          /* by part, a power of two of them */
   size_t most;               /* items of the largest part */
   struct vg_items *left;     /* NULL, or [threads]: groups not whole go here */
@@ -188,7 +188,7 @@ struct hall {
 static size_t bucket_of(const struct hall *h, const unsigned char *item,
                         size_t n_bucket)
 {
-  return (size_t)(vg_meet_hash(item, h->m->key) >> 20) & (n_bucket - 1);
+  return (size_t)(vg_rendezvous_hash(item, h->m->key) >> 20) & (n_bucket - 1);
 }
 
 /* Any order of keys of n bytes will do. */
@@ -207,7 +207,7 @@ static inline int key_order(const unsigned char *a, const unsigned char *b,
 
 /* Insertion by key; equal keys stay where they are, so that a crowd of them
  * is no trouble. */
-static void sort_bucket(const struct vg_meeting *m, unsigned char *item,
+static void sort_bucket(const struct vg_rendezvous *m, unsigned char *item,
                         size_t n, unsigned char *spare)
 {
   size_t size = m->size;
@@ -227,7 +227,7 @@ static void sort_bucket(const struct vg_meeting *m, unsigned char *item,
 static void look_at(struct hall *h, const unsigned char *item, size_t n,
                     int worker)
 {
-  const struct vg_meeting *m = h->m;
+  const struct vg_rendezvous *m = h->m;
 
   if (!h->left || m->is_whole(m->context, item, n)) {
     m->group(m->context, item, n, worker);
@@ -244,7 +244,7 @@ static void look_at(struct hall *h, const unsigned char *item, size_t n,
 static void look_at_all(struct hall *h, const unsigned char *item, size_t n,
                         int worker)
 {
-  const struct vg_meeting *m = h->m;
+  const struct vg_rendezvous *m = h->m;
 
   for (size_t i = 0, j; i < n; i = j) {
     const unsigned char *first = item + m->size * i;
@@ -301,7 +301,7 @@ static void meet_parts(void *context, size_t first, size_t end, int worker)
   free(bucket);
 }
 
-static vg_status meet_here(const struct vg_meeting *m, struct vg_bytes *from,
+static vg_status meet_here(const struct vg_rendezvous *m, struct vg_bytes *from,
                            size_t n_from, struct vg_items *left,
                            struct vg_error *err)
 {
@@ -328,7 +328,7 @@ done:
 }
 
 /* The lists' memory as sources; NULL when refused. */
-static struct vg_bytes *take_lists(const struct vg_meeting *m,
+static struct vg_bytes *take_lists(const struct vg_rendezvous *m,
                                    struct vg_items *list, size_t n_list,
                                    size_t stride)
 {
@@ -346,12 +346,13 @@ static struct vg_bytes *take_lists(const struct vg_meeting *m,
 }
 
 /* Look at what is whole on this rank. *from, *n_from: what is not. Local. */
-static vg_status meet_first(const struct vg_meeting *m, struct vg_bytes **from,
+static vg_status meet_first(const struct vg_rendezvous *m,
+                            struct vg_bytes **from,
                             size_t *n_from, struct vg_error *err)
 {
   size_t n = (size_t)(m->threads > 0 ? m->threads : 1);
   struct vg_items *left = vg_calloc(n, sizeof *left);
-  struct vg_meeting one = *m;
+  struct vg_rendezvous one = *m;
   vg_status st = *from && left ? VG_OK
                                : vg_fail_memory(err, "what slices share");
 
@@ -364,8 +365,10 @@ static vg_status meet_first(const struct vg_meeting *m, struct vg_bytes **from,
   return st;
 }
 
-vg_status vg_meet(const struct vg_meeting *m, struct vg_items *list,
-                  size_t n_list, size_t stride, struct vg_error *err)
+vg_status vg_rendezvous_run(const struct vg_rendezvous *m,
+                            struct vg_items *list,
+                            size_t n_list, size_t stride,
+                            struct vg_error *err)
 {
   struct vg_bytes *from = take_lists(m, list, n_list, stride), *got = NULL;
   size_t n_from = n_list;

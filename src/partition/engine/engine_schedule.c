@@ -19,7 +19,8 @@
 /* What the list knows of RECALL to a rank. */
 enum { NOT_ASKED, ASKED, DECLINED };
 
-vg_status vg_list_init(struct vg_list *l, int size, struct vg_error *err)
+vg_status vg_schedule_init(struct vg_schedule *l, int size,
+                           struct vg_error *err)
 {
   size_t n = (size_t)size;
 
@@ -32,7 +33,7 @@ vg_status vg_list_init(struct vg_list *l, int size, struct vg_error *err)
   return VG_OK;
 }
 
-void vg_list_release(struct vg_list *l, int size)
+void vg_schedule_release(struct vg_schedule *l, int size)
 {
   for (int r = 0; l->ready && r < size; r++)
     while (l->ready[r]) free(vg_heap_pop(&l->ready[r]));
@@ -43,7 +44,7 @@ void vg_list_release(struct vg_list *l, int size)
   memset(l, 0, sizeof *l);
 }
 
-static void add_load(struct vg_list *l, int r, int d)
+static void add_load(struct vg_schedule *l, int r, int d)
 {
   l->n_room -= l->load[r] < l->threads[r];
   l->load[r] += d;
@@ -53,14 +54,14 @@ static void add_load(struct vg_list *l, int r, int d)
 
 /* Has rank r a worker without a task, or, ahead, one without a second? Rank 0
  * needs no tasks of its own ahead: they are at hand. */
-static int room(const struct vg_list *l, int r, int ahead)
+static int room(const struct vg_schedule *l, int r, int ahead)
 {
   if (!ahead) return l->threads[r] - l->load[r];
   if (!r && l->ready[0]) return 0;
   return 2 * l->threads[r] - l->load[r];
 }
 
-static int roomiest(const struct vg_list *l, int size, int ahead)
+static int roomiest(const struct vg_schedule *l, int size, int ahead)
 {
   int best = -1;
 
@@ -70,7 +71,7 @@ static int roomiest(const struct vg_list *l, int size, int ahead)
   return best;
 }
 
-static int first_home(const struct vg_list *l, int size)
+static int first_home(const struct vg_schedule *l, int size)
 {
   int best = -1;
 
@@ -90,7 +91,7 @@ static int nearly(double key, double best)
 /* Give one task to somebody; 0 when nobody takes one. */
 static int give(struct vg_engine *e, int ahead)
 {
-  struct vg_list *l = &e->list;
+  struct vg_schedule *l = &e->schedule;
   int home = first_home(l, e->size), to;
   struct vg_ready *task;
 
@@ -105,8 +106,8 @@ static int give(struct vg_engine *e, int ahead)
   l->n_out++;
   add_load(l, to, 1);
   if (home == e->rank) vg_serve_assign(e, task->handle, to);
-  else vg_engine_say(e, home, VG_SAY_ASSIGN,
-                     (struct vg_say){ .handle = task->handle, .to = to });
+  else vg_engine_send(e, home, VG_MSG_ASSIGN,
+                      (struct vg_msg){ .handle = task->handle, .to = to });
   free(task);
   return 1;
 }
@@ -116,7 +117,7 @@ static int give(struct vg_engine *e, int ahead)
  * counts more tasks than workers is a hint, and it may decline. */
 static void recall(struct vg_engine *e)
 {
-  struct vg_list *l = &e->list;
+  struct vg_schedule *l = &e->schedule;
 
   for (int r = 0; r < e->size && l->n_room; r++) {
     int to;
@@ -126,13 +127,13 @@ static void recall(struct vg_engine *e)
     add_load(l, to, 1);
     l->asked[r] = ASKED;
     if (r == e->rank) vg_serve_recall(e, to);
-    else vg_engine_say(e, r, VG_SAY_RECALL, (struct vg_say){ .to = to });
+    else vg_engine_send(e, r, VG_MSG_RECALL, (struct vg_msg){ .to = to });
   }
 }
 
 static void finish(struct vg_engine *e)
 {
-  struct vg_list *l = &e->list;
+  struct vg_schedule *l = &e->schedule;
 
   l->ended = 1;
   for (int r = 1; r < e->size; r++) {
@@ -143,7 +144,7 @@ static void finish(struct vg_engine *e)
       *v = l->verdict;
       v->sent = e->sent[r] + 1;
     }
-    vg_engine_post(e, r, VG_SAY_END, &b);
+    vg_engine_post(e, r, VG_MSG_END, &b);
   }
   e->verdict = l->verdict;
   e->ending = 1;
@@ -152,7 +153,7 @@ static void finish(struct vg_engine *e)
 
 static void dispatch(struct vg_engine *e)
 {
-  struct vg_list *l = &e->list;
+  struct vg_schedule *l = &e->schedule;
 
   if (l->ended) return;
   if (!l->draining) {
@@ -167,14 +168,14 @@ static void dispatch(struct vg_engine *e)
 
 static void add_ready(struct vg_engine *e, int from, const struct vg_notice *n)
 {
-  struct vg_list *l = &e->list;
+  struct vg_schedule *l = &e->schedule;
   struct vg_ready *task = vg_alloc(1, sizeof *task);
 
   if (!task) {
     struct vg_error err = VG_ERROR_INIT;
 
     vg_fail_memory(&err, "the list of tasks");
-    vg_tell_fail(e, err.code, n->path, &err);
+    vg_notify_fail(e, err.code, n->path, &err);
     return;
   }
   *task = (struct vg_ready){ .handle = n->handle };
@@ -186,23 +187,24 @@ static void add_ready(struct vg_engine *e, int from, const struct vg_notice *n)
 }
 
 /* Pinned tasks are with their rank already. */
-void vg_list_news(struct vg_engine *e, int from, const struct vg_news *news,
-                  const struct vg_notice *notice)
+void vg_schedule_update(struct vg_engine *e, int from,
+                        const struct vg_update *update,
+                        const struct vg_notice *notice)
 {
-  struct vg_list *l = &e->list;
+  struct vg_schedule *l = &e->schedule;
 
-  if (news->ended) {
+  if (update->ended) {
     l->n_done++;
     l->n_out--;
-    l->cells += (double)news->n_cell;
-    l->open -= news->weight;
+    l->cells += (double)update->n_cell;
+    l->open -= update->weight;
   } else {
     l->n_hello++;
-    l->threads[from] = news->threads;
-    l->n_worker += (size_t)news->threads;
-    l->n_room += l->load[from] < news->threads;
+    l->threads[from] = update->threads;
+    l->n_worker += (size_t)update->threads;
+    l->n_room += l->load[from] < update->threads;
   }
-  for (uint64_t i = 0; i < news->n; i++) {
+  for (uint64_t i = 0; i < update->n; i++) {
     l->n_known++;
     l->open += notice[i].weight;
     if (notice[i].pinned) {
@@ -215,15 +217,15 @@ void vg_list_news(struct vg_engine *e, int from, const struct vg_news *news,
   dispatch(e);
 }
 
-void vg_list_free(struct vg_engine *e, int from)
+void vg_schedule_free(struct vg_engine *e, int from)
 {
-  add_load(&e->list, from, -1);
+  add_load(&e->schedule, from, -1);
   dispatch(e);
 }
 
-void vg_list_moved(struct vg_engine *e, int from, int to, int ok)
+void vg_schedule_moved(struct vg_engine *e, int from, int to, int ok)
 {
-  struct vg_list *l = &e->list;
+  struct vg_schedule *l = &e->schedule;
 
   l->asked[from] = ok ? NOT_ASKED : DECLINED;
   add_load(l, ok ? from : to, -1);
@@ -232,9 +234,9 @@ void vg_list_moved(struct vg_engine *e, int from, int to, int ok)
 
 /* Of several failures the one with the lowest path is told, so that messages
  * repeat as far as can be; any failure rather than a mere stop. */
-void vg_list_fail(struct vg_engine *e, const struct vg_verdict *v)
+void vg_schedule_fail(struct vg_engine *e, const struct vg_verdict *v)
 {
-  struct vg_list *l = &e->list;
+  struct vg_schedule *l = &e->schedule;
   struct vg_verdict *w = &l->verdict;
 
   if (l->ended) return;
@@ -244,7 +246,7 @@ void vg_list_fail(struct vg_engine *e, const struct vg_verdict *v)
   if (!l->draining) {
     l->draining = 1;
     for (int r = 1; r < e->size; r++)
-      vg_engine_say(e, r, VG_SAY_DRAIN, (struct vg_say){ 0 });
+      vg_engine_send(e, r, VG_MSG_DRAIN, (struct vg_msg){ 0 });
   }
   vg_serve_drain(e);
   dispatch(e);

@@ -5,10 +5,10 @@
 
 #include "base/memory.h"
 #include "core/geometry/vector.h"
-#include "core/sizing/sizing_held.h"
+#include "core/sizing/sizing_effect.h"
 
 struct meeting {
-  const struct vg_held *held;
+  const struct vg_effects *held;
   atomic_uchar *is_met;      /* [n_place] */
 };
 
@@ -40,7 +40,7 @@ static vg_status meet_slice(void *context, const struct vg_slice *s,
   if (!s->n_point) return VG_OK;
   box_of(s, lo, hi);
   for (size_t i = 0; i < m->held->n_place; i++) {
-    const struct vg_held_place *p = m->held->place + i;
+    const struct vg_steep_place *p = m->held->place + i;
     double far = VG_MET_WITHIN * p->got;
     int may = !atomic_load_explicit(m->is_met + i, memory_order_relaxed);
 
@@ -53,7 +53,7 @@ static vg_status meet_slice(void *context, const struct vg_slice *s,
 }
 
 /* The places of a source follow each other. */
-static void conclude(struct vg_held *h, const uint64_t *met)
+static void conclude(struct vg_effects *h, const uint64_t *met)
 {
   for (size_t i = 0, end; i < h->n_place; i = end) {
     struct vg_unmet_source *u = h->unmet + h->n_unmet;
@@ -67,13 +67,14 @@ static void conclude(struct vg_held *h, const uint64_t *met)
       if (!u->n_unmet++) u->place = h->place[end];
     }
     if (u->n_unmet &&
-        (double)u->n_unmet >= VG_HELD_SHARE * (double)u->n_place)
+        (double)u->n_unmet >= VG_LIMITED_SHARE * (double)u->n_place)
       h->n_unmet++;
   }
 }
 
-vg_status vg_held_meet(struct vg_comm *c, const struct vg_slices *s,
-                       int threads, struct vg_held *h, struct vg_error *err)
+vg_status vg_effects_in_mesh(struct vg_comm *c, const struct vg_slices *s,
+                             int threads, struct vg_effects *h,
+                             struct vg_error *err)
 {
   struct vg_bytes b = { h->n_place * sizeof *h->place, (void *)h->place };
   struct meeting m = { .held = h };

@@ -1,7 +1,7 @@
-/* partition/cut/job.h: what a task of the advancing partition is given, what it
- * makes, and what its home hears of it. Uses core. */
-#ifndef VG_PARTITION_CUT_JOB_H
-#define VG_PARTITION_CUT_JOB_H
+/* partition/cut/task_data.h: what a task of the advancing partition is given,
+ * what it makes, and what its home hears of it. Uses core. */
+#ifndef VG_PARTITION_CUT_TASK_DATA_H
+#define VG_PARTITION_CUT_TASK_DATA_H
 
 #include <stddef.h>
 #include <stdint.h>

@@ -8,7 +8,7 @@
 
 /* --- as they travel ------------------------------------------------------ */
 
-void vg_seam_release(struct vg_seam *s)
+void vg_halo_release(struct vg_halo *s)
 {
   free(s->known);
   free(s->vertex);
@@ -22,7 +22,7 @@ void vg_seam_release(struct vg_seam *s)
 
 enum { N_HEAD = 8 };
 
-void vg_seam_put(struct vg_writer *w, const struct vg_seam *s)
+void vg_halo_put(struct vg_writer *w, const struct vg_halo *s)
 {
   uint32_t head[N_HEAD] = { s->owner, s->to, s->from, s->rank,
                             s->order, s->n_known, s->n_other, s->n_cell };
@@ -37,12 +37,12 @@ void vg_seam_put(struct vg_writer *w, const struct vg_seam *s)
   vg_put(w, s->n_cell, sizeof *s->place, s->place);
 }
 
-void vg_seam_get(struct vg_reader *r, struct vg_seam *s)
+void vg_halo_get(struct vg_reader *r, struct vg_halo *s)
 {
   uint32_t head[N_HEAD] = {0};
 
   vg_get(r, N_HEAD, sizeof *head, head);
-  *s = (struct vg_seam){
+  *s = (struct vg_halo){
     .owner = head[0], .to = head[1], .from = head[2], .rank = head[3],
     .order = head[4], .n_known = head[5], .n_other = head[6],
     .n_cell = head[7] };
@@ -53,10 +53,10 @@ void vg_seam_get(struct vg_reader *r, struct vg_seam *s)
   s->zone = vg_get_array(r, s->n_other, sizeof *s->zone);
   s->cell = vg_get_array(r, s->n_cell, sizeof *s->cell);
   s->place = vg_get_array(r, s->n_cell, sizeof *s->place);
-  if (r->bad) vg_seam_release(s);
+  if (r->bad) vg_halo_release(s);
 }
 
-/* --- the seams of a piece ------------------------------------------------ */
+/* --- the halos of a piece ------------------------------------------------ */
 
 /* A cell with a corner among the points of an owner. */
 struct hit { uint32_t cell, owner; };
@@ -71,10 +71,10 @@ struct user {
                                 boundary's */
   size_t n_hit, cap_hit;
   struct hit *hit;           /* [n_hit] by cell */
-  size_t *first;             /* [n_owner + 2] cells of each owner's seam */
+  size_t *first;             /* [n_owner + 2] cells of each owner's halo */
   uint32_t *cell;
   uint32_t *number;          /* [n_in + n_point] scratch */
-  uint32_t *list;            /* vertices of a seam */
+  uint32_t *list;            /* vertices of a halo */
 };
 
 static void user_release(struct user *u)
@@ -162,10 +162,10 @@ static vg_status list_cells(struct user *u)
   return VG_OK;
 }
 
-/* Numbers of the vertices of a seam's cells: the owner's, then the others,
+/* Numbers of the vertices of a halo's cells: the owner's, then the others,
  * each in the order in which they are met. Returns how many in all. */
 static size_t number_vertices(struct user *u, uint32_t owner, size_t n,
-                              const uint32_t *cell, struct vg_seam *s)
+                              const uint32_t *cell, struct vg_halo *s)
 {
   const struct vg_piece *q = u->q;
   size_t n_list = 0;
@@ -196,14 +196,14 @@ static uint32_t zone_of(const struct user *u, uint32_t v)
   return o->is_zone ? o->order : VG_NO_ZONE;
 }
 
-static vg_status fill_seam(struct user *u, uint32_t owner, size_t n,
-                           const uint32_t *cell, struct vg_seam *s)
+static vg_status fill_halo(struct user *u, uint32_t owner, size_t n,
+                           const uint32_t *cell, struct vg_halo *s)
 {
   const struct vg_piece *q = u->q;
   const struct vg_owner *o = u->owner[owner];
   size_t n_list;
 
-  *s = (struct vg_seam){
+  *s = (struct vg_halo){
     .owner = o->piece, .to = o->rank, .from = u->self->piece,
     .rank = u->self->rank, .order = u->self->order, .n_cell = (uint32_t)n };
   n_list = number_vertices(u, owner, n, cell, s);
@@ -237,7 +237,7 @@ static vg_status fill_seam(struct user *u, uint32_t owner, size_t n,
   return VG_OK;
 }
 
-static vg_status fill_seams(struct user *u, size_t *n, struct vg_seam *out)
+static vg_status fill_halos(struct user *u, size_t *n, struct vg_halo *out)
 {
   size_t n_vertex = u->q->n_in + u->q->n_point;
 
@@ -248,7 +248,7 @@ static vg_status fill_seams(struct user *u, size_t *n, struct vg_seam *out)
   for (uint32_t k = 0; k < u->n_owner; k++) {
     size_t many = u->first[k + 1] - u->first[k];
 
-    if (many && fill_seam(u, k, many, u->cell + u->first[k],
+    if (many && fill_halo(u, k, many, u->cell + u->first[k],
                           &out[(*n)++]) < 0)
       return VG_ERR_MEMORY;
   }
@@ -266,9 +266,9 @@ static vg_status list_hits(const struct user *u, size_t *n, uint32_t **hit)
   return VG_OK;
 }
 
-vg_status vg_seams_of(const struct vg_partition *p, size_t k,
+vg_status vg_halos_of(const struct vg_partition *p, size_t k,
                       const struct vg_owners *owners, size_t *n,
-                      struct vg_seam **out, size_t *n_hit, uint32_t **hit)
+                      struct vg_halo **out, size_t *n_hit, uint32_t **hit)
 {
   const struct vg_piece *q = &p->piece[k];
   struct user u = { .q = q,
@@ -284,14 +284,14 @@ vg_status vg_seams_of(const struct vg_partition *p, size_t k,
   if (st == VG_OK && u.n_owner) {
     *out = vg_calloc(u.n_owner, sizeof **out);
     st = *out ? list_cells(&u) : VG_ERR_MEMORY;
-    if (st == VG_OK) st = fill_seams(&u, n, *out);
+    if (st == VG_OK) st = fill_halos(&u, n, *out);
     if (st == VG_OK) st = list_hits(&u, n_hit, hit);
   }
   user_release(&u);
   return st;
 }
 
-void vg_seam_refresh(const struct vg_piece *q, struct vg_seam *s)
+void vg_halo_refresh(const struct vg_piece *q, struct vg_halo *s)
 {
   for (size_t k = 0; k < s->n_other; k++)
     memcpy(s->x[k], q->x[s->vertex[s->n_known + k]], sizeof *s->x);

@@ -5,7 +5,7 @@
 #include "base/bytes.h"
 #include "fill_shapes.h"
 #include "front_parts.h"
-#include "partition/cut/job.h"
+#include "partition/cut/task_data.h"
 #include "tets_support.h"
 
 /* A front of the triangles of m, which is released. Names are not in the order

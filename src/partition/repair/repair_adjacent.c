@@ -93,10 +93,10 @@ static vg_status list_bad(const struct strip *s, const struct vg_sizing *sizing,
   return VG_OK;
 }
 
-vg_status vg_repair_beside(const struct vg_piece *q,
-                           const struct vg_sizing *sizing, size_t n,
-                           const uint32_t *hit, const uint8_t *shared,
-                           struct vg_spots *out)
+vg_status vg_repair_adjacent(const struct vg_piece *q,
+                             const struct vg_sizing *sizing, size_t n,
+                             const uint32_t *hit, const uint8_t *shared,
+                             struct vg_spots *out)
 {
   struct strip s = { .q = q, .n_hit = n, .hit = hit, .shared = shared };
   struct vg_optimise_report r;
@@ -109,7 +109,7 @@ vg_status vg_repair_beside(const struct vg_piece *q,
     st = VG_ERR_MEMORY;
   if (st == VG_OK) {
     if (s.t.n_cell) memcpy(s.old, s.shape, s.t.n_cell * sizeof *s.old);
-    st = vg_optimise_points(&s.t, s.n, s.point, VG_SHAPE_BESIDE, sizing,
+    st = vg_optimise_points(&s.t, s.n, s.point, VG_SHAPE_ADJACENT, sizing,
                             s.shape, &r, NULL);
   }
   if (st == VG_OK) st = list_bad(&s, sizing, out);

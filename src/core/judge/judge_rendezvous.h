@@ -1,10 +1,10 @@
-/* core/judge/judge_meet.h: where equal items of all ranks meet. Private to
- * judge_slices.c. Uses base.
+/* core/judge/judge_rendezvous.h: where equal items of all ranks meet. Private
+ * to judge_slices.c. Uses base.
  *
  * An item begins with its key, a few 32-bit words. Items of equal keys go to
  * the rank that a hash of the key names, and are looked at there together. */
-#ifndef VG_CORE_JUDGE_JUDGE_MEET_H
-#define VG_CORE_JUDGE_JUDGE_MEET_H
+#ifndef VG_CORE_JUDGE_JUDGE_RENDEZVOUS_H
+#define VG_CORE_JUDGE_JUDGE_RENDEZVOUS_H
 
 #include <stddef.h>
 #include <stdint.h>
@@ -27,7 +27,7 @@ vg_status vg_items_append(struct vg_items *to, const struct vg_items *more,
 
 void vg_items_release(struct vg_items *list);
 
-struct vg_meeting {
+struct vg_rendezvous {
   struct vg_comm *comm;
   int threads;
   size_t size, key;          /* bytes of an item, multiple of 4, and of its
@@ -41,7 +41,7 @@ struct vg_meeting {
   int (*is_whole)(const void *context, const unsigned char *item, size_t n);
 };
 
-static inline uint64_t vg_meet_hash(const void *key, size_t n)
+static inline uint64_t vg_rendezvous_hash(const void *key, size_t n)
 {
   uint64_t h = n;
 
@@ -57,12 +57,14 @@ static inline uint64_t vg_meet_hash(const void *key, size_t n)
 }
 
 /** Rank on which items of a key meet. */
-int vg_meet_rank(const struct vg_meeting *m, const void *key);
+int vg_rendezvous_rank(const struct vg_rendezvous *m, const void *key);
 
 /** Collective. Takes the items of n_list lists, `stride` bytes apart, and
  * leaves these empty, also on failure.
  * Memory: the items twice. VG_ERR_MEMORY on all ranks. */
-vg_status vg_meet(const struct vg_meeting *m, struct vg_items *list,
-                  size_t n_list, size_t stride, struct vg_error *err);
+vg_status vg_rendezvous_run(const struct vg_rendezvous *m,
+                            struct vg_items *list,
+                            size_t n_list, size_t stride,
+                            struct vg_error *err);
 
 #endif

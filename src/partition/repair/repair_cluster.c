@@ -1,4 +1,4 @@
-/* Cells of several pieces joined by the names of their points, and mended. */
+/* Cells of several pieces joined by the names of their points, and repaired. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -51,7 +51,7 @@ void vg_block_get(struct vg_reader *r, struct vg_block *b)
   if (r->bad) vg_block_release(b);
 }
 
-void vg_mended_release(struct vg_mended *m)
+void vg_repaired_release(struct vg_repaired *m)
 {
   vg_piece_release(&m->piece);
   free(m->moved);
@@ -66,7 +66,7 @@ struct joint {
   size_t n_block;
   const struct vg_block *block;
   const struct vg_balls *balls;
-  const struct vg_repair_rim *rim;
+  const struct vg_repair_boundary *rim;
   /* points in the order in which they are first met */
   size_t n_point, n_fixed, n_cell;
   uint64_t *name;
@@ -174,7 +174,7 @@ static int on_rim(const struct joint *j, uint32_t c, int i)
     if (name >> 32) return 0;
     at[m] = (uint32_t)name;
   }
-  return vg_repair_rim_has(j->rim, at);
+  return vg_repair_boundary_has(j->rim, at);
 }
 
 /* Faces around the cells and sheets of the boundary are fixed. Other faces of
@@ -281,7 +281,7 @@ static int number_points(const struct joint *j, struct vg_piece *piece,
   return 1;
 }
 
-static vg_status to_piece(const struct joint *j, struct vg_mended *m,
+static vg_status to_piece(const struct joint *j, struct vg_repaired *m,
                           const uint32_t *to, struct vg_error *err)
 {
   const struct vg_tets *t = &j->t;
@@ -318,7 +318,7 @@ static vg_status to_piece(const struct joint *j, struct vg_mended *m,
 /* Where another attempt needs more room. */
 static vg_status list_left(const struct joint *j,
                            const struct vg_sizing *sizing,
-                           struct vg_mended *m, struct vg_error *err)
+                           struct vg_repaired *m, struct vg_error *err)
 {
   const struct vg_tets *t = &j->t;
 
@@ -336,7 +336,7 @@ static vg_status list_left(const struct joint *j,
 }
 
 static vg_status take(const struct joint *j, const struct tally *old,
-                      struct vg_mended *m, struct vg_error *err)
+                      struct vg_repaired *m, struct vg_error *err)
 {
   struct tally now = measure(&j->t);
   uint32_t *to;
@@ -358,16 +358,16 @@ static vg_status take(const struct joint *j, const struct tally *old,
   return st;
 }
 
-vg_status vg_repair_mend(size_t n, const struct vg_block *block,
-                         const struct vg_balls *balls,
-                         const struct vg_repair_rim *rim,
-                         const struct vg_sizing *sizing,
-                         struct vg_mended *out, struct vg_error *err)
+vg_status vg_repair_cluster(size_t n, const struct vg_block *block,
+                            const struct vg_balls *balls,
+                            const struct vg_repair_boundary *rim,
+                            const struct vg_sizing *sizing,
+                            struct vg_repaired *out, struct vg_error *err)
 {
   struct joint j = { .n_block = n, .block = block, .balls = balls,
                      .rim = rim };
   struct vg_optimise_report r;
-  struct vg_mended m = { .better = 0 };
+  struct vg_repaired m = { .better = 0 };
   struct tally old;
   vg_status st = joint_new(&j, err);
 
@@ -392,6 +392,6 @@ vg_status vg_repair_mend(size_t n, const struct vg_block *block,
   }
   joint_free(&j);
   if (st == VG_OK) *out = m;
-  else vg_mended_release(&m);
+  else vg_repaired_release(&m);
   return st;
 }

@@ -1,4 +1,4 @@
-/* core/sizing/sizing_held.h: do sources get what they ask for? Uses
+/* core/sizing/sizing_effect.h: do sources get what they ask for? Uses
  * core/sizing/sizing.h, core/mesh/slices.h.
  *
  * Sizes near a coarse boundary cannot be small (core/sizing/sizing.h), so a
@@ -6,24 +6,24 @@
  * its shape, those in the void alone: the middle of a source is often inside a
  * body. Where sizes fall faster towards it than cells can follow, the mesh
  * may pass it by all the same: that is seen when it is made. */
-#ifndef VG_CORE_SIZING_SIZING_HELD_H
-#define VG_CORE_SIZING_SIZING_HELD_H
+#ifndef VG_CORE_SIZING_SIZING_EFFECT_H
+#define VG_CORE_SIZING_SIZING_EFFECT_H
 
 #include "core/mesh/slices.h"
 #include "core/sizing/sizing.h"
 
 /** Held back: sizes above this times what the source asks for ... */
-#define VG_HELD_RATIO 1.5
+#define VG_LIMITED_RATIO 1.5
 /** ... in this share of the places looked at, or more. */
-#define VG_HELD_SHARE 0.25
+#define VG_LIMITED_SHARE 0.25
 
 /** Met: a point of the mesh is within this times the size there. */
 #define VG_MET_WITHIN 2.0
 #define VG_MET_STEEP 0.5
 
-struct vg_held_source {
+struct vg_limited_source {
   size_t source;         /* its index */
-  size_t n_place, n_held; /* in the void; of them with too large a size */
+  size_t n_place, n_limited; /* in the void; of them with too large a size */
   double at[3];          /* where it gets least, if all are held: its best
                             place; else the one where most is amiss */
   double asked, got;     /* there */
@@ -42,51 +42,53 @@ struct vg_lost_source {
 
 /** A place of a source, and the size there, which is much less than around
  * it. */
-struct vg_held_place {
+struct vg_steep_place {
   double x[3], got;
   uint64_t source;
 };
 
-/** A source that the mesh does not meet in VG_HELD_SHARE of such places. */
+/** A source that the mesh does not meet in VG_LIMITED_SHARE of such places. */
 struct vg_unmet_source {
   size_t source, n_place, n_unmet;
-  struct vg_held_place place;          /* the first of them */
+  struct vg_steep_place place;          /* the first of them */
 };
 
-struct vg_held {
+struct vg_effects {
   size_t n, n_lost, n_place, n_unmet;
-  struct vg_held_source *item;  /* [n], in the order of the sources */
+  struct vg_limited_source *item;  /* [n], in the order of the sources */
   struct vg_lost_source *lost;  /* [n_lost], likewise */
-  struct vg_held_place *place;  /* [n_place], likewise; where sizes may change
+  struct vg_steep_place *place;  /* [n_place], likewise; where sizes may change
                                    by more than VG_MET_STEEP over a length */
   struct vg_unmet_source *unmet; /* [n_unmet], likewise */
 };
-#define VG_HELD_INIT { 0 }
+#define VG_EFFECTS_INIT { 0 }
 
 /** Find the sources that are held back, and those that are lost.
  *
  * @param options, n, source  as the field was made from
  * @param front    closed triangles, faces into the void that `sizing` is for
  * @param surface  the boundary of the fluid: the same, but for layers
- * @param out      owned by the caller, vg_held_release; untouched on failure
- * Cost: some 10 ns for each triangle and a logarithm of the places, which are
- * some dozens for each source. Follows from the arguments alone.
+ * @param out      owned by the caller, vg_effects_release; untouched on
+ * failure Cost: some 10 ns for each triangle and a logarithm of the places,
+ * which are some dozens for each source. Follows from the arguments alone.
  * VG_ERR_MEMORY. */
-vg_status vg_held_find(const struct vg_sizing_options *options, size_t n,
-                       const struct vg_source *source,
-                       const struct vg_mesh *front,
-                       const struct vg_mesh *surface,
-                       const struct vg_sizing *sizing, struct vg_held *out,
-                       struct vg_error *err);
+vg_status vg_effects_find(const struct vg_sizing_options *options, size_t n,
+                          const struct vg_source *source,
+                          const struct vg_mesh *front,
+                          const struct vg_mesh *surface,
+                          const struct vg_sizing *sizing,
+                          struct vg_effects *out,
+                          struct vg_error *err);
 
 /** Find what a mesh does not meet. Collective; h: of rank 0, as found before
  * the mesh was made; elsewhere empty, and filled likewise, but for item and
  * lost. Cost: of steep fields alone, some places times the points of slices
  * around them. The same for any number of ranks. VG_ERR_MEMORY. */
-vg_status vg_held_meet(struct vg_comm *c, const struct vg_slices *s,
-                       int threads, struct vg_held *h, struct vg_error *err);
+vg_status vg_effects_in_mesh(struct vg_comm *c, const struct vg_slices *s,
+                             int threads, struct vg_effects *h,
+                             struct vg_error *err);
 
 /** Free; accepts an empty one. */
-void vg_held_release(struct vg_held *h);
+void vg_effects_release(struct vg_effects *h);
 
 #endif
