@@ -8,6 +8,7 @@
 #     header (NAME_parts.h, or "Private to" in it) of another room
 #   - headers that include each other
 #   - a third-party header outside the file that adapts it
+#   - a test that tests/README.md does not name
 #   - a symbol of a room further up, with a BUILD folder to look into
 # architecture.sh SOURCE_ROOT [BUILD]
 set -u
@@ -113,6 +114,19 @@ adapter mpi.h \
   '^(base/comm(_[a-z]+)?\.c|base/comm_parts\.h|io/stream/shared_file\.c)$'
 adapter hwloc.h '^base/comm_cores\.c$'
 adapter xxhash.h '^partition/store/store[a-z_]*\.c$'
+
+# Every test is in the table of what covers what.
+table=../tests/README.md
+if [ -e $table ]; then
+  for file in ../tests/{unit,mpi,cli}/test_*.c ../tests/cli/cases/*.sh \
+      ../tests/fuzz/fuzz_*.c; do
+    [ -e "$file" ] || continue
+    name=${file##*/}
+    name=${name#test_} name=${name#fuzz_} name=${name%.*}
+    grep -qE "[ .\`]$name[ \`]" $table ||
+      complain "${file#../} is missing in tests/README.md"
+  done
+fi
 
 # --- symbols ---
 

@@ -64,6 +64,11 @@ vg_room(io/mesh layers/grow)
 END
 refused part "io must not see layers/grow"
 
+cp -r good untold
+mkdir -p untold/tests/unit
+touch untold/tests/README.md untold/tests/unit/test_x.c
+refused untold "tests/unit/test_x.c is missing in tests/README.md"
+
 # A symbol that is declared below and defined above.
 cp -r good symbol
 objects=build/src/CMakeFiles
