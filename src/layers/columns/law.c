@@ -87,10 +87,26 @@ double vg_law_squeeze(const struct vg_law *law, int n, double height)
   return lo;
 }
 
+/* x^(1/7), x > 0, by Newton's method and without libm, whose last bits differ
+ * from machine to machine: y >= the root falls until it falls no more. */
+static double seventh_root(double x)
+{
+  double y, next;
+  int e;
+
+  frexp(x, &e);
+  next = ldexp(1, e >= 0 ? e / 7 + 1 : e / 7);   /* above the root */
+  do {
+    y = next;
+    next = y - (y - x / power(y, 6)) / 7;
+  } while (next < y);
+  return y;
+}
+
 /* Friction velocity over that of the stream. */
 static double friction(double reynolds)
 {
-  return sqrt(0.5 * 0.026 / pow(reynolds, 1.0 / 7));
+  return sqrt(0.5 * 0.026 / seventh_root(reynolds));
 }
 
 double vg_first_height(double y_plus, double reynolds, double length)

@@ -1,6 +1,6 @@
 #include "layers/topology/gram.h"
 
-#include <lapacke.h>
+#include <math.h>
 #include <string.h>
 
 #include "core/geometry/vector.h"
@@ -8,17 +8,41 @@
 #define STEPS_MAX 200
 #define SLACK 1e-9        /* of a constraint that counts as kept */
 
+/* G c = 1 for a symmetric G of order k <= 3, in c; 0 unless it is positive
+ * definite. Cholesky's factors, in plain arithmetic: BLAS and LAPACK choose
+ * code by the processor, and its last bits would show in the mesh. */
+static int solve_gram(int k, double g[3][3], double c[3])
+{
+  for (int j = 0; j < k; j++) {
+    for (int i = 0; i < j; i++) g[j][j] -= g[i][j] * g[i][j];
+    if (!(g[j][j] > 0)) return 0;
+    g[j][j] = sqrt(g[j][j]);
+    for (int m = j + 1; m < k; m++) {
+      for (int i = 0; i < j; i++) g[j][m] -= g[i][j] * g[i][m];
+      g[j][m] /= g[j][j];
+    }
+  }
+  for (int j = 0; j < k; j++) {
+    c[j] = 1;
+    for (int i = 0; i < j; i++) c[j] -= g[i][j] * c[i];
+    c[j] /= g[j][j];
+  }
+  for (int j = k - 1; j >= 0; j--) {
+    c[j] /= g[j][j];
+    for (int i = 0; i < j; i++) c[i] -= c[j] * g[i][j];
+  }
+  return 1;
+}
+
 /* w over the active normals; 0 unless all weights are positive. */
 static int solve(const double (*n)[3], const int *active, int k, double w[3])
 {
-  double g[9], c[3] = { 1, 1, 1 };
+  double g[3][3], c[3];
 
   for (int i = 0; i < k; i++)
-    for (int j = 0; j < k; j++)
-      g[i * k + j] = vg_dot(n[active[i]], n[active[j]]);
-  if (k == 1) c[0] = g[0] > 0 ? 1 / g[0] : -1;
-  else if (LAPACKE_dposv_work(LAPACK_COL_MAJOR, 'U', k, 1, g, k, c, k))
-    return 0;
+    for (int j = 0; j < k; j++) g[i][j] = vg_dot(n[active[i]], n[active[j]]);
+  if (k == 1) c[0] = g[0][0] > 0 ? 1 / g[0][0] : -1;
+  else if (!solve_gram(k, g, c)) return 0;
   memset(w, 0, 3 * sizeof *w);
   for (int i = 0; i < k; i++) {
     if (!(c[i] > 0) || c[i] > 1e12) return 0;

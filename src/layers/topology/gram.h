@@ -1,5 +1,4 @@
-/* layers/topology/gram.h: the direction that serves several faces best. Uses
- * LAPACKE.
+/* layers/topology/gram.h: the direction that serves several faces best.
  *
  * Of all w with w . n_i >= 1 for the normals n_i take the shortest. Its
  * direction is the most normal one, argmax_v min_i v . n_i, and its length
