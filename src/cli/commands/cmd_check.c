@@ -39,7 +39,7 @@ static error_t option(int key, char *arg, struct argp_state *state)
   }
 }
 
-/* Spacing against which edges are effects: that of the deck. */
+/* Spacing that edges are held against: that of the deck. */
 static vg_status field(const struct arguments *a, const struct vg_mesh *m,
                        struct vg_sizing **out, struct vg_error *err)
 {

@@ -272,7 +272,7 @@ static vg_status accept(const struct vg_run *r, struct vg_error *err)
                  "project files", faults);
 }
 
-/* Edges are effects against the field's sizes; within layers there is no
+/* Edges are held against the field's sizes; within layers there is no
  * isotropic size to meet. A file of a mesh that is not valid goes again. */
 static vg_status judge(struct vg_run *r, const struct vg_problem *p,
                        size_t front_faces, const struct vg_sizing *sizing,
