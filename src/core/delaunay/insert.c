@@ -7,7 +7,7 @@
 #include "core/delaunay/cell_signs.h"
 #include "core/geometry/vector.h"
 
-enum { CUT_MAX = 16 };       /* times a cavity may be cut back */
+enum { CUT_MAX = 16 };       /* K5: times a cavity may be cut back */
 
 vg_status vg_inserter_init(struct vg_inserter *s, struct vg_tets *t,
                            struct vg_error *err)

@@ -12,7 +12,7 @@
 #include "core/geometry/vector.h"
 
 /* Open edges this close to a coordinate plane, in body lengths, are in it. */
-#define PLANE_TOLERANCE 1e-5
+#define PLANE_TOLERANCE 1e-5   /* S5 */
 /* Part of a farfield's radius that the body may reach: chords of the
  * triangulated sphere come this near. */
 #define FARFIELD_ROOM 0.9

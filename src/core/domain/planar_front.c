@@ -15,7 +15,7 @@
 
 /* A triangle is done when its circumradius is below this times its target
  * edge length (1 / sqrt(3) where it is equilateral and exact). */
-#define DONE_RADIUS 0.80
+#define DONE_RADIUS 0.80   /* S6 */
 /* A new point sees no fixed edge under a cosine below this (110 deg): a
  * flatter triangle would stay, since fixed edges are never split. */
 #define FLAT_COSINE (-0.342)

@@ -11,7 +11,7 @@ enum { RING_MAX = 32, N_LIFT = 4 };
 
 /* Vertices of triangles with a smaller angle, by its sine (36 degrees), are
  * moved once more, for that angle alone. */
-#define LIFT_BELOW 0.588
+#define LIFT_BELOW 0.588   /* S7 */
 
 /* (sum of squared edges / area)^2 summed over the ring; INFINITY when a
  * triangle is not positive. */

@@ -13,13 +13,13 @@
 /* Least distance of a new point to any other, over the spacing, and least
  * height over a front face, over its mean edge: points that fail would make
  * cells worse than those of the coarser mesh without them. */
-static const double least_distance = 0.5;
+static const double least_distance = 0.5;   /* K6 */
 static const double least_height = 0.3;
 /* Cells so near to those of a region, in spacings, are optimised too: what is
  * bad there would be left as a notch in the front. */
-static const double margin = 0.3;
+static const double margin = 0.3;   /* K8 */
 /* The first points of all keep farther off: the front decides near it. */
-static const double seed_distance = 0.8;
+static const double seed_distance = 0.8;   /* K7 */
 
 enum { PROGRESS_STEP = 1 << 15 };
 

@@ -11,26 +11,26 @@
 
 /* Side of the cubic pattern over the spacing: mean edge of a body-centred
  * lattice of side 1 is (8 sqrt(3)/2 + 6) / 14 = 0.923. */
-static const double lattice = 1.083;
+static const double lattice = 1.083;   /* K9 */
 /* Least distance between points over the spacing of the later one. */
-static const double exclusion = 0.66;
+static const double exclusion = 0.66;   /* K10 */
 /* The same in a region, where fronts from all sides meet after a few steps and
  * leave cells shorter than a void's; but not where the front itself proposes:
  * beside its long faces a point that is missing makes a bad cell. */
-static const double exclusion_region = 0.68;
+static const double exclusion_region = 0.68;   /* K11 */
 /* Proposals that lead from the front to where it counts. */
 static const int far_from_front = 2;
 /* The same between points of the lattice and others, where it is level. */
-static const double exclusion_level = 0.72;
+static const double exclusion_level = 0.72;   /* K12 */
 /* Height of the apex over a surface face: regular tetrahedron. */
 static const double apex = 0.8165;
 
 /* How much farther than points are placed, in spacings, others may stand that
  * propose them: steps of the pattern lead so far across planes of the axes. */
-static const double sideways = 0.65;
+static const double sideways = 0.65;   /* K13 */
 
 /* A field that changes less than this over one edge counts as level. */
-static const double level_within = 1e-3;
+static const double level_within = 1e-3;   /* K14 */
 
 enum { N_BUCKET = 8192, BUCKET_ZERO = 4096 };
 
@@ -355,10 +355,10 @@ static int grow_face(struct placer *p, uint32_t link)
 /* --- seeds --------------------------------------------------------------- */
 
 /* Side of the cells that get one seed, over the spacing: from half of it. */
-static const double seed_cell = 8;
+static const double seed_cell = 8;   /* K15 */
 /* Fronts come to all places of finer spacing while that falls by no more than
  * this for each length. They step over what is steeper ... */
-static const double steepest = 0.5;
+static const double steepest = 0.5;   /* K16 */
 /* ... so where the spacing is less than this share of what the seed of a cell
  * has, it gets seeds of its own, but not on the way down to what is finer
  * still: where it falls by this share over half of itself. */

@@ -16,9 +16,9 @@
 static const double whole_band = VG_BAND_FRONT - 0.2;
 /* Dents are not filled with cells worse than this (dihedral angles of about
  * 30 and 150 degrees). */
-static const double dent = 0.25;
+static const double dent = 0.25;   /* K20 */
 /* Edges of more than so many spacings stay out of a pencil. */
-static const double overlong = 4;
+static const double overlong = 4;   /* K21 */
 
 struct zone {
   struct vg_growth k;

@@ -36,14 +36,14 @@ struct vg_region {
 /* Beyond the reach, in spacings at the foot: how far points are placed, so
  * that the region's cells get their final shape; how far cells are told from
  * outside; how far front faces must be known. */
-#define VG_BAND_PLACE 1.3
-#define VG_BAND_FLUID 1.9
+#define VG_BAND_PLACE 1.3   /* K17 */
+#define VG_BAND_FLUID 1.9   /* K18 */
 #define VG_BAND_FRONT 2.6
 
 /* The share of it all beyond walls. No cell may cross them, so only what is
  * next to them matters; farther off is what other regions have made, whose
  * other side would have to be told from outside through them. */
-#define VG_BEYOND_WALLS 0.5
+#define VG_BEYOND_WALLS 0.5   /* K19 */
 
 /** How far x is above the plane. */
 static inline double vg_plane_side(const struct vg_plane *p, const double x[3])

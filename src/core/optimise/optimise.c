@@ -11,12 +11,12 @@
  * degrees) are worked on one by one; sweeps swap below `fair` (30, 150);
  * `good` (45, 135) cells are not touched. */
 static const double aim = VG_SHAPE_AIM;
-static const float fair = 0.25, good = VG_SHAPE_GOOD;
+static const float fair = 0.25, good = VG_SHAPE_GOOD;   /* K24 */
 /* Below this (15, 165) points are taken away or put in. */
-static const double desperate = 0.067;
+static const double desperate = 0.067;   /* K25 */
 
 /* Rounds of mending, ended early when less than a hundredth got better. */
-enum { ROUNDS = 8, CLASSES = 8 };
+enum { ROUNDS = 8, CLASSES = 8 };   /* K26 */
 
 static vg_status start(struct vg_optimiser *o, struct vg_tets *t,
                        struct vg_error *err)

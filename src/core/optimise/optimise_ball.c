@@ -8,7 +8,7 @@
 
 /* Shares of vg_ball_other: of volume^2 / E^3 over a regular cell's, of what
  * sizes are off, squared; and in slopes, beside the logarithm of the shape. */
-static const double round_share = 0.3, size_share = 0.5;
+static const double round_share = 0.3, size_share = 0.5;   /* K28 */
 static const double round_slope = 1.2, size_slope = 0.5;
 
 void vg_ball_faces(const struct vg_tets *t, size_t n, const uint32_t *link,

@@ -149,7 +149,7 @@ int vg_collapse(struct vg_optimiser *o, uint32_t c)
 /* --- putting a point in -------------------------------------------------- */
 
 /* Over stretched boundary triangles a point needs a large cavity. */
-enum { CAVITY_MAX = 44 };
+enum { CAVITY_MAX = 44 };   /* K27 */
 
 /* As vg_shape: angles below 10 or above 170 degrees. */
 static const float worst_of_all = 0.03F;

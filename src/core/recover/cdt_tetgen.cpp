@@ -21,7 +21,7 @@ namespace {
 /* On some input TetGen turns in circles. A job is given up after this time on
  * the processor, milliseconds and so many more for each triangle: hundreds
  * of times what pockets need, so that the outcome is the same everywhere. */
-const size_t patience = 2000, patience_each = 5;
+const size_t patience = 2000, patience_each = 5;   /* K4 */
 
 /* On the socket, in the byte order of the machine: */
 struct question {            /* before x and tri */

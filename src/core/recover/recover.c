@@ -13,7 +13,7 @@
 /* A pocket with more triangles is no pocket: where flips leave that many, the
  * triangles of the surface are easier to recover than the rim of what they made
  * of Delaunay tetrahedra. Some of 10,000 triangles were worth it. */
-enum { ROUNDS = 4, POCKET_MAX = 40000 };
+enum { ROUNDS = 4, POCKET_MAX = 40000 };   /* K1 */
 
 struct recovery {
   struct vg_tets *t;

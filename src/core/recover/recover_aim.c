@@ -9,7 +9,7 @@
 enum { SEEN_MAX = 4096, HINDRANCE_MAX = 64, WALK_MAX = 1000 };
 
 /* Rings looked at for one edge or triangle, by depth. */
-static const int budget[4] = {60, 200, 600, 2000};
+static const int budget[4] = {60, 200, 600, 2000};   /* K2 */
 
 /* A face of a cell, or an edge of it. */
 struct hindrance { uint32_t c, a, b; int i; };

@@ -19,7 +19,7 @@ enum { RING = 10, NEW_MAX = 2 * (RING - 2), ROUNDS = 64 };
 
 /* An edge goes if that lowers the paraboloid by this share of what it is at
  * least: the sum is not exact. */
-static const double gain = 1e-9;
+static const double gain = 1e-9;   /* K3 */
 
 /* Flips for each face that is listed at first, and 100 more: front of aircraft
  * take 0.4 to 0.9, small parts up to 4. Where a whole ring is flat, sums are

@@ -13,7 +13,7 @@
 #include "core/sizing/sizing.h"
 
 /** Held back: sizes above this times what the source asks for ... */
-#define VG_LIMITED_RATIO 1.5
+#define VG_LIMITED_RATIO 1.5   /* H5 */
 /** ... in this share of the places looked at, or more. */
 #define VG_LIMITED_SHARE 0.25
 

@@ -21,7 +21,7 @@
  * Cells know those around them by their parents', so a middle that several
  * cells have belongs to the first of them, and each counts its own: no table
  * of points is searched, and threads share nothing. */
-#define TOLERANCE 0.03
+#define TOLERANCE 0.03   /* H1 */
 #define NONE UINT32_MAX
 #define POINT_MAX (UINT32_MAX - 1)
 #define FAMILIES 16     /* of eight cells, for a thread at a time */

@@ -17,7 +17,7 @@
 
 #include "base/status.h"
 
-#define VG_NEAR_PLATEAU 0.25
+#define VG_NEAR_PLATEAU 0.25   /* H3 */
 #define VG_NEAR_OFFSET 0.05
 #define VG_NEAR_KNEE 1.5
 #define VG_NEAR_STEEP 0.5

@@ -8,7 +8,7 @@
 #include "base/parallel.h"
 #include "core/sizing/sizing_build.h"
 
-#define FLOOR 1.25      /* cells are not split below this times the size */
+#define FLOOR 1.25      /* H2: cells are not split below this times the size */
 
 /* The compact tree, in depth-first order: near in space, near in memory.
  * First what is below each cell is counted, from the last level up; then

@@ -14,7 +14,7 @@
 
 /* Ratio of the longest edge to the size above which the centroid of a face
  * is no sample. */
-#define STRETCHED 3.0
+#define STRETCHED 3.0   /* H4 */
 
 /* 4 / sqrt(3): squared edge of the equilateral triangle of area 1. */
 #define EQUILATERAL 2.3094010767585034

@@ -25,7 +25,7 @@ struct vg_envelope {
 /* A farfield, box or tunnel is its own convex hull, but for the footprint of
  * a half body; an aircraft covers little of its hull. What stands in a flow
  * domain has more surface than the hole that it leaves. */
-#define VG_ENVELOPE_COVERED 0.7
+#define VG_ENVELOPE_COVERED 0.7   /* S4 */
 #define VG_ENVELOPE_DEPTH 1.3
 
 /** Measure one closed, consistently oriented shell of triangles.

@@ -24,11 +24,11 @@ struct vg_swap_options {
   double short_edge;        /* short: below this part of the mean length of
                                the other edges at both ends, < 1 */
 };
-#define VG_SWAP_OPTIONS_INIT { 1e-3, 10, 1, 0.02 }
+#define VG_SWAP_OPTIONS_INIT { 1e-3, 10, 1, 0.02 }   /* S1 */
 
 /* Triangles lower than this part of their longest edge are caps when they
  * have an angle over 120 degrees, else needles. */
-#define VG_SWAP_SLIVER 0.02
+#define VG_SWAP_SLIVER 0.02   /* S2 */
 
 struct vg_swap_report {
   size_t n_swapped, n_collapsed;

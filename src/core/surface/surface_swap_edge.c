@@ -8,7 +8,7 @@
 
 /* Least gain of the square of the sine: rounding and the two diagonals of a
  * square must not count. */
-#define GAIN 1.01
+#define GAIN 1.01   /* S3 */
 
 /* Pairs without a cap may use this part of the distance only: there is less
  * to be gained, and on a curved surface all of them together count. */

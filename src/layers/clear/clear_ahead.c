@@ -27,7 +27,7 @@
 #include "base/parallel.h"
 #include "core/geometry/vector.h"
 
-#define FACING 0.2
+#define FACING 0.2   /* L10 */
 #define SAME_STACK 0.3
 #define SQRT_2 1.41421356237309505
 

@@ -10,7 +10,7 @@
 #include "base/parallel.h"
 #include "core/geometry/vector.h"
 
-#define SHARP 0.5             /* cosine of a column to its triangle */
+#define SHARP 0.5             /* L11: cosine of a column to its triangle */
 
 enum { GRAIN = 512 };
 

@@ -42,6 +42,7 @@ struct vg_layer_options {
   vg_progress progress;
   void *user;
 };
+/* L1 */
 #define VG_LAYER_OPTIONS_INIT { NULL, NULL, NULL, 180, 0.95, 0.4, 100, 1, \
                                 NULL, NULL }
 

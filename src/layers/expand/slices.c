@@ -10,7 +10,7 @@
 #include "layers/expand/slices_parts.h"
 
 /* Cells that make a slice, and points of the boundary in one. */
-#define SLICE_CELLS 262144
+#define SLICE_CELLS 262144   /* L18 */
 #define SLICE_POINTS 16384
 
 _Static_assert((int)VG_SLICE_TET == VG_KIND_TET &&

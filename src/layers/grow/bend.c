@@ -12,6 +12,7 @@
 #include "core/geometry/vector.h"
 #include "layers/grow/direct.h"
 
+/* L4 */
 #define CONVERGE 0.75      /* a face that would shrink to less is bent apart */
 #define BEND_MAX 0.995
 #define STILL 1e-3         /* a direction that changes by less has settled */

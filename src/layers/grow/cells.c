@@ -11,7 +11,7 @@
 #include "layers/grow/work.h"
 
 #define GRAIN 1024
-#define FLAT (0.25 * VG_VIEW_MIN)  /* least sine of a column on a layer */
+#define FLAT (0.25 * VG_VIEW_MIN)  /* L3: least sine of a column on a layer */
 #define SHRUNK 0.04        /* least area of a layer, of that at the wall */
 #define LOWER 0.75         /* of the height allowed, when a cell is bad */
 #define RESERVE 2.0        /* times the least height of all levels */

@@ -11,6 +11,7 @@
 #include "core/geometry/vector.h"
 #include "layers/topology/gram.h"
 
+/* L8 */
 #define SMOOTH_WALL 0.95   /* least cosine at which the mean normal will do */
 #define CAP 0.05           /* height of a triangle over its longest edge */
 #define NOISE 0.002        /* the same, where the normal says nothing */

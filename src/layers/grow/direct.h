@@ -7,7 +7,7 @@
 #include "layers/grow/work.h"
 
 #define VG_GRAIN 2048
-#define VG_VIEW_KEPT 0.6   /* share of the first view that turning leaves */
+#define VG_VIEW_KEPT 0.6   /* L6: share of the first view that turning leaves */
 #define VG_CAP_NOISY 4     /* bit of vg_layer_work.cap */
 
 /** Directions before and after a sweep over all columns. */

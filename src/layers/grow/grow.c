@@ -9,7 +9,7 @@
 #include "core/surface/surface_check.h"
 #include "layers/grow/work.h"
 
-#define ROUNDS_MAX 300
+#define ROUNDS_MAX 300   /* L2 */
 #define HASTE 150          /* rounds after which what is bad gets no layers */
 #define GENTLE 40          /* sound rounds in which heights lose a share only */
 #define SHARE 0.75

@@ -16,6 +16,7 @@
 
 #define GRAIN 2048
 #define EDGE_SWEEPS 3
+/* L7 */
 #define KEEP_EDGE 0.3      /* of an edge's length at the top, along itself */
 #define LEAN 0.3           /* of a triangle's height that a corner may lean */
 #define SLOPE 1.0          /* of `allowed` over the wall, where it is limited */

@@ -9,6 +9,7 @@
 #include "core/geometry/vector.h"
 #include "layers/grow/direct.h"
 
+/* L9 */
 #define VIEW_LEAST 0.2     /* share of the first view that is left where cells
                               would be lost otherwise */
 #define CAP_SWEEPS 8       /* caps lie in chains */

@@ -10,7 +10,7 @@
 #include "layers/slide/slide.h"
 #include "layers/topology/topology.h"
 
-#define VG_VIEW_MIN 0.0002    /* least cosine between a column and a face */
+#define VG_VIEW_MIN 0.0002    /* L5: least cosine between a column and a face */
 #define VG_FACTOR_MAX 1000.0  /* longest dir: a wedge of 0.1 degrees */
 #define VG_FACTOR_WHOLE 2.0   /* longest dir */
 

@@ -11,7 +11,7 @@
 
 /* A curve that turns by more than 60 degrees at a point has a corner there,
  * which stays. */
-#define CORNER 0.5
+#define CORNER 0.5   /* L14 */
 /* Points stay that are farther from a top than this share of the size ... */
 #define KEEP 0.5
 /* ... and the end of the curve must be farther than this. */

@@ -10,7 +10,7 @@
 #include "layers/slide/slide_parts.h"
 
 /* No triangle may be tilted by more than 60 degrees against the mean. */
-#define TILT 0.5
+#define TILT 0.5   /* L16 */
 
 void vg_slide_graph_release(struct vg_slide_graph *g)
 {

@@ -9,7 +9,7 @@
 #include "core/geometry/vector.h"
 
 /* A plane patch's points are no farther from it than this of its extent. */
-#define FLATNESS 1e-6
+#define FLATNESS 1e-6   /* L17 */
 
 /* What is known of a patch after one pass over its triangles. */
 struct shape {

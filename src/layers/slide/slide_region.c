@@ -10,7 +10,7 @@
 #include "layers/slide/slide_parts.h"
 
 /* A curved patch is re-meshed as far as this many edges from the tops. */
-#define BEYOND 4
+#define BEYOND 4   /* L15 */
 /* part_of[] of triangles in reach, before they are divided into parts. */
 #define MARKED (VG_NO_INDEX - 1)
 

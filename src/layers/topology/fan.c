@@ -8,8 +8,8 @@
 #include "core/geometry/vector.h"
 #include "layers/topology/gram.h"
 
-/* As in direct.c: where all faces are seen this well the mean normal is the
- * direction, elsewhere the most normal one. */
+/* L12: As in direct.c: where all faces are seen this well the mean normal is
+ * the direction, elsewhere the most normal one. */
 #define LEAST_CLEAR 0.3    /* of a step, that it leads away from the wall */
 #define SMOOTH_WALL 0.95
 #define LEAST_VIEW 0.1        /* cosine between a sector's column and faces */

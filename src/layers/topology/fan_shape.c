@@ -5,7 +5,7 @@
 #include "layers/topology/fan.h"
 #include "layers/topology/gram.h"
 
-#define COS_STEP 0.7660444431189780   /* of 40 degrees */
+#define COS_STEP 0.7660444431189780   /* L13: of 40 degrees */
 #define SLACK 1e-9            /* a turn of 40 degrees sharp takes one step */
 #define LEAST_TURN 0.1        /* of a step about its ridge, as a share */
 #define LEAST_CENTRE 0.05     /* sine between the centre and an edge's plane */

@@ -240,7 +240,7 @@ static vg_status grow(struct vg_comm *comm, const struct vg_mesh *front,
 }
 
 /* To cut a void, before it is filled uncut. */
-enum { ATTEMPTS = 3 };
+enum { ATTEMPTS = 3 };   /* C17 */
 
 /* Where a part between the first cuts cannot be filled, or all larger voids
  * around a part were cut elsewhere (recut.c), all cuts are made elsewhere; in

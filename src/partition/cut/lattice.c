@@ -6,18 +6,18 @@
 
 /* Cells within so many spacings of a line belong to its pencil: more than
  * tiles are thick, so that tiles end at pencils and not at each other. */
-static const double pencil_reach = 1.3;
+static const double pencil_reach = 1.3;   /* C4 */
 /* Parallel planes are this many of the largest spacings on them apart. */
-static const double apart = 10;
+static const double apart = 10;   /* C5 */
 /* Where a second and a third attempt put a plane, as shares of the load. */
 static const double other_share[] = {0, 0.07, -0.07, 0.15, -0.15};
 /* Blocks that may exceed the leaf size by this need no further cut. */
-static const double leaf_slack = 1.25;
+static const double leaf_slack = 1.25;   /* C2 */
 
 /* Below so many leaves planes are grown whole, one after another, which costs
  * least: lattices have pencils, and tiles more rim. With more leaves more
  * workers are expected, who would wait for single planes. */
-static const double few_leaves = 80;
+static const double few_leaves = 80;   /* C3 */
 
 enum { HALVINGS = 6, PER_AXIS = 2 };
 

@@ -11,14 +11,14 @@
 #include "base/memory.h"
 #include "partition/cut/lattice.h"
 
-/* Cells of a piece to those of a leaf, so that it takes about half the time;
- * ribs of pieces with fewer than the least would cost too much, those with
- * more than the most would keep the workers of large leaves waiting. */
+/* C6: Cells of a piece to those of a leaf, so that it takes about half the
+ * time; ribs of pieces with fewer than the least would cost too much, those
+ * with more than the most would keep the workers of large leaves waiting. */
 static const double piece_share = 0.2, least_piece = 4000, most_piece = 12000;
 /* Cells of its ribs to those of a tile. */
 static const double rib_share = 0.12;
 /* A rib is this many spacings from what keeps it apart from the next one. */
-static const double room = 2.5;
+static const double room = 2.5;   /* C7 */
 /* Spacings that tiles reach to each side of their plane, as measured. */
 static const double tile_reach = 0.68;
 

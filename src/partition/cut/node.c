@@ -112,7 +112,7 @@ static size_t number_of(struct vg_node *n, size_t k)
 }
 
 /* More faces than this cost more than the patches that they save. */
-enum { MOST_WIDE = 100000 };
+enum { MOST_WIDE = 100000 };   /* C9 */
 
 /* The part of the front for work i, which is to know the front as far as the
  * faces reach that cross the lattice's planes there. */

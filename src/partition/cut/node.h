@@ -16,7 +16,7 @@
 
 /* A leaf that needs this many times the points that were expected is cut
  * again, as is one beyond this many times the leaf size. */
-#define VG_OUTGROWN 2.0
+#define VG_OUTGROWN 2.0   /* C8 */
 
 /* Attempts to part a void by other planes. */
 enum { VG_RETRIES = 5 };

@@ -18,7 +18,7 @@
 enum { CHUNK = 8192 };
 
 /* Voids below this share of a leaf are filled together. */
-static const double small_share = 0.02;
+static const double small_share = 0.02;   /* C10 */
 /* A cut that leaves more than this in one part did not part its void. */
 static const double not_parted = 0.9;
 /* Cells that zones make of it are not the blocks': spacings to each side. */

@@ -10,7 +10,7 @@
 #include "partition/store/store.h"
 
 /** Cells to a leaf, by default: measured, docs/performance-parallel.md. */
-#define VG_LEAF_CELLS 300000.0
+#define VG_LEAF_CELLS 300000.0   /* C1 */
 
 struct vg_partition_options {
   struct vg_cut_rule rule;

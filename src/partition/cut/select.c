@@ -14,7 +14,7 @@ enum { RUN = 16, FAN = 8, CHUNK = 512 };
 
 /* Spacings: so near a plane a face counts as crossing it; so far beyond the
  * faces that cross it what is around them is to be known. */
-static const double crossing = 0.1, margin = 1.5;
+static const double crossing = 0.1, margin = 1.5;   /* K22 */
 
 void vg_select_init(struct vg_select *s, const struct vg_front *front,
                     const struct vg_sizing *sizing)

@@ -8,7 +8,7 @@
 #include "partition/cut/node.h"
 
 /* Points to a cell in a field; a bound for the first, not an estimate. */
-static const double cells_per_point = 5.5;
+static const double cells_per_point = 5.5;   /* C12 */
 
 /* What a task made, as the store keeps it: nothing in it depends on names or
  * serials. */

@@ -6,7 +6,7 @@
 #include "base/memory.h"
 
 /* Bytes to a chunk; arrays of fewer are left to realloc. */
-enum { CHUNK = 1 << 18, LARGE = 1 << 20 };
+enum { CHUNK = 1 << 18, LARGE = 1 << 20 };   /* E3 */
 
 struct copy { char *to; const char *from; };
 

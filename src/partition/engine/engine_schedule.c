@@ -14,7 +14,7 @@
 
 /* Tasks of a rank's own are preferred while their priority is within this
  * factor of the highest: saves two messages and an input on its way. */
-#define NEARLY 0.9
+#define NEARLY 0.9   /* E1 */
 
 /* What the list knows of RECALL to a rank. */
 enum { NOT_ASKED, ASKED, DECLINED };

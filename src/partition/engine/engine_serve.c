@@ -17,7 +17,7 @@
 #include "partition/engine/engine_parts.h"
 
 /* Seconds. */
-#define SLEEP_MIN 50e-6      /* and as much again, by the kernel's slack */
+#define SLEEP_MIN 50e-6      /* E2: and as much again, by the kernel's slack */
 #define SLEEP_MORE 1.5
 #define SLEEP_LOW 300e-6     /* bounds of the longest sleep */
 #define SLEEP_HIGH 5e-3

@@ -13,7 +13,7 @@
 #include "partition/load/load_tree.h"
 
 /* Widest cube in target edges, free and where the front passes. */
-#define WIDE_FREE 3.0
+#define WIDE_FREE 3.0   /* C14 */
 #define WIDE_FRONT 2.0
 /* In large meshes they are wider, to have about this many cubes, or one for so
  * many cubes of the target edge. Nodes this wide tell how large a mesh is; a
@@ -30,11 +30,11 @@
 /* Where the target edge varies, cells are more by this share: nearly the same
  * for growth rates from 1.1 to 1.35, while even spacing allows regular cells.
  * Full from this gradient on. */
-#define GRADED 0.21
+#define GRADED 0.21   /* C15 */
 #define GRADIENT 0.05
 /* Where h changes by more than this times itself across a cube, the cube's
  * parts are added up, to this depth. */
-#define STEEP 1.2
+#define STEEP 1.2   /* C16 */
 #define STEEP_DEPTH 4
 /* A field whose gradient is more than HIDES can have edges that no sample of a
  * cube shows: it is looked at closer while the least is below this share. */

@@ -18,7 +18,7 @@
 /** Cells per cube of the target edge where spacing is even, measured over
  * boxes (docs/performance-parallel.md); corrected by what a void's zones turned
  * out. */
-#define VG_LOAD_CELLS_PER_CUBE 9.0
+#define VG_LOAD_CELLS_PER_CUBE 9.0   /* C13 */
 
 struct vg_load_cube {
   float at[3], half;         /* centre, half the side */

@@ -9,7 +9,7 @@
 #include "core/geometry/vector.h"
 #include "partition/model/model.h"
 
-/* Measured: docs/performance-parallel.md, Model. */
+/* M1: Measured: docs/performance-parallel.md, Model. */
 const struct vg_rates vg_rates_measured = {
   .pencil = { 0, 1.3e-6, 2.5e-6, 4.2e-6, 0, 0, 0 },
   .rib = { 0, 3.9e-6, 9.6e-6, 4.2e-6, 0, 0, 0 },
@@ -24,11 +24,11 @@ const struct vg_rates vg_rates_measured = {
 };
 
 /* Loops over fewer faces are of one chunk or two (node_split.c). */
-static const double loop_faces = 5000;
+static const double loop_faces = 5000;   /* M2 */
 
 /* Where three planes meet, so many places are left where parts hang together,
  * with so many faces beside them; their cells, about 200, are the tiles'. */
-static const double places_per_corner = 0.5, place_faces = 900;
+static const double places_per_corner = 0.5, place_faces = 900;   /* M3 */
 
 /* Bytes of a front per face: three indices, half a point and its name. */
 static const double bytes_per_face = 28;

@@ -13,7 +13,7 @@ static const double graded_more = 0.21;
 
 /* Cells of a zone reach this many spacings to each side of its plane, those of
  * a pencil of both of its planes: as measured over boxes and spheres. */
-static const double tile_reach = 0.57, pencil_reach = 1.9;
+static const double tile_reach = 0.57, pencil_reach = 1.9;   /* M4 */
 static const double rib_reach = 0.5;
 
 void vg_part_release(struct vg_part *p)

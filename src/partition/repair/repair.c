@@ -13,7 +13,7 @@
 
 /* Balls to a cluster: a few hundred cells each. What is left over is done in
  * further rounds. */
-enum { MOST_BALLS = 100, ROUNDS = 3 };
+enum { MOST_BALLS = 100, ROUNDS = 3 };   /* R6 */
 
 /* Cells of a piece that clusters have. */
 struct picks {

@@ -8,7 +8,7 @@
 #include "partition/repair/repair_parts.h"
 
 /* As vg_shape: what stays below 5 degrees, or above 175, is tried again. */
-static const double hopeless = 0.0076;
+static const double hopeless = 0.0076;   /* R7 */
 
 /* --- as they travel ------------------------------------------------------ */
 

@@ -64,7 +64,7 @@ vg_status vg_spots_gather(struct vg_writer *w, int n_rank,
                           struct vg_spot **out, struct vg_error *err);
 
 /** As vg_shape: dihedral angles below 18 or above 162 degrees. */
-#define VG_SHAPE_BAD 0.0955
+#define VG_SHAPE_BAD 0.0955   /* R4 */
 
 /** Swap and smooth across interfaces, and list balls around the cells with a
  * corner there that stay bad, of all ranks, by their coordinates. Collective.
@@ -112,9 +112,9 @@ void vg_halo_refresh(const struct vg_piece *q, struct vg_halo *s);
 /** As vg_shape. Points with a cell below the first (42 degrees) around them
  * are smoothed in the first round, below the second (48) in the second and
  * beside; cells below the third (39) are swapped. */
-#define VG_SHAPE_LEVEL 0.45f
-#define VG_SHAPE_ADJACENT 0.55f
-#define VG_SHAPE_SWAP 0.4f
+#define VG_SHAPE_LEVEL 0.45f   /* R1 */
+#define VG_SHAPE_ADJACENT 0.55f   /* R2 */
+#define VG_SHAPE_SWAP 0.4f   /* R3 */
 
 /** Smooth the points of a piece that are corners of the cells hit [n], which
  * are those with a corner on an interface in rising order; but not those that

@@ -22,7 +22,7 @@
 
 /* A field is level when fewer than one in so many cells beside interfaces
  * would be swapped: it is one in 50 on a box, one in 8 where sizes vary. */
-enum { LEVEL = 30 };
+enum { LEVEL = 30 };   /* R5 */
 
 enum { FIND, SMOOTH, ADJACENT, SWAP, N_SPAN };
 
