@@ -52,4 +52,11 @@ static inline void *vg_get_array(struct vg_reader *r, size_t n, size_t size)
   return a;
 }
 
+/** VG_ERR_FORMAT: what was read cannot be, or does not fit into memory. */
+static inline vg_status vg_fail_damaged(struct vg_error *err, const char *what)
+{
+  return vg_fail(err, VG_ERR_FORMAT, "a damaged message (%s), or one that does "
+                 "not fit into memory", what);
+}
+
 #endif

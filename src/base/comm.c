@@ -146,6 +146,15 @@ static void spare_delays(void)
   }
 }
 
+static vg_status allows_threads(int level, struct vg_error *err)
+{
+  if (level >= MPI_THREAD_MULTIPLE) return VG_OK;
+  return vg_fail(err, VG_ERR_UNSUPPORTED, "this MPI library does not allow "
+                 "calls from several threads (MPI_THREAD_MULTIPLE; it offers "
+                 "level %d); use one that does, or run one rank with "
+                 "--threads and without mpirun", level);
+}
+
 static vg_status start(struct vg_comm *c, struct vg_error *err)
 {
   int is_up, is_over, level, rc;
@@ -162,35 +171,59 @@ static vg_status start(struct vg_comm *c, struct vg_error *err)
     spare_delays();
   }
   if (rc) return vg_comm_fail(err, "cannot start", rc);
-  if (level < MPI_THREAD_MULTIPLE)
-    return vg_fail(err, VG_ERR_UNSUPPORTED, "this MPI library does not allow "
-                   "calls from several threads (MPI_THREAD_MULTIPLE; it "
-                   "offers level %d); use one that does, or run one rank "
-                   "with --threads and without mpirun", level);
-  return VG_OK;
+  return allows_threads(level, err);
 }
 
-static int duplicate(MPI_Comm *to)
+static int duplicate(MPI_Comm of, MPI_Comm *to)
 {
-  int rc = MPI_Comm_dup(MPI_COMM_WORLD, to);
+  int rc = MPI_Comm_dup(of, to);
 
   return rc ? rc : MPI_Comm_set_errhandler(*to, MPI_ERRORS_RETURN);
 }
 
-static vg_status join(struct vg_comm *c, struct vg_error *err)
+/* What follows from c->node; both collective. */
+static vg_status settle_node(struct vg_comm *c, struct vg_error *err)
+{
+  int rc;
+  vg_status st;
+
+  if ((rc = MPI_Comm_set_errhandler(c->node, MPI_ERRORS_RETURN)) ||
+      (rc = MPI_Comm_rank(c->node, &c->node_rank)) ||
+      (rc = MPI_Comm_size(c->node, &c->node_size)))
+    return vg_comm_fail(err, "cannot find the ranks of this node", rc);
+  VG_TRY(vg_comm_cores_open(c, err));
+  st = vg_comm_wakeups_open(c, err);
+done:
+  return st;
+}
+
+static vg_status join(struct vg_comm *c, MPI_Comm of, struct vg_error *err)
 {
   int rc;
 
-  if ((rc = duplicate(&c->all)) || (rc = duplicate(&c->wire)) ||
+  if ((rc = duplicate(of, &c->all)) || (rc = duplicate(of, &c->wire)) ||
       (rc = MPI_Comm_rank(c->all, &c->rank)) ||
       (rc = MPI_Comm_size(c->all, &c->size)) ||
       (rc = MPI_Comm_split_type(c->all, MPI_COMM_TYPE_SHARED, c->rank,
-                                MPI_INFO_NULL, &c->node)) ||
-      (rc = MPI_Comm_set_errhandler(c->node, MPI_ERRORS_RETURN)) ||
-      (rc = MPI_Comm_rank(c->node, &c->node_rank)) ||
-      (rc = MPI_Comm_size(c->node, &c->node_size)))
+                                MPI_INFO_NULL, &c->node)))
     return vg_comm_fail(err, "cannot join the job", rc);
   return VG_OK;
+}
+
+vg_status vg_comm_take_for_nodes(struct vg_comm *c, int ranks,
+                                 struct vg_error *err)
+{
+  int rc;
+
+  if (!c) return VG_OK;
+  vg_comm_wakeups_close(c);
+  c->wakeup_at = NULL;
+  free(c->core);
+  c->core = NULL;
+  MPI_Comm_free(&c->node);
+  rc = MPI_Comm_split(c->all, c->rank / ranks, c->rank, &c->node);
+  if (rc) return vg_comm_fail(err, "cannot split the ranks", rc);
+  return settle_node(c, err);
 }
 
 static void leave(struct vg_comm *c)
@@ -216,6 +249,18 @@ static vg_status check_size(const struct vg_comm *c, long announced,
                  "--mpi with a plugin that it knows)", announced);
 }
 
+static struct vg_comm *new_comm(void)
+{
+  struct vg_comm *c = vg_calloc(1, sizeof *c);
+
+  if (!c) return NULL;
+  c->all = c->wire = c->node = MPI_COMM_NULL;
+  c->chunk = CHUNK;
+  c->last = &c->first;
+  pthread_mutex_init(&c->lock, NULL);
+  return c;
+}
+
 vg_status vg_comm_open(struct vg_comm **out, struct vg_error *err)
 {
   struct vg_comm *c;
@@ -231,18 +276,32 @@ vg_status vg_comm_open(struct vg_comm **out, struct vg_error *err)
     *out = NULL;
     return VG_OK;
   }
-  c = vg_calloc(1, sizeof *c);
+  c = new_comm();
   if (!c) return vg_fail_memory(err, "communication");
-  c->all = c->wire = c->node = MPI_COMM_NULL;
-  c->chunk = CHUNK;
-  c->last = &c->first;
-  pthread_mutex_init(&c->lock, NULL);
   prctl(PR_SET_TIMERSLACK, (unsigned long)SLACK_NS); /* and threads to come */
   VG_TRY(start(c, err));
-  VG_TRY(join(c, err));
+  VG_TRY(join(c, MPI_COMM_WORLD, err));
   VG_TRY(check_size(c, announced, err));
-  VG_TRY(vg_comm_cores_open(c, err));
-  VG_TRY(vg_comm_wakeups_open(c, err));
+  VG_TRY(settle_node(c, err));
+  *out = c;
+  return VG_OK;
+done:
+  leave(c);
+  return st;
+}
+
+vg_status vg_comm_of(const void *mpi, struct vg_comm **out,
+                     struct vg_error *err)
+{
+  struct vg_comm *c = new_comm();
+  int level = MPI_THREAD_SINGLE;
+  vg_status st;
+
+  if (!c) return vg_fail_memory(err, "communication");
+  MPI_Query_thread(&level);
+  VG_TRY(allows_threads(level, err));
+  VG_TRY(join(c, *(const MPI_Comm *)mpi, err));
+  VG_TRY(settle_node(c, err));
   *out = c;
   return VG_OK;
 done:

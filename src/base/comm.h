@@ -20,11 +20,29 @@ struct vg_comm;
 struct vg_bytes { size_t n; unsigned char *data; };
 
 /** Join the job that a launcher started (found by its environment), or be one
- * rank alone. Call once, before any thread is started.
+ * rank alone. For a program of its own: starts MPI, which is told to use no
+ * networks where all ranks are on one node, and shortens this process's naps.
+ * Call once, before any thread is started.
  * *out is NULL for a job of one rank without a launcher.
  * VG_ERR_UNSUPPORTED where MPI does not allow calls from several threads, or
  * a launcher started processes that do not find each other. */
 vg_status vg_comm_open(struct vg_comm **out, struct vg_error *err);
+
+/** The ranks of a communicator, for a library in somebody's process: nothing
+ * is looked for in the environment, and nothing of the process is changed.
+ *
+ * @param mpi  an MPI_Comm, as a pointer to it; duplicated. MPI has been
+ *             started with MPI_THREAD_MULTIPLE and stays when this is closed
+ * Collective over it. VG_ERR_UNSUPPORTED as above. */
+vg_status vg_comm_of(const void *mpi, struct vg_comm **out,
+                     struct vg_error *err);
+
+/** Take so many ranks that follow each other for those of a node, whatever the
+ * machine is like (for tests of what happens between nodes): they have memory
+ * in common, others have not. Collective; before anything else. NULL: nothing
+ * to do. */
+vg_status vg_comm_take_for_nodes(struct vg_comm *c, int ranks,
+                                 struct vg_error *err);
 
 /** Leave the job; NULL accepted. Collective. */
 void vg_comm_close(struct vg_comm *c);

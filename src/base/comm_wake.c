@@ -46,7 +46,7 @@ vg_status vg_comm_wakeups_open(struct vg_comm *c, struct vg_error *err)
   vg_status st = VG_OK;
 
   c->wakeup_at = vg_alloc((size_t)c->size, sizeof *c->wakeup_at);
-  if (!none.data || find_neighbours(c)) st = vg_fail_memory(err, "the bells");
+  if (!none.data || find_neighbours(c)) st = vg_fail_memory(err, "what wakes ranks");
   st = vg_comm_agree_in(c, c->all, st, err);
   if (st >= 0)
     st = vg_comm_node_memory(c, 1, &none, 1, &c->wakeups, err);

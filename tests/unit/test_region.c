@@ -51,7 +51,7 @@ static int met(const struct vg_region *r, const struct vg_sizing *s,
 /* A line along x, one unit above a plane of symmetry: near it by the spacing
  * at x = -12, not by that at x = -5. */
 static const struct vg_region line = {
-  2, { { {0, 1, 0}, 1 }, { {0, 0, 1}, 0 } }, 0, 0, 0, { { {0}, 0 } } };
+  .n_plane = 2, .plane = { { {0, 1, 0}, 1 }, { {0, 0, 1}, 0 } } };
 
 /* The middle of what the triangle has near the line lies where it is fine. */
 static void test_large_by_a_corner(void **state)

@@ -4,6 +4,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/version.h"
 #include "cli/commands/commands.h"
 #include "cli/common/cli.h"
 #include "cli/common/ranges.h"
@@ -34,7 +35,7 @@ struct run {
 
 /* Options that are no settings: they do not change the mesh. */
 enum { KEY_TIMELINE = 1, KEY_RUN_DIR, KEY_RESUME, KEY_KEEP, KEY_LIMIT,
-       KEY_SHUFFLE };
+       KEY_SHUFFLE, KEY_NODE_RANKS, KEY_DIFFER };
 
 static error_t limit(const char *text, uint64_t *to,
                      const struct argp_state *state)
@@ -44,6 +45,18 @@ static error_t limit(const char *text, uint64_t *to,
   if (!vg_parse_count(text, strlen(text), &v) || v < 0)
     argp_error(state, "'%s' is no number from 0 up", text);
   *to = (uint64_t)v;
+  return 0;
+}
+
+static error_t differ(const char *text, enum vg_agree *to,
+                      const struct argp_state *state)
+{
+  for (int k = 0; k < VG_AGREE_N; k++)
+    if (!strcmp(text, vg_agree_name((enum vg_agree)k))) {
+      *to = (enum vg_agree)k;
+      return 0;
+    }
+  argp_error(state, "'%s' is none of surface, layers, sizes", text);
   return 0;
 }
 
@@ -63,6 +76,8 @@ static error_t option(int key, char *arg, struct argp_state *state)
   case KEY_KEEP: a->run.keep = 1; return 0;
   case KEY_LIMIT: return limit(arg, &a->run.limit, state);
   case KEY_SHUFFLE: return limit(arg, &a->run.shuffle, state);
+  case KEY_NODE_RANKS: return limit(arg, &a->run.node_ranks, state);
+  case KEY_DIFFER: return differ(arg, &a->run.change, state);
   case 'L': key = vg_cli_option_key("levels"); break;
   case 't': key = vg_cli_option_key("threads"); break;
   case ARGP_KEY_ARG:
@@ -165,6 +180,7 @@ static json_t *report_json(const struct run *r, int ok,
   json_t *o = json_object();
 
   json_object_set_new(o, "vanguard", json_string(VG_VERSION));
+  json_object_set_new(o, "source", json_string(vg_source_digest));
   json_object_set_new(o, "title", vg_text_json(p->settings.title));
   json_object_set_new(o, "ok", json_boolean(ok));
   if (!ok) json_object_set_new(o, "error", vg_text_json(err->text));
@@ -449,6 +465,9 @@ static int run(const struct arguments *a)
 
   r.start = vg_display_now();
   if (vg_comm_open(&r.mesh.comm, &err) < 0) return vg_cli_fail(&err);
+  if (a->run.node_ranks &&
+      vg_comm_take_for_nodes(r.mesh.comm, (int)a->run.node_ranks, &err) < 0)
+    return vg_cli_fail(&err);
   r.mesh.outputs = &r.outputs;
   r.mesh.rank = vg_comm_rank(r.mesh.comm);
   r.mesh.size = vg_comm_size(r.mesh.comm);
@@ -490,6 +509,10 @@ int vg_cmd_mesh(int argc, char **argv)
       "ranks [default 0: no limit]", 1 },
     { "shuffle-tasks", KEY_SHUFFLE, "SEED", 0, "do tasks in another order; "
       "the files stay the same (a test) [default 0: heaviest first]", 1 },
+    { "test-node-ranks", KEY_NODE_RANKS, "N", OPTION_HIDDEN, "take N ranks "
+      "that follow each other for those of a node (a test)", 1 },
+    { "test-differ", KEY_DIFFER, "WHAT", OPTION_HIDDEN, "the last rank takes "
+      "its surface, layers or sizes for changed (a test)", 1 },
     { NULL, 't', "N", 0, "the same as --threads", 1 },
     { NULL, 'L', "N", 0, "the same as --levels", 1 },
     { 0 }
@@ -512,7 +535,7 @@ int vg_cmd_mesh(int argc, char **argv)
       "any number of ranks and threads. Exit status: 0 "
       "done, 1 failed, 2 wrong usage, 4 done but a limit on the layers "
       "(--min-full, ...) is not met." };
-  struct arguments a = { 0 };
+  struct arguments a = { .run = { .change = VG_AGREE_NOTHING } };
   int status;
 
   if (vg_cli_options(own, &options) < 0) return VG_EXIT_FAILED;

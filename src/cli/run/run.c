@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/version.h"
 #include "cli/input/share.h"
 #include "cli/input/walls.h"
 #include "cli/report/report.h"
@@ -161,7 +162,7 @@ static struct vg_digest job_digest(const struct vg_problem *p,
   int64_t cut[5] = {s->leaf_cells, s->levels, s->split_direction,
                     s->constant_direction, s->optimise};
 
-  d = vg_digest_of(d, strlen(VG_VERSION), VG_VERSION);
+  d = vg_digest_of(d, strlen(vg_source_digest), vg_source_digest);
   d = vg_digest_of(d, sizeof size, size);
   d = vg_digest_of(d, sizeof cut, cut);
   for (size_t i = 0; i < s->n_source; i++) {
@@ -309,6 +310,8 @@ static vg_status mesh_plain(struct vg_run *r, const struct vg_problem *p,
     vg_comm_bind_node(r->comm, 0);
   }
   VG_TRY(share_with_node(r, st, surface, NULL, &sizing, err));
+  VG_TRY(vg_run_agree(r->comm, surface, NULL, sizing, r->options.change,
+                      err));
   VG_TRY(look_at_sources(r, p, surface, sizing, err));
   VG_TRY(fill(r, p, surface, sizing, show, err));
   r->slices = *vg_partition_slices(r->field);
@@ -375,6 +378,8 @@ static vg_status mesh_layers(struct vg_run *r, const struct vg_problem *p,
 
   if (leads_node(r)) st = grow_layers(r, p, layers, show, &sizing, err);
   VG_TRY(share_with_node(r, st, &p->surface, &layers->layers, &sizing, err));
+  VG_TRY(vg_run_agree(r->comm, &p->surface, &layers->layers, sizing,
+                      r->options.change, err));
   VG_TRY(look_at_sources(r, p, front, sizing, err));
   VG_TRY(fill(r, p, front, sizing, show, err));
   st = vg_layer_slices_open(&p->surface, &layers->layers,

@@ -10,6 +10,7 @@
 #include "cli/input/input.h"
 #include "cli/input/layers.h"
 #include "cli/input/source_effect.h"
+#include "cli/run/agree.h"
 #include "cli/run/output.h"
 #include "core/judge/judge_slices.h"
 #include "layers/expand/slices.h"
@@ -20,6 +21,8 @@ struct vg_run_options {
   const char *dir;           /* where finished tasks are kept, or NULL */
   int resume, keep;
   uint64_t limit, shuffle;
+  uint64_t node_ranks;       /* ranks taken for a node; 0: as they are */
+  enum vg_agree change;      /* what the last rank takes for changed */
 };
 
 struct vg_run {

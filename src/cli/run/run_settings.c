@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/version.h"
 #include "cli/run/run.h"
 
 /* These may change from one part of a run to the next. */
@@ -71,7 +72,8 @@ char *vg_run_settings(const struct vg_settings *s,
   const struct vg_table *far = vg_settings_table(VG_TABLE_FARFIELD);
 
   if (!to) return NULL;
-  fprintf(to, "program=Vanguard " VG_VERSION "\n");
+  fprintf(to, "program=Vanguard " VG_VERSION ", source %.16s\n",
+          vg_source_digest);
   put_values(to, "", p, n, s);
   put_values(to, "farfield ", far->column, far->n_column, &s->farfield);
   put_table(to, s, VG_TABLE_LAYERS);

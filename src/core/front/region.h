@@ -20,6 +20,7 @@ enum { VG_REGION_WALLS = 12 };
 
 struct vg_region {
   int n_plane;               /* 0: everything */
+  int n_wall;
   struct vg_plane plane[2];  /* unit normals, here and below; at right
                                 angles */
   double reach;              /* cells within so many spacings belong to it,
@@ -27,11 +28,14 @@ struct vg_region {
   double wide;               /* the front must be known, and cells are told
                                 from outside, so many spacings farther than
                                 elsewhere: triangles reach far beyond */
-  int n_wall;                /* convex: all corners of a cell must have */
-  struct vg_plane wall[VG_REGION_WALLS];  /* normal . x > offset. Regions with
-                                walls between them cannot overlap */
+  struct vg_plane wall[VG_REGION_WALLS];  /* [n_wall] convex: all corners of a
+                                cell must have normal . x > offset. Regions
+                                with walls between them cannot overlap */
 };
 #define VG_REGION_ALL { 0 }
+_Static_assert(sizeof(struct vg_region) ==
+               24 + (2 + VG_REGION_WALLS) * sizeof(struct vg_plane),
+               "regions have no padding: they are sent, and keys, as bytes");
 
 /* Beyond the reach, in spacings at the foot: how far points are placed, so
  * that the region's cells get their final shape; how far cells are told from

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <vector>
 
+#include <dlfcn.h>
 #include <signal.h>
 #include <sys/socket.h>
 #include <sys/time.h>
@@ -18,10 +19,32 @@
 
 namespace {
 
-/* On some input TetGen turns in circles. A job is given up after this time on
- * the processor, milliseconds and so many more for each triangle: hundreds
- * of times what pockets need, so that the outcome is the same everywhere. */
-const size_t patience = 2000, patience_each = 5;   /* K4 */
+/* On some input TetGen turns in circles. A job is given up after so many calls
+ * of its predicates, and so many more for each triangle: dozens of times what
+ * pockets need. A count, unlike a clock, is the same on any machine. */
+const uint64_t patience = 20000000, patience_each = 50000;   /* K4 */
+
+/* Seconds on the processor, and more for each triangle, in case that it turns
+ * without asking a predicate: hundreds of times what the calls above take. */
+const size_t backstop = 600;
+const double backstop_each = 1;
+
+/* Calls left to the job at hand; in the child. */
+uint64_t calls_left = UINT64_MAX;
+
+void count_call()
+{
+  if (!--calls_left) _exit(1);
+}
+
+/* TetGen's own function, of which ours below takes the place. */
+template <typename function> function original(const char *name)
+{
+  void *at = dlsym(RTLD_NEXT, name);
+
+  if (!at) _exit(1);
+  return reinterpret_cast<function>(at);
+}
 
 /* On the socket, in the byte order of the machine: */
 struct question {            /* before x and tri */
@@ -132,11 +155,11 @@ bool run(const question &q, int fd)
 
 void be_patient(size_t n_tri)
 {
-  size_t limit = patience + patience_each * n_tri;
   itimerval time = {};
 
-  time.it_value.tv_sec = static_cast<time_t>(limit / 1000);
-  time.it_value.tv_usec = static_cast<suseconds_t>(limit % 1000 * 1000);
+  calls_left = patience + patience_each * n_tri;
+  time.it_value.tv_sec = static_cast<time_t>(
+      backstop + backstop_each * static_cast<double>(n_tri));
   setitimer(ITIMER_PROF, &time, nullptr);
 }
 
@@ -217,6 +240,26 @@ long run_child(size_t n_job, vg_cdt_job *job, uint64_t way)
 }
 
 }  // namespace
+
+/* The dynamic linker takes these for TetGen's. */
+REAL orient3d(REAL *a, REAL *b, REAL *c, REAL *d)
+{
+  static const auto real = original<REAL (*)(REAL *, REAL *, REAL *, REAL *)>(
+      "_Z8orient3dPdS_S_S_");
+
+  count_call();
+  return real(a, b, c, d);
+}
+
+REAL insphere(REAL *a, REAL *b, REAL *c, REAL *d, REAL *e)
+{
+  static const auto real =
+      original<REAL (*)(REAL *, REAL *, REAL *, REAL *, REAL *)>(
+          "_Z8inspherePdS_S_S_S_");
+
+  count_call();
+  return real(a, b, c, d, e);
+}
 
 extern "C" void vg_cdt_serve(int fd)
 {

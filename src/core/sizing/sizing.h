@@ -91,6 +91,12 @@ void vg_sizing_free(struct vg_sizing *s);
 vg_status vg_sizing_share(struct vg_comm *c, struct vg_sizing **s,
                           struct vg_error *err);
 
+/** Show `look` all that a field's values follow from, part after part: bytes
+ * that are the same where fields are. */
+void vg_sizing_show(const struct vg_sizing *s,
+                    void (*look)(void *user, size_t n, const void *data),
+                    void *user);
+
 /** Bytes of it that the ranks of a node have in common. */
 size_t vg_sizing_common(const struct vg_sizing *s);
 

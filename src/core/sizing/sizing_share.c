@@ -23,6 +23,20 @@ static void list_parts(const struct vg_sizing *s, struct vg_bytes p[PARTS])
   p[3] = part(t->n_leaf * sizeof *t->leaf, t->leaf);
 }
 
+void vg_sizing_show(const struct vg_sizing *s,
+                    void (*look)(void *user, size_t n, const void *data),
+                    void *user)
+{
+  struct vg_bytes p[PARTS];
+
+  list_parts(s, p);
+  look(user, sizeof s->octree.lo, s->octree.lo);
+  look(user, sizeof s->octree.side, &s->octree.side);
+  look(user, sizeof s->growth, &s->growth);
+  look(user, sizeof s->cap, &s->cap);
+  for (int k = 1; k < PARTS; k++) look(user, p[k].n, p[k].data);
+}
+
 /* Takes over what is common. NULL: no memory. */
 static struct vg_sizing *view(const struct vg_common *common)
 {

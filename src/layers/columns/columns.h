@@ -61,7 +61,9 @@ struct vg_column {
   uint8_t cause;       /* enum vg_layer_cause: what set n below n_wanted */
   uint8_t squeezed;    /* enum vg_layer_cause: what set cap below the law's;
                           VG_CAUSE_NONE: nothing did */
+  uint8_t unused[2];   /* 0: columns are sent, and compared, as bytes */
 };
+_Static_assert(sizeof(struct vg_column) == 88, "columns have no padding");
 
 struct vg_columns {
   size_t n_column, n_face, n_rim, n_law, n_path;

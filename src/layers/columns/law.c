@@ -17,7 +17,7 @@ static double power(double x, int n)
 /* Thickness of layer j by the law alone. */
 static double bare(const struct vg_law *law, int j)
 {
-  int k = law->n_constant > 1 ? j - law->n_constant : j - 1;
+  int k = law->n_constant > 1 ? j - (int)law->n_constant : j - 1;
 
   if (k <= 0) return law->delta1;
   return law->delta1 *

@@ -18,8 +18,10 @@ struct vg_law {
   double rate1, rate2;      /* >= 0 */
   double cap;               /* largest ratio of neighbouring layers, >= 1;
                                INFINITY: none (VGRID) */
-  int n_constant;           /* first layers of equal thickness, >= 1 */
+  int64_t n_constant;       /* first layers of equal thickness, >= 1 */
 };
+_Static_assert(sizeof(struct vg_law) == 40,
+               "laws have no padding: they are sent, and compared, as bytes");
 #define VG_LAW_INIT { 0, 0.2, 0, 1.3, 1 }
 
 /** Wall distances d[0] = 0 .. d[n] of the layer tops, with the cap lowered to

@@ -72,6 +72,19 @@ vg_status vg_layers_pack(const struct vg_layers *layers, struct vg_bytes *out,
   return VG_OK;
 }
 
+void vg_layers_show(const struct vg_layers *layers,
+                    void (*look)(void *user, size_t n, const void *data),
+                    void *user)
+{
+  struct vg_layers view = *layers;
+  struct array a[N_ARRAY];
+
+  list_arrays(&view, a);
+  for (int i = 0; i < N_ARRAY; i++)
+    if (a[i].at != (void **)&view.front.mesh.patch)
+      look(user, a[i].n * a[i].size, *a[i].at);
+}
+
 /* --- checks: 1 for good -------------------------------------------------- */
 
 static int is_index(uint32_t i, size_t n)

@@ -22,4 +22,10 @@ vg_status vg_layers_unpack(const struct vg_bytes *bytes,
                            const struct vg_mesh *surface,
                            struct vg_layers *out, struct vg_error *err);
 
+/** Show `look` the arrays of layers, one after the other, names of patches
+ * aside: bytes that are the same where layers are. */
+void vg_layers_show(const struct vg_layers *layers,
+                    void (*look)(void *user, size_t n, const void *data),
+                    void *user);
+
 #endif

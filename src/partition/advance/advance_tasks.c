@@ -12,12 +12,12 @@
 
 /* --- doing tasks --------------------------------------------------------- */
 
-/* What a task's home hears. Where that is another rank, `node` is its own
- * pointer coming back to it. */
+/* What a task's home hears. */
 struct outcome {
   int what;
   struct vg_node *node;      /* START, and LEAF that outgrew: owned; JOIN, ZONE:
-                                borrowed */
+                                borrowed, at home only, */
+  uint64_t home_node;        /* elsewhere its number there */
   size_t index;
   struct vg_change change;
 };
@@ -59,6 +59,7 @@ static vg_status run_work(struct vg_partition *p, struct vg_work *w,
   o->what = w->what;
   if (w->what == VG_WORK_LEAF) return run_leaf(p, w, o, e, err);
   o->node = w->node;
+  o->home_node = w->home_node;
   o->index = w->index;
   if (w->what == VG_WORK_ZONE) return vg_work_zone(p, w, &o->change, e, err);
   if (w->what == VG_WORK_JOIN) return vg_node_join(p, w->node, e, err);
@@ -164,11 +165,23 @@ static vg_status submit_child(struct vg_partition *p, struct vg_engine *e,
 static void hold(struct vg_partition *p, struct vg_node *n)
 {
   pthread_mutex_lock(&p->lock);
+  n->number = ++p->n_cutting;
   n->next = p->cutting;
   n->link = &p->cutting;
   if (n->next) n->next->link = &n->next;
   p->cutting = n;
   pthread_mutex_unlock(&p->lock);
+}
+
+/* NULL: none of them has this number. */
+static struct vg_node *held(struct vg_partition *p, uint64_t number)
+{
+  struct vg_node *n;
+
+  pthread_mutex_lock(&p->lock);
+  for (n = p->cutting; n && n->number != number;) n = n->next;
+  pthread_mutex_unlock(&p->lock);
+  return n;
 }
 
 static void let_go(struct vg_partition *p, struct vg_node *n)
@@ -298,8 +311,10 @@ static vg_status packed(struct vg_writer *w, struct vg_bytes *out,
 static vg_status put_node(struct vg_writer *w, const struct vg_node *n,
                           struct vg_error *err)
 {
-  int32_t number[5] = {n->levels, n->retry, n->is_final, n->is_planned,
-                       n->n_bisection};
+  const struct vg_lattice *l = &n->lattice;
+  int32_t number[9] = {n->levels, n->retry, n->is_final, n->is_planned,
+                       n->n_bisection, l->n[0], l->n[1], l->n[2],
+                       l->lines_at_once};
   struct vg_bytes load = {0, NULL};
   uint64_t size;
   vg_status st = vg_load_pack(&n->load, &load, err);
@@ -307,8 +322,8 @@ static vg_status put_node(struct vg_writer *w, const struct vg_node *n,
   if (st < 0) return st;
   size = load.n;
   vg_put(w, sizeof n->path, 1, n->path);
-  vg_put(w, 5, sizeof *number, number);
-  vg_put(w, 1, sizeof n->lattice, &n->lattice);
+  vg_put(w, 9, sizeof *number, number);
+  vg_put(w, 1, sizeof l->at, l->at);  /* ribs are made where it is cut */
   vg_put(w, 1, sizeof n->per_cube, &n->per_cube);
   vg_put(w, 1, sizeof size, &size);
   vg_put(w, load.n, 1, load.data);
@@ -321,16 +336,14 @@ static struct vg_node *get_node(struct vg_reader *r)
 {
   struct vg_front empty = VG_FRONT_INIT;
   struct vg_node *n = vg_node_new("", &empty);
-  int32_t number[5] = {0};
+  int32_t number[9] = {0};
   struct vg_bytes load = {0, NULL};
   uint64_t size = 0;
 
   if (!n) return NULL;
   vg_get(r, sizeof n->path, 1, n->path);
-  vg_get(r, 5, sizeof *number, number);
-  vg_get(r, 1, sizeof n->lattice, &n->lattice);
-  n->lattice.n_rib = 0;      /* made where the void is cut */
-  n->lattice.rib = NULL;
+  vg_get(r, 9, sizeof *number, number);
+  vg_get(r, 1, sizeof n->lattice.at, n->lattice.at);
   vg_get(r, 1, sizeof n->per_cube, &n->per_cube);
   vg_get(r, 1, sizeof size, &size);
   n->levels = number[0];
@@ -338,6 +351,8 @@ static struct vg_node *get_node(struct vg_reader *r)
   n->is_final = number[2];
   n->is_planned = number[3];
   n->n_bisection = number[4];
+  for (int k = 0; k < 3; k++) n->lattice.n[k] = number[5 + k];
+  n->lattice.lines_at_once = number[8];
   load.n = size;
   load.data = vg_get_array(r, size, 1);
   if (!r->bad) r->bad = vg_load_unpack(&load, &n->load, NULL) < 0;
@@ -354,7 +369,7 @@ static vg_status pack_input(void *user, const void *input,
   const struct vg_work *k = input;
   struct vg_writer w = { .cap = 0 };
   int32_t what = k->what;
-  uint64_t home[2] = {(uint64_t)(uintptr_t)k->node, k->index};
+  uint64_t home[2] = {k->node ? k->node->number : 0, k->index};
 
   (void)user;
   vg_put(&w, 1, sizeof what, &what);
@@ -395,14 +410,14 @@ static vg_status unpack_input(void *user, const struct vg_bytes *in,
     vg_get(&r, 2, sizeof *home, home);
     vg_get(&r, 1, sizeof k->region, &k->region);
     vg_front_get(&r, &k->part, 1);
-    k->node = (struct vg_node *)(uintptr_t)home[0];
+    k->home_node = home[0];
     k->index = home[1];
   } else if (!r.bad && !(k->node = get_node(&r))) {
     r.bad = 1;
   }
   if (r.bad) {
     free(k);
-    return vg_fail_memory(err, "a message");
+    return vg_fail_damaged(err, "a task");
   }
   *input = k;
   return VG_OK;
@@ -413,7 +428,7 @@ static vg_status pack_outcome(void *user, const void *outcome,
 {
   const struct outcome *o = outcome;
   struct vg_writer w = { .cap = 0 };
-  uint64_t home[2] = {(uint64_t)(uintptr_t)o->node, o->index};
+  uint64_t home[2] = {o->home_node, o->index};
 
   (void)user;                /* only those of zones travel */
   vg_put(&w, 2, sizeof *home, home);
@@ -428,17 +443,16 @@ static vg_status unpack_outcome(void *user, const struct vg_bytes *in,
   struct outcome *o = vg_calloc(1, sizeof *o);
   uint64_t home[2] = {0, 0};
 
-  (void)user;
   if (!o) return vg_fail_memory(err, "a message");
   vg_get(&r, 2, sizeof *home, home);
   vg_change_get(&r, &o->change);
-  if (r.bad) {
-    free(o);
-    return vg_fail_memory(err, "a message");
-  }
   o->what = VG_WORK_ZONE;
-  o->node = (struct vg_node *)(uintptr_t)home[0];
+  o->node = held(user, home[0]);
   o->index = home[1];
+  if (r.bad || !o->node) {
+    free_outcome(o);
+    return vg_fail_damaged(err, "the outcome of a task");
+  }
   *outcome = o;
   return VG_OK;
 }

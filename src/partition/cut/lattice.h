@@ -21,6 +21,20 @@ enum {
   VG_LATTICE_BLOCKS = 512    /* (VG_LATTICE_PLANES + 1)^3 */
 };
 
+/* What cutting and its forecast have in common. */
+
+/** Half thickness of a tile in spacings: as it is taken off the parts' load and
+ * counted for pieces of tiles; and as cells fill it, measured over boxes and
+ * spheres. (C18) */
+#define VG_TILE_REACH 0.68
+#define VG_TILE_FILLED 0.57
+/** Attempts to part a void by other planes. (C8) */
+enum { VG_RETRIES = 5 };
+/** Voids below this share of a leaf are filled together; a cut that leaves more
+ * than the second in one part did not part its void. (C10) */
+#define VG_SMALL_SHARE 0.02
+#define VG_NOT_PARTED 0.9
+
 /* A line across a tile. */
 struct vg_rib {
   int tile;                  /* whole ones count */

@@ -19,8 +19,6 @@ static const double piece_share = 0.2, least_piece = 4000, most_piece = 12000;
 static const double rib_share = 0.12;
 /* A rib is this many spacings from what keeps it apart from the next one. */
 static const double room = 2.5;   /* C7 */
-/* Spacings that tiles reach to each side of their plane, as measured. */
-static const double tile_reach = 0.68;
 
 enum { MOST_PIECES = 8 };
 
@@ -257,7 +255,7 @@ static vg_status find_dots(const struct vg_load *load,
       .tile = (size_t)(interval_of(l, b, x[0]) +
                        (l->n[b] + 1) * interval_of(l, c, x[1])),
       .number = k, .x = {x[0], x[1]}, .half = half, .h = h,
-      .cells = (double)q->cells * fmin(tile_reach * h / half, 1) };
+      .cells = (double)q->cells * fmin(VG_TILE_REACH * h / half, 1) };
     ++*n;
   }
   qsort(*dot, *n, sizeof **dot, by_tile);

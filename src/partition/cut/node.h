@@ -18,9 +18,6 @@
  * again, as is one beyond this many times the leaf size. */
 #define VG_OUTGROWN 2.0   /* C8 */
 
-/* Attempts to part a void by other planes. */
-enum { VG_RETRIES = 5 };
-
 struct vg_work;
 
 /* Beside the number of a block: the point is on a plane, in the block below. */
@@ -28,6 +25,7 @@ struct vg_work;
 
 struct vg_node {
   struct vg_node *next, **link;  /* nodes being cut on this rank */
+  uint64_t number;           /* among these, for messages */
   char path[VG_PATH_MAX];
   struct vg_front front;
   struct vg_load load;
@@ -71,7 +69,8 @@ enum { VG_WORK_START, VG_WORK_JOIN, VG_WORK_ZONE, VG_WORK_LEAF };
 struct vg_work {
   int what;
   struct vg_node *node;      /* START, LEAF: owned; JOIN, ZONE: borrowed, at
-                                its home only */
+                                its home only, */
+  uint64_t home_node;        /* elsewhere its number there */
   uint32_t serial;           /* ZONE, LEAF */
   /* ZONE */
   char path[VG_PATH_MAX];
@@ -105,6 +104,7 @@ struct vg_partition {
   } *cut;
   struct vg_partition_report report;
   struct vg_node *cutting;   /* what a stopped job leaves */
+  uint64_t n_cutting;        /* numbers given to these so far */
   /* numbering */
   struct vg_slices slices;
   size_t n_place;

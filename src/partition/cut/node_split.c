@@ -17,13 +17,6 @@
 /* Faces or points to a chunk of a loop. */
 enum { CHUNK = 8192 };
 
-/* Voids below this share of a leaf are filled together. */
-static const double small_share = 0.02;   /* C10 */
-/* A cut that leaves more than this in one part did not part its void. */
-static const double not_parted = 0.9;
-/* Cells that zones make of it are not the blocks': spacings to each side. */
-static const double zone_reach = 0.68;
-
 enum { NONE = 0xffff };
 
 struct split {
@@ -351,7 +344,7 @@ static vg_status load_of_blocks(struct split *s, struct vg_error *err)
 
   if (!load) return vg_fail_memory(err, "the load of a void");
   for (int k = 0; k < 3; k++) at[k] = n->lattice.at[k];
-  st = vg_load_split_blocks(&n->load, n->lattice.n, at, zone_reach,
+  st = vg_load_split_blocks(&n->load, n->lattice.n, at, VG_TILE_REACH,
                             correction(n), s->e, load, err);
   for (size_t b = 0; st == VG_OK && b < n_block; b++) {
     if (s->child[b] == NONE) {
@@ -397,7 +390,7 @@ static void count_retry(struct vg_partition *p, struct vg_node *n)
 
   for (size_t k = 0; k < n->n_child; k++) sum += n->child[k]->load.cells;
   for (size_t k = 0; k < n->n_child; k++)
-    if (n->child[k]->load.cells > not_parted * sum) {
+    if (n->child[k]->load.cells > VG_NOT_PARTED * sum) {
       n->child[k]->retry = n->retry + 1;
       n->child[k]->levels = n->levels;
       pthread_mutex_lock(&p->lock);
@@ -410,7 +403,7 @@ static void count_retry(struct vg_partition *p, struct vg_node *n)
 static vg_status bundle(struct vg_partition *p, struct vg_node *n,
                         struct vg_error *err)
 {
-  double least = small_share * p->options.rule.leaf_cells, cells = 0;
+  double least = VG_SMALL_SHARE * p->options.rule.leaf_cells, cells = 0;
   struct vg_front rest = VG_FRONT_INIT;
   size_t left = 0;
   vg_status st = VG_OK;

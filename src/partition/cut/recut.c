@@ -246,7 +246,7 @@ static vg_status receive(struct parcels *q, struct recut *recut,
     if (!r.bad) st = vg_front_join(&recut[head[0]].front, &f, err);
     vg_front_release(&f);
   }
-  return r.bad ? vg_fail_memory(err, "a message") : st;
+  return r.bad ? vg_fail_damaged(err, "a front") : st;
 }
 
 /* What all ranks have of the voids to those that cut them. recut: [q->n].

@@ -25,6 +25,7 @@ struct vg_span {
   char path[VG_PATH_MAX];    /* task; "0.2P3": see advance.h */
   char after[VG_PATH_MAX];   /* the task whose end made it; "" at the start */
   char kind;
+  char unused[3];            /* 0: spans are sent as bytes */
   int32_t rank, thread;      /* who did it */
   int32_t home;              /* where it was made */
   double start, end;         /* seconds since the engine began, wall */

@@ -27,11 +27,8 @@
 /* With fewer cubes than this, narrower ones are tried, down to LEAST edges. */
 #define FEW_CUBES 64
 #define LEAST 1.0
-/* Where the target edge varies, cells are more by this share: nearly the same
- * for growth rates from 1.1 to 1.35, while even spacing allows regular cells.
- * Full from this gradient on. */
-#define GRADED 0.21   /* C15 */
-#define GRADIENT 0.05
+/* From this gradient on VG_LOAD_GRADED counts in full. */
+#define GRADIENT 0.05   /* C15 */
 /* Where h changes by more than this times itself across a cube, the cube's
  * parts are added up, to this depth. */
 #define STEEP 1.2   /* C16 */
@@ -45,7 +42,7 @@
 /* Cells next to a front follow its edges: away from it theirs grow by no more
  * than this for each length, however fast the field lets them. */
 #define PACE 1.5
-/* From here to PACE the share that GRADED adds goes down to none. */
+/* From here to PACE the share that VG_LOAD_GRADED adds goes down to none. */
 #define PACE_FROM 1.0
 /* Cells for each face of the front at least: what meshes have in which hardly
  * a point is away from the front. */
@@ -114,7 +111,7 @@ static struct density density_around(const struct maker *m,
   sum /= 4;
   graded = fmin(slope / GRADIENT, 1)
            * fmax(0, fmin((PACE - slope) / (PACE - PACE_FROM), 1));
-  return (struct density){ sum, sum * (1 + GRADED * graded), slope };
+  return (struct density){ sum, sum * (1 + VG_LOAD_GRADED * graded), slope };
 }
 
 /* Its middle; returns half its side. */

@@ -33,9 +33,6 @@ static const double places_per_corner = 0.5, place_faces = 900;   /* M3 */
 /* Bytes of a front per face: three indices, half a point and its name. */
 static const double bytes_per_face = 28;
 
-/* As node.h and node_split.c have them. */
-enum { RETRIES = 5 };
-static const double small_share = 0.02, not_parted = 0.9;
 /* Of less than a cell, what zones leave of a block is no void. */
 static const double least_void = 1;
 
@@ -332,7 +329,7 @@ static vg_status add_children(struct forecast *c, const struct vg_part *from,
                               size_t parent, struct vg_blocks *b, int used,
                               const char *after)
 {
-  double sum = 0, least = fmax(small_share * c->rule->leaf_cells, least_void);
+  double sum = 0, least = fmax(VG_SMALL_SHARE * c->rule->leaf_cells, least_void);
   size_t number = 0;
   vg_status st = VG_OK;
 
@@ -347,7 +344,7 @@ static vg_status add_children(struct forecast *c, const struct vg_part *from,
     p->parent = parent;
     p->depth = from->depth + 1;
     p->levels = from->levels > used ? from->levels - used : 0;
-    if (p->load.cells > not_parted * sum) {
+    if (p->load.cells > VG_NOT_PARTED * sum) {
       p->levels = from->levels;
       p->retry = from->retry + 1;
     }
@@ -385,7 +382,7 @@ static vg_status go_down(struct forecast *c, struct vg_part *p,
   vg_status st = VG_OK;
   int used = 0;
 
-  if (p->retry < RETRIES && strlen(p->path) + 8 < VG_PATH_MAX)
+  if (p->retry < VG_RETRIES && strlen(p->path) + 8 < VG_PATH_MAX)
     used = vg_lattice_plan(&p->load, c->rule, p->levels, p->retry, &l);
   if (used <= 0) return add_leaf(c, p, amount_of(&p->load), after);
   if (!p->retry) st = vg_lattice_add_ribs(&p->load, c->rule, &l, c->err);

@@ -7,14 +7,10 @@
 #include "core/geometry/vector.h"
 #include "partition/model/forecast_parts.h"
 
-/* Where spacing varies a load has this share more cells to a cube of it
- * (load.c); there they cost more as well. */
-static const double graded_more = 0.21;
-
-/* Cells of a zone reach this many spacings to each side of its plane, those of
- * a pencil of both of its planes: as measured over boxes and spheres. */
-static const double tile_reach = 0.57, pencil_reach = 1.9;   /* M4 */
-static const double rib_reach = 0.5;
+/* Cells of a pencil reach this many spacings to each side of both of its
+ * planes, as VG_TILE_FILLED, those of a rib: as measured over boxes and
+ * spheres. */
+static const double pencil_reach = 1.9, rib_reach = 0.5;   /* M4 */
 
 void vg_part_release(struct vg_part *p)
 {
@@ -49,7 +45,7 @@ void vg_amount_add(struct vg_amount *a, const struct vg_load_cube *c,
   double more = cubes > 0 ? cells / (cubes * VG_LOAD_CELLS_PER_CUBE) - 1 : 0;
 
   a->cells += share * cells;
-  a->graded += share * cells * fmin(fmax(more / graded_more, 0), 1);
+  a->graded += share * cells * fmin(fmax(more / VG_LOAD_GRADED, 0), 1);
 }
 
 /* The axis of a plane of a lattice. */
@@ -85,7 +81,7 @@ static double overlap(const struct vg_load_cube *c, const struct vg_plane *p,
 /* Spacings from its planes that a zone's cells reach. */
 static double reach_of(const struct vg_region *r)
 {
-  return r->n_plane == 1 ? tile_reach : r->reach > 0 ? pencil_reach
+  return r->n_plane == 1 ? VG_TILE_FILLED : r->reach > 0 ? pencil_reach
                                                      : rib_reach;
 }
 

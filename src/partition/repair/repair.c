@@ -242,7 +242,7 @@ static vg_status take_blocks(struct repair *r, const struct vg_bytes *from,
                      sizeof *r->block))
         return vg_fail_memory(err, "repairs");
       vg_block_get(&in, &r->block[r->n_block]);
-      if (in.bad) return vg_fail_memory(err, "repairs");
+      if (in.bad) return vg_fail_damaged(err, "repairs");
       r->n_block++;
     }
   }

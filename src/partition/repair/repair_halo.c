@@ -1,4 +1,4 @@
-/* Seams: what the owner of points on an interface needs of the cells that
+/* Halos: what the owner of points on an interface needs of the cells that
  * other pieces have around them. */
 #include <stdlib.h>
 #include <string.h>

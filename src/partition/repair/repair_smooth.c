@@ -130,7 +130,7 @@ static vg_status take_far(struct smoothing *s, const struct vg_bytes *from,
       if (vg_reserve(&s->far, &s->cap_far, s->n_far + 1, sizeof *s->far))
         return vg_fail_memory(err, "repairs");
       vg_halo_get(&in, &s->far[s->n_far]);
-      if (in.bad) return vg_fail_memory(err, "repairs");
+      if (in.bad) return vg_fail_damaged(err, "repairs");
       s->n_far++;
     }
   }
@@ -332,7 +332,15 @@ static vg_status drop_cells(struct smoothing *s, uint32_t piece, size_t n,
   return VG_OK;
 }
 
-static vg_status take_updates(struct smoothing *s, const struct vg_bytes *from)
+static int is_vertex(const struct vg_partition *p, uint32_t piece,
+                     uint32_t vertex)
+{
+  return piece < p->n_piece &&
+         vertex < p->piece[piece].n_in + p->piece[piece].n_point;
+}
+
+static vg_status take_updates(struct smoothing *s, const struct vg_bytes *from,
+                              struct vg_error *err)
 {
   for (int r = 0; r < s->p->size; r++) {
     struct vg_reader in = { .data = from[r].data, .n = from[r].n };
@@ -345,13 +353,15 @@ static vg_status take_updates(struct smoothing *s, const struct vg_bytes *from)
       vg_get(&in, 3, sizeof *head, head);
       for (uint32_t k = 0; k < head[1]; k++) {
         vg_get(&in, 1, sizeof n, &n);
-        if (in.bad) return VG_ERR_MEMORY;
+        if (in.bad || !is_vertex(s->p, n.piece, n.vertex))
+          return vg_fail_damaged(err, "repairs");
         memcpy(s->p->piece[n.piece].x[n.vertex], n.x, sizeof n.x);
       }
       cell = vg_get_array(&in, head[2], sizeof *cell);
-      st = in.bad ? VG_ERR_MEMORY : drop_cells(s, head[0], head[2], cell);
+      st = in.bad ? vg_fail_damaged(err, "repairs")
+                  : drop_cells(s, head[0], head[2], cell);
       free(cell);
-      if (st < 0) return st;
+      if (st < 0) return in.bad ? st : vg_fail_memory(err, "repairs");
     }
   }
   return VG_OK;
@@ -388,13 +398,14 @@ static vg_status send_back(struct smoothing *s, struct vg_comm *comm,
   st = vg_outbox_send(&post, comm, st, &from, err);
   if (st < 0) return st;
   vg_parallel_for(s->p->options.threads, s->n_halo, 16, put_back_body, s);
-  st = take_updates(s, from);
-  for (size_t k = 0; st == VG_OK && k < s->n_halo; k++)
-    if (s->halo[k]->rank == (uint32_t)s->p->rank)
-      st = drop_cells(s, s->halo[k]->from, s->halo[k]->n_gone,
-                      s->halo[k]->place);
+  st = take_updates(s, from, err);
   vg_bytes_release(from, (size_t)s->p->size);
-  return st == VG_OK ? st : vg_fail_memory(err, "repairs");
+  for (size_t k = 0; st == VG_OK && k < s->n_halo; k++)
+    if (s->halo[k]->rank == (uint32_t)s->p->rank &&
+        drop_cells(s, s->halo[k]->from, s->halo[k]->n_gone,
+                   s->halo[k]->place) < 0)
+      st = vg_fail_memory(err, "repairs");
+  return st;
 }
 
 /* --- between the two times ------------------------------------------------ */
@@ -417,7 +428,7 @@ static void adjacent_body(void *context, size_t first, size_t end, int worker)
   }
 }
 
-/* Seams of a rank came in the order in which it has them. */
+/* Halos of a rank came in the order in which it has them. */
 static vg_status refresh_far(struct smoothing *s, const struct vg_bytes *from)
 {
   struct vg_reader in = {0};
@@ -429,7 +440,7 @@ static vg_status refresh_far(struct smoothing *s, const struct vg_bytes *from)
       in = (struct vg_reader){ .data = from[halo->rank].data,
                                .n = from[halo->rank].n };
     vg_get(&in, halo->n_other, sizeof *halo->x, halo->x);
-    if (in.bad) return VG_ERR_MEMORY;
+    if (in.bad) return VG_ERR_FORMAT;
   }
   return VG_OK;
 }
@@ -453,7 +464,7 @@ static vg_status go_between(struct smoothing *s, struct vg_comm *comm,
     }
   st = vg_outbox_send(&post, comm, st, &from, err);
   if (st < 0) return st;
-  if (refresh_far(s, from) < 0) st = vg_fail_memory(err, "repairs");
+  if (refresh_far(s, from) < 0) st = vg_fail_damaged(err, "repairs");
   vg_bytes_release(from, (size_t)s->p->size);
   return vg_comm_agree(comm, st, err);
 }
