@@ -511,7 +511,7 @@ int vg_cmd_mesh(int argc, char **argv)
       "the files stay the same (a test) [default 0: heaviest first]", 1 },
     { "test-node-ranks", KEY_NODE_RANKS, "N", OPTION_HIDDEN, "take N ranks "
       "that follow each other for those of a node (a test)", 1 },
-    { "test-differ", KEY_DIFFER, "WHAT", OPTION_HIDDEN, "the last rank takes "
+    { "test-differ", KEY_DIFFER, "WHAT", OPTION_HIDDEN, "the last node takes "
       "its surface, layers or sizes for changed (a test)", 1 },
     { NULL, 't', "N", 0, "the same as --threads", 1 },
     { NULL, 'L', "N", 0, "the same as --levels", 1 },

@@ -54,7 +54,8 @@ static struct claim make_claim(struct vg_comm *c, const struct vg_mesh *surface,
   own.of[VG_AGREE_SURFACE] = of_surface(surface);
   if (layers) vg_layers_show(layers, add, &own.of[VG_AGREE_LAYERS]);
   vg_sizing_show(sizing, add, &own.of[VG_AGREE_SIZES]);
-  if (change != VG_AGREE_NOTHING && vg_comm_rank(c) + 1 == vg_comm_size(c))
+  if (change != VG_AGREE_NOTHING &&
+      vg_comm_rank(c) + vg_comm_node_size(c) == vg_comm_size(c))
     own.of[change].word[0] ^= 1;
   return own;
 }

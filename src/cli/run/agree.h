@@ -19,7 +19,7 @@ const char *vg_agree_name(enum vg_agree what);
  * first speaks for all, who got copies. Collective, after these are shared.
  *
  * @param layers  NULL: none
- * @param change  what the last rank takes for changed, to show what happens
+ * @param change  what the last node takes for changed, to show what happens
  * VG_ERR_REMOTE on all ranks, with the rank, its host and what differs. Costs
  * one reading of it on several nodes, nothing on one. */
 vg_status vg_run_agree(struct vg_comm *c, const struct vg_mesh *surface,

@@ -22,7 +22,7 @@ struct vg_run_options {
   int resume, keep;
   uint64_t limit, shuffle;
   uint64_t node_ranks;       /* ranks taken for a node; 0: as they are */
-  enum vg_agree change;      /* what the last rank takes for changed */
+  enum vg_agree change;      /* what the last node takes for changed */
 };
 
 struct vg_run {

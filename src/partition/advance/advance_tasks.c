@@ -235,9 +235,12 @@ static vg_status follow(struct vg_partition *p, struct vg_engine *e,
 static vg_status zone_done(struct vg_partition *p, struct vg_engine *e,
                            struct outcome *o, struct vg_error *err)
 {
-  struct vg_node *n = o->node;
-  struct vg_change *change = &n->change[o->index];
+  /* a task that was packed, and came back to its home, has the number only */
+  struct vg_node *n = o->node ? o->node : held(p, o->home_node);
+  struct vg_change *change;
 
+  if (!n) return vg_fail_damaged(err, "the outcome of a task");
+  change = &n->change[o->index];
   *change = o->change;
   memset(&o->change, 0, sizeof o->change);
   pthread_mutex_lock(&p->lock);
@@ -443,13 +446,14 @@ static vg_status unpack_outcome(void *user, const struct vg_bytes *in,
   struct outcome *o = vg_calloc(1, sizeof *o);
   uint64_t home[2] = {0, 0};
 
+  (void)user;
   if (!o) return vg_fail_memory(err, "a message");
   vg_get(&r, 2, sizeof *home, home);
   vg_change_get(&r, &o->change);
   o->what = VG_WORK_ZONE;
-  o->node = held(user, home[0]);
+  o->home_node = home[0];
   o->index = home[1];
-  if (r.bad || !o->node) {
+  if (r.bad) {
     free_outcome(o);
     return vg_fail_damaged(err, "the outcome of a task");
   }
