@@ -47,7 +47,7 @@ vg_status vg_comm_take_for_nodes(struct vg_comm *c, int ranks,
 /** Leave the job; NULL accepted. Collective. */
 void vg_comm_close(struct vg_comm *c);
 
-/** End all ranks now, with an exit status: for what no rank can mend. Prints
+/** End all ranks now, with an exit status: for what no rank can repair. Prints
  * nothing (the launcher may) and flushes nothing. Does not return. */
 void vg_comm_abort(struct vg_comm *c, int exit_status)
     __attribute__((noreturn));

@@ -72,11 +72,11 @@ vg_status vg_comm_node_memory(struct vg_comm *c, size_t n_part,
                               const struct vg_bytes *part, int writes,
                               struct vg_common *out, struct vg_error *err);
 
-/** Bells of the node. Collective. */
+/** Wakeups of the node. Collective. */
 vg_status vg_comm_wakeups_open(struct vg_comm *c, struct vg_error *err);
 void vg_comm_wakeups_close(struct vg_comm *c);
 
-/** Ring that of another rank, if there is a way. Threads: safe. */
+/** Wake another rank, if there is a way. Threads: safe. */
 void vg_comm_wake_rank(struct vg_comm *c, int rank);
 
 /** Take and drop messages until none is under way. Collective. */

@@ -1,7 +1,7 @@
-/* Bells: base/comm.h. MPI has no wait that sleeps, so a rank that polls learns
- * of a message when it happens to look. Ranks of a node have a word of memory
- * in common for each of them, on which a rank sleeps and which others change
- * when they have posted. */
+/* Wakeups: base/comm.h. MPI has no wait that sleeps, so a rank that polls
+ * learns of a message when it happens to look. Ranks of a node have a word of
+ * memory in common for each of them, on which a rank sleeps and which others
+ * change when they have posted. */
 #define _GNU_SOURCE
 #include <linux/futex.h>
 #include <stdlib.h>
@@ -69,7 +69,7 @@ static void wake(struct vg_wakeup *b)
 }
 
 /* Where memory is not in common, each has all wakeups for itself: only its own
- * rings. */
+ * ones count. */
 void vg_comm_wake_rank(struct vg_comm *c, int rank)
 {
   if (c->wakeup_at[rank] != MPI_UNDEFINED && c->wakeups.is_mapped)

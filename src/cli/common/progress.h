@@ -1,5 +1,5 @@
 /* cli/common/progress.h: what the user sees while waiting, on stderr: one live
- * line on a terminal, plain lines elsewhere; and the wish to stop (SIGINT,
+ * line on a terminal, plain lines elsewhere; and requests to stop (SIGINT,
  * SIGTERM, SIGUSR1). Times are for people only and decide nothing. */
 #ifndef VG_CLI_COMMON_PROGRESS_H
 #define VG_CLI_COMMON_PROGRESS_H

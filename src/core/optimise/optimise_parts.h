@@ -9,7 +9,7 @@
 enum { VG_BALL_MAX = 256, VG_SHELL_MAX = 10, VG_NEW_MAX = VG_CAVITY_MAX,
        VG_OLD_MAX = VG_CAVITY_MAX };
 
-enum {                       /* what was tried in vain, until a change */
+enum {                       /* what was tried without success, until a change */
   VG_VAIN_SMOOTH = 1, VG_VAIN_MERGE = 2,   /* of a point */
   VG_VAIN_SPLIT = 4,                       /* of a cell */
   VG_NO_CONCERN = 8          /* likewise: does not belong to the region */
@@ -45,7 +45,7 @@ static inline double vg_cell_shape(const struct vg_tets *t, uint32_t c)
   return vg_shape(t->x[v[0]], t->x[v[1]], t->x[v[2]], t->x[v[3]]);
 }
 
-/** Cell c changed: what was in vain for it and its points may work now. */
+/** Cell c changed: what failed for it and its points may work now. */
 static inline void vg_changed(struct vg_optimiser *o, uint32_t c)
 {
   const uint32_t *v = o->t->cell[c].v;

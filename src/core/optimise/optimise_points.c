@@ -1,5 +1,5 @@
-/* For bad cells that neither swaps nor smoothing mend: a point is taken away,
- * or one is put in (Klingner, Shewchuk, "Aggressive tetrahedral mesh
+/* For bad cells that neither swaps nor smoothing improve: a point is taken
+ * away, or one is put in (Klingner, Shewchuk, "Aggressive tetrahedral mesh
  * improvement", 2007). Both are made only when the worst cell gets better. */
 #include <math.h>
 #include <string.h>

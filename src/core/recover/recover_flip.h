@@ -3,7 +3,7 @@
  * are there already stay.
  *
  * An edge is removed by the best triangulation of the ring around it; where
- * the ring has none, edges beside it go first, to a bounded depth (the n-to-m
+ * the ring has none, adjacent edges go first, to a bounded depth (the n-to-m
  * flips of H. Si, "TetGen, a Delaunay-based quality tetrahedral mesh
  * generator", ACM TOMS 41(2), 2015). What is in the way of an edge or a
  * triangle is counted by exact signs, and never grows; the shape of the cells

@@ -24,7 +24,7 @@
 struct vg_limited_source {
   size_t source;         /* its index */
   size_t n_place, n_limited; /* in the void; of them with too large a size */
-  double at[3];          /* where it gets least, if all are held: its best
+  double at[3];          /* where it gets least, if all are held back: its best
                             place; else the one where most is amiss */
   double asked, got;     /* there */
   size_t face;           /* triangle of the front that holds it back there;

@@ -40,7 +40,7 @@ static int is_vgrid(enum vg_source_kind kind)
   return kind == VG_SOURCE_VGRID_NODE || kind == VG_SOURCE_VGRID_LINE;
 }
 
-/* What is wrong with a source and how to mend it, or NULL. */
+/* What is wrong with a source and how to correct it, or NULL. */
 static const char *defect(const struct vg_source *s)
 {
   double d[3];

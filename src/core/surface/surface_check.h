@@ -78,7 +78,7 @@ struct vg_surface_check_options {
 };
 #define VG_SURFACE_CHECK_OPTIONS_INIT { 1, 0, 0, 1 }
 
-/** Find (and with `repair` mend) the defects of the boundary faces of m.
+/** Find (and with `repair` fix) the defects of the boundary faces of m.
  *
  * The repair merges points with the same coordinates, drops unused points,
  * triangles with a repeated node and copies of a triangle (same nodes, side

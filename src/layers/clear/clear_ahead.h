@@ -29,7 +29,7 @@ struct vg_ahead {
 
 /** Does the line from o along u pass through a triangle (corners p, unit normal
  * n), or nearly so, nearer than *along? Where: *along. The slack closes the
- * seams between triangles. */
+ * gaps between triangles. */
 int vg_line_hits(const double o[3], const double u[3], const double (*p)[3],
                  const double n[3], double *along);
 

@@ -53,7 +53,7 @@ struct vg_layer_report {
   size_t n_layer_point;     /* points above the wall, flanks included */
   size_t cause[VG_CAUSE_N], squeezed[VG_CAUSE_N];  /* columns */
   size_t n_round;           /* of lowering until clear */
-  size_t n_slide_patch, n_slide_tri;  /* patches beside walls; triangles they
+  size_t n_slide_patch, n_slide_tri;  /* patches next to walls; triangles they
                                          have in the front */
   double time_topology, time_direction, time_height, time_clear, time_slide,
          time_total;

@@ -81,8 +81,8 @@ static uint64_t weight_of(const struct vg_layer_slices *k, size_t slice)
   return slice < k->n_part ? SLICE_POINTS / 8 : cells_of(k, slice) / 2;
 }
 
-/* Up to where all ranks are to be filled, so that `n` more find room: as water
- * in vessels of which some hold more than that already. */
+/* Up to where all ranks are to be filled, so that `n` more fit: water filling,
+ * where some ranks have more than that already. */
 static double level_of(size_t size, const uint64_t *n_field, uint64_t n)
 {
   double level = INFINITY;

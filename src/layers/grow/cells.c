@@ -242,8 +242,8 @@ static void search_body(void *context, size_t first, size_t end, int worker)
 }
 
 /* A cell that fails at some height will fail there however many layers lead
- * up to it: what is lowered are the columns that reach farthest, of those to
- * blame, not one that already keeps low. One that fails on the wall itself
+ * up to it: what is lowered are the columns that reach farthest, of those at
+ * fault, not one that is low already. One that fails on the wall itself
  * leaves no height at all. least: [3] out, INFINITY where not lowered. */
 static void limits(const struct vg_layer_work *w, const uint32_t face[3],
                    int level, int blame, double least[3])

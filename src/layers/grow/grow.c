@@ -125,7 +125,7 @@ static vg_status arrays(struct vg_layer_work *w, struct vg_error *err)
   return vg_fail_memory(err, "the layers");
 }
 
-/* Rooms before anything is tried: no view, corners, what stands ahead. */
+/* Allowed heights to begin with: no view, corners, what stands ahead. */
 static vg_status first_allowed(struct vg_layer_work *w,
                                struct vg_layer_report *r, struct vg_error *err)
 {
@@ -321,7 +321,7 @@ static vg_status settle(struct vg_layer_work *w, struct rounds *q,
 }
 
 /* The first test that fails lowers columns, and the round begins again with
- * those that moved. Rooms only ever shrink, so it ends. */
+ * those that moved. Heights only ever shrink, so it ends. */
 static vg_status one_round(struct vg_layer_work *w, struct rounds *q,
                            struct vg_layer_front *front,
                            struct vg_layer_report *r, size_t *n_bad,

@@ -12,7 +12,7 @@
  * @param sizing  over `surface`; sets where layers end and the size of new
  *                triangles on slide patches
  * @param out     untouched on failure
- * Columns never lose their first height: where room lacks, growth is lowered
+ * Columns never lose their first height: where height lacks, growth is lowered
  * first, then levels, and each column says why.
  * On return every cell that the columns imply is positive, every prism among
  * them has positive corners, and the front does not touch itself.

@@ -1,7 +1,7 @@
-/* Heights: how many layers, how high, and how much less where room lacks.
+/* Heights: how many layers, how high, and how much less where they must be.
  * Declared in layers/grow/work.h.
  *
- * Room is lost to the growth first: a column keeps its first height and its
+ * Growth is lowered first: a column keeps its first height and its
  * number of layers and grows more slowly (the cap of its law is lowered).
  * Only where layers of equal thickness would still be too high are levels
  * dropped. */

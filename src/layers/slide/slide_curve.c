@@ -341,8 +341,8 @@ static double top_edge(const struct vg_slide_work *w, uint32_t i)
   return n ? sum / n : 0;
 }
 
-/* Cut the chain at the top of column i, which stands at its start; blame the
- * column if it does not fit. *keep == c->n: blamed. */
+/* Cut the chain at the top of column i, which stands at its start; mark the
+ * column if it does not fit. *keep == c->n: marked. */
 static vg_status cut_start(struct vg_slide_work *w, const struct chain *c,
                            uint32_t i, struct end *top, size_t *keep)
 {

@@ -64,7 +64,7 @@ struct vg_slide_work {
   /* Triangles of re-meshed patches. */
   size_t n_new, cap_new, cap_new_patch;
   uint32_t (*new_tri)[3], *new_patch;
-  /* Trouble. */
+  /* Failures. */
   uint8_t *bad;             /* [n_column] 2: at any height */
   size_t n_bad, cap_path;
   char *text;               /* [200] "" until something fails */
@@ -96,12 +96,12 @@ static inline uint64_t vg_slide_key(uint32_t a, uint32_t b)
 vg_status vg_slide_add_point(struct vg_slide_work *w, const double x[3],
                              uint32_t *number);
 
-/** Note that column i is in trouble (columns without levels cannot be). The
- * first call says why: what, in patch, near x. */
+/** Mark column i as failed (columns without levels cannot be). The first
+ * call says why: what, in patch, near x. */
 void vg_slide_blame(struct vg_slide_work *w, uint32_t i, uint32_t patch,
                     const double x[3], const char *what);
 
-/** Blame all rim columns of part s. */
+/** Mark all rim columns of part s. */
 void vg_slide_blame_all(struct vg_slide_work *w, size_t s, const char *what);
 
 /** The half-edge from b to a (twin of a -> b) in a slide patch, or
@@ -127,7 +127,7 @@ struct vg_slide_loops {
   uint32_t (*edge)[2];
 };
 
-/** Boundary of part s; empty where columns were blamed. */
+/** Boundary of part s; empty where columns were marked. */
 vg_status vg_slide_boundary(struct vg_slide_work *w, size_t s,
                             struct vg_slide_loops *out);
 
@@ -146,7 +146,7 @@ void vg_slide_to_plane(const struct vg_slide_frame *f, const double x[3],
 void vg_slide_to_space(const struct vg_slide_frame *f, const double p[2],
                        double x[3]);
 
-/** Blame columns at which the boundary crosses itself or enters a flank.
+/** Mark columns at which the boundary crosses itself or enters a flank.
  *
  * @param p      coordinates in the plane, by w->local of the loops' points
  * @param n_bad  out: how many such places; 0: the region is as it should be */
@@ -175,7 +175,7 @@ vg_status vg_slide_graph(const struct vg_slide_work *w, size_t s,
                          struct vg_slide_graph *g);
 void vg_slide_graph_release(struct vg_slide_graph *g);
 
-/** Blame the rim columns of part s, which is no graph: for good when it is
+/** Mark the rim columns of part s, which is no graph: for good when it is
  * none even right at their roots, since less height leaves a smaller part. */
 void vg_slide_blame_steep(struct vg_slide_work *w, size_t s);
 

@@ -107,7 +107,7 @@ static void release_region(struct vg_slide_work *w, struct region *r)
   free(r->p);
 }
 
-/* Slivers between points of the boundary: blame their columns. */
+/* Slivers between points of the boundary: mark their columns. */
 static void check_slivers(struct vg_slide_work *w, size_t s,
                           const struct region *r, size_t n_tri,
                           const uint32_t (*tri)[3])

@@ -1,5 +1,5 @@
 /* partition/cut/node.h: one void on its way through the advancing partition.
- * For the rooms of partition alone. */
+ * For the modules of partition alone. */
 #ifndef VG_PARTITION_CUT_NODE_H
 #define VG_PARTITION_CUT_NODE_H
 

@@ -47,7 +47,7 @@ struct vg_partition_report {
   uint64_t n_found;          /* tasks whose outcome was in the store */
   uint64_t n_repair_moved;   /* moves of points on interfaces: some twice */
   uint64_t n_repair_swapped; /* swaps of faces and edges across interfaces */
-  uint64_t n_repair;         /* bad regions beside interfaces; those that got
+  uint64_t n_repair;         /* bad regions at interfaces; those that got
                                 better */
   uint64_t n_repaired;
   uint64_t n_repair_cell;    /* cells in all those regions */

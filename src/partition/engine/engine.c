@@ -55,7 +55,7 @@ static int legal(const struct vg_task *t)
          isfinite(t->priority) && isfinite(t->weight);
 }
 
-/* Room for the fresh tasks in all lists, so that entering them cannot fail. */
+/* Memory for the new tasks in all lists, so that entering them cannot fail. */
 static int make_room(struct vg_engine *e)
 {
   size_t n = e->n_fresh + 1;

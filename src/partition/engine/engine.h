@@ -4,7 +4,7 @@
  * rank; its outcome returns home, where it may make further tasks. There are
  * no levels and no barriers: whoever is idle takes the task at hand with the
  * highest priority. No rank only manages: a thread of rank 0 that sleeps
- * nearly always keeps the list, and each rank has one that serves messages.
+ * nearly always keeps the schedule, and each rank has one that serves messages.
  *
  * Which worker does what depends on timing. So what a task computes must
  * follow from its input alone, and what it makes be named by its path. */

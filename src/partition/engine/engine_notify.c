@@ -37,8 +37,8 @@ void vg_engine_send(struct vg_engine *e, int to, int kind, struct vg_msg msg)
   post_copy(e, to, kind, &msg, sizeof msg);
 }
 
-/* Give the fresh tasks their numbers; room was made when they were
- * submitted. Pinned ones need not wait for the list. */
+/* Give the new tasks their numbers; memory was taken when they were
+ * submitted. Pinned ones need not wait for the schedule. */
 static uint64_t enter_fresh(struct vg_engine *e)
 {
   size_t n = e->n_fresh;

@@ -103,7 +103,7 @@ struct vg_return {
 /* --- state --------------------------------------------------------------- */
 
 /* A task: one at its home until it has ended, another one where it is done.
- * Its way: fresh -> [list] -> queue (or out) -> run -> ended. */
+ * Its way: new -> [schedule] -> queue (or out) -> run -> ended. */
 struct vg_job {
   struct vg_heap place;      /* in queue; must be first */
   struct vg_task task;
@@ -119,7 +119,7 @@ struct vg_job {
 
 struct vg_jobs { struct vg_job *first, *last; };
 
-/* A task that waits on the list. */
+/* A task that waits in the schedule. */
 struct vg_ready {
   struct vg_heap place;      /* must be first */
   char path[VG_PATH_MAX];
@@ -162,7 +162,7 @@ struct vg_engine {
   pthread_mutex_t lock;
   pthread_cond_t work, handler, serve;
   struct vg_worker *worker;  /* [threads], and the handler */
-  int handler_at;              /* there; 0: none, in a job of one rank */
+  int handler_at;            /* in worker[]; 0: none, in a job of one rank */
   atomic_int stopping;
   int over;                  /* threads are to leave */
   int ending;                /* END has been said (rank 0) or heard */
@@ -171,13 +171,13 @@ struct vg_engine {
   struct vg_heap *queue[2];  /* jobs to be done here: free, pinned */
   struct vg_loop *loops;     /* that workers may help with */
   size_t n_idle;             /* workers that sleep */
-  struct vg_jobs ended;      /* home jobs, to be told to `done` */
+  struct vg_jobs ended;      /* home tasks, for `done` */
   struct vg_jobs out;        /* jobs whose input goes to job->to */
   int in_done;               /* a thread is there, or first tasks are made */
   char doing[VG_PATH_MAX];   /* the task whose `done` runs */
-  struct vg_job **fresh;     /* [n_fresh] submitted, not told yet */
+  struct vg_job **fresh;     /* [n_fresh] submitted, not sent yet */
   size_t n_fresh, cap_fresh;
-  struct vg_notice *notice;  /* [cap_notice] room for the fresh */
+  struct vg_notice *notice;  /* [cap_notice] for new tasks */
   size_t cap_notice;
   struct vg_job **home;      /* [n_home] by handle; NULL when ended */
   size_t n_home, cap_home;
@@ -196,7 +196,7 @@ void vg_engine_lock(struct vg_engine *e);
 void vg_engine_unlock(struct vg_engine *e);
 void vg_job_free(struct vg_engine *e, struct vg_job *j);  /* without lock too */
 
-/* engine_notify.c: to the list, wherever it is; and the thread that serves. */
+/* engine_notify.c: to the schedule, wherever it is; and who serves. */
 void vg_engine_wake(struct vg_engine *e);
 void vg_engine_post(struct vg_engine *e, int to, int kind, struct vg_bytes *b);
 void vg_engine_send(struct vg_engine *e, int to, int kind, struct vg_msg msg);
@@ -218,7 +218,7 @@ void *vg_work_handler(void *worker);
 void vg_loop_enter(struct vg_worker *w);      /* without lock: this thread */
 int vg_loop_help(struct vg_worker *w);        /* 1: it did; lock left for it */
 
-/* engine_serve.c: what the list says, and the loop (without lock). */
+/* engine_serve.c: what the schedule says, and the loop (without lock). */
 void vg_serve_assign(struct vg_engine *e, uint64_t handle, int to);
 void vg_serve_recall(struct vg_engine *e, int to);
 void vg_serve_drain(struct vg_engine *e);

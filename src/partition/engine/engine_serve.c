@@ -5,7 +5,7 @@
  * longer while nothing happens, until the polls take SHARE of a core. What one
  * takes is measured, as it differs tenfold between machines: so where waking
  * is cheap, messages wait less. Those from the same node wait for nothing, as
- * the sender rings. Alone it is only woken for the caller's. */
+ * the sender wakes. Alone it is only woken for the caller's. */
 #define _GNU_SOURCE
 #include <math.h>
 #include <stdlib.h>
@@ -368,8 +368,8 @@ static void sleep_so_long(struct vg_engine *e, double seconds, unsigned bell)
   pthread_cond_timedwait(&e->serve, &e->lock, &until);
 }
 
-/* Sleep, unless over, something is to be sent, or the bell has rung since it
- * was heard. Returns 1 when over. */
+/* Sleep, unless over, something is to be sent, or there was a wakeup since the
+ * count was read. Returns 1 when over. */
 static int doze(struct vg_engine *e, struct pace *pace, int active,
                 unsigned bell)
 {

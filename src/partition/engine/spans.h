@@ -18,7 +18,7 @@ enum {
   VG_SPAN_LEAF = 'L',        /* what is left, filled */
   VG_SPAN_JOIN = 'J',        /* outcomes of one stage put into a void, its
                                 components found, the next stage planned */
-  VG_SPAN_REPAIR = 'R'       /* cells beside interfaces improved */
+  VG_SPAN_REPAIR = 'R'       /* cells at interfaces improved */
 };
 
 struct vg_span {

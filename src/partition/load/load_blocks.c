@@ -1,4 +1,4 @@
-/* Outline: cubes are dealt out to the blocks of a lattice by where they are,
+/* Outline: cubes are assigned to the blocks of a lattice by where they are,
  * in chunks that threads share: first all are counted, then written, so their
  * order in a block is the parent's. */
 #include <math.h>

@@ -143,7 +143,7 @@ done:
   return st;
 }
 
-/* Cells beside interfaces get better when all leaves are there: as many tasks
+/* Cells at interfaces get better when all leaves are there: as many tasks
  * as zones, each with an equal share of their cells. */
 static vg_status add_repairs(struct forecast *c)
 {

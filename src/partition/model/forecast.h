@@ -22,7 +22,7 @@ struct vg_task_rate { double task, even, graded, face, made, hand, loops; };
 struct vg_rates {
   struct vg_task_rate pencil, rib, tile, leaf;
   struct vg_task_rate closing;   /* where parts still hang together */
-  struct vg_task_rate repair;    /* beside interfaces, per cell of a zone */
+  struct vg_task_rate repair;    /* at interfaces, per cell of a zone */
   struct vg_task_rate plan, join, close, split;  /* joins: the first of a node,
                                     those between stages, the one that looks
                                     for such places, the last */

@@ -63,7 +63,7 @@ struct vg_blocks {
   struct vg_part *part;          /* [n] x first */
 };
 
-/** Load, front and box of p dealt out to the blocks of a lattice. Call
+/** Load, front and box of p divided among the blocks of a lattice. Call
  * vg_blocks_release in any case. */
 vg_status vg_blocks_open(struct vg_blocks *b, const struct vg_lattice *l,
                          const struct vg_part *p, struct vg_error *err);

@@ -137,7 +137,7 @@ static vg_status pick(struct repair *r, struct vg_error *err)
   return VG_OK;
 }
 
-/* --- to the ranks that mend ---------------------------------------------- */
+/* --- to the ranks that repair -------------------------------------------- */
 
 static uint64_t name_of(const struct vg_piece *q, uint32_t v)
 {
@@ -277,7 +277,7 @@ static vg_status send_cells(struct repair *r, struct vg_comm *comm,
   return st;
 }
 
-/* --- mending ------------------------------------------------------------- */
+/* --- repairs ------------------------------------------------------------- */
 
 static void cluster_body(void *context, size_t first, size_t end, int worker)
 {

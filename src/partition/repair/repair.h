@@ -1,9 +1,9 @@
-/* partition/repair/repair.h: cells beside interfaces get better, whichever
+/* partition/repair/repair.h: cells at interfaces get better, whichever
  * tasks made them. Uses core, node.h.
  *
  * A task leaves the front that it was given as it is, so points on interfaces
  * lack sweeps of the optimisation: they get two first, with swaps across the
- * interfaces before the second, and those beside them one (repair_smooth.c).
+ * interfaces before the second, and adjacent ones one (repair_smooth.c).
  * What is bad then may need changes on both sides. Such cells are found, each
  * with a ball around it; balls that overlap are a cluster. The cells with a
  * corner in a cluster's balls are taken from their pieces and repaired on one
@@ -19,7 +19,7 @@
 
 #include "partition/cut/node.h"
 
-/** Mend cells beside interfaces. Collective; call between the end of the
+/** Improve cells at interfaces. Collective; call between the end of the
  * engine and numbering. spans: those of the engine, on all ranks or none; tasks
  * are added to them. Fills what concerns it in p->report, the same on all
  * ranks. VG_ERR_MEMORY: pieces are then of no further use. */

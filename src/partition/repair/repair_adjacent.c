@@ -1,4 +1,4 @@
-/* Points beside interfaces: their neighbours there moved, so they get a sweep
+/* Points next to interfaces: their neighbours there moved, so they get a sweep
  * more. */
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-/* Balls around bad cells, who has which piece, and letters to other ranks. */
+/* Balls around bad cells, who has which piece, and messages to other ranks. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -92,7 +92,7 @@ const struct vg_owner *vg_owners_find(const struct vg_owners *o, uint64_t name)
   return bsearch(&key, o->at, o->n, sizeof key, by_serial);
 }
 
-/* --- letters ------------------------------------------------------------- */
+/* --- messages ------------------------------------------------------------ */
 
 vg_status vg_outbox_new(struct vg_outbox *post, int size, struct vg_error *err)
 {

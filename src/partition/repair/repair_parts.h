@@ -111,7 +111,7 @@ void vg_halo_refresh(const struct vg_piece *q, struct vg_halo *s);
 
 /** As vg_shape. Points with a cell below the first (42 degrees) around them
  * are smoothed in the first round, below the second (48) in the second and
- * beside; cells below the third (39) are swapped. */
+ * as adjacent points; cells below the third (39) are swapped. */
 #define VG_SHAPE_LEVEL 0.45f   /* R1 */
 #define VG_SHAPE_ADJACENT 0.55f   /* R2 */
 #define VG_SHAPE_SWAP 0.4f   /* R3 */
@@ -125,7 +125,7 @@ vg_status vg_repair_adjacent(const struct vg_piece *q,
                              const uint32_t *hit, const uint8_t *shared,
                              struct vg_spots *out);
 
-enum {                       /* what is known of a cell of a field */
+enum {                       /* what is known of a cell in it */
   VG_FIELD_TOLD = 1,         /* an earlier owner looks at it */
   VG_FIELD_LATER = 2,        /* an earlier owner may move a point of it */
   VG_FIELD_NEW = 4 };
@@ -229,8 +229,7 @@ void vg_block_put(struct vg_writer *w, const struct vg_block *b);
 /** Sets r->bad, and leaves *b empty, where the data cannot be. */
 void vg_block_get(struct vg_reader *r, struct vg_block *b);
 
-/* --- the boundary (repair_boundary.c)
- * ------------------------------------------ */
+/* --- the boundary (repair_boundary.c) ------------------------------------ */
 
 /* Its triangles between points that clusters have: a sheet with cells on both
  * sides cannot be told from other faces of three boundary points by the cells
@@ -269,7 +268,7 @@ struct vg_repaired {
 
 void vg_repaired_release(struct vg_repaired *m);
 
-/** Mend the cells of a cluster. block: [n] by path. */
+/** Improve the cells of a cluster. block: [n] by path. */
 vg_status vg_repair_cluster(size_t n, const struct vg_block *block,
                             const struct vg_balls *balls,
                             const struct vg_repair_boundary *rim,
