@@ -136,7 +136,8 @@ static vg_status find_holes(const struct vg_mesh *m, size_t *n,
   for (size_t i = 0; i < np; i++) parent[i] = (uint32_t)i;
   for (size_t i = 0; i < m->n_tri; i++)
     for (int k = 1; k < 3; k++)
-      parent[vg_root_of(parent, m->tri[i][k])] = vg_root_of(parent, m->tri[i][0]);
+      parent[vg_root_of(parent, m->tri[i][k])] = vg_root_of(parent,
+                                                            m->tri[i][0]);
   for (size_t i = 0; i < m->n_tri; i++) {
     uint32_t r = vg_root_of(parent, m->tri[i][0]);
     const double *a = m->point[m->tri[i][0]], *b = m->point[m->tri[i][1]];

@@ -10,20 +10,20 @@ target_include_directories(vg_flags INTERFACE ${PROJECT_SOURCE_DIR}/src)
 set(CMAKE_C_FLAGS_RELEASE "-O3 -g -DNDEBUG")
 set(CMAKE_CXX_FLAGS_RELEASE "-O2 -g -DNDEBUG")
 
-# vg_room(FOLDER SEEN...): the sources of a folder of src as one part of the
+# vg_module(FOLDER SEEN...): the sources of a folder of src as one part of the
 # program, that sees the headers of others: src/CMakeLists.txt.
-function(vg_room room)
-  string(REPLACE "/" "_" target "vg_${room}")
-  file(GLOB sources CONFIGURE_DEPENDS ${room}/*.c ${room}/*.cpp)
+function(vg_module module)
+  string(REPLACE "/" "_" target "vg_${module}")
+  file(GLOB sources CONFIGURE_DEPENDS ${module}/*.c ${module}/*.cpp)
   add_library(${target} OBJECT ${sources})
   target_link_libraries(${target} PUBLIC vg_flags)
   foreach(seen ${ARGN})
     string(REPLACE "/" "_" below "vg_${seen}")
     if(NOT TARGET ${below})
-      message(FATAL_ERROR "src/CMakeLists.txt: ${room} sees ${seen}, which is "
+      message(FATAL_ERROR "src/CMakeLists.txt: ${module} sees ${seen}, which is "
         "not above it in the list")
     endif()
     target_link_libraries(${target} PUBLIC ${below})
   endforeach()
-  set_property(GLOBAL APPEND PROPERTY VG_ROOMS ${room})
+  set_property(GLOBAL APPEND PROPERTY VG_MODULES ${module})
 endfunction()

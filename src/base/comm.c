@@ -201,7 +201,7 @@ static vg_status join(struct vg_comm *c, MPI_Comm of, struct vg_error *err)
 {
   int rc;
 
-  if ((rc = duplicate(of, &c->all)) || (rc = duplicate(of, &c->wire)) ||
+  if ((rc = duplicate(of, &c->all)) || (rc = duplicate(of, &c->message_comm)) ||
       (rc = MPI_Comm_rank(c->all, &c->rank)) ||
       (rc = MPI_Comm_size(c->all, &c->size)) ||
       (rc = MPI_Comm_split_type(c->all, MPI_COMM_TYPE_SHARED, c->rank,
@@ -229,7 +229,7 @@ vg_status vg_comm_take_for_nodes(struct vg_comm *c, int ranks,
 static void leave(struct vg_comm *c)
 {
   if (c->node != MPI_COMM_NULL) MPI_Comm_free(&c->node);
-  if (c->wire != MPI_COMM_NULL) MPI_Comm_free(&c->wire);
+  if (c->message_comm != MPI_COMM_NULL) MPI_Comm_free(&c->message_comm);
   if (c->all != MPI_COMM_NULL) MPI_Comm_free(&c->all);
   if (c->owns_mpi) MPI_Finalize();
   vg_comm_messages_release(c);
@@ -254,7 +254,7 @@ static struct vg_comm *new_comm(void)
   struct vg_comm *c = vg_calloc(1, sizeof *c);
 
   if (!c) return NULL;
-  c->all = c->wire = c->node = MPI_COMM_NULL;
+  c->all = c->message_comm = c->node = MPI_COMM_NULL;
   c->chunk = CHUNK;
   c->last = &c->first;
   pthread_mutex_init(&c->lock, NULL);

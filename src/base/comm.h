@@ -81,29 +81,29 @@ vg_status vg_comm_node_bcast(struct vg_comm *c, struct vg_bytes *b,
                              struct vg_error *err);
 
 /** Bytes that the ranks of a node have in common, to be read. */
-struct vg_common { size_t n; const unsigned char *data; int is_mapped; };
+struct vg_shmem { size_t n; const unsigned char *data; int is_mapped; };
 
-enum { VG_COMMON_ALIGN = 64 };
+enum { VG_SHMEM_ALIGN = 64 };
 
 /** From the beginning of a part of n bytes to the next one's. */
-static inline size_t vg_common_padded(size_t n)
+static inline size_t vg_shmem_padded(size_t n)
 {
-  return (n + VG_COMMON_ALIGN - 1) / VG_COMMON_ALIGN * VG_COMMON_ALIGN;
+  return (n + VG_SHMEM_ALIGN - 1) / VG_SHMEM_ALIGN * VG_SHMEM_ALIGN;
 }
 
 /** The parts [n_part] of the first rank of a node on all of its ranks: one
- * behind the other, each from a multiple of VG_COMMON_ALIGN on. One copy in
+ * behind the other, each from a multiple of VG_SHMEM_ALIGN on. One copy in
  * memory that the ranks have in common, or one on each where the system
  * refuses that. Elsewhere n_part and part are not looked at.
  *
- * @param out  vg_common_release; untouched on failure, which all ranks of the
+ * @param out  vg_shmem_release; untouched on failure, which all ranks of the
  *             node have. Local from then on: a rank may release it before
  *             others do */
-vg_status vg_comm_node_common(struct vg_comm *c, size_t n_part,
-                              const struct vg_bytes *part,
-                              struct vg_common *out, struct vg_error *err);
+vg_status vg_comm_node_shmem(struct vg_comm *c, size_t n_part,
+                             const struct vg_bytes *part,
+                             struct vg_shmem *out, struct vg_error *err);
 
-void vg_common_release(struct vg_common *b);
+void vg_shmem_release(struct vg_shmem *b);
 
 /** Bytes of every rank on every rank, in order of ranks: out [size], each to
  * be freed by the caller. */

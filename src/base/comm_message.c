@@ -21,9 +21,9 @@ struct vg_sent {
   unsigned char *data;
 };
 
-struct vg_queued {
+struct vg_self_message {
   struct vg_message message;
-  struct vg_queued *next;
+  struct vg_self_message *next;
 };
 
 /* --- posting ------------------------------------------------------------- */
@@ -55,8 +55,9 @@ static int send_all(struct vg_comm *c, struct vg_sent *s, int to, int kind)
   int rc;
 
   if (s->n <= c->chunk)
-    return send_part(c, s, s->data, (size_t)s->n, to, 2 * kind, c->wire);
-  rc = send_part(c, s, &s->n, sizeof s->n, to, 2 * kind + 1, c->wire);
+    return send_part(c, s, s->data, (size_t)s->n, to, 2 * kind,
+                     c->message_comm);
+  rc = send_part(c, s, &s->n, sizeof s->n, to, 2 * kind + 1, c->message_comm);
   for (size_t at = 0; at < s->n && !rc; at += c->chunk)
     rc = send_part(c, s, s->data + at,
                    s->n - at < c->chunk ? s->n - at : c->chunk, to,
@@ -67,10 +68,10 @@ static int send_all(struct vg_comm *c, struct vg_sent *s, int to, int kind)
 static vg_status post_to_self(struct vg_comm *c, int kind, struct vg_bytes *b,
                               struct vg_error *err)
 {
-  struct vg_queued *q = vg_alloc(1, sizeof *q);
+  struct vg_self_message *q = vg_alloc(1, sizeof *q);
 
   if (!q) return vg_fail_memory(err, "a message");
-  *q = (struct vg_queued){ { c->rank, kind, *b }, NULL };
+  *q = (struct vg_self_message){ { c->rank, kind, *b }, NULL };
   pthread_mutex_lock(&c->lock);
   *c->last = q;
   c->last = &q->next;
@@ -143,10 +144,10 @@ static vg_status reclaim(struct vg_comm *c, struct vg_error *err)
   return VG_OK;
 }
 
-/* --- arriving ------------------------------------------------------------ */
+/* --- incoming ------------------------------------------------------------ */
 
 /* Receive what was announced; the parts' order is the announcements'. */
-static vg_status start_long(struct vg_comm *c, struct vg_arriving *a,
+static vg_status start_long(struct vg_comm *c, struct vg_incoming *a,
                             MPI_Message *handle, struct vg_error *err)
 {
   struct vg_bytes *b = &a->message.bytes;
@@ -170,7 +171,7 @@ static vg_status start_long(struct vg_comm *c, struct vg_arriving *a,
   return VG_OK;
 }
 
-static vg_status start_short(struct vg_arriving *a, MPI_Message *handle,
+static vg_status start_short(struct vg_incoming *a, MPI_Message *handle,
                              MPI_Status *status, struct vg_error *err)
 {
   struct vg_bytes *b = &a->message.bytes;
@@ -196,7 +197,8 @@ static int probe(struct vg_comm *c, int *is_there, MPI_Message *handle,
 
   *is_there = 0;
   for (int i = 0; i < 2 && !*is_there && !rc; i++)
-    rc = MPI_Improbe(MPI_ANY_SOURCE, MPI_ANY_TAG, c->wire, is_there, handle,
+    rc = MPI_Improbe(MPI_ANY_SOURCE, MPI_ANY_TAG, c->message_comm, is_there,
+                     handle,
                      status);
   return rc;
 }
@@ -204,8 +206,8 @@ static int probe(struct vg_comm *c, int *is_there, MPI_Message *handle,
 /* Start to receive all that is announced, as far as there is room. */
 static vg_status look(struct vg_comm *c, struct vg_error *err)
 {
-  while (c->n_arriving < VG_ARRIVING) {
-    struct vg_arriving *a = &c->arriving[c->n_arriving];
+  while (c->n_incoming < VG_INCOMING_MAX) {
+    struct vg_incoming *a = &c->incoming[c->n_incoming];
     MPI_Message handle;
     MPI_Status status;
     int is_there, rc;
@@ -217,7 +219,7 @@ static vg_status look(struct vg_comm *c, struct vg_error *err)
     memset(a, 0, sizeof *a);
     a->message.from = status.MPI_SOURCE;
     a->message.kind = status.MPI_TAG / 2;
-    c->n_arriving++;         /* before it can fail: its memory is kept */
+    c->n_incoming++;         /* before it can fail: its memory is kept */
     if (status.MPI_TAG % 2) st = start_long(c, a, &handle, err);
     else st = start_short(a, &handle, &status, err);
     if (st < 0) return st;
@@ -228,7 +230,7 @@ static vg_status look(struct vg_comm *c, struct vg_error *err)
 static int is_overtaking(const struct vg_comm *c, int i)
 {
   for (int k = 0; k < i; k++)
-    if (c->arriving[k].message.from == c->arriving[i].message.from) return 1;
+    if (c->incoming[k].message.from == c->incoming[i].message.from) return 1;
   return 0;
 }
 
@@ -236,8 +238,8 @@ static int is_overtaking(const struct vg_comm *c, int i)
 static vg_status take(struct vg_comm *c, struct vg_message *m,
                       struct vg_error *err)
 {
-  for (int i = 0; i < c->n_arriving; i++) {
-    struct vg_arriving *a = &c->arriving[i];
+  for (int i = 0; i < c->n_incoming; i++) {
+    struct vg_incoming *a = &c->incoming[i];
     int is_whole = 0, rc;
 
     if (is_overtaking(c, i)) continue;
@@ -247,7 +249,7 @@ static vg_status take(struct vg_comm *c, struct vg_message *m,
     if (!is_whole) continue;
     *m = a->message;
     free(a->request);
-    memmove(a, a + 1, (size_t)(--c->n_arriving - i) * sizeof *a);
+    memmove(a, a + 1, (size_t)(--c->n_incoming - i) * sizeof *a);
     c->received++;
     return VG_OK;
   }
@@ -257,7 +259,7 @@ static vg_status take(struct vg_comm *c, struct vg_message *m,
 /* Called with the lock. */
 static int take_own(struct vg_comm *c, struct vg_message *m)
 {
-  struct vg_queued *q = c->first;
+  struct vg_self_message *q = c->first;
 
   if (!q) return 0;
   c->first = q->next;
@@ -312,9 +314,9 @@ void vg_comm_messages_release(struct vg_comm *c)
   struct vg_message m;
 
   while (take_own(c, &m)) free(m.bytes.data);
-  for (int i = 0; i < c->n_arriving; i++) {
-    free(c->arriving[i].message.bytes.data);
-    free(c->arriving[i].request);
+  for (int i = 0; i < c->n_incoming; i++) {
+    free(c->incoming[i].message.bytes.data);
+    free(c->incoming[i].request);
   }
   for (int i = 0; i < c->n_request; i++) {
     if (--c->sent[i]->n_left) continue;

@@ -14,13 +14,13 @@ struct vg_cores_mask { unsigned long word[8192 / (8 * sizeof(long))]; };
 /* Tags on `all` outside collectives. */
 enum { VG_TAG_EXCHANGE = 1, VG_TAG_PART = 2 };
 
-enum { VG_ARRIVING = 64 };
+enum { VG_INCOMING_MAX = 64 };
 
 struct vg_wakeup;            /* comm_wake.c */
 struct vg_sent;              /* memory under way, until all requests are done */
-struct vg_queued;            /* a message to oneself */
+struct vg_self_message;            /* a message to oneself */
 
-struct vg_arriving {
+struct vg_incoming {
   struct vg_message message;
   MPI_Request *request;      /* [n_request] */
   int n_request;
@@ -28,14 +28,14 @@ struct vg_arriving {
 
 struct vg_comm {
   MPI_Comm all;              /* collectives, and parts of long messages */
-  MPI_Comm wire;             /* messages */
+  MPI_Comm message_comm;             /* messages */
   MPI_Comm node;             /* ranks of this node */
   int rank, size, node_rank, node_size;
   int owns_mpi;              /* was started here */
   int apart;                 /* ranks of a node have no memory in common */
   size_t chunk;              /* bytes that go in one call of MPI, <= INT_MAX */
   struct vg_cores_mask *core; /* [node_size], their binding when opened */
-  struct vg_common wakeups;  /* memory of these: */
+  struct vg_shmem wakeups;  /* memory of these: */
   struct vg_wakeup *wakeup;  /* [node_size] */
   int *wakeup_at;            /* [size] which is a rank's */
 
@@ -45,12 +45,12 @@ struct vg_comm {
   int *done;                 /* [cap_request] */
   int n_request;
   size_t cap_request, cap_sent, cap_done;
-  struct vg_queued *first, **last;
+  struct vg_self_message *first, **last;
   uint64_t posted;           /* to others, ever */
 
   uint64_t received;         /* from others, ever; the polling thread's */
-  struct vg_arriving arriving[VG_ARRIVING];  /* by time of arrival */
-  int n_arriving;
+  struct vg_incoming incoming[VG_INCOMING_MAX];  /* by time of arrival */
+  int n_incoming;
 };
 
 /** VG_ERR_REMOTE with MPI's reason. */
@@ -67,10 +67,10 @@ vg_status vg_comm_agree_in(const struct vg_comm *c, MPI_Comm comm,
 /** Gather the bindings of the ranks of the node. Collective. */
 vg_status vg_comm_cores_open(struct vg_comm *c, struct vg_error *err);
 
-/** vg_comm_node_common; writes: ranks may change it. */
+/** vg_comm_node_shmem; writes: ranks may change it. */
 vg_status vg_comm_node_memory(struct vg_comm *c, size_t n_part,
                               const struct vg_bytes *part, int writes,
-                              struct vg_common *out, struct vg_error *err);
+                              struct vg_shmem *out, struct vg_error *err);
 
 /** Wakeups of the node. Collective. */
 vg_status vg_comm_wakeups_open(struct vg_comm *c, struct vg_error *err);

@@ -15,7 +15,7 @@
 /* A line of the cache each. */
 struct vg_wakeup {
   atomic_uint count, sleeps;
-  char rest[VG_COMMON_ALIGN - 2 * sizeof(atomic_uint)];
+  char rest[VG_SHMEM_ALIGN - 2 * sizeof(atomic_uint)];
 };
 
 /* wakeup_at [size]: places of the ranks among those of the node, or
@@ -46,7 +46,8 @@ vg_status vg_comm_wakeups_open(struct vg_comm *c, struct vg_error *err)
   vg_status st = VG_OK;
 
   c->wakeup_at = vg_alloc((size_t)c->size, sizeof *c->wakeup_at);
-  if (!none.data || find_neighbours(c)) st = vg_fail_memory(err, "what wakes ranks");
+  if (!none.data || find_neighbours(c)) st = vg_fail_memory(err,
+                                                            "what wakes ranks");
   st = vg_comm_agree_in(c, c->all, st, err);
   if (st >= 0)
     st = vg_comm_node_memory(c, 1, &none, 1, &c->wakeups, err);
@@ -57,7 +58,7 @@ vg_status vg_comm_wakeups_open(struct vg_comm *c, struct vg_error *err)
 
 void vg_comm_wakeups_close(struct vg_comm *c)
 {
-  vg_common_release(&c->wakeups);
+  vg_shmem_release(&c->wakeups);
   free(c->wakeup_at);
 }
 

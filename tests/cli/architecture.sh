@@ -1,15 +1,15 @@
 #!/bin/bash
-# Holds the source against src/CMakeLists.txt, the list of rooms from the bottom
+# Holds the source against src/CMakeLists.txt, the list of modules from the bottom
 # up with those that each one sees. Fails on
-#   - a folder of sources that is no room, a room of more than 40 files
-#   - a room that sees what its part of the program must not (io knows core
+#   - a folder of sources that is no module, a module of more than 40 files
+#   - a module that sees what its part of the program must not (io knows core
 #     only), or sees another without need
-#   - an include without its folder, of a room that is not seen, or of a private
-#     header (NAME_parts.h, or "Private to" in it) of another room
+#   - an include without its folder, of a module that is not seen, or of a private
+#     header (NAME_parts.h, or "Private to" in it) of another module
 #   - headers that include each other
 #   - a third-party header outside the file that adapts it
 #   - a test that tests/README.md does not name
-#   - a symbol of a room further up, with a BUILD folder to look into
+#   - a symbol of a module further up, with a BUILD folder to look into
 # architecture.sh SOURCE_ROOT [BUILD]
 set -u
 build=${2:+$(realpath "$2")}
@@ -22,26 +22,26 @@ complain() {
   bad=1
 }
 
-# --- rooms ---
+# --- modules ---
 
 declare -A place sees used
-rooms=()
-while read -r room seen; do
-  place[$room]=${#rooms[@]}
-  rooms+=("$room")
-  sees[$room]=" $seen "
-done < <(awk '/^vg_room\(/ { on = 1; line = "" }
+modules=()
+while read -r module seen; do
+  place[$module]=${#modules[@]}
+  modules+=("$module")
+  sees[$module]=" $seen "
+done < <(awk '/^vg_module\(/ { on = 1; line = "" }
   on { line = line " " $0 }
-  on && /\)/ { gsub(/vg_room\(|\)/, " ", line); print line; on = 0 }' \
+  on && /\)/ { gsub(/vg_module\(|\)/, " ", line); print line; on = 0 }' \
   CMakeLists.txt)
 
 # The parts of the program that a part may see, besides base.
 declare -A parts=([base]="" [core]="core" [layers]="core layers"
   [partition]="core layers partition" [io]="core io"
   [cli]="core layers partition io cli")
-for room in "${rooms[@]}"; do
-  part=${room%%/*}
-  for seen in ${sees[$room]}; do
+for module in "${modules[@]}"; do
+  part=${module%%/*}
+  for seen in ${sees[$module]}; do
     [[ " base ${parts[$part]-} " = *" ${seen%%/*} "* ]] ||
       complain "src/CMakeLists.txt: $part must not see $seen"
   done
@@ -51,7 +51,7 @@ while read -r n folder; do
   [ -n "${place[$folder]-}" ] ||
     complain "src/$folder: a folder without a place in src/CMakeLists.txt"
   [ "$n" -le $MOST_FILES ] ||
-    complain "src/$folder: $n files, at most $MOST_FILES in a room"
+    complain "src/$folder: $n files, at most $MOST_FILES in a module"
 done < <(find . -mindepth 2 -name '*.[ch]*' -printf '%P\n' |
   grep -v '^cli/main\.c$' | sed 's,/[^/]*$,,' | sort | uniq -c)
 
@@ -81,14 +81,14 @@ while IFS=: read -r file line text; do
   elif [[ ${sees[$from]-} != *" $to "* ]]; then
     complain "src/$file:$line: $from must not include $to ($target)"
   elif [ -n "${is_private[$target]-}" ]; then
-    complain "src/$file:$line: $target is private to its room"
+    complain "src/$file:$line: $target is private to its module"
   fi
 done <<< "$includes"
 
-for room in "${rooms[@]}"; do
-  for seen in ${sees[$room]}; do
-    [ -n "${used["$room $seen"]-}" ] ||
-      complain "src/CMakeLists.txt: $room sees $seen, and includes nothing of it"
+for module in "${modules[@]}"; do
+  for seen in ${sees[$module]}; do
+    [ -n "${used["$module $seen"]-}" ] ||
+      complain "src/CMakeLists.txt: $module sees $seen, and includes nothing of it"
   done
 done
 
@@ -132,21 +132,21 @@ fi
 
 # "ROOM SYMBOL kind" of every object, kind U where it is used only.
 symbols() {
-  local room
-  for room in "${rooms[@]}"; do
-    find "$build/src/CMakeFiles/vg_${room//\//_}.dir" -name '*.o' -print0 \
+  local module
+  for module in "${modules[@]}"; do
+    find "$build/src/CMakeFiles/vg_${module//\//_}.dir" -name '*.o' -print0 \
       2>/dev/null | xargs -0r nm -g 2>/dev/null |
-      awk -v room="$room" -v at="${place[$room]}" 'NF >= 2 && $NF ~ /^vg_/ {
-        print at, room, $NF, $(NF - 1) }'
+      awk -v module="$module" -v at="${place[$module]}" 'NF >= 2 && $NF ~ /^vg_/ {
+        print at, module, $NF, $(NF - 1) }'
   done
 }
 if [ -n "$build" ]; then
-  upward=$(symbols | sort -u | awk '$4 != "U" { at[$3] = $1; room[$3] = $2 }
+  upward=$(symbols | sort -u | awk '$4 != "U" { at[$3] = $1; module[$3] = $2 }
     $4 == "U" { user[++n] = $1; from[n] = $2; what[n] = $3 }
     END {
       for (i = 1; i <= n; i++)
         if (what[i] in at && at[what[i]] + 0 > user[i] + 0)
-          print from[i] " uses " what[i] " of " room[what[i]]
+          print from[i] " uses " what[i] " of " module[what[i]]
     }')
   [ -z "$upward" ] || complain "$upward"
 fi

@@ -113,7 +113,7 @@ static void make(int ranks, int threads, struct vg_timeline *t)
   static const double seconds[VG_PHASE_N] = { 0.2, 0.5, 0.4, 1.1, 0, 0.1,
                                               0.3, 0.6, 0 };
   struct vg_machine m = VG_MACHINE_INIT;
-  struct vg_forecast f;
+  struct vg_model_result f;
   struct vg_spans s = VG_SPANS_INIT;
   uint32_t seed = 5;
 

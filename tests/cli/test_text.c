@@ -68,7 +68,7 @@ static void test_end(void **state)
   (void)state;
   for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
     strcpy(text, row[i].text);
-    vg_text_mend_end(text);
+    vg_text_trim_end(text);
     assert_string_equal(text, row[i].mended);
   }
 }

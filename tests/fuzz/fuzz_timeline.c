@@ -8,7 +8,7 @@ static void replay(const struct vg_timeline *t)
 {
   struct vg_machine m = VG_MACHINE_INIT;
   struct vg_spans spans = VG_SPANS_INIT;
-  struct vg_forecast f;
+  struct vg_model_result f;
   struct vg_error err = VG_ERROR_INIT;
   vg_status st;
 

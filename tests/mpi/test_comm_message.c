@@ -154,7 +154,7 @@ static void wrong_addresses_are_refused(void **state)
 enum { THREADS = 3, POSTS = 300 };
 
 /* A turn around all ranks of one node: each posts to the next when it has
- * heard from the one before, and looks only when its bell rings. One that is
+ * heard from the one before, and looks only when its wakes rings. One that is
  * not rung, or that finds nothing when it is, sleeps for minutes. */
 static void who_listens_is_woken(void **state)
 {
@@ -166,13 +166,13 @@ static void who_listens_is_woken(void **state)
   for (uint32_t turn = 0; turn < 50; turn++) {
     struct vg_bytes b = body((uint32_t)rank, turn, 9);
     struct vg_message m;
-    unsigned bell;
+    unsigned wakes;
 
     if (!rank)
       assert_int_equal(vg_comm_post(job, 1 % size, 1, &b, NULL), VG_OK);
-    for (bell = vg_comm_wake_count(job); vg_comm_poll(job, &m, NULL) != VG_OK;
-         bell = vg_comm_wake_count(job))
-      vg_comm_sleep(job, bell, 600);
+    for (wakes = vg_comm_wake_count(job); vg_comm_poll(job, &m, NULL) != VG_OK;
+         wakes = vg_comm_wake_count(job))
+      vg_comm_sleep(job, wakes, 600);
     assert_int_equal(open_body(&m.bytes, 9).number, turn);
     free(m.bytes.data);
     if (rank)

@@ -16,7 +16,7 @@ static void share_parts(int is_mapped)
 {
   int leads = vg_comm_node_rank(job) == 0;
   struct vg_bytes part[N_LENGTH];
-  struct vg_common common;
+  struct vg_shmem common;
   const unsigned char *at;
 
   for (size_t p = 0; p < N_LENGTH && leads; p++) {
@@ -24,7 +24,7 @@ static void share_parts(int is_mapped)
     part[p].data = vg_alloc(length[p], 1);
     for (size_t i = 0; i < length[p]; i++) part[p].data[i] = value(p, i);
   }
-  assert_int_equal(vg_comm_node_common(job, leads ? N_LENGTH : 0,
+  assert_int_equal(vg_comm_node_shmem(job, leads ? N_LENGTH : 0,
                                        leads ? part : NULL, &common, NULL),
                    VG_OK);
   for (size_t p = 0; p < N_LENGTH && leads; p++) free(part[p].data);
@@ -35,10 +35,10 @@ static void share_parts(int is_mapped)
 
     for (size_t i = 0; i < length[p]; i++) n_bad += at[i] != value(p, i);
     assert_int_equal(n_bad, 0);
-    at += vg_common_padded(length[p]);
+    at += vg_shmem_padded(length[p]);
   }
   assert_true(at == common.data + common.n);
-  vg_common_release(&common);
+  vg_shmem_release(&common);
   assert_null(common.data);
 }
 
@@ -58,11 +58,11 @@ static void or_copied(void **state)
 
 static void nothing_can_be_shared(void **state)
 {
-  struct vg_common common;
+  struct vg_shmem common;
 
   (void)state;
-  assert_int_equal(vg_comm_node_common(job, 0, NULL, &common, NULL), VG_OK);
-  vg_common_release(&common);
+  assert_int_equal(vg_comm_node_shmem(job, 0, NULL, &common, NULL), VG_OK);
+  vg_shmem_release(&common);
 }
 
 /* --- sizes --------------------------------------------------------------- */

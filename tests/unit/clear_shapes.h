@@ -211,8 +211,8 @@ static void add_rims(struct shape *s, uint32_t patch, double at)
 {
   struct vg_columns *c = &s->c;
 
-  c->rim = room(3 * c->n_face, sizeof *c->rim);
-  c->rim_patch = room(3 * c->n_face, sizeof *c->rim_patch);
+  c->border = room(3 * c->n_face, sizeof *c->border);
+  c->border_patch = room(3 * c->n_face, sizeof *c->border_patch);
   for (size_t f = 0; f < c->n_face; f++)
     for (int k = 0; k < 3; k++) {
       uint32_t a = c->face[f][k], b = c->face[f][(k + 1) % 3];
@@ -221,9 +221,9 @@ static void add_rims(struct shape *s, uint32_t patch, double at)
           || s->m.point[c->column[b].root][2] != at)
         continue;
       c->column[a].slide[0] = c->column[b].slide[0] = patch;
-      c->rim[c->n_rim][0] = a;
-      c->rim[c->n_rim][1] = b;
-      c->rim_patch[c->n_rim++] = patch;
+      c->border[c->n_border][0] = a;
+      c->border[c->n_border][1] = b;
+      c->border_patch[c->n_border++] = patch;
     }
 }
 

@@ -10,7 +10,7 @@ struct model {
   struct vg_mesh surface, field;
   struct vg_layers layers;
   uint32_t apex;
-  size_t room_column, room_face, room_rim;
+  size_t room_column, room_face, room_border;
 };
 
 #define MODEL_WALL 1     /* patch; 0, 2, 3, ... are those of the cone */
@@ -122,17 +122,18 @@ static inline void model_rims(struct model *m, uint32_t (*patch)(
   m->apex = shape_point(&m->surface, 0, 0, 5);
   for (size_t i = 0; i < 3 * c->n_face; i++) {
     const uint32_t *e = edge[i], back[2] = { e[1], e[0] };
-    size_t room = m->room_rim;
+    size_t room = m->room_border;
     uint32_t a = c->column[e[0]].root, b = c->column[e[1]].root, q;
 
     if (bsearch(back, edge, 3 * c->n_face, sizeof *edge, model_cmp_edge))
       continue;
     q = patch(m->surface.point[a], m->surface.point[b]);
-    if (vg_reserve(&c->rim, &room, c->n_rim + 1, sizeof *c->rim)) abort();
-    if (vg_reserve(&c->rim_patch, &m->room_rim, c->n_rim + 1,
-                   sizeof *c->rim_patch)) abort();
-    memcpy(c->rim[c->n_rim], e, sizeof *c->rim);
-    c->rim_patch[c->n_rim++] = q;
+    if (vg_reserve(&c->border, &room, c->n_border + 1,
+                   sizeof *c->border)) abort();
+    if (vg_reserve(&c->border_patch, &m->room_border, c->n_border + 1,
+                   sizeof *c->border_patch)) abort();
+    memcpy(c->border[c->n_border], e, sizeof *c->border);
+    c->border_patch[c->n_border++] = q;
     if (a != b) shape_tri(&m->surface, b, a, m->apex, q);
   }
   free(edge);
@@ -247,7 +248,7 @@ static inline void model_front_points(struct model *m, uint32_t *top,
   }
 }
 
-/* The front: tops, and the cone over rims or other triangles as they are. */
+/* The front: tops, and the cone over borders or other triangles as they are. */
 static inline void model_front(struct model *m)
 {
   const struct vg_columns *c = &m->layers.columns;
@@ -265,16 +266,17 @@ static inline void model_front(struct model *m)
 
     model_front_tri(m, t, MODEL_WALL, (uint32_t)i);
   }
-  for (size_t r = 0; r < c->n_rim; r++)
-    raised |= c->column[c->rim[r][0]].n || c->column[c->rim[r][1]].n;
+  for (size_t r = 0; r < c->n_border; r++)
+    raised |= c->column[c->border[r][0]].n || c->column[c->border[r][1]].n;
   /* A re-meshed patch has points of its own. */
   if (raised) f->point[point[m->apex]] = VG_NO_INDEX;
-  for (size_t r = 0; r < c->n_rim; r++) {
-    uint32_t t[3] = { top[c->rim[r][1]], top[c->rim[r][0]], point[m->apex] };
+  for (size_t r = 0; r < c->n_border; r++) {
+    uint32_t t[3] = { top[c->border[r][1]], top[c->border[r][0]],
+                      point[m->apex] };
 
-    model_front_tri(m, t, c->rim_patch[r], VG_NO_INDEX);
+    model_front_tri(m, t, c->border_patch[r], VG_NO_INDEX);
   }
-  for (size_t i = 0; i < m->surface.n_tri && !c->n_rim; i++) {
+  for (size_t i = 0; i < m->surface.n_tri && !c->n_border; i++) {
     uint32_t t[3];
 
     for (int k = 0; k < 3; k++) t[k] = point[m->surface.tri[i][k]];

@@ -135,16 +135,16 @@ static void the_same_as_in_place(void **state)
   struct batch *a = answered(1, 200), *b;
 
   (void)state;
-  assert_int_equal(vg_cdt_server_answers(), 0);
+  assert_int_equal(vg_cdt_server_is_alive(), 0);
   assert_int_equal(vg_cdt_server_start(NULL), VG_OK);
   assert_int_equal(vg_cdt_server_start(NULL), VG_OK);
-  assert_int_equal(vg_cdt_server_answers(), 1);
+  assert_int_equal(vg_cdt_server_is_alive(), 1);
   b = answered(1, 200);
   assert_int_equal(batches_differ(a, b), 0);
   batch_free(b);
   vg_cdt_server_stop();
   vg_cdt_server_stop();
-  assert_int_equal(vg_cdt_server_answers(), 0);
+  assert_int_equal(vg_cdt_server_is_alive(), 0);
   no_child_is_left();
   b = answered(1, 200);
   assert_int_equal(batches_differ(a, b), 0);
@@ -178,7 +178,7 @@ static void several_threads_at_once(void **state)
   for (size_t i = 0; i < N_CALL; i++) c.b[i] = batch_new(i % 4, 100);
   assert_int_equal(vg_cdt_server_start(NULL), VG_OK);
   vg_parallel_for(4, N_CALL, 1, call, &c);
-  assert_int_equal(vg_cdt_server_answers(), 1);
+  assert_int_equal(vg_cdt_server_is_alive(), 1);
   vg_cdt_server_stop();
   for (size_t i = 0; i < N_CALL; i++) {
     assert_int_equal(c.st[i], VG_OK);
@@ -223,8 +223,8 @@ static void a_server_killed_at_any_time(void **state)
     if (us) pthread_join(thread, NULL);
     assert_int_equal(batches_differ(a, b), 0);
     batch_free(b);
-    for (int k = 0; k < 1000 && vg_cdt_server_answers(); k++) usleep(1000);
-    assert_int_equal(vg_cdt_server_answers(), 0);
+    for (int k = 0; k < 1000 && vg_cdt_server_is_alive(); k++) usleep(1000);
+    assert_int_equal(vg_cdt_server_is_alive(), 0);
     vg_cdt_server_stop();
     no_child_is_left();
   }
@@ -245,7 +245,7 @@ static void signals_are_left_to_the_parent(void **state)
   for (size_t k = 0; k < sizeof number / sizeof *number; k++)
     assert_int_equal(kill(pid, number[k]), 0);
   batch_free(answered(1, 50));
-  assert_int_equal(vg_cdt_server_answers(), 1);
+  assert_int_equal(vg_cdt_server_is_alive(), 1);
   vg_cdt_server_stop();
   no_child_is_left();
 }
@@ -262,7 +262,7 @@ static void files_are_not_held(void **state)
   close(ends[1]);
   assert_int_equal(read(ends[0], &c, 1), 0);
   close(ends[0]);
-  assert_int_equal(vg_cdt_server_answers(), 1);
+  assert_int_equal(vg_cdt_server_is_alive(), 1);
   vg_cdt_server_stop();
 }
 

@@ -288,7 +288,7 @@ static void flanks_in_one_plane(void **state)
   uint32_t a;
 
   (void)state;
-  assert_int_equal(s->c.n_rim, 14);
+  assert_int_equal(s->c.n_border, 14);
   assert_int_equal(tops(s, is_slide, NULL, 1, bad), 0);
   /* 3/8 on each side: they overlap, and so do the tops. */
   for (size_t i = 0; i < s->c.n_column; i++) s->c.column[i].n = 3;
@@ -322,9 +322,9 @@ static void flanks_in_a_noisy_plane(void **state)
 
   (void)state;
   s->c.n_face = 0;
-  for (size_t i = 0; i < s->c.n_rim; i++)
+  for (size_t i = 0; i < s->c.n_border; i++)
     for (int k = 0; k < 2; k++)
-      s->m.point[s->c.column[s->c.rim[i][k]].root][2] =
+      s->m.point[s->c.column[s->c.border[i][k]].root][2] =
         1e-7 * (double)(i % 5) - 2e-7;
   assert_int_equal(tops(s, is_slide, NULL, 1, bad), 0);
   for (size_t i = 0; i < s->c.n_column; i++) s->c.column[i].n = 3;

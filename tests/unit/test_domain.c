@@ -97,15 +97,16 @@ static double angle_min_deg(const struct vg_mesh *m)
 static struct vg_mesh ball(int half, double h)
 {
   struct vg_mesh m = VG_MESH_INIT;
-  struct vg_rim rim = VG_RIM_INIT;
+  struct vg_border border = VG_BORDER_INIT;
   const struct vg_size_law law = { .at = even, .user = &h };
   const double centre[3] = { 0, 0, 0 };
   struct vg_error err = VG_ERROR_INIT;
 
   assert_int_equal(vg_mesh_add_patch(&m, 7, "ball"), 0);
-  assert_int_equal(vg_add_sphere(&m, centre, 1, half, 0, &law, 0, &rim, &err),
+  assert_int_equal(vg_add_sphere(&m, centre, 1, half, 0, &law, 0, &border,
+                                 &err),
                    VG_OK);
-  vg_rim_release(&rim);
+  vg_border_release(&border);
   return m;
 }
 
@@ -437,7 +438,7 @@ static void meshes_a_project_of_planes(void **state)
   }
   assert_int_equal(n_off, 0);
   for (size_t i = 0; i < m.n_tri; i++) n_floor += m.tri_patch[i] == 2;
-  /* VGRID has 574 there, the one patch whose rim has no layers; its edges
+  /* VGRID has 574 there, the one patch whose border has no layers; its edges
    * are a little longer than the spacing */
   assert_true(n_floor > 520 && n_floor < 720);
   vg_sizing_free(s);

@@ -52,14 +52,14 @@ static struct vg_cut_rule leaves_of(double cells)
   return r;
 }
 
-static struct vg_outlook look(const struct scene *s, struct vg_cut_rule rule,
-                              int levels)
+static struct vg_forecast look(const struct scene *s, struct vg_cut_rule rule,
+                               int levels)
 {
-  struct vg_outlook o = VG_OUTLOOK_INIT;
+  struct vg_forecast o = VG_FORECAST_INIT;
   struct vg_error err = VG_ERROR_INIT;
 
-  if (vg_outlook_new(&s->v, &s->load, &rule, levels, &vg_rates_measured, &o,
-                     &err) < 0) fail_msg("%s", err.text);
+  if (vg_forecast_new(&s->v, &s->load, &rule, levels, &vg_rates_measured, &o,
+                      &err) < 0) fail_msg("%s", err.text);
   return o;
 }
 
@@ -72,7 +72,7 @@ static double sum_of(const struct vg_spans *s, char kind)
   return sum;
 }
 
-static int is_leaf(const struct vg_outlook_node *n)
+static int is_leaf(const struct vg_forecast_node *n)
 {
   return !n->lattice.n[0] && !n->lattice.n[1] && !n->lattice.n[2];
 }
@@ -80,7 +80,7 @@ static int is_leaf(const struct vg_outlook_node *n)
 /* Few leaves: planes one after another, always the middle of what is left. */
 static void few_leaves_have_whole_planes(void **state)
 {
-  struct vg_outlook o;
+  struct vg_forecast o;
   struct scene s;
 
   (void)state;
@@ -91,7 +91,7 @@ static void few_leaves_have_whole_planes(void **state)
   assert_int_equal(o.n_tile, 15);
   assert_int_equal(o.n_pencil, 0);
   assert_int_equal(o.node[0].n_child, 2);
-  vg_outlook_release(&o);
+  vg_forecast_release(&o);
   release(&s);
 }
 
@@ -100,7 +100,7 @@ static void few_leaves_have_whole_planes(void **state)
 static void a_box_has_a_regular_tree(void **state)
 {
   struct vg_cut_rule rule = { .leaf_cells = 0, .first_axis = -1 };
-  struct vg_outlook o;
+  struct vg_forecast o;
   struct scene s;
 
   (void)state;
@@ -114,7 +114,7 @@ static void a_box_has_a_regular_tree(void **state)
   assert_true(o.node[0].parent == SIZE_MAX);
   for (int k = 0; k < 3; k++) assert_int_equal(o.node[0].lattice.n[k], 1);
   for (size_t i = 1; i < o.n_node; i++) {
-    const struct vg_outlook_node *n = &o.node[i];
+    const struct vg_forecast_node *n = &o.node[i];
     double even = (s.load.cells - o.zone_cells) / 8;
 
     assert_true(is_leaf(n) && n->depth == 1 && n->parent == 0);
@@ -125,7 +125,7 @@ static void a_box_has_a_regular_tree(void **state)
       assert_true(n->lo[k] == at || n->hi[k] == at);
     }
   }
-  vg_outlook_release(&o);
+  vg_forecast_release(&o);
   release(&s);
 }
 
@@ -137,7 +137,7 @@ static void sums_are_the_loads(void **state)
   (void)state;
   for (int i = 0; i < 3; i++) {
     struct scene s;
-    struct vg_outlook o;
+    struct vg_forecast o;
 
     make(&s, name[i], 150000);
     o = look(&s, leaves_of(10000), 0);
@@ -146,7 +146,7 @@ static void sums_are_the_loads(void **state)
                      sum_of(&o.spans, 'T') - o.cells) < 1e-4 * o.cells);
     assert_true(fabs(sum_of(&o.spans, 'P') + sum_of(&o.spans, 'T') -
                      o.zone_cells) < 1e-9 * o.cells);
-    vg_outlook_release(&o);
+    vg_forecast_release(&o);
     release(&s);
   }
 }
@@ -154,7 +154,7 @@ static void sums_are_the_loads(void **state)
 static void the_model_runs_its_tasks(void **state)
 {
   double one = 0, before = 0;
-  struct vg_outlook o;
+  struct vg_forecast o;
   struct scene s;
 
   (void)state;
@@ -164,7 +164,7 @@ static void the_model_runs_its_tasks(void **state)
   for (int ranks = 1; ranks <= 16; ranks *= 2) {
     struct vg_machine m = VG_MACHINE_INIT;
     struct vg_error err = VG_ERROR_INIT;
-    struct vg_forecast f;
+    struct vg_model_result f;
 
     m.ranks = ranks;
     if (vg_model_replay(&o.spans, &m, &f, NULL, &err) < 0)
@@ -175,7 +175,7 @@ static void the_model_runs_its_tasks(void **state)
     before = f.wall;
   }
   assert_true(fabs(one - o.spans.wall) < 1e-9 * one && before < one / 3);
-  vg_outlook_release(&o);
+  vg_forecast_release(&o);
   release(&s);
 }
 
@@ -183,8 +183,8 @@ static void the_model_runs_its_tasks(void **state)
 static void threads_share_joins(void **state)
 {
   struct vg_machine ranks = VG_MACHINE_INIT, threads = VG_MACHINE_INIT;
-  struct vg_forecast f, g;
-  struct vg_outlook o;
+  struct vg_model_result f, g;
+  struct vg_forecast o;
   struct scene s;
 
   (void)state;
@@ -205,13 +205,13 @@ static void threads_share_joins(void **state)
                    VG_OK);
   assert_true(fabs(g.work - f.work) < 1e-9 * f.work);
   assert_true(g.critical < f.critical && g.wall < f.wall);
-  vg_outlook_release(&o);
+  vg_forecast_release(&o);
   release(&s);
 }
 
 static void it_is_the_same_twice(void **state)
 {
-  struct vg_outlook a, b;
+  struct vg_forecast a, b;
   struct scene s;
 
   (void)state;
@@ -228,15 +228,15 @@ static void it_is_the_same_twice(void **state)
     assert_string_equal(p->after, q->after);
     assert_true(p->cpu == q->cpu && p->n_cell == q->n_cell);
   }
-  vg_outlook_release(&a);
-  vg_outlook_release(&b);
+  vg_forecast_release(&a);
+  vg_forecast_release(&b);
   release(&s);
 }
 
 static void levels_and_axes_are_obeyed(void **state)
 {
   struct vg_cut_rule rule = { 0, 2, 1 };
-  struct vg_outlook o;
+  struct vg_forecast o;
   struct scene s;
 
   (void)state;
@@ -245,13 +245,13 @@ static void levels_and_axes_are_obeyed(void **state)
   assert_int_equal(o.n_leaf, 2);
   assert_int_equal(o.node[0].lattice.n[0] + o.node[0].lattice.n[1], 0);
   assert_int_equal(o.node[0].lattice.n[2], 1);
-  vg_outlook_release(&o);
+  vg_forecast_release(&o);
   o = look(&s, leaves_of(1e9), 0);
   assert_int_equal(o.n_node, 1);
   assert_int_equal(o.spans.n, 1);
   assert_string_equal(o.spans.span[0].path, "0L");
   assert_string_equal(o.spans.span[0].after, "");
-  vg_outlook_release(&o);
+  vg_forecast_release(&o);
   release(&s);
 }
 
@@ -261,7 +261,7 @@ static void levels_and_axes_are_obeyed(void **state)
 static void levels_end_where_nothing_is_left(void **state)
 {
   struct vg_cut_rule rule = { .leaf_cells = 0, .first_axis = -1 };
-  struct vg_outlook o, more;
+  struct vg_forecast o, more;
   struct scene s;
 
   (void)state;
@@ -274,15 +274,15 @@ static void levels_end_where_nothing_is_left(void **state)
   assert_true(o.zone_cells > 0.99 * s.load.cells);
   assert_int_equal(more.n_node, o.n_node);
   assert_int_equal(more.spans.n, o.spans.n);
-  vg_outlook_release(&o);
-  vg_outlook_release(&more);
+  vg_forecast_release(&o);
+  vg_forecast_release(&more);
   release(&s);
 }
 
 static void a_faster_core_needs_less(void **state)
 {
   struct vg_rates half = vg_rates_measured;
-  struct vg_outlook a, b = VG_OUTLOOK_INIT;
+  struct vg_forecast a, b = VG_FORECAST_INIT;
   struct vg_cut_rule rule = leaves_of(20000);
   struct scene s;
 
@@ -293,7 +293,7 @@ static void a_faster_core_needs_less(void **state)
   half.leaf.graded /= 2;
   half.leaf.face /= 2;
   a = look(&s, rule, 0);
-  assert_int_equal(vg_outlook_new(&s.v, &s.load, &rule, 0, &half, &b, NULL),
+  assert_int_equal(vg_forecast_new(&s.v, &s.load, &rule, 0, &half, &b, NULL),
                    VG_OK);
   assert_int_equal(a.spans.n, b.spans.n);
   for (size_t i = 0; i < a.spans.n; i++) {
@@ -302,8 +302,8 @@ static void a_faster_core_needs_less(void **state)
     if (a.spans.span[i].kind == VG_SPAN_LEAF) twice *= 2;
     assert_true(fabs(a.spans.span[i].cpu - twice) < 1e-12);
   }
-  vg_outlook_release(&a);
-  vg_outlook_release(&b);
+  vg_forecast_release(&a);
+  vg_forecast_release(&b);
   release(&s);
 }
 
@@ -326,7 +326,7 @@ static int has(const struct vg_spans *s, const struct vg_span *one)
 /* One for each zone, after all leaves; none where nothing is cut. */
 static void repairs_come_last(void **state)
 {
-  struct vg_outlook o, whole;
+  struct vg_forecast o, whole;
   struct scene s;
   size_t n = 0;
 
@@ -345,8 +345,8 @@ static void repairs_come_last(void **state)
   assert_int_equal(n, o.n_pencil + o.n_tile);
   assert_true(n > 0);
   assert_int_equal(whole.spans.n, 1);
-  vg_outlook_release(&o);
-  vg_outlook_release(&whole);
+  vg_forecast_release(&o);
+  vg_forecast_release(&whole);
   release(&s);
 }
 
@@ -360,7 +360,7 @@ static void a_run_has_these_tasks(void **state)
   struct vg_partition *grown = NULL;
   struct vg_spans spans = VG_SPANS_INIT;
   struct vg_comm *comm = NULL;
-  struct vg_outlook o;
+  struct vg_forecast o;
   struct scene s;
 
   (void)state;
@@ -381,7 +381,7 @@ static void a_run_has_these_tasks(void **state)
   vg_partition_free(grown);
   vg_comm_close(comm);
   vg_spans_release(&spans);
-  vg_outlook_release(&o);
+  vg_forecast_release(&o);
   release(&s);
 }
 
@@ -389,8 +389,8 @@ static void a_run_has_these_tasks(void **state)
 static void points_follow_from_cells(void **state)
 {
   (void)state;
-  assert_true(fabs(vg_outlook_points(2068887, 50886) / 354957 - 1) < 0.03);
-  assert_true(fabs(vg_outlook_points(1921331, 117364) / 342098 - 1) < 0.03);
+  assert_true(fabs(vg_forecast_points(2068887, 50886) / 354957 - 1) < 0.03);
+  assert_true(fabs(vg_forecast_points(1921331, 117364) / 342098 - 1) < 0.03);
 }
 
 int main(void)

@@ -35,7 +35,7 @@ static int bend(const struct vg_mesh *surface, struct vg_columns *c)
   return 0;
 }
 
-/* A post on a plane: columns, fans, rims on slide patches, a bent column. */
+/* A post on a plane: columns, fans, borders on slide patches, a bent column. */
 static int grow(void **state)
 {
   static struct bench b;
@@ -92,18 +92,18 @@ static void unpacked_are_the_layers(void **state)
 
   if (vg_layers_unpack(&b->bytes, &b->surface, &got, &err) < 0)
     fail_msg("%s", err.text);
-  assert_true(c->n_column && c->n_face && c->n_rim && c->n_law &&
+  assert_true(c->n_column && c->n_face && c->n_border && c->n_law &&
               c->n_path);
   assert_int_equal(c->n_column, d->n_column);
   assert_int_equal(c->n_face, d->n_face);
-  assert_int_equal(c->n_rim, d->n_rim);
+  assert_int_equal(c->n_border, d->n_border);
   assert_int_equal(c->n_law, d->n_law);
   assert_int_equal(c->n_path, d->n_path);
   SAME(c->column, d->column, c->n_column);
   SAME(c->face, d->face, c->n_face);
   SAME(c->face_tri, d->face_tri, c->n_face);
-  SAME(c->rim, d->rim, c->n_rim);
-  SAME(c->rim_patch, d->rim_patch, c->n_rim);
+  SAME(c->border, d->border, c->n_border);
+  SAME(c->border_patch, d->border_patch, c->n_border);
   SAME(c->law, d->law, c->n_law);
   SAME(c->path, d->path, c->n_path);
   assert_int_equal(f->mesh.n_point, g->mesh.n_point);

@@ -426,7 +426,7 @@ static void check_grown(struct model *m, double h)
     fail_msg("%s", err.text);
   vg_sizing_free(sizing);
   assert_true(m->field.n_point > m->layers.front.mesh.n_point);
-  assert_true(m->layers.columns.n_rim > 0);
+  assert_true(m->layers.columns.n_border > 0);
   assert_true(report.n_virtual_face > 0);
   check_model(m, 3);
   model_release(m);

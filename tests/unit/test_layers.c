@@ -290,7 +290,7 @@ static void same_layers(const struct vg_layers *a, const struct vg_layers *b)
 
   assert_int_equal(c->n_column, d->n_column);
   assert_int_equal(c->n_face, d->n_face);
-  assert_int_equal(c->n_rim, d->n_rim);
+  assert_int_equal(c->n_border, d->n_border);
   assert_int_equal(c->n_path, d->n_path);
   for (size_t i = 0; i < c->n_column; i++) {
     assert_memory_equal(c->column[i].dir, d->column[i].dir, 3 * sizeof(double));

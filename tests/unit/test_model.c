@@ -39,11 +39,11 @@ static struct vg_machine machine_of(int ranks, int threads)
   return m;
 }
 
-static struct vg_forecast replay(const struct vg_spans *s,
-                                 const struct vg_machine *m,
-                                 struct vg_spans *timeline)
+static struct vg_model_result replay(const struct vg_spans *s,
+                                     const struct vg_machine *m,
+                                     struct vg_spans *timeline)
 {
-  struct vg_forecast f;
+  struct vg_model_result f;
   struct vg_error err = VG_ERROR_INIT;
   vg_status st = vg_model_replay(s, m, &f, timeline, &err);
 
@@ -70,7 +70,7 @@ static void a_chain_takes_its_sum(void **state)
   add(&s, "0L", "0J2", 4);
   for (int ranks = 1; ranks <= 8; ranks *= 2) {
     struct vg_machine m = machine_of(ranks, 2);
-    struct vg_forecast f;
+    struct vg_model_result f;
 
     m.serial = 0.25;
     f = replay(&s, &m, NULL);
@@ -104,7 +104,7 @@ static void a_join_waits_for_its_whole_stage(void **state)
   add_fork_join(&s, 8);
   for (int n = 1; n <= 9; n++) {
     struct vg_machine m = machine_of(1, n);
-    struct vg_forecast f = replay(&s, &m, NULL);
+    struct vg_model_result f = replay(&s, &m, NULL);
 
     assert_true(f.wall == wall[n - 1]);
     assert_true(f.work == 18 && f.critical == 4);
@@ -168,7 +168,7 @@ static void heavier_leaves_go_first(void **state)
   static const double cpu[] = { 3, 5, 4, 3, 5, 4, 3 };
   struct vg_spans s = VG_SPANS_INIT;
   struct vg_machine m = machine_of(3, 1);
-  struct vg_forecast f;
+  struct vg_model_result f;
   char path[16];
 
   (void)state;
@@ -212,7 +212,7 @@ static void schedules_keep_the_bounds(void **state)
   }
   for (int n = 1; n <= 512; n *= 2) {
     struct vg_machine m = machine_of(1, n);
-    struct vg_forecast f = replay(&s, &m, NULL);
+    struct vg_model_result f = replay(&s, &m, NULL);
 
     assert_true(f.wall >= f.critical && f.wall >= f.work / n);
     assert_true(f.wall <= f.work / n + f.critical);
@@ -228,7 +228,7 @@ static void messages_take_time(void **state)
 {
   struct vg_spans s = VG_SPANS_INIT, t = VG_SPANS_INIT;
   struct vg_machine m = machine_of(2, 1);
-  struct vg_forecast f;
+  struct vg_model_result f;
 
   (void)state;
   m.bandwidth = 1e6;
@@ -369,7 +369,7 @@ static void a_faster_core_takes_less(void **state)
 {
   struct vg_spans s = VG_SPANS_INIT;
   struct vg_machine m = machine_of(1, 1);
-  struct vg_forecast f;
+  struct vg_model_result f;
 
   (void)state;
   add(&s, "0J", "", 2);
@@ -387,7 +387,7 @@ static void what_is_outside_the_tasks_is_shared(void **state)
 {
   struct vg_spans s = VG_SPANS_INIT;
   struct vg_machine m = machine_of(4, 2);
-  struct vg_forecast f;
+  struct vg_model_result f;
 
   (void)state;
   add(&s, "0.1L", "", 6);
@@ -410,7 +410,7 @@ static void idle_workers_help(void **state)
 {
   struct vg_spans s = VG_SPANS_INIT, t = VG_SPANS_INIT;
   struct vg_machine m = machine_of(1, 4);
-  struct vg_forecast f;
+  struct vg_model_result f;
 
   (void)state;
   add(&s, "0J0", "", 10);
@@ -477,7 +477,7 @@ static void zones_make_cells_too(void **state)
 {
   struct vg_spans s = VG_SPANS_INIT;
   struct vg_machine m = machine_of(3, 1);
-  struct vg_forecast f;
+  struct vg_model_result f;
 
   (void)state;
   add(&s, "0J0", "", 1);
@@ -498,7 +498,7 @@ static void nothing_takes_no_time(void **state)
 {
   struct vg_spans s = VG_SPANS_INIT, t = VG_SPANS_INIT;
   struct vg_machine m = machine_of(2, 2);
-  struct vg_forecast f = replay(&s, &m, &t);
+  struct vg_model_result f = replay(&s, &m, &t);
 
   (void)state;
   assert_true(f.wall == 0 && f.speedup == 1 && f.imbalance == 1);
@@ -512,7 +512,7 @@ static void the_same_record_gives_the_same(void **state)
   struct vg_spans s = VG_SPANS_INIT, r = VG_SPANS_INIT;
   struct vg_spans t = VG_SPANS_INIT, u = VG_SPANS_INIT;
   struct vg_machine m = VG_MACHINE_INIT;
-  struct vg_forecast f, g;
+  struct vg_model_result f, g;
 
   (void)state;
   m.ranks = 3;
@@ -544,7 +544,7 @@ static void the_same_record_gives_the_same(void **state)
 static void refuses(struct vg_spans *s, const struct vg_machine *m,
                     const char *text)
 {
-  struct vg_forecast f, before;
+  struct vg_model_result f, before;
   struct vg_spans t = VG_SPANS_INIT;
   struct vg_error err = VG_ERROR_INIT;
 

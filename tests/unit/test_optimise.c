@@ -55,7 +55,7 @@ static void put(struct subject *s, double x, double y, double z)
 static void ready(struct subject *s)
 {
   vg_inserter_release(&s->s);
-  assert_int_equal(vg_tets_tidy(&s->t, s->m.n_point, NULL), VG_OK);
+  assert_int_equal(vg_tets_compact(&s->t, s->m.n_point, NULL), VG_OK);
   s->volume = tets_volume(&s->t);
   assert_true(fabs(s->volume - 1) < 1e-11);
 }
@@ -279,7 +279,7 @@ static void flat_cells_side_by_side_go(void **state)
   (void)state;
   assert_non_null(x);
   memcpy(x, at, sizeof at);
-  assert_int_equal(vg_tets_adopt(&t, 8, x, 11, v, NULL), VG_OK);
+  assert_int_equal(vg_tets_from_cells(&t, 8, x, 11, v, NULL), VG_OK);
   for (uint32_t c = 0; c < t.n_cell; c++)
     for (int i = 0; i < 4; i++)
       if (t.cell[c].link[i] == VG_NONE) t.flag[c] |= (uint8_t)(1 << i);
@@ -543,7 +543,7 @@ static void a_single_cell(void **state)
   x[1][0] = x[2][1] = 1;
   x[3][0] = x[3][1] = 0.3;
   x[3][2] = 1e-3;
-  assert_int_equal(vg_tets_adopt(&t, 4, x, 1, v, NULL), VG_OK);
+  assert_int_equal(vg_tets_from_cells(&t, 4, x, 1, v, NULL), VG_OK);
   t.flag[0] = VG_FIXED_FACES;
   optimise(&t, 4, 2);
   assert_int_equal(tets_live(&t), 1);

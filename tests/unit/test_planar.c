@@ -445,7 +445,7 @@ static void stops_when_asked(void **state)
 {
   struct patience p = { .l = { { 0 }, 0.005, 0, 1 }, .most = SIZE_MAX };
   const struct vg_planar_law law = { size_counted, is_over, &p };
-  const struct law rim = { { 0 }, 0.05, 0, 1 };
+  const struct law border = { { 0 }, 0.05, 0, 1 };
   size_t n_size = 0, n_asked = 0;
 
   (void)state;
@@ -454,7 +454,7 @@ static void stops_when_asked(void **state)
     vg_status st;
 
     begin(&s);
-    square(&s, &rim, 1);
+    square(&s, &border, 1);
     if (pass) p.most = pass == 1 ? 0 : pass == 2 ? n_asked / 2 : n_asked - 1;
     p.n_size = p.n_asked = 0;
     st = vg_planar_mesh(s.n, (const double (*)[2])s.p, s.n_edge,

@@ -292,29 +292,29 @@ static void signs_of_what_is_in_the_way(void **state)
   struct vg_flipper f = {.t = &t};
 
   (void)state;
-  f.n_aim = 3;
-  f.aim[1] = 1;
-  f.aim[2] = 2;
+  f.n_target = 3;
+  f.target[1] = 1;
+  f.target[2] = 2;
   assert_true(vg_flip_pierces(&f, 3, 4));
   assert_true(vg_flip_pierces(&f, 4, 3));
   assert_false(vg_flip_pierces(&f, 4, 5));
   assert_false(vg_flip_pierces(&f, 0, 4));
   assert_false(vg_flip_pierces(&f, 7, 8));
-  f.n_aim = 2;
-  f.aim[0] = 3;
-  f.aim[1] = 4;
-  assert_true(vg_flip_hinders(&f, 0, 1, 2));
-  assert_true(vg_flip_hinders(&f, 2, 1, 0));
-  assert_false(vg_flip_hinders(&f, 3, 4, 5));
-  assert_false(vg_flip_hinders(&f, 0, 1, 6));
-  f.aim[0] = 0;              /* from a corner, through 1 2 in their plane */
-  f.aim[1] = 8;
-  assert_true(vg_flip_hinders(&f, 0, 1, 2));
-  assert_true(vg_flip_hinders(&f, 2, 0, 1));
-  f.aim[1] = 7;              /* ends before it */
-  assert_false(vg_flip_hinders(&f, 0, 1, 2));
-  f.aim[1] = 4;              /* leaves the plane */
-  assert_false(vg_flip_hinders(&f, 0, 1, 2));
+  f.n_target = 2;
+  f.target[0] = 3;
+  f.target[1] = 4;
+  assert_true(vg_flip_obstructs(&f, 0, 1, 2));
+  assert_true(vg_flip_obstructs(&f, 2, 1, 0));
+  assert_false(vg_flip_obstructs(&f, 3, 4, 5));
+  assert_false(vg_flip_obstructs(&f, 0, 1, 6));
+  f.target[0] = 0;              /* from a corner, through 1 2 in their plane */
+  f.target[1] = 8;
+  assert_true(vg_flip_obstructs(&f, 0, 1, 2));
+  assert_true(vg_flip_obstructs(&f, 2, 0, 1));
+  f.target[1] = 7;              /* ends before it */
+  assert_false(vg_flip_obstructs(&f, 0, 1, 2));
+  f.target[1] = 4;              /* leaves the plane */
+  assert_false(vg_flip_obstructs(&f, 0, 1, 2));
 }
 
 int main(void)

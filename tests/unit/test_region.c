@@ -28,13 +28,13 @@ static int ruled(const struct vg_region *r, const struct vg_sizing *s,
                  const double (*x)[3], double band)
 {
   static const uint32_t v[3] = {0, 1, 2};
-  struct vg_ruler ruler = {0};
+  struct vg_region_cache cache = {0};
   int is;
 
-  assert_int_equal(vg_ruler_init(&ruler, r, s, 3, x, NULL), VG_OK);
-  is = vg_ruler_meets(&ruler, v, band);
-  if (is) assert_true(vg_ruler_may_meet(&ruler, v, band));
-  vg_ruler_release(&ruler);
+  assert_int_equal(vg_region_cache_init(&cache, r, s, 3, x, NULL), VG_OK);
+  is = vg_region_cache_meets(&cache, v, band);
+  if (is) assert_true(vg_region_cache_may_meet(&cache, v, band));
+  vg_region_cache_release(&cache);
   return is;
 }
 

@@ -12,7 +12,7 @@
 #include "partition/repair/repair_parts.h"
 #include "repair_support.h"
 
-static const double aim = VG_SHAPE_AIM;
+static const double aim = VG_SHAPE_TARGET;
 
 /* --- looking at pieces --------------------------------------------------- */
 
@@ -71,8 +71,9 @@ static void whole(const struct scene *s, struct vg_tets *t)
       }
   }
   memset(t, 0, sizeof *t);
-  assert_int_equal(vg_tets_adopt(t, n, x, n_cell,
-                                 (const uint32_t (*)[4])cell, NULL), VG_OK);
+  assert_int_equal(vg_tets_from_cells(t, n, x, n_cell,
+                                      (const uint32_t (*)[4])cell, NULL),
+                                          VG_OK);
   assert_int_equal(vg_tets_defects(t), 0);
   free(cell);
 }
@@ -156,7 +157,7 @@ static void test_mends_across(void **state)
 
 /* Points farther than the ball are where they were, and no piece keeps the
  * name of a point that it does not use. */
-static void test_rim_stays(void **state)
+static void test_border_stays(void **state)
 {
   struct scene s;
   size_t n_moved = 0, n_own = 0;
@@ -343,13 +344,13 @@ static int touch(const struct vg_spot *a, const struct vg_spot *b)
 static void test_balls(void **state)
 {
   static struct vg_spot spot[N_BALL];
-  struct vg_balls b;
+  struct vg_spot_grid b;
   uint64_t seed = 5;
   size_t n_in = 0;
 
   (void)state;
   scatter(spot, 11);
-  assert_int_equal(vg_balls_new(N_BALL, spot, N_BALL, &b, NULL), VG_OK);
+  assert_int_equal(vg_spot_grid_new(N_BALL, spot, N_BALL, &b, NULL), VG_OK);
   assert_true(b.n_cluster > 10 && b.n_cluster < N_BALL);
   for (int i = 0; i < N_BALL; i++)
     for (int j = 0; j < i; j++)
@@ -363,10 +364,10 @@ static void test_balls(void **state)
     for (int i = 0; i < N_BALL; i++)
       if (touch(&spot[i], &x)) want = b.cluster[i];
     n_in += want != VG_NO_CLUSTER;
-    assert_int_equal(vg_balls_at(&b, x.at), want);
+    assert_int_equal(vg_spot_grid_at(&b, x.at), want);
   }
   assert_true(n_in > 100);
-  vg_balls_release(&b);
+  vg_spot_grid_release(&b);
 }
 
 /* No cluster of more balls than asked for; those that are left over are in
@@ -375,11 +376,11 @@ static void test_balls_capped(void **state)
 {
   static struct vg_spot spot[N_BALL];
   size_t size[N_BALL] = {0}, left = 0;
-  struct vg_balls b;
+  struct vg_spot_grid b;
 
   (void)state;
   scatter(spot, 12);
-  assert_int_equal(vg_balls_new(N_BALL, spot, 5, &b, NULL), VG_OK);
+  assert_int_equal(vg_spot_grid_new(N_BALL, spot, 5, &b, NULL), VG_OK);
   for (int i = 0; i < N_BALL; i++) {
     if (b.cluster[i] == VG_NO_CLUSTER) {
       left++;
@@ -392,7 +393,7 @@ static void test_balls_capped(void **state)
         assert_int_equal(b.cluster[i], b.cluster[j]);
   }
   assert_true(left > 0 && left < N_BALL / 2);
-  vg_balls_release(&b);
+  vg_spot_grid_release(&b);
 }
 
 /* What is left out is within half the radius of one that stays. */
@@ -426,7 +427,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_mends_across),
-    cmocka_unit_test(test_rim_stays),
+    cmocka_unit_test(test_border_stays),
     cmocka_unit_test(test_smooths),
     cmocka_unit_test(test_nothing_bad),
     cmocka_unit_test(test_inside_is_left),

@@ -9,7 +9,7 @@
 #include <cmocka.h>
 
 #include "core/sizing/sizing_effect.h"
-#include "core/sizing/sizing_places.h"
+#include "core/sizing/sizing_probes.h"
 
 #define assert_near(a, b, tolerance) \
   assert_true(fabs((a) - (b)) <= (tolerance))
@@ -86,7 +86,7 @@ static void places_know_their_side(void **state)
   static const int in_void[] = { 1, 1, 0, 1, 1, 0, 0, 0, 0, 1, 1 };
   enum { N = sizeof in_void / sizeof *in_void };
   struct vg_mesh m = VG_MESH_INIT;
-  struct vg_places p = VG_PLACES_INIT;
+  struct vg_probes p = VG_PROBES_INIT;
   struct vg_error err = VG_ERROR_INIT;
 
   (void)state;
@@ -95,15 +95,15 @@ static void places_know_their_side(void **state)
     struct vg_source s = { .kind = VG_SOURCE_POINT };
 
     memcpy(s.p0, at[i], sizeof s.p0);
-    vg_places_shape(&p, &s, i, 1);
+    vg_probes_shape(&p, &s, i, 1);
   }
   assert_int_equal(p.n, N);
-  assert_int_equal(vg_places_cross(&p, &m, &err), VG_OK);
+  assert_int_equal(vg_probes_cross(&p, &m, &err), VG_OK);
   for (size_t i = 0; i < N; i++) {
     assert_int_equal(p.item[i].crossings < 0, in_void[i]);
     assert_true(p.item[i].crossings == 0 || p.item[i].crossings == -1);
   }
-  vg_places_release(&p);
+  vg_probes_release(&p);
   vg_mesh_release(&m);
 }
 
@@ -125,19 +125,19 @@ static void places_are_in_the_shape(void **state)
   for (uint32_t i = 0; i < sizeof shape / sizeof *shape; i++)
     for (int fine = 0; fine < 2; fine++) {
       struct vg_source s = shape[i];
-      struct vg_places p = VG_PLACES_INIT;
+      struct vg_probes p = VG_PROBES_INIT;
 
       s.h0 = s.h1 = 0.25;
       if (s.kind == VG_SOURCE_VGRID_NODE) s.kind = VG_SOURCE_POINT;
       if (s.kind == VG_SOURCE_VGRID_LINE) s.kind = VG_SOURCE_LINE;
-      vg_places_shape(&p, &s, i, fine);
+      vg_probes_shape(&p, &s, i, fine);
       assert_true(p.n >= (i ? 5 : 1));
       for (size_t j = 0; j < p.n; j++) {
         assert_int_equal(p.item[j].source, i);
         assert_near(vg_sizing_sources_at(&plain, 1, &s, p.item[j].x), 0.25,
                     1e-12);
       }
-      vg_places_release(&p);
+      vg_probes_release(&p);
     }
 }
 
@@ -158,7 +158,7 @@ static void free_sources_are_no_news(void **state)
   make_domain(&m);
   h = look(sizeof source / sizeof *source, source, &m);
   assert_int_equal(h.n, 0);
-  assert_int_equal(h.n_lost, 0);
+  assert_int_equal(h.n_outside, 0);
   vg_effects_release(&h);
   vg_mesh_release(&m);
 }
@@ -178,7 +178,7 @@ static void held_sources_are_found(void **state)
   make_domain(&m);
   h = look(3, source, &m);
   assert_int_equal(h.n, 2);
-  assert_int_equal(h.n_lost, 0);
+  assert_int_equal(h.n_outside, 0);
   a = h.item;
   b = h.item + 1;
   assert_int_equal(a->source, 1);
@@ -217,11 +217,11 @@ static void lost_sources_are_told_apart(void **state)
   make_domain(&m);
   h = look(3, source, &m);
   assert_int_equal(h.n, 0);
-  assert_int_equal(h.n_lost, 2);
-  assert_int_equal(h.lost[0].source, 0);
-  assert_int_equal(h.lost[0].is_beyond, 0);
-  assert_int_equal(h.lost[1].source, 2);
-  assert_int_equal(h.lost[1].is_beyond, 1);
+  assert_int_equal(h.n_outside, 2);
+  assert_int_equal(h.outside[0].source, 0);
+  assert_int_equal(h.outside[0].is_beyond, 0);
+  assert_int_equal(h.outside[1].source, 2);
+  assert_int_equal(h.outside[1].is_beyond, 1);
   vg_effects_release(&h);
   vg_mesh_release(&m);
 }

@@ -76,13 +76,13 @@ static void make_box(struct grid *g, int n, int merged,
   for (int i = 0; i < s * s * s; i++) {
     const int c[3] = { i % s, i / s % s, i / s / s };
     double x[3];
-    int rim = 0;
+    int border = 0;
 
     for (int k = 0; k < 3; k++) {
       x[k] = (double)c[k] / n;
-      rim |= c[k] == 0 || c[k] == n;
+      border |= c[k] == 0 || c[k] == n;
     }
-    if (!rim) continue;
+    if (!border) continue;
     if (map) map(x);
     at[i] = add_point(g, x[0], x[1], x[2]);
   }
@@ -223,7 +223,7 @@ struct made {
   struct vg_columns c;
   struct vg_sizing *sizing;
   struct vg_layer_front front;
-  struct vg_slide_trouble trouble;
+  struct vg_slide_failure failure;
   struct vg_error err;
 };
 
@@ -234,7 +234,7 @@ static void release(struct made *a)
   vg_columns_release(&a->c);
   vg_sizing_free(a->sizing);
   vg_layer_front_release(&a->front);
-  free(a->trouble.column);
+  free(a->failure.column);
 }
 
 /* Cut v down to what slides in patches with normals n[0 .. k - 1]. */
@@ -267,9 +267,9 @@ static void find_rims(struct made *a, const uint32_t *column_of)
           const uint32_t p = m->tri[t][k], q = m->tri[t][(k + 1) % 3];
 
           if (m->tri[u][l] != q || m->tri[u][(l + 1) % 3] != p) continue;
-          c->rim[c->n_rim][0] = column_of[p];
-          c->rim[c->n_rim][1] = column_of[q];
-          c->rim_patch[c->n_rim++] = m->tri_patch[u];
+          c->border[c->n_border][0] = column_of[p];
+          c->border[c->n_border][1] = column_of[q];
+          c->border_patch[c->n_border++] = m->tri_patch[u];
           for (int e = 0; e < 2; e++) {
             uint32_t *s = c->column[column_of[e ? p : q]].slide;
 
@@ -317,8 +317,8 @@ static void make_columns(struct made *a, int n)
   c->column = vg_calloc(m->n_point, sizeof *c->column);
   c->face = vg_calloc(m->n_tri, sizeof *c->face);
   c->face_tri = vg_calloc(m->n_tri, sizeof *c->face_tri);
-  c->rim = vg_calloc(3 * m->n_tri, sizeof *c->rim);
-  c->rim_patch = vg_calloc(3 * m->n_tri, sizeof *c->rim_patch);
+  c->border = vg_calloc(3 * m->n_tri, sizeof *c->border);
+  c->border_patch = vg_calloc(3 * m->n_tri, sizeof *c->border_patch);
   c->law = vg_calloc(1, sizeof *c->law);
   c->law[0] = (struct vg_law){ 0.01, 0.2, 0, 1.3, 1 };
   c->n_law = 1;
@@ -363,7 +363,7 @@ static void grow(struct made *a, uint32_t wall, uint32_t wall2, int n)
 static vg_status front(struct made *a)
 {
   return vg_slide_front(&a->g.m, a->n_slide, a->slide, &a->c, a->sizing,
-                        &a->front, &a->trouble, &a->err);
+                        &a->front, &a->failure, &a->err);
 }
 
 /* Checks ------------------------------------------------------------------*/
@@ -456,13 +456,13 @@ static void assert_plane(struct made *a, size_t s, double min_angle)
     triangle(o, t, n);
     before += vg_dot(n, sl->normal);
   }
-  for (size_t i = 0; i < a->c.n_rim; i++) {
-    const uint32_t *r = a->c.rim[i];
+  for (size_t i = 0; i < a->c.n_border; i++) {
+    const uint32_t *r = a->c.border[i];
     const double *x = o->point[a->c.column[r[0]].root];
     const double *y = o->point[a->c.column[r[1]].root];
     double p[3], q[3], u[3], v[3], w[3];
 
-    if (a->c.rim_patch[i] != sl->patch) continue;
+    if (a->c.border_patch[i] != sl->patch) continue;
     vg_column_top(&a->c, o, r[0], p);
     vg_column_top(&a->c, o, r[1], q);
     vg_sub(q, x, u);
@@ -634,7 +634,7 @@ static void body_between_planes(void **state)
   }
 }
 
-/* Every other wedge of the body has no layers: rims climb and fall. */
+/* Every other wedge of the body has no layers: borders climb and fall. */
 static void levels_climb_from_nothing(void **state)
 {
   struct made a = { 0 };
@@ -736,8 +736,8 @@ static void floor_and_roof(void **state)
       assert_sound(&a);
       for (size_t s = 0; s < 4; s++) assert_plane(&a, s, 15);
     } else {
-      assert_true(a.trouble.n >= 8);
-      assert_true(a.trouble.text[0] != 0);
+      assert_true(a.failure.n >= 8);
+      assert_true(a.failure.text[0] != 0);
       assert_null(a.front.mesh.point);
     }
     release(&a);
@@ -745,7 +745,7 @@ static void floor_and_roof(void **state)
 }
 
 /* Columns that outgrow the box are named; lowered, all is well. */
-static void too_high_is_trouble(void **state)
+static void too_high_is_failure(void **state)
 {
   struct made a = { 0 };
 
@@ -758,12 +758,12 @@ static void too_high_is_trouble(void **state)
     if (x[0] > 0.99 && x[1] == 0) a.c.column[i].n = 30;  /* 11.8 high */
   }
   assert_int_equal(front(&a), VG_BLOCKED);
-  assert_true(a.trouble.n > 0 && a.trouble.n < 10);
-  for (size_t i = 0; i < a.trouble.n; i++) {
-    assert_true(!i || a.trouble.column[i - 1] < a.trouble.column[i]);
-    a.c.column[a.trouble.column[i]].n = 10;
+  assert_true(a.failure.n > 0 && a.failure.n < 10);
+  for (size_t i = 0; i < a.failure.n; i++) {
+    assert_true(!i || a.failure.column[i - 1] < a.failure.column[i]);
+    a.c.column[a.failure.column[i]].n = 10;
   }
-  free(a.trouble.column);
+  free(a.failure.column);
   assert_int_equal(front(&a), VG_OK);
   assert_sound(&a);
   release(&a);
@@ -826,12 +826,12 @@ static void tunnel_is_no_graph(void **state)
   assert_int_equal(a.n_slide, 1);
   assert_false(a.slide[0].is_plane);
   assert_int_equal(front(&a), VG_BLOCKED);
-  assert_int_equal(a.trouble.n, 4 * 8);
-  for (size_t i = 0; i < a.trouble.n; i++) {
-    assert_true(a.trouble.never[i]);
-    a.c.column[a.trouble.column[i]].n = 0;
+  assert_int_equal(a.failure.n, 4 * 8);
+  for (size_t i = 0; i < a.failure.n; i++) {
+    assert_true(a.failure.never[i]);
+    a.c.column[a.failure.column[i]].n = 0;
   }
-  free(a.trouble.column);
+  free(a.failure.column);
   for (size_t i = 0; i < a.c.n_column; i++)
     if (a.c.column[i].n) a.c.column[i].n = 1;
   assert_int_equal(front(&a), VG_OK);
@@ -875,12 +875,12 @@ static void plane_in_two_patches(void **state)
 }
 
 /* Where a body's edge turns in the plane, three columns stand on one point:
- * the virtual faces between them end in rims. */
+ * the virtual faces between them end in borders. */
 static void fan_at_the_plane(void **state)
 {
   struct made a = { 0 };
   struct vg_columns *c = &a.c;
-  uint32_t first = 0, n_rim;
+  uint32_t first = 0, n_border;
   size_t n;
 
   (void)state;
@@ -912,13 +912,14 @@ static void fan_at_the_plane(void **state)
       for (int k = 0; k < 3; k++)
         c->face[f][k] = to[c->face[f][k]] + (c->face[f][k] % 36 == 0 && z > 0);
     }
-    for (size_t i = 0; i < c->n_rim; i++) {
+    for (size_t i = 0; i < c->n_border; i++) {
       double z = 0;
 
       for (int k = 0; k < 2; k++)
-        z += a.g.m.point[c->column[c->rim[i][k]].root][2];
+        z += a.g.m.point[c->column[c->border[i][k]].root][2];
       for (int k = 0; k < 2; k++)
-        c->rim[i][k] = to[c->rim[i][k]] + (c->rim[i][k] % 36 == 0 && z > 0);
+        c->border[i][k] = to[c->border[i][k]] + (c->border[i][k] % 36 == 0 &&
+                                                 z > 0);
     }
     free(c->column);
     c->column = more;
@@ -930,12 +931,12 @@ static void fan_at_the_plane(void **state)
   memcpy(c->face[c->n_face + 1], (uint32_t[]){ 1, 37, 38 }, sizeof *c->face);
   c->face_tri[c->n_face] = c->face_tri[c->n_face + 1] = VG_NO_INDEX;
   c->n_face += 2;
-  n_rim = (uint32_t)c->n_rim;
-  memcpy(c->rim[n_rim], (uint32_t[]){ 1, 0 }, sizeof *c->rim);
-  memcpy(c->rim[n_rim + 1], (uint32_t[]){ 37, 38 }, sizeof *c->rim);
-  c->rim_patch[n_rim] = 1;
-  c->rim_patch[n_rim + 1] = 2;
-  c->n_rim += 2;
+  n_border = (uint32_t)c->n_border;
+  memcpy(c->border[n_border], (uint32_t[]){ 1, 0 }, sizeof *c->border);
+  memcpy(c->border[n_border + 1], (uint32_t[]){ 37, 38 }, sizeof *c->border);
+  c->border_patch[n_border] = 1;
+  c->border_patch[n_border + 1] = 2;
+  c->n_border += 2;
   assert_int_equal(front(&a), VG_OK);
   save(&a.front.mesh, "fan");
   assert_sound(&a);
@@ -953,30 +954,31 @@ static void fan_at_the_plane(void **state)
 
 /* Sides of a box that the floor's columns slide in, but one that they are
  * told to leave out: their flanks there would hang in the air. */
-static void border_without_columns_is_trouble(void **state)
+static void border_without_columns_fails(void **state)
 {
   struct made a = { 0 };
 
   (void)state;
   make_box(&a.g, 6, 0, NULL);
   grow(&a, 0, 0, 5);
-  for (size_t i = 0, n = a.c.n_rim; i < n; i++)
-    if (a.c.rim_patch[i] == 5) {
-      a.c.n_rim--;
-      memmove(a.c.rim + i, a.c.rim + i + 1, (n - i - 1) * sizeof *a.c.rim);
-      memmove(a.c.rim_patch + i, a.c.rim_patch + i + 1,
-              (n - i - 1) * sizeof *a.c.rim_patch);
+  for (size_t i = 0, n = a.c.n_border; i < n; i++)
+    if (a.c.border_patch[i] == 5) {
+      a.c.n_border--;
+      memmove(a.c.border + i, a.c.border + i + 1,
+              (n - i - 1) * sizeof *a.c.border);
+      memmove(a.c.border_patch + i, a.c.border_patch + i + 1,
+              (n - i - 1) * sizeof *a.c.border_patch);
       i--, n--;
     }
   assert_int_equal(front(&a), VG_BLOCKED);
-  assert_int_equal(a.trouble.n, 7);
-  for (size_t i = 0; i < a.trouble.n; i++) {
-    struct vg_column *c = &a.c.column[a.trouble.column[i]];
+  assert_int_equal(a.failure.n, 7);
+  for (size_t i = 0; i < a.failure.n; i++) {
+    struct vg_column *c = &a.c.column[a.failure.column[i]];
 
     assert_true(a.g.m.point[c->root][0] == 1);
     c->n = 0;
   }
-  free(a.trouble.column);
+  free(a.failure.column);
   assert_int_equal(front(&a), VG_OK);
   assert_sound(&a);
   release(&a);
@@ -1012,15 +1014,15 @@ static void backward_is_never(void **state)
     if (x[0] > 0.99 && x[1] == 0) a.c.column[i].dir[0] = -1;
   }
   assert_int_equal(front(&a), VG_BLOCKED);
-  for (size_t i = 0; i < a.trouble.n; i++) {
-    struct vg_column *c = &a.c.column[a.trouble.column[i]];
+  for (size_t i = 0; i < a.failure.n; i++) {
+    struct vg_column *c = &a.c.column[a.failure.column[i]];
 
-    assert_int_equal(a.trouble.never[i], c->dir[0] == -1);
-    n_never += a.trouble.never[i];
-    if (a.trouble.never[i]) c->n = 0;
+    assert_int_equal(a.failure.never[i], c->dir[0] == -1);
+    n_never += a.failure.never[i];
+    if (a.failure.never[i]) c->n = 0;
   }
   assert_int_equal(n_never, 1);
-  free(a.trouble.column);
+  free(a.failure.column);
   assert_int_equal(front(&a), VG_OK);
   assert_sound(&a);
   release(&a);
@@ -1090,12 +1092,12 @@ int main(void)
     cmocka_unit_test(floor_with_four_sides),
     cmocka_unit_test(tilted_floor),
     cmocka_unit_test(floor_and_roof),
-    cmocka_unit_test(too_high_is_trouble),
+    cmocka_unit_test(too_high_is_failure),
     cmocka_unit_test(gently_curved_side),
     cmocka_unit_test(tunnel_is_no_graph),
     cmocka_unit_test(plane_in_two_patches),
     cmocka_unit_test(fan_at_the_plane),
-    cmocka_unit_test(border_without_columns_is_trouble),
+    cmocka_unit_test(border_without_columns_fails),
     cmocka_unit_test(curved_side_from_both_ends),
     cmocka_unit_test(only_the_surroundings),
     cmocka_unit_test(backward_is_never),

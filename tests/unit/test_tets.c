@@ -87,7 +87,7 @@ static void a_flat_cell_is_refused(void **state)
   (void)state;
   assert_non_null(x);
   x[1][0] = x[2][1] = x[3][0] = x[3][1] = x[4][2] = 1;
-  assert_int_equal(vg_tets_adopt(&t, 5, x, 2, v, &err), VG_ERR_GEOMETRY);
+  assert_int_equal(vg_tets_from_cells(&t, 5, x, 2, v, &err), VG_ERR_GEOMETRY);
   assert_non_null(strstr(err.text, "flat"));
   vg_tets_release(&t);       /* x is t's, also now: a leak otherwise */
 }
@@ -104,7 +104,7 @@ static void three_cells_on_a_face_are_refused(void **state)
   x[1][0] = x[2][1] = x[3][2] = 1;
   x[4][2] = -1;
   x[5][2] = 2;
-  assert_int_equal(vg_tets_adopt(&t, 6, x, 3, v, &err), VG_ERR_GEOMETRY);
+  assert_int_equal(vg_tets_from_cells(&t, 6, x, 3, v, &err), VG_ERR_GEOMETRY);
   assert_non_null(strstr(err.text, "1 2 3"));
   vg_tets_release(&t);
 }
@@ -146,15 +146,16 @@ static void dead_slots_are_used_last_in_first_out(void **state)
   (void)state;
   tets_grid(&t, four_cubed);
   cap = t.cap_cell;
-  for (uint32_t c = 3; c < 9; c++) assert_int_equal(vg_tets_drop(&t, c), 0);
+  for (uint32_t c = 3; c < 9; c++) assert_int_equal(vg_tets_free_cell(&t, c),
+                                                    0);
   assert_int_equal(t.n_free, 6);
   for (uint32_t c = 3; c < 9; c++) assert_int_equal(t.flag[c], VG_DEAD);
   assert_int_equal(vg_tets_reserve_cells(&t, 6), 0);
   assert_int_equal(t.cap_cell, cap);
-  for (uint32_t c = 8; c >= 3; c--) assert_int_equal(vg_tets_take(&t), c);
+  for (uint32_t c = 8; c >= 3; c--) assert_int_equal(vg_tets_alloc_cell(&t), c);
   assert_int_equal(t.n_free, 0);
   assert_int_equal(vg_tets_reserve_cells(&t, 1), 0);
-  assert_int_equal(vg_tets_take(&t), 384);
+  assert_int_equal(vg_tets_alloc_cell(&t), 384);
   assert_int_equal(t.n_cell, 385);
   assert_true(t.cap_cell >= 385);
   assert_int_equal(vg_tets_reserve_cells(&t, VG_CELL_MAX), -1);
@@ -249,7 +250,7 @@ static void tidy_keeps_what_is_inside(void **state)
   tets_grid(&t, four_cubed);
   memcpy(keep, t.x, sizeof keep);
   assert_int_equal(vg_tets_reserve_cells(&t, 1), 0);
-  assert_int_equal(vg_tets_drop(&t, vg_tets_take(&t)), 0);
+  assert_int_equal(vg_tets_free_cell(&t, vg_tets_alloc_cell(&t)), 0);
   for (size_t c = 0; c < 384; c++)
     if (in_corner(&t, c)) {
       t.flag[c] = VG_OUTSIDE;
@@ -262,7 +263,7 @@ static void tidy_keeps_what_is_inside(void **state)
       }
     }
   assert_int_equal(vg_tets_defects(&t), 0);
-  assert_int_equal(vg_tets_tidy(&t, N_KEEP, NULL), VG_OK);
+  assert_int_equal(vg_tets_compact(&t, N_KEEP, NULL), VG_OK);
   assert_int_equal(t.n_cell, 384 - 48);
   assert_int_equal(t.n_free, 0);
   assert_memory_equal(t.x, keep, sizeof keep);

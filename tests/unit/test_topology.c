@@ -1,4 +1,4 @@
-/* Columns, faces and rims of walls, with and without fans. */
+/* Columns, faces and borders of walls, with and without fans. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -10,7 +10,7 @@
 
 #include "base/memory.h"
 #include "core/geometry/vector.h"
-#include "layers/topology/gram.h"
+#include "layers/topology/most_normal.h"
 #include "layers/topology/topology.h"
 #include "topology_shapes.h"
 
@@ -67,16 +67,16 @@ static int by_ends(const void *x, const void *y)
   return p->b < q->b ? -1 : p->b > q->b;
 }
 
-static int is_rim(const struct vg_columns *c, uint32_t a, uint32_t b)
+static int is_border(const struct vg_columns *c, uint32_t a, uint32_t b)
 {
   int found = 0;
 
-  for (size_t i = 0; i < c->n_rim; i++)
-    found += c->rim[i][0] == a && c->rim[i][1] == b;
+  for (size_t i = 0; i < c->n_border; i++)
+    found += c->border[i][0] == a && c->border[i][1] == b;
   return found;
 }
 
-/* Every directed edge once, with its reverse unless it is a rim; returns the
+/* Every directed edge once, with its reverse unless it is a border; returns the
  * Euler characteristic. */
 static int check_complex(const struct vg_columns *c)
 {
@@ -94,10 +94,10 @@ static int check_complex(const struct vg_columns *c)
 
     assert_int_not_equal(e[i].a, e[i].b);
     if (i) assert_int_not_equal(by_ends(&e[i - 1], &e[i]), 0);
-    assert_int_equal(is_rim(c, e[i].a, e[i].b), !has_back);
+    assert_int_equal(is_border(c, e[i].a, e[i].b), !has_back);
     n_open += !has_back;
   }
-  assert_int_equal(n_open, c->n_rim);
+  assert_int_equal(n_open, c->n_border);
   free(e);
   return (int)c->n_column - (int)((n + n_open) / 2) + (int)c->n_face;
 }
@@ -127,7 +127,7 @@ static void check_lists(const struct made *s)
     assert_true(c->column[i].bent == SIZE_MAX);
   }
   assert_int_equal(n_corner, 3 * c->n_face);
-  assert_int_equal(n_pair, 2 * (size_t)((3 * c->n_face + c->n_rim) / 2));
+  assert_int_equal(n_pair, 2 * (size_t)((3 * c->n_face + c->n_border) / 2));
   for (size_t f = 0; f < c->n_face; f++) {
     uint32_t tri = c->face_tri[f];
 
@@ -266,7 +266,7 @@ static double lift(const struct made *s, size_t f, double step,
 }
 
 /* Expand all faces and cancel what is shared: what is left has to be the
- * walls (where something stands on them), the tops, and the flanks of rims.
+ * walls (where something stands on them), the tops, and the flanks of borders.
  * Takes the walls and the tops away, too, and returns the flanks left. */
 static size_t check_cells(struct made *s, double step, double *volume)
 {
@@ -320,27 +320,27 @@ static void set_full(struct made *s)
   for (size_t i = 0; i < s->c.n_column; i++) s->c.column[i].n = LEVELS;
 }
 
-/* All of it; returns the Euler characteristic of the tops. A rim has a flank
+/* All of it; returns the Euler characteristic of the tops. A border has a flank
  * of LEVELS quads, two triangles each; the lowest one is a triangle where both
  * columns have one root. */
 static int check(struct made *s, double step)
 {
   int euler = check_complex(&s->c);
-  size_t n_flank = 2 * LEVELS * s->c.n_rim;
+  size_t n_flank = 2 * LEVELS * s->c.n_border;
   double volume;
 
   check_lists(s);
   direct(s);
   set_full(s);
-  for (size_t i = 0; i < s->c.n_rim; i++)
-    n_flank -= s->c.column[s->c.rim[i][0]].root
-               == s->c.column[s->c.rim[i][1]].root;
+  for (size_t i = 0; i < s->c.n_border; i++)
+    n_flank -= s->c.column[s->c.border[i][0]].root
+               == s->c.column[s->c.border[i][1]].root;
   assert_int_equal(check_cells(s, step, &volume), n_flank);
   assert_true(volume > 0);
   for (int low = 0; low < LEVELS; low++) {
     set_levels(s, low);
     n_flank = check_cells(s, 1e-3 * step, &volume);
-    if (!s->c.n_rim) assert_int_equal(n_flank, 0);
+    if (!s->c.n_border) assert_int_equal(n_flank, 0);
   }
   set_full(s);
   return euler;
@@ -358,7 +358,7 @@ static void a_sphere_has_a_column_per_point(void **state)
   build(&s, 1, ~0u, 180);
   assert_int_equal(s.c.n_column, s.m.n_point);
   assert_int_equal(s.c.n_face, s.m.n_tri);
-  assert_int_equal(s.c.n_rim, 0);
+  assert_int_equal(s.c.n_border, 0);
   assert_int_equal(check(&s, 0.05), 2);
   for (size_t i = 0; i < s.c.n_column; i++) {
     assert_int_equal(s.t.blocked[i], 0);
@@ -378,9 +378,9 @@ static void a_half_body_slides_on_its_plane(void **state)
   extrude(&s.m, 16, (const double (*)[2])at, 4, 1, 0);
   build(&s, 1, ~0u, 180);
   assert_int_equal(s.c.n_column, 16 * 5 + 1);
-  assert_int_equal(s.c.n_rim, 16);
-  for (size_t i = 0; i < s.c.n_rim; i++)
-    assert_int_equal(s.c.rim_patch[i], 1);
+  assert_int_equal(s.c.n_border, 16);
+  for (size_t i = 0; i < s.c.n_border; i++)
+    assert_int_equal(s.c.border_patch[i], 1);
   for (size_t i = 0; i < s.c.n_column; i++) {
     int sliding = s.m.point[s.c.column[i].root][1] == 0;
 
@@ -405,7 +405,7 @@ static void a_floor_slides_in_four_sides(void **state)
   assert_int_equal(s.n_slide, 4);
   assert_int_equal(s.c.n_column, 25);
   assert_int_equal(s.c.n_face, 32);
-  assert_int_equal(s.c.n_rim, 16);
+  assert_int_equal(s.c.n_border, 16);
   for (size_t i = 0; i < s.c.n_column; i++) {
     const double *x = s.m.point[s.c.column[i].root];
     uint32_t a = fabs(x[0]) == 1 ? (x[0] > 0 ? 1 : 0) : VG_NO_INDEX;
@@ -428,7 +428,7 @@ static void the_edge_to_an_inert_patch_is_blocked(void **state)
   (void)state;
   shape_box(&s.m, 4, 1);
   build(&s, 1u << 4, 1u << 0 | 1u << 2, 180);   /* x = 1, y = 1 do not slide */
-  assert_int_equal(s.c.n_rim, 8);
+  assert_int_equal(s.c.n_border, 8);
   for (size_t i = 0; i < s.c.n_column; i++) {
     const double *x = s.m.point[s.c.column[i].root];
 
@@ -522,7 +522,7 @@ static void a_wedge_keeps_one_column_without_fans(void **state)
   extrude(&s.m, 8, wedge, 4, 1, 0);
   build(&s, 1, ~0u, 180);
   assert_int_equal(s.c.n_column, 8 * 5 + 1);
-  assert_int_equal(s.c.n_rim, 8);
+  assert_int_equal(s.c.n_border, 8);
   made_release(&s);
 }
 
@@ -537,7 +537,7 @@ static void a_wedge_has_a_fan_down_to_its_plane(void **state)
   assert_true(columns_at(&s, 1.5, 0.5, 0) >= 6);
   assert_int_equal(columns_at(&s, 1.5, 0.5, 0), columns_at(&s, 1.5, 0, 0));
   assert_int_equal(columns_at(&s, 0.5, 0.5, 0.0524), 1);
-  assert_int_equal(s.c.n_rim, 8 + columns_at(&s, 1.5, 0, 0) - 1);
+  assert_int_equal(s.c.n_border, 8 + columns_at(&s, 1.5, 0, 0) - 1);
   for (size_t i = 0; i < s.c.n_column; i++)
     if (s.m.point[s.c.column[i].root][1] == 0) {
       assert_int_equal(s.c.column[i].slide[0], 1);
@@ -558,7 +558,7 @@ static void a_swept_wedge_keeps_its_fan_in_the_plane(void **state)
     for (size_t i = 0; i < 8 * 5 + 1; i++)
       s.m.point[i][0] += 0.25 * sweep * s.m.point[i][1];
     build(&s, 1, ~0u, 130);
-    assert_int_equal(s.c.n_rim, 8 + columns_at(&s, 1.5, 0, 0) - 1);
+    assert_int_equal(s.c.n_border, 8 + columns_at(&s, 1.5, 0, 0) - 1);
     assert_true(columns_at(&s, 1.5, 0, 0) >= 6);
     assert_int_equal(check(&s, 0.01), 1);
     made_release(&s);
@@ -676,13 +676,13 @@ static void the_same_bytes_twice(void **state)
   build(&t, 1, ~0u, 60);
   assert_int_equal(s.c.n_column, t.c.n_column);
   assert_int_equal(s.c.n_face, t.c.n_face);
-  assert_int_equal(s.c.n_rim, t.c.n_rim);
+  assert_int_equal(s.c.n_border, t.c.n_border);
   for (size_t i = 0; i < s.c.n_column; i++) {
     assert_int_equal(s.c.column[i].root, t.c.column[i].root);
     assert_true(same(s.c.column[i].dir, t.c.column[i].dir, 3, 8));
   }
   assert_true(same(s.c.face, t.c.face, s.c.n_face, sizeof *s.c.face));
-  assert_true(same(s.c.rim, t.c.rim, s.c.n_rim, sizeof *s.c.rim));
+  assert_true(same(s.c.border, t.c.border, s.c.n_border, sizeof *s.c.border));
   assert_true(same(s.t.corner, t.t.corner, 3 * s.c.n_face, 4));
   assert_true(same(s.t.near, t.t.near, s.t.near_first[s.c.n_column], 4));
   made_release(&s);

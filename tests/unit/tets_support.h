@@ -29,7 +29,7 @@ static inline void tets_box(struct vg_tets *t, double lo, double hi)
   if (!x) abort();
   for (int p = 0; p < 8; p++)
     for (int k = 0; k < 3; k++) x[p][k] = p >> k & 1 ? hi : lo;
-  if (vg_tets_adopt(t, 8, x, 5, cell, NULL) != VG_OK) abort();
+  if (vg_tets_from_cells(t, 8, x, 5, cell, NULL) != VG_OK) abort();
 }
 
 /* nx x ny x nz unit cubes of six cells each, which have a long diagonal in
@@ -59,7 +59,7 @@ static inline void tets_grid(struct vg_tets *t, const int n[3])
         if (i < 3) p += step[path[k][i]];
       }
     }
-  if (vg_tets_adopt(t, np, x, nc, (const uint32_t (*)[4])v, NULL) != VG_OK)
+  if (vg_tets_from_cells(t, np, x, nc, (const uint32_t (*)[4])v, NULL) != VG_OK)
     abort();
   free(v);
 }

@@ -43,7 +43,7 @@ static vg_status describe(const char *name, struct vg_problem *p,
   base = strrchr(p->files.stem, '/');
   snprintf(title, sizeof title, "Run deck of %s",
            base ? base + 1 : p->files.stem);
-  vg_text_mend_end(title);
+  vg_text_trim_end(title);
   vg_settings_release(&p->settings);
   vg_settings_default(&p->settings);
   memcpy(p->settings.title, title, sizeof title);

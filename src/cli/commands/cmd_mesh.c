@@ -21,7 +21,7 @@ struct arguments {
   const char *project, *deck, *dir;
   int json, quiet, timeline;
   struct vg_run_options run;
-  struct vg_cli_kept kept;
+  struct vg_cli_overrides kept;
 };
 
 struct run {
@@ -93,7 +93,7 @@ static error_t option(int key, char *arg, struct argp_state *state)
   default:
     break;
   }
-  return vg_cli_keep(&a->kept, key, arg, state);
+  return vg_cli_add_override(&a->kept, key, arg, state);
 }
 
 /* Stages up to a surface as read, by each rank. */
@@ -260,7 +260,7 @@ static vg_status write_timeline(struct run *r, struct vg_error *err)
   t.n_cell = vg_run_cells(&r->mesh);
   t.n_point = m->n_point;
   t.spans = r->mesh.spans;
-  path = vg_outputs_aside(&r->outputs, "timeline.json");
+  path = vg_outputs_temp_path(&r->outputs, "timeline.json");
   st = path ? vg_timeline_write(path, &t, err)
             : vg_fail_memory(err, "the record of tasks");
   free(path);
@@ -281,7 +281,7 @@ static vg_status finish(struct run *r, const struct arguments *a,
   r->time_digest = vg_display_now() - t;
   if (a->timeline) VG_TRY(write_timeline(r, err));
   VG_TRY(vg_outputs_add(&r->outputs, "report.json", err));
-  path = vg_outputs_aside(&r->outputs, "report.json");
+  path = vg_outputs_temp_path(&r->outputs, "report.json");
   report = report_json(r, 1, NULL);
   st = path && report ? write_json(path, report, err)
                       : vg_fail_memory(err, "the report");

@@ -95,7 +95,7 @@ static error_t option(int key, char *arg, struct argp_state *state)
   case ARGP_KEY_END: check_end(o, state); return 0;
   default: break;
   }
-  return vg_cli_keep(&o->kept, key, arg, state);
+  return vg_cli_add_override(&o->kept, key, arg, state);
 }
 
 int vg_cmd_plan(int argc, char **argv)

@@ -65,7 +65,8 @@ static vg_status add(const char *what, struct vg_range_list *r, int64_t v,
 }
 
 static vg_status add_all(const char *what, const struct span *s, int64_t lo,
-                         int64_t hi, struct vg_range_list *r, struct vg_error *err)
+                         int64_t hi, struct vg_range_list *r,
+                             struct vg_error *err)
 {
   vg_status st = VG_OK;
 

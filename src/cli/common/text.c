@@ -97,7 +97,7 @@ char *vg_text_copy(const char *text)
   return out ? vg_text_clean(text, out, size) : NULL;
 }
 
-void vg_text_mend_end(char *text)
+void vg_text_trim_end(char *text)
 {
   size_t n = strlen(text), back = 0;
 

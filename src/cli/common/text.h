@@ -27,6 +27,6 @@ char *vg_text_copy(const char *text);
 json_t *vg_text_json(const char *text);
 
 /** Take away the part of a character that a cut has left at the end. */
-void vg_text_mend_end(char *text);
+void vg_text_trim_end(char *text);
 
 #endif

@@ -202,7 +202,7 @@ vg_status vg_problem_deck(struct vg_problem *p, struct vg_error *err)
 
   vg_settings_default(s);
   snprintf(s->title, sizeof s->title, "%s", base ? base + 1 : p->files.stem);
-  vg_text_mend_end(s->title);
+  vg_text_trim_end(s->title);
   if (!*p->files.deck) return VG_OK;
   return vg_deck_read(p->files.deck, s, err);
 }

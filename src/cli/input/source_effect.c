@@ -97,18 +97,18 @@ static void note_unmet(const struct vg_unmet_source *u, struct vg_problem *p)
           u->place.x[2], u->place.got);
 }
 
-static void note_lost(const struct vg_effects *h, int is_beyond,
-                      struct vg_problem *p)
+static void note_outside(const struct vg_effects *h, int is_beyond,
+                         struct vg_problem *p)
 {
   char list[200] = "";
   size_t n = 0, at = 0;
 
-  for (size_t i = 0; i < h->n_lost; i++) {
-    if (h->lost[i].is_beyond != is_beyond) continue;
+  for (size_t i = 0; i < h->n_outside; i++) {
+    if (h->outside[i].is_beyond != is_beyond) continue;
     n++;
     if (at + 24 < sizeof list)
       at += (size_t)snprintf(list + at, sizeof list - at, " %zu",
-                             h->lost[i].source + 1);
+                             h->outside[i].source + 1);
     else if (list[at - 1] != '.')
       at += (size_t)snprintf(list + at, sizeof list - at, " ...");
   }
@@ -134,8 +134,8 @@ void vg_effects_note(const struct vg_effects *h, const struct vg_mesh *front,
   if (h->n_unmet > VG_SHOWN_LIMITED)
     vg_note(&p->notes, "%zu more sources have no effect; the JSON report has "
             "them all", h->n_unmet - VG_SHOWN_LIMITED);
-  note_lost(h, 0, p);
-  note_lost(h, 1, p);
+  note_outside(h, 0, p);
+  note_outside(h, 1, p);
 }
 
 static json_t *item_json(const struct vg_limited_source *h,
@@ -166,16 +166,16 @@ static json_t *item_json(const struct vg_limited_source *h,
 json_t *vg_effects_json(const struct vg_effects *h, const struct vg_mesh *front,
                         const struct vg_settings *s)
 {
-  json_t *o = json_object(), *held = json_array(), *lost[2];
+  json_t *o = json_object(), *held = json_array(), *outside[2];
   json_t *unmet = json_array();
 
   for (size_t i = 0; i < h->n; i++)
     json_array_append_new(held, item_json(h->item + i, front,
                                           s->source + h->item[i].source));
-  for (int k = 0; k < 2; k++) lost[k] = json_array();
-  for (size_t i = 0; i < h->n_lost; i++)
-    json_array_append_new(lost[h->lost[i].is_beyond],
-                          json_integer((json_int_t)h->lost[i].source + 1));
+  for (int k = 0; k < 2; k++) outside[k] = json_array();
+  for (size_t i = 0; i < h->n_outside; i++)
+    json_array_append_new(outside[h->outside[i].is_beyond],
+                          json_integer((json_int_t)h->outside[i].source + 1));
   for (size_t i = 0; i < h->n_unmet; i++) {
     const struct vg_unmet_source *u = h->unmet + i;
 
@@ -188,7 +188,7 @@ json_t *vg_effects_json(const struct vg_effects *h, const struct vg_mesh *front,
   }
   json_object_set_new(o, "held", held);
   json_object_set_new(o, "unmet", unmet);
-  json_object_set_new(o, "inside", lost[0]);
-  json_object_set_new(o, "beyond", lost[1]);
+  json_object_set_new(o, "inside", outside[0]);
+  json_object_set_new(o, "beyond", outside[1]);
   return o;
 }

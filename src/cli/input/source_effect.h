@@ -16,8 +16,8 @@ vg_status vg_problem_effects(const struct vg_problem *p,
                              struct vg_error *err);
 
 /** A note for each source that is held back, or that the mesh does not meet,
- * the first VG_SHOWN_LIMITED of them, and one for all that are lost. front: as
- * for vg_effects_find. */
+ * the first VG_SHOWN_LIMITED of them, and one for all that are outside. front:
+ * as for vg_effects_find. */
 #define VG_SHOWN_LIMITED 10
 void vg_effects_note(const struct vg_effects *h, const struct vg_mesh *front,
                      struct vg_problem *p);

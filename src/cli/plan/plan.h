@@ -11,7 +11,7 @@
 struct vg_plan_options {
   const char *replay;           /* a .timeline.json, or NULL */
   const char *project, *deck;   /* without a replay */
-  struct vg_cli_kept kept;
+  struct vg_cli_overrides kept;
   double target;                /* s; 0: none */
   int depth;                    /* of the tree as text */
   struct vg_range_list ranks, threads;

@@ -229,7 +229,7 @@ static void count_mesh(struct vg_plan *p)
   else
     p->tet += p->layer_tet;
   p->cell = p->tet + p->prism;
-  p->point = vg_outlook_points(field, faces) + p->layer_point;
+  p->point = vg_forecast_points(field, faces) + p->layer_point;
 }
 
 static double bytes_written(const struct vg_plan *p)
@@ -248,8 +248,8 @@ static void count_memory(struct vg_plan *p)
 {
   double most = 0;
 
-  for (size_t i = 0; i < p->outlook.n_node; i++) {
-    const struct vg_outlook_node *n = &p->outlook.node[i];
+  for (size_t i = 0; i < p->forecast.n_node; i++) {
+    const struct vg_forecast_node *n = &p->forecast.node[i];
 
     if (!n->lattice.n[0] && !n->lattice.n[1] && !n->lattice.n[2] &&
         n->cells > most) most = n->cells;
@@ -264,8 +264,8 @@ static void count_memory(struct vg_plan *p)
 
 /* --- the run ------------------------------------------------------------- */
 
-static vg_status outlook(const struct vg_plan *p, double leaf_cells,
-                         struct vg_outlook *out, struct vg_error *err)
+static vg_status forecast(const struct vg_plan *p, double leaf_cells,
+                          struct vg_forecast *out, struct vg_error *err)
 {
   const struct vg_void v = { .n_point = p->front->n_point,
                              .x = p->front->point,
@@ -274,11 +274,11 @@ static vg_status outlook(const struct vg_plan *p, double leaf_cells,
   struct vg_cut_rule rule = p->rule;
 
   rule.leaf_cells = leaf_cells;
-  return vg_outlook_new(&v, &p->load, &rule, (int)p->problem.settings.levels,
-                        &vg_rates_measured, out, err);
+  return vg_forecast_new(&v, &p->load, &rule, (int)p->problem.settings.levels,
+                         &vg_rates_measured, out, err);
 }
 
-static vg_status run_on(const struct vg_plan *p, const struct vg_outlook *o,
+static vg_status run_on(const struct vg_plan *p, const struct vg_forecast *o,
                         int ranks, int threads, struct vg_plan_row *row,
                         struct vg_error *err)
 {
@@ -332,14 +332,14 @@ static vg_status try_leaves(struct vg_plan *p, struct vg_error *err)
   vg_status st = VG_OK;
 
   for (int i = 0; st >= 0 && i < VG_PLAN_LEAVES; i++) {
-    struct vg_outlook o = VG_OUTLOOK_INIT;
+    struct vg_forecast o = VG_FORECAST_INIT;
 
-    st = outlook(p, sizes[i], &o, err);
+    st = forecast(p, sizes[i], &o, err);
     if (st >= 0) st = run_on(p, &o, at->ranks, at->threads,
                              &p->leaf[p->n_leaf].row, err);
     p->leaf[p->n_leaf].cells = sizes[i];
     p->leaf[p->n_leaf].n = o.n_leaf;
-    vg_outlook_release(&o);
+    vg_forecast_release(&o);
     if (st < 0) break;
     if (p->leaf[p->n_leaf].row.wall < p->leaf[p->best_leaf].row.wall)
       p->best_leaf = p->n_leaf;
@@ -357,7 +357,7 @@ static vg_status run_all(struct vg_plan *p, struct vg_error *err)
   if (!p->row) return vg_fail_memory(err, "the forecast");
   for (size_t t = 0; t < o->threads.n; t++)
     for (size_t r = 0; r < o->ranks.n; r++) {
-      VG_TRY(run_on(p, &p->outlook, (int)o->ranks.v[r], (int)o->threads.v[t],
+      VG_TRY(run_on(p, &p->forecast, (int)o->ranks.v[r], (int)o->threads.v[t],
                     &p->row[p->n_row], err));
       p->n_row++;
     }
@@ -396,7 +396,7 @@ static vg_status make(struct vg_plan *p, struct vg_error *err)
   p->rule.leaf_cells = s->levels ? 0 : (double)s->leaf_cells;
   p->rule.first_axis = (int)s->split_direction - 1;
   p->rule.constant = s->constant_direction;
-  VG_TRY(outlook(p, p->rule.leaf_cells, &p->outlook, err));
+  VG_TRY(forecast(p, p->rule.leaf_cells, &p->forecast, err));
   count_mesh(p);
   count_memory(p);
   p->spread = spread_per_cell * p->cell;
@@ -408,7 +408,7 @@ done:
 
 static void release(struct vg_plan *p)
 {
-  vg_outlook_release(&p->outlook);
+  vg_forecast_release(&p->forecast);
   vg_load_release(&p->load);
   vg_effects_release(&p->effects);
   vg_sizing_free(p->sizing);

@@ -15,7 +15,7 @@ enum { VG_PLAN_LEAVES = 8 };
 /** A whole run on a machine. */
 struct vg_plan_row {
   int ranks, threads;
-  struct vg_forecast tasks;     /* cutting and filling alone */
+  struct vg_model_result tasks;     /* cutting and filling alone */
   double wall;                  /* s, of everything */
   double speedup, efficiency;   /* of everything, against one worker */
   double memory;                /* bytes of a rank */
@@ -32,7 +32,7 @@ struct vg_plan {
   struct vg_effects effects;
   struct vg_load load;
   struct vg_cut_rule rule;
-  struct vg_outlook outlook;
+  struct vg_forecast forecast;
   int is_grown;                 /* layers were; else they are estimated */
   size_t n_wall_point;
   double layer_tet, layer_point;   /* if all are tetrahedra */

@@ -70,7 +70,7 @@ static const char *bytes(double n, char text[32])
   return text;
 }
 
-static int is_leaf(const struct vg_outlook_node *n)
+static int is_leaf(const struct vg_forecast_node *n)
 {
   return !n->lattice.n[0] && !n->lattice.n[1] && !n->lattice.n[2];
 }
@@ -126,14 +126,14 @@ static void print_planes(const struct vg_lattice *l)
 }
 
 /* Leaves of a node in one line. */
-static void print_leaves(const struct vg_outlook *o, size_t parent, int indent)
+static void print_leaves(const struct vg_forecast *o, size_t parent, int indent)
 {
   double least = INFINITY, most = 0;
   char a[32], b[32];
   size_t n = 0;
 
   for (size_t i = parent + 1; i < o->n_node; i++) {
-    const struct vg_outlook_node *c = &o->node[i];
+    const struct vg_forecast_node *c = &o->node[i];
 
     if (c->parent != parent || !is_leaf(c)) continue;
     least = fmin(least, c->cells);
@@ -154,7 +154,7 @@ static void print_number(size_t n, const char *what)
 
 static void print_tree(const struct vg_plan *p)
 {
-  const struct vg_outlook *o = &p->outlook;
+  const struct vg_forecast *o = &p->forecast;
   char a[32], b[32];
 
   printf("\nCuts\n  ");
@@ -168,7 +168,7 @@ static void print_tree(const struct vg_plan *p)
   printf(" with %s cells (%.1f %%)\n", count(o->zone_cells, a),
          o->cells > 0 ? 100 * o->zone_cells / o->cells : 0);
   for (size_t i = 0; i < o->n_node; i++) {
-    const struct vg_outlook_node *n = &o->node[i];
+    const struct vg_forecast_node *n = &o->node[i];
 
     if (n->depth >= p->o->depth || (is_leaf(n) && i)) continue;
     printf("  %*s%s: %s cells, %s in zones", 2 * n->depth, "", n->path,
@@ -226,8 +226,8 @@ void vg_plan_text(const struct vg_plan *p)
   printf("\nForecast: on one core %.2f s before the tasks (shared by a node), "
          "%.2f s of tasks,\n  %.2f s behind them (shared by all but for %.2f "
          "s); of the tasks %.2f s in loops of joins\n  that idle threads of a "
-         "rank help with\n", p->serial, p->outlook.spans.wall,
-         p->spread + p->digest, p->digest, vg_spans_loops(&p->outlook.spans));
+         "rank help with\n", p->serial, p->forecast.spans.wall,
+         p->spread + p->digest, p->digest, vg_spans_loops(&p->forecast.spans));
   printf("  ranks threads workers       time  speed-up  efficiency      tasks "
          " speed-up   critical  cuts end  cuts extra    a rank\n");
   printf("                               s                     %%          s  "
@@ -252,7 +252,7 @@ static json_t *row_json(const struct vg_plan_row *r)
                    r->tasks.bytes);
 }
 
-static json_t *node_json(const struct vg_outlook_node *n)
+static json_t *node_json(const struct vg_forecast_node *n)
 {
   json_t *o = json_pack("{s:s s:f s:f s:f s:[f,f,f] s:[f,f,f]}", "path",
                         n->path, "cells", n->cells, "zone_cells", n->zone,
@@ -303,7 +303,7 @@ static json_t *files_json(const struct vg_plan *p)
 
 static json_t *tree_json(const struct vg_plan *p)
 {
-  const struct vg_outlook *t = &p->outlook;
+  const struct vg_forecast *t = &p->forecast;
   json_t *o = json_pack("{s:I s:I s:I s:I s:f}", "cuts",
                         (json_int_t)(t->n_node - t->n_leaf), "leaves",
                         (json_int_t)t->n_leaf, "pencils",
@@ -342,8 +342,9 @@ vg_status vg_plan_json(const struct vg_plan *p, struct vg_error *err)
     p->shared, "per_cell", p->per_cell, "per_thread", p->per_thread));
   json_object_set_new(o, "tree", tree_json(p));
   json_object_set_new(o, "one_core", json_pack("{s:f s:f s:f s:f s:f}",
-    "before", p->serial, "tasks", p->outlook.spans.wall, "loops",
-    vg_spans_loops(&p->outlook.spans), "spread", p->spread, "digest", p->digest));
+    "before", p->serial, "tasks", p->forecast.spans.wall, "loops",
+    vg_spans_loops(&p->forecast.spans), "spread", p->spread, "digest",
+        p->digest));
   for (size_t i = 0; i < p->n_row; i++)
     json_array_append_new(rows, row_json(&p->row[i]));
   json_object_set_new(o, "forecast", rows);

@@ -13,7 +13,7 @@
 #include "cli/plot/timeline.h"
 #include "cli/report/report.h"
 
-struct row { int ranks, threads; struct vg_forecast f; };
+struct row { int ranks, threads; struct vg_model_result f; };
 
 struct plan {
   const struct vg_plan_options *o;

@@ -137,7 +137,8 @@ void vg_report_layers_note(const struct vg_layer_stage *s,
     if (n++ < VG_SHOWN_DEFECTS)
       at += (size_t)snprintf(list + at, sizeof list - at, " %d",
                              (int)patch_of(surface, w)->id);
-    if (n == VG_SHOWN_DEFECTS + 1) snprintf(list + at, sizeof list - at, " ...");
+    if (n == VG_SHOWN_DEFECTS + 1) snprintf(list + at, sizeof list - at,
+                                            " ...");
     first = fmax(first, s->request[w->patch].law.delta1);
   }
   if (n)

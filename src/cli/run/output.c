@@ -22,25 +22,25 @@
 
 #define WALLS "wall.vtu"
 
-static void remove_aside(struct vg_outputs *o)
+static void remove_temp_dir(struct vg_outputs *o)
 {
   char *path;
 
-  if (!o->aside) return;
+  if (!o->temp_dir) return;
   for (size_t i = 0; i < o->n_file && !o->is_guest; i++) {
-    path = vg_outputs_aside(o, o->file[i].suffix);
+    path = vg_outputs_temp_path(o, o->file[i].suffix);
     if (path && o->file[i].is_case) vg_foam_remove(path);
     else if (path) unlink(path);
     free(path);
   }
-  if (!o->is_guest) rmdir(o->aside);
-  free(o->aside);
-  o->aside = NULL;
+  if (!o->is_guest) rmdir(o->temp_dir);
+  free(o->temp_dir);
+  o->temp_dir = NULL;
 }
 
 void vg_outputs_release(struct vg_outputs *o)
 {
-  remove_aside(o);
+  remove_temp_dir(o);
   for (size_t i = 0; i < o->n_file; i++) free(o->file[i].suffix);
   free(o->file);
   free(o->dir);
@@ -56,9 +56,9 @@ static char *join(const char *dir, const char *name, const char *suffix)
                   suffix) < 0 ? NULL : path;
 }
 
-char *vg_outputs_aside(struct vg_outputs *o, const char *suffix)
+char *vg_outputs_temp_path(struct vg_outputs *o, const char *suffix)
 {
-  return join(o->aside, o->name, suffix);
+  return join(o->temp_dir, o->name, suffix);
 }
 
 char *vg_outputs_final(const struct vg_outputs *o, const char *suffix)
@@ -220,15 +220,15 @@ vg_status vg_outputs_check(const struct vg_problem *p, struct vg_outputs *o,
   return st;
 }
 
-static vg_status make_aside(struct vg_outputs *o, struct vg_error *err)
+static vg_status make_temp_dir(struct vg_outputs *o, struct vg_error *err)
 {
-  if (asprintf(&o->aside, "%s/.vanguard-XXXXXX", o->dir) < 0) {
-    o->aside = NULL;
+  if (asprintf(&o->temp_dir, "%s/.vanguard-XXXXXX", o->dir) < 0) {
+    o->temp_dir = NULL;
     return vg_fail_memory(err, "the output paths");
   }
-  if (mkdtemp(o->aside)) return VG_OK;
-  free(o->aside);
-  o->aside = NULL;
+  if (mkdtemp(o->temp_dir)) return VG_OK;
+  free(o->temp_dir);
+  o->temp_dir = NULL;
   return cannot_write(o, err);
 }
 
@@ -257,14 +257,14 @@ static vg_status begin(struct vg_outputs *o, struct vg_comm *comm,
   vg_status st = VG_OK;
 
   o->is_guest = vg_comm_rank(comm) > 0;
-  if (!o->is_guest) st = make_aside(o, err);
+  if (!o->is_guest) st = make_temp_dir(o, err);
   VG_TRY(vg_comm_agree(comm, st, err));
   if (!o->is_guest)
-    name = (struct vg_bytes){ strlen(o->aside) + 1,
-                              (unsigned char *)o->aside };
-  o->aside = NULL;
+    name = (struct vg_bytes){ strlen(o->temp_dir) + 1,
+                              (unsigned char *)o->temp_dir };
+  o->temp_dir = NULL;
   st = vg_comm_bcast(comm, 0, &name, err);
-  o->aside = (char *)name.data;
+  o->temp_dir = (char *)name.data;
 done:
   return st;
 }
@@ -276,7 +276,7 @@ static vg_status open_item(struct vg_outputs *o, const struct vg_problem *p,
                            const char *item, struct vg_error *err)
 {
   struct vg_slices_options options = { .tail = p->settings.ugrid_tail };
-  char *path = vg_outputs_aside(o, item);
+  char *path = vg_outputs_temp_path(o, item);
   vg_status st = path ? vg_outputs_add(o, item, err)
                       : vg_fail_memory(err, "the output paths");
 
@@ -355,13 +355,13 @@ static vg_status write_alone(struct writing *w, const char *item,
     st = vg_slices_collect(w->mesh, w->threads, &w->whole, err);
   if (st < 0) return st;
   if (!vg_foam_word(item, &options)) {
-    path = vg_outputs_aside(w->o, item);
+    path = vg_outputs_temp_path(w->o, item);
     st = path ? write_format(w, path, item, err)
               : vg_fail_memory(err, "the output paths");
     free(path);
     return st < 0 ? st : vg_outputs_add(w->o, item, err);
   }
-  path = vg_outputs_aside(w->o, VG_FOAM_SUFFIX);
+  path = vg_outputs_temp_path(w->o, VG_FOAM_SUFFIX);
   st = path ? vg_outputs_add(w->o, VG_FOAM_SUFFIX, err)
             : vg_fail_memory(err, "the output paths");
   if (st >= 0) {
@@ -377,16 +377,17 @@ static vg_status write_conditions(struct writing *w, const char *item,
                                   struct vg_error *err)
 {
   int is_fun3d = strcmp(item, "mapbc") != 0;
-  struct vg_mesh rim = VG_MESH_INIT;
-  char *path = vg_outputs_aside(w->o, item);
-  vg_status st = vg_slices_boundary(w->comm, w->mesh, w->threads, &rim, err);
+  struct vg_mesh boundary = VG_MESH_INIT;
+  char *path = vg_outputs_temp_path(w->o, item);
+  vg_status st = vg_slices_boundary(w->comm, w->mesh, w->threads, &boundary,
+                                    err);
 
   if (st >= 0 && !path) st = vg_fail_memory(err, "the output paths");
   if (st >= 0 && !w->o->is_guest)
-    st = vg_mapbc_write(path, &rim, is_fun3d ? VG_MAPBC_FUN3D
+    st = vg_mapbc_write(path, &boundary, is_fun3d ? VG_MAPBC_FUN3D
                                              : VG_MAPBC_VGRID,
                         is_fun3d ? NULL : w->p->settings.title, NULL, err);
-  vg_mesh_release(&rim);
+  vg_mesh_release(&boundary);
   free(path);
   st = vg_comm_agree(w->comm, st, err);
   return st < 0 ? st : vg_outputs_add(w->o, item, err);
@@ -424,7 +425,7 @@ static vg_status write_slices(struct writing *w, const char *item,
   char *stem;
   vg_status st;
 
-  if (asprintf(&stem, "%s/%s", w->o->aside, w->o->name) < 0)
+  if (asprintf(&stem, "%s/%s", w->o->temp_dir, w->o->name) < 0)
     return vg_fail_memory(err, "the output paths");
   st = vg_slices_write_with(w->comm, w->mesh, stem, item, &o, err);
   if (st >= 0 && part == pair)
@@ -448,7 +449,7 @@ static vg_status write_walls(struct vg_outputs *o, const struct vg_problem *p,
                              const struct vg_layer_stage *layers,
                              struct vg_error *err)
 {
-  char *path = vg_outputs_aside(o, WALLS);
+  char *path = vg_outputs_temp_path(o, WALLS);
   vg_status st = path ? vg_layer_stage_write(layers, &p->surface, path, err)
                       : vg_fail_memory(err, "the output paths");
 
@@ -465,7 +466,7 @@ static vg_status write_deck(struct vg_outputs *o, const struct vg_problem *p,
   struct vg_settings settings = p->settings;
   const char *input = *f->surface ? f->surface : f->stem;
   const char *quote = strchr(input, ' ') ? "'" : "";   /* for a shell */
-  char *path = vg_outputs_aside(o, "resolved.deck"), *comment = NULL;
+  char *path = vg_outputs_temp_path(o, "resolved.deck"), *comment = NULL;
   vg_status st;
 
   if (!path ||
@@ -525,7 +526,7 @@ vg_status vg_outputs_digest(struct vg_outputs *o, struct vg_error *err)
   vg_status st = VG_OK;
 
   for (size_t i = 0; i < o->n_file && st >= 0; i++) {
-    char *path = vg_outputs_aside(o, o->file[i].suffix);
+    char *path = vg_outputs_temp_path(o, o->file[i].suffix);
 
     if (!path) st = vg_fail_memory(err, "the output paths");
     else if (!o->file[i].is_case) st = digest_file(path, &o->file[i], err);
@@ -542,7 +543,7 @@ vg_status vg_outputs_commit(struct vg_outputs *o, struct vg_error *err)
     if (!o->file[i].is_case && !o->file[i].keep_old)
       st = refuse_folder(o, o->file[i].suffix, err);
   for (size_t i = 0; i < o->n_file && st >= 0; i++) {
-    char *from = vg_outputs_aside(o, o->file[i].suffix);
+    char *from = vg_outputs_temp_path(o, o->file[i].suffix);
     char *to = vg_outputs_final(o, o->file[i].suffix);
 
     if (!from || !to)
@@ -555,6 +556,6 @@ vg_status vg_outputs_commit(struct vg_outputs *o, struct vg_error *err)
     free(from);
     free(to);
   }
-  remove_aside(o);
+  remove_temp_dir(o);
   return st;
 }

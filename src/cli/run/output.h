@@ -14,7 +14,7 @@ struct vg_slices_ugrid;
 
 struct vg_outputs {
   char *dir, *name;           /* target folder ("." if none), base name */
-  char *aside;                /* hidden folder while writing, or NULL */
+  char *temp_dir;                /* hidden folder while writing, or NULL */
   int is_guest;               /* 1: another rank makes and removes it */
   size_t n_item;
   char item[VG_WRITE_ITEMS][VG_WRITE_NAME];
@@ -47,7 +47,7 @@ vg_status vg_outputs_check(const struct vg_problem *p, struct vg_outputs *o,
                            struct vg_error *err);
 
 /** Path of STEM.suffix where it is written now; free() it. */
-char *vg_outputs_aside(struct vg_outputs *o, const char *suffix);
+char *vg_outputs_temp_path(struct vg_outputs *o, const char *suffix);
 
 /** Path of STEM.suffix when all is done; free() it. */
 char *vg_outputs_final(const struct vg_outputs *o, const char *suffix);

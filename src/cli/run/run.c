@@ -108,7 +108,7 @@ static vg_status share_with_node(struct vg_run *r, vg_status st,
   if (own >= 0 && layers && !leads_node(r))
     own = vg_layers_unpack(&layer, surface, layers, err);
   st = vg_sizing_share(r->comm, sizing, err);
-  if (st >= 0) r->common = vg_sizing_common(*sizing);
+  if (st >= 0) r->common = vg_sizing_shmem(*sizing);
   if (st >= 0) st = own;
   if (st >= 0) st = vg_display_stopped(err);
   st = vg_comm_agree(r->comm, st, err);

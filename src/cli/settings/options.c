@@ -137,8 +137,9 @@ static vg_status set_option(int key, const char *text, struct vg_settings *s,
                       strlen(text), err);
 }
 
-error_t vg_cli_keep(struct vg_cli_kept *kept, int key, const char *text,
-                    const struct argp_state *state)
+error_t vg_cli_add_override(struct vg_cli_overrides *kept, int key,
+                            const char *text,
+                            const struct argp_state *state)
 {
   struct vg_settings scratch;
   struct vg_error err = VG_ERROR_INIT;
@@ -156,7 +157,8 @@ error_t vg_cli_keep(struct vg_cli_kept *kept, int key, const char *text,
   return 0;
 }
 
-vg_status vg_cli_apply(const struct vg_cli_kept *kept, struct vg_settings *s,
+vg_status vg_cli_apply(const struct vg_cli_overrides *kept,
+                       struct vg_settings *s,
                        struct vg_error *err)
 {
   vg_status st = VG_OK;

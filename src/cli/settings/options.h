@@ -34,7 +34,7 @@ int vg_cli_option_key(const char *name);
 
 /** Settings from the command line: they wait until the deck has been read,
  * which they win over. */
-struct vg_cli_kept {
+struct vg_cli_overrides {
   size_t n, cap;
   struct { int key; const char *text; } *set;   /* text is argv's */
 };
@@ -42,12 +42,14 @@ struct vg_cli_kept {
 /** Keep what the option with `key` sets. A value that cannot be is wrong usage,
  * known before anything is read. For a parser: ARGP_ERR_UNKNOWN when the key
  * is no setting's. */
-error_t vg_cli_keep(struct vg_cli_kept *kept, int key, const char *text,
-                    const struct argp_state *state);
+error_t vg_cli_add_override(struct vg_cli_overrides *kept, int key,
+                            const char *text,
+                            const struct argp_state *state);
 
 /** Set all of them, and check that the settings go together: VG_ERR_USAGE
  * where those of the deck alone did. */
-vg_status vg_cli_apply(const struct vg_cli_kept *kept, struct vg_settings *s,
+vg_status vg_cli_apply(const struct vg_cli_overrides *kept,
+                       struct vg_settings *s,
                        struct vg_error *err);
 
 #endif

@@ -408,7 +408,7 @@ static vg_status add_model(const struct vg_sweep *s,
   snprintf(to->label + strlen(to->label), 8, ", model");
   for (int n = 1; n <= most && to->n < 64; n = most > 16 ? 2 * n : n + 1) {
     struct vg_machine m = VG_MACHINE_INIT;
-    struct vg_forecast f;
+    struct vg_model_result f;
 
     m.ranks = m.ranks_per_node = n;
     vg_timeline_outside(&c->t, &m);

@@ -53,7 +53,7 @@ int vg_cavity_ring(const struct vg_tets *t, uint32_t c, uint32_t a, uint32_t b,
 
 /* --- replacing cells ----------------------------------------------------- */
 
-struct rim {                 /* a face of the cavity, or a face waiting */
+struct border {                 /* a face of the cavity, or a face waiting */
   uint32_t v[3], link;
   uint8_t fixed;
 };
@@ -73,8 +73,8 @@ void vg_cavity_face(const struct vg_cell *c, int i, uint32_t v[3])
   v[2] = d;
 }
 
-static int collect_rim(const struct vg_tets *t, int n_old,
-                       const uint32_t *old, struct rim *rim)
+static int collect_border(const struct vg_tets *t, int n_old,
+                          const uint32_t *old, struct border *border)
 {
   int n = 0;
 
@@ -83,33 +83,34 @@ static int collect_rim(const struct vg_tets *t, int n_old,
       uint32_t link = t->cell[old[k]].link[i];
 
       if (link != VG_NONE && t->flag[link >> 2] & VG_MARK) continue;
-      vg_cavity_face(&t->cell[old[k]], i, rim[n].v);
-      rim[n].link = link;
-      rim[n++].fixed = t->flag[old[k]] >> i & 1;
+      vg_cavity_face(&t->cell[old[k]], i, border[n].v);
+      border[n].link = link;
+      border[n++].fixed = t->flag[old[k]] >> i & 1;
     }
   return n;
 }
 
-/* Link face i of new cell c with the rim or with another new cell. */
+/* Link face i of new cell c with the border or with another new cell. */
 static void link_face(struct vg_tets *t, uint32_t c, uint32_t i,
-                      struct rim *rim, int *n)
+                      struct border *border, int *n)
 {
   uint32_t v[3];
 
   vg_cavity_face(&t->cell[c], (int)i, v);
   for (int k = 0; k < *n; k++) {
-    if (rim[k].v[0] != v[0] || rim[k].v[1] != v[1] || rim[k].v[2] != v[2])
+    if (border[k].v[0] != v[0] || border[k].v[1] != v[1] ||
+        border[k].v[2] != v[2])
       continue;
-    t->cell[c].link[i] = rim[k].link;
-    if (rim[k].link != VG_NONE)
-      t->cell[rim[k].link >> 2].link[rim[k].link & 3] = 4 * c + i;
-    if (rim[k].fixed) t->flag[c] |= (uint8_t)(1 << i);
-    rim[k] = rim[--*n];
+    t->cell[c].link[i] = border[k].link;
+    if (border[k].link != VG_NONE)
+      t->cell[border[k].link >> 2].link[border[k].link & 3] = 4 * c + i;
+    if (border[k].fixed) t->flag[c] |= (uint8_t)(1 << i);
+    border[k] = border[--*n];
     return;
   }
-  memcpy(rim[*n].v, v, sizeof v);
-  rim[*n].link = 4 * c + i;
-  rim[(*n)++].fixed = 0;
+  memcpy(border[*n].v, v, sizeof v);
+  border[*n].link = 4 * c + i;
+  border[(*n)++].fixed = 0;
 }
 
 int vg_cavity_reserve(struct vg_tets *t, int n_old, int n_new)
@@ -123,18 +124,18 @@ int vg_cavity_reserve(struct vg_tets *t, int n_old, int n_new)
 void vg_cavity_refill(struct vg_tets *t, int n_old, const uint32_t *old,
                       int n_new, const uint32_t (*v)[4], uint32_t *slot)
 {
-  struct rim rim[8 * VG_CAVITY_MAX];
+  struct border border[8 * VG_CAVITY_MAX];
   int n;
 
   for (int k = 0; k < n_old; k++) t->flag[old[k]] |= VG_MARK;
-  n = collect_rim(t, n_old, old, rim);
+  n = collect_border(t, n_old, old, border);
   for (int k = 0; k < n_new; k++) {
-    uint32_t c = slot[k] = k < n_old ? old[k] : vg_tets_take(t);
+    uint32_t c = slot[k] = k < n_old ? old[k] : vg_tets_alloc_cell(t);
 
     memcpy(t->cell[c].v, v[k], sizeof t->cell[c].v);
     t->flag[c] = 0;
   }
   for (int k = 0; k < n_new; k++)
-    for (uint32_t i = 0; i < 4; i++) link_face(t, slot[k], i, rim, &n);
-  for (int k = n_new; k < n_old; k++) vg_tets_drop(t, old[k]);
+    for (uint32_t i = 0; i < 4; i++) link_face(t, slot[k], i, border, &n);
+  for (int k = n_new; k < n_old; k++) vg_tets_free_cell(t, old[k]);
 }

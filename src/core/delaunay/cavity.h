@@ -27,7 +27,7 @@ int vg_cavity_reserve(struct vg_tets *t, int n_old, int n_new);
 
 /** Replace n_old cells by n_new ones that fill the same cavity, each at most
  * VG_CAVITY_MAX. The first slots of old are reused; links and fixed faces of
- * the rim are brought up to date, faces between new cells are not fixed.
+ * the border are brought up to date, faces between new cells are not fixed.
  * slot out: [n_new]. Room must be there. */
 void vg_cavity_refill(struct vg_tets *t, int n_old, const uint32_t *old,
                       int n_new, const uint32_t (*v)[4], uint32_t *slot);

@@ -315,7 +315,7 @@ static void link_edge(struct vg_inserter *s, uint32_t a, uint32_t b,
       return;
     }
     if (e->key == key) {
-      vg_tets_join(s->t, e->link, link);
+      vg_tets_connect(s->t, e->link, link);
       return;
     }
   }
@@ -330,7 +330,7 @@ static void make_cells(struct vg_inserter *s, uint32_t p)
 
   for (size_t k = 0; k < s->n_face; k++) {
     struct vg_cavity_face *f = &s->face[k];
-    uint32_t c = used < s->n_cell ? s->cell[used++].at : vg_tets_take(t);
+    uint32_t c = used < s->n_cell ? s->cell[used++].at : vg_tets_alloc_cell(t);
     struct vg_cell *cell = &t->cell[c];
 
     cell->v[0] = f->v[0];
@@ -346,7 +346,7 @@ static void make_cells(struct vg_inserter *s, uint32_t p)
   }
   /* A star-shaped cavity of n vertices has 2n - 4 faces; with n - 3 cells or
    * more there can be fewer faces than cells only around flat ones. */
-  while (used < s->n_cell) vg_tets_drop(t, s->cell[used++].at);
+  while (used < s->n_cell) vg_tets_free_cell(t, s->cell[used++].at);
 }
 
 /* Each edge of the cavity's hull has two faces, which run along it in opposite

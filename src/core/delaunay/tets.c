@@ -38,7 +38,7 @@ int vg_tets_reserve_cells(struct vg_tets *t, size_t n)
   return 0;
 }
 
-int vg_tets_drop(struct vg_tets *t, uint32_t cell)
+int vg_tets_free_cell(struct vg_tets *t, uint32_t cell)
 {
   if (vg_reserve(&t->free, &t->cap_free, t->n_free + 1, sizeof *t->free))
     return -1;
@@ -92,7 +92,7 @@ static vg_status link_faces(struct vg_tets *t, uint32_t *table, size_t mask,
           return vg_fail(err, VG_ERR_GEOMETRY,
                          "face of points %u %u %u has more than two cells",
                          v[0] + 1, v[1] + 1, v[2] + 1);
-        vg_tets_join(t, other, 4 * c + i);
+        vg_tets_connect(t, other, 4 * c + i);
         break;
       }
     }
@@ -117,9 +117,9 @@ vg_status vg_tets_link(struct vg_tets *t, struct vg_error *err)
   return st;
 }
 
-vg_status vg_tets_adopt(struct vg_tets *t, size_t n_point, double (*x)[3],
-                        size_t n_cell, const uint32_t (*v)[4],
-                        struct vg_error *err)
+vg_status vg_tets_from_cells(struct vg_tets *t, size_t n_point, double (*x)[3],
+                             size_t n_cell, const uint32_t (*v)[4],
+                             struct vg_error *err)
 {
   t->x = x;
   t->n_point = t->cap_point = n_point;
@@ -272,7 +272,8 @@ static void move_cells(struct vg_tets *t, size_t n, const uint32_t *to,
   t->n_free = 0;
 }
 
-vg_status vg_tets_tidy(struct vg_tets *t, size_t n_keep, struct vg_error *err)
+vg_status vg_tets_compact(struct vg_tets *t, size_t n_keep,
+                          struct vg_error *err)
 {
   uint32_t *point = vg_alloc(t->n_point, sizeof *point), *start = NULL;
   uint32_t *to = vg_alloc(t->n_cell, sizeof *to);

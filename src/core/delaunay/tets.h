@@ -50,15 +50,15 @@ int vg_tets_reserve_points(struct vg_tets *t, size_t n);
 int vg_tets_reserve_cells(struct vg_tets *t, size_t n);
 
 /** A slot for a new cell: a dead one, else the next. Room must be there. */
-static inline uint32_t vg_tets_take(struct vg_tets *t)
+static inline uint32_t vg_tets_alloc_cell(struct vg_tets *t)
 {
   return t->n_free ? t->free[--t->n_free] : (uint32_t)t->n_cell++;
 }
 
 /** Put a cell on the free list. 0, or -1 when memory is refused. */
-int vg_tets_drop(struct vg_tets *t, uint32_t cell);
+int vg_tets_free_cell(struct vg_tets *t, uint32_t cell);
 
-static inline void vg_tets_join(struct vg_tets *t, uint32_t a, uint32_t b)
+static inline void vg_tets_connect(struct vg_tets *t, uint32_t a, uint32_t b)
 {
   t->cell[a >> 2].link[a & 3] = b;
   t->cell[b >> 2].link[b & 3] = a;
@@ -70,13 +70,14 @@ vg_status vg_tets_link(struct vg_tets *t, struct vg_error *err);
 
 /** Make *t (empty) of points and cells in either orientation, and link them.
  * x becomes t's, also on failure. VG_ERR_GEOMETRY for a flat cell. */
-vg_status vg_tets_adopt(struct vg_tets *t, size_t n_point, double (*x)[3],
-                        size_t n_cell, const uint32_t (*v)[4],
-                        struct vg_error *err);
+vg_status vg_tets_from_cells(struct vg_tets *t, size_t n_point, double (*x)[3],
+                             size_t n_cell, const uint32_t (*v)[4],
+                             struct vg_error *err);
 
 /** Walk from `start` to a cell that contains x (boundary included), through
  * constrained faces, ignoring dead cells. VG_NONE when x is outside all: sure
- * only where the cells fill a convex hull (before vg_tets_tidy drops some). */
+ * only where the cells fill a convex hull (before vg_tets_compact drops some).
+ * */
 uint32_t vg_tets_locate(const struct vg_tets *t, uint32_t start,
                         const double x[3]);
 
@@ -84,7 +85,8 @@ uint32_t vg_tets_locate(const struct vg_tets *t, uint32_t start,
  * neighbours together: points from n_keep on along a Hilbert curve, unused
  * ones dropped (earlier ones keep their place), cells by their highest point.
  * Links to removed cells become VG_NONE. VG_ERR_MEMORY on refusal. */
-vg_status vg_tets_tidy(struct vg_tets *t, size_t n_keep, struct vg_error *err);
+vg_status vg_tets_compact(struct vg_tets *t, size_t n_keep,
+                          struct vg_error *err);
 
 /** Test aid: number of inconsistencies (links, orientation). O(n). */
 size_t vg_tets_defects(const struct vg_tets *t);

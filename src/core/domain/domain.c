@@ -1,6 +1,6 @@
 /* Outline: find the open edges of the body; none: a whole farfield; all in
- * one coordinate plane: snap them to it, half a farfield whose rim lies in
- * the plane, and the plane itself between rim and footprints. */
+ * one coordinate plane: snap them to it, half a farfield whose border lies in
+ * the plane, and the plane itself between border and footprints. */
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
@@ -25,7 +25,7 @@ struct domain {
   double centre[3], radius;
   int axis, side;                /* symmetry; axis -1: none; side 1: above */
   double at;
-  struct vg_rim open;            /* as the new surface runs along them */
+  struct vg_border open;            /* as the new surface runs along them */
 };
 
 /* --- open edges ---------------------------------------------------------- */
@@ -79,8 +79,8 @@ static vg_status open_of_vertex(struct domain *d, uint32_t v, size_t n,
                      "(%.9g, %.9g, %.9g): its triangles run the same way; "
                      "run `vanguard check` on the surface", x[0], x[1], x[2],
                      y[0], y[1], y[2]);
-    if (sum > 0) st = vg_rim_add(&d->open, list[i].other, v, err);
-    if (sum < 0) st = vg_rim_add(&d->open, v, list[i].other, err);
+    if (sum > 0) st = vg_border_add(&d->open, list[i].other, v, err);
+    if (sum < 0) st = vg_border_add(&d->open, v, list[i].other, err);
   }
   return st;
 }
@@ -263,7 +263,7 @@ static vg_status outside(const struct domain *d, size_t i,
 }
 
 static vg_status add_sphere(struct domain *d, uint32_t patch,
-                            struct vg_rim *rim, struct vg_error *err)
+                            struct vg_border *border, struct vg_error *err)
 {
   const struct vg_size_law law = { domain_size, domain_stop, d };
   const double most = FARFIELD_ROOM * d->radius;
@@ -278,11 +278,11 @@ static vg_status add_sphere(struct domain *d, uint32_t patch,
   }
   return vg_add_sphere(&d->m, d->centre, d->radius,
                        d->axis < 0 ? -1 : 2 * d->axis + d->side, 1, &law,
-                       patch, rim, err);
+                       patch, border, err);
 }
 
 static vg_status add_box(struct domain *d, uint32_t patch,
-                         struct vg_rim *rim, struct vg_error *err)
+                         struct vg_border *border, struct vg_error *err)
 {
   const struct vg_farfield *f = d->farfield;
   const struct vg_size_law law = { domain_size, domain_stop, d };
@@ -310,7 +310,7 @@ static vg_status add_box(struct domain *d, uint32_t patch,
                                               && !(x < hi[k])))
         return outside(d, i, err);
     }
-  return vg_add_box(&d->m, lo, hi, open, &law, of, rim, err);
+  return vg_add_box(&d->m, lo, hi, open, &law, of, border, err);
 }
 
 /* --- patches ------------------------------------------------------------- */
@@ -335,7 +335,7 @@ static vg_status add_patch(struct vg_mesh *m, const char *name, int32_t bc,
   return VG_OK;
 }
 
-static vg_status add_symmetry(struct domain *d, struct vg_rim *rim,
+static vg_status add_symmetry(struct domain *d, struct vg_border *border,
                               struct vg_error *err)
 {
   const struct vg_size_law law = { domain_size, domain_stop, d };
@@ -345,8 +345,9 @@ static vg_status add_symmetry(struct domain *d, struct vg_rim *rim,
 
   VG_TRY(add_patch(&d->m, "symmetry", 1, 6661 + d->axis, &patch, err));
   for (size_t i = 0; i < d->open.n; i++)
-    VG_TRY(vg_rim_add(rim, d->open.edge[i][0], d->open.edge[i][1], err));
-  st = vg_planar_patch(&d->m, rim->n, (const uint32_t (*)[2])rim->edge, &law,
+    VG_TRY(vg_border_add(border, d->open.edge[i][0], d->open.edge[i][1], err));
+  st = vg_planar_patch(&d->m, border->n, (const uint32_t (*)[2])border->edge,
+                       &law,
                        patch, &inner);
   if (st < 0)
     st = vg_fail(err, st, "symmetry plane %c = %.9g: %s", "xyz"[d->axis],
@@ -357,7 +358,7 @@ done:
 
 static vg_status build(struct domain *d, struct vg_error *err)
 {
-  struct vg_rim rim = VG_RIM_INIT;
+  struct vg_border border = VG_BORDER_INIT;
   uint32_t patch = 0;
   vg_status st;
 
@@ -374,10 +375,11 @@ static vg_status build(struct domain *d, struct vg_error *err)
   VG_TRY(place_farfield(d, err));
   VG_TRY(add_patch(&d->m, "farfield", 3, 5000, &patch, err));
   VG_TRY(d->farfield->kind == VG_FARFIELD_SPHERE
-           ? add_sphere(d, patch, &rim, err) : add_box(d, patch, &rim, err));
-  if (d->axis >= 0) VG_TRY(add_symmetry(d, &rim, err));
+           ? add_sphere(d, patch, &border, err) : add_box(d, patch, &border,
+                                                          err));
+  if (d->axis >= 0) VG_TRY(add_symmetry(d, &border, err));
 done:
-  vg_rim_release(&rim);
+  vg_border_release(&border);
   return st;
 }
 
@@ -407,7 +409,7 @@ vg_status vg_domain_complete_by(struct vg_mesh *surface,
   vg_mesh_move(surface, &d.m);
 done:
   vg_mesh_release(&d.m);
-  vg_rim_release(&d.open);
+  vg_border_release(&d.open);
   return st;
 }
 

@@ -8,14 +8,14 @@
 #include "core/domain/planar.h"
 #include "core/geometry/graded.h"
 
-void vg_rim_release(struct vg_rim *r)
+void vg_border_release(struct vg_border *r)
 {
   free(r->edge);
   memset(r, 0, sizeof *r);
 }
 
-vg_status vg_rim_add(struct vg_rim *r, uint32_t a, uint32_t b,
-                     struct vg_error *err)
+vg_status vg_border_add(struct vg_border *r, uint32_t a, uint32_t b,
+                        struct vg_error *err)
 {
   if (vg_reserve(&r->edge, &r->cap, r->n + 1, sizeof *r->edge))
     return vg_fail_memory(err, "the rim of a patch");
@@ -188,7 +188,7 @@ done:
 vg_status vg_add_sphere(struct vg_mesh *m, const double centre[3],
                         double radius, int half, int inward,
                         const struct vg_size_law *size, uint32_t patch,
-                        struct vg_rim *rim, struct vg_error *err)
+                        struct vg_border *border, struct vg_error *err)
 {
   const int axis = half < 0 ? 2 : half / 2;
   const uint32_t first = (uint32_t)m->n_point;
@@ -212,7 +212,7 @@ vg_status vg_add_sphere(struct vg_mesh *m, const double centre[3],
     const uint32_t a = first + i, b = first + (i + 1 < n ? i + 1 : 0);
     const int back = inward ? s.side < 0 : s.side > 0;
 
-    VG_TRY(vg_rim_add(rim, back ? b : a, back ? a : b, err));
+    VG_TRY(vg_border_add(border, back ? b : a, back ? a : b, err));
   }
 done:
   free(disc);
@@ -285,19 +285,19 @@ static int edge_number(int c, int k)
   return 4 * k + (c >> a & 1) + 2 * (c >> b & 1);
 }
 
-static vg_status walk_edge(struct vg_rim *r, const struct box_edge *e,
+static vg_status walk_edge(struct vg_border *r, const struct box_edge *e,
                            int back, struct vg_error *err)
 {
   vg_status st = VG_OK;
 
   for (size_t i = 0; st == VG_OK && i + 1 < e->n; i++)
-    st = back ? vg_rim_add(r, e->point[i + 1], e->point[i], err)
-              : vg_rim_add(r, e->point[i], e->point[i + 1], err);
+    st = back ? vg_border_add(r, e->point[i + 1], e->point[i], err)
+              : vg_border_add(r, e->point[i], e->point[i + 1], err);
   return st;
 }
 
 /* Loop around face 2 * axis + side, counter-clockwise seen from inside. */
-static vg_status face_loop(struct vg_rim *r, const struct box_edge edge[12],
+static vg_status face_loop(struct vg_border *r, const struct box_edge edge[12],
                            int face, struct vg_error *err)
 {
   const int k = face / 2, u = (k + 1) % 3, v = (k + 2) % 3;
@@ -317,11 +317,11 @@ done:
 vg_status vg_add_box(struct vg_mesh *m, const double lo[3],
                      const double hi[3], int open,
                      const struct vg_size_law *size, const uint32_t patch[6],
-                     struct vg_rim *rim, struct vg_error *err)
+                     struct vg_border *border, struct vg_error *err)
 {
   const uint32_t first = (uint32_t)m->n_point;
   struct box_edge edge[12] = { { 0 } };
-  struct vg_rim loop = VG_RIM_INIT;
+  struct vg_border loop = VG_BORDER_INIT;
   vg_status st;
 
   VG_TRY(add_points(m, 8, err));
@@ -339,13 +339,13 @@ vg_status vg_add_box(struct vg_mesh *m, const double lo[3],
     loop.n = 0;
     VG_TRY(face_loop(&loop, edge, face, err));
     for (size_t i = 0; face == open && i < loop.n; i++)
-      VG_TRY(vg_rim_add(rim, loop.edge[i][0], loop.edge[i][1], err));
+      VG_TRY(vg_border_add(border, loop.edge[i][0], loop.edge[i][1], err));
     if (face != open)
       VG_TRY(vg_planar_patch(m, loop.n, (const uint32_t (*)[2])loop.edge,
                              size, patch[face], err));
   }
 done:
   for (int i = 0; i < 12; i++) free(edge[i].point);
-  vg_rim_release(&loop);
+  vg_border_release(&loop);
   return st;
 }

@@ -8,38 +8,38 @@
 #include "core/domain/planar_patch.h"
 
 /* Directed edges in one plane, the new surface on their left. */
-struct vg_rim {
+struct vg_border {
   size_t n, cap;
   uint32_t (*edge)[2];
 };
-#define VG_RIM_INIT { 0 }
+#define VG_BORDER_INIT { 0 }
 
-void vg_rim_release(struct vg_rim *r);
-vg_status vg_rim_add(struct vg_rim *r, uint32_t a, uint32_t b,
-                     struct vg_error *err);
+void vg_border_release(struct vg_border *r);
+vg_status vg_border_add(struct vg_border *r, uint32_t a, uint32_t b,
+                        struct vg_error *err);
 
 /** Append a sphere.
  *
  * @param half   -1: whole; else 2 * axis + side: the half with coordinates
  *               above (side 1) or below (side 0) the centre's
  * @param inward 1: normals point to the centre
- * @param rim    out: open edges of a half sphere, appended; else unused
+ * @param border    out: open edges of a half sphere, appended; else unused
  * Points on the equator of a half have the centre's coordinate exactly.
  * m is unchanged on failure, save for points without triangles. */
 vg_status vg_add_sphere(struct vg_mesh *m, const double centre[3],
                         double radius, int half, int inward,
                         const struct vg_size_law *size, uint32_t patch,
-                        struct vg_rim *rim, struct vg_error *err);
+                        struct vg_border *border, struct vg_error *err);
 
 /** Append a box with normals pointing into it.
  *
  * @param open  face left out: 2 * axis + side, or -1
  * @param patch index in m->patch for the faces x-, x+, y-, y+, z-, z+
- * @param rim   out: edges of the open face, appended */
+ * @param border   out: edges of the open face, appended */
 vg_status vg_add_box(struct vg_mesh *m, const double lo[3],
                      const double hi[3], int open,
                      const struct vg_size_law *size, const uint32_t patch[6],
-                     struct vg_rim *rim, struct vg_error *err);
+                     struct vg_border *border, struct vg_error *err);
 
 /** vg_domain_complete with any law of sizes in place of a field; law may be
  * NULL where farfield->spacing is given. */

@@ -196,11 +196,11 @@ static double place(const struct front *f, uint32_t e, double x[2])
 /* Would x leave a flat triangle on a fixed edge of its cavity? */
 static int is_flat(const struct vg_tri2 *t, const double x[2])
 {
-  for (size_t i = 0; i < t->n_rim; i++) {
-    const double *a = t->x[t->rim[i].a], *b = t->x[t->rim[i].b];
+  for (size_t i = 0; i < t->n_border; i++) {
+    const double *a = t->x[t->border[i].a], *b = t->x[t->border[i].b];
     double ax, ay, bx, by, dot;
 
-    if (!t->rim[i].constrained) continue;
+    if (!t->border[i].constrained) continue;
     ax = a[0] - x[0], ay = a[1] - x[1];
     bx = b[0] - x[0], by = b[1] - x[1];
     dot = ax * bx + ay * by;
@@ -215,16 +215,16 @@ static int is_flat(const struct vg_tri2 *t, const double x[2])
 static int classify(struct front *f)
 {
   struct vg_tri2 *t = f->t;
-  const size_t n = t->n_rim;
+  const size_t n = t->n_border;
 
   for (size_t i = 0; i < n; i++)
     if (is_done(t, t->cavity[i])) t->face[t->cavity[i]].flag |= VG_T2_DONE;
   for (size_t i = 0; i < n; i++) {
-    const uint32_t at = t->cavity[i], out = t->rim[i].outer;
+    const uint32_t at = t->cavity[i], out = t->border[i].outer;
 
     if (!(t->face[at].flag & VG_T2_DONE)) {
       if (push(f, at)) return -1;
-    } else if (out != VG_T2_NONE && !t->rim[i].constrained
+    } else if (out != VG_T2_NONE && !t->border[i].constrained
                && !(t->face[out >> 2].flag & VG_T2_DONE) && push(f, out >> 2))
       return -1;
   }

@@ -15,7 +15,7 @@ void vg_tri2_release(struct vg_tri2 *t)
   free(t->unused);
   free(t->cavity);
   free(t->stack);
-  free(t->rim);
+  free(t->border);
   memset(t, 0, sizeof *t);
 }
 
@@ -132,13 +132,14 @@ static int cavity_add(struct vg_tri2 *t, uint32_t at)
   return 0;
 }
 
-static int rim_add(struct vg_tri2 *t, uint32_t e, const double x[2])
+static int border_add(struct vg_tri2 *t, uint32_t e, const double x[2])
 {
-  struct vg_t2_rim *r;
+  struct vg_t2_border *r;
 
-  if (vg_reserve(&t->rim, &t->cap_rim, t->n_rim + 1, sizeof *t->rim))
+  if (vg_reserve(&t->border, &t->cap_border, t->n_border + 1,
+                 sizeof *t->border))
     return -1;
-  r = &t->rim[t->n_rim++];
+  r = &t->border[t->n_border++];
   r->a = vg_t2_from(t, e);
   r->b = vg_t2_to(t, e);
   r->outer = vg_t2_twin(t, e);
@@ -147,12 +148,12 @@ static int rim_add(struct vg_tri2 *t, uint32_t e, const double x[2])
 }
 
 /* Depth first, each triangle's edges counter-clockwise from the one it was
- * entered by: so the rim comes out as one counter-clockwise cycle. */
+ * entered by: so the border comes out as one counter-clockwise cycle. */
 int vg_tri2_cavity(struct vg_tri2 *t, const double x[2], uint32_t at)
 {
   size_t n = 3;
 
-  t->n_cavity = t->n_rim = 0;
+  t->n_cavity = t->n_border = 0;
   if (vg_reserve(&t->stack, &t->cap_stack, 8, sizeof *t->stack)
       || cavity_add(t, at))
     return -1;
@@ -171,7 +172,7 @@ int vg_tri2_cavity(struct vg_tri2 *t, const double x[2], uint32_t at)
         continue;
       }
     }
-    switch (rim_add(t, e, x)) {
+    switch (border_add(t, e, x)) {
     case -1: return -1;
     case 0: return 0;
     }
@@ -183,14 +184,14 @@ void vg_tri2_cancel(struct vg_tri2 *t)
 {
   for (size_t i = 0; i < t->n_cavity; i++)
     t->face[t->cavity[i]].flag &= ~(uint32_t)VG_T2_CAVITY;
-  t->n_cavity = t->n_rim = 0;
+  t->n_cavity = t->n_border = 0;
 }
 
 int vg_tri2_commit(struct vg_tri2 *t, uint32_t p, uint32_t flag)
 {
-  const size_t n = t->n_rim;
+  const size_t n = t->n_border;
 
-  /* A cavity of m triangles has m + 2 rim edges. */
+  /* A cavity of m triangles has m + 2 border edges. */
   while (t->n_cavity < n) {
     const uint32_t slot = take_slot(t);
 
@@ -199,7 +200,7 @@ int vg_tri2_commit(struct vg_tri2 *t, uint32_t p, uint32_t flag)
     if (cavity_add(t, slot)) return -1;
   }
   for (size_t i = 0; i < n; i++) {
-    const struct vg_t2_rim *r = &t->rim[i];
+    const struct vg_t2_border *r = &t->border[i];
     const uint32_t slot = t->cavity[i];
     struct vg_t2_face *f = &t->face[slot];
 

@@ -33,8 +33,8 @@ struct vg_t2_face {
   uint32_t adj[3], stamp;   /* stamp changes whenever the slot is rewritten */
 };
 
-/* A directed edge on the rim of a cavity: cavity on its left. */
-struct vg_t2_rim {
+/* A directed edge on the border of a cavity: cavity on its left. */
+struct vg_t2_border {
   uint32_t a, b, outer;     /* outer: half-edge b -> a outside, or NONE */
   uint32_t constrained;
 };
@@ -50,8 +50,8 @@ struct vg_tri2 {
   size_t n_unused, cap_unused;
   uint32_t *cavity, *stack;
   size_t n_cavity, cap_cavity, cap_stack;
-  struct vg_t2_rim *rim;
-  size_t n_rim, cap_rim;
+  struct vg_t2_border *border;
+  size_t n_border, cap_border;
   uint32_t walk;            /* where the next location starts */
 };
 
@@ -117,13 +117,13 @@ uint32_t vg_tri2_find(const struct vg_tri2 *t, uint32_t a, uint32_t b);
 uint32_t vg_tri2_locate(struct vg_tri2 *t, const double x[2],
                         int stop_at_fixed);
 
-/** Collect the cavity of x, in the triangle `at`, into cavity[] and rim[].
+/** Collect the cavity of x, in the triangle `at`, into cavity[] and border[].
  * 1; 0 when x cannot be inserted there; -1 without memory. Always follow
  * with vg_tri2_commit or vg_tri2_cancel. */
 int vg_tri2_cavity(struct vg_tri2 *t, const double x[2], uint32_t at);
 
 /** Fill the cavity with triangles around point `p`; the new triangles are the
- * first n_rim of cavity[], in the order of rim[]. 0 or -1. */
+ * first n_border of cavity[], in the order of border[]. 0 or -1. */
 int vg_tri2_commit(struct vg_tri2 *t, uint32_t p, uint32_t flag);
 void vg_tri2_cancel(struct vg_tri2 *t);
 

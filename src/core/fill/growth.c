@@ -124,7 +124,7 @@ vg_status vg_growth_improve(struct vg_growth *g, struct vg_error *err)
   double t0 = vg_clock();
   vg_status st = VG_OK;
 
-  VG_TRY(vg_tets_tidy(&g->t, g->n_front, err));
+  VG_TRY(vg_tets_compact(&g->t, g->n_front, err));
   if (vg_growth_stopped(g, "optimising", 0, 1)) return VG_BLOCKED;
   if (g->region) near = *g->region;
   near.reach += margin;

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "core/fill/near.h"
+#include "core/fill/hgrid.h"
 #include "core/fill/sites.h"
 #include "core/geometry/vector.h"
 
@@ -50,7 +50,7 @@ struct placer {
   uint32_t *face;            /* links 4 * cell + face of the surface */
   uint32_t first[N_BUCKET], last[N_BUCKET];
   int lowest;                /* no bucket below it has items */
-  struct vg_near near;
+  struct vg_hgrid near;
   int is_listed;             /* near has what is around the growing point */
   int now;                   /* steps of what is proposed now */
   struct vg_sites sites;     /* that stand or never will */
@@ -132,9 +132,9 @@ static int stand(struct placer *p, const double c[3], const double d[3],
   p->cell[point] = cell;
   p->steps[point] = (uint8_t)p->now;
   p->n++;
-  if (vg_near_add(&p->near, x, h)) return -1;
+  if (vg_hgrid_add(&p->near, x, h)) return -1;
   push(p, (uint32_t)p->n_face + point, h);
-  vg_near_note(&p->near, d);
+  vg_hgrid_note(&p->near, d);
   return 0;
 }
 
@@ -159,10 +159,10 @@ static int propose(struct placer *p, const double c[3], const double unit[3],
   double d[3], there;
 
   for (int k = 0; k < 3; k++) d[k] = unit[k] * h;
-  if (vg_near_count(&p->near, d, 0.9 * exclusion * h)) return 0;
+  if (vg_hgrid_count(&p->near, d, 0.9 * exclusion * h)) return 0;
   there = aim(p, c, unit, h, d);
-  if (vg_near_count(&p->near, d,
-                    (is_far ? exclusion_region : exclusion) * there))
+  if (vg_hgrid_count(&p->near, d,
+                     (is_far ? exclusion_region : exclusion) * there))
     return 0;
   return stand(p, c, d, there, fabs(there - h), start);
 }
@@ -210,7 +210,7 @@ static double shake(const int64_t i[3], int k)
 static void list_around(struct placer *p, const double c[3], double h)
 {
   if (p->is_listed) return;
-  vg_near_gather(&p->near, c, h, (lattice + exclusion_level) * 1.05 * h);
+  vg_hgrid_gather(&p->near, c, h, (lattice + exclusion_level) * 1.05 * h);
   p->is_listed = 1;
 }
 
@@ -227,7 +227,7 @@ static int propose_site(struct placer *p, const double c[3], double h,
   }
   if (vg_dot(d, d) > 4.84 * half * half) return 0;
   list_around(p, c, h);
-  if (vg_near_count(&p->near, d, exclusion_level * h)) return 1;
+  if (vg_hgrid_count(&p->near, d, exclusion_level * h)) return 1;
   if (!everywhere && !is_level(p, x, h)) return 0;
   return stand(p, c, d, h, 0, start) ? -1 : 1;
 }
@@ -348,7 +348,7 @@ static int grow_face(struct placer *p, uint32_t link)
     if (!is_wanted(p, d, there, fabs(there - h))) return 0;
   }
   p->now = 0;
-  vg_near_gather(&p->near, c, h, (apex + exclusion) * 1.1 * h);
+  vg_hgrid_gather(&p->near, c, h, (apex + exclusion) * 1.1 * h);
   return propose(p, c, unit, h, link >> 2);
 }
 
@@ -574,7 +574,7 @@ static int start_points(struct placer *p)
       p->cell[t->cell[c].v[k]] = c;
   for (uint32_t i = 0; i < p->n; i++) {
     p->h[i] = (float)vg_sizing_at(p->sizing, p->x[i]);
-    if (vg_near_add(&p->near, p->x[i], p->h[i])) return -1;
+    if (vg_hgrid_add(&p->near, p->x[i], p->h[i])) return -1;
     if (p->cell[i] != VG_NONE && may_propose(p, p->x[i], p->h[i]))
       push(p, (uint32_t)p->n_face + i, p->h[i]);
   }
@@ -624,7 +624,7 @@ static void release(struct placer *p)
   free(p->steps);
   free(p->queue);
   free(p->face);
-  vg_near_release(&p->near);
+  vg_hgrid_release(&p->near);
   vg_sites_release(&p->sites);
   free(p);
 }
@@ -644,7 +644,7 @@ static struct placer *start(const struct vg_tets *t,
   memset(p->first, 0xff, sizeof p->first);
   if (t->n_point) memcpy(origin, t->x[0], sizeof origin);
   vg_sizing_range(sizing, &h_min, &h_max);
-  if (vg_near_init(&p->near, origin, h_min, h_max, vg_sizing_slope(sizing)) ||
+  if (vg_hgrid_init(&p->near, origin, h_min, h_max, vg_sizing_slope(sizing)) ||
       start_faces(p) || push_faces(p) || start_points(p)) {
     release(p);
     return NULL;

@@ -267,58 +267,59 @@ int vg_region_has_cell(const struct vg_region *r,
 
 /* --- many points --------------------------------------------------------- */
 
-vg_status vg_ruler_init(struct vg_ruler *ruler, const struct vg_region *region,
-                        const struct vg_sizing *sizing, size_t n,
-                        const double (*x)[3], struct vg_error *err)
+vg_status vg_region_cache_init(struct vg_region_cache *cache,
+                               const struct vg_region *region,
+                               const struct vg_sizing *sizing, size_t n,
+                               const double (*x)[3], struct vg_error *err)
 {
   int m = region->n_plane + region->n_wall;
   double least, most;
 
   vg_sizing_range(sizing, &least, &most);
-  *ruler = (struct vg_ruler){region, sizing, x, vg_sizing_slope(sizing),
+  *cache = (struct vg_region_cache){region, sizing, x, vg_sizing_slope(sizing),
                              most - least, m, NULL, NULL};
-  ruler->side = vg_alloc(n, (size_t)(m ? m : 1) * sizeof *ruler->side);
-  ruler->spacing = vg_alloc(n, sizeof *ruler->spacing);
-  if (!ruler->side || !ruler->spacing)
+  cache->side = vg_alloc(n, (size_t)(m ? m : 1) * sizeof *cache->side);
+  cache->spacing = vg_alloc(n, sizeof *cache->spacing);
+  if (!cache->side || !cache->spacing)
     return vg_fail_memory(err, "measuring a front");
   for (size_t p = 0; p < n; p++) {
-    double *s = ruler->side + p * (size_t)m;
+    double *s = cache->side + p * (size_t)m;
 
     for (int i = 0; i < region->n_plane; i++)
       s[i] = vg_plane_side(&region->plane[i], x[p]);
     for (int i = region->n_plane; i < m; i++)
       s[i] = vg_plane_side(&region->wall[i - region->n_plane], x[p]);
-    ruler->spacing[p] = vg_region_spacing(region, sizing, x[p]);
+    cache->spacing[p] = vg_region_spacing(region, sizing, x[p]);
   }
   return VG_OK;
 }
 
-void vg_ruler_release(struct vg_ruler *ruler)
+void vg_region_cache_release(struct vg_region_cache *cache)
 {
-  free(ruler->side);
-  free(ruler->spacing);
-  memset(ruler, 0, sizeof *ruler);
+  free(cache->side);
+  free(cache->spacing);
+  memset(cache, 0, sizeof *cache);
 }
 
-static const double *sides_of(const struct vg_ruler *ruler, uint32_t p)
+static const double *sides_of(const struct vg_region_cache *cache, uint32_t p)
 {
-  return ruler->side + p * (size_t)ruler->n_side;
+  return cache->side + p * (size_t)cache->n_side;
 }
 
-/* As gap(), for three corners of a ruler; without fmin() and fmax(), which are
+/* As gap(), for three corners of a cache; without fmin() and fmax(), which are
  * calls. */
-static double gap_of(const struct vg_ruler *ruler, const uint32_t v[3])
+static double gap_of(const struct vg_region_cache *cache, const uint32_t v[3])
 {
-  const double *a = sides_of(ruler, v[0]), *b = sides_of(ruler, v[1]);
-  const double *c = sides_of(ruler, v[2]);
+  const double *a = sides_of(cache, v[0]), *b = sides_of(cache, v[1]);
+  const double *c = sides_of(cache, v[2]);
   double far = 0;
 
-  for (int i = 0; i < ruler->n_side; i++) {
+  for (int i = 0; i < cache->n_side; i++) {
     double lo = a[i] < b[i] ? a[i] : b[i], hi = a[i] < b[i] ? b[i] : a[i];
 
     if (c[i] < lo) lo = c[i];
     if (c[i] > hi) hi = c[i];
-    if (i >= ruler->region->n_plane) {
+    if (i >= cache->region->n_plane) {
       lo = 0;
       hi *= 1 / VG_BEYOND_WALLS;
     }
@@ -328,13 +329,13 @@ static double gap_of(const struct vg_ruler *ruler, const uint32_t v[3])
   return far;
 }
 
-static double gap_of_point(const struct vg_ruler *ruler, uint32_t p)
+static double gap_of_point(const struct vg_region_cache *cache, uint32_t p)
 {
-  const double *s = sides_of(ruler, p);
+  const double *s = sides_of(cache, p);
   double far = 0;
 
-  for (int i = 0; i < ruler->n_side; i++)
-    far = fmax(far, i < ruler->region->n_plane ? fabs(s[i])
+  for (int i = 0; i < cache->n_side; i++)
+    far = fmax(far, i < cache->region->n_plane ? fabs(s[i])
                                                : -s[i] / VG_BEYOND_WALLS);
   return far;
 }
@@ -342,41 +343,43 @@ static double gap_of_point(const struct vg_ruler *ruler, uint32_t p)
 /* Large triangles are looked at as in vg_region_meets once their sides do not
  * tell, by the least and the most that the spacing may be anywhere on them, or
  * at their middle, which is two thirds of an edge from the corners at most. */
-static int ruler_meets(const struct vg_ruler *ruler, const uint32_t v[3],
+static int cache_meets(const struct vg_region_cache *cache, const uint32_t v[3],
                        double band, int is_sure)
 {
-  const struct vg_region *r = ruler->region;
-  const double (*x)[3] = ruler->x;
+  const struct vg_region *r = cache->region;
+  const double (*x)[3] = cache->x;
   const double *corner[3] = {x[v[0]], x[v[1]], x[v[2]]};
-  const double *h = ruler->spacing;
+  const double *h = cache->spacing;
   double least = h[v[0]] < h[v[1]] ? h[v[0]] : h[v[1]];
   double most = h[v[0]] < h[v[1]] ? h[v[1]] : h[v[0]];
   double reach = vg_region_band(r, band);
-  double far = gap_of(ruler, v), size = longest(corner), rise, up;
+  double far = gap_of(cache, v), size = longest(corner), rise, up;
 
   if (h[v[2]] < least) least = h[v[2]];
   if (h[v[2]] > most) most = h[v[2]];
   if (size <= 2 * most) return far <= reach * most;
-  rise = ruler->slope * size;
-  up = 0.67 * rise < ruler->range ? 0.67 * rise : ruler->range;
-  if (rise > ruler->range) rise = ruler->range;
+  rise = cache->slope * size;
+  up = 0.67 * rise < cache->range ? 0.67 * rise : cache->range;
+  if (rise > cache->range) rise = cache->range;
   if (far > reach * most && far > reach * (least + up)) return 0;
   for (int k = 0; k < 3; k++)
-    if (gap_of_point(ruler, v[k]) <= reach * h[v[k]]) return 1;
-  if (ruler->n_side == 1 && far <= reach * fmax(most - rise, 0)) return 1;
-  most = fmax(most, spacing_amid(r, ruler->sizing, corner));
+    if (gap_of_point(cache, v[k]) <= reach * h[v[k]]) return 1;
+  if (cache->n_side == 1 && far <= reach * fmax(most - rise, 0)) return 1;
+  most = fmax(most, spacing_amid(r, cache->sizing, corner));
   return far <= reach * most &&
-         large_meets(r, ruler->sizing, corner, most, band, is_sure);
+         large_meets(r, cache->sizing, corner, most, band, is_sure);
 }
 
-int vg_ruler_meets(const struct vg_ruler *ruler, const uint32_t v[3],
-                   double band)
+int vg_region_cache_meets(const struct vg_region_cache *cache,
+                          const uint32_t v[3],
+                          double band)
 {
-  return ruler_meets(ruler, v, band, 1);
+  return cache_meets(cache, v, band, 1);
 }
 
-int vg_ruler_may_meet(const struct vg_ruler *ruler, const uint32_t v[3],
-                      double band)
+int vg_region_cache_may_meet(const struct vg_region_cache *cache,
+                             const uint32_t v[3],
+                             double band)
 {
-  return ruler_meets(ruler, v, band, 0);
+  return cache_meets(cache, v, band, 0);
 }

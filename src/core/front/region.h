@@ -95,7 +95,7 @@ int vg_region_may_meet(const struct vg_region *r,
 
 /** Distances of many points from a region, measured once: questions about
  * their triangles then cost no look-up of sizes. */
-struct vg_ruler {
+struct vg_region_cache {
   const struct vg_region *region;    /* borrowed, as the next two */
   const struct vg_sizing *sizing;
   const double (*x)[3];
@@ -106,19 +106,22 @@ struct vg_ruler {
   double *spacing;           /* [points] at the foot */
 };
 
-/** VG_ERR_MEMORY on refusal. Call vg_ruler_release in any case. */
-vg_status vg_ruler_init(struct vg_ruler *ruler, const struct vg_region *region,
-                        const struct vg_sizing *sizing, size_t n,
-                        const double (*x)[3], struct vg_error *err);
-void vg_ruler_release(struct vg_ruler *ruler);
+/** VG_ERR_MEMORY on refusal. Call vg_region_cache_release in any case. */
+vg_status vg_region_cache_init(struct vg_region_cache *cache,
+                               const struct vg_region *region,
+                               const struct vg_sizing *sizing, size_t n,
+                               const double (*x)[3], struct vg_error *err);
+void vg_region_cache_release(struct vg_region_cache *cache);
 
 /** vg_region_meets of points by their numbers. */
-int vg_ruler_meets(const struct vg_ruler *ruler, const uint32_t v[3],
-                   double band);
+int vg_region_cache_meets(const struct vg_region_cache *cache,
+                          const uint32_t v[3],
+                          double band);
 
 /** vg_region_may_meet likewise. */
-int vg_ruler_may_meet(const struct vg_ruler *ruler, const uint32_t v[3],
-                      double band);
+int vg_region_cache_may_meet(const struct vg_region_cache *cache,
+                             const uint32_t v[3],
+                             double band);
 
 /** Does the cell a b c d, within the walls, cross every plane or have a corner
  * within reach? */

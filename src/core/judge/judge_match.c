@@ -69,11 +69,11 @@ static void match_face(const struct vg_slices_judgement *j,
   if (q == VG_JUDGED_WHOLE && (n_seen != 2 || !n_cell)) suspect(w, f);
   if (j->sizing && j->edges_of == q &&
       (q == VG_JUDGED_FIELD ? n_cell == 1 : n_boundary > 0)) bar_edges(w, f);
-  if (!vg_figures_face(w->figures[q], n_cell, n_boundary,
-                       !((pair[0]->flags ^ pair[1]->flags) &
-                         VG_FACE_WINDING))) return;
+  if (!vg_stats_face(w->figures[q], n_cell, n_boundary,
+                     !((pair[0]->flags ^ pair[1]->flags) &
+                       VG_FACE_WINDING))) return;
   vg_union(w->parent[q], pair[0]->component, pair[1]->component);
-  vg_figures_ratio(w->figures[q], pair[0]->volume, pair[1]->volume);
+  vg_stats_ratio(w->figures[q], pair[0]->volume, pair[1]->volume);
 }
 
 static void meet_face(void *context, const unsigned char *item, size_t n,
@@ -192,7 +192,7 @@ static void meet_edge(void *context, const unsigned char *item, size_t n,
   for (size_t i = 1; i < n; i++)
     if (e[i].ratio < least) least = e[i].ratio;
   if (least >= 0)
-    vg_figures_edge(j->worker[worker].figures[j->edges_of], least);
+    vg_stats_edge(j->worker[worker].figures[j->edges_of], least);
 }
 
 static void meet_place(void *context, const unsigned char *item, size_t n,

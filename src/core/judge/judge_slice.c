@@ -10,8 +10,8 @@ struct work {
   struct vg_judge_worker *w;
   const struct vg_slice *slice;
   struct vg_mesh view;       /* of the slice: borrowed points and cells */
-  struct vg_figures *f;
-  struct vg_loose loose;
+  struct vg_stats *f;
+  struct vg_unpaired unpaired;
   size_t at, n_cell;         /* number of the slice; its cells */
   int is_field;
 };
@@ -149,8 +149,8 @@ static vg_status note_used(struct work *k, struct vg_error *err)
 
 static vg_status keep_faces(struct work *k, struct vg_error *err)
 {
-  for (size_t i = 0; i < k->loose.n_face; i++) {
-    const struct vg_loose_face *from = &k->loose.face[i];
+  for (size_t i = 0; i < k->unpaired.n_face; i++) {
+    const struct vg_unpaired_face *from = &k->unpaired.face[i];
     struct vg_face_item *f = vg_items_add(&k->w->face, sizeof *f);
 
     if (!f) return vg_fail_memory(err, "the faces between slices");
@@ -165,8 +165,8 @@ static vg_status keep_faces(struct work *k, struct vg_error *err)
 
 static vg_status keep_edges(struct work *k, struct vg_error *err)
 {
-  for (size_t i = 0; i < k->loose.n_edge; i++) {
-    const struct vg_loose_edge *from = &k->loose.edge[i];
+  for (size_t i = 0; i < k->unpaired.n_edge; i++) {
+    const struct vg_unpaired_edge *from = &k->unpaired.edge[i];
     struct vg_edge_item *e = vg_items_add(&k->w->edge, sizeof *e);
     uint32_t a = k->slice->id[from->node[0]], b = k->slice->id[from->node[1]];
 
@@ -187,11 +187,12 @@ static vg_status judge_cells(struct work *k, struct vg_error *err)
 
   if (!volume) return vg_fail_memory(err, "the volumes of the cells");
   vg_judge_shape(&k->view, k->slice->cell_at[VG_SLICE_TET], volume, k->f);
-  VG_TRY(vg_judge_faces(&k->view, volume, k->f, &k->loose, &n_component, err));
+  VG_TRY(vg_judge_faces(&k->view, volume, k->f, &k->unpaired, &n_component,
+                        err));
   j->n_component[k->at] = (uint32_t)n_component;
   if (k->is_field) k->w->n_field_component += n_component;
   if (j->sizing && (k->is_field || j->edges_of == VG_JUDGED_WHOLE))
-    VG_TRY(vg_judge_edges(&k->view, j->sizing, k->f, &k->loose, err));
+    VG_TRY(vg_judge_edges(&k->view, j->sizing, k->f, &k->unpaired, err));
   VG_TRY(note_used(k, err));
   VG_TRY(keep_faces(k, err));
   VG_TRY(keep_edges(k, err));
@@ -212,8 +213,8 @@ static vg_status judge_slice(struct vg_slices_judgement *j,
   k.is_field = slice.kind != 0;
   k.f = w->figures[k.is_field && has_field(j)];
   make_view(&k);
-  k.loose.context = &k;
-  k.loose.is_shared = j->n_suspect ? is_suspect : NULL;
+  k.unpaired.context = &k;
+  k.unpaired.is_shared = j->n_suspect ? is_suspect : NULL;
   for (int kind = 0; kind < VG_SLICE_KINDS; kind++) {
     w->n_cell[kind] += slice.n_cell[kind];
     k.n_cell += slice.n_cell[kind];
@@ -225,7 +226,7 @@ static vg_status judge_slice(struct vg_slices_judgement *j,
   VG_TRY(note_points(&k, err));
   if (k.n_cell) VG_TRY(judge_cells(&k, err));
 done:
-  vg_loose_release(&k.loose);
+  vg_unpaired_release(&k.unpaired);
   j->s->put(j->s, &slice);
   return st;
 }

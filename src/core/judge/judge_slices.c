@@ -33,7 +33,7 @@ static vg_status make_workers(struct vg_slices_judgement *j,
       w->hi[k] = -INFINITY;
     }
     for (int q = 0; q < j->n_judged; q++) {
-      w->figures[q] = vg_figures_new();
+      w->figures[q] = vg_stats_new();
       if (!w->figures[q]) return vg_fail_memory(err, "the figures of slices");
     }
   }
@@ -122,7 +122,7 @@ static vg_status judge_all_slices(struct vg_slices_judgement *j,
 
     /* from here on the first figures are those of the whole mesh */
     if (j->n_judged > 1)
-      vg_figures_add(w->figures[VG_JUDGED_WHOLE], w->figures[VG_JUDGED_FIELD]);
+      vg_stats_add(w->figures[VG_JUDGED_WHOLE], w->figures[VG_JUDGED_FIELD]);
     if (w->st >= 0) continue;
     if (err) *err = w->err;
     return w->st;
@@ -299,7 +299,7 @@ done:
 
 /* --- sums and reports ---------------------------------------------------- */
 
-static vg_status gather_worst(struct vg_comm *comm, struct vg_figures *f,
+static vg_status gather_worst(struct vg_comm *comm, struct vg_stats *f,
                               struct vg_error *err)
 {
   size_t size = (size_t)vg_comm_size(comm);
@@ -317,7 +317,7 @@ static vg_status gather_worst(struct vg_comm *comm, struct vg_figures *f,
       struct vg_worst_cell w;
 
       memcpy(&w, all[r].data + i * sizeof w, sizeof w);
-      vg_figures_worst(f, &w);
+      vg_stats_worst(f, &w);
     }
 done:
   vg_bytes_release(all, size);
@@ -325,15 +325,15 @@ done:
 }
 
 /* All threads' and ranks' into the first worker's. */
-static vg_status sum_figures(struct vg_slices_judgement *j, int q,
-                             struct vg_error *err)
+static vg_status sum_stats(struct vg_slices_judgement *j, int q,
+                           struct vg_error *err)
 {
-  struct vg_figures *f = j->worker[0].figures[q];
+  struct vg_stats *f = j->worker[0].figures[q];
   double extreme[3];
   vg_status st;
 
   for (int i = 1; i < j->n_worker; i++)
-    vg_figures_add(f, j->worker[i].figures[q]);
+    vg_stats_add(f, j->worker[i].figures[q]);
   if (vg_comm_size(j->comm) == 1) return VG_OK;
   extreme[0] = -f->angle_min;
   extreme[1] = f->angle_max;
@@ -376,8 +376,8 @@ static void report_all(struct vg_slices_judgement *j,
                        double enclosed, struct vg_mesh_report *r)
 {
   for (int q = 0; q < j->n_judged; q++)
-    vg_figures_report(j->worker[0].figures[q], n_component[q],
-                      j->sizing && j->edges_of == q, &r[q]);
+    vg_stats_report(j->worker[0].figures[q], n_component[q],
+                    j->sizing && j->edges_of == q, &r[q]);
   r[VG_JUDGED_WHOLE].enclosed = enclosed;
   vg_report_conclude(&r[VG_JUDGED_WHOLE]);
   if (j->n_judged == 1) return;
@@ -399,7 +399,7 @@ static vg_status report_unsound(struct vg_slices_judgement *j,
   for (int q = 0; q < j->n_judged; q++) {
     const struct vg_counts *n = &j->worker[0].figures[q]->n;
 
-    VG_TRY(sum_figures(j, q, err));
+    VG_TRY(sum_stats(j, q, err));
     memset(&r[q], 0, sizeof r[q]);
     r[q].n_point = (size_t)n->n_point;
     r[q].n_cell = (size_t)n->n_cell;
@@ -429,7 +429,7 @@ static vg_status judge(struct vg_slices_judgement *j, uint64_t front_faces,
   VG_TRY(vg_judge_match(j, err));
   VG_TRY(vg_judge_components(j, n_component, err));
   VG_TRY(count_used(j, err));
-  for (int q = 0; q < j->n_judged; q++) VG_TRY(sum_figures(j, q, err));
+  for (int q = 0; q < j->n_judged; q++) VG_TRY(sum_stats(j, q, err));
   VG_TRY(enclose(j, &enclosed, err));
   report_all(j, n_component, front_faces, enclosed, r);
 done:

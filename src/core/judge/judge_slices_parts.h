@@ -50,7 +50,7 @@ struct vg_judge_worker {
   struct vg_items crowd;     /* of these, where several points may be */
   struct vg_items suspect;   /* keys of faces that do not join two */
   /* Of slices: what is no field and what is; afterwards whole and field. */
-  struct vg_figures *figures[VG_JUDGED];
+  struct vg_stats *figures[VG_JUDGED];
   uint32_t *parent[VG_JUDGED]; /* [n_component of all] */
   double lo[3], hi[3];       /* of points */
   uint64_t n_cell[VG_SLICE_KINDS], n_field_component;

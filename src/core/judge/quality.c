@@ -178,7 +178,7 @@ double vg_enclosed_volume(const struct vg_mesh *m, const double lo[3],
 
 static vg_status judge_all(const struct vg_mesh *m,
                            const struct vg_sizing *sizing,
-                           struct vg_figures *f, size_t *n_component,
+                           struct vg_stats *f, size_t *n_component,
                            struct vg_error *err)
 {
   float *volume = NULL;
@@ -204,7 +204,7 @@ done:
 vg_status vg_mesh_judge(const struct vg_mesh *m, const struct vg_sizing *sizing,
                         struct vg_mesh_report *report, struct vg_error *err)
 {
-  struct vg_figures *f = vg_figures_new();
+  struct vg_stats *f = vg_stats_new();
   size_t n_component = 0;
   double lo[3], hi[3];
   int sound;
@@ -219,7 +219,7 @@ vg_status vg_mesh_judge(const struct vg_mesh *m, const struct vg_sizing *sizing,
   /* Without indices and places nothing else means anything. */
   sound = !f->n.bad_index && !f->n.not_finite && f->n.n_cell;
   if (sound) VG_TRY(judge_all(m, sizing, f, &n_component, err));
-  vg_figures_report(f, n_component, sound && sizing, report);
+  vg_stats_report(f, n_component, sound && sizing, report);
   if (!sound) goto done;
   vg_mesh_bounds(m, lo, hi);
   report->enclosed = vg_enclosed_volume(m, lo, hi);

@@ -26,9 +26,9 @@ struct edges {
   uint32_t *entry;
   uint32_t lo, n;
   int pass;              /* 0 counts, 1 enters */
-  struct vg_figures *f;
-  struct vg_loose *loose;  /* NULL: m has its boundary */
-  int refused;           /* memory for loose edges */
+  struct vg_stats *f;
+  struct vg_unpaired *unpaired;  /* NULL: m has its boundary */
+  int refused;           /* memory for unpaired edges */
   uint32_t pair[GROUP][2];
   size_t n_group;
 };
@@ -65,8 +65,8 @@ static void enter_boundary(struct edges *e)
 
   enter_all(e, (const uint32_t *)m->tri, m->n_tri, 3, tri_edge, 3);
   enter_all(e, (const uint32_t *)m->quad, m->n_quad, 4, quad_edge, 4);
-  for (size_t i = 0; e->loose && i < e->loose->n_face; i++) {
-    const uint32_t *n = e->loose->face[i].node;
+  for (size_t i = 0; e->unpaired && i < e->unpaired->n_face; i++) {
+    const uint32_t *n = e->unpaired->face[i].node;
     int quad = n[3] != VG_NO_NODE;
 
     enter_all(e, n, 1, 4, quad ? quad_edge : tri_edge, quad ? 4 : 3);
@@ -123,7 +123,7 @@ static void flush(struct edges *e)
   double ratio[GROUP];
 
   measure(e->m, e->sizing, e->n_group, (const uint32_t (*)[2])e->pair, ratio);
-  for (size_t i = 0; i < e->n_group; i++) vg_figures_edge(e->f, ratio[i]);
+  for (size_t i = 0; i < e->n_group; i++) vg_stats_edge(e->f, ratio[i]);
   e->n_group = 0;
 }
 
@@ -134,27 +134,27 @@ static void add(struct edges *e, uint32_t a, uint32_t b)
   if (e->n_group == GROUP) flush(e);
 }
 
-static void add_loose(struct edges *e, uint32_t a, uint32_t b)
+static void add_unpaired(struct edges *e, uint32_t a, uint32_t b)
 {
-  struct vg_loose *loose = e->loose;
+  struct vg_unpaired *unpaired = e->unpaired;
 
-  if (vg_reserve(&loose->edge, &loose->room_edge, loose->n_edge + 1,
-                 sizeof *loose->edge)) {
+  if (vg_reserve(&unpaired->edge, &unpaired->cap_edge, unpaired->n_edge + 1,
+                 sizeof *unpaired->edge)) {
     e->refused = 1;
     return;
   }
-  loose->edge[loose->n_edge++] = (struct vg_loose_edge){ { a, b }, 0 };
+  unpaired->edge[unpaired->n_edge++] = (struct vg_unpaired_edge){ { a, b }, 0 };
 }
 
-static void measure_loose(struct edges *e)
+static void measure_unpaired(struct edges *e)
 {
   uint32_t pair[GROUP][2];
   double ratio[GROUP];
 
-  for (size_t at = 0, n; at < e->loose->n_edge; at += n) {
-    struct vg_loose_edge *edge = e->loose->edge + at;
+  for (size_t at = 0, n; at < e->unpaired->n_edge; at += n) {
+    struct vg_unpaired_edge *edge = e->unpaired->edge + at;
 
-    n = e->loose->n_edge - at;
+    n = e->unpaired->n_edge - at;
     if (n > GROUP) n = GROUP;
     for (size_t i = 0; i < n; i++)
       for (int k = 0; k < 2; k++) pair[i][k] = edge[i].node[k];
@@ -171,8 +171,8 @@ static void measure_range(struct edges *e)
     size_t inner = at + e->n_boundary[v], end = e->count[v];
 
     for (; at < inner; at++) {
-      if (e->loose && e->mark[e->entry[at]] != v + 1)
-        add_loose(e, v, e->entry[at]);
+      if (e->unpaired && e->mark[e->entry[at]] != v + 1)
+        add_unpaired(e, v, e->entry[at]);
       e->mark[e->entry[at]] = v + 1;
     }
     for (; at < end; at++) {
@@ -205,7 +205,7 @@ static vg_status prepare(struct edges *e, size_t *room, struct vg_error *err)
   const struct vg_mesh *m = e->m;
   size_t total = 6 * m->n_tet + 8 * m->n_pyr + 9 * m->n_pri + 12 * m->n_hex +
                  3 * m->n_tri + 4 * m->n_quad +
-                 (e->loose ? 4 * e->loose->n_face : 0);
+                 (e->unpaired ? 4 * e->unpaired->n_face : 0);
   size_t most = 0, n;
 
   e->count = vg_calloc(m->n_point, sizeof *e->count);
@@ -227,7 +227,7 @@ static vg_status prepare(struct edges *e, size_t *room, struct vg_error *err)
 
 vg_status vg_judge_edges(const struct vg_mesh *m,
                          const struct vg_sizing *sizing,
-                         struct vg_figures *f, struct vg_loose *loose,
+                         struct vg_stats *f, struct vg_unpaired *unpaired,
                          struct vg_error *err)
 {
   struct edges *e = vg_calloc(1, sizeof *e);
@@ -238,7 +238,7 @@ vg_status vg_judge_edges(const struct vg_mesh *m,
   e->m = m;
   e->sizing = sizing;
   e->f = f;
-  e->loose = loose;
+  e->unpaired = unpaired;
   VG_TRY(prepare(e, &room, err));
   for (uint32_t lo = 0, hi; lo < m->n_point; lo = hi) {
     hi = make_range(e, lo, room, 1, &n);
@@ -253,7 +253,7 @@ vg_status vg_judge_edges(const struct vg_mesh *m,
     st = vg_fail_memory(err, "the rim of a part of the mesh");
     goto done;
   }
-  if (loose) measure_loose(e);
+  if (unpaired) measure_unpaired(e);
 done:
   free(e->count);
   free(e->n_boundary);

@@ -38,9 +38,9 @@ struct table {
   size_t n_cell;
   uint32_t *parent;        /* [n_cell] components */
   const float *volume;
-  struct vg_figures *f;
-  struct vg_loose *loose;  /* NULL: m is a whole mesh */
-  int refused;             /* memory for loose faces */
+  struct vg_stats *f;
+  struct vg_unpaired *unpaired;  /* NULL: m is a whole mesh */
+  int refused;             /* memory for unpaired faces */
 };
 
 static uint32_t lower(uint32_t a, uint32_t b) { return a < b ? a : b; }
@@ -227,14 +227,14 @@ static void face_nodes(uint32_t lowest, const struct record *r,
   node[3] = quad ? last : VG_NO_NODE;
 }
 
-static int is_shared(const struct vg_loose *loose, uint32_t lowest,
+static int is_shared(const struct vg_unpaired *unpaired, uint32_t lowest,
                      const struct record *r)
 {
   uint32_t node[4];
 
-  if (!loose->is_shared) return 0;
+  if (!unpaired->is_shared) return 0;
   face_nodes(lowest, r, node);
-  return loose->is_shared(loose->context, node);
+  return unpaired->is_shared(unpaired->context, node);
 }
 
 /* In a part of a mesh: n records of one face, which others have to match.
@@ -242,15 +242,15 @@ static int is_shared(const struct vg_loose *loose, uint32_t lowest,
 static void pass_on(struct table *t, uint32_t lowest, const struct record *r,
                     size_t n)
 {
-  struct vg_loose *loose = t->loose;
+  struct vg_unpaired *unpaired = t->unpaired;
 
-  if (vg_reserve(&loose->face, &loose->room_face, loose->n_face + n,
-                 sizeof *loose->face)) {
+  if (vg_reserve(&unpaired->face, &unpaired->cap_face, unpaired->n_face + n,
+                 sizeof *unpaired->face)) {
     t->refused = 1;
     return;
   }
   for (size_t i = 0; i < n; i++, r++) {
-    struct vg_loose_face *face = &loose->face[loose->n_face++];
+    struct vg_unpaired_face *face = &unpaired->face[unpaired->n_face++];
 
     face_nodes(lowest, r, face->node);
     face->component = r->owner >> 1;
@@ -266,15 +266,15 @@ static void match(struct table *t, uint32_t lowest, const struct record *r,
   uint32_t a = r[0].owner >> 1, b;
   size_t n_boundary = 0;
 
-  if (t->loose && (n != 2 || is_shared(t->loose, lowest, r))) {
+  if (t->unpaired && (n != 2 || is_shared(t->unpaired, lowest, r))) {
     pass_on(t, lowest, r, n);
     return;
   }
   for (size_t i = 0; i < n; i++) n_boundary += r[i].owner >> 1 >= t->n_cell;
-  if (!vg_figures_face(t->f, n - n_boundary, n_boundary, same_side)) return;
+  if (!vg_stats_face(t->f, n - n_boundary, n_boundary, same_side)) return;
   b = r[1].owner >> 1;
   vg_union(t->parent, a, b);
-  vg_figures_ratio(t->f, t->volume[a], t->volume[b]);
+  vg_stats_ratio(t->f, t->volume[a], t->volume[b]);
 }
 
 static void match_range(struct table *t)
@@ -297,17 +297,17 @@ static void match_range(struct table *t)
 }
 
 /* Components in the order of their first cells. */
-static vg_status number_loose(struct table *t, struct vg_error *err)
+static vg_status number_unpaired(struct table *t, struct vg_error *err)
 {
   uint32_t *number, n = 0;
 
-  if (!t->loose->n_face) return VG_OK;
+  if (!t->unpaired->n_face) return VG_OK;
   number = vg_alloc(t->n_cell, sizeof *number);
   if (!number) return vg_fail_memory(err, "the parts of the mesh");
   for (size_t i = 0; i < t->n_cell; i++)
     if (t->parent[i] == i) number[i] = n++;
-  for (size_t i = 0; i < t->loose->n_face; i++) {
-    uint32_t *component = &t->loose->face[i].component;
+  for (size_t i = 0; i < t->unpaired->n_face; i++) {
+    uint32_t *component = &t->unpaired->face[i].component;
 
     *component = number[vg_root_of(t->parent, *component)];
   }
@@ -353,11 +353,11 @@ static vg_status prepare(struct table *t, size_t room, struct vg_error *err)
   return t->record ? VG_OK : vg_fail_memory(err, "the table of faces");
 }
 
-void vg_loose_release(struct vg_loose *loose)
+void vg_unpaired_release(struct vg_unpaired *unpaired)
 {
-  free(loose->face);
-  free(loose->edge);
-  memset(loose, 0, sizeof *loose);
+  free(unpaired->face);
+  free(unpaired->edge);
+  memset(unpaired, 0, sizeof *unpaired);
 }
 
 static void part_cells(struct table *t)
@@ -390,10 +390,10 @@ static vg_status match_all(struct table *t, size_t n_record,
 }
 
 vg_status vg_judge_faces(const struct vg_mesh *m, const float *volume,
-                         struct vg_figures *f, struct vg_loose *loose,
+                         struct vg_stats *f, struct vg_unpaired *unpaired,
                          size_t *n_component, struct vg_error *err)
 {
-  struct table t = { .m = m, .volume = volume, .f = f, .loose = loose };
+  struct table t = { .m = m, .volume = volume, .f = f, .unpaired = unpaired };
   size_t n_record = 4 * m->n_tet + 5 * (m->n_pyr + m->n_pri) +
                     6 * m->n_hex + m->n_tri + m->n_quad;
   vg_status st = VG_BLOCKED;
@@ -407,10 +407,10 @@ vg_status vg_judge_faces(const struct vg_mesh *m, const float *volume,
   t.parent = vg_alloc(t.n_cell, sizeof *t.parent);
   if (!t.parent) return vg_fail_memory(err, "the faces of the mesh");
   part_cells(&t);
-  if (vg_faces_can_pair(m, loose))
-    VG_TRY(vg_pair_faces(m, volume, f, loose, t.parent, err));
+  if (vg_faces_can_pair(m, unpaired))
+    VG_TRY(vg_pair_faces(m, volume, f, unpaired, t.parent, err));
   if (st == VG_BLOCKED) VG_TRY(match_all(&t, n_record, err));
-  if (loose) VG_TRY(number_loose(&t, err));
+  if (unpaired) VG_TRY(number_unpaired(&t, err));
   *n_component = 0;
   for (size_t i = 0; i < t.n_cell; i++) *n_component += t.parent[i] == i;
 done:

@@ -10,9 +10,9 @@
  * rounding of each cell's volume, far below any cell that matters. */
 #define VOLUME_TOLERANCE 1e-9
 
-struct vg_figures *vg_figures_new(void)
+struct vg_stats *vg_stats_new(void)
 {
-  struct vg_figures *f = vg_calloc(1, sizeof *f);
+  struct vg_stats *f = vg_calloc(1, sizeof *f);
 
   if (!f) return NULL;
   f->angle_min = 180;
@@ -26,7 +26,7 @@ static int is_worse(const struct vg_worst_cell *a,
   return a->value < b->value || (a->value == b->value && a->cell < b->cell);
 }
 
-void vg_figures_worst(struct vg_figures *f, const struct vg_worst_cell *w)
+void vg_stats_worst(struct vg_stats *f, const struct vg_worst_cell *w)
 {
   size_t i = f->n_worst;
 
@@ -41,7 +41,7 @@ void vg_figures_worst(struct vg_figures *f, const struct vg_worst_cell *w)
   f->worst[i] = *w;
 }
 
-void vg_figures_add(struct vg_figures *f, const struct vg_figures *more)
+void vg_stats_add(struct vg_stats *f, const struct vg_stats *more)
 {
   uint64_t *to = (uint64_t *)&f->n;
   const uint64_t *from = (const uint64_t *)&more->n;
@@ -52,11 +52,11 @@ void vg_figures_add(struct vg_figures *f, const struct vg_figures *more)
   if (more->radius_ratio_min < f->radius_ratio_min)
     f->radius_ratio_min = more->radius_ratio_min;
   for (size_t i = 0; i < more->n_worst; i++)
-    vg_figures_worst(f, &more->worst[i]);
+    vg_stats_worst(f, &more->worst[i]);
 }
 
-int vg_figures_face(struct vg_figures *f, size_t n_cell, size_t n_boundary,
-                    int same_side)
+int vg_stats_face(struct vg_stats *f, size_t n_cell, size_t n_boundary,
+                  int same_side)
 {
   struct vg_counts *n = &f->n;
 
@@ -73,7 +73,7 @@ int vg_figures_face(struct vg_figures *f, size_t n_cell, size_t n_boundary,
   return 0;
 }
 
-void vg_figures_ratio(struct vg_figures *f, float v, float w)
+void vg_stats_ratio(struct vg_stats *f, float v, float w)
 {
   float ratio;
   uint32_t bits;
@@ -85,7 +85,7 @@ void vg_figures_ratio(struct vg_figures *f, float v, float w)
   f->n.ratio[bits < VG_N_RATIO ? bits : VG_N_RATIO - 1]++;
 }
 
-void vg_figures_edge(struct vg_figures *f, double ratio)
+void vg_stats_edge(struct vg_stats *f, double ratio)
 {
   double bin = ratio * 10;
 
@@ -119,7 +119,7 @@ static void report_validity(const struct vg_counts *n,
   r->n_inner_face = n->n_inner_face;
 }
 
-static void report_shape(const struct vg_figures *f, struct vg_mesh_report *r)
+static void report_shape(const struct vg_stats *f, struct vg_mesh_report *r)
 {
   const struct vg_counts *n = &f->n;
   double n_tet = (double)n->n_tet;
@@ -178,8 +178,8 @@ static void report_edges(const struct vg_counts *n, struct vg_mesh_report *r)
   r->edge_within = 100 * (double)n->edge_within / (double)n->n_edge;
 }
 
-void vg_figures_report(const struct vg_figures *f, size_t n_component,
-                       int has_sizing, struct vg_mesh_report *r)
+void vg_stats_report(const struct vg_stats *f, size_t n_component,
+                     int has_sizing, struct vg_mesh_report *r)
 {
   memset(r, 0, sizeof *r);
   report_validity(&f->n, r);

@@ -40,7 +40,7 @@ struct bucket {
 struct pairing {
   const struct vg_mesh *m;
   const float *volume;
-  struct vg_figures *f;
+  struct vg_stats *f;
   uint32_t *parent;          /* [n_cell] components */
   size_t n_cell;
   size_t n, mask;            /* faces that wait; buckets - 1 */
@@ -127,9 +127,9 @@ static void meet(struct pairing *p, uint32_t first, uint32_t second)
   size_t n_boundary = (size_t)(a >= p->n_cell) + (b >= p->n_cell);
 
   p->is_odd |= n_boundary > 1;
-  if (!vg_figures_face(p->f, 2 - n_boundary, n_boundary, same_side)) return;
+  if (!vg_stats_face(p->f, 2 - n_boundary, n_boundary, same_side)) return;
   vg_union(p->parent, a, b);
-  vg_figures_ratio(p->f, p->volume[a], p->volume[b]);
+  vg_stats_ratio(p->f, p->volume[a], p->volume[b]);
 }
 
 static void come(struct pairing *p, const struct face *f)
@@ -239,11 +239,12 @@ static void come_all(struct pairing *p)
 }
 
 /* What waits in vain is for others to match. */
-static vg_status list_loose(const struct pairing *p, struct vg_loose *loose,
-                            struct vg_error *err)
+static vg_status list_unpaired(const struct pairing *p,
+                               struct vg_unpaired *unpaired,
+                               struct vg_error *err)
 {
-  if (vg_reserve(&loose->face, &loose->room_face, loose->n_face + p->n,
-                 sizeof *loose->face))
+  if (vg_reserve(&unpaired->face, &unpaired->cap_face, unpaired->n_face + p->n,
+                 sizeof *unpaired->face))
     return vg_fail_memory(err, "the rim of a part of the mesh");
   for (size_t i = 0; i <= p->mask; i++)
     for (unsigned k = 0; k < SLOTS; k++) {
@@ -252,7 +253,7 @@ static vg_status list_loose(const struct pairing *p, struct vg_loose *loose,
                                                     b->high[k] };
 
       if (b->key[k] == VACANT) continue;
-      loose->face[loose->n_face++] = (struct vg_loose_face){
+      unpaired->face[unpaired->n_face++] = (struct vg_unpaired_face){
         { (uint32_t)(b->key[k] >> 32), node[b->owner[k] & 1],
           node[~b->owner[k] & 1], VG_NO_NODE }, cell, p->volume[cell]
       };
@@ -260,27 +261,28 @@ static vg_status list_loose(const struct pairing *p, struct vg_loose *loose,
   return VG_OK;
 }
 
-int vg_faces_can_pair(const struct vg_mesh *m, const struct vg_loose *loose)
+int vg_faces_can_pair(const struct vg_mesh *m,
+                      const struct vg_unpaired *unpaired)
 {
   return !(m->n_pyr + m->n_pri + m->n_hex + m->n_quad) &&
-         !(loose && (loose->is_shared || m->n_tri));
+         !(unpaired && (unpaired->is_shared || m->n_tri));
 }
 
 vg_status vg_pair_faces(const struct vg_mesh *m, const float *volume,
-                        struct vg_figures *f, struct vg_loose *loose,
+                        struct vg_stats *f, struct vg_unpaired *unpaired,
                         uint32_t *parent, struct vg_error *err)
 {
   struct pairing p = { .m = m, .volume = volume, .parent = parent,
                        .n_cell = m->n_tet };
   vg_status st = VG_OK;
 
-  p.f = vg_figures_new();
+  p.f = vg_stats_new();
   if (!p.f || !make_buckets(&p, FIRST_BITS)) p.refused = 1;
   else come_all(&p);
   if (p.refused) st = vg_fail_memory(err, "the table of faces");
-  else if (loose) st = list_loose(&p, loose, err);
+  else if (unpaired) st = list_unpaired(&p, unpaired, err);
   else if (p.n || p.is_odd) st = VG_BLOCKED;
-  if (st == VG_OK) vg_figures_add(f, p.f);
+  if (st == VG_OK) vg_stats_add(f, p.f);
   free(p.f);
   free(p.bucket);
   free(p.is_over);

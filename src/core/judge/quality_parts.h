@@ -36,7 +36,7 @@ struct vg_counts {
   struct vg_exact volume, sum_radius, sum_mean, sum_edge;
 };
 
-struct vg_figures {
+struct vg_stats {
   struct vg_counts n;
   double angle_min, angle_max, radius_ratio_min;
   struct vg_worst_cell worst[VG_WORST];  /* by angle, then by cell */
@@ -44,28 +44,28 @@ struct vg_figures {
 };
 
 /** Figures of nothing; NULL when memory is refused. free() it. */
-struct vg_figures *vg_figures_new(void);
+struct vg_stats *vg_stats_new(void);
 
-void vg_figures_add(struct vg_figures *f, const struct vg_figures *more);
+void vg_stats_add(struct vg_stats *f, const struct vg_stats *more);
 
 /** Enter a cell where it is among the worst. */
-void vg_figures_worst(struct vg_figures *f, const struct vg_worst_cell *w);
+void vg_stats_worst(struct vg_stats *f, const struct vg_worst_cell *w);
 
 /** A face of n_cell cells and n_boundary boundary faces; same_side: when
  * these are two, both wind the same way. Returns whether it joins two cells. */
-int vg_figures_face(struct vg_figures *f, size_t n_cell, size_t n_boundary,
-                    int same_side);
+int vg_stats_face(struct vg_stats *f, size_t n_cell, size_t n_boundary,
+                  int same_side);
 
 /** Two cells of volumes v and w share a face. */
-void vg_figures_ratio(struct vg_figures *f, float v, float w);
+void vg_stats_ratio(struct vg_stats *f, float v, float w);
 
 /** An edge whose length is `ratio` times its target. */
-void vg_figures_edge(struct vg_figures *f, double ratio);
+void vg_stats_edge(struct vg_stats *f, double ratio);
 
 /** Everything but `enclosed` and what follows from it.
  * has_sizing: figures of edges, too. */
-void vg_figures_report(const struct vg_figures *f, size_t n_component,
-                       int has_sizing, struct vg_mesh_report *r);
+void vg_stats_report(const struct vg_stats *f, size_t n_component,
+                     int has_sizing, struct vg_mesh_report *r);
 
 /** With r->volume and r->enclosed known: their difference, and whether the
  * mesh is valid. */
@@ -108,52 +108,54 @@ double vg_enclosed_volume(const struct vg_mesh *m, const double lo[3],
  * @param first   number of the first tetrahedron, for the list of the worst
  * @param volume  out: [n_cell], signed */
 void vg_judge_shape(const struct vg_mesh *m, size_t first, float *volume,
-                    struct vg_figures *f);
+                    struct vg_stats *f);
 
 /** Faces of a part of a mesh that have no, or too many, neighbours in it. */
-struct vg_loose_face {
+struct vg_unpaired_face {
   uint32_t node[4];        /* outwards around the face; VG_NO_NODE: no quad */
   uint32_t component;      /* of its cell: 0 .. n_component - 1 */
   float volume;            /* of its cell */
 };
-struct vg_loose_edge { uint32_t node[2]; double ratio; };
+struct vg_unpaired_edge { uint32_t node[2]; double ratio; };
 
-struct vg_loose {
-  size_t n_face, room_face, n_edge, room_edge;
-  struct vg_loose_face *face;
-  struct vg_loose_edge *edge; /* their edges, each once: length / target */
+struct vg_unpaired {
+  size_t n_face, cap_face, n_edge, cap_edge;
+  struct vg_unpaired_face *face;
+  struct vg_unpaired_edge *edge; /* their edges, each once: length / target */
   /* NULL, or which faces of two cells are to be listed, too. */
   int (*is_shared)(const void *context, const uint32_t node[4]);
   const void *context;
 };
 #define VG_NO_NODE UINT32_MAX
 
-void vg_loose_release(struct vg_loose *loose);
+void vg_unpaired_release(struct vg_unpaired *unpaired);
 
 /** Conformity, components, orientation and volume ratios of neighbours.
- * @param loose  NULL: m is a mesh with its boundary. Else m is a part of one,
+ * @param unpaired  NULL: m is a mesh with its boundary. Else m is a part of
+ * one,
  *               and the faces that others have to match are listed here */
 vg_status vg_judge_faces(const struct vg_mesh *m, const float *volume,
-                         struct vg_figures *f, struct vg_loose *loose,
+                         struct vg_stats *f, struct vg_unpaired *unpaired,
                          size_t *n_component, struct vg_error *err);
 
 /** Whether vg_pair_faces does for a mesh or a part of one: tetrahedra, whose
- * loose faces are not given. */
-int vg_faces_can_pair(const struct vg_mesh *m, const struct vg_loose *loose);
+ * unpaired faces are not given. */
+int vg_faces_can_pair(const struct vg_mesh *m,
+                      const struct vg_unpaired *unpaired);
 
 /** As vg_judge_faces, where each face has two sides.
  * @param parent  in/out: [n_tet] components: each cell its own
  * VG_BLOCKED: some faces of a whole mesh have not; nothing but parent was
- * touched. Of a part, sides that find no other are listed in loose. */
+ * touched. Of a part, sides that find no other are listed in unpaired. */
 vg_status vg_pair_faces(const struct vg_mesh *m, const float *volume,
-                        struct vg_figures *f, struct vg_loose *loose,
+                        struct vg_stats *f, struct vg_unpaired *unpaired,
                         uint32_t *parent, struct vg_error *err);
 
-/** Edges against the field: those that are not of boundary faces. With loose
+/** Edges against the field: those that are not of boundary faces. With unpaired
  * faces: those that are not of these, whose edges are listed. */
 vg_status vg_judge_edges(const struct vg_mesh *m,
                          const struct vg_sizing *sizing,
-                         struct vg_figures *f, struct vg_loose *loose,
+                         struct vg_stats *f, struct vg_unpaired *unpaired,
                          struct vg_error *err);
 
 /** Volume between the origin `o` and a quadrilateral, the mean over its two

@@ -166,7 +166,7 @@ static size_t bin_of(double x, double per_unit, size_t n)
   return at < (double)n ? (size_t)at : n - 1;
 }
 
-static void count_angles(struct vg_figures *f, size_t n, const double *least,
+static void count_angles(struct vg_stats *f, size_t n, const double *least,
                          const double *most)
 {
   static const double low[5] = { 5, 10, 15, 20, 30 };
@@ -185,7 +185,7 @@ static void count_angles(struct vg_figures *f, size_t n, const double *least,
     for (size_t i = 0; i < n; i++) f->n.above[k] += most[i] > high[k];
 }
 
-static void count_ratios(struct vg_figures *f, size_t n, const double *ratio)
+static void count_ratios(struct vg_stats *f, size_t n, const double *ratio)
 {
   for (size_t i = 0; i < n; i++) {
     if (ratio[i] < f->radius_ratio_min) f->radius_ratio_min = ratio[i];
@@ -193,7 +193,7 @@ static void count_ratios(struct vg_figures *f, size_t n, const double *ratio)
   }
 }
 
-static void note_worst(struct vg_figures *f, const struct vg_mesh *m,
+static void note_worst(struct vg_stats *f, const struct vg_mesh *m,
                        size_t i, size_t cell, double angle)
 {
   struct vg_worst_cell w = { .cell = cell, .value = angle };
@@ -201,7 +201,7 @@ static void note_worst(struct vg_figures *f, const struct vg_mesh *m,
   if (f->n_worst == VG_WORST && angle > f->worst[VG_WORST - 1].value) return;
   for (int k = 0; k < 3; k++)
     for (int j = 0; j < 4; j++) w.at[k] += m->point[m->tet[i][j]][k] / 4;
-  vg_figures_worst(f, &w);
+  vg_stats_worst(f, &w);
 }
 
 /* Tetrahedra first .. first + n - 1 of m, n <= GROUP. */
@@ -225,7 +225,7 @@ static void measure_group(const struct vg_mesh *m, size_t first, size_t n,
 
 /* Signed volumes; first: of m. */
 static void measure_volumes(const struct vg_mesh *m, size_t first, size_t n,
-                            double *volume, struct vg_figures *f)
+                            double *volume, struct vg_stats *f)
 {
   for (size_t i = 0; i < n; i++) {
     const uint32_t *v = m->tet[first + i];
@@ -239,7 +239,7 @@ static void measure_volumes(const struct vg_mesh *m, size_t first, size_t n,
 
 /* n tetrahedra of m from `first` on; cell: number of that. */
 static void judge_batch(const struct vg_mesh *m, size_t first, size_t n,
-                        size_t cell, float *volume, struct vg_figures *f)
+                        size_t cell, float *volume, struct vg_stats *f)
 {
   struct batch b;
 
@@ -314,7 +314,7 @@ int vg_cell_positive(const double (*x)[3], int kind, const uint32_t *n)
 }
 
 static void judge_mixed(const struct vg_mesh *m, int kind, float *volume,
-                        struct vg_figures *f)
+                        struct vg_stats *f)
 {
   const double (*x)[3] = (const double (*)[3])m->point;
   struct vg_cells c = vg_mesh_cells(m, kind);
@@ -331,7 +331,7 @@ static void judge_mixed(const struct vg_mesh *m, int kind, float *volume,
 }
 
 void vg_judge_shape(const struct vg_mesh *m, size_t first, float *volume,
-                    struct vg_figures *f)
+                    struct vg_stats *f)
 {
   for (size_t i = 0, n; i < m->n_tet; i += n) {
     n = m->n_tet - i < BATCH ? m->n_tet - i : BATCH;

@@ -10,7 +10,7 @@
 /* As vg_shape. Cells below `aim` (dihedral angles below 25 or above 155
  * degrees) are worked on one by one; sweeps swap below `fair` (30, 150);
  * `good` (45, 135) cells are not touched. */
-static const double aim = VG_SHAPE_AIM;
+static const double aim = VG_SHAPE_TARGET;
 static const float fair = 0.25, good = VG_SHAPE_GOOD;   /* K24 */
 /* Below this (15, 165) points are taken away or put in. */
 static const double desperate = 0.067;   /* K25 */
@@ -25,16 +25,16 @@ static vg_status start(struct vg_optimiser *o, struct vg_tets *t,
   o->star = vg_alloc(t->n_point, sizeof *o->star);
   o->cap_star = t->n_point;
   if (o->star) memset(o->star, 0xff, t->n_point * sizeof *o->star);
-  o->vain = vg_calloc(t->n_point, sizeof *o->vain);
-  o->cap_vain = t->n_point;
-  if (!o->star || !o->vain ||
+  o->failed = vg_calloc(t->n_point, sizeof *o->failed);
+  o->cap_failed = t->n_point;
+  if (!o->star || !o->failed ||
       vg_reserve(&o->q, &o->cap_q, t->cap_cell, sizeof *o->q) ||
-      vg_reserve(&o->vain_cell, &o->cap_vain_cell, t->cap_cell,
-                 sizeof *o->vain_cell))
+      vg_reserve(&o->failed_cell, &o->cap_failed_cell, t->cap_cell,
+                 sizeof *o->failed_cell))
     return vg_fail_memory(err, "optimisation");
   for (uint32_t c = 0; c < t->n_cell; c++) {
     o->q[c] = 1;
-    o->vain_cell[c] = 0;
+    o->failed_cell[c] = 0;
     if (t->flag[c] & (VG_DEAD | VG_OUTSIDE)) continue;
     o->q[c] = (float)vg_cell_shape(t, c);
     for (int i = 0; i < 4; i++) o->star[t->cell[c].v[i]] = c;
@@ -71,13 +71,13 @@ static int makes_slit(const struct vg_optimiser *o, uint32_t c)
 }
 
 /* Is cell c one that should get better? The answer no, which bad cells at the
- * rim get again and again, is kept until the cell changes. */
+ * border get again and again, is kept until the cell changes. */
 static int concerns(const struct vg_optimiser *o, uint32_t c)
 {
   if (!o->region) return 1;
-  if (o->vain_cell[c] & VG_NO_CONCERN) return 0;
+  if (o->failed_cell[c] & VG_NOT_IN_REGION) return 0;
   if (is_in_region(o, c) || makes_slit(o, c)) return 1;
-  o->vain_cell[c] |= VG_NO_CONCERN;
+  o->failed_cell[c] |= VG_NOT_IN_REGION;
   return 0;
 }
 
@@ -147,7 +147,7 @@ static vg_status list_bad(const struct vg_optimiser *o, size_t *n,
 }
 
 /* One bad cell: the cheapest step that helps. */
-static int mend_cell(struct vg_optimiser *o, uint32_t c)
+static int improve_cell(struct vg_optimiser *o, uint32_t c)
 {
   int better = 0;
 
@@ -158,8 +158,8 @@ static int mend_cell(struct vg_optimiser *o, uint32_t c)
   return vg_collapse(o, c) || vg_split(o, c, aim);
 }
 
-static vg_status mend(struct vg_optimiser *o, int *again,
-                      struct vg_error *err)
+static vg_status improve_bad(struct vg_optimiser *o, int *again,
+                             struct vg_error *err)
 {
   struct vg_key *list = NULL;
   size_t n, n_better = 0;
@@ -169,7 +169,7 @@ static vg_status mend(struct vg_optimiser *o, int *again,
     uint32_t c = list[k].index;
 
     if (!wants_mending(o, c)) continue;
-    if (mend_cell(o, c)) n_better++;
+    if (improve_cell(o, c)) n_better++;
     else o->t->flag[c] |= VG_TRIED;
   }
   free(list);
@@ -185,13 +185,13 @@ static vg_status optimise(struct vg_optimiser *o, struct vg_tets *t,
 
   for (int k = 0; st == VG_OK && k < sweeps; k++) st = sweep(o, err);
   for (int k = 0; st == VG_OK && k < ROUNDS && again; k++)
-    st = mend(o, &again, err);
+    st = improve_bad(o, &again, err);
   for (size_t c = 0; c < t->n_cell; c++) t->flag[c] &= (uint8_t)~VG_TRIED;
   if (st == VG_OK && o->refused) st = vg_fail_memory(err, "optimisation");
   free(o->q);
   free(o->star);
-  free(o->vain);
-  free(o->vain_cell);
+  free(o->failed);
+  free(o->failed_cell);
   free(o);
   return st;
 }

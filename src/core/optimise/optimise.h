@@ -60,6 +60,6 @@ vg_status vg_optimise_points(struct vg_tets *t, size_t n,
 
 /** A cell of a shape (core/geometry/shape.h) below this is one that is worked
  * on. */
-#define VG_SHAPE_AIM 0.1786   /* K23 */
+#define VG_SHAPE_TARGET 0.1786   /* K23 */
 
 #endif

@@ -40,7 +40,7 @@ void vg_ball_faces(const struct vg_tets *t, size_t n, const uint32_t *link,
       area2 += s * s;
     }
     out->area2[k] = area2;
-    out->rim2[k] = out->edge2[0][k] + out->edge2[1][k] + out->edge2[2][k];
+    out->border2[k] = out->edge2[0][k] + out->edge2[1][k] + out->edge2[2][k];
   }
 }
 
@@ -126,7 +126,7 @@ double vg_ball_other(const struct vg_ball_faces *b, const double x[3])
       double e, off;
 
       raise(b, at + k, x, &c);
-      e = c.l[0] + c.l[1] + c.l[2] + b->rim2[at + k];
+      e = c.l[0] + c.l[1] + c.l[2] + b->border2[at + k];
       off = e * b->per - 1;
       of[k] = round_share * 432 * c.det * c.det / (e * e * e) -
               size_share * off * off;
@@ -156,26 +156,26 @@ void vg_ball_ideal(const struct vg_ball_faces *b, const double *q,
 
 /* The shape is det^2 l / (s s') of the edge, of length sqrt(l) between faces
  * of areas sqrt(s), at which that is least. An edge up to corner i is of the
- * two faces opposite the other corners, the one of the rim opposite corner i
+ * two faces opposite the other corners, the one of the border opposite corner i
  * of face i alone. */
 static inline void slope_of(const struct vg_ball_faces *b, size_t k,
                             const double x[3], double g[3])
 {
   struct cone c;
-  double up[3], rim[3], least, edges2, wide, high;
+  double up[3], border[3], least, edges2, wide, high;
 
   raise(b, k, x, &c);
   for (int i = 0; i < 3; i++) {
     up[i] = c.l[i] * c.s[i] * b->area2[k];
-    rim[i] = b->edge2[i][k] * c.s[(i + 1) % 3] * c.s[(i + 2) % 3];
+    border[i] = b->edge2[i][k] * c.s[(i + 1) % 3] * c.s[(i + 2) % 3];
   }
-  least = least_of(least_of(least_of(up[0], up[1]), least_of(up[2], rim[0])),
-                   least_of(rim[1], rim[2]));
+  least = least_of(least_of(least_of(up[0], up[1]), least_of(up[2], border[0])),
+                   least_of(border[1], border[2]));
   for (int i = 0; i < 3; i++) {
     up[i] = up[i] <= least ? 1.0 : 0.0;
-    rim[i] = rim[i] <= least ? 1.0 : 0.0;
+    border[i] = border[i] <= least ? 1.0 : 0.0;
   }
-  edges2 = c.l[0] + c.l[1] + c.l[2] + b->rim2[k];
+  edges2 = c.l[0] + c.l[1] + c.l[2] + b->border2[k];
   wide = 3 * round_slope / edges2 +
          2 * size_slope * b->per * (edges2 * b->per - 1);
   high = (1 + round_slope) / c.det;
@@ -185,7 +185,7 @@ static inline void slope_of(const struct vg_ball_faces *b, size_t k,
   for (int i = 0; i < 3; i++) {
     const double *p = c.u[(i + 1) % 3], *r = c.u[(i + 2) % 3];
     double edge = up[i] / c.l[i];
-    double face = (up[(i + 1) % 3] + up[(i + 2) % 3] + rim[i]) / c.s[i];
+    double face = (up[(i + 1) % 3] + up[(i + 2) % 3] + border[i]) / c.s[i];
 
     for (int a = 0; a < 3; a++) {
       int d = (a + 1) % 3, e = (a + 2) % 3;

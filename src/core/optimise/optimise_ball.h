@@ -13,7 +13,7 @@ struct vg_ball_faces {
   double area2[VG_BALL_MAX];      /* its square */
   double edge2[3][VG_BALL_MAX];   /* squares of the edges, each opposite the
                                      corner of that number */
-  double rim2[VG_BALL_MAX];       /* their sum */
+  double border2[VG_BALL_MAX];       /* their sum */
   double per;                     /* 1 / (6 squares of the length that edges
                                      should have); 0: any */
 };

@@ -113,7 +113,7 @@ static int take_ball(struct mover *m, const struct vg_tets *t, size_t n,
  * than what is aimed at and the sum is better. */
 static int move(struct mover *m, const double g[3], double length)
 {
-  const double aim = VG_SHAPE_AIM;
+  const double aim = VG_SHAPE_TARGET;
   struct stand to;
 
   for (int a = 0; a < 3; a++) to.x[a] = m->now.x[a] + length * g[a];
@@ -161,7 +161,7 @@ static int improve(struct mover *m)
   for (int a = 0; a < 3; a++) g[a] = to[a] - m->now.x[a];
   for (double share = 1; share > 0.2 && !better; share *= 0.5)
     better = move(m, g, share);
-  for (int k = 0; k < 4 && m->now.worst < VG_SHAPE_AIM; k++) {
+  for (int k = 0; k < 4 && m->now.worst < VG_SHAPE_TARGET; k++) {
     if (!climb(m, m->now.at, m->now.at + 1, 0.25, 0.01)) return better;
     better = 1;
   }

@@ -45,8 +45,8 @@ static int grow_shapes(struct vg_optimiser *o)
   size_t n = o->t->cap_cell;
 
   return vg_reserve(&o->q, &o->cap_q, n, sizeof *o->q) ||
-         vg_reserve(&o->vain_cell, &o->cap_vain_cell, n,
-                    sizeof *o->vain_cell);
+         vg_reserve(&o->failed_cell, &o->cap_failed_cell, n,
+                    sizeof *o->failed_cell);
 }
 
 int vg_replace(struct vg_optimiser *o, int n_old, const uint32_t *old,

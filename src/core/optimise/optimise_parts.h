@@ -9,10 +9,10 @@
 enum { VG_BALL_MAX = 256, VG_SHELL_MAX = 10, VG_NEW_MAX = VG_CAVITY_MAX,
        VG_OLD_MAX = VG_CAVITY_MAX };
 
-enum {                       /* what was tried without success, until a change */
-  VG_VAIN_SMOOTH = 1, VG_VAIN_MERGE = 2,   /* of a point */
-  VG_VAIN_SPLIT = 4,                       /* of a cell */
-  VG_NO_CONCERN = 8          /* likewise: does not belong to the region */
+enum {  /* what was tried without success, until a change */
+  VG_FAILED_SMOOTH = 1, VG_FAILED_COLLAPSE = 2,   /* of a point */
+  VG_FAILED_SPLIT = 4,                       /* of a cell */
+  VG_NOT_IN_REGION = 8          /* likewise: does not belong to the region */
 };
 
 struct vg_optimiser {
@@ -23,12 +23,12 @@ struct vg_optimiser {
   const struct vg_sizing *sizing;  /* of the region */
   float *q;                  /* [cap_cell] shape of each cell */
   size_t cap_q;
-  uint8_t *vain_cell;        /* [cap_cell] steps of no use to each cell */
-  size_t cap_vain_cell;
+  uint8_t *failed_cell;        /* [cap_cell] steps of no use to each cell */
+  size_t cap_failed_cell;
   uint32_t *star;            /* [n_point] a cell of each point, or VG_NONE */
   size_t cap_star;
-  uint8_t *vain;             /* [n_point] and to each point, until a change */
-  size_t cap_vain;
+  uint8_t *failed;             /* [n_point] and to each point, until a change */
+  size_t cap_failed;
   size_t n_ball;
   uint32_t ball[VG_BALL_MAX];  /* links 4 * cell + index of the centre */
   int refused;               /* memory was refused */
@@ -51,8 +51,8 @@ static inline void vg_changed(struct vg_optimiser *o, uint32_t c)
   const uint32_t *v = o->t->cell[c].v;
 
   o->t->flag[c] &= (uint8_t)~VG_TRIED;
-  o->vain_cell[c] = 0;
-  o->vain[v[0]] = o->vain[v[1]] = o->vain[v[2]] = o->vain[v[3]] = 0;
+  o->failed_cell[c] = 0;
+  o->failed[v[0]] = o->failed[v[1]] = o->failed[v[2]] = o->failed[v[3]] = 0;
 }
 
 /** Collect the cells around point p in o->ball. 0 when there are more than

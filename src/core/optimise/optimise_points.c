@@ -103,8 +103,8 @@ static int merge_point(struct vg_optimiser *o, uint32_t p)
   double need = 2, worst;
   int best = -1, now = 0, n_flat = 0, n;
 
-  if (p < o->n_keep || o->vain[p] & VG_VAIN_MERGE) return 0;
-  o->vain[p] |= VG_VAIN_MERGE;
+  if (p < o->n_keep || o->failed[p] & VG_FAILED_COLLAPSE) return 0;
+  o->failed[p] |= VG_FAILED_COLLAPSE;
   if (!vg_ball(o, p) || o->n_ball > VG_OLD_MAX) return 0;
   for (size_t k = 0; k < o->n_ball; k++) {
     old[k] = o->ball[k] >> 2;
@@ -251,7 +251,8 @@ static int put_point(struct vg_optimiser *o, const double x[3],
   if (swallows(t, h)) return 0;
   if (vg_tets_reserve_points(t, 1) ||
       vg_reserve(&o->star, &o->cap_star, t->n_point + 1, sizeof *o->star) ||
-      vg_reserve(&o->vain, &o->cap_vain, t->n_point + 1, sizeof *o->vain)) {
+      vg_reserve(&o->failed, &o->cap_failed, t->n_point + 1,
+                 sizeof *o->failed)) {
     o->refused = 1;
     return 0;
   }
@@ -332,7 +333,7 @@ int vg_split(struct vg_optimiser *o, uint32_t c, double aim)
   int n = o->q[c] < worst_of_all ? 7 : 1;
   double x[3];
 
-  if (o->vain_cell[c] & VG_VAIN_SPLIT) return 0;
+  if (o->failed_cell[c] & VG_FAILED_SPLIT) return 0;
   if (split_above(o, c, aim)) return 1;
   for (int i = 0; i < 4; i++) {
     uint32_t link = o->t->cell[c].link[i];
@@ -345,6 +346,6 @@ int vg_split(struct vg_optimiser *o, uint32_t c, double aim)
     centre(o->t, c, share[k], x);
     if (split_at(o, c, x, aim)) return 1;
   }
-  o->vain_cell[c] |= VG_VAIN_SPLIT;
+  o->failed_cell[c] |= VG_FAILED_SPLIT;
   return 0;
 }

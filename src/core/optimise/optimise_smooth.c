@@ -172,9 +172,9 @@ static int smooth_ball(struct vg_optimiser *o, uint32_t p, double aim)
 
 int vg_smooth(struct vg_optimiser *o, uint32_t p, double aim)
 {
-  if (p < o->n_fixed || o->vain[p] & VG_VAIN_SMOOTH || !vg_ball(o, p))
+  if (p < o->n_fixed || o->failed[p] & VG_FAILED_SMOOTH || !vg_ball(o, p))
     return 0;
   if (smooth_ball(o, p, aim)) return 1;
-  o->vain[p] |= VG_VAIN_SMOOTH;
+  o->failed[p] |= VG_FAILED_SMOOTH;
   return 0;
 }

@@ -10,11 +10,11 @@ static int prepare(struct vg_optimiser *o)
   const struct vg_tets *t = o->t;
 
   o->star = vg_alloc(t->n_point, sizeof *o->star);
-  o->vain = vg_calloc(t->n_point, 1);
-  o->vain_cell = vg_calloc(t->n_cell, 1);
-  o->cap_star = o->cap_vain = t->n_point;
-  o->cap_vain_cell = o->cap_q = t->n_cell;
-  return o->star && o->vain && o->vain_cell ? 0 : -1;
+  o->failed = vg_calloc(t->n_point, 1);
+  o->failed_cell = vg_calloc(t->n_cell, 1);
+  o->cap_star = o->cap_failed = t->n_point;
+  o->cap_failed_cell = o->cap_q = t->n_cell;
+  return o->star && o->failed && o->failed_cell ? 0 : -1;
 }
 
 vg_status vg_optimise_swaps(struct vg_tets *t, float below, float **q,
@@ -37,8 +37,8 @@ vg_status vg_optimise_swaps(struct vg_tets *t, float below, float **q,
   *q = o->q;
   if (st == VG_OK && o->refused) st = vg_fail_memory(err, "optimisation");
   free(o->star);
-  free(o->vain);
-  free(o->vain_cell);
+  free(o->failed);
+  free(o->failed_cell);
   free(o);
   return st;
 }

@@ -108,7 +108,7 @@ enum { SIDE_UNKNOWN, SIDE_FLUID, SIDE_SOLID };
 
 struct sides {
   struct vg_tets *t;
-  const struct vg_ruler *ruler;      /* NULL: everywhere */
+  const struct vg_region_cache *cache;      /* NULL: everywhere */
   double band;               /* sides are told so near the region */
   int is_strict;             /* 1: a contradiction is an error */
   uint8_t *side;             /* [n_cell] */
@@ -126,10 +126,10 @@ static int matters(const struct sides *s, uint32_t c, int i)
   const uint32_t *v = s->t->cell[c].v;
   const uint8_t *f = vg_face[i];
   uint32_t tri[3] = {v[f[0]], v[f[1]], v[f[2]]}, link = s->t->cell[c].link[i];
-  int known = s->ruler ? s->near[c] >> i & 0x11 : 1;
+  int known = s->cache ? s->near[c] >> i & 0x11 : 1;
 
   if (known) return known & 1;
-  known = vg_ruler_meets(s->ruler, tri, s->band) ? 1 : 0x10;
+  known = vg_region_cache_meets(s->cache, tri, s->band) ? 1 : 0x10;
   s->near[c] |= (uint8_t)(known << i);
   if (link != VG_NONE) s->near[link >> 2] |= (uint8_t)(known << (link & 3));
   return known & 1;
@@ -139,7 +139,7 @@ static int matters(const struct sides *s, uint32_t c, int i)
 static void set_band(struct sides *s, double band, uint8_t keep)
 {
   s->band = band;
-  for (size_t c = 0; c < s->t->n_cell && s->ruler; c++) s->near[c] &= keep;
+  for (size_t c = 0; c < s->t->n_cell && s->cache; c++) s->near[c] &= keep;
 }
 
 static void set_side(struct sides *s, uint32_t c, uint8_t is)
@@ -231,11 +231,11 @@ static vg_status tell_sides(struct sides *s, struct vg_error *err)
 {
   vg_status st;
 
-  s->band = s->ruler ? -s->ruler->region->reach + 1e-6 : 0;
+  s->band = s->cache ? -s->cache->region->reach + 1e-6 : 0;
   s->is_strict = 1;
   VG_TRY(seed_sides(s, err));
   VG_TRY(spread_sides(s, err));
-  if (!s->ruler) goto done;
+  if (!s->cache) goto done;
   set_band(s, VG_BAND_FLUID, 0x0f);
   s->is_strict = 0;
   s->next = 0;
@@ -282,8 +282,8 @@ vg_status vg_boundary_sides(struct vg_tets *t, size_t n_tri,
                             struct vg_error *err)
 {
   struct tri_table table = {0};
-  struct vg_ruler ruler = {0};
-  struct sides s = { .t = t, .ruler = region ? &ruler : NULL };
+  struct vg_region_cache cache = {0};
+  struct sides s = { .t = t, .cache = region ? &cache : NULL };
   size_t n_fluid = 0;
   vg_status st = VG_OK;
 
@@ -295,8 +295,8 @@ vg_status vg_boundary_sides(struct vg_tets *t, size_t n_tri,
     st = vg_fail_memory(err, "boundary recovery");
   if (st == VG_OK) st = tri_table_init(&table, n_tri, tri, err);
   if (st == VG_OK && region)
-    st = vg_ruler_init(&ruler, region, sizing, t->n_point,
-                       (const double (*)[3])t->x, err);
+    st = vg_region_cache_init(&cache, region, sizing, t->n_point,
+                              (const double (*)[3])t->x, err);
   if (st == VG_OK) find_front(&s, &table);
   if (st == VG_OK) st = tell_sides(&s, err);
   if (st == VG_OK && region) wall_off(&s);
@@ -310,7 +310,7 @@ vg_status vg_boundary_sides(struct vg_tets *t, size_t n_tri,
   free(s.front);
   free(s.near);
   free(s.queue);
-  vg_ruler_release(&ruler);
+  vg_region_cache_release(&cache);
   free(table.slot);
   return st;
 }
@@ -392,8 +392,8 @@ static vg_status whole_void(size_t n, const double (*x)[3], size_t n_tri,
     report->n_steiner = job.n_all - n;
     report->n_pocket = 1;
     report->n_pocket_cell = job.n_tet;
-    st = vg_tets_adopt(out, job.n_all, job.all, job.n_tet,
-                       (const uint32_t (*)[4])job.tet, err);
+    st = vg_tets_from_cells(out, job.n_all, job.all, job.n_tet,
+                            (const uint32_t (*)[4])job.tet, err);
     free(job.tet);
     VG_TRY(st);
     VG_TRY(vg_boundary_fix(out, n_tri, tri, NULL, &n_missing, err));

@@ -79,7 +79,7 @@ static void set_signals(void)
   sigprocmask(SIG_SETMASK, &none, NULL);
 }
 
-void vg_cdt_server_part(pid_t parent, int fd)
+void vg_cdt_server_detach(pid_t parent, int fd)
 {
   struct rlimit none = {0, 0};
 
@@ -116,7 +116,7 @@ static ssize_t take_request(int from, struct request *r, int *fd)
 __attribute__((noreturn))
 static void be_child(pid_t parent, int fd, const struct request *r)
 {
-  vg_cdt_server_part(parent, fd);
+  vg_cdt_server_detach(parent, fd);
   if (r->has_affinity)
     sched_setaffinity(0, sizeof r->affinity, &r->affinity);
   if (send(fd, "", 1, MSG_NOSIGNAL) != 1) _exit(1);
@@ -214,7 +214,7 @@ static int send_ticket(int to, int fd)
   return n == sizeof r;
 }
 
-int vg_cdt_server_ask(void)
+int vg_cdt_server_connect(void)
 {
   int ends[2], to = control, sent;
   ssize_t n = 0;
@@ -234,9 +234,9 @@ int vg_cdt_server_ask(void)
   return -1;
 }
 
-int vg_cdt_server_answers(void)
+int vg_cdt_server_is_alive(void)
 {
-  int fd = vg_cdt_server_ask();
+  int fd = vg_cdt_server_connect();
 
   if (fd >= 0) close(fd);
   return fd >= 0;

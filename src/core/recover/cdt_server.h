@@ -38,18 +38,18 @@ void vg_cdt_server_stop(void);
 /** A socket to a fresh child of the server that runs vg_cdt_serve on the
  * other end; -1 when there is no server, or it cannot. The child takes on the
  * affinity of the calling thread. Threads: safe. */
-int vg_cdt_server_ask(void);
+int vg_cdt_server_connect(void);
 
 /** 1 when the server has just given proof of life by a fresh child: then one
  * that is gone went by itself. The socket of a server is no such proof, since
  * it may stay open for a moment after its children were told of its end.
  * Threads: safe. */
-int vg_cdt_server_answers(void);
+int vg_cdt_server_is_alive(void);
 
 /** Make the calling process, just forked by `parent`, a child that shares
  * nothing with it but `fd`: no other files, default signals save those that
  * the parent decides about, output to nowhere, and an end with the parent. */
-void vg_cdt_server_part(pid_t parent, int fd);
+void vg_cdt_server_detach(pid_t parent, int fd);
 
 #ifdef __cplusplus
 }

@@ -210,7 +210,7 @@ int fork_here(pid_t *pid)
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends)) return -1;
   *pid = fork();
   if (*pid == 0) {
-    vg_cdt_server_part(self, ends[1]);
+    vg_cdt_server_detach(self, ends[1]);
     vg_cdt_serve(ends[1]);
   }
   close(ends[1]);
@@ -223,7 +223,7 @@ int fork_here(pid_t *pid)
  * be tried again in this way, or a negative status. */
 long run_child(size_t n_job, vg_cdt_job *job, uint64_t way)
 {
-  int fd = vg_cdt_server_ask();
+  int fd = vg_cdt_server_connect();
   long done = 0, n = static_cast<long>(n_job);
   pid_t pid = 0;
 
@@ -231,7 +231,7 @@ long run_child(size_t n_job, vg_cdt_job *job, uint64_t way)
   if (fd < 0) return VG_ERR_MEMORY;
   while (done < n && ask(job[done], way, fd) && receive(job[done], fd)) done++;
   /* blame the job, unless the child was taken along by the server's end */
-  if (done < n && (pid || vg_cdt_server_answers())) done++;
+  if (done < n && (pid || vg_cdt_server_is_alive())) done++;
   shutdown(fd, SHUT_RDWR);
   close(fd);
   while (pid && waitpid(pid, nullptr, 0) < 0 && errno == EINTR) {

@@ -11,8 +11,8 @@
 #include "core/recover/recover_flip.h"
 
 /* A pocket with more triangles is no pocket: where flips leave that many, the
- * triangles of the surface are easier to recover than the rim of what they made
- * of Delaunay tetrahedra. Some of 10,000 triangles were worth it. */
+ * triangles of the surface are easier to recover than the border of what they
+ * made of Delaunay tetrahedra. Some of 10,000 triangles were worth it. */
 enum { ROUNDS = 4, POCKET_MAX = 40000 };   /* K1 */
 
 struct recovery {
@@ -142,9 +142,9 @@ static int add_ring(struct recovery *r)
 /* --- closing one pocket -------------------------------------------------- */
 
 struct pocket {
-  size_t n_cell, n_tri, cap_tri, n_rim, n_point;
+  size_t n_cell, n_tri, cap_tri, n_border, n_point;
   const struct vg_key *cell; /* index: cells of the pocket */
-  uint32_t (*tri)[3];        /* rim, fixed faces inside, missing triangles */
+  uint32_t (*tri)[3];        /* border, fixed faces inside, missing triangles */
   uint32_t *point;           /* [n_point] sorted numbers in t */
   double (*x)[3];            /* [n_point]; NULL: not to be closed now */
 };
@@ -157,22 +157,22 @@ static int add_tri(struct pocket *p, const uint32_t v[3])
   return 0;
 }
 
-static int add_faces(const struct vg_tets *t, struct pocket *p, int rim)
+static int add_faces(const struct vg_tets *t, struct pocket *p, int border)
 {
   for (size_t m = 0; m < p->n_cell; m++) {
     uint32_t c = p->cell[m].index, v[3];
 
     for (int i = 0; i < 4; i++) {
       uint32_t link = t->cell[c].link[i], other = link >> 2;
-      int is_rim = link == VG_NONE || !(t->flag[other] & VG_MARK);
+      int is_border = link == VG_NONE || !(t->flag[other] & VG_MARK);
 
-      if (is_rim != rim) continue;
-      if (!rim && (!(t->flag[c] >> i & 1) || c > other)) continue;
+      if (is_border != border) continue;
+      if (!border && (!(t->flag[c] >> i & 1) || c > other)) continue;
       for (int k = 0; k < 3; k++) v[k] = t->cell[c].v[vg_face[i][k]];
       if (add_tri(p, v)) return -1;
     }
   }
-  if (rim) p->n_rim = p->n_tri;
+  if (border) p->n_border = p->n_tri;
   return 0;
 }
 
@@ -227,16 +227,17 @@ static int is_folded(const struct vg_tets *t)
   return 0;
 }
 
-/* Cells outside the rim are flagged; then: is every triangle there? */
+/* Cells outside the border are flagged; then: is every triangle there? */
 static vg_status verify(struct vg_tets *local, const struct pocket *p,
                         struct vg_error *err)
 {
   const uint32_t (*tri)[3] = (const uint32_t (*)[3])p->tri;
   size_t n_missing;
-  vg_status st = vg_boundary_fix(local, p->n_rim, tri, NULL, &n_missing, err);
+  vg_status st = vg_boundary_fix(local, p->n_border, tri, NULL, &n_missing,
+                                 err);
 
   if (st == VG_OK && !n_missing)
-    st = vg_boundary_sides(local, p->n_rim, tri, NULL, NULL, err);
+    st = vg_boundary_sides(local, p->n_border, tri, NULL, NULL, err);
   if (st == VG_OK && !n_missing)
     st = vg_boundary_fix(local, p->n_tri, tri, NULL, &n_missing, err);
   if (st == VG_OK && (n_missing || is_folded(local)))
@@ -257,13 +258,13 @@ static vg_status replace(struct recovery *r, const struct pocket *p,
   memcpy(t->x + first, local->x + p->n_point, added * sizeof *t->x);
   t->n_point += added;
   for (size_t m = 0; m < p->n_cell; m++)
-    if (vg_tets_drop(t, p->cell[m].index))
+    if (vg_tets_free_cell(t, p->cell[m].index))
       return vg_fail_memory(err, "boundary recovery");
   for (size_t c = 0; c < local->n_cell; c++) {
     uint32_t slot;
 
     if (local->flag[c] & VG_OUTSIDE) continue;
-    slot = vg_tets_take(t);
+    slot = vg_tets_alloc_cell(t);
     for (int i = 0; i < 4; i++) {
       uint32_t v = local->cell[c].v[i];
 
@@ -314,8 +315,8 @@ static vg_status accept(struct recovery *r, struct pocket *p,
   vg_status st = job->st;
 
   if (st == VG_OK)
-    st = vg_tets_adopt(&local, job->n_all, job->all, job->n_tet,
-                       (const uint32_t (*)[4])job->tet, err);
+    st = vg_tets_from_cells(&local, job->n_all, job->all, job->n_tet,
+                            (const uint32_t (*)[4])job->tet, err);
   if (st == VG_OK) st = verify(&local, p, err);
   if (st == VG_OK) st = replace(r, p, &local, err);
   vg_tets_release(&local);

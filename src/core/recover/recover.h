@@ -13,7 +13,7 @@
  *
  * Flips bring in most (core/recover/recover_flip.h). The cells that a triangle
  * still missing passes through form its pocket; pockets that share cells are
- * one. TetGen closes each pocket, its rim and every triangle in it kept; the
+ * one. TetGen closes each pocket, its border and every triangle in it kept; the
  * result is verified face by face before it replaces the pocket's cells. A
  * pocket that fails grows by a ring of cells and is tried again, three times.
  * Returns VG_ERR_GEOMETRY when pockets remain that cannot be closed, or one is

@@ -172,7 +172,7 @@ static int remove_edge(struct restorer *f, uint32_t c, uint32_t a, uint32_t b)
 
 /* Two cells become three around the edge between their far corners. Where that
  * does not pass through the face, an edge that it passes by may go. */
-static void mend(struct restorer *r, uint32_t c, int i)
+static void restore_face(struct restorer *r, uint32_t c, int i)
 {
   const struct vg_tets *t = r->t;
   uint32_t link = t->cell[c].link[i], old[2] = {c, link >> 2};
@@ -240,7 +240,7 @@ vg_status vg_recover_delaunay(struct vg_tets *t, size_t n_before,
       uint32_t c = now.link[k] >> 2;
       int i = now.link[k] & 3;
 
-      if (!(t->flag[c] & VG_DEAD) && is_wrong(t, c, i)) mend(&r, c, i);
+      if (!(t->flag[c] & VG_DEAD) && is_wrong(t, c, i)) restore_face(&r, c, i);
     }
   }
   free(now.link);

@@ -91,9 +91,9 @@ int vg_flip_face(struct vg_flipper *f, uint32_t c, int i)
     if (!(side(t, v[k], v[(k + 1) % 3], b, a) > 0)) return 0;
     come(&g, v[k], v[(k + 1) % 3], b, a);
   }
-  before = vg_flip_hinders(f, v[0], v[1], v[2]);
+  before = vg_flip_obstructs(f, v[0], v[1], v[2]);
   after = vg_flip_pierces(f, a, b);
-  for (int k = 0; k < 3; k++) after += vg_flip_hinders(f, a, b, v[k]);
+  for (int k = 0; k < 3; k++) after += vg_flip_obstructs(f, a, b, v[k]);
   return after < before && replace(f, &g);
 }
 
@@ -103,8 +103,8 @@ static int in_the_way(const struct vg_flipper *f, const struct ring *r)
 {
   int n = vg_flip_pierces(f, r->a, r->b);
 
-  for (int k = 0; k < r->n && f->n_aim == 2; k++)
-    n += vg_flip_hinders(f, r->a, r->b, r->v[k]);
+  for (int k = 0; k < r->n && f->n_target == 2; k++)
+    n += vg_flip_obstructs(f, r->a, r->b, r->v[k]);
   return n;
 }
 
@@ -113,7 +113,7 @@ static int in_the_way(const struct vg_flipper *f, const struct ring *r)
 struct plan {
   const struct vg_flipper *f;
   const struct ring *r;
-  int most;                  /* may be in the way of the aim */
+  int most;                  /* may be in the way of the target */
   int cost[VG_FLIP_RING][VG_FLIP_RING];  /* of polygon i..j; INT_MAX: none */
   double worst[VG_FLIP_RING][VG_FLIP_RING];
   int split[VG_FLIP_RING][VG_FLIP_RING];
@@ -125,8 +125,8 @@ static int cost_of_chord(const struct plan *p, int i, int j)
   const struct ring *r = p->r;
 
   return vg_flip_pierces(p->f, r->v[i], r->v[j]) +
-         vg_flip_hinders(p->f, r->v[i], r->v[j], r->a) +
-         vg_flip_hinders(p->f, r->v[i], r->v[j], r->b);
+         vg_flip_obstructs(p->f, r->v[i], r->v[j], r->a) +
+         vg_flip_obstructs(p->f, r->v[i], r->v[j], r->b);
 }
 
 /* Worse shape of the two cells that triangle i k j makes; 0: not positive. */
@@ -158,7 +158,7 @@ static void try_split(struct plan *p, int i, int k, int j, int chord)
   if (cost > p->most || cost > p->cost[i][j]) return;
   worst = shape_at(p, i, k, j);
   if (!(worst > 0)) return;
-  cost += vg_flip_hinders(p->f, r->v[i], r->v[k], r->v[j]);
+  cost += vg_flip_obstructs(p->f, r->v[i], r->v[k], r->v[j]);
   if (p->worst[i][k] < worst) worst = p->worst[i][k];
   if (p->worst[k][j] < worst) worst = p->worst[k][j];
   if (cost > p->most || cost > p->cost[i][j] ||

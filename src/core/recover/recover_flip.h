@@ -32,8 +32,8 @@ struct vg_flipper {
   struct vg_tets *t;
   struct vg_flip_front front;
   uint32_t *star;            /* [front.n_point] a cell of each point */
-  int n_aim;                 /* 2: an edge, 3: a triangle is to appear */
-  uint32_t aim[3];
+  int n_target;                 /* 2: an edge, 3: a triangle is to appear */
+  uint32_t target[3];
   int budget;                /* rings that may still be looked at */
   size_t n_change;           /* flips so far */
   int refused;               /* memory was refused */
@@ -55,8 +55,8 @@ int vg_flip_is_tri(const struct vg_flip_front *s, const uint32_t v[3]);
 
 /** Is triangle x y z in the way of the edge that is to appear: does that meet
  * it elsewhere than in its own ends? */
-int vg_flip_hinders(const struct vg_flipper *f, uint32_t x, uint32_t y,
-                    uint32_t z);
+int vg_flip_obstructs(const struct vg_flipper *f, uint32_t x, uint32_t y,
+                      uint32_t z);
 
 /** Does edge p q pierce the triangle that is to appear? */
 int vg_flip_pierces(const struct vg_flipper *f, uint32_t p, uint32_t q);
@@ -64,7 +64,7 @@ int vg_flip_pierces(const struct vg_flipper *f, uint32_t p, uint32_t q);
 /* --- flips (recover_flip.c) ---------------------------------------------- */
 
 /** Remove face i of cell c (2 cells to 3), or the edge between points a and b
- * of cell c, if that leaves less in the way of the aim.
+ * of cell c, if that leaves less in the way of the target.
  * depth: how far edges beside the edge may go first.
  * Returns 1 when cells have changed: less is in the way, or edges beside the
  * edge are gone and no more is. */
@@ -72,7 +72,8 @@ int vg_flip_face(struct vg_flipper *f, uint32_t c, int i);
 int vg_flip_edge(struct vg_flipper *f, uint32_t c, uint32_t a, uint32_t b,
                  int depth);
 
-/* --- edges and triangles put in (recover_aim.c) -------------------------- */
+/* --- edges and triangles put in (recover_target.c) --------------------------
+ * */
 
 /** Is the edge there? */
 int vg_flip_has_edge(const struct vg_flipper *f, uint32_t a, uint32_t b);

@@ -151,15 +151,15 @@ static int crosses_in_plane(const struct vg_tets *t, uint32_t end,
   return left <= 0 && right <= 0 && beyond < 0;
 }
 
-int vg_flip_hinders(const struct vg_flipper *f, uint32_t x, uint32_t y,
-                    uint32_t z)
+int vg_flip_obstructs(const struct vg_flipper *f, uint32_t x, uint32_t y,
+                      uint32_t z)
 {
   const struct vg_tets *t = f->t;
-  uint32_t a = f->aim[0], b = f->aim[1], v[3] = {x, y, z};
+  uint32_t a = f->target[0], b = f->target[1], v[3] = {x, y, z};
   double above, below, s[3];
   int n_end = 0, end = 0;
 
-  if (f->n_aim != 2) return 0;
+  if (f->n_target != 2) return 0;
   for (int k = 0; k < 3; k++)
     if (v[k] == a || v[k] == b) {
       n_end++;
@@ -182,10 +182,10 @@ int vg_flip_hinders(const struct vg_flipper *f, uint32_t x, uint32_t y,
 int vg_flip_pierces(const struct vg_flipper *f, uint32_t p, uint32_t q)
 {
   const struct vg_tets *t = f->t;
-  const uint32_t *v = f->aim;
+  const uint32_t *v = f->target;
   double above, below, s[3];
 
-  if (f->n_aim != 3 || p == v[0] || p == v[1] || p == v[2] || q == v[0] ||
+  if (f->n_target != 3 || p == v[0] || p == v[1] || p == v[2] || q == v[0] ||
       q == v[1] || q == v[2])
     return 0;
   above = side(t, v[0], v[1], v[2], p);

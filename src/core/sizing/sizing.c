@@ -122,15 +122,15 @@ static vg_status build(const struct vg_sizing_options *o,
 static vg_status make_near(const struct vg_sizing_options *o,
                            const struct vg_mesh *surface,
                            const struct vg_samples *all, int below,
-                           struct vg_near **out, struct vg_error *err)
+                           struct vg_bvh **out, struct vg_error *err)
 {
   struct vg_samples s = VG_SAMPLES_INIT;
   vg_status st;
 
   VG_TRY(vg_samples_thin(surface, all, o->growth - 1, below, o->threads, &s,
                          err));
-  st = vg_near_new(s.n, (const double (*)[3])s.p, s.h, o->growth - 1,
-                   o->threads, out, err);
+  st = vg_bvh_new(s.n, (const double (*)[3])s.p, s.h, o->growth - 1,
+                  o->threads, out, err);
 done:
   vg_samples_release(&s);
   return st;
@@ -145,7 +145,7 @@ vg_status vg_sizing_new(const struct vg_sizing_options *options, size_t n,
   atomic_int is_steep = 0;
   struct vg_field f = { .set = VG_SOURCE_SET_INIT, .is_steep = &is_steep };
   struct vg_samples samples = VG_SAMPLES_INIT;
-  struct vg_near *near = NULL, *under = NULL;
+  struct vg_bvh *near = NULL, *under = NULL;
   struct vg_sizing *s = NULL;
 
   VG_TRY(check_options(options, err));
@@ -167,14 +167,14 @@ vg_status vg_sizing_new(const struct vg_sizing_options *options, size_t n,
   f.under = under;
   VG_TRY(build(options, surface, &f, &samples, s, err));
   find_range(s);
-  s->slope = is_steep ? vg_near_steep(s->growth) : s->growth;
+  s->slope = is_steep ? vg_bvh_steep(s->growth) : s->growth;
   *out = s;
   s = NULL;
 done:
   vg_source_release(&f.set);
   vg_samples_release(&samples);
-  vg_near_free(near);
-  vg_near_free(under);
+  vg_bvh_free(near);
+  vg_bvh_free(under);
   vg_sizing_free(s);
   return st;
 }
@@ -182,7 +182,7 @@ done:
 void vg_sizing_free(struct vg_sizing *s)
 {
   if (!s) return;
-  if (s->common.data) vg_common_release(&s->common);
+  if (s->common.data) vg_shmem_release(&s->common);
   else vg_octree_release(&s->octree);
   free(s);
 }
@@ -237,8 +237,8 @@ double vg_sizing_growth(const struct vg_sizing *s)
 double vg_sizing_below(double growth, double h, double d)
 {
   double slope = growth - 1;
-  double even = h * (1 + vg_near_offset(slope)) - slope * d;
-  double steep = h * vg_near_rise(slope) - vg_near_steep(slope) * d;
+  double even = h * (1 + vg_bvh_offset(slope)) - slope * d;
+  double steep = h * vg_bvh_rise(slope) - vg_bvh_steep(slope) * d;
   double v = fmin(h, fmin(even, steep));
 
   return v > 0 ? v : 0;
@@ -247,8 +247,8 @@ double vg_sizing_below(double growth, double h, double d)
 double vg_sizing_below_edge(double growth, double h, double d)
 {
   double slope = growth - 1;
-  double even = (h + slope * d) / (1 + vg_near_offset(slope));
-  double steep = (h + vg_near_steep(slope) * d) / vg_near_rise(slope);
+  double even = (h + slope * d) / (1 + vg_bvh_offset(slope));
+  double steep = (h + vg_bvh_steep(slope) * d) / vg_bvh_rise(slope);
 
   return fmax(h, fmax(even, steep));
 }

@@ -98,7 +98,7 @@ void vg_sizing_show(const struct vg_sizing *s,
                     void *user);
 
 /** Bytes of it that the ranks of a node have in common. */
-size_t vg_sizing_common(const struct vg_sizing *s);
+size_t vg_sizing_shmem(const struct vg_sizing *s);
 
 /** Target edge length at x, > 0. Outside the root cube: that of the nearest
  * point of it, grown with the distance, up to h_max if one is given, or the

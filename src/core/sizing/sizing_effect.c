@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "core/sizing/sizing_places.h"
+#include "core/sizing/sizing_probes.h"
 
 #define NEARBY 3        /* spacings around a source that has no place */
 #define MANY 200        /* more sources are looked at in less detail */
@@ -16,7 +16,7 @@ struct finder {
   const struct vg_mesh *front;
   const struct vg_sizing *sizing;
   struct vg_effects *out;
-  size_t cap, cap_lost, cap_place;
+  size_t cap, cap_outside, cap_place;
 };
 
 /* Faces that hold a source back. */
@@ -28,7 +28,7 @@ struct holders {
 void vg_effects_release(struct vg_effects *h)
 {
   free(h->item);
-  free(h->lost);
+  free(h->outside);
   free(h->place);
   free(h->unmet);
   memset(h, 0, sizeof *h);
@@ -123,8 +123,8 @@ static void find_remedy(const struct finder *f, struct vg_limited_source *h,
     }
 }
 
-static vg_status blame(const struct finder *f, struct vg_limited_source *h,
-                       struct vg_error *err)
+static vg_status find_cause(const struct finder *f, struct vg_limited_source *h,
+                            struct vg_error *err)
 {
   struct holders all = { 0 };
   vg_status st = VG_OK;
@@ -178,14 +178,14 @@ static int keep_place(struct finder *f, size_t i, const double x[3],
 
 /* Ask source i at its places from .. to that are in the void. is_wide: they
  * are around it. */
-static vg_status ask(struct finder *f, size_t i, const struct vg_places *p,
+static vg_status ask(struct finder *f, size_t i, const struct vg_probes *p,
                      size_t from, size_t to, int is_wide, struct vg_error *err)
 {
   struct vg_limited_source best = { .source = i }, worst = best, *h = &best;
   double least = INFINITY, most = 0;
 
   for (size_t j = from; j < to; j++) {
-    const struct vg_place *q = p->item + j;
+    const struct vg_probe *q = p->item + j;
     double asked, got;
 
     if (q->crossings >= 0) continue;
@@ -205,21 +205,21 @@ static vg_status ask(struct finder *f, size_t i, const struct vg_places *p,
   worst.n_place = best.n_place;
   worst.n_limited = best.n_limited;
   if (best.n_limited < best.n_place) h = &worst;
-  if (blame(f, h, err) < 0) return VG_ERR_MEMORY;
+  if (find_cause(f, h, err) < 0) return VG_ERR_MEMORY;
   if (vg_reserve(&f->out->item, &f->cap, f->out->n + 1, sizeof *h))
     return vg_fail_memory(err, "the sources");
   f->out->item[f->out->n++] = *h;
   return VG_OK;
 }
 
-static int any_inside(const struct vg_places *p, size_t from, size_t to)
+static int any_inside(const struct vg_probes *p, size_t from, size_t to)
 {
   for (size_t j = from; j < to; j++)
     if (p->item[j].crossings < 0) return 1;
   return 0;
 }
 
-static size_t end_of(const struct vg_places *p, size_t from)
+static size_t end_of(const struct vg_probes *p, size_t from)
 {
   size_t to = from;
 
@@ -227,7 +227,7 @@ static size_t end_of(const struct vg_places *p, size_t from)
   return to;
 }
 
-static vg_status ask_all(struct finder *f, const struct vg_places *p,
+static vg_status ask_all(struct finder *f, const struct vg_probes *p,
                          uint8_t *is_met, int is_wide, struct vg_error *err)
 {
   vg_status st = VG_OK;
@@ -244,8 +244,8 @@ static vg_status ask_all(struct finder *f, const struct vg_places *p,
 }
 
 /* Sources without a place in the void: places around them. */
-static void look_around(const struct finder *f, const struct vg_places *p,
-                        const uint8_t *is_met, struct vg_places *wide)
+static void look_around(const struct finder *f, const struct vg_probes *p,
+                        const uint8_t *is_met, struct vg_probes *wide)
 {
   for (size_t j = 0, end; j < p->n; j = end) {
     const struct vg_source *s = f->source + p->item[j].source;
@@ -254,14 +254,14 @@ static void look_around(const struct finder *f, const struct vg_places *p,
 
     end = end_of(p, j);
     if (is_met[p->item[j].source]) continue;
-    vg_places_shape(wide, s, p->item[j].source, 0);
+    vg_probes_shape(wide, s, p->item[j].source, 0);
     to = wide->n;
-    vg_places_around(wide, from, to, h);
-    vg_places_around(wide, from, to, NEARBY * h);
+    vg_probes_around(wide, from, to, h);
+    vg_probes_around(wide, from, to, NEARBY * h);
   }
 }
 
-static int is_beyond(const struct vg_places *p, size_t from, size_t to,
+static int is_beyond(const struct vg_probes *p, size_t from, size_t to,
                      const double lo[3], const double hi[3])
 {
   for (size_t j = from; j < to; j++) {
@@ -275,9 +275,9 @@ static int is_beyond(const struct vg_places *p, size_t from, size_t to,
 }
 
 /* What has no place in the fluid either, layers included. */
-static vg_status list_lost(struct finder *f, const struct vg_places *p,
-                           const struct vg_mesh *surface,
-                           const uint8_t *is_met, struct vg_error *err)
+static vg_status list_outside(struct finder *f, const struct vg_probes *p,
+                              const struct vg_mesh *surface,
+                              const uint8_t *is_met, struct vg_error *err)
 {
   double lo[3], hi[3];
 
@@ -287,11 +287,11 @@ static vg_status list_lost(struct finder *f, const struct vg_places *p,
 
     end = end_of(p, j);
     if (is_met[i] || any_inside(p, j, end)) continue;
-    if (vg_reserve(&f->out->lost, &f->cap_lost, f->out->n_lost + 1,
-                   sizeof *f->out->lost))
+    if (vg_reserve(&f->out->outside, &f->cap_outside, f->out->n_outside + 1,
+                   sizeof *f->out->outside))
       return vg_fail_memory(err, "the sources");
-    f->out->lost[f->out->n_lost++] =
-      (struct vg_lost_source){ i, is_beyond(p, j, end, lo, hi) };
+    f->out->outside[f->out->n_outside++] =
+      (struct vg_outside_source){ i, is_beyond(p, j, end, lo, hi) };
   }
   return VG_OK;
 }
@@ -303,13 +303,13 @@ static int by_source(const void *a, const void *b)
   return h->source < g->source ? -1 : h->source > g->source;
 }
 
-static vg_status find(struct finder *f, struct vg_places *p,
-                      struct vg_places *wide, uint8_t *is_met,
+static vg_status find(struct finder *f, struct vg_probes *p,
+                      struct vg_probes *wide, uint8_t *is_met,
                       const struct vg_mesh *surface, struct vg_error *err)
 {
   vg_status st;
 
-  VG_TRY(vg_places_cross(p, f->front, err));
+  VG_TRY(vg_probes_cross(p, f->front, err));
   VG_TRY(ask_all(f, p, is_met, 0, err));
   look_around(f, p, is_met, wide);
   if (wide->refused) {
@@ -317,10 +317,10 @@ static vg_status find(struct finder *f, struct vg_places *p,
     goto done;
   }
   if (!wide->n) goto done;
-  VG_TRY(vg_places_cross(wide, f->front, err));
+  VG_TRY(vg_probes_cross(wide, f->front, err));
   VG_TRY(ask_all(f, wide, is_met, 1, err));
-  if (surface != f->front) VG_TRY(vg_places_cross(wide, surface, err));
-  VG_TRY(list_lost(f, wide, surface, is_met, err));
+  if (surface != f->front) VG_TRY(vg_probes_cross(wide, surface, err));
+  VG_TRY(list_outside(f, wide, surface, is_met, err));
   if (f->out->n)
     qsort(f->out->item, f->out->n, sizeof *f->out->item, by_source);
 done:
@@ -335,7 +335,7 @@ vg_status vg_effects_find(const struct vg_sizing_options *options, size_t n,
                           struct vg_effects *out,
                           struct vg_error *err)
 {
-  struct vg_places p = VG_PLACES_INIT, wide = VG_PLACES_INIT;
+  struct vg_probes p = VG_PROBES_INIT, wide = VG_PROBES_INIT;
   struct vg_effects found = VG_EFFECTS_INIT;
   struct finder f = { .options = options, .source = source, .front = front,
                       .sizing = sizing, .out = &found };
@@ -345,13 +345,13 @@ vg_status vg_effects_find(const struct vg_sizing_options *options, size_t n,
   if (!n || !front->n_tri) return VG_OK;
   is_met = vg_calloc(n, 1);
   for (size_t i = 0; i < n; i++)
-    vg_places_shape(&p, source + i, (uint32_t)i, n <= MANY);
+    vg_probes_shape(&p, source + i, (uint32_t)i, n <= MANY);
   if (!is_met || p.refused)
     st = vg_fail_memory(err, "the places of sources");
   else
     st = find(&f, &p, &wide, is_met, surface, err);
-  vg_places_release(&p);
-  vg_places_release(&wide);
+  vg_probes_release(&p);
+  vg_probes_release(&wide);
   free(is_met);
   if (st >= 0) *out = found;
   else vg_effects_release(&found);

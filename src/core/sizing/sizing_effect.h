@@ -35,7 +35,7 @@ struct vg_limited_source {
 };
 
 /** A source without any place in the fluid, nor one three spacings away. */
-struct vg_lost_source {
+struct vg_outside_source {
   size_t source;
   int is_beyond;         /* outside the box of the surface */
 };
@@ -54,16 +54,16 @@ struct vg_unmet_source {
 };
 
 struct vg_effects {
-  size_t n, n_lost, n_place, n_unmet;
+  size_t n, n_outside, n_place, n_unmet;
   struct vg_limited_source *item;  /* [n], in the order of the sources */
-  struct vg_lost_source *lost;  /* [n_lost], likewise */
+  struct vg_outside_source *outside;  /* [n_outside], likewise */
   struct vg_steep_place *place;  /* [n_place], likewise; where sizes may change
                                    by more than VG_MET_STEEP over a length */
   struct vg_unmet_source *unmet; /* [n_unmet], likewise */
 };
 #define VG_EFFECTS_INIT { 0 }
 
-/** Find the sources that are held back, and those that are lost.
+/** Find the sources that are held back, and those that are outside.
  *
  * @param options, n, source  as the field was made from
  * @param front    closed triangles, faces into the void that `sizing` is for
@@ -82,7 +82,7 @@ vg_status vg_effects_find(const struct vg_sizing_options *options, size_t n,
 
 /** Find what a mesh does not meet. Collective; h: of rank 0, as found before
  * the mesh was made; elsewhere empty, and filled likewise, but for item and
- * lost. Cost: of steep fields alone, some places times the points of slices
+ * outside. Cost: of steep fields alone, some places times the points of slices
  * around them. The same for any number of ranks. VG_ERR_MEMORY. */
 vg_status vg_effects_in_mesh(struct vg_comm *c, const struct vg_slices *s,
                              int threads, struct vg_effects *h,

@@ -8,7 +8,7 @@
 #include "core/sizing/sizing_effect.h"
 
 struct meeting {
-  const struct vg_effects *held;
+  const struct vg_effects *effects;
   atomic_uchar *is_met;      /* [n_place] */
 };
 
@@ -39,8 +39,8 @@ static vg_status meet_slice(void *context, const struct vg_slice *s,
   (void)err;
   if (!s->n_point) return VG_OK;
   box_of(s, lo, hi);
-  for (size_t i = 0; i < m->held->n_place; i++) {
-    const struct vg_steep_place *p = m->held->place + i;
+  for (size_t i = 0; i < m->effects->n_place; i++) {
+    const struct vg_steep_place *p = m->effects->place + i;
     double far = VG_MET_WITHIN * p->got;
     int may = !atomic_load_explicit(m->is_met + i, memory_order_relaxed);
 
@@ -77,7 +77,7 @@ vg_status vg_effects_in_mesh(struct vg_comm *c, const struct vg_slices *s,
                              struct vg_error *err)
 {
   struct vg_bytes b = { h->n_place * sizeof *h->place, (void *)h->place };
-  struct meeting m = { .held = h };
+  struct meeting m = { .effects = h };
   uint64_t *met = NULL;
   vg_status st;
 

@@ -10,28 +10,28 @@ double vg_field_clamp(const struct vg_field *f, double h)
 /* Where the upper bound is below the sources it holds, and the lower one,
  * which costs most, need not be known. */
 double vg_field_combine(const struct vg_field *f, const double x[3],
-                        double source, struct vg_near_reach *reach,
+                        double source, struct vg_bvh_reach *reach,
                         uint32_t *hint)
 {
   double h = source < f->h_max ? source : f->h_max, most, by;
 
   if (!f->near) return vg_field_clamp(f, h);
-  most = vg_near_above(f->near, x, x, f->h_max, hint);
+  most = vg_bvh_above(f->near, x, x, f->h_max, hint);
   if (most <= h) return vg_field_clamp(f, most);
-  h = vg_near_below(f->under, x, h, most, reach, &by);
-  if (h < most && h < vg_near_knee(f->under, by))
+  h = vg_bvh_below(f->under, x, h, most, reach, &by);
+  if (h < most && h < vg_bvh_knee(f->under, by))
     atomic_store_explicit(f->is_steep, 1, memory_order_relaxed);
   return vg_field_clamp(f, h < most ? h : most);
 }
 
 double vg_field_at(const struct vg_field *f, const double x[3],
-                   struct vg_near_reach *reach, uint32_t *hint)
+                   struct vg_bvh_reach *reach, uint32_t *hint)
 {
   return vg_field_combine(f, x, vg_source_at(&f->set, x), reach, hint);
 }
 
 double vg_field_floor(const struct vg_field *f, const double lo[3],
-                      double side, struct vg_near_reach *reach,
+                      double side, struct vg_bvh_reach *reach,
                       uint32_t *hint)
 {
   const double far = 0.8660254037844387 * side;
@@ -49,10 +49,10 @@ double vg_field_floor(const struct vg_field *f, const double lo[3],
   }
   if (!(h < f->h_max)) h = f->h_max;
   if (!f->near) return vg_field_clamp(f, h);
-  most = vg_near_above(f->near, lo, hi, f->h_max, hint);
+  most = vg_bvh_above(f->near, lo, hi, f->h_max, hint);
   if (most <= h) return vg_field_clamp(f, most);
-  below = vg_near_below(f->under, mid, h + fall, most + fall, reach, &by);
-  more = vg_near_falls(f->under, by, below, far);
+  below = vg_bvh_below(f->under, mid, h + fall, most + fall, reach, &by);
+  more = vg_bvh_falls(f->under, by, below, far);
   below -= fall;
   if (more > 0 && below - more > h) h = below - more;
   else if (!(more > 0)) h = below;

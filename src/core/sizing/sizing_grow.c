@@ -63,7 +63,7 @@ static void coordinates(int i, int at[3])
 
 struct family {
   const struct level *l;
-  struct vg_near_reach reach;
+  struct vg_bvh_reach reach;
   float face[125];      /* field at the centres of their faces; NAN */
 };
 

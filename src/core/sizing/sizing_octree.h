@@ -5,20 +5,20 @@
 
 #include <stdatomic.h>
 
-#include "core/sizing/sizing_near.h"
+#include "core/sizing/sizing_bvh.h"
 #include "core/sizing/sizing_source.h"
 
 /** What is cached: min(above, max(below, sources)), then clamped; above and
- * below are the growth of the surface (sizing_near.h). So the field equals
+ * below are the growth of the surface (sizing_bvh.h). So the field equals
  * the local size on the surface, and departs from it at the growth rate; down
  * to sources that are much finer than faces nearby, faster in the end. */
 struct vg_field {
-  const struct vg_near *near;  /* from above; NULL: no surface */
-  const struct vg_near *under; /* from below; NULL: nor any source */
+  const struct vg_bvh *near;  /* from above; NULL: no surface */
+  const struct vg_bvh *under; /* from below; NULL: nor any source */
   struct vg_source_set set;
   double slope;                /* growth - 1 */
   atomic_int *is_steep;        /* out: faces hold sources back beyond the knee
-                                  somewhere (sizing_near.h) */
+                                  somewhere (sizing_bvh.h) */
   double h_min, h_max;         /* clamp, 0 and INFINITY for none */
 };
 
@@ -38,19 +38,19 @@ struct vg_octree {
 double vg_field_clamp(const struct vg_field *f, double h);
 
 /** Value of the field at x before its gradient is limited. reach, hint: for
- * the searches (sizing_near.h), without influence. */
+ * the searches (sizing_bvh.h), without influence. */
 double vg_field_at(const struct vg_field *f, const double x[3],
-                   struct vg_near_reach *reach, uint32_t *hint);
+                   struct vg_bvh_reach *reach, uint32_t *hint);
 
 /** The surface's bounds applied to the sources' size at x. */
 double vg_field_combine(const struct vg_field *f, const double x[3],
-                        double source, struct vg_near_reach *reach,
+                        double source, struct vg_bvh_reach *reach,
                         uint32_t *hint);
 
 /** Lower bound of the field within a cube; of VGRID's mean an estimate from
  * the centre, which is good in a cube that resolves its sources. */
 double vg_field_floor(const struct vg_field *f, const double lo[3],
-                      double side, struct vg_near_reach *reach,
+                      double side, struct vg_bvh_reach *reach,
                       uint32_t *hint);
 
 /** Build over the cube lo, side with about max_leaf leaves at most. *out is

@@ -11,7 +11,7 @@ struct vg_sizing {
   double growth, cap;      /* of sizes outside the octree; growth: rate - 1 */
   double slope;            /* bound on the gradient in it */
   double least, most;      /* over the octree */
-  struct vg_common common; /* where the octree's arrays are, if anywhere */
+  struct vg_shmem common; /* where the octree's arrays are, if anywhere */
 };
 
 #endif

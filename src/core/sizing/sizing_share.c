@@ -38,7 +38,7 @@ void vg_sizing_show(const struct vg_sizing *s,
 }
 
 /* Takes over what is common. NULL: no memory. */
-static struct vg_sizing *view(const struct vg_common *common)
+static struct vg_sizing *view(const struct vg_shmem *common)
 {
   struct vg_sizing *s = vg_alloc(1, sizeof *s);
   unsigned char *at = (unsigned char *)(uintptr_t)common->data;
@@ -48,11 +48,11 @@ static struct vg_sizing *view(const struct vg_common *common)
   memcpy(s, at, sizeof *s);
   s->common = *common;
   list_parts(s, p);
-  at += vg_common_padded(p[0].n);
+  at += vg_shmem_padded(p[0].n);
   s->octree.child = (void *)at;
-  at += vg_common_padded(p[1].n);
+  at += vg_shmem_padded(p[1].n);
   s->octree.least = (void *)at;
-  at += vg_common_padded(p[2].n);
+  at += vg_shmem_padded(p[2].n);
   s->octree.leaf = (void *)at;
   return s;
 }
@@ -61,17 +61,17 @@ vg_status vg_sizing_share(struct vg_comm *c, struct vg_sizing **s,
                           struct vg_error *err)
 {
   struct vg_bytes p[PARTS];
-  struct vg_common common;
+  struct vg_shmem common;
   struct vg_sizing *got;
   vg_status st;
 
   if (vg_comm_node_size(c) == 1) return VG_OK;
   if (!vg_comm_node_rank(c)) list_parts(*s, p);
-  st = vg_comm_node_common(c, PARTS, p, &common, err);
+  st = vg_comm_node_shmem(c, PARTS, p, &common, err);
   if (st < 0) return st;
   got = view(&common);
   if (!got) {
-    vg_common_release(&common);
+    vg_shmem_release(&common);
     return vg_fail_memory(err, "the field of sizes");
   }
   vg_sizing_free(*s);
@@ -79,7 +79,7 @@ vg_status vg_sizing_share(struct vg_comm *c, struct vg_sizing **s,
   return VG_OK;
 }
 
-size_t vg_sizing_common(const struct vg_sizing *s)
+size_t vg_sizing_shmem(const struct vg_sizing *s)
 {
   return s->common.is_mapped ? s->common.n : 0;
 }

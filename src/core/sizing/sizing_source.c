@@ -226,7 +226,8 @@ static double triangle_distance(const struct vg_source *s, const double x[3])
     inside = vg_dot(m, u) >= 0;
   }
   vg_sub(x, s->p0, u);
-  if (inside && vg_dot(n, n) > 0) return fabs(vg_dot(u, n)) / sqrt(vg_dot(n, n));
+  if (inside && vg_dot(n, n) > 0) return fabs(vg_dot(u, n)) / sqrt(vg_dot(n,
+                                                                          n));
   d = segment_distance(p[0], p[1], x, &t);
   d = least(d, segment_distance(p[1], p[2], x, &t));
   return least(d, segment_distance(p[2], p[0], x, &t));

@@ -8,7 +8,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "core/geometry/vector.h"
-#include "core/sizing/sizing_near.h"
+#include "core/sizing/sizing_bvh.h"
 
 #define GRAIN 4096      /* points or faces for a thread at a time */
 
@@ -222,14 +222,14 @@ vg_status vg_samples_thin(const struct vg_mesh *m,
                           int below, int threads, struct vg_samples *out,
                           struct vg_error *err)
 {
-  double offset = vg_near_offset(slope);
+  double offset = vg_bvh_offset(slope);
   struct thinning t = { m, all, vg_calloc(all->n, sizeof *t.idle), slope,
                         1 - offset, slope, 1 - offset };
 
   if (below) {
     t.keep = 1 + offset;
-    t.steep = vg_near_steep(slope);
-    t.rise = vg_near_rise(slope);
+    t.steep = vg_bvh_steep(slope);
+    t.rise = vg_bvh_rise(slope);
   }
   out->n = 0;
   out->p = vg_alloc(all->n_sized, sizeof *out->p);

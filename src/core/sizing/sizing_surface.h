@@ -30,7 +30,7 @@ vg_status vg_samples_check(const struct vg_mesh *m, struct vg_error *err);
 vg_status vg_samples_make(const struct vg_mesh *m, int threads,
                           struct vg_samples *out, struct vg_error *err);
 
-/** Those of all samples of a surface that the growth (sizing_near.h) by slope
+/** Those of all samples of a surface that the growth (sizing_bvh.h) by slope
  * from above, or from below, can depend on: one whose size differs from a
  * neighbour's by more than the growth between them is never felt. */
 vg_status vg_samples_thin(const struct vg_mesh *m,

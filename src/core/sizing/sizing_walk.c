@@ -1,4 +1,4 @@
-/* Searches in the hierarchy of samples (core/sizing/sizing_near_parts.h). Four
+/* Searches in the hierarchy of samples (core/sizing/sizing_bvh_parts.h). Four
  * lanes at once, in the vectors of gcc and clang; sqrt and masks alone need
  * help. Every operation rounds as its scalar form does, so machines agree.
  * Wider vectors do not pay: what takes time is to know which child comes next.
@@ -10,17 +10,17 @@
 #include <emmintrin.h>
 #endif
 
-#include "core/sizing/sizing_near_parts.h"
+#include "core/sizing/sizing_bvh_parts.h"
 
-#define LANES VG_NEAR_LANES
-#define SHY (2 * VG_NEAR_SHY)
+#define LANES VG_BVH_LANES
+#define SHY (2 * VG_BVH_MARGIN)
 
 typedef float lanes __attribute__((vector_size(16)));
 typedef int32_t masks __attribute__((vector_size(16)));
 
 struct search {
-  const struct vg_near *t;
-  const struct vg_near_tree *tree;
+  const struct vg_bvh *t;
+  const struct vg_bvh_tree *tree;
   double mid[3];
   float half[3], best, enough, by;
   uint32_t hint;
@@ -99,14 +99,14 @@ static inline lanes distances(const float x[3], const float reach[3],
 }
 
 /* What sizes h become at distance d, from above and from below. */
-static inline lanes grown(const struct vg_near *t, lanes h, lanes d)
+static inline lanes grown(const struct vg_bvh *t, lanes h, lanes d)
 {
   lanes v = h * (1 - t->offset) + t->slope * d;
 
   return lanes_choose((masks)(v > h), v, h);
 }
 
-static inline lanes fallen(const struct vg_near *t, lanes h, lanes d)
+static inline lanes fallen(const struct vg_bvh *t, lanes h, lanes d)
 {
   lanes v = lanes_min(h * (1 + t->offset) - t->slope * d,
                       h * t->rise - t->steep * d);
@@ -120,7 +120,7 @@ static inline void relative(const struct search *q, const double origin[3],
   for (int k = 0; k < 3; k++) x[k] = (float)(q->mid[k] - origin[k]);
 }
 
-static void visit_above(struct search *q, const struct vg_near_block *b)
+static void visit_above(struct search *q, const struct vg_bvh_block *b)
 {
   lanes v[2];
   float x[3], least;
@@ -141,7 +141,7 @@ static void visit_above(struct search *q, const struct vg_near_block *b)
  * is the best of all samples, wherever a search began; the last bits of each
  * are the number of the child. */
 static inline void bounds_above(const struct search *q,
-                                const struct vg_near_group *g, lanes bound[2])
+                                const struct vg_bvh_group *g, lanes bound[2])
 {
   static const masks child[2] = { { 0, 1, 2, 3 }, { 4, 5, 6, 7 } };
   float x[3];
@@ -187,7 +187,7 @@ static void descend_above(struct search *q, int level, size_t at)
 
 static void above_all(struct search *q)
 {
-  const struct vg_near *t = q->t;
+  const struct vg_bvh *t = q->t;
 
   for (int c = 0; c < t->n_tree; c++) {
     q->tree = t->tree + c;
@@ -204,11 +204,11 @@ static void set_box(struct search *q, const double lo[3], const double hi[3])
   }
 }
 
-double vg_near_above(const struct vg_near *t, const double lo[3],
-                     const double hi[3], double below, uint32_t *hint)
+double vg_bvh_above(const struct vg_bvh *t, const double lo[3],
+                    const double hi[3], double below, uint32_t *hint)
 {
-  const float start = below < 0.1 * (double)VG_NEAR_NEVER
-                    ? (float)below : 0.1f * VG_NEAR_NEVER;
+  const float start = below < 0.1 * (double)VG_BVH_NEVER
+                    ? (float)below : 0.1f * VG_BVH_NEVER;
   struct search q = { .t = t, .best = start, .hint = *hint };
 
   set_box(&q, lo, hi);
@@ -220,7 +220,7 @@ double vg_near_above(const struct vg_near *t, const double lo[3],
 
 /* From below. */
 
-static void visit_below(struct search *q, const struct vg_near_block *b)
+static void visit_below(struct search *q, const struct vg_bvh_block *b)
 {
   float x[3], v[LANES];
 
@@ -242,7 +242,7 @@ static void visit_below(struct search *q, const struct vg_near_block *b)
 static void descend_below(struct search *q, int level, size_t at)
 {
   static const masks child[2] = { { 0, 1, 2, 3 }, { 4, 5, 6, 7 } };
-  const struct vg_near_group *g = q->tree->group[level] + at;
+  const struct vg_bvh_group *g = q->tree->group[level] + at;
   const lanes none = INFINITY - (lanes){ 0 };
   lanes bound[2];
   float x[3];
@@ -265,7 +265,7 @@ static void descend_below(struct search *q, int level, size_t at)
   }
 }
 
-static void know_reach(const struct vg_near *t, struct vg_near_reach *r)
+static void know_reach(const struct vg_bvh *t, struct vg_bvh_reach *r)
 {
   for (int c = 0; c < t->n_tree; c++) {
     struct search q = { .t = t, .tree = t->tree + c, .best = r->trifle,
@@ -278,9 +278,9 @@ static void know_reach(const struct vg_near *t, struct vg_near_reach *r)
   r->is_known = 1;
 }
 
-double vg_near_below(const struct vg_near *t, const double x[3],
-                     double above, double enough,
-                     struct vg_near_reach *reach, double *by)
+double vg_bvh_below(const struct vg_bvh *t, const double x[3],
+                    double above, double enough,
+                    struct vg_bvh_reach *reach, double *by)
 {
   struct search q = { .t = t, .best = (float)above, .enough = (float)enough,
                       .mid = { x[0], x[1], x[2] } };
@@ -304,15 +304,15 @@ double vg_near_below(const struct vg_near *t, const double x[3],
   return (double)q.best;
 }
 
-double vg_near_knee(const struct vg_near *t, double by)
+double vg_bvh_knee(const struct vg_bvh *t, double by)
 {
-  return by * (1 + (double)t->offset - VG_NEAR_KNEE * (double)t->slope);
+  return by * (1 + (double)t->offset - VG_BVH_KNEE * (double)t->slope);
 }
 
-double vg_near_falls(const struct vg_near *t, double by, double v, double far)
+double vg_bvh_falls(const struct vg_bvh *t, double by, double v, double far)
 {
   double slope = (double)t->slope, more = (double)t->steep - slope;
-  double over = v - vg_near_knee(t, by);
+  double over = v - vg_bvh_knee(t, by);
 
   if (over > 0) far -= over / slope;
   return by > 0 && far > 0 ? more * far : 0;

@@ -10,7 +10,8 @@
 
 /** How a closed surface lies in its convex hull. The outer part is the
  * largest edge-connected piece of it on the hull; what is off the hull falls
- * into pockets, each closed by a lid: the surface that its rim would span. */
+ * into pockets, each closed by a lid: the surface that its border would span.
+ * */
 struct vg_envelope {
   size_t n_outer;        /* triangles of the outer part */
   size_t n_pocket_tri;   /* triangles of the deepest pocket */

@@ -19,7 +19,7 @@ struct check {
   uint32_t *owner;          /* [n_point] lowest face, UINT32_MAX: none */
   struct vg_faces s;
   struct vg_edges e;
-  struct vg_tree tree;
+  struct vg_aabb_tree tree;
   struct vg_crossing cross;
   uint32_t *first;          /* [s.n] lowest face with the same nodes */
   uint32_t (*fan)[3];       /* [s.n] */
@@ -40,7 +40,7 @@ static void release(struct check *c)
   free(c->shell_turn);
   vg_faces_release(&c->s);
   vg_edges_release(&c->e);
-  vg_tree_release(&c->tree);
+  vg_aabb_tree_release(&c->tree);
   vg_crossing_release(&c->cross);
 }
 
@@ -384,7 +384,7 @@ static vg_status build_topology(struct check *c, struct vg_error *err)
   VG_TRY(vg_orient_faces(&c->s, &c->e, c->flip, err));
   VG_TRY(vg_label_fans(&c->s, &c->e, c->flip, &c->fan, err));
   if (!c->o->repair) memset(c->flip, 0, c->s.n);
-  VG_TRY(vg_count_pieces(&c->s, &r->n_piece, err));
+  VG_TRY(vg_count_components(&c->s, &r->n_piece, err));
   VG_TRY(vg_label_shells(&c->s, &c->e, c->shell, &r->n_shell, err));
   for (size_t t = 0; t < c->m->n_tri; t++) r->tri_shell[t] = c->shell[t];
   VG_TRY(vg_faces_duplicate(&c->s, &c->first, err));
@@ -407,7 +407,8 @@ static void build_half(void *context, size_t first, size_t end, int worker)
 
   (void)worker;
   for (size_t i = first; i < end; i++)
-    h->st[i] = i ? vg_tree_build(&c->tree, &c->s, c->o->threads, &h->err[i])
+    h->st[i] = i ? vg_aabb_tree_build(&c->tree, &c->s, c->o->threads,
+                                      &h->err[i])
                  : build_topology(c, &h->err[i]);
 }
 
@@ -462,9 +463,9 @@ static vg_status build_shells(struct check *c)
                            c->err));
   VG_TRY(vg_nest_shells(r->shell, r->n_shell, &c->s, &c->tree, c->shell,
                         c->err));
-  VG_TRY(vg_side_shells(r->shell, c->shell_state, r->n_shell, c->o->external,
-                        c->o->repair, c->cross.other_shell, c->shell_turn,
-                        c->err));
+  VG_TRY(vg_orient_shells(r->shell, c->shell_state, r->n_shell, c->o->external,
+                          c->o->repair, c->cross.other_shell, c->shell_turn,
+                          c->err));
   for (size_t f = 0; f < c->s.n; f++)
     if (c->shell[f] != UINT32_MAX) c->flip[f] ^= c->shell_turn[c->shell[f]];
   for (size_t i = 0; i < r->n_shell; i++) {

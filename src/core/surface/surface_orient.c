@@ -113,8 +113,8 @@ vg_status vg_label_fans(const struct vg_faces *s, const struct vg_edges *e,
   return VG_OK;
 }
 
-vg_status vg_count_pieces(const struct vg_faces *s, size_t *n_piece,
-                          struct vg_error *err)
+vg_status vg_count_components(const struct vg_faces *s, size_t *n_piece,
+                              struct vg_error *err)
 {
   uint32_t *up = each_alone(s->n_point);
   uint8_t *used = vg_calloc(s->n_point, 1);

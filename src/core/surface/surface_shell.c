@@ -207,7 +207,7 @@ static void find_feet(struct nest *x, size_t n_shell, const struct vg_faces *s,
 }
 
 static vg_status find_around(struct nest *x, struct ray *r, size_t n_shell,
-                             const struct vg_tree *t)
+                             const struct vg_aabb_tree *t)
 {
   for (uint32_t i = 0; i < n_shell; i++) {
     x->start[i] = x->n;
@@ -215,7 +215,7 @@ static vg_status find_around(struct nest *x, struct ray *r, size_t n_shell,
     r->own = i;
     r->from = r->s->point[x->foot[i]];
     r->n = 0;
-    if (vg_tree_ray(t, r->from, note_hit, r) < 0) return VG_ERR_MEMORY;
+    if (vg_aabb_tree_ray(t, r->from, note_hit, r) < 0) return VG_ERR_MEMORY;
     r->n = keep_odd(r->hit, r->n);
     if (vg_reserve(&x->list, &x->cap, x->n + r->n, sizeof *x->list))
       return VG_ERR_MEMORY;
@@ -226,7 +226,7 @@ static vg_status find_around(struct nest *x, struct ray *r, size_t n_shell,
 }
 
 vg_status vg_nest_shells(struct vg_shell *shell, size_t n_shell,
-                         const struct vg_faces *s, const struct vg_tree *t,
+                         const struct vg_faces *s, const struct vg_aabb_tree *t,
                          const uint32_t *of_face, struct vg_error *err)
 {
   struct nest x = { NULL, NULL, NULL, 0, 0 };
@@ -336,10 +336,10 @@ static void settle(struct sides *x, const struct vg_shell *shell,
   }
 }
 
-vg_status vg_side_shells(struct vg_shell *shell, uint8_t *state,
-                         size_t n_shell, int external, int repair,
-                         const uint8_t *crossed, uint8_t *turn,
-                         struct vg_error *err)
+vg_status vg_orient_shells(struct vg_shell *shell, uint8_t *state,
+                           size_t n_shell, int external, int repair,
+                           const uint8_t *crossed, uint8_t *turn,
+                           struct vg_error *err)
 {
   struct sides x = { NULL, 0, NULL, NULL, NULL };
   size_t *at = vg_alloc(n_shell + 1, sizeof *at);

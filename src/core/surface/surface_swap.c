@@ -23,7 +23,7 @@ struct job {
   uint8_t *flip;            /* [n_tri] zeros */
   struct vg_faces s;
   struct vg_edges e;
-  struct vg_tree tree;
+  struct vg_aabb_tree tree;
   uint32_t (*fan)[3];
   size_t n_locked;          /* points locked in this round */
 };
@@ -32,7 +32,7 @@ static void release_topology(struct job *j)
 {
   vg_faces_release(&j->s);
   vg_edges_release(&j->e);
-  vg_tree_release(&j->tree);
+  vg_aabb_tree_release(&j->tree);
   free(j->fan);
   j->fan = NULL;
 }
@@ -253,8 +253,8 @@ static vg_status test(struct job *j)
   test_faces(j);
   test_edges(j);
   VG_TRY(vg_label_fans(&j->s, &j->e, j->flip, &j->fan, j->err));
-  VG_TRY(vg_tree_build(&j->tree, &j->s, 1, j->err));
-  VG_TRY(vg_tree_pairs(&j->tree, 1, test_pair, j));
+  VG_TRY(vg_aabb_tree_build(&j->tree, &j->s, 1, j->err));
+  VG_TRY(vg_aabb_tree_pairs(&j->tree, 1, test_pair, j));
 done:
   return st;
 }
@@ -266,13 +266,13 @@ static void count_slivers(const struct vg_swapper *w, size_t *n_cap,
 {
   *n_cap = *n_needle = 0;
   for (size_t t = 0; t < w->n_tri; t++) {
-    struct vg_shape s;
+    struct vg_tri_shape s;
 
     if (vg_tri_removed(w, t)) continue;
-    vg_shape_of(w->point[w->tri[t][0]], w->point[w->tri[t][1]],
-                w->point[w->tri[t][2]], &s);
-    if (vg_shape_sound(&s)) continue;
-    if (vg_shape_cap(&s)) ++*n_cap;
+    vg_tri_shape_of(w->point[w->tri[t][0]], w->point[w->tri[t][1]],
+                    w->point[w->tri[t][2]], &s);
+    if (vg_tri_shape_sound(&s)) continue;
+    if (vg_tri_shape_cap(&s)) ++*n_cap;
     else ++*n_needle;
   }
 }

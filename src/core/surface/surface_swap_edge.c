@@ -19,8 +19,8 @@ static const double *at(const struct vg_swapper *w, uint32_t p)
   return w->point[p];
 }
 
-void vg_shape_of(const double *a, const double *b, const double *c,
-                 struct vg_shape *s)
+void vg_tri_shape_of(const double *a, const double *b, const double *c,
+                     struct vg_tri_shape *s)
 {
   double u[3], v[3], uu, vv, ww = vg_distance2(c, b);
 
@@ -44,8 +44,8 @@ void vg_shape_of(const double *a, const double *b, const double *c,
              ? s->area / s->longest2 * (s->area / s->middle2) : 0;
 }
 
-int vg_shape_agree(const struct vg_swapper *w, const struct vg_shape *a,
-                   const struct vg_shape *b)
+int vg_tri_shape_agree(const struct vg_swapper *w, const struct vg_tri_shape *a,
+                       const struct vg_tri_shape *b)
 {
   double dot = vg_dot(a->normal, b->normal);
 
@@ -108,16 +108,16 @@ static double distance(const double *a, const double *b, const double *c,
 /* Normals of the old pair: the larger one is the surface's; the other says
  * something only when it is no sliver. */
 static int normals_fit(const struct vg_swapper *w,
-                       const struct vg_shape before[2],
-                       const struct vg_shape after[2])
+                       const struct vg_tri_shape before[2],
+                       const struct vg_tri_shape after[2])
 {
   int big = before[1].area > before[0].area;
-  int both = vg_shape_sound(&before[!big]);
+  int both = vg_tri_shape_sound(&before[!big]);
 
-  if (both && !vg_shape_agree(w, &before[0], &before[1])) return 0;
+  if (both && !vg_tri_shape_agree(w, &before[0], &before[1])) return 0;
   for (int i = 0; i < 2; i++) {
-    if (!vg_shape_agree(w, &after[i], &before[big])) return 0;
-    if (both && !vg_shape_agree(w, &after[i], &before[!big])) return 0;
+    if (!vg_tri_shape_agree(w, &after[i], &before[big])) return 0;
+    if (both && !vg_tri_shape_agree(w, &after[i], &before[!big])) return 0;
   }
   return 1;
 }
@@ -165,9 +165,9 @@ static int may_move(struct vg_swapper *w, size_t s, size_t t, double by,
 /* Length of which a pair may move the part that the options give. A cap
  * cannot move by more than its height; two needles of a strip could move by
  * much of the width of the strip if their length were taken. */
-static double length_of(const struct vg_shape pair[2])
+static double length_of(const struct vg_tri_shape pair[2])
 {
-  if (vg_shape_cap(&pair[0]) || vg_shape_cap(&pair[1]))
+  if (vg_tri_shape_cap(&pair[0]) || vg_tri_shape_cap(&pair[1]))
     return sqrt(fmin(pair[0].longest2, pair[1].longest2));
   return GOOD * sqrt(fmin(pair[0].shortest2, pair[1].shortest2));
 }
@@ -178,18 +178,18 @@ static void try_swap(struct vg_swapper *w, uint32_t f)
   uint32_t a = vg_half_from(w, f), b = vg_half_from(w, g);
   uint32_t hc = vg_half_prev(f), hd = vg_half_prev(g);
   uint32_t c = vg_half_from(w, hc), d = vg_half_from(w, hd);
-  struct vg_shape before[2], after[2];
+  struct vg_tri_shape before[2], after[2];
 
   if (w->patch[f / 3] != w->patch[g / 3] || c == d || w->locked[a]
       || w->locked[b] || w->locked[c] || w->locked[d])
     return;
-  vg_shape_of(at(w, a), at(w, b), at(w, c), &before[0]);
-  vg_shape_of(at(w, b), at(w, a), at(w, d), &before[1]);
-  if (w->caps_only && !vg_shape_cap(&before[0])
-      && !vg_shape_cap(&before[1]))
+  vg_tri_shape_of(at(w, a), at(w, b), at(w, c), &before[0]);
+  vg_tri_shape_of(at(w, b), at(w, a), at(w, d), &before[1]);
+  if (w->caps_only && !vg_tri_shape_cap(&before[0])
+      && !vg_tri_shape_cap(&before[1]))
     return;
-  vg_shape_of(at(w, a), at(w, d), at(w, c), &after[0]);
-  vg_shape_of(at(w, d), at(w, b), at(w, c), &after[1]);
+  vg_tri_shape_of(at(w, a), at(w, d), at(w, c), &after[0]);
+  vg_tri_shape_of(at(w, d), at(w, b), at(w, c), &after[1]);
   if (!(fmin(after[0].sine2, after[1].sine2)
         > GAIN * fmin(before[0].sine2, before[1].sine2))
       || !normals_fit(w, before, after) || joined(w, hc, hd))

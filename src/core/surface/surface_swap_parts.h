@@ -66,7 +66,7 @@ static inline int vg_tri_removed(const struct vg_swapper *w, size_t t)
 }
 
 /* Measures of a triangle. */
-struct vg_shape {
+struct vg_tri_shape {
   double normal[3];         /* length: twice the area */
   double area;              /* that length */
   double longest2, middle2, shortest2; /* squares of the edges' lengths */
@@ -74,28 +74,28 @@ struct vg_shape {
                                for degenerate ones */
 };
 
-void vg_shape_of(const double *a, const double *b, const double *c,
-                 struct vg_shape *s);
+void vg_tri_shape_of(const double *a, const double *b, const double *c,
+                     struct vg_tri_shape *s);
 
 /* Its normal can be trusted. */
-static inline int vg_shape_sound(const struct vg_shape *s)
+static inline int vg_tri_shape_sound(const struct vg_tri_shape *s)
 {
   return s->area > VG_SWAP_SLIVER * s->longest2;
 }
 
 /* Normals within the angle of the options. */
-int vg_shape_agree(const struct vg_swapper *w, const struct vg_shape *a,
-                   const struct vg_shape *b);
+int vg_tri_shape_agree(const struct vg_swapper *w, const struct vg_tri_shape *a,
+                       const struct vg_tri_shape *b);
 
 /* To the end of the queue, unless it or its mate is in it. */
 void vg_swap_push(struct vg_swapper *w, uint32_t h);
 
 /* Cosine of the largest angle below -1/2. */
-static inline int vg_shape_cap(const struct vg_shape *s)
+static inline int vg_tri_shape_cap(const struct vg_tri_shape *s)
 {
   double rest = s->longest2 - s->middle2 - s->shortest2;
 
-  return !vg_shape_sound(s) && rest > 0
+  return !vg_tri_shape_sound(s) && rest > 0
          && rest * rest > s->middle2 * s->shortest2;
 }
 

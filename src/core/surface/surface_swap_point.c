@@ -66,7 +66,7 @@ static int edge_fits(const struct vg_swapper *w, const struct ring *r,
   const double *a = from(w, r->half[0]), *b = from(w, w->mate[r->half[0]]);
   const double *x = NULL;
   size_t n = 0;
-  struct vg_shape s;
+  struct vg_tri_shape s;
   double u[3];
 
   *by = 0;
@@ -79,7 +79,7 @@ static int edge_fits(const struct vg_swapper *w, const struct ring *r,
   if (n != 2 || !between_patches(w, r->half[0])) return 0;
   for (int k = 0; k < 3; k++) u[k] = b[k] - a[k];
   if (!(dot_of(a, x, u) < 0)) return 0;
-  vg_shape_of(b, a, x, &s);
+  vg_tri_shape_of(b, a, x, &s);
   *by = s.area / sqrt(vg_distance2(b, x));
   return 1;
 }
@@ -87,17 +87,18 @@ static int edge_fits(const struct vg_swapper *w, const struct ring *r,
 /* Is the face that i begins sound as it is, or like what is across? A sliver
  * says nothing of the surface, but its neighbour may. */
 static int normal_fits(const struct vg_swapper *w, uint32_t i,
-                       const struct vg_shape *old, const struct vg_shape *now)
+                       const struct vg_tri_shape *old,
+                           const struct vg_tri_shape *now)
 {
   uint32_t across = w->mate[vg_half_next(i)];
-  struct vg_shape s;
+  struct vg_tri_shape s;
 
-  if (vg_shape_agree(w, old, now)) return 1;
-  if (vg_shape_sound(old) || w->patch[across / 3] != w->patch[i / 3])
+  if (vg_tri_shape_agree(w, old, now)) return 1;
+  if (vg_tri_shape_sound(old) || w->patch[across / 3] != w->patch[i / 3])
     return 0;
-  vg_shape_of(from(w, across), from(w, vg_half_next(across)),
-              from(w, vg_half_prev(across)), &s);
-  return vg_shape_sound(&s) && vg_shape_agree(w, &s, now);
+  vg_tri_shape_of(from(w, across), from(w, vg_half_next(across)),
+                  from(w, vg_half_prev(across)), &s);
+  return vg_tri_shape_sound(&s) && vg_tri_shape_agree(w, &s, now);
 }
 
 /* How far the surface moves when the point goes; INFINITY if it must stay. */
@@ -105,7 +106,7 @@ static double price(struct vg_swapper *w, uint32_t h, double length)
 {
   const double *a = from(w, h), *b = from(w, w->mate[h]);
   struct ring r, other;
-  struct vg_shape old, now;
+  struct vg_tri_shape old, now;
   double worst = INFINITY, worst_now = INFINITY, by, most = 0;
 
   if (!collect(w, h, &r) || !collect(w, w->mate[h], &other)
@@ -116,11 +117,11 @@ static double price(struct vg_swapper *w, uint32_t h, double length)
     const double *y = from(w, vg_half_prev(r.half[i]));
 
     if (w->locked[vg_half_from(w, w->mate[r.half[i]])]) return INFINITY;
-    vg_shape_of(a, x, y, &old);
+    vg_tri_shape_of(a, x, y, &old);
     worst = fmin(worst, old.sine2);
     most = fmax(most, w->moved[r.half[i] / 3]);
     if (i == 0 || i + 1 == r.n) continue;
-    vg_shape_of(b, x, y, &now);
+    vg_tri_shape_of(b, x, y, &now);
     if (!normal_fits(w, r.half[i], &old, &now)) return INFINITY;
     worst_now = fmin(worst_now, now.sine2);
     by = fmax(by, fabs(dot_of(b, a, now.normal)) / now.area);
@@ -176,7 +177,8 @@ static void measure(const struct vg_swapper *w, double *sum, uint32_t *n)
 {
   for (uint32_t h = 0; h < 3 * w->n_tri; h++) {
     if (vg_tri_removed(w, h / 3)) continue;
-    sum[vg_half_from(w, h)] += sqrt(vg_distance2(from(w, h), from(w, w->mate[h])));
+    sum[vg_half_from(w, h)] += sqrt(vg_distance2(from(w, h), from(w,
+                                                                  w->mate[h])));
     n[vg_half_from(w, h)]++;
   }
 }
@@ -185,10 +187,10 @@ static void measure(const struct vg_swapper *w, double *sum, uint32_t *n)
 static int at_cap(const struct vg_swapper *w, uint32_t h)
 {
   const double *a = from(w, h), *b = from(w, vg_half_next(h));
-  struct vg_shape s;
+  struct vg_tri_shape s;
 
-  vg_shape_of(a, b, from(w, vg_half_prev(h)), &s);
-  return vg_shape_cap(&s) && vg_distance2(a, b) < s.longest2;
+  vg_tri_shape_of(a, b, from(w, vg_half_prev(h)), &s);
+  return vg_tri_shape_cap(&s) && vg_distance2(a, b) < s.longest2;
 }
 
 vg_status vg_swap_points(struct vg_swapper *w, size_t *n_removed,

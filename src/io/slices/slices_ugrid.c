@@ -22,7 +22,7 @@ struct vg_slices_ugrid {
   int is_narrow;
   atomic_flag busy;          /* somebody adds to: */
   struct vg_narrow narrow;
-  struct vg_boundary_points rim;
+  struct vg_boundary_points boundary;
 };
 
 static void put_frame(const void *of, struct vg_output *out)
@@ -87,7 +87,7 @@ static vg_status note_rounded(struct vg_slices_ugrid *u,
     vg_narrow_cells(slice->x, (const double (*)[3])rounded, k,
                     slice->n_cell[k], slice->cell[k], slice->cell_at[k], &n);
   free(rounded);
-  vg_boundary_points_add(&u->rim, slice);
+  vg_boundary_points_add(&u->boundary, slice);
   while (atomic_flag_test_and_set(&u->busy)) continue;   /* a few stores */
   vg_narrow_add(&u->narrow, &n);
   atomic_flag_clear(&u->busy);
@@ -100,8 +100,9 @@ static vg_status accept_rounded(struct vg_slices_ugrid *u, vg_status st,
 {
   VG_TRY(vg_comm_agree(u->comm, st, err));
   VG_TRY(vg_narrow_share(u->comm, &u->narrow, err));
-  VG_TRY(vg_boundary_points_share(u->comm, &u->rim, err));
-  VG_TRY(vg_narrow_points(u->rim.n, (const double (*)[3])u->rim.x, &u->narrow,
+  VG_TRY(vg_boundary_points_share(u->comm, &u->boundary, err));
+  VG_TRY(vg_narrow_points(u->boundary.n, (const double (*)[3])u->boundary.x,
+                          &u->narrow,
                           err));
   st = vg_ugrid_accept(&u->kind, &u->narrow, err);
 done:
@@ -110,7 +111,7 @@ done:
 
 static void release(struct vg_slices_ugrid *u)
 {
-  if (u) vg_boundary_points_release(&u->rim);
+  if (u) vg_boundary_points_release(&u->boundary);
   free(u);
 }
 
@@ -145,7 +146,7 @@ static vg_status new_ugrid(const struct vg_slices *s, const char *path,
   if (st >= 0 && u->kind.real_size == 4) {
     u->is_narrow = 1;
     atomic_flag_clear(&u->busy);
-    st = vg_boundary_points_new(s, &u->rim, err);
+    st = vg_boundary_points_new(s, &u->boundary, err);
   }
   if (st < 0) release(u);
   else *out = u;

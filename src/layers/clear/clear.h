@@ -18,7 +18,7 @@
  *     0.3, of unit vectors): the two sides of a concave edge, once the
  *     directions there are turned;
  *   - beside it (in the cone, but on no line) in a patch that any column
- *     slides in, such as a symmetry plane next to its rim.
+ *     slides in, such as a symmetry plane next to its border.
  * So next to a concave edge narrower than a right angle it is the directions
  * that decide: columns square to their walls are limited in proportion to
  * their distance from the edge (0.15 of it at 30 degrees and gap 0.4), those
@@ -42,8 +42,8 @@ vg_status vg_clear_ahead(const struct vg_mesh *surface,
  *     (columns of one root are one as long as they have no level);
  *   - a triangle of the surface that carries no face, but for those of slide
  *     patches that a column of its face slides in.
- * Flanks of rims of one slide patch may not overlap within it, nor reach a
- * rim without a level. A top without area touches itself.
+ * Flanks of borders of one slide patch may not overlap within it, nor reach a
+ * border without a level. A top without area touches itself.
  *
  * @param is_slide  [surface->n_patch] 1: will be re-meshed
  * @param active    [n_column] columns that moved since the last call, or NULL:

@@ -173,7 +173,8 @@ static inline vg_f4 all4(float x)
 }
 
 /* Children with a normal n for which n . u < -FACING + spread. */
-static inline vg_i4 facing4(const struct vg_sides *s, int h, const float u[3],
+static inline vg_i4 facing4(const struct vg_normal_boxes *s, int h,
+                            const float u[3],
                             float spread)
 {
   vg_f4 least = all4(0);
@@ -185,7 +186,8 @@ static inline vg_i4 facing4(const struct vg_sides *s, int h, const float u[3],
 
 /* Children whose balls touch the cone with its apex `back` below the root,
  * and whose boxes lie between lo and hi along it; where they begin: *first. */
-static inline vg_i4 in_cone4(const struct vg_box8 *n, const struct vg_sides *s,
+static inline vg_i4 in_cone4(const struct vg_box8 *n,
+                             const struct vg_normal_boxes *s,
                              int h, const struct cone *c, vg_f4 *first)
 {
   vg_f4 along = all4(0), half = all4(0), far = all4(0), reach;
@@ -213,7 +215,7 @@ static inline unsigned in_cone(const struct vg_ahead *x, size_t node,
                                const struct cone *c, union vg_f8 *first)
 {
   const struct vg_box8 *n = &x->boxes.node[node];
-  const struct vg_sides *s = &x->sides[node];
+  const struct vg_normal_boxes *s = &x->sides[node];
 
   return vg_lanes(in_cone4(n, s, 0, c, &first->v[0]),
                   in_cone4(n, s, 1, c, &first->v[1]));

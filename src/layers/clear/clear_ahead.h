@@ -7,7 +7,7 @@
 
 /* Of the children of a node: half the diagonals, and boxes about the unit
  * normals of what is in them. */
-struct vg_sides { union vg_f8 radius, mid[3], half[3]; };
+struct vg_normal_boxes { union vg_f8 radius, mid[3], half[3]; };
 
 struct vg_ahead {
   const struct vg_mesh *surface;
@@ -20,7 +20,7 @@ struct vg_ahead {
   uint32_t *column_of;      /* [n_point + 1] first column of each point */
   uint8_t *slid;            /* [n_patch] columns slide in it */
   struct vg_boxes boxes;
-  struct vg_sides *sides;   /* [nodes] */
+  struct vg_normal_boxes *sides;   /* [nodes] */
   float (*normal)[3];       /* [boxes.n] unit, 0 without an area */
   uint32_t *order;          /* [n_column] neighbours close together */
 };
@@ -38,7 +38,7 @@ int vg_line_hits(const double o[3], const double u[3], const double (*p)[3],
 double vg_nearest_in_cone(const double u[3], const double (*p)[3],
                           const double n[3], double most);
 
-/* clear_sides.c -----------------------------------------------------------*/
+/* clear_prepare.c -----------------------------------------------------------*/
 
 /** What all columns ask of, from the borrowed members of *x. Call
  * vg_ahead_release in any case. */

@@ -11,13 +11,13 @@
 #include "base/memory.h"
 #include "core/geometry/predicates.h"
 
-/* What is a rim up to this share of its size off the patch of another rim
+/* What is a border up to this share of its size off the patch of another border
  * still lies in it: planes are flat to 1e-6, curved ones are resolved. */
 #define OFF_PLANE 0.1
 
 struct flanks {
   const struct vg_tops *t;
-  uint32_t (*tri)[3];       /* [2 n_rim] halves, for their boxes */
+  uint32_t (*tri)[3];       /* [2 n_border] halves, for their boxes */
   struct vg_boxes boxes;
 };
 
@@ -104,10 +104,10 @@ static int edges_meet(const struct outline *p, const struct outline *q)
 
 /* --- flanks -------------------------------------------------------------- */
 
-/* Corners of the flank of rim r, repetitions included. */
+/* Corners of the flank of border r, repetitions included. */
 static void corners(const struct vg_tops *t, size_t r, uint32_t node[4])
 {
-  uint32_t a = t->columns->rim[r][0], b = t->columns->rim[r][1];
+  uint32_t a = t->columns->border[r][0], b = t->columns->border[r][1];
 
   node[0] = t->columns->column[a].root;
   node[1] = t->columns->column[b].root;
@@ -177,16 +177,16 @@ static int axis_of(const double n[3])
   return fabs(n[2]) > fabs(n[axis]) ? 2 : axis;
 }
 
-static void mark_rim(const struct vg_tops *t, size_t r)
+static void mark_border(const struct vg_tops *t, size_t r)
 {
-  vg_tops_mark(t, t->columns->rim[r][0]);
-  vg_tops_mark(t, t->columns->rim[r][1]);
+  vg_tops_mark(t, t->columns->border[r][0]);
+  vg_tops_mark(t, t->columns->border[r][1]);
 }
 
-static int rim_active(const struct vg_tops *t, size_t r)
+static int border_active(const struct vg_tops *t, size_t r)
 {
-  return vg_tops_active(t, t->columns->rim[r][0])
-         || vg_tops_active(t, t->columns->rim[r][1]);
+  return vg_tops_active(t, t->columns->border[r][0])
+         || vg_tops_active(t, t->columns->border[r][1]);
 }
 
 static void meet_flanks(void *context, size_t i, size_t j)
@@ -198,8 +198,9 @@ static void meet_flanks(void *context, size_t i, size_t j)
   uint32_t a[4], b[4];
   double n[3], m[3], dot = 0;
 
-  if (r == s || t->columns->rim_patch[r] != t->columns->rim_patch[s]) return;
-  if (!rim_active(t, r) && !rim_active(t, s)) return;
+  if (r == s || t->columns->border_patch[r] != t->columns->border_patch[s])
+    return;
+  if (!border_active(t, r) && !border_active(t, s)) return;
   corners(t, r, a);
   corners(t, s, b);
   area_of(t, a, n);
@@ -212,8 +213,8 @@ static void meet_flanks(void *context, size_t i, size_t j)
     return;
   if (o.n == 2 && p.n == 2) return;
   if (!edges_meet(&o, &p) && !edges_meet(&p, &o)) return;
-  mark_rim(t, r);
-  mark_rim(t, s);
+  mark_border(t, r);
+  mark_border(t, s);
 }
 
 static void judge_alone(const struct vg_tops *t, size_t r)
@@ -226,8 +227,8 @@ static void judge_alone(const struct vg_tops *t, size_t r)
   area_of(t, node, n);
   /* Within a fan without a level all four are one point. */
   if (node[0] == node[1] && node[2] == node[0] && node[3] == node[0]) return;
-  if (rim_active(t, r) && !outline_of(t, node, axis_of(n), &o))
-    mark_rim(t, r);
+  if (border_active(t, r) && !outline_of(t, node, axis_of(n), &o))
+    mark_border(t, r);
 }
 
 vg_status vg_clear_flanks(const struct vg_tops *t, struct vg_error *err)
@@ -236,14 +237,14 @@ vg_status vg_clear_flanks(const struct vg_tops *t, struct vg_error *err)
   struct flanks x = { t, NULL, VG_BOXES_INIT };
   vg_status st = VG_OK;
 
-  if (!c->n_rim) return VG_OK;
-  if (c->n_rim > VG_NO_INDEX / 2)
+  if (!c->n_border) return VG_OK;
+  if (c->n_border > VG_NO_INDEX / 2)
     return vg_fail(err, VG_ERR_UNSUPPORTED, "%zu edges between walls and "
                    "slide patches are too many: use a coarser surface",
-                   c->n_rim);
-  x.tri = vg_alloc(2 * c->n_rim, sizeof *x.tri);
+                   c->n_border);
+  x.tri = vg_alloc(2 * c->n_border, sizeof *x.tri);
   if (!x.tri) return vg_fail_memory(err, "flanks of the layers");
-  for (size_t r = 0; r < c->n_rim; r++) {
+  for (size_t r = 0; r < c->n_border; r++) {
     uint32_t node[4];
 
     judge_alone(t, r);
@@ -253,7 +254,7 @@ vg_status vg_clear_flanks(const struct vg_tops *t, struct vg_error *err)
            sizeof *x.tri);
   }
   VG_TRY(vg_boxes_build(&x.boxes, (const double (*)[3])t->point,
-                        (const uint32_t (*)[3])x.tri, 2 * c->n_rim, NULL,
+                        (const uint32_t (*)[3])x.tri, 2 * c->n_border, NULL,
                         OFF_PLANE, t->threads, err));
   vg_boxes_pairs(&x.boxes, t->threads, meet_flanks, &x);
 done:

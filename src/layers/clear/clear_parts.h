@@ -93,7 +93,7 @@ static inline void vg_tops_mark(const struct vg_tops *t, uint32_t c)
                                                 __ATOMIC_RELAXED);
 }
 
-/** Mark rims of one patch whose flanks overlap within it. */
+/** Mark borders of one patch whose flanks overlap within it. */
 vg_status vg_clear_flanks(const struct vg_tops *t, struct vg_error *err);
 
 #endif

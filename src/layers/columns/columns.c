@@ -17,8 +17,8 @@ void vg_columns_release(struct vg_columns *c)
   free(c->column);
   free(c->face);
   free(c->face_tri);
-  free(c->rim);
-  free(c->rim_patch);
+  free(c->border);
+  free(c->border_patch);
   free(c->law);
   free(c->path);
   memset(c, 0, sizeof *c);

@@ -66,7 +66,7 @@ struct vg_column {
 _Static_assert(sizeof(struct vg_column) == 88, "columns have no padding");
 
 struct vg_columns {
-  size_t n_column, n_face, n_rim, n_law, n_path;
+  size_t n_column, n_face, n_border, n_law, n_path;
   struct vg_column *column; /* [n_column] by rising root; those of one root by
                                rising position around it */
   uint32_t (*face)[3];      /* [n_face] columns, counter-clockwise seen from
@@ -75,10 +75,10 @@ struct vg_columns {
                                Hilbert curve), then the virtual ones */
   uint32_t *face_tri;       /* [n_face] triangle of the surface; virtual:
                                VG_NO_INDEX */
-  uint32_t (*rim)[2];       /* [n_rim] edges of one face, in its direction;
+  uint32_t (*border)[2];  /* [n_border] edges of one face, in its direction;
                                both columns slide in ... */
-  uint32_t *rim_patch;      /* [n_rim] ... this patch. An edge between columns
-                               of one root is a rim too where a fan meets a
+  uint32_t *border_patch;  /* [n_border] ... this patch. An edge between columns
+                               of one root is a border too where a fan meets a
                                slide patch */
   struct vg_law *law;       /* [n_law] */
   double (*path)[3];        /* [n_path] */

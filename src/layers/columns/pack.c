@@ -11,7 +11,7 @@
 #define MAGIC 0x317379616c677676ull
 
 struct head {
-  uint64_t magic, n_column, n_face, n_rim, n_law, n_path;
+  uint64_t magic, n_column, n_face, n_border, n_law, n_path;
   uint64_t n_point, n_tri, n_patch;    /* of the front */
 };
 
@@ -31,8 +31,8 @@ static void list_arrays(struct vg_layers *l, struct array a[N_ARRAY])
     { (void **)&c->column, c->n_column, sizeof *c->column },
     { (void **)&c->face, c->n_face, sizeof *c->face },
     { (void **)&c->face_tri, c->n_face, sizeof *c->face_tri },
-    { (void **)&c->rim, c->n_rim, sizeof *c->rim },
-    { (void **)&c->rim_patch, c->n_rim, sizeof *c->rim_patch },
+    { (void **)&c->border, c->n_border, sizeof *c->border },
+    { (void **)&c->border_patch, c->n_border, sizeof *c->border_patch },
     { (void **)&c->law, c->n_law, sizeof *c->law },
     { (void **)&c->path, c->n_path, sizeof *c->path },
     { (void **)&m->point, m->n_point, sizeof *m->point },
@@ -53,7 +53,7 @@ vg_status vg_layers_pack(const struct vg_layers *layers, struct vg_bytes *out,
   const struct vg_columns *c = &layers->columns;
   const struct vg_mesh *m = &layers->front.mesh;
   struct vg_layers view = *layers;
-  struct head h = { MAGIC, c->n_column, c->n_face, c->n_rim, c->n_law,
+  struct head h = { MAGIC, c->n_column, c->n_face, c->n_border, c->n_law,
                     c->n_path, m->n_point, m->n_tri, m->n_patch };
   struct vg_writer w = { { 0, NULL }, 0, 0 };
   struct array a[N_ARRAY];
@@ -137,9 +137,9 @@ static int are_columns(const struct vg_columns *c,
     for (int k = 0; k < 3; k++) good &= c->face[i][k] < c->n_column;
     good &= is_index(c->face_tri[i], surface->n_tri);
   }
-  for (size_t i = 0; i < c->n_rim; i++)
-    good &= c->rim[i][0] < c->n_column && c->rim[i][1] < c->n_column &&
-            c->rim_patch[i] < surface->n_patch;
+  for (size_t i = 0; i < c->n_border; i++)
+    good &= c->border[i][0] < c->n_column && c->border[i][1] < c->n_column &&
+            c->border_patch[i] < surface->n_patch;
   return good;
 }
 
@@ -196,7 +196,7 @@ vg_status vg_layers_unpack(const struct vg_bytes *bytes,
   if (!r.bad && h.magic == MAGIC) {
     l.columns.n_column = h.n_column;
     l.columns.n_face = h.n_face;
-    l.columns.n_rim = h.n_rim;
+    l.columns.n_border = h.n_border;
     l.columns.n_law = h.n_law;
     l.columns.n_path = h.n_path;
     l.front.mesh.n_point = h.n_point;

@@ -18,8 +18,8 @@ static void mark_columns(struct vg_expand *e)
     e->mark[i] = c->column[i].n;
     if (vg_shares_root(c, i)) e->mark[i] |= VG_MARK_SHARED;
   }
-  for (size_t r = 0; r < c->n_rim; r++)
-    for (int k = 0; k < 2; k++) e->mark[c->rim[r][k]] |= VG_MARK_FLANK;
+  for (size_t r = 0; r < c->n_border; r++)
+    for (int k = 0; k < 2; k++) e->mark[c->border[r][k]] |= VG_MARK_FLANK;
   for (size_t i = 0; i < c->n_column; i++)
     e->n_point[vg_mark_group(e->mark[i])] += vg_mark_n(e->mark[i]);
 }

@@ -65,7 +65,7 @@ void vg_expand_face(const struct vg_expand *e, size_t face,
                     const uint32_t foot[3], const uint32_t base[3],
                     struct vg_cell_sink *sink);
 
-/** Boundary faces on the flank of rim r: tri, quad out. */
+/** Boundary faces on the flank of border r: tri, quad out. */
 void vg_expand_count_flank(const struct vg_expand *e, size_t r, size_t *tri,
                            size_t *quad);
 
@@ -73,7 +73,7 @@ void vg_expand_count_flank(const struct vg_expand *e, size_t r, size_t *tri,
 void vg_expand_flank(const struct vg_expand *e, size_t r, uint32_t (*tri)[3],
                      uint32_t (*quad)[4]);
 
-#define VG_MARK_FLANK 0x8000   /* has a rim */
+#define VG_MARK_FLANK 0x8000   /* has a border */
 #define VG_MARK_SHARED 0x4000  /* its root has other columns */
 
 static inline unsigned vg_mark_n(uint16_t mark) { return mark & 0x0fff; }

@@ -1,4 +1,4 @@
-/* Cells of faces and flanks of rims, one face or rim at a time, upwards.
+/* Cells of faces and flanks of borders, one face or border at a time, upwards.
  *
  * All tetrahedra: columns rise one by one, by rising number. Mixed: they rise
  * together, which makes a prism, a pyramid over the two that rise or one
@@ -326,47 +326,48 @@ vg_status vg_expand_count(struct vg_expand *e, struct vg_error *err)
   return bad ? report_jump(e, err) : VG_OK;
 }
 
-/* Columns of a rim rise together at this level. */
-static int rim_together(const struct vg_expand *e, const uint32_t rim[2],
-                        size_t level)
+/* Columns of a border rise together at this level. */
+static int border_together(const struct vg_expand *e, const uint32_t border[2],
+                           size_t level)
 {
-  unsigned shared = (e->mark[rim[0]] | e->mark[rim[1]]) & VG_MARK_SHARED;
+  unsigned shared = (e->mark[border[0]] | e->mark[border[1]]) & VG_MARK_SHARED;
 
   return e->mixed && (level || !shared);
 }
 
-/* The second column of a rim rises before the first. */
-static int rim_second_first(const struct vg_expand *e, const uint32_t rim[2],
-                            size_t level)
+/* The second column of a border rises before the first. */
+static int border_second_first(const struct vg_expand *e,
+                               const uint32_t border[2],
+                               size_t level)
 {
   int late[2];
 
   for (int k = 0; k < 2; k++)
-    late[k] = e->mixed && !level && e->mark[rim[k]] & VG_MARK_SHARED;
-  return late[0] != late[1] ? late[0] : rim[1] < rim[0];
+    late[k] = e->mixed && !level && e->mark[border[k]] & VG_MARK_SHARED;
+  return late[0] != late[1] ? late[0] : border[1] < border[0];
 }
 
 void vg_expand_count_flank(const struct vg_expand *e, size_t r, size_t *tri,
                            size_t *quad)
 {
-  const uint32_t *rim = e->columns->rim[r];
+  const uint32_t *border = e->columns->border[r];
   const struct vg_column *c = e->columns->column;
-  size_t a = vg_mark_n(e->mark[rim[0]]), b = vg_mark_n(e->mark[rim[1]]);
+  size_t a = vg_mark_n(e->mark[border[0]]), b = vg_mark_n(e->mark[border[1]]);
   size_t both = a < b ? a : b;
 
   *tri = a + b - 2 * both;
   *quad = 0;
   for (size_t l = 0; l < both; l++)
-    if (rim_together(e, rim, l)) ++*quad;
+    if (border_together(e, border, l)) ++*quad;
     else *tri += 2;
   /* What rises first from a common root makes no face. */
-  if ((a || b) && c[rim[0]].root == c[rim[1]].root) --*tri;
+  if ((a || b) && c[border[0]].root == c[border[1]].root) --*tri;
 }
 
 /* Faces of one level of a flank; p: the points it stands on, in/out; h: those
  * that rise; first: the column to rise first, where they do one by one. */
-static void rise_rim(uint32_t p[2], const uint32_t h[2], int first,
-                     uint32_t (**to)[3])
+static void rise_border(uint32_t p[2], const uint32_t h[2], int first,
+                        uint32_t (**to)[3])
 {
   for (int i = 0; i < 2; i++) {
     int k = first ^ i;
@@ -381,19 +382,19 @@ static void rise_rim(uint32_t p[2], const uint32_t h[2], int first,
 void vg_expand_flank(const struct vg_expand *e, size_t r, uint32_t (*tri)[3],
                      uint32_t (*quad)[4])
 {
-  const uint32_t *rim = e->columns->rim[r];
-  unsigned a = vg_mark_n(e->mark[rim[0]]), b = vg_mark_n(e->mark[rim[1]]);
-  uint32_t p[2] = { e->foot[rim[0]], e->foot[rim[1]] };
+  const uint32_t *border = e->columns->border[r];
+  unsigned a = vg_mark_n(e->mark[border[0]]), b = vg_mark_n(e->mark[border[1]]);
+  uint32_t p[2] = { e->foot[border[0]], e->foot[border[1]] };
 
   for (unsigned l = 0; l < a || l < b; l++) {
-    const uint32_t h[2] = { l < a ? e->base[rim[0]] + l : VG_NO_INDEX,
-                            l < b ? e->base[rim[1]] + l : VG_NO_INDEX };
+    const uint32_t h[2] = { l < a ? e->base[border[0]] + l : VG_NO_INDEX,
+                            l < b ? e->base[border[1]] + l : VG_NO_INDEX };
 
-    if (l < a && l < b && rim_together(e, rim, l)) {
+    if (l < a && l < b && border_together(e, border, l)) {
       const uint32_t side[4] = { p[1], p[0], h[0], h[1] };
 
       memcpy(*quad++, side, sizeof side);
       memcpy(p, h, sizeof h);
-    } else rise_rim(p, h, rim_second_first(e, rim, l), &tri);
+    } else rise_border(p, h, border_second_first(e, border, l), &tri);
   }
 }

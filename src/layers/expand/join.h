@@ -21,7 +21,7 @@ struct vg_join_info {
  * Points of layers and flanks go column by column, upwards from level 1,
  * columns in the order in which the faces (and their corners) first have them.
  * Boundary triangles: those of the surface that stay, in their order, then, by
- * patch, flanks (rim by rim, upwards) and re-meshed ones; patches as they
+ * patch, flanks (border by border, upwards) and re-meshed ones; patches as they
  * were. Cells: layer cells first, face by face, upwards, then the field's.
  * So a run of faces has runs of cells and of new points: a slice (slices.h).
  *

@@ -118,12 +118,12 @@ static void count_boundary(struct work *w)
   const struct vg_mesh *f = &w->p->front->mesh, *s = w->p->surface;
   size_t n_tri = 0, n_quad = 0;
 
-  for (size_t r = 0; r < c->n_rim; r++) {
+  for (size_t r = 0; r < c->n_border; r++) {
     size_t tri, quad;
 
     vg_expand_count_flank(&w->p->expand, r, &tri, &quad);
-    w->tri[c->rim_patch[r]] += tri;
-    w->quad[c->rim_patch[r]] += quad;
+    w->tri[c->border_patch[r]] += tri;
+    w->quad[c->border_patch[r]] += quad;
   }
   for (size_t i = 0; i < f->n_tri; i++)
     if (is_new(w, i)) w->tri[f->tri_patch[i]]++;
@@ -145,8 +145,8 @@ static void fill_flanks(struct work *w)
   const struct vg_columns *c = w->p->columns;
   struct vg_mesh *m = w->m;
 
-  for (size_t r = 0; r < c->n_rim; r++) {
-    uint32_t q = c->rim_patch[r];
+  for (size_t r = 0; r < c->n_border; r++) {
+    uint32_t q = c->border_patch[r];
     size_t n_tri, n_quad;
 
     vg_expand_count_flank(&w->p->expand, r, &n_tri, &n_quad);

@@ -69,7 +69,7 @@ static double tallest(const struct vg_layer_work *w, uint32_t f)
 /* How strongly a column is bent: not at all while its faces keep their area
  * up to the tops, wholly once one would shrink to half. So columns far from a
  * corner, and those on its convex side, stay normal to the wall. */
-static double urge(const struct vg_turn *l, size_t i)
+static double urge(const struct vg_dir_sweep *l, size_t i)
 {
   const struct vg_layer_work *w = l->w;
   double least = 1;
@@ -84,26 +84,26 @@ static double urge(const struct vg_turn *l, size_t i)
 }
 
 /* Nothing has moved around column i, so it will not move either. */
-static int is_still(const struct vg_turn *l, size_t i)
+static int is_still(const struct vg_dir_sweep *l, size_t i)
 {
   const struct vg_layer_work *w = l->w;
 
-  if (l->stirred[i]) return 0;
+  if (l->moved[i]) return 0;
   for (uint32_t j = w->t.near_first[i]; j < w->t.near_first[i + 1]; j++)
-    if (l->stirred[w->t.near[j]]) return 0;
+    if (l->moved[w->t.near[j]]) return 0;
   return 1;
 }
 
 /* One damped Jacobi step; where the mean loses the faces from view, half of
  * the way to it, and so on. */
-static void relax(const struct vg_turn *l, size_t i, double (*n)[3])
+static void relax(const struct vg_dir_sweep *l, size_t i, double (*n)[3])
 {
   const struct vg_layer_work *w = l->w;
   double slide[2][3], mean[3], step, v[3];
   int n_slide = vg_slide_normals(w, i, slide), k;
 
   memcpy(l->to[i], l->from[i], sizeof *l->to);
-  l->stirs[i] = 0;
+  l->moves[i] = 0;
   if (vg_shares_root(w->c, i) || w->view[i] == 0 || is_still(l, i)) return;
   mean_of_near(w, i, l->from, mean);
   if (!(vg_unit(mean) > 0)) return;
@@ -117,14 +117,14 @@ static void relax(const struct vg_turn *l, size_t i, double (*n)[3])
     if (!(vg_unit(v) > 0)) continue;
     if (vg_least_view(k, n, v) < VG_VIEW_KEPT * w->view[i]) continue;
     memcpy(l->to[i], v, sizeof v);
-    l->stirs[i] = vg_distance(v, l->from[i]) > STILL;
+    l->moves[i] = vg_distance(v, l->from[i]) > STILL;
     return;
   }
 }
 
 static void relax_body(void *context, size_t first, size_t end, int worker)
 {
-  struct vg_turn *l = context;
+  struct vg_dir_sweep *l = context;
 
   for (size_t k = first; k < end; k++)
     relax(l, l->list[k], l->scratch + (size_t)worker * l->w->max_valence);
@@ -133,30 +133,30 @@ static void relax_body(void *context, size_t first, size_t end, int worker)
 static vg_status sweeps(struct vg_layer_work *w, const uint32_t *list,
                         size_t n, struct vg_error *err)
 {
-  struct vg_turn l = { .list = list };
+  struct vg_dir_sweep l = { .list = list };
   vg_status st;
 
-  VG_TRY(vg_turn_scratch(w, &l, err));
-  VG_TRY(vg_turn_new(w, &l, err));
-  l.stirs = vg_calloc(w->c->n_column, 1);
-  l.stirred = vg_calloc(w->c->n_column, 1);
-  if (!l.stirs || !l.stirred) {
+  VG_TRY(vg_dir_sweep_scratch(w, &l, err));
+  VG_TRY(vg_dir_sweep_new(w, &l, err));
+  l.moves = vg_calloc(w->c->n_column, 1);
+  l.moved = vg_calloc(w->c->n_column, 1);
+  if (!l.moves || !l.moved) {
     st = vg_fail_memory(err, "the smoothing");
     goto done;
   }
-  for (size_t k = 0; k < n; k++) l.stirred[list[k]] = 1;
+  for (size_t k = 0; k < n; k++) l.moved[list[k]] = 1;
   for (int s = 0; s < w->o->smooth; s++) {
-    uint8_t *swap = l.stirs;
+    uint8_t *swap = l.moves;
 
     vg_parallel_for(w->o->threads, n, VG_GRAIN / 4, relax_body, &l);
-    vg_turn_swap(&l);
-    l.stirs = l.stirred;
-    l.stirred = swap;
+    vg_dir_sweep_swap(&l);
+    l.moves = l.moved;
+    l.moved = swap;
   }
   for (size_t i = 0; i < w->c->n_column; i++)
     memcpy(w->c->column[i].dir, l.from[i], sizeof *l.from);
 done:
-  vg_turn_free(&l);
+  vg_dir_sweep_free(&l);
   return st;
 }
 

@@ -29,7 +29,7 @@ struct search {
   struct vg_layer_work *w;
   const uint8_t *moved;
   int16_t *level;           /* [n_face] first bad level, -1: none */
-  uint8_t *blame;           /* [n_face] bit k: corner k */
+  uint8_t *faulty;           /* [n_face] bit k: corner k */
   struct stack *stack;      /* [worker] */
 };
 
@@ -167,7 +167,7 @@ static int wall_cells(const struct stack *s, const struct vg_columns *c,
 }
 
 /* First level from which a bad cell rises, or -1. */
-static int first_bad(const struct stack *s, uint8_t *blame)
+static int first_bad(const struct stack *s, uint8_t *faulty)
 {
   int whole = s->c[0]->n, most = whole, from = is_virtual(s);
   double base[3], low[3], high[3];
@@ -178,7 +178,7 @@ static int first_bad(const struct stack *s, uint8_t *blame)
   }
   area(s, from <= whole ? from : 0, base);
   memcpy(low, base, sizeof low);
-  *blame = 7;
+  *faulty = 7;
   for (int l = 0; l < whole; l++) {
     int bad = 0;
 
@@ -190,7 +190,7 @@ static int first_bad(const struct stack *s, uint8_t *blame)
     }
     if (!bad && !(l < from ? lifts(s, l) : middle(s, l))) bad = 7;
     if (!bad) continue;
-    if (l == 0) *blame = (uint8_t)bad;
+    if (l == 0) *faulty = (uint8_t)bad;
     return l;
   }
   for (int l = whole; l < most; l++) {
@@ -233,10 +233,10 @@ static void search_body(void *context, size_t first, size_t end, int worker)
     if (q->moved && !q->moved[c[0]] && !q->moved[c[1]] && !q->moved[c[2]])
       continue;
     load(s, q->w, f);
-    q->level[f] = (int16_t)first_bad(s, &q->blame[f]);
+    q->level[f] = (int16_t)first_bad(s, &q->faulty[f]);
     if (q->level[f] && !wall_cells(s, q->w->c, f)) {
       q->level[f] = 0;
-      q->blame[f] = 7;
+      q->faulty[f] = 7;
     }
   }
 }
@@ -246,7 +246,7 @@ static void search_body(void *context, size_t first, size_t end, int worker)
  * fault, not one that is low already. One that fails on the wall itself
  * leaves no height at all. least: [3] out, INFINITY where not lowered. */
 static void limits(const struct vg_layer_work *w, const uint32_t face[3],
-                   int level, int blame, double least[3])
+                   int level, int faulty, double least[3])
 {
   double reach[3] = { 0, 0, 0 }, far = 0;
 
@@ -255,15 +255,15 @@ static void limits(const struct vg_layer_work *w, const uint32_t face[3],
     double d[VG_LEVELS_MAX + 1];
     int top = level + 1 < c->n ? level + 1 : c->n;
 
-    least[k] = level && !w->haste ? INFINITY : 0;
-    if (least[k] == 0 || !(blame >> k & 1)) continue;
+    least[k] = level && !w->last_resort ? INFINITY : 0;
+    if (least[k] == 0 || !(faulty >> k & 1)) continue;
     vg_law_heights(&w->c->law[c->law], c->cap, top, d);
     least[k] = fmin(LOWER * w->allowed[face[k]], d[top]);
     reach[k] = d[top] * vg_norm(c->dir);
     far = fmax(far, reach[k]);
   }
   for (int k = 0; k < 3; k++)
-    if (!(blame >> k & 1) || reach[k] < NEAR_FARTHEST * far)
+    if (!(faulty >> k & 1) || reach[k] < NEAR_FARTHEST * far)
       least[k] = INFINITY;
 }
 
@@ -294,7 +294,7 @@ static void judge(struct vg_layer_work *w, const struct search *q,
     turn[f] = 0;
     if (q->level[f] < 0) continue;
     ++*n_bad;
-    limits(w, face, q->level[f], q->blame[f], l);
+    limits(w, face, q->level[f], q->faulty[f], l);
     if (may_turn && q->level[f] > 0 && costs_levels(w, face, l)) {
       turn[f] = 1;
       ++*n_turn;
@@ -316,7 +316,7 @@ static void stubborn(const struct vg_layer_work *w, const struct search *q,
 
     if (!turn[f] || turned[face[0]] || turned[face[1]] || turned[face[2]])
       continue;
-    limits(w, face, q->level[f], q->blame[f], l);
+    limits(w, face, q->level[f], q->faulty[f], l);
     for (int k = 0; k < 3; k++)
       least[face[k]] = fmin(least[face[k]], l[k]);
   }
@@ -338,7 +338,7 @@ vg_status vg_cells_lower(struct vg_layer_work *w, const uint8_t *moved,
   vg_status st = VG_OK;
 
   *n_bad = 0;
-  if (!q.level || !q.blame || !q.stack || !least || !turn) {
+  if (!q.level || !q.faulty || !q.stack || !least || !turn) {
     st = vg_fail_memory(err, "the layers");
     goto done;
   }
@@ -352,7 +352,7 @@ done:
   free(least);
   free(turn);
   free(q.level);
-  free(q.blame);
+  free(q.faulty);
   free(q.stack);
   return st;
 }

@@ -9,7 +9,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "core/geometry/vector.h"
-#include "layers/topology/gram.h"
+#include "layers/topology/most_normal.h"
 
 /* L8 */
 #define SMOOTH_WALL 0.95   /* least cosine at which the mean normal will do */
@@ -93,8 +93,8 @@ double vg_least_view(int k, const double (*n)[3], const double v[3])
   return least;
 }
 
-vg_status vg_turn_scratch(struct vg_layer_work *w, struct vg_turn *l,
-                             struct vg_error *err)
+vg_status vg_dir_sweep_scratch(struct vg_layer_work *w, struct vg_dir_sweep *l,
+                               struct vg_error *err)
 {
   int threads = w->o->threads > 0 ? w->o->threads : vg_cores();
 
@@ -103,8 +103,9 @@ vg_status vg_turn_scratch(struct vg_layer_work *w, struct vg_turn *l,
   return l->scratch ? VG_OK : vg_fail_memory(err, "the marching directions");
 }
 
-vg_status vg_turn_new(const struct vg_layer_work *w, struct vg_turn *l,
-                          struct vg_error *err)
+vg_status vg_dir_sweep_new(const struct vg_layer_work *w,
+                           struct vg_dir_sweep *l,
+                           struct vg_error *err)
 {
   l->from = vg_alloc(w->c->n_column, sizeof *l->from);
   l->to = vg_alloc(w->c->n_column, sizeof *l->to);
@@ -115,7 +116,7 @@ vg_status vg_turn_new(const struct vg_layer_work *w, struct vg_turn *l,
   return VG_OK;
 }
 
-void vg_turn_swap(struct vg_turn *l)
+void vg_dir_sweep_swap(struct vg_dir_sweep *l)
 {
   double (*swap)[3] = l->from;
 
@@ -123,13 +124,13 @@ void vg_turn_swap(struct vg_turn *l)
   l->to = swap;
 }
 
-void vg_turn_free(struct vg_turn *t)
+void vg_dir_sweep_free(struct vg_dir_sweep *t)
 {
   free(t->scratch);
   free(t->from);
   free(t->to);
-  free(t->stirs);
-  free(t->stirred);
+  free(t->moves);
+  free(t->moved);
 }
 
 /* Angle between two edges without libm's acos: the chord 2 sin(a / 2) of unit
@@ -188,7 +189,7 @@ static void first_direction(struct vg_layer_work *w, size_t i,
 
 static void first_body(void *context, size_t first, size_t end, int worker)
 {
-  struct vg_turn *l = context;
+  struct vg_dir_sweep *l = context;
 
   for (size_t i = first; i < end; i++)
     first_direction(l->w, i,
@@ -217,7 +218,7 @@ static uint8_t cap_corner(const struct vg_mesh *m, const uint32_t *tri,
 
 static void normal_body(void *context, size_t first, size_t end, int worker)
 {
-  struct vg_layer_work *w = ((struct vg_turn *)context)->w;
+  struct vg_layer_work *w = ((struct vg_dir_sweep *)context)->w;
 
   (void)worker;
   for (size_t f = first; f < end; f++) {
@@ -237,16 +238,16 @@ static void normal_body(void *context, size_t first, size_t end, int worker)
 
 vg_status vg_directions_first(struct vg_layer_work *w, struct vg_error *err)
 {
-  struct vg_turn l = { 0 };
+  struct vg_dir_sweep l = { 0 };
   vg_status st;
 
   for (size_t i = 0; i < w->c->n_column; i++)
     if (w->t.first[i + 1] - w->t.first[i] > w->max_valence)
       w->max_valence = w->t.first[i + 1] - w->t.first[i];
-  VG_TRY(vg_turn_scratch(w, &l, err));
+  VG_TRY(vg_dir_sweep_scratch(w, &l, err));
   vg_parallel_for(w->o->threads, w->c->n_face, VG_GRAIN, normal_body, &l);
   vg_parallel_for(w->o->threads, w->c->n_column, VG_GRAIN, first_body, &l);
 done:
-  vg_turn_free(&l);
+  vg_dir_sweep_free(&l);
   return st;
 }

@@ -11,22 +11,23 @@
 #define VG_CAP_NOISY 4     /* bit of vg_layer_work.cap */
 
 /** Directions before and after a sweep over all columns. */
-struct vg_turn {
+struct vg_dir_sweep {
   struct vg_layer_work *w;
   double (*scratch)[3];     /* [worker][max_valence] */
   double (*from)[3], (*to)[3];
   const uint32_t *list;     /* columns to treat, NULL: all */
-  uint8_t *stirs, *stirred; /* [n_column] moves in this sweep, in the last */
+  uint8_t *moves, *moved; /* [n_column] moves in this sweep, in the last */
 };
 
 /** Scratch alone; from and to as dir is now (memory is the caller's to free
- * with vg_turn_free, also on failure); exchange from and to. */
-vg_status vg_turn_scratch(struct vg_layer_work *w, struct vg_turn *t,
-                          struct vg_error *err);
-vg_status vg_turn_new(const struct vg_layer_work *w, struct vg_turn *t,
-                      struct vg_error *err);
-void vg_turn_swap(struct vg_turn *t);
-void vg_turn_free(struct vg_turn *t);
+ * with vg_dir_sweep_free, also on failure); exchange from and to. */
+vg_status vg_dir_sweep_scratch(struct vg_layer_work *w, struct vg_dir_sweep *t,
+                               struct vg_error *err);
+vg_status vg_dir_sweep_new(const struct vg_layer_work *w,
+                           struct vg_dir_sweep *t,
+                           struct vg_error *err);
+void vg_dir_sweep_swap(struct vg_dir_sweep *t);
+void vg_dir_sweep_free(struct vg_dir_sweep *t);
 
 /** Slide normals at column i; their number. */
 int vg_slide_normals(const struct vg_layer_work *w, size_t i, double n[2][3]);

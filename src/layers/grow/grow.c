@@ -10,7 +10,7 @@
 #include "layers/grow/work.h"
 
 #define ROUNDS_MAX 300   /* L2 */
-#define HASTE 150          /* rounds after which what is bad gets no layers */
+#define LAST_RESORT 150  /* rounds after which what is bad gets no layers */
 #define GENTLE 40          /* sound rounds in which heights lose a share only */
 #define SHARE 0.75
 #define TURNS_MAX 12       /* rounds that may turn columns */
@@ -159,7 +159,7 @@ static double lowered(const struct vg_layer_work *w, size_t i, size_t round)
   const struct vg_column *c = &w->c->column[i];
   double d[VG_LEVELS_MAX + 1], h;
 
-  if (round >= GENTLE || w->haste) return 0;
+  if (round >= GENTLE || w->last_resort) return 0;
   vg_law_heights(&w->c->law[c->law], c->cap, c->n, d);
   h = d[c->n] < w->allowed[i] ? d[c->n] : w->allowed[i];
   return SHARE * h;
@@ -182,16 +182,16 @@ static vg_status try_slides(struct vg_layer_work *w,
                             struct vg_layer_front *front, size_t round,
                             size_t *n_bad, struct vg_error *err)
 {
-  struct vg_slide_trouble trouble = { 0 };
+  struct vg_slide_failure failure = { 0 };
   vg_status st = vg_slide_front(w->m, w->n_slide, w->slide, w->c, w->sizing,
-                                front, &trouble, err);
+                                front, &failure, err);
 
-  *n_bad = st == VG_BLOCKED ? trouble.n : 0;
-  for (size_t i = 0; st == VG_BLOCKED && i < trouble.n; i++)
-    vg_heights_lower(w, trouble.column[i], trouble.never[i]
-                     ? 0 : lowered(w, trouble.column[i], round),
+  *n_bad = st == VG_BLOCKED ? failure.n : 0;
+  for (size_t i = 0; st == VG_BLOCKED && i < failure.n; i++)
+    vg_heights_lower(w, failure.column[i], failure.never[i]
+                     ? 0 : lowered(w, failure.column[i], round),
                      VG_CAUSE_SLIDE);
-  free(trouble.column);
+  free(failure.column);
   return st == VG_BLOCKED ? VG_OK : st;
 }
 
@@ -375,7 +375,7 @@ static vg_status until_clear(struct vg_layer_work *w,
       st = VG_BLOCKED;
       goto done;
     }
-    w->haste = r->n_round >= HASTE;
+    w->last_resort = r->n_round >= LAST_RESORT;
     t = vg_clock();
     vg_layer_front_release(front);
     unbend(w->c);

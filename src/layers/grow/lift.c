@@ -39,7 +39,7 @@ static double gain(const struct vg_layer_work *w, uint32_t i,
 
 static void scale_body(void *context, size_t first, size_t end, int worker)
 {
-  struct vg_layer_work *w = ((struct vg_turn *)context)->w;
+  struct vg_layer_work *w = ((struct vg_dir_sweep *)context)->w;
 
   (void)worker;
   for (size_t i = first; i < end; i++) {
@@ -59,7 +59,8 @@ static int same_slides(const struct vg_column *a, const struct vg_column *b)
 
 /* Mean over the caps of which i is the apex, of what the ends of the edges
  * say: a flat triangle stays flat, instead of turning over. */
-static void follow(const struct vg_turn *l, uint32_t i, double (*normal)[3])
+static void follow(const struct vg_dir_sweep *l, uint32_t i,
+                   double (*normal)[3])
 {
   const struct vg_layer_work *w = l->w;
   double sum[3] = { 0, 0, 0 };
@@ -93,7 +94,7 @@ static void follow(const struct vg_turn *l, uint32_t i, double (*normal)[3])
 
 static void follow_body(void *context, size_t first, size_t end, int worker)
 {
-  struct vg_turn *l = context;
+  struct vg_dir_sweep *l = context;
 
   for (size_t k = first; k < end; k++)
     follow(l, l->list[k], l->scratch + (size_t)worker * l->w->max_valence);
@@ -159,7 +160,7 @@ void vg_directions_shift(struct vg_layer_work *w, const uint8_t *which)
 
 vg_status vg_directions_scale(struct vg_layer_work *w, struct vg_error *err)
 {
-  struct vg_turn l = { .w = w };
+  struct vg_dir_sweep l = { .w = w };
   uint32_t *list = vg_alloc(w->c->n_column, sizeof *list);
   size_t n;
   vg_status st;
@@ -168,16 +169,16 @@ vg_status vg_directions_scale(struct vg_layer_work *w, struct vg_error *err)
   vg_parallel_for(w->o->threads, w->c->n_column, VG_GRAIN, scale_body, &l);
   l.list = list;
   n = apices(w, list);
-  VG_TRY(vg_turn_scratch(w, &l, err));
-  VG_TRY(vg_turn_new(w, &l, err));
+  VG_TRY(vg_dir_sweep_scratch(w, &l, err));
+  VG_TRY(vg_dir_sweep_new(w, &l, err));
   for (int s = 0; s < CAP_SWEEPS; s++) {
     vg_parallel_for(w->o->threads, n, VG_GRAIN, follow_body, &l);
-    vg_turn_swap(&l);
+    vg_dir_sweep_swap(&l);
   }
   for (size_t i = 0; i < w->c->n_column; i++)
     memcpy(w->c->column[i].dir, l.from[i], sizeof *l.from);
 done:
-  vg_turn_free(&l);
+  vg_dir_sweep_free(&l);
   free(list);
   return st;
 }
@@ -212,11 +213,11 @@ static int even(struct vg_layer_work *w, size_t i, const uint8_t *turn,
 vg_status vg_directions_even(struct vg_layer_work *w, const uint8_t *turn,
                              uint8_t *turned, struct vg_error *err)
 {
-  struct vg_turn l = { 0 };
+  struct vg_dir_sweep l = { 0 };
   vg_status st;
 
-  VG_TRY(vg_turn_scratch(w, &l, err));
-  VG_TRY(vg_turn_new(w, &l, err));
+  VG_TRY(vg_dir_sweep_scratch(w, &l, err));
+  VG_TRY(vg_dir_sweep_new(w, &l, err));
   for (size_t i = 0; i < w->c->n_column; i++)
     if (even(w, i, turn, l.from, l.scratch, l.to[i])) {
       memcpy(w->c->column[i].dir, l.to[i], sizeof *l.to);
@@ -229,6 +230,6 @@ vg_status vg_directions_even(struct vg_layer_work *w, const uint8_t *turn,
       turned[i] = 1;
     }
 done:
-  vg_turn_free(&l);
+  vg_dir_sweep_free(&l);
   return st;
 }

@@ -41,7 +41,7 @@ struct vg_layer_work {
   uint8_t *why;             /* enum vg_layer_cause: what set `allowed` */
   uint8_t *by_size;         /* n_wanted is where the local size is reached */
   size_t max_valence;       /* faces at a column */
-  int haste;                /* too many rounds: what is bad loses all height */
+  int last_resort;  /* too many rounds: what is bad loses all height */
 };
 
 /** Columns first .. end - 1 have the root of column i. */

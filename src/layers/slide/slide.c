@@ -10,7 +10,7 @@
 #include "base/memory.h"
 #include "layers/slide/slide_parts.h"
 
-enum { TEXT = sizeof ((struct vg_slide_trouble *)0)->text };
+enum { TEXT = sizeof ((struct vg_slide_failure *)0)->text };
 
 vg_status vg_slide_add_point(struct vg_slide_work *w, const double x[3],
                              uint32_t *number)
@@ -25,8 +25,8 @@ vg_status vg_slide_add_point(struct vg_slide_work *w, const double x[3],
   return VG_OK;
 }
 
-void vg_slide_blame(struct vg_slide_work *w, uint32_t i, uint32_t patch,
-                    const double x[3], const char *what)
+void vg_slide_mark_bad(struct vg_slide_work *w, uint32_t i, uint32_t patch,
+                       const double x[3], const char *what)
 {
   const struct vg_patch *p = &w->m->patch[patch];
 
@@ -38,14 +38,14 @@ void vg_slide_blame(struct vg_slide_work *w, uint32_t i, uint32_t patch,
   if (!w->bad[i]) w->bad[i] = 1;
 }
 
-void vg_slide_blame_all(struct vg_slide_work *w, size_t s, const char *what)
+void vg_slide_mark_bad_all(struct vg_slide_work *w, size_t s, const char *what)
 {
-  for (uint32_t r = w->rim_first[s]; r < w->rim_first[s + 1]; r++)
+  for (uint32_t r = w->border_first[s]; r < w->border_first[s + 1]; r++)
     for (int k = 0; k < 2; k++) {
-      const uint32_t i = w->c->rim[w->rim[r]][k];
+      const uint32_t i = w->c->border[w->border[r]][k];
 
-      vg_slide_blame(w, i, w->part[s].patch,
-                     w->m->point[w->c->column[i].root], what);
+      vg_slide_mark_bad(w, i, w->part[s].patch,
+                        w->m->point[w->c->column[i].root], what);
     }
 }
 
@@ -72,8 +72,8 @@ static void release(struct vg_slide_work *w)
   free(w->part_of);
   free(w->tri_first);
   free(w->tri);
-  free(w->rim_first);
-  free(w->rim);
+  free(w->border_first);
+  free(w->border);
   free(w->gone);
   free(w->edge);
   free(w->new_tri);
@@ -209,8 +209,8 @@ static vg_status check_roots(struct vg_slide_work *w, const struct list *l)
         n = below ? n - half - 1 : half;
       }
       for (; lo < c->n_column && c->column[lo].root == v; lo++)
-        vg_slide_blame(w, (uint32_t)lo, l->patch[i], w->m->point[v],
-                       "columns rise where the patch touches the wall");
+        vg_slide_mark_bad(w, (uint32_t)lo, l->patch[i], w->m->point[v],
+                          "columns rise where the patch touches the wall");
     }
   free(left);
   return VG_OK;
@@ -284,8 +284,8 @@ done:
   return st;
 }
 
-static vg_status hand_trouble(const struct vg_slide_work *w,
-                              struct vg_slide_trouble *trouble)
+static vg_status hand_failure(const struct vg_slide_work *w,
+                              struct vg_slide_failure *failure)
 {
   uint32_t *list = vg_alloc(w->n_bad, sizeof *list + 1);
   uint8_t *never = (uint8_t *)(list + w->n_bad);
@@ -297,9 +297,9 @@ static vg_status hand_trouble(const struct vg_slide_work *w,
       never[n] = w->bad[i] > 1;
       list[n++] = i;
     }
-  trouble->n = n;
-  trouble->never = never;
-  trouble->column = list;
+  failure->n = n;
+  failure->never = never;
+  failure->column = list;
   return VG_BLOCKED;
 }
 
@@ -308,15 +308,15 @@ vg_status vg_slide_front(const struct vg_mesh *surface, size_t n_slide,
                          struct vg_columns *columns,
                          const struct vg_sizing *sizing,
                          struct vg_layer_front *front,
-                         struct vg_slide_trouble *trouble,
+                         struct vg_slide_failure *failure,
                          struct vg_error *err)
 {
   struct vg_slide_work w = {
     .m = surface, .sizing = sizing, .n_slide = n_slide, .slide = slide,
-    .c = columns, .text = trouble->text, .err = err };
+    .c = columns, .text = failure->text, .err = err };
   vg_status st;
 
-  memset(trouble, 0, sizeof *trouble);
+  memset(failure, 0, sizeof *failure);
   *front = (struct vg_layer_front)VG_LAYER_FRONT_INIT;
   VG_TRY(prepare(&w));
   VG_TRY(vg_slide_curves(&w));
@@ -328,7 +328,7 @@ vg_status vg_slide_front(const struct vg_mesh *surface, size_t n_slide,
   memset(w.local, 0xff, w.n_x * sizeof *w.local);
   for (size_t s = 0; s < w.n_part; s++) VG_TRY(vg_slide_remesh(&w, s));
   VG_TRY(assemble(&w, front));
-  if (w.n_bad) st = hand_trouble(&w, trouble);
+  if (w.n_bad) st = hand_failure(&w, failure);
 done:
   release(&w);
   return st;

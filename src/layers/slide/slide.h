@@ -45,7 +45,7 @@ void vg_slide_normal(const struct vg_slide *s, const struct vg_mesh *surface,
                      uint32_t p, double normal[3]);
 
 /** Where re-meshing failed, so that columns can be lowered there. */
-struct vg_slide_trouble {
+struct vg_slide_failure {
   size_t n;
   uint32_t *column;         /* [n] sorted, unique; owned */
   const uint8_t *never;     /* [n] 1: not even its first layer fits, so that
@@ -55,7 +55,7 @@ struct vg_slide_trouble {
 
 /** Build the front: tops, re-meshed slide patches, other patches.
  *
- * Boundary of a re-meshed patch: its former boundary with each rim edge
+ * Boundary of a re-meshed patch: its former boundary with each border edge
  * replaced by the edge between the tops. Where a column slides in two patches
  * at once, it runs along their common curve: the points of the curve that it
  * swallows (and those closer to its top than half the local size) go, and the
@@ -67,14 +67,14 @@ struct vg_slide_trouble {
  * triangles; columns that slide in a curved patch are bent (columns->path)
  * onto it, or along the curve where they slide in two. Triangles are no finer
  * than the edges between tops near by, else as `sizing` says.
- * A patch whose rim columns all have n = 0 stays as it is.
+ * A patch whose border columns all have n = 0 stays as it is.
  *
  * @param columns  only bent and path change: made anew in every call
  * @param front    out: what it held is not released. Points: those of the
  *                 surface, rising; tops by rising column; new ones. Triangles:
  *                 the surface's in their order with tops in the places of
  *                 their faces, tops of virtual faces, re-meshed ones by part
- * @param trouble  out: columns at which a patch could not be re-meshed (loops
+ * @param failure  out: columns at which a patch could not be re-meshed (loops
  *                 that cross, normals that turn over); *front is then empty
  *                 and the return is VG_BLOCKED
  * Same bytes for the same input. Cost: about 1 us per column, 6 us per
@@ -84,7 +84,7 @@ vg_status vg_slide_front(const struct vg_mesh *surface, size_t n_slide,
                          struct vg_columns *columns,
                          const struct vg_sizing *sizing,
                          struct vg_layer_front *front,
-                         struct vg_slide_trouble *trouble,
+                         struct vg_slide_failure *failure,
                          struct vg_error *err);
 
 #endif

@@ -331,8 +331,8 @@ static double top_edge(const struct vg_slide_work *w, uint32_t i)
   double sum = 0;
   int n = 0;
 
-  for (size_t r = 0; r < w->c->n_rim; r++) {
-    const uint32_t *e = w->c->rim[r];
+  for (size_t r = 0; r < w->c->n_border; r++) {
+    const uint32_t *e = w->c->border[r];
 
     if (e[0] != i && e[1] != i) continue;
     sum += vg_distance(x, w->x[vg_slide_top(w, e[0] == i ? e[1] : e[0])]);
@@ -353,8 +353,8 @@ static vg_status cut_start(struct vg_slide_work *w, const struct chain *c,
   top->h = top_edge(w, i);
   if (is_short || cut(w, c, x, fmin(vg_sizing_at(w->sizing, x), top->h),
                       &top->s, keep)) {
-    vg_slide_blame(w, i, c->left, w->m->point[c->v[0]],
-                   "a column is longer than the curve that it follows");
+    vg_slide_mark_bad(w, i, c->left, w->m->point[c->v[0]],
+                      "a column is longer than the curve that it follows");
     *keep = c->n;
     return VG_OK;
   }
@@ -385,8 +385,8 @@ static vg_status run_single(struct vg_slide_work *w, const struct chain *c,
   next.v = c->v[keep];
   next.s = c->s[keep];
   if (is_narrow(c, top, next)) {
-    vg_slide_blame(w, i, c->left, w->m->point[c->v[0]],
-                   "a column ends too near to the end of its curve");
+    vg_slide_mark_bad(w, i, c->left, w->m->point[c->v[0]],
+                      "a column ends too near to the end of its curve");
     return VG_OK;
   }
   VG_TRY(remove_edges(w, c, 0, keep));
@@ -413,8 +413,8 @@ static vg_status run_double(struct vg_slide_work *w, struct chain *c,
   keep_b = n - 1 - keep_b;
   if (is_narrow(c, a, b)) {
     for (int k = 0; k < 2; k++)
-      vg_slide_blame(w, k ? j : i, c->left, w->m->point[c->v[k ? n - 1 : 0]],
-                     "two columns meet on the curve that they follow");
+      vg_slide_mark_bad(w, k ? j : i, c->left, w->m->point[c->v[k ? n - 1 : 0]],
+                        "two columns meet on the curve that they follow");
     return VG_OK;
   }
   if (keep_a > keep_b) {
@@ -433,19 +433,18 @@ done:
   return st;
 }
 
-/* runs[i]: column i has rims in both patches that it slides in. */
+/* runs[i]: column i has borders in both patches that it slides in. */
 static void find_runs(const struct vg_slide_work *w, uint8_t *runs)
 {
   const struct vg_columns *c = w->c;
 
-  for (size_t i = 0; i < c->n_rim; i++)
+  for (size_t i = 0; i < c->n_border; i++)
     for (int k = 0; k < 2; k++) {
-      const struct vg_column *col = &c->column[c->rim[i][k]];
+      const struct vg_column *col = &c->column[c->border[i][k]];
 
       if (!col->n || col->slide[1] == VG_NO_INDEX) continue;
-      runs[c->rim[i][k]] |= (uint8_t)(col->slide[0] == c->rim_patch[i] ? 1
-                                      : col->slide[1] == c->rim_patch[i] ? 2
-                                                                         : 0);
+      if (col->slide[0] == c->border_patch[i]) runs[c->border[i][k]] |= 1;
+      else if (col->slide[1] == c->border_patch[i]) runs[c->border[i][k]] |= 2;
     }
   for (size_t i = 0; i < c->n_column; i++) runs[i] = runs[i] == 3;
 }

@@ -17,7 +17,7 @@ void vg_slide_graph_release(struct vg_slide_graph *g)
   free(g->p);
   free(g->height);
   free(g->box);
-  vg_tree2_release(&g->tree);
+  vg_aabb_tree2_release(&g->tree);
   memset(g, 0, sizeof *g);
 }
 
@@ -67,7 +67,7 @@ vg_status vg_slide_graph(const struct vg_slide_work *w, size_t s,
   g->box = vg_alloc(n, sizeof *g->box);
   if (g->p && g->height && g->box) {
     for (size_t i = 0; i < n; i++) project(g, i);
-    if (!vg_tree2_build(&g->tree, n, g->box)) {
+    if (!vg_aabb_tree2_build(&g->tree, n, g->box)) {
       const struct vg_box2 *all = &g->tree.node[1];
 
       g->extent = fmax(all->hi[0] - all->lo[0], all->hi[1] - all->lo[1]);
@@ -85,8 +85,8 @@ static size_t at_roots(const struct vg_slide_work *w, size_t s,
 {
   size_t n_steep = 0;
 
-  for (uint32_t r = w->rim_first[s]; r < w->rim_first[s + 1]; r++) {
-    const struct vg_column *c = &w->c->column[w->c->rim[w->rim[r]][0]];
+  for (uint32_t r = w->border_first[s]; r < w->border_first[s + 1]; r++) {
+    const struct vg_column *c = &w->c->column[w->c->border[w->border[r]][0]];
 
     for (uint32_t j = w->first[c->root]; j < w->first[c->root + 1]; j++) {
       const uint32_t t = w->half[j] / 3, *v = w->m->tri[t];
@@ -106,17 +106,18 @@ static size_t at_roots(const struct vg_slide_work *w, size_t s,
   return n_steep;
 }
 
-void vg_slide_blame_steep(struct vg_slide_work *w, size_t s)
+void vg_slide_mark_steep(struct vg_slide_work *w, size_t s)
 {
   double sum[3] = { 0 };
   int never;
 
   at_roots(w, s, NULL, sum);
   never = !(vg_unit(sum) > 0) || at_roots(w, s, sum, NULL) > 0;
-  vg_slide_blame_all(w, s, "it is too curved to be meshed anew");
-  for (uint32_t r = w->rim_first[s]; never && r < w->rim_first[s + 1]; r++)
+  vg_slide_mark_bad_all(w, s, "it is too curved to be meshed anew");
+  for (uint32_t r = w->border_first[s]; never &&
+       r < w->border_first[s + 1]; r++)
     for (int k = 0; k < 2; k++) {
-      const uint32_t i = w->c->rim[w->rim[r]][k];
+      const uint32_t i = w->c->border[w->border[r]][k];
 
       if (w->bad[i]) w->bad[i] = 2;
     }
@@ -193,7 +194,7 @@ void vg_slide_lift(const struct vg_slide_graph *g, const double p[2],
       box.lo[k] = p[k] - reach;
       box.hi[k] = p[k] + reach;
     }
-    vg_tree2_query(&g->tree, &box, visit, &best);
+    vg_aabb_tree2_query(&g->tree, &box, visit, &best);
     if (best.d2 <= reach * reach) break;
     reach = i ? 4 * reach : 1e-6 * g->extent;
   }
@@ -251,9 +252,9 @@ static vg_status bend(struct vg_slide_work *w, uint32_t i,
 vg_status vg_slide_bend(struct vg_slide_work *w, size_t s,
                         const struct vg_slide_graph *g)
 {
-  for (uint32_t r = w->rim_first[s]; r < w->rim_first[s + 1]; r++)
+  for (uint32_t r = w->border_first[s]; r < w->border_first[s + 1]; r++)
     for (int k = 0; k < 2; k++) {
-      const uint32_t i = w->c->rim[w->rim[r]][k];
+      const uint32_t i = w->c->border[w->border[r]][k];
       vg_status st;
 
       if (!w->c->column[i].n || w->c->column[i].bent != SIZE_MAX) continue;

@@ -1,4 +1,4 @@
-/* The new boundary of a slide patch: its former one with rims raised to the
+/* The new boundary of a slide patch: its former one with borders raised to the
  * tops, and whether it encloses what it should. */
 #include <math.h>
 #include <stdlib.h>
@@ -33,7 +33,7 @@ static vg_status add_edge(struct vg_slide_work *w, struct vg_slide_loops *l,
 /* Half-edges of the part's triangles without a partner in it, that neither
  * columns nor curves replace. */
 static vg_status former_edges(struct vg_slide_work *w, size_t s,
-                              const uint64_t *rim, size_t n_rim,
+                              const uint64_t *border, size_t n_border,
                               struct vg_slide_loops *l)
 {
   for (uint32_t i = w->tri_first[s]; i < w->tri_first[s + 1]; i++)
@@ -43,7 +43,7 @@ static vg_status former_edges(struct vg_slide_work *w, size_t s,
       const uint32_t twin = vg_slide_twin(w, a, b);
 
       if (twin != VG_NO_INDEX && w->part_of[twin / 3] == s) continue;
-      if (has_key(rim, n_rim, (uint64_t)b << 32 | a)
+      if (has_key(border, n_border, (uint64_t)b << 32 | a)
           || has_key(w->gone, w->n_gone, vg_slide_key(a, b)))
         continue;
       if (add_edge(w, l, a, b)) return VG_ERR_MEMORY;
@@ -54,8 +54,8 @@ static vg_status former_edges(struct vg_slide_work *w, size_t s,
 static vg_status new_edges(struct vg_slide_work *w, size_t s,
                            struct vg_slide_loops *l)
 {
-  for (uint32_t i = w->rim_first[s]; i < w->rim_first[s + 1]; i++) {
-    const uint32_t *r = w->c->rim[w->rim[i]];
+  for (uint32_t i = w->border_first[s]; i < w->border_first[s + 1]; i++) {
+    const uint32_t *r = w->c->border[w->border[i]];
     const uint32_t a = vg_slide_top(w, r[0]), b = vg_slide_top(w, r[1]);
 
     if (a != b && add_edge(w, l, b, a)) return VG_ERR_MEMORY;
@@ -67,20 +67,20 @@ static vg_status new_edges(struct vg_slide_work *w, size_t s,
   return VG_OK;
 }
 
-static void blame_point(struct vg_slide_work *w, size_t s, uint32_t p,
-                        const char *what)
+static void mark_bad_point(struct vg_slide_work *w, size_t s, uint32_t p,
+                           const char *what)
 {
   const uint32_t patch = w->part[s].patch;
   const uint32_t i = vg_slide_column(w, p);
 
-  if (i != VG_NO_INDEX) vg_slide_blame(w, i, patch, w->x[p], what);
-  for (uint32_t r = w->rim_first[s]; i == VG_NO_INDEX
-                                     && r < w->rim_first[s + 1]; r++)
+  if (i != VG_NO_INDEX) vg_slide_mark_bad(w, i, patch, w->x[p], what);
+  for (uint32_t r = w->border_first[s]; i == VG_NO_INDEX
+                                     && r < w->border_first[s + 1]; r++)
     for (int k = 0; k < 2; k++) {
-      const uint32_t j = w->c->rim[w->rim[r]][k];
+      const uint32_t j = w->c->border[w->border[r]][k];
 
       if (w->c->column[j].root == p)
-        vg_slide_blame(w, j, patch, w->x[p], what);
+        vg_slide_mark_bad(w, j, patch, w->x[p], what);
     }
 }
 
@@ -118,11 +118,11 @@ static vg_status check_closed(struct vg_slide_work *w, size_t s,
     }
     *is_closed = 0;
     if (j == l->n || (i < l->n && from[i] < to[j]))
-      blame_point(w, s, from[i++], what);
+      mark_bad_point(w, s, from[i++], what);
     else
-      blame_point(w, s, to[j++], what);
+      mark_bad_point(w, s, to[j++], what);
   }
-  if (!*is_closed && !w->n_bad) vg_slide_blame_all(w, s, what);
+  if (!*is_closed && !w->n_bad) vg_slide_mark_bad_all(w, s, what);
   free(from);
   free(to);
   return VG_OK;
@@ -131,26 +131,26 @@ static vg_status check_closed(struct vg_slide_work *w, size_t s,
 vg_status vg_slide_boundary(struct vg_slide_work *w, size_t s,
                             struct vg_slide_loops *out)
 {
-  const size_t n_rim = w->rim_first[s + 1] - w->rim_first[s];
-  uint64_t *rim = vg_alloc(n_rim, sizeof *rim);
+  const size_t n_border = w->border_first[s + 1] - w->border_first[s];
+  uint64_t *border = vg_alloc(n_border, sizeof *border);
   int is_closed = 0;
   vg_status st = VG_OK;
 
   out->n = 0;
-  if (!rim) return vg_fail_memory(w->err, "the boundary of a slide patch");
-  for (size_t i = 0; i < n_rim; i++) {
-    const uint32_t *r = w->c->rim[w->rim[w->rim_first[s] + i]];
+  if (!border) return vg_fail_memory(w->err, "the boundary of a slide patch");
+  for (size_t i = 0; i < n_border; i++) {
+    const uint32_t *r = w->c->border[w->border[w->border_first[s] + i]];
 
-    rim[i] = (uint64_t)w->c->column[r[0]].root << 32
+    border[i] = (uint64_t)w->c->column[r[0]].root << 32
              | w->c->column[r[1]].root;
   }
-  qsort(rim, n_rim, sizeof *rim, compare_key);
-  VG_TRY(former_edges(w, s, rim, n_rim, out));
+  qsort(border, n_border, sizeof *border, compare_key);
+  VG_TRY(former_edges(w, s, border, n_border, out));
   VG_TRY(new_edges(w, s, out));
   VG_TRY(check_closed(w, s, out, &is_closed));
   if (!is_closed) out->n = 0;
 done:
-  free(rim);
+  free(border);
   return st;
 }
 
@@ -163,7 +163,7 @@ struct cross {
   const double (*p)[2];
   uint32_t edge;            /* compared with those behind it */
   int n;                    /* corners of the flank at hand */
-  uint32_t rim, corner[4];
+  uint32_t border, corner[4];
   double q[4][2];
 };
 
@@ -220,19 +220,19 @@ static void visit_edge(void *user, uint32_t j)
   if (!is_bad) return;
   x->n_bad++;
   for (k = 0; k < 2; k++) {
-    blame_point(x->w, x->s, e[k], "the tops' outline crosses itself");
-    blame_point(x->w, x->s, f[k], "the tops' outline crosses itself");
+    mark_bad_point(x->w, x->s, e[k], "the tops' outline crosses itself");
+    mark_bad_point(x->w, x->s, f[k], "the tops' outline crosses itself");
   }
 }
 
-static void blame_flank(struct cross *x, const char *what)
+static void mark_bad_flank(struct cross *x, const char *what)
 {
-  const uint32_t *r = x->w->c->rim[x->rim];
+  const uint32_t *r = x->w->c->border[x->border];
 
   x->n_bad++;
   for (int k = 0; k < 2; k++)
-    vg_slide_blame(x->w, r[k], x->w->part[x->s].patch,
-                   x->w->m->point[x->w->c->column[r[k]].root], what);
+    vg_slide_mark_bad(x->w, r[k], x->w->part[x->s].patch,
+                      x->w->m->point[x->w->c->column[r[k]].root], what);
 }
 
 /* No point of the boundary may stand within a flank. */
@@ -246,8 +246,9 @@ static void visit_flank(void *user, uint32_t j)
     if (x->corner[i] == v) return;
   for (int i = 0; i < x->n; i++)
     if (vg_orient2d(x->q[i], x->q[i + 1 < x->n ? i + 1 : 0], p) < 0) return;
-  blame_flank(x, "a flank runs into another part of the boundary");
-  blame_point(x->w, x->s, v, "a flank runs into another part of the boundary");
+  mark_bad_flank(x, "a flank runs into another part of the boundary");
+  mark_bad_point(x->w, x->s, v,
+                 "a flank runs into another part of the boundary");
 }
 
 /* The point of column i at level 1, in the plane. */
@@ -267,16 +268,16 @@ static void risen(const struct vg_slide_work *w,
   vg_slide_to_plane(f, x, q);
 }
 
-/* The flank over a rim, counter-clockwise; 0 corners where it is none. */
+/* The flank over a border, counter-clockwise; 0 corners where it is none. */
 static void set_flank(struct cross *x, const struct vg_slide_frame *f,
-                      uint32_t rim)
+                      uint32_t border)
 {
   const struct vg_slide_work *w = x->w;
-  const uint32_t *r = w->c->rim[rim];
+  const uint32_t *r = w->c->border[border];
   const uint32_t v[4] = { w->c->column[r[1]].root, w->c->column[r[0]].root,
                           vg_slide_top(w, r[0]), vg_slide_top(w, r[1]) };
 
-  x->rim = rim;
+  x->border = border;
   x->n = 0;
   for (int i = 0; i < 4; i++) {
     if (x->n && (v[i] == x->corner[x->n - 1] || v[i] == x->corner[0]))
@@ -300,7 +301,7 @@ static int is_convex(const struct cross *x)
 static void give_up(struct cross *x, const struct vg_slide_frame *f)
 {
   const struct vg_slide_work *w = x->w;
-  const uint32_t *r = w->c->rim[x->rim];
+  const uint32_t *r = w->c->border[x->border];
   const uint32_t a = w->c->column[r[0]].root, b = w->c->column[r[1]].root;
   double pa[2], pb[2], q[2];
 
@@ -331,7 +332,7 @@ vg_status vg_slide_cross(struct vg_slide_work *w, size_t s,
 {
   struct cross x = { .w = w, .s = s, .l = loops, .p = p };
   struct vg_box2 *box = vg_alloc(loops->n, sizeof *box), b;
-  struct vg_tree2 tree = VG_TREE2_INIT;
+  struct vg_aabb_tree2 tree = VG_TREE2_INIT;
   vg_status st = VG_OK;
 
   *n_bad = 0;
@@ -342,28 +343,28 @@ vg_status vg_slide_cross(struct vg_slide_work *w, size_t s,
 
     box_of(2, q, &box[i]);
   }
-  if (!box || vg_tree2_build(&tree, loops->n, box)) {
+  if (!box || vg_aabb_tree2_build(&tree, loops->n, box)) {
     st = vg_fail_memory(w->err, "the boundary of a slide patch");
     goto done;
   }
   for (size_t i = 0; i < loops->n; i++) {
     x.edge = (uint32_t)i;
-    vg_tree2_query(&tree, &box[i], visit_edge, &x);
+    vg_aabb_tree2_query(&tree, &box[i], visit_edge, &x);
   }
-  for (uint32_t i = w->rim_first[s]; i < w->rim_first[s + 1]; i++) {
-    set_flank(&x, frame, w->rim[i]);
+  for (uint32_t i = w->border_first[s]; i < w->border_first[s + 1]; i++) {
+    set_flank(&x, frame, w->border[i]);
     if (!x.n) continue;
     if (!is_convex(&x)) {
-      blame_flank(&x, "a flank folds over");
+      mark_bad_flank(&x, "a flank folds over");
       give_up(&x, frame);
       continue;
     }
     box_of((size_t)x.n, (const double (*)[2])x.q, &b);
-    vg_tree2_query(&tree, &b, visit_flank, &x);
+    vg_aabb_tree2_query(&tree, &b, visit_flank, &x);
   }
   *n_bad = x.n_bad;
 done:
-  vg_tree2_release(&tree);
+  vg_aabb_tree2_release(&tree);
   free(box);
   return st;
 }

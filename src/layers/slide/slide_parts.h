@@ -14,7 +14,7 @@ struct vg_box2 { double lo[2], hi[2]; };
 
 /* Boxes in the plane: found by overlap. The leaves of a full binary tree are
  * groups of items along a space-filling curve. */
-struct vg_tree2 {
+struct vg_aabb_tree2 {
   size_t n, n_leaf;         /* n_leaf: a power of 2 */
   const struct vg_box2 *box;/* [n] the caller's */
   struct vg_box2 *node;     /* [2 n_leaf] 1 is the root, 2 i below i */
@@ -23,13 +23,15 @@ struct vg_tree2 {
 #define VG_TREE2_INIT { 0, 0, NULL, NULL, NULL }
 
 /** 0, or -1 when memory is refused. O(n log n). */
-int vg_tree2_build(struct vg_tree2 *t, size_t n, const struct vg_box2 *box);
-void vg_tree2_release(struct vg_tree2 *t);
+int vg_aabb_tree2_build(struct vg_aabb_tree2 *t, size_t n,
+                        const struct vg_box2 *box);
+void vg_aabb_tree2_release(struct vg_aabb_tree2 *t);
 
 /** visit() items whose box touches `box`, in an order that depends on the
  * items alone. */
-void vg_tree2_query(const struct vg_tree2 *t, const struct vg_box2 *box,
-                    void (*visit)(void *user, uint32_t item), void *user);
+void vg_aabb_tree2_query(const struct vg_aabb_tree2 *t,
+                         const struct vg_box2 *box,
+                         void (*visit)(void *user, uint32_t item), void *user);
 
 /* slide.c -----------------------------------------------------------------*/
 
@@ -54,7 +56,8 @@ struct vg_slide_work {
   struct vg_slide *part;
   uint32_t *part_of;        /* [m->n_tri] VG_NO_INDEX: stays */
   uint32_t *tri_first, *tri;/* [n_part + 1] into tri[]: triangles by part */
-  uint32_t *rim_first, *rim;/* [n_part + 1] into rim[]: rims by part */
+  uint32_t *border_first, *border;/* [n_part + 1] into border[]: borders by
+                                     part */
   /* Curves between slide patches: edges of the surface that are gone (both
    * points, the lower one in the high half, sorted) and those in their
    * place. */
@@ -98,11 +101,11 @@ vg_status vg_slide_add_point(struct vg_slide_work *w, const double x[3],
 
 /** Mark column i as failed (columns without levels cannot be). The first
  * call says why: what, in patch, near x. */
-void vg_slide_blame(struct vg_slide_work *w, uint32_t i, uint32_t patch,
-                    const double x[3], const char *what);
+void vg_slide_mark_bad(struct vg_slide_work *w, uint32_t i, uint32_t patch,
+                       const double x[3], const char *what);
 
-/** Mark all rim columns of part s. */
-void vg_slide_blame_all(struct vg_slide_work *w, size_t s, const char *what);
+/** Mark all border columns of part s. */
+void vg_slide_mark_bad_all(struct vg_slide_work *w, size_t s, const char *what);
 
 /** The half-edge from b to a (twin of a -> b) in a slide patch, or
  * VG_NO_INDEX. */
@@ -166,7 +169,7 @@ struct vg_slide_graph {
   double (*p)[3][2];        /* [n] */
   double (*height)[3];      /* [n] above the plane */
   struct vg_box2 *box;
-  struct vg_tree2 tree;
+  struct vg_aabb_tree2 tree;
   double extent;
 };
 
@@ -175,15 +178,15 @@ vg_status vg_slide_graph(const struct vg_slide_work *w, size_t s,
                          struct vg_slide_graph *g);
 void vg_slide_graph_release(struct vg_slide_graph *g);
 
-/** Mark the rim columns of part s, which is no graph: for good when it is
+/** Mark the border columns of part s, which is no graph: for good when it is
  * none even right at their roots, since less height leaves a smaller part. */
-void vg_slide_blame_steep(struct vg_slide_work *w, size_t s);
+void vg_slide_mark_steep(struct vg_slide_work *w, size_t s);
 
 /** The point of the patch over p; beyond its border that nearest to it. */
 void vg_slide_lift(const struct vg_slide_graph *g, const double p[2],
                    double x[3]);
 
-/** Bend the rim columns of part s onto it, those that follow a curve (bent
+/** Bend the border columns of part s onto it, those that follow a curve (bent
  * already) excepted. */
 vg_status vg_slide_bend(struct vg_slide_work *w, size_t s,
                         const struct vg_slide_graph *g);
@@ -199,7 +202,7 @@ struct vg_slide_law {
   double slope;
   struct { double p[2], h; } *top;      /* edges finer than which it would be */
   struct vg_box2 *box;                  /* as far as they matter */
-  struct vg_tree2 tree;
+  struct vg_aabb_tree2 tree;
 };
 
 /** Let tops bound the size from below. */

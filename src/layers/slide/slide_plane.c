@@ -128,8 +128,8 @@ static void check_slivers(struct vg_slide_work *w, size_t s,
       const uint32_t c = vg_slide_column(w, r->number[t[k]]);
 
       if (c != VG_NO_INDEX)
-        vg_slide_blame(w, c, w->part[s].patch, w->x[r->number[t[k]]],
-                       "tops line up so that a triangle has no area");
+        vg_slide_mark_bad(w, c, w->part[s].patch, w->x[r->number[t[k]]],
+                          "tops line up so that a triangle has no area");
     }
   }
 }
@@ -178,7 +178,7 @@ static vg_status fill(struct vg_slide_work *w, size_t s,
                                 &n_add, &add, &n_tri, &tri, &err);
 
   if (st == VG_ERR_GEOMETRY || st == VG_ERR_INPUT) {
-    vg_slide_blame_all(w, s, "its new boundary encloses no region");
+    vg_slide_mark_bad_all(w, s, "its new boundary encloses no region");
     return VG_OK;
   }
   if (st != VG_OK) return vg_fail(w->err, st, "%s", err.text);
@@ -203,7 +203,7 @@ vg_status vg_slide_remesh(struct vg_slide_work *w, size_t s)
   if (!w->part[s].is_plane) {
     VG_TRY(vg_slide_graph(w, s, &graph));
     if (st == VG_BLOCKED) {
-      vg_slide_blame_steep(w, s);
+      vg_slide_mark_steep(w, s);
       return VG_OK;
     }
     law.graph = &graph;
@@ -220,7 +220,7 @@ vg_status vg_slide_remesh(struct vg_slide_work *w, size_t s)
     VG_TRY(fill(w, s, &law, &r, loops.n));
   }
   if (n_bad && !w->n_bad)
-    vg_slide_blame_all(w, s, "its border crosses itself");
+    vg_slide_mark_bad_all(w, s, "its border crosses itself");
 done:
   release_region(w, &r);
   free(loops.edge);

@@ -61,7 +61,7 @@ static vg_status add_part(struct vg_slide_work *w, const struct vg_slide *s)
   return VG_OK;
 }
 
-/* Plane patches with a rim column that rises. */
+/* Plane patches with a border column that rises. */
 static vg_status plane_parts(struct vg_slide_work *w)
 {
   const struct vg_columns *c = w->c;
@@ -70,11 +70,11 @@ static vg_status plane_parts(struct vg_slide_work *w)
 
   if (!part) return vg_fail_memory(w->err, "slide patches");
   for (size_t s = 0; s < w->n_slide; s++) part[s] = VG_NO_INDEX;
-  for (size_t i = 0; i < c->n_rim; i++) {
-    const uint32_t s = w->slide_of[c->rim_patch[i]];
+  for (size_t i = 0; i < c->n_border; i++) {
+    const uint32_t s = w->slide_of[c->border_patch[i]];
 
     if (s != VG_NO_INDEX && w->slide[s].is_plane
-        && (c->column[c->rim[i][0]].n || c->column[c->rim[i][1]].n))
+        && (c->column[c->border[i][0]].n || c->column[c->border[i][1]].n))
       part[s] = 0;
   }
   for (size_t s = 0; s < w->n_slide; s++) {
@@ -92,7 +92,7 @@ done:
   return st;
 }
 
-/* Spread from rim columns over curved patches. */
+/* Spread from border columns over curved patches. */
 struct spread {
   double *left;             /* [n_point] reach that is left at a point */
   uint32_t *from;           /* [n_point] the column that left it */
@@ -144,9 +144,9 @@ static vg_status spread(struct vg_slide_work *w)
     st = vg_fail_memory(w->err, "slide patches");
     goto done;
   }
-  for (size_t i = 0; i < c->n_rim; i++)
+  for (size_t i = 0; i < c->n_border; i++)
     for (int k = 0; k < 2; k++) {
-      const uint32_t j = c->rim[i][k], s = w->slide_of[c->rim_patch[i]];
+      const uint32_t j = c->border[i][k], s = w->slide_of[c->border_patch[i]];
 
       if (!c->column[j].n || s == VG_NO_INDEX || w->slide[s].is_plane)
         continue;
@@ -228,22 +228,22 @@ static void mean_normals(struct vg_slide_work *w)
   }
 }
 
-/* The part that a rim belongs to: its triangle's; between columns of one
+/* The part that a border belongs to: its triangle's; between columns of one
  * root, that of a triangle of the patch there. */
-static uint32_t part_of_rim(const struct vg_slide_work *w, size_t i)
+static uint32_t part_of_border(const struct vg_slide_work *w, size_t i)
 {
   const struct vg_columns *c = w->c;
-  const uint32_t a = c->column[c->rim[i][0]].root;
-  const uint32_t b = c->column[c->rim[i][1]].root;
+  const uint32_t a = c->column[c->border[i][0]].root;
+  const uint32_t b = c->column[c->border[i][1]].root;
 
   if (a != b) {
     const uint32_t h = vg_slide_twin(w, a, b);
 
-    if (h != VG_NO_INDEX && w->m->tri_patch[h / 3] == c->rim_patch[i])
+    if (h != VG_NO_INDEX && w->m->tri_patch[h / 3] == c->border_patch[i])
       return w->part_of[h / 3];
   }
   for (uint32_t j = w->first[a]; j < w->first[a + 1]; j++)
-    if (w->m->tri_patch[w->half[j] / 3] == c->rim_patch[i]
+    if (w->m->tri_patch[w->half[j] / 3] == c->border_patch[i]
         && w->part_of[w->half[j] / 3] != VG_NO_INDEX)
       return w->part_of[w->half[j] / 3];
   return VG_NO_INDEX;
@@ -255,7 +255,7 @@ vg_status vg_slide_parts(struct vg_slide_work *w)
   vg_status st;
 
   w->part_of = vg_alloc(w->m->n_tri, sizeof *w->part_of);
-  class_of = vg_alloc(w->c->n_rim, sizeof *class_of);
+  class_of = vg_alloc(w->c->n_border, sizeof *class_of);
   if (!w->part_of || !class_of) {
     st = vg_fail_memory(w->err, "slide patches");
     goto done;
@@ -267,8 +267,9 @@ vg_status vg_slide_parts(struct vg_slide_work *w)
   VG_TRY(bucket(w->m->n_tri, w->part_of, w->n_part, &w->tri_first, &w->tri,
                 w->err));
   mean_normals(w);
-  for (size_t i = 0; i < w->c->n_rim; i++) class_of[i] = part_of_rim(w, i);
-  st = bucket(w->c->n_rim, class_of, w->n_part, &w->rim_first, &w->rim,
+  for (size_t i = 0; i < w->c->n_border; i++) class_of[i] = part_of_border(w,
+                                                                           i);
+  st = bucket(w->c->n_border, class_of, w->n_part, &w->border_first, &w->border,
               w->err);
 done:
   free(class_of);

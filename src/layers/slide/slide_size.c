@@ -12,7 +12,7 @@ void vg_slide_law_release(struct vg_slide_law *l)
 {
   free(l->top);
   free(l->box);
-  vg_tree2_release(&l->tree);
+  vg_aabb_tree2_release(&l->tree);
 }
 
 /* Edge between tops that is longer than the field asks for? */
@@ -51,7 +51,7 @@ vg_status vg_slide_law_floor(struct vg_slide_work *w,
     }
     n++;
   }
-  if (n && vg_tree2_build(&l->tree, n, l->box))
+  if (n && vg_aabb_tree2_build(&l->tree, n, l->box))
     return vg_fail_memory(w->err, "a slide patch");
   return VG_OK;
 }
@@ -89,6 +89,6 @@ double vg_slide_size(void *law, const double p[2])
   vg_slide_place(l, p, x);
   at.h = vg_sizing_at(l->sizing, x);
   for (int k = 0; k < 2; k++) box.lo[k] = box.hi[k] = p[k];
-  vg_tree2_query(&l->tree, &box, lift_to, &at);
+  vg_aabb_tree2_query(&l->tree, &box, lift_to, &at);
   return at.h;
 }

@@ -58,7 +58,8 @@ static void make_keys(size_t n, const struct vg_box2 *box, struct key *key)
   }
 }
 
-int vg_tree2_build(struct vg_tree2 *t, size_t n, const struct vg_box2 *box)
+int vg_aabb_tree2_build(struct vg_aabb_tree2 *t, size_t n,
+                        const struct vg_box2 *box)
 {
   struct key *key = vg_alloc(n, sizeof *key);
   size_t n_leaf = 1;
@@ -68,7 +69,7 @@ int vg_tree2_build(struct vg_tree2 *t, size_t n, const struct vg_box2 *box)
   t->item = vg_alloc(n, sizeof *t->item);
   if (!key || !t->node || !t->item) {
     free(key);
-    vg_tree2_release(t);
+    vg_aabb_tree2_release(t);
     return -1;
   }
   t->n = n;
@@ -89,11 +90,11 @@ int vg_tree2_build(struct vg_tree2 *t, size_t n, const struct vg_box2 *box)
   return 0;
 }
 
-void vg_tree2_release(struct vg_tree2 *t)
+void vg_aabb_tree2_release(struct vg_aabb_tree2 *t)
 {
   free(t->node);
   free(t->item);
-  *t = (struct vg_tree2)VG_TREE2_INIT;
+  *t = (struct vg_aabb_tree2)VG_TREE2_INIT;
 }
 
 static int overlap(const struct vg_box2 *a, const struct vg_box2 *b)
@@ -102,8 +103,9 @@ static int overlap(const struct vg_box2 *a, const struct vg_box2 *b)
          && b->lo[1] <= a->hi[1];
 }
 
-void vg_tree2_query(const struct vg_tree2 *t, const struct vg_box2 *box,
-                    void (*visit)(void *user, uint32_t item), void *user)
+void vg_aabb_tree2_query(const struct vg_aabb_tree2 *t,
+                         const struct vg_box2 *box,
+                         void (*visit)(void *user, uint32_t item), void *user)
 {
   size_t stack[DEPTH], n = 0;
 

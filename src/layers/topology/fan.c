@@ -6,7 +6,7 @@
 #include "base/memory.h"
 #include "core/geometry/predicates.h"
 #include "core/geometry/vector.h"
-#include "layers/topology/gram.h"
+#include "layers/topology/most_normal.h"
 
 /* L12: As in direct.c: where all faces are seen this well the mean normal is
  * the direction, elsewhere the most normal one. */
@@ -36,8 +36,8 @@ void vg_fans_release(struct vg_fans *f)
   free(f->fan);
   free(f->preset);
   free(f->face);
-  free(f->rim);
-  free(f->rim_patch);
+  free(f->border);
+  free(f->border_patch);
   memset(f, 0, sizeof *f);
 }
 

@@ -63,7 +63,7 @@ struct vg_fan_preset {
 };
 
 struct vg_fans {
-  size_t n_fan, n_preset, n_chain, n_face, n_rim;
+  size_t n_fan, n_preset, n_chain, n_face, n_border;
   uint32_t *first;            /* [wall n_point + 1] first column */
   uint8_t *at;                /* [3 * wall n_face] column of each corner from
                                  the point's first; NULL: 0 */
@@ -73,8 +73,8 @@ struct vg_fans {
   struct vg_fan_point *fan;   /* [n_fan] by rising point */
   struct vg_fan_preset *preset;  /* [n_preset] by rising column */
   uint32_t (*face)[3];        /* [n_face] virtual faces, of columns */
-  uint32_t (*rim)[2];         /* [n_rim] of columns */
-  uint32_t *rim_patch;        /* [n_rim] */
+  uint32_t (*border)[2];         /* [n_border] of columns */
+  uint32_t *border_patch;        /* [n_border] */
 };
 #define VG_FANS_INIT { 0, 0, 0, 0, 0, NULL, NULL, NULL, NULL, NULL, NULL, \
                        NULL, NULL, NULL }
@@ -86,7 +86,8 @@ vg_status vg_fans_build(const struct vg_wall *w, size_t n_slide,
                         const struct vg_slide *slide, double fan_angle,
                         struct vg_fans *f, struct vg_error *err);
 
-/** Virtual faces and rims, once columns and chains are known (fan_face.c). */
+/** Virtual faces and borders, once columns and chains are known (fan_face.c).
+ * */
 vg_status vg_fans_close(const struct vg_wall *w, struct vg_fans *f,
                         struct vg_error *err);
 

@@ -1,11 +1,11 @@
-/* Virtual faces along ridges and at points, and rims of fans. */
+/* Virtual faces along ridges and at points, and borders of fans. */
 #include "base/memory.h"
 #include "layers/topology/fan.h"
 
 struct faces {
   const struct vg_wall *w;
   struct vg_fans *f;
-  size_t cap_face, cap_rim, cap_patch;
+  size_t cap_face, cap_border, cap_patch;
 };
 
 static vg_status add_face(struct faces *s, uint32_t a, uint32_t b, uint32_t c,
@@ -75,7 +75,7 @@ done:
 }
 
 /* Where a fan meets a slide patch its chains have strips on one side only:
- * the other one is the rim, in the sense of the strips. */
+ * the other one is the border, in the sense of the strips. */
 static vg_status fan_rims(struct faces *s, const struct vg_fan_point *fan,
                           struct vg_error *err)
 {
@@ -83,13 +83,14 @@ static vg_status fan_rims(struct faces *s, const struct vg_fan_point *fan,
   uint32_t o = f->first[fan->point];
 
   for (uint32_t i = fan->n_column - 1u; fan->is_open && i > 0; i--) {
-    if (vg_reserve(&f->rim, &s->cap_rim, f->n_rim + 1, sizeof *f->rim) < 0
-        || vg_reserve(&f->rim_patch, &s->cap_patch, f->n_rim + 1,
-                      sizeof *f->rim_patch) < 0)
+    if (vg_reserve(&f->border, &s->cap_border, f->n_border + 1,
+                   sizeof *f->border) < 0
+        || vg_reserve(&f->border_patch, &s->cap_patch, f->n_border + 1,
+                      sizeof *f->border_patch) < 0)
       return vg_fail_memory(err, "the rims of fans");
-    f->rim[f->n_rim][0] = o + i;
-    f->rim[f->n_rim][1] = o + i - 1;
-    f->rim_patch[f->n_rim++] = s->w->slide[fan->point][0];
+    f->border[f->n_border][0] = o + i;
+    f->border[f->n_border][1] = o + i - 1;
+    f->border_patch[f->n_border++] = s->w->slide[fan->point][0];
   }
   return VG_OK;
 }

@@ -3,7 +3,7 @@
 
 #include "core/geometry/vector.h"
 #include "layers/topology/fan.h"
-#include "layers/topology/gram.h"
+#include "layers/topology/most_normal.h"
 
 #define COS_STEP 0.7660444431189780   /* L13: of 40 degrees */
 #define SLACK 1e-9            /* a turn of 40 degrees sharp takes one step */

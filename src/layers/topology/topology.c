@@ -74,19 +74,19 @@ static vg_status make_faces(const struct vg_wall *w, const struct vg_fans *f,
 static vg_status make_rims(const struct vg_wall *w, const struct vg_fans *f,
                            struct vg_columns *c, struct vg_error *err)
 {
-  c->n_rim = w->n_rim + f->n_rim;
-  c->rim = vg_alloc(c->n_rim, sizeof *c->rim);
-  c->rim_patch = vg_alloc(c->n_rim, sizeof *c->rim_patch);
-  if (!c->rim || !c->rim_patch)
+  c->n_border = w->n_border + f->n_border;
+  c->border = vg_alloc(c->n_border, sizeof *c->border);
+  c->border_patch = vg_alloc(c->n_border, sizeof *c->border_patch);
+  if (!c->border || !c->border_patch)
     return vg_fail_memory(err, "the rims of the columns");
-  for (size_t i = 0; i < w->n_rim; i++) {
-    c->rim[i][0] = vg_fan_column(w, f, w->rim[i]);
-    c->rim[i][1] = vg_fan_column(w, f, vg_half_next(w->rim[i]));
-    c->rim_patch[i] = w->rim_patch[i];
+  for (size_t i = 0; i < w->n_border; i++) {
+    c->border[i][0] = vg_fan_column(w, f, w->border[i]);
+    c->border[i][1] = vg_fan_column(w, f, vg_half_next(w->border[i]));
+    c->border_patch[i] = w->border_patch[i];
   }
-  for (size_t i = 0; i < f->n_rim; i++) {
-    memcpy(c->rim[w->n_rim + i], f->rim[i], sizeof *c->rim);
-    c->rim_patch[w->n_rim + i] = f->rim_patch[i];
+  for (size_t i = 0; i < f->n_border; i++) {
+    memcpy(c->border[w->n_border + i], f->border[i], sizeof *c->border);
+    c->border_patch[w->n_border + i] = f->border_patch[i];
   }
   return VG_OK;
 }

@@ -1,4 +1,4 @@
-/* layers/topology/topology.h: which columns, faces and rims a wall has. Uses
+/* layers/topology/topology.h: which columns, faces and borders a wall has. Uses
  * core, columns.h, slide.h. */
 #ifndef VG_LAYERS_TOPOLOGY_TOPOLOGY_H
 #define VG_LAYERS_TOPOLOGY_TOPOLOGY_H
@@ -23,7 +23,7 @@ struct vg_topology {
 
 void vg_topology_release(struct vg_topology *t);
 
-/** Columns, faces, rims and their neighbourhoods. n, dir, cap, law of the
+/** Columns, faces, borders and their neighbourhoods. n, dir, cap, law of the
  * columns are 0 but for the dir (unit) of preset columns.
  *
  * slide[] of a column: the slide patches that its point touches, by an edge
@@ -36,7 +36,7 @@ void vg_topology_release(struct vg_topology *t);
  * preset columns that the turning between directions is at most 40 degrees.
  * A point that one direction serves well, or that lies on one ridge end only,
  * keeps one column. Virtual faces close the gaps along ridges and at points.
- * A ridge that ends at a slide patch ends in a rim there.
+ * A ridge that ends at a slide patch ends in a border there.
  *
  * All columns of one root should get the same levels and heights. Then cells
  * of virtual faces are positive as long as no column of the face is 90 degrees

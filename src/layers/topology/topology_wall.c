@@ -22,8 +22,8 @@ void vg_wall_release(struct vg_wall *w)
   free(w->tri);
   free(w->face);
   free(w->opposite);
-  free(w->rim);
-  free(w->rim_patch);
+  free(w->border);
+  free(w->border_patch);
   free(w->slide);
   free(w->start);
   free(w->blocked);
@@ -165,12 +165,13 @@ static vg_status find_opposites(struct vg_wall *w, const struct rings *r,
     patch = m->tri_patch[g / 3];
     if (face != VG_NO_INDEX) w->opposite[h] = 3 * face + g % 3;
     if (r->role[patch] != SLIDE) continue;
-    if (vg_reserve(&w->rim, &cap_half, w->n_rim + 1, sizeof *w->rim) < 0
-        || vg_reserve(&w->rim_patch, &cap_patch, w->n_rim + 1,
-                      sizeof *w->rim_patch) < 0)
+    if (vg_reserve(&w->border, &cap_half, w->n_border + 1,
+                   sizeof *w->border) < 0
+        || vg_reserve(&w->border_patch, &cap_patch, w->n_border + 1,
+                      sizeof *w->border_patch) < 0)
       return vg_fail_memory(err, "the rims of the walls");
-    w->rim[w->n_rim] = h;
-    w->rim_patch[w->n_rim++] = patch;
+    w->border[w->n_border] = h;
+    w->border_patch[w->n_border++] = patch;
   }
   return VG_OK;
 }

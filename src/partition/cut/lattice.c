@@ -15,7 +15,7 @@ static const double other_share[] = {0, 0.07, -0.07, 0.15, -0.15};
 static const double leaf_slack = 1.25;   /* C2 */
 
 /* Below so many leaves planes are grown whole, one after another, which costs
- * least: lattices have pencils, and tiles more rim. With more leaves more
+ * least: lattices have pencils, and tiles more border. With more leaves more
  * workers are expected, who would wait for single planes. */
 static const double few_leaves = 80;   /* C3 */
 

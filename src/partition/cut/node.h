@@ -108,11 +108,12 @@ struct vg_partition {
   /* numbering */
   struct vg_slices slices;
   size_t n_place;
-  struct vg_place_of { uint32_t serial; uint64_t point; } *place; /* by serial */
+  struct vg_place_of { uint32_t serial; uint64_t point; } *place; /* by serial
+                                                                     */
   uint64_t *point_at, *cell_at;  /* [n_piece] */
   uint32_t *domain;          /* [n_piece] */
   uint32_t *front_id;        /* [boundary->n_point] 0, 1, ... */
-  struct vg_mesh rim;        /* the boundary without points */
+  struct vg_mesh boundary_faces;        /* the boundary without points */
 };
 
 /** A serial that no other task of any rank has. Threads: safe. */

@@ -120,7 +120,7 @@ struct body {
   uint32_t seen[32];         /* points lately found outside, by their numbers */
 };
 
-/* Does the way from x to y pass the triangle? -1: it touches its rim, or
+/* Does the way from x to y pass the triangle? -1: it touches its border, or
  * begins on it. */
 static int passes(const double x[3], const double y[3],
                   const double *const t[3])

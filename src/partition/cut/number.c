@@ -181,15 +181,15 @@ static vg_status open_slices(struct vg_partition *p, struct vg_error *err)
 {
   struct vg_slices *s = &p->slices;
 
-  p->rim = *p->boundary;     /* arrays borrowed */
-  p->rim.n_point = 0;
-  p->rim.point = NULL;
+  p->boundary_faces = *p->boundary;     /* arrays borrowed */
+  p->boundary_faces.n_point = 0;
+  p->boundary_faces.point = NULL;
   p->front_id = vg_alloc(p->boundary->n_point, sizeof *p->front_id);
   if (!p->front_id) return vg_fail_memory(err, "numbering the mesh");
   for (size_t k = 0; k < p->boundary->n_point; k++)
     p->front_id[k] = (uint32_t)k;
   s->n_boundary_point = p->boundary->n_point;
-  s->boundary = &p->rim;
+  s->boundary = &p->boundary_faces;
   s->n_slice = p->n_piece + (p->rank == 0);
   for (size_t k = 0; k < p->n_piece; k++) s->n_served += p->piece[k].n_cell;
   s->get = serve;

@@ -51,7 +51,7 @@ struct vg_partition_report {
                                 better */
   uint64_t n_repaired;
   uint64_t n_repair_cell;    /* cells in all those regions */
-  uint64_t n_repair_bad;     /* below VG_SHAPE_AIM among them, before, after */
+  uint64_t n_repair_bad;  /* below VG_SHAPE_TARGET among them, before, after */
   uint64_t n_repair_bad_left;
   double repair_worst;       /* and the worst one (core/geometry/shape.h) */
   double repair_worst_left;

@@ -435,19 +435,19 @@ vg_status vg_select_near(const struct vg_front *part,
                          struct vg_front *near, uint32_t **point,
                          uint32_t **face, struct vg_error *err)
 {
-  struct vg_ruler ruler = { .spacing = NULL };
+  struct vg_region_cache cache = { .spacing = NULL };
   size_t n = 0;
-  vg_status st = vg_ruler_init(&ruler, region, sizing, part->n_point,
-                               (const double (*)[3])part->x, err);
+  vg_status st = vg_region_cache_init(&cache, region, sizing, part->n_point,
+                                      (const double (*)[3])part->x, err);
 
   memset(near, 0, sizeof *near);
   *point = NULL;
   *face = vg_alloc(part->n_face, sizeof **face);
   if (st == VG_OK && !*face) st = vg_fail_memory(err, "cutting a front");
   for (size_t i = 0; st == VG_OK && i < part->n_face; i++)
-    if (vg_ruler_may_meet(&ruler, part->face[i], VG_BAND_FRONT))
+    if (vg_region_cache_may_meet(&cache, part->face[i], VG_BAND_FRONT))
       (*face)[n++] = (uint32_t)i;
-  vg_ruler_release(&ruler);
+  vg_region_cache_release(&cache);
   if (st == VG_OK) st = take(part, n, *face, near, point, err);
   if (st == VG_OK) return VG_OK;
   free(*face);

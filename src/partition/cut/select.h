@@ -35,7 +35,8 @@ vg_status vg_select_update(struct vg_select *s, const struct vg_engine *e,
  * part out: a front of its own; point, face out: [part->n_point, n_face] which
  * of the whole they are; all to be freed by the caller. Threads: safe.
  * O(part + log front). */
-vg_status vg_select_part(const struct vg_select *s, const struct vg_region *region,
+vg_status vg_select_part(const struct vg_select *s,
+                         const struct vg_region *region,
                          struct vg_front *part, uint32_t **point,
                          uint32_t **face, struct vg_error *err);
 

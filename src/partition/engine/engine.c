@@ -25,7 +25,7 @@ int vg_engine_stopping(const struct vg_engine *e)
   return atomic_load(&e->stopping);
 }
 
-void vg_job_free(struct vg_engine *e, struct vg_job *j)
+void vg_task_state_free(struct vg_engine *e, struct vg_task_state *j)
 {
   if (!j) return;
   if (j->task.input) e->ops->release_input(e->user, j->task.input);
@@ -58,9 +58,9 @@ static int legal(const struct vg_task *t)
 /* Memory for the new tasks in all lists, so that entering them cannot fail. */
 static int make_room(struct vg_engine *e)
 {
-  size_t n = e->n_fresh + 1;
+  size_t n = e->n_new + 1;
 
-  return vg_reserve(&e->fresh, &e->cap_fresh, n, sizeof *e->fresh) ||
+  return vg_reserve(&e->new_task, &e->cap_new, n, sizeof *e->new_task) ||
          vg_reserve(&e->notice, &e->cap_notice, n, sizeof *e->notice) ||
          vg_reserve(&e->home, &e->cap_home, e->n_home + n, sizeof *e->home);
 }
@@ -68,7 +68,7 @@ static int make_room(struct vg_engine *e)
 vg_status vg_engine_submit(struct vg_engine *e, const struct vg_task *task,
                            struct vg_error *err)
 {
-  struct vg_job *j = NULL;
+  struct vg_task_state *j = NULL;
   vg_status st = VG_OK;
   int bad;
 
@@ -92,7 +92,7 @@ vg_status vg_engine_submit(struct vg_engine *e, const struct vg_task *task,
   j->place.path = j->task.path;
   j->place.key = e->options->shuffle ? draw(task->path, e->options->shuffle)
                                     : task->priority;
-  e->fresh[e->n_fresh++] = j;
+  e->new_task[e->n_new++] = j;
   return VG_OK;
 }
 
@@ -133,9 +133,9 @@ static vg_status init(struct vg_engine *e, struct vg_error *err)
 
 static void release(struct vg_engine *e)
 {
-  for (size_t i = 0; i < e->n_fresh; i++) vg_job_free(e, e->fresh[i]);
-  for (size_t i = 0; i < e->n_home; i++) vg_job_free(e, e->home[i]);
-  free(e->fresh);
+  for (size_t i = 0; i < e->n_new; i++) vg_task_state_free(e, e->new_task[i]);
+  for (size_t i = 0; i < e->n_home; i++) vg_task_state_free(e, e->home[i]);
+  free(e->new_task);
   free(e->notice);
   free(e->home);
   free(e->worker);
@@ -162,7 +162,7 @@ static vg_status start(struct vg_engine *e, int threads, struct vg_error *err)
 
     w->e = e;
     bad = pthread_create(&w->thread, NULL, vg_work_handler, w);
-    e->handler_at = bad ? 0 : threads;
+    e->handler_index = bad ? 0 : threads;
   }
   for (; n < threads && !bad; n++) {
     struct vg_worker *w = &e->worker[n];
@@ -185,14 +185,14 @@ static void stop_threads(struct vg_engine *e)
   vg_engine_unlock(e);
   for (int i = 0; i < e->threads; i++)
     pthread_join(e->worker[i].thread, NULL);
-  if (e->handler_at) pthread_join(e->worker[e->handler_at].thread, NULL);
-  e->threads = e->handler_at = 0;
+  if (e->handler_index) pthread_join(e->worker[e->handler_index].thread, NULL);
+  e->threads = e->handler_index = 0;
 }
 
 /* What rank 0 has said about how it went. */
-static vg_status verdict(const struct vg_engine *e, struct vg_error *err)
+static vg_status final_status(const struct vg_engine *e, struct vg_error *err)
 {
-  const struct vg_verdict *v = &e->verdict;
+  const struct vg_final_status *v = &e->final_status;
 
   if (v->status >= 0) return (vg_status)v->status;
   if (v->from == e->rank)
@@ -276,7 +276,7 @@ static vg_status conduct(struct vg_engine *e, struct vg_error *err)
                    (struct vg_msg){ .handle = e->sent[0] + 1 });
   e->spans.wall = vg_clock() - e->begin;
   if (e->size > 1) st = gather(e, err);
-  return st < 0 ? st : verdict(e, err);
+  return st < 0 ? st : final_status(e, err);
 }
 
 vg_status vg_engine_run(struct vg_comm *comm,

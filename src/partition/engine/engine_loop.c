@@ -14,7 +14,7 @@ struct vg_loop {
   atomic_size_t next;        /* chunk */
   /* guarded by the engine's lock: */
   const char *path;          /* of the task that it is in */
-  size_t room;               /* helpers that may still come */
+  size_t free_slots;               /* helpers that may still come */
   int n_helper;              /* who are there */
   double helped;             /* s of processor time of those that have left */
   pthread_cond_t left;       /* the last of them has */
@@ -47,7 +47,7 @@ static size_t do_chunks(struct vg_loop *l, int worker)
  * caller need not wake each. */
 static void call_helpers(struct vg_engine *e, const struct vg_loop *l)
 {
-  for (size_t i = 0; i < 2 && i < l->room && i < e->n_idle; i++)
+  for (size_t i = 0; i < 2 && i < l->free_slots && i < e->n_idle; i++)
     pthread_cond_signal(&e->work);
 }
 
@@ -55,7 +55,7 @@ static void open_loop(struct vg_engine *e, struct vg_loop *l)
 {
   pthread_cond_init(&l->left, NULL);
   vg_engine_lock(e);
-  l->room = l->n_chunk - 1;
+  l->free_slots = l->n_chunk - 1;
   l->other = e->loops;
   e->loops = l;
   call_helpers(e, l);
@@ -95,11 +95,12 @@ int vg_loop_help(struct vg_worker *w)
   double cpu;
   size_t n;
 
-  while (l && (!l->room || atomic_load(&l->next) >= l->n_chunk)) l = l->other;
+  while (l && (!l->free_slots ||
+               atomic_load(&l->next) >= l->n_chunk)) l = l->other;
   if (!l) return 0;
   memset(&h, 0, sizeof h);
   memcpy(h.path, l->path, sizeof h.path);
-  l->room--;
+  l->free_slots--;
   l->n_helper++;
   call_helpers(e, l);
   vg_engine_unlock(e);

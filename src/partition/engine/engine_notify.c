@@ -19,7 +19,7 @@ void vg_engine_post(struct vg_engine *e, int to, int kind, struct vg_bytes *b)
   if (!b->data || vg_comm_post(e->comm, to, kind, b, NULL) < 0)
     vg_comm_abort(e->comm, 1);
   e->sent[to]++;
-  e->hurry = 1;
+  e->poll_soon = 1;
   vg_engine_wake(e);
 }
 
@@ -39,13 +39,13 @@ void vg_engine_send(struct vg_engine *e, int to, int kind, struct vg_msg msg)
 
 /* Give the new tasks their numbers; memory was taken when they were
  * submitted. Pinned ones need not wait for the schedule. */
-static uint64_t enter_fresh(struct vg_engine *e)
+static uint64_t enter_new(struct vg_engine *e)
 {
-  size_t n = e->n_fresh;
+  size_t n = e->n_new;
 
   for (size_t i = 0; i < n; i++) {
-    struct vg_job *j = e->fresh[i];
-    struct vg_notice *notice = &e->notice[i];
+    struct vg_task_state *j = e->new_task[i];
+    struct vg_task_notice *notice = &e->notice[i];
 
     j->handle = e->n_home;
     e->home[e->n_home++] = j;
@@ -56,7 +56,7 @@ static uint64_t enter_fresh(struct vg_engine *e)
     notice->pinned = j->task.pinned != 0;
     if (j->task.pinned) vg_work_queue(e, j);
   }
-  e->n_fresh = 0;
+  e->n_new = 0;
   return n;
 }
 
@@ -77,7 +77,7 @@ static void send_update(struct vg_engine *e, const struct vg_update *update)
   vg_engine_post(e, 0, VG_MSG_UPDATE, &b);
 }
 
-void vg_notify_update(struct vg_engine *e, const struct vg_job *ended)
+void vg_notify_update(struct vg_engine *e, const struct vg_task_state *ended)
 {
   struct vg_update update = { .threads = e->threads };
 
@@ -86,7 +86,7 @@ void vg_notify_update(struct vg_engine *e, const struct vg_job *ended)
     update.weight = ended->task.weight;
     update.n_cell = ended->n_cell;
   }
-  update.n = enter_fresh(e);
+  update.n = enter_new(e);
   send_update(e, &update);
 }
 
@@ -113,7 +113,7 @@ void vg_notify_moved(struct vg_engine *e, int to, int ok)
 void vg_notify_fail(struct vg_engine *e, vg_status status, const char *path,
                     const struct vg_error *err)
 {
-  struct vg_verdict v;
+  struct vg_final_status v;
 
   memset(&v, 0, sizeof v);
   v.status = status;

@@ -72,7 +72,7 @@ struct vg_update {
   uint64_t n;
 };
 
-struct vg_notice {
+struct vg_task_notice {
   char path[VG_PATH_MAX];
   double key, weight;
   uint64_t handle;
@@ -80,7 +80,7 @@ struct vg_notice {
 };
 
 /* FAIL and END. */
-struct vg_verdict {
+struct vg_final_status {
   int32_t status, from;
   uint64_t sent;             /* END: messages sent to this rank, this too */
   char path[VG_PATH_MAX];    /* of the task that failed */
@@ -88,14 +88,14 @@ struct vg_verdict {
 };
 
 /* At the end of INPUT, and of OUTCOME: so that what is packed needs no move. */
-struct vg_carry {
+struct vg_input_trailer {
   char path[VG_PATH_MAX], after[VG_PATH_MAX];
   double key, priority, weight;
   uint64_t handle;
   int32_t home, kind, has, moves;   /* has: not NULL */
 };
 
-struct vg_return {
+struct vg_outcome_trailer {
   uint64_t handle, n_cell;
   uint64_t has;
 };
@@ -104,7 +104,7 @@ struct vg_return {
 
 /* A task: one at its home until it has ended, another one where it is done.
  * Its way: new -> [schedule] -> queue (or out) -> run -> ended. */
-struct vg_job {
+struct vg_task_state {
   struct vg_heap place;      /* in queue; must be first */
   struct vg_task task;
   char after[VG_PATH_MAX];
@@ -114,10 +114,10 @@ struct vg_job {
   struct vg_bytes bytes;
   void *outcome;
   uint64_t n_cell;
-  struct vg_job *next;       /* in ended, out */
+  struct vg_task_state *next;       /* in ended, out */
 };
 
-struct vg_jobs { struct vg_job *first, *last; };
+struct vg_task_fifo { struct vg_task_state *first, *last; };
 
 /* A task that waits in the schedule. */
 struct vg_ready {
@@ -130,18 +130,19 @@ struct vg_schedule {
   struct vg_heap **ready;    /* [size] free tasks, by home */
   int *threads, *load;       /* [size] workers; tasks it has, pinned too */
   unsigned char *asked;      /* [size] see recall */
-  size_t n_ready, n_hello;
-  size_t n_worker, n_room;   /* workers; ranks with fewer tasks than workers */
+  size_t n_ready, n_joined;
+  size_t n_worker, n_underloaded;   /* workers; ranks with fewer tasks than
+                                       workers */
   uint64_t n_known, n_done, n_out;  /* out: known to be with some rank */
   double cells, open;        /* done; expected of what is not */
   int draining, ended;
-  struct vg_verdict verdict;
+  struct vg_final_status final_status;
 };
 
 struct vg_worker {
   struct vg_engine *e;
   int number;
-  int owes;                  /* has not said yet that it is free */
+  int unreported;                  /* has not said yet that it is free */
   const char *doing;         /* path of its task */
   double loops, helped;      /* s of processor time that its task has had in
                                 loops, and of these in other threads */
@@ -162,30 +163,30 @@ struct vg_engine {
   pthread_mutex_t lock;
   pthread_cond_t work, handler, serve;
   struct vg_worker *worker;  /* [threads], and the handler */
-  int handler_at;            /* in worker[]; 0: none, in a job of one rank */
+  int handler_index;            /* in worker[]; 0: none, in a job of one rank */
   atomic_int stopping;
   int over;                  /* threads are to leave */
   int ending;                /* END has been said (rank 0) or heard */
-  int hurry;                 /* something was posted: poll soon */
+  int poll_soon;                 /* something was posted: poll soon */
 
   struct vg_heap *queue[2];  /* jobs to be done here: free, pinned */
   struct vg_loop *loops;     /* that workers may help with */
   size_t n_idle;             /* workers that sleep */
-  struct vg_jobs ended;      /* home tasks, for `done` */
-  struct vg_jobs out;        /* jobs whose input goes to job->to */
+  struct vg_task_fifo ended;      /* home tasks, for `done` */
+  struct vg_task_fifo out;        /* jobs whose input goes to job->to */
   int in_done;               /* a thread is there, or first tasks are made */
   char doing[VG_PATH_MAX];   /* the task whose `done` runs */
-  struct vg_job **fresh;     /* [n_fresh] submitted, not sent yet */
-  size_t n_fresh, cap_fresh;
-  struct vg_notice *notice;  /* [cap_notice] for new tasks */
+  struct vg_task_state **new_task;     /* [n_new] submitted, not sent yet */
+  size_t n_new, cap_new;
+  struct vg_task_notice *notice;  /* [cap_notice] for new tasks */
   size_t cap_notice;
-  struct vg_job **home;      /* [n_home] by handle; NULL when ended */
+  struct vg_task_state **home;      /* [n_home] by handle; NULL when ended */
   size_t n_home, cap_home;
   struct vg_spans spans;
 
   uint64_t *sent, *received; /* [size] messages to and from each rank */
   uint64_t *said;            /* [size] messages a rank says it has sent */
-  struct vg_verdict verdict; /* as heard */
+  struct vg_final_status final_status; /* as heard */
   struct vg_schedule schedule;       /* rank 0 */
 };
 
@@ -194,13 +195,14 @@ struct vg_engine {
 /* engine.c */
 void vg_engine_lock(struct vg_engine *e);
 void vg_engine_unlock(struct vg_engine *e);
-void vg_job_free(struct vg_engine *e, struct vg_job *j);  /* without lock too */
+/* without lock too */
+void vg_task_state_free(struct vg_engine *e, struct vg_task_state *j);
 
 /* engine_notify.c: to the schedule, wherever it is; and who serves. */
 void vg_engine_wake(struct vg_engine *e);
 void vg_engine_post(struct vg_engine *e, int to, int kind, struct vg_bytes *b);
 void vg_engine_send(struct vg_engine *e, int to, int kind, struct vg_msg msg);
-void vg_notify_update(struct vg_engine *e, const struct vg_job *ended);
+void vg_notify_update(struct vg_engine *e, const struct vg_task_state *ended);
 void vg_notify_dropped(struct vg_engine *e, double weight);
 void vg_notify_free(struct vg_engine *e);
 void vg_notify_moved(struct vg_engine *e, int to, int ok);
@@ -208,9 +210,10 @@ void vg_notify_fail(struct vg_engine *e, vg_status status, const char *path,
                     const struct vg_error *err);
 
 /* engine_work.c */
-void vg_work_queue(struct vg_engine *e, struct vg_job *j);
-void vg_work_end(struct vg_engine *e, struct vg_job *j);
-void vg_work_drop(struct vg_engine *e, struct vg_job *j);  /* without lock */
+void vg_work_queue(struct vg_engine *e, struct vg_task_state *j);
+void vg_work_end(struct vg_engine *e, struct vg_task_state *j);
+void vg_work_drop(struct vg_engine *e, struct vg_task_state *j);  /* without
+                                                                     lock */
 void *vg_work_thread(void *worker);
 void *vg_work_handler(void *worker);
 
@@ -230,9 +233,9 @@ vg_status vg_schedule_init(struct vg_schedule *l, int size,
 void vg_schedule_release(struct vg_schedule *l, int size);
 void vg_schedule_update(struct vg_engine *e, int from,
                         const struct vg_update *update,
-                        const struct vg_notice *notice);
+                        const struct vg_task_notice *notice);
 void vg_schedule_free(struct vg_engine *e, int from);
 void vg_schedule_moved(struct vg_engine *e, int from, int to, int ok);
-void vg_schedule_fail(struct vg_engine *e, const struct vg_verdict *v);
+void vg_schedule_fail(struct vg_engine *e, const struct vg_final_status *v);
 
 #endif

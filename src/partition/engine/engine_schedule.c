@@ -46,28 +46,29 @@ void vg_schedule_release(struct vg_schedule *l, int size)
 
 static void add_load(struct vg_schedule *l, int r, int d)
 {
-  l->n_room -= l->load[r] < l->threads[r];
+  l->n_underloaded -= l->load[r] < l->threads[r];
   l->load[r] += d;
-  l->n_room += l->load[r] < l->threads[r];
+  l->n_underloaded += l->load[r] < l->threads[r];
   if (d > 0 && l->asked[r] == DECLINED) l->asked[r] = NOT_ASKED;
 }
 
 /* Has rank r a worker without a task, or, ahead, one without a second? Rank 0
  * needs no tasks of its own ahead: they are at hand. */
-static int room(const struct vg_schedule *l, int r, int ahead)
+static int free_slots(const struct vg_schedule *l, int r, int ahead)
 {
   if (!ahead) return l->threads[r] - l->load[r];
   if (!r && l->ready[0]) return 0;
   return 2 * l->threads[r] - l->load[r];
 }
 
-static int roomiest(const struct vg_schedule *l, int size, int ahead)
+static int most_free_slots(const struct vg_schedule *l, int size, int ahead)
 {
   int best = -1;
 
-  if (!ahead && !l->n_room) return -1;
+  if (!ahead && !l->n_underloaded) return -1;
   for (int r = 0; r < size; r++)
-    if (room(l, r, ahead) > (best < 0 ? 0 : room(l, best, ahead))) best = r;
+    if (free_slots(l, r, ahead) > (best < 0 ? 0 : free_slots(l, best,
+                                                             ahead))) best = r;
   return best;
 }
 
@@ -96,7 +97,8 @@ static int give(struct vg_engine *e, int ahead)
   struct vg_ready *task;
 
   if (home < 0) return 0;
-  to = room(l, home, ahead) > 0 ? home : roomiest(l, e->size, ahead);
+  to = free_slots(l, home, ahead) > 0 ? home : most_free_slots(l, e->size,
+                                                               ahead);
   if (to < 0) return 0;
   if (!e->options->shuffle && l->ready[to] &&
       nearly(l->ready[to]->key, l->ready[home]->key))
@@ -119,11 +121,11 @@ static void recall(struct vg_engine *e)
 {
   struct vg_schedule *l = &e->schedule;
 
-  for (int r = 0; r < e->size && l->n_room; r++) {
+  for (int r = 0; r < e->size && l->n_underloaded; r++) {
     int to;
 
     if (l->load[r] <= l->threads[r] || l->asked[r] != NOT_ASKED) continue;
-    to = roomiest(l, e->size, 0);
+    to = most_free_slots(l, e->size, 0);
     add_load(l, to, 1);
     l->asked[r] = ASKED;
     if (r == e->rank) vg_serve_recall(e, to);
@@ -137,16 +139,16 @@ static void finish(struct vg_engine *e)
 
   l->ended = 1;
   for (int r = 1; r < e->size; r++) {
-    struct vg_verdict *v = vg_alloc(1, sizeof *v);
+    struct vg_final_status *v = vg_alloc(1, sizeof *v);
     struct vg_bytes b = { sizeof *v, (unsigned char *)v };
 
     if (v) {
-      *v = l->verdict;
+      *v = l->final_status;
       v->sent = e->sent[r] + 1;
     }
     vg_engine_post(e, r, VG_MSG_END, &b);
   }
-  e->verdict = l->verdict;
+  e->final_status = l->final_status;
   e->ending = 1;
   vg_engine_wake(e);
 }
@@ -157,16 +159,17 @@ static void dispatch(struct vg_engine *e)
 
   if (l->ended) return;
   if (!l->draining) {
-    while (l->n_ready && l->n_room && give(e, 0)) ;
+    while (l->n_ready && l->n_underloaded && give(e, 0)) ;
     while (e->size > 1 && l->n_ready >= 2 * l->n_worker && give(e, 1)) ;
-    if (e->size > 1 && !l->n_ready && l->n_room) recall(e);
+    if (e->size > 1 && !l->n_ready && l->n_underloaded) recall(e);
   }
-  if (!l->ended && l->n_hello == (size_t)e->size && !l->n_out &&
+  if (!l->ended && l->n_joined == (size_t)e->size && !l->n_out &&
       (l->draining || !l->n_ready))
     finish(e);
 }
 
-static void add_ready(struct vg_engine *e, int from, const struct vg_notice *n)
+static void add_ready(struct vg_engine *e, int from,
+                      const struct vg_task_notice *n)
 {
   struct vg_schedule *l = &e->schedule;
   struct vg_ready *task = vg_alloc(1, sizeof *task);
@@ -189,7 +192,7 @@ static void add_ready(struct vg_engine *e, int from, const struct vg_notice *n)
 /* Pinned tasks are with their rank already. */
 void vg_schedule_update(struct vg_engine *e, int from,
                         const struct vg_update *update,
-                        const struct vg_notice *notice)
+                        const struct vg_task_notice *notice)
 {
   struct vg_schedule *l = &e->schedule;
 
@@ -199,10 +202,10 @@ void vg_schedule_update(struct vg_engine *e, int from,
     l->cells += (double)update->n_cell;
     l->open -= update->weight;
   } else {
-    l->n_hello++;
+    l->n_joined++;
     l->threads[from] = update->threads;
     l->n_worker += (size_t)update->threads;
-    l->n_room += l->load[from] < update->threads;
+    l->n_underloaded += l->load[from] < update->threads;
   }
   for (uint64_t i = 0; i < update->n; i++) {
     l->n_known++;
@@ -234,10 +237,10 @@ void vg_schedule_moved(struct vg_engine *e, int from, int to, int ok)
 
 /* Of several failures the one with the lowest path is told, so that messages
  * repeat as far as can be; any failure rather than a mere stop. */
-void vg_schedule_fail(struct vg_engine *e, const struct vg_verdict *v)
+void vg_schedule_fail(struct vg_engine *e, const struct vg_final_status *v)
 {
   struct vg_schedule *l = &e->schedule;
-  struct vg_verdict *w = &l->verdict;
+  struct vg_final_status *w = &l->final_status;
 
   if (l->ended) return;
   if (!w->status || (v->status < 0 && w->status > 0) ||

@@ -27,7 +27,7 @@
 #define PROGRESS_EVERY 0.2
 #define PATIENCE 30.0         /* with a mailbox that fails */
 
-static void push_out(struct vg_engine *e, struct vg_job *j, int to)
+static void push_out(struct vg_engine *e, struct vg_task_state *j, int to)
 {
   j->to = to;
   j->next = NULL;
@@ -39,7 +39,7 @@ static void push_out(struct vg_engine *e, struct vg_job *j, int to)
 
 void vg_serve_assign(struct vg_engine *e, uint64_t handle, int to)
 {
-  struct vg_job *j = e->home[handle];
+  struct vg_task_state *j = e->home[handle];
 
   if (to == e->rank) vg_work_queue(e, j);
   else push_out(e, j, to);
@@ -47,7 +47,7 @@ void vg_serve_assign(struct vg_engine *e, uint64_t handle, int to)
 
 void vg_serve_recall(struct vg_engine *e, int to)
 {
-  struct vg_job *j = (struct vg_job *)vg_heap_pop(&e->queue[0]);
+  struct vg_task_state *j = (struct vg_task_state *)vg_heap_pop(&e->queue[0]);
 
   if (j) push_out(e, j, to);
   vg_notify_moved(e, to, j != NULL);
@@ -61,11 +61,11 @@ void vg_serve_drain(struct vg_engine *e)
 
 /* --- inputs on their way ------------------------------------------------- */
 
-static vg_status pack(struct vg_engine *e, struct vg_job *j,
+static vg_status pack(struct vg_engine *e, struct vg_task_state *j,
                       struct vg_error *err)
 {
   struct vg_bytes *b = &j->bytes;
-  struct vg_carry c;
+  struct vg_input_trailer c;
   unsigned char *data;
 
   memset(&c, 0, sizeof c);
@@ -93,7 +93,7 @@ static vg_status pack(struct vg_engine *e, struct vg_job *j,
   return VG_OK;
 }
 
-static void send_input(struct vg_engine *e, struct vg_job *j)
+static void send_input(struct vg_engine *e, struct vg_task_state *j)
 {
   struct vg_error err = VG_ERROR_INIT;
   vg_status st = VG_OK;
@@ -115,12 +115,12 @@ static void send_input(struct vg_engine *e, struct vg_job *j)
   vg_engine_post(e, to, VG_MSG_INPUT, &j->bytes);
   j->bytes = (struct vg_bytes){ 0 };
   vg_engine_unlock(e);
-  if (!at_home) vg_job_free(e, j);
+  if (!at_home) vg_task_state_free(e, j);
 }
 
 static int send_inputs(struct vg_engine *e)
 {
-  struct vg_job *j;
+  struct vg_task_state *j;
   int n = 0;
 
   for (;; n++) {
@@ -145,8 +145,8 @@ static void cut(struct vg_bytes *b, void *end, size_t n)
 /* A task to be done here; one of our own may come back unstarted. */
 static void take_input(struct vg_engine *e, struct vg_bytes *b)
 {
-  struct vg_carry c;
-  struct vg_job *j;
+  struct vg_input_trailer c;
+  struct vg_task_state *j;
 
   cut(b, &c, sizeof c);
   j = c.home == e->rank ? e->home[c.handle] : vg_calloc(1, sizeof *j);
@@ -176,8 +176,8 @@ static void take_input(struct vg_engine *e, struct vg_bytes *b)
 
 static void take_outcome(struct vg_engine *e, int from, struct vg_bytes *b)
 {
-  struct vg_return ret;
-  struct vg_job *j;
+  struct vg_outcome_trailer ret;
+  struct vg_task_state *j;
 
   cut(b, &ret, sizeof ret);
   j = e->home[ret.handle];
@@ -196,19 +196,19 @@ static void take_update(struct vg_engine *e, int from, const struct vg_bytes *b)
 
   memcpy(&update, b->data, sizeof update);
   vg_schedule_update(e, from, &update,
-                     (const struct vg_notice *)(b->data + sizeof update));
+                     (const struct vg_task_notice *)(b->data + sizeof update));
 }
 
-static void take_verdict(struct vg_engine *e, const struct vg_message *m)
+static void take_final_status(struct vg_engine *e, const struct vg_message *m)
 {
-  struct vg_verdict v;
+  struct vg_final_status v;
 
   memcpy(&v, m->bytes.data, sizeof v);
   if (m->kind == VG_MSG_FAIL) {
     vg_schedule_fail(e, &v);
     return;
   }
-  e->verdict = v;
+  e->final_status = v;
   e->said[0] = v.sent;
   e->ending = 1;
 }
@@ -246,7 +246,7 @@ static void take(struct vg_engine *e, struct vg_message *m)
   case VG_MSG_UPDATE: take_update(e, m->from, &m->bytes); break;
   case VG_MSG_INPUT: take_input(e, &m->bytes); break;
   case VG_MSG_OUTCOME: take_outcome(e, m->from, &m->bytes); break;
-  case VG_MSG_FAIL: case VG_MSG_END: take_verdict(e, m); break;
+  case VG_MSG_FAIL: case VG_MSG_END: take_final_status(e, m); break;
   default: take_short(e, m);
   }
   vg_engine_unlock(e);
@@ -352,14 +352,14 @@ static void set_pace(struct pace *p, int active)
 }
 
 /* With the lock. Among ranks it is given back meanwhile. */
-static void sleep_so_long(struct vg_engine *e, double seconds, unsigned bell)
+static void sleep_so_long(struct vg_engine *e, double seconds, unsigned wakes)
 {
   struct timespec until;
   double t = vg_clock() + seconds;
 
   if (e->size > 1) {
     vg_engine_unlock(e);
-    vg_comm_sleep(e->comm, bell, seconds);
+    vg_comm_sleep(e->comm, wakes, seconds);
     vg_engine_lock(e);
     return;
   }
@@ -371,16 +371,16 @@ static void sleep_so_long(struct vg_engine *e, double seconds, unsigned bell)
 /* Sleep, unless over, something is to be sent, or there was a wakeup since the
  * count was read. Returns 1 when over. */
 static int doze(struct vg_engine *e, struct pace *pace, int active,
-                unsigned bell)
+                unsigned wakes)
 {
   int over;
 
   vg_engine_lock(e);
-  if (e->size > 1) set_pace(pace, active || e->hurry);
-  e->hurry = 0;
+  if (e->size > 1) set_pace(pace, active || e->poll_soon);
+  e->poll_soon = 0;
   over = all_over(e);
   if (!over && !e->out.first) {
-    sleep_so_long(e, pace->sleep, bell);
+    sleep_so_long(e, pace->sleep, wakes);
     over = all_over(e);
   }
   vg_engine_unlock(e);
@@ -392,13 +392,13 @@ void vg_serve(struct vg_engine *e)
   struct pace pace = { .sleep = e->size > 1 ? SLEEP_MIN : SLEEP_ALONE,
                        .longest = SLEEP_LOW };
   double failing = 0, stop = 0, progress = e->begin;
-  unsigned bell = 0;
+  unsigned wakes = 0;
   int active;
 
   do {
     double now = vg_clock();
 
-    if (e->size > 1) bell = vg_comm_wake_count(e->comm);
+    if (e->size > 1) wakes = vg_comm_wake_count(e->comm);
     active = e->size > 1 ? receive(e, &failing) : 0;
     active += send_inputs(e);
     if (now - stop >= STOP_EVERY) {
@@ -409,6 +409,6 @@ void vg_serve(struct vg_engine *e)
       show_progress(e);
       progress = now;
     }
-  } while (!doze(e, &pace, active, bell));
+  } while (!doze(e, &pace, active, wakes));
   show_progress(e);
 }

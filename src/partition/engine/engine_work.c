@@ -6,23 +6,23 @@
 #include "base/memory.h"
 #include "partition/engine/engine_parts.h"
 
-void vg_work_queue(struct vg_engine *e, struct vg_job *j)
+void vg_work_queue(struct vg_engine *e, struct vg_task_state *j)
 {
   vg_heap_push(&e->queue[j->task.pinned != 0], &j->place);
   pthread_cond_signal(&e->work);
 }
 
-static struct vg_job *next_job(struct vg_engine *e)
+static struct vg_task_state *next_job(struct vg_engine *e)
 {
   struct vg_heap **q = e->queue;
   int i = !q[0] || (q[1] && vg_heap_before(q[1], q[0]));
 
-  return (struct vg_job *)vg_heap_pop(&q[i]);
+  return (struct vg_task_state *)vg_heap_pop(&q[i]);
 }
 
 /* A worker that ends a task of its own rank calls `done` itself, or leaves it
  * to the thread that is there; the handler is woken by others. */
-void vg_work_end(struct vg_engine *e, struct vg_job *j)
+void vg_work_end(struct vg_engine *e, struct vg_task_state *j)
 {
   j->next = NULL;
   if (e->ended.last) e->ended.last->next = j;
@@ -32,20 +32,20 @@ void vg_work_end(struct vg_engine *e, struct vg_job *j)
 
 /* A task that will not be done. Its home, when that is elsewhere, releases
  * what it knows of it at the end. */
-void vg_work_drop(struct vg_engine *e, struct vg_job *j)
+void vg_work_drop(struct vg_engine *e, struct vg_task_state *j)
 {
   double weight = j->task.weight;
 
   vg_engine_lock(e);
   if (j->home == e->rank) e->home[j->handle] = NULL;
   vg_engine_unlock(e);
-  vg_job_free(e, j);
+  vg_task_state_free(e, j);
   vg_engine_lock(e);
   vg_notify_dropped(e, weight);
   vg_engine_unlock(e);
 }
 
-static vg_status unpack(struct vg_engine *e, struct vg_job *j,
+static vg_status unpack(struct vg_engine *e, struct vg_task_state *j,
                         struct vg_error *err)
 {
   vg_status st;
@@ -58,11 +58,11 @@ static vg_status unpack(struct vg_engine *e, struct vg_job *j,
   return st;
 }
 
-/* The outcome as bytes with a vg_return at their end. */
-static vg_status pack_return(struct vg_engine *e, struct vg_job *j,
+/* The outcome as bytes with a vg_outcome_trailer at their end. */
+static vg_status pack_return(struct vg_engine *e, struct vg_task_state *j,
                              struct vg_error *err)
 {
-  struct vg_return ret = { j->handle, j->n_cell, j->outcome != NULL };
+  struct vg_outcome_trailer ret = { j->handle, j->n_cell, j->outcome != NULL };
   struct vg_bytes *b = &j->bytes;
   unsigned char *data;
   vg_status st = VG_OK;
@@ -81,7 +81,7 @@ static vg_status pack_return(struct vg_engine *e, struct vg_job *j,
   return VG_OK;
 }
 
-static void record(struct vg_worker *w, const struct vg_job *j,
+static void record(struct vg_worker *w, const struct vg_task_state *j,
                    struct vg_span *span, double start, double cpu)
 {
   memcpy(span->path, j->task.path, sizeof span->path);
@@ -99,12 +99,12 @@ static void record(struct vg_worker *w, const struct vg_job *j,
 }
 
 /* Is `done` to be called here? */
-static int stays(const struct vg_engine *e, const struct vg_job *j)
+static int stays(const struct vg_engine *e, const struct vg_task_state *j)
 {
   return j->home == e->rank || j->task.moves;
 }
 
-static vg_status run(struct vg_worker *w, struct vg_job *j,
+static vg_status run(struct vg_worker *w, struct vg_task_state *j,
                      struct vg_span *span, struct vg_error *err)
 {
   struct vg_engine *e = w->e;
@@ -121,16 +121,17 @@ static vg_status run(struct vg_worker *w, struct vg_job *j,
   j->task.input = NULL;
   if (st || stays(e, j)) return st;
   vg_engine_lock(e);
-  w->owes = 0;
+  w->unreported = 0;
   vg_notify_free(e);
   vg_engine_unlock(e);
   st = pack_return(e, j, err);
-  span->bytes_out = st ? 0 : j->bytes.n - sizeof(struct vg_return);
+  span->bytes_out = st ? 0 : j->bytes.n - sizeof(struct vg_outcome_trailer);
   return st;
 }
 
 /* To be stopped is no failure; unasked, it stops the job. */
-static void fail(struct vg_engine *e, const struct vg_job *j, vg_status st,
+static void fail(struct vg_engine *e, const struct vg_task_state *j,
+                 vg_status st,
                  const struct vg_error *err)
 {
   vg_engine_lock(e);
@@ -139,7 +140,7 @@ static void fail(struct vg_engine *e, const struct vg_job *j, vg_status st,
   vg_engine_unlock(e);
 }
 
-static void do_job(struct vg_worker *w, struct vg_job *j)
+static void do_job(struct vg_worker *w, struct vg_task_state *j)
 {
   struct vg_engine *e = w->e;
   struct vg_error err = VG_ERROR_INIT;
@@ -172,13 +173,13 @@ static void do_job(struct vg_worker *w, struct vg_job *j)
     vg_engine_post(e, j->home, VG_MSG_OUTCOME, &j->bytes);
   }
   vg_engine_unlock(e);
-  vg_job_free(e, j);
+  vg_task_state_free(e, j);
 }
 
 /* Tell `done` of one task. The lock is left for it. */
 static void end_one(struct vg_engine *e)
 {
-  struct vg_job *j = e->ended.first;
+  struct vg_task_state *j = e->ended.first;
   struct vg_error err = VG_ERROR_INIT;
   vg_status st = VG_OK;
 
@@ -201,7 +202,7 @@ static void end_one(struct vg_engine *e)
   vg_notify_update(e, j);
   e->in_done = 0;
   vg_engine_unlock(e);
-  vg_job_free(e, j);
+  vg_task_state_free(e, j);
   vg_engine_lock(e);
 }
 
@@ -209,7 +210,7 @@ void *vg_work_thread(void *worker)
 {
   struct vg_worker *w = worker;
   struct vg_engine *e = w->e;
-  struct vg_job *j;
+  struct vg_task_state *j;
 
   vg_loop_enter(w);
   vg_engine_lock(e);
@@ -217,11 +218,11 @@ void *vg_work_thread(void *worker)
     if (e->ended.first && !e->in_done) {
       w->doing = e->doing;
       end_one(e);
-    } else if (w->owes) {
-      w->owes = 0;
+    } else if (w->unreported) {
+      w->unreported = 0;
       vg_notify_free(e);
     } else if ((j = next_job(e))) {
-      w->owes = 1;
+      w->unreported = 1;
       vg_engine_unlock(e);
       do_job(w, j);
       vg_engine_lock(e);

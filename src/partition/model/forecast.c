@@ -37,7 +37,7 @@ static const double bytes_per_face = 28;
 static const double least_void = 1;
 
 struct forecast {
-  struct vg_outlook *out;
+  struct vg_forecast *out;
   double n_handed, handed;   /* tasks since the last join, faces they got */
   struct vg_amount zones;       /* made by pencils and tiles */
   char leaf[VG_PATH_MAX];    /* one of the leaves */
@@ -46,7 +46,7 @@ struct forecast {
   struct vg_error *err;
 };
 
-void vg_outlook_release(struct vg_outlook *o)
+void vg_forecast_release(struct vg_forecast *o)
 {
   free(o->node);
   vg_spans_release(&o->spans);
@@ -55,7 +55,7 @@ void vg_outlook_release(struct vg_outlook *o)
 
 /* Inner points have 6 cells each in the lattice that fills make (12 in a cube
  * of two points), points on the boundary fewer, as measured. */
-double vg_outlook_points(double cells, double faces)
+double vg_forecast_points(double cells, double faces)
 {
   return cells / 6 + 0.2 * faces;
 }
@@ -104,8 +104,8 @@ static vg_status add_task(struct forecast *c, const char *path,
 static vg_status add_node(struct forecast *c, const struct vg_part *p,
                           const struct vg_lattice *l, size_t *index)
 {
-  struct vg_outlook *o = c->out;
-  struct vg_outlook_node *n;
+  struct vg_forecast *o = c->out;
+  struct vg_forecast_node *n;
 
   if (vg_reserve(&o->node, &o->cap_node, o->n_node + 1, sizeof *o->node))
     return vg_fail_memory(c->err, "a forecast");
@@ -118,7 +118,7 @@ static vg_status add_node(struct forecast *c, const struct vg_part *p,
   n->parent = p->parent;
   n->depth = p->depth;
   n->cells = p->load.cells;
-  n->faces = vg_bits_faces(&p->front);
+  n->faces = vg_bins_faces(&p->front);
   if (l) n->lattice = *l;
   n->lattice.n_rib = 0;
   n->lattice.rib = NULL;
@@ -171,7 +171,7 @@ static vg_status add_join(struct forecast *c, const struct vg_part *p,
 
   snprintf(path, sizeof path, "%.*sJ%d", VG_PATH_MAX - 14, p->path, number);
   st = add_task(c, path, after, VG_SPAN_JOIN, rate,
-                (struct vg_amount){p->load.cells, 0}, vg_bits_faces(&p->front),
+                (struct vg_amount){p->load.cells, 0}, vg_bins_faces(&p->front),
                 (double)p->load.n);
   memcpy(after, path, sizeof path);
   c->n_handed = c->handed = 0;
@@ -198,7 +198,7 @@ static vg_status grow_stage(struct forecast *c, struct vg_part *p,
 {
   size_t count = vg_lattice_count(l, stage), n_front = p->front.n;
   char maker[VG_PATH_MAX], path[VG_PATH_MAX];
-  struct vg_bits made = { .n = 0 };
+  struct vg_bins made = { .n = 0 };
   vg_status st = VG_OK;
 
   snprintf(maker, sizeof maker, "%s", after);
@@ -212,8 +212,8 @@ static vg_status grow_stage(struct forecast *c, struct vg_part *p,
     double faces;
 
     vg_lattice_region(l, stage, k, &r);
-    VG_TRY(vg_bits_take(p, &r, &made, &a, c->err));
-    faces = vg_bits_near(&p->front, n_front, &r);
+    VG_TRY(vg_bins_take(p, &r, &made, &a, c->err));
+    faces = vg_bins_near(&p->front, n_front, &r);
     if (!(a.cells >= 1) || !(faces > 0)) continue;
     snprintf(path, sizeof path, "%.*s%c%zu", VG_PATH_MAX - 24, p->path, kind,
              kind == VG_SPAN_PENCIL ? *n_pencil : k);
@@ -232,10 +232,10 @@ static vg_status grow_stage(struct forecast *c, struct vg_part *p,
     struct vg_region r;
 
     vg_lattice_region(l, stage, k, &r);
-    vg_bits_cover(&p->front, p->front.n, &r);
+    vg_bins_cover(&p->front, p->front.n, &r);
   }
   for (size_t i = 0; st >= 0 && i < made.n; i++)
-    st = vg_bits_add(&p->front, &made.bit[i], c->err);
+    st = vg_bins_add(&p->front, &made.bit[i], c->err);
 done:
   free(made.bit);
   return st;
@@ -317,7 +317,7 @@ static vg_status add_rest(struct forecast *c, const struct vg_part *from,
       vg_amount_add(&a, &p->load.cube[k], 1);
     rest.load.n += p->load.n;
     for (size_t k = 0; st >= 0 && k < p->front.n; k++)
-      st = vg_bits_add(&rest.front, &p->front.bit[k], c->err);
+      st = vg_bins_add(&rest.front, &p->front.bit[k], c->err);
   }
   if (st >= 0 && rest.load.cells >= least_void)
     st = add_leaf(c, &rest, a, after);
@@ -329,7 +329,8 @@ static vg_status add_children(struct forecast *c, const struct vg_part *from,
                               size_t parent, struct vg_blocks *b, int used,
                               const char *after)
 {
-  double sum = 0, least = fmax(VG_SMALL_SHARE * c->rule->leaf_cells, least_void);
+  double sum = 0, least = fmax(VG_SMALL_SHARE * c->rule->leaf_cells,
+                               least_void);
   size_t number = 0;
   vg_status st = VG_OK;
 
@@ -411,7 +412,7 @@ static vg_status add_surface(const struct vg_void *v, struct vg_part *p,
   for (size_t i = 0; i < v->n_face; i++) {
     const double *a = v->x[v->face[i][0]], *b = v->x[v->face[i][1]];
     const double *d = v->x[v->face[i][2]];
-    struct vg_bit *f = &p->front.bit[i];
+    struct vg_bin *f = &p->front.bit[i];
     double u[3], w[3], n[3];
 
     for (int k = 0; k < 3; k++)
@@ -451,12 +452,12 @@ static vg_status add_load(const struct vg_load *load, struct vg_part *p,
   return vg_load_index(&p->load, 1, err);
 }
 
-vg_status vg_outlook_new(const struct vg_void *v, const struct vg_load *load,
-                         const struct vg_cut_rule *rule, int levels,
-                         const struct vg_rates *rates, struct vg_outlook *out,
-                         struct vg_error *err)
+vg_status vg_forecast_new(const struct vg_void *v, const struct vg_load *load,
+                          const struct vg_cut_rule *rule, int levels,
+                          const struct vg_rates *rates, struct vg_forecast *out,
+                          struct vg_error *err)
 {
-  struct vg_outlook o = VG_OUTLOOK_INIT;
+  struct vg_forecast o = VG_FORECAST_INIT;
   struct forecast c = { .out = &o, .rule = rule, .rates = rates, .err = err };
   struct vg_part root = { .path = "0", .parent = SIZE_MAX, .levels = levels };
   vg_status st;
@@ -469,11 +470,11 @@ vg_status vg_outlook_new(const struct vg_void *v, const struct vg_load *load,
   line_up(&o.spans);
   vg_spans_sort(&o.spans);
   o.spans.n_rank = o.spans.n_thread = 1;
-  vg_outlook_release(out);
+  vg_forecast_release(out);
   *out = o;
   memset(&o, 0, sizeof o);
 done:
   vg_part_release(&root);
-  vg_outlook_release(&o);
+  vg_forecast_release(&o);
   return st;
 }

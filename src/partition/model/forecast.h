@@ -32,7 +32,7 @@ struct vg_rates {
 extern const struct vg_rates vg_rates_measured;
 
 /** A void of the tree. */
-struct vg_outlook_node {
+struct vg_forecast_node {
   char path[VG_PATH_MAX];
   size_t parent;             /* SIZE_MAX: the root */
   int depth;
@@ -44,17 +44,17 @@ struct vg_outlook_node {
   size_t n_child;
 };
 
-struct vg_outlook {
+struct vg_forecast {
   double cells, zone_cells;  /* of all; of pencils and tiles */
   size_t n_node, cap_node;
-  struct vg_outlook_node *node;  /* [n_node] parents first, the whole is [0] */
+  struct vg_forecast_node *node;  /* [n_node] parents first, the whole is [0] */
   size_t n_leaf, n_pencil, n_tile;
   struct vg_spans spans;     /* bytes_in: of the front handed over; start and
                                 end: one after the other on one core */
 };
-#define VG_OUTLOOK_INIT { .n_node = 0 }
+#define VG_FORECAST_INIT { .n_node = 0 }
 
-void vg_outlook_release(struct vg_outlook *o);
+void vg_forecast_release(struct vg_forecast *o);
 
 /** What the advancing partition will do with a void.
  *
@@ -64,12 +64,12 @@ void vg_outlook_release(struct vg_outlook *o);
  * @param out     replaced; untouched on failure
  * Result follows from the arguments alone. O((cubes + faces) x depth), times
  * the number of zones of a cut. VG_ERR_MEMORY. */
-vg_status vg_outlook_new(const struct vg_void *v, const struct vg_load *load,
-                         const struct vg_cut_rule *rule, int levels,
-                         const struct vg_rates *rates, struct vg_outlook *out,
-                         struct vg_error *err);
+vg_status vg_forecast_new(const struct vg_void *v, const struct vg_load *load,
+                          const struct vg_cut_rule *rule, int levels,
+                          const struct vg_rates *rates, struct vg_forecast *out,
+                          struct vg_error *err);
 
 /** Points of a mesh of tetrahedra whose boundary has so many faces. */
-double vg_outlook_points(double cells, double faces);
+double vg_forecast_points(double cells, double faces);
 
 #endif

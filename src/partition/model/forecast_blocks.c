@@ -32,7 +32,7 @@ static vg_status share_load(struct vg_blocks *b, const struct vg_load *load,
   return st;
 }
 
-static vg_status share_front(struct vg_blocks *b, const struct vg_bits *f,
+static vg_status share_front(struct vg_blocks *b, const struct vg_bins *f,
                              struct vg_error *err)
 {
   vg_status st = VG_OK;
@@ -42,7 +42,7 @@ static vg_status share_front(struct vg_blocks *b, const struct vg_bits *f,
 
     for (int k = 0; k < 3; k++)
       at[k] = side_of(b->l, k, (double)f->bit[i].x[k]);
-    st = vg_bits_add(&block_at(b, at)->front, &f->bit[i], err);
+    st = vg_bins_add(&block_at(b, at)->front, &f->bit[i], err);
   }
   return st;
 }

@@ -19,7 +19,7 @@ void vg_part_release(struct vg_part *p)
   memset(&p->front, 0, sizeof p->front);
 }
 
-double vg_bits_faces(const struct vg_bits *f)
+double vg_bins_faces(const struct vg_bins *f)
 {
   double sum = 0;
 
@@ -27,7 +27,7 @@ double vg_bits_faces(const struct vg_bits *f)
   return sum;
 }
 
-vg_status vg_bits_add(struct vg_bits *f, const struct vg_bit *b,
+vg_status vg_bins_add(struct vg_bins *f, const struct vg_bin *b,
                       struct vg_error *err)
 {
   if (vg_reserve(&f->bit, &f->cap, f->n + 1, sizeof *f->bit))
@@ -107,13 +107,13 @@ static int is_near(const struct vg_region *r, const float x[3], double band)
 /* Faces that a zone leaves where it passes the cube: on both sides of its
  * plane, or all around a pencil. */
 static vg_status add_sides(const struct vg_load_cube *c,
-                           const struct vg_region *r, struct vg_bits *f,
+                           const struct vg_region *r, struct vg_bins *f,
                            struct vg_error *err)
 {
   double side = 2 * (double)c->half, h = (double)c->h;
   double reach = reach_of(r) * h;
   double area = (double)c->part * side * side;
-  struct vg_bit b = { .h = c->h };
+  struct vg_bin b = { .h = c->h };
   vg_status st = VG_OK;
 
   memcpy(b.x, c->at, sizeof b.x);
@@ -124,19 +124,19 @@ static vg_status add_sides(const struct vg_load_cube *c,
     for (int k = 0; k < 3; k++) b.x[k] = (float)foot[k];
     area = (double)c->part * side * 8 * reach;
     b.n = (float)(area * VG_FACES_PER_SQUARE / (h * h));
-    return vg_bits_add(f, &b, err);
+    return vg_bins_add(f, &b, err);
   }
   b.n = (float)(area * VG_FACES_PER_SQUARE / (h * h));
   for (int sign = -1; st >= 0 && sign <= 1; sign += 2) {
     b.x[axis_of(&r->plane[0])] =
       (float)(r->plane[0].offset + sign * 1.01 * reach);
-    st = vg_bits_add(f, &b, err);
+    st = vg_bins_add(f, &b, err);
   }
   return st;
 }
 
 /* Front that a zone has closed in. */
-void vg_bits_cover(struct vg_bits *f, size_t n, const struct vg_region *r)
+void vg_bins_cover(struct vg_bins *f, size_t n, const struct vg_region *r)
 {
   double reach = reach_of(r);
   size_t left = 0;
@@ -148,13 +148,13 @@ void vg_bits_cover(struct vg_bits *f, size_t n, const struct vg_region *r)
   f->n = left;
 }
 
-double vg_bits_near(const struct vg_bits *f, size_t n,
+double vg_bins_near(const struct vg_bins *f, size_t n,
                     const struct vg_region *r)
 {
   double band = vg_region_band(r, VG_BAND_FRONT), sum = 0;
 
   for (size_t i = 0; i < n; i++) {
-    const struct vg_bit *b = &f->bit[i];
+    const struct vg_bin *b = &f->bit[i];
 
     if (is_near(r, b->x, band * (double)b->h) &&
         is_over(r, b->x, VG_BAND_FRONT * (double)b->h))
@@ -164,8 +164,8 @@ double vg_bits_near(const struct vg_bits *f, size_t n,
 }
 
 /* Cells of the region leave the load and, if it has a front, make sides. */
-vg_status vg_bits_take(struct vg_part *p, const struct vg_region *r,
-                       struct vg_bits *made, struct vg_amount *a,
+vg_status vg_bins_take(struct vg_part *p, const struct vg_region *r,
+                       struct vg_bins *made, struct vg_amount *a,
                        struct vg_error *err)
 {
   vg_status st = VG_OK;

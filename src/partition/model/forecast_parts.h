@@ -13,9 +13,9 @@
 #define VG_FACES_PER_SQUARE 2.309
 
 /* A stretch of front: n faces about x. */
-struct vg_bit { float x[3], h, n; };
+struct vg_bin { float x[3], h, n; };
 
-struct vg_bits { size_t n, cap; struct vg_bit *bit; };
+struct vg_bins { size_t n, cap; struct vg_bin *bit; };
 
 /* Cells, and how many of them lie where spacing varies. */
 struct vg_amount { double cells, graded; };
@@ -23,7 +23,7 @@ struct vg_amount { double cells, graded; };
 /* A void on its way down the tree. */
 struct vg_part {
   struct vg_load load;
-  struct vg_bits front;
+  struct vg_bins front;
   double lo[3], hi[3];
   char path[VG_PATH_MAX];
   size_t parent;
@@ -34,9 +34,9 @@ struct vg_part {
 
 void vg_part_release(struct vg_part *p);
 
-vg_status vg_bits_add(struct vg_bits *f, const struct vg_bit *b,
+vg_status vg_bins_add(struct vg_bins *f, const struct vg_bin *b,
                       struct vg_error *err);
-double vg_bits_faces(const struct vg_bits *f);
+double vg_bins_faces(const struct vg_bins *f);
 
 /** What a share of the cube holds, added to a. */
 void vg_amount_add(struct vg_amount *a, const struct vg_load_cube *c,
@@ -44,15 +44,15 @@ void vg_amount_add(struct vg_amount *a, const struct vg_load_cube *c,
 
 /** Cells of the region leave the load, counted in a; where it has some, the
  * faces that it leaves go to made. */
-vg_status vg_bits_take(struct vg_part *p, const struct vg_region *r,
-                       struct vg_bits *made, struct vg_amount *a,
+vg_status vg_bins_take(struct vg_part *p, const struct vg_region *r,
+                       struct vg_bins *made, struct vg_amount *a,
                        struct vg_error *err);
 
 /** Front that a zone has closed in goes; of the first n bits only. */
-void vg_bits_cover(struct vg_bits *f, size_t n, const struct vg_region *r);
+void vg_bins_cover(struct vg_bins *f, size_t n, const struct vg_region *r);
 
 /** Faces of the first n bits that the region must know. */
-double vg_bits_near(const struct vg_bits *f, size_t n,
+double vg_bins_near(const struct vg_bins *f, size_t n,
                     const struct vg_region *r);
 
 /* --- blocks (forecast_blocks.c) ------------------------------------------- */

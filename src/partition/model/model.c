@@ -643,11 +643,11 @@ static double extra_of_cuts(const struct sim *s, double cuts)
   return n_leaf > 0 ? cuts - n_zone * leaves / n_leaf : cuts;
 }
 
-static struct vg_forecast judge(const struct sim *s)
+static struct vg_model_result judge(const struct sim *s)
 {
   double outside = vg_model_outside(s->machine), sum = 0, most = 0;
   double cuts = 0, workers = s->n_worker, longest = 0;
-  struct vg_forecast f = { .imbalance = 1 };
+  struct vg_model_result f = { .imbalance = 1 };
 
   for (uint32_t i = 0; i < s->g.n; i++) {
     sum += s->g.span[i].cpu;
@@ -695,7 +695,8 @@ static void hand_over(struct sim *s, struct vg_spans *timeline)
 
 vg_status vg_model_replay(const struct vg_spans *spans,
                           const struct vg_machine *machine,
-                          struct vg_forecast *out, struct vg_spans *timeline,
+                          struct vg_model_result *out,
+                              struct vg_spans *timeline,
                           struct vg_error *err)
 {
   struct vg_spans helps = VG_SPANS_INIT;

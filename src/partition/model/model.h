@@ -58,7 +58,7 @@ struct vg_machine {
 #define VG_MACHINE_INIT { .ranks = 1, .threads = 1, .ranks_per_node = 1, \
   .latency = 2e-6, .bandwidth = 1e10, .rate = 1, .loop_threads = 16 }
 
-struct vg_forecast {
+struct vg_model_result {
   double wall;               /* s, what is outside the tasks included */
   double work;               /* s of all that on one worker */
   double speedup, efficiency;/* work / wall; over workers */
@@ -87,7 +87,8 @@ struct vg_forecast {
  * machine that cannot be. Deterministic. O(n log n). */
 vg_status vg_model_replay(const struct vg_spans *spans,
                           const struct vg_machine *machine,
-                          struct vg_forecast *out, struct vg_spans *timeline,
+                          struct vg_model_result *out,
+                              struct vg_spans *timeline,
                           struct vg_error *err);
 
 /** Seconds that the machine takes outside the tasks. */

@@ -36,12 +36,12 @@ static void picks_release(struct picks *s)
 struct repair {
   struct vg_partition *p;
   struct vg_owners owners;
-  struct vg_balls balls;
+  struct vg_spot_grid balls;
   struct picks *pick;        /* [n_piece] */
   size_t n_block, cap_block;
-  struct vg_block *block;    /* of the clusters of this rank, by cluster and
-                                path */
-  struct vg_repair_boundary rim;         /* between their points */
+  struct vg_cluster_cells *block;  /* of the clusters of this rank, by cluster
+                                and path */
+  struct vg_repair_boundary boundary;  /* between their points */
   size_t n_job;
   size_t *first;             /* [n_job + 1] block */
   struct vg_repaired *repaired;  /* [n_job] */
@@ -56,7 +56,8 @@ static void repair_free(struct repair *r)
 {
   for (size_t k = 0; r->pick && k < r->p->n_piece; k++)
     picks_release(&r->pick[k]);
-  for (size_t k = 0; k < r->n_block; k++) vg_block_release(&r->block[k]);
+  for (size_t k = 0; k < r->n_block; k++)
+    vg_cluster_cells_release(&r->block[k]);
   for (size_t k = 0; r->repaired && k < r->n_job; k++)
     vg_repaired_release(&r->repaired[k]);
   free(r->pick);
@@ -67,8 +68,8 @@ static void repair_free(struct repair *r)
   free(r->st);
   free(r->better);
   free(r->owners.at);
-  vg_balls_release(&r->balls);
-  vg_repair_boundary_release(&r->rim);
+  vg_spot_grid_release(&r->balls);
+  vg_repair_boundary_release(&r->boundary);
 }
 
 /* --- which cells --------------------------------------------------------- */
@@ -115,7 +116,7 @@ static void pick_body(void *context, size_t first, size_t end, int worker)
     uint32_t *in = vg_alloc(n, sizeof *in), all = VG_NO_CLUSTER;
 
     for (size_t i = 0; in && i < n; i++) {
-      in[i] = vg_balls_at(&r->balls, q->x[i]);
+      in[i] = vg_spot_grid_at(&r->balls, q->x[i]);
       all &= in[i];
     }
     if (!in) r->pick[k].st = VG_ERR_MEMORY;
@@ -151,22 +152,23 @@ static void put_taken(struct repair *r, const struct vg_piece *q,
 {
   for (int i = 0; i < 4; i++) {
     uint32_t v = q->cell[taken->index][i];
-    uint32_t cluster = vg_balls_at(&r->balls, q->x[v]);
+    uint32_t cluster = vg_spot_grid_at(&r->balls, q->x[v]);
     uint64_t name = name_of(q, v);
     uint8_t hold = 1;
-    struct vg_block b = { .cluster = cluster, .n_point = 1, .name = &name,
+    struct vg_cluster_cells b = { .cluster = cluster, .n_point = 1,
+                                  .name = &name,
                           .x = &q->x[v], .hold = &hold };
 
     if (cluster == VG_NO_CLUSTER || cluster == taken->key) continue;
     memcpy(b.path, q->path, sizeof b.path);
-    vg_block_put(&post->to[cluster % (uint32_t)r->p->size], &b);
+    vg_cluster_cells_put(&post->to[cluster % (uint32_t)r->p->size], &b);
   }
 }
 
 /* The cells of one cluster: pick [n]. number: [n points], VG_NO_CLUSTER. */
 static void fill_block(const struct vg_piece *q, size_t n,
                        const struct vg_key *pick, uint32_t *number,
-                       struct vg_block *b)
+                       struct vg_cluster_cells *b)
 {
   b->cluster = (uint32_t)pick->key;
   b->n_point = 0;
@@ -195,7 +197,7 @@ static vg_status put_piece(struct repair *r, size_t k, struct vg_outbox *post,
   const struct picks *s = &r->pick[k];
   size_t n_point = q->n_in + q->n_point, most = 4 * s->n;
   uint32_t *number = vg_alloc(n_point, sizeof *number);
-  struct vg_block b = { 0 };
+  struct vg_cluster_cells b = { 0 };
 
   b.name = vg_alloc(most, sizeof *b.name);
   b.x = vg_alloc(most, sizeof *b.x);
@@ -203,7 +205,7 @@ static vg_status put_piece(struct repair *r, size_t k, struct vg_outbox *post,
   b.cell = vg_alloc(s->n, sizeof *b.cell);
   if (!number || !b.name || !b.x || !b.hold || !b.cell) {
     free(number);
-    vg_block_release(&b);
+    vg_cluster_cells_release(&b);
     return vg_fail_memory(err, "repairs");
   }
   memset(number, 0xff, n_point * sizeof *number);
@@ -212,11 +214,11 @@ static vg_status put_piece(struct repair *r, size_t k, struct vg_outbox *post,
          end++) {
     }
     fill_block(q, end - first, &s->at[first], number, &b);
-    vg_block_put(&post->to[b.cluster % (uint32_t)r->p->size], &b);
+    vg_cluster_cells_put(&post->to[b.cluster % (uint32_t)r->p->size], &b);
   }
   for (size_t c = 0; c < s->n_taken; c++) put_taken(r, q, &s->taken[c], post);
   free(number);
-  vg_block_release(&b);
+  vg_cluster_cells_release(&b);
   return VG_OK;
 }
 
@@ -224,7 +226,7 @@ static vg_status put_piece(struct repair *r, size_t k, struct vg_outbox *post,
  * their order does not matter. */
 static int by_path(const void *a, const void *b)
 {
-  const struct vg_block *s = a, *t = b;
+  const struct vg_cluster_cells *s = a, *t = b;
 
   if (s->cluster != t->cluster) return s->cluster < t->cluster ? -1 : 1;
   if (!s->n_cell != !t->n_cell) return s->n_cell ? -1 : 1;
@@ -241,7 +243,7 @@ static vg_status take_blocks(struct repair *r, const struct vg_bytes *from,
       if (vg_reserve(&r->block, &r->cap_block, r->n_block + 1,
                      sizeof *r->block))
         return vg_fail_memory(err, "repairs");
-      vg_block_get(&in, &r->block[r->n_block]);
+      vg_cluster_cells_get(&in, &r->block[r->n_block]);
       if (in.bad) return vg_fail_damaged(err, "repairs");
       r->n_block++;
     }
@@ -284,20 +286,21 @@ static void cluster_body(void *context, size_t first, size_t end, int worker)
   struct repair *r = context;
 
   for (size_t k = first; k < end; k++) {
-    const struct vg_block *b = &r->block[r->first[k]];
+    const struct vg_cluster_cells *b = &r->block[r->first[k]];
 
     vg_repair_begin(&r->span[k], worker);
     r->st[k] = vg_repair_cluster(r->first[k + 1] - r->first[k], b, &r->balls,
-                                 &r->rim, r->p->sizing, &r->repaired[k], NULL);
+                                 &r->boundary, r->p->sizing, &r->repaired[k],
+                                     NULL);
     vg_repair_end(&r->span[k], "", r->number + b->cluster,
                   r->repaired[k].n_cell);
   }
 }
 
-static vg_status mend(struct repair *r, struct vg_error *err)
+static vg_status repair_clusters(struct repair *r, struct vg_error *err)
 {
   vg_status st = vg_repair_boundary_new(r->p->boundary, r->n_block, r->block,
-                                        &r->rim, err);
+                                        &r->boundary, err);
 
   if (st < 0) return st;
   vg_parallel_for(r->p->options.threads, r->n_job, 1, cluster_body, r);
@@ -452,12 +455,12 @@ static vg_status put_back(struct repair *r, struct vg_comm *comm,
 static vg_status round_of(struct repair *r, struct vg_comm *comm, size_t n,
                           const struct vg_spot *spot, struct vg_error *err)
 {
-  vg_status st = vg_comm_agree(comm, vg_balls_new(n, spot, MOST_BALLS,
-                                                  &r->balls, err), err);
+  vg_status st = vg_comm_agree(comm, vg_spot_grid_new(n, spot, MOST_BALLS,
+                                                      &r->balls, err), err);
 
   if (st == VG_OK)
     st = vg_comm_agree(comm, send_cells(r, comm, err), err);
-  if (st == VG_OK) st = vg_comm_agree(comm, mend(r, err), err);
+  if (st == VG_OK) st = vg_comm_agree(comm, repair_clusters(r, err), err);
   if (st == VG_OK) st = share_outcomes(r, comm, err);
   return st == VG_OK ? put_back(r, comm, err) : st;
 }

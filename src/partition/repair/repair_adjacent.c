@@ -85,7 +85,7 @@ static vg_status list_bad(const struct strip *s, const struct vg_sizing *sizing,
   for (size_t c = 0; c < s->t.n_cell; c++) {
     const double *x[4];
 
-    if (s->shape[c] >= VG_SHAPE_AIM || s->shape[c] >= s->old[c] || s->on[c])
+    if (s->shape[c] >= VG_SHAPE_TARGET || s->shape[c] >= s->old[c] || s->on[c])
       continue;
     for (int i = 0; i < 4; i++) x[i] = s->t.x[s->t.cell[c].v[i]];
     if (vg_spots_add(out, sizing, x, s->shape[c]) < 0) return VG_ERR_MEMORY;

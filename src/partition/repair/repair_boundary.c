@@ -48,7 +48,7 @@ static vg_status list(const struct vg_mesh *m, const uint8_t *in,
 }
 
 vg_status vg_repair_boundary_new(const struct vg_mesh *boundary, size_t n,
-                                 const struct vg_block *block,
+                                 const struct vg_cluster_cells *block,
                                  struct vg_repair_boundary *out,
                                  struct vg_error *err)
 {

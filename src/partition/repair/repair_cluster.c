@@ -12,7 +12,7 @@ static const double hopeless = 0.0076;   /* R7 */
 
 /* --- as they travel ------------------------------------------------------ */
 
-void vg_block_release(struct vg_block *b)
+void vg_cluster_cells_release(struct vg_cluster_cells *b)
 {
   free(b->name);
   free(b->x);
@@ -21,7 +21,7 @@ void vg_block_release(struct vg_block *b)
   memset(b, 0, sizeof *b);
 }
 
-void vg_block_put(struct vg_writer *w, const struct vg_block *b)
+void vg_cluster_cells_put(struct vg_writer *w, const struct vg_cluster_cells *b)
 {
   uint64_t count[2] = {b->n_point, b->n_cell};
 
@@ -34,7 +34,7 @@ void vg_block_put(struct vg_writer *w, const struct vg_block *b)
   vg_put(w, b->n_cell, sizeof *b->cell, b->cell);
 }
 
-void vg_block_get(struct vg_reader *r, struct vg_block *b)
+void vg_cluster_cells_get(struct vg_reader *r, struct vg_cluster_cells *b)
 {
   uint64_t count[2] = {0, 0};
 
@@ -48,7 +48,7 @@ void vg_block_get(struct vg_reader *r, struct vg_block *b)
   b->x = vg_get_array(r, b->n_point, sizeof *b->x);
   b->hold = vg_get_array(r, b->n_point, sizeof *b->hold);
   b->cell = vg_get_array(r, b->n_cell, sizeof *b->cell);
-  if (r->bad) vg_block_release(b);
+  if (r->bad) vg_cluster_cells_release(b);
 }
 
 void vg_repaired_release(struct vg_repaired *m)
@@ -64,9 +64,9 @@ void vg_repaired_release(struct vg_repaired *m)
 
 struct joint {
   size_t n_block;
-  const struct vg_block *block;
-  const struct vg_balls *balls;
-  const struct vg_repair_boundary *rim;
+  const struct vg_cluster_cells *block;
+  const struct vg_spot_grid *balls;
+  const struct vg_repair_boundary *boundary;
   /* points in the order in which they are first met */
   size_t n_point, n_fixed, n_cell;
   uint64_t *name;
@@ -142,7 +142,7 @@ static void join_points(struct joint *j)
   size_t n_free = 0;
 
   for (size_t k = 0; k < j->n_block; k++) {
-    const struct vg_block *b = &j->block[k];
+    const struct vg_cluster_cells *b = &j->block[k];
 
     for (size_t i = 0; i < b->n_point; i++) {
       uint32_t q = j->local[k][i] = point_of(j, b->name[i], b->x[i]);
@@ -152,7 +152,7 @@ static void join_points(struct joint *j)
   }
   for (size_t q = 0; q < j->n_point; q++) {
     if (!(j->name[q] >> 32) ||
-        vg_balls_at(j->balls, j->x[q]) != j->block[0].cluster)
+        vg_spot_grid_at(j->balls, j->x[q]) != j->block[0].cluster)
       j->fixed[q] = 1;
     j->n_fixed += j->fixed[q];
   }
@@ -174,7 +174,7 @@ static int on_rim(const struct joint *j, uint32_t c, int i)
     if (name >> 32) return 0;
     at[m] = (uint32_t)name;
   }
-  return vg_repair_boundary_has(j->rim, at);
+  return vg_repair_boundary_has(j->boundary, at);
 }
 
 /* Faces around the cells and sheets of the boundary are fixed. Other faces of
@@ -208,8 +208,8 @@ static vg_status join_cells(struct joint *j, struct vg_error *err)
     for (size_t c = 0; c < j->block[k].n_cell; c++, n++)
       for (int i = 0; i < 4; i++)
         cell[n][i] = j->number[j->local[k][j->block[k].cell[c][i]]];
-  st = vg_tets_adopt(&j->t, j->n_point, x, n, (const uint32_t (*)[4])cell,
-                     err);
+  st = vg_tets_from_cells(&j->t, j->n_point, x, n, (const uint32_t (*)[4])cell,
+                          err);
   free(cell);
   if (st == VG_OK) fix_faces(j);
   return st;
@@ -227,7 +227,7 @@ struct tally {
 
 static struct tally measure(const struct vg_tets *t)
 {
-  static const double below[CLASSES] = {0.0076, 0.03, VG_SHAPE_AIM};
+  static const double below[CLASSES] = {0.0076, 0.03, VG_SHAPE_TARGET};
   struct tally s = { .worst = 2 };
 
   for (size_t c = 0; c < t->n_cell; c++) {
@@ -330,7 +330,7 @@ static vg_status list_left(const struct joint *j,
     if (vg_shape(x[0], x[1], x[2], x[3]) >= hopeless) continue;
     if (vg_reserve(&m->spot, &m->cap_spot, m->n_spot + 1, sizeof *m->spot))
       return vg_fail_memory(err, "repairs");
-    m->spot[m->n_spot++] = vg_spot_around(sizing, x, VG_BALL_LARGE);
+    m->spot[m->n_spot++] = vg_spot_around(sizing, x, VG_SPOT_LARGE);
   }
   return VG_OK;
 }
@@ -358,14 +358,14 @@ static vg_status take(const struct joint *j, const struct tally *old,
   return st;
 }
 
-vg_status vg_repair_cluster(size_t n, const struct vg_block *block,
-                            const struct vg_balls *balls,
-                            const struct vg_repair_boundary *rim,
+vg_status vg_repair_cluster(size_t n, const struct vg_cluster_cells *block,
+                            const struct vg_spot_grid *balls,
+                            const struct vg_repair_boundary *boundary,
                             const struct vg_sizing *sizing,
                             struct vg_repaired *out, struct vg_error *err)
 {
   struct joint j = { .n_block = n, .block = block, .balls = balls,
-                     .rim = rim };
+                     .boundary = boundary };
   struct vg_optimise_report r;
   struct vg_repaired m = { .better = 0 };
   struct tally old;

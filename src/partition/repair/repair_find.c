@@ -10,7 +10,7 @@
 /* The worse a cell, the larger its ball: `reach` local spacings, and `most`
  * times as far as its own corners. Beside long triangles of a sharp edge, what
  * stayed bad needs much room. */
-static const struct { double reach, most; } ball[VG_BALL_SIZES] = {
+static const struct { double reach, most; } ball[VG_SPOT_SIZES] = {
   { 1.2, 1.01 }, { 2.5, 1.01 }, { 4, 2 } };
 
 /* --- owners -------------------------------------------------------------- */
@@ -133,7 +133,7 @@ vg_status vg_outbox_send(struct vg_outbox *post, struct vg_comm *comm,
 /* --- bad cells ----------------------------------------------------------- */
 
 struct vg_spot vg_spot_around(const struct vg_sizing *sizing,
-                              const double *const x[4], enum vg_ball_size k)
+                              const double *const x[4], enum vg_spot_size k)
 {
   struct vg_spot s;
   double far = 0, reach;
@@ -157,7 +157,7 @@ vg_status vg_spots_add(struct vg_spots *s, const struct vg_sizing *sizing,
   if (vg_reserve(&s->at, &s->cap, s->n + 1, sizeof *s->at))
     return VG_ERR_MEMORY;
   s->at[s->n++] = vg_spot_around(
-      sizing, x, shape < VG_SHAPE_BAD ? VG_BALL_MIDDLE : VG_BALL_SMALL);
+      sizing, x, shape < VG_SHAPE_BAD ? VG_SPOT_MIDDLE : VG_SPOT_SMALL);
   return VG_OK;
 }
 

@@ -38,20 +38,20 @@ vg_status vg_outbox_send(struct vg_outbox *post, struct vg_comm *comm,
                          vg_status st, struct vg_bytes **from,
                          struct vg_error *err);
 
-/* --- where (repair_smooth.c, repair_balls.c) ----------------------------- */
+/* --- where (repair_smooth.c, repair_spots.c) ----------------------------- */
 
 /* A ball around a bad cell. */
 struct vg_spot { double at[3], radius; };
 
 /* For cells that are not good, bad ones, and what stayed bad. */
-enum vg_ball_size { VG_BALL_SMALL, VG_BALL_MIDDLE, VG_BALL_LARGE,
-                    VG_BALL_SIZES };
+enum vg_spot_size { VG_SPOT_SMALL, VG_SPOT_MIDDLE, VG_SPOT_LARGE,
+                    VG_SPOT_SIZES };
 
 /** A ball around a cell: a few spacings, and all of the cell. */
 struct vg_spot vg_spot_around(const struct vg_sizing *sizing,
-                              const double *const x[4], enum vg_ball_size k);
+                              const double *const x[4], enum vg_spot_size k);
 
-/** Add one around a cell of a shape below VG_SHAPE_AIM. */
+/** Add one around a cell of a shape below VG_SHAPE_TARGET. */
 struct vg_spots { size_t n, cap; struct vg_spot *at; };
 vg_status vg_spots_add(struct vg_spots *s, const struct vg_sizing *sizing,
                        const double *const x[4], double shape);
@@ -126,13 +126,13 @@ vg_status vg_repair_adjacent(const struct vg_piece *q,
                              struct vg_spots *out);
 
 enum {                       /* what is known of a cell in it */
-  VG_FIELD_TOLD = 1,         /* an earlier owner looks at it */
-  VG_FIELD_LATER = 2,        /* an earlier owner may move a point of it */
-  VG_FIELD_NEW = 4 };
+  VG_OVERLAP_CLAIMED = 1,         /* an earlier owner looks at it */
+  VG_OVERLAP_LATER = 2,        /* an earlier owner may move a point of it */
+  VG_OVERLAP_NEW = 4 };
 
 /* All cells with a corner among an owner's points on interfaces.
- * (repair_field.c) */
-struct vg_field {
+ * (repair_overlap.c) */
+struct vg_overlap {
   const struct vg_piece *q;
   const struct vg_owner *self;
   int first;                 /* as below */
@@ -156,9 +156,9 @@ struct vg_field {
 
 /** first: those who come first in the order may move points; or who come
  * last. */
-vg_status vg_field_new(struct vg_field *f, const struct vg_owners *owners,
-                       int first);
-void vg_field_release(struct vg_field *f);
+vg_status vg_overlap_new(struct vg_overlap *f, const struct vg_owners *owners,
+                         int first);
+void vg_overlap_release(struct vg_overlap *f);
 
 /* Cells of a piece that others take the place of. */
 struct vg_edit {
@@ -178,16 +178,16 @@ vg_status vg_piece_edit(struct vg_piece *q, const struct vg_edit *c);
 /** Swap in a field, where no other owner does and no earlier one moves a
  * point. What goes is noted in out->gone and in the halos, what comes is part
  * of the field. (repair_swap.c) */
-vg_status vg_field_swap(struct vg_field *f, struct vg_edit *out,
-                        size_t *n_swap);
+vg_status vg_overlap_swap(struct vg_overlap *f, struct vg_edit *out,
+                          size_t *n_swap);
 
 /** The new cells, as they end. */
-vg_status vg_field_take(const struct vg_field *f, struct vg_edit *out);
+vg_status vg_overlap_take(const struct vg_overlap *f, struct vg_edit *out);
 
 enum { VG_LEVEL_MAX = 64 };
 
 /* Balls, to be found by points in them. */
-struct vg_balls {
+struct vg_spot_grid {
   size_t n;
   const struct vg_spot *spot;  /* [n] borrowed */
   uint32_t *cluster;         /* [n] or VG_NO_CLUSTER: to be done later */
@@ -203,17 +203,17 @@ vg_status vg_spots_thin(size_t *n, struct vg_spot *spot, struct vg_error *err);
 
 /** Join balls that overlap to clusters, numbered by their first ball. Balls
  * that would make a cluster of more than `most` are left for later. */
-vg_status vg_balls_new(size_t n, const struct vg_spot *spot, size_t most,
-                       struct vg_balls *out, struct vg_error *err);
-void vg_balls_release(struct vg_balls *b);
+vg_status vg_spot_grid_new(size_t n, const struct vg_spot *spot, size_t most,
+                           struct vg_spot_grid *out, struct vg_error *err);
+void vg_spot_grid_release(struct vg_spot_grid *b);
 
 /** The cluster in whose balls x is, or VG_NO_CLUSTER. Threads: safe. */
-uint32_t vg_balls_at(const struct vg_balls *b, const double x[3]);
+uint32_t vg_spot_grid_at(const struct vg_spot_grid *b, const double x[3]);
 
 /* --- what (repair_cluster.c) --------------------------------------------- */
 
 /* Cells of one piece for a cluster, as they travel. */
-struct vg_block {
+struct vg_cluster_cells {
   uint32_t cluster;
   char path[VG_PATH_MAX];    /* of the piece */
   uint64_t n_point, n_cell;
@@ -224,10 +224,11 @@ struct vg_block {
   uint32_t (*cell)[4];       /* [n_cell] */
 };
 
-void vg_block_release(struct vg_block *b);
-void vg_block_put(struct vg_writer *w, const struct vg_block *b);
+void vg_cluster_cells_release(struct vg_cluster_cells *b);
+void vg_cluster_cells_put(struct vg_writer *w,
+                          const struct vg_cluster_cells *b);
 /** Sets r->bad, and leaves *b empty, where the data cannot be. */
-void vg_block_get(struct vg_reader *r, struct vg_block *b);
+void vg_cluster_cells_get(struct vg_reader *r, struct vg_cluster_cells *b);
 
 /* --- the boundary (repair_boundary.c) ------------------------------------ */
 
@@ -241,7 +242,7 @@ struct vg_repair_boundary {
 
 /** Triangles between the points of block [n]; boundary may be NULL. */
 vg_status vg_repair_boundary_new(const struct vg_mesh *boundary, size_t n,
-                                 const struct vg_block *block,
+                                 const struct vg_cluster_cells *block,
                                  struct vg_repair_boundary *out,
                                  struct vg_error *err);
 void vg_repair_boundary_release(struct vg_repair_boundary *r);
@@ -256,7 +257,7 @@ int vg_repair_boundary_has(const struct vg_repair_boundary *r,
 struct vg_repaired {
   int better;                /* 0: the cells stay as they were */
   uint64_t n_cell;           /* of the cluster */
-  uint64_t n_bad, n_bad_left;  /* cells below VG_SHAPE_AIM before, after */
+  uint64_t n_bad, n_bad_left;  /* cells below VG_SHAPE_TARGET before, after */
   double worst, worst_left;  /* as vg_shape */
   struct vg_piece piece;     /* without path and serial */
   size_t n_moved;
@@ -269,9 +270,9 @@ struct vg_repaired {
 void vg_repaired_release(struct vg_repaired *m);
 
 /** Improve the cells of a cluster. block: [n] by path. */
-vg_status vg_repair_cluster(size_t n, const struct vg_block *block,
-                            const struct vg_balls *balls,
-                            const struct vg_repair_boundary *rim,
+vg_status vg_repair_cluster(size_t n, const struct vg_cluster_cells *block,
+                            const struct vg_spot_grid *balls,
+                            const struct vg_repair_boundary *boundary,
                             const struct vg_sizing *sizing,
                             struct vg_repaired *out, struct vg_error *err);
 

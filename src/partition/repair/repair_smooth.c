@@ -187,7 +187,7 @@ static vg_status send_halos(struct smoothing *s, struct vg_comm *comm,
 
 /* --- the points of one owner --------------------------------------------- */
 
-static vg_status smooth(struct vg_field *f, const struct vg_sizing *sizing,
+static vg_status smooth(struct vg_overlap *f, const struct vg_sizing *sizing,
                         struct outcome *out)
 {
   struct vg_optimise_report r;
@@ -212,7 +212,7 @@ static vg_status smooth(struct vg_field *f, const struct vg_sizing *sizing,
 }
 
 /* Bad cells, and how many would be swapped. */
-static vg_status list_bad(const struct vg_field *f,
+static vg_status list_bad(const struct vg_overlap *f,
                           const struct vg_sizing *sizing, struct outcome *out)
 {
   out->n_cell = f->t.n_cell;
@@ -222,7 +222,8 @@ static vg_status list_bad(const struct vg_field *f,
     const double *x[4];
 
     out->n_fair += f->shape[c] < VG_SHAPE_SWAP;
-    if (f->kind[c] & VG_FIELD_TOLD || f->shape[c] >= VG_SHAPE_AIM) continue;
+    if (f->kind[c] & VG_OVERLAP_CLAIMED ||
+        f->shape[c] >= VG_SHAPE_TARGET) continue;
     for (int i = 0; i < 4; i++) x[i] = f->t.x[v[i]];
     if (vg_spots_add(&out->bad, sizing, x, f->shape[c]) < 0)
       return VG_ERR_MEMORY;
@@ -232,7 +233,7 @@ static vg_status list_bad(const struct vg_field *f,
 
 /* What a zone has at its own points on interfaces, beside what it has at those
  * of others; and those points. */
-static vg_status keep_hits(struct vg_field *f, struct outcome *out)
+static vg_status keep_hits(struct vg_overlap *f, struct outcome *out)
 {
   size_t n = out->n_hit, k = 0, m = 0, n_all = 0;
   uint32_t *all = vg_alloc(n + f->n_own, sizeof *all);
@@ -258,7 +259,7 @@ static vg_status smooth_piece(const struct smoothing *s, size_t k,
                               struct outcome *out)
 {
   const struct vg_piece *q = &s->p->piece[k];
-  struct vg_field f = {
+  struct vg_overlap f = {
     .q = q, .halo = s->halo + s->first_halo[k],
     .n_halo = s->first_halo[k + 1] - s->first_halo[k],
     .self = vg_owners_find(s->owners, VG_POINT_NAME(q->serial, 0)) };
@@ -266,14 +267,14 @@ static vg_status smooth_piece(const struct smoothing *s, size_t k,
 
   free(out->moved);
   out->moved = vg_calloc(q->n_point, 1);
-  st = out->moved ? vg_field_new(&f, s->owners, s->first) : VG_ERR_MEMORY;
+  st = out->moved ? vg_overlap_new(&f, s->owners, s->first) : VG_ERR_MEMORY;
   if (st == VG_OK && !s->first && f.self->is_zone)
-    st = vg_field_swap(&f, &out->edit, &out->n_swap);
+    st = vg_overlap_swap(&f, &out->edit, &out->n_swap);
   if (st == VG_OK) st = smooth(&f, s->p->sizing, out);
   if (st == VG_OK) st = list_bad(&f, s->p->sizing, out);
-  if (st == VG_OK && out->n_swap) st = vg_field_take(&f, &out->edit);
+  if (st == VG_OK && out->n_swap) st = vg_overlap_take(&f, &out->edit);
   if (st == VG_OK && s->first && f.self->is_zone) st = keep_hits(&f, out);
-  vg_field_release(&f);
+  vg_overlap_release(&f);
   return st;
 }
 

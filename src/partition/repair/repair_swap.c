@@ -6,7 +6,7 @@
 #include "partition/repair/repair_parts.h"
 
 struct patch {
-  struct vg_field *f;
+  struct vg_overlap *f;
   uint8_t *mark;             /* [f.t.n_point] corner of a cell to be swapped */
   size_t n;
   uint32_t *cell;            /* [n] of the field */
@@ -32,16 +32,16 @@ static void patch_release(struct patch *p)
 
 /* --- which cells --------------------------------------------------------- */
 
-static int is_ours(const struct vg_field *f, size_t c)
+static int is_ours(const struct vg_overlap *f, size_t c)
 {
-  return !(f->kind[c] & VG_FIELD_LATER);
+  return !(f->kind[c] & VG_OVERLAP_LATER);
 }
 
 /* A cell shares an edge or a face with one that is to be swapped only where
  * two of its corners are marked. */
 static vg_status choose(struct patch *p)
 {
-  const struct vg_field *f = p->f;
+  const struct vg_overlap *f = p->f;
   size_t n = f->t.n_cell, n_want = 0;
 
   p->mark = vg_calloc(f->t.n_point, 1);
@@ -68,7 +68,7 @@ static vg_status choose(struct patch *p)
 
 static int on_boundary(const struct patch *p, uint32_t v)
 {
-  const struct vg_field *f = p->f;
+  const struct vg_overlap *f = p->f;
   uint32_t at = p->vertex[v];
 
   if (at < f->q->n_in) return !(f->q->in[at] >> 32);
@@ -109,7 +109,7 @@ static vg_status make_room(struct patch *p)
 
 static vg_status link_cells(struct patch *p)
 {
-  const struct vg_field *f = p->f;
+  const struct vg_overlap *f = p->f;
   double (*x)[3];
   size_t n_point = 0;
   vg_status st;
@@ -128,8 +128,8 @@ static vg_status link_cells(struct patch *p)
   if (!x) return VG_ERR_MEMORY;
   for (size_t v = 0; v < n_point; v++)
     memcpy(x[v], f->t.x[p->vertex[v]], sizeof *x);
-  st = vg_tets_adopt(&p->t, n_point, x, p->n,
-                     (const uint32_t (*)[4])p->old, NULL);
+  st = vg_tets_from_cells(&p->t, n_point, x, p->n,
+                          (const uint32_t (*)[4])p->old, NULL);
   if (st < 0) return st;
   for (size_t k = 0; k < p->n; k++) {
     memcpy(p->old[k], p->t.cell[k].v, sizeof *p->old);
@@ -162,7 +162,7 @@ static size_t find_gone(struct patch *p)
 /* In the halos, and in out->gone. */
 static vg_status note_gone(const struct patch *p, struct vg_edit *out)
 {
-  const struct vg_field *f = p->f;
+  const struct vg_overlap *f = p->f;
   size_t at = f->n_own;
 
   out->gone = vg_calloc(f->q->n_cell, 1);
@@ -181,7 +181,7 @@ static vg_status note_gone(const struct patch *p, struct vg_edit *out)
 
 static vg_status put_back(struct patch *p)
 {
-  struct vg_field *f = p->f;
+  struct vg_overlap *f = p->f;
   size_t n = 0, n_new = 0;
 
   for (size_t c = 0; c < f->t.n_cell; c++) {
@@ -202,15 +202,15 @@ static vg_status put_back(struct patch *p)
     if (!is_new(p, c)) continue;
     for (int i = 0; i < 4; i++)
       f->t.cell[n].v[i] = p->vertex[p->t.cell[c].v[i]];
-    f->kind[n] = VG_FIELD_NEW;
+    f->kind[n] = VG_OVERLAP_NEW;
     f->shape[n++] = p->q[c];
   }
   f->t.n_cell = n;
   return VG_OK;
 }
 
-vg_status vg_field_swap(struct vg_field *f, struct vg_edit *out,
-                        size_t *n_swap)
+vg_status vg_overlap_swap(struct vg_overlap *f, struct vg_edit *out,
+                          size_t *n_swap)
 {
   struct patch p = { .f = f };
   struct vg_optimise_report r = {0};
@@ -234,12 +234,12 @@ vg_status vg_field_swap(struct vg_field *f, struct vg_edit *out,
   return st;
 }
 
-vg_status vg_field_take(const struct vg_field *f, struct vg_edit *out)
+vg_status vg_overlap_take(const struct vg_overlap *f, struct vg_edit *out)
 {
   uint32_t *to = vg_alloc(f->n_other, sizeof *to);
   size_t n = 0;
 
-  while (n < f->t.n_cell && f->kind[f->t.n_cell - 1 - n] & VG_FIELD_NEW) n++;
+  while (n < f->t.n_cell && f->kind[f->t.n_cell - 1 - n] & VG_OVERLAP_NEW) n++;
   out->cell = vg_alloc(n, sizeof *out->cell);
   out->name = vg_alloc(f->n_other, sizeof *out->name);
   out->x = vg_alloc(f->n_other, sizeof *out->x);

@@ -2,9 +2,9 @@
 check="$here/architecture.sh"
 mkdir -p good/src/base good/src/core/mesh good/src/core/fill
 cat >good/src/CMakeLists.txt <<'END'
-vg_room(base)
-vg_room(core/mesh base)
-vg_room(core/fill core/mesh)
+vg_module(base)
+vg_module(core/mesh base)
+vg_module(core/fill core/mesh)
 END
 touch good/src/base/x.h good/src/core/mesh/m_parts.h
 echo '#include "base/x.h"' >good/src/core/mesh/m.h
@@ -33,7 +33,7 @@ refused idle "core/mesh sees base, and includes nothing of it"
 
 cp -r good private
 echo '#include "core/mesh/m_parts.h"' >>private/src/core/fill/f.c
-refused private "core/mesh/m_parts.h is private to its room"
+refused private "core/mesh/m_parts.h is private to its module"
 
 cp -r good bare
 echo '#include "m.h"' >>bare/src/core/fill/f.c
@@ -55,12 +55,12 @@ refused homeless "src/core/odd: a folder without a place"
 
 cp -r good full
 for i in $(seq 41); do touch full/src/core/fill/f$i.c; done
-refused full "src/core/fill: 42 files, at most 40 in a room"
+refused full "src/core/fill: 42 files, at most 40 in a module"
 
 cp -r good part
 cat >>part/src/CMakeLists.txt <<'END'
-vg_room(layers/grow core/fill)
-vg_room(io/mesh layers/grow)
+vg_module(layers/grow core/fill)
+vg_module(io/mesh layers/grow)
 END
 refused part "io must not see layers/grow"
 

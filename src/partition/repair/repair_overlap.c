@@ -7,7 +7,7 @@
 #include "core/geometry/shape.h"
 #include "partition/repair/repair_parts.h"
 
-void vg_field_release(struct vg_field *f)
+void vg_overlap_release(struct vg_overlap *f)
 {
   vg_tets_release(&f->t);
   free(f->shared);
@@ -20,20 +20,21 @@ void vg_field_release(struct vg_field *f)
   free(f->point);
 }
 
-static int is_shared(const struct vg_field *f, uint32_t v)
+static int is_shared(const struct vg_overlap *f, uint32_t v)
 {
   return v >= f->q->n_in && v - f->q->n_in < f->q->n_point &&
          f->shared[v - f->q->n_in];
 }
 
-static int has_shared(const struct vg_field *f, const uint32_t *v)
+static int has_shared(const struct vg_overlap *f, const uint32_t *v)
 {
   return is_shared(f, v[0]) || is_shared(f, v[1]) || is_shared(f, v[2]) ||
          is_shared(f, v[3]);
 }
 
 /* The vertex of that name, which is added when it is new. */
-static uint32_t vertex_of(struct vg_field *f, uint64_t name, const double x[3])
+static uint32_t vertex_of(struct vg_overlap *f, uint64_t name,
+                          const double x[3])
 {
   const struct vg_piece *q = f->q;
   uint64_t h = name * 0x9e3779b97f4a7c15u;
@@ -51,7 +52,7 @@ static uint32_t vertex_of(struct vg_field *f, uint64_t name, const double x[3])
   return (uint32_t)f->t.n_point++;
 }
 
-static vg_status new_names(struct vg_field *f, size_t n_other)
+static vg_status new_names(struct vg_overlap *f, size_t n_other)
 {
   const struct vg_piece *q = f->q;
 
@@ -71,7 +72,7 @@ static vg_status new_names(struct vg_field *f, size_t n_other)
   return VG_OK;
 }
 
-static vg_status make_room(struct vg_field *f)
+static vg_status make_room(struct vg_overlap *f)
 {
   const struct vg_piece *q = f->q;
   size_t n_other = 0, n_cell = 0;
@@ -103,21 +104,21 @@ static vg_status make_room(struct vg_field *f)
   return new_names(f, n_other);
 }
 
-static void hold(struct vg_field *f, const uint32_t *v)
+static void hold(struct vg_overlap *f, const uint32_t *v)
 {
   for (int i = 0; i < 4; i++)
     if (is_shared(f, v[i])) f->stays[v[i] - f->q->n_in] = 1;
 }
 
 /* Is a zone's turn before that of the owner? */
-static int is_before(const struct vg_field *f, uint32_t order)
+static int is_before(const struct vg_overlap *f, uint32_t order)
 {
   if (order == VG_NO_ZONE) return 0;
   return f->first ? order < f->self->order : order > f->self->order;
 }
 
 /* The zone that vertex v < q.n_in is of. */
-static uint32_t zone_of(const struct vg_field *f,
+static uint32_t zone_of(const struct vg_overlap *f,
                         const struct vg_owners *owners, uint32_t v,
                         const struct vg_owner **last)
 {
@@ -129,7 +130,7 @@ static uint32_t zone_of(const struct vg_field *f,
   return *last && (*last)->is_zone ? (*last)->order : VG_NO_ZONE;
 }
 
-static void add_own(struct vg_field *f, const struct vg_owners *owners)
+static void add_own(struct vg_overlap *f, const struct vg_owners *owners)
 {
   const struct vg_owner *last = NULL;
 
@@ -142,13 +143,13 @@ static void add_own(struct vg_field *f, const struct vg_owners *owners)
       if (v[i] < f->q->n_in)
         later |= is_before(f, zone_of(f, owners, v[i], &last));
     if (later) hold(f, v);
-    f->kind[f->t.n_cell] = later ? VG_FIELD_TOLD | VG_FIELD_LATER : 0;
+    f->kind[f->t.n_cell] = later ? VG_OVERLAP_CLAIMED | VG_OVERLAP_LATER : 0;
     f->place[f->t.n_cell] = (uint32_t)c;
     memcpy(f->t.cell[f->t.n_cell++].v, v, sizeof f->t.cell->v);
   }
 }
 
-static void add_halo(struct vg_field *f, const struct vg_halo *s,
+static void add_halo(struct vg_overlap *f, const struct vg_halo *s,
                      uint32_t *vertex)
 {
   for (size_t k = 0; k < s->n_known; k++)
@@ -164,10 +165,10 @@ static void add_halo(struct vg_field *f, const struct vg_halo *s,
 
       v[i] = vertex[k];
       if (k < s->n_known || !is_before(f, s->zone[k - s->n_known])) continue;
-      kind |= VG_FIELD_LATER;
+      kind |= VG_OVERLAP_LATER;
       /* the one that has the cell looks at it only where others use that
        * point */
-      if (s->zone[k - s->n_known] != s->order) kind |= VG_FIELD_TOLD;
+      if (s->zone[k - s->n_known] != s->order) kind |= VG_OVERLAP_CLAIMED;
     }
     if (kind) hold(f, v);
     f->kind[f->t.n_cell++] = kind;
@@ -183,7 +184,7 @@ static void find_shapes(const struct vg_tets *t, float *q)
   }
 }
 
-static vg_status list_points(struct vg_field *f)
+static vg_status list_points(struct vg_overlap *f)
 {
   size_t n = f->self->is_zone ? f->q->n_point : 0;
 
@@ -195,8 +196,8 @@ static vg_status list_points(struct vg_field *f)
   return VG_OK;
 }
 
-vg_status vg_field_new(struct vg_field *f, const struct vg_owners *owners,
-                       int first)
+vg_status vg_overlap_new(struct vg_overlap *f, const struct vg_owners *owners,
+                         int first)
 {
   uint32_t *vertex;
   size_t most = 0;

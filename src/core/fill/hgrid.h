@@ -1,68 +1,68 @@
-/* core/fill/near.h: which points stand around a place? A spatial hash keyed by
+/* core/fill/hgrid.h: which points stand around a place? A spatial hash keyed by
  * the level of the local spacing, so that a query touches a few cells whatever
  * the span of sizes. Uses base only.
  *
  * A query gathers the surroundings of a centre once, in single precision
  * relative to it; any number of positions is then tested against that list. */
-#ifndef VG_CORE_FILL_NEAR_H
-#define VG_CORE_FILL_NEAR_H
+#ifndef VG_CORE_FILL_HGRID_H
+#define VG_CORE_FILL_HGRID_H
 
 #include <stddef.h>
 #include <stdint.h>
 
-enum { VG_NEAR_MAX = 2048, VG_NEAR_CELLS = 4096, VG_NEAR_PAGE = 8 };
+enum { VG_HGRID_MAX = 2048, VG_HGRID_CELLS = 4096, VG_HGRID_PAGE = 8 };
 
-struct vg_near_page {        /* some points of a cell, from its corner; what
+struct vg_hgrid_page {        /* some points of a cell, from its corner; what
                                 is not used is 0 */
   uint32_t next, n;
-  float x[3][VG_NEAR_PAGE];
+  float x[3][VG_HGRID_PAGE];
 };
 
-struct vg_near {
+struct vg_hgrid {
   double lo[3];              /* origin of the cells */
   double slope;              /* bound on the gradient of the spacing */
   int level_lo, level_hi;    /* levels that the spacing can ask for */
   size_t n_slot;             /* open addressing, a power of 2 */
-  struct vg_near_slot { uint64_t key; uint32_t block; } *slot;
+  struct vg_hgrid_slot { uint64_t key; uint32_t block; } *slot;
   size_t n_block, cap_block;
-  struct vg_near_block {     /* 4 x 4 x 4 cells */
+  struct vg_hgrid_block {     /* 4 x 4 x 4 cells */
     uint64_t used;           /* bit i: cell i has points */
     uint32_t page[64];       /* first of each cell */
   } *block;
   size_t n_page, cap_page;
-  struct vg_near_page *page;
+  struct vg_hgrid_page *page;
   size_t n_cell;             /* cells of the query under way */
-  struct vg_near_cell { uint32_t page; float d[3]; } cell[VG_NEAR_CELLS];
+  struct vg_hgrid_cell { uint32_t page; float d[3]; } cell[VG_HGRID_CELLS];
   size_t n;                  /* the list: [3][n], relative to the centre */
-  float x[3][VG_NEAR_MAX + VG_NEAR_PAGE];
+  float x[3][VG_HGRID_MAX + VG_HGRID_PAGE];
 };
 
 /** Start *s, which must be zeroed. h_min, h_max: range of spacings.
  * 0, or -1 when memory is refused. */
-int vg_near_init(struct vg_near *s, const double lo[3], double h_min,
-                 double h_max, double slope);
+int vg_hgrid_init(struct vg_hgrid *s, const double lo[3], double h_min,
+                  double h_max, double slope);
 
-void vg_near_release(struct vg_near *s);
+void vg_hgrid_release(struct vg_hgrid *s);
 
 /** Let a point stand at x where the spacing is h. 0, or -1 on refusal. */
-int vg_near_add(struct vg_near *s, const double x[3], double h);
+int vg_hgrid_add(struct vg_hgrid *s, const double x[3], double h);
 
-/** List the points within r of c, where the spacing is h. Beyond VG_NEAR_MAX
+/** List the points within r of c, where the spacing is h. Beyond VG_HGRID_MAX
  * points the list is cut short. */
-void vg_near_gather(struct vg_near *s, const double c[3], double h, double r);
+void vg_hgrid_gather(struct vg_hgrid *s, const double c[3], double h, double r);
 
 /** Add a point at c + d to the list at hand. */
-static inline void vg_near_note(struct vg_near *s, const double d[3])
+static inline void vg_hgrid_note(struct vg_hgrid *s, const double d[3])
 {
-  if (s->n == VG_NEAR_MAX) return;
+  if (s->n == VG_HGRID_MAX) return;
   for (int k = 0; k < 3; k++) s->x[k][s->n] = (float)d[k];
   s->n++;
 }
 
 /** How many listed points are nearer than r to c + d? Counted without a
  * branch, so that several are tested at once. */
-static inline int vg_near_count(const struct vg_near *s, const double d[3],
-                                double r)
+static inline int vg_hgrid_count(const struct vg_hgrid *s, const double d[3],
+                                 double r)
 {
   float x = (float)d[0], y = (float)d[1], z = (float)d[2], r2 = (float)(r * r);
   int n = 0;

@@ -1,4 +1,4 @@
-#include "layers/topology/gram.h"
+#include "layers/topology/most_normal.h"
 
 #include <math.h>
 #include <string.h>

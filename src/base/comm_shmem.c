@@ -28,7 +28,7 @@ static size_t total(size_t n_part, const struct vg_bytes *part)
 {
   size_t n = 0;
 
-  for (size_t i = 0; i < n_part; i++) n += vg_common_padded(part[i].n);
+  for (size_t i = 0; i < n_part; i++) n += vg_shmem_padded(part[i].n);
   return n ? n : 1;
 }
 
@@ -54,7 +54,7 @@ static int write_file(int file, size_t n_part, const struct vg_bytes *part,
   size_t at = 0;
 
   if (ftruncate(file, (off_t)t->n) || fstat(file, &is)) return -1;
-  for (size_t i = 0; i < n_part; at += vg_common_padded(part[i++].n))
+  for (size_t i = 0; i < n_part; at += vg_shmem_padded(part[i++].n))
     if (write_part(file, &part[i], at)) return -1;
   t->device = (uint64_t)is.st_dev;
   t->inode = (uint64_t)is.st_ino;
@@ -106,7 +106,7 @@ static unsigned char *map(int file, size_t n, int writes)
 /* VG_BLOCKED on all ranks of the node: one cannot. */
 static vg_status share(const struct vg_comm *c, size_t n_part,
                        const struct vg_bytes *part, int writes,
-                       struct vg_common *out, struct vg_error *err)
+                       struct vg_shmem *out, struct vg_error *err)
 {
   struct ticket t = { .file = -1 };
   unsigned char *at = NULL;
@@ -122,7 +122,7 @@ static vg_status share(const struct vg_comm *c, size_t n_part,
   if (file >= 0 && (at = map(file, (size_t)t.n, writes))) st = VG_OK;
   st = vg_comm_agree_in(c, c->node, st, err);
   if (file >= 0) close(file);
-  if (st == VG_OK) *out = (struct vg_common){ (size_t)t.n, at, 1 };
+  if (st == VG_OK) *out = (struct vg_shmem){ (size_t)t.n, at, 1 };
   else if (at) munmap(at, (size_t)t.n);
   return st;
 }
@@ -137,13 +137,13 @@ static vg_status join_parts(size_t n_part, const struct vg_bytes *part,
   b->n = total(n_part, part);
   b->data = vg_calloc(b->n, 1);
   if (!b->data) return vg_fail_memory(err, "what a node has in common");
-  for (size_t i = 0; i < n_part; at += vg_common_padded(part[i++].n))
+  for (size_t i = 0; i < n_part; at += vg_shmem_padded(part[i++].n))
     if (part[i].n) memcpy(b->data + at, part[i].data, part[i].n);
   return VG_OK;
 }
 
 static vg_status copy(struct vg_comm *c, size_t n_part,
-                      const struct vg_bytes *part, struct vg_common *out,
+                      const struct vg_bytes *part, struct vg_shmem *out,
                       struct vg_error *err)
 {
   struct vg_bytes b = { 0, NULL };
@@ -152,14 +152,14 @@ static vg_status copy(struct vg_comm *c, size_t n_part,
   if (!vg_comm_node_rank(c)) st = join_parts(n_part, part, &b, err);
   if (c) st = vg_comm_agree_in(c, c->node, st, err);
   if (st >= 0) st = vg_comm_node_bcast(c, &b, err);
-  if (st >= 0) *out = (struct vg_common){ b.n, b.data, 0 };
+  if (st >= 0) *out = (struct vg_shmem){ b.n, b.data, 0 };
   else free(b.data);
   return st;
 }
 
 vg_status vg_comm_node_memory(struct vg_comm *c, size_t n_part,
                               const struct vg_bytes *part, int writes,
-                              struct vg_common *out, struct vg_error *err)
+                              struct vg_shmem *out, struct vg_error *err)
 {
   vg_status st = VG_BLOCKED;
 
@@ -168,16 +168,16 @@ vg_status vg_comm_node_memory(struct vg_comm *c, size_t n_part,
   return st == VG_BLOCKED ? copy(c, n_part, part, out, err) : st;
 }
 
-vg_status vg_comm_node_common(struct vg_comm *c, size_t n_part,
-                              const struct vg_bytes *part,
-                              struct vg_common *out, struct vg_error *err)
+vg_status vg_comm_node_shmem(struct vg_comm *c, size_t n_part,
+                             const struct vg_bytes *part,
+                             struct vg_shmem *out, struct vg_error *err)
 {
   return vg_comm_node_memory(c, n_part, part, 0, out, err);
 }
 
-void vg_common_release(struct vg_common *b)
+void vg_shmem_release(struct vg_shmem *b)
 {
   if (b->is_mapped) munmap((void *)(uintptr_t)b->data, b->n);
   else free((void *)(uintptr_t)b->data);
-  *b = (struct vg_common){ 0, NULL, 0 };
+  *b = (struct vg_shmem){ 0, NULL, 0 };
 }

@@ -1,4 +1,4 @@
-#include "core/sizing/sizing_places.h"
+#include "core/sizing/sizing_probes.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -10,28 +10,28 @@
 /* Of a radius: a place on a border is on neither side of it. */
 #define WITHIN 0.999
 
-void vg_places_release(struct vg_places *p)
+void vg_probes_release(struct vg_probes *p)
 {
   free(p->item);
   memset(p, 0, sizeof *p);
 }
 
 /* At x + far * way. */
-static void put(struct vg_places *p, uint32_t i, const double x[3], double far,
+static void put(struct vg_probes *p, uint32_t i, const double x[3], double far,
                 const double way[3])
 {
-  struct vg_place *q;
+  struct vg_probe *q;
 
   if (vg_reserve(&p->item, &p->cap, p->n + 1, sizeof *p->item)) {
     p->refused = 1;
     return;
   }
   q = p->item + p->n++;
-  *q = (struct vg_place){ .source = i };
+  *q = (struct vg_probe){ .source = i };
   for (int k = 0; k < 3; k++) q->x[k] = x[k] + far * way[k];
 }
 
-static void put_at(struct vg_places *p, uint32_t i, const double x[3])
+static void put_at(struct vg_probes *p, uint32_t i, const double x[3])
 {
   put(p, i, x, 0, x);
 }
@@ -47,7 +47,7 @@ static void make_way(int i, double way[3])
   }
 }
 
-static void put_ball(struct vg_places *p, const struct vg_source *s,
+static void put_ball(struct vg_probes *p, const struct vg_source *s,
                      uint32_t i, int is_fine)
 {
   put_at(p, i, s->p0);
@@ -82,7 +82,7 @@ static void cross_ways(const double d[3], double way[2][3])
   }
 }
 
-static void put_tube(struct vg_places *p, const struct vg_source *s,
+static void put_tube(struct vg_probes *p, const struct vg_source *s,
                      uint32_t i, int is_fine)
 {
   int is_cone = s->kind == VG_SOURCE_CYLINDER, n = is_fine ? 16 : 4;
@@ -101,7 +101,7 @@ static void put_tube(struct vg_places *p, const struct vg_source *s,
   }
 }
 
-static void put_triangle(struct vg_places *p, const struct vg_source *s,
+static void put_triangle(struct vg_probes *p, const struct vg_source *s,
                          uint32_t i, int is_fine)
 {
   const int n = is_fine ? 4 : 2;
@@ -128,7 +128,7 @@ static void put_triangle(struct vg_places *p, const struct vg_source *s,
     }
 }
 
-static void put_box(struct vg_places *p, const struct vg_source *s,
+static void put_box(struct vg_probes *p, const struct vg_source *s,
                     uint32_t i, int is_fine)
 {
   const int n = is_fine ? 5 : 3;
@@ -146,7 +146,7 @@ static void put_box(struct vg_places *p, const struct vg_source *s,
   }
 }
 
-void vg_places_shape(struct vg_places *p, const struct vg_source *s,
+void vg_probes_shape(struct vg_probes *p, const struct vg_source *s,
                      uint32_t i, int is_fine)
 {
   switch (s->kind) {
@@ -161,7 +161,7 @@ void vg_places_shape(struct vg_places *p, const struct vg_source *s,
   }
 }
 
-void vg_places_around(struct vg_places *p, size_t from, size_t to, double far)
+void vg_probes_around(struct vg_probes *p, size_t from, size_t to, double far)
 {
   for (size_t j = from; j < to; j++)
     for (int w = 0; w < 6; w++) {
@@ -222,7 +222,7 @@ static size_t first_ray(const struct ray *ray, size_t n, double y)
   return lo;
 }
 
-static void cross_face(struct vg_places *p, const struct ray *ray,
+static void cross_face(struct vg_probes *p, const struct ray *ray,
                        const double *const v[3])
 {
   double lo[3], hi[3];
@@ -232,7 +232,7 @@ static void cross_face(struct vg_places *p, const struct ray *ray,
     hi[k] = fmax(fmax(v[0][k], v[1][k]), v[2][k]);
   }
   for (size_t i = first_ray(ray, p->n, lo[1]); i < p->n; i++) {
-    struct vg_place *q = p->item + ray[i].place;
+    struct vg_probe *q = p->item + ray[i].place;
     double side;
     int from_behind;
 
@@ -246,14 +246,14 @@ static void cross_face(struct vg_places *p, const struct ray *ray,
   }
 }
 
-vg_status vg_places_cross(struct vg_places *p, const struct vg_mesh *m,
+vg_status vg_probes_cross(struct vg_probes *p, const struct vg_mesh *m,
                           struct vg_error *err)
 {
   struct ray *ray = vg_alloc(p->n, sizeof *ray);
 
   if (!ray) return vg_fail_memory(err, "the places of sources");
   for (size_t i = 0; i < p->n; i++) {
-    struct vg_place *q = p->item + i;
+    struct vg_probe *q = p->item + i;
 
     q->crossings = 0;
     ray[i] = (struct ray){ q->x[1], q->x[2], (uint32_t)i };

@@ -1,4 +1,4 @@
-#include "core/sizing/sizing_near_parts.h"
+#include "core/sizing/sizing_bvh_parts.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -7,7 +7,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 
-#define LANES VG_NEAR_LANES
+#define LANES VG_BVH_LANES
 
 /* Order of the samples: medians of the longest side, again and again. */
 
@@ -183,22 +183,22 @@ static int size_class(double h, double least)
 {
   int c = 0;
 
-  for (least *= 4; h > least && c < VG_NEAR_CLASSES - 1; least *= 4) c++;
+  for (least *= 4; h > least && c < VG_BVH_CLASSES - 1; least *= 4) c++;
   return c;
 }
 
 /* Keys by class of size, the classes in order; count gets how many each. */
 static void classify(size_t n, const double (*p)[3], const double *h,
-                     struct key *key, size_t count[VG_NEAR_CLASSES])
+                     struct key *key, size_t count[VG_BVH_CLASSES])
 {
   double least = h[0];
-  size_t at[VG_NEAR_CLASSES];
+  size_t at[VG_BVH_CLASSES];
 
   for (size_t i = 1; i < n; i++) least = h[i] < least ? h[i] : least;
-  memset(count, 0, VG_NEAR_CLASSES * sizeof *count);
+  memset(count, 0, VG_BVH_CLASSES * sizeof *count);
   for (size_t i = 0; i < n; i++) count[size_class(h[i], least)]++;
   at[0] = 0;
-  for (int c = 1; c < VG_NEAR_CLASSES; c++) at[c] = at[c - 1] + count[c - 1];
+  for (int c = 1; c < VG_BVH_CLASSES; c++) at[c] = at[c - 1] + count[c - 1];
   for (size_t i = 0; i < n; i++) {
     struct key *a = key + at[size_class(h[i], least)]++;
 
@@ -213,7 +213,7 @@ struct bound {
   float h_min, h_max;
 };
 
-static void bound_block(const struct vg_near_block *b, struct bound *out)
+static void bound_block(const struct vg_bvh_block *b, struct bound *out)
 {
   out->h_min = out->h_max = b->h[0];
   for (int k = 0; k < 3; k++) out->lo[k] = out->hi[k] = b->origin[k];
@@ -241,20 +241,20 @@ static void join(struct bound *a, const struct bound *b)
 
 /* Group of n <= LANES bounds; an empty lane is never entered. */
 static void fill_group(const struct bound *from, size_t n,
-                       struct vg_near_group *g)
+                       struct vg_bvh_group *g)
 {
   memset(g, 0, sizeof *g);
   for (int k = 0; k < 3; k++)
     g->origin[k] = 0.5 * (from[0].lo[k] + from[0].hi[k]);
   for (size_t j = 0; j < LANES; j++) {
-    g->h_min[j] = j < n ? from[j].h_min : VG_NEAR_NEVER;
+    g->h_min[j] = j < n ? from[j].h_min : VG_BVH_NEVER;
     g->h_max[j] = j < n ? from[j].h_max : -INFINITY;
     for (int k = 0; k < 3 && j < n; k++) {
       double half = 0.5 * (from[j].hi[k] - from[j].lo[k]);
       double mid = from[j].lo[k] + half - g->origin[k];
 
       g->mid[k][j] = (float)mid;
-      half += fabs(mid) * (double)VG_NEAR_SHY;
+      half += fabs(mid) * (double)VG_BVH_MARGIN;
       g->half[k][j] = (float)(half * 1.000001);
     }
   }
@@ -264,8 +264,8 @@ struct filling {
   const double (*p)[3], *h;
   const struct key *key;
   size_t n;
-  struct vg_near_block *block;
-  struct vg_near_group *group;
+  struct vg_bvh_block *block;
+  struct vg_bvh_group *group;
   struct bound *bound, *up;     /* of what goes in, and of what comes out */
 };
 
@@ -277,7 +277,7 @@ static void block_body(void *context, size_t first, size_t end, int worker)
   (void)worker;
   for (size_t i = first * LANES; i < end * LANES; i++) {
     size_t from = f->key[i < f->n ? i : f->n - 1].at, lane;
-    struct vg_near_block *b = f->block + i / LANES;
+    struct vg_bvh_block *b = f->block + i / LANES;
 
     lane = i % LANES;
     b->h[lane] = (float)f->h[from];
@@ -308,7 +308,7 @@ static void group_body(void *context, size_t first, size_t end, int worker)
 
 /* A tree of f->n samples: its blocks, and groups level by level. Moves *f on
  * behind them. */
-static void fill_tree(struct filling *f, struct vg_near_tree *t, int threads)
+static void fill_tree(struct filling *f, struct vg_bvh_tree *t, int threads)
 {
   struct bound *bound = f->up;
   size_t n = (f->n + LANES - 1) / LANES;
@@ -331,15 +331,15 @@ static void fill_tree(struct filling *f, struct vg_near_tree *t, int threads)
   f->up = bound;
 }
 
-static int fill_trees(struct vg_near *t, const double (*p)[3],
+static int fill_trees(struct vg_bvh *t, const double (*p)[3],
                       const double *h, struct key *key,
-                      const size_t count[VG_NEAR_CLASSES],
+                      const size_t count[VG_BVH_CLASSES],
                       struct bound *bound, int threads)
 {
   struct filling f = { .p = p, .h = h, .key = key, .block = t->block,
                        .group = t->group, .up = bound };
 
-  for (int c = 0; c < VG_NEAR_CLASSES; c++) {
+  for (int c = 0; c < VG_BVH_CLASSES; c++) {
     if (!count[c]) continue;
     if (order_samples(key, count[c], threads)) return -1;
     key += count[c];
@@ -349,21 +349,21 @@ static int fill_trees(struct vg_near *t, const double (*p)[3],
   return 0;
 }
 
-vg_status vg_near_new(size_t n, const double (*p)[3], const double *h,
-                      double slope, int threads, struct vg_near **out,
-                      struct vg_error *err)
+vg_status vg_bvh_new(size_t n, const double (*p)[3], const double *h,
+                     double slope, int threads, struct vg_bvh **out,
+                     struct vg_error *err)
 {
-  struct vg_near *t = vg_calloc(1, sizeof *t);
+  struct vg_bvh *t = vg_calloc(1, sizeof *t);
   struct key *key = vg_alloc(n, sizeof *key);
-  size_t count[VG_NEAR_CLASSES], n_block = n / LANES + VG_NEAR_CLASSES;
-  size_t n_group = n_block / 7 + VG_NEAR_CLASSES * VG_NEAR_LEVELS;
+  size_t count[VG_BVH_CLASSES], n_block = n / LANES + VG_BVH_CLASSES;
+  size_t n_group = n_block / 7 + VG_BVH_CLASSES * VG_BVH_LEVELS;
   struct bound *bound = vg_alloc(n_block + n_group, sizeof *bound);
 
   if (!t || !key || !bound || n > UINT32_MAX / 2) goto refused;
   t->slope = (float)slope;
-  t->offset = (float)vg_near_offset(slope);
-  t->steep = (float)vg_near_steep(slope);
-  t->rise = (float)vg_near_rise(slope);
+  t->offset = (float)vg_bvh_offset(slope);
+  t->steep = (float)vg_bvh_steep(slope);
+  t->rise = (float)vg_bvh_rise(slope);
   t->block = vg_alloc(n_block, sizeof *t->block);
   /* a seventh of the blocks, and what is not full on each level */
   t->group = vg_alloc(n_group, sizeof *t->group);
@@ -377,11 +377,11 @@ vg_status vg_near_new(size_t n, const double (*p)[3], const double *h,
 refused:
   free(bound);
   free(key);
-  vg_near_free(t);
+  vg_bvh_free(t);
   return vg_fail_memory(err, "the sizes on the surface");
 }
 
-void vg_near_free(struct vg_near *t)
+void vg_bvh_free(struct vg_bvh *t)
 {
   if (!t) return;
   free(t->block);

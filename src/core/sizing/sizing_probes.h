@@ -1,40 +1,40 @@
-/* core/sizing/sizing_places.h: places in and around a source, and which of them
+/* core/sizing/sizing_probes.h: places in and around a source, and which of them
  * are in a void. For core/sizing/sizing_effect.c. */
-#ifndef VG_CORE_SIZING_SIZING_PLACES_H
-#define VG_CORE_SIZING_SIZING_PLACES_H
+#ifndef VG_CORE_SIZING_SIZING_PROBES_H
+#define VG_CORE_SIZING_SIZING_PROBES_H
 
 #include "core/sizing/sizing.h"
 
-struct vg_place {
+struct vg_probe {
   double x[3];
   uint32_t source;
-  int32_t crossings;         /* of vg_places_cross: below 0 in the void */
+  int32_t crossings;         /* of vg_probes_cross: below 0 in the void */
 };
 
-struct vg_places {
+struct vg_probes {
   size_t n, cap;
-  struct vg_place *item;
+  struct vg_probe *item;
   int refused;               /* memory was, once */
 };
-#define VG_PLACES_INIT { 0 }
+#define VG_PROBES_INIT { 0 }
 
-void vg_places_release(struct vg_places *p);
+void vg_probes_release(struct vg_probes *p);
 
 /** Append places in the shape of source `s`, number i: on its border too, a
  * thousandth within. A VGRID source is a point or a line. is_fine: many. */
-void vg_places_shape(struct vg_places *p, const struct vg_source *s,
+void vg_probes_shape(struct vg_probes *p, const struct vg_source *s,
                      uint32_t i, int is_fine);
 
 /** Append, for the places from .. to, those at a distance of `far` along the
  * axes. */
-void vg_places_around(struct vg_places *p, size_t from, size_t to,
+void vg_probes_around(struct vg_probes *p, size_t from, size_t to,
                       double far);
 
 /** Set crossings: triangles of the closed m that a ray from each place along x
  * passes from behind, less those that it passes from the front. Faces look
  * into the void. Signs are exact. Cost: O(triangles log places), and the
  * triangles that a ray comes near. VG_ERR_MEMORY. */
-vg_status vg_places_cross(struct vg_places *p, const struct vg_mesh *m,
+vg_status vg_probes_cross(struct vg_probes *p, const struct vg_mesh *m,
                           struct vg_error *err);
 
 #endif

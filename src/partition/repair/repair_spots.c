@@ -37,7 +37,8 @@ static uint64_t hash(int level, int64_t i, int64_t j, int64_t k)
 
 /* Slots of the cells of a level's grid that a ball meets: [8]; returns how
  * many. radius: at most that of the level's balls. */
-static int slots(const struct vg_balls *b, const struct vg_spot *s, int level,
+static int slots(const struct vg_spot_grid *b, const struct vg_spot *s,
+                 int level,
                  uint64_t *slot)
 {
   int64_t lo[3], hi[3];
@@ -55,7 +56,7 @@ static int slots(const struct vg_balls *b, const struct vg_spot *s, int level,
   return n;
 }
 
-static void list_levels(struct vg_balls *b)
+static void list_levels(struct vg_spot_grid *b)
 {
   for (size_t i = 0; i < b->n; i++) {
     int e = level_of(b->spot[i].radius), k = 0;
@@ -67,7 +68,7 @@ static void list_levels(struct vg_balls *b)
   }
 }
 
-static vg_status fill_grid(struct vg_balls *b, struct vg_error *err)
+static vg_status fill_grid(struct vg_spot_grid *b, struct vg_error *err)
 {
   uint64_t slot[8], size = 64;
 
@@ -90,7 +91,7 @@ static vg_status fill_grid(struct vg_balls *b, struct vg_error *err)
   return VG_OK;
 }
 
-uint32_t vg_balls_at(const struct vg_balls *b, const double x[3])
+uint32_t vg_spot_grid_at(const struct vg_spot_grid *b, const double x[3])
 {
   for (int l = 0; l < b->n_level; l++) {
     double m = b->share[l];
@@ -127,7 +128,7 @@ static int overlaps(const struct vg_spot *a, const struct vg_spot *b)
 struct pairs { size_t n, cap; uint64_t *at; };
 
 /* Each ball finds those of its level and of higher ones. */
-static vg_status add_pairs(const struct vg_balls *b, uint32_t i,
+static vg_status add_pairs(const struct vg_spot_grid *b, uint32_t i,
                            struct pairs *p, struct vg_error *err)
 {
   const struct vg_spot *s = &b->spot[i];
@@ -160,7 +161,7 @@ static int by_value(const void *a, const void *b)
 
 /* Ball i joins the clusters of the earlier balls it overlaps, unless that
  * makes too large a one. pair: [n] those of ball i. */
-static void join(const struct vg_balls *b, struct forest *f, uint32_t i,
+static void join(const struct vg_spot_grid *b, struct forest *f, uint32_t i,
                  size_t n, const uint64_t *pair, size_t most)
 {
   size_t size = 1;
@@ -183,7 +184,7 @@ static void join(const struct vg_balls *b, struct forest *f, uint32_t i,
   b->cluster[i] = 0;
 }
 
-static void number(struct vg_balls *b, const struct forest *f)
+static void number(struct vg_spot_grid *b, const struct forest *f)
 {
   /* sizes are not needed any more: numbers of roots */
   for (size_t i = 0; i < b->n; i++) f->size[i] = VG_NO_CLUSTER;
@@ -197,7 +198,7 @@ static void number(struct vg_balls *b, const struct forest *f)
   }
 }
 
-static vg_status join_all(struct vg_balls *b, struct forest *f,
+static vg_status join_all(struct vg_spot_grid *b, struct forest *f,
                           struct pairs *p, size_t most, struct vg_error *err)
 {
   size_t first = 0, end;
@@ -221,10 +222,10 @@ static vg_status join_all(struct vg_balls *b, struct forest *f,
   return VG_OK;
 }
 
-vg_status vg_balls_new(size_t n, const struct vg_spot *spot, size_t most,
-                       struct vg_balls *out, struct vg_error *err)
+vg_status vg_spot_grid_new(size_t n, const struct vg_spot *spot, size_t most,
+                           struct vg_spot_grid *out, struct vg_error *err)
 {
-  struct vg_balls b = { .n = n, .spot = spot };
+  struct vg_spot_grid b = { .n = n, .spot = spot };
   struct forest f = {0};
   struct pairs p = {0};
   vg_status st;
@@ -243,12 +244,12 @@ vg_status vg_balls_new(size_t n, const struct vg_spot *spot, size_t most,
   free(f.near);
   free(p.at);
   if (st == VG_OK) *out = b;
-  else vg_balls_release(&b);
+  else vg_spot_grid_release(&b);
   return st;
 }
 
 /* Is ball i's middle deep in an earlier ball that stays, not much smaller? */
-static int is_covered(const struct vg_balls *b, uint32_t i)
+static int is_covered(const struct vg_spot_grid *b, uint32_t i)
 {
   const struct vg_spot *s = &b->spot[i];
 
@@ -271,7 +272,7 @@ static int is_covered(const struct vg_balls *b, uint32_t i)
 
 vg_status vg_spots_thin(size_t *n, struct vg_spot *spot, struct vg_error *err)
 {
-  struct vg_balls b = { .n = *n, .spot = spot };
+  struct vg_spot_grid b = { .n = *n, .spot = spot };
   vg_status st = VG_OK;
 
   b.cluster = vg_alloc(*n, sizeof *b.cluster);
@@ -284,11 +285,11 @@ vg_status vg_spots_thin(size_t *n, struct vg_spot *spot, struct vg_error *err)
   *n = 0;
   for (size_t i = 0; st == VG_OK && i < b.n; i++)
     if (b.cluster[i] != VG_NO_CLUSTER) spot[(*n)++] = spot[i];
-  vg_balls_release(&b);
+  vg_spot_grid_release(&b);
   return st;
 }
 
-void vg_balls_release(struct vg_balls *b)
+void vg_spot_grid_release(struct vg_spot_grid *b)
 {
   free(b->cluster);
   free(b->first);

@@ -96,7 +96,7 @@ static void halve(struct entry *e, size_t n, int axis)
 
 /* What is being built. */
 struct plan {
-  struct vg_tree *t;
+  struct vg_aabb_tree *t;
   const struct vg_faces *s;
   struct entry *e;
   struct branch *branch;
@@ -109,7 +109,7 @@ struct branch {
 
 static void build_leaf(const struct plan *p, const struct branch *b)
 {
-  struct vg_tree_node *node = &p->t->node[b->at];
+  struct vg_aabb_tree_node *node = &p->t->node[b->at];
 
   node->first = (uint32_t)b->first;
   node->n = (uint32_t)b->n;
@@ -127,10 +127,10 @@ static void build_leaf(const struct plan *p, const struct branch *b)
 }
 
 /* The box of an inner node, once those below have theirs. */
-static void join_boxes(struct vg_tree_node *all, size_t at)
+static void join_boxes(struct vg_aabb_tree_node *all, size_t at)
 {
-  struct vg_tree_node *node = &all[at];
-  const struct vg_tree_node *l = node + 1, *r = &all[node->right];
+  struct vg_aabb_tree_node *node = &all[at];
+  const struct vg_aabb_tree_node *l = node + 1, *r = &all[node->right];
 
   for (int k = 0; k < 3; k++) {
     node->lo[k] = l->lo[k] < r->lo[k] ? l->lo[k] : r->lo[k];
@@ -141,7 +141,7 @@ static void join_boxes(struct vg_tree_node *all, size_t at)
 /* Returns the first node behind those of the branch. */
 static size_t build(const struct plan *p, struct branch b)
 {
-  struct vg_tree_node *node = &p->t->node[b.at];
+  struct vg_aabb_tree_node *node = &p->t->node[b.at];
   size_t half = b.n / 2, end;
 
   if (b.n <= LEAF) {
@@ -191,7 +191,7 @@ static void build_body(void *context, size_t first, size_t end, int worker)
 }
 
 /* Inner nodes above the branches, whose boxes are known: `levels` of them. */
-static void join_top(struct vg_tree_node *all, size_t at, int levels)
+static void join_top(struct vg_aabb_tree_node *all, size_t at, int levels)
 {
   if (!levels) return;
   join_top(all, at + 1, levels - 1);
@@ -216,8 +216,8 @@ static void build_all(struct plan *p, int threads)
   p->t->n_node = count_nodes(p->t->n_item);
 }
 
-vg_status vg_tree_build(struct vg_tree *t, const struct vg_faces *s,
-                        int threads, struct vg_error *err)
+vg_status vg_aabb_tree_build(struct vg_aabb_tree *t, const struct vg_faces *s,
+                             int threads, struct vg_error *err)
 {
   struct branch branch[BRANCHES];
   struct plan plan = { t, s, NULL, branch };
@@ -231,7 +231,7 @@ vg_status vg_tree_build(struct vg_tree *t, const struct vg_faces *s,
   t->node = vg_alloc(n, sizeof *t->node);
   if (!e || !t->item || !t->box || !t->node) {
     free(e);
-    vg_tree_release(t);
+    vg_aabb_tree_release(t);
     return vg_fail_memory(err, "the search tree of the surface");
   }
   t->n_item = n;
@@ -251,7 +251,7 @@ vg_status vg_tree_build(struct vg_tree *t, const struct vg_faces *s,
   return VG_OK;
 }
 
-void vg_tree_release(struct vg_tree *t)
+void vg_aabb_tree_release(struct vg_aabb_tree *t)
 {
   free(t->item);
   free(t->box);
@@ -261,12 +261,12 @@ void vg_tree_release(struct vg_tree *t)
 
 /* Items below one node with those below another; the same: within it. */
 struct task {
-  const struct vg_tree_node *a, *b;
+  const struct vg_aabb_tree_node *a, *b;
 };
 
 struct pairs {
-  const struct vg_tree *t;
-  vg_tree_visit visit;
+  const struct vg_aabb_tree *t;
+  vg_aabb_tree_visit visit;
   void *context;
   size_t n_task, cap_task;
   struct task *task;
@@ -281,10 +281,10 @@ static int boxes_touch(const double *alo, const double *ahi,
 }
 
 static vg_status leaf_pairs(const struct pairs *p, int worker,
-                            const struct vg_tree_node *a,
-                            const struct vg_tree_node *b)
+                            const struct vg_aabb_tree_node *a,
+                            const struct vg_aabb_tree_node *b)
 {
-  const struct vg_tree *t = p->t;
+  const struct vg_aabb_tree *t = p->t;
 
   for (uint32_t i = a->first; i < a->first + a->n; i++) {
     const double *x = t->box[i];
@@ -303,7 +303,7 @@ static vg_status leaf_pairs(const struct pairs *p, int worker,
   return VG_OK;
 }
 
-static double extent(const struct vg_tree_node *n)
+static double extent(const struct vg_aabb_tree_node *n)
 {
   double m = n->hi[0] - n->lo[0];
 
@@ -316,7 +316,7 @@ static double extent(const struct vg_tree_node *n)
  * leaves. */
 static int parts_of(const struct pairs *p, struct task of, struct task out[3])
 {
-  const struct vg_tree_node *node = p->t->node, *a = of.a, *b = of.b;
+  const struct vg_aabb_tree_node *node = p->t->node, *a = of.a, *b = of.b;
 
   if (a == b && a->n) return -1;
   if (a == b) {
@@ -395,15 +395,15 @@ static vg_status list_tasks(struct pairs *p)
   return VG_OK;
 }
 
-int vg_tree_workers(int threads)
+int vg_aabb_tree_workers(int threads)
 {
   int n = threads > 0 ? threads : vg_cores();
 
   return n < TASKS ? n : TASKS;
 }
 
-vg_status vg_tree_pairs(const struct vg_tree *t, int threads,
-                        vg_tree_visit visit, void *context)
+vg_status vg_aabb_tree_pairs(const struct vg_aabb_tree *t, int threads,
+                             vg_aabb_tree_visit visit, void *context)
 {
   struct pairs p = { .t = t, .visit = visit, .context = context };
   vg_status st = VG_OK;
@@ -413,7 +413,7 @@ vg_status vg_tree_pairs(const struct vg_tree *t, int threads,
     return pairs_below(&p, 0, (struct task){ t->node, t->node });
   st = list_tasks(&p);
   if (st >= 0) {
-    vg_parallel_for(vg_tree_workers(threads), p.n_task, 1, pairs_body, &p);
+    vg_parallel_for(vg_aabb_tree_workers(threads), p.n_task, 1, pairs_body, &p);
     st = (vg_status)p.status;
   }
   free(p.task);
@@ -426,8 +426,8 @@ static int ray_meets(const double *lo, const double *hi, const double p[3])
          && p[2] <= hi[2];
 }
 
-static vg_status ray_below(const struct vg_tree *t, const double p[3],
-                           const struct vg_tree_node *a,
+static vg_status ray_below(const struct vg_aabb_tree *t, const double p[3],
+                           const struct vg_aabb_tree_node *a,
                            vg_status (*visit)(void *, uint32_t),
                            void *context)
 {
@@ -445,8 +445,8 @@ done:
   return st;
 }
 
-vg_status vg_tree_ray(const struct vg_tree *t, const double p[3],
-                      vg_status (*visit)(void *, uint32_t), void *context)
+vg_status vg_aabb_tree_ray(const struct vg_aabb_tree *t, const double p[3],
+                           vg_status (*visit)(void *, uint32_t), void *context)
 {
   return t->n_node ? ray_below(t, p, t->node, visit, context) : VG_OK;
 }

@@ -1,4 +1,4 @@
-#include "core/fill/near.h"
+#include "core/fill/hgrid.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -46,7 +46,7 @@ static uint64_t cells_between(const int from[3], const int to[3])
   return x & y * 0x0001000100010001u & z * 0x1111111111111111u;
 }
 
-static size_t find_slot(const struct vg_near *s, uint64_t key)
+static size_t find_slot(const struct vg_hgrid *s, uint64_t key)
 {
   uint64_t mix = (key ^ key >> 31) * 0x9e3779b97f4a7c15u;
   size_t at = (mix ^ mix >> 29) * 0xbf58476d1ce4e5b9u >> 32 & (s->n_slot - 1);
@@ -56,9 +56,9 @@ static size_t find_slot(const struct vg_near *s, uint64_t key)
   return at;
 }
 
-static int resize(struct vg_near *s, size_t size)
+static int resize(struct vg_hgrid *s, size_t size)
 {
-  struct vg_near_slot *old = s->slot, *slot = vg_alloc(size, sizeof *slot);
+  struct vg_hgrid_slot *old = s->slot, *slot = vg_alloc(size, sizeof *slot);
   size_t n = s->n_slot;
 
   if (!slot) return -1;
@@ -72,10 +72,10 @@ static int resize(struct vg_near *s, size_t size)
 }
 
 /* Head of the pages of cell i, made if need be; NULL: memory refused. */
-static uint32_t *cell_head(struct vg_near *s, int level, const int64_t i[3])
+static uint32_t *cell_head(struct vg_hgrid *s, int level, const int64_t i[3])
 {
   uint64_t key = block_key(level, i);
-  struct vg_near_block *block;
+  struct vg_hgrid_block *block;
   size_t at;
 
   if (2 * s->n_block >= s->n_slot && resize(s, 2 * s->n_slot))
@@ -95,27 +95,27 @@ static uint32_t *cell_head(struct vg_near *s, int level, const int64_t i[3])
   return &block->page[cell_in_block(i)];
 }
 
-static uint32_t new_page(struct vg_near *s, uint32_t next)
+static uint32_t new_page(struct vg_hgrid *s, uint32_t next)
 {
   if (vg_reserve(&s->page, &s->cap_page, s->n_page + 1, sizeof *s->page))
     return VG_NONE;
-  s->page[s->n_page] = (struct vg_near_page){ .next = next };
+  s->page[s->n_page] = (struct vg_hgrid_page){ .next = next };
   return (uint32_t)s->n_page++;
 }
 
-int vg_near_add(struct vg_near *s, const double x[3], double h)
+int vg_hgrid_add(struct vg_hgrid *s, const double x[3], double h)
 {
   int level = level_of(h);
   double inverse = ldexp(1, -level), side = ldexp(1, level);
   int64_t i[3];
-  struct vg_near_page *page;
+  struct vg_hgrid_page *page;
   uint32_t *head;
 
   for (int k = 0; k < 3; k++)
     i[k] = (int64_t)floor((x[k] - s->lo[k]) * inverse);
   head = cell_head(s, level, i);
   if (!head) return -1;
-  if (*head == VG_NONE || s->page[*head].n == VG_NEAR_PAGE) {
+  if (*head == VG_NONE || s->page[*head].n == VG_HGRID_PAGE) {
     uint32_t fresh = new_page(s, *head);
 
     if (fresh == VG_NONE) return -1;
@@ -130,12 +130,12 @@ int vg_near_add(struct vg_near *s, const double x[3], double h)
 
 /* A grid cell met by a search: its pages are on their way to the cache while
  * the other cells are looked up. x, y, z: its corner, from the centre. */
-static void find_cell(struct vg_near *s, uint32_t page, double x, double y,
+static void find_cell(struct vg_hgrid *s, uint32_t page, double x, double y,
                       double z)
 {
-  struct vg_near_cell *f = &s->cell[s->n_cell];
+  struct vg_hgrid_cell *f = &s->cell[s->n_cell];
 
-  if (s->n_cell == VG_NEAR_CELLS) return;
+  if (s->n_cell == VG_HGRID_CELLS) return;
   __builtin_prefetch(&s->page[page]);
   __builtin_prefetch((const char *)(&s->page[page] + 1) - 1);
   f->page = page;
@@ -168,12 +168,12 @@ static inline f4 four(const float *from)
 }
 
 /* Bit k: point k of the page, moved by d, is within a distance. */
-static inline unsigned within(const struct vg_near_page *page,
+static inline unsigned within(const struct vg_hgrid_page *page,
                               const float d[3], float r2)
 {
   unsigned bits = 0;
 
-  for (int k = 0; k < VG_NEAR_PAGE; k += 4) {
+  for (int k = 0; k < VG_HGRID_PAGE; k += 4) {
     f4 u = four(page->x[0] + k) + d[0], v = four(page->x[1] + k) + d[1];
     f4 w = four(page->x[2] + k) + d[2];
 
@@ -182,15 +182,15 @@ static inline unsigned within(const struct vg_near_page *page,
   return bits & ((1u << page->n) - 1);
 }
 
-static void gather_cell(struct vg_near *s, const struct vg_near_cell *f,
+static void gather_cell(struct vg_hgrid *s, const struct vg_hgrid_cell *f,
                         float r2)
 {
   float x = f->d[0], y = f->d[1], z = f->d[2];
   size_t n = s->n;
 
-  for (uint32_t at = f->page; at != VG_NONE && n < VG_NEAR_MAX;
+  for (uint32_t at = f->page; at != VG_NONE && n < VG_HGRID_MAX;
        at = s->page[at].next) {
-    const struct vg_near_page *page = &s->page[at];
+    const struct vg_hgrid_page *page = &s->page[at];
 
     for (unsigned left = within(page, f->d, r2); left; left &= left - 1) {
       int k = __builtin_ctz(left);
@@ -216,7 +216,7 @@ struct query {
 
 /* Along axis k, from cell i: its corner relative to the centre, and the square
  * of its distance. */
-static double along(const struct vg_near *s, const struct query *q, int k,
+static double along(const struct vg_hgrid *s, const struct query *q, int k,
                     int64_t i, double side, double *d)
 {
   double g;
@@ -226,9 +226,9 @@ static double along(const struct vg_near *s, const struct query *q, int k,
   return g * g;
 }
 
-static void find_in_block(struct vg_near *s, const struct query *q,
+static void find_in_block(struct vg_hgrid *s, const struct query *q,
                           const int64_t b[3],
-                          const struct vg_near_block *block)
+                          const struct vg_hgrid_block *block)
 {
   double d[3][4], g[3][4];
   int from[3], to[3];
@@ -249,7 +249,7 @@ static void find_in_block(struct vg_near *s, const struct query *q,
   }
 }
 
-static void find_level(struct vg_near *s, const double c[3], double r,
+static void find_level(struct vg_hgrid *s, const double c[3], double r,
                        int level)
 {
   double inverse = ldexp(1, -level), d;
@@ -281,7 +281,7 @@ static void find_level(struct vg_near *s, const double c[3], double r,
 
 /* All points within r of c, r about twice the spacing h there. They are on
  * the levels that the gradient of the field allows. */
-void vg_near_gather(struct vg_near *s, const double c[3], double h, double r)
+void vg_hgrid_gather(struct vg_hgrid *s, const double c[3], double h, double r)
 {
   double change = fmin(s->slope * r, 0.6 * h);
 
@@ -292,11 +292,11 @@ void vg_near_gather(struct vg_near *s, const double c[3], double h, double r)
       find_level(s, c, r, level);
   for (size_t k = 0; k < s->n_cell; k++)
     gather_cell(s, &s->cell[k], (float)(r * r));
-  if (s->n > VG_NEAR_MAX) s->n = VG_NEAR_MAX;
+  if (s->n > VG_HGRID_MAX) s->n = VG_HGRID_MAX;
 }
 
-int vg_near_init(struct vg_near *s, const double lo[3], double h_min,
-                 double h_max, double slope)
+int vg_hgrid_init(struct vg_hgrid *s, const double lo[3], double h_min,
+                  double h_max, double slope)
 {
   memcpy(s->lo, lo, sizeof s->lo);
   s->slope = slope;
@@ -305,7 +305,7 @@ int vg_near_init(struct vg_near *s, const double lo[3], double h_min,
   return resize(s, 1 << 10);
 }
 
-void vg_near_release(struct vg_near *s)
+void vg_hgrid_release(struct vg_hgrid *s)
 {
   free(s->slot);
   free(s->block);

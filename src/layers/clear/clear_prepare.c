@@ -81,7 +81,8 @@ static void measure_normals(void *context, size_t first, size_t end,
   }
 }
 
-static void range_of(const float *lo, const float *hi, struct vg_sides *s,
+static void range_of(const float *lo, const float *hi,
+                     struct vg_normal_boxes *s,
                      int i)
 {
   for (int k = 0; k < 3; k++) {
@@ -97,7 +98,7 @@ static void measure_child(struct vg_ahead *x, int level, size_t j, int i)
   size_t node = b->first[level] + j, child = 8 * j + (size_t)i;
   float lo[3] = { INFINITY, INFINITY, INFINITY };
   float hi[3] = { -INFINITY, -INFINITY, -INFINITY }, d = 0;
-  struct vg_sides *s = &x->sides[node];
+  struct vg_normal_boxes *s = &x->sides[node];
 
   for (int k = 0; k < 3; k++) {
     float h = 0.5f * (b->node[node].hi[k].f[i] - b->node[node].lo[k].f[i]);
@@ -110,7 +111,8 @@ static void measure_child(struct vg_ahead *x, int level, size_t j, int i)
     return;
   }
   if (level && b->first[level - 1] + child < b->first[level]) {
-    const struct vg_sides *below = &x->sides[b->first[level - 1] + child];
+    const struct vg_normal_boxes *below =
+      &x->sides[b->first[level - 1] + child];
 
     for (int l = 0; l < 8; l++)
       for (int k = 0; k < 3; k++) {

@@ -76,23 +76,24 @@ static int has(const struct vg_cell *c, uint32_t p)
 
 /* The cells to search from: that in which the edge begins, or those around
  * the first edge of the triangle. Returns 1 when one of them has all points of
- * the aim, -1 when there are none. */
+ * the target, -1 when there are none. */
 static int start_search(struct vg_flipper *f)
 {
   const struct vg_tets *t = f->t;
-  uint32_t c = towards(f, f->aim[0], f->aim[1]);
+  uint32_t c = towards(f, f->target[0], f->target[1]);
 
   f->n_seen = 0;
   if (c == VG_NONE) return -1;
   see(f, 4 * c);
-  if (f->n_aim == 2) return has(&t->cell[c], f->aim[1]);
-  if (!has(&t->cell[c], f->aim[1])) return -1;
+  if (f->n_target == 2) return has(&t->cell[c], f->target[1]);
+  if (!has(&t->cell[c], f->target[1])) return -1;
   for (size_t m = 0; m < f->n_seen; m++) {
     const struct vg_cell *at = &t->cell[f->seen[m]];
 
-    if (has(at, f->aim[2])) return 1;
+    if (has(at, f->target[2])) return 1;
     for (int i = 0; i < 4; i++)
-      if (at->v[i] != f->aim[0] && at->v[i] != f->aim[1]) see(f, at->link[i]);
+      if (at->v[i] != f->target[0] && at->v[i] != f->target[1])
+        see(f, at->link[i]);
   }
   return 0;
 }
@@ -112,7 +113,7 @@ static void faces_in_the_way(struct vg_flipper *f, struct hindrances *h)
       const uint8_t *g = vg_face[i];
 
       if (at->link[i] == VG_NONE || h->n == HINDRANCE_MAX ||
-          !vg_flip_hinders(f, at->v[g[0]], at->v[g[1]], at->v[g[2]]))
+          !vg_flip_obstructs(f, at->v[g[0]], at->v[g[1]], at->v[g[2]]))
         continue;
       see(f, at->link[i]);
       if (4 * c + (uint32_t)i < at->link[i])
@@ -194,11 +195,11 @@ static int make(struct vg_flipper *f, int depth)
 
     h.n = 0;
     there = start_search(f);
-    if (!there && f->n_aim == 2) faces_in_the_way(f, &h);
-    if (!there && f->n_aim == 3) edges_in_the_way(f, &h);
+    if (!there && f->n_target == 2) faces_in_the_way(f, &h);
+    if (!there && f->n_target == 3) edges_in_the_way(f, &h);
     forget(f);
     if (there) break;
-    if (f->n_aim == 2)
+    if (f->n_target == 2)
       changed = flip_faces(f, &h) || flip_edges_of_faces(f, &h, depth);
     else
       changed = flip_edges(f, &h, depth);
@@ -216,17 +217,17 @@ int vg_flip_has_edge(const struct vg_flipper *f, uint32_t a, uint32_t b)
 int vg_flip_make_edge(struct vg_flipper *f, uint32_t a, uint32_t b,
                       int depth)
 {
-  f->n_aim = 2;
-  f->aim[0] = a;
-  f->aim[1] = b;
+  f->n_target = 2;
+  f->target[0] = a;
+  f->target[1] = b;
   f->budget = budget[depth];
   return make(f, depth);
 }
 
 int vg_flip_make_tri(struct vg_flipper *f, const uint32_t v[3], int depth)
 {
-  f->n_aim = 3;
-  for (int k = 0; k < 3; k++) f->aim[k] = v[k];
+  f->n_target = 3;
+  for (int k = 0; k < 3; k++) f->target[k] = v[k];
   f->budget = budget[depth];
   return make(f, depth);
 }
