@@ -8,3 +8,13 @@ while IFS='|' read -r _ name file _; do
   n=$((n + 1))
 done < <(grep -E '^\| `[a-z_]+` \| `[a-z/_]+\.c`' "$root/CONTRIBUTING.md")
 [ "$n" -ge 10 ] || fail "only $n steps in the tour"
+
+# The constants of docs/decisions.md are where it says, and name their rows.
+n=0
+while IFS='|' read -r _ row _ file _; do
+  row=${row// /} file=${file//[ \`]/}
+  grep -qE "(/\* |, |\()$row[ :)]" "$root/src/$file" ||
+    fail "src/$file does not name row $row of docs/decisions.md"
+  n=$((n + 1))
+done < <(grep -E '^\| [A-Z][0-9]+ \|' "$root/docs/decisions.md")
+[ "$n" -ge 60 ] || fail "only $n constants in docs/decisions.md"
