@@ -13,7 +13,7 @@
 
 /* A point's name: the serial of the task that made it, and its place there.
  * Serials depend on timing; so names are compared for equality only, and
- * numbers are given at the end (number.h). Serial 0: the points of the
+ * numbers are given at the end (number.c). Serial 0: the points of the
  * boundary, in their order. */
 #define VG_POINT_NAME(serial, k) ((uint64_t)(serial) << 32 | (uint32_t)(k))
 
