@@ -46,12 +46,30 @@ static uint64_t cells_between(const int from[3], const int to[3])
   return x & y * 0x0001000100010001u & z * 0x1111111111111111u;
 }
 
-static size_t find_slot(const struct vg_hgrid *s, uint64_t key)
+static size_t first_slot(const struct vg_hgrid *s, uint64_t key)
 {
   uint64_t mix = (key ^ key >> 31) * 0x9e3779b97f4a7c15u;
-  size_t at = (mix ^ mix >> 29) * 0xbf58476d1ce4e5b9u >> 32 & (s->n_slot - 1);
 
-  while (s->slot[at].block != VG_NONE && s->slot[at].key != key)
+  return (mix ^ mix >> 29) * 0xbf58476d1ce4e5b9u >> 32 & (s->n_slot - 1);
+}
+
+/* Is it the block of cell i? */
+static int is_block(const struct vg_hgrid_block *b, int level,
+                    const int64_t i[3])
+{
+  return b->at[0] == i[0] >> 2 && b->at[1] == i[1] >> 2 &&
+         b->at[2] == i[2] >> 2 && b->level == level;
+}
+
+/* That of the block of cell i, or where it belongs. */
+static size_t find_slot(const struct vg_hgrid *s, uint64_t key, int level,
+                        const int64_t i[3])
+{
+  size_t at = first_slot(s, key);
+
+  while (s->slot[at].block != VG_NONE &&
+         (s->slot[at].key != key ||
+          !is_block(&s->block[s->slot[at].block], level, i)))
     at = (at + 1) & (s->n_slot - 1);
   return at;
 }
@@ -66,7 +84,12 @@ static int resize(struct vg_hgrid *s, size_t size)
   s->slot = slot;
   s->n_slot = size;
   for (size_t i = 0; i < n; i++)
-    if (old[i].block != VG_NONE) s->slot[find_slot(s, old[i].key)] = old[i];
+    if (old[i].block != VG_NONE) {
+      size_t at = first_slot(s, old[i].key);
+
+      while (s->slot[at].block != VG_NONE) at = (at + 1) & (size - 1);
+      s->slot[at] = old[i];
+    }
   free(old);
   return 0;
 }
@@ -80,13 +103,15 @@ static uint32_t *cell_head(struct vg_hgrid *s, int level, const int64_t i[3])
 
   if (2 * s->n_block >= s->n_slot && resize(s, 2 * s->n_slot))
     return NULL;
-  at = find_slot(s, key);
+  at = find_slot(s, key, level, i);
   if (s->slot[at].block == VG_NONE) {
     if (vg_reserve(&s->block, &s->cap_block, s->n_block + 1,
                    sizeof *s->block))
       return NULL;
     memset(&s->block[s->n_block], 0xff, sizeof *s->block);
     s->block[s->n_block].used = 0;
+    s->block[s->n_block].level = level;
+    for (int k = 0; k < 3; k++) s->block[s->n_block].at[k] = i[k] >> 2;
     s->slot[at].key = key;
     s->slot[at].block = (uint32_t)s->n_block++;
   }
@@ -272,7 +297,7 @@ static void find_level(struct vg_hgrid *s, const double c[3], double r,
         uint32_t block;
 
         if (gxy + along(s, &q, 2, i[2], 4 * q.side, &d) > q.r2) continue;
-        block = s->slot[find_slot(s, block_key(level, i))].block;
+        block = s->slot[find_slot(s, block_key(level, i), level, i)].block;
         if (block != VG_NONE) find_in_block(s, &q, b, &s->block[block]);
       }
     }

@@ -1,0 +1,94 @@
+/* The spatial hash: points near a place are found, those far off are not. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "core/fill/hgrid.h"
+
+static struct vg_hgrid *new_grid(double h_min, double h_max)
+{
+  const double lo[3] = { 0, 0, 0 };
+  struct vg_hgrid *s = calloc(1, sizeof *s);
+
+  assert_non_null(s);
+  assert_int_equal(vg_hgrid_init(s, lo, h_min, h_max, 0.2), 0);
+  return s;
+}
+
+static void free_grid(struct vg_hgrid *s)
+{
+  vg_hgrid_release(s);
+  free(s);
+}
+
+static double spacing(const double x[3])
+{
+  return 0.5 + 0.05 * x[0];
+}
+
+static void lists_what_a_search_finds(void **state)
+{
+  enum { N = 3000 };
+  static double x[N][3];
+  struct vg_hgrid *s = new_grid(0.5, 2);
+
+  (void)state;
+  srand(3);
+  for (int i = 0; i < N; i++) {
+    for (int k = 0; k < 3; k++) x[i][k] = 30.0 * rand() / RAND_MAX;
+    assert_int_equal(vg_hgrid_add(s, x[i], spacing(x[i])), 0);
+  }
+  for (int q = 0; q < 300; q++) {
+    double c[3], r = 0.3 + 1.5 * rand() / RAND_MAX;
+    size_t n = 0;
+
+    for (int k = 0; k < 3; k++) c[k] = 30.0 * rand() / RAND_MAX;
+    for (int i = 0; i < N; i++) {
+      double d = hypot(hypot(x[i][0] - c[0], x[i][1] - c[1]), x[i][2] - c[2]);
+
+      assert_true(fabs(d - r) > 1e-9);
+      n += d < r;
+    }
+    vg_hgrid_gather(s, c, spacing(c), r);
+    assert_true(fabs((double)s->n - (double)n) <= 1);  /* in single precision */
+  }
+  free_grid(s);
+}
+
+/* Keys of blocks are shorter than their places: they repeat. */
+static void blocks_with_one_key_are_two(void **state)
+{
+  static const double far[] = { 0x1p18, 0x1p20, 0x1p21, 0x1p22, 0x1p30 };
+  struct vg_hgrid *s = new_grid(1, 1);
+  const double x[3] = { 1.1, 1.2, 1.3 };
+
+  (void)state;
+  assert_int_equal(vg_hgrid_add(s, x, 1), 0);
+  vg_hgrid_gather(s, x, 1, 1);
+  assert_int_equal(s->n, 1);
+  for (size_t k = 0; k < sizeof far / sizeof *far; k++)
+    for (int axis = 0; axis < 3; axis++) {
+      double c[3] = { x[0], x[1], x[2] };
+
+      c[axis] += far[k];
+      vg_hgrid_gather(s, c, 1, 1);
+      assert_int_equal(s->n, 0);
+    }
+  free_grid(s);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(lists_what_a_search_finds),
+    cmocka_unit_test(blocks_with_one_key_are_two),
+  };
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
