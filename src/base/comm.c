@@ -74,6 +74,15 @@ int vg_comm_wait(int n, MPI_Request *request, int brisk)
   return rc;
 }
 
+int vg_comm_cancel_receives(int n, MPI_Request *request)
+{
+  int rc = MPI_SUCCESS;
+
+  for (int i = 0; i < n && !rc; i++)
+    if (request[i] != MPI_REQUEST_NULL) rc = MPI_Cancel(&request[i]);
+  return rc || MPI_Waitall(n, request, MPI_STATUSES_IGNORE);
+}
+
 /* --- launchers ----------------------------------------------------------- */
 
 static long number(const char *name)
@@ -228,11 +237,11 @@ vg_status vg_comm_take_for_nodes(struct vg_comm *c, int ranks,
 
 static void leave(struct vg_comm *c)
 {
+  vg_comm_messages_release(c);
   if (c->node != MPI_COMM_NULL) MPI_Comm_free(&c->node);
   if (c->message_comm != MPI_COMM_NULL) MPI_Comm_free(&c->message_comm);
   if (c->all != MPI_COMM_NULL) MPI_Comm_free(&c->all);
   if (c->owns_mpi) MPI_Finalize();
-  vg_comm_messages_release(c);
   vg_comm_wakeups_close(c);
   pthread_mutex_destroy(&c->lock);
   free(c->core);

@@ -220,10 +220,12 @@ static vg_status exchange_bytes(const struct vg_comm *c,
 {
   struct transfers t = { .request = request };
   vg_status st = VG_OK;
+  int n_receive;
 
   for (int k = 1; k < c->size && st >= 0; k++)
     st = transfer(c, &t, &from[(c->rank + c->size - k) % c->size],
                   (c->rank + c->size - k) % c->size, 0, err);
+  n_receive = t.n;
   for (int k = 1; k < c->size && st >= 0; k++)
     st = transfer(c, &t, &to[(c->rank + k) % c->size],
                   (c->rank + k) % c->size, 1, err);
@@ -232,6 +234,8 @@ static vg_status exchange_bytes(const struct vg_comm *c,
 
     if (rc) st = vg_comm_fail(err, "exchange", rc);
   }
+  if (st < 0 && vg_comm_cancel_receives(n_receive, t.request))
+    for (int k = 0; k < c->size; k++) from[k].data = NULL;   /* MPI's now */
   return st;
 }
 

@@ -315,11 +315,19 @@ void vg_comm_messages_release(struct vg_comm *c)
 
   while (take_own(c, &m)) free(m.bytes.data);
   for (int i = 0; i < c->n_incoming; i++) {
-    free(c->incoming[i].message.bytes.data);
-    free(c->incoming[i].request);
+    struct vg_incoming *a = &c->incoming[i];
+
+    if (vg_comm_cancel_receives(a->n_request, a->request)) continue;
+    free(a->message.bytes.data);
+    free(a->request);
   }
   for (int i = 0; i < c->n_request; i++) {
-    if (--c->sent[i]->n_left) continue;
+    int is_done = 0;
+
+    /* what is still on its way keeps its memory */
+    if (MPI_Test(&c->request[i], &is_done, MPI_STATUS_IGNORE) || !is_done ||
+        --c->sent[i]->n_left)
+      continue;
     free(c->sent[i]->data);
     free(c->sent[i]);
   }

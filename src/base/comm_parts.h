@@ -60,6 +60,10 @@ vg_status vg_comm_fail(struct vg_error *err, const char *what, int rc);
  * look more often for the sake of speed. Returns an MPI code. */
 int vg_comm_wait(int n, MPI_Request *request, int brisk);
 
+/** Cancel receives [n] that nobody will wait for, before their buffers go. 0:
+ * they are done with; else MPI may still write, and the buffers must stay. */
+int vg_comm_cancel_receives(int n, MPI_Request *request);
+
 /** vg_comm_agree among the ranks of a communicator. */
 vg_status vg_comm_agree_in(const struct vg_comm *c, MPI_Comm comm,
                            vg_status mine, struct vg_error *err);
