@@ -37,10 +37,12 @@ static void any_number_in_any_order(void **state)
 }
 
 /* Threads that keep and find records at once, and a stop among them. */
+/* Large enough that the question whether to stop, which is asked every 20 ms,
+ * comes in the midst of it on any machine. */
 static void stopped_and_resumed(void **state)
 {
   const char *dir = VG_TMP_DIR "/advance_threads_run";
-  struct vg_partition_options o = options_of(700, 2, 0);
+  struct vg_partition_options o = options_of(2000, 2, 0);
   struct vg_partition_report r;
   struct vg_partition *p;
   struct vg_store *store;
@@ -50,7 +52,7 @@ static void stopped_and_resumed(void **state)
 
   (void)state;
   remove_folder(dir);
-  scene_demo(&s, "box", 8000);
+  scene_demo(&s, "box", 60000);
   expect = run_of(NULL, &s, &o, 0, &r);
   assert_int_equal(open_store(NULL, dir, 1, 0, &store, NULL), VG_OK);
   stopper = (struct stopper){ store, 3 };
