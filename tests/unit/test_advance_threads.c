@@ -36,9 +36,9 @@ static void any_number_in_any_order(void **state)
   }
 }
 
-/* Threads that keep and find records at once, and a stop among them. */
-/* Large enough that the question whether to stop, which is asked every 20 ms,
- * comes in the midst of it on any machine. */
+/* Threads that keep and find records at once, and a stop among them: the run
+ * is so long that the question whether to stop, which is asked every 20 ms,
+ * comes in the midst of it. */
 static void stopped_and_resumed(void **state)
 {
   const char *dir = VG_TMP_DIR "/advance_threads_run";
