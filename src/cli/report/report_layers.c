@@ -209,6 +209,9 @@ static void sizes(FILE *to, const struct vg_layer_stage *s)
   fprintf(to, "  rounds of lowering until clear: %zu; patches re-meshed: %zu "
           "with %s triangles\n", r->n_round, r->n_slide_patch,
           vg_cli_count(r->n_slide_tri, a));
+  if (r->n_many_faces)
+    fprintf(to, "  columns of more than %d faces, for which some rays are not "
+            "traced: %zu\n", VG_AHEAD_FACES, r->n_many_faces);
 }
 
 void vg_report_layers_text(FILE *to, const struct vg_layer_stage *s,
@@ -350,6 +353,7 @@ json_t *vg_report_layers_json(const struct vg_layer_stage *s,
     { "points", r->n_layer_point }, { "tetrahedra", s->join.n_layer_tet },
     { "pyramids", s->join.n_layer_pyr }, { "prisms", s->join.n_layer_pri },
     { "tetrahedra_if_all_are", r->n_cell }, { "rounds", r->n_round },
+    { "columns_of_many_faces", r->n_many_faces },
     { "slide_patches", r->n_slide_patch },
     { "slide_triangles", r->n_slide_tri },
     { "whole_prisms", s->judgement.n_prism },

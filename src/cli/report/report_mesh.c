@@ -259,6 +259,9 @@ void vg_report_fill_text(FILE *to, const struct vg_fill_report *r,
           vg_cli_count(r->n_surface_face_lost, a),
           vg_cli_count(r->n_pocket, b), r->n_pocket_cell, r->n_retry,
           r->whole_void ? "; a whole void was closed by TetGen" : "");
+  if (r->n_list_cut)
+    fprintf(to, "  points with more neighbours than are looked at: %zu (some "
+            "may be too near to each other)\n", r->n_list_cut);
   if (r->n_steiner)
     fprintf(to, "  points added to recover the boundary: %zu\n",
             r->n_steiner);
@@ -282,6 +285,7 @@ json_t *vg_report_fill_json(const struct vg_fill_report *r, size_t n_cell)
     { "inserted", r->n_inserted }, { "refused", r->n_refused },
     { "smoothed", r->n_smoothed }, { "swapped", r->n_flip },
     { "collapsed", r->n_collapse }, { "split", r->n_split },
+    { "lists_cut_short", r->n_list_cut },
   };
   json_t *o = json_object();
 

@@ -111,6 +111,10 @@ void vg_report_partition_text(FILE *to, const struct vg_run *r)
             "again %s, left large %llu\n", vg_cli_count(p->n_blocked, a),
             vg_cli_count(p->n_retry, b), vg_cli_count(p->n_outgrown, c),
             (unsigned long long)p->n_uncut);
+  if (p->n_open_left)
+    fprintf(to, "  stages between zones left to leaves, since the void hangs "
+            "together at too many places: %llu\n",
+            (unsigned long long)p->n_open_left);
   fprintf(to, "  across interfaces: points moved %s times, %s swaps; ",
           vg_cli_count(p->n_repair_moved, a),
           vg_cli_count(p->n_repair_swapped, b));
@@ -144,6 +148,7 @@ json_t *vg_report_partition_json(const struct vg_run *r)
     { "zones_given_up", p->n_blocked },
     { "zones_crossing", p->n_crossing }, { "cuts_repeated", p->n_retry },
     { "leaves_cut_again", p->n_outgrown }, { "leaves_left_large", p->n_uncut },
+    { "stages_left_open", p->n_open_left },
     { "tasks_found", p->n_found }, { "regions_bad", p->n_repair },
     { "regions_repaired", p->n_repaired },
     { "cells_in_regions", p->n_repair_cell },

@@ -30,6 +30,8 @@ struct vg_fill_report {
   int whole_void;          /* 1: TetGen had to close a whole void */
   size_t n_steiner;        /* interior points added by boundary recovery */
   size_t n_placed, n_inserted, n_refused; /* field points */
+  size_t n_list_cut;       /* points whose surroundings were more than a list
+                              holds (hgrid.h): others may be too near */
   size_t n_smoothed, n_flip, n_collapse, n_split; /* optimisation steps */
   double time_boundary, time_place, time_insert, time_optimise, time_total;
 };

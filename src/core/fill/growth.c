@@ -111,6 +111,7 @@ vg_status vg_growth_populate(struct vg_growth *g, struct vg_error *err)
   t0 = vg_clock();
   VG_TRY(vg_place(&g->t, g->sizing, g->region, g->options->point_limit,
                   &placed, err));
+  g->report->n_list_cut += placed.n_cut;
   g->report->time_place += vg_clock() - t0;
   st = insert_placed(g, &placed, least_distance, err);
 done:

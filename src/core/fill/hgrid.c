@@ -317,6 +317,7 @@ void vg_hgrid_gather(struct vg_hgrid *s, const double c[3], double h, double r)
       find_level(s, c, r, level);
   for (size_t k = 0; k < s->n_cell; k++)
     gather_cell(s, &s->cell[k], (float)(r * r));
+  s->n_cut += s->n >= VG_HGRID_MAX || s->n_cell == VG_HGRID_CELLS;
   if (s->n > VG_HGRID_MAX) s->n = VG_HGRID_MAX;
 }
 

@@ -35,6 +35,7 @@ struct vg_hgrid {
   struct vg_hgrid_page *page;
   size_t n_cell;             /* cells of the query under way */
   struct vg_hgrid_cell { uint32_t page; float d[3]; } cell[VG_HGRID_CELLS];
+  size_t n_cut;              /* queries whose list was cut short */
   size_t n;                  /* the list: [3][n], relative to the centre */
   float x[3][VG_HGRID_MAX + VG_HGRID_PAGE];
 };
@@ -50,7 +51,7 @@ void vg_hgrid_release(struct vg_hgrid *s);
 int vg_hgrid_add(struct vg_hgrid *s, const double x[3], double h);
 
 /** List the points within r of c, where the spacing is h. Beyond VG_HGRID_MAX
- * points the list is cut short. */
+ * points, or cells that hold some, the list is cut short (n_cut). */
 void vg_hgrid_gather(struct vg_hgrid *s, const double c[3], double h, double r);
 
 /** Add a point at c + d to the list at hand. */

@@ -674,6 +674,7 @@ vg_status vg_place(const struct vg_tets *t, const struct vg_sizing *sizing,
                          "coarser spacing or raise the limit", limit);
   }
   out->n = p->n - t->n_point;
+  out->n_cut = p->near.n_cut;
   memmove(p->x, p->x + t->n_point, out->n * sizeof *p->x);
   out->x = p->x;
   p->x = NULL;

@@ -22,6 +22,7 @@
 struct vg_placed {
   size_t n;
   double (*x)[3];            /* [n], owned by the receiver */
+  size_t n_cut;              /* lists of surroundings cut short (hgrid.h) */
 };
 
 /** A sparse set of points, one for every few hundred of the field, to stand

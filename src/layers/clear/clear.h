@@ -24,6 +24,9 @@
  * their distance from the edge (0.15 of it at 30 degrees and gap 0.4), those
  * turned along its bisector are not.
  *
+ * Lines start at the first VG_AHEAD_FACES faces of a column; beyond, the cone
+ * has to do.
+ *
  * @param gap      > 0, else VG_ERR_INPUT
  * @param reach    [n_column] height wanted, as a multiple of dir
  * @param allowed  out: [n_column] <= reach; equal where nothing is near

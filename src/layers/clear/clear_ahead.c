@@ -31,7 +31,7 @@
 #define SAME_STACK 0.3
 #define SQRT_2 1.41421356237309505
 
-enum { GRAIN = 512, STACK = 96, CENTRE_MAX = 64, TEAM = 16, LEAF_MAX = 64 };
+enum { GRAIN = 512, STACK = 96, TEAM = 16, LEAF_MAX = 64 };
 
 /* One column. Lengths are along u, in the unit of the surface. */
 struct query {
@@ -44,7 +44,7 @@ struct query {
   double back;              /* how far below the root a cone with all rays has
                                its apex */
   int n_centre;
-  double centre[CENTRE_MAX][3];  /* of the faces, relative to the root */
+  double centre[VG_AHEAD_FACES][3];  /* of the faces, relative to the root */
 };
 
 /* --- one triangle -------------------------------------------------------- */
@@ -300,7 +300,7 @@ static void find_centres(struct query *q)
     double *x = q->centre[q->n_centre], s, w;
 
     /* Apexes with more faces than this: the cone has to do. */
-    if (q->n_centre == CENTRE_MAX) break;
+    if (q->n_centre == VG_AHEAD_FACES) break;
     memset(x, 0, sizeof q->centre[0]);
     for (int j = 0; j < 3; j++)
       for (int k = 0; k < 3; k++)

@@ -47,12 +47,16 @@ struct vg_layer_options {
                                 NULL, NULL }
 
 /** What happened. Times are wall seconds. */
+/* Faces of a column that lines start from where it looks ahead (clear.h). */
+enum { VG_AHEAD_FACES = 64 };
+
 struct vg_layer_report {
   size_t n_wall_point, n_wall_tri, n_column, n_virtual_face;
   size_t n_cell;            /* layer cells if all are tetrahedra */
   size_t n_layer_point;     /* points above the wall, flanks included */
   size_t cause[VG_CAUSE_N], squeezed[VG_CAUSE_N];  /* columns */
   size_t n_round;           /* of lowering until clear */
+  size_t n_many_faces;      /* columns of more than VG_AHEAD_FACES faces */
   size_t n_slide_patch, n_slide_tri;  /* patches next to walls; triangles they
                                          have in the front */
   double time_topology, time_direction, time_height, time_clear, time_slide,

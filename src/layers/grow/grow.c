@@ -427,6 +427,8 @@ static void count(const struct vg_layer_work *w,
   const struct vg_columns *c = w->c;
 
   r->n_column = c->n_column;
+  for (size_t i = 0; i < c->n_column; i++)
+    r->n_many_faces += w->t.first[i + 1] - w->t.first[i] > VG_AHEAD_FACES;
   for (size_t i = 0; i < c->n_column; i++) {
     r->n_wall_point += i == 0 || c->column[i].root != c->column[i - 1].root;
     r->n_layer_point += c->column[i].n;

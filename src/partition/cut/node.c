@@ -228,7 +228,7 @@ static void estimate_works(struct vg_node *n)
 }
 
 /* Regions of the node's stage. */
-static vg_status list_regions(const struct vg_partition *p, struct vg_node *n,
+static vg_status list_regions(struct vg_partition *p, struct vg_node *n,
                               const struct vg_engine *e,
                               struct vg_region **region, size_t *count,
                               struct vg_error *err)

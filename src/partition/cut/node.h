@@ -217,11 +217,10 @@ vg_status vg_node_list_open(struct vg_node *n, const struct vg_engine *e,
 
 /** Where the void hangs together across planes of the lattice after its
  * stages: boxes to be filled, for axis -1, then patches of the planes across
- * an axis. They are few, or none are given.
+ * an axis. They are few, or none are given (report.n_open_left).
  * region out: [*n_region], to be freed by the caller. (node_close.c) */
-vg_status vg_node_open_places(const struct vg_partition *p,
-                              struct vg_node *n, int axis,
-                              const struct vg_engine *e,
+vg_status vg_node_open_places(struct vg_partition *p, struct vg_node *n,
+                              int axis, const struct vg_engine *e,
                               struct vg_region **region, size_t *n_region,
                               struct vg_error *err);
 

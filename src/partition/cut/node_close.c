@@ -45,6 +45,7 @@ struct search {
   const struct vg_sizing *sizing;
   int axis;                  /* across which patches are; -1: boxes */
   double margin;
+  int is_cut;                /* a limit was met */
   size_t n_touching, cap_touching;
   struct touching *touching;
   uint32_t *parent;          /* [n_touching] those with a point in common */
@@ -92,6 +93,7 @@ static vg_status list_touching(struct search *s, struct vg_error *err)
 
     if (s->n_touching >= MOST_TOUCHING) {
       s->n_touching = 0;
+      s->is_cut = 1;
       return VG_OK;
     }
     if (s->axis < 0 ? add_touching(s, 0, i) : add_planes(s, i))
@@ -317,7 +319,7 @@ static void box_region(const struct place *p, struct vg_region *r)
   }
 }
 
-static vg_status to_regions(const struct search *s, struct vg_region **region,
+static vg_status to_regions(struct search *s, struct vg_region **region,
                             size_t *n_region, struct vg_error *err)
 {
   *region = vg_alloc(s->n_place, sizeof **region);
@@ -329,7 +331,10 @@ static vg_status to_regions(const struct search *s, struct vg_region **region,
     if (s->axis < 0) {
       box_region(p, r);
     } else {
-      if (!p->n_face || p->n_face > MOST_FACES) continue;
+      if (!p->n_face || p->n_face > MOST_FACES) {
+        s->is_cut |= p->n_face > MOST_FACES;
+        continue;
+      }
       vg_lattice_patch(&s->n->lattice, s->axis, p->plane, p->lo, p->hi, r);
       r->wide = fmax(p->wide + margin - VG_BAND_FLUID, 0);
     }
@@ -338,9 +343,8 @@ static vg_status to_regions(const struct search *s, struct vg_region **region,
   return VG_OK;
 }
 
-vg_status vg_node_open_places(const struct vg_partition *p,
-                              struct vg_node *n, int axis,
-                              const struct vg_engine *e,
+vg_status vg_node_open_places(struct vg_partition *p, struct vg_node *n,
+                              int axis, const struct vg_engine *e,
                               struct vg_region **region, size_t *n_region,
                               struct vg_error *err)
 {
@@ -356,11 +360,19 @@ vg_status vg_node_open_places(const struct vg_partition *p,
   if (!s.n_touching) goto done;
   VG_TRY(unite_touching(&s, err));
   VG_TRY(make_places(&s, err));
-  if (s.n_place > MOST_PLACES) goto done;
+  if (s.n_place > MOST_PLACES) {
+    s.is_cut = 1;
+    goto done;
+  }
   if (axis < 0) choose_places(&s);
   else merge_patches(&s);
   st = to_regions(&s, region, n_region, err);
 done:
+  if (s.is_cut) {
+    pthread_mutex_lock(&p->lock);
+    p->report.n_open_left++;
+    pthread_mutex_unlock(&p->lock);
+  }
   free(s.touching);
   free(s.parent);
   free(s.place);

@@ -40,6 +40,9 @@ struct vg_partition_report {
   uint64_t n_crossing;       /* among these, those whose cells crossed a front
                                 that they had not been given */
   uint64_t n_retry;          /* cuts that did not part their void */
+  uint64_t n_open_left;      /* stages between zones left to leaves, since the
+                                void hangs together at more places, or by more
+                                faces, than are looked at (node_close.c) */
   uint64_t n_uncut;          /* leaves filled although larger than asked for,
                                 because no plane parts them */
   uint64_t n_outgrown;       /* leaves that outgrew their estimate and were

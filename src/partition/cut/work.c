@@ -31,14 +31,15 @@ static void made_release(struct made *m)
 }
 
 /* So that a resumed run reports what was done of the whole mesh. */
-enum { N_REPORT = 13 };
+enum { N_REPORT = 14 };
 
 static void report_put(struct vg_writer *w, const struct vg_fill_report *r)
 {
   const uint64_t v[N_REPORT] = {
     r->n_surface_face_lost, r->n_pocket, r->n_pocket_cell, r->n_retry,
     (uint64_t)r->whole_void, r->n_steiner, r->n_placed, r->n_inserted,
-    r->n_refused, r->n_smoothed, r->n_flip, r->n_collapse, r->n_split };
+    r->n_refused, r->n_smoothed, r->n_flip, r->n_collapse, r->n_split,
+    r->n_list_cut };
 
   vg_put(w, N_REPORT, sizeof *v, v);
 }
@@ -53,7 +54,7 @@ static void report_get(struct vg_reader *in, struct vg_fill_report *r)
     .n_retry = v[3], .whole_void = (int)v[4], .n_steiner = v[5],
     .n_placed = v[6], .n_inserted = v[7], .n_refused = v[8],
     .n_smoothed = v[9], .n_flip = v[10], .n_collapse = v[11],
-    .n_split = v[12] };
+    .n_split = v[12], .n_list_cut = v[13] };
 }
 
 static void made_put(struct vg_writer *w, const struct made *m)
