@@ -60,6 +60,11 @@ static void nap_brisk(unsigned n)
   else sched_yield();
 }
 
+void vg_comm_nap(unsigned looks)
+{
+  nap_brisk(looks % LOOKS);
+}
+
 int vg_comm_wait(int n, MPI_Request *request, int brisk)
 {
   int done = 0, rc;
@@ -68,7 +73,7 @@ int vg_comm_wait(int n, MPI_Request *request, int brisk)
 
   while (!(rc = MPI_Testall(n, request, &done, MPI_STATUSES_IGNORE)) &&
          !done) {
-    if (brisk) nap_brisk(looks++ % LOOKS);
+    if (brisk) vg_comm_nap(looks++);
     else nap_idle(vg_clock() - begun);
   }
   return rc;

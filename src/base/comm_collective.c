@@ -239,18 +239,86 @@ static vg_status exchange_bytes(const struct vg_comm *c,
   return st;
 }
 
+/* Take a size that has come, if one has: n [size]. */
+static int take_size(struct vg_comm *c, int tag, uint64_t *n)
+{
+  MPI_Message message;
+  MPI_Status status;
+  uint64_t size;
+  int is_there = 0, rc;
+
+  rc = MPI_Improbe(MPI_ANY_SOURCE, tag, c->all, &is_there, &message, &status);
+  if (rc || !is_there) return rc;
+  rc = MPI_Mrecv(&size, 1, MPI_UINT64_T, &message, &status);
+  if (!rc) n[status.MPI_SOURCE] = size;
+  return rc;
+}
+
+/* Until all that was sent has been taken, here and then everywhere. */
+static int take_sizes(struct vg_comm *c, int tag, int n_request,
+                      MPI_Request *request, uint64_t *n)
+{
+  MPI_Request barrier;
+  int sent = 0, done = 0, rc = MPI_SUCCESS;
+
+  for (unsigned looks = 0; !rc && !done; looks++) {
+    rc = take_size(c, tag, n);
+    if (rc) break;
+    if (sent) {
+      rc = MPI_Test(&barrier, &done, MPI_STATUS_IGNORE);
+    } else {
+      rc = MPI_Testall(n_request, request, &sent, MPI_STATUSES_IGNORE);
+      if (!rc && sent) rc = MPI_Ibarrier(c->all, &barrier);
+    }
+    if (!done) vg_comm_nap(looks);
+  }
+  return rc;
+}
+
+/* What is on its way here, known from those alone who send something: as many
+ * messages as there are such pairs, not the square of the ranks (Hoefler,
+ * Siebert, Lumsdaine: Scalable communication protocols for dynamic sparse data
+ * exchange, PPoPP 2010). The tags of two exchanges differ: who has heard that
+ * all is taken may begin the next one before others have.
+ * n in: [size] bytes to each; out: from each. */
+static vg_status exchange_sizes(struct vg_comm *c, uint64_t *n,
+                                struct vg_error *err)
+{
+  MPI_Request *request = vg_alloc((size_t)c->size, sizeof *request);
+  uint64_t *to = vg_alloc((size_t)c->size, sizeof *to);
+  int tag = VG_TAG_SIZE + c->turn, m = 0, rc = MPI_SUCCESS;
+  vg_status st = request && to ? VG_OK : vg_fail_memory(err, "transfers");
+
+  VG_TRY(vg_comm_agree_in(c, c->all, st, err));
+  c->turn = !c->turn;
+  for (int i = 0; i < c->size; i++) {
+    to[i] = n[i];
+    if (i != c->rank) n[i] = 0;
+  }
+  for (int k = 1; k < c->size && !rc; k++) {
+    int peer = (c->rank + k) % c->size;
+
+    if (to[peer])
+      rc = MPI_Issend(&to[peer], 1, MPI_UINT64_T, peer, tag, c->all,
+                      &request[m++]);
+  }
+  if (!rc) rc = take_sizes(c, tag, m, request, n);
+  if (rc) return vg_comm_fail(err, "exchange", rc);   /* they are MPI's now */
+done:
+  free(request);
+  free(to);
+  return st;
+}
+
 static vg_status exchange(struct vg_comm *c, const struct vg_bytes *to,
                           struct vg_bytes *from, uint64_t *n,
                           struct vg_error *err)
 {
   struct vg_bytes *got = NULL;
-  MPI_Request *all = NULL, request;
+  MPI_Request *all = NULL;
   vg_status st;
-  int rc;
 
-  rc = MPI_Ialltoall(MPI_IN_PLACE, 1, MPI_UINT64_T, n, 1, MPI_UINT64_T,
-                     c->all, &request);
-  VG_TRY(finish(&request, rc, "exchange", err));
+  VG_TRY(exchange_sizes(c, n, err));
   VG_TRY(fresh_all(c, n, &got, err));
   if (to[c->rank].n)
     memcpy(got[c->rank].data, to[c->rank].data, to[c->rank].n);
@@ -283,27 +351,86 @@ vg_status vg_comm_exchange(struct vg_comm *c, const struct vg_bytes *to,
   return st;
 }
 
-/* An exchange in which all get the same: as many bytes on the way as MPI's
- * own gathering moves, of any length, and no copy of them beside. */
 void vg_bytes_release(struct vg_bytes *list, size_t n)
 {
   for (size_t k = 0; list && k < n; k++) free(list[k].data);
   free(list);
 }
 
+/* By MPI's own gathering: at [size] where each rank's bytes begin in all. */
+static vg_status gather(struct vg_comm *c, const struct vg_bytes *mine,
+                        const uint64_t *n, int *count, int *at,
+                        struct vg_bytes *out, struct vg_error *err)
+{
+  struct vg_bytes *got = NULL;
+  unsigned char *all = NULL;
+  MPI_Request request;
+  int total = 0, rc;
+  vg_status st;
+
+  VG_TRY(fresh_all(c, n, &got, err));
+  for (int i = 0; i < c->size; i++) {
+    at[i] = total;
+    count[i] = (int)n[i];
+    total += count[i];
+  }
+  all = vg_alloc((size_t)total, 1);
+  VG_TRY(vg_comm_agree_in(c, c->all, all ? VG_OK
+                                         : vg_fail_memory(err, "gathering"),
+                          err));
+  rc = MPI_Iallgatherv(mine->data, (int)mine->n, MPI_BYTE, all, count, at,
+                       MPI_BYTE, c->all, &request);
+  VG_TRY(finish(&request, rc, "gathering", err));
+  for (int i = 0; i < c->size; i++) {
+    if (n[i]) memcpy(got[i].data, all + at[i], (size_t)n[i]);
+    out[i] = got[i];
+    got[i] = (struct vg_bytes){ 0, NULL };
+  }
+done:
+  free(all);
+  release_all(got, c->size);
+  return st;
+}
+
+/* Much at once goes as an exchange, which has no limit. */
+static vg_status exchange_same(struct vg_comm *c, const struct vg_bytes *mine,
+                               struct vg_bytes *out, struct vg_error *err)
+{
+  struct vg_bytes *to = vg_alloc((size_t)c->size, sizeof *to);
+  vg_status st = to ? VG_OK : vg_fail_memory(err, "gathering");
+
+  VG_TRY(vg_comm_agree(c, st, err));
+  for (int i = 0; i < c->size; i++) to[i] = *mine;
+  st = vg_comm_exchange(c, to, out, err);
+done:
+  free(to);
+  return st;
+}
+
 vg_status vg_comm_allgather(struct vg_comm *c, const struct vg_bytes *mine,
                             struct vg_bytes *out, struct vg_error *err)
 {
-  struct vg_bytes *to;
+  uint64_t *n = NULL, own = mine->n, total = 0;
+  int *count = NULL, *at = NULL, rc;
+  MPI_Request request;
   vg_status st;
 
   if (!c) return copy_own(mine, out, err);
-  to = vg_alloc((size_t)c->size, sizeof *to);
-  st = vg_comm_agree(c, to ? VG_OK : vg_fail_memory(err, "gathering"), err);
-  if (st >= 0) {
-    for (int i = 0; i < c->size; i++) to[i] = *mine;
-    st = vg_comm_exchange(c, to, out, err);
-  }
-  free(to);
+  n = vg_alloc((size_t)c->size, sizeof *n);
+  count = vg_alloc((size_t)c->size, sizeof *count);
+  at = vg_alloc((size_t)c->size, sizeof *at);
+  st = n && count && at ? VG_OK : vg_fail_memory(err, "gathering");
+  VG_TRY(vg_comm_agree(c, st, err));
+  rc = MPI_Iallgather(&own, 1, MPI_UINT64_T, n, 1, MPI_UINT64_T, c->all,
+                      &request);
+  VG_TRY(finish(&request, rc, "gathering", err));
+  for (int i = 0; i < c->size && total <= c->chunk; i++)
+    total += n[i] < c->chunk ? n[i] : c->chunk + 1;
+  st = total <= c->chunk ? gather(c, mine, n, count, at, out, err)
+                         : exchange_same(c, mine, out, err);
+done:
+  free(n);
+  free(count);
+  free(at);
   return st;
 }

@@ -12,7 +12,7 @@
 struct vg_cores_mask { unsigned long word[8192 / (8 * sizeof(long))]; };
 
 /* Tags on `all` outside collectives. */
-enum { VG_TAG_EXCHANGE = 1, VG_TAG_PART = 2 };
+enum { VG_TAG_EXCHANGE = 1, VG_TAG_PART = 2, VG_TAG_SIZE = 3 /* and 4 */ };
 
 enum { VG_INCOMING_MAX = 64 };
 
@@ -34,6 +34,7 @@ struct vg_comm {
   int owns_mpi;              /* was started here */
   int apart;                 /* ranks of a node have no memory in common */
   size_t chunk;              /* bytes that go in one call of MPI, <= INT_MAX */
+  int turn;                  /* 0 or 1: the tag of the next exchange's sizes */
   struct vg_cores_mask *core; /* [node_size], their binding when opened */
   struct vg_shmem wakeups;  /* memory of these: */
   struct vg_wakeup *wakeup;  /* [node_size] */
@@ -59,6 +60,10 @@ vg_status vg_comm_fail(struct vg_error *err, const char *what, int rc);
 /** Wait for requests [n] asleep. brisk: all ranks are known to be there, so
  * look more often for the sake of speed. Returns an MPI code. */
 int vg_comm_wait(int n, MPI_Request *request, int brisk);
+
+/** Sleep for a moment, between the looks-th look and the next, where all ranks
+ * are known to be there. */
+void vg_comm_nap(unsigned looks);
 
 /** Cancel receives [n] that nobody will wait for, before their buffers go. 0:
  * they are done with; else MPI may still write, and the buffers must stay. */

@@ -244,7 +244,7 @@ struct tiny { long n_run, n_done; double sleep; };
 
 static vg_status tiny_run(void *user, const struct vg_engine *e,
                           const struct vg_task *task, int worker,
-                          void **outcome, size_t *n_cell,
+                          void **outcome, struct vg_done *done,
                           struct vg_error *err)
 {
   struct tiny *t = user;
@@ -252,7 +252,7 @@ static vg_status tiny_run(void *user, const struct vg_engine *e,
   (void)e, (void)task, (void)worker, (void)outcome, (void)err;
   if (t->sleep > 0) usleep((useconds_t)(1e6 * t->sleep));
   t->n_run++;
-  *n_cell = 1;
+  done->n_cell = 1;
   return VG_OK;
 }
 
@@ -353,10 +353,10 @@ static void nobody_hoards(void **state)
 
 static vg_status uneven_run(void *user, const struct vg_engine *e,
                             const struct vg_task *task, int worker,
-                            void **outcome, size_t *n_cell,
+                            void **outcome, struct vg_done *done,
                             struct vg_error *err)
 {
-  (void)user, (void)e, (void)worker, (void)outcome, (void)n_cell, (void)err;
+  (void)user, (void)e, (void)worker, (void)outcome, (void)done, (void)err;
   usleep((useconds_t)(1e6 * task->weight));
   return VG_OK;
 }

@@ -151,7 +151,7 @@ static inline void forest_loops(struct forest *f, const struct vg_engine *e,
 
 static inline vg_status forest_run(void *user, const struct vg_engine *e,
                                    const struct vg_task *task, int worker,
-                                   void **outcome, size_t *n_cell,
+                                   void **outcome, struct vg_done *done,
                                    struct vg_error *err)
 {
   struct forest *f = user;
@@ -181,7 +181,7 @@ static inline vg_status forest_run(void *user, const struct vg_engine *e,
   out->digest = forest_mix(in->digest);
   out->n_child = forest_children(f, task->path);
   *outcome = out;
-  *n_cell = (size_t)task->weight;
+  done->n_cell = (size_t)task->weight;
   return VG_OK;
 }
 

@@ -10,7 +10,8 @@
 #include "io/stream/stream.h"
 
 enum { KEY_RANKS_PER_NODE = 300, KEY_LATENCY, KEY_BANDWIDTH, KEY_RATE,
-       KEY_SERIAL, KEY_ROAM, KEY_LOOPS, KEY_PLOT, KEY_TARGET, KEY_DEPTH };
+       KEY_SERIAL, KEY_ROAM, KEY_LOOPS, KEY_PLOT, KEY_TARGET, KEY_DEPTH,
+       KEY_RATES };
 
 enum { DEPTH_MAX = 40 };
 
@@ -50,6 +51,8 @@ static void check_end(const struct vg_plan_options *o,
                "FILE.timeline.json");
   if (o->replay && o->project)
     argp_error(state, "either a project or a --replay, not both");
+  if (o->replay && o->rates)
+    argp_error(state, "--rates are for a project: a --replay has its own times");
   if (o->replay && (o->kept.n || o->deck || o->target > 0))
     argp_error(state, "a --replay takes no settings, deck or target: the "
                "tasks are those of the record");
@@ -81,6 +84,7 @@ static error_t option(int key, char *arg, struct argp_state *state)
     number("bandwidth", arg, 1, &o->machine.bandwidth, state);
     return 0;
   case KEY_RATE: number("rate", arg, 1e-6, &o->machine.rate, state); return 0;
+  case KEY_RATES: o->rates = arg; return 0;
   case KEY_SERIAL: number("serial", arg, 0, &o->serial, state); return 0;
   case KEY_LOOPS:
     o->machine.loop_threads = whole("loop-threads", arg, 1,
@@ -122,6 +126,10 @@ int vg_cmd_plan(int argc, char **argv)
     { "rate", KEY_RATE, "X", 0, "speed of a core over the recorded one; "
       "without a record over the one that the times were measured on "
       "[default 1]", 1 },
+    { "rates", KEY_RATES, "FILE", 0, "take the seconds per cell and face of "
+      "this machine from the record of a run on it, by least squares "
+      "[default: those of the machine that docs/performance-parallel.md "
+      "names]", 1 },
     { "target", KEY_TARGET, "S", 0, "find the smallest machine that needs no "
       "more than S seconds; of a project only, a --replay shows all of "
       "--ranks and --threads [default: the largest that is 80 % efficient]",

@@ -11,6 +11,7 @@
 struct vg_plan_options {
   const char *replay;           /* a .timeline.json, or NULL */
   const char *project, *deck;   /* without a replay */
+  const char *rates;            /* a .timeline.json of this machine, or NULL */
   struct vg_cli_overrides kept;
   double target;                /* s; 0: none */
   int depth;                    /* of the tree as text */

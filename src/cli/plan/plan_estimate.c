@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "cli/common/cli.h"
 #include "cli/settings/options.h"
+#include "cli/plot/timeline.h"
 #include "core/geometry/vector.h"
 #include "partition/advance/advance.h"
 
@@ -275,7 +276,26 @@ static vg_status forecast(const struct vg_plan *p, double leaf_cells,
 
   rule.leaf_cells = leaf_cells;
   return vg_forecast_new(&v, &p->load, &rule, (int)p->problem.settings.levels,
-                         &vg_rates_measured, out, err);
+                         &p->rates, out, err);
+}
+
+/* What the machine of a record takes, in place of the one measured. */
+static vg_status learn_rates(struct vg_plan *p, struct vg_error *err)
+{
+  struct vg_timeline t = VG_TIMELINE_INIT;
+  struct vg_machine m = VG_MACHINE_INIT;
+  vg_status st = VG_OK;
+
+  p->rates = vg_rates_measured;
+  p->spread_per_cell = spread_per_cell;
+  if (!p->o->rates) return VG_OK;
+  VG_TRY(vg_timeline_read(p->o->rates, &t, err));
+  VG_TRY(vg_rates_of(&t.spans, p->fit, &p->rates, err));
+  vg_timeline_outside(&t, &m);
+  if (t.n_cell) p->spread_per_cell = m.by_all / (double)t.n_cell;
+done:
+  vg_timeline_release(&t);
+  return st;
 }
 
 static vg_status run_on(const struct vg_plan *p, const struct vg_forecast *o,
@@ -376,6 +396,7 @@ static vg_status make(struct vg_plan *p, struct vg_error *err)
   struct vg_void v = { .n_point = 0 };
   vg_status st;
 
+  VG_TRY(learn_rates(p, err));
   VG_TRY(read_project(p, err));
   p->front = &p->problem.surface;
   if (p->layers.is_on) VG_TRY(make_layers(p, err));
@@ -399,7 +420,7 @@ static vg_status make(struct vg_plan *p, struct vg_error *err)
   VG_TRY(forecast(p, p->rule.leaf_cells, &p->forecast, err));
   count_mesh(p);
   count_memory(p);
-  p->spread = spread_per_cell * p->cell;
+  p->spread = p->spread_per_cell * p->cell;
   p->digest = digest_per_byte * bytes_written(p);
   st = run_all(p, err);
 done:

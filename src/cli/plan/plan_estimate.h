@@ -1,5 +1,5 @@
 /* cli/plan/plan_estimate.h: the forecast of a project, for plan_*.c. Uses
- * cli/input/layers.h, partition/model/forecast.h.
+ * cli/input/layers.h, partition/model/rates.h.
  *
  * plan_estimate.c computes it, plan_print.c tells it. */
 #ifndef VG_CLI_PLAN_PLAN_ESTIMATE_H
@@ -8,7 +8,7 @@
 #include "cli/input/layers.h"
 #include "cli/input/source_effect.h"
 #include "cli/plan/plan.h"
-#include "partition/model/forecast.h"
+#include "partition/model/rates.h"
 
 enum { VG_PLAN_LEAVES = 8 };
 
@@ -32,6 +32,9 @@ struct vg_plan {
   struct vg_effects effects;
   struct vg_load load;
   struct vg_cut_rule rule;
+  struct vg_rates rates;
+  struct vg_rate_fit fit[VG_RATE_FITS];   /* n is 0: not fitted */
+  double spread_per_cell;       /* s */
   struct vg_forecast forecast;
   int is_grown;                 /* layers were; else they are estimated */
   size_t n_wall_point;

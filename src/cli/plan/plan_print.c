@@ -218,11 +218,34 @@ static void print_best(const struct vg_plan *p)
            i == p->best_leaf ? "  best" : "");
 }
 
+static const char *kind_name(char kind)
+{
+  return kind == VG_SPAN_LEAF ? "leaves"
+         : kind == VG_SPAN_PENCIL ? "pencils" : "tiles";
+}
+
+static void print_rates(const struct vg_plan *p)
+{
+  if (!p->o->rates) return;
+  printf("\nTimes of tasks, fitted to %s\n", p->o->rates);
+  for (int k = 0; k < VG_RATE_FITS; k++) {
+    const struct vg_rate_fit *f = &p->fit[k];
+
+    if (f->n)
+      printf("  %-8s %.3f us per cell, %.3f us per face of the front; %zu "
+             "tasks, error %.0f %%\n", kind_name(f->kind), 1e6 * f->cell,
+             1e6 * f->face, f->n, 100 * f->error);
+    else
+      printf("  %-8s too few in the record\n", kind_name(f->kind));
+  }
+}
+
 void vg_plan_text(const struct vg_plan *p)
 {
   print_mesh(p);
   print_files(p);
   print_tree(p);
+  print_rates(p);
   printf("\nForecast: on one core %.2f s before the tasks (shared by a node), "
          "%.2f s of tasks,\n  %.2f s behind them (shared by all but for %.2f "
          "s); of the tasks %.2f s in loops of joins\n  that idle threads of a "
@@ -317,6 +340,19 @@ static json_t *tree_json(const struct vg_plan *p)
   return o;
 }
 
+static json_t *rates_json(const struct vg_plan *p)
+{
+  json_t *list = json_array();
+
+  for (int k = 0; k < VG_RATE_FITS; k++)
+    if (p->fit[k].n)
+      json_array_append_new(list, json_pack("{s:s s:I s:f s:f s:f}", "tasks",
+        kind_name(p->fit[k].kind), "n", (json_int_t)p->fit[k].n,
+        "seconds_per_cell", p->fit[k].cell, "seconds_per_face",
+        p->fit[k].face, "error", p->fit[k].error));
+  return list;
+}
+
 static json_t *leaves_json(const struct vg_plan *p)
 {
   json_t *list = json_array();
@@ -341,6 +377,7 @@ vg_status vg_plan_json(const struct vg_plan *p, struct vg_error *err)
   json_object_set_new(o, "memory", json_pack("{s:f s:f s:f}", "shared",
     p->shared, "per_cell", p->per_cell, "per_thread", p->per_thread));
   json_object_set_new(o, "tree", tree_json(p));
+  json_object_set_new(o, "rates", rates_json(p));
   json_object_set_new(o, "one_core", json_pack("{s:f s:f s:f s:f s:f}",
     "before", p->serial, "tasks", p->forecast.spans.wall, "loops",
     vg_spans_loops(&p->forecast.spans), "spread", p->spread, "digest",

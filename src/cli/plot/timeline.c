@@ -15,7 +15,8 @@
 enum column {
   COLUMN_PATH, COLUMN_AFTER, COLUMN_KIND, COLUMN_RANK, COLUMN_THREAD,
   COLUMN_HOME, COLUMN_START, COLUMN_END, COLUMN_CPU, COLUMN_ESTIMATE,
-  COLUMN_CELLS, COLUMN_BYTES_IN, COLUMN_BYTES_OUT, COLUMN_LOOPS, COLUMN_N
+  COLUMN_CELLS, COLUMN_BYTES_IN, COLUMN_BYTES_OUT, COLUMN_LOOPS, COLUMN_FACES,
+  COLUMN_N
 };
 
 enum help_column {
@@ -33,7 +34,8 @@ struct table {
 static const struct table span_table = {
   "spans", "span", "columns", COLUMN_N, COLUMN_LOOPS,
   { "path", "after", "kind", "rank", "thread", "home", "start", "end", "cpu",
-    "estimate", "cells", "bytes_in", "bytes_out", "loops" }
+    "estimate", "cells", "bytes_in", "bytes_out", "loops",
+    "faces" }
 };
 
 static const struct table help_table = {
@@ -157,7 +159,7 @@ static void put_span(struct vg_output *out, const struct vg_span *s)
                    (unsigned long long)s->bytes_in,
                    (unsigned long long)s->bytes_out);
   put_seconds(out, s->loops);
-  vg_output_text(out, "]");
+  vg_output_format(out, ",%llu]", (unsigned long long)s->n_face);
 }
 
 static void put_help(struct vg_output *out, const struct vg_help *h)
@@ -395,6 +397,9 @@ static vg_status get_numbers(const struct place *at, json_t *const *v,
                    &s->bytes_in, err));
   VG_TRY(get_count(at, v[COLUMN_BYTES_OUT], "bytes_out", COUNT_MAX,
                    &s->bytes_out, err));
+  if (v[COLUMN_FACES])
+    VG_TRY(get_count(at, v[COLUMN_FACES], "faces", COUNT_MAX, &s->n_face,
+                     err));
   if (!v[COLUMN_LOOPS]) goto done;
   VG_TRY(get_real(at, v[COLUMN_LOOPS], "loops", SECONDS_MAX, &s->loops, err));
   if (s->loops > s->cpu + ROUNDED)

@@ -14,7 +14,7 @@
  * is what of its "cpu" was in loops; both have the helpers' time in them.
  * Times are kept to the microsecond. Readers take columns in any order, pass
  * over those that they do not know and take as 0 a fact that is absent, and
- * "loops" in records of versions that had none; these have no "help". */
+ * "loops" and "faces" in records of versions that had none. */
 #ifndef VG_CLI_PLOT_TIMELINE_H
 #define VG_CLI_PLOT_TIMELINE_H
 

@@ -13,6 +13,7 @@
 #include "cli/sweep/sweep.h"
 #include "io/stream/stream.h"
 #include "partition/model/model.h"
+#include "partition/model/rates.h"
 
 static vg_status path_of(const struct vg_sweep *s, const char *name,
                          char **out, struct vg_error *err)
@@ -143,6 +144,25 @@ static json_t *whole_or_null(int64_t v)
   return v >= 0 ? json_integer((json_int_t)v) : json_null();
 }
 
+/* Seconds of a cell and of a face of the front, by kind of task. */
+static json_t *rates_json(const struct vg_sweep_case *c)
+{
+  static const char kinds[] = { VG_SPAN_LEAF, VG_SPAN_PENCIL, VG_SPAN_TILE };
+  struct vg_error err = VG_ERROR_INIT;
+  json_t *o = json_object();
+
+  for (size_t k = 0; k < sizeof kinds && c->has_timeline; k++) {
+    const char name[2] = { kinds[k], '\0' };
+    struct vg_rate_fit f;
+
+    if (vg_rates_fit(&c->t.spans, kinds[k], &f, &err) < 0 || !f.n) continue;
+    json_object_set_new(o, name, json_pack("{s:I s:f s:f s:f}", "tasks",
+      (json_int_t)f.n, "per_cell", f.cell, "per_face", f.face, "error",
+      f.error));
+  }
+  return o;
+}
+
 static json_t *case_json(const struct vg_sweep *s,
                          const struct vg_sweep_case *c)
 {
@@ -165,6 +185,7 @@ static json_t *case_json(const struct vg_sweep *s,
     json_object_set_new(phases, vg_phase_name((enum vg_phase)i),
                         json_real(c->t.seconds[i]));
   json_object_set_new(o, "phases", phases);
+  json_object_set_new(o, "rates", rates_json(c));
   json_object_set_new(o, "digest", vg_text_json(c->digest));
   return o;
 }

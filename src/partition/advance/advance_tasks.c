@@ -67,17 +67,24 @@ static vg_status run_work(struct vg_partition *p, struct vg_work *w,
   return vg_node_start(p, o->node, e, err);
 }
 
+/* Of the front that it is about: what its time follows besides cells. */
+static size_t faces_of(const struct vg_work *w)
+{
+  return w->what == VG_WORK_ZONE ? w->part.n_face : w->node->front.n_face;
+}
+
 static vg_status run(void *user, const struct vg_engine *e,
                      const struct vg_task *task, int worker, void **outcome,
-                     size_t *n_cell, struct vg_error *err)
+                     struct vg_done *done, struct vg_error *err)
 {
   struct outcome *o = vg_calloc(1, sizeof *o);
   vg_status st;
 
   (void)worker;
   if (!o) return vg_fail_memory(err, "the outcome of a task");
+  done->n_face = faces_of(task->input);
   st = run_work(user, task->input, o, e, err);
-  *n_cell = o->change.n_cell;
+  done->n_cell = o->change.n_cell;
   if (st == VG_OK) *outcome = o;
   else free_outcome(o);
   return st;

@@ -32,6 +32,12 @@ struct vg_task {
                                 NULL, and is in `done` */
 };
 
+/* What a task did. */
+struct vg_done {
+  size_t n_cell;             /* cells made */
+  size_t n_face;             /* faces of the front that it was given */
+};
+
 struct vg_engine;            /* one per rank while vg_engine_run runs */
 
 /** What tasks are. All but `done` may run in several threads at once. */
@@ -41,10 +47,10 @@ struct vg_engine_ops {
    * worker: 0 .. threads - 1, names scratch space.
    * VG_BLOCKED: stopped half-way because vg_engine_stopping(e); counts as not
    * done (and stops the job, should it not be stopping yet).
-   * n_cell out: work done, for progress and records. */
+   * done in: zeros; out: what was done, for progress and records. */
   vg_status (*run)(void *user, const struct vg_engine *e,
                    const struct vg_task *task, int worker, void **outcome,
-                   size_t *n_cell, struct vg_error *err);
+                   struct vg_done *done, struct vg_error *err);
   /** On the task's home rank: take the outcome over (always frees it), and
    * submit what follows. One call at a time per rank, in a thread of the
    * engine that need not be a worker; keep it short. Called for every task

@@ -108,15 +108,16 @@ static vg_status run(struct vg_worker *w, struct vg_task_state *j,
                      struct vg_span *span, struct vg_error *err)
 {
   struct vg_engine *e = w->e;
-  size_t n_cell = 0;
+  struct vg_done done = {0, 0};
   vg_status st;
 
   if (j->home != e->rank) span->bytes_in = j->bytes.n;
   st = unpack(e, j, err);
   if (!st)
-    st = e->ops->run(e->user, e, &j->task, w->number, &j->outcome, &n_cell,
+    st = e->ops->run(e->user, e, &j->task, w->number, &j->outcome, &done,
                      err);
-  j->n_cell = n_cell;
+  j->n_cell = done.n_cell;
+  span->n_face = done.n_face;
   if (j->task.input) e->ops->release_input(e->user, j->task.input);
   j->task.input = NULL;
   if (st || stays(e, j)) return st;

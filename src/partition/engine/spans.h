@@ -34,6 +34,7 @@ struct vg_span {
                                 rank help with (vg_engine_loop) */
   double estimate;           /* cells expected */
   uint64_t n_cell;           /* cells made; 0 where they were forgotten */
+  uint64_t n_face;           /* faces of the front that it was given */
   uint64_t bytes_in, bytes_out; /* what a remote rank receives and returns;
                                    0 where it was done at home */
 };

@@ -128,6 +128,9 @@ says out "Best: 1 rank x 1 thread"
 vanguard plan -p p/box -r r.timeline.json
 exits 2
 says err "either a project or a --replay"
+vanguard plan -r r.timeline.json --rates r.timeline.json
+exits 2
+says err "has its own times"
 vanguard plan -r r.timeline.json --leaf-cells 5
 exits 2
 says err "takes no settings"
@@ -139,3 +142,14 @@ exits 2
 vanguard plan -p p/box --depth x
 exits 2
 says err "--depth takes a whole number from 0, not 'x'"
+
+# Times of this machine, from a run on it.
+vanguard mesh p/box --leaf-cells 500 --timeline --write cogsg --out m2
+exits 0
+vanguard plan -q -p p/box -n 1 --rates m2/box.timeline.json
+exits 0
+says out "Times of tasks, fitted to m2/box.timeline.json"
+says out "us per face of the front"
+vanguard plan -q -p p/box -n 1 --rates p/none
+exits 1
+says err "p/none"
