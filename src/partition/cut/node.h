@@ -157,7 +157,8 @@ static inline uint32_t vg_node_point(const struct vg_node *n, size_t i,
 
 /** Does a new face in the change of work i, whose points are in the front
  * already, meet a face of it beyond what the work was given, corners and edges
- * that they have in common aside, or do its cells hold such a face? Exact.
+ * that they have in common aside, or do its cells hold such a face? Exact. -1:
+ * no memory to tell.
  * Cost: of faces that leave the band that the work was given, which are few.
  * Threads: safe. (node_cross.c) */
 int vg_node_crosses(const struct vg_node *n, size_t i, size_t first);

@@ -11,8 +11,10 @@
  * around the cells, new or gone, that leaves the band. Points there that the
  * zone was not given must be outside all faces around its cells. */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "core/geometry/predicates.h"
 #include "core/geometry/triangles.h"
 #include "partition/cut/node.h"
@@ -113,12 +115,45 @@ static int crosses(void *context, uint32_t face)
 
 /* --- bodies within cells ------------------------------------------------- */
 
+/* No way out is longer. */
+static double size_of(const struct crossing *c)
+{
+  double lo[3] = {INFINITY, INFINITY, INFINITY};
+  double hi[3] = {-INFINITY, -INFINITY, -INFINITY};
+
+  for (size_t k = 0; k < n_around(c); k++) {
+    uint32_t v[3];
+
+    face_around(c, k, v);
+    for (int j = 0; j < 9; j++) {
+      lo[j % 3] = fmin(lo[j % 3], c->n->front.x[v[j / 3]][j % 3]);
+      hi[j % 3] = fmax(hi[j % 3], c->n->front.x[v[j / 3]][j % 3]);
+    }
+  }
+  return hi[0] - lo[0] + hi[1] - lo[1] + hi[2] - lo[2];
+}
+
 struct body {
   const struct crossing *c;
   double lo[3], hi[3];       /* where it may lie */
   double size;               /* of what is around the cells */
-  uint32_t seen[32];         /* points lately found outside, by their numbers */
+  uint8_t *is_beside;        /* [points of the front] 1: was given, or is known
+                                to be outside the cells */
 };
+
+/* Once per work, and only where a face leaves the band. */
+static int prepare(struct body *b)
+{
+  const struct vg_node *n = b->c->n;
+  const struct vg_change *change = &n->change[b->c->work];
+
+  b->size = size_of(b->c);
+  b->is_beside = vg_calloc(n->front.n_point, 1);
+  if (!b->is_beside) return -1;
+  for (size_t k = 0; k < change->n_part; k++)
+    b->is_beside[n->point[b->c->work][k]] = 1;
+  return 0;
+}
 
 /* Does the way from x to y pass the triangle? -1: it touches its border, or
  * begins on it. */
@@ -167,29 +202,21 @@ static int is_within_cells(const struct body *b, const double x[3])
   return 1;
 }
 
-static int was_given(const struct crossing *c, uint32_t point)
-{
-  for (size_t k = 0; k < c->n->change[c->work].n_part; k++)
-    if (c->n->point[c->work][k] == point) return 1;
-  return 0;
-}
-
 static int is_body(void *context, uint32_t face)
 {
-  enum { SEEN = sizeof ((struct body *)0)->seen / sizeof (uint32_t) };
   struct body *b = context;
   const struct vg_front *f = &b->c->n->front;
 
   for (int k = 0; k < 3; k++) {
     uint32_t p = f->face[face][k];
     const double *x = f->x[p];
-    int is_beside = b->seen[p % SEEN] == p;
+    int is_beside = b->is_beside[p];
 
     for (int j = 0; j < 3; j++)
       is_beside |= x[j] < b->lo[j] || x[j] > b->hi[j];
     if (is_beside) continue;
-    if (!was_given(b->c, p) && is_within_cells(b, x)) return 1;
-    b->seen[p % SEEN] = p;
+    if (is_within_cells(b, x)) return 1;
+    b->is_beside[p] = 1;
   }
   return 0;
 }
@@ -218,37 +245,19 @@ static int holds_body(struct body *b, const struct vg_region *r,
   return vg_select_touched(&b->c->n->select, box, is_body, b);
 }
 
-/* No way out is longer. */
-static double size_of(const struct crossing *c)
-{
-  double lo[3] = {INFINITY, INFINITY, INFINITY};
-  double hi[3] = {-INFINITY, -INFINITY, -INFINITY};
-
-  for (size_t k = 0; k < n_around(c); k++) {
-    uint32_t v[3];
-
-    face_around(c, k, v);
-    for (int j = 0; j < 9; j++) {
-      lo[j % 3] = fmin(lo[j % 3], c->n->front.x[v[j / 3]][j % 3]);
-      hi[j % 3] = fmax(hi[j % 3], c->n->front.x[v[j / 3]][j % 3]);
-    }
-  }
-  return hi[0] - lo[0] + hi[1] - lo[1] + hi[2] - lo[2];
-}
-
 int vg_node_crosses(const struct vg_node *n, size_t i, size_t first)
 {
   const struct vg_sizing *sizing = n->select.sizing;
   const struct vg_region *r = &n->region[i];
   struct crossing c = { .n = n, .work = i, .first = first };
   struct body body = { .c = &c };
+  int found = 0;
   struct band b = { .region = r, .sizing = sizing,
                     .width = vg_region_band(r, VG_BAND_FRONT) };
 
   if (!r->n_plane || !sizing) return 0;
   b.slope = vg_sizing_slope(sizing);
-  memset(body.seen, 0xff, sizeof body.seen);
-  for (size_t k = 0; k < n_around(&c); k++) {
+  for (size_t k = 0; k < n_around(&c) && !found; k++) {
     const double *x[3];
 
     face_around(&c, k, c.v);
@@ -256,9 +265,12 @@ int vg_node_crosses(const struct vg_node *n, size_t i, size_t first)
     if (stays(&b, x)) continue;
     if (k < n->change[i].n_face &&
         vg_select_touched(&n->select, x, crosses, &c))
-      return 1;
-    if (!(body.size > 0)) body.size = size_of(&c);
-    if (holds_body(&body, r, x)) return 1;
+      found = 1;
+    else if (!body.is_beside && prepare(&body))
+      found = -1;
+    else
+      found = holds_body(&body, r, x);
   }
-  return 0;
+  free(body.is_beside);
+  return found;
 }

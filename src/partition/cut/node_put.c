@@ -17,7 +17,7 @@ enum { CHUNK = 8192 };
 struct put {
   struct vg_node *n;
   struct place { size_t point, face; } *at;  /* [n->n_work] of what is new */
-  uint8_t *crosses;          /* [n->n_work] the front */
+  int8_t *crosses;           /* [n->n_work] the front */
 };
 
 /* Its points; then faces can be tested, while all of the front is there. */
@@ -34,7 +34,7 @@ static void test_part(void *context, size_t first, size_t end, int worker)
       memcpy(f->x + p->at[i].point, c->x, c->n_point * sizeof *f->x);
     for (size_t k = 0; k < c->n_point; k++)
       f->name[p->at[i].point + k] = VG_POINT_NAME(c->serial, k);
-    p->crosses[i] = (uint8_t)vg_node_crosses(p->n, i, p->at[i].point);
+    p->crosses[i] = (int8_t)vg_node_crosses(p->n, i, p->at[i].point);
   }
 }
 
@@ -110,6 +110,7 @@ static vg_status count_changes(const struct put *put, struct vg_partition *p,
   for (size_t i = 0; i < n->n_work && st == VG_OK; i++) {
     const struct vg_change *c = &n->change[i];
 
+    if (put->crosses[i] < 0) return vg_fail_memory(err, "cutting a front");
     n->n_blocked += c->blocked || put->crosses[i];
     if (put->crosses[i]) {
       st = vg_partition_note_drop(p, c, err);
