@@ -1,32 +1,11 @@
-/* Voids of the advancing partition that are cut elsewhere, because a part of
- * them cannot be filled. */
+/* Parts that cannot be filled, and are filled with what is beside them. */
 #define _GNU_SOURCE
 #include "advance_support.h"
-#include "refuse_support.h"
 
 #include <pthread.h>
 
 #include "core/recover/cdt_server.h"
 #include "partition/cut/node.h"
-
-/* --- which void ---------------------------------------------------------- */
-
-static void the_next_larger_void(void **state)
-{
-  static const struct { const char *leaf, *path; int is_part; } is[] = {
-    { "0.3.1.0", "0.3.1", 1 }, { "0.3.1.r", "0.3.1", 1 },
-    { "0.3+.1", "0.3+", 1 }, { "0.3+.1+", "0.3+", 1 }, { "0.12", "0", 0 },
-    { "0", "0", 0 }, { "0+", "0+", 0 }, { "0.3.1.2~", "0.3.1", 1 },
-    { "0.3.1~.0", "0.3", 1 }, { "0.3.1~.0.1.2", "0.3", 1 },
-    { "0.3~.1.1", "0", 0 } };
-  char path[VG_PATH_MAX];
-
-  (void)state;
-  for (size_t k = 0; k < sizeof is / sizeof *is; k++) {
-    assert_int_equal(vg_recut_path(is[k].leaf, path), is[k].is_part);
-    assert_string_equal(path, is[k].path);
-  }
-}
 
 /* --- fronts -------------------------------------------------------------- */
 
@@ -89,23 +68,19 @@ static void what_bounds_cells(void **state)
 
 /* --- whole runs ---------------------------------------------------------- */
 
-static void refuse(const struct refusal *one, const struct refusal *two)
-{
-  n_refusal = 1 + (two != NULL);
-  refusal[0] = *one;
-  if (two) refusal[1] = *two;
-}
-
 /* A valid mesh, the same in any order, in threads, and when resumed. Returns
  * what happened. */
-static struct vg_partition_report always(const struct scene *s)
+static struct vg_partition_report always(const struct scene *s, double share,
+                                         int rounds)
 {
   const char *dir = VG_TMP_DIR "/redo_run";
   struct vg_partition_options o = options_of(2000, 1, 0);
   struct vg_partition_report first, r;
-  struct mesh_digest expect = run_of(NULL, s, &o, 1, &first), d;
+  struct mesh_digest expect, d;
 
-  assert_true(n_refused > 0);
+  o.fail_leaves = share;
+  o.fail_rounds = rounds;
+  expect = run_of(NULL, s, &o, 1, &first);
   remove_folder(dir);
   o.threads = 3;
   o.job = job_digest(1);
@@ -114,65 +89,66 @@ static struct vg_partition_report always(const struct scene *s)
     assert_int_equal(open_store(NULL, dir, 1, resume, &o.store, NULL), VG_OK);
     d = run_of(NULL, s, &o, 0, &r);
     same_digest(&expect, &d);
-    assert_int_equal(r.n_elsewhere, first.n_elsewhere);
-    assert_int_equal(r.n_elsewhere_cell, first.n_elsewhere_cell);
-    assert_int_equal(r.cuts_elsewhere, first.cuts_elsewhere);
+    assert_int_equal(r.n_widened, first.n_widened);
+    assert_int_equal(r.n_widened_cell, first.n_widened_cell);
     assert_int_equal(r.n_zone_cell, first.n_zone_cell);
-    if (resume && !r.cuts_elsewhere) assert_true(r.n_found + 4 > n_task(&r));
+    if (resume) assert_true(r.n_found > 0);
     vg_store_close(o.store, resume);
   }
   return first;
 }
 
-static void only_the_void(void **state)
+/* A part costs what is around it, twice in vain what is around that. */
+static void only_what_is_beside(void **state)
 {
-  struct vg_partition_report r;
+  uint64_t before = 0;
   struct scene s;
 
   (void)state;
   scene_demo(&s, "box", 40000);
-  refuse(&refuse_once, NULL);
-  r = always(&s);
-  assert_int_equal(r.n_elsewhere, 1);
-  assert_true(r.n_elsewhere_cell > 1000 && r.n_elsewhere_cell < 4000);
-  assert_int_equal(r.cuts_elsewhere, 0);
-  refuse(&refuse_once, &refuse_once_too);
-  r = always(&s);
-  assert_int_equal(r.n_elsewhere, 2);
-  assert_int_equal(r.cuts_elsewhere, 0);
+  for (int rounds = 1; rounds <= 3; rounds++) {
+    struct vg_partition_report r = always(&s, 0.04, rounds);
+
+    print_message("%d: %d voids, %d cells made again\n", rounds,
+                  (int)r.n_widened, (int)r.n_widened_cell);
+    assert_int_equal(r.n_widened, rounds);
+    assert_true(r.n_widened_cell > before);
+    assert_true(r.n_widened_cell < (rounds == 1 ? 8000 : 20000));
+    before = r.n_widened_cell;
+  }
   scene_end(&s);
 }
 
-static void then_the_next_larger_one(void **state)
+static void parts_that_meet_are_one(void **state)
 {
   struct vg_partition_report r;
   struct scene s;
 
   (void)state;
   scene_demo(&s, "box", 40000);
-  refuse(&refuse_twice, NULL);
-  r = always(&s);
-  assert_int_equal(r.n_elsewhere, 2);
-  assert_int_equal(r.cuts_elsewhere, 0);
+  r = always(&s, 0.3, 1);
+  assert_true(r.n_widened > 0 && r.n_widened < 8);
+  r = always(&s, 1, 1);
+  assert_int_equal(r.n_widened, 1);
   scene_end(&s);
 }
 
-static void then_the_whole(void **state)
+static void what_can_never_be_filled(void **state)
 {
+  struct vg_partition_options o = options_of(2000, 2, 0);
+  struct vg_error err = VG_ERROR_INIT;
   struct vg_partition_report r;
+  struct vg_partition *p = NULL;
   struct scene s;
 
   (void)state;
   scene_demo(&s, "box", 40000);
-  refuse(&refuse_often, NULL);
-  r = always(&s);
-  assert_int_equal(r.cuts_elsewhere, 1);
-  assert_int_equal(r.cuts_given_up, 0);
-  refuse(&refuse_all, NULL);
-  r = always(&s);
-  assert_int_equal(r.cuts_elsewhere, 2);
-  assert_int_equal(r.cuts_given_up, 1);
-  assert_int_equal(r.n_leaf, 1);
+  o.fail_leaves = 0.04;
+  o.fail_rounds = 1000;
+  assert_int_equal(vg_partition_grow(NULL, &s.m, s.sizing, &o, &p, &r, NULL,
+                                     &err), VG_ERR_GEOMETRY);
+  assert_null(p);
+  assert_non_null(strstr(err.text, "on purpose"));
   scene_end(&s);
 }
 
@@ -189,7 +165,8 @@ static void the_record_is_one(void **state)
 
   (void)state;
   scene_demo(&s, "box", 40000);
-  refuse(&refuse_twice, NULL);
+  o.fail_leaves = 0.04;
+  o.fail_rounds = 2;
   assert_int_equal(vg_partition_grow(NULL, &s.m, s.sizing, &o, &p, &r, &spans,
                                      NULL), VG_OK);
   for (size_t k = 0; k < spans.n; k++) {
@@ -202,7 +179,7 @@ static void the_record_is_one(void **state)
   }
   n_mesh = vg_partition_slices(p)->n_cell[VG_SLICE_TET];
   assert_true(n_cell > 0.99 * n_mesh && n_cell < 1.01 * n_mesh); /* repairs */
-  assert_true(n_again > 4);
+  assert_int_equal(n_again, 2);
   vg_spans_release(&spans);
   vg_partition_free(p);
   scene_end(&s);
@@ -211,11 +188,10 @@ static void the_record_is_one(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(the_next_larger_void),
     cmocka_unit_test(what_bounds_cells),
-    cmocka_unit_test(only_the_void),
-    cmocka_unit_test(then_the_next_larger_one),
-    cmocka_unit_test(then_the_whole),
+    cmocka_unit_test(only_what_is_beside),
+    cmocka_unit_test(parts_that_meet_are_one),
+    cmocka_unit_test(what_can_never_be_filled),
     cmocka_unit_test(the_record_is_one),
   };
 

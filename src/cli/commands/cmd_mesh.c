@@ -35,7 +35,8 @@ struct run {
 
 /* Options that are no settings: they do not change the mesh. */
 enum { KEY_TIMELINE = 1, KEY_RUN_DIR, KEY_RESUME, KEY_KEEP, KEY_LIMIT,
-       KEY_SHUFFLE, KEY_NODE_RANKS, KEY_DIFFER };
+       KEY_SHUFFLE, KEY_NODE_RANKS, KEY_DIFFER,
+       KEY_FAIL };
 
 static error_t limit(const char *text, uint64_t *to,
                      const struct argp_state *state)
@@ -60,6 +61,18 @@ static error_t differ(const char *text, enum vg_agree *to,
   return 0;
 }
 
+static error_t fail_leaves(const char *text, struct vg_run_options *to,
+                           const struct argp_state *state)
+{
+  char *end;
+
+  to->fail_leaves = strtod(text, &end);
+  to->fail_rounds = *end == ',' ? (int)strtol(end + 1, &end, 10) : 1;
+  if (end == text || *end || !(to->fail_leaves >= 0 && to->fail_leaves <= 1))
+    argp_error(state, "'%s' is no share from 0 to 1", text);
+  return 0;
+}
+
 static error_t option(int key, char *arg, struct argp_state *state)
 {
   struct arguments *a = state->input;
@@ -77,6 +90,7 @@ static error_t option(int key, char *arg, struct argp_state *state)
   case KEY_LIMIT: return limit(arg, &a->run.limit, state);
   case KEY_SHUFFLE: return limit(arg, &a->run.shuffle, state);
   case KEY_NODE_RANKS: return limit(arg, &a->run.node_ranks, state);
+  case KEY_FAIL: return fail_leaves(arg, &a->run, state);
   case KEY_DIFFER: return differ(arg, &a->run.change, state);
   case 'L': key = vg_cli_option_key("levels"); break;
   case 't': key = vg_cli_option_key("threads"); break;
@@ -513,6 +527,9 @@ int vg_cmd_mesh(int argc, char **argv)
       "that follow each other for those of a node (a test)", 1 },
     { "test-differ", KEY_DIFFER, "WHAT", OPTION_HIDDEN, "the last node takes "
       "its surface, layers or sizes for changed (a test)", 1 },
+    { "test-fail-leaves", KEY_FAIL, "SHARE[,ROUNDS]", OPTION_HIDDEN, "this "
+      "share of the leaves is not filled at the first ROUNDS attempts (a "
+      "test)", 1 },
     { NULL, 't', "N", 0, "the same as --threads", 1 },
     { NULL, 'L', "N", 0, "the same as --levels", 1 },
     { 0 }

@@ -49,7 +49,7 @@ void vg_layer_stage_release(struct vg_layer_stage *s)
 static void law_at(void *user, const double x[3], struct vg_law *law)
 {
   const struct vg_layer_laws *l = user;
-  const struct vg_sizing_options o = { 0, INFINITY, 1.2, 1, 0, 1 };
+  const struct vg_sizing_options o = { 0, INFINITY, 1.2, 1, 0, 1, 1 };
   double v[3];
 
   for (int k = 0; k < 3; k++)

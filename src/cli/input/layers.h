@@ -10,6 +10,10 @@
 #include "layers/measure/measure.h"
 
 /** What must be reached on a patch; NAN: nothing. In per cent. */
+/* Layers end where cells are as thick as the field's: a coarser one will do
+ * (M6). */
+#define VG_LAYERS_COARSENESS 4
+
 struct vg_layer_limits {
   double min_full, min_any, max_first_error;
 };

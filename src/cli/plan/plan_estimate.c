@@ -16,6 +16,8 @@
 #define GROW_LIMIT 50000
 /* Least efficiency for which more workers are taken, without a target. */
 #define EFFICIENT 0.8
+/* Cells are counted well enough in a field as coarse as this (M6). */
+#define COARSENESS 2
 
 /* Seconds of one core; docs/performance-parallel.md, Model. */
 static const double spread_per_cell = 0.35e-6;  /* number, judge, encode */
@@ -180,11 +182,12 @@ done:
 }
 
 static vg_status measure_sizes(struct vg_plan *p, const struct vg_mesh *m,
-                               struct vg_error *err)
+                               double coarseness, struct vg_error *err)
 {
   const struct vg_settings *s = &p->problem.settings;
   struct vg_sizing_options options = vg_settings_sizing(s);
 
+  options.coarseness = coarseness;
   vg_display_update(&p->show, "sizes", 0, 0);
   vg_sizing_free(p->sizing);
   p->sizing = NULL;
@@ -198,7 +201,7 @@ static vg_status make_layers(struct vg_plan *p, struct vg_error *err)
   vg_status st;
 
   VG_TRY(vg_layer_stage_sizes(&p->layers, &p->problem, &view, err));
-  VG_TRY(measure_sizes(p, &view, err));
+  VG_TRY(measure_sizes(p, &view, VG_LAYERS_COARSENESS, err));
   VG_TRY(count_wall_points(p, err));
   p->is_grown = p->n_wall_point < GROW_LIMIT;
   if (p->is_grown) {
@@ -211,7 +214,7 @@ static vg_status make_layers(struct vg_plan *p, struct vg_error *err)
   } else {
     VG_TRY(estimate_layers(p, err));
   }
-  st = measure_sizes(p, p->front, err);
+  st = measure_sizes(p, p->front, COARSENESS, err);
 done:
   free(view.tri);
   free(view.tri_patch);
@@ -400,7 +403,7 @@ static vg_status make(struct vg_plan *p, struct vg_error *err)
   VG_TRY(read_project(p, err));
   p->front = &p->problem.surface;
   if (p->layers.is_on) VG_TRY(make_layers(p, err));
-  else VG_TRY(measure_sizes(p, p->front, err));
+  else VG_TRY(measure_sizes(p, p->front, COARSENESS, err));
   VG_TRY(vg_problem_effects(&p->problem, p->front, p->sizing, &p->effects,
                             err));
   vg_effects_note(&p->effects, p->front, &p->problem);

@@ -94,18 +94,11 @@ void vg_report_partition_text(FILE *to, const struct vg_run *r)
           vg_cli_count(p->n_node, a), vg_cli_count(p->n_pencil, b),
           vg_cli_count(p->n_tile, c), share_of(r, p->n_zone_cell));
   print_leaves(to, &l);
-  if (p->n_elsewhere)
-    fprintf(to, "  voids cut at other places %s, since a part could not be "
-            "filled: %s cells made again, %.2f s\n",
-            vg_cli_count(p->n_elsewhere, a),
-            vg_cli_count(p->n_elsewhere_cell, b), p->elsewhere);
-  if (p->cuts_elsewhere)
-    fprintf(to, "  all cuts were made at other places %d time%s: a part "
-            "between them could not be filled\n", p->cuts_elsewhere,
-            p->cuts_elsewhere > 1 ? "s" : "");
-  if (p->cuts_given_up)
-    fprintf(to, "  cuts were given up: a part between them could not be "
-            "filled, so the whole was filled by one worker\n");
+  if (p->n_widened)
+    fprintf(to, "  parts that could not be filled, and were filled together with "
+            "what is beside\n  them %s: %s cells made again, %.2f s\n",
+            vg_cli_count(p->n_widened, a),
+            vg_cli_count(p->n_widened_cell, b), p->widened);
   if (p->n_blocked || p->n_retry || p->n_uncut || p->n_outgrown)
     fprintf(to, "  zones given up %s, cuts repeated elsewhere %s, leaves cut "
             "again %s, left large %llu\n", vg_cli_count(p->n_blocked, a),
@@ -154,8 +147,8 @@ json_t *vg_report_partition_json(const struct vg_run *r)
     { "cells_in_regions", p->n_repair_cell },
     { "points_moved_across", p->n_repair_moved },
     { "swaps_across", p->n_repair_swapped },
-    { "voids_elsewhere", p->n_elsewhere },
-    { "cells_made_again", p->n_elsewhere_cell },
+    { "parts_widened", p->n_widened },
+    { "cells_made_again", p->n_widened_cell },
   };
   json_t *o = json_object(), *leaves = json_array();
   json_int_t by_repair = repair_cells(r, &l);
@@ -167,9 +160,7 @@ json_t *vg_report_partition_json(const struct vg_run *r)
   free(l.cells);
   json_object_set_new(o, "leaf_cells", leaves);
   json_object_set_new(o, "repair_cells", json_integer(by_repair));
-  json_object_set_new(o, "voids_elsewhere_seconds", json_real(p->elsewhere));
-  json_object_set_new(o, "cuts_elsewhere", json_integer(p->cuts_elsewhere));
-  json_object_set_new(o, "cuts_given_up", json_boolean(p->cuts_given_up));
+  json_object_set_new(o, "parts_widened_seconds", json_real(p->widened));
   json_object_set_new(o, "repair_seconds", json_real(p->repair));
   json_object_set_new(o, "estimate", json_real(p->estimate));
   json_object_set_new(o, "busy", json_real(vg_spans_busy(&r->spans)));

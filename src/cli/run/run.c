@@ -119,7 +119,8 @@ done:
 
 /* The size field over a boundary. */
 static vg_status measure_sizes(struct vg_run *r, const struct vg_problem *p,
-                               const struct vg_mesh *boundary, int threads,
+                               const struct vg_mesh *boundary,
+                               double coarseness, int threads,
                                struct vg_display *show,
                                struct vg_sizing **sizing, struct vg_error *err)
 {
@@ -129,6 +130,7 @@ static vg_status measure_sizes(struct vg_run *r, const struct vg_problem *p,
   vg_status st;
 
   options.threads = threads;
+  options.coarseness = coarseness;
   vg_display_update(show, "sizes", 0, 0);
   st = vg_sizing_new(&options, s->n_source, s->source, boundary, sizing, err);
   r->time_size += vg_display_now() - t;
@@ -241,6 +243,8 @@ static vg_status fill(struct vg_run *r, const struct vg_problem *p,
   o.sweeps = (int)s->optimise;
   o.max_cells = (uint64_t)s->max_cells;
   o.shuffle = r->options.shuffle;
+  o.fail_leaves = r->options.fail_leaves;
+  o.fail_rounds = r->options.fail_rounds;
   o.progress = vg_display_update;
   o.stop = vg_display_stop;
   o.user = show;
@@ -305,7 +309,7 @@ static vg_status mesh_plain(struct vg_run *r, const struct vg_problem *p,
   vg_status st = VG_OK;
 
   if (leads_node(r)) {
-    st = measure_sizes(r, p, surface, node_threads(r, &p->settings), show,
+    st = measure_sizes(r, p, surface, 1, node_threads(r, &p->settings), show,
                        &sizing, err);
     vg_comm_bind_node(r->comm, 0);
   }
@@ -334,7 +338,8 @@ static vg_status grow_layers(struct vg_run *r, const struct vg_problem *p,
   vg_status st;
 
   VG_TRY(vg_layer_stage_sizes(layers, p, &view, err));
-  VG_TRY(measure_sizes(r, p, &view, threads, show, sizing, err));
+  VG_TRY(measure_sizes(r, p, &view, VG_LAYERS_COARSENESS, threads, show,
+                       sizing, err));
   t = vg_display_now();
   layers->options.threads = threads;
   VG_TRY(vg_layer_stage_grow(layers, &p->surface, *sizing, show, err));
@@ -342,7 +347,7 @@ static vg_status grow_layers(struct vg_run *r, const struct vg_problem *p,
   VG_TRY(vg_display_stopped(err));
   vg_sizing_free(*sizing);
   *sizing = NULL;
-  st = measure_sizes(r, p, &layers->layers.front.mesh, threads, show, sizing,
+  st = measure_sizes(r, p, &layers->layers.front.mesh, 1, threads, show, sizing,
                      err);
 done:
   vg_comm_bind_node(r->comm, 0);

@@ -20,6 +20,8 @@
 struct vg_run_options {
   const char *dir;           /* where finished tasks are kept, or NULL */
   int resume, keep;
+  double fail_leaves;           /* of partition options */
+  int fail_rounds;
   uint64_t limit, shuffle;
   uint64_t node_ranks;       /* ranks taken for a node; 0: as they are */
   enum vg_agree change;      /* what the last node takes for changed */

@@ -22,6 +22,9 @@ static vg_status check_options(const struct vg_sizing_options *o,
     return vg_fail(err, VG_ERR_INPUT,
                    "scale %g of source spacings is not positive; 1 leaves "
                    "them as they are", o->scale);
+  if (!(isfinite(o->coarseness) && o->coarseness >= 1))
+    return vg_fail(err, VG_ERR_INPUT, "coarseness %g of a field of sizes is "
+                   "below 1", o->coarseness);
   if (!isfinite(o->h_min) || o->h_min < 0)
     return vg_fail(err, VG_ERR_INPUT,
                    "smallest size %g is not a length; 0 means none",
@@ -115,7 +118,8 @@ static vg_status build(const struct vg_sizing_options *o,
   s->cap = o->h_max > 0 ? o->h_max : f->set.n_mean ? cap : INFINITY;
   if (n < (VG_OCTREE_LEAF - LEAF_BASE) / LEAF_PER_SAMPLE)
     limit += n * LEAF_PER_SAMPLE;
-  return vg_octree_build(f, lo, side, limit, o->threads, &s->octree, err);
+  return vg_octree_build(f, lo, side, o->coarseness, limit, o->threads,
+                         &s->octree, err);
 }
 
 /* The growth of the surface from above or from below. */

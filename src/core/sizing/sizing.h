@@ -62,8 +62,10 @@ struct vg_sizing_options {
   double scale;          /* multiplies every source spacing (VGRID's ifact) */
   int from_surface;      /* 1: boundary edges are sources (default) */
   int threads;           /* 0: one per core; default 1 */
+  double coarseness;     /* >= 1: how much larger the finest cells of what is
+                            evaluated are; default 1 */
 };
-#define VG_SIZING_OPTIONS_INIT { 0, 0, 1.2, 1, 1, 1 }
+#define VG_SIZING_OPTIONS_INIT { 0, 0, 1.2, 1, 1, 1, 1 }
 
 struct vg_sizing;        /* opaque, read-only after vg_sizing_new */
 

@@ -14,6 +14,7 @@ struct vg_octree_cell {
   uint32_t child;       /* first of eight; 0: leaf */
   uint32_t hint;        /* for the search of near samples */
   float floor;          /* no value within is smaller */
+  float rest;           /* no cell below this times its side is split */
 };
 
 struct vg_octree_point {
@@ -34,6 +35,7 @@ struct vg_octree_build {
   size_t level[VG_OCTREE_DEPTH + 2]; /* first cell of each; n_cell behind */
   int n_level;
   double lo[3], unit, floor;
+  float surface;        /* times floor where the surface rules, not sources */
   int threads;
 };
 

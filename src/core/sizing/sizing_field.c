@@ -1,6 +1,10 @@
 /* The exact field: sources, and the growth of the surface. */
 #include "core/sizing/sizing_octree.h"
 
+/* H6: Sources count as finer than the surface below this share of what it
+ * allows. */
+#define FINER 0.65
+
 double vg_field_clamp(const struct vg_field *f, double h)
 {
   h = h < f->h_max ? h : f->h_max;
@@ -32,7 +36,7 @@ double vg_field_at(const struct vg_field *f, const double x[3],
 
 double vg_field_floor(const struct vg_field *f, const double lo[3],
                       double side, struct vg_bvh_reach *reach,
-                      uint32_t *hint)
+                      uint32_t *hint, int *by_sources)
 {
   const double far = 0.8660254037844387 * side;
   double hi[3], mid[3], h, most, below, by, more, fall = far * f->slope;
@@ -48,8 +52,10 @@ double vg_field_floor(const struct vg_field *f, const double lo[3],
     h = mean < h ? mean : h;
   }
   if (!(h < f->h_max)) h = f->h_max;
+  *by_sources = 1;
   if (!f->near) return vg_field_clamp(f, h);
   most = vg_bvh_above(f->near, lo, hi, f->h_max, hint);
+  *by_sources = h < FINER * most;
   if (most <= h) return vg_field_clamp(f, most);
   below = vg_bvh_below(f->under, mid, h + fall, most + fall, reach, &by);
   more = vg_bvh_falls(f->under, by, below, far);

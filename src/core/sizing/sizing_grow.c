@@ -142,13 +142,15 @@ static int wants_split(struct family *y, struct vg_octree_cell *c,
   const struct vg_octree_build *b = l->b;
   float h[8], low = INFINITY;
   double lo[3], hi[3];
+  int by_sources;
 
   if (l->side <= b->floor * (double)c->floor) return 0;
   vg_octree_place(b, c->at, lo);
   for (int k = 0; k < 3; k++) hi[k] = lo[k] + l->side;
-  c->floor = (float)vg_field_floor(b->f, lo, l->side, &y->reach,
-                                   &c->hint);
-  if (l->side <= b->floor * (double)c->floor) return 0;
+  c->floor = (float)vg_field_floor(b->f, lo, l->side, &y->reach, &c->hint,
+                                   &by_sources);
+  c->rest = by_sources ? c->floor : c->floor * b->surface;
+  if (l->side <= b->floor * (double)c->rest) return 0;
   if (!b->f->set.n_mean && b->f->h_max <= c->floor * (1 + TOLERANCE))
     return 0;
   for (int i = 0; i < 8; i++) {
@@ -192,7 +194,7 @@ static void decide(struct level *l)
     b->floor *= 1.25;
     n = 0;
     for (size_t i = 0; i < l->n; i++) {
-      if (l->side <= b->floor * (double)b->cell[l->first + i].floor)
+      if (l->side <= b->floor * (double)b->cell[l->first + i].rest)
         l->mark[i] = 0;
       n += l->mark[i];
     }

@@ -8,7 +8,11 @@
 #include "base/parallel.h"
 #include "core/sizing/sizing_build.h"
 
-#define FLOOR 1.25      /* H2: cells are not split below this times the size */
+/* Cells are not split below FLOOR times the size (H2), where the surface rules
+ * SURFACE times as much (H6), unless sizes grow by more than STEEP. */
+#define FLOOR 1.25
+#define SURFACE 2
+#define STEEP 0.5
 
 /* The compact tree, in depth-first order: near in space, near in memory.
  * First what is below each cell is counted, from the last level up; then
@@ -114,8 +118,9 @@ static int compact(const struct vg_octree_build *b, struct vg_octree *t)
 }
 
 vg_status vg_octree_build(const struct vg_field *f, const double lo[3],
-                          double side, size_t max_leaf, int threads,
-                          struct vg_octree *out, struct vg_error *err)
+                          double side, double coarseness, size_t max_leaf,
+                          int threads, struct vg_octree *out,
+                          struct vg_error *err)
 {
   struct vg_octree_build b = { .f = f, .unit = side / VG_OCTREE_TOP,
                                .max_cell = max_leaf, .threads = threads };
@@ -124,6 +129,8 @@ vg_status vg_octree_build(const struct vg_field *f, const double lo[3],
   if (b.max_cell > VG_OCTREE_LEAF / 2) b.max_cell = VG_OCTREE_LEAF / 2;
   b.floor = FLOOR * sqrt(0.2 / f->slope);
   if (b.floor > 2) b.floor = 2;
+  b.floor *= coarseness;
+  b.surface = f->slope > STEEP ? 1 : SURFACE;
   for (int k = 0; k < 3; k++) b.lo[k] = out->lo[k] = lo[k];
   out->side = side;
   bad = vg_octree_grow(&b);

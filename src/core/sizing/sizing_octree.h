@@ -48,17 +48,18 @@ double vg_field_combine(const struct vg_field *f, const double x[3],
                         uint32_t *hint);
 
 /** Lower bound of the field within a cube; of VGRID's mean an estimate from
- * the centre, which is good in a cube that resolves its sources. */
+ * the centre, which is good in a cube that resolves its sources.
+ * by_sources out: 1: they ask for less than the surface does. */
 double vg_field_floor(const struct vg_field *f, const double lo[3],
                       double side, struct vg_bvh_reach *reach,
-                      uint32_t *hint);
+                      uint32_t *hint, int *by_sources);
 
 /** Build over the cube lo, side with about max_leaf leaves at most. *out is
  * empty before, and on failure. threads: as vg_parallel_for's; the same tree
  * for any number. */
 vg_status vg_octree_build(const struct vg_field *f, const double lo[3],
-                          double side, size_t max_leaf, int threads,
-                          struct vg_octree *out, struct vg_error *err);
+                          double side, double coarseness, size_t max_leaf,
+                          int threads, struct vg_octree *out, struct vg_error *err);
 
 void vg_octree_release(struct vg_octree *t);
 

@@ -59,7 +59,6 @@ static vg_status make_root(struct vg_partition *p, struct vg_comm *comm,
   for (size_t k = 0; k < m->n_point; k++)
     n->front.name[k] = VG_POINT_NAME(0, k);
   n->levels = p->options.levels;
-  n->retry = p->attempt;
   n->per_cube = p->options.cells_per_cube;
   vg_comm_bind_node(comm, 1);
   st = vg_load_new(&v, p->sizing, n->per_cube,
@@ -130,8 +129,8 @@ static vg_status run_whole(struct vg_partition *p, struct vg_comm *comm,
   return run_tasks(p, comm, root != NULL, &root, spans, err);
 }
 
-/* Voids with parts that could not be filled are cut again, and what that
- * leads to, until there is none. */
+/* Parts that could not be filled are filled together with what is beside them,
+ * until there is none. */
 static vg_status run_again(struct vg_partition *p, struct vg_comm *comm,
                            struct vg_spans *spans, struct vg_error *err)
 {
@@ -151,7 +150,7 @@ static vg_status run_again(struct vg_partition *p, struct vg_comm *comm,
       st = run_tasks(p, comm, n, node, spans ? &more : NULL, err);
       if (spans && st == VG_OK) st = vg_spans_append(spans, &more, err);
       st = vg_comm_agree(comm, st, err);
-      p->report.elsewhere += vg_clock() - t0;
+      p->report.widened += vg_clock() - t0;
     }
     for (size_t k = 0; k < n; k++) vg_node_free(node[k]);
     free(node);
@@ -175,8 +174,8 @@ static vg_status sum_report(struct vg_partition *p, struct vg_comm *comm,
     &f->n_collapse, &f->n_split, &f->n_list_cut};
   uint64_t *more[] = {&r->n_node, &r->n_pencil, &r->n_tile, &r->n_leaf,
     &r->n_zone_cell, &r->n_blocked, &r->n_crossing, &r->n_retry, &r->n_uncut,
-    &r->n_outgrown, &r->n_open_left, &r->n_found, &r->n_elsewhere, &r->n_elsewhere_cell,
-    &whole};
+    &r->n_outgrown, &r->n_open_left, &r->n_found,
+    &r->n_widened, &r->n_widened_cell, &whole};
   enum { N_COUNT = sizeof count / sizeof *count,
          N_MORE = sizeof more / sizeof *more };
   uint64_t v[N_COUNT + N_MORE + 5];
@@ -199,12 +198,12 @@ static vg_status sum_report(struct vg_partition *p, struct vg_comm *comm,
   return VG_OK;
 }
 
-static vg_status grow(struct vg_comm *comm, const struct vg_mesh *front,
-                      const struct vg_sizing *sizing,
-                      const struct vg_partition_options *options,
-                      int attempt, struct vg_partition **out,
-                      struct vg_partition_report *report,
-                      struct vg_spans *spans, struct vg_error *err)
+vg_status vg_partition_grow(struct vg_comm *comm, const struct vg_mesh *front,
+                            const struct vg_sizing *sizing,
+                            const struct vg_partition_options *options,
+                            struct vg_partition **out,
+                            struct vg_partition_report *report,
+                            struct vg_spans *spans, struct vg_error *err)
 {
   struct vg_partition *p = vg_calloc(1, sizeof *p);
   double t0 = vg_clock();
@@ -222,7 +221,6 @@ static vg_status grow(struct vg_comm *comm, const struct vg_mesh *front,
   p->boundary = front;
   p->sizing = sizing;
   p->options = *options;
-  p->attempt = attempt;
   if (p->options.threads < 1) p->options.threads = 1;
   st = run_whole(p, comm, spans, err);
   if (st == VG_OK) st = run_again(p, comm, spans, err);
@@ -236,45 +234,6 @@ static vg_status grow(struct vg_comm *comm, const struct vg_mesh *front,
   *report = p->report;
   if (st == VG_OK) *out = p;
   else vg_partition_free(p);
-  return st;
-}
-
-/* To cut a void, before it is filled uncut. */
-enum { ATTEMPTS = 3 };   /* C17 */
-
-/* Where a part between the first cuts cannot be filled, or all larger voids
- * around a part were cut elsewhere (recut.c), all cuts are made elsewhere; in
- * the end the void is filled uncut: that takes longer, but only a boundary that
- * bounds nothing fails a run. */
-vg_status vg_partition_grow(struct vg_comm *comm, const struct vg_mesh *front,
-                            const struct vg_sizing *sizing,
-                            const struct vg_partition_options *options,
-                            struct vg_partition **out,
-                            struct vg_partition_report *report,
-                            struct vg_spans *spans, struct vg_error *err)
-{
-  struct vg_partition_options o = *options;
-  struct vg_error why = VG_ERROR_INIT;
-  uint64_t n_cut;
-  vg_status st, sum;
-
-  for (int attempt = 0;; attempt++) {
-    st = grow(comm, front, sizing, &o, attempt, out, report, spans, &why);
-    report->cuts_elsewhere = attempt < ATTEMPTS ? attempt : ATTEMPTS - 1;
-    report->cuts_given_up = attempt == ATTEMPTS;
-    n_cut = report->n_node;
-    sum = vg_comm_sum(comm, 1, &n_cut, err);
-    if (sum < 0) return sum;
-    if (st != VG_ERR_GEOMETRY || attempt == ATTEMPTS || (!attempt && !n_cut))
-      break;
-    if (attempt + 1 == ATTEMPTS) {
-      o.rule.leaf_cells = 0;
-      o.levels = 0;
-    }
-    if (spans) vg_spans_release(spans);
-    why = (struct vg_error)VG_ERROR_INIT;
-  }
-  if (err) *err = why;
   return st;
 }
 

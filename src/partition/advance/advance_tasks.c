@@ -30,17 +30,16 @@ static void free_outcome(struct outcome *o)
   free(o);
 }
 
-/* One that cannot be filled is laid aside, unless it is the whole that is to
- * be cut again. */
+/* One that cannot be filled is laid aside. */
 static vg_status run_leaf(struct vg_partition *p, struct vg_work *w,
                           struct outcome *o, const struct vg_engine *e,
                           struct vg_error *err)
 {
-  char path[VG_PATH_MAX];
   int outgrown;
   vg_status st = vg_work_leaf(p, w, &outgrown, &o->change.n_cell, e, err);
 
-  if (st == VG_ERR_GEOMETRY && vg_recut_path(w->node->path, path)) {
+  if (st == VG_ERR_GEOMETRY) {
+    w->node->serial = w->serial;
     st = vg_recut_note_leaf(p, w->node, err, err);
     if (st == VG_OK) w->node = NULL;
     return st;
@@ -222,7 +221,6 @@ static vg_status follow(struct vg_partition *p, struct vg_engine *e,
     pthread_mutex_lock(&p->lock);
     p->report.n_node++;
     pthread_mutex_unlock(&p->lock);
-    st = vg_recut_note_cut(p, n, err);
   }
   for (size_t k = 0; st == VG_OK && k < n->n_child; k++) {
     struct vg_node *c = n->child[k];
@@ -502,7 +500,7 @@ vg_status vg_tasks_first(struct vg_partition *p, struct vg_node *n,
   snprintf(t->path, sizeof t->path, cut ? "%.*sJ0" : "%.*sL",
            VG_PATH_MAX - 3, n->path);
   if (cut) return VG_OK;
-  w->serial = vg_partition_serial(p);
+  w->serial = n->serial ? n->serial : vg_partition_serial(p);
   p->report.n_leaf++;
   return VG_OK;
 }

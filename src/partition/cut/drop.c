@@ -25,10 +25,8 @@ vg_status vg_partition_note_drop(struct vg_partition *p,
   return st;
 }
 
-typedef char path_type[VG_PATH_MAX];
-
 /* Pieces with this serial go; their path is added to `path`. */
-static void drop(struct vg_partition *p, uint32_t serial, path_type *path,
+static void drop(struct vg_partition *p, uint32_t serial, vg_path *path,
                  size_t *n_path)
 {
   size_t left = 0;
@@ -51,11 +49,10 @@ static void forget_span(struct vg_spans *s, const char *path)
     if (!strcmp(s->span[i].path, path)) s->span[i].n_cell = 0;
 }
 
-/* Only the rank that had a piece knows its path; spans of all are on rank 0.
- * Collective. */
-static vg_status forget_spans(struct vg_partition *p, struct vg_comm *comm,
-                              size_t n_path, path_type *path,
-                              struct vg_spans *spans, struct vg_error *err)
+vg_status vg_partition_forget_spans(struct vg_partition *p,
+                                    struct vg_comm *comm, size_t n_path,
+                                    vg_path *path, struct vg_spans *spans,
+                                    struct vg_error *err)
 {
   struct vg_bytes mine = { n_path * sizeof *path, (unsigned char *)path };
   struct vg_bytes *all = vg_calloc((size_t)p->size, sizeof *all);
@@ -77,7 +74,7 @@ vg_status vg_partition_drop(struct vg_partition *p, struct vg_comm *comm,
   struct vg_bytes mine = { p->n_drop * sizeof *p->drop,
                            (unsigned char *)p->drop };
   struct vg_bytes *all = vg_calloc((size_t)p->size, sizeof *all);
-  path_type *path = NULL;
+  vg_path *path = NULL;
   size_t n = 0, n_path = 0;
   vg_status st = all ? VG_OK : vg_fail_memory(err, "the cells of a task");
 
@@ -95,7 +92,7 @@ vg_status vg_partition_drop(struct vg_partition *p, struct vg_comm *comm,
       drop(p, serial[k], path, &n_path);
   }
   p->n_drop = 0;
-  st = forget_spans(p, comm, n_path, path, spans, err);
+  st = vg_partition_forget_spans(p, comm, n_path, path, spans, err);
 done:
   free(path);
   vg_bytes_release(all, p->size);

@@ -23,6 +23,8 @@ struct vg_work;
 /* Beside the number of a block: the point is on a plane, in the block below. */
 #define VG_ON_PLANE 0x8000u
 
+typedef char vg_path[VG_PATH_MAX];
+
 struct vg_node {
   struct vg_node *next, **link;  /* nodes being cut on this rank */
   uint64_t number;           /* among these, for messages */
@@ -34,6 +36,7 @@ struct vg_node {
   int levels;                /* bisections left, in a partition by levels */
   int retry;                 /* attempts that failed */
   int is_final;              /* a leaf whatever it needs */
+  uint32_t serial;           /* of its leaf; 0: none yet */
   /* while it is being cut: faces stay where they are, with VG_FACE_GONE */
   size_t cap_x, cap_name, cap_face;  /* of the front; 0: just its size */
   struct vg_select select;
@@ -86,7 +89,6 @@ struct vg_partition {
   const struct vg_mesh *boundary;
   const struct vg_sizing *sizing;
   struct vg_partition_options options;
-  int attempt;               /* to cut the whole void: 0, 1, ... */
   atomic_uint_fast32_t n_serial;
   pthread_mutex_t lock;      /* of what follows */
   size_t n_piece, cap_piece;
@@ -96,12 +98,6 @@ struct vg_partition {
                                 changes were not put in */
   size_t n_unfilled, cap_unfilled;
   struct { struct vg_node *node; struct vg_error why; } *unfilled;
-  size_t n_cut, cap_cut;     /* voids that were cut here, but for the whole */
-  struct vg_recut_cut {
-    char path[VG_PATH_MAX];
-    int32_t levels, retry;
-    double per_cube;
-  } *cut;
   struct vg_partition_report report;
   struct vg_node *cutting;   /* what a stopped job leaves */
   uint64_t n_cutting;        /* numbers given to these so far */
@@ -173,27 +169,39 @@ vg_status vg_partition_note_drop(struct vg_partition *p,
 vg_status vg_partition_drop(struct vg_partition *p, struct vg_comm *comm,
                             struct vg_spans *spans, struct vg_error *err);
 
-/** The path of the void that is cut again when the leaf of a node cannot be
- * filled: that which the leaf was cut from, or, where that was done, the next
- * larger one. 0: it is the whole, which is another attempt. (recut.c) */
-int vg_recut_path(const char *path, char void_path[VG_PATH_MAX]);
+/** Tasks with these paths [n_path] made no cells of the mesh: say so in *spans,
+ * which may be NULL. Only the rank that had a piece knows its path, spans of
+ * all are on rank 0. Collective. (drop.c) */
+vg_status vg_partition_forget_spans(struct vg_partition *p,
+                                    struct vg_comm *comm, size_t n_path,
+                                    vg_path *path, struct vg_spans *spans,
+                                    struct vg_error *err);
 
-/** Lay such a leaf's node aside; it is taken over, but on failure. Note what a
- * void was like when it was cut. Threads: safe. */
+/** Lay the node of a leaf that cannot be filled aside; it is taken over, but
+ * on failure. Threads: safe. (recut.c) */
 vg_status vg_recut_note_leaf(struct vg_partition *p, struct vg_node *n,
                              const struct vg_error *why, struct vg_error *err);
-vg_status vg_recut_note_cut(struct vg_partition *p, const struct vg_node *n,
-                            struct vg_error *err);
 void vg_recut_release(struct vg_partition *p);
 
-/** When all tasks are done: voids to be cut again. Their cells are forgotten,
- * also in *spans, which may be NULL. Collective.
+/** When all tasks are done: larger voids, to be filled uncut, around those that
+ * were laid aside. What was made in them is forgotten, also in *spans, which
+ * may be NULL. Cost: of what is beside them. Collective.
  * n_void out: of all ranks; node out: [*n] this rank's, *node to be freed by
  * the caller also on failure, with the nodes.
- * VG_ERR_GEOMETRY where the whole must be cut again. */
+ * VG_ERR_GEOMETRY, with the reason, where there is nothing beside one. */
 vg_status vg_recut_voids(struct vg_partition *p, struct vg_comm *comm,
                          struct vg_spans *spans, size_t *n_void,
                          struct vg_node ***node, size_t *n,
+                         struct vg_error *err);
+
+/** Leaves to come adopt the points of what was taken back that others have too:
+ * behind the others on their fronts, with names of their serials; whoever has
+ * the points knows them by these names from then on. Collective.
+ * own: [n_own] serials of what this rank took back; node: [n], with serials, k:
+ * their numbers, the same whoever has them. (recut_names.c) */
+vg_status vg_recut_adopt(struct vg_partition *p, struct vg_comm *comm,
+                         size_t n_own, const uint32_t *own, size_t n,
+                         struct vg_node *const *node, const uint32_t *k,
                          struct vg_error *err);
 
 /** The front that the cells of a piece fill, *f empty before; of faces that

@@ -23,6 +23,10 @@ struct vg_partition_options {
   uint64_t shuffle;          /* see engine.h */
   struct vg_store *store;    /* may be NULL */
   struct vg_digest job;      /* of size field and options, for the store */
+  double fail_leaves;        /* share of the leaves that are not filled, by
+                                their paths, nor the first fail_rounds - 1 times
+                                that they are made larger: for tests; 0 */
+  int fail_rounds;
   vg_progress progress;      /* on rank 0; cells done, expected */
   int (*stop)(void *user);
   void *user;
@@ -59,14 +63,10 @@ struct vg_partition_report {
   double repair_worst;       /* and the worst one (core/geometry/shape.h) */
   double repair_worst_left;
   double repair;             /* seconds of repairs */
-  uint64_t n_elsewhere;      /* voids that were cut at other places, because a
-                                part could not be filled */
-  uint64_t n_elsewhere_cell; /* cells in them, made for nothing */
-  double elsewhere;          /* seconds, in wall */
-  int cuts_elsewhere;        /* times that all cuts were made at other places,
-                                because a part could not be filled */
-  int cuts_given_up;         /* 1: a part could not be filled; the void was
-                                filled uncut, by one worker */
+  uint64_t n_widened;        /* parts that could not be filled, and were filled
+                                together with what is beside them */
+  uint64_t n_widened_cell;   /* cells there, made for nothing */
+  double widened;            /* seconds, in wall */
   double estimate;           /* cells expected at the start */
   double wall;               /* seconds of the engine */
   double number;             /* seconds of numbering */

@@ -1,42 +1,23 @@
-/* Voids cut elsewhere, where a part of them could not be filled. Outline: such
- * a leaf is laid aside and all other tasks go on. When they are done, the void
- * that it was cut from is put together again: what bounds the cells that were
- * made in it, and the parts that have none, is its front. These cells are
- * forgotten, and the void is cut by other planes. Where that does not help,
- * the next larger void follows; where that is the whole, the caller begins
- * anew. Nothing is kept for this while all goes well. */
+/* Parts that could not be filled. Outline: such a leaf is laid aside and all
+ * other tasks go on. When they are done, the cells of the zones beside it are
+ * taken back: what bounds them, and the part, is the front of a larger void,
+ * which is filled as one leaf. Where that fails too, more is taken back, leaves
+ * too, and so on: voids that meet become one. So the price is what lies around
+ * the place, however the tree of cuts looks. Nothing is kept for this while all
+ * goes well. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/bytes.h"
 #include "base/memory.h"
+#include "base/union_find.h"
+#include "core/delaunay/tets.h"
 #include "partition/cut/node.h"
 
-/* At the end of the path of a void that was cut elsewhere. */
-static const char again = '~';
-
-/* --- which void ---------------------------------------------------------- */
-
-int vg_recut_path(const char *path, char void_path[VG_PATH_MAX])
-{
-  const char *mark = strchr(path, again);
-  char *dot;
-
-  snprintf(void_path, VG_PATH_MAX, "%.*s",
-           (int)(mark ? (size_t)(mark - path) : strlen(path)), path);
-  dot = strrchr(void_path, '.');
-  if (dot) *dot = 0;
-  return strchr(void_path, '.') != NULL;
-}
-
-/* Is it the path of the void, or of a task or a part of it? */
-static int is_of(const char *path, const char *void_path)
-{
-  size_t n = strlen(void_path);
-
-  return !strncmp(path, void_path, n) && !(path[n] >= '0' && path[n] <= '9');
-}
+/* At the end of the path of a void, as often as it was made larger. */
+static const char larger = '~';
 
 vg_status vg_recut_note_leaf(struct vg_partition *p, struct vg_node *n,
                              const struct vg_error *why, struct vg_error *err)
@@ -55,217 +36,424 @@ vg_status vg_recut_note_leaf(struct vg_partition *p, struct vg_node *n,
   return st;
 }
 
-vg_status vg_recut_note_cut(struct vg_partition *p, const struct vg_node *n,
-                            struct vg_error *err)
-{
-  struct vg_recut_cut cut = { .levels = n->levels, .retry = n->retry,
-                             .per_cube = n->per_cube };
-  vg_status st = VG_OK;
-
-  if (!strchr(n->path, '.')) return VG_OK;
-  memcpy(cut.path, n->path, sizeof cut.path);
-  pthread_mutex_lock(&p->lock);
-  if (vg_reserve(&p->cut, &p->cap_cut, p->n_cut + 1, sizeof *p->cut))
-    st = vg_fail_memory(err, "a void");
-  else
-    p->cut[p->n_cut++] = cut;
-  pthread_mutex_unlock(&p->lock);
-  return st;
-}
-
 void vg_recut_release(struct vg_partition *p)
 {
   for (size_t k = 0; k < p->n_unfilled; k++)
     vg_node_free(p->unfilled[k].node);
   p->n_unfilled = 0;
   free(p->unfilled);
-  free(p->cut);
 }
 
-typedef char path_type[VG_PATH_MAX];
+/* --- voids that were not filled, known to all ranks ---------------------- */
 
-static int by_path(const void *a, const void *b)
-{
-  return strcmp(a, b);
-}
+struct corners { uint64_t name[3]; };    /* of a face, rising */
 
-/* Of voids within each other the largest. */
-static size_t keep_largest(size_t n, path_type *path)
-{
-  size_t left = 0;
-
-  if (n) qsort(path, n, sizeof *path, by_path);
-  for (size_t k = 0; k < n; k++) {
-    int is_new = 1;
-
-    for (size_t i = 0; i < left; i++) is_new &= !is_of(path[k], path[i]);
-    if (is_new) memmove(path[left++], path[k], sizeof *path);
-  }
-  return left;
-}
-
-/* Voids to be cut elsewhere, the same list on all ranks. VG_ERR_GEOMETRY:
- * the whole is one. Collective. */
-static vg_status list_voids(struct vg_partition *p, struct vg_comm *comm,
-                            path_type **out, size_t *n, struct vg_error *err)
-{
-  struct vg_bytes mine = { .n = p->n_unfilled * sizeof **out };
-  struct vg_bytes *all = vg_calloc((size_t)p->size, sizeof *all);
-  path_type *path = vg_calloc(p->n_unfilled, sizeof *path);
-  size_t bytes = 0;
-  vg_status st = all && path ? VG_OK : vg_fail_memory(err, "a void");
-
-  for (size_t k = 0; st == VG_OK && k < p->n_unfilled; k++)
-    if (!vg_recut_path(p->unfilled[k].node->path, path[k]))
-      st = vg_fail(err, VG_ERR_GEOMETRY, "%s", p->unfilled[k].why.text);
-  mine.data = (unsigned char *)path;
-  VG_TRY(vg_comm_agree(comm, st, err));
-  VG_TRY(vg_comm_allgather(comm, &mine, all, err));
-  for (int r = 0; r < p->size; r++) bytes += all[r].n;
-  *out = vg_alloc(bytes, 1);
-  VG_TRY(vg_comm_agree(comm, *out ? VG_OK : vg_fail_memory(err, "a void"),
-                       err));
-  for (int r = 0; r < p->size; r++)
-    if (all[r].n) {
-      memcpy(*out + *n, all[r].data, all[r].n);
-      *n += all[r].n / sizeof **out;
-    }
-  *n = keep_largest(*n, *out);
-done:
-  vg_bytes_release(all, (size_t)p->size);
-  free(path);
-  return st;
-}
-
-/* --- what the ranks have of the voids ------------------------------------ */
-
-/* On the rank that cuts it again. */
-struct recut {
-  struct vg_front front;
-  struct vg_recut_cut cut;
+struct unfilled {
+  char path[VG_PATH_MAX];
+  struct vg_error why;
+  double lo[3], hi[3];
+  size_t n_face;
+  struct corners *face;      /* [n_face] in order */
 };
 
-enum { CUT, FRONT };
-
+/* Where pieces and voids go. */
 struct parcels {
   struct vg_partition *p;
   size_t n;
-  path_type *path;           /* [n] voids; that of void k is rank k % size */
+  struct unfilled *of;       /* [n] by path */
+  uint32_t *up;              /* [n] those that meet (base/union_find.h); the
+                                root's rank is root % size */
+  uint32_t *near;            /* [p->n_piece] a void beside it, or n: none */
+  size_t n_gone, cap_gone;
+  uint32_t *gone;            /* [n_gone] serials of what this rank takes back,
+                                and of voids that were not filled */
   struct vg_writer *to;      /* [size] */
 };
 
-/* Where what belongs to this path goes, of which it is told; NULL: to none. */
-static struct vg_writer *address(const struct parcels *q, const char *path,
-                                 int what)
+static int by_path(const void *a, const void *b)
 {
-  for (size_t k = 0; k < q->n; k++) {
-    const uint64_t head[2] = {k, (uint64_t)what};
-    struct vg_writer *w = &q->to[k % (size_t)q->p->size];
+  const struct unfilled *s = a, *t = b;
 
-    if (!is_of(path, q->path[k])) continue;
-    vg_put(w, 2, sizeof *head, head);
-    return w;
-  }
-  return NULL;
+  return strcmp(s->path, t->path);
 }
 
-static void send_cuts(const struct parcels *q)
+static int by_corners(const void *a, const void *b)
 {
-  for (size_t k = 0; k < q->p->n_cut; k++) {
-    const struct vg_recut_cut *c = &q->p->cut[k];
+  return memcmp(a, b, sizeof(struct corners));
+}
 
-    for (size_t i = 0; i < q->n; i++)
-      if (!strcmp(c->path, q->path[i]))
-        vg_put(address(q, c->path, CUT), 1, sizeof *c, c);
+static struct corners corners_of(const uint64_t a, const uint64_t b,
+                                 const uint64_t c)
+{
+  uint64_t lo = a < b ? a : b, hi = a < b ? b : a;
+
+  if (c < lo) return (struct corners){ { c, lo, hi } };
+  if (c < hi) return (struct corners){ { lo, c, hi } };
+  return (struct corners){ { lo, hi, c } };
+}
+
+static void put_void(struct vg_writer *w, const struct vg_node *n,
+                     const struct vg_error *why)
+{
+  const struct vg_front *f = &n->front;
+  double box[6] = { INFINITY, INFINITY, INFINITY,
+                    -INFINITY, -INFINITY, -INFINITY };
+  uint64_t n_face = f->n_face;
+
+  for (size_t i = 0; i < f->n_point; i++)
+    for (int k = 0; k < 3; k++) {
+      box[k] = fmin(box[k], f->x[i][k]);
+      box[3 + k] = fmax(box[3 + k], f->x[i][k]);
+    }
+  vg_put(w, sizeof n->path, 1, n->path);
+  vg_put(w, sizeof why->text, 1, why->text);
+  vg_put(w, 6, sizeof *box, box);
+  vg_put(w, 1, sizeof n_face, &n_face);
+  for (size_t k = 0; k < f->n_face; k++) {
+    const uint32_t *v = f->face[k];
+    struct corners c = corners_of(f->name[v[0]], f->name[v[1]],
+                                  f->name[v[2]]);
+
+    vg_put(w, 3, sizeof *c.name, c.name);
   }
 }
 
-static void send_unfilled(const struct parcels *q)
+static void get_void(struct vg_reader *r, struct unfilled *u)
+{
+  uint64_t n_face = 0;
+
+  vg_get(r, sizeof u->path, 1, u->path);
+  vg_get(r, sizeof u->why.text, 1, u->why.text);
+  vg_get(r, 3, sizeof *u->lo, u->lo);
+  vg_get(r, 3, sizeof *u->hi, u->hi);
+  vg_get(r, 1, sizeof n_face, &n_face);
+  u->path[sizeof u->path - 1] = u->why.text[sizeof u->why.text - 1] = 0;
+  u->face = vg_get_array(r, (size_t)n_face, sizeof *u->face);
+  u->n_face = r->bad ? 0 : (size_t)n_face;
+  if (u->n_face) qsort(u->face, u->n_face, sizeof *u->face, by_corners);
+}
+
+static vg_status read_voids(struct parcels *q, const struct vg_bytes *all,
+                            struct vg_error *err)
+{
+  size_t cap = 0;
+
+  for (int k = 0; k < q->p->size; k++) {
+    struct vg_reader r = { .data = all[k].data, .n = all[k].n };
+
+    while (r.at < r.n) {
+      if (vg_reserve(&q->of, &cap, q->n + 1, sizeof *q->of))
+        return vg_fail_memory(err, "a void");
+      q->of[q->n] = (struct unfilled){ .n_face = 0 };
+      get_void(&r, &q->of[q->n]);
+      q->n++;
+      if (r.bad) return vg_fail_damaged(err, "a void");
+    }
+  }
+  if (q->n) qsort(q->of, q->n, sizeof *q->of, by_path);
+  return VG_OK;
+}
+
+/* The same list on all ranks. Collective. */
+static vg_status list_voids(struct parcels *q, struct vg_comm *comm,
+                            struct vg_error *err)
 {
   struct vg_partition *p = q->p;
+  struct vg_bytes *all = vg_calloc((size_t)p->size, sizeof *all);
+  struct vg_writer w = { .cap = 0 };
+  vg_status st = all ? VG_OK : vg_fail_memory(err, "a void");
+
+  for (size_t k = 0; k < p->n_unfilled; k++)
+    put_void(&w, p->unfilled[k].node, &p->unfilled[k].why);
+  if (w.refused) st = vg_fail_memory(err, "a message");
+  VG_TRY(vg_comm_agree(comm, st, err));
+  VG_TRY(vg_comm_allgather(comm, &w.bytes, all, err));
+  st = vg_comm_agree(comm, read_voids(q, all, err), err);
+done:
+  free(w.bytes.data);
+  vg_bytes_release(all, (size_t)p->size);
+  return st;
+}
+
+/* --- what is beside them ------------------------------------------------- */
+
+/* First the zones beside a void are taken back, then, time by time, these and
+ * the leaf that has most faces in common with it, in the end all that there
+ * is. */
+enum { NO_LEAF, ONE_LEAF, ALL_LEAVES };
+
+enum { ONE_BY_ONE = 3 };     /* C17 */
+
+static int leaves_taken(const struct unfilled *u)
+{
+  int rounds = 0;
+
+  for (const char *c = u->path; *c; c++) rounds += *c == larger;
+  return !rounds ? NO_LEAF : rounds <= ONE_BY_ONE ? ONE_LEAF : ALL_LEAVES;
+}
+
+static int boxes_meet(const struct unfilled *u, const struct vg_piece *q)
+{
+  double lo[3] = {INFINITY, INFINITY, INFINITY};
+  double hi[3] = {-INFINITY, -INFINITY, -INFINITY};
+
+  for (size_t i = 0; i < q->n_in + q->n_point; i++)
+    for (int k = 0; k < 3; k++) {
+      lo[k] = fmin(lo[k], q->x[i][k]);
+      hi[k] = fmax(hi[k], q->x[i][k]);
+    }
+  for (int k = 0; k < 3; k++)
+    if (lo[k] > u->hi[k] || hi[k] < u->lo[k]) return 0;
+  return 1;
+}
+
+static uint64_t name_in(const struct vg_piece *q, uint32_t v)
+{
+  return v < q->n_in ? q->in[v] : VG_POINT_NAME(q->serial, v - q->n_in);
+}
+
+/* Faces that a piece has in common with a void; no more than `most` are
+ * counted. */
+static uint64_t n_common(const struct unfilled *u, const struct vg_piece *q,
+                         uint64_t most)
+{
+  uint64_t n = 0;
+
+  for (size_t k = 0; k < 4 * q->n_cell && n < most; k++) {
+    const uint32_t *v = q->cell[k / 4];
+    const uint8_t *f = vg_face[k % 4];
+    const struct corners c = corners_of(name_in(q, v[f[0]]),
+                                        name_in(q, v[f[1]]),
+                                        name_in(q, v[f[2]]));
+
+    n += bsearch(&c, u->face, u->n_face, sizeof c, by_corners) != NULL;
+  }
+  return n;
+}
+
+static void take_back(struct parcels *q, size_t piece, uint32_t from)
+{
+  if (q->near[piece] < q->n) vg_union(q->up, q->near[piece], from);
+  else q->near[piece] = from;
+}
+
+/* The leaf that has most faces in common with a void. */
+struct best { uint64_t n; vg_path path; };
+
+static int is_better(const struct best *a, const struct best *b)
+{
+  return a->n != b->n ? a->n > b->n : a->n && strcmp(a->path, b->path) < 0;
+}
+
+/* Pieces of this rank that are beside voids, and voids that meet in one.
+ * best: [q->n] zeros; of this rank's leaves, where one is taken. */
+static void look_around(struct parcels *q, struct best *best)
+{
+  for (size_t k = 0; k < q->p->n_piece; k++) {
+    const struct vg_piece *piece = &q->p->piece[k];
+    int is_leaf = piece->kind == VG_SPAN_LEAF;
+
+    q->near[k] = (uint32_t)q->n;
+    for (uint32_t i = 0; i < q->n; i++) {
+      int which = is_leaf ? leaves_taken(&q->of[i]) : ALL_LEAVES;
+      struct best own = { .n = 0 };
+
+      if (which == NO_LEAF || !boxes_meet(&q->of[i], piece)) continue;
+      own.n = n_common(&q->of[i], piece, which == ONE_LEAF ? UINT64_MAX : 1);
+      memcpy(own.path, piece->path, sizeof own.path);
+      if (which == ALL_LEAVES && own.n) take_back(q, k, i);
+      if (which == ONE_LEAF && is_better(&own, &best[i])) best[i] = own;
+    }
+  }
+}
+
+/* Of all ranks' leaves the best for each void. Collective. */
+static vg_status take_best(struct parcels *q, struct vg_comm *comm,
+                           struct best *best, struct vg_error *err)
+{
+  struct vg_bytes mine = { q->n * sizeof *best, (unsigned char *)best };
+  struct vg_bytes *all = vg_calloc((size_t)q->p->size, sizeof *all);
+  vg_status st = all ? VG_OK : vg_fail_memory(err, "a void");
+
+  VG_TRY(vg_comm_agree(comm, st, err));
+  VG_TRY(vg_comm_allgather(comm, &mine, all, err));
+  for (int r = 0; r < q->p->size; r++) {
+    const struct best *from = (const struct best *)(const void *)all[r].data;
+
+    for (size_t i = 0; i < all[r].n / sizeof *from; i++)
+      if (is_better(&from[i], &best[i])) best[i] = from[i];
+  }
+  for (size_t k = 0; k < q->p->n_piece; k++)
+    for (uint32_t i = 0; i < q->n; i++)
+      if (best[i].n && !strcmp(best[i].path, q->p->piece[k].path))
+        take_back(q, k, i);
+done:
+  vg_bytes_release(all, (size_t)q->p->size);
+  return st;
+}
+
+/* Voids may have a face in common too. */
+static void join_voids(struct parcels *q)
+{
+  for (uint32_t i = 0; i < q->n; i++)
+    for (uint32_t k = 0; k < i; k++)
+      for (size_t f = 0; f < q->of[i].n_face; f++)
+        if (bsearch(&q->of[i].face[f], q->of[k].face, q->of[k].n_face,
+                    sizeof(struct corners), by_corners)) {
+          vg_union(q->up, i, k);
+          break;
+        }
+}
+
+/* What any rank found to be one is one. VG_ERR_GEOMETRY where a void has
+ * nothing beside it that could be taken back. Collective. */
+static vg_status agree_on_groups(struct parcels *q, struct vg_comm *comm,
+                                 struct vg_error *err)
+{
+  struct vg_bytes mine = { q->n * sizeof *q->up, (unsigned char *)q->up };
+  struct vg_bytes *all = vg_calloc((size_t)q->p->size, sizeof *all);
+  uint64_t *beside = vg_calloc(q->n, sizeof *beside);
+  vg_status st = all && beside ? VG_OK : vg_fail_memory(err, "a void");
+
+  VG_TRY(vg_comm_agree(comm, st, err));
+  VG_TRY(vg_comm_allgather(comm, &mine, all, err));
+  for (int r = 0; r < q->p->size; r++) {
+    const uint32_t *up = (const uint32_t *)(const void *)all[r].data;
+
+    for (uint32_t k = 0; k < all[r].n / sizeof *up; k++)
+      vg_union(q->up, k, up[k]);
+  }
+  for (size_t k = 0; k < q->p->n_piece; k++)
+    if (q->near[k] < q->n) beside[vg_root_of(q->up, q->near[k])]++;
+  for (uint32_t k = 0; k < q->n; k++)
+    beside[k] += vg_root_of(q->up, k) != k;    /* goes into another one */
+  VG_TRY(vg_comm_sum(comm, q->n, beside, err));
+  for (size_t k = 0; k < q->n; k++) {
+    if (beside[k] && strlen(q->of[k].path) + 2 < VG_PATH_MAX) continue;
+    st = vg_fail(err, VG_ERR_GEOMETRY, "%s", q->of[k].why.text);
+    break;
+  }
+done:
+  free(beside);
+  vg_bytes_release(all, (size_t)q->p->size);
+  return st;
+}
+
+/* --- to those that fill them --------------------------------------------- */
+
+static void send_front(const struct parcels *q, uint32_t of, double per_cube,
+                       const struct vg_front *f)
+{
+  uint32_t root = vg_root_of(q->up, of);
+  struct vg_writer *w = &q->to[root % (size_t)q->p->size];
+  uint64_t head = root;
+
+  vg_put(w, 1, sizeof head, &head);
+  vg_put(w, 1, sizeof per_cube, &per_cube);
+  vg_front_put(w, f, 1);
+}
+
+static vg_status add_gone(struct parcels *q, uint32_t serial,
+                          struct vg_error *err)
+{
+  if (vg_reserve(&q->gone, &q->cap_gone, q->n_gone + 1, sizeof *q->gone))
+    return vg_fail_memory(err, "a void");
+  q->gone[q->n_gone++] = serial;
+  return VG_OK;
+}
+
+static vg_status send_unfilled(struct parcels *q, struct vg_error *err)
+{
+  struct vg_partition *p = q->p;
+  vg_status st = VG_OK;
 
   for (size_t k = 0; k < p->n_unfilled; k++) {
     struct vg_node *n = p->unfilled[k].node;
-    struct vg_writer *w = address(q, n->path, FRONT);
+    struct unfilled key, *u;
 
-    if (w) vg_front_put(w, &n->front, 1);
+    memcpy(key.path, n->path, sizeof key.path);
+    u = bsearch(&key, q->of, q->n, sizeof *q->of, by_path);
+    if (u) send_front(q, (uint32_t)(u - q->of), n->per_cube, &n->front);
+    if (st == VG_OK) st = add_gone(q, n->serial, err);
     vg_node_free(n);
   }
   p->n_unfilled = 0;
+  return st;
 }
 
-static void count_forgotten(struct vg_partition *p, const struct vg_piece *q)
-{
-  p->report.n_elsewhere_cell += q->n_cell;
-  if (q->kind != VG_SPAN_LEAF) p->report.n_zone_cell -= q->n_cell;
-}
-
-/* Pieces in the voids are sent as what bounds them, and forgotten. */
-static vg_status send_pieces(const struct parcels *q, struct vg_error *err)
+/* Pieces beside voids are sent as what bounds them, and forgotten. path:
+ * theirs. */
+static vg_status send_pieces(struct parcels *q, vg_path *path,
+                             size_t *n_path, struct vg_error *err)
 {
   struct vg_partition *p = q->p;
   size_t left = 0;
   vg_status st = VG_OK;
 
   for (size_t k = 0; k < p->n_piece; k++) {
+    struct vg_piece *piece = &p->piece[k];
     struct vg_front f = VG_FRONT_INIT;
-    struct vg_writer *w = st < 0 ? NULL
-                                 : address(q, p->piece[k].path, FRONT);
 
-    if (!w) {
-      p->piece[left++] = p->piece[k];
+    if (st < 0 || q->near[k] >= q->n) {
+      p->piece[left++] = *piece;
       continue;
     }
-    st = vg_recut_front(&p->piece[k], &f, err);
-    if (st == VG_OK) vg_front_put(w, &f, 1);
+    st = vg_recut_front(piece, &f, err);
+    if (st == VG_OK) send_front(q, q->near[k], 0, &f);
+    if (st == VG_OK) st = add_gone(q, piece->serial, err);
     vg_front_release(&f);
-    count_forgotten(p, &p->piece[k]);
-    vg_piece_release(&p->piece[k]);
+    p->report.n_widened_cell += piece->n_cell;
+    if (piece->kind != VG_SPAN_LEAF) p->report.n_zone_cell -= piece->n_cell;
+    memcpy(path[(*n_path)++], piece->path, sizeof *path);
+    vg_piece_release(piece);
   }
   p->n_piece = left;
   return st;
 }
 
-static vg_status receive(struct parcels *q, struct recut *recut,
+/* A void in the making, on the rank that fills it. */
+struct wider { struct vg_front front; double per_cube; };
+
+static vg_status receive(const struct parcels *q, struct wider *wider,
                          const struct vg_bytes *b, struct vg_error *err)
 {
   struct vg_reader r = { .data = b->data, .n = b->n };
-  uint64_t head[2];
   vg_status st = VG_OK;
 
   while (st == VG_OK && !r.bad && r.at < r.n) {
     struct vg_front f = VG_FRONT_INIT;
+    double per_cube = 0;
+    uint64_t head = 0;
 
-    vg_get(&r, 2, sizeof *head, head);
-    if (r.bad || head[0] >= q->n) break;
-    if (head[1] == CUT) {
-      vg_get(&r, 1, sizeof recut->cut, &recut[head[0]].cut);
-      continue;
-    }
+    vg_get(&r, 1, sizeof head, &head);
+    vg_get(&r, 1, sizeof per_cube, &per_cube);
+    if (r.bad || head >= q->n) break;
     vg_front_get(&r, &f, 1);
-    if (!r.bad) st = vg_front_join(&recut[head[0]].front, &f, err);
+    if (!r.bad) st = vg_front_join(&wider[head].front, &f, err);
+    wider[head].per_cube = fmax(wider[head].per_cube, per_cube);
     vg_front_release(&f);
   }
-  return r.bad ? vg_fail_damaged(err, "a front") : st;
+  return st == VG_OK && r.at < r.n ? vg_fail_damaged(err, "a front") : st;
 }
 
-/* What all ranks have of the voids to those that cut them. recut: [q->n].
+/* What all ranks have of the voids to those that fill them. wider: [q->n].
  * Collective. */
 static vg_status exchange(struct parcels *q, struct vg_comm *comm,
-                          struct recut *recut, struct vg_error *err)
+                          struct wider *wider, struct vg_spans *spans,
+                          struct vg_error *err)
 {
-  size_t size = (size_t)q->p->size;
+  size_t size = (size_t)q->p->size, n_path = 0;
   struct vg_bytes *to = vg_calloc(size, sizeof *to);
   struct vg_bytes *from = vg_calloc(size, sizeof *from);
+  vg_path *path = vg_calloc(q->p->n_piece, sizeof *path);
   vg_status st = VG_OK;
 
   q->to = vg_calloc(size, sizeof *q->to);
-  if (!to || !from || !q->to) {
+  if (!to || !from || !q->to || !path) {
     st = vg_fail_memory(err, "a void");
   } else {
-    send_cuts(q);
-    send_unfilled(q);
-    st = send_pieces(q, err);
+    st = send_unfilled(q, err);
+    if (st == VG_OK) st = send_pieces(q, path, &n_path, err);
   }
   for (size_t r = 0; st == VG_OK && r < size; r++) {
     to[r] = q->to[r].bytes;
@@ -274,36 +462,38 @@ static vg_status exchange(struct parcels *q, struct vg_comm *comm,
   VG_TRY(vg_comm_agree(comm, st, err));
   VG_TRY(vg_comm_exchange(comm, to, from, err));
   for (size_t r = 0; r < size && st == VG_OK; r++)
-    st = receive(q, recut, &from[r], err);
-  st = vg_comm_agree(comm, st, err);
+    st = receive(q, wider, &from[r], err);
+  VG_TRY(vg_comm_agree(comm, st, err));
+  st = vg_partition_forget_spans(q->p, comm, n_path, path, spans, err);
 done:
   for (size_t r = 0; q->to && r < size; r++) free(q->to[r].bytes.data);
   free(q->to);
   free(to);
+  free(path);
   vg_bytes_release(from, size);
   return st;
 }
 
-/* --- to be cut again ----------------------------------------------------- */
+/* --- larger voids -------------------------------------------------------- */
 
-static vg_status new_node(struct vg_partition *p, struct recut *recut,
-                          struct vg_node **out, struct vg_error *err)
+static vg_status new_node(struct vg_partition *p, const char *path,
+                          struct wider *wider, struct vg_node **out,
+                          struct vg_error *err)
 {
-  struct vg_front *f = &recut->front;
-  char path[VG_PATH_MAX];
+  struct vg_front *f = &wider->front;
+  char longer[VG_PATH_MAX];
   struct vg_node *n;
   struct vg_void v;
   vg_status st;
 
   VG_TRY(vg_front_weld(f, err));
   VG_TRY(vg_recut_settle(f, err));
-  snprintf(path, sizeof path, "%.*s%c", VG_PATH_MAX - 2, recut->cut.path,
-           again);
-  n = *out = vg_node_new(path, f);
+  snprintf(longer, sizeof longer, "%.*s%c", VG_PATH_MAX - 2, path, larger);
+  n = *out = vg_node_new(longer, f);
   if (!n) return vg_fail_memory(err, "a void");
-  n->levels = recut->cut.levels;
-  n->retry = recut->cut.retry + 1;
-  n->per_cube = recut->cut.per_cube;
+  n->per_cube = wider->per_cube;
+  n->is_final = 1;
+  n->serial = vg_partition_serial(p);
   v = (struct vg_void){ .n_point = n->front.n_point, .x = n->front.x,
                         .n_face = n->front.n_face, .face = n->front.face };
   VG_TRY(vg_load_new(&v, p->sizing, n->per_cube, p->options.threads,
@@ -313,12 +503,33 @@ done:
   return st;
 }
 
-/* Cells that were made for nothing are in no leaf. */
-static void forget_spans(struct vg_spans *s, size_t n, path_type *path)
+static vg_status prepare(struct parcels *q, struct vg_comm *comm,
+                         struct vg_error *err)
 {
-  for (size_t i = 0; i < s->n; i++)
-    for (size_t k = 0; k < n; k++)
-      if (is_of(s->span[i].path, path[k])) s->span[i].n_cell = 0;
+  struct best *best = vg_calloc(q->n, sizeof *best);
+  vg_status st;
+
+  q->up = vg_alloc(q->n, sizeof *q->up);
+  q->near = vg_alloc(q->p->n_piece, sizeof *q->near);
+  st = q->up && q->near && best ? VG_OK : vg_fail_memory(err, "a void");
+  VG_TRY(vg_comm_agree(comm, st, err));
+  for (uint32_t k = 0; k < q->n; k++) q->up[k] = k;
+  join_voids(q);
+  look_around(q, best);
+  VG_TRY(take_best(q, comm, best, err));
+  st = agree_on_groups(q, comm, err);
+done:
+  free(best);
+  return st;
+}
+
+static void release(struct parcels *q)
+{
+  for (size_t k = 0; k < q->n; k++) free(q->of[k].face);
+  free(q->of);
+  free(q->up);
+  free(q->near);
+  free(q->gone);
 }
 
 vg_status vg_recut_voids(struct vg_partition *p, struct vg_comm *comm,
@@ -327,28 +538,37 @@ vg_status vg_recut_voids(struct vg_partition *p, struct vg_comm *comm,
                          struct vg_error *err)
 {
   struct parcels q = { .p = p };
-  struct recut *recut = NULL;
+  struct wider *wider = NULL;
+  uint32_t *own = NULL;
+  uint64_t all = p->n_unfilled;
   vg_status st;
 
   *n_void = *n = 0;
   *node = NULL;
-  VG_TRY(list_voids(p, comm, &q.path, &q.n, err));
-  if (!q.n) goto done;
-  recut = vg_calloc(q.n, sizeof *recut);
+  VG_TRY(vg_comm_sum(comm, 1, &all, err));
+  if (!all) return VG_OK;
+  VG_TRY(list_voids(&q, comm, err));
+  VG_TRY(prepare(&q, comm, err));
+  wider = vg_calloc(q.n, sizeof *wider);
+  own = vg_calloc(q.n, sizeof *own);
   *node = vg_calloc(q.n, sizeof **node);
-  st = recut && *node ? VG_OK : vg_fail_memory(err, "a void");
+  st = wider && own && *node ? VG_OK : vg_fail_memory(err, "a void");
   VG_TRY(vg_comm_agree(comm, st, err));
-  VG_TRY(exchange(&q, comm, recut, err));
-  for (size_t k = (size_t)p->rank; k < q.n && st == VG_OK;
-       k += (size_t)p->size)
-    st = new_node(p, &recut[k], &(*node)[(*n)++], err);
+  VG_TRY(exchange(&q, comm, wider, spans, err));
+  for (uint32_t k = 0; k < q.n; k++) {
+    if (vg_root_of(q.up, k) != k) continue;
+    ++*n_void;
+    if (k % (uint32_t)p->size != (uint32_t)p->rank || st < 0) continue;
+    own[*n] = k;
+    st = new_node(p, q.of[k].path, &wider[k], &(*node)[(*n)++], err);
+  }
   VG_TRY(vg_comm_agree(comm, st, err));
-  if (spans) forget_spans(spans, q.n, q.path);
-  if (!p->rank) p->report.n_elsewhere += q.n;
-  *n_void = q.n;
+  VG_TRY(vg_recut_adopt(p, comm, q.n_gone, q.gone, *n, *node, own, err));
+  if (!p->rank) p->report.n_widened += *n_void;
 done:
-  for (size_t k = 0; recut && k < q.n; k++) vg_front_release(&recut[k].front);
-  free(recut);
-  free(q.path);
+  for (size_t k = 0; wider && k < q.n; k++) vg_front_release(&wider[k].front);
+  free(wider);
+  free(own);
+  release(&q);
   return st;
 }

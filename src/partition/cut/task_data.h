@@ -56,6 +56,7 @@ struct vg_piece {
   char kind;                 /* VG_SPAN_... */
   uint32_t serial;
   size_t n_in, n_point, n_cell;
+  size_t n_adopted;          /* of n_point: a leaf's that others have too */
   uint64_t *in;              /* [n_in] names of points of others */
   double (*x)[3];            /* [n_in + n_point] theirs, then its own */
   uint32_t (*cell)[4];       /* [n_cell] indices into x */

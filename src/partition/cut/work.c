@@ -184,6 +184,11 @@ static vg_status to_piece(struct vg_partition *p, struct made *m,
                             .n_point = m->n_point, .n_cell = m->n_cell };
 
   if (!m->n_cell) return VG_OK;
+  /* points that a leaf adopts are the last of its front (recut_names.c) */
+  while (piece.n_in && f->name[m->in[piece.n_in - 1]] >> 32 == serial)
+    piece.n_in--;
+  piece.n_adopted = m->n_in - piece.n_in;
+  piece.n_point += piece.n_adopted;
   snprintf(piece.path, sizeof piece.path, "%s", path);
   piece.in = vg_alloc(m->n_in, sizeof *piece.in);
   piece.x = vg_alloc(m->n_in + m->n_point, sizeof *piece.x);
@@ -401,6 +406,22 @@ static vg_status grow_leaf(struct vg_partition *p, const struct vg_node *n,
   return st == VG_OK ? compact(m, f->n_point, err) : st;
 }
 
+/* By the path as it was before the leaf was made larger (FNV-1a). */
+static int fails_on_purpose(const struct vg_partition *p, const char *path)
+{
+  uint64_t h = 14695981039346656037u;
+  int rounds = 0;
+
+  for (; *path; path++) {
+    rounds += *path == '~';
+    if (*path != '~') h = (h ^ (unsigned char)*path) * 1099511628211u;
+  }
+  h ^= h >> 29;
+  return rounds < p->options.fail_rounds &&
+         (double)(h * 0x9e3779b97f4a7c15u >> 11) * 0x1p-53 <
+           p->options.fail_leaves;
+}
+
 vg_status vg_work_leaf(struct vg_partition *p, const struct vg_work *w,
                        int *outgrown, size_t *n_cell,
                        const struct vg_engine *e, struct vg_error *err)
@@ -413,6 +434,9 @@ vg_status vg_work_leaf(struct vg_partition *p, const struct vg_work *w,
   vg_status st = VG_OK;
 
   *outgrown = 0;
+  if (p->options.fail_leaves > 0 && fails_on_purpose(p, n->path))
+    return vg_fail(err, VG_ERR_GEOMETRY, "%s is not filled on purpose",
+                   n->path);
   if (p->options.store) key = key_of(p, &n->front, NULL, limit);
   if (!find(p, key, &m, err)) {
     st = grow_leaf(p, n, limit, &m, outgrown, e, err);

@@ -73,7 +73,8 @@ vg_status vg_owners_gather(const struct vg_partition *p, struct vg_comm *comm,
 
     own[k].o = (struct vg_owner){
       .serial = q->serial, .rank = (uint32_t)p->rank, .piece = (uint32_t)k,
-      .is_zone = q->kind == VG_SPAN_PENCIL || q->kind == VG_SPAN_TILE };
+      .is_zone = q->kind == VG_SPAN_PENCIL || q->kind == VG_SPAN_TILE ||
+                 q->n_adopted > 0 };
     memcpy(own[k].path, q->path, sizeof own[k].path);
   }
   st = vg_comm_agree(comm, st, err);
