@@ -210,9 +210,21 @@ static double segment_distance(const double a[3], const double b[3],
   return sqrt(vg_dot(u, u));
 }
 
+/* The same, with the way from the segment to x. */
+static double segment_way(const double a[3], const double b[3],
+                          const double x[3], double *t, double way[3])
+{
+  double d = segment_distance(a, b, x, t);
+
+  for (int k = 0; k < 3; k++) way[k] = x[k] - a[k] - *t * (b[k] - a[k]);
+  return d;
+}
+
 /* Inside the three edge planes the distance is to the plane, otherwise to the
- * nearest edge. A degenerate triangle has only edges. */
-static double triangle_distance(const struct vg_source *s, const double x[3])
+ * nearest edge. A degenerate triangle has only edges. way out: from the
+ * triangle to x, of any length. */
+static double triangle_distance(const struct vg_source *s, const double x[3],
+                                double way[3])
 {
   const double *p[3] = { s->p0, s->p1, s->p2 };
   double e[3][3], n[3], u[3], m[3], d, t;
@@ -226,11 +238,19 @@ static double triangle_distance(const struct vg_source *s, const double x[3])
     inside = vg_dot(m, u) >= 0;
   }
   vg_sub(x, s->p0, u);
-  if (inside && vg_dot(n, n) > 0) return fabs(vg_dot(u, n)) / sqrt(vg_dot(n,
-                                                                          n));
-  d = segment_distance(p[0], p[1], x, &t);
-  d = least(d, segment_distance(p[1], p[2], x, &t));
-  return least(d, segment_distance(p[2], p[0], x, &t));
+  if (inside && vg_dot(n, n) > 0) {
+    memcpy(way, n, sizeof n);
+    return fabs(vg_dot(u, n)) / sqrt(vg_dot(n, n));
+  }
+  d = segment_way(p[0], p[1], x, &t, way);
+  for (int i = 1; i < 3; i++) {
+    double other = segment_way(p[i], p[(i + 1) % 3], x, &t, u);
+
+    if (other >= d) continue;
+    d = other;
+    memcpy(way, u, sizeof u);
+  }
+  return d;
 }
 
 static double box_distance(const double lo[3], const double hi[3],
@@ -277,7 +297,7 @@ static double cone_distance(const struct vg_source *s, const double x[3],
 static double bounded_at(const struct vg_bounded *b, const double x[3])
 {
   const struct vg_source *s = &b->law;
-  double d = 0, t = 0;
+  double d = 0, t = 0, way[3];
 
   switch (s->kind) {
   case VG_SOURCE_VGRID_LINE:
@@ -285,7 +305,7 @@ static double bounded_at(const struct vg_bounded *b, const double x[3])
     d = segment_distance(s->p0, s->p1, x, &t) - s->r0;
     break;
   case VG_SOURCE_TRIANGLE:
-    d = triangle_distance(s, x) - s->r0;
+    d = triangle_distance(s, x, way) - s->r0;
     break;
   case VG_SOURCE_BOX:
     d = box_distance(s->p0, s->p1, x);
@@ -300,6 +320,43 @@ static double bounded_at(const struct vg_bounded *b, const double x[3])
     break;
   }
   return s->h0 + t * (s->h1 - s->h0) + b->slope * most(d, 0);
+}
+
+/* How far a box reaches along a way of any length. */
+static double reach_along(const double way[3], const double half[3])
+{
+  double sum = 0, len = sqrt(vg_dot(way, way));
+
+  for (int k = 0; k < 3; k++) sum += fabs(way[k]) * half[k];
+  return len > 0 ? sum / len : 0;
+}
+
+/* Lower bound of one bounded source in a box. Distances to convex shapes are
+ * convex: nowhere below the plane that touches them in the centre. */
+static double bounded_floor(const struct vg_bounded *b, const double mid[3],
+                            const double half[3])
+{
+  const struct vg_source *s = &b->law;
+  double d, t = 0, h = s->h0, way[3], axis[3];
+  int is_line = s->kind == VG_SOURCE_LINE || s->kind == VG_SOURCE_VGRID_LINE;
+
+  if (s->kind == VG_SOURCE_BOX || s->kind == VG_SOURCE_CYLINDER)
+    return bounded_at(b, mid) - b->steep * sqrt(vg_dot(half, half));
+  if (s->kind == VG_SOURCE_TRIANGLE)
+    d = triangle_distance(s, mid, way);
+  else
+    d = segment_way(s->p0, is_line ? s->p1 : s->p0, mid, &t, way);
+  if (is_line) {
+    double len;
+
+    vg_sub(s->p1, s->p0, axis);
+    len = sqrt(vg_dot(axis, axis));
+    h += t * (s->h1 - s->h0);
+    if (len > 0)
+      h -= fabs(s->h1 - s->h0) / len * reach_along(axis, half);
+  }
+  d -= s->r0 + reach_along(way, half);
+  return most(h, b->least) + b->slope * most(d, 0);
 }
 
 /* Lists of sources. */
@@ -445,18 +502,17 @@ double vg_source_at(const struct vg_source_set *set, const double x[3])
 }
 
 /* Two bounds per source: the box around its shape, coarse at any size, and
- * the law at the centre less what it can fall within the box, which becomes
- * exact as the box shrinks. */
+ * what follows from the law at the centre, which becomes exact as the box
+ * shrinks. */
 double vg_source_floor(const struct vg_source_set *set, const double lo[3],
                        const double hi[3])
 {
-  double h = INFINITY, mid[3], r2 = 0, r;
+  double h = INFINITY, mid[3], half[3];
 
   for (int k = 0; k < 3; k++) {
     mid[k] = 0.5 * (lo[k] + hi[k]);
-    r2 += (hi[k] - mid[k]) * (hi[k] - mid[k]);
+    half[k] = hi[k] - mid[k];
   }
-  r = sqrt(r2);
   for (size_t i = 0; i < set->n_bounded; i++) {
     const struct vg_bounded *b = set->bounded + i;
     double d2 = 0, d, bound;
@@ -467,7 +523,7 @@ double vg_source_floor(const struct vg_source_set *set, const double lo[3],
     }
     bound = b->least + b->slope * sqrt(d2);
     if (bound >= h) continue;
-    bound = most(bound, bounded_at(b, mid) - b->steep * r);
+    bound = most(bound, bounded_floor(b, mid, half));
     h = least(h, bound);
   }
   return h;
