@@ -133,13 +133,105 @@ static double size_of(const struct crossing *c)
   return hi[0] - lo[0] + hi[1] - lo[1] + hi[2] - lo[2];
 }
 
+/* Faces around the cells, seen along a way out: by the cells of a grid across
+ * it that they may lie in. */
+struct shadow {
+  double lo[2], per[2];      /* corner; grid cells to a length */
+  uint32_t n[2];
+  uint32_t *first, *face;    /* of grid cell i: first[i] to first[i + 1] */
+};
+
 struct body {
   const struct crossing *c;
+  struct shadow shadow;
   double lo[3], hi[3];       /* where it may lie */
   double size;               /* of what is around the cells */
   uint8_t *is_beside;        /* [points of the front] 1: was given, or is known
                                 to be outside the cells */
 };
+
+/* Ways out. Aslant, so that they seldom touch an edge. Of the first one, which
+ * nearly always will do, the shadow is kept; its third part is 1. */
+static const double way[][3] = { {0.4142, -0.2718, 1}, {-1.1, 0.5, 0.3},
+  {0.3, -0.9, -0.8}, {1.1, -0.2, 0.6}, {-0.6, -0.5, 1.2} };
+
+static void across(const double x[3], double u[2])
+{
+  for (int k = 0; k < 2; k++) u[k] = x[k] - way[0][k] * x[2];
+}
+
+/* The grid cells that a face may lie in: rounding is far less than the margin
+ * of a thousandth of one. */
+static void shadow_of(const struct crossing *c, const struct shadow *s,
+                      size_t k, uint32_t lo[2], uint32_t hi[2])
+{
+  double from[2] = {INFINITY, INFINITY}, to[2] = {-INFINITY, -INFINITY}, u[2];
+  uint32_t v[3];
+
+  face_around(c, k, v);
+  for (int i = 0; i < 3; i++) {
+    across(c->n->front.x[v[i]], u);
+    for (int j = 0; j < 2; j++) {
+      from[j] = fmin(from[j], (u[j] - s->lo[j]) * s->per[j]);
+      to[j] = fmax(to[j], (u[j] - s->lo[j]) * s->per[j]);
+    }
+  }
+  for (int j = 0; j < 2; j++) {
+    lo[j] = (uint32_t)fmin(fmax(from[j] - 1e-3, 0), s->n[j] - 1.0);
+    hi[j] = (uint32_t)fmin(fmax(to[j] + 1e-3, 0), s->n[j] - 1.0);
+  }
+}
+
+static void measure_shadow(const struct crossing *c, struct shadow *s)
+{
+  double hi[2] = {-INFINITY, -INFINITY}, u[2];
+  double side = sqrt((double)n_around(c)) / 2 + 1;
+
+  s->lo[0] = s->lo[1] = INFINITY;
+  for (size_t k = 0; k < n_around(c); k++) {
+    uint32_t v[3];
+
+    face_around(c, k, v);
+    for (int i = 0; i < 6; i++) {
+      across(c->n->front.x[v[i / 2]], u);
+      s->lo[i % 2] = fmin(s->lo[i % 2], u[i % 2]);
+      hi[i % 2] = fmax(hi[i % 2], u[i % 2]);
+    }
+  }
+  for (int j = 0; j < 2; j++) {
+    s->n[j] = (uint32_t)fmin(side, 4096);
+    s->per[j] = hi[j] > s->lo[j] ? s->n[j] / (hi[j] - s->lo[j]) : 0;
+  }
+}
+
+static int make_shadow(const struct crossing *c, struct shadow *s)
+{
+  size_t n;
+
+  measure_shadow(c, s);
+  n = (size_t)s->n[0] * s->n[1];
+  s->first = vg_calloc(n + 2, sizeof *s->first);
+  if (!s->first) return -1;
+  for (int fill = 0; fill < 2; fill++) {
+    for (size_t k = 0; k < n_around(c); k++) {
+      uint32_t lo[2], hi[2];
+
+      shadow_of(c, s, k, lo, hi);
+      for (uint32_t j = lo[1]; j <= hi[1]; j++)
+        for (uint32_t i = lo[0]; i <= hi[0]; i++) {
+          size_t at = (size_t)j * s->n[0] + i;
+
+          if (fill) s->face[s->first[at + 1]++] = (uint32_t)k;
+          else s->first[at + 2]++;
+        }
+    }
+    if (fill) break;
+    for (size_t i = 2; i < n + 2; i++) s->first[i] += s->first[i - 1];
+    s->face = vg_alloc(s->first[n + 1], sizeof *s->face);
+    if (!s->face) return -1;
+  }
+  return 0;
+}
 
 /* Once per work, and only where a face leaves the band. */
 static int prepare(struct body *b)
@@ -149,7 +241,7 @@ static int prepare(struct body *b)
 
   b->size = size_of(b->c);
   b->is_beside = vg_calloc(n->front.n_point, 1);
-  if (!b->is_beside) return -1;
+  if (!b->is_beside || make_shadow(b->c, &b->shadow)) return -1;
   for (size_t k = 0; k < change->n_part; k++)
     b->is_beside[n->point[b->c->work][k]] = 1;
   return 0;
@@ -177,27 +269,57 @@ static int passes(const double x[3], const double y[3],
   return zero || from == 0 || to == 0 ? -1 : 1;
 }
 
+/* Faces around the cells that the way from x to y passes; -1: it cannot be
+ * told. list: [n] of them to be looked at, NULL: the first n. */
+static int n_passed(const struct body *b, const double x[3],
+                    const double y[3], size_t n, const uint32_t *list)
+{
+  int sum = 0;
+
+  for (size_t i = 0; i < n; i++) {
+    const double *t[3];
+    uint32_t v[3];
+    int one;
+
+    face_around(b->c, list ? list[i] : i, v);
+    for (int j = 0; j < 3; j++) t[j] = b->c->n->front.x[v[j]];
+    one = passes(x, y, t);
+    if (one < 0) return -1;
+    sum += one;
+  }
+  return sum;
+}
+
+static int n_passed_in_shadow(const struct body *b, const double x[3],
+                              const double y[3])
+{
+  const struct shadow *s = &b->shadow;
+  size_t at[2];
+  double u[2];
+
+  across(x, u);
+  for (int j = 0; j < 2; j++) {
+    double f = (u[j] - s->lo[j]) * s->per[j];
+
+    if (!(f > -1e-3 && f < s->n[j] + 1e-3)) return 0;
+    at[j] = (size_t)fmin(fmax(f, 0), s->n[j] - 1.0);
+  }
+  at[0] += at[1] * s->n[0];
+  return n_passed(b, x, y, s->first[at[0] + 1] - s->first[at[0]],
+                  s->face + s->first[at[0]]);
+}
+
 /* Is x within the cells? Exact, by the faces that a way out passes. */
 static int is_within_cells(const struct body *b, const double x[3])
 {
-  static const double way[][3] = { {0.4, 0.7, 1.1}, {-1.1, 0.5, 0.3},
-    {0.3, -0.9, -0.8}, {1.1, -0.2, 0.6}, {-0.6, -0.5, 1.2} };
-
   for (size_t k = 0; k < sizeof way / sizeof *way; k++) {
     double y[3];
-    int sum = 0, one = 0;
+    int sum;
 
     for (int j = 0; j < 3; j++) y[j] = x[j] + 2 * b->size * way[k][j];
-    for (size_t i = 0; i < n_around(b->c) && one >= 0; i++) {
-      const double *t[3];
-      uint32_t v[3];
-
-      face_around(b->c, i, v);
-      for (int j = 0; j < 3; j++) t[j] = b->c->n->front.x[v[j]];
-      one = passes(x, y, t);
-      sum += one;
-    }
-    if (one >= 0) return sum % 2;
+    sum = k ? n_passed(b, x, y, n_around(b->c), NULL)
+            : n_passed_in_shadow(b, x, y);
+    if (sum >= 0) return sum % 2;
   }
   return 1;
 }
@@ -272,5 +394,7 @@ int vg_node_crosses(const struct vg_node *n, size_t i, size_t first)
       found = holds_body(&body, r, x);
   }
   free(body.is_beside);
+  free(body.shadow.first);
+  free(body.shadow.face);
   return found;
 }
