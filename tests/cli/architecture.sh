@@ -110,7 +110,7 @@ adapter jansson.h '^cli/'
 adapter argp.h '^cli/'
 # Its last bits differ between processors: never where a mesh is made.
 adapter lapacke.h '^partition/model/rates\.c$'
-adapter pthread.h '^(base|partition)/'
+adapter pthread.h '^(base|partition)/|^cli/common/progress\.c$'
 adapter mpi.h \
   '^(base/comm(_[a-z]+)?\.c|base/comm_parts\.h|io/stream/shared_file\.c)$'
 adapter hwloc.h '^base/comm_cores\.c$'

@@ -301,6 +301,7 @@ static vg_status finish(struct run *r, const struct arguments *a,
                       : vg_fail_memory(err, "the report");
   if (st < 0) goto done;
   VG_TRY(vg_display_stopped(err));
+  vg_display_commit();
   VG_TRY(vg_outputs_commit(&r->outputs, err));
 done:
   json_decref(report);
@@ -486,6 +487,8 @@ static int run(const struct arguments *a)
   r.mesh.rank = vg_comm_rank(r.mesh.comm);
   r.mesh.size = vg_comm_size(r.mesh.comm);
   vg_display_init(&r.show, a->quiet || r.mesh.rank);
+  /* rank 0 puts the files into place; when it ends so do the others */
+  vg_display_deadline(r.mesh.rank ? 1.8 : 1.5);
   if (run_stages(&r, a, &err) < 0) {
     vg_display_clear(&r.show);
     status = report_failure(&r, a, &err);

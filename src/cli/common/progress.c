@@ -1,5 +1,9 @@
+#define _GNU_SOURCE
 #include "cli/common/progress.h"
 
+#include <ftw.h>
+#include <pthread.h>
+#include <semaphore.h>
 #include <signal.h>
 #include <stdatomic.h>
 #include <stdio.h>
@@ -17,7 +21,7 @@
  * launchers to a process and to its group. */
 #define SAME_WISH_MS 1000
 
-static volatile sig_atomic_t interrupted, ends_at_once, shows_line;
+static volatile sig_atomic_t interrupted, ends_at_once, shows_line, posted;
 static atomic_llong interrupted_ms;
 
 /* In a signal's handler: only what is safe there. */
@@ -39,8 +43,81 @@ static long long now_ms(void)
   return (long long)t.tv_sec * 1000 + t.tv_nsec / 1000000;
 }
 
+/* --- a deadline ---------------------------------------------------------- */
+
+/* Held while the outcome is put into its place, and while the process ends. */
+static pthread_mutex_t ending = PTHREAD_MUTEX_INITIALIZER;
+static char temporary[4096];
+static double deadline;      /* s; 0: none */
+static int is_committed;
+static sem_t asked;
+
+static int remove_one(const char *path, const struct stat *info, int type,
+                      struct FTW *at)
+{
+  (void)info, (void)type, (void)at;
+  remove(path);
+  return 0;
+}
+
+/* Other threads go on writing until the end: the folder may need a second
+ * look. */
+static void *wait_for_deadline(void *unused)
+{
+  (void)unused;
+  while (sem_wait(&asked)) {}
+  for (long long left; (left = interrupted_ms + (long long)(1000 * deadline) -
+                               now_ms()) > 0;) {
+    const struct timespec t = { left / 1000, left % 1000 * 1000000 };
+
+    nanosleep(&t, NULL);
+  }
+  pthread_mutex_lock(&ending);
+  for (int k = 0; k < 3 && !is_committed && *temporary; k++)
+    if (nftw(temporary, remove_one, 16, FTW_DEPTH | FTW_PHYS)) break;
+  if (!is_committed) end_at_once();
+  pthread_mutex_unlock(&ending);
+  return NULL;
+}
+
+void vg_display_deadline(double seconds)
+{
+  sigset_t all, before;
+  pthread_t thread;
+
+  if (deadline > 0 || sem_init(&asked, 0, 0)) return;
+  deadline = seconds;
+  sigfillset(&all);          /* signals are for other threads */
+  pthread_sigmask(SIG_SETMASK, &all, &before);
+  if (pthread_create(&thread, NULL, wait_for_deadline, NULL)) deadline = 0;
+  else pthread_detach(thread);
+  pthread_sigmask(SIG_SETMASK, &before, NULL);
+  if (interrupted && deadline > 0) sem_post(&asked);
+}
+
+void vg_display_temporary(const char *dir)
+{
+  pthread_mutex_lock(&ending);
+  snprintf(temporary, sizeof temporary, "%s", dir ? dir : "");
+  pthread_mutex_unlock(&ending);
+}
+
+void vg_display_commit(void)
+{
+  pthread_mutex_lock(&ending);
+  is_committed = 1;
+  pthread_mutex_unlock(&ending);
+}
+
+/* --- signals ------------------------------------------------------------- */
+
 static void on_signal(int number)
 {
+  if (number != SIGUSR1 && deadline > 0 && !posted) {
+    posted = 1;
+    interrupted_ms = now_ms();
+    sem_post(&asked);
+  }
   if (!interrupted) {
     interrupted_ms = now_ms();
     interrupted = 1;

@@ -44,6 +44,20 @@ int vg_display_stop(void *user);
  * that leave nothing half-written. */
 void vg_display_end_at_once(int on);
 
+/** A process that was asked to stop, but by SIGUSR1, and has not ended so many
+ * seconds later is ended then, wherever it is, with the same message and exit
+ * status: the folder of vg_display_temporary is removed before. For programs
+ * that ask vg_display_interrupted only now and then. Once. */
+void vg_display_deadline(double seconds);
+
+/** The folder of what is half-written; NULL: none any more. Copied. Threads: one
+ * at a time. */
+void vg_display_temporary(const char *dir);
+
+/** From now on the outcome is put into its place: the process ends by itself,
+ * whatever it was asked before. */
+void vg_display_commit(void);
+
 /** Wall clock in seconds, from any start. */
 double vg_display_now(void);
 

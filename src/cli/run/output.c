@@ -11,6 +11,7 @@
 
 #include "base/memory.h"
 #include "cli/common/cli.h"
+#include "cli/common/progress.h"
 #include "cli/settings/deck.h"
 #include "cli/settings/lists.h"
 #include "io/mesh/foam.h"
@@ -33,7 +34,10 @@ static void remove_temp_dir(struct vg_outputs *o)
     else if (path) unlink(path);
     free(path);
   }
-  if (!o->is_guest) rmdir(o->temp_dir);
+  if (!o->is_guest) {
+    rmdir(o->temp_dir);
+    vg_display_temporary(NULL);
+  }
   free(o->temp_dir);
   o->temp_dir = NULL;
 }
@@ -226,7 +230,10 @@ static vg_status make_temp_dir(struct vg_outputs *o, struct vg_error *err)
     o->temp_dir = NULL;
     return vg_fail_memory(err, "the output paths");
   }
-  if (mkdtemp(o->temp_dir)) return VG_OK;
+  if (mkdtemp(o->temp_dir)) {
+    vg_display_temporary(o->temp_dir);
+    return VG_OK;
+  }
   free(o->temp_dir);
   o->temp_dir = NULL;
   return cannot_write(o, err);

@@ -109,3 +109,10 @@ stopped sizes plan -p p/box --deck fine.deck --farfield none
 stopped farfield plan -p octa --farfield-spacing 0.03
 stopped farfield mesh -p octa --farfield-spacing 0.03 --out o
 [ -z "$(ls -A o)" ] || fail "left behind: $(ls -A o)"
+
+# A run that looks only now and then is ended two seconds later, and leaves
+# nothing: this field of sizes takes an hour.
+start=$(date +%s%N)
+stopped sizes mesh -p p/box --deck fine.deck --farfield none --out o
+[ $(($(date +%s%N) - start)) -lt 20000000000 ] || fail "it did not stop"
+[ -z "$(ls -A o)" ] || fail "left behind: $(ls -A o)"
