@@ -224,23 +224,31 @@ static vg_status spread_sides(struct sides *s, struct vg_error *err)
   return st;
 }
 
+/* Bands of growing width that sides spread over in turn (K29). */
+enum { BANDS = 4 };
+
 /* On the region itself every front face is known, so what is reached along it
- * is sure. From there sides spread over the band; where they contradict each
- * other, for want of faces, the nearest wins. */
+ * is sure. From there sides spread over bands that grow. Where they contradict
+ * each other, for want of faces, what is nearest to the region wins: far from
+ * it, where a front goes on that is not known, sides may leak past its rim. */
 static vg_status tell_sides(struct sides *s, struct vg_error *err)
 {
+  double reach = s->cache ? s->cache->region->reach : 0;
   vg_status st;
 
-  s->band = s->cache ? -s->cache->region->reach + 1e-6 : 0;
+  s->band = s->cache ? -reach + 1e-6 : 0;
   s->is_strict = 1;
   VG_TRY(seed_sides(s, err));
   VG_TRY(spread_sides(s, err));
   if (!s->cache) goto done;
-  set_band(s, VG_BAND_FLUID, 0x0f);
   s->is_strict = 0;
-  s->next = 0;
-  VG_TRY(seed_sides(s, err));
-  st = spread_sides(s, err);
+  for (int k = 1; k <= BANDS; k++) {
+    set_band(s, k < BANDS ? (reach + VG_BAND_FLUID) * k / BANDS - reach
+                          : VG_BAND_FLUID, 0x0f);
+    s->next = 0;
+    VG_TRY(seed_sides(s, err));
+    VG_TRY(spread_sides(s, err));
+  }
 done:
   return st;
 }

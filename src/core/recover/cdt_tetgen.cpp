@@ -24,17 +24,25 @@ namespace {
  * pockets need. A count, unlike a clock, is the same on any machine. */
 const uint64_t patience = 20000000, patience_each = 50000;   /* K4 */
 
-/* Seconds on the processor, and more for each triangle, in case that it turns
- * without asking a predicate: hundreds of times what the calls above take. */
-const size_t backstop = 600;
-const double backstop_each = 1;
+/* It may also turn without asking a predicate, for ever: a job is given up too
+ * when so many seconds on the processor, and more for each triangle, pass
+ * without a call, of which there are millions a second otherwise. The clock
+ * decides only when to give up what has no end. */
+const double silence = 2, silence_each = 1e-4;
 
-/* Calls left to the job at hand; in the child. */
-uint64_t calls_left = UINT64_MAX;
+/* Calls left to the job at hand, and when it was looked at last; in the
+ * child. */
+volatile uint64_t calls_left = UINT64_MAX, calls_seen;
 
 void count_call()
 {
-  if (!--calls_left) _exit(1);
+  if (!(calls_left = calls_left - 1)) _exit(1);
+}
+
+void look(int)
+{
+  if (calls_left == calls_seen) _exit(1);
+  calls_seen = calls_left;
 }
 
 /* TetGen's own function, of which ours below takes the place. */
@@ -158,8 +166,11 @@ void be_patient(size_t n_tri)
   itimerval time = {};
 
   calls_left = patience + patience_each * n_tri;
+  calls_seen = 0;
+  signal(SIGPROF, look);
   time.it_value.tv_sec = static_cast<time_t>(
-      backstop + backstop_each * static_cast<double>(n_tri));
+      silence + silence_each * static_cast<double>(n_tri));
+  time.it_interval = time.it_value;
   setitimer(ITIMER_PROF, &time, nullptr);
 }
 
