@@ -1,0 +1,76 @@
+#!/usr/bin/env bash
+# bench/scale.sh: does the cost of a cell stay what it is when meshes grow? The
+# layered demo wing at sizes that grow fourfold; seconds per million cells of
+# each phase, and of each kind of task per million of its own cells.
+#
+# usage: bench/scale.sh [--threads N] [--fail SHARE] [--vanguard PROGRAM]
+#          [--work DIR] [--out FILE] [MILLIONS...]
+#   --threads   of the runs (default 2)
+#   --fail      make this share of the leaves fail, and compare with none
+#   --vanguard  the program (default build/release/bin/vanguard)
+#   --work      scratch folder, kept (default: a temporary one, removed)
+#   --out       write the table to FILE too (markdown)
+#   MILLIONS    of cells that the demo is asked for, of which the field takes
+#               half (default 2 8 32; with layers 300 are 565 M cells)
+# Exit status: 0, 1 when a run failed, 2 usage. Needs: jq.
+set -euo pipefail
+
+root=$(cd "$(dirname "$0")/.." && pwd)
+# shellcheck source=bench/common.sh
+. "$root/bench/common.sh"
+vanguard=$root/build/release/bin/vanguard threads=2 fail='' work=''
+take_options "threads fail vanguard work out" "" "$@"
+[ -x "$vanguard" ] || die "no program $vanguard: build it first"
+need jq jq
+work_folder scale
+[ -z "$out" ] || : > "$out"
+[ ${#cases[@]} -gt 0 ] || cases=(2 8 32)
+
+{
+  echo "| M cells | check | sizes | layers | fill | of it repairs | judge |" \
+    "write | total | leaf | zone | join | memory, GB | smallest angle | parts" \
+    "widened |"
+  echo "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|"
+} | say
+
+# row STEM NAME: seconds per million cells of the mesh, of tasks per million of
+# their own; joins per million of the field.
+row() {
+  jq -rn --slurpfile r "$1.report.json" --slurpfile t "$1.timeline.json" \
+    --arg name "$2" '
+    $r[0] as $r | $t[0] as $t | ($t.facts.cells / 1e6) as $n |
+    ($t.columns | to_entries | map({(.value): .key}) | add) as $c |
+    def cpu(k): [$t.spans[] | select(.[$c.kind] as $i | k | index($i))
+                 | .[$c.cpu]] | add // 0;
+    def made(k): ([$t.spans[] | select(.[$c.kind] as $i | k | index($i))
+                  | .[$c.cells]] | add // 0) / 1e6;
+    def per(s; m): if m > 0 then s / m * 1000 | round / 1000 else "-" end;
+    $r.seconds as $s |
+    ["\($n * 10 | round / 10)\($name)", per($s.check; $n), per($s.sizes; $n),
+     per($s.layers // 0; $n), per($s.fill; $n),
+     per($r.partition.repair_seconds; $n), per($s.judge; $n),
+     per($s.write; $n), per($s.total; $n), per(cpu(["L"]); made(["L"])),
+     per(cpu(["P", "T"]); made(["P", "T"])),
+     per(cpu(["J"]); made(["L", "P", "T"])),
+     ($r.peak_memory_bytes / 1e8 | round / 10),
+     ($r.field.angle_min // $r.mesh.angle_min // "-"),
+     $r.partition.parts_widened] | "| " + (map(tostring) | join(" | ")) + " |"'
+}
+
+mesh() {   # mesh NAME OPTION...
+  local name=$1
+  shift
+  "$vanguard" mesh -q -p "$work/in/wing" --threads "$threads" --timeline \
+    --write b8.ugrid --out "$work/files" "$@" > "$work/log" 2>&1 < /dev/null ||
+    die "$million M: $(tail -1 "$work/log")"
+  row "$work/files/wing" "$name" | say
+  rm -rf "$work/files"
+}
+
+for million in "${cases[@]}"; do
+  [[ $million =~ ^[0-9]+$ ]] || { usage >&2; exit 2; }
+  "$vanguard" demo wing --cells "${million}000000" --out "$work/in" \
+    > "$work/log"
+  mesh ""
+  [ -z "$fail" ] || mesh ", leaves failed" --test-fail-leaves "$fail"
+done
