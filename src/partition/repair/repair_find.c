@@ -133,15 +133,14 @@ vg_status vg_outbox_send(struct vg_outbox *post, struct vg_comm *comm,
 
 /* --- bad cells ----------------------------------------------------------- */
 
-/* The ball of a long cell far out may reach over all that is fine: it is halved
- * until no spacing in it is less than this share of its radius, but holds the
- * cell itself, which ends so far from its middle (R8). */
+/* The ball of a long cell far out may reach over all that is fine, and hold most
+ * of the mesh: it is halved until no spacing in it is less than this share of
+ * its radius (R8), even if the cell's own corners are then outside. */
 static const double least_spacing = 1.0 / 48;
 
-static void keep_small(const struct vg_sizing *sizing, double far,
-                       struct vg_spot *s)
+static void keep_small(const struct vg_sizing *sizing, struct vg_spot *s)
 {
-  for (; s->radius > 2.2 * far; s->radius *= 0.5) {
+  for (;; s->radius *= 0.5) {
     double lo[3], x[3];
 
     for (int k = 0; k < 3; k++) lo[k] = s->at[k] - s->radius;
@@ -166,7 +165,7 @@ struct vg_spot vg_spot_around(const struct vg_sizing *sizing,
   reach = ball[k].reach * vg_sizing_at(sizing, s.at);
   s.radius = ball[k].most * sqrt(far);
   if (s.radius < reach) s.radius = reach;
-  keep_small(sizing, sqrt(far), &s);
+  keep_small(sizing, &s);
   return s;
 }
 
