@@ -112,7 +112,7 @@ static vg_status adopt(struct vg_node *node, uint32_t k, size_t n_claim,
   uint32_t *to = vg_alloc(f->n_point, sizeof *to);
   double (*x)[3] = vg_alloc(f->n_point, sizeof *x);
   uint64_t *name = vg_alloc(f->n_point, sizeof *name);
-  size_t n = 0, n_stay = 0, n_own = 0;
+  size_t n = 0, n_own = 0;
   vg_status st = VG_OK;
 
   if (!to || !x || !name) {
@@ -125,7 +125,6 @@ static vg_status adopt(struct vg_node *node, uint32_t k, size_t n_claim,
       to[v] = (uint32_t)n;
       memcpy(x[n], f->x[v], sizeof *x);
       name[n] = f->name[v];
-      n_stay += !own;
       if (own) {
         if (vg_reserve(map, cap_map, *n_map + 1, sizeof **map)) {
           st = vg_fail_memory(err, "names of points");
