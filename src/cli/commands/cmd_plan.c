@@ -52,7 +52,8 @@ static void check_end(const struct vg_plan_options *o,
   if (o->replay && o->project)
     argp_error(state, "either a project or a --replay, not both");
   if (o->replay && o->rates)
-    argp_error(state, "--rates are for a project: a --replay has its own times");
+    argp_error(state, "--rates are for a project: a --replay has its own "
+               "times");
   if (o->replay && (o->kept.n || o->deck || o->target > 0))
     argp_error(state, "a --replay takes no settings, deck or target: the "
                "tasks are those of the record");
@@ -160,8 +161,9 @@ int vg_cmd_plan(int argc, char **argv)
       "fills, heavy ones first.\v"
       "Speed-up is against one worker of the same tasks; critical is the "
       "longest chain of tasks that wait for each other, which no machine of "
-      "such ranks can go below; cuts end is when the last cut has been made, cuts the share "
-      "of the work that cuts are, extra the share beyond what their cells "
+      "such ranks can go below; cuts end is when the last cut has been made, "
+      "cuts the share of the work that cuts are, extra the share beyond what "
+      "their cells "
       "would have taken in leaves." };
   struct vg_plan_options o = { .machine = VG_MACHINE_INIT, .serial = -1,
                                .depth = 2 };

@@ -50,8 +50,8 @@ void vg_display_end_at_once(int on);
  * that ask vg_display_interrupted only now and then. Once. */
 void vg_display_deadline(double seconds);
 
-/** The folder of what is half-written; NULL: none any more. Copied. Threads: one
- * at a time. */
+/** The folder of what is half-written; NULL: none any more. Copied. Threads:
+ * one at a time. */
 void vg_display_temporary(const char *dir);
 
 /** From now on the outcome is put into its place: the process ends by itself,

@@ -95,8 +95,8 @@ void vg_report_partition_text(FILE *to, const struct vg_run *r)
           vg_cli_count(p->n_tile, c), share_of(r, p->n_zone_cell));
   print_leaves(to, &l);
   if (p->n_widened)
-    fprintf(to, "  parts that could not be filled, and were filled together with "
-            "what is beside\n  them %s: %s cells made again, %.2f s\n",
+    fprintf(to, "  parts that could not be filled, and were filled together "
+            "with what is beside\n  them %s: %s cells made again, %.2f s\n",
             vg_cli_count(p->n_widened, a),
             vg_cli_count(p->n_widened_cell, b), p->widened);
   if (p->n_blocked || p->n_retry || p->n_uncut || p->n_outgrown)

@@ -27,8 +27,8 @@ struct vg_hgrid {
   size_t n_block, cap_block;
   struct vg_hgrid_block {     /* 4 x 4 x 4 cells */
     uint64_t used;           /* bit i: cell i has points */
-    int64_t at[3];           /* which it is, since keys of blocks far from each */
-    int level;               /* other may be the same */
+    int64_t at[3];           /* which it is, since keys of blocks far from */
+    int level;               /* each other may be the same */
     uint32_t page[64];       /* first of each cell */
   } *block;
   size_t n_page, cap_page;

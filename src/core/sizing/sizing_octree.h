@@ -59,7 +59,8 @@ double vg_field_floor(const struct vg_field *f, const double lo[3],
  * for any number. */
 vg_status vg_octree_build(const struct vg_field *f, const double lo[3],
                           double side, double coarseness, size_t max_leaf,
-                          int threads, struct vg_octree *out, struct vg_error *err);
+                          int threads, struct vg_octree *out,
+                          struct vg_error *err);
 
 void vg_octree_release(struct vg_octree *t);
 

@@ -133,9 +133,9 @@ vg_status vg_outbox_send(struct vg_outbox *post, struct vg_comm *comm,
 
 /* --- bad cells ----------------------------------------------------------- */
 
-/* The ball of a long cell far out may reach over all that is fine, and hold most
- * of the mesh: it is halved until no spacing in it is less than this share of
- * its radius (R8), even if the cell's own corners are then outside. */
+/* The ball of a long cell far out may reach over all that is fine, and hold
+ * most of the mesh: it is halved until no spacing in it is less than this share
+ * of its radius (R8), even if the cell's own corners are then outside. */
 static const double least_spacing = 1.0 / 48;
 
 static void keep_small(const struct vg_sizing *sizing, struct vg_spot *s)
