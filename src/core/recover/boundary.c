@@ -111,6 +111,8 @@ struct sides {
   const struct vg_region_cache *cache;      /* NULL: everywhere */
   double band;               /* sides are told so near the region */
   int is_strict;             /* 1: a contradiction is an error */
+  uint32_t corner;           /* first of the box, behind the front's points */
+  int is_local;              /* 1: not over cells with a corner of the box */
   uint8_t *side;             /* [n_cell] */
   uint8_t *front;            /* [n_cell] bit i: face i is a triangle that faces
                                 the cell; bit 4 + i: that faces away */
@@ -189,6 +191,16 @@ static vg_status seed_sides(struct sides *s, struct vg_error *err)
   return VG_OK;
 }
 
+/* Has cell c a corner of the box around all? */
+static int is_around(const struct sides *s, uint32_t c)
+{
+  const uint32_t *v = s->t->cell[c].v;
+
+  for (int i = 0; i < 4; i++)
+    if (v[i] - s->corner < 8) return 1;
+  return 0;
+}
+
 static vg_status spread_over(struct sides *s, uint32_t c, int i,
                              struct vg_error *err)
 {
@@ -201,6 +213,7 @@ static vg_status spread_over(struct sides *s, uint32_t c, int i,
       !matters(s, c, i))
     return VG_OK;
   if (is == SIDE_UNKNOWN) {
+    if (s->is_local && is_around(s, other)) return VG_OK;
     set_side(s, other, s->side[c]);
     return VG_OK;
   }
@@ -230,7 +243,9 @@ enum { BANDS = 4 };
 /* On the region itself every front face is known, so what is reached along it
  * is sure. From there sides spread over bands that grow. Where they contradict
  * each other, for want of faces, what is nearest to the region wins: far from
- * it, where a front goes on that is not known, sides may leak past its rim. */
+ * it, where a front goes on that is not known, sides may leak past its rim.
+ * Cells at a corner of the box reach around the whole front, past all rims:
+ * they come in a second round, when what lies between is told. */
 static vg_status tell_sides(struct sides *s, struct vg_error *err)
 {
   double reach = s->cache ? s->cache->region->reach : 0;
@@ -242,13 +257,15 @@ static vg_status tell_sides(struct sides *s, struct vg_error *err)
   VG_TRY(spread_sides(s, err));
   if (!s->cache) goto done;
   s->is_strict = 0;
-  for (int k = 1; k <= BANDS; k++) {
-    set_band(s, k < BANDS ? (reach + VG_BAND_FLUID) * k / BANDS - reach
-                          : VG_BAND_FLUID, 0x0f);
-    s->next = 0;
-    VG_TRY(seed_sides(s, err));
-    VG_TRY(spread_sides(s, err));
-  }
+  for (int round = 0; round < 2; round++)
+    for (int k = 1; k <= BANDS; k++) {
+      s->is_local = !round;
+      set_band(s, k < BANDS ? (reach + VG_BAND_FLUID) * k / BANDS - reach
+                            : VG_BAND_FLUID, k == 1 ? 0 : 0x0f);
+      s->next = 0;
+      VG_TRY(seed_sides(s, err));
+      VG_TRY(spread_sides(s, err));
+    }
 done:
   return st;
 }
@@ -295,6 +312,9 @@ vg_status vg_boundary_sides(struct vg_tets *t, size_t n_tri,
   size_t n_fluid = 0;
   vg_status st = VG_OK;
 
+  for (size_t i = 0; i < n_tri; i++)
+    for (int k = 0; k < 3; k++)
+      if (tri[i][k] >= s.corner) s.corner = tri[i][k] + 1;
   s.side = vg_calloc(t->n_cell, 1);
   s.front = vg_calloc(t->n_cell, 1);
   s.near = vg_calloc(region ? t->n_cell : 1, 1);
