@@ -319,7 +319,7 @@ static vg_status write_all(struct run *r, const struct arguments *a,
   vg_display_update(&r->show, "write", vg_run_cells(m), 0);
   VG_TRY(vg_outputs_mesh(&r->outputs, &r->problem, &r->layers, m->comm,
                          &m->slices, m->threads, err));
-  r->time_write = vg_display_now() - t;
+  r->time_write = vg_display_now() - t + m->time_put;
   VG_TRY(vg_run_memory(m, err));
   st = m->rank ? VG_OK : finish(r, a, err);
   st = vg_comm_agree(m->comm, st, err);

@@ -19,6 +19,7 @@ struct vg_outputs {
   size_t n_item;
   char item[VG_WRITE_ITEMS][VG_WRITE_NAME];
   size_t n_open;              /* of `item` */
+  uint64_t put_time;          /* nanoseconds in vg_outputs_put, all threads */
   struct vg_slices_ugrid *open[VG_WRITE_ITEMS];
   size_t n_file, cap_file;
   /* is_case: a folder with an OpenFOAM mesh. A suffix that begins with '_'

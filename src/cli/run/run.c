@@ -297,7 +297,8 @@ static vg_status judge(struct vg_run *r, const struct vg_problem *p,
   if (st >= 0) st = accept(r, err);
   st = vg_outputs_close(r->outputs, st, err);
 done:
-  r->time_judge += vg_display_now() - t;
+  r->time_put = 1e-9 * (double)r->outputs->put_time / r->threads;
+  r->time_judge += vg_display_now() - t - r->time_put;
   return st;
 }
 

@@ -44,6 +44,7 @@ struct vg_run {
                                                  field */
   struct vg_effects effects;       /* of rank 0 */
   double time_size, time_layers, time_judge;
+  double time_put;           /* files written while slices are judged */
   double time_fill;          /* cuts, leaves and repairs */
   size_t common;             /* bytes of sizes, one copy on the node */
   double memory;             /* bytes, of the rank that needs most */

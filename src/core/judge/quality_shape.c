@@ -16,6 +16,9 @@
 #define GROUP 4
 #define BATCH 256
 
+/* Into measure_tets, whichever of its two kinds. */
+#define WITHIN static inline __attribute__((always_inline))
+
 typedef double lanes[GROUP];
 
 /* Of GROUP tetrahedra. */
@@ -32,13 +35,13 @@ struct batch {
   double radius_ratio[BATCH], mean_ratio[BATCH];
 };
 
-static void dot(lanes a[3], lanes b[3], lanes out)
+WITHIN void dot(lanes a[3], lanes b[3], lanes out)
 {
   for (int t = 0; t < GROUP; t++)
     out[t] = a[0][t] * b[0][t] + a[1][t] * b[1][t] + a[2][t] * b[2][t];
 }
 
-static void cross(lanes a[3], lanes b[3], lanes c[3])
+WITHIN void cross(lanes a[3], lanes b[3], lanes c[3])
 {
   for (int t = 0; t < GROUP; t++) {
     c[0][t] = a[1][t] * b[2][t] - a[2][t] * b[1][t];
@@ -50,7 +53,7 @@ static void cross(lanes a[3], lanes b[3], lanes c[3])
 /* Extreme cosines of the angles between the faces of outward normals n. A
  * face without area makes the worst of both kinds, so that it cannot hide.
  * area2: sum of the lengths of the normals, which are normalised. */
-static void add_angles(lanes n[4][3], struct tet_shapes *s, lanes area2)
+WITHIN void add_angles(lanes n[4][3], struct tet_shapes *s, lanes area2)
 {
   lanes length[4], c;
 
@@ -87,7 +90,7 @@ static void add_angles(lanes n[4][3], struct tet_shapes *s, lanes area2)
 }
 
 /* Normals of faces, |q| = |6 V| * twice the circumradius. */
-static void add_edges(lanes u[3], lanes v[3], lanes w[3], lanes n[4][3],
+WITHIN void add_edges(lanes u[3], lanes v[3], lanes w[3], lanes n[4][3],
                       lanes q[3], struct tet_shapes *s)
 {
   lanes uu, vv, ww;
@@ -108,7 +111,7 @@ static void add_edges(lanes u[3], lanes v[3], lanes w[3], lanes n[4][3],
 }
 
 /* x: corners, [4][3] of GROUP tetrahedra. */
-static void measure_tets(lanes x[4][3], struct tet_shapes *s)
+WITHIN void measure_lanes(lanes x[4][3], struct tet_shapes *s)
 {
   lanes u[3], v[3], w[3], n[4][3], q[3], area2, qq;
 
@@ -138,6 +141,26 @@ static void measure_tets(lanes x[4][3], struct tet_shapes *s)
   }
 }
 
+static void measure_tets(lanes x[4][3], struct tet_shapes *s)
+{
+  measure_lanes(x, s);
+}
+
+/* Four at once where the processor can; the same operations, the same bits
+ * (no products are fused). */
+#if defined __x86_64__
+static __attribute__((target("avx2"))) void
+measure_tets_wide(lanes x[4][3], struct tet_shapes *s)
+{
+  measure_lanes(x, s);
+}
+
+static int is_wide(void) { return __builtin_cpu_supports("avx2"); }
+#else
+#define measure_tets_wide measure_tets
+static int is_wide(void) { return 0; }
+#endif
+
 /* Tetrahedra first .. first + n - 1 of m, n <= GROUP. */
 static void measure_some(const struct vg_mesh *m, size_t first, size_t n,
                          struct tet_shapes *s)
@@ -148,7 +171,8 @@ static void measure_some(const struct vg_mesh *m, size_t first, size_t n,
     for (int i = 0; i < 4; i++)
       for (int k = 0; k < 3; k++)
         x[i][k][t] = m->point[m->tet[first + (t < n ? t : 0)][i]][k];
-  measure_tets(x, s);
+  if (is_wide()) measure_tets_wide(x, s);
+  else measure_tets(x, s);
 }
 
 static double angle_of(double cosine)
