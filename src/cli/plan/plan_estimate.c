@@ -26,11 +26,14 @@ static const double before_alone = 0.1;   /* by one thread, of what is before
 static const double digest_per_byte = 0.4e-9;   /* the files once more */
 static const double layer_per_cell = 0.1e-6;    /* growing and measuring */
 
-/* Bytes: of a mesh in pieces; of a void that is filled, per cell; of front,
- * load and sizes, per triangle of the front, per cube and per leaf of the
- * sizes' octree (vg_sizing_leaves); of the program. */
-static const double mesh_per_cell = 40, fill_per_cell = 60;
-static const double per_triangle = 280, per_cube = 28, per_leaf = 37;
+/* Bytes: of a field in pieces, and of a void that is filled, per cell; of
+ * layers, per point; per triangle of the front, and where columns stand per
+ * point of the wall; per cube of the load; per leaf of the sizes' octree
+ * (vg_sizing_leaves), which has fewer here than in the run; of the program.
+ * Fitted to wings of 74, 206 and 562 M cells, box and sphere (M7). */
+static const double mesh_per_cell = 35, fill_per_cell = 60, per_point = 8;
+static const double per_triangle = 250, per_wall_point = 1540, per_cube = 28;
+static const double per_leaf = 37 * COARSENESS * COARSENESS;
 static const double program = 18e6;
 
 /* --- layers that are not grown ------------------------------------------- */
@@ -259,10 +262,11 @@ static void count_memory(struct vg_plan *p)
         n->cells > most) most = n->cells;
   }
   p->shared = program + per_triangle * (double)p->front->n_tri +
+              per_wall_point * (double)p->n_wall_point +
               per_cube * (double)p->load.n +
-              per_leaf * (double)vg_sizing_leaves(p->sizing) +
-              24 * p->layer_point;
-  p->per_cell = mesh_per_cell;
+              per_leaf * (double)vg_sizing_leaves(p->sizing);
+  p->per_cell = (mesh_per_cell * p->load.cells + per_point * p->layer_point) /
+                p->cell;
   p->per_thread = fill_per_cell * most;
 }
 
