@@ -330,8 +330,8 @@ static void the_lost_are_counted(void **state)
   assert_int_equal(vg_boundary_fix(&t, m.n_tri, TRI(&m), missing, &n, NULL),
                    VG_OK);
   assert_int_equal(n, 0);
-  assert_int_equal(vg_boundary_sides(&t, m.n_tri, TRI(&m), NULL, NULL,
-                                     NULL), VG_OK);
+  assert_int_equal(vg_boundary_sides(&t, m.n_tri, TRI(&m), NULL, 0,
+                                     NULL, NULL), VG_OK);
   faces_are(&t, &m);
   assert_true(fabs(tets_volume(&t) - 1) < 1e-12);
   free(missing);

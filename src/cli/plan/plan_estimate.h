@@ -44,7 +44,8 @@ struct vg_plan {
                                    most of it shared by a node */
   double spread;                /* s of one core, shared by all workers */
   double digest;                /* s of one core, behind all */
-  double shared, per_cell, per_thread;  /* bytes: of any rank; of the mesh */
+  double shared, per_cell, per_thread;  /* bytes: of any rank; of the mesh,
+                                   the mean of field and layers; of a leaf */
   size_t n_row;
   struct vg_plan_row *row;      /* [n_row] */
   size_t best;                  /* row; SIZE_MAX: none reaches the target */

@@ -9,7 +9,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "base/clock.h"
 #include "base/memory.h"
 #include "cli/common/cli.h"
 #include "cli/common/progress.h"
@@ -313,12 +312,12 @@ vg_status vg_outputs_put(void *outputs, const struct vg_slice *slice,
                          struct vg_error *err)
 {
   struct vg_outputs *o = outputs;
-  double t = vg_clock();
+  double t = vg_display_now();
   vg_status st = VG_OK;
 
   for (size_t i = 0; i < o->n_open && st >= 0; i++)
     st = vg_slices_ugrid_put(o->open[i], slice, err);
-  __atomic_fetch_add(&o->put_time, (uint64_t)(1e9 * (vg_clock() - t)),
+  __atomic_fetch_add(&o->put_time, (uint64_t)(1e9 * (vg_display_now() - t)),
                      __ATOMIC_RELAXED);
   return st;
 }

@@ -16,7 +16,7 @@
 #define GROUP 4
 #define BATCH 256
 
-/* Into measure_tets, whichever of its two kinds. */
+/* Compiled into each kind of measure_tets. */
 #define WITHIN static inline __attribute__((always_inline))
 
 typedef double lanes[GROUP];
@@ -141,25 +141,26 @@ WITHIN void measure_lanes(lanes x[4][3], struct tet_shapes *s)
   }
 }
 
-static void measure_tets(lanes x[4][3], struct tet_shapes *s)
+#if defined __x86_64__
+static __attribute__((target("avx2"))) void
+measure_wide(lanes x[4][3], struct tet_shapes *s)
 {
   measure_lanes(x, s);
 }
+#endif
 
 /* Four at once where the processor can; the same operations, the same bits
  * (no products are fused). */
-#if defined __x86_64__
-static __attribute__((target("avx2"))) void
-measure_tets_wide(lanes x[4][3], struct tet_shapes *s)
+static void measure_tets(lanes x[4][3], struct tet_shapes *s)
 {
+#if defined __x86_64__
+  if (__builtin_cpu_supports("avx2")) {
+    measure_wide(x, s);
+    return;
+  }
+#endif
   measure_lanes(x, s);
 }
-
-static int is_wide(void) { return __builtin_cpu_supports("avx2"); }
-#else
-#define measure_tets_wide measure_tets
-static int is_wide(void) { return 0; }
-#endif
 
 /* Tetrahedra first .. first + n - 1 of m, n <= GROUP. */
 static void measure_some(const struct vg_mesh *m, size_t first, size_t n,
@@ -171,8 +172,7 @@ static void measure_some(const struct vg_mesh *m, size_t first, size_t n,
     for (int i = 0; i < 4; i++)
       for (int k = 0; k < 3; k++)
         x[i][k][t] = m->point[m->tet[first + (t < n ? t : 0)][i]][k];
-  if (is_wide()) measure_tets_wide(x, s);
-  else measure_tets(x, s);
+  measure_tets(x, s);
 }
 
 static double angle_of(double cosine)

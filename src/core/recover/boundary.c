@@ -111,7 +111,7 @@ struct sides {
   const struct vg_region_cache *cache;      /* NULL: everywhere */
   double band;               /* sides are told so near the region */
   int is_strict;             /* 1: a contradiction is an error */
-  uint32_t corner;           /* first of the box, behind the front's points */
+  uint32_t corner;           /* first of the box */
   int is_local;              /* 1: not over cells with a corner of the box */
   uint8_t *side;             /* [n_cell] */
   uint8_t *front;            /* [n_cell] bit i: face i is a triangle that faces
@@ -240,6 +240,23 @@ static vg_status spread_sides(struct sides *s, struct vg_error *err)
 /* Bands of growing width that sides spread over in turn (K29). */
 enum { BANDS = 4 };
 
+static vg_status spread_in_bands(struct sides *s, struct vg_error *err)
+{
+  double reach = s->cache->region->reach;
+  vg_status st = VG_OK;
+
+  for (int k = 1; k <= BANDS; k++) {
+    /* the first may be narrower than the last one was */
+    set_band(s, k < BANDS ? (reach + VG_BAND_FLUID) * k / BANDS - reach
+                          : VG_BAND_FLUID, k == 1 ? 0 : 0x0f);
+    s->next = 0;
+    VG_TRY(seed_sides(s, err));
+    VG_TRY(spread_sides(s, err));
+  }
+done:
+  return st;
+}
+
 /* On the region itself every front face is known, so what is reached along it
  * is sure. From there sides spread over bands that grow. Where they contradict
  * each other, for want of faces, what is nearest to the region wins: far from
@@ -257,15 +274,10 @@ static vg_status tell_sides(struct sides *s, struct vg_error *err)
   VG_TRY(spread_sides(s, err));
   if (!s->cache) goto done;
   s->is_strict = 0;
-  for (int round = 0; round < 2; round++)
-    for (int k = 1; k <= BANDS; k++) {
-      s->is_local = !round;
-      set_band(s, k < BANDS ? (reach + VG_BAND_FLUID) * k / BANDS - reach
-                            : VG_BAND_FLUID, k == 1 ? 0 : 0x0f);
-      s->next = 0;
-      VG_TRY(seed_sides(s, err));
-      VG_TRY(spread_sides(s, err));
-    }
+  s->is_local = 1;
+  VG_TRY(spread_in_bands(s, err));
+  s->is_local = 0;
+  VG_TRY(spread_in_bands(s, err));
 done:
   return st;
 }
@@ -302,19 +314,17 @@ static void wall_off(struct sides *s)
 
 vg_status vg_boundary_sides(struct vg_tets *t, size_t n_tri,
                             const uint32_t (*tri)[3],
-                            const struct vg_region *region,
+                            const struct vg_region *region, size_t corner,
                             const struct vg_sizing *sizing,
                             struct vg_error *err)
 {
   struct tri_table table = {0};
   struct vg_region_cache cache = {0};
-  struct sides s = { .t = t, .cache = region ? &cache : NULL };
+  struct sides s = { .t = t, .cache = region ? &cache : NULL,
+                     .corner = (uint32_t)corner };
   size_t n_fluid = 0;
   vg_status st = VG_OK;
 
-  for (size_t i = 0; i < n_tri; i++)
-    for (int k = 0; k < 3; k++)
-      if (tri[i][k] >= s.corner) s.corner = tri[i][k] + 1;
   s.side = vg_calloc(t->n_cell, 1);
   s.front = vg_calloc(t->n_cell, 1);
   s.near = vg_calloc(region ? t->n_cell : 1, 1);
@@ -449,7 +459,7 @@ vg_status vg_boundary_tets(size_t n, const double (*x)[3], size_t n_tri,
     st = whole_void(n, x, n_tri, tri, out, report, err);
   }
   VG_TRY(st);
-  VG_TRY(vg_boundary_sides(out, n_tri, tri, NULL, NULL, err));
+  VG_TRY(vg_boundary_sides(out, n_tri, tri, NULL, 0, NULL, err));
 done:
   if (st < 0) vg_tets_release(out);
   return st;
@@ -468,7 +478,7 @@ vg_status vg_boundary_open(size_t n, const double (*x)[3], size_t n_tri,
   memset(report, 0, sizeof *report);
   VG_TRY(delaunay(out, n, x, err));
   VG_TRY(vg_recover(out, n_tri, tri, report, err));
-  VG_TRY(vg_boundary_sides(out, n_tri, tri, region, sizing, err));
+  VG_TRY(vg_boundary_sides(out, n_tri, tri, region, n, sizing, err));
 done:
   if (st < 0) vg_tets_release(out);
   return st;

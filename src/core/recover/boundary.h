@@ -46,11 +46,12 @@ vg_status vg_boundary_fix(struct vg_tets *t, size_t n_tri,
  * triangles face, all of them being fixed faces.
  * region: NULL, or sides are told within VG_BAND_FLUID of it only, triangles
  * near it being all there are; what lies beyond counts as fluid, with fixed
- * faces before what is known to be solid.
+ * faces before what is known to be solid. Points corner to corner + 7 are then
+ * those of a wide box (vg_boundary_open).
  * VG_ERR_GEOMETRY when the triangles contradict each other. */
 vg_status vg_boundary_sides(struct vg_tets *t, size_t n_tri,
                             const uint32_t (*tri)[3],
-                            const struct vg_region *region,
+                            const struct vg_region *region, size_t corner,
                             const struct vg_sizing *sizing,
                             struct vg_error *err);
 

@@ -237,7 +237,7 @@ static vg_status verify(struct vg_tets *local, const struct pocket *p,
                                  err);
 
   if (st == VG_OK && !n_missing)
-    st = vg_boundary_sides(local, p->n_border, tri, NULL, NULL, err);
+    st = vg_boundary_sides(local, p->n_border, tri, NULL, 0, NULL, err);
   if (st == VG_OK && !n_missing)
     st = vg_boundary_fix(local, p->n_tri, tri, NULL, &n_missing, err);
   if (st == VG_OK && (n_missing || is_folded(local)))
