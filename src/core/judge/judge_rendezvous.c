@@ -54,11 +54,9 @@ int vg_rendezvous_rank(const struct vg_rendezvous *m, const void *key)
 struct sorting {
   const struct vg_rendezvous *m;
   size_t (*bin)(const struct sorting *s, uint64_t h);
-  struct vg_bytes *from;     /* [n_from], freed as they are done with */
+  struct vg_bytes *from;     /* [n_from] */
   size_t n_from, n_bin;
-  size_t *at;                /* [n_from][n_bin] */
-  size_t *first;             /* [n_bin + 1] */
-  unsigned char *item;
+  size_t *at;                /* [n_from][n_bin + 1], the first 0 */
 };
 
 static size_t rank_bin(const struct sorting *s, uint64_t h)
@@ -71,6 +69,12 @@ static size_t part_bin(const struct sorting *s, uint64_t h)
   return (size_t)h & (s->n_bin - 1);
 }
 
+static size_t bin_of(const struct sorting *s, const unsigned char *item)
+{
+  return s->bin(s, vg_rendezvous_hash(item, s->m->key));
+}
+
+/* Where the items of each bin begin in each source, once they are in order. */
 static void count_sources(void *context, size_t first, size_t end, int worker)
 {
   const struct sorting *s = context;
@@ -79,63 +83,66 @@ static void count_sources(void *context, size_t first, size_t end, int worker)
   (void)worker;
   for (size_t r = first; r < end; r++) {
     const struct vg_bytes *from = &s->from[r];
+    size_t *at = s->at + r * (s->n_bin + 1);
 
     for (size_t i = 0; i < from->n; i += size)
-      s->at[r * s->n_bin +
-            s->bin(s, vg_rendezvous_hash(from->data + i, s->m->key))]++;
+      at[bin_of(s, from->data + i) + 1]++;
+    for (size_t b = 0; b < s->n_bin; b++) at[b + 1] += at[b];
   }
 }
 
-static void move_sources(void *context, size_t first, size_t end, int worker)
+/* The items of a source in order of bins, in place. next: [n_bin] where the
+ * next one of a bin goes; spare: one item. */
+static void order_source(const struct sorting *s, size_t r, size_t *next,
+                         unsigned char *spare)
 {
-  const struct sorting *s = context;
+  const size_t *at = s->at + r * (s->n_bin + 1);
+  unsigned char *item = s->from[r].data;
   size_t size = s->m->size;
 
-  (void)worker;
-  for (size_t r = first; r < end; r++) {
-    struct vg_bytes *from = &s->from[r];
-    size_t *at = s->at + r * s->n_bin;
+  memcpy(next, at, s->n_bin * sizeof *next);
+  for (size_t b = 0; b < s->n_bin; b++)
+    while (next[b] < at[b + 1]) {
+      unsigned char *here = item + size * next[b], *there;
+      size_t to = bin_of(s, here);
 
-    for (size_t i = 0; i < from->n; i += size) {
-      size_t bin = s->bin(s, vg_rendezvous_hash(from->data + i, s->m->key));
-
-      memcpy(s->item + size * at[bin]++, from->data + i, size);
+      there = item + size * next[to]++;
+      if (to == b) continue;
+      memcpy(spare, here, size);
+      memcpy(here, there, size);
+      memcpy(there, spare, size);
     }
-    free(from->data);
-    *from = (struct vg_bytes){ 0, NULL };
-  }
+}
+
+struct ordering {
+  const struct sorting *s;
+  atomic_int refused;
+};
+
+static void order_sources(void *context, size_t first, size_t end, int worker)
+{
+  struct ordering *o = context;
+  size_t *next = vg_alloc(o->s->n_bin, sizeof *next);
+  unsigned char *spare = vg_alloc(1, o->s->m->size);
+
+  (void)worker;
+  if (!next || !spare) atomic_store(&o->refused, 1);
+  else
+    for (size_t r = first; r < end; r++) order_source(o->s, r, next, spare);
+  free(next);
+  free(spare);
 }
 
 static vg_status sort_items(struct sorting *s, struct vg_error *err)
 {
-  size_t n = 0, at = 0;
+  struct ordering o = { .s = s };
 
-  for (size_t r = 0; r < s->n_from; r++) n += s->from[r].n / s->m->size;
-  s->at = vg_calloc(s->n_from, s->n_bin * sizeof *s->at);
-  s->first = vg_alloc(s->n_bin + 1, sizeof *s->first);
-  s->item = vg_alloc(n, s->m->size);
-  if (!s->at || !s->first || !s->item)
-    return vg_fail_memory(err, "what slices share");
+  s->at = vg_calloc(s->n_from, (s->n_bin + 1) * sizeof *s->at);
+  if (!s->at) return vg_fail_memory(err, "what slices share");
   vg_parallel_for(s->m->threads, s->n_from, 1, count_sources, s);
-  for (size_t b = 0; b < s->n_bin; b++) {
-    s->first[b] = at;
-    for (size_t r = 0; r < s->n_from; r++) {
-      size_t count = s->at[r * s->n_bin + b];
-
-      s->at[r * s->n_bin + b] = at;
-      at += count;
-    }
-  }
-  s->first[s->n_bin] = at;
-  vg_parallel_for(s->m->threads, s->n_from, 1, move_sources, s);
+  vg_parallel_for(s->m->threads, s->n_from, 1, order_sources, &o);
+  if (atomic_load(&o.refused)) return vg_fail_memory(err, "what slices share");
   return VG_OK;
-}
-
-static void end_sorting(struct sorting *s)
-{
-  free(s->at);
-  free(s->first);
-  free(s->item);
 }
 
 /* --- to their ranks ------------------------------------------------------ */
@@ -144,6 +151,30 @@ static void release(struct vg_bytes *b, size_t n)
 {
   for (size_t i = 0; b && i < n; i++) free(b[i].data);
   free(b);
+}
+
+/* What the sources have for each rank, one behind the other in *all. */
+static vg_status join_sources(struct sorting *s, struct vg_bytes *to,
+                              unsigned char **all, struct vg_error *err)
+{
+  size_t size = s->m->size, n = 0;
+
+  for (size_t r = 0; r < s->n_from; r++) n += s->from[r].n;
+  *all = vg_alloc(n, 1);
+  if (!*all) return vg_fail_memory(err, "what slices share");
+  n = 0;
+  for (size_t b = 0; b < s->n_bin; b++) {
+    to[b].data = *all + n;
+    for (size_t r = 0; r < s->n_from; r++) {
+      const size_t *at = s->at + r * (s->n_bin + 1) + b;
+      size_t bytes = size * (at[1] - at[0]);
+
+      if (bytes) memcpy(*all + n, s->from[r].data + size * at[0], bytes);
+      n += bytes;
+    }
+    to[b].n = (size_t)(*all + n - to[b].data);
+  }
+  return VG_OK;
 }
 
 /* *out: [size], what all ranks had for this one. */
@@ -156,20 +187,19 @@ static vg_status send(const struct vg_rendezvous *m, struct vg_bytes *list,
                        .n_from = n_list, .n_bin = size };
   struct vg_bytes *to = vg_calloc(size, sizeof *to);
   struct vg_bytes *from = vg_calloc(size, sizeof *from);
+  unsigned char *all = NULL;
   vg_status st = VG_OK;
 
   if (!to || !from || !list) st = vg_fail_memory(err, "what slices share");
-  else st = sort_items(&s, err);
+  if (st >= 0) st = sort_items(&s, err);
+  if (st >= 0) st = join_sources(&s, to, &all, err);
   VG_TRY(vg_comm_agree(m->comm, st, err));
-  for (size_t r = 0; r < size; r++) {
-    to[r].data = s.item + m->size * s.first[r];
-    to[r].n = m->size * (s.first[r + 1] - s.first[r]);
-  }
   VG_TRY(vg_comm_exchange(m->comm, to, from, err));
   *out = from;
   from = NULL;
 done:
-  end_sorting(&s);
+  free(s.at);
+  free(all);
   free(to);
   release(from, size);
   return st;
@@ -255,28 +285,47 @@ static void look_at_all(struct hall *h, const unsigned char *item, size_t n,
   }
 }
 
-/* room: of the largest part and one item; bucket: [n_bucket]. */
-static void meet_part(struct hall *h, size_t p, unsigned char *room,
-                      size_t *bucket, size_t n_bucket, int worker)
+/* Where the part's items begin and end in a source. */
+static const unsigned char *part_of(const struct hall *h, size_t r, size_t p,
+                                    const unsigned char **end)
 {
-  size_t size = h->m->size, first = h->s.first[p];
-  size_t n = h->s.first[p + 1] - first, at = 0;
-  const unsigned char *item = h->s.item + size * first;
+  const size_t *at = h->s.at + r * (h->s.n_bin + 1) + p;
+  const unsigned char *item = h->s.from[r].data;
+
+  *end = item + h->m->size * at[1];
+  return item + h->m->size * at[0];
+}
+
+/* The items of a part into room, in order of buckets. On return each of
+ * bucket [n_bucket] is the end of its own. */
+static void fill_buckets(const struct hall *h, size_t p, unsigned char *room,
+                         size_t *bucket, size_t n_bucket)
+{
+  size_t size = h->m->size, at = 0;
+  const unsigned char *item, *end;
 
   memset(bucket, 0, n_bucket * sizeof *bucket);
-  for (size_t i = 0; i < n; i++)
-    bucket[bucket_of(h, item + size * i, n_bucket)]++;
+  for (size_t r = 0; r < h->s.n_from; r++)
+    for (item = part_of(h, r, p, &end); item < end; item += size)
+      bucket[bucket_of(h, item, n_bucket)]++;
   for (size_t b = 0; b < n_bucket; b++) {
     size_t count = bucket[b];
 
     bucket[b] = at;
     at += count;
   }
-  for (size_t i = 0; i < n; i++) {
-    size_t b = bucket_of(h, item + size * i, n_bucket);
+  for (size_t r = 0; r < h->s.n_from; r++)
+    for (item = part_of(h, r, p, &end); item < end; item += size)
+      memcpy(room + size * bucket[bucket_of(h, item, n_bucket)]++, item, size);
+}
 
-    memcpy(room + size * bucket[b]++, item + size * i, size);
-  }
+/* room: of the largest part and one item; bucket: [n_bucket]. */
+static void meet_part(struct hall *h, size_t p, unsigned char *room,
+                      size_t *bucket, size_t n_bucket, int worker)
+{
+  size_t size = h->m->size;
+
+  fill_buckets(h, p, room, bucket, n_bucket);
   for (size_t b = 0; b < n_bucket; b++) {
     size_t begin = b ? bucket[b - 1] : 0;
 
@@ -316,14 +365,19 @@ static vg_status meet_here(const struct vg_rendezvous *m, struct vg_bytes *from,
     h.s.n_bin *= 2;
   VG_TRY(sort_items(&h.s, err));
   for (size_t p = 0; p < h.s.n_bin; p++) {
-    size_t count = h.s.first[p + 1] - h.s.first[p];
+    size_t count = 0;
 
+    for (size_t r = 0; r < n_from; r++) {
+      const size_t *at = h.s.at + r * (h.s.n_bin + 1) + p;
+
+      count += at[1] - at[0];
+    }
     if (count > h.most) h.most = count;
   }
   vg_parallel_for(m->threads, h.s.n_bin, 8, meet_parts, &h);
   if (atomic_load(&h.refused)) st = vg_fail_memory(err, "what slices share");
 done:
-  end_sorting(&h.s);
+  free(h.s.at);
   return st;
 }
 
