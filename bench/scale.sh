@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # bench/scale.sh: does the cost of a cell stay what it is when meshes grow? The
 # layered demo wing at sizes that grow fourfold; seconds per million cells of
-# each phase, and of each kind of task per million of its own cells.
+# each phase, and of each kind of task per million of its own cells. Projects of
+# one's own, an aircraft with its surface refined for example, beside it.
 #
 # usage: bench/scale.sh [--threads N] [--fail SHARE] [--vanguard PROGRAM]
-#          [--work DIR] [--out FILE] [MILLIONS...]
+#          [--work DIR] [--out FILE] [MILLIONS | PROJECT]...
 #   --threads   of the runs (default 2)
 #   --fail      make this share of the leaves fail, and compare with none
 #   --vanguard  the program (default build/release/bin/vanguard)
@@ -12,6 +13,7 @@
 #   --out       write the table to FILE too (markdown)
 #   MILLIONS    of cells that the demo is asked for, of which the field takes
 #               half (default 2 8 32; with layers 300 are 565 M cells)
+#   PROJECT     a stem with a "/" in it, as for vanguard mesh -p
 # Exit status: 0, 1 when a run failed, 2 usage. Needs: jq.
 set -euo pipefail
 
@@ -57,20 +59,28 @@ row() {
      $r.partition.parts_widened] | "| " + (map(tostring) | join(" | ")) + " |"'
 }
 
-mesh() {   # mesh NAME OPTION...
-  local name=$1
-  shift
-  "$vanguard" mesh -q -p "$work/in/wing" --threads "$threads" --timeline \
+mesh() {   # mesh PROJECT NAME OPTION...
+  local stem=$1 name=$2
+  shift 2
+  "$vanguard" mesh -q -p "$stem" --threads "$threads" --timeline \
     --write b8.ugrid --out "$work/files" "$@" > "$work/log" 2>&1 < /dev/null ||
-    die "$million M: $(tail -1 "$work/log")"
-  row "$work/files/wing" "$name" | say
+    die "$stem: $(tail -1 "$work/log")"
+  row "$work/files/${stem##*/}" "$name" | say
   rm -rf "$work/files"
 }
 
-for million in "${cases[@]}"; do
-  [[ $million =~ ^[0-9]+$ ]] || { usage >&2; exit 2; }
-  "$vanguard" demo wing --cells "${million}000000" --out "$work/in" \
-    > "$work/log"
-  mesh ""
-  [ -z "$fail" ] || mesh ", leaves failed" --test-fail-leaves "$fail"
+for case in "${cases[@]}"; do
+  stem=$case name=", ${case##*/}"
+  if [[ $case =~ ^[0-9]+$ ]]; then
+    rm -rf "$work/in"
+    "$vanguard" demo wing --cells "${case}000000" --out "$work/in" \
+      > "$work/log"
+    stem=$work/in/wing name=""
+  elif [[ $case != */* ]]; then
+    usage >&2
+    exit 2
+  fi
+  mesh "$stem" "$name"
+  [ -z "$fail" ] ||
+    mesh "$stem" "$name, leaves failed" --test-fail-leaves "$fail"
 done

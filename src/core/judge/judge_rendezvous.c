@@ -12,6 +12,7 @@
 #define PART_ITEMS 4096
 #define BUCKET_ITEMS 4
 #define MOST_PARTS ((size_t)1 << 20)
+#define ITEM_MAX 64
 
 void *vg_items_add(struct vg_items *list, size_t size)
 {
@@ -91,27 +92,50 @@ static void count_sources(void *context, size_t first, size_t end, int worker)
   }
 }
 
-/* The items of a source in order of bins, in place. next: [n_bin] where the
- * next one of a bin goes; spare: one item. */
-static void order_source(const struct sorting *s, size_t r, size_t *next,
-                         unsigned char *spare)
+/* Items of bins low and up in order of groups of `width` bins each, in place:
+ * every swap brings one to its group. next, end: [n_group] of items */
+static void order_groups(const struct sorting *s, unsigned char *item,
+                         size_t low, size_t width, size_t n_group,
+                         size_t *next, const size_t *end)
 {
-  const size_t *at = s->at + r * (s->n_bin + 1);
-  unsigned char *item = s->from[r].data;
   size_t size = s->m->size;
+  unsigned char spare[ITEM_MAX];
 
-  memcpy(next, at, s->n_bin * sizeof *next);
-  for (size_t b = 0; b < s->n_bin; b++)
-    while (next[b] < at[b + 1]) {
-      unsigned char *here = item + size * next[b], *there;
-      size_t to = bin_of(s, here);
+  for (size_t g = 0; g < n_group; g++)
+    while (next[g] < end[g]) {
+      unsigned char *here = item + size * next[g], *there;
+      size_t to = (bin_of(s, here) - low) / width;
 
       there = item + size * next[to]++;
-      if (to == b) continue;
+      if (to == g) continue;
       memcpy(spare, here, size);
       memcpy(here, there, size);
       memcpy(there, spare, size);
     }
+}
+
+/* The items of a source in order of bins: of groups of bins first, each of
+ * which then stays in the caches. next, end: [n_bin] */
+static void order_source(const struct sorting *s, size_t r, size_t *next,
+                         size_t *end)
+{
+  const size_t *at = s->at + r * (s->n_bin + 1);
+  size_t width = 1, n_group;
+
+  while (width * width < s->n_bin) width *= 2;
+  n_group = (s->n_bin - 1) / width + 1;
+  for (size_t g = 0, b = 0; g < n_group; g++) {
+    next[g] = at[b];
+    b = b + width < s->n_bin ? b + width : s->n_bin;
+    end[g] = at[b];
+  }
+  order_groups(s, s->from[r].data, 0, width, n_group, next, end);
+  memcpy(next, at, s->n_bin * sizeof *next);
+  for (size_t b = 0; b < s->n_bin; b += width) {
+    size_t n = s->n_bin - b < width ? s->n_bin - b : width;
+
+    order_groups(s, s->from[r].data, b, 1, n, next + b, at + b + 1);
+  }
 }
 
 struct ordering {
@@ -123,14 +147,14 @@ static void order_sources(void *context, size_t first, size_t end, int worker)
 {
   struct ordering *o = context;
   size_t *next = vg_alloc(o->s->n_bin, sizeof *next);
-  unsigned char *spare = vg_alloc(1, o->s->m->size);
+  size_t *limit = vg_alloc(o->s->n_bin, sizeof *limit);
 
   (void)worker;
-  if (!next || !spare) atomic_store(&o->refused, 1);
+  if (!next || !limit) atomic_store(&o->refused, 1);
   else
-    for (size_t r = first; r < end; r++) order_source(o->s, r, next, spare);
+    for (size_t r = first; r < end; r++) order_source(o->s, r, next, limit);
   free(next);
-  free(spare);
+  free(limit);
 }
 
 static vg_status sort_items(struct sorting *s, struct vg_error *err)

@@ -30,7 +30,7 @@ void vg_items_release(struct vg_items *list);
 struct vg_rendezvous {
   struct vg_comm *comm;
   int threads;
-  size_t size, key;          /* bytes of an item, multiple of 4, and of its
+  size_t size, key;          /* bytes of an item, 4, 8 .. 64, and of its
                                 key at its beginning */
   /** n items of one key, in any order. Called by several threads. */
   void (*group)(void *context, const unsigned char *item, size_t n,
