@@ -280,7 +280,7 @@ static void straight_columns_are_valid(void **state)
   assert_int_equal(r.n_cell, 3 * 30 * p->m.n_tri);
   assert_int_equal(r.n_prism, 30 * p->m.n_tri);
   assert_int_equal(r.n_negative + r.n_bad_corner + r.n_pyramid, 0);
-  assert_int_equal(r.n_jump + r.n_off_plane, 0);
+  assert_int_equal(r.n_step + r.n_off_plane, 0);
   assert_true(fabs(r.angle_of_top_min - 45) < 1e-6);
 }
 
@@ -297,11 +297,11 @@ static void a_level_less_makes_pyramids(void **state)
   assert_int_equal(r.n_prism, 30 * p->m.n_tri - 2);
   assert_int_equal(r.n_pyramid, 2);
   assert_int_equal(r.n_negative + r.n_bad_corner + r.n_bad_pyramid, 0);
-  assert_int_equal(r.n_jump, 0);
+  assert_int_equal(r.n_step, 0);
   p->c.column[0].n = 28;
   r = judge(p);
   assert_int_equal(r.n_cell, 3 * 30 * p->m.n_tri - 4);
-  assert_int_equal(r.n_jump, 3);   /* edges, not faces */
+  assert_int_equal(r.n_step, 3);   /* edges, not faces */
   assert_int_equal(r.n_negative, 0);
 }
 
@@ -438,7 +438,7 @@ static void virtual_faces_of_a_ridge(void **state)
   assert_int_equal(r.n_prism, 24 * 2);
   assert_int_equal(r.n_pyramid, 8);
   assert_int_equal(r.n_wall_tet, 8 * 1 + 8 * 3 + 4 * 2 + 4 * 1);
-  assert_int_equal(r.n_bad_pyramid + r.n_bad_wall_tet + r.n_jump, 0);
+  assert_int_equal(r.n_bad_pyramid + r.n_bad_wall_tet + r.n_step, 0);
   w = fields(p);
   assert_int_equal(w.n, 15);
   for (size_t i = 0; i < w.n; i++)
@@ -480,7 +480,7 @@ static void any_number_of_threads(void **state)
     assert_memory_equal(w[t].total, w[0].total, w[0].n * sizeof *w[0].total);
     assert_memory_equal(w[t].growth, w[0].growth, w[0].n * sizeof *w[0].first);
   }
-  assert_true(r[0].n_negative == 0 && r[0].n_jump > 0);
+  assert_true(r[0].n_negative == 0 && r[0].n_step > 0);
   for (int t = 0; t < 3; t++) vg_wall_fields_release(&w[t]);
   vg_mesh_release(&p.m);
   vg_columns_release(&p.c);

@@ -477,11 +477,6 @@ static void refusals(void **state)
   assert_int_equal(s.get(&s, s.n_slice - 1, &slice, &err), VG_ERR_MEMORY);
   assert_int_equal(slice.n_point, 5);
   vg_layer_slices_close(keep);
-  m.layers.columns.column[7].n = 5;
-  assert_int_equal(vg_layer_slices_open(&m.surface, &m.layers, &field,
-                                        VG_LAYER_MIXED, 0, 1, 1, &s, &keep,
-                                        NULL, &err), VG_ERR_INPUT);
-  assert_non_null(strstr(err.text, "neighbours"));
   vg_layer_slices_close(NULL);
   model_release(&m);
 }

@@ -98,7 +98,6 @@ static void cells_are_valid(const struct bench *b)
   assert_int_equal(r.n_bad_corner, 0);
   assert_int_equal(r.n_bad_pyramid, 0);
   assert_int_equal(r.n_bad_wall_tet, 0);
-  assert_int_equal(r.n_jump, 0);
   assert_int_equal(r.n_off_plane, 0);
   assert_int_equal(r.n_cell, b->report.n_cell);
   assert_true(r.n_cell > 0);

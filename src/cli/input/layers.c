@@ -283,6 +283,7 @@ static vg_status make_requests(struct vg_layer_stage *s,
 
     s->limit[i].min_full = choose(row.min_full, l->min_full);
     s->limit[i].min_any = choose(row.min_any, l->min_any);
+    s->limit[i].min_height = choose(row.min_height, l->min_height);
     s->limit[i].max_first_error = choose(row.max_first_error,
                                          l->max_first_error);
     if (s->reason[i] == VG_WALL_NOT && vg_has_limits(&row))
@@ -485,6 +486,7 @@ static void set_options(struct vg_layer_stage *s, const struct vg_settings *set)
   o->fan_angle = set->layer.fan_angle;
   o->end = set->layer.end;
   o->gap = set->layer.gap;
+  o->slope = set->layer.slope;
   o->smooth = (int)set->layer.smooth;
   o->threads = (int)set->threads;
   s->reynolds = set->layer.reynolds;
@@ -592,12 +594,12 @@ static vg_status judge(struct vg_layer_stage *s, const struct vg_mesh *surface,
   vg_status st = vg_layers_judge(surface, &s->layers.columns,
                                  s->options.threads, &s->judgement, err);
 
-  if (st < 0 || !(j->n_negative + j->n_jump + j->n_off_plane)) return st;
+  if (st < 0 || !(j->n_negative + j->n_off_plane)) return st;
   return vg_fail(err, VG_ERR_GEOMETRY, "the layers did not pass their own "
-                 "check (%zu negative cells, %zu jumps of levels, %zu columns "
+                 "check (%zu negative cells, %zu columns "
                  "off their plane) and nothing was written; please report "
                  "this with the project files, and try --layers no",
-                 j->n_negative, j->n_jump, j->n_off_plane);
+                 j->n_negative, j->n_off_plane);
 }
 
 static vg_status miss(struct vg_layer_stage *s, uint32_t patch,
@@ -625,6 +627,9 @@ static vg_status check_limits(struct vg_layer_stage *s, struct vg_error *err)
       st = miss(s, w->patch, "min_full", l->min_full, w->full, err);
     if (st >= 0 && w->any < l->min_any)
       st = miss(s, w->patch, "min_any", l->min_any, w->any, err);
+    if (st >= 0 && 100 * w->share_mean < l->min_height)
+      st = miss(s, w->patch, "min_height", l->min_height,
+                100 * w->share_mean, err);
     if (st >= 0 && 100 * w->first_error > l->max_first_error)
       st = miss(s, w->patch, "max_first_error", l->max_first_error,
                 100 * w->first_error, err);
@@ -674,6 +679,7 @@ static vg_status write_walls(const struct vg_layer_stage *s,
     { "first_height", VG_VTU_POINT, VG_VTU_FLOAT64, 1, w->first },
     { "asked", VG_VTU_POINT, VG_VTU_FLOAT64, 1, w->asked },
     { "total", VG_VTU_POINT, VG_VTU_FLOAT64, 1, w->total },
+    { "height_over_law", VG_VTU_POINT, VG_VTU_FLOAT64, 1, w->share },
     { "growth", VG_VTU_POINT, VG_VTU_FLOAT64, 1, w->growth },
     { "cause", VG_VTU_POINT, VG_VTU_INT32, 1, w->cause },
     { "squeezed", VG_VTU_POINT, VG_VTU_INT32, 1, w->squeezed },

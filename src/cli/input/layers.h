@@ -15,7 +15,7 @@
 #define VG_LAYERS_COARSENESS 4
 
 struct vg_layer_limits {
-  double min_full, min_any, max_first_error;
+  double min_full, min_any, min_height, max_first_error;
 };
 
 struct vg_limit_missed {

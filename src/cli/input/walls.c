@@ -40,7 +40,7 @@ int vg_is_viscous(const struct vg_patch *p)
 int vg_has_limits(const struct vg_layer_row *r)
 {
   return !isnan(r->min_full) || !isnan(r->min_any) ||
-         !isnan(r->max_first_error);
+         !isnan(r->min_height) || !isnan(r->max_first_error);
 }
 
 int vg_walls_asked(const struct vg_settings *s)
@@ -54,7 +54,7 @@ int vg_walls_asked(const struct vg_settings *s)
       return 1;
   return l->grow == VG_ANSWER_YES || l->first > 0 || l->y_plus > 0 ||
          *l->walls || !isnan(l->min_full) || !isnan(l->min_any) ||
-         !isnan(l->max_first_error);
+         !isnan(l->min_height) || !isnan(l->max_first_error);
 }
 
 /* A whole number at *text, which moves behind it; 0 when there is none. */
@@ -200,7 +200,8 @@ static int insists(const struct vg_settings *s)
   for (size_t i = 0; i < s->n_layer; i++)
     if (vg_has_limits(&s->layer_row[i])) return 1;
   return l->grow == VG_ANSWER_YES || !isnan(l->min_full) ||
-         !isnan(l->min_any) || !isnan(l->max_first_error);
+         !isnan(l->min_any) || !isnan(l->min_height) ||
+         !isnan(l->max_first_error);
 }
 
 static vg_status no_walls(const struct vg_problem *p, struct vg_error *err)

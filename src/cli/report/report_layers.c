@@ -40,6 +40,28 @@ static void row_cover(FILE *to, const struct vg_mesh *surface,
           w->level.min, w->level.mean, w->level.max);
 }
 
+/* What most faces with fewer or thinner layers are limited by. */
+static const char *main_cause(const struct vg_patch_layers *w)
+{
+  int most = VG_CAUSE_NONE;
+  size_t n = 0;
+
+  for (int c = VG_CAUSE_PROXIMITY; c < VG_CAUSE_N; c++)
+    if (w->cause[c] + w->squeezed[c] > n) {
+      n = w->cause[c] + w->squeezed[c];
+      most = c;
+    }
+  return n ? vg_layer_cause_name((enum vg_layer_cause)most) : "";
+}
+
+static void row_height(FILE *to, const struct vg_mesh *surface,
+                       const struct vg_patch_layers *w)
+{
+  row_name(to, surface, w);
+  fprintf(to, " %11.3f %8.3f %16.2f   %s\n", w->share_mean, w->share_low,
+          w->share_area, main_cause(w));
+}
+
 static void row_first(FILE *to, const struct vg_mesh *surface,
                       const struct vg_patch_layers *w)
 {
@@ -68,6 +90,12 @@ static int is_first_special(const struct vg_layer_stage *s,
   return s->n_wall == 1 || w->first_error > FIRST_SHOWN ||
          fabs(w->asked.mean - s->all.asked.mean) >
            FIRST_SHOWN * s->all.asked.mean;
+}
+
+static int is_limited(const struct vg_layer_stage *s,
+                      const struct vg_patch_layers *w)
+{
+  return s->n_wall == 1 || w->share_area < 100;
 }
 
 static int is_any(const struct vg_layer_stage *s,
@@ -225,6 +253,8 @@ void vg_report_layers_text(FILE *to, const struct vg_layer_stage *s,
   sizes(to, s);
   table(to, s, surface, "      faces  full %  as law   any %  levels: min, "
         "mean, max", row_cover, is_any);
+  table(to, s, surface, "height over the law's: mean, 5 % below, % of area "
+        ">= 0.9, limited by", row_height, is_limited);
   table(to, s, surface, "first asked   got: min       mean        max  "
         "error %", row_first, is_first_special);
   table(to, s, surface, s->all.y_plus.max > 0 ? with_y_plus : without,
@@ -290,6 +320,9 @@ static json_t *wall_json(const struct vg_patch_layers *w)
   json_object_set_new(o, "percent_full", real(w->full));
   json_object_set_new(o, "percent_unsqueezed", real(w->unsqueezed));
   json_object_set_new(o, "percent_any", real(w->any));
+  json_object_set_new(o, "height_over_law", json_pack(
+    "{s:o s:o s:o}", "mean", real(w->share_mean), "percentile_5",
+    real(w->share_low), "percent_area_above_0.9", real(w->share_area)));
   for (size_t i = 0; i < sizeof ranges / sizeof *ranges; i++)
     json_object_set_new(o, ranges[i].name, range(ranges[i].r));
   json_object_set_new(o, "first_error_percent", real(100 * w->first_error));

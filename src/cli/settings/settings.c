@@ -134,6 +134,9 @@ static const struct vg_param params[] = {
   { "layer_gap", AT(layer.gap), .type = VG_PARAM_REAL, .hi = 0.49,
     .above_lo = 1, .unit = "", .help = "share of the distance to a surface "
     "in front that layers may take" },
+  { "layer_slope", AT(layer.slope), .type = VG_PARAM_REAL, .hi = 100,
+    .above_lo = 1, .unit = "", .help = "by how much the heights of layers at "
+    "two neighbours may differ, over the edge between them" },
   { "layer_end", AT(layer.end), .type = VG_PARAM_REAL, .hi = 100,
     .above_lo = 1, .unit = "edges", .help = "layers end before one would be "
     "thicker than this times the local edge" },
@@ -149,6 +152,9 @@ static const struct vg_param params[] = {
         "patch that must have all layers, else exit status 4"),
   LIMIT("min_any", AT(layer.min_any), 100, "% of the faces of each wall patch "
         "that must have a layer, else exit status 4"),
+  LIMIT("min_height", AT(layer.min_height), 100, "% of the law's total height "
+        "that the layers of each wall patch must reach, in the mean by area, "
+        "else exit status 4"),
   LIMIT("max_first_error", AT(layer.max_first_error), 1e9, "% by which a "
         "first height may differ from what is asked, else exit status 4"),
 };
@@ -221,6 +227,7 @@ static const struct vg_param layer_columns[] = {
   OWN("cap", cap, 0, 10, 0, "", "as layer_cap"),
   OWN("min_full", min_full, 0, 100, 0, "%", "as the setting"),
   OWN("min_any", min_any, 0, 100, 0, "%", "as the setting"),
+  OWN("min_height", min_height, 0, 100, 0, "%", "as the setting"),
   OWN("max_first_error", max_first_error, 0, 1e9, 0, "%", "as the setting"),
 };
 
@@ -330,7 +337,7 @@ void vg_settings_row_default(enum vg_table_kind kind, void *row)
   struct vg_patch_row patch = { .bc = VG_BC_NONE };
   struct vg_layer_row layer = { 0, VG_ANSWER_AUTO, NAN, NAN, NAN, NAN, NAN,
                                 VG_COUNT_NONE, VG_COUNT_NONE, NAN, NAN, NAN,
-                                NAN, NAN };
+                                NAN, NAN, NAN };
   struct vg_source source = { .kind = VG_SOURCE_POINT, .an = 1 };
   struct vg_sweep_row sweep = { .repeat = 0 };
 
@@ -351,11 +358,12 @@ static void default_layers(struct vg_layer_settings *l)
   const struct vg_layer_options o = VG_LAYER_OPTIONS_INIT;
 
   l->ratio = l->rate1 = l->rate2 = l->cap = NAN;
-  l->min_full = l->min_any = l->max_first_error = NAN;
+  l->min_full = l->min_any = l->min_height = l->max_first_error = NAN;
   l->constant = 1;
   l->fan_angle = o.fan_angle;
   l->gap = o.gap;
   l->end = o.end;
+  l->slope = o.slope;
   l->smooth = o.smooth;
   l->from_files = 1;
 }

@@ -47,7 +47,7 @@ struct vg_layer_row {
   double first, ratio, rate1, rate2, y_plus;
   int64_t count, constant;
   double total, cap;
-  double min_full, min_any, max_first_error;
+  double min_full, min_any, min_height, max_first_error;
 };
 
 /** Lists of numbers as cli/common/ranges.h takes them, for vanguard sweep
@@ -67,10 +67,10 @@ struct vg_layer_settings {
   double total, cap;
   double y_plus, reynolds, length;
   char walls[VG_LIST_MAX], slip[VG_LIST_MAX];
-  double fan_angle, gap, end;
+  double fan_angle, gap, end, slope;
   int64_t smooth;
   int by_source, from_files;
-  double min_full, min_any, max_first_error;
+  double min_full, min_any, min_height, max_first_error;
 };
 
 /** All settings of a run. */

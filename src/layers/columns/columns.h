@@ -7,7 +7,8 @@
  * makes one tetrahedron (v at l, v at l + 1, the two others where they stand
  * now) of positive volume: the lift rule. What is left on top is the face
  * with each column at its own n: the top, one triangle per face, so tops are
- * as conforming as the wall is. Neighbours differ by one level at most.
+ * as conforming as the wall is. Neighbours may differ by any number of levels;
+ * what is bounded is the slope of the tops between them (layers/grow/work.h).
  *
  * At a convex edge a point may have several columns, a fan. Between them lie
  * virtual faces: triangles of columns with two or three equal roots, of no

@@ -37,14 +37,16 @@ struct vg_layer_options {
                                thicker than this times the local edge */
   double gap;               /* share of the distance to the nearest surface in
                                front that a column may take, < 0.5 */
+  double slope;             /* by how much two columns may differ in height, of
+                               the distance of their roots; > 0 */
   int smooth;               /* sweeps over the directions */
   int threads;              /* 0: one per core */
   vg_progress progress;
   void *user;
 };
 /* L1 */
-#define VG_LAYER_OPTIONS_INIT { NULL, NULL, NULL, 180, 0.95, 0.4, 100, 1, \
-                                NULL, NULL }
+#define VG_LAYER_OPTIONS_INIT { NULL, NULL, NULL, 180, 0.95, 0.4, 2, 100, \
+                                1, NULL, NULL }
 
 /** What happened. Times are wall seconds. */
 /* Faces of a column that lines start from where it looks ahead (clear.h). */

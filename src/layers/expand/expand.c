@@ -117,7 +117,8 @@ vg_status vg_expand_number(struct vg_expand *e, const uint32_t *root,
     e->foot[i] = root[e->columns->column[i].root];
   number_columns(e, first);
   st = check_columns(e, err);
-  return st < 0 ? st : vg_expand_count(e, err);
+  if (st >= 0) vg_expand_count(e);
+  return st;
 }
 
 void vg_expand_column(const struct vg_expand *e, const struct vg_mesh *surface,

@@ -37,8 +37,8 @@ vg_status vg_expand_open(struct vg_expand *e, const struct vg_columns *columns,
 
 void vg_expand_close(struct vg_expand *e);
 
-/** Numbers of all points and cells. VG_ERR_INPUT for neighbours of unlike
- * height.
+/** Numbers of all points and cells. VG_ERR_INPUT for a column of which no
+ * face is.
  * @param root   indices of the points of the surface
  * @param first  where the points of each group begin */
 vg_status vg_expand_number(struct vg_expand *e, const uint32_t *root,

@@ -181,6 +181,28 @@ static void whole_levels(int mixed, const uint32_t f[3], unsigned n_level,
       }
 }
 
+/* Two columns of one root without a level: what rises beside them has no
+ * cells. */
+static int is_edge(const uint32_t p[3])
+{
+  return p[0] == p[1] || p[1] == p[2] || p[2] == p[0];
+}
+
+/* Levels from l >= 1 on, of which at least one column does not have the next:
+ * its point stays, and the cells above the others meet there. */
+static void other_levels(int mixed, const uint32_t f[3], const unsigned n[3],
+                         unsigned l, uint32_t p[3], struct vg_cell_sink *s)
+{
+  if (is_edge(p)) return;
+  for (; n[0] > l || n[1] > l || n[2] > l; l++) {
+    uint32_t h[3];
+
+    for (int k = 0; k < 3; k++) h[k] = n[k] > l ? p[k] + 1 : VG_NO_INDEX;
+    if (mixed) rise_together(s, f, p, h, 7);
+    else rise_one_by_one(f, p, h, s);
+  }
+}
+
 void vg_expand_face(const struct vg_expand *e, size_t face,
                     const uint32_t foot[3], const uint32_t base[3],
                     struct vg_cell_sink *s)
@@ -191,11 +213,8 @@ void vg_expand_face(const struct vg_expand *e, size_t face,
 
   for (int k = 0; k < 3; k++) h[k] = n[k] ? base[k] : VG_NO_INDEX;
   rise_from_wall(f, alone(e, f), p, h, s);
-  if (!low) return;
-  whole_levels(e->mixed, f, low - 1, p, s);
-  for (int k = 0; k < 3; k++) h[k] = n[k] > low ? p[k] + 1 : VG_NO_INDEX;
-  if (e->mixed) rise_together(s, f, p, h, 7);
-  else rise_one_by_one(f, p, h, s);
+  if (low > 1) whole_levels(e->mixed, f, low - 1, p, s);
+  other_levels(e->mixed, f, n, low ? low : 1, p, s);
 }
 
 int vg_join_wall_cells(const struct vg_columns *c, size_t face,
@@ -230,17 +249,15 @@ int vg_join_wall_cells(const struct vg_columns *c, size_t face,
   return n;
 }
 
-/* Cells of a face; -1: its columns differ by more than a level. */
-static int count_face(const struct vg_expand *e, const uint32_t f[3],
-                      size_t count[VG_N_KIND])
+/* Adds the cells of a face. */
+static void count_face(const struct vg_expand *e, const uint32_t f[3],
+                       size_t count[VG_N_KIND])
 {
   uint32_t tet[3][4], pyr[1][5], pri[1][6], p[3], h[3];
   struct vg_cell_sink s = { tet, pyr, pri };
-  unsigned n[3], low = levels_of(e, f, n), more = 0;
+  unsigned n[3], low = levels_of(e, f, n), high, mid;
 
   for (int k = 0; k < 3; k++) {
-    if (n[k] > low + 1) return -1;
-    more += n[k] - low;
     p[k] = e->foot[f[k]];
     h[k] = n[k] ? e->base[f[k]] : VG_NO_INDEX;
   }
@@ -248,53 +265,32 @@ static int count_face(const struct vg_expand *e, const uint32_t f[3],
   count[VG_KIND_TET] += (size_t)(s.tet - tet);
   count[VG_KIND_PYR] += (size_t)(s.pyr - pyr);
   count[VG_KIND_PRI] += (size_t)(s.pri - pri);
-  if (!low) return 0;
+  if (is_edge(p)) return;
+  /* Levels above the first that all have, two have, one has. */
+  for (int k = 0; k < 3; k++) n[k] = n[k] ? n[k] - 1 : 0;
+  low = low ? low - 1 : 0;
+  high = n[0] > n[1] ? n[0] : n[1];
+  if (n[2] > high) high = n[2];
+  mid = n[0] + n[1] + n[2] - low - high;
   if (e->mixed) {
-    count[VG_KIND_PRI] += low - 1;
-    count[VG_KIND_PYR] += more == 2;
-    count[VG_KIND_TET] += more == 1;
-  } else count[VG_KIND_TET] += 3 * (low - 1) + more;
-  return 0;
+    count[VG_KIND_PRI] += low;
+    count[VG_KIND_PYR] += mid - low;
+    count[VG_KIND_TET] += high - mid;
+  } else count[VG_KIND_TET] += low + mid + high;
 }
-
-struct counting {
-  struct vg_expand *e;
-  uint8_t *bad;              /* [n_block] has a face with a jump */
-};
 
 static void count_blocks(void *context, size_t first, size_t end, int worker)
 {
-  const struct counting *c = context;
-  struct vg_expand *e = c->e;
+  struct vg_expand *e = context;
 
   (void)worker;
   for (size_t b = first; b < end; b++) {
     size_t count[VG_N_KIND] = {0}, i = b * VG_FACE_BLOCK;
 
     for (; i < (b + 1) * VG_FACE_BLOCK && i < e->columns->n_face; i++)
-      if (count_face(e, e->columns->face[i], count)) c->bad[b] = 1;
+      count_face(e, e->columns->face[i], count);
     for (int k = 0; k < VG_N_KIND; k++) e->cell[k][b] = count[k];
   }
-}
-
-static vg_status report_jump(const struct vg_expand *e, struct vg_error *err)
-{
-  const struct vg_columns *c = e->columns;
-
-  for (size_t i = 0; i < c->n_face; i++) {
-    const uint32_t *f = c->face[i];
-    size_t count[VG_N_KIND] = {0};
-
-    if (count_face(e, f, count) == 0) continue;
-    return vg_fail(err, VG_ERR_INPUT,
-                   "the columns on points %zu, %zu and %zu have %u, %u and %u "
-                   "levels; neighbours may differ by one",
-                   (size_t)c->column[f[0]].root + 1,
-                   (size_t)c->column[f[1]].root + 1,
-                   (size_t)c->column[f[2]].root + 1, c->column[f[0]].n,
-                   c->column[f[1]].n, c->column[f[2]].n);
-  }
-  return VG_OK;
 }
 
 /* Counts into first indices. */
@@ -313,17 +309,10 @@ static void add_up(struct vg_expand *e)
   }
 }
 
-vg_status vg_expand_count(struct vg_expand *e, struct vg_error *err)
+void vg_expand_count(struct vg_expand *e)
 {
-  struct counting c = { e, vg_calloc(e->n_block, 1) };
-  size_t bad = 0;
-
-  if (!c.bad) return vg_fail_memory(err, "the numbers of the layer cells");
-  vg_parallel_for(e->threads, e->n_block, BLOCK_GRAIN, count_blocks, &c);
-  for (size_t b = 0; b < e->n_block; b++) bad += c.bad[b];
-  free(c.bad);
+  vg_parallel_for(e->threads, e->n_block, BLOCK_GRAIN, count_blocks, e);
   add_up(e);
-  return bad ? report_jump(e, err) : VG_OK;
 }
 
 /* Columns of a border rise together at this level. */

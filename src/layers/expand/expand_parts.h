@@ -5,6 +5,6 @@
 #include "layers/expand/expand.h"
 
 /** cell[] and n_cell. */
-vg_status vg_expand_count(struct vg_expand *e, struct vg_error *err);
+void vg_expand_count(struct vg_expand *e);
 
 #endif

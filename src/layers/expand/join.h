@@ -26,7 +26,8 @@ struct vg_join_info {
  * So a run of faces has runs of cells and of new points: a slice (slices.h).
  *
  * VG_LAYER_TETS: the lift rule. VG_LAYER_MIXED: where three columns of a face
- * rise one prism, where two a pyramid, where one a tetrahedron, and flanks
+ * rise one prism, where two a pyramid, where one a tetrahedron (so beside a
+ * column that ends the cells of its neighbours meet at its top), and flanks
  * whose two columns rise are quadrilaterals. Except at level 0 around a root
  * of several columns: there these rise last, one by one, which makes pyramids
  * and tetrahedra (a prism over an edge collapsed to a point is no cell of any
@@ -35,8 +36,7 @@ struct vg_join_info {
  * @param field   vg_fill's mesh of layers->front.mesh: its first points are
  *                the front's
  * @param out     replaced on success, untouched on failure
- * VG_ERR_INPUT when columns of a face differ by more than a level or the field
- * is not the front's; VG_ERR_UNSUPPORTED beyond 2^32 - 1 points.
+ * VG_ERR_INPUT when the field is not the front's; VG_ERR_UNSUPPORTED beyond 2^32 - 1 points.
  * Cost: memory speed, in parallel. Same bytes for any number of threads. */
 vg_status vg_layers_join(const struct vg_mesh *surface,
                          const struct vg_layers *layers,

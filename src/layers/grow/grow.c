@@ -95,10 +95,11 @@ static vg_status walls(struct vg_layer_work *w, struct vg_error *err)
   if (!n)
     return vg_fail(err, VG_ERR_INPUT, "layers were asked for, but no patch is "
                    "a wall that grows them");
-  if (!(w->o->gap > 0 && w->o->gap < 0.5 && w->o->end > 0))
+  if (!(w->o->gap > 0 && w->o->gap < 0.5 && w->o->end > 0 && w->o->slope > 0))
     return vg_fail(err, VG_ERR_INPUT, "the share of a gap that a layer may "
-                   "take is %g and the end of layers %g; the first must lie "
-                   "in 0 to 0.5, the second above 0", w->o->gap, w->o->end);
+                   "take is %g, the end of layers %g and their slope %g; the "
+                   "first must lie in 0 to 0.5, the others above 0",
+                   w->o->gap, w->o->end, w->o->slope);
   VG_TRY(vg_slides_find(w->m, w->is_wall, &w->n_slide, &w->slide, err));
   st = roughness(w, err);
 done:

@@ -19,7 +19,6 @@
 /* L7 */
 #define KEEP_EDGE 0.3      /* of an edge's length at the top, along itself */
 #define LEAN 0.3           /* of a triangle's height that a corner may lean */
-#define SLOPE 1.0          /* of `allowed` over the wall, where it is limited */
 
 /* Edge of the equilateral triangle with the mean area of the faces. */
 static void edge_body(void *context, size_t first, size_t end, int worker)
@@ -207,16 +206,17 @@ static int lower_wanted(struct vg_layer_work *w, void *unused, uint32_t i,
   return 1;
 }
 
+/* Columns of one root have the same levels; of others only the slope from top
+ * to top is bounded, by the heights they are allowed. */
 static int lower_level(struct vg_layer_work *w, void *unused, uint32_t i,
                         uint32_t j)
 {
   uint32_t o = w->t.near[j];
   struct vg_column *a = &w->c->column[i], *b = &w->c->column[o];
-  int most = a->n + (a->root != b->root);
 
   (void)unused;
-  if (b->n <= most) return 0;
-  b->n = (uint16_t)most;
+  if (a->root != b->root || b->n <= a->n) return 0;
+  b->n = a->n;
   b->cause = a->cause;
   return 1;
 }
@@ -304,7 +304,7 @@ static void slack_body(void *context, size_t first, size_t end, int worker)
   (void)worker;
   for (uint32_t i = (uint32_t)first; i < end; i++) {
     for (uint32_t j = w->t.near_first[i]; j < w->t.near_first[i + 1]; j++)
-      w->slack[j] = SLOPE * vg_root_distance(w, i, w->t.near[j]);
+      w->slack[j] = w->o->slope * vg_root_distance(w, i, w->t.near[j]);
     for (uint32_t k = w->t.first[i]; k < w->t.first[i + 1]; k++) {
       uint32_t f = w->t.corner[k] / 3;
       double s;

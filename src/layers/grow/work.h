@@ -98,7 +98,7 @@ vg_status vg_columns_spread(struct vg_layer_work *w,
 /** edge, law, n_wanted and wanted; allowed = wanted. */
 vg_status vg_heights_wanted(struct vg_layer_work *w, struct vg_error *err);
 
-/** slack: no more than the distance of the roots, and in thin faces whose
+/** slack: no more than the slope times the distance of the roots, and in thin faces whose
  * columns lean over so little that the face does not turn over. */
 vg_status vg_heights_slack(struct vg_layer_work *w, struct vg_error *err);
 
@@ -110,7 +110,7 @@ void vg_heights_lower(struct vg_layer_work *w, size_t column, double limit,
                       enum vg_layer_cause why);
 
 /** From `allowed` to cap, n and causes: allowed heights of neighbours differ by
- * no more than their distance, levels by one. `moved` out: [n_column], may be
+ * no more than the slack, levels by any number. `moved` out: [n_column], may be
  * NULL: 1 where n or cap changed. */
 vg_status vg_heights_settle(struct vg_layer_work *w, uint8_t *moved,
                             struct vg_error *err);

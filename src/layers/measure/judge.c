@@ -252,7 +252,7 @@ static struct stack stack_of(const struct judge_job *j,
   return s;
 }
 
-static int is_jump(const struct judge_job *j, uint32_t a, uint32_t b)
+static int is_step(const struct judge_job *j, uint32_t a, uint32_t b)
 {
   return abs(j->columns->column[a].n - j->columns->column[b].n) > 1;
 }
@@ -272,7 +272,7 @@ static void judge_faces(void *context, size_t first, size_t end, int worker)
 
     judge_face(j, f, &s, &r);
     judge_top(&s, &cosine);
-    for (int k = 0; k < 3; k++) r.n_jump += is_jump(j, v[k], v[(k + 1) % 3]);
+    for (int k = 0; k < 3; k++) r.n_step += is_step(j, v[k], v[(k + 1) % 3]);
   }
   j->part[first / GRAIN] = r;
   j->cosine[first / GRAIN] = cosine;
@@ -285,8 +285,8 @@ static int by_edge(const void *a, const void *b)
   return (x > y) - (x < y);
 }
 
-/* Jumps were counted once per face; *n out: once per edge. */
-static vg_status count_jumps(const struct judge_job *j, size_t *n,
+/* Steps were counted once per face; *n out: once per edge. */
+static vg_status count_steps(const struct judge_job *j, size_t *n,
                              struct vg_error *err)
 {
   uint64_t *edge;
@@ -299,7 +299,7 @@ static vg_status count_jumps(const struct judge_job *j, size_t *n,
     for (int k = 0; k < 3; k++) {
       uint32_t a = j->columns->face[f][k], b = j->columns->face[f][(k + 1) % 3];
 
-      if (is_jump(j, a, b) && n_edge < n_found)
+      if (is_step(j, a, b) && n_edge < n_found)
         edge[n_edge++] = a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
     }
   qsort(edge, n_edge, sizeof *edge, by_edge);
@@ -414,7 +414,7 @@ static void add(const struct vg_layer_judgement *part,
   sum->n_bad_pyramid += part->n_bad_pyramid;
   sum->n_wall_tet += part->n_wall_tet;
   sum->n_bad_wall_tet += part->n_bad_wall_tet;
-  sum->n_jump += part->n_jump;
+  sum->n_step += part->n_step;
 }
 
 vg_status vg_layers_judge(const struct vg_mesh *surface,
@@ -436,7 +436,7 @@ vg_status vg_layers_judge(const struct vg_mesh *surface,
     add(&j.part[i], &sum);
     if (j.cosine[i] > cosine) cosine = j.cosine[i];
   }
-  VG_TRY(count_jumps(&j, &sum.n_jump, err));
+  VG_TRY(count_steps(&j, &sum.n_step, err));
   sum.n_off_plane = count_off_plane(&j);
   sum.angle_of_top_min = cosine < 1 ? acos(cosine) * DEGREE : 0;
   *out = sum;

@@ -38,6 +38,7 @@ void vg_wall_fields_release(struct vg_wall_fields *w)
   free(w->first);
   free(w->asked);
   free(w->total);
+  free(w->share);
   free(w->growth);
   free(w->cause);
   free(w->squeezed);
@@ -156,17 +157,30 @@ static double growth_of(const double (*x)[3], int n)
   return n > 1 ? sqrt(most) : 1;
 }
 
+/* Of the law's height of all levels, what the column reaches. */
+static double share_of(const struct vg_law *law, const struct vg_column *c,
+                       double height)
+{
+  double d[VG_LEVELS_MAX + 1];
+
+  if (!c->n_wanted) return 1;
+  vg_law_heights(law, INFINITY, c->n_wanted, d);
+  return height < d[c->n_wanted] ? height / d[c->n_wanted] : 1;
+}
+
 static void measure_column(const struct fields_job *j, size_t c, size_t i)
 {
   const struct vg_column *col = &j->columns->column[c];
   struct vg_wall_fields *w = j->w;
   double d[VG_LEVELS_MAX + 1], x[VG_LEVELS_MAX + 1][3];
   double asked = j->columns->law[col->law].delta1, first, total, growth;
+  double share;
 
   if (col->n < w->level[i]) w->level[i] = col->n;
   if (col->n_wanted < w->wanted[i]) w->wanted[i] = col->n_wanted;
   if (!col->n) {
     w->total[i] = 0;
+    if (col->n_wanted) w->share[i] = 0;
     return;
   }
   vg_column_points(j->columns, j->surface, c, d, x);
@@ -179,6 +193,8 @@ static void measure_column(const struct fields_job *j, size_t c, size_t i)
     w->asked[i] = asked;
   }
   if (total < w->total[i]) w->total[i] = total;
+  share = share_of(&j->columns->law[col->law], col, d[col->n]);
+  if (share < w->share[i]) w->share[i] = share;
   if (growth > w->growth[i]) w->growth[i] = growth;
 }
 
@@ -212,6 +228,7 @@ static void measure_points(void *context, size_t first, size_t end, int worker)
     j->w->level[i] = j->w->wanted[i] = INT32_MAX;
     j->w->first[i] = j->w->asked[i] = j->w->growth[i] = 0;
     j->w->total[i] = INFINITY;
+    j->w->share[i] = 1;
     for (; c < j->column_first[i + 1]; c++) {
       const struct vg_column *col = &j->columns->column[c];
 
@@ -270,11 +287,12 @@ static vg_status find_points(struct fields_job *j, struct vg_error *err)
   w->first = vg_alloc(w->n, sizeof *w->first);
   w->asked = vg_alloc(w->n, sizeof *w->asked);
   w->total = vg_alloc(w->n, sizeof *w->total);
+  w->share = vg_alloc(w->n, sizeof *w->share);
   w->growth = vg_alloc(w->n, sizeof *w->growth);
   w->cause = vg_alloc(w->n, sizeof *w->cause);
   w->squeezed = vg_alloc(w->n, sizeof *w->squeezed);
   if (!w->point || !w->level || !w->wanted || !w->first || !w->asked ||
-      !w->total || !w->growth || !w->cause || !w->squeezed)
+      !w->total || !w->share || !w->growth || !w->cause || !w->squeezed)
     return vg_fail_memory(err, "fields over the wall");
   return VG_OK;
 }

@@ -25,6 +25,9 @@ struct vg_wall_fields {
   double *total;            /* wall distance of the top, least over columns:
                                to the triangles at the root and on from there
                                as long as they come nearer */
+  double *share;            /* height of the top over that of all levels at
+                               the law's growth, along the column; least over
+                               columns. 1 where the law asks for none */
   double *growth;           /* largest ratio of neighbouring layers; 1 for a
                                single layer, 0 for none */
   int32_t *cause, *squeezed; /* of the worst column, of the tightest */
@@ -52,6 +55,10 @@ struct vg_patch_layers {
   double any;               /* % of faces with at least one level at all three
                                corners */
   struct vg_range asked, first, level, total, growth;
+  /* Height reached over the law's, by area, of a face the mean of its
+   * corners: mean; what 5 % of the area stay below, to 0.001; % of the area
+   * that has 0.9 of it or more. */
+  double share_mean, share_low, share_area;
   double first_error;       /* largest |first - asked| / asked */
   struct vg_range y_plus;   /* over faces with a level at all corners, mean of
                                the three first heights; 0 when no Reynolds
@@ -72,7 +79,7 @@ vg_status vg_layers_patches(const struct vg_mesh *surface,
                             struct vg_error *err);
 
 /** What is wrong with the cells that columns imply, as tetrahedra and as mixed
- * cells: n_negative, n_bad_corner, n_bad_pyramid, n_bad_wall_tet, n_jump and
+ * cells: n_negative, n_bad_corner, n_bad_pyramid, n_bad_wall_tet and
  * n_off_plane are zero when all is valid. Cells that
  * vanish (see columns.h) do not count. Signs of volumes are exact. */
 struct vg_layer_judgement {
@@ -86,7 +93,7 @@ struct vg_layer_judgement {
   size_t n_wall_tet, n_bad_wall_tet; /* what mixed output makes at level 0
                                      where columns share a root; those of no
                                      such volume */
-  size_t n_jump;                  /* edges whose levels differ by 2 or more */
+  size_t n_step;                  /* edges whose levels differ by 2 or more */
   size_t n_off_plane;             /* columns whose points leave a slide plane
                                      with an axis by one bit */
   double angle_of_top_min;        /* smallest angle of a top, degrees; 180

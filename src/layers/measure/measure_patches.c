@@ -6,11 +6,18 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/geometry/vector.h"
+
+#define SHARE_BINS 1000
+#define SHARE_LOW 0.05     /* of the area */
+#define SHARE_WHOLE 0.9    /* of the law's height */
 
 /* Counts that become percentages, means that are sums until the end. */
 struct tally {
   struct vg_patch_layers p;
   size_t n_full, n_unsqueezed, n_any;
+  double area, area_whole;
+  double bin[SHARE_BINS + 1];   /* area by share of the law's height */
 };
 
 struct patches_job {
@@ -52,6 +59,36 @@ static void add_point(const struct vg_wall_fields *w, size_t i,
   t->p.n_point++;
 }
 
+static void add_share(const struct patches_job *j, size_t f, struct tally *t)
+{
+  const struct vg_mesh *m = j->surface;
+  const uint32_t *v = m->tri[j->columns->face_tri[f]];
+  double a[3], b[3], n[3], area, share = 0;
+
+  vg_sub(m->point[v[1]], m->point[v[0]], a);
+  vg_sub(m->point[v[2]], m->point[v[0]], b);
+  vg_cross(a, b, n);
+  area = 0.5 * vg_norm(n);
+  for (int k = 0; k < 3; k++) share += j->w->share[j->field[v[k]]] / 3;
+  t->area += area;
+  t->p.share_mean += area * share;
+  if (share >= SHARE_WHOLE) t->area_whole += area;
+  t->bin[(int)(fmin(share, 1) * SHARE_BINS)] += area;
+}
+
+static void finish_share(struct tally *t)
+{
+  double below = 0;
+  int i = 0;
+
+  if (!(t->area > 0)) return;
+  while (i < SHARE_BINS && below + t->bin[i] < SHARE_LOW * t->area)
+    below += t->bin[i++];
+  t->p.share_low = (double)i / SHARE_BINS;
+  t->p.share_mean /= t->area;
+  t->p.share_area = 100 * t->area_whole / t->area;
+}
+
 static void add_face(const struct patches_job *j, size_t f, struct tally *t)
 {
   const uint32_t *v = j->columns->face[f];
@@ -78,6 +115,7 @@ static void add_face(const struct patches_job *j, size_t f, struct tally *t)
   t->n_any += any;
   t->n_full += full;
   t->n_unsqueezed += full && loose;
+  add_share(j, f, t);
   t->p.n_face++;
 }
 
@@ -99,6 +137,7 @@ static void finish(struct tally *t)
   finish_range(&p->total, p->n_point);
   finish_range(&p->growth, p->n_point);
   finish_range(&p->y_plus, t->n_any);
+  finish_share(t);
 }
 
 /* Sort the faces of triangles by patch; *n out: patches with faces. */
