@@ -269,6 +269,9 @@ void vg_report_fill_text(FILE *to, const struct vg_fill_report *r,
           "%zu\n", vg_cli_count(r->n_smoothed, a),
           vg_cli_count(r->n_flip, b), vg_cli_count(r->n_collapse, c),
           r->n_split);
+  if (r->n_left)
+    fprintf(to, "  bad cells into which no point was tried to be put, after "
+            "enough others: %s\n", vg_cli_count(r->n_left, a));
   fprintf(to, "  seconds: boundary %.2f, place %.2f, insert %.2f, optimise "
           "%.2f, total %.2f (%s cells/s)\n", r->time_boundary, r->time_place,
           r->time_insert, r->time_optimise, r->time_total,
@@ -285,7 +288,7 @@ json_t *vg_report_fill_json(const struct vg_fill_report *r, size_t n_cell)
     { "inserted", r->n_inserted }, { "refused", r->n_refused },
     { "smoothed", r->n_smoothed }, { "swapped", r->n_flip },
     { "collapsed", r->n_collapse }, { "split", r->n_split },
-    { "lists_cut_short", r->n_list_cut },
+    { "lists_cut_short", r->n_list_cut }, { "bad_cells_left", r->n_left },
   };
   json_t *o = json_object();
 

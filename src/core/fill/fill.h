@@ -33,6 +33,8 @@ struct vg_fill_report {
   size_t n_list_cut;       /* points whose surroundings were more than a list
                               holds (hgrid.h): others may be too near */
   size_t n_smoothed, n_flip, n_collapse, n_split; /* optimisation steps */
+  size_t n_left;           /* bad cells into which no point was tried to be put:
+                              too many of them (core/optimise/optimise.h) */
   double time_boundary, time_place, time_insert, time_optimise, time_total;
 };
 

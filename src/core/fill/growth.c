@@ -136,6 +136,7 @@ vg_status vg_growth_improve(struct vg_growth *g, struct vg_error *err)
     g->report->n_flip += r.n_flip;
     g->report->n_collapse += r.n_collapse;
     g->report->n_split += r.n_split;
+    g->report->n_left += r.n_left;
   }
   g->report->time_optimise += vg_clock() - t0;
 done:

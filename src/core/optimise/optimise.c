@@ -22,6 +22,7 @@ static vg_status start(struct vg_optimiser *o, struct vg_tets *t,
                        struct vg_error *err)
 {
   o->t = t;
+  o->budget = vg_split_budget(t);
   o->star = vg_alloc(t->n_point, sizeof *o->star);
   o->cap_star = t->n_point;
   if (o->star) memset(o->star, 0xff, t->n_point * sizeof *o->star);
@@ -177,6 +178,18 @@ static vg_status improve_bad(struct vg_optimiser *o, int *again,
   return st;
 }
 
+/* Bad cells for which nothing was left to be spent. */
+static size_t count_left(const struct vg_optimiser *o)
+{
+  size_t n = 0;
+
+  if (o->spent <= o->budget) return 0;
+  for (uint32_t c = 0; c < o->t->n_cell; c++)
+    n += is_live(o->t, c) && o->q[c] < desperate && concerns(o, c) &&
+         !(o->failed_cell[c] & VG_FAILED_SPLIT);
+  return n;
+}
+
 static vg_status optimise(struct vg_optimiser *o, struct vg_tets *t,
                           int sweeps, struct vg_error *err)
 {
@@ -186,6 +199,7 @@ static vg_status optimise(struct vg_optimiser *o, struct vg_tets *t,
   for (int k = 0; st == VG_OK && k < sweeps; k++) st = sweep(o, err);
   for (int k = 0; st == VG_OK && k < ROUNDS && again; k++)
     st = improve_bad(o, &again, err);
+  if (st == VG_OK) o->report->n_left = count_left(o);
   for (size_t c = 0; c < t->n_cell; c++) t->flag[c] &= (uint8_t)~VG_TRIED;
   if (st == VG_OK && o->refused) st = vg_fail_memory(err, "optimisation");
   free(o->q);

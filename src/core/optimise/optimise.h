@@ -11,6 +11,8 @@
 
 struct vg_optimise_report {
   size_t n_smoothed, n_flip, n_collapse, n_split;
+  size_t n_left;            /* bad cells into which no point was tried to be put
+                               any more: enough had been spent on others */
 };
 
 /** Improve the cells of t in place: smoothing, swaps, insertion, removal.
@@ -20,6 +22,8 @@ struct vg_optimise_report {
  * @param region  cells that do not belong to it are left as they are, unless
  *                that helps one that does; NULL: all belong
  * @param sizing  what the region is measured by; NULL without region
+ * Points are put in until a number of cells has been looked at that grows with
+ * those of t: over a surface of needles it would take any time and gain little.
  * Deterministic. VG_ERR_MEMORY on refusal (t is then still valid). */
 vg_status vg_optimise(struct vg_tets *t, size_t n_fixed, int sweeps,
                       const struct vg_region *region,

@@ -32,6 +32,7 @@ struct vg_optimiser {
   size_t n_ball;
   uint32_t ball[VG_BALL_MAX];  /* links 4 * cell + index of the centre */
   int refused;               /* memory was refused */
+  size_t spent, budget;      /* cells looked at to put points in */
   struct vg_optimise_report *report;
 };
 
@@ -80,8 +81,11 @@ int vg_swap(struct vg_optimiser *o, uint32_t c);
 /** Take away a vertex of the bad cell c, into one of its neighbours. */
 int vg_collapse(struct vg_optimiser *o, uint32_t c);
 
+/** How much vg_split may spend on t. */
+size_t vg_split_budget(const struct vg_tets *t);
+
 /** Put a point into the bad cell c, in a cavity opened for it, and smooth it
- * towards `aim`. */
+ * towards `aim`; once the budget is spent nothing. */
 int vg_split(struct vg_optimiser *o, uint32_t c, double aim);
 
 #endif

@@ -151,6 +151,11 @@ int vg_collapse(struct vg_optimiser *o, uint32_t c)
 /* Over stretched boundary triangles a point needs a large cavity. */
 enum { CAVITY_MAX = 44 };   /* K27 */
 
+/* Cells that are looked at to put points in, for each cell there is and beyond
+ * these. Aircraft with needles take 20 (F-16) to 16 (low-boom), others hardly
+ * any, an aerofoil of needles alone 340. */
+enum { SPEND_PER_CELL = 24, SPEND_FREELY = 100000 };   /* K30 */
+
 /* As vg_shape: angles below 10 or above 170 degrees. */
 static const float worst_of_all = 0.03F;
 
@@ -161,6 +166,11 @@ struct cavity {
   uint32_t from[VG_NEW_MAX]; /* faces, as links */
   float q[VG_NEW_MAX];
 };
+
+size_t vg_split_budget(const struct vg_tets *t)
+{
+  return SPEND_FREELY + SPEND_PER_CELL * (size_t)t->n_cell;
+}
 
 static int in_cavity(const struct cavity *h, uint32_t c)
 {
@@ -191,8 +201,8 @@ static int drop_shared(const struct vg_tets *t, uint32_t c, struct cavity *h)
 
 /* Faces of the cavity joined with x. A face that makes a cell no better than
  * `need` is opened: the cell behind it joins the cavity. 0: cannot be done. */
-static int open_cavity(const struct vg_optimiser *o, const double x[3],
-                       double need, struct cavity *h)
+static int open_cavity(struct vg_optimiser *o, const double x[3], double need,
+                       struct cavity *h)
 {
   const struct vg_tets *t = o->t;
 
@@ -200,6 +210,7 @@ static int open_cavity(const struct vg_optimiser *o, const double x[3],
   for (int k = 0; k < h->n_old; k++) {
     uint32_t c = h->old[k];
 
+    o->spent++;
     if (!drop_shared(t, c, h)) return 0;
     for (uint32_t i = 0; i < 4; i++) {
       uint32_t link = t->cell[c].link[i], *w;
@@ -333,7 +344,7 @@ int vg_split(struct vg_optimiser *o, uint32_t c, double aim)
   int n = o->q[c] < worst_of_all ? 7 : 1;
   double x[3];
 
-  if (o->failed_cell[c] & VG_FAILED_SPLIT) return 0;
+  if (o->failed_cell[c] & VG_FAILED_SPLIT || o->spent > o->budget) return 0;
   if (split_above(o, c, aim)) return 1;
   for (int i = 0; i < 4; i++) {
     uint32_t link = o->t->cell[c].link[i];

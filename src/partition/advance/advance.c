@@ -171,7 +171,7 @@ static vg_status sum_report(struct vg_partition *p, struct vg_comm *comm,
   size_t *count[] = {&f->n_surface_face_lost, &f->n_pocket,
     &f->n_pocket_cell, &f->n_retry, &f->n_steiner, &f->n_placed,
     &f->n_inserted, &f->n_refused, &f->n_smoothed, &f->n_flip,
-    &f->n_collapse, &f->n_split, &f->n_list_cut};
+    &f->n_collapse, &f->n_split, &f->n_list_cut, &f->n_left};
   uint64_t *more[] = {&r->n_node, &r->n_pencil, &r->n_tile, &r->n_leaf,
     &r->n_zone_cell, &r->n_blocked, &r->n_crossing, &r->n_retry, &r->n_uncut,
     &r->n_outgrown, &r->n_open_left, &r->n_found,

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "partition/cut/needles.h"
 
 uint32_t vg_partition_serial(struct vg_partition *p)
 {
@@ -79,6 +80,7 @@ int vg_node_wants_cut(const struct vg_partition *p, struct vg_node *n)
     vg_lattice_release(&n->lattice);
     n->n_bisection = vg_lattice_plan(&n->load, &p->options.rule, n->levels,
                                      n->retry, &n->lattice);
+    if (vg_crosses_needles(&n->front, &n->lattice)) n->n_bisection = 0;
   }
   n->is_planned = 1;
   return n->n_bisection > 0;

@@ -31,7 +31,7 @@ static void made_release(struct made *m)
 }
 
 /* So that a resumed run reports what was done of the whole mesh. */
-enum { N_REPORT = 14 };
+enum { N_REPORT = 15 };
 
 static void report_put(struct vg_writer *w, const struct vg_fill_report *r)
 {
@@ -39,7 +39,7 @@ static void report_put(struct vg_writer *w, const struct vg_fill_report *r)
     r->n_surface_face_lost, r->n_pocket, r->n_pocket_cell, r->n_retry,
     (uint64_t)r->whole_void, r->n_steiner, r->n_placed, r->n_inserted,
     r->n_refused, r->n_smoothed, r->n_flip, r->n_collapse, r->n_split,
-    r->n_list_cut };
+    r->n_list_cut, r->n_left };
 
   vg_put(w, N_REPORT, sizeof *v, v);
 }
@@ -54,7 +54,8 @@ static void report_get(struct vg_reader *in, struct vg_fill_report *r)
     .n_retry = v[3], .whole_void = (int)v[4], .n_steiner = v[5],
     .n_placed = v[6], .n_inserted = v[7], .n_refused = v[8],
     .n_smoothed = v[9], .n_flip = v[10], .n_collapse = v[11],
-    .n_split = v[12], .n_list_cut = v[13] };
+    .n_split = v[12], .n_list_cut = v[13],
+    .n_left = v[14] };
 }
 
 static void made_put(struct vg_writer *w, const struct made *m)
@@ -237,6 +238,8 @@ static void add_report(struct vg_partition *p, const struct vg_fill_report *r)
   to->n_flip += r->n_flip;
   to->n_collapse += r->n_collapse;
   to->n_split += r->n_split;
+  to->n_list_cut += r->n_list_cut;
+  to->n_left += r->n_left;
   to->time_boundary += r->time_boundary;
   to->time_place += r->time_place;
   to->time_insert += r->time_insert;
