@@ -185,7 +185,7 @@ static void puts_a_box_around_a_body(void **state)
   struct vg_mesh m = ball(-1, 0.1);
   struct vg_sizing *s = field(&m, 1.2);
   struct vg_farfield far = { VG_FARFIELD_BOX, 0, 0, { 0 }, 0, { -9, -5, -4 },
-                             { 7, 5, 4 }, 1, 0.8, NULL, NULL };
+                             { 7, 5, 4 }, 1, 0, 0.8, NULL, NULL };
   struct vg_error err = VG_ERROR_INIT;
   double body, lo[3], hi[3];
 
@@ -244,6 +244,57 @@ static void completes_half_bodies(void **state)
       vg_sizing_free(s);
       vg_mesh_release(&m);
     }
+}
+
+/* A body open at x[axis] = at: half a ball, `deep` times as deep, whose rim has
+ * `rim` of its radius and widens over half of the depth. */
+static struct vg_mesh open_body(int axis, double deep, double rim, double at)
+{
+  struct vg_mesh m = ball(2 * axis + 1, 0.1);
+
+  for (size_t i = 0; i < m.n_point; i++) {
+    double *x = m.point[i], t = 2 * x[axis];
+
+    for (int k = 0; k < 3; k++)
+      if (k != axis) x[k] *= t < 1 ? rim + (1 - rim) * t : 1;
+    x[axis] = x[axis] * deep + at;
+  }
+  return m;
+}
+
+static vg_status completed(int axis, double deep, double rim, double at,
+                           int symmetry)
+{
+  struct vg_mesh m = open_body(axis, deep, rim, at);
+  struct vg_farfield far = VG_FARFIELD_INIT;
+  struct vg_sizing *s = field(&m, 1.4);
+  struct vg_error err = VG_ERROR_INIT;
+  vg_status st;
+
+  far.symmetry = symmetry;
+  st = vg_domain_complete(&m, &far, s, NULL, &err);
+  if (st < 0) assert_non_null(strstr(err.text, "a hole"));
+  vg_sizing_free(s);
+  vg_mesh_release(&m);
+  return st;
+}
+
+static void a_hole_is_no_symmetry_plane(void **state)
+{
+  (void)state;
+  for (int axis = 0; axis < 3; axis++) {
+    /* a rim of a third of the body, and a wide one that is blunt */
+    assert_int_equal(completed(axis, 1, 0.3, 0, 0), VG_ERR_GEOMETRY);
+    assert_int_equal(completed(axis, 0.5, 0.6, 0, 0), VG_ERR_GEOMETRY);
+    assert_int_equal(completed(axis, 1, 0.3, 0, 1), VG_OK);
+    /* steep and wide, but deep, as a tube without its base would be */
+    assert_int_equal(completed(axis, 4, 1, 3, 0), VG_ERR_GEOMETRY);
+    assert_int_equal(completed(axis, 4, 1, 3, 1), VG_OK);
+    assert_int_equal(completed(axis, 4, 1, 0, 0),
+                     axis ? VG_OK : VG_ERR_GEOMETRY);
+    assert_int_equal(completed(axis, 1, 1, 3, 0), VG_OK);
+    assert_int_equal(completed(axis, 1, 1, 3, -1), VG_ERR_GEOMETRY);
+  }
 }
 
 static void copy_shifted(struct vg_mesh *to, const struct vg_mesh *from,
@@ -595,6 +646,7 @@ int main(void)
     cmocka_unit_test(puts_a_sphere_around_a_body),
     cmocka_unit_test(puts_a_box_around_a_body),
     cmocka_unit_test(completes_half_bodies),
+    cmocka_unit_test(a_hole_is_no_symmetry_plane),
     cmocka_unit_test(takes_several_bodies),
     cmocka_unit_test(refuses_bodies_it_cannot_complete),
     cmocka_unit_test(marches_curves_as_vgrid_does),

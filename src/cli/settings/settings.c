@@ -52,6 +52,10 @@ static const struct vg_param params[] = {
   { "repair", AT(repair), .type = VG_PARAM_FLAG, .unit = "",
     .help = "mend what needs no guess: orientation, unused and duplicate "
             "items" },
+  { "symmetry", AT(symmetry), .type = VG_PARAM_WORD, .words = answer_words,
+    .unit = "", .help = "open edges in a plane x, y or z = constant are where "
+    "a half body was cut: yes, no (they are a hole), or auto: if the surface "
+    "meets the plane steeply and they span a good part of the body" },
   { "surface_swap", AT(swap), .type = VG_PARAM_WORD, .words = answer_words,
     .unit = "", .help = "swap and collapse edges of the surface where its "
     "triangles are bad, without moving it visibly; auto: where layers grow "
@@ -611,6 +615,8 @@ struct vg_farfield vg_settings_farfield(const struct vg_settings *s)
   f.lengths = row->lengths;
   f.size = row->size;
   f.spacing = row->spacing;
+  f.symmetry = s->symmetry == VG_ANSWER_YES ? 1
+             : s->symmetry == VG_ANSWER_NO ? -1 : 0;
   f.has_centre = n_given(row->centre) == 3;
   f.has_box = n_given(row->lo) == 3;
   for (int k = 0; k < 3; k++) {

@@ -78,6 +78,7 @@ struct vg_settings {
   char title[VG_TITLE_MAX + 1];
   double scale, growth, hmin, hmax;
   int surface_sizes, d3m_sources;
+  int symmetry;                    /* enum vg_answer */
   double weld;
   int repair;
   int64_t optimise, max_cells;

@@ -9,10 +9,9 @@
 #include "base/memory.h"
 #include "core/domain/farfield.h"
 #include "core/domain/planar.h"
+#include "core/domain/symmetry.h"
 #include "core/geometry/vector.h"
 
-/* Open edges this close to a coordinate plane, in body lengths, are in it. */
-#define PLANE_TOLERANCE 1e-5   /* S5 */
 /* Part of a farfield's radius that the body may reach: chords of the
  * triangulated sphere come this near. */
 #define FARFIELD_ROOM 0.9
@@ -134,7 +133,7 @@ static void open_range(const struct domain *d, int k, double *lo, double *hi)
  * one side; -1 where there is none. */
 static int symmetry_axis(const struct domain *d)
 {
-  const double tol = PLANE_TOLERANCE * d->length;
+  const double tol = VG_PLANE_TOLERANCE * d->length;
 
   for (int i = 0; i < 3; i++) {
     const int k = (i + 1) % 3;   /* y first: the usual one */
@@ -148,9 +147,27 @@ static int symmetry_axis(const struct domain *d)
   return -1;
 }
 
+/* Edges that lie in a plane, but not where a half body was cut. */
+static vg_status refuse_hole(const struct domain *d, struct vg_error *err)
+{
+  double lo[3], hi[3], centre[3], width = 0;
+
+  for (int k = 0; k < 3; k++) {
+    open_range(d, k, &lo[k], &hi[k]);
+    centre[k] = 0.5 * (lo[k] + hi[k]);
+    width = fmax(width, hi[k] - lo[k]);
+  }
+  return vg_fail(err, VG_ERR_GEOMETRY, "the surface has a hole: %zu open edges "
+                 "around (%.9g, %.9g, %.9g), %.4g wide, in a body %.4g long; "
+                 "close it. Should the body be half of a symmetric one, cut "
+                 "at %c = %.9g, say so (symmetry yes)", d->open.n, centre[0],
+                 centre[1], centre[2], width, d->length, "xyz"[d->axis],
+                 d->at);
+}
+
 static vg_status find_symmetry(struct domain *d, struct vg_error *err)
 {
-  const double tol = PLANE_TOLERANCE * d->length;
+  const double tol = VG_PLANE_TOLERANCE * d->length;
   const double *x;
   double hi;
 
@@ -165,6 +182,10 @@ static vg_status find_symmetry(struct domain *d, struct vg_error *err)
                    "cut a half model along x, y or z = constant", d->open.n,
                    x[0], x[1], x[2]);
   open_range(d, d->axis, &d->at, &hi);
+  if (d->farfield->symmetry < 0 ||
+      (!d->farfield->symmetry &&
+       !vg_is_symmetry(&d->m, &d->open, d->axis, 0.5 * (d->at + hi))))
+    return refuse_hole(d, err);
   if (fabs(d->at) <= tol && fabs(hi) <= tol) d->at = 0;
   d->side = d->hi[d->axis] - d->at > d->at - d->lo[d->axis];
   for (size_t i = 0; i < 2 * d->open.n; i++)

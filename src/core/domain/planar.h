@@ -59,6 +59,9 @@ struct vg_farfield {
   int has_centre;
   double lo[3], hi[3];    /* box corners, used when has_box */
   int has_box;
+  int symmetry;           /* open edges in one plane: 0: are where a half body
+                             was cut if they look so (symmetry.h), else a hole;
+                             1: are; -1: are not */
   double spacing;         /* edge length on the farfield; 0: from the growth
                              of the field */
   int (*stop)(void *user); /* asked now and then, may be NULL; non-zero:
@@ -66,7 +69,7 @@ struct vg_farfield {
   void *user;
 };
 #define VG_FARFIELD_INIT \
-  { VG_FARFIELD_SPHERE, 0, 20, {0}, 0, {0}, {0}, 0, 0, NULL, NULL }
+  { VG_FARFIELD_SPHERE, 0, 20, {0}, 0, {0}, {0}, 0, 0, 0, NULL, NULL }
 
 struct vg_domain_report {
   int added_farfield, added_symmetry;
@@ -77,8 +80,8 @@ struct vg_domain_report {
 
 /** Complete a body to a closed fluid boundary.
  *
- * A closed body gets a farfield around it; a half body whose open edges all
- * lie in one coordinate plane gets that symmetry plane, triangulated around
+ * A closed body gets a farfield around it; a half body (symmetry above) whose
+ * open edges all lie in one coordinate plane gets that symmetry plane, triangulated around
  * its footprint, and half a farfield. New patches get new ids, the names
  * "farfield" and "symmetry" and the conditions 3 and 1 (USM3D), 5000 and
  * 666x (FUN3D). Body triangles must point into the fluid. Points in the
