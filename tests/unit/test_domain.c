@@ -270,10 +270,15 @@ static vg_status completed(int axis, double deep, double rim, double at,
   struct vg_sizing *s = field(&m, 1.4);
   struct vg_error err = VG_ERROR_INIT;
   vg_status st;
+  double cut;
+  int half;
 
+  assert_int_equal(vg_domain_half(&m, &half, &cut, &err), VG_OK);
   far.symmetry = symmetry;
   st = vg_domain_complete(&m, &far, s, NULL, &err);
   if (st < 0) assert_non_null(strstr(err.text, "a hole"));
+  if (!symmetry) assert_int_equal(half, st < 0 ? -1 : axis);
+  if (half >= 0) assert_true(cut == at);
   vg_sizing_free(s);
   vg_mesh_release(&m);
   return st;

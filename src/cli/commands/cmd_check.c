@@ -11,6 +11,7 @@
 #include "cli/report/report.h"
 #include "cli/settings/deck.h"
 #include "cli/settings/options.h"
+#include "core/domain/planar.h"
 #include "io/mesh/format.h"
 #include "io/mesh/ugrid.h"
 
@@ -132,39 +133,65 @@ static vg_status write_defects(const struct arguments *a,
   return st;
 }
 
+/* A half body is open where it was cut, and nothing else is wrong: vanguard
+ * mesh closes it. *is_half out. */
+static vg_status look_for_half(const struct vg_mesh *m,
+                               const struct vg_surface_report *r,
+                               struct vg_notes *notes, int *is_half,
+                               struct vg_error *err)
+{
+  size_t n = r->count[VG_DEFECT_OPEN_EDGE];
+  int axis;
+  double at;
+  vg_status st;
+
+  *is_half = 0;
+  if (!n || n != r->n_defect) return VG_OK;
+  VG_TRY(vg_domain_half(m, &axis, &at, err));
+  *is_half = axis >= 0;
+  if (*is_half)
+    vg_note(notes, "%zu open edges, all at %c = %.9g: the surface is half of "
+            "a symmetric body, to which vanguard mesh adds the plane", n,
+            "xyz"[axis], at);
+done:
+  return st;
+}
+
 static vg_status check_surface(const struct arguments *a, struct vg_mesh *m,
                                struct vg_error *err)
 {
   struct vg_surface_check_options o = VG_SURFACE_CHECK_OPTIONS_INIT;
   struct vg_surface_report r = VG_SURFACE_REPORT_INIT;
   struct vg_notes notes = { 0 };
-  int external = -1;
+  int external = -1, is_half = 0;
   vg_status st;
 
   o.require_bc = vg_surface_has_conditions(m);
   VG_TRY(vg_surface_examine(m, &o, &external, &r, &notes, err));
+  if (external) VG_TRY(look_for_half(m, &r, &notes, &is_half, err));
   if (a->json) {
     print_json(json_pack("{s:o s:b s:s s:o s:o s:o}", "file",
                          vg_text_json(a->file), "ok",
-                         r.n_defect == 0, "taken_as",
-                         external ? "bodies" : "domain",
+                         is_half || !r.n_defect, "taken_as",
+                         is_half ? "half" : external ? "bodies" : "domain",
                          "size", vg_report_size_json(m), "patches",
                          vg_report_patches_json(m),
                          "surface",
                          vg_report_surface_json(m, &r, VG_SHOWN_DEFECTS)));
   } else {
     printf("%s: surface, %s\n", a->file,
-           external ? "taken as bodies in a fluid around them"
-                      : "taken as the boundary of a fluid inside it");
+           is_half ? "taken as half of bodies in a fluid around them"
+           : external ? "taken as bodies in a fluid around them"
+           : "taken as the boundary of a fluid inside it");
     vg_report_size_text(stdout, m);
     VG_TRY(vg_report_patches_text(stdout, m, err));
-    vg_report_surface_text(stdout, m, &r, VG_SHOWN_DEFECTS);
+    vg_report_surface_text(stdout, m, &r, is_half ? 0 : VG_SHOWN_DEFECTS);
     for (size_t i = 0; i < notes.n; i++)
       printf("  note: %s\n", notes.text[i]);
     if (!r.n_defect) printf("  no defects\n");
   }
   VG_TRY(write_defects(a, m, &r, err));
-  if (r.n_defect)
+  if (r.n_defect && !is_half)
     st = vg_fail(err, VG_ERR_GEOMETRY, "%s: the surface has %zu defects",
                  a->file, r.n_defect);
   else if (!m->n_tri)

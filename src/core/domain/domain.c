@@ -14,7 +14,7 @@
 
 /* Part of a farfield's radius that the body may reach: chords of the
  * triangulated sphere come this near. */
-#define FARFIELD_ROOM 0.9
+#define FARFIELD_ROOM 0.9   /* S10 */
 
 struct domain {
   struct vg_mesh m;
@@ -113,6 +113,13 @@ done:
   free(start);
   free(list);
   return st;
+}
+
+static void measure(struct domain *d)
+{
+  vg_mesh_bounds(&d->m, d->lo, d->hi);
+  for (int k = 0; k < 3; k++)
+    d->length = fmax(d->length, d->hi[k] - d->lo[k]);
 }
 
 /* --- the symmetry plane -------------------------------------------------- */
@@ -404,6 +411,28 @@ done:
   return st;
 }
 
+vg_status vg_domain_half(const struct vg_mesh *surface, int *axis, double *at,
+                         struct vg_error *err)
+{
+  struct domain d = { .m = *surface };
+  double hi;
+  vg_status st;
+
+  *axis = -1;
+  measure(&d);
+  VG_TRY(find_open_edges(&d, err));
+  if (!d.open.n) goto done;
+  d.axis = symmetry_axis(&d);
+  if (d.axis < 0) goto done;
+  open_range(&d, d.axis, at, &hi);
+  *at = 0.5 * (*at + hi);
+  if (fabs(*at) <= VG_PLANE_TOLERANCE * d.length) *at = 0;
+  if (vg_is_symmetry(&d.m, &d.open, d.axis, *at)) *axis = d.axis;
+done:
+  vg_border_release(&d.open);
+  return st;
+}
+
 vg_status vg_domain_complete_by(struct vg_mesh *surface,
                                 const struct vg_farfield *farfield,
                                 const struct vg_size_law *law,
@@ -417,8 +446,7 @@ vg_status vg_domain_complete_by(struct vg_mesh *surface,
     return vg_fail(err, VG_ERR_INPUT, "the surface has no triangles: there is "
                    "no body to put a farfield around");
   VG_TRY(vg_mesh_copy(&d.m, surface, err));
-  vg_mesh_bounds(&d.m, d.lo, d.hi);
-  for (int k = 0; k < 3; k++) d.length = fmax(d.length, d.hi[k] - d.lo[k]);
+  measure(&d);
   VG_TRY(build(&d, err));
   if (report) {
     report->added_farfield = farfield->kind != VG_FARFIELD_NONE;

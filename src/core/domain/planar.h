@@ -78,6 +78,12 @@ struct vg_domain_report {
   size_t n_added_tri;
 };
 
+/** Whether the surface is a half body as vg_domain_complete takes it, symmetry
+ * left to it: its open edges are where it was cut at axis = *at. *axis out: -1
+ * where it is none. Costs a sort of the edges. */
+vg_status vg_domain_half(const struct vg_mesh *surface, int *axis, double *at,
+                         struct vg_error *err);
+
 /** Complete a body to a closed fluid boundary.
  *
  * A closed body gets a farfield around it; a half body (symmetry above) whose
