@@ -11,7 +11,6 @@
 #include "cli/report/report.h"
 #include "cli/settings/deck.h"
 #include "cli/settings/options.h"
-#include "core/domain/planar.h"
 #include "io/mesh/format.h"
 #include "io/mesh/ugrid.h"
 
@@ -133,30 +132,6 @@ static vg_status write_defects(const struct arguments *a,
   return st;
 }
 
-/* A half body is open where it was cut, and nothing else is wrong: vanguard
- * mesh closes it. *is_half out. */
-static vg_status look_for_half(const struct vg_mesh *m,
-                               const struct vg_surface_report *r,
-                               struct vg_notes *notes, int *is_half,
-                               struct vg_error *err)
-{
-  size_t n = r->count[VG_DEFECT_OPEN_EDGE];
-  int axis;
-  double at;
-  vg_status st;
-
-  *is_half = 0;
-  if (!n || n != r->n_defect) return VG_OK;
-  VG_TRY(vg_domain_half(m, &axis, &at, err));
-  *is_half = axis >= 0;
-  if (*is_half)
-    vg_note(notes, "%zu open edges, all at %c = %.9g: the surface is half of "
-            "a symmetric body, to which vanguard mesh adds the plane", n,
-            "xyz"[axis], at);
-done:
-  return st;
-}
-
 static vg_status check_surface(const struct arguments *a, struct vg_mesh *m,
                                struct vg_error *err)
 {
@@ -168,7 +143,7 @@ static vg_status check_surface(const struct arguments *a, struct vg_mesh *m,
 
   o.require_bc = vg_surface_has_conditions(m);
   VG_TRY(vg_surface_examine(m, &o, &external, &r, &notes, err));
-  if (external) VG_TRY(look_for_half(m, &r, &notes, &is_half, err));
+  if (external) VG_TRY(vg_surface_half(m, &r, &notes, &is_half, err));
   if (a->json) {
     print_json(json_pack("{s:o s:b s:s s:o s:o s:o}", "file",
                          vg_text_json(a->file), "ok",

@@ -91,6 +91,14 @@ vg_status vg_surface_examine(struct vg_mesh *m,
                              int *external, struct vg_surface_report *r,
                              struct vg_notes *notes, struct vg_error *err);
 
+/** Of bodies with the report *r: whether open edges are all that is wrong and
+ * lie where half of a symmetric body was cut off, which vanguard mesh closes
+ * (core/domain/planar.h); a note tells. */
+vg_status vg_surface_half(const struct vg_mesh *m,
+                          const struct vg_surface_report *r,
+                          struct vg_notes *notes, int *is_half,
+                          struct vg_error *err);
+
 /** 1 when a patch has a boundary condition: then all of them should. */
 int vg_surface_has_conditions(const struct vg_mesh *m);
 

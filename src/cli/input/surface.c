@@ -203,6 +203,27 @@ static int is_only_open(const struct vg_surface_report *r)
          r->count[VG_DEFECT_OPEN_EDGE] == r->n_defect;
 }
 
+vg_status vg_surface_half(const struct vg_mesh *m,
+                          const struct vg_surface_report *r,
+                          struct vg_notes *notes, int *is_half,
+                          struct vg_error *err)
+{
+  int axis;
+  double at;
+  vg_status st;
+
+  *is_half = 0;
+  if (!is_only_open(r)) return VG_OK;
+  VG_TRY(vg_domain_half(m, &axis, &at, err));
+  *is_half = axis >= 0;
+  if (*is_half)
+    vg_note(notes, "%zu open edges, all at %c = %.9g: the surface is half of "
+            "a symmetric body, to which vanguard mesh adds the plane",
+            r->n_defect, "xyz"[axis], at);
+done:
+  return st;
+}
+
 /* An edge in another unit would ask for more triangles than fit anywhere. */
 static vg_status check_farfield(const struct vg_problem *p,
                                 const struct vg_farfield *far,
