@@ -302,6 +302,88 @@ static void a_hole_is_no_symmetry_plane(void **state)
   }
 }
 
+static void drop_unused(struct vg_mesh *m)
+{
+  uint32_t *to = calloc(m->n_point, sizeof *to), n = 0;
+
+  for (size_t i = 0; i < 3 * m->n_tri; i++) to[m->tri[i / 3][i % 3]] = 1;
+  for (size_t i = 0; i < m->n_point; i++) {
+    if (!to[i]) continue;
+    memmove(m->point[n], m->point[i], sizeof *m->point);
+    to[i] = n++;
+  }
+  for (size_t i = 0; i < 3 * m->n_tri; i++)
+    m->tri[i / 3][i % 3] = to[m->tri[i / 3][i % 3]];
+  m->n_point = n;
+  free(to);
+}
+
+/* Without the triangles that reach beyond `at` along an axis, to one side; the
+ * rim goes into that plane. */
+static void cut_end(struct vg_mesh *m, int axis, int side, double at)
+{
+  size_t n = 0;
+
+  for (size_t i = 0; i < m->n_tri; i++) {
+    int beyond = 0;
+
+    for (int k = 0; k < 3; k++)
+      beyond += side * (m->point[m->tri[i][k]][axis] - at) > 0;
+    for (int k = 0; k < 3 && beyond; k++) {
+      double *x = m->point[m->tri[i][k]];
+
+      if (side * (x[axis] - at) <= 0) x[axis] = at;
+    }
+    if (!beyond) memcpy(m->tri[n++], m->tri[i], sizeof *m->tri);
+  }
+  m->n_tri = n;
+  drop_unused(m);
+}
+
+static vg_status close_holes(struct vg_mesh *m, size_t *n_hole)
+{
+  struct vg_sizing *s = field(m, 1.4);
+  struct vg_error err = VG_ERROR_INIT;
+  size_t n_before = m->n_tri, n_tri;
+  vg_status st = vg_domain_close_holes(m, s, n_hole, &n_tri, &err);
+
+  assert_int_equal(m->n_tri, n_before + (st < 0 ? 0 : n_tri));
+  if (st < 0) assert_non_null(strstr(err.text, "the hole at"));
+  vg_sizing_free(s);
+  return st;
+}
+
+static void closes_holes_but_not_half_bodies(void **state)
+{
+  struct vg_mesh m = ball(-1, 0.1);
+  double whole = -volume(&m);
+  size_t n;
+
+  (void)state;
+  assert_int_equal(close_holes(&m, &n), VG_OK);
+  assert_int_equal(n, 0);
+  cut_end(&m, 2, 1, 0.95);
+  cut_end(&m, 0, -1, -0.9);
+  assert_int_equal(close_holes(&m, &n), VG_OK);
+  assert_int_equal(n, 2);
+  check_closed(&m);
+  assert_true(-volume(&m) > 0.95 * whole && -volume(&m) < whole);
+  vg_mesh_release(&m);
+  m = ball(5, 0.1);
+  cut_end(&m, 2, 1, 0.95);
+  assert_int_equal(close_holes(&m, &n), VG_OK);
+  assert_int_equal(n, 1);
+  assert_int_equal(close_holes(&m, &n), VG_OK);
+  assert_int_equal(n, 0);
+  vg_mesh_release(&m);
+  m = ball(-1, 0.1);
+  cut_end(&m, 2, 1, 0.9);
+  for (size_t i = 0; i < m.n_point; i++)
+    m.point[i][2] += 0.5 * m.point[i][1] * m.point[i][1];
+  assert_int_equal(close_holes(&m, &n), VG_ERR_GEOMETRY);
+  vg_mesh_release(&m);
+}
+
 static void copy_shifted(struct vg_mesh *to, const struct vg_mesh *from,
                          double dx)
 {
@@ -652,6 +734,7 @@ int main(void)
     cmocka_unit_test(puts_a_box_around_a_body),
     cmocka_unit_test(completes_half_bodies),
     cmocka_unit_test(a_hole_is_no_symmetry_plane),
+    cmocka_unit_test(closes_holes_but_not_half_bodies),
     cmocka_unit_test(takes_several_bodies),
     cmocka_unit_test(refuses_bodies_it_cannot_complete),
     cmocka_unit_test(marches_curves_as_vgrid_does),

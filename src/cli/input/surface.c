@@ -322,6 +322,24 @@ done:
   return st;
 }
 
+static vg_status close_holes(struct vg_problem *p, struct vg_error *err)
+{
+  struct vg_sizing_options options = vg_settings_sizing(&p->settings);
+  struct vg_sizing *sizing = NULL;
+  size_t n_hole, n_tri;
+  vg_status st;
+
+  options.threads = p->threads;
+  VG_TRY(vg_sizing_new(&options, p->settings.n_source, p->settings.source,
+                       &p->surface, &sizing, err));
+  VG_TRY(vg_domain_close_holes(&p->surface, sizing, &n_hole, &n_tri, err));
+  vg_note(&p->notes, "holes of the surface that were closed: %zu, with %zu triangles",
+          n_hole, n_tri);
+done:
+  vg_sizing_free(sizing);
+  return st;
+}
+
 vg_status vg_problem_close(struct vg_problem *p, struct vg_display *show,
                            struct vg_error *err)
 {
@@ -336,6 +354,7 @@ vg_status vg_problem_close(struct vg_problem *p, struct vg_display *show,
   if (s->weld > 0)
     VG_TRY(vg_surface_weld(&p->surface, s->weld, &p->n_welded, &p->n_dropped,
                            err));
+  if (s->close_holes) VG_TRY(close_holes(p, err));
   external = s->farfield.kind == VG_DOMAIN_AUTO
              ? -1 : s->farfield.kind != VG_DOMAIN_NONE;
   vg_display_update(show, "check", p->surface.n_tri, 0);

@@ -56,6 +56,8 @@ static const struct vg_param params[] = {
     .unit = "", .help = "open edges in a plane x, y or z = constant are where "
     "a half body was cut: yes, no (they are a hole), or auto: if the surface "
     "meets the plane steeply and they span a good part of the body" },
+  { "close_holes", AT(close_holes), .type = VG_PARAM_FLAG, .unit = "",
+    .help = "close holes of the surface whose rims are nearly plane" },
   { "surface_swap", AT(swap), .type = VG_PARAM_WORD, .words = answer_words,
     .unit = "", .help = "swap and collapse edges of the surface where its "
     "triangles are bad, without moving it visibly; auto: where layers grow "

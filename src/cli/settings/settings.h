@@ -79,6 +79,7 @@ struct vg_settings {
   double scale, growth, hmin, hmax;
   int surface_sizes, d3m_sources;
   int symmetry;                    /* enum vg_answer */
+  int close_holes;
   double weld;
   int repair;
   int64_t optimise, max_cells;

@@ -84,6 +84,17 @@ struct vg_domain_report {
 vg_status vg_domain_half(const struct vg_mesh *surface, int *axis, double *at,
                          struct vg_error *err);
 
+/** Close the holes of a surface with nearly plane rims (within 5 % of their
+ * extent), triangulated to the sizes of the field; each goes to the patch at
+ * the longest edge of its rim. Open edges where a half body was cut stay.
+ * VG_ERR_GEOMETRY, naming the hole, where rims meet or are not plane; surface
+ * is then unchanged. What was closed may cross the surface: check it.
+ * @param n_hole, n_tri  out: holes closed, triangles added */
+vg_status vg_domain_close_holes(struct vg_mesh *surface,
+                                const struct vg_sizing *sizing,
+                                size_t *n_hole, size_t *n_tri,
+                                struct vg_error *err);
+
 /** Complete a body to a closed fluid boundary.
  *
  * A closed body gets a farfield around it; a half body (symmetry above) whose

@@ -17,6 +17,7 @@
 struct frame {
   int axis, iu, iv;
   double at, o[3], u[3], v[3], n[3];
+  double flatness;           /* how far points may be off, of the extent */
   const struct vg_size_law *size;
 };
 
@@ -122,7 +123,7 @@ static vg_status make_frame(const struct vg_mesh *m, size_t n_edge,
     const double *x = m->point[edge[i][0]];
     const double d[3] = { x[0] - f->o[0], x[1] - f->o[1], x[2] - f->o[2] };
 
-    if (fabs(vg_dot(d, f->n)) > FLATNESS * extent)
+    if (fabs(vg_dot(d, f->n)) > f->flatness * extent)
       return vg_fail(err, VG_ERR_GEOMETRY, "patch with a curved boundary: "
                      "point (%.9g, %.9g, %.9g) is %.3g off its plane; only "
                      "planar patches are triangulated, give a surface mesh",
@@ -199,8 +200,17 @@ vg_status vg_planar_patch(struct vg_mesh *m, size_t n_edge,
                           const struct vg_size_law *size, uint32_t patch,
                           struct vg_error *err)
 {
+  return vg_planar_patch_near(m, n_edge, edge, size, FLATNESS, patch, err);
+}
+
+vg_status vg_planar_patch_near(struct vg_mesh *m, size_t n_edge,
+                               const uint32_t (*edge)[2],
+                               const struct vg_size_law *size,
+                               double flatness, uint32_t patch,
+                               struct vg_error *err)
+{
   vg_status st;
-  struct frame f = { .size = size };
+  struct frame f = { .size = size, .flatness = flatness };
   const struct vg_planar_law law = { size_in_plane, stop_in_plane, &f };
   struct local l = { 0 };
   size_t n_new = 0, n_tri = 0;

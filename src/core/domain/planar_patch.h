@@ -36,4 +36,12 @@ vg_status vg_planar_patch(struct vg_mesh *m, size_t n_edge,
                           const struct vg_size_law *size, uint32_t patch,
                           struct vg_error *err);
 
+/** The same for points that are off their mean plane by up to `flatness` of the
+ * extent: they stay where they are, new ones lie in that plane. */
+vg_status vg_planar_patch_near(struct vg_mesh *m, size_t n_edge,
+                               const uint32_t (*edge)[2],
+                               const struct vg_size_law *size,
+                               double flatness, uint32_t patch,
+                               struct vg_error *err);
+
 #endif
