@@ -79,10 +79,10 @@ static vg_status refuse_hole(const struct domain *d, struct vg_error *err)
   }
   return vg_fail(err, VG_ERR_GEOMETRY, "the surface has a hole: %zu open edges "
                  "around (%.9g, %.9g, %.9g), %.4g wide, in a body %.4g long; "
-                 "close it (close_holes yes). Should the body be half of a symmetric one, cut "
-                 "at %c = %.9g, say so (symmetry yes)", d->open.n, centre[0],
-                 centre[1], centre[2], width, d->length, "xyz"[d->axis],
-                 d->at);
+                 "close it (close_holes yes). Should the body be half of a "
+                 "symmetric one, cut at %c = %.9g, say so (symmetry yes)",
+                 d->open.n, centre[0], centre[1], centre[2], width, d->length,
+                 "xyz"[d->axis], d->at);
 }
 
 static vg_status find_symmetry(struct domain *d, struct vg_error *err)
@@ -98,8 +98,9 @@ static vg_status find_symmetry(struct domain *d, struct vg_error *err)
   if (d->axis < 0)
     return vg_fail(err, VG_ERR_GEOMETRY, "the surface has %zu open edges that "
                    "do not lie in one coordinate plane at an end of the body "
-                   "(one starts at (%.9g, %.9g, %.9g)); close the surface, or "
-                   "cut a half model along x, y or z = constant", d->open.n,
+                   "(one starts at (%.9g, %.9g, %.9g)); close the surface "
+                   "(close_holes yes), or cut a half model along x, y or z = "
+                   "constant", d->open.n,
                    x[0], x[1], x[2]);
   open_range(d, d->axis, &d->at, &hi);
   if (d->farfield->symmetry < 0 ||

@@ -316,6 +316,7 @@ static const unsigned char *part_of(const struct hall *h, size_t r, size_t p,
   const size_t *at = h->s.at + r * (h->s.n_bin + 1) + p;
   const unsigned char *item = h->s.from[r].data;
 
+  if (!item) return *end = NULL;
   *end = item + h->m->size * at[1];
   return item + h->m->size * at[0];
 }
