@@ -333,8 +333,8 @@ static vg_status close_holes(struct vg_problem *p, struct vg_error *err)
   VG_TRY(vg_sizing_new(&options, p->settings.n_source, p->settings.source,
                        &p->surface, &sizing, err));
   VG_TRY(vg_domain_close_holes(&p->surface, sizing, &n_hole, &n_tri, err));
-  vg_note(&p->notes, "holes of the surface that were closed: %zu, with %zu triangles",
-          n_hole, n_tri);
+  vg_note(&p->notes, "holes of the surface that were closed: %zu, with %zu "
+          "triangles", n_hole, n_tri);
 done:
   vg_sizing_free(sizing);
   return st;

@@ -131,8 +131,8 @@ static vg_status close_rim(struct holes *h, uint32_t k,
   st = vg_planar_patch_near(&h->m, rim.n, (const uint32_t (*)[2])rim.edge,
                             law, HOLE_FLATNESS, h->rim[k].patch, &inner);
   if (st < 0)
-    st = vg_fail(err, st, "the hole at (%.9g, %.9g, %.9g), of %zu edges, cannot "
-                 "be closed: %s", x[0], x[1], x[2], rim.n, inner.text);
+    st = vg_fail(err, st, "the hole at (%.9g, %.9g, %.9g), of %zu edges, "
+                 "cannot be closed: %s", x[0], x[1], x[2], rim.n, inner.text);
 done:
   vg_border_release(&rim);
   return st;

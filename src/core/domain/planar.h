@@ -98,8 +98,8 @@ vg_status vg_domain_close_holes(struct vg_mesh *surface,
 /** Complete a body to a closed fluid boundary.
  *
  * A closed body gets a farfield around it; a half body (symmetry above) whose
- * open edges all lie in one coordinate plane gets that symmetry plane, triangulated around
- * its footprint, and half a farfield. New patches get new ids, the names
+ * open edges all lie in one coordinate plane gets that symmetry plane,
+ * triangulated around its footprint, and half a farfield. New patches get new ids, the names
  * "farfield" and "symmetry" and the conditions 3 and 1 (USM3D), 5000 and
  * 666x (FUN3D). Body triangles must point into the fluid. Points in the
  * plane keep its coordinate to the last bit. */

@@ -36,7 +36,8 @@ struct vg_join_info {
  * @param field   vg_fill's mesh of layers->front.mesh: its first points are
  *                the front's
  * @param out     replaced on success, untouched on failure
- * VG_ERR_INPUT when the field is not the front's; VG_ERR_UNSUPPORTED beyond 2^32 - 1 points.
+ * VG_ERR_INPUT when the field is not the front's; VG_ERR_UNSUPPORTED beyond
+ * 2^32 - 1 points.
  * Cost: memory speed, in parallel. Same bytes for any number of threads. */
 vg_status vg_layers_join(const struct vg_mesh *surface,
                          const struct vg_layers *layers,

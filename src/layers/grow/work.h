@@ -98,8 +98,8 @@ vg_status vg_columns_spread(struct vg_layer_work *w,
 /** edge, law, n_wanted and wanted; allowed = wanted. */
 vg_status vg_heights_wanted(struct vg_layer_work *w, struct vg_error *err);
 
-/** slack: no more than the slope times the distance of the roots, and in thin faces whose
- * columns lean over so little that the face does not turn over. */
+/** slack: no more than the slope times the distance of the roots, and in thin
+ * faces whose columns lean over so little that the face does not turn over. */
 vg_status vg_heights_slack(struct vg_layer_work *w, struct vg_error *err);
 
 /** Lower `allowed` where columns converge. */
