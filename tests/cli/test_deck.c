@@ -148,9 +148,8 @@ static void everything_survives_a_round_trip(void **state)
   strcpy(patch.name, "-");
   vg_settings_add(&s, VG_TABLE_PATCHES, &patch, NULL);
   s.layer = (struct vg_layer_settings){ VG_ANSWER_YES, 1e-6, NAN, 0.15, 0.02,
-    30, 40, 5, 2.5, 1.3, 0, 5e6, 1.5, "1-3,-7", "8 ,9", 40, 0.3, 0.8, 1.5, 7, 1,
-    0,
-    95, NAN, 60, 1 };
+    30, 40, 5, 2.5, 1.3, 0, 5e6, 1.5, "1-3,-7", "8 ,9", 40, 0.3, 0.8, 1.5, 7,
+    1, 0, 95, NAN, 60, 1 };
   vg_settings_add(&s, VG_TABLE_LAYERS, &layer, NULL);
   for (int kind = VG_SOURCE_VGRID_NODE; kind <= VG_SOURCE_CYLINDER; kind++)
     add_source(&s, kind);

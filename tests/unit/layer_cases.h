@@ -349,6 +349,21 @@ static inline void case_cube(struct vg_mesh *m, double h)
   case_end(&b);
 }
 
+/* Two such cubes, face to face with a gap between. */
+static inline void case_cubes(struct vg_mesh *m, double h, double gap)
+{
+  struct case_builder b = case_start_body(m, h, 0.5);
+  const double x = 1 + gap, lo[2][3] = { { -x, -0.5, -0.5 },
+                                         { 0, -0.5, -0.5 } };
+  const double hi[2][3] = { { -gap, 0.5, 0.5 }, { 1, 0.5, 0.5 } };
+  const uint32_t wall = case_patch(m, "cubes", CASE_WALL, 0);
+  const uint32_t patch[6] = { wall, wall, wall, wall, wall, wall };
+
+  for (int i = 0; i < 2; i++) case_box(&b, lo[i], hi[i], patch, 1);
+  case_far_box(&b, 4);
+  case_end(&b);
+}
+
 /* A flat plate, 1 by 1 by `thick`, edges of a right angle. */
 static inline void case_plate(struct vg_mesh *m, double h, double thick)
 {

@@ -340,12 +340,13 @@ static void cut_end(struct vg_mesh *m, int axis, int side, double at)
   drop_unused(m);
 }
 
-static vg_status close_holes(struct vg_mesh *m, size_t *n_hole)
+static vg_status close_holes(struct vg_mesh *m, int symmetry, size_t *n_hole)
 {
   struct vg_sizing *s = field(m, 1.4);
   struct vg_error err = VG_ERROR_INIT;
   size_t n_before = m->n_tri, n_tri;
-  vg_status st = vg_domain_close_holes(m, s, n_hole, &n_tri, &err);
+  vg_status st = vg_domain_close_holes(m, symmetry, s, n_hole, &n_tri,
+                                       &err);
 
   assert_int_equal(m->n_tri, n_before + (st < 0 ? 0 : n_tri));
   if (st < 0) assert_non_null(strstr(err.text, "the hole at"));
@@ -360,27 +361,36 @@ static void closes_holes_but_not_half_bodies(void **state)
   size_t n;
 
   (void)state;
-  assert_int_equal(close_holes(&m, &n), VG_OK);
+  assert_int_equal(close_holes(&m, 0, &n), VG_OK);
   assert_int_equal(n, 0);
   cut_end(&m, 2, 1, 0.95);
   cut_end(&m, 0, -1, -0.9);
-  assert_int_equal(close_holes(&m, &n), VG_OK);
+  assert_int_equal(close_holes(&m, 0, &n), VG_OK);
   assert_int_equal(n, 2);
   check_closed(&m);
   assert_true(-volume(&m) > 0.95 * whole && -volume(&m) < whole);
   vg_mesh_release(&m);
   m = ball(5, 0.1);
   cut_end(&m, 2, 1, 0.95);
-  assert_int_equal(close_holes(&m, &n), VG_OK);
+  assert_int_equal(close_holes(&m, 0, &n), VG_OK);
   assert_int_equal(n, 1);
-  assert_int_equal(close_holes(&m, &n), VG_OK);
+  assert_int_equal(close_holes(&m, 0, &n), VG_OK);
   assert_int_equal(n, 0);
+  assert_int_equal(close_holes(&m, -1, &n), VG_OK);
+  assert_int_equal(n, 1);
+  check_closed(&m);
+  vg_mesh_release(&m);
+  m = open_body(0, 1, 0.3, 0);
+  assert_int_equal(close_holes(&m, 1, &n), VG_OK);
+  assert_int_equal(n, 0);
+  assert_int_equal(close_holes(&m, 0, &n), VG_OK);
+  assert_int_equal(n, 1);
   vg_mesh_release(&m);
   m = ball(-1, 0.1);
   cut_end(&m, 2, 1, 0.9);
   for (size_t i = 0; i < m.n_point; i++)
     m.point[i][2] += 0.5 * m.point[i][1] * m.point[i][1];
-  assert_int_equal(close_holes(&m, &n), VG_ERR_GEOMETRY);
+  assert_int_equal(close_holes(&m, 0, &n), VG_ERR_GEOMETRY);
   vg_mesh_release(&m);
 }
 

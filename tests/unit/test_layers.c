@@ -12,6 +12,7 @@
 
 #include "core/fill/fill.h"
 #include "core/geometry/predicates.h"
+#include "core/geometry/vector.h"
 #include "core/judge/quality.h"
 #include "core/surface/surface_check.h"
 #include "layer_cases.h"
@@ -101,6 +102,38 @@ static void cells_are_valid(const struct bench *b)
   assert_int_equal(r.n_off_plane, 0);
   assert_int_equal(r.n_cell, b->report.n_cell);
   assert_true(r.n_cell > 0);
+}
+
+static double height_of(const struct vg_columns *c, const struct vg_column *v)
+{
+  double d[VG_LEVELS_MAX + 1];
+
+  vg_law_heights(&c->law[v->law], v->cap, v->n, d);
+  return d[v->n];
+}
+
+/* Beside a column without room for all it wants, which may be lower than what
+ * it is allowed by what a level is short of that. */
+static void tops_are_no_steeper(const struct bench *b)
+{
+  const struct vg_columns *c = &b->layers.columns;
+
+  for (size_t i = 0; i < 3 * c->n_face; i++)
+    for (int turn = 0; turn < 2; turn++) {
+      const uint32_t *f = c->face[i / 3];
+      const struct vg_column *low = &c->column[f[(i + (size_t)turn) % 3]];
+      const struct vg_column *high = &c->column[f[(i + !turn) % 3]];
+      const double *x = b->surface.point[low->root];
+      double most = b->options.slope *
+                    vg_distance(x, b->surface.point[high->root]) +
+                    c->law[low->law].delta1;
+
+      if (low->squeezed == VG_CAUSE_NONE) continue;
+      if (height_of(c, high) - height_of(c, low) > most * (1 + 1e-9))
+        fail_msg("tops %g and %g at (%g, %g, %g), %g at most",
+                 height_of(c, low), height_of(c, high), x[0], x[1], x[2],
+                 most);
+    }
 }
 
 /* Within 1 % everywhere. Growth never above the law's cap: 1e-9 is for the
@@ -313,6 +346,7 @@ static void grow_and_check(struct bench *b)
 {
   grow(b, 1, &b->layers, &b->report);
   cells_are_valid(b);
+  tops_are_no_steeper(b);
   heights_are_kept(b);
   limits_are_explained(b);
   is_clean(&b->layers.front.mesh);
@@ -490,6 +524,25 @@ static void a_slot_narrower_than_an_edge(void **state)
   case_slot(&b.surface, 0.2, 0.02);
   all_of_it(&b, 0.2);
   at_least(&b, 90, 0, 100);
+  finish(&b);
+}
+
+/* A gap without room for a level: fans at its rims without one, beside columns
+ * that have many. */
+static void fans_without_levels(void **state)
+{
+  struct bench b = { .options.smooth = 0 };
+
+  (void)state;
+  case_cubes(&b.surface, 0.125, 0.002);
+  start(&b, 0.125);
+  b.options.fan_angle = 60;
+  for (size_t p = 0; p < b.surface.n_patch; p++)
+    b.request[p].law.delta1 = 1e-3;
+  grow_and_check(&b);
+  assert_true(b.report.n_virtual_face > 0);
+  assert_true(b.report.cause[VG_CAUSE_PROXIMITY] > 0);
+  fill_and_join(&b);
   finish(&b);
 }
 
@@ -841,6 +894,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(two_plates_that_close_to_a_gap),
     cmocka_unit_test(a_slot_narrower_than_an_edge),
+    cmocka_unit_test(fans_without_levels),
     cmocka_unit_test(a_right_angle),
     cmocka_unit_test(an_angle_of_30_degrees),
     cmocka_unit_test(a_cube),

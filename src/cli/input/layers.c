@@ -596,9 +596,9 @@ static vg_status judge(struct vg_layer_stage *s, const struct vg_mesh *surface,
 
   if (st < 0 || !(j->n_negative + j->n_off_plane)) return st;
   return vg_fail(err, VG_ERR_GEOMETRY, "the layers did not pass their own "
-                 "check (%zu negative cells, %zu columns "
-                 "off their plane) and nothing was written; please report "
-                 "this with the project files, and try --layers no",
+                 "check (%zu negative cells, %zu columns off their plane) "
+                 "and nothing was written; please report this with the "
+                 "project files, and try --layers no",
                  j->n_negative, j->n_off_plane);
 }
 

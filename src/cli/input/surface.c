@@ -332,7 +332,9 @@ static vg_status close_holes(struct vg_problem *p, struct vg_error *err)
   options.threads = p->threads;
   VG_TRY(vg_sizing_new(&options, p->settings.n_source, p->settings.source,
                        &p->surface, &sizing, err));
-  VG_TRY(vg_domain_close_holes(&p->surface, sizing, &n_hole, &n_tri, err));
+  VG_TRY(vg_domain_close_holes(&p->surface,
+                               vg_settings_farfield(&p->settings).symmetry,
+                               sizing, &n_hole, &n_tri, err));
   vg_note(&p->notes, "holes of the surface that were closed: %zu, with %zu "
           "triangles", n_hole, n_tri);
 done:

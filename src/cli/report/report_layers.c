@@ -391,6 +391,7 @@ json_t *vg_report_layers_json(const struct vg_layer_stage *s,
     { "slide_triangles", r->n_slide_tri },
     { "whole_prisms", s->judgement.n_prism },
     { "prisms_with_bad_corner", s->judgement.n_bad_corner },
+    { "edges_with_steps_of_levels", s->judgement.n_step },
   };
   json_t *o = json_object();
 

@@ -85,29 +85,35 @@ static vg_status refuse_hole(const struct domain *d, struct vg_error *err)
                  "xyz"[d->axis], d->at);
 }
 
-static vg_status find_symmetry(struct domain *d, struct vg_error *err)
+/* The plane of the open edges: axis, -1 where there is none, and at. */
+static void find_plane(struct domain *d)
 {
   const double tol = VG_PLANE_TOLERANCE * d->length;
-  const double *x;
   double hi;
 
-  d->axis = -1;
+  d->axis = d->open.n ? symmetry_axis(d) : -1;
+  if (d->axis < 0) return;
+  open_range(d, d->axis, &d->at, &hi);
+  if (fabs(d->at) <= tol && fabs(hi) <= tol) d->at = 0;
+}
+
+static vg_status find_symmetry(struct domain *d, struct vg_error *err)
+{
+  const double *x;
+
+  find_plane(d);
   if (!d->open.n) return VG_OK;
   x = d->m.point[d->open.edge[0][0]];
-  d->axis = symmetry_axis(d);
   if (d->axis < 0)
     return vg_fail(err, VG_ERR_GEOMETRY, "the surface has %zu open edges that "
                    "do not lie in one coordinate plane at an end of the body "
                    "(one starts at (%.9g, %.9g, %.9g)); close the surface "
                    "(close_holes yes), or cut a half model along x, y or z = "
-                   "constant", d->open.n,
-                   x[0], x[1], x[2]);
-  open_range(d, d->axis, &d->at, &hi);
+                   "constant", d->open.n, x[0], x[1], x[2]);
   if (d->farfield->symmetry < 0 ||
       (!d->farfield->symmetry &&
-       !vg_is_symmetry(&d->m, &d->open, d->axis, 0.5 * (d->at + hi))))
+       !vg_is_symmetry(&d->m, &d->open, d->axis, d->at)))
     return refuse_hole(d, err);
-  if (fabs(d->at) <= tol && fabs(hi) <= tol) d->at = 0;
   d->side = d->hi[d->axis] - d->at > d->at - d->lo[d->axis];
   for (size_t i = 0; i < 2 * d->open.n; i++)
     d->m.point[d->open.edge[i / 2][i % 2]][d->axis] = d->at;
@@ -329,19 +335,14 @@ vg_status vg_domain_half(const struct vg_mesh *surface, int *axis, double *at,
                          struct vg_error *err)
 {
   struct domain d = { .m = *surface };
-  double hi;
   vg_status st;
 
-  *axis = -1;
   measure(&d);
   VG_TRY(vg_open_edges(&d.m, &d.open, err));
-  if (!d.open.n) goto done;
-  d.axis = symmetry_axis(&d);
-  if (d.axis < 0) goto done;
-  open_range(&d, d.axis, at, &hi);
-  *at = 0.5 * (*at + hi);
-  if (fabs(*at) <= VG_PLANE_TOLERANCE * d.length) *at = 0;
-  if (vg_is_symmetry(&d.m, &d.open, d.axis, *at)) *axis = d.axis;
+  find_plane(&d);
+  *at = d.at;
+  *axis = d.axis >= 0 && vg_is_symmetry(&d.m, &d.open, d.axis, d.at) ? d.axis
+                                                                     : -1;
 done:
   vg_border_release(&d.open);
   return st;
@@ -376,19 +377,13 @@ done:
   return st;
 }
 
-static double size_of_field(void *user, const double x[3])
-{
-  return vg_sizing_at(user, x);
-}
-
 vg_status vg_domain_complete(struct vg_mesh *surface,
                              const struct vg_farfield *farfield,
                              const struct vg_sizing *sizing,
                              struct vg_domain_report *report,
                              struct vg_error *err)
 {
-  const struct vg_size_law law = { .at = size_of_field,
-                                   .user = (void *)sizing };
+  const struct vg_size_law law = vg_size_law_of(sizing);
 
   return vg_domain_complete_by(surface, farfield, sizing ? &law : NULL,
                                report, err);

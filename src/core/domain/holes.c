@@ -2,7 +2,6 @@
  * others are closed by plane patches on their rims. */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/memory.h"
 #include "core/domain/open_edges.h"
@@ -15,25 +14,21 @@
 struct holes {
   struct vg_mesh m;
   struct vg_border open;
-  uint32_t *next;            /* [n_point] along the rim, or NONE */
+  uint32_t *next;            /* [n_point] along the rim, or UINT32_MAX */
   uint32_t *loop;            /* [n_point] number of its loop */
   uint32_t n_loop;
   struct rim { uint32_t first, patch; double longest; int stays; } *rim;
   double lo[3], hi[3], tolerance;
 };
 
-enum { NONE = -1 };
-
 static vg_status follow_rims(struct holes *h, struct vg_error *err)
 {
-  const uint32_t none = (uint32_t)NONE;
-
-  for (size_t i = 0; i < h->m.n_point; i++) h->next[i] = h->loop[i] = none;
+  for (size_t i = 0; i < h->m.n_point; i++) h->next[i] = h->loop[i] = UINT32_MAX;
   for (size_t i = 0; i < h->open.n; i++) {
     const uint32_t *e = h->open.edge[i];
     const double *x = h->m.point[e[0]];
 
-    if (h->next[e[0]] != none)
+    if (h->next[e[0]] != UINT32_MAX)
       return vg_fail(err, VG_ERR_GEOMETRY, "two holes of the surface meet at "
                      "(%.9g, %.9g, %.9g), so that it is not clear how to close "
                      "them", x[0], x[1], x[2]);
@@ -42,9 +37,9 @@ static vg_status follow_rims(struct holes *h, struct vg_error *err)
   for (size_t i = 0; i < h->open.n; i++) {
     uint32_t p = h->open.edge[i][0];
 
-    if (h->loop[p] != none) continue;
+    if (h->loop[p] != UINT32_MAX) continue;
     h->rim[h->n_loop] = (struct rim){ .first = p };
-    for (; h->loop[p] == none; p = h->next[p]) h->loop[p] = h->n_loop;
+    for (; h->loop[p] == UINT32_MAX; p = h->next[p]) h->loop[p] = h->n_loop;
     h->n_loop++;
   }
   return VG_OK;
@@ -92,31 +87,28 @@ static vg_status list_edges(const struct holes *h, uint32_t k,
 }
 
 /* Rims at one end of the body that are together where it was cut. */
-static vg_status keep_symmetry(struct holes *h, struct vg_error *err)
+static vg_status keep_symmetry(struct holes *h, int symmetry,
+                               struct vg_error *err)
 {
   struct vg_border some = VG_BORDER_INIT;
   int found = 0;
   vg_status st = VG_OK;
 
-  for (int end = 0; end < 6 && !found; end++) {
+  for (int end = 0; end < 6 && symmetry >= 0 && !found; end++) {
     int axis = (end / 2 + 1) % 3;      /* y first: the usual one */
     double at = end % 2 ? h->hi[axis] : h->lo[axis];
 
     some.n = 0;
     for (uint32_t k = 0; k < h->n_loop; k++)
       if (is_in_plane(h, k, axis, at)) VG_TRY(list_edges(h, k, &some, err));
-    found = some.n && vg_is_symmetry(&h->m, &some, axis, at);
+    found = some.n &&
+            (symmetry > 0 || vg_is_symmetry(&h->m, &some, axis, at));
     for (uint32_t k = 0; found && k < h->n_loop; k++)
       h->rim[k].stays = is_in_plane(h, k, axis, at);
   }
 done:
   vg_border_release(&some);
   return st;
-}
-
-static double size_of_field(void *user, const double x[3])
-{
-  return vg_sizing_at(user, x);
 }
 
 static vg_status close_rim(struct holes *h, uint32_t k,
@@ -138,7 +130,7 @@ done:
   return st;
 }
 
-static vg_status prepare(struct holes *h, struct vg_error *err)
+static vg_status prepare(struct holes *h, int symmetry, struct vg_error *err)
 {
   double length = 0;
   vg_status st;
@@ -154,24 +146,23 @@ static vg_status prepare(struct holes *h, struct vg_error *err)
     return vg_fail_memory(err, "the holes of the surface");
   VG_TRY(follow_rims(h, err));
   find_patches(h);
-  st = keep_symmetry(h, err);
+  st = keep_symmetry(h, symmetry, err);
 done:
   return st;
 }
 
-vg_status vg_domain_close_holes(struct vg_mesh *surface,
+vg_status vg_domain_close_holes(struct vg_mesh *surface, int symmetry,
                                 const struct vg_sizing *sizing,
                                 size_t *n_hole, size_t *n_tri,
                                 struct vg_error *err)
 {
   struct holes h = { .n_loop = 0 };
-  struct vg_size_law law = { .at = size_of_field };
+  const struct vg_size_law law = vg_size_law_of(sizing);
   vg_status st;
 
-  memcpy(&law.user, &sizing, sizeof law.user);
   *n_hole = *n_tri = 0;
   VG_TRY(vg_mesh_copy(&h.m, surface, err));
-  VG_TRY(prepare(&h, err));
+  VG_TRY(prepare(&h, symmetry, err));
   for (uint32_t k = 0; k < h.n_loop; k++) {
     if (h.rim[k].stays) continue;
     VG_TRY(close_rim(&h, k, &law, err));

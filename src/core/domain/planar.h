@@ -89,8 +89,10 @@ vg_status vg_domain_half(const struct vg_mesh *surface, int *axis, double *at,
  * the longest edge of its rim. Open edges where a half body was cut stay.
  * VG_ERR_GEOMETRY, naming the hole, where rims meet or are not plane; surface
  * is then unchanged. What was closed may cross the surface: check it.
+ * @param symmetry  as in vg_farfield: what is open in a plane at an end of the
+ *                  body stays if it looks so (0), stays (1), is a hole (-1)
  * @param n_hole, n_tri  out: holes closed, triangles added */
-vg_status vg_domain_close_holes(struct vg_mesh *surface,
+vg_status vg_domain_close_holes(struct vg_mesh *surface, int symmetry,
                                 const struct vg_sizing *sizing,
                                 size_t *n_hole, size_t *n_tri,
                                 struct vg_error *err);
@@ -99,9 +101,9 @@ vg_status vg_domain_close_holes(struct vg_mesh *surface,
  *
  * A closed body gets a farfield around it; a half body (symmetry above) whose
  * open edges all lie in one coordinate plane gets that symmetry plane,
- * triangulated around its footprint, and half a farfield. New patches get new ids, the names
- * "farfield" and "symmetry" and the conditions 3 and 1 (USM3D), 5000 and
- * 666x (FUN3D). Body triangles must point into the fluid. Points in the
+ * triangulated around its footprint, and half a farfield. New patches get new
+ * ids, the names "farfield" and "symmetry" and the conditions 3 and 1 (USM3D),
+ * 5000 and 666x (FUN3D). Body triangles must point into the fluid. Points in the
  * plane keep its coordinate to the last bit. */
 vg_status vg_domain_complete(struct vg_mesh *surface,
                              const struct vg_farfield *farfield,

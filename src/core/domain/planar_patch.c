@@ -8,6 +8,17 @@
 #include "base/memory.h"
 #include "core/domain/planar.h"
 #include "core/geometry/vector.h"
+#include "core/sizing/sizing.h"
+
+static double size_of_field(void *user, const double x[3])
+{
+  return vg_sizing_at(user, x);
+}
+
+struct vg_size_law vg_size_law_of(const struct vg_sizing *sizing)
+{
+  return (struct vg_size_law){ .at = size_of_field, .user = (void *)sizing };
+}
 
 /* A point off the plane by more than this part of the extent is an error. */
 #define FLATNESS 1e-6

@@ -15,6 +15,11 @@ struct vg_size_law {
   void *user;
 };
 
+struct vg_sizing;
+
+/** The law of a size field, borrowed. */
+struct vg_size_law vg_size_law_of(const struct vg_sizing *sizing);
+
 /** Does the law's user want to stop? */
 static inline int vg_size_law_stops(const struct vg_size_law *law)
 {

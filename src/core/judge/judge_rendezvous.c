@@ -12,7 +12,6 @@
 #define PART_ITEMS 4096
 #define BUCKET_ITEMS 4
 #define MOST_PARTS ((size_t)1 << 20)
-#define ITEM_MAX 64
 
 void *vg_items_add(struct vg_items *list, size_t size)
 {
@@ -92,6 +91,18 @@ static void count_sources(void *context, size_t first, size_t end, int worker)
   }
 }
 
+static void swap_items(unsigned char *a, unsigned char *b, size_t size)
+{
+  for (size_t i = 0; i < size; i += sizeof(uint32_t)) {
+    uint32_t x, y;
+
+    memcpy(&x, a + i, sizeof x);
+    memcpy(&y, b + i, sizeof y);
+    memcpy(a + i, &y, sizeof y);
+    memcpy(b + i, &x, sizeof x);
+  }
+}
+
 /* Items of bins low and up in order of groups of `width` bins each, in place:
  * every swap brings one to its group. next, end: [n_group] of items */
 static void order_groups(const struct sorting *s, unsigned char *item,
@@ -99,18 +110,13 @@ static void order_groups(const struct sorting *s, unsigned char *item,
                          size_t *next, const size_t *end)
 {
   size_t size = s->m->size;
-  unsigned char spare[ITEM_MAX];
 
   for (size_t g = 0; g < n_group; g++)
     while (next[g] < end[g]) {
-      unsigned char *here = item + size * next[g], *there;
-      size_t to = (bin_of(s, here) - low) / width;
+      unsigned char *here = item + size * next[g];
+      size_t to = (bin_of(s, here) - low) / width, at = next[to]++;
 
-      there = item + size * next[to]++;
-      if (to == g) continue;
-      memcpy(spare, here, size);
-      memcpy(here, there, size);
-      memcpy(there, spare, size);
+      if (to != g) swap_items(here, item + size * at, size);
     }
 }
 

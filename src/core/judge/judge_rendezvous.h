@@ -30,7 +30,7 @@ void vg_items_release(struct vg_items *list);
 struct vg_rendezvous {
   struct vg_comm *comm;
   int threads;
-  size_t size, key;          /* bytes of an item, 4, 8 .. 64, and of its
+  size_t size, key;          /* bytes of an item, multiple of 4, and of its
                                 key at its beginning */
   /** n items of one key, in any order. Called by several threads. */
   void (*group)(void *context, const unsigned char *item, size_t n,
@@ -61,7 +61,7 @@ int vg_rendezvous_rank(const struct vg_rendezvous *m, const void *key);
 
 /** Collective. Takes the items of n_list lists, `stride` bytes apart, and
  * leaves these empty, also on failure.
- * Memory: the items twice. VG_ERR_MEMORY on all ranks. */
+ * Memory: the items once, on several ranks twice. VG_ERR_MEMORY on all ranks. */
 vg_status vg_rendezvous_run(const struct vg_rendezvous *m,
                             struct vg_items *list,
                             size_t n_list, size_t stride,

@@ -398,7 +398,7 @@ done:
 }
 
 /* Cells of a face by the lift rule; those at the wall in which columns of one
- * root are one point vanish. */
+ * root are one point vanish, and all where such columns have no level. */
 static size_t face_cells(const struct vg_columns *c, const uint32_t face[3])
 {
   const struct vg_column *k[3];
@@ -406,6 +406,9 @@ static size_t face_cells(const struct vg_columns *c, const uint32_t face[3])
   int up[3] = { 0, 0, 0 };
 
   for (int i = 0; i < 3; i++) n += (k[i] = &c->column[face[i]])->n;
+  for (int i = 0; i < 3; i++)
+    if (k[i]->root == k[(i + 1) % 3]->root && !k[i]->n &&
+        !k[(i + 1) % 3]->n) return 0;
   for (int step = 0; step < 3; step++) {
     int a = -1, q, r;
 

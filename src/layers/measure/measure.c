@@ -163,7 +163,7 @@ static double share_of(const struct vg_law *law, const struct vg_column *c,
 {
   double d[VG_LEVELS_MAX + 1];
 
-  if (!c->n_wanted) return 1;
+  if (c->n >= c->n_wanted && !(c->cap < law->cap)) return 1;
   vg_law_heights(law, INFINITY, c->n_wanted, d);
   return height < d[c->n_wanted] ? height / d[c->n_wanted] : 1;
 }

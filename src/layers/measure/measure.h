@@ -80,8 +80,8 @@ vg_status vg_layers_patches(const struct vg_mesh *surface,
 
 /** What is wrong with the cells that columns imply, as tetrahedra and as mixed
  * cells: n_negative, n_bad_corner, n_bad_pyramid, n_bad_wall_tet and
- * n_off_plane are zero when all is valid. Cells that
- * vanish (see columns.h) do not count. Signs of volumes are exact. */
+ * n_off_plane are zero when all is valid. Cells that vanish (see columns.h) do
+ * not count. Signs of volumes are exact. */
 struct vg_layer_judgement {
   size_t n_cell, n_negative;      /* tetrahedra by the lift rule, those of no
                                      positive volume */

@@ -4,7 +4,7 @@
 
 #include "core/geometry/vector.h"
 
-/* C14 */
+/* C19 */
 #define ASPECT 100.0       /* longest side over the height upon it */
 #define MANY 0.1           /* of all faces, that cross one plane */
 
@@ -31,33 +31,26 @@ static int planes_below(const struct vg_lattice *l, int axis, double x)
   return k;
 }
 
-static int has_needles(const struct vg_front *f, const struct vg_lattice *l,
-                       int axis)
-{
-  size_t count[VG_LATTICE_PLANES] = { 0 };
-
-  for (size_t i = 0; l->n[axis] && i < f->n_face; i++) {
-    const double *x[3];
-    double lo = INFINITY, hi = -INFINITY;
-    int first, last;
-
-    for (int k = 0; k < 3; k++) {
-      x[k] = f->x[f->face[i][k]];
-      lo = fmin(lo, x[k][axis]);
-      hi = fmax(hi, x[k][axis]);
-    }
-    first = planes_below(l, axis, lo);
-    last = planes_below(l, axis, hi);
-    if (first == last || !is_needle(x)) continue;
-    for (int p = first; p < last; p++)
-      if ((double)++count[p] > MANY * (double)f->n_face) return 1;
-  }
-  return 0;
-}
-
 int vg_crosses_needles(const struct vg_front *front,
                        const struct vg_lattice *l)
 {
-  return has_needles(front, l, 0) || has_needles(front, l, 1) ||
-         has_needles(front, l, 2);
+  size_t count[3][VG_LATTICE_PLANES] = { { 0 } };
+
+  if (!l->n[0] && !l->n[1] && !l->n[2]) return 0;
+  for (size_t i = 0; i < front->n_face; i++) {
+    const double *x[3];
+    int first[3], last[3], crosses = 0;
+
+    for (int k = 0; k < 3; k++) x[k] = front->x[front->face[i][k]];
+    for (int a = 0; a < 3; a++) {
+      first[a] = planes_below(l, a, fmin(fmin(x[0][a], x[1][a]), x[2][a]));
+      last[a] = planes_below(l, a, fmax(fmax(x[0][a], x[1][a]), x[2][a]));
+      crosses |= first[a] < last[a];
+    }
+    if (!crosses || !is_needle(x)) continue;
+    for (int a = 0; a < 3; a++)
+      for (int p = first[a]; p < last[a]; p++)
+        if ((double)++count[a][p] > MANY * (double)front->n_face) return 1;
+  }
+  return 0;
 }

@@ -54,8 +54,7 @@ static void report_get(struct vg_reader *in, struct vg_fill_report *r)
     .n_retry = v[3], .whole_void = (int)v[4], .n_steiner = v[5],
     .n_placed = v[6], .n_inserted = v[7], .n_refused = v[8],
     .n_smoothed = v[9], .n_flip = v[10], .n_collapse = v[11],
-    .n_split = v[12], .n_list_cut = v[13],
-    .n_left = v[14] };
+    .n_split = v[12], .n_list_cut = v[13], .n_left = v[14] };
 }
 
 static void made_put(struct vg_writer *w, const struct made *m)
