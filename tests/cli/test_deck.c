@@ -126,7 +126,7 @@ static void everything_survives_a_round_trip(void **state)
                                  { -1, -2, -3 }, { 1, 2, 1e9 } };
   struct vg_patch_row patch = { -7, 4000, "left wing" };
   struct vg_layer_row layer = { -7, VG_ANSWER_YES, 1e-5, 1.15, NAN, NAN, NAN,
-                                30, 2, 0.125, 0, 98, 99.9, 70, NAN };
+                                30, 2, 0.125, 0, { 98, 99.9, 70, NAN, 8 } };
   struct vg_sweep_row sweep = { "1,2", "1:4:x2", "", "20000,50000", 3 };
 
   (void)state;
@@ -149,7 +149,7 @@ static void everything_survives_a_round_trip(void **state)
   vg_settings_add(&s, VG_TABLE_PATCHES, &patch, NULL);
   s.layer = (struct vg_layer_settings){ VG_ANSWER_YES, 1e-6, NAN, 0.15, 0.02,
     30, 40, 5, 2.5, 1.3, 0, 5e6, 1.5, "1-3,-7", "8 ,9", 40, 0.3, 0.8, 1.5, 7,
-    1, 0, 95, NAN, 60, 1 };
+    1, 0, { 95, NAN, 60, 1, 5.5 } };
   vg_settings_add(&s, VG_TABLE_LAYERS, &layer, NULL);
   for (int kind = VG_SOURCE_VGRID_NODE; kind <= VG_SOURCE_CYLINDER; kind++)
     add_source(&s, kind);
@@ -278,7 +278,7 @@ static void layers_are_a_setting_and_a_table(void **state)
   assert_int_equal(s.layer.grow, VG_ANSWER_YES);
   assert_int_equal(s.n_layer, 2);
   assert_int_equal(s.layer_row[0].grow, VG_ANSWER_AUTO);
-  assert_true(s.layer_row[0].first == 1e-5 && s.layer_row[0].min_full == 98);
+  assert_true(s.layer_row[0].first == 1e-5 && s.layer_row[0].limit.min_full == 98);
   assert_true(isnan(s.layer_row[0].ratio));
   assert_int_equal(s.layer_row[1].grow, VG_ANSWER_NO);
   assert_true(isnan(s.layer_row[1].first));

@@ -1,4 +1,5 @@
 /* Layers and field in slices are, put together, what vg_layers_join makes. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -9,6 +10,7 @@
 #include <cmocka.h>
 
 #include "base/parallel.h"
+#include "core/judge/quality_parts.h"
 #include "join_support.h"
 #include "layer_cases.h"
 #include "layers/expand/slices.h"
@@ -250,13 +252,109 @@ static void share_unevenly(struct vg_layer_slices *keep, int size,
   vg_layer_slices_share(keep, n_field, s);
 }
 
+/* --- volumes across the tops --------------------------------------------- */
+
+/* A triangle of a cell. */
+struct side { uint32_t v[3]; int is_field; double volume; };
+
+static int by_index(const void *a, const void *b)
+{
+  const uint32_t *s = a, *t = b;
+
+  return (*s > *t) - (*s < *t);
+}
+
+static int by_points(const void *a, const void *b)
+{
+  const struct side *s = a, *t = b;
+
+  for (int k = 0; k < 3; k++)
+    if (s->v[k] != t->v[k]) return s->v[k] < t->v[k] ? -1 : 1;
+  return s->is_field - t->is_field;
+}
+
+static int by_value(const void *a, const void *b)
+{
+  const double *s = a, *t = b;
+
+  return (*s > *t) - (*s < *t);
+}
+
+static size_t list_sides(const struct vg_mesh *m, const size_t n_layer[3],
+                         struct side *side)
+{
+  size_t n = 0;
+
+  for (int kind = 0; kind < VG_SLICE_KINDS; kind++) {
+    const struct vg_cell_faces *f = &vg_cell_faces[kind];
+    struct vg_cells c = vg_mesh_cells(m, kind);
+
+    for (size_t i = 0; i < c.n; i++) {
+      const uint32_t *node = c.node + i * (size_t)f->n_node;
+
+      for (int k = 0; k < f->n_tri; k++, n++) {
+        for (int j = 0; j < 3; j++) side[n].v[j] = node[f->node[k][j]];
+        qsort(side[n].v, 3, sizeof *side[n].v, by_index);
+        side[n].is_field = i >= n_layer[kind];
+        side[n].volume = vg_cell_volume((const double (*)[3])m->point, kind,
+                                        node);
+      }
+    }
+  }
+  return n;
+}
+
+/* Against those of all pairs of a cell of the layers and one of the field. */
+static void check_tops(const struct vg_mesh *m, const struct vg_join_info *info,
+                       size_t n_face, double *ratio)
+{
+  const size_t n_layer[VG_SLICE_KINDS] = {
+    info->n_layer_tet, info->n_layer_pyr, info->n_layer_pri };
+  struct side *side = vg_alloc(4 * (m->n_tet + m->n_pyr + m->n_pri),
+                               sizeof *side);
+  size_t n = list_sides(m, n_layer, side), n_top = 0;
+  double *want = vg_calloc(n_face, sizeof *want);
+
+  qsort(side, n, sizeof *side, by_points);
+  for (size_t i = 1; i < n; i++) {
+    const struct side *a = &side[i - 1], *b = &side[i];
+
+    if (memcmp(a->v, b->v, sizeof a->v) || a->is_field == b->is_field ||
+        !(a->volume > 0)) continue;
+    assert_true(n_top < n_face);
+    want[n_top++] = a->volume > b->volume ? a->volume / b->volume
+                                          : b->volume / a->volume;
+  }
+  qsort(want, n_face, sizeof *want, by_value);
+  qsort(ratio, n_face, sizeof *ratio, by_value);
+  for (size_t i = 0; i < n_face; i++)
+    if (fabs(want[i] - ratio[i]) > 1e-9 * want[i])
+      fail_msg("%zu of %zu: %.17g, not %.17g", i, n_face, ratio[i], want[i]);
+  free(want);
+  free(side);
+}
+
+static void add_tops(const struct vg_layer_slices *keep, size_t n_face,
+                     double *sum)
+{
+  double *ratio = vg_alloc(n_face, sizeof *ratio);
+
+  assert_int_equal(vg_layer_slices_tops(NULL, keep, ratio, NULL), VG_OK);
+  for (size_t i = 0; i < n_face; i++) {
+    assert_true(!ratio[i] || !sum[i]);
+    sum[i] += ratio[i];
+  }
+  free(ratio);
+}
+
 static size_t check_split(const struct model *m, const struct vg_mesh *whole,
                           const struct vg_join_info *info,
                           enum vg_layer_cells cells, size_t n_piece, int apart,
                           int size, int threads, int unevenly)
 {
   struct check c;
-  size_t n_slice = 0;
+  size_t n_slice = 0, n_face = m->layers.columns.n_face;
+  double *top = vg_calloc(n_face, sizeof *top);
 
   check_start(&c, whole);
   for (int rank = 0; rank < size; rank++) {
@@ -278,10 +376,13 @@ static size_t check_split(const struct model *m, const struct vg_mesh *whole,
     vg_parallel_for(threads, s.n_slice, 1, compare_some, &c);
     for (size_t i = 0; i < s.n_slice; i++) assert_int_equal(c.wrong[i], 0);
     n_slice += s.n_slice - field.n_slice;
+    add_tops(keep, n_face, top);
     free(c.wrong);
     vg_layer_slices_close(keep);
   }
   check_end(&c);
+  check_tops(whole, info, n_face, top);
+  free(top);
   return n_slice;
 }
 

@@ -43,6 +43,7 @@ void vg_layer_stage_release(struct vg_layer_stage *s)
   vg_wall_fields_release(&s->fields);
   free(s->wall);
   free(s->missed);
+  free(s->top);
   memset(s, 0, sizeof *s);
 }
 
@@ -266,6 +267,17 @@ static vg_status use_heights(struct vg_layer_stage *s,
   return VG_OK;
 }
 
+static struct vg_layer_limits limits_of(const struct vg_layer_limits *own,
+                                        const struct vg_layer_limits *global)
+{
+  return (struct vg_layer_limits){
+    .min_full = choose(own->min_full, global->min_full),
+    .min_any = choose(own->min_any, global->min_any),
+    .min_height = choose(own->min_height, global->min_height),
+    .max_first_error = choose(own->max_first_error, global->max_first_error),
+    .max_top_ratio = choose(own->max_top_ratio, global->max_top_ratio) };
+}
+
 static vg_status make_requests(struct vg_layer_stage *s,
                                const struct vg_problem *p,
                                const double *least, struct vg_error *err)
@@ -281,12 +293,8 @@ static vg_status make_requests(struct vg_layer_stage *s,
     struct vg_layer_row row = row_of(set, m->patch[i].id);
     struct vg_layer_request *q = &s->request[i];
 
-    s->limit[i].min_full = choose(row.min_full, l->min_full);
-    s->limit[i].min_any = choose(row.min_any, l->min_any);
-    s->limit[i].min_height = choose(row.min_height, l->min_height);
-    s->limit[i].max_first_error = choose(row.max_first_error,
-                                         l->max_first_error);
-    if (s->reason[i] == VG_WALL_NOT && vg_has_limits(&row))
+    s->limit[i] = limits_of(&row.limit, &l->limit);
+    if (s->reason[i] == VG_WALL_NOT && vg_has_limits(&row.limit))
       st = vg_fail(err, VG_ERR_INPUT, "layers: patch %d has a limit, but it "
                    "is no wall; set grow to yes or remove the limit",
                    (int)row.id);
@@ -602,41 +610,6 @@ static vg_status judge(struct vg_layer_stage *s, const struct vg_mesh *surface,
                  j->n_negative, j->n_off_plane);
 }
 
-static vg_status miss(struct vg_layer_stage *s, uint32_t patch,
-                      const char *name, double wanted, double got,
-                      struct vg_error *err)
-{
-  if (vg_reserve(&s->missed, &s->cap_missed, s->n_missed + 1,
-                 sizeof *s->missed))
-    return vg_fail_memory(err, "the limits");
-  s->missed[s->n_missed++] =
-    (struct vg_limit_missed){ patch, name, wanted, got };
-  return VG_OK;
-}
-
-/* NAN compares false: no limit. */
-static vg_status check_limits(struct vg_layer_stage *s, struct vg_error *err)
-{
-  vg_status st = VG_OK;
-
-  for (size_t i = 0; i < s->n_wall && st >= 0; i++) {
-    const struct vg_patch_layers *w = &s->wall[i];
-    const struct vg_layer_limits *l = &s->limit[w->patch];
-
-    if (w->full < l->min_full)
-      st = miss(s, w->patch, "min_full", l->min_full, w->full, err);
-    if (st >= 0 && w->any < l->min_any)
-      st = miss(s, w->patch, "min_any", l->min_any, w->any, err);
-    if (st >= 0 && 100 * w->share_mean < l->min_height)
-      st = miss(s, w->patch, "min_height", l->min_height,
-                100 * w->share_mean, err);
-    if (st >= 0 && 100 * w->first_error > l->max_first_error)
-      st = miss(s, w->patch, "max_first_error", l->max_first_error,
-                100 * w->first_error, err);
-  }
-  return st;
-}
-
 vg_status vg_layer_stage_grow(struct vg_layer_stage *s,
                               const struct vg_mesh *surface,
                               const struct vg_sizing *sizing,
@@ -662,15 +635,22 @@ vg_status vg_layer_stage_grow(struct vg_layer_stage *s,
                            s->reynolds, s->length, &s->n_wall, &s->wall,
                            &s->all, err));
   s->time_measure = vg_display_now() - t;
-  st = check_limits(s, err);
 done:
   return st;
 }
 
+/* Triangles of the walls, for pictures. */
+struct wall_tris {
+  size_t n;
+  uint32_t (*tri)[3];        /* points of the fields */
+  int32_t *patch;
+  double *top;               /* volume ratio across the top, 0: none */
+};
+
 static vg_status write_walls(const struct vg_layer_stage *s,
-                             const struct vg_mesh *surface, size_t n_tri,
-                             const uint32_t (*tri)[3], const int32_t *patch,
-                             const char *path, struct vg_error *err)
+                             const struct vg_mesh *surface,
+                             const struct wall_tris *t, const char *path,
+                             struct vg_error *err)
 {
   const struct vg_wall_fields *w = &s->fields;
   const struct vg_vtu_field field[] = {
@@ -683,7 +663,8 @@ static vg_status write_walls(const struct vg_layer_stage *s,
     { "growth", VG_VTU_POINT, VG_VTU_FLOAT64, 1, w->growth },
     { "cause", VG_VTU_POINT, VG_VTU_INT32, 1, w->cause },
     { "squeezed", VG_VTU_POINT, VG_VTU_INT32, 1, w->squeezed },
-    { "patch", VG_VTU_CELL, VG_VTU_INT32, 1, patch },
+    { "patch", VG_VTU_CELL, VG_VTU_INT32, 1, t->patch },
+    { "top_volume_ratio", VG_VTU_CELL, VG_VTU_FLOAT64, 1, t->top },
   };
   double (*point)[3] = vg_alloc(w->n, sizeof *point);
   vg_status st;
@@ -691,10 +672,30 @@ static vg_status write_walls(const struct vg_layer_stage *s,
   if (!point) return vg_fail_memory(err, "the walls");
   for (size_t i = 0; i < w->n; i++)
     memcpy(point[i], surface->point[w->point[i]], sizeof *point);
-  st = vg_vtu_write_triangles(path, w->n, (const double (*)[3])point, n_tri,
-                              tri, field, sizeof field / sizeof *field, err);
+  st = vg_vtu_write_triangles(path, w->n, (const double (*)[3])point, t->n,
+                              (const uint32_t (*)[3])t->tri, field,
+                              sizeof field / sizeof *field, err);
   free(point);
   return st;
+}
+
+static void list_walls(const struct vg_layer_stage *s,
+                       const struct vg_mesh *surface, const uint32_t *index,
+                       uint32_t *place, struct wall_tris *t)
+{
+  const struct vg_columns *c = &s->layers.columns;
+
+  for (size_t i = 0; i < surface->n_tri; i++) {
+    const uint32_t of = surface->tri_patch[i];
+
+    if (s->reason[of] == VG_WALL_NOT) continue;
+    place[i] = (uint32_t)t->n;
+    for (int k = 0; k < 3; k++) t->tri[t->n][k] = index[surface->tri[i][k]];
+    t->patch[t->n++] = surface->patch[of].id;
+  }
+  for (size_t i = 0; i < c->n_face; i++)
+    if (c->face_tri[i] != VG_NO_INDEX)
+      t->top[place[c->face_tri[i]]] = s->top[i];
 }
 
 vg_status vg_layer_stage_write(const struct vg_layer_stage *s,
@@ -702,29 +703,26 @@ vg_status vg_layer_stage_write(const struct vg_layer_stage *s,
                                const char *path, struct vg_error *err)
 {
   uint32_t *index = vg_alloc(surface->n_point, sizeof *index);
-  uint32_t (*tri)[3] = vg_alloc(surface->n_tri, sizeof *tri);
-  int32_t *patch = vg_alloc(surface->n_tri, sizeof *patch);
-  size_t n = 0;
+  uint32_t *place = vg_alloc(surface->n_tri, sizeof *place);
+  struct wall_tris t = {
+    .tri = vg_alloc(surface->n_tri, sizeof *t.tri),
+    .patch = vg_alloc(surface->n_tri, sizeof *t.patch),
+    .top = vg_calloc(surface->n_tri, sizeof *t.top) };
   vg_status st;
 
-  if (!index || !tri || !patch) {
+  if (!index || !place || !t.tri || !t.patch || !t.top) {
     st = vg_fail_memory(err, "the walls");
     goto done;
   }
   for (size_t i = 0; i < s->fields.n; i++)
     index[s->fields.point[i]] = (uint32_t)i;
-  for (size_t i = 0; i < surface->n_tri; i++) {
-    const uint32_t of = surface->tri_patch[i];
-
-    if (s->reason[of] == VG_WALL_NOT) continue;
-    for (int k = 0; k < 3; k++) tri[n][k] = index[surface->tri[i][k]];
-    patch[n++] = surface->patch[of].id;
-  }
-  st = write_walls(s, surface, n, (const uint32_t (*)[3])tri, patch, path,
-                   err);
+  list_walls(s, surface, index, place, &t);
+  st = write_walls(s, surface, &t, path, err);
 done:
   free(index);
-  free(tri);
-  free(patch);
+  free(place);
+  free(t.tri);
+  free(t.patch);
+  free(t.top);
   return st;
 }

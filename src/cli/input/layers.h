@@ -9,18 +9,14 @@
 #include "layers/expand/join.h"
 #include "layers/measure/measure.h"
 
-/** What must be reached on a patch; NAN: nothing. In per cent. */
 /* Layers end where cells are as thick as the field's: a coarser one will do
  * (M6). */
 #define VG_LAYERS_COARSENESS 4
 
-struct vg_layer_limits {
-  double min_full, min_any, min_height, max_first_error;
-};
-
 struct vg_limit_missed {
   uint32_t patch;           /* index in the surface */
-  const char *name;         /* of the limit; static */
+  const char *name, *unit;  /* of the limit; static */
+  int is_least;             /* a least value, not a largest */
   double wanted, got;
 };
 
@@ -44,6 +40,8 @@ struct vg_layer_stage {
   size_t n_missed, cap_missed;
   struct vg_limit_missed *missed;
   struct vg_join_info join;
+  double *top;                       /* [columns.n_face] volume ratio across
+                                        the top, of vg_layer_slices_tops */
   double time_measure;
 };
 #define VG_LAYER_STAGE_INIT { .is_on = 0 }
@@ -73,7 +71,14 @@ vg_status vg_layer_stage_grow(struct vg_layer_stage *s,
                               const struct vg_sizing *sizing,
                               struct vg_display *show, struct vg_error *err);
 
-/** Triangles of the walls with, per point, levels, heights and causes. */
+/** What needs the field too, once s->top is there: the measures of the tops;
+ * limits. cli/input/layer_limits.c. */
+vg_status vg_layer_stage_finish(struct vg_layer_stage *s,
+                                const struct vg_mesh *surface,
+                                struct vg_error *err);
+
+/** Triangles of the walls with, per point, levels, heights and causes, and
+ * the volume ratio across their top. */
 vg_status vg_layer_stage_write(const struct vg_layer_stage *s,
                                const struct vg_mesh *surface,
                                const char *path, struct vg_error *err);

@@ -37,10 +37,11 @@ int vg_is_viscous(const struct vg_patch *p)
          (bc <= -4000 && bc > -5000);
 }
 
-int vg_has_limits(const struct vg_layer_row *r)
+int vg_has_limits(const struct vg_layer_limits *l)
 {
-  return !isnan(r->min_full) || !isnan(r->min_any) ||
-         !isnan(r->min_height) || !isnan(r->max_first_error);
+  return !isnan(l->min_full) || !isnan(l->min_any) ||
+         !isnan(l->min_height) || !isnan(l->max_first_error) ||
+         !isnan(l->max_top_ratio);
 }
 
 int vg_walls_asked(const struct vg_settings *s)
@@ -50,11 +51,10 @@ int vg_walls_asked(const struct vg_settings *s)
   if (l->grow == VG_ANSWER_NO) return 0;
   for (size_t i = 0; i < s->n_layer; i++)
     if (s->layer_row[i].grow == VG_ANSWER_YES ||
-        vg_has_limits(&s->layer_row[i]))
+        vg_has_limits(&s->layer_row[i].limit))
       return 1;
   return l->grow == VG_ANSWER_YES || l->first > 0 || l->y_plus > 0 ||
-         *l->walls || !isnan(l->min_full) || !isnan(l->min_any) ||
-         !isnan(l->min_height) || !isnan(l->max_first_error);
+         *l->walls || vg_has_limits(&l->limit);
 }
 
 /* A whole number at *text, which moves behind it; 0 when there is none. */
@@ -198,10 +198,8 @@ static int insists(const struct vg_settings *s)
   const struct vg_layer_settings *l = &s->layer;
 
   for (size_t i = 0; i < s->n_layer; i++)
-    if (vg_has_limits(&s->layer_row[i])) return 1;
-  return l->grow == VG_ANSWER_YES || !isnan(l->min_full) ||
-         !isnan(l->min_any) || !isnan(l->min_height) ||
-         !isnan(l->max_first_error);
+    if (vg_has_limits(&s->layer_row[i].limit)) return 1;
+  return l->grow == VG_ANSWER_YES || vg_has_limits(&l->limit);
 }
 
 static vg_status no_walls(const struct vg_problem *p, struct vg_error *err)

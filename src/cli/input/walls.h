@@ -44,7 +44,7 @@ vg_status vg_walls_swap(struct vg_problem *p,
                         struct vg_error *err);
 
 /** 1 when a row sets a limit. */
-int vg_has_limits(const struct vg_layer_row *r);
+int vg_has_limits(const struct vg_layer_limits *l);
 
 /** 1 when settings ask for layers, be it by a limit on them: then a missing
  * wall or height is an error, not a note. */

@@ -98,12 +98,27 @@ static int is_limited(const struct vg_layer_stage *s,
   return s->n_wall == 1 || w->share_area < 100;
 }
 
+static int has_tops(const struct vg_layer_stage *s,
+                    const struct vg_patch_layers *w)
+{
+  (void)s;
+  return w->n_top > 0;
+}
+
 static int is_any(const struct vg_layer_stage *s,
                   const struct vg_patch_layers *w)
 {
   (void)s;
   (void)w;
   return 1;
+}
+
+static void row_top(FILE *to, const struct vg_mesh *surface,
+                    const struct vg_patch_layers *w)
+{
+  row_name(to, surface, w);
+  fprintf(to, " %10.2f %7.2f %9.2f\n", w->top_ratio[0], w->top_ratio[1],
+          w->top_ratio[2]);
 }
 
 typedef void (*row_writer)(FILE *to, const struct vg_mesh *surface,
@@ -259,6 +274,8 @@ void vg_report_layers_text(FILE *to, const struct vg_layer_stage *s,
         "error %", row_first, is_first_special);
   table(to, s, surface, s->all.y_plus.max > 0 ? with_y_plus : without,
         row_total, is_any);
+  table(to, s, surface, "volume ratio across the top: median, 95 %, largest",
+        row_top, has_tops);
   causes(to, s, surface);
   fprintf(to, "\n  smallest angle of a top %.1f degrees; whole prisms %s, "
           "with a bad corner %s\n", s->judgement.angle_of_top_min,
@@ -274,9 +291,9 @@ void vg_report_missed_text(FILE *to, const struct vg_layer_stage *s,
     const struct vg_limit_missed *m = &s->missed[i];
     const struct vg_patch *p = &surface->patch[m->patch];
 
-    fprintf(to, "limit not met: patch %d%s%s: %s is %.10g %%, reached %.10g "
-            "%%\n", (int)p->id, *p->name ? " " : "", p->name, m->name,
-            m->wanted, m->got);
+    fprintf(to, "limit not met: patch %d%s%s: %s is %.10g%s, reached %.10g%s"
+            "\n", (int)p->id, *p->name ? " " : "", p->name, m->name,
+            m->wanted, m->unit, m->got, m->unit);
   }
 }
 
@@ -325,6 +342,11 @@ static json_t *wall_json(const struct vg_patch_layers *w)
     real(w->share_low), "percent_area_above_0.9", real(w->share_area)));
   for (size_t i = 0; i < sizeof ranges / sizeof *ranges; i++)
     json_object_set_new(o, ranges[i].name, range(ranges[i].r));
+  json_object_set_new(o, "top_volume_ratio", json_pack(
+    "{s:o s:o s:o s:o s:[f,f,f]}", "faces", whole(w->n_top), "median",
+    real(w->top_ratio[0]), "percentile_95", real(w->top_ratio[1]), "max",
+    real(w->top_ratio[2]), "max_at", w->top_at[0], w->top_at[1],
+    w->top_at[2]));
   json_object_set_new(o, "first_error_percent", real(100 * w->first_error));
   json_object_set_new(o, "fewer_by_cause", causes_json(w->cause));
   json_object_set_new(o, "thinner_by_cause", causes_json(w->squeezed));

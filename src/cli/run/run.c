@@ -372,6 +372,26 @@ done:
   return st;
 }
 
+/* How cells change in size from layers to field; the first rank reports. */
+static vg_status measure_tops(struct vg_run *r, const struct vg_problem *p,
+                              struct vg_layer_stage *layers,
+                              struct vg_error *err)
+{
+  size_t n = layers->layers.columns.n_face;
+  double t = vg_display_now();
+  vg_status st = VG_OK;
+
+  layers->top = vg_alloc(n, sizeof *layers->top);
+  if (!layers->top) st = vg_fail_memory(err, "the tops of the layers");
+  VG_TRY(vg_comm_agree(r->comm, st, err));
+  VG_TRY(vg_layer_slices_tops(r->comm, r->layers, layers->top, err));
+  if (!r->rank) st = vg_layer_stage_finish(layers, &p->surface, err);
+  layers->time_measure += vg_display_now() - t;
+  st = vg_comm_agree(r->comm, st, err);
+done:
+  return st;
+}
+
 /* The second size field is that of the front, so that the fill fits the tops
  * of the layers. */
 static vg_status mesh_layers(struct vg_run *r, const struct vg_problem *p,
@@ -395,7 +415,8 @@ static vg_status mesh_layers(struct vg_run *r, const struct vg_problem *p,
                             &layers->join, err);
   VG_TRY(vg_comm_agree(r->comm, st, err));
   VG_TRY(share_layers(r, err));
-  st = judge(r, p, front->n_tri, sizing, show, err);
+  VG_TRY(judge(r, p, front->n_tri, sizing, show, err));
+  st = measure_tops(r, p, layers, err);
 done:
   vg_sizing_free(sizing);
   return st;

@@ -29,9 +29,10 @@ static const char *const source_words[] = {
   .size = sizeof ((struct vg_settings *)0)->field
 #define REAL .type = VG_PARAM_REAL, .hi = HUGE_SIZE
 #define LENGTH REAL, .unit = "length"
-#define LIMIT(name, at, most, about) \
-  { name, at, .type = VG_PARAM_REAL, .hi = most, .optional = 1, \
-    .unit = "%", .help = about "; -: no limit" }
+#define LIMIT(name, least, most, units, about) \
+  { #name, AT(layer.limit.name), .type = VG_PARAM_REAL, .lo = least, \
+    .hi = most, .optional = 1, .unit = units, .help = about ", else exit " \
+    "status 4; -: no limit" }
 
 static const struct vg_param params[] = {
   { "scale", AT(scale), REAL, .above_lo = 1, .unit = "",
@@ -154,15 +155,17 @@ static const struct vg_param params[] = {
   { "file_layers", AT(layer.from_files), .type = VG_PARAM_FLAG, .unit = "",
     .help = "use the layer settings of a .d3m, .surf, .tags or AFLR .bc "
             "where none are given here" },
-  LIMIT("min_full", AT(layer.min_full), 100, "% of the faces of each wall "
-        "patch that must have all layers, else exit status 4"),
-  LIMIT("min_any", AT(layer.min_any), 100, "% of the faces of each wall patch "
-        "that must have a layer, else exit status 4"),
-  LIMIT("min_height", AT(layer.min_height), 100, "% of the law's total height "
-        "that the layers of each wall patch must reach, in the mean by area, "
-        "else exit status 4"),
-  LIMIT("max_first_error", AT(layer.max_first_error), 1e9, "% by which a "
-        "first height may differ from what is asked, else exit status 4"),
+  LIMIT(min_full, 0, 100, "%", "% of the faces of each wall patch that must "
+        "have all layers"),
+  LIMIT(min_any, 0, 100, "%", "% of the faces of each wall patch that must "
+        "have a layer"),
+  LIMIT(min_height, 0, 100, "%", "% of the law's total height that the layers "
+        "of each wall patch must reach, in the mean by area"),
+  LIMIT(max_first_error, 0, 1e9, "%", "% by which a first height may differ "
+        "from what is asked"),
+  LIMIT(max_top_ratio, 1, HUGE_SIZE, "", "volume ratio of the cells on both "
+        "sides of the layers' end that at most 5 % of the faces of a wall "
+        "patch may exceed"),
 };
 
 #undef AT
@@ -231,10 +234,13 @@ static const struct vg_param layer_columns[] = {
     .hi = VG_LEVELS_MAX, .optional = 1, .unit = "layers",
     .help = "as constant_layers" },
   OWN("cap", cap, 0, 10, 0, "", "as layer_cap"),
-  OWN("min_full", min_full, 0, 100, 0, "%", "as the setting"),
-  OWN("min_any", min_any, 0, 100, 0, "%", "as the setting"),
-  OWN("min_height", min_height, 0, 100, 0, "%", "as the setting"),
-  OWN("max_first_error", max_first_error, 0, 1e9, 0, "%", "as the setting"),
+  OWN("min_full", limit.min_full, 0, 100, 0, "%", "as the setting"),
+  OWN("min_any", limit.min_any, 0, 100, 0, "%", "as the setting"),
+  OWN("min_height", limit.min_height, 0, 100, 0, "%", "as the setting"),
+  OWN("max_first_error", limit.max_first_error, 0, 1e9, 0, "%",
+      "as the setting"),
+  OWN("max_top_ratio", limit.max_top_ratio, 1, HUGE_SIZE, 0, "",
+      "as the setting"),
 };
 
 #undef AT
@@ -342,8 +348,8 @@ void vg_settings_row_default(enum vg_table_kind kind, void *row)
   struct vg_farfield_row far = { .kind = VG_DOMAIN_AUTO, .lengths = 20 };
   struct vg_patch_row patch = { .bc = VG_BC_NONE };
   struct vg_layer_row layer = { 0, VG_ANSWER_AUTO, NAN, NAN, NAN, NAN, NAN,
-                                VG_COUNT_NONE, VG_COUNT_NONE, NAN, NAN, NAN,
-                                NAN, NAN, NAN };
+                                VG_COUNT_NONE, VG_COUNT_NONE, NAN, NAN,
+                                VG_NO_LIMITS };
   struct vg_source source = { .kind = VG_SOURCE_POINT, .an = 1 };
   struct vg_sweep_row sweep = { .repeat = 0 };
 
@@ -364,7 +370,7 @@ static void default_layers(struct vg_layer_settings *l)
   const struct vg_layer_options o = VG_LAYER_OPTIONS_INIT;
 
   l->ratio = l->rate1 = l->rate2 = l->cap = NAN;
-  l->min_full = l->min_any = l->min_height = l->max_first_error = NAN;
+  l->limit = VG_NO_LIMITS;
   l->constant = 1;
   l->fan_angle = o.fan_angle;
   l->gap = o.gap;

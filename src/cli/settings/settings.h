@@ -7,6 +7,7 @@
 #ifndef VG_CLI_SETTINGS_SETTINGS_H
 #define VG_CLI_SETTINGS_SETTINGS_H
 
+#include <math.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -40,6 +41,15 @@ enum vg_answer { VG_ANSWER_AUTO, VG_ANSWER_NO, VG_ANSWER_YES };
 
 #define VG_COUNT_NONE (-1)         /* a count that is not given */
 
+/** What layers must reach on a wall patch, as the settings of these names say;
+ * NAN: nothing. */
+struct vg_layer_limits {
+  double min_full, min_any, min_height, max_first_error;  /* per cent */
+  double max_top_ratio;
+};
+
+#define VG_NO_LIMITS ((struct vg_layer_limits){ NAN, NAN, NAN, NAN, NAN })
+
 /** The layers of one patch. NAN, VG_COUNT_NONE: the global value. */
 struct vg_layer_row {
   int32_t id;
@@ -47,7 +57,7 @@ struct vg_layer_row {
   double first, ratio, rate1, rate2, y_plus;
   int64_t count, constant;
   double total, cap;
-  double min_full, min_any, min_height, max_first_error;
+  struct vg_layer_limits limit;
 };
 
 /** Lists of numbers as cli/common/ranges.h takes them, for vanguard sweep
@@ -70,7 +80,7 @@ struct vg_layer_settings {
   double fan_angle, gap, end, slope;
   int64_t smooth;
   int by_source, from_files;
-  double min_full, min_any, min_height, max_first_error;
+  struct vg_layer_limits limit;
 };
 
 /** All settings of a run. */

@@ -65,6 +65,10 @@ vg_status vg_mesh_judge(const struct vg_mesh *m, const struct vg_sizing *sizing,
  * @param node  its points in x */
 int vg_cell_positive(const double (*x)[3], int kind, const uint32_t *node);
 
+/** The signed volume of a cell as the judge counts it: its quadrilaterals are
+ * the mean of their two diagonals. Arguments as above. */
+double vg_cell_volume(const double (*x)[3], int kind, const uint32_t *node);
+
 /** Per-tetrahedron figures for output: smallest dihedral angle in degrees and
  * radius ratio, each [n_tet], may be NULL. */
 void vg_mesh_cell_quality(const struct vg_mesh *m, float *angle_min,

@@ -314,7 +314,7 @@ static int corners_positive(const double (*x)[3], int kind,
 }
 
 /* By the divergence theorem, each quad as the mean of its two diagonals. */
-static double mixed_volume(const double (*x)[3], int kind, const uint32_t *n)
+double vg_cell_volume(const double (*x)[3], int kind, const uint32_t *n)
 {
   const struct vg_cell_faces *f = &vg_cell_faces[kind];
   const double *o = x[n[0]];
@@ -334,7 +334,7 @@ int vg_cell_positive(const double (*x)[3], int kind, const uint32_t *n)
 {
   if (kind == VG_CELL_TET)
     return vg_orient3d(x[n[0]], x[n[1]], x[n[2]], x[n[3]]) > 0;
-  return mixed_volume(x, kind, n) > 0 && corners_positive(x, kind, n);
+  return vg_cell_volume(x, kind, n) > 0 && corners_positive(x, kind, n);
 }
 
 static void judge_mixed(const struct vg_mesh *m, int kind, float *volume,
@@ -346,7 +346,7 @@ static void judge_mixed(const struct vg_mesh *m, int kind, float *volume,
 
   for (size_t i = 0; i < c.n; i++) {
     const uint32_t *n = c.node + width * i;
-    double v = mixed_volume(x, kind, n);
+    double v = vg_cell_volume(x, kind, n);
 
     vg_exact_add(&f->n.volume, v);
     volume[c.first + i] = (float)v;

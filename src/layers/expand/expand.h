@@ -65,6 +65,12 @@ void vg_expand_face(const struct vg_expand *e, size_t face,
                     const uint32_t foot[3], const uint32_t base[3],
                     struct vg_cell_sink *sink);
 
+/** The cell of a face that its top is a face of; 0: it has none.
+ * @param node  out: [6] k: the point of column k below its top (its root, if
+ *              it has no level), 3 + k: its top
+ * Returns the number of its nodes: 4, 5, 6, in the order of their kind. */
+int vg_expand_top(const struct vg_expand *e, size_t face, uint32_t node[6]);
+
 /** Boundary faces on the flank of border r: tri, quad out. */
 void vg_expand_count_flank(const struct vg_expand *e, size_t r, size_t *tri,
                            size_t *quad);

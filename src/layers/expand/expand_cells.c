@@ -217,6 +217,44 @@ void vg_expand_face(const struct vg_expand *e, size_t face,
   other_levels(e->mixed, f, n, low ? low : 1, p, s);
 }
 
+/* Corners at level 0, those of one root as one point. */
+static void merge_roots(const struct vg_columns *c, const uint32_t f[3],
+                        uint32_t p[3])
+{
+  for (int k = 2; k >= 0; k--) {
+    p[k] = (uint32_t)k;
+    for (int i = 2; i > k; i--)
+      if (c->column[f[i]].root == c->column[f[k]].root) p[i] = p[k];
+  }
+}
+
+/* Of the cells of a face what rises last has the top. */
+int vg_expand_top(const struct vg_expand *e, size_t face, uint32_t node[6])
+{
+  const uint32_t *f = e->columns->face[face];
+  uint32_t tet[3][4], pyr[1][5], pri[1][6], p[3], h[3];
+  struct vg_cell_sink s = { tet, pyr, pri };
+  unsigned n[3], high = 0;
+
+  levels_of(e, f, n);
+  for (int k = 0; k < 3; k++) high = n[k] > high ? n[k] : high;
+  if (!high) return 0;
+  merge_roots(e->columns, f, p);
+  for (int k = 0; k < 3; k++) {
+    h[k] = n[k] == high ? (uint32_t)k + 3 : VG_NO_INDEX;
+    if (n[k] && high > 1) p[k] = (uint32_t)k + (n[k] < high ? 3 : 0);
+  }
+  if (high == 1) rise_from_wall(f, alone(e, f), p, h, &s);
+  else if (!is_edge(p)) {
+    if (e->mixed) rise_together(&s, f, p, h, 7);
+    else rise_one_by_one(f, p, h, &s);
+  }
+  if (s.tet > tet) memcpy(node, s.tet[-1], sizeof *tet);
+  else if (s.pyr > pyr) memcpy(node, pyr, sizeof *pyr);
+  else if (s.pri > pri) memcpy(node, pri, sizeof *pri);
+  return s.tet > tet ? 4 : s.pyr > pyr ? 5 : s.pri > pri ? 6 : 0;
+}
+
 int vg_join_wall_cells(const struct vg_columns *c, size_t face,
                        struct vg_wall_cell cell[3])
 {
@@ -226,10 +264,8 @@ int vg_join_wall_cells(const struct vg_columns *c, size_t face,
   unsigned together = 0;
   int n = 0;
 
-  for (int k = 2; k >= 0; k--) {
-    p[k] = (uint32_t)k;
-    for (int i = 2; i > k; i--)
-      if (c->column[f[i]].root == c->column[f[k]].root) p[i] = p[k];
+  merge_roots(c, f, p);
+  for (int k = 0; k < 3; k++) {
     h[k] = c->column[f[k]].n ? (uint32_t)k + 3 : VG_NO_INDEX;
     together |= (unsigned)!vg_shares_root(c, f[k]) << k;
   }

@@ -304,6 +304,13 @@ void vg_layer_slices_share(struct vg_layer_slices *k,
   describe(k, out);
 }
 
+vg_status vg_layer_slices_tops(struct vg_comm *comm,
+                               const struct vg_layer_slices *k,
+                               double *ratio, struct vg_error *err)
+{
+  return vg_layer_tops(comm, &k->plan, k->field, ratio, err);
+}
+
 void vg_layer_slices_close(struct vg_layer_slices *k)
 {
   if (!k) return;

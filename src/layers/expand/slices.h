@@ -4,6 +4,7 @@
 #ifndef VG_LAYERS_EXPAND_SLICES_H
 #define VG_LAYERS_EXPAND_SLICES_H
 
+#include "base/comm.h"
 #include "core/mesh/slices.h"
 #include "layers/expand/join.h"
 
@@ -41,6 +42,17 @@ vg_status vg_layer_slices_open(const struct vg_mesh *surface,
  * @param out      as from vg_layer_slices_open */
 void vg_layer_slices_share(struct vg_layer_slices *keep,
                            const uint64_t *n_field, struct vg_slices *out);
+
+/** How cells change in size across the tops of the layers, in a valid mesh.
+ * Collective; each rank looks at what it serves of the field.
+ *
+ * @param ratio  out: [columns.n_face], on all ranks: the larger over the
+ *               smaller volume of the cells on both sides of the top of a
+ *               face; 0: the face has no cell, or its top no other side
+ * Memory: 16 bytes per triangle of the front. VG_ERR_MEMORY. */
+vg_status vg_layer_slices_tops(struct vg_comm *comm,
+                               const struct vg_layer_slices *keep,
+                               double *ratio, struct vg_error *err);
 
 /** Accepts NULL. */
 void vg_layer_slices_close(struct vg_layer_slices *keep);

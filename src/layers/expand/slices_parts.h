@@ -2,6 +2,7 @@
 #ifndef VG_LAYERS_EXPAND_SLICES_PARTS_H
 #define VG_LAYERS_EXPAND_SLICES_PARTS_H
 
+#include "base/comm.h"
 #include "core/mesh/slices.h"
 #include "layers/expand/join_plan.h"
 
@@ -18,5 +19,10 @@ struct vg_layer_slice {
 vg_status vg_layer_slice_expand(const struct vg_join_plan *p, size_t first,
                                 size_t end, struct vg_layer_slice *at,
                                 struct vg_slice *s, struct vg_error *err);
+
+/** vg_layer_slices_tops, of slices with the field's numbers. */
+vg_status vg_layer_tops(struct vg_comm *comm, const struct vg_join_plan *p,
+                        const struct vg_slices *field, double *ratio,
+                        struct vg_error *err);
 
 #endif

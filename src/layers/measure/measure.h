@@ -63,6 +63,11 @@ struct vg_patch_layers {
   struct vg_range y_plus;   /* over faces with a level at all corners, mean of
                                the three first heights; 0 when no Reynolds
                                number is given */
+  /* Volumes of the cells on both sides of the tops, larger over smaller, by
+   * vg_layers_tops: n_top of them; median, what 5 % exceed, largest, and the
+   * middle of the face of the largest. */
+  size_t n_top;
+  double top_ratio[3], top_at[3];
   size_t cause[VG_CAUSE_N]; /* faces, by the worst of their columns */
   size_t squeezed[VG_CAUSE_N];  /* faces, by the tightest of them */
 };
@@ -77,6 +82,17 @@ vg_status vg_layers_patches(const struct vg_mesh *surface,
                             struct vg_patch_layers **out,
                             struct vg_patch_layers *all,
                             struct vg_error *err);
+
+/** How cells change in size across the tops: n_top, top_ratio and top_at of
+ * patches; faces of fans count in *all only.
+ *
+ * @param ratio  [columns->n_face] of vg_layer_slices_tops
+ * @param wall   [n] of vg_layers_patches */
+vg_status vg_layers_tops(const struct vg_mesh *surface,
+                         const struct vg_columns *columns,
+                         const double *ratio, size_t n,
+                         struct vg_patch_layers *wall,
+                         struct vg_patch_layers *all, struct vg_error *err);
 
 /** What is wrong with the cells that columns imply, as tetrahedra and as mixed
  * cells: n_negative, n_bad_corner, n_bad_pyramid, n_bad_wall_tet and
