@@ -14,6 +14,7 @@
 #include "core/surface/surface_check.h"
 
 #define VG_SHOWN_DEFECTS 20   /* first ones of a kind put in words */
+#define VG_SHOWN_FACES 3      /* as much of bad triangles */
 
 /** Counts of a mesh, its box and its patches. */
 void vg_report_size_text(FILE *to, const struct vg_mesh *m);

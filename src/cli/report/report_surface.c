@@ -6,6 +6,7 @@
 #include "cli/common/cli.h"
 #include "cli/common/text.h"
 #include "cli/report/report.h"
+#include "core/surface/surface_quality.h"
 
 static size_t n_cell(const struct vg_mesh *m)
 {
@@ -155,6 +156,65 @@ static void repair_text(FILE *to, const struct vg_surface_report *r)
             r->n_removed_tri);
 }
 
+/* Triangles that spoil the cells on them. */
+static void slivers_text(FILE *to, const struct vg_mesh *m,
+                         const struct vg_surface_quality *q)
+{
+  if (!q->n_worst) return;
+  fprintf(to, "  slivers: caps (three nodes nearly on a line) %zu, needles "
+          "%zu; cells on them are\n  hardly better. surface_swap removes those "
+          "that it can without moving the surface\n  visibly; where they stay, "
+          "the surface needs new triangles:\n", q->n_cap, q->n_needle);
+  for (size_t i = 0; i < q->n_worst && i < VG_SHOWN_FACES; i++) {
+    const struct vg_worst_face *w = &q->worst[i];
+    const struct vg_patch *p = &m->patch[m->tri_patch[w->face]];
+    char name[VG_NAME_MAX];
+
+    fprintf(to, "    %s, patch %d%s%s, face %zu, angle %.2g, at (%.6g, %.6g, "
+            "%.6g)\n", w->is_cap ? "cap" : "needle", (int)p->id,
+            *p->name ? " " : "", vg_text_clean(p->name, name, sizeof name),
+            w->face + 1, w->angle, w->at[0], w->at[1], w->at[2]);
+  }
+  if (q->n_cap + q->n_needle > VG_SHOWN_FACES)
+    fprintf(to, "    ... and %zu more\n",
+            q->n_cap + q->n_needle - VG_SHOWN_FACES);
+}
+
+static void quality_text(FILE *to, const struct vg_mesh *m)
+{
+  struct vg_surface_quality q;
+
+  vg_surface_quality(m, &q);
+  if (!q.n) return;
+  fprintf(to, "  triangles: smallest angle %.2g, 1st percentile %.1f degrees; "
+          "below 5 10 20 30:\n  %.4f %.4f %.4f %.4f %%; 2 r/R: mean %.3f\n",
+          q.angle_min, q.angle_min_p1, q.below[0], q.below[1], q.below[2],
+          q.below[3], q.ratio_mean);
+  slivers_text(to, m, &q);
+}
+
+static json_t *quality_json(const struct vg_mesh *m)
+{
+  struct vg_surface_quality q;
+  json_t *list = json_array();
+
+  vg_surface_quality(m, &q);
+  for (size_t i = 0; i < q.n_worst; i++) {
+    const struct vg_worst_face *w = &q.worst[i];
+
+    json_array_append_new(list, json_pack("{s:s s:I s:i s:f s:[fff]}", "kind",
+      w->is_cap ? "cap" : "needle", "face", (json_int_t)w->face + 1, "patch",
+      (int)m->patch[m->tri_patch[w->face]].id, "angle", w->angle, "at",
+      w->at[0], w->at[1], w->at[2]));
+  }
+  return json_pack("{s:f s:f s:[ffff] s:f s:I s:I s:o}", "angle_min",
+                   q.angle_min, "angle_min_percentile_1", q.angle_min_p1,
+                   "percent_below_5_10_20_30", q.below[0], q.below[1],
+                   q.below[2], q.below[3], "radius_ratio_mean", q.ratio_mean,
+                   "caps", (json_int_t)q.n_cap, "needles",
+                   (json_int_t)q.n_needle, "worst", list);
+}
+
 void vg_report_surface_text(FILE *to, const struct vg_mesh *m,
                             const struct vg_surface_report *r, size_t shown)
 {
@@ -163,6 +223,7 @@ void vg_report_surface_text(FILE *to, const struct vg_mesh *m,
 
   shells_text(to, r);
   repair_text(to, r);
+  quality_text(to, m);
   for (int kind = 0; kind < VG_DEFECT_N; kind++) {
     size_t n = r->count[kind], said = 0;
 
@@ -225,14 +286,14 @@ json_t *vg_report_surface_json(const struct vg_mesh *m,
                 "lower", s->lo[0], s->lo[1], s->lo[2],
                 "upper", s->hi[0], s->hi[1], s->hi[2]));
   }
-  return json_pack("{s:b s:b s:I s:o s:o s:I s:I s:I s:b s:o}",
+  return json_pack("{s:b s:b s:I s:o s:o s:I s:I s:I s:b s:o s:o}",
                    "ok", r->n_defect == 0, "closed", r->is_closed,
                    "defects", (json_int_t)r->n_defect, "count", counts,
                    "shells", shells, "flipped", (json_int_t)r->n_flipped,
                    "removed_points", (json_int_t)r->n_removed_point,
                    "removed_triangles", (json_int_t)r->n_removed_tri,
                    "turned_inside_out", r->turned_inside_out, "first",
-                   defects_json(m, r, shown));
+                   defects_json(m, r, shown), "quality", quality_json(m));
 }
 
 void vg_report_domain_text(FILE *to, const struct vg_domain_report *r)

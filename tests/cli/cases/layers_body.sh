@@ -140,8 +140,10 @@ exits 0
 same swapped/needle.b8.ugrid again/needle.b8.ugrid
 vanguard mesh -q -p needle --first 0.001 --surface-swap no --out as_given
 exits 0
-lacks out "needles"
+lacks out "swaps and"
 says as_given/needle.report.json '"wall_triangles": 10'
 vanguard mesh -q -p needle --out isotropic
 exits 0
-lacks out "needles"
+lacks out "swaps and"
+says out "needle, patch 1, face"
+says isotropic/needle.report.json '"needles": 2'
