@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 
 #include "core/judge/quality.h"
+#include "io/mesh/su2.h"
 #include "io/slices/slices.h"
 #include "io/slices/slices_parts.h"
 #include "io/vgrid/mapbc.h"
@@ -150,6 +151,25 @@ static void every_kind_of_ugrid(void **state)
     same_file(whole, cut_file(f));
     unlink(whole);
     unlink(cut_file(f));
+    cut_release(&c);
+  }
+}
+
+static void su2_is_that_of_the_whole_mesh(void **state)
+{
+  const char *whole = whole_file();
+
+  (void)state;
+  for (int k = 0; k < 2; k++) {
+    const struct vg_slices_options o = { .threads = 1 + k };
+    struct cut c;
+
+    assert_int_equal(vg_su2_write(whole, &mesh[k], NULL), VG_OK);
+    cut_make(&c, &mesh[k], N_SLICE, 0, &info[k], 5);
+    write_slices(&c, "su2", &o);
+    same_file(whole, cut_file("su2"));
+    unlink(whole);
+    unlink(cut_file("su2"));
     cut_release(&c);
   }
 }
@@ -530,7 +550,7 @@ static void pieces_are_the_mesh(void **state)
 }
 
 static const char *const all_forms[] = { "b8.ugrid", "r8.ugrid", "cogsg",
-                                         "vtu", "pvtu" };
+                                         "vtu", "pvtu", "su2" };
 #define N_FORM (sizeof all_forms / sizeof *all_forms)
 
 static void expect_failure(struct cut *c, const char *stem, const char *form,
@@ -611,6 +631,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(collect_is_the_mesh),
     cmocka_unit_test(every_kind_of_ugrid),
+    cmocka_unit_test(su2_is_that_of_the_whole_mesh),
     cmocka_unit_test(rounding_that_spoils_cells_is_refused),
     cmocka_unit_test(rounding_that_joins_points_is_refused),
     cmocka_unit_test(records_in_parts),

@@ -14,6 +14,7 @@
 #include "base/memory.h"
 #include "core/geometry/vector.h"
 #include "io/mesh/foam_parts.h"
+#include "io/mesh/patch_words.h"
 #include "io/stream/boundary.h"
 #include "io/stream/stream.h"
 #include "io/vgrid/mapbc.h"
@@ -102,69 +103,6 @@ static int is_planar(const struct vg_mesh *m, const size_t *face, size_t n)
     if (!(square < 1e-16)) return 0;
   }
   return 1;
-}
-
-/* What OpenFOAM takes as a word anywhere in a dictionary. */
-static void clean_name(const struct vg_patch *p, char name[VG_NAME_MAX + 32])
-{
-  size_t n = 0;
-
-  if (!isalpha((unsigned char)p->name[0]) && p->name[0] != '_')
-    n = (size_t)sprintf(name, p->name[0] ? "patch_" : "patch_%d", p->id);
-  for (const char *s = p->name; *s; s++) {
-    unsigned char c = (unsigned char)*s;
-
-    name[n++] = c < 128 && (isalnum(c) || strchr("_-.", c)) ? *s : '_';
-  }
-  name[n] = 0;
-}
-
-struct named { char name[VG_NAME_MAX + 32]; size_t patch; };
-
-static int by_name(const void *a, const void *b)
-{
-  const struct named *p = a, *q = b;
-  int order = strcmp(p->name, q->name);
-
-  return order ? order : (p->patch > q->patch) - (p->patch < q->patch);
-}
-
-static int by_patch(const void *a, const void *b)
-{
-  const struct named *p = a, *q = b;
-
-  return (p->patch > q->patch) - (p->patch < q->patch);
-}
-
-/* Names of all patches, unique: of equal ones all but the first get their
- * patch number, and '_' until nothing clashes any more. */
-static struct named *make_names(const struct vg_mesh *m)
-{
-  struct named *list = vg_alloc(m->n_patch, sizeof *list);
-  int again = 1;
-
-  if (!list) return NULL;
-  for (size_t i = 0; i < m->n_patch; i++) {
-    list[i].patch = i;
-    clean_name(m->patch + i, list[i].name);
-  }
-  for (int turn = 0; again && turn < 8; turn++) {
-    qsort(list, m->n_patch, sizeof *list, by_name);
-    again = 0;
-    for (size_t i = 1, first = 0; i < m->n_patch; i++) {
-      char *name = list[i].name;
-
-      if (strcmp(list[first].name, name)) {
-        first = i;
-        continue;
-      }
-      again = 1;
-      name[VG_NAME_MAX - 1] = 0;
-      sprintf(name + strlen(name), "_%d", m->patch[list[i].patch].id);
-    }
-  }
-  qsort(list, m->n_patch, sizeof *list, by_patch);
-  return list;
 }
 
 /* --- lists --- */
@@ -337,7 +275,7 @@ static vg_status put_topology(struct writing *w, struct vg_error *err)
 static vg_status put_boundary(struct writing *w, struct vg_error *err)
 {
   struct vg_output *o = w->out + BOUNDARY;
-  struct named *name = make_names(w->m);
+  char (*name)[VG_PATCH_WORD] = vg_patch_words(w->m);
 
   if (!name) return vg_fail_memory(err, "the names of the patches");
   vg_foam_header(o, "polyBoundaryMesh", location, "boundary", 1, NULL);
@@ -348,7 +286,7 @@ static vg_status put_boundary(struct writing *w, struct vg_error *err)
         w->m->patch + i, is_planar(w->m, w->order + first, n), &physical);
 
     vg_output_format(o, "    %s\n    {\n        type            %s;\n",
-                     name[i].name, type);
+                     name[i], type);
     if (*physical)
       vg_output_format(o, "        physicalType    %s;\n", physical);
     vg_output_format(o, "        nFaces          %zu;\n"

@@ -14,6 +14,7 @@
 #include "io/mesh/medit.h"
 #include "io/mesh/obj.h"
 #include "io/mesh/stl.h"
+#include "io/mesh/su2.h"
 #include "io/mesh/tri.h"
 #include "io/mesh/ugrid.h"
 #include "io/mesh/vtu.h"
@@ -129,6 +130,7 @@ static const struct format {
   { "front", read_front, NULL },
   { "surf", read_surf, NULL },
   { VG_FOAM_SUFFIX, NULL, write_foam },
+  { "su2", NULL, vg_su2_write },
   { "vtu", NULL, write_vtu },
 };
 #define N_FORMAT (sizeof formats / sizeof formats[0])
@@ -156,7 +158,8 @@ const char *vg_format_list(void)
 {
   return ".stl .tri .triq .obj .mesh .meshb .ugrid, .X.ugrid with X of b8 lb8 "
          "b4 lb4 r8 lr8 r4 lr4 b8l lb8l, .b8.ugrid64 .lb8.ugrid64, .cogsg, "
-         ".front .surf (read only), .vtu .openfoam (written only); .gz may "
+         ".front .surf (read only), .su2 .vtu .openfoam (written "
+         "only); .gz may "
          "follow what is read";
 }
 

@@ -232,7 +232,7 @@ done:
 
 /* --- forms --- */
 
-enum form { FORM_NONE, FORM_UGRID, FORM_COGSG, FORM_VTU, FORM_PVTU,
+enum form { FORM_NONE, FORM_UGRID, FORM_COGSG, FORM_VTU, FORM_PVTU, FORM_SU2,
             FORM_BOUNDARY };
 
 static enum form form_of(const char *word)
@@ -243,6 +243,7 @@ static enum form form_of(const char *word)
   if (!strcmp(word, "cogsg")) return FORM_COGSG;
   if (!strcmp(word, "vtu")) return FORM_VTU;
   if (!strcmp(word, "pvtu")) return FORM_PVTU;
+  if (!strcmp(word, "su2")) return FORM_SU2;
   if (!strcmp(word, "mapbc") || !strcmp(word, "fun3d.mapbc") ||
       !strcmp(word, "surface.vtu"))
     return FORM_BOUNDARY;
@@ -317,12 +318,15 @@ vg_status vg_slices_write_with(struct vg_comm *comm,
     case FORM_PVTU:
       st = vg_slices_write_pvtu(comm, s, stem, o, err);
       break;
+    case FORM_SU2:
+      st = vg_slices_write_su2(comm, s, path, o->threads, err);
+      break;
     case FORM_BOUNDARY:
       st = write_boundary(comm, s, path, stem, form, o->threads, err);
       break;
     default:
       st = vg_fail(err, VG_ERR_UNSUPPORTED, "%s: a mesh in slices cannot be "
-                   "written in this form; known are cogsg, pvtu, vtu and the "
+                   "written in this form; known are cogsg, pvtu, su2, vtu and the "
                    "binary kinds of .ugrid, as lb8.ugrid", path);
     }
   free(path);

@@ -1,0 +1,74 @@
+#include "io/mesh/patch_words.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+
+struct named { char name[VG_PATCH_WORD]; size_t patch; };
+
+static void clean_name(const struct vg_patch *p, char name[VG_PATCH_WORD])
+{
+  size_t n = 0;
+
+  if (!isalpha((unsigned char)p->name[0]) && p->name[0] != '_')
+    n = (size_t)sprintf(name, p->name[0] ? "patch_" : "patch_%d", p->id);
+  for (const char *s = p->name; *s; s++) {
+    unsigned char c = (unsigned char)*s;
+
+    name[n++] = c < 128 && (isalnum(c) || strchr("_-.", c)) ? *s : '_';
+  }
+  name[n] = 0;
+}
+
+static int by_name(const void *a, const void *b)
+{
+  const struct named *p = a, *q = b;
+  int order = strcmp(p->name, q->name);
+
+  return order ? order : (p->patch > q->patch) - (p->patch < q->patch);
+}
+
+static void make_unique(const struct vg_mesh *m, struct named *list)
+{
+  int again = 1;
+
+  for (int turn = 0; again && turn < 8; turn++) {
+    qsort(list, m->n_patch, sizeof *list, by_name);
+    again = 0;
+    for (size_t i = 1, first = 0; i < m->n_patch; i++) {
+      char *name = list[i].name;
+
+      if (strcmp(list[first].name, name)) {
+        first = i;
+        continue;
+      }
+      again = 1;
+      name[VG_NAME_MAX - 1] = 0;
+      sprintf(name + strlen(name), "_%d", m->patch[list[i].patch].id);
+    }
+  }
+}
+
+char (*vg_patch_words(const struct vg_mesh *m))[VG_PATCH_WORD]
+{
+  struct named *list = vg_alloc(m->n_patch, sizeof *list);
+  char (*name)[VG_PATCH_WORD] = vg_alloc(m->n_patch, sizeof *name);
+
+  if (list && name) {
+    for (size_t i = 0; i < m->n_patch; i++) {
+      list[i].patch = i;
+      clean_name(m->patch + i, list[i].name);
+    }
+    make_unique(m, list);
+    for (size_t i = 0; i < m->n_patch; i++)
+      memcpy(name[list[i].patch], list[i].name, sizeof *name);
+  } else {
+    free(name);
+    name = NULL;
+  }
+  free(list);
+  return name;
+}

@@ -1,0 +1,255 @@
+#include "io/mesh/su2.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "io/mesh/su2_put.h"
+
+#define REAL_WIDTH 25      /* vg_format_real needs 24 at most */
+#define LINE 256
+
+/* Ours to VTK's, as in a .vtu (io/mesh/vtu.c). */
+static const struct kind { int n_node; const char *name; int order[8]; }
+kinds[VG_SU2_KINDS] = {
+  { 4, "10", { 0, 1, 2, 3 } }, { 5, "14", { 1, 0, 3, 4, 2 } },
+  { 6, "13", { 1, 0, 2, 4, 3, 5 } }, { 8, "12", { 0, 1, 2, 3, 4, 5, 6, 7 } },
+};
+
+static int digits(uint64_t n)
+{
+  int width = 1;
+
+  while (n >= 10) {
+    n /= 10;
+    width++;
+  }
+  return width;
+}
+
+/* A blank and v, right in `width` columns, from *to on. */
+static void column(char **to, int width, uint64_t v)
+{
+  char *at = *to + width;
+
+  *to = at + 1;
+  do {
+    *at-- = (char)('0' + v % 10);
+    v /= 10;
+  } while (v);
+  while (at >= *to - width - 1) *at-- = ' ';
+}
+
+static uint64_t cell_line(const struct vg_su2 *s, int kind)
+{
+  return 2 + (uint64_t)kinds[kind].n_node * (uint64_t)(1 + s->node_width) +
+         (uint64_t)(1 + s->cell_width) + 1;
+}
+
+static uint64_t point_line(const struct vg_su2 *s)
+{
+  return 3 * REAL_WIDTH + (uint64_t)(1 + s->node_width) + 1;
+}
+
+static uint64_t count_of(const struct vg_su2 *s)
+{
+  return s->n_cell[0] + s->n_cell[1] + s->n_cell[2] + s->n_cell[3];
+}
+
+static void put_head(struct vg_output *out, const struct vg_su2 *s)
+{
+  vg_output_format(out, "NDIME= 3\nNELEM= %llu\n",
+                   (unsigned long long)count_of(s));
+}
+
+static void put_points_head(struct vg_output *out, const struct vg_su2 *s)
+{
+  vg_output_format(out, "NPOIN= %zu\n", s->frame->n_point);
+}
+
+/* Where things stand: by writing what stands between them to nowhere. */
+static vg_status find_places(struct vg_su2 *s, struct vg_error *err)
+{
+  struct vg_output out = VG_OUTPUT_INIT;
+  vg_status st = vg_output_shared(NULL, &out, err);
+
+  if (st < 0) return st;
+  put_head(&out, s);
+  for (int k = 0; k < VG_SU2_KINDS; k++) {
+    s->at[k] = out.written;
+    vg_output_skip(&out, s->n_cell[k] * cell_line(s, k));
+  }
+  put_points_head(&out, s);
+  s->at_point = out.written;
+  vg_output_release(&out);
+  return VG_OK;
+}
+
+/* Faces by patch: triangles, then quadrilaterals, each as they come. */
+static vg_status sort_faces(struct vg_su2 *s, struct vg_error *err)
+{
+  const struct vg_mesh *m = s->frame;
+  size_t *first = vg_calloc(m->n_patch + 2, sizeof *first);
+
+  s->face_first = first;
+  s->face = vg_alloc(m->n_tri + m->n_quad, sizeof *s->face);
+  if (!first || !s->face) return vg_fail_memory(err, "the markers");
+  for (size_t i = 0; i < m->n_tri; i++) first[m->tri_patch[i] + 2]++;
+  for (size_t i = 0; i < m->n_quad; i++) first[m->quad_patch[i] + 2]++;
+  for (size_t p = 0; p < m->n_patch; p++) first[p + 2] += first[p + 1];
+  /* Filling moves first[p + 1] to the end of p: the start of p + 1. */
+  for (size_t i = 0; i < m->n_tri; i++)
+    s->face[first[m->tri_patch[i] + 1]++] = i;
+  for (size_t i = 0; i < m->n_quad; i++)
+    s->face[first[m->quad_patch[i] + 1]++] = m->n_tri + i;
+  return VG_OK;
+}
+
+vg_status vg_su2_plan(const char *path, const struct vg_mesh *frame,
+                      struct vg_su2 *s, struct vg_error *err)
+{
+  vg_status st;
+
+  *s = (struct vg_su2){ .frame = frame, .n_cell = {
+    frame->n_tet, frame->n_pyr, frame->n_pri, frame->n_hex } };
+  for (int k = 1; k < VG_SU2_KINDS; k++)
+    s->first[k] = s->first[k - 1] + s->n_cell[k - 1];
+  if (!count_of(s))
+    return vg_fail(err, VG_ERR_INPUT, "%s: the mesh has no cells; an SU2 "
+                   "file of three dimensions needs some: write the surface "
+                   "as .stl or .lb8.ugrid", path);
+  s->node_width = digits(frame->n_point - 1);
+  s->cell_width = digits(count_of(s) - 1);
+  s->word = vg_patch_words(frame);
+  if (!s->word) return vg_fail_memory(err, "the names of the markers");
+  VG_TRY(sort_faces(s, err));
+  st = find_places(s, err);
+done:
+  if (st < 0) vg_su2_release(s);
+  return st;
+}
+
+void vg_su2_release(struct vg_su2 *s)
+{
+  free(s->word);
+  free(s->face_first);
+  free(s->face);
+  s->word = NULL;
+  s->face_first = s->face = NULL;
+}
+
+void vg_su2_seek_cell(struct vg_output *out, const struct vg_su2 *s, int kind,
+                      uint64_t cell)
+{
+  vg_output_seek(out, s->at[kind] + cell * cell_line(s, kind));
+}
+
+void vg_su2_seek_point(struct vg_output *out, const struct vg_su2 *s,
+                       uint64_t point)
+{
+  vg_output_seek(out, s->at_point + point * point_line(s));
+}
+
+void vg_su2_put_cell(struct vg_output *out, const struct vg_su2 *s, int kind,
+                     uint64_t cell, const uint32_t *node,
+                     const uint32_t *number)
+{
+  char line[LINE], *to = line + 2;
+
+  memcpy(line, kinds[kind].name, 2);
+  for (int i = 0; i < kinds[kind].n_node; i++) {
+    uint32_t v = node[kinds[kind].order[i]];
+
+    column(&to, s->node_width, number ? number[v] : v);
+  }
+  column(&to, s->cell_width, s->first[kind] + cell);
+  *to++ = '\n';
+  vg_output_bytes(out, line, (size_t)(to - line));
+}
+
+void vg_su2_put_point(struct vg_output *out, const struct vg_su2 *s,
+                      uint64_t point, const double x[3])
+{
+  char line[LINE], text[32], *to = line;
+
+  memset(line, ' ', 3 * REAL_WIDTH);
+  for (int k = 0; k < 3; k++) {
+    size_t n = vg_format_real(x[k], text);
+
+    to += REAL_WIDTH;
+    memcpy(to - n, text, n);
+  }
+  column(&to, s->node_width, point);
+  *to++ = '\n';
+  vg_output_bytes(out, line, (size_t)(to - line));
+}
+
+static void put_face(struct vg_output *out, const struct vg_mesh *m, size_t i)
+{
+  int is_tri = i < m->n_tri;
+  const uint32_t *node = is_tri ? m->tri[i] : m->quad[i - m->n_tri];
+  char line[LINE], *to = line + 1;
+
+  line[0] = is_tri ? '5' : '9';
+  for (int k = 0; k < (is_tri ? 3 : 4); k++)
+    column(&to, digits(node[k]), node[k]);
+  *to++ = '\n';
+  vg_output_bytes(out, line, (size_t)(to - line));
+}
+
+/* Patches without faces are no markers. */
+static void put_markers(struct vg_output *out, const struct vg_su2 *s)
+{
+  size_t n = 0, n_patch = s->frame->n_patch;
+
+  for (size_t p = 0; p < n_patch; p++)
+    n += s->face_first[p + 1] > s->face_first[p];
+  vg_output_format(out, "NMARK= %zu\n", n);
+  for (size_t p = 0; p < n_patch; p++) {
+    size_t first = s->face_first[p], end = s->face_first[p + 1];
+
+    if (first == end) continue;
+    vg_output_format(out, "MARKER_TAG= %s\nMARKER_ELEMS= %zu\n", s->word[p],
+                     end - first);
+    for (size_t i = first; i < end; i++) put_face(out, s->frame, s->face[i]);
+  }
+}
+
+void vg_su2_put(struct vg_output *out, const struct vg_su2 *s)
+{
+  const struct vg_mesh *m = s->frame;
+  const uint32_t *const cell[VG_SU2_KINDS] = {
+    (const uint32_t *)m->tet, (const uint32_t *)m->pyr,
+    (const uint32_t *)m->pri, (const uint32_t *)m->hex };
+
+  put_head(out, s);
+  for (int k = 0; k < VG_SU2_KINDS; k++)
+    if (!m->point) vg_output_skip(out, s->n_cell[k] * cell_line(s, k));
+    else
+      for (uint64_t i = 0; i < s->n_cell[k]; i++)
+        vg_su2_put_cell(out, s, k, i,
+                        cell[k] + i * (uint64_t)kinds[k].n_node, NULL);
+  put_points_head(out, s);
+  if (!m->point) vg_output_skip(out, m->n_point * point_line(s));
+  else
+    for (size_t i = 0; i < m->n_point; i++)
+      vg_su2_put_point(out, s, i, m->point[i]);
+  put_markers(out, s);
+}
+
+vg_status vg_su2_write(const char *path, const struct vg_mesh *m,
+                       struct vg_error *err)
+{
+  struct vg_output out = VG_OUTPUT_INIT;
+  struct vg_su2 s;
+  vg_status st = vg_su2_plan(path, m, &s, err);
+
+  if (st < 0) return st;
+  VG_TRY(vg_output_open(path, &out, err));
+  vg_su2_put(&out, &s);
+  st = vg_output_commit(&out, err);
+done:
+  vg_output_release(&out);
+  vg_su2_release(&s);
+  return st;
+}
