@@ -21,7 +21,8 @@
  * launchers to a process and to its group. */
 #define SAME_WISH_MS 1000
 
-static volatile sig_atomic_t interrupted, ends_at_once, shows_line, posted;
+static volatile sig_atomic_t interrupted, ends_at_once, shows_line, posted,
+                             is_urgent;
 static atomic_llong interrupted_ms;
 
 /* In a signal's handler: only what is safe there. */
@@ -60,18 +61,27 @@ static int remove_one(const char *path, const struct stat *info, int type,
   return 0;
 }
 
+/* Until the next signal, so many milliseconds at most. */
+static void wait_for_more(long long ms)
+{
+  struct timespec t;
+
+  clock_gettime(CLOCK_REALTIME, &t);
+  t.tv_sec += (time_t)(ms / 1000);
+  t.tv_nsec += (long)(ms % 1000) * 1000000;
+  if (t.tv_nsec >= 1000000000) t.tv_sec++, t.tv_nsec -= 1000000000;
+  sem_timedwait(&asked, &t);
+}
+
 /* Other threads go on writing until the end: the folder may need a second
  * look. */
 static void *wait_for_deadline(void *unused)
 {
   (void)unused;
   while (sem_wait(&asked)) {}
-  for (long long left; (left = interrupted_ms + (long long)(1000 * deadline) -
-                               now_ms()) > 0;) {
-    const struct timespec t = { left / 1000, left % 1000 * 1000000 };
-
-    nanosleep(&t, NULL);
-  }
+  for (long long left; !is_urgent &&
+         (left = interrupted_ms + (long long)(1000 * deadline) - now_ms()) > 0;)
+    wait_for_more(left);
   pthread_mutex_lock(&ending);
   for (int k = 0; k < 3 && !is_committed && *temporary; k++)
     if (nftw(temporary, remove_one, 16, FTW_DEPTH | FTW_PHYS)) break;
@@ -123,8 +133,9 @@ static void on_signal(int number)
     interrupted = 1;
     if (ends_at_once) end_at_once();
   } else if (number != SIGUSR1 && now_ms() - interrupted_ms > SAME_WISH_MS) {
-    signal(number, SIG_DFL);
-    raise(number);
+    is_urgent = 1;
+    if (deadline > 0) sem_post(&asked);
+    else end_at_once();
   }
 }
 

@@ -29,8 +29,8 @@ int vg_display_update(void *user, const char *stage, size_t done,
 void vg_display_clear(struct vg_display *d);
 
 /** 1 after one of these signals. Another SIGINT, SIGTERM or SIGHUP more than a
- * second later ends the process at once; SIGUSR1, a batch system's warning,
- * never does. */
+ * second later ends the process at once, with the same message and exit
+ * status; SIGUSR1, a batch system's warning, never does. */
 int vg_display_interrupted(void);
 
 /** VG_ERR_IO from then on, with a message. */

@@ -3,8 +3,9 @@
 vanguard demo box --cells 400000 --out p
 
 # signalled SIGNAL STAGE COMMAND...: sent $late s after the stage has begun, and
-# once more $again s later if that is set.
-late=0 again=
+# once more $again s later if that is set, or after it has stood still for
+# $stands s from then on.
+late=0 again= stands=
 signalled() {
   signal=$1 stage=$2
   shift 2
@@ -19,7 +20,9 @@ signalled() {
   kill "-$signal" $job 2>/dev/null
   if [ -n "$again" ]; then
     sleep "$again"
+    [ -z "$stands" ] || { kill -STOP $job; sleep "$stands"; }
     kill "-$signal" $job 2>/dev/null
+    [ -z "$stands" ] || kill -CONT $job
   fi
   wait $job
   status=$?
@@ -115,4 +118,14 @@ stopped farfield mesh -p octa --farfield-spacing 0.03 --out o
 start=$(date +%s%N)
 stopped sizes mesh -p p/box --deck fine.deck --farfield none --out o
 [ $(($(date +%s%N) - start)) -lt 20000000000 ] || fail "it did not stop"
+[ -z "$(ls -A o)" ] || fail "left behind: $(ls -A o)"
+
+# Told once more a second later, while it has not ended yet (a busy machine,
+# played by a process that stands still): the same message and status, not the
+# signal's own.
+late=0 again=0.01 stands=1.2
+signalled TERM sizes "$program" mesh -p p/box --deck fine.deck \
+  --farfield none --out o
+exits 1
+says err "interrupted; nothing was written"
 [ -z "$(ls -A o)" ] || fail "left behind: $(ls -A o)"
