@@ -21,7 +21,7 @@
 
 #include "base/memory.h"
 #include "cli/examples/demo.h"
-#include "core/recover/cdt_server.h"
+#include "base/child.h"
 #include "core/surface/surface_check.h"
 #include "io/mesh/format.h"
 #include "partition/advance/advance.h"
@@ -349,7 +349,7 @@ int main(int argc, char **argv)
     fprintf(stderr, "usage: interface CASE|FILE CELLS LEAF [THREADS]\n");
     return 2;
   }
-  must(vg_cdt_server_start(&err), &err);
+  must(vg_child_server_start(&err), &err);
   load(argv[1], atof(argv[2]), &d);
   must(vg_sizing_new(&d.sizing, d.n_source, d.source, &d.surface, &sizing,
                      &err), &err);

@@ -9,7 +9,7 @@
 #include "cli/common/cli.h"
 #include "cli/common/progress.h"
 #include "cli/settings/settings.h"
-#include "core/recover/cdt_server.h"
+#include "base/child.h"
 
 static const struct command {
   const char *name, *summary;
@@ -104,9 +104,9 @@ static int run(const struct command *c, int argc, char **argv)
 
   if (c->meshes) vg_display_watch();
   keep_memory();
-  if (c->meshes) vg_cdt_server_start(NULL);
+  if (c->meshes) vg_child_server_start(NULL);
   status = c->run(argc, argv);
-  vg_cdt_server_stop();
+  vg_child_server_stop();
   return written(status);
 }
 

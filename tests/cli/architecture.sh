@@ -113,6 +113,7 @@ adapter lapacke.h '^partition/model/rates\.c$'
 adapter pthread.h '^(base|partition)/|^cli/common/progress\.c$'
 adapter mpi.h \
   '^(base/comm(_[a-z]+)?\.c|base/comm_parts\.h|io/stream/shared_file\.c)$'
+adapter metis.h '^partition/graph/graph_metis\.c$'
 adapter hwloc.h '^base/comm_cores\.c$'
 adapter xxhash.h '^partition/store/store[a-z_]*\.c$'
 

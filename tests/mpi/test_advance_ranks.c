@@ -4,7 +4,7 @@
 #include "mpi_support.h"
 
 #include "../unit/advance_support.h"
-#include "core/recover/cdt_server.h"
+#include "base/child.h"
 #include "io/slices/slices.h"
 
 static char dir[4096], alone_stem[4096], all_stem[4096];
@@ -302,7 +302,7 @@ int main(void)
   };
   int bad;
 
-  if (vg_cdt_server_start(NULL) != VG_OK) return 1;
+  if (vg_child_server_start(NULL) != VG_OK) return 1;
   read_real();
   bad = cmocka_run_group_tests(tests, set_up, close_job);
   if (real.m.n_tri) scene_end(&real);

@@ -3,7 +3,7 @@
 #include "mpi_support.h"
 
 #include "../unit/advance_support.h"
-#include "core/recover/cdt_server.h"
+#include "base/child.h"
 
 static struct mesh_digest tell(const struct mesh_digest *d)
 {
@@ -53,6 +53,6 @@ int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(as_one_rank_makes_it) };
 
-  if (vg_cdt_server_start(NULL) != VG_OK) return 1;
+  if (vg_child_server_start(NULL) != VG_OK) return 1;
   return cmocka_run_group_tests(tests, open_job, close_job);
 }

@@ -3,7 +3,7 @@
 #define _GNU_SOURCE
 #include "advance_support.h"
 
-#include "core/recover/cdt_server.h"
+#include "base/child.h"
 
 /* --- without cuts it is the fill ----------------------------------------- */
 
@@ -355,6 +355,6 @@ int main(void)
     cmocka_unit_test(fronts_that_bound_nothing),
   };
 
-  if (vg_cdt_server_start(NULL) != VG_OK) return 1;
+  if (vg_child_server_start(NULL) != VG_OK) return 1;
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

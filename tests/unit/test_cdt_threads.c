@@ -18,7 +18,7 @@
 #include <cmocka.h>
 
 #include "base/parallel.h"
-#include "core/recover/cdt_server.h"
+#include "base/child.h"
 #include "core/recover/cdt_tetgen.h"
 
 #define N_JOB 3
@@ -135,16 +135,16 @@ static void the_same_as_in_place(void **state)
   struct batch *a = answered(1, 200), *b;
 
   (void)state;
-  assert_int_equal(vg_cdt_server_is_alive(), 0);
-  assert_int_equal(vg_cdt_server_start(NULL), VG_OK);
-  assert_int_equal(vg_cdt_server_start(NULL), VG_OK);
-  assert_int_equal(vg_cdt_server_is_alive(), 1);
+  assert_int_equal(vg_child_server_is_alive(), 0);
+  assert_int_equal(vg_child_server_start(NULL), VG_OK);
+  assert_int_equal(vg_child_server_start(NULL), VG_OK);
+  assert_int_equal(vg_child_server_is_alive(), 1);
   b = answered(1, 200);
   assert_int_equal(batches_differ(a, b), 0);
   batch_free(b);
-  vg_cdt_server_stop();
-  vg_cdt_server_stop();
-  assert_int_equal(vg_cdt_server_is_alive(), 0);
+  vg_child_server_stop();
+  vg_child_server_stop();
+  assert_int_equal(vg_child_server_is_alive(), 0);
   no_child_is_left();
   b = answered(1, 200);
   assert_int_equal(batches_differ(a, b), 0);
@@ -176,10 +176,10 @@ static void several_threads_at_once(void **state)
   (void)state;
   for (int k = 0; k < 4; k++) a[k] = answered((uint64_t)k, 100);
   for (size_t i = 0; i < N_CALL; i++) c.b[i] = batch_new(i % 4, 100);
-  assert_int_equal(vg_cdt_server_start(NULL), VG_OK);
+  assert_int_equal(vg_child_server_start(NULL), VG_OK);
   vg_parallel_for(4, N_CALL, 1, call, &c);
-  assert_int_equal(vg_cdt_server_is_alive(), 1);
-  vg_cdt_server_stop();
+  assert_int_equal(vg_child_server_is_alive(), 1);
+  vg_child_server_stop();
   for (size_t i = 0; i < N_CALL; i++) {
     assert_int_equal(c.st[i], VG_OK);
     assert_int_equal(batches_differ(c.b[i], a[i % 4]), 0);
@@ -214,7 +214,7 @@ static void a_server_killed_at_any_time(void **state)
     struct blow blow = {.after_us = us};
     pthread_t thread;
 
-    assert_int_equal(vg_cdt_server_start(NULL), VG_OK);
+    assert_int_equal(vg_child_server_start(NULL), VG_OK);
     blow.pid = child_of(getpid());
     assert_true(blow.pid > 0);
     assert_int_equal(pthread_create(&thread, NULL, strike, &blow), 0);
@@ -223,9 +223,9 @@ static void a_server_killed_at_any_time(void **state)
     if (us) pthread_join(thread, NULL);
     assert_int_equal(batches_differ(a, b), 0);
     batch_free(b);
-    for (int k = 0; k < 1000 && vg_cdt_server_is_alive(); k++) usleep(1000);
-    assert_int_equal(vg_cdt_server_is_alive(), 0);
-    vg_cdt_server_stop();
+    for (int k = 0; k < 1000 && vg_child_server_is_alive(); k++) usleep(1000);
+    assert_int_equal(vg_child_server_is_alive(), 0);
+    vg_child_server_stop();
     no_child_is_left();
   }
   batch_free(a);
@@ -238,15 +238,15 @@ static void signals_are_left_to_the_parent(void **state)
   pid_t pid;
 
   (void)state;
-  assert_int_equal(vg_cdt_server_start(NULL), VG_OK);
+  assert_int_equal(vg_child_server_start(NULL), VG_OK);
   batch_free(answered(1, 50));     /* so it is past its beginning */
   pid = child_of(getpid());
   assert_true(pid > 0);            /* kill would take 0 for our group */
   for (size_t k = 0; k < sizeof number / sizeof *number; k++)
     assert_int_equal(kill(pid, number[k]), 0);
   batch_free(answered(1, 50));
-  assert_int_equal(vg_cdt_server_is_alive(), 1);
-  vg_cdt_server_stop();
+  assert_int_equal(vg_child_server_is_alive(), 1);
+  vg_child_server_stop();
   no_child_is_left();
 }
 
@@ -258,12 +258,12 @@ static void files_are_not_held(void **state)
 
   (void)state;
   assert_int_equal(pipe(ends), 0);
-  assert_int_equal(vg_cdt_server_start(NULL), VG_OK);
+  assert_int_equal(vg_child_server_start(NULL), VG_OK);
   close(ends[1]);
   assert_int_equal(read(ends[0], &c, 1), 0);
   close(ends[0]);
-  assert_int_equal(vg_cdt_server_is_alive(), 1);
-  vg_cdt_server_stop();
+  assert_int_equal(vg_child_server_is_alive(), 1);
+  vg_child_server_stop();
 }
 
 /* The parent is killed; its server becomes ours and ends by itself. */
@@ -278,7 +278,7 @@ static void it_ends_with_its_parent(void **state)
   pid = fork();
   assert_true(pid >= 0);           /* kill would take -1 for everybody */
   if (pid == 0) {
-    vg_cdt_server_start(NULL);
+    vg_child_server_start(NULL);
     server = child_of(getpid());
     if (write(ends[1], &server, sizeof server) != sizeof server) _exit(1);
     pause();

@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "cli/examples/demo.h"
-#include "core/recover/cdt_server.h"
+#include "base/child.h"
 #include "fill_shapes.h"
 
 struct job {
@@ -165,6 +165,6 @@ int main(void)
     cmocka_unit_test(pockets_at_once),
   };
 
-  if (vg_cdt_server_start(NULL) != VG_OK) return 1;
+  if (vg_child_server_start(NULL) != VG_OK) return 1;
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

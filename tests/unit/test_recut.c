@@ -4,7 +4,7 @@
 
 #include <pthread.h>
 
-#include "core/recover/cdt_server.h"
+#include "base/child.h"
 #include "partition/cut/node.h"
 
 /* --- fronts -------------------------------------------------------------- */
@@ -195,6 +195,6 @@ int main(void)
     cmocka_unit_test(the_record_is_one),
   };
 
-  if (vg_cdt_server_start(NULL) != VG_OK) return 1;
+  if (vg_child_server_start(NULL) != VG_OK) return 1;
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

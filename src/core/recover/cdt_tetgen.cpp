@@ -1,18 +1,15 @@
 #include "core/recover/cdt_tetgen.h"
 
-#include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <vector>
 
 #include <dlfcn.h>
 #include <signal.h>
-#include <sys/socket.h>
 #include <sys/time.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include "core/recover/cdt_server.h"
+#include "base/child.h"
 
 #define TETLIBRARY
 #include <tetgen.h>
@@ -66,36 +63,6 @@ const uint64_t n_max = 1u << 31;   /* TetGen counts in int */
 
 const uint64_t ways = 2;     /* for TetGen to do a job */
 
-bool put(int to, const void *data, size_t size)
-{
-  const char *at = static_cast<const char *>(data);
-
-  while (size) {
-    ssize_t n = send(to, at, size, MSG_NOSIGNAL);
-
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) return false;
-    at += n;
-    size -= static_cast<size_t>(n);
-  }
-  return true;
-}
-
-bool get(int from, void *data, size_t size)
-{
-  char *at = static_cast<char *>(data);
-
-  while (size) {
-    ssize_t n = recv(from, at, size, 0);
-
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) return false;
-    at += n;
-    size -= static_cast<size_t>(n);
-  }
-  return true;
-}
-
 /* --- in the child -------------------------------------------------------- */
 
 void take_facet(tetgenio::facet *f, const uint32_t tri[3])
@@ -118,8 +85,8 @@ bool take_input(tetgenio &in, const question &q, int from)
   in.numberofpoints = static_cast<int>(q.n);
   in.pointlist = new REAL[3 * q.n];
   in.facetlist = new tetgenio::facet[q.n_tri];
-  if (!get(from, in.pointlist, 3 * q.n * sizeof(REAL)) ||
-      !get(from, tri.data(), tri.size() * sizeof tri[0])) return false;
+  if (!vg_child_get(from, in.pointlist, 3 * q.n * sizeof(REAL)) ||
+      !vg_child_get(from, tri.data(), tri.size() * sizeof tri[0])) return false;
   in.numberoffacets = static_cast<int>(q.n_tri);
   for (size_t i = 0; i < q.n_tri; i++)
     take_facet(&in.facetlist[i], &tri[3 * i]);
@@ -132,9 +99,10 @@ bool give_output(const tetgenio &out, const question &q, int to)
 
   a.n_added = static_cast<uint64_t>(out.numberofpoints) - q.n;
   a.n_tet = static_cast<uint64_t>(out.numberoftetrahedra);
-  return put(to, &a, sizeof a) &&
-         put(to, out.pointlist + 3 * q.n, 3 * a.n_added * sizeof(REAL)) &&
-         put(to, out.tetrahedronlist, 4 * a.n_tet * sizeof(int));
+  return vg_child_put(to, &a, sizeof a) &&
+         vg_child_put(to, out.pointlist + 3 * q.n,
+                      3 * a.n_added * sizeof(REAL)) &&
+         vg_child_put(to, out.tetrahedronlist, 4 * a.n_tet * sizeof(int));
 }
 
 /* p: keep facets; Y: without points on them, in either of two ways; c: all of
@@ -180,8 +148,9 @@ bool ask(const vg_cdt_job &job, uint64_t way, int to)
 {
   question q = {job.n, job.n_tri, way};
 
-  return put(to, &q, sizeof q) && put(to, job.x, job.n * sizeof *job.x) &&
-         put(to, job.tri, job.n_tri * sizeof *job.tri);
+  return vg_child_put(to, &q, sizeof q) &&
+         vg_child_put(to, job.x, job.n * sizeof *job.x) &&
+         vg_child_put(to, job.tri, job.n_tri * sizeof *job.tri);
 }
 
 /* One answer; false when the child is gone. */
@@ -189,7 +158,7 @@ bool receive(vg_cdt_job &job, int from)
 {
   answer a;
 
-  if (!get(from, &a, sizeof a)) return false;
+  if (!vg_child_get(from, &a, sizeof a)) return false;
   if (a.n_added > n_max || a.n_tet > n_max) return false;
   job.n_all = job.n + a.n_added;
   job.n_tet = a.n_tet;
@@ -199,8 +168,8 @@ bool receive(vg_cdt_job &job, int from)
       std::malloc((job.n_tet + 1) * sizeof *job.tet));
   if (job.all && job.tet) {
     std::memcpy(job.all, job.x, job.n * sizeof *job.all);
-    if (get(from, job.all + job.n, a.n_added * sizeof *job.all) &&
-        get(from, job.tet, a.n_tet * sizeof *job.tet)) {
+    if (vg_child_get(from, job.all + job.n, a.n_added * sizeof *job.all) &&
+        vg_child_get(from, job.tet, a.n_tet * sizeof *job.tet)) {
       job.st = VG_OK;
       return true;
     }
@@ -212,41 +181,35 @@ bool receive(vg_cdt_job &job, int from)
   return false;
 }
 
-/* A child of this process; -1 when refused. */
-int fork_here(pid_t *pid)
+/* What a child does: jobs in and answers out. */
+void serve(int fd)
 {
-  int ends[2];
-  pid_t self = getpid();
+  question q;
 
-  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends)) return -1;
-  *pid = fork();
-  if (*pid == 0) {
-    vg_cdt_server_detach(self, ends[1]);
-    vg_cdt_serve(ends[1]);
+  while (vg_child_get(fd, &q, sizeof q)) {
+    be_patient(q.n_tri);
+    try {
+      if (!run(q, fd)) _exit(1);
+    } catch (...) {
+      _exit(1);
+    }
   }
-  close(ends[1]);
-  if (*pid > 0) return ends[0];
-  close(ends[0]);
-  return -1;
+  _exit(0);
 }
 
 /* A child works through the jobs until one ends it. Returns how many need not
  * be tried again in this way, or a negative status. */
 long run_child(size_t n_job, vg_cdt_job *job, uint64_t way)
 {
-  int fd = vg_cdt_server_connect();
+  struct vg_child c;
   long done = 0, n = static_cast<long>(n_job);
-  pid_t pid = 0;
 
-  if (fd < 0) fd = fork_here(&pid);
-  if (fd < 0) return VG_ERR_MEMORY;
-  while (done < n && ask(job[done], way, fd) && receive(job[done], fd)) done++;
+  if (vg_child_open(serve, &c) < 0) return VG_ERR_MEMORY;
+  while (done < n && ask(job[done], way, c.fd) && receive(job[done], c.fd))
+    done++;
   /* blame the job, unless the child was taken along by the server's end */
-  if (done < n && (pid || vg_cdt_server_is_alive())) done++;
-  shutdown(fd, SHUT_RDWR);
-  close(fd);
-  while (pid && waitpid(pid, nullptr, 0) < 0 && errno == EINTR) {
-  }
+  if (done < n && (c.pid || vg_child_server_is_alive())) done++;
+  vg_child_close(&c);
   return done;
 }
 
@@ -270,21 +233,6 @@ REAL insphere(REAL *a, REAL *b, REAL *c, REAL *d, REAL *e)
 
   count_call();
   return real(a, b, c, d, e);
-}
-
-extern "C" void vg_cdt_serve(int fd)
-{
-  question q;
-
-  while (get(fd, &q, sizeof q)) {
-    be_patient(q.n_tri);
-    try {
-      if (!run(q, fd)) _exit(1);
-    } catch (...) {
-      _exit(1);
-    }
-  }
-  _exit(0);
 }
 
 extern "C" vg_status vg_cdt_tetgen(size_t n_job, struct vg_cdt_job *job,

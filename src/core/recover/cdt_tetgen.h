@@ -3,9 +3,8 @@
  *
  * TetGen 1.5 keeps filters and random state in statics, prints when told to
  * be quiet, ends the process on failed assertions and frees twice what it
- * gives up. So it runs in a child process, which may die without harm: one of
- * the server's (core/recover/cdt_server.h), or of this process when there is
- * none. */
+ * gives up. So it runs in a child process (base/child.h), which may die without
+ * harm. */
 #ifndef VG_CORE_RECOVER_CDT_TETGEN_H
 #define VG_CORE_RECOVER_CDT_TETGEN_H
 
@@ -36,10 +35,6 @@ struct vg_cdt_job {
  * undone: st VG_ERR_GEOMETRY), else VG_OK. */
 vg_status vg_cdt_tetgen(size_t n_job, struct vg_cdt_job *job,
                         struct vg_error *err);
-
-/** For the server: what a child does, jobs in and answers out over a stream
- * socket until the other end shuts it. Does not return. */
-void vg_cdt_serve(int fd) __attribute__((noreturn));
 
 #ifdef __cplusplus
 }

@@ -1,5 +1,5 @@
 #define _GNU_SOURCE
-#include "core/recover/cdt_server.h"
+#include "base/child.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -15,10 +15,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "core/recover/cdt_tetgen.h"
 
 /* One message asks for one child; a socket to it comes along. */
 struct request {
+  vg_child_body *body;
   int has_affinity;
   cpu_set_t affinity;
 };
@@ -79,7 +79,7 @@ static void set_signals(void)
   sigprocmask(SIG_SETMASK, &none, NULL);
 }
 
-void vg_cdt_server_detach(pid_t parent, int fd)
+static void detach(pid_t parent, int fd)
 {
   struct rlimit none = {0, 0};
 
@@ -116,11 +116,12 @@ static ssize_t take_request(int from, struct request *r, int *fd)
 __attribute__((noreturn))
 static void be_child(pid_t parent, int fd, const struct request *r)
 {
-  vg_cdt_server_detach(parent, fd);
+  detach(parent, fd);
   if (r->has_affinity)
     sched_setaffinity(0, sizeof r->affinity, &r->affinity);
   if (send(fd, "", 1, MSG_NOSIGNAL) != 1) _exit(1);
-  vg_cdt_serve(fd);
+  r->body(fd);
+  _exit(1);
 }
 
 __attribute__((noreturn)) static void serve(int from)
@@ -133,7 +134,7 @@ __attribute__((noreturn)) static void serve(int from)
   set_signals();
   signal(SIGPIPE, SIG_IGN);
   signal(SIGCHLD, SIG_IGN);  /* children leave no zombies */
-  prctl(PR_SET_NAME, "vanguard-tetgen");
+  prctl(PR_SET_NAME, "vanguard-child");
   keep_only(from);
   while ((n = take_request(from, &r, &fd)) > 0) {
     if (fd < 0) continue;
@@ -143,20 +144,20 @@ __attribute__((noreturn)) static void serve(int from)
   _exit(0);
 }
 
-vg_status vg_cdt_server_start(struct vg_error *err)
+vg_status vg_child_server_start(struct vg_error *err)
 {
   int ends[2];
   pid_t pid;
 
   if (control >= 0) return VG_OK;
   if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends))
-    return vg_fail_memory(err, "a socket for TetGen");
+    return vg_fail_memory(err, "a socket for child processes");
   pid = fork();
   if (pid == 0) serve(ends[1]);
   close(ends[1]);
   if (pid < 0) {
     close(ends[0]);
-    return vg_fail_memory(err, "a process for TetGen");
+    return vg_fail_memory(err, "a process for child processes");
   }
   server = pid;
   server_died = 0;
@@ -173,7 +174,7 @@ static void wait_for(int options)
   while (pid > 0 && waitpid(pid, NULL, options) < 0 && errno == EINTR) {}
 }
 
-void vg_cdt_server_stop(void)
+void vg_child_server_stop(void)
 {
   int fd = atomic_exchange(&control, -1);
 
@@ -193,9 +194,9 @@ static void remember_death(void)
   wait_for(0);               /* its socket is closed: it is about to end */
 }
 
-static int send_ticket(int to, int fd)
+static int send_ticket(int to, int fd, vg_child_body *body)
 {
-  struct request r = {0};
+  struct request r = { .body = body };
   struct iovec part = {&r, sizeof r};
   union ticket t = {{0}};
   struct msghdr m = {.msg_iov = &part, .msg_iovlen = 1,
@@ -214,7 +215,8 @@ static int send_ticket(int to, int fd)
   return n == sizeof r;
 }
 
-int vg_cdt_server_connect(void)
+/* A child of the server; -1 when there is no server, or it cannot. */
+static int ask_server(vg_child_body *body)
 {
   int ends[2], to = control, sent;
   ssize_t n = 0;
@@ -222,7 +224,7 @@ int vg_cdt_server_connect(void)
 
   if (to < 0 || server_died) return -1;
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends)) return -1;
-  sent = send_ticket(to, ends[1]);
+  sent = send_ticket(to, ends[1], body);
   close(ends[1]);
   if (sent) {
     do n = read(ends[0], &hello, 1);
@@ -234,10 +236,82 @@ int vg_cdt_server_connect(void)
   return -1;
 }
 
-int vg_cdt_server_is_alive(void)
+static int fork_here(vg_child_body *body, pid_t *pid)
 {
-  int fd = vg_cdt_server_connect();
+  int ends[2];
+  pid_t self = getpid();
+
+  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends)) return -1;
+  *pid = fork();
+  if (*pid == 0) {
+    detach(self, ends[1]);
+    body(ends[1]);
+    _exit(1);
+  }
+  close(ends[1]);
+  if (*pid > 0) return ends[0];
+  close(ends[0]);
+  return -1;
+}
+
+int vg_child_open(vg_child_body *body, struct vg_child *out)
+{
+  out->pid = 0;
+  out->fd = ask_server(body);
+  if (out->fd < 0) out->fd = fork_here(body, &out->pid);
+  return out->fd < 0 ? -1 : 0;
+}
+
+void vg_child_close(struct vg_child *c)
+{
+  shutdown(c->fd, SHUT_RDWR);
+  close(c->fd);
+  while (c->pid > 0 && waitpid(c->pid, NULL, 0) < 0 && errno == EINTR) {}
+}
+
+/* A body that ends at once. */
+static void only_hello(int fd)
+{
+  (void)fd;
+  _exit(0);
+}
+
+int vg_child_server_is_alive(void)
+{
+  int fd = ask_server(only_hello);
 
   if (fd >= 0) close(fd);
   return fd >= 0;
+}
+
+/* --- bytes over the socket ----------------------------------------------- */
+
+int vg_child_put(int fd, const void *data, size_t size)
+{
+  const char *at = data;
+
+  while (size) {
+    ssize_t n = send(fd, at, size, MSG_NOSIGNAL);
+
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return 0;
+    at += n;
+    size -= (size_t)n;
+  }
+  return 1;
+}
+
+int vg_child_get(int fd, void *data, size_t size)
+{
+  char *at = data;
+
+  while (size) {
+    ssize_t n = read(fd, at, size);
+
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return 0;
+    at += n;
+    size -= (size_t)n;
+  }
+  return 1;
 }
