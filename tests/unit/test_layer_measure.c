@@ -99,7 +99,7 @@ static struct vg_layer_judgement judge(const struct plate *p)
   struct vg_layer_judgement r;
   struct vg_error err = VG_ERROR_INIT;
 
-  if (vg_layers_judge(&p->m, &p->c, 1, &r, &err) < 0) fail_msg("%s", err.text);
+  if (vg_layers_judge(&p->m, &p->c, 1, NULL, &r, &err) < 0) fail_msg("%s", err.text);
   return r;
 }
 
@@ -473,7 +473,7 @@ static void any_number_of_threads(void **state)
     p.c.column[i].dir[0] = (double)(i % 7);
   }
   for (int t = 0; t < 3; t++) {
-    assert_int_equal(vg_layers_judge(&p.m, &p.c, t + 1, &r[t], NULL), VG_OK);
+    assert_int_equal(vg_layers_judge(&p.m, &p.c, t + 1, NULL, &r[t], NULL), VG_OK);
     assert_int_equal(vg_layers_fields(&p.m, &p.c, t + 1, &w[t], NULL), VG_OK);
     assert_memory_equal(&r[t], &r[0], sizeof r[0]);
     assert_memory_equal(w[t].first, w[0].first, w[0].n * sizeof *w[0].first);
@@ -494,7 +494,7 @@ static void too_many_levels_are_refused(void **state)
   struct vg_error err = VG_ERROR_INIT;
 
   p->c.column[3].n = VG_LEVELS_MAX + 1;
-  assert_int_equal(vg_layers_judge(&p->m, &p->c, 1, &r, &err), VG_ERR_INPUT);
+  assert_int_equal(vg_layers_judge(&p->m, &p->c, 1, NULL, &r, &err), VG_ERR_INPUT);
   assert_non_null(strstr(err.text, "column 4"));
   assert_int_equal(r.n_cell, 7);
   assert_int_equal(vg_layers_fields(&p->m, &p->c, 1, &w, &err), VG_ERR_INPUT);
@@ -511,7 +511,7 @@ static void nothing_is_nothing(void **state)
   size_t n = 9;
 
   (void)state;
-  assert_int_equal(vg_layers_judge(&m, &c, 0, &r, NULL), VG_OK);
+  assert_int_equal(vg_layers_judge(&m, &c, 0, NULL, &r, NULL), VG_OK);
   assert_int_equal(r.n_cell, 0);
   assert_true(r.angle_of_top_min == 180);
   assert_int_equal(vg_layers_fields(&m, &c, 0, &w, NULL), VG_OK);

@@ -93,7 +93,7 @@ static void cells_are_valid(const struct bench *b)
 {
   struct vg_layer_judgement r;
 
-  assert_int_equal(vg_layers_judge(&b->surface, &b->layers.columns, 1, &r,
+  assert_int_equal(vg_layers_judge(&b->surface, &b->layers.columns, 1, NULL, &r,
                                    NULL), VG_OK);
   assert_int_equal(r.n_negative, 0);
   assert_int_equal(r.n_bad_corner, 0);

@@ -50,7 +50,7 @@ void vg_layer_stage_release(struct vg_layer_stage *s)
 static void law_at(void *user, const double x[3], struct vg_law *law)
 {
   const struct vg_layer_laws *l = user;
-  const struct vg_sizing_options o = { 0, INFINITY, 1.2, 1, 0, 1, 1 };
+  const struct vg_sizing_options o = { 0, INFINITY, 1.2, 1, 0, 1, 1, NULL };
   double v[3];
 
   for (int k = 0; k < 3; k++)
@@ -600,7 +600,8 @@ static vg_status judge(struct vg_layer_stage *s, const struct vg_mesh *surface,
 {
   const struct vg_layer_judgement *j = &s->judgement;
   vg_status st = vg_layers_judge(surface, &s->layers.columns,
-                                 s->options.threads, &s->judgement, err);
+                                 s->options.threads, s->options.team,
+                                 &s->judgement, err);
 
   if (st < 0 || !(j->n_negative + j->n_off_plane)) return st;
   return vg_fail(err, VG_ERR_GEOMETRY, "the layers did not pass their own "

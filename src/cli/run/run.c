@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/team.h"
 #include "base/version.h"
 #include "cli/input/share.h"
 #include "cli/input/walls.h"
@@ -32,9 +33,10 @@ vg_status vg_run_memory(struct vg_run *r, struct vg_error *err)
   return st;
 }
 
-/* --- once per node: sizes and layers ------------------------------------- */
+/* --- for every node: sizes and layers ------------------------------------ */
 
-/* The first rank of a node does it, on the cores of all, who wait asleep. */
+/* The first ranks of the nodes do it, each on the cores of all ranks of its
+ * node, who wait asleep. */
 static int leads_node(const struct vg_run *r)
 {
   return vg_comm_node_rank(r->comm) == 0;
@@ -121,7 +123,7 @@ done:
 static vg_status measure_sizes(struct vg_run *r, const struct vg_problem *p,
                                const struct vg_mesh *boundary,
                                double coarseness, int threads,
-                               struct vg_display *show,
+                               struct vg_team *team, struct vg_display *show,
                                struct vg_sizing **sizing, struct vg_error *err)
 {
   const struct vg_settings *s = &p->settings;
@@ -131,6 +133,7 @@ static vg_status measure_sizes(struct vg_run *r, const struct vg_problem *p,
 
   options.threads = threads;
   options.coarseness = coarseness;
+  options.team = team;
   vg_display_update(show, "sizes", 0, 0);
   st = vg_sizing_new(&options, s->n_source, s->source, boundary, sizing, err);
   r->time_size += vg_display_now() - t;
@@ -307,11 +310,14 @@ static vg_status mesh_plain(struct vg_run *r, const struct vg_problem *p,
 {
   const struct vg_mesh *surface = &p->surface;
   struct vg_sizing *sizing = NULL;
-  vg_status st = VG_OK;
+  struct vg_team *team;
+  vg_status st = vg_team_open(r->comm, &team, err);
 
+  if (st < 0) return st;
   if (leads_node(r)) {
-    st = measure_sizes(r, p, surface, 1, node_threads(r, &p->settings), show,
-                       &sizing, err);
+    st = measure_sizes(r, p, surface, 1, node_threads(r, &p->settings), team,
+                       show, &sizing, err);
+    st = vg_team_close(team, st, err);
     vg_comm_bind_node(r->comm, 0);
   }
   VG_TRY(share_with_node(r, st, surface, NULL, &sizing, err));
@@ -327,10 +333,10 @@ done:
 }
 
 /* Columns and the front above them, with their sizes; on the cores of the
- * node. */
+ * nodes. */
 static vg_status grow_layers(struct vg_run *r, const struct vg_problem *p,
                              struct vg_layer_stage *layers,
-                             struct vg_display *show,
+                             struct vg_team *team, struct vg_display *show,
                              struct vg_sizing **sizing, struct vg_error *err)
 {
   struct vg_mesh view = VG_MESH_INIT;
@@ -339,18 +345,21 @@ static vg_status grow_layers(struct vg_run *r, const struct vg_problem *p,
   vg_status st;
 
   VG_TRY(vg_layer_stage_sizes(layers, p, &view, err));
-  VG_TRY(measure_sizes(r, p, &view, VG_LAYERS_COARSENESS, threads, show,
-                       sizing, err));
+  VG_TRY(measure_sizes(r, p, &view, VG_LAYERS_COARSENESS, threads, team,
+                       show, sizing, err));
   t = vg_display_now();
   layers->options.threads = threads;
+  layers->options.team = team;
   VG_TRY(vg_layer_stage_grow(layers, &p->surface, *sizing, show, err));
   r->time_layers = vg_display_now() - t;
   VG_TRY(vg_display_stopped(err));
   vg_sizing_free(*sizing);
   *sizing = NULL;
-  st = measure_sizes(r, p, &layers->layers.front.mesh, 1, threads, show, sizing,
-                     err);
+  st = measure_sizes(r, p, &layers->layers.front.mesh, 1, threads, team, show,
+                     sizing, err);
 done:
+  layers->options.team = NULL;
+  st = vg_team_close(team, st, err);
   vg_comm_bind_node(r->comm, 0);
   free(view.tri);
   free(view.tri_patch);
@@ -400,9 +409,11 @@ static vg_status mesh_layers(struct vg_run *r, const struct vg_problem *p,
 {
   const struct vg_mesh *front = &layers->layers.front.mesh;
   struct vg_sizing *sizing = NULL;
-  vg_status st = VG_OK;
+  struct vg_team *team;
+  vg_status st = vg_team_open(r->comm, &team, err);
 
-  if (leads_node(r)) st = grow_layers(r, p, layers, show, &sizing, err);
+  if (st < 0) return st;
+  if (leads_node(r)) st = grow_layers(r, p, layers, team, show, &sizing, err);
   VG_TRY(share_with_node(r, st, &p->surface, &layers->layers, &sizing, err));
   VG_TRY(vg_run_agree(r->comm, &p->surface, &layers->layers, sizing,
                       r->options.change, err));

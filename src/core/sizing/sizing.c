@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
+#include "base/team.h"
 #include "core/sizing/sizing_parts.h"
 #include "core/sizing/sizing_surface.h"
 
@@ -119,7 +120,7 @@ static vg_status build(const struct vg_sizing_options *o,
   if (n < (VG_OCTREE_LEAF - LEAF_BASE) / LEAF_PER_SAMPLE)
     limit += n * LEAF_PER_SAMPLE;
   return vg_octree_build(f, lo, side, o->coarseness, limit, o->threads,
-                         &s->octree, err);
+                         o->team, &s->octree, err);
 }
 
 /* The growth of the surface from above or from below. */
@@ -147,6 +148,7 @@ vg_status vg_sizing_new(const struct vg_sizing_options *options, size_t n,
 {
   vg_status st = VG_OK;
   atomic_int is_steep = 0;
+  int steep;
   struct vg_field f = { .set = VG_SOURCE_SET_INIT, .is_steep = &is_steep };
   struct vg_samples samples = VG_SAMPLES_INIT;
   struct vg_bvh *near = NULL, *under = NULL;
@@ -171,7 +173,9 @@ vg_status vg_sizing_new(const struct vg_sizing_options *options, size_t n,
   f.under = under;
   VG_TRY(build(options, surface, &f, &samples, s, err));
   find_range(s);
-  s->slope = is_steep ? vg_bvh_steep(s->growth) : s->growth;
+  steep = is_steep;
+  VG_TRY(vg_team_any(options->team, &steep, err));
+  s->slope = steep ? vg_bvh_steep(s->growth) : s->growth;
   *out = s;
   s = NULL;
 done:

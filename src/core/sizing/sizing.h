@@ -64,8 +64,9 @@ struct vg_sizing_options {
   int threads;           /* 0: one per core; default 1 */
   double coarseness;     /* >= 1: how much larger the finest cells of what is
                             evaluated are; default 1 */
+  struct vg_team *team;  /* that makes it together (base/team.h), or NULL */
 };
-#define VG_SIZING_OPTIONS_INIT { 0, 0, 1.2, 1, 1, 1, 1 }
+#define VG_SIZING_OPTIONS_INIT { 0, 0, 1.2, 1, 1, 1, 1, NULL }
 
 struct vg_sizing;        /* opaque, read-only after vg_sizing_new */
 

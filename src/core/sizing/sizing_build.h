@@ -3,6 +3,7 @@
 #ifndef VG_CORE_SIZING_SIZING_BUILD_H
 #define VG_CORE_SIZING_SIZING_BUILD_H
 
+#include "base/team.h"
 #include "core/sizing/sizing_octree.h"
 
 #define VG_OCTREE_TOP (1u << VG_OCTREE_DEPTH) /* side of the root cube */
@@ -37,10 +38,12 @@ struct vg_octree_build {
   double lo[3], unit, floor;
   float surface;        /* times floor where the surface rules, not sources */
   int threads;
+  struct vg_team *team;
 };
 
-/** All cells and points, with the field at the points. -1: no memory. */
-int vg_octree_grow(struct vg_octree_build *b);
+/** All cells and points, with the field at the points. VG_ERR_MEMORY, or what
+ * a team fails of. */
+vg_status vg_octree_grow(struct vg_octree_build *b, struct vg_error *err);
 
 /** Lower the sources at the points until no two corners of a leaf differ by
  * more than the slope times their distance, and the field with them. -1: no

@@ -48,7 +48,8 @@ struct level {
   uint32_t (*around)[27];       /* [n_split] cells by direction, itself at
                                    13; only across faces and edges */
   const uint32_t (*above)[27];  /* the same of their parents */
-  uint32_t *own, *base; /* [n_split] middles that it owns, first point */
+  uint32_t *own;        /* [n_split] middles that it owns */
+  uint32_t *base;       /* [n_split + 1] the first point of each */
   struct share share[27];
 };
 
@@ -183,12 +184,19 @@ static void decide_body(void *context, size_t first, size_t end, int worker)
 
 /* Which cells are split. Where the tree would become too large for its limit
  * the floor rises: a coarser field, but one that covers everything alike. */
-static void decide(struct level *l)
+static vg_status decide(struct level *l, struct vg_error *err)
 {
   struct vg_octree_build *b = l->b;
+  const struct vg_team_out out[] = {
+    { b->cell + l->first, 8 * sizeof *b->cell, 0, NULL },
+    { l->mark, 8 * sizeof *l->mark, 0, NULL },
+    { l->centre, 8 * sizeof *l->centre, 0, NULL } };
+  vg_status st;
   size_t n = 0;
 
-  vg_parallel_for(b->threads, (l->n + 7) / 8, FAMILIES, decide_body, l);
+  st = vg_team_for(b->team, b->threads, (l->n + 7) / 8, FAMILIES, decide_body,
+                   l, sizeof out / sizeof *out, out, err);
+  if (st < 0) return st;
   for (size_t i = 0; i < l->n; i++) n += l->mark[i];
   while (n && b->n_cell + 8 * n > b->max_cell) {
     b->floor *= 1.25;
@@ -200,6 +208,7 @@ static void decide(struct level *l)
     }
   }
   l->n_split = n;
+  return VG_OK;
 }
 
 /* Splitting. */
@@ -418,6 +427,7 @@ static int number_splits(struct level *l)
     n_point += (size_t)__builtin_popcount(l->own[s]);
     if (n_point > POINT_MAX) return -1;
   }
+  l->base[n] = (uint32_t)n_point;
   if (vg_reserve(&b->point, &b->cap_point, n_point, sizeof *b->point) ||
       vg_reserve(&b->cell, &b->cap_cell, b->n_cell + 8 * n, sizeof *b->cell))
     return -1;
@@ -425,30 +435,42 @@ static int number_splits(struct level *l)
   return 0;
 }
 
-static int split_level(struct level *l)
+static vg_status split(struct level *l, struct vg_error *err)
 {
   struct vg_octree_build *b = l->b;
-  int bad;
+  const struct vg_team_out out[] = {
+    { b->cell + b->n_cell, 8 * sizeof *b->cell, 0, NULL },
+    { b->point, sizeof *b->point, 0, l->base } };
+  vg_status st = vg_team_for(b->team, b->threads, l->n_split, FAMILIES,
+                             split_body, l, sizeof out / sizeof *out, out,
+                             err);
 
-  decide(l);
+  b->n_cell += 8 * l->n_split;
+  return st;
+}
+
+static vg_status split_level(struct level *l, struct vg_error *err)
+{
+  vg_status st = decide(l, err);
+
+  if (st < 0) return st;
   l->which = vg_alloc(l->n_split, sizeof *l->which);
   l->around = vg_alloc(l->n_split, sizeof *l->around);
   l->own = vg_alloc(l->n_split, sizeof *l->own);
-  l->base = vg_alloc(l->n_split, sizeof *l->base);
-  bad = !l->which || !l->around || !l->own || !l->base || number_splits(l);
-  if (!bad) {
-    vg_parallel_for(b->threads, l->n_split, FAMILIES, split_body, l);
-    b->n_cell += 8 * l->n_split;
-  }
+  l->base = vg_alloc(l->n_split + 1, sizeof *l->base);
+  if (!l->which || !l->around || !l->own || !l->base || number_splits(l))
+    st = vg_fail_memory(err, "the octree of sizes");
+  else
+    st = split(l, err);
   free(l->which);
   free(l->own);
   free(l->base);
-  return bad ? -1 : 0;
+  return st;
 }
 
 /* *above: around[] of the level above, replaced by that of this one. */
-static int grow_level(struct vg_octree_build *b, int level,
-                      uint32_t (**above)[27])
+static vg_status grow_level(struct vg_octree_build *b, int level,
+                            uint32_t (**above)[27], struct vg_error *err)
 {
   size_t first = b->level[level], n = b->level[level + 1] - first;
   uint32_t half = VG_OCTREE_TOP >> (level + 1);
@@ -457,17 +479,16 @@ static int grow_level(struct vg_octree_build *b, int level,
                      .mark = vg_alloc(n, sizeof *l.mark),
                      .centre = vg_alloc(n, sizeof *l.centre),
                      .above = (const uint32_t (*)[27])*above };
-  int bad = 1;
+  vg_status st;
 
-  if (l.mark && l.centre) {
-    make_shares(&l);
-    bad = split_level(&l);
-  }
+  make_shares(&l);
+  st = l.mark && l.centre ? split_level(&l, err)
+                          : vg_fail_memory(err, "the octree of sizes");
   free(l.mark);
   free(l.centre);
   free(*above);
   *above = l.around;
-  return bad;
+  return st;
 }
 
 static int make_root(struct vg_octree_build *b)
@@ -490,18 +511,19 @@ static int make_root(struct vg_octree_build *b)
   return 0;
 }
 
-int vg_octree_grow(struct vg_octree_build *b)
+vg_status vg_octree_grow(struct vg_octree_build *b, struct vg_error *err)
 {
   uint32_t (*above)[27] = NULL;
-  int bad = make_root(b);
+  vg_status st = VG_OK;
 
+  if (make_root(b)) return vg_fail_memory(err, "the octree of sizes");
   b->level[1] = 1;
   b->n_level = 1;
-  while (!bad && b->n_level <= VG_OCTREE_DEPTH) {
-    bad = grow_level(b, b->n_level - 1, &above);
+  while (st >= 0 && b->n_level <= VG_OCTREE_DEPTH) {
+    st = grow_level(b, b->n_level - 1, &above, err);
     if (b->n_cell == b->level[b->n_level]) break;
     b->level[++b->n_level] = b->n_cell;
   }
   free(above);
-  return bad;
+  return st;
 }

@@ -119,12 +119,13 @@ static int compact(const struct vg_octree_build *b, struct vg_octree *t)
 
 vg_status vg_octree_build(const struct vg_field *f, const double lo[3],
                           double side, double coarseness, size_t max_leaf,
-                          int threads, struct vg_octree *out,
-                          struct vg_error *err)
+                          int threads, struct vg_team *team,
+                          struct vg_octree *out, struct vg_error *err)
 {
   struct vg_octree_build b = { .f = f, .unit = side / VG_OCTREE_TOP,
-                               .max_cell = max_leaf, .threads = threads };
-  int bad;
+                               .max_cell = max_leaf, .threads = threads,
+                               .team = team };
+  vg_status st;
 
   if (b.max_cell > VG_OCTREE_LEAF / 2) b.max_cell = VG_OCTREE_LEAF / 2;
   b.floor = FLOOR * sqrt(0.2 / f->slope);
@@ -133,14 +134,14 @@ vg_status vg_octree_build(const struct vg_field *f, const double lo[3],
   b.surface = f->slope > STEEP ? 1 : SURFACE;
   for (int k = 0; k < 3; k++) b.lo[k] = out->lo[k] = lo[k];
   out->side = side;
-  bad = vg_octree_grow(&b);
-  if (!bad && f->set.n_bounded + f->set.n_mean) bad = vg_octree_limit(&b);
-  if (!bad) bad = compact(&b, out);
+  st = vg_octree_grow(&b, err);
+  if (st >= 0 && ((f->set.n_bounded + f->set.n_mean && vg_octree_limit(&b)) ||
+                  compact(&b, out)))
+    st = vg_fail_memory(err, "the octree of sizes");
   free(b.cell);
   free(b.point);
-  if (!bad) return VG_OK;
-  vg_octree_release(out);
-  return vg_fail_memory(err, "the octree of sizes");
+  if (st < 0) vg_octree_release(out);
+  return st;
 }
 
 void vg_octree_release(struct vg_octree *t)

@@ -56,11 +56,11 @@ double vg_field_floor(const struct vg_field *f, const double lo[3],
 
 /** Build over the cube lo, side with about max_leaf leaves at most. *out is
  * empty before, and on failure. threads: as vg_parallel_for's; the same tree
- * for any number. */
+ * for any number. team: NULL, or those who make it together. */
 vg_status vg_octree_build(const struct vg_field *f, const double lo[3],
                           double side, double coarseness, size_t max_leaf,
-                          int threads, struct vg_octree *out,
-                          struct vg_error *err);
+                          int threads, struct vg_team *team,
+                          struct vg_octree *out, struct vg_error *err);
 
 void vg_octree_release(struct vg_octree *t);
 

@@ -41,12 +41,13 @@ struct vg_layer_options {
                                the distance of their roots; > 0 */
   int smooth;               /* sweeps over the directions */
   int threads;              /* 0: one per core */
+  struct vg_team *team;     /* that makes them together (base/team.h), or NULL */
   vg_progress progress;
   void *user;
 };
 /* L1 */
 #define VG_LAYER_OPTIONS_INIT { NULL, NULL, NULL, 180, 0.95, 0.4, 2, 100, \
-                                1, NULL, NULL }
+                                1, NULL, NULL, NULL }
 
 /** What happened. Times are wall seconds. */
 /* Faces of a column that lines start from where it looks ahead (clear.h). */

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "base/parallel.h"
+#include "base/team.h"
 #include "core/geometry/vector.h"
 #include "layers/expand/join.h"
 #include "layers/grow/work.h"
@@ -325,6 +325,17 @@ static void stubborn(const struct vg_layer_work *w, const struct search *q,
       turned[w->c->face[f][k]] = 1;
 }
 
+static vg_status search_all(const struct vg_layer_work *w, struct search *q,
+                            int threads, struct vg_error *err)
+{
+  const struct vg_team_out out[] = {
+    { q->level, sizeof *q->level, 0, NULL },
+    { q->faulty, sizeof *q->faulty, 0, NULL } };
+
+  return vg_team_for(w->o->team, threads, w->c->n_face, GRAIN, search_body, q,
+                     sizeof out / sizeof *out, out, err);
+}
+
 vg_status vg_cells_lower(struct vg_layer_work *w, const uint8_t *moved,
                          int may_turn, uint8_t *turned, size_t *n_bad,
                          struct vg_error *err)
@@ -342,7 +353,7 @@ vg_status vg_cells_lower(struct vg_layer_work *w, const uint8_t *moved,
     st = vg_fail_memory(err, "the layers");
     goto done;
   }
-  vg_parallel_for(threads, n, GRAIN, search_body, &q);
+  VG_TRY(search_all(w, &q, threads, err));
   judge(w, &q, may_turn, least, turn, n_bad, &n_turn);
   if (n_turn) VG_TRY(vg_directions_even(w, turn, turned, err));
   stubborn(w, &q, turn, turned, least);

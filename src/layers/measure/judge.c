@@ -10,7 +10,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "base/parallel.h"
+#include "base/team.h"
 #include "core/geometry/predicates.h"
 #include "layers/expand/join.h"
 
@@ -417,8 +417,20 @@ static void add(const struct vg_layer_judgement *part,
   sum->n_step += part->n_step;
 }
 
+static vg_status judge_all(struct judge_job *j, int workers,
+                           struct vg_team *team, struct vg_error *err)
+{
+  const struct vg_team_out out[] = {
+    { j->part, sizeof *j->part, GRAIN, NULL },
+    { j->cosine, sizeof *j->cosine, GRAIN, NULL } };
+
+  return vg_team_for(team, workers, j->columns->n_face, GRAIN, judge_faces, j,
+                     sizeof out / sizeof *out, out, err);
+}
+
 vg_status vg_layers_judge(const struct vg_mesh *surface,
                           const struct vg_columns *columns, int threads,
+                          struct vg_team *team,
                           struct vg_layer_judgement *out,
                           struct vg_error *err)
 {
@@ -431,7 +443,7 @@ vg_status vg_layers_judge(const struct vg_mesh *surface,
 
   if ((size_t)workers > n_chunk) workers = n_chunk ? (int)n_chunk : 1;
   VG_TRY(prepare(&j, workers, n_chunk, err));
-  vg_parallel_for(workers, columns->n_face, GRAIN, judge_faces, &j);
+  VG_TRY(judge_all(&j, workers, team, err));
   for (size_t i = 0; i < n_chunk; i++) {
     add(&j.part[i], &sum);
     if (j.cosine[i] > cosine) cosine = j.cosine[i];

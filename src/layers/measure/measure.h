@@ -118,9 +118,11 @@ struct vg_layer_judgement {
 
 /** Judge all faces, virtual ones included.
  * Cost: about 7 determinants per prism. Same result for any threads.
+ * team: NULL, or those who judge together.
  * VG_ERR_INPUT for a column of more than VG_LEVELS_MAX levels. */
 vg_status vg_layers_judge(const struct vg_mesh *surface,
                           const struct vg_columns *columns, int threads,
+                          struct vg_team *team,
                           struct vg_layer_judgement *out,
                           struct vg_error *err);
 

@@ -1,0 +1,147 @@
+/* Loops over several nodes: every member has all in the end, whatever the
+ * shapes of the arrays; the failure of one is that of all, and nobody waits for
+ * ever. Ranks are taken for nodes of their own. */
+#include "mpi_support.h"
+
+#include "base/comm_parts.h"
+#include "base/team.h"
+
+enum { N = 1000, GRAIN = 8 };
+
+struct all {
+  uint32_t begin[N + 1];
+  uint16_t item[N];
+  uint64_t chunk[N / GRAIN + 1];
+  double list[4 * N];        /* item i has i % 4 elements */
+  size_t n_done;
+};
+
+static int open_nodes(void **state)
+{
+  return open_job(state) || vg_comm_take_for_nodes(job, 1, NULL) < 0 ? -1 : 0;
+}
+
+static void body(void *context, size_t first, size_t end, int worker)
+{
+  struct all *a = context;
+
+  (void)worker;
+  a->chunk[first / GRAIN] = 7 * first + end;
+  for (size_t i = first; i < end; i++) {
+    a->item[i] = (uint16_t)(3 * i + 1);
+    for (uint32_t j = a->begin[i]; j < a->begin[i + 1]; j++)
+      a->list[j] = (double)i + 0.25 * (j - a->begin[i]);
+    a->n_done++;
+  }
+}
+
+static struct all *fresh(void)
+{
+  struct all *a = calloc(1, sizeof *a);
+
+  for (uint32_t i = 0; i < N; i++) a->begin[i + 1] = a->begin[i] + i % 4;
+  return a;
+}
+
+static vg_status run(struct vg_team *t, struct all *a, size_t n,
+                     struct vg_error *err)
+{
+  const struct vg_team_out out[] = {
+    { a->item, sizeof *a->item, 0, NULL },
+    { a->chunk, sizeof *a->chunk, GRAIN, NULL },
+    { a->list, sizeof *a->list, 0, a->begin } };
+
+  return vg_team_for(t, 1, n, GRAIN, body, a, 3, out, err);
+}
+
+static void check(const struct all *a, size_t n)
+{
+  for (size_t i = 0; i < n; i++) {
+    size_t end = i / GRAIN * GRAIN + GRAIN;
+
+    assert_int_equal(a->item[i], 3 * i + 1);
+    assert_int_equal(a->chunk[i / GRAIN],
+                     7 * (i / GRAIN * GRAIN) + (end < n ? end : n));
+    for (uint32_t j = a->begin[i]; j < a->begin[i + 1]; j++)
+      assert_true(a->list[j] == (double)i + 0.25 * (j - a->begin[i]));
+  }
+  for (size_t i = n; i < N; i++) assert_int_equal(a->item[i], 0);
+}
+
+static void all_have_all(void **state)
+{
+  static const size_t n[] = { 0, 1, GRAIN, 259, N - 3, N };
+  static const size_t chunk[] = { 1, 100, (size_t)1 << 28 };
+  size_t whole = job->chunk;
+  struct vg_team *t;
+
+  (void)state;
+  assert_int_equal(vg_team_open(job, &t, NULL), VG_OK);
+  assert_true((t != NULL) == (vg_comm_size(job) > 1));
+  for (size_t c = 0; c < sizeof chunk / sizeof *chunk; c++) {
+    job->chunk = chunk[c];
+    for (size_t k = 0; k < sizeof n / sizeof *n; k++) {
+      struct all *a = fresh();
+
+      assert_int_equal(run(t, a, n[k], NULL), VG_OK);
+      check(a, n[k]);
+      /* long loops are parted: nobody does much more than its share */
+      if (n[k] >= N - 3)
+        assert_true(a->n_done <= n[k] / (size_t)vg_comm_size(job) + GRAIN);
+      free(a);
+    }
+  }
+  job->chunk = whole;
+  assert_int_equal(vg_team_close(t, VG_OK, NULL), VG_OK);
+}
+
+static void one_flag_is_all(void **state)
+{
+  int last = vg_comm_size(job) - 1, flag = vg_comm_rank(job) == last;
+  struct vg_team *t;
+
+  (void)state;
+  assert_int_equal(vg_team_open(job, &t, NULL), VG_OK);
+  assert_int_equal(vg_team_any(t, &flag, NULL), VG_OK);
+  assert_int_equal(flag, 1);
+  flag = 0;
+  assert_int_equal(vg_team_any(t, &flag, NULL), VG_OK);
+  assert_int_equal(flag, 0);
+  assert_int_equal(vg_team_close(t, VG_OK, NULL), VG_OK);
+}
+
+/* The last member leaves before the loops of the others. */
+static void one_failure_is_all(void **state)
+{
+  struct vg_error err = VG_ERROR_INIT;
+  int last = vg_comm_size(job) - 1;
+  struct vg_team *t;
+  vg_status st;
+
+  (void)state;
+  assert_int_equal(vg_team_open(job, &t, NULL), VG_OK);
+  if (vg_comm_rank(job) == last) {
+    st = vg_fail(&err, VG_ERR_MEMORY, "no room");
+  } else {
+    struct all *a = fresh();
+
+    st = run(t, a, N, &err);
+    assert_int_equal(st, VG_ERR_MEMORY);
+    /* and nothing waits from then on */
+    assert_int_equal(run(t, a, N, NULL), VG_ERR_REMOTE);
+    free(a);
+  }
+  assert_int_equal(vg_team_close(t, st, &err), VG_ERR_MEMORY);
+  assert_non_null(strstr(err.text, "no room"));
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(all_have_all),
+    cmocka_unit_test(one_flag_is_all),
+    cmocka_unit_test(one_failure_is_all),
+  };
+
+  return cmocka_run_group_tests(tests, open_nodes, close_job);
+}
