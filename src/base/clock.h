@@ -23,4 +23,13 @@ static inline double vg_clock_thread(void)
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
+/** The same of all threads of this process together. */
+static inline double vg_clock_process(void)
+{
+  struct timespec t;
+
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
 #endif

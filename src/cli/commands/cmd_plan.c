@@ -11,7 +11,7 @@
 
 enum { KEY_RANKS_PER_NODE = 300, KEY_LATENCY, KEY_BANDWIDTH, KEY_RATE,
        KEY_SERIAL, KEY_ROAM, KEY_LOOPS, KEY_PLOT, KEY_TARGET, KEY_DEPTH,
-       KEY_RATES };
+       KEY_RATES, KEY_CORES };
 
 enum { DEPTH_MAX = 40 };
 
@@ -54,6 +54,13 @@ static void check_end(const struct vg_plan_options *o,
   if (o->replay && o->rates)
     argp_error(state, "--rates are for a project: a --replay has its own "
                "times");
+  if (o->replay && o->cores)
+    argp_error(state, "--cores are for a project: a --replay takes --ranks, "
+               "--threads and --ranks-per-node");
+  if (o->cores && (o->threads.v[o->threads.n - 1] > 1 ||
+                   o->machine.ranks_per_node > 1))
+    argp_error(state, "--cores tries all ranks per node and threads that fill "
+               "a node: leave --threads and --ranks-per-node out");
   if (o->replay && (o->kept.n || o->deck || o->target > 0))
     argp_error(state, "a --replay takes no settings, deck or target: the "
                "tasks are those of the record");
@@ -75,6 +82,9 @@ static error_t option(int key, char *arg, struct argp_state *state)
   case KEY_RANKS_PER_NODE:
     o->machine.ranks_per_node = whole("ranks-per-node", arg, 1,
                                       VG_MODEL_WORKERS_MAX, state);
+    return 0;
+  case KEY_CORES:
+    o->cores = whole("cores", arg, 1, 4096, state);
     return 0;
   case KEY_DEPTH: o->depth = whole("depth", arg, 0, DEPTH_MAX, state); return 0;
   case KEY_TARGET: number("target", arg, 1e-3, &o->target, state); return 0;
@@ -120,6 +130,9 @@ int vg_cmd_plan(int argc, char **argv)
     { "ranks-per-node", KEY_RANKS_PER_NODE, "N", 0, "ranks that share a "
       "node: no latency between them, check, sizes and layers made together "
       "[default 1]", 1 },
+    { "cores", KEY_CORES, "N", 0, "cores of a node: --ranks are numbers of "
+      "nodes, and of all ways to share their cores among ranks and threads "
+      "the best is named with its mpirun line; of a project only", 1 },
     { "latency", KEY_LATENCY, "S", 0, "seconds per message [default 2e-6]",
       1 },
     { "bandwidth", KEY_BANDWIDTH, "B", 0, "bytes per second of a rank's link "
@@ -137,8 +150,7 @@ int vg_cmd_plan(int argc, char **argv)
       1 },
     { "serial", KEY_SERIAL, "S", 0, "seconds outside the tasks, which no "
       "workers share [default: phases of the record, shared by a node or by "
-      "all; without one what reading, checking and sizes took now, shared by a "
-      "node]", 1 },
+      "all; without one by the times of reading, checking and sizes now]", 1 },
     { "joins-roam", KEY_ROAM, NULL, 0, "joins are done by any rank, not at "
       "their home", 1 },
     { "loop-threads", KEY_LOOPS, "N", 0, "most threads that make loops of "

@@ -14,6 +14,9 @@ struct vg_plan_options {
   const char *rates;            /* a .timeline.json of this machine, or NULL */
   struct vg_cli_overrides kept;
   double target;                /* s; 0: none */
+  int cores;                    /* of a node: ranks are numbers of nodes, with
+                                   all ways to share its cores; 0: as ranks and
+                                   threads say */
   int depth;                    /* of the tree as text */
   struct vg_range_list ranks, threads;
   struct vg_machine machine;    /* all but ranks, threads and what is

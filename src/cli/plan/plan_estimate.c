@@ -5,10 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/clock.h"
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "cli/common/cli.h"
 #include "cli/settings/options.h"
-#include "cli/plot/timeline.h"
 #include "core/geometry/vector.h"
 #include "partition/advance/advance.h"
 
@@ -21,8 +22,6 @@
 
 /* Seconds of one core; docs/performance-parallel.md, Model. */
 static const double spread_per_cell = 0.35e-6;  /* number, judge, encode */
-static const double before_alone = 0.1;   /* by one thread, of what is before
-                                             the tasks; the rest by a node */
 static const double digest_per_byte = 0.4e-9;   /* the files once more */
 static const double layer_per_cell = 0.1e-6;    /* growing and measuring */
 
@@ -137,7 +136,7 @@ static vg_status estimate_layers(struct vg_plan *p, struct vg_error *err)
   }
   memset(l.patch, 0xff, m->n_point * sizeof *l.patch);
   measure_lift(p, &l);
-  p->serial += layer_per_cell * p->layer_tet;
+  p->phase[VG_PHASE_LAYERS] += layer_per_cell * p->layer_tet;
   p->front = &p->lifted;
 done:
   free(l.normal);
@@ -165,10 +164,17 @@ static vg_status count_wall_points(struct vg_plan *p, struct vg_error *err)
 
 /* --- the surface and its sizes ------------------------------------------- */
 
+/* What was done since `start`, a run does too. */
+static void count_time(struct vg_plan *p, enum vg_phase phase, double start)
+{
+  p->phase[phase] += vg_clock_process() - start;
+}
+
 static vg_status read_project(struct vg_plan *p, struct vg_error *err)
 {
   const struct vg_plan_options *o = p->o;
   struct vg_problem *q = &p->problem;
+  double start = vg_clock_process();
   vg_status st;
 
   vg_display_update(&p->show, "read", 0, 0);
@@ -177,38 +183,50 @@ static vg_status read_project(struct vg_plan *p, struct vg_error *err)
   VG_TRY(vg_cli_apply(&o->kept, &q->settings, err));
   vg_settings_write(&q->settings);
   VG_TRY(vg_problem_surface(q, err));
+  count_time(p, VG_PHASE_READ, start);
+  start = vg_clock_process();
   VG_TRY(vg_problem_close(q, &p->show, err));
   VG_TRY(vg_layer_stage_plan(&p->layers, q, err));
   st = vg_walls_swap(q, p->layers.is_on ? p->layers.reason : NULL, err);
+  count_time(p, VG_PHASE_CHECK, start);
 done:
   return st;
 }
 
+/* finer: how many times as long the run will take for its finer field. */
 static vg_status measure_sizes(struct vg_plan *p, const struct vg_mesh *m,
-                               double coarseness, struct vg_error *err)
+                               double coarseness, double finer,
+                               struct vg_error *err)
 {
   const struct vg_settings *s = &p->problem.settings;
   struct vg_sizing_options options = vg_settings_sizing(s);
+  double start = vg_clock_process();
+  vg_status st;
 
   options.coarseness = coarseness;
+  options.threads = 0;
   vg_display_update(&p->show, "sizes", 0, 0);
   vg_sizing_free(p->sizing);
   p->sizing = NULL;
-  return vg_sizing_new(&options, s->n_source, s->source, m, &p->sizing, err);
+  st = vg_sizing_new(&options, s->n_source, s->source, m, &p->sizing, err);
+  p->phase[VG_PHASE_SIZES] += finer * (vg_clock_process() - start);
+  return st;
 }
 
 static vg_status make_layers(struct vg_plan *p, struct vg_error *err)
 {
   const struct vg_mesh *surface = &p->problem.surface;
   struct vg_mesh view = VG_MESH_INIT;
+  double start;
   vg_status st;
 
   VG_TRY(vg_layer_stage_sizes(&p->layers, &p->problem, &view, err));
-  VG_TRY(measure_sizes(p, &view, VG_LAYERS_COARSENESS, err));
+  VG_TRY(measure_sizes(p, &view, VG_LAYERS_COARSENESS, 1, err));
   VG_TRY(count_wall_points(p, err));
   p->is_grown = p->n_wall_point < GROW_LIMIT;
+  start = vg_clock_process();
   if (p->is_grown) {
-    p->layers.options.threads = 1;
+    p->layers.options.threads = 0;
     VG_TRY(vg_layer_stage_grow(&p->layers, surface, p->sizing, &p->show,
                                err));
     p->layer_tet = (double)p->layers.report.n_cell;
@@ -217,7 +235,8 @@ static vg_status make_layers(struct vg_plan *p, struct vg_error *err)
   } else {
     VG_TRY(estimate_layers(p, err));
   }
-  st = measure_sizes(p, p->front, COARSENESS, err);
+  count_time(p, VG_PHASE_LAYERS, start);
+  st = measure_sizes(p, p->front, COARSENESS, COARSENESS * COARSENESS, err);
 done:
   free(view.tri);
   free(view.tri_patch);
@@ -305,24 +324,49 @@ done:
   return st;
 }
 
+double vg_plan_phase(const struct vg_plan *p, const struct vg_plan_row *r,
+                     enum vg_phase phase, double parts[3])
+{
+  double alone, by_node, one = p->phase[phase], sum = 0;
+
+  vg_phase_shares(phase, &alone, &by_node);
+  for (int k = 0; k < 3; k++) {
+    struct vg_machine m = p->o->machine;
+    double s = one * (k == 0 ? alone : k == 1 ? by_node : 1 - alone - by_node);
+
+    m.ranks = r->ranks;
+    m.threads = r->threads;
+    m.ranks_per_node = r->ranks_per_node;
+    m.serial = k == 0 ? s : 0;
+    m.by_node = k == 1 ? s : 0;
+    m.by_all = k == 2 ? s : 0;
+    parts[k] = vg_model_outside(&m);
+    sum += parts[k];
+  }
+  return sum;
+}
+
 static vg_status run_on(const struct vg_plan *p, const struct vg_forecast *o,
-                        int ranks, int threads, struct vg_plan_row *row,
-                        struct vg_error *err)
+                        int ranks, int threads, int ranks_per_node,
+                        struct vg_plan_row *row, struct vg_error *err)
 {
   struct vg_machine m = p->o->machine;
-  double before = p->serial, alone = p->o->serial >= 0 ? 1 : before_alone;
+  double outside = 0;
   vg_status st;
 
   m.ranks = row->ranks = ranks;
   m.threads = row->threads = threads;
+  m.ranks_per_node = row->ranks_per_node = ranks_per_node;
   st = vg_model_replay(&o->spans, &m, &row->tasks, NULL, err);
   if (st < 0) return st;
-  m.serial = alone * before + p->digest;
-  m.by_node = (1 - alone) * before;
-  m.by_all = p->spread;
-  row->wall = row->tasks.wall + vg_model_outside(&m);
-  row->speedup = (row->tasks.work + (before + p->digest + p->spread) / m.rate) /
-                 row->wall;
+  row->wall = row->tasks.wall;
+  for (int k = 0; k < VG_PHASE_N; k++) {
+    double parts[3];
+
+    row->wall += vg_plan_phase(p, row, (enum vg_phase)k, parts);
+    outside += p->phase[k];
+  }
+  row->speedup = (row->tasks.work + outside / m.rate) / row->wall;
   row->efficiency = row->speedup / ranks / threads;
   row->memory = p->shared + p->per_cell * p->cell / ranks +
                 threads * p->per_thread;
@@ -362,7 +406,7 @@ static vg_status try_leaves(struct vg_plan *p, struct vg_error *err)
     struct vg_forecast o = VG_FORECAST_INIT;
 
     st = forecast(p, sizes[i], &o, err);
-    if (st >= 0) st = run_on(p, &o, at->ranks, at->threads,
+    if (st >= 0) st = run_on(p, &o, at->ranks, at->threads, at->ranks_per_node,
                              &p->leaf[p->n_leaf].row, err);
     p->leaf[p->n_leaf].cells = sizes[i];
     p->leaf[p->n_leaf].n = o.n_leaf;
@@ -380,11 +424,19 @@ static vg_status run_all(struct vg_plan *p, struct vg_error *err)
   const struct vg_plan_options *o = p->o;
   vg_status st;
 
-  p->row = vg_alloc(o->ranks.n * o->threads.n, sizeof *p->row);
+  p->row = vg_alloc(o->ranks.n * (o->threads.n + (size_t)o->cores),
+                    sizeof *p->row);
   if (!p->row) return vg_fail_memory(err, "the forecast");
-  for (size_t t = 0; t < o->threads.n; t++)
+  for (size_t t = 0; !o->cores && t < o->threads.n; t++)
     for (size_t r = 0; r < o->ranks.n; r++) {
       VG_TRY(run_on(p, &p->forecast, (int)o->ranks.v[r], (int)o->threads.v[t],
+                    o->machine.ranks_per_node, &p->row[p->n_row], err));
+      p->n_row++;
+    }
+  for (size_t r = 0; o->cores && r < o->ranks.n; r++)
+    for (int k = 1; k <= o->cores; k++) {
+      if (o->cores % k) continue;
+      VG_TRY(run_on(p, &p->forecast, (int)o->ranks.v[r] * k, o->cores / k, k,
                     &p->row[p->n_row], err));
       p->n_row++;
     }
@@ -399,7 +451,6 @@ done:
 static vg_status make(struct vg_plan *p, struct vg_error *err)
 {
   const struct vg_settings *s = &p->problem.settings;
-  double start = vg_display_now();
   struct vg_void v = { .n_point = 0 };
   vg_status st;
 
@@ -407,7 +458,8 @@ static vg_status make(struct vg_plan *p, struct vg_error *err)
   VG_TRY(read_project(p, err));
   p->front = &p->problem.surface;
   if (p->layers.is_on) VG_TRY(make_layers(p, err));
-  else VG_TRY(measure_sizes(p, p->front, COARSENESS, err));
+  else VG_TRY(measure_sizes(p, p->front, COARSENESS, COARSENESS * COARSENESS,
+                            err));
   VG_TRY(vg_problem_effects(&p->problem, p->front, p->sizing, &p->effects,
                             err));
   vg_effects_note(&p->effects, p->front, &p->problem);
@@ -416,19 +468,20 @@ static vg_status make(struct vg_plan *p, struct vg_error *err)
   v.n_face = p->front->n_tri;
   v.face = p->front->tri;
   vg_display_update(&p->show, "forecast", 0, 0);
-  VG_TRY(vg_load_new(&v, p->sizing, VG_LOAD_CELLS_PER_CUBE, 1, &p->load,
-                     err));
-  /* what has been done so far the run does too */
-  p->serial += vg_display_now() - start;
-  if (p->o->serial >= 0) p->serial = p->o->serial;
+  VG_TRY(vg_load_new(&v, p->sizing, VG_LOAD_CELLS_PER_CUBE, vg_cores(),
+                     &p->load, err));
+  if (p->o->serial >= 0) {
+    memset(p->phase, 0, sizeof p->phase);
+    p->phase[VG_PHASE_READ] = p->o->serial;
+  }
   p->rule.leaf_cells = s->levels ? 0 : (double)s->leaf_cells;
   p->rule.first_axis = (int)s->split_direction - 1;
   p->rule.constant = s->constant_direction;
   VG_TRY(forecast(p, p->rule.leaf_cells, &p->forecast, err));
   count_mesh(p);
   count_memory(p);
-  p->spread = p->spread_per_cell * p->cell;
-  p->digest = digest_per_byte * bytes_written(p);
+  p->phase[VG_PHASE_JUDGE] = p->spread_per_cell * p->cell;
+  p->phase[VG_PHASE_WRITE] = digest_per_byte * bytes_written(p);
   st = run_all(p, err);
 done:
   return st;

@@ -8,13 +8,14 @@
 #include "cli/input/layers.h"
 #include "cli/input/source_effect.h"
 #include "cli/plan/plan.h"
+#include "cli/plot/timeline.h"
 #include "partition/model/rates.h"
 
 enum { VG_PLAN_LEAVES = 8 };
 
 /** A whole run on a machine. */
 struct vg_plan_row {
-  int ranks, threads;
+  int ranks, threads, ranks_per_node;
   struct vg_model_result tasks;     /* cutting and filling alone */
   double wall;                  /* s, of everything */
   double speedup, efficiency;   /* of everything, against one worker */
@@ -40,10 +41,9 @@ struct vg_plan {
   size_t n_wall_point;
   double layer_tet, layer_point;   /* if all are tetrahedra */
   double cell, point, prism, tet;  /* of the mesh; cell: of all kinds */
-  double serial;                /* s of one core before the first task,
-                                   most of it shared by a node */
-  double spread;                /* s of one core, shared by all workers */
-  double digest;                /* s of one core, behind all */
+  double phase[VG_PHASE_N];     /* s of one core, outside the tasks; judging
+                                   includes all that is written with it, writing
+                                   is what comes behind */
   double shared, per_cell, per_thread;  /* bytes: of any rank; of the mesh,
                                    the mean of field and layers; of a leaf */
   size_t n_row;
@@ -54,6 +54,11 @@ struct vg_plan {
     leaf[VG_PLAN_LEAVES];       /* other leaf sizes at the best row */
   size_t best_leaf;
 };
+
+/** What a phase takes on the machine of a row: parts [3] out: by one thread, by
+ * each node, by all workers. Returns their sum. */
+double vg_plan_phase(const struct vg_plan *p, const struct vg_plan_row *r,
+                     enum vg_phase phase, double parts[3]);
 
 /** Bytes of the files that a word of the write list stands for; 0: not
  * known. */

@@ -211,12 +211,58 @@ static void print_best(const struct vg_plan *p)
            r->wall, why);
     snprintf(text, sizeof text, "There");
   }
+  if (p->o->cores)
+    printf("Start: mpirun -n %d --map-by ppr:%d:node:PE=%d vanguard mesh -p %s "
+           "--threads %d\n", r->ranks, r->ranks_per_node, r->threads,
+           p->o->project, r->threads);
   printf("%s %d x %d by leaf size:\n   leaf cells  leaves       time      tasks"
          "\n", text, r->ranks, r->threads);
   for (size_t i = 0; i < p->n_leaf; i++)
     printf("  %11s %7zu %10.2f %10.2f%s\n", count(p->leaf[i].cells, cells),
            p->leaf[i].n, p->leaf[i].row.wall, p->leaf[i].row.tasks.wall,
            i == p->best_leaf ? "  best" : "");
+}
+
+/* Of the parts of a phase, which takes longest there. */
+static const char *limit_of(const double parts[3])
+{
+  static const char *const names[3] = { "one thread", "the cores of a node",
+                                        "all cores" };
+  int most = 0;
+
+  for (int k = 1; k < 3; k++)
+    if (parts[k] > parts[most]) most = k;
+  return names[most];
+}
+
+/* A chain of tasks cannot go faster on any machine of such cores. */
+static const char *limit_of_tasks(const struct vg_plan_row *r)
+{
+  return r->tasks.critical > 0.8 * r->tasks.wall ? "a chain of tasks"
+         : r->tasks.idle > 0.2 ? "tasks too few or too large" : "all cores";
+}
+
+static const struct vg_plan_row *row_of_limits(const struct vg_plan *p)
+{
+  return &p->row[p->best == SIZE_MAX ? p->n_row - 1 : p->best];
+}
+
+static void print_limits(const struct vg_plan *p)
+{
+  const struct vg_plan_row *r = row_of_limits(p);
+
+  printf("\nPhases with %d x %d\n  phase       one core, s   there, s  "
+         "limited by\n", r->ranks, r->threads);
+  for (int k = 0; k < VG_PHASE_N; k++) {
+    double parts[3], there = vg_plan_phase(p, r, (enum vg_phase)k, parts);
+
+    if (k == VG_PHASE_ENGINE)
+      printf("  %-10s %12.2f %10.2f  %s\n", "cut+fill", r->tasks.work,
+             r->tasks.wall, limit_of_tasks(r));
+    else if (p->phase[k] > 0)
+      printf("  %-10s %12.2f %10.2f  %s\n", vg_phase_name((enum vg_phase)k),
+             p->phase[k], there, limit_of(parts));
+  }
 }
 
 static const char *kind_name(char kind)
@@ -241,22 +287,30 @@ static void print_rates(const struct vg_plan *p)
   }
 }
 
+static double outside(const struct vg_plan *p)
+{
+  double sum = 0;
+
+  for (int k = 0; k < VG_PHASE_N; k++) sum += p->phase[k];
+  return sum;
+}
+
 void vg_plan_text(const struct vg_plan *p)
 {
   print_mesh(p);
   print_files(p);
   print_tree(p);
   print_rates(p);
-  printf("\nForecast: on one core %.2f s before the tasks (shared by a node), "
-         "%.2f s of tasks,\n  %.2f s behind them (shared by all but for %.2f "
-         "s); of the tasks %.2f s in loops of joins\n  that idle threads of a "
-         "rank help with\n", p->serial, p->forecast.spans.wall,
-         p->spread + p->digest, p->digest, vg_spans_loops(&p->forecast.spans));
+  printf("\nForecast: on one core %.2f s outside the tasks, %.2f s of tasks, of "
+         "which %.2f s in loops\n  of joins that idle threads of a rank help "
+         "with\n", outside(p), p->forecast.spans.wall,
+         vg_spans_loops(&p->forecast.spans));
   printf("  ranks threads workers       time  speed-up  efficiency      tasks "
          " speed-up   critical  cuts end  cuts extra    a rank\n");
   printf("                               s                     %%          s  "
          "                  s         s     %%     %%        MB\n");
   for (size_t i = 0; i < p->n_row; i++) print_row(&p->row[i]);
+  print_limits(p);
   print_best(p);
 }
 
@@ -264,9 +318,9 @@ void vg_plan_text(const struct vg_plan *p)
 
 static json_t *row_json(const struct vg_plan_row *r)
 {
-  return json_pack("{s:i s:i s:i s:f s:f s:f s:f s:{s:f s:f s:f s:f s:f s:f "
-                   "s:f s:f}}", "ranks", r->ranks, "threads", r->threads,
-                   "workers", r->ranks * r->threads, "seconds", r->wall,
+  return json_pack("{s:i s:i s:i s:i s:f s:f s:f s:f s:{s:f s:f s:f s:f s:f "
+                   "s:f s:f s:f}}", "ranks", r->ranks, "threads", r->threads,
+                   "ranks_per_node", r->ranks_per_node, "workers", r->ranks * r->threads, "seconds", r->wall,
                    "speedup", r->speedup, "efficiency", r->efficiency,
                    "memory_bytes", r->memory, "tasks", "seconds",
                    r->tasks.wall, "speedup", r->tasks.speedup, "critical",
@@ -365,6 +419,25 @@ static json_t *leaves_json(const struct vg_plan *p)
   return list;
 }
 
+/* Of the best machine, or the largest. */
+static json_t *limits_json(const struct vg_plan *p)
+{
+  const struct vg_plan_row *r = row_of_limits(p);
+  json_t *list = json_array();
+
+  for (int k = 0; k < VG_PHASE_N; k++) {
+    double parts[3], there = vg_plan_phase(p, r, (enum vg_phase)k, parts);
+    int tasks = k == VG_PHASE_ENGINE;
+
+    if (!tasks && !(p->phase[k] > 0)) continue;
+    json_array_append_new(list, json_pack("{s:s s:f s:f s:s}", "phase",
+      vg_phase_name((enum vg_phase)k), "one_core", tasks ? r->tasks.work
+      : p->phase[k], "seconds", tasks ? r->tasks.wall : there, "limited_by",
+      tasks ? limit_of_tasks(r) : limit_of(parts)));
+  }
+  return list;
+}
+
 vg_status vg_plan_json(const struct vg_plan *p, struct vg_error *err)
 {
   json_t *o = json_object(), *rows = json_array();
@@ -379,10 +452,10 @@ vg_status vg_plan_json(const struct vg_plan *p, struct vg_error *err)
     p->shared, "per_cell", p->per_cell, "per_thread", p->per_thread));
   json_object_set_new(o, "tree", tree_json(p));
   json_object_set_new(o, "rates", rates_json(p));
-  json_object_set_new(o, "one_core", json_pack("{s:f s:f s:f s:f s:f}",
-    "before", p->serial, "tasks", p->forecast.spans.wall, "loops",
-    vg_spans_loops(&p->forecast.spans), "spread", p->spread, "digest",
-        p->digest));
+  json_object_set_new(o, "one_core", json_pack("{s:f s:f s:f}", "outside",
+    outside(p), "tasks", p->forecast.spans.wall, "loops",
+    vg_spans_loops(&p->forecast.spans)));
+  json_object_set_new(o, "phases", limits_json(p));
   for (size_t i = 0; i < p->n_row; i++)
     json_array_append_new(rows, row_json(&p->row[i]));
   json_object_set_new(o, "forecast", rows);

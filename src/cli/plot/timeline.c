@@ -43,28 +43,35 @@ static const struct table help_table = {
   { "path", "rank", "thread", "start", "end" }
 };
 
-/* The keys of phases in the facts, who shares them, and the part of them that
- * one thread does. */
-enum share { ALONE, BY_NODE, BY_ALL };
+/* The keys of phases in the facts, and the parts of them that one thread does,
+ * and that every node does for itself; all do the rest together. Of one
+ * thread's time, by profile (row M8). Those that are no part of what is outside
+ * the tasks have none. */
 static const struct {
   const char *name, *key;
-  enum share share;
-  double alone;
+  int is_outside;
+  double alone, by_node;
 } phases[VG_PHASE_N] = {
-  { "read", "seconds_read", ALONE, 1 },
-  { "check", "seconds_check", BY_NODE, 0.2 },
-  { "sizes", "seconds_sizes", BY_NODE, 0.05 },
-  { "layers", "seconds_layers", BY_NODE, 0.1 },
-  { "cut+fill", "seconds_cut_fill", ALONE, 1 },
-  { "number", "seconds_number", ALONE, 1 },
-  { "judge", "seconds_judge", BY_ALL, 0.02 },
-  { "write", "seconds_write", BY_ALL, 0.4 },
-  { "total", "seconds_total", ALONE, 1 },
+  { "read", "seconds_read", 0, 1, 0 },
+  { "check", "seconds_check", 1, 0.2, 0.8 },
+  { "sizes", "seconds_sizes", 1, 0.05, 0.20 },
+  { "layers", "seconds_layers", 1, 0.12, 0.27 },
+  { "cut+fill", "seconds_cut_fill", 0, 1, 0 },
+  { "number", "seconds_number", 0, 1, 0 },
+  { "judge", "seconds_judge", 1, 0.01, 0 },
+  { "write", "seconds_write", 1, 0.4, 0 },
+  { "total", "seconds_total", 0, 1, 0 },
 };
 
 const char *vg_phase_name(enum vg_phase phase)
 {
   return phases[phase].name;
+}
+
+void vg_phase_shares(enum vg_phase phase, double *alone, double *by_node)
+{
+  *alone = phases[phase].alone;
+  *by_node = phases[phase].by_node;
 }
 
 void vg_timeline_release(struct vg_timeline *t)
@@ -77,20 +84,18 @@ void vg_timeline_outside(const struct vg_timeline *t, struct vg_machine *m)
 {
   double workers = (double)t->spans.n_rank * t->spans.n_thread;
   double rest = t->seconds[VG_PHASE_TOTAL] - t->spans.wall;
-  double shared[3] = {0};
 
-  m->serial = 0;
+  m->serial = m->by_node = m->by_all = 0;
   for (int k = 0; k < VG_PHASE_N; k++) {
     double alone = phases[k].alone, one;
 
-    if (phases[k].share == ALONE) continue;
+    if (!phases[k].is_outside) continue;
     one = t->seconds[k] / (alone + (1 - alone) / workers);
     m->serial += alone * one;
-    shared[phases[k].share] += (1 - alone) * one;
+    m->by_node += phases[k].by_node * one;
+    m->by_all += (1 - alone - phases[k].by_node) * one;
     rest -= t->seconds[k];
   }
-  m->by_node = shared[BY_NODE];
-  m->by_all = shared[BY_ALL];
   if (rest > 0) m->serial += rest;
 }
 

@@ -35,6 +35,10 @@ enum vg_phase {
  * "total". Static. */
 const char *vg_phase_name(enum vg_phase phase);
 
+/** Parts of a phase's seconds of one core that one thread of all does, and that
+ * every node does for itself; the rest is shared by all (row M8). */
+void vg_phase_shares(enum vg_phase phase, double *alone, double *by_node);
+
 /** Most ranks, and threads of a rank, that a file may name. */
 #define VG_TIMELINE_MAX (1 << 20)
 

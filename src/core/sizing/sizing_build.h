@@ -46,9 +46,9 @@ struct vg_octree_build {
 vg_status vg_octree_grow(struct vg_octree_build *b, struct vg_error *err);
 
 /** Lower the sources at the points until no two corners of a leaf differ by
- * more than the slope times their distance, and the field with them. -1: no
- * memory. */
-int vg_octree_limit(struct vg_octree_build *b);
+ * more than the slope times their distance, and the field with them. Fails as
+ * vg_octree_grow. */
+vg_status vg_octree_limit(struct vg_octree_build *b, struct vg_error *err);
 
 static inline void vg_octree_place(const struct vg_octree_build *b,
                                    const uint32_t at[3], double x[3])

@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "base/parallel.h"
 #include "core/sizing/sizing_build.h"
 
 /* Gradient. Laws of sources may be steeper than the growth rate, so their
@@ -156,17 +155,24 @@ static void renew(struct limit *l)
     if (b->point[i].hangs) b->point[i].h = vg_octree_hang(b, b->point + i);
 }
 
-int vg_octree_limit(struct vg_octree_build *b)
+vg_status vg_octree_limit(struct vg_octree_build *b, struct vg_error *err)
 {
   struct limit l = { .b = b, .bits = vg_alloc(b->n_point, sizeof *l.bits),
                      .before = vg_alloc(b->n_point, sizeof *l.before),
                      .round_of = vg_calloc(b->n_point, 1), .round = 1 };
-  int bad = !l.bits || !l.before || !l.round_of, any = -1;
+  const struct vg_team_out out[] = {
+    { l.bits, sizeof *l.bits, 0, NULL },
+    { l.before, sizeof *l.before, 0, NULL } };
+  vg_status st = VG_OK;
+  int any = -1;
 
-  if (!bad)
-    vg_parallel_for(b->threads, b->n_point, VG_OCTREE_GRAIN, source_body, &l);
+  if (!l.bits || !l.before || !l.round_of)
+    st = vg_fail_memory(err, "the octree of sizes");
+  else
+    st = vg_team_for(b->team, b->threads, b->n_point, VG_OCTREE_GRAIN,
+                     source_body, &l, sizeof out / sizeof *out, out, err);
   do {
-    if (bad) break;
+    if (st < 0) break;
     atomic_store(&l.changed, 0);
     vg_parallel_for(b->threads, b->n_cell, VG_OCTREE_GRAIN, lower_body, &l);
     l.backwards = !l.backwards;
@@ -177,5 +183,5 @@ int vg_octree_limit(struct vg_octree_build *b)
   free(l.bits);
   free(l.before);
   free(l.round_of);
-  return bad ? -1 : 0;
+  return st;
 }

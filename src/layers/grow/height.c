@@ -10,7 +10,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "base/parallel.h"
+#include "base/team.h"
 #include "core/geometry/vector.h"
 #include "layers/grow/work.h"
 
@@ -235,6 +235,18 @@ static int lower_allowed(struct vg_layer_work *w, void *unused, uint32_t i,
   return 1;
 }
 
+static vg_status all_wanted(struct vg_layer_work *w, struct vg_error *err)
+{
+  const struct vg_columns *c = w->c;
+  const struct vg_team_out out[] = {
+    { c->column, sizeof *c->column, 0, NULL },
+    { w->by_size, sizeof *w->by_size, 0, NULL },
+    { c->law, sizeof *c->law, 0, NULL } };   /* one per column with law_at */
+
+  return vg_team_for(w->o->team, w->o->threads, c->n_column, GRAIN,
+                     wanted_body, w, w->o->law_at ? 3 : 2, out, err);
+}
+
 vg_status vg_heights_wanted(struct vg_layer_work *w, struct vg_error *err)
 {
   struct vg_columns *c = w->c;
@@ -246,7 +258,7 @@ vg_status vg_heights_wanted(struct vg_layer_work *w, struct vg_error *err)
   for (size_t p = 0; !w->o->law_at && p < c->n_law; p++)
     c->law[p] = w->o->patch[p].law;
   VG_TRY(local_edges(w, err));
-  vg_parallel_for(w->o->threads, c->n_column, GRAIN, wanted_body, w);
+  VG_TRY(all_wanted(w, err));
   VG_TRY(vg_columns_spread(w, lower_wanted, NULL, err));
   for (size_t i = 0; i < c->n_column; i++) {
     double d[VG_LEVELS_MAX + 1];

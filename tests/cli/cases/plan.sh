@@ -153,3 +153,19 @@ says out "us per face of the front"
 vanguard plan -q -p p/box -n 1 --rates p/none
 exits 1
 says err "p/none"
+
+# What limits each phase is named; with the cores of a node, how to start it.
+vanguard plan -q -p p/box --leaf-cells 8000 -n 1,2 --cores 6
+exits 0
+says out "limited by"
+says out "cut+fill"
+says out "Start: mpirun -n "
+grep -q "^      2       6      12 " out || fail "no row of two nodes as 2 x 6"
+grep -q "^     12       1      12 " out || fail "no row of two nodes as 12 x 1"
+vanguard plan -q -p p/box --leaf-cells 8000 -n 2 --cores 6 -j
+exits 0
+says out '"limited_by": '
+says out '"ranks_per_node": '
+vanguard plan -q -p p/box --cores 6 -t 2
+exits 2
+says err "leave --threads and --ranks-per-node out"
