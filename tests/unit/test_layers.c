@@ -770,12 +770,29 @@ static void a_point_that_sees_nothing(void **state)
 
   (void)state;
   case_octants(&b.surface);
-  all_of_it(&b, 1.0 / 6);
+  start(&b, 1.0 / 6);
+  b.options.fan_angle = 180;
+  grow_and_check(&b);
+  fill_and_join(&b);
   at_least(&b, 0, 0, 95);
   p = look(&b, at, at);
   assert_int_equal(p.n, 1);
   assert_int_equal(p.n_none, 1);
   assert_true(b.report.cause[VG_CAUSE_NO_VIEW] > 0);
+  finish(&b);
+}
+
+/* Without being asked for: a fan there and nowhere else, which has layers. */
+static void a_point_that_sees_nothing_gets_a_fan(void **state)
+{
+  struct bench b = { .options.smooth = 0 };
+
+  (void)state;
+  case_octants(&b.surface);
+  all_of_it(&b, 1.0 / 6);
+  at_least(&b, 0, 0, 99.9);
+  assert_int_equal(b.report.cause[VG_CAUSE_NO_VIEW], 0);
+  assert_true(b.report.n_column > b.report.n_wall_point);
   finish(&b);
 }
 
@@ -912,6 +929,7 @@ int main(void)
     cmocka_unit_test(a_post_at_45_to_135_degrees),
     cmocka_unit_test(a_slide_patch_with_folds),
     cmocka_unit_test(a_point_that_sees_nothing),
+    cmocka_unit_test(a_point_that_sees_nothing_gets_a_fan),
     cmocka_unit_test(a_point_that_sees_nothing_with_fans),
     cmocka_unit_test(levels_and_height_as_asked),
     cmocka_unit_test(a_law_that_varies),

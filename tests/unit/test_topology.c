@@ -665,6 +665,27 @@ static int same(const void *a, const void *b, size_t n, size_t size)
   return n == 0 || memcmp(a, b, n * size) == 0;
 }
 
+/* With an angle of 0 only points that one column sees too little of have fans:
+ * of two pyramids the tip of the slender one, and no corner of its base. */
+static void fans_stand_where_they_are_needed(void **state)
+{
+  static const double slender[4][2] = {
+    {-0.01, -0.01}, {-0.01, 0.01}, {0.01, 0.01}, {0.01, -0.01} };
+
+  (void)state;
+  for (int k = 0; k < 2; k++) {
+    struct made s = MADE_INIT;
+
+    extrude(&s.m, 4, k ? slender : square, 1, 0, 1);
+    build(&s, 1, ~0u, 0);
+    if (k) assert_true(columns_at(&s, 0, 1, 0) > 4);
+    else assert_int_equal(columns_at(&s, 0, 1, 0), 1);
+    assert_int_equal(s.c.n_column - columns_at(&s, 0, 1, 0), 5);
+    assert_int_equal(check(&s, 0.001), 2);
+    made_release(&s);
+  }
+}
+
 static void the_same_bytes_twice(void **state)
 {
   struct made s = MADE_INIT, t = MADE_INIT;
@@ -737,6 +758,7 @@ int main(void)
     cmocka_unit_test(a_thin_plate_has_fans_all_around),
     cmocka_unit_test(a_cone_has_a_fan_about_its_base),
     cmocka_unit_test(a_pyramid_has_a_fan_at_its_apex),
+    cmocka_unit_test(fans_stand_where_they_are_needed),
     cmocka_unit_test(the_same_bytes_twice),
     cmocka_unit_test(bad_angles_are_refused),
     cmocka_unit_test(concave_edges_have_no_fans),

@@ -135,9 +135,10 @@ static const struct vg_param params[] = {
   { "slip", AT(layer.slip), .type = VG_PARAM_TEXT, .unit = "",
     .check = vg_patch_list_check,
     .help = "patches without layers whatever their condition, as in 4,7-9" },
-  { "fan_angle", AT(layer.fan_angle), .type = VG_PARAM_REAL, .lo = 20,
+  { "fan_angle", AT(layer.fan_angle), .type = VG_PARAM_REAL, .lo = 0,
     .hi = 180, .unit = "degrees", .help = "convex edges that turn by more "
-    "than this get several columns per point; 180: none" },
+    "than this get several columns per point, fans; 0: only points that no one "
+    "direction sees; 180: none" },
   { "layer_gap", AT(layer.gap), .type = VG_PARAM_REAL, .hi = 0.49,
     .above_lo = 1, .unit = "", .help = "share of the distance to a surface "
     "in front that layers may take" },

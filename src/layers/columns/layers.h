@@ -32,7 +32,8 @@ struct vg_layer_options {
   void (*law_at)(void *user, const double x[3], struct vg_law *law);
   void *law_user;
   double fan_angle;         /* edges that turn by more than this, in degrees,
-                               get fans; 180: none */
+                               get fans; 180: none; 0: only points that one
+                               column cannot serve */
   double end;               /* a column ends where its next layer would be
                                thicker than this times the local edge */
   double gap;               /* share of the distance to the nearest surface in
@@ -46,7 +47,7 @@ struct vg_layer_options {
   void *user;
 };
 /* L1 */
-#define VG_LAYER_OPTIONS_INIT { NULL, NULL, NULL, 180, 0.95, 0.4, 2, 100, \
+#define VG_LAYER_OPTIONS_INIT { NULL, NULL, NULL, 0, 0.95, 0.4, 2, 100, \
                                 1, NULL, NULL, NULL }
 
 /** What happened. Times are wall seconds. */

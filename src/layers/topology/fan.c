@@ -13,6 +13,9 @@
 #define LEAST_CLEAR 0.3    /* of a step, that it leads away from the wall */
 #define SMOOTH_WALL 0.95
 #define LEAST_VIEW 0.1        /* cosine between a sector's column and faces */
+#define NEEDED_ANGLE 60       /* degrees: ridges where fans are only made if one
+                                 column sees too little (L19) */
+#define NEEDED_VIEW 0.02      /* cosine between one column and all faces */
 
 struct build {
   const struct vg_wall *w;
@@ -20,6 +23,7 @@ struct build {
   const struct vg_slide *slide;
   struct vg_fans *f;
   double cos_fan, cos_half; /* of the fan angle and of half of it */
+  int if_needed;            /* only where no one direction sees all faces */
   double (*normal)[3];      /* [n_face] unit; 0: a face without area */
   uint8_t *ridge;           /* [3 * n_face] */
   uint8_t *n_ridge;         /* [n_point] from the point, 255 for more */
@@ -142,9 +146,10 @@ static double least_view(size_t n, const double (*normal)[3], const double *v)
 }
 
 /* Direction for faces of the ring from corner h on, `n` of them: the one
- * that their column will start from. 0: none sees them all. */
+ * that their column will start from. 0: none sees them all by `least`, the
+ * cosine between them. */
 static int direct(struct build *b, const struct vg_fan_shape *s, uint32_t h,
-                  size_t n, double dir[3])
+                  size_t n, double least, double dir[3])
 {
   size_t k = 0;
   double best[3];
@@ -167,7 +172,7 @@ static int direct(struct build *b, const struct vg_fan_shape *s, uint32_t h,
   into_plane(s, best);
   if (!(vg_unit(best) > 0)) return 0;
   memcpy(dir, best, sizeof best);
-  return least_view(k, (const double (*)[3])b->ring, dir) >= LEAST_VIEW;
+  return least_view(k, (const double (*)[3])b->ring, dir) >= least;
 }
 
 /* The ring of p cut at its ridges: first corner of each sector and how many
@@ -202,7 +207,7 @@ static int one_will_do(struct build *b, const struct vg_fan_shape *s,
 {
   double dir[3];
 
-  if (!direct(b, s, start, n, dir)) return 0;
+  if (!direct(b, s, start, n, LEAST_VIEW, dir)) return 0;
   for (int i = 0; i < s->n_sector; i++)
     if (vg_dot(dir, s->sector[i]) < b->cos_half) return 0;
   return 1;
@@ -290,6 +295,15 @@ static int is_clear(const struct build *b, uint32_t p,
   return 1;
 }
 
+/* Is there no direction that sees all faces at p? */
+static int is_needed(struct build *b, const struct vg_fan_shape *s,
+                     uint32_t start, size_t n)
+{
+  double dir[3];
+
+  return !direct(b, s, start, n, NEEDED_VIEW, dir);
+}
+
 static vg_status visit(struct build *b, uint32_t p, struct vg_error *err)
 {
   const struct vg_wall *w = b->w;
@@ -305,10 +319,12 @@ static vg_status visit(struct build *b, uint32_t p, struct vg_error *err)
   for (int i = 0; i < s.n_sector; i++) n += size[i];
   if (vg_reserve(&b->ring, &b->cap_ring, n, sizeof *b->ring) < 0)
     return vg_fail_memory(err, "the fans at convex edges");
+  if (b->if_needed && !is_needed(b, &s, corner[0], n)) return VG_OK;
   for (int i = 0; i < s.n_sector; i++) {
     uint32_t at = corner[(i + 1) % s.n_sector];
 
-    if (!direct(b, &s, corner[i], size[i], s.sector[i])) return VG_OK;
+    if (!direct(b, &s, corner[i], size[i], LEAST_VIEW, s.sector[i]))
+      return VG_OK;
     vg_sub(wall_point(w, vg_half_next(at)), wall_point(w, at), s.ridge[i]);
     vg_unit(s.ridge[i]);
   }
@@ -325,6 +341,8 @@ static vg_status start(struct build *b, double fan_angle,
   const struct vg_wall *w = b->w;
   struct vg_fans *f = b->f;
 
+  b->if_needed = !(fan_angle > 0);
+  if (b->if_needed) fan_angle = NEEDED_ANGLE;
   b->cos_fan = cos_degrees(fan_angle);
   b->cos_half = cos_degrees(0.5 * fan_angle);
   b->normal = vg_alloc(w->n_face, sizeof *b->normal);
@@ -361,9 +379,10 @@ vg_status vg_fans_build(const struct vg_wall *w, size_t n_slide,
   vg_status st = VG_OK;
   size_t total = 0;
 
-  if (!(fan_angle > 0))
+  if (!(fan_angle >= 0))
     return vg_fail(err, VG_ERR_INPUT, "the fan angle is %g degrees; it has to "
-                   "be above 0 (180: no fans)", fan_angle);
+                   "be 0 (fans where one column cannot stand) or more (180: no "
+                   "fans)", fan_angle);
   f.first = vg_alloc(w->n_point + 1, sizeof *f.first);
   if (!f.first) return vg_fail_memory(err, "the columns");
   for (size_t p = 0; p <= w->n_point; p++) f.first[p] = p > 0;

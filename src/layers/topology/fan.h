@@ -81,7 +81,8 @@ struct vg_fans {
 
 void vg_fans_release(struct vg_fans *f);
 
-/** Fans of a wall into the empty *f; fan_angle >= 180: none. */
+/** Fans of a wall into the empty *f; fan_angle >= 180: none; 0: only where one
+ * column sees too little. */
 vg_status vg_fans_build(const struct vg_wall *w, size_t n_slide,
                         const struct vg_slide *slide, double fan_angle,
                         struct vg_fans *f, struct vg_error *err);

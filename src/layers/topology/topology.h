@@ -35,7 +35,8 @@ void vg_topology_release(struct vg_topology *t);
  * each sector has a column, and between neighbouring sectors lie as many
  * preset columns that the turning between directions is at most 40 degrees.
  * A point that one direction serves well, or that lies on one ridge end only,
- * keeps one column. Virtual faces close the gaps along ridges and at points.
+ * keeps one column. With a fan_angle of 0 only points that no one direction sees
+ * have fans. Virtual faces close the gaps along ridges and at points.
  * A ridge that ends at a slide patch ends in a border there.
  *
  * All columns of one root should get the same levels and heights. Then cells
