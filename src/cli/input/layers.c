@@ -50,7 +50,8 @@ void vg_layer_stage_release(struct vg_layer_stage *s)
 static void law_at(void *user, const double x[3], struct vg_law *law)
 {
   const struct vg_layer_laws *l = user;
-  const struct vg_sizing_options o = { 0, INFINITY, 1.2, 1, 0, 1, 1, NULL };
+  const struct vg_sizing_options o = { 0, INFINITY, 1.2, 1, 0, 1, 1, NULL,
+                                       NULL };
   double v[3];
 
   for (int k = 0; k < 3; k++)

@@ -55,6 +55,7 @@ static double largest(const struct vg_source_set *set,
     if (set->bounded[i].law.h0 > h) h = set->bounded[i].law.h0;
     if (set->bounded[i].law.h1 > h) h = set->bounded[i].law.h1;
   }
+  if (set->map && set->map->most > h) h = set->map->most;
   return h;
 }
 
@@ -141,6 +142,14 @@ done:
   return st;
 }
 
+static vg_status check_map(const struct vg_map_fault *f, struct vg_error *err)
+{
+  if (!f->n) return VG_OK;
+  return vg_fail(err, VG_ERR_INPUT, "the edge length given for the point "
+                 "(%.9g, %.9g, %.9g) is %g; it must be above 0", f->x[0],
+                 f->x[1], f->x[2], f->h);
+}
+
 vg_status vg_sizing_new(const struct vg_sizing_options *options, size_t n,
                         const struct vg_source *source,
                         const struct vg_mesh *surface,
@@ -149,6 +158,7 @@ vg_status vg_sizing_new(const struct vg_sizing_options *options, size_t n,
   vg_status st = VG_OK;
   atomic_int is_steep = 0;
   int steep;
+  struct vg_map_fault fault = { ATOMIC_FLAG_INIT, 0, { 0, 0, 0 }, 0 };
   struct vg_field f = { .set = VG_SOURCE_SET_INIT, .is_steep = &is_steep };
   struct vg_samples samples = VG_SAMPLES_INIT;
   struct vg_bvh *near = NULL, *under = NULL;
@@ -163,11 +173,13 @@ vg_status vg_sizing_new(const struct vg_sizing_options *options, size_t n,
     goto done;
   }
   VG_TRY(vg_source_prepare(options, n, source, 1, &f.set, err));
+  f.set.map = options->map;
+  f.set.fault = &fault;
   if (surface && options->from_surface)
     VG_TRY(vg_samples_make(surface, options->threads, &samples, err));
   if (samples.n_sized)
     VG_TRY(make_near(options, surface, &samples, 0, &near, err));
-  if (samples.n_sized && n)
+  if (samples.n_sized && (n || options->map))
     VG_TRY(make_near(options, surface, &samples, 1, &under, err));
   f.near = near;
   f.under = under;
@@ -175,6 +187,7 @@ vg_status vg_sizing_new(const struct vg_sizing_options *options, size_t n,
   find_range(s);
   steep = is_steep;
   VG_TRY(vg_team_any(options->team, &steep, err));
+  VG_TRY(check_map(&fault, err));
   s->slope = steep ? vg_bvh_steep(s->growth) : s->growth;
   *out = s;
   s = NULL;

@@ -52,6 +52,20 @@ struct vg_source {
   char group[32];
 };
 
+/** Sizes from elsewhere, besides the sources and limited by the growth as they
+ * are, but not scaled: a function of the place (a call-back), or samples (sizing_map.h). */
+struct vg_size_map {
+  /* > 0, INFINITY: asks for nothing. Called by several threads at once; must
+   * follow from x alone. */
+  double (*at)(void *user, const double x[3]);
+  /* A bound from below within the box lo..hi. NULL: none is known, and what is
+   * smaller than a 32nd of the domain's box is found only where another size
+   * is small. */
+  double (*least)(void *user, const double lo[3], const double hi[3]);
+  double most;           /* the largest it asks for; 0: not known */
+  void *user;
+};
+
 struct vg_sizing_options {
   double h_min;          /* no size below this; 0: none */
   double h_max;          /* no size above this; INFINITY: no limit; 0: within
@@ -65,8 +79,9 @@ struct vg_sizing_options {
   double coarseness;     /* >= 1: how much larger the finest cells of what is
                             evaluated are; default 1 */
   struct vg_team *team;  /* that makes it together (base/team.h), or NULL */
+  const struct vg_size_map *map; /* NULL: none; borrowed for the call */
 };
-#define VG_SIZING_OPTIONS_INIT { 0, 0, 1.2, 1, 1, 1, 1, NULL }
+#define VG_SIZING_OPTIONS_INIT { 0, 0, 1.2, 1, 1, 1, 1, NULL, NULL }
 
 struct vg_sizing;        /* opaque, read-only after vg_sizing_new */
 
@@ -76,7 +91,8 @@ struct vg_sizing;        /* opaque, read-only after vg_sizing_new */
  * @param n        sources, 0 allowed if there is a surface
  * @param out      owned by the caller, vg_sizing_free; untouched on failure
  * Returns VG_ERR_INPUT naming the source for non-finite data, spacing <= 0,
- * growth <= 1, or when nothing defines a size.
+ * growth <= 1, a map that gives no size at some place, or when nothing defines
+ * a size.
  * Result depends on the arguments only, bit by bit, and not on threads. */
 vg_status vg_sizing_new(const struct vg_sizing_options *options, size_t n,
                         const struct vg_source *source,

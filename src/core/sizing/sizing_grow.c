@@ -22,6 +22,7 @@
  * cells have belongs to the first of them, and each counts its own: no table
  * of points is searched, and threads share nothing. */
 #define TOLERANCE 0.03   /* H1 */
+#define MAP_CELLS 32       /* H7 */
 #define NONE UINT32_MAX
 #define POINT_MAX (UINT32_MAX - 1)
 #define FAMILIES 16     /* of eight cells, for a thread at a time */
@@ -136,6 +137,14 @@ static int test_cell(struct family *y, const struct vg_octree_cell *c,
   return 0;
 }
 
+/* A map of which no bounds are known is looked at everywhere (H7). */
+static int is_unsampled(const struct vg_octree_build *b, double side)
+{
+  const struct vg_size_map *map = b->f->set.map;
+
+  return map && !map->least && MAP_CELLS * side > VG_OCTREE_TOP * b->unit;
+}
+
 static int wants_split(struct family *y, struct vg_octree_cell *c,
                        int sibling, float *centre)
 {
@@ -145,6 +154,7 @@ static int wants_split(struct family *y, struct vg_octree_cell *c,
   double lo[3], hi[3];
   int by_sources;
 
+  if (is_unsampled(b, l->side)) return 1;
   if (l->side <= b->floor * (double)c->floor) return 0;
   vg_octree_place(b, c->at, lo);
   for (int k = 0; k < 3; k++) hi[k] = lo[k] + l->side;

@@ -135,7 +135,7 @@ vg_status vg_octree_build(const struct vg_field *f, const double lo[3],
   for (int k = 0; k < 3; k++) b.lo[k] = out->lo[k] = lo[k];
   out->side = side;
   st = vg_octree_grow(&b, err);
-  if (st >= 0 && f->set.n_bounded + f->set.n_mean)
+  if (st >= 0 && vg_source_any(&f->set))
     st = vg_octree_limit(&b, err);
   if (st >= 0 && compact(&b, out))
     st = vg_fail_memory(err, "the octree of sizes");

@@ -486,10 +486,51 @@ void vg_source_release(struct vg_source_set *set)
   memset(set, 0, sizeof *set);
 }
 
+static int is_before(const double a[3], const double b[3])
+{
+  for (int k = 0; k < 3; k++)
+    if (a[k] != b[k]) return a[k] < b[k];
+  return 0;
+}
+
+static double note_fault(struct vg_map_fault *f, const double x[3], double h)
+{
+  while (atomic_flag_test_and_set(&f->busy)) {}
+  if (!f->n++ || is_before(x, f->x)) {
+    memcpy(f->x, x, sizeof f->x);
+    f->h = h;
+  }
+  atomic_flag_clear(&f->busy);
+  return INFINITY;
+}
+
+static double map_at(const struct vg_source_set *set, const double x[3])
+{
+  double h = set->map->at(set->map->user, x);
+
+  return h > 0 ? h : note_fault(set->fault, x, h);
+}
+
+static double map_floor(const struct vg_source_set *set, const double lo[3],
+                        const double hi[3])
+{
+  double h, x[3];
+
+  if (set->map->least) return set->map->least(set->map->user, lo, hi);
+  for (int k = 0; k < 3; k++) x[k] = 0.5 * (lo[k] + hi[k]);
+  h = map_at(set, x);
+  for (int i = 0; i < 8; i++) {
+    for (int k = 0; k < 3; k++) x[k] = i >> k & 1 ? hi[k] : lo[k];
+    h = least(h, map_at(set, x));
+  }
+  return h;
+}
+
 double vg_source_at(const struct vg_source_set *set, const double x[3])
 {
   double h = vg_source_mean(set->n_mean, set->mean, x);
 
+  if (set->map) h = least(h, map_at(set, x));
   for (size_t i = 0; i < set->n_bounded; i++) {
     const struct vg_bounded *b = set->bounded + i;
 
@@ -507,7 +548,7 @@ double vg_source_at(const struct vg_source_set *set, const double x[3])
 double vg_source_floor(const struct vg_source_set *set, const double lo[3],
                        const double hi[3])
 {
-  double h = INFINITY, mid[3], half[3];
+  double h = set->map ? map_floor(set, lo, hi) : INFINITY, mid[3], half[3];
 
   for (int k = 0; k < 3; k++) {
     mid[k] = 0.5 * (lo[k] + hi[k]);

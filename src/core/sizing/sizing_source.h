@@ -6,6 +6,8 @@
 #ifndef VG_CORE_SIZING_SIZING_SOURCE_H
 #define VG_CORE_SIZING_SIZING_SOURCE_H
 
+#include <stdatomic.h>
+
 #include "core/sizing/sizing.h"
 
 /** A bounded-growth source with what a quick rejection needs. */
@@ -17,6 +19,14 @@ struct vg_bounded {
   double lo[3], hi[3];    /* box around all points of the shape */
 };
 
+/** Where a map gave what is no size; of several places that of the least x, y,
+ * z that was asked for. Guarded by `busy`. */
+struct vg_map_fault {
+  atomic_flag busy;
+  int n;
+  double x[3], h;
+};
+
 /** Sources ready to be evaluated. VGRID's appear twice: in the mean and as
  * bounded cones of the global growth, which is what limiting the gradient of
  * the mean makes of it near a source. */
@@ -26,6 +36,8 @@ struct vg_source_set {
   double *reach;              /* [n_mean] distance over which the mean varies
                                  next to the source */
   size_t n_bounded, n_mean;
+  const struct vg_size_map *map; /* NULL: none; neither scaled nor owned */
+  struct vg_map_fault *fault;  /* of the map */
 };
 #define VG_SOURCE_SET_INIT { 0 }
 
@@ -44,10 +56,18 @@ void vg_source_release(struct vg_source_set *set);
 double vg_source_mean(size_t n, const struct vg_source *source,
                       const double x[3]);
 
-/** Minimum of mean and bounded sources at x; INFINITY for an empty set. */
+/** Whether there is anything in it. */
+static inline int vg_source_any(const struct vg_source_set *set)
+{
+  return set->n_bounded || set->n_mean || set->map;
+}
+
+/** Minimum of mean, bounded sources and map at x; INFINITY for an empty set.
+ */
 double vg_source_at(const struct vg_source_set *set, const double x[3]);
 
-/** Lower bound of the bounded sources within the box lo..hi. */
+/** Lower bound of the bounded sources and the map within the box lo..hi; of a
+ * map without bounds an estimate from the corners and the centre. */
 double vg_source_floor(const struct vg_source_set *set, const double lo[3],
                        const double hi[3]);
 
