@@ -323,6 +323,14 @@ done:
   return st;
 }
 
+vg_status vg_comm_of_fortran(int handle, struct vg_comm **out,
+                             struct vg_error *err)
+{
+  MPI_Comm comm = MPI_Comm_f2c((MPI_Fint)handle);
+
+  return vg_comm_of(&comm, out, err);
+}
+
 void vg_comm_close(struct vg_comm *c)
 {
   if (!c) return;

@@ -37,6 +37,10 @@ vg_status vg_comm_open(struct vg_comm **out, struct vg_error *err);
 vg_status vg_comm_of(const void *mpi, struct vg_comm **out,
                      struct vg_error *err);
 
+/** The same by a Fortran handle of it. */
+vg_status vg_comm_of_fortran(int handle, struct vg_comm **out,
+                             struct vg_error *err);
+
 /** Take so many ranks that follow each other for those of a node, whatever the
  * machine is like (for tests of what happens between nodes): they have memory
  * in common, others have not. Collective; before anything else. NULL: nothing

@@ -36,6 +36,7 @@ const char *vg_status_name(vg_status code)
   case VG_ERR_UNSUPPORTED: return "unsupported";
   case VG_ERR_REMOTE: return "remote";
   case VG_ERR_USAGE: return "usage";
+  case VG_ERR_STOPPED: return "stopped";
   }
   return "unknown";
 }

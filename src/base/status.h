@@ -23,7 +23,8 @@ typedef enum {
   VG_ERR_GEOMETRY = -5,    /* no valid mesh exists for this geometry */
   VG_ERR_UNSUPPORTED = -6, /* valid, but beyond what this build can do */
   VG_ERR_REMOTE = -7,      /* another rank failed */
-  VG_ERR_USAGE = -8        /* the command line contradicts itself */
+  VG_ERR_USAGE = -8,       /* the command line contradicts itself */
+  VG_ERR_STOPPED = -9      /* somebody asked to stop */
 } vg_status;
 
 /** Message for a person: names file, element, coordinates and a remedy. */

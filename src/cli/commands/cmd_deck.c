@@ -39,7 +39,7 @@ static vg_status describe(const char *name, struct vg_problem *p,
 
   VG_TRY(vg_input_find(name, "", &p->files, err));
   VG_TRY(vg_problem_deck(p, err));
-  VG_TRY(vg_problem_surface(p, err));
+  VG_TRY(vg_problem_surface(p, NULL, err));
   base = strrchr(p->files.stem, '/');
   snprintf(title, sizeof title, "Run deck of %s",
            base ? base + 1 : p->files.stem);

@@ -118,7 +118,7 @@ static vg_status read_project(struct run *r, const struct arguments *a,
   double t = vg_display_now();
   vg_status st;
 
-  VG_TRY(vg_display_stopped(err));
+  VG_TRY(vg_display_stopped(&r->show, err));
   vg_display_update(&r->show, "read", 0, 0);
   VG_TRY(vg_input_find(a->project, a->deck, &p->files, err));
   VG_TRY(vg_problem_deck(p, err));
@@ -126,9 +126,9 @@ static vg_status read_project(struct run *r, const struct arguments *a,
   vg_settings_write(&p->settings);
   VG_TRY(vg_outputs_plan(p, a->dir, vg_comm_size(r->mesh.comm), &r->outputs,
                          err));
-  VG_TRY(vg_problem_surface(p, err));
+  VG_TRY(vg_problem_surface(p, &r->show, err));
   r->time_read = vg_display_now() - t;
-  VG_TRY(vg_display_stopped(err));
+  VG_TRY(vg_display_stopped(&r->show, err));
 done:
   return st;
 }
@@ -142,7 +142,7 @@ static vg_status close_surface(struct run *r, struct vg_error *err)
   VG_TRY(vg_run_surface(m, &r->problem, &r->layers, &r->show, err));
   r->time_check = vg_display_now() - t;
   st = vg_outputs_check(&r->problem, &r->outputs, err);
-  if (st >= 0) st = vg_display_stopped(err);
+  if (st >= 0) st = vg_display_stopped(&r->show, err);
   st = vg_comm_agree(m->comm, st, err);
 done:
   return st;
@@ -300,7 +300,7 @@ static vg_status finish(struct run *r, const struct arguments *a,
   st = path && report ? write_json(path, report, err)
                       : vg_fail_memory(err, "the report");
   if (st < 0) goto done;
-  VG_TRY(vg_display_stopped(err));
+  VG_TRY(vg_display_stopped(&r->show, err));
   vg_display_commit();
   VG_TRY(vg_outputs_commit(&r->outputs, err));
 done:

@@ -150,16 +150,17 @@ int vg_display_interrupted(void)
   return interrupted != 0;
 }
 
-vg_status vg_display_stopped(struct vg_error *err)
-{
-  if (!interrupted) return VG_OK;
-  return vg_fail(err, VG_ERR_IO, "interrupted; nothing was written");
-}
-
 int vg_display_stop(void *user)
 {
-  (void)user;
-  return vg_display_interrupted();
+  struct vg_display *d = user;
+
+  return interrupted || (d && atomic_load(&d->asked));
+}
+
+vg_status vg_display_stopped(struct vg_display *d, struct vg_error *err)
+{
+  if (!vg_display_stop(d)) return VG_OK;
+  return vg_fail(err, VG_ERR_STOPPED, "interrupted; nothing was written");
 }
 
 double vg_display_now(void)
@@ -252,14 +253,20 @@ int vg_display_update(void *user, const char *stage, size_t done,
   struct vg_display *d = user;
   double now;
 
-  if (d->quiet) return vg_display_interrupted();
+  if (d->tell && d->tell(d->user, stage, done, expected))
+    atomic_store(&d->asked, 1);
+  if (d->quiet) return vg_display_stop(d);
   now = vg_display_now();
   if (strncmp(stage, d->stage, sizeof d->stage - 1) != 0) {
     snprintf(d->stage, sizeof d->stage, "%s", stage);
     d->stage_start = now;
+    d->counts = done || expected;
+    show(d, done, expected, now);
+  } else if (!d->counts && (done || expected)) {
+    d->counts = 1;
     show(d, done, expected, now);
   } else if (now - d->last_shown > (d->live ? LIVE_EVERY_S : PLAIN_EVERY_S)) {
     show(d, done, expected, now);
   }
-  return vg_display_interrupted();
+  return vg_display_stop(d);
 }

@@ -4,6 +4,7 @@
 #ifndef VG_CLI_COMMON_PROGRESS_H
 #define VG_CLI_COMMON_PROGRESS_H
 
+#include <stdatomic.h>
 #include <stddef.h>
 
 #include "base/status.h"
@@ -12,7 +13,13 @@ struct vg_display {
   int quiet, live, open;    /* open: a live line stands without its end */
   double stage_start, last_shown;
   char stage[40];
+  int counts;               /* the stage has said how far it is */
+  /* Told instead of the terminal, and asks to stop by anything but 0; NULL. */
+  int (*tell)(void *user, const char *stage, size_t done, size_t expected);
+  void *user;
+  atomic_int asked;         /* to stop, by whom it tells or another thread */
 };
+#define VG_DISPLAY_QUIET { .quiet = 1 }
 
 /** Take note of signals from now on; before anything that takes time. Once. */
 void vg_display_watch(void);
@@ -33,11 +40,12 @@ void vg_display_clear(struct vg_display *d);
  * status; SIGUSR1, a batch system's warning, never does. */
 int vg_display_interrupted(void);
 
-/** VG_ERR_IO from then on, with a message. */
-vg_status vg_display_stopped(struct vg_error *err);
+/** Whether to stop: a signal came, or d was asked to. For libraries that ask;
+ * d is a display, or NULL. */
+int vg_display_stop(void *d);
 
-/** vg_display_interrupted for libraries that ask. */
-int vg_display_stop(void *user);
+/** VG_ERR_STOPPED then, with a message. d may be NULL. */
+vg_status vg_display_stopped(struct vg_display *d, struct vg_error *err);
 
 /** on: from now on the first of these signals ends the process at once, with a
  * message and VG_EXIT_FAILED, wherever it is. For commands, or parts of them,

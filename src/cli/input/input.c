@@ -207,6 +207,14 @@ vg_status vg_problem_deck(struct vg_problem *p, struct vg_error *err)
   return vg_deck_read(p->files.deck, s, err);
 }
 
+struct vg_sizing_options vg_problem_sizing(const struct vg_problem *p)
+{
+  struct vg_sizing_options o = vg_settings_sizing(&p->settings);
+
+  o.map = p->map;
+  return o;
+}
+
 static void note_unused(struct vg_problem *p,
                         const struct vg_mapbc_match *match)
 {
@@ -238,9 +246,10 @@ static vg_status read_surface_file(struct vg_problem *p, struct vg_error *err)
 }
 
 /* Sizes have to reach over the patches, wherever the sources are. */
-static vg_status mesh_patches(struct vg_problem *p, struct vg_error *err)
+static vg_status mesh_patches(struct vg_problem *p, struct vg_display *show,
+                              struct vg_error *err)
 {
-  struct vg_sizing_options options = vg_settings_sizing(&p->settings);
+  struct vg_sizing_options options = vg_problem_sizing(p);
   const struct vg_mesh corners = { .n_point = p->project.n_point,
                                    .point = p->project.point };
   struct vg_sizing *sizing = NULL;
@@ -252,12 +261,12 @@ static vg_status mesh_patches(struct vg_problem *p, struct vg_error *err)
                    p->files.d3m);
   VG_TRY(vg_sizing_new(&options, p->settings.n_source, p->settings.source,
                        &corners, &sizing, err));
-  VG_TRY(vg_project_surface(&p->project, sizing, vg_display_stop, NULL,
+  VG_TRY(vg_project_surface(&p->project, sizing, vg_display_stop, show,
                             &p->surface, err));
 done:
   vg_sizing_free(sizing);
   /* the library's message says less */
-  return st < 0 && vg_display_interrupted() ? vg_display_stopped(err) : st;
+  return st < 0 && vg_display_stop(show) ? vg_display_stopped(show, err) : st;
 }
 
 /* Sources of the project come first, those of the deck after them; the sum of
@@ -337,7 +346,8 @@ static vg_status apply_conditions(struct vg_problem *p, struct vg_error *err)
   return st;
 }
 
-static vg_status read_surface(struct vg_problem *p, struct vg_error *err)
+static vg_status read_surface(struct vg_problem *p, struct vg_display *show,
+                              struct vg_error *err)
 {
   const struct vg_input_files *f = &p->files;
   const struct vg_project *project = *f->d3m ? &p->project : NULL;
@@ -345,7 +355,7 @@ static vg_status read_surface(struct vg_problem *p, struct vg_error *err)
 
   if (!*f->front && *f->surface) return read_surface_file(p, err);
   st = *f->front ? vg_front_read(f->front, project, &p->surface, err)
-                 : mesh_patches(p, err);
+                 : mesh_patches(p, show, err);
   return st < 0 ? st : apply_conditions(p, err);
 }
 
@@ -504,7 +514,24 @@ done:
   return st;
 }
 
-vg_status vg_problem_surface(struct vg_problem *p, struct vg_error *err)
+vg_status vg_problem_given(struct vg_problem *p, const char *name,
+                           struct vg_mesh *surface, struct vg_error *err)
+{
+  struct vg_input_files *f = &p->files;
+  char **path[] = { &f->d3m, &f->front, &f->surface, &f->mapbc, &f->deck,
+                    &f->tags, &f->aflr };
+  int bad = 0;
+
+  vg_mesh_move(&p->surface, surface);
+  f->stem = strdup(name);
+  for (size_t i = 0; i < sizeof path / sizeof *path; i++)
+    bad |= !(*path[i] = strdup(""));
+  if (bad || !f->stem) return vg_fail_memory(err, "the names of a surface");
+  return apply_patch_table(p, err);
+}
+
+vg_status vg_problem_surface(struct vg_problem *p, struct vg_display *show,
+                             struct vg_error *err)
 {
   vg_status st = VG_OK;
 
@@ -513,7 +540,7 @@ vg_status vg_problem_surface(struct vg_problem *p, struct vg_error *err)
     merge_layers(p);
   }
   VG_TRY(merge_sources(p, err));
-  VG_TRY(read_surface(p, err));
+  VG_TRY(read_surface(p, show, err));
   VG_TRY(apply_aflr(p, p->files.tags, 0, err));
   VG_TRY(apply_aflr(p, p->files.aflr, 1, err));
   VG_TRY(read_heights(p, err));

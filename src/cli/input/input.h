@@ -36,6 +36,7 @@ double *vg_point_height(const struct vg_point_heights *h, const double x[3]);
 struct vg_problem {
   struct vg_input_files files;
   struct vg_settings settings;
+  const struct vg_size_map *map;   /* sizes besides sources; NULL: none */
   struct vg_project project;       /* empty without a .d3m */
   struct vg_mesh surface;
   struct vg_point_heights heights;
@@ -66,7 +67,20 @@ vg_status vg_input_find(const char *name, const char *deck,
  * Settings hold what the deck says; the caller applies its options between
  * vg_problem_deck and vg_problem_surface. */
 vg_status vg_problem_deck(struct vg_problem *p, struct vg_error *err);
-vg_status vg_problem_surface(struct vg_problem *p, struct vg_error *err);
+vg_status vg_problem_surface(struct vg_problem *p, struct vg_display *show,
+                             struct vg_error *err);
+
+/** The same of a problem without files: a surface that somebody has made.
+ * Settings are the caller's.
+ *
+ * @param name     for messages, and the title if there is none
+ * @param surface  boundary as core/mesh/mesh.h has it; moved, also on failure
+ */
+vg_status vg_problem_given(struct vg_problem *p, const char *name,
+                           struct vg_mesh *surface, struct vg_error *err);
+
+/** What settings and map say of sizes. */
+struct vg_sizing_options vg_problem_sizing(const struct vg_problem *p);
 
 /** Weld, check, repair and complete the domain. VG_ERR_GEOMETRY when defects
  * remain: they are in p->check. After success p->settings are resolved: they

@@ -625,7 +625,7 @@ vg_status vg_layer_stage_grow(struct vg_layer_stage *s,
   VG_TRY(vg_layers_grow(surface, sizing, &s->options, &s->layers, &s->report,
                         err));
   if (st == VG_BLOCKED) {
-    st = vg_display_stopped(err);
+    st = vg_display_stopped(show, err);
     goto done;
   }
   t = vg_display_now();

@@ -247,10 +247,11 @@ static vg_status check_farfield(const struct vg_problem *p,
                  "unit of the surface?", size, edge, n);
 }
 
-static vg_status complete(struct vg_problem *p, struct vg_error *err)
+static vg_status complete(struct vg_problem *p, struct vg_display *show,
+                          struct vg_error *err)
 {
   struct vg_settings *s = &p->settings;
-  struct vg_sizing_options options = vg_settings_sizing(s);
+  struct vg_sizing_options options = vg_problem_sizing(p);
   struct vg_farfield far;
   struct vg_sizing *sizing = NULL;
   int assumed = s->farfield.kind == VG_DOMAIN_AUTO;
@@ -266,6 +267,7 @@ static vg_status complete(struct vg_problem *p, struct vg_error *err)
   VG_TRY(vg_sizing_new(&options, s->n_source, s->source, &p->surface, &sizing,
                        err));
   far.stop = vg_display_stop;
+  far.user = show;
   VG_TRY(vg_domain_complete(&p->surface, &far, sizing, &p->domain, err));
   if (assumed)
     vg_note(&p->notes, "the surface was taken as a body in open air: a "
@@ -275,7 +277,7 @@ static vg_status complete(struct vg_problem *p, struct vg_error *err)
 done:
   vg_sizing_free(sizing);
   /* the library's message says less */
-  return st < 0 && vg_display_interrupted() ? vg_display_stopped(err) : st;
+  return st < 0 && vg_display_stop(show) ? vg_display_stopped(show, err) : st;
 }
 
 /* Names and conditions of the patches as they are now, for the resolved
@@ -314,7 +316,7 @@ static vg_status close_body(struct vg_problem *p, struct vg_display *show,
 
   if (p->check.n_defect && !is_only_open(&p->check)) return defects(p, err);
   vg_display_update(show, "farfield", 0, 0);
-  VG_TRY(complete(p, err));
+  VG_TRY(complete(p, show, err));
   vg_display_update(show, "check", p->surface.n_tri, 0);
   VG_TRY(check(p, &external, err));
   VG_TRY(defects(p, err));
@@ -324,7 +326,7 @@ done:
 
 static vg_status close_holes(struct vg_problem *p, struct vg_error *err)
 {
-  struct vg_sizing_options options = vg_settings_sizing(&p->settings);
+  struct vg_sizing_options options = vg_problem_sizing(p);
   struct vg_sizing *sizing = NULL;
   size_t n_hole, n_tri;
   vg_status st;

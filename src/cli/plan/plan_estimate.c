@@ -182,7 +182,7 @@ static vg_status read_project(struct vg_plan *p, struct vg_error *err)
   VG_TRY(vg_problem_deck(q, err));
   VG_TRY(vg_cli_apply(&o->kept, &q->settings, err));
   vg_settings_write(&q->settings);
-  VG_TRY(vg_problem_surface(q, err));
+  VG_TRY(vg_problem_surface(q, &p->show, err));
   count_time(p, VG_PHASE_READ, start);
   start = vg_clock_process();
   VG_TRY(vg_problem_close(q, &p->show, err));
@@ -199,7 +199,7 @@ static vg_status measure_sizes(struct vg_plan *p, const struct vg_mesh *m,
                                struct vg_error *err)
 {
   const struct vg_settings *s = &p->problem.settings;
-  struct vg_sizing_options options = vg_settings_sizing(s);
+  struct vg_sizing_options options = vg_problem_sizing(&p->problem);
   double start = vg_clock_process();
   vg_status st;
 

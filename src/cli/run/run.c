@@ -97,6 +97,7 @@ done:
 static vg_status share_with_node(struct vg_run *r, vg_status st,
                                  const struct vg_mesh *surface,
                                  struct vg_layers *layers,
+                                 struct vg_display *show,
                                  struct vg_sizing **sizing,
                                  struct vg_error *err)
 {
@@ -112,7 +113,7 @@ static vg_status share_with_node(struct vg_run *r, vg_status st,
   st = vg_sizing_share(r->comm, sizing, err);
   if (st >= 0) r->common = vg_sizing_shmem(*sizing);
   if (st >= 0) st = own;
-  if (st >= 0) st = vg_display_stopped(err);
+  if (st >= 0) st = vg_display_stopped(show, err);
   st = vg_comm_agree(r->comm, st, err);
 done:
   free(layer.data);
@@ -127,7 +128,7 @@ static vg_status measure_sizes(struct vg_run *r, const struct vg_problem *p,
                                struct vg_sizing **sizing, struct vg_error *err)
 {
   const struct vg_settings *s = &p->settings;
-  struct vg_sizing_options options = vg_settings_sizing(s);
+  struct vg_sizing_options options = vg_problem_sizing(p);
   double t = vg_display_now();
   vg_status st;
 
@@ -137,7 +138,7 @@ static vg_status measure_sizes(struct vg_run *r, const struct vg_problem *p,
   vg_display_update(show, "sizes", 0, 0);
   st = vg_sizing_new(&options, s->n_source, s->source, boundary, sizing, err);
   r->time_size += vg_display_now() - t;
-  return st < 0 ? st : vg_display_stopped(err);
+  return st < 0 ? st : vg_display_stopped(show, err);
 }
 
 /* Which sources have no effect; by rank 0. Collective. */
@@ -219,9 +220,9 @@ static vg_status open_store(struct vg_run *r, const struct vg_problem *p,
 static vg_status say_stopped(const struct vg_run *r, struct vg_error *err)
 {
   if (!r->store)
-    return vg_fail(err, VG_ERR_IO, "interrupted; nothing was written (with "
-                   "--run-dir a run can be resumed)");
-  return vg_fail(err, VG_ERR_IO, "stopped; finished tasks are kept in %s: "
+    return vg_fail(err, VG_ERR_STOPPED, "interrupted; nothing was written "
+                   "(with --run-dir a run can be resumed)");
+  return vg_fail(err, VG_ERR_STOPPED, "stopped; finished tasks are kept in %s: "
                  "give the same command with --resume to go on, on any "
                  "number of ranks", r->options.dir);
 }
@@ -251,6 +252,7 @@ static vg_status fill(struct vg_run *r, const struct vg_problem *p,
   o.progress = vg_display_update;
   o.stop = vg_display_stop;
   o.user = show;
+  vg_display_update(show, "fill", 0, 0);
   VG_TRY(open_store(r, p, boundary, &o, err));
   o.store = r->store;
   st = vg_partition_grow(r->comm, boundary, sizing, &o, &r->field,
@@ -286,21 +288,24 @@ static vg_status judge(struct vg_run *r, const struct vg_problem *p,
                        size_t front_faces, const struct vg_sizing *sizing,
                        struct vg_display *show, struct vg_error *err)
 {
+  struct vg_outputs *o = r->outputs;
   double t = vg_display_now();
   vg_status st;
 
   vg_display_update(show, "judge", vg_run_cells(r), 0);
-  VG_TRY(vg_outputs_open(r->outputs, p, r->comm, &r->slices, err));
+  if (o) VG_TRY(vg_outputs_open(o, p, r->comm, &r->slices, err));
   st = vg_slices_judge_with(r->comm, &r->slices, front_faces, sizing,
-                            r->threads, vg_outputs_put, r->outputs, &r->judge,
-                            r->layers ? &r->field_judge : NULL, err);
+                            r->threads, o ? vg_outputs_put : NULL, o,
+                            &r->judge, r->layers ? &r->field_judge : NULL,
+                            err);
   if (st >= 0)
     st = vg_effects_in_mesh(r->comm, &r->slices, r->threads, &r->effects,
                             err);
   if (st >= 0) st = accept(r, err);
-  st = vg_outputs_close(r->outputs, st, err);
+  if (st >= 0) st = vg_display_stopped(show, err);
+  st = o ? vg_outputs_close(o, st, err) : vg_comm_agree(r->comm, st, err);
 done:
-  r->time_put = 1e-9 * (double)r->outputs->put_time / r->threads;
+  if (o) r->time_put = 1e-9 * (double)o->put_time / r->threads;
   r->time_judge += vg_display_now() - t - r->time_put;
   return st;
 }
@@ -320,7 +325,7 @@ static vg_status mesh_plain(struct vg_run *r, const struct vg_problem *p,
     st = vg_team_close(team, st, err);
     vg_comm_bind_node(r->comm, 0);
   }
-  VG_TRY(share_with_node(r, st, surface, NULL, &sizing, err));
+  VG_TRY(share_with_node(r, st, surface, NULL, show, &sizing, err));
   VG_TRY(vg_run_agree(r->comm, surface, NULL, sizing, r->options.change,
                       err));
   VG_TRY(look_at_sources(r, p, surface, sizing, err));
@@ -352,7 +357,7 @@ static vg_status grow_layers(struct vg_run *r, const struct vg_problem *p,
   layers->options.team = team;
   VG_TRY(vg_layer_stage_grow(layers, &p->surface, *sizing, show, err));
   r->time_layers = vg_display_now() - t;
-  VG_TRY(vg_display_stopped(err));
+  VG_TRY(vg_display_stopped(show, err));
   vg_sizing_free(*sizing);
   *sizing = NULL;
   st = measure_sizes(r, p, &layers->layers.front.mesh, 1, threads, team, show,
@@ -414,7 +419,8 @@ static vg_status mesh_layers(struct vg_run *r, const struct vg_problem *p,
 
   if (st < 0) return st;
   if (leads_node(r)) st = grow_layers(r, p, layers, team, show, &sizing, err);
-  VG_TRY(share_with_node(r, st, &p->surface, &layers->layers, &sizing, err));
+  VG_TRY(share_with_node(r, st, &p->surface, &layers->layers, show, &sizing,
+                         err));
   VG_TRY(vg_run_agree(r->comm, &p->surface, &layers->layers, sizing,
                       r->options.change, err));
   VG_TRY(look_at_sources(r, p, front, sizing, err));

@@ -29,7 +29,8 @@ struct vg_run_options {
 
 struct vg_run {
   struct vg_run_options options;
-  struct vg_outputs *outputs; /* written in part while the mesh is judged */
+  struct vg_outputs *outputs; /* written in part while the mesh is judged;
+                                NULL: none are */
   struct vg_comm *comm;      /* NULL: one rank without a launcher */
   int rank, size, threads;
   struct vg_partition *field;

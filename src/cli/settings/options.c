@@ -9,28 +9,11 @@
 #include "base/memory.h"
 #include "cli/common/cli.h"
 
-/* Columns of the farfield table that are options too, with their names. */
-static const struct { const char *column, *option; } farfield_options[] = {
-  { "kind", "farfield" }, { "lengths", "farfield-lengths" },
-  { "size", "farfield-size" }, { "spacing", "farfield-spacing" },
-};
-#define N_FARFIELD (sizeof farfield_options / sizeof *farfield_options)
-
 void vg_cli_parse(const struct argp *argp, int argc, char **argv, void *input)
 {
   argp_err_exit_status = VG_EXIT_USAGE;
   if (argp_parse(argp, argc, argv, 0, NULL, input))
     exit(VG_EXIT_USAGE);
-}
-
-static const struct vg_param *farfield_column(size_t i)
-{
-  const struct vg_table *t = vg_settings_table(VG_TABLE_FARFIELD);
-
-  for (size_t c = 0; c < t->n_column; c++)
-    if (strcmp(t->column[c].name, farfield_options[i].column) == 0)
-      return &t->column[c];
-  return NULL;
 }
 
 static char *keep(struct vg_cli_options *o, char *text)
@@ -71,13 +54,15 @@ static int add_option(struct vg_cli_options *o, const struct vg_param *p,
 vg_status vg_cli_options(const struct argp_option *own,
                          struct vg_cli_options *out)
 {
-  size_t n, n_own = 0, room;
-  const struct vg_param *p = vg_settings_params(&n);
+  size_t n = 0, n_own = 0, room;
+  const struct vg_param *p;
   struct vg_settings defaults;
-  int bad = 0;
+  const char *name;
+  int bad = 0, in_farfield;
 
   while (own[n_own].name || own[n_own].key || own[n_own].doc) n_own++;
-  room = n_own + 1 + n + N_FARFIELD + 1;
+  while (vg_settings_name(n, &name, &in_farfield)) n++;
+  room = n_own + 1 + n + 1;
   memset(out, 0, sizeof *out);
   out->option = vg_calloc(room, sizeof *out->option);
   out->text = vg_calloc(2 * room, sizeof *out->text);
@@ -90,12 +75,10 @@ vg_status vg_cli_options(const struct argp_option *own,
   out->option[out->n].doc = "Settings, which win over the deck:";
   out->option[out->n++].group = 2;
   vg_settings_default(&defaults);
-  for (size_t i = 0; i < n; i++)
-    bad |= add_option(out, &p[i], p[i].name, VG_KEY_SETTING + (int)i,
-                      &defaults);
-  for (size_t i = 0; i < N_FARFIELD; i++)
-    bad |= add_option(out, farfield_column(i), farfield_options[i].option,
-                      VG_KEY_SETTING + (int)(n + i), &defaults.farfield);
+  for (size_t i = 0; (p = vg_settings_name(i, &name, &in_farfield)); i++)
+    bad |= add_option(out, p, name, VG_KEY_SETTING + (int)i,
+                      in_farfield ? (void *)&defaults.farfield
+                                  : (void *)&defaults);
   if (!bad) return VG_OK;
   vg_cli_options_free(out);
   return VG_ERR_MEMORY;
@@ -111,11 +94,11 @@ void vg_cli_options_free(struct vg_cli_options *o)
 
 int vg_cli_option_key(const char *name)
 {
-  size_t n;
-  const struct vg_param *p = vg_settings_params(&n);
+  const char *known;
+  int in_farfield;
 
-  for (size_t i = 0; i < n; i++)
-    if (!strcmp(p[i].name, name)) return VG_KEY_SETTING + (int)i;
+  for (size_t i = 0; vg_settings_name(i, &known, &in_farfield); i++)
+    if (!strcmp(known, name)) return VG_KEY_SETTING + (int)i;
   return 0;
 }
 
@@ -123,18 +106,13 @@ int vg_cli_option_key(const char *name)
 static vg_status set_option(int key, const char *text, struct vg_settings *s,
                             struct vg_error *err)
 {
-  size_t n, i = (size_t)(key - VG_KEY_SETTING);
-  const struct vg_param *p = vg_settings_params(&n);
+  const char *name;
+  int in_farfield;
 
-  if (key < VG_KEY_SETTING || i >= n + N_FARFIELD) return VG_BLOCKED;
-  if (i < n) {
-    vg_status st = vg_param_set(&p[i], s, text, strlen(text), err);
-
-    if (st >= 0) vg_settings_override(s, &p[i]);
-    return st;
-  }
-  return vg_param_set(farfield_column(i - n), &s->farfield, text,
-                      strlen(text), err);
+  if (key < VG_KEY_SETTING ||
+      !vg_settings_name((size_t)(key - VG_KEY_SETTING), &name, &in_farfield))
+    return VG_BLOCKED;
+  return vg_settings_set(s, name, text, err);
 }
 
 error_t vg_cli_add_override(struct vg_cli_overrides *kept, int key,

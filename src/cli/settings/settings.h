@@ -172,6 +172,35 @@ size_t vg_settings_rows(const struct vg_settings *s, enum vg_table_kind kind);
 
 void vg_settings_release(struct vg_settings *s);
 
+/** A deep copy into *to, which is empty. */
+vg_status vg_settings_copy(struct vg_settings *to,
+                           const struct vg_settings *from,
+                           struct vg_error *err);
+
+/** A plain setting by its name, or one of the farfield by the name of its
+ * option: "growth", "farfield", "farfield_lengths"; as on the command line '-'
+ * stands for '_', too. The names are those of vg_settings_name.
+ *
+ * set: text as in the deck; vg_settings_override is applied. VG_ERR_INPUT
+ * names the nearest name, or what the value should be.
+ * get: out[size] as vg_param_format. */
+vg_status vg_settings_set(struct vg_settings *s, const char *name,
+                          const char *text, struct vg_error *err);
+vg_status vg_settings_get(const struct vg_settings *s, const char *name,
+                          char *out, size_t size, struct vg_error *err);
+
+/** Setting i: its name, and what describes it, with *in_farfield 1 where that
+ * is a column of the farfield's table; NULL behind the last. Static. */
+const struct vg_param *vg_settings_name(size_t i, const char **name,
+                                        int *in_farfield);
+
+/** A row of the table `name` from n columns and their values, as in the deck;
+ * what is not named keeps its default. */
+vg_status vg_settings_add_named(struct vg_settings *s, const char *name,
+                                size_t n, const char *const *column,
+                                const char *const *value,
+                                struct vg_error *err);
+
 /** What holds between settings, e.g. hmin <= hmax. VG_ERR_INPUT. */
 vg_status vg_settings_check(const struct vg_settings *s,
                             struct vg_error *err);
