@@ -56,7 +56,7 @@ demo)
   ;;
 test)
   # shellcheck disable=SC2086
-  install_missing $packages
+  install_missing $packages python3-numpy
   build all
   ctest --preset release
   ;;

@@ -1,4 +1,4 @@
-# Program, library, headers, pkg-config file and CMake package.
+# Program, library, its header, pkg-config file and CMake package.
 include(CMakePackageConfigHelpers)
 if(NOT TARGET vanguard_program)
   return()
@@ -7,10 +7,8 @@ endif()
 install(TARGETS vanguard_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(TARGETS vanguard EXPORT vanguard-targets
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(DIRECTORY src/base src/core src/layers src/partition src/io
-  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/vanguard FILES_MATCHING PATTERN "*.h"
-  PATTERN "*_parts.h" EXCLUDE PATTERN "node.h" EXCLUDE
-  PATTERN "repair.h" EXCLUDE)
+install(FILES src/api/vanguard.h
+  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/vanguard)
 
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/vanguard)
 install(EXPORT vanguard-targets NAMESPACE vanguard:: DESTINATION ${package})
@@ -32,3 +30,11 @@ install(PROGRAMS share/slurm/vanguard.sbatch
   DESTINATION ${CMAKE_INSTALL_DATADIR}/vanguard)
 install(FILES LICENSE README.md CHANGELOG.md CITATION.cff
   DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+# Debian's Python finds modules here, or by PYTHONPATH elsewhere.
+set(python ${CMAKE_INSTALL_PREFIX}/lib/python3/dist-packages)
+file(RELATIVE_PATH VG_LIBRARY_FROM_PYTHON ${python}
+  ${CMAKE_INSTALL_FULL_LIBDIR}/libvanguard.so.1)
+configure_file(python/vanguard.py.in ${CMAKE_BINARY_DIR}/vanguard.py @ONLY)
+install(FILES ${CMAKE_BINARY_DIR}/vanguard.py
+  DESTINATION lib/python3/dist-packages)

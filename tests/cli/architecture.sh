@@ -38,7 +38,7 @@ done < <(awk '/^vg_module\(/ { on = 1; line = "" }
 # The parts of the program that a part may see, besides base.
 declare -A parts=([base]="" [core]="core" [layers]="core layers"
   [partition]="core layers partition" [io]="core io"
-  [cli]="core layers partition io cli")
+  [cli]="core layers partition io cli" [api]="core layers partition io cli")
 for module in "${modules[@]}"; do
   part=${module%%/*}
   for seen in ${sees[$module]}; do
@@ -138,7 +138,7 @@ symbols() {
   for module in "${modules[@]}"; do
     find "$build/src/CMakeFiles/vg_${module//\//_}.dir" -name '*.o' -print0 \
       2>/dev/null | xargs -0r nm -g 2>/dev/null |
-      awk -v module="$module" -v at="${place[$module]}" 'NF >= 2 && $NF ~ /^vg_/ {
+      awk -v module="$module" -v at="${place[$module]}" 'NF >= 2 && $NF ~ /^(vg_|vanguard_)/ {
         print at, module, $NF, $(NF - 1) }'
   done
 }

@@ -1,28 +1,104 @@
 #!/bin/bash
-# Installs the build tree and builds a stranger's program against it, with
-# CMake and with pkg-config. consumer.sh BUILD_DIR FOLDER CMAKE CC
+# Installs the build tree; then strangers' programs are built against it, with
+# CMake and with pkg-config, and run: the examples, and consumer.c, which asks
+# for all that the library has; and the same for Python's module.
+# consumer.sh BUILD_DIR FOLDER CMAKE CC
 set -eu
 build=$1 folder=$2 cmake=$3 cc=$4
 here=$(dirname "$(realpath "$0")")
+examples=$here/../../examples
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
+  OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none \
+  PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe \
+  PRTE_MCA_hwloc_default_binding_policy=none
+
+fail() {
+  echo "consumer.sh: $*" >&2
+  exit 1
+}
 
 rm -rf "$folder"
-mkdir -p "$folder"
+mkdir -p "$folder/files"
 DESTDIR='' "$cmake" --install "$build" --prefix "$folder/prefix" >/dev/null
+prefix=$folder/prefix
+
+# --- what is installed, and what the library shows ---
+
+headers=$(cd "$prefix/include" && find . -type f)
+[ "$headers" = ./vanguard/vanguard.h ] ||
+  fail "headers besides vanguard.h are installed: $headers"
+library=$(find "$prefix" -name libvanguard.so)
+nm -D --defined-only --with-symbol-versions "$library" |
+  awk '$2 != "A" { print $3 }' | LC_ALL=C sort >"$folder/abi"
+diff -u "$here/consumer/abi.list" "$folder/abi" ||
+  fail "the library's symbols are not those of tests/cli/consumer/abi.list." \
+    "What was there must stay; what is new is added to the list"
+sed -n 's/^VANGUARD_API.*\(vanguard_[a-z_]*\)(.*/\1/p' \
+  "$prefix/include/vanguard/vanguard.h" | LC_ALL=C sort >"$folder/declared"
+sed -n 's/\(vanguard_.*\)@@.*/\1/p' "$folder/abi" |
+  diff -u "$folder/declared" - || fail "declared and exported differ"
+
+# --- by CMake: the examples, and a program in C and one in C++ ---
 
 # A sanitizer of the library must be in the program too.
 flags=$(sed -n 's/^CMAKE_C_FLAGS:STRING=//p' "$build/CMakeCache.txt")
+sanitizers() {
+  [[ $flags = *-fsanitize* ]]
+}
 
-"$cmake" -S "$here/consumer" -B "$folder/build" -DCMAKE_C_COMPILER="$cc" \
-  -DCMAKE_C_FLAGS="$flags" -DCMAKE_PREFIX_PATH="$folder/prefix" >/dev/null
-"$cmake" --build "$folder/build" >/dev/null
-"$folder/build/consumer"
+for project in "$here/consumer" "$examples"; do
+  at=$folder/$(basename "$project")
+  "$cmake" --no-warn-unused-cli -S "$project" -B "$at" -DCMAKE_C_COMPILER="$cc" \
+    -DCMAKE_C_FLAGS="$flags" -DCMAKE_CXX_FLAGS="$flags" \
+    -DCMAKE_PREFIX_PATH="$prefix" >/dev/null
+  "$cmake" --build "$at" >/dev/null
+done
+"$folder/consumer/consumer" "$folder/files"
+"$folder/consumer/consumer_cxx"
 
-pc=$(dirname "$(find "$folder/prefix" -name vanguard.pc)")
-export PKG_CONFIG_PATH=$pc
+cd "$folder/files"
+"$folder/examples/surface"
+[ -s cube.vtu ] || fail "the example wrote no cube.vtu"
+"$folder/examples/sizes" cube.lb8.ugrid 0.5 0.5 0.5 0.006 focus 2>/dev/null
+[ -s focus.b8.ugrid ] || fail "the example wrote no focus.b8.ugrid"
+if mpirun -n 2 true >/dev/null 2>&1; then
+  # What MPI itself does not free is no leak of ours.
+  ASAN_OPTIONS=detect_leaks=0 mpirun -n 2 "$folder/examples/parallel" \
+    cube.lb8.ugrid two
+  "$prefix/bin/vanguard" mesh -q -p cube.lb8.ugrid -o one --write b8.ugrid \
+    >/dev/null
+  cmp one/cube.b8.ugrid two.b8.ugrid
+else
+  echo "no mpirun that starts here: the example on ranks is left out"
+fi
+
+# --- by pkg-config ---
+
+PKG_CONFIG_PATH=$(dirname "$(find "$prefix" -name vanguard.pc)")
+export PKG_CONFIG_PATH
 # shellcheck disable=SC2046,SC2086 # lists of words
-"$cc" $flags $(pkg-config --cflags vanguard) "$here/consumer/consumer.c" \
+"$cc" $flags $(pkg-config --cflags vanguard) "$examples/surface.c" \
   -o "$folder/by_pkg_config" $(pkg-config --libs vanguard) \
   -Wl,-rpath,"$(pkg-config --variable=libdir vanguard)"
 "$folder/by_pkg_config"
 
-"$folder/prefix/bin/vanguard" --version
+"$prefix/bin/vanguard" --version
+
+# --- by Python ---
+
+python=
+for try in python3 /usr/bin/python3; do
+  ! "$try" -c 'import numpy' 2>/dev/null || { python=$try; break; }
+done
+if [ -z "$python" ]; then
+  echo "Python is left out: no numpy here (python3-numpy)"
+elif sanitizers; then
+  echo "Python is left out: it is not built with the sanitizer"
+else
+  PYTHONPATH=$(dirname "$(find "$prefix" -name vanguard.py)")
+  export PYTHONPATH
+  "$python" "$here/consumer/test_vanguard.py" "$folder/files" \
+    "$prefix/bin/vanguard"
+  "$python" "$examples/notebook.py"
+  [ -s ellipsoid.b8.ugrid ] || fail "the example wrote no ellipsoid.b8.ugrid"
+fi

@@ -1,48 +1,433 @@
-/* A program outside the project: builds the surface of a tetrahedron, checks
- * it, and asks for the spacing in it. */
+/* A program outside the project that asks the library for all it has, and for
+ * much that it must refuse. consumer FOLDER */
+#include <math.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <vanguard/vanguard.h>
 
-#include "core/mesh/mesh.h"
-#include "core/sizing/sizing.h"
-#include "core/surface/surface_check.h"
+static int n_bad;
 
-static int make_surface(struct vg_mesh *m)
+#define CHECK(what) check(!!(what), #what, __LINE__)
+
+static int check(int ok, const char *what, int line)
 {
-  const double point[4][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 },
-                               { 0, 0, 1 } };
-  const uint32_t tri[4][3] = { { 0, 1, 2 }, { 0, 3, 1 }, { 0, 2, 3 },
-                               { 1, 3, 2 } };
-
-  m->point = malloc(sizeof point);
-  m->tri = malloc(sizeof tri);
-  m->tri_patch = calloc(4, sizeof *m->tri_patch);
-  if (!m->point || !m->tri || !m->tri_patch) return -1;
-  memcpy(m->point, point, sizeof point);
-  memcpy(m->tri, tri, sizeof tri);
-  m->n_point = m->n_tri = 4;
-  return vg_mesh_add_patch(m, 1, "wall") == SIZE_MAX ? -1 : 0;
+  if (!ok) printf("consumer.c:%d: %s\n", line, what);
+  n_bad += !ok;
+  return ok;
 }
 
-int main(void)
+static int says(const vanguard_job *job, const char *word)
 {
-  struct vg_mesh m = VG_MESH_INIT;
-  struct vg_surface_check_options check = VG_SURFACE_CHECK_OPTIONS_INIT;
-  struct vg_surface_report report = VG_SURFACE_REPORT_INIT;
-  struct vg_sizing_options options = VG_SIZING_OPTIONS_INIT;
-  struct vg_sizing *sizing = NULL;
-  struct vg_error err = VG_ERROR_INIT;
-  const double at[3] = { 0.2, 0.2, 0.2 };
-  int bad = make_surface(&m);
+  if (strstr(vanguard_message(job), word)) return 1;
+  printf("message: %s\n", vanguard_message(job));
+  return 0;
+}
 
-  bad = bad || vg_surface_check(&m, &check, &report, &err) < 0 ||
-        report.n_defect ||
-        vg_sizing_new(&options, 0, NULL, &m, &sizing, &err) < 0 ||
-        !(vg_sizing_at(sizing, at) > 0);
-  printf("%s\n", bad ? err.text : "the library answers");
-  vg_sizing_free(sizing);
-  vg_surface_report_release(&report);
-  vg_mesh_release(&m);
-  return bad;
+/* --- a cube of N x N squares a side -------------------------------------- */
+
+enum { N = 12, SIDE = 6 * N * N };
+
+struct cube { size_t n_point; double x[8 * SIDE][3]; uint32_t tri[2 * SIDE][3];
+              int32_t patch[2 * SIDE]; };
+
+static uint32_t point_of(struct cube *c, const double x[3])
+{
+  for (size_t i = 0; i < c->n_point; i++)
+    if (!memcmp(c->x[i], x, sizeof c->x[i])) return (uint32_t)i;
+  memcpy(c->x[c->n_point], x, sizeof *c->x);
+  return (uint32_t)c->n_point++;
+}
+
+/* Normals point in: the cube is the domain. */
+static void make_cube(struct cube *c)
+{
+  size_t n = 0;
+
+  memset(c, 0, sizeof *c);
+  for (int face = 0; face < 6; face++)
+    for (int i = 0; i < N * N; i++) {
+      int a = face / 2, b = (a + 1) % 3, d = (a + 2) % 3;
+      uint32_t p[4];
+
+      for (int k = 0; k < 4; k++) {
+        double x[3];
+
+        x[a] = face % 2;
+        x[b] = (i % N + (k == 1 || k == 2)) / (double)N;
+        x[d] = (i / N + (k > 1)) / (double)N;
+        p[k] = point_of(c, x);
+      }
+      for (int h = 0; h < 2; h++) {
+        uint32_t t[3] = { p[0], p[1 + h], p[2 + h] };
+        int flip = face % 2;
+
+        memcpy(c->tri[n], (uint32_t[3]){ t[0], t[1 + flip], t[2 - flip] },
+               sizeof *c->tri);
+        c->patch[n++] = 10 + face;
+      }
+    }
+}
+
+static struct cube cube;
+
+static vanguard_job *new_cube(void)
+{
+  vanguard_job *job;
+
+  CHECK(vanguard_new(VANGUARD_ABI, &job) == VANGUARD_OK);
+  CHECK(vanguard_surface(job, "cube", cube.n_point, cube.x[0], 2 * SIDE,
+                         cube.tri[0], cube.patch) == VANGUARD_OK);
+  return job;
+}
+
+/* --- a mesh in arrays ---------------------------------------------------- */
+
+struct arrays { struct vanguard_counts n; double *x; uint32_t *cell[3]; };
+
+static void take(vanguard_job *job, struct arrays *a)
+{
+  a->n = (struct vanguard_counts)VANGUARD_INIT(a->n);
+  CHECK(vanguard_count(job, &a->n) == VANGUARD_OK);
+  a->x = calloc(a->n.n_point + 1, 3 * sizeof *a->x);
+  a->cell[0] = calloc(a->n.n_tet + 1, 4 * sizeof *a->cell[0]);
+  a->cell[1] = calloc(a->n.n_pyr + 1, 5 * sizeof *a->cell[1]);
+  a->cell[2] = calloc(a->n.n_pri + 1, 6 * sizeof *a->cell[2]);
+  CHECK(vanguard_arrays(job, a->x, a->cell[0], a->cell[1], a->cell[2]) ==
+        VANGUARD_OK);
+}
+
+static void drop(struct arrays *a)
+{
+  free(a->x);
+  for (int k = 0; k < 3; k++) free(a->cell[k]);
+}
+
+static int same(const struct arrays *a, const struct arrays *b)
+{
+  return a->n.n_point == b->n.n_point && a->n.n_tet == b->n.n_tet &&
+         a->n.n_pri == b->n.n_pri && a->n.n_pyr == b->n.n_pyr &&
+         !memcmp(a->x, b->x, a->n.n_point * 3 * sizeof *a->x) &&
+         !memcmp(a->cell[0], b->cell[0], a->n.n_tet * 16) &&
+         !memcmp(a->cell[1], b->cell[1], a->n.n_pyr * 20) &&
+         !memcmp(a->cell[2], b->cell[2], a->n.n_pri * 24);
+}
+
+static double volume_of(const struct arrays *a)
+{
+  double sum = 0;
+
+  for (uint64_t c = 0; c < a->n.n_tet; c++) {
+    const double *o = a->x + 3 * a->cell[0][4 * c];
+    double e[3][3];
+
+    for (int j = 0; j < 3; j++)
+      for (int k = 0; k < 3; k++)
+        e[j][k] = a->x[3 * a->cell[0][4 * c + 1 + (unsigned)j] + (unsigned)k] -
+                  o[k];
+    sum += (e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) +
+            e[0][1] * (e[1][2] * e[2][0] - e[1][0] * e[2][2]) +
+            e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0])) / 6;
+  }
+  return sum;
+}
+
+/* --- tests --------------------------------------------------------------- */
+
+static void refuses_another_abi(void)
+{
+  vanguard_job *job;
+
+  CHECK(vanguard_new(VANGUARD_ABI + 1, &job) == VANGUARD_ERR_UNSUPPORTED);
+  CHECK(says(job, "ABI"));
+  CHECK(vanguard_set(job, "growth", "1.3") == VANGUARD_ERR_USAGE);
+  CHECK(vanguard_mesh(job, NULL, NULL) == VANGUARD_ERR_USAGE);
+  vanguard_free(job);
+  vanguard_free(NULL);
+  CHECK(*vanguard_message(NULL));
+}
+
+static void sets_by_name(void)
+{
+  const char *column[] = { "kind", "x0", "h0" };
+  const char *value[] = { "point", "0.5", "0.1" };
+  struct vanguard_setting s = VANGUARD_INIT(s);
+  vanguard_job *job;
+  char text[512];
+  size_t n = 0;
+
+  CHECK(vanguard_new(VANGUARD_ABI, &job) == VANGUARD_OK);
+  CHECK(vanguard_set(job, "growth", "1.35") == VANGUARD_OK);
+  CHECK(vanguard_get(job, "growth", text, sizeof text) == VANGUARD_OK &&
+        !strcmp(text, "1.35"));
+  CHECK(vanguard_get(job, "growth", text, 4) == VANGUARD_ERR_USAGE);
+  CHECK(vanguard_set(job, "growht", "1.2") == VANGUARD_ERR_INPUT &&
+        says(job, "did you mean 'growth'"));
+  CHECK(vanguard_set(job, "growth", "0.5") == VANGUARD_ERR_INPUT &&
+        says(job, "above 1"));
+  CHECK(vanguard_set(job, "farfield-lengths", "7") == VANGUARD_OK);
+  CHECK(vanguard_add(job, "sources", 3, column, value) == VANGUARD_OK);
+  CHECK(vanguard_add(job, "sources", 2, column, value) == VANGUARD_ERR_INPUT &&
+        says(job, "h0"));
+  CHECK(vanguard_add(job, "source", 3, column, value) == VANGUARD_ERR_INPUT);
+  CHECK(vanguard_deck(job, "title\nhmax\n0.5\n") == VANGUARD_OK);
+  CHECK(vanguard_deck(job, "title\nhmax\nlarge\n") < 0 && says(job, "deck:3"));
+  while (vanguard_setting(n, &s)) n++, CHECK(s.name && s.help && s.kind);
+  CHECK(n > 40);
+  CHECK(vanguard_mesh(job, NULL, NULL) == VANGUARD_ERR_USAGE &&
+        says(job, "vanguard_surface"));
+  CHECK(vanguard_count(job, &(struct vanguard_counts){ .struct_size = 8 }) ==
+        VANGUARD_ERR_USAGE);
+  CHECK(!vanguard_triangles(job) && !vanguard_pieces(job));
+  vanguard_free(job);
+}
+
+static void refuses_bad_surfaces(void)
+{
+  vanguard_job *job = new_cube();
+  struct cube bad = cube;
+
+  bad.tri[7][1] = (uint32_t)bad.n_point;
+  CHECK(vanguard_surface(job, "bad", bad.n_point, bad.x[0], 2 * SIDE,
+                         bad.tri[0], NULL) == VANGUARD_ERR_INPUT &&
+        says(job, "triangle 7"));
+  bad = cube;
+  bad.x[3][1] = NAN;
+  CHECK(!vanguard_surface(job, "nan", bad.n_point, bad.x[0], 2 * SIDE,
+                          bad.tri[0], NULL));
+  CHECK(vanguard_mesh(job, NULL, NULL) < 0 && *vanguard_message(job));
+  /* a hole in the middle of a side */
+  memcpy(bad.tri[SIDE / 12], cube.tri[0], sizeof *bad.tri);
+  CHECK(!vanguard_surface(job, "open", cube.n_point, cube.x[0], 2 * SIDE - 1,
+                          cube.tri[0], cube.patch));
+  CHECK(!vanguard_set(job, "farfield", "none"));
+  CHECK(vanguard_mesh(job, NULL, NULL) == VANGUARD_ERR_GEOMETRY &&
+        says(job, "defects"));
+  CHECK(strstr(vanguard_details(job), "open"));
+  vanguard_free(job);
+}
+
+static void gives_arrays_and_pieces(void)
+{
+  vanguard_job *job = new_cube();
+  struct { struct vanguard_counts n; } old = { VANGUARD_INIT(old.n) };
+  struct vanguard_quality q = VANGUARD_INIT(q);
+  struct vanguard_patch p = VANGUARD_INIT(p);
+  struct arrays a;
+  uint64_t n_tet = 0, n_own = 0;
+
+  CHECK(!vanguard_mesh(job, NULL, NULL));
+  take(job, &a);
+  CHECK(a.n.n_tet > 100 && !a.n.n_pri && a.n.n_tri == 2 * SIDE);
+  CHECK(a.n.n_patch == 6 && !vanguard_patch(job, 2, &p) && p.id == 12);
+  CHECK(vanguard_patch(job, 6, &p) == VANGUARD_ERR_USAGE);
+  CHECK(fabs(volume_of(&a) - 1) < 1e-12);   /* sums of some thousand terms */
+  CHECK(!vanguard_measure(job, &q) && fabs(q.volume - 1) < 1e-12 &&
+        q.angle_min > 5 && q.angle_max < 175);
+  for (size_t i = 0; i < vanguard_pieces(job); i++) {
+    struct vanguard_piece s = VANGUARD_INIT(s);
+
+    CHECK(!vanguard_piece_get(job, i, &s));
+    for (size_t k = 0; k < s.n_own; k++, n_own++)
+      CHECK(!memcmp(s.xyz + 3 * s.own[k], a.x + 3 * (s.own_at + k), 24));
+    for (size_t k = 0; k < 4 * s.n_tet; k++)
+      if (s.id[s.tet[k]] != a.cell[0][4 * s.tet_at + k]) n_bad++;
+    n_tet += s.n_tet;
+    vanguard_piece_put(job, &s);
+    vanguard_piece_put(job, &s);
+  }
+  CHECK(n_tet == a.n.n_tet && n_own == a.n.n_point);
+  /* a program that knows less of a structure */
+  old.n.struct_size = offsetof(struct vanguard_counts, n_pyr);
+  old.n.n_tri = 77;
+  CHECK(!vanguard_count(job, &old.n) && old.n.n_tet == n_tet &&
+        old.n.n_tri == 77);
+  CHECK(!vanguard_walls(job));
+  drop(&a);
+  vanguard_free(job);
+}
+
+static void add_patch(vanguard_job *job, const char *id, const char *bc,
+                      const char *name)
+{
+  const char *column[] = { "id", "bc", "name" };
+  const char *value[] = { id, bc, name };
+
+  CHECK(!vanguard_add(job, "patches", 3, column, value));
+}
+
+static void grows_layers(void)
+{
+  vanguard_job *job = new_cube();
+  struct vanguard_wall w = VANGUARD_INIT(w);
+  struct vanguard_patch p = VANGUARD_INIT(p);
+  struct arrays a;
+
+  add_patch(job, "14", "4", "floor");
+  CHECK(vanguard_mesh(job, NULL, NULL) == VANGUARD_ERR_GEOMETRY &&
+        strstr(vanguard_details(job), "condition"));
+  for (int i = 0; i < 5; i++)
+    add_patch(job, (const char *[]){ "10", "11", "12", "13", "15" }[i], "1",
+              "side");
+  CHECK(!vanguard_set(job, "cells", "mixed") &&
+        !vanguard_set(job, "first", "0.01") &&
+        !vanguard_set(job, "layers", "yes"));
+  CHECK(!vanguard_mesh(job, NULL, NULL) || says(job, "?"));
+  take(job, &a);
+  CHECK(a.n.n_pri > 0 && a.n.n_layer_pri == a.n.n_pri);
+  CHECK(vanguard_walls(job) == 1 && !vanguard_wall(job, 0, &w));
+  CHECK(!vanguard_patch(job, w.patch, &p) && !strcmp(p.name, "floor"));
+  CHECK(w.level[0] >= 1 && fabs(w.first[1] - 0.01) < 1e-3);
+  CHECK(!vanguard_wall(job, 1, &w) && w.patch == SIZE_MAX);
+  CHECK(vanguard_wall(job, 2, &w) == VANGUARD_ERR_USAGE);
+  CHECK(a.n.n_quad && vanguard_quads(job) && vanguard_quad_patches(job));
+  drop(&a);
+  vanguard_free(job);
+}
+
+static int stop_at(void *user, const char *phase, uint64_t done,
+                   uint64_t expected)
+{
+  (void)done;
+  (void)expected;
+  return !strcmp(phase, user);
+}
+
+static void stops(void)
+{
+  const char *const phase[] = { "check", "sizes", "fill", "judge" };
+  vanguard_job *job = new_cube();
+  struct arrays before, after;
+
+  CHECK(!vanguard_set(job, "hmax", "0.05"));
+  CHECK(!vanguard_mesh(job, NULL, NULL));
+  take(job, &before);
+  for (int i = 0; i < 4; i++) {
+    CHECK(vanguard_mesh(job, stop_at, (void *)phase[i]) ==
+          VANGUARD_ERR_STOPPED);
+    CHECK(vanguard_count(job, &after.n) == VANGUARD_ERR_USAGE);
+  }
+  vanguard_cancel(job);          /* nothing is at work */
+  CHECK(!vanguard_mesh(job, NULL, NULL));
+  take(job, &after);
+  CHECK(same(&before, &after));
+  drop(&before);
+  drop(&after);
+  vanguard_free(job);
+}
+
+static double focus(void *user, const double x[3])
+{
+  double d2 = 0;
+
+  (void)user;
+  for (int k = 0; k < 3; k++) d2 += (x[k] - 0.5) * (x[k] - 0.5);
+  return 0.006 + 0.3 * sqrt(d2);
+}
+
+static double nowhere(void *user, const double x[3])
+{
+  (void)user;
+  return x[0] > 0.5 ? -1 : 1;
+}
+
+static void takes_sizes(void)
+{
+  const double at[2][3] = { { 0.5, 0.5, 0.5 }, { 0.2, 0.2, 0.2 } };
+  const double size[2] = { 0.006, 0.2 }, bad[2] = { 0.1, -2 };
+  vanguard_job *job = new_cube();
+  struct arrays plain, by_function, by_points;
+
+  CHECK(!vanguard_mesh(job, NULL, NULL));
+  take(job, &plain);
+  CHECK(!vanguard_sizes(job, focus, NULL) && !vanguard_mesh(job, NULL, NULL));
+  take(job, &by_function);
+  CHECK(by_function.n.n_tet > 2 * plain.n.n_tet);
+  CHECK(vanguard_size_points(job, 2, at[0], bad) == VANGUARD_ERR_INPUT &&
+        says(job, "point 2"));
+  CHECK(!vanguard_size_points(job, 2, at[0], size));
+  CHECK(!vanguard_mesh(job, NULL, NULL));
+  take(job, &by_points);
+  CHECK(by_points.n.n_tet > 2 * plain.n.n_tet);
+  CHECK(!vanguard_sizes(job, nowhere, NULL));
+  CHECK(vanguard_mesh(job, NULL, NULL) == VANGUARD_ERR_INPUT &&
+        says(job, "is -1; it must be above 0"));
+  CHECK(!vanguard_sizes(job, NULL, NULL) && !vanguard_mesh(job, NULL, NULL));
+  drop(&by_points);
+  take(job, &by_points);
+  CHECK(same(&plain, &by_points));
+  drop(&plain);
+  drop(&by_function);
+  drop(&by_points);
+  vanguard_free(job);
+}
+
+static void writes(const char *dir)
+{
+  vanguard_job *job = new_cube();
+  char stem[4096], path[4200];
+  FILE *f;
+
+  snprintf(stem, sizeof stem, "%s/cube", dir);
+  CHECK(vanguard_write(job, stem, "b8.ugrid") == VANGUARD_ERR_USAGE);
+  CHECK(!vanguard_mesh(job, NULL, NULL));
+  CHECK(vanguard_write(job, stem, "b8.ugird") == VANGUARD_ERR_INPUT);
+  CHECK(vanguard_write(job, "/nowhere/cube", "vtu") == VANGUARD_ERR_IO);
+  CHECK(!vanguard_write(job, stem, "lb8.ugrid,vtu,su2"));
+  CHECK(!vanguard_write(job, stem, NULL));
+  for (int i = 0; i < 4; i++) {
+    const char *suffix[] = { "lb8.ugrid", "vtu", "su2", "cogsg" };
+
+    snprintf(path, sizeof path, "%s.%s", stem, suffix[i]);
+    f = fopen(path, "rb");
+    CHECK(f);
+    if (f) fclose(f);
+  }
+  /* what was written is read, meshed alike, and is not overwritten */
+  snprintf(path, sizeof path, "%s.lb8.ugrid", stem);
+  CHECK(!vanguard_open(job, path, NULL) && !vanguard_mesh(job, NULL, NULL));
+  CHECK(vanguard_write(job, stem, "lb8.ugrid") == VANGUARD_ERR_INPUT &&
+        says(job, "overwrite"));
+  CHECK(vanguard_open(job, "/nowhere/cube.stl", NULL) == VANGUARD_ERR_INPUT);
+  vanguard_free(job);
+}
+
+static void *mesh_in_thread(void *out)
+{
+  vanguard_job *job = new_cube();
+
+  CHECK(!vanguard_set(job, "hmax", "0.05") && !vanguard_mesh(job, NULL, NULL));
+  take(job, out);
+  vanguard_free(job);
+  return NULL;
+}
+
+static void meshes_in_threads(void)
+{
+  struct arrays a[3];
+  pthread_t thread[3];
+
+  for (int i = 0; i < 3; i++)
+    pthread_create(&thread[i], NULL, mesh_in_thread, &a[i]);
+  for (int i = 0; i < 3; i++) pthread_join(thread[i], NULL);
+  CHECK(same(&a[0], &a[1]) && same(&a[0], &a[2]));
+  for (int i = 0; i < 3; i++) drop(&a[i]);
+}
+
+int main(int argc, char **argv)
+{
+  make_cube(&cube);
+  refuses_another_abi();
+  sets_by_name();
+  refuses_bad_surfaces();
+  gives_arrays_and_pieces();
+  grows_layers();
+  stops();
+  takes_sizes();
+  if (argc > 1) writes(argv[1]);
+  CHECK(!vanguard_prepare());
+  meshes_in_threads();
+  if (!n_bad) printf("libvanguard %s answers\n", vanguard_version());
+  return n_bad != 0;
 }

@@ -1,0 +1,314 @@
+/* What a mesh is: the last part of api/vanguard.h. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "api/job.h"
+#include "base/memory.h"
+
+vg_status vg_job_meshed(vanguard_job *job)
+{
+  if (job->is_refused) return VG_ERR_USAGE;
+  if (job->is_meshed) return VG_OK;
+  return vg_fail(&job->err, VG_ERR_USAGE, "there is no mesh: vanguard_mesh has "
+                 "not been called, or has failed");
+}
+
+const char *vanguard_details(const vanguard_job *job)
+{
+  return job->details ? job->details : "";
+}
+
+const char *vanguard_note(const vanguard_job *job, size_t i)
+{
+  const struct vg_notes *notes = &job->problem.notes;
+
+  return i < notes->n ? notes->text[i] : NULL;
+}
+
+vanguard_status vanguard_count(vanguard_job *job, struct vanguard_counts *out)
+{
+  const struct vg_slices *s = &job->run.slices;
+  struct vanguard_counts n = { .struct_size = sizeof n };
+  vg_status st = vg_job_meshed(job);
+
+  if (st < 0) return vg_job_status(st);
+  n.n_point = s->n_point;
+  n.n_tet = s->n_cell[VG_SLICE_TET];
+  n.n_pyr = s->n_cell[VG_SLICE_PYR];
+  n.n_pri = s->n_cell[VG_SLICE_PRI];
+  n.n_tri = s->boundary->n_tri;
+  n.n_quad = s->boundary->n_quad;
+  n.n_boundary_point = s->n_boundary_point;
+  n.n_layer_point = job->layers.is_on ? s->n_layer_point : 0;
+  n.n_layer_tet = s->n_layer_cell[VG_SLICE_TET];
+  n.n_layer_pyr = s->n_layer_cell[VG_SLICE_PYR];
+  n.n_layer_pri = s->n_layer_cell[VG_SLICE_PRI];
+  n.n_patch = s->boundary->n_patch;
+  vg_job_give(out, &n, sizeof n);
+  return VANGUARD_OK;
+}
+
+vanguard_status vanguard_patch(vanguard_job *job, size_t i,
+                               struct vanguard_patch *out)
+{
+  struct vanguard_patch p = { .struct_size = sizeof p };
+  const struct vg_patch *from;
+  vg_status st = vg_job_meshed(job);
+
+  if (st >= 0 && i >= job->run.slices.boundary->n_patch)
+    st = vg_fail(&job->err, VG_ERR_USAGE, "no patch %zu: there are %zu", i,
+                 job->run.slices.boundary->n_patch);
+  if (st < 0) return vg_job_status(st);
+  from = &job->run.slices.boundary->patch[i];
+  p.id = from->id;
+  p.bc = from->bc;
+  p.bc_fun3d = from->bc_fun3d;
+  p.name = from->name;
+  vg_job_give(out, &p, sizeof p);
+  return VANGUARD_OK;
+}
+
+static const struct vg_mesh *boundary_of(const vanguard_job *job)
+{
+  static const struct vg_mesh none = VG_MESH_INIT;
+
+  return job->is_meshed ? job->run.slices.boundary : &none;
+}
+
+const uint32_t *vanguard_triangles(const vanguard_job *job)
+{
+  return (const uint32_t *)boundary_of(job)->tri;
+}
+
+const uint32_t *vanguard_triangle_patches(const vanguard_job *job)
+{
+  return boundary_of(job)->tri_patch;
+}
+
+const uint32_t *vanguard_quads(const vanguard_job *job)
+{
+  return (const uint32_t *)boundary_of(job)->quad;
+}
+
+const uint32_t *vanguard_quad_patches(const vanguard_job *job)
+{
+  return boundary_of(job)->quad_patch;
+}
+
+/* --- arrays and pieces --------------------------------------------------- */
+
+struct arrays {
+  double *xyz;
+  uint32_t *cell[VG_SLICE_KINDS];
+};
+
+static vg_status fill_arrays(void *context, const struct vg_slice *s,
+                             struct vg_error *err)
+{
+  static const size_t width[VG_SLICE_KINDS] = { 4, 5, 6 };
+  const struct arrays *a = context;
+
+  (void)err;
+  for (size_t k = 0; a->xyz && k < s->n_own; k++)
+    memcpy(a->xyz + 3 * (s->point_at + k), s->x[s->own[k]], sizeof *s->x);
+  for (int k = 0; k < VG_SLICE_KINDS; k++) {
+    uint32_t *to = a->cell[k];
+    size_t n = s->n_cell[k] * width[k];
+
+    if (!to) continue;
+    to += s->cell_at[k] * width[k];
+    for (size_t i = 0; i < n; i++) to[i] = s->id[s->cell[k][i]];
+  }
+  return VG_OK;
+}
+
+vanguard_status vanguard_arrays(vanguard_job *job, double *xyz, uint32_t *tet,
+                                uint32_t *pyr, uint32_t *pri)
+{
+  struct arrays a = { xyz, { tet, pyr, pri } };
+  vg_status st = vg_job_meshed(job);
+
+  if (st < 0) return vg_job_status(st);
+  if (job->run.size > 1)
+    return vg_job_status(vg_fail(&job->err, VG_ERR_UNSUPPORTED, "no process "
+                                 "has the whole mesh of %d ranks: use "
+                                 "vanguard_piece_get, or write it",
+                                 job->run.size));
+  if (job->run.slices.n_point >= UINT32_MAX)
+    return vg_job_status(vg_fail(&job->err, VG_ERR_UNSUPPORTED, "%llu points "
+                                 "are too many for numbers of 32 bits: use "
+                                 "vanguard_piece_get, or write b8l.ugrid",
+                                 (unsigned long long)job->run.slices.n_point));
+  st = vg_slices_each(&job->run.slices, job->run.threads, fill_arrays, &a,
+                      &job->err);
+  return vg_job_status(st);
+}
+
+size_t vanguard_pieces(const vanguard_job *job)
+{
+  return job->is_meshed ? job->run.slices.n_slice : 0;
+}
+
+vanguard_status vanguard_piece_get(vanguard_job *job, size_t i,
+                                   struct vanguard_piece *out)
+{
+  const struct vg_slices *s = &job->run.slices;
+  struct vanguard_piece p = { .struct_size = sizeof p };
+  struct vg_slice *slice;
+  vg_status st = vg_job_meshed(job);
+
+  if (st >= 0 && i >= s->n_slice)
+    st = vg_fail(&job->err, VG_ERR_USAGE, "no piece %zu: this rank has %zu", i,
+                 s->n_slice);
+  if (st < 0) return vg_job_status(st);
+  slice = vg_calloc(1, sizeof *slice);
+  st = slice ? s->get(s, i, slice, &job->err)
+             : vg_fail_memory(&job->err, "a piece of the mesh");
+  if (st < 0) {
+    free(slice);
+    return vg_job_status(st);
+  }
+  p.n_point = slice->n_point;
+  p.xyz = (const double *)slice->x;
+  p.id = slice->id;
+  p.own_at = slice->point_at;
+  p.n_own = slice->n_own;
+  p.own = slice->own;
+  p.tet_at = slice->cell_at[VG_SLICE_TET];
+  p.pyr_at = slice->cell_at[VG_SLICE_PYR];
+  p.pri_at = slice->cell_at[VG_SLICE_PRI];
+  p.n_tet = slice->n_cell[VG_SLICE_TET];
+  p.n_pyr = slice->n_cell[VG_SLICE_PYR];
+  p.n_pri = slice->n_cell[VG_SLICE_PRI];
+  p.tet = slice->cell[VG_SLICE_TET];
+  p.pyr = slice->cell[VG_SLICE_PYR];
+  p.pri = slice->cell[VG_SLICE_PRI];
+  p.subdomain = slice->domain;
+  p.keep = slice;
+  vg_job_give(out, &p, sizeof p);
+  return VANGUARD_OK;
+}
+
+void vanguard_piece_put(vanguard_job *job, struct vanguard_piece *piece)
+{
+  if (!piece->keep) return;
+  job->run.slices.put(&job->run.slices, piece->keep);
+  free(piece->keep);
+  piece->keep = NULL;
+}
+
+/* --- figures ------------------------------------------------------------- */
+
+vanguard_status vanguard_measure(vanguard_job *job,
+                                 struct vanguard_quality *out)
+{
+  const struct vg_mesh_report *field = job->run.layers ? &job->run.field_judge
+                                                       : &job->run.judge;
+  struct vanguard_quality q = { .struct_size = sizeof q };
+  vg_status st = vg_job_meshed(job);
+
+  if (st < 0) return vg_job_status(st);
+  q.volume = job->run.judge.volume;
+  q.angle_min = field->angle_min;
+  q.angle_max = field->angle_max;
+  q.angle_min_p1 = field->angle_min_p1;
+  q.radius_ratio_min = field->radius_ratio_min;
+  q.radius_ratio_mean = field->radius_ratio_mean;
+  q.volume_ratio_p95 = field->volume_ratio[1];
+  q.volume_ratio_max = field->volume_ratio[2];
+  q.edge_within = field->edge_within;
+  vg_job_give(out, &q, sizeof q);
+  return VANGUARD_OK;
+}
+
+size_t vanguard_walls(const vanguard_job *job)
+{
+  return job->is_meshed && !job->run.rank ? job->layers.n_wall : 0;
+}
+
+static void put_range(double to[3], const struct vg_range *r)
+{
+  to[0] = r->min;
+  to[1] = r->mean;
+  to[2] = r->max;
+}
+
+vanguard_status vanguard_wall(vanguard_job *job, size_t i,
+                              struct vanguard_wall *out)
+{
+  struct vanguard_wall w = { .struct_size = sizeof w };
+  const struct vg_patch_layers *from;
+  vg_status st = vg_job_meshed(job);
+
+  if (st >= 0 && (!vanguard_walls(job) || i > job->layers.n_wall))
+    st = vg_fail(&job->err, VG_ERR_USAGE, "no wall %zu: this rank knows %zu",
+                 i, vanguard_walls(job));
+  if (st < 0) return vg_job_status(st);
+  from = i < job->layers.n_wall ? &job->layers.wall[i] : &job->layers.all;
+  w.patch = i < job->layers.n_wall ? from->patch : SIZE_MAX;
+  w.n_face = from->n_face;
+  w.n_point = from->n_point;
+  w.full = from->full;
+  w.any = from->any;
+  put_range(w.first, &from->first);
+  put_range(w.asked, &from->asked);
+  put_range(w.level, &from->level);
+  put_range(w.total, &from->total);
+  put_range(w.growth, &from->growth);
+  put_range(w.y_plus, &from->y_plus);
+  w.share = from->share_mean;
+  w.first_error = from->first_error;
+  memcpy(w.top_ratio, from->top_ratio, sizeof w.top_ratio);
+  vg_job_give(out, &w, sizeof w);
+  return VANGUARD_OK;
+}
+
+/* --- files --------------------------------------------------------------- */
+
+/* Where files go and what they are is the caller's, all else the run's. */
+static vg_status plan_files(vanguard_job *job, const char *stem,
+                            const char *forms, struct vg_outputs *o)
+{
+  struct vg_problem view = job->problem;
+  size_t n = forms ? strlen(forms) : 0;
+
+  if (n >= sizeof view.settings.write)
+    return vg_fail(&job->err, VG_ERR_INPUT, "the list of forms has %zu "
+                   "characters, at most %zu are taken", n,
+                   sizeof view.settings.write - 1);
+  if (forms) memcpy(view.settings.write, forms, n + 1);
+  vg_settings_write(&view.settings);
+  view.files.stem = (char *)stem;
+  return vg_outputs_plan(&view, NULL, job->run.size, o, &job->err);
+}
+
+static vg_status put_files(vanguard_job *job, struct vg_outputs *o)
+{
+  struct vg_run *r = &job->run;
+  vg_status st;
+
+  VG_TRY(vg_outputs_check(&job->problem, o, &job->err));
+  VG_TRY(vg_outputs_open(o, &job->problem, r->comm, &r->slices, &job->err));
+  st = o->n_open ? vg_slices_each(&r->slices, r->threads, vg_outputs_put, o,
+                                  &job->err) : VG_OK;
+  VG_TRY(vg_outputs_close(o, st, &job->err));
+  VG_TRY(vg_outputs_mesh(o, &job->problem, &job->layers, r->comm, &r->slices,
+                         r->threads, &job->err));
+  st = r->rank ? VG_OK : vg_outputs_commit(o, &job->err);
+done:
+  return st;
+}
+
+vanguard_status vanguard_write(vanguard_job *job, const char *stem,
+                               const char *forms)
+{
+  struct vg_outputs o = VG_OUTPUTS_INIT;
+  vg_status st = vg_job_meshed(job);
+
+  if (st < 0) return vg_job_status(st);
+  st = vg_comm_agree(job->comm, plan_files(job, stem, forms, &o), &job->err);
+  if (st >= 0)
+    st = vg_comm_agree(job->comm, put_files(job, &o), &job->err);
+  vg_outputs_release(&o);
+  return vg_job_status(st);
+}

@@ -1,0 +1,351 @@
+/* Jobs, their settings and their surface: the first half of api/vanguard.h. */
+#define _GNU_SOURCE
+#include "api/job.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/child.h"
+#include "base/memory.h"
+#include "cli/settings/deck.h"
+
+const char *vanguard_version(void)
+{
+  return VG_VERSION;
+}
+
+int vanguard_abi(void)
+{
+  return VANGUARD_ABI;
+}
+
+vanguard_status vanguard_prepare(void)
+{
+  return vg_job_status(vg_child_server_start(NULL));
+}
+
+/* --- jobs ---------------------------------------------------------------- */
+
+static vg_status refuse_abi(int abi, struct vg_error *err)
+{
+  if (abi == VANGUARD_ABI) return VG_OK;
+  return vg_fail(err, VG_ERR_UNSUPPORTED, "the program was compiled for ABI %d "
+                 "of libvanguard, this is version %s with ABI %d; compile it "
+                 "with the header of this version", abi, VG_VERSION,
+                 VANGUARD_ABI);
+}
+
+static vanguard_job *new_job(int abi)
+{
+  vanguard_job *job = vg_calloc(1, sizeof *job);
+
+  if (!job) return NULL;
+  job->problem = (struct vg_problem)VG_PROBLEM_INIT;
+  vg_settings_default(&job->settings);
+  job->is_refused = refuse_abi(abi, &job->err) < 0;
+  return job;
+}
+
+static vanguard_status settle(vanguard_job *job, vg_status st,
+                              vanguard_job **out)
+{
+  job->is_refused |= st < 0;
+  *out = job;
+  return vg_job_status(st);
+}
+
+vanguard_status vanguard_new(int abi, vanguard_job **out)
+{
+  *out = new_job(abi);
+  if (!*out) return VANGUARD_ERR_MEMORY;
+  return settle(*out, (*out)->err.code, out);
+}
+
+vanguard_status vanguard_new_mpi(int abi, const void *comm, vanguard_job **out)
+{
+  vg_status st;
+
+  *out = new_job(abi);
+  if (!*out) return VANGUARD_ERR_MEMORY;
+  st = (*out)->err.code;
+  if (st >= 0) st = vg_comm_of(comm, &(*out)->comm, &(*out)->err);
+  return settle(*out, st, out);
+}
+
+vanguard_status vanguard_new_fortran(int abi, int32_t comm, vanguard_job **out)
+{
+  vg_status st;
+
+  *out = new_job(abi);
+  if (!*out) return VANGUARD_ERR_MEMORY;
+  st = (*out)->err.code;
+  if (st >= 0) st = vg_comm_of_fortran(comm, &(*out)->comm, &(*out)->err);
+  return settle(*out, st, out);
+}
+
+void vanguard_free(vanguard_job *job)
+{
+  if (!job) return;
+  vg_job_release_run(job, 1);
+  vg_settings_release(&job->settings);
+  vg_mesh_release(&job->surface);
+  free(job->size_at);
+  free(job->size_of);
+  free(job->project);
+  free(job->deck);
+  free(job->name);
+  vg_comm_close(job->comm);
+  free(job);
+}
+
+const char *vanguard_message(const vanguard_job *job)
+{
+  return job ? job->err.text : "not enough memory for a job";
+}
+
+vg_status vg_job_usable(vanguard_job *job)
+{
+  return job->is_refused ? VG_ERR_USAGE : VG_OK;
+}
+
+/* --- settings ------------------------------------------------------------ */
+
+vanguard_status vanguard_set(vanguard_job *job, const char *name,
+                             const char *value)
+{
+  vg_status st = vg_job_usable(job);
+
+  if (st >= 0) st = vg_settings_set(&job->settings, name, value, &job->err);
+  return vg_job_status(st);
+}
+
+vanguard_status vanguard_get(vanguard_job *job, const char *name, char *value,
+                             size_t size)
+{
+  char text[2 * VG_LIST_MAX + 4];
+  vg_status st = vg_job_usable(job);
+
+  if (st >= 0)
+    st = vg_settings_get(&job->settings, name, text, sizeof text, &job->err);
+  if (st >= 0 && strlen(text) >= size)
+    st = vg_fail(&job->err, VG_ERR_USAGE, "the value of %s has %zu characters, "
+                 "%zu are too few for it", name, strlen(text), size);
+  if (st >= 0) memcpy(value, text, strlen(text) + 1);
+  return vg_job_status(st);
+}
+
+vanguard_status vanguard_add(vanguard_job *job, const char *table, size_t n,
+                             const char *const *column,
+                             const char *const *value)
+{
+  vg_status st = vg_job_usable(job);
+
+  if (st >= 0)
+    st = vg_settings_add_named(&job->settings, table, n, column, value,
+                               &job->err);
+  return vg_job_status(st);
+}
+
+vanguard_status vanguard_deck(vanguard_job *job, const char *text)
+{
+  vg_status st = vg_job_usable(job);
+
+  if (st >= 0)
+    st = vg_deck_parse("deck", text, strlen(text), &job->settings, &job->err);
+  return vg_job_status(st);
+}
+
+int vanguard_setting(size_t i, struct vanguard_setting *out)
+{
+  static const char *const kind[] = {
+    [VG_PARAM_REAL] = "real", [VG_PARAM_COUNT] = "count",
+    [VG_PARAM_ID] = "count", [VG_PARAM_FLAG] = "flag",
+    [VG_PARAM_WORD] = "word", [VG_PARAM_TEXT] = "text" };
+  struct vanguard_setting s = { .struct_size = sizeof s };
+  int in_farfield;
+  const struct vg_param *p = vg_settings_name(i, &s.name, &in_farfield);
+
+  if (!p) return 0;
+  s.unit = p->unit;
+  s.help = p->help;
+  s.kind = kind[p->type];
+  s.words = p->words;
+  s.least = p->lo;
+  s.most = p->hi;
+  vg_job_give(out, &s, sizeof s);
+  return 1;
+}
+
+void vg_job_give(void *out, const void *full, size_t size)
+{
+  size_t known;
+
+  memcpy(&known, out, sizeof known);
+  if (known < size) size = known;
+  if (size > sizeof known)
+    memcpy((char *)out + sizeof known, (const char *)full + sizeof known,
+           size - sizeof known);
+}
+
+/* --- input --------------------------------------------------------------- */
+
+static int keep_text(char **to, const char *text)
+{
+  char *copy = text ? strdup(text) : NULL;
+
+  if (text && !copy) return -1;
+  free(*to);
+  *to = copy;
+  return 0;
+}
+
+vanguard_status vanguard_open(vanguard_job *job, const char *project,
+                              const char *deck)
+{
+  struct vg_problem p = VG_PROBLEM_INIT;
+  vg_status st;
+
+  VG_TRY(vg_job_usable(job));
+  VG_TRY(vg_input_find(project, deck, &p.files, &job->err));
+  VG_TRY(vg_problem_deck(&p, &job->err));
+  if (keep_text(&job->project, project) || keep_text(&job->deck, deck)) {
+    st = vg_fail_memory(&job->err, "the names of the project");
+    goto done;
+  }
+  vg_settings_release(&job->settings);
+  job->settings = p.settings;
+  memset(&p.settings, 0, sizeof p.settings);
+  vg_mesh_release(&job->surface);
+done:
+  vg_problem_release(&p);
+  return vg_job_status(st);
+}
+
+static vg_status check_triangles(const char *name, size_t n_point, size_t n,
+                                 const uint32_t *tri, struct vg_error *err)
+{
+  if (n_point >= UINT32_MAX)
+    return vg_fail(err, VG_ERR_UNSUPPORTED, "%s: %zu points are too many for "
+                   "a surface", name, n_point);
+  for (size_t i = 0; i < 3 * n; i++)
+    if (tri[i] >= n_point)
+      return vg_fail(err, VG_ERR_INPUT, "%s: triangle %zu has point %lu, but "
+                     "points go from 0 to %lld", name, i / 3,
+                     (unsigned long)tri[i], (long long)n_point - 1);
+  return VG_OK;
+}
+
+static int compare_id(const void *a, const void *b)
+{
+  int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
+
+  return (x > y) - (x < y);
+}
+
+/* Patches by rising number. */
+static vg_status make_patches(struct vg_mesh *m, const int32_t *patch,
+                              struct vg_error *err)
+{
+  int32_t *id = vg_alloc(m->n_tri, sizeof *id);
+  size_t n = 0;
+
+  if (!id) return vg_fail_memory(err, "the patches");
+  for (size_t i = 0; i < m->n_tri; i++) id[i] = patch ? patch[i] : 1;
+  qsort(id, m->n_tri, sizeof *id, compare_id);
+  for (size_t i = 0; i < m->n_tri; i++)
+    if (!i || id[i] != id[i - 1]) id[n++] = id[i];
+  for (size_t i = 0; i < n; i++)
+    if (vg_mesh_add_patch(m, id[i], NULL) == SIZE_MAX) break;
+  for (size_t i = 0; i < m->n_tri && m->n_patch == n; i++) {
+    int32_t key = patch ? patch[i] : 1, *at;
+
+    at = bsearch(&key, id, n, sizeof *id, compare_id);
+    m->tri_patch[i] = (uint32_t)(at - id);
+  }
+  free(id);
+  return m->n_patch == n ? VG_OK : vg_fail_memory(err, "the patches");
+}
+
+vanguard_status vanguard_surface(vanguard_job *job, const char *name,
+                                 size_t n_point, const double *xyz,
+                                 size_t n_tri, const uint32_t *tri,
+                                 const int32_t *patch)
+{
+  struct vg_mesh m = VG_MESH_INIT;
+  vg_status st;
+
+  VG_TRY(vg_job_usable(job));
+  VG_TRY(check_triangles(name, n_point, n_tri, tri, &job->err));
+  m.point = vg_alloc(n_point, sizeof *m.point);
+  m.tri = vg_alloc(n_tri, sizeof *m.tri);
+  m.tri_patch = vg_alloc(n_tri, sizeof *m.tri_patch);
+  if (!m.point || !m.tri || !m.tri_patch || keep_text(&job->name, name)) {
+    st = vg_fail_memory(&job->err, "the surface");
+    goto done;
+  }
+  m.n_point = n_point;
+  m.n_tri = n_tri;
+  if (n_point) memcpy(m.point, xyz, n_point * sizeof *m.point);
+  if (n_tri) memcpy(m.tri, tri, n_tri * sizeof *m.tri);
+  VG_TRY(make_patches(&m, patch, &job->err));
+  vg_mesh_move(&job->surface, &m);
+  keep_text(&job->project, NULL);
+  keep_text(&job->deck, NULL);
+done:
+  vg_mesh_release(&m);
+  return vg_job_status(st);
+}
+
+/* --- sizes --------------------------------------------------------------- */
+
+static void forget_sizes(vanguard_job *job)
+{
+  free(job->size_at);
+  free(job->size_of);
+  job->size_at = NULL;
+  job->size_of = NULL;
+  job->n_size = 0;
+  job->size = NULL;
+}
+
+vanguard_status vanguard_sizes(vanguard_job *job, vanguard_size_function *size,
+                               void *user)
+{
+  vg_status st = vg_job_usable(job);
+
+  if (st < 0) return vg_job_status(st);
+  forget_sizes(job);
+  job->size = size;
+  job->size_user = user;
+  return VANGUARD_OK;
+}
+
+vanguard_status vanguard_size_points(vanguard_job *job, size_t n,
+                                     const double *xyz, const double *size)
+{
+  double (*at)[3] = NULL, *of = NULL;
+  vg_status st;
+
+  VG_TRY(vg_job_usable(job));
+  VG_TRY(vg_size_samples_check("size_points", n, (const double (*)[3])xyz,
+                               size, &job->err));
+  at = vg_alloc(n, sizeof *at);
+  of = vg_alloc(n, sizeof *of);
+  if (!at || !of) {
+    st = vg_fail_memory(&job->err, "the sizes at points");
+    goto done;
+  }
+  if (n) memcpy(at, xyz, n * sizeof *at);
+  if (n) memcpy(of, size, n * sizeof *of);
+  forget_sizes(job);
+  job->n_size = n;
+  job->size_at = at;
+  job->size_of = of;
+  at = NULL;
+  of = NULL;
+done:
+  free(at);
+  free(of);
+  return vg_job_status(st);
+}

@@ -1,0 +1,149 @@
+/* Meshing: vanguard_mesh of api/vanguard.h. */
+#define _GNU_SOURCE
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "api/job.h"
+#include "base/memory.h"
+#include "cli/report/report.h"
+
+void vg_job_release_run(vanguard_job *job, int success)
+{
+  vg_run_release(&job->run, success);
+  memset(&job->run, 0, sizeof job->run);
+  vg_layer_stage_release(&job->layers);
+  memset(&job->layers, 0, sizeof job->layers);
+  vg_problem_release(&job->problem);
+  job->problem = (struct vg_problem)VG_PROBLEM_INIT;
+  vg_size_samples_free(job->samples);
+  job->samples = NULL;
+  free(job->details);
+  job->details = NULL;
+  job->is_meshed = 0;
+}
+
+void vanguard_cancel(vanguard_job *job)
+{
+  atomic_store(&job->show.asked, 1);
+}
+
+static int tell(void *user, const char *stage, size_t done, size_t expected)
+{
+  vanguard_job *job = user;
+
+  return job->progress &&
+         job->progress(job->progress_user, stage, done, expected);
+}
+
+static double size_at(void *user, const double x[3])
+{
+  const vanguard_job *job = user;
+
+  return job->size(job->size_user, x);
+}
+
+/* The sizes that the caller gave, as the run takes them. */
+static vg_status use_sizes(vanguard_job *job)
+{
+  struct vg_problem *p = &job->problem;
+  vg_status st = VG_OK;
+
+  if (job->size) {
+    job->map = (struct vg_size_map){ .at = size_at, .user = job };
+    p->map = &job->map;
+  } else if (job->n_size) {
+    st = vg_size_samples_new(job->n_size, (const double (*)[3])job->size_at,
+                             job->size_of, p->settings.growth,
+                             (int)p->settings.threads, &job->samples,
+                             &job->err);
+    if (st >= 0) p->map = vg_size_samples_map(job->samples);
+  }
+  return st;
+}
+
+static vg_status read_input(vanguard_job *job)
+{
+  struct vg_problem *p = &job->problem;
+  struct vg_mesh copy = VG_MESH_INIT;
+  vg_status st;
+
+  VG_TRY(vg_settings_copy(&p->settings, &job->settings, &job->err));
+  VG_TRY(vg_settings_check(&p->settings, &job->err));
+  vg_settings_write(&p->settings);
+  VG_TRY(use_sizes(job));
+  if (job->project) {
+    VG_TRY(vg_input_find(job->project, job->deck, &p->files, &job->err));
+    st = vg_problem_surface(p, &job->show, &job->err);
+  } else if (job->surface.n_tri) {
+    VG_TRY(vg_mesh_copy(&copy, &job->surface, &job->err));
+    st = vg_problem_given(p, job->name, &copy, &job->err);
+  } else {
+    st = vg_fail(&job->err, VG_ERR_USAGE, "no surface: call vanguard_open or "
+                 "vanguard_surface before vanguard_mesh");
+  }
+  if (st >= 0) st = vg_display_stopped(&job->show, &job->err);
+done:
+  vg_mesh_release(&copy);
+  return st;
+}
+
+/* What there is to say of the surface, good or bad. */
+static void describe_surface(vanguard_job *job)
+{
+  const struct vg_problem *p = &job->problem;
+  size_t size;
+  FILE *to;
+
+  if (!p->surface.n_tri || vg_comm_node_rank(job->comm)) return;
+  to = open_memstream(&job->details, &size);
+  if (!to) return;
+  vg_report_surface_text(to, &p->surface, &p->check, VG_SHOWN_DEFECTS);
+  if (fclose(to)) {
+    free(job->details);
+    job->details = NULL;
+  }
+}
+
+static vg_status make(vanguard_job *job)
+{
+  struct vg_run *r = &job->run;
+  const struct vg_mesh *front = &job->layers.layers.front.mesh;
+  struct vg_problem *p = &job->problem;
+  vg_status st;
+
+  VG_TRY(vg_comm_agree(job->comm, read_input(job), &job->err));
+  VG_TRY(vg_run_surface(r, p, &job->layers, &job->show, &job->err));
+  VG_TRY(vg_run_mesh(r, p, &job->layers, &job->show, &job->err));
+  if (!job->layers.is_on) front = &p->surface;
+  vg_effects_note(&r->effects, front, p);
+  if (!r->rank)
+    vg_report_layers_note(&job->layers, &p->surface, &p->notes);
+done:
+  return st;
+}
+
+vanguard_status vanguard_mesh(vanguard_job *job, vanguard_progress *progress,
+                              void *user)
+{
+  struct vg_run *r = &job->run;
+  vg_status st = vg_job_usable(job);
+
+  if (st < 0) return vg_job_status(st);
+  vg_job_release_run(job, 1);
+  job->progress = progress;
+  job->progress_user = user;
+  memset(&job->show, 0, sizeof job->show);
+  job->show.quiet = 1;
+  job->show.tell = tell;
+  job->show.user = job;
+  r->comm = job->comm;
+  r->rank = vg_comm_rank(job->comm);
+  r->size = vg_comm_size(job->comm);
+  r->options.change = VG_AGREE_NOTHING;
+  st = make(job);
+  describe_surface(job);
+  job->is_meshed = st >= 0;
+  return vg_job_status(st);
+}

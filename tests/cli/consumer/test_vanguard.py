@@ -1,0 +1,214 @@
+"""The module `vanguard` against the installed library. test_vanguard.py FOLDER
+VANGUARD: where to write, and the program to compare with."""
+import os
+import subprocess
+import sys
+import threading
+
+import numpy as np
+import vanguard
+
+
+def cube(n):
+    """A cube of n x n squares a side, normals inwards: points, triangles,
+    patches 10 to 15."""
+    number, points, triangles, patches = {}, [], [], []
+
+    def point(x):
+        if x not in number:
+            number[x] = len(points)
+            points.append(x)
+        return number[x]
+
+    for face in range(6):
+        a, b, d = face // 2, (face // 2 + 1) % 3, (face // 2 + 2) % 3
+        for i in range(n * n):
+            corner = []
+            for k in range(4):
+                x = [0.0] * 3
+                x[a] = float(face % 2)
+                x[b] = (i % n + (k in (1, 2))) / n
+                x[d] = (i // n + (k > 1)) / n
+                corner.append(point(tuple(x)))
+            for t in ((0, 1, 2), (0, 2, 3)):
+                t = [corner[k] for k in t]
+                triangles.append(t if face % 2 == 0 else [t[0], t[2], t[1]])
+                patches.append(10 + face)
+    return np.array(points), np.array(triangles), np.array(patches)
+
+
+def refused(kind, word, function, *arguments, **named):
+    try:
+        function(*arguments, **named)
+    except (vanguard.Error, ValueError) as error:
+        assert isinstance(error, ValueError) or error.kind == kind, error
+        assert word in str(error), error
+        return error
+    raise AssertionError("not refused: %s" % word)
+
+
+def volume(mesh):
+    x = mesh.points[mesh.tetrahedra.astype(np.int64)]
+    e = x[:, 1:] - x[:, :1]
+    return np.linalg.det(e).sum() / 6
+
+
+def test_settings():
+    names = {s["name"]: s for s in vanguard.settings()}
+    assert names["growth"]["least"] == 1 and names["hmax"]["most"] is None
+    assert "mixed" in names["cells"]["words"]
+    with vanguard.Job() as job:
+        job.set(growth=1.35, surface_sizes=False, walls=[3, 4])
+        assert float(job.get("growth")) == 1.35
+        assert job.get("surface_sizes") == "no"
+        assert job.get("walls") == "3,4"
+        refused("input", "did you mean 'growth'", job.set, growht=2)
+        refused("input", "above 1", job.set, growth=0.5)
+        refused("usage", "vanguard_surface", job.mesh)
+    refused("", "closed", job.set, growth=1.2)
+
+
+def test_arrays():
+    points, triangles, patches = cube(6)
+    job = vanguard.Job()
+    refused("", "[n][3]", job.surface, points[:, :2], triangles)
+    refused("", "below 0", job.surface, points, triangles - 1)
+    refused("", "whole numbers", job.surface, points, triangles * 1.0)
+    refused("input", "triangle 0", job.surface, points[:1], triangles)
+    job.surface(points, triangles, patches)
+    mesh = job.mesh()
+    assert abs(volume(mesh) - 1) < 1e-12
+    assert mesh.tetrahedra.max() == len(mesh.points) - 1
+    assert len(mesh.triangles) == len(triangles)
+    assert sorted({p["id"] for p in mesh.patches}) == list(range(10, 16))
+    n_cell = n_own = 0
+    for piece in mesh.pieces():
+        n_cell += len(piece["tetrahedra"])
+        n_own += len(piece["own"])
+        own = mesh.points[piece["own_at"]:piece["own_at"] + len(piece["own"])]
+        assert np.array_equal(own, piece["points"][piece["own"]])
+    assert n_cell == len(mesh.tetrahedra) and n_own == len(mesh.points)
+    before = mesh.points.copy()
+    job.set(hmax=0.1)
+    other = job.mesh()
+    assert len(other.points) > len(before)
+    refused("", "another mesh", lambda: mesh.triangles)
+    assert np.array_equal(mesh.points, before)   # copied, so they stay
+
+
+def test_layers():
+    points, triangles, patches = cube(6)
+    job = vanguard.Job()
+    job.surface(points, triangles, patches)
+    for id in range(10, 16):
+        job.patch(id, bc=4 if id == 14 else 1, name="p%d" % id)
+    job.set(cells="mixed", layers=True, first=0.01)
+    mesh = job.mesh()
+    assert len(mesh.prisms) and len(mesh.walls) == 1
+    assert abs(mesh.walls[0]["first"][1] - 0.01) < 1e-3
+    assert mesh.patches[mesh.walls[0]["patch"]]["name"] == "p14"
+    data = mesh.to_meshio_dict()
+    kinds = [kind for kind, cells in data["cells"]]
+    assert kinds[0] == "tetra" and "wedge" in kinds and "quad" in kinds
+    for (kind, cells), patch in zip(data["cells"], data["cell_data"]["patch"]):
+        assert len(cells) == len(patch)
+    cells, types, x = mesh.to_vtk_arrays()
+    assert len(types) == len(mesh.tetrahedra) + len(mesh.pyramids) + len(
+        mesh.prisms)
+    assert len(cells) == 5 * (types == 10).sum() + 6 * (
+        types == 14).sum() + 7 * (types == 13).sum()
+
+
+def test_sizes():
+    points, triangles, patches = cube(12)
+    job = vanguard.Job()
+    job.surface(points, triangles, patches)
+    plain = len(job.mesh().tetrahedra)
+    job.size_points([[0.5, 0.5, 0.5]], [0.006])
+    finer = len(job.mesh().tetrahedra)
+    assert finer > 1.5 * plain
+    refused("input", "point 1", job.size_points, [[0, 0, 0]], [-1])
+    job.size_function(lambda x, y, z: 0.006 + 0.2 * (
+        (x - 0.5)**2 + (y - 0.5)**2 + (z - 0.5)**2)**0.5)
+    assert len(job.mesh().tetrahedra) > 1.5 * plain
+
+    def broken(x, y, z):
+        raise KeyError("lost")
+
+    job.size_function(broken)
+    try:
+        job.mesh()
+        raise AssertionError("an error of a size function is lost")
+    except KeyError:
+        pass
+    job.size_function(None)
+    assert len(job.mesh().tetrahedra) == plain
+
+
+def test_progress():
+    points, triangles, patches = cube(6)
+    job = vanguard.Job()
+    job.surface(points, triangles, patches)
+    phases = []
+    job.mesh(lambda phase, done, expected: phases.append(phase))
+    assert phases[0] in ("read", "check") and phases[-1] == "judge", phases
+    refused("stopped", "interrupted", job.mesh,
+            lambda phase, done, expected: phase == "fill")
+    try:
+        job.mesh(lambda phase, done, expected: 1 / 0)
+        raise AssertionError("an error of a progress function is lost")
+    except ZeroDivisionError:
+        pass
+    error = refused("geometry", "defects", open_cube(job).mesh)
+    assert "open" in error.details
+
+
+def open_cube(job):
+    points, triangles, patches = cube(6)
+    job.surface(points, triangles[:-1], patches[:-1])
+    job.set(farfield="none")
+    return job
+
+
+def test_threads():
+    points, triangles, patches = cube(8)
+    found = [None] * 3
+
+    def work(i):
+        job = vanguard.Job()
+        job.surface(points, triangles, patches)
+        found[i] = job.mesh().points
+
+    threads = [threading.Thread(target=work, args=(i,)) for i in range(3)]
+    for t in threads:
+        t.start()
+    for t in threads:
+        t.join()
+    assert np.array_equal(found[0], found[1])
+    assert np.array_equal(found[0], found[2])
+
+
+def test_same_as_program(folder, program):
+    """A project with layers, where TetGen is called too: the same bytes."""
+    stem = os.path.join(folder, "demo", "wing-half")
+    quiet = {"stdout": subprocess.DEVNULL, "check": True}
+    subprocess.run([program, "demo", "wing-half", "--out",
+                    os.path.dirname(stem)], **quiet)
+    subprocess.run([program, "mesh", "-q", "-p", stem, "-o", folder, "--write",
+                    "b8.ugrid"], **quiet)
+    with open(os.path.join(folder, "wing-half.b8.ugrid"), "rb") as f:
+        theirs = f.read()
+    job = vanguard.Job()
+    job.open(stem)
+    job.mesh().write(os.path.join(folder, "own"), "b8.ugrid")
+    with open(os.path.join(folder, "own.b8.ugrid"), "rb") as f:
+        assert f.read() == theirs
+
+
+if __name__ == "__main__":
+    assert vanguard.prepare()
+    for name, test in list(globals().items()):
+        if name.startswith("test_") and name != "test_same_as_program":
+            test()
+    test_same_as_program(*sys.argv[1:])
+    print("vanguard", vanguard.library_version(), "answers Python")
