@@ -11,6 +11,7 @@
 
 #include "base/memory.h"
 #include "cli/common/text.h"
+#include "cli/input/sizes.h"
 #include "cli/settings/deck.h"
 #include "io/mesh/aflr.h"
 #include "io/mesh/format.h"
@@ -60,6 +61,7 @@ void vg_problem_release(struct vg_problem *p)
   release_files(&p->files);
   vg_settings_release(&p->settings);
   vg_project_release(&p->project);
+  vg_problem_forget_sizes(p);
   vg_mesh_release(&p->surface);
   free(p->heights.item);
   vg_surface_report_release(&p->check);
@@ -520,6 +522,7 @@ vg_status vg_problem_given(struct vg_problem *p, const char *name,
   struct vg_input_files *f = &p->files;
   char **path[] = { &f->d3m, &f->front, &f->surface, &f->mapbc, &f->deck,
                     &f->tags, &f->aflr };
+  vg_status st;
   int bad = 0;
 
   vg_mesh_move(&p->surface, surface);
@@ -527,7 +530,8 @@ vg_status vg_problem_given(struct vg_problem *p, const char *name,
   for (size_t i = 0; i < sizeof path / sizeof *path; i++)
     bad |= !(*path[i] = strdup(""));
   if (bad || !f->stem) return vg_fail_memory(err, "the names of a surface");
-  return apply_patch_table(p, err);
+  st = vg_problem_sizes(p, err);
+  return st < 0 ? st : apply_patch_table(p, err);
 }
 
 vg_status vg_problem_surface(struct vg_problem *p, struct vg_display *show,
@@ -540,6 +544,7 @@ vg_status vg_problem_surface(struct vg_problem *p, struct vg_display *show,
     merge_layers(p);
   }
   VG_TRY(merge_sources(p, err));
+  VG_TRY(vg_problem_sizes(p, err));
   VG_TRY(read_surface(p, show, err));
   VG_TRY(apply_aflr(p, p->files.tags, 0, err));
   VG_TRY(apply_aflr(p, p->files.aflr, 1, err));

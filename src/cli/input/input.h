@@ -9,6 +9,7 @@
 #include "cli/settings/settings.h"
 #include "core/domain/planar.h"
 #include "core/domain/project.h"
+#include "core/sizing/sizing_map.h"
 #include "core/surface/surface_check.h"
 
 /** Paths of what exists; "" where a part is absent. */
@@ -37,6 +38,7 @@ struct vg_problem {
   struct vg_input_files files;
   struct vg_settings settings;
   const struct vg_size_map *map;   /* sizes besides sources; NULL: none */
+  struct vg_size_samples *samples; /* of the setting `sizes`; NULL */
   struct vg_project project;       /* empty without a .d3m */
   struct vg_mesh surface;
   struct vg_point_heights heights;

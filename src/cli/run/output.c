@@ -93,11 +93,13 @@ static int same_file(const char *a, const char *b)
 
 /* The input that writing STEM.suffix would overwrite, or NULL. */
 static const char *hits_input(const struct vg_outputs *o,
-                              const struct vg_input_files *f,
+                              const struct vg_problem *p,
                               const char *suffix)
 {
+  const struct vg_input_files *f = &p->files;
+  const char *sizes = p->settings.sizes;
   const char *input[] = { f->d3m, f->front, f->surface, f->mapbc, f->deck,
-                          f->tags, f->aflr };
+                          f->tags, f->aflr, sizes };
   char *path = vg_outputs_final(o, suffix);
   const char *hit = NULL;
 
@@ -120,7 +122,7 @@ static vg_status refuse_hit(const struct vg_outputs *o,
                             const struct vg_problem *p, const char *suffix,
                             struct vg_error *err)
 {
-  const char *hit = hits_input(o, &p->files, suffix);
+  const char *hit = hits_input(o, p, suffix);
 
   if (!hit) return VG_OK;
   return vg_fail(err, VG_ERR_INPUT, "writing %s would overwrite the input "
@@ -207,7 +209,7 @@ vg_status vg_outputs_check(const struct vg_problem *p, struct vg_outputs *o,
   struct vg_mapbc bc = VG_MAPBC_INIT;
   vg_status st;
 
-  if (!hits_input(o, &p->files, "mapbc")) return VG_OK;
+  if (!hits_input(o, p, "mapbc")) return VG_OK;
   st = vg_mapbc_read(p->files.mapbc, &bc, err);
   for (size_t i = 0; i < p->surface.n_patch && st >= 0; i++) {
     int found = 0;
@@ -511,7 +513,7 @@ vg_status vg_outputs_mesh(struct vg_outputs *o, const struct vg_problem *p,
   /* What may coincide with an input by then: a .mapbc that knows all patches,
    * and the resolved deck of the run that is being repeated. */
   for (size_t i = 0; i < o->n_file && st >= 0; i++)
-    o->file[i].keep_old = hits_input(o, &p->files, o->file[i].suffix) != NULL;
+    o->file[i].keep_old = hits_input(o, p, o->file[i].suffix) != NULL;
   vg_mesh_release(&w.whole);
   return vg_comm_agree(comm, st, err);
 }

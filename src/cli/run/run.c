@@ -8,6 +8,7 @@
 #include "base/team.h"
 #include "base/version.h"
 #include "cli/input/share.h"
+#include "cli/input/sizes.h"
 #include "cli/input/walls.h"
 #include "cli/report/report.h"
 #include "layers/columns/pack.h"
@@ -82,6 +83,7 @@ vg_status vg_run_surface(struct vg_run *r, struct vg_problem *p,
   if (vg_comm_node_size(r->comm) > 1)
     VG_TRY(vg_comm_node_bcast(r->comm, &b, err));
   if (!leads_node(r)) {
+    vg_problem_forget_sizes(p);
     st = vg_surface_unpack(&b, &p->surface, &is_on, err);
     layers->is_on = (int)is_on;
   }
@@ -157,9 +159,17 @@ static vg_status look_at_sources(struct vg_run *r, const struct vg_problem *p,
 
 /* --- the run directory --------------------------------------------------- */
 
+static void add_digest(void *user, size_t n, const void *data)
+{
+  struct vg_digest *d = user;
+
+  *d = vg_digest_of(*d, n, data);
+}
+
 /* Everything that the tasks' outcomes follow from, besides their input. */
 static struct vg_digest job_digest(const struct vg_problem *p,
-                                   const struct vg_mesh *boundary)
+                                   const struct vg_mesh *boundary,
+                                   const struct vg_sizing *sizing)
 {
   const struct vg_settings *s = &p->settings;
   struct vg_digest d = {{0, 0}};
@@ -183,8 +193,9 @@ static struct vg_digest job_digest(const struct vg_problem *p,
   }
   d = vg_digest_of(d, boundary->n_point * sizeof *boundary->point,
                    boundary->point);
-  return vg_digest_of(d, boundary->n_tri * sizeof *boundary->tri,
-                      boundary->tri);
+  d = vg_digest_of(d, boundary->n_tri * sizeof *boundary->tri, boundary->tri);
+  if (*s->sizes) vg_sizing_show(sizing, add_digest, &d);
+  return d;
 }
 
 vg_status vg_run_resumable(struct vg_run *r, struct vg_error *err)
@@ -198,6 +209,7 @@ vg_status vg_run_resumable(struct vg_run *r, struct vg_error *err)
 
 static vg_status open_store(struct vg_run *r, const struct vg_problem *p,
                             const struct vg_mesh *boundary,
+                            const struct vg_sizing *sizing,
                             struct vg_partition_options *o,
                             struct vg_error *err)
 {
@@ -207,7 +219,7 @@ static vg_status open_store(struct vg_run *r, const struct vg_problem *p,
   vg_status st;
 
   if (!r->options.dir) return VG_OK;
-  o->job = s.job = job_digest(p, boundary);
+  o->job = s.job = job_digest(p, boundary, sizing);
   snprintf(what, sizeof what, "%s (%zu boundary triangles)",
            p->settings.title, boundary->n_tri);
   s.what = what;
@@ -253,7 +265,7 @@ static vg_status fill(struct vg_run *r, const struct vg_problem *p,
   o.stop = vg_display_stop;
   o.user = show;
   vg_display_update(show, "fill", 0, 0);
-  VG_TRY(open_store(r, p, boundary, &o, err));
+  VG_TRY(open_store(r, p, boundary, sizing, &o, err));
   o.store = r->store;
   st = vg_partition_grow(r->comm, boundary, sizing, &o, &r->field,
                          &r->partition, &r->spans, err);

@@ -40,7 +40,8 @@ static int add_option(struct vg_cli_options *o, const struct vg_param *p,
   keep(o, help);
   to->name = long_name;
   to->key = key;
-  to->arg = p->type == VG_PARAM_TEXT ? "LIST"
+  to->arg = p->argument ? p->argument
+          : p->type == VG_PARAM_TEXT ? "LIST"
           : p->type == VG_PARAM_WORD ? "KIND"
           : p->type == VG_PARAM_FLAG ? "yes|no"
           : p->type == VG_PARAM_COUNT ? "N"

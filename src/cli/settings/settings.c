@@ -48,6 +48,10 @@ static const struct vg_param params[] = {
     .help = "edges of the surface grow into the volume" },
   { "d3m_sources", AT(d3m_sources), .type = VG_PARAM_FLAG, .unit = "",
     .help = "use sources and ifact of the .d3m besides those given here" },
+  { "sizes", AT(sizes), .type = VG_PARAM_TEXT, .unit = "",
+    .argument = "FILE", .help = "edge lengths at the points of a mesh, from "
+    "which sizes grow: Medit's .sol or .solb, with the mesh (.meshb, "
+    ".b8.ugrid, ...) beside it; \"\": none" },
   { "weld", AT(weld), LENGTH,
     .help = "merge points closer than this; 0: only equal ones" },
   { "repair", AT(repair), .type = VG_PARAM_FLAG, .unit = "",

@@ -88,6 +88,7 @@ struct vg_settings {
   char title[VG_TITLE_MAX + 1];
   double scale, growth, hmin, hmax;
   int surface_sizes, d3m_sources;
+  char sizes[VG_LIST_MAX];         /* a file with edge lengths; "": none */
   int symmetry;                    /* enum vg_answer */
   int close_holes;
   double weld;
@@ -136,6 +137,7 @@ struct vg_param {
                      struct vg_error *err);
   const char *unit;         /* "" for pure numbers */
   const char *help;
+  const char *argument;     /* what help calls the value; NULL: by its type */
 };
 
 enum vg_table_kind { VG_TABLE_FARFIELD, VG_TABLE_PATCHES, VG_TABLE_LAYERS,

@@ -1,0 +1,72 @@
+# Edge lengths out of a file: the mesh of a first run, with a size at each of
+# its points, drives the next; and what cannot be is refused.
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
+  OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none
+
+vanguard demo box --cells 20000 --out .
+exits 0
+vanguard mesh -q -p box --write mesh --out first
+exits 0
+
+# sol FILE INSIDE: a size at each vertex of first/box.mesh, INSIDE near the
+# middle of the cube and large elsewhere.
+sol() {
+  awk -v inside="$2" '
+    BEGIN { print "MeshVersionFormatted 2\nDimension 3\nSolAtVertices" }
+    at && n < count {
+      d = ($1 - .5) ^ 2 + ($2 - .5) ^ 2 + ($3 - .5) ^ 2
+      print (d < .01 ? inside : 0.5)
+      n++
+    }
+    is_count { count = $1; print count "\n1 1"; at = 1; is_count = 0 }
+    $1 == "Vertices" { is_count = 1 }
+    END { print "End" }' first/box.mesh >"$1"
+}
+cells() {
+  sed -n 's/.*"tetrahedra": \([0-9]*\).*/\1/p' "$1" | head -1
+}
+
+sol first/box.sol 0.006
+vanguard mesh -q -p box --write b8.ugrid --out plain
+exits 0
+vanguard mesh -q -p box --write b8.ugrid --sizes first/box.sol --out finer \
+  --threads 1
+exits 0
+says out "points were read from first/box.sol"
+plain=$(cells plain/box.report.json) finer=$(cells finer/box.report.json)
+[ "$finer" -gt $((plain * 3 / 2)) ] ||
+  fail "$finer cells with sizes, $plain without"
+
+# what was used is in the deck, and the same for threads and ranks
+says finer/box.resolved.deck first/box.sol
+vanguard mesh -q -p box --deck finer/box.resolved.deck --out again --threads 3
+exits 0
+cmp finer/box.b8.ugrid again/box.b8.ugrid || fail "threads differ"
+if mpirun -n 2 true >/dev/null 2>&1; then
+  ASAN_OPTIONS=detect_leaks=0 mpirun -n 2 "$program" mesh -q -p box \
+    --deck finer/box.resolved.deck --out ranks >out 2>err
+  cmp finer/box.b8.ugrid ranks/box.b8.ugrid || fail "ranks differ"
+fi
+
+# refused: a size that is none, of how many points, without a mesh, of no kind
+sol first/box.sol -0.006
+vanguard mesh -q -p box --sizes first/box.sol --out no
+exits 1
+says err "first/box.sol: the edge length at point "
+says err "), is -0.006; it must be above 0 and finite"
+printf 'MeshVersionFormatted 2\nDimension 3\nSolAtVertices\n1\n1 1\n0.1\nEnd\n' \
+  >first/box.sol
+vanguard mesh -q -p box --sizes first/box.sol --out no
+exits 1
+says err "first/box.sol has 1 sizes, but first/box.mesh has 3862 points"
+cp first/box.sol lone.sol
+vanguard mesh -q -p box --sizes lone.sol --out no
+exits 1
+says err "there is no mesh lone.mesh"
+vanguard mesh -q -p box --sizes first/box.mesh --out no
+exits 1
+says err "sizes are read from"
+vanguard mesh -q -p box --sizes nowhere.sol --out no
+exits 1
+says err "nowhere.sol"
+[ ! -e no/box.cogsg ] || fail "a refused run wrote a mesh"

@@ -1,0 +1,23 @@
+#include "fuzz.h"
+
+#include "io/mesh/sol.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+  struct vg_input in = VG_INPUT_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+  double *value = NULL;
+  size_t n = 0;
+
+  if (vg_input_memory("fuzz.sol", data, size, &in, &err) < 0) return 0;
+  if (vg_sol_parse(&in, &n, &value, &err) >= 0) {
+    fuzz_expect(n > 0 && value, "some values");
+    for (size_t i = 0; i < n; i++)
+      fuzz_expect(isfinite(value[i]), "finite values");
+  } else {
+    fuzz_expect(err.text[0] && !value, "a message, and nothing else");
+  }
+  free(value);
+  vg_input_release(&in);
+  return 0;
+}
