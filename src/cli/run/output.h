@@ -57,7 +57,7 @@ char *vg_outputs_final(const struct vg_outputs *o, const char *suffix);
  * slice while slices are at hand for something else. Between this and closing
  * every slice must be put once: vg_outputs_put is a vg_slice_body. What stays
  * open is closed with st, how this rank fared. Open and close: collective; the
- * same answer on all ranks. */
+ * same answer on all ranks. o NULL: nothing is written. */
 vg_status vg_outputs_open(struct vg_outputs *o, const struct vg_problem *p,
                           struct vg_comm *comm, const struct vg_slices *mesh,
                           struct vg_error *err);

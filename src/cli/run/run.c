@@ -300,24 +300,24 @@ static vg_status judge(struct vg_run *r, const struct vg_problem *p,
                        size_t front_faces, const struct vg_sizing *sizing,
                        struct vg_display *show, struct vg_error *err)
 {
-  struct vg_outputs *o = r->outputs;
   double t = vg_display_now();
   vg_status st;
 
   vg_display_update(show, "judge", vg_run_cells(r), 0);
-  if (o) VG_TRY(vg_outputs_open(o, p, r->comm, &r->slices, err));
+  VG_TRY(vg_outputs_open(r->outputs, p, r->comm, &r->slices, err));
   st = vg_slices_judge_with(r->comm, &r->slices, front_faces, sizing,
-                            r->threads, o ? vg_outputs_put : NULL, o,
-                            &r->judge, r->layers ? &r->field_judge : NULL,
-                            err);
+                            r->threads, vg_outputs_put, r->outputs, &r->judge,
+                            r->layers ? &r->field_judge : NULL, err);
   if (st >= 0)
     st = vg_effects_in_mesh(r->comm, &r->slices, r->threads, &r->effects,
                             err);
   if (st >= 0) st = accept(r, err);
   if (st >= 0) st = vg_display_stopped(show, err);
-  st = o ? vg_outputs_close(o, st, err) : vg_comm_agree(r->comm, st, err);
+  st = vg_outputs_close(r->outputs, st, err);
+  st = vg_comm_agree(r->comm, st, err);
 done:
-  if (o) r->time_put = 1e-9 * (double)o->put_time / r->threads;
+  if (r->outputs)
+    r->time_put = 1e-9 * (double)r->outputs->put_time / r->threads;
   r->time_judge += vg_display_now() - t - r->time_put;
   return st;
 }

@@ -23,7 +23,7 @@ sol() {
     END { print "End" }' first/box.mesh >"$1"
 }
 cells() {
-  sed -n 's/.*"tetrahedra": \([0-9]*\).*/\1/p' "$1" | sort -n | tail -1
+  sed -n 's/.*"cells": \([0-9]*\).*/\1/p' "$1" | sort -n | tail -1
 }
 
 sol first/box.sol 0.006
