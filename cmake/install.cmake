@@ -26,6 +26,10 @@ set(VG_PC_INCLUDEDIR "\${pcfiledir}/${includedir}")
 configure_file(cmake/vanguard.pc.in ${CMAKE_BINARY_DIR}/vanguard.pc @ONLY)
 install(FILES ${CMAKE_BINARY_DIR}/vanguard.pc
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+install(DIRECTORY ${CMAKE_BINARY_DIR}/share/man/man1
+  DESTINATION ${CMAKE_INSTALL_MANDIR})
+install(DIRECTORY ${CMAKE_BINARY_DIR}/share/bash-completion
+  DESTINATION ${CMAKE_INSTALL_DATADIR})
 install(PROGRAMS share/slurm/vanguard.sbatch
   DESTINATION ${CMAKE_INSTALL_DATADIR}/vanguard)
 install(FILES LICENSE README.md CHANGELOG.md CITATION.cff

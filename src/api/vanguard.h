@@ -209,7 +209,8 @@ VANGUARD_API vanguard_status vanguard_size_points(vanguard_job *job, size_t n,
 /** Called now and then by the thread that called vanguard_mesh or another,
  * one at a time, on every rank; anything but 0 stops the run.
  *
- * @param phase     "read", "check", "sizes", "layers", "fill", "judge", ...
+ * @param phase     "read", "check", "sizes", "layers", "fill", "judge", ...;
+ *                  within one neither count nor share runs backwards
  * @param done      triangles, columns or cells so far
  * @param expected  of how many; 0: not known */
 typedef int vanguard_progress(void *user, const char *phase, uint64_t done,

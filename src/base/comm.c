@@ -4,6 +4,7 @@
 #include <arpa/inet.h>
 #include <netinet/tcp.h>
 #include <sched.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
@@ -12,6 +13,7 @@
 
 #include "base/clock.h"
 #include "base/comm_parts.h"
+#include "base/library.h"
 #include "base/memory.h"
 
 /* Bytes in one call of MPI: far below the 2^31 of its counts. */
@@ -367,4 +369,14 @@ int vg_comm_node_size(const struct vg_comm *c)
 const void *vg_comm_mpi(const struct vg_comm *c)
 {
   return c ? &c->all : NULL;
+}
+
+void vg_library_mpi(struct vg_library *out)
+{
+  char text[MPI_MAX_LIBRARY_VERSION_STRING];
+  int n = 0;
+
+  MPI_Get_library_version(text, &n);   /* also before MPI is started */
+  out->name = "MPI";
+  snprintf(out->version, sizeof out->version, "%.100s", text);
 }

@@ -4,12 +4,14 @@
 #define _GNU_SOURCE
 #include <hwloc.h>
 #include <sched.h>
+#include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "base/comm_parts.h"
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "base/library.h"
 
 #define BITS (8 * sizeof(unsigned long))
 #define WORDS (sizeof(struct vg_cores_mask) / sizeof(unsigned long))
@@ -114,4 +116,13 @@ int vg_comm_default_threads(const struct vg_comm *c)
     n_same += !memcmp(&m, &c->core[i], sizeof m);
   n = n_cores(&m) / (n_same > 1 ? n_same : 1);
   return n > 1 ? n : 1;
+}
+
+void vg_library_hwloc(struct vg_library *out)
+{
+  unsigned v = hwloc_get_api_version();
+
+  out->name = "hwloc";
+  snprintf(out->version, sizeof out->version, "%u.%u.%u", v >> 16,
+           v >> 8 & 0xff, v & 0xff);
 }

@@ -47,14 +47,6 @@ static void usage(FILE *to)
           "on the layers\nis not met or runs of a sweep differ.\n");
 }
 
-static int version(void)
-{
-  printf("vanguard " VG_VERSION "\n"
-         "Licence AGPL-3.0-or-later: "
-         "https://www.gnu.org/licenses/agpl-3.0.html\n");
-  return VG_EXIT_DONE;
-}
-
 static const char *command_name(const void *user, size_t i)
 {
   (void)user;
@@ -119,7 +111,10 @@ int main(int argc, char **argv)
     usage(stderr);
     return VG_EXIT_USAGE;
   }
-  if (!strcmp(word, "--version") || !strcmp(word, "-V")) return version();
+  if (!strcmp(word, "--version") || !strcmp(word, "-V")) {
+    vg_version_print(stdout, argc > 2 && !strcmp(argv[2], "--verbose"));
+    return written(VG_EXIT_DONE);
+  }
   if (!strcmp(word, "--help") || !strcmp(word, "-h") ||
       !strcmp(word, "help")) {
     if (argc < 3) {

@@ -6,7 +6,9 @@
 
 #include "base/version.h"
 #include "cli/commands/commands.h"
+#include "cli/commands/mesh_log.h"
 #include "cli/common/cli.h"
+#include "cli/common/log.h"
 #include "cli/common/ranges.h"
 #include "cli/common/text.h"
 #include "cli/input/layers.h"
@@ -18,7 +20,9 @@
 #include "io/stream/stream.h"
 
 struct arguments {
-  const char *project, *deck, *dir;
+  const char *project, *deck, *dir, *log;
+  int argc;
+  char **argv;
   int json, quiet, timeline;
   struct vg_run_options run;
   struct vg_cli_overrides kept;
@@ -34,7 +38,7 @@ struct run {
 };
 
 /* Options that are no settings: they do not change the mesh. */
-enum { KEY_TIMELINE = 1, KEY_RUN_DIR, KEY_RESUME, KEY_KEEP, KEY_LIMIT,
+enum { KEY_TIMELINE = 1, KEY_LOG, KEY_RUN_DIR, KEY_RESUME, KEY_KEEP, KEY_LIMIT,
        KEY_SHUFFLE, KEY_NODE_RANKS, KEY_DIFFER,
        KEY_FAIL };
 
@@ -84,6 +88,7 @@ static error_t option(int key, char *arg, struct argp_state *state)
   case 'j': a->json = 1; return 0;
   case 'q': a->quiet = 1; return 0;
   case KEY_TIMELINE: a->timeline = 1; return 0;
+  case KEY_LOG: a->log = arg; return 0;
   case KEY_RUN_DIR: a->run.dir = arg; return 0;
   case KEY_RESUME: a->run.resume = 1; return 0;
   case KEY_KEEP: a->run.keep = 1; return 0;
@@ -124,6 +129,7 @@ static vg_status read_project(struct run *r, const struct arguments *a,
   VG_TRY(vg_problem_deck(p, err));
   VG_TRY(vg_cli_apply(&a->kept, &p->settings, err));
   vg_settings_write(&p->settings);
+  vg_mesh_log_settings(&r->mesh, &p->settings);
   VG_TRY(vg_outputs_plan(p, a->dir, vg_comm_size(r->mesh.comm), &r->outputs,
                          err));
   VG_TRY(vg_problem_surface(p, &r->show, err));
@@ -327,81 +333,81 @@ done:
   return st;
 }
 
-static void print_surface(const struct run *r)
+static void print_surface(FILE *to, const struct run *r)
 {
   const struct vg_problem *p = &r->problem;
 
-  printf("%s\n\nSurface\n", p->settings.title);
-  vg_report_size_text(stdout, &p->surface);
+  fprintf(to, "%s\n\nSurface\n", p->settings.title);
+  vg_report_size_text(to, &p->surface);
   if (p->n_welded || p->n_dropped)
-    printf("  welded: %zu points merged, %zu triangles dropped\n",
+    fprintf(to, "  welded: %zu points merged, %zu triangles dropped\n",
            p->n_welded, p->n_dropped);
-  vg_report_domain_text(stdout, &p->domain);
-  vg_report_surface_text(stdout, &p->surface, &p->check, VG_SHOWN_DEFECTS);
+  vg_report_domain_text(to, &p->domain);
+  vg_report_surface_text(to, &p->surface, &p->check, VG_SHOWN_DEFECTS);
   for (size_t i = 0; i < p->notes.n; i++)
-    printf("  note: %s\n", p->notes.text[i]);
+    fprintf(to, "  note: %s\n", p->notes.text[i]);
 }
 
-static void print_count(const char *name, size_t n)
+static void print_count(FILE *to, const char *name, size_t n)
 {
   char count[32];
 
-  printf("  %-24s %15s\n", name, vg_cli_count(n, count));
+  fprintf(to, "  %-24s %15s\n", name, vg_cli_count(n, count));
 }
 
-static void print_times(const struct run *r)
+static void print_times(FILE *to, const struct run *r)
 {
-  printf("\nTime in seconds: read %.2f, check %.2f, sizes %.2f, ",
+  fprintf(to, "\nTime in seconds: read %.2f, check %.2f, sizes %.2f, ",
          r->time_read, r->time_check, r->mesh.time_size);
-  if (r->layers.is_on) printf("layers %.2f, ", r->mesh.time_layers);
-  printf("fill %.2f, number %.2f, judge %.2f, write %.2f, total %.2f\n",
+  if (r->layers.is_on) fprintf(to, "layers %.2f, ", r->mesh.time_layers);
+  fprintf(to, "fill %.2f, number %.2f, judge %.2f, write %.2f, total %.2f\n",
          r->mesh.time_fill, r->mesh.partition.number,
          r->mesh.time_judge, r->time_write, vg_display_now() - r->start);
-  printf("Peak memory%s: %.0f MB\n",
+  fprintf(to, "Peak memory%s: %.0f MB\n",
          r->mesh.size > 1 ? " of a rank" : "", r->mesh.memory / 1e6);
 }
 
-static void print_files(const struct run *r)
+static void print_files(FILE *to, const struct run *r)
 {
-  printf("\nFiles\n");
+  fprintf(to, "\nFiles\n");
   for (size_t i = 0; i < r->outputs.n_file; i++) {
     char *path = vg_outputs_final(&r->outputs, r->outputs.file[i].suffix);
 
-    printf("  %s%s\n", path ? path : "",
+    fprintf(to, "  %s%s\n", path ? path : "",
            r->outputs.file[i].keep_old ? "  (input, kept)" : "");
     free(path);
   }
 }
 
-static void print_report(const struct run *r)
+static void print_report(FILE *to, const struct run *r)
 {
   const struct vg_run *m = &r->mesh;
 
-  print_surface(r);
+  print_surface(to, r);
   if (r->layers.is_on) {
-    printf("\nLayers\n");
-    vg_report_layers_text(stdout, &r->layers, &r->problem.surface);
+    fprintf(to, "\nLayers\n");
+    vg_report_layers_text(to, &r->layers, &r->problem.surface);
   }
-  printf("\nPartition\n");
-  vg_report_partition_text(stdout, m);
-  printf("\nFill\n");
-  vg_report_fill_text(stdout, &m->partition.fill, m->n_field_cell);
+  fprintf(to, "\nPartition\n");
+  vg_report_partition_text(to, m);
+  fprintf(to, "\nFill\n");
+  vg_report_fill_text(to, &m->partition.fill, m->n_field_cell);
   if (r->layers.is_on) {
-    printf("\nField outside the layers\n");
-    print_count("tetrahedra", m->n_field_cell);
-    vg_report_mesh_text(stdout, &m->field_judge, 0);
+    fprintf(to, "\nField outside the layers\n");
+    print_count(to, "tetrahedra", m->n_field_cell);
+    vg_report_mesh_text(to, &m->field_judge, 0);
   }
-  printf("\nMesh\n");
-  print_count("points", m->slices.n_point);
-  print_count("tetrahedra", m->slices.n_cell[VG_SLICE_TET]);
+  fprintf(to, "\nMesh\n");
+  print_count(to, "points", m->slices.n_point);
+  print_count(to, "tetrahedra", m->slices.n_cell[VG_SLICE_TET]);
   if (m->slices.n_cell[VG_SLICE_PYR])
-    print_count("pyramids", m->slices.n_cell[VG_SLICE_PYR]);
+    print_count(to, "pyramids", m->slices.n_cell[VG_SLICE_PYR]);
   if (m->slices.n_cell[VG_SLICE_PRI])
-    print_count("prisms", m->slices.n_cell[VG_SLICE_PRI]);
-  if (r->layers.is_on) vg_report_whole_text(stdout, &m->judge);
-  else vg_report_mesh_text(stdout, &m->judge, 0);
-  print_times(r);
-  print_files(r);
+    print_count(to, "prisms", m->slices.n_cell[VG_SLICE_PRI]);
+  if (r->layers.is_on) vg_report_whole_text(to, &m->judge);
+  else vg_report_mesh_text(to, &m->judge, 0);
+  print_times(to, r);
+  print_files(to, r);
 }
 
 /* All faces with a defect go into STEM.defects.vtu. */
@@ -411,7 +417,8 @@ static void show_defects(struct run *r, const struct arguments *a)
   char *path;
 
   if (!r->problem.check.n_defect || !r->outputs.dir) return;
-  if (!a->json) print_surface(r);
+  if (!a->json) print_surface(stdout, r);
+  if (vg_log()) print_surface(vg_log(), r);
   path = vg_outputs_final(&r->outputs, "defects.vtu");
   if (!path) return;
   if (vg_write_defects(path, &r->problem.surface, &r->problem.check,
@@ -465,11 +472,36 @@ static int report_success(struct run *r, const struct arguments *a)
 
   if (r->mesh.rank) return status;
   if (a->json) status = print_json(r, 1, NULL);
-  else print_report(r);
+  else print_report(stdout, r);
+  if (vg_log()) print_report(vg_log(), r);
   if (!r->layers.n_missed || status != VG_EXIT_DONE) return status;
   fflush(stdout);
   vg_report_missed_text(stderr, &r->layers, &r->problem.surface);
+  if (vg_log())
+    vg_report_missed_text(vg_log(), &r->layers, &r->problem.surface);
   return VG_EXIT_LIMIT;
+}
+
+/* By rank 0. */
+static vg_status open_log(struct run *r, const struct arguments *a,
+                          struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  if (!a->log) return VG_OK;
+  if (!r->mesh.rank) st = vg_log_open(a->log, err);
+  if (st >= 0) vg_mesh_log_start(&r->mesh, a->argc, a->argv);
+  return vg_comm_agree(r->mesh.comm, st, err);
+}
+
+static int close_log(const struct run *r, int status)
+{
+  struct vg_error err = VG_ERROR_INIT;
+
+  if (vg_log())
+    fprintf(vg_log(), "\nexit status %d after %.2f s\n", status,
+            vg_display_now() - r->start);
+  return vg_log_close(&err) < 0 ? vg_cli_fail(&err) : status;
 }
 
 static int run(const struct arguments *a)
@@ -486,6 +518,11 @@ static int run(const struct arguments *a)
   r.mesh.outputs = &r.outputs;
   r.mesh.rank = vg_comm_rank(r.mesh.comm);
   r.mesh.size = vg_comm_size(r.mesh.comm);
+  if (open_log(&r, a, &err) < 0) {
+    status = r.mesh.rank ? vg_cli_exit(&err) : vg_cli_fail(&err);
+    vg_comm_close(r.mesh.comm);
+    return status;
+  }
   vg_display_init(&r.show, a->quiet || r.mesh.rank);
   /* rank 0 puts the files into place; when it ends so do the others */
   vg_display_deadline(r.mesh.rank ? 1.8 : 1.5);
@@ -501,7 +538,7 @@ static int run(const struct arguments *a)
   vg_layer_stage_release(&r.layers);
   vg_problem_release(&r.problem);
   vg_comm_close(r.mesh.comm);
-  return status;
+  return close_log(&r, status);
 }
 
 int vg_cmd_mesh(int argc, char **argv)
@@ -517,6 +554,8 @@ int vg_cmd_mesh(int argc, char **argv)
     { "quiet", 'q', NULL, 0, "no progress", 1 },
     { "timeline", KEY_TIMELINE, NULL, 0, "write what each worker did when, "
       "PROJECT.timeline.json, for 'vanguard plan' and 'vanguard sweep'", 1 },
+    { "log", KEY_LOG, "FILE", 0, "write all that is said into FILE as well, "
+      "with versions, host, ranks and threads, and settings", 1 },
     { "run-dir", KEY_RUN_DIR, "DIR", 0, "keep finished tasks here, so that a "
       "run that is stopped or killed can be resumed; removed at success", 1 },
     { "resume", KEY_RESUME, NULL, 0, "go on with what is kept in --run-dir, "
@@ -555,7 +594,8 @@ int vg_cmd_mesh(int argc, char **argv)
       "any number of ranks and threads. Exit status: 0 "
       "done, 1 failed, 2 wrong usage, 4 done but a limit on the layers "
       "(--min-full, ...) is not met." };
-  struct arguments a = { .run = { .change = VG_AGREE_NOTHING } };
+  struct arguments a = { .argc = argc, .argv = argv,
+                         .run = { .change = VG_AGREE_NOTHING } };
   int status;
 
   if (vg_cli_options(own, &options) < 0) return VG_EXIT_FAILED;

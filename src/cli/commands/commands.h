@@ -4,11 +4,18 @@
 #ifndef VG_CLI_COMMANDS_COMMANDS_H
 #define VG_CLI_COMMANDS_COMMANDS_H
 
+#include <stdio.h>
+
 int vg_cmd_mesh(int argc, char **argv);
 int vg_cmd_check(int argc, char **argv);
 int vg_cmd_sweep(int argc, char **argv);
 int vg_cmd_plan(int argc, char **argv);
 int vg_cmd_deck(int argc, char **argv);
 int vg_cmd_demo(int argc, char **argv);
+
+/** Version and licence; verbose: source, compiler and libraries too. The
+ * libraries alone, a line each. version.c */
+void vg_version_print(FILE *to, int verbose);
+void vg_version_libraries(FILE *to);
 
 #endif

@@ -6,6 +6,8 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "cli/common/log.h"
+
 int vg_cli_exit(const struct vg_error *err)
 {
   return err->code == VG_ERR_USAGE ? VG_EXIT_USAGE : VG_EXIT_FAILED;
@@ -15,6 +17,7 @@ int vg_cli_fail(const struct vg_error *err)
 {
   fflush(stdout);
   fprintf(stderr, "vanguard: %s\n", err->text);
+  if (vg_log()) fprintf(vg_log(), "vanguard: %s\n", err->text);
   return vg_cli_exit(err);
 }
 

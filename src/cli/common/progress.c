@@ -13,6 +13,7 @@
 
 #include "base/clock.h"
 #include "cli/common/cli.h"
+#include "cli/common/log.h"
 
 #define LIVE_EVERY_S 0.2
 #define PLAIN_EVERY_S 10.0
@@ -31,7 +32,9 @@ static void end_at_once(void)
   static const char line[] = "\r\033[K";
   static const char text[] = "vanguard: interrupted; nothing was written\n";
   int failed = shows_line && write(STDERR_FILENO, line, sizeof line - 1) < 0;
+  int to_log = vg_log_descriptor();
 
+  if (to_log >= 0) failed |= write(to_log, text, sizeof text - 1) < 0;
   if (!failed) failed = write(STDERR_FILENO, text, sizeof text - 1) < 0;
   _exit(VG_EXIT_FAILED);
 }
@@ -193,6 +196,8 @@ void vg_display_init(struct vg_display *d, int quiet)
 {
   memset(d, 0, sizeof *d);
   d->quiet = quiet;
+  d->logs = vg_log() != NULL;
+  d->start = vg_display_now();
   d->live = !quiet && isatty(STDERR_FILENO);
   shows_line = d->live;
   vg_display_watch();
@@ -215,31 +220,38 @@ static void duration(double s, char *text, size_t size)
   else snprintf(text, size, "%lu h %02lu min", t / 3600, t / 60 % 60);
 }
 
-static void show(struct vg_display *d, size_t done, size_t expected,
-                 double now)
+/* The line of a stage. */
+static void describe(const struct vg_display *d, double now, char line[160])
 {
-  char count[32], of[32], rate_text[32], eta[32], line[160];
+  char count[32], of[32], rate_text[32], eta[32];
+  size_t done = d->done, expected = d->expected, size = 160;
   double elapsed = now - d->stage_start;
   double rate = elapsed > 0 ? (double)done / elapsed : 0;
-  int n = snprintf(line, sizeof line, done || expected ? "%-24s" : "%s",
-                   d->stage);
+  int n = snprintf(line, size, done || expected ? "%-24s" : "%s", d->stage);
 
   if (done || expected)
-    n += snprintf(line + n, sizeof line - (size_t)n, " %12s",
+    n += snprintf(line + n, size - (size_t)n, " %12s",
                   vg_cli_count(done, count));
   if (expected)
-    n += snprintf(line + n, sizeof line - (size_t)n, " of ~%s  %3.0f%%",
+    n += snprintf(line + n, size - (size_t)n, " of ~%s  %3.0f%%",
                   vg_cli_count(expected, of),
                   done < expected ? 100.0 * (double)done / (double)expected
                                   : 100.0);
   if (done && elapsed > 0.5) {
-    n += snprintf(line + n, sizeof line - (size_t)n, "  %s/s",
+    n += snprintf(line + n, size - (size_t)n, "  %s/s",
                   vg_cli_count((unsigned long long)rate, rate_text));
     if (expected > done && rate > 0) {
       duration((double)(expected - done) / rate, eta, sizeof eta);
-      snprintf(line + n, sizeof line - (size_t)n, "  ETA %s", eta);
+      snprintf(line + n, size - (size_t)n, "  ETA %s", eta);
     }
   }
+}
+
+static void show(struct vg_display *d, double now)
+{
+  char line[160];
+
+  describe(d, now, line);
   if (d->live) fprintf(stderr, "\r\033[K%s", line);
   else fprintf(stderr, "%s\n", line);
   fflush(stderr);
@@ -247,26 +259,57 @@ static void show(struct vg_display *d, size_t done, size_t expected,
   d->last_shown = now;
 }
 
+static void log_line(struct vg_display *d, double now)
+{
+  char line[160];
+
+  describe(d, now, line);
+  fprintf(vg_log(), "%9.2f s  %s\n", now - d->start, line);
+  d->last_logged = now;
+  d->logged = d->done;
+}
+
+/* Estimates grow while work is done and what was done may be given up: neither
+ * the count nor the share of a stage goes back. Returns 1 where there is
+ * something to be told at once: another stage, or its first count. */
+static int move_on(struct vg_display *d, const char *stage, size_t done,
+                   size_t expected, double now)
+{
+  int is_new = strncmp(stage, d->stage, sizeof d->stage - 1) != 0, tells;
+  double share;
+
+  if (is_new) {
+    snprintf(d->stage, sizeof d->stage, "%s", stage);
+    d->stage_start = now;
+    d->done = d->expected = d->logged = 0;
+    d->share = 0;
+  }
+  tells = is_new || (!d->done && !d->expected && (done || expected));
+  if (done > d->done) d->done = done;
+  d->expected = expected > d->done || !expected ? expected : d->done;
+  if (!d->expected) return tells;
+  share = (double)d->done / (double)d->expected;
+  if (share >= d->share) d->share = share;
+  else d->expected = (size_t)((double)d->done / d->share);
+  return tells;
+}
+
 int vg_display_update(void *user, const char *stage, size_t done,
                       size_t expected)
 {
   struct vg_display *d = user;
-  double now;
+  double now = vg_display_now(), every = d->live ? LIVE_EVERY_S
+                                                 : PLAIN_EVERY_S;
+  int tells;
 
-  if (d->tell && d->tell(d->user, stage, done, expected))
+  if (d->logs && d->done > d->logged && strcmp(stage, d->stage) != 0)
+    log_line(d, now);
+  tells = move_on(d, stage, done, expected, now);
+
+  if (d->tell && d->tell(d->user, stage, d->done, d->expected))
     atomic_store(&d->asked, 1);
-  if (d->quiet) return vg_display_stop(d);
-  now = vg_display_now();
-  if (strncmp(stage, d->stage, sizeof d->stage - 1) != 0) {
-    snprintf(d->stage, sizeof d->stage, "%s", stage);
-    d->stage_start = now;
-    d->counts = done || expected;
-    show(d, done, expected, now);
-  } else if (!d->counts && (done || expected)) {
-    d->counts = 1;
-    show(d, done, expected, now);
-  } else if (now - d->last_shown > (d->live ? LIVE_EVERY_S : PLAIN_EVERY_S)) {
-    show(d, done, expected, now);
-  }
+  if (!d->quiet && (tells || now - d->last_shown > every)) show(d, now);
+  if (d->logs && (tells || now - d->last_logged > PLAIN_EVERY_S))
+    log_line(d, now);
   return vg_display_stop(d);
 }

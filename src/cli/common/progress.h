@@ -11,24 +11,28 @@
 
 struct vg_display {
   int quiet, live, open;    /* open: a live line stands without its end */
-  double stage_start, last_shown;
+  int logs;                 /* lines go into the log (log.h), too */
+  double start, stage_start, last_shown, last_logged;
   char stage[40];
-  int counts;               /* the stage has said how far it is */
-  /* Told instead of the terminal, and asks to stop by anything but 0; NULL. */
+  size_t done, expected;    /* of the stage; they never go back */
+  size_t logged;            /* the last that was done */
+  double share;
+  /* Told besides, and asks to stop by anything but 0; NULL. */
   int (*tell)(void *user, const char *stage, size_t done, size_t expected);
   void *user;
   atomic_int asked;         /* to stop, by whom it tells or another thread */
 };
-#define VG_DISPLAY_QUIET { .quiet = 1 }
 
 /** Take note of signals from now on; before anything that takes time. Once. */
 void vg_display_watch(void);
 
-/** quiet: show nothing. Watches signals, if that has not begun. */
+/** quiet: show nothing, but in the log, if that has been opened. Watches
+ * signals, if that has not begun. */
 void vg_display_init(struct vg_display *d, int quiet);
 
-/** A vg_progress callback (core/fill/fill.h); user is the display. Returns 1
- * when the user asked to stop. */
+/** A vg_progress callback (core/fill/fill.h); user is the display. Within a
+ * stage neither count nor share runs backwards. Returns 1 when the user asked
+ * to stop. */
 int vg_display_update(void *user, const char *stage, size_t done,
                       size_t expected);
 

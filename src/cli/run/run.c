@@ -264,7 +264,7 @@ static vg_status fill(struct vg_run *r, const struct vg_problem *p,
   o.progress = vg_display_update;
   o.stop = vg_display_stop;
   o.user = show;
-  vg_display_update(show, "fill", 0, 0);
+  vg_display_update(show, "load", 0, 0);
   VG_TRY(open_store(r, p, boundary, sizing, &o, err));
   o.store = r->store;
   st = vg_partition_grow(r->comm, boundary, sizing, &o, &r->field,

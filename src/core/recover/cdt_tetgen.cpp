@@ -263,3 +263,9 @@ extern "C" vg_status vg_cdt_tetgen(size_t n_job, struct vg_cdt_job *job,
   }
   return VG_OK;
 }
+
+extern "C" void vg_library_tetgen(struct vg_library *out)
+{
+  out->name = "TetGen";
+  std::strcpy(out->version, "1.5");   /* tetgen.h has no constant for it */
+}

@@ -11,6 +11,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/library.h"
 #include "base/status.h"
 
 #ifdef __cplusplus
@@ -35,6 +36,9 @@ struct vg_cdt_job {
  * undone: st VG_ERR_GEOMETRY), else VG_OK. */
 vg_status vg_cdt_tetgen(size_t n_job, struct vg_cdt_job *job,
                         struct vg_error *err);
+
+/** Which TetGen this is; it cannot tell itself. */
+void vg_library_tetgen(struct vg_library *out);
 
 #ifdef __cplusplus
 }

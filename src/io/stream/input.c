@@ -411,3 +411,9 @@ vg_status vg_input_fail(const struct vg_input *in, struct vg_error *err,
   va_end(args);
   return vg_fail(err, VG_ERR_FORMAT, "%s:%zu: %s", in->path, in->line, text);
 }
+
+void vg_library_zlib(struct vg_library *out)
+{
+  out->name = "zlib";
+  snprintf(out->version, sizeof out->version, "%s", zlibVersion());
+}

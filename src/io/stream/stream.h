@@ -16,6 +16,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/library.h"
 #include "base/status.h"
 
 struct vg_shared_file;
@@ -212,6 +213,9 @@ void vg_output_format(struct vg_output *out, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 void vg_output_int(struct vg_output *out, int64_t v);
 void vg_output_real(struct vg_output *out, double v);
+
+/** Which zlib this is. */
+void vg_library_zlib(struct vg_library *out);
 
 /** The text of vg_output_real into text[32]; returns its length. */
 size_t vg_format_real(double v, char *text);

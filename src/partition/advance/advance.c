@@ -10,18 +10,25 @@
 #include "partition/cut/select.h"
 #include "partition/repair/repair.h"
 
+/* Tasks as long as all of them plan, grow zones and join these into fronts;
+ * then cells. */
 static int progress(void *user, double done_cells, double known,
                     size_t n_done, size_t n_known)
 {
   struct vg_partition *p = user;
   double all = p->report.estimate;
+  uint64_t n_leaf;
 
   (void)known;
-  (void)n_done;
-  (void)n_known;
   if (!p->options.progress) return 0;
+  pthread_mutex_lock(&p->lock);
+  n_leaf = p->report.n_leaf;
+  pthread_mutex_unlock(&p->lock);
+  if (!n_leaf && n_known > 1)
+    return p->options.progress(p->options.user, "cut and join", n_done,
+                               n_known);
   if (done_cells > all) all = done_cells;
-  return p->options.progress(p->options.user, "fill", (size_t)done_cells,
+  return p->options.progress(p->options.user, p->stage, (size_t)done_cells,
                              (size_t)all);
 }
 
@@ -147,6 +154,7 @@ static vg_status run_again(struct vg_partition *p, struct vg_comm *comm,
     if (st < 0) break;
     st = vg_recut_voids(p, comm, spans, &n_void, &node, &n, err);
     if (st == VG_OK && n_void) {
+      p->stage = "recut";
       st = run_tasks(p, comm, n, node, spans ? &more : NULL, err);
       if (spans && st == VG_OK) st = vg_spans_append(spans, &more, err);
       st = vg_comm_agree(comm, st, err);
@@ -222,10 +230,15 @@ vg_status vg_partition_grow(struct vg_comm *comm, const struct vg_mesh *front,
   p->sizing = sizing;
   p->options = *options;
   if (p->options.threads < 1) p->options.threads = 1;
+  p->stage = "fill";
   st = run_whole(p, comm, spans, err);
+  if (st == VG_OK)
+    vg_partition_tell(p, p->stage, (size_t)p->report.estimate,
+                      (size_t)p->report.estimate);
   if (st == VG_OK) st = run_again(p, comm, spans, err);
   p->report.wall = vg_clock() - t0;
   if (st == VG_OK) st = vg_partition_repair(p, comm, spans, err);
+  if (st == VG_OK) vg_partition_tell(p, "number", p->n_piece, 0);
   if (st == VG_OK) st = vg_partition_number(p, comm, err);
   if (st == VG_OK) st = sum_report(p, comm, err);
   p->report.number = vg_clock() - t0 - p->report.wall - p->report.repair;

@@ -89,6 +89,7 @@ struct vg_partition {
   const struct vg_mesh *boundary;
   const struct vg_sizing *sizing;
   struct vg_partition_options options;
+  const char *stage;         /* for progress: "fill", "recut" */
   atomic_uint_fast32_t n_serial;
   pthread_mutex_t lock;      /* of what follows */
   size_t n_piece, cap_piece;
@@ -111,6 +112,16 @@ struct vg_partition {
   uint32_t *front_id;        /* [boundary->n_point] 0, 1, ... */
   struct vg_mesh boundary_faces;        /* the boundary without points */
 };
+
+/** Tell the options' progress, on rank 0. What it answers is left to their
+ * stop. */
+static inline void vg_partition_tell(const struct vg_partition *p,
+                                     const char *stage, size_t done,
+                                     size_t expected)
+{
+  if (p->options.progress && !p->rank)
+    p->options.progress(p->options.user, stage, done, expected);
+}
 
 /** A serial that no other task of any rank has. Threads: safe. */
 uint32_t vg_partition_serial(struct vg_partition *p);

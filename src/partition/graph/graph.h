@@ -7,6 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/library.h"
 #include "base/status.h"
 
 /** Both directions of an edge are there, with one weight; no loops. Borrowed. */
@@ -38,5 +39,8 @@ struct vg_graph_options {
 vg_status vg_graph_part(const struct vg_graph *g,
                         const struct vg_graph_options *options, uint32_t *part,
                         struct vg_error *err);
+
+/** Which METIS this is, by its header. */
+void vg_library_metis(struct vg_library *out);
 
 #endif

@@ -1,5 +1,6 @@
 #include "partition/graph/graph.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -140,4 +141,11 @@ vg_status vg_graph_part(const struct vg_graph *g,
     return vg_fail(err, VG_ERR_MEMORY, "METIS did not part a graph of %zu "
                    "vertices; it may lack memory", g->n);
   return VG_OK;
+}
+
+void vg_library_metis(struct vg_library *out)
+{
+  out->name = "METIS";
+  snprintf(out->version, sizeof out->version, "%d.%d.%d", METIS_VER_MAJOR,
+           METIS_VER_MINOR, METIS_VER_SUBMINOR);
 }

@@ -13,6 +13,7 @@
 
 #include "base/comm.h"
 #include "base/status.h"
+#include "base/library.h"
 
 /* XXH3, 128 bits. Equal digests are taken as equal input: among 10^9 tasks the
  * chance of an accident is below 10^-20. It is no defence against records that
@@ -82,5 +83,8 @@ void vg_store_state(const struct vg_store *s, struct vg_store_report *r);
 /** Release; `remove` deletes the records, and the directory if nothing else is
  * in it. Collective. NULL accepted. */
 void vg_store_close(struct vg_store *s, int remove);
+
+/** Which xxHash this is. */
+void vg_library_xxhash(struct vg_library *out);
 
 #endif

@@ -1,4 +1,5 @@
 #include <errno.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -82,4 +83,13 @@ int vg_digest_parse(const char *text, struct vg_digest *d)
   }
   *d = v;
   return 1;
+}
+
+void vg_library_xxhash(struct vg_library *out)
+{
+  unsigned v = XXH_versionNumber();
+
+  out->name = "xxHash";
+  snprintf(out->version, sizeof out->version, "%u.%u.%u", v / 10000,
+           v / 100 % 100, v % 100);
 }

@@ -296,7 +296,7 @@ static int stop_at(void *user, const char *phase, uint64_t done,
 
 static void stops(void)
 {
-  const char *const phase[] = { "check", "sizes", "fill", "judge" };
+  const char *const phase[] = { "check", "sizes", "load", "judge" };
   vanguard_job *job = new_cube();
   struct arrays before, after;
 

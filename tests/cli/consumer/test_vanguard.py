@@ -153,7 +153,7 @@ def test_progress():
     job.mesh(lambda phase, done, expected: phases.append(phase))
     assert phases[0] in ("read", "check") and phases[-1] == "judge", phases
     refused("stopped", "interrupted", job.mesh,
-            lambda phase, done, expected: phase == "fill")
+            lambda phase, done, expected: phase == "load")
     try:
         job.mesh(lambda phase, done, expected: 1 / 0)
         raise AssertionError("an error of a progress function is lost")

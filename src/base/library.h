@@ -1,0 +1,20 @@
+/* base/library.h: which libraries of others are at work, told by the files that
+ * adapt them. */
+#ifndef VG_BASE_LIBRARY_H
+#define VG_BASE_LIBRARY_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** As the library itself says at run time, where it can; one line. */
+struct vg_library { const char *name; char version[112]; };
+
+void vg_library_mpi(struct vg_library *out);     /* base/comm.c */
+void vg_library_hwloc(struct vg_library *out);   /* base/comm_cores.c */
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

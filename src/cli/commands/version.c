@@ -1,0 +1,45 @@
+/* Which program this is, and on which libraries it stands. */
+#include <gnu/libc-version.h>
+#include <jansson.h>
+#include <string.h>
+
+#include "base/library.h"
+#include "base/version.h"
+#include "cli/commands/commands.h"
+#include "core/recover/cdt_tetgen.h"
+#include "io/stream/stream.h"
+#include "partition/graph/graph.h"
+#include "partition/store/store.h"
+
+static void put(FILE *to, const struct vg_library *l)
+{
+  fprintf(to, "  %-8s %.*s\n", l->name, (int)strcspn(l->version, "\n"),
+          l->version);
+}
+
+void vg_version_libraries(FILE *to)
+{
+  static void (*const say[])(struct vg_library *) = {
+    vg_library_mpi, vg_library_hwloc, vg_library_tetgen, vg_library_metis,
+    vg_library_xxhash, vg_library_zlib };
+  struct vg_library l;
+
+  for (size_t i = 0; i < sizeof say / sizeof *say; i++) {
+    memset(&l, 0, sizeof l);
+    say[i](&l);
+    put(to, &l);
+  }
+  fprintf(to, "  %-8s %s\n  %-8s %s\n", "jansson", JANSSON_VERSION, "glibc",
+          gnu_get_libc_version());
+}
+
+void vg_version_print(FILE *to, int verbose)
+{
+  fprintf(to, "vanguard " VG_VERSION "\n"
+          "Licence AGPL-3.0-or-later: "
+          "https://www.gnu.org/licenses/agpl-3.0.html\n");
+  if (!verbose) return;
+  fprintf(to, "source   %s\ncompiler %s\nlibraries\n", vg_source_digest,
+          __VERSION__);
+  vg_version_libraries(to);
+}
