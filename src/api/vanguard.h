@@ -251,7 +251,7 @@ VANGUARD_API vanguard_status vanguard_count(vanguard_job *job,
 struct vanguard_patch {
   size_t struct_size;
   int32_t id;                    /* number in the input and in files */
-  int32_t bc, bc_fun3d;          /* USM3D's and FUN3D's codes; INT32_MIN: none */
+  int32_t bc, bc_fun3d;          /* USM3D's, FUN3D's code; INT32_MIN: none */
   const char *name;              /* may be "" */
 };
 VANGUARD_API vanguard_status vanguard_patch(vanguard_job *job, size_t i,
@@ -286,7 +286,7 @@ struct vanguard_piece {
   const uint32_t *own;           /* [n_own] ... are point own[k] of the piece */
   uint64_t tet_at, pyr_at, pri_at;  /* first cells of it in the mesh */
   size_t n_tet, n_pyr, n_pri;
-  const uint32_t *tet, *pyr, *pri;  /* [][4], [][5], [][6] points of the piece */
+  const uint32_t *tet, *pyr, *pri;  /* [][4], [][5], [][6] points of it */
   uint32_t subdomain;            /* 0: layers */
   void *keep;                    /* the library's */
 };

@@ -11,6 +11,7 @@
 #include "base/memory.h"
 #include "io/mesh/format.h"
 #include "io/mesh/sol.h"
+#include "io/mesh/vtu_read.h"
 
 /* H8: between two points of a cell that are further apart than FAR times the
  * smaller of their sizes there are samples, at most PARTS - 1. */
@@ -114,6 +115,20 @@ static int ends_in(const char *path, const char *suffix)
   return n > len && !strcasecmp(path + n - len, suffix);
 }
 
+/* Points without cells: between them sizes grow. */
+static vg_status read_vtk(const char *path, struct vg_mesh *m, double **h,
+                          struct vg_error *err)
+{
+  double (*x)[3];
+  size_t n;
+  vg_status st = vg_vtu_points_read(path, "size", &n, &x, h, err);
+
+  if (st < 0) return st;
+  m->point = x;
+  m->n_point = n;
+  return VG_OK;
+}
+
 static vg_status read_values(const char *path, struct vg_mesh *m, double **h,
                              struct vg_error *err)
 {
@@ -121,9 +136,12 @@ static vg_status read_values(const char *path, struct vg_mesh *m, double **h,
   size_t n = 0;
   vg_status st;
 
+  if (ends_in(path, ".vtu") || ends_in(path, ".vtp"))
+    return read_vtk(path, m, h, err);
   if (!ends_in(path, ".sol") && !ends_in(path, ".solb"))
     return vg_fail(err, VG_ERR_FORMAT, "%s: sizes are read from Medit's .sol "
-                   "and .solb beside a mesh", path);
+                   "and .solb beside a mesh, and from a point array 'size' of "
+                   "VTK's .vtu", path);
   VG_TRY(vg_sol_read(path, &n, h, err));
   VG_TRY(find_mesh(path, &mesh, err));
   VG_TRY(vg_format_read(mesh, m, err));

@@ -51,7 +51,8 @@ static const struct vg_param params[] = {
   { "sizes", AT(sizes), .type = VG_PARAM_TEXT, .unit = "",
     .argument = "FILE", .help = "edge lengths at the points of a mesh, from "
     "which sizes grow: Medit's .sol or .solb, with the mesh (.meshb, "
-    ".b8.ugrid, ...) beside it; \"\": none" },
+    ".b8.ugrid, ...) beside it, or a point array `size` of VTK's .vtu; \"\": "
+    "none" },
   { "weld", AT(weld), LENGTH,
     .help = "merge points closer than this; 0: only equal ones" },
   { "repair", AT(repair), .type = VG_PARAM_FLAG, .unit = "",

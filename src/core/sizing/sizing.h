@@ -53,7 +53,8 @@ struct vg_source {
 };
 
 /** Sizes from elsewhere, besides the sources and limited by the growth as they
- * are, but not scaled: a function of the place (a call-back), or samples (sizing_map.h). */
+ * are, but not scaled: a function of the place (a call-back), or samples
+ * (sizing_map.h). */
 struct vg_size_map {
   /* > 0, INFINITY: asks for nothing. Called by several threads at once; must
    * follow from x alone. */

@@ -48,6 +48,25 @@ if mpirun -n 2 true >/dev/null 2>&1; then
   cmp finer/box.b8.ugrid ranks/box.b8.ugrid || fail "ranks differ"
 fi
 
+# VTK: points of their own
+cat >one.vtu <<'END'
+<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian">
+<UnstructuredGrid><Piece NumberOfPoints="1" NumberOfCells="0">
+<PointData><DataArray type="Float64" Name="size" format="ascii">0.006
+</DataArray></PointData>
+<Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">
+.5 .5 .5</DataArray></Points></Piece></UnstructuredGrid></VTKFile>
+END
+vanguard mesh -q -p box --write b8.ugrid --sizes one.vtu --out vtk
+exits 0
+vtk=$(cells vtk/box.report.json)
+[ "$vtk" -gt $((plain * 3 / 2)) ] || fail "$vtk cells with a .vtu, not $plain"
+vanguard mesh -q -p box --write vtu --out vtk
+exits 0
+vanguard mesh -q -p box --sizes vtk/box.vtu --out no
+exits 1
+says err "vtk/box.vtu: there is no array 'size' in <PointData>"
+
 # refused: a size that is none, of how many points, without a mesh, of no kind
 sol first/box.sol -0.006
 vanguard mesh -q -p box --sizes first/box.sol --out no
