@@ -7,6 +7,9 @@ endif()
 install(TARGETS vanguard_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(TARGETS vanguard EXPORT vanguard-targets
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+if(VG_CAD)
+  install(TARGETS vanguard-cad LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+endif()
 install(DIRECTORY src/base src/core src/layers src/partition src/io
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/vanguard FILES_MATCHING PATTERN "*.h"
   PATTERN "*_parts.h" EXCLUDE PATTERN "node.h" EXCLUDE
