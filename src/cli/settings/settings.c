@@ -73,6 +73,9 @@ static const struct vg_param params[] = {
     .help = "time after which reading CAD is given up; 0: none" },
   { "weld", AT(weld), LENGTH,
     .help = "merge points closer than this; 0: only equal ones" },
+  { "wrap", AT(wrap), LENGTH, .help = "put a closed surface around the bodies "
+    "that bridges gaps narrower than this and has edges of about this length, "
+    "where parts overlap or holes cannot be closed; 0: none" },
   { "repair", AT(repair), .type = VG_PARAM_FLAG, .unit = "",
     .help = "mend what needs no guess: orientation, unused and duplicate "
             "items" },

@@ -97,7 +97,7 @@ struct vg_settings {
   struct vg_cad_settings cad;
   int symmetry;                    /* enum vg_answer */
   int close_holes;
-  double weld;
+  double weld, wrap;
   int repair;
   int64_t optimise, max_cells;
   char write[VG_WRITE_MAX];        /* "auto": vg_settings_write */

@@ -46,7 +46,8 @@ struct vg_cad_options {
   int (*stop)(void *user);   /* 1: give up; asked ten times a second; NULL */
   void *user;
 };
-#define VG_CAD_OPTIONS_INIT { .chord = 2e-3, .angle = 15, .seconds = 3600 }
+#define VG_CAD_OPTIONS_INIT \
+  { .chord = 2e-3, .angle = 15, .seconds = 3600 }   /* S15 */
 
 /** A model as triangles. Faces and curves have the numbers, from 1 up, of the
  * file's faces and edges in the order of its shells; those that were dropped

@@ -14,7 +14,7 @@ namespace vg_occt {
 
 namespace {
 
-/* Height over longest edge below which a triangle counts, and by how much a
+/* S14. Height over longest edge below which a triangle counts, and by how much a
  * swap must be worth it. */
 const double flat = 1e-3, gain = 2;
 /* Nothing but rounding is below this. */

@@ -16,7 +16,7 @@ namespace vg_occt {
 
 namespace {
 
-/* A face narrower than this share of the model has no area. */
+/* S13. A face narrower than this share of the model has no area. */
 const double width_least = 1e-9;
 /* Copies of a face may be other splines: candidates are those whose areas and
  * centres agree by so much; points on a grid decide. */
