@@ -14,9 +14,9 @@ namespace vg_occt {
 
 namespace {
 
-/* S14. Height over longest edge below which a triangle counts, and by how much a
+/* Height over longest edge below which a triangle counts, and by how much a
  * swap must be worth it. */
-const double flat = 1e-3, gain = 2;
+const double flat = 1e-3, gain = 2;   /* S14 */
 /* Nothing but rounding is below this. */
 const double straight = 1e-9;
 const int most_passes = 20;

@@ -16,8 +16,8 @@ namespace vg_occt {
 
 namespace {
 
-/* S13. A face narrower than this share of the model has no area. */
-const double width_least = 1e-9;
+/* A face narrower than this share of the model has no area. */
+const double width_least = 1e-9;   /* S13 */
 /* Copies of a face may be other splines: candidates are those whose areas and
  * centres agree by so much; points on a grid decide. */
 const double area_near = 1e-2, centre_near = 1e-2, copy_near = 1e-4;

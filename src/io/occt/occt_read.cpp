@@ -50,10 +50,6 @@ const Unit units[] = {{"mm", "MM", 1},           {"cm", "CM", 10},
                       {"inch", "INCH", 25.4},    {"foot", "FT", 304.8}};
 const int n_unit = sizeof units / sizeof *units;
 
-/* Names of a shape, looked up without its place in an assembly. */
-typedef NCollection_DataMap<TopoDS_Shape, std::string, TopTools_ShapeMapHasher>
-    Names;
-
 TopoDS_Shape bare(const TopoDS_Shape &s)
 {
   return s.Located(TopLoc_Location());
@@ -140,8 +136,14 @@ double step_unit(STEPControl_Reader &reader, std::string &called)
   return 1000;
 }
 
-/* --- what a document says of faces --------------------------------------- */
+/* --- what a document says of shapes -------------------------------------- */
 
+struct Said {
+  std::string name, colour, layer;
+};
+
+/* Of all shapes at once, without their places in assemblies: looking each one
+ * up in the document takes time that grows with its square. */
 class Words {
 public:
   Words(const Handle(TDocStd_Document) &doc,
@@ -160,39 +162,11 @@ public:
 
       if (!name.empty()) bind(TransferBRep::ShapeResult(done, entity), name);
     }
+    take_document();
   }
 
-  std::string name(const TopoDS_Shape &s) const
-  {
-    TDF_Label label;
-    Handle(TDataStd_Name) text;
-
-    if (names_.IsBound(bare(s))) return names_.Find(bare(s));
-    if (shapes_->Search(bare(s), label, Standard_False, Standard_False) &&
-        label.FindAttribute(TDataStd_Name::GetID(), text))
-      return text_of(text->Get());
-    return "";
-  }
-
-  std::string colour(const TopoDS_Shape &s) const
-  {
-    static const XCAFDoc_ColorType kinds[] = {XCAFDoc_ColorSurf,
-                                              XCAFDoc_ColorGen};
-    Quantity_Color c;
-
-    for (XCAFDoc_ColorType kind : kinds)
-      if (colours_->GetColor(bare(s), kind, c))
-        return Quantity_Color::ColorToHex(c).ToCString();
-    return "";
-  }
-
-  std::string layer(const TopoDS_Shape &s) const
-  {
-    Handle(TColStd_HSequenceOfExtendedString) list;
-
-    return layers_->GetLayers(bare(s), list) && !list.IsNull() &&
-                   !list->IsEmpty() ? text_of(list->First()) : "";
-  }
+  /* Null where nothing is said. */
+  const Said *of(const TopoDS_Shape &s) const { return said_.Seek(bare(s)); }
 
   TDF_LabelSequence roots() const
   {
@@ -203,22 +177,67 @@ public:
   }
 
 private:
+  Said *at(const TopoDS_Shape &s)
+  {
+    if (!said_.IsBound(bare(s))) said_.Bind(bare(s), Said());
+    return said_.ChangeSeek(bare(s));
+  }
+
+  void set_name(const TopoDS_Shape &s, const std::string &name)
+  {
+    Said *to = at(s);
+
+    if (to->name.empty()) to->name = name;
+  }
+
   /* What one entity made of several faces has the name of all of them. */
   void bind(const TopoDS_Shape &s, const std::string &name)
   {
     if (s.IsNull()) return;
-    if (!names_.IsBound(bare(s))) names_.Bind(bare(s), name);
+    set_name(s, name);
     if (s.ShapeType() != TopAbs_SHELL) return;
     for (TopoDS_Iterator i(bare(s)); i.More(); i.Next())
-      if (i.Value().ShapeType() == TopAbs_FACE &&
-          !names_.IsBound(bare(i.Value())))
-        names_.Bind(bare(i.Value()), name);
+      if (i.Value().ShapeType() == TopAbs_FACE) set_name(i.Value(), name);
+  }
+
+  void take_document()
+  {
+    TDF_LabelSequence list;
+
+    shapes_->GetShapes(list);
+    for (int k = 1; k <= list.Length(); k++) {
+      TDF_LabelSequence parts;
+
+      take_label(list.Value(k));
+      XCAFDoc_ShapeTool::GetSubShapes(list.Value(k), parts);
+      for (int j = 1; j <= parts.Length(); j++) take_label(parts.Value(j));
+    }
+  }
+
+  void take_label(const TDF_Label &label)
+  {
+    static const XCAFDoc_ColorType kinds[] = {XCAFDoc_ColorSurf,
+                                              XCAFDoc_ColorGen};
+    Handle(TColStd_HSequenceOfExtendedString) list;
+    Handle(TDataStd_Name) text;
+    Quantity_Color c;
+    TopoDS_Shape s;
+
+    if (!XCAFDoc_ShapeTool::GetShape(label, s) || s.IsNull()) return;
+    Said *to = at(s);
+    if (label.FindAttribute(TDataStd_Name::GetID(), text))
+      set_name(s, text_of(text->Get()));
+    for (XCAFDoc_ColorType kind : kinds)
+      if (to->colour.empty() && colours_->GetColor(label, kind, c))
+        to->colour = Quantity_Color::ColorToHex(c).ToCString();
+    if (layers_->GetLayers(label, list) && !list.IsNull() && !list->IsEmpty())
+      to->layer = text_of(list->First());
   }
 
   Handle(XCAFDoc_ShapeTool) shapes_;
   Handle(XCAFDoc_ColorTool) colours_;
   Handle(XCAFDoc_LayerTool) layers_;
-  Names names_;
+  NCollection_DataMap<TopoDS_Shape, Said, TopTools_ShapeMapHasher> said_;
 };
 
 /* Faces below a shape, in its order, each once; solids hand their words down
@@ -244,13 +263,13 @@ public:
 private:
   void inherit(const TopoDS_Shape &s, Face &from) const
   {
-    std::string name = words_->name(s), colour = words_->colour(s),
-                layer = words_->layer(s);
+    const Said *said = words_->of(s);
 
-    if (s.ShapeType() == TopAbs_FACE) from.name = name;
-    else if (!name.empty()) from.part = name;
-    if (!colour.empty()) from.colour = colour;
-    if (!layer.empty()) from.layer = layer;
+    if (!said) return;
+    if (s.ShapeType() == TopAbs_FACE) from.name = said->name;
+    else if (!said->name.empty()) from.part = said->name;
+    if (!said->colour.empty()) from.colour = said->colour;
+    if (!said->layer.empty()) from.layer = said->layer;
   }
 
   Model &model_;
