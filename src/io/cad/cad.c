@@ -187,6 +187,8 @@ static vg_status next(struct call *k, struct vg_cad_tell *t,
     } else if (t->what == VG_CAD_TELL_STAGE) {
       snprintf(k->cad->stage, sizeof k->cad->stage, "%.79s", text);
     } else {
+      /* it ended amid a question */
+      if (t->code == VG_ERR_MEMORY) end_child(k->cad);
       return vg_fail(err, t->code < 0 && t->code >= VG_ERR_USAGE
                             ? (vg_status)t->code : VG_ERR_GEOMETRY,
                      "%s: %s", k->path, text);
@@ -374,6 +376,9 @@ vg_status vg_cad_parse(struct vg_cad *c, struct vg_input *in,
   struct vg_cad_tell t;
   vg_status st;
 
+  if (kind <= VG_CAD_NONE || kind > VG_CAD_BREP)
+    return vg_fail(err, VG_ERR_INPUT, "%s: %d is no kind of CAD file",
+                   in->path, (int)kind);
   VG_TRY(check_frame(in, kind, err));
   VG_TRY(start_child(c, err));
   c->has_model = 0;

@@ -193,6 +193,7 @@ void answer(const vg_cad_ask &ask, Model &model, const Talk &talk)
     talk.fail(f);
   } catch (const std::bad_alloc &) {
     talk.fail({VG_ERR_MEMORY, "not enough memory for Open CASCADE"});
+    _exit(1);                  /* the question may not have been read whole */
   } catch (const Standard_Failure &f) {
     talk.fail({VG_ERR_GEOMETRY,
                format("Open CASCADE could not work on it (%s: %s); the file "
