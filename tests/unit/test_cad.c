@@ -205,6 +205,25 @@ static void loose_faces_are_sewn(void **state)
   vg_mesh_release(&m);
 }
 
+/* A cylinder whose face is bounded by curves in space alone. */
+static void missing_curves_of_parameters_are_made(void **state)
+{
+  struct vg_mesh m = VG_MESH_INIT;
+  struct notes n;
+  struct vg_cad_options o = options(&n);
+  double lo[3], hi[3];
+
+  (void)state;
+  read_file(FILE_OF("bare.brep"), &o, &m);
+  assert_int_equal(m.n_patch, 3);
+  says(&n, "face 1 lacks the curves of its rim");
+  is_sound(&m, 1);
+  vg_mesh_bounds(&m, lo, hi);
+  near(hi[0], 1, 1e-12);
+  near(hi[2], 2, 1e-12);
+  vg_mesh_release(&m);
+}
+
 static void a_doubled_face_goes(void **state)
 {
   struct vg_mesh m = VG_MESH_INIT;
@@ -554,6 +573,7 @@ int main(void)
     cmocka_unit_test(parts_stand_where_the_assembly_puts_them),
     cmocka_unit_test(finer_is_nearer),
     cmocka_unit_test(loose_faces_are_sewn),
+    cmocka_unit_test(missing_curves_of_parameters_are_made),
     cmocka_unit_test(a_doubled_face_goes),
     cmocka_unit_test(a_missing_face_is_named),
     cmocka_unit_test(crossing_bodies_are_for_the_check),

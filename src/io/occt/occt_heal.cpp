@@ -4,10 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include <BRepBndLib.hxx>
 #include <BRepBuilderAPI_Sewing.hxx>
 #include <BRepGProp.hxx>
+#include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
+#include <Bnd_Box.hxx>
 #include <GProp_GProps.hxx>
+#include <ShapeBuild_ReShape.hxx>
+#include <ShapeFix_Shape.hxx>
 #include <Standard_Failure.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
@@ -41,6 +46,19 @@ std::string named(const Face &f)
 {
   return f.name.empty() ? format("face %u", f.number)
                         : format("face %u (%.60s)", f.number, f.name.c_str());
+}
+
+/* --- faces to mend ------------------------------------------------------- */
+
+/* An edge without its curve in the plane of parameters of its face. */
+bool lacks_curves(const TopoDS_Face &face)
+{
+  double first, last;
+
+  for (TopExp_Explorer e(face, TopAbs_EDGE); e.More(); e.Next())
+    if (BRep_Tool::CurveOnSurface(TopoDS::Edge(e.Current()), face, first, last)
+            .IsNull()) return true;
+  return false;
 }
 
 /* --- faces to drop ------------------------------------------------------- */
@@ -215,6 +233,58 @@ void note_edges(const Edges &e, double tolerance, const Talk &talk)
 }
 
 }  // namespace
+
+TopoDS_Compound together(const Model &model)
+{
+  TopoDS_Compound all;
+  BRep_Builder builder;
+
+  builder.MakeCompound(all);
+  for (const Face &f : model.faces)
+    if (!f.shape.IsNull()) builder.Add(all, f.shape);
+  return all;
+}
+
+void mend(Model &model, const Talk &talk)
+{
+  ShapeFix_Shape fix(together(model));
+  size_t n = 0;
+  const Face *first = nullptr;
+
+  fix.Perform();
+  for (Face &f : model.faces) {
+    if (f.shape.IsNull()) continue;
+    TopoDS_Shape to = fix.Context()->Apply(f.shape);
+
+    if (to.IsNull() || to.ShapeType() != TopAbs_FACE) continue;
+    if (!to.IsEqual(f.shape) && !n++) first = &f;
+    f.shape = TopoDS::Face(to);
+  }
+  if (n)
+    talk.note(format("%zu faces were mended, the first is %s at %s", n,
+                     named(*first).c_str(),
+                     place(point_of(first->shape)).c_str()));
+}
+
+void complete(Model &model, const Talk &talk)
+{
+  Bnd_Box box;
+  size_t n = 0;
+
+  for (const Face &f : model.faces) {
+    if (!lacks_curves(f.shape)) continue;
+    if (!n++)
+      talk.note(format("%s lacks the curves of its rim in its plane of "
+                       "parameters; they are made anew, also for others of the "
+                       "kind", named(f).c_str()));
+  }
+  if (n) mend(model, talk);
+  for (const Face &f : model.faces)
+    BRepBndLib::Add(f.shape, box, Standard_False);
+  if (box.IsVoid() || box.IsOpen())
+    throw Failure{VG_ERR_INPUT, "a face of it reaches to infinity"};
+  model.diagonal = std::sqrt(box.SquareExtent());
+}
 
 void heal(const vg_cad_ask &ask, Model &model, const Talk &talk)
 {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <TopTools_IndexedMapOfShape.hxx>
+#include <TopoDS_Compound.hxx>
 #include <TopoDS_Edge.hxx>
 #include <TopoDS_Face.hxx>
 #include <gp_Pnt.hxx>
@@ -66,6 +67,17 @@ struct Model {
  * @param path  the file, also when it has no name of its own */
 void read(const vg_cad_ask &ask, const std::string &path, Model &model,
           const Talk &talk);
+
+/** All faces as one shape, without those that were dropped. */
+TopoDS_Compound together(const Model &model);
+
+/** Let Open CASCADE mend all faces (curves in the plane of parameters that are
+ * missing, order and gaps of rims). Faces keep their numbers. */
+void mend(Model &model, const Talk &talk);
+
+/** Mend faces where curves in the plane of parameters are missing, and measure
+ * the model. */
+void complete(Model &model, const Talk &talk);
 
 /** Drop faces that repeat others or have no area; sew open edges. */
 void heal(const vg_cad_ask &ask, Model &model, const Talk &talk);

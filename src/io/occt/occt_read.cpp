@@ -3,10 +3,8 @@
 
 #include <cmath>
 
-#include <BRepBndLib.hxx>
 #include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
-#include <Bnd_Box.hxx>
 #include <IGESCAFControl_Reader.hxx>
 #include <IGESData_IGESEntity.hxx>
 #include <IGESData_IGESModel.hxx>
@@ -415,18 +413,12 @@ void read_brep(const vg_cad_ask &ask, const std::string &path, Model &model,
 void read(const vg_cad_ask &ask, const std::string &path, Model &model,
           const Talk &talk)
 {
-  Bnd_Box box;
-
   if (ask.kind == 1) read_step(ask, path, model, talk);
   else if (ask.kind == 2) read_iges(ask, path, model, talk);
   else read_brep(ask, path, model, talk);
   if (model.faces.empty())
     throw Failure{VG_ERR_INPUT, "there are no faces in it: points, curves or "
                                 "nothing at all; export solids or surfaces"};
-  for (const Face &f : model.faces) BRepBndLib::Add(f.shape, box, Standard_False);
-  if (box.IsVoid() || box.IsOpen())
-    throw Failure{VG_ERR_INPUT, "a face of it reaches to infinity"};
-  model.diagonal = std::sqrt(box.SquareExtent());
 }
 
 }  // namespace vg_occt

@@ -118,6 +118,7 @@ void answer_read(const vg_cad_ask &ask, Model &model, const Talk &talk)
   talk.stage("reading the file");
   read(ask, file.path(), model, talk);
   talk.stage("looking for faults of its faces");
+  complete(model, talk);
   heal(ask, model, talk);
   talk.stage("triangulating its faces");
   triangulate(ask, model, surface, talk);

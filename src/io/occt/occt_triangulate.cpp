@@ -9,7 +9,6 @@
 
 #include <BRepMesh_IncrementalMesh.hxx>
 #include <BRepTools.hxx>
-#include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
 #include <IMeshTools_Parameters.hxx>
 #include <Poly_PolygonOnTriangulation.hxx>
@@ -18,7 +17,7 @@
 #include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
-#include <TopoDS_Compound.hxx>
+#include <TopoDS_Vertex.hxx>
 
 namespace vg_occt {
 
@@ -238,15 +237,31 @@ void run_mesher(const vg_cad_ask &ask, const TopoDS_Shape &shape,
   BRepMesh_IncrementalMesh(shape, p);
 }
 
-TopoDS_Compound together(const Model &model)
+size_t count_bare(const Model &model)
 {
-  TopoDS_Compound all;
-  BRep_Builder builder;
+  TopLoc_Location at;
 
-  builder.MakeCompound(all);
-  for (const Face &f : model.faces)
-    if (!f.shape.IsNull()) builder.Add(all, f.shape);
-  return all;
+  return static_cast<size_t>(std::count_if(
+      model.faces.begin(), model.faces.end(), [&](const Face &f) {
+        return !f.shape.IsNull() &&
+               BRep_Tool::Triangulation(f.shape, at).IsNull();
+      }));
+}
+
+/* Where faces stay bare, mended ones may not. */
+void make_triangles(const vg_cad_ask &ask, Model &model, const Talk &talk)
+{
+  Model mended = model;
+  size_t bare;
+
+  run_mesher(ask, together(model), model.diagonal);
+  bare = count_bare(model);
+  if (!bare) return;
+  talk.stage("mending its faces");
+  mend(mended, talk);
+  run_mesher(ask, together(mended), model.diagonal);
+  if (count_bare(mended) < bare) model = mended;
+  else run_mesher(ask, together(model), model.diagonal);
 }
 
 }  // namespace
@@ -259,7 +274,7 @@ void triangulate(const vg_cad_ask &ask, Model &model, Surface &out,
   size_t n_bad = 0;
   std::string bad;
 
-  run_mesher(ask, together(model), model.diagonal);
+  make_triangles(ask, model, talk);
   for (const Face &f : model.faces) {
     if (f.shape.IsNull()) continue;
     if (builder.add(f, patches.of(f))) continue;
