@@ -9,6 +9,9 @@ install(TARGETS vanguard EXPORT vanguard-targets
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(FILES src/api/vanguard.h
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/vanguard)
+if(VG_CAD)
+  install(TARGETS vanguard-cad LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+endif()
 
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/vanguard)
 install(EXPORT vanguard-targets NAMESPACE vanguard:: DESTINATION ${package})

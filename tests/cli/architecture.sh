@@ -105,6 +105,8 @@ adapter() {
     sed 's,^\./,,')
 }
 adapter tetgen.h '^core/recover/cdt_tetgen\.cpp$'
+adapter '[A-Z][A-Za-z0-9_]*\.hxx' '^io/occt/occt_[a-z]+\.(cpp|h)$'
+adapter 'CGAL/[A-Za-z0-9_]*\.h' '^core/wrap/wrap_cgal\.cpp$'
 adapter zlib.h '^io/[a-z]+/[a-z_]+\.c$'
 adapter jansson.h '^cli/'
 adapter argp.h '^cli/'

@@ -329,7 +329,7 @@ static void is_a_format(void **state)
 {
   const char *path = io_temp("aflr_t1.surf"), *bc = io_temp("aflr_t1.mapbc");
   struct vg_mesh m = VG_MESH_INIT;
-  struct vg_read_info info;
+  struct vg_read_info info = { 0 };
   struct vg_error err = VG_ERROR_INIT;
 
   (void)state;

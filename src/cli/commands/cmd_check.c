@@ -40,21 +40,14 @@ static error_t option(int key, char *arg, struct argp_state *state)
 }
 
 /* Spacing that edges are held against: that of the deck. */
-static vg_status field(const struct arguments *a, const struct vg_mesh *m,
-                       struct vg_sizing **out, struct vg_error *err)
+static vg_status field(const struct arguments *a, const struct vg_settings *s,
+                       const struct vg_mesh *m, struct vg_sizing **out,
+                       struct vg_error *err)
 {
-  struct vg_settings s;
-  struct vg_sizing_options options;
-  vg_status st;
+  struct vg_sizing_options options = vg_settings_sizing(s);
 
   if (!a->deck) return VG_OK;
-  vg_settings_default(&s);
-  VG_TRY(vg_deck_read(a->deck, &s, err));
-  options = vg_settings_sizing(&s);
-  VG_TRY(vg_sizing_new(&options, s.n_source, s.source, m, out, err));
-done:
-  vg_settings_release(&s);
-  return st;
+  return vg_sizing_new(&options, s->n_source, s->source, m, out, err);
 }
 
 static void print_json(json_t *o)
@@ -84,7 +77,8 @@ static vg_status not_valid(const struct arguments *a,
                  ".lb8.ugrid has", a->file, cells);
 }
 
-static vg_status check_mesh(const struct arguments *a, struct vg_mesh *m,
+static vg_status check_mesh(const struct arguments *a,
+                            const struct vg_settings *s, struct vg_mesh *m,
                             const struct vg_turned *turned,
                             struct vg_error *err)
 {
@@ -93,7 +87,7 @@ static vg_status check_mesh(const struct arguments *a, struct vg_mesh *m,
   vg_status st;
 
   memset(&r, 0, sizeof r);
-  VG_TRY(field(a, m, &sizing, err));
+  VG_TRY(field(a, s, m, &sizing, err));
   VG_TRY(vg_mesh_judge(m, sizing, &r, err));
   if (a->json) {
     print_json(json_pack("{s:o s:b s:I s:o s:o s:o}", "file",
@@ -132,26 +126,34 @@ static vg_status write_defects(const struct arguments *a,
   return st;
 }
 
+static json_t *notes_json(const struct vg_notes *notes)
+{
+  json_t *list = json_array();
+
+  for (size_t i = 0; i < notes->n; i++)
+    json_array_append_new(list, vg_text_json(notes->text[i]));
+  return list;
+}
+
 static vg_status check_surface(const struct arguments *a, struct vg_mesh *m,
-                               struct vg_error *err)
+                               struct vg_notes *notes, struct vg_error *err)
 {
   struct vg_surface_check_options o = VG_SURFACE_CHECK_OPTIONS_INIT;
   struct vg_surface_report r = VG_SURFACE_REPORT_INIT;
-  struct vg_notes notes = { 0 };
   int external = -1, is_half = 0;
   vg_status st;
 
   o.require_bc = vg_surface_has_conditions(m);
-  VG_TRY(vg_surface_examine(m, &o, &external, &r, &notes, err));
-  if (external) VG_TRY(vg_surface_half(m, &r, &notes, &is_half, err));
+  VG_TRY(vg_surface_examine(m, &o, &external, &r, notes, err));
+  if (external) VG_TRY(vg_surface_half(m, &r, notes, &is_half, err));
   if (a->json) {
-    print_json(json_pack("{s:o s:b s:s s:o s:o s:o}", "file",
+    print_json(json_pack("{s:o s:b s:s s:o s:o s:o s:o}", "file",
                          vg_text_json(a->file), "ok",
                          is_half || !r.n_defect, "taken_as",
                          is_half ? "half" : external ? "bodies" : "domain",
                          "size", vg_report_size_json(m), "patches",
-                         vg_report_patches_json(m),
-                         "surface",
+                         vg_report_patches_json(m), "notes",
+                         notes_json(notes), "surface",
                          vg_report_surface_json(m, &r, VG_SHOWN_DEFECTS)));
   } else {
     printf("%s: surface, %s\n", a->file,
@@ -161,8 +163,8 @@ static vg_status check_surface(const struct arguments *a, struct vg_mesh *m,
     vg_report_size_text(stdout, m);
     VG_TRY(vg_report_patches_text(stdout, m, err));
     vg_report_surface_text(stdout, m, &r, is_half ? 0 : VG_SHOWN_DEFECTS);
-    for (size_t i = 0; i < notes.n; i++)
-      printf("  note: %s\n", notes.text[i]);
+    for (size_t i = 0; i < notes->n; i++)
+      printf("  note: %s\n", notes->text[i]);
     if (!r.n_defect) printf("  no defects\n");
   }
   VG_TRY(write_defects(a, m, &r, err));
@@ -173,8 +175,37 @@ static vg_status check_surface(const struct arguments *a, struct vg_mesh *m,
     st = vg_fail(err, VG_ERR_GEOMETRY, "%s: no surface is left: all its "
                  "triangles are degenerate", a->file);
 done:
-  vg_notes_release(&notes);
   vg_surface_report_release(&r);
+  return st;
+}
+
+static vg_status check(const struct arguments *a, struct vg_error *err)
+{
+  struct vg_settings s;
+  struct vg_display show;
+  struct vg_notes notes = { 0 };
+  struct vg_mesh m = VG_MESH_INIT;
+  struct vg_cad_options cad;
+  struct vg_read_info info = { .cad = &cad };
+  vg_status st = VG_OK;
+
+  vg_display_init(&show, a->quiet);
+  vg_display_end_at_once(1);
+  vg_display_update(&show, "read", 0, 0);
+  vg_settings_default(&s);
+  if (a->deck) VG_TRY(vg_deck_read(a->deck, &s, err));
+  cad = vg_cad_options_of(&s, &notes);
+  VG_TRY(vg_mesh_read(a->file, &m, &info, err));
+  vg_display_update(&show, "check", 0, 0);
+  vg_display_clear(&show);
+  st = m.n_tet + m.n_pyr + m.n_pri + m.n_hex
+         ? check_mesh(a, &s, &m, &info.turned, err)
+         : check_surface(a, &m, &notes, err);
+done:
+  vg_display_clear(&show);
+  vg_notes_release(&notes);
+  vg_mesh_release(&m);
+  vg_settings_release(&s);
   return st;
 }
 
@@ -182,7 +213,8 @@ int vg_cmd_check(int argc, char **argv)
 {
   const struct argp_option options[] = {
     { "deck", 'd', "FILE", 0, "hold the edges of a volume mesh against the "
-      "spacing of this deck (of a run: PROJECT.resolved.deck)", 0 },
+      "spacing of this deck (of a run: PROJECT.resolved.deck); read CAD as it "
+      "says", 0 },
     { "defects", 'f', "FILE", 0, "write all faces with a defect to this .vtu "
       "file", 0 },
     { "json", 'j', NULL, 0, "report as JSON", 0 },
@@ -196,25 +228,8 @@ int vg_cmd_check(int argc, char **argv)
       "edges, orientation, duplicates, intersections, shells, conditions).\v"
       "Exit status 0 when nothing is wrong, 1 otherwise." };
   struct arguments a = { 0 };
-  struct vg_display show;
-  struct vg_mesh m = VG_MESH_INIT;
-  struct vg_read_info info = { 0 };
   struct vg_error err = VG_ERROR_INIT;
-  vg_status st;
 
   vg_cli_parse(&argp, argc, argv, &a);
-  vg_display_init(&show, a.quiet);
-  vg_display_end_at_once(1);
-  vg_display_update(&show, "read", 0, 0);
-  st = vg_mesh_read(a.file, &m, &info, &err);
-  if (st >= 0) {
-    vg_display_update(&show, "check", 0, 0);
-    vg_display_clear(&show);
-    st = m.n_tet + m.n_pyr + m.n_pri + m.n_hex
-           ? check_mesh(&a, &m, &info.turned, &err)
-           : check_surface(&a, &m, &err);
-  }
-  vg_display_clear(&show);
-  vg_mesh_release(&m);
-  return st < 0 ? vg_cli_fail(&err) : VG_EXIT_DONE;
+  return check(&a, &err) < 0 ? vg_cli_fail(&err) : VG_EXIT_DONE;
 }

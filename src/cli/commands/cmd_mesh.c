@@ -115,12 +115,11 @@ static error_t option(int key, char *arg, struct argp_state *state)
   return vg_cli_add_override(&a->kept, key, arg, state);
 }
 
-/* Stages up to a surface as read, by each rank. */
-static vg_status read_project(struct run *r, const struct arguments *a,
-                              struct vg_error *err)
+/* Files and settings, by each rank. */
+static vg_status read_settings(struct run *r, const struct arguments *a,
+                               struct vg_error *err)
 {
   struct vg_problem *p = &r->problem;
-  double t = vg_display_now();
   vg_status st;
 
   VG_TRY(vg_display_stopped(&r->show, err));
@@ -130,11 +129,26 @@ static vg_status read_project(struct run *r, const struct arguments *a,
   VG_TRY(vg_cli_apply(&a->kept, &p->settings, err));
   vg_settings_write(&p->settings);
   vg_mesh_log_settings(&r->mesh, &p->settings);
-  VG_TRY(vg_outputs_plan(p, a->dir, vg_comm_size(r->mesh.comm), &r->outputs,
-                         err));
-  VG_TRY(vg_problem_surface(p, &r->show, err));
+  st = vg_outputs_plan(p, a->dir, vg_comm_size(r->mesh.comm), &r->outputs,
+                       err);
+done:
+  return st;
+}
+
+/* Stages up to a surface as read: by each rank, but for CAD. */
+static vg_status read_project(struct run *r, const struct arguments *a,
+                              struct vg_error *err)
+{
+  struct vg_comm *comm = r->mesh.comm;
+  double t = vg_display_now();
+  vg_status st;
+
+  VG_TRY(vg_comm_agree(comm, read_settings(r, a, err), err));
+  VG_TRY(vg_problem_cad(&r->problem, comm, err));
+  st = vg_problem_surface(&r->problem, &r->show, err);
   r->time_read = vg_display_now() - t;
-  VG_TRY(vg_display_stopped(&r->show, err));
+  if (st >= 0) st = vg_display_stopped(&r->show, err);
+  st = vg_comm_agree(comm, st, err);
 done:
   return st;
 }
@@ -447,7 +461,7 @@ static vg_status run_stages(struct run *r, const struct arguments *a,
 
   r->mesh.options = a->run;
   VG_TRY(vg_run_resumable(m, err));
-  VG_TRY(vg_comm_agree(m->comm, read_project(r, a, err), err));
+  VG_TRY(read_project(r, a, err));
   VG_TRY(close_surface(r, err));
   VG_TRY(vg_run_mesh(m, &r->problem, &r->layers, &r->show, err));
   vg_effects_note(&m->effects, front_of(r), &r->problem);
@@ -582,7 +596,7 @@ int vg_cmd_mesh(int argc, char **argv)
       "where they are asked for, tetrahedra in the rest.\v"
       "A project is a VGRID project (PROJECT.d3m with PROJECT.front, or "
       "planar patches alone) or a surface (UGRID, AFLR, STL, Cart3D, OBJ, "
-      "Medit), with conditions in PROJECT.mapbc and settings in PROJECT.deck. "
+      "Medit; STEP, IGES, BREP), with conditions in PROJECT.mapbc and settings in PROJECT.deck. "
       "Written are PROJECT.cogsg, .bc, .mapbc and .b8.ugrid, "
       "PROJECT.resolved.deck with all settings, and PROJECT.report.json; a "
       "surface with defects is refused and its bad faces are put into "

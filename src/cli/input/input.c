@@ -11,6 +11,7 @@
 
 #include "base/memory.h"
 #include "cli/common/text.h"
+#include "cli/input/share.h"
 #include "cli/input/sizes.h"
 #include "cli/settings/deck.h"
 #include "io/mesh/aflr.h"
@@ -229,11 +230,19 @@ static void note_unused(struct vg_problem *p,
 /* Conditions are taken from the .mapbc beside the file. */
 static vg_status read_surface_file(struct vg_problem *p, struct vg_error *err)
 {
-  struct vg_read_info info = { 0 };
+  struct vg_cad_options cad = vg_cad_options_of(&p->settings, &p->notes);
+  struct vg_read_info info = { .cad = &cad };
   const char *path = p->files.surface;
-  vg_status st = vg_surface_read(path, &p->surface, &info, err);
+  vg_status st;
 
-  if (st < 0) return st;
+  if (p->is_read) return VG_OK;
+  st = vg_surface_read(path, &p->surface, &info, err);
+  /* the library's message says less */
+  if (st < 0)
+    return vg_display_stop(NULL) ? vg_display_stopped(NULL, err) : st;
+  if (cad.unit != VG_CAD_UNIT_FILE && !vg_format_is_cad(path))
+    vg_note(&p->notes, "unit has no effect: %s is no CAD file, its numbers stay "
+            "as they are", path);
   if (info.n_cell)
     vg_note(&p->notes, "%s is a volume mesh: its boundary is meshed anew, its "
             "%zu cells are not used", path, info.n_cell);
@@ -345,6 +354,52 @@ static vg_status apply_conditions(struct vg_problem *p, struct vg_error *err)
   if (st >= 0) st = vg_mapbc_apply(&bc, &p->surface, &match, err);
   vg_mapbc_release(&bc);
   if (st >= 0) note_unused(p, &match);
+  return st;
+}
+
+static void note_cad(void *user, const char *text)
+{
+  vg_note(user, "CAD: %s", text);
+}
+
+/* user: the notes. */
+static int stop_cad(void *user)
+{
+  (void)user;
+  return vg_display_stop(NULL);
+}
+
+struct vg_cad_options vg_cad_options_of(const struct vg_settings *s,
+                                        struct vg_notes *notes)
+{
+  return (struct vg_cad_options){ .unit = s->cad.unit,
+    .patches = s->cad.patches, .tolerance = s->cad.tolerance,
+    .chord = s->cad.chord, .angle = s->cad.angle, .seconds = s->cad.seconds,
+    .note = note_cad, .stop = stop_cad, .user = notes };
+}
+
+vg_status vg_problem_cad(struct vg_problem *p, struct vg_comm *comm,
+                         struct vg_error *err)
+{
+  struct vg_bytes b = { 0, NULL };
+  uint64_t number;
+  vg_status st = VG_OK;
+
+  if (vg_comm_size(comm) == 1 || *p->files.front ||
+      !vg_format_is_cad(p->files.surface))
+    return VG_OK;
+  if (!vg_comm_rank(comm)) {
+    st = read_surface_file(p, err);
+    if (st >= 0) st = vg_surface_pack(&p->surface, 0, &b, err);
+  }
+  VG_TRY(vg_comm_agree(comm, st, err));
+  VG_TRY(vg_comm_bcast(comm, 0, &b, err));
+  if (vg_comm_rank(comm))
+    st = vg_surface_unpack(&b, &p->surface, &number, err);
+  p->is_read = 1;
+  st = vg_comm_agree(comm, st, err);
+done:
+  free(b.data);
   return st;
 }
 

@@ -5,12 +5,14 @@
 
 #include <stdio.h>
 
+#include "base/comm.h"
 #include "cli/common/progress.h"
 #include "cli/settings/settings.h"
 #include "core/domain/planar.h"
 #include "core/domain/project.h"
 #include "core/sizing/sizing_map.h"
 #include "core/surface/surface_check.h"
+#include "io/cad/cad.h"
 
 /** Paths of what exists; "" where a part is absent. */
 struct vg_input_files {
@@ -41,6 +43,7 @@ struct vg_problem {
   struct vg_size_samples *samples; /* of the setting `sizes`; NULL */
   struct vg_project project;       /* empty without a .d3m */
   struct vg_mesh surface;
+  int is_read;                     /* surface, by vg_problem_cad */
   struct vg_point_heights heights;
   size_t n_welded, n_dropped;      /* by the weld */
   struct vg_surface_report check;
@@ -83,6 +86,16 @@ vg_status vg_problem_given(struct vg_problem *p, const char *name,
 
 /** What settings and map say of sizes. */
 struct vg_sizing_options vg_problem_sizing(const struct vg_problem *p);
+
+/** Before vg_problem_surface on several ranks: a CAD file is read by the first
+ * one, for all to have the same triangles; nothing happens for other files.
+ * Collective. */
+vg_status vg_problem_cad(struct vg_problem *p, struct vg_comm *comm,
+                         struct vg_error *err);
+
+/** What settings and displays ask of CAD; notes go to *notes. */
+struct vg_cad_options vg_cad_options_of(const struct vg_settings *s,
+                                        struct vg_notes *notes);
 
 /** Weld, check, repair and complete the domain. VG_ERR_GEOMETRY when defects
  * remain: they are in p->check. After success p->settings are resolved: they

@@ -9,6 +9,7 @@
 #include "cli/settings/deck.h"
 #include "core/geometry/vector.h"
 #include "core/surface/envelope.h"
+#include "core/wrap/wrap.h"
 #include "io/mesh/vtu.h"
 #include "io/stream/convention.h"
 
@@ -344,6 +345,33 @@ done:
   return st;
 }
 
+/* An outer boundary would be all that is left of what it encloses. */
+static vg_status wrap(struct vg_problem *p, struct vg_display *show,
+                      struct vg_error *err)
+{
+  double size = p->settings.wrap;
+  struct vg_wrap_report r = { 0 };
+  vg_status st;
+
+  for (size_t i = 0; i < p->surface.n_patch; i++)
+    if (is_outer_condition(&p->surface.patch[i]))
+      return vg_fail(err, VG_ERR_INPUT, "wrap: patch %d has a condition of an "
+                     "outer boundary; only bodies can be wrapped, leave that "
+                     "patch out of the surface (a farfield is added)",
+                     (int)p->surface.patch[i].id);
+  vg_display_update(show, "wrap", p->surface.n_tri, 0);
+  VG_TRY(vg_wrap(&p->surface, size, &r, err));
+  vg_note(&p->notes, "the surface was wrapped: %zu triangles by %zu that are "
+          "about %.3g away from them; gaps narrower than %g were bridged; the "
+          "farthest is %.3g away, at (%.6g, %.6g, %.6g); patches follow the "
+          "nearest triangle, left without any: %zu", r.n_before,
+          p->surface.n_tri, r.offset, size, r.distance, r.at[0], r.at[1],
+          r.at[2], r.n_empty);
+  st = vg_display_stopped(show, err);
+done:
+  return st;
+}
+
 vg_status vg_problem_close(struct vg_problem *p, struct vg_display *show,
                            struct vg_error *err)
 {
@@ -355,6 +383,7 @@ vg_status vg_problem_close(struct vg_problem *p, struct vg_display *show,
   p->require_bc = vg_surface_has_conditions(&p->surface);
   VG_TRY(split_quads(&p->surface, &p->notes, err));
   VG_TRY(resolve_patches(p, err));
+  if (s->wrap > 0) VG_TRY(wrap(p, show, err));
   if (s->weld > 0)
     VG_TRY(vg_surface_weld(&p->surface, s->weld, &p->n_welded, &p->n_dropped,
                            err));

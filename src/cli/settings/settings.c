@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "cli/settings/lists.h"
 #include "core/fill/fill.h"
+#include "io/cad/cad.h"
 #include "layers/columns/law.h"
 #include "layers/expand/join.h"
 #include "partition/cut/partition.h"
@@ -18,6 +19,11 @@
 static const char *const domain_words[] = { "auto", "none", "sphere", "box",
                                             NULL };
 static const char *const answer_words[] = { "auto", "no", "yes", NULL };
+/* In the order of enum vg_cad_unit, of enum vg_cad_patches. */
+static const char *const unit_words[] = { "file", "mm", "cm", "m", "km",
+                                          "inch", "foot", NULL };
+static const char *const cad_patch_words[] = { "face", "name", "colour",
+                                               "layer", "part", NULL };
 /* In the order of enum vg_layer_cells. */
 static const char *const cell_words[] = { "tets", "mixed", NULL };
 /* In the order of enum vg_source_kind. */
@@ -53,8 +59,28 @@ static const struct vg_param params[] = {
     "which sizes grow: Medit's .sol or .solb, with the mesh (.meshb, "
     ".b8.ugrid, ...) beside it, or a point array `size` of VTK's .vtu; \"\": "
     "none" },
+  { "unit", AT(cad.unit), .type = VG_PARAM_WORD, .words = unit_words,
+    .unit = "", .help = "unit of length of the surface of a CAD file, and so "
+    "of the mesh; file: as the file has it" },
+  { "cad_patches", AT(cad.patches), .type = VG_PARAM_WORD,
+    .words = cad_patch_words, .unit = "", .help = "what of a CAD file makes a "
+    "patch: each face, or all faces of one name, colour, layer or part" },
+  { "cad_tolerance", AT(cad.tolerance), LENGTH, .help = "faces of a CAD file "
+    "are sewn along edges that are no farther apart; 0: 1e-6 of its "
+    "diagonal" },
+  { "cad_chord", AT(cad.chord), .type = VG_PARAM_REAL, .hi = 0.5,
+    .above_lo = 1, .unit = "", .help = "distance of the triangles from the "
+    "curves of a CAD file, over the size of each curve" },
+  { "cad_angle", AT(cad.angle), .type = VG_PARAM_REAL, .lo = 1, .hi = 60,
+    .unit = "degrees", .help = "turn of a CAD curve or face from one edge or "
+    "triangle to the next; 15: 24 edges a turn" },
+  { "cad_seconds", AT(cad.seconds), REAL, .unit = "s",
+    .help = "time after which reading CAD is given up; 0: none" },
   { "weld", AT(weld), LENGTH,
     .help = "merge points closer than this; 0: only equal ones" },
+  { "wrap", AT(wrap), LENGTH, .help = "put a closed surface around the bodies "
+    "that bridges gaps narrower than this and has edges of about this length, "
+    "where parts overlap or holes cannot be closed; 0: none" },
   { "repair", AT(repair), .type = VG_PARAM_FLAG, .unit = "",
     .help = "mend what needs no guess: orientation, unused and duplicate "
             "items" },
@@ -390,12 +416,15 @@ void vg_settings_default(struct vg_settings *s)
 {
   const struct vg_sizing_options sizing = VG_SIZING_OPTIONS_INIT;
   const struct vg_fill_options fill = VG_FILL_OPTIONS_INIT;
+  const struct vg_cad_options cad = VG_CAD_OPTIONS_INIT;
 
   memset(s, 0, sizeof *s);
   s->scale = sizing.scale;
   s->growth = sizing.growth;
   s->surface_sizes = sizing.from_surface;
   s->d3m_sources = 1;
+  s->cad = (struct vg_cad_settings){ cad.unit, cad.patches, cad.tolerance,
+                                     cad.chord, cad.angle, cad.seconds };
   s->repair = 1;
   s->optimise = fill.optimise;
   s->leaf_cells = VG_LEAF_CELLS;

@@ -83,15 +83,22 @@ struct vg_layer_settings {
   struct vg_layer_limits limit;
 };
 
+/** How CAD becomes triangles: as struct vg_cad_options of io/cad/cad.h. */
+struct vg_cad_settings {
+  int unit, patches;               /* enum vg_cad_unit, vg_cad_patches */
+  double tolerance, chord, angle, seconds;
+};
+
 /** All settings of a run. */
 struct vg_settings {
   char title[VG_TITLE_MAX + 1];
   double scale, growth, hmin, hmax;
   int surface_sizes, d3m_sources;
   char sizes[VG_LIST_MAX];         /* a file with edge lengths; "": none */
+  struct vg_cad_settings cad;
   int symmetry;                    /* enum vg_answer */
   int close_holes;
-  double weld;
+  double weld, wrap;
   int repair;
   int64_t optimise, max_cells;
   char write[VG_WRITE_MAX];        /* "auto": vg_settings_write */

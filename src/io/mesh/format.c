@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "base/memory.h"
+#include "io/cad/cad.h"
 #include "io/mesh/aflr.h"
 #include "io/mesh/foam.h"
 #include "io/mesh/medit.h"
@@ -132,20 +133,35 @@ static const struct format {
   { VG_FOAM_SUFFIX, NULL, write_foam },
   { "su2", NULL, vg_su2_write },
   { "vtu", NULL, write_vtu },
+  { "step", NULL, NULL }, { "stp", NULL, NULL }, { "iges", NULL, NULL },
+  { "igs", NULL, NULL }, { "brep", NULL, NULL },
 };
 #define N_FORMAT (sizeof formats / sizeof formats[0])
+
+/* Those of the table that io/cad reads, with options of its own. */
+static const struct { const char *suffix; enum vg_cad_kind kind; } cad[] = {
+  { "step", VG_CAD_STEP }, { "stp", VG_CAD_STEP }, { "iges", VG_CAD_IGES },
+  { "igs", VG_CAD_IGES }, { "brep", VG_CAD_BREP },
+};
+
+static enum vg_cad_kind cad_kind(const struct format *f)
+{
+  for (size_t i = 0; f && i < sizeof cad / sizeof *cad; i++)
+    if (!strcmp(f->suffix, cad[i].suffix)) return cad[i].kind;
+  return VG_CAD_NONE;
+}
 
 /* Every surface suffix, plain and packed. */
 static const char *const input_suffix[] = {
   "stl", "tri", "triq", "obj", "mesh", "meshb", "b8.ugrid", "lb8.ugrid",
   "b4.ugrid", "lb4.ugrid", "r8.ugrid", "lr8.ugrid", "r4.ugrid", "lr4.ugrid",
   "b8l.ugrid", "lb8l.ugrid", "b8.ugrid64", "lb8.ugrid64", "ugrid",
-  "surf",
+  "surf", "step", "stp", "iges", "igs", "brep",
   "stl.gz", "tri.gz", "triq.gz", "obj.gz", "mesh.gz", "meshb.gz",
   "b8.ugrid.gz", "lb8.ugrid.gz", "b4.ugrid.gz", "lb4.ugrid.gz",
   "r8.ugrid.gz", "lr8.ugrid.gz", "r4.ugrid.gz", "lr4.ugrid.gz",
   "b8l.ugrid.gz", "lb8l.ugrid.gz", "b8.ugrid64.gz", "lb8.ugrid64.gz",
-  "ugrid.gz", "surf.gz"
+  "ugrid.gz", "surf.gz", "step.gz", "stp.gz", "iges.gz", "igs.gz", "brep.gz"
 };
 
 const char *vg_format_input_suffix(size_t i)
@@ -158,9 +174,8 @@ const char *vg_format_list(void)
 {
   return ".stl .tri .triq .obj .mesh .meshb .ugrid, .X.ugrid with X of b8 lb8 "
          "b4 lb4 r8 lr8 r4 lr4 b8l lb8l, .b8.ugrid64 .lb8.ugrid64, .cogsg, "
-         ".front .surf (read only), .su2 .vtu .openfoam (written "
-         "only); .gz may "
-         "follow what is read";
+         ".front .surf .step .stp .iges .igs .brep (read only), .su2 .vtu "
+         ".openfoam (written only); .gz may follow what is read";
 }
 
 /* Does name[0..n) end in ".suffix"? */
@@ -202,6 +217,13 @@ int vg_format_can_write(const char *suffix)
   return 0;
 }
 
+int vg_format_is_cad(const char *path)
+{
+  const struct format *f = find(path, without_gz(path));
+
+  return cad_kind(f) != VG_CAD_NONE;
+}
+
 int vg_format_holds_cells(const char *path)
 {
   const struct format *f = find(path, without_gz(path));
@@ -225,15 +247,14 @@ int vg_format_holds_cells(const char *path)
 
 vg_status vg_format_unknown(const char *path, struct vg_error *err)
 {
-  static const char *const cad[] = { "stp", "step", "igs", "iges", "brep",
-                                     "x_t", "x_b", "catpart", "sldprt" };
+  static const char *const native[] = { "x_t", "x_b", "catpart", "sldprt",
+                                        "prt", "jt" };
   const struct format *f = find(path, without_gz(path));
 
-  for (size_t i = 0; i < sizeof cad / sizeof *cad; i++)
-    if (ends_in(path, without_gz(path), cad[i]))
-      return vg_fail(err, VG_ERR_FORMAT, "%s: this is CAD geometry; mesh its "
-                     "surface first, as 'gmsh -2 FILE -o NAME.stl' does, and "
-                     "give the triangles; read are %s", path,
+  for (size_t i = 0; i < sizeof native / sizeof *native; i++)
+    if (ends_in(path, without_gz(path), native[i]))
+      return vg_fail(err, VG_ERR_FORMAT, "%s: this is CAD geometry of one "
+                     "system; export it as STEP or IGES; read are %s", path,
                      vg_format_list());
   return vg_fail(err, VG_ERR_FORMAT, "%s: %s; known are %s", path,
                  f ? "this format is written only"
@@ -244,10 +265,12 @@ static vg_status read_by_name(const char *path, struct vg_mesh *out,
                               struct vg_read_info *info, struct vg_error *err)
 {
   const struct format *f = find(path, without_gz(path));
+  enum vg_cad_kind kind = cad_kind(f);
   vg_status st;
 
-  if (!f || !f->read) return vg_format_unknown(path, err);
-  st = f->read(path, out, &info->turned, err);
+  if (!f || (!f->read && !kind)) return vg_format_unknown(path, err);
+  st = kind ? vg_cad_read(path, kind, info->cad, out, err)
+            : f->read(path, out, &info->turned, err);
   if (st < 0) return st;
   info->format = f->suffix;
   info->n_cell = out->n_tet + out->n_pyr + out->n_pri + out->n_hex;
@@ -284,7 +307,7 @@ done:
 vg_status vg_mesh_read(const char *path, struct vg_mesh *out,
                        struct vg_read_info *info, struct vg_error *err)
 {
-  struct vg_read_info found = {0};
+  struct vg_read_info found = {.cad = info ? info->cad : NULL};
   struct vg_mesh m = VG_MESH_INIT;
   vg_status st;
 
@@ -300,7 +323,7 @@ done:
 vg_status vg_surface_read(const char *path, struct vg_mesh *out,
                           struct vg_read_info *info, struct vg_error *err)
 {
-  struct vg_read_info found = {0};
+  struct vg_read_info found = {.cad = info ? info->cad : NULL};
   struct vg_mesh m = VG_MESH_INIT;
   vg_status st;
 

@@ -1,19 +1,22 @@
 /* io/mesh/format.h: the table of formats. Names decide, upper or lower case, a
  * ".gz" at the end aside: .stl .tri .triq .obj .mesh .meshb .ugrid (and
- * .b8.ugrid, ... , io/mesh/ugrid.h) .cogsg .front .surf are read; .su2, .vtu and
- * .openfoam (a folder, io/mesh/foam.h) are written only, .front, .triq and
- * .surf are read only. */
+ * .b8.ugrid, ... , io/mesh/ugrid.h) .cogsg .front .surf and CAD (.step .stp
+ * .iges .igs .brep, io/cad/cad.h) are read; .su2, .vtu and .openfoam (a folder,
+ * io/mesh/foam.h) are written only, .front, .triq, .surf and CAD are read
+ * only. */
 #ifndef VG_IO_MESH_FORMAT_H
 #define VG_IO_MESH_FORMAT_H
 
 #include <stddef.h>
 
 #include "core/mesh/mesh.h"
+#include "io/cad/cad.h"
 #include "io/stream/convention.h"
 #include "io/vgrid/mapbc.h"
 
 /** What reading found out, for a report. */
 struct vg_read_info {
+  const struct vg_cad_options *cad; /* in: for CAD; NULL: its defaults */
   const char *format;             /* suffix of the table; static */
   struct vg_turned turned;        /* zero for formats without cells */
   size_t n_cell;                  /* cells in the file */
@@ -32,6 +35,9 @@ size_t vg_format_suffix_length(const char *name);
 
 /** 1 when a mesh can be written under this suffix (no leading dot). */
 int vg_format_can_write(const char *suffix);
+
+/** 1 when the suffix of path is that of a CAD file. */
+int vg_format_is_cad(const char *path);
 
 /** 1 when the file at `path` holds volume cells, by its header where the
  * format has one; 0 also when it cannot be read. */
@@ -52,7 +58,8 @@ vg_status vg_format_read(const char *path, struct vg_mesh *out,
                          struct vg_error *err);
 
 /** As vg_format_read; conditions and names from STEM.mapbc where that stands
- * beside the file. info may be NULL. */
+ * beside the file. info: what is asked of CAD goes in, the rest comes out; may
+ * be NULL. */
 vg_status vg_mesh_read(const char *path, struct vg_mesh *out,
                        struct vg_read_info *info, struct vg_error *err);
 

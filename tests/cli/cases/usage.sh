@@ -131,11 +131,11 @@ else
 fi
 
 # What is no surface, and what is no folder.
-: >wing.step
+: >wing.x_t
 for command in check mesh; do
-  vanguard $command -q wing.step
+  vanguard $command -q wing.x_t
   exits 1
-  says err "wing.step: this is CAD geometry; mesh its surface first"
+  says err "wing.x_t: this is CAD geometry of one system; export it as STEP"
 done
 : >wing.txt
 vanguard mesh -q wing.txt

@@ -1,0 +1,24 @@
+# CGAL, for wraps of dirty surfaces: optional, headers only, with GMP and MPFR.
+find_path(VG_CGAL_INCLUDE CGAL/alpha_wrap_3.h)
+find_library(VG_GMP gmp)
+find_library(VG_MPFR mpfr)
+mark_as_advanced(VG_CGAL_INCLUDE VG_GMP VG_MPFR)
+if(VG_CGAL_INCLUDE AND VG_GMP AND VG_MPFR)
+  set(VG_CGAL_FOUND ON)
+else()
+  set(VG_CGAL_FOUND OFF)
+endif()
+option(VG_WRAP "Wrap dirty surfaces by CGAL" ${VG_CGAL_FOUND})
+if(VG_WRAP AND NOT VG_CGAL_FOUND)
+  message(FATAL_ERROR "VG_WRAP: CGAL was not found; install libcgal-dev, or set "
+    "VG_WRAP to OFF")
+elseif(VG_WRAP)
+  # Its intervals change the direction of rounding; its checks would print.
+  set_source_files_properties(core/wrap/wrap_cgal.cpp PROPERTIES
+    COMPILE_DEFINITIONS "VG_CGAL;NDEBUG" COMPILE_OPTIONS -frounding-math)
+  target_include_directories(vg_core_wrap SYSTEM PRIVATE ${VG_CGAL_INCLUDE})
+  set(VG_WRAP_LIBRARIES ${VG_GMP} ${VG_MPFR})
+  target_link_libraries(vg_core_wrap PUBLIC ${VG_WRAP_LIBRARIES})
+else()
+  message(STATUS "Wraps: none, CGAL was not found or is not wanted")
+endif()

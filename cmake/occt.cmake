@@ -1,0 +1,40 @@
+# Open CASCADE, for CAD files: optional. What uses it is a library of its own,
+# which child processes load when there is CAD to read (io/cad/cad.h): nobody
+# else has to load its seventy libraries.
+find_path(VG_OCCT_INCLUDE STEPCAFControl_Reader.hxx PATH_SUFFIXES opencascade)
+set(occt)
+foreach(part XDESTEP XDEIGES STEP IGES XSBase XCAF LCAF CDF Mesh ShHealing TopAlgo
+    GeomAlgo GeomBase BRep G3d G2d Math ernel)
+  find_library(VG_OCCT_${part} TK${part})
+  mark_as_advanced(VG_OCCT_${part})
+  list(APPEND occt ${VG_OCCT_${part}})
+endforeach()
+if(VG_OCCT_INCLUDE AND NOT occt MATCHES NOTFOUND)
+  set(VG_OCCT_FOUND ON)
+else()
+  set(VG_OCCT_FOUND OFF)
+endif()
+option(VG_CAD "Read STEP, IGES and BREP by Open CASCADE" ${VG_OCCT_FOUND})
+set_target_properties(vg_io_occt PROPERTIES EXCLUDE_FROM_ALL ON)
+if(VG_CAD AND NOT VG_OCCT_FOUND)
+  message(FATAL_ERROR "VG_CAD: Open CASCADE was not found; install "
+    "libocct-data-exchange-dev and libocct-ocaf-dev, or set VG_CAD to OFF")
+elseif(VG_CAD)
+  set(VG_CAD_LIBRARY libvanguard-cad.so.0)
+  target_compile_definitions(vg_io_cad PRIVATE
+    VG_CAD_LIBRARY="${VG_CAD_LIBRARY}")
+  target_include_directories(vg_io_occt SYSTEM PRIVATE ${VG_OCCT_INCLUDE})
+else()
+  message(STATUS "CAD files: not read, Open CASCADE was not found or is not "
+    "wanted")
+endif()
+target_link_libraries(vg_io_cad PUBLIC ${CMAKE_DL_LIBS})
+
+# The library, beside libvanguard.
+function(vg_cad_library)
+  add_library(vanguard-cad MODULE $<TARGET_OBJECTS:vg_io_occt>)
+  target_link_libraries(vanguard-cad PRIVATE ${occt} Threads::Threads)
+  set_target_properties(vanguard-cad PROPERTIES PREFIX lib SUFFIX .so.0
+    LINKER_LANGUAGE CXX LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
+  add_dependencies(vanguard vanguard-cad)
+endfunction()

@@ -1,0 +1,453 @@
+#define _GNU_SOURCE
+#include "io/cad/cad.h"
+
+#include <dlfcn.h>
+#include <poll.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/child.h"
+#include "base/clock.h"
+#include "base/memory.h"
+#include "io/cad/wire.h"
+#include "io/stream/convention.h"
+
+#define POLL_MS 100
+#define TEXT_MAX 2048        /* of a message from the child */
+
+struct vg_cad {
+  struct vg_child child;
+  int is_open, has_model;
+  char stage[80];            /* what it is doing */
+};
+
+void vg_cad_surface_release(struct vg_cad_surface *s)
+{
+  vg_mesh_release(&s->mesh);
+  free(s->tri_face);
+  free(s->segment);
+  free(s->segment_curve);
+  memset(s, 0, sizeof *s);
+}
+
+int vg_cad_is_built(void)
+{
+#ifdef VG_CAD_LIBRARY
+  return 1;
+#else
+  return 0;
+#endif
+}
+
+/* --- in the child -------------------------------------------------------- */
+
+static void serve(int fd)
+{
+#ifdef VG_CAD_LIBRARY
+  const struct vg_cad_wire wire = { vg_child_put, vg_child_get };
+  struct vg_cad_tell gone = { VG_CAD_TELL_FAIL, VG_ERR_UNSUPPORTED, 0 };
+  void *library = dlopen(VG_CAD_LIBRARY, RTLD_NOW | RTLD_LOCAL), *at;
+  const char *why = library ? NULL : dlerror();
+  vg_occt_entry *entry;
+
+  at = library ? dlsym(library, VG_OCCT_ENTRY) : NULL;
+  if (at) {
+    memcpy(&entry, &at, sizeof entry);
+    entry(fd, &wire);
+  }
+  if (!why) why = VG_CAD_LIBRARY " is of another build";
+  gone.n = strlen(why) < TEXT_MAX ? strlen(why) : TEXT_MAX - 1;
+  vg_child_put(fd, &gone, sizeof gone);
+  vg_child_put(fd, why, gone.n);
+#endif
+  close(fd);
+  _exit(1);
+}
+
+/* --- its life ------------------------------------------------------------ */
+
+static void end_child(struct vg_cad *c)
+{
+  if (c->is_open) vg_child_close(&c->child);
+  c->is_open = c->has_model = 0;
+}
+
+static vg_status start_child(struct vg_cad *c, struct vg_error *err)
+{
+  if (c->is_open) return VG_OK;
+  if (vg_child_open(serve, &c->child) < 0)
+    return vg_fail_memory(err, "a process for Open CASCADE");
+  c->is_open = 1;
+  strcpy(c->stage, "starting");
+  return VG_OK;
+}
+
+vg_status vg_cad_open(struct vg_cad **out, struct vg_error *err)
+{
+  struct vg_cad *c;
+  vg_status st;
+
+  if (!vg_cad_is_built())
+    return vg_fail(err, VG_ERR_UNSUPPORTED, "this build of vanguard reads no "
+                   "CAD: install Open CASCADE (Debian's "
+                   "libocct-data-exchange-dev) and configure again, or mesh "
+                   "the surface elsewhere ('gmsh -2 FILE -o NAME.stl') and "
+                   "give the triangles");
+  c = vg_calloc(1, sizeof *c);
+  if (!c) return vg_fail_memory(err, "a CAD model");
+  st = start_child(c, err);
+  if (st < 0) free(c);
+  else *out = c;
+  return st;
+}
+
+void vg_cad_close(struct vg_cad *c)
+{
+  if (!c) return;
+  end_child(c);
+  free(c);
+}
+
+/* --- answers ------------------------------------------------------------- */
+
+/* What one question is about, while its answer is awaited. */
+struct call {
+  struct vg_cad *cad;
+  const char *path;
+  const struct vg_cad_options *o;
+  double start;
+};
+
+static vg_status gone(struct call *k, struct vg_error *err)
+{
+  char stage[sizeof k->cad->stage];
+
+  strcpy(stage, k->cad->stage);
+  end_child(k->cad);
+  return vg_fail(err, VG_ERR_GEOMETRY, "%s: Open CASCADE ended without an "
+                 "answer (a crash, or no memory left) while %s; the file may "
+                 "be damaged: export it again, or try another format (STEP, "
+                 "IGES, BREP)", k->path, stage);
+}
+
+/* Bytes to read, the end of the child, or an end to patience. */
+static vg_status await(struct call *k, struct vg_error *err)
+{
+  const struct vg_cad_options *o = k->o;
+  struct pollfd p = { .fd = k->cad->child.fd, .events = POLLIN };
+
+  do {
+    if (o && o->stop && o->stop(o->user)) {
+      end_child(k->cad);
+      return vg_fail(err, VG_ERR_IO, "%s: stopped while reading it", k->path);
+    }
+    if (o && o->seconds > 0 && vg_clock() - k->start > o->seconds) {
+      end_child(k->cad);
+      return vg_fail(err, VG_ERR_GEOMETRY, "%s: Open CASCADE was given up "
+                     "after %g s while %s (cad_seconds allows more; 0: no "
+                     "limit)", k->path, o->seconds, k->cad->stage);
+    }
+  } while (poll(&p, 1, POLL_MS) <= 0);
+  return VG_OK;
+}
+
+static vg_status take(struct call *k, void *data, size_t size,
+                      struct vg_error *err)
+{
+  return vg_child_get(k->cad->child.fd, data, size) ? VG_OK : gone(k, err);
+}
+
+static vg_status take_text(struct call *k, const struct vg_cad_tell *t,
+                           char *text, struct vg_error *err)
+{
+  vg_status st = t->n < TEXT_MAX ? VG_OK : gone(k, err);
+
+  if (st >= 0) st = take(k, text, t->n, err);
+  if (st >= 0) text[t->n] = 0;
+  return st;
+}
+
+/* The next answer that is neither a note nor a stage; a failure is one of
+ * ours. */
+static vg_status next(struct call *k, struct vg_cad_tell *t,
+                      struct vg_error *err)
+{
+  char text[TEXT_MAX];
+  vg_status st = VG_OK;
+
+  for (;;) {
+    VG_TRY(await(k, err));
+    VG_TRY(take(k, t, sizeof *t, err));
+    if (t->what > VG_CAD_TELL_FAIL) return VG_OK;
+    VG_TRY(take_text(k, t, text, err));
+    if (t->what == VG_CAD_TELL_NOTE) {
+      if (k->o && k->o->note) k->o->note(k->o->user, text);
+    } else if (t->what == VG_CAD_TELL_STAGE) {
+      snprintf(k->cad->stage, sizeof k->cad->stage, "%.79s", text);
+    } else {
+      /* it ended amid a question */
+      if (t->code == VG_ERR_MEMORY) end_child(k->cad);
+      return vg_fail(err, t->code < 0 && t->code >= VG_ERR_USAGE
+                            ? (vg_status)t->code : VG_ERR_GEOMETRY,
+                     "%s: %s", k->path, text);
+    }
+  }
+done:
+  return st;
+}
+
+static vg_status take_array(struct call *k, uint64_t n, size_t size, void *to,
+                            struct vg_error *err)
+{
+  void *a = n < UINT32_MAX ? vg_alloc(n, size) : NULL;
+  vg_status st;
+
+  if (!a) {
+    end_child(k->cad);
+    return vg_fail(err, VG_ERR_MEMORY, "%s: not enough memory for %llu items "
+                   "of its surface", k->path, (unsigned long long)n);
+  }
+  memcpy(to, &a, sizeof a);   /* the caller frees it, also on failure */
+  st = take(k, a, n * size, err);
+  return st;
+}
+
+static vg_status take_patches(struct call *k, uint64_t n, struct vg_mesh *m,
+                              struct vg_error *err)
+{
+  struct vg_cad_patch *from = NULL;
+  vg_status st = take_array(k, n, sizeof *from, &from, err);
+
+  if (st < 0) goto done;
+  m->patch = vg_calloc(n, sizeof *m->patch);
+  if (!m->patch) {
+    end_child(k->cad);
+    st = vg_fail_memory(err, "the patches");
+    goto done;
+  }
+  for (uint64_t i = 0; i < n; i++) {
+    struct vg_patch *to = &m->patch[i];
+
+    to->id = from[i].id;
+    to->bc = to->bc_fun3d = to->family = VG_BC_NONE;
+    memcpy(to->name, from[i].name, sizeof to->name - 1);
+  }
+  m->n_patch = n;
+done:
+  free(from);
+  return st;
+}
+
+/* A library that a damaged file has misled may have written anywhere. */
+static int is_sound(const struct vg_cad_surface *s)
+{
+  const struct vg_mesh *m = &s->mesh;
+  int good = 1;
+
+  for (size_t i = 0; i < m->n_tri; i++) {
+    for (int k = 0; k < 3; k++) good &= m->tri[i][k] < m->n_point;
+    good &= m->tri_patch[i] < m->n_patch;
+  }
+  for (size_t i = 0; i < s->n_segment; i++)
+    good &= s->segment[i][0] < m->n_point && s->segment[i][1] < m->n_point;
+  return good;
+}
+
+static vg_status take_surface(struct call *k, struct vg_cad_surface *s,
+                              struct vg_error *err)
+{
+  struct vg_mesh *m = &s->mesh;
+  struct vg_cad_counts n;
+  vg_status st;
+
+  VG_TRY(take(k, &n, sizeof n, err));
+  VG_TRY(take_array(k, n.n_point, sizeof *m->point, &m->point, err));
+  m->n_point = n.n_point;
+  VG_TRY(take_array(k, n.n_tri, sizeof *m->tri, &m->tri, err));
+  m->n_tri = n.n_tri;
+  VG_TRY(take_array(k, n.n_tri, sizeof *s->tri_face, &s->tri_face, err));
+  VG_TRY(take_array(k, n.n_tri, sizeof *m->tri_patch, &m->tri_patch, err));
+  VG_TRY(take_array(k, n.n_segment, sizeof *s->segment, &s->segment, err));
+  s->n_segment = n.n_segment;
+  VG_TRY(take_array(k, n.n_segment, sizeof *s->segment_curve,
+                    &s->segment_curve, err));
+  VG_TRY(take_patches(k, n.n_patch, m, err));
+  if (!is_sound(s)) {
+    st = gone(k, err);
+    goto done;
+  }
+  st = vg_check_points(k->path, m->n_point, m->point, err);
+done:
+  return st;
+}
+
+/* --- files --------------------------------------------------------------- */
+
+/* Standards say how these files begin and end: what is cut short is told
+ * apart from what is damaged, and needs no child. */
+static size_t trimmed(const struct vg_input *in)
+{
+  size_t n = in->size;
+
+  while (n && in->data[n - 1] <= ' ') n--;
+  return n;
+}
+
+/* The last line that is not blank; *end: behind it. */
+static const char *last_line(const struct vg_input *in, const char **end)
+{
+  const char *data = (const char *)in->data;
+  size_t n = trimmed(in), at = n;
+
+  while (at && data[at - 1] != '\n' && data[at - 1] != '\r') at--;
+  *end = data + n;
+  return data + at;
+}
+
+/* The shape of a BREP file: a line such as "+1 0", behind the '*' of its last
+ * part. */
+static int ends_brep(const struct vg_input *in)
+{
+  const char *data = (const char *)in->data, *end, *at = last_line(in, &end);
+  const char *before = at;
+
+  if (!strchr("+-io", *at) || memchr(at, '*', (size_t)(end - at))) return 0;
+  while (before > data && before[-1] <= ' ') before--;
+  return before > data && before[-1] == '*' &&
+         memchr(at, ' ', (size_t)(end - at));
+}
+
+static int is_whole(const struct vg_input *in, enum vg_cad_kind kind)
+{
+  static const char step[] = "END-ISO-10303-21;";
+  const char *end, *at = last_line(in, &end);
+  size_t n = strlen(step);
+
+  if (kind == VG_CAD_BREP) return ends_brep(in);
+  if (kind == VG_CAD_IGES) return end - at >= 73 && at[72] == 'T';
+  return trimmed(in) >= n && !memcmp(end - n, step, n);
+}
+
+static const struct { const char *word, *last; } frames[] = {
+  [VG_CAD_STEP] = { "ISO-10303-21", "\"END-ISO-10303-21;\"" },
+  [VG_CAD_IGES] = { "", "a line T (Terminate)" },
+  [VG_CAD_BREP] = { "CASCADE Topology V", "the number of its shape" },
+};
+
+static vg_status check_frame(const struct vg_input *in, enum vg_cad_kind kind,
+                             struct vg_error *err)
+{
+  const char *word = frames[kind].word;
+  size_t head = in->size < 4096 ? in->size : 4096;
+
+  if (*word && !memmem(in->data, head, word, strlen(word)))
+    return vg_fail(err, VG_ERR_FORMAT, "%s: no %s file: \"%s\" should stand "
+                   "near its beginning", in->path,
+                   kind == VG_CAD_STEP ? "STEP" : "BREP", word);
+  if (kind == VG_CAD_IGES &&
+      (in->size < 80 || in->data[72] != 'S'))
+    return vg_fail(err, VG_ERR_FORMAT, "%s: no IGES file: column 73 of its "
+                   "first line should be S (Start)", in->path);
+  if (is_whole(in, kind)) return VG_OK;
+  return vg_fail(err, VG_ERR_FORMAT, "%s: truncated: it does not end in %s, as "
+                 "it must; export it again", in->path, frames[kind].last);
+}
+
+/* Where it does not listen it may have said why. */
+static void send_file(struct call *k, const struct vg_input *in,
+                      enum vg_cad_kind kind)
+{
+  const struct vg_cad_options *o = k->o;
+  const struct vg_cad_ask ask = { VG_CAD_ASK_READ, (uint32_t)kind, o->unit,
+    o->patches, in->size, o->tolerance, o->chord, o->angle };
+
+  if (vg_child_put(k->cad->child.fd, &ask, sizeof ask))
+    vg_child_put(k->cad->child.fd, in->data, in->size);
+}
+
+vg_status vg_cad_parse(struct vg_cad *c, struct vg_input *in,
+                       enum vg_cad_kind kind, const struct vg_cad_options *o,
+                       struct vg_cad_surface *out, struct vg_error *err)
+{
+  struct vg_cad_surface s = VG_CAD_SURFACE_INIT;
+  struct call k = { c, in->path, o, vg_clock() };
+  struct vg_cad_tell t;
+  vg_status st;
+
+  if (kind <= VG_CAD_NONE || kind > VG_CAD_BREP)
+    return vg_fail(err, VG_ERR_INPUT, "%s: %d is no kind of CAD file",
+                   in->path, (int)kind);
+  VG_TRY(check_frame(in, kind, err));
+  VG_TRY(start_child(c, err));
+  c->has_model = 0;
+  send_file(&k, in, kind);
+  VG_TRY(next(&k, &t, err));
+  if (t.what != VG_CAD_TELL_SURFACE) st = gone(&k, err);
+  if (st >= 0) VG_TRY(take_surface(&k, &s, err));
+  c->has_model = st >= 0;
+  if (st >= 0) {
+    *out = s;
+    return VG_OK;
+  }
+done:
+  vg_cad_surface_release(&s);
+  return st;
+}
+
+vg_status vg_cad_read(const char *path, enum vg_cad_kind kind,
+                      const struct vg_cad_options *options,
+                      struct vg_mesh *out, struct vg_error *err)
+{
+  const struct vg_cad_options plain = VG_CAD_OPTIONS_INIT;
+  struct vg_cad_surface s = VG_CAD_SURFACE_INIT;
+  struct vg_input in = VG_INPUT_INIT;
+  struct vg_cad *c = NULL;
+  vg_status st;
+
+  VG_TRY(vg_input_open(path, &in, err));
+  VG_TRY(vg_cad_open(&c, err));
+  VG_TRY(vg_cad_parse(c, &in, kind, options ? options : &plain, &s, err));
+  vg_mesh_move(out, &s.mesh);
+done:
+  vg_cad_close(c);
+  vg_cad_surface_release(&s);
+  vg_input_release(&in);
+  return st;
+}
+
+/* --- points -------------------------------------------------------------- */
+
+vg_status vg_cad_project(struct vg_cad *c, enum vg_cad_on on, size_t n,
+                         const uint32_t *number, double (*point)[3],
+                         double *distance, struct vg_error *err)
+{
+  const struct vg_cad_ask ask = { .n = n,
+    .what = on == VG_CAD_ON_FACES ? VG_CAD_ASK_FACES : VG_CAD_ASK_CURVES };
+  struct call k = { c, "the CAD model", NULL, 0 };
+  double (*to)[3] = NULL, *far = NULL;
+  struct vg_cad_tell t;
+  vg_status st = VG_OK;
+
+  if (!c->has_model)
+    return vg_fail(err, VG_ERR_INPUT, "no CAD model was read");
+  if (!n) return VG_OK;
+  if (!vg_child_put(c->child.fd, &ask, sizeof ask) ||
+      !vg_child_put(c->child.fd, number, n * sizeof *number) ||
+      !vg_child_put(c->child.fd, point, n * sizeof *point))
+    return gone(&k, err);
+  VG_TRY(next(&k, &t, err));
+  if (t.what != VG_CAD_TELL_POINTS || t.n != n) {
+    st = gone(&k, err);
+    goto done;
+  }
+  VG_TRY(take_array(&k, n, sizeof *to, &to, err));
+  VG_TRY(take_array(&k, n, sizeof *far, &far, err));
+  memcpy(point, to, n * sizeof *point);
+  if (distance) memcpy(distance, far, n * sizeof *distance);
+done:
+  free(to);
+  free(far);
+  return st;
+}

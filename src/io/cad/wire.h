@@ -1,0 +1,57 @@
+/* io/cad/wire.h: what goes over the socket between io/cad and io/occt, in the
+ * byte order of the machine. */
+#ifndef VG_IO_CAD_WIRE_H
+#define VG_IO_CAD_WIRE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A question, with n bytes of a file, or n numbers (uint32_t) and n points. */
+enum { VG_CAD_ASK_READ, VG_CAD_ASK_FACES, VG_CAD_ASK_CURVES };
+struct vg_cad_ask {
+  uint32_t what, kind;
+  int32_t unit, patches;
+  uint64_t n;
+  double tolerance, chord, angle;
+};
+
+/* Answers: any number of notes and stages (n characters), then a failure (n
+ * characters; code: a vg_status), or a surface (n: 1, with its counts and
+ * arrays), or points (n, and n distances). */
+enum { VG_CAD_TELL_NOTE, VG_CAD_TELL_STAGE, VG_CAD_TELL_FAIL,
+       VG_CAD_TELL_SURFACE, VG_CAD_TELL_POINTS };
+struct vg_cad_tell {
+  int32_t what, code;
+  uint64_t n;
+};
+
+/* Before, in this order: points [][3], triangles [][3], faces of triangles,
+ * patches of triangles, segments [][2], curves of segments, patches. */
+struct vg_cad_counts {
+  uint64_t n_point, n_tri, n_segment, n_patch;
+};
+
+struct vg_cad_patch {
+  int32_t id;
+  char name[80];             /* ends in 0 */
+};
+
+/* The adapter's door, found by its name in its library. It serves questions
+ * until the socket is shut, and does not return. put and get: vg_child_put,
+ * vg_child_get. */
+struct vg_cad_wire {
+  int (*put)(int fd, const void *data, size_t size);
+  int (*get)(int fd, void *data, size_t size);
+};
+#define VG_OCCT_ENTRY "vg_occt_serve"
+typedef void vg_occt_entry(int fd, const struct vg_cad_wire *wire);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,123 @@
+/* io/occt/occt_parts.h: a CAD file in Open CASCADE's hands, in the child
+ * process of io/cad. Everything here may throw: Failure, or Open CASCADE's
+ * own. */
+#ifndef VG_IO_OCCT_OCCT_PARTS_H
+#define VG_IO_OCCT_OCCT_PARTS_H
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <TopTools_IndexedMapOfShape.hxx>
+#include <TopoDS_Compound.hxx>
+#include <TopoDS_Edge.hxx>
+#include <TopoDS_Face.hxx>
+#include <gp_Pnt.hxx>
+
+#include "base/status.h"
+#include "io/cad/wire.h"
+
+namespace vg_occt {
+
+/** What ends a job, with a message for a person; the file's name is added by
+ * the other end. */
+struct Failure {
+  vg_status code;
+  std::string text;
+};
+
+std::string format(const char *text, ...)
+    __attribute__((format(printf, 1, 2)));
+
+/** "(x, y, z)". */
+std::string place(const gp_Pnt &p);
+
+/** The way back to the parent. */
+class Talk {
+public:
+  Talk(int fd, const vg_cad_wire *wire) : fd_(fd), wire_(wire) {}
+  void note(const std::string &text) const { say(VG_CAD_TELL_NOTE, 0, text); }
+  void stage(const std::string &text) const { say(VG_CAD_TELL_STAGE, 0, text); }
+  void fail(const Failure &f) const { say(VG_CAD_TELL_FAIL, f.code, f.text); }
+  void put(const void *data, size_t size) const;
+  bool get(void *data, size_t size) const;
+
+private:
+  void say(int what, int code, std::string text) const;
+  int fd_;
+  const vg_cad_wire *wire_;
+};
+
+/** A face of the file. Words are "" where the file has none. */
+struct Face {
+  uint32_t number;           /* in the file, from 1 */
+  TopoDS_Face shape;         /* oriented as in its solid; null: dropped */
+  std::string name, colour, layer, part;
+};
+
+struct Model {
+  std::vector<Face> faces;
+  std::vector<TopoDS_Edge> curves;     /* [number - 1], when triangulated */
+  double diagonal = 0;       /* of the box around all */
+};
+
+/** Faces with names, lengths in the unit asked for.
+ * @param path  the file, also when it has no name of its own */
+void read(const vg_cad_ask &ask, const std::string &path, Model &model,
+          const Talk &talk);
+
+/** All faces as one shape, without those that were dropped. */
+TopoDS_Compound together(const Model &model);
+
+/** Let Open CASCADE mend all faces (curves in the plane of parameters that are
+ * missing, order and gaps of rims). Faces keep their numbers. */
+void mend(Model &model, const Talk &talk);
+
+/** Mend faces where curves in the plane of parameters are missing, and measure
+ * the model. */
+void complete(Model &model, const Talk &talk);
+
+/** Drop faces that repeat others or have no area; sew open edges. */
+void heal(const vg_cad_ask &ask, Model &model, const Talk &talk);
+
+/** As io/cad/wire.h sends it. */
+struct Surface {
+  std::vector<double> point;
+  std::vector<uint32_t> tri, face, patch, segment, curve;
+  std::vector<vg_cad_patch> patches;
+};
+
+/** Triangles; faces that could not be are noted. */
+void triangulate(const vg_cad_ask &ask, Model &model, Surface &out,
+                 const Talk &talk);
+
+/** Triangles without area, from number `from` on, swapped away where that
+ * moves nothing. O(n log n). */
+void swap_caps(Surface &s, size_t from);
+
+/** The nearest points of a face, again and again. */
+class Projector {
+public:
+  explicit Projector(const TopoDS_Face &face);
+  ~Projector();
+  gp_Pnt nearest(const gp_Pnt &p);
+
+private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/** The nearest point of a curve, its ends included. */
+gp_Pnt nearest_on_curve(const TopoDS_Edge &edge, const gp_Pnt &p);
+
+/** A point of a face, for messages. */
+gp_Pnt point_of(const TopoDS_Face &face);
+
+/** Points inside a face, at most n * n, over its range of parameters. */
+std::vector<gp_Pnt> samples(const TopoDS_Face &face, int n);
+
+}  // namespace vg_occt
+
+#endif

@@ -1,0 +1,424 @@
+/* STEP, IGES and BREP into faces with their words. */
+#include "io/occt/occt_parts.h"
+
+#include <cmath>
+
+#include <BRepTools.hxx>
+#include <BRep_Builder.hxx>
+#include <IGESCAFControl_Reader.hxx>
+#include <IGESData_IGESEntity.hxx>
+#include <IGESData_IGESModel.hxx>
+#include <Interface_CheckIterator.hxx>
+#include <Interface_Static.hxx>
+#include <NCollection_DataMap.hxx>
+#include <Quantity_Color.hxx>
+#include <STEPCAFControl_Reader.hxx>
+#include <STEPControl_Reader.hxx>
+#include <StepRepr_RepresentationItem.hxx>
+#include <TColStd_HSequenceOfExtendedString.hxx>
+#include <TColStd_SequenceOfAsciiString.hxx>
+#include <TCollection_HAsciiString.hxx>
+#include <TDF_LabelSequence.hxx>
+#include <TDataStd_Name.hxx>
+#include <TDocStd_Document.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopTools_ShapeMapHasher.hxx>
+#include <TopoDS.hxx>
+#include <TransferBRep.hxx>
+#include <Transfer_TransientProcess.hxx>
+#include <XCAFApp_Application.hxx>
+#include <XCAFDoc_ColorTool.hxx>
+#include <XCAFDoc_DocumentTool.hxx>
+#include <XCAFDoc_LayerTool.hxx>
+#include <XCAFDoc_ShapeTool.hxx>
+#include <XSControl_TransferReader.hxx>
+#include <XSControl_WorkSession.hxx>
+
+namespace vg_occt {
+
+namespace {
+
+struct Unit {
+  const char *word, *open_cascade;   /* of a report; of Interface_Static */
+  double mm;
+};
+/* In the order of enum vg_cad_unit, without the first. */
+const Unit units[] = {{"mm", "MM", 1},           {"cm", "CM", 10},
+                      {"m", "M", 1000},          {"km", "KM", 1e6},
+                      {"inch", "INCH", 25.4},    {"foot", "FT", 304.8}};
+const int n_unit = sizeof units / sizeof *units;
+
+TopoDS_Shape bare(const TopoDS_Shape &s)
+{
+  return s.Located(TopLoc_Location());
+}
+
+/* Systems write these where there is no name. */
+std::string cleaned(std::string name)
+{
+  while (!name.empty() && static_cast<unsigned char>(name.back()) <= ' ')
+    name.pop_back();
+  name.erase(0, name.find_first_not_of(" \t"));
+  return name == "NONE" || name == "None" || name.compare(0, 3, "=>[") == 0
+             ? "" : name;
+}
+
+std::string text_of(const TCollection_ExtendedString &s)
+{
+  std::vector<char> utf8(static_cast<size_t>(s.LengthOfCString()) + 1);
+  Standard_PCharacter to = utf8.data();
+
+  s.ToUTF8CString(to);
+  return cleaned(utf8.data());
+}
+
+std::string name_of(const Handle(Standard_Transient) &entity)
+{
+  Handle(StepRepr_RepresentationItem) item =
+      Handle(StepRepr_RepresentationItem)::DownCast(entity);
+  Handle(IGESData_IGESEntity) iges =
+      Handle(IGESData_IGESEntity)::DownCast(entity);
+  Handle(TCollection_HAsciiString) name;
+
+  if (!item.IsNull()) name = item->Name();
+  else if (!iges.IsNull() && iges->HasName()) name = iges->NameValue();
+  return name.IsNull() ? "" : cleaned(name->ToCString());
+}
+
+/* --- units --------------------------------------------------------------- */
+
+/* The unit to work in. `given`: millimetres of the file's own, 0: it has
+ * none. */
+const Unit &choose_unit(const vg_cad_ask &ask, double given, const char *called,
+                        const Talk &talk)
+{
+  double own = given > 0 ? given : 1;
+  const Unit *to = nullptr;
+
+  for (const Unit &u : units)
+    if (std::fabs(u.mm - own) < 1e-6 * own) to = &u;
+  if (ask.unit > 0 && ask.unit <= n_unit) to = &units[ask.unit - 1];
+  if (!to) {
+    talk.note(format("lengths are in %s, %.9g mm each; the surface is in mm",
+                     called, own));
+    return units[0];
+  }
+  if (!(given > 0))
+    talk.note(format("the file names no unit of length; millimetres were "
+                     "assumed, the surface is in %s", to->word));
+  else if (std::fabs(to->mm - own) < 1e-6 * own)
+    talk.note(format("lengths are in %s, the file's unit", to->word));
+  else
+    talk.note(format("lengths of the file, in %s (%.9g mm), were converted to "
+                     "%s", called, own, to->word));
+  return *to;
+}
+
+double step_unit(STEPControl_Reader &reader, std::string &called)
+{
+  static const struct { const char *word; double metre; } prefix[] = {
+      {"milli", 1}, {"centi", 10}, {"deci", 100}, {"kilo", 1e6},
+      {"micro", 1e-3}, {"nano", 1e-6}};
+  TColStd_SequenceOfAsciiString length, angle, solid;
+
+  reader.FileUnits(length, angle, solid);
+  if (length.IsEmpty()) return 0;
+  TCollection_AsciiString first = length.First();
+  first.LowerCase();
+  called = first.ToCString();
+  if (called.find("inch") != std::string::npos) return 25.4;
+  if (called.find("foot") != std::string::npos) return 304.8;
+  if (called.find("met") == std::string::npos) return 0;
+  for (const auto &p : prefix)
+    if (called.find(p.word) != std::string::npos) return p.metre;
+  return 1000;
+}
+
+/* --- what a document says of shapes -------------------------------------- */
+
+struct Said {
+  std::string name, colour, layer;
+};
+
+/* Of all shapes at once, without their places in assemblies: looking each one
+ * up in the document takes time that grows with its square. */
+class Words {
+public:
+  Words(const Handle(TDocStd_Document) &doc,
+        const Handle(XSControl_WorkSession) &session)
+      : shapes_(XCAFDoc_DocumentTool::ShapeTool(doc->Main())),
+        colours_(XCAFDoc_DocumentTool::ColorTool(doc->Main())),
+        layers_(XCAFDoc_DocumentTool::LayerTool(doc->Main()))
+  {
+    Handle(Interface_InterfaceModel) all = session->Model();
+    Handle(Transfer_TransientProcess) done =
+        session->TransferReader()->TransientProcess();
+
+    for (int k = 1; k <= all->NbEntities(); k++) {
+      Handle(Standard_Transient) entity = all->Value(k);
+      std::string name = name_of(entity);
+
+      if (!name.empty()) bind(TransferBRep::ShapeResult(done, entity), name);
+    }
+    take_document();
+  }
+
+  /* Null where nothing is said. */
+  const Said *of(const TopoDS_Shape &s) const { return said_.Seek(bare(s)); }
+
+  TDF_LabelSequence roots() const
+  {
+    TDF_LabelSequence list;
+
+    shapes_->GetFreeShapes(list);
+    return list;
+  }
+
+private:
+  Said *at(const TopoDS_Shape &s)
+  {
+    if (!said_.IsBound(bare(s))) said_.Bind(bare(s), Said());
+    return said_.ChangeSeek(bare(s));
+  }
+
+  void set_name(const TopoDS_Shape &s, const std::string &name)
+  {
+    Said *to = at(s);
+
+    if (to->name.empty()) to->name = name;
+  }
+
+  /* What one entity made of several faces has the name of all of them. */
+  void bind(const TopoDS_Shape &s, const std::string &name)
+  {
+    if (s.IsNull()) return;
+    set_name(s, name);
+    if (s.ShapeType() != TopAbs_SHELL) return;
+    for (TopoDS_Iterator i(bare(s)); i.More(); i.Next())
+      if (i.Value().ShapeType() == TopAbs_FACE) set_name(i.Value(), name);
+  }
+
+  void take_document()
+  {
+    TDF_LabelSequence list;
+
+    shapes_->GetShapes(list);
+    for (int k = 1; k <= list.Length(); k++) {
+      TDF_LabelSequence parts;
+
+      take_label(list.Value(k));
+      XCAFDoc_ShapeTool::GetSubShapes(list.Value(k), parts);
+      for (int j = 1; j <= parts.Length(); j++) take_label(parts.Value(j));
+    }
+  }
+
+  void take_label(const TDF_Label &label)
+  {
+    static const XCAFDoc_ColorType kinds[] = {XCAFDoc_ColorSurf,
+                                              XCAFDoc_ColorGen};
+    Handle(TColStd_HSequenceOfExtendedString) list;
+    Handle(TDataStd_Name) text;
+    Quantity_Color c;
+    TopoDS_Shape s;
+
+    if (!XCAFDoc_ShapeTool::GetShape(label, s) || s.IsNull()) return;
+    Said *to = at(s);
+    if (label.FindAttribute(TDataStd_Name::GetID(), text))
+      set_name(s, text_of(text->Get()));
+    for (XCAFDoc_ColorType kind : kinds)
+      if (to->colour.empty() && colours_->GetColor(label, kind, c))
+        to->colour = Quantity_Color::ColorToHex(c).ToCString();
+    if (layers_->GetLayers(label, list) && !list.IsNull() && !list->IsEmpty())
+      to->layer = text_of(list->First());
+  }
+
+  Handle(XCAFDoc_ShapeTool) shapes_;
+  Handle(XCAFDoc_ColorTool) colours_;
+  Handle(XCAFDoc_LayerTool) layers_;
+  NCollection_DataMap<TopoDS_Shape, Said, TopTools_ShapeMapHasher> said_;
+};
+
+/* Faces below a shape, in its order, each once; solids hand their words down
+ * to faces that have none. */
+class Collector {
+public:
+  Collector(Model &model, const Words *words) : model_(model), words_(words) {}
+
+  void add(const TopoDS_Shape &s, Face from)
+  {
+    if (words_) inherit(s, from);
+    if (s.ShapeType() == TopAbs_FACE) {
+      if (seen_.Contains(s)) return;
+      seen_.Add(s);
+      from.number = static_cast<uint32_t>(seen_.Extent());
+      from.shape = TopoDS::Face(s);
+      model_.faces.push_back(from);
+    } else if (s.ShapeType() < TopAbs_FACE) {
+      for (TopoDS_Iterator i(s); i.More(); i.Next()) add(i.Value(), from);
+    }
+  }
+
+private:
+  void inherit(const TopoDS_Shape &s, Face &from) const
+  {
+    const Said *said = words_->of(s);
+
+    if (!said) return;
+    if (s.ShapeType() == TopAbs_FACE) from.name = said->name;
+    else if (!said->name.empty()) from.part = said->name;
+    if (!said->colour.empty()) from.colour = said->colour;
+    if (!said->layer.empty()) from.layer = said->layer;
+  }
+
+  Model &model_;
+  const Words *words_;
+  TopTools_IndexedMapOfShape seen_;
+};
+
+Handle(TDocStd_Document) new_document()
+{
+  Handle(TDocStd_Document) doc;
+
+  XCAFDoc_ShapeTool::SetAutoNaming(Standard_False);   /* as in "COMPOUND" */
+  XCAFApp_Application::GetApplication()->NewDocument("BinXCAF", doc);
+  return doc;
+}
+
+void collect(const Words &words, Model &model)
+{
+  Collector to(model, &words);
+  TDF_LabelSequence roots = words.roots();
+
+  for (int k = 1; k <= roots.Length(); k++) {
+    TopoDS_Shape s;
+
+    if (XCAFDoc_ShapeTool::GetShape(roots.Value(k), s) && !s.IsNull())
+      to.add(s, Face());
+  }
+}
+
+/* Entities that Open CASCADE could not make shapes of. */
+void note_failures(const Handle(XSControl_WorkSession) &session,
+                   const Talk &talk)
+{
+  Interface_CheckIterator all =
+      session->TransferReader()->TransientProcess()->CheckList(Standard_True);
+  Handle(Interface_InterfaceModel) model = session->Model();
+  std::string first;
+  size_t n = 0;
+
+  for (all.Start(); all.More(); all.Next()) {
+    if (!all.Value()->HasFailed() || all.Number() <= 0) continue;
+    if (!n++)
+      first = format("%s: %s",
+                     model->StringLabel(model->Value(all.Number()))
+                         ->ToCString(), all.Value()->CFail(1));
+  }
+  if (n)
+    talk.note(format("%zu entities of the file could not be translated, the "
+                     "first is %.300s", n, first.c_str()));
+}
+
+void require(IFSelect_ReturnStatus got, const char *kind)
+{
+  if (got == IFSelect_RetDone) return;
+  throw Failure{VG_ERR_FORMAT,
+                format("Open CASCADE cannot read this %s file (%s); it is "
+                       "damaged or none: export it again", kind,
+                       got == IFSelect_RetVoid ? "nothing is in it"
+                                               : "its syntax is wrong")};
+}
+
+/* --- formats ------------------------------------------------------------- */
+
+void read_step(const vg_cad_ask &ask, const std::string &path, Model &model,
+               const Talk &talk)
+{
+  STEPCAFControl_Reader reader;
+  Handle(TDocStd_Document) doc = new_document();
+  std::string called = "a unit of its own";
+  double given;
+
+  reader.SetNameMode(Standard_True);
+  reader.SetColorMode(Standard_True);
+  reader.SetLayerMode(Standard_True);
+  require(reader.ReadFile(path.c_str()), "STEP");
+  given = step_unit(reader.ChangeReader(), called);
+  Interface_Static::SetCVal(
+      "xstep.cascade.unit",
+      choose_unit(ask, given, called.c_str(), talk).open_cascade);
+  talk.stage("translating its entities");
+  if (!reader.Transfer(doc))
+    throw Failure{VG_ERR_INPUT, "no shape could be made of this STEP file"};
+  note_failures(reader.Reader().WS(), talk);
+  collect(Words(doc, reader.Reader().WS()), model);
+}
+
+void read_iges(const vg_cad_ask &ask, const std::string &path, Model &model,
+               const Talk &talk)
+{
+  IGESCAFControl_Reader reader;
+  Handle(TDocStd_Document) doc = new_document();
+  Handle(IGESData_IGESModel) file;
+  double given = 0;
+
+  reader.SetNameMode(Standard_True);
+  reader.SetColorMode(Standard_True);
+  reader.SetLayerMode(Standard_True);
+  require(reader.ReadFile(path.c_str()), "IGES");
+  file = reader.IGESModel();
+  if (!file.IsNull()) {
+    given = file->GlobalSection().UnitValue();
+    const Unit &to = choose_unit(ask, given, "its unit", talk);
+    Interface_Static::SetCVal("xstep.cascade.unit", to.open_cascade);
+    file->ChangeGlobalSection().SetCascadeUnit(to.mm);
+  }
+  talk.stage("translating its entities");
+  if (!reader.Transfer(doc))
+    throw Failure{VG_ERR_INPUT, "no shape could be made of this IGES file"};
+  note_failures(reader.WS(), talk);
+  collect(Words(doc, reader.WS()), model);
+}
+
+bool load_brep(const std::string &path, TopoDS_Shape &shape)
+{
+  BRep_Builder builder;
+
+  try {
+    return BRepTools::Read(shape, path.c_str(), builder) && !shape.IsNull();
+  } catch (const Standard_Failure &) {
+    return false;              /* what it says is of no use */
+  }
+}
+
+/* A BREP file has neither units nor words. */
+void read_brep(const vg_cad_ask &ask, const std::string &path, Model &model,
+               const Talk &talk)
+{
+  TopoDS_Shape shape;
+
+  if (!load_brep(path, shape))
+    throw Failure{VG_ERR_FORMAT, "Open CASCADE cannot read this BREP file; it "
+                                 "is truncated or damaged: export it again"};
+  if (ask.unit)
+    throw Failure{VG_ERR_INPUT, "a BREP file has no unit of length: cad_unit "
+                                "must be file, and its numbers stay as they "
+                                "are"};
+  talk.note("a BREP file has no unit of length: its numbers stay as they are");
+  Collector(model, nullptr).add(shape, Face());
+}
+
+}  // namespace
+
+void read(const vg_cad_ask &ask, const std::string &path, Model &model,
+          const Talk &talk)
+{
+  if (ask.kind == 1) read_step(ask, path, model, talk);
+  else if (ask.kind == 2) read_iges(ask, path, model, talk);
+  else read_brep(ask, path, model, talk);
+  if (model.faces.empty())
+    throw Failure{VG_ERR_INPUT, "there are no faces in it: points, curves or "
+                                "nothing at all; export solids or surfaces"};
+}
+
+}  // namespace vg_occt

@@ -1,0 +1,256 @@
+/* Questions from the parent, and what may go wrong over them. */
+#include "io/occt/occt_parts.h"
+
+#include <cstdarg>
+#include <cstdio>
+#include <cstring>
+#include <map>
+#include <new>
+#include <thread>
+
+#include <poll.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <Standard_Failure.hxx>
+
+namespace vg_occt {
+
+std::string format(const char *text, ...)
+{
+  char out[1600];
+  va_list args;
+
+  va_start(args, text);
+  std::vsnprintf(out, sizeof out, text, args);
+  va_end(args);
+  return out;
+}
+
+std::string place(const gp_Pnt &p)
+{
+  return format("(%.6g, %.6g, %.6g)", p.X(), p.Y(), p.Z());
+}
+
+void Talk::put(const void *data, size_t size) const
+{
+  if (!wire_->put(fd_, data, size)) _exit(1);   /* nobody listens */
+}
+
+bool Talk::get(void *data, size_t size) const
+{
+  return wire_->get(fd_, data, size);
+}
+
+void Talk::say(int what, int code, std::string text) const
+{
+  vg_cad_tell t = {what, code, 0};
+
+  for (char &c : text)
+    if (static_cast<unsigned char>(c) < ' ') c = ' ';
+  if (text.size() > 900) text.resize(900);
+  t.n = text.size();
+  put(&t, sizeof t);
+  put(text.data(), text.size());
+}
+
+}  // namespace vg_occt
+
+namespace {
+
+using namespace vg_occt;
+
+/* A file in memory, with a path for libraries that open files. */
+class MemoryFile {
+public:
+  MemoryFile(const Talk &talk, size_t n) : fd_(memfd_create("cad", 0))
+  {
+    std::vector<char> chunk(1 << 20);
+
+    if (fd_ < 0) throw std::bad_alloc();
+    while (n) {
+      size_t part = n < chunk.size() ? n : chunk.size();
+
+      if (!talk.get(chunk.data(), part)) _exit(0);
+      if (!keep(chunk.data(), part)) throw std::bad_alloc();
+      n -= part;
+    }
+  }
+  ~MemoryFile() { close(fd_); }
+  MemoryFile(const MemoryFile &) = delete;
+  MemoryFile &operator=(const MemoryFile &) = delete;
+  std::string path() const { return format("/proc/self/fd/%d", fd_); }
+
+private:
+  bool keep(const char *data, size_t n)
+  {
+    for (ssize_t k; n; data += k, n -= static_cast<size_t>(k))
+      if ((k = write(fd_, data, n)) <= 0) return false;
+    return true;
+  }
+  int fd_;
+};
+
+void send(const Surface &s, const Talk &talk)
+{
+  const vg_cad_tell t = {VG_CAD_TELL_SURFACE, 0, 1};
+  const vg_cad_counts n = {s.point.size() / 3, s.tri.size() / 3,
+                           s.segment.size() / 2, s.patches.size()};
+
+  talk.put(&t, sizeof t);
+  talk.put(&n, sizeof n);
+  talk.put(s.point.data(), s.point.size() * sizeof s.point[0]);
+  talk.put(s.tri.data(), s.tri.size() * sizeof s.tri[0]);
+  talk.put(s.face.data(), s.face.size() * sizeof s.face[0]);
+  talk.put(s.patch.data(), s.patch.size() * sizeof s.patch[0]);
+  talk.put(s.segment.data(), s.segment.size() * sizeof s.segment[0]);
+  talk.put(s.curve.data(), s.curve.size() * sizeof s.curve[0]);
+  talk.put(s.patches.data(), s.patches.size() * sizeof s.patches[0]);
+}
+
+void answer_read(const vg_cad_ask &ask, Model &model, const Talk &talk)
+{
+  MemoryFile file(talk, ask.n);
+  Surface surface;
+
+  model = Model();
+  talk.stage("reading the file");
+  read(ask, file.path(), model, talk);
+  talk.stage("looking for faults of its faces");
+  complete(model, talk);
+  heal(ask, model, talk);
+  talk.stage("triangulating its faces");
+  triangulate(ask, model, surface, talk);
+  send(surface, talk);
+}
+
+struct Points {
+  std::vector<uint32_t> number;
+  std::vector<double> x, distance;
+
+  void set(size_t i, const gp_Pnt &from, const gp_Pnt &to)
+  {
+    x[3 * i] = to.X();
+    x[3 * i + 1] = to.Y();
+    x[3 * i + 2] = to.Z();
+    distance[i] = from.Distance(to);
+  }
+};
+
+void put_on_faces(const Model &model, Points &p)
+{
+  std::map<uint32_t, std::unique_ptr<Projector>> open;
+
+  for (size_t i = 0; i < p.number.size(); i++) {
+    uint32_t k = p.number[i];
+    gp_Pnt from(p.x[3 * i], p.x[3 * i + 1], p.x[3 * i + 2]);
+
+    if (!k || k > model.faces.size() || model.faces[k - 1].shape.IsNull())
+      throw Failure{VG_ERR_INPUT, format("point %zu: there is no face %u",
+                                         i + 1, k)};
+    if (!open[k]) open[k].reset(new Projector(model.faces[k - 1].shape));
+    p.set(i, from, open[k]->nearest(from));
+  }
+}
+
+void put_on_curves(const Model &model, Points &p)
+{
+  for (size_t i = 0; i < p.number.size(); i++) {
+    uint32_t k = p.number[i];
+    gp_Pnt from(p.x[3 * i], p.x[3 * i + 1], p.x[3 * i + 2]);
+
+    if (!k || k > model.curves.size())
+      throw Failure{VG_ERR_INPUT, format("point %zu: there is no curve %u",
+                                         i + 1, k)};
+    p.set(i, from, nearest_on_curve(model.curves[k - 1], from));
+  }
+}
+
+void answer_points(const vg_cad_ask &ask, const Model &model, const Talk &talk)
+{
+  const vg_cad_tell t = {VG_CAD_TELL_POINTS, 0, ask.n};
+  Points p;
+
+  p.number.resize(ask.n);
+  p.x.resize(3 * ask.n);
+  p.distance.resize(ask.n);
+  if (!talk.get(p.number.data(), ask.n * sizeof p.number[0]) ||
+      !talk.get(p.x.data(), 3 * ask.n * sizeof p.x[0])) _exit(0);
+  talk.stage("putting points on its faces");
+  if (ask.what == VG_CAD_ASK_FACES) put_on_faces(model, p);
+  else put_on_curves(model, p);
+  talk.put(&t, sizeof t);
+  talk.put(p.x.data(), 3 * ask.n * sizeof p.x[0]);
+  talk.put(p.distance.data(), ask.n * sizeof p.distance[0]);
+}
+
+void answer(const vg_cad_ask &ask, Model &model, const Talk &talk)
+{
+  try {
+    if (ask.what == VG_CAD_ASK_READ) answer_read(ask, model, talk);
+    else answer_points(ask, model, talk);
+  } catch (const Failure &f) {
+    talk.fail(f);
+  } catch (const std::bad_alloc &) {
+    talk.fail({VG_ERR_MEMORY, "not enough memory for Open CASCADE"});
+    _exit(1);                  /* the question may not have been read whole */
+  } catch (const Standard_Failure &f) {
+    talk.fail({VG_ERR_GEOMETRY,
+               format("Open CASCADE could not work on it (%s: %s); the file "
+                      "may be damaged: export it again",
+                      f.DynamicType()->Name(), f.GetMessageString())});
+  } catch (const std::exception &f) {
+    talk.fail({VG_ERR_GEOMETRY,
+               format("Open CASCADE could not work on it (%s)", f.what())});
+  }
+}
+
+/* Whoever closes the other end wants no more: also when a call never ends. */
+void watch(int fd)
+{
+  pollfd p = {fd, POLLRDHUP, 0};
+
+  for (;;)
+    if (poll(&p, 1, -1) > 0) _exit(0);
+}
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define SANITIZED 1          /* by gcc; their shadow is terabytes */
+#elif defined(__has_feature)
+#define SANITIZED \
+  (__has_feature(address_sanitizer) || __has_feature(thread_sanitizer))
+#else
+#define SANITIZED 0
+#endif
+
+/* A damaged file must not take the memory of the machine. */
+void limit_memory()
+{
+#if !SANITIZED
+  double all = static_cast<double>(sysconf(_SC_PHYS_PAGES)) *
+               static_cast<double>(sysconf(_SC_PAGESIZE));
+  rlimit most;
+
+  if (all <= 0 || getrlimit(RLIMIT_DATA, &most)) return;
+  if (static_cast<double>(most.rlim_cur) <= 0.8 * all) return;
+  most.rlim_cur = static_cast<rlim_t>(0.8 * all);
+  setrlimit(RLIMIT_DATA, &most);
+#endif
+}
+
+}  // namespace
+
+extern "C" vg_occt_entry vg_occt_serve;
+
+void vg_occt_serve(int fd, const vg_cad_wire *wire)
+{
+  Talk talk(fd, wire);
+  Model model;
+  vg_cad_ask ask;
+
+  limit_memory();
+  std::thread(watch, fd).detach();
+  while (talk.get(&ask, sizeof ask)) answer(ask, model, talk);
+  _exit(0);
+}

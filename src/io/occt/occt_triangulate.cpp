@@ -1,0 +1,293 @@
+/* Faces into triangles that share points by topology: a vertex is one point,
+ * and so is each division of an edge, whatever faces meet there. */
+#include "io/occt/occt_parts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <map>
+
+#include <BRepMesh_IncrementalMesh.hxx>
+#include <BRepTools.hxx>
+#include <BRep_Tool.hxx>
+#include <IMeshTools_Parameters.hxx>
+#include <Poly_PolygonOnTriangulation.hxx>
+#include <Poly_Triangulation.hxx>
+#include <Precision.hxx>
+#include <TopExp.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Vertex.hxx>
+
+namespace vg_occt {
+
+namespace {
+
+const uint32_t none = UINT32_MAX;
+
+class Builder {
+public:
+  Builder(Model &model, Surface &out) : model_(model), out_(out) {}
+
+  /* Returns false for a face without triangles. */
+  bool add(const Face &f, uint32_t patch)
+  {
+    TopLoc_Location at;
+    Handle(Poly_Triangulation) t = BRep_Tool::Triangulation(f.shape, at);
+
+    if (t.IsNull() || !t->NbTriangles()) return false;
+    global_.assign(static_cast<size_t>(t->NbNodes()) + 1, none);
+    for (TopExp_Explorer e(f.shape, TopAbs_EDGE); e.More(); e.Next())
+      add_edge(TopoDS::Edge(e.Current()), t, at);
+    for (int k = 1; k <= t->NbNodes(); k++)
+      if (global_[static_cast<size_t>(k)] == none)
+        global_[static_cast<size_t>(k)] = point(node(t, at, k));
+    add_triangles(f, t, patch);
+    return true;
+  }
+
+private:
+  static gp_Pnt node(const Handle(Poly_Triangulation) &t,
+                     const TopLoc_Location &at, int k)
+  {
+    return t->Node(k).Transformed(at.Transformation());
+  }
+
+  uint32_t point(const gp_Pnt &p)
+  {
+    uint32_t at = static_cast<uint32_t>(out_.point.size() / 3);
+
+    out_.point.insert(out_.point.end(), {p.X() + 0.0, p.Y() + 0.0,
+                                         p.Z() + 0.0});
+    return at;
+  }
+
+  uint32_t vertex(const TopoDS_Vertex &v)
+  {
+    size_t at = static_cast<size_t>(vertices_.Add(v));
+
+    if (at > vertex_.size()) vertex_.push_back(point(BRep_Tool::Pnt(v)));
+    return vertex_[at - 1];
+  }
+
+  /* Points of an edge from its first parameter to its last. The face that
+   * comes first says where they are; all have the same. */
+  const std::vector<uint32_t> &
+  divisions(const TopoDS_Edge &edge, const Handle(Poly_Triangulation) &t,
+            const TopLoc_Location &at, const TColStd_Array1OfInteger &nodes)
+  {
+    size_t n = static_cast<size_t>(nodes.Length());
+    size_t number = static_cast<size_t>(curves_.Add(edge));
+    TopoDS_Vertex first, last;
+
+    if (number > curve_.size()) {
+      model_.curves.push_back(
+          TopoDS::Edge(edge.Oriented(TopAbs_FORWARD)));
+      curve_.emplace_back();
+    }
+    std::vector<uint32_t> &list = curve_[number - 1];
+    if (list.size() == n) return list;
+    if (!list.empty())
+      throw Failure{VG_ERR_GEOMETRY,
+                    format("curve %zu is divided in two ways", number)};
+    TopExp::Vertices(model_.curves[number - 1], first, last);
+    list.resize(n);
+    for (size_t k = 0; k < n; k++) {
+      int i = nodes.Lower() + static_cast<int>(k);
+
+      if (!k && !first.IsNull()) list[k] = vertex(first);
+      else if (k + 1 == n && !last.IsNull()) list[k] = vertex(last);
+      else list[k] = point(node(t, at, nodes(i)));
+    }
+    if (n > 1 && first.IsNull() && last.IsNull()) list[n - 1] = list[0];
+    add_segments(list, static_cast<uint32_t>(number));
+    return list;
+  }
+
+  void add_segments(const std::vector<uint32_t> &list, uint32_t number)
+  {
+    for (size_t k = 0; k + 1 < list.size(); k++) {
+      if (list[k] == list[k + 1]) continue;
+      out_.segment.insert(out_.segment.end(), {list[k], list[k + 1]});
+      out_.curve.push_back(number);
+    }
+  }
+
+  void add_edge(const TopoDS_Edge &edge, const Handle(Poly_Triangulation) &t,
+                const TopLoc_Location &at)
+  {
+    Handle(Poly_PolygonOnTriangulation) p =
+        BRep_Tool::PolygonOnTriangulation(edge, t, at);
+    TopoDS_Vertex first, last;
+
+    if (p.IsNull()) return;
+    const TColStd_Array1OfInteger &nodes = p->Nodes();
+    if (BRep_Tool::Degenerated(edge)) {
+      TopExp::Vertices(edge, first, last);
+      for (int i = nodes.Lower(); i <= nodes.Upper() && !first.IsNull(); i++)
+        global_[static_cast<size_t>(nodes(i))] = vertex(first);
+      return;
+    }
+    const std::vector<uint32_t> &list = divisions(edge, t, at, nodes);
+    for (size_t k = 0; k < list.size(); k++)
+      global_[static_cast<size_t>(
+          nodes(nodes.Lower() + static_cast<int>(k)))] = list[k];
+  }
+
+  /* Those that a vertex took in are gone. */
+  void add_triangles(const Face &f, const Handle(Poly_Triangulation) &t,
+                     uint32_t patch)
+  {
+    bool turned = f.shape.Orientation() == TopAbs_REVERSED;
+    size_t from = out_.face.size();
+
+    for (int k = 1; k <= t->NbTriangles(); k++) {
+      int n[3];
+
+      t->Triangle(k).Get(n[0], n[1], n[2]);
+      if (turned) std::swap(n[1], n[2]);
+      uint32_t v[3];
+      for (int i = 0; i < 3; i++) v[i] = global_[static_cast<size_t>(n[i])];
+      if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) continue;
+      out_.tri.insert(out_.tri.end(), v, v + 3);
+      out_.face.push_back(f.number);
+      out_.patch.push_back(patch);
+    }
+    swap_caps(out_, from);
+  }
+
+  Model &model_;
+  Surface &out_;
+  TopTools_IndexedMapOfShape vertices_, curves_;
+  std::vector<uint32_t> vertex_;
+  std::vector<std::vector<uint32_t>> curve_;
+  std::vector<uint32_t> global_;   /* of the nodes of one face */
+};
+
+/* What makes a patch, and its name. */
+std::string group_of(const vg_cad_ask &ask, const Face &f)
+{
+  switch (ask.patches) {
+  case 1: return f.name.empty() ? f.part : f.name;
+  case 2: return f.colour;
+  case 3: return f.layer;
+  case 4: return f.part;
+  default: return f.name;
+  }
+}
+
+/* Names are cut at whole characters. */
+void set_name(vg_cad_patch &p, const std::string &name)
+{
+  size_t n = std::min(name.size(), sizeof p.name - 1);
+
+  if (n < name.size())
+    while (n && (static_cast<unsigned char>(name[n]) & 0xc0) == 0x80) n--;
+  std::memset(p.name, 0, sizeof p.name);
+  std::memcpy(p.name, name.data(), n);
+  for (size_t k = 0; k < n; k++)
+    if (static_cast<unsigned char>(p.name[k]) < ' ' || p.name[k] == 127)
+      p.name[k] = '_';
+}
+
+/* The patch of a face; groups count from 1 in the order of their first
+ * faces. */
+class Patches {
+public:
+  Patches(const vg_cad_ask &ask, std::vector<vg_cad_patch> &list)
+      : ask_(ask), list_(list) {}
+
+  uint32_t of(const Face &f)
+  {
+    std::string name = group_of(ask_, f);
+    uint32_t next = static_cast<uint32_t>(list_.size());
+    vg_cad_patch p;
+
+    if (ask_.patches) {
+      auto found = known_.emplace(name, next);
+
+      if (!found.second) return found.first->second;
+    }
+    p.id = ask_.patches ? static_cast<int32_t>(next + 1)
+                        : static_cast<int32_t>(f.number);
+    set_name(p, name);
+    list_.push_back(p);
+    return next;
+  }
+
+private:
+  const vg_cad_ask &ask_;
+  std::vector<vg_cad_patch> &list_;
+  std::map<std::string, uint32_t> known_;
+};
+
+/* Deflections go by the size of each edge, so that a far boundary does not
+ * coarsen the body in it. One thread: the same for everybody. */
+void run_mesher(const vg_cad_ask &ask, const TopoDS_Shape &shape,
+                double diagonal)
+{
+  IMeshTools_Parameters p;
+
+  p.Relative = Standard_True;
+  p.Deflection = ask.chord;
+  p.Angle = ask.angle * (M_PI / 180);
+  p.MinSize = std::max(1e-7 * diagonal, Precision::Confusion());
+  p.InParallel = Standard_False;
+  BRepTools::Clean(shape);
+  BRepMesh_IncrementalMesh(shape, p);
+}
+
+size_t count_bare(const Model &model)
+{
+  TopLoc_Location at;
+
+  return static_cast<size_t>(std::count_if(
+      model.faces.begin(), model.faces.end(), [&](const Face &f) {
+        return !f.shape.IsNull() &&
+               BRep_Tool::Triangulation(f.shape, at).IsNull();
+      }));
+}
+
+/* Where faces stay bare, mended ones may not. */
+void make_triangles(const vg_cad_ask &ask, Model &model, const Talk &talk)
+{
+  Model mended = model;
+  size_t bare;
+
+  run_mesher(ask, together(model), model.diagonal);
+  bare = count_bare(model);
+  if (!bare) return;
+  talk.stage("mending its faces");
+  mend(mended, talk);
+  run_mesher(ask, together(mended), model.diagonal);
+  if (count_bare(mended) < bare) model = mended;
+  else run_mesher(ask, together(model), model.diagonal);
+}
+
+}  // namespace
+
+void triangulate(const vg_cad_ask &ask, Model &model, Surface &out,
+                 const Talk &talk)
+{
+  Builder builder(model, out);
+  Patches patches(ask, out.patches);
+  size_t n_bad = 0;
+  std::string bad;
+
+  make_triangles(ask, model, talk);
+  for (const Face &f : model.faces) {
+    if (f.shape.IsNull()) continue;
+    if (builder.add(f, patches.of(f))) continue;
+    if (!n_bad++)
+      bad = format("face %u%s%.60s at %s", f.number, f.name.empty() ? "" : " ",
+                   f.name.c_str(), place(point_of(f.shape)).c_str());
+  }
+  if (n_bad)
+    talk.note(format("%zu faces could not be triangulated and are holes, the "
+                     "first is %s: its rim may cross itself", n_bad,
+                     bad.c_str()));
+  if (out.tri.empty())
+    throw Failure{VG_ERR_GEOMETRY, "none of its faces could be triangulated"};
+}
+
+}  // namespace vg_occt

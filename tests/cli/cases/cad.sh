@@ -1,0 +1,71 @@
+# From CAD to a mesh with one command; what was read, healed and assumed is said;
+# the same files for any number of ranks.
+cad=$here/../cad
+vanguard check "$cad/wing.step"
+if grep -q "reads no CAD" err; then
+  exits 1
+  skip "built without Open CASCADE"
+fi
+exits 0
+says out "no defects"
+says out "note: CAD: lengths are in mm, the file's unit"
+says out "trailing edge"
+vanguard check --json "$cad/doubled.brep"
+exits 0
+says out "CAD: face 7 at (0.5, 0, 1.5) repeats face 3 and was dropped"
+
+# settings of the deck hold for a check too
+printf 'metres\nunit cad_patches\nm layer\n' >m.deck
+vanguard check -d m.deck "$cad/wing.step"
+exits 0
+says out "were converted to m"
+says out "SKIN"
+says out "to 1.1 2.5 0.0597046"
+
+# one command; names in every output; any number of ranks
+cp "$cad/wing.step" .
+set -- -q -p wing.step --y-plus 1 --reynolds 5e6 --reference-length 1000 \
+  --walls 1-5 --cad-angle 25 --leaf-cells 20000
+vanguard mesh "$@" --out one
+exits 0
+says out "smallest angle"
+says one/wing.mapbc "trailing_edge"
+says one/wing.resolved.deck "cad_angle"
+if command -v mpirun >/dev/null; then
+  mpirun --oversubscribe -n 3 "$program" mesh "$@" --test-node-ranks 2 \
+    --out three >out 2>err
+  status=$?
+  exits 0
+  same one/wing.b8.ugrid three/wing.b8.ugrid
+  same one/wing.cogsg three/wing.cogsg
+  says out "note: CAD: lengths are in mm"
+fi
+
+# what has no effect is said, what cannot be done refused
+octahedron >body.obj
+vanguard mesh -q -p body.obj --unit m --hmax 5 --out o
+exits 0
+says out "unit has no effect"
+vanguard mesh -q -p "$cad/box.brep" --unit m --out b
+exits 1
+says err "has no unit of length"
+absent b/box.b8.ugrid
+vanguard check "$cad/edges.brep"
+exits 1
+says err "there are no faces in it"
+head -c 9000 "$cad/wing.step" >cut.step
+vanguard mesh -q -p cut.step --out c
+exits 1
+says err "cut.step: truncated"
+absent c/cut.b8.ugrid
+: >empty.step
+vanguard check empty.step
+exits 1
+says err "empty.step"
+vanguard mesh -q -p "$cad/crossing.brep" --out x
+exits 1
+says out "self-intersection"
+vanguard mesh -q -p wing.step --cad-angle 1 --cad-chord 1e-7 \
+  --cad-seconds 0.3 --out y
+exits 1
+says err "given up after 0.3 s"

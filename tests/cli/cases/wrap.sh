@@ -1,0 +1,38 @@
+# Bodies that cross cannot bound a mesh, until they are wrapped; the same files
+# for any number of ranks.
+octahedron >two.obj
+octahedron | sed 's/^g .*/g other/' | awk '$1 == "v" { print "v", $2 + 0.7, $3,
+  $4; next } $1 == "f" { print "f", $2 + 6, $3 + 6, $4 + 6; next } { print }' \
+  >>two.obj
+vanguard mesh -q -p two.obj --out plain
+exits 1
+says out "self-intersection"
+vanguard mesh -q -p two.obj --wrap 0.2 --out one
+if grep -q "cannot wrap" err; then
+  exits 1
+  skip "built without CGAL"
+fi
+exits 0
+says out "note: the surface was wrapped: 16 triangles by"
+says out "left without any: 0"
+says one/two.resolved.deck "wrap"
+vanguard check one/two.b8.ugrid
+exits 0
+if command -v mpirun >/dev/null; then
+  mpirun --oversubscribe -n 3 "$program" mesh -q -p two.obj --wrap 0.2 \
+    --test-node-ranks 2 --out three >out 2>err
+  status=$?
+  exits 0
+  same one/two.b8.ugrid three/two.b8.ugrid
+fi
+# what a wrap would lose is refused
+printf '1 5000 far\n' >two.mapbc
+sed -i '1i 1' two.mapbc
+vanguard mesh -q -p two.obj --wrap 0.2 --out far
+exits 1
+says err "only bodies can be wrapped"
+rm two.mapbc
+vanguard mesh -q -p two.obj --wrap 1e-6 --out small
+exits 1
+says err "in the unit of the surface?"
+absent small/two.b8.ugrid
