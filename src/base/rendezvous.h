@@ -1,10 +1,9 @@
-/* core/judge/judge_rendezvous.h: where equal items of all ranks meet. Private
- * to judge_slices.c. Uses base.
+/* base/rendezvous.h: where equal items of all ranks meet. Uses comm.h.
  *
  * An item begins with its key, a few 32-bit words. Items of equal keys go to
  * the rank that a hash of the key names, and are looked at there together. */
-#ifndef VG_CORE_JUDGE_JUDGE_RENDEZVOUS_H
-#define VG_CORE_JUDGE_JUDGE_RENDEZVOUS_H
+#ifndef VG_BASE_RENDEZVOUS_H
+#define VG_BASE_RENDEZVOUS_H
 
 #include <stddef.h>
 #include <stdint.h>
