@@ -433,18 +433,45 @@ done:
   return st;
 }
 
+/* Solver_parts of the mesh that is about to be written. */
+static vg_status part_for_solver(struct vg_run *r, const struct vg_problem *p,
+                                 struct vg_display *show, struct vg_error *err)
+{
+  struct vg_solver_options o = VG_SOLVER_OPTIONS_INIT;
+  double t = vg_display_now();
+  vg_status st;
+
+  if (!p->settings.solver_parts) return VG_OK;
+  vg_display_update(show, "partition", vg_run_cells(r), 0);
+  o.n_part = (uint64_t)p->settings.solver_parts;
+  o.threads = r->threads;
+  st = vg_solver_part_slices(r->comm, &r->slices, &o, &r->parted, &r->parts,
+                             &r->solver, err);
+  r->time_parts = vg_display_now() - t;
+  return st;
+}
+
+const struct vg_slices *vg_run_slices(const struct vg_run *r)
+{
+  return r->parts ? &r->parted : &r->slices;
+}
+
 vg_status vg_run_mesh(struct vg_run *r, const struct vg_problem *p,
                       struct vg_layer_stage *layers, struct vg_display *show,
                       struct vg_error *err)
 {
+  vg_status st;
+
   r->threads = p->settings.threads ? (int)p->settings.threads
                                    : vg_comm_default_threads(r->comm);
-  return layers->is_on ? mesh_layers(r, p, layers, show, err)
-                       : mesh_plain(r, p, show, err);
+  st = layers->is_on ? mesh_layers(r, p, layers, show, err)
+                     : mesh_plain(r, p, show, err);
+  return st < 0 ? st : part_for_solver(r, p, show, err);
 }
 
 void vg_run_release(struct vg_run *r, int success)
 {
+  vg_solver_slices_close(r->parts);
   vg_layer_slices_close(r->layers);
   vg_partition_free(r->field);
   vg_effects_release(&r->effects);

@@ -77,6 +77,10 @@ static const struct vg_param params[] = {
                         "pyramids and tetrahedra)" },
   { "ugrid_tail", AT(ugrid_tail), .type = VG_PARAM_FLAG, .unit = "",
     .help = "number of layer tetrahedra behind the cells of a .ugrid" },
+  { "solver_parts", AT(solver_parts), .type = VG_PARAM_COUNT,
+    .hi = 2147483647, .unit = "parts", .help = "share the cells out to so many "
+    "processes of a solver, no stack of layer cells cut: PROJECT.part.N, and "
+    "with the mesh in .vtu and OpenFOAM's cellDecomposition; 0: not" },
   { "leaf_cells", AT(leaf_cells), .type = VG_PARAM_COUNT, .hi = 9e15,
     .unit = "cells", .help = "the space outside the layers is cut into parts "
     "of about so many cells, filled in parallel; 0: not at all" },

@@ -97,6 +97,7 @@ struct vg_settings {
   int swap;                        /* enum vg_answer: swap edges */
   int cells;                       /* enum vg_layer_cells */
   int ugrid_tail;
+  int64_t solver_parts;            /* 0: none */
   int64_t leaf_cells, levels;      /* how far the void is cut up */
   int64_t split_direction;         /* 0: best; 1 to 3: x, y, z first */
   int constant_direction;
