@@ -27,7 +27,7 @@ struct vg_solver_options {
   int threads;               /* to look at slices with; 0: one per core */
 };
 #define VG_SOLVER_OPTIONS_INIT \
-  { .weight = { 1, 1, 1, 1 }, .cluster_above = 3000000 }   /* P1 */
+  { .weight = { 1, 1, 1, 1 }, .cluster_above = 12000000 }   /* P1 */
 
 /** What is known of layers in a mesh in one piece. */
 struct vg_solver_layers {
