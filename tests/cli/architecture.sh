@@ -104,13 +104,13 @@ adapter() {
   done < <(grep -rlE "#[[:space:]]*include[[:space:]]*[<\"]${header}[>\"]" . |
     sed 's,^\./,,')
 }
-adapter tetgen.h '^core/recover/cdt_tetgen\.cpp$'
+adapter tetgen.h '^core/(recover/cdt_tetgen|mesher/tetgen)\.cpp$'
 adapter zlib.h '^io/[a-z]+/[a-z_]+\.c$'
 adapter jansson.h '^cli/'
 adapter argp.h '^cli/'
 # Its last bits differ between processors: never where a mesh is made.
 adapter lapacke.h '^partition/model/rates\.c$'
-adapter pthread.h '^(base|partition)/|^cli/common/progress\.c$'
+adapter pthread.h '^(base|partition|core/mesher)/|^cli/common/progress\.c$'
 adapter mpi.h \
   '^(base/comm(_[a-z]+)?\.c|base/comm_parts\.h|io/stream/shared_file\.c)$'
 adapter metis.h '^partition/graph/graph_metis\.c$'

@@ -161,7 +161,7 @@ static struct vg_digest job_digest(const struct vg_problem *p,
                                    const struct vg_mesh *boundary)
 {
   const struct vg_settings *s = &p->settings;
-  struct vg_digest d = {{0, 0}};
+  struct vg_digest d = {{0, 0}}, plugin;
   double size[5] = {s->scale, s->growth, s->hmin, s->hmax,
                     (double)s->surface_sizes};
   int64_t cut[5] = {s->leaf_cells, s->levels, s->split_direction,
@@ -170,6 +170,9 @@ static struct vg_digest job_digest(const struct vg_problem *p,
   d = vg_digest_of(d, strlen(vg_source_digest), vg_source_digest);
   d = vg_digest_of(d, sizeof size, size);
   d = vg_digest_of(d, sizeof cut, cut);
+  d = vg_digest_of(d, strlen(s->mesher), s->mesher);
+  if (vg_run_mesher_digest(s, &plugin))
+    d = vg_digest_of(d, sizeof plugin, &plugin);
   for (size_t i = 0; i < s->n_source; i++) {
     const struct vg_source *q = &s->source[i];
     double v[19] = {q->kind, q->h0, q->h1, q->r0, q->r1, q->growth, q->an};
@@ -228,6 +231,17 @@ static vg_status say_stopped(const struct vg_run *r, struct vg_error *err)
 
 /* --- the field ----------------------------------------------------------- */
 
+/* Of the leaves, where it is not the kernel. */
+static vg_status open_mesher(const struct vg_run *r, const struct vg_settings *s,
+                             struct vg_mesher_pool **out, struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  if (strcmp(s->mesher, "builtin") != 0)
+    st = vg_mesher_open(s->mesher, out, err);
+  return vg_comm_agree(r->comm, st, err);
+}
+
 static vg_status fill(struct vg_run *r, const struct vg_problem *p,
                       const struct vg_mesh *boundary,
                       const struct vg_sizing *sizing, struct vg_display *show,
@@ -251,6 +265,7 @@ static vg_status fill(struct vg_run *r, const struct vg_problem *p,
   o.progress = vg_display_update;
   o.stop = vg_display_stop;
   o.user = show;
+  VG_TRY(open_mesher(r, s, &o.mesher, err));
   VG_TRY(open_store(r, p, boundary, &o, err));
   o.store = r->store;
   st = vg_partition_grow(r->comm, boundary, sizing, &o, &r->field,
@@ -262,6 +277,7 @@ static vg_status fill(struct vg_run *r, const struct vg_problem *p,
     r->n_field_cell =
       vg_partition_slices(r->field)->n_cell[VG_SLICE_TET];
 done:
+  vg_mesher_close(o.mesher);
   return st;
 }
 

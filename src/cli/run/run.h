@@ -91,6 +91,9 @@ void vg_run_release(struct vg_run *r, int success);
 char *vg_run_settings(const struct vg_settings *s,
                       const struct vg_mesh *boundary);
 
+/** Digest of the plug-in that is to mesh; 0: it is none, or cannot be read. */
+int vg_run_mesher_digest(const struct vg_settings *s, struct vg_digest *d);
+
 /** cli/run/report_partition.c: cuts, tasks, balance. */
 void vg_report_partition_text(FILE *to, const struct vg_run *r);
 json_t *vg_report_partition_json(const struct vg_run *r);
