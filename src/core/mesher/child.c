@@ -18,12 +18,23 @@
 
 /* --- loading ------------------------------------------------------------- */
 
+/* A library's own functions before ours of the same name: gmsh has a TetGen of
+ * its own. What sanitizers replace has to be theirs everywhere. */
+void *vg_mesher_library(const char *path)
+{
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  return dlopen(path, RTLD_NOW | RTLD_LOCAL);
+#else
+  return dlopen(path, RTLD_NOW | RTLD_LOCAL | RTLD_DEEPBIND);
+#endif
+}
+
 typedef const struct vg_mesher *plugin(void);
 
 static const struct vg_mesher *load_plugin(const char *path, char *why,
                                            size_t size)
 {
-  void *library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+  void *library = vg_mesher_library(path);
   const struct vg_mesher *m;
   plugin *get;
 

@@ -35,6 +35,30 @@ void vg_mesher_serve(int fd);
 const struct vg_mesher *vg_mesher_tetgen(void);
 const struct vg_mesher *vg_mesher_hxt(char *why, size_t size);
 
+/** core/mesher/child.c: as dlopen, with its own names before those of this
+ * program. */
+void *vg_mesher_library(const char *path);
+
+/** core/mesher/shells.c: what bounds a front's parts, which hang together at
+ * points and edges at most. A shell is hollow where what is to be filled goes
+ * around it. A piece is a part of a shell that ends where more than two
+ * triangles meet at an edge. */
+struct vg_mesher_shells {
+  size_t n, n_hollow, n_piece;
+  uint32_t *of, *piece;      /* [n_face] */
+  uint32_t *shell_of;        /* [n_piece] */
+  unsigned char *is_hollow;  /* [n] */
+  size_t *largest;           /* [n] the largest triangle */
+};
+/** 0, or -1 where memory is refused. */
+int vg_mesher_find_shells(const struct vg_mesher_front *f,
+                          struct vg_mesher_shells *out);
+void vg_mesher_shells_release(struct vg_mesher_shells *s);
+
+/** Normal of a face, twice its area long. */
+void vg_mesher_normal(const struct vg_mesher_front *f, size_t face,
+                      double n[3]);
+
 /** core/mesher/child_sizes.c: sizes that the parent is asked for, over the box
  * of a front. NULL: no memory. Ends the process when the parent is gone. */
 struct vg_child_sizes;

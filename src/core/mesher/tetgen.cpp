@@ -5,7 +5,6 @@
 #include <cstdlib>
 #include <vector>
 
-#include "base/union_find.h"
 #include "core/mesher/mesher_parts.h"
 
 #define TETLIBRARY
@@ -49,84 +48,30 @@ void put_facet(tetgenio::facet *f, const uint32_t tri[3])
     f->polygonlist->vertexlist[k] = static_cast<int>(tri[k]);
 }
 
-/* A point within each hollow that the front goes around: shells of the front are
- * told by their points, hollow ones by the sign of their volume; the point lies
- * closely behind the largest triangle. Where it misses, cells are made in the
- * hollow that nobody wants, or none where they are wanted, which is noticed. */
-class hollows {
-public:
-  explicit hollows(const vg_mesher_front &front) : f(front), up(front.n_point)
-  {
-    for (uint32_t i = 0; i < up.size(); i++) up[i] = i;
-    for (size_t i = 0; i < f.n_face; i++)
-      for (int k = 1; k < 3; k++) vg_union(&up[0], f.face[i][0], f.face[i][k]);
-    measure();
-  }
+/* A point within each hollow, closely behind the largest triangle. Where it
+ * misses, cells are made in the hollow that nobody wants, or none where they are
+ * wanted, which is noticed. */
+void put_holes(tetgenio &in, const vg_mesher_front &f,
+               const vg_mesher_shells &shells)
+{
+  size_t at = 0;
 
-  void put(tetgenio &in)
-  {
-    std::vector<double> x;
-
-    for (size_t s = 0; s < up.size(); s++)
-      if (shell[s].volume > 0) add_point(shell[s].largest, x);
-    in.numberofholes = static_cast<int>(x.size() / 3);
-    if (x.empty()) return;
-    in.holelist = new REAL[x.size()];
-    for (size_t i = 0; i < x.size(); i++) in.holelist[i] = x[i];
-  }
-
-private:
-  struct one { double volume, area2; size_t largest; };
-  const vg_mesher_front &f;
-  std::vector<uint32_t> up;
-  std::vector<one> shell;    /* of roots */
-
-  void cross(size_t face, double n[3]) const
-  {
-    const double *a = f.x[f.face[face][0]], *b = f.x[f.face[face][1]],
-                 *c = f.x[f.face[face][2]];
-
-    for (int k = 0; k < 3; k++) {
-      int i = (k + 1) % 3, j = (k + 2) % 3;
-
-      n[k] = (b[i] - a[i]) * (c[j] - a[j]) - (b[j] - a[j]) * (c[i] - a[i]);
-    }
-  }
-
-  void measure()
-  {
-    shell.resize(up.size(), one{0, 0, 0});
-    for (size_t i = 0; i < f.n_face; i++) {
-      one &s = shell[vg_root_of(&up[0], f.face[i][0])];
-      const double *a = f.x[f.face[i][0]];
-      double n[3], area2 = 0;
-
-      cross(i, n);
-      for (int k = 0; k < 3; k++) {
-        s.volume += n[k] * (a[k] - f.x[0][k]);
-        area2 += n[k] * n[k];
-      }
-      if (area2 <= s.area2) continue;
-      s.area2 = area2;
-      s.largest = i;
-    }
-  }
-
-  void add_point(size_t face, std::vector<double> &x) const
-  {
+  in.numberofholes = static_cast<int>(shells.n_hollow);
+  if (!shells.n_hollow) return;
+  in.holelist = new REAL[3 * shells.n_hollow];
+  for (size_t s = 0; s < shells.n; s++) {
+    const uint32_t *face = f.face[shells.largest[s]];
     double n[3], length = 0;
 
-    cross(face, n);
+    if (!shells.is_hollow[s]) continue;
+    vg_mesher_normal(&f, shells.largest[s], n);
     for (int k = 0; k < 3; k++) length += n[k] * n[k];
     length = std::sqrt(std::sqrt(length));   /* about an edge */
-    for (int k = 0; k < 3; k++) {
-      double middle = 0;
-
-      for (int i = 0; i < 3; i++) middle += f.x[f.face[face][i]][k] / 3;
-      x.push_back(middle - 1e-4 * n[k] / length);
-    }
+    for (int k = 0; k < 3; k++)
+      in.holelist[at++] = (f.x[face[0]][k] + f.x[face[1]][k] +
+                           f.x[face[2]][k]) / 3 - 1e-4 * n[k] / length;
   }
-};
+}
 
 void put_front(tetgenio &in, const vg_mesher_front &f)
 {
@@ -139,7 +84,6 @@ void put_front(tetgenio &in, const vg_mesher_front &f)
   in.facetlist = new tetgenio::facet[f.n_face];
   for (size_t i = 0; i < f.n_face; i++) put_facet(&in.facetlist[i], f.face[i]);
   in.tetunsuitable = is_too_large;
-  hollows(f).put(in);
 }
 
 /* Cells that are joined to the inner side of a face of the front, from
@@ -291,12 +235,15 @@ int fill(const vg_mesher_front *front, const vg_mesher_sizes *wanted,
          vg_mesher_cells *cells)
 {
   char switches[] = "pYq1.4nMQT1e-13";
+  vg_mesher_shells shells;
   tetgenio in, out;
 
   if (front->n_point > 100000000 || front->n_face > 200000000) return 1;
+  if (vg_mesher_find_shells(front, &shells)) return 1;
   sizes = wanted;
   try {
     put_front(in, *front);
+    put_holes(in, *front, shells);
     tetrahedralize(switches, &in, &out);
     if (out.numberofcorners != 4 || !out.neighborlist ||
         static_cast<size_t>(out.numberofpoints) < front->n_point)
