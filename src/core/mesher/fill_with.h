@@ -4,6 +4,8 @@
 #define VG_CORE_MESHER_FILL_WITH_H
 
 #include "core/fill/grow.h"
+#include "core/front/void.h"
+#include "core/sizing/sizing.h"
 
 /** A mesher that is ready, and the processes that have loaded it. */
 struct vg_mesher_pool;
