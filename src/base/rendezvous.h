@@ -60,7 +60,8 @@ int vg_rendezvous_rank(const struct vg_rendezvous *m, const void *key);
 
 /** Collective. Takes the items of n_list lists, `stride` bytes apart, and
  * leaves these empty, also on failure.
- * Memory: the items once, on several ranks twice. VG_ERR_MEMORY on all ranks. */
+ * Memory: the items once, on several ranks twice. VG_ERR_MEMORY on all
+ * ranks. */
 vg_status vg_rendezvous_run(const struct vg_rendezvous *m,
                             struct vg_items *list,
                             size_t n_list, size_t stride,

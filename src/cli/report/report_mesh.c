@@ -321,8 +321,9 @@ json_t *vg_report_fill_json(const struct vg_fill_report *r, size_t n_cell)
     json_object_set_new(o, row[i].name, json_integer((json_int_t)row[i].n));
   json_object_set_new(o, "whole_void", json_boolean(r->whole_void));
   json_object_set_new(o, "seconds", json_pack("{s:f s:f s:f s:f s:f s:f}",
-    "other_mesher", r->time_other, "boundary", r->time_boundary, "place", r->time_place, "insert",
-    r->time_insert, "optimise", r->time_optimise, "total", r->time_total));
+    "other_mesher", r->time_other, "boundary", r->time_boundary, "place",
+    r->time_place, "insert", r->time_insert, "optimise", r->time_optimise,
+    "total", r->time_total));
   json_object_set_new(o, "cells_per_second",
                       real(r->time_total > 0
                            ? (double)n_cell / r->time_total : 0));
