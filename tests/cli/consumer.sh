@@ -25,4 +25,15 @@ export PKG_CONFIG_PATH=$pc
   -Wl,-rpath,"$(pkg-config --variable=libdir vanguard)"
 "$folder/by_pkg_config"
 
+# The example of a mesher, against the installed header; run by the program.
+# shellcheck disable=SC2046 # a list of words
+"$cc" -shared -fPIC -Wall -Wextra -Werror $(pkg-config --cflags vanguard) \
+  "$here/../../examples/mesher_plugin/star.c" -o "$folder/star.so"
+cd "$folder"
+prefix/bin/vanguard demo box --cells 1000 --out . >/dev/null
+prefix/bin/vanguard mesh -q -p box --mesher ./star.so --write lb8.ugrid \
+  --out meshed >report
+grep -q 'parts filled by the other mesher 1:' report
+prefix/bin/vanguard check -q meshed/box.lb8.ugrid >/dev/null
+
 "$folder/prefix/bin/vanguard" --version
