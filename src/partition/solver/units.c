@@ -4,9 +4,9 @@
  * below them, and what is below is the cell that has raised one of its points
  * last: node 3 of a tetrahedron, 3 and 4 of a pyramid, 3, 4, 5 of a prism
  * (layers/expand/expand_cells.c). Where this holds for all that is said to be
- * in layers, joining each to the one below gives the stacks; a stack between
- * the columns of a fan begins on the flank of another, and joins it. Prisms of
- * any origin are joined over triangles, hexahedra from walls upwards. */
+ * in layers, joining each to the one below gives the stacks; those between the
+ * columns of a fan begin on the flank of another. Prisms of any origin are
+ * joined over triangles, hexahedra from walls upwards. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -80,18 +80,20 @@ static int may_carry(const struct vg_cell_links *l, uint32_t code)
 
 enum footing { FIRM, ASIDE, NOWHERE };
 
-/* A cell onto what carries it. FIRM: a wall, or the cell before it, as in a
- * stack of tetrahedra; ASIDE: another cell, as where stacks of a fan begin;
- * NOWHERE: where no cell of Vanguard's layers stands. */
+/* A cell onto what carries it. FIRM: a wall, or a cell; a tetrahedron on the one
+ * before it, as they follow in a stack. ASIDE: on the flank of another stack, as
+ * those between the columns of a fan begin. NOWHERE: where no cell of
+ * Vanguard's layers stands. */
 static enum footing stand(struct work *w, uint32_t cell)
 {
   uint32_t below = vg_mate(w->l, bottom_of(w->l, cell));
 
   if (below == NONE) return FIRM;
   if (!is_layer(w, below >> 3)) return NOWHERE;
+  if (kind_of(w->l, cell) == TET && kind_of(w->l, below >> 3) == TET &&
+      (below >> 3) + 1 != cell) return ASIDE;
   if (may_carry(w->l, below)) vg_union(w->up, cell, below >> 3);
-  return (below >> 3) + 1 == cell || kind_of(w->l, below >> 3) != TET
-           ? FIRM : ASIDE;
+  return FIRM;
 }
 
 /* Prisms of any origin: over both triangles. */

@@ -2,7 +2,7 @@
 # one in a file, in three forms; refusals.
 vanguard demo wing-half --cells 8000 --out p
 exits 0
-layers="--first 0.001 --layer-count 6"
+layers="--first 0.001 --layer-count 6 --fan-angle 60"
 
 # With the mesh: .part, cell data of the .vtu, OpenFOAM's.
 # shellcheck disable=SC2086
