@@ -7,7 +7,7 @@ endif()
 install(TARGETS vanguard_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(TARGETS vanguard EXPORT vanguard-targets
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(FILES src/api/vanguard.h
+install(FILES src/api/vanguard.h src/core/mesher/mesher.h
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/vanguard)
 if(VG_CAD)
   install(TARGETS vanguard-cad LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})

@@ -21,6 +21,8 @@ static const struct command {
     vg_cmd_mesh, "vanguard mesh", 1 },
   { "check", "judge a surface or a volume mesh", vg_cmd_check,
     "vanguard check", 0 },
+  { "partition", "share a volume mesh out to a solver's processes",
+    vg_cmd_partition, "vanguard partition", 1 },
   { "plan", "forecast cells, memory and time before a project is meshed",
     vg_cmd_plan, "vanguard plan", 0 },
   { "sweep", "mesh with many leaf sizes, ranks and threads, and compare",
@@ -39,7 +41,7 @@ static void usage(FILE *to)
           "surfaces: viscous\nlayers on the walls, tetrahedra around "
           "them.\n\n");
   for (size_t i = 0; i < N_COMMAND; i++)
-    fprintf(to, "  %-8s %s\n", commands[i].name, commands[i].summary);
+    fprintf(to, "  %-9s %s\n", commands[i].name, commands[i].summary);
   fprintf(to, "\n'vanguard COMMAND --help' lists the options of a command, "
           "'vanguard --version'\nshows the version. On several nodes: "
           "'mpirun -n RANKS vanguard mesh -p PROJECT'.\n"

@@ -104,7 +104,7 @@ adapter() {
   done < <(grep -rlE "#[[:space:]]*include[[:space:]]*[<\"]${header}[>\"]" . |
     sed 's,^\./,,')
 }
-adapter tetgen.h '^core/recover/cdt_tetgen\.cpp$'
+adapter tetgen.h '^core/(recover/cdt_tetgen|mesher/tetgen)\.cpp$'
 adapter '[A-Z][A-Za-z0-9_]*\.hxx' '^io/occt/occt_[a-z]+\.(cpp|h)$'
 adapter 'CGAL/[A-Za-z0-9_]*\.h' '^core/wrap/wrap_cgal\.cpp$'
 adapter zlib.h '^io/[a-z]+/[a-z_]+\.c$'
@@ -112,7 +112,7 @@ adapter jansson.h '^cli/'
 adapter argp.h '^cli/'
 # Its last bits differ between processors: never where a mesh is made.
 adapter lapacke.h '^partition/model/rates\.c$'
-adapter pthread.h '^(base|partition)/|^cli/common/progress\.c$'
+adapter pthread.h '^(base|partition|core/mesher)/|^cli/common/progress\.c$'
 adapter mpi.h \
   '^(base/comm(_[a-z]+)?\.c|base/comm_parts\.h|io/stream/shared_file\.c)$'
 adapter metis.h '^partition/graph/graph_metis\.c$'

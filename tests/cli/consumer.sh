@@ -24,9 +24,10 @@ prefix=$folder/prefix
 
 # --- what is installed, and what the library shows ---
 
-headers=$(cd "$prefix/include" && find . -type f)
-[ "$headers" = ./vanguard/vanguard.h ] ||
-  fail "headers besides vanguard.h are installed: $headers"
+headers=$(cd "$prefix/include" && find . -type f | LC_ALL=C sort)
+[ "$headers" = "./vanguard/mesher.h
+./vanguard/vanguard.h" ] ||
+  fail "other headers than vanguard.h and mesher.h are installed: $headers"
 library=$(find "$prefix" -name libvanguard.so)
 nm -D --defined-only --with-symbol-versions "$library" |
   awk '$2 != "A" { print $3 }' | LC_ALL=C sort >"$folder/abi"
@@ -81,6 +82,17 @@ export PKG_CONFIG_PATH
   -o "$folder/by_pkg_config" $(pkg-config --libs vanguard) \
   -Wl,-rpath,"$(pkg-config --variable=libdir vanguard)"
 "$folder/by_pkg_config"
+
+# The example of a mesher, against the installed header; run by the program.
+# shellcheck disable=SC2046 # a list of words
+"$cc" -shared -fPIC -Wall -Wextra -Werror $(pkg-config --cflags vanguard) \
+  "$here/../../examples/mesher_plugin/star.c" -o "$folder/star.so"
+cd "$folder"
+prefix/bin/vanguard demo box --cells 1000 --out . >/dev/null
+prefix/bin/vanguard mesh -q -p box --mesher ./star.so --write lb8.ugrid \
+  --out meshed >report
+grep -q 'parts filled by the other mesher 1:' report
+prefix/bin/vanguard check -q meshed/box.lb8.ugrid >/dev/null
 
 "$prefix/bin/vanguard" --version
 

@@ -239,14 +239,17 @@ static json_t *report_json(const struct run *r, int ok,
       json_object_set_new(o, "layers",
                           vg_report_layers_json(&r->layers, &p->surface));
     }
+    if (r->mesh.parts)
+      json_object_set_new(o, "solver_parts",
+                          vg_report_solver_json(&r->mesh.solver));
     json_object_set_new(o, "files", files_json(r));
   }
   json_object_set_new(o, "seconds", json_pack(
-    "{s:f s:f s:f s:f s:f s:f s:f s:f s:f s:f}",
+    "{s:f s:f s:f s:f s:f s:f s:f s:f s:f s:f s:f}",
     "read", r->time_read, "check", r->time_check, "sizes", r->mesh.time_size,
     "layers", r->mesh.time_layers, "fill", r->mesh.time_fill,
     "number", r->mesh.partition.number,
-    "judge", r->mesh.time_judge, "write", r->time_write,
+    "judge", r->mesh.time_judge, "parts", r->mesh.time_parts, "write", r->time_write,
     "digest", r->time_digest, "total", vg_display_now() - r->start));
   json_object_set_new(o, "peak_memory_bytes",
                       json_real(r->mesh.memory > 0 ? r->mesh.memory
@@ -338,7 +341,7 @@ static vg_status write_all(struct run *r, const struct arguments *a,
 
   vg_display_update(&r->show, "write", vg_run_cells(m), 0);
   VG_TRY(vg_outputs_mesh(&r->outputs, &r->problem, &r->layers, m->comm,
-                         &m->slices, m->threads, err));
+                         vg_run_slices(m), m->threads, err));
   r->time_write = vg_display_now() - t + m->time_put;
   VG_TRY(vg_run_memory(m, err));
   st = m->rank ? VG_OK : finish(r, a, err);
@@ -374,9 +377,11 @@ static void print_times(FILE *to, const struct run *r)
   fprintf(to, "\nTime in seconds: read %.2f, check %.2f, sizes %.2f, ",
          r->time_read, r->time_check, r->mesh.time_size);
   if (r->layers.is_on) fprintf(to, "layers %.2f, ", r->mesh.time_layers);
-  fprintf(to, "fill %.2f, number %.2f, judge %.2f, write %.2f, total %.2f\n",
-         r->mesh.time_fill, r->mesh.partition.number,
-         r->mesh.time_judge, r->time_write, vg_display_now() - r->start);
+  fprintf(to, "fill %.2f, number %.2f, judge %.2f, ", r->mesh.time_fill,
+          r->mesh.partition.number, r->mesh.time_judge);
+  if (r->mesh.parts) fprintf(to, "parts %.2f, ", r->mesh.time_parts);
+  fprintf(to, "write %.2f, total %.2f\n", r->time_write,
+          vg_display_now() - r->start);
   fprintf(to, "Peak memory%s: %.0f MB\n",
          r->mesh.size > 1 ? " of a rank" : "", r->mesh.memory / 1e6);
 }
@@ -420,6 +425,10 @@ static void print_report(FILE *to, const struct run *r)
     print_count(to, "prisms", m->slices.n_cell[VG_SLICE_PRI]);
   if (r->layers.is_on) vg_report_whole_text(to, &m->judge);
   else vg_report_mesh_text(to, &m->judge, 0);
+  if (m->parts) {
+    fprintf(to, "\nParts for the solver\n");
+    vg_report_solver_text(to, &m->solver);
+  }
   print_times(to, r);
   print_files(to, r);
 }

@@ -12,6 +12,7 @@
 #include "core/judge/quality.h"
 #include "core/mesh/mesh.h"
 #include "core/surface/surface_check.h"
+#include "partition/solver/solver.h"
 
 #define VG_SHOWN_DEFECTS 20   /* first ones of a kind put in words */
 #define VG_SHOWN_FACES 3      /* as much of bad triangles */
@@ -70,6 +71,10 @@ void vg_report_layers_text(FILE *to, const struct vg_layer_stage *s,
                            const struct vg_mesh *surface);
 json_t *vg_report_layers_json(const struct vg_layer_stage *s,
                               const struct vg_mesh *surface);
+
+/** Parts for the solver: balance, borders, stacks. */
+void vg_report_solver_text(FILE *to, const struct vg_solver_report *r);
+json_t *vg_report_solver_json(const struct vg_solver_report *r);
 
 /** Limits that are not met, one line each. */
 void vg_report_missed_text(FILE *to, const struct vg_layer_stage *s,

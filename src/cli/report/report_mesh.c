@@ -246,6 +246,25 @@ json_t *vg_report_mesh_json(const struct vg_mesh_report *r)
   return o;
 }
 
+static void other_text(FILE *to, const struct vg_fill_report *r)
+{
+  size_t back = r->n_other_failed + r->n_other_ended + r->n_other_wrong;
+  char a[32], b[32], c[32];
+
+  if (!r->n_other && !back) return;
+  fprintf(to, "  parts filled by the other mesher %s: %s cells in %.2f s (%s "
+          "cells/s)\n", vg_cli_count(r->n_other, a),
+          vg_cli_count(r->n_other_cell, b), r->time_other,
+          vg_cli_count((unsigned long long)
+                       (r->time_other > 0 ? (double)r->n_other_cell /
+                                              r->time_other : 0), c));
+  if (back)
+    fprintf(to, "  parts that it did not fill, and the built-in one did: %zu "
+            "(%zu given back, %zu crashed\n  or without end, %zu not filled "
+            "as they should be)\n", back, r->n_other_failed,
+            r->n_other_ended, r->n_other_wrong);
+}
+
 void vg_report_fill_text(FILE *to, const struct vg_fill_report *r,
                          size_t n_cell)
 {
@@ -259,6 +278,7 @@ void vg_report_fill_text(FILE *to, const struct vg_fill_report *r,
           vg_cli_count(r->n_surface_face_lost, a),
           vg_cli_count(r->n_pocket, b), r->n_pocket_cell, r->n_retry,
           r->whole_void ? "; a whole void was closed by TetGen" : "");
+  other_text(to, r);
   if (r->n_list_cut)
     fprintf(to, "  points with more neighbours than are looked at: %zu (some "
             "may be too near to each other)\n", r->n_list_cut);
@@ -285,6 +305,11 @@ json_t *vg_report_fill_json(const struct vg_fill_report *r, size_t n_cell)
     { "pockets", r->n_pocket },
     { "pocket_cells", r->n_pocket_cell }, { "retries", r->n_retry },
     { "steiner_points", r->n_steiner }, { "placed", r->n_placed },
+    { "parts_by_other_mesher", r->n_other },
+    { "cells_by_other_mesher", r->n_other_cell },
+    { "parts_given_back", r->n_other_failed },
+    { "parts_crashed", r->n_other_ended },
+    { "parts_not_valid", r->n_other_wrong },
     { "inserted", r->n_inserted }, { "refused", r->n_refused },
     { "smoothed", r->n_smoothed }, { "swapped", r->n_flip },
     { "collapsed", r->n_collapse }, { "split", r->n_split },
@@ -295,9 +320,10 @@ json_t *vg_report_fill_json(const struct vg_fill_report *r, size_t n_cell)
   for (size_t i = 0; i < sizeof row / sizeof *row; i++)
     json_object_set_new(o, row[i].name, json_integer((json_int_t)row[i].n));
   json_object_set_new(o, "whole_void", json_boolean(r->whole_void));
-  json_object_set_new(o, "seconds", json_pack("{s:f s:f s:f s:f s:f}",
-    "boundary", r->time_boundary, "place", r->time_place, "insert",
-    r->time_insert, "optimise", r->time_optimise, "total", r->time_total));
+  json_object_set_new(o, "seconds", json_pack("{s:f s:f s:f s:f s:f s:f}",
+    "other_mesher", r->time_other, "boundary", r->time_boundary, "place",
+    r->time_place, "insert", r->time_insert, "optimise", r->time_optimise,
+    "total", r->time_total));
   json_object_set_new(o, "cells_per_second",
                       real(r->time_total > 0
                            ? (double)n_cell / r->time_total : 0));

@@ -359,6 +359,20 @@ static vg_status write_format(const struct writing *w, const char *path,
   return vg_format_write(path, &w->whole, err);
 }
 
+static vg_status write_foam_parts(const struct writing *w, const char *path,
+                                  struct vg_error *err)
+{
+  size_t n = w->whole.n_tet + w->whole.n_pyr + w->whole.n_pri;
+  uint32_t *part = vg_alloc(n, sizeof *part);
+  vg_status st = part ? vg_slices_collect_parts(w->mesh, w->threads, part, err)
+                      : vg_fail_memory(err, "the parts of a mesh");
+
+  if (st >= 0)
+    st = vg_foam_write_parts(path, n, part, w->mesh->n_part, err);
+  free(part);
+  return st;
+}
+
 static vg_status write_alone(struct writing *w, const char *item,
                              struct vg_error *err)
 {
@@ -382,6 +396,7 @@ static vg_status write_alone(struct writing *w, const char *item,
   if (st >= 0) {
     w->o->file[w->o->n_file - 1].is_case = 1;
     st = vg_foam_write(path, &w->whole, &options, err);
+    if (st >= 0 && w->mesh->n_part) st = write_foam_parts(w, path, err);
   }
   free(path);
   return st;
@@ -451,6 +466,14 @@ static vg_status write_slices(struct writing *w, const char *item,
   return st;
 }
 
+static vg_status write_parts(struct writing *w, struct vg_error *err)
+{
+  char form[32];
+
+  snprintf(form, sizeof form, "part.%u", w->mesh->n_part);
+  return write_slices(w, form, err);
+}
+
 static vg_status write_item(struct writing *w, const char *item,
                             struct vg_error *err)
 {
@@ -510,6 +533,7 @@ vg_status vg_outputs_mesh(struct vg_outputs *o, const struct vg_problem *p,
   for (size_t i = 0; i < o->n_item && st >= 0; i++)
     if (!vg_slices_is_ugrid(o->item[i]))
       st = write_item(&w, o->item[i], err);
+  if (st >= 0 && mesh->n_part) st = write_parts(&w, err);
   if (st >= 0 && !o->is_guest && layers->is_on)
     st = write_walls(o, p, layers, err);
   if (st >= 0 && !o->is_guest) st = write_deck(o, p, err);

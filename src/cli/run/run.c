@@ -172,7 +172,7 @@ static struct vg_digest job_digest(const struct vg_problem *p,
                                    const struct vg_sizing *sizing)
 {
   const struct vg_settings *s = &p->settings;
-  struct vg_digest d = {{0, 0}};
+  struct vg_digest d = {{0, 0}}, plugin;
   double size[5] = {s->scale, s->growth, s->hmin, s->hmax,
                     (double)s->surface_sizes};
   int64_t cut[5] = {s->leaf_cells, s->levels, s->split_direction,
@@ -181,6 +181,9 @@ static struct vg_digest job_digest(const struct vg_problem *p,
   d = vg_digest_of(d, strlen(vg_source_digest), vg_source_digest);
   d = vg_digest_of(d, sizeof size, size);
   d = vg_digest_of(d, sizeof cut, cut);
+  d = vg_digest_of(d, strlen(s->mesher), s->mesher);
+  if (vg_run_mesher_digest(s, &plugin))
+    d = vg_digest_of(d, sizeof plugin, &plugin);
   for (size_t i = 0; i < s->n_source; i++) {
     const struct vg_source *q = &s->source[i];
     double v[19] = {q->kind, q->h0, q->h1, q->r0, q->r1, q->growth, q->an};
@@ -241,6 +244,17 @@ static vg_status say_stopped(const struct vg_run *r, struct vg_error *err)
 
 /* --- the field ----------------------------------------------------------- */
 
+/* Of the leaves, where it is not the kernel. */
+static vg_status open_mesher(const struct vg_run *r, const struct vg_settings *s,
+                             struct vg_mesher_pool **out, struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  if (strcmp(s->mesher, "builtin") != 0)
+    st = vg_mesher_open(s->mesher, out, err);
+  return vg_comm_agree(r->comm, st, err);
+}
+
 static vg_status fill(struct vg_run *r, const struct vg_problem *p,
                       const struct vg_mesh *boundary,
                       const struct vg_sizing *sizing, struct vg_display *show,
@@ -264,6 +278,7 @@ static vg_status fill(struct vg_run *r, const struct vg_problem *p,
   o.progress = vg_display_update;
   o.stop = vg_display_stop;
   o.user = show;
+  VG_TRY(open_mesher(r, s, &o.mesher, err));
   vg_display_update(show, "load", 0, 0);
   VG_TRY(open_store(r, p, boundary, sizing, &o, err));
   o.store = r->store;
@@ -276,6 +291,7 @@ static vg_status fill(struct vg_run *r, const struct vg_problem *p,
     r->n_field_cell =
       vg_partition_slices(r->field)->n_cell[VG_SLICE_TET];
 done:
+  vg_mesher_close(o.mesher);
   return st;
 }
 
@@ -451,18 +467,45 @@ done:
   return st;
 }
 
+/* Solver_parts of the mesh that is about to be written. */
+static vg_status part_for_solver(struct vg_run *r, const struct vg_problem *p,
+                                 struct vg_display *show, struct vg_error *err)
+{
+  struct vg_solver_options o = VG_SOLVER_OPTIONS_INIT;
+  double t = vg_display_now();
+  vg_status st;
+
+  if (!p->settings.solver_parts) return VG_OK;
+  vg_display_update(show, "partition", vg_run_cells(r), 0);
+  o.n_part = (uint64_t)p->settings.solver_parts;
+  o.threads = r->threads;
+  st = vg_solver_part_slices(r->comm, &r->slices, &o, &r->parted, &r->parts,
+                             &r->solver, err);
+  r->time_parts = vg_display_now() - t;
+  return st;
+}
+
+const struct vg_slices *vg_run_slices(const struct vg_run *r)
+{
+  return r->parts ? &r->parted : &r->slices;
+}
+
 vg_status vg_run_mesh(struct vg_run *r, const struct vg_problem *p,
                       struct vg_layer_stage *layers, struct vg_display *show,
                       struct vg_error *err)
 {
+  vg_status st;
+
   r->threads = p->settings.threads ? (int)p->settings.threads
                                    : vg_comm_default_threads(r->comm);
-  return layers->is_on ? mesh_layers(r, p, layers, show, err)
-                       : mesh_plain(r, p, show, err);
+  st = layers->is_on ? mesh_layers(r, p, layers, show, err)
+                     : mesh_plain(r, p, show, err);
+  return st < 0 ? st : part_for_solver(r, p, show, err);
 }
 
 void vg_run_release(struct vg_run *r, int success)
 {
+  vg_solver_slices_close(r->parts);
   vg_layer_slices_close(r->layers);
   vg_partition_free(r->field);
   vg_effects_release(&r->effects);

@@ -15,6 +15,7 @@
 #include "core/judge/judge_slices.h"
 #include "layers/expand/slices.h"
 #include "partition/advance/advance.h"
+#include "partition/solver/solver.h"
 
 /** What does not change the mesh. */
 struct vg_run_options {
@@ -40,6 +41,9 @@ struct vg_run {
   struct vg_store_report stored;
   struct vg_layer_slices *layers;  /* NULL without layers */
   struct vg_slices slices;   /* the mesh */
+  struct vg_slices parted;   /* with parts for the solver, where asked for */
+  struct vg_solver_slices *parts;
+  struct vg_solver_report solver;
   uint64_t n_field_cell;
   struct vg_mesh_report judge, field_judge;  /* of all; with layers: of the
                                                  field */
@@ -47,6 +51,7 @@ struct vg_run {
   double time_size, time_layers, time_judge;
   double time_put;           /* files written while slices are judged */
   double time_fill;          /* cuts, leaves and repairs */
+  double time_parts;
   size_t common;             /* bytes of sizes, one copy on the node */
   double memory;             /* bytes, of the rank that needs most */
   double memory_sum;         /* of all, what a node has in common once */
@@ -70,6 +75,9 @@ vg_status vg_run_mesh(struct vg_run *r, const struct vg_problem *p,
  * Whether it is this one shows later. Collective. */
 vg_status vg_run_resumable(struct vg_run *r, struct vg_error *err);
 
+/** The mesh as it is written. */
+const struct vg_slices *vg_run_slices(const struct vg_run *r);
+
 /** Cells of all kinds. */
 uint64_t vg_run_cells(const struct vg_run *r);
 
@@ -83,6 +91,9 @@ void vg_run_release(struct vg_run *r, int success);
  * frees them. NULL: no memory. */
 char *vg_run_settings(const struct vg_settings *s,
                       const struct vg_mesh *boundary);
+
+/** Digest of the plug-in that is to mesh; 0: it is none, or cannot be read. */
+int vg_run_mesher_digest(const struct vg_settings *s, struct vg_digest *d);
 
 /** cli/run/report_partition.c: cuts, tasks, balance. */
 void vg_report_partition_text(FILE *to, const struct vg_run *r);

@@ -1,16 +1,19 @@
 /* What decides the cells of a run, as lines for its run directory: a refused
  * resume shows which of them differ. */
 #define _GNU_SOURCE
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "base/version.h"
 #include "cli/run/run.h"
 
 /* These may change from one part of a run to the next. */
 static const char *const free_to_change[] = {
-  "threads", "cad_seconds", "write", "ugrid_tail", "max_cells", "min_full",
+  "threads", "cad_seconds", "write", "ugrid_tail", "solver_parts", "max_cells",
+  "min_full",
   "min_any", "min_height", "max_first_error", "max_top_ratio" };
 
 static int is_free(const char *name)
@@ -62,6 +65,25 @@ static void put_boundary(FILE *to, const struct vg_mesh *m)
           m->n_point, m->n_tri, (unsigned)d.word[0]);
 }
 
+int vg_run_mesher_digest(const struct vg_settings *s, struct vg_digest *d)
+{
+  uint64_t bytes;
+  int fd = strchr(s->mesher, '/') ? open(s->mesher, O_RDONLY) : -1, bad;
+
+  if (fd < 0) return 0;
+  bad = vg_digest_file(fd, d, &bytes);
+  close(fd);
+  return !bad;
+}
+
+static void put_mesher(FILE *to, const struct vg_settings *s)
+{
+  struct vg_digest d = {{0, 0}};
+
+  if (vg_run_mesher_digest(s, &d))
+    fprintf(to, "plug-in of the mesher=digest %08x\n", (unsigned)d.word[0]);
+}
+
 char *vg_run_settings(const struct vg_settings *s,
                       const struct vg_mesh *boundary)
 {
@@ -78,6 +100,7 @@ char *vg_run_settings(const struct vg_settings *s,
   put_values(to, "farfield ", far->column, far->n_column, &s->farfield);
   put_table(to, s, VG_TABLE_LAYERS);
   put_table(to, s, VG_TABLE_SOURCES);
+  put_mesher(to, s);
   put_boundary(to, boundary);
   if (fclose(to)) {
     free(text);

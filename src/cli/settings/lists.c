@@ -107,3 +107,16 @@ vg_status vg_write_list_check(const char *name, const char *list,
   (void)name;
   return strcmp(list, "auto") ? vg_write_list(list, &n, item, err) : VG_OK;
 }
+
+vg_status vg_mesher_name_check(const char *name, const char *mesher,
+                               struct vg_error *err)
+{
+  static const char *const known[] = { "builtin", "tetgen", "hxt" };
+
+  for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+    if (!strcmp(mesher, known[i])) return VG_OK;
+  if (strchr(mesher, '/')) return VG_OK;
+  return vg_fail(err, VG_ERR_INPUT, "%s: '%s' is none; known are builtin, "
+                 "tetgen, hxt and paths of plug-ins, which have a '/' in them, "
+                 "as in ./it.so", name, mesher);
+}

@@ -26,6 +26,11 @@ enum { VG_WRITE_ITEMS = 16, VG_WRITE_NAME = 24 };
 vg_status vg_write_list(const char *list, size_t *n,
                         char (*item)[VG_WRITE_NAME], struct vg_error *err);
 
+/** "builtin", "tetgen", "hxt", or a path with a '/' in it: a check of settings.
+ */
+vg_status vg_mesher_name_check(const char *name, const char *mesher,
+                               struct vg_error *err);
+
 /** The same, or "auto", as a check of settings. */
 vg_status vg_write_list_check(const char *name, const char *list,
                               struct vg_error *err);

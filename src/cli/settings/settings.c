@@ -108,6 +108,15 @@ static const struct vg_param params[] = {
                         "pyramids and tetrahedra)" },
   { "ugrid_tail", AT(ugrid_tail), .type = VG_PARAM_FLAG, .unit = "",
     .help = "number of layer tetrahedra behind the cells of a .ugrid" },
+  { "solver_parts", AT(solver_parts), .type = VG_PARAM_COUNT,
+    .hi = 2147483647, .unit = "parts", .help = "share the cells out to so many "
+    "processes of a solver, no stack of layer cells cut: PROJECT.part.N, and "
+    "with the mesh in .vtu and OpenFOAM's cellDecomposition; 0: not" },
+  { "mesher", AT(mesher), .type = VG_PARAM_TEXT, .unit = "",
+    .check = vg_mesher_name_check, .help = "what fills these parts: builtin, "
+    "tetgen, hxt (of gmsh 4.8, where it is installed), or the path of a "
+    "plug-in, as in ./it.so; what it does not fill as it should, builtin "
+    "fills" },
   { "leaf_cells", AT(leaf_cells), .type = VG_PARAM_COUNT, .hi = 9e15,
     .unit = "cells", .help = "the space outside the layers is cut into parts "
     "of about so many cells, filled in parallel; 0: not at all" },
@@ -430,6 +439,7 @@ void vg_settings_default(struct vg_settings *s)
   s->leaf_cells = VG_LEAF_CELLS;
   snprintf(s->title, sizeof s->title, "untitled");
   snprintf(s->write, sizeof s->write, "auto");
+  snprintf(s->mesher, sizeof s->mesher, "builtin");
   default_layers(&s->layer);
   vg_settings_row_default(VG_TABLE_FARFIELD, &s->farfield);
 }

@@ -16,6 +16,7 @@
 
 #define VG_TITLE_MAX 80
 #define VG_WRITE_MAX 160
+#define VG_MESHER_MAX 240   /* bytes of a path */
 #define VG_LIST_MAX 240    /* bytes of a list of patches; no text is longer */
 
 /** How the domain around the given surface is completed. */
@@ -105,6 +106,8 @@ struct vg_settings {
   int swap;                        /* enum vg_answer: swap edges */
   int cells;                       /* enum vg_layer_cells */
   int ugrid_tail;
+  int64_t solver_parts;            /* 0: none */
+  char mesher[VG_MESHER_MAX];      /* of leaves */
   int64_t leaf_cells, levels;      /* how far the void is cut up */
   int64_t split_direction;         /* 0: best; 1 to 3: x, y, z first */
   int constant_direction;

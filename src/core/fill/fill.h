@@ -35,6 +35,11 @@ struct vg_fill_report {
   size_t n_smoothed, n_flip, n_collapse, n_split; /* optimisation steps */
   size_t n_left;           /* bad cells into which no point was tried to be put:
                               too many of them (core/optimise/optimise.h) */
+  size_t n_other, n_other_cell; /* voids filled by another mesher, their cells */
+  size_t n_other_failed;   /* voids that another mesher gave back, */
+  size_t n_other_ended;    /* that its process ended in, or would not end, */
+  size_t n_other_wrong;    /* and that it did not fill as it should have */
+  double time_other;       /* seconds in another mesher */
   double time_boundary, time_place, time_insert, time_optimise, time_total;
 };
 

@@ -7,7 +7,7 @@
 #ifndef VG_CORE_JUDGE_JUDGE_SLICES_PARTS_H
 #define VG_CORE_JUDGE_JUDGE_SLICES_PARTS_H
 
-#include "core/judge/judge_rendezvous.h"
+#include "base/rendezvous.h"
 #include "core/judge/judge_slices.h"
 #include "core/judge/quality_parts.h"
 

@@ -111,3 +111,29 @@ done:
   vg_mesh_release(&m);
   return st;
 }
+
+struct parts { const struct vg_slices *s; uint32_t *part; };
+
+static vg_status collect_parts(void *context, const struct vg_slice *slice,
+                               struct vg_error *err)
+{
+  const struct parts *p = context;
+  uint64_t first = 0;
+
+  (void)err;
+  for (int k = 0; k < VG_SLICE_KINDS; k++) {
+    if (slice->n_cell[k])
+      memcpy(p->part + first + slice->cell_at[k], slice->part[k],
+             slice->n_cell[k] * sizeof *p->part);
+    first += p->s->n_cell[k];
+  }
+  return VG_OK;
+}
+
+vg_status vg_slices_collect_parts(const struct vg_slices *s, int threads,
+                                  uint32_t *part, struct vg_error *err)
+{
+  struct parts p = { s, part };
+
+  return vg_slices_each(s, threads, collect_parts, &p, err);
+}

@@ -29,6 +29,8 @@ struct vg_slice {
   size_t n_cell[VG_SLICE_KINDS];
   const uint32_t *cell[VG_SLICE_KINDS]; /* [n_cell][4, 5, 6] local points, in
                                            the node order of core/mesh/mesh.h */
+  const uint32_t *part[VG_SLICE_KINDS]; /* [n_cell] for the solver, < n_part;
+                                           NULL where slices have no n_part */
   uint32_t domain;           /* number of the subdomain; 0 for layers */
   uint8_t kind;              /* 0: layers, 1: leaf, 2: zone, 3: repair */
   void *keep;                /* the server's */
@@ -40,6 +42,7 @@ struct vg_slices {
   uint64_t n_boundary_point; /* they come first */
   uint64_t n_layer_point;    /* index behind the last layer point */
   uint64_t n_layer_cell[VG_SLICE_KINDS]; /* first of their kind */
+  uint32_t n_part;           /* parts for the solver; 0: none */
   /* Its boundary on every rank: patches, triangles and quadrilaterals with
    * indices of the mesh; no points, no cells. */
   const struct vg_mesh *boundary;
@@ -67,5 +70,10 @@ vg_status vg_slices_each(const struct vg_slices *s, int threads,
  * meshes. Boundary included. VG_ERR_MEMORY. */
 vg_status vg_slices_collect(const struct vg_slices *s, int threads,
                             struct vg_mesh *out, struct vg_error *err);
+
+/** Likewise the parts of all cells, in the order of kinds, where n_part > 0.
+ * part: [cells of the mesh]. */
+vg_status vg_slices_collect_parts(const struct vg_slices *s, int threads,
+                                  uint32_t *part, struct vg_error *err);
 
 #endif

@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "base/memory.h"
+#include "core/mesh/cell_links.h"
 #include "core/geometry/vector.h"
 #include "io/mesh/foam_parts.h"
 #include "io/mesh/patch_words.h"
@@ -105,6 +106,43 @@ static int is_planar(const struct vg_mesh *m, const size_t *face, size_t n)
   return 1;
 }
 
+/* --- faces --- */
+
+/* Half-faces of `cell` whose mates are in higher cells, by rising mate:
+ * upper-triangular order. Returns how many, at most 6. */
+static int upper(const struct vg_cell_links *f, uint32_t cell,
+                 uint32_t code[6], uint32_t neighbour[6])
+{
+  size_t at = vg_first_half(f, cell);
+  int n_face = vg_half_faces(f, cell), n = 0;
+
+  for (int i = 0; i < n_face; i++) {
+    uint32_t mate = f->link[at + (size_t)i];
+    int k = n;
+
+    if (mate == VG_NO_CELL || mate >> 3 <= cell) continue;
+    for (; k > 0 && neighbour[k - 1] > mate >> 3; k--) {
+      code[k] = code[k - 1];
+      neighbour[k] = neighbour[k - 1];
+    }
+    code[k] = cell << 3 | (uint32_t)i;
+    neighbour[k] = mate >> 3;
+    n++;
+  }
+  return n;
+}
+
+static vg_status link_faces(struct vg_cell_links *f, const struct vg_mesh *m,
+                            const char *name, struct vg_error *err)
+{
+  vg_status st = vg_cell_links_build(f, m, 0, name, err);
+
+  if (st < 0 || f->n_corner <= INT32_MAX) return st;
+  return vg_fail(err, VG_ERR_UNSUPPORTED, "%s: %llu corners of faces are "
+                 "beyond OpenFOAM's 32-bit labels", name,
+                 (unsigned long long)f->n_corner);
+}
+
 /* --- lists --- */
 
 enum { BUFFER = 4096 };
@@ -145,11 +183,11 @@ static void close_list(struct labels *l)
   vg_output_text(l->out, ")\n");
 }
 
-static void put_face(struct labels *l, const struct vg_foam_faces *f,
+static void put_face(struct labels *l, const struct vg_cell_links *f,
                      uint32_t code)
 {
   uint32_t node[4];
-  int width = vg_foam_face_nodes(f, code, node);
+  int width = vg_half_face_nodes(f, code, node);
 
   if (!l->is_ascii) {
     for (int k = 0; k < width; k++) put_label(l, node[k]);
@@ -167,7 +205,7 @@ static void put_face(struct labels *l, const struct vg_foam_faces *f,
 
 struct writing {
   const struct vg_mesh *m;
-  struct vg_foam_faces faces;
+  struct vg_cell_links faces;
   size_t *start, *order;        /* boundary faces by patch */
   const char *folder;
   int is_ascii;
@@ -202,7 +240,7 @@ static void put_points(struct writing *w)
 /* Owners and neighbours, and for a binary mesh where each face starts. */
 static void put_cells(struct writing *w, struct labels l[3])
 {
-  const struct vg_foam_faces *f = &w->faces;
+  const struct vg_cell_links *f = &w->faces;
   uint64_t n_boundary = w->m->n_tri + w->m->n_quad;
   uint32_t code[6], neighbour[6], node[4], at = 0;
 
@@ -215,14 +253,14 @@ static void put_cells(struct writing *w, struct labels l[3])
   open_list(l + 2, f->n_internal);
   if (!w->is_ascii) open_list(l, f->n_internal + n_boundary + 1);
   for (uint32_t cell = 0; cell < f->n_cell; cell++) {
-    int n = vg_foam_upper(f, cell, code, neighbour);
+    int n = upper(f, cell, code, neighbour);
 
     for (int i = 0; i < n; i++) {
       put_label(l + 1, cell);
       put_label(l + 2, neighbour[i]);
       if (w->is_ascii) continue;
       put_label(l, at);
-      at += (uint32_t)vg_foam_face_nodes(f, code[i], node);
+      at += (uint32_t)vg_half_face_nodes(f, code[i], node);
     }
   }
   for (size_t i = 0; i < n_boundary; i++) {
@@ -240,13 +278,13 @@ static void put_cells(struct writing *w, struct labels l[3])
 
 static void put_faces(struct writing *w, struct labels *l)
 {
-  const struct vg_foam_faces *f = &w->faces;
+  const struct vg_cell_links *f = &w->faces;
   uint64_t n_boundary = w->m->n_tri + w->m->n_quad;
   uint32_t code[6], neighbour[6];
 
   open_list(l, w->is_ascii ? f->n_internal + n_boundary : f->n_corner);
   for (uint32_t cell = 0; cell < f->n_cell; cell++) {
-    int n = vg_foam_upper(f, cell, code, neighbour);
+    int n = upper(f, cell, code, neighbour);
 
     for (int i = 0; i < n; i++) put_face(l, f, code[i]);
   }
@@ -356,7 +394,7 @@ vg_status vg_foam_write(const char *case_dir, const struct vg_mesh *m,
                         struct vg_error *err)
 {
   const struct vg_output none = VG_OUTPUT_INIT;
-  struct writing w = { .m = m, .faces = VG_FOAM_FACES_INIT,
+  struct writing w = { .m = m, .faces = VG_CELL_LINKS_INIT,
                        .is_ascii = options && options->is_ascii };
   char *constant = vg_foam_path(case_dir, "constant");
   vg_status st;
@@ -369,7 +407,7 @@ vg_status vg_foam_write(const char *case_dir, const struct vg_mesh *m,
     goto done;
   }
   VG_TRY(vg_boundary_by_patch(m, &w.start, &w.order, err));
-  VG_TRY(vg_foam_faces_build(&w.faces, m, case_dir, err));
+  VG_TRY(link_faces(&w.faces, m, case_dir, err));
   st = write_into(case_dir, constant, &w, err);
   if (st < 0) {
     /* Leave no folders behind that are empty. */
@@ -377,7 +415,7 @@ vg_status vg_foam_write(const char *case_dir, const struct vg_mesh *m,
     rmdir(case_dir);
   }
 done:
-  vg_foam_faces_release(&w.faces);
+  vg_cell_links_release(&w.faces);
   free(w.start);
   free(w.order);
   free(constant);

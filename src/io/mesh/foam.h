@@ -19,6 +19,7 @@
 #include "core/mesh/mesh.h"
 
 #define VG_FOAM_SUFFIX "openfoam"
+#define VG_FOAM_PARTS "cellDecomposition"
 
 struct vg_foam_options {
   int is_ascii;      /* 1: text with all digits; 0: binary, host byte order */
@@ -28,7 +29,7 @@ struct vg_foam_options {
 int vg_foam_word(const char *word, struct vg_foam_options *options);
 
 /** Write the mesh into a case folder, made where absent. An earlier mesh in
- * it is replaced, with the zones, sets and addressing that belong to it; all
+ * it is replaced, with the zones, sets, parts and addressing of it; all
  * else in the folder stays. The new mesh appears when it is complete.
  * @param options  NULL: binary
  * Returns VG_ERR_INPUT when the cells and the boundary do not close (names
@@ -38,6 +39,14 @@ int vg_foam_word(const char *word, struct vg_foam_options *options);
 vg_status vg_foam_write(const char *case_dir, const struct vg_mesh *m,
                         const struct vg_foam_options *options,
                         struct vg_error *err);
+
+/** Write which part each cell of a case belongs to, for decomposePar with the
+ * method "manual": constant/cellDecomposition, and system/decomposeParDict
+ * where absent.
+ * @param part  [n_cell] 0 .. n_part - 1, in the order of the cells */
+vg_status vg_foam_write_parts(const char *case_dir, size_t n_cell,
+                              const uint32_t *part, size_t n_part,
+                              struct vg_error *err);
 
 /** Move what vg_foam_write made in one folder into another on the same file
  * system, as vg_foam_write would have put it there; the first folder is

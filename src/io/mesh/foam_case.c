@@ -51,6 +51,8 @@ static const struct {
 };
 #define N_SYSTEM (sizeof system_file / sizeof *system_file)
 
+#define DECOMPOSE_DICT "decomposeParDict"
+
 char *vg_foam_path(const char *a, const char *b)
 {
   size_t n = strlen(a), m = strlen(b) + 1;
@@ -250,6 +252,36 @@ static char *inside(const char *case_dir, const char *a, const char *b)
   return both;
 }
 
+/* Moves a file of the one case to the other, where it is absent when
+ * keep_old; one that is not made leaves none when not. */
+static vg_status place_file(const char *from_case, const char *to_case,
+                            const char *folder, const char *name,
+                            int keep_old, struct vg_error *err)
+{
+  char *from = inside(from_case, folder, name);
+  char *to = inside(to_case, folder, name);
+  vg_status st = VG_OK;
+
+  if (!from || !to) st = vg_fail_memory(err, "a file name");
+  else if (keep_old && !access(to, F_OK)) st = VG_OK;
+  else if (!access(from, F_OK)) st = move(from, to, err);
+  else if (!keep_old) unlink(to);
+  free(from);
+  free(to);
+  return st;
+}
+
+/* Parts of the mesh that was there before are none of this one. */
+static vg_status place_parts(const char *from_case, const char *to_case,
+                             struct vg_error *err)
+{
+  vg_status st = place_file(from_case, to_case, "constant", VG_FOAM_PARTS, 0,
+                            err);
+
+  return st < 0 ? st : place_file(from_case, to_case, "system",
+                                  DECOMPOSE_DICT, 1, err);
+}
+
 vg_status vg_foam_place(const char *from_case, const char *to_case,
                         struct vg_error *err)
 {
@@ -266,6 +298,7 @@ vg_status vg_foam_place(const char *from_case, const char *to_case,
   VG_TRY(vg_foam_folder(constant, err));
   VG_TRY(vg_foam_surroundings(to_case, err));
   VG_TRY(vg_foam_place_mesh(from, to, err));
+  VG_TRY(place_parts(from_case, to_case, err));
   vg_foam_remove(from_case);
 done:
   free(from);
@@ -291,9 +324,52 @@ void vg_foam_remove(const char *case_dir)
   for (size_t i = 0; i < N_SYSTEM; i++)
     drop(case_dir, "system", system_file[i].name);
   if (marker) drop(case_dir, marker, NULL);
+  drop(case_dir, "constant", VG_FOAM_PARTS);
+  drop(case_dir, "system", DECOMPOSE_DICT);
   drop(case_dir, "system", NULL);
   drop(case_dir, "constant", NULL);
   rmdir(case_dir);
   free(mesh);
   free(marker);
+}
+
+/* system/decomposeParDict where absent. */
+static vg_status put_dict(const char *case_dir, size_t n_part,
+                          struct vg_error *err)
+{
+  char *path = inside(case_dir, "system", DECOMPOSE_DICT), text[200];
+  vg_status st;
+
+  snprintf(text, sizeof text, "numberOfSubdomains %zu;\n"
+           "method          manual;\n"
+           "manualCoeffs    { dataFile \"" VG_FOAM_PARTS "\"; }\n", n_part);
+  st = path ? put_file(path, DECOMPOSE_DICT, text, err)
+            : vg_fail_memory(err, "a file name");
+  free(path);
+  return st;
+}
+
+vg_status vg_foam_write_parts(const char *case_dir, size_t n_cell,
+                              const uint32_t *part, size_t n_part,
+                              struct vg_error *err)
+{
+  struct vg_output out = VG_OUTPUT_INIT;
+  char *path = inside(case_dir, "constant", VG_FOAM_PARTS);
+  vg_status st;
+
+  if (!path) return vg_fail_memory(err, "a file name");
+  VG_TRY(vg_output_open(path, &out, err));
+  vg_foam_header(&out, "labelList", "constant", VG_FOAM_PARTS, 1, NULL);
+  vg_output_format(&out, "%zu\n(\n", n_cell);
+  for (size_t i = 0; i < n_cell; i++) {
+    vg_output_int(&out, part[i]);
+    vg_output_bytes(&out, "\n", 1);
+  }
+  vg_output_text(&out, ")\n");
+  VG_TRY(vg_output_commit(&out, err));
+  st = put_dict(case_dir, n_part, err);
+done:
+  vg_output_release(&out);
+  free(path);
+  return st;
 }

@@ -336,6 +336,19 @@ done:
   return st;
 }
 
+vg_status vg_format_layer_tets(const char *path, int *is_known, size_t *n,
+                               struct vg_error *err)
+{
+  const struct format *f = find(path, without_gz(path));
+
+  *is_known = 0;
+  if (f && f->read == vg_ugrid_read)
+    return vg_ugrid_layer_tets(path, is_known, n, err);
+  if (f && f->read == read_cogsg)
+    return vg_cogsg_layer_tets(path, is_known, n, err);
+  return VG_OK;
+}
+
 vg_status vg_format_write(const char *path, const struct vg_mesh *m,
                           struct vg_error *err)
 {

@@ -68,6 +68,12 @@ vg_status vg_mesh_read(const char *path, struct vg_mesh *out,
 vg_status vg_surface_read(const char *path, struct vg_mesh *out,
                           struct vg_read_info *info, struct vg_error *err);
 
+/** The number of tetrahedra in layers, the first ones of a file, where it tells
+ * that: a .cogsg does, a binary .ugrid with a tail too. *is_known says whether.
+ */
+vg_status vg_format_layer_tets(const char *path, int *is_known, size_t *n,
+                               struct vg_error *err);
+
 /** Write by the suffix of `path`. A .cogsg brings its .bc and .mapbc. */
 vg_status vg_format_write(const char *path, const struct vg_mesh *m,
                           struct vg_error *err);

@@ -478,6 +478,37 @@ done:
   return st;
 }
 
+vg_status vg_ugrid_layer_tets(const char *path, int *is_known, size_t *n,
+                              struct vg_error *err)
+{
+  struct vg_ugrid_kind kind;
+  struct vg_input in = VG_INPUT_INIT;
+  uint64_t count[7], at;
+  int32_t narrow = -1;
+  int64_t wide = -1;
+  vg_status st = VG_OK;
+
+  *is_known = 0;
+  if (!vg_ugrid_kind(path, &kind)) return not_a_name(path, err);
+  if (kind.is_text) return VG_OK;
+  VG_TRY(vg_input_open(path, &in, err));
+  if (fits(&in, &kind) != 1) goto done;
+  read_counts(&in, &kind, count);
+  at = body_bytes(&kind, count);
+  at += 7 * (uint64_t)kind.int_size + marker_bytes(&kind, at) +
+        (kind.is_record ? 4 : 0);   /* the tail's own marker */
+  if (at + (uint64_t)kind.int_size > in.size) goto done;
+  in.at = (size_t)at;
+  vg_input_order(&in, kind.is_big);
+  if (kind.int_size == 8) vg_input_i64(&in, 1, &wide, "the tail", NULL);
+  else if (vg_input_i32(&in, 1, &narrow, "the tail", NULL) >= 0) wide = narrow;
+  *is_known = wide >= 0 && (uint64_t)wide <= count[3];
+  if (*is_known) *n = (size_t)wide;
+done:
+  vg_input_release(&in);
+  return st;
+}
+
 /* --- writing --- */
 
 static void put_ints(struct vg_output *out, int int_size, size_t n,

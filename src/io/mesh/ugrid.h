@@ -46,6 +46,11 @@ vg_status vg_ugrid_parse(struct vg_input *in, const struct vg_ugrid_kind *kind,
 vg_status vg_ugrid_peek(const char *path, uint64_t count[7],
                         struct vg_error *err);
 
+/** The number of tetrahedra in layers, where a tail tells it (formats.md 2.2,
+ * item 10): *is_known says whether one does. Of text kinds no tail is read. */
+vg_status vg_ugrid_layer_tets(const char *path, int *is_known, size_t *n,
+                              struct vg_error *err);
+
 /** Write in the kind that the name says; no tail. Single precision kinds
  * round the coordinates: VG_ERR_GEOMETRY where that makes cells flat or
  * inverted, or points one. VG_ERR_UNSUPPORTED when counts exceed the integers

@@ -13,6 +13,9 @@
 enum vg_vtu_place { VG_VTU_POINT, VG_VTU_CELL };
 enum vg_vtu_type { VG_VTU_FLOAT64, VG_VTU_FLOAT32, VG_VTU_INT32 };
 
+/* Name of the cell data with parts for the solver. */
+#define VG_VTU_SOLVER_PART "solver_part"
+
 /** One array of results; data is borrowed. */
 struct vg_vtu_field {
   const char *name;

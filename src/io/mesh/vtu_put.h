@@ -8,7 +8,7 @@
 #include "io/mesh/vtu.h"
 #include "io/stream/stream.h"
 
-#define VG_VTU_FIELDS_MAX 2
+#define VG_VTU_FIELDS_MAX 3
 
 /* Where in the file the data of an array start. */
 struct vg_vtu_places {

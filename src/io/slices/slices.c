@@ -233,7 +233,7 @@ done:
 /* --- forms --- */
 
 enum form { FORM_NONE, FORM_UGRID, FORM_COGSG, FORM_VTU, FORM_PVTU, FORM_SU2,
-            FORM_BOUNDARY };
+            FORM_PART, FORM_BOUNDARY };
 
 static enum form form_of(const char *word)
 {
@@ -244,6 +244,7 @@ static enum form form_of(const char *word)
   if (!strcmp(word, "vtu")) return FORM_VTU;
   if (!strcmp(word, "pvtu")) return FORM_PVTU;
   if (!strcmp(word, "su2")) return FORM_SU2;
+  if (!strncmp(word, "part.", 5)) return FORM_PART;
   if (!strcmp(word, "mapbc") || !strcmp(word, "fun3d.mapbc") ||
       !strcmp(word, "surface.vtu"))
     return FORM_BOUNDARY;
@@ -320,6 +321,9 @@ vg_status vg_slices_write_with(struct vg_comm *comm,
       break;
     case FORM_SU2:
       st = vg_slices_write_su2(comm, s, path, o->threads, err);
+      break;
+    case FORM_PART:
+      st = vg_slices_write_part(comm, s, path, o->threads, err);
       break;
     case FORM_BOUNDARY:
       st = write_boundary(comm, s, path, stem, form, o->threads, err);

@@ -18,7 +18,7 @@ struct vg_slices_options {
 
 /** Can a mesh in slices be written in this form? The words of the run deck's
  * write list: "cogsg", every binary .ugrid ("lb8.ugrid", ...), "vtu", "pvtu",
- * "su2", and "mapbc", "fun3d.mapbc", "surface.vtu". */
+ * "su2", and "mapbc", "fun3d.mapbc", "surface.vtu"; and "part.N". */
 int vg_slices_can_write(const char *form);
 
 /** Write STEM.form, and what belongs to it: .bc and .mapbc of .cogsg (as
@@ -27,7 +27,9 @@ int vg_slices_can_write(const char *form);
  *
  * The same bytes as the writer of whole meshes makes, for any number of ranks
  * and threads; "vtu" has fields angle_min and radius_ratio when all cells are
- * tetrahedra. A .pvtu has no such twin: a piece for every run of slices of
+ * tetrahedra. Where the mesh has parts for the solver, vtu and pvtu have them
+ * as cell data solver_part, and part.N, with N their number, is a METIS file
+ * (io/mesh/metis_part.h). A .pvtu has no such twin: a piece for every run of slices of
  * about 2 M cells, in which each slice has its own points; cell data
  * `subdomain` and `kind` of the slices.
  * Memory: a slice and 1 MB per thread; boundary points for cogsg and mapbc.

@@ -90,6 +90,9 @@ vg_status vg_slices_write_vtu(struct vg_comm *comm, const struct vg_slices *s,
 vg_status vg_slices_write_su2(struct vg_comm *comm, const struct vg_slices *s,
                               const char *path, int threads,
                               struct vg_error *err);
+vg_status vg_slices_write_part(struct vg_comm *comm, const struct vg_slices *s,
+                               const char *path, int threads,
+                               struct vg_error *err);
 vg_status vg_slices_write_pvtu(struct vg_comm *comm, const struct vg_slices *s,
                                const char *stem,
                                const struct vg_slices_options *o,

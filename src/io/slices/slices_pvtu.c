@@ -17,9 +17,11 @@
 
 static const int cell_width[VG_SLICE_KINDS] = { 4, 5, 6 };
 
-static const struct vg_vtu_field field[2] = {
+/* The last one where the mesh has parts for the solver. */
+static const struct vg_vtu_field field[3] = {
   { "subdomain", VG_VTU_CELL, VG_VTU_INT32, 1, NULL },
-  { "kind", VG_VTU_CELL, VG_VTU_INT32, 1, NULL }
+  { "kind", VG_VTU_CELL, VG_VTU_INT32, 1, NULL },
+  { VG_VTU_SOLVER_PART, VG_VTU_CELL, VG_VTU_INT32, 1, NULL }
 };
 
 /* A slice that has cells, wherever it is: all ranks know all of them. */
@@ -32,13 +34,14 @@ struct entry {
 struct piece {
   char *path;
   struct vg_mesh mesh;       /* the frame */
+  size_t n_field;
   struct vg_vtu_places at;
   struct vg_shared_file *to;
   int is_placed;             /* the file has its name */
 };
 
 struct pieces {
-  size_t n_entry, n_piece;
+  size_t n_entry, n_piece, n_field;
   struct entry *entry;       /* in the order of the mesh */
   struct piece *piece;
 };
@@ -137,7 +140,7 @@ static void put_frame(const void *of, struct vg_output *out)
 {
   const struct piece *piece = of;
 
-  vg_vtu_put(out, &piece->mesh, field, 2);
+  vg_vtu_put(out, &piece->mesh, field, piece->n_field);
 }
 
 static vg_status plan(struct pieces *p, const char *stem, uint64_t run,
@@ -154,9 +157,11 @@ static vg_status plan(struct pieces *p, const char *stem, uint64_t run,
   if (!p->piece) return vg_fail_memory(err, "the pieces of a .pvtu");
   for (size_t i = 0; i < p->n_entry; i++)
     add_to_piece(&p->piece[p->entry[i].piece].mesh, &p->entry[i]);
-  for (size_t k = 0; k < p->n_piece; k++)
+  for (size_t k = 0; k < p->n_piece; k++) {
+    p->piece[k].n_field = p->n_field;
     if (!(p->piece[k].path = vg_slices_piece(stem, k)))
       return vg_fail_memory(err, "the output paths");
+  }
   return VG_OK;
 }
 
@@ -173,7 +178,7 @@ static vg_status open_pieces(struct vg_comm *comm, struct pieces *p,
     st = vg_slice_file_size(&f, &size, err);
     st = vg_comm_agree(comm, st, err);
     if (st < 0) return st;
-    vg_vtu_find(&piece->mesh, size, field, 2, &piece->at);
+    vg_vtu_find(&piece->mesh, size, field, piece->n_field, &piece->at);
     st = vg_shared_open(comm, piece->path, size, &piece->to, err);
     if (st < 0) piece->to = NULL;
   }
@@ -206,6 +211,10 @@ static void put_slice(const struct piece *piece, const struct entry *e,
                                     e->point_at, first, first_node };
 
     if (c.n) vg_vtu_put_cells(out, &piece->at, &c);
+    if (c.n && piece->n_field > 2) {
+      vg_output_seek(out, piece->at.field[2] + 4 * first);
+      vg_output_bytes(out, slice->part[k], 4 * c.n);
+    }
     first += c.n;
     first_node += c.n * (uint64_t)cell_width[k];
   }
@@ -286,7 +295,7 @@ static vg_status write_list(const struct pieces *p, const char *stem,
                    "Name=\"Points\" NumberOfComponents=\"3\"/>\n"
                    "  </PPoints>\n  <PCellData>\n",
                    vg_host_is_little() ? "LittleEndian" : "BigEndian");
-  for (int i = 0; i < 2; i++)
+  for (size_t i = 0; i < p->n_field; i++)
     vg_output_format(&out, "   <PDataArray type=\"Int32\" Name=\"%s\" "
                      "NumberOfComponents=\"1\"/>\n", field[i].name);
   vg_output_text(&out, "  </PCellData>\n");
@@ -326,7 +335,7 @@ vg_status vg_slices_write_pvtu(struct vg_comm *comm, const struct vg_slices *s,
                                const struct vg_slices_options *o,
                                struct vg_error *err)
 {
-  struct pieces p = { .n_entry = 0 };
+  struct pieces p = { .n_field = s->n_part ? 3 : 2 };
   vg_status st = list_all(comm, s, o->threads, &p, err);
 
   if (st >= 0)

@@ -9,8 +9,9 @@ static const int cell_width[VG_SLICE_KINDS] = { 4, 5, 6 };
 
 struct whole {
   struct vg_mesh mesh;       /* the frame */
-  struct vg_vtu_field field[2];
-  size_t n_field;            /* 0 or 2: quality of tetrahedra */
+  struct vg_vtu_field field[VG_VTU_FIELDS_MAX];
+  size_t n_field, n_quality; /* 0 or 2: quality of tetrahedra; then parts for
+                                the solver, if there are any */
   struct vg_vtu_places at;
 };
 
@@ -43,6 +44,15 @@ static void put_quality(const struct whole *w, const struct vg_slice *slice,
   }
 }
 
+static void put_parts(const struct whole *w, const struct vg_slice *slice,
+                      int kind, uint64_t first, struct vg_output *out)
+{
+  vg_output_seek(out, w->at.field[w->n_quality] +
+                 sizeof(uint32_t) * (first + slice->cell_at[kind]));
+  vg_output_bytes(out, slice->part[kind],
+                  slice->n_cell[kind] * sizeof(uint32_t));
+}
+
 static void put_whole_slice(void *of, const struct vg_slice *slice,
                             struct vg_output *out)
 {
@@ -62,10 +72,11 @@ static void put_whole_slice(void *of, const struct vg_slice *slice,
     };
 
     if (c.n) vg_vtu_put_cells(out, &w->at, &c);
+    if (c.n && w->n_field > w->n_quality) put_parts(w, slice, k, first, out);
     first += n[k];
     first_node += n[k] * (uint64_t)cell_width[k];
   }
-  if (w->n_field) put_quality(w, slice, out);
+  if (w->n_quality) put_quality(w, slice, out);
 }
 
 vg_status vg_slices_write_vtu(struct vg_comm *comm, const struct vg_slices *s,
@@ -77,11 +88,15 @@ vg_status vg_slices_write_vtu(struct vg_comm *comm, const struct vg_slices *s,
     .field = { { "angle_min", VG_VTU_CELL, VG_VTU_FLOAT32, 1, NULL },
                { "radius_ratio", VG_VTU_CELL, VG_VTU_FLOAT32, 1, NULL } }
   };
+  const struct vg_vtu_field parts = { VG_VTU_SOLVER_PART, VG_VTU_CELL,
+                                      VG_VTU_INT32, 1, NULL };
   struct vg_slice_file f = { path, 0, &w, put_whole_frame, put_whole_slice };
   uint64_t size = 0;
   vg_status st;
 
-  if (!(s->n_cell[VG_SLICE_PYR] + s->n_cell[VG_SLICE_PRI])) w.n_field = 2;
+  if (!(s->n_cell[VG_SLICE_PYR] + s->n_cell[VG_SLICE_PRI])) w.n_quality = 2;
+  w.n_field = w.n_quality;
+  if (s->n_part) w.field[w.n_field++] = parts;
   st = vg_slice_file_size(&f, &size, err);
   st = vg_comm_agree(comm, st, err);
   if (st < 0) return st;

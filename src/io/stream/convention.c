@@ -8,7 +8,7 @@
 #include "base/memory.h"
 #include "core/geometry/predicates.h"
 #include "core/geometry/vector.h"
-#include "io/stream/cell_faces.h"
+#include "core/mesh/cell_faces.h"
 
 vg_status vg_check_points(const char *path, size_t n, const double (*p)[3],
                           struct vg_error *err)

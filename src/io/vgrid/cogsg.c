@@ -195,6 +195,27 @@ static vg_status parse_volume(struct vg_input *in, struct vg_mesh *m,
   return VG_OK;
 }
 
+vg_status vg_cogsg_layer_tets(const char *path, int *is_known, size_t *n,
+                              struct vg_error *err)
+{
+  struct vg_input in = VG_INPUT_INIT;
+  struct layout l = layouts[0];
+  int32_t v[6];
+  vg_status st;
+
+  *is_known = 0;
+  VG_TRY(vg_input_open_head(path, 65536, &in, err));
+  VG_TRY(find_layout(&in, &l, err));
+  vg_input_order(&in, l.is_big);
+  in.at = l.marker8 ? 8 : 4;
+  VG_TRY(vg_input_i32(&in, 6, v, "header", err));
+  *is_known = v[5] >= 0 && v[5] <= v[1];
+  if (*is_known) *n = (size_t)v[5];
+done:
+  vg_input_release(&in);
+  return st;
+}
+
 vg_status vg_cogsg_parse(struct vg_input *cogsg, struct vg_input *bc,
                          struct vg_mesh *out, struct vg_cogsg_info *info,
                          struct vg_turned *turned, struct vg_error *err)

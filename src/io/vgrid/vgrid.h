@@ -35,6 +35,10 @@ vg_status vg_cogsg_read(const char *path, struct vg_mesh *out,
                         struct vg_cogsg_info *info, struct vg_turned *turned,
                         struct vg_error *err);
 
+/** nev, cells in layers, of a header alone; *is_known: it can be. */
+vg_status vg_cogsg_layer_tets(const char *path, int *is_known, size_t *n,
+                              struct vg_error *err);
+
 /** As vg_cogsg_read, from memory. bc may be NULL: no boundary triangles. */
 vg_status vg_cogsg_parse(struct vg_input *cogsg, struct vg_input *bc,
                          struct vg_mesh *out, struct vg_cogsg_info *info,

@@ -174,32 +174,35 @@ static vg_status sum_report(struct vg_partition *p, struct vg_comm *comm,
   struct vg_partition_report *r = &p->report;
   struct vg_fill_report *f = &r->fill;
   uint64_t whole = (uint64_t)f->whole_void;
-  double *time[5] = {&f->time_boundary, &f->time_place, &f->time_insert,
+  double *time[] = {&f->time_other, &f->time_boundary, &f->time_place, &f->time_insert,
                      &f->time_optimise, &f->time_total};
   size_t *count[] = {&f->n_surface_face_lost, &f->n_pocket,
     &f->n_pocket_cell, &f->n_retry, &f->n_steiner, &f->n_placed,
     &f->n_inserted, &f->n_refused, &f->n_smoothed, &f->n_flip,
-    &f->n_collapse, &f->n_split, &f->n_list_cut, &f->n_left};
+    &f->n_collapse, &f->n_split, &f->n_list_cut, &f->n_left, &f->n_other,
+    &f->n_other_cell, &f->n_other_failed, &f->n_other_ended,
+    &f->n_other_wrong};
   uint64_t *more[] = {&r->n_node, &r->n_pencil, &r->n_tile, &r->n_leaf,
     &r->n_zone_cell, &r->n_blocked, &r->n_crossing, &r->n_retry, &r->n_uncut,
     &r->n_outgrown, &r->n_open_left, &r->n_found,
     &r->n_widened, &r->n_widened_cell, &whole};
   enum { N_COUNT = sizeof count / sizeof *count,
-         N_MORE = sizeof more / sizeof *more };
-  uint64_t v[N_COUNT + N_MORE + 5];
+         N_MORE = sizeof more / sizeof *more,
+         N_TIME = sizeof time / sizeof *time };
+  uint64_t v[N_COUNT + N_MORE + N_TIME];
   double estimate = r->estimate;
   vg_status st;
 
   for (size_t k = 0; k < N_COUNT; k++) v[k] = *count[k];
   for (size_t k = 0; k < N_MORE; k++) v[N_COUNT + k] = *more[k];
-  for (size_t k = 0; k < 5; k++)
+  for (size_t k = 0; k < N_TIME; k++)
     v[N_COUNT + N_MORE + k] = (uint64_t)(*time[k] * 1e6);
   st = vg_comm_sum(comm, sizeof v / sizeof *v, v, err);
   if (st == VG_OK) st = vg_comm_max(comm, 1, &estimate, err);
   if (st < 0) return st;
   for (size_t k = 0; k < N_COUNT; k++) *count[k] = v[k];
   for (size_t k = 0; k < N_MORE; k++) *more[k] = v[N_COUNT + k];
-  for (size_t k = 0; k < 5; k++)
+  for (size_t k = 0; k < N_TIME; k++)
     *time[k] = 1e-6 * (double)v[N_COUNT + N_MORE + k];
   f->whole_void = (int)whole;
   r->estimate = estimate;

@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include "core/fill/fill.h"
+#include "core/mesher/fill_with.h"
 #include "partition/cut/lattice.h"
 #include "partition/store/store.h"
 
@@ -19,6 +20,7 @@ struct vg_partition_options {
                                 and leaves that outgrow it are cut again */
   int threads;
   int sweeps;                /* of optimisation */
+  struct vg_mesher_pool *mesher; /* for leaves; NULL: the built-in kernel */
   uint64_t max_cells;        /* refuse to make more; 0: no limit */
   uint64_t shuffle;          /* see engine.h */
   struct vg_store *store;    /* may be NULL */

@@ -31,7 +31,7 @@ static void made_release(struct made *m)
 }
 
 /* So that a resumed run reports what was done of the whole mesh. */
-enum { N_REPORT = 15 };
+enum { N_REPORT = 20 };
 
 static void report_put(struct vg_writer *w, const struct vg_fill_report *r)
 {
@@ -39,7 +39,8 @@ static void report_put(struct vg_writer *w, const struct vg_fill_report *r)
     r->n_surface_face_lost, r->n_pocket, r->n_pocket_cell, r->n_retry,
     (uint64_t)r->whole_void, r->n_steiner, r->n_placed, r->n_inserted,
     r->n_refused, r->n_smoothed, r->n_flip, r->n_collapse, r->n_split,
-    r->n_list_cut, r->n_left };
+    r->n_list_cut, r->n_left, r->n_other, r->n_other_cell,
+    r->n_other_failed, r->n_other_ended, r->n_other_wrong };
 
   vg_put(w, N_REPORT, sizeof *v, v);
 }
@@ -54,7 +55,9 @@ static void report_get(struct vg_reader *in, struct vg_fill_report *r)
     .n_retry = v[3], .whole_void = (int)v[4], .n_steiner = v[5],
     .n_placed = v[6], .n_inserted = v[7], .n_refused = v[8],
     .n_smoothed = v[9], .n_flip = v[10], .n_collapse = v[11],
-    .n_split = v[12], .n_list_cut = v[13], .n_left = v[14] };
+    .n_split = v[12], .n_list_cut = v[13], .n_left = v[14], .n_other = v[15],
+    .n_other_cell = v[16], .n_other_failed = v[17], .n_other_ended = v[18],
+    .n_other_wrong = v[19] };
 }
 
 static void made_put(struct vg_writer *w, const struct made *m)
@@ -239,6 +242,12 @@ static void add_report(struct vg_partition *p, const struct vg_fill_report *r)
   to->n_split += r->n_split;
   to->n_list_cut += r->n_list_cut;
   to->n_left += r->n_left;
+  to->n_other += r->n_other;
+  to->n_other_cell += r->n_other_cell;
+  to->n_other_failed += r->n_other_failed;
+  to->n_other_ended += r->n_other_ended;
+  to->n_other_wrong += r->n_other_wrong;
+  to->time_other += r->time_other;
   to->time_boundary += r->time_boundary;
   to->time_place += r->time_place;
   to->time_insert += r->time_insert;
@@ -392,7 +401,10 @@ static vg_status grow_leaf(struct vg_partition *p, const struct vg_node *n,
   memcpy(v.face, f->face, f->n_face * sizeof *v.face);
   v.n_point = f->n_point;
   v.n_face = f->n_face;
-  st = vg_grow(&v, p->sizing, &o, &m->report, err);
+  st = p->options.mesher
+         ? vg_mesher_fill(p->options.mesher, &v, p->sizing, &o, &m->report, err)
+         : VG_NOT_BETTER;
+  if (st == VG_NOT_BETTER) st = vg_grow(&v, p->sizing, &o, &m->report, err);
   *outgrown = limit && st == VG_ERR_UNSUPPORTED;
   if (st == VG_OK) {
     m->n_point = v.n_point - f->n_point;

@@ -6,12 +6,13 @@ Usage: vanguard COMMAND [OPTION...]
 Vanguard makes volume meshes for aerodynamics from closed surfaces: viscous
 layers on the walls, tetrahedra around them.
 
-  mesh     mesh the volume of a project, on threads and MPI ranks
-  check    judge a surface or a volume mesh
-  plan     forecast cells, memory and time before a project is meshed
-  sweep    mesh with many leaf sizes, ranks and threads, and compare
-  deck     write a run deck with all defaults
-  demo     write a complete example project
+  mesh      mesh the volume of a project, on threads and MPI ranks
+  check     judge a surface or a volume mesh
+  partition share a volume mesh out to a solver's processes
+  plan      forecast cells, memory and time before a project is meshed
+  sweep     mesh with many leaf sizes, ranks and threads, and compare
+  deck      write a run deck with all defaults
+  demo      write a complete example project
 
 'vanguard COMMAND --help' lists the options of a command, 'vanguard --version'
 shows the version. On several nodes: 'mpirun -n RANKS vanguard mesh -p PROJECT'.

@@ -1,4 +1,4 @@
-#include "core/judge/judge_rendezvous.h"
+#include "base/rendezvous.h"
 
 #include <stdatomic.h>
 #include <stdlib.h>

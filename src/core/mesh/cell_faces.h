@@ -1,8 +1,7 @@
-/* io/stream/cell_faces.h: faces of the cells of core/mesh/mesh.h (formats.md
- * 2.3), normals into the cell; a triangle repeats its last node. Of io alone.
- * */
-#ifndef VG_IO_STREAM_CELL_FACES_H
-#define VG_IO_STREAM_CELL_FACES_H
+/* core/mesh/cell_faces.h: faces of the cells of core/mesh/mesh.h (formats.md
+ * 2.3), normals into the cell; a triangle repeats its last node. */
+#ifndef VG_CORE_MESH_CELL_FACES_H
+#define VG_CORE_MESH_CELL_FACES_H
 
 static const unsigned char vg_tet_face[4][4] = {
   {1, 3, 2, 2}, {0, 2, 3, 3}, {0, 3, 1, 1}, {0, 1, 2, 2}

@@ -1,10 +1,9 @@
-/* core/judge/judge_rendezvous.h: where equal items of all ranks meet. Private
- * to judge_slices.c. Uses base.
+/* base/rendezvous.h: where equal items of all ranks meet. Uses comm.h.
  *
  * An item begins with its key, a few 32-bit words. Items of equal keys go to
  * the rank that a hash of the key names, and are looked at there together. */
-#ifndef VG_CORE_JUDGE_JUDGE_RENDEZVOUS_H
-#define VG_CORE_JUDGE_JUDGE_RENDEZVOUS_H
+#ifndef VG_BASE_RENDEZVOUS_H
+#define VG_BASE_RENDEZVOUS_H
 
 #include <stddef.h>
 #include <stdint.h>
@@ -61,7 +60,8 @@ int vg_rendezvous_rank(const struct vg_rendezvous *m, const void *key);
 
 /** Collective. Takes the items of n_list lists, `stride` bytes apart, and
  * leaves these empty, also on failure.
- * Memory: the items once, on several ranks twice. VG_ERR_MEMORY on all ranks. */
+ * Memory: the items once, on several ranks twice. VG_ERR_MEMORY on all
+ * ranks. */
 vg_status vg_rendezvous_run(const struct vg_rendezvous *m,
                             struct vg_items *list,
                             size_t n_list, size_t stride,

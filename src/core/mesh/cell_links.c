@@ -1,4 +1,4 @@
-/* The faces of a mesh for OpenFOAM: io/mesh/foam_parts.h.
+/* Mates of half-faces: core/mesh/cell_links.h.
  *
  * Cells are passed once, in order. A half-face whose mate has not been met
  * waits in a chain; its entry of link[] holds the next in the chain until the
@@ -6,13 +6,13 @@
  * the heads. Heads lie near the number of the face's lowest point: cells that
  * are numbered near each other share cache lines, and a point with very many
  * faces spreads over a window of heads. */
-#include "io/mesh/foam_parts.h"
+#include "core/mesh/cell_links.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
-#include "io/stream/cell_faces.h"
+#include "core/mesh/cell_faces.h"
 
 #define NONE UINT32_MAX
 #define HEADS 4u        /* per point */
@@ -25,9 +25,9 @@ struct heads {
   size_t n;
 };
 
-void vg_foam_faces_release(struct vg_foam_faces *f)
+void vg_cell_links_release(struct vg_cell_links *f)
 {
-  const struct vg_foam_faces empty = VG_FOAM_FACES_INIT;
+  const struct vg_cell_links empty = VG_CELL_LINKS_INIT;
 
   free(f->link);
   free(f->boundary);
@@ -35,7 +35,7 @@ void vg_foam_faces_release(struct vg_foam_faces *f)
 }
 
 /* Nodes of a cell, its faces and their number. */
-static inline const uint32_t *cell_nodes(const struct vg_foam_faces *f,
+static inline const uint32_t *cell_nodes(const struct vg_cell_links *f,
                                          uint32_t cell,
                                          const unsigned char (**face)[4],
                                          int *n_face)
@@ -59,22 +59,12 @@ static inline const uint32_t *cell_nodes(const struct vg_foam_faces *f,
   return f->m->hex[cell - f->end_pri];
 }
 
-/* Place of a cell's first half-face in link[]. */
-static inline size_t first_half(const struct vg_foam_faces *f, uint32_t cell)
+static inline uint32_t *link_of(const struct vg_cell_links *f, uint32_t code)
 {
-  if (cell < f->end_tet) return 4 * (size_t)cell;
-  if (cell < f->end_pri)
-    return 4 * (size_t)f->end_tet + 5 * (size_t)(cell - f->end_tet);
-  return 4 * (size_t)f->end_tet + 5 * (size_t)(f->end_pri - f->end_tet) +
-         6 * (size_t)(cell - f->end_pri);
+  return f->link + vg_first_half(f, code >> 3) + (code & 7);
 }
 
-static inline uint32_t *link_of(const struct vg_foam_faces *f, uint32_t code)
-{
-  return f->link + first_half(f, code >> 3) + (code & 7);
-}
-
-int vg_foam_face_nodes(const struct vg_foam_faces *f, uint32_t code,
+int vg_half_face_nodes(const struct vg_cell_links *f, uint32_t code,
                        uint32_t node[4])
 {
   const unsigned char (*face)[4], *q;
@@ -123,7 +113,7 @@ static inline size_t slot_of(const uint32_t key[4])
   return HEADS * (size_t)key[0] + (h & (WINDOW - 1));
 }
 
-static inline int has_key(const struct vg_foam_faces *f, uint32_t code,
+static inline int has_key(const struct vg_cell_links *f, uint32_t code,
                           const uint32_t key[4])
 {
   const unsigned char (*face)[4];
@@ -138,7 +128,7 @@ static inline int has_key(const struct vg_foam_faces *f, uint32_t code,
 
 /* Take the waiting half-face with this key out of its chain; NONE if there
  * is none. */
-static inline uint32_t take(const struct vg_foam_faces *f, struct heads *h,
+static inline uint32_t take(const struct vg_cell_links *f, struct heads *h,
                             size_t slot, const uint32_t key[4])
 {
   uint32_t *at = h->head + slot, code;
@@ -157,13 +147,13 @@ static inline uint32_t take(const struct vg_foam_faces *f, struct heads *h,
 
 /* --- building --- */
 
-static void pass_cells(struct vg_foam_faces *f, struct heads *h)
+static void pass_cells(struct vg_cell_links *f, struct heads *h)
 {
   for (uint32_t cell = 0; cell < f->n_cell; cell++) {
     const unsigned char (*face)[4];
     int n_face;
     const uint32_t *c = cell_nodes(f, cell, &face, &n_face);
-    uint32_t *link = f->link + first_half(f, cell);
+    uint32_t *link = f->link + vg_first_half(f, cell);
 
     for (int i = 0; i < n_face; i++) {
       uint32_t key[4], code = cell << 3 | (uint32_t)i, mate;
@@ -207,13 +197,13 @@ static vg_status loose_face(const struct vg_mesh *m, size_t face,
 
   return vg_fail(err, VG_ERR_INPUT,
                  "%s: boundary %s %zu of the mesh, at (%g, %g, %g), is the "
-                 "face of no cell, or of one that has another; OpenFOAM needs "
-                 "a closed mesh: see `vanguard check`", name,
+                 "face of no cell, or of one that has another; the mesh is "
+                 "not closed: see `vanguard check`", name,
                  width == 3 ? "triangle" : "quadrilateral",
                  (width == 3 ? face : face - m->n_tri) + 1, p[0], p[1], p[2]);
 }
 
-static vg_status pass_boundary(struct vg_foam_faces *f, struct heads *h,
+static vg_status pass_boundary(struct vg_cell_links *f, struct heads *h,
                                const char *name, struct vg_error *err)
 {
   static const unsigned char tri[4] = {0, 1, 2, 2}, quad[4] = {0, 1, 2, 3};
@@ -227,14 +217,14 @@ static vg_status pass_boundary(struct vg_foam_faces *f, struct heads *h,
     code = take(f, h, slot_of(key), key);
     if (code == NONE) return loose_face(f->m, i, name, err);
     f->boundary[i] = code;
-    *link_of(f, code) = VG_FOAM_BOUNDARY;
+    *link_of(f, code) = VG_NO_CELL;
     f->n_corner += (uint64_t)width;
   }
   return VG_OK;
 }
 
 /* Any half-face still waiting? The lowest is named. */
-static vg_status check_left(const struct vg_foam_faces *f,
+static vg_status check_left(const struct vg_cell_links *f,
                             const struct heads *h, const char *name,
                             struct vg_error *err)
 {
@@ -246,7 +236,7 @@ static vg_status check_left(const struct vg_foam_faces *f,
     for (uint32_t c = h->head[i]; c != NONE; c = *link_of(f, c))
       if (c < lowest) lowest = c;
   if (lowest == NONE) return VG_OK;
-  vg_foam_face_nodes(f, lowest, node);
+  vg_half_face_nodes(f, lowest, node);
   p = f->m->point[node[0]];
   cell = lowest >> 3;
   if (cell >= f->end_pri) {
@@ -261,81 +251,69 @@ static vg_status check_left(const struct vg_foam_faces *f,
   }
   return vg_fail(err, VG_ERR_INPUT,
                  "%s: the face of points %u, %u, %u at (%g, %g, %g) of %s %u "
-                 "meets neither one other cell nor a boundary face; OpenFOAM "
-                 "needs a closed mesh: see `vanguard check`", name,
+                 "meets neither one other cell nor a boundary face; the mesh "
+                 "is not closed: see `vanguard check`", name,
                  node[0] + 1, node[1] + 1, node[2] + 1, p[0], p[1], p[2],
                  kind, cell + 1);
 }
 
-static vg_status make_room(struct vg_foam_faces *f, struct heads *h,
-                           const struct vg_mesh *m, const char *name,
-                           struct vg_error *err)
+/* What still waits has no mate. */
+static void leave_open(const struct vg_cell_links *f, const struct heads *h)
+{
+  for (size_t i = 0; i < h->n; i++)
+    for (uint32_t c = h->head[i], next; c != NONE; c = next) {
+      next = *link_of(f, c);
+      *link_of(f, c) = VG_NO_CELL;
+    }
+}
+
+static vg_status make_room(struct vg_cell_links *f, struct heads *h,
+                           const struct vg_mesh *m, int is_open,
+                           const char *name, struct vg_error *err)
 {
   uint64_t n_cell = (uint64_t)m->n_tet + m->n_pyr + m->n_pri + m->n_hex;
   size_t n_face = m->n_tri + m->n_quad;
 
   if (n_cell > MAX_CELL || m->n_point > INT32_MAX || n_face > INT32_MAX)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
-                   "%s: %llu cells and %zu points are beyond OpenFOAM's 32-bit "
-                   "labels", name, (unsigned long long)n_cell, m->n_point);
+                   "%s: %llu cells and %zu points are beyond labels of 32 bits "
+                   "for their faces", name, (unsigned long long)n_cell,
+                   m->n_point);
   f->m = m;
   f->n_cell = (uint32_t)n_cell;
   f->end_tet = (uint32_t)m->n_tet;
   f->end_pyr = f->end_tet + (uint32_t)m->n_pyr;
   f->end_pri = f->end_pyr + (uint32_t)m->n_pri;
-  f->link = vg_alloc(first_half(f, f->n_cell), sizeof *f->link);
-  f->boundary = vg_alloc(n_face, sizeof *f->boundary);
+  f->link = vg_alloc(vg_first_half(f, f->n_cell), sizeof *f->link);
+  if (!is_open) f->boundary = vg_alloc(n_face, sizeof *f->boundary);
   h->n = HEADS * m->n_point + WINDOW;
   h->head = vg_alloc(h->n, sizeof *h->head);
-  if (!f->link || !f->boundary || !h->head)
-    return vg_fail_memory(err, "the faces of an OpenFOAM mesh");
+  if (!f->link || (!is_open && !f->boundary) || !h->head)
+    return vg_fail_memory(err, "the faces of the cells");
   memset(h->head, 0xff, h->n * sizeof *h->head);
   return VG_OK;
 }
 
-vg_status vg_foam_faces_build(struct vg_foam_faces *f, const struct vg_mesh *m,
-                              const char *name, struct vg_error *err)
+vg_status vg_cell_links_build(struct vg_cell_links *f, const struct vg_mesh *m,
+                              int is_open, const char *name,
+                              struct vg_error *err)
 {
-  struct vg_foam_faces made = VG_FOAM_FACES_INIT;
+  struct vg_cell_links made = VG_CELL_LINKS_INIT;
   struct heads h = {NULL, 0};
   vg_status st;
 
-  VG_TRY(make_room(&made, &h, m, name, err));
+  VG_TRY(make_room(&made, &h, m, is_open, name, err));
   pass_cells(&made, &h);
-  VG_TRY(pass_boundary(&made, &h, name, err));
-  VG_TRY(check_left(&made, &h, name, err));
-  if (made.n_corner > INT32_MAX) {
-    st = vg_fail(err, VG_ERR_UNSUPPORTED,
-                 "%s: %llu corners of faces are beyond OpenFOAM's 32-bit "
-                 "labels", name, (unsigned long long)made.n_corner);
-    goto done;
+  if (is_open) {
+    leave_open(&made, &h);
+  } else {
+    VG_TRY(pass_boundary(&made, &h, name, err));
+    VG_TRY(check_left(&made, &h, name, err));
   }
   *f = made;
   memset(&made, 0, sizeof made);
 done:
   free(h.head);
-  vg_foam_faces_release(&made);
+  vg_cell_links_release(&made);
   return st;
-}
-
-int vg_foam_upper(const struct vg_foam_faces *f, uint32_t cell,
-                  uint32_t code[6], uint32_t neighbour[6])
-{
-  size_t at = first_half(f, cell);
-  int n_face = cell < f->end_tet ? 4 : cell < f->end_pri ? 5 : 6, n = 0;
-
-  for (int i = 0; i < n_face; i++) {
-    uint32_t mate = f->link[at + (size_t)i];
-    int k = n;
-
-    if (mate == VG_FOAM_BOUNDARY || mate >> 3 <= cell) continue;
-    for (; k > 0 && neighbour[k - 1] > mate >> 3; k--) {
-      code[k] = code[k - 1];
-      neighbour[k] = neighbour[k - 1];
-    }
-    code[k] = cell << 3 | (uint32_t)i;
-    neighbour[k] = mate >> 3;
-    n++;
-  }
-  return n;
 }

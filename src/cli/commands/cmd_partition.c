@@ -1,0 +1,304 @@
+/* vanguard partition: a volume mesh shared out to the processes of a solver. */
+#define _GNU_SOURCE
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "cli/commands/commands.h"
+#include "cli/common/cli.h"
+#include "cli/common/progress.h"
+#include "cli/common/text.h"
+#include "cli/input/walls.h"
+#include "cli/report/report.h"
+#include "cli/settings/options.h"
+#include "io/mesh/foam.h"
+#include "io/mesh/format.h"
+#include "io/mesh/metis_part.h"
+#include "io/mesh/vtu.h"
+#include "partition/solver/solver.h"
+
+enum { KEY_WEIGHTS = 500, KEY_WRITE };
+
+enum { FILES_MAX = 3 };
+
+struct arguments {
+  const char *file, *out;
+  struct vg_solver_options options;
+  struct vg_foam_options foam;
+  int to_part, to_vtu, to_foam;
+  int json, quiet;
+};
+
+struct run {
+  const struct arguments *a;
+  struct vg_mesh mesh;
+  size_t n_cell;
+  struct vg_solver_layers layers;
+  unsigned char *is_wall;
+  uint32_t *part;
+  struct vg_solver_report report;
+  char *stem, *file[FILES_MAX];
+  size_t n_file;
+  double time_read, time_write;
+};
+
+/* --- options ------------------------------------------------------------- */
+
+/* "tet=1,pri=1.5": kinds that are not named weigh 1. */
+static void read_weights(struct arguments *a, const char *list,
+                         const struct argp_state *state)
+{
+  static const char *const kind[VG_SOLVER_KINDS] = { "tet", "pyr", "pri",
+                                                     "hex" };
+
+  for (const char *at = list; *at;) {
+    int k = 0;
+    char *end;
+
+    while (k < VG_SOLVER_KINDS && (strncmp(at, kind[k], 3) || at[3] != '='))
+      k++;
+    if (k == VG_SOLVER_KINDS)
+      argp_error(state, "--weights %s: kinds are tet, pyr, pri and hex, as in "
+                 "tet=1,pri=1.5", list);
+    a->options.weight[k] = strtod(at + 4, &end);
+    if (end == at + 4 || (*end && *end != ',') ||
+        !(a->options.weight[k] >= 1e-3 && a->options.weight[k] <= 1e3))
+      argp_error(state, "--weights %s: a weight is a number from 0.001 to "
+                 "1000", list);
+    at = *end ? end + 1 : end;
+  }
+}
+
+static void read_forms(struct arguments *a, const char *list,
+                       const struct argp_state *state)
+{
+  char copy[200], *rest = copy, *word;
+
+  a->to_part = a->to_vtu = a->to_foam = 0;
+  snprintf(copy, sizeof copy, "%s", list);
+  while ((word = strsep(&rest, ",")))
+    if (!strcmp(word, "part")) a->to_part = 1;
+    else if (!strcmp(word, "vtu")) a->to_vtu = 1;
+    else if (vg_foam_word(word, &a->foam)) a->to_foam = 1;
+    else argp_error(state, "--write %s: known are part, vtu, foam and "
+                    "foam-ascii", list);
+}
+
+static void read_count(struct arguments *a, const char *text,
+                       const struct argp_state *state)
+{
+  char *end;
+  unsigned long long n;
+
+  errno = 0;
+  n = strtoull(text, &end, 10);
+  if (errno || end == text || *end || strchr(text, '-') || n < 1)
+    argp_error(state, "-n %s: a number of parts, 1 or more", text);
+  a->options.n_part = n;
+}
+
+static error_t option(int key, char *arg, struct argp_state *state)
+{
+  struct arguments *a = state->input;
+
+  switch (key) {
+  case 'n': read_count(a, arg, state); return 0;
+  case 'o': a->out = arg; return 0;
+  case 'j': a->json = 1; return 0;
+  case 'q': a->quiet = 1; return 0;
+  case KEY_WEIGHTS: read_weights(a, arg, state); return 0;
+  case KEY_WRITE: read_forms(a, arg, state); return 0;
+  case ARGP_KEY_ARG:
+    if (a->file) argp_error(state, "one file at a time: %s", arg);
+    a->file = arg;
+    return 0;
+  case ARGP_KEY_END:
+    if (!a->file) argp_error(state, "which file?");
+    if (!a->options.n_part) argp_error(state, "how many parts? -n N");
+    return 0;
+  default: return ARGP_ERR_UNKNOWN;
+  }
+}
+
+/* --- steps --------------------------------------------------------------- */
+
+static vg_status read_mesh(struct run *r, struct vg_error *err)
+{
+  const char *path = r->a->file;
+  struct vg_mesh *m = &r->mesh;
+  double t = vg_display_now();
+  vg_status st;
+
+  VG_TRY(vg_mesh_read(path, m, NULL, err));
+  r->n_cell = m->n_tet + m->n_pyr + m->n_pri + m->n_hex;
+  if (!r->n_cell) {
+    st = vg_fail(err, VG_ERR_INPUT, "%s: a surface; parts are made of the "
+                 "cells of a volume mesh", path);
+    goto done;
+  }
+  VG_TRY(vg_format_layer_tets(path, &r->layers.is_known, &r->layers.n_tet,
+                              err));
+  r->is_wall = vg_calloc(m->n_patch, 1);
+  r->part = vg_alloc(r->n_cell, sizeof *r->part);
+  if (!r->is_wall || !r->part) {
+    st = vg_fail_memory(err, "the parts of a mesh");
+    goto done;
+  }
+  for (size_t k = 0; k < m->n_patch; k++)
+    r->is_wall[k] = (unsigned char)vg_is_viscous(&m->patch[k]);
+  r->layers.is_wall = r->is_wall;
+  r->time_read = vg_display_now() - t;
+done:
+  return st;
+}
+
+/* STEM.suffix among the files; NULL: no memory. */
+static const char *add_file(struct run *r, const char *suffix)
+{
+  char *path;
+
+  if (asprintf(&path, "%s.%s", r->stem, suffix) < 0) return NULL;
+  return r->file[r->n_file++] = path;
+}
+
+static vg_status write_vtu(const struct run *r, const char *path,
+                           struct vg_error *err)
+{
+  const struct vg_vtu_field field = { VG_VTU_SOLVER_PART, VG_VTU_CELL,
+                                      VG_VTU_INT32, 1, r->part };
+
+  return vg_vtu_write(path, &r->mesh, &field, 1, err);
+}
+
+static vg_status write_foam(const struct run *r, const char *path,
+                            struct vg_error *err)
+{
+  vg_status st = vg_foam_write(path, &r->mesh, &r->a->foam, err);
+
+  return st < 0 ? st : vg_foam_write_parts(path, r->n_cell, r->part,
+                                           r->report.n_part, err);
+}
+
+static vg_status write_files(struct run *r, struct vg_error *err)
+{
+  const struct arguments *a = r->a;
+  char suffix[40];
+  const char *path = "";
+  double t = vg_display_now();
+  vg_status st = VG_OK;
+
+  snprintf(suffix, sizeof suffix, "part.%llu",
+           (unsigned long long)a->options.n_part);
+  if (st >= 0 && a->to_part && (path = add_file(r, suffix)))
+    st = vg_metis_part_write(path, r->n_cell, r->part, err);
+  if (st >= 0 && path && a->to_vtu && (path = add_file(r, "vtu")))
+    st = write_vtu(r, path, err);
+  if (st >= 0 && path && a->to_foam && (path = add_file(r, VG_FOAM_SUFFIX)))
+    st = write_foam(r, path, err);
+  if (!path) st = vg_fail_memory(err, "a file name");
+  r->time_write = vg_display_now() - t;
+  return st;
+}
+
+static vg_status run_all(struct run *r, struct vg_display *show,
+                         struct vg_error *err)
+{
+  const char *path = r->a->file;
+  size_t n = strlen(path) - vg_format_suffix_length(path);
+  vg_status st;
+
+  r->stem = r->a->out ? strdup(r->a->out) : strndup(path, n);
+  if (!r->stem) return vg_fail_memory(err, "a file name");
+  vg_display_update(show, "read", 0, 0);
+  VG_TRY(read_mesh(r, err));
+  vg_display_update(show, "partition", r->n_cell, 0);
+  VG_TRY(vg_solver_part(&r->mesh, &r->layers, &r->a->options, path, r->part,
+                        &r->report, err));
+  vg_display_update(show, "write", r->n_cell, 0);
+  st = write_files(r, err);
+done:
+  return st;
+}
+
+/* --- what came out ------------------------------------------------------- */
+
+static void print_json(const struct run *r)
+{
+  json_t *files = json_array(), *o;
+
+  for (size_t i = 0; i < r->n_file; i++)
+    json_array_append_new(files, vg_text_json(r->file[i]));
+  o = json_pack("{s:o s:o s:f s:f s:f s:o}", "file", vg_text_json(r->a->file),
+                "solver_parts", vg_report_solver_json(&r->report),
+                "seconds_read", r->time_read, "seconds_write", r->time_write,
+                "peak_memory_bytes", vg_report_peak_memory(), "files", files);
+  json_dumpf(o, stdout, JSON_INDENT(2));
+  printf("\n");
+  json_decref(o);
+}
+
+static void print_text(const struct run *r)
+{
+  printf("%s: parts for a solver\n", r->a->file);
+  vg_report_size_text(stdout, &r->mesh);
+  vg_report_solver_text(stdout, &r->report);
+  printf("  read in %.2f s, written in %.2f s; peak memory %.0f MB\n",
+         r->time_read, r->time_write, vg_report_peak_memory() / 1e6);
+  for (size_t i = 0; i < r->n_file; i++) printf("  %s\n", r->file[i]);
+}
+
+static void release(struct run *r)
+{
+  vg_mesh_release(&r->mesh);
+  free(r->is_wall);
+  free(r->part);
+  free(r->stem);
+  for (size_t i = 0; i < r->n_file; i++) free(r->file[i]);
+}
+
+int vg_cmd_partition(int argc, char **argv)
+{
+  const struct argp_option options[] = {
+    { "parts", 'n', "N", 0, "number of parts", 0 },
+    { "out", 'o', "STEM", 0, "first part of the names of files [default that "
+      "of MESH]", 0 },
+    { "write", KEY_WRITE, "LIST", 0, "what to write: part (STEM.part.N, a line "
+      "with the part of each cell, as METIS has it), vtu (STEM.vtu with cell "
+      "data solver_part), foam or foam-ascii (the case STEM.openfoam with "
+      "constant/cellDecomposition) [default part]", 0 },
+    { "weights", KEY_WEIGHTS, "LIST", 0, "work of a cell by its kind, as in "
+      "tet=1,pyr=1.2,pri=1.5,hex=2 [default 1 for all]", 0 },
+    { "json", 'j', NULL, 0, "report as JSON", 0 },
+    { "quiet", 'q', NULL, 0, "no progress", 0 },
+    { 0 }
+  };
+  const struct argp argp = { .options = options, .parser = option,
+    .args_doc = "MESH",
+    .doc = "Share the cells of MESH out to N processes of a solver: parts of "
+      "equal work with few faces between them, none of which cuts a stack of "
+      "layer cells.\vStacks are those of prisms, of hexahedra on viscous "
+      "walls, and of Vanguard's layer tetrahedra where the file tells their "
+      "number (.cogsg, and .ugrid written with --ugrid-tail). OpenFOAM takes "
+      "the parts by decomposePar with the method manual, for which the case "
+      "has a decomposeParDict. 'vanguard mesh --solver-parts N' does the same "
+      "to the mesh that it makes." };
+  struct arguments a = { .options = VG_SOLVER_OPTIONS_INIT, .to_part = 1 };
+  struct run r = { .a = &a };
+  struct vg_display show;
+  struct vg_error err = VG_ERROR_INIT;
+  vg_status st;
+
+  vg_cli_parse(&argp, argc, argv, &a);
+  vg_display_init(&show, a.quiet);
+  vg_display_end_at_once(1);
+  st = run_all(&r, &show, &err);
+  vg_display_clear(&show);
+  if (st >= 0) {
+    if (a.json) print_json(&r);
+    else print_text(&r);
+  }
+  release(&r);
+  return st < 0 ? vg_cli_fail(&err) : VG_EXIT_DONE;
+}

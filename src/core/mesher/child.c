@@ -1,0 +1,177 @@
+/* The process of a mesher: core/mesher/mesher_parts.h. */
+#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <errno.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/prctl.h>
+#include <sys/time.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "base/child.h"
+#include "base/memory.h"
+#include "core/mesher/mesher_parts.h"
+
+/* --- loading ------------------------------------------------------------- */
+
+/* A library's own functions before ours of the same name: gmsh has a TetGen of
+ * its own. What sanitizers replace has to be theirs everywhere. */
+void *vg_mesher_library(const char *path)
+{
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  return dlopen(path, RTLD_NOW | RTLD_LOCAL);
+#else
+  return dlopen(path, RTLD_NOW | RTLD_LOCAL | RTLD_DEEPBIND);
+#endif
+}
+
+typedef const struct vg_mesher *plugin(void);
+
+static const struct vg_mesher *load_plugin(const char *path, char *why,
+                                           size_t size)
+{
+  void *library = vg_mesher_library(path);
+  const struct vg_mesher *m;
+  plugin *get;
+
+  if (!library) {
+    snprintf(why, size, "it cannot be loaded: %s", dlerror());
+    return NULL;
+  }
+  get = (plugin *)(uintptr_t)dlsym(library, VG_MESHER_SYMBOL);
+  if (!get) {
+    snprintf(why, size, "it does not export the function %s, as a plug-in for "
+             "meshing does (core/mesher/mesher.h)", VG_MESHER_SYMBOL);
+    return NULL;
+  }
+  m = get();
+  if (m && m->version == VG_MESHER_VERSION && m->fill) return m;
+  if (m && m->version != VG_MESHER_VERSION)
+    snprintf(why, size, "it is made for version %u of the interface, this "
+             "program has version %d; compile it with this program's "
+             "core/mesher/mesher.h", (unsigned)m->version, VG_MESHER_VERSION);
+  else
+    snprintf(why, size, "its %s returns no mesher", VG_MESHER_SYMBOL);
+  return NULL;
+}
+
+static const struct vg_mesher *load(const char *name, char *why, size_t size)
+{
+  /* one thread: several are no faster beside the other workers, and none may
+   * be about when this process forks */
+  setenv("OPENBLAS_NUM_THREADS", "1", 1);
+  setenv("OMP_NUM_THREADS", "1", 1);
+  if (!strcmp(name, "tetgen")) return vg_mesher_tetgen();
+  if (!strcmp(name, "hxt")) return vg_mesher_hxt(why, size);
+  return load_plugin(name, why, size);
+}
+
+/* --- a void -------------------------------------------------------------- */
+
+/* What never ends is ended by its time on the processor. */
+static void set_end(double seconds)
+{
+  struct itimerval t = { { 0, 0 }, { (time_t)seconds + 1, 0 } };
+
+  signal(SIGPROF, SIG_DFL);
+  setitimer(ITIMER_PROF, &t, NULL);
+}
+
+static int get_front(int fd, const struct vg_mesher_job *job,
+                     struct vg_mesher_front *f)
+{
+  double (*x)[3] = vg_alloc(job->n_point, sizeof *x);
+  uint32_t (*face)[3] = vg_alloc(job->n_face, sizeof *face);
+
+  *f = (struct vg_mesher_front){ job->n_point, job->n_face,
+                                 (const double (*)[3])x,
+                                 (const uint32_t (*)[3])face };
+  return x && face && vg_child_get(fd, x, job->n_point * sizeof *x) &&
+         vg_child_get(fd, face, job->n_face * sizeof *face);
+}
+
+static int put_cells(int fd, const struct vg_mesher_cells *c)
+{
+  const struct vg_mesher_word w = { VG_WORD_CELLS, c->n_point, c->n_cell };
+
+  return vg_child_put(fd, &w, sizeof w) &&
+         vg_child_put(fd, c->x, c->n_point * sizeof *c->x) &&
+         vg_child_put(fd, c->cell, c->n_cell * sizeof *c->cell);
+}
+
+__attribute__((noreturn))
+static void fill(int fd, const struct vg_mesher *m,
+                 const struct vg_mesher_job *job)
+{
+  static const struct vg_mesher_word none = { VG_WORD_NONE, 0, 0 };
+  struct vg_mesher_cells cells = { 0, 0, NULL, NULL };
+  struct vg_mesher_sizes sizes = { vg_child_sizes_at, NULL };
+  struct vg_mesher_front front;
+
+  set_end(job->seconds);
+  if (!get_front(fd, job, &front)) _exit(1);
+  sizes.user = vg_child_sizes_new(fd, &front);
+  if (!sizes.user) _exit(1);
+  if (m->fill(&front, &sizes, &cells)) _exit(!vg_child_put(fd, &none,
+                                                           sizeof none));
+  _exit(!put_cells(fd, &cells));   /* and so nothing is to be released */
+}
+
+/* --- one process for each ------------------------------------------------ */
+
+static void wake(int signal)
+{
+  (void)signal;
+}
+
+/* 1 when the process has done its void. It is ended when the other end of the
+ * socket is. */
+static int wait_for(pid_t pid, int fd)
+{
+  struct pollfd p = { fd, POLLRDHUP, 0 };
+  sigset_t child, open;
+  int status;
+  pid_t done;
+
+  sigemptyset(&child);
+  sigaddset(&child, SIGCHLD);
+  sigprocmask(SIG_BLOCK, &child, &open);
+  while (!(done = waitpid(pid, &status, WNOHANG)))
+    if (ppoll(&p, 1, NULL, &open) > 0) {
+      kill(pid, SIGKILL);
+      p.fd = -1;
+    }
+  sigprocmask(SIG_SETMASK, &open, NULL);
+  return done == pid && WIFEXITED(status) && !WEXITSTATUS(status);
+}
+
+void vg_mesher_serve(int fd)
+{
+  static struct vg_mesher_spec spec;
+  static struct vg_mesher_hello hello;
+  const struct vg_mesher *m;
+  struct vg_mesher_job job;
+  pid_t self = getpid();
+
+  if (!vg_child_get(fd, &spec, sizeof spec)) _exit(1);
+  m = load(spec.name, hello.text, sizeof hello.text);
+  hello.is_ready = m != NULL;
+  if (!vg_child_put(fd, &hello, sizeof hello) || !m) _exit(1);
+  signal(SIGCHLD, wake);
+  while (vg_child_get(fd, &job, sizeof job)) {
+    pid_t pid = fork();
+
+    if (!pid) {
+      prctl(PR_SET_PDEATHSIG, SIGKILL);
+      if (getppid() != self) _exit(1);
+      signal(SIGCHLD, SIG_DFL);
+      fill(fd, m, &job);
+    }
+    if (pid < 0 || !wait_for(pid, fd)) _exit(1);
+  }
+  _exit(0);
+}

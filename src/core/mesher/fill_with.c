@@ -1,0 +1,289 @@
+/* The parent's end of meshers in processes: core/mesher/mesher_parts.h. */
+#include "core/mesher/fill_with.h"
+
+#include <errno.h>
+#include <poll.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/child.h"
+#include "base/clock.h"
+#include "base/memory.h"
+#include "core/mesher/mesher_parts.h"
+
+/* Slow ones make a thousand cells a second, and some ten for each triangle. */
+static const double patience = 600, patience_each = 0.05;   /* K31 */
+static const double silence = 10;   /* times that, without a sign of life */
+
+static const uint64_t n_max = UINT32_MAX / 8 - 1;   /* cell_links.h */
+
+struct vg_mesher_pool {
+  struct vg_mesher_spec spec;
+  double patience, patience_each;
+  pthread_mutex_t lock;
+  size_t n, room;
+  struct vg_child *idle;     /* [n] that have loaded it and have nothing to do */
+};
+
+/* --- processes ----------------------------------------------------------- */
+
+static vg_status start(struct vg_mesher_pool *p, struct vg_child *c,
+                       struct vg_error *err)
+{
+  struct vg_mesher_hello hello;
+  vg_status st = VG_OK;
+
+  if (vg_child_open(vg_mesher_serve, c) < 0)
+    return vg_fail_memory(err, "a process for a mesher");
+  if (!vg_child_put(c->fd, &p->spec, sizeof p->spec) ||
+      !vg_child_get(c->fd, &hello, sizeof hello))
+    st = vg_fail(err, VG_ERR_UNSUPPORTED, "mesher %s: the process that loads "
+                 "it ended; it crashes when it is loaded or asked for its "
+                 "mesher", p->spec.name);
+  else if (!hello.is_ready)
+    st = vg_fail(err, VG_ERR_UNSUPPORTED, "mesher %s: %.500s", p->spec.name,
+                 hello.text);
+  if (st < 0) vg_child_close(c);
+  return st;
+}
+
+static vg_status borrow(struct vg_mesher_pool *p, struct vg_child *c,
+                        struct vg_error *err)
+{
+  int is_idle;
+
+  pthread_mutex_lock(&p->lock);
+  is_idle = p->n > 0;
+  if (is_idle) *c = p->idle[--p->n];
+  pthread_mutex_unlock(&p->lock);
+  return is_idle ? VG_OK : start(p, c, err);
+}
+
+static void give_back(struct vg_mesher_pool *p, struct vg_child *c)
+{
+  int refused;
+
+  pthread_mutex_lock(&p->lock);
+  refused = vg_reserve(&p->idle, &p->room, p->n + 1, sizeof *p->idle);
+  if (!refused) p->idle[p->n++] = *c;
+  pthread_mutex_unlock(&p->lock);
+  if (refused) vg_child_close(c);
+}
+
+vg_status vg_mesher_open(const char *name, struct vg_mesher_pool **out,
+                         struct vg_error *err)
+{
+  struct vg_mesher_pool *p = vg_calloc(1, sizeof *p);
+  struct vg_child c;
+  vg_status st;
+
+  if (!p) return vg_fail_memory(err, "a mesher");
+  pthread_mutex_init(&p->lock, NULL);
+  p->patience = patience;
+  p->patience_each = patience_each;
+  if ((size_t)snprintf(p->spec.name, sizeof p->spec.name, "%s", name) >=
+      sizeof p->spec.name) {
+    st = vg_fail(err, VG_ERR_UNSUPPORTED, "mesher %.60s...: the path is too "
+                 "long", name);
+  } else {
+    st = start(p, &c, err);
+  }
+  if (st < 0) {
+    vg_mesher_close(p);
+    return st;
+  }
+  give_back(p, &c);
+  *out = p;
+  return VG_OK;
+}
+
+void vg_mesher_close(struct vg_mesher_pool *p)
+{
+  if (!p) return;
+  for (size_t k = 0; k < p->n; k++) vg_child_close(&p->idle[k]);
+  free(p->idle);
+  pthread_mutex_destroy(&p->lock);
+  free(p);
+}
+
+void vg_mesher_patience(struct vg_mesher_pool *p, double seconds,
+                        double seconds_each)
+{
+  p->patience = seconds;
+  p->patience_each = seconds_each;
+}
+
+/* --- a void -------------------------------------------------------------- */
+
+enum outcome { FILLED, STOPPED, TOO_MANY, FAILED, ENDED };
+
+struct filling {
+  int fd;
+  const struct vg_void *v;
+  const struct vg_sizing *sizing;
+  const struct vg_grow_options *options;
+  double seconds;
+  size_t n, n_cell;
+  double (*x)[3];            /* [n] the front's points first */
+  uint32_t (*cell)[4];
+};
+
+static int is_stopped(const struct filling *f)
+{
+  const struct vg_grow_options *o = f->options;
+
+  return o->progress &&
+         o->progress(o->user, "filling", 0, f->v->n_face) != 0;
+}
+
+/* Until there is something to be read. */
+static enum outcome await(const struct filling *f)
+{
+  double end = vg_clock() + silence * f->seconds;
+  struct pollfd p = { f->fd, POLLIN, 0 };
+
+  for (;;) {
+    int n = poll(&p, 1, 100);
+
+    if (n > 0) return FILLED;
+    if (n < 0 && errno != EINTR) return ENDED;
+    if (is_stopped(f)) return STOPPED;
+    if (vg_clock() > end) return ENDED;
+  }
+}
+
+static int put_job(const struct filling *f)
+{
+  const struct vg_void *v = f->v;
+  const struct vg_mesher_job job = { v->n_point, v->n_face, f->seconds };
+
+  return vg_child_put(f->fd, &job, sizeof job) &&
+         vg_child_put(f->fd, v->x, v->n_point * sizeof *v->x) &&
+         vg_child_put(f->fd, v->face, v->n_face * sizeof *v->face);
+}
+
+static int answer_sizes(const struct filling *f, uint64_t n)
+{
+  double x[64][3], h[64];
+
+  for (size_t here; n; n -= here) {
+    here = n < 64 ? n : 64;
+    if (!vg_child_get(f->fd, x, here * sizeof *x)) return 0;
+    vg_sizing_eval(f->sizing, here, (const double (*)[3])x, h);
+    if (!vg_child_put(f->fd, h, here * sizeof *h)) return 0;
+  }
+  return 1;
+}
+
+static enum outcome take_cells(struct filling *f,
+                               const struct vg_mesher_word *w)
+{
+  size_t n_front = f->v->n_point;
+
+  if (f->options->point_limit && w->n > f->options->point_limit)
+    return TOO_MANY;
+  if (w->n_cell > n_max || w->n > n_max) return ENDED;
+  f->n = n_front + w->n;
+  f->n_cell = w->n_cell;
+  f->x = vg_alloc(f->n, sizeof *f->x);
+  f->cell = vg_alloc(f->n_cell, sizeof *f->cell);
+  if (!f->x || !f->cell) return ENDED;
+  memcpy(f->x, f->v->x, n_front * sizeof *f->x);
+  if (!vg_child_get(f->fd, f->x + n_front, w->n * sizeof *f->x) ||
+      !vg_child_get(f->fd, f->cell, w->n_cell * sizeof *f->cell))
+    return ENDED;
+  return FILLED;
+}
+
+static enum outcome converse(struct filling *f)
+{
+  struct vg_mesher_word w;
+
+  if (!put_job(f)) return ENDED;
+  for (;;) {
+    enum outcome waited = await(f);
+
+    if (waited != FILLED) return waited;
+    if (!vg_child_get(f->fd, &w, sizeof w)) return ENDED;
+    if (w.what == VG_WORD_CELLS) return take_cells(f, &w);
+    if (w.what == VG_WORD_NONE) return FAILED;
+    if (w.what != VG_WORD_SIZES || !answer_sizes(f, w.n)) return ENDED;
+  }
+}
+
+/* The checked cells into the void. */
+static vg_status commit(struct filling *f, struct vg_void *v,
+                        struct vg_error *err)
+{
+  size_t n_new = f->n - v->n_point;
+
+  if (vg_reserve(&v->x, &v->cap_point, f->n, sizeof *v->x) ||
+      vg_reserve(&v->cell, &v->cap_cell, v->n_cell + f->n_cell,
+                 sizeof *v->cell))
+    return vg_fail_memory(err, "the cells of the mesh");
+  if (n_new) memcpy(v->x + v->n_point, f->x + v->n_point, n_new * sizeof *v->x);
+  memcpy(v->cell + v->n_cell, f->cell, f->n_cell * sizeof *v->cell);
+  v->n_point = f->n;
+  v->n_cell += f->n_cell;
+  v->n_face = 0;
+  return VG_OK;
+}
+
+static vg_status judge(struct filling *f, struct vg_void *v,
+                       struct vg_fill_report *r, struct vg_error *err)
+{
+  const char *wrong;
+  size_t n_front = v->n_point;
+  vg_status st = vg_mesher_check(n_front, v->n_face,
+                                 (const uint32_t (*)[3])v->face, &f->n, f->x,
+                                 f->n_cell, f->cell, &wrong, err);
+
+  if (st == VG_NOT_BETTER) r->n_other_wrong++;
+  if (st != VG_OK) return st;
+  st = commit(f, v, err);
+  if (st < 0) return st;
+  r->n_other++;
+  r->n_other_cell += f->n_cell;
+  r->n_placed += f->n - n_front;
+  r->n_inserted += f->n - n_front;
+  return VG_OK;
+}
+
+vg_status vg_mesher_fill(struct vg_mesher_pool *p, struct vg_void *v,
+                         const struct vg_sizing *sizing,
+                         const struct vg_grow_options *options,
+                         struct vg_fill_report *report, struct vg_error *err)
+{
+  struct filling f = { .v = v, .sizing = sizing, .options = options,
+    .seconds = p->patience + p->patience_each * (double)v->n_face };
+  double t = vg_clock();
+  struct vg_child c;
+  enum outcome o;
+  vg_status st;
+
+  if (!v->n_face) return VG_OK;
+  st = borrow(p, &c, err);
+  if (st < 0) return st;
+  f.fd = c.fd;
+  o = converse(&f);
+  if (o == FILLED || o == FAILED) give_back(p, &c);
+  else vg_child_close(&c);
+  st = VG_NOT_BETTER;
+  switch (o) {
+  case FILLED: st = judge(&f, v, report, err); break;
+  case STOPPED: st = VG_BLOCKED; break;
+  case TOO_MANY:
+    st = vg_fail(err, VG_ERR_UNSUPPORTED, "a void takes more than %llu points",
+                 (unsigned long long)options->point_limit);
+    break;
+  case FAILED: report->n_other_failed++; break;
+  case ENDED: report->n_other_ended++; break;
+  }
+  free(f.x);
+  free(f.cell);
+  report->time_total += vg_clock() - t;
+  report->time_other += vg_clock() - t;
+  return st;
+}

@@ -1,0 +1,264 @@
+/* TetGen as a mesher of whole voids (H. Si, "TetGen, a Delaunay-based quality
+ * tetrahedral mesh generator", ACM TOMS 41(2), 2015). Only in a child: it keeps
+ * state and may end the process. */
+#include <cmath>
+#include <cstdlib>
+#include <vector>
+
+#include "core/mesher/mesher_parts.h"
+
+#define TETLIBRARY
+#include <tetgen.h>
+
+namespace {
+
+/* A cell is split whose volume is more than this many times that of a regular
+ * one with the edges wanted at its middle: as many cells then as of our own
+ * kernel. */
+const double largest = 1.3;   /* K32 */
+
+const vg_mesher_sizes *sizes;
+
+bool is_too_large(REAL *a, REAL *b, REAL *c, REAL *d, REAL *, REAL)
+{
+  double x[1][3], u[3], v[3], w[3], h, volume;
+
+  for (int k = 0; k < 3; k++) {
+    x[0][k] = (a[k] + b[k] + c[k] + d[k]) / 4;
+    u[k] = b[k] - a[k];
+    v[k] = c[k] - a[k];
+    w[k] = d[k] - a[k];
+  }
+  sizes->at(sizes->user, 1, x, &h);
+  volume = std::fabs(u[0] * (v[1] * w[2] - v[2] * w[1]) +
+                     u[1] * (v[2] * w[0] - v[0] * w[2]) +
+                     u[2] * (v[0] * w[1] - v[1] * w[0])) / 6;
+  return volume > largest * h * h * h / (6 * std::sqrt(2.0));
+}
+
+void put_facet(tetgenio::facet *f, const uint32_t tri[3])
+{
+  tetgenio::init(f);
+  f->numberofpolygons = 1;
+  f->polygonlist = new tetgenio::polygon[1];
+  tetgenio::init(f->polygonlist);
+  f->polygonlist->numberofvertices = 3;
+  f->polygonlist->vertexlist = new int[3];
+  for (int k = 0; k < 3; k++)
+    f->polygonlist->vertexlist[k] = static_cast<int>(tri[k]);
+}
+
+/* A point within each hollow, closely behind the largest triangle. Where it
+ * misses, cells are made in the hollow that nobody wants, or none where they are
+ * wanted, which is noticed. */
+void put_holes(tetgenio &in, const vg_mesher_front &f,
+               const vg_mesher_shells &shells)
+{
+  size_t at = 0;
+
+  in.numberofholes = static_cast<int>(shells.n_hollow);
+  if (!shells.n_hollow) return;
+  in.holelist = new REAL[3 * shells.n_hollow];
+  for (size_t s = 0; s < shells.n; s++) {
+    const uint32_t *face = f.face[shells.largest[s]];
+    double n[3], length = 0;
+
+    if (!shells.is_hollow[s]) continue;
+    vg_mesher_normal(&f, shells.largest[s], n);
+    for (int k = 0; k < 3; k++) length += n[k] * n[k];
+    length = std::sqrt(std::sqrt(length));   /* about an edge */
+    for (int k = 0; k < 3; k++)
+      in.holelist[at++] = (f.x[face[0]][k] + f.x[face[1]][k] +
+                           f.x[face[2]][k]) / 3 - 1e-4 * n[k] / length;
+  }
+}
+
+void put_front(tetgenio &in, const vg_mesher_front &f)
+{
+  in.firstnumber = 0;
+  in.numberofpoints = static_cast<int>(f.n_point);
+  in.pointlist = new REAL[3 * f.n_point];
+  for (size_t i = 0; i < f.n_point; i++)
+    for (int k = 0; k < 3; k++) in.pointlist[3 * i + k] = f.x[i][k];
+  in.numberoffacets = static_cast<int>(f.n_face);
+  in.facetlist = new tetgenio::facet[f.n_face];
+  for (size_t i = 0; i < f.n_face; i++) put_facet(&in.facetlist[i], f.face[i]);
+  in.tetunsuitable = is_too_large;
+}
+
+/* Cells that are joined to the inner side of a face of the front, from
+ * neighbour to neighbour; others stand in hollows. */
+class inside {
+public:
+  inside(const tetgenio &out, const vg_mesher_front &f)
+    : io(out), is_in(static_cast<size_t>(out.numberoftetrahedra))
+  {
+    mark_front(f);
+    for (size_t c = 0; c < is_in.size(); c++)
+      if (is_in[c] == start) spread(c);
+  }
+  bool has(size_t cell) const { return is_in[cell] != 0; }
+
+private:
+  enum { start = 1, reached = 2 };
+  const tetgenio &io;
+  std::vector<char> is_in;
+  std::vector<std::vector<uint32_t>> face_at;  /* by its lowest point */
+  const vg_mesher_front *front = nullptr;
+
+  static uint32_t lowest(const uint32_t v[3])
+  {
+    uint32_t low = v[0] < v[1] ? v[0] : v[1];
+
+    return low < v[2] ? low : v[2];
+  }
+
+  /* 0: no face of the front; 1: one that faces the cell; -1: away from it. The
+   * triangle turns counter-clockwise seen from within the cell. */
+  int side(const uint32_t v[3]) const
+  {
+    uint32_t low = lowest(v);
+
+    if (low >= face_at.size()) return 0;
+    for (uint32_t i : face_at[low]) {
+      const uint32_t *f = front->face[i];
+
+      for (int k = 0; k < 3; k++) {
+        if (f[0] != v[k]) continue;
+        if (f[1] == v[(k + 1) % 3] && f[2] == v[(k + 2) % 3]) return 1;
+        if (f[2] == v[(k + 1) % 3] && f[1] == v[(k + 2) % 3]) return -1;
+      }
+    }
+    return 0;
+  }
+
+  void sides(size_t cell, int s[4]) const
+  {
+    static const int face[4][3] = { {1, 3, 2}, {0, 2, 3}, {0, 3, 1},
+                                    {0, 1, 2} };
+    const int *v = &io.tetrahedronlist[4 * cell];
+    const REAL *x[4];
+    bool turned;
+
+    for (int k = 0; k < 4; k++) x[k] = &io.pointlist[3 * v[k]];
+    turned = volume(x) < 0;
+    for (int i = 0; i < 4; i++) {
+      uint32_t t[3];
+
+      for (int k = 0; k < 3; k++)
+        t[k] = static_cast<uint32_t>(v[face[i][turned ? 2 - k : k]]);
+      s[i] = side(t);
+    }
+  }
+
+  static double volume(const REAL *const x[4])
+  {
+    double u[3], v[3], w[3];
+
+    for (int k = 0; k < 3; k++) {
+      u[k] = x[1][k] - x[0][k];
+      v[k] = x[2][k] - x[0][k];
+      w[k] = x[3][k] - x[0][k];
+    }
+    return u[0] * (v[1] * w[2] - v[2] * w[1]) +
+           u[1] * (v[2] * w[0] - v[0] * w[2]) +
+           u[2] * (v[0] * w[1] - v[1] * w[0]);
+  }
+
+  void mark_front(const vg_mesher_front &f)
+  {
+    int s[4];
+
+    front = &f;
+    face_at.resize(f.n_point);
+    for (size_t i = 0; i < f.n_face; i++)
+      face_at[lowest(f.face[i])].push_back(static_cast<uint32_t>(i));
+    for (size_t c = 0; c < is_in.size(); c++) {
+      sides(c, s);
+      for (int i = 0; i < 4; i++) if (s[i] > 0) is_in[c] = start;
+    }
+  }
+
+  void spread(size_t first)
+  {
+    std::vector<size_t> list(1, first);
+
+    is_in[first] = reached;
+    while (!list.empty()) {
+      size_t c = list.back();
+      int s[4];
+
+      list.pop_back();
+      sides(c, s);
+      for (int i = 0; i < 4; i++) {
+        int next = io.neighborlist[4 * c + static_cast<size_t>(i)];
+
+        if (s[i] || next < 0 || is_in[static_cast<size_t>(next)] == reached)
+          continue;
+        is_in[static_cast<size_t>(next)] = reached;
+        list.push_back(static_cast<size_t>(next));
+      }
+    }
+  }
+};
+
+bool take_cells(const tetgenio &out, const vg_mesher_front &f,
+                vg_mesher_cells *to)
+{
+  size_t n = static_cast<size_t>(out.numberoftetrahedra);
+  inside in(out, f);
+
+  to->n_point = static_cast<size_t>(out.numberofpoints) - f.n_point;
+  to->x = static_cast<double(*)[3]>(std::malloc((to->n_point + 1) *
+                                                sizeof *to->x));
+  to->cell = static_cast<uint32_t(*)[4]>(std::malloc((n + 1) *
+                                                     sizeof *to->cell));
+  if (!to->x || !to->cell) return false;
+  for (size_t i = 0; i < to->n_point; i++)
+    for (int k = 0; k < 3; k++)
+      to->x[i][k] = out.pointlist[3 * (f.n_point + i) + static_cast<size_t>(k)];
+  to->n_cell = 0;
+  for (size_t c = 0; c < n; c++) {
+    if (!in.has(c)) continue;
+    for (int k = 0; k < 4; k++)
+      to->cell[to->n_cell][k] =
+        static_cast<uint32_t>(out.tetrahedronlist[4 * c +
+                                                  static_cast<size_t>(k)]);
+    to->n_cell++;
+  }
+  return true;
+}
+
+/* p: keep the facets, Y: no points on them, q: radius over edge; n: neighbours;
+ * M, T: as for boundary recovery. */
+int fill(const vg_mesher_front *front, const vg_mesher_sizes *wanted,
+         vg_mesher_cells *cells)
+{
+  char switches[] = "pYq1.4nMQT1e-13";
+  vg_mesher_shells shells;
+  tetgenio in, out;
+
+  if (front->n_point > 100000000 || front->n_face > 200000000) return 1;
+  if (vg_mesher_find_shells(front, &shells)) return 1;
+  sizes = wanted;
+  try {
+    put_front(in, *front);
+    put_holes(in, *front, shells);
+    tetrahedralize(switches, &in, &out);
+    if (out.numberofcorners != 4 || !out.neighborlist ||
+        static_cast<size_t>(out.numberofpoints) < front->n_point)
+      return 1;
+    return take_cells(out, *front, cells) ? 0 : 1;
+  } catch (...) {
+    return 1;
+  }
+}
+
+const vg_mesher tetgen = { VG_MESHER_VERSION, "TetGen", fill, nullptr };
+
+}  // namespace
+
+extern "C" const vg_mesher *vg_mesher_tetgen(void)
+{
+  return &tetgen;
+}

@@ -1,0 +1,299 @@
+/* What stays together: stacks of layer cells, clusters of the others.
+ *
+ * Vanguard's layer cells stand with the triangle of nodes 0, 1, 2 on what is
+ * below them, and what is below is the cell that has raised one of its points
+ * last: node 3 of a tetrahedron, 3 and 4 of a pyramid, 3, 4, 5 of a prism
+ * (layers/expand/expand_cells.c). Where this holds for all that is said to be
+ * in layers, joining each to the one below gives the stacks; those between the
+ * columns of a fan begin on the flank of another. Prisms of any origin are
+ * joined over triangles, hexahedra from walls upwards. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/union_find.h"
+#include "partition/solver/solver_parts.h"
+
+#define NONE VG_NO_CELL
+#define MOST_CLUSTER 64
+
+void vg_units_release(struct vg_units *u)
+{
+  free(u->of);
+  free(u->weight);
+  free(u->alone);
+  memset(u, 0, sizeof *u);
+}
+
+size_t vg_unit_cluster(const struct vg_solver_options *o, uint64_t n_field)
+{
+  uint64_t n = o->cluster_above ? (n_field + o->cluster_above - 1) /
+                                    o->cluster_above : 1;
+
+  return n < 1 ? 1 : n > MOST_CLUSTER ? MOST_CLUSTER : (size_t)n;
+}
+
+struct work {
+  const struct vg_cell_links *l;
+  const struct vg_unit_options *o;
+  uint32_t *up;              /* [n_cell] stacks, as of base/union_find.h */
+  unsigned char *stands;     /* [n_cell] bits: in a stack or alone in a layer */
+  struct vg_units *u;
+};
+
+enum kind { TET, PYR, PRI, HEX };
+
+static enum kind kind_of(const struct vg_cell_links *l, uint32_t cell)
+{
+  return cell < l->end_tet ? TET : cell < l->end_pyr ? PYR
+         : cell < l->end_pri ? PRI : HEX;
+}
+
+/* --- stacks -------------------------------------------------------------- */
+
+static int is_layer(const struct work *w, uint32_t cell)
+{
+  const struct vg_cell_links *l = w->l;
+
+  switch (kind_of(l, cell)) {
+  case TET: return w->o->is_known && cell < w->o->n_layer[0];
+  case PYR: return w->o->is_known && cell - l->end_tet < w->o->n_layer[1];
+  case PRI: return 1;
+  default: return 0;
+  }
+}
+
+/* Faces as in core/mesh/cell_faces.h. */
+static uint32_t bottom_of(const struct vg_cell_links *l, uint32_t cell)
+{
+  return cell << 3 | (kind_of(l, cell) == PYR ? 0 : 3);
+}
+
+static int may_carry(const struct vg_cell_links *l, uint32_t code)
+{
+  switch (kind_of(l, code >> 3)) {
+  case TET: return (code & 7) != 3;
+  case PYR: return (code & 7) == 2;
+  default: return (code & 7) == 4;
+  }
+}
+
+enum footing { FIRM, ASIDE, NOWHERE };
+
+/* A cell onto what carries it. FIRM: a wall, or a cell; a tetrahedron on the one
+ * before it, as they follow in a stack. ASIDE: on the flank of another stack, as
+ * those between the columns of a fan begin. NOWHERE: where no cell of
+ * Vanguard's layers stands. */
+static enum footing stand(struct work *w, uint32_t cell)
+{
+  uint32_t below = vg_mate(w->l, bottom_of(w->l, cell));
+
+  if (below == NONE) return FIRM;
+  if (!is_layer(w, below >> 3)) return NOWHERE;
+  if (kind_of(w->l, cell) == TET && kind_of(w->l, below >> 3) == TET &&
+      (below >> 3) + 1 != cell) return ASIDE;
+  if (may_carry(w->l, below)) vg_union(w->up, cell, below >> 3);
+  return FIRM;
+}
+
+/* Prisms of any origin: over both triangles. */
+static void join_prisms(struct work *w)
+{
+  const struct vg_cell_links *l = w->l;
+
+  for (uint32_t cell = l->end_pyr; cell < l->end_pri; cell++)
+    for (uint32_t face = 3; face < 5; face++) {
+      uint32_t mate = vg_mate(l, cell << 3 | face);
+
+      w->stands[cell] = 1;
+      if (mate != NONE && mate >> 3 < cell &&
+          kind_of(l, mate >> 3) == PRI && (mate & 7) >= 3)
+        vg_union(w->up, cell, mate >> 3);
+    }
+}
+
+static void forget(struct work *w)
+{
+  for (uint32_t cell = 0; cell < w->l->n_cell; cell++) {
+    w->up[cell] = cell;
+    w->stands[cell] = 0;
+  }
+}
+
+/* Returns 0 when what a file says to be layers is not built as they are: cells
+ * stand nowhere, or too many not on the one before. Of Vanguard's, where stacks
+ * of fans begin does, one cell in dozens. */
+static int join_layers(struct work *w)
+{
+  const struct vg_cell_links *l = w->l;
+  const uint32_t first[2] = { 0, l->end_tet };
+  uint64_t n[3] = { 0, 0, 0 };
+
+  for (int k = 0; k < 2; k++)
+    for (uint32_t i = 0; i < w->o->n_layer[k]; i++) {
+      w->stands[first[k] + i] = 1;
+      n[stand(w, first[k] + i)]++;
+    }
+  return w->o->is_ours || (!n[NOWHERE] && n[ASIDE] <= n[FIRM] / 2);
+}
+
+/* From a face of a hexahedron on a wall to the ones above. Faces that lie
+ * opposite each other are 0 and 1, 2 and 3, 4 and 5. */
+static void climb(struct work *w, uint32_t code)
+{
+  uint32_t below = NONE;
+
+  while (code != NONE && kind_of(w->l, code >> 3) == HEX &&
+         !w->stands[code >> 3]) {
+    w->stands[code >> 3] = 1;
+    if (below != NONE) vg_union(w->up, code >> 3, below);
+    below = code >> 3;
+    code = vg_mate(w->l, code ^ 1);
+  }
+}
+
+static void join_hexahedra(struct work *w)
+{
+  const struct vg_mesh *m = w->l->m;
+
+  if (!w->o->is_wall || !w->l->boundary) return;
+  for (size_t i = 0; i < m->n_quad; i++)
+    if (w->o->is_wall[m->quad_patch[i]])
+      climb(w, w->l->boundary[m->n_tri + i]);
+}
+
+static void join_all(struct work *w)
+{
+  const struct vg_cell_links *l = w->l;
+  uint32_t n_loose = l->end_tet;
+
+  forget(w);
+  if (w->o->is_known && !join_layers(w)) {
+    forget(w);
+    w->u->has_loose = 1;
+  }
+  if (!w->o->is_known && n_loose) w->u->has_loose = 1;
+  join_prisms(w);
+  /* what a prism of Vanguard's carries, or carries it */
+  for (uint32_t cell = l->end_pyr;
+       w->o->is_known && !w->u->has_loose && cell < l->end_pri; cell++)
+    stand(w, cell);
+  join_hexahedra(w);
+}
+
+/* --- clusters ------------------------------------------------------------ */
+
+/* Cells of the field around one, nearest by faces first, that have no unit. */
+static size_t gather(const struct work *w, uint32_t cell, uint32_t *list)
+{
+  uint32_t *of = w->u->of, unit = of[cell];
+  size_t n = 1;
+
+  list[0] = cell;
+  for (size_t k = 0; k < n && n < w->o->cluster; k++)
+    for (int i = 0; i < vg_half_faces(w->l, list[k]); i++) {
+      uint32_t mate = vg_mate(w->l, list[k] << 3 | (uint32_t)i) >> 3;
+
+      if (mate == NONE >> 3 || w->stands[mate] || of[mate] != NONE) continue;
+      of[mate] = unit;
+      list[n++] = mate;
+      if (n == w->o->cluster) break;
+    }
+  return n;
+}
+
+/* A cluster that shares a face with these few cells, the lowest; NONE: none.
+ * So no crumbs are left between clusters. */
+static uint32_t beside(const struct work *w, const uint32_t *list, size_t n)
+{
+  uint32_t *of = w->u->of, best = NONE;
+
+  for (size_t k = 0; k < n; k++)
+    for (int i = 0; i < vg_half_faces(w->l, list[k]); i++) {
+      uint32_t mate = vg_mate(w->l, list[k] << 3 | (uint32_t)i) >> 3;
+
+      if (mate == NONE >> 3 || w->stands[mate] || of[mate] == NONE) continue;
+      if (of[mate] != of[list[0]] && of[mate] < best) best = of[mate];
+    }
+  return best;
+}
+
+static void number(struct work *w)
+{
+  struct vg_units *u = w->u;
+  uint32_t list[MOST_CLUSTER], next = 0;
+
+  for (uint32_t cell = 0; cell < w->l->n_cell; cell++) {
+    if (u->of[cell] != NONE) continue;
+    if (w->stands[cell]) {   /* roots are the lowest cells of their stacks */
+      uint32_t root = vg_root_of(w->up, cell);
+
+      u->of[cell] = root == cell ? next++ : u->of[root];
+      continue;
+    }
+    u->of[cell] = next++;
+    if (w->o->cluster > 1) {
+      size_t n = gather(w, cell, list);
+      uint32_t other = 4 * n < w->o->cluster ? beside(w, list, n) : NONE;
+
+      if (other == NONE) continue;
+      for (size_t k = 0; k < n; k++) u->of[list[k]] = other;
+      next--;
+    }
+  }
+  u->n_unit = next;
+}
+
+/* --- all ----------------------------------------------------------------- */
+
+/* Weights of units; stacks are counted by their cells. */
+static vg_status weigh(struct work *w, struct vg_error *err)
+{
+  struct vg_units *u = w->u;
+  uint32_t *n = vg_calloc(u->n_unit, sizeof *n);
+
+  u->weight = vg_calloc(u->n_unit, sizeof *u->weight);
+  u->alone = vg_alloc(u->n_unit, 1);
+  if (!n || !u->weight || !u->alone) {
+    free(n);
+    return vg_fail_memory(err, "the weights of stacks and cells");
+  }
+  for (uint32_t cell = 0; cell < w->l->n_cell; cell++) {
+    u->weight[u->of[cell]] += w->o->weight[kind_of(w->l, cell)];
+    if (w->stands[cell]) n[u->of[cell]]++;
+  }
+  for (size_t k = 0; k < u->n_unit; k++) {
+    u->alone[k] = !n[k];
+    if (n[k] < 2) continue;
+    u->n_stack++;
+    u->n_stack_cell += n[k];
+    if (n[k] > u->most_stack) u->most_stack = n[k];
+  }
+  free(n);
+  return VG_OK;
+}
+
+vg_status vg_units_make(const struct vg_cell_links *l,
+                        const struct vg_unit_options *o, struct vg_units *out,
+                        struct vg_error *err)
+{
+  struct vg_units u = VG_UNITS_INIT;
+  struct work w = { l, o, vg_alloc(l->n_cell, sizeof *w.up),
+                    vg_alloc(l->n_cell, 1), &u };
+  vg_status st = VG_OK;
+
+  u.of = vg_alloc(l->n_cell, sizeof *u.of);
+  if (!w.up || !w.stands || !u.of) {
+    st = vg_fail_memory(err, "the stacks of a mesh");
+  } else {
+    memset(u.of, 0xff, l->n_cell * sizeof *u.of);
+    join_all(&w);
+    number(&w);
+    st = weigh(&w, err);
+  }
+  free(w.up);
+  free(w.stands);
+  if (st < 0) vg_units_release(&u);
+  else *out = u;
+  return st;
+}

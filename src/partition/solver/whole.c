@@ -1,0 +1,185 @@
+/* Parts of a mesh in one piece. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/memory.h"
+#include "partition/solver/solver_parts.h"
+
+/* Where cells of the field came in clusters, borders between parts follow the
+ * clusters' ragged ones; so many rounds of moving single cells straighten
+ * them. */
+#define ROUNDS 4   /* P3 */
+
+struct smoothing {
+  const struct vg_cell_links *l;
+  const struct vg_units *u;
+  const double *weight;        /* of kinds */
+  double *load;                /* [n_part] */
+  double most;                 /* that a part may have */
+  uint32_t *part;              /* [n_cell] */
+};
+
+static int kind_of(const struct vg_cell_links *l, uint32_t cell)
+{
+  return cell < l->end_tet ? 0 : cell < l->end_pyr ? 1
+         : cell < l->end_pri ? 2 : 3;
+}
+
+/* The part that most of a cell's neighbours are in; its own for want of a
+ * better one, the lowest of equals. */
+static uint32_t better(const struct smoothing *s, uint32_t cell)
+{
+  uint32_t own = s->part[cell], best = own, part[6];
+  int faces[6], n = 0, most;
+
+  part[n] = own;
+  faces[n++] = 0;
+  for (int i = 0; i < vg_half_faces(s->l, cell); i++) {
+    uint32_t mate = vg_mate(s->l, cell << 3 | (uint32_t)i), p;
+    int k = 0;
+
+    if (mate == VG_NO_CELL) continue;
+    p = s->part[mate >> 3];
+    while (k < n && part[k] != p) k++;
+    if (k == 6) continue;      /* a hexahedron among seven parts */
+    if (k == n) {
+      part[n] = p;
+      faces[n++] = 0;
+    }
+    faces[k]++;
+  }
+  most = faces[0];
+  for (int k = 1; k < n; k++)
+    if (faces[k] > most || (faces[k] == most && best != own &&
+                            part[k] < best)) {
+      most = faces[k];
+      best = part[k];
+    }
+  return best;
+}
+
+static void smooth(struct smoothing *s)
+{
+  for (int round = 0; round < ROUNDS; round++)
+    for (uint32_t cell = 0; cell < s->l->n_cell; cell++) {
+      uint32_t own = s->part[cell], to;
+      double weight;
+
+      if (!s->u->alone[s->u->of[cell]]) continue;
+      to = better(s, cell);
+      if (to == own) continue;
+      weight = s->weight[kind_of(s->l, cell)];
+      if (s->load[to] + weight > s->most || !(s->load[own] > weight)) continue;
+      s->load[to] += weight;
+      s->load[own] -= weight;
+      s->part[cell] = to;
+    }
+}
+
+static vg_status straighten(const struct vg_cell_links *l,
+                            const struct vg_units *u,
+                            const struct vg_solver_options *o, uint32_t *part,
+                            struct vg_error *err)
+{
+  struct smoothing s = { l, u, o->weight, NULL, 0, part };
+
+  s.load = vg_calloc(o->n_part, sizeof *s.load);
+  if (!s.load) return vg_fail_memory(err, "the loads of parts");
+  for (uint32_t cell = 0; cell < l->n_cell; cell++)
+    s.load[part[cell]] += o->weight[kind_of(l, cell)];
+  for (uint64_t p = 0; p < o->n_part; p++)
+    if (s.load[p] > s.most) s.most = s.load[p];
+  smooth(&s);
+  free(s.load);
+  return VG_OK;
+}
+
+static vg_status tally(const struct vg_cell_links *l,
+                       const struct vg_solver_options *o,
+                       const uint32_t *part, struct vg_solver_report *r,
+                       struct vg_error *err)
+{
+  struct vg_tally *t = vg_tally_new(o->n_part);
+  int bad = !t;
+
+  for (uint32_t cell = 0; cell < l->n_cell && !bad; cell++) {
+    vg_tally_cells(t, part[cell], 1, o->weight[kind_of(l, cell)]);
+    for (int i = 0; i < vg_half_faces(l, cell) && !bad; i++) {
+      uint32_t mate = vg_mate(l, cell << 3 | (uint32_t)i) >> 3;
+
+      if (mate < cell) bad = vg_tally_faces(t, part[cell], part[mate], 1);
+    }
+  }
+  if (!bad) vg_tally_report(t, r);
+  vg_tally_free(t);
+  return bad ? vg_fail_memory(err, "counting the faces of parts") : VG_OK;
+}
+
+static struct vg_unit_options unit_options(const struct vg_mesh *m,
+                                           const struct vg_solver_layers *at,
+                                           const struct vg_solver_options *o)
+{
+  struct vg_unit_options u = { .cluster = 1, .weight = o->weight };
+  uint64_t n_layer = m->n_pri;
+
+  if (at && at->is_known) {
+    u.is_known = 1;
+    u.n_layer[0] = at->n_tet < m->n_tet ? at->n_tet : m->n_tet;
+    u.n_layer[1] = m->n_pyr;
+    n_layer += u.n_layer[0] + u.n_layer[1];
+  }
+  if (at) u.is_wall = at->is_wall;
+  u.cluster = vg_unit_cluster(o, (uint64_t)m->n_tet + m->n_pyr + m->n_pri +
+                                   m->n_hex - n_layer);
+  return u;
+}
+
+static vg_status part_units(const struct vg_cell_links *l,
+                            const struct vg_units *u,
+                            const struct vg_solver_options *o, uint32_t *part,
+                            struct vg_solver_report *r, struct vg_error *err)
+{
+  struct vg_unit_graph g = { 0 };
+  uint32_t *of_unit = vg_alloc(u->n_unit, sizeof *of_unit);
+  vg_status st = of_unit ? VG_OK : vg_fail_memory(err, "the parts of a mesh");
+
+  if (st >= 0) st = vg_unit_graph_of_links(l, u, &g, err);
+  r->time_graph = vg_clock() - r->time_graph;
+  if (st >= 0)
+    st = vg_unit_graph_part(&g, u->weight, o->n_part, of_unit, r, err);
+  for (uint32_t cell = 0; st >= 0 && cell < l->n_cell; cell++)
+    part[cell] = of_unit[u->of[cell]];
+  vg_unit_graph_release(&g);
+  free(of_unit);
+  return st;
+}
+
+vg_status vg_solver_part(const struct vg_mesh *m,
+                         const struct vg_solver_layers *layers,
+                         const struct vg_solver_options *o, const char *name,
+                         uint32_t *part, struct vg_solver_report *report,
+                         struct vg_error *err)
+{
+  struct vg_solver_report r = { .time_graph = vg_clock() };
+  struct vg_unit_options uo = unit_options(m, layers, o);
+  struct vg_cell_links l = VG_CELL_LINKS_INIT;
+  struct vg_units u = VG_UNITS_INIT;
+  vg_status st;
+
+  VG_TRY(vg_cell_links_build(&l, m, 0, name, err));
+  VG_TRY(vg_units_make(&l, &uo, &u, err));
+  VG_TRY(part_units(&l, &u, o, part, &r, err));
+  if (uo.cluster > 1)
+    VG_TRY(straighten(&l, &u, o, part, err));
+  VG_TRY(tally(&l, o, part, &r, err));
+  r.n_stack = u.n_stack;
+  r.n_stack_cell = u.n_stack_cell;
+  r.most_stack = u.most_stack;
+  r.has_loose = u.has_loose;
+  *report = r;
+done:
+  vg_units_release(&u);
+  vg_cell_links_release(&l);
+  return st;
+}

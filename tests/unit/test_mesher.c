@@ -1,0 +1,469 @@
+/* Other meshers: what they return is taken when it fills the front, and only
+ * then; what they do to their process harms no other. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <pthread.h>
+#include <sys/socket.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+#include "base/child.h"
+#include "core/geometry/predicates.h"
+#include "core/mesher/fill_with.h"
+#include "core/mesher/mesher_parts.h"
+#include "fill_shapes.h"
+
+static struct vg_sizing *sizing;
+static struct vg_void box, hollow;      /* a box; one around a sphere */
+
+static void make_void(struct vg_void *v, int has_sphere)
+{
+  static const double centre[3] = { 0.1, 0, -0.2 };
+  struct vg_mesh m = VG_MESH_INIT;
+
+  shape_box(&m, 4, 3);
+  if (has_sphere) shape_sphere(&m, 6, centre, 1, 40);
+  memset(v, 0, sizeof *v);
+  if (vg_void_from_mesh(v, &m, NULL) != VG_OK) abort();
+  if (has_sphere) sizing = shape_sizing(&m, 1.2, 0);
+  vg_mesh_release(&m);
+}
+
+static int set_up(void **state)
+{
+  (void)state;
+  make_void(&box, 0);
+  make_void(&hollow, 1);
+  return 0;
+}
+
+static int tear_down(void **state)
+{
+  (void)state;
+  vg_void_release(&box);
+  vg_void_release(&hollow);
+  vg_sizing_free(sizing);
+  return 0;
+}
+
+static void copy_void(struct vg_void *to, const struct vg_void *from)
+{
+  memset(to, 0, sizeof *to);
+  if (vg_reserve(&to->x, &to->cap_point, from->n_point, sizeof *to->x) ||
+      vg_reserve(&to->face, &to->cap_face, from->n_face, sizeof *to->face))
+    abort();
+  memcpy(to->x, from->x, from->n_point * sizeof *to->x);
+  memcpy(to->face, from->face, from->n_face * sizeof *to->face);
+  to->n_point = from->n_point;
+  to->n_face = from->n_face;
+}
+
+static const char *plugin(const char *name)
+{
+  static char path[4096];
+
+  snprintf(path, sizeof path, "%s/mesher_%s.so", VG_TMP_DIR, name);
+  return path;
+}
+
+static const char *bad(int number)
+{
+  char name[32];
+
+  snprintf(name, sizeof name, "bad_%d", number);
+  return plugin(name);
+}
+
+static struct vg_mesher_pool *open_mesher(const char *name)
+{
+  struct vg_mesher_pool *p = NULL;
+  struct vg_error err = VG_ERROR_INIT;
+
+  if (vg_mesher_open(name, &p, &err) != VG_OK) fail_msg("%s", err.text);
+  return p;
+}
+
+static vg_status fill(struct vg_mesher_pool *p, struct vg_void *v,
+                      const struct vg_grow_options *o,
+                      struct vg_fill_report *r)
+{
+  const struct vg_grow_options plain = VG_GROW_OPTIONS_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+
+  return vg_mesher_fill(p, v, sizing, o ? o : &plain, r, &err);
+}
+
+/* --- the check ----------------------------------------------------------- */
+
+struct sample {
+  size_t n_front, n, n_cell;
+  double (*x)[3];
+  uint32_t (*cell)[4];
+};
+
+/* What the kernel makes of the hollow void. */
+static void take_sample(struct sample *s)
+{
+  const struct vg_grow_options o = VG_GROW_OPTIONS_INIT;
+  struct vg_fill_report r = { 0 };
+  struct vg_void v;
+
+  copy_void(&v, &hollow);
+  assert_int_equal(vg_grow(&v, sizing, &o, &r, NULL), VG_OK);
+  *s = (struct sample){ hollow.n_point, v.n_point, v.n_cell, v.x, v.cell };
+  free(v.face);
+}
+
+static const char *check(struct sample *s)
+{
+  const char *wrong;
+  vg_status st = vg_mesher_check(s->n_front, hollow.n_face,
+                                 (const uint32_t (*)[3])hollow.face, &s->n,
+                                 s->x, s->n_cell, s->cell, &wrong, NULL);
+
+  assert_int_equal(st, wrong ? VG_NOT_BETTER : VG_OK);
+  return wrong;
+}
+
+static void takes_what_fills_the_front(void **state)
+{
+  struct sample s;
+  size_t n;
+
+  (void)state;
+  take_sample(&s);
+  n = s.n;
+  for (size_t c = 0; c < s.n_cell; c += 3) {   /* the other way round */
+    uint32_t t = s.cell[c][1];
+
+    s.cell[c][1] = s.cell[c][2];
+    s.cell[c][2] = t;
+  }
+  assert_null(check(&s));
+  for (size_t c = 0; c < s.n_cell; c++)
+    assert_true(vg_orient3d(s.x[s.cell[c][0]], s.x[s.cell[c][1]],
+                            s.x[s.cell[c][2]], s.x[s.cell[c][3]]) > 0);
+  /* a point that nobody uses goes */
+  for (size_t c = 0; c < s.n_cell; c++)
+    for (int k = 0; k < 4; k++) s.cell[c][k] += s.cell[c][k] >= s.n_front;
+  s.x = realloc(s.x, (n + 1) * sizeof *s.x);
+  memmove(s.x + s.n_front + 1, s.x + s.n_front,
+          (n - s.n_front) * sizeof *s.x);
+  s.n = n + 1;
+  assert_null(check(&s));
+  assert_int_equal(s.n, n);
+  free(s.x);
+  free(s.cell);
+}
+
+/* One cell of a good sample changed in one way. */
+static void refuses_what_does_not(void **state)
+{
+  static const char *const words[] = { "face to face", "not finite",
+                                       "there is not", "flat" };
+
+  (void)state;
+  for (int way = 0; way < 6; way++) {
+    struct sample s;
+    const char *wrong;
+
+    take_sample(&s);
+    if (way == 0) s.n_cell--;
+    if (way == 1) s.x[s.n - 1][0] = INFINITY;
+    if (way == 2) s.cell[5][1] = (uint32_t)s.n;
+    if (way == 3) s.cell[5][1] = s.cell[5][0];
+    /* inverted cells are turned, and then lie on one side of a face */
+    if (way == 4) s.x[s.n - 1][0] += 0.7;
+    if (way == 5) s.n_cell = 0;
+    wrong = check(&s);
+    assert_non_null(wrong);
+    if (way < 4) assert_non_null(strstr(wrong, words[way]));
+    free(s.x);
+    free(s.cell);
+  }
+}
+
+/* A front as a tetrahedron filled from outside: all faces match. */
+static void refuses_the_outside(void **state)
+{
+  static const uint32_t face[4][3] = { {1, 2, 3}, {0, 3, 2}, {0, 1, 3},
+                                       {0, 2, 1} };
+  double x[4][3] = { {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1} };
+  uint32_t cell[1][4] = { {0, 1, 2, 3} };
+  const char *wrong;
+  size_t n = 4;
+
+  (void)state;
+  assert_int_equal(vg_mesher_check(4, 4, face, &n, x, 1, cell, &wrong, NULL),
+                   VG_NOT_BETTER);
+  assert_non_null(strstr(wrong, "outside"));
+}
+
+/* --- meshers ------------------------------------------------------------- */
+
+static void the_example_fills_a_box(void **state)
+{
+  struct vg_mesher_pool *p = open_mesher(plugin("star"));
+  struct vg_fill_report r = { 0 };
+  struct vg_void v;
+
+  (void)state;
+  for (int k = 0; k < 3; k++) {          /* the process is used again */
+    copy_void(&v, &box);
+    assert_int_equal(fill(p, &v, NULL, &r), VG_OK);
+    assert_int_equal(v.n_cell, box.n_face);
+    assert_int_equal(v.n_point, box.n_point + 1);
+    assert_int_equal(v.n_face, 0);
+    assert_int_equal(r.n_other, k + 1);
+    vg_void_release(&v);
+  }
+  copy_void(&v, &hollow);                /* and says where it cannot */
+  assert_int_equal(fill(p, &v, NULL, &r), VG_NOT_BETTER);
+  assert_int_equal(r.n_other_failed, 1);
+  assert_int_equal(v.n_face, hollow.n_face);
+  assert_int_equal(v.n_cell, 0);
+  vg_void_release(&v);
+  vg_mesher_close(p);
+}
+
+/* A mesher with sizes makes about as many cells as the kernel does: half to
+ * twice; and the same each time. */
+static void fills_by_size(const char *name)
+{
+  struct vg_mesher_pool *p = open_mesher(name);
+  struct vg_fill_report r = { 0 };
+  struct vg_void v, again;
+  struct sample s;
+
+  take_sample(&s);
+  copy_void(&v, &hollow);
+  copy_void(&again, &hollow);
+  assert_int_equal(fill(p, &v, NULL, &r), VG_OK);
+  assert_int_equal(r.n_other_cell, v.n_cell);
+  assert_true(v.n_cell > s.n_cell / 2 && v.n_cell < 2 * s.n_cell);
+  assert_int_equal(fill(p, &again, NULL, &r), VG_OK);
+  assert_int_equal(v.n_cell, again.n_cell);
+  assert_memory_equal(v.cell, again.cell, v.n_cell * sizeof *v.cell);
+  assert_memory_equal(v.x, again.x, v.n_point * sizeof *v.x);
+  vg_void_release(&v);
+  vg_void_release(&again);
+  free(s.x);
+  free(s.cell);
+  vg_mesher_close(p);
+}
+
+static void tetgen_fills_around_a_hollow(void **state)
+{
+  (void)state;
+  fills_by_size("tetgen");
+}
+
+static void hxt_does_where_it_is(void **state)
+{
+  struct vg_mesher_pool *p = NULL;
+  struct vg_error err = VG_ERROR_INIT;
+
+  (void)state;
+  if (vg_mesher_open("hxt", &p, &err) != VG_OK) {
+    assert_int_equal(err.code, VG_ERR_UNSUPPORTED);
+    assert_non_null(strstr(err.text, "libgmsh"));
+    skip();
+  }
+  vg_mesher_close(p);
+  fills_by_size("hxt");
+}
+
+/* Two boxes that share an edge, one box in another: parts of a void are told by
+ * what lies between two triangles. */
+static void tells_shells_that_touch(void **state)
+{
+  static const uint32_t tet[4][3] = { {1, 2, 3}, {0, 3, 2}, {0, 1, 3},
+                                      {0, 2, 1} };
+  double x[6][3] = { {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1},
+                     {0, -1, 0}, {0, 0, -1} };
+  uint32_t face[8][3];
+  struct vg_mesher_front f = { 6, 8, (const double (*)[3])x,
+                               (const uint32_t (*)[3])face };
+  static const uint32_t name[2][4] = { {0, 1, 2, 3}, {0, 1, 4, 5} };
+  struct vg_mesher_shells s;
+
+  (void)state;
+  for (int i = 0; i < 8; i++)          /* into the tetrahedra */
+    for (int k = 0; k < 3; k++)
+      face[i][k] = name[i / 4][tet[i % 4][2 - k]];
+  assert_int_equal(vg_mesher_find_shells(&f, &s), 0);
+  assert_int_equal(s.n, 2);
+  assert_int_equal(s.n_hollow, 0);
+  assert_int_equal(s.n_piece, 2);
+  for (int i = 0; i < 8; i++) assert_int_equal(s.of[i], i / 4);
+  vg_mesher_shells_release(&s);
+  for (int i = 0; i < 8; i++) {        /* out of them: they are the hollows */
+    uint32_t t = face[i][0];
+
+    face[i][0] = face[i][1];
+    face[i][1] = t;
+  }
+  assert_int_equal(vg_mesher_find_shells(&f, &s), 0);
+  assert_int_equal(s.n, 1);
+  assert_int_equal(s.n_piece, 2);
+  assert_int_equal(s.n_hollow, 1);
+  vg_mesher_shells_release(&s);
+}
+
+/* --- bad ones ------------------------------------------------------------ */
+
+static void refuses_plugins_that_are_none(void **state)
+{
+  static const struct { int number; const char *word; } row[] = {
+    { 1, "vg_mesher_plugin" }, { 2, "version 2" },
+    { 3, "ended" }, { 4, "returns no mesher" }, { 99, "cannot be loaded" },
+  };
+  struct vg_mesher_pool *p = NULL;
+
+  (void)state;
+  for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
+    struct vg_error err = VG_ERROR_INIT;
+
+    assert_int_equal(vg_mesher_open(bad(row[i].number), &p, &err),
+                     VG_ERR_UNSUPPORTED);
+    if (!strstr(err.text, row[i].word)) fail_msg("%s", err.text);
+    if (!strstr(err.text, bad(row[i].number))) fail_msg("%s", err.text);
+    assert_null(p);
+  }
+}
+
+static void gives_up_plugins_that_fail(void **state)
+{
+  (void)state;
+  for (int k = 5; k <= 15; k++) {
+    struct vg_mesher_pool *p = open_mesher(bad(k));
+    struct vg_fill_report r = { 0 };
+    struct vg_void v;
+
+    vg_mesher_patience(p, 0.05, 0);
+    for (int again = 0; again < 2; again++) {
+      copy_void(&v, &box);
+      assert_int_equal(fill(p, &v, NULL, &r), VG_NOT_BETTER);
+      assert_int_equal(v.n_cell, 0);
+      assert_int_equal(v.n_point, box.n_point);
+      assert_int_equal(v.n_face, box.n_face);
+      vg_void_release(&v);
+    }
+    /* 5 to 8 and 15 end or hang, the others return what is wrong */
+    assert_int_equal(r.n_other_ended, k <= 8 || k == 15 ? 2 : 0);
+    assert_int_equal(r.n_other_wrong, k <= 8 || k == 15 ? 0 : 2);
+    assert_int_equal(r.n_other, 0);
+    vg_mesher_close(p);
+  }
+}
+
+static int stop(void *user, const char *stage, size_t done, size_t expected)
+{
+  (void)user;
+  (void)stage;
+  (void)done;
+  (void)expected;
+  return 1;
+}
+
+static void stops_and_keeps_limits(void **state)
+{
+  struct vg_mesher_pool *p = open_mesher(bad(8));   /* sleeps */
+  struct vg_grow_options o = VG_GROW_OPTIONS_INIT;
+  struct vg_fill_report r = { 0 };
+  struct vg_void v;
+
+  (void)state;
+  o.progress = stop;
+  copy_void(&v, &box);
+  assert_int_equal(fill(p, &v, &o, &r), VG_BLOCKED);
+  vg_mesher_close(p);
+  p = open_mesher("tetgen");
+  o.progress = NULL;
+  o.point_limit = 3;
+  vg_void_release(&v);
+  copy_void(&v, &hollow);
+  assert_int_equal(fill(p, &v, &o, &r), VG_ERR_UNSUPPORTED);
+  assert_int_equal(v.n_cell, 0);
+  vg_void_release(&v);
+  vg_mesher_close(p);
+}
+
+/* --- sizes across a socket ----------------------------------------------- */
+
+static void *answer(void *fd)
+{
+  struct vg_mesher_word w;
+
+  while (vg_child_get(*(int *)fd, &w, sizeof w)) {
+    double (*x)[3] = malloc(w.n * sizeof *x), *h = malloc(w.n * sizeof *h);
+
+    vg_child_get(*(int *)fd, x, w.n * sizeof *x);
+    vg_sizing_eval(sizing, w.n, (const double (*)[3])x, h);
+    vg_child_put(*(int *)fd, h, w.n * sizeof *h);
+    free(x);
+    free(h);
+  }
+  return NULL;
+}
+
+/* Between corners that are a size apart, the gradient of 0.2 and a size that is
+ * linear but for creases leave a few per cent. */
+static void sizes_are_those_of_the_field(void **state)
+{
+  const struct vg_mesher_front f = { hollow.n_point, hollow.n_face,
+    (const double (*)[3])hollow.x, (const uint32_t (*)[3])hollow.face };
+  struct vg_child_sizes *s;
+  pthread_t thread;
+  uint32_t seed = 1;
+  int ends[2];
+
+  (void)state;
+  assert_int_equal(socketpair(AF_UNIX, SOCK_STREAM, 0, ends), 0);
+  assert_int_equal(pthread_create(&thread, NULL, answer, &ends[1]), 0);
+  s = vg_child_sizes_new(ends[0], &f);
+  assert_non_null(s);
+  for (int i = 0; i < 5000; i++) {
+    double x[1][3], h, want;
+
+    for (int k = 0; k < 3; k++) {
+      seed = seed * 1664525 + 1013904223;
+      x[0][k] = 6 * (seed >> 8) / 16777216.0 - 3;
+    }
+    vg_child_sizes_at(s, 1, (const double (*)[3])x, &h);
+    want = vg_sizing_at(sizing, x[0]);
+    if (!(fabs(h - want) < 0.12 * want)) fail_msg("%g for %g", h, want);
+  }
+  shutdown(ends[0], SHUT_RDWR);
+  pthread_join(thread, NULL);
+  close(ends[0]);
+  close(ends[1]);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(takes_what_fills_the_front),
+    cmocka_unit_test(refuses_what_does_not),
+    cmocka_unit_test(refuses_the_outside),
+    cmocka_unit_test(the_example_fills_a_box),
+    cmocka_unit_test(tetgen_fills_around_a_hollow),
+    cmocka_unit_test(hxt_does_where_it_is),
+    cmocka_unit_test(tells_shells_that_touch),
+    cmocka_unit_test(refuses_plugins_that_are_none),
+    cmocka_unit_test(gives_up_plugins_that_fail),
+    cmocka_unit_test(stops_and_keeps_limits),
+    cmocka_unit_test(sizes_are_those_of_the_field),
+  };
+  int bad_tests;
+
+  if (vg_child_server_start(NULL) < 0) return 1;
+  bad_tests = cmocka_run_group_tests(tests, set_up, tear_down);
+  vg_child_server_stop();
+  return bad_tests;
+}
