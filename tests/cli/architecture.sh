@@ -105,7 +105,7 @@ adapter() {
     sed 's,^\./,,')
 }
 adapter tetgen.h '^core/recover/cdt_tetgen\.cpp$'
-adapter zlib.h '^io/[a-z]+/[a-z_]+\.c$'
+adapter zlib.h '^(io/[a-z]+/[a-z_]+|cli/picture/image)\.c$'
 adapter jansson.h '^cli/'
 adapter argp.h '^cli/'
 # Its last bits differ between processors: never where a mesh is made.
