@@ -115,7 +115,6 @@
       p = place; c = colour / 255.0; s = side / 255.0;
       gl_Position = m * vec4(place, 1.0);
     }`;
-  // Faces seen from behind are those of a domain, or of a body from within.
   const surfaceFragment = `
     #extension GL_OES_standard_derivatives : enable
     precision highp float;
@@ -131,7 +130,6 @@
       float line = 1.0 - min(near.x, min(near.y, near.z));
       float small = max(width.x, max(width.y, width.z));
       line *= edges * (1.0 - smoothstep(0.12, 0.4, small));
-      if (!gl_FrontFacing) light *= 0.72;
       gl_FragColor = vec4(c * light * (1.0 - 0.6 * line), 1.0);
     }`;
 
@@ -141,6 +139,8 @@
       attributes: buffers,
       uniforms: { m: regl.prop('m'), toward: regl.prop('f.toward'),
         up: regl.prop('f.up'), edges: regl.prop('edges') },
+      // Faces point into the fluid: a body shows its skin, a domain its back.
+      cull: { enable: true, face: 'back' },
       offset: regl.prop('offset'), count: regl.prop('count'),
     });
   }

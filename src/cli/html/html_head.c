@@ -43,162 +43,187 @@ void vg_html_head(struct page *p)
 
 /* --- what to know first -------------------------------------------------- */
 
-enum weight { WEIGHT_NOTE, WEIGHT_WARN, WEIGHT_BAD };
+/* The list is written weight by weight: a line of another one is not begun. */
+enum weight { WEIGHT_BAD, WEIGHT_LOOK, WEIGHT_CHANGED, WEIGHT_NOTE, WEIGHTS };
 
-static void begin(struct page *p, enum weight weight)
+struct list { struct page *p; enum weight now; int n; };
+
+static int begin(struct list *l, enum weight weight)
 {
-  static const char *const name[] = { "note", "warn", "bad" };
-  static const char *const word[] = { "Note", "Changed", "Missed" };
+  static const char *const name[] = { "bad", "warn", "warn", "note" };
+  static const char *const word[] = { "Missed", "Look", "Changed", "Note" };
 
-  vg_page_format(p, "<li class=\"%s\"><b>%s</b> <span>", name[weight],
+  if (weight != l->now) return 0;
+  l->n++;
+  vg_page_format(l->p, "<li class=\"%s\"><b>%s</b> <span>", name[weight],
                  word[weight]);
-}
-
-static void end(struct page *p)
-{
-  vg_page_markup(p, "</span></li>\n");
-}
-
-static int count_line(struct page *p, enum weight weight, uint64_t n,
-                      const char *one, const char *many)
-{
-  if (!n) return 0;
-  begin(p, weight);
-  vg_page_count(p, n);
-  vg_page_format(p, " %s", n == 1 ? one : many);
-  end(p);
   return 1;
 }
 
-static int missed(struct page *p)
+static void end(struct list *l)
 {
-  const struct vg_layer_stage *s = p->h->layers;
+  vg_page_markup(l->p, "</span></li>\n");
+}
+
+static void count_line(struct list *l, enum weight weight, uint64_t n,
+                       const char *one, const char *many)
+{
+  if (!n || !begin(l, weight)) return;
+  vg_page_count(l->p, n);
+  vg_page_format(l->p, " %s", n == 1 ? one : many);
+  end(l);
+}
+
+static void patch_words(struct page *p, uint32_t patch)
+{
+  const struct vg_patch *of = &p->h->problem->surface.patch[patch];
+
+  vg_page_format(p, "patch %d ", (int)of->id);
+  vg_page_text(p, of->name);
+}
+
+static void missed(struct list *l)
+{
+  const struct vg_layer_stage *s = l->p->h->layers;
 
   for (size_t i = 0; i < s->n_missed; i++) {
     const struct vg_limit_missed *m = &s->missed[i];
-    const struct vg_patch *patch = &p->h->problem->surface.patch[m->patch];
 
-    begin(p, WEIGHT_BAD);
-    vg_page_format(p, "patch %d ", (int)patch->id);
-    vg_page_text(p, patch->name);
-    vg_page_format(p, ": %s is ", m->name);
-    vg_page_real(p, m->wanted, 10);
-    vg_page_format(p, "%s, reached ", m->unit);
-    vg_page_real(p, m->got, 10);
-    vg_page_markup(p, m->unit);
-    end(p);
+    if (!begin(l, WEIGHT_BAD)) return;
+    patch_words(l->p, m->patch);
+    vg_page_format(l->p, ": %s is ", m->name);
+    vg_page_real(l->p, m->wanted, 10);
+    vg_page_format(l->p, "%s, reached ", m->unit);
+    vg_page_real(l->p, m->got, 10);
+    vg_page_markup(l->p, m->unit);
+    end(l);
   }
-  return s->n_missed > 0;
 }
 
-/* Walls that lack layers, the worst one named. */
-static int layers_short(struct page *p)
+/* Walls that lack layers, or their height; the worst one named. */
+static void layers_short(struct list *l)
 {
-  const struct vg_layer_stage *s = p->h->layers;
-  const struct vg_patch_layers *worst = NULL;
+  const struct vg_layer_stage *s = l->p->h->layers;
+  const struct vg_patch_layers *fewest = &s->all, *lowest = &s->all;
+  struct page *p = l->p;
 
-  if (!p->has_layers || s->all.full >= 100) return 0;
-  for (size_t i = 0; i < s->n_wall; i++)
-    if (!worst || s->wall[i].full < worst->full) worst = &s->wall[i];
-  begin(p, WEIGHT_BAD);
-  vg_page_fixed(p, 100 - s->all.full, 2);
-  vg_page_markup(p, " % of the walls' faces have fewer layers than law and "
-                    "local size ask for");
-  if (worst && s->n_wall > 1) {
-    const struct vg_patch *patch = &p->h->problem->surface.patch[worst->patch];
-
-    vg_page_format(p, ", most on patch %d ", (int)patch->id);
-    vg_page_text(p, patch->name);
-    vg_page_markup(p, " (");
-    vg_page_fixed(p, 100 - worst->full, 2);
-    vg_page_markup(p, " %)");
+  if (!p->has_layers) return;
+  for (size_t i = 0; i < s->n_wall; i++) {
+    if (s->wall[i].full < fewest->full) fewest = &s->wall[i];
+    if (s->wall[i].share_mean < lowest->share_mean) lowest = &s->wall[i];
   }
-  vg_page_markup(p, "; <a href=\"#layers\">causes are below</a>");
-  end(p);
-  return 1;
-}
-
-static int surface_changed(struct page *p)
-{
-  const struct vg_problem *q = p->h->problem;
-  uint64_t swept = (uint64_t)vg_page_number(p, "surface.removed_triangles");
-  int n = 0;
-
-  n += count_line(p, WEIGHT_WARN, q->n_dropped, "triangle of the input was "
-                  "dropped by the weld", "triangles of the input were dropped "
-                  "by the weld");
-  n += count_line(p, WEIGHT_WARN, swept, "triangle was removed by the repair",
-                  "triangles were removed by the repair");
-  n += count_line(p, WEIGHT_WARN,
-                  (uint64_t)vg_page_number(p, "surface.flipped"),
-                  "triangle was turned over",
-                  "triangles were turned over");
-  n += count_line(p, WEIGHT_NOTE, q->n_welded,
-                  "point was merged with another",
-                  "points were merged with others");
-  if (q->domain.added_symmetry || q->domain.added_farfield) {
-    begin(p, WEIGHT_NOTE);
-    vg_page_markup(p, "to the body were added: ");
-    if (q->domain.added_symmetry) {
-      vg_page_format(p, "a symmetry plane at %c = ",
-                     "xyz"[q->domain.symmetry_axis]);
-      vg_page_real(p, q->domain.symmetry_at, 6);
-      if (q->domain.added_farfield) vg_page_markup(p, " and ");
+  if (s->all.full < 100 && begin(l, WEIGHT_BAD)) {
+    vg_page_fixed(p, 100 - s->all.full, 2);
+    vg_page_markup(p, " % of the walls' faces have fewer layers than law and "
+                      "local size ask for");
+    if (fewest->patch != VG_NO_INDEX) {
+      vg_page_markup(p, ", most on ");
+      patch_words(p, fewest->patch);
     }
-    if (q->domain.added_farfield) vg_page_markup(p, "a farfield");
-    vg_page_format(p, ", of %zu triangles", q->domain.n_added_tri);
-    end(p);
-    n++;
+    vg_page_markup(p, "; <a href=\"#layers\">causes are below</a>");
+    end(l);
   }
-  return n;
+  if (s->all.share_area < 100 && begin(l, WEIGHT_LOOK)) {
+    vg_page_markup(p, "on ");
+    vg_page_fixed(p, 100 - s->all.share_area, 2);
+    vg_page_markup(p, " % of the walls' area the layers are lower than 0.9 of "
+                      "what the law leads to; in the mean they reach ");
+    vg_page_fixed(p, s->all.share_mean, 3);
+    vg_page_markup(p, " of it");
+    if (lowest->patch != VG_NO_INDEX) {
+      vg_page_markup(p, ", least on ");
+      patch_words(p, lowest->patch);
+      vg_page_markup(p, ": ");
+      vg_page_fixed(p, lowest->share_mean, 3);
+    }
+    vg_page_markup(p, "; <a href=\"#layers\">causes are below</a>");
+    end(l);
+  }
 }
 
-static int mesh_lines(struct page *p)
+static void added(struct list *l)
 {
+  const struct vg_domain_report *d = &l->p->h->problem->domain;
+
+  if (!d->added_symmetry && !d->added_farfield) return;
+  if (!begin(l, WEIGHT_CHANGED)) return;
+  vg_page_markup(l->p, "to the body were added: ");
+  if (d->added_symmetry) {
+    vg_page_format(l->p, "a symmetry plane at %c = ",
+                   "xyz"[d->symmetry_axis]);
+    vg_page_real(l->p, d->symmetry_at, 6);
+    if (d->added_farfield) vg_page_markup(l->p, " and ");
+  }
+  if (d->added_farfield) vg_page_markup(l->p, "a farfield");
+  vg_page_format(l->p, ", of %zu triangles", d->n_added_tri);
+  end(l);
+}
+
+static void surface_changed(struct list *l)
+{
+  const struct vg_problem *q = l->p->h->problem;
+  uint64_t removed = (uint64_t)vg_page_number(l->p,
+                                              "surface.removed_triangles");
+  uint64_t flipped = (uint64_t)vg_page_number(l->p, "surface.flipped");
+  int all = flipped >= q->surface.n_tri;
+
+  count_line(l, WEIGHT_CHANGED, q->n_dropped, "triangle of the input was "
+             "dropped by the weld", "triangles of the input were dropped by "
+             "the weld");
+  count_line(l, WEIGHT_CHANGED, removed, "triangle was removed by the repair",
+             "triangles were removed by the repair");
+  count_line(l, all ? WEIGHT_NOTE : WEIGHT_CHANGED, flipped,
+             "triangle was turned over", all
+             ? "triangles were turned over: all, so that they point into the "
+               "fluid" : "triangles were turned over");
+  count_line(l, WEIGHT_NOTE, q->n_welded, "point was merged with another",
+             "points were merged with others");
+  added(l);
+}
+
+static void mesh_lines(struct list *l)
+{
+  struct page *p = l->p;
   const struct vg_mesh_report *r = p->has_layers ? &p->h->run->field_judge
                                                  : &p->h->run->judge;
-  int n = 0;
 
-  if (r->below[0] > 0) {
-    begin(p, WEIGHT_WARN);
-    vg_page_fixed(p, r->below[0], 4);
-    vg_page_format(p, " %% of the %s have an angle below 5 degrees; <a "
-                   "href=\"#worst\">the worst are shown</a>",
-                   p->has_layers ? "field's cells" : "cells");
-    end(p);
-    n++;
+  if (r->below[0] > 0 && begin(l, WEIGHT_LOOK)) {
+    vg_page_real(p, r->below[0], 3);
+    vg_page_format(p, " %% of the %s have an angle below 5 degrees, the "
+                   "smallest is ", p->has_layers ? "field's cells" : "cells");
+    vg_page_real(p, r->angle_min, 3);
+    vg_page_markup(p, "&deg;; <a href=\"#worst\">the worst are shown</a>");
+    end(l);
   }
-  n += count_line(p, WEIGHT_NOTE,
-                  (uint64_t)vg_page_number(p, "partition.parts_widened"),
-                  "part of the field could not be filled, and was filled "
-                  "together with what is beside it", "parts of the field "
-                  "could not be filled, and were filled together with what "
-                  "is beside them");
-  n += count_line(p, WEIGHT_NOTE,
-                  (uint64_t)vg_page_number(p, "fill.steiner_points"),
-                  "point was added to recover the boundary",
-                  "points were added to recover the boundary");
-  return n;
+  count_line(l, WEIGHT_NOTE,
+             (uint64_t)vg_page_number(p, "partition.parts_widened"),
+             "part of the field could not be filled, and was filled together "
+             "with what is beside it", "parts of the field could not be "
+             "filled, and were filled together with what is beside them");
+  count_line(l, WEIGHT_NOTE,
+             (uint64_t)vg_page_number(p, "fill.steiner_points"),
+             "point was added to recover the boundary",
+             "points were added to recover the boundary");
 }
 
 void vg_html_first(struct page *p)
 {
   const struct vg_notes *notes = &p->h->problem->notes;
-  int n = 0;
+  struct list l = { .p = p };
 
   vg_page_section(p, "first", "To know first");
   vg_page_markup(p, "<ul class=\"first\">\n");
-  n += missed(p);
-  n += layers_short(p);
-  n += surface_changed(p);
-  n += mesh_lines(p);
-  for (size_t i = 0; i < notes->n; i++) {
-    begin(p, WEIGHT_NOTE);
-    vg_page_text(p, notes->text[i]);
-    end(p);
-    n++;
+  for (l.now = WEIGHT_BAD; l.now < WEIGHTS; l.now++) {
+    missed(&l);
+    layers_short(&l);
+    surface_changed(&l);
+    mesh_lines(&l);
+    for (size_t i = 0; i < notes->n && begin(&l, WEIGHT_NOTE); i++) {
+      vg_page_text(p, notes->text[i]);
+      end(&l);
+    }
   }
-  if (!n)
+  if (!l.n)
     vg_page_markup(p, "<li class=\"good\"><b>All</b> <span>as asked: nothing "
                       "was missed, dropped, closed or assumed.</span></li>\n");
   vg_page_markup(p, "</ul>\n");
@@ -250,7 +275,7 @@ void vg_html_tiles(struct page *p)
     tile_end(p, "first height, mean");
   }
   tile_begin(p);
-  vg_page_fixed(p, r->angle_min, 1);
+  vg_page_real(p, r->angle_min, 3);
   vg_page_markup(p, "&deg;");
   tile_end(p, p->has_layers ? "smallest angle of the field"
                             : "smallest angle");

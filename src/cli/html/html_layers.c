@@ -91,7 +91,8 @@ void vg_html_layers(struct page *p)
     "<th scope=\"col\">largest error&nbsp;%</th><th scope=\"col\">y+</th>"
     "<th scope=\"col\">height</th><th scope=\"col\">over the law's</th>"
     "<th scope=\"col\">volume ratio at the top</th>"
-    "<th scope=\"col\">faces with fewer or thinner layers, by cause</th>"
+    "<th scope=\"col\" class=\"words\">faces with fewer or thinner layers, by "
+    "cause</th>"
     "</tr></thead>\n<tbody>\n");
   for (size_t i = 0; i < s->n_wall; i++) row(p, &s->wall[i]);
   if (s->n_wall > 1) row(p, &s->all);

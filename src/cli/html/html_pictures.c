@@ -88,7 +88,8 @@ static vg_status cut(const struct drawing *d, int k, struct vg_image *to,
                      struct vg_error *err)
 {
   const struct vg_run_pictures *r = &d->p->h->run->pictures;
-  size_t i = k < PICTURE_ANGLE ? (size_t)(k - PICTURE_CUT) : 0;
+  size_t i = k < PICTURE_ANGLE ? (size_t)(k - PICTURE_CUT)
+             : k == PICTURE_PART ? d->p->part_cut : 0;
 
   if (i >= r->plan.n) return VG_BLOCKED;
   return vg_cuts_image(r->cuts, i, k == PICTURE_ANGLE ? VG_CUT_BY_ANGLE
@@ -112,6 +113,22 @@ static void draw(void *context, size_t first, size_t end, int worker)
   }
 }
 
+/* A section that runs along a zone shows little else; another one may not. */
+static void choose_part_cut(struct page *p)
+{
+  const struct vg_run_pictures *r = &p->h->run->pictures;
+  size_t most = 0;
+
+  for (size_t i = 0; i < r->plan.n; i++) {
+    size_t n = r->plan.view[i] == VG_VIEW_BODY ? vg_cuts_in_parts(r->cuts, i)
+                                               : 0;
+
+    if (n <= most) continue;
+    most = n;
+    p->part_cut = i;
+  }
+}
+
 vg_status vg_html_draw(struct page *p, struct vg_error *err)
 {
   const struct vg_mesh *m = &p->h->problem->surface;
@@ -121,6 +138,7 @@ vg_status vg_html_draw(struct page *p, struct vg_error *err)
 
   VG_TRY(vg_walls_colour(p, &p->walls, err));
   VG_TRY(choose_views(p, err));
+  choose_part_cut(p);
   for (int k = 0; k < VIEWS; k++)
     VG_TRY(vg_shot_take(m, p->walls.is_seen, &p->camera[k], threads,
                         &d.shot[k], err));

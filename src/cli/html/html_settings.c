@@ -19,12 +19,12 @@ static void row(struct page *p, const struct vg_param *param, int is_far,
 {
   vg_page_format(p, "<tr><th scope=\"row\"><code>%s%s</code></th><td>",
                  is_far ? "farfield " : "", param->name);
-  if (asked && strcmp(asked, now) != 0) {
-    vg_page_text(p, *asked ? asked : "\"\"");
-    vg_page_markup(p, " &rarr; ");
-  }
-  vg_page_text(p, *now ? now : "\"\"");
+  vg_page_text(p, asked && *asked ? asked : *now ? now : "\"\"");
   if (*param->unit) vg_page_format(p, " %s", param->unit);
+  if (asked && strcmp(asked, now) != 0) {
+    vg_page_markup(p, ", settled as ");
+    vg_page_text(p, *now ? now : "\"\"");
+  }
   vg_page_markup(p, "</td><td class=\"words\">");
   vg_page_text(p, param->help);
   vg_page_markup(p, "</td></tr>\n");
@@ -51,7 +51,7 @@ static size_t rows(struct page *p, const struct vg_settings *usual,
     vg_param_format(param, base, now, sizeof now);
     vg_param_format(param, usual_base, was, sizeof was);
     if (which_of(was, asked, now) != which) continue;
-    row(p, param, i >= plain, which == REST ? NULL : asked, now);
+    row(p, param, i >= plain, which == ASKED ? asked : NULL, now);
     n++;
   }
   return n;

@@ -8,8 +8,8 @@
 
 enum { SIZE = 300 };
 
-/* Across the cell's largest face the flatness of a sliver would not show:
- * look along that face instead, a little from above. */
+/* Half from above the largest face, where flat cells have their shape, half
+ * along it, where they have none. */
 static void look(const double (*x)[3], struct vg_camera *c)
 {
   double normal[3], longest[3] = { 1, 0, 0 }, most = 0, length = 0;
@@ -33,7 +33,7 @@ static void look(const double (*x)[3], struct vg_camera *c)
   vg_unit(normal);
   vg_unit(longest);
   vg_cross(normal, longest, c->toward);
-  for (int k = 0; k < 3; k++) c->toward[k] += 0.45 * normal[k];
+  for (int k = 0; k < 3; k++) c->toward[k] += normal[k];
   vg_unit(c->toward);
   vg_cross(normal, c->toward, c->right);
   if (!(vg_unit(c->right) > 0))

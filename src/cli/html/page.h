@@ -30,6 +30,7 @@ struct page {
   struct walls walls;
   struct vg_camera camera[VIEWS];
   struct vg_bytes png[PICTURES];   /* empty where there is none */
+  size_t part_cut;          /* cut of PICTURE_PART */
 };
 
 /* page.c: text with markup escaped; printf without reals; markup as it is. */

@@ -10,7 +10,8 @@
 /* Planes stand a little off the middle, where symmetric bodies have points and
  * edges. */
 #define MIDDLE 0.4871
-#define AROUND 1.25        /* window of a section over its extent */
+#define TRIED 7            /* planes */
+#define AROUND 1.3         /* window of a section over its extent */
 #define CLOSE 5            /* window close to a wall, in heights of layers */
 #define CLOSE_BARE 14      /* as much in edges, without layers */
 
@@ -91,9 +92,9 @@ static struct vg_cut window(const double lo[3], const double hi[3], int axis,
   return c;
 }
 
-/* The ends of a section in the first of its axes, and what is to be seen
- * there: the layers, or some edges. */
-struct ends { double at[2][2], size[2]; };
+/* What a plane cuts of the body: its box, and its ends in the first of the
+ * axes with what is to be seen there, the layers or some edges. */
+struct section { double lo[3], hi[3], at[2][2], size[2]; };
 
 static double size_at(const struct body *b, const uint32_t *t)
 {
@@ -107,41 +108,80 @@ static double size_at(const struct body *b, const uint32_t *t)
   return fmax(CLOSE * height, height > 0 ? edge : CLOSE_BARE * edge);
 }
 
-static void look_at_triangle(const struct body *b, const uint32_t *t,
-                             const struct vg_cut *c, struct ends *e)
+static void cut_triangle(const struct body *b, const uint32_t *t, int axis,
+                         double at, struct section *s)
 {
-  int u = first_of(c->axis), v = second_of(c->axis);
+  int u = first_of(axis), v = second_of(axis);
 
   for (int k = 0; k < 3; k++) {
     const double *p = b->m->point[t[k]], *q = b->m->point[t[(k + 1) % 3]];
-    double s, x[2];
+    double share, x[3];
 
-    if ((p[c->axis] >= c->at) == (q[c->axis] >= c->at)) continue;
-    s = (c->at - p[c->axis]) / (q[c->axis] - p[c->axis]);
-    x[0] = p[u] + s * (q[u] - p[u]);
-    x[1] = p[v] + s * (q[v] - p[v]);
+    if ((p[axis] >= at) == (q[axis] >= at)) continue;
+    share = (at - p[axis]) / (q[axis] - p[axis]);
+    for (int j = 0; j < 3; j++) x[j] = p[j] + share * (q[j] - p[j]);
     for (int side = 0; side < 2; side++)
-      if (!(e->size[side] > 0) ||
-          (side ? x[0] > e->at[1][0] : x[0] < e->at[0][0])) {
-        memcpy(e->at[side], x, sizeof x);
-        e->size[side] = size_at(b, t);
+      if (side ? x[u] > s->hi[u] : x[u] < s->lo[u]) {
+        s->at[side][0] = x[u];
+        s->at[side][1] = x[v];
+        s->size[side] = size_at(b, t);
       }
+    for (int j = 0; j < 3; j++) {
+      s->lo[j] = fmin(s->lo[j], x[j]);
+      s->hi[j] = fmax(s->hi[j], x[j]);
+    }
   }
 }
 
-static void close_to_ends(const struct body *b, const struct vg_cut *section,
-                          struct vg_cut_plan *plan)
+/* 0: the plane does not meet the body. */
+static double cut_body(const struct body *b, int axis, double at,
+                       struct section *s)
 {
-  struct ends e = { .size = { 0, 0 } };
+  int u = first_of(axis), v = second_of(axis);
 
+  for (int k = 0; k < 3; k++) {
+    s->lo[k] = INFINITY;
+    s->hi[k] = -INFINITY;
+  }
   for (size_t i = 0; i < b->m->n_tri; i++)
     if (b->on[b->m->tri_patch[i]])
-      look_at_triangle(b, b->m->tri[i], section, &e);
-  for (int side = 0; side < 2; side++) {
-    struct vg_cut c = *section;
+      cut_triangle(b, b->m->tri[i], axis, at, s);
+  return s->hi[u] > s->lo[u] ? (s->hi[u] - s->lo[u]) * (s->hi[v] - s->lo[v])
+                             : 0;
+}
 
-    memcpy(c.centre, e.at[side], sizeof c.centre);
-    c.width = fmin(e.size[side], section->width);
+static double plane_at(const struct body *b, int axis, double share)
+{
+  return b->lo[axis] + share * (b->hi[axis] - b->lo[axis]);
+}
+
+/* The middle, or of a few planes that whose section is largest: of a wing it
+ * is the one along its span. */
+static double choose_plane(const struct body *b, int axis, struct section *s)
+{
+  double at = plane_at(b, axis, MIDDLE), most = cut_body(b, axis, at, s);
+
+  for (int k = 0; axis != 1 && k < TRIED; k++) {
+    double other = plane_at(b, axis, (k + MIDDLE) / TRIED);
+    struct section is;
+    double area = cut_body(b, axis, other, &is);
+
+    if (area <= 1.02 * most) continue;
+    most = area;
+    at = other;
+    *s = is;
+  }
+  return at;
+}
+
+static void close_to_ends(const struct section *s, const struct vg_cut *whole,
+                          struct vg_cut_plan *plan)
+{
+  for (int side = 0; side < 2; side++) {
+    struct vg_cut c = *whole;
+
+    memcpy(c.centre, s->at[side], sizeof c.centre);
+    c.width = fmin(s->size[side], whole->width);
     add(plan, side ? VG_VIEW_LAST : VG_VIEW_FIRST, &c);
   }
 }
@@ -221,14 +261,16 @@ vg_status vg_cut_plan(const struct vg_mesh *surface,
   if (columns) find_heights(&b);
   vg_mesh_bounds(surface, lo, hi);
   for (int k = 0; k < 3; k++) {
-    int axis = axes[k];
-    double at = b.lo[axis] + MIDDLE * (b.hi[axis] - b.lo[axis]);
-    struct vg_cut c = window(b.lo, b.hi, axis, at, AROUND);
+    struct section s;
+    double at = choose_plane(&b, axes[k], &s);
+    int met = s.hi[0] >= s.lo[0];
+    struct vg_cut c = window(met ? s.lo : b.lo, met ? s.hi : b.hi, axes[k],
+                             at, AROUND);
 
     add(plan, VG_VIEW_BODY, &c);
     if (k) continue;
-    close_to_ends(&b, &c, plan);
-    c = window(lo, hi, axis, at, 1.03);
+    if (met) close_to_ends(&s, &c, plan);
+    c = window(lo, hi, axes[k], at, 1.03);
     add(plan, VG_VIEW_DOMAIN, &c);
   }
   if (columns) close_to_poorest(&b, plan);

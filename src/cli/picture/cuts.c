@@ -207,6 +207,19 @@ static vg_status cut_cell(const struct drawing *d, size_t j, int kind,
   return vg_cuts_draw(d->c->at + i * TILES, &g, code, err);
 }
 
+/* Bits of the cuts that go through a cell of n points. */
+static inline unsigned cuts_of(const uint16_t *above, const uint32_t *node,
+                               int n)
+{
+  unsigned any = 0, all = ~0u;
+
+  for (int k = 0; k < n; k++) {
+    any |= above[node[k]];
+    all &= above[node[k]];
+  }
+  return any & ~all;
+}
+
 static vg_status draw_kind(const struct drawing *d, int kind,
                            struct vg_error *err)
 {
@@ -215,14 +228,10 @@ static vg_status draw_kind(const struct drawing *d, int kind,
 
   for (size_t j = 0; j < d->s->n_cell[kind]; j++) {
     const uint32_t *node = d->s->cell[kind] + j * (size_t)n;
-    unsigned any = 0, all = ~0u, cut;
+    unsigned cut = kind == VG_SLICE_TET ? cuts_of(d->above, node, 4)
+                                        : cuts_of(d->above, node, n);
     uint16_t code;
 
-    for (int k = 0; k < n; k++) {
-      any |= d->above[node[k]];
-      all &= d->above[node[k]];
-    }
-    cut = any & ~all;
     if (!cut) continue;
     code = code_of(d->s, kind, node);
     for (size_t i = 0; cut >> i; i++)

@@ -63,6 +63,10 @@ vg_status vg_cuts_put(void *cuts, const struct vg_slice *slice,
 vg_status vg_cuts_gather(struct vg_cuts *c, struct vg_comm *comm,
                          struct vg_error *err);
 
+/** How many samples of cut i show cells of subdomains, not of zones or layers.
+ * On rank 0, once gathered. */
+size_t vg_cuts_in_parts(const struct vg_cuts *c, size_t i);
+
 /** The picture of cut i; clear where no cell is. VG_ERR_MEMORY. */
 vg_status vg_cuts_image(const struct vg_cuts *c, size_t i,
                         enum vg_cut_colours colours, struct vg_image *out,

@@ -92,6 +92,32 @@ static int shade(const struct lines *l, double x, double y)
   return (int)(SHADE_MAX * near * l->pen + 0.5);
 }
 
+/* Samples of a row beyond the pen of all edges: *from .. *to - 1. */
+static void inside(const struct lines *l, double y, int *from, int *to)
+{
+  double lo = *from, hi = *to;
+
+  for (int i = 0; i < l->n; i++) {
+    double rest = PEN - l->b[i] * y - l->c[i];
+
+    if (l->a[i] > 0) lo = most(lo, rest / l->a[i] - 0.5);
+    else if (l->a[i] < 0) hi = least(hi, rest / l->a[i] + 0.5);
+    else if (rest > 0) hi = lo;
+  }
+  *to = whole(floor(hi), *from, *to);
+  *from = whole(ceil(lo), *from, *to);
+}
+
+static void near_edges(uint16_t *row, int from, int to, double y,
+                       const struct lines *l, uint16_t code)
+{
+  for (int x = from; x < to; x++) {
+    uint16_t here = (uint16_t)(code | shade(l, x + 0.5, y) << 9);
+
+    if (row[x] < here) row[x] = here;
+  }
+}
+
 /* Samples from the first to before the last that a polygon may touch. */
 struct range { int x0, y0, x1, y1; };
 
@@ -123,15 +149,17 @@ static void draw_tile(struct tile *t, int tx, int ty, const struct range *r,
 
   for (int y = r->y0 > y0 ? r->y0 : y0; y < end; y++) {
     uint16_t *row = &t->code[(y - y0) * TILE - x0];
-    int last;
+    int first, last, in, out;
 
     span(g, y + 0.5, &from, &to);
     last = whole(ceil(to - 0.5), left, right);
-    for (int x = whole(ceil(from - 0.5), left, right); x < last; x++) {
-      uint16_t here = (uint16_t)(code | shade(l, x + 0.5, y + 0.5) << 9);
-
-      if (row[x] < here) row[x] = here;
-    }
+    first = whole(ceil(from - 0.5), left, last);
+    in = first;
+    out = last;
+    inside(l, y + 0.5, &in, &out);
+    near_edges(row, first, in, y + 0.5, l, code);
+    for (int x = in; x < out; x++) row[x] = row[x] < code ? code : row[x];
+    near_edges(row, out > in ? out : in, last, y + 0.5, l, code);
   }
 }
 

@@ -29,6 +29,16 @@ static const uint8_t *colour_of(unsigned code, enum vg_cut_colours colours)
   return part_colour[(part - PART_FIRST) % 12];
 }
 
+size_t vg_cuts_in_parts(const struct vg_cuts *c, size_t i)
+{
+  size_t n = 0;
+
+  for (size_t k = i * TILES; k < (i + 1) * TILES; k++)
+    for (size_t j = 0; c->at[k] && j < TILE * TILE; j++)
+      n += (c->at[k]->code[j] & (PARTS - 1)) >= PART_FIRST;
+  return n;
+}
+
 /* Sums over the samples of a pixel. */
 struct sum { int rgb[3], n; };
 

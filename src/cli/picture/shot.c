@@ -251,34 +251,49 @@ void vg_shot_release(struct vg_shot *s)
   *s = (struct vg_shot)VG_SHOT_INIT;
 }
 
-static void add(const uint8_t *rgb, int light, int is_behind, int sum[4])
+/* Sums over samples: colours by brightness. */
+struct sum { int rgb[3], n; };
+
+static struct sum shaded(const uint8_t *rgb, int light, int is_behind)
 {
   int bright = is_behind ? LIGHT_FULL : light >> 2;
   int edge = is_behind ? 12 - (light & 3) : 12 - 2 * (light & 3);
+  struct sum s = { .n = 1 };
 
   for (int k = 0; k < 3; k++)
-    sum[k] += rgb[k] * bright * edge / (12 * LIGHT_FULL);
-  sum[3]++;
+    s.rgb[k] = rgb[k] * bright * edge / (12 * LIGHT_FULL);
+  return s;
 }
 
-static void pixel(const struct vg_shot *s, int x, int y,
-                  const uint8_t *colour, const uint8_t (*palette)[3],
-                  uint8_t *to)
+/* A row of pixels. Neighbours mostly have the triangle and light of before. */
+static void pixels(const struct vg_shot *s, int y, const uint8_t *colour,
+                   const uint8_t (*palette)[3], uint8_t (*to)[4])
 {
-  int sum[4] = { 0, 0, 0, 0 };
+  struct sum last = { .n = 0 };
+  uint32_t tri = VG_SHOT_NOTHING;
+  int light = -1;
 
-  for (int j = 0; j < SAMPLES; j++)
-    for (int i = 0; i < SAMPLES; i++) {
-      size_t at = (size_t)(SAMPLES * y + j) * (size_t)s->width +
-                  (size_t)(SAMPLES * x + i);
-      uint8_t c;
+  for (int x = 0; x < s->width / SAMPLES; x++) {
+    struct sum sum = { .n = 0 };
+
+    for (int j = 0; j < SAMPLES * SAMPLES; j++) {
+      size_t at = (size_t)(SAMPLES * y + j / SAMPLES) * (size_t)s->width +
+                  (size_t)(SAMPLES * x + j % SAMPLES);
 
       if (s->tri[at] == VG_SHOT_NOTHING) continue;
-      c = colour[s->tri[at]];
-      add(palette[c], s->light[at], c == VG_SHOT_BEHIND, sum);
+      if (s->tri[at] != tri || s->light[at] != light) {
+        tri = s->tri[at];
+        light = s->light[at];
+        last = shaded(palette[colour[tri]], light,
+                      colour[tri] == VG_SHOT_BEHIND);
+      }
+      for (int k = 0; k < 3; k++) sum.rgb[k] += last.rgb[k];
+      sum.n++;
     }
-  for (int k = 0; k < 3 && sum[3]; k++) to[k] = (uint8_t)(sum[k] / sum[3]);
-  to[3] = (uint8_t)(255 * sum[3] / (SAMPLES * SAMPLES));
+    for (int k = 0; k < 3 && sum.n; k++)
+      to[x][k] = (uint8_t)(sum.rgb[k] / sum.n);
+    to[x][3] = (uint8_t)(255 * sum.n / (SAMPLES * SAMPLES));
+  }
 }
 
 vg_status vg_shot_image(const struct vg_shot *s, const uint8_t *colour,
@@ -289,8 +304,7 @@ vg_status vg_shot_image(const struct vg_shot *s, const uint8_t *colour,
                               err);
 
   for (int y = 0; y < out->height && st >= 0; y++)
-    for (int x = 0; x < out->width; x++)
-      pixel(s, x, y, colour, palette,
-            out->rgba[(size_t)y * (size_t)out->width + (size_t)x]);
+    pixels(s, y, colour, palette,
+           out->rgba + (size_t)y * (size_t)out->width);
   return st;
 }
