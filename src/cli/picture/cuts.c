@@ -117,35 +117,6 @@ static void meet(const struct vg_cut *c, const double *below,
          (below[v] + t * (above[v] - below[v]) - c->centre[1]) * scale;
 }
 
-/* Something that grows with the angle of d. */
-static double turn(const double d[2])
-{
-  double sum = fabs(d[0]) + fabs(d[1]), t = sum > 0 ? d[1] / sum : 0;
-
-  return d[0] < 0 ? 2 - t : t;
-}
-
-/* Corners around their mean: the cut of a convex cell is convex. */
-static void order(struct polygon *g)
-{
-  double mean[2] = { 0, 0 }, angle[CORNERS_MAX];
-
-  for (int i = 0; i < g->n; i++)
-    for (int k = 0; k < 2; k++) mean[k] += g->p[i][k] / g->n;
-  for (int i = 0; i < g->n; i++) {
-    double d[2] = { g->p[i][0] - mean[0], g->p[i][1] - mean[1] };
-    double p[2] = { g->p[i][0], g->p[i][1] }, a = turn(d);
-    int j = i;
-
-    for (; j && angle[j - 1] > a; j--) {
-      angle[j] = angle[j - 1];
-      memcpy(g->p[j], g->p[j - 1], sizeof p);
-    }
-    angle[j] = a;
-    memcpy(g->p[j], p, sizeof p);
-  }
-}
-
 /* The step of the smallest dihedral angle of a tetrahedron. */
 static int angle_step(const double *const x[4])
 {
@@ -203,7 +174,6 @@ static vg_status cut_cell(const struct drawing *d, size_t j, int kind,
       meet(&d->c->cut[i], d->s->x[up ? b : a], d->s->x[up ? a : b],
            g.p[g.n++]);
   }
-  order(&g);
   return vg_cuts_draw(d->c->at + i * TILES, &g, code, err);
 }
 

@@ -1,6 +1,7 @@
 /* Convex polygons into the samples of a cut. */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/memory.h"
 #include "cli/picture/cuts_parts.h"
@@ -24,6 +25,35 @@ static struct tile *touch(struct tile **at)
     return made;
   free(made);
   return now;
+}
+
+/* Something that grows with the angle of d. */
+static double turn(const double d[2])
+{
+  double sum = fabs(d[0]) + fabs(d[1]), t = sum > 0 ? d[1] / sum : 0;
+
+  return d[0] < 0 ? 2 - t : t;
+}
+
+/* Corners around their mean: the cut of a convex cell is convex. */
+static void order(struct polygon *g)
+{
+  double mean[2] = { 0, 0 }, angle[CORNERS_MAX];
+
+  for (int i = 0; i < g->n; i++)
+    for (int k = 0; k < 2; k++) mean[k] += g->p[i][k] / g->n;
+  for (int i = 0; i < g->n; i++) {
+    double d[2] = { g->p[i][0] - mean[0], g->p[i][1] - mean[1] };
+    double p[2] = { g->p[i][0], g->p[i][1] }, a = turn(d);
+    int j = i;
+
+    for (; j && angle[j - 1] > a; j--) {
+      angle[j] = angle[j - 1];
+      memcpy(g->p[j], g->p[j - 1], sizeof p);
+    }
+    angle[j] = a;
+    memcpy(g->p[j], p, sizeof p);
+  }
 }
 
 /* Lines of the edges: distance = a x + b y + c, > 0 inside. */
@@ -163,13 +193,14 @@ static void draw_tile(struct tile *t, int tx, int ty, const struct range *r,
   }
 }
 
-vg_status vg_cuts_draw(struct tile **tiles, const struct polygon *g,
-                       uint16_t code, struct vg_error *err)
+vg_status vg_cuts_draw(struct tile **tiles, struct polygon *g, uint16_t code,
+                       struct vg_error *err)
 {
   struct range r = range_of(g);
   struct lines l;
 
   if (r.x0 >= r.x1 || r.y0 >= r.y1) return VG_OK;
+  order(g);
   find_lines(g, &l);
   for (int ty = r.y0 / TILE; ty <= (r.y1 - 1) / TILE; ty++)
     for (int tx = r.x0 / TILE; tx <= (r.x1 - 1) / TILE; tx++) {

@@ -29,9 +29,9 @@ struct vg_cuts {
 /* In samples, from the upper left corner. */
 struct polygon { int n; double p[CORNERS_MAX][2]; };
 
-/* cuts_draw.c: draw a convex polygon; code: that of an inner sample, of
- * shade 0. */
-vg_status vg_cuts_draw(struct tile **tiles, const struct polygon *g, uint16_t code,
+/* cuts_draw.c: draw a convex polygon, its corners in any order, which they have
+ * around it afterwards. code: that of an inner sample, of shade 0. */
+vg_status vg_cuts_draw(struct tile **tiles, struct polygon *g, uint16_t code,
                        struct vg_error *err);
 
 #endif
