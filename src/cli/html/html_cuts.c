@@ -119,8 +119,8 @@ void vg_html_partition(struct page *p)
   vg_page_section(p, "partition", "How the field was cut up");
   vg_page_markup(p, "<div class=\"pair\">\n");
   if (p->h->run->pictures.plan.n)
-    figure(p, p->part_cut, PICTURE_PART, "cells by the subdomain in which they were "
-           "made");
+    figure(p, p->part_cut, PICTURE_PART, "cells by the subdomain in which "
+           "they were made");
   vg_page_markup(p, "<div><table class=\"facts\">\n");
   for (size_t i = 0; i < sizeof row / sizeof *row; i++)
     vg_page_fact_count(p, row[i].name,

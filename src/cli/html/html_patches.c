@@ -15,7 +15,8 @@ static void patches(struct page *p)
   vg_page_markup(p, "<div class=\"wide\"><table>\n<thead><tr>"
     "<th scope=\"col\">patch</th><th scope=\"col\">triangles</th>"
     "<th scope=\"col\">USM3D</th><th scope=\"col\">FUN3D</th>"
-    "<th scope=\"col\" class=\"words\">layers, by</th></tr></thead>\n<tbody>\n");
+    "<th scope=\"col\" class=\"words\">layers, by</th></tr></thead>\n"
+    "<tbody>\n");
   for (size_t i = 0; i < m->n_patch; i++) {
     const struct vg_patch *patch = &m->patch[i];
 

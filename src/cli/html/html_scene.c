@@ -11,7 +11,7 @@
 #include "cli/picture/decimate.h"
 #include "core/geometry/vector.h"
 
-#define MOST 120000        /* triangles */
+#define MOST 120000        /* triangles (V1) */
 
 /* Triangles sorted by patch: those of patch i are first[i] .. first[i + 1]. */
 struct scene {

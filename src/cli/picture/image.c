@@ -6,7 +6,7 @@
 
 #include "base/memory.h"
 
-/* A report has a dozen pictures: the fastest level is the one for them. */
+/* A report has a dozen pictures: the fastest level is the one for them (V3). */
 #define LEVEL 1
 
 vg_status vg_image_new(int width, int height, struct vg_image *m,
