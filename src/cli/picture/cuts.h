@@ -13,7 +13,7 @@
 #include "cli/picture/image.h"
 #include "core/mesh/slices.h"
 
-enum { VG_CUTS_MAX = 12, VG_CUT_WIDTH = 960, VG_CUT_HEIGHT = 640 }; /* V2 */
+enum { VG_CUTS_MAX = 12, VG_CUT_WIDTH = 864, VG_CUT_HEIGHT = 576 }; /* V2 */
 
 /** A plane and a window in it. */
 struct vg_cut {

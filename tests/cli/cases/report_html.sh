@@ -53,6 +53,11 @@ stable $page >one.html
 vanguard mesh $run $layers -t 3 --out threads
 stable threads/box.report.html >threads.html
 same one.html threads.html
+vanguard mesh $run $layers --run-dir kept --keep-run --out first
+vanguard mesh $run $layers --run-dir kept --resume --out resumed
+exits 0
+stable resumed/box.report.html >resumed.html
+same one.html resumed.html
 if mpirun -n 2 true >/dev/null 2>&1; then
   ASAN_OPTIONS=detect_leaks=0 mpirun -n 3 "$program" mesh $run $layers -t 1 \
     --out ranks >out 2>err
