@@ -8,7 +8,7 @@
 #include "core/geometry/vector.h"
 
 /* Planes stand a little off the middle, where symmetric bodies have points and
- * edges. V4. */
+ * edges (V4). */
 #define MIDDLE 0.4871
 #define TRIED 7            /* planes */
 #define AROUND 1.3         /* window of a section over its extent */

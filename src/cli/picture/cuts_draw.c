@@ -138,13 +138,14 @@ static void inside(const struct lines *l, double y, int *from, int *to)
   *from = whole(ceil(lo), *from, *to);
 }
 
-static void near_edges(uint16_t *row, int from, int to, double y,
+/* row: of a tile that begins at x0. */
+static void near_edges(uint16_t *row, int x0, int from, int to, double y,
                        const struct lines *l, uint16_t code)
 {
   for (int x = from; x < to; x++) {
     uint16_t here = (uint16_t)(code | shade(l, x + 0.5, y) << 9);
 
-    if (row[x] < here) row[x] = here;
+    if (row[x - x0] < here) row[x - x0] = here;
   }
 }
 
@@ -178,7 +179,7 @@ static void draw_tile(struct tile *t, int tx, int ty, const struct range *r,
   double from, to;
 
   for (int y = r->y0 > y0 ? r->y0 : y0; y < end; y++) {
-    uint16_t *row = &t->code[(y - y0) * TILE - x0];
+    uint16_t *row = &t->code[(y - y0) * TILE];
     int first, last, in, out;
 
     span(g, y + 0.5, &from, &to);
@@ -187,9 +188,10 @@ static void draw_tile(struct tile *t, int tx, int ty, const struct range *r,
     in = first;
     out = last;
     inside(l, y + 0.5, &in, &out);
-    near_edges(row, first, in, y + 0.5, l, code);
-    for (int x = in; x < out; x++) row[x] = row[x] < code ? code : row[x];
-    near_edges(row, out > in ? out : in, last, y + 0.5, l, code);
+    near_edges(row, x0, first, in, y + 0.5, l, code);
+    for (int x = in - x0; x < out - x0; x++)
+      row[x] = row[x] < code ? code : row[x];
+    near_edges(row, x0, out > in ? out : in, last, y + 0.5, l, code);
   }
 }
 
