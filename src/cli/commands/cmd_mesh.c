@@ -312,7 +312,6 @@ static vg_status write_page(struct run *r, struct vg_error *err)
   json_t *report = NULL;
   vg_status st;
 
-  VG_TRY(vg_outputs_add(&r->outputs, "report.html", err));
   path = vg_outputs_temp_path(&r->outputs, "report.html");
   svg = vg_outputs_temp_path(&r->outputs, "timeline.svg");
   report = report_json(r, 1, NULL);
@@ -345,6 +344,8 @@ static vg_status finish(struct run *r, const struct arguments *a,
   VG_TRY(vg_outputs_digest(&r->outputs, err));
   r->time_digest = vg_display_now() - t;
   if (a->timeline) VG_TRY(write_timeline(r, err));
+  if (r->problem.settings.report_html)
+    VG_TRY(vg_outputs_add(&r->outputs, "report.html", err));
   VG_TRY(vg_outputs_add(&r->outputs, "report.json", err));
   if (r->problem.settings.report_html) VG_TRY(write_page(r, err));
   path = vg_outputs_temp_path(&r->outputs, "report.json");
