@@ -119,8 +119,9 @@ launch() {
 
 # digest FOLDER: of all its files that hold results and no times.
 digest() {
-  (cd "$1" && find . -type f ! -name '*.json' ! -name '*.deck' -print0 |
-    sort -z | xargs -0r sha256sum | sha256sum | cut -c1-16)
+  (cd "$1" && find . -type f ! -name '*.json' ! -name '*.html' \
+    ! -name '*.deck' -print0 | sort -z | xargs -0r sha256sum | sha256sum |
+    cut -c1-16)
 }
 
 # Seconds of processor time that the host took from this virtual machine so far.

@@ -107,7 +107,7 @@ adapter() {
 adapter tetgen.h '^core/(recover/cdt_tetgen|mesher/tetgen)\.cpp$'
 adapter '[A-Z][A-Za-z0-9_]*\.hxx' '^io/occt/occt_[a-z]+\.(cpp|h)$'
 adapter 'CGAL/[A-Za-z0-9_]*\.h' '^core/wrap/wrap_cgal\.cpp$'
-adapter zlib.h '^io/[a-z]+/[a-z_]+\.c$'
+adapter zlib.h '^(io/[a-z]+/[a-z_]+|cli/picture/image)\.c$'
 adapter jansson.h '^cli/'
 adapter argp.h '^cli/'
 # Its last bits differ between processors: never where a mesh is made.

@@ -11,7 +11,9 @@
 #include "cli/common/log.h"
 #include "cli/common/ranges.h"
 #include "cli/common/text.h"
+#include "cli/html/html.h"
 #include "cli/input/layers.h"
+#include "cli/plot/plot.h"
 #include "cli/plot/timeline.h"
 #include "cli/report/report.h"
 #include "cli/run/output.h"
@@ -34,7 +36,8 @@ struct run {
   struct vg_display show;
   struct vg_layer_stage layers;
   struct vg_run mesh;
-  double start, time_read, time_check, time_write, time_digest;
+  struct vg_asked asked;
+  double start, time_read, time_check, time_write, time_digest, time_page;
 };
 
 /* Options that are no settings: they do not change the mesh. */
@@ -127,6 +130,7 @@ static vg_status read_settings(struct run *r, const struct arguments *a,
   VG_TRY(vg_input_find(a->project, a->deck, &p->files, err));
   VG_TRY(vg_problem_deck(p, err));
   VG_TRY(vg_cli_apply(&a->kept, &p->settings, err));
+  VG_TRY(vg_asked_take(&p->settings, &r->asked, err));
   vg_settings_write(&p->settings);
   vg_mesh_log_settings(&r->mesh, &p->settings);
   st = vg_outputs_plan(p, a->dir, vg_comm_size(r->mesh.comm), &r->outputs,
@@ -245,12 +249,15 @@ static json_t *report_json(const struct run *r, int ok,
     json_object_set_new(o, "files", files_json(r));
   }
   json_object_set_new(o, "seconds", json_pack(
-    "{s:f s:f s:f s:f s:f s:f s:f s:f s:f s:f s:f}",
+    "{s:f s:f s:f s:f s:f s:f s:f s:f s:f s:f s:f s:f}",
     "read", r->time_read, "check", r->time_check, "sizes", r->mesh.time_size,
     "layers", r->mesh.time_layers, "fill", r->mesh.time_fill,
     "number", r->mesh.partition.number,
-    "judge", r->mesh.time_judge, "parts", r->mesh.time_parts, "write", r->time_write,
-    "digest", r->time_digest, "total", vg_display_now() - r->start));
+    "judge", r->mesh.time_judge, "parts", r->mesh.time_parts,
+    "write", r->time_write,
+    "digest", r->time_digest, "pictures",
+    r->mesh.pictures.time + r->time_page, "total",
+    vg_display_now() - r->start));
   json_object_set_new(o, "peak_memory_bytes",
                       json_real(r->mesh.memory > 0 ? r->mesh.memory
                                 : vg_report_peak_memory()));
@@ -276,32 +283,70 @@ static vg_status write_json(const char *path, const json_t *o,
   return st;
 }
 
-/* Phases as the record of the run has them. */
-static vg_status write_timeline(struct run *r, struct vg_error *err)
+/* Phases as the record of the run has them; spans are borrowed. */
+static struct vg_timeline timeline_of(const struct run *r)
 {
   struct vg_timeline t = VG_TIMELINE_INIT;
-  const struct vg_slices *m = &r->mesh.slices;
-  char *path;
-  vg_status st;
 
-  VG_TRY(vg_outputs_add(&r->outputs, "timeline.json", err));
   snprintf(t.title, sizeof t.title, "%s", r->problem.settings.title);
   t.seconds[VG_PHASE_READ] = r->time_read;
   t.seconds[VG_PHASE_CHECK] = r->time_check;
   t.seconds[VG_PHASE_SIZES] = r->mesh.time_size;
   t.seconds[VG_PHASE_LAYERS] = r->mesh.time_layers;
+  t.seconds[VG_PHASE_ENGINE] = r->mesh.spans.wall;
   t.seconds[VG_PHASE_NUMBER] = r->mesh.partition.number;
   t.seconds[VG_PHASE_JUDGE] = r->mesh.time_judge;
   t.seconds[VG_PHASE_WRITE] = r->time_write + r->time_digest;
   t.seconds[VG_PHASE_TOTAL] = vg_display_now() - r->start;
   t.n_cell = vg_run_cells(&r->mesh);
-  t.n_point = m->n_point;
+  t.n_point = r->mesh.slices.n_point;
   t.spans = r->mesh.spans;
+  return t;
+}
+
+static vg_status write_timeline(struct run *r, struct vg_error *err)
+{
+  struct vg_timeline t = timeline_of(r);
+  char *path;
+  vg_status st;
+
+  VG_TRY(vg_outputs_add(&r->outputs, "timeline.json", err));
   path = vg_outputs_temp_path(&r->outputs, "timeline.json");
   st = path ? vg_timeline_write(path, &t, err)
             : vg_fail_memory(err, "the record of tasks");
   free(path);
 done:
+  return st;
+}
+
+/* The page holds a drawing of the timeline, which is a file for a moment. */
+static vg_status write_page(struct run *r, struct vg_error *err)
+{
+  struct vg_timeline t = timeline_of(r);
+  double start = vg_display_now();
+  struct vg_html page = { .problem = &r->problem, .layers = &r->layers,
+                          .run = &r->mesh, .asked = &r->asked };
+  char *path = NULL, *svg = NULL;
+  json_t *report = NULL;
+  vg_status st;
+
+  path = vg_outputs_temp_path(&r->outputs, "report.html");
+  svg = vg_outputs_temp_path(&r->outputs, "timeline.svg");
+  report = report_json(r, 1, NULL);
+  if (!path || !svg || !report) {
+    st = vg_fail_memory(err, "the report");
+    goto done;
+  }
+  VG_TRY(vg_plot_timeline(svg, &t, err));
+  page.report = report;
+  page.timeline = svg;
+  st = vg_html_write(path, &page, err);
+done:
+  if (svg) unlink(svg);
+  json_decref(report);
+  free(path);
+  free(svg);
+  r->time_page = vg_display_now() - start;
   return st;
 }
 
@@ -317,7 +362,10 @@ static vg_status finish(struct run *r, const struct arguments *a,
   VG_TRY(vg_outputs_digest(&r->outputs, err));
   r->time_digest = vg_display_now() - t;
   if (a->timeline) VG_TRY(write_timeline(r, err));
+  if (r->problem.settings.report_html)
+    VG_TRY(vg_outputs_add(&r->outputs, "report.html", err));
   VG_TRY(vg_outputs_add(&r->outputs, "report.json", err));
+  if (r->problem.settings.report_html) VG_TRY(write_page(r, err));
   path = vg_outputs_temp_path(&r->outputs, "report.json");
   report = report_json(r, 1, NULL);
   st = path && report ? write_json(path, report, err)
@@ -559,6 +607,7 @@ static int run(const struct arguments *a)
   vg_run_release(&r.mesh, status == VG_EXIT_DONE || status == VG_EXIT_LIMIT);
   vg_outputs_release(&r.outputs);
   vg_layer_stage_release(&r.layers);
+  vg_asked_release(&r.asked);
   vg_problem_release(&r.problem);
   vg_comm_close(r.mesh.comm);
   return close_log(&r, status);
@@ -605,9 +654,10 @@ int vg_cmd_mesh(int argc, char **argv)
       "where they are asked for, tetrahedra in the rest.\v"
       "A project is a VGRID project (PROJECT.d3m with PROJECT.front, or "
       "planar patches alone) or a surface (UGRID, AFLR, STL, Cart3D, OBJ, "
-      "Medit; STEP, IGES, BREP), with conditions in PROJECT.mapbc and settings in PROJECT.deck. "
-      "Written are PROJECT.cogsg, .bc, .mapbc and .b8.ugrid, "
-      "PROJECT.resolved.deck with all settings, and PROJECT.report.json; a "
+      "Medit; STEP, IGES, BREP), with conditions in PROJECT.mapbc and settings "
+      "in PROJECT.deck. "
+      "Written are PROJECT.cogsg, .bc, .mapbc and .b8.ugrid, .resolved.deck "
+      "with all settings, .report.json and, to look at, .report.html; a "
       "surface with defects is refused and its bad faces are put into "
       "PROJECT.defects.vtu. Layers "
       "grow on viscous walls (condition 4, class 2 of a .d3m, --walls) once "

@@ -310,19 +310,32 @@ static vg_status accept(const struct vg_run *r, struct vg_error *err)
                  "project files", faults);
 }
 
+static vg_status put_slice(void *run, const struct vg_slice *slice,
+                           struct vg_error *err)
+{
+  struct vg_run *r = run;
+  vg_status st = vg_outputs_put(r->outputs, slice, err);
+
+  return st < 0 ? st : vg_run_pictures_put(&r->pictures, slice, err);
+}
+
 /* Edges are held against the field's sizes; within layers there is no
  * isotropic size to meet. A file of a mesh that is not valid goes again. */
 static vg_status judge(struct vg_run *r, const struct vg_problem *p,
-                       size_t front_faces, const struct vg_sizing *sizing,
+                       const struct vg_layers *layers,
+                       const struct vg_sizing *sizing,
                        struct vg_display *show, struct vg_error *err)
 {
+  size_t front_faces = layers ? layers->front.mesh.n_tri : 0;
   double t = vg_display_now();
   vg_status st;
 
   vg_display_update(show, "judge", vg_run_cells(r), 0);
+  VG_TRY(vg_run_pictures_plan(&r->pictures, r->comm, &p->surface,
+                              layers ? &layers->columns : NULL, err));
   VG_TRY(vg_outputs_open(r->outputs, p, r->comm, &r->slices, err));
   st = vg_slices_judge_with(r->comm, &r->slices, front_faces, sizing,
-                            r->threads, vg_outputs_put, r->outputs, &r->judge,
+                            r->threads, put_slice, r, &r->judge,
                             r->layers ? &r->field_judge : NULL, err);
   if (st >= 0)
     st = vg_effects_in_mesh(r->comm, &r->slices, r->threads, &r->effects,
@@ -331,10 +344,16 @@ static vg_status judge(struct vg_run *r, const struct vg_problem *p,
   if (st >= 0) st = vg_display_stopped(show, err);
   st = vg_outputs_close(r->outputs, st, err);
   st = vg_comm_agree(r->comm, st, err);
+  if (st >= 0)
+    st = vg_run_pictures_gather(&r->pictures, r->comm,
+                                vg_partition_slices(r->field),
+                                r->slices.n_layer_cell[VG_SLICE_TET],
+                                r->threads,
+                                r->layers ? &r->field_judge : &r->judge, err);
 done:
   if (r->outputs)
     r->time_put = 1e-9 * (double)r->outputs->put_time / r->threads;
-  r->time_judge += vg_display_now() - t - r->time_put;
+  r->time_judge += vg_display_now() - t - r->time_put - r->pictures.time;
   return st;
 }
 
@@ -359,7 +378,7 @@ static vg_status mesh_plain(struct vg_run *r, const struct vg_problem *p,
   VG_TRY(look_at_sources(r, p, surface, sizing, err));
   VG_TRY(fill(r, p, surface, sizing, show, err));
   r->slices = *vg_partition_slices(r->field);
-  st = judge(r, p, 0, sizing, show, err);
+  st = judge(r, p, NULL, sizing, show, err);
 done:
   vg_sizing_free(sizing);
   return st;
@@ -460,7 +479,7 @@ static vg_status mesh_layers(struct vg_run *r, const struct vg_problem *p,
                             &layers->join, err);
   VG_TRY(vg_comm_agree(r->comm, st, err));
   VG_TRY(share_layers(r, err));
-  VG_TRY(judge(r, p, front->n_tri, sizing, show, err));
+  VG_TRY(judge(r, p, &layers->layers, sizing, show, err));
   st = measure_tops(r, p, layers, err);
 done:
   vg_sizing_free(sizing);
@@ -498,6 +517,7 @@ vg_status vg_run_mesh(struct vg_run *r, const struct vg_problem *p,
 
   r->threads = p->settings.threads ? (int)p->settings.threads
                                    : vg_comm_default_threads(r->comm);
+  r->pictures.is_on = r->outputs && p->settings.report_html;
   st = layers->is_on ? mesh_layers(r, p, layers, show, err)
                      : mesh_plain(r, p, show, err);
   return st < 0 ? st : part_for_solver(r, p, show, err);
@@ -506,6 +526,7 @@ vg_status vg_run_mesh(struct vg_run *r, const struct vg_problem *p,
 void vg_run_release(struct vg_run *r, int success)
 {
   vg_solver_slices_close(r->parts);
+  vg_run_pictures_release(&r->pictures);
   vg_layer_slices_close(r->layers);
   vg_partition_free(r->field);
   vg_effects_release(&r->effects);

@@ -12,6 +12,7 @@
 #include "cli/input/source_effect.h"
 #include "cli/run/agree.h"
 #include "cli/run/output.h"
+#include "cli/run/pictures.h"
 #include "core/judge/judge_slices.h"
 #include "layers/expand/slices.h"
 #include "partition/advance/advance.h"
@@ -32,6 +33,7 @@ struct vg_run {
   struct vg_run_options options;
   struct vg_outputs *outputs; /* written in part while the mesh is judged;
                                 NULL: none are */
+  struct vg_run_pictures pictures; /* drawn then too, for the outputs */
   struct vg_comm *comm;      /* NULL: one rank without a launcher */
   int rank, size, threads;
   struct vg_partition *field;

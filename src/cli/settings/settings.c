@@ -103,6 +103,8 @@ static const struct vg_param params[] = {
     .check = vg_write_list_check,
     .help = "files to write, separated by commas; auto: cogsg,b8.ugrid, for "
             "mixed cells b8.ugrid" },
+  { "report_html", AT(report_html), .type = VG_PARAM_FLAG, .unit = "",
+    .help = "write PROJECT.report.html, the run as a page with pictures" },
   { "cells", AT(cells), .type = VG_PARAM_WORD, .words = cell_words,
     .unit = "", .help = "cells of the layers: tets, or mixed (prisms, "
                         "pyramids and tetrahedra)" },
@@ -437,6 +439,7 @@ void vg_settings_default(struct vg_settings *s)
   s->repair = 1;
   s->optimise = fill.optimise;
   s->leaf_cells = VG_LEAF_CELLS;
+  s->report_html = 1;
   snprintf(s->title, sizeof s->title, "untitled");
   snprintf(s->write, sizeof s->write, "auto");
   snprintf(s->mesher, sizeof s->mesher, "builtin");

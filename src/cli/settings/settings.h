@@ -103,6 +103,7 @@ struct vg_settings {
   int repair;
   int64_t optimise, max_cells;
   char write[VG_WRITE_MAX];        /* "auto": vg_settings_write */
+  int report_html;
   int swap;                        /* enum vg_answer: swap edges */
   int cells;                       /* enum vg_layer_cells */
   int ugrid_tail;

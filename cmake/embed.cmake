@@ -1,0 +1,16 @@
+# Writes OUT, a C file with the bytes of FILES (separated by ;) as arrays
+# vg_asset_NAME, NAME with _ for what is no letter or digit, and their sizes.
+set(text "#include \"cli/html/assets.h\"\n")
+foreach(file ${FILES})
+  get_filename_component(name ${file} NAME)
+  string(REGEX REPLACE "[^a-z0-9]" "_" name ${name})
+  file(READ ${file} bytes HEX)
+  string(LENGTH "${bytes}" size)
+  math(EXPR size "${size} / 2")
+  string(REGEX REPLACE "(................................)" "\\1\n" bytes
+    "${bytes}")
+  string(REGEX REPLACE "([0-9a-f][0-9a-f])" "0x\\1," bytes "${bytes}")
+  string(APPEND text "\nconst unsigned char vg_asset_${name}[] = {\n${bytes}"
+    "};\nconst size_t vg_asset_${name}_size = ${size};\n")
+endforeach()
+file(WRITE ${OUT} "${text}")

@@ -1,0 +1,134 @@
+/* Planes through field and layers. */
+#include <stdio.h>
+
+#include "cli/html/page.h"
+
+static const char *const axis_name[3] = { "x", "y", "z" };
+
+static const char *view_words(enum vg_cut_view view)
+{
+  switch (view) {
+  case VG_VIEW_BODY: return "The body's section";
+  case VG_VIEW_DOMAIN: return "The whole domain";
+  case VG_VIEW_FIRST: return "Close to the least end of the section";
+  case VG_VIEW_LAST: return "Close to the far end of the section";
+  case VG_VIEW_POOREST: return "Where the layers lack most of their levels";
+  }
+  return "";
+}
+
+/* "x = 0.5": markup without escapes. */
+static void place(struct page *p, const struct vg_cut *c)
+{
+  vg_page_format(p, "%s = ", axis_name[c->axis]);
+  vg_page_real(p, c->at, 5);
+  vg_page_markup(p, "; the window is ");
+  vg_page_real(p, c->width, 3);
+  vg_page_markup(p, " wide");
+}
+
+static void figure(struct page *p, size_t i, int picture, const char *what)
+{
+  const struct vg_cut_plan *plan = &p->h->run->pictures.plan;
+  const struct vg_cut *c = &plan->cut[i];
+  char alt[160], id[24];
+
+  snprintf(alt, sizeof alt, "%s, cut across %s: %s.",
+           view_words(plan->view[i]), axis_name[c->axis], what);
+  snprintf(id, sizeof id, "cut%zu", i);
+  vg_page_figure(p, picture, picture < PICTURE_ANGLE ? id : NULL, alt);
+  vg_page_markup(p, view_words(plan->view[i]));
+  vg_page_markup(p, ", ");
+  place(p, c);
+  vg_page_end_figure(p);
+}
+
+static void kind_keys(struct page *p)
+{
+  static const char *const name[VG_CUT_KINDS] = {
+    "tetrahedra of the field", "tetrahedra of the layers", "pyramids",
+    "prisms" };
+  const uint64_t *layer = p->h->run->slices.n_layer_cell;
+  const uint64_t n[VG_CUT_KINDS] = { 1, layer[VG_SLICE_TET],
+                                     layer[VG_SLICE_PYR],
+                                     layer[VG_SLICE_PRI] };
+
+  vg_page_markup(p, "<p class=\"keys\">");
+  for (int k = 0; k < VG_CUT_KINDS; k++)
+    if (n[k]) vg_page_key(p, vg_cut_kind_colour[k], name[k]);
+  vg_page_markup(p, "</p>\n");
+}
+
+static void angle_keys(struct page *p)
+{
+  char word[40];
+
+  vg_page_markup(p, "<p class=\"keys\">Smallest dihedral angle of a cell: ");
+  for (int k = 0; k <= VG_CUT_ANGLES; k++) {
+    if (k < VG_CUT_ANGLES)
+      snprintf(word, sizeof word, "below %d\302\260", vg_cut_angle[k]);
+    else
+      snprintf(word, sizeof word, "%d\302\260 and more",
+               vg_cut_angle[VG_CUT_ANGLES - 1]);
+    vg_page_key(p, vg_cut_angle_colour[k], word);
+  }
+  vg_page_markup(p, "</p>\n");
+}
+
+void vg_html_cuts(struct page *p)
+{
+  const struct vg_cut_plan *plan = &p->h->run->pictures.plan;
+
+  vg_page_section(p, "cuts", "Cuts through the mesh");
+  vg_page_markup(p, "<p>Each picture shows the cells that a plane meets, as "
+    "they are in the files. Lines around cells fade where cells are thinner "
+    "than a line.</p>\n<div class=\"pair\">\n");
+  for (size_t i = 0; i < plan->n; i++)
+    figure(p, i, PICTURE_CUT + (int)i, "cells by their kind");
+  vg_page_markup(p, "</div>\n");
+  kind_keys(p);
+  vg_page_end_section(p);
+}
+
+void vg_html_angles(struct page *p)
+{
+  if (!p->h->run->pictures.plan.n) return;
+  vg_page_markup(p, "<div>");
+  figure(p, 0, PICTURE_ANGLE, "cells by their smallest angle");
+  angle_keys(p);
+  vg_page_markup(p, "</div>\n");
+}
+
+void vg_html_partition(struct page *p)
+{
+  static const struct { const char *name, *path; } row[] = {
+    { "cuts", "partition.cuts" }, { "zones along lines", "partition.pencils" },
+    { "zones in planes", "partition.tiles" },
+    { "cells of zones", "partition.zone_cells" },
+    { "subdomains", "partition.leaves" },
+    { "zones given up", "partition.zones_given_up" },
+    { "cuts repeated elsewhere", "partition.cuts_repeated" },
+    { "subdomains cut again", "partition.leaves_cut_again" },
+    { "subdomains left larger than asked", "partition.leaves_left_large" },
+    { "parts filled again with their neighbours",
+      "partition.parts_widened" },
+    { "regions at interfaces that were bad", "partition.regions_bad" },
+    { "of these improved", "partition.regions_repaired" },
+  };
+
+  vg_page_section(p, "partition", "How the field was cut up");
+  vg_page_markup(p, "<div class=\"pair\">\n");
+  if (p->h->run->pictures.plan.n)
+    figure(p, p->part_cut, PICTURE_PART, "cells by the subdomain in which "
+           "they were made");
+  vg_page_markup(p, "<div><table class=\"facts\">\n");
+  for (size_t i = 0; i < sizeof row / sizeof *row; i++)
+    vg_page_fact_count(p, row[i].name,
+                       (uint64_t)vg_page_number(p, row[i].path));
+  vg_page_markup(p, "</table>\n<p class=\"keys\">");
+  vg_page_key(p, vg_cut_zone_colour, "zones, made first");
+  if (p->has_layers) vg_page_markup(p, "Layers are light grey; ");
+  vg_page_markup(p, "other colours tell neighbouring subdomains apart.</p>"
+                    "</div>\n</div>\n");
+  vg_page_end_section(p);
+}

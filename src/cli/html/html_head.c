@@ -1,0 +1,286 @@
+/* The top of the page: what the run was, and what one has to know first. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/version.h"
+#include "cli/html/assets.h"
+#include "cli/html/page.h"
+
+/* Nothing is loaded from anywhere, and the browser is told so. */
+static const char policy[] =
+  "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
+  "img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline' "
+  "'unsafe-eval'\">\n";
+
+void vg_html_head(struct page *p)
+{
+  const struct vg_problem *q = p->h->problem;
+
+  vg_page_markup(p, "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n"
+    "<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
+    "content=\"width=device-width, initial-scale=1\">\n"
+    "<meta name=\"color-scheme\" content=\"light dark\">\n");
+  vg_page_markup(p, policy);
+  vg_page_markup(p, "<meta name=\"generator\" content=\"Vanguard " VG_VERSION
+                    "\">\n<title>");
+  vg_page_text(p, q->settings.title);
+  vg_page_markup(p, "</title>\n<style>\n");
+  vg_output_bytes(&p->out, vg_asset_report_css, vg_asset_report_css_size);
+  vg_page_markup(p, "</style>\n</head>\n<body>\n<header>\n"
+                    "<p class=\"over\">Vanguard mesh report</p>\n<h1>");
+  vg_page_text(p, q->settings.title);
+  vg_page_markup(p, "</h1>\n<p class=\"badges\">");
+  vg_page_markup(p, json_is_true(vg_page_json(p, "mesh.valid"))
+    ? "<span class=\"badge good\">valid mesh</span>"
+    : "<span class=\"badge bad\">not valid</span>");
+  if (p->h->layers->n_missed)
+    vg_page_format(p, " <span class=\"badge bad\">%zu limit%s on the layers "
+                   "not met</span>", p->h->layers->n_missed,
+                   p->h->layers->n_missed > 1 ? "s" : "");
+  vg_page_markup(p, "</p>\n</header>\n<main>\n\n");
+}
+
+/* --- what to know first -------------------------------------------------- */
+
+/* The list is written weight by weight: a line of another one is not begun. */
+enum weight { WEIGHT_BAD, WEIGHT_LOOK, WEIGHT_CHANGED, WEIGHT_NOTE, WEIGHTS };
+
+struct list { struct page *p; enum weight now; int n; };
+
+static int begin(struct list *l, enum weight weight)
+{
+  static const char *const name[] = { "bad", "warn", "warn", "note" };
+  static const char *const word[] = { "Missed", "Look", "Changed", "Note" };
+
+  if (weight != l->now) return 0;
+  l->n++;
+  vg_page_format(l->p, "<li class=\"%s\"><b>%s</b> <span>", name[weight],
+                 word[weight]);
+  return 1;
+}
+
+static void end(struct list *l)
+{
+  vg_page_markup(l->p, "</span></li>\n");
+}
+
+static void count_line(struct list *l, enum weight weight, uint64_t n,
+                       const char *one, const char *many)
+{
+  if (!n || !begin(l, weight)) return;
+  vg_page_count(l->p, n);
+  vg_page_format(l->p, " %s", n == 1 ? one : many);
+  end(l);
+}
+
+static void patch_words(struct page *p, uint32_t patch)
+{
+  const struct vg_patch *of = &p->h->problem->surface.patch[patch];
+
+  vg_page_format(p, "patch %d ", (int)of->id);
+  vg_page_text(p, of->name);
+}
+
+static void missed(struct list *l)
+{
+  const struct vg_layer_stage *s = l->p->h->layers;
+
+  for (size_t i = 0; i < s->n_missed; i++) {
+    const struct vg_limit_missed *m = &s->missed[i];
+
+    if (!begin(l, WEIGHT_BAD)) return;
+    patch_words(l->p, m->patch);
+    vg_page_format(l->p, ": %s is ", m->name);
+    vg_page_real(l->p, m->wanted, 10);
+    vg_page_format(l->p, "%s, reached ", m->unit);
+    vg_page_real(l->p, m->got, 10);
+    vg_page_markup(l->p, m->unit);
+    end(l);
+  }
+}
+
+/* Walls that lack layers, or their height; the worst one named. */
+static void layers_short(struct list *l)
+{
+  const struct vg_layer_stage *s = l->p->h->layers;
+  const struct vg_patch_layers *fewest = &s->all, *lowest = &s->all;
+  struct page *p = l->p;
+
+  if (!p->has_layers) return;
+  for (size_t i = 0; i < s->n_wall; i++) {
+    if (s->wall[i].full < fewest->full) fewest = &s->wall[i];
+    if (s->wall[i].share_mean < lowest->share_mean) lowest = &s->wall[i];
+  }
+  if (s->all.full < 100 && begin(l, WEIGHT_BAD)) {
+    vg_page_fixed(p, 100 - s->all.full, 2);
+    vg_page_markup(p, " % of the walls' faces have fewer layers than law and "
+                      "local size ask for");
+    if (fewest->patch != VG_NO_INDEX) {
+      vg_page_markup(p, ", most on ");
+      patch_words(p, fewest->patch);
+    }
+    vg_page_markup(p, "; <a href=\"#layers\">causes are below</a>");
+    end(l);
+  }
+  if (s->all.share_area < 100 && begin(l, WEIGHT_LOOK)) {
+    vg_page_markup(p, "on ");
+    vg_page_fixed(p, 100 - s->all.share_area, 2);
+    vg_page_markup(p, " % of the walls' area the layers are lower than 0.9 of "
+                      "what the law leads to; in the mean they reach ");
+    vg_page_fixed(p, s->all.share_mean, 3);
+    vg_page_markup(p, " of it");
+    if (lowest->patch != VG_NO_INDEX) {
+      vg_page_markup(p, ", least on ");
+      patch_words(p, lowest->patch);
+      vg_page_markup(p, ": ");
+      vg_page_fixed(p, lowest->share_mean, 3);
+    }
+    vg_page_markup(p, "; <a href=\"#layers\">causes are below</a>");
+    end(l);
+  }
+}
+
+static void added(struct list *l)
+{
+  const struct vg_domain_report *d = &l->p->h->problem->domain;
+
+  if (!d->added_symmetry && !d->added_farfield) return;
+  if (!begin(l, WEIGHT_CHANGED)) return;
+  vg_page_markup(l->p, "to the body were added: ");
+  if (d->added_symmetry) {
+    vg_page_format(l->p, "a symmetry plane at %c = ",
+                   "xyz"[d->symmetry_axis]);
+    vg_page_real(l->p, d->symmetry_at, 6);
+    if (d->added_farfield) vg_page_markup(l->p, " and ");
+  }
+  if (d->added_farfield) vg_page_markup(l->p, "a farfield");
+  vg_page_format(l->p, ", of %zu triangles", d->n_added_tri);
+  end(l);
+}
+
+static void surface_changed(struct list *l)
+{
+  const struct vg_problem *q = l->p->h->problem;
+  uint64_t removed = (uint64_t)vg_page_number(l->p,
+                                              "surface.removed_triangles");
+  uint64_t flipped = (uint64_t)vg_page_number(l->p, "surface.flipped");
+  int all = flipped >= q->surface.n_tri;
+
+  count_line(l, WEIGHT_CHANGED, q->n_dropped, "triangle of the input was "
+             "dropped by the weld", "triangles of the input were dropped by "
+             "the weld");
+  count_line(l, WEIGHT_CHANGED, removed, "triangle was removed by the repair",
+             "triangles were removed by the repair");
+  count_line(l, all ? WEIGHT_NOTE : WEIGHT_CHANGED, flipped,
+             "triangle was turned over", all
+             ? "triangles were turned over: all, so that they point into the "
+               "fluid" : "triangles were turned over");
+  count_line(l, WEIGHT_NOTE, q->n_welded, "point was merged with another",
+             "points were merged with others");
+  added(l);
+}
+
+static void mesh_lines(struct list *l)
+{
+  struct page *p = l->p;
+  const struct vg_mesh_report *r = p->has_layers ? &p->h->run->field_judge
+                                                 : &p->h->run->judge;
+
+  if (r->below[0] > 0 && begin(l, WEIGHT_LOOK)) {
+    vg_page_real(p, r->below[0], 3);
+    vg_page_format(p, " %% of the %s have an angle below 5 degrees, the "
+                   "smallest is ", p->has_layers ? "field's cells" : "cells");
+    vg_page_real(p, r->angle_min, 3);
+    vg_page_markup(p, "&deg;; <a href=\"#worst\">the worst are shown</a>");
+    end(l);
+  }
+  count_line(l, WEIGHT_NOTE,
+             (uint64_t)vg_page_number(p, "partition.parts_widened"),
+             "part of the field could not be filled, and was filled together "
+             "with what is beside it", "parts of the field could not be "
+             "filled, and were filled together with what is beside them");
+  count_line(l, WEIGHT_NOTE,
+             (uint64_t)vg_page_number(p, "fill.steiner_points"),
+             "point was added to recover the boundary",
+             "points were added to recover the boundary");
+}
+
+void vg_html_first(struct page *p)
+{
+  const struct vg_notes *notes = &p->h->problem->notes;
+  struct list l = { .p = p };
+
+  vg_page_section(p, "first", "To know first");
+  vg_page_markup(p, "<ul class=\"first\">\n");
+  for (l.now = WEIGHT_BAD; l.now < WEIGHTS; l.now++) {
+    missed(&l);
+    layers_short(&l);
+    surface_changed(&l);
+    mesh_lines(&l);
+    for (size_t i = 0; i < notes->n && begin(&l, WEIGHT_NOTE); i++) {
+      vg_page_text(p, notes->text[i]);
+      end(&l);
+    }
+  }
+  if (!l.n)
+    vg_page_markup(p, "<li class=\"good\"><b>All</b> <span>as asked: nothing "
+                      "was missed, dropped, closed or assumed.</span></li>\n");
+  vg_page_markup(p, "</ul>\n");
+  vg_page_end_section(p);
+}
+
+/* --- the figures that everybody asks for --------------------------------- */
+
+static void tile_begin(struct page *p)
+{
+  vg_page_markup(p, "<div><b>");
+}
+
+static void tile_end(struct page *p, const char *name)
+{
+  vg_page_format(p, "</b><span>%s</span></div>\n", name);
+}
+
+static void tile(struct page *p, uint64_t n, const char *name)
+{
+  if (!n) return;
+  tile_begin(p);
+  vg_page_count(p, n);
+  tile_end(p, name);
+}
+
+void vg_html_tiles(struct page *p)
+{
+  const struct vg_slices *m = &p->h->run->slices;
+  const struct vg_mesh_report *r = p->has_layers ? &p->h->run->field_judge
+                                                 : &p->h->run->judge;
+
+  vg_page_markup(p, "<div class=\"tiles\">\n");
+  tile(p, vg_run_cells(p->h->run),
+       m->n_cell[VG_SLICE_TET] < vg_run_cells(p->h->run) ? "cells"
+                                                         : "tetrahedra");
+  tile(p, m->n_point, "points");
+  if (m->n_cell[VG_SLICE_TET] < vg_run_cells(p->h->run))
+    tile(p, m->n_cell[VG_SLICE_TET], "tetrahedra");
+  tile(p, m->n_cell[VG_SLICE_PRI], "prisms");
+  tile(p, m->n_cell[VG_SLICE_PYR], "pyramids");
+  if (p->has_layers) {
+    tile_begin(p);
+    vg_page_fixed(p, p->h->layers->all.full, 2);
+    vg_page_markup(p, " %");
+    tile_end(p, "wall faces with all layers");
+    tile_begin(p);
+    vg_page_real(p, p->h->layers->all.first.mean, 4);
+    tile_end(p, "first height, mean");
+  }
+  tile_begin(p);
+  vg_page_real(p, r->angle_min, 3);
+  vg_page_markup(p, "&deg;");
+  tile_end(p, p->has_layers ? "smallest angle of the field"
+                            : "smallest angle");
+  tile_begin(p);
+  vg_page_fixed(p, r->radius_ratio_mean, 3);
+  tile_end(p, "radius ratio, mean");
+  vg_page_markup(p, "</div>\n\n");
+}

@@ -1,0 +1,111 @@
+/* Layers of each wall, in a table. */
+#include <math.h>
+
+#include "cli/html/page.h"
+
+static size_t lacking(const size_t *count)
+{
+  size_t n = 0;
+
+  for (int c = VG_CAUSE_PROXIMITY; c < VG_CAUSE_N; c++) n += count[c];
+  return n;
+}
+
+/* "proximity 12, corner 3" */
+static void causes(struct page *p, const char *lead, const size_t *count)
+{
+  if (!lacking(count)) return;
+  vg_page_format(p, "%s ", lead);
+  for (int c = VG_CAUSE_PROXIMITY, n = 0; c < VG_CAUSE_N; c++) {
+    if (!count[c]) continue;
+    vg_page_format(p, "%s%s ", n++ ? ", " : "",
+                   vg_layer_cause_name((enum vg_layer_cause)c));
+    vg_page_count(p, count[c]);
+  }
+  vg_page_markup(p, "<br>");
+}
+
+static void cell(struct page *p, double v, int decimals)
+{
+  vg_page_markup(p, "<td>");
+  vg_page_fixed(p, v, decimals);
+  vg_page_markup(p, "</td>");
+}
+
+static void cell_real(struct page *p, double v)
+{
+  vg_page_markup(p, "<td>");
+  vg_page_real(p, v, 4);
+  vg_page_markup(p, "</td>");
+}
+
+static void row(struct page *p, const struct vg_patch_layers *w)
+{
+  const struct vg_patch *patch =
+    w->patch == VG_NO_INDEX ? NULL
+                            : &p->h->problem->surface.patch[w->patch];
+
+  vg_page_markup(p, patch ? "<tr><th scope=\"row\">"
+                          : "<tr class=\"all\"><th scope=\"row\">");
+  if (patch) {
+    vg_page_format(p, "%d ", (int)patch->id);
+    vg_page_text(p, patch->name);
+  } else {
+    vg_page_markup(p, "all walls");
+  }
+  vg_page_markup(p, "</th><td>");
+  vg_page_count(p, w->n_face);
+  vg_page_markup(p, "</td>");
+  cell(p, w->full, 2);
+  cell(p, w->any, 2);
+  vg_page_markup(p, "<td>");
+  vg_page_fixed(p, w->level.min, 0);
+  vg_page_markup(p, " &ndash; ");
+  vg_page_fixed(p, w->level.max, 0);
+  vg_page_markup(p, "</td>");
+  cell(p, w->level.mean, 1);
+  cell_real(p, w->asked.mean);
+  cell_real(p, w->first.mean);
+  cell(p, 100 * w->first_error, 3);
+  cell(p, w->y_plus.max > 0 ? w->y_plus.mean : NAN, 2);
+  cell_real(p, w->total.mean);
+  cell(p, w->share_mean, 3);
+  cell(p, w->n_top ? w->top_ratio[1] : NAN, 2);
+  vg_page_markup(p, "<td class=\"words\">");
+  causes(p, "fewer:", w->cause);
+  causes(p, "thinner:", w->squeezed);
+  vg_page_markup(p, "</td></tr>\n");
+}
+
+void vg_html_layers(struct page *p)
+{
+  const struct vg_layer_stage *s = p->h->layers;
+
+  if (!p->has_layers) return;
+  vg_page_section(p, "layers", "Viscous layers");
+  vg_page_markup(p, "<div class=\"wide\"><table>\n<thead><tr>"
+    "<th scope=\"col\">wall</th><th scope=\"col\">faces</th>"
+    "<th scope=\"col\">full&nbsp;%</th><th scope=\"col\">any&nbsp;%</th>"
+    "<th scope=\"col\">levels</th><th scope=\"col\">mean</th>"
+    "<th scope=\"col\">first asked</th><th scope=\"col\">first got</th>"
+    "<th scope=\"col\">largest error&nbsp;%</th><th scope=\"col\">y+</th>"
+    "<th scope=\"col\">height</th><th scope=\"col\">over the law's</th>"
+    "<th scope=\"col\">volume ratio at the top</th>"
+    "<th scope=\"col\" class=\"words\">faces with fewer or thinner layers, by "
+    "cause</th>"
+    "</tr></thead>\n<tbody>\n");
+  for (size_t i = 0; i < s->n_wall; i++) row(p, &s->wall[i]);
+  if (s->n_wall > 1) row(p, &s->all);
+  vg_page_markup(p, "</tbody></table></div>\n<p class=\"note\">Full: all "
+    "levels that the law and the size of the local cells ask for. Heights are "
+    "measured on the points. Volume ratio: what 5 % of the faces exceed "
+    "between the last layer and the field.</p>\n<dl class=\"causes\">");
+  for (int c = VG_CAUSE_PROXIMITY; c < VG_CAUSE_N; c++) {
+    if (!s->all.cause[c] && !s->all.squeezed[c]) continue;
+    vg_page_format(p, "<dt>%s</dt><dd>%s</dd>",
+                   vg_layer_cause_name((enum vg_layer_cause)c),
+                   vg_cause_words((enum vg_layer_cause)c));
+  }
+  vg_page_markup(p, "</dl>\n");
+  vg_page_end_section(p);
+}

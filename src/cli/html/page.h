@@ -1,0 +1,126 @@
+/* Private to cli/html: what a page is made of. */
+#ifndef VG_CLI_HTML_PAGE_H
+#define VG_CLI_HTML_PAGE_H
+
+#include "cli/html/html.h"
+#include "cli/picture/body.h"
+#include "cli/picture/shot.h"
+#include "io/stream/stream.h"
+
+/* Pictures of a page by number: the surface by something (enum by) from two
+ * views, cuts, two of them in other colours. */
+enum { VIEWS = 2 };
+enum by { BY_PATCH, BY_LEVEL, BY_CAUSE, BY_N };
+enum { PICTURE_SURFACE = 0, PICTURE_CUT = BY_N * VIEWS,
+       PICTURE_ANGLE = PICTURE_CUT + VG_CUTS_MAX, PICTURE_PART, PICTURES };
+
+/* Triangles of the surface: their colours, GREY where it is no wall, and which
+ * are seen in its pictures. walls.c */
+struct walls {
+  uint8_t *by[BY_N], *by_share, *is_seen;  /* [surface.n_tri] */
+  int level_most;
+  size_t cause[2][VG_CAUSE_N]; /* triangles: fewer, thinner */
+};
+
+struct page {
+  struct vg_output out;
+  const struct vg_html *h;
+  int has_layers;
+  uint8_t *body;            /* [surface.n_patch] cli/picture/body.h */
+  struct walls walls;
+  struct vg_camera camera[VIEWS];
+  struct vg_bytes png[PICTURES];   /* empty where there is none */
+  size_t part_cut;          /* cut of PICTURE_PART */
+};
+
+/* page.c: text with markup escaped; printf without reals; markup as it is. */
+void vg_page_text(struct page *p, const char *text);
+void vg_page_markup(struct page *p, const char *markup);
+void vg_page_format(struct page *p, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+/* A count with separators; a real with so many significant digits; with so
+ * many decimals; "-" where it is not finite. */
+void vg_page_count(struct page *p, uint64_t n);
+void vg_page_real(struct page *p, double v, int digits);
+void vg_page_fixed(struct page *p, double v, int decimals);
+
+/* Bytes as base64. */
+void vg_page_base64(struct page *p, const unsigned char *data, size_t n);
+
+/* A colour as "#rrggbb". */
+void vg_page_colour(struct page *p, const uint8_t rgb[3]);
+
+/* A square of a colour with a word. */
+void vg_page_key(struct page *p, const uint8_t rgb[3], const char *word);
+
+/* A section with an id and a heading, and its end. */
+void vg_page_section(struct page *p, const char *id, const char *title);
+void vg_page_end_section(struct page *p);
+
+/* A figure: a picture with a text for those who do not see it; the caption
+ * follows, then vg_page_end_figure. id: for scripts, or NULL. */
+void vg_page_figure(struct page *p, int picture, const char *id,
+                    const char *alt);
+void vg_page_end_figure(struct page *p);
+
+/* A row of a table of facts: a name and, with printf, a value; or the name
+ * alone, with the value and </td></tr> to follow. */
+void vg_page_fact(struct page *p, const char *name);
+void vg_page_fact_count(struct page *p, const char *name, uint64_t n);
+
+/* Numbers of the report: "field.angle_min"; 0 where absent. */
+const json_t *vg_page_json(const struct page *p, const char *path);
+double vg_page_number(const struct page *p, const char *path);
+
+/* The report's block that judges cells by their angles. */
+const char *vg_page_judged(const struct page *p);
+
+/* html_pictures.c: makes all pictures, and their colours by number. */
+vg_status vg_html_draw(struct page *p, struct vg_error *err);
+struct palette { uint8_t rgb[256][3]; };
+void vg_html_palette(enum by by, struct palette *to);
+
+/* Sections, in this order. */
+void vg_html_head(struct page *p);          /* html_head.c */
+void vg_html_first(struct page *p);
+void vg_html_tiles(struct page *p);
+vg_status vg_html_scene(struct page *p, struct vg_error *err);
+void vg_html_surface(struct page *p);
+void vg_html_cuts(struct page *p);
+void vg_html_layers(struct page *p);
+void vg_html_quality(struct page *p);
+void vg_html_worst(struct page *p);
+void vg_html_settings(struct page *p);
+void vg_html_patches(struct page *p);
+void vg_html_partition(struct page *p);     /* html_cuts.c */
+vg_status vg_html_run(struct page *p, struct vg_error *err);
+
+/* html_cuts.c: a cut by the angles of its cells. */
+void vg_html_angles(struct page *p);
+
+/* A histogram: `n` bins from 0 by `step`; bins within bad_below or from
+ * bad_from on are marked. Logarithmic where `log`, as bad cells are few. */
+struct bars {
+  const char *title, *unit, *alt;
+  int decimals;
+  double step, bad_below, bad_from;
+};
+void vg_html_bars(struct page *p, const struct bars *b, const json_t *counts);
+
+/* colours.c */
+enum { PATCH_COLOURS = 12, LEVEL_COLOURS = 16,
+       GREY = VG_SHOT_BEHIND };
+extern const uint8_t vg_patch_colour[PATCH_COLOURS][3];
+extern const uint8_t vg_level_colour[LEVEL_COLOURS][3];
+extern const uint8_t vg_cause_colour[VG_CAUSE_N][3];
+extern const uint8_t vg_beside_colour[3];
+
+/* "proximity" in words of a sentence. */
+const char *vg_cause_words(enum vg_layer_cause cause);
+
+vg_status vg_walls_colour(const struct page *p, struct walls *w,
+                          struct vg_error *err);
+void vg_walls_release(struct walls *w);
+
+#endif
