@@ -207,7 +207,8 @@ VANGUARD_API vanguard_status vanguard_size_points(vanguard_job *job, size_t n,
 /* --- meshing ------------------------------------------------------------- */
 
 /** Called now and then by the thread that called vanguard_mesh or another,
- * one at a time, on every rank; anything but 0 stops the run.
+ * one at a time, on every rank, but while the field is filled on rank 0 alone;
+ * anything but 0 stops the run.
  *
  * @param phase     "read", "check", "sizes", "layers", "fill", "judge", ...;
  *                  within one neither count nor share runs backwards
