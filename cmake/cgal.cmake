@@ -15,7 +15,8 @@ if(VG_WRAP AND NOT VG_CGAL_FOUND)
 elseif(VG_WRAP)
   # Its intervals change the direction of rounding; its checks would print.
   set_source_files_properties(core/wrap/wrap_cgal.cpp PROPERTIES
-    COMPILE_DEFINITIONS "VG_CGAL;NDEBUG" COMPILE_OPTIONS -frounding-math)
+    COMPILE_DEFINITIONS "VG_CGAL;NDEBUG"
+    COMPILE_OPTIONS "-frounding-math;${VG_NO_CXX_RUNTIME}")
   target_include_directories(vg_core_wrap SYSTEM PRIVATE ${VG_CGAL_INCLUDE})
   set(VG_WRAP_LIBRARIES ${VG_GMP} ${VG_MPFR})
   target_link_libraries(vg_core_wrap PUBLIC ${VG_WRAP_LIBRARIES})

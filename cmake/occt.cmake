@@ -23,6 +23,7 @@ elseif(VG_CAD)
   set(VG_CAD_LIBRARY libvanguard-cad.so.0)
   target_compile_definitions(vg_io_cad PRIVATE
     VG_CAD_LIBRARY="${VG_CAD_LIBRARY}")
+  target_compile_options(vg_io_occt PRIVATE ${VG_NO_CXX_RUNTIME})
   target_include_directories(vg_io_occt SYSTEM PRIVATE ${VG_OCCT_INCLUDE})
 else()
   message(STATUS "CAD files: not read, Open CASCADE was not found or is not "
