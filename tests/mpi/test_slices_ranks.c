@@ -127,8 +127,8 @@ static void check_form(int k, const char *form,
 static void any_number_of_ranks(void **state)
 {
   static const char *const form[] = { "b8.ugrid", "lr4.ugrid", "lb8l.ugrid",
-                                      "vtu", "pvtu", "su2", "surface.vtu",
-                                      "cogsg" };
+                                      "vtu", "pvtu", "su2", "msh",
+                                      "surface.vtu", "cogsg" };
 
   (void)state;
   for (size_t i = 0; i < sizeof form / sizeof *form; i++)
@@ -212,7 +212,7 @@ static void assert_gone(const char *stem, const char *form)
 static void one_fails_all_fail(void **state)
 {
   static const char *const form[] = { "b8.ugrid", "vtu", "pvtu", "cogsg",
-                                      "su2", "surface.vtu" };
+                                      "su2", "msh", "surface.vtu" };
   const struct vg_slices_options o = { 2, 0, 0, 400 };
 
   (void)state;

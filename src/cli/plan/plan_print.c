@@ -32,7 +32,7 @@ static const struct form {
   { "ugrid", 51, 28, 42, 24 }, { "cogsg", 24, 16, 0, 41 },
   { "vtu", 24, 49, 57, 49 }, { "pvtu", 28, 49, 57, 0 },
   { "meshb", 28, 20, 28, 16 }, { "mesh", 56, 30, 44, 26 },
-  { "su2", 85, 43, 58, 26 },
+  { "su2", 85, 43, 58, 26 }, { "msh", 32, 40, 56, 32 },
 };
 
 double vg_plan_bytes(const struct vg_plan *p, const char *item)

@@ -275,7 +275,7 @@ static vg_status put_topology(struct writing *w, struct vg_error *err)
 static vg_status put_boundary(struct writing *w, struct vg_error *err)
 {
   struct vg_output *o = w->out + BOUNDARY;
-  char (*name)[VG_PATCH_WORD] = vg_patch_words(w->m);
+  char (*name)[VG_PATCH_WORD] = vg_patch_words(w->m, VG_PATCH_WORD_MOST);
 
   if (!name) return vg_fail_memory(err, "the names of the patches");
   vg_foam_header(o, "polyBoundaryMesh", location, "boundary", 1, NULL);

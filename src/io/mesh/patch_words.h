@@ -6,11 +6,13 @@
 #include "core/mesh/mesh.h"
 
 #define VG_PATCH_WORD (VG_NAME_MAX + 32)
+#define VG_PATCH_WORD_MOST (VG_PATCH_WORD - 1)
 
-/** Names of all patches as words that OpenFOAM and SU2 take: letters, digits
- * and "_-.", a letter first; others become '_', no name "patch_ID". Unique: of
- * equal ones all but the first get their patch number, until nothing clashes.
+/** Names of all patches as words that solvers take: letters, digits and "_-.",
+ * a letter first; others become '_', no name "patch_ID". Unique: of equal ones
+ * all but the first get their patch number, until nothing clashes.
+ * @param most  characters of a word, from 24 to VG_PATCH_WORD_MOST
  * Returns [n_patch], to be freed; NULL: no memory. */
-char (*vg_patch_words(const struct vg_mesh *m))[VG_PATCH_WORD];
+char (*vg_patch_words(const struct vg_mesh *m, size_t most))[VG_PATCH_WORD];
 
 #endif
