@@ -8,7 +8,7 @@ cd "$(dirname "$0")"
 
 packages="cmake ninja-build gcc g++ pkg-config libtet1.5-dev zlib1g-dev \
 libjansson-dev libcmocka-dev liblapacke-dev libopenmpi-dev openmpi-bin \
-libhwloc-dev libxxhash-dev libmetis-dev"
+libhwloc-dev libxxhash-dev libmetis-dev libhdf5-dev"
 
 install_missing() {
   missing=

@@ -127,7 +127,7 @@ static void check_form(int k, const char *form,
 static void any_number_of_ranks(void **state)
 {
   static const char *const form[] = { "b8.ugrid", "lr4.ugrid", "lb8l.ugrid",
-                                      "vtu", "pvtu", "su2", "msh",
+                                      "vtu", "pvtu", "su2", "msh", "cgns",
                                       "surface.vtu", "cogsg" };
 
   (void)state;
@@ -212,7 +212,7 @@ static void assert_gone(const char *stem, const char *form)
 static void one_fails_all_fail(void **state)
 {
   static const char *const form[] = { "b8.ugrid", "vtu", "pvtu", "cogsg",
-                                      "su2", "msh", "surface.vtu" };
+                                      "su2", "msh", "cgns", "surface.vtu" };
   const struct vg_slices_options o = { 2, 0, 0, 400 };
 
   (void)state;

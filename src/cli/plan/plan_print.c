@@ -33,6 +33,7 @@ static const struct form {
   { "vtu", 24, 49, 57, 49 }, { "pvtu", 28, 49, 57, 0 },
   { "meshb", 28, 20, 28, 16 }, { "mesh", 56, 30, 44, 26 },
   { "su2", 85, 43, 58, 26 }, { "msh", 32, 40, 56, 32 },
+  { "cgns", 24, 16, 24, 12 },
 };
 
 double vg_plan_bytes(const struct vg_plan *p, const char *item)

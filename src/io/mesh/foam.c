@@ -14,7 +14,7 @@
 #include "base/memory.h"
 #include "core/geometry/vector.h"
 #include "io/mesh/foam_parts.h"
-#include "io/mesh/patch_words.h"
+#include "io/stream/patch_words.h"
 #include "io/stream/boundary.h"
 #include "io/stream/stream.h"
 #include "io/vgrid/mapbc.h"

@@ -1,5 +1,5 @@
 /* io/mesh/format.h: the table of formats. Names decide, upper or lower case, a
- * ".gz" at the end aside: .stl .tri .triq .obj .mesh .meshb .msh .ugrid (and
+ * ".gz" at the end aside: .stl .tri .triq .obj .mesh .meshb .msh .cgns .ugrid (and
  * .b8.ugrid, ... , io/mesh/ugrid.h) .cogsg .front .surf are read; .su2, .vtu and
  * .openfoam (a folder, io/mesh/foam.h) are written only, .front, .triq and
  * .surf are read only. */

@@ -5,7 +5,7 @@
 #define VG_IO_MESH_GMSH_PUT_H
 
 #include "core/mesh/mesh.h"
-#include "io/mesh/patch_words.h"
+#include "io/stream/patch_words.h"
 #include "io/stream/stream.h"
 
 enum { VG_GMSH_KINDS = 4 };  /* tetrahedra, pyramids, prisms, hexahedra */

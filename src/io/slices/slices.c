@@ -258,7 +258,7 @@ done:
 /* --- forms --- */
 
 enum form { FORM_NONE, FORM_UGRID, FORM_COGSG, FORM_VTU, FORM_PVTU, FORM_SU2,
-            FORM_GMSH, FORM_BOUNDARY };
+            FORM_GMSH, FORM_CGNS, FORM_BOUNDARY };
 
 static enum form form_of(const char *word)
 {
@@ -270,6 +270,7 @@ static enum form form_of(const char *word)
   if (!strcmp(word, "pvtu")) return FORM_PVTU;
   if (!strcmp(word, "su2")) return FORM_SU2;
   if (!strcmp(word, "msh")) return FORM_GMSH;
+  if (!strcmp(word, "cgns")) return FORM_CGNS;
   if (!strcmp(word, "mapbc") || !strcmp(word, "fun3d.mapbc") ||
       !strcmp(word, "surface.vtu"))
     return FORM_BOUNDARY;
@@ -350,13 +351,17 @@ vg_status vg_slices_write_with(struct vg_comm *comm,
     case FORM_GMSH:
       st = vg_slices_write_gmsh(comm, s, path, o->threads, err);
       break;
+    case FORM_CGNS:
+      st = vg_slices_write_cgns(comm, s, path, o->threads, err);
+      break;
     case FORM_BOUNDARY:
       st = write_boundary(comm, s, path, stem, form, o->threads, err);
       break;
     default:
       st = vg_fail(err, VG_ERR_UNSUPPORTED, "%s: a mesh in slices cannot be "
-                   "written in this form; known are cogsg, msh, pvtu, su2, vtu "
-                   "and the binary kinds of .ugrid, as lb8.ugrid", path);
+                   "written in this form; known are cgns, cogsg, msh, pvtu, "
+                   "su2, vtu and the binary kinds of .ugrid, as lb8.ugrid",
+                   path);
     }
   free(path);
   return st;

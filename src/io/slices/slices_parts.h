@@ -9,6 +9,7 @@
 #define VG_IO_SLICES_SLICES_PARTS_H
 
 #include "core/mesh/slices.h"
+#include "io/cgns/cgns_put.h"
 #include "io/mesh/gmsh_put.h"
 #include "io/mesh/su2_put.h"
 #include "io/mesh/ugrid_put.h"
@@ -97,6 +98,9 @@ vg_status vg_slices_write_su2(struct vg_comm *comm, const struct vg_slices *s,
                               const char *path, int threads,
                               struct vg_error *err);
 vg_status vg_slices_write_gmsh(struct vg_comm *comm,
+                               const struct vg_slices *s, const char *path,
+                               int threads, struct vg_error *err);
+vg_status vg_slices_write_cgns(struct vg_comm *comm,
                                const struct vg_slices *s, const char *path,
                                int threads, struct vg_error *err);
 vg_status vg_slices_write_pvtu(struct vg_comm *comm, const struct vg_slices *s,

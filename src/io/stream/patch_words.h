@@ -1,7 +1,7 @@
-/* io/mesh/patch_words.h: names of patches for formats in which a name is a
+/* io/stream/patch_words.h: names of patches for formats in which a name is a
  * word. */
-#ifndef VG_IO_MESH_PATCH_WORDS_H
-#define VG_IO_MESH_PATCH_WORDS_H
+#ifndef VG_IO_STREAM_PATCH_WORDS_H
+#define VG_IO_STREAM_PATCH_WORDS_H
 
 #include "core/mesh/mesh.h"
 

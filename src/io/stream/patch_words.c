@@ -1,4 +1,4 @@
-#include "io/mesh/patch_words.h"
+#include "io/stream/patch_words.h"
 
 #include <ctype.h>
 #include <stdio.h>
