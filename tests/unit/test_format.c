@@ -10,7 +10,7 @@ static void suffixes_are_known(void **state)
     {"wing.B8.UGRID.gz", 12}, {"a.b.meshb", 6}, {"wing.b8.ugrid64", 11},
     {"x.cogsg", 6}, {"x.front.gz", 9}, {"wing", 0}, {"wing.gz", 0},
     {"wing.stl.bak", 0}, {"stl", 0}, {"", 0}, {".stl", 4}, {"x.vtu", 4},
-    {"x.y8.ugrid", 6}, {"x.surf.gz", 8}, {"x.openfoam", 9}
+    {"x.y8.ugrid", 6}, {"x.surf.gz", 8}, {"a.fluent.msh", 11}, {"fluent.msh", 4}, {"x.openfoam", 9}
   };
   size_t n = 0;
 

@@ -12,6 +12,7 @@
 #include "cli/plan/plan_estimate.h"
 #include "cli/plot/plot.h"
 #include "cli/report/report.h"
+#include "io/mesh/fluent.h"
 #include "io/mesh/foam.h"
 
 /* --- files --------------------------------------------------------------- */
@@ -49,6 +50,8 @@ double vg_plan_bytes(const struct vg_plan *p, const char *item)
       return f->point * p->point + f->tet * p->tet + f->prism * p->prism +
              f->face * boundary;
   }
+  if (!strcasecmp(item, VG_FLUENT_SUFFIX))
+    return 58 * p->point + 74 * p->tet + 100 * p->prism + 20 * boundary;
   if (vg_foam_word(item, &foam)) {
     double faces = 2 * p->tet + 2.5 * p->prism + 0.5 * boundary;
 

@@ -1,4 +1,4 @@
-/* The faces of a mesh for OpenFOAM: io/mesh/foam_parts.h.
+/* The faces of a mesh for OpenFOAM and Fluent: io/mesh/foam_parts.h.
  *
  * Cells are passed once, in order. A half-face whose mate has not been met
  * waits in a chain; its entry of link[] holds the next in the chain until the
@@ -207,8 +207,8 @@ static vg_status loose_face(const struct vg_mesh *m, size_t face,
 
   return vg_fail(err, VG_ERR_INPUT,
                  "%s: boundary %s %zu of the mesh, at (%g, %g, %g), is the "
-                 "face of no cell, or of one that has another; OpenFOAM needs "
-                 "a closed mesh: see `vanguard check`", name,
+                 "face of no cell, or of one that has another; a format of "
+                 "faces needs a closed mesh: see `vanguard check`", name,
                  width == 3 ? "triangle" : "quadrilateral",
                  (width == 3 ? face : face - m->n_tri) + 1, p[0], p[1], p[2]);
 }
@@ -261,8 +261,8 @@ static vg_status check_left(const struct vg_foam_faces *f,
   }
   return vg_fail(err, VG_ERR_INPUT,
                  "%s: the face of points %u, %u, %u at (%g, %g, %g) of %s %u "
-                 "meets neither one other cell nor a boundary face; OpenFOAM "
-                 "needs a closed mesh: see `vanguard check`", name,
+                 "meets neither one other cell nor a boundary face; a format "
+                 "of faces needs a closed mesh: see `vanguard check`", name,
                  node[0] + 1, node[1] + 1, node[2] + 1, p[0], p[1], p[2],
                  kind, cell + 1);
 }
@@ -276,8 +276,8 @@ static vg_status make_room(struct vg_foam_faces *f, struct heads *h,
 
   if (n_cell > MAX_CELL || m->n_point > INT32_MAX || n_face > INT32_MAX)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
-                   "%s: %llu cells and %zu points are beyond OpenFOAM's 32-bit "
-                   "labels", name, (unsigned long long)n_cell, m->n_point);
+                   "%s: %llu cells and %zu points are beyond the 32-bit labels of "
+                   "formats of faces", name, (unsigned long long)n_cell, m->n_point);
   f->m = m;
   f->n_cell = (uint32_t)n_cell;
   f->end_tet = (uint32_t)m->n_tet;
@@ -288,7 +288,7 @@ static vg_status make_room(struct vg_foam_faces *f, struct heads *h,
   h->n = HEADS * m->n_point + WINDOW;
   h->head = vg_alloc(h->n, sizeof *h->head);
   if (!f->link || !f->boundary || !h->head)
-    return vg_fail_memory(err, "the faces of an OpenFOAM mesh");
+    return vg_fail_memory(err, "the faces of the mesh");
   memset(h->head, 0xff, h->n * sizeof *h->head);
   return VG_OK;
 }
@@ -306,8 +306,8 @@ vg_status vg_foam_faces_build(struct vg_foam_faces *f, const struct vg_mesh *m,
   VG_TRY(check_left(&made, &h, name, err));
   if (made.n_corner > INT32_MAX) {
     st = vg_fail(err, VG_ERR_UNSUPPORTED,
-                 "%s: %llu corners of faces are beyond OpenFOAM's 32-bit "
-                 "labels", name, (unsigned long long)made.n_corner);
+                 "%s: %llu corners of faces are beyond the 32-bit labels of "
+                 "formats of faces", name, (unsigned long long)made.n_corner);
     goto done;
   }
   *f = made;

@@ -1,5 +1,5 @@
-/* io/mesh/foam_parts.h: what foam.c (the five files of a mesh), foam_faces.c
- * and foam_case.c (folders) share. Private.
+/* io/mesh/foam_parts.h: what foam.c (the five files of a mesh), foam_faces.c,
+ * foam_case.c (folders) and, of the faces, fluent.c share. Private.
  *
  * A half-face is one face of one cell, coded as 8 * cell + face; cells are
  * numbered tetrahedra, pyramids, prisms, hexahedra in their order. */

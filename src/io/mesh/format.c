@@ -11,6 +11,7 @@
 #include "base/memory.h"
 #include "io/cgns/cgns.h"
 #include "io/mesh/aflr.h"
+#include "io/mesh/fluent.h"
 #include "io/mesh/foam.h"
 #include "io/mesh/gmsh.h"
 #include "io/mesh/medit.h"
@@ -125,6 +126,7 @@ static const struct format {
   { "obj", read_obj, vg_obj_write },
   { "mesh", read_medit, vg_medit_write },
   { "meshb", read_medit, vg_medit_write },
+  { VG_FLUENT_SUFFIX, NULL, vg_fluent_write },
   { "msh", read_gmsh, vg_gmsh_write },
   { "cgns", read_cgns, vg_cgns_write },
   UGRID("b8.ugrid"), UGRID("lb8.ugrid"), UGRID("b4.ugrid"),
@@ -162,11 +164,10 @@ const char *vg_format_input_suffix(size_t i)
 
 const char *vg_format_list(void)
 {
-  return ".stl .tri .triq .obj .mesh .meshb .msh .cgns .ugrid, .X.ugrid with X of b8 lb8 "
-         "b4 lb4 r8 lr8 r4 lr4 b8l lb8l, .b8.ugrid64 .lb8.ugrid64, .cogsg, "
-         ".front .surf (read only), .su2 .vtu .openfoam (written "
-         "only); .gz may "
-         "follow what is read";
+  return ".stl .tri .triq .obj .mesh .meshb .msh .cgns .ugrid, .X.ugrid with X "
+         "of b8 lb8 b4 lb4 r8 lr8 r4 lr4 b8l lb8l, .b8.ugrid64 .lb8.ugrid64, "
+         ".cogsg, .front .surf (read only), .fluent.msh .su2 .vtu .openfoam "
+         "(written only); .gz may follow what is read";
 }
 
 /* Does name[0..n) end in ".suffix"? */

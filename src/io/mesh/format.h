@@ -1,7 +1,7 @@
 /* io/mesh/format.h: the table of formats. Names decide, upper or lower case, a
  * ".gz" at the end aside: .stl .tri .triq .obj .mesh .meshb .msh .cgns .ugrid (and
- * .b8.ugrid, ... , io/mesh/ugrid.h) .cogsg .front .surf are read; .su2, .vtu and
- * .openfoam (a folder, io/mesh/foam.h) are written only, .front, .triq and
+ * .b8.ugrid, ... , io/mesh/ugrid.h) .cogsg .front .surf are read; .fluent.msh,
+ * .su2, .vtu and .openfoam (a folder, io/mesh/foam.h) are written only, .front, .triq and
  * .surf are read only. */
 #ifndef VG_IO_MESH_FORMAT_H
 #define VG_IO_MESH_FORMAT_H
