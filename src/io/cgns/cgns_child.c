@@ -1,18 +1,11 @@
 /* The HDF5 library at work in a process of its own, which a damaged file may
- * end: io/cgns/cgns.h. The child inherits the bytes of the file, and leaves
- * the mesh in memory that both have in common. */
+ * end, or keep for ever: io/cgns/cgns.h. */
 #define _GNU_SOURCE
-#include <errno.h>
-#include <signal.h>
-#include <stdlib.h>
 #include <string.h>
-#include <sys/mman.h>
-#include <sys/prctl.h>
 #include <sys/resource.h>
-#include <sys/stat.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
+#include "base/child.h"
 #include "base/memory.h"
 #include "io/cgns/cgns.h"
 #include "io/cgns/cgns_read.h"
@@ -48,69 +41,55 @@ static void list_arrays(struct vg_mesh *m, struct array list[N_ARRAY])
 
 /* --- the child --- */
 
-static int put_all(int fd, const void *data, size_t n)
+struct question { size_t n_path, size; };
+
+/* Path and bytes of the file. */
+static int get_input(int fd, struct vg_input *in)
 {
-  const char *at = data;
-
-  while (n) {
-    ssize_t put = write(fd, at, n);
-
-    if (put < 0 && errno == EINTR) continue;
-    if (put <= 0) return 0;
-    at += put;
-    n -= (size_t)put;
-  }
-  return 1;
-}
-
-/* Signals as at the start of a program: the parent's handlers are not ours. */
-static void set_limits(pid_t parent, size_t bytes)
-{
-  static const int reset[] = { SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2,
-                               SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL };
-  struct rlimit seconds = { SECONDS(bytes), SECONDS(bytes) + 1 };
-  struct rlimit none = { 0, 0 };
-
-  for (size_t k = 0; k < sizeof reset / sizeof *reset; k++)
-    signal(reset[k], SIG_DFL);
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) _exit(1);
-  setrlimit(RLIMIT_CPU, &seconds);
-  setrlimit(RLIMIT_CORE, &none);
-}
-
-__attribute__((noreturn))
-static void be_child(pid_t parent, int fd, struct vg_input *in)
-{
-  struct answer a = { VG_OK, VG_ERROR_INIT, VG_MESH_INIT };
-  struct array list[N_ARRAY];
+  struct question q;
+  char *path;
+  void *data;
   int good;
 
-  set_limits(parent, in->size);
-  a.st = vg_cgns_take(in, &a.m, &a.err);
-  good = put_all(fd, &a, sizeof a);
+  if (!vg_child_get(fd, &q, sizeof q)) return 0;
+  path = vg_alloc(q.n_path, 1);
+  data = vg_alloc(q.size, 1);
+  good = path && data && vg_child_get(fd, path, q.n_path) &&
+         vg_child_get(fd, data, q.size);
+  if (good) {
+    in->path = path;
+    in->data = data;
+    in->size = q.size;
+  }
+  return good;
+}
+
+__attribute__((noreturn)) static void serve(int fd)
+{
+  struct vg_input in = VG_INPUT_INIT;
+  struct answer a = { VG_OK, VG_ERROR_INIT, VG_MESH_INIT };
+  struct array list[N_ARRAY];
+  struct rlimit seconds;
+  int good;
+
+  if (!get_input(fd, &in)) _exit(1);
+  seconds.rlim_cur = seconds.rlim_max = SECONDS(in.size);
+  setrlimit(RLIMIT_CPU, &seconds);
+  a.st = vg_cgns_take(&in, &a.m, &a.err);
+  good = vg_child_put(fd, &a, sizeof a);
   list_arrays(&a.m, list);
   for (int i = 0; i < N_ARRAY && good && a.st == VG_OK; i++)
-    good = put_all(fd, *list[i].at, list[i].n * list[i].size);
+    good = vg_child_put(fd, *list[i].at, list[i].n * list[i].size);
   _exit(!good);
 }
 
 /* --- the parent --- */
 
-static int get_all(int fd, off_t *at, void *data, size_t n)
+static vg_status is_lost(const char *path, struct vg_error *err)
 {
-  char *to = data;
-
-  while (n) {
-    ssize_t got = pread(fd, to, n, *at);
-
-    if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) return 0;
-    to += got;
-    *at += got;
-    n -= (size_t)got;
-  }
-  return 1;
+  return vg_fail(err, VG_ERR_FORMAT, "%s: the HDF5 library came to grief over "
+                 "it: the file is damaged, or there is not enough memory",
+                 path);
 }
 
 static vg_status take_answer(int fd, const char *path, struct vg_mesh *out,
@@ -118,11 +97,9 @@ static vg_status take_answer(int fd, const char *path, struct vg_mesh *out,
 {
   struct answer a;
   struct array list[N_ARRAY];
-  off_t at = 0;
   vg_status st = VG_OK;
 
-  if (!get_all(fd, &at, &a, sizeof a))
-    return vg_fail(err, VG_ERR_MEMORY, "%s: no memory for the mesh", path);
+  if (!vg_child_get(fd, &a, sizeof a)) return is_lost(path, err);
   if (a.st < 0) {
     if (err) *err = a.err;
     return a.st;
@@ -132,47 +109,33 @@ static vg_status take_answer(int fd, const char *path, struct vg_mesh *out,
   for (int i = 0; i < N_ARRAY && st == VG_OK; i++) {
     if (!list[i].n) continue;
     *list[i].at = vg_alloc(list[i].n, list[i].size);
-    if (!*list[i].at ||
-        !get_all(fd, &at, *list[i].at, list[i].n * list[i].size))
-      st = vg_fail(err, VG_ERR_MEMORY, "%s: no memory for the mesh", path);
+    if (!*list[i].at)
+      st = vg_fail_memory(err, path);
+    else if (!vg_child_get(fd, *list[i].at, list[i].n * list[i].size))
+      st = is_lost(path, err);
   }
   if (st == VG_OK) vg_mesh_move(out, &a.m);
   vg_mesh_release(&a.m);
   return st;
 }
 
-static vg_status wait_for(pid_t pid, const char *path, struct vg_error *err)
-{
-  int status = 0;
-
-  while (waitpid(pid, &status, 0) < 0)
-    if (errno != EINTR)
-      return vg_fail(err, VG_ERR_IO, "%s: the process that reads it is lost: "
-                     "%s", path, strerror(errno));
-  if (WIFEXITED(status) && !WEXITSTATUS(status)) return VG_OK;
-  if (WIFEXITED(status))
-    return vg_fail(err, VG_ERR_MEMORY, "%s: no memory for the mesh", path);
-  return vg_fail(err, VG_ERR_FORMAT, "%s: the HDF5 library came to grief over "
-                 "it (%s): the file is damaged", path,
-                 strsignal(WTERMSIG(status)));
-}
-
 static vg_status read_apart(struct vg_input *in, struct vg_mesh *out,
                             struct vg_error *err)
 {
-  int fd = memfd_create("vanguard-cgns", MFD_CLOEXEC);
-  pid_t parent = getpid(), pid = fd < 0 ? -1 : fork();
+  struct question q = { strlen(in->path) + 1, in->size };
+  struct vg_child c;
   vg_status st;
 
-  if (pid == 0) be_child(parent, fd, in);
-  if (pid < 0) {
-    st = vg_fail(err, VG_ERR_MEMORY, "%s: the system refuses a process to read "
-                 "it: %s", in->path, strerror(errno));
-  } else {
-    st = wait_for(pid, in->path, err);
-    if (st == VG_OK) st = take_answer(fd, in->path, out, err);
-  }
-  if (fd >= 0) close(fd);
+  if (vg_child_open(serve, &c) < 0)
+    return vg_fail(err, VG_ERR_MEMORY, "%s: the system refuses a process to "
+                   "read it", in->path);
+  if (vg_child_put(c.fd, &q, sizeof q) &&
+      vg_child_put(c.fd, in->path, q.n_path) &&
+      vg_child_put(c.fd, in->data, q.size))
+    st = take_answer(c.fd, in->path, out, err);
+  else
+    st = is_lost(in->path, err);
+  vg_child_close(&c);
   return st;
 }
 
