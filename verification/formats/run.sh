@@ -62,14 +62,15 @@ done
 # --- findings, a line each: "tetrahedra N", ..., "patch NAME N", "volume V"
 # with five digits, sorted; kinds without cells are left out ---
 
-# of `vanguard check`
+# of `vanguard check --json`
 of_check() {
-  awk '$1 ~ /^(tetrahedra|pyramids|prisms)$/ && NF == 2 {
-         gsub(",", ""); print $1, $2 }
-       $1 == "patch" && $2 == "faces" { table = 1; next }
-       table && NF == 5 { gsub(",", ""); print "patch", $5, $2; next }
-       { table = 0 }
-       $1 == "volume" && $3 == "enclosed" { printf "volume %.5g\n", $2 }' | sort
+  awk '{ gsub("[,\"]", "") }
+       $1 ~ /^(tetrahedra|pyramids|prisms):$/ && $2 > 0 {
+         print substr($1, 1, length($1) - 1), $2 }
+       $1 == "id:" { id = $2 }
+       $1 == "name:" { name = NF > 1 ? $2 : "patch_" id }
+       $1 == "faces:" { print "patch", name, $2 }
+       $1 == "volume:" { printf "volume %.5g\n", $2 }' | sort
 }
 
 # of a .msh of version 2.2
@@ -177,7 +178,7 @@ ask_gmsh() {
     { echo "  gmsh: FAIL: $(tail -1 "$d/log.gmsh")"; failed=1; return; }
   of_gmsh "$d/back.msh" "$d/log.volume" | compare gmsh volume
   # and what gmsh saves comes in again
-  "$vanguard" check "$d/back.msh" 2>/dev/null | of_check | compare back.msh v
+  "$vanguard" check -j "$d/back.msh" 2>/dev/null | of_check | compare back.msh v
   rm -f "$d/back.msh"
 }
 
@@ -222,7 +223,7 @@ check_case() {
       failed=1; return; }
   stem=$(ls "$d"/*.b8.ugrid)
   stem=${stem%.b8.ugrid}
-  "$vanguard" check "$stem.b8.ugrid" 2>/dev/null | of_check > "$d/findings"
+  "$vanguard" check -j "$stem.b8.ugrid" 2>/dev/null | of_check > "$d/findings"
   grep -vc patch "$d/findings" | grep -qv '^[01]$' ||
     { echo "  FAIL: nothing found in the .b8.ugrid"; failed=1; return; }
   awk '$1 == "patch" { p++; f += $3; next }
@@ -230,7 +231,7 @@ check_case() {
        END { printf "%d patches with %d faces\n", p, f }' "$d/findings" |
     sed 's/^/  /'
   for suffix in msh cgns; do
-    "$vanguard" check "$stem.$suffix" 2>/dev/null | of_check |
+    "$vanguard" check -j "$stem.$suffix" 2>/dev/null | of_check |
       compare "vanguard.$suffix" volume
   done
   ask_gmsh
@@ -246,6 +247,11 @@ first=()
 for cells in tets mixed; do
   check_case wing "$work/demo/wing-half" $cells "${first[@]}"
 done
+# patches without conditions and names
+mkdir -p "$work/bare"
+cp "$work/demo/wing-half.lb8.ugrid" "$work/bare/"
+check_case bare "$work/bare/wing-half.lb8.ugrid" mixed --layers yes \
+  --walls 1-3 --first 0.004 --farfield none
 f6=$data/transport/dlr_f6_wbnp_half_coarse.lb8.ugrid.xz
 if [ $quick = 0 ] && [ -e "$f6" ]; then
   xz -dc "$f6" > "$work/f6.lb8.ugrid"

@@ -219,7 +219,7 @@ static vg_status lay_condition(struct layout *l, const char *word,
   VG_TRY(add_text(l, id, "FamilyName", "FamilyName_t", word, NULL, err));
   VG_TRY(add_empty(l, l->base, word, "Family_t", &id, err));
   st = add_text(l, id, "FamilyBC", "FamilyBC_t",
-                type ? type : "BCTypeUserDefined", NULL, err);
+                type ? type : "UserDefined", NULL, err);
 done:
   return st;
 }
