@@ -381,12 +381,12 @@ void vg_cgns_release(struct vg_cgns *c)
 
 /* --- putting --- */
 
-/* Indices from 1, of the width of the file. */
+/* n indices from 1, of the width of the file; at most BLOCK. */
 static void put_indices(struct vg_output *out, const struct vg_cgns_places *p,
                         size_t n, const uint32_t *v)
 {
-  int32_t narrow[8];
-  int64_t wide[8];
+  int32_t narrow[BLOCK];
+  int64_t wide[BLOCK];
 
   if (p->is_wide) {
     for (size_t i = 0; i < n; i++) wide[i] = (int64_t)v[i] + 1;
@@ -397,18 +397,24 @@ static void put_indices(struct vg_output *out, const struct vg_cgns_places *p,
   vg_output_i32(out, n, narrow);
 }
 
-void vg_cgns_put_cell(struct vg_output *out, const struct vg_cgns_places *p,
-                      int kind, const uint32_t *node, const uint32_t *number)
+void vg_cgns_put_cells(struct vg_output *out, const struct vg_cgns_places *p,
+                       int kind, size_t n, const uint32_t *node,
+                       const uint32_t *number)
 {
-  uint32_t v[8] = { 0 };
-  int n = kinds[kind].n_node;
+  const struct kind *k = &kinds[kind];
+  size_t width = (size_t)k->n_node, most = BLOCK / width;
+  uint32_t v[BLOCK];
 
-  for (int i = 0; i < n; i++) {
-    uint32_t at = node[kinds[kind].order[i]];
+  for (size_t i = 0, m; i < n; i += m) {
+    m = n - i < most ? n - i : most;
+    for (size_t c = 0; c < m; c++, node += width)
+      for (size_t j = 0; j < width; j++) {
+        uint32_t at = node[k->order[j]];
 
-    v[i] = number ? number[at] : at;
+        v[c * width + j] = number ? number[at] : at;
+      }
+    put_indices(out, p, m * width, v);
   }
-  put_indices(out, p, (size_t)n, v);
 }
 
 static void put_points(struct vg_output *out, const struct vg_mesh *m,
@@ -433,9 +439,7 @@ static void put_cells(struct vg_output *out, const struct vg_cgns *c,
   size_t n_node = (size_t)kinds[a->which].n_node;
   size_t n = (size_t)(a->size / (uint64_t)index_size(&c->places)) / n_node;
 
-  for (size_t i = 0; i < n; i++)
-    vg_cgns_put_cell(out, &c->places, a->which, cell[a->which] + i * n_node,
-                     NULL);
+  vg_cgns_put_cells(out, &c->places, a->which, n, cell[a->which], NULL);
 }
 
 static void put_faces(struct vg_output *out, const struct vg_cgns *c,

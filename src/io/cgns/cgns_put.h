@@ -47,12 +47,13 @@ void vg_cgns_put(struct vg_output *out, const struct vg_cgns *c);
 void vg_cgns_seek_x(struct vg_output *out, const struct vg_cgns_places *p,
                     int axis, uint64_t point);
 
-/** Go to a cell of a kind; a cell with the points node, number[node] where
+/** Go to a cell of a kind; n cells with the points node, number[node] where
  * number is not NULL. */
 void vg_cgns_seek_cell(struct vg_output *out, const struct vg_cgns_places *p,
                        int kind, uint64_t cell);
-void vg_cgns_put_cell(struct vg_output *out, const struct vg_cgns_places *p,
-                      int kind, const uint32_t *node, const uint32_t *number);
+void vg_cgns_put_cells(struct vg_output *out, const struct vg_cgns_places *p,
+                       int kind, size_t n, const uint32_t *node,
+                       const uint32_t *number);
 
 /** As vg_cgns_write. */
 vg_status vg_cgns_write_with(const char *path, const struct vg_mesh *m,

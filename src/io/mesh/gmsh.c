@@ -9,6 +9,8 @@
 #include "io/mesh/gmsh_put.h"
 #include "io/stream/boundary.h"
 
+#define BLOCK 1024
+
 enum { TRIANGLE = 2, QUADRILATERAL = 3, SURFACE = 2, VOLUME = 3 };
 
 /* Ours to Gmsh's, whose pyramid has its apex last. */
@@ -165,7 +167,13 @@ static void put_nodes_head(struct vg_output *out, const struct vg_gmsh *g)
 
 void vg_gmsh_put_tags(struct vg_output *out, uint64_t point, size_t n)
 {
-  for (size_t i = 0; i < n; i++) put_size(out, point + i + 1);
+  int64_t v[BLOCK];
+
+  for (size_t i = 0, m; i < n; i += m) {
+    m = n - i < BLOCK ? n - i : BLOCK;
+    for (size_t k = 0; k < m; k++) v[k] = (int64_t)(point + i + k) + 1;
+    vg_output_i64(out, m, v);
+  }
 }
 
 /* --- elements --- */
@@ -238,19 +246,28 @@ static uint64_t cell_size(int kind)
   return 8 * (1 + (uint64_t)kinds[kind].n_node);
 }
 
-void vg_gmsh_put_cell(struct vg_output *out, const struct vg_gmsh *g,
-                      int kind, uint64_t cell, const uint32_t *node,
-                      const uint32_t *number)
+void vg_gmsh_put_cells(struct vg_output *out, const struct vg_gmsh *g,
+                       int kind, uint64_t cell, size_t n,
+                       const uint32_t *node, const uint32_t *number)
 {
-  int64_t v[9] = { (int64_t)(g->first[kind] + cell) };
-  int n = kinds[kind].n_node;
+  const struct kind *k = &kinds[kind];
+  size_t width = (size_t)k->n_node, most = BLOCK / (1 + width);
+  int64_t tag = (int64_t)(g->first[kind] + cell), v[BLOCK];
 
-  for (int i = 0; i < n; i++) {
-    uint32_t p = node[kinds[kind].order[i]];
+  for (size_t i = 0, m; i < n; i += m) {
+    int64_t *to = v;
 
-    v[1 + i] = (int64_t)(number ? number[p] : p) + 1;
+    m = n - i < most ? n - i : most;
+    for (size_t c = 0; c < m; c++, node += width) {
+      *to++ = tag++;
+      for (size_t j = 0; j < width; j++) {
+        uint32_t p = node[k->order[j]];
+
+        *to++ = (int64_t)(number ? number[p] : p) + 1;
+      }
+    }
+    vg_output_i64(out, (size_t)(to - v), v);
   }
-  vg_output_i64(out, 1 + (size_t)n, v);
 }
 
 /* --- the file --- */
@@ -283,10 +300,7 @@ static void put_cells(struct vg_output *out, const struct vg_gmsh *g,
       put_block(out, VOLUME, 1, kinds[k].type, g->n_cell[k]);
     at[k] = out->written;
     if (!m->point) vg_output_skip(out, g->n_cell[k] * cell_size(k));
-    else
-      for (uint64_t i = 0; i < g->n_cell[k]; i++)
-        vg_gmsh_put_cell(out, g, k, i,
-                         cell[k] + i * (uint64_t)kinds[k].n_node, NULL);
+    else vg_gmsh_put_cells(out, g, k, 0, (size_t)g->n_cell[k], cell[k], NULL);
   }
 }
 

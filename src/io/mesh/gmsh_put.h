@@ -49,9 +49,10 @@ void vg_gmsh_put_tags(struct vg_output *out, uint64_t point, size_t n);
 void vg_gmsh_seek_cell(struct vg_output *out, const struct vg_gmsh *g,
                        int kind, uint64_t cell);
 
-/** A cell with the points node, number[node] where number is not NULL. */
-void vg_gmsh_put_cell(struct vg_output *out, const struct vg_gmsh *g,
-                      int kind, uint64_t cell, const uint32_t *node,
-                      const uint32_t *number);
+/** n cells of a kind from `cell` on with the points node, number[node] where
+ * number is not NULL. */
+void vg_gmsh_put_cells(struct vg_output *out, const struct vg_gmsh *g,
+                       int kind, uint64_t cell, size_t n,
+                       const uint32_t *node, const uint32_t *number);
 
 #endif

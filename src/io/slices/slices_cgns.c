@@ -8,8 +8,6 @@
 
 #define BLOCK 4096
 
-static const int width[VG_SLICE_KINDS] = { 4, 5, 6 };
-
 static void put_frame(const void *of, struct vg_output *out)
 {
   const struct vg_cgns *c = of;
@@ -39,11 +37,10 @@ static void put_slice(void *of, const struct vg_slice *slice,
 
   vg_output_order(out, 0);
   for (int k = 0; k < VG_SLICE_KINDS; k++) {
-    if (slice->n_cell[k])
-      vg_cgns_seek_cell(out, &c->places, k, slice->cell_at[k]);
-    for (size_t i = 0; i < slice->n_cell[k]; i++)
-      vg_cgns_put_cell(out, &c->places, k,
-                       slice->cell[k] + i * (size_t)width[k], slice->id);
+    if (!slice->n_cell[k]) continue;
+    vg_cgns_seek_cell(out, &c->places, k, slice->cell_at[k]);
+    vg_cgns_put_cells(out, &c->places, k, slice->n_cell[k], slice->cell[k],
+                      slice->id);
   }
   for (int axis = 0; axis < 3 && slice->n_own; axis++)
     put_axis(c, slice, axis, out);

@@ -3,8 +3,6 @@
 #include "io/slices/slices_parts.h"
 #include "io/stream/shared_file.h"
 
-static const int width[VG_SLICE_KINDS] = { 4, 5, 6 };
-
 struct gmsh {
   struct vg_gmsh file;
   struct vg_boundary_points boundary;
@@ -24,11 +22,10 @@ static void put_slice(void *of, const struct vg_slice *slice,
 
   vg_output_order(out, 0);
   for (int k = 0; k < VG_SLICE_KINDS; k++) {
-    if (slice->n_cell[k])
-      vg_gmsh_seek_cell(out, &g->file, k, slice->cell_at[k]);
-    for (size_t i = 0; i < slice->n_cell[k]; i++)
-      vg_gmsh_put_cell(out, &g->file, k, slice->cell_at[k] + i,
-                       slice->cell[k] + i * (size_t)width[k], slice->id);
+    if (!slice->n_cell[k]) continue;
+    vg_gmsh_seek_cell(out, &g->file, k, slice->cell_at[k]);
+    vg_gmsh_put_cells(out, &g->file, k, slice->cell_at[k], slice->n_cell[k],
+                      slice->cell[k], slice->id);
   }
   if (slice->n_own) {
     vg_gmsh_seek_tags(out, &g->file, slice->point_at);
