@@ -176,9 +176,15 @@ ask_gmsh() {
   gmsh "$stem.msh" -save -format msh22 -o "$d/back.msh" > "$d/log.gmsh" 2>&1 &&
     gmsh -parse_and_exit "$d/volume.geo" > "$d/log.volume" 2>&1 ||
     { echo "  gmsh: FAIL: $(tail -1 "$d/log.gmsh")"; failed=1; return; }
-  of_gmsh "$d/back.msh" "$d/log.volume" | compare gmsh volume
+  # gmsh integrates with one point, which is exact for tetrahedra only
+  if [ "$1" = tets ]; then
+    of_gmsh "$d/back.msh" "$d/log.volume" | compare gmsh volume
+  else
+    of_gmsh "$d/back.msh" /dev/null | compare gmsh
+  fi
   # and what gmsh saves comes in again
-  "$vanguard" check -j "$d/back.msh" 2>/dev/null | of_check | compare back.msh v
+  "$vanguard" check -j "$d/back.msh" 2>/dev/null | of_check |
+    compare back.msh volume
   rm -f "$d/back.msh"
 }
 
@@ -234,7 +240,7 @@ check_case() {
     "$vanguard" check -j "$stem.$suffix" 2>/dev/null | of_check |
       compare "vanguard.$suffix" volume
   done
-  ask_gmsh
+  ask_gmsh "$cells"
   ask_cgns
   ask_foam
   rm -rf "$stem".*
