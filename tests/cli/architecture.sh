@@ -116,6 +116,7 @@ adapter pthread.h '^(base|partition|core/mesher)/|^cli/common/progress\.c$'
 adapter mpi.h \
   '^(base/comm(_[a-z]+)?\.c|base/comm_parts\.h|io/stream/shared_file\.c)$'
 adapter metis.h '^partition/graph/graph_metis\.c$'
+adapter hdf5.h '^io/cgns/cgns_tree\.c$'
 adapter hwloc.h '^base/comm_cores\.c$'
 adapter xxhash.h '^partition/store/store[a-z_]*\.c$'
 

@@ -214,6 +214,49 @@ static void make_meshb_truncated(const char *file)
   save(file, b.b, 100);
 }
 
+/* --- Gmsh --- */
+
+/* Nodes of version 4.1: a block whose count is n, and one point. */
+static void gmsh(struct bytes *b, int32_t one, int64_t n)
+{
+  memset(b, 0, sizeof *b);
+  put_raw(b, "$MeshFormat\n4.1 1 8\n", 20);
+  put_i32(b, one);
+  put_raw(b, "\n$EndMeshFormat\n$Nodes\n", 23);
+  for (int i = 0; i < 4; i++) put_i64(b, 1);
+  put_i32(b, 2);
+  put_i32(b, 1);
+  put_i32(b, 0);
+  put_i64(b, n);
+  put_i64(b, 1);
+  for (int k = 0; k < 3; k++) put_f64(b, 0);
+}
+
+static void make_gmsh_count(const char *file)
+{
+  struct bytes b;
+
+  gmsh(&b, 1, INT64_MAX);
+  save(file, b.b, b.n);
+}
+
+static void make_gmsh_order(const char *file)
+{
+  struct bytes b;
+
+  gmsh(&b, 77, 1);
+  save(file, b.b, b.n);
+}
+
+static void make_gmsh_end(const char *file)
+{
+  struct bytes b;
+
+  gmsh(&b, 1, 1);
+  put_raw(&b, "\n$EndElements\n", 14);
+  save(file, b.b, b.n);
+}
+
 /* --- UGRID --- */
 
 static void ugrid(struct bytes *b, int big, int32_t n_point, double x)
@@ -425,6 +468,12 @@ const struct hostile hostile_binaries[] = {
     .make = make_meshb_version },
   { .file = "truncated.meshb", .phrase = "beyond the end",
     .make = make_meshb_truncated },
+  { .file = "count.msh", .phrase = "beyond 32 bits",
+    .make = make_gmsh_count },
+  { .file = "order.msh", .phrase = "order of bytes",
+    .make = make_gmsh_order },
+  { .file = "wrong_end.msh", .phrase = "does not end",
+    .make = make_gmsh_end },
   { .file = "endian.b8.ugrid", .phrase = "lb8", .make = make_ugrid_endian },
   { .file = "huge.b8.ugrid", .phrase = "cannot hold", .make = make_ugrid_huge },
   { .file = "negative.b8.ugrid", .phrase = "negative",

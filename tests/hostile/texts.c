@@ -8,6 +8,7 @@
   "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex " x "\n" \
   "vertex 0 1 0\nendloop\nendfacet\n"
 #define T1 "0 0 0\n1 0 0\n0 1 0\n0 0 1\n"
+#define GMSH "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n"
 #define MEDIT "MeshVersionFormatted 2\nDimension 3\n"
 
 /* A long line and a long token must neither be copied to a short buffer nor
@@ -141,6 +142,21 @@ const struct hostile hostile_texts[] = {
   { .file = "no_end.mesh", .phrase = "'End'",
     .text = MEDIT "Vertices 3 0 0 0 0 1 0 0 0 0 1 0 0\n"
             "Triangles 1 1 2 3 1\n" },
+  { .file = "huge.msh", .phrase = "truncated:",
+    .text = GMSH "$Nodes\n1 4000000000 1 1\n2 1 0 4000000000\n" },
+  { .file = "range.msh", .phrase = "node 77",
+    .text = GMSH "$Nodes\n1 1 1 1\n2 1 0 1\n1\n0 0 0\n$EndNodes\n"
+            "$Elements\n1 1 1 1\n2 1 2 1\n1 1 1 77\n$EndElements\n" },
+  { .file = "curved.msh", .phrase = "setorder 1",
+    .text = GMSH "$Nodes\n1 1 1 1\n2 1 0 1\n1\n0 0 0\n$EndNodes\n"
+            "$Elements\n1 1 1 1\n2 1 9 1\n1 1 1 1 1 1 1\n$EndElements\n" },
+  { .file = "old.msh", .phrase = "msh41",
+    .text = "$NOD\n3\n1 0 0 0\n" },
+  { .file = "text.cgns", .phrase = "neither HDF5 nor ADF",
+    .text = "CGNS, says the name\n" },
+  { .file = "adf.cgns", .phrase = "adf2hdf",
+    .text = "@(#)ADF Database Version B02012>\n" },
+  { .file = "is_fluent.msh", .phrase = "Fluent", .text = "(0 \"grid\")\n" },
   { .file = "huge.ugrid", .phrase = "truncated:",
     .text = "4000000000 4000000000 0 4000000000 0 0 0\n" T1 },
   { .file = "negative.ugrid", .phrase = "negative",

@@ -10,7 +10,7 @@ static void suffixes_are_known(void **state)
     {"wing.B8.UGRID.gz", 12}, {"a.b.meshb", 6}, {"wing.b8.ugrid64", 11},
     {"x.cogsg", 6}, {"x.front.gz", 9}, {"wing", 0}, {"wing.gz", 0},
     {"wing.stl.bak", 0}, {"stl", 0}, {"", 0}, {".stl", 4}, {"x.vtu", 4},
-    {"x.y8.ugrid", 6}, {"x.surf.gz", 8}, {"x.openfoam", 9}
+    {"x.y8.ugrid", 6}, {"x.surf.gz", 8}, {"a.fluent.msh", 11}, {"fluent.msh", 4}, {"x.openfoam", 9}
   };
   size_t n = 0;
 
@@ -25,7 +25,7 @@ static void suffixes_are_known(void **state)
     snprintf(name, sizeof name, "x.%s", s);
     assert_int_equal(vg_format_suffix_length(name), strlen(s) + 1);
   }
-  assert_int_equal(n, 50);
+  assert_int_equal(n, 54);
   assert_true(vg_format_can_write("b8.ugrid"));
   assert_true(vg_format_can_write("cogsg"));
   assert_true(vg_format_can_write("vtu"));
@@ -60,7 +60,8 @@ static void every_format_round_trips(void **state)
   static const struct { const char *suffix; int volume, patches; } cases[] = {
     {"stl", 0, 4}, {"tri", 0, 4}, {"obj", 0, 4}, {"mesh", 1, 4},
     {"meshb", 1, 4}, {"ugrid", 1, 4}, {"b8.ugrid", 1, 4},
-    {"lb8l.ugrid", 1, 4}, {"r4.ugrid", 1, 4}, {"cogsg", 1, 4}
+    {"lb8l.ugrid", 1, 4}, {"r4.ugrid", 1, 4}, {"msh", 1, 4},
+    {"cogsg", 1, 4}
   };
   const char *stem = io_temp("format_t1");
   struct vg_mesh t1;

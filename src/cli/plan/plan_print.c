@@ -12,6 +12,7 @@
 #include "cli/plan/plan_estimate.h"
 #include "cli/plot/plot.h"
 #include "cli/report/report.h"
+#include "io/mesh/fluent.h"
 #include "io/mesh/foam.h"
 
 /* --- files --------------------------------------------------------------- */
@@ -32,7 +33,8 @@ static const struct form {
   { "ugrid", 51, 28, 42, 24 }, { "cogsg", 24, 16, 0, 41 },
   { "vtu", 24, 49, 57, 49 }, { "pvtu", 28, 49, 57, 0 },
   { "meshb", 28, 20, 28, 16 }, { "mesh", 56, 30, 44, 26 },
-  { "su2", 85, 43, 58, 26 },
+  { "su2", 85, 43, 58, 26 }, { "msh", 32, 40, 56, 32 },
+  { "cgns", 24, 16, 24, 12 },
 };
 
 double vg_plan_bytes(const struct vg_plan *p, const char *item)
@@ -48,6 +50,8 @@ double vg_plan_bytes(const struct vg_plan *p, const char *item)
       return f->point * p->point + f->tet * p->tet + f->prism * p->prism +
              f->face * boundary;
   }
+  if (!strcasecmp(item, VG_FLUENT_SUFFIX))
+    return 58 * p->point + 74 * p->tet + 100 * p->prism + 20 * boundary;
   if (vg_foam_word(item, &foam)) {
     double faces = 2 * p->tet + 2.5 * p->prism + 0.5 * boundary;
 

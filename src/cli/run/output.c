@@ -14,6 +14,7 @@
 #include "cli/common/progress.h"
 #include "cli/settings/deck.h"
 #include "cli/settings/lists.h"
+#include "io/cgns/cgns.h"
 #include "io/mesh/foam.h"
 #include "io/mesh/format.h"
 #include "io/mesh/ugrid.h"
@@ -174,6 +175,13 @@ static vg_status plan_place(const struct vg_problem *p, const char *dir,
   return st;
 }
 
+static vg_status refuse_absent(const char *item, struct vg_error *err)
+{
+  if (strcmp(item, "cgns") != 0 || vg_cgns_is_built()) return VG_OK;
+  return vg_fail(err, VG_ERR_UNSUPPORTED, "write: this build cannot write "
+                 "CGNS: install libhdf5-dev and configure again");
+}
+
 static vg_status refuse_ranks(const char *item, int ranks,
                               struct vg_error *err)
 {
@@ -198,6 +206,7 @@ vg_status vg_outputs_plan(const struct vg_problem *p, const char *dir,
     if (st >= 0 && !strcmp(o->item[i], "cogsg"))
       st = refuse_hit(o, p, "bc", err);
     if (st >= 0) st = refuse_mixed(o->item[i], &p->settings, err);
+    if (st >= 0) st = refuse_absent(o->item[i], err);
     if (st >= 0) st = refuse_ranks(o->item[i], ranks, err);
   }
   return st;

@@ -78,7 +78,7 @@ static vg_status add_item(const char *name, size_t len, size_t *n,
     return vg_fail(err, VG_ERR_INPUT, "write: '%s' is no format; known are "
                    "cogsg (with bc and mapbc), mapbc, fun3d.mapbc, vtu, "
                    "pvtu, foam, foam-ascii and suffixes such as b8.ugrid, "
-                   "lb8.ugrid, ugrid, meshb", to);
+                   "lb8.ugrid, ugrid, cgns, su2, msh, fluent.msh, meshb", to);
   ++*n;
   return VG_OK;
 }

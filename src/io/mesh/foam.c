@@ -15,7 +15,7 @@
 #include "core/mesh/cell_links.h"
 #include "core/geometry/vector.h"
 #include "io/mesh/foam_parts.h"
-#include "io/mesh/patch_words.h"
+#include "io/stream/patch_words.h"
 #include "io/stream/boundary.h"
 #include "io/stream/stream.h"
 #include "io/vgrid/mapbc.h"
@@ -108,10 +108,8 @@ static int is_planar(const struct vg_mesh *m, const size_t *face, size_t n)
 
 /* --- faces --- */
 
-/* Half-faces of `cell` whose mates are in higher cells, by rising mate:
- * upper-triangular order. Returns how many, at most 6. */
-static int upper(const struct vg_cell_links *f, uint32_t cell,
-                 uint32_t code[6], uint32_t neighbour[6])
+int vg_foam_upper(const struct vg_cell_links *f, uint32_t cell,
+                  uint32_t code[6], uint32_t neighbour[6])
 {
   size_t at = vg_first_half(f, cell);
   int n_face = vg_half_faces(f, cell), n = 0;
@@ -132,14 +130,14 @@ static int upper(const struct vg_cell_links *f, uint32_t cell,
   return n;
 }
 
-static vg_status link_faces(struct vg_cell_links *f, const struct vg_mesh *m,
-                            const char *name, struct vg_error *err)
+vg_status vg_foam_links(struct vg_cell_links *f, const struct vg_mesh *m,
+                        const char *name, struct vg_error *err)
 {
   vg_status st = vg_cell_links_build(f, m, 0, name, err);
 
   if (st < 0 || f->n_corner <= INT32_MAX) return st;
   return vg_fail(err, VG_ERR_UNSUPPORTED, "%s: %llu corners of faces are "
-                 "beyond OpenFOAM's 32-bit labels", name,
+                 "beyond the 32-bit labels of formats of faces", name,
                  (unsigned long long)f->n_corner);
 }
 
@@ -253,7 +251,7 @@ static void put_cells(struct writing *w, struct labels l[3])
   open_list(l + 2, f->n_internal);
   if (!w->is_ascii) open_list(l, f->n_internal + n_boundary + 1);
   for (uint32_t cell = 0; cell < f->n_cell; cell++) {
-    int n = upper(f, cell, code, neighbour);
+    int n = vg_foam_upper(f, cell, code, neighbour);
 
     for (int i = 0; i < n; i++) {
       put_label(l + 1, cell);
@@ -284,7 +282,7 @@ static void put_faces(struct writing *w, struct labels *l)
 
   open_list(l, w->is_ascii ? f->n_internal + n_boundary : f->n_corner);
   for (uint32_t cell = 0; cell < f->n_cell; cell++) {
-    int n = upper(f, cell, code, neighbour);
+    int n = vg_foam_upper(f, cell, code, neighbour);
 
     for (int i = 0; i < n; i++) put_face(l, f, code[i]);
   }
@@ -313,7 +311,7 @@ static vg_status put_topology(struct writing *w, struct vg_error *err)
 static vg_status put_boundary(struct writing *w, struct vg_error *err)
 {
   struct vg_output *o = w->out + BOUNDARY;
-  char (*name)[VG_PATCH_WORD] = vg_patch_words(w->m);
+  char (*name)[VG_PATCH_WORD] = vg_patch_words(w->m, VG_PATCH_WORD_MOST);
 
   if (!name) return vg_fail_memory(err, "the names of the patches");
   vg_foam_header(o, "polyBoundaryMesh", location, "boundary", 1, NULL);
@@ -407,7 +405,7 @@ vg_status vg_foam_write(const char *case_dir, const struct vg_mesh *m,
     goto done;
   }
   VG_TRY(vg_boundary_by_patch(m, &w.start, &w.order, err));
-  VG_TRY(link_faces(&w.faces, m, case_dir, err));
+  VG_TRY(vg_foam_links(&w.faces, m, case_dir, err));
   st = write_into(case_dir, constant, &w, err);
   if (st < 0) {
     /* Leave no folders behind that are empty. */

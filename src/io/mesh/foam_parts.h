@@ -1,9 +1,22 @@
-/* io/mesh/foam_parts.h: what foam.c (the five files of a mesh) and foam_case.c
- * (folders) share. Private. */
+/* io/mesh/foam_parts.h: what foam.c (the five files of a mesh), foam_case.c
+ * (folders) and, of the faces, fluent.c share. Private. */
 #ifndef VG_IO_MESH_FOAM_PARTS_H
 #define VG_IO_MESH_FOAM_PARTS_H
 
 #include "base/status.h"
+#include "core/mesh/cell_links.h"
+
+/* --- faces (foam.c) --- */
+
+/** vg_cell_links_build of a whole mesh, whose corners of faces 32-bit labels
+ * count. */
+vg_status vg_foam_links(struct vg_cell_links *f, const struct vg_mesh *m,
+                        const char *name, struct vg_error *err);
+
+/** Half-faces of `cell` whose mates are in higher cells, by rising mate:
+ * upper-triangular order. Returns how many, at most 6. */
+int vg_foam_upper(const struct vg_cell_links *f, uint32_t cell,
+                  uint32_t code[6], uint32_t neighbour[6]);
 
 /* --- folders (foam_case.c) --- */
 

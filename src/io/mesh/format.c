@@ -10,8 +10,11 @@
 
 #include "base/memory.h"
 #include "io/cad/cad.h"
+#include "io/cgns/cgns.h"
 #include "io/mesh/aflr.h"
+#include "io/mesh/fluent.h"
 #include "io/mesh/foam.h"
+#include "io/mesh/gmsh.h"
 #include "io/mesh/medit.h"
 #include "io/mesh/obj.h"
 #include "io/mesh/stl.h"
@@ -38,6 +41,8 @@ PLAIN_READER(stl)
 PLAIN_READER(tri)
 PLAIN_READER(obj)
 PLAIN_READER(medit)
+PLAIN_READER(gmsh)
+PLAIN_READER(cgns)
 
 static vg_status read_surf(const char *path, struct vg_mesh *out,
                            struct vg_turned *turned, struct vg_error *err)
@@ -122,6 +127,9 @@ static const struct format {
   { "obj", read_obj, vg_obj_write },
   { "mesh", read_medit, vg_medit_write },
   { "meshb", read_medit, vg_medit_write },
+  { VG_FLUENT_SUFFIX, NULL, vg_fluent_write },
+  { "msh", read_gmsh, vg_gmsh_write },
+  { "cgns", read_cgns, vg_cgns_write },
   UGRID("b8.ugrid"), UGRID("lb8.ugrid"), UGRID("b4.ugrid"),
   UGRID("lb4.ugrid"), UGRID("r8.ugrid"), UGRID("lr8.ugrid"),
   UGRID("r4.ugrid"), UGRID("lr4.ugrid"), UGRID("b8l.ugrid"),
@@ -156,12 +164,13 @@ static const char *const input_suffix[] = {
   "stl", "tri", "triq", "obj", "mesh", "meshb", "b8.ugrid", "lb8.ugrid",
   "b4.ugrid", "lb4.ugrid", "r8.ugrid", "lr8.ugrid", "r4.ugrid", "lr4.ugrid",
   "b8l.ugrid", "lb8l.ugrid", "b8.ugrid64", "lb8.ugrid64", "ugrid",
-  "surf", "step", "stp", "iges", "igs", "brep",
+  "surf", "msh", "cgns", "step", "stp", "iges", "igs", "brep",
   "stl.gz", "tri.gz", "triq.gz", "obj.gz", "mesh.gz", "meshb.gz",
   "b8.ugrid.gz", "lb8.ugrid.gz", "b4.ugrid.gz", "lb4.ugrid.gz",
   "r8.ugrid.gz", "lr8.ugrid.gz", "r4.ugrid.gz", "lr4.ugrid.gz",
   "b8l.ugrid.gz", "lb8l.ugrid.gz", "b8.ugrid64.gz", "lb8.ugrid64.gz",
-  "ugrid.gz", "surf.gz", "step.gz", "stp.gz", "iges.gz", "igs.gz", "brep.gz"
+  "ugrid.gz", "surf.gz", "msh.gz", "cgns.gz", "step.gz", "stp.gz", "iges.gz",
+  "igs.gz", "brep.gz"
 };
 
 const char *vg_format_input_suffix(size_t i)
@@ -172,10 +181,11 @@ const char *vg_format_input_suffix(size_t i)
 
 const char *vg_format_list(void)
 {
-  return ".stl .tri .triq .obj .mesh .meshb .ugrid, .X.ugrid with X of b8 lb8 "
-         "b4 lb4 r8 lr8 r4 lr4 b8l lb8l, .b8.ugrid64 .lb8.ugrid64, .cogsg, "
-         ".front .surf .step .stp .iges .igs .brep (read only), .su2 .vtu "
-         ".openfoam (written only); .gz may follow what is read";
+  return ".stl .tri .triq .obj .mesh .meshb .msh .cgns .ugrid, .X.ugrid with X "
+         "of b8 lb8 b4 lb4 r8 lr8 r4 lr4 b8l lb8l, .b8.ugrid64 .lb8.ugrid64, "
+         ".cogsg, .front .surf .step .stp .iges .igs .brep (read only), "
+         ".fluent.msh .su2 .vtu .openfoam (written only); .gz may follow what is "
+         "read";
 }
 
 /* Does name[0..n) end in ".suffix"? */
@@ -231,12 +241,13 @@ int vg_format_holds_cells(const char *path)
   uint64_t count[7];
   int has = 0;
 
-  if (!f) return 0;
+  if (!f || !f->read) return 0;
   if (f->read == vg_ugrid_read) {
     if (vg_ugrid_peek(path, count, NULL) == VG_OK)
       has = count[3] || count[4] || count[5] || count[6];
-  } else if (f->read == read_medit) {
-    if (vg_medit_read(path, &m, NULL) == VG_OK)
+  } else if (f->read == read_medit || f->read == read_gmsh ||
+             f->read == read_cgns) {
+    if (f->read(path, &m, NULL, NULL) == VG_OK)
       has = m.n_tet || m.n_pyr || m.n_pri || m.n_hex;
     vg_mesh_release(&m);
   } else {

@@ -1,9 +1,9 @@
 /* io/mesh/format.h: the table of formats. Names decide, upper or lower case, a
- * ".gz" at the end aside: .stl .tri .triq .obj .mesh .meshb .ugrid (and
- * .b8.ugrid, ... , io/mesh/ugrid.h) .cogsg .front .surf and CAD (.step .stp
- * .iges .igs .brep, io/cad/cad.h) are read; .su2, .vtu and .openfoam (a folder,
- * io/mesh/foam.h) are written only, .front, .triq, .surf and CAD are read
- * only. */
+ * ".gz" at the end aside: .stl .tri .triq .obj .mesh .meshb .msh .cgns .ugrid
+ * (and .b8.ugrid, ... , io/mesh/ugrid.h) .cogsg .front .surf and CAD (.step .stp
+ * .iges .igs .brep, io/cad/cad.h) are read; .fluent.msh, .su2, .vtu and .openfoam
+ * (a folder, io/mesh/foam.h) are written only, .front, .triq, .surf and CAD are
+ * read only. */
 #ifndef VG_IO_MESH_FORMAT_H
 #define VG_IO_MESH_FORMAT_H
 

@@ -120,7 +120,7 @@ vg_status vg_su2_plan(const char *path, const struct vg_mesh *frame,
                    "as .stl or .lb8.ugrid", path);
   s->node_width = digits(frame->n_point - 1);
   s->cell_width = digits(count_of(s) - 1);
-  s->word = vg_patch_words(frame);
+  s->word = vg_patch_words(frame, VG_PATCH_WORD_MOST);
   if (!s->word) return vg_fail_memory(err, "the names of the markers");
   VG_TRY(sort_faces(s, err));
   st = find_places(s, err);

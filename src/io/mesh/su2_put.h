@@ -5,7 +5,7 @@
 #define VG_IO_MESH_SU2_PUT_H
 
 #include "core/mesh/mesh.h"
-#include "io/mesh/patch_words.h"
+#include "io/stream/patch_words.h"
 #include "io/stream/stream.h"
 
 enum { VG_SU2_KINDS = 4 };   /* tetrahedra, pyramids, prisms, hexahedra */

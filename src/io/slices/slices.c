@@ -111,6 +111,31 @@ struct vg_mesh vg_slices_frame(const struct vg_slices *s)
   return m;
 }
 
+static vg_status check_nodes(size_t n, int width, const uint32_t *node,
+                             size_t n_point, const char *what,
+                             struct vg_error *err)
+{
+  for (size_t i = 0; i < n * (size_t)width; i++)
+    if (node[i] >= n_point)
+      return vg_fail(err, VG_ERR_INPUT, "boundary %s %zu of the mesh is on "
+                     "point %lu, but only %zu points are on the boundary",
+                     what, i / (size_t)width + 1, (unsigned long)node[i] + 1,
+                     n_point);
+  return VG_OK;
+}
+
+vg_status vg_slices_check_boundary(const struct vg_slices *s,
+                                   struct vg_error *err)
+{
+  const struct vg_mesh *m = s->boundary;
+  size_t n = (size_t)s->n_boundary_point;
+  vg_status st = check_nodes(m->n_tri, 3, (const uint32_t *)m->tri, n,
+                             "triangle", err);
+
+  return st < 0 ? st : check_nodes(m->n_quad, 4, (const uint32_t *)m->quad, n,
+                                   "quadrilateral", err);
+}
+
 void vg_slice_points(const struct vg_slice *slice, size_t k, size_t n,
                      double (*x)[3])
 {
@@ -233,7 +258,7 @@ done:
 /* --- forms --- */
 
 enum form { FORM_NONE, FORM_UGRID, FORM_COGSG, FORM_VTU, FORM_PVTU, FORM_SU2,
-            FORM_PART, FORM_BOUNDARY };
+            FORM_GMSH, FORM_CGNS, FORM_PART, FORM_BOUNDARY };
 
 static enum form form_of(const char *word)
 {
@@ -245,6 +270,8 @@ static enum form form_of(const char *word)
   if (!strcmp(word, "pvtu")) return FORM_PVTU;
   if (!strcmp(word, "su2")) return FORM_SU2;
   if (!strncmp(word, "part.", 5)) return FORM_PART;
+  if (!strcmp(word, "msh")) return FORM_GMSH;
+  if (!strcmp(word, "cgns")) return FORM_CGNS;
   if (!strcmp(word, "mapbc") || !strcmp(word, "fun3d.mapbc") ||
       !strcmp(word, "surface.vtu"))
     return FORM_BOUNDARY;
@@ -325,13 +352,20 @@ vg_status vg_slices_write_with(struct vg_comm *comm,
     case FORM_PART:
       st = vg_slices_write_part(comm, s, path, o->threads, err);
       break;
+    case FORM_GMSH:
+      st = vg_slices_write_gmsh(comm, s, path, o->threads, err);
+      break;
+    case FORM_CGNS:
+      st = vg_slices_write_cgns(comm, s, path, o->threads, err);
+      break;
     case FORM_BOUNDARY:
       st = write_boundary(comm, s, path, stem, form, o->threads, err);
       break;
     default:
       st = vg_fail(err, VG_ERR_UNSUPPORTED, "%s: a mesh in slices cannot be "
-                   "written in this form; known are cogsg, pvtu, su2, vtu and the "
-                   "binary kinds of .ugrid, as lb8.ugrid", path);
+                   "written in this form; known are cgns, cogsg, msh, pvtu, "
+                   "su2, vtu and the binary kinds of .ugrid, as lb8.ugrid",
+                   path);
     }
   free(path);
   return st;

@@ -145,14 +145,8 @@ static vg_status prepare(const struct vg_slices *s, const char *stem,
   c->info.n_layer_cell = (size_t)s->n_layer_cell[VG_SLICE_TET];
   c->mesh = vg_slices_frame(s);
   VG_TRY(vg_cogsg_check(stem, &c->mesh, &c->info, err));
+  VG_TRY(vg_slices_check_boundary(s, err));
   boundary.n_point = (size_t)s->n_boundary_point;
-  for (size_t i = 0; i < 3 * boundary.n_tri; i++)
-    if (boundary.tri[i / 3][i % 3] >= boundary.n_point)
-      return vg_fail(err, VG_ERR_INPUT, "%s.cogsg: boundary triangle %zu is "
-                     "on point %lu, but only %zu points are on the boundary",
-                     stem, i / 3 + 1,
-                         (unsigned long)boundary.tri[i / 3][i % 3] + 1,
-                     boundary.n_point);
   VG_TRY(vg_vgrid_order(&boundary, &c->new_to_old, &c->old_to_new,
                         &c->info.n_curve_point, &c->info.n_boundary, err));
   VG_TRY(vg_boundary_points_new(s, &c->boundary, err));

@@ -9,6 +9,8 @@
 #define VG_IO_SLICES_SLICES_PARTS_H
 
 #include "core/mesh/slices.h"
+#include "io/cgns/cgns_put.h"
+#include "io/mesh/gmsh_put.h"
 #include "io/mesh/su2_put.h"
 #include "io/mesh/ugrid_put.h"
 #include "io/mesh/vtu_put.h"
@@ -57,6 +59,11 @@ vg_status vg_slice_file_write(const struct vg_slice_file *f,
 /** Counts and boundary of a mesh in slices; nothing to be released. */
 struct vg_mesh vg_slices_frame(const struct vg_slices *s);
 
+/** VG_ERR_INPUT: a boundary face on a point that is not among the first
+ * n_boundary_point. */
+vg_status vg_slices_check_boundary(const struct vg_slices *s,
+                                   struct vg_error *err);
+
 /** Coordinates [n][3] of the points `own` of a slice from its k-th on. */
 void vg_slice_points(const struct vg_slice *slice, size_t k, size_t n,
                      double (*x)[3]);
@@ -93,6 +100,12 @@ vg_status vg_slices_write_su2(struct vg_comm *comm, const struct vg_slices *s,
 vg_status vg_slices_write_part(struct vg_comm *comm, const struct vg_slices *s,
                                const char *path, int threads,
                                struct vg_error *err);
+vg_status vg_slices_write_gmsh(struct vg_comm *comm,
+                               const struct vg_slices *s, const char *path,
+                               int threads, struct vg_error *err);
+vg_status vg_slices_write_cgns(struct vg_comm *comm,
+                               const struct vg_slices *s, const char *path,
+                               int threads, struct vg_error *err);
 vg_status vg_slices_write_pvtu(struct vg_comm *comm, const struct vg_slices *s,
                                const char *stem,
                                const struct vg_slices_options *o,

@@ -1,4 +1,4 @@
-#include "io/mesh/patch_words.h"
+#include "io/stream/patch_words.h"
 
 #include <ctype.h>
 #include <stdio.h>
@@ -6,6 +6,8 @@
 #include <string.h>
 
 #include "base/memory.h"
+
+#define TAIL 12            /* "_-2147483648" */
 
 struct named { char name[VG_PATCH_WORD]; size_t patch; };
 
@@ -31,8 +33,10 @@ static int by_name(const void *a, const void *b)
   return order ? order : (p->patch > q->patch) - (p->patch < q->patch);
 }
 
-static void make_unique(const struct vg_mesh *m, struct named *list)
+static void make_unique(const struct vg_mesh *m, struct named *list,
+                        size_t most)
 {
+  size_t cut = most - TAIL < VG_NAME_MAX - 1 ? most - TAIL : VG_NAME_MAX - 1;
   int again = 1;
 
   for (int turn = 0; again && turn < 8; turn++) {
@@ -46,13 +50,13 @@ static void make_unique(const struct vg_mesh *m, struct named *list)
         continue;
       }
       again = 1;
-      name[VG_NAME_MAX - 1] = 0;
+      name[cut] = 0;
       sprintf(name + strlen(name), "_%d", m->patch[list[i].patch].id);
     }
   }
 }
 
-char (*vg_patch_words(const struct vg_mesh *m))[VG_PATCH_WORD]
+char (*vg_patch_words(const struct vg_mesh *m, size_t most))[VG_PATCH_WORD]
 {
   struct named *list = vg_alloc(m->n_patch, sizeof *list);
   char (*name)[VG_PATCH_WORD] = vg_alloc(m->n_patch, sizeof *name);
@@ -61,8 +65,9 @@ char (*vg_patch_words(const struct vg_mesh *m))[VG_PATCH_WORD]
     for (size_t i = 0; i < m->n_patch; i++) {
       list[i].patch = i;
       clean_name(m->patch + i, list[i].name);
+      list[i].name[most] = 0;
     }
-    make_unique(m, list);
+    make_unique(m, list, most);
     for (size_t i = 0; i < m->n_patch; i++)
       memcpy(name[list[i].patch], list[i].name, sizeof *name);
   } else {

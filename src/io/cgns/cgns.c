@@ -1,0 +1,518 @@
+/* CGNS files of whole meshes, and the frame of those of meshes in slices:
+ * io/cgns/cgns.h, io/cgns/cgns_put.h. The nodes are made by HDF5 in a store in
+ * which the arrays are holes; what stands between the holes is taken from
+ * there. */
+#include "io/cgns/cgns.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "io/cgns/cgns_conditions.h"
+#include "io/cgns/cgns_put.h"
+#include "io/cgns/cgns_store.h"
+#include "io/cgns/cgns_tree.h"
+#include "io/stream/boundary.h"
+#include "io/stream/patch_words.h"
+
+#define BASE "Base"
+#define BLOCK 1024
+#define SECOND "+quads"    /* behind a word: no word has a plus */
+
+/* Ours to CGNS's, whose pyramid has its apex last; its codes of kinds. */
+static const struct kind {
+  const char *name;
+  int32_t code;
+  int n_node, order[8];
+} kinds[VG_CGNS_KINDS] = {
+  { "Tetrahedra", 10, 4, { 0, 1, 2, 3 } },
+  { "Pyramids", 12, 5, { 0, 3, 4, 1, 2 } },
+  { "Prisms", 14, 6, { 0, 1, 2, 3, 4, 5 } },
+  { "Hexahedra", 17, 8, { 0, 1, 2, 3, 4, 5, 6, 7 } },
+};
+enum { TRI_3 = 5, QUAD_4 = 7 };
+
+/* What an array of the file holds: coordinates, cells of a kind, faces from
+ * first to end with n_node corners. */
+enum what { POINTS, CELLS, FACES };
+
+struct vg_cgns_array {
+  uint64_t at, size;
+  enum what what;
+  int which;                 /* axis, kind, corners */
+  size_t first, end;
+};
+
+/* A file that is being laid out. */
+struct layout {
+  struct vg_cgns *c;
+  struct vg_cgns_tree *tree;
+  char (*word)[VG_PATCH_WORD];
+  uint64_t n_cell[VG_CGNS_KINDS];
+  uint64_t n_element;        /* of the sections so far */
+  int64_t base, zone, boundary;
+};
+
+static int index_size(const struct vg_cgns_places *p)
+{
+  return p->is_wide ? 8 : 4;
+}
+
+static const char *index_type(const struct layout *l)
+{
+  return l->c->places.is_wide ? "I8" : "I4";
+}
+
+/* --- nodes --- */
+
+static vg_status add_text(struct layout *l, int64_t parent, const char *name,
+                          const char *label, const char *text, int64_t *id,
+                          struct vg_error *err)
+{
+  const struct vg_cgns_data d = { "C1", 1, { strlen(text), 0 }, text };
+
+  return vg_cgns_tree_add(l->tree, parent, name, label, &d, id, NULL, err);
+}
+
+static vg_status add_empty(struct layout *l, int64_t parent, const char *name,
+                           const char *label, int64_t *id,
+                           struct vg_error *err)
+{
+  const struct vg_cgns_data d = { "MT", 0, { 0, 0 }, NULL };
+
+  return vg_cgns_tree_add(l->tree, parent, name, label, &d, id, NULL, err);
+}
+
+/* Indices as [rows][n / rows] of the standard; n at most 4. */
+static vg_status add_indices(struct layout *l, int64_t parent,
+                             const char *name, const char *label, int n_dim,
+                             size_t rows, size_t n, const int64_t *v,
+                             int64_t *id, struct vg_error *err)
+{
+  struct vg_cgns_data d = { index_type(l), n_dim, { n, 0 }, v };
+  int32_t narrow[4];
+
+  if (n_dim == 2) d.dim[0] = rows, d.dim[1] = n / rows;
+  for (size_t i = 0; i < n; i++) narrow[i] = (int32_t)v[i];
+  if (!l->c->places.is_wide) d.value = narrow;
+  return vg_cgns_tree_add(l->tree, parent, name, label, &d, id, NULL, err);
+}
+
+/* A node whose data are an array of n values. */
+static vg_status add_array(struct layout *l, int64_t parent, const char *name,
+                           const char *type, uint64_t n,
+                           struct vg_cgns_array a, struct vg_error *err)
+{
+  const struct vg_cgns_data d = { type, 1, { n, 0 }, NULL };
+  vg_status st = vg_cgns_tree_add(l->tree, parent, name, "DataArray_t", &d,
+                                  NULL, &a.at, err);
+
+  if (st < 0) return st;
+  a.size = n * (uint64_t)(type[1] - '0');
+  l->c->array[l->c->n_array++] = a;
+  return VG_OK;
+}
+
+static vg_status add_section(struct layout *l, const char *name, int32_t code,
+                             uint64_t n, int n_node, struct vg_cgns_array a,
+                             struct vg_error *err)
+{
+  const int64_t range[2] = { (int64_t)l->n_element + 1,
+                             (int64_t)(l->n_element + n) };
+  const int32_t kind[2] = { code, 0 };
+  const struct vg_cgns_data d = { "I4", 1, { 2, 0 }, kind };
+  int64_t section;
+  vg_status st;
+
+  VG_TRY(vg_cgns_tree_add(l->tree, l->zone, name, "Elements_t", &d, &section,
+                          NULL, err));
+  VG_TRY(add_indices(l, section, "ElementRange", "IndexRange_t", 1, 1, 2,
+                     range, NULL, err));
+  l->n_element += n;
+  st = add_array(l, section, "ElementConnectivity", index_type(l),
+                 n * (uint64_t)n_node, a, err);
+done:
+  return st;
+}
+
+/* --- the parts of the tree --- */
+
+static vg_status lay_zone(struct layout *l, int64_t root, struct vg_error *err)
+{
+  static const float version = 3.4f;
+  static const int32_t three[2] = { 3, 3 };
+  const struct vg_cgns_data release = { "R4", 1, { 1, 0 }, &version };
+  const struct vg_cgns_data dimensions = { "I4", 1, { 2, 0 }, three };
+  int64_t size[3] = { (int64_t)l->c->frame->n_point, 0, 0 };
+  vg_status st;
+
+  for (int k = 0; k < VG_CGNS_KINDS; k++) size[1] += (int64_t)l->n_cell[k];
+  VG_TRY(vg_cgns_tree_add(l->tree, root, "CGNSLibraryVersion",
+                          "CGNSLibraryVersion_t", &release, NULL, NULL, err));
+  VG_TRY(vg_cgns_tree_add(l->tree, root, BASE, "CGNSBase_t", &dimensions,
+                          &l->base, NULL, err));
+  VG_TRY(add_indices(l, l->base, "Zone", "Zone_t", 2, 1, 3, size, &l->zone,
+                     err));
+  st = add_text(l, l->zone, "ZoneType", "ZoneType_t", "Unstructured", NULL,
+                err);
+done:
+  return st;
+}
+
+static vg_status lay_points(struct layout *l, struct vg_error *err)
+{
+  static const char *const name[3] = { "CoordinateX", "CoordinateY",
+                                       "CoordinateZ" };
+  int64_t grid;
+  vg_status st = add_empty(l, l->zone, "GridCoordinates", "GridCoordinates_t",
+                           &grid, err);
+
+  for (int k = 0; k < 3 && st >= 0; k++)
+    st = add_array(l, grid, name[k], "R8", l->c->frame->n_point,
+                   (struct vg_cgns_array){ .what = POINTS, .which = k }, err);
+  return st;
+}
+
+static vg_status lay_cells(struct layout *l, struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  for (int k = 0; k < VG_CGNS_KINDS && st >= 0; k++)
+    if (l->n_cell[k])
+      st = add_section(l, kinds[k].name, kinds[k].code, l->n_cell[k],
+                       kinds[k].n_node,
+                       (struct vg_cgns_array){ .what = CELLS, .which = k },
+                       err);
+  return st;
+}
+
+/* Faces of one kind. */
+static vg_status lay_faces(struct layout *l, const char *word, size_t first,
+                           size_t end, int n_node, int is_second,
+                           struct vg_error *err)
+{
+  char name[VG_CGNS_NAME];
+
+  if (first == end) return VG_OK;
+  snprintf(name, sizeof name, "%.*s%s", VG_CGNS_WORD_MOST, word,
+           is_second ? SECOND : "");
+  return add_section(l, name, n_node == 3 ? TRI_3 : QUAD_4, end - first,
+                     n_node, (struct vg_cgns_array){ .what = FACES,
+                     .which = n_node, .first = first, .end = end }, err);
+}
+
+static vg_status lay_condition(struct layout *l, const char *word,
+                               const struct vg_patch *p, uint64_t before,
+                               struct vg_error *err)
+{
+  const int64_t range[2] = { (int64_t)before + 1, (int64_t)l->n_element };
+  const char *type = vg_cgns_condition(p);
+  int64_t id;
+  vg_status st;
+
+  VG_TRY(add_text(l, l->boundary, word, "BC_t", "FamilySpecified", &id, err));
+  VG_TRY(add_indices(l, id, "PointRange", "IndexRange_t", 2, 1, 2, range, NULL,
+                     err));
+  VG_TRY(add_text(l, id, "GridLocation", "GridLocation_t", "FaceCenter", NULL,
+                  err));
+  VG_TRY(add_text(l, id, "FamilyName", "FamilyName_t", word, NULL, err));
+  VG_TRY(add_empty(l, l->base, word, "Family_t", &id, err));
+  st = add_text(l, id, "FamilyBC", "FamilyBC_t",
+                type ? type : "UserDefined", NULL, err);
+done:
+  return st;
+}
+
+/* Patches without faces are left out. */
+static vg_status lay_patches(struct layout *l, struct vg_error *err)
+{
+  const struct vg_mesh *m = l->c->frame;
+  vg_status st = add_empty(l, l->zone, "ZoneBC", "ZoneBC_t", &l->boundary,
+                           err);
+
+  for (size_t p = 0; p < m->n_patch && st >= 0; p++) {
+    size_t first = l->c->face_first[p], end = l->c->face_first[p + 1];
+    size_t quad = first;
+    uint64_t before = l->n_element;
+
+    if (first == end) continue;
+    while (quad < end && l->c->face[quad] < m->n_tri) quad++;
+    VG_TRY(lay_faces(l, l->word[p], first, quad, 3, 0, err));
+    VG_TRY(lay_faces(l, l->word[p], quad, end, 4, quad > first, err));
+    st = lay_condition(l, l->word[p], &m->patch[p], before, err);
+  }
+done:
+  return st;
+}
+
+/* --- what stands between the arrays --- */
+
+static int by_place(const void *a, const void *b)
+{
+  const struct vg_cgns_array *p = a, *q = b;
+
+  return (p->at > q->at) - (p->at < q->at);
+}
+
+static vg_status take_between(struct vg_cgns *c,
+                              const struct vg_cgns_store *store,
+                              struct vg_error *err)
+{
+  uint64_t n = store->size, at = 0, done = 0;
+
+  c->places.size = store->size;
+  for (size_t i = 0; i < c->n_array; i++) n -= c->array[i].size;
+  c->between = vg_alloc(n, 1);
+  if (!c->between) return vg_fail_memory(err, "the nodes of a CGNS file");
+  for (size_t i = 0; i <= c->n_array; i++) {
+    uint64_t end = i < c->n_array ? c->array[i].at : store->size;
+
+    vg_cgns_store_get(store, at, end - at, c->between + done);
+    done += end - at;
+    if (i < c->n_array) at = end + c->array[i].size;
+  }
+  return VG_OK;
+}
+
+static void note_places(struct vg_cgns *c)
+{
+  for (size_t i = 0; i < c->n_array; i++) {
+    const struct vg_cgns_array *a = &c->array[i];
+
+    if (a->what == POINTS) c->places.at_x[a->which] = a->at;
+    else if (a->what == CELLS) c->places.at[a->which] = a->at;
+  }
+  if (c->n_array) qsort(c->array, c->n_array, sizeof *c->array, by_place);
+}
+
+static vg_status lay_out(const char *path, struct layout *l,
+                         struct vg_error *err)
+{
+  struct vg_cgns_store store = VG_CGNS_STORE_INIT;
+  int64_t root;
+  vg_status st;
+
+  VG_TRY(vg_cgns_tree_new(&store, path, &l->tree, &root, err));
+  VG_TRY(lay_zone(l, root, err));
+  VG_TRY(lay_points(l, err));
+  VG_TRY(lay_cells(l, err));
+  VG_TRY(lay_patches(l, err));
+  st = vg_cgns_tree_close(l->tree, err);
+  l->tree = NULL;
+  if (st < 0) goto done;
+  note_places(l->c);
+  st = take_between(l->c, &store, err);
+done:
+  vg_cgns_tree_close(l->tree, NULL);
+  vg_cgns_store_release(&store);
+  return st;
+}
+
+/* Words of the patches, none of them the name of another node. */
+static vg_status make_words(struct layout *l, struct vg_error *err)
+{
+  static const char *const taken[] = {
+    "Zone", "ZoneType", "ZoneBC", "GridCoordinates", "Tetrahedra", "Pyramids",
+    "Prisms", "Hexahedra" };
+  struct vg_mesh m = *l->c->frame;
+
+  m.patch = vg_alloc(m.n_patch, sizeof *m.patch);
+  for (size_t p = 0; m.patch && p < m.n_patch; p++) {
+    m.patch[p] = l->c->frame->patch[p];
+    for (size_t i = 0; i < sizeof taken / sizeof *taken; i++)
+      if (!strcmp(m.patch[p].name, taken[i]))
+        snprintf(m.patch[p].name, VG_NAME_MAX, "patch_%s", taken[i]);
+  }
+  if (m.patch) l->word = vg_patch_words(&m, VG_CGNS_WORD_MOST);
+  free(m.patch);
+  return l->word ? VG_OK : vg_fail_memory(err, "the names of the patches");
+}
+
+/* 4-byte indices where all counts, the nodes of a section too, allow it. */
+static int needs_wide(const struct vg_mesh *m, const uint64_t *n_cell)
+{
+  uint64_t n = m->n_tri + m->n_quad;
+
+  for (int k = 0; k < VG_CGNS_KINDS; k++) {
+    n += n_cell[k];
+    if (n_cell[k] * (uint64_t)kinds[k].n_node > INT32_MAX) return 1;
+  }
+  return n > INT32_MAX || m->n_point > INT32_MAX;
+}
+
+vg_status vg_cgns_plan(const char *path, const struct vg_mesh *frame,
+                       const struct vg_cgns_options *o, struct vg_cgns *c,
+                       struct vg_error *err)
+{
+  struct layout l = { .c = c, .n_cell = { frame->n_tet, frame->n_pyr,
+                                          frame->n_pri, frame->n_hex } };
+  vg_status st = VG_OK;
+
+  *c = (struct vg_cgns){ .frame = frame };
+  c->places.is_wide = (o && o->is_wide) || needs_wide(frame, l.n_cell);
+  if (!(l.n_cell[0] + l.n_cell[1] + l.n_cell[2] + l.n_cell[3])) {
+    st = vg_fail(err, VG_ERR_INPUT, "%s: the mesh has no cells; write the "
+                 "surface as .stl or .lb8.ugrid", path);
+    goto done;
+  }
+  c->array = vg_alloc(3 + VG_CGNS_KINDS + 2 * frame->n_patch,
+                      sizeof *c->array);
+  if (!c->array) VG_TRY(vg_fail_memory(err, "the nodes of a CGNS file"));
+  VG_TRY(make_words(&l, err));
+  VG_TRY(vg_boundary_by_patch(frame, &c->face_first, &c->face, err));
+  st = lay_out(path, &l, err);
+done:
+  free(l.word);
+  if (st < 0) vg_cgns_release(c);
+  return st;
+}
+
+void vg_cgns_release(struct vg_cgns *c)
+{
+  free(c->face_first);
+  free(c->face);
+  free(c->array);
+  free(c->between);
+  c->face_first = c->face = NULL;
+  c->array = NULL;
+  c->between = NULL;
+}
+
+/* --- putting --- */
+
+/* n indices from 1, of the width of the file; at most BLOCK. */
+static void put_indices(struct vg_output *out, const struct vg_cgns_places *p,
+                        size_t n, const uint32_t *v)
+{
+  int32_t narrow[BLOCK];
+  int64_t wide[BLOCK];
+
+  if (p->is_wide) {
+    for (size_t i = 0; i < n; i++) wide[i] = (int64_t)v[i] + 1;
+    vg_output_i64(out, n, wide);
+    return;
+  }
+  for (size_t i = 0; i < n; i++) narrow[i] = (int32_t)(v[i] + 1);
+  vg_output_i32(out, n, narrow);
+}
+
+void vg_cgns_put_cells(struct vg_output *out, const struct vg_cgns_places *p,
+                       int kind, size_t n, const uint32_t *node,
+                       const uint32_t *number)
+{
+  const struct kind *k = &kinds[kind];
+  size_t width = (size_t)k->n_node, most = BLOCK / width;
+  uint32_t v[BLOCK];
+
+  for (size_t i = 0, m; i < n; i += m) {
+    m = n - i < most ? n - i : most;
+    for (size_t c = 0; c < m; c++, node += width)
+      for (size_t j = 0; j < width; j++) {
+        uint32_t at = node[k->order[j]];
+
+        v[c * width + j] = number ? number[at] : at;
+      }
+    put_indices(out, p, m * width, v);
+  }
+}
+
+static void put_points(struct vg_output *out, const struct vg_mesh *m,
+                       int axis)
+{
+  double x[BLOCK];
+
+  for (size_t i = 0, n; i < m->n_point; i += n) {
+    n = m->n_point - i < BLOCK ? m->n_point - i : BLOCK;
+    for (size_t k = 0; k < n; k++) x[k] = m->point[i + k][axis];
+    vg_output_f64(out, n, x);
+  }
+}
+
+static void put_cells(struct vg_output *out, const struct vg_cgns *c,
+                      const struct vg_cgns_array *a)
+{
+  const struct vg_mesh *m = c->frame;
+  const uint32_t *const cell[VG_CGNS_KINDS] = {
+    (const uint32_t *)m->tet, (const uint32_t *)m->pyr,
+    (const uint32_t *)m->pri, (const uint32_t *)m->hex };
+  size_t n_node = (size_t)kinds[a->which].n_node;
+  size_t n = (size_t)(a->size / (uint64_t)index_size(&c->places)) / n_node;
+
+  vg_cgns_put_cells(out, &c->places, a->which, n, cell[a->which], NULL);
+}
+
+static void put_faces(struct vg_output *out, const struct vg_cgns *c,
+                      const struct vg_cgns_array *a)
+{
+  const struct vg_mesh *m = c->frame;
+
+  for (size_t i = a->first; i < a->end; i++) {
+    size_t f = c->face[i];
+
+    put_indices(out, &c->places, (size_t)a->which,
+                f < m->n_tri ? m->tri[f] : m->quad[f - m->n_tri]);
+  }
+}
+
+void vg_cgns_put(struct vg_output *out, const struct vg_cgns *c)
+{
+  const unsigned char *between = c->between;
+  uint64_t at = 0;
+
+  vg_output_order(out, 0);
+  for (size_t i = 0; i < c->n_array; i++) {
+    const struct vg_cgns_array *a = &c->array[i];
+
+    vg_output_bytes(out, between, a->at - at);
+    between += a->at - at;
+    at = a->at + a->size;
+    if (a->what == FACES) put_faces(out, c, a);
+    else if (!c->frame->point) vg_output_skip(out, a->size);
+    else if (a->what == POINTS) put_points(out, c->frame, a->which);
+    else put_cells(out, c, a);
+  }
+  vg_output_bytes(out, between, c->places.size - at);
+}
+
+void vg_cgns_seek_x(struct vg_output *out, const struct vg_cgns_places *p,
+                    int axis, uint64_t point)
+{
+  vg_output_seek(out, p->at_x[axis] + 8 * point);
+}
+
+void vg_cgns_seek_cell(struct vg_output *out, const struct vg_cgns_places *p,
+                       int kind, uint64_t cell)
+{
+  vg_output_seek(out, p->at[kind] + cell * (uint64_t)kinds[kind].n_node *
+                 (uint64_t)index_size(p));
+}
+
+vg_status vg_cgns_write_with(const char *path, const struct vg_mesh *m,
+                             const struct vg_cgns_options *o,
+                             struct vg_error *err)
+{
+  struct vg_output out = VG_OUTPUT_INIT;
+  struct vg_cgns c;
+  vg_status st = vg_cgns_plan(path, m, o, &c, err);
+
+  if (st < 0) return st;
+  VG_TRY(vg_output_open(path, &out, err));
+  vg_cgns_put(&out, &c);
+  st = vg_output_commit(&out, err);
+done:
+  vg_output_release(&out);
+  vg_cgns_release(&c);
+  return st;
+}
+
+vg_status vg_cgns_write(const char *path, const struct vg_mesh *m,
+                        struct vg_error *err)
+{
+  return vg_cgns_write_with(path, m, NULL, err);
+}
+
+int vg_cgns_is_built(void)
+{
+  return vg_cgns_tree_is_built();
+}

@@ -1,0 +1,649 @@
+/* Reading CGNS: io/cgns/cgns.h. Points of a zone come first, then what patch
+ * its BC_t give to the elements of each section, then the elements. */
+#include "io/cgns/cgns_read.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "io/cgns/cgns_conditions.h"
+#include "io/cgns/cgns_tree.h"
+#include "io/stream/convention.h"
+#include "io/stream/soup.h"
+#include "io/vgrid/mapbc.h"
+
+#define NONE UINT32_MAX
+
+enum element { PASSED, TRI, QUAD, TET, PYR, PRI, HEX, N_ELEMENT };
+enum { MIXED = 20, NODES_MOST = 8 };
+
+/* CGNS's types of elements of first order, and points and lines. Slot k of the
+ * file is our node slot[k]. */
+static const struct type {
+  int64_t code;
+  enum element element;
+  int n_node, slot[NODES_MOST];
+} types[] = {
+  { 5, TRI, 3, { 0, 1, 2 } }, { 7, QUAD, 4, { 0, 1, 2, 3 } },
+  { 10, TET, 4, { 0, 1, 2, 3 } }, { 12, PYR, 5, { 0, 3, 4, 1, 2 } },
+  { 14, PRI, 6, { 0, 1, 2, 3, 4, 5 } },
+  { 17, HEX, 8, { 0, 1, 2, 3, 4, 5, 6, 7 } },
+  { 2, PASSED, 1, { 0 } }, { 3, PASSED, 2, { 0 } }, { 4, PASSED, 3, { 0 } },
+};
+
+struct family { char name[VG_CGNS_NAME], condition[VG_CGNS_NAME]; };
+
+struct section {
+  struct vg_cgns_node node;
+  int64_t code, first, last;           /* element numbers */
+  int64_t *v;                          /* [n_v] connectivity */
+  size_t n_v;
+  uint32_t *patch;                     /* [last - first + 1], NONE: no BC_t */
+};
+
+struct reader {
+  struct vg_input *in;
+  struct vg_cgns_tree *tree;
+  int64_t dimension;                   /* of the cells: 2 or 3 */
+  size_t n_zone, n_family, cap_quad, cap_quad_patch, cap[N_ELEMENT];
+  struct family *family;               /* by name */
+  struct vg_soup soup;
+  /* of the zone at hand */
+  struct vg_cgns_node zone;
+  uint32_t *point;                     /* [n_point] in the mesh */
+  size_t n_point, n_section;
+  struct section *section;             /* by rising numbers */
+};
+
+/* --- nodes --- */
+
+static vg_status fail_zone(const struct reader *r, struct vg_error *err,
+                           vg_status code, const char *what)
+{
+  return vg_fail(err, code, "%s: zone '%s': %s", r->in->path, r->zone.name,
+                 what);
+}
+
+/* Child of a label and, unless NULL, a name; id -1: there is none. */
+static vg_status find_child(struct reader *r, int64_t parent,
+                            const char *label, const char *name,
+                            struct vg_cgns_node *out, struct vg_error *err)
+{
+  struct vg_cgns_node *list;
+  size_t n;
+  vg_status st = vg_cgns_tree_children(r->tree, parent, label, &list, &n, err);
+
+  if (st < 0) return st;
+  *out = (struct vg_cgns_node){ .id = -1 };
+  for (size_t i = n; i-- > 0;)
+    if (!name || !strcmp(list[i].name, name)) *out = list[i];
+  free(list);
+  return VG_OK;
+}
+
+/* Text of a child, cut to fit; "" where there is none. */
+static vg_status child_text(struct reader *r, int64_t parent,
+                            const char *label, const char *name,
+                            char to[VG_CGNS_NAME], struct vg_error *err)
+{
+  struct vg_cgns_node node;
+  char *text = NULL;
+  size_t n;
+  vg_status st = find_child(r, parent, label, name, &node, err);
+
+  *to = 0;
+  if (st < 0 || node.id < 0) return st;
+  st = vg_cgns_tree_text(r->tree, node.id, label, &text, &n, err);
+  if (st >= 0) strncat(to, text, VG_CGNS_NAME - 1);
+  free(text);
+  return st;
+}
+
+/* The name of a family, which may come with its base: "/Base/wing". */
+static vg_status family_name(struct reader *r, int64_t parent,
+                             char to[VG_CGNS_NAME], struct vg_error *err)
+{
+  vg_status st = child_text(r, parent, "FamilyName_t", NULL, to, err);
+  char *slash = strrchr(to, '/');
+
+  if (slash) memmove(to, slash + 1, strlen(slash));
+  return st;
+}
+
+static int by_name(const void *a, const void *b)
+{
+  return strcmp(((const struct family *)a)->name,
+                ((const struct family *)b)->name);
+}
+
+static vg_status read_families(struct reader *r, int64_t base,
+                               struct vg_error *err)
+{
+  struct vg_cgns_node *list;
+  size_t n;
+  vg_status st = vg_cgns_tree_children(r->tree, base, "Family_t", &list, &n,
+                                       err);
+
+  if (st < 0) return st;
+  r->family = vg_alloc(n, sizeof *r->family);
+  if (!r->family) st = vg_fail_memory(err, "the families");
+  for (size_t i = 0; i < n && st >= 0; i++) {
+    struct family *f = &r->family[r->n_family++];
+
+    memcpy(f->name, list[i].name, sizeof f->name);
+    st = child_text(r, list[i].id, "FamilyBC_t", NULL, f->condition, err);
+  }
+  free(list);
+  if (st >= 0 && r->n_family)
+    qsort(r->family, r->n_family, sizeof *r->family, by_name);
+  return st;
+}
+
+/* The patch of a name, with a condition: "" that of a family of its name. */
+static vg_status find_patch(struct reader *r, const char *name,
+                            const char *condition, uint32_t *at,
+                            struct vg_error *err)
+{
+  struct family key = { .name = "" };
+  const struct family *f = NULL;
+  struct vg_patch *p;
+  vg_status st = vg_soup_named_patch(&r->soup, name, strlen(name), at, err);
+
+  if (st < 0) return st;
+  strncat(key.name, name, sizeof key.name - 1);
+  if (r->n_family)
+    f = bsearch(&key, r->family, r->n_family, sizeof key, by_name);
+  p = &r->soup.m.patch[*at];
+  if (p->bc == VG_BC_NONE && *condition) vg_cgns_take_condition(condition, p);
+  if (p->bc == VG_BC_NONE && f) vg_cgns_take_condition(f->condition, p);
+  return VG_OK;
+}
+
+/* --- points --- */
+
+static vg_status read_points(struct reader *r, struct vg_error *err)
+{
+  static const char *const name[3] = { "CoordinateX", "CoordinateY",
+                                       "CoordinateZ" };
+  double *x[3] = { NULL, NULL, NULL };
+  struct vg_cgns_node grid, node;
+  vg_status st;
+
+  VG_TRY(find_child(r, r->zone.id, "GridCoordinates_t", NULL, &grid, err));
+  for (int k = 0; k < 3; k++) {
+    size_t n = 0;
+
+    node.id = -1;
+    if (grid.id >= 0)
+      VG_TRY(find_child(r, grid.id, "DataArray_t", name[k], &node, err));
+    if (node.id >= 0)
+      VG_TRY(vg_cgns_tree_reals(r->tree, node.id, name[k], &x[k], &n, err));
+    if (node.id >= 0 && n == r->n_point) continue;
+    st = vg_fail(err, VG_ERR_FORMAT, "%s: zone '%s': %s has %zu values for "
+                 "%zu points", r->in->path, r->zone.name, name[k], n,
+                 r->n_point);
+    goto done;
+  }
+  r->point = vg_alloc(r->n_point, sizeof *r->point);
+  if (!r->point) VG_TRY(vg_fail_memory(err, "the points"));
+  for (size_t i = 0; i < r->n_point; i++) {
+    const double p[3] = { x[0][i], x[1][i], x[2][i] };
+
+    VG_TRY((r->n_zone > 1 ? vg_soup_weld : vg_soup_point)(
+      &r->soup, p, &r->point[i], err));
+  }
+done:
+  for (int k = 0; k < 3; k++) free(x[k]);
+  return st;
+}
+
+/* --- sections --- */
+
+static const struct type *find_type(int64_t code)
+{
+  for (size_t i = 0; i < sizeof types / sizeof *types; i++)
+    if (types[i].code == code) return types + i;
+  return NULL;
+}
+
+static vg_status unknown_type(const struct reader *r, const struct section *s,
+                              int64_t code, struct vg_error *err)
+{
+  return vg_fail(err, VG_ERR_UNSUPPORTED, "%s: section '%s': elements of type "
+                 "%lld are polygons, or not of first order; write TRI_3, "
+                 "QUAD_4 or MIXED", r->in->path, s->node.name,
+                 (long long)code);
+}
+
+static vg_status fail_section(const struct reader *r, const struct section *s,
+                              const char *what, struct vg_error *err)
+{
+  return vg_fail(err, VG_ERR_FORMAT, "%s: section '%s': %s", r->in->path,
+                 s->node.name, what);
+}
+
+/* Numbers, nodes and kind of a section. */
+static vg_status read_section(struct reader *r, struct section *s,
+                              struct vg_error *err)
+{
+  int64_t *kind = NULL, *range = NULL;
+  struct vg_cgns_node node, nodes;
+  const struct type *t;
+  uint64_t n_element;
+  size_t n;
+  vg_status st;
+
+  VG_TRY(vg_cgns_tree_ints(r->tree, s->node.id, s->node.name, &kind, &n, err));
+  s->code = n ? kind[0] : -1;
+  t = find_type(s->code);
+  if (!t && s->code != MIXED) VG_TRY(unknown_type(r, s, s->code, err));
+  VG_TRY(find_child(r, s->node.id, "IndexRange_t", "ElementRange", &node,
+                    err));
+  VG_TRY(find_child(r, s->node.id, "DataArray_t", "ElementConnectivity",
+                    &nodes, err));
+  if (node.id < 0 || nodes.id < 0)
+    VG_TRY(fail_section(r, s, "no ElementRange or ElementConnectivity", err));
+  VG_TRY(vg_cgns_tree_ints(r->tree, node.id, "ElementRange", &range, &n, err));
+  if (n != 2 || range[0] < 1 || range[1] < range[0])
+    VG_TRY(fail_section(r, s, "ElementRange is no range", err));
+  s->first = range[0];
+  s->last = range[1];
+  VG_TRY(vg_cgns_tree_ints(r->tree, nodes.id, "ElementConnectivity", &s->v,
+                           &s->n_v, err));
+  /* of mixed ones the least: a type and a node each */
+  n_element = (uint64_t)(s->last - s->first) + 1;
+  if (t ? s->n_v % (size_t)t->n_node ||
+          s->n_v / (size_t)t->n_node != n_element : s->n_v / 2 < n_element)
+    VG_TRY(fail_section(r, s, "ElementConnectivity has not the nodes of the "
+                        "elements in ElementRange", err));
+  s->patch = vg_alloc((size_t)n_element, sizeof *s->patch);
+  if (!s->patch) VG_TRY(vg_fail_memory(err, "the elements"));
+  memset(s->patch, 0xff, (size_t)n_element * sizeof *s->patch);
+done:
+  free(kind);
+  free(range);
+  return st;
+}
+
+static int by_number(const void *a, const void *b)
+{
+  const struct section *p = a, *q = b;
+
+  return (p->first > q->first) - (p->first < q->first);
+}
+
+static vg_status read_sections(struct reader *r, struct vg_error *err)
+{
+  struct vg_cgns_node *list;
+  size_t n;
+  vg_status st = vg_cgns_tree_children(r->tree, r->zone.id, "Elements_t",
+                                       &list, &n, err);
+
+  if (st < 0) return st;
+  r->section = vg_calloc(n, sizeof *r->section);
+  if (!r->section) st = vg_fail_memory(err, "the sections");
+  for (size_t i = 0; i < n && st >= 0; i++) {
+    r->section[i].node = list[i];
+    r->n_section = i + 1;
+    st = read_section(r, &r->section[i], err);
+  }
+  free(list);
+  if (st < 0 || !n) return st;
+  qsort(r->section, n, sizeof *r->section, by_number);
+  for (size_t i = 1; i < n && st >= 0; i++)
+    if (r->section[i].first <= r->section[i - 1].last)
+      st = fail_section(r, &r->section[i], "its numbers are another section's "
+                        "too", err);
+  return st;
+}
+
+/* --- conditions --- */
+
+/* Section with this element, or the first behind it; n_section: none. */
+static size_t find_section(const struct reader *r, int64_t element)
+{
+  size_t lo = 0, hi = r->n_section;
+
+  while (lo < hi) {
+    size_t mid = lo + (hi - lo) / 2;
+
+    if (r->section[mid].last < element) lo = mid + 1;
+    else hi = mid;
+  }
+  return lo;
+}
+
+static void mark_range(struct reader *r, int64_t first, int64_t last,
+                       uint32_t patch)
+{
+  for (size_t i = find_section(r, first); i < r->n_section; i++) {
+    struct section *s = &r->section[i];
+    int64_t from = first > s->first ? first : s->first;
+    int64_t to = last < s->last ? last : s->last;
+
+    if (s->first > last) break;
+    for (int64_t e = from; e <= to; e++) s->patch[e - s->first] = patch;
+  }
+}
+
+/* What a BC_t is on: elements (1), or what is passed over (0). */
+static vg_status is_on_elements(struct reader *r, const struct vg_cgns_node *b,
+                                const char *list, int *on,
+                                struct vg_error *err)
+{
+  char at[VG_CGNS_NAME];
+  vg_status st = child_text(r, b->id, "GridLocation_t", NULL, at, err);
+
+  if (st < 0) return st;
+  /* old files call lists of elements so */
+  *on = !strncmp(list, "Element", 7) || !strcmp(at, "FaceCenter") ||
+        !strcmp(at, "CellCenter");
+  /* of a surface points and edges are its border */
+  if (*on || r->dimension == 2 || !strcmp(at, "EdgeCenter")) return VG_OK;
+  return vg_fail(err, VG_ERR_UNSUPPORTED, "%s: condition '%s' is given on "
+                 "points (GridLocation %s), which does not say on which faces; "
+                 "write it with FaceCenter", r->in->path, b->name,
+                 *at ? at : "Vertex");
+}
+
+/* Elements of a BC_t: a range or a list. */
+static vg_status read_elements_of(struct reader *r,
+                                  const struct vg_cgns_node *b,
+                                  char name[VG_CGNS_NAME], int64_t **v,
+                                  size_t *n, struct vg_error *err)
+{
+  static const char *const label[] = { "IndexRange_t", "IndexArray_t" };
+  static const char *const known[] = { "PointRange", "PointList",
+                                       "ElementRange", "ElementList" };
+  struct vg_cgns_node node = { .id = -1 };
+  vg_status st = VG_OK;
+
+  *v = NULL;
+  *n = 0;
+  for (int k = 0; k < 4 && node.id < 0 && st >= 0; k++)
+    st = find_child(r, b->id, label[k % 2], known[k], &node, err);
+  if (st < 0 || node.id < 0) return st;
+  memcpy(name, node.name, sizeof node.name);
+  return vg_cgns_tree_ints(r->tree, node.id, node.name, v, n, err);
+}
+
+static vg_status read_condition(struct reader *r, const struct vg_cgns_node *b,
+                                struct vg_error *err)
+{
+  char list[VG_CGNS_NAME] = "", family[VG_CGNS_NAME], *type = NULL;
+  int64_t *v = NULL;
+  size_t n, n_type;
+  uint32_t patch;
+  int on;
+  vg_status st;
+
+  VG_TRY(read_elements_of(r, b, list, &v, &n, err));
+  if (!n) goto done;
+  VG_TRY(is_on_elements(r, b, list, &on, err));
+  if (!on) goto done;
+  VG_TRY(family_name(r, b->id, family, err));
+  VG_TRY(vg_cgns_tree_text(r->tree, b->id, b->name, &type, &n_type, err));
+  VG_TRY(find_patch(r, *family ? family : b->name,
+                    strcmp(type, "FamilySpecified") ? type : "", &patch, err));
+  if (strstr(list, "Range")) {
+    if (n != 2)
+      VG_TRY(vg_fail(err, VG_ERR_FORMAT, "%s: condition '%s': its %s is no "
+                     "range", r->in->path, b->name, list));
+    mark_range(r, v[0], v[1], patch);
+  } else {
+    for (size_t i = 0; i < n; i++) mark_range(r, v[i], v[i], patch);
+  }
+done:
+  free(v);
+  free(type);
+  return st;
+}
+
+static vg_status read_conditions(struct reader *r, struct vg_error *err)
+{
+  struct vg_cgns_node zone_bc, *list;
+  size_t n;
+  vg_status st = find_child(r, r->zone.id, "ZoneBC_t", NULL, &zone_bc, err);
+
+  if (st < 0 || zone_bc.id < 0) return st;
+  st = vg_cgns_tree_children(r->tree, zone_bc.id, "BC_t", &list, &n, err);
+  if (st < 0) return st;
+  for (size_t i = 0; i < n && st >= 0; i++)
+    st = read_condition(r, &list[i], err);
+  free(list);
+  return st;
+}
+
+/* --- elements --- */
+
+/* Room for one more, which is counted; NULL: no memory. */
+static uint32_t *next_element(struct reader *r, enum element e, uint32_t patch)
+{
+  struct vg_mesh *m = &r->soup.m;
+
+#define NEXT(array, count) \
+  (vg_reserve(&m->array, &r->cap[e], m->count + 1, sizeof *m->array) ? NULL \
+   : m->array[m->count++])
+  switch (e) {
+  case QUAD:
+    if (vg_reserve(&m->quad_patch, &r->cap_quad_patch, m->n_quad + 1,
+                   sizeof *m->quad_patch))
+      return NULL;
+    m->quad_patch[m->n_quad] = patch;
+    return NEXT(quad, n_quad);
+  case TET: return NEXT(tet, n_tet);
+  case PYR: return NEXT(pyr, n_pyr);
+  case PRI: return NEXT(pri, n_pri);
+  default: return NEXT(hex, n_hex);
+  }
+#undef NEXT
+}
+
+static vg_status take_element(struct reader *r, const struct section *s,
+                              const struct type *t, int64_t number,
+                              const int64_t *v, uint32_t patch,
+                              struct vg_error *err)
+{
+  uint32_t node[NODES_MOST], *to;
+
+  for (int k = 0; k < t->n_node; k++) {
+    if (v[k] < 1 || (uint64_t)v[k] > r->n_point)
+      return vg_fail(err, VG_ERR_INPUT, "%s: element %lld of section '%s' "
+                     "refers to point %lld of %zu", r->in->path,
+                     (long long)number, s->node.name, (long long)v[k],
+                     r->n_point);
+    node[t->slot[k]] = r->point[v[k] - 1];
+  }
+  if (t->element == PASSED) return VG_OK;
+  if (t->element == TRI) return vg_soup_triangle(&r->soup, node, patch, err);
+  to = next_element(r, t->element, patch);
+  if (!to) return vg_fail_memory(err, "the elements");
+  memcpy(to, node, (size_t)t->n_node * sizeof *to);
+  return VG_OK;
+}
+
+/* The patch of faces without a condition: made when the first is met. */
+static vg_status default_patch(struct reader *r, const struct section *s,
+                               uint32_t *patch, struct vg_error *err)
+{
+  char family[VG_CGNS_NAME] = "";
+  const char *name = s->node.name;
+  vg_status st = VG_OK;
+
+  if (r->dimension == 2) st = family_name(r, r->zone.id, family, err);
+  if (st < 0) return st;
+  if (*family) name = family;
+  else if (r->dimension == 2 && r->n_zone > 1) name = r->zone.name;
+  return find_patch(r, name, "", patch, err);
+}
+
+static vg_status take_section(struct reader *r, const struct section *s,
+                              struct vg_error *err)
+{
+  const struct type *t = find_type(s->code);
+  uint32_t other = NONE;
+  size_t at = 0;
+  vg_status st = VG_OK;
+
+  for (int64_t e = s->first; e <= s->last && st >= 0; e++) {
+    uint32_t patch = s->patch[e - s->first];
+
+    if (s->code == MIXED) {
+      if (at == s->n_v) return fail_section(r, s, "too few nodes", err);
+      t = find_type(s->v[at++]);
+      if (!t) return unknown_type(r, s, s->v[at - 1], err);
+      if (s->n_v - at < (size_t)t->n_node)
+        return fail_section(r, s, "too few nodes", err);
+    }
+    if (patch == NONE && (t->element == TRI || t->element == QUAD)) {
+      if (other == NONE) st = default_patch(r, s, &other, err);
+      patch = other;
+    }
+    if (st >= 0) st = take_element(r, s, t, e, s->v + at, patch, err);
+    at += (size_t)t->n_node;
+  }
+  if (st >= 0 && at != s->n_v)
+    st = fail_section(r, s, "more nodes than those of the elements in "
+                      "ElementRange", err);
+  return st;
+}
+
+/* --- zones --- */
+
+static void release_zone(struct reader *r)
+{
+  for (size_t i = 0; i < r->n_section; i++) {
+    free(r->section[i].v);
+    free(r->section[i].patch);
+  }
+  free(r->section);
+  free(r->point);
+  r->section = NULL;
+  r->point = NULL;
+  r->n_section = 0;
+}
+
+static vg_status read_zone(struct reader *r, struct vg_error *err)
+{
+  char type[VG_CGNS_NAME];
+  int64_t *size = NULL;
+  size_t n;
+  vg_status st;
+
+  VG_TRY(child_text(r, r->zone.id, "ZoneType_t", NULL, type, err));
+  if (strcmp(type, "Unstructured") != 0)
+    VG_TRY(fail_zone(r, err, VG_ERR_UNSUPPORTED, "it is not Unstructured; "
+                     "convert it to a zone of elements"));
+  VG_TRY(vg_cgns_tree_ints(r->tree, r->zone.id, r->zone.name, &size, &n, err));
+  if (n < 3 || size[0] < 0 || (uint64_t)size[0] >= UINT32_MAX)
+    VG_TRY(fail_zone(r, err, VG_ERR_FORMAT, "its number of points is missing, "
+                     "negative or beyond 32 bits"));
+  r->n_point = (size_t)size[0];
+  VG_TRY(read_points(r, err));
+  VG_TRY(read_sections(r, err));
+  VG_TRY(read_conditions(r, err));
+  for (size_t i = 0; i < r->n_section; i++)
+    VG_TRY(take_section(r, &r->section[i], err));
+done:
+  free(size);
+  release_zone(r);
+  return st;
+}
+
+static vg_status read_base(struct reader *r, int64_t root, int64_t *base,
+                           struct vg_error *err)
+{
+  struct vg_cgns_node *list;
+  int64_t *dimension = NULL;
+  size_t n;
+  vg_status st = vg_cgns_tree_children(r->tree, root, "CGNSBase_t", &list, &n,
+                                       err);
+
+  if (st < 0) return st;
+  if (n != 1) {
+    st = vg_fail(err, n ? VG_ERR_UNSUPPORTED : VG_ERR_FORMAT, "%s: %zu bases "
+                 "(CGNSBase_t) in it; one is wanted", r->in->path, n);
+    goto done;
+  }
+  *base = list[0].id;
+  VG_TRY(vg_cgns_tree_ints(r->tree, *base, list[0].name, &dimension, &n, err));
+  if (n != 2 || dimension[0] < 2 || dimension[0] > 3 || dimension[1] != 3)
+    st = vg_fail(err, VG_ERR_UNSUPPORTED, "%s: base '%s' has not cells of 2 or "
+                 "3 dimensions in space of 3", r->in->path, list[0].name);
+  else
+    r->dimension = dimension[0];
+done:
+  free(list);
+  free(dimension);
+  return st;
+}
+
+static vg_status read_tree(struct reader *r, int64_t root,
+                           struct vg_error *err)
+{
+  struct vg_cgns_node *zone = NULL;
+  int64_t base = -1;
+  vg_status st;
+
+  VG_TRY(read_base(r, root, &base, err));
+  VG_TRY(read_families(r, base, err));
+  VG_TRY(vg_cgns_tree_children(r->tree, base, "Zone_t", &zone, &r->n_zone,
+                               err));
+  for (size_t i = 0; i < r->n_zone; i++) {
+    r->zone = zone[i];
+    VG_TRY(read_zone(r, err));
+  }
+done:
+  free(zone);
+  return st;
+}
+
+/* FUN3D's code of a symmetry plane says which axis it is normal to. */
+static vg_status set_axes(struct vg_mesh *m, struct vg_error *err)
+{
+  int *axis = vg_alloc(m->n_patch, sizeof *axis);
+  vg_status st = axis ? vg_patch_axes(m, axis, err)
+                      : vg_fail_memory(err, "the patches");
+
+  for (size_t p = 0; p < m->n_patch && st >= 0; p++)
+    m->patch[p].bc_fun3d = vg_bc_to_fun3d(m->patch[p].bc, axis[p]);
+  free(axis);
+  return st;
+}
+
+static vg_status finish(struct reader *r, struct vg_error *err)
+{
+  struct vg_mesh *m = &r->soup.m;
+  int has_cells = m->n_tet || m->n_pyr || m->n_pri || m->n_hex;
+  vg_status st;
+
+  if (!m->n_tri && !m->n_quad && !has_cells)
+    return vg_fail(err, VG_ERR_INPUT, "%s: no triangles, quadrilaterals or "
+                   "cells: there is nothing to mesh", r->in->path);
+  VG_TRY(vg_check_points(r->in->path, m->n_point,
+                         (const double (*)[3])m->point, err));
+  if (!has_cells) vg_mesh_keep_boundary(m);
+  VG_TRY(vg_mesh_turn(m, NULL, err));
+  VG_TRY(set_axes(m, err));
+done:
+  return st;
+}
+
+vg_status vg_cgns_take(struct vg_input *in, struct vg_mesh *out,
+                       struct vg_error *err)
+{
+  struct reader r = { .in = in, .soup = VG_SOUP_INIT };
+  int64_t root;
+  vg_status st = vg_cgns_tree_open(in, &r.tree, &root, err);
+
+  if (st < 0) return st;
+  VG_TRY(read_tree(&r, root, err));
+  VG_TRY(finish(&r, err));
+  vg_soup_finish(&r.soup, out);
+done:
+  release_zone(&r);
+  vg_soup_release(&r.soup);
+  free(r.family);
+  vg_cgns_tree_close(r.tree, NULL);
+  return st;
+}

@@ -1,0 +1,415 @@
+/* Gmsh's .msh, 4.1 binary: io/mesh/gmsh.h. Sizes and tags of nodes and
+ * elements have 8 bytes, tags of entities 4. */
+#include "io/mesh/gmsh.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "io/mesh/gmsh_put.h"
+#include "io/stream/boundary.h"
+
+#define BLOCK 1024
+
+enum { TRIANGLE = 2, QUADRILATERAL = 3, SURFACE = 2, VOLUME = 3 };
+
+/* Ours to Gmsh's, whose pyramid has its apex last. */
+static const struct kind { int32_t type; int n_node; int order[8]; }
+kinds[VG_GMSH_KINDS] = {
+  { 4, 4, { 0, 1, 2, 3 } }, { 7, 5, { 0, 3, 4, 1, 2 } },
+  { 6, 6, { 0, 1, 2, 3, 4, 5 } }, { 5, 8, { 0, 1, 2, 3, 4, 5, 6, 7 } },
+};
+
+static void put_size(struct vg_output *out, uint64_t v)
+{
+  vg_output_i64(out, 1, (const int64_t *)&v);
+}
+
+static uint64_t count_cells(const struct vg_gmsh *g)
+{
+  return g->n_cell[0] + g->n_cell[1] + g->n_cell[2] + g->n_cell[3];
+}
+
+static size_t count_faces(const struct vg_gmsh *g)
+{
+  return g->frame->n_tri + g->frame->n_quad;
+}
+
+/* Number of a patch as surface and as physical group. */
+static int32_t tag_of(const struct vg_gmsh *g, size_t patch)
+{
+  return g->has_ids ? g->frame->patch[patch].id : (int32_t)patch + 1;
+}
+
+static int is_empty(const struct vg_gmsh *g, size_t patch)
+{
+  return g->face_first[patch] == g->face_first[patch + 1];
+}
+
+/* --- format, names --- */
+
+static void put_head(struct vg_output *out, const struct vg_gmsh *g)
+{
+  int has_cells = count_cells(g) > 0;
+  static const int32_t one = 1;
+
+  vg_output_text(out, "$MeshFormat\n4.1 1 8\n");
+  vg_output_i32(out, 1, &one);
+  vg_output_format(out, "\n$EndMeshFormat\n$PhysicalNames\n%zu\n",
+                   g->n_surface + (size_t)has_cells);
+  for (size_t p = 0; p < g->frame->n_patch; p++)
+    if (!is_empty(g, p))
+      vg_output_format(out, "2 %d \"%s\"\n", (int)tag_of(g, p), g->word[p]);
+  if (has_cells) vg_output_text(out, "3 1 \"fluid\"\n");
+  vg_output_text(out, "$EndPhysicalNames\n");
+}
+
+/* --- entities --- */
+
+#define ENTITIES "$Entities\n"
+#define ENTITIES_END "\n$EndEntities\n"
+
+static uint64_t entities_size(const struct vg_gmsh *g)
+{
+  /* tag, box, number of groups, group, number of borders */
+  uint64_t one = 4 + 6 * 8 + 8 + 4 + 8, size = 4 * 8 + g->n_surface * one;
+
+  if (count_cells(g)) size += one + 4 * g->n_surface;
+  return strlen(ENTITIES) + size + strlen(ENTITIES_END);
+}
+
+static void widen(double box[6], const double x[3])
+{
+  for (int k = 0; k < 3; k++) {
+    if (x[k] < box[k]) box[k] = x[k];
+    if (x[k] > box[3 + k]) box[3 + k] = x[k];
+  }
+}
+
+static void patch_box(const struct vg_gmsh *g, size_t patch,
+                      const double (*x)[3], double box[6])
+{
+  const struct vg_mesh *m = g->frame;
+
+  for (size_t i = g->face_first[patch]; i < g->face_first[patch + 1]; i++) {
+    size_t f = g->face[i];
+    const uint32_t *v = f < m->n_tri ? m->tri[f] : m->quad[f - m->n_tri];
+
+    if (i == g->face_first[patch])
+      for (int k = 0; k < 6; k++) box[k] = x[v[0]][k % 3];
+    for (int k = 0; k < (f < m->n_tri ? 3 : 4); k++) widen(box, x[v[k]]);
+  }
+}
+
+static void put_entity(struct vg_output *out, int32_t tag,
+                       const double box[6], int32_t group, uint64_t n_border)
+{
+  vg_output_i32(out, 1, &tag);
+  vg_output_f64(out, 6, box);
+  put_size(out, 1);
+  vg_output_i32(out, 1, &group);
+  put_size(out, n_border);
+}
+
+void vg_gmsh_put_entities(struct vg_output *out, const struct vg_gmsh *g,
+                          const double (*x)[3])
+{
+  double all[6] = { 0, 0, 0, 0, 0, 0 }, box[6];
+  int is_first = 1, has_cells = count_cells(g) > 0;
+
+  vg_output_text(out, ENTITIES);
+  put_size(out, 0);
+  put_size(out, 0);
+  put_size(out, g->n_surface);
+  put_size(out, (uint64_t)has_cells);
+  for (size_t p = 0; p < g->frame->n_patch; p++) {
+    if (is_empty(g, p)) continue;
+    patch_box(g, p, x, box);
+    put_entity(out, tag_of(g, p), box, tag_of(g, p), 0);
+    if (is_first) memcpy(all, box, sizeof all);
+    is_first = 0;
+    widen(all, box);
+    widen(all, box + 3);
+  }
+  if (has_cells) {
+    put_entity(out, 1, all, 1, g->n_surface);
+    for (size_t p = 0; p < g->frame->n_patch; p++) {
+      int32_t inward = -tag_of(g, p);   /* as our faces point */
+
+      if (!is_empty(g, p)) vg_output_i32(out, 1, &inward);
+    }
+  }
+  vg_output_text(out, ENTITIES_END);
+}
+
+/* --- nodes --- */
+
+/* All in one block: of the volume, or of the first surface. */
+static void put_nodes_head(struct vg_output *out, const struct vg_gmsh *g)
+{
+  int32_t entity[3] = { VOLUME, 1, 0 };
+  uint64_t n = g->frame->n_point;
+  size_t p = 0;
+
+  vg_output_text(out, "$Nodes\n");
+  put_size(out, 1);
+  put_size(out, n);
+  put_size(out, 1);
+  put_size(out, n);
+  if (!count_cells(g)) {
+    while (is_empty(g, p)) p++;
+    entity[0] = SURFACE;
+    entity[1] = tag_of(g, p);
+  }
+  vg_output_i32(out, 3, entity);
+  put_size(out, n);
+}
+
+void vg_gmsh_put_tags(struct vg_output *out, uint64_t point, size_t n)
+{
+  int64_t v[BLOCK];
+
+  for (size_t i = 0, m; i < n; i += m) {
+    m = n - i < BLOCK ? n - i : BLOCK;
+    for (size_t k = 0; k < m; k++) v[k] = (int64_t)(point + i + k) + 1;
+    vg_output_i64(out, m, v);
+  }
+}
+
+/* --- elements --- */
+
+static void put_block(struct vg_output *out, int32_t dimension, int32_t tag,
+                      int32_t type, uint64_t n)
+{
+  const int32_t head[3] = { dimension, tag, type };
+
+  vg_output_i32(out, 3, head);
+  put_size(out, n);
+}
+
+/* Faces of a patch from first to end, which have n_node corners; the next tag
+ * is returned. */
+static uint64_t put_faces(struct vg_output *out, const struct vg_gmsh *g,
+                          size_t patch, size_t first, size_t end, int n_node,
+                          uint64_t tag)
+{
+  const struct vg_mesh *m = g->frame;
+
+  if (first == end) return tag;
+  put_block(out, SURFACE, tag_of(g, patch),
+            n_node == 3 ? TRIANGLE : QUADRILATERAL, end - first);
+  for (size_t i = first; i < end; i++) {
+    size_t f = g->face[i];
+    const uint32_t *v = f < m->n_tri ? m->tri[f] : m->quad[f - m->n_tri];
+
+    put_size(out, tag++);
+    for (int k = 0; k < n_node; k++) put_size(out, (uint64_t)v[k] + 1);
+  }
+  return tag;
+}
+
+/* Where the quadrilaterals of a patch begin. */
+static size_t first_quad(const struct vg_gmsh *g, size_t patch)
+{
+  size_t i = g->face_first[patch];
+
+  while (i < g->face_first[patch + 1] && g->face[i] < g->frame->n_tri) i++;
+  return i;
+}
+
+static void put_elements_head(struct vg_output *out, const struct vg_gmsh *g)
+{
+  uint64_t n_block = 0, n = count_faces(g) + count_cells(g), tag = 1;
+  size_t n_patch = g->frame->n_patch;
+
+  for (size_t p = 0; p < n_patch; p++) {
+    size_t quad = first_quad(g, p);
+
+    n_block += (quad > g->face_first[p]) + (quad < g->face_first[p + 1]);
+  }
+  for (int k = 0; k < VG_GMSH_KINDS; k++) n_block += g->n_cell[k] > 0;
+  vg_output_text(out, "$Elements\n");
+  put_size(out, n_block);
+  put_size(out, n);
+  put_size(out, 1);
+  put_size(out, n);
+  for (size_t p = 0; p < n_patch; p++) {
+    size_t quad = first_quad(g, p);
+
+    tag = put_faces(out, g, p, g->face_first[p], quad, 3, tag);
+    tag = put_faces(out, g, p, quad, g->face_first[p + 1], 4, tag);
+  }
+}
+
+static uint64_t cell_size(int kind)
+{
+  return 8 * (1 + (uint64_t)kinds[kind].n_node);
+}
+
+void vg_gmsh_put_cells(struct vg_output *out, const struct vg_gmsh *g,
+                       int kind, uint64_t cell, size_t n,
+                       const uint32_t *node, const uint32_t *number)
+{
+  const struct kind *k = &kinds[kind];
+  size_t width = (size_t)k->n_node, most = BLOCK / (1 + width);
+  int64_t tag = (int64_t)(g->first[kind] + cell), v[BLOCK];
+
+  for (size_t i = 0, m; i < n; i += m) {
+    int64_t *to = v;
+
+    m = n - i < most ? n - i : most;
+    for (size_t c = 0; c < m; c++, node += width) {
+      *to++ = tag++;
+      for (size_t j = 0; j < width; j++) {
+        uint32_t p = node[k->order[j]];
+
+        *to++ = (int64_t)(number ? number[p] : p) + 1;
+      }
+    }
+    vg_output_i64(out, (size_t)(to - v), v);
+  }
+}
+
+/* --- the file --- */
+
+static void put_points(struct vg_output *out, const struct vg_gmsh *g,
+                       uint64_t *at_tag, uint64_t *at_point)
+{
+  const struct vg_mesh *m = g->frame;
+
+  put_nodes_head(out, g);
+  *at_tag = out->written;
+  if (m->point) vg_gmsh_put_tags(out, 0, m->n_point);
+  else vg_output_skip(out, 8 * (uint64_t)m->n_point);
+  *at_point = out->written;
+  if (m->point) vg_output_f64(out, 3 * m->n_point, m->point[0]);
+  else vg_output_skip(out, 24 * (uint64_t)m->n_point);
+  vg_output_text(out, "\n$EndNodes\n");
+}
+
+static void put_cells(struct vg_output *out, const struct vg_gmsh *g,
+                      uint64_t at[VG_GMSH_KINDS])
+{
+  const struct vg_mesh *m = g->frame;
+  const uint32_t *const cell[VG_GMSH_KINDS] = {
+    (const uint32_t *)m->tet, (const uint32_t *)m->pyr,
+    (const uint32_t *)m->pri, (const uint32_t *)m->hex };
+
+  for (int k = 0; k < VG_GMSH_KINDS; k++) {
+    if (g->n_cell[k])
+      put_block(out, VOLUME, 1, kinds[k].type, g->n_cell[k]);
+    at[k] = out->written;
+    if (!m->point) vg_output_skip(out, g->n_cell[k] * cell_size(k));
+    else vg_gmsh_put_cells(out, g, k, 0, (size_t)g->n_cell[k], cell[k], NULL);
+  }
+}
+
+/* Writes the file, and finds out where things stand. */
+static void put_all(struct vg_output *out, const struct vg_gmsh *g,
+                    struct vg_gmsh *found)
+{
+  const struct vg_mesh *m = g->frame;
+
+  vg_output_order(out, 0);
+  put_head(out, g);
+  found->at_entities = out->written;
+  if (m->point) vg_gmsh_put_entities(out, g, (const double (*)[3])m->point);
+  else vg_output_skip(out, entities_size(g));
+  put_points(out, g, &found->at_tag, &found->at_point);
+  put_elements_head(out, g);
+  put_cells(out, g, found->at);
+  vg_output_text(out, "\n$EndElements\n");
+}
+
+void vg_gmsh_put(struct vg_output *out, const struct vg_gmsh *g)
+{
+  struct vg_gmsh found;
+
+  put_all(out, g, &found);
+}
+
+/* By writing the frame to nowhere. */
+static vg_status find_places(struct vg_gmsh *g, struct vg_error *err)
+{
+  struct vg_output out = VG_OUTPUT_INIT;
+  struct vg_mesh frame = *g->frame;
+  struct vg_gmsh nowhere = *g;
+  vg_status st = vg_output_shared(NULL, &out, err);
+
+  if (st < 0) return st;
+  frame.point = NULL;
+  nowhere.frame = &frame;
+  put_all(&out, &nowhere, g);
+  vg_output_release(&out);
+  return VG_OK;
+}
+
+vg_status vg_gmsh_plan(const char *path, const struct vg_mesh *frame,
+                       struct vg_gmsh *g, struct vg_error *err)
+{
+  vg_status st;
+
+  *g = (struct vg_gmsh){ .frame = frame, .has_ids = 1, .n_cell = {
+    frame->n_tet, frame->n_pyr, frame->n_pri, frame->n_hex } };
+  if (!count_faces(g) && !count_cells(g))
+    return vg_fail(err, VG_ERR_INPUT, "%s: the mesh has neither faces nor "
+                   "cells, and a .msh needs some", path);
+  g->word = vg_patch_words(frame, VG_PATCH_WORD_MOST);
+  if (!g->word) return vg_fail_memory(err, "the names of the patches");
+  VG_TRY(vg_boundary_by_patch(frame, &g->face_first, &g->face, err));
+  for (size_t p = 0; p < frame->n_patch; p++) {
+    g->n_surface += !is_empty(g, p);
+    g->has_ids &= frame->patch[p].id > 0;
+  }
+  g->first[0] = count_faces(g) + 1;
+  for (int k = 1; k < VG_GMSH_KINDS; k++)
+    g->first[k] = g->first[k - 1] + g->n_cell[k - 1];
+  st = find_places(g, err);
+done:
+  if (st < 0) vg_gmsh_release(g);
+  return st;
+}
+
+void vg_gmsh_release(struct vg_gmsh *g)
+{
+  free(g->word);
+  free(g->face_first);
+  free(g->face);
+  g->word = NULL;
+  g->face_first = g->face = NULL;
+}
+
+void vg_gmsh_seek_tags(struct vg_output *out, const struct vg_gmsh *g,
+                       uint64_t point)
+{
+  vg_output_seek(out, g->at_tag + 8 * point);
+}
+
+void vg_gmsh_seek_points(struct vg_output *out, const struct vg_gmsh *g,
+                         uint64_t point)
+{
+  vg_output_seek(out, g->at_point + 24 * point);
+}
+
+void vg_gmsh_seek_cell(struct vg_output *out, const struct vg_gmsh *g,
+                       int kind, uint64_t cell)
+{
+  vg_output_seek(out, g->at[kind] + cell * cell_size(kind));
+}
+
+vg_status vg_gmsh_write(const char *path, const struct vg_mesh *m,
+                        struct vg_error *err)
+{
+  struct vg_output out = VG_OUTPUT_INIT;
+  struct vg_gmsh g;
+  vg_status st = vg_gmsh_plan(path, m, &g, err);
+
+  if (st < 0) return st;
+  VG_TRY(vg_output_open(path, &out, err));
+  vg_gmsh_put(&out, &g);
+  st = vg_output_commit(&out, err);
+done:
+  vg_output_release(&out);
+  vg_gmsh_release(&g);
+  return st;
+}

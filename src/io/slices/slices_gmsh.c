@@ -1,0 +1,80 @@
+/* A mesh in slices as one .msh: bytes of vg_gmsh_write. The boxes of patches
+ * need the points of the boundary, which are collected from the slices. */
+#include "io/slices/slices_parts.h"
+#include "io/stream/shared_file.h"
+
+struct gmsh {
+  struct vg_gmsh file;
+  struct vg_boundary_points boundary;
+};
+
+static void put_frame(const void *of, struct vg_output *out)
+{
+  const struct gmsh *g = of;
+
+  vg_gmsh_put(out, &g->file);
+}
+
+static void put_slice(void *of, const struct vg_slice *slice,
+                      struct vg_output *out)
+{
+  struct gmsh *g = of;
+
+  vg_output_order(out, 0);
+  for (int k = 0; k < VG_SLICE_KINDS; k++) {
+    if (!slice->n_cell[k]) continue;
+    vg_gmsh_seek_cell(out, &g->file, k, slice->cell_at[k]);
+    vg_gmsh_put_cells(out, &g->file, k, slice->cell_at[k], slice->n_cell[k],
+                      slice->cell[k], slice->id);
+  }
+  if (slice->n_own) {
+    vg_gmsh_seek_tags(out, &g->file, slice->point_at);
+    vg_gmsh_put_tags(out, slice->point_at, slice->n_own);
+    vg_gmsh_seek_points(out, &g->file, slice->point_at);
+  }
+  for (size_t i = 0; i < slice->n_own; i++)
+    vg_output_f64(out, 3, slice->x[slice->own[i]]);
+  vg_boundary_points_add(&g->boundary, slice);
+}
+
+/* By rank 0, when all slices are in the file. */
+static vg_status put_entities(const struct gmsh *g, struct vg_shared_file *to,
+                              struct vg_error *err)
+{
+  struct vg_output out = VG_OUTPUT_INIT;
+  vg_status st = vg_output_shared(to, &out, err);
+
+  if (st < 0) return st;
+  vg_output_order(&out, 0);
+  vg_output_seek(&out, g->file.at_entities);
+  vg_gmsh_put_entities(&out, &g->file,
+                       (const double (*)[3])g->boundary.x);
+  st = vg_output_flush(&out, err);
+  vg_output_release(&out);
+  return st;
+}
+
+vg_status vg_slices_write_gmsh(struct vg_comm *comm,
+                               const struct vg_slices *s, const char *path,
+                               int threads, struct vg_error *err)
+{
+  const struct vg_mesh frame = vg_slices_frame(s);
+  struct gmsh g = { .boundary = { 0, NULL, NULL } };
+  const struct vg_slice_file file = { path, 0, &g, put_frame, put_slice };
+  struct vg_shared_file *to;
+  vg_status st = vg_gmsh_plan(path, &frame, &g.file, err);
+
+  if (st >= 0) st = vg_slices_check_boundary(s, err);
+  if (st >= 0) st = vg_boundary_points_new(s, &g.boundary, err);
+  VG_TRY(vg_comm_agree(comm, st, err));
+  VG_TRY(vg_slice_file_open(&file, comm, &to, err));
+  st = vg_slice_file_fill(&file, comm, s, threads, to, err);
+  st = vg_comm_agree(comm, st, err);
+  if (st >= 0) st = vg_boundary_points_share(comm, &g.boundary, err);
+  if (st >= 0 && !vg_comm_rank(comm)) st = put_entities(&g, to, err);
+  st = vg_shared_close(to, st, err);
+done:
+  vg_boundary_points_release(&g.boundary);
+  vg_gmsh_release(&g.file);
+  return st;
+}

@@ -1,0 +1,9 @@
+#include "fuzz.h"
+
+#include "io/cgns/cgns.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+  fuzz_mesh(vg_cgns_parse, data, size);
+  return 0;
+}

@@ -1,0 +1,9 @@
+#include "fuzz.h"
+
+#include "io/mesh/gmsh.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+  fuzz_mesh(vg_gmsh_parse, data, size);
+  return 0;
+}

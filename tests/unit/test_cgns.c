@@ -1,0 +1,465 @@
+/* CGNS: what is written comes back, trees of other programs are read, and
+ * those that are none are refused. */
+#include "mixed_support.h"
+
+#include "io/cgns/cgns.h"
+#include "io/cgns/cgns_put.h"
+#include "io/cgns/cgns_tree.h"
+
+/* --- round trips --- */
+
+static void go_round(const struct vg_mesh *m, int is_wide,
+                     struct vg_mesh *back)
+{
+  const struct vg_cgns_options o = { is_wide };
+  const char *path = io_temp("round.cgns");
+  struct vg_error err = VG_ERROR_INIT;
+
+  if (vg_cgns_write_with(path, m, &o, &err) != VG_OK ||
+      vg_cgns_read(path, back, &err) != VG_OK)
+    fail_msg("%s", err.text);
+  unlink(path);
+}
+
+static void all_kinds_come_back(void **state)
+{
+  static const char *const given[3] = { "ZoneBC", "Zone BC", "" };
+  static const char *const name[3] = { "patch_ZoneBC", "Zone_BC", "patch_13" };
+
+  (void)state;
+  for (int is_wide = 0; is_wide < 2; is_wide++) {
+    struct vg_mesh m = VG_MESH_INIT, back = VG_MESH_INIT;
+
+    mixed_make(&m, 5, 4);
+    for (int p = 0; p < 3; p++) strcpy(m.patch[p].name, given[p]);
+    m.patch[1].bc = VG_BC_NONE;
+    m.patch[1].bc_fun3d = 5000;
+    go_round(&m, is_wide, &back);
+    assert_int_equal(back.n_point, m.n_point);
+    assert_memory_equal(back.point, m.point, m.n_point * sizeof *m.point);
+#define SAME(array, n) \
+    assert_int_equal(back.n, m.n); \
+    assert_memory_equal(back.array, m.array, m.n * sizeof *m.array)
+    SAME(tet, n_tet);
+    SAME(pyr, n_pyr);
+    SAME(pri, n_pri);
+    SAME(hex, n_hex);
+#undef SAME
+    assert_int_equal(back.n_tri, m.n_tri);
+    assert_int_equal(back.n_quad, m.n_quad);
+    assert_int_equal(back.n_patch, 3);
+    for (int p = 0; p < 3; p++) {
+      assert_int_equal(back.patch[p].id, p + 1);
+      assert_string_equal(back.patch[p].name, name[p]);
+    }
+    assert_int_equal(back.patch[0].bc, 4);
+    assert_int_equal(back.patch[0].bc_fun3d, 4000);
+    assert_int_equal(back.patch[1].bc, 3);
+    assert_int_equal(back.patch[2].bc, VG_BC_NONE);
+    vg_mesh_release(&m);
+    vg_mesh_release(&back);
+  }
+}
+
+static void every_condition_comes_back(void **state)
+{
+  static const int32_t code[][3] = { /* given; comes back: USM3D, FUN3D */
+    { 4, 4, 4000 }, { 44, 4, 4000 }, { 5, 5, 3000 }, { 1, 1, 6663 },
+    { 3, 3, 5000 }
+  };
+  struct vg_mesh m, back = VG_MESH_INIT;
+
+  (void)state;
+  io_make_t1(&m, 1);
+  for (size_t i = 0; i < sizeof code / sizeof *code; i++) {
+    m.patch[0].bc = code[i][0];
+    go_round(&m, 0, &back);
+    assert_int_equal(back.patch[0].bc, code[i][1]);
+    assert_int_equal(back.patch[0].bc_fun3d, code[i][2]);
+  }
+  vg_mesh_release(&m);
+  vg_mesh_release(&back);
+}
+
+/* No times, no names of places are in it. */
+static void bytes_follow_from_the_mesh(void **state)
+{
+  const char *path[2] = { io_temp("once.cgns"), io_temp("other_name.cgns") };
+  unsigned char *data[2];
+  size_t size[2];
+  struct vg_mesh m = VG_MESH_INIT;
+
+  (void)state;
+  mixed_make(&m, 3, 2);
+  for (int k = 0; k < 2; k++) {
+    if (k) sleep(1);         /* HDF5 counts seconds */
+    assert_int_equal(vg_cgns_write(path[k], &m, NULL), VG_OK);
+    data[k] = io_slurp(path[k], &size[k]);
+    unlink(path[k]);
+  }
+  assert_int_equal(size[0], size[1]);
+  assert_memory_equal(data[0], data[1], size[0]);
+  free(data[0]);
+  free(data[1]);
+  vg_mesh_release(&m);
+}
+
+static void writing_fails_in_words(void **state)
+{
+  const char *path = io_temp("refused.cgns");
+  struct vg_error err = VG_ERROR_INIT;
+  struct vg_mesh m = VG_MESH_INIT;
+
+  (void)state;
+  io_make_t1(&m, 0);
+  assert_int_equal(vg_cgns_write(path, &m, &err), VG_ERR_INPUT);
+  assert_non_null(strstr(err.text, "no cells"));
+  assert_int_equal(access(path, F_OK), -1);
+  vg_mesh_release(&m);
+  io_make_t1(&m, 1);
+  assert_int_equal(vg_cgns_write("/nowhere/at/all.cgns", &m, &err),
+                   VG_ERR_IO);
+  assert_non_null(strstr(err.text, "/nowhere/at/all.cgns"));
+  vg_mesh_release(&m);
+}
+
+/* --- trees of other programs --- */
+
+struct tree {
+  struct vg_cgns_store store;
+  struct vg_cgns_tree *t;
+  int64_t root, base, zone;
+};
+
+static int64_t add(struct tree *t, int64_t parent, const char *name,
+                   const char *label, const char *type, int n_dim, size_t rows,
+                   size_t n, const void *v)
+{
+  const struct vg_cgns_data d = { type, n_dim,
+                                  { n_dim == 2 ? rows : n, n / rows }, v };
+  int64_t id;
+
+  assert_int_equal(vg_cgns_tree_add(t->t, parent, name, label, &d, &id, NULL,
+                                    NULL), VG_OK);
+  return id;
+}
+
+static int64_t add_text(struct tree *t, int64_t parent, const char *name,
+                        const char *label, const char *text)
+{
+  return add(t, parent, name, label, "C1", 1, 1, strlen(text), text);
+}
+
+static void begin(struct tree *t)
+{
+  memset(&t->store, 0, sizeof t->store);
+  assert_int_equal(vg_cgns_tree_new(&t->store, "t", &t->t, &t->root, NULL),
+                   VG_OK);
+}
+
+static void start(struct tree *t, int32_t dimension)
+{
+  const int32_t cell[2] = { dimension, 3 };
+
+  begin(t);
+  t->base = add(t, t->root, "wing", "CGNSBase_t", "I4", 1, 1, 2, cell);
+}
+
+/* A zone with points of T1: those in `which`, [n]. */
+static void zone(struct tree *t, const char *name, int n, const int *which)
+{
+  static const char *const axis[3] = { "CoordinateX", "CoordinateY",
+                                       "CoordinateZ" };
+  static const double point[4][3] = {
+    {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}
+  };
+  const int32_t size[3] = { n, 1, 0 };
+  int64_t grid;
+
+  t->zone = add(t, t->base, name, "Zone_t", "I4", 2, 1, 3, size);
+  add_text(t, t->zone, "ZoneType", "ZoneType_t", "Unstructured");
+  grid = add(t, t->zone, "GridCoordinates", "GridCoordinates_t", "MT", 0, 1, 0,
+             NULL);
+  for (int k = 0; k < 3; k++) {
+    float x[4] = { 0 };
+
+    for (int i = 0; i < n; i++) x[i] = (float)point[which[i]][k];
+    add(t, grid, axis[k], "DataArray_t", "R4", 1, 1, (size_t)n, x);
+  }
+}
+
+static int64_t section(struct tree *t, const char *name, int32_t code,
+                       int64_t first, int64_t last, size_t n, const int32_t *v)
+{
+  const int32_t kind[2] = { code, 0 };
+  const int64_t range[2] = { first, last };
+  int64_t id = add(t, t->zone, name, "Elements_t", "I4", 1, 1, 2, kind);
+
+  add(t, id, "ElementRange", "IndexRange_t", "I8", 1, 1, 2, range);
+  add(t, id, "ElementConnectivity", "DataArray_t", "I4", 1, 1, n, v);
+  return id;
+}
+
+static int64_t condition(struct tree *t, int64_t zone_bc, const char *name,
+                         const char *type, const char *at, const char *list,
+                         size_t n, const int32_t *v)
+{
+  int64_t id = add_text(t, zone_bc, name, "BC_t", type);
+
+  add(t, id, list, strstr(list, "Range") ? "IndexRange_t" : "IndexArray_t",
+      "I4", 2, 1, n, v);
+  if (at) add_text(t, id, "GridLocation", "GridLocation_t", at);
+  return id;
+}
+
+static int64_t conditions(struct tree *t)
+{
+  return add(t, t->zone, "ZoneBC", "ZoneBC_t", "MT", 0, 1, 0, NULL);
+}
+
+/* Closes it and reads it. */
+static vg_status read_tree(struct tree *t, struct vg_mesh *m,
+                           struct vg_error *err)
+{
+  unsigned char *data;
+  vg_status st;
+
+  assert_int_equal(vg_cgns_tree_close(t->t, NULL), VG_OK);
+  data = malloc(t->store.size);
+  vg_cgns_store_get(&t->store, 0, t->store.size, data);
+  st = io_parse_bytes(vg_cgns_parse, data, t->store.size, m, err);
+  free(data);
+  vg_cgns_store_release(&t->store);
+  return st;
+}
+
+static void accept(struct tree *t, struct vg_mesh *m)
+{
+  struct vg_error err = VG_ERROR_INIT;
+
+  if (read_tree(t, m, &err) != VG_OK) fail_msg("%s", err.text);
+}
+
+static void refuse(struct tree *t, vg_status code, const char *phrase)
+{
+  struct vg_error err = VG_ERROR_INIT;
+  struct vg_mesh m = VG_MESH_INIT, empty = VG_MESH_INIT;
+  vg_status st = read_tree(t, &m, &err);
+
+  if (st != code || !strstr(err.text, phrase) || !strstr(err.text, "case"))
+    fail_msg("status %d instead of %d, '%s' has no '%s'", st, code, err.text,
+             phrase);
+  assert_memory_equal(&m, &empty, sizeof m);
+}
+
+static const int all[4] = { 0, 1, 2, 3 };
+static const int32_t t1_mixed[] = { 3, 1, 2, 5, 1, 2, 3, 5, 1, 4, 2,
+                                    5, 1, 3, 4, 5, 2, 4, 3 };
+
+/* Bars and faces in one section, with conditions by family, by their own, by
+ * range and by list; the last face has none. */
+static void conditions_make_patches(void **state)
+{
+  static const int32_t second[2] = { 2, 2 }, list[2] = { 3, 4 };
+  struct vg_mesh m = VG_MESH_INIT, t1;
+  struct tree t;
+  int64_t family, bc;
+
+  (void)state;
+  start(&t, 3);
+  family = add(&t, t.base, "skin", "Family_t", "MT", 0, 1, 0, NULL);
+  add_text(&t, family, "FamilyBC", "FamilyBC_t", "BCWallInviscid");
+  zone(&t, "Zone 1", 4, all);
+  section(&t, "everything", 20, 1, 5, sizeof t1_mixed / 4, t1_mixed);
+  bc = conditions(&t);
+  add_text(&t, condition(&t, bc, "bc-1", "FamilySpecified", "FaceCenter",
+                         "PointRange", 2, second),
+           "FamilyName", "FamilyName_t", "/wing/skin");
+  condition(&t, bc, "far", "BCFarfield", NULL, "ElementList", 2, list);
+  accept(&t, &m);
+  io_make_t1(&t1, 0);
+  assert_int_equal(m.n_point, 4);
+  assert_memory_equal(m.tri, t1.tri, 4 * sizeof *m.tri);
+  assert_int_equal(m.n_patch, 3);
+  assert_string_equal(m.patch[0].name, "skin");
+  assert_int_equal(m.patch[0].bc, 5);
+  assert_string_equal(m.patch[1].name, "far");
+  assert_int_equal(m.patch[1].bc, 3);
+  assert_string_equal(m.patch[2].name, "everything");
+  assert_int_equal(m.patch[2].bc, VG_BC_NONE);
+  for (uint32_t i = 0; i < 4; i++)
+    assert_int_equal(m.tri_patch[i], i < 2 ? i : i - 1);
+  vg_mesh_release(&m);
+  vg_mesh_release(&t1);
+}
+
+/* Zones of one face each, as programs for surfaces write them: points in
+ * common are one again, patches are zones, or their families. */
+static void zones_are_joined(void **state)
+{
+  static const int part[2][3] = { { 0, 1, 2 }, { 3, 1, 0 } };
+  static const int32_t tri[3] = { 1, 2, 3 };
+  struct vg_mesh m = VG_MESH_INIT;
+  struct tree t;
+
+  (void)state;
+  start(&t, 2);
+  zone(&t, "lower", 3, part[0]);
+  section(&t, "Tri", 5, 1, 1, 3, tri);
+  zone(&t, "dom-2", 3, part[1]);
+  section(&t, "Tri", 5, 1, 1, 3, tri);
+  add_text(&t, t.zone, "FamilyName", "FamilyName_t", "side");
+  accept(&t, &m);
+  assert_int_equal(m.n_point, 4);
+  assert_int_equal(m.n_tri, 2);
+  assert_int_equal(m.tri[1][1], m.tri[0][1]);
+  assert_int_equal(m.tri[1][2], m.tri[0][0]);
+  assert_int_equal(m.n_patch, 2);
+  assert_string_equal(m.patch[0].name, "lower");
+  assert_string_equal(m.patch[1].name, "side");
+  vg_mesh_release(&m);
+}
+
+static void one_face(struct tree *t, int32_t dimension, int32_t code,
+                     int64_t last, size_t n, const int32_t *v)
+{
+  start(t, dimension);
+  zone(t, "Zone 1", 4, all);
+  section(t, "faces", code, 1, last, n, v);
+}
+
+static void refuses_sections(void **state)
+{
+  static const int32_t tri[6] = { 1, 2, 3, 1, 2, 5 };
+  static const int32_t mixed[5] = { 5, 1, 2, 3, 6 };
+  struct tree t;
+
+  (void)state;
+  one_face(&t, 3, 5, 2, 6, tri);
+  refuse(&t, VG_ERR_INPUT, "point 5 of 4");
+  one_face(&t, 3, 6, 1, 6, tri);
+  refuse(&t, VG_ERR_UNSUPPORTED, "type 6");
+  one_face(&t, 3, 22, 1, 6, tri);
+  refuse(&t, VG_ERR_UNSUPPORTED, "polygons");
+  one_face(&t, 3, 5, INT64_MAX, 6, tri);
+  refuse(&t, VG_ERR_FORMAT, "has not the nodes");
+  one_face(&t, 3, 5, 0, 6, tri);
+  refuse(&t, VG_ERR_FORMAT, "no range");
+  one_face(&t, 3, 20, 2, 5, mixed);
+  refuse(&t, VG_ERR_UNSUPPORTED, "type 6");
+  one_face(&t, 3, 20, 2, 4, mixed);
+  refuse(&t, VG_ERR_FORMAT, "too few");
+  one_face(&t, 3, 20, 1, 5, mixed);
+  refuse(&t, VG_ERR_FORMAT, "more nodes");
+  one_face(&t, 3, 5, 1, 3, tri);
+  section(&t, "again", 5, 1, 1, 3, tri);
+  refuse(&t, VG_ERR_FORMAT, "another section's");
+  one_face(&t, 3, 3, 1, 2, tri);
+  refuse(&t, VG_ERR_INPUT, "nothing to mesh");
+}
+
+static void refuses_trees(void **state)
+{
+  static const int32_t tri[3] = { 1, 2, 3 }, size[9] = { 2, 2, 2 };
+  struct vg_mesh m = VG_MESH_INIT;
+  struct tree t;
+
+  (void)state;
+  start(&t, 1);
+  refuse(&t, VG_ERR_UNSUPPORTED, "dimensions");
+  start(&t, 3);
+  add(&t, t.root, "two", "CGNSBase_t", "I4", 1, 1, 2, size);
+  refuse(&t, VG_ERR_UNSUPPORTED, "2 bases");
+  begin(&t);
+  refuse(&t, VG_ERR_FORMAT, "0 bases");
+  start(&t, 3);
+  refuse(&t, VG_ERR_INPUT, "nothing to mesh");
+  start(&t, 3);
+  add_text(&t, add(&t, t.base, "block", "Zone_t", "I4", 2, 3, 9, size),
+           "ZoneType", "ZoneType_t", "Structured");
+  refuse(&t, VG_ERR_UNSUPPORTED, "Unstructured");
+  start(&t, 3);
+  add_text(&t, add(&t, t.base, "empty", "Zone_t", "I4", 2, 1, 3, size),
+           "ZoneType", "ZoneType_t", "Unstructured");
+  refuse(&t, VG_ERR_FORMAT, "CoordinateX has 0 values");
+  one_face(&t, 3, 5, 1, 3, tri);
+  condition(&t, conditions(&t), "points", "BCWall", NULL, "PointList", 3, tri);
+  refuse(&t, VG_ERR_UNSUPPORTED, "FaceCenter");
+  /* of a surface such are its borders */
+  one_face(&t, 2, 5, 1, 3, tri);
+  condition(&t, conditions(&t), "rim", "BCWall", NULL, "PointList", 3, tri);
+  accept(&t, &m);
+  assert_string_equal(m.patch[0].name, "faces");
+  vg_mesh_release(&m);
+}
+
+static void refuses_what_is_no_cgns(void **state)
+{
+  (void)state;
+  io_refuse(vg_cgns_parse, "solid x", VG_ERR_FORMAT, "neither HDF5 nor ADF");
+  io_refuse(vg_cgns_parse, "@(#)ADF Database Version B02012>",
+            VG_ERR_UNSUPPORTED, "adf2hdf");
+  io_refuse(vg_cgns_parse, "\x89HDF\r\n\x1a\n", VG_ERR_FORMAT,
+            "cannot open it");
+}
+
+/* A file cut anywhere, or with bytes changed, is refused in words or read as a
+ * mesh that holds together, whatever the library makes of it. */
+static void no_damage_is_swallowed(void **state)
+{
+  const char *path = io_temp("damaged.cgns");
+  uint32_t random = 1;
+  struct vg_mesh m;
+  unsigned char *data;
+  size_t size;
+
+  (void)state;
+  io_make_t1(&m, 1);
+  assert_int_equal(vg_cgns_write(path, &m, NULL), VG_OK);
+  vg_mesh_release(&m);
+  data = io_slurp(path, &size);
+  unlink(path);
+  for (int turn = 0; turn < 120; turn++) {
+    struct vg_error err = VG_ERROR_INIT;
+    unsigned char old[4];
+    size_t at[4], n = size;
+    vg_status st;
+
+    for (int k = 0; k < 4; k++) {
+      random = random * 1664525u + 1013904223u;
+      at[k] = (random >> 8) % size;
+      old[k] = data[at[k]];
+      if (turn % 8 && k <= turn % 4) data[at[k]] ^= (unsigned char)random | 1;
+    }
+    if (turn % 8 == 0) n = at[0];
+    st = n ? io_parse_bytes(vg_cgns_parse, data, n, &m, &err) : VG_ERR_FORMAT;
+    if (n && st != VG_OK) assert_non_null(strstr(err.text, "case"));
+    for (size_t k = 0; st == VG_OK && k < 3 * m.n_tri; k++)
+      assert_true(m.tri[k / 3][k % 3] < m.n_point);
+    vg_mesh_release(&m);
+    for (int k = 3; k >= 0; k--) data[at[k]] = old[k];
+  }
+  free(data);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(all_kinds_come_back),
+    cmocka_unit_test(every_condition_comes_back),
+    cmocka_unit_test(bytes_follow_from_the_mesh),
+    cmocka_unit_test(writing_fails_in_words),
+    cmocka_unit_test(conditions_make_patches),
+    cmocka_unit_test(zones_are_joined),
+    cmocka_unit_test(refuses_sections),
+    cmocka_unit_test(refuses_trees),
+    cmocka_unit_test(refuses_what_is_no_cgns),
+    cmocka_unit_test(no_damage_is_swallowed),
+  };
+
+  if (!vg_cgns_is_built()) {
+    puts("built without HDF5: skipped");
+    return 77;
+  }
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
