@@ -83,18 +83,19 @@ export PKG_CONFIG_PATH
   -Wl,-rpath,"$(pkg-config --variable=libdir vanguard)"
 "$folder/by_pkg_config"
 
-# The example of a mesher, against the installed header; run by the program.
+"$prefix/bin/vanguard" --version
+
+# --- the plug-in: a mesher that the program loads ---
+
 # shellcheck disable=SC2046 # a list of words
 "$cc" -shared -fPIC -Wall -Wextra -Werror $(pkg-config --cflags vanguard) \
-  "$here/../../examples/mesher_plugin/star.c" -o "$folder/star.so"
-cd "$folder"
-prefix/bin/vanguard demo box --cells 1000 --out . >/dev/null
-prefix/bin/vanguard mesh -q -p box --mesher ./star.so --write lb8.ugrid \
-  --out meshed >report
-grep -q 'parts filled by the other mesher 1:' report
-prefix/bin/vanguard check -q meshed/box.lb8.ugrid >/dev/null
-
-"$prefix/bin/vanguard" --version
+  "$examples/mesher_plugin/star.c" -o "$folder/star.so"
+"$prefix/bin/vanguard" demo box --cells 1000 --out plugin >/dev/null
+"$prefix/bin/vanguard" mesh -q -p plugin/box --mesher ../star.so \
+  --write lb8.ugrid --out meshed >report
+grep -q 'parts filled by the other mesher 1:' report ||
+  fail "the example of a mesher did not fill a box"
+"$prefix/bin/vanguard" check -q meshed/box.lb8.ugrid >/dev/null
 
 # --- by Python ---
 

@@ -4,7 +4,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "core/mesher/mesher.h"
+#include <vanguard/mesher.h>
 
 enum { NO_SYMBOL = 1, OTHER_VERSION, DIES_LOADING, NO_MESHER, CRASHES, EXITS,
        TURNS, SLEEPS, TOO_FEW, TWICE, OUTSIDE, NO_NUMBER, NO_POINT, NOTHING,

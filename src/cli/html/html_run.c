@@ -8,8 +8,8 @@
 static void times(struct page *p)
 {
   static const char *const phase[] = { "read", "check", "sizes", "layers",
-                                       "fill", "number", "judge", "write",
-                                       "digest" };
+                                       "fill", "number", "judge", "parts",
+                                       "write", "digest" };
   const json_t *seconds = vg_page_json(p, "seconds");
   double total = vg_page_number(p, "seconds.total");
 

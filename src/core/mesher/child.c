@@ -45,7 +45,7 @@ static const struct vg_mesher *load_plugin(const char *path, char *why,
   get = (plugin *)(uintptr_t)dlsym(library, VG_MESHER_SYMBOL);
   if (!get) {
     snprintf(why, size, "it does not export the function %s, as a plug-in for "
-             "meshing does (core/mesher/mesher.h)", VG_MESHER_SYMBOL);
+             "meshing does (vanguard/mesher.h)", VG_MESHER_SYMBOL);
     return NULL;
   }
   m = get();
@@ -53,7 +53,7 @@ static const struct vg_mesher *load_plugin(const char *path, char *why,
   if (m && m->version != VG_MESHER_VERSION)
     snprintf(why, size, "it is made for version %u of the interface, this "
              "program has version %d; compile it with this program's "
-             "core/mesher/mesher.h", (unsigned)m->version, VG_MESHER_VERSION);
+             "vanguard/mesher.h", (unsigned)m->version, VG_MESHER_VERSION);
   else
     snprintf(why, size, "its %s returns no mesher", VG_MESHER_SYMBOL);
   return NULL;

@@ -1,6 +1,7 @@
 /* core/mesher/mesher.h: what a mesher has to be to fill voids for Vanguard. It
- * stands alone, for plug-ins in C and C++: a shared library that exports
- * vg_mesher_plugin works with `vanguard mesh --mesher ./it.so`.
+ * stands alone, installed as vanguard/mesher.h, for plug-ins in C and C++: a
+ * shared library that exports vg_mesher_plugin works with `vanguard mesh
+ * --mesher ./it.so`.
  *
  * A mesher gets a closed front and the sizes wanted within, and returns
  * tetrahedra that fill it, with points of its own inside and none on the front,

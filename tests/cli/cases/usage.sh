@@ -41,7 +41,7 @@ vanguard help chekc
 exits 2
 says err "did you mean 'check'?"
 
-for command in mesh check sweep plan deck demo; do
+for command in mesh check partition sweep plan deck demo; do
   vanguard $command --help
   exits 0
   says out "Usage: vanguard $command [OPTION...]"
