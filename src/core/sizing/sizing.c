@@ -209,42 +209,6 @@ void vg_sizing_free(struct vg_sizing *s)
   free(s);
 }
 
-static void *copy_of(const void *from, size_t n, size_t size)
-{
-  void *to = vg_alloc(n, size);
-
-  if (to && n) memcpy(to, from, n * size);
-  return to;
-}
-
-vg_status vg_sizing_scaled(const struct vg_sizing *s, double factor,
-                           struct vg_sizing **out, struct vg_error *err)
-{
-  struct vg_sizing *to = copy_of(s, 1, sizeof *s);
-  const struct vg_octree *t = &s->octree;
-
-  if (!to) return vg_fail_memory(err, "the field of sizes");
-  to->octree.child = copy_of(t->child, t->n_split, sizeof *t->child);
-  to->octree.least = copy_of(t->least, t->n_split, sizeof *t->least);
-  to->octree.leaf = copy_of(t->leaf, t->n_leaf, sizeof *t->leaf);
-  memset(&to->common, 0, sizeof to->common);
-  if (!to->octree.child || !to->octree.least || !to->octree.leaf) {
-    vg_sizing_free(to);
-    return vg_fail_memory(err, "the field of sizes");
-  }
-  for (size_t k = 0; k < t->n_split; k++)
-    to->octree.least[k] = (float)(factor * (double)t->least[k]);
-  for (size_t k = 0; k < 8 * t->n_leaf; k++)
-    to->octree.leaf[0][k] = (float)(factor * (double)t->leaf[0][k]);
-  to->growth *= factor;
-  to->cap *= factor;
-  to->slope *= factor;
-  to->least *= factor;
-  to->most *= factor;
-  *out = to;
-  return VG_OK;
-}
-
 double vg_sizing_at(const struct vg_sizing *s, const double x[3])
 {
   double outside, h = vg_octree_at(&s->octree, x, &outside);

@@ -1,4 +1,5 @@
 /* The coarse mesh, by the kernel that makes all cells. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,6 +14,36 @@ void vg_coarse_release(struct vg_coarse *c)
   free(c->weight);
   free(c->part);
   memset(c, 0, sizeof *c);
+}
+
+/* Sizes of the coarse mesh grow from the front's own edges by this much for
+ * each length: cells there are well shaped, and interfaces leave the front at
+ * good angles. */
+static const double growth = 1.6;   /* D9 */
+/* The field of these sizes is as coarse. */
+static const double coarseness = 3;
+
+static vg_status coarse_sizes(const struct vg_front *f,
+                              const struct vg_sizing *sizing, double factor,
+                              struct vg_sizing **out, struct vg_error *err)
+{
+  struct vg_mesh m = VG_MESH_INIT;   /* borrows the front */
+  struct vg_sizing_options o = VG_SIZING_OPTIONS_INIT;
+  struct vg_sizing *most = NULL;
+  vg_status st;
+
+  m.n_point = f->n_point;
+  m.point = f->x;
+  m.n_tri = f->n_face;
+  m.tri = f->face;
+  o.growth = growth;
+  o.coarseness = coarseness;
+  o.h_max = INFINITY;
+  st = vg_sizing_new(&o, 0, NULL, &m, &most, err);
+  if (st == VG_OK)
+    st = vg_sizing_coarsened(sizing, factor, most, out, err);
+  vg_sizing_free(most);
+  return st;
 }
 
 static int stop(void *user, const char *stage, size_t done, size_t expected)
@@ -97,8 +128,9 @@ vg_status vg_coarse_fill(const struct vg_front *front,
   struct vg_sizing *coarse = NULL;
   vg_status st;
 
-  VG_TRY(vg_sizing_scaled(sizing, factor, &coarse, err));
-  VG_TRY(grow(front, coarse, e, &v, err));
+  VG_TRY(coarse_sizes(front, sizing, factor, &coarse, err));
+  st = grow(front, coarse, e, &v, err);
+  if (st != VG_OK) goto done;          /* or stopped */
   c->n_front = front->n_point;
   st = vg_tets_from_cells(&c->t, v.n_point, v.x, v.n_cell,
                           (const uint32_t (*)[4])v.cell, err);

@@ -1,6 +1,7 @@
-/* Interfaces at the local size by halves, as the original did it: an edge that
- * is too long is halved, and triangles fall into two, three or four by their
- * edges that were, time by time. */
+/* Interfaces at the local size by halves, as the original did it: the longest
+ * edge of a triangle is halved if it is too long, and triangles fall into two,
+ * three or four by their edges that were, time by time (M.-C. Rivara, Int. J.
+ * Numer. Methods Eng. 20, 1984: angles stay above half of what they were). */
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,12 +11,12 @@
 
 /* An edge is halved while longer than this many of the size at its middle. */
 static const double longest = 1.5;   /* D8 */
-/* Each time edges are half as long at most: no sensible size takes more. */
-enum { ROUNDS = 40 };
+/* A coarse edge is halved a few times; one beyond that has no sensible size. */
+enum { ROUNDS = 60 };
 
 struct triangle { uint32_t v[3], face; };
 
-/* An edge of a triangle: place is 3 * triangle + k. */
+/* An edge of a triangle: place is 3 * triangle + k. Begins with its ends. */
 struct listed { uint32_t end[2], place; };
 
 struct halving {
@@ -24,6 +25,9 @@ struct halving {
   struct vg_sheets *s;
   size_t n, cap;
   struct triangle *tri;      /* by face */
+  size_t n_front;
+  uint32_t (*front)[2];      /* [n_front] edges of its faces, which stay, in
+                                order */
   uint32_t *middle;          /* [n][3] of edges that were halved, or VG_NONE */
 };
 
@@ -45,80 +49,129 @@ static int by_ends(const void *a, const void *b)
 
 static int same_ends(const void *a, const void *b)
 {
-  return memcmp(a, b, 2 * sizeof(uint32_t)) < 0 ? -1
-       : memcmp(a, b, 2 * sizeof(uint32_t)) > 0;
+  const uint32_t *s = a, *t = b;
+
+  for (int k = 0; k < 2; k++)
+    if (s[k] != t[k]) return s[k] < t[k] ? -1 : 1;
+  return 0;
 }
 
-/* Edges of the front's faces stay: ends [*n] in order. */
-static vg_status list_front(const struct vg_coarse *c, uint32_t (**end)[2],
-                            size_t *n, struct vg_error *err)
+static vg_status list_front(struct halving *h, struct vg_error *err)
 {
+  const struct vg_coarse *c = h->c;
   size_t cap = 0;
 
   for (size_t q = 0; q < 4 * c->t.n_cell; q++) {
     if (c->on[0][q] == VG_NONE) continue;
-    if (vg_reserve(end, &cap, *n + 3, sizeof **end))
+    if (vg_reserve(&h->front, &cap, h->n_front + 3, sizeof *h->front))
       return vg_fail_memory(err, "the interfaces");
-    for (int k = 0; k < 3; k++, ++*n) {
+    for (int k = 0; k < 3; k++) {
       uint32_t a = c->t.cell[q / 4].v[vg_face[q % 4][k]];
       uint32_t b = c->t.cell[q / 4].v[vg_face[q % 4][(k + 1) % 3]];
 
-      (*end)[*n][0] = a < b ? a : b;
-      (*end)[*n][1] = a < b ? b : a;
+      h->front[h->n_front][0] = a < b ? a : b;
+      h->front[h->n_front++][1] = a < b ? b : a;
     }
   }
-  if (*n) qsort(*end, *n, sizeof **end, same_ends);
+  if (h->n_front) qsort(h->front, h->n_front, sizeof *h->front, same_ends);
   return VG_OK;
 }
 
-/* The middle of the edge a b becomes a point where that is too long. */
-static vg_status halve(struct halving *h, const uint32_t end[2],
-                       uint32_t *middle, struct vg_error *err)
+static int is_front(const struct halving *h, const uint32_t end[2])
+{
+  return h->n_front &&
+         bsearch(end, h->front, h->n_front, sizeof *h->front, same_ends);
+}
+
+/* Of edges as long the later one counts as longer. */
+static int is_longer(const struct halving *h, const struct listed *a,
+                     const struct listed *b)
+{
+  double x = vg_distance2(point_of(h, a->end[0]), point_of(h, a->end[1]));
+  double y = vg_distance2(point_of(h, b->end[0]), point_of(h, b->end[1]));
+
+  return x != y ? x > y : same_ends(a->end, b->end) > 0;
+}
+
+static int is_too_long(const struct halving *h, const uint32_t end[2],
+                       double mid[3])
 {
   const double *a = point_of(h, end[0]), *b = point_of(h, end[1]);
-  double x[3], size;
+  double most;
 
-  *middle = VG_NONE;
-  for (int k = 0; k < 3; k++) x[k] = 0.5 * (a[k] + b[k]);
-  size = longest * vg_sizing_at(h->sizing, x);
-  if (vg_distance2(a, b) <= size * size) return VG_OK;
-  if (vg_reserve(&h->s->x, &h->s->cap_point, h->s->n_point + 1,
-                 sizeof *h->s->x))
-    return vg_fail_memory(err, "the interfaces");
-  *middle = (uint32_t)(h->c->t.n_point + h->s->n_point);
-  memcpy(h->s->x[h->s->n_point++], x, sizeof x);
+  for (int k = 0; k < 3; k++) mid[k] = 0.5 * (a[k] + b[k]);
+  most = longest * vg_sizing_at(h->sizing, mid);
+  return vg_distance2(a, b) > most * most;
+}
+
+/* The longest edge of each triangle, where it is too long, *n of them in l
+ * [triangles]; where that is the front's, the triangle is as good as it gets.
+ * */
+static void list_long(const struct halving *h, struct listed *l, size_t *n)
+{
+  double mid[3];
+
+  *n = 0;
+  for (size_t i = 0; i < h->n; i++) {
+    struct listed best = { {0, 0}, VG_NONE };
+
+    for (uint32_t k = 0; k < 3; k++) {
+      uint32_t a = h->tri[i].v[k], b = h->tri[i].v[(k + 1) % 3];
+      struct listed edge = { { a < b ? a : b, a < b ? b : a },
+                             (uint32_t)(3 * i + k) };
+
+      if (best.place == VG_NONE || is_longer(h, &edge, &best)) best = edge;
+    }
+    if (is_too_long(h, best.end, mid) && !is_front(h, best.end))
+      l[(*n)++] = best;
+  }
+}
+
+/* Each of these once, with a point in its middle: place becomes the point. */
+static vg_status add_middles(struct halving *h, struct listed *l, size_t *n,
+                             struct vg_error *err)
+{
+  size_t left = 0;
+
+  if (*n) qsort(l, *n, sizeof *l, by_ends);
+  for (size_t k = 0; k < *n; k++) {
+    double mid[3];
+
+    if (left && !same_ends(l[k].end, l[left - 1].end)) continue;
+    if (vg_reserve(&h->s->x, &h->s->cap_point, h->s->n_point + 1,
+                   sizeof *h->s->x))
+      return vg_fail_memory(err, "the interfaces");
+    is_too_long(h, l[k].end, mid);
+    memcpy(h->s->x[h->s->n_point], mid, sizeof mid);
+    l[left] = l[k];
+    l[left++].place = (uint32_t)(h->c->t.n_point + h->s->n_point++);
+  }
+  *n = left;
   return VG_OK;
 }
 
-static vg_status halve_edges(struct halving *h, size_t n_front,
-                             const uint32_t (*front)[2], size_t *n_halved,
+static vg_status halve_edges(struct halving *h, size_t *n_halved,
                              struct vg_error *err)
 {
-  size_t n = 3 * h->n, was = h->s->n_point;
-  struct listed *l = vg_alloc(n, sizeof *l);
-  uint32_t middle = VG_NONE;
+  struct listed *l = vg_alloc(h->n, sizeof *l);
   vg_status st = VG_OK;
 
   free(h->middle);
-  h->middle = vg_alloc(n, sizeof *h->middle);
+  h->middle = vg_alloc(3 * h->n, sizeof *h->middle);
   if (!l || !h->middle) st = vg_fail_memory(err, "the interfaces");
-  for (size_t k = 0; st == VG_OK && k < n; k++) {
-    uint32_t a = h->tri[k / 3].v[k % 3], b = h->tri[k / 3].v[(k + 1) % 3];
-
-    l[k] = (struct listed){ { a < b ? a : b, a < b ? b : a }, (uint32_t)k };
+  if (st == VG_OK) {
+    list_long(h, l, n_halved);
+    st = add_middles(h, l, n_halved, err);
   }
-  if (st == VG_OK && n) qsort(l, n, sizeof *l, by_ends);
-  for (size_t k = 0; st == VG_OK && k < n; k++) {
-    if (!k || memcmp(l[k].end, l[k - 1].end, sizeof l[k].end)) {
-      middle = VG_NONE;
-      if (!n_front || !bsearch(l[k].end, front, n_front, sizeof *front,
-                               same_ends))
-        st = halve(h, l[k].end, &middle, err);
-    }
-    h->middle[l[k].place] = middle;
+  for (size_t k = 0; st == VG_OK && k < 3 * h->n; k++) {
+    uint32_t a = h->tri[k / 3].v[k % 3], b = h->tri[k / 3].v[(k + 1) % 3];
+    const uint32_t end[2] = { a < b ? a : b, a < b ? b : a };
+    const struct listed *at =
+      *n_halved ? bsearch(end, l, *n_halved, sizeof *l, same_ends) : NULL;
+
+    h->middle[k] = at ? at->place : VG_NONE;
   }
   free(l);
-  *n_halved = h->s->n_point - was;
   return st;
 }
 
@@ -205,25 +258,22 @@ vg_status vg_sheets_halve(const struct vg_coarse *c,
                           struct vg_sheets *s, struct vg_error *err)
 {
   struct halving h = { .c = c, .sizing = sizing, .s = s, .n = f->n_face };
-  uint32_t (*front)[2] = NULL;
-  size_t n_front = 0, n_halved = 1;
+  size_t n_halved = 1;
   vg_status st;
 
   h.tri = vg_alloc(f->n_face, sizeof *h.tri);
-  st = h.tri ? list_front(c, &front, &n_front, err)
-             : vg_fail_memory(err, "the interfaces");
+  st = h.tri ? list_front(&h, err) : vg_fail_memory(err, "the interfaces");
   for (size_t i = 0; st == VG_OK && i < f->n_face; i++) {
     vg_interface_corners(c, f, i, h.tri[i].v);
     h.tri[i].face = (uint32_t)i;
   }
   for (int k = 0; st == VG_OK && n_halved && k < ROUNDS; k++) {
-    st = halve_edges(&h, n_front, (const uint32_t (*)[2])front, &n_halved,
-                     err);
+    st = halve_edges(&h, &n_halved, err);
     if (st == VG_OK && n_halved) st = fall_all(&h, err);
   }
   if (st == VG_OK) st = hand_over(&h, f->n_face, err);
   free(h.tri);
   free(h.middle);
-  free(front);
+  free(h.front);
   return st;
 }
