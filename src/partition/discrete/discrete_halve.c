@@ -23,11 +23,10 @@ struct halving {
   const struct vg_coarse *c;
   const struct vg_sizing *sizing;
   struct vg_sheets *s;
-  size_t n, cap;
+  size_t n;
   struct triangle *tri;      /* by face */
-  size_t n_front;
-  uint32_t (*front)[2];      /* [n_front] edges of its faces, which stay, in
-                                order */
+  double *reach;             /* [c.n_front] square of the longest edge of the
+                                front at a point */
   uint32_t *middle;          /* [n][3] of edges that were halved, or VG_NONE */
 };
 
@@ -56,31 +55,27 @@ static int same_ends(const void *a, const void *b)
   return 0;
 }
 
-static vg_status list_front(struct halving *h, struct vg_error *err)
+/* Edges at a point of the front are not halved below the longest edge of the
+ * front there, which stays, however small the size is: triangles on that would
+ * become flat. */
+static vg_status find_reach(struct halving *h, struct vg_error *err)
 {
   const struct vg_coarse *c = h->c;
-  size_t cap = 0;
 
+  h->reach = vg_calloc(c->n_front, sizeof *h->reach);
+  if (!h->reach) return vg_fail_memory(err, "the interfaces");
   for (size_t q = 0; q < 4 * c->t.n_cell; q++) {
     if (c->on[0][q] == VG_NONE) continue;
-    if (vg_reserve(&h->front, &cap, h->n_front + 3, sizeof *h->front))
-      return vg_fail_memory(err, "the interfaces");
     for (int k = 0; k < 3; k++) {
       uint32_t a = c->t.cell[q / 4].v[vg_face[q % 4][k]];
       uint32_t b = c->t.cell[q / 4].v[vg_face[q % 4][(k + 1) % 3]];
+      double l = vg_distance2(c->t.x[a], c->t.x[b]);
 
-      h->front[h->n_front][0] = a < b ? a : b;
-      h->front[h->n_front++][1] = a < b ? b : a;
+      if (l > h->reach[a]) h->reach[a] = l;
+      if (l > h->reach[b]) h->reach[b] = l;
     }
   }
-  if (h->n_front) qsort(h->front, h->n_front, sizeof *h->front, same_ends);
   return VG_OK;
-}
-
-static int is_front(const struct halving *h, const uint32_t end[2])
-{
-  return h->n_front &&
-         bsearch(end, h->front, h->n_front, sizeof *h->front, same_ends);
 }
 
 /* Of edges as long the later one counts as longer. */
@@ -93,23 +88,25 @@ static int is_longer(const struct halving *h, const struct listed *a,
   return x != y ? x > y : same_ends(a->end, b->end) > 0;
 }
 
-static int is_too_long(const struct halving *h, const uint32_t end[2],
-                       double mid[3])
+static int is_too_long(const struct halving *h, const uint32_t end[2])
 {
   const double *a = point_of(h, end[0]), *b = point_of(h, end[1]);
-  double most;
+  double mid[3], most;
 
   for (int k = 0; k < 3; k++) mid[k] = 0.5 * (a[k] + b[k]);
   most = longest * vg_sizing_at(h->sizing, mid);
-  return vg_distance2(a, b) > most * most;
+  most *= most;
+  for (int k = 0; k < 2; k++)
+    if (end[k] < h->c->n_front && h->reach[end[k]] > most)
+      most = h->reach[end[k]];
+  return vg_distance2(a, b) > most;
 }
 
-/* The longest edge of each triangle, where it is too long, *n of them in l
- * [triangles]; where that is the front's, the triangle is as good as it gets.
- * */
+/* Of each triangle the longest edge that is too long: each once, *n of them in
+ * l [triangles]. */
 static void list_long(const struct halving *h, struct listed *l, size_t *n)
 {
-  double mid[3];
+  size_t left = 0;
 
   *n = 0;
   for (size_t i = 0; i < h->n; i++) {
@@ -120,33 +117,31 @@ static void list_long(const struct halving *h, struct listed *l, size_t *n)
       struct listed edge = { { a < b ? a : b, a < b ? b : a },
                              (uint32_t)(3 * i + k) };
 
-      if (best.place == VG_NONE || is_longer(h, &edge, &best)) best = edge;
+      if (is_too_long(h, edge.end) &&
+          (best.place == VG_NONE || is_longer(h, &edge, &best)))
+        best = edge;
     }
-    if (is_too_long(h, best.end, mid) && !is_front(h, best.end))
-      l[(*n)++] = best;
+    if (best.place != VG_NONE) l[(*n)++] = best;
   }
+  if (*n) qsort(l, *n, sizeof *l, by_ends);
+  for (size_t k = 0; k < *n; k++)
+    if (!left || same_ends(l[k].end, l[left - 1].end)) l[left++] = l[k];
+  *n = left;
 }
 
-/* Each of these once, with a point in its middle: place becomes the point. */
-static vg_status add_middles(struct halving *h, struct listed *l, size_t *n,
+/* A point in the middle of each: place becomes the point. */
+static vg_status add_middles(struct halving *h, struct listed *l, size_t n,
                              struct vg_error *err)
 {
-  size_t left = 0;
-
-  if (*n) qsort(l, *n, sizeof *l, by_ends);
-  for (size_t k = 0; k < *n; k++) {
-    double mid[3];
-
-    if (left && !same_ends(l[k].end, l[left - 1].end)) continue;
+  for (size_t k = 0; k < n; k++) {
     if (vg_reserve(&h->s->x, &h->s->cap_point, h->s->n_point + 1,
                    sizeof *h->s->x))
       return vg_fail_memory(err, "the interfaces");
-    is_too_long(h, l[k].end, mid);
-    memcpy(h->s->x[h->s->n_point], mid, sizeof mid);
-    l[left] = l[k];
-    l[left++].place = (uint32_t)(h->c->t.n_point + h->s->n_point++);
+    for (int i = 0; i < 3; i++)
+      h->s->x[h->s->n_point][i] = 0.5 * (point_of(h, l[k].end[0])[i] +
+                                         point_of(h, l[k].end[1])[i]);
+    l[k].place = (uint32_t)(h->c->t.n_point + h->s->n_point++);
   }
-  *n = left;
   return VG_OK;
 }
 
@@ -161,7 +156,7 @@ static vg_status halve_edges(struct halving *h, size_t *n_halved,
   if (!l || !h->middle) st = vg_fail_memory(err, "the interfaces");
   if (st == VG_OK) {
     list_long(h, l, n_halved);
-    st = add_middles(h, l, n_halved, err);
+    st = add_middles(h, l, *n_halved, err);
   }
   for (size_t k = 0; st == VG_OK && k < 3 * h->n; k++) {
     uint32_t a = h->tri[k / 3].v[k % 3], b = h->tri[k / 3].v[(k + 1) % 3];
@@ -262,7 +257,7 @@ vg_status vg_sheets_halve(const struct vg_coarse *c,
   vg_status st;
 
   h.tri = vg_alloc(f->n_face, sizeof *h.tri);
-  st = h.tri ? list_front(&h, err) : vg_fail_memory(err, "the interfaces");
+  st = h.tri ? find_reach(&h, err) : vg_fail_memory(err, "the interfaces");
   for (size_t i = 0; st == VG_OK && i < f->n_face; i++) {
     vg_interface_corners(c, f, i, h.tri[i].v);
     h.tri[i].face = (uint32_t)i;
@@ -274,6 +269,6 @@ vg_status vg_sheets_halve(const struct vg_coarse *c,
   if (st == VG_OK) st = hand_over(&h, f->n_face, err);
   free(h.tri);
   free(h.middle);
-  free(h.front);
+  free(h.reach);
   return st;
 }
