@@ -10,13 +10,15 @@
 
 /* Most over mean that METIS is asked for. */
 static const double imbalance = 1.03;   /* D2 */
+/* From this gradient of the size on it counts as varying, as in load.c. */
+static const double gradient = 0.05;   /* C15 */
 /* Cells beside a face of the front, whatever the size there. */
 static const double cells_per_face = 0.75;   /* D3 */
 /* Pieces that hang apart with less than this share of a part's weight go to the
  * part beside them. */
 static const double small_piece = 0.1;   /* D4 */
 /* Most over mean while cells change sides, and how often all are looked at. */
-static const double evened = 1.06;   /* D5 */
+static const double evened = 1.04;   /* D5 */
 enum { EVEN_SWEEPS = 6 };
 
 /* --- weights ------------------------------------------------------------- */
@@ -55,6 +57,19 @@ static double density(const struct vg_sizing *sizing, double *const x[4])
   return sum / n;
 }
 
+/* Cells are more where the size varies (partition/load/load.h). */
+static double graded(const struct vg_sizing *sizing, double *const x[4])
+{
+  double h[4], slope = 0;
+
+  for (int i = 0; i < 4; i++) {
+    h[i] = vg_sizing_at(sizing, x[i]);
+    for (int k = 0; k < i; k++)
+      slope = fmax(slope, fabs(h[i] - h[k]) / vg_distance(x[i], x[k]));
+  }
+  return 1 + VG_LOAD_GRADED * fmin(slope / gradient, 1);
+}
+
 static void weigh(void *context, size_t first, size_t end, int worker)
 {
   const struct weights *w = context;
@@ -65,7 +80,8 @@ static void weigh(void *context, size_t first, size_t end, int worker)
     const uint32_t *v = t->cell[q].v;
     double *const x[4] = { t->x[v[0]], t->x[v[1]], t->x[v[2]], t->x[v[3]] };
     double volume = vg_det(x[0], x[1], x[2], x[3]) / 6;
-    double cells = w->per_cube * fabs(volume) * density(w->sizing, x);
+    double cells = w->per_cube * fabs(volume) * density(w->sizing, x) *
+                   graded(w->sizing, x);
 
     for (int i = 0; i < 4; i++)
       if (w->c->on[q][i] != VG_NONE) cells += cells_per_face;
