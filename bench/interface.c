@@ -1,12 +1,14 @@
-/* interface CASE CELLS LEAF [THREADS]: are cells beside interfaces as good as
- * all cells?
+/* interface CASE CELLS LEAF [THREADS [PARTS [remesh|h-refine [metis|rcb]]]]: are
+ * cells beside interfaces as good as all cells?
  *
  * CASE: a case of `vanguard demo` with about CELLS cells, or a file with a
  * closed surface, which is meshed as it is. It is filled in leaves of LEAF
  * cells; points that a zone made and that have cells of other tasks are on
  * interfaces. Cells made by repairs count as of the place where they are: what
  * their corners' makers say, since the tasks whose cells they take the place of
- * are not kept.
+ * are not kept. With PARTS it is decomposed by `discrete`: then points that a
+ * leaf made, or adopted, and that have cells of other leaves are on interfaces;
+ * cells made by repairs do not tell.
  * One line each for all cells, for those within two rings of an interface,
  * and for the others; then for all and those near among the inner cells,
  * without a corner on the surface, whose angles are others and of which
@@ -25,6 +27,7 @@
 #include "core/surface/surface_check.h"
 #include "io/mesh/format.h"
 #include "partition/advance/advance.h"
+#include "partition/discrete/discrete.h"
 
 enum { BINS = 1800, N_SIZE = 4000, LEAF = 1, ZONE = 2, REPAIR = 3 };
 
@@ -60,6 +63,7 @@ struct census {
   uint8_t *kind;             /* [n_point] and of which kind that is */
   uint8_t *ring;             /* [n_point] rings from an interface, + 1 */
   int now;                   /* ring that is looked for */
+  int has_parts;             /* no zones: leaves meet at interfaces */
   uint64_t n_boundary_point; /* they come first */
   struct share all, near, rest, inner, inner_near;
 };
@@ -108,6 +112,7 @@ static vg_status mark(void *context, const struct vg_slice *s,
   const uint32_t *v = s->cell[VG_SLICE_TET];
 
   (void)err;
+  if (k->has_parts && s->kind == REPAIR) return VG_OK;
   for (size_t c = 0; c < s->n_cell[VG_SLICE_TET]; c++, v += 4) {
     uint32_t of = place_of(k, s->id, v);
     int beyond = 0;
@@ -127,7 +132,7 @@ static vg_status mark(void *context, const struct vg_slice *s,
 /* All cells of a zone's point may be repairs, or swapped. */
 static int on_interface(const struct census *k, size_t p)
 {
-  return k->kind[p] == ZONE && k->task[p] != NOBODY &&
+  return k->kind[p] == (k->has_parts ? LEAF : ZONE) && k->task[p] != NOBODY &&
          k->task[p] != k->maker[p];
 }
 
@@ -275,13 +280,15 @@ static void show(const char *name, const struct share *s)
 
 /* Cells with a corner on an interface are the first ring, their neighbours
  * at points the second. One rank, one thread: marks are not atomic. */
-static void measure(const struct vg_slices *s, const struct vg_sizing *sizing)
+static void measure(const struct vg_slices *s, const struct vg_sizing *sizing,
+                    int has_parts)
 {
   struct census *k = vg_calloc(1, sizeof *k);
   struct vg_error err = VG_ERROR_INIT;
 
   if (!k) exit(1);
   k->sizing = sizing;
+  k->has_parts = has_parts;
   k->task = vg_alloc(s->n_point, sizeof *k->task);
   k->maker = vg_alloc(s->n_point, sizeof *k->maker);
   k->kind = vg_calloc(s->n_point, 1);
@@ -334,6 +341,16 @@ static double angle(double shape)
   return asin(sqrt(fmax(0, shape))) * degree;
 }
 
+/* PARTS [INTERFACES [PARTITIONER]] */
+static void decompose(int n, char **word, struct vg_partition_options *o)
+{
+  o->maker = vg_discrete_part;
+  o->parting.n_part = atoi(word[0]);
+  o->parting.h_refine = n > 1 && !strcmp(word[1], "h-refine");
+  if (n > 2 && !strcmp(word[2], "rcb"))
+    o->parting.partitioner = VG_PARTITIONER_RCB;
+}
+
 int main(int argc, char **argv)
 {
   struct vg_demo d = VG_DEMO_INIT;
@@ -346,7 +363,8 @@ int main(int argc, char **argv)
   double t0;
 
   if (argc < 4) {
-    fprintf(stderr, "usage: interface CASE|FILE CELLS LEAF [THREADS]\n");
+    fprintf(stderr, "usage: interface CASE|FILE CELLS LEAF [THREADS [PARTS "
+            "[remesh|h-refine [metis|rcb]]]]\n");
     return 2;
   }
   must(vg_child_server_start(&err), &err);
@@ -355,6 +373,7 @@ int main(int argc, char **argv)
                      &err), &err);
   o.rule.leaf_cells = atof(argv[3]);
   o.threads = argc > 4 ? atoi(argv[4]) : 1;
+  if (argc > 5) decompose(argc - 5, argv + 5, &o);
   t0 = cpu();
   must(vg_partition_grow(NULL, &d.surface, sizing, &o, &p, &r, &spans, &err),
        &err);
@@ -369,7 +388,7 @@ int main(int argc, char **argv)
          (unsigned long long)r.n_repair_bad,
          (unsigned long long)r.n_repair_bad_left, angle(r.repair_worst),
          angle(r.repair_worst_left));
-  measure(vg_partition_slices(p), sizing);
+  measure(vg_partition_slices(p), sizing, o.maker != NULL);
   vg_partition_free(p);
   vg_spans_release(&spans);
   vg_sizing_free(sizing);

@@ -296,7 +296,7 @@ static struct vg_mesh sheet(size_t n)
 static void test_decimate(void **state)
 {
   struct vg_mesh m = sheet(100);
-  struct vg_coarse c = VG_COARSE_INIT;
+  struct vg_decimated c = VG_DECIMATED_INIT;
 
   (void)state;
   assert_int_equal(vg_decimate(&m, m.n_tri, &c, NULL), VG_OK);
@@ -313,7 +313,7 @@ static void test_decimate(void **state)
     assert_true(n[0] != n[1] && n[1] != n[2] && n[2] != n[0]);
     assert_true(c.from[t] < m.n_tri && (!t || c.from[t] > c.from[t - 1]));
   }
-  vg_coarse_release(&c);
+  vg_decimated_release(&c);
   vg_mesh_release(&m);
 }
 

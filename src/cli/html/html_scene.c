@@ -15,14 +15,14 @@
 
 /* Triangles sorted by patch: those of patch i are first[i] .. first[i + 1]. */
 struct scene {
-  struct vg_coarse coarse;
+  struct vg_decimated coarse;
   size_t *first, *order;    /* [n_patch + 1], [n_tri] */
   double centre[3], half[3], radius; /* of the body's box */
 };
 
 static void release(struct scene *s)
 {
-  vg_coarse_release(&s->coarse);
+  vg_decimated_release(&s->coarse);
   free(s->first);
   free(s->order);
 }
@@ -51,7 +51,7 @@ static vg_status sort(const struct page *p, struct scene *s,
                       struct vg_error *err)
 {
   const struct vg_mesh *m = &p->h->problem->surface;
-  const struct vg_coarse *c = &s->coarse;
+  const struct vg_decimated *c = &s->coarse;
   size_t *next = vg_calloc(m->n_patch + 1, sizeof *next);
 
   s->first = vg_calloc(m->n_patch + 1, sizeof *s->first);
@@ -92,7 +92,7 @@ static void put_float(uint8_t **to, double v)
 static vg_status pack(const struct page *p, const struct scene *s,
                       struct vg_bytes *out, struct vg_error *err)
 {
-  const struct vg_coarse *c = &s->coarse;
+  const struct vg_decimated *c = &s->coarse;
   const uint8_t *by[3] = { p->walls.by[BY_LEVEL], p->walls.by_share,
                            p->walls.by[BY_CAUSE] };
   size_t n = 12 * c->n_point + 15 * c->n_tri;

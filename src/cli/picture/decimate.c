@@ -10,12 +10,12 @@
 #define COARSER 1.25       /* the next lattice, where one was too fine */
 #define LEFT 3             /* triangles in a square of a lattice */
 
-void vg_coarse_release(struct vg_coarse *c)
+void vg_decimated_release(struct vg_decimated *c)
 {
   free(c->point);
   free(c->tri);
   free(c->from);
-  *c = (struct vg_coarse)VG_COARSE_INIT;
+  *c = (struct vg_decimated)VG_DECIMATED_INIT;
 }
 
 /* Cubes that hold points, in an open table of the power of two `size`. */
@@ -36,7 +36,7 @@ static void release(struct cubes *q)
 }
 
 static vg_status reserve(const struct vg_mesh *m, struct cubes *q,
-                         struct vg_coarse *c, struct vg_error *err)
+                         struct vg_decimated *c, struct vg_error *err)
 {
   for (q->size = 64; q->size < 2 * m->n_point; q->size *= 2) { }
   q->key = vg_alloc(q->size, sizeof *q->key);
@@ -75,7 +75,7 @@ static uint32_t find(struct cubes *q, uint64_t key, size_t *n)
 }
 
 static void merge_points(const struct vg_mesh *m, const double lo[3],
-                         double step, struct cubes *q, struct vg_coarse *c)
+                         double step, struct cubes *q, struct vg_decimated *c)
 {
   memset(q->key, 0, q->size * sizeof *q->key);
   memset(q->count, 0, m->n_point * sizeof *q->count);
@@ -94,7 +94,7 @@ static void merge_points(const struct vg_mesh *m, const double lo[3],
 }
 
 static void keep_triangles(const struct vg_mesh *m, const struct cubes *q,
-                           struct vg_coarse *c)
+                           struct vg_decimated *c)
 {
   c->n_tri = 0;
   for (size_t t = 0; t < m->n_tri; t++) {
@@ -142,10 +142,10 @@ static double first_step(const struct vg_mesh *m, size_t n)
 }
 
 vg_status vg_decimate(const struct vg_mesh *m, size_t n_most,
-                      struct vg_coarse *out, struct vg_error *err)
+                      struct vg_decimated *out, struct vg_error *err)
 {
   struct cubes q = { 0, NULL, NULL, NULL, NULL };
-  struct vg_coarse c = VG_COARSE_INIT;
+  struct vg_decimated c = VG_DECIMATED_INIT;
   double lo[3], hi[3];
   vg_status st = reserve(m, &q, &c, err);
 
@@ -158,10 +158,10 @@ vg_status vg_decimate(const struct vg_mesh *m, size_t n_most,
       merge_points(m, lo, c.step, &q, &c);
       keep_triangles(m, &q, &c);
     }
-    vg_coarse_release(out);
+    vg_decimated_release(out);
     *out = c;
   } else {
-    vg_coarse_release(&c);
+    vg_decimated_release(&c);
   }
   release(&q);
   return st;

@@ -182,6 +182,11 @@ static vg_status read_project(struct vg_plan *p, struct vg_error *err)
   VG_TRY(vg_problem_deck(q, err));
   VG_TRY(vg_cli_apply(&o->kept, &q->settings, err));
   vg_settings_write(&q->settings);
+  if (q->settings.decompose != VG_DECOMPOSE_ADVANCING) {
+    st = vg_fail(err, VG_ERR_USAGE, "plan forecasts the advancing partition "
+                 "only: give --decompose advancing, or mesh without a plan");
+    goto done;
+  }
   VG_TRY(vg_problem_surface(q, &p->show, err));
   count_time(p, VG_PHASE_READ, start);
   start = vg_clock_process();

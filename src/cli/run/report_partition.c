@@ -79,6 +79,57 @@ static double share_of(const struct vg_run *r, uint64_t n)
   return r->n_field_cell ? 100 * (double)n / (double)r->n_field_cell : 0;
 }
 
+/* Most over mean of the leaves' cells. */
+static double balance(const struct leaves *l)
+{
+  double sum = 0;
+
+  for (size_t i = 0; i < l->n; i++) sum += (double)l->cells[i];
+  return l->n ? (double)l->cells[l->n - 1] * (double)l->n / sum : 1;
+}
+
+/* A void that was parted before any of it was filled. */
+static void print_parting(FILE *to, const struct vg_run *r,
+                          const struct leaves *l)
+{
+  const struct vg_partition_report *p = &r->partition;
+  const struct vg_parting_report *q = &p->parting;
+  char a[32], b[32];
+
+  if (!p->n_part) return;
+  fprintf(to, "  decomposed by %s: %s parts (%llu as pieces hung apart), "
+          "balance %.3f (most over mean\n  of the cells made in leaves)\n",
+          r->decomposition, vg_cli_count(p->n_part, a),
+          (unsigned long long)q->n_apart, balance(l));
+  fprintf(to, "  %s coarse cells, coarsening %.2f, %s triangles of "
+          "interfaces\n", vg_cli_count(q->n_coarse, a), q->coarsening,
+          vg_cli_count(q->n_face, b));
+  fprintf(to, "  seconds: coarse cells %.2f, dealt out %.2f, interfaces "
+          "smoothed %.2f, divided %.2f\n", q->time[VG_PARTING_COARSE],
+          q->time[VG_PARTING_GRAPH], q->time[VG_PARTING_SMOOTH],
+          q->time[VG_PARTING_FACES]);
+}
+
+static void put_parting(const struct vg_run *r, const struct leaves *l,
+                        json_t *o)
+{
+  const struct vg_partition_report *p = &r->partition;
+  const struct vg_parting_report *q = &p->parting;
+
+  json_object_set_new(o, "decomposition", json_string(r->decomposition));
+  json_object_set_new(o, "balance", json_real(balance(l)));
+  if (!p->n_part) return;
+  json_object_set_new(o, "parting", json_pack(
+    "{s:I s:I s:f s:I s:I s:f s:f s:f s:f}", "parts", (json_int_t)p->n_part,
+    "parts_apart", (json_int_t)q->n_apart, "coarsening", q->coarsening,
+    "coarse_cells", (json_int_t)q->n_coarse,
+    "interface_triangles", (json_int_t)q->n_face,
+    "coarse_seconds", q->time[VG_PARTING_COARSE],
+    "deal_seconds", q->time[VG_PARTING_GRAPH],
+    "smooth_seconds", q->time[VG_PARTING_SMOOTH],
+    "divide_seconds", q->time[VG_PARTING_FACES]));
+}
+
 void vg_report_partition_text(FILE *to, const struct vg_run *r)
 {
   const struct vg_partition_report *p = &r->partition;
@@ -90,6 +141,7 @@ void vg_report_partition_text(FILE *to, const struct vg_run *r)
           r->threads > 1 ? "s" : "",
           vg_cli_count((unsigned long long)p->estimate, a),
           vg_cli_count(r->n_field_cell, b));
+  print_parting(to, r, &l);
   fprintf(to, "  cuts %s, pencils %s, tiles %s: %.1f %% of the cells; ",
           vg_cli_count(p->n_node, a), vg_cli_count(p->n_pencil, b),
           vg_cli_count(p->n_tile, c), share_of(r, p->n_zone_cell));
@@ -157,6 +209,7 @@ json_t *vg_report_partition_json(const struct vg_run *r)
     json_object_set_new(o, row[i].name, count(row[i].n));
   for (size_t i = 0; i < l.n; i++)
     json_array_append_new(leaves, count(l.cells[i]));
+  put_parting(r, &l, o);
   free(l.cells);
   json_object_set_new(o, "leaf_cells", leaves);
   json_object_set_new(o, "repair_cells", json_integer(by_repair));

@@ -12,6 +12,7 @@
 #include "cli/input/walls.h"
 #include "cli/report/report.h"
 #include "layers/columns/pack.h"
+#include "partition/discrete/discrete.h"
 
 uint64_t vg_run_cells(const struct vg_run *r)
 {
@@ -173,10 +174,11 @@ static struct vg_digest job_digest(const struct vg_problem *p,
 {
   const struct vg_settings *s = &p->settings;
   struct vg_digest d = {{0, 0}}, plugin;
-  double size[5] = {s->scale, s->growth, s->hmin, s->hmax,
-                    (double)s->surface_sizes};
-  int64_t cut[5] = {s->leaf_cells, s->levels, s->split_direction,
-                    s->constant_direction, s->optimise};
+  double size[6] = {s->scale, s->growth, s->hmin, s->hmax,
+                    (double)s->surface_sizes, s->coarsening};
+  int64_t cut[9] = {s->leaf_cells, s->levels, s->split_direction,
+                    s->constant_direction, s->optimise, s->decompose,
+                    s->parts, s->partitioner, s->h_refine};
 
   d = vg_digest_of(d, strlen(vg_source_digest), vg_source_digest);
   d = vg_digest_of(d, sizeof size, size);
@@ -255,6 +257,10 @@ static vg_status open_mesher(const struct vg_run *r, const struct vg_settings *s
   return vg_comm_agree(r->comm, st, err);
 }
 
+/* In the order of enum vg_decomposition. */
+static const struct { const char *name; vg_parting_maker *maker; } ways[] = {
+  { "advancing", NULL }, { "discrete", vg_discrete_part } };
+
 static vg_status fill(struct vg_run *r, const struct vg_problem *p,
                       const struct vg_mesh *boundary,
                       const struct vg_sizing *sizing, struct vg_display *show,
@@ -269,6 +275,12 @@ static vg_status fill(struct vg_run *r, const struct vg_problem *p,
   o.rule.first_axis = (int)s->split_direction - 1;
   o.rule.constant = s->constant_direction;
   o.levels = (int)s->levels;
+  o.maker = ways[s->decompose].maker;
+  r->decomposition = ways[s->decompose].name;
+  o.parting.n_part = s->parts == VG_COUNT_NONE ? 0 : (int)s->parts;
+  o.parting.partitioner = s->partitioner;
+  o.parting.coarsening = s->coarsening;
+  o.parting.h_refine = s->h_refine;
   o.threads = r->threads;
   o.sweeps = (int)s->optimise;
   o.max_cells = (uint64_t)s->max_cells;

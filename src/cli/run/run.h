@@ -36,6 +36,7 @@ struct vg_run {
   struct vg_run_pictures pictures; /* drawn then too, for the outputs */
   struct vg_comm *comm;      /* NULL: one rank without a launcher */
   int rank, size, threads;
+  const char *decomposition; /* static; how the field was decomposed */
   struct vg_partition *field;
   struct vg_partition_report partition;
   struct vg_spans spans;

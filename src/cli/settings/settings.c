@@ -26,6 +26,10 @@ static const char *const cad_patch_words[] = { "face", "name", "colour",
                                                "layer", "part", NULL };
 /* In the order of enum vg_layer_cells. */
 static const char *const cell_words[] = { "tets", "mixed", NULL };
+/* In the order of enum vg_decomposition, enum vg_partitioner. */
+static const char *const decompose_words[] = { "advancing", "discrete", NULL };
+static const char *const partitioner_words[] = { "metis", "rcb", NULL };
+static const char *const interface_words[] = { "remesh", "h-refine", NULL };
 /* In the order of enum vg_source_kind. */
 static const char *const source_words[] = {
   "vgrid_node", "vgrid_line", "point", "line", "triangle", "box", "sphere",
@@ -130,6 +134,22 @@ static const struct vg_param params[] = {
                         "costs least" },
   { "constant_direction", AT(constant_direction), .type = VG_PARAM_FLAG,
     .unit = "", .help = "all cuts across split_direction" },
+  { "decompose", AT(decompose), .type = VG_PARAM_WORD,
+    .words = decompose_words, .unit = "", .help = "how the space outside the "
+    "layers is parted: advancing: cut by planes of finished cells; discrete: "
+    "by the faces of a coarse mesh, dealt out to parts" },
+  { "parts", AT(parts), .type = VG_PARAM_COUNT, .lo = 1, .hi = 1e6,
+    .optional = 1, .unit = "parts", .help = "of a discrete decomposition; -: "
+    "as many as there are leaf_cells in the cells expected" },
+  { "partitioner", AT(partitioner), .type = VG_PARAM_WORD,
+    .words = partitioner_words, .unit = "", .help = "who deals out coarse "
+    "cells to parts: metis, or rcb (recursive coordinate bisection)" },
+  { "coarsening", AT(coarsening), .type = VG_PARAM_REAL, .hi = 100,
+    .unit = "", .help = "sizes of the coarse mesh over those of the mesh, 1 "
+    "or more; 0: by the number of parts" },
+  { "interfaces", AT(h_refine), .type = VG_PARAM_WORD,
+    .words = interface_words, .unit = "", .help = "how faces between parts "
+    "get the local size: remesh, or h-refine (edges are halved)" },
   { "threads", AT(threads), .type = VG_PARAM_COUNT, .hi = 4096,
     .unit = "threads", .help = "threads of each process; 0: one per core "
     "that it is bound to; results do not depend on it" },
@@ -440,6 +460,7 @@ void vg_settings_default(struct vg_settings *s)
   s->optimise = fill.optimise;
   s->leaf_cells = VG_LEAF_CELLS;
   s->report_html = 1;
+  s->parts = VG_COUNT_NONE;
   snprintf(s->title, sizeof s->title, "untitled");
   snprintf(s->write, sizeof s->write, "auto");
   snprintf(s->mesher, sizeof s->mesher, "builtin");
@@ -604,6 +625,9 @@ vg_status vg_settings_check(const struct vg_settings *s, struct vg_error *err)
   if (s->constant_direction && !s->split_direction)
     return vg_fail(err, VG_ERR_INPUT, "constant_direction needs a "
                    "split_direction of 1, 2 or 3");
+  if (s->coarsening != 0 && s->coarsening < 1)
+    return vg_fail(err, VG_ERR_INPUT, "coarsening is %g; it must be at least "
+                   "1, or 0 for one by the number of parts", s->coarsening);
   if (s->hmin > 0 && s->hmax > 0 && s->hmin > s->hmax)
     return vg_fail(err, VG_ERR_INPUT, "hmin %g is larger than hmax %g; "
                    "swap them or set one to 0", s->hmin, s->hmax);

@@ -112,6 +112,11 @@ struct vg_settings {
   int64_t leaf_cells, levels;      /* how far the void is cut up */
   int64_t split_direction;         /* 0: best; 1 to 3: x, y, z first */
   int constant_direction;
+  int decompose;                   /* enum vg_decomposition */
+  int64_t parts;                   /* VG_COUNT_NONE: by leaf_cells */
+  int partitioner;                 /* enum vg_partitioner */
+  double coarsening;               /* 0: by the number of parts */
+  int h_refine;                    /* 1: interfaces by halving edges */
   int64_t threads;
   struct vg_layer_settings layer;
   struct vg_farfield_row farfield;

@@ -100,6 +100,13 @@ vg_status vg_sizing_new(const struct vg_sizing_options *options, size_t n,
                         const struct vg_mesh *surface,
                         struct vg_sizing **out, struct vg_error *err);
 
+/** A field of its own: the sizes of another times a factor >= 1, but no more
+ * than `most` has there. Cost: a copy, and an evaluation of `most` for each
+ * corner of a leaf. VG_ERR_MEMORY. */
+vg_status vg_sizing_coarsened(const struct vg_sizing *s, double factor,
+                              const struct vg_sizing *most,
+                              struct vg_sizing **out, struct vg_error *err);
+
 /** Free a field; NULL is accepted. */
 void vg_sizing_free(struct vg_sizing *s);
 

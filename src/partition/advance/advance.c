@@ -74,8 +74,9 @@ static vg_status make_root(struct vg_partition *p, struct vg_comm *comm,
   vg_comm_bind_node(comm, 0);
   VG_TRY(st);
   p->report.estimate = n->load.cells;
+  n->to_part = p->options.maker != NULL;
   /* a void that is not cut is filled as it is, in the order it came in */
-  if (vg_node_wants_cut(p, n)) VG_TRY(vg_select_sort(&n->front, err));
+  if (n->to_part || vg_node_wants_cut(p, n)) VG_TRY(vg_select_sort(&n->front, err));
   *out = n;
   n = NULL;
 done:
@@ -185,27 +186,31 @@ static vg_status sum_report(struct vg_partition *p, struct vg_comm *comm,
   uint64_t *more[] = {&r->n_node, &r->n_pencil, &r->n_tile, &r->n_leaf,
     &r->n_zone_cell, &r->n_blocked, &r->n_crossing, &r->n_retry, &r->n_uncut,
     &r->n_outgrown, &r->n_open_left, &r->n_found,
-    &r->n_widened, &r->n_widened_cell, &whole};
+    &r->n_widened, &r->n_widened_cell, &whole, &r->n_part,
+    &r->parting.n_coarse, &r->parting.n_apart, &r->parting.n_face};
   enum { N_COUNT = sizeof count / sizeof *count,
          N_MORE = sizeof more / sizeof *more,
          N_TIME = sizeof time / sizeof *time };
   uint64_t v[N_COUNT + N_MORE + N_TIME];
-  double estimate = r->estimate;
+  double most[2 + VG_PARTING_STEPS] = {r->estimate, r->parting.coarsening};
   vg_status st;
 
   for (size_t k = 0; k < N_COUNT; k++) v[k] = *count[k];
   for (size_t k = 0; k < N_MORE; k++) v[N_COUNT + k] = *more[k];
   for (size_t k = 0; k < N_TIME; k++)
     v[N_COUNT + N_MORE + k] = (uint64_t)(*time[k] * 1e6);
+  memcpy(most + 2, r->parting.time, sizeof r->parting.time);
   st = vg_comm_sum(comm, sizeof v / sizeof *v, v, err);
-  if (st == VG_OK) st = vg_comm_max(comm, 1, &estimate, err);
+  if (st == VG_OK) st = vg_comm_max(comm, 2 + VG_PARTING_STEPS, most, err);
   if (st < 0) return st;
   for (size_t k = 0; k < N_COUNT; k++) *count[k] = v[k];
   for (size_t k = 0; k < N_MORE; k++) *more[k] = v[N_COUNT + k];
   for (size_t k = 0; k < N_TIME; k++)
     *time[k] = 1e-6 * (double)v[N_COUNT + N_MORE + k];
   f->whole_void = (int)whole;
-  r->estimate = estimate;
+  r->estimate = most[0];
+  r->parting.coarsening = most[1];
+  memcpy(r->parting.time, most + 2, sizeof r->parting.time);
   return VG_OK;
 }
 

@@ -137,7 +137,7 @@ static vg_status submit_leaf(struct vg_partition *p, struct vg_engine *e,
     vg_node_free(n);
     return vg_fail_memory(err, "a task");
   }
-  w->serial = vg_partition_serial(p);
+  w->serial = n->serial ? n->serial : vg_partition_serial(p);
   snprintf(path, sizeof path, "%.*sL", VG_PATH_MAX - 2, n->path);
   return submit(e, path, VG_SPAN_LEAF, 0, 1, n->load.cells, w, err);
 }
@@ -162,7 +162,9 @@ static vg_status submit_child(struct vg_partition *p, struct vg_engine *e,
   if (vg_node_wants_cut(p, c)) return submit_start(e, c, err);
   pthread_mutex_lock(&p->lock);
   p->report.n_leaf++;
-  p->report.n_uncut += leaf > 0 && c->load.cells > VG_OUTGROWN * leaf;
+  /* parts of a parting have their serials, and are as large as was asked */
+  p->report.n_uncut += leaf > 0 && !c->serial &&
+                       c->load.cells > VG_OUTGROWN * leaf;
   pthread_mutex_unlock(&p->lock);
   return submit_leaf(p, e, c, err);
 }
@@ -316,13 +318,15 @@ static vg_status packed(struct vg_writer *w, struct vg_bytes *out,
   return VG_OK;
 }
 
+enum { N_NUMBER = 10 };      /* of a node */
+
 static vg_status put_node(struct vg_writer *w, const struct vg_node *n,
                           struct vg_error *err)
 {
   const struct vg_lattice *l = &n->lattice;
-  int32_t number[9] = {n->levels, n->retry, n->is_final, n->is_planned,
-                       n->n_bisection, l->n[0], l->n[1], l->n[2],
-                       l->lines_at_once};
+  int32_t number[N_NUMBER] = {n->levels, n->retry, n->is_final, n->is_planned,
+                              n->n_bisection, l->n[0], l->n[1], l->n[2],
+                              l->lines_at_once, n->to_part};
   struct vg_bytes load = {0, NULL};
   uint64_t size;
   vg_status st = vg_load_pack(&n->load, &load, err);
@@ -330,7 +334,7 @@ static vg_status put_node(struct vg_writer *w, const struct vg_node *n,
   if (st < 0) return st;
   size = load.n;
   vg_put(w, sizeof n->path, 1, n->path);
-  vg_put(w, 9, sizeof *number, number);
+  vg_put(w, N_NUMBER, sizeof *number, number);
   vg_put(w, 1, sizeof l->at, l->at);  /* ribs are made where it is cut */
   vg_put(w, 1, sizeof n->per_cube, &n->per_cube);
   vg_put(w, 1, sizeof size, &size);
@@ -344,13 +348,13 @@ static struct vg_node *get_node(struct vg_reader *r)
 {
   struct vg_front empty = VG_FRONT_INIT;
   struct vg_node *n = vg_node_new("", &empty);
-  int32_t number[9] = {0};
+  int32_t number[N_NUMBER] = {0};
   struct vg_bytes load = {0, NULL};
   uint64_t size = 0;
 
   if (!n) return NULL;
   vg_get(r, sizeof n->path, 1, n->path);
-  vg_get(r, 9, sizeof *number, number);
+  vg_get(r, N_NUMBER, sizeof *number, number);
   vg_get(r, 1, sizeof n->lattice.at, n->lattice.at);
   vg_get(r, 1, sizeof n->per_cube, &n->per_cube);
   vg_get(r, 1, sizeof size, &size);
@@ -361,6 +365,7 @@ static struct vg_node *get_node(struct vg_reader *r)
   n->n_bisection = number[4];
   for (int k = 0; k < 3; k++) n->lattice.n[k] = number[5 + k];
   n->lattice.lines_at_once = number[8];
+  n->to_part = number[9];
   load.n = size;
   load.data = vg_get_array(r, size, 1);
   if (!r->bad) r->bad = vg_load_unpack(&load, &n->load, NULL) < 0;
@@ -487,7 +492,7 @@ const struct vg_engine_ops vg_tasks_ops = {
 vg_status vg_tasks_first(struct vg_partition *p, struct vg_node *n,
                          struct vg_task *t, struct vg_error *err)
 {
-  int cut = vg_node_wants_cut(p, n);
+  int cut = n->to_part || vg_node_wants_cut(p, n);
   struct vg_work *w = new_work(cut ? VG_WORK_START : VG_WORK_LEAF, n);
 
   if (!w) {

@@ -292,6 +292,7 @@ vg_status vg_node_start(struct vg_partition *p, struct vg_node *n,
 {
   vg_status st;
 
+  if (n->to_part) return vg_node_part(p, n, e, err);
   n->stage = 0;
   if (!vg_node_wants_cut(p, n)) return keep_whole(n, err);
   if (!n->retry)

@@ -36,6 +36,7 @@ struct vg_node {
   int levels;                /* bisections left, in a partition by levels */
   int retry;                 /* attempts that failed */
   int is_final;              /* a leaf whatever it needs */
+  int to_part;               /* by a maker of partings, not by planes */
   uint32_t serial;           /* of its leaf; 0: none yet */
   /* while it is being cut: faces stay where they are, with VG_FACE_GONE */
   size_t cap_x, cap_name, cap_face;  /* of the front; 0: just its size */
@@ -243,6 +244,21 @@ vg_status vg_node_open_places(struct vg_partition *p, struct vg_node *n,
                               int axis, const struct vg_engine *e,
                               struct vg_region **region, size_t *n_region,
                               struct vg_error *err);
+
+/** The children of a node that a maker parts, planned. Points of interfaces are
+ * those of leaves: each has some behind the others on its front, by names of
+ * its serial. (node_part.c) */
+vg_status vg_node_part(struct vg_partition *p, struct vg_node *n,
+                       const struct vg_engine *e, struct vg_error *err);
+
+/** The children's loads, from the node's and their fronts; cells are multiplied
+ * by `correction` (vg_load_split). (node_split.c) */
+vg_status vg_node_share_load(struct vg_node *n, double correction,
+                             const struct vg_engine *e, struct vg_error *err);
+
+/** Plan the children, which are known now. (node_split.c) */
+void vg_node_plan_children(const struct vg_partition *p, struct vg_node *n,
+                           const struct vg_engine *e);
 
 /** Part the front by blocks: n->child, planned. (node_split.c) */
 vg_status vg_node_split(struct vg_partition *p, struct vg_node *n,

@@ -358,8 +358,8 @@ static vg_status load_of_blocks(struct split *s, struct vg_error *err)
   return st;
 }
 
-static vg_status load_of_fronts(struct vg_node *n, const struct vg_engine *e,
-                                struct vg_error *err)
+vg_status vg_node_share_load(struct vg_node *n, double correction,
+                             const struct vg_engine *e, struct vg_error *err)
 {
   struct vg_void *v = vg_calloc(n->n_child, sizeof *v);
   struct vg_load *load = vg_calloc(n->n_child, sizeof *load);
@@ -373,7 +373,7 @@ static vg_status load_of_fronts(struct vg_node *n, const struct vg_engine *e,
     v[k].face = n->child[k]->front.face;
   }
   if (st == VG_OK)
-    st = vg_load_split(&n->load, n->n_child, v, correction(n), e, load, err);
+    st = vg_load_split(&n->load, n->n_child, v, correction, e, load, err);
   for (size_t k = 0; st == VG_OK && k < n->n_child; k++) {
     n->child[k]->load = load[k];
     n->child[k]->per_cube = n->per_cube;
@@ -449,11 +449,18 @@ static void plan_part(void *context, size_t first, size_t end, int worker)
     (void)vg_node_wants_cut(q->p, q->child[k]);
 }
 
+void vg_node_plan_children(const struct vg_partition *p, struct vg_node *n,
+                           const struct vg_engine *e)
+{
+  struct plans plans = { p, n->child };
+
+  vg_engine_loop(e, n->n_child, 1, plan_part, &plans);
+}
+
 vg_status vg_node_split(struct vg_partition *p, struct vg_node *n,
                         const struct vg_engine *e, struct vg_error *err)
 {
   struct split s = { .n = n, .e = e };
-  struct plans plans = { p, NULL };
   int nothing;
   vg_status st;
 
@@ -462,11 +469,11 @@ vg_status vg_node_split(struct vg_partition *p, struct vg_node *n,
   VG_TRY(find_nothing(&s, &nothing, err));
   if (nothing) VG_TRY(undo(&s, err));
   VG_TRY(make_children(&s, err));
-  VG_TRY(s.is_merged ? load_of_fronts(n, e, err) : load_of_blocks(&s, err));
+  VG_TRY(s.is_merged ? vg_node_share_load(n, correction(n), e, err)
+                     : load_of_blocks(&s, err));
   count_retry(p, n);
   VG_TRY(bundle(p, n, err));
-  plans.child = n->child;
-  vg_engine_loop(e, n->n_child, 1, plan_part, &plans);
+  vg_node_plan_children(p, n, e);
 done:
   for (size_t k = 0; s.part && k < s.n_part; k++)
     vg_front_release(&s.part[k]);

@@ -1,10 +1,48 @@
 /* partition/cut/parting.h: a void that was parted by interfaces before any of
  * it is filled: what the discrete and the octree-guided decomposition make. The
- * parts are filled, or cut further, like the children of a cut. */
+ * parts are filled, or cut further, like the children of a cut. Uses task_data.h,
+ * load.h, engine.h. */
 #ifndef VG_PARTITION_CUT_PARTING_H
 #define VG_PARTITION_CUT_PARTING_H
 
 #include "partition/cut/task_data.h"
+#include "partition/engine/engine.h"
+
+/* In the order of the setting's words. */
+enum vg_partitioner { VG_PARTITIONER_METIS, VG_PARTITIONER_RCB };
+
+struct vg_parting_options {
+  int n_part;                /* at least 1 when a maker is asked; before, 0:
+                                by the rule's leaf_cells */
+  int partitioner;           /* enum vg_partitioner */
+  double coarsening;         /* sizes of the coarse mesh or octree over those of
+                                the mesh; 0: chosen by n_part */
+  int h_refine;              /* 1: interfaces get their size by halving edges */
+  double cells_per_cube;     /* as of vg_load_new */
+};
+#define VG_PARTING_OPTIONS_INIT { 0, VG_PARTITIONER_METIS, 0, 0, \
+  VG_LOAD_CELLS_PER_CUBE }
+
+/* In the order of the setting's words. */
+enum vg_decomposition { VG_DECOMPOSE_ADVANCING, VG_DECOMPOSE_DISCRETE };
+
+/* Steps of a maker whose seconds are told. */
+enum { VG_PARTING_COARSE,    /* coarse mesh or octree */
+       VG_PARTING_GRAPH,     /* its cells dealt out to parts */
+       VG_PARTING_SMOOTH,    /* interfaces smoothed */
+       VG_PARTING_FACES,     /* interfaces brought to the local size */
+       VG_PARTING_STEPS };
+
+struct vg_parting_report {
+  double coarsening;         /* that was used */
+  uint64_t n_coarse;         /* coarse cells or octants */
+  uint64_t n_apart;          /* parts beyond n_part: pieces that hung apart */
+  uint64_t n_face;           /* triangles of interfaces */
+  double time[VG_PARTING_STEPS];
+};
+
+struct vg_writer;
+struct vg_reader;
 
 struct vg_parting {
   size_t n_point;
@@ -15,11 +53,48 @@ struct vg_parting {
     struct vg_front front;   /* closed, into the part; names: of the void's own
                                 points as they were, of x[k] VG_POINT_NAME(
                                 serial of the parting, k) */
-    int may_cut;             /* 1: the advancing partition may cut it further */
+    int may_cut;             /* 1: the advancing partition may cut it further,
+                                if each of its interface points is on a part,
+                                too, that it may not cut; else it is filled */
   } *part;                   /* [n_part], in an order that follows from input */
+  struct vg_parting_report report;
 };
 #define VG_PARTING_INIT { 0 }
 
 void vg_parting_release(struct vg_parting *p);
+
+/** Part the void within a front.
+ *
+ * @param front   closed, into the void; borrowed
+ * @param load    of the void
+ * @param serial  that no point of the front has in its name
+ * @param e       for loops (vg_engine_loop); asked now and then whether to stop
+ * @param out     empty; untouched on failure
+ * Follows from the arguments alone, e and the serial aside, bit by bit.
+ * Threads: several may run at once.
+ * VG_BLOCKED: stopped; VG_ERR_GEOMETRY, VG_ERR_UNSUPPORTED: it cannot be parted
+ * so, with the reason and a remedy; VG_ERR_MEMORY. */
+typedef vg_status vg_parting_maker(const struct vg_front *front,
+                                   const struct vg_load *load,
+                                   const struct vg_sizing *sizing,
+                                   const struct vg_parting_options *options,
+                                   uint32_t serial, const struct vg_engine *e,
+                                   struct vg_parting *out,
+                                   struct vg_error *err);
+
+/** Is this a parting of the void within the front? Every face of the front in
+ * one part, as it was, every other face in two that look at it from both sides.
+ * Cost: a sort of all faces. VG_ERR_GEOMETRY names what is wrong and where. */
+vg_status vg_parting_check(const struct vg_parting *p,
+                           const struct vg_front *front, uint32_t serial,
+                           struct vg_error *err);
+
+/** Bytes of a parting and back, for the store, whatever its serial is then;
+ * *p is as it was. Sets r->bad, and leaves *p empty, where the data cannot
+ * be. */
+void vg_parting_put(struct vg_writer *w, struct vg_parting *p,
+                    uint32_t serial);
+void vg_parting_get(struct vg_reader *r, uint32_t serial,
+                    struct vg_parting *p);
 
 #endif

@@ -8,6 +8,7 @@
 #include "core/fill/fill.h"
 #include "core/mesher/fill_with.h"
 #include "partition/cut/lattice.h"
+#include "partition/cut/parting.h"
 #include "partition/store/store.h"
 
 /** Cells to a leaf, by default: measured, docs/performance-parallel.md. */
@@ -16,6 +17,9 @@
 struct vg_partition_options {
   struct vg_cut_rule rule;
   int levels;                /* bisections, where rule.leaf_cells is 0 */
+  vg_parting_maker *maker;   /* parts the void before any of it is filled, by
+                                the options behind; NULL: planes cut it */
+  struct vg_parting_options parting;
   double cells_per_cube;     /* expected (load.h); what zones hold corrects it,
                                 and leaves that outgrow it are cut again */
   int threads;
@@ -35,6 +39,7 @@ struct vg_partition_options {
 };
 #define VG_PARTITION_OPTIONS_INIT \
   { .rule = { VG_LEAF_CELLS, -1, 0 }, .threads = 1, .sweeps = 2, \
+    .parting = VG_PARTING_OPTIONS_INIT, \
     .cells_per_cube = VG_LOAD_CELLS_PER_CUBE }
 
 /** What happened, summed over all ranks. */
@@ -69,6 +74,8 @@ struct vg_partition_report {
                                 together with what is beside them */
   uint64_t n_widened_cell;   /* cells there, made for nothing */
   double widened;            /* seconds, in wall */
+  uint64_t n_part;           /* that a maker made; 0: there was none */
+  struct vg_parting_report parting;
   double estimate;           /* cells expected at the start */
   double wall;               /* seconds of the engine */
   double number;             /* seconds of numbering */

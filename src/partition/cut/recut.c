@@ -179,7 +179,8 @@ done:
 
 /* First the zones beside a void are taken back, then, time by time, these and
  * the leaf that has most faces in common with it, in the end all that there
- * is. */
+ * is. Where no zone is beside it, as between the parts of a parting, a leaf is
+ * taken at once. */
 enum { NO_LEAF, ONE_LEAF, ALL_LEAVES };
 
 enum { ONE_BY_ONE = 3 };     /* C17 */
@@ -246,8 +247,10 @@ static int is_better(const struct best *a, const struct best *b)
 }
 
 /* Pieces of this rank that are beside voids, and voids that meet in one.
- * best: [q->n] zeros; of this rank's leaves, where one is taken. */
-static void look_around(struct parcels *q, struct best *best)
+ * best: [q->n] zeros; of this rank's leaves, where one may be taken; n_zone:
+ * [q->n] zeros; of this rank's zones. */
+static void look_around(struct parcels *q, struct best *best,
+                        uint64_t *n_zone)
 {
   for (size_t k = 0; k < q->p->n_piece; k++) {
     const struct vg_piece *piece = &q->p->piece[k];
@@ -255,27 +258,30 @@ static void look_around(struct parcels *q, struct best *best)
 
     q->near[k] = (uint32_t)q->n;
     for (uint32_t i = 0; i < q->n; i++) {
-      int which = is_leaf ? leaves_taken(&q->of[i]) : ALL_LEAVES;
+      int all = !is_leaf || leaves_taken(&q->of[i]) == ALL_LEAVES;
       struct best own = { .n = 0 };
 
-      if (which == NO_LEAF || !boxes_meet(&q->of[i], piece)) continue;
-      own.n = n_common(&q->of[i], piece, which == ONE_LEAF ? UINT64_MAX : 1);
+      if (!boxes_meet(&q->of[i], piece)) continue;
+      own.n = n_common(&q->of[i], piece, all ? 1 : UINT64_MAX);
       memcpy(own.path, piece->path, sizeof own.path);
-      if (which == ALL_LEAVES && own.n) take_back(q, k, i);
-      if (which == ONE_LEAF && is_better(&own, &best[i])) best[i] = own;
+      n_zone[i] += !is_leaf && own.n;
+      if (all && own.n) take_back(q, k, i);
+      if (!all && is_better(&own, &best[i])) best[i] = own;
     }
   }
 }
 
-/* Of all ranks' leaves the best for each void. Collective. */
+/* Of all ranks' leaves the best for each void that takes one. Collective. */
 static vg_status take_best(struct parcels *q, struct vg_comm *comm,
-                           struct best *best, struct vg_error *err)
+                           struct best *best, uint64_t *n_zone,
+                           struct vg_error *err)
 {
   struct vg_bytes mine = { q->n * sizeof *best, (unsigned char *)best };
   struct vg_bytes *all = vg_calloc((size_t)q->p->size, sizeof *all);
   vg_status st = all ? VG_OK : vg_fail_memory(err, "a void");
 
   VG_TRY(vg_comm_agree(comm, st, err));
+  VG_TRY(vg_comm_sum(comm, q->n, n_zone, err));
   VG_TRY(vg_comm_allgather(comm, &mine, all, err));
   for (int r = 0; r < q->p->size; r++) {
     const struct best *from = (const struct best *)(const void *)all[r].data;
@@ -285,7 +291,8 @@ static vg_status take_best(struct parcels *q, struct vg_comm *comm,
   }
   for (size_t k = 0; k < q->p->n_piece; k++)
     for (uint32_t i = 0; i < q->n; i++)
-      if (best[i].n && !strcmp(best[i].path, q->p->piece[k].path))
+      if ((leaves_taken(&q->of[i]) != NO_LEAF || !n_zone[i]) && best[i].n &&
+          !strcmp(best[i].path, q->p->piece[k].path))
         take_back(q, k, i);
 done:
   vg_bytes_release(all, (size_t)q->p->size);
@@ -507,19 +514,22 @@ static vg_status prepare(struct parcels *q, struct vg_comm *comm,
                          struct vg_error *err)
 {
   struct best *best = vg_calloc(q->n, sizeof *best);
+  uint64_t *n_zone = vg_calloc(q->n, sizeof *n_zone);
   vg_status st;
 
   q->up = vg_alloc(q->n, sizeof *q->up);
   q->near = vg_alloc(q->p->n_piece, sizeof *q->near);
-  st = q->up && q->near && best ? VG_OK : vg_fail_memory(err, "a void");
+  st = q->up && q->near && best && n_zone ? VG_OK
+                                          : vg_fail_memory(err, "a void");
   VG_TRY(vg_comm_agree(comm, st, err));
   for (uint32_t k = 0; k < q->n; k++) q->up[k] = k;
   join_voids(q);
-  look_around(q, best);
-  VG_TRY(take_best(q, comm, best, err));
+  look_around(q, best, n_zone);
+  VG_TRY(take_best(q, comm, best, n_zone, err));
   st = agree_on_groups(q, comm, err);
 done:
   free(best);
+  free(n_zone);
   return st;
 }
 

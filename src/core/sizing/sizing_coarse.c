@@ -1,0 +1,77 @@
+/* Sizes that are larger than another field's. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/sizing/sizing_parts.h"
+
+struct coarsening {
+  const struct vg_sizing *from, *most;
+  double factor;
+  struct vg_octree *to;
+};
+
+static float size_at(const struct coarsening *c, const double x[3], float h)
+{
+  return (float)fmin(c->factor * (double)h, vg_sizing_at(c->most, x));
+}
+
+/* Entry e of the tree, the cube at lo; the least size in it. */
+static float coarsen(const struct coarsening *c, uint32_t e,
+                     const double lo[3], double side)
+{
+  float least = INFINITY;
+  double x[3];
+
+  for (int i = 0; i < 8; i++) {
+    double part = e & VG_OCTREE_LEAF ? side : 0.5 * side;
+    float h;
+
+    for (int k = 0; k < 3; k++) x[k] = lo[k] + (i >> k & 1 ? part : 0);
+    if (e & VG_OCTREE_LEAF) {
+      float *at = &c->to->leaf[e & ~VG_OCTREE_LEAF][i];
+
+      h = *at = size_at(c, x, *at);
+    } else {
+      h = coarsen(c, c->to->child[e][i], x, part);
+    }
+    if (h < least) least = h;
+  }
+  if (!(e & VG_OCTREE_LEAF)) c->to->least[e] = least;
+  return least;
+}
+
+static void *copy_of(const void *from, size_t n, size_t size)
+{
+  void *to = vg_alloc(n, size);
+
+  if (to && n) memcpy(to, from, n * size);
+  return to;
+}
+
+vg_status vg_sizing_coarsened(const struct vg_sizing *s, double factor,
+                              const struct vg_sizing *most,
+                              struct vg_sizing **out, struct vg_error *err)
+{
+  struct vg_sizing *to = copy_of(s, 1, sizeof *s);
+  const struct vg_octree *t = &s->octree;
+  struct coarsening c = { s, most, factor, to ? &to->octree : NULL };
+
+  if (!to) return vg_fail_memory(err, "the field of sizes");
+  to->octree.child = copy_of(t->child, t->n_split, sizeof *t->child);
+  to->octree.least = copy_of(t->least, t->n_split, sizeof *t->least);
+  to->octree.leaf = copy_of(t->leaf, t->n_leaf, sizeof *t->leaf);
+  memset(&to->common, 0, sizeof to->common);
+  if (!to->octree.child || !to->octree.least || !to->octree.leaf) {
+    vg_sizing_free(to);
+    return vg_fail_memory(err, "the field of sizes");
+  }
+  to->least = (double)coarsen(&c, t->root, t->lo, t->side);
+  to->most = fmin(factor * s->most, most->most);
+  to->growth = fmin(factor * s->growth, most->growth);
+  to->cap = fmin(factor * s->cap, most->cap);
+  to->slope = fmax(factor * s->slope, most->slope);
+  *out = to;
+  return VG_OK;
+}

@@ -1,0 +1,240 @@
+/* A void that a maker parts: its parts become children, as those of a cut do.
+ * Points of interfaces are on two parts and more. One that is filled as it is
+ * has them for its own: its leaf adopts them, as those of larger voids do
+ * (recut_names.c), wherever it is filled. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/bytes.h"
+#include "base/memory.h"
+#include "partition/cut/node.h"
+
+/* --- made, or found in the store ----------------------------------------- */
+
+/* The load follows from the front and the sizes, which are the job's; so do the
+ * options. */
+static struct vg_digest key_of(const struct vg_partition *p,
+                               const struct vg_front *f)
+{
+  struct vg_digest d = p->options.job;
+
+  d = vg_digest_of(d, 4, "part");
+  d = vg_digest_of(d, f->n_point * sizeof *f->x, f->x);
+  return vg_digest_of(d, f->n_face * sizeof *f->face, f->face);
+}
+
+static int find(struct vg_partition *p, struct vg_digest key, uint32_t serial,
+                struct vg_parting *out)
+{
+  struct vg_bytes b = {0, NULL};
+  struct vg_reader r;
+
+  if (vg_store_find(p->options.store, key, &b, NULL) != VG_OK) return 0;
+  r = (struct vg_reader){ .data = b.data, .n = b.n };
+  vg_parting_get(&r, serial, out);
+  free(b.data);
+  return !r.bad;
+}
+
+static void keep(struct vg_partition *p, struct vg_digest key, uint32_t serial,
+                 struct vg_parting *made)
+{
+  struct vg_writer w = { .cap = 0 };
+
+  vg_parting_put(&w, made, serial);
+  if (!w.refused)
+    vg_store_keep(p->options.store, key, w.bytes.n, w.bytes.data);
+  free(w.bytes.data);
+}
+
+/* As many parts as were asked for, or as there are leaves in the void. */
+static struct vg_parting_options options_for(const struct vg_partition *p,
+                                             const struct vg_node *n)
+{
+  struct vg_parting_options o = p->options.parting;
+  double leaf = p->options.rule.leaf_cells, parts;
+
+  o.cells_per_cube = n->per_cube;
+  if (o.n_part > 0) return o;
+  parts = leaf > 0 ? n->load.cells / leaf : 1;
+  o.n_part = parts < 1 ? 1 : parts > 1e6 ? 1000000 : (int)(parts + 0.5);
+  return o;
+}
+
+static vg_status find_or_make(struct vg_partition *p, const struct vg_node *n,
+                              uint32_t serial, const struct vg_engine *e,
+                              struct vg_parting *out, struct vg_error *err)
+{
+  struct vg_parting_options o = options_for(p, n);
+  struct vg_digest key = {{0, 0}};
+  int is_found = 0;
+  vg_status st = VG_OK;
+
+  if (p->options.store) {
+    key = key_of(p, &n->front);
+    is_found = find(p, key, serial, out);
+  }
+  if (!is_found)
+    st = p->options.maker(&n->front, &n->load, p->sizing, &o, serial, e, out,
+                          err);
+  if (st == VG_OK) st = vg_parting_check(out, &n->front, serial, err);
+  if (st == VG_OK && p->options.store && !is_found) keep(p, key, serial, out);
+  pthread_mutex_lock(&p->lock);
+  p->report.n_found += (uint64_t)is_found;
+  if (st == VG_OK) {
+    p->report.parting = out->report;
+    p->report.n_part = out->n_part;
+  }
+  pthread_mutex_unlock(&p->lock);
+  return st;
+}
+
+/* --- whose points -------------------------------------------------------- */
+
+enum { NOBODY = UINT32_MAX };
+
+struct shares {
+  struct vg_parting *parting;
+  uint32_t serial;           /* of the parting's points */
+  uint32_t *owner;           /* [n_point] part that has each */
+  uint32_t *number;          /* [n_point] among its owner's */
+  uint32_t *of;              /* [n_part] serials of the parts' leaves; 0: it
+                                may be cut, and owns none */
+};
+
+/* The first part with the point, of those that are filled or of those that may
+ * be cut. */
+static void claim(struct shares *s, int may_cut)
+{
+  for (size_t k = 0; k < s->parting->n_part; k++) {
+    const struct vg_part *q = &s->parting->part[k];
+
+    if (!q->may_cut != !may_cut) continue;
+    for (size_t v = 0; v < q->front.n_point; v++) {
+      uint64_t name = q->front.name[v];
+
+      if (name >> 32 == s->serial && s->owner[(uint32_t)name] == NOBODY)
+        s->owner[(uint32_t)name] = (uint32_t)k;
+    }
+  }
+}
+
+static vg_status share_points(struct shares *s, struct vg_partition *p,
+                              struct vg_error *err)
+{
+  struct vg_parting *q = s->parting;
+  uint32_t *n = vg_calloc(q->n_part, sizeof *n);
+
+  s->owner = vg_alloc(q->n_point, sizeof *s->owner);
+  s->number = vg_alloc(q->n_point, sizeof *s->number);
+  s->of = vg_calloc(q->n_part, sizeof *s->of);
+  if (!n || !s->owner || !s->number || !s->of) {
+    free(n);
+    return vg_fail_memory(err, "the parts of a void");
+  }
+  memset(s->owner, 0xff, q->n_point * sizeof *s->owner);
+  claim(s, 0);
+  claim(s, 1);
+  for (size_t v = 0; v < q->n_point; v++) {
+    if (s->owner[v] == NOBODY) continue;
+    s->number[v] = n[s->owner[v]]++;
+    q->part[s->owner[v]].may_cut = 0;
+  }
+  for (size_t k = 0; k < q->n_part; k++)
+    if (!q->part[k].may_cut) s->of[k] = vg_partition_serial(p);
+  free(n);
+  return VG_OK;
+}
+
+/* Its own points go behind the others, by their numbers, and all points of
+ * interfaces get the names that their owners give them. */
+static vg_status rename_front(const struct shares *s, size_t part,
+                              struct vg_error *err)
+{
+  struct vg_front *f = &s->parting->part[part].front;
+  uint32_t *to = vg_alloc(f->n_point, sizeof *to);
+  double (*x)[3] = vg_alloc(f->n_point, sizeof *x);
+  uint64_t *name = vg_alloc(f->n_point, sizeof *name);
+  size_t n = f->n_point;
+
+  if (!to || !x || !name) {
+    free(to);
+    free(x);
+    free(name);
+    return vg_fail_memory(err, "the parts of a void");
+  }
+  for (size_t v = 0; v < f->n_point; v++)
+    n -= f->name[v] >> 32 == s->serial &&
+         s->owner[(uint32_t)f->name[v]] == part;
+  for (size_t v = 0, other = 0; v < f->n_point; v++) {
+    uint32_t q = (uint32_t)f->name[v], owner = NOBODY;
+    size_t at;
+
+    if (f->name[v] >> 32 == s->serial) owner = s->owner[q];
+    at = owner == part ? n + s->number[q] : other++;
+    to[v] = (uint32_t)at;
+    memcpy(x[at], f->x[v], sizeof *x);
+    name[at] = owner == NOBODY ? f->name[v]
+                               : VG_POINT_NAME(s->of[owner], s->number[q]);
+  }
+  for (size_t i = 0; i < f->n_face; i++)
+    for (int k = 0; k < 3; k++) f->face[i][k] = to[f->face[i][k]];
+  free(f->x);
+  free(f->name);
+  free(to);
+  f->x = x;
+  f->name = name;
+  return VG_OK;
+}
+
+/* --- children ------------------------------------------------------------ */
+
+static vg_status make_child(const struct shares *s, struct vg_node *n,
+                            size_t k, struct vg_error *err)
+{
+  struct vg_part *q = &s->parting->part[k];
+  char path[VG_PATH_MAX];
+  struct vg_node *c;
+  vg_status st = vg_select_sort(&q->front, err);
+
+  if (st == VG_OK) st = rename_front(s, k, err);
+  if (st < 0) return st;
+  snprintf(path, sizeof path, "%.*s.%zu", VG_PATH_MAX - 24, n->path, k);
+  c = vg_node_new(path, &q->front);
+  if (!c) return vg_fail_memory(err, "the parts of a void");
+  c->per_cube = n->per_cube;
+  c->levels = n->levels;
+  c->serial = s->of[k];
+  c->is_final = !q->may_cut;
+  n->child[n->n_child++] = c;
+  return VG_OK;
+}
+
+vg_status vg_node_part(struct vg_partition *p, struct vg_node *n,
+                       const struct vg_engine *e, struct vg_error *err)
+{
+  struct vg_parting parting = VG_PARTING_INIT;
+  struct shares s = { &parting, vg_partition_serial(p), NULL, NULL, NULL };
+  vg_status st;
+
+  st = find_or_make(p, n, s.serial, e, &parting, err);
+  if (st != VG_OK) goto done;          /* or stopped */
+  if (!parting.n_part) {
+    st = vg_fail(err, VG_ERR_GEOMETRY, "a void fell into no parts");
+    goto done;
+  }
+  VG_TRY(share_points(&s, p, err));
+  n->child = vg_calloc(parting.n_part, sizeof *n->child);
+  if (!n->child) st = vg_fail_memory(err, "the parts of a void");
+  for (size_t k = 0; st == VG_OK && k < parting.n_part; k++)
+    st = make_child(&s, n, k, err);
+  if (st == VG_OK) st = vg_node_share_load(n, 1, e, err);
+  if (st == VG_OK) vg_node_plan_children(p, n, e);
+done:
+  vg_parting_release(&parting);
+  free(s.owner);
+  free(s.number);
+  free(s.of);
+  return st;
+}

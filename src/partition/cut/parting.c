@@ -1,0 +1,176 @@
+#include "partition/cut/parting.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/bytes.h"
+#include "base/memory.h"
+
+void vg_parting_release(struct vg_parting *p)
+{
+  for (size_t k = 0; k < p->n_part; k++)
+    vg_front_release(&p->part[k].front);
+  free(p->part);
+  free(p->x);
+  memset(p, 0, sizeof *p);
+}
+
+/* --- is it one? ---------------------------------------------------------- */
+
+/* A face by the names of its corners, rising. */
+struct side {
+  uint64_t name[3];
+  const double *x;           /* of one of them */
+  int8_t sense;              /* 1 or -1, as they were turned */
+  int8_t is_part;            /* 0: of the void's front */
+};
+
+static struct side side_of(const struct vg_front *f, const uint32_t v[3],
+                           int is_part)
+{
+  struct side s = { { f->name[v[0]], f->name[v[1]], f->name[v[2]] },
+                    f->x[v[0]], 1, (int8_t)is_part };
+
+  for (int k = 0; k < 3; k++) {
+    int i = k % 2;           /* 0 1, 1 2, 0 1 */
+    uint64_t swap = s.name[i];
+
+    if (swap < s.name[i + 1]) continue;
+    s.name[i] = s.name[i + 1];
+    s.name[i + 1] = swap;
+    s.sense = (int8_t)-s.sense;
+  }
+  return s;
+}
+
+static int by_corners(const void *a, const void *b)
+{
+  const struct side *s = a, *t = b;
+
+  for (int k = 0; k < 3; k++)
+    if (s->name[k] != t->name[k]) return s->name[k] < t->name[k] ? -1 : 1;
+  return 0;
+}
+
+static void append_sides(const struct vg_front *f, int is_part,
+                         struct side *to)
+{
+  for (size_t k = 0; k < f->n_face; k++)
+    to[k] = side_of(f, f->face[k], is_part);
+}
+
+/* Sides of one triangle: what parts have beyond the front looks both ways,
+ * once. */
+static int is_right(size_t n, const struct side *s)
+{
+  int over[2] = {0, 0};
+
+  for (size_t k = 0; k < n; k++)
+    over[s[k].sense > 0] += s[k].is_part ? 1 : -1;
+  return over[0] == over[1] && (over[0] == 0 || over[0] == 1);
+}
+
+/* Every point of a front is the void's own, or one of the parting's. */
+static vg_status check_names(const struct vg_parting *p, uint32_t serial,
+                             struct vg_error *err)
+{
+  for (size_t k = 0; k < p->n_part; k++) {
+    const struct vg_front *f = &p->part[k].front;
+
+    for (size_t v = 0; v < f->n_point; v++) {
+      uint32_t at = (uint32_t)f->name[v];
+
+      if (f->name[v] >> 32 != serial) continue;
+      if (at < p->n_point && !memcmp(p->x[at], f->x[v], sizeof *f->x))
+        continue;
+      return vg_fail(err, VG_ERR_GEOMETRY, "part %zu of %zu has a point at "
+                     "(%g, %g, %g) that no interface has", k + 1, p->n_part,
+                     f->x[v][0], f->x[v][1], f->x[v][2]);
+    }
+  }
+  return VG_OK;
+}
+
+vg_status vg_parting_check(const struct vg_parting *p,
+                           const struct vg_front *front, uint32_t serial,
+                           struct vg_error *err)
+{
+  size_t n = front->n_face, end;
+  struct side *s;
+  vg_status st = check_names(p, serial, err);
+
+  if (st < 0) return st;
+  for (size_t k = 0; k < p->n_part; k++) n += p->part[k].front.n_face;
+  s = vg_alloc(n, sizeof *s);
+  if (!s) return vg_fail_memory(err, "the parts of a void");
+  append_sides(front, 0, s);
+  n = front->n_face;
+  for (size_t k = 0; k < p->n_part; k++) {
+    append_sides(&p->part[k].front, 1, s + n);
+    n += p->part[k].front.n_face;
+  }
+  if (n) qsort(s, n, sizeof *s, by_corners);
+  for (size_t k = 0; st == VG_OK && k < n; k = end) {
+    for (end = k + 1; end < n && !by_corners(&s[k], &s[end]);) end++;
+    if (!is_right(end - k, s + k))
+      st = vg_fail(err, VG_ERR_GEOMETRY, "the %zu parts of a void do not fit "
+                   "together at (%g, %g, %g)", p->n_part, s[k].x[0],
+                   s[k].x[1], s[k].x[2]);
+  }
+  free(s);
+  return st;
+}
+
+/* --- for the store ------------------------------------------------------- */
+
+/* Names of points of interfaces are kept as those of this serial, which no task
+ * has: a run that is resumed gives others. */
+static const uint32_t any_serial = UINT32_MAX;
+
+static void give_names(struct vg_front *f, uint32_t from, uint32_t to)
+{
+  for (size_t k = 0; k < f->n_point; k++)
+    if (f->name[k] >> 32 == from)
+      f->name[k] = VG_POINT_NAME(to, f->name[k]);
+}
+
+void vg_parting_put(struct vg_writer *w, struct vg_parting *p,
+                    uint32_t serial)
+{
+  uint64_t count[2] = {p->n_point, p->n_part};
+
+  vg_put(w, 2, sizeof *count, count);
+  vg_put(w, p->n_point, sizeof *p->x, p->x);
+  vg_put(w, 1, sizeof p->report, &p->report);
+  for (size_t k = 0; k < p->n_part; k++) {
+    struct vg_front *f = &p->part[k].front;
+
+    vg_put(w, 1, sizeof p->part[k].may_cut, &p->part[k].may_cut);
+    give_names(f, serial, any_serial);
+    vg_front_put(w, f, 1);
+    give_names(f, any_serial, serial);
+  }
+}
+
+void vg_parting_get(struct vg_reader *r, uint32_t serial,
+                    struct vg_parting *p)
+{
+  uint64_t count[2] = {0, 0};
+
+  memset(p, 0, sizeof *p);
+  vg_get(r, 2, sizeof *count, count);
+  p->n_point = count[0];
+  p->x = vg_get_array(r, p->n_point, sizeof *p->x);
+  vg_get(r, 1, sizeof p->report, &p->report);
+  if (!r->bad && count[1] > r->n) r->bad = 1;
+  p->part = r->bad ? NULL : vg_calloc(count[1], sizeof *p->part);
+  if (!p->part) r->bad = 1;
+  for (; !r->bad && p->n_part < count[1]; p->n_part++) {
+    struct vg_part *q = &p->part[p->n_part];
+
+    vg_get(r, 1, sizeof q->may_cut, &q->may_cut);
+    vg_front_get(r, &q->front, 1);
+    give_names(&q->front, any_serial, serial);
+  }
+  if (r->bad) vg_parting_release(p);
+}

@@ -1,0 +1,24 @@
+/* partition/discrete/discrete.h: the discrete decomposition: a coarse mesh of
+ * the void is dealt out to parts, whose interfaces get the local size. Uses
+ * core, graph.h, load.h, parting.h.
+ *
+ * Outline: (1) our own kernel fills the void at sizes times a factor, the front
+ * kept as it is; (2) METIS, or recursive coordinate bisection, deals out the
+ * coarse cells, weighted with the cells that each is expected to hold; pieces
+ * that hang apart become parts of their own; (3) interfaces are smoothed, no
+ * coarse cell inverted; (4) edges of interfaces are divided to the local size,
+ * then each coarse face between parts by itself, within its plane: so all sides
+ * of an edge agree, and interfaces cross neither each other nor the front.
+ * (N. Chrisochoides and others call it discrete domain decomposition.) */
+#ifndef VG_PARTITION_DISCRETE_DISCRETE_H
+#define VG_PARTITION_DISCRETE_DISCRETE_H
+
+#include "partition/cut/parting.h"
+
+/** See vg_parting_maker. Parts may not be cut further. Cost: that of a mesh of
+ * some three cells for each face of the front, in one thread; loops that deal
+ * out and divide are shared. VG_ERR_UNSUPPORTED: fewer coarse cells than
+ * parts. */
+vg_parting_maker vg_discrete_part;
+
+#endif

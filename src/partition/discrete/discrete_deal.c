@@ -1,0 +1,386 @@
+/* Coarse cells to parts. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/geometry/vector.h"
+#include "partition/discrete/discrete_parts.h"
+#include "partition/graph/graph.h"
+
+/* Most over mean that METIS is asked for. */
+static const double imbalance = 1.03;   /* D2 */
+/* From this gradient of the size on it counts as varying, as in load.c. */
+static const double gradient = 0.05;   /* C15 */
+/* Cells beside a face of the front, whatever the size there. */
+static const double cells_per_face = 0.75;   /* D3 */
+/* Pieces that hang apart with less than this share of a part's weight go to the
+ * part beside them. */
+static const double small_piece = 0.1;   /* D4 */
+/* Most over mean while cells change sides, and how often all are looked at. */
+static const double evened = 1.04;   /* D5 */
+enum { EVEN_SWEEPS = 6 };
+
+/* --- weights ------------------------------------------------------------- */
+
+struct weights {
+  struct vg_coarse *c;
+  const struct vg_sizing *sizing;
+  double per_cube;
+};
+
+/* The mean of 1 / h^3 over a cell, at points of a lattice in it: four to an
+ * edge where the size varies over it, else in the middle alone. */
+static double density(const struct vg_sizing *sizing, double *const x[4])
+{
+  enum { N = 3 };
+  double sum = 0, far = 0, mid[3], h;
+  int n = 0;
+
+  for (int k = 0; k < 3; k++)
+    mid[k] = 0.25 * (x[0][k] + x[1][k] + x[2][k] + x[3][k]);
+  h = vg_sizing_at(sizing, mid);
+  for (int i = 0; i < 4; i++) far = fmax(far, vg_distance2(mid, x[i]));
+  if (far < 0.25 * h * h) return 1 / (h * h * h);
+  for (int a = 0; a <= N; a++)
+    for (int b = 0; a + b <= N; b++)
+      for (int c = 0; a + b + c <= N; c++) {
+        double w[4] = { a + 0.25, b + 0.25, c + 0.25, N - a - b - c + 0.25 };
+        double at[3] = {0, 0, 0};
+
+        for (int i = 0; i < 4; i++)
+          for (int k = 0; k < 3; k++) at[k] += w[i] / (N + 1) * x[i][k];
+        h = vg_sizing_at(sizing, at);
+        sum += 1 / (h * h * h);
+        n++;
+      }
+  return sum / n;
+}
+
+/* Cells are more where the size varies (partition/load/load.h). */
+static double graded(const struct vg_sizing *sizing, double *const x[4])
+{
+  double h[4], slope = 0;
+
+  for (int i = 0; i < 4; i++) {
+    h[i] = vg_sizing_at(sizing, x[i]);
+    for (int k = 0; k < i; k++)
+      slope = fmax(slope, fabs(h[i] - h[k]) / vg_distance(x[i], x[k]));
+  }
+  return 1 + VG_LOAD_GRADED * fmin(slope / gradient, 1);
+}
+
+static void weigh(void *context, size_t first, size_t end, int worker)
+{
+  const struct weights *w = context;
+  const struct vg_tets *t = &w->c->t;
+
+  (void)worker;
+  for (size_t q = first; q < end; q++) {
+    const uint32_t *v = t->cell[q].v;
+    double *const x[4] = { t->x[v[0]], t->x[v[1]], t->x[v[2]], t->x[v[3]] };
+    double volume = vg_det(x[0], x[1], x[2], x[3]) / 6;
+    double cells = w->per_cube * fabs(volume) * density(w->sizing, x) *
+                   graded(w->sizing, x);
+
+    for (int i = 0; i < 4; i++)
+      if (w->c->on[q][i] != VG_NONE) cells += cells_per_face;
+    w->c->weight[q] = cells > 0 ? cells : 1e-6;
+  }
+}
+
+/* --- the dual graph ------------------------------------------------------ */
+
+/* Triangles that a face gets, were it between parts. */
+static double face_size(const struct vg_coarse *c,
+                        const struct vg_sizing *sizing, size_t q, int i)
+{
+  const struct vg_tets *t = &c->t;
+  const double *a = t->x[t->cell[q].v[vg_face[i][0]]];
+  const double *b = t->x[t->cell[q].v[vg_face[i][1]]];
+  const double *d = t->x[t->cell[q].v[vg_face[i][2]]];
+  double u[3], v[3], n[3], mid[3], h;
+
+  vg_sub(b, a, u);
+  vg_sub(d, a, v);
+  vg_cross(u, v, n);
+  for (int k = 0; k < 3; k++) mid[k] = (a[k] + b[k] + d[k]) / 3;
+  h = vg_sizing_at(sizing, mid);
+  return vg_norm(n) / (h * h);
+}
+
+struct dual {
+  struct vg_graph g;
+  uint64_t *begin;
+  uint32_t *to;
+  int32_t *edge;
+};
+
+static void dual_release(struct dual *d)
+{
+  free(d->begin);
+  free(d->to);
+  free(d->edge);
+}
+
+static vg_status make_dual(const struct vg_coarse *c,
+                           const struct vg_sizing *sizing, struct dual *d,
+                           struct vg_error *err)
+{
+  size_t n = c->t.n_cell, m = 0;
+
+  d->begin = vg_alloc(n + 1, sizeof *d->begin);
+  d->to = vg_alloc(4 * n, sizeof *d->to);
+  d->edge = vg_alloc(4 * n, sizeof *d->edge);
+  if (!d->begin || !d->to || !d->edge)
+    return vg_fail_memory(err, "dealing out the coarse mesh");
+  for (size_t q = 0; q < n; q++) {
+    d->begin[q] = m;
+    for (int i = 0; i < 4; i++) {
+      uint32_t link = c->t.cell[q].link[i];
+      size_t low = q;
+      int face = i;
+
+      if (link == VG_NONE) continue;
+      if (link >> 2 < q) {             /* the same sum from both sides */
+        low = link >> 2;
+        face = (int)(link & 3);
+      }
+      d->to[m] = link >> 2;
+      d->edge[m++] = 1 + (int32_t)fmin(4 * face_size(c, sizing, low, face),
+                                       1e6);
+    }
+  }
+  d->begin[n] = m;
+  d->g = (struct vg_graph){ n, d->begin, d->to, c->weight, d->edge };
+  return VG_OK;
+}
+
+/* --- pieces that hang together ------------------------------------------- */
+
+/* Number the pieces of cells of one part that hang together: piece out: [n],
+ * in the order of their first cells. */
+static uint32_t find_pieces(const struct dual *d, const uint32_t *part,
+                            uint32_t *piece, uint32_t *queue)
+{
+  uint32_t n_piece = 0;
+
+  memset(piece, 0xff, d->g.n * sizeof *piece);
+  for (size_t s = 0; s < d->g.n; s++) {
+    size_t n = 0;
+
+    if (piece[s] != VG_NONE) continue;
+    piece[s] = n_piece;
+    queue[n++] = (uint32_t)s;
+    for (size_t at = 0; at < n; at++)
+      for (uint64_t k = d->begin[queue[at]]; k < d->begin[queue[at] + 1];
+           k++) {
+        uint32_t q = d->to[k];
+
+        if (piece[q] != VG_NONE || part[q] != part[s]) continue;
+        piece[q] = n_piece;
+        queue[n++] = q;
+      }
+    n_piece++;
+  }
+  return n_piece;
+}
+
+/* The part that cells with this number have most in common with, or VG_NONE. */
+static uint32_t part_beside(const struct dual *d, const uint32_t *part,
+                            const uint32_t *piece, size_t first, uint32_t n,
+                            double *common, uint32_t n_part)
+{
+  uint32_t best = VG_NONE;
+
+  memset(common, 0, n_part * sizeof *common);
+  for (size_t q = first; q < d->g.n; q++) {
+    if (piece[q] != n) continue;
+    for (uint64_t k = d->begin[q]; k < d->begin[q + 1]; k++)
+      if (piece[d->to[k]] != n) common[part[d->to[k]]] += d->edge[k];
+  }
+  for (uint32_t p = 0; p < n_part; p++)
+    if (common[p] > 0 && (best == VG_NONE || common[p] > common[best]))
+      best = p;
+  return best;
+}
+
+struct piece { double weight; size_t first; uint32_t part; };
+
+/* Small pieces beside a larger one of their part go to the part beside them. */
+static int give_away(const struct dual *d, struct vg_coarse *c,
+                     uint32_t n_piece, const uint32_t *piece,
+                     struct piece *of, double *common)
+{
+  double mean = 0, *best = vg_calloc(c->n_part, sizeof *best);
+  uint32_t n_given = 0;
+
+  if (!best) return -1;
+  memset(of, 0, n_piece * sizeof *of);
+  for (size_t q = d->g.n; q-- > 0;) {
+    of[piece[q]].weight += c->weight[q];
+    of[piece[q]].first = q;
+    of[piece[q]].part = c->part[q];
+    mean += c->weight[q] / c->n_part;
+  }
+  for (uint32_t k = 0; k < n_piece; k++)
+    best[of[k].part] = fmax(best[of[k].part], of[k].weight);
+  for (uint32_t k = 0; k < n_piece; k++) {
+    uint32_t to;
+
+    if (of[k].weight >= best[of[k].part] ||
+        of[k].weight >= small_piece * mean) continue;
+    to = part_beside(d, c->part, piece, of[k].first, k, common, c->n_part);
+    if (to == VG_NONE) continue;
+    for (size_t q = of[k].first; q < d->g.n; q++)
+      if (piece[q] == k) c->part[q] = to;
+    n_given++;
+  }
+  free(best);
+  return n_given > 0;
+}
+
+/* Each piece a part: small ones are given away first, but for those that
+ * nothing is beside. */
+static vg_status settle_pieces(const struct dual *d, struct vg_coarse *c,
+                               struct vg_error *err)
+{
+  uint32_t *piece = vg_alloc(d->g.n, sizeof *piece);
+  uint32_t *queue = vg_alloc(d->g.n, sizeof *queue);
+  struct piece *of = vg_alloc(d->g.n, sizeof *of);
+  double *common = vg_alloc(c->n_part, sizeof *common);
+  int again = piece && queue && of && common ? 1 : -1;
+  vg_status st = VG_OK;
+
+  for (int round = 0; again > 0 && round < 4; round++) {
+    uint32_t n = find_pieces(d, c->part, piece, queue);
+
+    again = give_away(d, c, n, piece, of, common);
+  }
+  if (again < 0) st = vg_fail_memory(err, "dealing out the coarse mesh");
+  else {
+    c->n_part = find_pieces(d, c->part, piece, queue);
+    memcpy(c->part, piece, d->g.n * sizeof *piece);
+  }
+  free(piece);
+  free(queue);
+  free(of);
+  free(common);
+  return st;
+}
+
+/* --- interfaces evened --------------------------------------------------- */
+
+/* A cell that has more in common with another part than with its own goes
+ * there, if that part does not grow too much: interfaces lose their teeth. */
+static vg_status even_out(const struct dual *d, struct vg_coarse *c,
+                          struct vg_error *err)
+{
+  double *sum = vg_calloc(c->n_part, sizeof *sum), all = 0;
+  size_t n_moved = 1;
+
+  if (!sum) return vg_fail_memory(err, "dealing out the coarse mesh");
+  for (size_t q = 0; q < d->g.n; q++) {
+    sum[c->part[q]] += c->weight[q];
+    all += c->weight[q];
+  }
+  for (int sweep = 0; sweep < EVEN_SWEEPS && n_moved; sweep++) {
+    n_moved = 0;
+    for (size_t q = 0; q < d->g.n; q++) {
+      uint32_t own = c->part[q], best = own;
+      double most = 0, here = 0;
+
+      for (uint64_t k = d->begin[q]; k < d->begin[q + 1]; k++) {
+        uint32_t p = c->part[d->to[k]];
+        double common = 0;
+
+        for (uint64_t j = d->begin[q]; j < d->begin[q + 1]; j++)
+          if (c->part[d->to[j]] == p) common += d->edge[j];
+        if (p == own) here = common;
+        else if (common > most) {
+          most = common;
+          best = p;
+        }
+      }
+      if (!(most > here) ||
+          sum[best] + c->weight[q] > evened * all / c->n_part) continue;
+      sum[own] -= c->weight[q];
+      sum[best] += c->weight[q];
+      c->part[q] = best;
+      n_moved++;
+    }
+  }
+  free(sum);
+  return VG_OK;
+}
+
+/* --- all of it ----------------------------------------------------------- */
+
+static vg_status bisect(struct vg_coarse *c, int n_part, struct vg_error *err)
+{
+  double (*mid)[3] = vg_calloc(c->t.n_cell, sizeof *mid);
+  vg_status st;
+
+  if (!mid) return vg_fail_memory(err, "dealing out the coarse mesh");
+  for (size_t q = 0; q < c->t.n_cell; q++)
+    for (int i = 0; i < 4; i++)
+      for (int k = 0; k < 3; k++)
+        mid[q][k] += 0.25 * c->t.x[c->t.cell[q].v[i]][k];
+  st = vg_bisect(c->t.n_cell, (const double (*)[3])mid, c->weight, n_part,
+                 c->part, err);
+  free(mid);
+  return st;
+}
+
+static int hangs_together(const struct dual *d, uint32_t *part,
+                          struct vg_error *err, vg_status *st)
+{
+  uint32_t *piece = vg_alloc(d->g.n, sizeof *piece);
+  uint32_t *queue = vg_alloc(d->g.n, sizeof *queue);
+  uint32_t n = 0;
+
+  memset(part, 0, d->g.n * sizeof *part);
+  if (piece && queue) n = find_pieces(d, part, piece, queue);
+  else *st = vg_fail_memory(err, "dealing out the coarse mesh");
+  free(piece);
+  free(queue);
+  return n == 1;
+}
+
+static vg_status deal(struct vg_coarse *c, const struct dual *d,
+                      const struct vg_parting_options *o,
+                      struct vg_error *err)
+{
+  struct vg_graph_options how = { o->n_part, imbalance, 0 };
+  vg_status st = VG_OK;
+
+  if (o->partitioner == VG_PARTITIONER_RCB) return bisect(c, o->n_part, err);
+  how.contiguous = hangs_together(d, c->part, err, &st);
+  return st < 0 ? st : vg_graph_part(&d->g, &how, c->part, err);
+}
+
+vg_status vg_coarse_deal(struct vg_coarse *c, const struct vg_sizing *sizing,
+                         const struct vg_parting_options *o,
+                         const struct vg_engine *e, uint64_t *n_apart,
+                         struct vg_error *err)
+{
+  struct weights w = { c, sizing, o->cells_per_cube };
+  struct dual d = { .begin = NULL };
+  vg_status st = VG_OK;
+
+  c->weight = vg_alloc(c->t.n_cell, sizeof *c->weight);
+  c->part = vg_alloc(c->t.n_cell, sizeof *c->part);
+  c->n_part = (uint32_t)o->n_part;
+  if (!c->weight || !c->part)
+    return vg_fail_memory(err, "dealing out the coarse mesh");
+  vg_engine_loop(e, c->t.n_cell, 256, weigh, &w);
+  VG_TRY(make_dual(c, sizing, &d, err));
+  VG_TRY(deal(c, &d, o, err));
+  VG_TRY(even_out(&d, c, err));
+  VG_TRY(settle_pieces(&d, c, err));
+  *n_apart = c->n_part > (uint32_t)o->n_part
+               ? c->n_part - (uint32_t)o->n_part : 0;
+done:
+  dual_release(&d);
+  return st;
+}

@@ -1,0 +1,274 @@
+/* Interfaces at the local size by halves, as the original did it: the longest
+ * edge of a triangle is halved if it is too long, and triangles fall into two,
+ * three or four by their edges that were, time by time (M.-C. Rivara, Int. J.
+ * Numer. Methods Eng. 20, 1984: angles stay above half of what they were). */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/geometry/vector.h"
+#include "partition/discrete/discrete_parts.h"
+
+/* An edge is halved while longer than this many of the size at its middle. */
+static const double longest = 1.5;   /* D8 */
+/* A coarse edge is halved a few times; one beyond that has no sensible size. */
+enum { ROUNDS = 60 };
+
+struct triangle { uint32_t v[3], face; };
+
+/* An edge of a triangle: place is 3 * triangle + k. Begins with its ends. */
+struct listed { uint32_t end[2], place; };
+
+struct halving {
+  const struct vg_coarse *c;
+  const struct vg_sizing *sizing;
+  struct vg_sheets *s;
+  size_t n;
+  struct triangle *tri;      /* by face */
+  double *reach;             /* [c.n_front] square of the longest edge of the
+                                front at a point */
+  uint32_t *middle;          /* [n][3] of edges that were halved, or VG_NONE */
+};
+
+static const double *point_of(const struct halving *h, uint32_t k)
+{
+  size_t n = h->c->t.n_point;
+
+  return k < n ? h->c->t.x[k] : h->s->x[k - n];
+}
+
+static int by_ends(const void *a, const void *b)
+{
+  const struct listed *s = a, *t = b;
+
+  for (int k = 0; k < 2; k++)
+    if (s->end[k] != t->end[k]) return s->end[k] < t->end[k] ? -1 : 1;
+  return (s->place > t->place) - (s->place < t->place);
+}
+
+static int same_ends(const void *a, const void *b)
+{
+  const uint32_t *s = a, *t = b;
+
+  for (int k = 0; k < 2; k++)
+    if (s[k] != t[k]) return s[k] < t[k] ? -1 : 1;
+  return 0;
+}
+
+/* Edges at a point of the front are not halved below the longest edge of the
+ * front there, which stays, however small the size is: triangles on that would
+ * become flat. */
+static vg_status find_reach(struct halving *h, struct vg_error *err)
+{
+  const struct vg_coarse *c = h->c;
+
+  h->reach = vg_calloc(c->n_front, sizeof *h->reach);
+  if (!h->reach) return vg_fail_memory(err, "the interfaces");
+  for (size_t q = 0; q < 4 * c->t.n_cell; q++) {
+    if (c->on[0][q] == VG_NONE) continue;
+    for (int k = 0; k < 3; k++) {
+      uint32_t a = c->t.cell[q / 4].v[vg_face[q % 4][k]];
+      uint32_t b = c->t.cell[q / 4].v[vg_face[q % 4][(k + 1) % 3]];
+      double l = vg_distance2(c->t.x[a], c->t.x[b]);
+
+      if (l > h->reach[a]) h->reach[a] = l;
+      if (l > h->reach[b]) h->reach[b] = l;
+    }
+  }
+  return VG_OK;
+}
+
+/* Of edges as long the later one counts as longer. */
+static int is_longer(const struct halving *h, const struct listed *a,
+                     const struct listed *b)
+{
+  double x = vg_distance2(point_of(h, a->end[0]), point_of(h, a->end[1]));
+  double y = vg_distance2(point_of(h, b->end[0]), point_of(h, b->end[1]));
+
+  return x != y ? x > y : same_ends(a->end, b->end) > 0;
+}
+
+static int is_too_long(const struct halving *h, const uint32_t end[2])
+{
+  const double *a = point_of(h, end[0]), *b = point_of(h, end[1]);
+  double mid[3], most;
+
+  for (int k = 0; k < 3; k++) mid[k] = 0.5 * (a[k] + b[k]);
+  most = longest * vg_sizing_at(h->sizing, mid);
+  most *= most;
+  for (int k = 0; k < 2; k++)
+    if (end[k] < h->c->n_front && h->reach[end[k]] > most)
+      most = h->reach[end[k]];
+  return vg_distance2(a, b) > most;
+}
+
+/* Of each triangle the longest edge that is too long: each once, *n of them in
+ * l [triangles]. */
+static void list_long(const struct halving *h, struct listed *l, size_t *n)
+{
+  size_t left = 0;
+
+  *n = 0;
+  for (size_t i = 0; i < h->n; i++) {
+    struct listed best = { {0, 0}, VG_NONE };
+
+    for (uint32_t k = 0; k < 3; k++) {
+      uint32_t a = h->tri[i].v[k], b = h->tri[i].v[(k + 1) % 3];
+      struct listed edge = { { a < b ? a : b, a < b ? b : a },
+                             (uint32_t)(3 * i + k) };
+
+      if (is_too_long(h, edge.end) &&
+          (best.place == VG_NONE || is_longer(h, &edge, &best)))
+        best = edge;
+    }
+    if (best.place != VG_NONE) l[(*n)++] = best;
+  }
+  if (*n) qsort(l, *n, sizeof *l, by_ends);
+  for (size_t k = 0; k < *n; k++)
+    if (!left || same_ends(l[k].end, l[left - 1].end)) l[left++] = l[k];
+  *n = left;
+}
+
+/* A point in the middle of each: place becomes the point. */
+static vg_status add_middles(struct halving *h, struct listed *l, size_t n,
+                             struct vg_error *err)
+{
+  for (size_t k = 0; k < n; k++) {
+    if (vg_reserve(&h->s->x, &h->s->cap_point, h->s->n_point + 1,
+                   sizeof *h->s->x))
+      return vg_fail_memory(err, "the interfaces");
+    for (int i = 0; i < 3; i++)
+      h->s->x[h->s->n_point][i] = 0.5 * (point_of(h, l[k].end[0])[i] +
+                                         point_of(h, l[k].end[1])[i]);
+    l[k].place = (uint32_t)(h->c->t.n_point + h->s->n_point++);
+  }
+  return VG_OK;
+}
+
+static vg_status halve_edges(struct halving *h, size_t *n_halved,
+                             struct vg_error *err)
+{
+  struct listed *l = vg_alloc(h->n, sizeof *l);
+  vg_status st = VG_OK;
+
+  free(h->middle);
+  h->middle = vg_alloc(3 * h->n, sizeof *h->middle);
+  if (!l || !h->middle) st = vg_fail_memory(err, "the interfaces");
+  if (st == VG_OK) {
+    list_long(h, l, n_halved);
+    st = add_middles(h, l, *n_halved, err);
+  }
+  for (size_t k = 0; st == VG_OK && k < 3 * h->n; k++) {
+    uint32_t a = h->tri[k / 3].v[k % 3], b = h->tri[k / 3].v[(k + 1) % 3];
+    const uint32_t end[2] = { a < b ? a : b, a < b ? b : a };
+    const struct listed *at =
+      *n_halved ? bsearch(end, l, *n_halved, sizeof *l, same_ends) : NULL;
+
+    h->middle[k] = at ? at->place : VG_NONE;
+  }
+  free(l);
+  return st;
+}
+
+/* The parts of a triangle, turned as it is. */
+static int fall(const struct halving *h, const struct triangle *t,
+                const uint32_t m[3], uint32_t part[4][3])
+{
+  int n = 0, k = 0;
+
+  for (int i = 0; i < 3; i++) n += m[i] != VG_NONE;
+  if (n == 0) {
+    memcpy(part[0], t->v, sizeof part[0]);
+    return 1;
+  }
+  if (n == 3) {
+    for (int i = 0; i < 3; i++)
+      memcpy(part[i], (uint32_t[3]){ t->v[i], m[i], m[(i + 2) % 3] },
+             sizeof part[i]);
+    memcpy(part[3], m, sizeof part[3]);
+    return 4;
+  }
+  while (n == 1 ? m[k] == VG_NONE : m[k] != VG_NONE) k++;
+  {                          /* k: the edge that is halved, or is not */
+    uint32_t a = t->v[k], b = t->v[(k + 1) % 3], c = t->v[(k + 2) % 3];
+    uint32_t p = m[(k + 1) % 3], q = m[(k + 2) % 3];
+
+    if (n == 1) {
+      memcpy(part[0], (uint32_t[3]){ a, m[k], c }, sizeof part[0]);
+      memcpy(part[1], (uint32_t[3]){ m[k], b, c }, sizeof part[1]);
+      return 2;
+    }
+    memcpy(part[0], (uint32_t[3]){ p, c, q }, sizeof part[0]);
+    if (vg_distance2(point_of(h, a), point_of(h, p)) <=
+        vg_distance2(point_of(h, b), point_of(h, q))) {
+      memcpy(part[1], (uint32_t[3]){ a, p, q }, sizeof part[1]);
+      memcpy(part[2], (uint32_t[3]){ a, b, p }, sizeof part[2]);
+    } else {
+      memcpy(part[1], (uint32_t[3]){ a, b, q }, sizeof part[1]);
+      memcpy(part[2], (uint32_t[3]){ b, p, q }, sizeof part[2]);
+    }
+    return 3;
+  }
+}
+
+static vg_status fall_all(struct halving *h, struct vg_error *err)
+{
+  struct triangle *to = vg_alloc(4 * h->n, sizeof *to);
+  size_t n = 0;
+
+  if (!to) return vg_fail_memory(err, "the interfaces");
+  for (size_t i = 0; i < h->n; i++) {
+    uint32_t part[4][3];
+    int n_part = fall(h, &h->tri[i], h->middle + 3 * i, part);
+
+    for (int k = 0; k < n_part; k++) {
+      memcpy(to[n].v, part[k], sizeof part[k]);
+      to[n++].face = h->tri[i].face;
+    }
+  }
+  free(h->tri);
+  h->tri = to;
+  h->n = n;
+  return VG_OK;
+}
+
+static vg_status hand_over(const struct halving *h, size_t n_face,
+                           struct vg_error *err)
+{
+  struct vg_sheets *s = h->s;
+
+  s->begin = vg_calloc(n_face + 1, sizeof *s->begin);
+  s->tri = vg_alloc(h->n, sizeof *s->tri);
+  if (!s->begin || !s->tri) return vg_fail_memory(err, "the interfaces");
+  for (size_t k = 0; k < h->n; k++) {
+    memcpy(s->tri[k], h->tri[k].v, sizeof *s->tri);
+    s->begin[h->tri[k].face + 1] = k + 1;
+  }
+  return VG_OK;
+}
+
+vg_status vg_sheets_halve(const struct vg_coarse *c,
+                          const struct vg_interface *f,
+                          const struct vg_sizing *sizing,
+                          struct vg_sheets *s, struct vg_error *err)
+{
+  struct halving h = { .c = c, .sizing = sizing, .s = s, .n = f->n_face };
+  size_t n_halved = 1;
+  vg_status st;
+
+  h.tri = vg_alloc(f->n_face, sizeof *h.tri);
+  st = h.tri ? find_reach(&h, err) : vg_fail_memory(err, "the interfaces");
+  for (size_t i = 0; st == VG_OK && i < f->n_face; i++) {
+    vg_interface_corners(c, f, i, h.tri[i].v);
+    h.tri[i].face = (uint32_t)i;
+  }
+  for (int k = 0; st == VG_OK && n_halved && k < ROUNDS; k++) {
+    st = halve_edges(&h, &n_halved, err);
+    if (st == VG_OK && n_halved) st = fall_all(&h, err);
+  }
+  if (st == VG_OK) st = hand_over(&h, f->n_face, err);
+  free(h.tri);
+  free(h.middle);
+  free(h.reach);
+  return st;
+}

@@ -1,0 +1,50 @@
+# The void parted by the faces of a coarse mesh: the same files for any number
+# of ranks and threads, in any order; reports; what is refused.
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
+  OMPI_MCA_rmaps_base_oversubscribe=1 \
+  OMPI_MCA_hwloc_base_binding_policy=none \
+  PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe \
+  PRTE_MCA_hwloc_default_binding_policy=none
+
+vanguard demo box --cells 20000 --out p
+for way in 'remesh metis' 'h-refine rcb'; do
+  read -r interfaces partitioner <<< "$way"
+  set -- mesh -q -p p/box --decompose discrete --parts 5 --write b8.ugrid \
+    --interfaces "$interfaces" --partitioner "$partitioner"
+  vanguard "$@" -t 1 --out one
+  exits 0
+  says out "decomposed by discrete: 5 parts"
+  says out "validity: valid"
+  says one/box.report.json '"decomposition": "discrete"'
+  says one/box.report.json '"interface_triangles": '
+  says one/box.resolved.deck discrete
+  vanguard "$@" -t 3 --out many --shuffle-tasks 7
+  exits 0
+  cmp -s one/box.b8.ugrid many/box.b8.ugrid || fail "threads: another mesh"
+  if mpirun -n 2 true >/dev/null 2>&1; then
+    ASAN_OPTIONS=detect_leaks=0 mpirun -n 2 "$program" "$@" -t 2 \
+      --out ranks >out 2>err || fail "2 ranks: $(cat err)"
+    cmp -s one/box.b8.ugrid ranks/box.b8.ugrid || fail "ranks: another mesh"
+  fi
+  vanguard check -q one/box.b8.ugrid
+  exits 0
+done
+
+# Without a number of parts there are leaf_cells to each.
+vanguard mesh -q -p p/box --decompose discrete --leaf-cells 7000 --out by
+exits 0
+says out "decomposed by discrete: 3 parts"
+
+vanguard mesh -q -p p/box --decompose discrete --parts 0
+exits 2
+says err "parts"
+vanguard mesh -q -p p/box --decompose discrete --coarsening 0.5
+exits 2
+says err "coarsening is 0.5; it must be at least 1"
+vanguard mesh -q -p p/box --decompose discrete --parts 900000 --out none
+exits 1
+says err "ask for fewer parts"
+[ ! -e none ] || [ -z "$(ls none)" ] || fail "files of a mesh that was refused"
+vanguard plan -q -p p/box --decompose discrete
+exits 2
+says err "advancing"

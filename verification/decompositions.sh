@@ -1,0 +1,92 @@
+#!/usr/bin/env bash
+# verification/decompositions.sh: voids parted before they are filled, in all
+# ways: every mesh valid, and its cells, balance and angles beside those of the
+# advancing partition.
+#
+# usage: verification/decompositions.sh [--vanguard PROGRAM]
+#          [--meshcheck PROGRAM] [--data DIR] [--work DIR] [--out FILE]
+#          [--parts LIST] [CASE...]
+#   --vanguard   the program (default build/release/bin/vanguard)
+#   --meshcheck  an independent judge of .lb8.ugrid files, called with one
+#   --data       folder of real geometry (verification/README.md)
+#   --work       scratch folder, kept (default: a temporary one, removed)
+#   --out        write the table to FILE too (markdown)
+#   --parts      numbers of parts (default "4 16 100")
+#   CASE         names or patterns of the table below
+# Exit status: 0 all valid, 1 one is not or a run failed, 2 usage.
+set -euo pipefail
+
+root=$(cd "$(dirname "$0")/.." && pwd)
+# shellcheck source=bench/common.sh
+. "$root/bench/common.sh"
+# shellcheck source=bench/aircraft.sh
+. "$root/bench/aircraft.sh"
+vanguard=$root/build/release/bin/vanguard
+meshcheck='' data='' work='' project='' parts='4 16 100' options=()
+take_options "vanguard meshcheck data work out parts" "" "$@"
+[ -x "$vanguard" ] || die "no program $vanguard: build it first"
+work_folder decompositions
+[ -z "$out" ] || : > "$out"
+
+need jq jq
+
+# Cells outside the layers, most over mean of leaves, triangles of interfaces,
+# 1st percentile of the smallest angle of all cells, parts filled with others.
+row='[(.partition | (.leaf_cells | add) + .fragment_cells + .zone_cells
+  + .repair_cells), (.partition.balance * 1000 | round / 1000),
+  .partition.parting.interface_triangles // 0, .mesh.angle_min_p1,
+  .partition.parts_widened] | map(tostring) | join(" | ")'
+
+# try WAY OPTIONS...: mesh the case, judge it; a row of the table.
+failed=0
+try() {
+  local way=$1 verdict=valid figures=' | | | | '
+  shift
+  rm -rf "$work/files"
+  if ! "$vanguard" mesh -q -p "$project" "${options[@]}" "$@" \
+       --write lb8.ugrid --out "$work/files" > "$work/log" 2>&1 < /dev/null
+  then verdict="FAILED: $(tail -1 "$work/log")"
+  elif ! "$vanguard" check -q "$work"/files/*.lb8.ugrid > "$work/log" 2>&1
+  then verdict="NOT VALID"
+  elif [ -n "$meshcheck" ] &&
+       ! "$meshcheck" -q "$work"/files/*.lb8.ugrid > "$work/log" 2>&1
+  then verdict="meshcheck: $(tail -1 "$work/log")"; fi
+  [ "$verdict" = valid ] || failed=1
+  ! ls "$work"/files/*.report.json > /dev/null 2>&1 ||
+    figures=$(jq -r "$row" "$work"/files/*.report.json)
+  echo "| $name | $way | $verdict | $figures |" | say
+}
+
+{
+  echo "| case | decomposition | verdict | cells outside layers | balance |" \
+    "interface triangles | 1st percentile | parts widened |"
+  echo "|---|---|---|---|---|---|---|---|"
+} | say
+while read -r name kind size; do
+  wanted "$name" || continue
+  case $kind in
+    demo) demo_project "$name" "$size" "$work/input" ;;
+    data) if [ -z "$data" ] || ! aircraft "$data" "$name" "$work/input"; then
+            echo "SKIP $name: no --data with it" >&2
+            continue
+          fi ;;
+  esac
+  try advancing --leaf-cells 30000
+  for n in $parts; do
+    for interfaces in remesh h-refine; do
+      for partitioner in metis rcb; do
+        try "$n $interfaces $partitioner" --decompose discrete --parts "$n" \
+          --interfaces "$interfaces" --partitioner "$partitioner"
+      done
+    done
+  done
+done << END
+box demo 200000
+sphere demo 200000
+wing-half demo 200000
+wing demo 200000
+dlr_f6_coarse data -
+falcon data -
+30p30n_medium data -
+END
+exit "$failed"
