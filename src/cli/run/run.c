@@ -13,6 +13,7 @@
 #include "cli/report/report.h"
 #include "layers/columns/pack.h"
 #include "partition/discrete/discrete.h"
+#include "partition/octree/octree.h"
 
 uint64_t vg_run_cells(const struct vg_run *r)
 {
@@ -245,7 +246,8 @@ static vg_status say_stopped(const struct vg_run *r, struct vg_error *err)
 
 /* In the order of enum vg_decomposition. */
 static const struct { const char *name; vg_parting_maker *maker; } ways[] = {
-  { "advancing", NULL }, { "discrete", vg_discrete_part } };
+  { "advancing", NULL }, { "discrete", vg_discrete_part },
+  { "octree", vg_octree_part } };
 
 static vg_status fill(struct vg_run *r, const struct vg_problem *p,
                       const struct vg_mesh *boundary,
