@@ -25,7 +25,7 @@ struct vg_parting_options {
 
 /* In the order of the setting's words. */
 enum vg_decomposition { VG_DECOMPOSE_ADVANCING, VG_DECOMPOSE_DISCRETE,
-  VG_DECOMPOSE_OCTREE };
+  VG_DECOMPOSE_OCTREE, VG_DECOMPOSITIONS };
 
 /* Steps of a maker whose seconds are told. */
 enum { VG_PARTING_COARSE,    /* coarse mesh or octree */
@@ -66,6 +66,9 @@ struct vg_parting {
 #define VG_PARTING_INIT { 0 }
 
 void vg_parting_release(struct vg_parting *p);
+
+/** Parts for leaves of so many cells; 0: one. */
+int vg_parting_parts(double cells, double leaf_cells);
 
 /** Part the void within a front.
  *
