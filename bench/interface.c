@@ -1,14 +1,15 @@
-/* interface CASE CELLS LEAF [THREADS [PARTS [remesh|h-refine [metis|rcb]]]]: are
- * cells beside interfaces as good as all cells?
+/* interface CASE CELLS LEAF [THREADS [PARTS [remesh|h-refine|octree
+ * [metis|rcb]]]]: are cells beside interfaces as good as all cells?
  *
  * CASE: a case of `vanguard demo` with about CELLS cells, or a file with a
  * closed surface, which is meshed as it is. It is filled in leaves of LEAF
  * cells; points that a zone made and that have cells of other tasks are on
  * interfaces. Cells made by repairs count as of the place where they are: what
  * their corners' makers say, since the tasks whose cells they take the place of
- * are not kept. With PARTS it is decomposed by `discrete`: then points that a
- * leaf made, or adopted, and that have cells of other leaves are on interfaces;
- * cells made by repairs do not tell.
+ * are not kept. With PARTS it is decomposed by `discrete`, or `octree`, whose
+ * gap LEAF should leave whole: then points that a leaf made, or adopted, and
+ * that have cells of other leaves are on interfaces; cells made by repairs do
+ * not tell.
  * One line each for all cells, for those within two rings of an interface,
  * and for the others; then for all and those near among the inner cells,
  * without a corner on the surface, whose angles are others and of which
@@ -27,7 +28,7 @@
 #include "core/surface/surface_check.h"
 #include "io/mesh/format.h"
 #include "partition/advance/advance.h"
-#include "partition/discrete/discrete.h"
+#include "partition/advance/ways.h"
 
 enum { BINS = 1800, N_SIZE = 4000, LEAF = 1, ZONE = 2, REPAIR = 3 };
 
@@ -344,7 +345,10 @@ static double angle(double shape)
 /* PARTS [INTERFACES [PARTITIONER]] */
 static void decompose(int n, char **word, struct vg_partition_options *o)
 {
-  o->maker = vg_discrete_part;
+  int is_octree = n > 1 && !strcmp(word[1], "octree");
+
+  o->maker = vg_ways[is_octree ? VG_DECOMPOSE_OCTREE
+                               : VG_DECOMPOSE_DISCRETE].maker;
   o->parting.n_part = atoi(word[0]);
   o->parting.h_refine = n > 1 && !strcmp(word[1], "h-refine");
   if (n > 2 && !strcmp(word[2], "rcb"))
@@ -364,7 +368,7 @@ int main(int argc, char **argv)
 
   if (argc < 4) {
     fprintf(stderr, "usage: interface CASE|FILE CELLS LEAF [THREADS [PARTS "
-            "[remesh|h-refine [metis|rcb]]]]\n");
+            "[remesh|h-refine|octree [metis|rcb]]]]\n");
     return 2;
   }
   must(vg_child_server_start(&err), &err);

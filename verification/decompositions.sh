@@ -73,6 +73,10 @@ while read -r name kind size; do
   esac
   try advancing --leaf-cells 30000
   for n in $parts; do
+    for partitioner in metis rcb; do
+      try "$n octree $partitioner" --decompose octree --parts "$n" \
+        --partitioner "$partitioner"
+    done
     for interfaces in remesh h-refine; do
       for partitioner in metis rcb; do
         try "$n $interfaces $partitioner" --decompose discrete --parts "$n" \

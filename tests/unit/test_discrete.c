@@ -9,6 +9,7 @@
 #include "partition/cut/parting.h"
 #include "partition/discrete/discrete.h"
 #include "partition/discrete/discrete_parts.h"
+#include "partition/graph/bisect.h"
 
 enum { SERIAL = 9 };
 

@@ -1,5 +1,6 @@
 /* Graphs parted by METIS: balanced, few edges cut, in one piece each, the same
  * every time; what cannot be parted is refused. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -8,6 +9,7 @@
 #include <string.h>
 #include <cmocka.h>
 
+#include "partition/graph/bisect.h"
 #include "partition/graph/graph.h"
 
 enum { SIDE = 40, N = SIDE * SIDE };
@@ -154,6 +156,38 @@ static void what_cannot_be_is_refused(void **state)
   assert_int_equal(part[0], 7);
 }
 
+/* Points of a line, of weights that rise: parts are runs of nearly the same
+ * weight, none empty even where there are as many as points. */
+static void bisection_is_even(void **state)
+{
+  enum { POINTS = 1000 };
+  static double x[POINTS][3], weight[POINTS];
+  static uint32_t part[POINTS];
+  double sum[7] = { 0 }, all = 0;
+
+  (void)state;
+  for (int i = 0; i < POINTS; i++) {
+    x[i][1] = (i * 37) % POINTS;
+    weight[i] = 1 + 0.001 * x[i][1];
+    all += weight[i];
+  }
+  assert_int_equal(vg_bisect(POINTS, (const double (*)[3])x, weight, 7, part, NULL),
+                   VG_OK);
+  for (int i = 0; i < POINTS; i++) {
+    assert_true(part[i] < 7);
+    sum[part[i]] += weight[i];
+    for (int j = 0; j < POINTS; j++)
+      assert_false(x[i][1] < x[j][1] && part[i] > part[j]);
+  }
+  for (int k = 0; k < 7; k++) assert_true(fabs(sum[k] * 7 / all - 1) < 0.02);
+  assert_int_equal(vg_bisect(5, (const double (*)[3])x, weight, 5, part, NULL),
+                   VG_OK);
+  for (int i = 0; i < 5; i++)
+    for (int j = 0; j < i; j++) assert_int_not_equal(part[i], part[j]);
+  assert_int_equal(vg_bisect(5, (const double (*)[3])x, weight, 6, part, NULL),
+                   VG_ERR_INPUT);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -161,6 +195,7 @@ int main(void)
     cmocka_unit_test(weights_count),
     cmocka_unit_test(prices_count),
     cmocka_unit_test(what_cannot_be_is_refused),
+    cmocka_unit_test(bisection_is_even),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -182,11 +182,6 @@ static vg_status read_project(struct vg_plan *p, struct vg_error *err)
   VG_TRY(vg_problem_deck(q, err));
   VG_TRY(vg_cli_apply(&o->kept, &q->settings, err));
   vg_settings_write(&q->settings);
-  if (q->settings.decompose != VG_DECOMPOSE_ADVANCING) {
-    st = vg_fail(err, VG_ERR_USAGE, "plan forecasts the advancing partition "
-                 "only: give --decompose advancing, or mesh without a plan");
-    goto done;
-  }
   VG_TRY(vg_problem_surface(q, &p->show, err));
   count_time(p, VG_PHASE_READ, start);
   start = vg_clock_process();
@@ -475,6 +470,7 @@ static vg_status make(struct vg_plan *p, struct vg_error *err)
   vg_display_update(&p->show, "forecast", 0, 0);
   VG_TRY(vg_load_new(&v, p->sizing, VG_LOAD_CELLS_PER_CUBE, vg_cores(),
                      &p->load, err));
+  VG_TRY(vg_plan_part(p, err));
   if (p->o->serial >= 0) {
     memset(p->phase, 0, sizeof p->phase);
     p->phase[VG_PHASE_READ] = p->o->serial;

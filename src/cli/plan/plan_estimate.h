@@ -9,6 +9,7 @@
 #include "cli/input/source_effect.h"
 #include "cli/plan/plan.h"
 #include "cli/plot/timeline.h"
+#include "partition/cut/parting.h"
 #include "partition/model/rates.h"
 
 enum { VG_PLAN_LEAVES = 8 };
@@ -22,6 +23,15 @@ struct vg_plan_row {
   double memory;                /* bytes of a rank */
 };
 
+/** What the field is parted into before it is filled. */
+struct vg_plan_parting {
+  size_t n_part;                /* 0: not parted, or not known */
+  size_t n_whole;               /* of these, filled as they are */
+  double cells, most;           /* expected in all of these, in one at most */
+  double seconds;
+  struct vg_parting_report report;
+};
+
 struct vg_plan {
   const struct vg_plan_options *o;
   struct vg_display show;
@@ -32,6 +42,7 @@ struct vg_plan {
   struct vg_sizing *sizing;     /* over the front */
   struct vg_effects effects;
   struct vg_load load;
+  struct vg_plan_parting parting;
   struct vg_cut_rule rule;
   struct vg_rates rates;
   struct vg_rate_fit fit[VG_RATE_FITS];   /* n is 0: not fitted */
@@ -63,6 +74,9 @@ double vg_plan_phase(const struct vg_plan *p, const struct vg_plan_row *r,
 /** Bytes of the files that a word of the write list stands for; 0: not
  * known. */
 double vg_plan_bytes(const struct vg_plan *p, const char *item);
+
+/** p->parting, where one is asked for and layers are known. (plan_parting.c) */
+vg_status vg_plan_part(struct vg_plan *p, struct vg_error *err);
 
 /** Speed-up over workers as a figure. */
 vg_status vg_plan_draw(const struct vg_plan *p, struct vg_error *err);

@@ -10,6 +10,7 @@
 #include "cli/common/cli.h"
 #include "cli/common/text.h"
 #include "cli/plan/plan_estimate.h"
+#include "partition/advance/ways.h"
 #include "cli/plot/plot.h"
 #include "cli/report/report.h"
 #include "io/mesh/fluent.h"
@@ -155,6 +156,32 @@ static void print_leaves(const struct vg_forecast *o, size_t parent, int indent)
 static void print_number(size_t n, const char *what)
 {
   printf("%zu %s%s", n, what, n == 1 ? "" : "s");
+}
+
+static void print_parting(const struct vg_plan *p)
+{
+  const struct vg_plan_parting *q = &p->parting;
+  const struct vg_parting_report *r = &q->report;
+  const char *way = vg_ways[p->problem.settings.decompose].name;
+  char a[32], b[32], c[32];
+
+  if (!vg_ways[p->problem.settings.decompose].maker) return;
+  printf("\nParts\n");
+  if (!q->n_part) {
+    printf("  %s: not known, as layers are estimated\n", way);
+  } else {
+    printf("  %s: %s parts filled as they are, with %s cells, ", way,
+           count((double)q->n_whole, a), count(q->cells, b));
+    printf("most over mean %.2f\n  %s %s, coarsening %.2f, %s triangles of "
+           "interfaces, %.2f s\n", q->n_whole ? q->most * (double)q->n_whole /
+           q->cells : 1, count((double)r->n_coarse, a), r->n_gap ? "octants"
+           : "coarse cells", r->coarsening, count((double)r->n_face, c),
+           q->seconds);
+    if (r->n_gap)
+      printf("  and %s that planes may cut, the gap at the front\n",
+             count((double)r->n_gap, a));
+  }
+  printf("  note: cuts and times below are of the advancing partition\n");
 }
 
 static void print_tree(const struct vg_plan *p)
@@ -303,6 +330,7 @@ void vg_plan_text(const struct vg_plan *p)
 {
   print_mesh(p);
   print_files(p);
+  print_parting(p);
   print_tree(p);
   print_rates(p);
   printf("\nForecast: on one core %.2f s outside the tasks, %.2f s of tasks, of "
@@ -383,6 +411,20 @@ static json_t *files_json(const struct vg_plan *p)
   return o;
 }
 
+static json_t *parting_json(const struct vg_plan *p)
+{
+  const struct vg_plan_parting *q = &p->parting;
+
+  return json_pack("{s:s s:I s:I s:I s:f s:f s:f s:I s:I s:f}", "way",
+    vg_ways[p->problem.settings.decompose].name,
+    "parts", (json_int_t)q->n_part, "whole_parts", (json_int_t)q->n_whole,
+    "gap_parts", (json_int_t)q->report.n_gap, "whole_cells", q->cells,
+    "most_cells", q->most, "coarsening", q->report.coarsening,
+    "coarse_cells", (json_int_t)q->report.n_coarse,
+    "interface_triangles", (json_int_t)q->report.n_face,
+    "seconds", q->seconds);
+}
+
 static json_t *tree_json(const struct vg_plan *p)
 {
   const struct vg_forecast *t = &p->forecast;
@@ -454,6 +496,8 @@ vg_status vg_plan_json(const struct vg_plan *p, struct vg_error *err)
   json_object_set_new(o, "files", files_json(p));
   json_object_set_new(o, "memory", json_pack("{s:f s:f s:f}", "shared",
     p->shared, "per_cell", p->per_cell, "per_thread", p->per_thread));
+  if (p->parting.n_part)
+    json_object_set_new(o, "parting", parting_json(p));
   json_object_set_new(o, "tree", tree_json(p));
   json_object_set_new(o, "rates", rates_json(p));
   json_object_set_new(o, "one_core", json_pack("{s:f s:f s:f}", "outside",

@@ -101,11 +101,17 @@ static void print_parting(FILE *to, const struct vg_run *r,
           "balance %.3f (most over mean\n  of the cells made in leaves)\n",
           r->decomposition, vg_cli_count(p->n_part, a),
           (unsigned long long)q->n_apart, balance(l));
-  fprintf(to, "  %s coarse cells, coarsening %.2f, %s triangles of "
-          "interfaces\n", vg_cli_count(q->n_coarse, a), q->coarsening,
-          vg_cli_count(q->n_face, b));
-  fprintf(to, "  seconds: coarse cells %.2f, dealt out %.2f, interfaces "
-          "smoothed %.2f, divided %.2f\n", q->time[VG_PARTING_COARSE],
+  fprintf(to, "  %s %s, coarsening %.2f, %s triangles of interfaces\n",
+          vg_cli_count(q->n_coarse, a), q->n_gap ? "octants" : "coarse cells",
+          q->coarsening, vg_cli_count(q->n_face, b));
+  if (q->n_gap)
+    fprintf(to, "  %s of these parts are the gap at the front, which planes "
+            "may cut; octants hold %.1f %%\n  of the cells expected%s\n",
+            vg_cli_count(q->n_gap, a), 100 * q->coarse_cells / p->estimate,
+            q->n_coarse ? "" : ": no octant has room off the front");
+  fprintf(to, "  seconds: %s %.2f, dealt out %.2f, interfaces smoothed "
+          "%.2f, divided %.2f\n", q->n_gap ? "octants" : "coarse cells",
+          q->time[VG_PARTING_COARSE],
           q->time[VG_PARTING_GRAPH], q->time[VG_PARTING_SMOOTH],
           q->time[VG_PARTING_FACES]);
 }
@@ -120,9 +126,10 @@ static void put_parting(const struct vg_run *r, const struct leaves *l,
   json_object_set_new(o, "balance", json_real(balance(l)));
   if (!p->n_part) return;
   json_object_set_new(o, "parting", json_pack(
-    "{s:I s:I s:f s:I s:I s:f s:f s:f s:f}", "parts", (json_int_t)p->n_part,
+    "{s:I s:I s:f s:I s:I s:f s:I s:f s:f s:f s:f}", "parts", (json_int_t)p->n_part,
     "parts_apart", (json_int_t)q->n_apart, "coarsening", q->coarsening,
     "coarse_cells", (json_int_t)q->n_coarse,
+    "gap_parts", (json_int_t)q->n_gap, "octants_hold", q->coarse_cells,
     "interface_triangles", (json_int_t)q->n_face,
     "coarse_seconds", q->time[VG_PARTING_COARSE],
     "deal_seconds", q->time[VG_PARTING_GRAPH],

@@ -12,7 +12,7 @@
 #include "cli/input/walls.h"
 #include "cli/report/report.h"
 #include "layers/columns/pack.h"
-#include "partition/discrete/discrete.h"
+#include "partition/advance/ways.h"
 
 uint64_t vg_run_cells(const struct vg_run *r)
 {
@@ -257,10 +257,6 @@ static vg_status open_mesher(const struct vg_run *r, const struct vg_settings *s
   return vg_comm_agree(r->comm, st, err);
 }
 
-/* In the order of enum vg_decomposition. */
-static const struct { const char *name; vg_parting_maker *maker; } ways[] = {
-  { "advancing", NULL }, { "discrete", vg_discrete_part } };
-
 static vg_status fill(struct vg_run *r, const struct vg_problem *p,
                       const struct vg_mesh *boundary,
                       const struct vg_sizing *sizing, struct vg_display *show,
@@ -275,8 +271,8 @@ static vg_status fill(struct vg_run *r, const struct vg_problem *p,
   o.rule.first_axis = (int)s->split_direction - 1;
   o.rule.constant = s->constant_direction;
   o.levels = (int)s->levels;
-  o.maker = ways[s->decompose].maker;
-  r->decomposition = ways[s->decompose].name;
+  o.maker = vg_ways[s->decompose].maker;
+  r->decomposition = vg_ways[s->decompose].name;
   o.parting.n_part = s->parts == VG_COUNT_NONE ? 0 : (int)s->parts;
   o.parting.partitioner = s->partitioner;
   o.parting.coarsening = s->coarsening;

@@ -27,7 +27,8 @@ static const char *const cad_patch_words[] = { "face", "name", "colour",
 /* In the order of enum vg_layer_cells. */
 static const char *const cell_words[] = { "tets", "mixed", NULL };
 /* In the order of enum vg_decomposition, enum vg_partitioner. */
-static const char *const decompose_words[] = { "advancing", "discrete", NULL };
+static const char *const decompose_words[] = { "advancing", "discrete",
+  "octree", NULL };
 static const char *const partitioner_words[] = { "metis", "rcb", NULL };
 static const char *const interface_words[] = { "remesh", "h-refine", NULL };
 /* In the order of enum vg_source_kind. */
@@ -137,16 +138,18 @@ static const struct vg_param params[] = {
   { "decompose", AT(decompose), .type = VG_PARAM_WORD,
     .words = decompose_words, .unit = "", .help = "how the space outside the "
     "layers is parted: advancing: cut by planes of finished cells; discrete: "
-    "by the faces of a coarse mesh, dealt out to parts" },
+    "by the faces of a coarse mesh, dealt out to parts; octree: by octants off "
+    "the layers, dealt out to parts, and planes at the layers" },
   { "parts", AT(parts), .type = VG_PARAM_COUNT, .lo = 1, .hi = 1e6,
-    .optional = 1, .unit = "parts", .help = "of a discrete decomposition; -: "
-    "as many as there are leaf_cells in the cells expected" },
+    .optional = 1, .unit = "parts", .help = "of a decomposition before "
+    "the filling; octree: those off the layers get their share; -: as many as there are leaf_cells in the cells expected" },
   { "partitioner", AT(partitioner), .type = VG_PARAM_WORD,
     .words = partitioner_words, .unit = "", .help = "who deals out coarse "
     "cells to parts: metis, or rcb (recursive coordinate bisection)" },
   { "coarsening", AT(coarsening), .type = VG_PARAM_REAL, .hi = 100,
     .unit = "", .help = "sizes of the coarse mesh over those of the mesh, 1 "
-    "or more; 0: by the number of parts" },
+    "or more, 0: by the number of parts; octree: widest octants in sizes, 2 or "
+    "more, 0: 4" },
   { "interfaces", AT(h_refine), .type = VG_PARAM_WORD,
     .words = interface_words, .unit = "", .help = "how faces between parts "
     "get the local size: remesh, or h-refine (edges are halved)" },

@@ -1,5 +1,6 @@
 #include "partition/advance/advance.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,6 +10,9 @@
 #include "partition/cut/node.h"
 #include "partition/cut/select.h"
 #include "partition/repair/repair.h"
+
+/* The smallest leaves that were found to be worth a cut. */
+static const double least_leaf = 14000;   /* C1 */
 
 /* Tasks as long as all of them plan, grow zones and join these into fronts;
  * then cells. */
@@ -119,6 +123,21 @@ static vg_status run_tasks(struct vg_partition *p, struct vg_comm *comm,
   return st;
 }
 
+/* What a maker of partings leaves to be cut is cut into as many cells as its
+ * parts have, but no finer than is worth a cut. Collective. */
+static vg_status cut_like_parts(struct vg_partition *p, struct vg_comm *comm,
+                                struct vg_error *err)
+{
+  struct vg_cut_rule *rule = &p->options.rule;
+  int n = p->options.maker ? p->options.parting.n_part : 0;
+  double cells = p->report.estimate;
+  vg_status st = vg_comm_max(comm, 1, &cells, err);
+
+  if (st == VG_OK && n > 0 && rule->leaf_cells > 0)
+    rule->leaf_cells = fmin(rule->leaf_cells, fmax(cells / n, least_leaf));
+  return st;
+}
+
 static vg_status run_whole(struct vg_partition *p, struct vg_comm *comm,
                            struct vg_spans *spans, struct vg_error *err)
 {
@@ -130,6 +149,7 @@ static vg_status run_whole(struct vg_partition *p, struct vg_comm *comm,
   if (st == VG_OK && p->rank == 0)
     st = within_limit(p, p->report.estimate / 1.5, "would have", err);
   st = vg_comm_agree(comm, st, err);
+  if (st == VG_OK) st = cut_like_parts(p, comm, err);
   if (st < 0) {
     vg_node_free(root);
     return st;

@@ -53,12 +53,10 @@ static struct vg_parting_options options_for(const struct vg_partition *p,
                                              const struct vg_node *n)
 {
   struct vg_parting_options o = p->options.parting;
-  double leaf = p->options.rule.leaf_cells, parts;
 
   o.cells_per_cube = n->per_cube;
-  if (o.n_part > 0) return o;
-  parts = leaf > 0 ? n->load.cells / leaf : 1;
-  o.n_part = parts < 1 ? 1 : parts > 1e6 ? 1000000 : (int)(parts + 0.5);
+  if (!o.n_part)
+    o.n_part = vg_parting_parts(n->load.cells, p->options.rule.leaf_cells);
   return o;
 }
 

@@ -15,6 +15,13 @@ void vg_parting_release(struct vg_parting *p)
   memset(p, 0, sizeof *p);
 }
 
+int vg_parting_parts(double cells, double leaf_cells)
+{
+  double parts = leaf_cells > 0 ? cells / leaf_cells : 1;
+
+  return parts < 1 ? 1 : parts > 1e6 ? 1000000 : (int)(parts + 0.5);
+}
+
 /* --- is it one? ---------------------------------------------------------- */
 
 /* A face by the names of its corners, rising. */

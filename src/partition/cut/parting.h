@@ -16,7 +16,7 @@ struct vg_parting_options {
                                 by the rule's leaf_cells */
   int partitioner;           /* enum vg_partitioner */
   double coarsening;         /* sizes of the coarse mesh or octree over those of
-                                the mesh; 0: chosen by n_part */
+                                the mesh; 0: chosen */
   int h_refine;              /* 1: interfaces get their size by halving edges */
   double cells_per_cube;     /* as of vg_load_new */
 };
@@ -24,7 +24,8 @@ struct vg_parting_options {
   VG_LOAD_CELLS_PER_CUBE }
 
 /* In the order of the setting's words. */
-enum vg_decomposition { VG_DECOMPOSE_ADVANCING, VG_DECOMPOSE_DISCRETE };
+enum vg_decomposition { VG_DECOMPOSE_ADVANCING, VG_DECOMPOSE_DISCRETE,
+  VG_DECOMPOSE_OCTREE, VG_DECOMPOSITIONS };
 
 /* Steps of a maker whose seconds are told. */
 enum { VG_PARTING_COARSE,    /* coarse mesh or octree */
@@ -36,6 +37,9 @@ enum { VG_PARTING_COARSE,    /* coarse mesh or octree */
 struct vg_parting_report {
   double coarsening;         /* that was used */
   uint64_t n_coarse;         /* coarse cells or octants */
+  double coarse_cells;       /* expected in the octants */
+  uint64_t n_gap;            /* parts at the front, without octants; 0: there
+                                are none */
   uint64_t n_apart;          /* parts beyond n_part: pieces that hung apart */
   uint64_t n_face;           /* triangles of interfaces */
   double time[VG_PARTING_STEPS];
@@ -62,6 +66,9 @@ struct vg_parting {
 #define VG_PARTING_INIT { 0 }
 
 void vg_parting_release(struct vg_parting *p);
+
+/** Parts for leaves of so many cells; 0: one. */
+int vg_parting_parts(double cells, double leaf_cells);
 
 /** Part the void within a front.
  *

@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "core/geometry/vector.h"
 #include "partition/discrete/discrete_parts.h"
+#include "partition/graph/bisect.h"
 #include "partition/graph/graph.h"
 
 /* Most over mean that METIS is asked for. */

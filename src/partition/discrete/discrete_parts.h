@@ -34,11 +34,6 @@ vg_status vg_coarse_deal(struct vg_coarse *c, const struct vg_sizing *sizing,
                          const struct vg_engine *e, uint64_t *n_apart,
                          struct vg_error *err);
 
-/** Recursive coordinate bisection: part out: [n], 0 .. n_part - 1, of points
- * with weights. O(n log n log n_part). (discrete_bisect.c) */
-vg_status vg_bisect(size_t n, const double (*x)[3], const double *weight,
-                    int n_part, uint32_t *part, struct vg_error *err);
-
 /* Faces between parts, each once: of the cell with the lower number. */
 struct vg_interface {
   size_t n_face;

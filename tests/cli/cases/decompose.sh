@@ -1,4 +1,4 @@
-# The void parted by the faces of a coarse mesh: the same files for any number
+# The void parted by the faces of a coarse mesh, or by octants: the same files for any number
 # of ranks and threads, in any order; reports; what is refused.
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
   OMPI_MCA_rmaps_base_oversubscribe=1 \
@@ -45,6 +45,34 @@ vanguard mesh -q -p p/box --decompose discrete --parts 900000 --out none
 exits 1
 says err "ask for fewer parts"
 [ ! -e none ] || [ -z "$(ls none)" ] || fail "files of a mesh that was refused"
-vanguard plan -q -p p/box --decompose discrete
-exits 2
-says err "advancing"
+vanguard plan -q -p p/box --decompose discrete --parts 5
+exits 0
+says out "discrete: 5 parts filled as they are"
+says out "of the advancing partition"
+
+# By octants, the gap at the walls by planes; where none has room all is gap.
+vanguard mesh -q -p p/box --decompose octree --parts 4 -t 1 --write b8.ugrid \
+  --out one
+exits 0
+says out "octants, coarsening 4.00"
+says out "of these parts are the gap at the front"
+says one/box.report.json '"gap_parts": 1'
+vanguard mesh -q -p p/box --decompose octree --parts 4 -t 3 --write b8.ugrid \
+  --shuffle-tasks 7 --out many
+exits 0
+cmp -s one/box.b8.ugrid many/box.b8.ugrid || fail "threads: another mesh"
+vanguard check -q one/box.b8.ugrid
+exits 0
+vanguard demo box --cells 500 --out tiny
+vanguard mesh -q -p tiny/box --decompose octree --parts 4 --out tiny
+exits 0
+says out "no octant has room off the front"
+vanguard mesh -q -p p/box --decompose octree --coarsening 1.5
+exits 1
+says err "at least 2 sizes wide"
+vanguard mesh -q -p p/box --decompose octree --interfaces h-refine
+exits 1
+says err "leave interfaces at remesh"
+vanguard plan -q -p p/box --decompose octree --parts 4
+exits 0
+says out "that planes may cut, the gap at the front"
