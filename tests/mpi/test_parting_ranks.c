@@ -59,7 +59,7 @@ static void compare(const struct scene *s, double fail)
   struct vg_partition_report r;
 
   o.fail_leaves = fail;
-  o.fail_rounds = 2;
+  o.fail_rounds = 1;         /* with more, all may become one void */
   expect = alone(s, &o);
   for (int threads = 1; threads < 3; threads++) {
     o.threads = threads;
