@@ -19,6 +19,8 @@ static const struct command {
 } commands[] = {
   { "mesh", "mesh the volume of a project, on threads and MPI ranks",
     vg_cmd_mesh, "vanguard mesh", 1 },
+  { "surface", "make the triangles of a surface anew to size", vg_cmd_surface,
+    "vanguard surface", 0 },
   { "check", "judge a surface or a volume mesh", vg_cmd_check,
     "vanguard check", 0 },
   { "partition", "share a volume mesh out to a solver's processes",

@@ -226,6 +226,8 @@ static json_t *report_json(const struct run *r, int ok,
   json_object_set_new(o, "patches", vg_report_patches_json(&p->surface));
   json_object_set_new(o, "surface", vg_report_surface_json(&p->surface,
                       &p->check, VG_SHOWN_DEFECTS));
+  json_object_set_new(o, "remesh", vg_report_remesh_json(&p->renewal,
+                                                         &p->surface));
   json_object_set_new(o, "domain", vg_report_domain_json(&p->domain));
   json_object_set_new(o, "notes", strings(&p->notes));
   if (ok) {
@@ -407,6 +409,7 @@ static void print_surface(FILE *to, const struct run *r)
   if (p->n_welded || p->n_dropped)
     fprintf(to, "  welded: %zu points merged, %zu triangles dropped\n",
            p->n_welded, p->n_dropped);
+  vg_report_remesh_text(to, &p->renewal);
   vg_report_domain_text(to, &p->domain);
   vg_report_surface_text(to, &p->surface, &p->check, VG_SHOWN_DEFECTS);
   for (size_t i = 0; i < p->notes.n; i++)

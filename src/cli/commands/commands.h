@@ -7,6 +7,7 @@
 #include <stdio.h>
 
 int vg_cmd_mesh(int argc, char **argv);
+int vg_cmd_surface(int argc, char **argv);
 int vg_cmd_check(int argc, char **argv);
 int vg_cmd_sweep(int argc, char **argv);
 int vg_cmd_partition(int argc, char **argv);

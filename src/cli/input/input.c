@@ -66,6 +66,7 @@ void vg_problem_release(struct vg_problem *p)
   vg_mesh_release(&p->surface);
   free(p->heights.item);
   vg_surface_report_release(&p->check);
+  vg_renewal_release(&p->renewal);
   vg_notes_release(&p->notes);
 }
 

@@ -10,6 +10,7 @@
 #include "cli/settings/settings.h"
 #include "core/domain/planar.h"
 #include "core/domain/project.h"
+#include "core/remesh/remesh.h"
 #include "core/sizing/sizing_map.h"
 #include "core/surface/surface_check.h"
 #include "io/cad/cad.h"
@@ -36,6 +37,16 @@ struct vg_point_heights {
 /** The height at x, NULL where none is given. O(log n). */
 double *vg_point_height(const struct vg_point_heights *h, const double x[3]);
 
+/** A surface whose triangles were made anew. */
+struct vg_renewal {
+  int is_done;
+  struct vg_remesh_report report;
+  struct vg_remesh_distance off[2]; /* new from given, given from new */
+  double *face;                     /* [n_tri] distance of each from given */
+  double *area;                     /* [n_patch][2] of patches, before, after */
+  double seconds;
+};
+
 struct vg_problem {
   struct vg_input_files files;
   struct vg_settings settings;
@@ -49,6 +60,9 @@ struct vg_problem {
   struct vg_surface_report check;
   int require_bc;                  /* the input gives conditions */
   int threads;                     /* for the check; 0: one per core */
+  struct vg_renewal renewal;
+  int surface_only;                /* vg_problem_close stops before it looks
+                                      for the domain */
   struct vg_domain_report domain;
   struct vg_notes notes;
 };
@@ -102,6 +116,13 @@ struct vg_cad_options vg_cad_options_of(const struct vg_settings *s,
  * name all sources, patches and the farfield that was chosen. */
 vg_status vg_problem_close(struct vg_problem *p, struct vg_display *show,
                            struct vg_error *err);
+
+/** Make the triangles of the surface anew where settings ask for it; distances
+ * are measured, notes tell. The surface is as the check left it. */
+vg_status vg_problem_renew(struct vg_problem *p, struct vg_display *show,
+                           struct vg_error *err);
+
+void vg_renewal_release(struct vg_renewal *r);
 
 /** Writers give patches without a condition that of an inviscid wall: a note
  * tells which these are. Once conditions are final. */

@@ -392,6 +392,13 @@ vg_status vg_problem_close(struct vg_problem *p, struct vg_display *show,
              ? -1 : s->farfield.kind != VG_DOMAIN_NONE;
   vg_display_update(show, "check", p->surface.n_tri, 0);
   VG_TRY(check(p, &external, err));
+  if (s->remesh) {
+    if (p->check.n_defect && !is_only_open(&p->check)) return defects(p, err);
+    VG_TRY(vg_problem_renew(p, show, err));
+    VG_TRY(check(p, &external, err));
+  }
+  if (p->surface_only && (!p->check.n_defect || is_only_open(&p->check)))
+    return VG_OK;
   if (external) return close_body(p, show, err);
   s->farfield.kind = VG_DOMAIN_NONE;
   VG_TRY(defects(p, err));

@@ -45,7 +45,7 @@ static const struct table help_table = {
 
 /* The keys of phases in the facts, and the parts of them that one thread does,
  * and that every node does for itself; all do the rest together. Of one
- * thread's time, by profile (row M8). Those that are no part of what is outside
+ * thread's time, by profile (M8). Those that are no part of what is outside
  * the tasks have none. */
 static const struct {
   const char *name, *key;

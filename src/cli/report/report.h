@@ -36,6 +36,11 @@ json_t *vg_report_surface_json(const struct vg_mesh *m,
                                const struct vg_surface_report *r,
                                size_t shown);
 
+/** A surface that was made anew; nothing, or null, where none was. */
+void vg_report_remesh_text(FILE *to, const struct vg_renewal *n);
+json_t *vg_report_remesh_json(const struct vg_renewal *n,
+                              const struct vg_mesh *m);
+
 /** Validity, then quality; `full`: with histograms and the worst cells. */
 void vg_report_mesh_text(FILE *to, const struct vg_mesh_report *r, int full);
 

@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "cli/settings/lists.h"
 #include "core/fill/fill.h"
+#include "core/remesh/remesh.h"
 #include "io/cad/cad.h"
 #include "layers/columns/law.h"
 #include "layers/expand/join.h"
@@ -99,6 +100,21 @@ static const struct vg_param params[] = {
     .unit = "", .help = "swap and collapse edges of the surface where its "
     "triangles are bad, without moving it visibly; auto: where layers grow "
     "and there are slivers" },
+  { "remesh_surface", AT(remesh), .type = VG_PARAM_FLAG, .unit = "",
+    .help = "make the triangles of the surface anew to size; ridges, corners "
+    "and patches stay" },
+  { "surface_tolerance", AT(surface_tolerance), LENGTH,
+    .help = "largest distance of a new surface from the one given; 0: 1e-4 of "
+    "the body's length; nowhere more than 0.05 of the edges" },
+  { "surface_size", AT(surface_size), LENGTH,
+    .help = "largest edge of a new surface; 0: hmax, or 0.02 of the body's "
+    "length (of an outer boundary, 0.04 of its own)" },
+  { "ridge_angle", AT(ridge_angle), .type = VG_PARAM_REAL, .lo = 5,
+    .hi = 170, .unit = "degrees", .help = "a new surface keeps edges whose "
+    "faces differ by this" },
+  { "edges_per_turn", AT(per_turn), .type = VG_PARAM_REAL, .lo = 3,
+    .hi = 10000, .unit = "edges", .help = "edges of a new surface around a "
+    "full circle" },
   { "optimise", AT(optimise), .type = VG_PARAM_COUNT, .hi = 100,
     .unit = "sweeps", .help = "sweeps of smoothing and swapping after the "
                               "fill" },
@@ -274,6 +290,8 @@ static const struct vg_param patch_columns[] = {
     "FUN3D code (3000 to 7999, or below 0); -: as the input says" },
   { "name", AT(name), .type = VG_PARAM_TEXT, .unit = "",
     .help = "name; \"\": as the input says" },
+  { "hard", AT(hard), .type = VG_PARAM_FLAG, .unit = "", .help = "a surface "
+    "that is made anew keeps the borders of this patch" },
 };
 
 #undef AT
@@ -451,6 +469,7 @@ void vg_settings_default(struct vg_settings *s)
   const struct vg_sizing_options sizing = VG_SIZING_OPTIONS_INIT;
   const struct vg_fill_options fill = VG_FILL_OPTIONS_INIT;
   const struct vg_cad_options cad = VG_CAD_OPTIONS_INIT;
+  const struct vg_remesh_options remesh = VG_REMESH_OPTIONS_INIT;
 
   memset(s, 0, sizeof *s);
   s->scale = sizing.scale;
@@ -460,6 +479,8 @@ void vg_settings_default(struct vg_settings *s)
   s->cad = (struct vg_cad_settings){ cad.unit, cad.patches, cad.tolerance,
                                      cad.chord, cad.angle, cad.seconds };
   s->repair = 1;
+  s->ridge_angle = remesh.ridge_angle;
+  s->per_turn = remesh.per_turn;
   s->optimise = fill.optimise;
   s->leaf_cells = VG_LEAF_CELLS;
   s->report_html = 1;

@@ -34,6 +34,7 @@ struct vg_farfield_row {
 
 struct vg_patch_row {
   int32_t id, bc;                  /* bc: USM3D or FUN3D code */
+  int hard;                        /* a new surface keeps its borders */
   char name[VG_NAME_MAX];          /* "": as the input says */
 };
 
@@ -105,6 +106,8 @@ struct vg_settings {
   char write[VG_WRITE_MAX];        /* "auto": vg_settings_write */
   int report_html;
   int swap;                        /* enum vg_answer: swap edges */
+  int remesh;                      /* make the surface's triangles anew */
+  double surface_tolerance, surface_size, ridge_angle, per_turn;
   int cells;                       /* enum vg_layer_cells */
   int ugrid_tail;
   int64_t solver_parts;            /* 0: none */

@@ -1,5 +1,5 @@
 /* core/sizing/sizing_source.h: laws of single sources, and of a whole list of
- * them prepared for many evaluations. Internal to core/sizing. Uses
+ * them prepared for many evaluations. Uses
  * core/sizing/sizing.h.
  *
  * Only + - * / and sqrt touch a size, so the bytes do not depend on libm. */

@@ -7,6 +7,7 @@ Vanguard makes volume meshes for aerodynamics from closed surfaces: viscous
 layers on the walls, tetrahedra around them.
 
   mesh      mesh the volume of a project, on threads and MPI ranks
+  surface   make the triangles of a surface anew to size
   check     judge a surface or a volume mesh
   partition share a volume mesh out to a solver's processes
   plan      forecast cells, memory and time before a project is meshed
@@ -41,7 +42,7 @@ vanguard help chekc
 exits 2
 says err "did you mean 'check'?"
 
-for command in mesh check partition sweep plan deck demo; do
+for command in mesh surface check partition sweep plan deck demo; do
   vanguard $command --help
   exits 0
   says out "Usage: vanguard $command [OPTION...]"

@@ -1,0 +1,29 @@
+/* core/remesh/passes.h: what is changed, in which order. Private to
+ * core/remesh. */
+#ifndef VG_CORE_REMESH_PASSES_H
+#define VG_CORE_REMESH_PASSES_H
+
+#include "core/remesh/work.h"
+
+/** Divide the curves by size, and take away the points that they had. */
+vg_status vg_pass_curves(struct vg_work *w, struct vg_error *err);
+
+/** Collapse edges shorter than `least` sizes, shortest first, and split those
+ * longer than `most`, longest first; each with swaps after it. *n: changes.
+ * across: only edges that are the longest of both their triangles. */
+vg_status vg_pass_collapse(struct vg_work *w, double least, double most,
+                           size_t *n, struct vg_error *err);
+vg_status vg_pass_split(struct vg_work *w, double most, int across, size_t *n,
+                        struct vg_error *err);
+
+/** Swap whatever gets better, until nothing does. */
+size_t vg_pass_swap(struct vg_work *w);
+
+/** Points of faces towards where their triangles are equilateral; sweeps. */
+size_t vg_pass_smooth(struct vg_work *w, int sweeps);
+
+/** All changes at triangles with an angle below that of `shape`. */
+vg_status vg_pass_polish(struct vg_work *w, double shape, size_t *n,
+                         struct vg_error *err);
+
+#endif

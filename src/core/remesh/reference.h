@@ -1,0 +1,65 @@
+/* core/remesh/reference.h: the surface as it was given, for questions of
+ * distance and size while another one takes its place. Private to
+ * core/remesh. */
+#ifndef VG_CORE_REMESH_REFERENCE_H
+#define VG_CORE_REMESH_REFERENCE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "core/mesh/mesh.h"
+
+#define VG_REF_NONE UINT32_MAX
+
+struct vg_ref_tri {
+  double a[3], u[3], v[3];  /* a corner, the edges from there */
+  double n[3];              /* unit normal; 0: too flat to have one */
+};
+
+struct vg_ref_node {
+  double lo[3], hi[3];
+  double size;              /* least below */
+};
+
+/* Half-edge 3 t + k runs from corner k of triangle t to the next one. */
+struct vg_ref {
+  size_t n_point, n_tri, n_item, first_leaf;
+  const double (*point)[3];
+  const uint32_t (*tri)[3];
+  uint32_t *mate;           /* [3 n_tri] VG_REF_NONE: open */
+  struct vg_ref_tri *shape; /* [n_tri] */
+  double *size;             /* [n_point] asked for there; vg_ref_sizes */
+  double slope;             /* growth - 1 */
+  uint32_t *item;           /* [n_item] triangles along a space-filling
+                               curve; long ones in pieces, more than once */
+  struct vg_ref_node *node; /* heap: children of i are 2 i + 1, 2 i + 2 */
+};
+#define VG_REF_INIT { 0 }
+
+/** Over the triangles of m, which is borrowed and stays as it is. O(n log n).
+ * VG_ERR_INPUT for edges of three faces or neighbours that disagree. */
+vg_status vg_ref_build(struct vg_ref *r, const struct vg_mesh *m,
+                       struct vg_error *err);
+
+/** Take size[n_point] into the tree. */
+void vg_ref_sizes(struct vg_ref *r);
+
+void vg_ref_release(struct vg_ref *r);
+
+/** Is a triangle that faces the way of n (a unit vector; NULL: any) within
+ * the distance of x? *hint: one to try first, out: the one found, at
+ * the squared distance *d2. */
+int vg_ref_within(const struct vg_ref *r, const double x[3],
+                  const double n[3], double distance, uint32_t *hint,
+                  double *d2);
+
+/** Nearest point to x on triangles that face the way of n (as above; those
+ * of all ways where none does) into out; returns the distance. *hint: in: one
+ * to begin with, out: its triangle. */
+double vg_ref_nearest(const struct vg_ref *r, const double x[3],
+                      const double n[3], uint32_t *hint, double out[3]);
+
+/** Size at x: the least of all points' own sizes grown with the distance. */
+double vg_ref_size(const struct vg_ref *r, const double x[3], uint32_t hint);
+
+#endif

@@ -1,0 +1,372 @@
+/* Outline: the surface as given becomes a reference; its lines and sizes are
+ * found; a copy is changed pass by pass; the outcome is checked as any surface
+ * that is to be meshed. Where triangles meet, which changes cannot see that
+ * look around themselves only, sizes are halved and all is done again. */
+#include "core/remesh/remesh.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/geometry/vector.h"
+#include "core/remesh/passes.h"
+#include "core/remesh/result.h"
+#include "core/remesh/sizes.h"
+#include "core/sizing/sizing_source.h"
+#include "core/surface/envelope.h"
+#include "core/surface/surface_check.h"
+
+#define TOLERANCE 1e-4    /* S20: of the body's length */
+#define RELATIVE 0.05     /* of the size */
+#define CHORD 0.6         /* of the tolerance: what sizes allow for arcs */
+#define H_MAX 0.02        /* of the length */
+#define H_MIN 2e-5
+#define H_OUTER 0.04      /* of the domain's length */
+#define TRIANGLES 3e8     /* more are refused */
+#define ROUNDS 6          /* until triangles no longer meet */
+#define SPOTS 256         /* of them at a time */
+#define SHORT 0.7         /* S21: sizes: shorter edges go */
+#define LONG 1.4          /* longer ones are split */
+#define POLISH2 0.3       /* (sin 33 degrees)^2: below, triangles are polished
+                             one by one */
+
+struct job {
+  const struct vg_mesh *given;
+  const struct vg_remesh_options *o;
+  struct vg_remesh_report r;
+  struct vg_ref ref;
+  struct vg_curves curves;
+  double *cap;              /* [n_tri] largest size, or NULL */
+  struct vg_source *source; /* those of the options, then spots */
+  size_t n_source, cap_source;
+};
+
+static const char *const cause_names[] = { "corner", "strip", "line",
+                                           "surface" };
+
+const char *vg_remesh_cause_name(enum vg_remesh_cause c)
+{
+  return cause_names[c];
+}
+
+void vg_remesh_report_release(struct vg_remesh_report *r)
+{
+  free(r->bad);
+  memset(r, 0, sizeof *r);
+}
+
+/* --- what is asked for --------------------------------------------------- */
+
+static vg_status check_surface(const struct vg_mesh *m, struct vg_error *err)
+{
+  if (!m->n_tri || m->n_quad)
+    return vg_fail(err, VG_ERR_INPUT, "a surface of triangles is needed: this "
+                   "has %zu, and %zu quadrilaterals", m->n_tri, m->n_quad);
+  if (m->n_tri > UINT32_MAX / 24)
+    return vg_fail(err, VG_ERR_UNSUPPORTED, "%zu triangles are too many to be "
+                   "made anew", m->n_tri);
+  for (size_t i = 0; i < m->n_point; i++)
+    if (!isfinite(m->point[i][0] + m->point[i][1] + m->point[i][2]))
+      return vg_fail(err, VG_ERR_INPUT, "point %zu of the surface is not "
+                     "finite; repair the surface", i + 1);
+  for (size_t i = 0; i < 3 * m->n_tri; i++)
+    if (m->tri[i / 3][i % 3] >= m->n_point)
+      return vg_fail(err, VG_ERR_INPUT, "triangle %zu of the surface uses "
+                     "point %zu of %zu; repair the surface", i / 3 + 1,
+                     (size_t)m->tri[i / 3][i % 3] + 1, m->n_point);
+  return VG_OK;
+}
+
+static vg_status check_options(const struct vg_remesh_options *o,
+                               struct vg_error *err)
+{
+  if (!(o->tolerance >= 0 && o->h_min >= 0 && o->h_max >= 0
+        && isfinite(o->tolerance + o->h_min + o->h_max)))
+    return vg_fail(err, VG_ERR_INPUT, "tolerance %g and sizes %g, %g of the "
+                   "new surface must be lengths; 0: by the body", o->tolerance,
+                   o->h_min, o->h_max);
+  if (o->h_max > 0 && o->h_min > o->h_max)
+    return vg_fail(err, VG_ERR_INPUT, "smallest size %g is above the largest, "
+                   "%g; exchange them", o->h_min, o->h_max);
+  if (!(o->ridge_angle >= 5 && o->ridge_angle <= 170 && o->per_turn >= 3
+        && o->per_turn <= 1e4 && o->growth > 1 && o->growth <= 10))
+    return vg_fail(err, VG_ERR_INPUT, "ridge angle %g (5 to 170 degrees), %g "
+                   "edges per turn (3 to 10000) or growth %g (1 to 10) is out "
+                   "of range", o->ridge_angle, o->per_turn, o->growth);
+  return VG_OK;
+}
+
+static double length_of(const struct vg_mesh *m, const uint8_t *outer)
+{
+  double lo[3] = { INFINITY, INFINITY, INFINITY }, most = 0;
+  double hi[3] = { -INFINITY, -INFINITY, -INFINITY };
+
+  for (size_t t = 0; t < m->n_tri; t++)
+    for (int k = 0; k < 3 && !(outer && outer[t]); k++)
+      for (int d = 0; d < 3; d++) {
+        lo[d] = fmin(lo[d], m->point[m->tri[t][k]][d]);
+        hi[d] = fmax(hi[d], m->point[m->tri[t][k]][d]);
+      }
+  for (int d = 0; d < 3; d++) most = fmax(most, hi[d] - lo[d]);
+  return most;
+}
+
+/* Lengths by the body; the outer boundary of a whole domain has its own. */
+static vg_status settle(struct job *j, struct vg_error *err)
+{
+  const struct vg_mesh *m = j->given;
+  struct vg_remesh_report *r = &j->r;
+  struct vg_envelope e;
+  uint8_t *outer = vg_alloc(m->n_tri, 1);
+  double whole = length_of(m, NULL);
+  vg_status st = VG_OK;
+
+  if (!outer) VG_TRY(vg_fail_memory(err, "the outer boundary"));
+  VG_TRY(vg_envelope_measure(m, outer, &e, err));
+  r->length = e.is_domain ? length_of(m, outer) : whole;
+  if (!(r->length > 0)) r->length = whole;
+  r->tolerance = j->o->tolerance > 0 ? j->o->tolerance
+                                     : TOLERANCE * r->length;
+  r->h_max = j->o->h_max > 0 ? j->o->h_max : H_MAX * r->length;
+  if (e.is_domain && !(j->o->h_max > 0)) {
+    j->cap = vg_alloc(m->n_tri, sizeof *j->cap);
+    if (!j->cap) VG_TRY(vg_fail_memory(err, "the sizes on the surface"));
+    for (size_t t = 0; t < m->n_tri; t++)
+      j->cap[t] = outer[t] ? INFINITY : r->h_max;
+    r->h_max = fmax(r->h_max, H_OUTER * whole);
+  }
+  r->h_min = j->o->h_min > 0 ? j->o->h_min : fmin(H_MIN * r->length, r->h_max);
+done:
+  free(outer);
+  return st;
+}
+
+/* Sizes in another unit would ask for more triangles than fit anywhere. */
+static vg_status check_number(const struct job *j, struct vg_error *err)
+{
+  const struct vg_ref *r = &j->ref;
+  double n = 0, size;
+
+  for (size_t t = 0; t < r->n_tri; t++) {
+    double x[3];
+
+    vg_cross(r->shape[t].u, r->shape[t].v, x);
+    size = (r->size[r->tri[t][0]] + r->size[r->tri[t][1]]
+            + r->size[r->tri[t][2]]) / 3;
+    n += vg_norm(x) / (0.8660254037844386 * size * size);
+  }
+  if (n < TRIANGLES) return VG_OK;
+  return vg_fail(err, VG_ERR_INPUT, "the new surface would have some %.2g "
+                 "triangles; are sizes and tolerance in its unit?", n);
+}
+
+static vg_status prepare(struct job *j, struct vg_error *err)
+{
+  const struct vg_remesh_options *o = j->o;
+  vg_status st;
+
+  VG_TRY(settle(j, err));
+  VG_TRY(vg_ref_build(&j->ref, j->given, err));
+  VG_TRY(vg_curves_find(&j->curves, &j->ref, &(struct vg_curves_options){
+    o->ridge_angle, j->r.tolerance, j->given->tri_patch, j->given->patch,
+    o->hard }, err));
+  VG_TRY(vg_sizes_make(&j->ref, &j->curves, &(struct vg_sizes_options){
+    o->per_turn, CHORD * j->r.tolerance, j->r.h_min, j->r.h_max, o->growth,
+    j->cap }, err));
+  VG_TRY(check_number(j, err));
+  j->source = vg_alloc(o->n_source, sizeof *j->source);
+  if (!j->source) VG_TRY(vg_fail_memory(err, "the sources"));
+  if (o->n_source)
+    memcpy(j->source, o->source, o->n_source * sizeof *j->source);
+  j->n_source = j->cap_source = o->n_source;
+done:
+  return st;
+}
+
+/* --- one round ----------------------------------------------------------- */
+
+static vg_status stopped(const struct job *j, struct vg_error *err)
+{
+  if (!j->o->stop || !j->o->stop()) return VG_OK;
+  return vg_fail(err, VG_ERR_GEOMETRY, "the surface was given up unfinished");
+}
+
+static vg_status change(struct job *j, struct vg_work *w, struct vg_error *err)
+{
+  size_t n;
+  vg_status st;
+
+  VG_TRY(vg_pass_curves(w, err));
+  vg_pass_swap(w);
+  VG_TRY(vg_pass_collapse(w, SHORT, LONG, &n, err));
+  VG_TRY(stopped(j, err));
+  VG_TRY(vg_pass_split(w, LONG, 1, &n, err));
+  for (int i = 0; i < 4; i++) {
+    VG_TRY(stopped(j, err));
+    vg_pass_smooth(w, 1);
+    VG_TRY(vg_pass_collapse(w, SHORT, LONG, &n, err));
+    VG_TRY(vg_pass_split(w, LONG, 0, &n, err));
+  }
+  vg_pass_smooth(w, 3);
+  vg_pass_swap(w);
+  for (int i = 0; i < 5; i++) {
+    VG_TRY(stopped(j, err));
+    VG_TRY(vg_pass_polish(w, POLISH2, &n, err));
+    vg_pass_swap(w);
+    vg_pass_smooth(w, 1);
+  }
+  VG_TRY(vg_pass_polish(w, POLISH2, &n, err));
+done:
+  return st;
+}
+
+static double source_size(const void *user, const double x[3])
+{
+  return vg_source_at(user, x);
+}
+
+static vg_status make(struct job *j, struct vg_mesh *out,
+                      struct vg_error *err)
+{
+  const struct vg_sizing_options s = { .growth = j->o->growth,
+                                       .scale = j->o->scale };
+  struct vg_source_set set = VG_SOURCE_SET_INIT;
+  struct vg_remesh_report *r = &j->r;
+  struct vg_work w = { .ref = &j->ref, .curves = &j->curves,
+    .tolerance = r->tolerance, .relative = RELATIVE, .h_min = r->h_min,
+    .h_max = r->h_max };
+  vg_status st = VG_OK;
+
+  if (j->n_source || j->o->map) {
+    VG_TRY(vg_source_check(j->n_source, j->source, err));
+    VG_TRY(vg_source_prepare(&s, j->n_source, j->source, 0, &set, err));
+    set.map = j->o->map;
+    w.other_size = source_size;
+    w.user = &set;
+  }
+  VG_TRY(vg_work_begin(&w, err));
+  VG_TRY(change(j, &w, err));
+  VG_TRY(vg_result_store(&w, j->given, out, r, err));
+  r->n_split = w.n_split;
+  r->n_collapse = w.n_collapse;
+  r->n_swap = w.n_swap;
+  r->n_move = w.n_move;
+done:
+  vg_work_release(&w);
+  vg_source_release(&set);
+  return st;
+}
+
+/* --- whether triangles meet ---------------------------------------------- */
+
+/* Ask for smaller triangles where face f is. */
+static vg_status add_spot(struct job *j, const struct vg_mesh *m, size_t f,
+                          int round, struct vg_error *err)
+{
+  struct vg_source s = { .kind = VG_SOURCE_POINT };
+  const double *p[3];
+  double edge = 0;
+
+  for (int k = 0; k < 3; k++) p[k] = m->point[m->tri[f][k]];
+  for (int k = 0; k < 3; k++) {
+    edge = fmax(edge, vg_distance(p[k], p[(k + 1) % 3]));
+    s.p0[k] = (p[0][k] + p[1][k] + p[2][k]) / 3;
+  }
+  s.r0 = edge;
+  s.h0 = s.h1 = fmax(edge, j->r.h_min) / (1 << (round + 1)) / j->o->scale;
+  if (vg_reserve(&j->source, &j->cap_source, j->n_source + 1,
+                 sizeof *j->source))
+    return vg_fail_memory(err, "the sources");
+  j->source[j->n_source++] = s;
+  return VG_OK;
+}
+
+/* Whether the new surface is as sound as the one given; else spots are added
+ * where it is not. */
+static vg_status is_sound(struct job *j, struct vg_mesh *m, int round,
+                          int *sound, struct vg_error *err)
+{
+  struct vg_surface_check_options o = { .threads = j->o->threads };
+  struct vg_surface_report r = VG_SURFACE_REPORT_INIT;
+  size_t n = 0;
+  vg_status st;
+
+  VG_TRY(vg_surface_check(m, &o, &r, err));
+  for (size_t i = 0; i < r.n_defect; i++) {
+    const struct vg_defect *d = &r.defect[i];
+
+    if (d->kind == VG_DEFECT_OPEN_EDGE || d->kind == VG_DEFECT_SHELL
+        || d->kind == VG_DEFECT_NO_BC) continue;
+    if (!n && round + 1 == ROUNDS) {
+      st = vg_fail(err, VG_ERR_GEOMETRY, "near (%g, %g, %g) new triangles "
+                   "meet however small they are (%s): give a smaller "
+                   "surface_tolerance, or mesh the surface as it is",
+                   d->at[0], d->at[1], d->at[2], vg_defect_name(d->kind));
+      goto done;
+    }
+    if (n++ >= SPOTS) break;
+    for (int k = 0; k < 2; k++)
+      if (d->face[k] != SIZE_MAX)
+        VG_TRY(add_spot(j, m, d->face[k], round, err));
+  }
+  *sound = !n;
+done:
+  vg_surface_report_release(&r);
+  return st;
+}
+
+static vg_status repeat(struct job *j, struct vg_mesh *out,
+                        struct vg_error *err)
+{
+  int sound = 0;
+  vg_status st = VG_OK;
+
+  for (int round = 0; !sound; round++) {
+    struct vg_remesh_report kept = j->r;
+
+    vg_mesh_release(out);
+    free(kept.bad);
+    j->r = (struct vg_remesh_report){ .length = kept.length,
+      .tolerance = kept.tolerance, .h_min = kept.h_min, .h_max = kept.h_max,
+      .n_round = round + 1 };
+    VG_TRY(make(j, out, err));
+    VG_TRY(is_sound(j, out, round, &sound, err));
+  }
+done:
+  return st;
+}
+
+vg_status vg_remesh(struct vg_mesh *m, const struct vg_remesh_options *o,
+                    struct vg_remesh_report *report, struct vg_error *err)
+{
+  struct job j = { .given = m, .o = o };
+  struct vg_mesh out = VG_MESH_INIT;
+  vg_status st;
+
+  VG_TRY(check_surface(m, err));
+  VG_TRY(check_options(o, err));
+  VG_TRY(prepare(&j, err));
+  VG_TRY(repeat(&j, &out, err));
+  j.r.n_tri[0] = m->n_tri;
+  j.r.n_tri[1] = out.n_tri;
+  j.r.n_point[0] = m->n_point;
+  j.r.n_point[1] = out.n_point;
+  j.r.n_corner = j.curves.n_corner;
+  j.r.n_line = j.curves.n_curve;
+  j.r.line_length[0] = j.curves.length;
+  vg_mesh_move(m, &out);
+  if (report) {
+    vg_remesh_report_release(report);
+    *report = j.r;
+    j.r.bad = NULL;
+  }
+done:
+  free(j.r.bad);
+  free(j.cap);
+  free(j.source);
+  vg_curves_release(&j.curves);
+  vg_ref_release(&j.ref);
+  vg_mesh_release(&out);
+  return st;
+}

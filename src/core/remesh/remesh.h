@@ -1,0 +1,112 @@
+/* core/remesh/remesh.h: a surface of triangles made anew to size.
+ *
+ * Points are put in and taken away, edges swapped and points moved along the
+ * surface until edges are as long as asked (after Botsch and Kobbelt, "A
+ * remeshing approach to multiresolution modeling", SGP 2004). Every change is
+ * held against the surface as given before it is made: it may not leave the
+ * tolerance, fold, or come nearer to another part of the surface than to its
+ * own. That is looked at in samples, middles of edges and centroids of the new
+ * triangles and points of the old ones; between samples of facets that bend it
+ * can be more, up to twice as far as seen, which vg_remesh_measure tells. */
+#ifndef VG_CORE_REMESH_REMESH_H
+#define VG_CORE_REMESH_REMESH_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "core/mesh/mesh.h"
+#include "core/sizing/sizing.h"
+
+struct vg_remesh_options {
+  double tolerance;         /* largest distance between the surfaces; 0: 1e-4
+                               of the body's length; nowhere more than 0.05 of
+                               the size */
+  double ridge_angle;       /* degrees between faces, from which on their edge
+                               is a ridge and stays */
+  double per_turn;          /* edges round a full circle */
+  double h_min, h_max;      /* 0: 2e-5 and 0.02 of the body's length; of the
+                               outer boundary of a whole domain, 0.04 of its
+                               own */
+  double growth;            /* > 1, of sizes along the surface */
+  size_t n_source;          /* sources of sizes, as the volume uses them */
+  const struct vg_source *source;
+  double scale;             /* of the sources' spacing */
+  const struct vg_size_map *map;  /* sizes besides; or NULL */
+  const uint8_t *hard;      /* [n_patch] all borders of the patch stay; or
+                               NULL */
+  int threads;              /* 0: one per core; the same bytes for any */
+  int (*stop)(void);        /* asked now and then: not 0 ends; or NULL */
+};
+#define VG_REMESH_OPTIONS_INIT { .ridge_angle = 40, .per_turn = 24, \
+  .growth = 1.2, .scale = 1, .threads = 1 }
+
+/* What keeps a triangle from a better shape. */
+enum vg_remesh_cause {
+  VG_REMESH_CORNER,          /* it lies between two lines from one point */
+  VG_REMESH_STRIP,           /* its points are on lines that are close */
+  VG_REMESH_LINE,            /* it stands on a line whose points stay */
+  VG_REMESH_SURFACE,         /* the surface bends too much to change it */
+  VG_REMESH_N
+};
+
+#define VG_REMESH_BAD 20.0  /* degrees: triangles below are listed */
+
+struct vg_remesh_bad {
+  size_t face;
+  double angle, at[3];
+  enum vg_remesh_cause cause;
+};
+
+struct vg_remesh_report {
+  double length, tolerance, h_min, h_max;  /* what was settled */
+  size_t n_tri[2], n_point[2];             /* before, after */
+  size_t n_corner, n_line;  /* corners and lines: all are kept */
+  double line_length[2];
+  size_t n_split, n_collapse, n_swap, n_move;
+  int n_round;              /* 1, and one more for each time that triangles
+                               met and sizes there were halved */
+  size_t n_edge, n_edge_fit;  /* edges; those within a factor sqrt 2 of what
+                               is asked for */
+  size_t cause[VG_REMESH_N];
+  size_t n_bad;
+  struct vg_remesh_bad *bad;  /* [n_bad] owned, by face */
+};
+#define VG_REMESH_REPORT_INIT { 0 }
+
+void vg_remesh_report_release(struct vg_remesh_report *r);
+
+/** Make the triangles of m anew. m is closed but for open rims, oriented and
+ * free of intersections (core/surface/surface_check.h); so is what comes out,
+ * by the same check.
+ *
+ * Lines stay: ridges, open rims, borders between patches of different
+ * conditions and hard ones; so do corners, in their places. Patches keep their
+ * number and order; where the surface goes on smoothly their borders are led
+ * along the edges of new triangles.
+ *
+ * @param r  released first; may be NULL
+ * Untouched on failure. VG_ERR_INPUT for a surface with quadrilaterals, edges
+ * of three faces or faces that disagree, or options out of range;
+ * VG_ERR_GEOMETRY where triangles meet whatever is tried, or stop said so;
+ * VG_ERR_MEMORY. Re-entrant. About O(n log n). */
+vg_status vg_remesh(struct vg_mesh *m, const struct vg_remesh_options *o,
+                    struct vg_remesh_report *r, struct vg_error *err);
+
+/** "corner", "strip", ... Static. */
+const char *vg_remesh_cause_name(enum vg_remesh_cause c);
+
+/** Distance of one surface from another, at points, middles of edges and
+ * centroids of `from`. */
+struct vg_remesh_distance {
+  double most, at[3];       /* largest, and where */
+  double most_99;           /* 99 % are below */
+};
+
+/** @param face  out: [from->n_tri] the largest at each; may be NULL
+ * O(n log n). VG_ERR_INPUT as vg_remesh. */
+vg_status vg_remesh_measure(const struct vg_mesh *from,
+                            const struct vg_mesh *to, int threads,
+                            double *face, struct vg_remesh_distance *d,
+                            struct vg_error *err);
+
+#endif

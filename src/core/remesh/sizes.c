@@ -1,0 +1,280 @@
+#include "core/remesh/sizes.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/geometry/vector.h"
+
+#define SMOOTH 2          /* averages of the curvature over neighbours */
+#define STEPS 400         /* triangles that a walk across a strip crosses */
+#define STRIP 0.94        /* cosine: lines more oblique make a wedge */
+#define FLOOR 0.02        /* S26: of the size without strips: never finer */
+
+/* Curvature tensor at a point, summed over edges, with its area. */
+struct bend {
+  double t[6], area;
+};
+
+static uint32_t next(uint32_t h)
+{
+  return h % 3 == 2 ? h - 2 : h + 1;
+}
+
+static uint32_t prev(uint32_t h)
+{
+  return h % 3 ? h - 1 : h + 2;
+}
+
+static const double *at(const struct vg_ref *r, uint32_t h)
+{
+  return r->point[r->tri[h / 3][h % 3]];
+}
+
+/* Angle between unit vectors whose cross product is n, plain arithmetic: by
+ * the tangent of half of it, atan(t) ~ t (1 + 0.2733 (1 - t)) pi / 4 ... */
+static double angle_of(double sine, double cosine)
+{
+  double t = cosine > -1 ? sine / (1 + cosine) : 1e3;
+  double s = t <= 1 ? t : 1 / t;
+  double a = s * (0.7853981633974483 + 0.273 * (1 - s));
+
+  return 2 * (t <= 1 ? a : 1.5707963267948966 - a);
+}
+
+/* --- curvature of faces -------------------------------------------------- */
+
+/* Cohen-Steiner and Morvan, "Restricted Delaunay triangulations and normal
+ * cycle", 2003: an edge bends the surface by its angle, across itself. */
+static void add_edge(const struct vg_ref *r, uint32_t h, struct bend *bend)
+{
+  const double *n = r->shape[h / 3].n, *m = r->shape[r->mate[h] / 3].n;
+  double e[3], w[3], l, angle, k;
+  uint32_t a = r->tri[h / 3][h % 3], b = r->tri[h / 3][next(h) % 3];
+
+  if (vg_dot(n, n) == 0 || vg_dot(m, m) == 0) return;
+  vg_sub(r->point[b], r->point[a], e);
+  l = vg_unit(e);
+  vg_cross(n, m, w);
+  angle = angle_of(vg_norm(w), vg_dot(n, m));
+  if (vg_dot(w, e) < 0) angle = -angle;
+  k = angle * l / 2;        /* half of it to either end */
+  for (int i = 0; i < 2; i++) {
+    double *t = bend[i ? b : a].t;
+
+    t[0] += k * e[0] * e[0];
+    t[1] += k * e[1] * e[1];
+    t[2] += k * e[2] * e[2];
+    t[3] += k * e[0] * e[1];
+    t[4] += k * e[1] * e[2];
+    t[5] += k * e[2] * e[0];
+  }
+}
+
+static void add_area(const struct vg_ref *r, size_t t, struct bend *bend)
+{
+  double n[3], a;
+
+  vg_cross(r->shape[t].u, r->shape[t].v, n);
+  a = vg_norm(n) / 6;
+  for (int k = 0; k < 3; k++) bend[r->tri[t][k]].area += a;
+}
+
+/* Sums over a point and its neighbours, lines between them excepted. */
+static void spread(const struct vg_ref *r, const struct vg_curves *c,
+                   const struct bend *from, struct bend *to)
+{
+  memcpy(to, from, r->n_point * sizeof *to);
+  for (uint32_t h = 0; h < 3 * r->n_tri; h++) {
+    uint32_t a = r->tri[h / 3][h % 3], b = r->tri[h / 3][next(h) % 3];
+
+    if (c->line[h] || r->mate[h] == VG_REF_NONE) continue;
+    for (int k = 0; k < 6; k++) to[a].t[k] += from[b].t[k] / 2;
+    to[a].area += from[b].area / 2;
+  }
+}
+
+/* The larger of the two curvatures, by trace and norm. */
+static double curvature(const struct bend *b)
+{
+  double trace, norm2 = 0, rest;
+
+  if (!(b->area > 0)) return 0;
+  trace = fabs(b->t[0] + b->t[1] + b->t[2]);
+  for (int k = 0; k < 6; k++) norm2 += (k < 3 ? 1 : 2) * b->t[k] * b->t[k];
+  rest = 2 * norm2 - trace * trace;
+  return (trace + (rest > 0 ? sqrt(rest) : 0)) / (2 * b->area);
+}
+
+static double arc_size(const struct vg_sizes_options *o, double curvature)
+{
+  double h;
+
+  if (!(curvature > 0)) return o->h_max;
+  h = 2 * M_PI / (curvature * o->per_turn);
+  return fmin(h, sqrt(8 * o->chord / curvature));
+}
+
+static vg_status by_faces(struct vg_ref *r, const struct vg_curves *c,
+                          const struct vg_sizes_options *o,
+                          struct vg_error *err)
+{
+  struct bend *b = vg_calloc(r->n_point, sizeof *b);
+  struct bend *s = vg_alloc(r->n_point, sizeof *s), *swap;
+
+  if (!b || !s) {
+    free(b);
+    free(s);
+    return vg_fail_memory(err, "the curvature of the surface");
+  }
+  for (size_t t = 0; t < r->n_tri; t++) add_area(r, t, b);
+  for (uint32_t h = 0; h < 3 * r->n_tri; h++)
+    if (r->mate[h] != VG_REF_NONE && h < r->mate[h] && !c->line[h])
+      add_edge(r, h, b);
+  for (int i = 0; i < SMOOTH; i++) {
+    spread(r, c, b, s);
+    swap = b;
+    b = s;
+    s = swap;
+  }
+  for (size_t p = 0; p < r->n_point; p++)
+    r->size[p] = fmin(o->h_max, arc_size(o, curvature(&b[p])));
+  free(b);
+  free(s);
+  return VG_OK;
+}
+
+/* --- curves and strips --------------------------------------------------- */
+
+static void by_curves(struct vg_ref *r, const struct vg_curves *c,
+                      const struct vg_sizes_options *o)
+{
+  for (size_t i = 0; i < c->n_curve; i++)
+    for (size_t k = c->curve[i].first + 1;
+         k + 1 < c->curve[i].first + c->curve[i].n; k++) {
+      double u[3], v[3], w[3], lu, lv, angle;
+
+      vg_sub(r->point[c->point[k]], r->point[c->point[k - 1]], u);
+      vg_sub(r->point[c->point[k + 1]], r->point[c->point[k]], v);
+      lu = vg_unit(u);
+      lv = vg_unit(v);
+      vg_cross(u, v, w);
+      angle = angle_of(vg_norm(w), vg_dot(u, v));
+      /* A jag that the tolerance can hide is no arc. */
+      if (angle * fmin(lu, lv) < o->chord) continue;
+      r->size[c->point[k]] = fmin(r->size[c->point[k]],
+                                  arc_size(o, 2 * angle / (lu + lv)));
+    }
+}
+
+/* Unit vector in triangle t at right angles to its half-edge h, inward, and
+ * one along it. */
+static int frame(const struct vg_ref *r, uint32_t h, double e[3], double in[3])
+{
+  vg_sub(at(r, next(h)), at(r, h), e);
+  if (!(vg_unit(e) > 0)) return 0;
+  vg_cross(r->shape[h / 3].n, e, in);
+  return vg_unit(in) > 0;
+}
+
+/* Where the ray from x along d leaves the triangle that it entered by h:
+ * half-edge, and how far. */
+static uint32_t leave(const struct vg_ref *r, uint32_t h, const double x[3],
+                      const double d[3], double *far)
+{
+  uint32_t best = VG_REF_NONE, g[2] = { next(h), prev(h) };
+
+  *far = INFINITY;
+  for (int k = 0; k < 2; k++) {
+    double e[3], in[3], w[3], speed, gap;
+
+    if (!frame(r, g[k], e, in)) continue;
+    speed = -vg_dot(d, in);
+    if (!(speed > 1e-12)) continue;
+    vg_sub(x, at(r, g[k]), w);
+    gap = fmax(vg_dot(w, in), 0) / speed;
+    if (gap < *far) *far = gap, best = g[k];
+  }
+  return best;
+}
+
+/* Width of the surface from the point x of line h, straight across, to another
+ * line nearly along it; INFINITY beyond `most` or where there is none. */
+static double width(const struct vg_ref *r, const struct vg_curves *c,
+                    uint32_t h, const double start[3], double most)
+{
+  double e[3], in[3], d[3], x[3], sum = 0;
+
+  if (!frame(r, h, e, d)) return INFINITY;
+  memcpy(x, start, sizeof x);
+  for (int i = 0; i < STEPS; i++) {
+    double far, a;
+    uint32_t g = leave(r, h, x, d, &far);
+
+    if (g == VG_REF_NONE) return INFINITY;
+    sum += far;
+    if (sum > most) return INFINITY;
+    for (int k = 0; k < 3; k++) x[k] += far * d[k];
+    vg_sub(at(r, next(g)), at(r, g), e);
+    vg_unit(e);
+    if (c->line[g] || r->mate[g] == VG_REF_NONE) {
+      /* As seen in the plane where the walk ends. */
+      a = vg_dot(e, d);
+      return a * a < 1 - STRIP * STRIP ? sum : INFINITY;
+    }
+    a = vg_dot(d, e);
+    h = r->mate[g];
+    if (!frame(r, h, e, in)) return INFINITY;
+    a = -a;                 /* along the mate's own direction */
+    for (int k = 0; k < 3; k++)
+      d[k] = a * e[k] + sqrt(fmax(0, 1 - a * a)) * in[k];
+  }
+  return INFINITY;
+}
+
+static void by_strip(struct vg_ref *r, const struct vg_curves *c, uint32_t h,
+                     const double *limit)
+{
+  static const double share[3] = { 0.1, 0.5, 0.9 };
+  uint32_t end[2] = { r->tri[h / 3][h % 3], r->tri[h / 3][next(h) % 3] };
+
+  for (int i = 0; i < 3; i++) {
+    double x[3], w, most = fmax(limit[end[0]], limit[end[1]]);
+
+    for (int k = 0; k < 3; k++)
+      x[k] = at(r, h)[k] + share[i] * (at(r, next(h))[k] - at(r, h)[k]);
+    w = width(r, c, h, x, most);
+    for (int k = 0; k < 2; k++)
+      if (i != (k ? 0 : 2) && w < r->size[end[k]])
+        r->size[end[k]] = fmax(w, FLOOR * limit[end[k]]);
+  }
+}
+
+vg_status vg_sizes_make(struct vg_ref *r, const struct vg_curves *c,
+                        const struct vg_sizes_options *o,
+                        struct vg_error *err)
+{
+  double *limit = NULL;
+  vg_status st = VG_OK;
+
+  r->slope = o->growth - 1;
+  r->size = vg_alloc(r->n_point, sizeof *r->size);
+  limit = vg_alloc(r->n_point, sizeof *limit);
+  if (!r->size || !limit)
+    VG_TRY(vg_fail_memory(err, "the sizes on the surface"));
+  VG_TRY(by_faces(r, c, o, err));
+  by_curves(r, c, o);
+  for (size_t t = 0; o->cap && t < r->n_tri; t++)
+    for (int k = 0; k < 3; k++)
+      r->size[r->tri[t][k]] = fmin(r->size[r->tri[t][k]], o->cap[t]);
+  memcpy(limit, r->size, r->n_point * sizeof *limit);
+  for (uint32_t h = 0; h < 3 * r->n_tri; h++)
+    if (c->line[h]) by_strip(r, c, h, limit);
+  for (size_t p = 0; p < r->n_point; p++)
+    r->size[p] = fmin(o->h_max, fmax(o->h_min, r->size[p]));
+  vg_ref_sizes(r);
+done:
+  free(limit);
+  return st;
+}

@@ -1,0 +1,22 @@
+/* core/remesh/sizes.h: edge lengths that the shape of a surface asks for.
+ * Private to core/remesh. */
+#ifndef VG_CORE_REMESH_SIZES_H
+#define VG_CORE_REMESH_SIZES_H
+
+#include "core/remesh/curves.h"
+
+struct vg_sizes_options {
+  double per_turn;          /* edges round a full circle */
+  double chord;             /* largest distance of an edge from its arc */
+  double h_min, h_max;      /* bounds, > 0 and finite */
+  double growth;
+  const double *cap;        /* [n_tri] largest size on it, or NULL */
+};
+
+/** Fill r->size (and the tree): by the curvature of faces and curves, and by
+ * the width of strips between two curves. O(n). VG_ERR_MEMORY. */
+vg_status vg_sizes_make(struct vg_ref *r, const struct vg_curves *c,
+                        const struct vg_sizes_options *o,
+                        struct vg_error *err);
+
+#endif

@@ -1,0 +1,343 @@
+#include "core/remesh/work_parts.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/geometry/vector.h"
+
+#define TRIFLE 1e-4       /* of the squared tolerance: on the reference */
+#define NEARER 1.5        /* S25 */
+
+
+/* --- making -------------------------------------------------------------- */
+
+static vg_status make_lines(struct vg_work *w, struct vg_error *err)
+{
+  const struct vg_curves *c = w->curves;
+  uint32_t *ends;
+  size_t n = 0;
+
+  for (size_t i = 0; i < c->n_curve; i++) n += c->curve[i].n - 1;
+  w->line = vg_alloc(n, sizeof *w->line);
+  if (!w->line) return vg_fail_memory(err, "the curves of the surface");
+  w->cap_line = n;
+  for (size_t i = 0; i < c->n_curve; i++) {
+    size_t k = c->curve[i].first;
+
+    for (; k + 1 < c->curve[i].first + c->curve[i].n; k++)
+      w->line[w->n_line++] = (struct vg_work_line){ (uint32_t)i,
+        { c->point[k], c->point[k + 1] }, { c->at[k], c->at[k + 1] } };
+  }
+  /* The line of a half-edge: through the lines at its start, as a list. */
+  ends = vg_alloc(w->n_point + 2 * n, sizeof *ends);
+  if (!ends) return vg_fail_memory(err, "the curves of the surface");
+  memset(ends, 0xff, (w->n_point + 2 * n) * sizeof *ends);
+  for (size_t i = 0; i < 2 * n; i++) {
+    uint32_t p = w->line[i / 2].end[i % 2];
+
+    ends[w->n_point + i] = ends[p];
+    ends[p] = (uint32_t)i;
+  }
+  for (uint32_t h = 0; h < 3 * w->n_tri; h++) {
+    uint32_t p = vg_work_from(w, h), q = vg_work_to(w, h), i;
+
+    if (!c->line[h]) continue;
+    for (i = ends[p]; i != UINT32_MAX; i = ends[w->n_point + i])
+      if (w->line[i / 2].end[!(i % 2)] == q) w->edge[h] = i / 2 + 1;
+  }
+  free(ends);
+  return VG_OK;
+}
+
+double vg_work_size(const struct vg_work *w, const double x[3], uint32_t hint)
+{
+  double h = vg_ref_size(w->ref, x, hint);
+
+  if (w->other_size) h = fmin(h, w->other_size(w->user, x));
+  return fmin(w->h_max, fmax(w->h_min, h));
+}
+
+static vg_status make_points(struct vg_work *w, struct vg_error *err)
+{
+  const struct vg_ref *r = w->ref;
+
+  for (size_t p = 0; p < w->n_point; p++) {
+    struct vg_work_point *q = &w->point[p];
+
+    memcpy(q->x, r->point[p], sizeof q->x);
+    q->half = q->home = VG_REF_NONE;
+    q->changed = 1;
+  }
+  for (uint32_t h = 0; h < 3 * w->n_tri; h++) {
+    struct vg_work_point *q = &w->point[vg_work_from(w, h)];
+
+    if (q->half == VG_REF_NONE) q->half = h, q->home = h / 3;
+    if (w->edge[h]) {
+      q->kind = VG_WORK_CURVE;
+      w->point[vg_work_to(w, h)].kind = VG_WORK_CURVE;
+    }
+  }
+  for (size_t p = 0; p < w->n_point; p++) {
+    if (w->curves->corner[p]) w->point[p].kind = VG_WORK_CORNER;
+    if (w->point[p].half == VG_REF_NONE)
+      return vg_fail(err, VG_ERR_INPUT, "point %zu of the surface is used by "
+                     "no triangle; repair it", p + 1);
+    w->point[p].size = vg_work_size(w, w->point[p].x, w->point[p].home);
+  }
+  return VG_OK;
+}
+
+vg_status vg_work_begin(struct vg_work *w, struct vg_error *err)
+{
+  const struct vg_ref *r = w->ref;
+  vg_status st;
+
+  w->n_point = w->cap_point = w->n_given = r->n_point;
+  w->n_tri = w->cap_tri = w->cap_first = r->n_tri;
+  w->cap_mate = w->cap_edge = 3 * r->n_tri;
+  w->clock = 1;
+  w->point = vg_calloc(w->n_point, sizeof *w->point);
+  w->tri = vg_alloc(w->n_tri, sizeof *w->tri);
+  w->mate = vg_alloc(3 * w->n_tri, sizeof *w->mate);
+  w->edge = vg_calloc(3 * w->n_tri, sizeof *w->edge);
+  w->first = vg_alloc(w->n_tri, sizeof *w->first);
+  w->follow = vg_alloc(w->n_given, sizeof *w->follow);
+  w->is_sample = vg_calloc(w->n_given, 1);
+  if (!w->point || !w->tri || !w->mate || !w->edge || !w->first || !w->follow
+      || !w->is_sample) return vg_fail_memory(err, "the new surface");
+  memcpy(w->tri, r->tri, w->n_tri * sizeof *w->tri);
+  memcpy(w->mate, r->mate, 3 * w->n_tri * sizeof *w->mate);
+  memset(w->first, 0xff, w->n_tri * sizeof *w->first);
+  VG_TRY(make_lines(w, err));
+  VG_TRY(make_points(w, err));
+done:
+  return st;
+}
+
+void vg_work_release(struct vg_work *w)
+{
+  free(w->point);
+  free(w->tri);
+  free(w->mate);
+  free(w->edge);
+  free(w->line);
+  free(w->first);
+  free(w->follow);
+  free(w->is_sample);
+  free(w->spare);
+  memset(w, 0, sizeof *w);
+}
+
+/* --- looking ------------------------------------------------------------- */
+
+size_t vg_work_ring(const struct vg_work *w, uint32_t p, uint32_t *half,
+                    int *open)
+{
+  uint32_t h = w->point[p].half, first = h;
+  size_t n = 0;
+
+  *open = 0;
+  /* To the rim, if there is one. */
+  while (w->mate[h] != VG_REF_NONE) {
+    h = vg_work_next(w->mate[h]);
+    if (h == first) break;
+    if (++n > VG_WORK_RING) return 0;
+  }
+  *open = w->mate[h] == VG_REF_NONE;
+  first = h;
+  n = 0;
+  do {
+    if (n == VG_WORK_RING) return 0;
+    half[n++] = h;
+    h = w->mate[vg_work_prev(h)];
+  } while (h != VG_REF_NONE && h != first);
+  return n;
+}
+
+double vg_work_ratio(const struct vg_work *w, uint32_t h)
+{
+  const struct vg_work_point *a = &w->point[vg_work_from(w, h)];
+  const struct vg_work_point *b = &w->point[vg_work_to(w, h)];
+
+  return 2 * vg_distance(a->x, b->x) / (a->size + b->size);
+}
+
+double vg_work_shape(const double *a, const double *b, const double *c)
+{
+  double u[3], v[3], n[3], l[3], least;
+
+  vg_sub(b, a, u);
+  vg_sub(c, a, v);
+  vg_cross(u, v, n);
+  l[0] = vg_dot(u, u);
+  l[1] = vg_dot(v, v);
+  l[2] = vg_distance2(b, c);
+  least = fmin(l[0], fmin(l[1], l[2]));
+  if (!(least > 0)) return 0;
+  return vg_dot(n, n) * least / (l[0] * l[1] * l[2]);
+}
+
+double vg_work_tri_shape(const struct vg_work *w, size_t t)
+{
+  return vg_work_shape(w->point[w->tri[t][0]].x, w->point[w->tri[t][1]].x,
+                       w->point[w->tri[t][2]].x);
+}
+
+double vg_work_tolerance(const struct vg_work *w, double size)
+{
+  return fmin(w->tolerance, w->relative * size);
+}
+
+/* --- a cavity ------------------------------------------------------------ */
+
+void vg_cavity_begin(const struct vg_work *w, struct vg_cavity *c,
+                     uint32_t point)
+{
+  c->n_old = c->n_new = c->n_sample = 0;
+  c->fresh = SIZE_MAX;
+  c->hint = w->point[point].home;
+  c->tolerance = vg_work_tolerance(w, w->point[point].size);
+}
+
+void vg_cavity_narrow(const struct vg_work *w, struct vg_cavity *c,
+                      uint32_t point)
+{
+  c->tolerance = fmin(c->tolerance,
+                      vg_work_tolerance(w, w->point[point].size));
+}
+
+void vg_cavity_add(struct vg_cavity *c, const double *x, const double *y,
+                   const double *z, int edges)
+{
+  c->corner[c->n_new][0] = x;
+  c->corner[c->n_new][1] = y;
+  c->corner[c->n_new][2] = z;
+  c->edges[c->n_new++] = (uint8_t)edges;
+}
+
+void vg_cavity_measure(struct vg_cavity *c)
+{
+  c->shape = 1;
+  for (size_t i = 0; i < c->n_new; i++)
+    c->shape = fmin(c->shape, vg_work_shape(c->corner[i][0], c->corner[i][1],
+                                            c->corner[i][2]));
+}
+
+/* Is x within the tolerance of the sheet of the reference that faces the way
+ * of n, and clearly nearer to it than to one that faces the other way? */
+static int sample_near(const struct vg_work *w, struct vg_cavity *c,
+                       const double x[3], const double n[3])
+{
+  const double back[3] = { -n[0], -n[1], -n[2] };
+  double d2, o2, y[3];
+  uint32_t other = VG_REF_NONE;
+
+  if (!vg_ref_within(w->ref, x, n, c->tolerance, &c->hint, &d2)) return 0;
+  if (d2 <= TRIFLE * c->tolerance * c->tolerance
+      || !vg_ref_within(w->ref, x, back, NEARER * sqrt(d2), &other, &o2))
+    return 1;
+  /* What was found is not the nearest. */
+  d2 = vg_ref_nearest(w->ref, x, n, &c->hint, y);
+  other = VG_REF_NONE;
+  return !vg_ref_within(w->ref, x, back, NEARER * d2, &other, &o2);
+}
+
+static int tri_fits(const struct vg_work *w, struct vg_cavity *c, size_t i)
+{
+  const double *const *p = c->corner[i];
+  double u[3], v[3], n[3], x[3];
+
+  vg_sub(p[1], p[0], u);
+  vg_sub(p[2], p[0], v);
+  vg_cross(u, v, n);
+  if (!(vg_unit(n) > 0)) return 0;
+  for (int k = 0; k < 3; k++) x[k] = (p[0][k] + p[1][k] + p[2][k]) / 3;
+  if (!sample_near(w, c, x, n)) return 0;
+  for (int e = 0; e < 3; e++) {
+    const double *a = p[e], *b = p[(e + 1) % 3];
+
+    if (!(c->edges[i] >> e & 1)) continue;
+    for (int k = 0; k < 3; k++) x[k] = (a[k] + b[k]) / 2;
+    if (!sample_near(w, c, x, n)) return 0;
+  }
+  return 1;
+}
+
+static double segment2(const double *a, const double *u, const double x[3])
+{
+  double d[3], uu = vg_dot(u, u), t;
+
+  vg_sub(x, a, d);
+  t = uu > 0 ? vg_dot(d, u) / uu : 0;
+  t = t < 0 ? 0 : t > 1 ? 1 : t;
+  for (int k = 0; k < 3; k++) d[k] -= t * u[k];
+  return vg_dot(d, d);
+}
+
+/* Squared distance of x from a triangle. */
+static double distance2(const double *const *p, const double x[3])
+{
+  double e[3][3], n[3], d[3], s[3], best = INFINITY, nn;
+  int inside = 1;
+
+  for (int k = 0; k < 3; k++) vg_sub(p[(k + 1) % 3], p[k], e[k]);
+  vg_cross(e[0], e[1], n);
+  nn = vg_dot(n, n);
+  for (int k = 0; k < 3; k++) {
+    vg_sub(x, p[k], d);
+    vg_cross(n, e[k], s);
+    if (vg_dot(d, s) < 0) {
+      inside = 0;
+      best = fmin(best, segment2(p[k], e[k], x));
+    }
+  }
+  if (!inside || !(nn > 0)) return best;
+  vg_sub(x, p[0], d);
+  d[0] = vg_dot(d, n);
+  return d[0] * d[0] / nn;
+}
+
+static int sample_fits(const struct vg_work *w, struct vg_cavity *c,
+                       uint32_t s)
+{
+  double best = INFINITY;
+
+  if (c->n_sample == VG_WORK_SAMPLES) return 0;
+  for (size_t i = 0; i < c->n_new; i++) {
+    double d2 = distance2(c->corner[i], w->ref->point[s]);
+
+    if (!(d2 < best)) continue;
+    best = d2;
+    c->goes[c->n_sample] = (uint16_t)i;
+  }
+  c->sample[c->n_sample++] = s;
+  return best <= c->tolerance * c->tolerance;
+}
+
+int vg_cavity_fits(const struct vg_work *w, struct vg_cavity *c)
+{
+  if (c->fresh != SIZE_MAX && !sample_fits(w, c, (uint32_t)c->fresh))
+    return 0;
+  for (size_t i = 0; i < c->n_old; i++)
+    for (uint32_t s = w->first[c->old[i]]; s != VG_REF_NONE;
+         s = w->follow[s])
+      if (!sample_fits(w, c, s)) return 0;
+  for (size_t i = 0; i < c->n_new; i++)
+    if (!tri_fits(w, c, i)) return 0;
+  return 1;
+}
+
+void vg_cavity_settle(struct vg_work *w, const struct vg_cavity *c,
+                      const uint32_t *t)
+{
+  for (size_t i = 0; i < c->n_old; i++) w->first[c->old[i]] = VG_REF_NONE;
+  for (size_t i = 0; i < c->n_sample; i++) {
+    uint32_t *first = &w->first[t[c->goes[i]]];
+
+    w->is_sample[c->sample[i]] = 1;
+    w->follow[c->sample[i]] = *first;
+    *first = c->sample[i];
+  }
+}

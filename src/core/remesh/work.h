@@ -1,0 +1,127 @@
+/* core/remesh/work.h: a surface that changes, and the checks that every change
+ * must pass. Private to core/remesh. */
+#ifndef VG_CORE_REMESH_WORK_H
+#define VG_CORE_REMESH_WORK_H
+
+#include "core/remesh/curves.h"
+
+#define VG_WORK_RING 256       /* triangles around a point that may change */
+
+enum { VG_WORK_FACE, VG_WORK_CURVE, VG_WORK_CORNER };
+
+struct vg_work_point {
+  double x[3], size;
+  uint32_t half;            /* one that leaves it; VG_REF_NONE: removed */
+  uint32_t home;            /* triangle of the reference near it */
+  uint8_t kind;
+  uint64_t changed, tried;  /* when triangles at it changed, and when it was
+                               last looked at */
+};
+
+/* Edge along a curve. */
+struct vg_work_line {
+  uint32_t curve, end[2];
+  double at[2];             /* lengths along the curve, rising */
+};
+
+/* Half-edge 3 t + k runs from corner k of triangle t to the next one. */
+struct vg_work {
+  const struct vg_ref *ref;
+  const struct vg_curves *curves;
+  double tolerance, relative; /* largest distance, and in parts of the size */
+  double (*other_size)(const void *user, const double x[3]);
+  const void *user;         /* of other_size */
+  double h_min, h_max;
+  size_t n_point, cap_point, n_tri, cap_tri, cap_mate, cap_edge, cap_first;
+  size_t n_line, cap_line, n_given;
+  struct vg_work_point *point;
+  uint32_t (*tri)[3];       /* removed: three times the same point */
+  uint32_t *mate;           /* VG_REF_NONE: open rim */
+  uint32_t *edge;           /* [3 n_tri] line + 1 of it; 0: none */
+  struct vg_work_line *line;
+  /* Points of the reference that are none of this surface any more, each with
+   * the triangle near it: what keeps the given surface near this one. */
+  uint32_t *first;          /* [n_tri] VG_REF_NONE: none */
+  uint32_t *follow;         /* [n_given] the next one of the same triangle */
+  uint8_t *is_sample;       /* [n_given] */
+  uint32_t *spare;          /* removed triangles */
+  size_t n_spare, cap_spare;
+  size_t n_split, n_collapse, n_swap, n_move, n_refused;
+  uint64_t clock, swapped;  /* counts changes; when all edges were last
+                               looked at for swaps */
+  int failed;               /* no memory */
+};
+
+static inline uint32_t vg_work_next(uint32_t h)
+{
+  return h % 3 == 2 ? h - 2 : h + 1;
+}
+
+static inline uint32_t vg_work_prev(uint32_t h)
+{
+  return h % 3 ? h - 1 : h + 2;
+}
+
+static inline uint32_t vg_work_from(const struct vg_work *w, uint32_t h)
+{
+  return w->tri[h / 3][h % 3];
+}
+
+static inline uint32_t vg_work_to(const struct vg_work *w, uint32_t h)
+{
+  return w->tri[h / 3][vg_work_next(h) % 3];
+}
+
+static inline const double *vg_work_at(const struct vg_work *w, uint32_t p)
+{
+  return w->point[p].x;
+}
+
+static inline int vg_work_removed(const struct vg_work *w, size_t t)
+{
+  return w->tri[t][0] == w->tri[t][1];
+}
+
+/** The surface of the reference, ready to be changed. */
+vg_status vg_work_begin(struct vg_work *w, struct vg_error *err);
+
+void vg_work_release(struct vg_work *w);
+
+/** Half-edges that leave p, one for each of its triangles: [VG_WORK_RING];
+ * *open: the point is on a rim. 0 when there are too many. */
+size_t vg_work_ring(const struct vg_work *w, uint32_t p, uint32_t *half,
+                    int *open);
+
+/** Size asked for at x, near triangle `hint` of the reference. */
+double vg_work_size(const struct vg_work *w, const double x[3], uint32_t hint);
+
+/** Length of the edge in parts of the sizes at its ends. */
+double vg_work_ratio(const struct vg_work *w, uint32_t h);
+
+/** Square of the sine of the smallest angle of a triangle. */
+double vg_work_shape(const double *a, const double *b, const double *c);
+
+double vg_work_tri_shape(const struct vg_work *w, size_t t);
+
+/* The changes. Each looks whether the outcome is a surface like the one given,
+ * within the distance, and nowhere folded, and else does nothing and returns
+ * 0. */
+
+/** Put a point into the edge, in its middle or, on a curve, at `at`. Returns
+ * it, or VG_REF_NONE. */
+uint32_t vg_work_split(struct vg_work *w, uint32_t h, const double *at);
+
+/** Take the start of h away, onto its end. No edge gets longer than `most`
+ * sizes, unless one is now; no angle smaller than `shape` (square of the
+ * sine), unless one is now. */
+int vg_work_collapse(struct vg_work *w, uint32_t h, double most, double shape);
+
+/** The other diagonal, where the smallest angle gets larger. */
+int vg_work_swap(struct vg_work *w, uint32_t h);
+
+/** Move a point of a face near x, on the reference; no angle smaller than
+ * `shape` unless that is better than now. */
+int vg_work_move(struct vg_work *w, uint32_t p, const double x[3],
+                 double shape);
+
+#endif

@@ -1,0 +1,477 @@
+/* The four changes. Each gathers the triangles that go and those that come,
+ * has them checked, cheapest question first, and only then touches the
+ * surface. */
+#include "core/remesh/work_parts.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/geometry/vector.h"
+
+#define GAIN 1.02         /* of a swap, in squares of sines */
+#define ALMOST 0.95       /* of the shape, before a point is on the surface */
+#define SPLIT_LOSS 0.2    /* S23: least shape after a split, of what was
+                             before */
+
+/* --- bookkeeping --------------------------------------------------------- */
+
+static void attach(struct vg_work *w, uint32_t h, uint32_t mate,
+                   uint32_t edge)
+{
+  w->mate[h] = mate;
+  w->edge[h] = edge;
+  if (mate == VG_REF_NONE) return;
+  w->mate[mate] = h;
+  w->edge[mate] = edge;
+}
+
+static void set_tri(struct vg_work *w, uint32_t t, uint32_t a, uint32_t b,
+                    uint32_t c)
+{
+  const uint32_t p[3] = { a, b, c };
+
+  for (uint32_t k = 0; k < 3; k++) {
+    w->tri[t][k] = p[k];
+    w->point[p[k]].half = 3 * t + k;
+    w->point[p[k]].changed = ++w->clock;
+  }
+}
+
+static uint32_t new_tri(struct vg_work *w)
+{
+  uint32_t t;
+
+  if (w->n_spare) return w->spare[--w->n_spare];
+  if (vg_reserve(&w->tri, &w->cap_tri, w->n_tri + 1, sizeof *w->tri)
+      || vg_reserve(&w->mate, &w->cap_mate, 3 * w->n_tri + 3,
+                    sizeof *w->mate)
+      || vg_reserve(&w->edge, &w->cap_edge, 3 * w->n_tri + 3,
+                    sizeof *w->edge)
+      || vg_reserve(&w->first, &w->cap_first, w->n_tri + 1,
+                    sizeof *w->first)) {
+    w->failed = 1;
+    return VG_REF_NONE;
+  }
+  t = (uint32_t)w->n_tri++;
+  w->first[t] = VG_REF_NONE;
+  return t;
+}
+
+static void remove_tri(struct vg_work *w, uint32_t t)
+{
+  if (vg_reserve(&w->spare, &w->cap_spare, w->n_spare + 1,
+                 sizeof *w->spare)) w->failed = 1;
+  else w->spare[w->n_spare++] = t;
+  w->tri[t][1] = w->tri[t][2] = w->tri[t][0];
+}
+
+static void normal_of(const struct vg_work *w, uint32_t t, double n[3])
+{
+  double u[3], v[3], m[3];
+
+  vg_sub(w->point[w->tri[t][1]].x, w->point[w->tri[t][0]].x, u);
+  vg_sub(w->point[w->tri[t][2]].x, w->point[w->tri[t][0]].x, v);
+  vg_cross(u, v, m);
+  for (int k = 0; k < 3; k++) n[k] += m[k];
+}
+
+/* --- split --------------------------------------------------------------- */
+
+static void middle_of(const struct vg_work *w, uint32_t h, const double *at,
+                      struct vg_work_point *p, double *s)
+{
+  const double *a = vg_work_at(w, vg_work_from(w, h));
+  const double *b = vg_work_at(w, vg_work_to(w, h));
+  double n[3] = { 0, 0, 0 }, x[3];
+
+  if (w->edge[h]) {
+    const struct vg_work_line *l = &w->line[w->edge[h] - 1];
+
+    *s = at ? *at : (l->at[0] + l->at[1]) / 2;
+    vg_curve_at(w->curves, w->ref, l->curve, *s, p->x);
+    return;
+  }
+  normal_of(w, h / 3, n);
+  normal_of(w, w->mate[h] / 3, n);
+  for (int k = 0; k < 3; k++) x[k] = (a[k] + b[k]) / 2;
+  vg_ref_nearest(w->ref, x, vg_unit(n) > 0 ? n : NULL, &p->home, p->x);
+}
+
+static int split_fits(const struct vg_work *w, uint32_t h, const double *m,
+                      struct vg_cavity *c)
+{
+  double shape = 1;
+  int face = !w->edge[h];
+
+  for (int side = 0; side < 2; side++) {
+    const double *a, *b, *o;
+
+    if (side) h = w->mate[h];
+    if (h == VG_REF_NONE) break;
+    vg_cavity_narrow(w, c, vg_work_from(w, vg_work_prev(h)));
+    a = vg_work_at(w, vg_work_from(w, h));
+    b = vg_work_at(w, vg_work_to(w, h));
+    o = vg_work_at(w, vg_work_from(w, vg_work_prev(h)));
+    c->old[c->n_old++] = h / 3;
+    shape = fmin(shape, vg_work_shape(a, b, o));
+    vg_cavity_add(c, a, m, o, side ? 2 : face + 2);
+    vg_cavity_add(c, m, b, o, side ? 0 : face);
+  }
+  vg_cavity_measure(c);
+  return c->shape > (face ? SPLIT_LOSS : 0.01) * shape && vg_cavity_fits(w, c);
+}
+
+static uint32_t add_point(struct vg_work *w, const struct vg_work_point *p)
+{
+  if (w->n_point > UINT32_MAX - 2
+      || vg_reserve(&w->point, &w->cap_point, w->n_point + 1,
+                    sizeof *w->point)) {
+    w->failed = 1;
+    return VG_REF_NONE;
+  }
+  w->point[w->n_point] = *p;
+  return (uint32_t)w->n_point++;
+}
+
+/* Divide the line of h at length s by point m: returns the line of the first
+ * half of h; the other is *second. */
+static uint32_t split_line(struct vg_work *w, uint32_t h, uint32_t m,
+                           double s, uint32_t *second)
+{
+  uint32_t i = w->edge[h] - 1, j = (uint32_t)w->n_line;
+  int forward = w->line[i].end[0] == vg_work_from(w, h);
+
+  if (w->line[i].end[0] == w->line[i].end[1]) forward = 1;
+  w->line[w->n_line++] = w->line[i];
+  w->line[i].end[1] = w->line[j].end[0] = m;
+  w->line[i].at[1] = w->line[j].at[0] = s;
+  *second = (forward ? j : i) + 1;
+  return (forward ? i : j) + 1;
+}
+
+/* Put m into the edge of h: t[0], t[1] are the halves of its triangle, t[2] and
+ * t[3] those of the other, in the order in which they run along their edge. */
+static void stitch(struct vg_work *w, uint32_t h, uint32_t m,
+                   const uint32_t *t, const uint32_t *e)
+{
+  const uint32_t end[2] = { vg_work_from(w, h), vg_work_to(w, h) };
+  const uint32_t half[2] = { h, w->mate[h] };
+
+  for (int side = 0; side < 2 && half[side] != VG_REF_NONE; side++) {
+    uint32_t k = half[side], t0 = t[2 * side], t1 = t[2 * side + 1];
+    uint32_t o = vg_work_from(w, vg_work_prev(k));
+    uint32_t h1 = vg_work_next(k), h2 = vg_work_prev(k);
+    uint32_t m1 = w->mate[h1], e1 = w->edge[h1];
+    uint32_t m2 = w->mate[h2], e2 = w->edge[h2];
+
+    set_tri(w, t0, end[side], m, o);
+    set_tri(w, t1, m, end[!side], o);
+    attach(w, 3 * t1 + 1, m1, e1);
+    attach(w, 3 * t0 + 2, m2, e2);
+    attach(w, 3 * t0 + 1, 3 * t1 + 2, 0);
+  }
+  if (half[1] == VG_REF_NONE) {
+    attach(w, 3 * t[0], VG_REF_NONE, e[0]);
+    attach(w, 3 * t[1], VG_REF_NONE, e[1]);
+  } else {
+    attach(w, 3 * t[0], 3 * t[3], e[0]);
+    attach(w, 3 * t[1], 3 * t[2], e[1]);
+  }
+}
+
+uint32_t vg_work_split(struct vg_work *w, uint32_t h, const double *at)
+{
+  struct vg_cavity c;
+  uint32_t a = vg_work_from(w, h), b = vg_work_to(w, h), m, t[4], e[2];
+  struct vg_work_point p = w->point[a];
+  double s = 0;
+
+  middle_of(w, h, at, &p, &s);
+  p.kind = w->edge[h] ? VG_WORK_CURVE : VG_WORK_FACE;
+  vg_cavity_begin(w, &c, a);
+  vg_cavity_narrow(w, &c, b);
+  c.hint = p.home;
+  if (!split_fits(w, h, p.x, &c)) return VG_REF_NONE;
+  if (w->edge[h] && vg_reserve(&w->line, &w->cap_line, w->n_line + 1,
+                               sizeof *w->line)) w->failed = 1;
+  p.size = vg_work_size(w, p.x, c.hint);
+  m = w->failed ? VG_REF_NONE : add_point(w, &p);
+  for (size_t i = 0; i < c.n_old; i++) {
+    t[2 * i] = c.old[i];
+    t[2 * i + 1] = new_tri(w);
+  }
+  if (w->failed) return VG_REF_NONE;
+  e[0] = e[1] = 0;
+  if (w->edge[h]) e[0] = split_line(w, h, m, s, &e[1]);
+  stitch(w, h, m, t, e);
+  vg_cavity_settle(w, &c, t);
+  w->n_split++;
+  return m;
+}
+
+/* --- collapse ------------------------------------------------------------ */
+
+/* Line at curve point v other than that of h. */
+static uint32_t other_line(const struct vg_work *w, const uint32_t *ring,
+                           size_t n, uint32_t line)
+{
+  for (size_t i = 0; i < n; i++) {
+    uint32_t in = w->edge[vg_work_prev(ring[i])], out = w->edge[ring[i]];
+
+    if (out && out != line) return out;
+    if (in && in != line) return in;
+  }
+  return 0;
+}
+
+/* A point of a curve goes along it only, where the chord stays near it. */
+static int curve_fits(const struct vg_work *w, uint32_t h,
+                      const uint32_t *ring, size_t n, double tolerance)
+{
+  const struct vg_work_line *a, *b;
+  uint32_t u = vg_work_to(w, h), other;
+
+  if (!w->edge[h]) return 0;
+  other = other_line(w, ring, n, w->edge[h]);
+  if (!other) return 0;
+  a = &w->line[w->edge[h] - 1];
+  b = &w->line[other - 1];
+  if (a->curve != b->curve || b->end[0] == u || b->end[1] == u
+      || a->end[0] == a->end[1] || b->end[0] == b->end[1]) return 0;
+  return vg_curve_chord(w->curves, w->ref, a->curve,
+                        fmin(a->at[0], b->at[0]), fmax(a->at[1], b->at[1]))
+         <= tolerance;
+}
+
+/* The ends have only the nodes opposite the edge as common neighbours. */
+static int link_fits(const struct vg_work *w, uint32_t h,
+                     const uint32_t *ring, size_t n, int open)
+{
+  uint32_t u = vg_work_to(w, h), other[VG_WORK_RING];
+  size_t n_other, common = 0, wanted = w->mate[h] == VG_REF_NONE ? 1 : 2;
+  int other_open;
+
+  n_other = vg_work_ring(w, u, other, &other_open);
+  if (!n_other || n + n_other < 7) return 0;
+  for (size_t i = 0; i < n; i++)
+    for (int end = 0; end < (open && i + 1 == n ? 2 : 1); end++) {
+      uint32_t p = end ? vg_work_from(w, vg_work_prev(ring[i]))
+                       : vg_work_to(w, ring[i]);
+      int found = 0;
+
+      for (size_t k = 0; k < n_other && !found; k++)
+        found = vg_work_to(w, other[k]) == p
+                || (other_open && k + 1 == n_other
+                    && vg_work_from(w, vg_work_prev(other[k])) == p);
+      common += (size_t)found;
+    }
+  return common == wanted;
+}
+
+static int collapse_fits(const struct vg_work *w, uint32_t h,
+                         const uint32_t *ring, size_t n, double most,
+                         double shape, struct vg_cavity *c)
+{
+  uint32_t v = vg_work_from(w, h), u = vg_work_to(w, h);
+  const struct vg_work_point *pu = &w->point[u];
+  double before = 1, longest = most, l;
+
+  for (size_t i = 0; i < n; i++) {
+    c->old[c->n_old++] = ring[i] / 3;
+    vg_cavity_narrow(w, c, vg_work_to(w, ring[i]));
+    before = fmin(before, vg_work_tri_shape(w, ring[i] / 3));
+    longest = fmax(longest, vg_work_ratio(w, ring[i]));
+  }
+  for (size_t i = 0; i < n; i++) {
+    uint32_t a = vg_work_to(w, ring[i]);
+    uint32_t b = vg_work_from(w, vg_work_prev(ring[i]));
+    const struct vg_work_point *pa = &w->point[a], *pb = &w->point[b];
+
+    if (a == u || b == u) continue;
+    l = 2 * vg_distance(pu->x, pa->x) / (pu->size + pa->size);
+    if (l > longest) return 0;
+    /* u a is new unless a is next to the edge that goes; curves are seen to
+     * elsewhere */
+    vg_cavity_add(c, pu->x, pa->x, pb->x, w->edge[ring[i]] ? 0 : 1);
+  }
+  if (!c->n_new) return 0;
+  vg_cavity_measure(c);
+  if (!(c->shape >= fmin(before, shape))) return 0;
+  if (v < w->n_given && !w->is_sample[v]) c->fresh = v;
+  return vg_cavity_fits(w, c);
+}
+
+static void collapse(struct vg_work *w, uint32_t h, const uint32_t *ring,
+                     size_t n, const struct vg_cavity *c)
+{
+  uint32_t u = vg_work_to(w, h), g = w->mate[h], t[VG_WORK_RING], n_t = 0;
+  uint32_t go[2] = { h, g }, keep[VG_WORK_RING], n_keep = 0, v;
+
+  v = vg_work_from(w, h);
+  if (w->point[v].kind == VG_WORK_CURVE) {
+    struct vg_work_line *a = &w->line[w->edge[h] - 1], *b;
+    int last = a->end[1] == u;
+
+    b = &w->line[other_line(w, ring, n, w->edge[h]) - 1];
+    b->end[last] = u;
+    b->at[last] = a->at[last];
+    a->end[0] = a->end[1] = u;    /* no more */
+    a->at[0] = a->at[1];
+  }
+  for (size_t i = 0; i < n; i++) {
+    uint32_t f = ring[i] / 3;
+
+    if (f == h / 3 || (g != VG_REF_NONE && f == g / 3)) continue;
+    keep[n_keep++] = ring[i];
+    t[n_t++] = f;
+  }
+  for (int side = 0; side < 2; side++) {
+    uint32_t k = go[side], p, q, edge;
+
+    if (k == VG_REF_NONE) continue;
+    p = w->mate[vg_work_next(k)];
+    q = w->mate[vg_work_prev(k)];
+    edge = w->edge[vg_work_next(k)] ? w->edge[vg_work_next(k)]
+                                    : w->edge[vg_work_prev(k)];
+    if (p != VG_REF_NONE) attach(w, p, q, edge);
+    else attach(w, q, p, edge);
+  }
+  for (uint32_t i = 0; i < n_keep; i++)
+    w->tri[keep[i] / 3][keep[i] % 3] = u;
+  for (uint32_t i = 0; i < n_keep; i++) {
+    uint32_t f = keep[i] / 3;
+
+    set_tri(w, f, w->tri[f][0], w->tri[f][1], w->tri[f][2]);
+  }
+  vg_cavity_settle(w, c, t);
+  remove_tri(w, h / 3);
+  if (g != VG_REF_NONE) remove_tri(w, g / 3);
+  w->point[v].half = VG_REF_NONE;
+  w->n_collapse++;
+}
+
+int vg_work_collapse(struct vg_work *w, uint32_t h, double most, double shape)
+{
+  struct vg_cavity c;
+  uint32_t ring[VG_WORK_RING], v = vg_work_from(w, h), k = h, g = w->mate[h];
+  size_t n;
+  int open;
+
+  if (w->point[v].kind == VG_WORK_CORNER) return 0;
+  n = vg_work_ring(w, v, ring, &open);
+  if (!n) return 0;
+  if (w->edge[h] && w->point[v].kind == VG_WORK_FACE) return 0;
+  vg_cavity_begin(w, &c, v);
+  if (w->point[v].kind == VG_WORK_CURVE
+      && !curve_fits(w, h, ring, n, c.tolerance)) return 0;
+  /* Both other sides on curves would become one edge of two. */
+  for (int side = 0; side < 2 && k != VG_REF_NONE; side++, k = g) {
+    uint32_t p = vg_work_next(k), q = vg_work_prev(k);
+
+    if (w->edge[p] && w->edge[q]) return 0;
+    if (w->mate[p] == VG_REF_NONE && w->mate[q] == VG_REF_NONE) return 0;
+  }
+  if (!link_fits(w, h, ring, n, open)
+      || !collapse_fits(w, h, ring, n, most, shape, &c)) return 0;
+  collapse(w, h, ring, n, &c);
+  return 1;
+}
+
+/* --- swap ---------------------------------------------------------------- */
+
+int vg_work_swap(struct vg_work *w, uint32_t h)
+{
+  struct vg_cavity c;
+  uint32_t g = w->mate[h], ring[VG_WORK_RING], t[2] = { h / 3, g / 3 };
+  uint32_t p[4], out[4], m[4], e[4];
+  const double *x[4];
+  double before;
+  size_t n;
+  int open;
+
+  if (g == VG_REF_NONE || w->edge[h]) return 0;
+  p[0] = vg_work_from(w, h);
+  p[1] = vg_work_to(w, h);
+  p[2] = vg_work_from(w, vg_work_prev(h));
+  p[3] = vg_work_from(w, vg_work_prev(g));
+  for (int k = 0; k < 4; k++) x[k] = vg_work_at(w, p[k]);
+  vg_cavity_begin(w, &c, p[0]);
+  for (int k = 1; k < 4; k++) vg_cavity_narrow(w, &c, p[k]);
+  c.old[c.n_old++] = h / 3;
+  c.old[c.n_old++] = g / 3;
+  vg_cavity_add(&c, x[2], x[0], x[3], 4);
+  vg_cavity_add(&c, x[3], x[1], x[2], 0);
+  before = fmin(vg_work_shape(x[0], x[1], x[2]),
+                vg_work_shape(x[0], x[1], x[3]));
+  vg_cavity_measure(&c);
+  if (!(c.shape > GAIN * before) || p[2] == p[3]) return 0;
+  n = vg_work_ring(w, p[2], ring, &open);
+  if (!n || n + 1 >= VG_WORK_RING) return 0;
+  for (size_t i = 0; i < n; i++)
+    if (vg_work_to(w, ring[i]) == p[3]
+        || vg_work_from(w, vg_work_prev(ring[i])) == p[3]) return 0;
+  n = vg_work_ring(w, p[3], ring, &open);
+  if (!n || n + 1 >= VG_WORK_RING || !vg_cavity_fits(w, &c)) return 0;
+  out[0] = vg_work_next(h);    /* 1 2 */
+  out[1] = vg_work_prev(h);    /* 2 0 */
+  out[2] = vg_work_next(g);    /* 0 3 */
+  out[3] = vg_work_prev(g);    /* 3 1 */
+  for (int k = 0; k < 4; k++) m[k] = w->mate[out[k]], e[k] = w->edge[out[k]];
+  set_tri(w, t[0], p[2], p[0], p[3]);
+  set_tri(w, t[1], p[3], p[1], p[2]);
+  attach(w, 3 * t[0], m[1], e[1]);
+  attach(w, 3 * t[0] + 1, m[2], e[2]);
+  attach(w, 3 * t[1], m[3], e[3]);
+  attach(w, 3 * t[1] + 1, m[0], e[0]);
+  attach(w, 3 * t[0] + 2, 3 * t[1] + 2, 0);
+  vg_cavity_settle(w, &c, t);
+  w->n_swap++;
+  return 1;
+}
+
+/* --- move ---------------------------------------------------------------- */
+
+int vg_work_move(struct vg_work *w, uint32_t p, const double x[3],
+                 double shape)
+{
+  struct vg_cavity c;
+  uint32_t ring[VG_WORK_RING], t[VG_WORK_RING], home = w->point[p].home;
+  double y[3], n[3] = { 0, 0, 0 }, before = 1;
+  size_t n_ring;
+  int open;
+
+  if (w->point[p].kind != VG_WORK_FACE) return 0;
+  n_ring = vg_work_ring(w, p, ring, &open);
+  if (!n_ring) return 0;
+  for (size_t i = 0; i < n_ring; i++) normal_of(w, ring[i] / 3, n);
+  if (!(vg_unit(n) > 0)) return 0;
+  vg_cavity_begin(w, &c, p);
+  memcpy(y, x, sizeof y);
+  for (size_t i = 0; i < n_ring; i++) {
+    t[i] = c.old[c.n_old++] = ring[i] / 3;
+    vg_cavity_narrow(w, &c, vg_work_to(w, ring[i]));
+    before = fmin(before, vg_work_tri_shape(w, t[i]));
+    vg_cavity_add(&c, y, vg_work_at(w, vg_work_to(w, ring[i])),
+                  vg_work_at(w, vg_work_from(w, vg_work_prev(ring[i]))), 1);
+  }
+  before = fmin(before, shape);
+  vg_cavity_measure(&c);     /* roughly, which costs little, then exactly */
+  if (!(c.shape > ALMOST * before)
+      || !(vg_ref_nearest(w->ref, x, n, &home, y) < INFINITY)) return 0;
+  c.hint = home;
+  vg_cavity_measure(&c);
+  if (!(c.shape > before)) return 0;
+  if (p < w->n_given && !w->is_sample[p]) c.fresh = p;
+  if (!vg_cavity_fits(w, &c)) return 0;
+  memcpy(w->point[p].x, y, sizeof y);
+  w->point[p].home = home;
+  w->point[p].size = vg_work_size(w, y, home);
+  for (size_t i = 0; i < n_ring; i++)
+    w->point[vg_work_to(w, ring[i])].changed = ++w->clock;
+  w->point[p].changed = ++w->clock;
+  vg_cavity_settle(w, &c, t);
+  w->n_move++;
+  return 1;
+}

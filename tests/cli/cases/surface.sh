@@ -1,0 +1,97 @@
+# vanguard surface: a surface of needles made anew, its files and report; what
+# it refuses; and the same within a run of vanguard mesh.
+beam() { # NAME: a bar 4 x 1 x 1, its long sides cut into needles across
+  {
+    for ((i = 0; i <= 40; i++)); do
+      awk -v x="$i" 'BEGIN { x /= 10
+        printf "v %s 0 0\nv %s 1 0\nv %s 1 1\nv %s 0 1\n", x, x, x, x }'
+    done
+    echo "g side"
+    for ((i = 0; i < 40; i++)); do
+      for ((k = 0; k < 4; k++)); do
+        a=$((4 * i + k + 1)) b=$((4 * i + (k + 1) % 4 + 1))
+        echo "f $a $((b + 4)) $b"
+        echo "f $a $((a + 4)) $((b + 4))"
+      done
+    done
+    echo "g ends"
+    echo "f 1 2 3"; echo "f 1 3 4"
+    echo "f 161 163 162"; echo "f 161 164 163"
+  } >"$1.obj"
+}
+
+beam bar
+vanguard surface -q bar.obj --surface-size 0.3 --out new
+exits 0
+says out "bar.obj: a new surface"
+says out "8 corners and 12 lines kept, length 24, now 24"
+says out "new from given: "
+lacks out "below 20 degrees: "
+exists new/bar.lb8.ugrid new/bar.mapbc new/bar.surface.vtu new/bar.surface.json
+says new/bar.mapbc "side"
+says new/bar.mapbc "ends"
+says new/bar.surface.json '"given_from_new"'
+says new/bar.surface.vtu 'Name="smallest_angle"'
+says new/bar.surface.vtu 'Name="distance"'
+[ "$(ls -A new | wc -l)" = 4 ] || fail "files are left over: $(ls -A new)"
+vanguard check -q new/bar.lb8.ugrid
+exits 0
+says out "no defects"
+
+# The same bytes again, whatever the threads; nothing is overwritten.
+vanguard surface -q bar.obj --surface-size 0.3 --out again -t 2 --json
+exits 0
+says out '"percent_edges_fit"'
+same new/bar.lb8.ugrid again/bar.lb8.ugrid
+vanguard surface -q bar.obj --surface-size 0.3 --out new
+exits 1
+says err "exists and is not overwritten"
+
+# A border that is hard stays; beside the input the name is another one.
+cat >hard.deck <<'END'
+needles
+surface_size
+0.3
+
+patches
+id  hard
+1   yes
+END
+vanguard surface -q bar.obj --deck hard.deck --write stl
+exits 0
+exists bar.new.stl bar.new.mapbc
+rm bar.new.*
+
+# What cannot be.
+vanguard surface
+exits 2
+says err "which surface?"
+vanguard surface -q none.stl
+exits 1
+vanguard surface -q bar.obj --ridge-angle 4
+exits 2
+says err "ridge_angle"
+vanguard surface -q bar.obj --surface-size 1e-7 --out small
+exits 1
+says err "are sizes and tolerance in its unit?"
+absent small/bar.lb8.ugrid
+vanguard surface -q bar.obj --write cogsg --out small
+exits 1
+says err "for volume meshes"
+sed '$d' bar.obj >open.obj
+vanguard surface -q open.obj --out holed
+exits 0 # an open rim is a line
+vanguard check -q holed/open.lb8.ugrid
+says out "open edge: "
+
+# Within a run.
+vanguard mesh -q -p bar.obj --remesh-surface yes --surface-size 0.3 \
+  --out run --write lb8.ugrid --threads 1
+exits 0
+says out "made anew: "
+says out "note: the surface was made anew (remesh_surface)"
+says run/bar.report.json '"remesh": {'
+says run/bar.resolved.deck "remesh_surface"
+vanguard mesh -q -p bar.obj --deck run/bar.resolved.deck --out rerun
+exits 0
+same run/bar.lb8.ugrid rerun/bar.lb8.ugrid

@@ -1,0 +1,371 @@
+/* Surfaces made anew: shapes of which lines, areas and distances are known, a
+ * random search, and refusals. */
+#include "remesh_shapes.h"
+
+#include "core/remesh/remesh.h"
+#include "core/surface/surface_quality.h"
+#include "io/mesh/format.h"
+
+static void remesh(struct vg_mesh *m, const struct vg_remesh_options *o,
+                   struct vg_remesh_report *r)
+{
+  struct vg_error err = VG_ERROR_INIT;
+
+  if (vg_remesh(m, o, r, &err) < 0) fail_msg("%s", err.text);
+}
+
+static double edge_within(const struct vg_remesh_report *r)
+{
+  return (double)r->n_edge_fit / (double)r->n_edge;
+}
+
+/* The largest distance of either from the other. */
+static double apart(const struct vg_mesh *a, const struct vg_mesh *b)
+{
+  struct vg_remesh_distance d[2];
+  struct vg_error err = VG_ERROR_INIT;
+
+  assert_int_equal(vg_remesh_measure(a, b, 1, NULL, &d[0], &err), VG_OK);
+  assert_int_equal(vg_remesh_measure(b, a, 1, NULL, &d[1], &err), VG_OK);
+  return fmax(d[0].most, d[1].most);
+}
+
+/* Needles of 1 : 60 on a box become good triangles; its edges stay. */
+static void makes_needles_good(void **unused)
+{
+  const double size[3] = { 3, 2, 1 };
+  const uint32_t n[3] = { 2, 90, 1 };
+  struct vg_mesh m = VG_MESH_INIT, old = VG_MESH_INIT;
+  struct vg_remesh_options o = VG_REMESH_OPTIONS_INIT;
+  struct vg_remesh_report r = VG_REMESH_REPORT_INIT;
+  struct vg_surface_quality q;
+  struct vg_error err = VG_ERROR_INIT;
+
+  (void)unused;
+  shape_box(&m, size, n);
+  assert_int_equal(vg_mesh_copy(&old, &m, &err), VG_OK);
+  o.h_max = 0.2;
+  remesh(&m, &o, &r);
+  shape_expect_sound(&m, 0);
+  assert_int_equal(r.n_corner, 8);
+  assert_int_equal(r.n_line, 12);
+  assert_float_equal(r.line_length[0], 24, 1e-12);
+  assert_float_equal(r.line_length[1], 24, 1e-9);
+  vg_surface_quality(&m, &q);
+  assert_true(q.angle_min > 25);
+  assert_true(q.angle_min_p1 >= 35);
+  assert_true(edge_within(&r) > 0.95);
+  assert_int_equal(r.n_bad, 0);
+  for (size_t p = 0; p < 6; p++)   /* planes: areas but for rounding */
+    assert_float_equal(shape_area(&m, p), shape_area(&old, p), 1e-9);
+  assert_true(apart(&m, &old) < 1e-9);
+  vg_remesh_report_release(&r);
+  vg_mesh_release(&m);
+  vg_mesh_release(&old);
+}
+
+/* A ball stays within the tolerance, and its two patches, between which it is
+ * smooth, keep their names and halves. Triangles at the border are as large as
+ * 0.1: half of one along 2 pi is 0.3, of 12.6. */
+static void keeps_a_ball_round(void **unused)
+{
+  const double size[3] = { 1, 1, 1 };
+  struct vg_mesh m = VG_MESH_INIT, old = VG_MESH_INIT;
+  struct vg_remesh_options o = VG_REMESH_OPTIONS_INIT;
+  struct vg_remesh_report r = VG_REMESH_REPORT_INIT;
+  struct vg_surface_quality q;
+  struct vg_error err = VG_ERROR_INIT;
+
+  (void)unused;
+  shape_ball(&m, size, 48);
+  assert_int_equal(vg_mesh_copy(&old, &m, &err), VG_OK);
+  o.tolerance = 2e-3;
+  remesh(&m, &o, &r);
+  shape_expect_sound(&m, 0);
+  assert_int_equal(r.n_line, 0);
+  vg_surface_quality(&m, &q);
+  assert_true(q.angle_min > 20);
+  assert_true(q.angle_min_p1 >= 35);
+  /* Samples are held to it; between them an arc rises by a third more. */
+  assert_true(apart(&m, &old) <= 1.34 * o.tolerance);
+  assert_string_equal(m.patch[0].name, "aft");
+  assert_string_equal(m.patch[1].name, "fore");
+  for (size_t p = 0; p < 2; p++)
+    assert_float_equal(shape_area(&m, p), shape_area(&old, p), 0.3);
+  vg_remesh_report_release(&r);
+  vg_mesh_release(&m);
+  vg_mesh_release(&old);
+}
+
+/* On the border of a patch that is hard, and of one with another condition,
+ * lines stay though the surface is smooth there. */
+static void keeps_hard_borders(void **unused)
+{
+  const double size[3] = { 1, 1, 1 };
+  const uint8_t hard[2] = { 1, 0 };
+
+  (void)unused;
+  for (int by_condition = 0; by_condition < 2; by_condition++) {
+    struct vg_mesh m = VG_MESH_INIT;
+    struct vg_remesh_options o = VG_REMESH_OPTIONS_INIT;
+    struct vg_remesh_report r = VG_REMESH_REPORT_INIT;
+
+    shape_ball(&m, size, 24);
+    o.tolerance = 2e-3;
+    if (by_condition) m.patch[0].bc = 4;
+    else o.hard = hard;
+    remesh(&m, &o, &r);
+    assert_true(r.n_line > 0);
+    /* The great circle, in 48 chords or more. */
+    assert_true(fabs(r.line_length[1] - 2 * M_PI) < 0.02);
+    vg_remesh_report_release(&r);
+    vg_mesh_release(&m);
+  }
+}
+
+/* A blunt edge 0.01 wide on a plate gets cells as narrow, not needles. */
+static void follows_strips(void **unused)
+{
+  const double size[3] = { 2, 1, 0.01 };
+  const uint32_t n[3] = { 4, 4, 1 };
+  struct vg_mesh m = VG_MESH_INIT;
+  struct vg_remesh_options o = VG_REMESH_OPTIONS_INIT;
+  struct vg_remesh_report r = VG_REMESH_REPORT_INIT;
+  struct vg_surface_quality q;
+
+  (void)unused;
+  shape_box(&m, size, n);
+  remesh(&m, &o, &r);
+  shape_expect_sound(&m, 0);
+  vg_surface_quality(&m, &q);
+  assert_true(q.angle_min > 20);
+  assert_true(q.angle_min_p1 >= 35);
+  vg_remesh_report_release(&r);
+  vg_mesh_release(&m);
+}
+
+/* Half a body: the rim stays in its plane. */
+static void keeps_open_rims(void **unused)
+{
+  const double size[3] = { 1, 1, 1 };
+  const uint32_t n[3] = { 8, 3, 3 };
+  struct vg_mesh m = VG_MESH_INIT;
+  struct vg_remesh_options o = VG_REMESH_OPTIONS_INIT;
+  struct vg_remesh_report r = VG_REMESH_REPORT_INIT;
+  size_t keep = 0, n_rim = 0;
+
+  (void)unused;
+  shape_box(&m, size, n);
+  for (size_t t = 0; t < m.n_tri; t++) {
+    if (m.tri_patch[t] == 2) continue;      /* y = 0 */
+    memmove(m.tri[keep], m.tri[t], sizeof *m.tri);
+    m.tri_patch[keep++] = m.tri_patch[t];
+  }
+  m.n_tri = keep;
+  shape_weld(&m);                           /* points of the side go */
+  o.h_max = 0.1;
+  remesh(&m, &o, &r);
+  shape_expect_sound(&m, 1);
+  for (size_t p = 0; p < m.n_point; p++) n_rim += m.point[p][1] == 0;
+  assert_true(n_rim >= 36 && n_rim <= 60);  /* a length of 4 by 0.1 */
+  vg_remesh_report_release(&r);
+  vg_mesh_release(&m);
+}
+
+static void obeys_sources(void **unused)
+{
+  const double size[3] = { 1, 1, 1 };
+  const uint32_t n[3] = { 2, 2, 2 };
+  const struct vg_source s = { .kind = VG_SOURCE_POINT, .p0 = { 1, .5, .5 },
+                               .h0 = 0.01, .h1 = 0.01 };
+  struct vg_mesh m = VG_MESH_INIT;
+  struct vg_remesh_options o = VG_REMESH_OPTIONS_INIT;
+  struct vg_remesh_report r = VG_REMESH_REPORT_INIT;
+  double least = INFINITY;
+
+  (void)unused;
+  shape_box(&m, size, n);
+  o.h_max = 0.2;
+  o.n_source = 1;
+  o.source = &s;
+  remesh(&m, &o, &r);
+  shape_expect_sound(&m, 0);
+  assert_true(edge_within(&r) > 0.9);
+  for (size_t t = 0; t < m.n_tri; t++)
+    for (int k = 0; k < 3; k++)
+      least = fmin(least, vg_distance(m.point[m.tri[t][k]],
+                                      m.point[m.tri[t][(k + 1) % 3]]));
+  assert_true(least > 0.005 && least < 0.015);
+  vg_remesh_report_release(&r);
+  vg_mesh_release(&m);
+}
+
+static void expect_equal(const struct vg_mesh *a, const struct vg_mesh *b)
+{
+  assert_int_equal(a->n_point, b->n_point);
+  assert_int_equal(a->n_tri, b->n_tri);
+  assert_memory_equal(a->point, b->point, a->n_point * sizeof *a->point);
+  assert_memory_equal(a->tri, b->tri, a->n_tri * sizeof *a->tri);
+  assert_memory_equal(a->tri_patch, b->tri_patch,
+                      a->n_tri * sizeof *a->tri_patch);
+}
+
+static void same_bytes_for_any_threads(void **unused)
+{
+  const double size[3] = { 2, 1, 0.5 };
+  struct vg_mesh m[3] = { VG_MESH_INIT };
+  struct vg_remesh_options o = VG_REMESH_OPTIONS_INIT;
+
+  (void)unused;
+  o.tolerance = 2e-3;
+  for (int i = 0; i < 3; i++) {
+    shape_ball(&m[i], size, 16);
+    o.threads = i + 1;
+    remesh(&m[i], &o, NULL);
+    expect_equal(&m[0], &m[i]);
+  }
+  for (int i = 0; i < 3; i++) vg_mesh_release(&m[i]);
+}
+
+static double drawn(uint32_t *state, double lo, double hi)
+{
+  *state = *state * 1664525u + 1013904223u;
+  return lo + (hi - lo) * ((double)(*state >> 8) / 16777216.);
+}
+
+/* Boxes and ellipsoids of any proportion, two of them a gap apart: what comes
+ * out is sound, near, and keeps its lines, whatever the settings. */
+static void random_search(void **unused)
+{
+  uint32_t state = 7;
+
+  (void)unused;
+  for (int i = 0; i < 24; i++) {
+    struct vg_mesh m = VG_MESH_INIT, old = VG_MESH_INIT;
+    struct vg_remesh_options o = VG_REMESH_OPTIONS_INIT;
+    struct vg_remesh_report r = VG_REMESH_REPORT_INIT;
+    struct vg_error err = VG_ERROR_INIT;
+    double size[3], gap = drawn(&state, 0.001, 0.02);
+    uint32_t n[3];
+    size_t first;
+
+    for (int k = 0; k < 3; k++) {
+      size[k] = drawn(&state, 0.02, 1);
+      n[k] = (uint32_t)drawn(&state, 1, 12);
+    }
+    if (i % 2) shape_box(&m, size, n);
+    else shape_ball(&m, size, 4 + n[0]);
+    first = m.n_point;
+    if (i % 3 == 0) {           /* beside it, a box as high */
+      struct vg_mesh b = VG_MESH_INIT;
+
+      shape_box(&b, size, n);
+      for (size_t p = 0; p < b.n_point; p++)
+        shape_point(&m, b.point[p][0] + size[0] + gap, b.point[p][1],
+                    b.point[p][2]);
+      for (size_t t = 0; t < b.n_tri; t++)
+        shape_tri(&m, b.tri[t][0] + (uint32_t)first,
+                  b.tri[t][1] + (uint32_t)first,
+                  b.tri[t][2] + (uint32_t)first, 0);
+      vg_mesh_release(&b);
+    }
+    assert_int_equal(vg_mesh_copy(&old, &m, &err), VG_OK);
+    o.tolerance = drawn(&state, 1e-3, 1e-2);
+    o.per_turn = drawn(&state, 8, 30);
+    o.h_max = drawn(&state, 0.05, 0.5);
+    o.h_min = 2e-3;
+    o.growth = drawn(&state, 1.1, 1.6);
+    remesh(&m, &o, &r);
+    shape_expect_sound(&m, 0);
+    assert_true(apart(&m, &old) <= 2 * o.tolerance);
+    if (i % 2)                  /* straight ones */
+      assert_float_equal(r.line_length[1], r.line_length[0], 1e-9);
+    vg_remesh_report_release(&r);
+    vg_mesh_release(&m);
+    vg_mesh_release(&old);
+  }
+}
+
+/* --- refusals ------------------------------------------------------------ */
+
+static void refuse(struct vg_mesh *m, const struct vg_remesh_options *o,
+                   vg_status status, const char *phrase)
+{
+  struct vg_remesh_report r = { .n_split = 77 };
+  struct vg_error err = VG_ERROR_INIT;
+  struct vg_mesh old = VG_MESH_INIT;
+
+  assert_int_equal(vg_mesh_copy(&old, m, &err), VG_OK);
+  assert_int_equal(vg_remesh(m, o, &r, &err), status);
+  if (!strstr(err.text, phrase)) fail_msg("%s", err.text);
+  assert_int_equal(r.n_split, 77);
+  assert_int_equal(m->n_tri, old.n_tri);
+  assert_memory_equal(m->tri, old.tri, m->n_tri * sizeof *m->tri);
+  assert_memory_equal(m->point, old.point, m->n_point * sizeof *m->point);
+  vg_mesh_release(&old);
+}
+
+static int stop_at_once(void)
+{
+  return 1;
+}
+
+static void refuses(void **unused)
+{
+  const double size[3] = { 1, 1, 1 };
+  const uint32_t n[3] = { 2, 2, 2 };
+  struct vg_mesh m = VG_MESH_INIT, none = VG_MESH_INIT;
+  struct vg_remesh_options o = VG_REMESH_OPTIONS_INIT;
+  double x;
+  uint32_t k;
+
+  (void)unused;
+  shape_box(&m, size, n);
+  refuse(&none, &o, VG_ERR_INPUT, "triangles is needed");
+  x = m.point[3][1];
+  m.point[3][1] = NAN;
+  refuse(&m, &o, VG_ERR_INPUT, "not finite");
+  m.point[3][1] = x;
+  k = m.tri[4][0];
+  m.tri[4][0] = (uint32_t)m.n_point;
+  refuse(&m, &o, VG_ERR_INPUT, "triangle 5");
+  m.tri[4][0] = m.tri[4][1];
+  m.tri[4][1] = k;
+  refuse(&m, &o, VG_ERR_INPUT, "turned the other way");
+  m.tri[4][1] = m.tri[4][0];
+  m.tri[4][0] = k;
+  shape_tri(&m, m.tri[0][0], m.tri[0][1], m.tri[0][2], 0);
+  refuse(&m, &o, VG_ERR_INPUT, "three triangles");
+  m.n_tri--;
+  o.h_max = 1e-7;
+  refuse(&m, &o, VG_ERR_INPUT, "unit");
+  o.h_min = 2e-7;
+  refuse(&m, &o, VG_ERR_INPUT, "above the largest");
+  o = (struct vg_remesh_options)VG_REMESH_OPTIONS_INIT;
+  o.tolerance = -1;
+  refuse(&m, &o, VG_ERR_INPUT, "tolerance");
+  o.tolerance = 0;
+  o.growth = 1;
+  refuse(&m, &o, VG_ERR_INPUT, "growth");
+  o.growth = 1.2;
+  o.stop = stop_at_once;
+  refuse(&m, &o, VG_ERR_GEOMETRY, "given up");
+  vg_mesh_release(&m);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(makes_needles_good),
+    cmocka_unit_test(keeps_a_ball_round),
+    cmocka_unit_test(keeps_hard_borders),
+    cmocka_unit_test(follows_strips),
+    cmocka_unit_test(keeps_open_rims),
+    cmocka_unit_test(obeys_sources),
+    cmocka_unit_test(same_bytes_for_any_threads),
+    cmocka_unit_test(random_search),
+    cmocka_unit_test(refuses),
+  };
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
