@@ -31,10 +31,11 @@ work_folder decompositions
 need jq jq
 
 # Cells outside the layers, most over mean of leaves, triangles of interfaces,
-# 1st percentile of the smallest angle of all cells, parts filled with others.
+# 1st percentile of the smallest angle of these cells, parts filled with others.
 row='[(.partition | (.leaf_cells | add) + .fragment_cells + .zone_cells
   + .repair_cells), (.partition.balance * 1000 | round / 1000),
-  .partition.parting.interface_triangles // 0, .mesh.angle_min_p1,
+  .partition.parting.interface_triangles // 0,
+  (.field // .mesh).angle_min_p1,
   .partition.parts_widened] | map(tostring) | join(" | ")'
 
 # try WAY OPTIONS...: mesh the case, judge it; a row of the table.
