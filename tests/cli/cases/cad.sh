@@ -31,8 +31,10 @@ exits 0
 says out "smallest angle"
 says one/wing.mapbc "trailing_edge"
 says one/wing.resolved.deck "cad_angle"
-if command -v mpirun >/dev/null; then
-  mpirun --oversubscribe -n 3 "$program" mesh "$@" --test-node-ranks 2 \
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
+  OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none
+if mpirun -n 2 true >/dev/null 2>&1; then
+  ASAN_OPTIONS=detect_leaks=0 mpirun -n 3 "$program" mesh "$@" --test-node-ranks 2 \
     --out three >out 2>err
   status=$?
   exits 0
