@@ -56,8 +56,11 @@ static vg_status name_points(struct fill *a, struct vg_parting *out,
   a->number = vg_alloc(a->n_all, sizeof *a->number);
   if (!a->name || !a->number) return vg_fail_memory(err, "the parts");
   memset(a->name, 0xff, a->n_all * sizeof *a->name);
-  for (size_t k = 0; k < 3 * n_tri; k++)
-    if (a->s->tri[0][k] >= a->c->n_front) a->name[a->s->tri[0][k]] = 0;
+  for (size_t k = 0; k < 3 * n_tri; k++) {
+    uint32_t v = a->s->tri[k / 3][k % 3];
+
+    if (v >= a->c->n_front) a->name[v] = 0;
+  }
   for (size_t k = 0; k < a->n_all; k++)
     if (a->name[k] != VG_NONE) a->name[k] = (uint32_t)out->n_point++;
   out->x = vg_alloc(out->n_point, sizeof *out->x);
@@ -84,7 +87,7 @@ static vg_status make_faces(const struct fill *a, struct vg_parting *out,
   uint32_t p[2];
 
   for (size_t q = 0; q < 4 * c->t.n_cell; q++)
-    out->part[c->part[q / 4]].front.n_face += c->on[0][q] != VG_NONE;
+    out->part[c->part[q / 4]].front.n_face += c->on[q / 4][q % 4] != VG_NONE;
   for (size_t i = 0; i < a->f->n_face; i++) {
     parts_of(a, i, p);
     for (int k = 0; k < 2; k++)
@@ -98,10 +101,10 @@ static vg_status make_faces(const struct fill *a, struct vg_parting *out,
     f->n_face = 0;
   }
   for (size_t q = 0; q < 4 * c->t.n_cell; q++)
-    if (c->on[0][q] != VG_NONE) {
+    if (c->on[q / 4][q % 4] != VG_NONE) {
       struct vg_front *f = &out->part[c->part[q / 4]].front;
 
-      memcpy(f->face[f->n_face++], a->front->face[c->on[0][q]],
+      memcpy(f->face[f->n_face++], a->front->face[c->on[q / 4][q % 4]],
              sizeof *f->face);
     }
   for (size_t i = 0; i < a->f->n_face; i++) {
@@ -126,9 +129,10 @@ static vg_status make_points(const struct fill *a, struct vg_front *f,
   f->x = vg_alloc(3 * f->n_face, sizeof *f->x);
   f->name = vg_alloc(3 * f->n_face, sizeof *f->name);
   if (!f->x || !f->name) return vg_fail_memory(err, "the parts");
-  for (size_t k = 0; k < 3 * f->n_face; k++) a->number[f->face[0][k]] = VG_NONE;
+  for (size_t k = 0; k < 3 * f->n_face; k++)
+    a->number[f->face[k / 3][k % 3]] = VG_NONE;
   for (size_t k = 0; k < 3 * f->n_face; k++) {
-    uint32_t v = f->face[0][k];
+    uint32_t v = f->face[k / 3][k % 3];
 
     if (a->number[v] == VG_NONE) {
       memcpy(f->x[f->n_point], point_of(a, v), sizeof *f->x);
@@ -137,7 +141,7 @@ static vg_status make_points(const struct fill *a, struct vg_front *f,
                               : VG_POINT_NAME(a->serial, a->name[v]);
       a->number[v] = (uint32_t)f->n_point++;
     }
-    f->face[0][k] = a->number[v];
+    f->face[k / 3][k % 3] = a->number[v];
   }
   return VG_OK;
 }

@@ -69,7 +69,7 @@ static void mark_rim(const struct vg_coarse *c, const struct vg_interface *f,
   for (size_t q = 0; q < 4 * c->t.n_cell; q++) {
     const uint32_t *v = c->t.cell[q / 4].v;
 
-    if (c->on[0][q] == VG_NONE) continue;
+    if (c->on[q / 4][q % 4] == VG_NONE) continue;
     for (int k = 0; k < 3; k++) {
       uint32_t a = v[vg_face[q % 4][k]], b = v[vg_face[q % 4][(k + 1) % 3]];
       const uint32_t key[2] = { a < b ? a : b, a < b ? b : a };

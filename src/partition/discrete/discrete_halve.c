@@ -65,7 +65,7 @@ static vg_status find_reach(struct halving *h, struct vg_error *err)
   h->reach = vg_calloc(c->n_front, sizeof *h->reach);
   if (!h->reach) return vg_fail_memory(err, "the interfaces");
   for (size_t q = 0; q < 4 * c->t.n_cell; q++) {
-    if (c->on[0][q] == VG_NONE) continue;
+    if (c->on[q / 4][q % 4] == VG_NONE) continue;
     for (int k = 0; k < 3; k++) {
       uint32_t a = c->t.cell[q / 4].v[vg_face[q % 4][k]];
       uint32_t b = c->t.cell[q / 4].v[vg_face[q % 4][(k + 1) % 3]];
