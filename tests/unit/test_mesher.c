@@ -263,12 +263,17 @@ static void tetgen_fills_around_a_hollow(void **state)
   fills_by_size("tetgen");
 }
 
+/* gmsh's library does not get through beside ASan, whose allocator it would
+ * use: its voids go to the kernel. */
 static void hxt_does_where_it_is(void **state)
 {
   struct vg_mesher_pool *p = NULL;
   struct vg_error err = VG_ERROR_INIT;
 
   (void)state;
+#ifdef __SANITIZE_ADDRESS__
+  skip();
+#endif
   if (vg_mesher_open("hxt", &p, &err) != VG_OK) {
     assert_int_equal(err.code, VG_ERR_UNSUPPORTED);
     assert_non_null(strstr(err.text, "libgmsh"));
