@@ -448,6 +448,7 @@ static void sizes_are_those_of_the_field(void **state)
   pthread_join(thread, NULL);
   close(ends[0]);
   close(ends[1]);
+  vg_child_sizes_free(s);
 }
 
 int main(void)

@@ -43,6 +43,7 @@ struct vg_renewal {
   struct vg_remesh_report report;
   struct vg_remesh_distance off[2]; /* new from given, given from new */
   double *face;                     /* [n_tri] distance of each from given */
+  size_t n_patch;                   /* of the surface; a farfield adds others */
   double *area;                     /* [n_patch][2] of patches, before, after */
   double seconds;
 };

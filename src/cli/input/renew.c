@@ -72,7 +72,8 @@ static vg_status measure(struct vg_problem *p, const struct vg_mesh *given,
   vg_status st;
 
   r->face = vg_alloc(p->surface.n_tri, sizeof *r->face);
-  r->area = vg_calloc(2 * p->surface.n_patch, sizeof *r->area);
+  r->n_patch = p->surface.n_patch;
+  r->area = vg_calloc(2 * r->n_patch, sizeof *r->area);
   if (!r->face || !r->area) return vg_fail_memory(err, "the distances");
   areas(given, 0, r->area);
   areas(&p->surface, 1, r->area);

@@ -61,7 +61,7 @@ static json_t *patches_json(const struct vg_renewal *n,
 {
   json_t *list = json_array();
 
-  for (size_t i = 0; i < m->n_patch; i++)
+  for (size_t i = 0; i < n->n_patch; i++)
     json_array_append_new(list, json_pack("{s:i s:o s:[ff]}", "id",
       (int)m->patch[i].id, "name", vg_text_json(m->patch[i].name), "area",
       n->area[2 * i], n->area[2 * i + 1]));

@@ -47,13 +47,22 @@ static void find_box(struct vg_child_sizes *s, const struct vg_mesher_front *f)
   for (int k = 0; k < 3; k++) s->side = fmax(s->side, hi[k] - s->lo[k]);
 }
 
+void vg_child_sizes_free(struct vg_child_sizes *s)
+{
+  if (s) free(s->node);
+  free(s);
+}
+
 struct vg_child_sizes *vg_child_sizes_new(int fd,
                                           const struct vg_mesher_front *f)
 {
   struct vg_child_sizes *s = vg_calloc(1, sizeof *s);
   double x[8][3], h[8];
 
-  if (!s || vg_reserve(&s->node, &s->room, 1, sizeof *s->node)) return NULL;
+  if (!s || vg_reserve(&s->node, &s->room, 1, sizeof *s->node)) {
+    vg_child_sizes_free(s);
+    return NULL;
+  }
   s->fd = fd;
   find_box(s, f);
   for (int c = 0; c < 8; c++)

@@ -62,6 +62,7 @@ void vg_mesher_normal(const struct vg_mesher_front *f, size_t face,
 /** core/mesher/child_sizes.c: sizes that the parent is asked for, over the box
  * of a front. NULL: no memory. Ends the process when the parent is gone. */
 struct vg_child_sizes;
+void vg_child_sizes_free(struct vg_child_sizes *s);
 struct vg_child_sizes *vg_child_sizes_new(int fd,
                                           const struct vg_mesher_front *f);
 void vg_child_sizes_at(void *sizes, size_t n, const double (*x)[3],
