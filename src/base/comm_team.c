@@ -4,7 +4,7 @@
 #include "base/memory.h"
 #include "base/team.h"
 
-/* Fewer chunks than these for each thread of a member are done by everyone. */
+/* Fewer chunks than these for each member are done by everyone. */
 enum { WORTH = 4 };
 
 struct vg_team {
