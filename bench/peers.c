@@ -11,7 +11,7 @@
  *                              of .node and .ele; optionally written as UGRID
  *   seconds REPORT.json        time of the fill that a run of Vanguard reports
  *
- * DECK is a run deck (cli/settings/deck.h), "-" for all defaults. Exit status 0
+ * DECK is a run deck (run/settings/deck.h), "-" for all defaults. Exit status 0
  * done, 1 failed, 2 usage. */
 #include <jansson.h>
 #include <math.h>
@@ -21,12 +21,12 @@
 
 #include "base/memory.h"
 #include "base/union_find.h"
-#include "cli/settings/deck.h"
 #include "core/geometry/vector.h"
 #include "core/judge/quality.h"
 #include "io/mesh/ugrid.h"
 #include "io/stream/stream.h"
 #include "peers.h"
+#include "run/settings/deck.h"
 
 #define NAME_MAX_LEN 4096
 

@@ -8,7 +8,7 @@
 
 #include "base/child.h"
 #include "base/memory.h"
-#include "cli/settings/deck.h"
+#include "run/settings/deck.h"
 
 const char *vanguard_version(void)
 {

@@ -4,10 +4,10 @@
 
 #include "api/vanguard.h"
 #include "base/comm.h"
-#include "cli/input/input.h"
-#include "cli/input/layers.h"
-#include "cli/run/run.h"
 #include "core/sizing/sizing_map.h"
+#include "run/input/input.h"
+#include "run/input/layers.h"
+#include "run/stages/run.h"
 
 struct vanguard_job {
   struct vg_comm *comm;

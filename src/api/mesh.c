@@ -7,7 +7,7 @@
 
 #include "api/job.h"
 #include "base/memory.h"
-#include "cli/report/report.h"
+#include "run/report/report.h"
 
 void vg_job_release_run(vanguard_job *job, int success)
 {

@@ -5,11 +5,11 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/child.h"
 #include "cli/commands/commands.h"
 #include "cli/common/cli.h"
-#include "cli/common/progress.h"
-#include "cli/settings/settings.h"
-#include "base/child.h"
+#include "run/common/progress.h"
+#include "run/settings/settings.h"
 
 static const struct command {
   const char *name, *summary;

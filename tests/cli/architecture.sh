@@ -38,7 +38,8 @@ done < <(awk '/^vg_module\(/ { on = 1; line = "" }
 # The parts of the program that a part may see, besides base.
 declare -A parts=([base]="" [core]="core" [layers]="core layers"
   [partition]="core layers partition" [io]="core io"
-  [cli]="core layers partition io cli" [api]="core layers partition io cli")
+  [run]="core layers partition io run" [api]="core run"
+  [cli]="core layers partition io run cli")
 for module in "${modules[@]}"; do
   part=${module%%/*}
   for seen in ${sees[$module]}; do
@@ -107,12 +108,12 @@ adapter() {
 adapter tetgen.h '^core/(recover/cdt_tetgen|mesher/tetgen)\.cpp$'
 adapter '[A-Z][A-Za-z0-9_]*\.hxx' '^io/occt/occt_[a-z]+\.(cpp|h)$'
 adapter 'CGAL/[A-Za-z0-9_]*\.h' '^core/wrap/wrap_cgal\.cpp$'
-adapter zlib.h '^(io/[a-z]+/[a-z_]+|cli/picture/image)\.c$'
-adapter jansson.h '^cli/'
+adapter zlib.h '^(io/[a-z]+/[a-z_]+|run/picture/image)\.c$'
+adapter jansson.h '^(run|cli)/'
 adapter argp.h '^cli/'
 # Its last bits differ between processors: never where a mesh is made.
 adapter lapacke.h '^partition/model/rates\.c$'
-adapter pthread.h '^(base|partition|core/mesher)/|^cli/common/progress\.c$'
+adapter pthread.h '^(base|partition|core/mesher)/|^run/common/progress\.c$'
 adapter mpi.h \
   '^(base/comm(_[a-z]+)?\.c|base/comm_parts\.h|io/stream/shared_file\.c)$'
 adapter metis.h '^partition/graph/graph_metis\.c$'

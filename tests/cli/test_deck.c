@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-#include "cli/settings/deck.h"
+#include "run/settings/deck.h"
 
 static vg_status parse(const char *text, struct vg_settings *s,
                        struct vg_error *err)

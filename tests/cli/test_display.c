@@ -6,7 +6,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "cli/common/progress.h"
+#include "run/common/progress.h"
 
 struct told { char stage[40]; size_t done, expected; int n, stops; };
 

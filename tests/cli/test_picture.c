@@ -11,12 +11,12 @@
 
 #include <cmocka.h>
 
-#include "cli/picture/body.h"
-#include "cli/picture/cuts.h"
-#include "cli/picture/decimate.h"
-#include "cli/picture/image.h"
-#include "cli/picture/shot.h"
-#include "cli/picture/worst.h"
+#include "run/picture/body.h"
+#include "run/picture/cuts.h"
+#include "run/picture/decimate.h"
+#include "run/picture/image.h"
+#include "run/picture/shot.h"
+#include "run/picture/worst.h"
 
 /* --- PNG ----------------------------------------------------------------- */
 

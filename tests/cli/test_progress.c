@@ -11,7 +11,7 @@
 #include <cmocka.h>
 
 #include "cli/common/cli.h"
-#include "cli/common/progress.h"
+#include "run/common/progress.h"
 
 enum { WENT_ON = 7, NOT_TOLD = 8 };
 

@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "cli/common/ranges.h"
+#include "run/common/ranges.h"
 
 static void gives(const char *text, size_t n, const int64_t *v)
 {

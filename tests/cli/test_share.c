@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "cli/input/share.h"
+#include "run/input/share.h"
 
 static double point[4][3] = { { 0, 0, -0.0 }, { 1, 0, 0 }, { 0, 1, 0 },
                               { 0, 0, 1e-300 } };

@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "cli/common/text.h"
+#include "run/common/text.h"
 
 static void test_characters(void **state)
 {

@@ -1,6 +1,6 @@
 #include "fuzz.h"
 
-#include "cli/settings/deck.h"
+#include "run/settings/deck.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {

@@ -6,13 +6,13 @@
 
 #include "cli/commands/commands.h"
 #include "cli/common/cli.h"
-#include "cli/common/text.h"
-#include "cli/input/input.h"
-#include "cli/report/report.h"
-#include "cli/settings/deck.h"
-#include "cli/settings/options.h"
+#include "cli/common/options.h"
 #include "io/mesh/format.h"
 #include "io/mesh/ugrid.h"
+#include "run/common/text.h"
+#include "run/input/input.h"
+#include "run/report/report.h"
+#include "run/settings/deck.h"
 
 struct arguments {
   const char *file, *deck, *defects;

@@ -6,10 +6,10 @@
 
 #include "cli/commands/commands.h"
 #include "cli/common/cli.h"
-#include "cli/common/text.h"
-#include "cli/input/input.h"
-#include "cli/settings/deck.h"
-#include "cli/settings/options.h"
+#include "cli/common/options.h"
+#include "run/common/text.h"
+#include "run/input/input.h"
+#include "run/settings/deck.h"
 
 struct arguments {
   const char *surface, *output;

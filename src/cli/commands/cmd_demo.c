@@ -7,12 +7,14 @@
 #include "base/memory.h"
 #include "cli/commands/commands.h"
 #include "cli/common/cli.h"
-#include "cli/common/ranges.h"
+#include "cli/common/options.h"
 #include "cli/examples/demo.h"
-#include "cli/settings/deck.h"
-#include "cli/settings/options.h"
 #include "io/mesh/format.h"
 #include "io/vgrid/mapbc.h"
+#include "run/common/folder.h"
+#include "run/common/ranges.h"
+#include "run/common/text.h"
+#include "run/settings/deck.h"
 
 struct arguments {
   const char *name, *dir;
@@ -53,7 +55,7 @@ static int list_cases(void)
 
   for (size_t i = 0; i < n; i++)
     printf("%-16s %s (%s cells)\n", c[i].name, c[i].summary,
-           vg_cli_count(c[i].n_cell, count));
+           vg_text_count(c[i].n_cell, count));
   return VG_EXIT_DONE;
 }
 
@@ -137,16 +139,16 @@ static vg_status write_project(const char *stem, const char *name,
   VG_TRY(vg_deck_write(path[2], &s, has_layers ? layer_comment : NULL,
                        has_layers, err));
   printf("%s: surface of %s points, %s triangles\n", path[0],
-         vg_cli_count(demo->surface.n_point, points),
-         vg_cli_count(demo->surface.n_tri, triangles));
+         vg_text_count(demo->surface.n_point, points),
+         vg_text_count(demo->surface.n_tri, triangles));
   printf("%s: boundary conditions of %zu patches\n", path[1],
          demo->surface.n_patch);
   printf("%s: settings, for about %s cells%s\n", path[2],
-         vg_cli_count((unsigned long long)demo->n_cell, cells),
+         vg_text_count((unsigned long long)demo->n_cell, cells),
          has_layers ? " without the viscous layers" : "");
   if (wanted && demo->n_cell > 1.05 * (double)wanted)
     printf("  %s cells were asked for: the geometry needs more\n",
-           vg_cli_count(wanted, cells));
+           vg_text_count(wanted, cells));
   printf("Next: vanguard mesh -p %s\n", stem);
 done:
   for (int i = 0; i < 3; i++) free(path[i]);
@@ -161,7 +163,7 @@ static vg_status make(const struct arguments *a, struct vg_error *err)
   vg_status st;
 
   VG_TRY(vg_demo_make(a->name, a->n_cell, &demo, err));
-  if (a->dir) VG_TRY(vg_cli_make_folder(a->dir, err));
+  if (a->dir) VG_TRY(vg_make_folder(a->dir, err));
   if (asprintf(&stem, "%s%s%s", a->dir ? a->dir : "", a->dir ? "/" : "",
                a->name) < 0) {
     stem = NULL;

@@ -8,18 +8,18 @@
 #include "cli/commands/commands.h"
 #include "cli/commands/mesh_log.h"
 #include "cli/common/cli.h"
-#include "cli/common/log.h"
-#include "cli/common/ranges.h"
-#include "cli/common/text.h"
+#include "cli/common/options.h"
 #include "cli/html/html.h"
-#include "cli/input/layers.h"
 #include "cli/plot/plot.h"
 #include "cli/plot/timeline.h"
-#include "cli/report/report.h"
-#include "cli/run/output.h"
-#include "cli/run/run.h"
-#include "cli/settings/options.h"
 #include "io/stream/stream.h"
+#include "run/common/log.h"
+#include "run/common/ranges.h"
+#include "run/common/text.h"
+#include "run/input/layers.h"
+#include "run/report/report.h"
+#include "run/stages/output.h"
+#include "run/stages/run.h"
 
 struct arguments {
   const char *project, *deck, *dir, *log;
@@ -420,7 +420,7 @@ static void print_count(FILE *to, const char *name, size_t n)
 {
   char count[32];
 
-  fprintf(to, "  %-24s %15s\n", name, vg_cli_count(n, count));
+  fprintf(to, "  %-24s %15s\n", name, vg_text_count(n, count));
 }
 
 static void print_times(FILE *to, const struct run *r)

@@ -8,16 +8,16 @@
 #include "base/memory.h"
 #include "cli/commands/commands.h"
 #include "cli/common/cli.h"
-#include "cli/common/progress.h"
-#include "cli/common/text.h"
-#include "cli/input/walls.h"
-#include "cli/report/report.h"
-#include "cli/settings/options.h"
+#include "cli/common/options.h"
 #include "io/mesh/foam.h"
 #include "io/mesh/format.h"
 #include "io/mesh/metis_part.h"
 #include "io/mesh/vtu.h"
 #include "partition/solver/solver.h"
+#include "run/common/progress.h"
+#include "run/common/text.h"
+#include "run/input/walls.h"
+#include "run/report/report.h"
 
 enum { KEY_WEIGHTS = 500, KEY_WRITE };
 

@@ -5,8 +5,8 @@
 
 #include "cli/commands/commands.h"
 #include "cli/common/cli.h"
+#include "cli/common/options.h"
 #include "cli/plan/plan.h"
-#include "cli/settings/options.h"
 #include "io/stream/stream.h"
 
 enum { KEY_RANKS_PER_NODE = 300, KEY_LATENCY, KEY_BANDWIDTH, KEY_RATE,

@@ -8,16 +8,17 @@
 #include "base/memory.h"
 #include "cli/commands/commands.h"
 #include "cli/common/cli.h"
-#include "cli/common/text.h"
-#include "cli/input/input.h"
-#include "cli/report/report.h"
-#include "cli/settings/lists.h"
-#include "cli/settings/options.h"
+#include "cli/common/options.h"
 #include "core/geometry/vector.h"
 #include "io/mesh/format.h"
 #include "io/mesh/vtu.h"
 #include "io/stream/stream.h"
 #include "io/vgrid/mapbc.h"
+#include "run/common/folder.h"
+#include "run/common/text.h"
+#include "run/input/input.h"
+#include "run/report/report.h"
+#include "run/settings/lists.h"
 
 #define FILES (VG_WRITE_ITEMS + 3)
 
@@ -102,7 +103,7 @@ static vg_status plan_files(const struct vg_problem *p,
   vg_status st;
 
   name = name ? name + 1 : p->files.stem;
-  if (a->dir) VG_TRY(vg_cli_make_folder(a->dir, err));
+  if (a->dir) VG_TRY(vg_make_folder(a->dir, err));
   if ((a->dir ? asprintf(&f->stem, "%s/%s", a->dir, name)
               : asprintf(&f->stem, "%s.new", p->files.stem)) < 0) {
     f->stem = NULL;

@@ -6,12 +6,14 @@
 
 #include "cli/commands/commands.h"
 #include "cli/common/cli.h"
-#include "cli/common/progress.h"
-#include "cli/input/input.h"
-#include "cli/settings/deck.h"
-#include "cli/settings/options.h"
+#include "cli/common/options.h"
 #include "cli/sweep/sweep.h"
 #include "io/stream/stream.h"
+#include "run/common/folder.h"
+#include "run/common/progress.h"
+#include "run/common/text.h"
+#include "run/input/input.h"
+#include "run/settings/deck.h"
 
 enum { KEY_LEAF_CELLS = 300, KEY_REPEAT, KEY_LAUNCHER, KEY_KEEP,
        KEY_PROGRAM };
@@ -172,7 +174,7 @@ static void print_case(const struct vg_sweep *s,
   print_value(t ? t->wall : NAN, 8, 2);
   print_value(t ? vg_spans_imbalance(t) : NAN, 6, 3);
   print_value(t ? 100 * (1 - vg_spans_busy(t)) : NAN, 6, 1);
-  printf(" %11s %.8s%s%s\n", t ? vg_cli_count(c->t.n_cell, cells) : "-",
+  printf(" %11s %.8s%s%s\n", t ? vg_text_count(c->t.n_cell, cells) : "-",
          c->digest[0] ? c->digest : "-", c->note[0] ? "  " : "", c->note);
 }
 
@@ -228,7 +230,7 @@ static int run(struct vg_sweep_options *o)
   vg_display_init(&show, o->quiet);
   VG_TRY(take_deck(o, &err));
   VG_TRY(vg_sweep_plan(o, &s, &err));
-  VG_TRY(vg_cli_make_folder(o->dir, &err));
+  VG_TRY(vg_make_folder(o->dir, &err));
   ran = run_all(&s, &why);
   VG_TRY(vg_sweep_write(&s, &err));
   VG_TRY(vg_sweep_draw(&s, &err));

@@ -8,7 +8,7 @@
 
 #include "base/version.h"
 #include "cli/commands/commands.h"
-#include "cli/common/log.h"
+#include "run/common/log.h"
 
 static void put_command(FILE *to, int argc, char **argv)
 {

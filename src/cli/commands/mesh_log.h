@@ -3,7 +3,7 @@
 #ifndef VG_CLI_COMMANDS_MESH_LOG_H
 #define VG_CLI_COMMANDS_MESH_LOG_H
 
-#include "cli/run/run.h"
+#include "run/stages/run.h"
 
 /** Program, libraries, command, host, ranks and threads, into the log if there
  * is one. On rank 0. */

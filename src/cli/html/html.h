@@ -1,13 +1,13 @@
 /* cli/html/html.h: PROJECT.report.html, the run as a page to look at: one file
- * that loads nothing, with pictures that need no scripts. Uses cli/run. */
+ * that loads nothing, with pictures that need no scripts. Uses run/stages. */
 #ifndef VG_CLI_HTML_HTML_H
 #define VG_CLI_HTML_HTML_H
 
 #include <jansson.h>
 
-#include "cli/input/input.h"
-#include "cli/input/layers.h"
-#include "cli/run/run.h"
+#include "run/input/input.h"
+#include "run/input/layers.h"
+#include "run/stages/run.h"
 
 /** Values of the plain settings and the farfield as text, to tell later what
  * was asked from what was settled. */

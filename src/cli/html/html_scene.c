@@ -6,10 +6,10 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "cli/common/text.h"
 #include "cli/html/page.h"
-#include "cli/picture/decimate.h"
 #include "core/geometry/vector.h"
+#include "run/common/text.h"
+#include "run/picture/decimate.h"
 
 #define MOST 120000        /* triangles (V1) */
 

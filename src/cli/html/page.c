@@ -7,8 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/common/cli.h"
-#include "cli/common/text.h"
+#include "run/common/text.h"
 
 void vg_page_markup(struct page *p, const char *markup)
 {
@@ -44,7 +43,7 @@ void vg_page_count(struct page *p, uint64_t n)
 {
   char text[32];
 
-  vg_page_markup(p, vg_cli_count(n, text));
+  vg_page_markup(p, vg_text_count(n, text));
 }
 
 void vg_page_real(struct page *p, double v, int digits)

@@ -3,9 +3,9 @@
 #define VG_CLI_HTML_PAGE_H
 
 #include "cli/html/html.h"
-#include "cli/picture/body.h"
-#include "cli/picture/shot.h"
 #include "io/stream/stream.h"
+#include "run/picture/body.h"
+#include "run/picture/shot.h"
 
 /* Pictures of a page by number: the surface by something (enum by) from two
  * views, cuts, two of them in other colours. */
@@ -26,7 +26,7 @@ struct page {
   struct vg_output out;
   const struct vg_html *h;
   int has_layers;
-  uint8_t *body;            /* [surface.n_patch] cli/picture/body.h */
+  uint8_t *body;            /* [surface.n_patch] run/picture/body.h */
   struct walls walls;
   struct vg_camera camera[VIEWS];
   struct vg_bytes png[PICTURES];   /* empty where there is none */

@@ -1,12 +1,12 @@
 /* cli/plan/plan.h: what vanguard plan computes. Uses cli/common/cli.h,
- * cli/common/ranges.h, partition/model/model.h. */
+ * run/common/ranges.h, partition/model/model.h. */
 #ifndef VG_CLI_PLAN_PLAN_H
 #define VG_CLI_PLAN_PLAN_H
 
 #include "cli/common/cli.h"
-#include "cli/common/ranges.h"
-#include "cli/settings/options.h"
+#include "cli/common/options.h"
 #include "partition/model/model.h"
+#include "run/common/ranges.h"
 
 struct vg_plan_options {
   const char *replay;           /* a .timeline.json, or NULL */

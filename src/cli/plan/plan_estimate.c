@@ -9,7 +9,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "cli/common/cli.h"
-#include "cli/settings/options.h"
+#include "cli/common/options.h"
 #include "core/geometry/vector.h"
 #include "partition/advance/advance.h"
 

@@ -1,16 +1,16 @@
 /* cli/plan/plan_estimate.h: the forecast of a project, for plan_*.c. Uses
- * cli/input/layers.h, partition/model/rates.h.
+ * run/input/layers.h, partition/model/rates.h.
  *
  * plan_estimate.c computes it, plan_print.c tells it. */
 #ifndef VG_CLI_PLAN_PLAN_ESTIMATE_H
 #define VG_CLI_PLAN_PLAN_ESTIMATE_H
 
-#include "cli/input/layers.h"
-#include "cli/input/source_effect.h"
 #include "cli/plan/plan.h"
 #include "cli/plot/timeline.h"
 #include "partition/cut/parting.h"
 #include "partition/model/rates.h"
+#include "run/input/layers.h"
+#include "run/input/source_effect.h"
 
 enum { VG_PLAN_LEAVES = 8 };
 

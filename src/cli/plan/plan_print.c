@@ -7,14 +7,13 @@
 #include <strings.h>
 
 #include "base/memory.h"
-#include "cli/common/cli.h"
-#include "cli/common/text.h"
 #include "cli/plan/plan_estimate.h"
-#include "partition/advance/ways.h"
 #include "cli/plot/plot.h"
-#include "cli/report/report.h"
 #include "io/mesh/fluent.h"
 #include "io/mesh/foam.h"
+#include "partition/advance/ways.h"
+#include "run/common/text.h"
+#include "run/report/report.h"
 
 /* --- files --------------------------------------------------------------- */
 
@@ -66,7 +65,7 @@ double vg_plan_bytes(const struct vg_plan *p, const char *item)
 
 static const char *count(double n, char text[32])
 {
-  return vg_cli_count((unsigned long long)(n + 0.5), text);
+  return vg_text_count((unsigned long long)(n + 0.5), text);
 }
 
 static const char *bytes(double n, char text[32])

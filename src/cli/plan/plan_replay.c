@@ -7,11 +7,11 @@
 
 #include "base/memory.h"
 #include "cli/common/cli.h"
-#include "cli/common/text.h"
 #include "cli/plan/plan.h"
 #include "cli/plot/plot.h"
 #include "cli/plot/timeline.h"
-#include "cli/report/report.h"
+#include "run/common/text.h"
+#include "run/report/report.h"
 
 struct row { int ranks, threads; struct vg_model_result f; };
 
@@ -83,7 +83,7 @@ static void print_text(const struct plan *p)
          "by a node, %.3f s by all\n",
          p->t.title, p->o->replay, (int)s->n_rank, s->n_rank > 1 ? "s" : "",
          (int)s->n_thread, s->n_thread > 1 ? "s" : "", s->n,
-         vg_cli_count((unsigned long long)p->t.n_cell, cells), s->wall,
+         vg_text_count((unsigned long long)p->t.n_cell, cells), s->wall,
          p->machine.serial, p->machine.by_node, p->machine.by_all);
   printf("  in loops of joins that idle threads of a rank help with: %.3f s\n",
          vg_spans_loops(s));

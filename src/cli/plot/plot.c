@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "cli/common/cli.h"
 #include "cli/plot/svg.h"
+#include "run/common/text.h"
 
 #define WIDTH 960.0
 #define LEFT 110.0
@@ -235,7 +235,7 @@ vg_status vg_plot_timeline(const char *path, const struct vg_timeline *t,
            "tasks; cut and fill %s s, workers %d %% busy, imbalance %s",
            (int)t->spans.n_rank, t->spans.n_rank > 1 ? "s" : "",
            (int)t->spans.n_thread, t->spans.n_thread > 1 ? "s" : "",
-           vg_cli_count((unsigned long long)t->n_cell, count), t->spans.n,
+           vg_text_count((unsigned long long)t->n_cell, count), t->spans.n,
            two_decimals(t->spans.wall, wall),
            percent(vg_spans_busy(&t->spans), 1),
            two_decimals(vg_spans_imbalance(&t->spans), imbalance));

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/common/text.h"
+#include "run/common/text.h"
 
 #define FONT "font-family=\"Helvetica, Arial, 'DejaVu Sans', sans-serif\""
 #define LABEL_SIZE 11.0

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/common/text.h"
 #include "io/stream/stream.h"
+#include "run/common/text.h"
 
 #define SECONDS_MAX 1e9
 #define ROUNDED 2e-6             /* twice half of what times are kept to */

@@ -1,14 +1,14 @@
 /* cli/sweep/sweep.h: the parts of vanguard sweep: one run of vanguard mesh for
  * each point of a grid of parameters, and what comes out. Uses
- * cli/common/ranges.h, cli/plot/timeline.h. */
+ * run/common/ranges.h, cli/plot/timeline.h. */
 #ifndef VG_CLI_SWEEP_SWEEP_H
 #define VG_CLI_SWEEP_SWEEP_H
 
 #include <stddef.h>
 #include <stdint.h>
 
-#include "cli/common/ranges.h"
 #include "cli/plot/timeline.h"
+#include "run/common/ranges.h"
 
 struct vg_sweep_options {
   const char *project, *dir;

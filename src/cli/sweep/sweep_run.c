@@ -13,8 +13,9 @@
 
 #include "base/memory.h"
 #include "cli/common/cli.h"
-#include "cli/common/progress.h"
 #include "cli/sweep/sweep.h"
+#include "run/common/folder.h"
+#include "run/common/progress.h"
 
 struct words { size_t n, cap; char **word; };
 
@@ -317,7 +318,7 @@ vg_status vg_sweep_run(const struct vg_sweep_options *o,
   int log = -1;
   vg_status st;
 
-  VG_TRY(vg_cli_make_folder(c->dir, err));
+  VG_TRY(vg_make_folder(c->dir, err));
   remove_stale(c->dir);
   VG_TRY(command_line(o, c, &w, err));
   if (asprintf(&path, "%s/run.log", c->dir) < 0) {

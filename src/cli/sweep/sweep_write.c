@@ -7,13 +7,13 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "cli/common/text.h"
 #include "cli/plot/plot.h"
-#include "cli/report/report.h"
 #include "cli/sweep/sweep.h"
 #include "io/stream/stream.h"
 #include "partition/model/model.h"
 #include "partition/model/rates.h"
+#include "run/common/text.h"
+#include "run/report/report.h"
 
 static vg_status path_of(const struct vg_sweep *s, const char *name,
                          char **out, struct vg_error *err)

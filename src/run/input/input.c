@@ -1,0 +1,613 @@
+#define _GNU_SOURCE
+#include "run/input/input.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/memory.h"
+#include "io/mesh/aflr.h"
+#include "io/mesh/format.h"
+#include "io/vgrid/mapbc.h"
+#include "io/vgrid/vgrid.h"
+#include "layers/columns/law.h"
+#include "run/common/text.h"
+#include "run/input/share.h"
+#include "run/input/sizes.h"
+#include "run/settings/deck.h"
+
+void vg_note(struct vg_notes *notes, const char *format, ...)
+{
+  va_list args;
+  char *text;
+  int n;
+
+  va_start(args, format);
+  n = vasprintf(&text, format, args);
+  va_end(args);
+  if (n < 0) return;
+  if (vg_reserve(&notes->text, &notes->cap, notes->n + 1,
+                 sizeof *notes->text))
+    free(text);
+  else
+    notes->text[notes->n++] = text;
+}
+
+void vg_notes_release(struct vg_notes *notes)
+{
+  for (size_t i = 0; i < notes->n; i++) free(notes->text[i]);
+  free(notes->text);
+  memset(notes, 0, sizeof *notes);
+}
+
+static void release_files(struct vg_input_files *f)
+{
+  free(f->stem);
+  free(f->d3m);
+  free(f->front);
+  free(f->surface);
+  free(f->mapbc);
+  free(f->deck);
+  free(f->tags);
+  free(f->aflr);
+  memset(f, 0, sizeof *f);
+}
+
+void vg_problem_release(struct vg_problem *p)
+{
+  release_files(&p->files);
+  vg_settings_release(&p->settings);
+  vg_project_release(&p->project);
+  vg_problem_forget_sizes(p);
+  vg_mesh_release(&p->surface);
+  free(p->heights.item);
+  vg_surface_report_release(&p->check);
+  vg_renewal_release(&p->renewal);
+  vg_notes_release(&p->notes);
+}
+
+static int exists(const char *path)
+{
+  return access(path, F_OK) == 0;
+}
+
+static int has_mode(const char *path, mode_t kind)
+{
+  struct stat s;
+
+  return stat(path, &s) == 0 && (s.st_mode & S_IFMT) == kind;
+}
+
+/* Path of stem.suffix where that file exists, else "". NULL: no memory. */
+static char *beside(const char *stem, const char *suffix)
+{
+  char *path;
+
+  if (asprintf(&path, "%s.%s", stem, suffix) < 0) return NULL;
+  if (!exists(path)) *path = 0;
+  return path;
+}
+
+/* The surface file of a stem: the only one that holds no cells, for files with
+ * cells beside it are meshes of earlier runs. */
+static vg_status find_surface(const char *stem, char **out,
+                              struct vg_error *err)
+{
+  const char *suffix;
+  char *found = NULL;
+  vg_status st = VG_OK;
+
+  for (size_t i = 0; (suffix = vg_format_input_suffix(i)) && st >= 0; i++) {
+    char *path = beside(stem, suffix);
+
+    if (!path) {
+      st = vg_fail_memory(err, "a path");
+    } else if (!*path || vg_format_holds_cells(path)) {
+      free(path);
+    } else if (found) {
+      st = vg_fail(err, VG_ERR_INPUT, "both %s and %s may be the surface; "
+                   "give the full name of one", found, path);
+      free(path);
+    } else {
+      found = path;
+    }
+  }
+  if (st >= 0 && !found) found = strdup("");
+  if (st < 0) {
+    free(found);
+    return st;
+  }
+  *out = found;
+  return found ? VG_OK : vg_fail_memory(err, "a path");
+}
+
+/* The stem of a full surface name, or NULL when it is none. */
+static char *stem_of(const char *name)
+{
+  size_t suffix = vg_format_suffix_length(name), n = strlen(name);
+
+  if (!suffix || suffix >= n || !exists(name)) return NULL;
+  return strndup(name, n - suffix);
+}
+
+static vg_status find_beside(struct vg_input_files *f, const char *deck,
+                             struct vg_error *err)
+{
+  f->mapbc = beside(f->stem, "mapbc");
+  f->deck = deck ? strdup(deck) : beside(f->stem, "deck");
+  f->tags = beside(f->stem, "tags");
+  f->aflr = beside(f->stem, "bc");
+  if (!f->d3m) f->d3m = strdup("");
+  if (!f->front) f->front = strdup("");
+  /* A .bc beside a mesh of an earlier run is VGRID's. */
+  if (f->aflr && *f->aflr && !vg_aflr_is_bc(f->aflr)) *f->aflr = 0;
+  if (!f->mapbc || !f->deck || !f->d3m || !f->front || !f->tags || !f->aflr)
+    return vg_fail_memory(err, "the paths of the project");
+  return VG_OK;
+}
+
+static vg_status find_stem(const char *name, struct vg_input_files *f,
+                           struct vg_error *err)
+{
+  vg_status st;
+
+  f->stem = strdup(name);
+  f->d3m = beside(name, "d3m");
+  f->front = beside(name, "front");
+  if (!f->stem || !f->d3m || !f->front)
+    return vg_fail_memory(err, "the paths of the project");
+  if (*f->front) {
+    f->surface = strdup("");
+    return f->surface ? VG_OK : vg_fail_memory(err, "a path");
+  }
+  st = find_surface(name, &f->surface, err);
+  if (st < 0 || *f->surface || *f->d3m) return st;
+  if (has_mode(name, S_IFREG)) return vg_format_unknown(name, err);
+  if (has_mode(name, S_IFDIR))
+    return vg_fail(err, VG_ERR_INPUT, "%s: this is a folder; give the stem of "
+                   "a project, or the full name of a surface file, in it",
+                   name);
+  return vg_fail(err, VG_ERR_INPUT, "%s: no project here: neither %s.d3m nor "
+                 "%s.front nor a surface such as %s.lb8.ugrid or %s.stl; give "
+                 "the stem of a project or the full name of a surface file",
+                 name, name, name, name, name);
+}
+
+vg_status vg_input_find(const char *name, const char *deck,
+                        struct vg_input_files *out, struct vg_error *err)
+{
+  struct vg_input_files f = { 0 };
+  vg_status st = VG_OK;
+
+  f.stem = stem_of(name);
+  if (f.stem) {
+    f.surface = strdup(name);
+    if (!f.surface) st = vg_fail_memory(err, "a path");
+  } else {
+    st = find_stem(name, &f, err);
+  }
+  if (st >= 0) st = find_beside(&f, deck, err);
+  if (st < 0) {
+    release_files(&f);
+    return st;
+  }
+  *out = f;
+  return VG_OK;
+}
+
+vg_status vg_problem_deck(struct vg_problem *p, struct vg_error *err)
+{
+  const char *base = strrchr(p->files.stem, '/');
+  struct vg_settings *s = &p->settings;
+
+  vg_settings_default(s);
+  snprintf(s->title, sizeof s->title, "%s", base ? base + 1 : p->files.stem);
+  vg_text_trim_end(s->title);
+  if (!*p->files.deck) return VG_OK;
+  return vg_deck_read(p->files.deck, s, err);
+}
+
+struct vg_sizing_options vg_problem_sizing(const struct vg_problem *p)
+{
+  struct vg_sizing_options o = vg_settings_sizing(&p->settings);
+
+  o.map = p->map;
+  return o;
+}
+
+static void note_unused(struct vg_problem *p,
+                        const struct vg_mapbc_match *match)
+{
+  if (match->n_unused)
+    vg_note(&p->notes, "%s.mapbc lists %zu patches that the surface does not "
+            "have (the first is %d)", p->files.stem, match->n_unused,
+            (int)match->first_unused);
+}
+
+/* Conditions are taken from the .mapbc beside the file. */
+static vg_status read_surface_file(struct vg_problem *p, struct vg_error *err)
+{
+  struct vg_cad_options cad = vg_cad_options_of(&p->settings, &p->notes);
+  struct vg_read_info info = { .cad = &cad };
+  const char *path = p->files.surface;
+  vg_status st;
+
+  if (p->is_read) return VG_OK;
+  st = vg_surface_read(path, &p->surface, &info, err);
+  /* the library's message says less */
+  if (st < 0)
+    return vg_display_stop(NULL) ? vg_display_stopped(NULL, err) : st;
+  if (cad.unit != VG_CAD_UNIT_FILE && !vg_format_is_cad(path))
+    vg_note(&p->notes, "unit has no effect: %s is no CAD file, its numbers stay "
+            "as they are", path);
+  if (info.n_cell)
+    vg_note(&p->notes, "%s is a volume mesh: its boundary is meshed anew, its "
+            "%zu cells are not used", path, info.n_cell);
+  if (info.turned.face)
+    vg_note(&p->notes, "%s: %zu boundary faces pointed out of their cells and "
+            "were turned", path, info.turned.face);
+  if (info.turned.loose_face)
+    vg_note(&p->notes, "%s: %zu boundary faces belong to no cell", path,
+            info.turned.loose_face);
+  note_unused(p, &info.match);
+  return VG_OK;
+}
+
+/* Sizes have to reach over the patches, wherever the sources are. */
+static vg_status mesh_patches(struct vg_problem *p, struct vg_display *show,
+                              struct vg_error *err)
+{
+  struct vg_sizing_options options = vg_problem_sizing(p);
+  const struct vg_mesh corners = { .n_point = p->project.n_point,
+                                   .point = p->project.point };
+  struct vg_sizing *sizing = NULL;
+  vg_status st;
+
+  if (!p->project.n_shape)
+    return vg_fail(err, VG_ERR_INPUT, "%s: no patches in it and no surface "
+                   "beside it; add a .front or a surface file",
+                   p->files.d3m);
+  VG_TRY(vg_sizing_new(&options, p->settings.n_source, p->settings.source,
+                       &corners, &sizing, err));
+  VG_TRY(vg_project_surface(&p->project, sizing, vg_display_stop, show,
+                            &p->surface, err));
+done:
+  vg_sizing_free(sizing);
+  /* the library's message says less */
+  return st < 0 && vg_display_stop(show) ? vg_display_stopped(show, err) : st;
+}
+
+/* Sources of the project come first, those of the deck after them; the sum of
+ * VGRID's law depends on the order in the last bits. */
+static vg_status merge_sources(struct vg_problem *p, struct vg_error *err)
+{
+  struct vg_settings *s = &p->settings;
+  size_t n = p->project.n_source, total = n + s->n_source;
+  struct vg_source *all;
+
+  if (!s->d3m_sources || !*p->files.d3m) return VG_OK;
+  s->scale *= p->project.ifact;
+  s->d3m_sources = 0;
+  if (!n) return VG_OK;
+  all = vg_alloc(total, sizeof *all);
+  if (!all) return vg_fail_memory(err, "the sources");
+  memcpy(all, p->project.source, n * sizeof *all);
+  if (s->n_source) memcpy(all + n, s->source, s->n_source * sizeof *all);
+  free(s->source);
+  s->source = all;
+  s->n_source = s->cap_source = total;
+  return VG_OK;
+}
+
+/* A code from 3000 on, or a negative one, is FUN3D's. */
+static void set_condition(struct vg_patch *p, int32_t code, int axis)
+{
+  int32_t before = p->bc;
+
+  if (code == VG_BC_NONE) return;
+  if (code < 0 || (code >= 3000 && code < 8000)) {
+    p->bc_fun3d = code;
+    p->bc = vg_bc_to_usm3d(code);
+  } else {
+    p->bc = code;
+    p->bc_fun3d = vg_bc_to_fun3d(code, axis);
+  }
+  if (p->bc != before) p->family = p->bc;
+}
+
+/* The table wins over the .mapbc. */
+static vg_status apply_patch_table(struct vg_problem *p, struct vg_error *err)
+{
+  int *axis = vg_alloc(p->surface.n_patch, sizeof *axis);
+  vg_status st = axis ? vg_patch_axes(&p->surface, axis, err)
+                      : vg_fail_memory(err, "the patches");
+
+  for (size_t i = 0; i < p->settings.n_patch && st >= 0; i++) {
+    const struct vg_patch_row *row = &p->settings.patch[i];
+    size_t at = vg_mesh_find_patch(&p->surface, row->id);
+    struct vg_patch *to = at == SIZE_MAX ? NULL : &p->surface.patch[at];
+
+    if (!to) {
+      st = vg_fail(err, VG_ERR_INPUT, "patch table: patch %d is not in the "
+                   "surface; 'vanguard deck' lists its patches",
+                   (int)row->id);
+      break;
+    }
+    if (*row->name) snprintf(to->name, sizeof to->name, "%s", row->name);
+    set_condition(to, row->bc, axis[at]);
+  }
+  free(axis);
+  return st;
+}
+
+static vg_status apply_conditions(struct vg_problem *p, struct vg_error *err)
+{
+  struct vg_mapbc bc = VG_MAPBC_INIT;
+  struct vg_mapbc_match match;
+  vg_status st;
+
+  if (!*p->files.mapbc) return VG_OK;
+  st = vg_mapbc_read(p->files.mapbc, &bc, err);
+  if (st >= 0) st = vg_mapbc_apply(&bc, &p->surface, &match, err);
+  vg_mapbc_release(&bc);
+  if (st >= 0) note_unused(p, &match);
+  return st;
+}
+
+static void note_cad(void *user, const char *text)
+{
+  vg_note(user, "CAD: %s", text);
+}
+
+/* user: the notes. */
+static int stop_cad(void *user)
+{
+  (void)user;
+  return vg_display_stop(NULL);
+}
+
+struct vg_cad_options vg_cad_options_of(const struct vg_settings *s,
+                                        struct vg_notes *notes)
+{
+  return (struct vg_cad_options){ .unit = s->cad.unit,
+    .patches = s->cad.patches, .tolerance = s->cad.tolerance,
+    .chord = s->cad.chord, .angle = s->cad.angle, .seconds = s->cad.seconds,
+    .note = note_cad, .stop = stop_cad, .user = notes };
+}
+
+vg_status vg_problem_cad(struct vg_problem *p, struct vg_comm *comm,
+                         struct vg_error *err)
+{
+  struct vg_bytes b = { 0, NULL };
+  uint64_t number;
+  vg_status st = VG_OK;
+
+  if (vg_comm_size(comm) == 1 || *p->files.front ||
+      !vg_format_is_cad(p->files.surface))
+    return VG_OK;
+  if (!vg_comm_rank(comm)) {
+    st = read_surface_file(p, err);
+    if (st >= 0) st = vg_surface_pack(&p->surface, 0, &b, err);
+  }
+  VG_TRY(vg_comm_agree(comm, st, err));
+  VG_TRY(vg_comm_bcast(comm, 0, &b, err));
+  if (vg_comm_rank(comm))
+    st = vg_surface_unpack(&b, &p->surface, &number, err);
+  p->is_read = 1;
+  st = vg_comm_agree(comm, st, err);
+done:
+  free(b.data);
+  return st;
+}
+
+static vg_status read_surface(struct vg_problem *p, struct vg_display *show,
+                              struct vg_error *err)
+{
+  const struct vg_input_files *f = &p->files;
+  const struct vg_project *project = *f->d3m ? &p->project : NULL;
+  vg_status st;
+
+  if (!*f->front && *f->surface) return read_surface_file(p, err);
+  st = *f->front ? vg_front_read(f->front, project, &p->surface, err)
+                 : mesh_patches(p, show, err);
+  return st < 0 ? st : apply_conditions(p, err);
+}
+
+/* Layer settings of the .d3m where none are given. VGRID's vfact scales the
+ * spacing of its viscous part: the local edge at which layers end. */
+static void merge_layers(struct vg_problem *p)
+{
+  struct vg_layer_settings *l = &p->settings.layer;
+  const struct vg_project *d = &p->project;
+
+  if (!l->from_files || !d->grid || l->grow == VG_ANSWER_NO) return;
+  vg_note(&p->notes, "layers as the .d3m says (grid = %d): first %g, rates %g "
+          "and %g, at most %d layers, vfact %g", (int)d->grid,
+          d->layer.delta1, d->layer.rate1, d->layer.rate2,
+          (int)d->layer.n_max, d->vfact);
+  if (l->first == 0 && l->y_plus == 0) {
+    l->first = d->layer.delta1 > 0 ? d->layer.delta1 : 0;
+    if (d->grid == 2) l->by_source = 1;
+  }
+  if (isnan(l->ratio) && isnan(l->rate1) && isnan(l->rate2)) {
+    l->rate1 = d->layer.rate1;
+    l->rate2 = d->layer.rate2;
+  }
+  if (l->most == 0 && d->layer.n_max > 0)
+    l->most = d->layer.n_max < VG_LEVELS_MAX ? d->layer.n_max : VG_LEVELS_MAX;
+  if (isnan(l->cap)) l->cap = 0;
+  if (d->vfact > 0) l->end *= d->vfact;
+}
+
+/* The row of patch id in the layers table, added where there is none. */
+static struct vg_layer_row *layer_row(struct vg_settings *s, int32_t id)
+{
+  struct vg_layer_row row;
+
+  for (size_t i = 0; i < s->n_layer; i++)
+    if (s->layer_row[i].id == id) return &s->layer_row[i];
+  vg_settings_row_default(VG_TABLE_LAYERS, &row);
+  row.id = id;
+  if (vg_settings_add(s, VG_TABLE_LAYERS, &row, NULL) < 0) return NULL;
+  return &s->layer_row[s->n_layer - 1];
+}
+
+/* What an AFLR file asks for on one patch, where nothing is given. */
+static vg_status merge_aflr_patch(struct vg_settings *s,
+                                  const struct vg_aflr_patch *a, int32_t id,
+                                  struct vg_error *err)
+{
+  const struct vg_layer_settings *l = &s->layer;
+  struct vg_layer_row *row;
+
+  if (!a->is_viscous ||
+      !(a->spacing > 0 || a->thickness > 0 || a->n_layer > 0))
+    return VG_OK;
+  row = layer_row(s, id);
+  if (!row) return vg_fail_memory(err, "the layers table");
+  if (a->spacing > 0 && l->first == 0 && l->y_plus == 0 &&
+      isnan(row->first) && isnan(row->y_plus))
+    row->first = a->spacing;
+  if (a->thickness > 0 && l->total == 0 && isnan(row->total))
+    row->total = a->thickness;
+  if (a->n_layer > 0 && a->n_layer <= VG_LEVELS_MAX && l->count == 0 &&
+      row->count == VG_COUNT_NONE)
+    row->count = a->n_layer;
+  return VG_OK;
+}
+
+/* AFLR's .tags go by number, its .bc by name. */
+static vg_status apply_aflr(struct vg_problem *p, const char *path,
+                            int by_name, struct vg_error *err)
+{
+  struct vg_aflr a = VG_AFLR_INIT;
+  const struct vg_mesh *m = &p->surface;
+  size_t n_unused = 0;
+  vg_status st;
+
+  if (!*path) return VG_OK;
+  VG_TRY(by_name ? vg_aflr_bc_read(path, &a, err)
+                 : vg_aflr_tags_read(path, &a, err));
+  VG_TRY(vg_aflr_apply(&a, &p->surface, &n_unused, err));
+  if (n_unused)
+    vg_note(&p->notes, "%s lists %zu patches that the surface does not have",
+            path, n_unused);
+  for (size_t i = 0; i < a.n && p->settings.layer.from_files; i++)
+    for (size_t j = 0; j < m->n_patch; j++)
+      if (by_name ? strcmp(m->patch[j].name, a.patch[i].name) == 0
+                  : m->patch[j].id == a.patch[i].id)
+        VG_TRY(merge_aflr_patch(&p->settings, &a.patch[i], m->patch[j].id,
+                                err));
+done:
+  vg_aflr_release(&a);
+  return st;
+}
+
+static int compare_height(const void *a, const void *b)
+{
+  const struct vg_point_height *p = a, *q = b;
+
+  for (int k = 0; k < 3; k++)
+    if (p->x[k] != q->x[k]) return p->x[k] < q->x[k] ? -1 : 1;
+  return (p->first > q->first) - (p->first < q->first);
+}
+
+static int compare_place(const void *a, const void *b)
+{
+  const struct vg_point_height *p = a, *q = b;
+
+  for (int k = 0; k < 3; k++)
+    if (p->x[k] != q->x[k]) return p->x[k] < q->x[k] ? -1 : 1;
+  return 0;
+}
+
+double *vg_point_height(const struct vg_point_heights *h, const double x[3])
+{
+  const struct vg_point_height key = { { x[0], x[1], x[2] }, 0 };
+  struct vg_point_height *found;
+
+  if (!h->n) return NULL;
+  found = bsearch(&key, h->item, h->n, sizeof *h->item, compare_place);
+  return found ? &found->first : NULL;
+}
+
+/* A .surf may have a first height at each point. They are found again by
+ * their coordinates, since repairs renumber points. */
+static vg_status read_heights(struct vg_problem *p, struct vg_error *err)
+{
+  const char *path = p->files.surface;
+  struct vg_mesh m = VG_MESH_INIT;
+  struct vg_aflr a = VG_AFLR_INIT;
+  size_t len = strlen(path);
+  vg_status st = VG_OK;
+
+  if (len > 3 && !strcasecmp(path + len - 3, ".gz")) len -= 3;
+  if (len < 5 || strncasecmp(path + len - 5, ".surf", 5) || *p->files.front ||
+      *p->files.d3m || !p->settings.layer.from_files)
+    return VG_OK;
+  VG_TRY(vg_aflr_surf_read(path, &m, &a, err));
+  if (!a.spacing) goto done;
+  p->heights.item = vg_alloc(a.n_point, sizeof *p->heights.item);
+  if (!p->heights.item) {
+    st = vg_fail_memory(err, "the heights of a .surf");
+    goto done;
+  }
+  for (size_t i = 0; i < a.n_point; i++) {
+    struct vg_point_height *to = &p->heights.item[p->heights.n];
+
+    if (!(a.spacing[i] > 0)) continue;
+    memcpy(to->x, m.point[i], sizeof to->x);
+    to->first = a.spacing[i];
+    p->heights.n++;
+  }
+  qsort(p->heights.item, p->heights.n, sizeof *p->heights.item,
+        compare_height);
+done:
+  vg_mesh_release(&m);
+  vg_aflr_release(&a);
+  return st;
+}
+
+vg_status vg_problem_given(struct vg_problem *p, const char *name,
+                           struct vg_mesh *surface, struct vg_error *err)
+{
+  struct vg_input_files *f = &p->files;
+  char **path[] = { &f->d3m, &f->front, &f->surface, &f->mapbc, &f->deck,
+                    &f->tags, &f->aflr };
+  vg_status st;
+  int bad = 0;
+
+  vg_mesh_move(&p->surface, surface);
+  f->stem = strdup(name);
+  for (size_t i = 0; i < sizeof path / sizeof *path; i++)
+    bad |= !(*path[i] = strdup(""));
+  if (bad || !f->stem) return vg_fail_memory(err, "the names of a surface");
+  st = vg_problem_sizes(p, err);
+  return st < 0 ? st : apply_patch_table(p, err);
+}
+
+vg_status vg_problem_surface(struct vg_problem *p, struct vg_display *show,
+                             struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  if (*p->files.d3m) {
+    VG_TRY(vg_d3m_read(p->files.d3m, &p->project, err));
+    merge_layers(p);
+  }
+  VG_TRY(merge_sources(p, err));
+  VG_TRY(vg_problem_sizes(p, err));
+  VG_TRY(read_surface(p, show, err));
+  VG_TRY(apply_aflr(p, p->files.tags, 0, err));
+  VG_TRY(apply_aflr(p, p->files.aflr, 1, err));
+  VG_TRY(read_heights(p, err));
+  /* What has been taken is in the settings, but for heights by point. */
+  if (!p->heights.n) p->settings.layer.from_files = 0;
+  VG_TRY(apply_patch_table(p, err));
+done:
+  return st;
+}

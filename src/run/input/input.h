@@ -1,0 +1,161 @@
+/* run/input/input.h: finds and reads the files of a project, and checks what
+ * they hold, up to the surface that bounds the mesh. */
+#ifndef VG_RUN_INPUT_INPUT_H
+#define VG_RUN_INPUT_INPUT_H
+
+#include <stdio.h>
+
+#include "base/comm.h"
+#include "core/domain/planar.h"
+#include "core/domain/project.h"
+#include "core/remesh/remesh.h"
+#include "core/sizing/sizing_map.h"
+#include "core/surface/surface_check.h"
+#include "io/cad/cad.h"
+#include "run/common/progress.h"
+#include "run/settings/settings.h"
+
+/** Paths of what exists; "" where a part is absent. */
+struct vg_input_files {
+  char *stem;                  /* folder and project name, no extension */
+  char *d3m, *front, *surface, *mapbc, *deck;
+  char *tags, *aflr;           /* of AFLR: .tags, .bc */
+};
+
+/** Notes for the report, in the order in which they came up. */
+struct vg_notes {
+  size_t n, cap;
+  char **text;
+};
+
+/** First heights at points of a .surf, by rising x, y, z. */
+struct vg_point_heights {
+  size_t n;
+  struct vg_point_height { double x[3], first; } *item;
+};
+
+/** The height at x, NULL where none is given. O(log n). */
+double *vg_point_height(const struct vg_point_heights *h, const double x[3]);
+
+/** A surface whose triangles were made anew. */
+struct vg_renewal {
+  int is_done;
+  struct vg_remesh_report report;
+  struct vg_remesh_distance off[2]; /* new from given, given from new */
+  double *face;                     /* [n_tri] distance of each from given */
+  size_t n_patch;                   /* of the surface; a farfield adds others */
+  double *area;                     /* [n_patch][2] of patches, before, after */
+  double seconds;
+};
+
+struct vg_problem {
+  struct vg_input_files files;
+  struct vg_settings settings;
+  const struct vg_size_map *map;   /* sizes besides sources; NULL: none */
+  struct vg_size_samples *samples; /* of the setting `sizes`; NULL */
+  struct vg_project project;       /* empty without a .d3m */
+  struct vg_mesh surface;
+  int is_read;                     /* surface, by vg_problem_cad */
+  struct vg_point_heights heights;
+  size_t n_welded, n_dropped;      /* by the weld */
+  struct vg_surface_report check;
+  int require_bc;                  /* the input gives conditions */
+  int threads;                     /* for the check; 0: one per core */
+  struct vg_renewal renewal;
+  int surface_only;                /* vg_problem_close stops before it looks
+                                      for the domain */
+  struct vg_domain_report domain;
+  struct vg_notes notes;
+};
+#define VG_PROBLEM_INIT { .project = VG_PROJECT_INIT }
+
+void vg_problem_release(struct vg_problem *p);
+
+void vg_notes_release(struct vg_notes *notes);
+
+/** Add a line for the report; loses it when memory is refused. */
+void vg_note(struct vg_notes *notes, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+/** Find the files of `name`: a stem without extension, or the full name of a
+ * surface file. deck: NULL for STEM.deck where that exists.
+ * VG_ERR_INPUT when nothing is there, or when two surfaces are. */
+vg_status vg_input_find(const char *name, const char *deck,
+                        struct vg_input_files *out, struct vg_error *err);
+
+/** Read project, deck and surface, and give the patches their conditions.
+ * Settings hold what the deck says; the caller applies its options between
+ * vg_problem_deck and vg_problem_surface. */
+vg_status vg_problem_deck(struct vg_problem *p, struct vg_error *err);
+vg_status vg_problem_surface(struct vg_problem *p, struct vg_display *show,
+                             struct vg_error *err);
+
+/** The same of a problem without files: a surface that somebody has made.
+ * Settings are the caller's.
+ *
+ * @param name     for messages, and the title if there is none
+ * @param surface  boundary as core/mesh/mesh.h has it; moved, also on failure
+ */
+vg_status vg_problem_given(struct vg_problem *p, const char *name,
+                           struct vg_mesh *surface, struct vg_error *err);
+
+/** What settings and map say of sizes. */
+struct vg_sizing_options vg_problem_sizing(const struct vg_problem *p);
+
+/** Before vg_problem_surface on several ranks: a CAD file is read by the first
+ * one, for all to have the same triangles; nothing happens for other files.
+ * Collective. */
+vg_status vg_problem_cad(struct vg_problem *p, struct vg_comm *comm,
+                         struct vg_error *err);
+
+/** What settings and displays ask of CAD; notes go to *notes. */
+struct vg_cad_options vg_cad_options_of(const struct vg_settings *s,
+                                        struct vg_notes *notes);
+
+/** Weld, check, repair and complete the domain. VG_ERR_GEOMETRY when defects
+ * remain: they are in p->check. After success p->settings are resolved: they
+ * name all sources, patches and the farfield that was chosen. */
+vg_status vg_problem_close(struct vg_problem *p, struct vg_display *show,
+                           struct vg_error *err);
+
+/** Make the triangles of the surface anew where settings ask for it; distances
+ * are measured, notes tell. The surface is as the check left it. */
+vg_status vg_problem_renew(struct vg_problem *p, struct vg_display *show,
+                           struct vg_error *err);
+
+void vg_renewal_release(struct vg_renewal *r);
+
+/** Writers give patches without a condition that of an inviscid wall: a note
+ * tells which these are. Once conditions are final. */
+void vg_problem_note_unset(struct vg_problem *p);
+
+/** vg_surface_check with the question settled whether the closed shells of m
+ * stand in a fluid (*external 1) or bound it (0).
+ *
+ * @param external  in: 1, 0, or -1 to find out: a patch with a farfield
+ *                  condition, normals that point inward, shells inside
+ *                  another one, or a single shell shaped as a flow domain
+ *                  (core/surface/envelope.h; with a note) mean 0. out: 1 or 0
+ * @param o         its `external` is set here */
+vg_status vg_surface_examine(struct vg_mesh *m,
+                             const struct vg_surface_check_options *o,
+                             int *external, struct vg_surface_report *r,
+                             struct vg_notes *notes, struct vg_error *err);
+
+/** Of bodies with the report *r: whether open edges are all that is wrong and
+ * lie where half of a symmetric body was cut off, which vanguard mesh closes
+ * (core/domain/planar.h); a note tells. */
+vg_status vg_surface_half(const struct vg_mesh *m,
+                          const struct vg_surface_report *r,
+                          struct vg_notes *notes, int *is_half,
+                          struct vg_error *err);
+
+/** 1 when a patch has a boundary condition: then all of them should. */
+int vg_surface_has_conditions(const struct vg_mesh *m);
+
+/** All faces with a defect, with the kind as a cell field, into a .vtu. */
+vg_status vg_write_defects(const char *path, const struct vg_mesh *m,
+                           const struct vg_surface_report *r,
+                           struct vg_error *err);
+
+#endif

@@ -1,0 +1,730 @@
+#include "run/input/layers.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "io/mesh/vtu.h"
+#include "layers/grow/grow.h"
+
+#define DEFAULT_RATE 0.2   /* RANS practice; growth 1.2 */
+#define DEFAULT_CAP 1.3
+#define SHOWN_PATCHES 20
+
+/* By source: first height and rates. Each is the mean that the spacing would
+ * be, with the value in place of the spacing (formats.md 1.7): the same
+ * weights, by the same code. By point: the first height of a .surf, the rest by
+ * patch. */
+struct vg_layer_laws {
+  const struct vg_point_heights *heights;  /* NULL: by source */
+  size_t n;
+  struct vg_source *source[3];  /* [n] h0, h1: delta1, rate1, rate2 */
+  double constant[3];           /* one value at all sources, or NAN */
+  double shift[3];              /* added, since no spacing may be 0 */
+  double cap;
+  int n_constant;
+};
+
+static void release_laws(struct vg_layer_laws *l)
+{
+  if (!l) return;
+  for (int k = 0; k < 3; k++) free(l->source[k]);
+  free(l);
+}
+
+void vg_layer_stage_release(struct vg_layer_stage *s)
+{
+  free(s->reason);
+  free(s->request);
+  free(s->limit);
+  release_laws(s->laws);
+  vg_layers_release(&s->layers);
+  vg_wall_fields_release(&s->fields);
+  free(s->wall);
+  free(s->missed);
+  free(s->top);
+  memset(s, 0, sizeof *s);
+}
+
+static void law_at(void *user, const double x[3], struct vg_law *law)
+{
+  const struct vg_layer_laws *l = user;
+  const struct vg_sizing_options o = { 0, INFINITY, 1.2, 1, 0, 1, 1, NULL,
+                                       NULL };
+  double v[3];
+
+  for (int k = 0; k < 3; k++)
+    v[k] = isnan(l->constant[k])
+           ? vg_sizing_sources_at(&o, l->n, l->source[k], x) - l->shift[k]
+           : l->constant[k];
+  law->delta1 = v[0];
+  law->rate1 = v[1] > 0 ? v[1] : 0;
+  law->rate2 = v[2] > 0 ? v[2] : 0;
+  law->cap = l->cap;
+  law->n_constant = l->n_constant;
+}
+
+static void height_at(void *user, const double x[3], struct vg_law *law)
+{
+  const struct vg_layer_laws *l = user;
+  const double *h = vg_point_height(l->heights, x);
+
+  if (h && *h > 0) law->delta1 = *h;
+}
+
+static int has_law(const struct vg_source *s)
+{
+  return s->kind <= VG_SOURCE_VGRID_LINE && s->layer0[0] > 0;
+}
+
+/* Values k of the sources in place of their spacings. */
+static void put_values(struct vg_layer_laws *l, int k)
+{
+  struct vg_source *s = l->source[k];
+  double least = INFINITY, most = -INFINITY;
+
+  for (size_t i = 0; i < l->n; i++) {
+    const double *end = s[i].kind == VG_SOURCE_VGRID_LINE &&
+                        s[i].layer1[0] > 0 ? s[i].layer1 : s[i].layer0;
+
+    s[i].h0 = s[i].layer0[k];
+    s[i].h1 = end[k];
+    least = fmin(least, fmin(s[i].h0, s[i].h1));
+    most = fmax(most, fmax(s[i].h0, s[i].h1));
+  }
+  l->constant[k] = least == most ? least : NAN;
+  l->shift[k] = least > 0 ? 0 : 1 - least;
+  for (size_t i = 0; i < l->n; i++) {
+    s[i].h0 += l->shift[k];
+    s[i].h1 += l->shift[k];
+  }
+}
+
+static vg_status make_laws(const struct vg_settings *s, double cap,
+                           struct vg_layer_laws **out, struct vg_error *err)
+{
+  struct vg_layer_laws *l = vg_calloc(1, sizeof *l);
+  vg_status st = VG_OK;
+
+  if (!l) return vg_fail_memory(err, "the laws of the layers");
+  for (int k = 0; k < 3 && st >= 0; k++) {
+    l->source[k] = vg_alloc(s->n_source, sizeof **l->source);
+    if (!l->source[k]) st = vg_fail_memory(err, "the laws of the layers");
+    l->n = 0;
+    for (size_t i = 0; i < s->n_source && st >= 0; i++)
+      if (has_law(&s->source[i])) l->source[k][l->n++] = s->source[i];
+    if (st >= 0 && l->n) put_values(l, k);
+  }
+  if (st >= 0 && !l->n)
+    st = vg_fail(err, VG_ERR_INPUT, "layer_sources: no VGRID source has a "
+                 "first height (delta1_0); give first and set layer_sources "
+                 "to no");
+  l->cap = cap;
+  l->n_constant = (int)s->layer.constant;
+  if (st < 0) release_laws(l);
+  else *out = l;
+  return st;
+}
+
+static double choose(double own, double global)
+{
+  return isnan(own) ? global : own;
+}
+
+static double law_cap(double cap)
+{
+  if (isnan(cap)) return DEFAULT_CAP;
+  return cap > 0 ? cap : INFINITY;
+}
+
+static double height_of(const struct vg_layer_settings *l, double first,
+                        double y_plus)
+{
+  if (first > 0) return first;
+  return y_plus > 0 && l->reynolds > 0
+         ? vg_first_height(y_plus, l->reynolds, l->length) : 0;
+}
+
+/* 0 when it is not known. */
+static double first_height(const struct vg_layer_settings *l,
+                           const struct vg_layer_row *r)
+{
+  double own = height_of(l, r->first, r->y_plus);
+
+  return own > 0 ? own : height_of(l, l->first, l->y_plus);
+}
+
+/* Both rates from number and total height; the cap must allow them. */
+static vg_status rate_for_total(const struct vg_layer_request *q, int32_t id,
+                                double *rate, struct vg_error *err)
+{
+  double r;
+
+  r = vg_law_rate_for_total(q->law.delta1, q->law.n_constant, q->n_max,
+                            q->total);
+  if (r < 0)
+    return vg_fail(err, VG_ERR_INPUT, "layers of patch %d: %d layers of %g "
+                   "are together higher than %g; lower the number or the "
+                   "first height", (int)id, q->n_max, q->law.delta1, q->total);
+  if (1 + r > q->law.cap)
+    return vg_fail(err, VG_ERR_INPUT, "layers of patch %d: %d layers from %g "
+                   "to %g grow by %.4f, above layer_cap %g; give more layers "
+                   "or raise the cap", (int)id, q->n_max, q->law.delta1,
+                   q->total, 1 + r, q->law.cap);
+  *rate = r;
+  return VG_OK;
+}
+
+static vg_status set_rates(const struct vg_layer_settings *l,
+                           const struct vg_layer_row *r,
+                           struct vg_layer_request *q, struct vg_error *err)
+{
+  double ratio = choose(r->ratio, l->ratio);
+
+  q->law.rate1 = DEFAULT_RATE;
+  q->law.rate2 = 0;
+  if (!isnan(r->rate1) || !isnan(r->rate2) ||
+      (isnan(r->ratio) && (!isnan(l->rate1) || !isnan(l->rate2)))) {
+    q->law.rate1 = choose(choose(r->rate1, l->rate1), 0);
+    q->law.rate2 = choose(choose(r->rate2, l->rate2), 0);
+  } else if (!isnan(ratio)) {
+    q->law.rate1 = ratio - 1;
+  } else if (q->n_exact && q->total > 0) {
+    return rate_for_total(q, r->id, &q->law.rate1, err);
+  }
+  return VG_OK;
+}
+
+static vg_status make_request(const struct vg_settings *s,
+                              const struct vg_layer_row *r,
+                              struct vg_layer_request *q,
+                              struct vg_error *err)
+{
+  const struct vg_layer_settings *l = &s->layer;
+  int64_t count = r->count == VG_COUNT_NONE ? l->count : r->count;
+
+  q->is_wall = 1;
+  q->law.delta1 = first_height(l, r);
+  q->law.cap = law_cap(choose(r->cap, l->cap));
+  q->law.n_constant = (int)(r->constant == VG_COUNT_NONE ? l->constant
+                                                         : r->constant);
+  q->n_exact = count > 0;
+  q->n_max = (int)(count > 0 ? count : l->most);
+  if (l->most > 0 && q->n_max > l->most) q->n_max = (int)l->most;
+  q->total = choose(r->total, l->total);
+  return set_rates(l, r, q, err);
+}
+
+/* The row of a patch, or one that leaves all to the settings. */
+static struct vg_layer_row row_of(const struct vg_settings *s, int32_t id)
+{
+  struct vg_layer_row row;
+
+  for (size_t i = 0; i < s->n_layer; i++)
+    if (s->layer_row[i].id == id) return s->layer_row[i];
+  vg_settings_row_default(VG_TABLE_LAYERS, &row);
+  row.id = id;
+  return row;
+}
+
+static vg_status no_first(const struct vg_mesh *m, size_t i,
+                          struct vg_error *err)
+{
+  return vg_fail(err, VG_ERR_INPUT, "layers on patch %d %s: no first height "
+                 "is known; give --first, or --y-plus with --reynolds and "
+                 "--reference-length (or --layers no)", (int)m->patch[i].id,
+                 m->patch[i].name);
+}
+
+/* Own laws cannot hold where the sources give the law. */
+static vg_status check_row(const struct vg_layer_row *r, int by_source,
+                           struct vg_error *err)
+{
+  if (!by_source || (isnan(r->first) && isnan(r->y_plus) &&
+                     isnan(r->ratio) && isnan(r->rate1) && isnan(r->rate2) &&
+                     isnan(r->cap) && r->constant == VG_COUNT_NONE))
+    return VG_OK;
+  return vg_fail(err, VG_ERR_INPUT, "layers: patch %d has a law of its own, "
+                 "but layer_sources takes the law from the sources; set it "
+                 "to no or remove the values", (int)r->id);
+}
+
+static vg_status use_heights(struct vg_layer_stage *s,
+                             const struct vg_problem *p, const double *least,
+                             struct vg_error *err)
+{
+  int used = 0;
+
+  for (size_t i = 0; i < s->n_patch; i++)
+    if (least[i] > 0 && s->reason[i] != VG_WALL_NOT) {
+      s->request[i].law.delta1 = least[i];
+      used = 1;
+    }
+  if (!used) return VG_OK;
+  s->laws = vg_calloc(1, sizeof *s->laws);
+  if (!s->laws) return vg_fail_memory(err, "the laws of the layers");
+  s->laws->heights = &p->heights;
+  return VG_OK;
+}
+
+static struct vg_layer_limits limits_of(const struct vg_layer_limits *own,
+                                        const struct vg_layer_limits *global)
+{
+  return (struct vg_layer_limits){
+    .min_full = choose(own->min_full, global->min_full),
+    .min_any = choose(own->min_any, global->min_any),
+    .min_height = choose(own->min_height, global->min_height),
+    .max_first_error = choose(own->max_first_error, global->max_first_error),
+    .max_top_ratio = choose(own->max_top_ratio, global->max_top_ratio) };
+}
+
+static vg_status make_requests(struct vg_layer_stage *s,
+                               const struct vg_problem *p,
+                               const double *least, struct vg_error *err)
+{
+  const struct vg_settings *set = &p->settings;
+  const struct vg_layer_settings *l = &set->layer;
+  const struct vg_mesh *m = &p->surface;
+  vg_status st = VG_OK;
+
+  if (l->by_source)
+    VG_TRY(make_laws(set, law_cap(l->cap), &s->laws, err));
+  for (size_t i = 0; i < m->n_patch; i++) {
+    struct vg_layer_row row = row_of(set, m->patch[i].id);
+    struct vg_layer_request *q = &s->request[i];
+
+    s->limit[i] = limits_of(&row.limit, &l->limit);
+    if (s->reason[i] == VG_WALL_NOT && vg_has_limits(&row.limit))
+      st = vg_fail(err, VG_ERR_INPUT, "layers: patch %d has a limit, but it "
+                   "is no wall; set grow to yes or remove the limit",
+                   (int)row.id);
+    if (st < 0) break;
+    if (s->reason[i] == VG_WALL_NOT) continue;
+    VG_TRY(check_row(&row, l->by_source, err));
+    VG_TRY(make_request(set, &row, q, err));
+    if (l->by_source) {
+      q->law.delta1 = s->laws->source[0][0].h0;
+      q->law.rate1 = s->laws->source[1][0].h0 - s->laws->shift[1];
+      q->law.rate2 = s->laws->source[2][0].h0 - s->laws->shift[2];
+    }
+    if (!(q->law.delta1 > 0) && !(least[i] > 0)) st = no_first(m, i, err);
+    if (st < 0) break;
+  }
+  if (st >= 0) st = use_heights(s, p, least, err);
+done:
+  return st;
+}
+
+/* Heights by point are for patches that have none by setting. */
+static int uses_points(const struct vg_problem *p, const struct vg_layer_row *r)
+{
+  const struct vg_layer_settings *l = &p->settings.layer;
+
+  return p->heights.n && !l->by_source && l->first == 0 && l->y_plus == 0 &&
+         isnan(r->first) && isnan(r->y_plus);
+}
+
+/* Heights at points of patches that have their own are dropped; the least of
+ * the others, per patch, is for points without one.
+ * @param least  out: [n_patch], 0 where a patch uses none */
+static vg_status sort_heights(struct vg_problem *p, double *least,
+                              struct vg_error *err)
+{
+  const struct vg_mesh *m = &p->surface;
+  uint8_t *uses = vg_calloc(m->n_patch, 1);
+
+  if (!uses) return vg_fail_memory(err, "the patches");
+  for (size_t i = 0; i < m->n_patch; i++) {
+    struct vg_layer_row row = row_of(&p->settings, m->patch[i].id);
+
+    uses[i] = (uint8_t)uses_points(p, &row);
+  }
+  for (int pass = 0; pass < 2; pass++)
+    for (size_t i = 0; i < m->n_tri; i++) {
+      const uint32_t of = m->tri_patch[i];
+
+      for (int k = 0; k < 3 && uses[of] == pass; k++) {
+        double *h = vg_point_height(&p->heights, m->point[m->tri[i][k]]);
+
+        if (h && !pass) *h = 0;
+        else if (h && *h > 0 && (least[of] == 0 || *h < least[of]))
+          least[of] = *h;
+      }
+    }
+  free(uses);
+  return VG_OK;
+}
+
+/* 1 when each wall has a first height. */
+static int first_is_known(const struct vg_layer_stage *s,
+                          const struct vg_problem *p, const double *least)
+{
+  const struct vg_layer_settings *l = &p->settings.layer;
+
+  for (size_t i = 0; i < s->n_patch && !l->by_source; i++) {
+    struct vg_layer_row row = row_of(&p->settings, p->surface.patch[i].id);
+
+    if (s->reason[i] != VG_WALL_NOT && !(first_height(l, &row) > 0) &&
+        !(least[i] > 0))
+      return 0;
+  }
+  return 1;
+}
+
+/* How many walls there are, and their numbers as " 3 4 7"; `odd`: those alone
+ * whose condition says that they are none. */
+static size_t wall_numbers(const struct vg_layer_stage *s,
+                           const struct vg_mesh *m, int odd, char *list,
+                           size_t size)
+{
+  size_t n = 0, at = 0;
+
+  *list = 0;
+  for (size_t i = 0; i < s->n_patch; i++) {
+    const struct vg_patch *p = &m->patch[i];
+
+    if (s->reason[i] == VG_WALL_NOT ||
+        (odd && (vg_is_viscous(p) || p->bc == VG_BC_NONE)))
+      continue;
+    if (n++ < SHOWN_PATCHES)
+      at += (size_t)snprintf(list + at, size - at, " %d", (int)p->id);
+  }
+  if (n > SHOWN_PATCHES) snprintf(list + at, size - at, " ...");
+  return n;
+}
+
+/* Layers that conditions suggest but nobody has given a height for. */
+static void note_missing(const struct vg_layer_stage *s, struct vg_problem *p)
+{
+  char list[12 * SHOWN_PATCHES + 24];
+  size_t n_wall = wall_numbers(s, &p->surface, 0, list, sizeof list);
+
+  vg_note(&p->notes, "no layers on %zu viscous wall%s (patch%s%s), for no "
+          "first height is known: give --first, or --y-plus with --reynolds "
+          "and --reference-length", n_wall, n_wall > 1 ? "s" : "",
+          n_wall > 1 ? "es" : "", list);
+}
+
+/* A wall with layers and without a condition is a viscous one; left open, it
+ * would be written as inviscid. */
+static void give_conditions(const struct vg_layer_stage *s,
+                            struct vg_problem *p)
+{
+  size_t n = 0;
+
+  for (size_t i = 0; i < s->n_patch; i++) {
+    struct vg_patch *patch = &p->surface.patch[i];
+
+    if (s->reason[i] == VG_WALL_NOT || patch->bc != VG_BC_NONE ||
+        patch->bc_fun3d != VG_BC_NONE)
+      continue;
+    patch->bc = patch->family = 4;
+    patch->bc_fun3d = 4000;
+    n++;
+  }
+  if (n)
+    vg_note(&p->notes, "%zu patch%s with layers, but without a boundary "
+            "condition, %s written as viscous (4, FUN3D 4000)", n,
+            n > 1 ? "es" : "", n > 1 ? "are" : "is");
+}
+
+static void note_choice(const struct vg_layer_stage *s, struct vg_problem *p)
+{
+  const struct vg_layer_settings *l = &p->settings.layer;
+  double ratio = choose(l->ratio, 0), cap = law_cap(l->cap);
+  char list[12 * SHOWN_PATCHES + 24];
+  size_t n = 0, n_odd = wall_numbers(s, &p->surface, 1, list, sizeof list);
+
+  for (size_t i = 0; i < s->n_patch; i++) n += s->reason[i] == VG_WALL_BODY;
+  if (n_odd)
+    vg_note(&p->notes, "%zu patch%s layers, but a condition that is not "
+            "viscous: number%s", n_odd, n_odd > 1 ? "es have" : " has", list);
+  if (n)
+    vg_note(&p->notes, "no patch has a condition: layers grow on the whole "
+            "body (--walls, --slip or the table layers settle it)");
+  if (!l->by_source && l->y_plus > 0)
+    vg_note(&p->notes, "y+ %g at Reynolds number %g of length %g: first "
+            "height %.6g", l->y_plus, l->reynolds, l->length,
+            vg_first_height(l->y_plus, l->reynolds, l->length));
+  if (ratio > cap)
+    vg_note(&p->notes, "ratio %g is above layer_cap %g, which holds", ratio,
+            cap);
+}
+
+/* Settings that lead to the same layers again: heights instead of y+, and a
+ * row for each given patch instead of lists and conditions. */
+static vg_status resolve(const struct vg_layer_stage *s, struct vg_problem *p,
+                         struct vg_error *err)
+{
+  struct vg_settings *set = &p->settings;
+  struct vg_layer_settings *l = &set->layer;
+  struct vg_layer_row *old = set->layer_row;
+  size_t n_given = set->n_patch;
+  vg_status st = VG_OK;
+  struct vg_settings view = *set;  /* keeps the old rows in sight */
+
+  set->layer_row = NULL;
+  set->n_layer = set->cap_layer = 0;
+  for (size_t i = 0; i < n_given && st >= 0; i++) {
+    struct vg_layer_row row = row_of(&view, set->patch[i].id);
+    size_t at = vg_mesh_find_patch(&p->surface, row.id);
+
+    if (at == SIZE_MAX) continue;
+    row.grow = s->reason[at] == VG_WALL_NOT ? VG_ANSWER_NO : VG_ANSWER_YES;
+    st = vg_settings_add(set, VG_TABLE_LAYERS, &row, err);
+  }
+  free(old);
+  l->grow = VG_ANSWER_YES;
+  l->first = height_of(l, l->first, l->y_plus);
+  l->y_plus = 0;
+  l->cap = isnan(l->cap) ? DEFAULT_CAP : l->cap;
+  *l->walls = *l->slip = 0;
+  return st;
+}
+
+static void set_options(struct vg_layer_stage *s, const struct vg_settings *set)
+{
+  const struct vg_layer_options defaults = VG_LAYER_OPTIONS_INIT;
+  struct vg_layer_options *o = &s->options;
+
+  *o = defaults;
+  o->patch = s->request;
+  o->law_at = !s->laws ? NULL : s->laws->heights ? height_at : law_at;
+  o->law_user = s->laws;
+  o->fan_angle = set->layer.fan_angle;
+  o->end = set->layer.end;
+  o->gap = set->layer.gap;
+  o->slope = set->layer.slope;
+  o->smooth = (int)set->layer.smooth;
+  o->threads = (int)set->threads;
+  s->reynolds = set->layer.reynolds;
+  s->length = set->layer.length;
+}
+
+static vg_status allocate(struct vg_layer_stage *s, size_t n,
+                          struct vg_error *err)
+{
+  s->n_patch = n;
+  s->reason = vg_calloc(n, sizeof *s->reason);
+  s->request = vg_calloc(n, sizeof *s->request);
+  s->limit = vg_calloc(n, sizeof *s->limit);
+  return s->reason && s->request && s->limit
+         ? VG_OK : vg_fail_memory(err, "the patches");
+}
+
+vg_status vg_layer_stage_plan(struct vg_layer_stage *s, struct vg_problem *p,
+                              struct vg_error *err)
+{
+  struct vg_layer_settings *l = &p->settings.layer;
+  double *least = vg_calloc(p->surface.n_patch, sizeof *least);
+  size_t n_wall;
+  vg_status st = least ? VG_OK : vg_fail_memory(err, "the patches");
+
+  if (st < 0) goto done;
+  VG_TRY(allocate(s, p->surface.n_patch, err));
+  if (l->grow == VG_ANSWER_NO) goto done;
+  if (p->heights.n) VG_TRY(sort_heights(p, least, err));
+  VG_TRY(vg_walls_find(p, s->reason, &n_wall, err));
+  if (n_wall && !vg_walls_asked(&p->settings) &&
+      !first_is_known(s, p, least)) {
+    note_missing(s, p);
+    n_wall = 0;
+  }
+  if (!n_wall) {
+    if (vg_walls_asked(&p->settings))
+      vg_note(&p->notes, "layers are asked for, but no patch has a viscous "
+              "condition: there are none (--walls names walls)");
+    l->grow = VG_ANSWER_NO;
+    goto done;
+  }
+  VG_TRY(make_requests(s, p, least, err));
+  note_choice(s, p);
+  give_conditions(s, p);
+  set_options(s, &p->settings);
+  VG_TRY(resolve(s, p, err));
+  s->is_on = 1;
+done:
+  free(least);
+  return st;
+}
+
+/* Patches without layers that share an edge with a wall. */
+static void mark_beside(const struct vg_layer_stage *s,
+                        const struct vg_mesh *m, uint8_t *on_wall,
+                        uint8_t *beside)
+{
+  for (size_t i = 0; i < m->n_tri; i++)
+    for (int k = 0; k < 3 && s->reason[m->tri_patch[i]] != VG_WALL_NOT; k++)
+      on_wall[m->tri[i][k]] = 1;
+  for (size_t i = 0; i < m->n_tri; i++) {
+    const uint32_t *t = m->tri[i];
+
+    if (s->reason[m->tri_patch[i]] == VG_WALL_NOT &&
+        on_wall[t[0]] + on_wall[t[1]] + on_wall[t[2]] > 1)
+      beside[m->tri_patch[i]] = 1;
+  }
+}
+
+vg_status vg_layer_stage_sizes(const struct vg_layer_stage *s,
+                               const struct vg_problem *p,
+                               struct vg_mesh *out, struct vg_error *err)
+{
+  const struct vg_mesh *m = &p->surface;
+  int is_front = *p->files.front && p->project.grid > 0;
+  uint8_t *on_wall = vg_calloc(m->n_point, 1);
+  uint8_t *beside = vg_calloc(m->n_patch, 1);
+  vg_status st = VG_OK;
+
+  *out = *m;
+  out->n_tri = 0;
+  out->tri = vg_alloc(m->n_tri, sizeof *out->tri);
+  out->tri_patch = vg_alloc(m->n_tri, sizeof *out->tri_patch);
+  if (!on_wall || !beside || !out->tri || !out->tri_patch) {
+    st = vg_fail_memory(err, "the sizes");
+    goto done;
+  }
+  if (is_front) mark_beside(s, m, on_wall, beside);
+  for (size_t i = 0; i < m->n_tri; i++) {
+    if (beside[m->tri_patch[i]]) continue;
+    memcpy(out->tri[out->n_tri], m->tri[i], sizeof *out->tri);
+    out->tri_patch[out->n_tri++] = m->tri_patch[i];
+  }
+done:
+  free(on_wall);
+  free(beside);
+  return st;
+}
+
+static vg_status judge(struct vg_layer_stage *s, const struct vg_mesh *surface,
+                       struct vg_error *err)
+{
+  const struct vg_layer_judgement *j = &s->judgement;
+  vg_status st = vg_layers_judge(surface, &s->layers.columns,
+                                 s->options.threads, s->options.team,
+                                 &s->judgement, err);
+
+  if (st < 0 || !(j->n_negative + j->n_off_plane)) return st;
+  return vg_fail(err, VG_ERR_GEOMETRY, "the layers did not pass their own "
+                 "check (%zu negative cells, %zu columns off their plane) "
+                 "and nothing was written; please report this with the "
+                 "project files, and try --layers no",
+                 j->n_negative, j->n_off_plane);
+}
+
+vg_status vg_layer_stage_grow(struct vg_layer_stage *s,
+                              const struct vg_mesh *surface,
+                              const struct vg_sizing *sizing,
+                              struct vg_display *show, struct vg_error *err)
+{
+  double t;
+  vg_status st;
+
+  s->options.progress = vg_display_update;
+  s->options.user = show;
+  VG_TRY(vg_layers_grow(surface, sizing, &s->options, &s->layers, &s->report,
+                        err));
+  if (st == VG_BLOCKED) {
+    st = vg_display_stopped(show, err);
+    goto done;
+  }
+  t = vg_display_now();
+  vg_display_update(show, "measure layers", s->report.n_cell, 0);
+  VG_TRY(judge(s, surface, err));
+  VG_TRY(vg_layers_fields(surface, &s->layers.columns, s->options.threads,
+                          &s->fields, err));
+  VG_TRY(vg_layers_patches(surface, &s->layers.columns, &s->fields,
+                           s->reynolds, s->length, &s->n_wall, &s->wall,
+                           &s->all, err));
+  s->time_measure = vg_display_now() - t;
+done:
+  return st;
+}
+
+/* Triangles of the walls, for pictures. */
+struct wall_tris {
+  size_t n;
+  uint32_t (*tri)[3];        /* points of the fields */
+  int32_t *patch;
+  double *top;               /* volume ratio across the top, 0: none */
+};
+
+static vg_status write_walls(const struct vg_layer_stage *s,
+                             const struct vg_mesh *surface,
+                             const struct wall_tris *t, const char *path,
+                             struct vg_error *err)
+{
+  const struct vg_wall_fields *w = &s->fields;
+  const struct vg_vtu_field field[] = {
+    { "level", VG_VTU_POINT, VG_VTU_INT32, 1, w->level },
+    { "wanted", VG_VTU_POINT, VG_VTU_INT32, 1, w->wanted },
+    { "first_height", VG_VTU_POINT, VG_VTU_FLOAT64, 1, w->first },
+    { "asked", VG_VTU_POINT, VG_VTU_FLOAT64, 1, w->asked },
+    { "total", VG_VTU_POINT, VG_VTU_FLOAT64, 1, w->total },
+    { "height_over_law", VG_VTU_POINT, VG_VTU_FLOAT64, 1, w->share },
+    { "growth", VG_VTU_POINT, VG_VTU_FLOAT64, 1, w->growth },
+    { "cause", VG_VTU_POINT, VG_VTU_INT32, 1, w->cause },
+    { "squeezed", VG_VTU_POINT, VG_VTU_INT32, 1, w->squeezed },
+    { "patch", VG_VTU_CELL, VG_VTU_INT32, 1, t->patch },
+    { "top_volume_ratio", VG_VTU_CELL, VG_VTU_FLOAT64, 1, t->top },
+  };
+  double (*point)[3] = vg_alloc(w->n, sizeof *point);
+  vg_status st;
+
+  if (!point) return vg_fail_memory(err, "the walls");
+  for (size_t i = 0; i < w->n; i++)
+    memcpy(point[i], surface->point[w->point[i]], sizeof *point);
+  st = vg_vtu_write_triangles(path, w->n, (const double (*)[3])point, t->n,
+                              (const uint32_t (*)[3])t->tri, field,
+                              sizeof field / sizeof *field, err);
+  free(point);
+  return st;
+}
+
+static void list_walls(const struct vg_layer_stage *s,
+                       const struct vg_mesh *surface, const uint32_t *index,
+                       uint32_t *place, struct wall_tris *t)
+{
+  const struct vg_columns *c = &s->layers.columns;
+
+  for (size_t i = 0; i < surface->n_tri; i++) {
+    const uint32_t of = surface->tri_patch[i];
+
+    if (s->reason[of] == VG_WALL_NOT) continue;
+    place[i] = (uint32_t)t->n;
+    for (int k = 0; k < 3; k++) t->tri[t->n][k] = index[surface->tri[i][k]];
+    t->patch[t->n++] = surface->patch[of].id;
+  }
+  for (size_t i = 0; i < c->n_face; i++)
+    if (c->face_tri[i] != VG_NO_INDEX)
+      t->top[place[c->face_tri[i]]] = s->top[i];
+}
+
+vg_status vg_layer_stage_write(const struct vg_layer_stage *s,
+                               const struct vg_mesh *surface,
+                               const char *path, struct vg_error *err)
+{
+  uint32_t *index = vg_alloc(surface->n_point, sizeof *index);
+  uint32_t *place = vg_alloc(surface->n_tri, sizeof *place);
+  struct wall_tris t = {
+    .tri = vg_alloc(surface->n_tri, sizeof *t.tri),
+    .patch = vg_alloc(surface->n_tri, sizeof *t.patch),
+    .top = vg_calloc(surface->n_tri, sizeof *t.top) };
+  vg_status st;
+
+  if (!index || !place || !t.tri || !t.patch || !t.top) {
+    st = vg_fail_memory(err, "the walls");
+    goto done;
+  }
+  for (size_t i = 0; i < s->fields.n; i++)
+    index[s->fields.point[i]] = (uint32_t)i;
+  list_walls(s, surface, index, place, &t);
+  st = write_walls(s, surface, &t, path, err);
+done:
+  free(index);
+  free(place);
+  free(t.tri);
+  free(t.patch);
+  free(t.top);
+  return st;
+}

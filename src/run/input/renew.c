@@ -1,0 +1,125 @@
+/* The triangles of the surface made anew, as settings ask for it. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/geometry/vector.h"
+#include "run/input/input.h"
+
+static int stop(void)
+{
+  return vg_display_interrupted();
+}
+
+/* *hard: [n_patch], NULL where none is asked for. */
+static vg_status hard_patches(const struct vg_problem *p, uint8_t **hard,
+                              struct vg_error *err)
+{
+  for (size_t i = 0; i < p->settings.n_patch; i++) {
+    const struct vg_patch_row *row = &p->settings.patch[i];
+    size_t at = vg_mesh_find_patch(&p->surface, row->id);
+
+    if (!row->hard || at == SIZE_MAX) continue;
+    if (!*hard) *hard = vg_calloc(p->surface.n_patch, 1);
+    if (!*hard) return vg_fail_memory(err, "the patches");
+    (*hard)[at] = 1;
+  }
+  return VG_OK;
+}
+
+static void areas(const struct vg_mesh *m, int after, double *area)
+{
+  for (size_t t = 0; t < m->n_tri; t++) {
+    double u[3], v[3], n[3];
+
+    vg_sub(m->point[m->tri[t][1]], m->point[m->tri[t][0]], u);
+    vg_sub(m->point[m->tri[t][2]], m->point[m->tri[t][0]], v);
+    vg_cross(u, v, n);
+    area[2 * m->tri_patch[t] + (size_t)after] += vg_norm(n) / 2;
+  }
+}
+
+static vg_status remesh(struct vg_problem *p, const uint8_t *hard,
+                        struct vg_display *show, struct vg_error *err)
+{
+  const struct vg_settings *s = &p->settings;
+  struct vg_remesh_options o = VG_REMESH_OPTIONS_INIT;
+  vg_status st;
+
+  o.tolerance = s->surface_tolerance;
+  o.ridge_angle = s->ridge_angle;
+  o.per_turn = s->per_turn;
+  o.h_min = s->hmin;
+  o.h_max = s->surface_size > 0 && !(s->hmax > 0 && s->hmax < s->surface_size)
+            ? s->surface_size : s->hmax;
+  o.growth = s->growth;
+  o.scale = s->scale;
+  o.n_source = s->n_source;
+  o.source = s->source;
+  o.map = p->map;
+  o.hard = hard;
+  o.threads = p->threads;
+  o.stop = stop;
+  st = vg_remesh(&p->surface, &o, &p->renewal.report, err);
+  return st < 0 && vg_display_interrupted() ? vg_display_stopped(show, err)
+                                            : st;
+}
+
+static vg_status measure(struct vg_problem *p, const struct vg_mesh *given,
+                         struct vg_error *err)
+{
+  struct vg_renewal *r = &p->renewal;
+  vg_status st;
+
+  r->face = vg_alloc(p->surface.n_tri, sizeof *r->face);
+  r->n_patch = p->surface.n_patch;
+  r->area = vg_calloc(2 * r->n_patch, sizeof *r->area);
+  if (!r->face || !r->area) return vg_fail_memory(err, "the distances");
+  areas(given, 0, r->area);
+  areas(&p->surface, 1, r->area);
+  VG_TRY(vg_remesh_measure(&p->surface, given, p->threads, r->face,
+                           &r->off[0], err));
+  VG_TRY(vg_remesh_measure(given, &p->surface, p->threads, NULL, &r->off[1],
+                           err));
+done:
+  return st;
+}
+
+vg_status vg_problem_renew(struct vg_problem *p, struct vg_display *show,
+                           struct vg_error *err)
+{
+  struct vg_renewal *r = &p->renewal;
+  struct vg_mesh given = VG_MESH_INIT;
+  uint8_t *hard = NULL;
+  double t = vg_display_now();
+  vg_status st;
+
+  if (p->heights.n)
+    return vg_fail(err, VG_ERR_INPUT, "first heights are given at points of "
+                   "the surface, which remesh_surface would take away: give "
+                   "them by patch instead, or keep the surface");
+  vg_display_update(show, "remesh", p->surface.n_tri, 0);
+  VG_TRY(vg_mesh_copy(&given, &p->surface, err));
+  VG_TRY(hard_patches(p, &hard, err));
+  VG_TRY(remesh(p, hard, show, err));
+  r->seconds = vg_display_now() - t;
+  VG_TRY(measure(p, &given, err));
+  r->is_done = 1;
+  vg_note(&p->notes, "the surface was made anew (remesh_surface): %zu "
+          "triangles, before %zu, at most %.3g from it, tolerance %.3g",
+          r->report.n_tri[1], r->report.n_tri[0],
+          r->off[0].most > r->off[1].most ? r->off[0].most : r->off[1].most,
+          r->report.tolerance);
+done:
+  free(hard);
+  vg_mesh_release(&given);
+  return st;
+}
+
+void vg_renewal_release(struct vg_renewal *r)
+{
+  vg_remesh_report_release(&r->report);
+  free(r->face);
+  free(r->area);
+  memset(r, 0, sizeof *r);
+}

@@ -1,0 +1,191 @@
+#define _GNU_SOURCE
+#include "run/input/sizes.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <unistd.h>
+
+#include "base/memory.h"
+#include "io/mesh/format.h"
+#include "io/mesh/sol.h"
+#include "io/mesh/vtu_read.h"
+
+/* H8: between two points of a cell that are further apart than FAR times the
+ * smaller of their sizes there are samples, at most PARTS - 1. */
+#define FAR 2
+#define PARTS 8
+
+struct samples {
+  size_t n, cap_x, cap_h;
+  double (*x)[3], *h;
+  int refused;
+};
+
+static void add(struct samples *s, const double x[3], double h)
+{
+  if (s->refused) return;
+  if (vg_reserve(&s->x, &s->cap_x, s->n + 1, sizeof *s->x) ||
+      vg_reserve(&s->h, &s->cap_h, s->n + 1, sizeof *s->h)) {
+    s->refused = 1;
+    return;
+  }
+  memcpy(s->x[s->n], x, sizeof *s->x);
+  s->h[s->n++] = h;
+}
+
+static void add_between(struct samples *s, const double a[3],
+                        const double b[3], double ha, double hb)
+{
+  double d2 = 0, least = ha < hb ? ha : hb, ratio, x[3];
+  int parts;
+
+  for (int k = 0; k < 3; k++) d2 += (b[k] - a[k]) * (b[k] - a[k]);
+  ratio = sqrt(d2) / least;
+  if (!(ratio > FAR)) return;
+  parts = ratio < PARTS ? (int)ratio : PARTS;
+  for (int i = 1; i < parts; i++) {
+    double t = (double)i / parts;
+
+    for (int k = 0; k < 3; k++) x[k] = a[k] + t * (b[k] - a[k]);
+    add(s, x, ha + t * (hb - ha));
+  }
+}
+
+/* All pairs of points of each cell, or face where there are no cells. */
+static void add_cells(struct samples *s, const struct vg_mesh *m,
+                      const double *h, size_t n, int width,
+                      const uint32_t *node)
+{
+  for (size_t i = 0; i < n && !s->refused; i++, node += width)
+    for (int a = 0; a < width; a++)
+      for (int b = a + 1; b < width; b++)
+        add_between(s, m->point[node[a]], m->point[node[b]], h[node[a]],
+                    h[node[b]]);
+}
+
+static vg_status make_samples(const struct vg_mesh *m, const double *h,
+                              struct samples *s, struct vg_error *err)
+{
+  for (size_t i = 0; i < m->n_point; i++) add(s, m->point[i], h[i]);
+  if (m->n_tet) add_cells(s, m, h, m->n_tet, 4, m->tet[0]);
+  if (m->n_pyr) add_cells(s, m, h, m->n_pyr, 5, m->pyr[0]);
+  if (m->n_pri) add_cells(s, m, h, m->n_pri, 6, m->pri[0]);
+  if (m->n_hex) add_cells(s, m, h, m->n_hex, 8, m->hex[0]);
+  if (m->n_tri) add_cells(s, m, h, m->n_tri, 3, m->tri[0]);
+  if (m->n_quad) add_cells(s, m, h, m->n_quad, 4, m->quad[0]);
+  return s->refused ? vg_fail_memory(err, "the sizes of a mesh") : VG_OK;
+}
+
+/* The mesh beside STEM.sol: the only file of the stem that can be read. */
+static vg_status find_mesh(const char *path, char **out, struct vg_error *err)
+{
+  const char *dot = strrchr(path, '.'), *suffix;
+  char *found = NULL, *name;
+  vg_status st = VG_OK;
+
+  for (size_t i = 0; (suffix = vg_format_input_suffix(i)) && st >= 0; i++) {
+    if (asprintf(&name, "%.*s.%s", (int)(dot - path), path, suffix) < 0) {
+      st = vg_fail_memory(err, "a path");
+    } else if (access(name, F_OK)) {
+      free(name);
+    } else if (found) {
+      st = vg_fail(err, VG_ERR_INPUT, "%s: both %s and %s may be the mesh of "
+                   "these sizes; leave one beside it", path, found, name);
+      free(name);
+    } else {
+      found = name;
+    }
+  }
+  if (st >= 0 && !found)
+    st = vg_fail(err, VG_ERR_INPUT, "%s: there is no mesh %.*s.mesh, .meshb, "
+                 ".b8.ugrid, ... beside it, at whose points its sizes are",
+                 path, (int)(dot - path), path);
+  if (st < 0) free(found);
+  else *out = found;
+  return st;
+}
+
+static int ends_in(const char *path, const char *suffix)
+{
+  size_t n = strlen(path), len = strlen(suffix);
+
+  return n > len && !strcasecmp(path + n - len, suffix);
+}
+
+/* Points without cells: between them sizes grow. */
+static vg_status read_vtk(const char *path, struct vg_mesh *m, double **h,
+                          struct vg_error *err)
+{
+  double (*x)[3];
+  size_t n;
+  vg_status st = vg_vtu_points_read(path, "size", &n, &x, h, err);
+
+  if (st < 0) return st;
+  m->point = x;
+  m->n_point = n;
+  return VG_OK;
+}
+
+static vg_status read_values(const char *path, struct vg_mesh *m, double **h,
+                             struct vg_error *err)
+{
+  char *mesh = NULL;
+  size_t n = 0;
+  vg_status st;
+
+  if (ends_in(path, ".vtu") || ends_in(path, ".vtp"))
+    return read_vtk(path, m, h, err);
+  if (!ends_in(path, ".sol") && !ends_in(path, ".solb"))
+    return vg_fail(err, VG_ERR_FORMAT, "%s: sizes are read from Medit's .sol "
+                   "and .solb beside a mesh, and from a point array 'size' of "
+                   "VTK's .vtu", path);
+  VG_TRY(vg_sol_read(path, &n, h, err));
+  VG_TRY(find_mesh(path, &mesh, err));
+  VG_TRY(vg_format_read(mesh, m, err));
+  if (n != m->n_point)
+    st = vg_fail(err, VG_ERR_INPUT, "%s has %zu sizes, but %s has %zu points",
+                 path, n, mesh, m->n_point);
+done:
+  free(mesh);
+  return st;
+}
+
+vg_status vg_problem_sizes(struct vg_problem *p, struct vg_error *err)
+{
+  const struct vg_settings *set = &p->settings;
+  struct vg_mesh m = VG_MESH_INIT;
+  struct samples s = { 0 };
+  double *h = NULL;
+  vg_status st;
+
+  if (!*set->sizes || p->samples) return VG_OK;
+  if (p->map)
+    return vg_fail(err, VG_ERR_INPUT, "sizes are given by the file %s and by "
+                   "the program; give one", set->sizes);
+  VG_TRY(read_values(set->sizes, &m, &h, err));
+  VG_TRY(vg_size_samples_check(set->sizes, m.n_point,
+                               (const double (*)[3])m.point, h, err));
+  VG_TRY(make_samples(&m, h, &s, err));
+  VG_TRY(vg_size_samples_new(s.n, (const double (*)[3])s.x, s.h, set->growth,
+                             (int)set->threads, &p->samples, err));
+  p->map = vg_size_samples_map(p->samples);
+  vg_note(&p->notes, "sizes of %zu points were read from %s", m.n_point,
+          set->sizes);
+done:
+  free(s.x);
+  free(s.h);
+  free(h);
+  vg_mesh_release(&m);
+  return st;
+}
+
+void vg_problem_forget_sizes(struct vg_problem *p)
+{
+  if (!p->samples) return;
+  vg_size_samples_free(p->samples);
+  p->samples = NULL;
+  p->map = NULL;
+}

@@ -1,0 +1,20 @@
+/* run/input/sizes.h: sizes out of a file, such as a solver's estimate of the
+ * error leads to. Uses core/sizing/sizing_map.h, run/input/input.h. */
+#ifndef VG_RUN_INPUT_SIZES_H
+#define VG_RUN_INPUT_SIZES_H
+
+#include "run/input/input.h"
+
+/** Read the file that the setting `sizes` names, if any, and the mesh at whose
+ * points its values are, into p->samples; p->map is then theirs.
+ *
+ * Between the points of a cell sizes are linear, where the cell is large for
+ * them; elsewhere they grow from the points. VG_ERR_INPUT: no mesh beside it,
+ * more than one, another number of points, a value that is no size, or a map
+ * that is there already. */
+vg_status vg_problem_sizes(struct vg_problem *p, struct vg_error *err);
+
+/** Free them; nothing happens where there are none. */
+void vg_problem_forget_sizes(struct vg_problem *p);
+
+#endif

@@ -1,0 +1,30 @@
+/* run/input/source_effect.h: sources without effect, for people and programs.
+ * Uses core/sizing/sizing_effect.h, run/input/input.h. */
+#ifndef VG_RUN_INPUT_SOURCE_EFFECT_H
+#define VG_RUN_INPUT_SOURCE_EFFECT_H
+
+#include <jansson.h>
+
+#include "core/sizing/sizing_effect.h"
+#include "run/input/input.h"
+
+/** vg_effects_find with the settings of a problem. */
+vg_status vg_problem_effects(const struct vg_problem *p,
+                             const struct vg_mesh *front,
+                             const struct vg_sizing *sizing,
+                             struct vg_effects *out,
+                             struct vg_error *err);
+
+/** A note for each source that is held back, or that the mesh does not meet,
+ * the first VG_SHOWN_LIMITED of them, and one for all that are outside. front:
+ * as for vg_effects_find. */
+#define VG_SHOWN_LIMITED 10
+void vg_effects_note(const struct vg_effects *h, const struct vg_mesh *front,
+                     struct vg_problem *p);
+
+/** All of them: "held", "unmet" (by the mesh), "inside" (a body), "beyond"
+ * (the domain). */
+json_t *vg_effects_json(const struct vg_effects *h, const struct vg_mesh *front,
+                        const struct vg_settings *s);
+
+#endif

@@ -1,0 +1,284 @@
+#include "run/input/walls.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "base/memory.h"
+#include "core/geometry/vector.h"
+#include "core/surface/surface_swap.h"
+#include "io/stream/stream.h"
+#include "io/vgrid/mapbc.h"
+#include "run/settings/lists.h"
+
+#define MESHING_WALL 2     /* class of a .d3m patch that grows layers */
+#define SHOWN_PATCHES 30
+
+const char *vg_wall_reason_name(enum vg_wall_reason reason)
+{
+  static const char *const name[] = { "no", "setting", "meshing class",
+                                      "condition", "body" };
+
+  return name[reason];
+}
+
+/* 41 moving wall, 44 blunt base; codes of FUN3D without a translation begin
+ * with 4 as well. */
+int vg_is_viscous(const struct vg_patch *p)
+{
+  int32_t bc = p->bc;
+
+  if (bc == VG_BC_NONE && p->bc_fun3d != VG_BC_NONE)
+    bc = vg_bc_to_usm3d(p->bc_fun3d);
+  if (bc == VG_BC_NONE)
+    return strncasecmp(p->name, "BCWallViscous", 13) == 0;
+  return bc == 4 || bc == 41 || bc == 44 || (bc >= 4000 && bc < 5000) ||
+         (bc <= -4000 && bc > -5000);
+}
+
+int vg_has_limits(const struct vg_layer_limits *l)
+{
+  return !isnan(l->min_full) || !isnan(l->min_any) ||
+         !isnan(l->min_height) || !isnan(l->max_first_error) ||
+         !isnan(l->max_top_ratio);
+}
+
+int vg_walls_asked(const struct vg_settings *s)
+{
+  const struct vg_layer_settings *l = &s->layer;
+
+  if (l->grow == VG_ANSWER_NO) return 0;
+  for (size_t i = 0; i < s->n_layer; i++)
+    if (s->layer_row[i].grow == VG_ANSWER_YES ||
+        vg_has_limits(&s->layer_row[i].limit))
+      return 1;
+  return l->grow == VG_ANSWER_YES || l->first > 0 || l->y_plus > 0 ||
+         *l->walls || vg_has_limits(&l->limit);
+}
+
+/* A whole number at *text, which moves behind it; 0 when there is none. */
+static vg_status mark(const char *name, const struct vg_mesh *m, int64_t from,
+                      int64_t to, uint8_t *on, struct vg_error *err)
+{
+  int found = 0;
+
+  for (size_t i = 0; i < m->n_patch; i++)
+    if (m->patch[i].id >= from && m->patch[i].id <= to) {
+      on[i] = 1;
+      found = 1;
+    }
+  if (found) return VG_OK;
+  if (from == to)
+    return vg_fail(err, VG_ERR_INPUT, "%s: patch %lld is not in the surface; "
+                   "'vanguard check' lists its patches", name,
+                   (long long)from);
+  return vg_fail(err, VG_ERR_INPUT, "%s: no patch of the surface is within "
+                 "%lld-%lld; 'vanguard check' lists its patches", name,
+                 (long long)from, (long long)to);
+}
+
+/* Patches in the list: on[i] is set to 1. VG_ERR_INPUT for a number or range
+ * that the surface does not have. */
+static vg_status patch_list(const char *name, const char *list,
+                            const struct vg_mesh *m, uint8_t *on,
+                            struct vg_error *err)
+{
+  const char *at = list;
+  int64_t from, to;
+  vg_status st = vg_patch_list_check(name, list, err);
+
+  while (st >= 0 && vg_patch_list_next(&at, &from, &to))
+    st = mark(name, m, from, to, on, err);
+  return st;
+}
+
+/* Meshing class of patch id in the project, 0 where it says nothing. */
+static int32_t meshing_class(const struct vg_project *p, int32_t id)
+{
+  for (size_t i = 0; i < p->n_shape; i++)
+    if (p->shape[i].patch.id == id) return p->shape[i].meshing_class;
+  return 0;
+}
+
+/* The patches that were given; what completes the domain comes later. */
+static int is_given(const struct vg_problem *p, int32_t id)
+{
+  for (size_t i = 0; i < p->settings.n_patch; i++)
+    if (p->settings.patch[i].id == id) return 1;
+  return 0;
+}
+
+/* What the input says of patch i, settings aside. */
+static enum vg_wall_reason by_input(const struct vg_problem *p, size_t i)
+{
+  const struct vg_patch *patch = &p->surface.patch[i];
+  int alone = p->settings.farfield.kind != VG_DOMAIN_NONE;
+
+  if (meshing_class(&p->project, patch->id) == MESHING_WALL)
+    return VG_WALL_CLASS;
+  if (vg_is_viscous(patch)) return VG_WALL_CONDITION;
+  if (alone && !p->require_bc && vg_walls_asked(&p->settings) &&
+      is_given(p, patch->id))
+    return VG_WALL_BODY;
+  return VG_WALL_NOT;
+}
+
+static vg_status apply_row(const struct vg_problem *p,
+                           const struct vg_layer_row *row,
+                           const uint8_t *wall, const uint8_t *slip,
+                           enum vg_wall_reason *reason, struct vg_error *err)
+{
+  size_t i = vg_mesh_find_patch(&p->surface, row->id);
+
+  if (i == SIZE_MAX)
+    return vg_fail(err, VG_ERR_INPUT, "layers: patch %d is not in the "
+                   "surface; 'vanguard check' lists its patches",
+                   (int)row->id);
+  if (row->grow == VG_ANSWER_NO && wall[i])
+    return vg_fail(err, VG_ERR_INPUT, "patch %d is in the list walls, but the "
+                   "table layers says grow no; remove one", (int)row->id);
+  if (row->grow == VG_ANSWER_YES && slip[i])
+    return vg_fail(err, VG_ERR_INPUT, "patch %d is in the list slip, but the "
+                   "table layers says grow yes; remove one", (int)row->id);
+  if (row->grow == VG_ANSWER_YES) reason[i] = VG_WALL_SETTING;
+  if (row->grow == VG_ANSWER_NO) reason[i] = VG_WALL_NOT;
+  return VG_OK;
+}
+
+static vg_status by_settings(const struct vg_problem *p, uint8_t *wall,
+                             uint8_t *slip, enum vg_wall_reason *reason,
+                             struct vg_error *err)
+{
+  const struct vg_settings *s = &p->settings;
+  const struct vg_mesh *m = &p->surface;
+  vg_status st;
+
+  VG_TRY(patch_list("walls", s->layer.walls, m, wall, err));
+  VG_TRY(patch_list("slip", s->layer.slip, m, slip, err));
+  for (size_t i = 0; i < m->n_patch; i++) {
+    if (wall[i] && slip[i]) {
+      st = vg_fail(err, VG_ERR_INPUT, "patch %d is in both lists, walls and "
+                   "slip; remove one", (int)m->patch[i].id);
+      goto done;
+    }
+    if (wall[i]) reason[i] = VG_WALL_SETTING;
+    else if (slip[i] || *s->layer.walls) reason[i] = VG_WALL_NOT;
+  }
+  for (size_t i = 0; i < s->n_layer; i++)
+    VG_TRY(apply_row(p, &s->layer_row[i], wall, slip, reason, err));
+done:
+  return st;
+}
+
+/* "  3 wing (bc 5), 4 tail (no condition), ..." */
+static void patch_words(const struct vg_mesh *m, char *text, size_t size)
+{
+  size_t at = 0;
+
+  *text = 0;
+  for (size_t i = 0; i < m->n_patch && at + 60 < size; i++) {
+    const struct vg_patch *p = &m->patch[i];
+    char bc[24] = "no condition";
+
+    if (i == SHOWN_PATCHES) {
+      snprintf(text + at, size - at, ", ...");
+      return;
+    }
+    if (p->bc != VG_BC_NONE) snprintf(bc, sizeof bc, "bc %d", (int)p->bc);
+    at += (size_t)snprintf(text + at, size - at, "%s%d%s%.20s (%s)",
+                           i ? ", " : "", (int)p->id, *p->name ? " " : "",
+                           p->name, bc);
+  }
+}
+
+/* Layers or nothing: a limit that is checked on no patch would be met. */
+static int insists(const struct vg_settings *s)
+{
+  const struct vg_layer_settings *l = &s->layer;
+
+  for (size_t i = 0; i < s->n_layer; i++)
+    if (vg_has_limits(&s->layer_row[i].limit)) return 1;
+  return l->grow == VG_ANSWER_YES || vg_has_limits(&l->limit);
+}
+
+static vg_status no_walls(const struct vg_problem *p, struct vg_error *err)
+{
+  char list[600];
+
+  patch_words(&p->surface, list, sizeof list);
+  return vg_fail(err, VG_ERR_INPUT, "%s: layers are asked for, but no patch "
+                 "is known to be a wall; name them with --walls (as in "
+                 "--walls 3-12,15), give condition 4 in a .mapbc or the deck, "
+                 "or say --layers no. Patches: %s", p->files.stem, list);
+}
+
+vg_status vg_walls_find(const struct vg_problem *p,
+                        enum vg_wall_reason *reason, size_t *n_wall,
+                        struct vg_error *err)
+{
+  const struct vg_mesh *m = &p->surface;
+  uint8_t *mark_of = vg_calloc(2 * m->n_patch, 1);
+  vg_status st;
+
+  *n_wall = 0;
+  if (!mark_of) return vg_fail_memory(err, "the patches");
+  for (size_t i = 0; i < m->n_patch; i++) reason[i] = by_input(p, i);
+  VG_TRY(by_settings(p, mark_of, mark_of + m->n_patch, reason, err));
+  for (size_t i = 0; i < m->n_patch; i++)
+    *n_wall += reason[i] != VG_WALL_NOT;
+  /* A whole domain in which conditions say that nothing is viscous is left
+   * as it is, unless somebody insists. */
+  if (!*n_wall && vg_walls_asked(&p->settings) &&
+      (insists(&p->settings) || !p->require_bc))
+    st = no_walls(p, err);
+done:
+  free(mark_of);
+  return st;
+}
+
+/* Lower than VG_SWAP_SLIVER of its longest edge. */
+static int is_sliver(const struct vg_mesh *m, const uint32_t t[3])
+{
+  double e[3][3], n[3], longest = 0;
+
+  for (int k = 0; k < 3; k++) {
+    vg_sub(m->point[t[(k + 1) % 3]], m->point[t[k]], e[k]);
+    longest = fmax(longest, vg_dot(e[k], e[k]));
+  }
+  vg_cross(e[0], e[1], n);
+  return vg_norm(n) < VG_SWAP_SLIVER * longest;
+}
+
+/* Patches beside the walls are meshed anew in any case. */
+static int walls_have_slivers(const struct vg_mesh *m,
+                              const enum vg_wall_reason *reason)
+{
+  for (size_t i = 0; i < m->n_tri; i++)
+    if (reason[m->tri_patch[i]] != VG_WALL_NOT && is_sliver(m, m->tri[i]))
+      return 1;
+  return 0;
+}
+
+vg_status vg_walls_swap(struct vg_problem *p,
+                        const enum vg_wall_reason *reason,
+                        struct vg_error *err)
+{
+  const struct vg_swap_options o = VG_SWAP_OPTIONS_INIT;
+  struct vg_swap_report r = VG_SWAP_REPORT_INIT;
+  int *answer = &p->settings.swap;
+  vg_status st;
+
+  if (*answer == VG_ANSWER_AUTO)
+    *answer = reason && walls_have_slivers(&p->surface, reason)
+              ? VG_ANSWER_YES : VG_ANSWER_NO;
+  if (*answer == VG_ANSWER_NO) return VG_OK;
+  st = vg_surface_swap(&p->surface, &o, &r, err);
+  if (st < 0) return st;
+  vg_note(&p->notes, "slivers of the surface: caps %zu, now %zu, needles %zu, "
+          "now %zu, by %zu swaps and %zu collapses of edges that move it by "
+          "%.2g at most (--surface-swap no: as given)", r.n_cap[0],
+          r.n_cap[1], r.n_needle[0], r.n_needle[1], r.n_swapped,
+          r.n_collapsed, r.moved);
+  return st;
+}

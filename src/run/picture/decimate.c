@@ -1,0 +1,168 @@
+#include "run/picture/decimate.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/geometry/vector.h"
+
+#define COARSER 1.25       /* the next lattice, where one was too fine */
+#define LEFT 3             /* triangles in a square of a lattice */
+
+void vg_decimated_release(struct vg_decimated *c)
+{
+  free(c->point);
+  free(c->tri);
+  free(c->from);
+  *c = (struct vg_decimated)VG_DECIMATED_INIT;
+}
+
+/* Cubes that hold points, in an open table of the power of two `size`. */
+struct cubes {
+  size_t size;
+  uint64_t *key;            /* of the cube + 1; 0: free */
+  uint32_t *id;             /* number of the cube, by its first point */
+  uint32_t *of;             /* [n_point] */
+  uint32_t *count;          /* [n_cube] points */
+};
+
+static void release(struct cubes *q)
+{
+  free(q->key);
+  free(q->id);
+  free(q->of);
+  free(q->count);
+}
+
+static vg_status reserve(const struct vg_mesh *m, struct cubes *q,
+                         struct vg_decimated *c, struct vg_error *err)
+{
+  for (q->size = 64; q->size < 2 * m->n_point; q->size *= 2) { }
+  q->key = vg_alloc(q->size, sizeof *q->key);
+  q->id = vg_alloc(q->size, sizeof *q->id);
+  q->of = vg_alloc(m->n_point, sizeof *q->of);
+  q->count = vg_alloc(m->n_point, sizeof *q->count);
+  c->point = vg_alloc(m->n_point, sizeof *c->point);
+  c->tri = vg_alloc(m->n_tri, sizeof *c->tri);
+  c->from = vg_alloc(m->n_tri, sizeof *c->from);
+  return q->key && q->id && q->of && q->count && c->point && c->tri && c->from
+         ? VG_OK : vg_fail_memory(err, "a coarser surface");
+}
+
+static uint64_t key_of(const double x[3], const double lo[3], double step)
+{
+  uint64_t key = 0;
+
+  for (int k = 0; k < 3; k++) {
+    double at = (x[k] - lo[k]) / step;
+
+    key = key << 21 | (uint64_t)(at < 2097151 ? at : 2097151);
+  }
+  return key + 1;
+}
+
+static uint32_t find(struct cubes *q, uint64_t key, size_t *n)
+{
+  size_t at = (size_t)(key * 0x9e3779b97f4a7c15ull >> 20) & (q->size - 1);
+
+  while (q->key[at] && q->key[at] != key) at = (at + 1) & (q->size - 1);
+  if (!q->key[at]) {
+    q->key[at] = key;
+    q->id[at] = (uint32_t)(*n)++;
+  }
+  return q->id[at];
+}
+
+static void merge_points(const struct vg_mesh *m, const double lo[3],
+                         double step, struct cubes *q, struct vg_decimated *c)
+{
+  memset(q->key, 0, q->size * sizeof *q->key);
+  memset(q->count, 0, m->n_point * sizeof *q->count);
+  memset(c->point, 0, m->n_point * sizeof *c->point);
+  c->n_point = 0;
+  for (size_t i = 0; i < m->n_point; i++) {
+    uint32_t id = find(q, step > 0 ? key_of(m->point[i], lo, step) : i + 1,
+                       &c->n_point);
+
+    q->of[i] = id;
+    q->count[id]++;
+    for (int k = 0; k < 3; k++) c->point[id][k] += m->point[i][k];
+  }
+  for (size_t i = 0; i < c->n_point; i++)
+    for (int k = 0; k < 3; k++) c->point[i][k] /= q->count[i];
+}
+
+static void keep_triangles(const struct vg_mesh *m, const struct cubes *q,
+                           struct vg_decimated *c)
+{
+  c->n_tri = 0;
+  for (size_t t = 0; t < m->n_tri; t++) {
+    uint32_t n[3];
+
+    for (int k = 0; k < 3; k++) n[k] = q->of[m->tri[t][k]];
+    if (n[0] == n[1] || n[1] == n[2] || n[2] == n[0]) continue;
+    memcpy(c->tri[c->n_tri], n, sizeof n);
+    c->from[c->n_tri++] = (uint32_t)t;
+  }
+}
+
+static double area_of(const struct vg_mesh *m, size_t t)
+{
+  double a[3], b[3], cross[3];
+
+  vg_sub(m->point[m->tri[t][1]], m->point[m->tri[t][0]], a);
+  vg_sub(m->point[m->tri[t][2]], m->point[m->tri[t][0]], b);
+  vg_cross(a, b, cross);
+  return vg_norm(cross) / 2;
+}
+
+/* Triangles that a lattice leaves: those larger than its cubes, and about
+ * LEFT for each of its squares that smaller ones cover. By every stride-th. */
+static double expected(const struct vg_mesh *m, size_t stride, double step)
+{
+  double n = 0;
+
+  for (size_t t = 0; t < m->n_tri; t += stride)
+    n += fmin(1, LEFT * area_of(m, t) / (step * step));
+  return n * (double)stride;
+}
+
+/* The finest step that may do. */
+static double first_step(const struct vg_mesh *m, size_t n)
+{
+  size_t stride = 1 + m->n_tri / 20000;
+  double step = INFINITY;
+
+  for (size_t t = 0; t < m->n_tri; t += stride)
+    if (area_of(m, t) > 0) step = fmin(step, sqrt(area_of(m, t)));
+  if (!(step > 0 && step < INFINITY)) step = 1e-300;
+  while (expected(m, stride, step) > (double)n) step *= COARSER;
+  return step;
+}
+
+vg_status vg_decimate(const struct vg_mesh *m, size_t n_most,
+                      struct vg_decimated *out, struct vg_error *err)
+{
+  struct cubes q = { 0, NULL, NULL, NULL, NULL };
+  struct vg_decimated c = VG_DECIMATED_INIT;
+  double lo[3], hi[3];
+  vg_status st = reserve(m, &q, &c, err);
+
+  if (st >= 0) {
+    vg_mesh_bounds(m, lo, hi);
+    merge_points(m, lo, 0, &q, &c);
+    keep_triangles(m, &q, &c);
+    while (c.n_tri > n_most) {
+      c.step = c.step > 0 ? COARSER * c.step : first_step(m, n_most);
+      merge_points(m, lo, c.step, &q, &c);
+      keep_triangles(m, &q, &c);
+    }
+    vg_decimated_release(out);
+    *out = c;
+  } else {
+    vg_decimated_release(&c);
+  }
+  release(&q);
+  return st;
+}

@@ -1,0 +1,438 @@
+/* Reports on viscous layers. Declared in run/input/layers.h. */
+#include <math.h>
+#include <string.h>
+
+#include "run/common/text.h"
+#include "run/input/layers.h"
+#include "run/report/report.h"
+
+#define FIRST_SHOWN 1e-3   /* relative difference of first heights */
+
+static const struct vg_patch *patch_of(const struct vg_mesh *surface,
+                                       const struct vg_patch_layers *w)
+{
+  return &surface->patch[w->patch];
+}
+
+/* "   3 wing            " or "all": the first column of every table. */
+static void row_name(FILE *to, const struct vg_mesh *surface,
+                     const struct vg_patch_layers *w)
+{
+  char name[VG_NAME_MAX];
+
+  if (surface)
+    fprintf(to, "  %5d %s", (int)patch_of(surface, w)->id,
+            vg_text_column(patch_of(surface, w)->name, 16, name,
+                           sizeof name));
+  else
+    fprintf(to, "  %5s %-16s", "all", "");
+}
+
+static void row_cover(FILE *to, const struct vg_mesh *surface,
+                      const struct vg_patch_layers *w)
+{
+  char count[32];
+
+  row_name(to, surface, w);
+  fprintf(to, " %11s %7.2f %7.2f %7.2f %5.0f %6.1f %4.0f\n",
+          vg_text_count(w->n_face, count), w->full, w->unsqueezed, w->any,
+          w->level.min, w->level.mean, w->level.max);
+}
+
+/* What most faces with fewer or thinner layers are limited by. */
+static const char *main_cause(const struct vg_patch_layers *w)
+{
+  int most = VG_CAUSE_NONE;
+  size_t n = 0;
+
+  for (int c = VG_CAUSE_PROXIMITY; c < VG_CAUSE_N; c++)
+    if (w->cause[c] + w->squeezed[c] > n) {
+      n = w->cause[c] + w->squeezed[c];
+      most = c;
+    }
+  return n ? vg_layer_cause_name((enum vg_layer_cause)most) : "";
+}
+
+static void row_height(FILE *to, const struct vg_mesh *surface,
+                       const struct vg_patch_layers *w)
+{
+  row_name(to, surface, w);
+  fprintf(to, " %11.3f %8.3f %16.2f   %s\n", w->share_mean, w->share_low,
+          w->share_area, main_cause(w));
+}
+
+static void row_first(FILE *to, const struct vg_mesh *surface,
+                      const struct vg_patch_layers *w)
+{
+  row_name(to, surface, w);
+  fprintf(to, " %10.4g %10.4g %10.4g %10.4g %8.3f\n", w->asked.mean,
+          w->first.min, w->first.mean, w->first.max, 100 * w->first_error);
+}
+
+static void row_total(FILE *to, const struct vg_mesh *surface,
+                      const struct vg_patch_layers *w)
+{
+  row_name(to, surface, w);
+  fprintf(to, " %9.3g %9.3g %9.3g %6.3f %6.3f", w->total.min, w->total.mean,
+          w->total.max, w->growth.mean, w->growth.max);
+  if (w->y_plus.max > 0)
+    fprintf(to, " %6.2f %6.2f %6.2f", w->y_plus.min, w->y_plus.mean,
+            w->y_plus.max);
+  fprintf(to, "\n");
+}
+
+/* First heights are the same on most patches: worth a line are those that
+ * ask for something else than all together, or get it. */
+static int is_first_special(const struct vg_layer_stage *s,
+                            const struct vg_patch_layers *w)
+{
+  return s->n_wall == 1 || w->first_error > FIRST_SHOWN ||
+         fabs(w->asked.mean - s->all.asked.mean) >
+           FIRST_SHOWN * s->all.asked.mean;
+}
+
+static int is_limited(const struct vg_layer_stage *s,
+                      const struct vg_patch_layers *w)
+{
+  return s->n_wall == 1 || w->share_area < 100;
+}
+
+static int has_tops(const struct vg_layer_stage *s,
+                    const struct vg_patch_layers *w)
+{
+  (void)s;
+  return w->n_top > 0;
+}
+
+static int is_any(const struct vg_layer_stage *s,
+                  const struct vg_patch_layers *w)
+{
+  (void)s;
+  (void)w;
+  return 1;
+}
+
+static void row_top(FILE *to, const struct vg_mesh *surface,
+                    const struct vg_patch_layers *w)
+{
+  row_name(to, surface, w);
+  fprintf(to, " %10.2f %7.2f %9.2f\n", w->top_ratio[0], w->top_ratio[1],
+          w->top_ratio[2]);
+}
+
+typedef void (*row_writer)(FILE *to, const struct vg_mesh *surface,
+                           const struct vg_patch_layers *w);
+
+typedef int (*row_chooser)(const struct vg_layer_stage *s,
+                           const struct vg_patch_layers *w);
+
+static void table(FILE *to, const struct vg_layer_stage *s,
+                  const struct vg_mesh *surface, const char *head,
+                  row_writer row, row_chooser choose)
+{
+  size_t n = 0;
+
+  fprintf(to, "\n  %5s %-16s %s\n", "patch", "name", head);
+  for (size_t i = 0; i < s->n_wall; i++)
+    if (choose(s, &s->wall[i]) && n++ < VG_SHOWN_PATCHES)
+      row(to, surface, &s->wall[i]);
+  if (n > VG_SHOWN_PATCHES)
+    fprintf(to, "  ... and %zu more patches (all are in the JSON report)\n",
+            n - VG_SHOWN_PATCHES);
+  if (s->n_wall > 1) row(to, NULL, &s->all);
+}
+
+/* ", proximity 12, corner 3" of counts that are reasons to tell. */
+static int cause_words(FILE *to, const char *lead, const size_t *count)
+{
+  char n[32];
+  int shown = 0;
+
+  for (int c = VG_CAUSE_PROXIMITY; c < VG_CAUSE_N; c++)
+    if (count[c])
+      fprintf(to, "%s%s %s", shown++ ? ", " : lead,
+              vg_layer_cause_name((enum vg_layer_cause)c),
+              vg_text_count(count[c], n));
+  return shown;
+}
+
+/* Faces that are full without any layer: the law asks for none there. */
+static size_t bare_faces(const struct vg_patch_layers *w)
+{
+  double percent = w->full - w->any;
+
+  return percent > 0 ? (size_t)((double)w->n_face * percent / 100 + 0.5) : 0;
+}
+
+void vg_report_layers_note(const struct vg_layer_stage *s,
+                           const struct vg_mesh *surface,
+                           struct vg_notes *notes)
+{
+  char list[12 * VG_SHOWN_DEFECTS + 8] = "";
+  size_t n = 0, at = 0;
+  double first = 0;
+
+  for (size_t i = 0; i < s->n_wall; i++) {
+    const struct vg_patch_layers *w = &s->wall[i];
+
+    if (!w->n_face || bare_faces(w) < w->n_face) continue;
+    if (n++ < VG_SHOWN_DEFECTS)
+      at += (size_t)snprintf(list + at, sizeof list - at, " %d",
+                             (int)patch_of(surface, w)->id);
+    if (n == VG_SHOWN_DEFECTS + 1) snprintf(list + at, sizeof list - at,
+                                            " ...");
+    first = fmax(first, s->request[w->patch].law.delta1);
+  }
+  if (n)
+    vg_note(notes, "no layers on %zu of %zu walls (patch%s%s): their first "
+            "height, %g, is above layer_end times the edge there; is it in "
+            "the unit of the surface?", n, s->n_wall, n > 1 ? "es" : "", list,
+            first);
+}
+
+static void causes(FILE *to, const struct vg_layer_stage *s,
+                   const struct vg_mesh *surface)
+{
+  size_t shown = 0;
+  char count[32];
+
+  for (size_t i = 0; i < s->n_wall && shown < VG_SHOWN_PATCHES; i++) {
+    const struct vg_patch_layers *w = &s->wall[i];
+    size_t bare = bare_faces(w), sum = bare;
+
+    for (int c = VG_CAUSE_PROXIMITY; c < VG_CAUSE_N; c++)
+      sum += w->cause[c] + w->squeezed[c];
+    if (!sum) continue;
+    if (!shown++) fprintf(to, "\n  faces with fewer or thinner layers, by "
+                              "cause\n");
+    row_name(to, surface, w);
+    if (cause_words(to, " fewer: ", w->cause)) fprintf(to, ";");
+    cause_words(to, " thinner: ", w->squeezed);
+    if (bare)
+      fprintf(to, " none: %s (first height above layer_end times the edge)",
+              vg_text_count(bare, count));
+    fprintf(to, "\n");
+  }
+}
+
+static unsigned long long rate(size_t n, double seconds)
+{
+  return seconds > 0 ? (unsigned long long)((double)n / seconds) : 0;
+}
+
+static void times(FILE *to, const struct vg_layer_stage *s)
+{
+  const struct vg_layer_report *r = &s->report;
+  char a[32], b[32];
+
+  fprintf(to, "\n  seconds: topology %.2f, directions %.2f, heights %.2f, "
+          "clearance %.2f,\n  slide patches %.2f, total %.2f (%s columns/s, "
+          "%s layer cells/s); measure %.2f, join %.2f\n", r->time_topology,
+          r->time_direction, r->time_height, r->time_clear, r->time_slide,
+          r->time_total, vg_text_count(rate(r->n_column, r->time_total), a),
+          vg_text_count(rate(r->n_cell, r->time_total), b), s->time_measure,
+          s->join.time);
+}
+
+static void sizes(FILE *to, const struct vg_layer_stage *s)
+{
+  const struct vg_layer_report *r = &s->report;
+  const struct vg_join_info *j = &s->join;
+  char a[32], b[32], c[32];
+
+  fprintf(to, "  %s columns on %s wall points, %s wall triangles",
+          vg_text_count(r->n_column, a), vg_text_count(r->n_wall_point, b),
+          vg_text_count(r->n_wall_tri, c));
+  if (r->n_virtual_face)
+    fprintf(to, ", %s faces in fans", vg_text_count(r->n_virtual_face, a));
+  fprintf(to, "\n  layer cells: %s tetrahedra, %s prisms, %s pyramids\n",
+          vg_text_count(j->n_layer_tet, a), vg_text_count(j->n_layer_pri, b),
+          vg_text_count(j->n_layer_pyr, c));
+  fprintf(to, "  rounds of lowering until clear: %zu; patches re-meshed: %zu "
+          "with %s triangles\n", r->n_round, r->n_slide_patch,
+          vg_text_count(r->n_slide_tri, a));
+  if (r->n_many_faces)
+    fprintf(to, "  columns of more than %d faces, for which some rays are not "
+            "traced: %zu\n", VG_AHEAD_FACES, r->n_many_faces);
+}
+
+void vg_report_layers_text(FILE *to, const struct vg_layer_stage *s,
+                           const struct vg_mesh *surface)
+{
+  const char *with_y_plus = "    total: least, mean, most   growth: mean, max"
+                            "   y+: min mean max";
+  const char *without = "    total: least, mean, most   growth: mean, max";
+  char a[32], b[32];
+
+  sizes(to, s);
+  table(to, s, surface, "      faces  full %  as law   any %  levels: min, "
+        "mean, max", row_cover, is_any);
+  table(to, s, surface, "height over the law's: mean, 5 % below, % of area "
+        ">= 0.9, limited by", row_height, is_limited);
+  table(to, s, surface, "first asked   got: min       mean        max  "
+        "error %", row_first, is_first_special);
+  table(to, s, surface, s->all.y_plus.max > 0 ? with_y_plus : without,
+        row_total, is_any);
+  table(to, s, surface, "volume ratio across the top: median, 95 %, largest",
+        row_top, has_tops);
+  causes(to, s, surface);
+  fprintf(to, "\n  smallest angle of a top %.1f degrees; whole prisms %s, "
+          "with a bad corner %s\n", s->judgement.angle_of_top_min,
+          vg_text_count(s->judgement.n_prism, a),
+          vg_text_count(s->judgement.n_bad_corner, b));
+  times(to, s);
+}
+
+void vg_report_missed_text(FILE *to, const struct vg_layer_stage *s,
+                           const struct vg_mesh *surface)
+{
+  for (size_t i = 0; i < s->n_missed; i++) {
+    const struct vg_limit_missed *m = &s->missed[i];
+    const struct vg_patch *p = &surface->patch[m->patch];
+
+    fprintf(to, "limit not met: patch %d%s%s: %s is %.10g%s, reached %.10g%s"
+            "\n", (int)p->id, *p->name ? " " : "", p->name, m->name,
+            m->wanted, m->unit, m->got, m->unit);
+  }
+}
+
+static json_t *real(double v)
+{
+  return isfinite(v) ? json_real(v) : json_null();
+}
+
+static json_t *whole(size_t n)
+{
+  return json_integer((json_int_t)n);
+}
+
+static json_t *range(const struct vg_range *r)
+{
+  return json_pack("{s:o s:o s:o}", "min", real(r->min), "mean",
+                   real(r->mean), "max", real(r->max));
+}
+
+static json_t *causes_json(const size_t *count)
+{
+  json_t *o = json_object();
+
+  for (int c = 0; c < VG_CAUSE_N; c++)
+    json_object_set_new(o, vg_layer_cause_name((enum vg_layer_cause)c),
+                        whole(count[c]));
+  return o;
+}
+
+static json_t *wall_json(const struct vg_patch_layers *w)
+{
+  const struct { const char *name; const struct vg_range *r; } ranges[] = {
+    { "first_asked", &w->asked }, { "first", &w->first },
+    { "levels", &w->level }, { "total", &w->total },
+    { "growth", &w->growth }, { "y_plus", &w->y_plus },
+  };
+  json_t *o = json_object();
+
+  json_object_set_new(o, "faces", whole(w->n_face));
+  json_object_set_new(o, "points", whole(w->n_point));
+  json_object_set_new(o, "percent_full", real(w->full));
+  json_object_set_new(o, "percent_unsqueezed", real(w->unsqueezed));
+  json_object_set_new(o, "percent_any", real(w->any));
+  json_object_set_new(o, "height_over_law", json_pack(
+    "{s:o s:o s:o}", "mean", real(w->share_mean), "percentile_5",
+    real(w->share_low), "percent_area_above_0.9", real(w->share_area)));
+  for (size_t i = 0; i < sizeof ranges / sizeof *ranges; i++)
+    json_object_set_new(o, ranges[i].name, range(ranges[i].r));
+  json_object_set_new(o, "top_volume_ratio", json_pack(
+    "{s:o s:o s:o s:o s:[f,f,f]}", "faces", whole(w->n_top), "median",
+    real(w->top_ratio[0]), "percentile_95", real(w->top_ratio[1]), "max",
+    real(w->top_ratio[2]), "max_at", w->top_at[0], w->top_at[1],
+    w->top_at[2]));
+  json_object_set_new(o, "first_error_percent", real(100 * w->first_error));
+  json_object_set_new(o, "fewer_by_cause", causes_json(w->cause));
+  json_object_set_new(o, "thinner_by_cause", causes_json(w->squeezed));
+  return o;
+}
+
+static json_t *walls_json(const struct vg_layer_stage *s,
+                          const struct vg_mesh *surface)
+{
+  json_t *list = json_array();
+
+  for (size_t i = 0; i < s->n_wall; i++) {
+    const struct vg_patch *p = patch_of(surface, &s->wall[i]);
+    json_t *o = wall_json(&s->wall[i]);
+
+    json_object_set_new(o, "patch", json_integer(p->id));
+    json_object_set_new(o, "name", vg_text_json(p->name));
+    json_object_set_new(o, "wall_by", json_string(
+      vg_wall_reason_name(s->reason[s->wall[i].patch])));
+    json_array_append_new(list, o);
+  }
+  return list;
+}
+
+static json_t *missed_json(const struct vg_layer_stage *s,
+                           const struct vg_mesh *surface)
+{
+  json_t *list = json_array();
+
+  for (size_t i = 0; i < s->n_missed; i++) {
+    const struct vg_limit_missed *m = &s->missed[i];
+    const struct vg_patch *p = &surface->patch[m->patch];
+
+    json_array_append_new(list, json_pack("{s:i s:o s:s s:o s:o}", "patch",
+      (int)p->id, "name", vg_text_json(p->name), "limit", m->name,
+      "wanted", real(m->wanted), "got", real(m->got)));
+  }
+  return list;
+}
+
+static json_t *seconds_json(const struct vg_layer_stage *s)
+{
+  const struct vg_layer_report *r = &s->report;
+
+  return json_pack("{s:f s:f s:f s:f s:f s:f s:f s:f}", "topology",
+    r->time_topology, "directions", r->time_direction, "heights",
+    r->time_height, "clearance", r->time_clear, "slide", r->time_slide,
+    "total", r->time_total, "measure", s->time_measure, "join",
+    s->join.time);
+}
+
+json_t *vg_report_layers_json(const struct vg_layer_stage *s,
+                              const struct vg_mesh *surface)
+{
+  const struct vg_layer_report *r = &s->report;
+  const struct { const char *name; size_t n; } row[] = {
+    { "wall_points", r->n_wall_point }, { "wall_triangles", r->n_wall_tri },
+    { "columns", r->n_column }, { "virtual_faces", r->n_virtual_face },
+    { "points", r->n_layer_point }, { "tetrahedra", s->join.n_layer_tet },
+    { "pyramids", s->join.n_layer_pyr }, { "prisms", s->join.n_layer_pri },
+    { "tetrahedra_if_all_are", r->n_cell }, { "rounds", r->n_round },
+    { "columns_of_many_faces", r->n_many_faces },
+    { "slide_patches", r->n_slide_patch },
+    { "slide_triangles", r->n_slide_tri },
+    { "whole_prisms", s->judgement.n_prism },
+    { "prisms_with_bad_corner", s->judgement.n_bad_corner },
+    { "edges_with_steps_of_levels", s->judgement.n_step },
+  };
+  json_t *o = json_object();
+
+  for (size_t i = 0; i < sizeof row / sizeof *row; i++)
+    json_object_set_new(o, row[i].name, whole(row[i].n));
+  json_object_set_new(o, "angle_of_top_min",
+                      real(s->judgement.angle_of_top_min));
+  json_object_set_new(o, "reynolds", real(s->reynolds));
+  json_object_set_new(o, "reference_length", real(s->length));
+  json_object_set_new(o, "columns_by_cause", causes_json(r->cause));
+  json_object_set_new(o, "columns_squeezed_by_cause",
+                      causes_json(r->squeezed));
+  json_object_set_new(o, "patches", walls_json(s, surface));
+  json_object_set_new(o, "all", wall_json(&s->all));
+  json_object_set_new(o, "limits_met", json_boolean(!s->n_missed));
+  json_object_set_new(o, "limits_missed", missed_json(s, surface));
+  json_object_set_new(o, "seconds", seconds_json(s));
+  json_object_set_new(o, "columns_per_second",
+                      whole(rate(r->n_column, r->time_total)));
+  json_object_set_new(o, "cells_per_second",
+                      whole(rate(r->n_cell, r->time_total)));
+  return o;
+}

@@ -1,0 +1,331 @@
+/* Reports on volume meshes and the fill. Declared in run/report/report.h. */
+#include <math.h>
+#include <string.h>
+#include <sys/resource.h>
+
+#include "run/common/text.h"
+#include "run/report/report.h"
+
+#define BAR_WIDTH 40
+
+double vg_report_peak_memory(void)
+{
+  struct rusage use;
+
+  if (getrusage(RUSAGE_SELF, &use)) return 0;
+  return 1024.0 * (double)use.ru_maxrss;
+}
+
+/* The rows of validity, for both forms of the report. */
+static size_t validity(const struct vg_mesh_report *r, int i,
+                       const char **name)
+{
+  const struct { const char *name; size_t n; } row[] = {
+    { "indices out of range", r->bad_index },
+    { "points not finite", r->not_finite },
+    { "unused points", r->unused_point },
+    { "duplicate points", r->duplicate_point },
+    { "cells not positive", r->not_positive },
+    { "open faces", r->open_face },
+    { "faces of three cells", r->crowded_face },
+    { "neighbours on one side", r->same_side_face },
+    { "boundary without cell", r->orphan_boundary },
+    { "boundary outward", r->outward_boundary },
+  };
+
+  if (i >= (int)(sizeof row / sizeof *row)) {
+    *name = NULL;
+    return 0;
+  }
+  *name = row[i].name;
+  return row[i].n;
+}
+
+static void bars(FILE *to, const char *title, const size_t *hist, int n,
+                 double width, int digits)
+{
+  size_t total = 0, most = 0;
+  int first = n, last = -1;
+  char bar[BAR_WIDTH + 1], count[32];
+
+  for (int i = 0; i < n; i++) {
+    total += hist[i];
+    if (hist[i] > most) most = hist[i];
+    if (hist[i] && first == n) first = i;
+    if (hist[i]) last = i;
+  }
+  if (!total) return;
+  fprintf(to, "\n  %s\n", title);
+  for (int i = first; i <= last; i++) {
+    size_t len = (size_t)(BAR_WIDTH * (double)hist[i] / (double)most + 0.5);
+
+    memset(bar, '#', len);
+    bar[len] = 0;
+    fprintf(to, "  %6.*f - %6.*f %13s %7.3f %%  %s\n", digits, width * i,
+            digits, width * (i + 1), vg_text_count(hist[i], count),
+            100.0 * (double)hist[i] / (double)total, bar);
+  }
+}
+
+static void validity_text(FILE *to, const struct vg_mesh_report *r)
+{
+  const char *name;
+  char count[32];
+
+  fprintf(to, "  validity: %s\n", r->is_valid ? "valid" : "NOT VALID");
+  for (int i = 0; ; i++) {
+    size_t n = validity(r, i, &name);
+
+    if (!name) break;
+    if (n) fprintf(to, "    %-24s %13s\n", name, vg_text_count(n, count));
+  }
+  fprintf(to, "  volume %.10g, enclosed by the boundary %.10g, difference "
+          "%.2g\n", r->volume, r->enclosed, r->volume_error);
+  fprintf(to, "  connected regions: %zu\n", r->n_component);
+}
+
+void vg_report_faults(const struct vg_mesh_report *r, char *text, size_t size)
+{
+  const char *name;
+  size_t at = 0;
+
+  snprintf(text, size, "volumes differ by %.2g", r->volume_error);
+  for (int i = 0; ; i++) {
+    size_t n = validity(r, i, &name);
+
+    if (!name) break;
+    if (n && at < size)
+      at += (size_t)snprintf(text + at, size - at, "%s%zu %s",
+                             at ? ", " : "", n, name);
+  }
+}
+
+static void quality_text(FILE *to, const struct vg_mesh_report *r)
+{
+  fprintf(to, "  dihedral angles: smallest %.2f, largest %.2f, 1st "
+          "percentile of the smallest %.2f degrees\n", r->angle_min,
+          r->angle_max, r->angle_min_p1);
+  fprintf(to, "  cells below  5 10 15 20 30 degrees: %.4f %.4f %.4f %.4f "
+          "%.4f %%\n", r->below[0], r->below[1], r->below[2], r->below[3],
+          r->below[4]);
+  fprintf(to, "  cells above  150 160 170 degrees:   %.4f %.4f %.4f %%\n",
+          r->above[0], r->above[1], r->above[2]);
+  fprintf(to, "  radius ratio 3 r/R: mean %.4f, smallest %.4f; mean ratio: "
+          "mean %.4f\n", r->radius_ratio_mean, r->radius_ratio_min,
+          r->mean_ratio_mean);
+  fprintf(to, "  volume ratio of neighbours: median %.2f, 95 %% below %.2f, "
+          "largest %.1f\n", r->volume_ratio[0], r->volume_ratio[1],
+          r->volume_ratio[2]);
+  if (r->has_sizing)
+    fprintf(to, "  edges / target spacing: mean %.3f, within 0.7 to 1.5: "
+            "%.2f %%\n", r->edge_mean, r->edge_within);
+}
+
+void vg_report_whole_text(FILE *to, const struct vg_mesh_report *r)
+{
+  validity_text(to, r);
+  fprintf(to, "  volume ratio of neighbours: median %.2f, 95 %% below %.2f, "
+          "largest %.1f\n", r->volume_ratio[0], r->volume_ratio[1],
+          r->volume_ratio[2]);
+}
+
+void vg_report_mesh_text(FILE *to, const struct vg_mesh_report *r, int full)
+{
+  validity_text(to, r);
+  quality_text(to, r);
+  if (!full) return;
+  bars(to, "smallest dihedral angle of a cell, degrees", r->hist_angle_min,
+       VG_HIST_ANGLE, 5, 0);
+  bars(to, "largest dihedral angle of a cell, degrees", r->hist_angle_max,
+       VG_HIST_ANGLE, 5, 0);
+  bars(to, "radius ratio", r->hist_radius_ratio, VG_HIST_UNIT, 0.05, 2);
+  if (r->has_sizing)
+    bars(to, "edge length / target spacing", r->hist_edge, VG_HIST_UNIT, 0.1,
+         1);
+  if (r->n_worst) fprintf(to, "\n  worst cells\n");
+  for (size_t i = 0; i < r->n_worst; i++)
+    fprintf(to, "    cell %zu: smallest angle %.2f degrees at %g %g %g\n",
+            r->worst[i].cell + 1, r->worst[i].value, r->worst[i].at[0],
+            r->worst[i].at[1], r->worst[i].at[2]);
+}
+
+static json_t *real(double v)
+{
+  return isfinite(v) ? json_real(v) : json_null();
+}
+
+static json_t *reals(const double *v, int n)
+{
+  json_t *list = json_array();
+
+  for (int i = 0; i < n; i++) json_array_append_new(list, real(v[i]));
+  return list;
+}
+
+static json_t *counts(const size_t *v, int n)
+{
+  json_t *list = json_array();
+
+  for (int i = 0; i < n; i++)
+    json_array_append_new(list, json_integer((json_int_t)v[i]));
+  return list;
+}
+
+static json_t *worst_json(const struct vg_mesh_report *r)
+{
+  json_t *list = json_array();
+
+  for (size_t i = 0; i < r->n_worst; i++) {
+    json_t *one = json_object();
+
+    json_object_set_new(one, "cell",
+                        json_integer((json_int_t)r->worst[i].cell + 1));
+    json_object_set_new(one, "angle_min", real(r->worst[i].value));
+    json_object_set_new(one, "at", reals(r->worst[i].at, 3));
+    json_array_append_new(list, one);
+  }
+  return list;
+}
+
+static json_t *validity_json(const struct vg_mesh_report *r)
+{
+  json_t *o = json_object();
+  const char *name;
+
+  for (int i = 0; ; i++) {
+    size_t n = validity(r, i, &name);
+
+    if (!name) break;
+    json_object_set_new(o, name, json_integer((json_int_t)n));
+  }
+  return o;
+}
+
+static json_t *edges_json(const struct vg_mesh_report *r)
+{
+  json_t *o;
+
+  if (!r->has_sizing) return json_null();
+  o = json_object();
+  json_object_set_new(o, "mean", real(r->edge_mean));
+  json_object_set_new(o, "percent_within", real(r->edge_within));
+  json_object_set_new(o, "histogram", counts(r->hist_edge, VG_HIST_UNIT));
+  return o;
+}
+
+json_t *vg_report_mesh_json(const struct vg_mesh_report *r)
+{
+  json_t *o = json_object();
+
+  json_object_set_new(o, "valid", json_boolean(r->is_valid));
+  json_object_set_new(o, "validity", validity_json(r));
+  json_object_set_new(o, "points", json_integer((json_int_t)r->n_point));
+  json_object_set_new(o, "cells", json_integer((json_int_t)r->n_cell));
+  json_object_set_new(o, "regions", json_integer((json_int_t)r->n_component));
+  json_object_set_new(o, "volume", real(r->volume));
+  json_object_set_new(o, "enclosed", real(r->enclosed));
+  json_object_set_new(o, "volume_error", real(r->volume_error));
+  json_object_set_new(o, "angle_min", real(r->angle_min));
+  json_object_set_new(o, "angle_max", real(r->angle_max));
+  json_object_set_new(o, "angle_min_p1", real(r->angle_min_p1));
+  json_object_set_new(o, "percent_below_5_10_15_20_30", reals(r->below, 5));
+  json_object_set_new(o, "percent_above_150_160_170", reals(r->above, 3));
+  json_object_set_new(o, "radius_ratio_mean", real(r->radius_ratio_mean));
+  json_object_set_new(o, "radius_ratio_min", real(r->radius_ratio_min));
+  json_object_set_new(o, "mean_ratio_mean", real(r->mean_ratio_mean));
+  json_object_set_new(o, "volume_ratio_median_95_max",
+                      reals(r->volume_ratio, 3));
+  json_object_set_new(o, "histogram_angle_min",
+                      counts(r->hist_angle_min, VG_HIST_ANGLE));
+  json_object_set_new(o, "histogram_angle_max",
+                      counts(r->hist_angle_max, VG_HIST_ANGLE));
+  json_object_set_new(o, "histogram_radius_ratio",
+                      counts(r->hist_radius_ratio, VG_HIST_UNIT));
+  json_object_set_new(o, "edges", edges_json(r));
+  json_object_set_new(o, "worst", worst_json(r));
+  return o;
+}
+
+static void other_text(FILE *to, const struct vg_fill_report *r)
+{
+  size_t back = r->n_other_failed + r->n_other_ended + r->n_other_wrong;
+  char a[32], b[32], c[32];
+
+  if (!r->n_other && !back) return;
+  fprintf(to, "  parts filled by the other mesher %s: %s cells in %.2f s (%s "
+          "cells/s)\n", vg_text_count(r->n_other, a),
+          vg_text_count(r->n_other_cell, b), r->time_other,
+          vg_text_count((unsigned long long)
+                       (r->time_other > 0 ? (double)r->n_other_cell /
+                                              r->time_other : 0), c));
+  if (back)
+    fprintf(to, "  parts that it did not fill, and the built-in one did: %zu "
+            "(%zu given back, %zu crashed\n  or without end, %zu not filled "
+            "as they should be)\n", back, r->n_other_failed,
+            r->n_other_ended, r->n_other_wrong);
+}
+
+void vg_report_fill_text(FILE *to, const struct vg_fill_report *r,
+                         size_t n_cell)
+{
+  char a[32], b[32], c[32];
+  double rate = r->time_total > 0 ? (double)n_cell / r->time_total : 0;
+
+  fprintf(to, "  field points inserted %s, refused %s\n",
+          vg_text_count(r->n_inserted, a), vg_text_count(r->n_refused, b));
+  fprintf(to, "  surface triangles recovered %s; pockets closed %s with %zu "
+          "cells, retries %zu%s\n",
+          vg_text_count(r->n_surface_face_lost, a),
+          vg_text_count(r->n_pocket, b), r->n_pocket_cell, r->n_retry,
+          r->whole_void ? "; a whole void was closed by TetGen" : "");
+  other_text(to, r);
+  if (r->n_list_cut)
+    fprintf(to, "  points with more neighbours than are looked at: %zu (some "
+            "may be too near to each other)\n", r->n_list_cut);
+  if (r->n_steiner)
+    fprintf(to, "  points added to recover the boundary: %zu\n",
+            r->n_steiner);
+  fprintf(to, "  optimisation: smoothed %s, swapped %s, collapsed %s, split "
+          "%zu\n", vg_text_count(r->n_smoothed, a),
+          vg_text_count(r->n_flip, b), vg_text_count(r->n_collapse, c),
+          r->n_split);
+  if (r->n_left)
+    fprintf(to, "  bad cells into which no point was tried to be put, after "
+            "enough others: %s\n", vg_text_count(r->n_left, a));
+  fprintf(to, "  seconds: boundary %.2f, place %.2f, insert %.2f, optimise "
+          "%.2f, total %.2f (%s cells/s)\n", r->time_boundary, r->time_place,
+          r->time_insert, r->time_optimise, r->time_total,
+          vg_text_count((unsigned long long)rate, a));
+}
+
+json_t *vg_report_fill_json(const struct vg_fill_report *r, size_t n_cell)
+{
+  const struct { const char *name; size_t n; } row[] = {
+    { "triangles_recovered", r->n_surface_face_lost },
+    { "pockets", r->n_pocket },
+    { "pocket_cells", r->n_pocket_cell }, { "retries", r->n_retry },
+    { "steiner_points", r->n_steiner }, { "placed", r->n_placed },
+    { "parts_by_other_mesher", r->n_other },
+    { "cells_by_other_mesher", r->n_other_cell },
+    { "parts_given_back", r->n_other_failed },
+    { "parts_crashed", r->n_other_ended },
+    { "parts_not_valid", r->n_other_wrong },
+    { "inserted", r->n_inserted }, { "refused", r->n_refused },
+    { "smoothed", r->n_smoothed }, { "swapped", r->n_flip },
+    { "collapsed", r->n_collapse }, { "split", r->n_split },
+    { "lists_cut_short", r->n_list_cut }, { "bad_cells_left", r->n_left },
+  };
+  json_t *o = json_object();
+
+  for (size_t i = 0; i < sizeof row / sizeof *row; i++)
+    json_object_set_new(o, row[i].name, json_integer((json_int_t)row[i].n));
+  json_object_set_new(o, "whole_void", json_boolean(r->whole_void));
+  json_object_set_new(o, "seconds", json_pack("{s:f s:f s:f s:f s:f s:f}",
+    "other_mesher", r->time_other, "boundary", r->time_boundary, "place",
+    r->time_place, "insert", r->time_insert, "optimise", r->time_optimise,
+    "total", r->time_total));
+  json_object_set_new(o, "cells_per_second",
+                      real(r->time_total > 0
+                           ? (double)n_cell / r->time_total : 0));
+  return o;
+}

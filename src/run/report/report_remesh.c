@@ -1,0 +1,105 @@
+#include "run/report/report.h"
+
+#include "core/remesh/remesh.h"
+#include "run/common/text.h"
+
+static double percent(size_t part, size_t whole)
+{
+  return whole ? 100 * (double)part / (double)whole : 0;
+}
+
+static void distance_text(FILE *to, const char *what,
+                          const struct vg_remesh_distance *d)
+{
+  fprintf(to, "  %s: %.3g at most, at (%.6g, %.6g, %.6g); 99 %%: %.3g\n",
+          what, d->most, d->at[0], d->at[1], d->at[2], d->most_99);
+}
+
+void vg_report_remesh_text(FILE *to, const struct vg_renewal *n)
+{
+  const struct vg_remesh_report *r = &n->report;
+  char was[32], now[32];
+  size_t shown = 0;
+
+  if (!n->is_done) return;
+  fprintf(to, "  made anew: %s triangles, now %s; %zu corners and %zu lines "
+          "kept, length %.6g, now %.6g\n", vg_text_count(r->n_tri[0], was),
+          vg_text_count(r->n_tri[1], now), r->n_corner, r->n_line,
+          r->line_length[0], r->line_length[1]);
+  fprintf(to, "  sizes %.3g to %.3g; edges within a factor 1.41 of the size: "
+          "%.2f %%\n", r->h_min, r->h_max, percent(r->n_edge_fit, r->n_edge));
+  fprintf(to, "  tolerance %.3g (and 0.05 of the size)\n", r->tolerance);
+  distance_text(to, "new from given", &n->off[0]);
+  distance_text(to, "given from new", &n->off[1]);
+  if (r->n_round > 1)
+    fprintf(to, "  made %d times: triangles met, and sizes there were "
+            "halved\n", r->n_round);
+  if (!r->n_bad) return;
+  fprintf(to, "  below %g degrees: %zu triangles;", VG_REMESH_BAD, r->n_bad);
+  for (int c = 0; c < VG_REMESH_N; c++)
+    fprintf(to, " %s %zu", vg_remesh_cause_name((enum vg_remesh_cause)c),
+            r->cause[c]);
+  fprintf(to, "\n");
+  for (size_t i = 0; i < r->n_bad && shown < VG_SHOWN_FACES; i++, shown++)
+    fprintf(to, "    %s, face %zu, angle %.2g, at (%.6g, %.6g, %.6g)\n",
+            vg_remesh_cause_name(r->bad[i].cause), r->bad[i].face + 1,
+            r->bad[i].angle, r->bad[i].at[0], r->bad[i].at[1],
+            r->bad[i].at[2]);
+  if (r->n_bad > shown) fprintf(to, "    ... and %zu more\n",
+                                r->n_bad - shown);
+}
+
+static json_t *distance_json(const struct vg_remesh_distance *d)
+{
+  return json_pack("{s:f s:[fff] s:f}", "largest", d->most, "at", d->at[0],
+                   d->at[1], d->at[2], "percentile_99", d->most_99);
+}
+
+static json_t *patches_json(const struct vg_renewal *n,
+                            const struct vg_mesh *m)
+{
+  json_t *list = json_array();
+
+  for (size_t i = 0; i < n->n_patch; i++)
+    json_array_append_new(list, json_pack("{s:i s:o s:[ff]}", "id",
+      (int)m->patch[i].id, "name", vg_text_json(m->patch[i].name), "area",
+      n->area[2 * i], n->area[2 * i + 1]));
+  return list;
+}
+
+static json_t *bad_json(const struct vg_remesh_report *r)
+{
+  json_t *list = json_array();
+
+  for (size_t i = 0; i < r->n_bad; i++) {
+    const struct vg_remesh_bad *b = &r->bad[i];
+
+    json_array_append_new(list, json_pack("{s:s s:I s:f s:[fff]}", "cause",
+      vg_remesh_cause_name(b->cause), "face", (json_int_t)b->face + 1,
+      "angle", b->angle, "at", b->at[0], b->at[1], b->at[2]));
+  }
+  return list;
+}
+
+json_t *vg_report_remesh_json(const struct vg_renewal *n,
+                              const struct vg_mesh *m)
+{
+  const struct vg_remesh_report *r = &n->report;
+
+  if (!n->is_done) return json_null();
+  return json_pack("{s:[II] s:[II] s:I s:I s:[ff] s:f s:f s:f s:f s:i s:f s:o "
+                   "s:o s:{s:I s:I s:I s:I} s:f s:o s:o}",
+    "triangles", (json_int_t)r->n_tri[0], (json_int_t)r->n_tri[1],
+    "points", (json_int_t)r->n_point[0], (json_int_t)r->n_point[1],
+    "corners", (json_int_t)r->n_corner, "lines", (json_int_t)r->n_line,
+    "line_length", r->line_length[0], r->line_length[1],
+    "tolerance", r->tolerance, "body_length", r->length,
+    "size_min", r->h_min, "size_max", r->h_max, "rounds", r->n_round,
+    "percent_edges_fit", percent(r->n_edge_fit, r->n_edge),
+    "new_from_given", distance_json(&n->off[0]),
+    "given_from_new", distance_json(&n->off[1]),
+    "changes", "splits", (json_int_t)r->n_split, "collapses",
+    (json_int_t)r->n_collapse, "swaps", (json_int_t)r->n_swap, "moves",
+    (json_int_t)r->n_move, "seconds", n->seconds,
+    "patches", patches_json(n, m), "below_20_degrees", bad_json(r));
+}

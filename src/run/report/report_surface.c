@@ -1,0 +1,318 @@
+/* Reports on surfaces and domains. Declared in run/report/report.h. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/surface/surface_quality.h"
+#include "run/common/text.h"
+#include "run/report/report.h"
+
+static size_t n_cell(const struct vg_mesh *m)
+{
+  return m->n_tet + m->n_pyr + m->n_pri + m->n_hex;
+}
+
+static void count_line(FILE *to, const char *what, size_t n)
+{
+  char text[32];
+
+  if (n) fprintf(to, "  %-24s %15s\n", what, vg_text_count(n, text));
+}
+
+void vg_report_size_text(FILE *to, const struct vg_mesh *m)
+{
+  double lo[3], hi[3];
+
+  vg_mesh_bounds(m, lo, hi);
+  count_line(to, "points", m->n_point);
+  count_line(to, "boundary triangles", m->n_tri);
+  count_line(to, "boundary quadrilaterals", m->n_quad);
+  count_line(to, "tetrahedra", m->n_tet);
+  count_line(to, "pyramids", m->n_pyr);
+  count_line(to, "prisms", m->n_pri);
+  count_line(to, "hexahedra", m->n_hex);
+  count_line(to, "patches", m->n_patch);
+  fprintf(to, "  %-24s %g %g %g to %g %g %g\n", "box", lo[0], lo[1], lo[2],
+          hi[0], hi[1], hi[2]);
+}
+
+json_t *vg_report_size_json(const struct vg_mesh *m)
+{
+  double lo[3], hi[3];
+
+  vg_mesh_bounds(m, lo, hi);
+  return json_pack("{s:I s:I s:I s:I s:I s:I s:I s:I s:I s:[fff] s:[fff]}",
+                   "points", (json_int_t)m->n_point,
+                   "triangles", (json_int_t)m->n_tri,
+                   "quadrilaterals", (json_int_t)m->n_quad,
+                   "cells", (json_int_t)n_cell(m),
+                   "tetrahedra", (json_int_t)m->n_tet,
+                   "pyramids", (json_int_t)m->n_pyr,
+                   "prisms", (json_int_t)m->n_pri,
+                   "hexahedra", (json_int_t)m->n_hex,
+                   "patches", (json_int_t)m->n_patch,
+                   "lower", lo[0], lo[1], lo[2],
+                   "upper", hi[0], hi[1], hi[2]);
+}
+
+/* Faces per patch; NULL when memory is refused. */
+static size_t *patch_faces(const struct vg_mesh *m)
+{
+  size_t *n = vg_calloc(m->n_patch, sizeof *n);
+
+  for (size_t i = 0; n && i < m->n_tri; i++) n[m->tri_patch[i]]++;
+  for (size_t i = 0; n && i < m->n_quad; i++) n[m->quad_patch[i]]++;
+  return n;
+}
+
+static void code_text(int32_t code, char *text, size_t size)
+{
+  if (code == VG_BC_NONE) snprintf(text, size, "-");
+  else snprintf(text, size, "%d", (int)code);
+}
+
+vg_status vg_report_patches_text(FILE *to, const struct vg_mesh *m,
+                                 struct vg_error *err)
+{
+  size_t *faces = patch_faces(m);
+  char count[32], bc[16], fun3d[16], name[VG_NAME_MAX];
+
+  if (!faces) return vg_fail_memory(err, "a report");
+  fprintf(to, "  %8s %15s %6s %6s  %s\n", "patch", "faces", "USM3D", "FUN3D",
+          "name");
+  for (size_t i = 0; i < m->n_patch && i < VG_SHOWN_PATCHES; i++) {
+    code_text(m->patch[i].bc, bc, sizeof bc);
+    code_text(m->patch[i].bc_fun3d, fun3d, sizeof fun3d);
+    fprintf(to, "  %8d %15s %6s %6s  %s\n", (int)m->patch[i].id,
+            vg_text_count(faces[i], count), bc, fun3d,
+            vg_text_clean(m->patch[i].name, name, sizeof name));
+  }
+  if (m->n_patch > VG_SHOWN_PATCHES)
+    fprintf(to, "  ... and %zu more\n", m->n_patch - VG_SHOWN_PATCHES);
+  free(faces);
+  return VG_OK;
+}
+
+static json_t *code_json(int32_t code)
+{
+  return code == VG_BC_NONE ? json_null() : json_integer(code);
+}
+
+json_t *vg_report_patches_json(const struct vg_mesh *m)
+{
+  size_t *faces = patch_faces(m);
+  json_t *list = json_array();
+
+  for (size_t i = 0; faces && i < m->n_patch; i++)
+    json_array_append_new(list,
+      json_pack("{s:i s:o s:o s:o s:I}", "id", (int)m->patch[i].id, "name",
+                vg_text_json(m->patch[i].name), "usm3d",
+                code_json(m->patch[i].bc), "fun3d",
+                code_json(m->patch[i].bc_fun3d), "faces",
+                (json_int_t)faces[i]));
+  free(faces);
+  return list;
+}
+
+static void shells_text(FILE *to, const struct vg_surface_report *r)
+{
+  char count[32];
+
+  fprintf(to, "  %-24s %15s%s\n", "shells", vg_text_count(r->n_shell, count),
+          r->is_closed ? "  (closed)" : "  (not closed)");
+  for (size_t i = 0; i < r->n_shell && i < VG_SHOWN_DEFECTS; i++) {
+    const struct vg_shell *s = &r->shell[i];
+
+    fprintf(to, "    shell %zu: %s triangles, depth %d, volume %g, box %g %g "
+            "%g to %g %g %g\n", i + 1, vg_text_count(s->n_tri, count),
+            s->depth, s->volume, s->lo[0], s->lo[1], s->lo[2], s->hi[0],
+            s->hi[1], s->hi[2]);
+  }
+  if (r->n_shell > VG_SHOWN_DEFECTS)
+    fprintf(to, "    ... and %zu more\n", r->n_shell - VG_SHOWN_DEFECTS);
+}
+
+static void repair_text(FILE *to, const struct vg_surface_report *r)
+{
+  /* Where all was turned, those that were not had been turned before. */
+  size_t single = r->n_flipped;
+
+  if (r->turned_inside_out) {
+    single = 0;
+    for (size_t i = 0; i < r->n_shell; i++) single += r->shell[i].n_tri;
+    single -= r->n_flipped;
+    fprintf(to, "  repaired: the whole surface was turned, so that it points "
+            "into the fluid\n");
+  }
+  if (single)
+    fprintf(to, "  repaired: %zu triangles turned to agree with their "
+            "neighbours\n", single);
+  if (r->n_removed_point)
+    fprintf(to, "  repaired: %zu unused or duplicate points removed\n",
+            r->n_removed_point);
+  if (r->n_removed_tri)
+    fprintf(to, "  repaired: %zu duplicate or degenerate triangles removed\n",
+            r->n_removed_tri);
+}
+
+/* Triangles that spoil the cells on them. */
+static void slivers_text(FILE *to, const struct vg_mesh *m,
+                         const struct vg_surface_quality *q)
+{
+  if (!q->n_worst) return;
+  fprintf(to, "  slivers: caps (three nodes nearly on a line) %zu, needles "
+          "%zu; cells on them are\n  hardly better. surface_swap removes those "
+          "that it can without moving the surface\n  visibly; where they stay, "
+          "the surface needs new triangles:\n", q->n_cap, q->n_needle);
+  for (size_t i = 0; i < q->n_worst && i < VG_SHOWN_FACES; i++) {
+    const struct vg_worst_face *w = &q->worst[i];
+    const struct vg_patch *p = &m->patch[m->tri_patch[w->face]];
+    char name[VG_NAME_MAX];
+
+    fprintf(to, "    %s, patch %d%s%s, face %zu, angle %.2g, at (%.6g, %.6g, "
+            "%.6g)\n", w->is_cap ? "cap" : "needle", (int)p->id,
+            *p->name ? " " : "", vg_text_clean(p->name, name, sizeof name),
+            w->face + 1, w->angle, w->at[0], w->at[1], w->at[2]);
+  }
+  if (q->n_cap + q->n_needle > VG_SHOWN_FACES)
+    fprintf(to, "    ... and %zu more\n",
+            q->n_cap + q->n_needle - VG_SHOWN_FACES);
+}
+
+static void quality_text(FILE *to, const struct vg_mesh *m)
+{
+  struct vg_surface_quality q;
+
+  vg_surface_quality(m, &q);
+  if (!q.n) return;
+  fprintf(to, "  triangles: smallest angle %.2g, 1st percentile %.1f degrees; "
+          "below 5 10 20 30:\n  %.4f %.4f %.4f %.4f %%; 2 r/R: mean %.3f\n",
+          q.angle_min, q.angle_min_p1, q.below[0], q.below[1], q.below[2],
+          q.below[3], q.ratio_mean);
+  slivers_text(to, m, &q);
+}
+
+static json_t *quality_json(const struct vg_mesh *m)
+{
+  struct vg_surface_quality q;
+  json_t *list = json_array();
+
+  vg_surface_quality(m, &q);
+  for (size_t i = 0; i < q.n_worst; i++) {
+    const struct vg_worst_face *w = &q.worst[i];
+
+    json_array_append_new(list, json_pack("{s:s s:I s:i s:f s:[fff]}", "kind",
+      w->is_cap ? "cap" : "needle", "face", (json_int_t)w->face + 1, "patch",
+      (int)m->patch[m->tri_patch[w->face]].id, "angle", w->angle, "at",
+      w->at[0], w->at[1], w->at[2]));
+  }
+  return json_pack("{s:f s:f s:[ffff] s:f s:I s:I s:o}", "angle_min",
+                   q.angle_min, "angle_min_percentile_1", q.angle_min_p1,
+                   "percent_below_5_10_20_30", q.below[0], q.below[1],
+                   q.below[2], q.below[3], "radius_ratio_mean", q.ratio_mean,
+                   "caps", (json_int_t)q.n_cap, "needles",
+                   (json_int_t)q.n_needle, "worst", list);
+}
+
+void vg_report_surface_text(FILE *to, const struct vg_mesh *m,
+                            const struct vg_surface_report *r, size_t shown)
+{
+  char text[1024], count[32];
+  size_t at = 0;
+
+  shells_text(to, r);
+  repair_text(to, r);
+  quality_text(to, m);
+  for (int kind = 0; kind < VG_DEFECT_N; kind++) {
+    size_t n = r->count[kind], said = 0;
+
+    if (n)
+      fprintf(to, "  %s: %s\n", vg_defect_name((enum vg_defect_kind)kind),
+              vg_text_count(n, count));
+    /* The list is sorted by kind. */
+    for (; at < r->n_defect && (int)r->defect[at].kind == kind; at++) {
+      if (said++ >= shown) continue;
+      vg_defect_text(m, &r->defect[at], text, sizeof text);
+      fprintf(to, "    %s\n", text);
+    }
+    if (said > shown)
+      fprintf(to, "    ... and %zu more\n", said - shown);
+  }
+}
+
+static json_t *defects_json(const struct vg_mesh *m,
+                            const struct vg_surface_report *r, size_t shown)
+{
+  json_t *list = json_array();
+  size_t said[VG_DEFECT_N] = { 0 };
+  char text[1024];
+
+  for (size_t i = 0; i < r->n_defect; i++) {
+    const struct vg_defect *d = &r->defect[i];
+    json_t *one;
+
+    if (said[d->kind]++ >= shown) continue;
+    vg_defect_text(m, d, text, sizeof text);
+    one = json_pack("{s:s s:o}", "kind", vg_defect_name(d->kind), "text",
+                    vg_text_json(text));
+    /* NaN has no JSON form: such a defect goes without its place. */
+    json_object_set_new(one, "at", json_pack("[fff]", d->at[0], d->at[1],
+                                             d->at[2]));
+    for (int k = 0; k < 2; k++)
+      if (d->face[k] != SIZE_MAX)
+        json_object_set_new(one, k ? "face2" : "face",
+                            json_integer((json_int_t)d->face[k] + 1));
+    json_array_append_new(list, one);
+  }
+  return list;
+}
+
+json_t *vg_report_surface_json(const struct vg_mesh *m,
+                               const struct vg_surface_report *r,
+                               size_t shown)
+{
+  json_t *counts = json_object(), *shells = json_array();
+
+  for (int kind = 0; kind < VG_DEFECT_N; kind++)
+    json_object_set_new(counts, vg_defect_name((enum vg_defect_kind)kind),
+                        json_integer((json_int_t)r->count[kind]));
+  for (size_t i = 0; i < r->n_shell; i++) {
+    const struct vg_shell *s = &r->shell[i];
+
+    json_array_append_new(shells,
+      json_pack("{s:I s:i s:f s:[fff] s:[fff]}", "triangles",
+                (json_int_t)s->n_tri, "depth", s->depth, "volume", s->volume,
+                "lower", s->lo[0], s->lo[1], s->lo[2],
+                "upper", s->hi[0], s->hi[1], s->hi[2]));
+  }
+  return json_pack("{s:b s:b s:I s:o s:o s:I s:I s:I s:b s:o s:o}",
+                   "ok", r->n_defect == 0, "closed", r->is_closed,
+                   "defects", (json_int_t)r->n_defect, "count", counts,
+                   "shells", shells, "flipped", (json_int_t)r->n_flipped,
+                   "removed_points", (json_int_t)r->n_removed_point,
+                   "removed_triangles", (json_int_t)r->n_removed_tri,
+                   "turned_inside_out", r->turned_inside_out, "first",
+                   defects_json(m, r, shown), "quality", quality_json(m));
+}
+
+void vg_report_domain_text(FILE *to, const struct vg_domain_report *r)
+{
+  char count[32];
+
+  if (r->added_symmetry)
+    fprintf(to, "  added: symmetry plane %c = %g\n",
+            "xyz"[r->symmetry_axis], r->symmetry_at);
+  if (r->added_farfield) fprintf(to, "  added: farfield\n");
+  if (r->n_added_tri)
+    fprintf(to, "  added: %s triangles\n",
+            vg_text_count(r->n_added_tri, count));
+}
+
+json_t *vg_report_domain_json(const struct vg_domain_report *r)
+{
+  return json_pack("{s:b s:b s:i s:f s:I}", "farfield", r->added_farfield,
+                   "symmetry", r->added_symmetry, "symmetry_axis",
+                   r->added_symmetry ? r->symmetry_axis : -1, "symmetry_at",
+                   r->added_symmetry ? r->symmetry_at : 0.0, "triangles",
+                   (json_int_t)r->n_added_tri);
+}

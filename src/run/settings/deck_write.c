@@ -1,0 +1,233 @@
+/* Writer of the run deck. Declared in run/settings/deck.h; grammar in
+ * docs/deck.md. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "io/stream/stream.h"
+#include "io/vgrid/mapbc.h"
+#include "run/settings/deck.h"
+
+#define CELL_SIZE (2 * VG_LIST_MAX + 4)
+#define LINE_WIDTH 78
+#define NAME_WIDTH 18      /* the longest name and two blanks */
+
+static void pad(struct vg_output *out, const char *text, size_t width)
+{
+  vg_output_text(out, text);
+  for (size_t n = strlen(text); n < width; n++) vg_output_text(out, " ");
+}
+
+/* "[length, default 0]" or "[length, required]". */
+static void value_note(const struct vg_param *p, const void *defaults,
+                       char *text, size_t size)
+{
+  char value[CELL_SIZE] = "";
+
+  if (!p->required) vg_param_format(p, defaults, value, sizeof value);
+  snprintf(text, size, "[%s%s%s%s]", p->unit, *p->unit ? ", " : "",
+           p->required ? "required" : "default ", value);
+}
+
+/* "# name     help [unit; default]", continued under the help. */
+static void explain_param(struct vg_output *out, const struct vg_param *p,
+                          const void *defaults)
+{
+  char text[1024], note[CELL_SIZE + 64];
+  size_t used = 2 + NAME_WIDTH;
+  char *save = NULL;
+
+  value_note(p, defaults, note, sizeof note);
+  snprintf(text, sizeof text, "%s %s", p->help, note);
+  vg_output_text(out, "# ");
+  pad(out, p->name, NAME_WIDTH);
+  for (char *w = strtok_r(text, " ", &save); w;
+       w = strtok_r(NULL, " ", &save)) {
+    if (used + strlen(w) > LINE_WIDTH) {
+      vg_output_text(out, "\n# ");
+      pad(out, "", NAME_WIDTH);
+      used = 2 + NAME_WIDTH;
+    }
+    if (used > 2 + NAME_WIDTH) vg_output_text(out, " "), used++;
+    vg_output_text(out, w);
+    used += strlen(w);
+  }
+  vg_output_text(out, "\n");
+}
+
+/* Names p[first..last) above their values, in columns. */
+static void write_block(struct vg_output *out, const struct vg_param *p,
+                        size_t first, size_t last,
+                        const struct vg_settings *s)
+{
+  for (int line = 0; line < 2; line++) {
+    for (size_t i = first; i < last; i++) {
+      char value[CELL_SIZE];
+      size_t width = strlen(p[i].name);
+
+      vg_param_format(&p[i], s, value, sizeof value);
+      if (strlen(value) > width) width = strlen(value);
+      pad(out, line ? value : p[i].name, i + 1 < last ? width + 2 : 0);
+    }
+    vg_output_text(out, "\n");
+  }
+  vg_output_text(out, "\n");
+}
+
+static void write_params(struct vg_output *out, const struct vg_settings *s,
+                         const struct vg_settings *defaults, int explain)
+{
+  size_t n;
+  const struct vg_param *p = vg_settings_params(&n);
+  const size_t per_block = 6;
+
+  for (size_t first = 0; first < n; first += per_block) {
+    size_t last = first + per_block < n ? first + per_block : n;
+
+    for (size_t i = first; explain && i < last; i++)
+      explain_param(out, &p[i], defaults);
+    write_block(out, p, first, last, s);
+  }
+}
+
+static int is_default(const struct vg_param *p, const void *row,
+                      const void *defaults)
+{
+  char a[CELL_SIZE], b[CELL_SIZE];
+
+  vg_param_format(p, row, a, sizeof a);
+  vg_param_format(p, defaults, b, sizeof b);
+  return strcmp(a, b) == 0;
+}
+
+/* Columns worth writing and their widths; 0: left out. */
+static void column_widths(const struct vg_table *t, enum vg_table_kind kind,
+                          const struct vg_settings *s, const void *defaults,
+                          size_t *width)
+{
+  char value[CELL_SIZE];
+  size_t n = vg_settings_rows(s, kind);
+
+  for (size_t c = 0; c < t->n_column; c++) {
+    const struct vg_param *p = &t->column[c];
+    int used = kind == VG_TABLE_FARFIELD || kind == VG_TABLE_PATCHES ||
+               p->required;
+
+    width[c] = strlen(p->name);
+    for (size_t i = 0; i < n; i++) {
+      const void *row = vg_settings_row(s, kind, i);
+
+      used |= !is_default(p, row, defaults);
+      vg_param_format(p, row, value, sizeof value);
+      if (strlen(value) > width[c]) width[c] = strlen(value);
+    }
+    if (!used) width[c] = 0;
+  }
+}
+
+/* Shown where a table is empty. */
+static const char *const example[VG_TABLE_N] = {
+  [VG_TABLE_FARFIELD] = "",
+  [VG_TABLE_PATCHES] = "#\n# patches\n# id  bc  name\n# 1   4   wing\n\n",
+  [VG_TABLE_LAYERS] = "#\n# layers\n# id  grow  first  min_full\n"
+                      "# 1   yes   1e-5   98\n\n",
+  [VG_TABLE_SOURCES] = "#\n# sources\n# kind   x0  y0  z0  r0  h0\n"
+                       "# point  0   0   0   0   0.01\n\n",
+  [VG_TABLE_SWEEP] = "#\n# sweep\n# ranks  threads  leaf_cells\n"
+                     "# 1,2    1:4:x2   100000,300000\n\n",
+};
+
+static void write_table(struct vg_output *out, const struct vg_settings *s,
+                        enum vg_table_kind kind, int explain)
+{
+  const struct vg_table *t = vg_settings_table(kind);
+  union { struct vg_farfield_row f; struct vg_patch_row p;
+          struct vg_layer_row l; struct vg_source s;
+          struct vg_sweep_row w; } defaults;
+  char value[CELL_SIZE];
+  size_t width[64] = { 0 }, n = vg_settings_rows(s, kind);
+
+  vg_settings_row_default(kind, &defaults);
+  if (explain) {
+    vg_output_format(out, "# Table %s. %s\n", t->name, t->help);
+    for (size_t c = 0; c < t->n_column; c++)
+      explain_param(out, &t->column[c], &defaults);
+  }
+  if (!n) {
+    if (explain)
+      vg_output_text(out, example[kind]);
+    return;
+  }
+  column_widths(t, kind, s, &defaults, width);
+  vg_output_format(out, "%s\n", t->name);
+  for (size_t i = 0; i <= n; i++) {
+    size_t gap = 0;
+
+    for (size_t c = 0; c < t->n_column; c++) {
+      if (!width[c]) continue;
+      if (i) vg_param_format(&t->column[c], vg_settings_row(s, kind, i - 1),
+                             value, sizeof value);
+      pad(out, "", gap);
+      vg_output_text(out, i ? value : t->column[c].name);
+      gap = width[c] + 2 - strlen(i ? value : t->column[c].name);
+    }
+    vg_output_text(out, "\n");
+  }
+  vg_output_text(out, "\n");
+}
+
+vg_status vg_deck_write(const char *path, const struct vg_settings *s,
+                        const char *comment, int explain,
+                        struct vg_error *err)
+{
+  struct vg_output out = VG_OUTPUT_INIT;
+  struct vg_settings defaults;
+  vg_status st = vg_output_open(path, &out, err);
+
+  if (st < 0) return st;
+  vg_settings_default(&defaults);
+  vg_output_format(&out, "%s\n", s->title);
+  if (comment) vg_output_text(&out, comment);
+  if (explain)
+    vg_output_text(&out,
+      "# A line of names stands above a line of values; the order is free.\n"
+      "# A table is its name, a line of column names, then lines of values\n"
+      "# up to a blank line. Lengths are in the unit of the surface.\n");
+  vg_output_text(&out, "\n");
+  write_params(&out, s, &defaults, explain);
+  for (int t = 0; t < VG_TABLE_N; t++)
+    write_table(&out, s, (enum vg_table_kind)t, explain);
+  st = vg_output_commit(&out, err);
+  vg_output_release(&out);
+  return st;
+}
+
+/* The code from which both solvers' follow: USM3D's where FUN3D's is its
+ * translation, else FUN3D's where that says more (4100 is more than 4). */
+static int32_t telling_code(const struct vg_patch *p, int axis)
+{
+  if (p->bc == VG_BC_NONE) return p->bc_fun3d;
+  if (p->bc_fun3d == vg_bc_to_fun3d(p->bc, axis)) return p->bc;
+  if (p->bc_fun3d != VG_BC_NONE && vg_bc_to_usm3d(p->bc_fun3d) == p->bc)
+    return p->bc_fun3d;
+  return p->bc;
+}
+
+vg_status vg_deck_patches_of(const struct vg_mesh *m, struct vg_settings *s,
+                             struct vg_error *err)
+{
+  int *axis = vg_alloc(m->n_patch, sizeof *axis);
+  vg_status st = axis ? vg_patch_axes(m, axis, err)
+                      : vg_fail_memory(err, "the patches");
+
+  for (size_t i = 0; i < m->n_patch && st >= 0; i++) {
+    struct vg_patch_row row = { .id = m->patch[i].id,
+                                .bc = telling_code(&m->patch[i], axis[i]) };
+
+    snprintf(row.name, sizeof row.name, "%s", m->patch[i].name);
+    st = vg_settings_add(s, VG_TABLE_PATCHES, &row, err);
+  }
+  free(axis);
+  return st;
+}

@@ -1,0 +1,122 @@
+#include "run/settings/lists.h"
+
+#include <string.h>
+
+#include "io/mesh/foam.h"
+#include "io/mesh/format.h"
+#include "io/stream/stream.h"
+
+static int take_number(const char **text, int64_t *out)
+{
+  size_t n = **text == '-';
+
+  n += strspn(*text + n, "0123456789");
+  if (!vg_parse_int(*text, n, out)) return 0;
+  *text += n;
+  return 1;
+}
+
+int vg_patch_list_next(const char **text, int64_t *from, int64_t *to)
+{
+  const char *at = *text;
+
+  at += strspn(at, ", ");
+  *text = at;
+  if (!*at || !take_number(&at, from)) return 0;
+  *to = *from;
+  if (*at == '-' && (at++, !take_number(&at, to))) return 0;
+  if ((*at && !strchr(", ", *at)) || *to < *from) return 0;
+  *text = at;
+  return 1;
+}
+
+vg_status vg_patch_list_check(const char *name, const char *list,
+                              struct vg_error *err)
+{
+  const char *at = list;
+  int64_t from, to;
+
+  while (vg_patch_list_next(&at, &from, &to)) continue;
+  if (!*at) return VG_OK;
+  return vg_fail(err, VG_ERR_INPUT, "%s: '%s' is no list of patches; numbers "
+                 "and ranges are separated by commas, as in 3-12,15", name,
+                 list);
+}
+
+static int is_case(const char *item)
+{
+  struct vg_foam_options options;
+
+  return vg_foam_word(item, &options);
+}
+
+/* Words of the write list that are no suffix of a mesh format. */
+static int is_own_item(const char *item)
+{
+  return !strcmp(item, "cogsg") || !strcmp(item, "mapbc") ||
+         !strcmp(item, "fun3d.mapbc") || !strcmp(item, "vtu") ||
+         !strcmp(item, "pvtu") || is_case(item);
+}
+
+static vg_status add_item(const char *name, size_t len, size_t *n,
+                          char (*item)[VG_WRITE_NAME], struct vg_error *err)
+{
+  char *to = item[*n];
+
+  if (!len) return VG_OK;
+  if (*n == VG_WRITE_ITEMS || len >= VG_WRITE_NAME)
+    return vg_fail(err, VG_ERR_INPUT, "write: too many or too long names");
+  memcpy(to, name, len);
+  to[len] = 0;
+  for (size_t i = 0; i < *n; i++)
+    if (!strcmp(item[i], to)) return VG_OK;
+  for (size_t i = 0; i < *n; i++)
+    if (is_case(to) && is_case(item[i]))
+      return vg_fail(err, VG_ERR_INPUT, "write: foam and foam-ascii go into "
+                     "the same folder; name one");
+  if (!is_own_item(to) && !vg_format_can_write(to))
+    return vg_fail(err, VG_ERR_INPUT, "write: '%s' is no format; known are "
+                   "cogsg (with bc and mapbc), mapbc, fun3d.mapbc, vtu, "
+                   "pvtu, foam, foam-ascii and suffixes such as b8.ugrid, "
+                   "lb8.ugrid, ugrid, cgns, su2, msh, fluent.msh, meshb", to);
+  ++*n;
+  return VG_OK;
+}
+
+vg_status vg_write_list(const char *list, size_t *n,
+                        char (*item)[VG_WRITE_NAME], struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  while (*list && st >= 0) {
+    size_t len = strcspn(list, ", ");
+
+    st = add_item(list, len, n, item, err);
+    list += len;
+    list += strspn(list, ", ");
+  }
+  return st;
+}
+
+vg_status vg_write_list_check(const char *name, const char *list,
+                              struct vg_error *err)
+{
+  char item[VG_WRITE_ITEMS][VG_WRITE_NAME];
+  size_t n = 0;
+
+  (void)name;
+  return strcmp(list, "auto") ? vg_write_list(list, &n, item, err) : VG_OK;
+}
+
+vg_status vg_mesher_name_check(const char *name, const char *mesher,
+                               struct vg_error *err)
+{
+  static const char *const known[] = { "builtin", "tetgen", "hxt" };
+
+  for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+    if (!strcmp(mesher, known[i])) return VG_OK;
+  if (strchr(mesher, '/')) return VG_OK;
+  return vg_fail(err, VG_ERR_INPUT, "%s: '%s' is none; known are builtin, "
+                 "tetgen, hxt and paths of plug-ins, which have a '/' in them, "
+                 "as in ./it.so", name, mesher);
+}

@@ -1,0 +1,186 @@
+/* Settings and rows of tables by their names. Declared in
+ * run/settings/settings.h. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "run/settings/settings.h"
+
+/* Columns of the farfield table that are settings too, with their names. */
+static const struct { const char *column, *name; } farfield_names[] = {
+  { "kind", "farfield" }, { "lengths", "farfield_lengths" },
+  { "size", "farfield_size" }, { "spacing", "farfield_spacing" },
+};
+#define N_FARFIELD (sizeof farfield_names / sizeof *farfield_names)
+
+static const struct vg_param *column_of(const struct vg_table *t,
+                                        const char *name)
+{
+  for (size_t c = 0; c < t->n_column; c++)
+    if (!strcmp(t->column[c].name, name)) return &t->column[c];
+  return NULL;
+}
+
+const struct vg_param *vg_settings_name(size_t i, const char **name,
+                                        int *in_farfield)
+{
+  size_t n;
+  const struct vg_param *p = vg_settings_params(&n);
+
+  *in_farfield = i >= n;
+  if (i < n) {
+    *name = p[i].name;
+    return &p[i];
+  }
+  if (i >= n + N_FARFIELD) return NULL;
+  *name = farfield_names[i - n].name;
+  return column_of(vg_settings_table(VG_TABLE_FARFIELD),
+                   farfield_names[i - n].column);
+}
+
+static int same_name(const char *a, const char *b)
+{
+  while (*a && (*a == *b || (*a == '-' && *b == '_'))) a++, b++;
+  return !*a && !*b;
+}
+
+static const char *name_at(const void *user, size_t i)
+{
+  const char *name = "";
+  int in_farfield;
+
+  (void)user;
+  vg_settings_name(i, &name, &in_farfield);
+  return name;
+}
+
+static const struct vg_param *find(const char *name, int *in_farfield,
+                                   struct vg_error *err)
+{
+  const struct vg_param *p;
+  const char *known, *near;
+  size_t n;
+
+  for (n = 0; (p = vg_settings_name(n, &known, in_farfield)); n++)
+    if (same_name(name, known)) return p;
+  near = vg_nearest_name(name, n, name_at, NULL);
+  if (near)
+    vg_fail(err, VG_ERR_INPUT, "no setting '%s'; did you mean '%s'?", name,
+            near);
+  else
+    vg_fail(err, VG_ERR_INPUT, "no setting '%s'; 'vanguard deck' lists them",
+            name);
+  return NULL;
+}
+
+vg_status vg_settings_set(struct vg_settings *s, const char *name,
+                          const char *text, struct vg_error *err)
+{
+  int in_farfield;
+  const struct vg_param *p = find(name, &in_farfield, err);
+  vg_status st;
+
+  if (!p) return VG_ERR_INPUT;
+  st = vg_param_set(p, in_farfield ? (void *)&s->farfield : (void *)s, text,
+                    strlen(text), err);
+  if (st >= 0 && !in_farfield) vg_settings_override(s, p);
+  return st;
+}
+
+vg_status vg_settings_get(const struct vg_settings *s, const char *name,
+                          char *out, size_t size, struct vg_error *err)
+{
+  int in_farfield;
+  const struct vg_param *p = find(name, &in_farfield, err);
+
+  if (!p) return VG_ERR_INPUT;
+  vg_param_format(p, in_farfield ? (const void *)&s->farfield
+                                 : (const void *)s, out, size);
+  return VG_OK;
+}
+
+/* --- rows ---------------------------------------------------------------- */
+
+static vg_status find_table(const char *name, enum vg_table_kind *kind,
+                            struct vg_error *err)
+{
+  for (int k = 0; k < VG_TABLE_N; k++)
+    if (!strcmp(name, vg_settings_table((enum vg_table_kind)k)->name)) {
+      *kind = (enum vg_table_kind)k;
+      return VG_OK;
+    }
+  return vg_fail(err, VG_ERR_INPUT, "no table '%s'; there are farfield, "
+                 "patches, layers, sources and sweep", name);
+}
+
+static vg_status set_columns(const struct vg_table *t, void *row, size_t n,
+                             const char *const *column,
+                             const char *const *value, struct vg_error *err)
+{
+  struct vg_error why = VG_ERROR_INIT;
+
+  for (size_t i = 0; i < n; i++) {
+    const struct vg_param *p = column_of(t, column[i]);
+
+    if (!p)
+      return vg_fail(err, VG_ERR_INPUT, "%s: no column '%s'", t->name,
+                     column[i]);
+    if (vg_param_set(p, row, value[i], strlen(value[i]), &why) < 0)
+      return vg_fail(err, why.code, "%s: %s", t->name, why.text);
+  }
+  for (size_t c = 0; c < t->n_column; c++) {
+    int given = !t->column[c].required;
+
+    for (size_t i = 0; i < n && !given; i++)
+      given = !strcmp(column[i], t->column[c].name);
+    if (!given)
+      return vg_fail(err, VG_ERR_INPUT, "%s: a row needs a value of %s",
+                     t->name, t->column[c].name);
+  }
+  return VG_OK;
+}
+
+vg_status vg_settings_add_named(struct vg_settings *s, const char *name,
+                                size_t n, const char *const *column,
+                                const char *const *value,
+                                struct vg_error *err)
+{
+  enum vg_table_kind kind = VG_TABLE_N;
+  void *row = NULL;
+  vg_status st;
+
+  VG_TRY(find_table(name, &kind, err));
+  row = vg_alloc(1, vg_settings_table(kind)->row_size);
+  if (!row) return vg_fail_memory(err, "the settings");
+  vg_settings_row_default(kind, row);
+  VG_TRY(set_columns(vg_settings_table(kind), row, n, column, value, err));
+  st = vg_settings_add(s, kind, row, err);
+done:
+  free(row);
+  return st;
+}
+
+vg_status vg_settings_copy(struct vg_settings *to,
+                           const struct vg_settings *from,
+                           struct vg_error *err)
+{
+  struct vg_settings s = *from;
+  vg_status st = VG_OK;
+
+  s.source = NULL;
+  s.patch = NULL;
+  s.layer_row = NULL;
+  s.n_source = s.cap_source = s.n_patch = s.cap_patch = 0;
+  s.n_layer = s.cap_layer = 0;
+  for (int k = VG_TABLE_PATCHES; k <= VG_TABLE_SOURCES; k++) {
+    enum vg_table_kind kind = (enum vg_table_kind)k;
+
+    for (size_t i = 0; i < vg_settings_rows(from, kind); i++)
+      VG_TRY(vg_settings_add(&s, kind, vg_settings_row(from, kind, i), err));
+  }
+  *to = s;
+  return VG_OK;
+done:
+  vg_settings_release(&s);
+  return st;
+}

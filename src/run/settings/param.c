@@ -1,0 +1,231 @@
+/* Values of settings as text, both ways, and the search for a slip of the
+ * pen. Declared in run/settings/settings.h. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "io/stream/stream.h"
+#include "run/common/ranges.h"
+#include "run/settings/settings.h"
+
+static vg_status out_of_range(const struct vg_param *p, const char *text,
+                              size_t len, struct vg_error *err)
+{
+  char lo[33];
+
+  lo[vg_format_real(p->lo, lo)] = 0;
+  if (p->hi >= 1e15 && p->lo > -1e15)
+    return vg_fail(err, VG_ERR_INPUT, "%s is %.*s; it must be %s %s", p->name,
+                   (int)len, text, p->above_lo ? "above" : "at least", lo);
+  return vg_fail(err, VG_ERR_INPUT, "%s is %.*s; it must be %s %s and at most "
+                 "%g", p->name, (int)len, text,
+                 p->above_lo ? "above" : "at least", lo, p->hi);
+}
+
+static int in_range(const struct vg_param *p, double v)
+{
+  return (p->above_lo ? v > p->lo : v >= p->lo) && v <= p->hi;
+}
+
+static vg_status set_real(const struct vg_param *p, void *at,
+                          const char *text, size_t len, struct vg_error *err)
+{
+  double v;
+
+  if (!vg_parse_real(text, len, &v))
+    return vg_fail(err, VG_ERR_INPUT, "%s must be a number, found '%.*s'",
+                   p->name, (int)len, text);
+  if (!in_range(p, v)) return out_of_range(p, text, len, err);
+  memcpy(at, &v, sizeof v);
+  return VG_OK;
+}
+
+static vg_status set_int(const struct vg_param *p, void *at, const char *text,
+                         size_t len, struct vg_error *err)
+{
+  int64_t v;
+  int32_t id;
+
+  if (!(p->type == VG_PARAM_COUNT ? vg_parse_count : vg_parse_int)(text, len,
+                                                                   &v))
+    return vg_fail(err, VG_ERR_INPUT, "%s must be a whole number, found "
+                   "'%.*s'", p->name, (int)len, text);
+  if (!in_range(p, (double)v)) return out_of_range(p, text, len, err);
+  id = (int32_t)v;
+  if (p->type == VG_PARAM_ID) memcpy(at, &id, sizeof id);
+  else memcpy(at, &v, sizeof v);
+  return VG_OK;
+}
+
+static const char *word_at(const void *user, size_t i)
+{
+  return ((const char *const *)user)[i];
+}
+
+static vg_status set_word(const struct vg_param *p, const char *const *words,
+                          void *at, const char *text, size_t len,
+                          struct vg_error *err)
+{
+  char list[256] = "", word[64];
+  const char *near;
+  size_t n = 0, used = 0;
+
+  for (; words[n]; n++) {
+    int i = (int)n;
+
+    if (vg_token_is(text, len, words[n])) {
+      memcpy(at, &i, sizeof i);
+      return VG_OK;
+    }
+    used += (size_t)snprintf(list + used, sizeof list - used, "%s%s",
+                             n ? ", " : "", words[n]);
+  }
+  snprintf(word, sizeof word, "%.*s", (int)len, text);
+  near = vg_nearest_name(word, n, word_at, words);
+  if (near)
+    return vg_fail(err, VG_ERR_INPUT, "%s cannot be '%s'; did you mean '%s'? "
+                   "(one of %s)", p->name, word, near, list);
+  return vg_fail(err, VG_ERR_INPUT, "%s cannot be '%s'; it is one of %s",
+                 p->name, word, list);
+}
+
+static vg_status set_text(const struct vg_param *p, char *at,
+                          const char *text, size_t len, struct vg_error *err)
+{
+  if (len >= p->size)
+    return vg_fail(err, VG_ERR_INPUT, "%s has %zu characters; at most %zu "
+                   "are kept", p->name, len, p->size - 1);
+  for (size_t i = 0; i < len; i++)
+    if ((unsigned char)text[i] < ' ' || text[i] == 127)
+      return vg_fail(err, VG_ERR_INPUT, "%s holds a control character",
+                     p->name);
+  memset(at, 0, p->size);
+  memcpy(at, text, len);
+  return p->check ? p->check(p->name, at, err) : VG_OK;
+}
+
+vg_status vg_param_set(const struct vg_param *p, void *base, const char *text,
+                       size_t len, struct vg_error *err)
+{
+  static const char *const yes_no[] = { "no", "yes", NULL };
+  const double unset = NAN;
+  const int32_t none = VG_BC_NONE;
+  const int64_t no_count = VG_COUNT_NONE;
+  char *at = (char *)base + p->offset;
+
+  if (p->optional && vg_token_is(text, len, "-")) {
+    if (p->type == VG_PARAM_REAL) memcpy(at, &unset, sizeof unset);
+    if (p->type == VG_PARAM_ID) memcpy(at, &none, sizeof none);
+    if (p->type == VG_PARAM_COUNT) memcpy(at, &no_count, sizeof no_count);
+    return VG_OK;
+  }
+  switch (p->type) {
+  case VG_PARAM_REAL: return set_real(p, at, text, len, err);
+  case VG_PARAM_COUNT:
+  case VG_PARAM_ID: return set_int(p, at, text, len, err);
+  case VG_PARAM_FLAG: return set_word(p, yes_no, at, text, len, err);
+  case VG_PARAM_WORD: return set_word(p, p->words, at, text, len, err);
+  case VG_PARAM_TEXT: return set_text(p, at, text, len, err);
+  }
+  return VG_OK;
+}
+
+/* Quoted where a bare token would not come back: "" inside stands for ". */
+static void format_text(const char *text, char *out, size_t size)
+{
+  int bare = *text && strcmp(text, "-") != 0 && !strpbrk(text, " #\"");
+  size_t n = 0;
+
+  if (!bare) out[n++] = '"';
+  for (; *text && n + 4 < size; text++) {
+    unsigned char c = (unsigned char)*text;
+
+    if (c == '"') out[n++] = '"';
+    out[n++] = c < ' ' || c == 127 ? '?' : (char)c;
+  }
+  if (!bare) out[n++] = '"';
+  out[n] = 0;
+}
+
+void vg_param_format(const struct vg_param *p, const void *base, char *out,
+                     size_t size)
+{
+  const char *at = (const char *)base + p->offset;
+  char real[33];
+  double v;
+  int64_t count;
+  int32_t id;
+  int word;
+
+  switch (p->type) {
+  case VG_PARAM_REAL:
+    memcpy(&v, at, sizeof v);
+    if (isnan(v)) snprintf(real, sizeof real, "-");
+    else real[vg_format_real(v, real)] = 0;
+    snprintf(out, size, "%s", real);
+    break;
+  case VG_PARAM_COUNT:
+    memcpy(&count, at, sizeof count);
+    if (count == VG_COUNT_NONE && p->optional) snprintf(out, size, "-");
+    else snprintf(out, size, "%lld", (long long)count);
+    break;
+  case VG_PARAM_ID:
+    memcpy(&id, at, sizeof id);
+    if (id == VG_BC_NONE && p->optional) snprintf(out, size, "-");
+    else snprintf(out, size, "%d", (int)id);
+    break;
+  case VG_PARAM_FLAG:
+    memcpy(&word, at, sizeof word);
+    snprintf(out, size, "%s", word ? "yes" : "no");
+    break;
+  case VG_PARAM_WORD:
+    memcpy(&word, at, sizeof word);
+    snprintf(out, size, "%s", p->words[word]);
+    break;
+  case VG_PARAM_TEXT:
+    format_text(at, out, size);
+    break;
+  }
+}
+
+/* Edit distance with swaps of neighbours (optimal string alignment). */
+static size_t distance(const char *a, const char *b)
+{
+  size_t row[3][72], n = strlen(a), m = strlen(b);
+
+  if (n > 70 || m > 70) return SIZE_MAX;
+  for (size_t j = 0; j <= m; j++) row[0][j] = j;
+  for (size_t i = 1; i <= n; i++) {
+    size_t *now = row[i % 3], *up = row[(i + 2) % 3], *two = row[(i + 1) % 3];
+
+    now[0] = i;
+    for (size_t j = 1; j <= m; j++) {
+      size_t best = up[j - 1] + (a[i - 1] != b[j - 1]);
+
+      if (up[j] + 1 < best) best = up[j] + 1;
+      if (now[j - 1] + 1 < best) best = now[j - 1] + 1;
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] &&
+          two[j - 2] + 1 < best)
+        best = two[j - 2] + 1;
+      now[j] = best;
+    }
+  }
+  return row[n % 3][m];
+}
+
+const char *vg_nearest_name(const char *text, size_t n,
+                            const char *(*get)(const void *user, size_t i),
+                            const void *user)
+{
+  size_t limit = 1 + strlen(text) / 3, best = SIZE_MAX;
+  const char *name = NULL;
+
+  for (size_t i = 0; i < n; i++) {
+    const char *candidate = get(user, i);
+    size_t d = distance(text, candidate);
+
+    if (d < best) best = d, name = candidate;
+  }
+  return best <= limit ? name : NULL;
+}

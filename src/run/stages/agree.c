@@ -1,0 +1,103 @@
+#include "run/stages/agree.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/memory.h"
+#include "layers/columns/pack.h"
+#include "partition/store/store.h"
+
+/* What a rank says; the same bytes for the same things. */
+struct claim {
+  uint64_t counts;           /* 1: the first rank of its node */
+  struct vg_digest of[VG_AGREE_N];
+  char host[64];
+};
+
+const char *vg_agree_name(enum vg_agree what)
+{
+  static const char *const name[VG_AGREE_N] = { "surface", "layers", "sizes" };
+
+  return (unsigned)what < VG_AGREE_N ? name[what] : NULL;
+}
+
+static void add(void *user, size_t n, const void *data)
+{
+  struct vg_digest *d = user;
+
+  *d = vg_digest_of(*d, n, data);
+}
+
+/* Names of patches aside, which change no mesh. */
+static struct vg_digest of_surface(const struct vg_mesh *m)
+{
+  struct vg_digest d = { { 0, 0 } };
+
+  add(&d, m->n_point * sizeof *m->point, m->point);
+  add(&d, m->n_tri * sizeof *m->tri, m->tri);
+  add(&d, m->n_tri * sizeof *m->tri_patch, m->tri_patch);
+  return d;
+}
+
+static struct claim make_claim(struct vg_comm *c, const struct vg_mesh *surface,
+                               const struct vg_layers *layers,
+                               const struct vg_sizing *sizing,
+                               enum vg_agree change)
+{
+  struct claim own;
+
+  memset(&own, 0, sizeof own);
+  if (gethostname(own.host, sizeof own.host - 1)) own.host[0] = '?';
+  own.counts = vg_comm_node_rank(c) == 0;
+  if (!own.counts) return own;
+  own.of[VG_AGREE_SURFACE] = of_surface(surface);
+  if (layers) vg_layers_show(layers, add, &own.of[VG_AGREE_LAYERS]);
+  vg_sizing_show(sizing, add, &own.of[VG_AGREE_SIZES]);
+  if (change != VG_AGREE_NOTHING &&
+      vg_comm_rank(c) + vg_comm_node_size(c) == vg_comm_size(c))
+    own.of[change].word[0] ^= 1;
+  return own;
+}
+
+static vg_status compare(int n, const struct vg_bytes *claim,
+                         struct vg_error *err)
+{
+  struct claim first, other;
+
+  memcpy(&first, claim[0].data, sizeof first);
+  for (int r = 1; r < n; r++) {
+    memcpy(&other, claim[r].data, sizeof other);
+    for (int k = 0; k < VG_AGREE_N && other.counts; k++)
+      if (memcmp(&other.of[k], &first.of[k], sizeof other.of[k]) != 0)
+        return vg_fail(err, VG_ERR_REMOTE, "rank %d on %s made other %s than "
+                       "rank 0 on %s; nothing was meshed. Give all ranks the "
+                       "same program, input files and libraries; if they have "
+                       "them, please report this with both processors", r,
+                       other.host, vg_agree_name((enum vg_agree)k),
+                       first.host);
+  }
+  return VG_OK;
+}
+
+vg_status vg_run_agree(struct vg_comm *c, const struct vg_mesh *surface,
+                       const struct vg_layers *layers,
+                       const struct vg_sizing *sizing, enum vg_agree change,
+                       struct vg_error *err)
+{
+  int n = vg_comm_size(c);
+  struct vg_bytes own, *all = NULL;
+  struct claim claim;
+  vg_status st;
+
+  if (n == vg_comm_node_size(c)) return VG_OK;
+  claim = make_claim(c, surface, layers, sizing, change);
+  own = (struct vg_bytes){ sizeof claim, (unsigned char *)&claim };
+  all = vg_calloc((size_t)n, sizeof *all);
+  st = vg_comm_agree(c, all ? VG_OK : vg_fail_memory(err, "a comparison"),
+                     err);
+  if (st >= 0) st = vg_comm_allgather(c, &own, all, err);
+  if (st >= 0) st = compare(n, all, err);
+  vg_bytes_release(all, all ? (size_t)n : 0);
+  return st;
+}

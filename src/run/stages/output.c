@@ -1,0 +1,609 @@
+#define _GNU_SOURCE
+#include "run/stages/output.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/memory.h"
+#include "io/cgns/cgns.h"
+#include "io/mesh/foam.h"
+#include "io/mesh/format.h"
+#include "io/mesh/ugrid.h"
+#include "io/slices/slices.h"
+#include "io/vgrid/mapbc.h"
+#include "partition/store/store.h"
+#include "run/common/folder.h"
+#include "run/common/progress.h"
+#include "run/settings/deck.h"
+#include "run/settings/lists.h"
+
+#define WALLS "wall.vtu"
+
+static void remove_temp_dir(struct vg_outputs *o)
+{
+  char *path;
+
+  if (!o->temp_dir) return;
+  for (size_t i = 0; i < o->n_file && !o->is_guest; i++) {
+    path = vg_outputs_temp_path(o, o->file[i].suffix);
+    if (path && o->file[i].is_case) vg_foam_remove(path);
+    else if (path) unlink(path);
+    free(path);
+  }
+  if (!o->is_guest) {
+    rmdir(o->temp_dir);
+    vg_display_temporary(NULL);
+  }
+  free(o->temp_dir);
+  o->temp_dir = NULL;
+}
+
+void vg_outputs_release(struct vg_outputs *o)
+{
+  remove_temp_dir(o);
+  for (size_t i = 0; i < o->n_file; i++) free(o->file[i].suffix);
+  free(o->file);
+  free(o->dir);
+  free(o->name);
+  memset(o, 0, sizeof *o);
+}
+
+static char *join(const char *dir, const char *name, const char *suffix)
+{
+  char *path;
+
+  return asprintf(&path, "%s/%s%s%s", dir, name, *suffix == '_' ? "" : ".",
+                  suffix) < 0 ? NULL : path;
+}
+
+char *vg_outputs_temp_path(struct vg_outputs *o, const char *suffix)
+{
+  return join(o->temp_dir, o->name, suffix);
+}
+
+char *vg_outputs_final(const struct vg_outputs *o, const char *suffix)
+{
+  if (strcmp(o->dir, ".") == 0) {
+    char *path;
+
+    return asprintf(&path, "%s%s%s", o->name, *suffix == '_' ? "" : ".",
+                    suffix) < 0 ? NULL : path;
+  }
+  return join(o->dir, o->name, suffix);
+}
+
+static int is_case(const char *item)
+{
+  struct vg_foam_options options;
+
+  return vg_foam_word(item, &options);
+}
+
+static int same_file(const char *a, const char *b)
+{
+  struct stat x, y;
+
+  if (!*a || !*b || stat(a, &x) || stat(b, &y)) return 0;
+  return x.st_dev == y.st_dev && x.st_ino == y.st_ino;
+}
+
+/* The input that writing STEM.suffix would overwrite, or NULL. */
+static const char *hits_input(const struct vg_outputs *o,
+                              const struct vg_problem *p,
+                              const char *suffix)
+{
+  const struct vg_input_files *f = &p->files;
+  const char *sizes = p->settings.sizes;
+  const char *input[] = { f->d3m, f->front, f->surface, f->mapbc, f->deck,
+                          f->tags, f->aflr, sizes };
+  char *path = vg_outputs_final(o, suffix);
+  const char *hit = NULL;
+
+  for (size_t i = 0; path && i < sizeof input / sizeof *input; i++)
+    if (same_file(path, input[i])) hit = input[i];
+  free(path);
+  return hit;
+}
+
+/* A .cogsg holds tetrahedra only. */
+static vg_status refuse_mixed(const char *item, const struct vg_settings *s,
+                              struct vg_error *err)
+{
+  if (s->cells != VG_LAYER_MIXED || strcmp(item, "cogsg") != 0) return VG_OK;
+  return vg_fail(err, VG_ERR_INPUT, "write: a .cogsg holds tetrahedra only, "
+                 "but cells is mixed; write b8.ugrid, or set cells to tets");
+}
+
+static vg_status refuse_hit(const struct vg_outputs *o,
+                            const struct vg_problem *p, const char *suffix,
+                            struct vg_error *err)
+{
+  const char *hit = hits_input(o, p, suffix);
+
+  if (!hit) return VG_OK;
+  return vg_fail(err, VG_ERR_INPUT, "writing %s would overwrite the input "
+                 "%s; use --out DIR or another --write list", suffix, hit);
+}
+
+/* A folder where a file is to stand: found by renaming, it would leave some
+ * files of this mesh beside some of another. */
+static vg_status refuse_folder(const struct vg_outputs *o, const char *suffix,
+                               struct vg_error *err)
+{
+  char *path = vg_outputs_final(o, suffix);
+  vg_status st = VG_OK;
+  struct stat is;
+
+  if (!path)
+    st = vg_fail_memory(err, "the output paths");
+  else if (!lstat(path, &is) && S_ISDIR(is.st_mode))
+    st = vg_fail(err, VG_ERR_IO, "%s: a folder stands where a file is to be "
+                 "written; move it, or choose another --out DIR", path);
+  free(path);
+  return st;
+}
+
+static vg_status cannot_write(const struct vg_outputs *o, struct vg_error *err)
+{
+  return vg_fail(err, VG_ERR_IO, "%s: cannot write in this folder: %s; choose "
+                 "another one with --out", o->dir, strerror(errno));
+}
+
+static vg_status plan_place(const struct vg_problem *p, const char *dir,
+                            struct vg_outputs *o, struct vg_error *err)
+{
+  const char *slash = strrchr(p->files.stem, '/');
+  const char *base = slash ? slash + 1 : p->files.stem;
+  vg_status st = VG_OK;
+
+  if (dir) o->dir = strdup(dir);
+  else if (!slash) o->dir = strdup(".");
+  else o->dir = strndup(p->files.stem, slash == p->files.stem
+                        ? 1 : (size_t)(slash - p->files.stem));
+  o->name = strdup(base);
+  if (!o->dir || !o->name) return vg_fail_memory(err, "the output paths");
+  if (!*base)
+    return vg_fail(err, VG_ERR_INPUT, "%s: the project has no name",
+                   p->files.stem);
+  if (dir) st = vg_make_folder(dir, err);
+  if (st >= 0 && access(o->dir, W_OK | X_OK)) st = cannot_write(o, err);
+  return st;
+}
+
+static vg_status refuse_absent(const char *item, struct vg_error *err)
+{
+  if (strcmp(item, "cgns") != 0 || vg_cgns_is_built()) return VG_OK;
+  return vg_fail(err, VG_ERR_UNSUPPORTED, "write: this build cannot write "
+                 "CGNS: install libhdf5-dev and configure again");
+}
+
+static vg_status refuse_ranks(const char *item, int ranks,
+                              struct vg_error *err)
+{
+  if (ranks == 1 || vg_slices_can_write(item)) return VG_OK;
+  return vg_fail(err, VG_ERR_UNSUPPORTED, "write: %s needs the whole mesh in "
+                 "one process; run on one rank, or write b8.ugrid and convert "
+                 "it", item);
+}
+
+vg_status vg_outputs_plan(const struct vg_problem *p, const char *dir,
+                          int ranks, struct vg_outputs *o,
+                          struct vg_error *err)
+{
+  vg_status st = plan_place(p, dir, o, err);
+
+  if (st >= 0) st = vg_write_list(p->settings.write, &o->n_item, o->item, err);
+  for (size_t i = 0; i < o->n_item && st >= 0; i++) {
+    if (strcmp(o->item[i], "mapbc") != 0)
+      st = refuse_hit(o, p, o->item[i], err);
+    if (st >= 0 && !is_case(o->item[i]))
+      st = refuse_folder(o, o->item[i], err);
+    if (st >= 0 && !strcmp(o->item[i], "cogsg"))
+      st = refuse_hit(o, p, "bc", err);
+    if (st >= 0) st = refuse_mixed(o->item[i], &p->settings, err);
+    if (st >= 0) st = refuse_absent(o->item[i], err);
+    if (st >= 0) st = refuse_ranks(o->item[i], ranks, err);
+  }
+  return st;
+}
+
+vg_status vg_outputs_check(const struct vg_problem *p, struct vg_outputs *o,
+                           struct vg_error *err)
+{
+  struct vg_mapbc bc = VG_MAPBC_INIT;
+  vg_status st;
+
+  if (!hits_input(o, p, "mapbc")) return VG_OK;
+  st = vg_mapbc_read(p->files.mapbc, &bc, err);
+  for (size_t i = 0; i < p->surface.n_patch && st >= 0; i++) {
+    int found = 0;
+
+    for (size_t j = 0; j < bc.n; j++)
+      found |= bc.entry[j].id == p->surface.patch[i].id;
+    if (!found)
+      st = vg_fail(err, VG_ERR_INPUT, "%s is an input and is not overwritten, "
+                   "but it lacks patch %d (%s) of the mesh; use --out DIR, or "
+                   "add the patch to it", p->files.mapbc,
+                   (int)p->surface.patch[i].id, p->surface.patch[i].name);
+  }
+  vg_mapbc_release(&bc);
+  return st;
+}
+
+static vg_status make_temp_dir(struct vg_outputs *o, struct vg_error *err)
+{
+  if (asprintf(&o->temp_dir, "%s/.vanguard-XXXXXX", o->dir) < 0) {
+    o->temp_dir = NULL;
+    return vg_fail_memory(err, "the output paths");
+  }
+  if (mkdtemp(o->temp_dir)) {
+    vg_display_temporary(o->temp_dir);
+    return VG_OK;
+  }
+  free(o->temp_dir);
+  o->temp_dir = NULL;
+  return cannot_write(o, err);
+}
+
+vg_status vg_outputs_add(struct vg_outputs *o, const char *suffix,
+                         struct vg_error *err)
+{
+  char *copy;
+
+  for (size_t i = 0; i < o->n_file; i++)   /* cogsg brings the mapbc */
+    if (!strcmp(o->file[i].suffix, suffix)) return VG_OK;
+  copy = strdup(suffix);
+  if (!copy || vg_reserve(&o->file, &o->cap_file, o->n_file + 1,
+                          sizeof *o->file)) {
+    free(copy);
+    return vg_fail_memory(err, "the output paths");
+  }
+  o->file[o->n_file++] = (struct vg_outputs_file){ .suffix = copy };
+  return VG_OK;
+}
+
+/* The folder that rank 0 makes, on all ranks. */
+static vg_status begin(struct vg_outputs *o, struct vg_comm *comm,
+                       struct vg_error *err)
+{
+  struct vg_bytes name = {0, NULL};
+  vg_status st = VG_OK;
+
+  o->is_guest = vg_comm_rank(comm) > 0;
+  if (!o->is_guest) st = make_temp_dir(o, err);
+  VG_TRY(vg_comm_agree(comm, st, err));
+  if (!o->is_guest)
+    name = (struct vg_bytes){ strlen(o->temp_dir) + 1,
+                              (unsigned char *)o->temp_dir };
+  o->temp_dir = NULL;
+  st = vg_comm_bcast(comm, 0, &name, err);
+  o->temp_dir = (char *)name.data;
+done:
+  return st;
+}
+
+/* --- while slices are at hand --- */
+
+static vg_status open_item(struct vg_outputs *o, const struct vg_problem *p,
+                           struct vg_comm *comm, const struct vg_slices *mesh,
+                           const char *item, struct vg_error *err)
+{
+  struct vg_slices_options options = { .tail = p->settings.ugrid_tail };
+  char *path = vg_outputs_temp_path(o, item);
+  vg_status st = path ? vg_outputs_add(o, item, err)
+                      : vg_fail_memory(err, "the output paths");
+
+  st = vg_comm_agree(comm, st, err);
+  if (st >= 0)
+    st = vg_slices_ugrid_open(comm, mesh, path, &options, &o->open[o->n_open],
+                              err);
+  if (st >= 0) o->n_open++;
+  free(path);
+  return st;
+}
+
+vg_status vg_outputs_open(struct vg_outputs *o, const struct vg_problem *p,
+                          struct vg_comm *comm, const struct vg_slices *mesh,
+                          struct vg_error *err)
+{
+  vg_status st;
+
+  if (!o) return VG_OK;
+  st = begin(o, comm, err);
+  for (size_t i = 0; i < o->n_item && st >= 0; i++)
+    if (vg_slices_is_ugrid(o->item[i]))
+      st = open_item(o, p, comm, mesh, o->item[i], err);
+  return st < 0 ? vg_outputs_close(o, st, err) : st;
+}
+
+vg_status vg_outputs_put(void *outputs, const struct vg_slice *slice,
+                         struct vg_error *err)
+{
+  struct vg_outputs *o = outputs;
+  double t = vg_display_now();
+  vg_status st = VG_OK;
+
+  if (!o) return VG_OK;
+  for (size_t i = 0; i < o->n_open && st >= 0; i++)
+    st = vg_slices_ugrid_put(o->open[i], slice, err);
+  __atomic_fetch_add(&o->put_time, (uint64_t)(1e9 * (vg_display_now() - t)),
+                     __ATOMIC_RELAXED);
+  return st;
+}
+
+vg_status vg_outputs_close(struct vg_outputs *o, vg_status st,
+                           struct vg_error *err)
+{
+  while (o && o->n_open)
+    st = vg_slices_ugrid_close(o->open[--o->n_open], st, err);
+  return st;
+}
+
+/* --- the rest --- */
+
+/* The mesh on its way out. */
+struct writing {
+  struct vg_outputs *o;
+  const struct vg_problem *p;
+  const struct vg_layer_stage *layers;
+  struct vg_comm *comm;
+  const struct vg_slices *mesh;
+  int threads;
+  struct vg_mesh whole;      /* for writers of whole meshes; else empty */
+};
+
+static vg_status write_format(const struct writing *w, const char *path,
+                              const char *suffix, struct vg_error *err)
+{
+  struct vg_ugrid_kind kind;
+
+  if (w->p->settings.ugrid_tail && vg_ugrid_kind(suffix, &kind))
+    return vg_ugrid_write_tail(path, &w->whole,
+                               w->mesh->n_layer_cell[VG_SLICE_TET], err);
+  return vg_format_write(path, &w->whole, err);
+}
+
+static vg_status write_foam_parts(const struct writing *w, const char *path,
+                                  struct vg_error *err)
+{
+  size_t n = w->whole.n_tet + w->whole.n_pyr + w->whole.n_pri;
+  uint32_t *part = vg_alloc(n, sizeof *part);
+  vg_status st = part ? vg_slices_collect_parts(w->mesh, w->threads, part, err)
+                      : vg_fail_memory(err, "the parts of a mesh");
+
+  if (st >= 0)
+    st = vg_foam_write_parts(path, n, part, w->mesh->n_part, err);
+  free(part);
+  return st;
+}
+
+static vg_status write_alone(struct writing *w, const char *item,
+                             struct vg_error *err)
+{
+  struct vg_foam_options options;
+  char *path;
+  vg_status st = VG_OK;
+
+  if (!w->whole.n_point)
+    st = vg_slices_collect(w->mesh, w->threads, &w->whole, err);
+  if (st < 0) return st;
+  if (!vg_foam_word(item, &options)) {
+    path = vg_outputs_temp_path(w->o, item);
+    st = path ? write_format(w, path, item, err)
+              : vg_fail_memory(err, "the output paths");
+    free(path);
+    return st < 0 ? st : vg_outputs_add(w->o, item, err);
+  }
+  path = vg_outputs_temp_path(w->o, VG_FOAM_SUFFIX);
+  st = path ? vg_outputs_add(w->o, VG_FOAM_SUFFIX, err)
+            : vg_fail_memory(err, "the output paths");
+  if (st >= 0) {
+    w->o->file[w->o->n_file - 1].is_case = 1;
+    st = vg_foam_write(path, &w->whole, &options, err);
+    if (st >= 0 && w->mesh->n_part) st = write_foam_parts(w, path, err);
+  }
+  free(path);
+  return st;
+}
+
+/* Conditions, with the title of the project. Rank 0 writes. */
+static vg_status write_conditions(struct writing *w, const char *item,
+                                  struct vg_error *err)
+{
+  int is_fun3d = strcmp(item, "mapbc") != 0;
+  struct vg_mesh boundary = VG_MESH_INIT;
+  char *path = vg_outputs_temp_path(w->o, item);
+  vg_status st = vg_slices_boundary(w->comm, w->mesh, w->threads, &boundary,
+                                    err);
+
+  if (st >= 0 && !path) st = vg_fail_memory(err, "the output paths");
+  if (st >= 0 && !w->o->is_guest)
+    st = vg_mapbc_write(path, &boundary, is_fun3d ? VG_MAPBC_FUN3D
+                                             : VG_MAPBC_VGRID,
+                        is_fun3d ? NULL : w->p->settings.title, NULL, err);
+  vg_mesh_release(&boundary);
+  free(path);
+  st = vg_comm_agree(w->comm, st, err);
+  return st < 0 ? st : vg_outputs_add(w->o, item, err);
+}
+
+/* The pieces of a .pvtu are found by their names. */
+static vg_status add_pieces(struct writing *w, const char *stem,
+                            struct vg_error *err)
+{
+  char suffix[40];
+  vg_status st = VG_OK;
+
+  for (size_t k = 0; st >= 0; k++) {
+    char *path = vg_slices_piece(stem, k);
+    int there = path && access(path, F_OK) == 0;
+
+    free(path);
+    if (!there) break;
+    snprintf(suffix, sizeof suffix, "_%zu.vtu", k);
+    st = vg_outputs_add(w->o, suffix, err);
+  }
+  return st;
+}
+
+static vg_status write_slices(struct writing *w, const char *item,
+                              struct vg_error *err)
+{
+  const char *triple[] = { "cogsg", "bc", "mapbc", NULL };
+  const char *pair[] = { "vtu", "surface.vtu", NULL };
+  const char *one[] = { item, NULL };
+  const char **part = !strcmp(item, "cogsg") ? triple
+                    : !strcmp(item, "vtu") ? pair : one;
+  struct vg_slices_options o = { .threads = w->threads,
+                                 .tail = w->p->settings.ugrid_tail };
+  char *stem;
+  vg_status st;
+
+  if (asprintf(&stem, "%s/%s", w->o->temp_dir, w->o->name) < 0)
+    return vg_fail_memory(err, "the output paths");
+  st = vg_slices_write_with(w->comm, w->mesh, stem, item, &o, err);
+  if (st >= 0 && part == pair)
+    st = vg_slices_write_with(w->comm, w->mesh, stem, pair[1], &o, err);
+  for (; *part && st >= 0; part++) st = vg_outputs_add(w->o, *part, err);
+  if (st >= 0 && !strcmp(item, "pvtu")) st = add_pieces(w, stem, err);
+  free(stem);
+  return st;
+}
+
+static vg_status write_parts(struct writing *w, struct vg_error *err)
+{
+  char form[32];
+
+  snprintf(form, sizeof form, "part.%u", w->mesh->n_part);
+  return write_slices(w, form, err);
+}
+
+static vg_status write_item(struct writing *w, const char *item,
+                            struct vg_error *err)
+{
+  if (!strcmp(item, "mapbc") || !strcmp(item, "fun3d.mapbc"))
+    return write_conditions(w, item, err);
+  return vg_slices_can_write(item) ? write_slices(w, item, err)
+                                   : write_alone(w, item, err);
+}
+
+static vg_status write_walls(struct vg_outputs *o, const struct vg_problem *p,
+                             const struct vg_layer_stage *layers,
+                             struct vg_error *err)
+{
+  char *path = vg_outputs_temp_path(o, WALLS);
+  vg_status st = path ? vg_layer_stage_write(layers, &p->surface, path, err)
+                      : vg_fail_memory(err, "the output paths");
+
+  free(path);
+  return st < 0 ? st : vg_outputs_add(o, WALLS, err);
+}
+
+/* The resolved settings say with which files they were used. The number of
+ * threads is the machine's affair: the file is the same for any. */
+static vg_status write_deck(struct vg_outputs *o, const struct vg_problem *p,
+                            struct vg_error *err)
+{
+  const struct vg_input_files *f = &p->files;
+  struct vg_settings settings = p->settings;
+  const char *input = *f->surface ? f->surface : f->stem;
+  const char *quote = strchr(input, ' ') ? "'" : "";   /* for a shell */
+  char *path = vg_outputs_temp_path(o, "resolved.deck"), *comment = NULL;
+  vg_status st;
+
+  if (!path ||
+      asprintf(&comment, "# Settings of a run, complete: to repeat it,\n"
+               "#   vanguard mesh -p %s%s%s --deck %s%s.resolved.deck%s\n"
+               "# (sources of a .d3m are listed below and not read again)\n",
+               quote, input, quote, quote, o->name, quote) < 0) {
+    free(path);
+    return vg_fail_memory(err, "the settings");
+  }
+  settings.threads = 0;
+  st = vg_deck_write(path, &settings, comment, 0, err);
+  free(path);
+  free(comment);
+  return st < 0 ? st : vg_outputs_add(o, "resolved.deck", err);
+}
+
+vg_status vg_outputs_mesh(struct vg_outputs *o, const struct vg_problem *p,
+                          const struct vg_layer_stage *layers,
+                          struct vg_comm *comm, const struct vg_slices *mesh,
+                          int threads, struct vg_error *err)
+{
+  struct writing w = { o, p, layers, comm, mesh, threads, VG_MESH_INIT };
+  vg_status st = VG_OK;
+
+  for (size_t i = 0; i < o->n_item && st >= 0; i++)
+    if (!vg_slices_is_ugrid(o->item[i]))
+      st = write_item(&w, o->item[i], err);
+  if (st >= 0 && mesh->n_part) st = write_parts(&w, err);
+  if (st >= 0 && !o->is_guest && layers->is_on)
+    st = write_walls(o, p, layers, err);
+  if (st >= 0 && !o->is_guest) st = write_deck(o, p, err);
+  /* What may coincide with an input by then: a .mapbc that knows all patches,
+   * and the resolved deck of the run that is being repeated. */
+  for (size_t i = 0; i < o->n_file && st >= 0; i++)
+    o->file[i].keep_old = hits_input(o, p, o->file[i].suffix) != NULL;
+  vg_mesh_release(&w.whole);
+  return vg_comm_agree(comm, st, err);
+}
+
+static vg_status digest_file(const char *path, struct vg_outputs_file *f,
+                             struct vg_error *err)
+{
+  struct vg_digest d = {{0, 0}};
+  int fd = open(path, O_RDONLY), bad = 1, why;
+
+  if (fd >= 0) bad = vg_digest_file(fd, &d, &f->bytes);
+  why = errno;
+  if (fd >= 0) close(fd);
+  if (bad) return vg_fail(err, VG_ERR_IO, "%s: cannot be read back: %s", path,
+                          strerror(why));
+  memcpy(f->digest, d.word, sizeof f->digest);
+  return VG_OK;
+}
+
+vg_status vg_outputs_digest(struct vg_outputs *o, struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  for (size_t i = 0; i < o->n_file && st >= 0; i++) {
+    char *path = vg_outputs_temp_path(o, o->file[i].suffix);
+
+    if (!path) st = vg_fail_memory(err, "the output paths");
+    else if (!o->file[i].is_case) st = digest_file(path, &o->file[i], err);
+    free(path);
+  }
+  return st;
+}
+
+vg_status vg_outputs_commit(struct vg_outputs *o, struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  for (size_t i = 0; i < o->n_file && st >= 0; i++)
+    if (!o->file[i].is_case && !o->file[i].keep_old)
+      st = refuse_folder(o, o->file[i].suffix, err);
+  for (size_t i = 0; i < o->n_file && st >= 0; i++) {
+    char *from = vg_outputs_temp_path(o, o->file[i].suffix);
+    char *to = vg_outputs_final(o, o->file[i].suffix);
+
+    if (!from || !to)
+      st = vg_fail_memory(err, "the output paths");
+    else if (o->file[i].is_case)
+      st = vg_foam_place(from, to, err);
+    else if (!o->file[i].keep_old && rename(from, to))
+      st = vg_fail(err, VG_ERR_IO, "%s: cannot be put in place: %s", to,
+                   strerror(errno));
+    free(from);
+    free(to);
+  }
+  remove_temp_dir(o);
+  return st;
+}

@@ -1,0 +1,233 @@
+/* How the work was cut up and shared out, for a person and for a program. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "run/common/text.h"
+#include "run/stages/run.h"
+
+/* Leaves by what they were filled with. Fragments are parts of a void that are
+ * too small for a task each and are filled together: ".r" at the end of a path.
+ * */
+struct leaves {
+  size_t n, n_fragment;
+  uint64_t *cells;           /* [n] rising; of no fragments */
+  uint64_t fragment_cells;
+};
+
+static int by_size(const void *a, const void *b)
+{
+  uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
+
+  return (x > y) - (x < y);
+}
+
+static int is_fragment(const struct vg_span *s)
+{
+  size_t n = strlen(s->path);
+
+  return n > 3 && !strcmp(s->path + n - 3, ".rL");
+}
+
+/* Without memory: none. */
+static struct leaves leaves_of(const struct vg_spans *s)
+{
+  struct leaves l = { .cells = vg_alloc(s->n, sizeof *l.cells) };
+
+  for (size_t i = 0; i < s->n && l.cells; i++) {
+    const struct vg_span *span = &s->span[i];
+
+    if (span->kind != VG_SPAN_LEAF || !span->n_cell) continue;
+    if (is_fragment(span)) {
+      l.n_fragment++;
+      l.fragment_cells += span->n_cell;
+    } else {
+      l.cells[l.n++] = span->n_cell;
+    }
+  }
+  if (l.n) qsort(l.cells, l.n, sizeof *l.cells, by_size);
+  return l;
+}
+
+static void print_leaves(FILE *to, const struct leaves *l)
+{
+  char a[32], b[32], c[32];
+
+  fprintf(to, "leaves %s", vg_text_count(l->n, a));
+  if (l->n > 1)
+    fprintf(to, " of %s to %s cells, median %s",
+            vg_text_count(l->cells[0], a), vg_text_count(l->cells[l->n - 1], b),
+            vg_text_count(l->cells[(l->n - 1) / 2], c));
+  fprintf(to, "\n");
+  if (l->n_fragment)
+    fprintf(to, "  and %s of fragments filled together, %s cells\n",
+            vg_text_count(l->n_fragment, a),
+            vg_text_count(l->fragment_cells, b));
+}
+
+/* What repairs and swaps across interfaces have added to the cells of tasks,
+ * or, below 0, taken away. */
+static int64_t repair_cells(const struct vg_run *r, const struct leaves *l)
+{
+  uint64_t tasks = r->partition.n_zone_cell + l->fragment_cells;
+
+  for (size_t i = 0; i < l->n; i++) tasks += l->cells[i];
+  return (int64_t)(r->n_field_cell - tasks);
+}
+
+static double share_of(const struct vg_run *r, uint64_t n)
+{
+  return r->n_field_cell ? 100 * (double)n / (double)r->n_field_cell : 0;
+}
+
+/* Most over mean of the leaves' cells. */
+static double balance(const struct leaves *l)
+{
+  double sum = 0;
+
+  for (size_t i = 0; i < l->n; i++) sum += (double)l->cells[i];
+  return l->n ? (double)l->cells[l->n - 1] * (double)l->n / sum : 1;
+}
+
+/* A void that was parted before any of it was filled. */
+static void print_parting(FILE *to, const struct vg_run *r,
+                          const struct leaves *l)
+{
+  const struct vg_partition_report *p = &r->partition;
+  const struct vg_parting_report *q = &p->parting;
+  char a[32], b[32];
+
+  if (!p->n_part) return;
+  fprintf(to, "  decomposed by %s: %s parts (%llu as pieces hung apart), "
+          "balance %.3f (most over mean\n  of the cells made in leaves)\n",
+          r->decomposition, vg_text_count(p->n_part, a),
+          (unsigned long long)q->n_apart, balance(l));
+  fprintf(to, "  %s %s, coarsening %.2f, %s triangles of interfaces\n",
+          vg_text_count(q->n_coarse, a), q->n_gap ? "octants" : "coarse cells",
+          q->coarsening, vg_text_count(q->n_face, b));
+  if (q->n_gap)
+    fprintf(to, "  %s of these parts are the gap at the front, which planes "
+            "may cut; octants hold %.1f %%\n  of the cells expected%s\n",
+            vg_text_count(q->n_gap, a), 100 * q->coarse_cells / p->estimate,
+            q->n_coarse ? "" : ": no octant has room off the front");
+  fprintf(to, "  seconds: %s %.2f, dealt out %.2f, interfaces smoothed "
+          "%.2f, divided %.2f\n", q->n_gap ? "octants" : "coarse cells",
+          q->time[VG_PARTING_COARSE],
+          q->time[VG_PARTING_GRAPH], q->time[VG_PARTING_SMOOTH],
+          q->time[VG_PARTING_FACES]);
+}
+
+static void put_parting(const struct vg_run *r, const struct leaves *l,
+                        json_t *o)
+{
+  const struct vg_partition_report *p = &r->partition;
+  const struct vg_parting_report *q = &p->parting;
+
+  json_object_set_new(o, "decomposition", json_string(r->decomposition));
+  json_object_set_new(o, "balance", json_real(balance(l)));
+  if (!p->n_part) return;
+  json_object_set_new(o, "parting", json_pack(
+    "{s:I s:I s:f s:I s:I s:f s:I s:f s:f s:f s:f}", "parts", (json_int_t)p->n_part,
+    "parts_apart", (json_int_t)q->n_apart, "coarsening", q->coarsening,
+    "coarse_cells", (json_int_t)q->n_coarse,
+    "gap_parts", (json_int_t)q->n_gap, "octants_hold", q->coarse_cells,
+    "interface_triangles", (json_int_t)q->n_face,
+    "coarse_seconds", q->time[VG_PARTING_COARSE],
+    "deal_seconds", q->time[VG_PARTING_GRAPH],
+    "smooth_seconds", q->time[VG_PARTING_SMOOTH],
+    "divide_seconds", q->time[VG_PARTING_FACES]));
+}
+
+void vg_report_partition_text(FILE *to, const struct vg_run *r)
+{
+  const struct vg_partition_report *p = &r->partition;
+  struct leaves l = leaves_of(&r->spans);
+  char a[32], b[32], c[32];
+
+  fprintf(to, "  %d rank%s x %d thread%s; %s cells expected, %s made\n",
+          r->size, r->size > 1 ? "s" : "", r->threads,
+          r->threads > 1 ? "s" : "",
+          vg_text_count((unsigned long long)p->estimate, a),
+          vg_text_count(r->n_field_cell, b));
+  print_parting(to, r, &l);
+  fprintf(to, "  cuts %s, pencils %s, tiles %s: %.1f %% of the cells; ",
+          vg_text_count(p->n_node, a), vg_text_count(p->n_pencil, b),
+          vg_text_count(p->n_tile, c), share_of(r, p->n_zone_cell));
+  print_leaves(to, &l);
+  if (p->n_widened)
+    fprintf(to, "  parts that could not be filled, and were filled together "
+            "with what is beside\n  them %s: %s cells made again, %.2f s\n",
+            vg_text_count(p->n_widened, a),
+            vg_text_count(p->n_widened_cell, b), p->widened);
+  if (p->n_blocked || p->n_retry || p->n_uncut || p->n_outgrown)
+    fprintf(to, "  zones given up %s, cuts repeated elsewhere %s, leaves cut "
+            "again %s, left large %llu\n", vg_text_count(p->n_blocked, a),
+            vg_text_count(p->n_retry, b), vg_text_count(p->n_outgrown, c),
+            (unsigned long long)p->n_uncut);
+  if (p->n_open_left)
+    fprintf(to, "  stages between zones left to leaves, since the void hangs "
+            "together at too many places: %llu\n",
+            (unsigned long long)p->n_open_left);
+  fprintf(to, "  across interfaces: points moved %s times, %s swaps; ",
+          vg_text_count(p->n_repair_moved, a),
+          vg_text_count(p->n_repair_swapped, b));
+  fprintf(to, "repaired %s of %s regions, %+lld cells, %.2f s\n",
+          vg_text_count(p->n_repaired, a), vg_text_count(p->n_repair, b),
+          (long long)repair_cells(r, &l), p->repair);
+  free(l.cells);
+  fprintf(to, "  workers busy %.1f %%, imbalance %.3f (most over mean)\n",
+          100 * vg_spans_busy(&r->spans), vg_spans_imbalance(&r->spans));
+  if (!r->store) return;
+  fprintf(to, "  tasks found in %s: %s\n", r->options.dir,
+          vg_text_count(p->n_found, a));
+  if (*r->stored.stopped)
+    fprintf(to, "  not all tasks were kept there: %s\n", r->stored.stopped);
+}
+
+static json_t *count(uint64_t n)
+{
+  return json_integer((json_int_t)n);
+}
+
+json_t *vg_report_partition_json(const struct vg_run *r)
+{
+  const struct vg_partition_report *p = &r->partition;
+  struct leaves l = leaves_of(&r->spans);
+  const struct { const char *name; uint64_t n; } row[] = {
+    { "ranks", (uint64_t)r->size }, { "threads", (uint64_t)r->threads },
+    { "cuts", p->n_node }, { "pencils", p->n_pencil }, { "tiles", p->n_tile },
+    { "leaves", l.n }, { "fragment_leaves", l.n_fragment },
+    { "fragment_cells", l.fragment_cells }, { "zone_cells", p->n_zone_cell },
+    { "zones_given_up", p->n_blocked },
+    { "zones_crossing", p->n_crossing }, { "cuts_repeated", p->n_retry },
+    { "leaves_cut_again", p->n_outgrown }, { "leaves_left_large", p->n_uncut },
+    { "stages_left_open", p->n_open_left },
+    { "tasks_found", p->n_found }, { "regions_bad", p->n_repair },
+    { "regions_repaired", p->n_repaired },
+    { "cells_in_regions", p->n_repair_cell },
+    { "points_moved_across", p->n_repair_moved },
+    { "swaps_across", p->n_repair_swapped },
+    { "parts_widened", p->n_widened },
+    { "cells_made_again", p->n_widened_cell },
+  };
+  json_t *o = json_object(), *leaves = json_array();
+  json_int_t by_repair = repair_cells(r, &l);
+
+  for (size_t i = 0; i < sizeof row / sizeof *row; i++)
+    json_object_set_new(o, row[i].name, count(row[i].n));
+  for (size_t i = 0; i < l.n; i++)
+    json_array_append_new(leaves, count(l.cells[i]));
+  put_parting(r, &l, o);
+  free(l.cells);
+  json_object_set_new(o, "leaf_cells", leaves);
+  json_object_set_new(o, "repair_cells", json_integer(by_repair));
+  json_object_set_new(o, "parts_widened_seconds", json_real(p->widened));
+  json_object_set_new(o, "repair_seconds", json_real(p->repair));
+  json_object_set_new(o, "estimate", json_real(p->estimate));
+  json_object_set_new(o, "busy", json_real(vg_spans_busy(&r->spans)));
+  json_object_set_new(o, "imbalance",
+                      json_real(vg_spans_imbalance(&r->spans)));
+  json_object_set_new(o, "memory_of_all_ranks_bytes",
+                      json_real(r->memory_sum));
+  return o;
+}

@@ -1,0 +1,543 @@
+#include "run/stages/run.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/team.h"
+#include "base/version.h"
+#include "layers/columns/pack.h"
+#include "partition/advance/ways.h"
+#include "run/input/share.h"
+#include "run/input/sizes.h"
+#include "run/input/walls.h"
+#include "run/report/report.h"
+
+uint64_t vg_run_cells(const struct vg_run *r)
+{
+  uint64_t n = 0;
+
+  for (int k = 0; k < VG_SLICE_KINDS; k++) n += r->slices.n_cell[k];
+  return n;
+}
+
+vg_status vg_run_memory(struct vg_run *r, struct vg_error *err)
+{
+  uint64_t sum = (uint64_t)vg_report_peak_memory();
+  vg_status st;
+
+  r->memory = (double)sum;
+  if (vg_comm_node_rank(r->comm)) sum -= sum < r->common ? sum : r->common;
+  st = vg_comm_max(r->comm, 1, &r->memory, err);
+  if (st >= 0) st = vg_comm_sum(r->comm, 1, &sum, err);
+  r->memory_sum = (double)sum;
+  return st;
+}
+
+/* --- for every node: sizes and layers ------------------------------------ */
+
+/* The first ranks of the nodes do it, each on the cores of all ranks of its
+ * node, who wait asleep. */
+static int leads_node(const struct vg_run *r)
+{
+  return vg_comm_node_rank(r->comm) == 0;
+}
+
+static int node_threads(struct vg_run *r, const struct vg_settings *s)
+{
+  if (!s->threads) return vg_comm_node_cores(r->comm, 1);
+  vg_comm_bind_node(r->comm, 1);
+  return (int)s->threads * vg_comm_node_size(r->comm);
+}
+
+static vg_status settle_surface(struct vg_problem *p,
+                                struct vg_layer_stage *layers,
+                                struct vg_display *show, struct vg_error *err)
+{
+  vg_status st;
+
+  VG_TRY(vg_problem_close(p, show, err));
+  VG_TRY(vg_layer_stage_plan(layers, p, err));
+  vg_problem_note_unset(p);
+  st = vg_walls_swap(p, layers->is_on ? layers->reason : NULL, err);
+done:
+  return st;
+}
+
+vg_status vg_run_surface(struct vg_run *r, struct vg_problem *p,
+                         struct vg_layer_stage *layers,
+                         struct vg_display *show, struct vg_error *err)
+{
+  struct vg_bytes b = {0, NULL};
+  uint64_t is_on = 0;
+  vg_status st = VG_OK;
+
+  if (leads_node(r)) {
+    p->threads = node_threads(r, &p->settings);
+    st = settle_surface(p, layers, show, err);
+    vg_comm_bind_node(r->comm, 0);
+    if (st >= 0 && vg_comm_node_size(r->comm) > 1)
+      st = vg_surface_pack(&p->surface, (uint64_t)layers->is_on, &b, err);
+  }
+  VG_TRY(vg_comm_agree(r->comm, st, err));
+  if (vg_comm_node_size(r->comm) > 1)
+    VG_TRY(vg_comm_node_bcast(r->comm, &b, err));
+  if (!leads_node(r)) {
+    vg_problem_forget_sizes(p);
+    st = vg_surface_unpack(&b, &p->surface, &is_on, err);
+    layers->is_on = (int)is_on;
+  }
+  st = vg_comm_agree(r->comm, st, err);
+done:
+  free(b.data);
+  return st;
+}
+
+/* What the first rank of the node made, with status st, on the others too:
+ * layers first, which those unpack while it writes the sizes. Collective;
+ * without layers NULL. */
+static vg_status share_with_node(struct vg_run *r, vg_status st,
+                                 const struct vg_mesh *surface,
+                                 struct vg_layers *layers,
+                                 struct vg_display *show,
+                                 struct vg_sizing **sizing,
+                                 struct vg_error *err)
+{
+  int makes = leads_node(r) && vg_comm_node_size(r->comm) > 1;
+  struct vg_bytes layer = {0, NULL};
+  vg_status own = VG_OK;
+
+  if (st >= 0 && makes && layers) st = vg_layers_pack(layers, &layer, err);
+  VG_TRY(vg_comm_agree(r->comm, st, err));
+  if (layers) own = vg_comm_node_bcast(r->comm, &layer, err);
+  if (own >= 0 && layers && !leads_node(r))
+    own = vg_layers_unpack(&layer, surface, layers, err);
+  st = vg_sizing_share(r->comm, sizing, err);
+  if (st >= 0) r->common = vg_sizing_shmem(*sizing);
+  if (st >= 0) st = own;
+  if (st >= 0) st = vg_display_stopped(show, err);
+  st = vg_comm_agree(r->comm, st, err);
+done:
+  free(layer.data);
+  return st;
+}
+
+/* The size field over a boundary. */
+static vg_status measure_sizes(struct vg_run *r, const struct vg_problem *p,
+                               const struct vg_mesh *boundary,
+                               double coarseness, int threads,
+                               struct vg_team *team, struct vg_display *show,
+                               struct vg_sizing **sizing, struct vg_error *err)
+{
+  const struct vg_settings *s = &p->settings;
+  struct vg_sizing_options options = vg_problem_sizing(p);
+  double t = vg_display_now();
+  vg_status st;
+
+  options.threads = threads;
+  options.coarseness = coarseness;
+  options.team = team;
+  vg_display_update(show, "sizes", 0, 0);
+  st = vg_sizing_new(&options, s->n_source, s->source, boundary, sizing, err);
+  r->time_size += vg_display_now() - t;
+  return st < 0 ? st : vg_display_stopped(show, err);
+}
+
+/* Which sources have no effect; by rank 0. Collective. */
+static vg_status look_at_sources(struct vg_run *r, const struct vg_problem *p,
+                                 const struct vg_mesh *front,
+                                 const struct vg_sizing *sizing,
+                                 struct vg_error *err)
+{
+  double t = vg_display_now();
+  vg_status st = VG_OK;
+
+  if (!r->rank) st = vg_problem_effects(p, front, sizing, &r->effects, err);
+  r->time_size += vg_display_now() - t;
+  return vg_comm_agree(r->comm, st, err);
+}
+
+/* --- the run directory --------------------------------------------------- */
+
+static void add_digest(void *user, size_t n, const void *data)
+{
+  struct vg_digest *d = user;
+
+  *d = vg_digest_of(*d, n, data);
+}
+
+/* Everything that the tasks' outcomes follow from, besides their input. */
+static struct vg_digest job_digest(const struct vg_problem *p,
+                                   const struct vg_mesh *boundary,
+                                   const struct vg_sizing *sizing)
+{
+  const struct vg_settings *s = &p->settings;
+  struct vg_digest d = {{0, 0}}, plugin;
+  double size[6] = {s->scale, s->growth, s->hmin, s->hmax,
+                    (double)s->surface_sizes, s->coarsening};
+  int64_t cut[9] = {s->leaf_cells, s->levels, s->split_direction,
+                    s->constant_direction, s->optimise, s->decompose,
+                    s->parts, s->partitioner, s->h_refine};
+
+  d = vg_digest_of(d, strlen(vg_source_digest), vg_source_digest);
+  d = vg_digest_of(d, sizeof size, size);
+  d = vg_digest_of(d, sizeof cut, cut);
+  d = vg_digest_of(d, strlen(s->mesher), s->mesher);
+  if (vg_run_mesher_digest(s, &plugin))
+    d = vg_digest_of(d, sizeof plugin, &plugin);
+  for (size_t i = 0; i < s->n_source; i++) {
+    const struct vg_source *q = &s->source[i];
+    double v[19] = {q->kind, q->h0, q->h1, q->r0, q->r1, q->growth, q->an};
+
+    memcpy(v + 7, q->p0, sizeof q->p0);
+    memcpy(v + 10, q->p1, sizeof q->p1);
+    memcpy(v + 13, q->p2, sizeof q->p2);
+    memcpy(v + 16, q->u, sizeof q->u);
+    d = vg_digest_of(d, sizeof v, v);
+  }
+  d = vg_digest_of(d, boundary->n_point * sizeof *boundary->point,
+                   boundary->point);
+  d = vg_digest_of(d, boundary->n_tri * sizeof *boundary->tri, boundary->tri);
+  if (*s->sizes) vg_sizing_show(sizing, add_digest, &d);
+  return d;
+}
+
+vg_status vg_run_resumable(struct vg_run *r, struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  if (!r->options.resume) return VG_OK;
+  if (!r->rank) st = vg_store_has_run(r->options.dir, err);
+  return vg_comm_agree(r->comm, st, err);
+}
+
+static vg_status open_store(struct vg_run *r, const struct vg_problem *p,
+                            const struct vg_mesh *boundary,
+                            const struct vg_sizing *sizing,
+                            struct vg_partition_options *o,
+                            struct vg_error *err)
+{
+  struct vg_store_options s = { .dir = r->options.dir,
+    .resume = r->options.resume, .limit = r->options.limit };
+  char what[200], *settings;
+  vg_status st;
+
+  if (!r->options.dir) return VG_OK;
+  o->job = s.job = job_digest(p, boundary, sizing);
+  snprintf(what, sizeof what, "%s (%zu boundary triangles)",
+           p->settings.title, boundary->n_tri);
+  s.what = what;
+  s.settings = settings = vg_run_settings(&p->settings, boundary);
+  st = vg_store_open(r->comm, &s, &r->store, err);
+  free(settings);
+  return st;
+}
+
+static vg_status say_stopped(const struct vg_run *r, struct vg_error *err)
+{
+  if (!r->store)
+    return vg_fail(err, VG_ERR_STOPPED, "interrupted; nothing was written "
+                   "(with --run-dir a run can be resumed)");
+  return vg_fail(err, VG_ERR_STOPPED, "stopped; finished tasks are kept in %s: "
+                 "give the same command with --resume to go on, on any "
+                 "number of ranks", r->options.dir);
+}
+
+/* --- the field ----------------------------------------------------------- */
+
+/* Of the leaves, where it is not the kernel. */
+static vg_status open_mesher(const struct vg_run *r, const struct vg_settings *s,
+                             struct vg_mesher_pool **out, struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  if (strcmp(s->mesher, "builtin") != 0)
+    st = vg_mesher_open(s->mesher, out, err);
+  return vg_comm_agree(r->comm, st, err);
+}
+
+static vg_status fill(struct vg_run *r, const struct vg_problem *p,
+                      const struct vg_mesh *boundary,
+                      const struct vg_sizing *sizing, struct vg_display *show,
+                      struct vg_error *err)
+{
+  const struct vg_settings *s = &p->settings;
+  struct vg_partition_options o = VG_PARTITION_OPTIONS_INIT;
+  double t = vg_display_now();
+  vg_status st;
+
+  o.rule.leaf_cells = s->levels ? 0 : (double)s->leaf_cells;
+  o.rule.first_axis = (int)s->split_direction - 1;
+  o.rule.constant = s->constant_direction;
+  o.levels = (int)s->levels;
+  o.maker = vg_ways[s->decompose].maker;
+  r->decomposition = vg_ways[s->decompose].name;
+  o.parting.n_part = s->parts == VG_COUNT_NONE ? 0 : (int)s->parts;
+  o.parting.partitioner = s->partitioner;
+  o.parting.coarsening = s->coarsening;
+  o.parting.h_refine = s->h_refine;
+  o.threads = r->threads;
+  o.sweeps = (int)s->optimise;
+  o.max_cells = (uint64_t)s->max_cells;
+  o.shuffle = r->options.shuffle;
+  o.fail_leaves = r->options.fail_leaves;
+  o.fail_rounds = r->options.fail_rounds;
+  o.progress = vg_display_update;
+  o.stop = vg_display_stop;
+  o.user = show;
+  VG_TRY(open_mesher(r, s, &o.mesher, err));
+  vg_display_update(show, "load", 0, 0);
+  VG_TRY(open_store(r, p, boundary, sizing, &o, err));
+  o.store = r->store;
+  st = vg_partition_grow(r->comm, boundary, sizing, &o, &r->field,
+                         &r->partition, &r->spans, err);
+  r->time_fill = vg_display_now() - t - r->partition.number;
+  if (r->store) vg_store_state(r->store, &r->stored);
+  if (st == VG_BLOCKED) st = say_stopped(r, err);
+  if (st >= 0)
+    r->n_field_cell =
+      vg_partition_slices(r->field)->n_cell[VG_SLICE_TET];
+done:
+  vg_mesher_close(o.mesher);
+  return st;
+}
+
+/* --- judgement ----------------------------------------------------------- */
+
+static vg_status accept(const struct vg_run *r, struct vg_error *err)
+{
+  char faults[300];
+
+  if (r->judge.is_valid && (!r->layers || r->field_judge.is_valid))
+    return VG_OK;
+  vg_report_faults(r->judge.is_valid ? &r->field_judge : &r->judge, faults,
+                   sizeof faults);
+  return vg_fail(err, VG_ERR_GEOMETRY, "the mesh did not pass its own check "
+                 "(%s) and was not written; please report this with the "
+                 "project files", faults);
+}
+
+static vg_status put_slice(void *run, const struct vg_slice *slice,
+                           struct vg_error *err)
+{
+  struct vg_run *r = run;
+  vg_status st = vg_outputs_put(r->outputs, slice, err);
+
+  return st < 0 ? st : vg_run_pictures_put(&r->pictures, slice, err);
+}
+
+/* Edges are held against the field's sizes; within layers there is no
+ * isotropic size to meet. A file of a mesh that is not valid goes again. */
+static vg_status judge(struct vg_run *r, const struct vg_problem *p,
+                       const struct vg_layers *layers,
+                       const struct vg_sizing *sizing,
+                       struct vg_display *show, struct vg_error *err)
+{
+  size_t front_faces = layers ? layers->front.mesh.n_tri : 0;
+  double t = vg_display_now();
+  vg_status st;
+
+  vg_display_update(show, "judge", vg_run_cells(r), 0);
+  VG_TRY(vg_run_pictures_plan(&r->pictures, r->comm, &p->surface,
+                              layers ? &layers->columns : NULL, err));
+  VG_TRY(vg_outputs_open(r->outputs, p, r->comm, &r->slices, err));
+  st = vg_slices_judge_with(r->comm, &r->slices, front_faces, sizing,
+                            r->threads, put_slice, r, &r->judge,
+                            r->layers ? &r->field_judge : NULL, err);
+  if (st >= 0)
+    st = vg_effects_in_mesh(r->comm, &r->slices, r->threads, &r->effects,
+                            err);
+  if (st >= 0) st = accept(r, err);
+  if (st >= 0) st = vg_display_stopped(show, err);
+  st = vg_outputs_close(r->outputs, st, err);
+  st = vg_comm_agree(r->comm, st, err);
+  if (st >= 0)
+    st = vg_run_pictures_gather(&r->pictures, r->comm,
+                                vg_partition_slices(r->field),
+                                r->slices.n_layer_cell[VG_SLICE_TET],
+                                r->threads,
+                                r->layers ? &r->field_judge : &r->judge, err);
+done:
+  if (r->outputs)
+    r->time_put = 1e-9 * (double)r->outputs->put_time / r->threads;
+  r->time_judge += vg_display_now() - t - r->time_put - r->pictures.time;
+  return st;
+}
+
+static vg_status mesh_plain(struct vg_run *r, const struct vg_problem *p,
+                            struct vg_display *show, struct vg_error *err)
+{
+  const struct vg_mesh *surface = &p->surface;
+  struct vg_sizing *sizing = NULL;
+  struct vg_team *team;
+  vg_status st = vg_team_open(r->comm, &team, err);
+
+  if (st < 0) return st;
+  if (leads_node(r)) {
+    st = measure_sizes(r, p, surface, 1, node_threads(r, &p->settings), team,
+                       show, &sizing, err);
+    st = vg_team_close(team, st, err);
+    vg_comm_bind_node(r->comm, 0);
+  }
+  VG_TRY(share_with_node(r, st, surface, NULL, show, &sizing, err));
+  VG_TRY(vg_run_agree(r->comm, surface, NULL, sizing, r->options.change,
+                      err));
+  VG_TRY(look_at_sources(r, p, surface, sizing, err));
+  VG_TRY(fill(r, p, surface, sizing, show, err));
+  r->slices = *vg_partition_slices(r->field);
+  st = judge(r, p, NULL, sizing, show, err);
+done:
+  vg_sizing_free(sizing);
+  return st;
+}
+
+/* Columns and the front above them, with their sizes; on the cores of the
+ * nodes. */
+static vg_status grow_layers(struct vg_run *r, const struct vg_problem *p,
+                             struct vg_layer_stage *layers,
+                             struct vg_team *team, struct vg_display *show,
+                             struct vg_sizing **sizing, struct vg_error *err)
+{
+  struct vg_mesh view = VG_MESH_INIT;
+  int threads = node_threads(r, &p->settings);
+  double t;
+  vg_status st;
+
+  VG_TRY(vg_layer_stage_sizes(layers, p, &view, err));
+  VG_TRY(measure_sizes(r, p, &view, VG_LAYERS_COARSENESS, threads, team,
+                       show, sizing, err));
+  t = vg_display_now();
+  layers->options.threads = threads;
+  layers->options.team = team;
+  VG_TRY(vg_layer_stage_grow(layers, &p->surface, *sizing, show, err));
+  r->time_layers = vg_display_now() - t;
+  VG_TRY(vg_display_stopped(show, err));
+  vg_sizing_free(*sizing);
+  *sizing = NULL;
+  st = measure_sizes(r, p, &layers->layers.front.mesh, 1, threads, team, show,
+                     sizing, err);
+done:
+  layers->options.team = NULL;
+  st = vg_team_close(team, st, err);
+  vg_comm_bind_node(r->comm, 0);
+  free(view.tri);
+  free(view.tri_patch);
+  return st;
+}
+
+/* By what each rank has of the field. */
+static vg_status share_layers(struct vg_run *r, struct vg_error *err)
+{
+  uint64_t *n = vg_calloc((size_t)r->size, sizeof *n);
+  vg_status st = n ? VG_OK : vg_fail_memory(err, "the slices of the layers");
+
+  VG_TRY(vg_comm_agree(r->comm, st, err));
+  n[r->rank] = vg_partition_slices(r->field)->n_served;
+  VG_TRY(vg_comm_sum(r->comm, (size_t)r->size, n, err));
+  vg_layer_slices_share(r->layers, n, &r->slices);
+done:
+  free(n);
+  return st;
+}
+
+/* How cells change in size from layers to field; the first rank reports. */
+static vg_status measure_tops(struct vg_run *r, const struct vg_problem *p,
+                              struct vg_layer_stage *layers,
+                              struct vg_error *err)
+{
+  size_t n = layers->layers.columns.n_face;
+  double t = vg_display_now();
+  vg_status st = VG_OK;
+
+  layers->top = vg_alloc(n, sizeof *layers->top);
+  if (!layers->top) st = vg_fail_memory(err, "the tops of the layers");
+  VG_TRY(vg_comm_agree(r->comm, st, err));
+  VG_TRY(vg_layer_slices_tops(r->comm, r->layers, layers->top, err));
+  if (!r->rank) st = vg_layer_stage_finish(layers, &p->surface, err);
+  layers->time_measure += vg_display_now() - t;
+  st = vg_comm_agree(r->comm, st, err);
+done:
+  return st;
+}
+
+/* The second size field is that of the front, so that the fill fits the tops
+ * of the layers. */
+static vg_status mesh_layers(struct vg_run *r, const struct vg_problem *p,
+                             struct vg_layer_stage *layers,
+                             struct vg_display *show, struct vg_error *err)
+{
+  const struct vg_mesh *front = &layers->layers.front.mesh;
+  struct vg_sizing *sizing = NULL;
+  struct vg_team *team;
+  vg_status st = vg_team_open(r->comm, &team, err);
+
+  if (st < 0) return st;
+  if (leads_node(r)) st = grow_layers(r, p, layers, team, show, &sizing, err);
+  VG_TRY(share_with_node(r, st, &p->surface, &layers->layers, show, &sizing,
+                         err));
+  VG_TRY(vg_run_agree(r->comm, &p->surface, &layers->layers, sizing,
+                      r->options.change, err));
+  VG_TRY(look_at_sources(r, p, front, sizing, err));
+  VG_TRY(fill(r, p, front, sizing, show, err));
+  st = vg_layer_slices_open(&p->surface, &layers->layers,
+                            vg_partition_slices(r->field),
+                            (enum vg_layer_cells)p->settings.cells, r->rank,
+                            r->size, r->threads, &r->slices, &r->layers,
+                            &layers->join, err);
+  VG_TRY(vg_comm_agree(r->comm, st, err));
+  VG_TRY(share_layers(r, err));
+  VG_TRY(judge(r, p, &layers->layers, sizing, show, err));
+  st = measure_tops(r, p, layers, err);
+done:
+  vg_sizing_free(sizing);
+  return st;
+}
+
+/* Solver_parts of the mesh that is about to be written. */
+static vg_status part_for_solver(struct vg_run *r, const struct vg_problem *p,
+                                 struct vg_display *show, struct vg_error *err)
+{
+  struct vg_solver_options o = VG_SOLVER_OPTIONS_INIT;
+  double t = vg_display_now();
+  vg_status st;
+
+  if (!p->settings.solver_parts) return VG_OK;
+  vg_display_update(show, "partition", vg_run_cells(r), 0);
+  o.n_part = (uint64_t)p->settings.solver_parts;
+  o.threads = r->threads;
+  st = vg_solver_part_slices(r->comm, &r->slices, &o, &r->parted, &r->parts,
+                             &r->solver, err);
+  r->time_parts = vg_display_now() - t;
+  return st;
+}
+
+const struct vg_slices *vg_run_slices(const struct vg_run *r)
+{
+  return r->parts ? &r->parted : &r->slices;
+}
+
+vg_status vg_run_mesh(struct vg_run *r, const struct vg_problem *p,
+                      struct vg_layer_stage *layers, struct vg_display *show,
+                      struct vg_error *err)
+{
+  vg_status st;
+
+  r->threads = p->settings.threads ? (int)p->settings.threads
+                                   : vg_comm_default_threads(r->comm);
+  r->pictures.is_on = r->outputs && p->settings.report_html;
+  st = layers->is_on ? mesh_layers(r, p, layers, show, err)
+                     : mesh_plain(r, p, show, err);
+  return st < 0 ? st : part_for_solver(r, p, show, err);
+}
+
+void vg_run_release(struct vg_run *r, int success)
+{
+  vg_solver_slices_close(r->parts);
+  vg_run_pictures_release(&r->pictures);
+  vg_layer_slices_close(r->layers);
+  vg_partition_free(r->field);
+  vg_effects_release(&r->effects);
+  vg_spans_release(&r->spans);
+  vg_store_close(r->store, success && !r->options.keep);
+}
