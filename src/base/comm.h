@@ -109,6 +109,12 @@ vg_status vg_comm_node_shmem(struct vg_comm *c, size_t n_part,
 
 void vg_shmem_release(struct vg_shmem *b);
 
+/** Bytes of it that are in common; 0 where each rank has its copy. */
+static inline size_t vg_shared_bytes(const struct vg_shmem *b)
+{
+  return b->is_mapped ? b->n : 0;
+}
+
 /** Bytes of every rank on every rank, in order of ranks: out [size], each to
  * be freed by the caller. */
 vg_status vg_comm_allgather(struct vg_comm *c, const struct vg_bytes *mine,

@@ -1,7 +1,13 @@
-/* One copy for the ranks of a node: bytes, and the field of sizes. */
+/* One copy for the ranks of a node: bytes, the field of sizes, layers and
+ * surfaces. */
+#include "../unit/layer_cases.h"
 #include "base/comm_parts.h"
+#include "run/input/share.h"
 #include "core/sizing/sizing_parts.h"
+#include "layers/columns/share.h"
+#include "layers/grow/grow.h"
 #include "mpi_support.h"
+#include "partition/store/store.h"
 
 static const size_t length[] = { 0, 1, 63, 64, 65, 4097, 3000001, 0, 7 };
 enum { N_LENGTH = sizeof length / sizeof *length };
@@ -119,12 +125,110 @@ static void a_field_is_in_common(void **state)
   if (job) job->apart = 0;
 }
 
+/* --- layers and surfaces ------------------------------------------------- */
+
+/* A post on a plane: columns, fans, borders on slide patches. */
+static void grow(const struct vg_mesh *surface, struct vg_layers *out)
+{
+  struct vg_layer_options options = VG_LAYER_OPTIONS_INIT;
+  struct vg_layer_request request[16] = { 0 };
+  struct vg_layer_report report;
+  struct vg_sizing *sizing = shape_sizing(surface, 1.2, 0);
+  struct vg_error err = VG_ERROR_INIT;
+
+  for (size_t p = 0; p < surface->n_patch; p++) {
+    struct vg_law law = VG_LAW_INIT;
+
+    law.delta1 = 2e-4;
+    request[p].is_wall = surface->patch[p].bc == CASE_WALL;
+    request[p].law = law;
+  }
+  options.patch = request;
+  options.fan_angle = 60;
+  if (vg_layers_grow(surface, sizing, &options, out, &report, &err) < 0)
+    fail_msg("%s", err.text);
+  vg_sizing_free(sizing);
+}
+
+static void add(void *user, size_t n, const void *data)
+{
+  struct vg_digest *d = user;
+
+  *d = vg_digest_of(*d, n, data);
+}
+
+static struct vg_digest digest(const struct vg_layers *l)
+{
+  struct vg_digest d = {{0, 0}};
+
+  vg_layers_show(l, add, &d);
+  add(&d, l->front.mesh.n_patch * sizeof *l->front.mesh.patch,
+      l->front.mesh.patch);
+  return d;
+}
+
+/* Every rank knows what it has to be by growing them as well; those that lead
+ * have theirs replaced. */
+static void share_layers(const struct vg_mesh *surface)
+{
+  struct vg_layers own = VG_LAYERS_INIT, got = VG_LAYERS_INIT;
+  struct vg_digest was, is;
+
+  grow(surface, &own);
+  if (!vg_comm_node_rank(job)) grow(surface, &got);
+  was = digest(&own);
+  assert_int_equal(vg_layers_share(job, &got, NULL), VG_OK);
+  is = digest(&got);
+  assert_memory_equal(&was, &is, sizeof was);
+  assert_int_equal(own.columns.n_border, got.columns.n_border);
+  assert_int_equal(!got.common.data, vg_comm_node_size(job) == 1);
+  vg_layers_release(&own);
+  vg_layers_release(&got);
+  assert_null(got.columns.column);
+}
+
+static void share_surface(const struct vg_mesh *m)
+{
+  struct vg_mesh got = VG_MESH_INIT;
+  struct vg_shmem common = { 0 };
+  uint64_t number = vg_comm_node_rank(job) ? 0 : 5;
+
+  if (!vg_comm_node_rank(job))
+    assert_int_equal(vg_mesh_copy(&got, m, NULL), VG_OK);
+  assert_int_equal(vg_surface_share(job, &got, &number, &common, NULL), VG_OK);
+  assert_int_equal(number, 5);
+  assert_int_equal(got.n_tri, m->n_tri);
+  assert_memory_equal(got.point, m->point, m->n_point * sizeof *m->point);
+  assert_memory_equal(got.tri, m->tri, m->n_tri * sizeof *m->tri);
+  assert_memory_equal(got.tri_patch, m->tri_patch,
+                      m->n_tri * sizeof *m->tri_patch);
+  assert_memory_equal(got.patch, m->patch, m->n_patch * sizeof *m->patch);
+  if (common.data) vg_shmem_release(&common);
+  else vg_mesh_release(&got);
+}
+
+static void layers_are_in_common(void **state)
+{
+  struct vg_mesh surface = VG_MESH_INIT;
+
+  (void)state;
+  case_post(&surface, 0.1, 0.3);
+  for (int apart = 0; apart < 2; apart++) {
+    if (job) job->apart = apart;
+    share_layers(&surface);
+    share_surface(&surface);
+  }
+  if (job) job->apart = 0;
+  vg_mesh_release(&surface);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(parts_are_in_common), cmocka_unit_test(or_copied),
     cmocka_unit_test(nothing_can_be_shared),
-    cmocka_unit_test(a_field_is_in_common)
+    cmocka_unit_test(a_field_is_in_common),
+    cmocka_unit_test(layers_are_in_common)
   };
 
   return RUN_IN_JOB(tests);

@@ -81,5 +81,5 @@ vg_status vg_sizing_share(struct vg_comm *c, struct vg_sizing **s,
 
 size_t vg_sizing_shmem(const struct vg_sizing *s)
 {
-  return s->common.is_mapped ? s->common.n : 0;
+  return vg_shared_bytes(&s->common);
 }

@@ -1,6 +1,7 @@
 #include "layers/columns/layers.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 void vg_layer_front_release(struct vg_layer_front *f)
 {
@@ -13,6 +14,11 @@ void vg_layer_front_release(struct vg_layer_front *f)
 
 void vg_layers_release(struct vg_layers *l)
 {
-  vg_columns_release(&l->columns);
-  vg_layer_front_release(&l->front);
+  if (!l->common.data) {
+    vg_columns_release(&l->columns);
+    vg_layer_front_release(&l->front);
+    return;
+  }
+  vg_shmem_release(&l->common);
+  memset(l, 0, sizeof *l);
 }

@@ -11,6 +11,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/comm.h"
 #include "core/fill/fill.h"
 #include "core/mesh/mesh.h"
 #include "core/sizing/sizing.h"
@@ -86,8 +87,10 @@ void vg_layer_front_release(struct vg_layer_front *f);
 struct vg_layers {
   struct vg_columns columns;
   struct vg_layer_front front;
+  struct vg_shmem common;   /* where the arrays are, if a node has them in
+                               common (layers/columns/share.h) */
 };
-#define VG_LAYERS_INIT { VG_COLUMNS_INIT, VG_LAYER_FRONT_INIT }
+#define VG_LAYERS_INIT { VG_COLUMNS_INIT, VG_LAYER_FRONT_INIT, { 0 } }
 
 void vg_layers_release(struct vg_layers *l);
 

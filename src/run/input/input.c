@@ -63,7 +63,8 @@ void vg_problem_release(struct vg_problem *p)
   vg_settings_release(&p->settings);
   vg_project_release(&p->project);
   vg_problem_forget_sizes(p);
-  vg_mesh_release(&p->surface);
+  if (p->common.data) vg_shmem_release(&p->common);
+  else vg_mesh_release(&p->surface);
   free(p->heights.item);
   vg_surface_report_release(&p->check);
   vg_renewal_release(&p->renewal);

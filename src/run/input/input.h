@@ -55,6 +55,8 @@ struct vg_problem {
   struct vg_size_samples *samples; /* of the setting `sizes`; NULL */
   struct vg_project project;       /* empty without a .d3m */
   struct vg_mesh surface;
+  struct vg_shmem common;          /* where its arrays are, if a node has them
+                                      in common */
   int is_read;                     /* surface, by vg_problem_cad */
   struct vg_point_heights heights;
   size_t n_welded, n_dropped;      /* by the weld */

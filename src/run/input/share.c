@@ -1,8 +1,60 @@
 #include "run/input/share.h"
 
+#include <string.h>
+
 #include "base/bytes.h"
 
 struct head { uint64_t n_point, n_tri, n_patch, number; };
+
+/* --- in common ----------------------------------------------------------- */
+
+enum { N_PART = 5 };
+
+static void list_parts(const struct head *h, const struct vg_mesh *m,
+                       struct vg_bytes part[N_PART])
+{
+  const struct vg_bytes list[N_PART] = {
+    { sizeof *h, (unsigned char *)(uintptr_t)h },
+    { h->n_point * sizeof *m->point, (unsigned char *)m->point },
+    { h->n_tri * sizeof *m->tri, (unsigned char *)m->tri },
+    { h->n_tri * sizeof *m->tri_patch, (unsigned char *)m->tri_patch },
+    { h->n_patch * sizeof *m->patch, (unsigned char *)m->patch }
+  };
+
+  memcpy(part, list, sizeof list);
+}
+
+vg_status vg_surface_share(struct vg_comm *c, struct vg_mesh *m,
+                           uint64_t *number, struct vg_shmem *common,
+                           struct vg_error *err)
+{
+  struct head h = { m->n_point, m->n_tri, m->n_patch, *number };
+  struct vg_bytes part[N_PART];
+  unsigned char *at[N_PART];
+  vg_status st;
+
+  if (vg_comm_node_size(c) == 1) return VG_OK;
+  list_parts(&h, m, part);
+  st = vg_comm_node_shmem(c, N_PART, part, common, err);
+  if (st < 0) return st;
+  at[0] = (unsigned char *)(uintptr_t)common->data;
+  memcpy(&h, at[0], sizeof h);
+  list_parts(&h, m, part);
+  for (int i = 1; i < N_PART; i++)
+    at[i] = at[i - 1] + vg_shmem_padded(part[i - 1].n);
+  vg_mesh_release(m);
+  *number = h.number;
+  m->n_point = h.n_point;
+  m->n_tri = h.n_tri;
+  m->n_patch = h.n_patch;
+  m->point = (void *)at[1];
+  m->tri = (void *)at[2];
+  m->tri_patch = (void *)at[3];
+  m->patch = (void *)at[4];
+  return st;
+}
+
+/* --- as bytes ------------------------------------------------------------ */
 
 vg_status vg_surface_pack(const struct vg_mesh *m, uint64_t number,
                           struct vg_bytes *out, struct vg_error *err)

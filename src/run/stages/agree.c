@@ -5,7 +5,7 @@
 #include <unistd.h>
 
 #include "base/memory.h"
-#include "layers/columns/pack.h"
+#include "layers/columns/share.h"
 #include "partition/store/store.h"
 
 /* What a rank says; the same bytes for the same things. */

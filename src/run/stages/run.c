@@ -7,7 +7,7 @@
 #include "base/memory.h"
 #include "base/team.h"
 #include "base/version.h"
-#include "layers/columns/pack.h"
+#include "layers/columns/share.h"
 #include "partition/advance/ways.h"
 #include "run/input/share.h"
 #include "run/input/sizes.h"
@@ -69,7 +69,6 @@ vg_status vg_run_surface(struct vg_run *r, struct vg_problem *p,
                          struct vg_layer_stage *layers,
                          struct vg_display *show, struct vg_error *err)
 {
-  struct vg_bytes b = {0, NULL};
   uint64_t is_on = 0;
   vg_status st = VG_OK;
 
@@ -77,49 +76,38 @@ vg_status vg_run_surface(struct vg_run *r, struct vg_problem *p,
     p->threads = node_threads(r, &p->settings);
     st = settle_surface(p, layers, show, err);
     vg_comm_bind_node(r->comm, 0);
-    if (st >= 0 && vg_comm_node_size(r->comm) > 1)
-      st = vg_surface_pack(&p->surface, (uint64_t)layers->is_on, &b, err);
+  } else {
+    vg_problem_forget_sizes(p);
   }
   VG_TRY(vg_comm_agree(r->comm, st, err));
-  if (vg_comm_node_size(r->comm) > 1)
-    VG_TRY(vg_comm_node_bcast(r->comm, &b, err));
-  if (!leads_node(r)) {
-    vg_problem_forget_sizes(p);
-    st = vg_surface_unpack(&b, &p->surface, &is_on, err);
-    layers->is_on = (int)is_on;
-  }
+  is_on = (uint64_t)layers->is_on;
+  st = vg_surface_share(r->comm, &p->surface, &is_on, &p->common, err);
+  layers->is_on = (int)is_on;
+  r->common += vg_shared_bytes(&p->common);
   st = vg_comm_agree(r->comm, st, err);
 done:
-  free(b.data);
   return st;
 }
 
-/* What the first rank of the node made, with status st, on the others too:
- * layers first, which those unpack while it writes the sizes. Collective;
- * without layers NULL. */
+/* What the first rank of the node made, with status st, on the others too.
+ * Collective; without layers NULL. */
 static vg_status share_with_node(struct vg_run *r, vg_status st,
-                                 const struct vg_mesh *surface,
                                  struct vg_layers *layers,
                                  struct vg_display *show,
                                  struct vg_sizing **sizing,
                                  struct vg_error *err)
 {
-  int makes = leads_node(r) && vg_comm_node_size(r->comm) > 1;
-  struct vg_bytes layer = {0, NULL};
-  vg_status own = VG_OK;
-
-  if (st >= 0 && makes && layers) st = vg_layers_pack(layers, &layer, err);
   VG_TRY(vg_comm_agree(r->comm, st, err));
-  if (layers) own = vg_comm_node_bcast(r->comm, &layer, err);
-  if (own >= 0 && layers && !leads_node(r))
-    own = vg_layers_unpack(&layer, surface, layers, err);
+  if (layers) st = vg_layers_share(r->comm, layers, err);
+  VG_TRY(vg_comm_agree(r->comm, st, err));
   st = vg_sizing_share(r->comm, sizing, err);
-  if (st >= 0) r->common = vg_sizing_shmem(*sizing);
-  if (st >= 0) st = own;
-  if (st >= 0) st = vg_display_stopped(show, err);
+  if (st >= 0) {
+    r->common += vg_sizing_shmem(*sizing);
+    if (layers) r->common += vg_shared_bytes(&layers->common);
+    st = vg_display_stopped(show, err);
+  }
   st = vg_comm_agree(r->comm, st, err);
 done:
-  free(layer.data);
   return st;
 }
 
@@ -380,7 +368,7 @@ static vg_status mesh_plain(struct vg_run *r, const struct vg_problem *p,
     st = vg_team_close(team, st, err);
     vg_comm_bind_node(r->comm, 0);
   }
-  VG_TRY(share_with_node(r, st, surface, NULL, show, &sizing, err));
+  VG_TRY(share_with_node(r, st, NULL, show, &sizing, err));
   VG_TRY(vg_run_agree(r->comm, surface, NULL, sizing, r->options.change,
                       err));
   VG_TRY(look_at_sources(r, p, surface, sizing, err));
@@ -474,8 +462,7 @@ static vg_status mesh_layers(struct vg_run *r, const struct vg_problem *p,
 
   if (st < 0) return st;
   if (leads_node(r)) st = grow_layers(r, p, layers, team, show, &sizing, err);
-  VG_TRY(share_with_node(r, st, &p->surface, &layers->layers, show, &sizing,
-                         err));
+  VG_TRY(share_with_node(r, st, &layers->layers, show, &sizing, err));
   VG_TRY(vg_run_agree(r->comm, &p->surface, &layers->layers, sizing,
                       r->options.change, err));
   VG_TRY(look_at_sources(r, p, front, sizing, err));

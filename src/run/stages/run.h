@@ -55,7 +55,8 @@ struct vg_run {
   double time_put;           /* files written while slices are judged */
   double time_fill;          /* cuts, leaves and repairs */
   double time_parts;
-  size_t common;             /* bytes of sizes, one copy on the node */
+  size_t common;             /* bytes of surface, layers and sizes, one copy on
+                                the node */
   double memory;             /* bytes, of the rank that needs most */
   double memory_sum;         /* of all, what a node has in common once */
 };
