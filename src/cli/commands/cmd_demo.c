@@ -119,18 +119,16 @@ static vg_status new_path(const char *stem, const char *suffix, char **out,
                  "it or choose another folder with --out", *out);
 }
 
-static vg_status write_project(const char *stem, const char *name,
-                               size_t wanted, const struct vg_demo *demo,
+static vg_status write_project(char *const path[3], const char *stem,
+                               const char *name, size_t wanted,
+                               const struct vg_demo *demo,
                                struct vg_error *err)
 {
-  char *path[3] = { NULL }, points[32], triangles[32], cells[32];
+  char points[32], triangles[32], cells[32];
   struct vg_settings s = VG_SETTINGS_INIT;
   int has_layers;
   vg_status st;
 
-  VG_TRY(new_path(stem, "lb8.ugrid", &path[0], err));
-  VG_TRY(new_path(stem, "mapbc", &path[1], err));
-  VG_TRY(new_path(stem, "deck", &path[2], err));
   VG_TRY(settings_of(name, demo, &s, err));
   VG_TRY(vg_format_write(path[0], &demo->surface, err));
   VG_TRY(vg_mapbc_write(path[1], &demo->surface, VG_MAPBC_VGRID, name, NULL,
@@ -151,7 +149,6 @@ static vg_status write_project(const char *stem, const char *name,
            vg_text_count(wanted, cells));
   printf("Next: vanguard mesh -p %s\n", stem);
 done:
-  for (int i = 0; i < 3; i++) free(path[i]);
   vg_settings_release(&s);
   return st;
 }
@@ -159,19 +156,23 @@ done:
 static vg_status make(const struct arguments *a, struct vg_error *err)
 {
   struct vg_demo demo = VG_DEMO_INIT;
-  char *stem = NULL;
-  vg_status st;
+  char *stem = NULL, *path[3] = { NULL };
+  vg_status st = VG_OK;
 
-  VG_TRY(vg_demo_make(a->name, a->n_cell, &demo, err));
-  if (a->dir) VG_TRY(vg_make_folder(a->dir, err));
   if (asprintf(&stem, "%s%s%s", a->dir ? a->dir : "", a->dir ? "/" : "",
                a->name) < 0) {
     stem = NULL;
     st = vg_fail_memory(err, "a path");
     goto done;
   }
-  VG_TRY(write_project(stem, a->name, a->n_cell, &demo, err));
+  VG_TRY(new_path(stem, "lb8.ugrid", &path[0], err));
+  VG_TRY(new_path(stem, "mapbc", &path[1], err));
+  VG_TRY(new_path(stem, "deck", &path[2], err));
+  VG_TRY(vg_demo_make(a->name, a->n_cell, &demo, err));
+  if (a->dir) VG_TRY(vg_make_folder(a->dir, err));
+  VG_TRY(write_project(path, stem, a->name, a->n_cell, &demo, err));
 done:
+  for (int i = 0; i < 3; i++) free(path[i]);
   free(stem);
   vg_demo_release(&demo);
   return st;
