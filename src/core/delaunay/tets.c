@@ -165,11 +165,12 @@ static uint32_t search_all(const struct vg_tets *t, const double x[3])
 uint32_t vg_tets_locate(const struct vg_tets *t, uint32_t start,
                         const double x[3])
 {
-  uint32_t c = start, from = VG_NONE;
+  uint32_t c = start, from = VG_NONE, most = 4096 + t->n_cell / 64;
 
   /* The first face tried turns with the step: a walk in a mesh that is not
-   * Delaunay cannot circle for ever in step with a fixed order. */
-  for (uint32_t step = 0; step < 4096; step++) {
+   * Delaunay cannot circle for ever in step with a fixed order. One along a
+   * sheet of many points is long, but shorter than a look at all cells. */
+  for (uint32_t step = 0; step < most; step++) {
     const struct vg_cell *cell = &t->cell[c];
     uint32_t turn = step * 0x9e3779b1u >> 30, k = 0;
 

@@ -39,7 +39,9 @@ static vg_status insert_one(struct vg_growth *g, struct vg_inserter *s,
   vg_status st;
 
   c = vg_tets_locate(t, *at, x);
-  if (c == VG_NONE || t->flag[c] & VG_OUTSIDE) return VG_BLOCKED;
+  if (c == VG_NONE) return VG_BLOCKED;
+  *at = c;                   /* the next one is near here, taken or not */
+  if (t->flag[c] & VG_OUTSIDE) return VG_BLOCKED;
   if (vg_tets_reserve_points(t, 1))
     return vg_fail_memory(err, "the points of the mesh");
   memcpy(t->x[p], x, sizeof *t->x);
