@@ -17,6 +17,9 @@ static const double whole_band = VG_BAND_FRONT - 0.2;
 /* Dents are not filled with cells worse than this (dihedral angles of about
  * 30 and 150 degrees). */
 static const double dent = 0.25;   /* K20 */
+/* A cell of this shape (angles of 5 and 175 degrees) on the front, under one
+ * that becomes final, would be all that can fill the slit between the two. */
+static const double slit = 0.015;   /* K34 */
 /* Edges of more than so many spacings stay out of a pencil. */
 static const double overlong = 4;   /* K21 */
 
@@ -218,9 +221,41 @@ static int is_settled(const struct zone *g, uint32_t c)
   return vg_region_near(region, g->k.sizing, middle, VG_BAND_PLACE - r);
 }
 
+static void leave(struct zone *g, uint32_t c)
+{
+  struct vg_tets *t = &g->k.t;
+  const double *x[4];
+
+  for (int i = 0; i < 4; i++) x[i] = t->x[t->cell[c].v[i]];
+  t->flag[c] &= (uint8_t)~VG_MARK;
+  g->z->n_cell--;
+  g->z->n_hole++;
+  g->z->volume -= shares_of_spacing(g->k.sizing, x);
+}
+
+/* What could not be mended above a flat cell on the front is left to the void,
+ * which then has room there. */
+static void leave_no_slits(struct zone *g)
+{
+  struct vg_tets *t = &g->k.t;
+
+  for (uint32_t c = 0; c < t->n_cell; c++) {
+    if (t->flag[c] & (VG_DEAD | VG_OUTSIDE | VG_MARK) ||
+        !(t->flag[c] & VG_FIXED_FACES) || shape_of(t, c) >= slit)
+      continue;
+    for (int i = 0; i < 4; i++) {
+      uint32_t link = t->cell[c].link[i];
+
+      if (!(t->flag[c] >> i & 1) && link != VG_NONE &&
+          t->flag[link >> 2] & VG_MARK)
+        leave(g, link >> 2);
+    }
+  }
+}
+
 /* VG_MARK on the cells that become final: those that belong, and those that
  * fill the dents between them without a further point, which leaves a smooth
- * front. */
+ * front, but for those that leave slits. */
 static vg_status choose(struct zone *g, struct vg_error *err)
 {
   struct vg_tets *t = &g->k.t;
@@ -241,6 +276,7 @@ static vg_status choose(struct zone *g, struct vg_error *err)
         is_within(g, c) && shape_of(t, c) > dent && is_settled(g, c))
       take(g, c);
   free(used);
+  leave_no_slits(g);
   return VG_OK;
 }
 
