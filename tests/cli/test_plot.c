@@ -186,7 +186,7 @@ static void odd_records_are_drawn(void **state)
 {
   const char *path = VG_TMP_DIR "/odd.svg";
   struct vg_timeline t = VG_TIMELINE_INIT;
-  struct vg_span far = { "0L", "", 'Q', { 0 }, 7, 7, 0, 1e9, 1e9, 1, 0, 1e15,
+  struct vg_span far = { "0L", "", 'Q', { 0 }, 7, 7, 0, 1e9, 1e9, 1, 0, 1e15, 0,
                          (uint64_t)1 << 53, 0, 0, 0 };
   char *text;
 

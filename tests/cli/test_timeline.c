@@ -44,9 +44,9 @@ static void accept(const char *text, struct vg_timeline *t)
 static void fill(struct vg_timeline *t)
 {
   static const struct vg_span span[] = {
-    { "0.1L", "0J", 'L', { 0 }, 1, 0, 0, 1.25, 3.5, 2.125, 0, 400, 500, 88, 60,
-      7 },
-    { "0J", "", 'J', { 0 }, 0, 2, 0, 0, 1.000001, 1.75, 1.25, 300, 0, 9, 0,
+    { "0.1L", "0J", 'L', { 0 }, 1, 0, 0, 1.25, 3.5, 2.125, 0, 400, 1.5e-7, 500,
+      88, 60, 7 },
+    { "0J", "", 'J', { 0 }, 0, 2, 0, 0, 1.000001, 1.75, 1.25, 300, 0, 0, 9, 0,
       0 },
   };
   static const struct vg_help help[] = {

@@ -293,6 +293,69 @@ static double run_tiny(size_t n, int pinned, double sleep, long *n_run)
   return wall;
 }
 
+/* Tasks with a work, and some without: those are over before any of these
+ * begins, which go to the workers in turn, most first. */
+static void work_is_dealt_out(void **state)
+{
+  enum { N = 29, N_FREE = 3, THREADS = 3 };
+  static const struct vg_engine_ops ops = { .run = tiny_run,
+                                            .done = tiny_done };
+  struct vg_engine_options options = { .threads = THREADS, .cyclic = 1 };
+  struct tiny tiny = { .sleep = 1e-3 };
+  struct vg_spans s = VG_SPANS_INIT;
+  struct vg_task task[N] = { { .input = NULL } };
+  double ended = 0;
+
+  (void)state;
+  for (int i = 0; i < N; i++) {
+    snprintf(task[i].path, sizeof task[i].path, "%02d", i);
+    task[i].weight = 1;
+    if (i >= N_FREE) task[i].work = 1 + i * 7 % N;   /* all different */
+    task[i].moves = i % 2;
+  }
+  assert_int_equal(vg_engine_run(job, &options, &ops, &tiny,
+                                 vg_comm_rank(job) ? 0 : N, task, &s, NULL),
+                   VG_OK);
+  assert_true(total((uint64_t)tiny.n_done) == N);
+  for (size_t i = 0; i < s.n && !vg_comm_rank(job); i++)
+    if (!(s.span[i].work > 0) && s.span[i].end > ended) ended = s.span[i].end;
+  for (size_t i = 0; i < s.n && !vg_comm_rank(job); i++) {
+    const struct vg_span *a = &s.span[i];
+    int before = 0;
+
+    if (!(a->work > 0)) continue;
+    for (size_t k = 0; k < s.n; k++) before += s.span[k].work > a->work;
+    assert_true(a->rank == before / THREADS % vg_comm_size(job));
+    assert_true(a->thread == before % THREADS);
+    if (!a->rank) assert_true(a->start >= ended);  /* clocks of ranks differ */
+  }
+  vg_spans_release(&s);
+}
+
+/* Dealt out or not, the same is done; failures and stops leave nothing. */
+static void dealing_changes_nothing(void **state)
+{
+  struct forest f = { .threads = 2, .depth = 4, .spin = 1e-4, .deal = 1 };
+  struct forest g = { .threads = 2, .depth = 4, .spin = 1e-4, .deal = 1,
+                      .fail_at = "a12" };
+  struct forest h = { .threads = 2, .depth = 4, .spin = 1e-4, .deal = 1,
+                      .stop_at = "a12", .move = 3 };
+  uint64_t sum = 0;
+  long n = 0;
+
+  (void)state;
+  for (int t = 0; t < 3; t++)
+    forest_expect(&f, (char[]){ (char)('a' + t), 0 }, &n, &sum);
+  assert_true(forest_grow(&f, job, 3, 0, NULL, NULL) == VG_OK);
+  assert_true(total((uint64_t)f.n_done) == (uint64_t)n);
+  assert_true(total(f.sum) == sum);
+  check_rest(&f);
+  assert_true(forest_grow(&g, job, 3, 0, NULL, NULL) == VG_ERR_GEOMETRY);
+  check_rest(&g);
+  assert_true(forest_grow(&h, job, 3, 0, NULL, NULL) == VG_BLOCKED);
+  check_rest(&h);
+}
+
 static void many_tiny_tasks(void **state)
 {
   size_t n = 20000;
@@ -401,6 +464,8 @@ int main(void)
     cmocka_unit_test(it_stops),
     cmocka_unit_test(one_rank_stops_all),
     cmocka_unit_test(large_inputs),
+    cmocka_unit_test(work_is_dealt_out),
+    cmocka_unit_test(dealing_changes_nothing),
     cmocka_unit_test(many_tiny_tasks),
     cmocka_unit_test(idle_ranks_sleep),
     cmocka_unit_test(nobody_hoards),

@@ -24,6 +24,7 @@ struct forest {
   size_t ballast;            /* bytes more in each input */
   int pin;                   /* every pin-th task (by its path) is pinned */
   int move;                  /* every move-th one moves its home */
+  int deal;                  /* 1: two of three are dealt out */
   int loop;                  /* items of loops in each task, no power of 2:
                                 none is of one chunk; 0: no loops */
   double spin_item;          /* s of work per item */
@@ -95,6 +96,7 @@ static inline struct vg_task forest_task(struct forest *f, const char *path)
   t.pinned = f->pin && !(digest / 7 % (uint64_t)f->pin);
   t.moves = f->move && !(digest / 5 % (uint64_t)f->move);
   t.priority = (double)(digest % 1000);
+  t.work = (double)(digest / 3 % 3);
   t.input = in;
   return t;
 }
@@ -293,7 +295,7 @@ static inline vg_status forest_grow(struct forest *f, struct vg_comm *comm,
     forest_pack_outcome, forest_unpack, forest_release, forest_release
   };
   struct vg_engine_options options = {
-    f->threads, shuffle, forest_progress, forest_stop, f
+    f->threads, shuffle, f->deal, forest_progress, forest_stop, f
   };
   struct vg_task first[64];
   size_t n = 0;

@@ -72,11 +72,6 @@ static double sum_of(const struct vg_spans *s, char kind)
   return sum;
 }
 
-static int is_leaf(const struct vg_forecast_node *n)
-{
-  return !n->lattice.n[0] && !n->lattice.n[1] && !n->lattice.n[2];
-}
-
 /* Few leaves: planes one after another, always the middle of what is left. */
 static void few_leaves_have_whole_planes(void **state)
 {
@@ -92,6 +87,56 @@ static void few_leaves_have_whole_planes(void **state)
   assert_int_equal(o.n_pencil, 0);
   assert_int_equal(o.node[0].n_child, 2);
   vg_forecast_release(&o);
+  release(&s);
+}
+
+/* What a maker parted: a task that takes what its rates say, and leaves behind
+ * it; a part that may be cut has the tasks that it would have by itself. */
+static void parts_follow_their_maker(void **state)
+{
+  static const struct vg_parting_rate rate = { 2e-6, 3e-6, 5e-6, 0.25 };
+  struct vg_forecast_part part[3];
+  struct vg_forecast_parting all = { &rate, 7000, 1100, 3, part };
+  struct vg_forecast o = VG_FORECAST_INIT, alone;
+  struct vg_machine m = VG_MACHINE_INIT;
+  struct vg_model_result f;
+  struct vg_cut_rule rule;
+  const struct vg_span *maker = NULL;
+  struct scene s;
+
+  (void)state;
+  make(&s, "box", 20000);
+  rule = leaves_of(s.load.cells / 4);
+  for (int k = 0; k < 3; k++)
+    part[k] = (struct vg_forecast_part){ s.v, &s.load, k == 2 };
+  alone = look(&s, rule, 0);
+  assert_int_equal(vg_forecast_parted(&s.v, &s.load, &all, &rule, 0,
+                                      &vg_rates_measured, &o, NULL), VG_OK);
+  assert_int_equal(o.n_leaf, 2 + alone.n_leaf);
+  assert_int_equal(o.n_tile, alone.n_tile);
+  assert_int_equal(o.node[0].n_child, 3);
+  assert_false(vg_forecast_is_leaf(&o.node[0]));
+  assert_true(vg_forecast_is_leaf(&o.node[1]));
+  for (size_t i = 0; i < o.spans.n; i++) {
+    const struct vg_span *one = &o.spans.span[i];
+
+    if (!strcmp(one->path, "0J0")) maker = one;
+    if (strcmp(one->path, "0.1L")) continue;
+    assert_string_equal(one->after, "0J0");
+    assert_true(one->n_cell == (uint64_t)(s.load.cells + 0.5));
+    assert_true(one->work > 0);
+  }
+  assert_non_null(maker);
+  assert_true(fabs(maker->cpu - (2e-6 * (double)s.v.n_face + 3e-6 * 7000 +
+                                 5e-6 * 1100)) < 1e-12);
+  assert_true(fabs(maker->loops - maker->cpu / 4) < 1e-12);
+  m.ranks = 4;
+  assert_int_equal(vg_model_replay(&o.spans, &m, &f, NULL, NULL), VG_OK);
+  assert_true(f.wall > maker->cpu && f.wall < o.spans.wall);
+  m.cyclic = 1;
+  assert_int_equal(vg_model_replay(&o.spans, &m, &f, NULL, NULL), VG_OK);
+  vg_forecast_release(&o);
+  vg_forecast_release(&alone);
   release(&s);
 }
 
@@ -117,7 +162,7 @@ static void a_box_has_a_regular_tree(void **state)
     const struct vg_forecast_node *n = &o.node[i];
     double even = (s.load.cells - o.zone_cells) / 8;
 
-    assert_true(is_leaf(n) && n->depth == 1 && n->parent == 0);
+    assert_true(vg_forecast_is_leaf(n) && n->depth == 1 && n->parent == 0);
     assert_in_range((int)(100 * n->cells / even), 95, 125);
     for (int k = 0; k < 3; k++) {
       double at = o.node[0].lattice.at[k][0];
@@ -397,6 +442,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(few_leaves_have_whole_planes),
+    cmocka_unit_test(parts_follow_their_maker),
     cmocka_unit_test(a_box_has_a_regular_tree),
     cmocka_unit_test(sums_are_the_loads),
     cmocka_unit_test(the_model_runs_its_tasks),

@@ -95,7 +95,7 @@ static void parts_are_even_and_hang_together(void **state)
 
   (void)state;
   for (size_t k = 0; k < sizeof n / sizeof *n; k++) {
-    struct vg_graph_options o = { n[k], 1.03, 1 };
+    struct vg_graph_options o = { n[k], 1.03, 1, NULL };
 
     assert_int_equal(vg_graph_part(&g, &o, part, NULL), VG_OK);
     /* parts of 40 vertices cannot be evener than a vertex or two */
@@ -110,7 +110,7 @@ static void parts_are_even_and_hang_together(void **state)
 
 static void weights_count(void **state)
 {
-  struct vg_graph_options o = { 4, 1.03, 0 };
+  struct vg_graph_options o = { 4, 1.03, 0, NULL };
   struct vg_graph g = square();
   double weight[N];
   uint32_t part[N];
@@ -125,7 +125,7 @@ static void weights_count(void **state)
 /* An edge of great price is not cut. */
 static void prices_count(void **state)
 {
-  struct vg_graph_options o = { 2, 1.1, 0 };
+  struct vg_graph_options o = { 2, 1.1, 0, NULL };
   struct vg_graph g = square();
   int32_t *price = malloc(g.begin[N] * sizeof *price);
   uint32_t part[N];
@@ -143,7 +143,7 @@ static void prices_count(void **state)
 
 static void what_cannot_be_is_refused(void **state)
 {
-  struct vg_graph_options o = { N + 1, 1.03, 0 };
+  struct vg_graph_options o = { N + 1, 1.03, 0, NULL };
   struct vg_graph g = square();
   struct vg_error err = VG_ERROR_INIT;
   uint32_t part[N] = {7};

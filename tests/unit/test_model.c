@@ -114,6 +114,43 @@ static void a_join_waits_for_its_whole_stage(void **state)
   vg_spans_release(&s);
 }
 
+/* By work 5, 4, 3, 2, 1 in turn to two workers: 5, 3, 1 and 4, 2, though their
+ * times say otherwise; and not before the cut elsewhere has ended. */
+static void leaves_are_dealt_out(void **state)
+{
+  static const double cpu[] = { 1, 2, 4, 1, 8 };
+  struct vg_spans s = VG_SPANS_INIT, t = VG_SPANS_INIT;
+  struct vg_machine m = machine_of(1, 2);
+  struct vg_error err = VG_ERROR_INIT;
+  struct vg_model_result f;
+
+  (void)state;
+  add(&s, "0J1", "", 1);
+  add(&s, "1J1", "", 3);
+  for (int i = 0; i < 5; i++) {
+    char path[16];
+
+    snprintf(path, sizeof path, "0.%dL", i);
+    add(&s, path, "0J1", cpu[i]);
+  }
+  m.cyclic = 1;
+  assert_int_equal(vg_model_replay(&s, &m, &f, NULL, &err), VG_ERR_INPUT);
+  assert_non_null(strstr(err.text, "by what it is dealt out"));
+  for (int i = 0; i < 5; i++) s.span[2 + i].work = 5 - i;
+  f = replay(&s, &m, &t);
+  assert_true(f.wall == 3 + 1 + 4 + 8);
+  assert_true(find(&t, "0.0L")->start == 3 && find(&t, "0.1L")->start == 3);
+  assert_true(find(&t, "0.4L")->start == 8 && find(&t, "0.3L")->start == 5);
+  assert_int_equal(find(&t, "0.0L")->thread, find(&t, "0.4L")->thread);
+  m = machine_of(2, 1);
+  m.cyclic = 1;
+  assert_true(replay(&s, &m, NULL).wall == 16);
+  m.cyclic = 0;
+  assert_true(replay(&s, &m, NULL).wall < 16);
+  vg_spans_release(&t);
+  vg_spans_release(&s);
+}
+
 /* Two nodes cut by one stage each: neither's join waits for the other's
  * pencils, though all were made by one task. */
 static void stages_are_of_one_node(void **state)
@@ -633,6 +670,7 @@ int main(void)
     cmocka_unit_test(nothing_takes_no_time),
     cmocka_unit_test(the_same_record_gives_the_same),
     cmocka_unit_test(contradictions_are_named),
+    cmocka_unit_test(leaves_are_dealt_out),
     cmocka_unit_test(cuts_come_before_fills),
   };
 

@@ -302,6 +302,7 @@ static struct vg_timeline timeline_of(const struct run *r)
   t.seconds[VG_PHASE_TOTAL] = vg_display_now() - r->start;
   t.n_cell = vg_run_cells(&r->mesh);
   t.n_point = r->mesh.slices.n_point;
+  t.cyclic = r->problem.settings.cyclic;
   t.spans = r->mesh.spans;
   return t;
 }

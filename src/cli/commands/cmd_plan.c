@@ -43,6 +43,14 @@ static int whole(const char *name, const char *text, int64_t lo, int64_t hi,
   return (int)n;
 }
 
+/* Does nothing else decide than who does which task? */
+static int is_schedule(const struct vg_cli_overrides *kept)
+{
+  for (size_t i = 0; i < kept->n; i++)
+    if (kept->set[i].key != vg_cli_option_key("schedule")) return 0;
+  return 1;
+}
+
 static void check_end(const struct vg_plan_options *o,
                       const struct argp_state *state)
 {
@@ -61,9 +69,9 @@ static void check_end(const struct vg_plan_options *o,
                    o->machine.ranks_per_node > 1))
     argp_error(state, "--cores tries all ranks per node and threads that fill "
                "a node: leave --threads and --ranks-per-node out");
-  if (o->replay && (o->kept.n || o->deck || o->target > 0))
-    argp_error(state, "a --replay takes no settings, deck or target: the "
-               "tasks are those of the record");
+  if (o->replay && (!is_schedule(&o->kept) || o->deck || o->target > 0))
+    argp_error(state, "a --replay takes no settings, deck or target, but for "
+               "--schedule: the tasks are those of the record");
 }
 
 static error_t option(int key, char *arg, struct argp_state *state)
@@ -166,7 +174,7 @@ int vg_cmd_plan(int argc, char **argv)
   };
   struct vg_cli_options options;
   struct argp argp = { .parser = option,
-    .args_doc = "-p PROJECT\n--replay FILE",
+    .args_doc = "-p PROJECT\n--replay FILE [--schedule dynamic|cyclic]",
     .doc = "Forecast the mesh of a project and the time of its run before "
       "anything is meshed, or the time of a recorded run on other machines. "
       "Tasks are simulated: who is idle takes the next one, cuts before "

@@ -47,7 +47,8 @@ static size_t rows(struct page *p, const struct vg_settings *usual,
 
     vg_asked_params(usual, i, &param, &usual_base);
     vg_asked_params(s, i, &param, &base);
-    if (!strcmp(param->name, "threads")) continue;
+    if (!strcmp(param->name, "threads") || !strcmp(param->name, "schedule"))
+      continue;            /* no part of what the mesh follows from */
     vg_param_format(param, base, now, sizeof now);
     vg_param_format(param, usual_base, was, sizeof was);
     if (which_of(was, asked, now) != which) continue;

@@ -12,6 +12,7 @@
 #include "cli/common/options.h"
 #include "core/geometry/vector.h"
 #include "partition/advance/advance.h"
+#include "partition/advance/ways.h"
 
 /* Walls with more points get their layers estimated, not grown. */
 #define GROW_LIMIT 50000
@@ -223,7 +224,10 @@ static vg_status make_layers(struct vg_plan *p, struct vg_error *err)
   VG_TRY(vg_layer_stage_sizes(&p->layers, &p->problem, &view, err));
   VG_TRY(measure_sizes(p, &view, VG_LAYERS_COARSENESS, 1, err));
   VG_TRY(count_wall_points(p, err));
-  p->is_grown = p->n_wall_point < GROW_LIMIT;
+  /* a front of layers that are estimated may cross itself: it cannot be
+   * parted */
+  p->is_grown = p->n_wall_point < GROW_LIMIT ||
+                vg_ways[p->problem.settings.decompose].maker;
   start = vg_clock_process();
   if (p->is_grown) {
     p->layers.options.threads = 0;
@@ -277,8 +281,7 @@ static void count_memory(struct vg_plan *p)
   for (size_t i = 0; i < p->forecast.n_node; i++) {
     const struct vg_forecast_node *n = &p->forecast.node[i];
 
-    if (!n->lattice.n[0] && !n->lattice.n[1] && !n->lattice.n[2] &&
-        n->cells > most) most = n->cells;
+    if (vg_forecast_is_leaf(n) && n->cells > most) most = n->cells;
   }
   p->shared = program + per_triangle * (double)p->front->n_tri +
               per_wall_point * (double)p->n_wall_point +
@@ -301,6 +304,7 @@ static vg_status forecast(const struct vg_plan *p, double leaf_cells,
   struct vg_cut_rule rule = p->rule;
 
   rule.leaf_cells = leaf_cells;
+  if (p->parting.n_part) return vg_plan_parted(p, &v, &rule, out, err);
   return vg_forecast_new(&v, &p->load, &rule, (int)p->problem.settings.levels,
                          &p->rates, out, err);
 }
@@ -354,6 +358,7 @@ static vg_status run_on(const struct vg_plan *p, const struct vg_forecast *o,
   double outside = 0;
   vg_status st;
 
+  m.cyclic = p->problem.settings.cyclic;
   m.ranks = row->ranks = ranks;
   m.threads = row->threads = threads;
   m.ranks_per_node = row->ranks_per_node = ranks_per_node;
@@ -441,7 +446,7 @@ static vg_status run_all(struct vg_plan *p, struct vg_error *err)
       p->n_row++;
     }
   choose(p);
-  st = try_leaves(p, err);
+  st = p->parting.n_part ? VG_OK : try_leaves(p, err);
 done:
   return st;
 }
@@ -475,7 +480,10 @@ static vg_status make(struct vg_plan *p, struct vg_error *err)
     memset(p->phase, 0, sizeof p->phase);
     p->phase[VG_PHASE_READ] = p->o->serial;
   }
-  p->rule.leaf_cells = s->levels ? 0 : (double)s->leaf_cells;
+  p->rule.leaf_cells = vg_parting_leaf_cells(
+    p->load.cells, s->parts == VG_COUNT_NONE ? 0 : (int)s->parts,
+    vg_ways[s->decompose].maker != NULL,
+    s->levels ? 0 : (double)s->leaf_cells);
   p->rule.first_axis = (int)s->split_direction - 1;
   p->rule.constant = s->constant_direction;
   VG_TRY(forecast(p, p->rule.leaf_cells, &p->forecast, err));
@@ -491,6 +499,7 @@ done:
 static void release(struct vg_plan *p)
 {
   vg_forecast_release(&p->forecast);
+  vg_plan_parting_release(&p->parting);
   vg_load_release(&p->load);
   vg_effects_release(&p->effects);
   vg_sizing_free(p->sizing);

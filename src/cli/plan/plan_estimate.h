@@ -25,11 +25,12 @@ struct vg_plan_row {
 
 /** What the field is parted into before it is filled. */
 struct vg_plan_parting {
-  size_t n_part;                /* 0: not parted, or not known */
+  size_t n_part;                /* 0: not parted */
   size_t n_whole;               /* of these, filled as they are */
   double cells, most;           /* expected in all of these, in one at most */
   double seconds;
-  struct vg_parting_report report;
+  struct vg_parting made;
+  struct vg_load *load;         /* [n_part] */
 };
 
 struct vg_plan {
@@ -75,8 +76,14 @@ double vg_plan_phase(const struct vg_plan *p, const struct vg_plan_row *r,
  * known. */
 double vg_plan_bytes(const struct vg_plan *p, const char *item);
 
-/** p->parting, where one is asked for and layers are known. (plan_parting.c) */
+/** p->parting, where one is asked for. (plan_parting.c) */
 vg_status vg_plan_part(struct vg_plan *p, struct vg_error *err);
+void vg_plan_parting_release(struct vg_plan_parting *q);
+
+/** The forecast of the tasks of p->parting. (plan_parting.c) */
+vg_status vg_plan_parted(const struct vg_plan *p, const struct vg_void *v,
+                         const struct vg_cut_rule *rule,
+                         struct vg_forecast *out, struct vg_error *err);
 
 /** Speed-up over workers as a figure. */
 vg_status vg_plan_draw(const struct vg_plan *p, struct vg_error *err);

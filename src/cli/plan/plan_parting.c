@@ -14,28 +14,35 @@ static struct vg_void view(const struct vg_front *f)
                            .n_face = f->n_face, .face = f->face };
 }
 
+void vg_plan_parting_release(struct vg_plan_parting *q)
+{
+  for (size_t k = 0; q->load && k < q->n_part; k++)
+    vg_load_release(&q->load[k]);
+  free(q->load);
+  vg_parting_release(&q->made);
+  memset(q, 0, sizeof *q);
+}
+
 /* Cells expected in parts: their sum, the most, of those that are filled as
  * they are. */
-static vg_status weigh_parts(const struct vg_plan *p,
-                             const struct vg_parting *made,
-                             struct vg_plan_parting *to, struct vg_error *err)
+static vg_status weigh_parts(const struct vg_load *load,
+                             struct vg_plan_parting *q, struct vg_error *err)
 {
-  struct vg_void *v = vg_calloc(made->n_part, sizeof *v);
-  struct vg_load *l = vg_calloc(made->n_part, sizeof *l);
-  vg_status st = v && l ? VG_OK : vg_fail_memory(err, "the parts");
+  struct vg_void *v = vg_calloc(q->n_part, sizeof *v);
+  vg_status st;
 
-  for (size_t k = 0; st == VG_OK && k < made->n_part; k++)
-    v[k] = view(&made->part[k].front);
+  q->load = vg_calloc(q->n_part, sizeof *q->load);
+  st = v && q->load ? VG_OK : vg_fail_memory(err, "the parts");
+  for (size_t k = 0; st == VG_OK && k < q->n_part; k++)
+    v[k] = view(&q->made.part[k].front);
   if (st == VG_OK)
-    st = vg_load_split(&p->load, made->n_part, v, 1, NULL, l, err);
-  for (size_t k = 0; st == VG_OK && k < made->n_part; k++) {
-    if (made->part[k].may_cut) continue;
-    to->n_whole++;
-    to->cells += l[k].cells;
-    if (l[k].cells > to->most) to->most = l[k].cells;
+    st = vg_load_split(load, q->n_part, v, 1, NULL, q->load, err);
+  for (size_t k = 0; st == VG_OK && k < q->n_part; k++) {
+    if (q->made.part[k].may_cut) continue;
+    q->n_whole++;
+    q->cells += q->load[k].cells;
+    if (q->load[k].cells > q->most) q->most = q->load[k].cells;
   }
-  for (size_t k = 0; l && k < made->n_part; k++) vg_load_release(&l[k]);
-  free(l);
   free(v);
   return st;
 }
@@ -60,23 +67,44 @@ vg_status vg_plan_part(struct vg_plan *p, struct vg_error *err)
   const struct vg_mesh *m = p->front;
   struct vg_front f = { .n_point = m->n_point, .n_face = m->n_tri,
                         .x = m->point, .face = m->tri };
-  struct vg_parting made = VG_PARTING_INIT;
   struct vg_parting_options o = options_of(p);
   double t = vg_clock();
   vg_status st;
 
-  if (!way->maker || m == &p->lifted) return VG_OK;
+  if (!way->maker) return VG_OK;
   f.name = vg_alloc(f.n_point, sizeof *f.name);
   if (!f.name) return vg_fail_memory(err, "the front");
   for (size_t k = 0; k < f.n_point; k++) f.name[k] = VG_POINT_NAME(0, k);
-  st = way->maker(&f, &p->load, p->sizing, &o, 1, NULL, &made, err);
+  st = way->maker(&f, &p->load, p->sizing, &o, 1, NULL, &p->parting.made, err);
   if (st == VG_OK) {
-    p->parting.n_part = made.n_part;
-    p->parting.report = made.report;
+    p->parting.n_part = p->parting.made.n_part;
     p->parting.seconds = vg_clock() - t;
-    st = weigh_parts(p, &made, &p->parting, err);
+    st = weigh_parts(&p->load, &p->parting, err);
   }
   free(f.name);
-  vg_parting_release(&made);
+  return st;
+}
+
+vg_status vg_plan_parted(const struct vg_plan *p, const struct vg_void *v,
+                         const struct vg_cut_rule *rule,
+                         struct vg_forecast *out, struct vg_error *err)
+{
+  const struct vg_plan_parting *q = &p->parting;
+  const struct vg_settings *s = &p->problem.settings;
+  struct vg_forecast_part *part = vg_calloc(q->n_part, sizeof *part);
+  struct vg_forecast_parting all = {
+    s->decompose == VG_DECOMPOSE_OCTREE ? &p->rates.octree : &p->rates.discrete,
+    (double)q->made.report.n_coarse, (double)q->made.report.n_face, q->n_part,
+    part };
+  vg_status st;
+
+  if (!part) return vg_fail_memory(err, "the forecast");
+  for (size_t k = 0; k < q->n_part; k++)
+    part[k] = (struct vg_forecast_part){ view(&q->made.part[k].front),
+                                         &q->load[k],
+                                         q->made.part[k].may_cut };
+  st = vg_forecast_parted(v, &p->load, &all, rule, (int)s->levels, &p->rates,
+                          out, err);
+  free(part);
   return st;
 }

@@ -75,11 +75,6 @@ static const char *bytes(double n, char text[32])
   return text;
 }
 
-static int is_leaf(const struct vg_forecast_node *n)
-{
-  return !n->lattice.n[0] && !n->lattice.n[1] && !n->lattice.n[2];
-}
-
 static void print_mesh(const struct vg_plan *p)
 {
   const struct vg_notes *notes = &p->problem.notes;
@@ -140,7 +135,7 @@ static void print_leaves(const struct vg_forecast *o, size_t parent, int indent)
   for (size_t i = parent + 1; i < o->n_node; i++) {
     const struct vg_forecast_node *c = &o->node[i];
 
-    if (c->parent != parent || !is_leaf(c)) continue;
+    if (c->parent != parent || !vg_forecast_is_leaf(c)) continue;
     least = fmin(least, c->cells);
     most = fmax(most, c->cells);
     n++;
@@ -157,30 +152,52 @@ static void print_number(size_t n, const char *what)
   printf("%zu %s%s", n, what, n == 1 ? "" : "s");
 }
 
+/* Most over mean of the cells expected in leaves; fragments, which are filled
+ * together, left out as in the report of a run. */
+static double balance(const struct vg_forecast *o)
+{
+  double most = 0, sum = 0, n = 0;
+
+  for (size_t i = 0; i < o->n_node; i++) {
+    const struct vg_forecast_node *c = &o->node[i];
+    size_t length = strlen(c->path);
+
+    if (!vg_forecast_is_leaf(c) ||
+        (length > 2 && !strcmp(c->path + length - 2, ".r"))) continue;
+    most = fmax(most, c->cells);
+    sum += c->cells;
+    n++;
+  }
+  return sum > 0 ? most * n / sum : 1;
+}
+
 static void print_parting(const struct vg_plan *p)
 {
   const struct vg_plan_parting *q = &p->parting;
-  const struct vg_parting_report *r = &q->report;
+  const struct vg_parting_report *r = &q->made.report;
   const char *way = vg_ways[p->problem.settings.decompose].name;
   char a[32], b[32], c[32];
 
-  if (!vg_ways[p->problem.settings.decompose].maker) return;
+  if (!q->n_part) return;
   printf("\nParts\n");
-  if (!q->n_part) {
-    printf("  %s: not known, as layers are estimated\n", way);
-  } else {
-    printf("  %s: %s parts filled as they are, with %s cells, ", way,
-           count((double)q->n_whole, a), count(q->cells, b));
-    printf("most over mean %.2f\n  %s %s, coarsening %.2f, %s triangles of "
-           "interfaces, %.2f s\n", q->n_whole ? q->most * (double)q->n_whole /
-           q->cells : 1, count((double)r->n_coarse, a), r->n_gap ? "octants"
-           : "coarse cells", r->coarsening, count((double)r->n_face, c),
-           q->seconds);
-    if (r->n_gap)
-      printf("  and %s that planes may cut, the gap at the front\n",
-             count((double)r->n_gap, a));
-  }
-  printf("  note: cuts and times below are of the advancing partition\n");
+  printf("  %s: %s parts filled as they are, with %s cells, ", way,
+         count((double)q->n_whole, a), count(q->cells, b));
+  printf("most over mean %.2f\n  %s %s, coarsening %.2f, %s triangles of "
+         "interfaces, made here in %.2f s\n",
+         q->n_whole ? q->most * (double)q->n_whole / q->cells : 1,
+         count((double)r->n_coarse, a), r->n_gap ? "octants" : "coarse cells",
+         r->coarsening, count((double)r->n_face, c), q->seconds);
+  if (r->n_gap)
+    printf("  and %s that planes may cut, the gap at the front\n",
+           count((double)r->n_gap, a));
+}
+
+/* Voids that planes cut. */
+static size_t cuts(const struct vg_plan *p)
+{
+  const struct vg_forecast *o = &p->forecast;
+
+  return o->n_node - o->n_leaf - (p->parting.n_part > 0);
 }
 
 static void print_tree(const struct vg_plan *p)
@@ -189,19 +206,20 @@ static void print_tree(const struct vg_plan *p)
   char a[32], b[32];
 
   printf("\nCuts\n  ");
-  print_number(o->n_node - o->n_leaf, "cut");
+  print_number(cuts(p), "cut");
   printf(" into ");
   if (o->n_leaf == 1) printf("1 leaf; ");
   else printf("%zu leaves; ", o->n_leaf);
   print_number(o->n_pencil, "pencil");
   printf(" and ");
   print_number(o->n_tile, "tile");
-  printf(" with %s cells (%.1f %%)\n", count(o->zone_cells, a),
-         o->cells > 0 ? 100 * o->zone_cells / o->cells : 0);
+  printf(" with %s cells (%.1f %%);\n  leaves: most over mean %.2f\n",
+         count(o->zone_cells, a),
+         o->cells > 0 ? 100 * o->zone_cells / o->cells : 0, balance(o));
   for (size_t i = 0; i < o->n_node; i++) {
     const struct vg_forecast_node *n = &o->node[i];
 
-    if (n->depth >= p->o->depth || (is_leaf(n) && i)) continue;
+    if (n->depth >= p->o->depth || (vg_forecast_is_leaf(n) && i)) continue;
     printf("  %*s%s: %s cells, %s in zones", 2 * n->depth, "", n->path,
            count(n->cells, a), count(n->zone, b));
     print_planes(&n->lattice);
@@ -245,6 +263,7 @@ static void print_best(const struct vg_plan *p)
     printf("Start: mpirun -n %d --map-by ppr:%d:node:PE=%d vanguard mesh -p %s "
            "--threads %d\n", r->ranks, r->ranks_per_node, r->threads,
            p->o->project, r->threads);
+  if (!p->n_leaf) return;
   printf("%s %d x %d by leaf size:\n   leaf cells  leaves       time      tasks"
          "\n", text, r->ranks, r->threads);
   for (size_t i = 0; i < p->n_leaf; i++)
@@ -378,8 +397,8 @@ static json_t *node_json(const struct vg_forecast_node *n)
     if (n->lattice.n[axis]) json_object_set(planes, name, list);
     json_decref(list);
   }
-  json_object_set_new(o, "leaf", json_boolean(is_leaf(n)));
-  if (!is_leaf(n)) json_object_set(o, "planes", planes);
+  json_object_set_new(o, "leaf", json_boolean(vg_forecast_is_leaf(n)));
+  if (!vg_forecast_is_leaf(n)) json_object_set(o, "planes", planes);
   json_decref(planes);
   return o;
 }
@@ -417,18 +436,18 @@ static json_t *parting_json(const struct vg_plan *p)
   return json_pack("{s:s s:I s:I s:I s:f s:f s:f s:I s:I s:f}", "way",
     vg_ways[p->problem.settings.decompose].name,
     "parts", (json_int_t)q->n_part, "whole_parts", (json_int_t)q->n_whole,
-    "gap_parts", (json_int_t)q->report.n_gap, "whole_cells", q->cells,
-    "most_cells", q->most, "coarsening", q->report.coarsening,
-    "coarse_cells", (json_int_t)q->report.n_coarse,
-    "interface_triangles", (json_int_t)q->report.n_face,
+    "gap_parts", (json_int_t)q->made.report.n_gap, "whole_cells", q->cells,
+    "most_cells", q->most, "coarsening", q->made.report.coarsening,
+    "coarse_cells", (json_int_t)q->made.report.n_coarse,
+    "interface_triangles", (json_int_t)q->made.report.n_face,
     "seconds", q->seconds);
 }
 
 static json_t *tree_json(const struct vg_plan *p)
 {
   const struct vg_forecast *t = &p->forecast;
-  json_t *o = json_pack("{s:I s:I s:I s:I s:f}", "cuts",
-                        (json_int_t)(t->n_node - t->n_leaf), "leaves",
+  json_t *o = json_pack("{s:f s:I s:I s:I s:I s:f}", "balance", balance(t),
+                        "cuts", (json_int_t)cuts(p), "leaves",
                         (json_int_t)t->n_leaf, "pencils",
                         (json_int_t)t->n_pencil, "tiles",
                         (json_int_t)t->n_tile, "zone_cells", t->zone_cells);

@@ -40,13 +40,30 @@ static vg_status replay(struct plan *p, int ranks, int threads,
 }
 
 /* Ranks that share the recorded machine's memory are taken as one node. */
+/* The record's schedule, where none is asked for. */
+static vg_status choose_schedule(const struct plan *p, int *cyclic,
+                                 struct vg_error *err)
+{
+  struct vg_settings s;
+  vg_status st;
+
+  vg_settings_default(&s);
+  s.cyclic = p->t.cyclic;
+  st = vg_cli_apply(&p->o->kept, &s, err);
+  *cyclic = s.cyclic;
+  vg_settings_release(&s);
+  return st;
+}
+
 static vg_status replay_all(struct plan *p, struct vg_error *err)
 {
   const struct vg_plan_options *o = p->o;
-  int per_node = o->machine.ranks_per_node;
+  int per_node = o->machine.ranks_per_node, cyclic;
   vg_status st;
 
+  VG_TRY(choose_schedule(p, &cyclic, err));
   p->machine = o->machine;
+  p->machine.cyclic = p->t.cyclic;
   p->machine.serial = o->serial;
   if (o->serial < 0) vg_timeline_outside(&p->t, &p->machine);
   p->machine.ranks_per_node = p->t.spans.n_rank;
@@ -56,6 +73,7 @@ static vg_status replay_all(struct plan *p, struct vg_error *err)
                                : fmax(p->t.spans.wall,
                                       p->t.seconds[VG_PHASE_TOTAL]);
   p->machine.ranks_per_node = per_node;
+  p->machine.cyclic = cyclic;
   p->row = vg_alloc(o->ranks.n * o->threads.n, sizeof *p->row);
   if (!p->row) return vg_fail_memory(err, "the forecast");
   for (size_t t = 0; t < o->threads.n; t++)
@@ -89,9 +107,9 @@ static void print_text(const struct plan *p)
          vg_spans_loops(s));
   printf("  the same machine replayed: %.3f s, measured %.3f s (%+.1f %%)\n",
          p->recorded.f.wall, p->measured, error_percent(p));
-  printf("\nForecast\n  ranks threads workers       time  speed-up  "
+  printf("\nForecast%s\n  ranks threads workers       time  speed-up  "
          "efficiency   critical   cuts end  cuts extra  idle  imbalance   sent"
-         "\n");
+         "\n", p->machine.cyclic ? ", leaves dealt out in turn" : "");
   printf("                               s                     %%          s"
          "          s     %%     %%     %%                MB\n");
   for (size_t i = 0; i < p->n; i++) {
@@ -130,10 +148,11 @@ static vg_status print_json(const struct plan *p, struct vg_error *err)
   json_object_set_new(o, "by_node", json_real(p->machine.by_node));
   json_object_set_new(o, "by_all", json_real(p->machine.by_all));
   json_object_set_new(o, "loops", json_real(vg_spans_loops(&p->t.spans)));
-  json_object_set_new(o, "machine", json_pack("{s:i s:f s:f s:f s:b s:i}",
+  json_object_set_new(o, "machine", json_pack("{s:i s:f s:f s:f s:b s:b s:i}",
     "ranks_per_node", p->machine.ranks_per_node, "latency",
     p->machine.latency, "bandwidth", p->machine.bandwidth, "rate",
-    p->machine.rate, "joins_roam", p->machine.joins_roam, "loop_threads",
+    p->machine.rate, "joins_roam", p->machine.joins_roam, "cyclic",
+    p->machine.cyclic, "loop_threads",
     p->machine.loop_threads));
   json_object_set_new(o, "recorded", json_pack("{s:i s:i s:f s:f s:f}",
     "ranks", p->recorded.ranks, "threads", p->recorded.threads, "measured",

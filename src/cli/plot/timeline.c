@@ -9,6 +9,7 @@
 #include "run/common/text.h"
 
 #define SECONDS_MAX 1e9
+#define WORK_MAX 1e300
 #define ROUNDED 2e-6             /* twice half of what times are kept to */
 #define COUNT_MAX ((json_int_t)1 << 53)   /* integers that a double holds */
 
@@ -16,7 +17,7 @@ enum column {
   COLUMN_PATH, COLUMN_AFTER, COLUMN_KIND, COLUMN_RANK, COLUMN_THREAD,
   COLUMN_HOME, COLUMN_START, COLUMN_END, COLUMN_CPU, COLUMN_ESTIMATE,
   COLUMN_CELLS, COLUMN_BYTES_IN, COLUMN_BYTES_OUT, COLUMN_LOOPS, COLUMN_FACES,
-  COLUMN_N
+  COLUMN_WORK, COLUMN_N
 };
 
 enum help_column {
@@ -35,7 +36,7 @@ static const struct table span_table = {
   "spans", "span", "columns", COLUMN_N, COLUMN_LOOPS,
   { "path", "after", "kind", "rank", "thread", "home", "start", "end", "cpu",
     "estimate", "cells", "bytes_in", "bytes_out", "loops",
-    "faces" }
+    "faces", "work" }
 };
 
 static const struct table help_table = {
@@ -121,9 +122,10 @@ static void put_facts(struct vg_output *out, const struct vg_timeline *t)
   vg_output_text(out, "{\"vanguard_timeline\": 1,\n\"facts\": {\"title\": ");
   put_string(out, t->title);
   vg_output_format(out, ", \"ranks\": %d, \"threads\": %d, \"cells\": %llu, "
-                   "\"points\": %llu,\n \"digest\": ", (int)t->spans.n_rank,
-                   (int)t->spans.n_thread, (unsigned long long)t->n_cell,
-                   (unsigned long long)t->n_point);
+                   "\"points\": %llu, \"cyclic\": %d,\n \"digest\": ",
+                   (int)t->spans.n_rank, (int)t->spans.n_thread,
+                   (unsigned long long)t->n_cell,
+                   (unsigned long long)t->n_point, t->cyclic);
   put_string(out, t->digest);
   for (int i = 0; i < VG_PHASE_N; i++) {
     vg_output_format(out, ",%s\"%s\": ", i % 4 ? " " : "\n ", phases[i].key);
@@ -164,7 +166,9 @@ static void put_span(struct vg_output *out, const struct vg_span *s)
                    (unsigned long long)s->bytes_in,
                    (unsigned long long)s->bytes_out);
   put_seconds(out, s->loops);
-  vg_output_format(out, ",%llu]", (unsigned long long)s->n_face);
+  vg_output_format(out, ",%llu,", (unsigned long long)s->n_face);
+  vg_output_real(out, isfinite(s->work) && s->work > 0 ? s->work : 0);
+  vg_output_text(out, "]");
 }
 
 static void put_help(struct vg_output *out, const struct vg_help *h)
@@ -259,8 +263,7 @@ static vg_status get_real(const struct place *at, const json_t *o,
   double v = json_number_value(o);
   char wanted[80];
 
-  snprintf(wanted, sizeof wanted, "a number from 0 to %d million",
-           (int)(most / 1e6));
+  snprintf(wanted, sizeof wanted, "a number from 0 to %g", most);
   if (!json_is_number(o) || !(v >= 0 && v <= most))
     return bad_value(at, what, wanted, err);
   *out = v;
@@ -272,7 +275,7 @@ static vg_status get_facts(const char *name, const json_t *root,
 {
   const json_t *facts = json_object_get(root, "facts"), *o;
   struct place at = { .name = name };
-  uint64_t ranks, threads;
+  uint64_t ranks, threads, cyclic = 0;
   vg_status st = VG_OK;
 
   if (!json_is_object(facts))
@@ -296,6 +299,9 @@ static vg_status get_facts(const char *name, const json_t *root,
     VG_TRY(get_count(&at, o, "cells", COUNT_MAX, &t->n_cell, err));
   if ((o = json_object_get(facts, "points")))
     VG_TRY(get_count(&at, o, "points", COUNT_MAX, &t->n_point, err));
+  if ((o = json_object_get(facts, "cyclic")))
+    VG_TRY(get_count(&at, o, "cyclic", 1, &cyclic, err));
+  t->cyclic = (int)cyclic;
   for (int i = 0; i < VG_PHASE_N; i++)
     if ((o = json_object_get(facts, phases[i].key)))
       VG_TRY(get_real(&at, o, phases[i].key, SECONDS_MAX, &t->seconds[i],
@@ -405,6 +411,8 @@ static vg_status get_numbers(const struct place *at, json_t *const *v,
   if (v[COLUMN_FACES])
     VG_TRY(get_count(at, v[COLUMN_FACES], "faces", COUNT_MAX, &s->n_face,
                      err));
+  if (v[COLUMN_WORK])
+    VG_TRY(get_real(at, v[COLUMN_WORK], "work", WORK_MAX, &s->work, err));
   if (!v[COLUMN_LOOPS]) goto done;
   VG_TRY(get_real(at, v[COLUMN_LOOPS], "loops", SECONDS_MAX, &s->loops, err));
   if (s->loops > s->cpu + ROUNDED)

@@ -4,7 +4,8 @@
  *
  *   {"vanguard_timeline": 1,
  *    "facts": {"title": "wing", "ranks": 2, "threads": 4, "cells": 123,
- *              "points": 45, "digest": "", "seconds_read": 0.1, ...},
+ *              "points": 45, "cyclic": 0, "digest": "", "seconds_read": 0.1,
+ *              ...},
  *    "columns": ["path", "after", "kind", "rank", ...],
  *    "spans": [["0J1", "", "J", 0, ...], ...],
  *    "help_columns": ["path", "rank", "thread", "start", "end"],
@@ -14,7 +15,7 @@
  * is what of its "cpu" was in loops; both have the helpers' time in them.
  * Times are kept to the microsecond. Readers take columns in any order, pass
  * over those that they do not know and take as 0 a fact that is absent, and
- * "loops" and "faces" in records of versions that had none. */
+ * "loops", "faces" and "work" in records of versions that had none. */
 #ifndef VG_CLI_PLOT_TIMELINE_H
 #define VG_CLI_PLOT_TIMELINE_H
 
@@ -47,6 +48,7 @@ struct vg_timeline {
   double seconds[VG_PHASE_N];   /* [VG_PHASE_ENGINE] is spans.wall */
   uint64_t n_cell, n_point;     /* of the mesh */
   char digest[64];              /* of the files written; "" if not known */
+  int cyclic;                   /* 1: leaves were dealt out beforehand */
   struct vg_spans spans;        /* ranks, threads and wall too */
 };
 #define VG_TIMELINE_INIT { .title = "" }

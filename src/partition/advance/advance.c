@@ -1,6 +1,5 @@
 #include "partition/advance/advance.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,9 +9,6 @@
 #include "partition/cut/node.h"
 #include "partition/cut/select.h"
 #include "partition/repair/repair.h"
-
-/* The smallest leaves that were found to be worth a cut. */
-static const double least_leaf = 14000;   /* C1 */
 
 /* Tasks as long as all of them plan, grow zones and join these into fronts;
  * then cells. */
@@ -79,8 +75,6 @@ static vg_status make_root(struct vg_partition *p, struct vg_comm *comm,
   VG_TRY(st);
   p->report.estimate = n->load.cells;
   n->to_part = p->options.maker != NULL;
-  /* a void that is not cut is filled as it is, in the order it came in */
-  if (n->to_part || vg_node_wants_cut(p, n)) VG_TRY(vg_select_sort(&n->front, err));
   *out = n;
   n = NULL;
 done:
@@ -103,8 +97,11 @@ static vg_status run_tasks(struct vg_partition *p, struct vg_comm *comm,
                            size_t n, struct vg_node **node,
                            struct vg_spans *spans, struct vg_error *err)
 {
-  struct vg_engine_options o = { p->options.threads, p->options.shuffle,
-                                 progress, stop, p };
+  struct vg_engine_options o = { .threads = p->options.threads,
+                                 .shuffle = p->options.shuffle,
+                                 .cyclic = p->options.cyclic,
+                                 .progress = progress, .stop = stop,
+                                 .user = p };
   struct vg_task *first = vg_calloc(n, sizeof *first);
   vg_status st = first ? VG_OK : vg_fail_memory(err, "a task");
 
@@ -123,19 +120,22 @@ static vg_status run_tasks(struct vg_partition *p, struct vg_comm *comm,
   return st;
 }
 
-/* What a maker of partings leaves to be cut is cut into as many cells as its
- * parts have, but no finer than is worth a cut. Collective. */
+/* Leaves by the number of parts, on all ranks. A void that is not cut is filled
+ * as it is, in the order that its front came in. Collective. */
 static vg_status cut_like_parts(struct vg_partition *p, struct vg_comm *comm,
-                                struct vg_error *err)
+                                struct vg_node *root, struct vg_error *err)
 {
   struct vg_cut_rule *rule = &p->options.rule;
-  int n = p->options.maker ? p->options.parting.n_part : 0;
   double cells = p->report.estimate;
   vg_status st = vg_comm_max(comm, 1, &cells, err);
 
-  if (st == VG_OK && n > 0 && rule->leaf_cells > 0)
-    rule->leaf_cells = fmin(rule->leaf_cells, fmax(cells / n, least_leaf));
-  return st;
+  if (st < 0) return st;
+  rule->leaf_cells = vg_parting_leaf_cells(cells, p->options.parting.n_part,
+                                           p->options.maker != NULL,
+                                           rule->leaf_cells);
+  if (root && (root->to_part || vg_node_wants_cut(p, root)))
+    st = vg_select_sort(&root->front, err);
+  return vg_comm_agree(comm, st, err);
 }
 
 static vg_status run_whole(struct vg_partition *p, struct vg_comm *comm,
@@ -149,7 +149,7 @@ static vg_status run_whole(struct vg_partition *p, struct vg_comm *comm,
   if (st == VG_OK && p->rank == 0)
     st = within_limit(p, p->report.estimate / 1.5, "would have", err);
   st = vg_comm_agree(comm, st, err);
-  if (st == VG_OK) st = cut_like_parts(p, comm, err);
+  if (st == VG_OK) st = cut_like_parts(p, comm, root, err);
   if (st < 0) {
     vg_node_free(root);
     return st;

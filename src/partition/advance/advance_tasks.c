@@ -84,12 +84,19 @@ static vg_status run(void *user, const struct vg_engine *e,
   done->n_face = faces_of(task->input);
   st = run_work(user, task->input, o, e, err);
   done->n_cell = o->change.n_cell;
+  if (o->what == VG_WORK_START) done->elsewhere = o->node->elsewhere;
   if (st == VG_OK) *outcome = o;
   else free_outcome(o);
   return st;
 }
 
 /* --- what follows from them ---------------------------------------------- */
+
+static double work_of(struct vg_node *leaf)
+{
+  if (!(leaf->fill_work > 0)) leaf->fill_work = vg_front_work(&leaf->front);
+  return leaf->fill_work;
+}
 
 static vg_status submit(struct vg_engine *e, const char *path, char kind,
                         int pinned, int moves, double estimate,
@@ -98,6 +105,8 @@ static vg_status submit(struct vg_engine *e, const char *path, char kind,
   struct vg_task t = { .kind = kind, .pinned = pinned, .moves = moves,
                        .priority = vg_model_priority(kind, estimate),
                        .weight = estimate, .input = w };
+
+  if (kind == VG_SPAN_LEAF) t.work = work_of(w->node);
 
   snprintf(t.path, sizeof t.path, "%s", path);
   return vg_engine_submit(e, &t, err);
@@ -506,6 +515,7 @@ vg_status vg_tasks_first(struct vg_partition *p, struct vg_node *n,
            VG_PATH_MAX - 3, n->path);
   if (cut) return VG_OK;
   w->serial = n->serial ? n->serial : vg_partition_serial(p);
+  t->work = work_of(n);
   p->report.n_leaf++;
   return VG_OK;
 }

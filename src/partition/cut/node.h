@@ -36,7 +36,10 @@ struct vg_node {
   int levels;                /* bisections left, in a partition by levels */
   int retry;                 /* attempts that failed */
   int is_final;              /* a leaf whatever it needs */
+  double fill_work;          /* of a leaf, see vg_front_work; 0: not known */
   int to_part;               /* by a maker of partings, not by planes */
+  double elsewhere;          /* s of processor time that this took in other
+                                processes */
   uint32_t serial;           /* of its leaf; 0: none yet */
   /* while it is being cut: faces stay where they are, with VG_FACE_GONE */
   size_t cap_x, cap_name, cap_face;  /* of the front; 0: just its size */

@@ -60,7 +60,7 @@ static struct vg_parting_options options_for(const struct vg_partition *p,
   return o;
 }
 
-static vg_status find_or_make(struct vg_partition *p, const struct vg_node *n,
+static vg_status find_or_make(struct vg_partition *p, struct vg_node *n,
                               uint32_t serial, const struct vg_engine *e,
                               struct vg_parting *out, struct vg_error *err)
 {
@@ -85,6 +85,7 @@ static vg_status find_or_make(struct vg_partition *p, const struct vg_node *n,
     p->report.n_part = out->n_part;
   }
   pthread_mutex_unlock(&p->lock);
+  n->elsewhere = is_found ? 0 : out->report.elsewhere;
   return st;
 }
 

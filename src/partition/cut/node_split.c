@@ -445,8 +445,11 @@ static void plan_part(void *context, size_t first, size_t end, int worker)
   const struct plans *q = context;
 
   (void)worker;
-  for (size_t k = first; k < end; k++)
-    (void)vg_node_wants_cut(q->p, q->child[k]);
+  for (size_t k = first; k < end; k++) {
+    struct vg_node *c = q->child[k];
+
+    if (!vg_node_wants_cut(q->p, c)) c->fill_work = vg_front_work(&c->front);
+  }
 }
 
 void vg_node_plan_children(const struct vg_partition *p, struct vg_node *n,

@@ -1,5 +1,6 @@
 #include "partition/cut/parting.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -20,6 +21,19 @@ int vg_parting_parts(double cells, double leaf_cells)
   double parts = leaf_cells > 0 ? cells / leaf_cells : 1;
 
   return parts < 1 ? 1 : parts > 1e6 ? 1000000 : (int)(parts + 0.5);
+}
+
+/* The smallest leaves that were found to be worth a cut. */
+static const double least_leaf = 14000;   /* C1 */
+
+double vg_parting_leaf_cells(double cells, int n_part, int is_parted,
+                             double leaf_cells)
+{
+  double part = n_part > 0 ? cells / n_part : 0;
+
+  if (!(part > 0) || !(leaf_cells > 0)) return leaf_cells;
+  if (!is_parted) return part;
+  return fmin(leaf_cells, fmax(part, least_leaf));
 }
 
 /* --- is it one? ---------------------------------------------------------- */

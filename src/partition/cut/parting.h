@@ -43,6 +43,7 @@ struct vg_parting_report {
   uint64_t n_apart;          /* parts beyond n_part: pieces that hung apart */
   uint64_t n_face;           /* triangles of interfaces */
   double time[VG_PARTING_STEPS];
+  double elsewhere;          /* s of processor time in other processes */
 };
 
 struct vg_writer;
@@ -69,6 +70,14 @@ void vg_parting_release(struct vg_parting *p);
 
 /** Parts for leaves of so many cells; 0: one. */
 int vg_parting_parts(double cells, double leaf_cells);
+
+/** Cells of leaves where planes cut a void of so many, and so many parts are
+ * asked for; n_part 0: leaf_cells, which is 0 where they are not to be cut by
+ * that.
+ * is_parted 1: what a maker leaves to be cut gets leaves as large as its parts,
+ * but no smaller than is worth a cut, and no larger than leaf_cells. */
+double vg_parting_leaf_cells(double cells, int n_part, int is_parted,
+                             double leaf_cells);
 
 /** Part the void within a front.
  *

@@ -23,6 +23,8 @@ struct vg_partition_options {
   double cells_per_cube;     /* expected (load.h); what zones hold corrects it,
                                 and leaves that outgrow it are cut again */
   int threads;
+  int cyclic;                /* 1: leaves are dealt out beforehand (engine.h),
+                                by vg_front_work */
   int sweeps;                /* of optimisation */
   struct vg_mesher_pool *mesher; /* for leaves; NULL: the built-in kernel */
   uint64_t max_cells;        /* refuse to make more; 0: no limit */

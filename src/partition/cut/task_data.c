@@ -64,6 +64,22 @@ double vg_front_volume(const struct vg_front *f)
   return sum;
 }
 
+double vg_front_work(const struct vg_front *f)
+{
+  double area = 0, volume = vg_front_volume(f);
+
+  for (size_t i = 0; i < f->n_face; i++) {
+    const double *x = f->x[f->face[i][0]];
+    double a[3], b[3], n[3];
+
+    vg_sub(f->x[f->face[i][1]], x, a);
+    vg_sub(f->x[f->face[i][2]], x, b);
+    vg_cross(a, b, n);
+    area += vg_norm(n) / 2;
+  }
+  return volume > 0 && area > 0 ? volume * (double)f->n_face / area : 0;
+}
+
 /* Two points of one name are one point: parts that were one front may touch.
  * to out: [n_point] the first point of the same name. */
 static vg_status find_twins(const struct vg_front *f, uint32_t *to,

@@ -50,6 +50,11 @@ vg_status vg_front_append(struct vg_front *to, const struct vg_front *from,
 /** What a front encloses; negative for a shell around a body. */
 double vg_front_volume(const struct vg_front *f);
 
+/** PVGRID's estimate of what a part takes to fill, from its front alone: its
+ * volume times the number of its faces over their area (length). 0 where the
+ * front encloses nothing. O(faces). */
+double vg_front_work(const struct vg_front *f);
+
 /** What tasks that make cells leave on the rank that did them. */
 struct vg_piece {
   char path[64];

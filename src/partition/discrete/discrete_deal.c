@@ -352,7 +352,7 @@ static vg_status deal(struct vg_coarse *c, const struct dual *d,
                       const struct vg_parting_options *o,
                       struct vg_error *err)
 {
-  struct vg_graph_options how = { o->n_part, imbalance, 0 };
+  struct vg_graph_options how = { o->n_part, imbalance, 0, &c->elsewhere };
   vg_status st = VG_OK;
 
   if (o->partitioner == VG_PARTITIONER_RCB) return bisect(c, o->n_part, err);

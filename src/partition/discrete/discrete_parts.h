@@ -17,6 +17,7 @@ struct vg_coarse {
   double *weight;            /* [n_cell] cells that it is expected to hold */
   uint32_t *part;            /* [n_cell] */
   uint32_t n_part;
+  double elsewhere;          /* s of processor time in other processes */
 };
 
 void vg_coarse_release(struct vg_coarse *c);

@@ -52,7 +52,7 @@ static double draw(const char *path, uint64_t seed)
 static int legal(const struct vg_task *t)
 {
   return t->path[0] && memchr(t->path, 0, sizeof t->path) &&
-         isfinite(t->priority) && isfinite(t->weight);
+         isfinite(t->priority) && isfinite(t->weight) && isfinite(t->work);
 }
 
 /* Memory for the new tasks in all lists, so that entering them cannot fail. */
@@ -89,6 +89,7 @@ vg_status vg_engine_submit(struct vg_engine *e, const struct vg_task *task,
   j->task = *task;
   memcpy(j->after, e->doing, sizeof j->after);
   j->home = e->rank;
+  j->lane = VG_LANE_ANY;
   j->place.path = j->task.path;
   j->place.key = e->options->shuffle ? draw(task->path, e->options->shuffle)
                                     : task->priority;

@@ -5,6 +5,7 @@
  * no levels and no barriers: whoever is idle takes the task at hand with the
  * highest priority. No rank only manages: a thread of rank 0 that sleeps
  * nearly always keeps the schedule, and each rank has one that serves messages.
+ * For comparison tasks can be dealt out beforehand instead (cyclic below).
  *
  * Which worker does what depends on timing. So what a task computes must
  * follow from its input alone, and what it makes be named by its path. */
@@ -28,6 +29,8 @@ struct vg_task {
                                 there */
   double priority;           /* higher first */
   double weight;             /* expected work, in cells, for progress */
+  double work;               /* > 0: what it is dealt out by, where tasks are;
+                                0: never dealt out */
   void *input;               /* owned by the engine once submitted; may be
                                 NULL, and is in `done` */
 };
@@ -36,6 +39,8 @@ struct vg_task {
 struct vg_done {
   size_t n_cell;             /* cells made */
   size_t n_face;             /* faces of the front that it was given */
+  double elsewhere;          /* s of processor time in processes that it had
+                                work for it meanwhile */
 };
 
 struct vg_engine;            /* one per rank while vg_engine_run runs */
@@ -76,6 +81,10 @@ struct vg_engine_options {
   int threads;               /* workers on this rank, at least 1 */
   uint64_t shuffle;          /* 0: by priority; else: in an order drawn from
                                 this number, to show that order is no matter */
+  int cyclic;                /* 1: tasks with a `work` wait until no other one
+                                is left, and are dealt out to all workers in
+                                turn, most work first: a worker does those it
+                                was dealt, and none of others */
   /** Called on rank 0 now and then: cells done and known so far, tasks done
    * and known. Non-zero: stop. May be NULL. */
   int (*progress)(void *user, double done, double known, size_t n_done,

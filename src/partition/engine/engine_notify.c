@@ -52,6 +52,7 @@ static uint64_t enter_new(struct vg_engine *e)
     memcpy(notice->path, j->task.path, sizeof notice->path);
     notice->key = j->place.key;
     notice->weight = j->task.weight;
+    notice->work = j->task.work;
     notice->handle = j->handle;
     notice->pinned = j->task.pinned != 0;
     if (j->task.pinned) vg_work_queue(e, j);

@@ -13,7 +13,7 @@
  *   a runner     MOVED    answer to RECALL
  *   anyone       FAIL     stop everything, and why
  *   anyone       BYE      my last message
- *   list -> home ASSIGN   your task is to be done by rank R
+ *   list -> home ASSIGN   your task is to be done by rank R (by its worker L)
  *   list -> any  RECALL   give a task that you have not started to rank R
  *   list -> any  DRAIN    start nothing more
  *   list -> any  END      nothing is left; how it went
@@ -56,10 +56,14 @@ int vg_heap_before(const struct vg_heap *a, const struct vg_heap *b);
 
 /* --- messages ------------------------------------------------------------ */
 
+/* Not dealt to a worker: any of the rank. */
+enum { VG_LANE_ANY = -1 };
+
 /* FREE, MOVED, BYE, ASSIGN, RECALL, DRAIN. */
 struct vg_msg {
   uint64_t handle;           /* ASSIGN: of the task; BYE: as END's sent */
   int32_t to;                /* ASSIGN, RECALL, MOVED: to which rank */
+  int32_t lane;              /* ASSIGN: by which worker; VG_LANE_ANY */
   int32_t ok;                /* MOVED: there was one to give */
 };
 
@@ -74,7 +78,7 @@ struct vg_update {
 
 struct vg_task_notice {
   char path[VG_PATH_MAX];
-  double key, weight;
+  double key, weight, work;
   uint64_t handle;
   uint64_t pinned;
 };
@@ -90,9 +94,10 @@ struct vg_final_status {
 /* At the end of INPUT, and of OUTCOME: so that what is packed needs no move. */
 struct vg_input_trailer {
   char path[VG_PATH_MAX], after[VG_PATH_MAX];
-  double key, priority, weight;
+  double key, priority, weight, work;
   uint64_t handle;
   int32_t home, kind, has, moves;   /* has: not NULL */
+  int32_t lane, unused;             /* 0: sent as bytes */
 };
 
 struct vg_outcome_trailer {
@@ -110,6 +115,7 @@ struct vg_task_state {
   char after[VG_PATH_MAX];
   uint64_t handle;           /* its number at home */
   int home, runner, to;
+  int lane;                  /* the worker it was dealt to, or VG_LANE_ANY */
   int packed;                /* bytes hold the input, or the outcome */
   struct vg_bytes bytes;
   void *outcome;
@@ -124,10 +130,14 @@ struct vg_ready {
   struct vg_heap place;      /* must be first */
   char path[VG_PATH_MAX];
   uint64_t handle;
+  double work;
+  int home;
 };
 
 struct vg_schedule {
   struct vg_heap **ready;    /* [size] free tasks, by home */
+  size_t n_held, cap_held;
+  struct vg_ready **held;    /* [n_held] to be dealt out */
   int *threads, *load;       /* [size] workers; tasks it has, pinned too */
   unsigned char *asked;      /* [size] see recall */
   size_t n_ready, n_joined;
@@ -143,6 +153,7 @@ struct vg_worker {
   struct vg_engine *e;
   int number;
   int unreported;                  /* has not said yet that it is free */
+  struct vg_heap *dealt;     /* jobs that are its own */
   const char *doing;         /* path of its task */
   double loops, helped;      /* s of processor time that its task has had in
                                 loops, and of these in other threads */
@@ -169,7 +180,8 @@ struct vg_engine {
   int ending;                /* END has been said (rank 0) or heard */
   int poll_soon;                 /* something was posted: poll soon */
 
-  struct vg_heap *queue[2];  /* jobs to be done here: free, pinned */
+  struct vg_heap *queue[2];  /* jobs to be done here by any worker: free,
+                                pinned */
   struct vg_loop *loops;     /* that workers may help with */
   size_t n_idle;             /* workers that sleep */
   struct vg_task_fifo ended;      /* home tasks, for `done` */
@@ -222,7 +234,7 @@ void vg_loop_enter(struct vg_worker *w);      /* without lock: this thread */
 int vg_loop_help(struct vg_worker *w);        /* 1: it did; lock left for it */
 
 /* engine_serve.c: what the schedule says, and the loop (without lock). */
-void vg_serve_assign(struct vg_engine *e, uint64_t handle, int to);
+void vg_serve_assign(struct vg_engine *e, uint64_t handle, int to, int lane);
 void vg_serve_recall(struct vg_engine *e, int to);
 void vg_serve_drain(struct vg_engine *e);
 void vg_serve(struct vg_engine *e);

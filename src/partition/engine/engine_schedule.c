@@ -5,7 +5,11 @@
  * twice as many tasks are ready as the job has workers: as long as tasks are
  * scarce, what is ready next may be more urgent than what would be given
  * ahead. And when nothing is ready any more, a rank that holds a task it has
- * not started passes it on to one that waits (RECALL). */
+ * not started passes it on to one that waits (RECALL).
+ *
+ * A cyclic schedule holds tasks with a `work` back until nothing else is left,
+ * then deals all of them out to the workers in turn: cutting first, filling
+ * after it, nobody helps another out. It is there for comparison. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -37,6 +41,8 @@ void vg_schedule_release(struct vg_schedule *l, int size)
 {
   for (int r = 0; l->ready && r < size; r++)
     while (l->ready[r]) free(vg_heap_pop(&l->ready[r]));
+  for (size_t i = 0; i < l->n_held; i++) free(l->held[i]);
+  free(l->held);
   free(l->ready);
   free(l->threads);
   free(l->load);
@@ -89,6 +95,19 @@ static int nearly(double key, double best)
   return key >= (best > 0 ? best * NEARLY : best / NEARLY);
 }
 
+/* A task that waited is with this rank from now on, for a worker of it. */
+static void assign(struct vg_engine *e, struct vg_ready *task, int home,
+                   int to, int lane)
+{
+  e->schedule.n_out++;
+  add_load(&e->schedule, to, 1);
+  if (home == e->rank) vg_serve_assign(e, task->handle, to, lane);
+  else vg_engine_send(e, home, VG_MSG_ASSIGN,
+                      (struct vg_msg){ .handle = task->handle, .to = to,
+                                       .lane = lane });
+  free(task);
+}
+
 /* Give one task to somebody; 0 when nobody takes one. */
 static int give(struct vg_engine *e, int ahead)
 {
@@ -105,13 +124,34 @@ static int give(struct vg_engine *e, int ahead)
     home = to;
   task = (struct vg_ready *)vg_heap_pop(&l->ready[home]);
   l->n_ready--;
-  l->n_out++;
-  add_load(l, to, 1);
-  if (home == e->rank) vg_serve_assign(e, task->handle, to);
-  else vg_engine_send(e, home, VG_MSG_ASSIGN,
-                      (struct vg_msg){ .handle = task->handle, .to = to });
-  free(task);
+  assign(e, task, home, to, VG_LANE_ANY);
   return 1;
+}
+
+static int by_work(const void *a, const void *b)
+{
+  const struct vg_ready *s = *(struct vg_ready *const *)a;
+  const struct vg_ready *t = *(struct vg_ready *const *)b;
+
+  if (s->work != t->work) return s->work > t->work ? -1 : 1;
+  return strcmp(s->path, t->path);
+}
+
+/* To the workers of rank 0, of rank 1, ... in turn, one each. */
+static void deal_out(struct vg_engine *e)
+{
+  struct vg_schedule *l = &e->schedule;
+  size_t n = l->n_held;
+  int to = 0, lane = 0;
+
+  qsort(l->held, n, sizeof *l->held, by_work);
+  l->n_held = 0;
+  for (size_t i = 0; i < n; i++) {
+    assign(e, l->held[i], l->held[i]->home, to, lane);
+    if (++lane < l->threads[to]) continue;
+    lane = 0;
+    to = (to + 1) % e->size;
+  }
 }
 
 /* Workers wait and nothing is ready: have those who hold tasks that they have
@@ -162,10 +202,18 @@ static void dispatch(struct vg_engine *e)
     while (l->n_ready && l->n_underloaded && give(e, 0)) ;
     while (e->size > 1 && l->n_ready >= 2 * l->n_worker && give(e, 1)) ;
     if (e->size > 1 && !l->n_ready && l->n_underloaded) recall(e);
+    if (l->n_held && !l->n_ready && !l->n_out &&
+        l->n_joined == (size_t)e->size) deal_out(e);
   }
   if (!l->ended && l->n_joined == (size_t)e->size && !l->n_out &&
-      (l->draining || !l->n_ready))
+      (l->draining || !(l->n_ready + l->n_held)))
     finish(e);
+}
+
+/* Is it dealt out with others later? */
+static int holds(const struct vg_engine *e, const struct vg_task_notice *n)
+{
+  return e->options->cyclic && n->work > 0;
 }
 
 static void add_ready(struct vg_engine *e, int from,
@@ -174,17 +222,24 @@ static void add_ready(struct vg_engine *e, int from,
   struct vg_schedule *l = &e->schedule;
   struct vg_ready *task = vg_alloc(1, sizeof *task);
 
-  if (!task) {
+  if (!task || vg_reserve(&l->held, &l->cap_held, l->n_held + 1,
+                          sizeof *l->held)) {
     struct vg_error err = VG_ERROR_INIT;
 
     vg_fail_memory(&err, "the list of tasks");
     vg_notify_fail(e, err.code, n->path, &err);
+    free(task);
     return;
   }
-  *task = (struct vg_ready){ .handle = n->handle };
+  *task = (struct vg_ready){ .handle = n->handle, .work = n->work,
+                             .home = from };
   memcpy(task->path, n->path, sizeof task->path);
   task->place.key = n->key;
   task->place.path = task->path;
+  if (holds(e, n)) {
+    l->held[l->n_held++] = task;
+    return;
+  }
   vg_heap_push(&l->ready[from], &task->place);
   l->n_ready++;
 }

@@ -37,10 +37,11 @@ static void push_out(struct vg_engine *e, struct vg_task_state *j, int to)
   vg_engine_wake(e);
 }
 
-void vg_serve_assign(struct vg_engine *e, uint64_t handle, int to)
+void vg_serve_assign(struct vg_engine *e, uint64_t handle, int to, int lane)
 {
   struct vg_task_state *j = e->home[handle];
 
+  j->lane = lane;
   if (to == e->rank) vg_work_queue(e, j);
   else push_out(e, j, to);
 }
@@ -83,6 +84,8 @@ static vg_status pack(struct vg_engine *e, struct vg_task_state *j,
   c.key = j->place.key;
   c.priority = j->task.priority;
   c.weight = j->task.weight;
+  c.work = j->task.work;
+  c.lane = j->lane;
   c.handle = j->handle;
   c.home = j->home;
   c.kind = j->task.kind;
@@ -164,6 +167,8 @@ static void take_input(struct vg_engine *e, struct vg_bytes *b)
   j->task.moves = c.moves;
   j->task.priority = c.priority;
   j->task.weight = c.weight;
+  j->task.work = c.work;
+  j->lane = c.lane;
   j->handle = c.handle;
   j->home = c.home;
   j->place.key = c.key;
@@ -221,7 +226,9 @@ static void take_short(struct vg_engine *e, const struct vg_message *m)
   switch (m->kind) {
   case VG_MSG_FREE: vg_schedule_free(e, m->from); break;
   case VG_MSG_MOVED: vg_schedule_moved(e, m->from, msg.to, msg.ok); break;
-  case VG_MSG_ASSIGN: vg_serve_assign(e, msg.handle, msg.to); break;
+  case VG_MSG_ASSIGN:
+    vg_serve_assign(e, msg.handle, msg.to, msg.lane);
+    break;
   case VG_MSG_RECALL: vg_serve_recall(e, msg.to); break;
   case VG_MSG_DRAIN: vg_serve_drain(e); break;
   case VG_MSG_BYE: e->said[m->from] = msg.handle; break;

@@ -6,18 +6,26 @@
 #include "base/memory.h"
 #include "partition/engine/engine_parts.h"
 
+/* Of sleeping workers a signal wakes any: not always the one it was dealt to. */
 void vg_work_queue(struct vg_engine *e, struct vg_task_state *j)
 {
-  vg_heap_push(&e->queue[j->task.pinned != 0], &j->place);
-  pthread_cond_signal(&e->work);
+  if (j->lane == VG_LANE_ANY) {
+    vg_heap_push(&e->queue[j->task.pinned != 0], &j->place);
+    pthread_cond_signal(&e->work);
+  } else {
+    vg_heap_push(&e->worker[j->lane].dealt, &j->place);
+    pthread_cond_broadcast(&e->work);
+  }
 }
 
-static struct vg_task_state *next_job(struct vg_engine *e)
+static struct vg_task_state *next_job(struct vg_worker *w)
 {
-  struct vg_heap **q = e->queue;
-  int i = !q[0] || (q[1] && vg_heap_before(q[1], q[0]));
+  struct vg_heap **q[] = { &w->e->queue[0], &w->e->queue[1], &w->dealt };
+  struct vg_heap **first = NULL;
 
-  return (struct vg_task_state *)vg_heap_pop(&q[i]);
+  for (size_t i = 0; i < sizeof q / sizeof *q; i++)
+    if (*q[i] && (!first || vg_heap_before(*q[i], *first))) first = q[i];
+  return first ? (struct vg_task_state *)vg_heap_pop(first) : NULL;
 }
 
 /* A worker that ends a task of its own rank calls `done` itself, or leaves it
@@ -92,9 +100,10 @@ static void record(struct vg_worker *w, const struct vg_task_state *j,
   span->home = j->home;
   span->start = start - w->e->begin;
   span->end = vg_clock() - w->e->begin;
-  span->cpu = vg_clock_thread() - cpu + w->helped;
+  span->cpu += vg_clock_thread() - cpu + w->helped;
   span->loops = w->loops;
   span->estimate = j->task.weight;
+  span->work = j->task.work;
   span->n_cell = j->n_cell;
 }
 
@@ -108,7 +117,7 @@ static vg_status run(struct vg_worker *w, struct vg_task_state *j,
                      struct vg_span *span, struct vg_error *err)
 {
   struct vg_engine *e = w->e;
-  struct vg_done done = {0, 0};
+  struct vg_done done = {0};
   vg_status st;
 
   if (j->home != e->rank) span->bytes_in = j->bytes.n;
@@ -118,6 +127,7 @@ static vg_status run(struct vg_worker *w, struct vg_task_state *j,
                      err);
   j->n_cell = done.n_cell;
   span->n_face = done.n_face;
+  span->cpu = done.elsewhere;
   if (j->task.input) e->ops->release_input(e->user, j->task.input);
   j->task.input = NULL;
   if (st || stays(e, j)) return st;
@@ -222,7 +232,7 @@ void *vg_work_thread(void *worker)
     } else if (w->unreported) {
       w->unreported = 0;
       vg_notify_free(e);
-    } else if ((j = next_job(e))) {
+    } else if ((j = next_job(w))) {
       w->unreported = 1;
       vg_engine_unlock(e);
       do_job(w, j);

@@ -29,10 +29,12 @@ struct vg_span {
   int32_t rank, thread;      /* who did it */
   int32_t home;              /* where it was made */
   double start, end;         /* seconds since the engine began, wall */
-  double cpu;                /* seconds of processor time, helpers' too */
+  double cpu;                /* seconds of processor time, helpers' and other
+                                processes' too */
   double loops;              /* of these, in loops that idle threads of the
                                 rank help with (vg_engine_loop) */
   double estimate;           /* cells expected */
+  double work;               /* what it is dealt out by (vg_task); 0: never */
   uint64_t n_cell;           /* cells made; 0 where they were forgotten */
   uint64_t n_face;           /* faces of the front that it was given */
   uint64_t bytes_in, bytes_out; /* what a remote rank receives and returns;

@@ -23,6 +23,8 @@ struct vg_graph_options {
   int n_part;
   double imbalance;          /* most over mean allowed, > 1: a wish */
   int contiguous;            /* parts hang together, if the graph does */
+  double *seconds;           /* processor time that METIS took is added, which
+                                this process does not have; NULL: not */
 };
 
 /** Part of every vertex, 0 .. n_part - 1; some may stay empty when parts have

@@ -8,6 +8,7 @@
 #include <metis.h>
 
 #include "base/child.h"
+#include "base/clock.h"
 #include "base/memory.h"
 
 _Static_assert(sizeof(idx_t) == 4, "METIS with indices of 4 bytes");
@@ -54,6 +55,7 @@ static void serve(int fd)
 {
   struct question q;
   idx_t *begin, *to, *weight, *edge = NULL, *part;
+  double seconds;
 
   if (!vg_child_get(fd, &q, sizeof q)) _exit(1);
   begin = get_array(fd, (size_t)q.n + 1);
@@ -63,7 +65,9 @@ static void serve(int fd)
   part = vg_alloc((size_t)q.n, sizeof *part);
   if (!weight || !part || (q.has_edge_weights && !edge)) _exit(1);
   if (run_metis(&q, begin, to, weight, edge, part) != METIS_OK) _exit(1);
-  _exit(!vg_child_put(fd, part, (size_t)q.n * sizeof *part));
+  seconds = vg_clock_process();
+  _exit(!vg_child_put(fd, part, (size_t)q.n * sizeof *part) ||
+        !vg_child_put(fd, &seconds, sizeof seconds));
 }
 
 /* --- the graph for it ---------------------------------------------------- */
@@ -121,6 +125,7 @@ vg_status vg_graph_part(const struct vg_graph *g,
                         struct vg_error *err)
 {
   struct vg_child c;
+  double seconds = 0;
   int ok;
 
   if (o->n_part < 1 || (size_t)o->n_part > g->n)
@@ -134,12 +139,14 @@ vg_status vg_graph_part(const struct vg_graph *g,
   if (o->n_part == 1) return VG_OK;
   if (vg_child_open(serve, &c) < 0)
     return vg_fail_memory(err, "a process for METIS");
-  ok = ask(c.fd, g, o) && vg_child_get(c.fd, part, g->n * sizeof *part);
+  ok = ask(c.fd, g, o) && vg_child_get(c.fd, part, g->n * sizeof *part) &&
+       vg_child_get(c.fd, &seconds, sizeof seconds);
   vg_child_close(&c);
   for (size_t k = 0; ok && k < g->n; k++) ok = part[k] < (uint32_t)o->n_part;
   if (!ok)
     return vg_fail(err, VG_ERR_MEMORY, "METIS did not part a graph of %zu "
                    "vertices; it may lack memory", g->n);
+  if (o->seconds) *o->seconds += seconds;
   return VG_OK;
 }
 

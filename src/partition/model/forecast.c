@@ -21,6 +21,9 @@ const struct vg_rates vg_rates_measured = {
   .join = { 0, 0, 0, 0.04e-6, 0, 0.12e-6, 0.98 },
   .close = { 0, 0, 0, 0.025e-6, 0.3e-3, 0, 0.98 },
   .split = { 0, 0, 0, 0.045e-6, 0, 0, 0.98 },
+  .discrete = { 2e-6, 6e-6, 2e-6, 0.1 },
+  .octree = { 2e-6, 2e-6, 4e-6, 0.1 },
+  .interface = 8e-6,
 };
 
 /* Loops over fewer faces are of one chunk or two (node_split.c). */
@@ -126,8 +129,33 @@ static vg_status add_node(struct forecast *c, const struct vg_part *p,
   return VG_OK;
 }
 
+static double volume_of(const struct vg_load *l)
+{
+  double sum = 0;
+
+  for (size_t i = 0; i < l->n; i++) {
+    double side = 2 * (double)l->cube[i].half;
+
+    sum += (double)l->cube[i].part * side * side * side;
+  }
+  return sum;
+}
+
+/* As vg_front_work has it (cut/task_data.h). */
+static double work_of(const struct vg_bins *f, double volume)
+{
+  double faces = vg_bins_faces(f), area = 0;
+
+  for (size_t i = 0; i < f->n; i++) {
+    double h = (double)f->bit[i].h;
+
+    area += (double)f->bit[i].n * h * h / VG_FACES_PER_SQUARE;
+  }
+  return area > 0 ? volume * faces / area : 0;
+}
+
 static vg_status add_leaf(struct forecast *c, const struct vg_part *p,
-                          struct vg_amount a, const char *after)
+                          struct vg_amount a, double volume, const char *after)
 {
   char path[VG_PATH_MAX];
   size_t index = 0;
@@ -138,16 +166,21 @@ static vg_status add_leaf(struct forecast *c, const struct vg_part *p,
   snprintf(path, sizeof path, "%.*sL", VG_PATH_MAX - 2, p->path);
   st = add_task(c, path, after, VG_SPAN_LEAF, &c->rates->leaf, a,
                 c->out->node[index].faces, (double)p->load.n);
+  if (st >= 0)
+    c->out->spans.span[c->out->spans.n - 1].work = work_of(&p->front, volume);
   memcpy(c->leaf, path, sizeof path);
 done:
   return st;
 }
 
 /* Cells at interfaces get better when all leaves are there: as many tasks
- * as zones, each with an equal share of their cells. */
-static vg_status add_repairs(struct forecast *c)
+ * as zones, each with an equal share of their cells; one more for each part,
+ * with an equal share of the triangles between these. */
+static vg_status add_repairs(struct forecast *c,
+                             const struct vg_forecast_parting *q)
 {
-  size_t n = c->out->n_pencil + c->out->n_tile;
+  size_t n = c->out->n_pencil + c->out->n_tile, n_part = q ? q->n : 0;
+  struct vg_task_rate side = { .face = c->rates->interface };
   char path[VG_PATH_MAX];
   vg_status st = VG_OK;
 
@@ -158,6 +191,11 @@ static vg_status add_repairs(struct forecast *c)
     snprintf(path, sizeof path, "0R%zu", k);
     st = add_task(c, path, c->leaf, VG_SPAN_REPAIR, &c->rates->repair, a,
                   a.cells, 0);
+  }
+  for (size_t k = 0; st >= 0 && k < n_part && c->leaf[0]; k++) {
+    snprintf(path, sizeof path, "0R%zu", n + k);
+    st = add_task(c, path, c->leaf, VG_SPAN_REPAIR, &side,
+                  (struct vg_amount){0, 0}, q->sides / (double)n_part, 0);
   }
   return st;
 }
@@ -302,6 +340,7 @@ static vg_status add_rest(struct forecast *c, const struct vg_part *from,
 {
   struct vg_part rest = { .parent = parent, .depth = from->depth + 1 };
   struct vg_amount a = {0, 0};
+  double volume = 0;
   vg_status st = VG_OK;
 
   snprintf(rest.path, sizeof rest.path, "%.*s.r", VG_PATH_MAX - 8,
@@ -313,6 +352,7 @@ static vg_status add_rest(struct forecast *c, const struct vg_part *from,
 
     if (p->load.cells >= least) continue;
     rest.load.cells += p->load.cells;
+    volume += volume_of(&p->load);
     for (size_t k = 0; k < p->load.n; k++)
       vg_amount_add(&a, &p->load.cube[k], 1);
     rest.load.n += p->load.n;
@@ -320,7 +360,7 @@ static vg_status add_rest(struct forecast *c, const struct vg_part *from,
       st = vg_bins_add(&rest.front, &p->front.bit[k], c->err);
   }
   if (st >= 0 && rest.load.cells >= least_void)
-    st = add_leaf(c, &rest, a, after);
+    st = add_leaf(c, &rest, a, volume, after);
   free(rest.front.bit);
   return st;
 }
@@ -385,7 +425,8 @@ static vg_status go_down(struct forecast *c, struct vg_part *p,
 
   if (p->retry < VG_RETRIES && strlen(p->path) + 8 < VG_PATH_MAX)
     used = vg_lattice_plan(&p->load, c->rule, p->levels, p->retry, &l);
-  if (used <= 0) return add_leaf(c, p, amount_of(&p->load), after);
+  if (used <= 0)
+    return add_leaf(c, p, amount_of(&p->load), volume_of(&p->load), after);
   if (!p->retry) st = vg_lattice_add_ribs(&p->load, c->rule, &l, c->err);
   if (st >= 0) st = cut(c, p, &l, used, after);
   vg_lattice_release(&l);
@@ -452,10 +493,61 @@ static vg_status add_load(const struct vg_load *load, struct vg_part *p,
   return vg_load_index(&p->load, 1, err);
 }
 
-vg_status vg_forecast_new(const struct vg_void *v, const struct vg_load *load,
-                          const struct vg_cut_rule *rule, int levels,
-                          const struct vg_rates *rates, struct vg_forecast *out,
-                          struct vg_error *err)
+/* The task that makes the parts, which no zones come from. */
+static vg_status add_maker(struct forecast *c, const struct vg_part *root,
+                           const struct vg_forecast_parting *q)
+{
+  static const struct vg_task_rate none = { .task = 0 };
+  struct vg_span *made;
+  vg_status st = add_task(c, "0J0", "", VG_SPAN_JOIN, &none,
+                          (struct vg_amount){root->load.cells, 0},
+                          vg_bins_faces(&root->front), (double)root->load.n);
+
+  if (st < 0) return st;
+  made = &c->out->spans.span[c->out->spans.n - 1];
+  made->cpu = q->rate->face * vg_bins_faces(&root->front) +
+              q->rate->coarse * q->coarse + q->rate->side * q->sides;
+  made->loops = q->rate->loops * made->cpu;
+  return VG_OK;
+}
+
+static vg_status add_part(struct forecast *c, const struct vg_part *root,
+                          const struct vg_forecast_part *from, size_t number)
+{
+  struct vg_part p = { .parent = 0, .depth = 1, .levels = root->levels };
+  vg_status st;
+
+  snprintf(p.path, sizeof p.path, "0.%zu", number);
+  VG_TRY(add_load(from->load, &p, c->err));
+  VG_TRY(add_surface(&from->v, &p, c->err));
+  st = from->may_cut ? go_down(c, &p, "0J0")
+                     : add_leaf(c, &p, amount_of(&p.load), volume_of(&p.load),
+                                "0J0");
+done:
+  vg_part_release(&p);
+  return st;
+}
+
+static vg_status add_parts(struct forecast *c, struct vg_part *root,
+                           const struct vg_forecast_parting *q)
+{
+  size_t index = 0;
+  vg_status st;
+
+  VG_TRY(add_node(c, root, NULL, &index));
+  VG_TRY(add_maker(c, root, q));
+  for (size_t k = 0; st >= 0 && k < q->n; k++)
+    st = add_part(c, root, &q->part[k], k);
+done:
+  return st;
+}
+
+vg_status vg_forecast_parted(const struct vg_void *v,
+                             const struct vg_load *load,
+                             const struct vg_forecast_parting *parting,
+                             const struct vg_cut_rule *rule, int levels,
+                             const struct vg_rates *rates,
+                             struct vg_forecast *out, struct vg_error *err)
 {
   struct vg_forecast o = VG_FORECAST_INIT;
   struct forecast c = { .out = &o, .rule = rule, .rates = rates, .err = err };
@@ -465,8 +557,9 @@ vg_status vg_forecast_new(const struct vg_void *v, const struct vg_load *load,
   o.cells = load->cells;
   VG_TRY(add_load(load, &root, err));
   VG_TRY(add_surface(v, &root, err));
-  VG_TRY(go_down(&c, &root, ""));
-  VG_TRY(add_repairs(&c));
+  if (parting) VG_TRY(add_parts(&c, &root, parting));
+  else VG_TRY(go_down(&c, &root, ""));
+  VG_TRY(add_repairs(&c, parting));
   line_up(&o.spans);
   vg_spans_sort(&o.spans);
   o.spans.n_rank = o.spans.n_thread = 1;
@@ -477,4 +570,12 @@ done:
   vg_part_release(&root);
   vg_forecast_release(&o);
   return st;
+}
+
+vg_status vg_forecast_new(const struct vg_void *v, const struct vg_load *load,
+                          const struct vg_cut_rule *rule, int levels,
+                          const struct vg_rates *rates, struct vg_forecast *out,
+                          struct vg_error *err)
+{
+  return vg_forecast_parted(v, load, NULL, rule, levels, rates, out, err);
 }

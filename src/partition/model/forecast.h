@@ -19,6 +19,11 @@
  * the rank help with. */
 struct vg_task_rate { double task, even, graded, face, made, hand, loops; };
 
+/** Seconds of one core that a maker of partings takes (cut/parting.h), per face
+ * of the front, coarse cell or octant, and triangle of interfaces; and the share
+ * of them in loops. */
+struct vg_parting_rate { double face, coarse, side, loops; };
+
 struct vg_rates {
   struct vg_task_rate pencil, rib, tile, leaf;
   struct vg_task_rate closing;   /* where parts still hang together */
@@ -26,6 +31,8 @@ struct vg_rates {
   struct vg_task_rate plan, join, close, split;  /* joins: the first of a node,
                                     those between stages, the one that looks
                                     for such places, the last */
+  struct vg_parting_rate discrete, octree;
+  double interface;              /* of repairs, per triangle of interfaces */
 };
 
 /** As measured: forecast.c says where. */
@@ -40,9 +47,17 @@ struct vg_forecast_node {
   double cells;              /* expected, zones to come included */
   double zone;               /* cells of its own zones */
   double faces;              /* of its front */
-  struct vg_lattice lattice; /* without planes: a leaf; ribs are not kept */
+  struct vg_lattice lattice; /* without planes: a leaf, or parted otherwise;
+                                ribs are not kept */
   size_t n_child;
 };
+
+/** Is it filled as it is? */
+static inline int vg_forecast_is_leaf(const struct vg_forecast_node *n)
+{
+  return !n->n_child && !n->lattice.n[0] && !n->lattice.n[1] &&
+         !n->lattice.n[2];
+}
 
 struct vg_forecast {
   double cells, zone_cells;  /* of all; of pencils and tiles */
@@ -68,6 +83,30 @@ vg_status vg_forecast_new(const struct vg_void *v, const struct vg_load *load,
                           const struct vg_cut_rule *rule, int levels,
                           const struct vg_rates *rates, struct vg_forecast *out,
                           struct vg_error *err);
+
+/** A part of a void that is parted before it is filled (cut/parting.h). */
+struct vg_forecast_part {
+  struct vg_void v;          /* its front */
+  const struct vg_load *load;
+  int may_cut;               /* 1: planes may cut it further */
+};
+
+/** What a maker of partings does. */
+struct vg_forecast_parting {
+  const struct vg_parting_rate *rate;
+  double coarse, sides;      /* coarse cells or octants; triangles */
+  size_t n;
+  const struct vg_forecast_part *part;   /* [n] */
+};
+
+/** As vg_forecast_new, of a void that is parted so. All is borrowed. Nodes: the
+ * whole, then its parts. */
+vg_status vg_forecast_parted(const struct vg_void *v,
+                             const struct vg_load *load,
+                             const struct vg_forecast_parting *parting,
+                             const struct vg_cut_rule *rule, int levels,
+                             const struct vg_rates *rates,
+                             struct vg_forecast *out, struct vg_error *err);
 
 /** Points of a mesh of tetrahedra whose boundary has so many faces. */
 double vg_forecast_points(double cells, double faces);

@@ -40,6 +40,7 @@ struct sim {
   double *in, *out;          /* [n] bytes to and from a rank */
   uint32_t *worker;          /* [n] who does it */
   struct ready ready;
+  struct vg_dealt dealt;
   uint32_t *home;            /* [n] where it was made, then where it belongs */
   /* Joins that wait for their rank: leftist heaps, first[ranks] on top. */
   uint32_t *first, *left_of, *right_of, *depth;
@@ -240,6 +241,7 @@ static void set_idle(struct sim *s, uint32_t worker)
 
   link_last(&s->all, s->n_worker + ranks, worker);
   link_last(&s->own, s->n_worker + rank, worker);
+  s->dealt.is_idle[worker] = 1;
   s->n_idle[rank]++;
   touch(s, rank);
 }
@@ -283,6 +285,7 @@ static void hand_out(struct sim *s, uint32_t task, uint32_t worker)
 
   unlink_item(&s->all, worker);
   unlink_item(&s->own, worker);
+  s->dealt.is_idle[worker] = 0;
   s->n_idle[rank]--;
   s->n_looping[rank] += span->loops > 0;
   s->worker[task] = worker;
@@ -357,6 +360,10 @@ static void make_ready(struct sim *s, uint32_t task)
 
   *home = after != NONE ? s->home[after]
                         : (uint32_t)span->home % (uint32_t)s->machine->ranks;
+  if (s->machine->cyclic && span->kind == VG_SPAN_LEAF && span->work > 0) {
+    s->dealt.held[s->dealt.n_held++] = task;
+    return;
+  }
   if (span->kind != VG_SPAN_JOIN || s->g.moves[task] ||
       s->machine->joins_roam) {
     ready_push(&s->ready, s->place[task]);
@@ -378,6 +385,20 @@ static void hand_out_joins(struct sim *s, uint32_t rank)
   }
 }
 
+static void hand_out_dealt(struct sim *s)
+{
+  struct vg_dealt *d = &s->dealt;
+
+  for (uint32_t i = 0; i < d->n_woken; i++) {
+    uint32_t w = d->woken[i], task = d->first[w];
+
+    if (!d->is_idle[w] || task == NONE) continue;
+    d->first[w] = d->next[task];
+    hand_out(s, task, w);
+  }
+  d->n_woken = 0;
+}
+
 /* Joins first: no kind comes before them. The others go to a worker of their
  * home if one is idle. */
 static vg_status hand_out_all(struct sim *s, struct vg_error *err)
@@ -394,6 +415,7 @@ static vg_status hand_out_all(struct sim *s, struct vg_error *err)
 
     hand_out(s, task, worker != NONE ? worker : idle_any(s));
   }
+  hand_out_dealt(s);
   return set_durations(s, err);
 }
 
@@ -432,6 +454,7 @@ static void computed(struct sim *s, uint32_t task)
   uint32_t rank = (uint32_t)span->rank, home = s->home[task];
 
   set_idle(s, s->worker[task]);
+  s->dealt.woken[s->dealt.n_woken++] = s->worker[task];
   s->n_looping[rank] -= span->loops > 0;
   if (is_cut(span->kind) && s->cuts_wall < span->end)
     s->cuts_wall = span->end;
@@ -455,6 +478,7 @@ static void sim_release(struct sim *s)
   free(s->out);
   free(s->worker);
   free(s->ready.place);
+  vg_dealt_release(&s->dealt);
   free(s->home);
   free(s->first);
   free(s->left_of);
@@ -514,7 +538,7 @@ static vg_status sim_allocate(struct sim *s, struct vg_error *err)
       !s->n_idle || !s->n_looping || !s->started || !s->event ||
       !s->sent || !s->received || !s->busy || !s->touched || !s->is_touched)
     return vg_fail_memory(err, "the simulation");
-  return VG_OK;
+  return vg_dealt_new(&s->dealt, s->g.n, s->n_worker, err);
 }
 
 struct ranked { double priority; uint32_t task; };
@@ -570,7 +594,12 @@ static vg_status simulate(struct sim *s, struct vg_error *err)
     make_ready(s, i);
   }
   VG_TRY(hand_out_all(s, err));
-  while (s->n_event) {
+  for (;;) {
+    if (!s->n_event && s->dealt.n_held) {
+      VG_TRY(vg_dealt_out(&s->dealt, s->g.span, err));
+      VG_TRY(hand_out_all(s, err));
+    }
+    if (!s->n_event) break;
     s->now = s->event[0].time;
     while (s->n_event && s->event[0].time == s->now) {
       struct event e = event_pop(s);
@@ -706,6 +735,7 @@ vg_status vg_model_replay(const struct vg_spans *spans,
   VG_TRY(check_machine(machine, err));
   s.n_worker = (uint32_t)(machine->ranks * machine->threads);
   VG_TRY(vg_model_graph_new(spans, &s.g, err));
+  if (machine->cyclic) VG_TRY(vg_dealt_check(&s.g, err));
   VG_TRY(sim_allocate(&s, err));
   VG_TRY(sort_tasks(&s, err));
   find_bytes(&s);

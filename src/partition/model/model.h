@@ -21,6 +21,10 @@
  * rank, which is their home from then on, and nothing goes back. Other joins
  * are done at home. The rest is done by any rank and returns.
  *
+ * On a cyclic machine leaves wait until nothing else is left and are dealt out
+ * to the workers in turn, most `work` first, as the engine does when it is told
+ * to: each does its own.
+ *
  * Loops inside a task (engine.h) are helped with by workers of its rank that
  * are idle: the task takes cpu - loops + loops / k, where k is 1 and the
  * workers that are idle when it starts, once all that is ready has been handed
@@ -52,6 +56,7 @@ struct vg_machine {
                                 (check, sizes, layers) */
   double by_all;             /* the same, shared by all (judge, files) */
   int joins_roam;            /* 1: all joins are done by any rank */
+  int cyclic;                /* 1: leaves are dealt out beforehand */
   int loop_threads;          /* most that a loop is sped up by more workers:
                                 they share the rank's memory; 16 */
 };
@@ -83,8 +88,8 @@ struct vg_model_result {
  * cells in all.
  * @param timeline  out: where each span ran on the machine, by path; help, as
  *                  if helpers had come at the start; may be NULL
- * VG_ERR_INPUT when the record contradicts itself (names the path), or for a
- * machine that cannot be. Deterministic. O(n log n). */
+ * VG_ERR_INPUT when the record contradicts itself (names the path), for a
+ * machine that cannot be, or a cyclic one where leaves have no `work`. Deterministic. O(n log n). */
 vg_status vg_model_replay(const struct vg_spans *spans,
                           const struct vg_machine *machine,
                           struct vg_model_result *out,

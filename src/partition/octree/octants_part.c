@@ -233,7 +233,8 @@ static vg_status part_set(struct chooser *c, uint32_t root, size_t n_leaf,
 {
   struct set s = { 0 };
   struct vg_graph g = { 0 };
-  struct vg_graph_options o = { (int)n, IMBALANCE, 1 };
+  struct vg_graph_options o = { (int)n, IMBALANCE, 1,
+                                &c->t->elsewhere };
   uint32_t *part = vg_calloc(n_leaf, sizeof *part);
   vg_status st = part ? VG_OK : vg_fail_memory(err, "the parts of octants");
 

@@ -48,6 +48,7 @@ struct vg_octants {
   size_t n_part, n_gap;      /* numbers of ids */
   size_t n_apart;            /* of these parts: pieces that hang apart */
   double cells;              /* expected in the free ones */
+  double elsewhere;          /* s of processor time in other processes */
 };
 
 static inline uint32_t vg_octant_side(const struct vg_octant *o)

@@ -229,7 +229,7 @@ vg_status vg_unit_graph_part(const struct vg_unit_graph *g,
                              struct vg_error *err)
 {
   struct vg_graph graph = { g->n, g->begin, g->to, weight, g->faces };
-  struct vg_graph_options o = { (int)n_part, imbalance, 0 };
+  struct vg_graph_options o = { (int)n_part, imbalance, 0, NULL };
   double t = vg_clock();
   vg_status st;
 

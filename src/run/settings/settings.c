@@ -32,6 +32,7 @@ static const char *const decompose_words[] = { "advancing", "discrete",
   "octree", NULL };
 static const char *const partitioner_words[] = { "metis", "rcb", NULL };
 static const char *const interface_words[] = { "remesh", "h-refine", NULL };
+static const char *const schedule_words[] = { "dynamic", "cyclic", NULL };
 /* In the order of enum vg_source_kind. */
 static const char *const source_words[] = {
   "vgrid_node", "vgrid_line", "point", "line", "triangle", "box", "sphere",
@@ -157,8 +158,9 @@ static const struct vg_param params[] = {
     "by the faces of a coarse mesh, dealt out to parts; octree: by octants off "
     "the layers, dealt out to parts, and planes at the layers" },
   { "parts", AT(parts), .type = VG_PARAM_COUNT, .lo = 1, .hi = 1e6,
-    .optional = 1, .unit = "parts", .help = "of a decomposition before "
-    "the filling; octree: those off the layers get their share; -: as many as there are leaf_cells in the cells expected" },
+    .optional = 1, .unit = "parts", .help = "to be filled; advancing: about so "
+    "many; octree: those off the layers get their share; -: as many as there "
+    "are leaf_cells in the cells expected" },
   { "partitioner", AT(partitioner), .type = VG_PARAM_WORD,
     .words = partitioner_words, .unit = "", .help = "who deals out coarse "
     "cells to parts: metis, or rcb (recursive coordinate bisection)" },
@@ -169,6 +171,10 @@ static const struct vg_param params[] = {
   { "interfaces", AT(h_refine), .type = VG_PARAM_WORD,
     .words = interface_words, .unit = "", .help = "how faces between parts "
     "get the local size: remesh, or h-refine (edges are halved)" },
+  { "schedule", AT(cyclic), .type = VG_PARAM_WORD, .words = schedule_words,
+    .unit = "", .help = "who fills which part: dynamic: who is idle takes the "
+    "next one; cyclic: all are dealt out in turn when the last one is known, "
+    "for comparison; results do not depend on it" },
   { "threads", AT(threads), .type = VG_PARAM_COUNT, .hi = 4096,
     .unit = "threads", .help = "threads of each process; 0: one per core "
     "that it is bound to; results do not depend on it" },

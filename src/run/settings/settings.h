@@ -120,6 +120,7 @@ struct vg_settings {
   int partitioner;                 /* enum vg_partitioner */
   double coarsening;               /* 0: by the number of parts */
   int h_refine;                    /* 1: interfaces by halving edges */
+  int cyclic;                      /* 1: parts are dealt out beforehand */
   int64_t threads;
   struct vg_layer_settings layer;
   struct vg_farfield_row farfield;

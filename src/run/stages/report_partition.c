@@ -124,6 +124,8 @@ static void put_parting(const struct vg_run *r, const struct leaves *l,
   const struct vg_parting_report *q = &p->parting;
 
   json_object_set_new(o, "decomposition", json_string(r->decomposition));
+  json_object_set_new(o, "schedule",
+                      json_string(r->cyclic ? "cyclic" : "dynamic"));
   json_object_set_new(o, "balance", json_real(balance(l)));
   if (!p->n_part) return;
   json_object_set_new(o, "parting", json_pack(
@@ -175,8 +177,9 @@ void vg_report_partition_text(FILE *to, const struct vg_run *r)
           vg_text_count(p->n_repaired, a), vg_text_count(p->n_repair, b),
           (long long)repair_cells(r, &l), p->repair);
   free(l.cells);
-  fprintf(to, "  workers busy %.1f %%, imbalance %.3f (most over mean)\n",
-          100 * vg_spans_busy(&r->spans), vg_spans_imbalance(&r->spans));
+  fprintf(to, "  workers busy %.1f %%, imbalance %.3f (most over mean)%s\n",
+          100 * vg_spans_busy(&r->spans), vg_spans_imbalance(&r->spans),
+          r->cyclic ? "; leaves dealt out in turn" : "");
   if (!r->store) return;
   fprintf(to, "  tasks found in %s: %s\n", r->options.dir,
           vg_text_count(p->n_found, a));

@@ -266,6 +266,7 @@ static vg_status fill(struct vg_run *r, const struct vg_problem *p,
   o.parting.coarsening = s->coarsening;
   o.parting.h_refine = s->h_refine;
   o.threads = r->threads;
+  o.cyclic = r->cyclic = s->cyclic;
   o.sweeps = (int)s->optimise;
   o.max_cells = (uint64_t)s->max_cells;
   o.shuffle = r->options.shuffle;

@@ -37,6 +37,7 @@ struct vg_run {
   struct vg_comm *comm;      /* NULL: one rank without a launcher */
   int rank, size, threads;
   const char *decomposition; /* static; how the field was decomposed */
+  int cyclic;                /* 1: its parts were dealt out beforehand */
   struct vg_partition *field;
   struct vg_partition_report partition;
   struct vg_spans spans;

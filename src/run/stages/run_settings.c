@@ -12,7 +12,7 @@
 
 /* These may change from one part of a run to the next. */
 static const char *const free_to_change[] = {
-  "threads", "cad_seconds", "write", "report_html", "ugrid_tail",
+  "threads", "schedule", "cad_seconds", "write", "report_html", "ugrid_tail",
   "solver_parts", "max_cells", "min_full",
   "min_any", "min_height", "max_first_error", "max_top_ratio" };
 

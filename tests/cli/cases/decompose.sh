@@ -45,10 +45,44 @@ vanguard mesh -q -p p/box --decompose discrete --parts 900000 --out none
 exits 1
 says err "ask for fewer parts"
 [ ! -e none ] || [ -z "$(ls none)" ] || fail "files of a mesh that was refused"
-vanguard plan -q -p p/box --decompose discrete --parts 5
+vanguard plan -q -p p/box --decompose discrete --parts 5 -n 1,5
 exits 0
 says out "discrete: 5 parts filled as they are"
-says out "of the advancing partition"
+says out "0 cuts into 5 leaves; 0 pencils and 0 tiles"
+lacks out "by leaf size"
+vanguard plan -q -p p/box --decompose discrete --parts 5 -n 1 -j
+says out '"leaves": 5'
+says out '"whole_parts": 5'
+says out '"path": "0.4"'
+says out '"balance": 1.'
+
+# Advancing, parts are leaves; who fills them is no matter. A box of 20,000 in
+# two: the sixteenth of its cells that is in the zone is nobody's.
+vanguard mesh -q -p p/box --parts 2 --out by
+exits 0
+says by/box.report.json '"leaves": 2'
+says by/box.report.json '"schedule": "dynamic"'
+vanguard plan -q -p p/box --parts 2 -n 1
+says out "1 cut into 2 leaves"
+for way in advancing discrete octree; do
+  set -- mesh -q -p p/box --decompose $way --parts 4 --write b8.ugrid \
+    --timeline
+  vanguard "$@" -t 1 --out one
+  exits 0
+  vanguard "$@" --schedule cyclic -t 3 --out many
+  exits 0
+  says out "leaves dealt out in turn"
+  says many/box.timeline.json '"cyclic": 1'
+  cmp -s one/box.b8.ugrid many/box.b8.ugrid || fail "$way: dealt out, another mesh"
+  if mpirun -n 2 true >/dev/null 2>&1; then
+    ASAN_OPTIONS=detect_leaks=0 mpirun -n 2 "$program" "$@" -t 2 \
+      --schedule cyclic --out ranks >out 2>err || fail "2 ranks: $(cat err)"
+    cmp -s one/box.b8.ugrid ranks/box.b8.ugrid || fail "$way: ranks, dealt out"
+  fi
+  vanguard plan -r one/box.timeline.json -n 2 --schedule cyclic
+  exits 0
+  says out "Forecast, leaves dealt out in turn"
+done
 
 # By octants, the gap at the walls by planes; where none has room all is gap.
 vanguard mesh -q -p p/box --decompose octree --parts 4 -t 1 --write b8.ugrid \
@@ -73,6 +107,6 @@ says err "at least 2 sizes wide"
 vanguard mesh -q -p p/box --decompose octree --interfaces h-refine
 exits 1
 says err "leave interfaces at remesh"
-vanguard plan -q -p p/box --decompose octree --parts 4
+vanguard plan -q -p p/box --decompose octree --parts 4 -n 1
 exits 0
 says out "that planes may cut, the gap at the front"

@@ -58,6 +58,25 @@ exits 0
 says out "    512       1     512"
 says speedup.svg ">ideal<"
 
+# Leaves dealt out in turn to two workers: the first, which is long, with the
+# third; the record says what they are dealt out by, unless an older version
+# wrote it.
+vanguard plan -r r.timeline.json -n 2 --schedule cyclic
+exits 1
+says err "does not say by what it is dealt out"
+sed -e 's/"bytes_out"\]/"bytes_out", "work"]/' -e 's/0,0\],$/0,0,2.5],/' \
+  -e 's/0,0\]$/0,0,1]/' -e '/"0.1L"/s/,1,3,2,/,1,3,6,/' \
+  r.timeline.json >w.timeline.json
+vanguard plan -r w.timeline.json -n 2 --serial 0
+exits 0
+says out "      2       1       2      7.000 "
+vanguard plan -r w.timeline.json -n 2 --serial 0 --schedule cyclic
+exits 0
+says out "Forecast, leaves dealt out in turn"
+says out "      2       1       2      9.000 "
+vanguard plan -r w.timeline.json -n 2 --serial 0 --schedule cyclic -j
+says out '"cyclic": true'
+
 vanguard plan
 exits 2
 says err "which run?"
