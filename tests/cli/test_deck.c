@@ -127,7 +127,8 @@ static void everything_survives_a_round_trip(void **state)
   struct vg_patch_row patch = { -7, 4000, 1, "left wing" };
   struct vg_layer_row layer = { -7, VG_ANSWER_YES, 1e-5, 1.15, NAN, NAN, NAN,
                                 30, 2, 0.125, 0, { 98, 99.9, 70, NAN, 8 } };
-  struct vg_sweep_row sweep = { "1,2", "1:4:x2", "", "20000,50000", 3 };
+  struct vg_sweep_row sweep = { "1,2", "1:4:x2", "", "20000,50000",
+                                "advancing,octree", "4,16", 3 };
 
   (void)state;
   vg_settings_default(&s);

@@ -90,7 +90,7 @@ static error_t option(int key, char *arg, struct argp_state *state)
   case 'o': a->dir = arg; return 0;
   case 'j': a->json = 1; return 0;
   case 'q': a->quiet = 1; return 0;
-  case KEY_TIMELINE: a->timeline = 1; return 0;
+  case KEY_TIMELINE: a->timeline = a->run.near = 1; return 0;
   case KEY_LOG: a->log = arg; return 0;
   case KEY_RUN_DIR: a->run.dir = arg; return 0;
   case KEY_RESUME: a->run.resume = 1; return 0;
@@ -629,7 +629,8 @@ int vg_cmd_mesh(int argc, char **argv)
     { "json", 'j', NULL, 0, "report as JSON on standard output", 1 },
     { "quiet", 'q', NULL, 0, "no progress", 1 },
     { "timeline", KEY_TIMELINE, NULL, 0, "write what each worker did when, "
-      "PROJECT.timeline.json, for 'vanguard plan' and 'vanguard sweep'", 1 },
+      "PROJECT.timeline.json, for 'vanguard plan' and 'vanguard sweep'; the "
+      "report then tells of cells near interfaces", 1 },
     { "log", KEY_LOG, "FILE", 0, "write all that is said into FILE as well, "
       "with versions, host, ranks and threads, and settings", 1 },
     { "run-dir", KEY_RUN_DIR, "DIR", 0, "keep finished tasks here, so that a "

@@ -16,22 +16,24 @@
 #include "run/settings/deck.h"
 
 enum { KEY_LEAF_CELLS = 300, KEY_REPEAT, KEY_LAUNCHER, KEY_KEEP,
-       KEY_PROGRAM };
+       KEY_PROGRAM, KEY_DECOMPOSE, KEY_PARTS };
 
 /* Lists, from an option or from the deck. */
-enum { RANKS, THREADS, LEVELS, LEAF_CELLS, N_LIST };
+enum { RANKS, THREADS, LEVELS, LEAF_CELLS, PARTS, N_LIST };
 static const struct {
   const char *option, *column;
   int64_t lo, hi;
 } lists[N_LIST] = {
   { "--ranks", "ranks", 1, 1000000 }, { "--threads", "threads", 1, 1000 },
   { "--levels", "levels", 0, 40 },
-  { "--leaf-cells", "leaf_cells", 1, 1000000000000 } };
+  { "--leaf-cells", "leaf_cells", 1, 1000000000000 },
+  { "--parts", "parts", 1, 1000000 } };
 
 static struct vg_range_list *list_of(struct vg_sweep_options *o, int k)
 {
   return k == RANKS ? &o->ranks : k == THREADS ? &o->threads
-       : k == LEVELS ? &o->levels : &o->leaf_cells;
+       : k == LEVELS ? &o->levels : k == LEAF_CELLS ? &o->leaf_cells
+       : &o->parts;
 }
 
 static void range(int k, const char *text, struct vg_sweep_options *o,
@@ -41,6 +43,15 @@ static void range(int k, const char *text, struct vg_sweep_options *o,
 
   if (vg_range_parse(lists[k].option, text, lists[k].lo, lists[k].hi,
                      list_of(o, k), &err) < 0)
+    argp_error(state, "%s", err.text);
+}
+
+static void ways(const char *text, struct vg_sweep_options *o,
+                 const struct argp_state *state)
+{
+  struct vg_error err = VG_ERROR_INIT;
+
+  if (vg_sweep_ways("--decompose", text, o, &err) < 0)
     argp_error(state, "%s", err.text);
 }
 
@@ -55,6 +66,8 @@ static error_t option(int key, char *arg, struct argp_state *state)
   case 'o': o->dir = arg; return 0;
   case 'L': range(LEVELS, arg, o, state); return 0;
   case KEY_LEAF_CELLS: range(LEAF_CELLS, arg, o, state); return 0;
+  case KEY_PARTS: range(PARTS, arg, o, state); return 0;
+  case KEY_DECOMPOSE: ways(arg, o, state); return 0;
   case 'n': range(RANKS, arg, o, state); return 0;
   case 't': range(THREADS, arg, o, state); return 0;
   case KEY_REPEAT:
@@ -94,17 +107,22 @@ static vg_status take_list(const char *deck, int k, const char *text,
                         err);
 }
 
-/* Options win over the deck; levels and leaf sizes are one question. */
+/* Options win over the deck; levels, leaf sizes and ways are one question. */
 static vg_status take_row(const char *deck, const struct vg_sweep_row *row,
                           struct vg_sweep_options *o, struct vg_error *err)
 {
   const char *text[N_LIST] = { row->ranks, row->threads, row->levels,
-                               row->leaf_cells };
+                               row->leaf_cells, row->parts };
+  char what[400];
   int given[N_LIST];
   vg_status st = VG_OK;
 
   for (int k = 0; k < N_LIST; k++) given[k] = list_of(o, k)->n > 0;
-  given[LEVELS] = given[LEAF_CELLS] = given[LEVELS] || given[LEAF_CELLS];
+  given[LEVELS] = given[LEAF_CELLS] = given[PARTS] =
+    given[LEVELS] || given[LEAF_CELLS] || given[PARTS] || o->n_way;
+  snprintf(what, sizeof what, "%.300s: sweep: decompose", deck);
+  if (!given[PARTS] && *row->decompose)
+    st = vg_sweep_ways(what, row->decompose, o, err);
   for (int k = 0; k < N_LIST && st >= 0; k++)
     if (!given[k]) st = take_list(deck, k, text[k], o, err);
   if (!o->repeat) o->repeat = (int)row->repeat;
@@ -139,29 +157,31 @@ static void print_value(double v, int width, int digits)
   else printf(" %*s", width, "-");
 }
 
-static void print_head(const struct vg_sweep *s)
+/* Of the column of names. */
+static int name_width(const struct vg_sweep *s)
 {
   int width = 4;
 
   for (size_t i = 0; i < s->n; i++)
     if ((int)strlen(s->item[i].name) > width)
       width = (int)strlen(s->item[i].name);
+  return width;
+}
+
+static void print_head(int width)
+{
   printf("%-*s ranks threads   seconds speed-up  eff. %% cut+fill imbal. "
          "idle %%       cells digest\n", width, "case");
 }
 
 static void print_case(const struct vg_sweep *s,
-                       const struct vg_sweep_case *c)
+                       const struct vg_sweep_case *c, int width)
 {
   double seconds = c->is_done ? vg_sweep_seconds(c) : NAN;
   double speedup = vg_sweep_speedup(s, seconds);
   const struct vg_spans *t = c->has_timeline ? &c->t.spans : NULL;
   char cells[32];
-  int width = 4;
 
-  for (size_t i = 0; i < s->n; i++)
-    if ((int)strlen(s->item[i].name) > width)
-      width = (int)strlen(s->item[i].name);
   printf("%-*s %5d %7d", width, c->name, c->ranks, c->threads);
   if (!c->is_done) {
     printf(" %s, status %d: %s\n", c->is_run ? "failed" : "not run",
@@ -176,6 +196,31 @@ static void print_case(const struct vg_sweep *s,
   print_value(t ? 100 * (1 - vg_spans_busy(t)) : NAN, 6, 1);
   printf(" %11s %.8s%s%s\n", t ? vg_text_count(c->t.n_cell, cells) : "-",
          c->digest[0] ? c->digest : "-", c->note[0] ? "  " : "", c->note);
+}
+
+/* The decompositions beside each other. */
+static void print_parts(const struct vg_sweep *s, int width)
+{
+  printf("\n%-*s  parts balance   parting cut+fill critical  idle %%    cells "
+         "/ adv.  1st perc. near  of all\n", width, "case");
+  for (size_t i = 0; i < s->n; i++) {
+    const struct vg_sweep_case *c = &s->item[i];
+    const struct vg_sweep_parts *m = &c->parts_made;
+    const struct vg_spans *t = c->has_timeline ? &c->t.spans : NULL;
+
+    if (!c->is_done) continue;
+    printf("%-*s", width, c->name);
+    print_value(m->n_part, 6, 0);
+    print_value(m->balance, 7, 3);
+    print_value(m->seconds, 9, 2);
+    print_value(t ? t->wall : NAN, 8, 2);
+    print_value(c->critical, 8, 2);
+    print_value(t ? 100 * (1 - vg_spans_busy(t)) : NAN, 7, 1);
+    print_value(vg_sweep_cells_ratio(s, c), 15, 4);
+    print_value(m->near_p1, 15, 2);
+    print_value(m->all_p1, 7, 2);
+    printf("\n");
+  }
 }
 
 /* Returns the exit status. */
@@ -235,8 +280,11 @@ static int run(struct vg_sweep_options *o)
   VG_TRY(vg_sweep_write(&s, &err));
   VG_TRY(vg_sweep_draw(&s, &err));
   if (!o->json) {
-    print_head(&s);
-    for (size_t i = 0; i < s.n; i++) print_case(&s, &s.item[i]);
+    int width = name_width(&s);
+
+    print_head(width);
+    for (size_t i = 0; i < s.n; i++) print_case(&s, &s.item[i], width);
+    if (o->n_way || o->parts.n) print_parts(&s, width);
   }
   status = conclude(&s);
   if (ran < 0) status = vg_cli_fail(&why);
@@ -256,6 +304,10 @@ int vg_cmd_sweep(int argc, char **argv)
       "2:10:2", 2 },
     { "leaf-cells", KEY_LEAF_CELLS, "LIST", 0, "cells to a leaf; both lists "
       "make cases of their own [default as vanguard mesh has it]", 2 },
+    { "decompose", KEY_DECOMPOSE, "LIST", 0, "ways to decompose: advancing,"
+      "discrete,octree; each with all --parts, as cases of their own [default "
+      "as vanguard mesh has it]", 2 },
+    { "parts", KEY_PARTS, "LIST", 0, "numbers of parts", 2 },
     { "ranks", 'n', "LIST", 0, "numbers of ranks [default 1]", 2 },
     { "threads", 't', "LIST", 0, "threads of each rank [default 1]", 2 },
     { "repeat", KEY_REPEAT, "K", 0, "times that each case is run [default "
@@ -275,8 +327,8 @@ int vg_cmd_sweep(int argc, char **argv)
   };
   const struct argp argp = { .options = options, .parser = option,
     .args_doc = "-p PROJECT [-- MESH-OPTION...]",
-    .doc = "Run vanguard mesh for all combinations of levels or leaf sizes, "
-      "ranks and threads, and compare: sweep.csv and sweep.json with times, "
+    .doc = "Run vanguard mesh for all combinations of levels, leaf sizes or ways "
+      "to decompose, ranks and threads, and compare: sweep.csv and sweep.json with times, "
       "balance and digests, figures of speed-up, phases, each run's timeline "
       "and sizes of its leaves.\v"
       "Options after '--' go to vanguard mesh. Speed-ups are against the "

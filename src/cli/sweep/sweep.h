@@ -1,6 +1,6 @@
 /* cli/sweep/sweep.h: the parts of vanguard sweep: one run of vanguard mesh for
  * each point of a grid of parameters, and what comes out. Uses
- * run/common/ranges.h, cli/plot/timeline.h. */
+ * run/common/ranges.h, cli/plot/timeline.h, partition/advance/ways.h. */
 #ifndef VG_CLI_SWEEP_SWEEP_H
 #define VG_CLI_SWEEP_SWEEP_H
 
@@ -9,6 +9,7 @@
 
 #include "cli/plot/timeline.h"
 #include "run/common/ranges.h"
+#include "partition/advance/ways.h"
 
 struct vg_sweep_options {
   const char *project, *dir;
@@ -16,14 +17,16 @@ struct vg_sweep_options {
   const char *launcher;          /* words with {ranks}, {threads}; NULL:
                                     mpirun from 2 ranks on */
   const char *program;           /* NULL: this one */
-  struct vg_range_list levels, leaf_cells, ranks, threads;
+  struct vg_range_list levels, leaf_cells, ranks, threads, parts;
+  int n_way, way[VG_DECOMPOSITIONS];  /* [n_way] enum vg_decomposition */
   int repeat, keep, json, quiet;
   int n_extra;
   char **extra;                  /* [n_extra] for vanguard mesh */
 };
 
 struct vg_sweep_case {
-  int64_t levels, leaf_cells;    /* -1: not given */
+  int64_t levels, leaf_cells, parts;   /* -1: not given */
+  int way;                       /* enum vg_decomposition; -1: not given */
   int ranks, threads, repeat;
   char name[96], *dir;
   int is_run, is_done;
@@ -33,6 +36,14 @@ struct vg_sweep_case {
   int has_timeline;
   struct vg_timeline t;
   double angle_min, peak_memory; /* NAN where the report does not say */
+  struct vg_sweep_parts {        /* the same; angles in degrees */
+    double n_part, balance;      /* most over mean of the leaves' cells */
+    double seconds;              /* parting the void, before it is filled */
+    double near_cells;           /* within two rings of interfaces */
+    double near_p1, all_p1;      /* 1st percentiles of the smallest angles, near
+                                    interfaces and of all outside the layers */
+  } parts_made;
+  double critical;               /* s; NAN without a record */
   char *files;                   /* "name digest" lines, or NULL */
   char digest[40];               /* of all files, or "" */
 };
@@ -44,6 +55,10 @@ struct vg_sweep {
 };
 
 void vg_sweep_release(struct vg_sweep *s);
+
+/** Words of a list of ways, as in "advancing,octree", each once. */
+vg_status vg_sweep_ways(const char *what, const char *text,
+                        struct vg_sweep_options *o, struct vg_error *err);
 
 /** Lay the cases out: repeats around decompositions around threads around
  * ranks. */
@@ -62,6 +77,15 @@ void vg_sweep_collect(const struct vg_sweep_options *o,
 
 /** Seconds of a case that is done: of its record, else measured outside. */
 double vg_sweep_seconds(const struct vg_sweep_case *c);
+
+/** Cells that the tasks of a case made, without those of layers; NAN without a
+ * record. */
+double vg_sweep_field_cells(const struct vg_sweep_case *c);
+
+/** These, over those of the advancing partition in as many parts, or else in
+ * the first case of it; NAN: there is none. */
+double vg_sweep_cells_ratio(const struct vg_sweep *s,
+                            const struct vg_sweep_case *c);
 
 /** The case that speed-ups are against: the first of those with the fewest
  * workers that is done; NULL: there is none. */

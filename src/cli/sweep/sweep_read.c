@@ -97,6 +97,27 @@ static void remove_meshes(const json_t *files, const char *dir)
   }
 }
 
+/* How the void was parted, and how good cells are at interfaces. */
+static void take_parts(const json_t *root, struct vg_sweep_parts *to)
+{
+  static const char *const steps[] = { "coarse_seconds", "deal_seconds",
+                                       "smooth_seconds", "divide_seconds" };
+  const json_t *all = json_object_get(root, "partition");
+  const json_t *near = json_object_get(all, "near_interfaces");
+  const json_t *made = json_object_get(all, "parting");
+  const json_t *mesh = json_object_get(root, "field");
+
+  if (!mesh) mesh = json_object_get(root, "mesh");
+  to->n_part = number_at(made ? made : all, made ? "parts" : "leaves");
+  to->balance = number_at(all, "balance");
+  to->near_cells = number_at(near, "cells");
+  to->near_p1 = number_at(near, "angle_min_p1");
+  to->all_p1 = number_at(mesh, "angle_min_p1");
+  to->seconds = all ? 0 : NAN;
+  for (size_t k = 0; made && k < sizeof steps / sizeof *steps; k++)
+    to->seconds += number_at(made, steps[k]);
+}
+
 static void read_report(const struct vg_sweep_options *o,
                         struct vg_sweep_case *c)
 {
@@ -108,12 +129,26 @@ static void read_report(const struct vg_sweep_options *o,
   if (!mesh) mesh = json_object_get(root, "mesh");
   c->angle_min = number_at(mesh, "angle_min");
   c->peak_memory = number_at(root, "peak_memory_bytes");
+  take_parts(root, &c->parts_made);
   if (c->is_done) {
     take_digests(files, c);
     if (!o->keep) remove_meshes(files, c->dir);
   }
   json_decref(root);
   free(path);
+}
+
+/* The longest chain of tasks of a run, on the machine that it had. */
+static double critical_of(const struct vg_timeline *t)
+{
+  struct vg_machine m = VG_MACHINE_INIT;
+  struct vg_model_result f;
+
+  m.ranks = m.ranks_per_node = t->spans.n_rank;
+  m.threads = t->spans.n_thread;
+  m.cyclic = t->cyclic;
+  vg_timeline_outside(t, &m);
+  return vg_model_replay(&t->spans, &m, &f, NULL, NULL) < 0 ? NAN : f.critical;
 }
 
 void vg_sweep_collect(const struct vg_sweep_options *o,
@@ -128,6 +163,7 @@ void vg_sweep_collect(const struct vg_sweep_options *o,
     if (!c->has_timeline)
       snprintf(c->note, sizeof c->note, "%.250s", err.text);
   }
+  if (c->has_timeline) c->critical = critical_of(&c->t);
   if (c->has_timeline && !c->digest[0])
     snprintf(c->digest, sizeof c->digest, "%.39s", c->t.digest);
   free(path);
@@ -167,7 +203,33 @@ double vg_sweep_speedup(const struct vg_sweep *s, double seconds)
 int vg_sweep_same_mesh(const struct vg_sweep_case *a,
                        const struct vg_sweep_case *b)
 {
-  return a->levels == b->levels && a->leaf_cells == b->leaf_cells;
+  return a->levels == b->levels && a->leaf_cells == b->leaf_cells &&
+    a->way == b->way && a->parts == b->parts;
+}
+
+double vg_sweep_field_cells(const struct vg_sweep_case *c)
+{
+  double sum = 0;
+
+  if (!c->has_timeline) return NAN;
+  for (size_t i = 0; i < c->t.spans.n; i++)   /* repairs change them only */
+    if (c->t.spans.span[i].kind != VG_SPAN_REPAIR)
+      sum += (double)c->t.spans.span[i].n_cell;
+  return sum;
+}
+
+double vg_sweep_cells_ratio(const struct vg_sweep *s,
+                            const struct vg_sweep_case *c)
+{
+  const struct vg_sweep_case *one = NULL;
+
+  for (size_t i = 0; i < s->n; i++) {
+    const struct vg_sweep_case *k = &s->item[i];
+
+    if (k->way != VG_DECOMPOSE_ADVANCING || !k->has_timeline) continue;
+    if (!one || (one->parts != c->parts && k->parts == c->parts)) one = k;
+  }
+  return one ? vg_sweep_field_cells(c) / vg_sweep_field_cells(one) : NAN;
 }
 
 /* Name of the first file whose line is not the same in both lists. */

@@ -30,22 +30,53 @@ void vg_sweep_release(struct vg_sweep *s)
   memset(s, 0, sizeof *s);
 }
 
+static int way_of(const char *word, size_t len)
+{
+  for (int k = 0; k < VG_DECOMPOSITIONS; k++)
+    if (strlen(vg_ways[k].name) == len && !strncmp(word, vg_ways[k].name, len))
+      return k;
+  return -1;
+}
+
+vg_status vg_sweep_ways(const char *what, const char *text,
+                        struct vg_sweep_options *o, struct vg_error *err)
+{
+  o->n_way = 0;
+  for (const char *at = text; at; at = strchr(at, ',') ? strchr(at, ',') + 1
+                                                       : NULL) {
+    size_t len = strcspn(at, ",");
+    int way = way_of(at, len), is_there = 0;
+
+    if (way < 0)
+      return vg_fail(err, VG_ERR_INPUT, "%s takes advancing, discrete or "
+                     "octree, with commas between, not '%.*s'", what,
+                     (int)len, at);
+    for (int k = 0; k < o->n_way; k++) is_there |= o->way[k] == way;
+    if (!is_there) o->way[o->n_way++] = way;
+  }
+  return VG_OK;
+}
+
 static vg_status add_case(struct vg_sweep *s, const struct vg_sweep_case *c,
                           struct vg_error *err)
 {
   struct vg_sweep_case *to = &s->item[s->n];
-  char part[40] = "";
+  char part[64] = "";
 
   *to = *c;
   if (c->levels >= 0)
     snprintf(part, sizeof part, "L%lld-", (long long)c->levels);
   if (c->leaf_cells >= 0)
     snprintf(part, sizeof part, "c%lld-", (long long)c->leaf_cells);
+  if (c->way >= 0) snprintf(part, sizeof part, "%s-", vg_ways[c->way].name);
+  if (c->parts >= 0)
+    snprintf(part + strlen(part), 24, "p%lld-", (long long)c->parts);
   snprintf(to->name, sizeof to->name, "%sn%d-t%d", part, c->ranks,
            c->threads);
   if (s->o->repeat > 1)
     snprintf(to->name + strlen(to->name), 16, "-r%d", c->repeat);
-  to->angle_min = to->peak_memory = NAN;
+  to->angle_min = to->peak_memory = to->critical = NAN;
+  to->parts_made = (struct vg_sweep_parts){ NAN, NAN, NAN, NAN, NAN, NAN };
   if (asprintf(&to->dir, "%s/%s", s->o->dir, to->name) < 0) {
     to->dir = NULL;
     return vg_fail_memory(err, "a path");
@@ -72,7 +103,10 @@ static vg_status add_machines(struct vg_sweep *s, struct vg_sweep_case *c,
 vg_status vg_sweep_plan(const struct vg_sweep_options *o, struct vg_sweep *s,
                         struct vg_error *err)
 {
-  size_t n_mesh = o->levels.n + o->leaf_cells.n, n;
+  size_t n_way = o->n_way ? (size_t)o->n_way : o->parts.n > 0;
+  size_t n_parts = o->parts.n ? o->parts.n : 1;
+  size_t n_cut = o->levels.n + o->leaf_cells.n;
+  size_t n_mesh = n_cut + n_way * n_parts, n;
   vg_status st = VG_OK;
 
   s->o = o;
@@ -87,12 +121,13 @@ vg_status vg_sweep_plan(const struct vg_sweep_options *o, struct vg_sweep *s,
   if (!s->item) return vg_fail_memory(err, "the cases");
   for (int k = 1; k <= o->repeat; k++)
     for (size_t i = 0; i < n_mesh; i++) {
-      struct vg_sweep_case c = { .levels = -1, .leaf_cells = -1,
-                                 .repeat = k };
+      struct vg_sweep_case c = { .levels = -1, .leaf_cells = -1, .parts = -1,
+                                 .way = -1, .repeat = k };
 
       if (i < o->levels.n) c.levels = o->levels.v[i];
-      else if (i - o->levels.n < o->leaf_cells.n)
-        c.leaf_cells = o->leaf_cells.v[i - o->levels.n];
+      else if (i < n_cut) c.leaf_cells = o->leaf_cells.v[i - o->levels.n];
+      else if (o->n_way) c.way = o->way[(i - n_cut) / n_parts];
+      if (i >= n_cut && o->parts.n) c.parts = o->parts.v[(i - n_cut) % n_parts];
       VG_TRY(add_machines(s, &c, err));
     }
 done:
@@ -201,6 +236,11 @@ static vg_status command_line(const struct vg_sweep_options *o,
   if (c->levels >= 0) VG_TRY(add_pair(w, "--levels", c->levels, err));
   if (c->leaf_cells >= 0)
     VG_TRY(add_pair(w, "--leaf-cells", c->leaf_cells, err));
+  if (c->way >= 0) {
+    VG_TRY(add_word(w, strdup("--decompose"), err));
+    VG_TRY(add_word(w, strdup(vg_ways[c->way].name), err));
+  }
+  if (c->parts >= 0) VG_TRY(add_pair(w, "--parts", c->parts, err));
   VG_TRY(add_word(w, strdup("--timeline"), err));
   VG_TRY(add_word(w, strdup("-o"), err));
   VG_TRY(add_word(w, strdup(c->dir), err));

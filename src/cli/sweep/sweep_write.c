@@ -25,10 +25,12 @@ static vg_status path_of(const struct vg_sweep *s, const char *name,
 
 /* --- numbers of a case --------------------------------------------------- */
 
-enum { N_VALUE = 12 };
+enum { N_VALUE = 22 };
 static const char *const value_names[N_VALUE] = {
   "seconds", "wall", "speedup", "efficiency", "busy", "imbalance", "tasks",
-  "leaves", "cells", "points", "angle_min", "peak_memory_bytes"
+  "leaves", "cells", "points", "angle_min", "peak_memory_bytes", "parts_asked",
+  "parts", "field_cells", "cells_ratio", "parting_seconds", "balance", "critical",
+  "near_cells", "near_angle_min_p1", "angle_min_p1"
 };
 
 static size_t leaf_count(const struct vg_spans *s)
@@ -44,6 +46,7 @@ static void values_of(const struct vg_sweep *s, const struct vg_sweep_case *c,
                       double v[N_VALUE])
 {
   for (int i = 0; i < N_VALUE; i++) v[i] = NAN;
+  if (c->parts >= 0) v[12] = (double)c->parts;
   if (!c->is_run) return;
   v[1] = c->wall;
   if (!c->is_done) return;
@@ -60,6 +63,15 @@ static void values_of(const struct vg_sweep *s, const struct vg_sweep_case *c,
   }
   v[10] = c->angle_min;
   v[11] = c->peak_memory;
+  v[13] = c->parts_made.n_part;
+  v[14] = vg_sweep_field_cells(c);
+  v[15] = vg_sweep_cells_ratio(s, c);
+  v[16] = c->parts_made.seconds;
+  v[17] = c->parts_made.balance;
+  v[18] = c->critical;
+  v[19] = c->parts_made.near_cells;
+  v[20] = c->parts_made.near_p1;
+  v[21] = c->parts_made.all_p1;
 }
 
 static const char *state_of(const struct vg_sweep_case *c)
@@ -104,7 +116,8 @@ static void put_row(struct vg_output *out, const struct vg_sweep *s,
   for (int i = 0; i < N_VALUE; i++) put_number(out, v[i]);
   for (int i = 0; i < VG_PHASE_N; i++)
     put_number(out, c->has_timeline ? c->t.seconds[i] : NAN);
-  vg_output_format(out, ",%s,", c->digest);
+  vg_output_format(out, ",%s,%s,", c->way < 0 ? "" : vg_ways[c->way].name,
+                   c->digest);
   put_quoted(out, c->note);
   vg_output_text(out, "\n");
 }
@@ -123,7 +136,7 @@ static vg_status write_csv(const struct vg_sweep *s, struct vg_error *err)
     vg_output_format(&out, ",%s", value_names[i]);
   for (int i = 0; i < VG_PHASE_N; i++)
     vg_output_format(&out, ",%s", vg_phase_name((enum vg_phase)i));
-  vg_output_text(&out, ",digest,note\n");
+  vg_output_text(&out, ",decompose,digest,note\n");
   for (size_t i = 0; i < s->n; i++) put_row(&out, s, &s->item[i]);
   VG_TRY(vg_output_commit(&out, err));
 done:
@@ -173,6 +186,8 @@ static json_t *case_json(const struct vg_sweep *s,
   json_object_set_new(o, "case", vg_text_json(c->name));
   json_object_set_new(o, "levels", whole_or_null(c->levels));
   json_object_set_new(o, "leaf_cells", whole_or_null(c->leaf_cells));
+  json_object_set_new(o, "decompose", c->way < 0 ? json_null()
+                      : json_string(vg_ways[c->way].name));
   json_object_set_new(o, "ranks", json_integer(c->ranks));
   json_object_set_new(o, "threads", json_integer(c->threads));
   json_object_set_new(o, "repeat", json_integer(c->repeat));
@@ -370,7 +385,12 @@ static void name_mesh(const struct vg_sweep_case *c, char *text, size_t size)
     snprintf(text, size, "%lld levels", (long long)c->levels);
   else if (c->leaf_cells >= 0)
     snprintf(text, size, "leaves of %lld", (long long)c->leaf_cells);
+  else if (c->way >= 0)
+    snprintf(text, size, "%s", vg_ways[c->way].name);
   else snprintf(text, size, "measured");
+  if (c->parts >= 0)
+    snprintf(text + strlen(text), size - strlen(text), ", %lld parts",
+             (long long)c->parts);
 }
 
 /* The points of one mesh with `fixed` threads (or ranks, where more numbers
@@ -432,6 +452,7 @@ static vg_status add_model(const struct vg_sweep *s,
     struct vg_model_result f;
 
     m.ranks = m.ranks_per_node = n;
+    m.cyclic = c->t.cyclic;
     vg_timeline_outside(&c->t, &m);
     VG_TRY(vg_model_replay(&c->t.spans, &m, &f, NULL, err));
     if (!(f.wall > 0)) break;

@@ -398,6 +398,10 @@ static const struct vg_param sweep_columns[] = {
   LIST("levels", levels, "levels of bisection; \"\": none"),
   LIST("leaf_cells", leaf_cells, "cells to a leaf; both lists make cases of "
        "their own; \"\": as the setting"),
+  LIST("decompose", decompose, "ways to decompose, as in advancing,discrete; "
+       "each with all parts, beside cases of the other lists; \"\": as the "
+       "setting"),
+  LIST("parts", parts, "numbers of parts; \"\": as the setting"),
   { "repeat", AT(repeat), .type = VG_PARAM_COUNT, .hi = 1000,
     .unit = "times", .help = "runs of each case; 0: one" },
 };

@@ -67,6 +67,7 @@ struct vg_layer_row {
 struct vg_sweep_row {
   char ranks[VG_LIST_MAX], threads[VG_LIST_MAX];
   char levels[VG_LIST_MAX], leaf_cells[VG_LIST_MAX];
+  char decompose[VG_LIST_MAX], parts[VG_LIST_MAX];
   int64_t repeat;                  /* 0: not given */
 };
 

@@ -127,6 +127,10 @@ static void put_parting(const struct vg_run *r, const struct leaves *l,
   json_object_set_new(o, "schedule",
                       json_string(r->cyclic ? "cyclic" : "dynamic"));
   json_object_set_new(o, "balance", json_real(balance(l)));
+  if (r->near.n_cell)
+    json_object_set_new(o, "near_interfaces", json_pack(
+      "{s:I s:f s:f}", "cells", (json_int_t)r->near.n_cell, "angle_min",
+      r->near.angle_min, "angle_min_p1", r->near.angle_min_p1));
   if (!p->n_part) return;
   json_object_set_new(o, "parting", json_pack(
     "{s:I s:I s:f s:I s:I s:f s:I s:f s:f s:f s:f}", "parts", (json_int_t)p->n_part,
@@ -176,6 +180,11 @@ void vg_report_partition_text(FILE *to, const struct vg_run *r)
   fprintf(to, "repaired %s of %s regions, %+lld cells, %.2f s\n",
           vg_text_count(p->n_repaired, a), vg_text_count(p->n_repair, b),
           (long long)repair_cells(r, &l), p->repair);
+  if (r->near.n_cell)
+    fprintf(to, "  %s cells within two rings of interfaces: 1st percentile of "
+            "the smallest angle\n  %.2f degrees, least %.2f\n",
+            vg_text_count(r->near.n_cell, a), r->near.angle_min_p1,
+            r->near.angle_min);
   free(l.cells);
   fprintf(to, "  workers busy %.1f %%, imbalance %.3f (most over mean)%s\n",
           100 * vg_spans_busy(&r->spans), vg_spans_imbalance(&r->spans),

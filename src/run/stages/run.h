@@ -10,6 +10,7 @@
 #include "core/judge/judge_slices.h"
 #include "layers/expand/slices.h"
 #include "partition/advance/advance.h"
+#include "partition/repair/near.h"
 #include "partition/solver/solver.h"
 #include "run/input/input.h"
 #include "run/input/layers.h"
@@ -22,6 +23,7 @@
 struct vg_run_options {
   const char *dir;           /* where finished tasks are kept, or NULL */
   int resume, keep;
+  int near;                  /* 1: look at the cells near interfaces */
   double fail_leaves;           /* of partition options */
   int fail_rounds;
   uint64_t limit, shuffle;
@@ -40,6 +42,7 @@ struct vg_run {
   int cyclic;                /* 1: its parts were dealt out beforehand */
   struct vg_partition *field;
   struct vg_partition_report partition;
+  struct vg_near_report near;   /* where asked for */
   struct vg_spans spans;
   struct vg_store *store;
   struct vg_store_report stored;

@@ -69,20 +69,32 @@ for way in advancing discrete octree; do
     --timeline
   vanguard "$@" -t 1 --out one
   exits 0
+  says one/box.report.json '"near_interfaces": '
   vanguard "$@" --schedule cyclic -t 3 --out many
   exits 0
   says out "leaves dealt out in turn"
   says many/box.timeline.json '"cyclic": 1'
   cmp -s one/box.b8.ugrid many/box.b8.ugrid || fail "$way: dealt out, another mesh"
+  near() { jq -c .partition.near_interfaces "$1/box.report.json"; }
+  [ "$(near one)" = "$(near many)" ] || fail "$way: other cells near interfaces"
   if mpirun -n 2 true >/dev/null 2>&1; then
     ASAN_OPTIONS=detect_leaks=0 mpirun -n 2 "$program" "$@" -t 2 \
       --schedule cyclic --out ranks >out 2>err || fail "2 ranks: $(cat err)"
     cmp -s one/box.b8.ugrid ranks/box.b8.ugrid || fail "$way: ranks, dealt out"
+    [ "$(near one)" = "$(near ranks)" ] || fail "$way: ranks: near interfaces"
   fi
+  jq -e '.partition.near_interfaces | .cells > 5000 and .cells < 20000 and
+    .angle_min_p1 > 20 and .angle_min_p1 < 45 and .angle_min <= .angle_min_p1' \
+    one/box.report.json >out || fail "$way: cells near interfaces"
   vanguard plan -r one/box.timeline.json -n 2 --schedule cyclic
   exits 0
   says out "Forecast, leaves dealt out in turn"
 done
+
+# One part has no interfaces.
+vanguard mesh -q -p p/box --leaf-cells 0 --timeline --out whole
+exits 0
+lacks whole/box.report.json near_interfaces
 
 # By octants, the gap at the walls by planes; where none has room all is gap.
 vanguard mesh -q -p p/box --decompose octree --parts 4 -t 1 --write b8.ugrid \

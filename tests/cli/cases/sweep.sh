@@ -3,13 +3,15 @@
 cat >fake <<'END'
 #!/bin/bash
 # mesh -p P --threads T --leaf-cells C --timeline -o DIR ...
-ranks=${RANKS:-1} threads=1 leaf=0 dir=. wrong=0
+ranks=${RANKS:-1} threads=1 leaf=0 dir=. wrong=0 way=advancing
 [ "$1" = mesh ] || exit 2
 while [ $# -gt 0 ]; do
   case $1 in
     --threads) threads=$2; shift ;;
     --leaf-cells) leaf=$2; shift ;;
     --levels) leaf=$((2 ** $2)); shift ;;
+    --decompose) way=$2; leaf=$((leaf + ${#2})); shift ;;
+    --parts) leaf=$((leaf + 1000 * $2)); shift ;;
     -o) dir=$2; shift ;;
     --wrong) wrong=1 ;;
     --fail-at) [ "$threads" = "$2" ] && {
@@ -22,6 +24,12 @@ while [ $# -gt 0 ]; do
 done
 echo "progress"
 n=$((ranks * threads))
+parting='' cells=0
+case $way in
+  advancing) cells=1500 ;;
+  *) cells=750 parting=', "parting": {"parts": 5, "coarse_seconds": 1,
+    "deal_seconds": 0.5, "smooth_seconds": 0.25, "divide_seconds": 0}' ;;
+esac
 digest=$leaf$((wrong * n))
 echo "mesh $digest" >"$dir/box.cogsg"
 cat >"$dir/box.timeline.json" <<JSON
@@ -32,12 +40,15 @@ cat >"$dir/box.timeline.json" <<JSON
 "columns": ["path", "after", "kind", "rank", "thread", "home", "start", "end",
  "cpu", "estimate", "cells", "bytes_in", "bytes_out"],
 "spans": [
-["0.0L","","L",0,0,0,0,$((n > 1 ? 8 / n : 4)),4,1000,1500,0,0],
-["0.1L","","L",$((ranks - 1)),$((threads - 1)),0,$((n > 1 ? 0 : 4)),$((8 / n)),4,1000,1500,0,0]
+["0.0L","","L",0,0,0,0,$((n > 1 ? 8 / n : 4)),4,1000,$cells,0,0],
+["0.1L","","L",$((ranks - 1)),$((threads - 1)),0,$((n > 1 ? 0 : 4)),$((8 / n)),4,1000,$cells,0,0]
 ]}
 JSON
 cat >"$dir/box.report.json" <<JSON
-{"ok": true, "mesh": {"angle_min": 12.5}, "peak_memory_bytes": 5e6,
+{"ok": true, "mesh": {"angle_min": 12.5, "angle_min_p1": 31.5},
+ "peak_memory_bytes": 5e6,
+ "partition": {"leaves": 2, "balance": 1.125, "near_interfaces": {"cells": 70,
+  "angle_min": 12.5, "angle_min_p1": 30.25}$parting},
  "files": [{"path": "$dir/box.cogsg", "bytes": 9, "xxh3": "$digest"},
   {"path": "$dir/box.report.json", "bytes": 1, "xxh3": "$RANDOM"}]}
 JSON
@@ -61,6 +72,26 @@ absent s/c100-n1-t1/box.cogsg
 says s/speedup.svg "leaves of 200, 2 ranks"
 says s/speedup.svg "leaves of 100, model"
 says s/c100-n1-t1/run.log progress
+
+# Ways to decompose, with all parts each: cells over those of the advancing
+# partition in as many; a list of the deck gives way to them.
+sweep -p box --decompose advancing,discrete --parts 4,16 -t 1,2 -o ways
+exits 0
+says out "8 of 8 cases done"
+says out "discrete-p16-n1-t2"
+says out "cells / adv."
+[ "$(grep -c '^discrete-p4-n1-t. .* 0.5000  *30.25  *31.50$' out)" = 2 ] ||
+  fail "no ratio and angles of discrete: $(cat out)"
+says ways/sweep.csv '"discrete-p4-n1-t1",,,1,1,1,1,done,0,9,'
+says ways/sweep.csv ',discrete,'
+says ways/sweep.json '"near_angle_min_p1": 30.25'
+says ways/sweep.json '"cells_ratio": 0.5'
+says ways/sweep.json '"parting_seconds": 1.75'
+says ways/sweep.json '"balance": 1.125'
+says ways/speedup.svg "discrete, 16 parts"
+vanguard sweep -p box --decompose advancing,metis
+exits 2
+says err "--decompose takes advancing, discrete or octree, with commas between, not 'metis'"
 
 # Where no case has one worker, the fewest stand for it.
 sweep -p box -n 2 -t 1,2 -o f
