@@ -94,7 +94,7 @@ static void few_leaves_have_whole_planes(void **state)
  * it; a part that may be cut has the tasks that it would have by itself. */
 static void parts_follow_their_maker(void **state)
 {
-  static const struct vg_parting_rate rate = { 2e-6, 3e-6, 5e-6, 0.25 };
+  static const struct vg_parting_rate rate = { 2e-6, 3e-6, 5e-6, 0.25, 1e-6 };
   struct vg_forecast_part part[3];
   struct vg_forecast_parting all = { &rate, 7000, 1100, 3, part };
   struct vg_forecast o = VG_FORECAST_INIT, alone;

@@ -8,8 +8,8 @@
 #include <stdint.h>
 
 #include "cli/plot/timeline.h"
-#include "run/common/ranges.h"
 #include "partition/advance/ways.h"
+#include "run/common/ranges.h"
 
 struct vg_sweep_options {
   const char *project, *dir;

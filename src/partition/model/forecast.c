@@ -21,9 +21,8 @@ const struct vg_rates vg_rates_measured = {
   .join = { 0, 0, 0, 0.04e-6, 0, 0.12e-6, 0.98 },
   .close = { 0, 0, 0, 0.025e-6, 0.3e-3, 0, 0.98 },
   .split = { 0, 0, 0, 0.045e-6, 0, 0, 0.98 },
-  .discrete = { 2e-6, 6e-6, 2e-6, 0.1 },
-  .octree = { 2e-6, 2e-6, 4e-6, 0.1 },
-  .interface = 8e-6,
+  .discrete = { 0, 5.6e-6, 3.5e-6, 0.2, 6.7e-6 },   /* M9 */
+  .octree = { 1.6e-6, 23e-6, 1.9e-6, 0.45, 9.5e-6 },
 };
 
 /* Loops over fewer faces are of one chunk or two (node_split.c). */
@@ -180,7 +179,7 @@ static vg_status add_repairs(struct forecast *c,
                              const struct vg_forecast_parting *q)
 {
   size_t n = c->out->n_pencil + c->out->n_tile, n_part = q ? q->n : 0;
-  struct vg_task_rate side = { .face = c->rates->interface };
+  struct vg_task_rate side = { .face = q ? q->rate->repair : 0 };
   char path[VG_PATH_MAX];
   vg_status st = VG_OK;
 

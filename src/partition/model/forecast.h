@@ -20,9 +20,9 @@
 struct vg_task_rate { double task, even, graded, face, made, hand, loops; };
 
 /** Seconds of one core that a maker of partings takes (cut/parting.h), per face
- * of the front, coarse cell or octant, and triangle of interfaces; and the share
- * of them in loops. */
-struct vg_parting_rate { double face, coarse, side, loops; };
+ * of the front, coarse cell or octant, and triangle of interfaces; the share of
+ * them in loops; and of repairs at interfaces, per triangle of these. */
+struct vg_parting_rate { double face, coarse, side, loops, repair; };
 
 struct vg_rates {
   struct vg_task_rate pencil, rib, tile, leaf;
@@ -32,7 +32,6 @@ struct vg_rates {
                                     those between stages, the one that looks
                                     for such places, the last */
   struct vg_parting_rate discrete, octree;
-  double interface;              /* of repairs, per triangle of interfaces */
 };
 
 /** As measured: forecast.c says where. */
