@@ -17,9 +17,9 @@ static const double whole_band = VG_BAND_FRONT - 0.2;
 /* Dents are not filled with cells worse than this (dihedral angles of about
  * 30 and 150 degrees). */
 static const double dent = 0.25;   /* K20 */
-/* A cell of this shape (angles of 5 and 175 degrees) on the front, under one
+/* A cell of this shape (angles of 1 and 179 degrees) on the front, under one
  * that becomes final, would be all that can fill the slit between the two. */
-static const double slit = 0.015;   /* K34 */
+static const double slit = 0.0003;   /* K34 */
 /* Edges of more than so many spacings stay out of a pencil. */
 static const double overlong = 4;   /* K21 */
 
