@@ -136,8 +136,38 @@ static void vgrid_weights_multiply(void **state)
   /* weights 1 / 1 and 8 / 4 */
   assert_near(vg_sizing_sources_at(&plain, 2, s, x), 3, 1e-14);
   assert_near(vg_sizing_sources_at(&twice, 2, s, x), 6, 1e-14);
-  twice.h_max = 5;
+  twice.h_max = 2.5;  /* times scale, too */
   assert_near(vg_sizing_sources_at(&twice, 2, s, x), 5, 0);
+}
+
+/* Half of the sizes everywhere: at the sources, in between, and where a source
+ * grows at its own rate; within what the octree may be off, 5 %. */
+static void scale_makes_a_similar_field(void **state)
+{
+  struct vg_source s[2] = {
+    { .kind = VG_SOURCE_POINT, .h0 = 0.1, .r0 = 0.5, .an = 1 },
+    { .kind = VG_SOURCE_SPHERE, .p0 = { 8, 0, 0 }, .h0 = 0.3, .r0 = 0.5,
+      .growth = 1.4, .an = 1 } };
+  struct vg_sizing_options o = VG_SIZING_OPTIONS_INIT;
+  struct vg_sizing *f[2];
+  struct vg_error err = VG_ERROR_INIT;
+
+  (void)state;
+  o.h_max = 0.8;
+  o.h_min = 0.12;
+  for (int i = 0; i < 2; i++) {
+    o.scale = i ? 0.5 : 1;
+    assert_int_equal(vg_sizing_new(&o, 2, s, NULL, &f[i], &err), VG_OK);
+  }
+  for (int i = 0; i <= 40; i++) {
+    const double x[3] = { -1 + 0.25 * i, 0.1 * (i % 7), 0.2 * (i % 3) };
+
+    assert_float_equal(vg_sizing_at(f[1], x) / vg_sizing_at(f[0], x), 0.5,
+                       0.025);
+  }
+  assert_float_equal(vg_sizing_growth(f[1]), 0.1, 1e-15);
+  vg_sizing_free(f[0]);
+  vg_sizing_free(f[1]);
 }
 
 /* The closed form against the midpoint rule, whose error is 1e-8 here. */
@@ -751,6 +781,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(vgrid_nodes_march_as_vgrid_does),
     cmocka_unit_test(vgrid_weights_multiply),
+    cmocka_unit_test(scale_makes_a_similar_field),
     cmocka_unit_test(vgrid_lines_integrate_the_kernel),
     cmocka_unit_test(bounded_sources_grow_from_their_shapes),
     cmocka_unit_test(cones_grow_from_side_and_caps),

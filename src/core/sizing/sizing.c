@@ -151,11 +151,23 @@ static vg_status check_map(const struct vg_map_fault *f, struct vg_error *err)
                  f->x[1], f->x[2], f->h);
 }
 
-vg_status vg_sizing_new(const struct vg_sizing_options *options, size_t n,
+/* All but the sources' own, which their laws multiply. */
+static struct vg_sizing_options scaled(const struct vg_sizing_options *options)
+{
+  struct vg_sizing_options o = *options;
+
+  o.h_min *= o.scale;
+  o.h_max *= o.scale;
+  o.growth = vg_scaled_growth(o.growth, o.scale);
+  return o;
+}
+
+vg_status vg_sizing_new(const struct vg_sizing_options *given, size_t n,
                         const struct vg_source *source,
                         const struct vg_mesh *surface,
                         struct vg_sizing **out, struct vg_error *err)
 {
+  const struct vg_sizing_options o = scaled(given), *options = &o;
   vg_status st = VG_OK;
   atomic_int is_steep = 0;
   int steep;
@@ -165,7 +177,7 @@ vg_status vg_sizing_new(const struct vg_sizing_options *options, size_t n,
   struct vg_bvh *near = NULL, *under = NULL;
   struct vg_sizing *s = NULL;
 
-  VG_TRY(check_options(options, err));
+  VG_TRY(check_options(given, err));
   VG_TRY(vg_source_check(n, source, err));
   if (surface) VG_TRY(vg_samples_check(surface, err));
   s = vg_calloc(1, sizeof *s);
@@ -284,13 +296,14 @@ double vg_sizing_sources_at(const struct vg_sizing_options *options, size_t n,
                             const struct vg_source *source,
                             const double x[3])
 {
+  const struct vg_sizing_options o = scaled(options);
   struct vg_source_set set = VG_SOURCE_SET_INIT;
   double h;
 
-  if (!n || vg_source_prepare(options, n, source, 0, &set, NULL) < 0)
+  if (!n || vg_source_prepare(&o, n, source, 0, &set, NULL) < 0)
     return INFINITY;
   h = vg_source_at(&set, x);
   vg_source_release(&set);
-  if (options->h_max > 0 && h > options->h_max) h = options->h_max;
-  return h > options->h_min ? h : options->h_min;
+  if (o.h_max > 0 && h > o.h_max) h = o.h_max;
+  return h > o.h_min ? h : o.h_min;
 }

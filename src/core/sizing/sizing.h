@@ -74,7 +74,9 @@ struct vg_sizing_options {
                             source asks for, elsewhere no limit */
   double growth;         /* growth rate g > 1 of neighbouring edges away from
                             the surface; default 1.2 */
-  double scale;          /* multiplies every source spacing (VGRID's ifact) */
+  double scale;          /* multiplies h_min, h_max, growth - 1 and, of every
+                            source, spacing and growth - 1 (VGRID's ifact): a
+                            similar field, but for what the surface says */
   int from_surface;      /* 1: boundary edges are sources (default) */
   int threads;           /* 0: one per core; default 1 */
   double coarseness;     /* >= 1: how much larger the finest cells of what is
@@ -83,6 +85,12 @@ struct vg_sizing_options {
   const struct vg_size_map *map; /* NULL: none; borrowed for the call */
 };
 #define VG_SIZING_OPTIONS_INIT { 0, 0, 1.2, 1, 1, 1, 1, NULL, NULL }
+
+/** The growth rate of a field whose sizes are `scale` times as large. */
+static inline double vg_scaled_growth(double growth, double scale)
+{
+  return 1 + scale * (growth - 1);
+}
 
 struct vg_sizing;        /* opaque, read-only after vg_sizing_new */
 
@@ -151,7 +159,7 @@ void vg_sizing_range(const struct vg_sizing *s, double *h_min, double *h_max);
  * 0.5 if that is more and faces hold sources back somewhere. */
 double vg_sizing_slope(const struct vg_sizing *s);
 
-/** growth - 1. */
+/** growth - 1, scaled. */
 double vg_sizing_growth(const struct vg_sizing *s);
 
 /** What a boundary edge of length h asks for at least at a distance of d

@@ -73,7 +73,8 @@ static void measure(const struct vg_mesh *m, size_t tri, const double x[3],
 static int find_faces(const struct finder *f, struct vg_limited_source *h,
                       struct holders *all)
 {
-  const double growth = f->options->growth;
+  const double growth = vg_scaled_growth(f->options->growth,
+                                         f->options->scale);
   double most = 0;
 
   h->face = SIZE_MAX;
@@ -109,15 +110,18 @@ static int lets_go(const struct holders *all, double growth, double asked)
 static void find_remedy(const struct finder *f, struct vg_limited_source *h,
                         const struct holders *all)
 {
+  const struct vg_sizing_options *o = f->options;
   double nearest = h->distance;
 
   h->edge_wanted = h->growth_wanted = 0;
   if (h->face == SIZE_MAX) return;
   for (size_t i = 0; i < all->n; i++)
     nearest = fmin(nearest, all->item[i].distance);
-  h->edge_wanted = vg_sizing_below_edge(f->options->growth, h->asked, nearest);
+  h->edge_wanted = vg_sizing_below_edge(vg_scaled_growth(o->growth, o->scale),
+                                        h->asked, nearest);
   for (int k = 21; k <= 40; k++)
-    if (0.05 * k > f->options->growth && lets_go(all, 0.05 * k, h->asked)) {
+    if (0.05 * k > o->growth &&
+        lets_go(all, vg_scaled_growth(0.05 * k, o->scale), h->asked)) {
       h->growth_wanted = 0.05 * k;
       return;
     }

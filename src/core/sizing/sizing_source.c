@@ -393,8 +393,8 @@ static void prepare_bounded(const struct vg_sizing_options *o,
   b->law.h0 *= o->scale;
   b->law.h1 = has_axis(s->kind) ? s->h1 * o->scale : b->law.h0;
   if (is_vgrid(s->kind)) b->law.r0 = b->law.r1 = 0;
-  b->slope = !is_vgrid(s->kind) && s->growth > 0 ? s->growth - 1
-                                                 : o->growth - 1;
+  b->slope = !is_vgrid(s->kind) && s->growth > 0
+             ? o->scale * (s->growth - 1) : o->growth - 1;
   b->least = least(b->law.h0, b->law.h1);
   b->steep = b->slope;
   bound_shape(b);

@@ -45,7 +45,9 @@ struct vg_source_set {
 vg_status vg_source_check(size_t n, const struct vg_source *source,
                           struct vg_error *err);
 
-/** Fill *set (empty before). cones: 1 to append VGRID sources as cones. */
+/** Fill *set (empty before). cones: 1 to append VGRID sources as cones.
+ * options->scale multiplies what sources say; options->growth is scaled
+ * already. */
 vg_status vg_source_prepare(const struct vg_sizing_options *options, size_t n,
                             const struct vg_source *source, int cones,
                             struct vg_source_set *set, struct vg_error *err);
