@@ -199,6 +199,67 @@ static void columns_have_points(void **state)
   assert_string_equal(vg_layer_cause_name(VG_CAUSE_SLIDE), "slide");
 }
 
+/* The numbers of the workshops, to the digits they are given with. */
+static void members_of_a_family(void **state)
+{
+  static const double ratio[6] = { 1.16, 1.104, 1.068, 1.045, 1.03, 1.02 };
+  static const double y_plus[6] = { 1, 0.67, 0.5, 0.4, 0.33, 0.29 };
+
+  (void)state;
+  for (int level = 1; level <= 6; level++) {
+    const double scale = 2. / (level + 1);
+    struct vg_law law = { 1, 0.16, 0, 1.3, 2 };
+    int n = 40;
+
+    vg_law_scale(&law, VG_LAW_WORKSHOP, scale, &n);
+    assert_float_equal(1 + law.rate1, ratio[level - 1], 0.0006);
+    assert_float_equal(law.delta1, y_plus[level - 1], 0.005);
+    assert_int_equal(law.n_constant, (int64_t)floor(2 / scale + 0.5));
+    assert_true(law.cap >= 1 + law.rate1);
+  }
+}
+
+/* As many times more layers reach as high; an even family keeps the height to
+ * what the last layer may add. */
+static void an_even_family_is_as_high(void **state)
+{
+  struct vg_law law = { 1e-3, 0.2, 0, 1.3, 1 }, half = law;
+  double d[2][VG_LEVELS_MAX + 1];
+  int n = 24;
+
+  (void)state;
+  vg_law_scale(&half, VG_LAW_EVEN, 0.5, &n);
+  assert_int_equal(n, 48);
+  assert_true(fabs(half.rate1 - (sqrt(1.2) - 1)) < 1e-14);
+  assert_true(fabs(half.cap - sqrt(1.3)) < 1e-14);
+  assert_int_equal(half.n_constant, 1);
+  vg_law_heights(&law, INFINITY, 24, d[0]);
+  vg_law_heights(&half, INFINITY, 48, d[1]);
+  assert_float_equal(d[1][48] / d[0][24], 1, 0.06);
+  n = 200;
+  vg_law_scale(&half, VG_LAW_EVEN, 0.5, &n);
+  assert_int_equal(n, VG_LEVELS_MAX);
+  n = 0;
+  half = law;
+  vg_law_scale(&half, VG_LAW_KEPT, 0.5, &n);
+  assert_int_equal(n, 0);
+  assert_memory_equal(&half, &law, sizeof law);
+}
+
+static void powers_without_libm(void **state)
+{
+  static const double x[] = { 2. / 3, 1, 1.02, 1.2, 10 };
+  static const double e[] = { 0, 1e-9, 1. / 3, 0.5, 1, 2.75, 198, -0.4, -2 };
+
+  (void)state;
+  for (size_t i = 0; i < sizeof x / sizeof *x; i++)
+    for (size_t k = 0; k < sizeof e / sizeof *e; k++) {
+      double y = pow(x[i], e[k]);
+
+      assert_true(fabs(vg_real_power(x[i], e[k]) - y) < 1e-13 * y);
+    }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -211,6 +272,9 @@ int main(void)
     cmocka_unit_test(y_plus_there_and_back),
     cmocka_unit_test(a_rate_for_the_total),
     cmocka_unit_test(columns_have_points),
+    cmocka_unit_test(members_of_a_family),
+    cmocka_unit_test(an_even_family_is_as_high),
+    cmocka_unit_test(powers_without_libm),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

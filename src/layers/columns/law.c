@@ -146,3 +146,48 @@ double vg_law_rate_for_total(double delta1, int n_constant, int n,
   }
   return 0.5 * (lo + hi);
 }
+
+/* --- grid families ------------------------------------------------------- */
+
+double vg_real_power(double x, double e)
+{
+  double whole = floor(fabs(e)), part = fabs(e) - whole, y, root = x;
+
+  if (whole > 1000) whole = 1000;    /* beyond any that could be told */
+  y = power(x, (int)whole);
+  for (int i = 0; i < 53 && part > 0; i++) {
+    root = sqrt(root);
+    part *= 2;
+    if (part < 1) continue;
+    y *= root;
+    part -= 1;
+  }
+  return e < 0 ? 1 / y : y;
+}
+
+double vg_law_power(enum vg_law_rule rule, double scale)
+{
+  if (rule == VG_LAW_KEPT) return 1;
+  return rule == VG_LAW_EVEN ? scale : vg_real_power(2. / 3, 2 / scale - 2);
+}
+
+static int64_t times(int64_t n, double factor)
+{
+  double m = floor((double)n * factor + 0.5);
+
+  return m < 1 ? 1 : m > VG_LEVELS_MAX ? VG_LEVELS_MAX : (int64_t)m;
+}
+
+void vg_law_scale(struct vg_law *law, enum vg_law_rule rule, double scale,
+                  int *n)
+{
+  double e = vg_law_power(rule, scale);
+
+  if (rule == VG_LAW_KEPT) return;
+  law->delta1 *= scale;
+  law->rate1 = vg_real_power(1 + law->rate1, e) - 1;
+  law->rate2 = vg_real_power(1 + law->rate2, e) - 1;
+  if (isfinite(law->cap)) law->cap = vg_real_power(law->cap, e);
+  if (law->n_constant > 1) law->n_constant = times(law->n_constant, 1 / scale);
+  if (*n > 0) *n = (int)times(*n, 1 / e);
+}

@@ -47,4 +47,29 @@ double vg_y_plus(double y, double reynolds, double length);
 double vg_law_rate_for_total(double delta1, int n_constant, int n,
                              double total);
 
+/** Layers of a member of a grid family, in which sizes are `scale` times as
+ * large as in the first one. */
+enum vg_law_rule {
+  VG_LAW_KEPT,      /* as they are */
+  VG_LAW_EVEN,      /* ratios to the power of scale: as many times more layers
+                       as there are edges along the wall */
+  VG_LAW_WORKSHOP   /* ratios as the AIAA Drag Prediction Workshops give them:
+                       of scales 1, 2/3, 1/2, 2/5, 1/3, 2/7 their logarithm is
+                       2/3 of the one before, 1.16, 1.104, 1.068, 1.045, 1.030,
+                       1.020 */
+};
+
+/** To what power ratios go: > 0, 1 for VG_LAW_KEPT. scale > 0. Plain
+ * arithmetic. */
+double vg_law_power(enum vg_law_rule rule, double scale);
+
+/** x^e, x > 0 and e finite, but for rounding; by plain arithmetic and sqrt. */
+double vg_real_power(double x, double e);
+
+/** The law of that member: first height times scale, constant layers and the
+ * number n of layers (0: none given) over it, so that they reach as high;
+ * ratios and cap to the power. */
+void vg_law_scale(struct vg_law *law, enum vg_law_rule rule, double scale,
+                  int *n);
+
 #endif
