@@ -39,6 +39,7 @@ struct vg_mesh_report {
   double above[3];           /* % of cells with max above 150 160 170 */
   double radius_ratio_mean, radius_ratio_min; /* 3 r_in / R_circ */
   double mean_ratio_mean;    /* 12 (3V)^(2/3) / sum of squared edges */
+  double edge_length;        /* mean over cells of the root mean square edge */
   double volume_ratio[3];    /* face neighbours: median, 95 %, maximum */
   size_t hist_angle_min[VG_HIST_ANGLE], hist_angle_max[VG_HIST_ANGLE];
   size_t hist_radius_ratio[VG_HIST_UNIT];

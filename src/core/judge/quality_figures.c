@@ -133,6 +133,7 @@ static void report_shape(const struct vg_stats *f, struct vg_mesh_report *r)
   for (int k = 0; k < 3; k++) r->above[k] = 100 * (double)n->above[k] / n_tet;
   r->radius_ratio_mean = vg_exact_value(&n->sum_radius) / n_tet;
   r->mean_ratio_mean = vg_exact_value(&n->sum_mean) / n_tet;
+  r->edge_length = vg_exact_value(&n->sum_length) / n_tet;
   while (100 * seen < n->n_tet) seen += n->fine[++at];
   r->angle_min_p1 = (double)at / VG_FINE_PER_DEGREE;
   copy(r->hist_angle_min, n->angle_min, VG_HIST_ANGLE);

@@ -33,7 +33,7 @@ struct vg_counts {
   uint64_t angle_min[VG_HIST_ANGLE], angle_max[VG_HIST_ANGLE];
   uint64_t radius_ratio[VG_HIST_UNIT], edge[VG_HIST_UNIT];
   uint64_t fine[VG_N_FINE], ratio[VG_N_RATIO];
-  struct vg_exact volume, sum_radius, sum_mean, sum_edge;
+  struct vg_exact volume, sum_radius, sum_mean, sum_edge, sum_length;
 };
 
 struct vg_stats {

@@ -32,7 +32,7 @@ struct tet_shapes {
 struct batch {
   double least[BATCH], most[BATCH];  /* angles */
   double volume[BATCH];
-  double radius_ratio[BATCH], mean_ratio[BATCH];
+  double radius_ratio[BATCH], mean_ratio[BATCH], edge[BATCH];
 };
 
 WITHIN void dot(lanes a[3], lanes b[3], lanes out)
@@ -231,7 +231,7 @@ static void note_worst(struct vg_stats *f, const struct vg_mesh *m,
 /* Tetrahedra first .. first + n - 1 of m, n <= GROUP. */
 static void measure_group(const struct vg_mesh *m, size_t first, size_t n,
                           double *least, double *most, double *radius_ratio,
-                          double *mean_ratio)
+                          double *mean_ratio, double *edge)
 {
   struct tet_shapes s;
 
@@ -244,6 +244,7 @@ static void measure_group(const struct vg_mesh *m, size_t first, size_t n,
     mean_ratio[t] = s.edge2_sum[t] > 0
                     ? 12 * cbrt(s.volume6[t] * s.volume6[t] / 4) /
                       s.edge2_sum[t] : 0;
+    edge[t] = sqrt(s.edge2_sum[t] / 6);
   }
 }
 
@@ -271,7 +272,8 @@ static void judge_batch(const struct vg_mesh *m, size_t first, size_t n,
   for (size_t i = 0; i < n; i++) volume[first + i] = (float)b.volume[i];
   for (size_t i = 0; i < n; i += GROUP)
     measure_group(m, first + i, n - i < GROUP ? n - i : GROUP, b.least + i,
-                  b.most + i, b.radius_ratio + i, b.mean_ratio + i);
+                  b.most + i, b.radius_ratio + i, b.mean_ratio + i,
+                  b.edge + i);
   f->n.n_tet += n;
   count_angles(f, n, b.least, b.most);
   count_ratios(f, n, b.radius_ratio);
@@ -280,6 +282,7 @@ static void judge_batch(const struct vg_mesh *m, size_t first, size_t n,
   vg_exact_add_all(&f->n.volume, n, b.volume);
   vg_exact_add_all(&f->n.sum_radius, n, b.radius_ratio);
   vg_exact_add_all(&f->n.sum_mean, n, b.mean_ratio);
+  vg_exact_add_all(&f->n.sum_length, n, b.edge);
 }
 
 /* A corner tetrahedron of a prism, pyramid or hexahedron is spanned by a node

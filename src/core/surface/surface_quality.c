@@ -63,6 +63,8 @@ void vg_surface_quality(const struct vg_mesh *m, struct vg_surface_quality *q)
     q->n++;
     q->angle_min = fmin(q->angle_min, angle);
     q->ratio_mean += ratio_of(&s);
+    q->edge_mean += (sqrt(s.longest2) + sqrt(s.middle2)
+                     + sqrt(s.shortest2)) / 3;
     bin[(int)fmin(10 * angle, BINS - 1)]++;
     for (int k = 0; k < 4; k++) below[k] += angle < limit[k];
     if (vg_tri_shape_sound(&s)) continue;
@@ -74,6 +76,19 @@ void vg_surface_quality(const struct vg_mesh *m, struct vg_surface_quality *q)
   if (!q->n) return;
   q->angle_min_p1 = percentile(bin, q->n);
   q->ratio_mean /= (double)q->n;
+  q->edge_mean /= (double)q->n;
   for (int k = 0; k < 4; k++)
     q->below[k] = 100 * (double)below[k] / (double)q->n;
+}
+
+void vg_surface_shapes(const struct vg_mesh *m, double *angle, double *ratio)
+{
+  for (size_t i = 0; i < m->n_tri; i++) {
+    const uint32_t *t = m->tri[i];
+    struct vg_tri_shape s;
+
+    vg_tri_shape_of(m->point[t[0]], m->point[t[1]], m->point[t[2]], &s);
+    if (angle) angle[i] = asin(fmin(sqrt(s.sine2), 1)) * (180 / M_PI);
+    if (ratio) ratio[i] = ratio_of(&s);
+  }
 }

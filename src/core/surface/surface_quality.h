@@ -21,6 +21,7 @@ struct vg_surface_quality {
   double angle_min, angle_min_p1;  /* smallest angles, degrees: least, and what
                                1 % are below, to 0.1 */
   double below[4];          /* % with an angle below 5 10 20 30 degrees */
+  double edge_mean;         /* edge length, over the edges of all triangles */
   double ratio_mean;        /* 2 r / R, 1 for an equilateral triangle */
   size_t n_cap, n_needle;   /* slivers (VG_SWAP_SLIVER) */
   size_t n_worst;
@@ -31,5 +32,9 @@ struct vg_surface_quality {
 /** Measure the triangles of m; quadrilaterals do not count. Angles are for
  * reports only. O(n), no memory; re-entrant. */
 void vg_surface_quality(const struct vg_mesh *m, struct vg_surface_quality *q);
+
+/** Smallest angle, degrees, and 2 r / R of each triangle.
+ * @param angle, ratio  out: [n_tri] each, or NULL */
+void vg_surface_shapes(const struct vg_mesh *m, double *angle, double *ratio);
 
 #endif
