@@ -200,6 +200,118 @@ static void obeys_sources(void **unused)
   vg_mesh_release(&m);
 }
 
+/* Sources act on a surface as in the volume: edges are as long as the field of
+ * the same settings has it, VGRID's sources and others. */
+static void obeys_the_field_of_the_volume(void **unused)
+{
+  const double size[3] = { 4, 4, 1 };
+  const uint32_t n[3] = { 4, 4, 1 };
+  const struct vg_source s[3] = {
+    { .kind = VG_SOURCE_VGRID_NODE, .p0 = { 0, 0, 1 }, .h0 = 0.05, .h1 = 0.05,
+      .an = 1 },
+    { .kind = VG_SOURCE_VGRID_NODE, .p0 = { 4, 4, 1 }, .h0 = 0.4, .h1 = 0.4,
+      .an = 1 },
+    { .kind = VG_SOURCE_SPHERE, .p0 = { 3, 1, 1 }, .r0 = 0.3, .h0 = 0.04,
+      .h1 = 0.04, .growth = 1.3 } };
+  const struct vg_sizing_options of = { .h_max = 0.3, .growth = 1.2,
+    .scale = 1.2, .threads = 1, .coarseness = 1 };
+  struct vg_mesh m = VG_MESH_INIT;
+  struct vg_remesh_options o = VG_REMESH_OPTIONS_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+  struct vg_sizing *field;
+  size_t n_edge = 0, n_fit = 0;
+  double sum = 0;
+
+  (void)unused;
+  shape_box(&m, size, n);
+  assert_int_equal(vg_sizing_new(&of, 3, s, &m, &field, &err), VG_OK);
+  o.h_max = of.h_max;
+  o.scale = of.scale;
+  o.n_source = 3;
+  o.source = s;
+  remesh(&m, &o, NULL);
+  for (size_t t = 0; t < m.n_tri; t++)
+    for (int k = 0; k < 3; k++) {
+      const double *a = m.point[m.tri[t][k]];
+      const double *b = m.point[m.tri[t][(k + 1) % 3]];
+      double mid[3], ratio;
+
+      for (int d = 0; d < 3; d++) mid[d] = (a[d] + b[d]) / 2;
+      ratio = vg_distance(a, b) / vg_sizing_at(field, mid);
+      sum += ratio;
+      n_edge++;
+      n_fit += ratio > 0.7 && ratio < 1.42;
+    }
+  /* What edges of any new surface are: row S21 of decisions.md. */
+  assert_true((double)n_fit > 0.9 * (double)n_edge);
+  assert_true(fabs(sum / (double)n_edge - 1) < 0.1);
+  vg_sizing_free(field);
+  vg_mesh_release(&m);
+}
+
+/* At half the scale there are four times as many triangles, half as long,
+ * whether sizes come from the settings, curvature, or a source. */
+static void scales_all_sizes(void **unused)
+{
+  const double size[3] = { 1, 0.6, 0.3 };
+  const struct vg_source s = { .kind = VG_SOURCE_POINT, .p0 = { 1, 0, 0 },
+                               .r0 = 0.1, .h0 = 0.04, .h1 = 0.04 };
+  struct vg_surface_quality q[2];
+  struct vg_remesh_report r = VG_REMESH_REPORT_INIT;
+
+  (void)unused;
+  for (int i = 0; i < 2; i++) {
+    struct vg_mesh m = VG_MESH_INIT;
+    struct vg_remesh_options o = VG_REMESH_OPTIONS_INIT;
+
+    shape_ball(&m, size, 96);
+    o.tolerance = 0.01;
+    o.h_max = 0.2;
+    o.h_min = 0.01;
+    o.n_source = 1;
+    o.source = &s;
+    o.scale = i ? 0.5 : 1;
+    remesh(&m, &o, &r);
+    assert_float_equal(r.h_max, 0.2 * o.scale, 1e-12);
+    assert_float_equal(r.tolerance, 0.01 * o.scale * o.scale, 1e-12);
+    vg_surface_quality(&m, &q[i]);
+    vg_mesh_release(&m);
+  }
+  assert_float_equal((double)q[1].n / (double)q[0].n, 4, 0.3);
+  assert_float_equal(q[1].edge_mean / q[0].edge_mean, 0.5, 0.025);
+  vg_remesh_report_release(&r);
+}
+
+/* What is told of a surface that is not to be changed. */
+static void judges_a_surface(void **unused)
+{
+  const double size[3] = { 3, 2, 1 };
+  const uint32_t n[3] = { 30, 20, 10 };
+  struct vg_mesh m = VG_MESH_INIT;
+  struct vg_remesh_options o = VG_REMESH_OPTIONS_INIT;
+  struct vg_remesh_report r = VG_REMESH_REPORT_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+
+  (void)unused;
+  shape_box(&m, size, n);
+  o.h_max = 0.1;
+  assert_int_equal(vg_remesh_judge(&m, &o, &r, &err), VG_OK);
+  assert_int_equal(r.n_corner, 8);
+  assert_int_equal(r.n_line, 12);
+  assert_float_equal(r.line_length[0], 24, 1e-9);
+  assert_int_equal(r.n_tri[0], m.n_tri);
+  assert_int_equal(r.n_tri[1], m.n_tri);
+  assert_int_equal(r.n_split + r.n_collapse + r.n_swap + r.n_move, 0);
+  assert_int_equal(r.n_bad, 0);
+  /* 0.1 along the axes; diagonals, a third of all, are 0.14. */
+  assert_true(edge_within(&r) > 0.6);
+  o.h_max = 0.4;
+  assert_int_equal(vg_remesh_judge(&m, &o, &r, &err), VG_OK);
+  assert_true(edge_within(&r) < 0.01);
+  vg_remesh_report_release(&r);
+  vg_mesh_release(&m);
+}
+
 static void expect_equal(const struct vg_mesh *a, const struct vg_mesh *b)
 {
   assert_int_equal(a->n_point, b->n_point);
@@ -362,6 +474,9 @@ int main(void)
     cmocka_unit_test(follows_strips),
     cmocka_unit_test(keeps_open_rims),
     cmocka_unit_test(obeys_sources),
+    cmocka_unit_test(obeys_the_field_of_the_volume),
+    cmocka_unit_test(scales_all_sizes),
+    cmocka_unit_test(judges_a_surface),
     cmocka_unit_test(same_bytes_for_any_threads),
     cmocka_unit_test(random_search),
     cmocka_unit_test(refuses),

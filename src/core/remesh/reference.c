@@ -504,3 +504,77 @@ double vg_ref_size(const struct vg_ref *r, const double x[3], uint32_t hint)
   }
   return h;
 }
+
+/* --- rays ---------------------------------------------------------------- */
+
+struct ray {
+  const double *x, *d;
+  double inverse[3], reach; /* to the nearest triangle so far */
+  uint32_t tri;
+};
+
+static int ray_meets_box(const struct vg_ref_node *b, const struct ray *r)
+{
+  double from = 0, to = r->reach;
+
+  for (int k = 0; k < 3; k++) {
+    double s = (b->lo[k] - r->x[k]) * r->inverse[k];
+    double t = (b->hi[k] - r->x[k]) * r->inverse[k];
+
+    if (r->d[k] == 0) {
+      if (r->x[k] < b->lo[k] || r->x[k] > b->hi[k]) return 0;
+      continue;
+    }
+    from = fmax(from, fmin(s, t));
+    to = fmin(to, fmax(s, t));
+  }
+  return from <= to;
+}
+
+/* After Moeller and Trumbore, "Fast, minimum storage ray/triangle
+ * intersection", Journal of Graphics Tools 2(1), 1997; from the front alone. */
+static void ray_meets(const struct vg_ref *ref, uint32_t t, struct ray *r)
+{
+  const struct vg_ref_tri *s = &ref->shape[t];
+  double p[3], q[3], w[3], det, a, b, far;
+
+  vg_cross(r->d, s->v, p);
+  det = vg_dot(s->u, p);
+  if (!(det > 0)) return;
+  vg_sub(r->x, s->a, w);
+  a = vg_dot(w, p);
+  if (a < 0 || a > det) return;
+  vg_cross(w, s->u, q);
+  b = vg_dot(r->d, q);
+  if (b < 0 || a + b > det) return;
+  far = vg_dot(s->v, q) / det;
+  if (!(far > 0) || far > r->reach || (far == r->reach && t > r->tri)) return;
+  r->reach = far;
+  r->tri = t;
+}
+
+uint32_t vg_ref_ray(const struct vg_ref *r, const double x[3],
+                    const double d[3], double most, double *far)
+{
+  struct ray ray = { x, d, { 1 / d[0], 1 / d[1], 1 / d[2] }, most,
+                     VG_REF_NONE };
+  size_t stack[DEPTH];
+  int top = 0;
+
+  stack[top++] = 0;
+  while (top) {
+    size_t i = stack[--top], leaf;
+
+    if (!ray_meets_box(&r->node[i], &ray)) continue;
+    if (i < r->first_leaf) {
+      stack[top++] = 2 * i + 2;
+      stack[top++] = 2 * i + 1;
+      continue;
+    }
+    leaf = LEAF * (i - r->first_leaf);
+    for (size_t k = leaf; k < leaf + LEAF && k < r->n_item; k++)
+      ray_meets(r, r->item[k], &ray);
+  }
+  *far = ray.reach;
+  return ray.tri;
+}

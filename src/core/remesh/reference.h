@@ -59,6 +59,12 @@ int vg_ref_within(const struct vg_ref *r, const double x[3],
 double vg_ref_nearest(const struct vg_ref *r, const double x[3],
                       const double n[3], uint32_t *hint, double out[3]);
 
+/** The triangle that a ray from x, a unit vector d along it, meets first, from
+ * the side that it faces, within `most`; VG_REF_NONE: none. *far out: how far
+ * that is. */
+uint32_t vg_ref_ray(const struct vg_ref *r, const double x[3],
+                    const double d[3], double most, double *far);
+
 /** Size at x: the least of all points' own sizes grown with the distance. */
 double vg_ref_size(const struct vg_ref *r, const double x[3], uint32_t hint);
 

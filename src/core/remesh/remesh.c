@@ -38,8 +38,10 @@ struct job {
   struct vg_ref ref;
   struct vg_curves curves;
   double *cap;              /* [n_tri] largest size, or NULL */
+  double jag;               /* tolerance of lines, the same at any scale */
   struct vg_source *source; /* those of the options, then spots */
   size_t n_source, cap_source;
+  int looks;                /* nothing is changed */
 };
 
 static const char *const cause_names[] = { "corner", "strip", "line",
@@ -86,6 +88,9 @@ static vg_status check_options(const struct vg_remesh_options *o,
     return vg_fail(err, VG_ERR_INPUT, "tolerance %g and sizes %g, %g of the "
                    "new surface must be lengths; 0: by the body", o->tolerance,
                    o->h_min, o->h_max);
+  if (!(o->scale > 0 && o->scale <= 1e4))
+    return vg_fail(err, VG_ERR_INPUT, "scale %g of sizes is out of range (0 "
+                   "to 1e4)", o->scale);
   if (o->h_max > 0 && o->h_min > o->h_max)
     return vg_fail(err, VG_ERR_INPUT, "smallest size %g is above the largest, "
                    "%g; exchange them", o->h_min, o->h_max);
@@ -126,8 +131,8 @@ static vg_status settle(struct job *j, struct vg_error *err)
   VG_TRY(vg_envelope_measure(m, outer, &e, err));
   r->length = e.is_domain ? length_of(m, outer) : whole;
   if (!(r->length > 0)) r->length = whole;
-  r->tolerance = j->o->tolerance > 0 ? j->o->tolerance
-                                     : TOLERANCE * r->length;
+  j->jag = j->o->tolerance > 0 ? j->o->tolerance : TOLERANCE * r->length;
+  r->tolerance = j->jag * j->o->scale * j->o->scale;
   r->h_max = j->o->h_max > 0 ? j->o->h_max : H_MAX * r->length;
   if (e.is_domain && !(j->o->h_max > 0)) {
     j->cap = vg_alloc(m->n_tri, sizeof *j->cap);
@@ -137,6 +142,9 @@ static vg_status settle(struct job *j, struct vg_error *err)
     r->h_max = fmax(r->h_max, H_OUTER * whole);
   }
   r->h_min = j->o->h_min > 0 ? j->o->h_min : fmin(H_MIN * r->length, r->h_max);
+  for (size_t t = 0; j->cap && t < m->n_tri; t++) j->cap[t] *= j->o->scale;
+  r->h_max *= j->o->scale;
+  r->h_min *= j->o->scale;
 done:
   free(outer);
   return st;
@@ -169,12 +177,12 @@ static vg_status prepare(struct job *j, struct vg_error *err)
   VG_TRY(settle(j, err));
   VG_TRY(vg_ref_build(&j->ref, j->given, err));
   VG_TRY(vg_curves_find(&j->curves, &j->ref, &(struct vg_curves_options){
-    o->ridge_angle, j->r.tolerance, j->given->tri_patch, j->given->patch,
+    o->ridge_angle, j->jag, j->given->tri_patch, j->given->patch,
     o->hard }, err));
   VG_TRY(vg_sizes_make(&j->ref, &j->curves, &(struct vg_sizes_options){
-    o->per_turn, CHORD * j->r.tolerance, j->r.h_min, j->r.h_max, o->growth,
-    j->cap }, err));
-  VG_TRY(check_number(j, err));
+    o->per_turn / o->scale, CHORD * j->r.tolerance, o->scale, j->r.h_min,
+    j->r.h_max, vg_scaled_growth(o->growth, o->scale), j->cap }, err));
+  if (!j->looks) VG_TRY(check_number(j, err));
   j->source = vg_alloc(o->n_source, sizeof *j->source);
   if (!j->source) VG_TRY(vg_fail_memory(err, "the sources"));
   if (o->n_source)
@@ -229,8 +237,9 @@ static double source_size(const void *user, const double x[3])
 static vg_status make(struct job *j, struct vg_mesh *out,
                       struct vg_error *err)
 {
-  const struct vg_sizing_options s = { .growth = j->o->growth,
-                                       .scale = j->o->scale };
+  const struct vg_sizing_options s = {
+    .growth = vg_scaled_growth(j->o->growth, j->o->scale),
+    .scale = j->o->scale };
   struct vg_source_set set = VG_SOURCE_SET_INIT;
   struct vg_remesh_report *r = &j->r;
   struct vg_work w = { .ref = &j->ref, .curves = &j->curves,
@@ -240,13 +249,13 @@ static vg_status make(struct job *j, struct vg_mesh *out,
 
   if (j->n_source || j->o->map) {
     VG_TRY(vg_source_check(j->n_source, j->source, err));
-    VG_TRY(vg_source_prepare(&s, j->n_source, j->source, 0, &set, err));
+    VG_TRY(vg_source_prepare(&s, j->n_source, j->source, 1, &set, err));
     set.map = j->o->map;
     w.other_size = source_size;
     w.user = &set;
   }
   VG_TRY(vg_work_begin(&w, err));
-  VG_TRY(change(j, &w, err));
+  if (!j->looks) VG_TRY(change(j, &w, err));
   VG_TRY(vg_result_store(&w, j->given, out, r, err));
   r->n_split = w.n_split;
   r->n_collapse = w.n_collapse;
@@ -337,6 +346,33 @@ done:
   return st;
 }
 
+static void tell(struct job *j, const struct vg_mesh *out,
+                 struct vg_remesh_report *report)
+{
+  const struct vg_mesh *m = j->given;
+
+  j->r.n_tri[0] = m->n_tri;
+  j->r.n_tri[1] = out->n_tri;
+  j->r.n_point[0] = m->n_point;
+  j->r.n_point[1] = out->n_point;
+  j->r.n_corner = j->curves.n_corner;
+  j->r.n_line = j->curves.n_curve;
+  j->r.line_length[0] = j->curves.length;
+  if (!report) return;
+  vg_remesh_report_release(report);
+  *report = j->r;
+  j->r.bad = NULL;
+}
+
+static void release(struct job *j)
+{
+  free(j->r.bad);
+  free(j->cap);
+  free(j->source);
+  vg_curves_release(&j->curves);
+  vg_ref_release(&j->ref);
+}
+
 vg_status vg_remesh(struct vg_mesh *m, const struct vg_remesh_options *o,
                     struct vg_remesh_report *report, struct vg_error *err)
 {
@@ -348,25 +384,30 @@ vg_status vg_remesh(struct vg_mesh *m, const struct vg_remesh_options *o,
   VG_TRY(check_options(o, err));
   VG_TRY(prepare(&j, err));
   VG_TRY(repeat(&j, &out, err));
-  j.r.n_tri[0] = m->n_tri;
-  j.r.n_tri[1] = out.n_tri;
-  j.r.n_point[0] = m->n_point;
-  j.r.n_point[1] = out.n_point;
-  j.r.n_corner = j.curves.n_corner;
-  j.r.n_line = j.curves.n_curve;
-  j.r.line_length[0] = j.curves.length;
+  tell(&j, &out, report);
   vg_mesh_move(m, &out);
-  if (report) {
-    vg_remesh_report_release(report);
-    *report = j.r;
-    j.r.bad = NULL;
-  }
 done:
-  free(j.r.bad);
-  free(j.cap);
-  free(j.source);
-  vg_curves_release(&j.curves);
-  vg_ref_release(&j.ref);
+  release(&j);
+  vg_mesh_release(&out);
+  return st;
+}
+
+vg_status vg_remesh_judge(const struct vg_mesh *m,
+                          const struct vg_remesh_options *o,
+                          struct vg_remesh_report *report,
+                          struct vg_error *err)
+{
+  struct job j = { .given = m, .o = o, .looks = 1 };
+  struct vg_mesh out = VG_MESH_INIT;
+  vg_status st;
+
+  VG_TRY(check_surface(m, err));
+  VG_TRY(check_options(o, err));
+  VG_TRY(prepare(&j, err));
+  VG_TRY(make(&j, &out, err));
+  tell(&j, &out, report);
+done:
+  release(&j);
   vg_mesh_release(&out);
   return st;
 }

@@ -30,7 +30,9 @@ struct vg_remesh_options {
   double growth;            /* > 1, of sizes along the surface */
   size_t n_source;          /* sources of sizes, as the volume uses them */
   const struct vg_source *source;
-  double scale;             /* of the sources' spacing */
+  double scale;             /* factor on all sizes: h_min, h_max, those of the
+                               shape and of the sources, on growth - 1, and its
+                               square on the tolerance */
   const struct vg_size_map *map;  /* sizes besides; or NULL */
   const uint8_t *hard;      /* [n_patch] all borders of the patch stay; or
                                NULL */
@@ -91,6 +93,13 @@ void vg_remesh_report_release(struct vg_remesh_report *r);
  * VG_ERR_MEMORY. Re-entrant. About O(n log n). */
 vg_status vg_remesh(struct vg_mesh *m, const struct vg_remesh_options *o,
                     struct vg_remesh_report *r, struct vg_error *err);
+
+/** What vg_remesh would report of a surface that is as it should be already:
+ * its lines and corners, edges against what is asked for, bad triangles with their
+ * causes. No change is counted. Conditions, errors and cost as there. */
+vg_status vg_remesh_judge(const struct vg_mesh *m,
+                          const struct vg_remesh_options *o,
+                          struct vg_remesh_report *r, struct vg_error *err);
 
 /** "corner", "strip", ... Static. */
 const char *vg_remesh_cause_name(enum vg_remesh_cause c);

@@ -234,7 +234,7 @@ static double width(const struct vg_ref *r, const struct vg_curves *c,
 }
 
 static void by_strip(struct vg_ref *r, const struct vg_curves *c, uint32_t h,
-                     const double *limit)
+                     double factor, const double *limit)
 {
   static const double share[3] = { 0.1, 0.5, 0.9 };
   uint32_t end[2] = { r->tri[h / 3][h % 3], r->tri[h / 3][next(h) % 3] };
@@ -244,7 +244,7 @@ static void by_strip(struct vg_ref *r, const struct vg_curves *c, uint32_t h,
 
     for (int k = 0; k < 3; k++)
       x[k] = at(r, h)[k] + share[i] * (at(r, next(h))[k] - at(r, h)[k]);
-    w = width(r, c, h, x, most);
+    w = factor * width(r, c, h, x, most / factor);
     for (int k = 0; k < 2; k++)
       if (i != (k ? 0 : 2) && w < r->size[end[k]])
         r->size[end[k]] = fmax(w, FLOOR * limit[end[k]]);
@@ -270,7 +270,7 @@ vg_status vg_sizes_make(struct vg_ref *r, const struct vg_curves *c,
       r->size[r->tri[t][k]] = fmin(r->size[r->tri[t][k]], o->cap[t]);
   memcpy(limit, r->size, r->n_point * sizeof *limit);
   for (uint32_t h = 0; h < 3 * r->n_tri; h++)
-    if (c->line[h]) by_strip(r, c, h, limit);
+    if (c->line[h]) by_strip(r, c, h, o->strip, limit);
   for (size_t p = 0; p < r->n_point; p++)
     r->size[p] = fmin(o->h_max, fmax(o->h_min, r->size[p]));
   vg_ref_sizes(r);

@@ -8,6 +8,7 @@
 struct vg_sizes_options {
   double per_turn;          /* edges round a full circle */
   double chord;             /* largest distance of an edge from its arc */
+  double strip;             /* size on a strip over its width */
   double h_min, h_max;      /* bounds, > 0 and finite */
   double growth;
   const double *cap;        /* [n_tri] largest size on it, or NULL */

@@ -1,0 +1,42 @@
+/* core/remesh/gaps.h: how narrow the fluid is between surfaces that face each
+ * other, as places with sizes: for a new surface and for the cells in between.
+ *
+ * From places on the surface a ray goes into the fluid, along the normal; what
+ * it meets within reach, if that faces it, is the other side of a gap as wide
+ * as the ray is long. Places are as near to each other as the gaps are wide
+ * there, or as the largest size where there is none, so that their number
+ * follows from areas and widths. */
+#ifndef VG_CORE_REMESH_GAPS_H
+#define VG_CORE_REMESH_GAPS_H
+
+#include <stddef.h>
+
+#include "core/mesh/mesh.h"
+
+struct vg_gap_options {
+  double edges;             /* > 0, asked for across a gap */
+  double h_min, h_max;      /* no size below; none above is asked for, so that
+                               gaps wider than edges * h_max are none. h_min 0:
+                               2e-5 of the surface's length, h_max 0: 0.04 */
+  int threads;              /* 0: one per core; the same bytes for any */
+};
+
+struct vg_gaps {
+  size_t n;                 /* places, in pairs: both sides of a gap */
+  double (*x)[3], *h;       /* [n] owned; size there: width / edges */
+  double narrowest, at[3];  /* of all, and one side of it; n 0: not set */
+};
+#define VG_GAPS_INIT { 0 }
+
+/** Find them.
+ *
+ * @param m    triangles that face the fluid, no index out of range
+ * @param out  empty before, and on failure; vg_gaps_release
+ * VG_ERR_INPUT for options out of range, edges of three triangles, or some 1e8
+ * places; VG_ERR_MEMORY. Re-entrant. About a microsecond a place. */
+vg_status vg_gaps_find(const struct vg_mesh *m, const struct vg_gap_options *o,
+                       struct vg_gaps *out, struct vg_error *err);
+
+void vg_gaps_release(struct vg_gaps *g);
+
+#endif
