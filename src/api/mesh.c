@@ -55,7 +55,9 @@ static vg_status use_sizes(vanguard_job *job)
     p->map = &job->map;
   } else if (job->n_size) {
     st = vg_size_samples_new(job->n_size, (const double (*)[3])job->size_at,
-                             job->size_of, p->settings.growth,
+                             job->size_of,
+                             vg_scaled_growth(p->settings.growth,
+                                              p->settings.scale),
                              (int)p->settings.threads, &job->samples,
                              &job->err);
     if (st >= 0) p->map = vg_size_samples_map(job->samples);
@@ -118,6 +120,7 @@ static vg_status make(vanguard_job *job)
   VG_TRY(vg_run_mesh(r, p, &job->layers, &job->show, &job->err));
   if (!job->layers.is_on) front = &p->surface;
   vg_effects_note(&r->effects, front, p);
+  vg_problem_note_unused(p, job->layers.is_on, VG_USE_JUDGED_MESH);
   if (!r->rank)
     vg_report_layers_note(&job->layers, &p->surface, &p->notes);
 done:

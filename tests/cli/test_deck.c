@@ -128,7 +128,7 @@ static void everything_survives_a_round_trip(void **state)
   struct vg_layer_row layer = { -7, VG_ANSWER_YES, 1e-5, 1.15, NAN, NAN, NAN,
                                 30, 2, 0.125, 0, { 98, 99.9, 70, NAN, 8 } };
   struct vg_sweep_row sweep = { "1,2", "1:4:x2", "", "20000,50000",
-                                "advancing,octree", "4,16", 3 };
+                                "1:3", "advancing,octree", "4,16", 3 };
 
   (void)state;
   vg_settings_default(&s);
@@ -150,7 +150,7 @@ static void everything_survives_a_round_trip(void **state)
   vg_settings_add(&s, VG_TABLE_PATCHES, &patch, NULL);
   s.layer = (struct vg_layer_settings){ VG_ANSWER_YES, 1e-6, NAN, 0.15, 0.02,
     30, 40, 5, 2.5, 1.3, 0, 5e6, 1.5, "1-3,-7", "8 ,9", 40, 0.3, 0.8, 1.5, 7,
-    1, 0, { 95, NAN, 60, 1, 5.5 } };
+    1, 0, 2, { 95, NAN, 60, 1, 5.5 } };
   vg_settings_add(&s, VG_TABLE_LAYERS, &layer, NULL);
   for (int kind = VG_SOURCE_VGRID_NODE; kind <= VG_SOURCE_CYLINDER; kind++)
     add_source(&s, kind);
@@ -331,6 +331,48 @@ static void patches_come_from_a_mesh(void **state)
   vg_mesh_release(&m);
 }
 
+/* What is not as by default is given; each setting says what it needs. */
+static void tells_what_is_given(void **state)
+{
+  static const struct { const char *name; enum vg_use use; int given; } row[] = {
+    { "growth", VG_USE_ALWAYS, 0 }, { "hmax", VG_USE_ALWAYS, 1 },
+    { "cad_angle", VG_USE_CAD, 0 }, { "unit", VG_USE_CAD, 1 },
+    { "first", VG_USE_LAYERS, 1 }, { "ratio", VG_USE_LAYERS, 0 },
+    { "min_full", VG_USE_LAYERS, 0 }, { "layers", VG_USE_ALWAYS, 0 },
+    { "surface_size", VG_USE_REMESH, 1 }, { "parts", VG_USE_ALWAYS, 1 },
+    { "coarsening", VG_USE_PARTS, 0 },
+    { "levels", VG_USE_PLANES, 0 }, { "d3m_sources", VG_USE_D3M, 0 },
+    { "farfield", VG_USE_ALWAYS, 0 },
+    { "farfield_size", VG_USE_FARFIELD, 1 } };
+  struct vg_settings s;
+  struct vg_error err = VG_ERROR_INIT;
+  const struct vg_param *p;
+  const char *name;
+  uint8_t *given;
+  size_t n = 0;
+  int far;
+
+  (void)state;
+  vg_settings_default(&s);
+  assert_true(parse("t\nhmax unit first surface_size parts growth\n"
+                    "3 mm 1e-5 2 4 1.2\nfarfield\nkind size\nauto 9\n",
+                    &s, &err) >= 0);
+  given = vg_settings_given(&s);
+  assert_non_null(given);
+  for (size_t i = 0; (p = vg_settings_name(i, &name, &far)); i++) {
+    assert_true(vg_param_use(p, far) != VG_USE_BY_PLACE);
+    for (size_t k = 0; k < sizeof row / sizeof *row; k++) {
+      if (strcmp(name, row[k].name) != 0) continue;
+      assert_int_equal(vg_param_use(p, far), row[k].use);
+      assert_int_equal(given[i], row[k].given);
+      n++;
+    }
+  }
+  assert_int_equal(n, sizeof row / sizeof *row);
+  free(given);
+  vg_settings_release(&s);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -342,6 +384,7 @@ int main(void)
     cmocka_unit_test(layers_are_a_setting_and_a_table),
     cmocka_unit_test(failure_leaves_the_settings_alone),
     cmocka_unit_test(patches_come_from_a_mesh),
+    cmocka_unit_test(tells_what_is_given),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

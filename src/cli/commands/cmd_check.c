@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/commands/check_surface.h"
 #include "cli/commands/commands.h"
 #include "cli/common/cli.h"
 #include "cli/common/options.h"
@@ -15,7 +16,7 @@
 #include "run/settings/deck.h"
 
 struct arguments {
-  const char *file, *deck, *defects;
+  const char *file, *deck, *defects, *against, *vtu;
   int json, quiet;
 };
 
@@ -26,6 +27,8 @@ static error_t option(int key, char *arg, struct argp_state *state)
   switch (key) {
   case 'd': a->deck = arg; return 0;
   case 'f': a->defects = arg; return 0;
+  case 'a': a->against = arg; return 0;
+  case 'v': a->vtu = arg; return 0;
   case 'j': a->json = 1; return 0;
   case 'q': a->quiet = 1; return 0;
   case ARGP_KEY_ARG:
@@ -111,74 +114,6 @@ done:
   return st;
 }
 
-static vg_status write_defects(const struct arguments *a,
-                               const struct vg_mesh *m,
-                               const struct vg_surface_report *r,
-                               struct vg_error *err)
-{
-  vg_status st;
-
-  if (!a->defects || !r->n_defect) return VG_OK;
-  vg_display_end_at_once(0);
-  st = vg_write_defects(a->defects, m, r, err);
-  if (st >= 0 && !a->json)
-    printf("  all faces with a defect: %s\n", a->defects);
-  return st;
-}
-
-static json_t *notes_json(const struct vg_notes *notes)
-{
-  json_t *list = json_array();
-
-  for (size_t i = 0; i < notes->n; i++)
-    json_array_append_new(list, vg_text_json(notes->text[i]));
-  return list;
-}
-
-static vg_status check_surface(const struct arguments *a, struct vg_mesh *m,
-                               struct vg_notes *notes, struct vg_error *err)
-{
-  struct vg_surface_check_options o = VG_SURFACE_CHECK_OPTIONS_INIT;
-  struct vg_surface_report r = VG_SURFACE_REPORT_INIT;
-  int external = -1, is_half = 0;
-  vg_status st;
-
-  o.require_bc = vg_surface_has_conditions(m);
-  VG_TRY(vg_surface_examine(m, &o, &external, &r, notes, err));
-  if (external) VG_TRY(vg_surface_half(m, &r, notes, &is_half, err));
-  if (a->json) {
-    print_json(json_pack("{s:o s:b s:s s:o s:o s:o s:o}", "file",
-                         vg_text_json(a->file), "ok",
-                         is_half || !r.n_defect, "taken_as",
-                         is_half ? "half" : external ? "bodies" : "domain",
-                         "size", vg_report_size_json(m), "patches",
-                         vg_report_patches_json(m), "notes",
-                         notes_json(notes), "surface",
-                         vg_report_surface_json(m, &r, VG_SHOWN_DEFECTS)));
-  } else {
-    printf("%s: surface, %s\n", a->file,
-           is_half ? "taken as half of bodies in a fluid around them"
-           : external ? "taken as bodies in a fluid around them"
-           : "taken as the boundary of a fluid inside it");
-    vg_report_size_text(stdout, m);
-    VG_TRY(vg_report_patches_text(stdout, m, err));
-    vg_report_surface_text(stdout, m, &r, is_half ? 0 : VG_SHOWN_DEFECTS);
-    for (size_t i = 0; i < notes->n; i++)
-      printf("  note: %s\n", notes->text[i]);
-    if (!r.n_defect) printf("  no defects\n");
-  }
-  VG_TRY(write_defects(a, m, &r, err));
-  if (r.n_defect && !is_half)
-    st = vg_fail(err, VG_ERR_GEOMETRY, "%s: the surface has %zu defects",
-                 a->file, r.n_defect);
-  else if (!m->n_tri)
-    st = vg_fail(err, VG_ERR_GEOMETRY, "%s: no surface is left: all its "
-                 "triangles are degenerate", a->file);
-done:
-  vg_surface_report_release(&r);
-  return st;
-}
-
 static vg_status check(const struct arguments *a, struct vg_error *err)
 {
   struct vg_settings s;
@@ -187,6 +122,8 @@ static vg_status check(const struct arguments *a, struct vg_error *err)
   struct vg_mesh m = VG_MESH_INIT;
   struct vg_cad_options cad;
   struct vg_read_info info = { .cad = &cad };
+  const struct vg_check_surface surface = { a->file, a->defects, a->against,
+                                            a->vtu, a->json, a->deck != NULL };
   vg_status st = VG_OK;
 
   vg_display_init(&show, a->quiet);
@@ -200,7 +137,7 @@ static vg_status check(const struct arguments *a, struct vg_error *err)
   vg_display_clear(&show);
   st = m.n_tet + m.n_pyr + m.n_pri + m.n_hex
          ? check_mesh(a, &s, &m, &info.turned, err)
-         : check_surface(a, &m, &notes, err);
+         : vg_check_surface(&surface, &s, &m, &notes, err);
 done:
   vg_display_clear(&show);
   vg_notes_release(&notes);
@@ -212,11 +149,15 @@ done:
 int vg_cmd_check(int argc, char **argv)
 {
   const struct argp_option options[] = {
-    { "deck", 'd', "FILE", 0, "hold the edges of a volume mesh against the "
-      "spacing of this deck (of a run: PROJECT.resolved.deck); read CAD as it "
-      "says", 0 },
+    { "deck", 'd', "FILE", 0, "hold edges against the sizes of this deck (of "
+      "a run: PROJECT.resolved.deck), those of a surface also against what its "
+      "shape asks for; read CAD as it says", 0 },
     { "defects", 'f', "FILE", 0, "write all faces with a defect to this .vtu "
       "file", 0 },
+    { "against", 'a', "FILE", 0, "measure how far a surface is from this one, "
+      "and this one from it", 0 },
+    { "vtu", 'v', "FILE", 0, "write the triangles of a surface with angles, "
+      "2 r/R and distance to this .vtu file", 0 },
     { "json", 'j', NULL, 0, "report as JSON", 0 },
     { "quiet", 'q', NULL, 0, "no progress", 0 },
     { 0 }
@@ -225,7 +166,8 @@ int vg_cmd_check(int argc, char **argv)
     .args_doc = "FILE",
     .doc = "Judge FILE: a volume mesh (validity, dihedral angles, radius "
       "ratio, histograms, worst cells) or a surface (open and non-manifold "
-      "edges, orientation, duplicates, intersections, shells, conditions).\v"
+      "edges, orientation, duplicates, intersections, shells, conditions; "
+      "angles, 2 r/R, ridges).\v"
       "Exit status 0 when nothing is wrong, 1 otherwise." };
   struct arguments a = { 0 };
   struct vg_error err = VG_ERROR_INIT;

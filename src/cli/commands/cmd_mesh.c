@@ -526,6 +526,7 @@ static vg_status run_stages(struct run *r, const struct arguments *a,
   VG_TRY(close_surface(r, err));
   VG_TRY(vg_run_mesh(m, &r->problem, &r->layers, &r->show, err));
   vg_effects_note(&m->effects, front_of(r), &r->problem);
+  vg_problem_note_unused(&r->problem, r->layers.is_on, VG_USE_JUDGED_MESH);
   vg_report_layers_note(&r->layers, &r->problem.surface, &r->problem.notes);
   st = write_all(r, a, err);
 done:

@@ -1,6 +1,5 @@
 /* vanguard surface: a triangulation in, a surface of triangles to size out. */
 #define _GNU_SOURCE
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -9,7 +8,7 @@
 #include "cli/commands/commands.h"
 #include "cli/common/cli.h"
 #include "cli/common/options.h"
-#include "core/geometry/vector.h"
+#include "core/surface/surface_quality.h"
 #include "io/mesh/format.h"
 #include "io/mesh/vtu.h"
 #include "io/stream/stream.h"
@@ -137,37 +136,21 @@ static vg_status move_files(struct files *f, struct vg_error *err)
 
 /* --- what is written ----------------------------------------------------- */
 
-/* Smallest angle of each triangle, degrees: for people only. */
-static void angles(const struct vg_mesh *m, double *angle)
-{
-  for (size_t t = 0; t < m->n_tri; t++) {
-    double l[3], u[3], v[3], n[3], area, longest, middle;
-
-    for (int k = 0; k < 3; k++)
-      l[k] = vg_distance(m->point[m->tri[t][k]],
-                         m->point[m->tri[t][(k + 1) % 3]]);
-    vg_sub(m->point[m->tri[t][1]], m->point[m->tri[t][0]], u);
-    vg_sub(m->point[m->tri[t][2]], m->point[m->tri[t][0]], v);
-    vg_cross(u, v, n);
-    area = vg_norm(n);
-    longest = fmax(l[0], fmax(l[1], l[2]));
-    middle = fmax(fmin(l[0], l[1]), fmin(fmax(l[0], l[1]), l[2]));
-    angle[t] = asin(fmin(area / (longest * middle), 1)) * (180 / M_PI);
-  }
-}
-
+/* The first of both arrays begins what is allocated. */
 static vg_status write_vtu(const char *path, const struct vg_problem *p,
                            struct vg_error *err)
 {
-  double *angle = vg_alloc(p->surface.n_tri, sizeof *angle);
-  const struct vg_vtu_field field[2] = {
+  size_t n = p->surface.n_tri;
+  double *angle = vg_alloc(2 * n, sizeof *angle);
+  const struct vg_vtu_field field[3] = {
     { "smallest_angle", VG_VTU_CELL, VG_VTU_FLOAT64, 1, angle },
+    { "radius_ratio", VG_VTU_CELL, VG_VTU_FLOAT64, 1, angle + n },
     { "distance", VG_VTU_CELL, VG_VTU_FLOAT64, 1, p->renewal.face } };
   vg_status st;
 
   if (!angle) return vg_fail_memory(err, "the angles");
-  angles(&p->surface, angle);
-  st = vg_vtu_write_boundary(path, &p->surface, field, 2, err);
+  vg_surface_shapes(&p->surface, angle, angle + n);
+  st = vg_vtu_write_boundary(path, &p->surface, field, 3, err);
   free(angle);
   return st;
 }
@@ -252,6 +235,7 @@ static vg_status run(const struct arguments *a, struct vg_display *show,
   VG_TRY(vg_problem_surface(&p, show, err));
   VG_TRY(vg_problem_close(&p, show, err));
   vg_problem_note_unset(&p);
+  vg_problem_note_unused(&p, 0, VG_USE_JUDGED_SURFACE);
   o = report(&p, &f);
   if (!o) VG_TRY(vg_fail_memory(err, "the report"));
   vg_display_update(show, "write", p.surface.n_tri, 0);

@@ -16,10 +16,10 @@
 #include "run/settings/deck.h"
 
 enum { KEY_LEAF_CELLS = 300, KEY_REPEAT, KEY_LAUNCHER, KEY_KEEP,
-       KEY_PROGRAM, KEY_DECOMPOSE, KEY_PARTS };
+       KEY_PROGRAM, KEY_DECOMPOSE, KEY_PARTS, KEY_FAMILY };
 
 /* Lists, from an option or from the deck. */
-enum { RANKS, THREADS, LEVELS, LEAF_CELLS, PARTS, N_LIST };
+enum { RANKS, THREADS, LEVELS, LEAF_CELLS, PARTS, FAMILY, N_LIST };
 static const struct {
   const char *option, *column;
   int64_t lo, hi;
@@ -27,13 +27,14 @@ static const struct {
   { "--ranks", "ranks", 1, 1000000 }, { "--threads", "threads", 1, 1000 },
   { "--levels", "levels", 0, 40 },
   { "--leaf-cells", "leaf_cells", 1, 1000000000000 },
-  { "--parts", "parts", 1, 1000000 } };
+  { "--parts", "parts", 1, 1000000 },
+  { "--family", "family", 1, 100 } };
 
 static struct vg_range_list *list_of(struct vg_sweep_options *o, int k)
 {
   return k == RANKS ? &o->ranks : k == THREADS ? &o->threads
        : k == LEVELS ? &o->levels : k == LEAF_CELLS ? &o->leaf_cells
-       : &o->parts;
+       : k == FAMILY ? &o->family : &o->parts;
 }
 
 static void range(int k, const char *text, struct vg_sweep_options *o,
@@ -68,6 +69,7 @@ static error_t option(int key, char *arg, struct argp_state *state)
   case KEY_LEAF_CELLS: range(LEAF_CELLS, arg, o, state); return 0;
   case KEY_PARTS: range(PARTS, arg, o, state); return 0;
   case KEY_DECOMPOSE: ways(arg, o, state); return 0;
+  case KEY_FAMILY: range(FAMILY, arg, o, state); return 0;
   case 'n': range(RANKS, arg, o, state); return 0;
   case 't': range(THREADS, arg, o, state); return 0;
   case KEY_REPEAT:
@@ -112,7 +114,7 @@ static vg_status take_row(const char *deck, const struct vg_sweep_row *row,
                           struct vg_sweep_options *o, struct vg_error *err)
 {
   const char *text[N_LIST] = { row->ranks, row->threads, row->levels,
-                               row->leaf_cells, row->parts };
+                               row->leaf_cells, row->parts, row->family };
   char what[400];
   int given[N_LIST];
   vg_status st = VG_OK;
@@ -140,6 +142,7 @@ static vg_status take_deck(struct vg_sweep_options *o, struct vg_error *err)
   if (!deck && vg_input_find(o->project, NULL, &p.files, NULL) >= 0)
     deck = p.files.deck;
   if (deck && *deck) st = vg_deck_read(deck, &p.settings, err);
+  o->scale = p.settings.scale;
   if (st >= 0 && p.settings.n_sweep)
     st = take_row(deck, &p.settings.sweep, o, err);
   if (st >= 0 && !o->ranks.n)
@@ -285,6 +288,7 @@ static int run(struct vg_sweep_options *o)
     print_head(width);
     for (size_t i = 0; i < s.n; i++) print_case(&s, &s.item[i], width);
     if (o->n_way || o->parts.n) print_parts(&s, width);
+    vg_sweep_family_text(stdout, &s);
   }
   status = conclude(&s);
   if (ran < 0) status = vg_cli_fail(&why);
@@ -310,6 +314,9 @@ int vg_cmd_sweep(int argc, char **argv)
     { "parts", KEY_PARTS, "LIST", 0, "numbers of parts", 2 },
     { "ranks", 'n', "LIST", 0, "numbers of ranks [default 1]", 2 },
     { "threads", 't', "LIST", 0, "threads of each rank [default 1]", 2 },
+    { "family", KEY_FAMILY, "LIST", 0, "levels of a grid family, as in 1:3: "
+      "all sizes times 2/(level + 1), layers by the Drag Prediction "
+      "Workshops' rule (--scale, --scale-layers workshop)", 2 },
     { "repeat", KEY_REPEAT, "K", 0, "times that each case is run [default "
       "1]", 2 },
     { "launcher", KEY_LAUNCHER, "COMMAND", 0, "how ranks are started, e.g. "

@@ -6,6 +6,7 @@
 
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 
 #include "cli/plot/timeline.h"
 #include "partition/advance/ways.h"
@@ -19,14 +20,25 @@ struct vg_sweep_options {
   const char *program;           /* NULL: this one */
   struct vg_range_list levels, leaf_cells, ranks, threads, parts;
   int n_way, way[VG_DECOMPOSITIONS];  /* [n_way] enum vg_decomposition */
+  struct vg_range_list family;   /* levels of a grid family; none: no family */
+  double scale;                  /* of its first level */
   int repeat, keep, json, quiet;
   int n_extra;
   char **extra;                  /* [n_extra] for vanguard mesh */
 };
 
+/* What is compared along a family; NAN: not known. */
+enum vg_member_figure {
+  VG_MEMBER_CELLS, VG_MEMBER_SURFACE, VG_MEMBER_FIELD, VG_MEMBER_FIRST,
+  VG_MEMBER_LEVELS, VG_MEMBER_N  /* cells; mean edges on the surface and in the
+                                    field; mean first height; mean layers */
+};
+
 struct vg_sweep_case {
   int64_t levels, leaf_cells, parts;   /* -1: not given */
   int way;                       /* enum vg_decomposition; -1: not given */
+  int64_t family;                /* level from 1; 0: none */
+  double member[VG_MEMBER_N];
   int ranks, threads, repeat;
   char name[96], *dir;
   int is_run, is_done;
@@ -106,6 +118,20 @@ int vg_sweep_same_mesh(const struct vg_sweep_case *a,
 int vg_sweep_differ(const struct vg_sweep *s, size_t *n_compared,
                     const struct vg_sweep_case **a,
                     const struct vg_sweep_case **b, char *file);
+
+/** Size of a level of a family over that of the first: 2 / (level + 1), as the
+ * Drag Prediction Workshops have it. */
+double vg_sweep_scale(int64_t level);
+
+/** Take the figures of a member from its report. */
+struct json_t;
+void vg_sweep_member(const struct json_t *report, struct vg_sweep_case *c);
+
+/** Members of the family, each with its figures over those of the one before
+ * and what the rule has for it: for people, and as family.csv in o->dir.
+ * Nothing happens without a family. */
+void vg_sweep_family_text(FILE *to, const struct vg_sweep *s);
+vg_status vg_sweep_family_write(const struct vg_sweep *s, struct vg_error *err);
 
 /** sweep.csv, sweep.json and the figures. */
 vg_status vg_sweep_write(const struct vg_sweep *s, struct vg_error *err);

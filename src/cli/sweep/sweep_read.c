@@ -130,6 +130,7 @@ static void read_report(const struct vg_sweep_options *o,
   c->angle_min = number_at(mesh, "angle_min");
   c->peak_memory = number_at(root, "peak_memory_bytes");
   take_parts(root, &c->parts_made);
+  if (c->family) vg_sweep_member(root, c);
   if (c->is_done) {
     take_digests(files, c);
     if (!o->keep) remove_meshes(files, c->dir);
@@ -204,7 +205,8 @@ int vg_sweep_same_mesh(const struct vg_sweep_case *a,
                        const struct vg_sweep_case *b)
 {
   return a->levels == b->levels && a->leaf_cells == b->leaf_cells &&
-    a->way == b->way && a->parts == b->parts;
+    a->way == b->way && a->parts == b->parts &&
+    a->family == b->family;
 }
 
 double vg_sweep_field_cells(const struct vg_sweep_case *c)

@@ -62,13 +62,17 @@ static vg_status add_case(struct vg_sweep *s, const struct vg_sweep_case *c,
 {
   struct vg_sweep_case *to = &s->item[s->n];
   char part[64] = "";
+  size_t at = 0;
 
   *to = *c;
+  if (c->family)
+    at = (size_t)snprintf(part, sizeof part, "f%lld-", (long long)c->family);
   if (c->levels >= 0)
-    snprintf(part, sizeof part, "L%lld-", (long long)c->levels);
+    snprintf(part + at, sizeof part - at, "L%lld-", (long long)c->levels);
   if (c->leaf_cells >= 0)
-    snprintf(part, sizeof part, "c%lld-", (long long)c->leaf_cells);
-  if (c->way >= 0) snprintf(part, sizeof part, "%s-", vg_ways[c->way].name);
+    snprintf(part + at, sizeof part - at, "c%lld-", (long long)c->leaf_cells);
+  if (c->way >= 0)
+    snprintf(part + at, sizeof part - at, "%s-", vg_ways[c->way].name);
   if (c->parts >= 0)
     snprintf(part + strlen(part), 24, "p%lld-", (long long)c->parts);
   snprintf(to->name, sizeof to->name, "%sn%d-t%d", part, c->ranks,
@@ -77,6 +81,7 @@ static vg_status add_case(struct vg_sweep *s, const struct vg_sweep_case *c,
     snprintf(to->name + strlen(to->name), 16, "-r%d", c->repeat);
   to->angle_min = to->peak_memory = to->critical = NAN;
   to->parts_made = (struct vg_sweep_parts){ NAN, NAN, NAN, NAN, NAN, NAN };
+  for (int k = 0; k < VG_MEMBER_N; k++) to->member[k] = NAN;
   if (asprintf(&to->dir, "%s/%s", s->o->dir, to->name) < 0) {
     to->dir = NULL;
     return vg_fail_memory(err, "a path");
@@ -107,11 +112,13 @@ vg_status vg_sweep_plan(const struct vg_sweep_options *o, struct vg_sweep *s,
   size_t n_parts = o->parts.n ? o->parts.n : 1;
   size_t n_cut = o->levels.n + o->leaf_cells.n;
   size_t n_mesh = n_cut + n_way * n_parts, n;
+  size_t n_member = o->family.n ? o->family.n : 1;
   vg_status st = VG_OK;
 
   s->o = o;
   if (!n_mesh) n_mesh = 1;
-  n = n_mesh * (size_t)o->repeat;
+  n = n_mesh * n_member;
+  if (n <= VG_RANGE_MAX) n *= (size_t)o->repeat;
   if (n <= VG_RANGE_MAX) n *= o->ranks.n;
   if (n <= VG_RANGE_MAX) n *= o->threads.n;
   if (n > VG_RANGE_MAX)
@@ -120,10 +127,12 @@ vg_status vg_sweep_plan(const struct vg_sweep_options *o, struct vg_sweep *s,
   s->item = vg_calloc(n, sizeof *s->item);
   if (!s->item) return vg_fail_memory(err, "the cases");
   for (int k = 1; k <= o->repeat; k++)
-    for (size_t i = 0; i < n_mesh; i++) {
+    for (size_t at = 0; at < n_mesh * n_member; at++) {
       struct vg_sweep_case c = { .levels = -1, .leaf_cells = -1, .parts = -1,
                                  .way = -1, .repeat = k };
+      size_t i = at / n_member;
 
+      if (o->family.n) c.family = o->family.v[at % n_member];
       if (i < o->levels.n) c.levels = o->levels.v[i];
       else if (i < n_cut) c.leaf_cells = o->leaf_cells.v[i - o->levels.n];
       else if (o->n_way) c.way = o->way[(i - n_cut) / n_parts];
@@ -162,6 +171,23 @@ static vg_status add_pair(struct words *w, const char *name, int64_t v,
 
   snprintf(text, sizeof text, "%lld", (long long)v);
   return st < 0 ? st : add_word(w, strdup(text), err);
+}
+
+/* What comes after '--' may have another rule for the layers. */
+static vg_status add_member(struct words *w, const struct vg_sweep_options *o,
+                            const struct vg_sweep_case *c,
+                            struct vg_error *err)
+{
+  char text[40];
+  vg_status st;
+
+  snprintf(text, sizeof text, "%.17g", o->scale * vg_sweep_scale(c->family));
+  VG_TRY(add_word(w, strdup("--scale"), err));
+  VG_TRY(add_word(w, strdup(text), err));
+  VG_TRY(add_word(w, strdup("--scale-layers"), err));
+  st = add_word(w, strdup("workshop"), err);
+done:
+  return st;
 }
 
 /* A word of the launcher with its places filled in. */
@@ -241,6 +267,7 @@ static vg_status command_line(const struct vg_sweep_options *o,
     VG_TRY(add_word(w, strdup(vg_ways[c->way].name), err));
   }
   if (c->parts >= 0) VG_TRY(add_pair(w, "--parts", c->parts, err));
+  if (c->family) VG_TRY(add_member(w, o, c, err));
   VG_TRY(add_word(w, strdup("--timeline"), err));
   VG_TRY(add_word(w, strdup("-o"), err));
   VG_TRY(add_word(w, strdup(c->dir), err));

@@ -20,6 +20,11 @@
 #include "run/input/sizes.h"
 #include "run/settings/deck.h"
 
+/* Of struct vg_cad_options, however sizes are scaled. */
+#define CHORD_MOST 0.5
+#define ANGLE_LEAST 1.0
+#define ANGLE_MOST 60.0
+
 void vg_note(struct vg_notes *notes, const char *format, ...)
 {
   va_list args;
@@ -69,6 +74,7 @@ void vg_problem_release(struct vg_problem *p)
   vg_surface_report_release(&p->check);
   vg_renewal_release(&p->renewal);
   vg_notes_release(&p->notes);
+  free(p->given);
 }
 
 static int exists(const char *path)
@@ -242,9 +248,6 @@ static vg_status read_surface_file(struct vg_problem *p, struct vg_error *err)
   /* the library's message says less */
   if (st < 0)
     return vg_display_stop(NULL) ? vg_display_stopped(NULL, err) : st;
-  if (cad.unit != VG_CAD_UNIT_FILE && !vg_format_is_cad(path))
-    vg_note(&p->notes, "unit has no effect: %s is no CAD file, its numbers stay "
-            "as they are", path);
   if (info.n_cell)
     vg_note(&p->notes, "%s is a volume mesh: its boundary is meshed anew, its "
             "%zu cells are not used", path, info.n_cell);
@@ -282,6 +285,15 @@ done:
   return st < 0 && vg_display_stop(show) ? vg_display_stopped(show, err) : st;
 }
 
+/* VGRID's factor on all sources. */
+static void use_ifact(struct vg_settings *s, double ifact)
+{
+  for (size_t i = 0; i < s->n_source; i++) {
+    s->source[i].h0 *= ifact;
+    s->source[i].h1 *= ifact;
+  }
+}
+
 /* Sources of the project come first, those of the deck after them; the sum of
  * VGRID's law depends on the order in the last bits. */
 static vg_status merge_sources(struct vg_problem *p, struct vg_error *err)
@@ -291,8 +303,8 @@ static vg_status merge_sources(struct vg_problem *p, struct vg_error *err)
   struct vg_source *all;
 
   if (!s->d3m_sources || !*p->files.d3m) return VG_OK;
-  s->scale *= p->project.ifact;
   s->d3m_sources = 0;
+  if (!n) use_ifact(s, p->project.ifact);
   if (!n) return VG_OK;
   all = vg_alloc(total, sizeof *all);
   if (!all) return vg_fail_memory(err, "the sources");
@@ -301,6 +313,7 @@ static vg_status merge_sources(struct vg_problem *p, struct vg_error *err)
   free(s->source);
   s->source = all;
   s->n_source = s->cap_source = total;
+  use_ifact(s, p->project.ifact);
   return VG_OK;
 }
 
@@ -374,9 +387,12 @@ static int stop_cad(void *user)
 struct vg_cad_options vg_cad_options_of(const struct vg_settings *s,
                                         struct vg_notes *notes)
 {
+  /* An arc of an edge S times as long turns by S, and rises by S * S. */
   return (struct vg_cad_options){ .unit = s->cad.unit,
     .patches = s->cad.patches, .tolerance = s->cad.tolerance,
-    .chord = s->cad.chord, .angle = s->cad.angle, .seconds = s->cad.seconds,
+    .chord = fmin(s->cad.chord * s->scale * s->scale, CHORD_MOST),
+    .angle = fmin(fmax(s->cad.angle * s->scale, ANGLE_LEAST), ANGLE_MOST),
+    .seconds = s->cad.seconds,
     .note = note_cad, .stop = stop_cad, .user = notes };
 }
 
@@ -583,6 +599,7 @@ vg_status vg_problem_given(struct vg_problem *p, const char *name,
   int bad = 0;
 
   vg_mesh_move(&p->surface, surface);
+  if (!p->given) p->given = vg_settings_given(&p->settings);
   f->stem = strdup(name);
   for (size_t i = 0; i < sizeof path / sizeof *path; i++)
     bad |= !(*path[i] = strdup(""));
@@ -596,6 +613,7 @@ vg_status vg_problem_surface(struct vg_problem *p, struct vg_display *show,
 {
   vg_status st = VG_OK;
 
+  if (!p->given) p->given = vg_settings_given(&p->settings);
   if (*p->files.d3m) {
     VG_TRY(vg_d3m_read(p->files.d3m, &p->project, err));
     merge_layers(p);

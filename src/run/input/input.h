@@ -53,6 +53,7 @@ struct vg_problem {
   struct vg_settings settings;
   const struct vg_size_map *map;   /* sizes besides sources; NULL: none */
   struct vg_size_samples *samples; /* of the setting `sizes`; NULL */
+  struct vg_gap_sizes *gaps;       /* of gap_edges; NULL */
   struct vg_project project;       /* empty without a .d3m */
   struct vg_mesh surface;
   struct vg_shmem common;          /* where its arrays are, if a node has them
@@ -68,6 +69,8 @@ struct vg_problem {
                                       for the domain */
   struct vg_domain_report domain;
   struct vg_notes notes;
+  uint8_t *given;                  /* vg_settings_given before anything was
+                                      resolved; NULL: not known */
 };
 #define VG_PROBLEM_INIT { .project = VG_PROJECT_INIT }
 
@@ -125,7 +128,20 @@ vg_status vg_problem_close(struct vg_problem *p, struct vg_display *show,
 vg_status vg_problem_renew(struct vg_problem *p, struct vg_display *show,
                            struct vg_error *err);
 
+/** What settings ask of a new surface; sources are borrowed. */
+struct vg_remesh_options vg_remesh_options_of(const struct vg_settings *s);
+
 void vg_renewal_release(struct vg_renewal *r);
+
+/** A note for settings that were given and had no effect, since the run had
+ * nothing that they act on, such as a surface made anew; at its end, once. What
+ * such settings act on is in their rows (enum vg_use).
+ * @param layers_on  1: layers grow
+ * @param judged     bits 1 << enum vg_use of what the command might have had */
+#define VG_USE_JUDGED_MESH ((1u << VG_USE_N) - 1)
+#define VG_USE_JUDGED_SURFACE (1u << VG_USE_D3M | 1u << VG_USE_CAD)
+void vg_problem_note_unused(struct vg_problem *p, int layers_on,
+                            unsigned judged);
 
 /** Writers give patches without a condition that of an inviscid wall: a note
  * tells which these are. Once conditions are final. */

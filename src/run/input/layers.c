@@ -24,6 +24,8 @@ struct vg_layer_laws {
   double shift[3];              /* added, since no spacing may be 0 */
   double cap;
   int n_constant;
+  enum vg_law_rule rule;        /* of a grid family, with its scale */
+  double scale;
 };
 
 static void release_laws(struct vg_layer_laws *l)
@@ -63,6 +65,7 @@ static void law_at(void *user, const double x[3], struct vg_law *law)
   law->rate2 = v[2] > 0 ? v[2] : 0;
   law->cap = l->cap;
   law->n_constant = l->n_constant;
+  vg_law_scale(law, l->rule, l->scale, &(int){ 0 });
 }
 
 static void height_at(void *user, const double x[3], struct vg_law *law)
@@ -70,7 +73,7 @@ static void height_at(void *user, const double x[3], struct vg_law *law)
   const struct vg_layer_laws *l = user;
   const double *h = vg_point_height(l->heights, x);
 
-  if (h && *h > 0) law->delta1 = *h;
+  if (h && *h > 0) law->delta1 = *h * l->scale;
 }
 
 static int has_law(const struct vg_source *s)
@@ -101,6 +104,12 @@ static void put_values(struct vg_layer_laws *l, int k)
   }
 }
 
+static void set_scale(const struct vg_settings *s, struct vg_layer_laws *l)
+{
+  l->rule = (enum vg_law_rule)s->layer.scale_rule;
+  l->scale = l->rule == VG_LAW_KEPT ? 1 : s->scale;
+}
+
 static vg_status make_laws(const struct vg_settings *s, double cap,
                            struct vg_layer_laws **out, struct vg_error *err)
 {
@@ -122,6 +131,7 @@ static vg_status make_laws(const struct vg_settings *s, double cap,
                  "to no");
   l->cap = cap;
   l->n_constant = (int)s->layer.constant;
+  set_scale(s, l);
   if (st < 0) release_laws(l);
   else *out = l;
   return st;
@@ -176,11 +186,14 @@ static vg_status rate_for_total(const struct vg_layer_request *q, int32_t id,
   return VG_OK;
 }
 
-static vg_status set_rates(const struct vg_layer_settings *l,
+/* Of the member of a family, if it is one. */
+static vg_status set_rates(const struct vg_settings *s,
                            const struct vg_layer_row *r,
                            struct vg_layer_request *q, struct vg_error *err)
 {
+  const struct vg_layer_settings *l = &s->layer;
   double ratio = choose(r->ratio, l->ratio);
+  enum vg_law_rule rule = (enum vg_law_rule)l->scale_rule;
 
   q->law.rate1 = DEFAULT_RATE;
   q->law.rate2 = 0;
@@ -191,8 +204,10 @@ static vg_status set_rates(const struct vg_layer_settings *l,
   } else if (!isnan(ratio)) {
     q->law.rate1 = ratio - 1;
   } else if (q->n_exact && q->total > 0) {
+    vg_law_scale(&q->law, rule, s->scale, &q->n_max);
     return rate_for_total(q, r->id, &q->law.rate1, err);
   }
+  vg_law_scale(&q->law, rule, s->scale, &q->n_max);
   return VG_OK;
 }
 
@@ -213,7 +228,7 @@ static vg_status make_request(const struct vg_settings *s,
   q->n_max = (int)(count > 0 ? count : l->most);
   if (l->most > 0 && q->n_max > l->most) q->n_max = (int)l->most;
   q->total = choose(r->total, l->total);
-  return set_rates(l, r, q, err);
+  return set_rates(s, r, q, err);
 }
 
 /* The row of a patch, or one that leaves all to the settings. */
@@ -254,17 +269,20 @@ static vg_status use_heights(struct vg_layer_stage *s,
                              const struct vg_problem *p, const double *least,
                              struct vg_error *err)
 {
+  struct vg_layer_laws laws;
   int used = 0;
 
+  set_scale(&p->settings, &laws);
   for (size_t i = 0; i < s->n_patch; i++)
     if (least[i] > 0 && s->reason[i] != VG_WALL_NOT) {
-      s->request[i].law.delta1 = least[i];
+      s->request[i].law.delta1 = least[i] * laws.scale;
       used = 1;
     }
   if (!used) return VG_OK;
   s->laws = vg_calloc(1, sizeof *s->laws);
   if (!s->laws) return vg_fail_memory(err, "the laws of the layers");
   s->laws->heights = &p->heights;
+  set_scale(&p->settings, s->laws);
   return VG_OK;
 }
 
@@ -304,7 +322,7 @@ static vg_status make_requests(struct vg_layer_stage *s,
     VG_TRY(check_row(&row, l->by_source, err));
     VG_TRY(make_request(set, &row, q, err));
     if (l->by_source) {
-      q->law.delta1 = s->laws->source[0][0].h0;
+      q->law.delta1 = s->laws->source[0][0].h0 * s->laws->scale;
       q->law.rate1 = s->laws->source[1][0].h0 - s->laws->shift[1];
       q->law.rate2 = s->laws->source[2][0].h0 - s->laws->shift[2];
     }
@@ -447,6 +465,12 @@ static void note_choice(const struct vg_layer_stage *s, struct vg_problem *p)
     vg_note(&p->notes, "y+ %g at Reynolds number %g of length %g: first "
             "height %.6g", l->y_plus, l->reynolds, l->length,
             vg_first_height(l->y_plus, l->reynolds, l->length));
+  if (l->scale_rule != VG_LAW_KEPT)
+    vg_note(&p->notes, "scale_layers: first heights times %.4g, growth of the "
+            "layers to the power of %.4g, numbers of layers over it, constant "
+            "ones over %.4g", p->settings.scale,
+            vg_law_power((enum vg_law_rule)l->scale_rule, p->settings.scale),
+            p->settings.scale);
   if (ratio > cap)
     vg_note(&p->notes, "ratio %g is above layer_cap %g, which holds", ratio,
             cap);

@@ -39,12 +39,9 @@ static void areas(const struct vg_mesh *m, int after, double *area)
   }
 }
 
-static vg_status remesh(struct vg_problem *p, const uint8_t *hard,
-                        struct vg_display *show, struct vg_error *err)
+struct vg_remesh_options vg_remesh_options_of(const struct vg_settings *s)
 {
-  const struct vg_settings *s = &p->settings;
   struct vg_remesh_options o = VG_REMESH_OPTIONS_INIT;
-  vg_status st;
 
   o.tolerance = s->surface_tolerance;
   o.ridge_angle = s->ridge_angle;
@@ -56,6 +53,15 @@ static vg_status remesh(struct vg_problem *p, const uint8_t *hard,
   o.scale = s->scale;
   o.n_source = s->n_source;
   o.source = s->source;
+  return o;
+}
+
+static vg_status remesh(struct vg_problem *p, const uint8_t *hard,
+                        struct vg_display *show, struct vg_error *err)
+{
+  struct vg_remesh_options o = vg_remesh_options_of(&p->settings);
+  vg_status st;
+
   o.map = p->map;
   o.hard = hard;
   o.threads = p->threads;

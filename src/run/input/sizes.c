@@ -169,7 +169,8 @@ vg_status vg_problem_sizes(struct vg_problem *p, struct vg_error *err)
   VG_TRY(vg_size_samples_check(set->sizes, m.n_point,
                                (const double (*)[3])m.point, h, err));
   VG_TRY(make_samples(&m, h, &s, err));
-  VG_TRY(vg_size_samples_new(s.n, (const double (*)[3])s.x, s.h, set->growth,
+  VG_TRY(vg_size_samples_new(s.n, (const double (*)[3])s.x, s.h,
+                             vg_scaled_growth(set->growth, set->scale),
                              (int)set->threads, &p->samples, err));
   p->map = vg_size_samples_map(p->samples);
   vg_note(&p->notes, "sizes of %zu points were read from %s", m.n_point,
@@ -184,6 +185,7 @@ done:
 
 void vg_problem_forget_sizes(struct vg_problem *p)
 {
+  vg_problem_forget_gaps(p);
   if (!p->samples) return;
   vg_size_samples_free(p->samples);
   p->samples = NULL;

@@ -14,7 +14,16 @@
  * that is there already. */
 vg_status vg_problem_sizes(struct vg_problem *p, struct vg_error *err);
 
-/** Free them; nothing happens where there are none. */
+/** Where the setting gap_edges asks for it: sizes from gaps between surfaces
+ * into p->gaps; p->map is then the less of those and what it was. Of the closed
+ * surface, before it is made anew; a note tells. */
+vg_status vg_problem_gaps(struct vg_problem *p, struct vg_display *show,
+                          struct vg_error *err);
+
+/** Free them, and give p->map back; nothing happens where there are none. */
+void vg_problem_forget_gaps(struct vg_problem *p);
+
+/** Free all sizes, of gaps too; nothing happens where there are none. */
 void vg_problem_forget_sizes(struct vg_problem *p);
 
 #endif

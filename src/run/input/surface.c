@@ -11,6 +11,7 @@
 #include "io/mesh/vtu.h"
 #include "io/stream/convention.h"
 #include "run/input/input.h"
+#include "run/input/sizes.h"
 #include "run/settings/deck.h"
 
 #define SHOWN_PATCHES 20   /* numbers in a note */
@@ -231,9 +232,9 @@ static vg_status check_farfield(const struct vg_problem *p,
                                 struct vg_error *err)
 {
   double edge = far->spacing, lo[3], hi[3], size = 0, n;
+  double hmax = p->settings.hmax * p->settings.scale;
 
-  if (p->settings.hmax > 0 && !(edge > 0 && edge < p->settings.hmax))
-    edge = p->settings.hmax;
+  if (hmax > 0 && !(edge > 0 && edge < hmax)) edge = hmax;
   vg_mesh_bounds(&p->surface, lo, hi);
   for (int k = 0; k < 3; k++) {
     size = fmax(size, far->lengths * (hi[k] - lo[k]));
@@ -285,8 +286,19 @@ done:
  * settings; what is added later comes by itself when the run is repeated. */
 static vg_status resolve_patches(struct vg_problem *p, struct vg_error *err)
 {
-  p->settings.n_patch = 0;
-  return vg_deck_patches_of(&p->surface, &p->settings, err);
+  struct vg_settings *s = &p->settings, old = *s;
+  vg_status st;
+
+  s->patch = NULL;
+  s->n_patch = s->cap_patch = 0;
+  st = vg_deck_patches_of(&p->surface, s, err);
+  for (size_t i = 0; i < old.n_patch && st >= 0; i++) {
+    size_t at = vg_mesh_find_patch(&p->surface, old.patch[i].id);
+
+    if (at != SIZE_MAX) s->patch[at].hard = old.patch[i].hard;
+  }
+  free(old.patch);
+  return st;
 }
 
 void vg_problem_note_unset(struct vg_problem *p)
@@ -392,6 +404,8 @@ vg_status vg_problem_close(struct vg_problem *p, struct vg_display *show,
              ? -1 : s->farfield.kind != VG_DOMAIN_NONE;
   vg_display_update(show, "check", p->surface.n_tri, 0);
   VG_TRY(check(p, &external, err));
+  if (!p->check.n_defect || is_only_open(&p->check))
+    VG_TRY(vg_problem_gaps(p, show, err));
   if (s->remesh) {
     if (p->check.n_defect && !is_only_open(&p->check)) return defects(p, err);
     VG_TRY(vg_problem_renew(p, show, err));

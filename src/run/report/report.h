@@ -41,6 +41,17 @@ void vg_report_remesh_text(FILE *to, const struct vg_renewal *n);
 json_t *vg_report_remesh_json(const struct vg_renewal *n,
                               const struct vg_mesh *m);
 
+/** Lines and corners of a surface as vg_remesh_judge found them, bad triangles
+ * by cause; fit: edges against the sizes asked for, too. */
+void vg_report_lines_text(FILE *to, const struct vg_remesh_report *r, int fit);
+json_t *vg_report_lines_json(const struct vg_remesh_report *r, int fit);
+
+/** Distances from the surface in a file, and of it from this one. */
+void vg_report_distances_text(FILE *to, const char *file,
+                              const struct vg_remesh_distance d[2]);
+json_t *vg_report_distances_json(const char *file,
+                                 const struct vg_remesh_distance d[2]);
+
 /** Validity, then quality; `full`: with histograms and the worst cells. */
 void vg_report_mesh_text(FILE *to, const struct vg_mesh_report *r, int full);
 

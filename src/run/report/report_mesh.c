@@ -116,6 +116,7 @@ static void quality_text(FILE *to, const struct vg_mesh_report *r)
   fprintf(to, "  volume ratio of neighbours: median %.2f, 95 %% below %.2f, "
           "largest %.1f\n", r->volume_ratio[0], r->volume_ratio[1],
           r->volume_ratio[2]);
+  fprintf(to, "  mean edge: %.6g\n", r->edge_length);
   if (r->has_sizing)
     fprintf(to, "  edges / target spacing: mean %.3f, within 0.7 to 1.5: "
             "%.2f %%\n", r->edge_mean, r->edge_within);
@@ -233,6 +234,7 @@ json_t *vg_report_mesh_json(const struct vg_mesh_report *r)
   json_object_set_new(o, "radius_ratio_mean", real(r->radius_ratio_mean));
   json_object_set_new(o, "radius_ratio_min", real(r->radius_ratio_min));
   json_object_set_new(o, "mean_ratio_mean", real(r->mean_ratio_mean));
+  json_object_set_new(o, "edge_length", real(r->edge_length));
   json_object_set_new(o, "volume_ratio_median_95_max",
                       reals(r->volume_ratio, 3));
   json_object_set_new(o, "histogram_angle_min",

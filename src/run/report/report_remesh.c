@@ -15,11 +15,29 @@ static void distance_text(FILE *to, const char *what,
           what, d->most, d->at[0], d->at[1], d->at[2], d->most_99);
 }
 
+static void bad_text(FILE *to, const struct vg_remesh_report *r)
+{
+  size_t shown = 0;
+
+  if (!r->n_bad) return;
+  fprintf(to, "  below %g degrees: %zu triangles;", VG_REMESH_BAD, r->n_bad);
+  for (int c = 0; c < VG_REMESH_N; c++)
+    fprintf(to, " %s %zu", vg_remesh_cause_name((enum vg_remesh_cause)c),
+            r->cause[c]);
+  fprintf(to, "\n");
+  for (size_t i = 0; i < r->n_bad && shown < VG_SHOWN_FACES; i++, shown++)
+    fprintf(to, "    %s, face %zu, angle %.2g, at (%.6g, %.6g, %.6g)\n",
+            vg_remesh_cause_name(r->bad[i].cause), r->bad[i].face + 1,
+            r->bad[i].angle, r->bad[i].at[0], r->bad[i].at[1],
+            r->bad[i].at[2]);
+  if (r->n_bad > shown) fprintf(to, "    ... and %zu more\n",
+                                r->n_bad - shown);
+}
+
 void vg_report_remesh_text(FILE *to, const struct vg_renewal *n)
 {
   const struct vg_remesh_report *r = &n->report;
   char was[32], now[32];
-  size_t shown = 0;
 
   if (!n->is_done) return;
   fprintf(to, "  made anew: %s triangles, now %s; %zu corners and %zu lines "
@@ -34,19 +52,7 @@ void vg_report_remesh_text(FILE *to, const struct vg_renewal *n)
   if (r->n_round > 1)
     fprintf(to, "  made %d times: triangles met, and sizes there were "
             "halved\n", r->n_round);
-  if (!r->n_bad) return;
-  fprintf(to, "  below %g degrees: %zu triangles;", VG_REMESH_BAD, r->n_bad);
-  for (int c = 0; c < VG_REMESH_N; c++)
-    fprintf(to, " %s %zu", vg_remesh_cause_name((enum vg_remesh_cause)c),
-            r->cause[c]);
-  fprintf(to, "\n");
-  for (size_t i = 0; i < r->n_bad && shown < VG_SHOWN_FACES; i++, shown++)
-    fprintf(to, "    %s, face %zu, angle %.2g, at (%.6g, %.6g, %.6g)\n",
-            vg_remesh_cause_name(r->bad[i].cause), r->bad[i].face + 1,
-            r->bad[i].angle, r->bad[i].at[0], r->bad[i].at[1],
-            r->bad[i].at[2]);
-  if (r->n_bad > shown) fprintf(to, "    ... and %zu more\n",
-                                r->n_bad - shown);
+  bad_text(to, r);
 }
 
 static json_t *distance_json(const struct vg_remesh_distance *d)
@@ -67,11 +73,11 @@ static json_t *patches_json(const struct vg_renewal *n,
   return list;
 }
 
-static json_t *bad_json(const struct vg_remesh_report *r)
+static json_t *bad_json(const struct vg_remesh_report *r, size_t shown)
 {
   json_t *list = json_array();
 
-  for (size_t i = 0; i < r->n_bad; i++) {
+  for (size_t i = 0; i < r->n_bad && i < shown; i++) {
     const struct vg_remesh_bad *b = &r->bad[i];
 
     json_array_append_new(list, json_pack("{s:s s:I s:f s:[fff]}", "cause",
@@ -101,5 +107,47 @@ json_t *vg_report_remesh_json(const struct vg_renewal *n,
     "changes", "splits", (json_int_t)r->n_split, "collapses",
     (json_int_t)r->n_collapse, "swaps", (json_int_t)r->n_swap, "moves",
     (json_int_t)r->n_move, "seconds", n->seconds,
-    "patches", patches_json(n, m), "below_20_degrees", bad_json(r));
+    "patches", patches_json(n, m), "below_20_degrees", bad_json(r, SIZE_MAX));
+}
+
+void vg_report_lines_text(FILE *to, const struct vg_remesh_report *r, int fit)
+{
+  fprintf(to, "  lines (ridges, rims, borders between conditions): %zu, length "
+          "%.6g, corners %zu\n", r->n_line, r->line_length[0], r->n_corner);
+  if (fit)
+    fprintf(to, "  edges within a factor 1.41 of the size that shape and deck "
+            "ask for: %.2f %%\n", percent(r->n_edge_fit, r->n_edge));
+  bad_text(to, r);
+}
+
+json_t *vg_report_lines_json(const struct vg_remesh_report *r, int fit)
+{
+  json_t *cause = json_object();
+
+  for (int c = 0; c < VG_REMESH_N; c++)
+    json_object_set_new(cause, vg_remesh_cause_name((enum vg_remesh_cause)c),
+                        json_integer((json_int_t)r->cause[c]));
+  return json_pack("{s:I s:I s:f s:o s:I s:o s:o}", "lines",
+    (json_int_t)r->n_line,
+    "corners", (json_int_t)r->n_corner, "line_length", r->line_length[0],
+    "percent_edges_fit",
+    fit ? json_real(percent(r->n_edge_fit, r->n_edge)) : json_null(),
+    "below_20_degrees", (json_int_t)r->n_bad, "causes", cause, "first",
+    bad_json(r, VG_SHOWN_DEFECTS));
+}
+
+void vg_report_distances_text(FILE *to, const char *file,
+                              const struct vg_remesh_distance d[2])
+{
+  fprintf(to, "  against %s\n", file);
+  distance_text(to, "this from that", &d[0]);
+  distance_text(to, "that from this", &d[1]);
+}
+
+json_t *vg_report_distances_json(const char *file,
+                                 const struct vg_remesh_distance d[2])
+{
+  return json_pack("{s:o s:o s:o}", "file", vg_text_json(file),
+                   "this_from_that", distance_json(&d[0]), "that_from_this",
+                   distance_json(&d[1]));
 }

@@ -186,9 +186,10 @@ static void quality_text(FILE *to, const struct vg_mesh *m)
   vg_surface_quality(m, &q);
   if (!q.n) return;
   fprintf(to, "  triangles: smallest angle %.2g, 1st percentile %.1f degrees; "
-          "below 5 10 20 30:\n  %.4f %.4f %.4f %.4f %%; 2 r/R: mean %.3f\n",
+          "below 5 10 20 30:\n  %.4f %.4f %.4f %.4f %%; 2 r/R: mean %.3f; mean "
+          "edge %.6g\n",
           q.angle_min, q.angle_min_p1, q.below[0], q.below[1], q.below[2],
-          q.below[3], q.ratio_mean);
+          q.below[3], q.ratio_mean, q.edge_mean);
   slivers_text(to, m, &q);
 }
 
@@ -206,11 +207,12 @@ static json_t *quality_json(const struct vg_mesh *m)
       (int)m->patch[m->tri_patch[w->face]].id, "angle", w->angle, "at",
       w->at[0], w->at[1], w->at[2]));
   }
-  return json_pack("{s:f s:f s:[ffff] s:f s:I s:I s:o}", "angle_min",
+  return json_pack("{s:f s:f s:[ffff] s:f s:f s:I s:I s:o}", "angle_min",
                    q.angle_min, "angle_min_percentile_1", q.angle_min_p1,
                    "percent_below_5_10_20_30", q.below[0], q.below[1],
                    q.below[2], q.below[3], "radius_ratio_mean", q.ratio_mean,
-                   "caps", (json_int_t)q.n_cap, "needles",
+                   "edge_mean", q.edge_mean, "caps",
+                   (json_int_t)q.n_cap, "needles",
                    (json_int_t)q.n_needle, "worst", list);
 }
 

@@ -38,6 +38,44 @@ const struct vg_param *vg_settings_name(size_t i, const char **name,
                    farfield_names[i - n].column);
 }
 
+enum vg_use vg_param_use(const struct vg_param *p, int in_farfield)
+{
+  const struct vg_settings *s = NULL;
+  const size_t cad = offsetof(struct vg_settings, cad);
+  const size_t layer = offsetof(struct vg_settings, layer);
+
+  if (p->use != VG_USE_BY_PLACE) return p->use;
+  if (in_farfield) return VG_USE_FARFIELD;
+  if (p->offset >= cad && p->offset < cad + sizeof s->cad) return VG_USE_CAD;
+  if (p->offset >= layer && p->offset < layer + sizeof s->layer)
+    return VG_USE_LAYERS;
+  return VG_USE_ALWAYS;
+}
+
+uint8_t *vg_settings_given(const struct vg_settings *s)
+{
+  char a[2 * VG_LIST_MAX + 4], b[2 * VG_LIST_MAX + 4];
+  const struct vg_param *p;
+  struct vg_settings plain;
+  const char *name;
+  uint8_t *given;
+  size_t n = 0;
+  int far;
+
+  while (vg_settings_name(n, &name, &far)) n++;
+  given = vg_calloc(n, 1);
+  if (!given) return NULL;
+  vg_settings_default(&plain);
+  for (size_t i = 0; (p = vg_settings_name(i, &name, &far)); i++) {
+    vg_param_format(p, far ? (const void *)&s->farfield : (const void *)s, a,
+                    sizeof a);
+    vg_param_format(p, far ? (const void *)&plain.farfield
+                           : (const void *)&plain, b, sizeof b);
+    given[i] = strcmp(a, b) != 0;
+  }
+  return given;
+}
+
 static int same_name(const char *a, const char *b)
 {
   while (*a && (*a == *b || (*a == '-' && *b == '_'))) a++, b++;

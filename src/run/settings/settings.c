@@ -31,6 +31,8 @@ static const char *const cell_words[] = { "tets", "mixed", NULL };
 static const char *const decompose_words[] = { "advancing", "discrete",
   "octree", NULL };
 static const char *const partitioner_words[] = { "metis", "rcb", NULL };
+/* In the order of enum vg_law_rule. */
+static const char *const rule_words[] = { "no", "even", "workshop", NULL };
 static const char *const interface_words[] = { "remesh", "h-refine", NULL };
 static const char *const schedule_words[] = { "dynamic", "cyclic", NULL };
 /* In the order of enum vg_source_kind. */
@@ -49,7 +51,12 @@ static const char *const source_words[] = {
 
 static const struct vg_param params[] = {
   { "scale", AT(scale), REAL, .above_lo = 1, .unit = "",
-    .help = "factor on the spacing of every source; > 1 is coarser" },
+    .help = "factor on all sizes: of sources, of a new surface, on a farfield "
+            "made here, hmin and hmax; and on growth - 1; > 1 is coarser" },
+  { "scale_layers", AT(layer.scale_rule), .type = VG_PARAM_WORD,
+    .words = rule_words, .unit = "", .help = "whether scale acts on layers: "
+    "first heights times it, constant layers over it, and growth to its power "
+    "(even) or as the Drag Prediction Workshops have it" },
   { "growth", AT(growth), .type = VG_PARAM_REAL, .lo = 1, .hi = 10,
     .above_lo = 1, .unit = "",
     .help = "largest ratio of neighbouring edges away from surface and "
@@ -59,7 +66,8 @@ static const struct vg_param params[] = {
     "surface (with its farfield) or a source asks for" },
   { "surface_sizes", AT(surface_sizes), .type = VG_PARAM_FLAG, .unit = "",
     .help = "edges of the surface grow into the volume" },
-  { "d3m_sources", AT(d3m_sources), .type = VG_PARAM_FLAG, .unit = "",
+  { "d3m_sources", AT(d3m_sources), .use = VG_USE_D3M, .type = VG_PARAM_FLAG,
+    .unit = "",
     .help = "use sources and ifact of the .d3m besides those given here" },
   { "sizes", AT(sizes), .type = VG_PARAM_TEXT, .unit = "",
     .argument = "FILE", .help = "edge lengths at the points of a mesh, from "
@@ -104,18 +112,23 @@ static const struct vg_param params[] = {
   { "remesh_surface", AT(remesh), .type = VG_PARAM_FLAG, .unit = "",
     .help = "make the triangles of the surface anew to size; ridges, corners "
     "and patches stay" },
-  { "surface_tolerance", AT(surface_tolerance), LENGTH,
+  { "surface_tolerance", AT(surface_tolerance), .use = VG_USE_REMESH, LENGTH,
     .help = "largest distance of a new surface from the one given; 0: 1e-4 of "
     "the body's length; nowhere more than 0.05 of the edges" },
-  { "surface_size", AT(surface_size), LENGTH,
+  { "surface_size", AT(surface_size), .use = VG_USE_REMESH, LENGTH,
     .help = "largest edge of a new surface; 0: hmax, or 0.02 of the body's "
     "length (of an outer boundary, 0.04 of its own)" },
-  { "ridge_angle", AT(ridge_angle), .type = VG_PARAM_REAL, .lo = 5,
+  { "ridge_angle", AT(ridge_angle), .use = VG_USE_REMESH,
+    .type = VG_PARAM_REAL, .lo = 5,
     .hi = 170, .unit = "degrees", .help = "a new surface keeps edges whose "
     "faces differ by this" },
-  { "edges_per_turn", AT(per_turn), .type = VG_PARAM_REAL, .lo = 3,
+  { "edges_per_turn", AT(per_turn), .use = VG_USE_REMESH,
+    .type = VG_PARAM_REAL, .lo = 3,
     .hi = 10000, .unit = "edges", .help = "edges of a new surface around a "
     "full circle" },
+  { "gap_edges", AT(gap_edges), .type = VG_PARAM_REAL, .hi = 1000,
+    .unit = "edges", .help = "at least so many across the gap between surfaces "
+    "that face each other, on a new surface and in space; 0: no matter" },
   { "optimise", AT(optimise), .type = VG_PARAM_COUNT, .hi = 100,
     .unit = "sweeps", .help = "sweeps of smoothing and swapping after the "
                               "fill" },
@@ -144,13 +157,16 @@ static const struct vg_param params[] = {
   { "leaf_cells", AT(leaf_cells), .type = VG_PARAM_COUNT, .hi = 9e15,
     .unit = "cells", .help = "the space outside the layers is cut into parts "
     "of about so many cells, filled in parallel; 0: not at all" },
-  { "levels", AT(levels), .type = VG_PARAM_COUNT, .hi = 30,
+  { "levels", AT(levels), .use = VG_USE_PLANES, .type = VG_PARAM_COUNT,
+    .hi = 30,
     .unit = "bisections", .help = "cut everywhere alike, into 2^levels "
     "parts, instead of by leaf_cells; 0: by leaf_cells" },
-  { "split_direction", AT(split_direction), .type = VG_PARAM_COUNT, .hi = 3,
+  { "split_direction", AT(split_direction), .use = VG_USE_PLANES,
+    .type = VG_PARAM_COUNT, .hi = 3,
     .unit = "", .help = "first cut across x (1), y (2) or z (3); 0: where it "
                         "costs least" },
-  { "constant_direction", AT(constant_direction), .type = VG_PARAM_FLAG,
+  { "constant_direction", AT(constant_direction), .use = VG_USE_PLANES,
+    .type = VG_PARAM_FLAG,
     .unit = "", .help = "all cuts across split_direction" },
   { "decompose", AT(decompose), .type = VG_PARAM_WORD,
     .words = decompose_words, .unit = "", .help = "how the space outside the "
@@ -161,14 +177,15 @@ static const struct vg_param params[] = {
     .optional = 1, .unit = "parts", .help = "to be filled; advancing: about so "
     "many; octree: those off the layers get their share; -: as many as there "
     "are leaf_cells in the cells expected" },
-  { "partitioner", AT(partitioner), .type = VG_PARAM_WORD,
+  { "partitioner", AT(partitioner), .use = VG_USE_PARTS, .type = VG_PARAM_WORD,
     .words = partitioner_words, .unit = "", .help = "who deals out coarse "
     "cells to parts: metis, or rcb (recursive coordinate bisection)" },
-  { "coarsening", AT(coarsening), .type = VG_PARAM_REAL, .hi = 100,
+  { "coarsening", AT(coarsening), .use = VG_USE_PARTS, .type = VG_PARAM_REAL,
+    .hi = 100,
     .unit = "", .help = "sizes of the coarse mesh over those of the mesh, 1 "
     "or more, 0: by the number of parts; octree: widest octants in sizes, 2 or "
     "more, 0: 4" },
-  { "interfaces", AT(h_refine), .type = VG_PARAM_WORD,
+  { "interfaces", AT(h_refine), .use = VG_USE_PARTS, .type = VG_PARAM_WORD,
     .words = interface_words, .unit = "", .help = "how faces between parts "
     "get the local size: remesh, or h-refine (edges are halved)" },
   { "schedule", AT(cyclic), .type = VG_PARAM_WORD, .words = schedule_words,
@@ -178,7 +195,8 @@ static const struct vg_param params[] = {
   { "threads", AT(threads), .type = VG_PARAM_COUNT, .hi = 4096,
     .unit = "threads", .help = "threads of each process; 0: one per core "
     "that it is bound to; results do not depend on it" },
-  { "layers", AT(layer.grow), .type = VG_PARAM_WORD, .words = answer_words,
+  { "layers", AT(layer.grow), .use = VG_USE_ALWAYS, .type = VG_PARAM_WORD,
+    .words = answer_words,
     .unit = "", .help = "viscous layers on the walls; auto: where the project "
     "asks for them (.d3m, a viscous condition, walls) and the first height "
     "is known" },
@@ -240,7 +258,8 @@ static const struct vg_param params[] = {
                               "layers" },
   { "layer_sources", AT(layer.by_source), .type = VG_PARAM_FLAG, .unit = "",
     .help = "first height and rates from the sources (VGRID's grid 2)" },
-  { "file_layers", AT(layer.from_files), .type = VG_PARAM_FLAG, .unit = "",
+  { "file_layers", AT(layer.from_files), .use = VG_USE_ALWAYS,
+    .type = VG_PARAM_FLAG, .unit = "",
     .help = "use the layer settings of a .d3m, .surf, .tags or AFLR .bc "
             "where none are given here" },
   LIMIT(min_full, 0, 100, "%", "% of the faces of each wall patch that must "
@@ -265,8 +284,8 @@ static const struct vg_param params[] = {
     .unit = "length", .help = about }
 
 static const struct vg_param farfield_columns[] = {
-  { "kind", AT(kind), .type = VG_PARAM_WORD, .words = domain_words,
-    .unit = "", .required = 1,
+  { "kind", AT(kind), .use = VG_USE_ALWAYS, .type = VG_PARAM_WORD,
+    .words = domain_words, .unit = "", .required = 1,
     .help = "auto (only around a body that stands alone), none, sphere or "
             "box" },
   { "lengths", AT(lengths), REAL, .above_lo = 1, .unit = "body lengths",
@@ -402,6 +421,7 @@ static const struct vg_param sweep_columns[] = {
        "each with all parts, beside cases of the other lists; \"\": as the "
        "setting"),
   LIST("parts", parts, "numbers of parts; \"\": as the setting"),
+  LIST("family", family, "levels of a grid family; \"\": none"),
   { "repeat", AT(repeat), .type = VG_PARAM_COUNT, .hi = 1000,
     .unit = "times", .help = "runs of each case; 0: one" },
 };
@@ -728,7 +748,7 @@ struct vg_farfield vg_settings_farfield(const struct vg_settings *s)
          : row->kind == VG_DOMAIN_BOX ? VG_FARFIELD_BOX : VG_FARFIELD_SPHERE;
   f.lengths = row->lengths;
   f.size = row->size;
-  f.spacing = row->spacing;
+  f.spacing = row->spacing * s->scale;
   f.symmetry = s->symmetry == VG_ANSWER_YES ? 1
              : s->symmetry == VG_ANSWER_NO ? -1 : 0;
   f.has_centre = n_given(row->centre) == 3;

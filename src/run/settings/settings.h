@@ -66,7 +66,7 @@ struct vg_layer_row {
  * alone; "": not given. */
 struct vg_sweep_row {
   char ranks[VG_LIST_MAX], threads[VG_LIST_MAX];
-  char levels[VG_LIST_MAX], leaf_cells[VG_LIST_MAX];
+  char levels[VG_LIST_MAX], leaf_cells[VG_LIST_MAX], family[VG_LIST_MAX];
   char decompose[VG_LIST_MAX], parts[VG_LIST_MAX];
   int64_t repeat;                  /* 0: not given */
 };
@@ -83,6 +83,7 @@ struct vg_layer_settings {
   double fan_angle, gap, end, slope;
   int64_t smooth;
   int by_source, from_files;
+  int scale_rule;                  /* enum vg_law_rule */
   struct vg_layer_limits limit;
 };
 
@@ -109,6 +110,7 @@ struct vg_settings {
   int swap;                        /* enum vg_answer: swap edges */
   int remesh;                      /* make the surface's triangles anew */
   double surface_tolerance, surface_size, ridge_angle, per_turn;
+  double gap_edges;                /* across gaps, at least; 0: any */
   int cells;                       /* enum vg_layer_cells */
   int ugrid_tail;
   int64_t solver_parts;            /* 0: none */
@@ -143,10 +145,19 @@ enum vg_param_type {
   VG_PARAM_TEXT    /* char[size] */
 };
 
+/** What must be part of a run for a setting to have an effect on it. */
+enum vg_use {
+  VG_USE_BY_PLACE, /* CAD in vg_cad_settings, LAYERS in vg_layer_settings,
+                      FARFIELD in a vg_farfield_row, else ALWAYS */
+  VG_USE_ALWAYS, VG_USE_D3M, VG_USE_CAD, VG_USE_REMESH, VG_USE_LAYERS,
+  VG_USE_FARFIELD, VG_USE_PLANES, VG_USE_PARTS, VG_USE_N
+};
+
 /** One value: its name, where it lies, what it may be, and its help. */
 struct vg_param {
   const char *name;
   enum vg_param_type type;
+  enum vg_use use;
   size_t offset, size;      /* in the row or in vg_settings; size of a text */
   double lo, hi;            /* range of a number; see above_lo */
   int above_lo;             /* 1: lo itself is refused */
@@ -216,6 +227,13 @@ vg_status vg_settings_get(const struct vg_settings *s, const char *name,
  * is a column of the farfield's table; NULL behind the last. Static. */
 const struct vg_param *vg_settings_name(size_t i, const char **name,
                                         int *in_farfield);
+
+/** What the setting needs; never VG_USE_BY_PLACE. */
+enum vg_use vg_param_use(const struct vg_param *p, int in_farfield);
+
+/** Which settings are not as by default: one byte for each i of
+ * vg_settings_name, which the caller frees. NULL: no memory. */
+uint8_t *vg_settings_given(const struct vg_settings *s);
 
 /** A row of the table `name` from n columns and their values, as in the deck;
  * what is not named keeps its default. */

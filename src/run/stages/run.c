@@ -187,7 +187,7 @@ static struct vg_digest job_digest(const struct vg_problem *p,
   d = vg_digest_of(d, boundary->n_point * sizeof *boundary->point,
                    boundary->point);
   d = vg_digest_of(d, boundary->n_tri * sizeof *boundary->tri, boundary->tri);
-  if (*s->sizes) vg_sizing_show(sizing, add_digest, &d);
+  if (*s->sizes || s->gap_edges > 0) vg_sizing_show(sizing, add_digest, &d);
   return d;
 }
 

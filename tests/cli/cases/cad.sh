@@ -47,7 +47,7 @@ fi
 octahedron >body.obj
 vanguard mesh -q -p body.obj --unit m --hmax 5 --out o
 exits 0
-says out "unit has no effect"
+says out "without effect, for no CAD file was read: unit"
 vanguard mesh -q -p "$cad/box.brep" --unit m --out b
 exits 1
 says err "has no unit of length"

@@ -95,3 +95,20 @@ says run/bar.resolved.deck "remesh_surface"
 vanguard mesh -q -p bar.obj --deck run/bar.resolved.deck --out rerun
 exits 0
 same run/bar.lb8.ugrid rerun/bar.lb8.ugrid
+
+# What there is to know of a surface: lines, and distance from another one.
+vanguard check -q new/bar.lb8.ugrid --against bar.obj --vtu shown.vtu
+exits 0
+says out "lines (ridges, rims, borders between conditions): 12, length 24"
+says out "against bar.obj"
+lacks out "edges within a factor"
+says shown.vtu 'Name="radius_ratio"'
+says shown.vtu 'Name="distance"'
+printf 'Sizes of a bar\nsurface_size\n0.3\n' >size.deck
+vanguard check -q new/bar.lb8.ugrid --deck size.deck --json
+exits 0
+says out '"percent_edges_fit": 100.0'
+says out '"corners": 8'
+says out '"edge_mean"'
+vanguard check -q new/bar.lb8.ugrid --against none.stl
+exits 1

@@ -1,0 +1,101 @@
+/* Sizes of gaps, besides those of a file or a program. Declared in
+ * run/input/sizes.h. */
+#include "core/remesh/gaps.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/memory.h"
+#include "run/input/sizes.h"
+
+struct vg_gap_sizes {
+  struct vg_size_samples *samples;
+  const struct vg_size_map *gaps, *other;  /* other: NULL, there were none */
+  struct vg_size_map map;                  /* the less of both */
+};
+
+static double at(void *user, const double x[3])
+{
+  const struct vg_gap_sizes *g = user;
+
+  return fmin(g->gaps->at(g->gaps->user, x), g->other->at(g->other->user, x));
+}
+
+static double least(void *user, const double lo[3], const double hi[3])
+{
+  const struct vg_gap_sizes *g = user;
+
+  return fmin(g->gaps->least(g->gaps->user, lo, hi),
+              g->other->least(g->other->user, lo, hi));
+}
+
+/* The other one may have no bound from below. */
+static void join_maps(struct vg_gap_sizes *g, const struct vg_size_map *other)
+{
+  g->gaps = vg_size_samples_map(g->samples);
+  g->other = other;
+  g->map = *g->gaps;
+  if (!other) return;
+  g->map = (struct vg_size_map){ .at = at, .user = g,
+    .least = other->least ? least : NULL,
+    .most = other->most > 0 ? fmax(other->most, g->gaps->most) : 0 };
+}
+
+static vg_status make(struct vg_problem *p, const struct vg_gaps *found,
+                      struct vg_error *err)
+{
+  const struct vg_settings *s = &p->settings;
+  struct vg_gap_sizes *g = vg_calloc(1, sizeof *g);
+  vg_status st;
+
+  if (!g) return vg_fail_memory(err, "the gaps");
+  st = vg_size_samples_new(found->n, (const double (*)[3])found->x, found->h,
+                           vg_scaled_growth(s->growth, s->scale), p->threads,
+                           &g->samples, err);
+  if (st < 0) {
+    free(g);
+    return st;
+  }
+  join_maps(g, p->map);
+  p->gaps = g;
+  p->map = &g->map;
+  return VG_OK;
+}
+
+vg_status vg_problem_gaps(struct vg_problem *p, struct vg_display *show,
+                          struct vg_error *err)
+{
+  const struct vg_settings *s = &p->settings;
+  struct vg_gaps found = VG_GAPS_INIT;
+  double most = s->surface_size > 0 && !(s->hmax > 0 &&
+                s->hmax < s->surface_size) ? s->surface_size : s->hmax;
+  vg_status st;
+
+  if (!(s->gap_edges > 0) || p->gaps) return VG_OK;
+  vg_display_update(show, "gaps", p->surface.n_tri, 0);
+  VG_TRY(vg_gaps_find(&p->surface, &(struct vg_gap_options){
+    s->gap_edges / s->scale, s->hmin * s->scale, most * s->scale, p->threads },
+    &found, err));
+  if (found.n)
+    vg_note(&p->notes, "gap_edges %g: sizes from %zu places in gaps, the "
+            "narrowest %.4g wide at (%.6g, %.6g, %.6g)%s", s->gap_edges,
+            found.n, found.narrowest, found.at[0], found.at[1], found.at[2],
+            s->remesh ? "" : "; the surface stays as it is given, and cells "
+            "between coarse faces cannot be small (remesh_surface)");
+  else
+    vg_note(&p->notes, "without effect, for no gap is narrow: gap_edges");
+  if (found.n) VG_TRY(make(p, &found, err));
+  st = vg_display_stopped(show, err);
+done:
+  vg_gaps_release(&found);
+  return st;
+}
+
+void vg_problem_forget_gaps(struct vg_problem *p)
+{
+  if (!p->gaps) return;
+  p->map = p->gaps->other;
+  vg_size_samples_free(p->gaps->samples);
+  free(p->gaps);
+  p->gaps = NULL;
+}

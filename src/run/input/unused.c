@@ -1,0 +1,79 @@
+/* Settings without effect. Declared in run/input/input.h. */
+#include <stdio.h>
+#include <string.h>
+
+#include "run/input/input.h"
+#include "io/mesh/format.h"
+#include "partition/cut/parting.h"
+
+#define SHOWN 12
+
+/* Why settings that need it had no effect; in the order of enum vg_use. */
+static const char *const reason[VG_USE_N] = {
+  "", "", "there is no .d3m", "no CAD file was read",
+  "the surface was not made anew (remesh_surface)", "no layers grow",
+  "no farfield was made", "no planes cut what is parted otherwise (decompose)",
+  "the space was cut by planes (decompose)" };
+
+static unsigned in_use(const struct vg_problem *p, int layers_on)
+{
+  const struct vg_input_files *f = &p->files;
+  int parted = p->settings.decompose != VG_DECOMPOSE_ADVANCING;
+  int planes = p->settings.decompose != VG_DECOMPOSE_DISCRETE;
+  int cad = !*f->front && *f->surface && vg_format_is_cad(f->surface);
+
+  return 1u << VG_USE_ALWAYS | (unsigned)(*f->d3m != 0) << VG_USE_D3M
+         | (unsigned)cad << VG_USE_CAD
+         | (unsigned)p->renewal.is_done << VG_USE_REMESH
+         | (unsigned)layers_on << VG_USE_LAYERS
+         | (unsigned)p->domain.added_farfield << VG_USE_FARFIELD
+         | (unsigned)planes << VG_USE_PLANES
+         | (unsigned)parted << VG_USE_PARTS;
+}
+
+/* Sizes of a surface that is made here are scaled, too. */
+static int is_given(const struct vg_input_files *f)
+{
+  return *f->front || (*f->surface && !vg_format_is_cad(f->surface)) ||
+         (!*f->surface && !*f->d3m);
+}
+
+static void note_use(struct vg_problem *p, enum vg_use use)
+{
+  const struct vg_param *param;
+  char list[SHOWN * 24 + 8] = "";
+  const char *name;
+  size_t n = 0, at = 0;
+  int far;
+
+  for (size_t i = 0; (param = vg_settings_name(i, &name, &far)); i++) {
+    if (!p->given[i] || vg_param_use(param, far) != use) continue;
+    if (n++ < SHOWN)
+      at += (size_t)snprintf(list + at, sizeof list - at, "%s%s",
+                             n > 1 ? ", " : "", name);
+  }
+  if (!n) return;
+  vg_note(&p->notes, "without effect, for %s: %s%s", reason[use], list,
+          n > SHOWN ? ", ..." : "");
+}
+
+void vg_problem_note_unused(struct vg_problem *p, int layers_on,
+                            unsigned judged)
+{
+  const struct vg_settings *s = &p->settings;
+  unsigned missing = judged & ~in_use(p, layers_on);
+  size_t n_hard = 0;
+
+  if (!p->given) return;
+  for (int use = VG_USE_D3M; use < VG_USE_N; use++)
+    if (missing >> use & 1) note_use(p, (enum vg_use)use);
+  if (layers_on && s->layer.scale_rule && s->scale == 1)
+    vg_note(&p->notes, "without effect, for scale is 1: scale_layers");
+  if (s->scale != 1 && missing >> VG_USE_REMESH & 1 && is_given(&p->files))
+    vg_note(&p->notes, "scale %g acts on sizes in space alone: the surface "
+            "stays as it is given (remesh_surface makes it anew)", s->scale);
+  for (size_t i = 0; i < s->n_patch; i++) n_hard += s->patch[i].hard != 0;
+  if (n_hard && missing >> VG_USE_REMESH & 1)
+    vg_note(&p->notes, "without effect, for %s: hard, in %zu rows of patches",
+            reason[VG_USE_REMESH], n_hard);
+}
