@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "grow.h"
+
 #include "base/memory.h"
 #include "core/fill/fill.h"
 #include "core/judge/quality.h"
@@ -19,7 +21,7 @@ static inline void shape_need(const void *p)
 static inline uint32_t shape_point(struct vg_mesh *m, double x, double y,
                                    double z)
 {
-  m->point = vg_realloc(m->point, m->n_point + 1, sizeof *m->point);
+  GROW(m->point, m->n_point);
   shape_need(m->point);
   m->point[m->n_point][0] = x;
   m->point[m->n_point][1] = y;
@@ -30,9 +32,8 @@ static inline uint32_t shape_point(struct vg_mesh *m, double x, double y,
 static inline void shape_tri(struct vg_mesh *m, uint32_t a, uint32_t b,
                              uint32_t c, size_t patch)
 {
-  m->tri = vg_realloc(m->tri, m->n_tri + 1, sizeof *m->tri);
-  m->tri_patch = vg_realloc(m->tri_patch, m->n_tri + 1,
-                            sizeof *m->tri_patch);
+  GROW(m->tri, m->n_tri);
+  GROW(m->tri_patch, m->n_tri);
   shape_need(m->tri);
   shape_need(m->tri_patch);
   m->tri[m->n_tri][0] = a;

@@ -4,6 +4,7 @@
 #define TESTS_UNIT_JOIN_SUPPORT_H
 
 #include "fill_shapes.h"
+#include "grow.h"
 #include "layers/expand/join.h"
 
 struct model {
@@ -198,8 +199,8 @@ static inline uint32_t model_front_point(struct model *m, const double x[3],
   struct vg_layer_front *f = &m->layers.front;
   size_t n = f->mesh.n_point;
 
-  f->column = vg_realloc(f->column, n + 1, sizeof *f->column);
-  f->point = vg_realloc(f->point, n + 1, sizeof *f->point);
+  GROW(f->column, n);
+  GROW(f->point, n);
   shape_need(f->column);
   shape_need(f->point);
   f->column[n] = column;
@@ -213,7 +214,7 @@ static inline void model_front_tri(struct model *m, const uint32_t t[3],
   struct vg_layer_front *f = &m->layers.front;
 
   if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) return;
-  f->face = vg_realloc(f->face, f->mesh.n_tri + 1, sizeof *f->face);
+  GROW(f->face, f->mesh.n_tri);
   shape_need(f->face);
   f->face[f->mesh.n_tri] = face;
   shape_tri(&f->mesh, t[0], t[1], t[2], patch);

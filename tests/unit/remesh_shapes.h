@@ -4,6 +4,7 @@
 
 #include <math.h>
 
+#include "grow.h"
 #include "io_support.h"
 
 #include "core/geometry/vector.h"
@@ -13,7 +14,7 @@
 static inline uint32_t shape_point(struct vg_mesh *m, double x, double y,
                                    double z)
 {
-  m->point = realloc(m->point, (m->n_point + 1) * sizeof *m->point);
+  GROW(m->point, m->n_point);
   m->point[m->n_point][0] = x;
   m->point[m->n_point][1] = y;
   m->point[m->n_point][2] = z;
@@ -25,9 +26,8 @@ static inline void shape_tri(struct vg_mesh *m, uint32_t a, uint32_t b,
 {
   const uint32_t t[3] = { a, b, c };
 
-  m->tri = realloc(m->tri, (m->n_tri + 1) * sizeof *m->tri);
-  m->tri_patch = realloc(m->tri_patch,
-                         (m->n_tri + 1) * sizeof *m->tri_patch);
+  GROW(m->tri, m->n_tri);
+  GROW(m->tri_patch, m->n_tri);
   memcpy(m->tri[m->n_tri], t, sizeof t);
   m->tri_patch[m->n_tri++] = patch;
 }

@@ -2,6 +2,7 @@
  * real ones that must stay valid and get better. */
 #include <math.h>
 
+#include "grow.h"
 #include "io_support.h"
 
 #include "core/surface/surface_check.h"
@@ -13,7 +14,7 @@
 
 static uint32_t add_point(struct vg_mesh *m, double x, double y, double z)
 {
-  m->point = realloc(m->point, (m->n_point + 1) * sizeof *m->point);
+  GROW(m->point, m->n_point);
   m->point[m->n_point][0] = x;
   m->point[m->n_point][1] = y;
   m->point[m->n_point][2] = z;
@@ -23,9 +24,8 @@ static uint32_t add_point(struct vg_mesh *m, double x, double y, double z)
 static void add_tri(struct vg_mesh *m, uint32_t a, uint32_t b, uint32_t c,
                     uint32_t patch)
 {
-  m->tri = realloc(m->tri, (m->n_tri + 1) * sizeof *m->tri);
-  m->tri_patch = realloc(m->tri_patch,
-                         (m->n_tri + 1) * sizeof *m->tri_patch);
+  GROW(m->tri, m->n_tri);
+  GROW(m->tri_patch, m->n_tri);
   m->tri[m->n_tri][0] = a;
   m->tri[m->n_tri][1] = b;
   m->tri[m->n_tri][2] = c;
