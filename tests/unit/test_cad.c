@@ -313,8 +313,8 @@ static void what_is_no_cad_is_refused(void **state)
   refuses(c, in.data, in.size, VG_CAD_BREP, VG_ERR_INPUT, "no faces");
   vg_input_release(&in);
   vg_cad_close(c);
-  assert_int_equal(vg_cad_read("absent.step", VG_CAD_STEP, NULL, &m, &err),
-                   VG_ERR_IO);
+  assert_int_equal(vg_cad_read("absent.step", VG_CAD_STEP, NULL, NULL, &m,
+                               &err), VG_ERR_IO);
 }
 
 static void what_is_cut_short_is_refused(void **state)
@@ -395,15 +395,15 @@ static void patience_ends(void **state)
 
   (void)state;
   o.stop = at_once;
-  assert_int_equal(vg_cad_read(FILE_OF("wing.step"), VG_CAD_STEP, &o, &m,
-                               &err), VG_ERR_IO);
+  assert_int_equal(vg_cad_read(FILE_OF("wing.step"), VG_CAD_STEP, &o, NULL,
+                               &m, &err), VG_ERR_IO);
   assert_non_null(strstr(err.text, "stopped"));
   o.stop = NULL;
   o.seconds = 0.2;           /* of about a minute's work */
   o.angle = 1;
   o.chord = 1e-7;
-  assert_int_equal(vg_cad_read(FILE_OF("wing.step"), VG_CAD_STEP, &o, &m,
-                               &err), VG_ERR_GEOMETRY);
+  assert_int_equal(vg_cad_read(FILE_OF("wing.step"), VG_CAD_STEP, &o, NULL,
+                               &m, &err), VG_ERR_GEOMETRY);
   assert_non_null(strstr(err.text, "given up after 0.2 s"));
   assert_null(m.point);
 }
@@ -500,6 +500,46 @@ static void points_go_to_the_faces_of_a_wing(void **state)
   vg_cad_close(c);
 }
 
+/* With a triangle to begin with: the same places. */
+static void points_go_to_faces_by_triangles(void **state)
+{
+  struct vg_cad_surface s = VG_CAD_SURFACE_INIT;
+  struct vg_cad *c = open_file(FILE_OF("wing.step"), VG_CAD_STEP, &s);
+  const struct vg_mesh *m = &s.mesh;
+  double (*p[2])[3], *d[2];
+  uint32_t *tri = calloc(m->n_tri, sizeof *tri);
+  struct vg_error err = VG_ERROR_INIT;
+
+  (void)state;
+  for (int j = 0; j < 2; j++) {
+    p[j] = calloc(m->n_tri, sizeof *p[j]);
+    d[j] = calloc(m->n_tri, sizeof *d[j]);
+    for (size_t i = 0; i < m->n_tri; i++) {
+      tri[i] = (uint32_t)i;
+      for (int k = 0; k < 3; k++)
+        p[j][i][k] = (m->point[m->tri[i][0]][k] + m->point[m->tri[i][1]][k]
+                      + m->point[m->tri[i][2]][k]) / 3;
+    }
+    if (vg_cad_project(c, j ? VG_CAD_ON_TRIANGLES : VG_CAD_ON_FACES, m->n_tri,
+                       j ? tri : s.tri_face, p[j], d[j], &err))
+      fail_msg("%s", err.text);
+  }
+  for (size_t i = 0; i < m->n_tri; i++) {     /* of 2500 mm */
+    near(d[0][i], d[1][i], 1e-6);
+    for (int k = 0; k < 3; k++) near(p[0][i][k], p[1][i][k], 1e-3);
+  }
+  tri[0] = (uint32_t)m->n_tri;
+  assert_int_equal(vg_cad_project(c, VG_CAD_ON_TRIANGLES, 1, tri, p[0], d[0],
+                                  &err), VG_ERR_INPUT);
+  for (int j = 0; j < 2; j++) {
+    free(p[j]);
+    free(d[j]);
+  }
+  free(tri);
+  vg_cad_surface_release(&s);
+  vg_cad_close(c);
+}
+
 static void points_go_to_curves(void **state)
 {
   struct vg_cad_surface s = VG_CAD_SURFACE_INIT;
@@ -584,6 +624,7 @@ int main(void)
     cmocka_unit_test(bytes_are_the_same),
     cmocka_unit_test(points_go_to_the_faces_of_a_box),
     cmocka_unit_test(points_go_to_the_faces_of_a_wing),
+    cmocka_unit_test(points_go_to_faces_by_triangles),
     cmocka_unit_test(points_go_to_curves),
     cmocka_unit_test(the_doubled_face_of_dlr_f6),
     cmocka_unit_test(real_step_files_are_closed),

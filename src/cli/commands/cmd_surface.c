@@ -228,7 +228,7 @@ static vg_status run(const struct arguments *a, struct vg_display *show,
   VG_TRY(vg_cli_apply(&a->kept, &p.settings, err));
   if (!strcmp(p.settings.write, "auto"))
     snprintf(p.settings.write, sizeof p.settings.write, "lb8.ugrid");
-  p.settings.remesh = 1;
+  p.settings.remesh = VG_ANSWER_YES;
   p.surface_only = 1;
   p.threads = (int)p.settings.threads;
   VG_TRY(plan_files(&p, a, &f, err));

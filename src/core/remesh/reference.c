@@ -240,8 +240,8 @@ done:
   return st;
 }
 
-vg_status vg_ref_build(struct vg_ref *r, const struct vg_mesh *m,
-                       struct vg_error *err)
+static vg_status build(struct vg_ref *r, const struct vg_mesh *m,
+                       int with_mates, struct vg_error *err)
 {
   struct vg_ref made = { .n_point = m->n_point, .n_tri = m->n_tri,
     .point = (const double (*)[3])m->point,
@@ -249,11 +249,11 @@ vg_status vg_ref_build(struct vg_ref *r, const struct vg_mesh *m,
   struct piece *piece = NULL;
   vg_status st = VG_OK;
 
-  made.mate = vg_alloc(3 * m->n_tri, sizeof *made.mate);
+  if (with_mates) made.mate = vg_alloc(3 * m->n_tri, sizeof *made.mate);
   made.shape = vg_alloc(m->n_tri, sizeof *made.shape);
-  if (!made.mate || !made.shape)
+  if ((with_mates && !made.mate) || !made.shape)
     VG_TRY(vg_fail_memory(err, "the tree of the surface"));
-  VG_TRY(find_mates(&made, err));
+  if (with_mates) VG_TRY(find_mates(&made, err));
   for (size_t t = 0; t < m->n_tri; t++) make_shape(&made, t);
   VG_TRY(make_pieces(&made, &piece, &made.n_item, err));
   VG_TRY(make_tree(&made, piece, err));
@@ -263,6 +263,18 @@ done:
   free(piece);
   vg_ref_release(&made);
   return st;
+}
+
+vg_status vg_ref_build(struct vg_ref *r, const struct vg_mesh *m,
+                       struct vg_error *err)
+{
+  return build(r, m, 1, err);
+}
+
+vg_status vg_ref_build_tree(struct vg_ref *r, const struct vg_mesh *m,
+                            struct vg_error *err)
+{
+  return build(r, m, 0, err);
 }
 
 void vg_ref_sizes(struct vg_ref *r)

@@ -41,6 +41,11 @@ struct vg_ref {
 vg_status vg_ref_build(struct vg_ref *r, const struct vg_mesh *m,
                        struct vg_error *err);
 
+/** The same of any triangles, and without mates: vg_ref_nearest and
+ * vg_ref_within alone can be asked. */
+vg_status vg_ref_build_tree(struct vg_ref *r, const struct vg_mesh *m,
+                            struct vg_error *err);
+
 /** Take size[n_point] into the tree. */
 void vg_ref_sizes(struct vg_ref *r);
 

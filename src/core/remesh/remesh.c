@@ -181,7 +181,8 @@ static vg_status prepare(struct job *j, struct vg_error *err)
     o->hard }, err));
   VG_TRY(vg_sizes_make(&j->ref, &j->curves, &(struct vg_sizes_options){
     o->per_turn / o->scale, CHORD * j->r.tolerance, o->scale, j->r.h_min,
-    j->r.h_max, vg_scaled_growth(o->growth, o->scale), j->cap }, err));
+    j->r.h_max, vg_scaled_growth(o->growth, o->scale), j->cap, o->cap,
+    o->across, j->given->tri_patch }, err));
   if (!j->looks) VG_TRY(check_number(j, err));
   j->source = vg_alloc(o->n_source, sizeof *j->source);
   if (!j->source) VG_TRY(vg_fail_memory(err, "the sources"));

@@ -34,6 +34,8 @@ struct vg_remesh_options {
                                shape and of the sources, on growth - 1, and its
                                square on the tolerance */
   const struct vg_size_map *map;  /* sizes besides; or NULL */
+  const double *cap;        /* [n_point] of m: largest size there; or NULL */
+  const double *across;     /* [n_patch] edges across its strips; NULL: 1 */
   const uint8_t *hard;      /* [n_patch] all borders of the patch stay; or
                                NULL */
   int threads;              /* 0: one per core; the same bytes for any */

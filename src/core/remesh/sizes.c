@@ -268,9 +268,13 @@ vg_status vg_sizes_make(struct vg_ref *r, const struct vg_curves *c,
   for (size_t t = 0; o->cap && t < r->n_tri; t++)
     for (int k = 0; k < 3; k++)
       r->size[r->tri[t][k]] = fmin(r->size[r->tri[t][k]], o->cap[t]);
+  for (size_t p = 0; o->point_cap && p < r->n_point; p++)
+    r->size[p] = fmin(r->size[p], o->point_cap[p]);
   memcpy(limit, r->size, r->n_point * sizeof *limit);
   for (uint32_t h = 0; h < 3 * r->n_tri; h++)
-    if (c->line[h]) by_strip(r, c, h, o->strip, limit);
+    if (c->line[h])
+      by_strip(r, c, h, o->across ? o->strip / o->across[o->tri_patch[h / 3]]
+                                  : o->strip, limit);
   for (size_t p = 0; p < r->n_point; p++)
     r->size[p] = fmin(o->h_max, fmax(o->h_min, r->size[p]));
   vg_ref_sizes(r);

@@ -12,6 +12,9 @@ struct vg_sizes_options {
   double h_min, h_max;      /* bounds, > 0 and finite */
   double growth;
   const double *cap;        /* [n_tri] largest size on it, or NULL */
+  const double *point_cap;  /* [n_point] largest size there, or NULL */
+  const double *across;     /* [n_patch] edges across strips; NULL: 1 */
+  const uint32_t *tri_patch;  /* [n_tri] for across */
 };
 
 /** Fill r->size (and the tree): by the curvature of faces and curves, and by

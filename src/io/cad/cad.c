@@ -20,6 +20,7 @@
 struct vg_cad {
   struct vg_child child;
   int is_open, has_model;
+  struct vg_cad_options o;   /* of the last parse */
   char stage[80];            /* what it is doing */
 };
 
@@ -30,6 +31,13 @@ void vg_cad_surface_release(struct vg_cad_surface *s)
   free(s->segment);
   free(s->segment_curve);
   memset(s, 0, sizeof *s);
+}
+
+void vg_cad_model_release(struct vg_cad_model *m)
+{
+  vg_cad_close(m->cad);
+  vg_cad_surface_release(&m->surface);
+  m->cad = NULL;
 }
 
 int vg_cad_is_built(void)
@@ -382,6 +390,7 @@ vg_status vg_cad_parse(struct vg_cad *c, struct vg_input *in,
   VG_TRY(check_frame(in, kind, err));
   VG_TRY(start_child(c, err));
   c->has_model = 0;
+  c->o = *o;
   send_file(&k, in, kind);
   VG_TRY(next(&k, &t, err));
   if (t.what != VG_CAD_TELL_SURFACE) st = gone(&k, err);
@@ -398,7 +407,8 @@ done:
 
 vg_status vg_cad_read(const char *path, enum vg_cad_kind kind,
                       const struct vg_cad_options *options,
-                      struct vg_mesh *out, struct vg_error *err)
+                      struct vg_cad_model *keep, struct vg_mesh *out,
+                      struct vg_error *err)
 {
   const struct vg_cad_options plain = VG_CAD_OPTIONS_INIT;
   struct vg_cad_surface s = VG_CAD_SURFACE_INIT;
@@ -409,7 +419,17 @@ vg_status vg_cad_read(const char *path, enum vg_cad_kind kind,
   VG_TRY(vg_input_open(path, &in, err));
   VG_TRY(vg_cad_open(&c, err));
   VG_TRY(vg_cad_parse(c, &in, kind, options ? options : &plain, &s, err));
-  vg_mesh_move(out, &s.mesh);
+  if (keep) {
+    struct vg_mesh copy = VG_MESH_INIT;
+
+    VG_TRY(vg_mesh_copy(&copy, &s.mesh, err));
+    *keep = (struct vg_cad_model){ c, s };
+    c = NULL;
+    s = (struct vg_cad_surface)VG_CAD_SURFACE_INIT;
+    vg_mesh_move(out, &copy);
+  } else {
+    vg_mesh_move(out, &s.mesh);
+  }
 done:
   vg_cad_close(c);
   vg_cad_surface_release(&s);
@@ -423,9 +443,11 @@ vg_status vg_cad_project(struct vg_cad *c, enum vg_cad_on on, size_t n,
                          const uint32_t *number, double (*point)[3],
                          double *distance, struct vg_error *err)
 {
-  const struct vg_cad_ask ask = { .n = n,
-    .what = on == VG_CAD_ON_FACES ? VG_CAD_ASK_FACES : VG_CAD_ASK_CURVES };
-  struct call k = { c, "the CAD model", NULL, 0 };
+  static const uint32_t what[] = { [VG_CAD_ON_FACES] = VG_CAD_ASK_FACES,
+    [VG_CAD_ON_CURVES] = VG_CAD_ASK_CURVES,
+    [VG_CAD_ON_TRIANGLES] = VG_CAD_ASK_TRIANGLES };
+  const struct vg_cad_ask ask = { .n = n, .what = what[on] };
+  struct call k = { c, "the CAD model", &c->o, vg_clock() };
   double (*to)[3] = NULL, *far = NULL;
   struct vg_cad_tell t;
   vg_status st = VG_OK;

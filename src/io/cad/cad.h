@@ -94,22 +94,36 @@ vg_status vg_cad_parse(struct vg_cad *c, struct vg_input *in,
 
 /** Points put on faces, or on curves, of the model.
  *
- * @param on        faces or curves
- * @param number    [n] of the face or curve for each point
+ * @param on        faces, curves, or triangles of the surface as parsed, which
+ *                  stand for their faces
+ * @param number    [n] of the face, curve or triangle (from 0) for each point
  * @param point     in: [n][3]; out: the nearest point of that face (within its
  *                  bounds) or curve
  * @param distance  out: [n] how far each was moved; NULL accepted
+ * stop and seconds of the options that the model was parsed with hold here too.
  * VG_ERR_INPUT for a number that the model lacks; VG_ERR_GEOMETRY when the
- * child is gone. Points are untouched on failure. Some 10 to 100 us each. */
-enum vg_cad_on { VG_CAD_ON_FACES, VG_CAD_ON_CURVES };
+ * child is gone. Points are untouched on failure. Some 10 to 100 us each, by
+ * triangles, which say where to begin, some 2. */
+enum vg_cad_on { VG_CAD_ON_FACES, VG_CAD_ON_CURVES, VG_CAD_ON_TRIANGLES };
 vg_status vg_cad_project(struct vg_cad *c, enum vg_cad_on on, size_t n,
                          const uint32_t *number, double (*point)[3],
                          double *distance, struct vg_error *err);
 
-/** vg_cad_open, vg_cad_parse, vg_cad_close on a file (gzip'd or not).
- * o: NULL for defaults. */
+/** A child and what it made of its file. */
+struct vg_cad_model {
+  struct vg_cad *cad;        /* NULL: none */
+  struct vg_cad_surface surface;
+};
+#define VG_CAD_MODEL_INIT { NULL, VG_CAD_SURFACE_INIT }
+void vg_cad_model_release(struct vg_cad_model *m);
+
+/** vg_cad_open and vg_cad_parse on a file (gzip'd or not).
+ * @param o     NULL for defaults
+ * @param keep  empty; out: the child, with a copy of the surface; NULL: the
+ *              child is ended */
 vg_status vg_cad_read(const char *path, enum vg_cad_kind kind,
-                      const struct vg_cad_options *o, struct vg_mesh *out,
+                      const struct vg_cad_options *o,
+                      struct vg_cad_model *keep, struct vg_mesh *out,
                       struct vg_error *err);
 
 #endif

@@ -11,7 +11,8 @@ extern "C" {
 #endif
 
 /* A question, with n bytes of a file, or n numbers (uint32_t) and n points. */
-enum { VG_CAD_ASK_READ, VG_CAD_ASK_FACES, VG_CAD_ASK_CURVES };
+enum { VG_CAD_ASK_READ, VG_CAD_ASK_FACES, VG_CAD_ASK_CURVES,
+       VG_CAD_ASK_TRIANGLES };
 struct vg_cad_ask {
   uint32_t what, kind;
   int32_t unit, patches;

@@ -280,7 +280,7 @@ static vg_status read_by_name(const char *path, struct vg_mesh *out,
   vg_status st;
 
   if (!f || (!f->read && !kind)) return vg_format_unknown(path, err);
-  st = kind ? vg_cad_read(path, kind, info->cad, out, err)
+  st = kind ? vg_cad_read(path, kind, info->cad, info->model, out, err)
             : f->read(path, out, &info->turned, err);
   if (st < 0) return st;
   info->format = f->suffix;
@@ -318,7 +318,8 @@ done:
 vg_status vg_mesh_read(const char *path, struct vg_mesh *out,
                        struct vg_read_info *info, struct vg_error *err)
 {
-  struct vg_read_info found = {.cad = info ? info->cad : NULL};
+  struct vg_read_info found = {.cad = info ? info->cad : NULL,
+                               .model = info ? info->model : NULL};
   struct vg_mesh m = VG_MESH_INIT;
   vg_status st;
 
@@ -334,7 +335,8 @@ done:
 vg_status vg_surface_read(const char *path, struct vg_mesh *out,
                           struct vg_read_info *info, struct vg_error *err)
 {
-  struct vg_read_info found = {.cad = info ? info->cad : NULL};
+  struct vg_read_info found = {.cad = info ? info->cad : NULL,
+                               .model = info ? info->model : NULL};
   struct vg_mesh m = VG_MESH_INIT;
   vg_status st;
 

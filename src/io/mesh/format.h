@@ -17,6 +17,8 @@
 /** What reading found out, for a report. */
 struct vg_read_info {
   const struct vg_cad_options *cad; /* in: for CAD; NULL: its defaults */
+  struct vg_cad_model *model;     /* in: where the model of a CAD file is kept,
+                                     empty; NULL: it is not */
   const char *format;             /* suffix of the table; static */
   struct vg_turned turned;        /* zero for formats without cells */
   size_t n_cell;                  /* cells in the file */

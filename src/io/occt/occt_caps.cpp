@@ -34,8 +34,8 @@ bool before(const Edge &e, const Edge &f)
 
 class Caps {
 public:
-  Caps(const std::vector<double> &x, uint32_t *tri, size_t n)
-      : x_(x), tri_(tri), n_(n) {}
+  Caps(const std::vector<double> &x, uint32_t *tri, gp_Pnt2d *uv, size_t n)
+      : x_(x), tri_(tri), uv_(uv), n_(n) {}
 
   bool pass()
   {
@@ -149,11 +149,27 @@ private:
     touched_[t] = touched_[other->tri] = true;
     std::copy(first, first + 3, v);
     std::copy(second, second + 3, w);
+    swap_places(t, side, other->tri, other->side);
     return true;
+  }
+
+  void swap_places(size_t t, int side, size_t other, int across)
+  {
+    gp_Pnt2d *v = uv_ + 3 * t, *w = uv_ + 3 * other;
+    const gp_Pnt2d p = v[side], a = v[(side + 1) % 3], b = v[(side + 2) % 3];
+    const gp_Pnt2d q = w[across];
+
+    v[0] = p;
+    v[1] = a;
+    v[2] = q;
+    w[0] = p;
+    w[1] = q;
+    w[2] = b;
   }
 
   const std::vector<double> &x_;
   uint32_t *tri_;
+  gp_Pnt2d *uv_;             /* of their corners */
   size_t n_;
   std::vector<Edge> edges_;
   std::vector<bool> touched_;
@@ -163,7 +179,8 @@ private:
 
 void swap_caps(Surface &s, size_t from)
 {
-  Caps caps(s.point, s.tri.data() + 3 * from, s.tri.size() / 3 - from);
+  Caps caps(s.point, s.tri.data() + 3 * from, s.uv.data() + 3 * from,
+            s.tri.size() / 3 - from);
 
   for (int k = 0; k < most_passes && caps.pass(); k++) {}
 }

@@ -15,6 +15,7 @@
 #include <TopoDS_Edge.hxx>
 #include <TopoDS_Face.hxx>
 #include <gp_Pnt.hxx>
+#include <gp_Pnt2d.hxx>
 
 #include "base/status.h"
 #include "io/cad/wire.h"
@@ -87,6 +88,8 @@ struct Surface {
   std::vector<double> point;
   std::vector<uint32_t> tri, face, patch, segment, curve;
   std::vector<vg_cad_patch> patches;
+  std::vector<gp_Pnt2d> uv;  /* of each corner of the triangles, on its face;
+                                stays here */
 };
 
 /** Triangles; faces that could not be are noted. */
@@ -103,6 +106,8 @@ public:
   explicit Projector(const TopoDS_Face &face);
   ~Projector();
   gp_Pnt nearest(const gp_Pnt &p);
+  /* The same with a place to begin with, which is some ten times as fast. */
+  gp_Pnt nearest(const gp_Pnt &p, gp_Pnt2d guess);
 
 private:
   struct State;

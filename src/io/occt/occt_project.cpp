@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <BRepAdaptor_Curve.hxx>
+#include <BRepAdaptor_Surface.hxx>
 #include <BRepTools.hxx>
 #include <BRepTopAdaptor_FClass2d.hxx>
 #include <BRep_Tool.hxx>
@@ -16,10 +17,21 @@
 
 namespace vg_occt {
 
+namespace {
+
+const int most_steps = 15;
+/* Where the lengths of the derivatives say no more: at a pole. */
+const double singular = 1e-10;
+/* Steps end when they are this small a part of the point's distance from the
+ * origin and the first step. */
+const double precise = 1e-13, relative = 1e-7;
+
+}  // namespace
+
 struct Projector::State {
   explicit State(const TopoDS_Face &f)
       : face(f), surface(new ShapeAnalysis_Surface(BRep_Tool::Surface(f))),
-        inside(f, Precision::Confusion())
+        fast(f, Standard_False), inside(f, Precision::Confusion())
   {
     for (TopExp_Explorer e(f, TopAbs_EDGE); e.More(); e.Next())
       if (!BRep_Tool::Degenerated(TopoDS::Edge(e.Current())))
@@ -27,6 +39,7 @@ struct Projector::State {
   }
   TopoDS_Face face;
   Handle(ShapeAnalysis_Surface) surface;
+  BRepAdaptor_Surface fast;
   BRepTopAdaptor_FClass2d inside;
   std::vector<TopoDS_Edge> edges;
 };
@@ -69,6 +82,44 @@ gp_Pnt Projector::nearest(const gp_Pnt &p)
     has = true;
   }
   return best;
+}
+
+/* Gauss and Newton's steps: points lie near their feet, so that the bend of the
+ * surface matters little. */
+static bool walk(const BRepAdaptor_Surface &surface, const gp_Pnt &p,
+                 gp_Pnt2d &uv, gp_Pnt &foot)
+{
+  double far = precise * p.XYZ().Modulus(), first = -1;
+
+  for (int i = 0; i < most_steps; i++) {
+    gp_Vec du, dv;
+
+    surface.D1(uv.X(), uv.Y(), foot, du, dv);
+    gp_Vec r(foot, p);
+    double a = du * du, b = du * dv, c = dv * dv, f = r * du, g = r * dv;
+    double det = a * c - b * b;
+    if (!(det > singular * a * c)) return false;
+    double s = (c * f - b * g) / det, t = (a * g - b * f) / det;
+    double step = (s * du + t * dv).Magnitude();
+    if (first < 0) first = step;
+    if (!(step <= 10 * first)) return false;
+    uv.SetCoord(uv.X() + s, uv.Y() + t);
+    if (step > far + relative * first) continue;
+    foot = surface.Value(uv.X(), uv.Y());
+    return true;
+  }
+  return false;
+}
+
+gp_Pnt Projector::nearest(const gp_Pnt &p, gp_Pnt2d guess)
+{
+  State &s = *state_;
+  gp_Pnt from = s.fast.Value(guess.X(), guess.Y()), foot;
+
+  if (walk(s.fast, p, guess, foot) &&
+      p.SquareDistance(foot) <= p.SquareDistance(from) &&
+      s.inside.Perform(guess) != TopAbs_OUT) return foot;
+  return nearest(p);
 }
 
 std::vector<gp_Pnt> samples(const TopoDS_Face &face, int n)

@@ -109,12 +109,13 @@ void send(const Surface &s, const Talk &talk)
   talk.put(s.patches.data(), s.patches.size() * sizeof s.patches[0]);
 }
 
-void answer_read(const vg_cad_ask &ask, Model &model, const Talk &talk)
+void answer_read(const vg_cad_ask &ask, Model &model, Surface &surface,
+                 const Talk &talk)
 {
   MemoryFile file(talk, ask.n);
-  Surface surface;
 
   model = Model();
+  surface = Surface();
   talk.stage("reading the file");
   read(ask, file.path(), model, talk);
   talk.stage("looking for faults of its faces");
@@ -154,6 +155,45 @@ void put_on_faces(const Model &model, Points &p)
   }
 }
 
+/* The place of p on triangle t of its face. */
+gp_Pnt2d guess_on(const Surface &s, size_t t, const gp_Pnt &p)
+{
+  gp_Pnt x[3];
+  const gp_Pnt2d *uv = s.uv.data() + 3 * t;
+
+  for (int i = 0; i < 3; i++) {
+    const double *at = s.point.data() + 3 * s.tri[3 * t + i];
+
+    x[i] = gp_Pnt(at[0], at[1], at[2]);
+  }
+  gp_Vec u(x[0], x[1]), v(x[0], x[2]), d(x[0], p);
+  double uu = u * u, w = u * v, vv = v * v, det = uu * vv - w * w;
+  double a = 1. / 3, b = 1. / 3;
+  if (det > 0) {
+    a = (vv * (d * u) - w * (d * v)) / det;
+    b = (uu * (d * v) - w * (d * u)) / det;
+  }
+  return gp_Pnt2d(uv[0].XY() + a * (uv[1].XY() - uv[0].XY()) +
+                  b * (uv[2].XY() - uv[0].XY()));
+}
+
+void put_on_triangles(const Model &model, const Surface &s, Points &p)
+{
+  std::map<uint32_t, std::unique_ptr<Projector>> open;
+
+  for (size_t i = 0; i < p.number.size(); i++) {
+    uint32_t t = p.number[i];
+    gp_Pnt from(p.x[3 * i], p.x[3 * i + 1], p.x[3 * i + 2]);
+
+    if (t >= s.face.size())
+      throw Failure{VG_ERR_INPUT, format("point %zu: there is no triangle %u",
+                                         i + 1, t)};
+    std::unique_ptr<Projector> &on = open[s.face[t]];
+    if (!on) on.reset(new Projector(model.faces[s.face[t] - 1].shape));
+    p.set(i, from, on->nearest(from, guess_on(s, t, from)));
+  }
+}
+
 void put_on_curves(const Model &model, Points &p)
 {
   for (size_t i = 0; i < p.number.size(); i++) {
@@ -167,7 +207,8 @@ void put_on_curves(const Model &model, Points &p)
   }
 }
 
-void answer_points(const vg_cad_ask &ask, const Model &model, const Talk &talk)
+void answer_points(const vg_cad_ask &ask, const Model &model,
+                   const Surface &surface, const Talk &talk)
 {
   const vg_cad_tell t = {VG_CAD_TELL_POINTS, 0, ask.n};
   Points p;
@@ -179,17 +220,19 @@ void answer_points(const vg_cad_ask &ask, const Model &model, const Talk &talk)
       !talk.get(p.x.data(), 3 * ask.n * sizeof p.x[0])) _exit(0);
   talk.stage("putting points on its faces");
   if (ask.what == VG_CAD_ASK_FACES) put_on_faces(model, p);
-  else put_on_curves(model, p);
+  else if (ask.what == VG_CAD_ASK_CURVES) put_on_curves(model, p);
+  else put_on_triangles(model, surface, p);
   talk.put(&t, sizeof t);
   talk.put(p.x.data(), 3 * ask.n * sizeof p.x[0]);
   talk.put(p.distance.data(), ask.n * sizeof p.distance[0]);
 }
 
-void answer(const vg_cad_ask &ask, Model &model, const Talk &talk)
+void answer(const vg_cad_ask &ask, Model &model, Surface &surface,
+            const Talk &talk)
 {
   try {
-    if (ask.what == VG_CAD_ASK_READ) answer_read(ask, model, talk);
-    else answer_points(ask, model, talk);
+    if (ask.what == VG_CAD_ASK_READ) answer_read(ask, model, surface, talk);
+    else answer_points(ask, model, surface, talk);
   } catch (const Failure &f) {
     talk.fail(f);
   } catch (const std::bad_alloc &) {
@@ -247,10 +290,11 @@ void vg_occt_serve(int fd, const vg_cad_wire *wire)
 {
   Talk talk(fd, wire);
   Model model;
+  Surface surface;
   vg_cad_ask ask;
 
   limit_memory();
   std::thread(watch, fd).detach();
-  while (talk.get(&ask, sizeof ask)) answer(ask, model, talk);
+  while (talk.get(&ask, sizeof ask)) answer(ask, model, surface, talk);
   _exit(0);
 }

@@ -150,6 +150,8 @@ private:
       for (int i = 0; i < 3; i++) v[i] = global_[static_cast<size_t>(n[i])];
       if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) continue;
       out_.tri.insert(out_.tri.end(), v, v + 3);
+      for (int i : n)
+        out_.uv.push_back(t->HasUVNodes() ? t->UVNode(i) : gp_Pnt2d());
       out_.face.push_back(f.number);
       out_.patch.push_back(patch);
     }

@@ -80,7 +80,7 @@ vg_status vg_problem_gaps(struct vg_problem *p, struct vg_display *show,
     vg_note(&p->notes, "gap_edges %g: sizes from %zu places in gaps, the "
             "narrowest %.4g wide at (%.6g, %.6g, %.6g)%s", s->gap_edges,
             found.n, found.narrowest, found.at[0], found.at[1], found.at[2],
-            s->remesh ? "" : "; the surface stays as it is given, and cells "
+            s->remesh == VG_ANSWER_YES ? "" : "; the surface stays as it is given, and cells "
             "between coarse faces cannot be small (remesh_surface)");
   else
     vg_note(&p->notes, "without effect, for no gap is narrow: gap_edges");

@@ -73,6 +73,7 @@ void vg_problem_release(struct vg_problem *p)
   free(p->heights.item);
   vg_surface_report_release(&p->check);
   vg_renewal_release(&p->renewal);
+  vg_cad_model_release(&p->model);
   vg_notes_release(&p->notes);
   free(p->given);
 }
@@ -239,7 +240,8 @@ static void note_unused(struct vg_problem *p,
 static vg_status read_surface_file(struct vg_problem *p, struct vg_error *err)
 {
   struct vg_cad_options cad = vg_cad_options_of(&p->settings, &p->notes);
-  struct vg_read_info info = { .cad = &cad };
+  struct vg_read_info info = { .cad = &cad,
+    .model = vg_problem_is_renewed(p) ? &p->model : NULL };
   const char *path = p->files.surface;
   vg_status st;
 

@@ -37,15 +37,28 @@ struct vg_point_heights {
 /** The height at x, NULL where none is given. O(log n). */
 double *vg_point_height(const struct vg_point_heights *h, const double x[3]);
 
+/** A new surface that was put back on the CAD model that it comes from. */
+struct vg_put_back {
+  int is_done;
+  size_t n_point, n_curve;          /* of the surface; of them on curves */
+  size_t n_far, n_refused;          /* that stay: off the model, and since
+                                       triangles would fold or meet */
+  struct vg_remesh_distance off[2]; /* of points and centroids from the model,
+                                       before and after */
+  double seconds;
+};
+
 /** A surface whose triangles were made anew. */
 struct vg_renewal {
   int is_done;
   struct vg_remesh_report report;
   struct vg_remesh_distance off[2]; /* new from given, given from new */
-  double *face;                     /* [n_tri] distance of each from given */
+  double *face;                     /* [n_tri] distance of each from given, or
+                                       from the CAD model where put back */
   size_t n_patch;                   /* of the surface; a farfield adds others */
   double *area;                     /* [n_patch][2] of patches, before, after */
   double seconds;
+  struct vg_put_back back;
 };
 
 struct vg_problem {
@@ -58,10 +71,13 @@ struct vg_problem {
   struct vg_mesh surface;
   struct vg_shmem common;          /* where its arrays are, if a node has them
                                       in common */
+  struct vg_cad_model model;       /* of a CAD file whose triangles are made
+                                      anew, with the first rank; else empty */
   int is_read;                     /* surface, by vg_problem_cad */
   struct vg_point_heights heights;
   size_t n_welded, n_dropped;      /* by the weld */
   struct vg_surface_report check;
+  int is_shaped, external;         /* by vg_problem_shape */
   int require_bc;                  /* the input gives conditions */
   int threads;                     /* for the check; 0: one per core */
   struct vg_renewal renewal;
@@ -117,9 +133,14 @@ vg_status vg_problem_cad(struct vg_problem *p, struct vg_comm *comm,
 struct vg_cad_options vg_cad_options_of(const struct vg_settings *s,
                                         struct vg_notes *notes);
 
-/** Weld, check, repair and complete the domain. VG_ERR_GEOMETRY when defects
- * remain: they are in p->check. After success p->settings are resolved: they
- * name all sources, patches and the farfield that was chosen. */
+/** Weld, check and repair the surface, and make its triangles anew where
+ * settings ask for it. VG_ERR_GEOMETRY when defects are in the way. */
+vg_status vg_problem_shape(struct vg_problem *p, struct vg_display *show,
+                           struct vg_error *err);
+
+/** The same unless it was done, and complete the domain. VG_ERR_GEOMETRY when
+ * defects remain: they are in p->check. After success p->settings are resolved:
+ * they name all sources, patches and the farfield that was chosen. */
 vg_status vg_problem_close(struct vg_problem *p, struct vg_display *show,
                            struct vg_error *err);
 
@@ -130,6 +151,34 @@ vg_status vg_problem_renew(struct vg_problem *p, struct vg_display *show,
 
 /** What settings ask of a new surface; sources are borrowed. */
 struct vg_remesh_options vg_remesh_options_of(const struct vg_settings *s);
+/** What the table `surface` asks for. NULL, NULL: nothing. */
+struct vg_surface_sizes {
+  double *cap;                      /* [n_point] largest size; INFINITY: none */
+  double *across;                   /* [n_patch] edges across strips */
+};
+
+/** From the settings, for the surface as it is now. VG_ERR_INPUT for patches
+ * that it lacks, or two without an edge in common. O(n log n) for each curve,
+ * O(n) for each other row. */
+vg_status vg_surface_sizes_make(const struct vg_problem *p,
+                                struct vg_surface_sizes *s,
+                                struct vg_error *err);
+
+void vg_surface_sizes_release(struct vg_surface_sizes *s);
+
+/** 1 where settings make the triangles anew: `auto` does those of CAD. */
+int vg_problem_is_renewed(const struct vg_problem *p);
+
+/** After vg_problem_shape on several ranks: what the first one put back on CAD
+ * goes to those that have their own (is_maker); nothing happens for other
+ * surfaces. st: how this rank fared. Collective. */
+vg_status vg_problem_share(struct vg_problem *p, struct vg_comm *comm,
+                           int is_maker, vg_status st, struct vg_error *err);
+
+/** Put the points of a surface that was made anew back on p->model, as far as
+ * no triangle folds or meets another one; distances are measured, notes tell.
+ * VG_ERR_GEOMETRY when Open CASCADE fails. */
+vg_status vg_problem_put_back(struct vg_problem *p, struct vg_error *err);
 
 void vg_renewal_release(struct vg_renewal *r);
 

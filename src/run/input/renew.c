@@ -4,11 +4,21 @@
 
 #include "base/memory.h"
 #include "core/geometry/vector.h"
+#include "io/mesh/format.h"
 #include "run/input/input.h"
+#include "run/input/share.h"
 
 static int stop(void)
 {
   return vg_display_interrupted();
+}
+
+int vg_problem_is_renewed(const struct vg_problem *p)
+{
+  if (p->settings.remesh != VG_ANSWER_AUTO)
+    return p->settings.remesh == VG_ANSWER_YES;
+  return !*p->files.front && vg_format_is_cad(p->files.surface)
+         && !(p->settings.wrap > 0);
 }
 
 /* *hard: [n_patch], NULL where none is asked for. */
@@ -57,6 +67,7 @@ struct vg_remesh_options vg_remesh_options_of(const struct vg_settings *s)
 }
 
 static vg_status remesh(struct vg_problem *p, const uint8_t *hard,
+                        const struct vg_surface_sizes *sizes,
                         struct vg_display *show, struct vg_error *err)
 {
   struct vg_remesh_options o = vg_remesh_options_of(&p->settings);
@@ -64,6 +75,8 @@ static vg_status remesh(struct vg_problem *p, const uint8_t *hard,
 
   o.map = p->map;
   o.hard = hard;
+  o.cap = sizes->cap;
+  o.across = sizes->across;
   o.threads = p->threads;
   o.stop = stop;
   st = vg_remesh(&p->surface, &o, &p->renewal.report, err);
@@ -82,7 +95,6 @@ static vg_status measure(struct vg_problem *p, const struct vg_mesh *given,
   r->area = vg_calloc(2 * r->n_patch, sizeof *r->area);
   if (!r->face || !r->area) return vg_fail_memory(err, "the distances");
   areas(given, 0, r->area);
-  areas(&p->surface, 1, r->area);
   VG_TRY(vg_remesh_measure(&p->surface, given, p->threads, r->face,
                            &r->off[0], err));
   VG_TRY(vg_remesh_measure(given, &p->surface, p->threads, NULL, &r->off[1],
@@ -95,6 +107,7 @@ vg_status vg_problem_renew(struct vg_problem *p, struct vg_display *show,
                            struct vg_error *err)
 {
   struct vg_renewal *r = &p->renewal;
+  struct vg_surface_sizes sizes = { NULL, NULL };
   struct vg_mesh given = VG_MESH_INIT;
   uint8_t *hard = NULL;
   double t = vg_display_now();
@@ -107,16 +120,21 @@ vg_status vg_problem_renew(struct vg_problem *p, struct vg_display *show,
   vg_display_update(show, "remesh", p->surface.n_tri, 0);
   VG_TRY(vg_mesh_copy(&given, &p->surface, err));
   VG_TRY(hard_patches(p, &hard, err));
-  VG_TRY(remesh(p, hard, show, err));
+  VG_TRY(vg_surface_sizes_make(p, &sizes, err));
+  VG_TRY(remesh(p, hard, &sizes, show, err));
   r->seconds = vg_display_now() - t;
   VG_TRY(measure(p, &given, err));
   r->is_done = 1;
+  vg_display_update(show, "put back", p->surface.n_tri, 0);
+  if (p->model.cad) VG_TRY(vg_problem_put_back(p, err));
+  areas(&p->surface, 1, r->area);
   vg_note(&p->notes, "the surface was made anew (remesh_surface): %zu "
           "triangles, before %zu, at most %.3g from it, tolerance %.3g",
           r->report.n_tri[1], r->report.n_tri[0],
           r->off[0].most > r->off[1].most ? r->off[0].most : r->off[1].most,
           r->report.tolerance);
 done:
+  vg_surface_sizes_release(&sizes);
   free(hard);
   vg_mesh_release(&given);
   return st;
@@ -128,4 +146,25 @@ void vg_renewal_release(struct vg_renewal *r)
   free(r->face);
   free(r->area);
   memset(r, 0, sizeof *r);
+}
+
+vg_status vg_problem_share(struct vg_problem *p, struct vg_comm *comm,
+                           int is_maker, vg_status st, struct vg_error *err)
+{
+  struct vg_bytes b = { 0, NULL };
+  uint64_t number;
+
+  if (vg_comm_size(comm) == 1 || *p->files.front
+      || !vg_format_is_cad(p->files.surface) || !vg_problem_is_renewed(p))
+    return vg_comm_agree(comm, st, err);
+  if (st >= 0 && !vg_comm_rank(comm))
+    st = vg_surface_pack(&p->surface, 0, &b, err);
+  VG_TRY(vg_comm_agree(comm, st, err));
+  VG_TRY(vg_comm_bcast(comm, 0, &b, err));
+  if (vg_comm_rank(comm) && is_maker)
+    st = vg_surface_unpack(&b, &p->surface, &number, err);
+  st = vg_comm_agree(comm, st, err);
+done:
+  free(b.data);
+  return st;
 }

@@ -384,11 +384,10 @@ done:
   return st;
 }
 
-vg_status vg_problem_close(struct vg_problem *p, struct vg_display *show,
+vg_status vg_problem_shape(struct vg_problem *p, struct vg_display *show,
                            struct vg_error *err)
 {
   struct vg_settings *s = &p->settings;
-  int external;
   vg_status st = VG_OK;
 
   vg_mesh_keep_boundary(&p->surface);
@@ -400,20 +399,36 @@ vg_status vg_problem_close(struct vg_problem *p, struct vg_display *show,
     VG_TRY(vg_surface_weld(&p->surface, s->weld, &p->n_welded, &p->n_dropped,
                            err));
   if (s->close_holes) VG_TRY(close_holes(p, err));
-  external = s->farfield.kind == VG_DOMAIN_AUTO
-             ? -1 : s->farfield.kind != VG_DOMAIN_NONE;
+  p->external = s->farfield.kind == VG_DOMAIN_AUTO
+                ? -1 : s->farfield.kind != VG_DOMAIN_NONE;
   vg_display_update(show, "check", p->surface.n_tri, 0);
-  VG_TRY(check(p, &external, err));
+  VG_TRY(check(p, &p->external, err));
+  s->remesh = vg_problem_is_renewed(p) ? VG_ANSWER_YES : VG_ANSWER_NO;
   if (!p->check.n_defect || is_only_open(&p->check))
     VG_TRY(vg_problem_gaps(p, show, err));
-  if (s->remesh) {
+  if (s->remesh == VG_ANSWER_YES) {
     if (p->check.n_defect && !is_only_open(&p->check)) return defects(p, err);
     VG_TRY(vg_problem_renew(p, show, err));
-    VG_TRY(check(p, &external, err));
+  }
+  p->is_shaped = 1;
+done:
+  return st;
+}
+
+vg_status vg_problem_close(struct vg_problem *p, struct vg_display *show,
+                           struct vg_error *err)
+{
+  struct vg_settings *s = &p->settings;
+  vg_status st = VG_OK;
+
+  if (!p->is_shaped) VG_TRY(vg_problem_shape(p, show, err));
+  if (p->renewal.is_done) {
+    vg_display_update(show, "check", p->surface.n_tri, 0);
+    VG_TRY(check(p, &p->external, err));
   }
   if (p->surface_only && (!p->check.n_defect || is_only_open(&p->check)))
     return VG_OK;
-  if (external) return close_body(p, show, err);
+  if (p->external) return close_body(p, show, err);
   s->farfield.kind = VG_DOMAIN_NONE;
   VG_TRY(defects(p, err));
 done:

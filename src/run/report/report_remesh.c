@@ -34,6 +34,16 @@ static void bad_text(FILE *to, const struct vg_remesh_report *r)
                                 r->n_bad - shown);
 }
 
+static void back_text(FILE *to, const struct vg_put_back *b)
+{
+  fprintf(to, "  put back on the CAD model: %zu points, %zu of them on its "
+          "curves; refused %zu, off it %zu\n",
+          b->n_point - b->n_refused - b->n_far, b->n_curve, b->n_refused,
+          b->n_far);
+  distance_text(to, "from the CAD model before", &b->off[0]);
+  distance_text(to, "from the CAD model now", &b->off[1]);
+}
+
 void vg_report_remesh_text(FILE *to, const struct vg_renewal *n)
 {
   const struct vg_remesh_report *r = &n->report;
@@ -49,6 +59,7 @@ void vg_report_remesh_text(FILE *to, const struct vg_renewal *n)
   fprintf(to, "  tolerance %.3g (and 0.05 of the size)\n", r->tolerance);
   distance_text(to, "new from given", &n->off[0]);
   distance_text(to, "given from new", &n->off[1]);
+  if (n->back.is_done) back_text(to, &n->back);
   if (r->n_round > 1)
     fprintf(to, "  made %d times: triangles met, and sizes there were "
             "halved\n", r->n_round);
@@ -59,6 +70,16 @@ static json_t *distance_json(const struct vg_remesh_distance *d)
 {
   return json_pack("{s:f s:[fff] s:f}", "largest", d->most, "at", d->at[0],
                    d->at[1], d->at[2], "percentile_99", d->most_99);
+}
+
+static json_t *back_json(const struct vg_put_back *b)
+{
+  if (!b->is_done) return json_null();
+  return json_pack("{s:I s:I s:I s:I s:o s:o s:f}", "points",
+    (json_int_t)b->n_point, "on_curves", (json_int_t)b->n_curve, "refused",
+    (json_int_t)b->n_refused, "off_model", (json_int_t)b->n_far, "before",
+    distance_json(&b->off[0]), "now", distance_json(&b->off[1]), "seconds",
+    b->seconds);
 }
 
 static json_t *patches_json(const struct vg_renewal *n,
@@ -94,7 +115,7 @@ json_t *vg_report_remesh_json(const struct vg_renewal *n,
 
   if (!n->is_done) return json_null();
   return json_pack("{s:[II] s:[II] s:I s:I s:[ff] s:f s:f s:f s:f s:i s:f s:o "
-                   "s:o s:{s:I s:I s:I s:I} s:f s:o s:o}",
+                   "s:o s:o s:{s:I s:I s:I s:I} s:f s:o s:o}",
     "triangles", (json_int_t)r->n_tri[0], (json_int_t)r->n_tri[1],
     "points", (json_int_t)r->n_point[0], (json_int_t)r->n_point[1],
     "corners", (json_int_t)r->n_corner, "lines", (json_int_t)r->n_line,
@@ -104,6 +125,7 @@ json_t *vg_report_remesh_json(const struct vg_renewal *n,
     "percent_edges_fit", percent(r->n_edge_fit, r->n_edge),
     "new_from_given", distance_json(&n->off[0]),
     "given_from_new", distance_json(&n->off[1]),
+    "cad", back_json(&n->back),
     "changes", "splits", (json_int_t)r->n_split, "collapses",
     (json_int_t)r->n_collapse, "swaps", (json_int_t)r->n_swap, "moves",
     (json_int_t)r->n_move, "seconds", n->seconds,

@@ -132,6 +132,8 @@ static const char *const example[VG_TABLE_N] = {
   [VG_TABLE_PATCHES] = "#\n# patches\n# id  bc  name\n# 1   4   wing\n\n",
   [VG_TABLE_LAYERS] = "#\n# layers\n# id  grow  first  min_full\n"
                       "# 1   yes   1e-5   98\n\n",
+  [VG_TABLE_SURFACE] = "#\n# surface\n# patch  beside  size\n"
+                       "# 1      2       0.01\n\n",
   [VG_TABLE_SOURCES] = "#\n# sources\n# kind   x0  y0  z0  r0  h0\n"
                        "# point  0   0   0   0   0.01\n\n",
   [VG_TABLE_SWEEP] = "#\n# sweep\n# ranks  threads  leaf_cells\n"
@@ -143,7 +145,7 @@ static void write_table(struct vg_output *out, const struct vg_settings *s,
 {
   const struct vg_table *t = vg_settings_table(kind);
   union { struct vg_farfield_row f; struct vg_patch_row p;
-          struct vg_layer_row l; struct vg_source s;
+          struct vg_layer_row l; struct vg_surface_row u; struct vg_source s;
           struct vg_sweep_row w; } defaults;
   char value[CELL_SIZE];
   size_t width[64] = { 0 }, n = vg_settings_rows(s, kind);

@@ -208,8 +208,9 @@ vg_status vg_settings_copy(struct vg_settings *to,
   s.source = NULL;
   s.patch = NULL;
   s.layer_row = NULL;
+  s.surface_row = NULL;
   s.n_source = s.cap_source = s.n_patch = s.cap_patch = 0;
-  s.n_layer = s.cap_layer = 0;
+  s.n_layer = s.cap_layer = s.n_surface = s.cap_surface = 0;
   for (int k = VG_TABLE_PATCHES; k <= VG_TABLE_SOURCES; k++) {
     enum vg_table_kind kind = (enum vg_table_kind)k;
 

@@ -14,6 +14,7 @@
 #include "layers/expand/join.h"
 #include "partition/cut/partition.h"
 #include "run/settings/lists.h"
+#include "run/settings/surface_table.h"
 
 #define HUGE_SIZE 1e60 /* beyond this the predicates are not safe */
 
@@ -109,9 +110,10 @@ static const struct vg_param params[] = {
     .unit = "", .help = "swap and collapse edges of the surface where its "
     "triangles are bad, without moving it visibly; auto: where layers grow "
     "and there are slivers" },
-  { "remesh_surface", AT(remesh), .type = VG_PARAM_FLAG, .unit = "",
-    .help = "make the triangles of the surface anew to size; ridges, corners "
-    "and patches stay" },
+  { "remesh_surface", AT(remesh), .type = VG_PARAM_WORD,
+    .words = answer_words, .unit = "", .help = "make the triangles of the "
+    "surface anew to size; ridges, corners and patches stay; auto: those of "
+    "CAD, whose faces and curves the new points are put back on" },
   { "surface_tolerance", AT(surface_tolerance), .use = VG_USE_REMESH, LENGTH,
     .help = "largest distance of a new surface from the one given; 0: 1e-4 of "
     "the body's length; nowhere more than 0.05 of the edges" },
@@ -454,7 +456,7 @@ const struct vg_param *vg_settings_params(size_t *n)
 
 const struct vg_table *vg_settings_table(enum vg_table_kind kind)
 {
-  return &tables[kind];
+  return kind == VG_TABLE_SURFACE ? &vg_surface_table : &tables[kind];
 }
 
 void vg_settings_row_default(enum vg_table_kind kind, void *row)
@@ -464,6 +466,7 @@ void vg_settings_row_default(enum vg_table_kind kind, void *row)
   struct vg_layer_row layer = { 0, VG_ANSWER_AUTO, NAN, NAN, NAN, NAN, NAN,
                                 VG_COUNT_NONE, VG_COUNT_NONE, NAN, NAN,
                                 VG_NO_LIMITS };
+  struct vg_surface_row surface = { .beside = VG_BC_NONE };
   struct vg_source source = { .kind = VG_SOURCE_POINT, .an = 1 };
   struct vg_sweep_row sweep = { .repeat = 0 };
 
@@ -473,6 +476,7 @@ void vg_settings_row_default(enum vg_table_kind kind, void *row)
   case VG_TABLE_FARFIELD: memcpy(row, &far, sizeof far); break;
   case VG_TABLE_PATCHES: memcpy(row, &patch, sizeof patch); break;
   case VG_TABLE_LAYERS: memcpy(row, &layer, sizeof layer); break;
+  case VG_TABLE_SURFACE: memcpy(row, &surface, sizeof surface); break;
   case VG_TABLE_SOURCES: memcpy(row, &source, sizeof source); break;
   case VG_TABLE_SWEEP: memcpy(row, &sweep, sizeof sweep); break;
   case VG_TABLE_N: break;
@@ -527,6 +531,7 @@ void vg_settings_release(struct vg_settings *s)
   free(s->source);
   free(s->patch);
   free(s->layer_row);
+  free(s->surface_row);
   memset(s, 0, sizeof *s);
 }
 
@@ -549,6 +554,12 @@ vg_status vg_settings_add(struct vg_settings *s, enum vg_table_kind kind,
                          sizeof *s->layer_row);
     if (!refused)
       memcpy(&s->layer_row[s->n_layer++], row, sizeof *s->layer_row);
+    break;
+  case VG_TABLE_SURFACE:
+    refused = vg_reserve(&s->surface_row, &s->cap_surface, s->n_surface + 1,
+                         sizeof *s->surface_row);
+    if (!refused)
+      memcpy(&s->surface_row[s->n_surface++], row, sizeof *s->surface_row);
     break;
   case VG_TABLE_SOURCES:
     refused = vg_reserve(&s->source, &s->cap_source, s->n_source + 1,
@@ -576,6 +587,7 @@ const void *vg_settings_row(const struct vg_settings *s,
   if (kind == VG_TABLE_SWEEP) return &s->sweep;
   if (kind == VG_TABLE_PATCHES) return &s->patch[i];
   if (kind == VG_TABLE_LAYERS) return &s->layer_row[i];
+  if (kind == VG_TABLE_SURFACE) return &s->surface_row[i];
   return &s->source[i];
 }
 
@@ -584,6 +596,7 @@ size_t vg_settings_rows(const struct vg_settings *s, enum vg_table_kind kind)
   if (kind == VG_TABLE_FARFIELD) return 1;
   if (kind == VG_TABLE_SWEEP) return s->n_sweep;
   if (kind == VG_TABLE_LAYERS) return s->n_layer;
+  if (kind == VG_TABLE_SURFACE) return s->n_surface;
   return kind == VG_TABLE_PATCHES ? s->n_patch : s->n_source;
 }
 
@@ -703,6 +716,7 @@ vg_status vg_settings_check(const struct vg_settings *s, struct vg_error *err)
       return vg_fail(err, VG_ERR_INPUT, "sources: growth of source %zu is %g; "
                      "it must be above 1, or 0 for the global one", i + 1,
                      s->source[i].growth);
+  if (vg_surface_rows_check(s, err) < 0) return VG_ERR_INPUT;
   if (s->n_patch && check_numbers(s, VG_TABLE_PATCHES, err) < 0)
     return VG_ERR_INPUT;
   return check_layers(s, err);

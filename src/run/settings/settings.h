@@ -38,6 +38,13 @@ struct vg_patch_row {
   char name[VG_NAME_MAX];          /* "": as the input says */
 };
 
+/** Largest sizes on a patch, or on the curve that parts two, of a surface that
+ * is made anew. 0: not given. */
+struct vg_surface_row {
+  int32_t patch, beside;           /* beside VG_BC_NONE: the patch itself */
+  double size, lead, across;
+};
+
 /** Answers that a project may leave open. */
 enum vg_answer { VG_ANSWER_AUTO, VG_ANSWER_NO, VG_ANSWER_YES };
 
@@ -108,7 +115,8 @@ struct vg_settings {
   char write[VG_WRITE_MAX];        /* "auto": vg_settings_write */
   int report_html;
   int swap;                        /* enum vg_answer: swap edges */
-  int remesh;                      /* make the surface's triangles anew */
+  int remesh;                      /* enum vg_answer: make the triangles of the
+                                      surface anew */
   double surface_tolerance, surface_size, ridge_angle, per_turn;
   double gap_edges;                /* across gaps, at least; 0: any */
   int cells;                       /* enum vg_layer_cells */
@@ -130,9 +138,11 @@ struct vg_settings {
   struct vg_sweep_row sweep;
   size_t n_sweep;                  /* 1: given */
   size_t n_source, cap_source, n_patch, cap_patch, n_layer, cap_layer;
+  size_t n_surface, cap_surface;
   struct vg_source *source;        /* [n_source] owned */
   struct vg_patch_row *patch;      /* [n_patch] owned */
   struct vg_layer_row *layer_row;  /* [n_layer] owned */
+  struct vg_surface_row *surface_row; /* [n_surface] owned */
 };
 #define VG_SETTINGS_INIT { .n_source = 0 } /* releasing this is a no-op */
 
@@ -173,7 +183,7 @@ struct vg_param {
 };
 
 enum vg_table_kind { VG_TABLE_FARFIELD, VG_TABLE_PATCHES, VG_TABLE_LAYERS,
-                     VG_TABLE_SOURCES, VG_TABLE_SWEEP, VG_TABLE_N };
+                     VG_TABLE_SURFACE, VG_TABLE_SOURCES, VG_TABLE_SWEEP, VG_TABLE_N };
 
 struct vg_table {
   const char *name, *help;

@@ -74,6 +74,12 @@ vg_status vg_run_surface(struct vg_run *r, struct vg_problem *p,
 
   if (leads_node(r)) {
     p->threads = node_threads(r, &p->settings);
+    st = vg_problem_shape(p, show, err);
+    vg_comm_bind_node(r->comm, 0);
+  }
+  VG_TRY(vg_problem_share(p, r->comm, leads_node(r), st, err));
+  if (leads_node(r)) {
+    p->threads = node_threads(r, &p->settings);
     st = settle_surface(p, layers, show, err);
     vg_comm_bind_node(r->comm, 0);
   } else {

@@ -25,12 +25,14 @@ says out "to 1.1 2.5 0.0597046"
 # one command; names in every output; any number of ranks
 cp "$cad/wing.step" .
 set -- -q -p wing.step --y-plus 1 --reynolds 5e6 --reference-length 1000 \
-  --walls 1-5 --cad-angle 25 --leaf-cells 20000
+  --walls 1-5 --cad-angle 25 --leaf-cells 20000 --edges-per-turn 6 \
+  --surface-size 400 --surface-tolerance 20 --growth 2 --hmin 25
 vanguard mesh "$@" --out one
 exits 0
 says out "smallest angle"
 says one/wing.mapbc "trailing_edge"
 says one/wing.resolved.deck "cad_angle"
+says out "note: points were put back on the CAD model: "
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
   OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none
 if mpirun -n 2 true >/dev/null 2>&1; then
@@ -42,6 +44,29 @@ if mpirun -n 2 true >/dev/null 2>&1; then
   same one/wing.cogsg three/wing.cogsg
   says out "note: CAD: lengths are in mm"
 fi
+
+# the surface alone: made anew, put back on faces and curves, names kept; what is
+# left between CAD and the new triangles is less than what tessellation left
+set -- -q "$cad/wing.step" --edges-per-turn 8 --surface-size 200 --hmin 10
+vanguard surface "$@" --out new
+exits 0
+says out "put back on the CAD model: "
+says out "refused 0, off it 0"
+says new/wing.mapbc "trailing_edge"
+says new/wing.surface.json '"on_curves": '
+awk '/from the CAD model before/ { before = $6 }
+     /from the CAD model now/ { exit !($6 < before) }' out ||
+  fail "farther from CAD than before"
+vanguard check -q new/wing.lb8.ugrid
+exits 0
+says out "no defects"
+vanguard surface "$@" --out again -t 2
+same new/wing.lb8.ugrid again/wing.lb8.ugrid
+# a whole run does so too, unless told not to
+grep -qE "remesh_surface|yes" one/wing.resolved.deck || fail "not resolved"
+vanguard mesh -q -p "$cad/box.step" --remesh-surface no --out plain
+exits 0
+lacks out "made anew"
 
 # what has no effect is said, what cannot be done refused
 octahedron >body.obj

@@ -84,6 +84,40 @@ exits 0 # an open rim is a line
 vanguard check -q holed/open.lb8.ugrid
 says out "open edge: "
 
+# Sizes of a patch and of a curve; the ends have no points but those of the rim.
+made() { # triangles of the new surface
+  sed -n 's/.*triangles, now \([0-9,]*\);.*/\1/p' out | tr -d ,
+}
+cat >end.deck <<'END'
+finer ends
+surface_size
+0.5
+
+surface
+patch  beside  size
+2      -       0.1
+END
+sed 's/^2 .*/1      2       0.1/' end.deck >rim.deck
+sed 's/^2 .*/1      7       0.1/' end.deck >none.deck
+sed 's/^2 .*/1      -       0/' end.deck >nothing.deck
+vanguard surface -q bar.obj --surface-size 0.5 --out plain
+exits 0
+n_plain=$(made)
+vanguard surface -q bar.obj --deck end.deck --out end
+exits 0
+n_end=$(made)
+vanguard surface -q bar.obj --deck rim.deck --out rim
+exits 0
+n_rim=$(made)
+[ "$n_plain" -lt "$n_rim" ] && [ "$n_rim" -le "$n_end" ] ||
+  fail "$n_plain, $n_rim, $n_end triangles"
+vanguard surface -q bar.obj --deck none.deck --out none
+exits 1
+says err "there is no patch 7"
+vanguard surface -q bar.obj --deck nothing.deck --out nothing
+exits 1
+says err "asks for nothing"
+
 # Within a run.
 vanguard mesh -q -p bar.obj --remesh-surface yes --surface-size 0.3 \
   --out run --write lb8.ugrid --threads 1

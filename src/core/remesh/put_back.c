@@ -1,0 +1,163 @@
+/* Outline: all points go at once, since neighbours go nearly the same way;
+ * then those at triangles that came out bad go back, until there are none, and
+ * those at triangles that meet. Where all are back the surface is the one that
+ * was given, which is sound: so it ends. */
+#include "core/remesh/put_back.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "core/geometry/vector.h"
+#include "core/remesh/reference.h"
+#include "core/remesh/work.h"
+#include "core/surface/surface_check.h"
+
+#define GRAIN 1024
+#define TURN 0.5          /* cosine: a triangle turned by more is refused */
+#define SLIVER 0.12       /* (sin 20 degrees)^2: smaller angles may not become
+                             smaller yet by LOSS */
+#define LOSS 0.7          /* of the square of the sine */
+#define ROUNDS 12
+
+/* --- where they are ------------------------------------------------------ */
+
+struct locating {
+  const struct vg_ref *ref;
+  const double (*x)[3];
+  uint32_t *tri;
+  double (*foot)[3];
+};
+
+/* Hints go on within a chunk, whose bounds are the same for any threads. */
+static void locate(void *context, size_t first, size_t end, int worker)
+{
+  const struct locating *l = context;
+  uint32_t hint = VG_REF_NONE;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++) {
+    vg_ref_nearest(l->ref, l->x[i], NULL, &hint, l->foot[i]);
+    l->tri[i] = hint;
+  }
+}
+
+vg_status vg_remesh_locate(const struct vg_mesh *on, size_t n,
+                           const double (*x)[3], int threads, uint32_t *tri,
+                           double (*foot)[3], struct vg_error *err)
+{
+  struct vg_ref ref = VG_REF_INIT;
+  struct locating l = { &ref, x, tri, foot };
+  vg_status st;
+
+  if (!on->n_tri)
+    return vg_fail(err, VG_ERR_INPUT, "there are no triangles to look on");
+  st = vg_ref_build_tree(&ref, on, err);
+  if (st >= 0) vg_parallel_for(threads, n, GRAIN, locate, &l);
+  vg_ref_release(&ref);
+  return st;
+}
+
+/* --- back again ---------------------------------------------------------- */
+
+struct moving {
+  struct vg_mesh *m;
+  const double (*from)[3];
+  uint8_t *stays;
+  size_t n_refused;
+};
+
+static size_t return_corners(struct moving *k, size_t t)
+{
+  size_t n = 0;
+
+  for (int i = 0; i < 3; i++) {
+    uint32_t p = k->m->tri[t][i];
+
+    if (k->stays[p]) continue;
+    k->stays[p] = 1;
+    k->n_refused += vg_distance2(k->m->point[p], k->from[p]) > 0;
+    memcpy(k->m->point[p], k->from[p], sizeof *k->from);
+    n++;
+  }
+  return n;
+}
+
+static void normal(const double (*x)[3], const uint32_t *v, double n[3])
+{
+  double a[3], b[3];
+
+  vg_sub(x[v[1]], x[v[0]], a);
+  vg_sub(x[v[2]], x[v[0]], b);
+  vg_cross(a, b, n);
+}
+
+static int is_bad(const struct moving *k, size_t t)
+{
+  const uint32_t *v = k->m->tri[t];
+  const double (*x)[3] = (const double (*)[3])k->m->point;
+  double before[3], after[3], was, is;
+
+  if (k->stays[v[0]] && k->stays[v[1]] && k->stays[v[2]]) return 0;
+  normal(k->from, v, before);
+  normal(x, v, after);
+  if (vg_dot(before, after) <= TURN * vg_norm(before) * vg_norm(after))
+    return 1;
+  is = vg_work_shape(x[v[0]], x[v[1]], x[v[2]]);
+  was = vg_work_shape(k->from[v[0]], k->from[v[1]], k->from[v[2]]);
+  return is < SLIVER && is < LOSS * was;
+}
+
+static void return_bad(struct moving *k)
+{
+  for (size_t n = 1; n;) {
+    n = 0;
+    for (size_t t = 0; t < k->m->n_tri; t++)
+      if (is_bad(k, t)) n += return_corners(k, t);
+  }
+}
+
+static vg_status return_meeting(struct moving *k, int threads, size_t *n,
+                                struct vg_error *err)
+{
+  const struct vg_surface_check_options o = { .threads = threads };
+  struct vg_surface_report r = VG_SURFACE_REPORT_INIT;
+  vg_status st = vg_surface_check(k->m, &o, &r, err);
+
+  *n = 0;
+  for (size_t i = 0; st >= 0 && i < r.n_defect; i++)
+    for (int j = 0; j < 2; j++)
+      if ((r.defect[i].kind == VG_DEFECT_INTERSECTION
+           || r.defect[i].kind == VG_DEFECT_DEGENERATE_TRIANGLE)
+          && r.defect[i].face[j] != SIZE_MAX)
+        *n += return_corners(k, r.defect[i].face[j]);
+  vg_surface_report_release(&r);
+  return st;
+}
+
+vg_status vg_remesh_put_back(struct vg_mesh *m, const double (*to)[3],
+                             int threads, uint8_t *stays, size_t *n_refused,
+                             struct vg_error *err)
+{
+  double (*from)[3] = vg_alloc(m->n_point, sizeof *from);
+  struct moving k = { m, (const double (*)[3])from, stays, 0 };
+  size_t n = 1;
+  vg_status st = VG_OK;
+
+  if (!from) return vg_fail_memory(err, "the points of the surface");
+  memcpy(from, m->point, m->n_point * sizeof *from);
+  for (size_t p = 0; p < m->n_point; p++)
+    if (!stays[p]) memcpy(m->point[p], to[p], sizeof *to);
+  for (int round = 0; n; round++) {
+    if (round == ROUNDS)
+      for (size_t t = 0; t < m->n_tri; t++) return_corners(&k, t);
+    return_bad(&k);
+    VG_TRY(return_meeting(&k, threads, &n, err));
+  }
+  *n_refused = k.n_refused;
+done:
+  if (st < 0) memcpy(m->point, from, m->n_point * sizeof *from);
+  free(from);
+  return st;
+}

@@ -1,0 +1,35 @@
+/* core/remesh/put_back.h: points of a new surface put where they belong, on the
+ * shape that the old triangles stood for. */
+#ifndef VG_CORE_REMESH_PUT_BACK_H
+#define VG_CORE_REMESH_PUT_BACK_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "core/mesh/mesh.h"
+
+/** The triangle of `on` nearest to each point.
+ *
+ * @param on        any triangles; need not be closed or agree
+ * @param tri       out: [n]
+ * @param foot      out: [n][3] the nearest point
+ * O(n log n). VG_ERR_INPUT without triangles, VG_ERR_MEMORY. */
+vg_status vg_remesh_locate(const struct vg_mesh *on, size_t n,
+                           const double (*x)[3], int threads, uint32_t *tri,
+                           double (*foot)[3], struct vg_error *err);
+
+/** Move points of a sound surface, each to its place or not at all: those stay
+ * whose triangles would turn by more than 60 degrees, become slivers, or meet
+ * others.
+ *
+ * @param to         [n_point][3]
+ * @param stays      in: [n_point] 1: keep this one; out: the refused ones too
+ * @param n_refused  out
+ * Untouched on failure: VG_ERR_MEMORY. The same for any threads. O(n log n)
+ * for each time that something is refused, twelve at most: then all points
+ * stay. */
+vg_status vg_remesh_put_back(struct vg_mesh *m, const double (*to)[3],
+                             int threads, uint8_t *stays, size_t *n_refused,
+                             struct vg_error *err);
+
+#endif

@@ -1,0 +1,278 @@
+/* A surface that was made anew from CAD put back on its faces and curves.
+ *
+ * Samples are the points and the centroids of the new triangles: each lies on a
+ * triangle of CAD's, which has a face; those on an edge of it that is part of a
+ * curve belong to the curve. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/geometry/vector.h"
+#include "core/remesh/put_back.h"
+#include "run/input/input.h"
+
+#define ON_EDGE 1e-6      /* of its length: a point this near is on it */
+
+struct segment { uint32_t end[2], curve; };
+
+struct samples {
+  size_t n, n_point;        /* points come first */
+  double (*x)[3], (*to)[3]; /* as the surface is, and on the CAD model */
+  uint32_t *tri;            /* of CAD's */
+  uint32_t *curve;          /* [n_point] 0: none */
+  double *distance;         /* of to from x; INFINITY: has no place there */
+};
+
+static void release(struct samples *s)
+{
+  free(s->x);
+  free(s->to);
+  free(s->tri);
+  free(s->curve);
+  free(s->distance);
+}
+
+static vg_status start(struct samples *s, const struct vg_mesh *m,
+                       struct vg_error *err)
+{
+  s->n_point = m->n_point;
+  s->n = m->n_point + m->n_tri;
+  s->x = vg_alloc(s->n, sizeof *s->x);
+  s->to = vg_alloc(s->n, sizeof *s->to);
+  s->tri = vg_alloc(s->n, sizeof *s->tri);
+  s->curve = vg_calloc(s->n_point, sizeof *s->curve);
+  s->distance = vg_alloc(s->n, sizeof *s->distance);
+  if (!s->x || !s->to || !s->tri || !s->curve || !s->distance)
+    return vg_fail_memory(err, "the places on the CAD model");
+  return VG_OK;
+}
+
+static void take_places(struct samples *s, const struct vg_mesh *m)
+{
+  memcpy(s->x, m->point, s->n_point * sizeof *s->x);
+  for (size_t t = 0; t < m->n_tri; t++)
+    for (int d = 0; d < 3; d++)
+      s->x[s->n_point + t][d] = (m->point[m->tri[t][0]][d]
+                                 + m->point[m->tri[t][1]][d]
+                                 + m->point[m->tri[t][2]][d]) / 3;
+}
+
+/* --- curves -------------------------------------------------------------- */
+
+static int by_ends(const void *pa, const void *pb)
+{
+  const struct segment *a = pa, *b = pb;
+
+  for (int k = 0; k < 2; k++)
+    if (a->end[k] != b->end[k]) return a->end[k] < b->end[k] ? -1 : 1;
+  return 0;
+}
+
+static vg_status list_segments(const struct vg_cad_surface *c,
+                               struct segment **out, struct vg_error *err)
+{
+  struct segment *list = vg_alloc(c->n_segment, sizeof *list);
+
+  if (!list) return vg_fail_memory(err, "the curves of the CAD model");
+  for (size_t i = 0; i < c->n_segment; i++) {
+    uint32_t a = c->segment[i][0], b = c->segment[i][1];
+
+    list[i] = (struct segment){ { a < b ? a : b, a < b ? b : a },
+                                c->segment_curve[i] };
+  }
+  qsort(list, c->n_segment, sizeof *list, by_ends);
+  *out = list;
+  return VG_OK;
+}
+
+static int is_on_edge(const double a[3], const double b[3], const double x[3])
+{
+  double u[3], d[3], l2, t;
+
+  vg_sub(b, a, u);
+  vg_sub(x, a, d);
+  l2 = vg_dot(u, u);
+  t = l2 > 0 ? fmin(fmax(vg_dot(d, u) / l2, 0), 1) : 0;
+  for (int k = 0; k < 3; k++) d[k] -= t * u[k];
+  return vg_dot(d, d) <= ON_EDGE * ON_EDGE * l2;
+}
+
+static void find_curves(struct samples *s, const struct vg_cad_surface *c,
+                        const struct segment *list)
+{
+  const struct vg_mesh *m = &c->mesh;
+
+  for (size_t p = 0; p < s->n_point; p++)
+    for (int k = 0; k < 3 && !s->curve[p]; k++) {
+      const uint32_t a = m->tri[s->tri[p]][k];
+      const uint32_t b = m->tri[s->tri[p]][(k + 1) % 3];
+      struct segment key = { { a < b ? a : b, a < b ? b : a }, 0 }, *found;
+
+      if (!is_on_edge(m->point[a], m->point[b], s->x[p])) continue;
+      found = bsearch(&key, list, c->n_segment, sizeof *list, by_ends);
+      if (found) s->curve[p] = found->curve;
+    }
+}
+
+/* --- places on the model ------------------------------------------------- */
+
+/* Those on curves, or the others. */
+static vg_status ask(struct samples *s, struct vg_cad *cad, int on_curves,
+                     struct vg_error *err)
+{
+  uint32_t *number = vg_alloc(s->n, sizeof *number);
+  size_t *of = vg_alloc(s->n, sizeof *of), n = 0;
+  double (*x)[3] = vg_alloc(s->n, sizeof *x);
+  double *far = vg_alloc(s->n, sizeof *far);
+  vg_status st = VG_OK;
+
+  if (!number || !of || !x || !far)
+    VG_TRY(vg_fail_memory(err, "the places on the CAD model"));
+  for (size_t i = 0; i < s->n; i++) {
+    uint32_t curve = i < s->n_point ? s->curve[i] : 0;
+
+    if ((curve > 0) != on_curves || !(s->distance[i] < INFINITY)) continue;
+    number[n] = on_curves ? curve : s->tri[i];
+    memcpy(x[n], s->x[i], sizeof *x);
+    of[n++] = i;
+  }
+  VG_TRY(vg_cad_project(cad, on_curves ? VG_CAD_ON_CURVES
+                        : VG_CAD_ON_TRIANGLES, n, number, x, far, err));
+  for (size_t i = 0; i < n; i++) {
+    memcpy(s->to[of[i]], x[i], sizeof *x);
+    s->distance[of[i]] = far[i];
+  }
+done:
+  free(number);
+  free(of);
+  free(x);
+  free(far);
+  return st;
+}
+
+static int by_value(const void *pa, const void *pb)
+{
+  const double *a = pa, *b = pb;
+
+  return (*a > *b) - (*a < *b);
+}
+
+static vg_status summarise(const struct samples *s,
+                           struct vg_remesh_distance *d, struct vg_error *err)
+{
+  double *sorted = vg_alloc(s->n, sizeof *sorted);
+  size_t n = 0;
+
+  if (!sorted) return vg_fail_memory(err, "the distances");
+  memset(d, 0, sizeof *d);
+  for (size_t i = 0; i < s->n; i++) {
+    if (!(s->distance[i] < INFINITY)) continue;
+    sorted[n++] = s->distance[i];
+    if (!(s->distance[i] > d->most)) continue;
+    d->most = s->distance[i];
+    memcpy(d->at, s->x[i], sizeof d->at);
+  }
+  qsort(sorted, n, sizeof *sorted, by_value);
+  if (n) d->most_99 = sorted[n - 1 - n / 100];
+  free(sorted);
+  return VG_OK;
+}
+
+/* Which triangle each sample lies on, and which curve; where it is farther
+ * than `limit` from all of them, it is none of the model's. */
+static vg_status locate(struct samples *s, const struct vg_problem *p,
+                        double limit, struct vg_error *err)
+{
+  const struct vg_cad_surface *c = &p->model.surface;
+  struct segment *list = NULL;
+  vg_status st;
+
+  VG_TRY(vg_remesh_locate(&c->mesh, s->n, (const double (*)[3])s->x,
+                          p->threads, s->tri, s->to, err));
+  for (size_t i = 0; i < s->n; i++)
+    s->distance[i] = vg_distance(s->x[i], s->to[i]) <= limit ? 0 : INFINITY;
+  VG_TRY(list_segments(c, &list, err));
+  find_curves(s, c, list);
+done:
+  free(list);
+  return st;
+}
+
+static vg_status find_places(struct samples *s, struct vg_cad *cad,
+                             struct vg_remesh_distance *d,
+                             struct vg_error *err)
+{
+  vg_status st;
+
+  VG_TRY(ask(s, cad, 0, err));
+  VG_TRY(ask(s, cad, 1, err));
+  VG_TRY(summarise(s, d, err));
+done:
+  return st;
+}
+
+/* --- all ----------------------------------------------------------------- */
+
+static vg_status move(struct vg_problem *p, const struct samples *s,
+                      struct vg_put_back *b, struct vg_error *err)
+{
+  uint8_t *stays = vg_calloc(s->n_point, 1);
+  vg_status st;
+
+  if (!stays) return vg_fail_memory(err, "the places on the CAD model");
+  for (size_t i = 0; i < s->n_point; i++) {
+    if (!(s->distance[i] < INFINITY)) b->n_far++;
+    if (s->curve[i]) b->n_curve++;
+    stays[i] = !(s->distance[i] < INFINITY);
+  }
+  b->n_point = s->n_point;
+  st = vg_remesh_put_back(&p->surface, (const double (*)[3])s->to, p->threads,
+                          stays, &b->n_refused, err);
+  free(stays);
+  return st;
+}
+
+/* The largest of each triangle's own samples, where it has a place there. */
+static void by_face(const struct samples *s, const struct vg_mesh *m,
+                    double *face)
+{
+  for (size_t t = 0; t < m->n_tri; t++) {
+    double most = s->distance[s->n_point + t];
+
+    for (int k = 0; k < 3; k++)
+      most = fmax(most, s->distance[m->tri[t][k]]);
+    if (most < INFINITY) face[t] = most;
+  }
+}
+
+vg_status vg_problem_put_back(struct vg_problem *p, struct vg_error *err)
+{
+  struct vg_renewal *r = &p->renewal;
+  struct vg_put_back *b = &r->back;
+  struct samples s = { 0 };
+  double t = vg_display_now();
+  vg_status st;
+
+  VG_TRY(start(&s, &p->surface, err));
+  take_places(&s, &p->surface);
+  VG_TRY(locate(&s, p, r->report.tolerance, err));
+  VG_TRY(find_places(&s, p->model.cad, &b->off[0], err));
+  VG_TRY(move(p, &s, b, err));
+  take_places(&s, &p->surface);
+  VG_TRY(find_places(&s, p->model.cad, &b->off[1], err));
+  by_face(&s, &p->surface, r->face);
+  b->seconds = vg_display_now() - t;
+  b->is_done = 1;
+  vg_note(&p->notes, "points were put back on the CAD model: %zu, %zu of them "
+          "on its curves; at most %.3g from it before, %.3g now, where "
+          "triangles are flat; refused, since triangles would fold or meet: "
+          "%zu", b->n_point - b->n_far - b->n_refused, b->n_curve,
+          b->off[0].most, b->off[1].most, b->n_refused);
+  if (b->n_far)
+    vg_note(&p->notes, "%zu points lie farther than %.3g from the CAD model "
+            "and were left where they are", b->n_far, r->report.tolerance);
+done:
+  release(&s);
+  return st;
+}
