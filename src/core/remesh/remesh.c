@@ -23,6 +23,7 @@
 #define H_MAX 0.02        /* of the length */
 #define H_MIN 2e-5
 #define H_OUTER 0.04      /* of the domain's length */
+#define OUTER 0.9         /* S27: of the triangles of a patch: all of it is */
 #define TRIANGLES 3e8     /* more are refused */
 #define ROUNDS 6          /* until triangles no longer meet */
 #define SPOTS 256         /* of them at a time */
@@ -39,6 +40,8 @@ struct job {
   struct vg_curves curves;
   double *cap;              /* [n_tri] largest size, or NULL */
   double jag;               /* tolerance of lines, the same at any scale */
+  double far;               /* larger sizes are on an outer boundary only;
+                               0: there is none */
   struct vg_source *source; /* those of the options, then spots */
   size_t n_source, cap_source;
   int looks;                /* nothing is changed */
@@ -117,6 +120,24 @@ static double length_of(const struct vg_mesh *m, const uint8_t *outer)
   return most;
 }
 
+/* A patch that is outer but for a sliver or two is outer: one of them would
+ * make the body as long as the domain. */
+static vg_status complete_outer(const struct vg_mesh *m, uint8_t *outer,
+                                struct vg_error *err)
+{
+  size_t (*n)[2] = vg_calloc(m->n_patch, sizeof *n);
+
+  if (!n) return vg_fail_memory(err, "the patches");
+  for (size_t t = 0; t < m->n_tri; t++) n[m->tri_patch[t]][!!outer[t]]++;
+  for (size_t t = 0; t < m->n_tri; t++) {
+    const size_t *of = n[m->tri_patch[t]];
+
+    if ((double)of[1] >= OUTER * (double)(of[0] + of[1])) outer[t] = 1;
+  }
+  free(n);
+  return VG_OK;
+}
+
 /* Lengths by the body; the outer boundary of a whole domain has its own. */
 static vg_status settle(struct job *j, struct vg_error *err)
 {
@@ -129,21 +150,24 @@ static vg_status settle(struct job *j, struct vg_error *err)
 
   if (!outer) VG_TRY(vg_fail_memory(err, "the outer boundary"));
   VG_TRY(vg_envelope_measure(m, outer, &e, err));
+  if (e.is_domain) VG_TRY(complete_outer(m, outer, err));
   r->length = e.is_domain ? length_of(m, outer) : whole;
   if (!(r->length > 0)) r->length = whole;
   j->jag = j->o->tolerance > 0 ? j->o->tolerance : TOLERANCE * r->length;
   r->tolerance = j->jag * j->o->scale * j->o->scale;
   r->h_max = j->o->h_max > 0 ? j->o->h_max : H_MAX * r->length;
-  if (e.is_domain && !(j->o->h_max > 0)) {
+  if (e.is_domain) {
+    j->far = fmin(r->h_max, H_MAX * r->length);
     j->cap = vg_alloc(m->n_tri, sizeof *j->cap);
     if (!j->cap) VG_TRY(vg_fail_memory(err, "the sizes on the surface"));
     for (size_t t = 0; t < m->n_tri; t++)
-      j->cap[t] = outer[t] ? INFINITY : r->h_max;
-    r->h_max = fmax(r->h_max, H_OUTER * whole);
+      j->cap[t] = outer[t] ? INFINITY : j->far;
+    if (!(j->o->h_max > 0)) r->h_max = fmax(r->h_max, H_OUTER * whole);
   }
   r->h_min = j->o->h_min > 0 ? j->o->h_min : fmin(H_MIN * r->length, r->h_max);
   for (size_t t = 0; j->cap && t < m->n_tri; t++) j->cap[t] *= j->o->scale;
   r->h_max *= j->o->scale;
+  j->far *= j->o->scale;
   r->h_min *= j->o->scale;
 done:
   free(outer);
@@ -244,8 +268,8 @@ static vg_status make(struct job *j, struct vg_mesh *out,
   struct vg_source_set set = VG_SOURCE_SET_INIT;
   struct vg_remesh_report *r = &j->r;
   struct vg_work w = { .ref = &j->ref, .curves = &j->curves,
-    .tolerance = r->tolerance, .relative = RELATIVE, .h_min = r->h_min,
-    .h_max = r->h_max };
+    .tolerance = r->tolerance, .relative = RELATIVE, .far = j->far,
+    .h_min = r->h_min, .h_max = r->h_max };
   vg_status st = VG_OK;
 
   if (j->n_source || j->o->map) {

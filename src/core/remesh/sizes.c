@@ -107,18 +107,19 @@ static double curvature(const struct bend *b)
   return (trace + (rest > 0 ? sqrt(rest) : 0)) / (2 * b->area);
 }
 
-static double arc_size(const struct vg_sizes_options *o, double curvature)
+static double arc_size(const struct vg_sizes_options *o, double curvature,
+                       int is_far)
 {
   double h;
 
   if (!(curvature > 0)) return o->h_max;
   h = 2 * M_PI / (curvature * o->per_turn);
-  return fmin(h, sqrt(8 * o->chord / curvature));
+  return is_far ? h : fmin(h, sqrt(8 * o->chord / curvature));
 }
 
 static vg_status by_faces(struct vg_ref *r, const struct vg_curves *c,
                           const struct vg_sizes_options *o,
-                          struct vg_error *err)
+                          const uint8_t *far, struct vg_error *err)
 {
   struct bend *b = vg_calloc(r->n_point, sizeof *b);
   struct bend *s = vg_alloc(r->n_point, sizeof *s), *swap;
@@ -139,7 +140,7 @@ static vg_status by_faces(struct vg_ref *r, const struct vg_curves *c,
     s = swap;
   }
   for (size_t p = 0; p < r->n_point; p++)
-    r->size[p] = fmin(o->h_max, arc_size(o, curvature(&b[p])));
+    r->size[p] = fmin(o->h_max, arc_size(o, curvature(&b[p]), far[p]));
   free(b);
   free(s);
   return VG_OK;
@@ -148,7 +149,7 @@ static vg_status by_faces(struct vg_ref *r, const struct vg_curves *c,
 /* --- curves and strips --------------------------------------------------- */
 
 static void by_curves(struct vg_ref *r, const struct vg_curves *c,
-                      const struct vg_sizes_options *o)
+                      const struct vg_sizes_options *o, const uint8_t *far)
 {
   for (size_t i = 0; i < c->n_curve; i++)
     for (size_t k = c->curve[i].first + 1;
@@ -164,7 +165,8 @@ static void by_curves(struct vg_ref *r, const struct vg_curves *c,
       /* A jag that the tolerance can hide is no arc. */
       if (angle * fmin(lu, lv) < o->chord) continue;
       r->size[c->point[k]] = fmin(r->size[c->point[k]],
-                                  arc_size(o, 2 * angle / (lu + lv)));
+                                  arc_size(o, 2 * angle / (lu + lv),
+                                           far[c->point[k]]));
     }
 }
 
@@ -251,20 +253,31 @@ static void by_strip(struct vg_ref *r, const struct vg_curves *c, uint32_t h,
   }
 }
 
+/* Points of outer triangles alone. */
+static void find_far(const struct vg_ref *r, const double *cap, uint8_t *far)
+{
+  memset(far, cap != NULL, r->n_point);
+  for (size_t t = 0; cap && t < r->n_tri; t++)
+    for (int k = 0; k < 3; k++)
+      if (cap[t] < INFINITY) far[r->tri[t][k]] = 0;
+}
+
 vg_status vg_sizes_make(struct vg_ref *r, const struct vg_curves *c,
                         const struct vg_sizes_options *o,
                         struct vg_error *err)
 {
   double *limit = NULL;
+  uint8_t *far = vg_alloc(r->n_point, 1);
   vg_status st = VG_OK;
 
   r->slope = o->growth - 1;
   r->size = vg_alloc(r->n_point, sizeof *r->size);
   limit = vg_alloc(r->n_point, sizeof *limit);
-  if (!r->size || !limit)
+  if (!r->size || !limit || !far)
     VG_TRY(vg_fail_memory(err, "the sizes on the surface"));
-  VG_TRY(by_faces(r, c, o, err));
-  by_curves(r, c, o);
+  find_far(r, o->cap, far);
+  VG_TRY(by_faces(r, c, o, far, err));
+  by_curves(r, c, o, far);
   for (size_t t = 0; o->cap && t < r->n_tri; t++)
     for (int k = 0; k < 3; k++)
       r->size[r->tri[t][k]] = fmin(r->size[r->tri[t][k]], o->cap[t]);
@@ -280,5 +293,6 @@ vg_status vg_sizes_make(struct vg_ref *r, const struct vg_curves *c,
   vg_ref_sizes(r);
 done:
   free(limit);
+  free(far);
   return st;
 }

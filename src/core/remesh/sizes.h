@@ -11,7 +11,9 @@ struct vg_sizes_options {
   double strip;             /* size on a strip over its width */
   double h_min, h_max;      /* bounds, > 0 and finite */
   double growth;
-  const double *cap;        /* [n_tri] largest size on it, or NULL */
+  const double *cap;        /* [n_tri] largest size on it, or NULL; INFINITY:
+                               on an outer boundary, whose chords do not
+                               matter */
   const double *point_cap;  /* [n_point] largest size there, or NULL */
   const double *across;     /* [n_patch] edges across strips; NULL: 1 */
   const uint32_t *tri_patch;  /* [n_tri] for across */

@@ -187,6 +187,7 @@ double vg_work_tri_shape(const struct vg_work *w, size_t t)
 
 double vg_work_tolerance(const struct vg_work *w, double size)
 {
+  if (w->far > 0 && size > w->far) return w->relative * size;
   return fmin(w->tolerance, w->relative * size);
 }
 

@@ -29,6 +29,8 @@ struct vg_work {
   const struct vg_ref *ref;
   const struct vg_curves *curves;
   double tolerance, relative; /* largest distance, and in parts of the size */
+  double far;               /* where sizes are larger only the latter holds; 0:
+                               nowhere */
   double (*other_size)(const void *user, const double x[3]);
   const void *user;         /* of other_size */
   double h_min, h_max;

@@ -76,4 +76,7 @@ void vg_problem_note_unused(struct vg_problem *p, int layers_on,
   if (n_hard && missing >> VG_USE_REMESH & 1)
     vg_note(&p->notes, "without effect, for %s: hard, in %zu rows of patches",
             reason[VG_USE_REMESH], n_hard);
+  if (s->n_surface && missing >> VG_USE_REMESH & 1)
+    vg_note(&p->notes, "without effect, for %s: the table surface",
+            reason[VG_USE_REMESH]);
 }
