@@ -207,21 +207,24 @@ static vg_status sum_report(struct vg_partition *p, struct vg_comm *comm,
     &r->n_zone_cell, &r->n_blocked, &r->n_crossing, &r->n_retry, &r->n_uncut,
     &r->n_outgrown, &r->n_open_left, &r->n_found,
     &r->n_widened, &r->n_widened_cell, &whole, &r->n_part,
-    &r->parting.n_coarse, &r->parting.n_apart, &r->parting.n_face};
+    &r->parting.n_coarse, &r->parting.n_gap, &r->parting.n_apart,
+    &r->parting.n_asked, &r->parting.n_face};
   enum { N_COUNT = sizeof count / sizeof *count,
          N_MORE = sizeof more / sizeof *more,
          N_TIME = sizeof time / sizeof *time };
   uint64_t v[N_COUNT + N_MORE + N_TIME];
-  double most[2 + VG_PARTING_STEPS] = {r->estimate, r->parting.coarsening};
+  enum { N_MOST = 3 };
+  double most[N_MOST + VG_PARTING_STEPS] = {
+    r->estimate, r->parting.coarsening, r->parting.coarse_cells };
   vg_status st;
 
   for (size_t k = 0; k < N_COUNT; k++) v[k] = *count[k];
   for (size_t k = 0; k < N_MORE; k++) v[N_COUNT + k] = *more[k];
   for (size_t k = 0; k < N_TIME; k++)
     v[N_COUNT + N_MORE + k] = (uint64_t)(*time[k] * 1e6);
-  memcpy(most + 2, r->parting.time, sizeof r->parting.time);
+  memcpy(most + N_MOST, r->parting.time, sizeof r->parting.time);
   st = vg_comm_sum(comm, sizeof v / sizeof *v, v, err);
-  if (st == VG_OK) st = vg_comm_max(comm, 2 + VG_PARTING_STEPS, most, err);
+  if (st == VG_OK) st = vg_comm_max(comm, N_MOST + VG_PARTING_STEPS, most, err);
   if (st < 0) return st;
   for (size_t k = 0; k < N_COUNT; k++) *count[k] = v[k];
   for (size_t k = 0; k < N_MORE; k++) *more[k] = v[N_COUNT + k];
@@ -230,7 +233,8 @@ static vg_status sum_report(struct vg_partition *p, struct vg_comm *comm,
   f->whole_void = (int)whole;
   r->estimate = most[0];
   r->parting.coarsening = most[1];
-  memcpy(r->parting.time, most + 2, sizeof r->parting.time);
+  r->parting.coarse_cells = most[2];
+  memcpy(r->parting.time, most + N_MOST, sizeof r->parting.time);
   return VG_OK;
 }
 

@@ -36,6 +36,19 @@ double vg_parting_leaf_cells(double cells, int n_part, int is_parted,
   return fmin(leaf_cells, fmax(part, least_leaf));
 }
 
+vg_status vg_parting_check_options(const struct vg_parting_options *o,
+                                   double cells, struct vg_error *err)
+{
+  if (o->n_part < 1)
+    return vg_fail(err, VG_ERR_INPUT, "%d parts are asked for; give 1 or more",
+                   o->n_part);
+  if (o->n_part > 1 && o->n_part > cells)
+    return vg_fail(err, VG_ERR_UNSUPPORTED, "%d parts of a void in which "
+                   "%.0f cells are expected; ask for fewer parts, or leave "
+                   "them to leaf_cells", o->n_part, cells);
+  return VG_OK;
+}
+
 /* --- is it one? ---------------------------------------------------------- */
 
 /* A face by the names of its corners, rising. */

@@ -41,6 +41,7 @@ struct vg_parting_report {
   uint64_t n_gap;            /* parts at the front, without octants; 0: there
                                 are none */
   uint64_t n_apart;          /* parts beyond n_part: pieces that hung apart */
+  uint64_t n_asked;          /* parts asked for; of octants fewer may be made */
   uint64_t n_face;           /* triangles of interfaces */
   double time[VG_PARTING_STEPS];
   double elsewhere;          /* s of processor time in other processes */
@@ -78,6 +79,11 @@ int vg_parting_parts(double cells, double leaf_cells);
  * but no smaller than is worth a cut, and no larger than leaf_cells. */
 double vg_parting_leaf_cells(double cells, int n_part, int is_parted,
                              double leaf_cells);
+
+/** Can a void of so many cells, as expected, be as many parts as the options
+ * ask for? VG_ERR_INPUT, VG_ERR_UNSUPPORTED, with a remedy, where it cannot. */
+vg_status vg_parting_check_options(const struct vg_parting_options *o,
+                                   double cells, struct vg_error *err);
 
 /** Part the void within a front.
  *

@@ -204,9 +204,11 @@ vg_status vg_discrete_part(const struct vg_front *front,
   struct vg_parting_report *r = &made.report;
   struct fill a = { front, &c, &f, &s, serial, 0, NULL, NULL };
   double t[VG_PARTING_STEPS + 1];
-  vg_status st;
+  vg_status st = vg_parting_check_options(o, load->cells, err);
 
+  if (st < 0) return st;
   t[0] = vg_clock();
+  r->n_asked = (uint64_t)o->n_part;
   r->coarsening = factor_for(load, o);
   st = coarse(front, sizing, o, e, &c, r, err);
   if (st != VG_OK) goto done;

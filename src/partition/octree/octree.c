@@ -311,9 +311,6 @@ static vg_status check(const struct maker *m, struct vg_error *err)
 static vg_status check_options(const struct vg_parting_options *o,
                                struct vg_error *err)
 {
-  if (o->n_part < 1)
-    return vg_fail(err, VG_ERR_INPUT, "%d parts are asked for; give 1 or more",
-                   o->n_part);
   if (o->h_refine)
     return vg_fail(err, VG_ERR_INPUT, "octants have no coarse faces whose "
                    "edges could be halved; leave interfaces at remesh");
@@ -331,6 +328,7 @@ static void note_parts(struct maker *m)
 
   r->n_coarse = n_free(&m->t);
   r->n_apart = m->t.n_apart;
+  r->n_asked = (uint64_t)m->options->n_part;
   r->n_face = m->patches.n ? m->faces.begin[m->patches.n] : 0;
   r->n_gap = m->t.n_gap;
   r->coarse_cells = m->t.cells;
@@ -372,6 +370,8 @@ vg_status vg_octree_part(const struct vg_front *front,
   if (!(load->cells > 0) || !(load->unit > 0))
     return vg_fail(err, VG_ERR_GEOMETRY, "the void of %zu triangles encloses "
                    "nothing", front->n_face);
+  st = vg_parting_check_options(o, load->cells, err);
+  if (st < 0) return st;
   st = make(&m, err);
   if (st == VG_OK) *out = m.out;
   else vg_parting_release(&m.out);

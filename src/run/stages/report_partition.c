@@ -98,10 +98,11 @@ static void print_parting(FILE *to, const struct vg_run *r,
   char a[32], b[32];
 
   if (!p->n_part) return;
-  fprintf(to, "  decomposed by %s: %s parts (%llu as pieces hung apart), "
-          "balance %.3f (most over mean\n  of the cells made in leaves)\n",
-          r->decomposition, vg_text_count(p->n_part, a),
-          (unsigned long long)q->n_apart, balance(l));
+  fprintf(to, "  decomposed by %s: %s parts (%s asked for, %llu as pieces "
+          "hung apart),\n  balance %.3f (most over mean of the cells made in "
+          "leaves)\n", r->decomposition, vg_text_count(p->n_part, a),
+          vg_text_count(q->n_asked, b), (unsigned long long)q->n_apart,
+          balance(l));
   fprintf(to, "  %s %s, coarsening %.2f, %s triangles of interfaces\n",
           vg_text_count(q->n_coarse, a), q->n_gap ? "octants" : "coarse cells",
           q->coarsening, vg_text_count(q->n_face, b));
@@ -133,7 +134,8 @@ static void put_parting(const struct vg_run *r, const struct leaves *l,
       r->near.angle_min, "angle_min_p1", r->near.angle_min_p1));
   if (!p->n_part) return;
   json_object_set_new(o, "parting", json_pack(
-    "{s:I s:I s:f s:I s:I s:f s:I s:f s:f s:f s:f}", "parts", (json_int_t)p->n_part,
+    "{s:I s:I s:I s:f s:I s:I s:f s:I s:f s:f s:f s:f}", "parts", (json_int_t)p->n_part,
+    "parts_asked", (json_int_t)q->n_asked,
     "parts_apart", (json_int_t)q->n_apart, "coarsening", q->coarsening,
     "coarse_cells", (json_int_t)q->n_coarse,
     "gap_parts", (json_int_t)q->n_gap, "octants_hold", q->coarse_cells,

@@ -41,10 +41,14 @@ says err "parts"
 vanguard mesh -q -p p/box --decompose discrete --coarsening 0.5
 exits 2
 says err "coarsening is 0.5; it must be at least 1"
-vanguard mesh -q -p p/box --decompose discrete --parts 900000 --out none
-exits 1
-says err "ask for fewer parts"
-[ ! -e none ] || [ -z "$(ls none)" ] || fail "files of a mesh that was refused"
+for way in 'discrete --parts 900000' 'octree --parts 900000' \
+  'discrete --parts 19000 --coarsening 6'; do
+  # shellcheck disable=SC2086 # words
+  vanguard mesh -q -p p/box --decompose $way --out none
+  exits 1
+  says err "ask for fewer parts"
+  [ ! -e none ] || [ -z "$(ls none)" ] || fail "files of a refused mesh"
+done
 vanguard plan -q -p p/box --decompose discrete --parts 5 -n 1,5
 exits 0
 says out "discrete: 5 parts filled as they are"
@@ -107,12 +111,27 @@ vanguard mesh -q -p p/box --decompose octree --parts 4 -t 3 --write b8.ugrid \
   --shuffle-tasks 7 --out many
 exits 0
 cmp -s one/box.b8.ugrid many/box.b8.ugrid || fail "threads: another mesh"
+if mpirun -n 2 true >/dev/null 2>&1; then
+  ASAN_OPTIONS=detect_leaks=0 mpirun -n 2 "$program" mesh -q -p p/box \
+    --decompose octree --parts 4 -t 1 --write b8.ugrid --out ranks >out 2>err ||
+    fail "2 ranks: $(cat err)"
+  cmp -s one/box.b8.ugrid ranks/box.b8.ugrid || fail "ranks: another mesh"
+  says ranks/box.report.json '"gap_parts": 1'
+  says out "octants, coarsening 4.00"
+fi
 vanguard check -q one/box.b8.ugrid
 exits 0
 vanguard demo box --cells 500 --out tiny
 vanguard mesh -q -p tiny/box --decompose octree --parts 4 --out tiny
 exits 0
 says out "no octant has room off the front"
+says out "octree: 1 parts (4 asked for"
+vanguard mesh -q -p p/box --decompose octree --parts 4000 --out short
+exits 0
+says out "parts (4,000 asked for"
+vanguard mesh -q -p p/box --decompose octree --parts 0
+exits 2
+says err "parts"
 vanguard mesh -q -p p/box --decompose octree --coarsening 1.5
 exits 1
 says err "at least 2 sizes wide"
