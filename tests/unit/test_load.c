@@ -471,6 +471,42 @@ static void quantiles_halve_a_mesh(void **state)
   release_scene(&s);
 }
 
+/* Every cube at its middle and near its corners (they are kept in single
+ * precision); nothing outside of all. */
+static void places_find_their_cubes(void **state)
+{
+  struct vg_load_finder *f;
+  struct vg_load l;
+  struct scene s;
+  double x[3], outside = 0;
+
+  (void)state;
+  make_demo(&s, "sphere", 200000);
+  estimate(&s, 1, &l);
+  assert_int_equal(vg_load_finder_new(&l, &f, NULL), VG_OK);
+  for (size_t i = 0; i < l.n; i++)
+    for (int corner = 0; corner < 9; corner++) {
+      const struct vg_load_cube *c = &l.cube[i];
+      const double off = corner < 8 ? 0.98 * (double)c->half : 0;
+
+      for (int k = 0; k < 3; k++)
+        x[k] = (double)c->at[k] + (corner >> k & 1 ? off : -off);
+      assert_int_equal(vg_load_find(f, x), i);
+    }
+  for (int k = 0; k < 3; k++) x[k] = 0;       /* in the body */
+  assert_true(vg_load_find(f, x) == SIZE_MAX);
+  for (size_t i = 0; i < l.n; i++)
+    outside = fmax(outside, fabs((double)l.cube[i].at[0]));
+  x[0] = 3 * outside;
+  assert_true(vg_load_find(f, x) == SIZE_MAX);
+  x[0] = NAN;
+  assert_true(vg_load_find(f, x) == SIZE_MAX);
+  vg_load_finder_free(f);
+  vg_load_finder_free(NULL);
+  vg_load_release(&l);
+  release_scene(&s);
+}
+
 static void messages_come_back(void **state)
 {
   struct vg_bytes bytes = { 0, NULL }, shorter;
@@ -521,6 +557,7 @@ int main(void)
     cmocka_unit_test(blocks_share_a_load),
     cmocka_unit_test(zones_belong_to_no_block),
     cmocka_unit_test(quantiles_halve_a_mesh),
+    cmocka_unit_test(places_find_their_cubes),
     cmocka_unit_test(messages_come_back),
     cmocka_unit_test(sizes_in_another_unit_are_named),
   };

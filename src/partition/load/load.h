@@ -120,6 +120,20 @@ double vg_load_coarsest(const struct vg_load *l, int axis, double at);
 double vg_load_within(const struct vg_load *l, const double lo[3],
                       const double hi[3]);
 
+/** Finds cubes by places; of one load, which stays as it is. */
+struct vg_load_finder;
+
+/** O(cubes log cubes). VG_ERR_MEMORY. */
+vg_status vg_load_finder_new(const struct vg_load *l,
+                             struct vg_load_finder **out,
+                             struct vg_error *err);
+/** Accepts NULL. */
+void vg_load_finder_free(struct vg_load_finder *f);
+
+/** The cube that x is in; SIZE_MAX: none, as outside the void. O(log cubes).
+ * Threads: safe. */
+size_t vg_load_find(const struct vg_load_finder *f, const double x[3]);
+
 /** Flat bytes and back, for messages: VG_ERR_FORMAT when damaged. */
 struct vg_bytes;
 vg_status vg_load_pack(const struct vg_load *l, struct vg_bytes *out,

@@ -1,0 +1,115 @@
+/* Outline: cubes are in the order of an octree, in which places have an order,
+ * too: that of the first bit, from the top, in which two of them differ along
+ * some axis. So the cube of a place is found by bisection. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "partition/load/load_tree.h"
+
+/* A cube in the lattice of the octree. */
+struct place {
+  uint32_t at[3], side;      /* lower corner */
+  uint32_t cube;
+};
+
+struct vg_load_finder {
+  double lo[3], unit;
+  size_t n;
+  struct place *place;       /* [n] in the order of the octree */
+};
+
+void vg_load_finder_free(struct vg_load_finder *f)
+{
+  if (!f) return;
+  free(f->place);
+  free(f);
+}
+
+/* Which comes first: the axis decides whose coordinates differ in the highest
+ * bit, of equals the last one (load_tree.h counts octants x first). */
+static int by_order(const uint32_t a[3], const uint32_t b[3])
+{
+  uint32_t most = 0;
+  int axis = 0;
+
+  for (int k = 0; k < 3; k++) {
+    const uint32_t d = a[k] ^ b[k];
+
+    if (d >= most || d >= (most ^ d)) {   /* its first bit is not below */
+      most = d;
+      axis = k;
+    }
+  }
+  return (a[axis] > b[axis]) - (a[axis] < b[axis]);
+}
+
+static int by_place(const void *a, const void *b)
+{
+  return by_order(((const struct place *)a)->at, ((const struct place *)b)->at);
+}
+
+/* Cubes are kept in single precision; their sides are powers of two and their
+ * corners multiples of them. 0: this is no cube of the octree. */
+static int place_of(const struct vg_load *l, size_t i, struct place *p)
+{
+  const struct vg_load_cube *c = &l->cube[i];
+  const double side = 2 * (double)c->half / l->unit;
+  int e;
+
+  if (!(side >= 1 && side < 0x1p31)) return 0;
+  if (frexp(side, &e) > 0.75) e++;
+  p->side = (uint32_t)1 << (e - 1);
+  p->cube = (uint32_t)i;
+  for (int k = 0; k < 3; k++) {
+    const double at = ((double)c->at[k] - (double)c->half - l->lo[k]) /
+                      l->unit / p->side;
+
+    if (!(at > -0.5 && at * p->side < 0x1p31 - 0.5)) return 0;
+    p->at[k] = (uint32_t)floor(at + 0.5) * p->side;
+  }
+  return 1;
+}
+
+vg_status vg_load_finder_new(const struct vg_load *l,
+                             struct vg_load_finder **out, struct vg_error *err)
+{
+  struct vg_load_finder *f = vg_calloc(1, sizeof *f);
+
+  if (f) f->place = vg_alloc(l->n, sizeof *f->place);
+  if (!f || !f->place) {
+    vg_load_finder_free(f);
+    return vg_fail_memory(err, "the cells expected");
+  }
+  memcpy(f->lo, l->lo, sizeof f->lo);
+  f->unit = l->unit;
+  for (size_t i = 0; i < l->n; i++) f->n += place_of(l, i, &f->place[f->n]) != 0;
+  if (f->n) qsort(f->place, f->n, sizeof *f->place, by_place);
+  *out = f;
+  return VG_OK;
+}
+
+size_t vg_load_find(const struct vg_load_finder *f, const double x[3])
+{
+  size_t low = 0, high = f->n;
+  uint32_t at[3];
+
+  for (int k = 0; k < 3; k++) {
+    const double p = (x[k] - f->lo[k]) / f->unit;
+
+    if (!(p >= 0 && p < 0x1p31)) return SIZE_MAX;
+    at[k] = (uint32_t)p;
+  }
+  while (low < high) {       /* the last one that is not behind it */
+    const size_t mid = low + (high - low) / 2;
+
+    if (by_order(f->place[mid].at, at) <= 0) low = mid + 1;
+    else high = mid;
+  }
+  if (!low) return SIZE_MAX;
+  for (int k = 0; k < 3; k++)
+    if (at[k] - f->place[low - 1].at[k] >= f->place[low - 1].side)
+      return SIZE_MAX;
+  return f->place[low - 1].cube;
+}
