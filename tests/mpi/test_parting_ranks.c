@@ -131,11 +131,43 @@ static void stopped_and_resumed(void **state)
   scene_end(&s);
 }
 
+/* The coarse mesh is made by all ranks, so all hear why there is none. */
+static void all_ranks_hear_of_it(void **state)
+{
+  static const struct { int parts, hole; const char *why; } what[] = {
+    { 1000000, 0, "ask for fewer parts" },
+    { 4500, 0, "a smaller coarsening" },
+    { 6, 1, "coarse mesh" },
+  };
+
+  (void)state;
+  for (size_t k = 0; k < sizeof what / sizeof *what; k++) {
+    struct vg_partition_options o = options(what[k].parts, 2, 0);
+    struct vg_partition_report r;
+    struct vg_partition *p;
+    struct vg_error err = VG_ERROR_INIT;
+    struct scene s;
+    uint64_t n;
+
+    scene_demo(&s, "box", 5000);
+    s.m.n_tri -= (size_t)what[k].hole;
+    n = grow(job, &s, &o, &p, &r, &err) < 0 &&
+        strstr(err.text, what[k].why) != NULL;
+    assert_null(p);
+    if (!n) fail_msg("%zu: %s", k, err.text);
+    assert_int_equal(vg_comm_sum(job, 1, &n, NULL), VG_OK);
+    assert_int_equal(n, vg_comm_size(job));
+    s.m.n_tri += (size_t)what[k].hole;
+    scene_end(&s);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(as_one_rank_makes_it),
     cmocka_unit_test(stopped_and_resumed),
+    cmocka_unit_test(all_ranks_hear_of_it),
   };
 
   if (vg_child_server_start(NULL) != VG_OK) return 1;

@@ -6,8 +6,10 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "partition/advance/advance_tasks.h"
+#include "partition/advance/coarse.h"
 #include "partition/cut/node.h"
 #include "partition/cut/select.h"
+#include "partition/discrete/discrete.h"
 #include "partition/repair/repair.h"
 
 /* Tasks as long as all of them plan, grow zones and join these into fronts;
@@ -141,6 +143,7 @@ static vg_status cut_like_parts(struct vg_partition *p, struct vg_comm *comm,
 static vg_status run_whole(struct vg_partition *p, struct vg_comm *comm,
                            struct vg_spans *spans, struct vg_error *err)
 {
+  struct vg_coarse_cells coarse = { .n_cell = 0 };
   struct vg_node *root = NULL;
   vg_status st = VG_OK;
 
@@ -150,11 +153,18 @@ static vg_status run_whole(struct vg_partition *p, struct vg_comm *comm,
     st = within_limit(p, p->report.estimate / 1.5, "would have", err);
   st = vg_comm_agree(comm, st, err);
   if (st == VG_OK) st = cut_like_parts(p, comm, root, err);
-  if (st < 0) {
-    vg_node_free(root);
-    return st;
+  if (st == VG_OK && p->options.maker == vg_discrete_part) {
+    st = vg_coarse_mesh(p, comm, root, &coarse, err);
+    if (root) p->options.parting.coarse = &coarse;
   }
-  return run_tasks(p, comm, root != NULL, &root, spans, err);
+  if (st == VG_OK) {
+    st = run_tasks(p, comm, root != NULL, &root, spans, err);
+    root = NULL;
+  }
+  vg_node_free(root);
+  p->options.parting.coarse = NULL;
+  vg_coarse_cells_release(&coarse);
+  return st;
 }
 
 /* Parts that could not be filled are filled together with what is beside them,

@@ -508,8 +508,9 @@ vg_status vg_tasks_first(struct vg_partition *p, struct vg_node *n,
     vg_node_free(n);
     return vg_fail_memory(err, "a task");
   }
+  /* a void that is parted stays where its coarse mesh is */
   *t = (struct vg_task){ .kind = cut ? VG_SPAN_JOIN : VG_SPAN_LEAF,
-                         .moves = 1, .weight = n->load.cells, .input = w };
+                         .moves = !n->to_part, .pinned = n->to_part, .weight = n->load.cells, .input = w };
   t->priority = vg_model_priority(t->kind, t->weight);
   snprintf(t->path, sizeof t->path, cut ? "%.*sJ0" : "%.*sL",
            VG_PATH_MAX - 3, n->path);

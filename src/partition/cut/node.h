@@ -254,6 +254,10 @@ vg_status vg_node_open_places(struct vg_partition *p, struct vg_node *n,
 vg_status vg_node_part(struct vg_partition *p, struct vg_node *n,
                        const struct vg_engine *e, struct vg_error *err);
 
+/** What it asks a maker for. (node_part.c) */
+struct vg_parting_options vg_node_parting(const struct vg_partition *p,
+                                          const struct vg_node *n);
+
 /** The children's loads, from the node's and their fronts; cells are multiplied
  * by `correction` (vg_load_split). (node_split.c) */
 vg_status vg_node_share_load(struct vg_node *n, double correction,

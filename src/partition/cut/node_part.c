@@ -49,8 +49,8 @@ static void keep(struct vg_partition *p, struct vg_digest key, uint32_t serial,
 }
 
 /* As many parts as were asked for, or as there are leaves in the void. */
-static struct vg_parting_options options_for(const struct vg_partition *p,
-                                             const struct vg_node *n)
+struct vg_parting_options vg_node_parting(const struct vg_partition *p,
+                                          const struct vg_node *n)
 {
   struct vg_parting_options o = p->options.parting;
 
@@ -64,7 +64,7 @@ static vg_status find_or_make(struct vg_partition *p, struct vg_node *n,
                               uint32_t serial, const struct vg_engine *e,
                               struct vg_parting *out, struct vg_error *err)
 {
-  struct vg_parting_options o = options_for(p, n);
+  struct vg_parting_options o = vg_node_parting(p, n);
   struct vg_digest key = {{0, 0}};
   int is_found = 0;
   vg_status st = VG_OK;

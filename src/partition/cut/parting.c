@@ -16,6 +16,13 @@ void vg_parting_release(struct vg_parting *p)
   memset(p, 0, sizeof *p);
 }
 
+void vg_coarse_cells_release(struct vg_coarse_cells *c)
+{
+  free(c->x);
+  free(c->cell);
+  memset(c, 0, sizeof *c);
+}
+
 int vg_parting_parts(double cells, double leaf_cells)
 {
   double parts = leaf_cells > 0 ? cells / leaf_cells : 1;

@@ -11,6 +11,16 @@
 /* In the order of the setting's words. */
 enum vg_partitioner { VG_PARTITIONER_METIS, VG_PARTITIONER_RCB };
 
+/* A coarse mesh of a void: the points of its front first, in their order. */
+struct vg_coarse_cells {
+  size_t n_point, n_cell;
+  double (*x)[3];            /* [n_point] */
+  uint32_t (*cell)[4];       /* [n_cell] in either orientation */
+  double seconds;            /* that it took */
+};
+
+void vg_coarse_cells_release(struct vg_coarse_cells *c);
+
 struct vg_parting_options {
   int n_part;                /* at least 1 when a maker is asked; before, 0:
                                 by the rule's leaf_cells */
@@ -19,9 +29,11 @@ struct vg_parting_options {
                                 the mesh; 0: chosen */
   int h_refine;              /* 1: interfaces get their size by halving edges */
   double cells_per_cube;     /* as of vg_load_new */
+  const struct vg_coarse_cells *coarse;  /* made before by all workers, for the
+                                discrete maker; borrowed. NULL: it makes one */
 };
 #define VG_PARTING_OPTIONS_INIT { 0, VG_PARTITIONER_METIS, 0, 0, \
-  VG_LOAD_CELLS_PER_CUBE }
+  VG_LOAD_CELLS_PER_CUBE, NULL }
 
 /* In the order of the setting's words. */
 enum vg_decomposition { VG_DECOMPOSE_ADVANCING, VG_DECOMPOSE_DISCRETE,

@@ -1,5 +1,6 @@
 #include "partition/discrete/discrete.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,14 +13,12 @@
 static const double cells_per_part = 150;   /* D1 */
 static const double least_factor = 1.5, most_factor = 6;
 
-static double factor_for(const struct vg_load *load,
-                         const struct vg_parting_options *o)
+double vg_discrete_coarsening(double cells, const struct vg_parting_options *o)
 {
   double f = least_factor;
 
   if (o->coarsening > 0) return o->coarsening;
-  while (f < most_factor &&
-         f * f * f * cells_per_part * o->n_part < load->cells)
+  while (f < most_factor && f * f * f * cells_per_part * o->n_part < cells)
     f *= 1.125;
   return f;
 }
@@ -166,6 +165,17 @@ static vg_status make_parts(struct fill *a, struct vg_parting *out,
 
 /* --- all steps ----------------------------------------------------------- */
 
+vg_status vg_discrete_refuse(vg_status st, const char *why, double factor,
+                             struct vg_error *err)
+{
+  char text[300];            /* why may be in *err */
+
+  snprintf(text, sizeof text, "%s", why);
+  return vg_fail(err, st, "no coarse mesh for the discrete decomposition "
+                 "(%s); try another coarsening than %g, or decompose by "
+                 "advancing", text, factor);
+}
+
 static vg_status coarse(const struct vg_front *front,
                         const struct vg_sizing *sizing,
                         const struct vg_parting_options *o,
@@ -173,12 +183,11 @@ static vg_status coarse(const struct vg_front *front,
                         struct vg_parting_report *r, struct vg_error *err)
 {
   struct vg_error why = { .text = "" };
-  vg_status st = vg_coarse_fill(front, sizing, r->coarsening, e, c, &why);
+  vg_status st = vg_coarse_fill(front, sizing, r->coarsening, o->coarse, e, c,
+                                &why);
 
   if (st == VG_ERR_GEOMETRY || st == VG_ERR_UNSUPPORTED)
-    return vg_fail(err, st, "no coarse mesh for the discrete decomposition "
-                   "(%s); try another coarsening than %g, or decompose by "
-                   "advancing", why.text, r->coarsening);
+    return vg_discrete_refuse(st, why.text, r->coarsening, err);
   if (st != VG_OK) {
     *err = why;
     return st;
@@ -209,7 +218,7 @@ vg_status vg_discrete_part(const struct vg_front *front,
   if (st < 0) return st;
   t[0] = vg_clock();
   r->n_asked = (uint64_t)o->n_part;
-  r->coarsening = factor_for(load, o);
+  r->coarsening = vg_discrete_coarsening(load->cells, o);
   st = coarse(front, sizing, o, e, &c, r, err);
   if (st != VG_OK) goto done;
   t[1] = vg_clock();
@@ -225,6 +234,7 @@ vg_status vg_discrete_part(const struct vg_front *front,
   VG_TRY(make_parts(&a, &made, err));
   t[4] = vg_clock();
   for (int k = 0; k < VG_PARTING_STEPS; k++) r->time[k] = t[k + 1] - t[k];
+  if (o->coarse) r->time[VG_PARTING_COARSE] += o->coarse->seconds;
   *out = made;
   memset(&made, 0, sizeof made);
 done:

@@ -16,9 +16,24 @@
 #include "partition/cut/parting.h"
 
 /** See vg_parting_maker. Parts may not be cut further. Cost: that of a mesh of
- * some three cells for each face of the front, in one thread; loops that deal
- * out and divide are shared. VG_ERR_UNSUPPORTED: fewer coarse cells than
- * parts. */
+ * some three cells for each face of the front, in one thread unless the options
+ * bring it; loops that deal out and divide are shared. VG_ERR_UNSUPPORTED:
+ * fewer coarse cells than parts. */
 vg_parting_maker vg_discrete_part;
+
+/** Sizes of the coarse mesh over those of the mesh, for a void of so many
+ * cells. o->n_part is at least 1. */
+double vg_discrete_coarsening(double cells, const struct vg_parting_options *o);
+
+/** Sizes of the coarse mesh: those of the mesh times a factor, growing from the
+ * front's edges. *out is the caller's, vg_sizing_free. VG_ERR_MEMORY. */
+vg_status vg_discrete_sizes(const struct vg_mesh *front,
+                            const struct vg_sizing *sizing, double factor,
+                            struct vg_sizing **out, struct vg_error *err);
+
+/** Say that there is no coarse mesh, for a reason, and what to do. Returns
+ * st. */
+vg_status vg_discrete_refuse(vg_status st, const char *why, double factor,
+                             struct vg_error *err);
 
 #endif

@@ -23,23 +23,18 @@ static const double growth = 1.6;   /* D9 */
 /* The field of these sizes is as coarse. */
 static const double coarseness = 3;
 
-static vg_status coarse_sizes(const struct vg_front *f,
-                              const struct vg_sizing *sizing, double factor,
-                              struct vg_sizing **out, struct vg_error *err)
+vg_status vg_discrete_sizes(const struct vg_mesh *front,
+                            const struct vg_sizing *sizing, double factor,
+                            struct vg_sizing **out, struct vg_error *err)
 {
-  struct vg_mesh m = VG_MESH_INIT;   /* borrows the front */
   struct vg_sizing_options o = VG_SIZING_OPTIONS_INIT;
   struct vg_sizing *most = NULL;
   vg_status st;
 
-  m.n_point = f->n_point;
-  m.point = f->x;
-  m.n_tri = f->n_face;
-  m.tri = f->face;
   o.growth = growth;
   o.coarseness = coarseness;
   o.h_max = INFINITY;
-  st = vg_sizing_new(&o, 0, NULL, &m, &most, err);
+  st = vg_sizing_new(&o, 0, NULL, front, &most, err);
   if (st == VG_OK)
     st = vg_sizing_coarsened(sizing, factor, most, out, err);
   vg_sizing_free(most);
@@ -55,11 +50,15 @@ static int stop(void *user, const char *stage, size_t done, size_t expected)
 }
 
 static vg_status grow(const struct vg_front *f, const struct vg_sizing *sizing,
-                      const struct vg_engine *e, struct vg_void *v,
-                      struct vg_error *err)
+                      double factor, const struct vg_engine *e,
+                      struct vg_void *v, struct vg_error *err)
 {
+  struct vg_mesh m = { .n_point = f->n_point, .point = f->x,   /* borrowed */
+                       .n_tri = f->n_face, .tri = f->face };
   struct vg_grow_options o = VG_GROW_OPTIONS_INIT;
   struct vg_fill_report report = {0};
+  struct vg_sizing *coarse = NULL;
+  vg_status st;
 
   if (e) o.progress = stop;
   o.user = (void *)(uintptr_t)e;
@@ -70,7 +69,24 @@ static vg_status grow(const struct vg_front *f, const struct vg_sizing *sizing,
   memcpy(v->face, f->face, f->n_face * sizeof *v->face);
   v->n_point = f->n_point;
   v->n_face = f->n_face;
-  return vg_grow(v, sizing, &o, &report, err);
+  st = vg_discrete_sizes(&m, sizing, factor, &coarse, err);
+  if (st == VG_OK) st = vg_grow(v, coarse, &o, &report, err);
+  vg_sizing_free(coarse);
+  return st;
+}
+
+/* A copy: what is given stays the giver's. */
+static vg_status take(const struct vg_coarse_cells *given, struct vg_void *v,
+                      struct vg_error *err)
+{
+  if (vg_reserve(&v->x, &v->cap_point, given->n_point, sizeof *v->x) ||
+      vg_reserve(&v->cell, &v->cap_cell, given->n_cell, sizeof *v->cell))
+    return vg_fail_memory(err, "the coarse mesh");
+  memcpy(v->x, given->x, given->n_point * sizeof *v->x);
+  memcpy(v->cell, given->cell, given->n_cell * sizeof *v->cell);
+  v->n_point = given->n_point;
+  v->n_cell = given->n_cell;
+  return VG_OK;
 }
 
 /* --- which of its faces are the front's ---------------------------------- */
@@ -121,15 +137,14 @@ static vg_status find_front(const struct vg_front *f, struct vg_coarse *c,
 
 vg_status vg_coarse_fill(const struct vg_front *front,
                          const struct vg_sizing *sizing, double factor,
+                         const struct vg_coarse_cells *given,
                          const struct vg_engine *e, struct vg_coarse *c,
                          struct vg_error *err)
 {
   struct vg_void v = VG_VOID_INIT;
-  struct vg_sizing *coarse = NULL;
-  vg_status st;
+  vg_status st = given ? take(given, &v, err)
+                       : grow(front, sizing, factor, e, &v, err);
 
-  VG_TRY(coarse_sizes(front, sizing, factor, &coarse, err));
-  st = grow(front, coarse, e, &v, err);
   if (st != VG_OK) goto done;          /* or stopped */
   c->n_front = front->n_point;
   st = vg_tets_from_cells(&c->t, v.n_point, v.x, v.n_cell,
@@ -137,7 +152,6 @@ vg_status vg_coarse_fill(const struct vg_front *front,
   v.x = NULL;
   if (st == VG_OK) st = find_front(front, c, err);
 done:
-  vg_sizing_free(coarse);
   vg_void_release(&v);
   return st;
 }

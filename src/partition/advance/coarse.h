@@ -1,0 +1,18 @@
+/* partition/advance/coarse.h: the coarse mesh of the discrete decomposition,
+ * made as any mesh is: cut by planes and filled by all workers. Private to
+ * partition/advance. */
+#ifndef VG_PARTITION_ADVANCE_COARSE_H
+#define VG_PARTITION_ADVANCE_COARSE_H
+
+#include "partition/cut/node.h"
+
+/** For the void of root, which rank 0 has; others give NULL. Collective.
+ * c: empty; on rank 0 the mesh, in the order of root's front; by
+ * vg_coarse_cells_release.
+ * Follows from the input alone. VG_BLOCKED: stopped; VG_ERR_GEOMETRY,
+ * VG_ERR_UNSUPPORTED: there is none, with the reason and a remedy. */
+vg_status vg_coarse_mesh(struct vg_partition *p, struct vg_comm *comm,
+                         const struct vg_node *root, struct vg_coarse_cells *c,
+                         struct vg_error *err);
+
+#endif
