@@ -222,7 +222,7 @@ vg_status vg_discrete_part(const struct vg_front *front,
   st = coarse(front, sizing, o, e, &c, r, err);
   if (st != VG_OK) goto done;
   t[1] = vg_clock();
-  VG_TRY(vg_coarse_deal(&c, sizing, o, e, &r->n_apart, err));
+  VG_TRY(vg_coarse_deal(&c, load, sizing, o, e, &r->n_apart, err));
   r->elsewhere = c.elsewhere;
   VG_TRY(vg_interface_list(&c, &f, err));
   t[2] = vg_clock();

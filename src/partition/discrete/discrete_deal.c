@@ -11,10 +11,6 @@
 
 /* Most over mean that METIS is asked for. */
 static const double imbalance = 1.03;   /* D2 */
-/* From this gradient of the size on it counts as varying, as in load.c. */
-static const double gradient = 0.05;   /* C15 */
-/* Cells beside a face of the front, whatever the size there. */
-static const double cells_per_face = 0.75;   /* D3 */
 /* Pieces that hang apart with less than this share of a part's weight go to the
  * part beside them. */
 static const double small_piece = 0.1;   /* D4 */
@@ -26,13 +22,32 @@ enum { EVEN_SWEEPS = 6 };
 
 struct weights {
   struct vg_coarse *c;
+  const struct vg_load *load;
+  struct vg_load_finder *finder;
   const struct vg_sizing *sizing;
   double per_cube;
 };
 
-/* The mean of 1 / h^3 over a cell, at points of a lattice in it: four to an
- * edge where the size varies over it, else in the middle alone. */
-static double density(const struct vg_sizing *sizing, double *const x[4])
+/* D3: cells to a volume, as the load has them; where it has no cube, as at a wall,
+ * by the size. */
+static double density_at(const struct weights *w, const double x[3])
+{
+  size_t k = vg_load_find(w->finder, x);
+  double h;
+
+  if (k != SIZE_MAX) {
+    const struct vg_load_cube *c = &w->load->cube[k];
+    const double half = (double)c->half;
+
+    return (double)c->cells / (8 * half * half * half * (double)c->part);
+  }
+  h = vg_sizing_at(w->sizing, x);
+  return w->per_cube / (h * h * h);
+}
+
+/* The mean over a cell, at points of a lattice in it: four to an edge, or, of
+ * one that is small against the size, in the middle alone. */
+static double density(const struct weights *w, double *const x[4])
 {
   enum { N = 3 };
   double sum = 0, far = 0, mid[3], h;
@@ -40,35 +55,21 @@ static double density(const struct vg_sizing *sizing, double *const x[4])
 
   for (int k = 0; k < 3; k++)
     mid[k] = 0.25 * (x[0][k] + x[1][k] + x[2][k] + x[3][k]);
-  h = vg_sizing_at(sizing, mid);
+  h = vg_sizing_at(w->sizing, mid);
   for (int i = 0; i < 4; i++) far = fmax(far, vg_distance2(mid, x[i]));
-  if (far < 0.25 * h * h) return 1 / (h * h * h);
+  if (far < 0.25 * h * h) return density_at(w, mid);
   for (int a = 0; a <= N; a++)
     for (int b = 0; a + b <= N; b++)
       for (int c = 0; a + b + c <= N; c++) {
-        double w[4] = { a + 0.25, b + 0.25, c + 0.25, N - a - b - c + 0.25 };
+        double share[4] = { a + 0.25, b + 0.25, c + 0.25, N - a - b - c + 0.25 };
         double at[3] = {0, 0, 0};
 
         for (int i = 0; i < 4; i++)
-          for (int k = 0; k < 3; k++) at[k] += w[i] / (N + 1) * x[i][k];
-        h = vg_sizing_at(sizing, at);
-        sum += 1 / (h * h * h);
+          for (int k = 0; k < 3; k++) at[k] += share[i] / (N + 1) * x[i][k];
+        sum += density_at(w, at);
         n++;
       }
   return sum / n;
-}
-
-/* Cells are more where the size varies (partition/load/load.h). */
-static double graded(const struct vg_sizing *sizing, double *const x[4])
-{
-  double h[4], slope = 0;
-
-  for (int i = 0; i < 4; i++) {
-    h[i] = vg_sizing_at(sizing, x[i]);
-    for (int k = 0; k < i; k++)
-      slope = fmax(slope, fabs(h[i] - h[k]) / vg_distance(x[i], x[k]));
-  }
-  return 1 + VG_LOAD_GRADED * fmin(slope / gradient, 1);
 }
 
 static void weigh(void *context, size_t first, size_t end, int worker)
@@ -81,11 +82,8 @@ static void weigh(void *context, size_t first, size_t end, int worker)
     const uint32_t *v = t->cell[q].v;
     double *const x[4] = { t->x[v[0]], t->x[v[1]], t->x[v[2]], t->x[v[3]] };
     double volume = vg_det(x[0], x[1], x[2], x[3]) / 6;
-    double cells = w->per_cube * fabs(volume) * density(w->sizing, x) *
-                   graded(w->sizing, x);
+    double cells = fabs(volume) * density(w, x);
 
-    for (int i = 0; i < 4; i++)
-      if (w->c->on[q][i] != VG_NONE) cells += cells_per_face;
     w->c->weight[q] = cells > 0 ? cells : 1e-6;
   }
 }
@@ -360,12 +358,13 @@ static vg_status deal(struct vg_coarse *c, const struct dual *d,
   return st < 0 ? st : vg_graph_part(&d->g, &how, c->part, err);
 }
 
-vg_status vg_coarse_deal(struct vg_coarse *c, const struct vg_sizing *sizing,
+vg_status vg_coarse_deal(struct vg_coarse *c, const struct vg_load *load,
+                         const struct vg_sizing *sizing,
                          const struct vg_parting_options *o,
                          const struct vg_engine *e, uint64_t *n_apart,
                          struct vg_error *err)
 {
-  struct weights w = { c, sizing, o->cells_per_cube };
+  struct weights w = { c, load, NULL, sizing, o->cells_per_cube };
   struct dual d = { .begin = NULL };
   vg_status st = VG_OK;
 
@@ -374,6 +373,7 @@ vg_status vg_coarse_deal(struct vg_coarse *c, const struct vg_sizing *sizing,
   c->n_part = (uint32_t)o->n_part;
   if (!c->weight || !c->part)
     return vg_fail_memory(err, "dealing out the coarse mesh");
+  VG_TRY(vg_load_finder_new(load, &w.finder, err));
   vg_engine_loop(e, c->t.n_cell, 256, weigh, &w);
   VG_TRY(make_dual(c, sizing, &d, err));
   VG_TRY(deal(c, &d, o, err));
@@ -382,6 +382,7 @@ vg_status vg_coarse_deal(struct vg_coarse *c, const struct vg_sizing *sizing,
   *n_apart = c->n_part > (uint32_t)o->n_part
                ? c->n_part - (uint32_t)o->n_part : 0;
 done:
+  vg_load_finder_free(w.finder);
   dual_release(&d);
   return st;
 }

@@ -30,9 +30,11 @@ vg_status vg_coarse_fill(const struct vg_front *front,
                          const struct vg_engine *e, struct vg_coarse *c,
                          struct vg_error *err);
 
-/** Deal its cells out: c->weight, c->part, c->n_part. n_apart out: parts beyond
- * those asked for. (discrete_deal.c) */
-vg_status vg_coarse_deal(struct vg_coarse *c, const struct vg_sizing *sizing,
+/** Deal its cells out, by those that the void's load expects in them:
+ * c->weight, c->part, c->n_part. n_apart out: parts beyond those asked for.
+ * (discrete_deal.c) */
+vg_status vg_coarse_deal(struct vg_coarse *c, const struct vg_load *load,
+                         const struct vg_sizing *sizing,
                          const struct vg_parting_options *o,
                          const struct vg_engine *e, uint64_t *n_apart,
                          struct vg_error *err);
