@@ -9,8 +9,10 @@ aircraft_table="
 dlr_f6_coarse transport/dlr_f6_wbnp_half_coarse.lb8.ugrid.xz 1-123 141.2 3e6
 dlr_f6_medium transport/dlr_f6_wbnp_half_medium.lb8.ugrid.xz 1-123 141.2 3e6
 onera_m6      transport/onera_m6_sharp_te_farfield.lb8.ugrid.xz 3-12 0.646 11.72e6
+30p30n_coarse highlift/30p30n_swept_wing_in_box_coarse.lb8.ugrid.xz 1-10 1000 9e6
 30p30n_medium highlift/30p30n_swept_wing_in_box_medium.lb8.ugrid.xz 1-10 1000 9e6
 falcon        bizjet/falcon_full_mirrored.lb8.ugrid.xz all 2.9 5e6
+low_boom      supersonic/low_boom_sst_full.lb8.ugrid.xz all 20 5e6
 f16           supersonic/f16_full.lb8.ugrid.xz all 3.4 5e6
 tmx1242       supersonic/tmx1242_wing_body.lb8.ugrid.xz all 8 5e6
 "

@@ -5,14 +5,17 @@
 #
 # usage: verification/decompositions.sh [--vanguard PROGRAM]
 #          [--meshcheck PROGRAM] [--data DIR] [--work DIR] [--out FILE]
-#          [--parts LIST] [CASE...]
+#          [--parts LIST] [--ways LIST] [--partitioners LIST] [CASE...]
 #   --vanguard   the program (default build/release/bin/vanguard)
 #   --meshcheck  an independent judge of .lb8.ugrid files, called with one
 #   --data       folder of real geometry (verification/README.md)
 #   --work       scratch folder, kept (default: a temporary one, removed)
 #   --out        write the table to FILE too (markdown)
 #   --parts      numbers of parts (default "4 16 100")
-#   CASE         names or patterns of the table below
+#   --ways       of advancing, octree, remesh, h-refine, the last two being the
+#                interfaces of the discrete decomposition (default: all)
+#   --partitioners  default "metis rcb"
+#   CASE         names or patterns of the table at the end
 # Exit status: 0 all valid, 1 one is not or a run failed, 2 usage.
 set -euo pipefail
 
@@ -23,7 +26,9 @@ root=$(cd "$(dirname "$0")/.." && pwd)
 . "$root/bench/aircraft.sh"
 vanguard=$root/build/release/bin/vanguard
 meshcheck='' data='' work='' project='' parts='4 16 100' options=()
-take_options "vanguard meshcheck data work out parts" "" "$@"
+ways='advancing octree remesh h-refine' partitioners='metis rcb'
+take_options "vanguard meshcheck data work out parts ways partitioners" "" \
+  "$@"
 [ -x "$vanguard" ] || die "no program $vanguard: build it first"
 work_folder decompositions
 [ -z "$out" ] || : > "$out"
@@ -70,18 +75,20 @@ while read -r name kind size; do
     data) if [ -z "$data" ] || ! aircraft "$data" "$name" "$work/input"; then
             echo "SKIP $name: no --data with it" >&2
             continue
-          fi ;;
+          fi
+          options+=(--cells mixed) ;;   # a third of the cells to judge
   esac
-  try advancing --leaf-cells 30000
-  for n in $parts; do
-    for partitioner in metis rcb; do
-      try "$n octree $partitioner" --decompose octree --parts "$n" \
-        --partitioner "$partitioner"
-    done
-    for interfaces in remesh h-refine; do
-      for partitioner in metis rcb; do
-        try "$n $interfaces $partitioner" --decompose discrete --parts "$n" \
-          --interfaces "$interfaces" --partitioner "$partitioner"
+  for way in $ways; do
+    case $way in
+      advancing) try advancing --leaf-cells 30000
+        continue ;;
+      octree) how=(--decompose octree) ;;
+      *) how=(--decompose discrete --interfaces "$way") ;;
+    esac
+    for n in $parts; do
+      for partitioner in $partitioners; do
+        try "$way $n $partitioner" "${how[@]}" --parts "$n" \
+          --partitioner "$partitioner"
       done
     done
   done
@@ -92,6 +99,7 @@ wing-half demo 200000
 wing demo 200000
 dlr_f6_coarse data -
 falcon data -
-30p30n_medium data -
+low_boom data -
+30p30n_coarse data -
 END
 exit "$failed"

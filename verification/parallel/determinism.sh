@@ -4,8 +4,8 @@
 #
 # usage: verification/parallel/determinism.sh [--quick] [--vanguard PROGRAM]
 #          [--data DIR] [--cells N] [--leaves N] [--ranks LIST]
-#          [--threads LIST] [--kills N] [--seed N] [--work DIR] [--out FILE]
-#          [CASE...]
+#          [--threads LIST] [--decompose LIST] [--kills N] [--seed N]
+#          [--work DIR] [--out FILE] [CASE...]
 #   --quick     small: 60,000 cells (the wing more, but few layers), 1 and 2
 #               ranks and threads, one kill, no aircraft
 #   --vanguard  the program (default build/release/bin/vanguard)
@@ -15,6 +15,7 @@
 #   --leaves    into about how many parts (default 24)
 #   --ranks     default "1 2 4 7"
 #   --threads   default "1 2 3"
+#   --decompose  default advancing; also discrete, octree
 #   --kills     runs of each case that are killed and resumed (default 5)
 #   --seed      of orders, times and victims (default: the clock; printed)
 #   --work      scratch folder, kept (default: a temporary one, removed)
@@ -44,9 +45,9 @@ root=$(cd "$(dirname "$0")/../.." && pwd)
 . "$root/verification/parallel/runs.sh"
 vanguard=$root/build/release/bin/vanguard
 work='' data='' cells='' leaves=24 ranks='' threads='' kills='' seed='' quick=0
-project='' options=()
-take_options "vanguard data cells leaves ranks threads kills seed work out" \
-  quick "$@"
+project='' options=() decompose=advancing
+take_options "vanguard data cells leaves ranks threads decompose kills seed \
+  work out" quick "$@"
 if [ "$quick" = 1 ]; then
   data='' cells=${cells:-60000} ranks=${ranks:-1 2} threads=${threads:-1 2}
   kills=${kills:-1}
@@ -141,10 +142,11 @@ killed() {
   differs "killed:$chain then $r x $t"
 }
 
-one_case() {
-  local from to n
+one_case() {   # one_case WAY
+  local from to n way=$1
   n=$(get_cells)
-  mesh_options=(-p "$project" "${options[@]}" --leaf-cells $((n / leaves)))
+  mesh_options=(-p "$project" "${options[@]}" --leaf-cells $((n / leaves))
+    --decompose "$way")
   bad='' first='' n_run=1 n_kill=0 n_kept=0
   from=$(date +%s%N)
   whole 1 1
@@ -156,7 +158,7 @@ one_case() {
   for ((k = 0; k < kills; k++)); do
     killed "$(calc "($to - $from) / 1e9")"
   done
-  echo "| $name | $made | $parts | $n_run | $kills | $n_kill | $n_kept |" \
+  echo "| $name, $way | $made | $parts | $n_run | $kills | $n_kill | $n_kept |" \
     "$first | ${bad:-none} |" | say
   rm -rf "$out_dir"
 }
@@ -190,7 +192,7 @@ for name in box sphere wing dlr_f6_coarse tmx1242 falcon; do
       [ $name != tmx1242 ] || options+=(--cells mixed) ;;
   esac
   tried=1
-  one_case
+  for way in $decompose; do one_case "$way"; done
 done
 [ $tried = 1 ] || die "no such case, or no data for it; see --help"
 exit $failed
