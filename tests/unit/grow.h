@@ -7,7 +7,7 @@
 
 /* The array with room for item n, twice as much where there is none: ASan
  * moves what is large to pages of its own whenever it grows. */
-static inline void *grow(void *array, size_t n, size_t size)
+static inline void *grown(void *array, size_t n, size_t size)
 {
   size_t need = (n + 1) * size;
 
@@ -15,6 +15,6 @@ static inline void *grow(void *array, size_t n, size_t size)
          : realloc(array, 2 * need);
 }
 
-#define GROW(array, n) ((array) = grow((array), (n), sizeof *(array)))
+#define GROW(array, n) ((array) = grown((array), (n), sizeof *(array)))
 
 #endif
