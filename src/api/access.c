@@ -263,6 +263,51 @@ vanguard_status vanguard_wall(vanguard_job *job, size_t i,
   return VANGUARD_OK;
 }
 
+/* The numbers that points of the walls have in the mesh; NULL: no memory. */
+static const uint32_t *wall_points(vanguard_job *job)
+{
+  const struct vg_wall_fields *w = &job->layers.fields;
+  const uint32_t *root = vg_layer_slices_roots(job->run.layers);
+
+  if (job->wall_point) return job->wall_point;
+  job->wall_point = vg_alloc(w->n, sizeof *job->wall_point);
+  for (size_t i = 0; job->wall_point && i < w->n; i++)
+    job->wall_point[i] = root[w->point[i]];
+  return job->wall_point;
+}
+
+vanguard_status vanguard_wall_points(vanguard_job *job,
+                                     struct vanguard_wall_points *out)
+{
+  struct vanguard_wall_points p = { .struct_size = sizeof p };
+  const struct vg_wall_fields *w = &job->layers.fields;
+  vg_status st = vg_job_meshed(job);
+
+  if (st >= 0 && vanguard_walls(job)) {
+    p.n_point = w->n;
+    p.point = wall_points(job);
+    p.level = w->level;
+    p.wanted = w->wanted;
+    p.first = w->first;
+    p.asked = w->asked;
+    p.total = w->total;
+    p.share = w->share;
+    p.growth = w->growth;
+    p.cause = w->cause;
+    p.squeezed = w->squeezed;
+    if (!p.point) st = vg_fail_memory(&job->err, "the points of the walls");
+  }
+  if (st < 0) return vg_job_status(st);
+  vg_job_give(out, &p, sizeof p);
+  return VANGUARD_OK;
+}
+
+const char *vanguard_cause(int32_t cause)
+{
+  return cause >= 0 && cause < VG_CAUSE_N
+    ? vg_layer_cause_name((enum vg_layer_cause)cause) : NULL;
+}
+
 /* --- files --------------------------------------------------------------- */
 
 /* Where files go and what they are is the caller's, all else the run's. */

@@ -31,6 +31,7 @@ struct vanguard_job {
   struct vg_layer_stage layers;
   struct vg_run run;
   int is_meshed;
+  uint32_t *wall_point;      /* of vanguard_wall_points; NULL: not asked yet */
   char *details;
 };
 

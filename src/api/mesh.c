@@ -19,6 +19,8 @@ void vg_job_release_run(vanguard_job *job, int success)
   job->problem = (struct vg_problem)VG_PROBLEM_INIT;
   vg_size_samples_free(job->samples);
   job->samples = NULL;
+  free(job->wall_point);
+  job->wall_point = NULL;
   free(job->details);
   job->details = NULL;
   job->is_meshed = 0;

@@ -311,6 +311,11 @@ vg_status vg_layer_slices_tops(struct vg_comm *comm,
   return vg_layer_tops(comm, &k->plan, k->field, ratio, err);
 }
 
+const uint32_t *vg_layer_slices_roots(const struct vg_layer_slices *keep)
+{
+  return keep->plan.root;
+}
+
 void vg_layer_slices_close(struct vg_layer_slices *k)
 {
   if (!k) return;

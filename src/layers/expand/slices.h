@@ -54,6 +54,11 @@ vg_status vg_layer_slices_tops(struct vg_comm *comm,
                                const struct vg_layer_slices *keep,
                                double *ratio, struct vg_error *err);
 
+/** [surface n_point] the point of the mesh that each of the surface is;
+ * VG_NO_INDEX: none, a slide patch was re-meshed there. On every rank, valid
+ * until closed. */
+const uint32_t *vg_layer_slices_roots(const struct vg_layer_slices *keep);
+
 /** Accepts NULL. */
 void vg_layer_slices_close(struct vg_layer_slices *keep);
 

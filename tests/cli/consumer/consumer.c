@@ -214,6 +214,7 @@ static void gives_arrays_and_pieces(void)
   struct { struct vanguard_counts n; } old = { VANGUARD_INIT(old.n) };
   struct vanguard_quality q = VANGUARD_INIT(q);
   struct vanguard_patch p = VANGUARD_INIT(p);
+  struct vanguard_wall_points walls = VANGUARD_INIT(walls);
   struct arrays a;
   uint64_t n_tet = 0, n_own = 0;
 
@@ -244,6 +245,7 @@ static void gives_arrays_and_pieces(void)
   CHECK(!vanguard_count(job, &old.n) && old.n.n_tet == n_tet &&
         old.n.n_tri == 77);
   CHECK(!vanguard_walls(job));
+  CHECK(!vanguard_wall_points(job, &walls) && !walls.n_point && !walls.level);
   drop(&a);
   vanguard_free(job);
 }
@@ -255,6 +257,39 @@ static void add_patch(vanguard_job *job, const char *id, const char *bc,
   const char *value[] = { id, bc, name };
 
   CHECK(!vanguard_add(job, "patches", 3, column, value));
+}
+
+/* What points of the floor have agrees with the figures of the patch. */
+static void tells_wall_points(vanguard_job *job, const struct arrays *a,
+                              const struct vanguard_wall *w)
+{
+  struct vanguard_wall_points p = VANGUARD_INIT(p);
+  double first[2] = { INFINITY, 0 }, level = 0;
+  size_t n = 0;
+
+  CHECK(!vanguard_wall_points(job, &p) && p.n_point == (N + 1) * (N + 1));
+  for (size_t i = 0; i < p.n_point; i++) {
+    if (!CHECK(p.point[i] < a->n.n_boundary_point)) return;
+    CHECK(!i || p.point[i] > p.point[i - 1]);
+    CHECK(a->x[3 * p.point[i] + 2] == 0);       /* the floor is z = 0 */
+    CHECK(p.level[i] <= p.wanted[i] && p.total[i] >= p.first[i]);
+    CHECK(vanguard_cause(p.cause[i]) && vanguard_cause(p.squeezed[i]));
+    if (!p.level[i]) continue;
+    CHECK(p.asked[i] == 0.01 && p.growth[i] >= 1 && p.share[i] > 0);
+    first[0] = fmin(first[0], p.first[i]);
+    first[1] = fmax(first[1], p.first[i]);
+    level += p.level[i];
+    n++;
+  }
+  CHECK(n == w->n_point && first[0] == w->first[0] && first[1] == w->first[2]);
+  CHECK(fabs(level / (double)n - w->level[1]) < 1e-9);   /* order of a sum */
+}
+
+static void names_causes(void)
+{
+  CHECK(!strcmp(vanguard_cause(0), "none") &&
+        !strcmp(vanguard_cause(6), "collision"));
+  CHECK(!vanguard_cause(-1) && !vanguard_cause(8));
 }
 
 static void grows_layers(void)
@@ -279,6 +314,7 @@ static void grows_layers(void)
   CHECK(vanguard_walls(job) == 1 && !vanguard_wall(job, 0, &w));
   CHECK(!vanguard_patch(job, w.patch, &p) && !strcmp(p.name, "floor"));
   CHECK(w.level[0] >= 1 && fabs(w.first[1] - 0.01) < 1e-3);
+  tells_wall_points(job, &a, &w);
   CHECK(!vanguard_wall(job, 1, &w) && w.patch == SIZE_MAX);
   CHECK(vanguard_wall(job, 2, &w) == VANGUARD_ERR_USAGE);
   CHECK(a.n.n_quad && vanguard_quads(job) && vanguard_quad_patches(job));
@@ -422,6 +458,7 @@ int main(int argc, char **argv)
   sets_by_name();
   refuses_bad_surfaces();
   gives_arrays_and_pieces();
+  names_causes();
   grows_layers();
   stops();
   takes_sizes();

@@ -107,6 +107,12 @@ def test_layers():
     assert len(mesh.prisms) and len(mesh.walls) == 1
     assert abs(mesh.walls[0]["first"][1] - 0.01) < 1e-3
     assert mesh.patches[mesh.walls[0]["patch"]]["name"] == "p14"
+    w = mesh.wall_points
+    assert (mesh.points[w["point"], 2] == 0).all() and len(w["point"]) == 49
+    got = w["first"][w["level"] > 0]
+    assert got.min() == mesh.walls[0]["first"][0]
+    assert (w["level"] <= w["wanted"]).all() and (w["asked"] == 0.01).all()
+    assert vanguard.causes()[6] == "collision" and w["cause"].max() < 8
     data = mesh.to_meshio_dict()
     kinds = [kind for kind, cells in data["cells"]]
     assert kinds[0] == "tetra" and "wedge" in kinds and "quad" in kinds
