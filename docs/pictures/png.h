@@ -4,34 +4,13 @@
 
 #include <stdio.h>
 #include <stdlib.h>
-#include <zlib.h>
 
-#include "base/memory.h"
-
-static inline void png_put32(unsigned char *to, unsigned long v)
-{
-  for (int k = 0; k < 4; k++) to[k] = (unsigned char)(v >> (24 - 8 * k));
-}
-
-static inline void png_chunk(FILE *f, const char *name,
-                             const unsigned char *data, size_t n)
-{
-  unsigned char word[4];
-  unsigned long crc = crc32(0, (const unsigned char *)name, 4);
-
-  if (n) crc = crc32(crc, data, (unsigned)n);
-  png_put32(word, n);
-  fwrite(word, 1, 4, f);
-  fwrite(name, 1, 4, f);
-  fwrite(data, 1, n, f);
-  png_put32(word, crc);
-  fwrite(word, 1, 4, f);
-}
+#include "run/picture/image.h"
 
 /* Mean of the samples of pixel x, y of a picture `width` pixels wide. */
 static inline void png_pixel(int samples, int width,
                              const unsigned char (*rgb)[3], int x, int y,
-                             unsigned char *to)
+                             uint8_t *to)
 {
   for (int k = 0; k < 3; k++) {
     int sum = 0;
@@ -40,8 +19,9 @@ static inline void png_pixel(int samples, int width,
       sum += rgb[(size_t)(y * samples + j / samples) *
                  (size_t)(width * samples) +
                  (size_t)(x * samples + j % samples)][k];
-    to[k] = (unsigned char)(sum / (samples * samples));
+    to[k] = (uint8_t)(sum / (samples * samples));
   }
+  to[3] = 255;
 }
 
 /** Write width x height pixels of samples x samples samples each, rows from
@@ -49,31 +29,20 @@ static inline void png_pixel(int samples, int width,
 static inline int png_write(const char *path, int width, int height,
                             int samples, const unsigned char (*rgb)[3])
 {
-  size_t row = 1 + 3 * (size_t)width;
-  uLongf packed = compressBound(row * (size_t)height);
-  unsigned char *raw = vg_calloc(row, (size_t)height);
-  unsigned char *out = vg_alloc(packed, 1), head[13] = { 0 };
-  FILE *f = fopen(path, "wb");
-  int bad = !raw || !out || !f;
+  struct vg_image m = VG_IMAGE_INIT;
+  struct vg_bytes png = { 0 };
+  FILE *f = NULL;
+  int bad = vg_image_new(width, height, &m, NULL) < 0;
 
   for (int y = 0; !bad && y < height; y++)
     for (int x = 0; x < width; x++)
-      png_pixel(samples, width, rgb, x, y,
-                raw + (size_t)y * row + 1 + 3 * (size_t)x);
-  bad = bad || compress2(out, &packed, raw, row * (size_t)height, 9) != Z_OK;
-  if (!bad) {
-    png_put32(head, (unsigned long)width);
-    png_put32(head + 4, (unsigned long)height);
-    head[8] = 8;   /* bits per channel */
-    head[9] = 2;   /* RGB */
-    fwrite("\211PNG\r\n\032\n", 1, 8, f);
-    png_chunk(f, "IHDR", head, sizeof head);
-    png_chunk(f, "IDAT", out, packed);
-    png_chunk(f, "IEND", NULL, 0);
-  }
+      png_pixel(samples, width, rgb, x, y, m.rgba[(size_t)y * (size_t)width +
+                                                  (size_t)x]);
+  bad = bad || vg_image_png(&m, &png, NULL) < 0 || !(f = fopen(path, "wb"));
+  bad = bad || fwrite(png.data, 1, png.n, f) != png.n;
   if (f && fclose(f)) bad = 1;
-  free(raw);
-  free(out);
+  vg_image_release(&m);
+  free(png.data);
   return bad;
 }
 

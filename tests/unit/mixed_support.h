@@ -192,4 +192,22 @@ static inline void mixed_make(struct vg_mesh *m, uint32_t nx, uint32_t ny)
   m->patch[0].bc = 4;
 }
 
+/* Points and cells equal in every bit; as many faces, which may have been put
+ * in the order of their patches. */
+static inline void mixed_same(const struct vg_mesh *a, const struct vg_mesh *b)
+{
+#define SAME(array, n) \
+  (assert_int_equal(a->n, b->n), \
+   io_same_array(a->array, b->array, a->n, sizeof *a->array))
+  SAME(point, n_point);
+  SAME(tet, n_tet);
+  SAME(pyr, n_pyr);
+  SAME(pri, n_pri);
+  SAME(hex, n_hex);
+#undef SAME
+  assert_int_equal(a->n_tri, b->n_tri);
+  assert_int_equal(a->n_quad, b->n_quad);
+  assert_int_equal(a->n_patch, b->n_patch);
+}
+
 #endif

@@ -35,19 +35,7 @@ static void all_kinds_come_back(void **state)
     m.patch[1].bc = VG_BC_NONE;
     m.patch[1].bc_fun3d = 5000;
     go_round(&m, is_wide, &back);
-    assert_int_equal(back.n_point, m.n_point);
-    assert_memory_equal(back.point, m.point, m.n_point * sizeof *m.point);
-#define SAME(array, n) \
-    assert_int_equal(back.n, m.n); \
-    assert_memory_equal(back.array, m.array, m.n * sizeof *m.array)
-    SAME(tet, n_tet);
-    SAME(pyr, n_pyr);
-    SAME(pri, n_pri);
-    SAME(hex, n_hex);
-#undef SAME
-    assert_int_equal(back.n_tri, m.n_tri);
-    assert_int_equal(back.n_quad, m.n_quad);
-    assert_int_equal(back.n_patch, 3);
+    mixed_same(&back, &m);
     for (int p = 0; p < 3; p++) {
       assert_int_equal(back.patch[p].id, p + 1);
       assert_string_equal(back.patch[p].name, name[p]);

@@ -141,7 +141,9 @@ static void refuses_what_it_cannot_take(void **state)
   (void)state;
   refuses("solid", VG_ERR_FORMAT, "MeshVersionFormatted");
   refuses("MeshVersionFormatted 5", VG_ERR_FORMAT, "version");
-  refuses("MeshVersionFormatted 2\nDimension 2\n", VG_ERR_FORMAT, "not 3");
+  refuses("MeshVersionFormatted 2\nDimension 2\n", VG_ERR_UNSUPPORTED,
+          "dimension 2");
+  refuses("MeshVersionFormatted 2\nDimension 4\n", VG_ERR_FORMAT, "nor 3");
   refuses("MeshVersionFormatted 2\nSolAtVertices 1 1 1 1", VG_ERR_FORMAT,
           "before the dimension");
   refuses(HEAD "End", VG_ERR_FORMAT, "no SolAtVertices");

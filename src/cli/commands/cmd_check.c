@@ -16,8 +16,8 @@
 #include "run/settings/deck.h"
 
 struct arguments {
-  const char *file, *deck, *defects, *against, *vtu;
-  int json, quiet;
+  struct vg_cli_one one;
+  const char *deck, *defects, *against, *vtu;
 };
 
 static error_t option(int key, char *arg, struct argp_state *state)
@@ -29,16 +29,7 @@ static error_t option(int key, char *arg, struct argp_state *state)
   case 'f': a->defects = arg; return 0;
   case 'a': a->against = arg; return 0;
   case 'v': a->vtu = arg; return 0;
-  case 'j': a->json = 1; return 0;
-  case 'q': a->quiet = 1; return 0;
-  case ARGP_KEY_ARG:
-    if (a->file) argp_error(state, "one file at a time: %s", arg);
-    a->file = arg;
-    return 0;
-  case ARGP_KEY_END:
-    if (!a->file) argp_error(state, "which file?");
-    return 0;
-  default: return ARGP_ERR_UNKNOWN;
+  default: return vg_cli_one(&a->one, "file", key, arg, state);
   }
 }
 
@@ -69,15 +60,16 @@ static vg_status not_valid(const struct arguments *a,
   struct vg_ugrid_kind kind;
   char cells[80] = "";
 
-  if (!vg_ugrid_kind(a->file, &kind) || kind.real_size != 4)
-    return vg_fail(err, VG_ERR_GEOMETRY, "%s: the mesh is not valid", a->file);
+  if (!vg_ugrid_kind(a->one.file, &kind) || kind.real_size != 4)
+    return vg_fail(err, VG_ERR_GEOMETRY, "%s: the mesh is not valid",
+                   a->one.file);
   if (turned->cell)
     snprintf(cells, sizeof cells, " (inverted cells in it: %zu)",
              turned->cell);
   return vg_fail(err, VG_ERR_GEOMETRY, "%s: the mesh is not valid%s; its "
                  "coordinates are 4-byte reals: where it was valid before it "
                  "was written, rounding spoilt it; write 8-byte reals, as "
-                 ".lb8.ugrid has", a->file, cells);
+                 ".lb8.ugrid has", a->one.file, cells);
 }
 
 static vg_status check_mesh(const struct arguments *a,
@@ -92,15 +84,15 @@ static vg_status check_mesh(const struct arguments *a,
   memset(&r, 0, sizeof r);
   VG_TRY(field(a, s, m, &sizing, err));
   VG_TRY(vg_mesh_judge(m, sizing, &r, err));
-  if (a->json) {
+  if (a->one.json) {
     print_json(json_pack("{s:o s:b s:I s:o s:o s:o}", "file",
-                         vg_text_json(a->file), "ok", r.is_valid,
+                         vg_text_json(a->one.file), "ok", r.is_valid,
                          "cells_turned", (json_int_t)turned->cell, "size",
                          vg_report_size_json(m), "patches",
                          vg_report_patches_json(m), "mesh",
                          vg_report_mesh_json(&r)));
   } else {
-    printf("%s: volume mesh\n", a->file);
+    printf("%s: volume mesh\n", a->one.file);
     vg_report_size_text(stdout, m);
     VG_TRY(vg_report_patches_text(stdout, m, err));
     if (turned->cell)
@@ -122,17 +114,18 @@ static vg_status check(const struct arguments *a, struct vg_error *err)
   struct vg_mesh m = VG_MESH_INIT;
   struct vg_cad_options cad;
   struct vg_read_info info = { .cad = &cad };
-  const struct vg_check_surface surface = { a->file, a->defects, a->against,
-                                            a->vtu, a->json, a->deck != NULL };
+  const struct vg_check_surface surface = {
+    a->one.file, a->defects, a->against, a->vtu, a->one.json,
+    a->deck != NULL };
   vg_status st = VG_OK;
 
-  vg_display_init(&show, a->quiet);
+  vg_display_init(&show, a->one.quiet);
   vg_display_end_at_once(1);
   vg_display_update(&show, "read", 0, 0);
   vg_settings_default(&s);
   if (a->deck) VG_TRY(vg_deck_read(a->deck, &s, err));
   cad = vg_cad_options_of(&s, &notes);
-  VG_TRY(vg_mesh_read(a->file, &m, &info, err));
+  VG_TRY(vg_mesh_read(a->one.file, &m, &info, err));
   vg_display_update(&show, "check", 0, 0);
   vg_display_clear(&show);
   st = m.n_tet + m.n_pyr + m.n_pri + m.n_hex

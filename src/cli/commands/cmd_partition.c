@@ -24,11 +24,11 @@ enum { KEY_WEIGHTS = 500, KEY_WRITE };
 enum { FILES_MAX = 3 };
 
 struct arguments {
-  const char *file, *out;
+  struct vg_cli_one one;
+  const char *out;
   struct vg_solver_options options;
   struct vg_foam_options foam;
   int to_part, to_vtu, to_foam;
-  int json, quiet;
 };
 
 struct run {
@@ -106,27 +106,20 @@ static error_t option(int key, char *arg, struct argp_state *state)
   switch (key) {
   case 'n': read_count(a, arg, state); return 0;
   case 'o': a->out = arg; return 0;
-  case 'j': a->json = 1; return 0;
-  case 'q': a->quiet = 1; return 0;
   case KEY_WEIGHTS: read_weights(a, arg, state); return 0;
   case KEY_WRITE: read_forms(a, arg, state); return 0;
-  case ARGP_KEY_ARG:
-    if (a->file) argp_error(state, "one file at a time: %s", arg);
-    a->file = arg;
-    return 0;
-  case ARGP_KEY_END:
-    if (!a->file) argp_error(state, "which file?");
-    if (!a->options.n_part) argp_error(state, "how many parts? -n N");
-    return 0;
-  default: return ARGP_ERR_UNKNOWN;
+  default: break;
   }
+  if (key == ARGP_KEY_END && a->one.file && !a->options.n_part)
+    argp_error(state, "how many parts? -n N");
+  return vg_cli_one(&a->one, "file", key, arg, state);
 }
 
 /* --- steps --------------------------------------------------------------- */
 
 static vg_status read_mesh(struct run *r, struct vg_error *err)
 {
-  const char *path = r->a->file;
+  const char *path = r->a->one.file;
   struct vg_mesh *m = &r->mesh;
   double t = vg_display_now();
   vg_status st;
@@ -205,7 +198,7 @@ static vg_status write_files(struct run *r, struct vg_error *err)
 static vg_status run_all(struct run *r, struct vg_display *show,
                          struct vg_error *err)
 {
-  const char *path = r->a->file;
+  const char *path = r->a->one.file;
   size_t n = strlen(path) - vg_format_suffix_length(path);
   vg_status st;
 
@@ -230,7 +223,7 @@ static void print_json(const struct run *r)
 
   for (size_t i = 0; i < r->n_file; i++)
     json_array_append_new(files, vg_text_json(r->file[i]));
-  o = json_pack("{s:o s:o s:f s:f s:f s:o}", "file", vg_text_json(r->a->file),
+  o = json_pack("{s:o s:o s:f s:f s:f s:o}", "file", vg_text_json(r->a->one.file),
                 "solver_parts", vg_report_solver_json(&r->report),
                 "seconds_read", r->time_read, "seconds_write", r->time_write,
                 "peak_memory_bytes", vg_report_peak_memory(), "files", files);
@@ -241,7 +234,7 @@ static void print_json(const struct run *r)
 
 static void print_text(const struct run *r)
 {
-  printf("%s: parts for a solver\n", r->a->file);
+  printf("%s: parts for a solver\n", r->a->one.file);
   vg_report_size_text(stdout, &r->mesh);
   vg_report_solver_text(stdout, &r->report);
   printf("  read in %.2f s, written in %.2f s; peak memory %.0f MB\n",
@@ -291,12 +284,12 @@ int vg_cmd_partition(int argc, char **argv)
   vg_status st;
 
   vg_cli_parse(&argp, argc, argv, &a);
-  vg_display_init(&show, a.quiet);
+  vg_display_init(&show, a.one.quiet);
   vg_display_end_at_once(1);
   st = run_all(&r, &show, &err);
   vg_display_clear(&show);
   if (st >= 0) {
-    if (a.json) print_json(&r);
+    if (a.one.json) print_json(&r);
     else print_text(&r);
   }
   release(&r);

@@ -22,8 +22,8 @@
 #define FILES (VG_WRITE_ITEMS + 3)
 
 struct arguments {
-  const char *input, *deck, *dir;
-  int json, quiet;
+  struct vg_cli_one one;
+  const char *deck, *dir;
   struct vg_cli_overrides kept;
 };
 
@@ -41,18 +41,10 @@ static error_t option(int key, char *arg, struct argp_state *state)
   switch (key) {
   case 'd': a->deck = arg; return 0;
   case 'o': a->dir = arg; return 0;
-  case 'j': a->json = 1; return 0;
-  case 'q': a->quiet = 1; return 0;
   case 't': key = vg_cli_option_key("threads"); break;
-  case ARGP_KEY_ARG:
-    if (a->input) argp_error(state, "one surface at a time: %s", arg);
-    a->input = arg;
-    return 0;
-  case ARGP_KEY_END:
-    if (!a->input) argp_error(state, "which surface?");
-    return 0;
   default: break;
   }
+  if (!vg_cli_one(&a->one, "surface", key, arg, state)) return 0;
   return vg_cli_add_override(&a->kept, key, arg, state);
 }
 
@@ -223,7 +215,7 @@ static vg_status run(const struct arguments *a, struct vg_display *show,
   vg_status st;
 
   vg_display_update(show, "read", 0, 0);
-  VG_TRY(vg_input_find(a->input, a->deck, &p.files, err));
+  VG_TRY(vg_input_find(a->one.file, a->deck, &p.files, err));
   VG_TRY(vg_problem_deck(&p, err));
   VG_TRY(vg_cli_apply(&a->kept, &p.settings, err));
   if (!strcmp(p.settings.write, "auto"))
@@ -241,11 +233,11 @@ static vg_status run(const struct arguments *a, struct vg_display *show,
   vg_display_update(show, "write", p.surface.n_tri, 0);
   VG_TRY(write_all(&p, &f, o, show, err));
   vg_display_clear(show);
-  if (a->json) {
+  if (a->one.json) {
     json_dumpf(o, stdout, JSON_INDENT(2));
     printf("\n");
   } else {
-    printf("%s: a new surface\n", a->input);
+    printf("%s: a new surface\n", a->one.file);
     print(&p, &f);
   }
 done:
@@ -284,7 +276,7 @@ int vg_cmd_surface(int argc, char **argv)
   }
   argp.options = options.option;
   vg_cli_parse(&argp, argc, argv, &a);
-  vg_display_init(&show, a.quiet);
+  vg_display_init(&show, a.one.quiet);
   st = run(&a, &show, &err);
   vg_display_clear(&show);
   vg_cli_options_free(&options);

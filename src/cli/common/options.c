@@ -16,6 +16,23 @@ void vg_cli_parse(const struct argp *argp, int argc, char **argv, void *input)
     exit(VG_EXIT_USAGE);
 }
 
+error_t vg_cli_one(struct vg_cli_one *one, const char *what, int key,
+                   char *arg, const struct argp_state *state)
+{
+  switch (key) {
+  case 'j': one->json = 1; return 0;
+  case 'q': one->quiet = 1; return 0;
+  case ARGP_KEY_ARG:
+    if (one->file) argp_error(state, "one %s at a time: %s", what, arg);
+    one->file = arg;
+    return 0;
+  case ARGP_KEY_END:
+    if (!one->file) argp_error(state, "which %s?", what);
+    return 0;
+  default: return ARGP_ERR_UNKNOWN;
+  }
+}
+
 static char *keep(struct vg_cli_options *o, char *text)
 {
   if (text) o->text[o->n_text++] = text;

@@ -11,6 +11,16 @@
 /** argp_parse with exit status 2 for wrong usage and help on stdout. */
 void vg_cli_parse(const struct argp *argp, int argc, char **argv, void *input);
 
+/** For a parser whose command takes one argument, `what` ("file"): keys of
+ * arguments, of their end, and 'j' and 'q' for JSON and no progress.
+ * ARGP_ERR_UNKNOWN: another key. A second argument, or none, is wrong usage. */
+struct vg_cli_one {
+  const char *file;
+  int json, quiet;
+};
+error_t vg_cli_one(struct vg_cli_one *one, const char *what, int key,
+                   char *arg, const struct argp_state *state);
+
 /** Help line "[unit; default x]" parts for the settings and their options.
  *
  * Appends one option per plain setting, and the farfield's kind, lengths, size

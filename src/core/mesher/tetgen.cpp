@@ -6,9 +6,7 @@
 #include <vector>
 
 #include "core/mesher/mesher_parts.h"
-
-#define TETLIBRARY
-#include <tetgen.h>
+#include "core/recover/tetgen_input.h"
 
 namespace {
 
@@ -34,18 +32,6 @@ bool is_too_large(REAL *a, REAL *b, REAL *c, REAL *d, REAL *, REAL)
                      u[1] * (v[2] * w[0] - v[0] * w[2]) +
                      u[2] * (v[0] * w[1] - v[1] * w[0])) / 6;
   return volume > largest * h * h * h / (6 * std::sqrt(2.0));
-}
-
-void put_facet(tetgenio::facet *f, const uint32_t tri[3])
-{
-  tetgenio::init(f);
-  f->numberofpolygons = 1;
-  f->polygonlist = new tetgenio::polygon[1];
-  tetgenio::init(f->polygonlist);
-  f->polygonlist->numberofvertices = 3;
-  f->polygonlist->vertexlist = new int[3];
-  for (int k = 0; k < 3; k++)
-    f->polygonlist->vertexlist[k] = static_cast<int>(tri[k]);
 }
 
 /* A point within each hollow, closely behind the largest triangle. Where it
@@ -75,14 +61,10 @@ void put_holes(tetgenio &in, const vg_mesher_front &f,
 
 void put_front(tetgenio &in, const vg_mesher_front &f)
 {
-  in.firstnumber = 0;
-  in.numberofpoints = static_cast<int>(f.n_point);
-  in.pointlist = new REAL[3 * f.n_point];
+  vg_tetgen_points(in, f.n_point);
   for (size_t i = 0; i < f.n_point; i++)
     for (int k = 0; k < 3; k++) in.pointlist[3 * i + k] = f.x[i][k];
-  in.numberoffacets = static_cast<int>(f.n_face);
-  in.facetlist = new tetgenio::facet[f.n_face];
-  for (size_t i = 0; i < f.n_face; i++) put_facet(&in.facetlist[i], f.face[i]);
+  vg_tetgen_triangles(in, f.n_face, f.face);
   in.tetunsuitable = is_too_large;
 }
 

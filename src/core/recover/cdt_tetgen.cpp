@@ -10,9 +10,7 @@
 #include <unistd.h>
 
 #include "base/child.h"
-
-#define TETLIBRARY
-#include <tetgen.h>
+#include "core/recover/tetgen_input.h"
 
 namespace {
 
@@ -65,31 +63,15 @@ const uint64_t ways = 2;     /* for TetGen to do a job */
 
 /* --- in the child -------------------------------------------------------- */
 
-void take_facet(tetgenio::facet *f, const uint32_t tri[3])
-{
-  tetgenio::init(f);
-  f->numberofpolygons = 1;
-  f->polygonlist = new tetgenio::polygon[1];
-  tetgenio::init(f->polygonlist);
-  f->polygonlist->numberofvertices = 3;
-  f->polygonlist->vertexlist = new int[3];
-  for (int k = 0; k < 3; k++)
-    f->polygonlist->vertexlist[k] = static_cast<int>(tri[k]);
-}
-
 bool take_input(tetgenio &in, const question &q, int from)
 {
   std::vector<uint32_t> tri(3 * q.n_tri);
 
-  in.firstnumber = 0;
-  in.numberofpoints = static_cast<int>(q.n);
-  in.pointlist = new REAL[3 * q.n];
-  in.facetlist = new tetgenio::facet[q.n_tri];
+  vg_tetgen_points(in, q.n);
   if (!vg_child_get(from, in.pointlist, 3 * q.n * sizeof(REAL)) ||
       !vg_child_get(from, tri.data(), tri.size() * sizeof tri[0])) return false;
-  in.numberoffacets = static_cast<int>(q.n_tri);
-  for (size_t i = 0; i < q.n_tri; i++)
-    take_facet(&in.facetlist[i], &tri[3 * i]);
+  vg_tetgen_triangles(in, q.n_tri,
+                      reinterpret_cast<const uint32_t (*)[3]>(tri.data()));
   return true;
 }
 

@@ -4,11 +4,8 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "io/mesh/gmf.h"
 #include "io/stream/convention.h"
-
-/* GMF codes outside the table of sections. */
-#define CODE_DIMENSION 3
-#define CODE_END 54
 
 /* The sections that are read and written; all others are skipped. */
 enum { VERTICES, TRIANGLES, QUADS, TETS, PYRAMIDS, PRISMS, HEXES, N_SECTION };
@@ -27,9 +24,7 @@ static const struct section {
 static const int pyramid_slot[5] = { 0, 3, 4, 1, 2 };
 
 struct reader {
-  struct vg_input *in;
-  int binary, version;
-  int dimension;            /* 0: not seen yet */
+  struct vg_gmf g;
   int seen[N_SECTION];
   struct vg_mesh m;
   int32_t *tri_tag, *quad_tag;
@@ -76,53 +71,6 @@ static int section_allocate(struct reader *r, int section, size_t n)
 
 /* --- reading, text and binary alike --- */
 
-static vg_status fail_at(const struct reader *r, struct vg_error *err,
-                         const char *text)
-{
-  if (!r->binary) return vg_input_fail(r->in, err, "%s", text);
-  return vg_fail(err, VG_ERR_FORMAT, "%s: %s (near byte %zu)", r->in->path,
-                 text, r->in->at);
-}
-
-static vg_status set_dimension(struct reader *r, int64_t v,
-                               struct vg_error *err)
-{
-  if (v == 2)
-    return vg_fail(err, VG_ERR_UNSUPPORTED,
-                   "%s: a plane mesh (dimension 2); only three dimensions are "
-                   "meshed", r->in->path);
-  if (v != 3) return fail_at(r, err, "the dimension is neither 2 nor 3");
-  r->dimension = 3;
-  return VG_OK;
-}
-
-static vg_status set_version(struct reader *r, int64_t v, struct vg_error *err)
-{
-  if (v < 1 || v > 4)
-    return fail_at(r, err, "unknown version: MeshVersionFormatted must be 1 "
-                   "to 4");
-  r->version = (int)v;
-  return VG_OK;
-}
-
-/* n integers of the file's width. */
-static vg_status read_ints(struct reader *r, int n, int64_t *v,
-                           const char *what, struct vg_error *err)
-{
-  int32_t narrow[9];
-  vg_status st = VG_OK;
-
-  if (!r->binary) {
-    for (int k = 0; k < n && st == VG_OK; k++)
-      st = vg_input_int(r->in, &v[k], what, err);
-    return st;
-  }
-  if (r->version == 4) return vg_input_i64(r->in, (size_t)n, v, what, err);
-  st = vg_input_i32(r->in, (size_t)n, narrow, what, err);
-  for (int k = 0; k < n && st == VG_OK; k++) v[k] = narrow[k];
-  return st;
-}
-
 static vg_status read_vertices(struct reader *r, struct vg_error *err)
 {
   for (size_t i = 0; i < r->m.n_point; i++) {
@@ -130,12 +78,15 @@ static vg_status read_vertices(struct reader *r, struct vg_error *err)
     int64_t ref;
     vg_status st = VG_OK;
 
-    if (!r->binary)
+    if (!r->g.binary)
       for (int k = 0; k < 3 && st == VG_OK; k++)
-        st = vg_input_real(r->in, &x[k], "a coordinate", err);
-    else if (r->version == 1) st = vg_input_f32(r->in, 3, x, "Vertices", err);
-    else st = vg_input_f64(r->in, 3, x, "Vertices", err);
-    if (st == VG_OK) st = read_ints(r, 1, &ref, "a vertex reference", err);
+        st = vg_input_real(r->g.in, &x[k], "a coordinate", err);
+    else if (r->g.version == 1)
+      st = vg_input_f32(r->g.in, 3, x, "Vertices", err);
+    else
+      st = vg_input_f64(r->g.in, 3, x, "Vertices", err);
+    if (st == VG_OK)
+      st = vg_gmf_ints(&r->g, 1, &ref, "a vertex reference", err);
     if (st < 0) return st;
   }
   return VG_OK;
@@ -155,21 +106,21 @@ static vg_status read_entities(struct reader *r, int section,
 
   for (size_t i = 0; i < n; i++, node += n_node) {
     int64_t v[9];
-    vg_status st = read_ints(r, n_node + 1, v, s->name, err);
+    vg_status st = vg_gmf_ints(&r->g, (size_t)n_node + 1, v, s->name, err);
 
     if (st < 0) return st;
     for (int k = 0; k < n_node; k++) {
       if (v[k] < 1 || v[k] >= UINT32_MAX)
         return vg_fail(err, VG_ERR_INPUT,
                        "%s: %s, number %zu: vertex %lld is out of range",
-                       r->in->path, s->name, i + 1, (long long)v[k]);
+                       r->g.in->path, s->name, i + 1, (long long)v[k]);
       node[section == PYRAMIDS ? pyramid_slot[k] : k] = (uint32_t)(v[k] - 1);
     }
     if (!tag) continue;
     if (v[n_node] < -INT32_MAX || v[n_node] > INT32_MAX)
       return vg_fail(err, VG_ERR_UNSUPPORTED,
                      "%s: %s, number %zu: reference %lld does not fit a patch "
-                     "number of 32 bits", r->in->path, s->name, i + 1,
+                     "number of 32 bits", r->g.in->path, s->name, i + 1,
                      (long long)v[n_node]);
     tag[i] = (int32_t)v[n_node];
   }
@@ -179,11 +130,11 @@ static vg_status read_entities(struct reader *r, int section,
 /* Least bytes of an entity: in text, a digit and a blank for each number. */
 static size_t entity_size(const struct reader *r, int n_node)
 {
-  size_t size_int = r->version == 4 ? 8 : 4;
+  size_t size_int = r->g.version == 4 ? 8 : 4;
 
-  if (!r->binary) return 2 * (size_t)(n_node ? n_node + 1 : 4);
+  if (!r->g.binary) return 2 * (size_t)(n_node ? n_node + 1 : 4);
   if (n_node) return (size_t)(n_node + 1) * size_int;
-  return (r->version == 1 ? 12 : 24) + size_int;
+  return (r->g.version == 1 ? 12 : 24) + size_int;
 }
 
 static vg_status read_section(struct reader *r, int section,
@@ -193,20 +144,20 @@ static vg_status read_section(struct reader *r, int section,
   int64_t n;
   vg_status st;
 
-  if (!r->dimension)
-    return fail_at(r, err, "a section stands before the dimension");
+  if (!r->g.dimension)
+    return vg_gmf_fail(&r->g, err, "a section stands before the dimension");
   if (r->seen[section]++)
-    return vg_fail(err, VG_ERR_FORMAT, "%s: %s appear twice", r->in->path,
+    return vg_fail(err, VG_ERR_FORMAT, "%s: %s appear twice", r->g.in->path,
                    s->name);
-  VG_TRY(read_ints(r, 1, &n, "a count", err));
+  VG_TRY(vg_gmf_ints(&r->g, 1, &n, "a count", err));
   if (n < 0 || n >= UINT32_MAX)
     return vg_fail(err, VG_ERR_FORMAT,
                    "%s: %lld %s: the count is negative or beyond 32 bits",
-                   r->in->path, (long long)n, s->name);
+                   r->g.in->path, (long long)n, s->name);
   if (!n) return VG_OK;
   /* The last number of a text needs no blank behind it. */
-  VG_TRY(vg_input_need(r->in, (uint64_t)n * entity_size(r, s->n_node) -
-                       !r->binary, 1, s->name, err));
+  VG_TRY(vg_input_need(r->g.in, (uint64_t)n * entity_size(r, s->n_node) -
+                       !r->g.binary, 1, s->name, err));
   if (section_allocate(r, section, (size_t)n))
     return vg_fail_memory(err, s->name);
   st = section == VERTICES ? read_vertices(r, err)
@@ -238,28 +189,19 @@ static vg_status read_text(struct reader *r, struct vg_error *err)
 {
   const char *text;
   size_t len;
-  int64_t v;
   vg_status st = VG_OK;
 
-  r->in->comment = '#';
-  if (!vg_input_token(r->in, &text, &len) ||
-      !vg_token_is(text, len, "MeshVersionFormatted"))
-    return fail_at(r, err, "not a Medit file: it does not begin with "
-                   "'MeshVersionFormatted'");
-  VG_TRY(vg_input_int(r->in, &v, "the version", err));
-  VG_TRY(set_version(r, v, err));
-  while (next_word(r->in, &text, &len)) {
+  while (next_word(r->g.in, &text, &len)) {
     int section = find_word(text, len);
 
     if (vg_token_is(text, len, "End")) return VG_OK;
     if (section < N_SECTION) {
       VG_TRY(read_section(r, section, err));
     } else if (vg_token_is(text, len, "Dimension")) {
-      VG_TRY(vg_input_int(r->in, &v, "the dimension", err));
-      VG_TRY(set_dimension(r, v, err));
+      VG_TRY(vg_gmf_read_dimension(&r->g, err));
     }
   }
-  st = fail_at(r, err, "truncated: there is no 'End'");
+  st = vg_gmf_fail(&r->g, err, "truncated: there is no 'End'");
 done:
   return st;
 }
@@ -273,77 +215,31 @@ static int find_code(int code)
   return N_SECTION;
 }
 
-/* Code of the next keyword and where the one behind it starts. */
-static vg_status read_keyword(struct reader *r, int32_t *code, size_t *next,
-                              struct vg_error *err)
-{
-  size_t start = r->in->at;
-  int64_t position;
-  int32_t narrow = 0;
-  vg_status st;
-
-  VG_TRY(vg_input_i32(r->in, 1, code, "a keyword", err));
-  if (r->version >= 3) {
-    VG_TRY(vg_input_i64(r->in, 1, &position, "a position", err));
-  } else {
-    VG_TRY(vg_input_i32(r->in, 1, &narrow, "a position", err));
-    position = narrow;
-  }
-  /* Zero stands behind the last keyword. Positions must advance, or a
-   * damaged file could be read for ever. */
-  if (position && (position < 0 || (uint64_t)position > r->in->size))
-    st = fail_at(r, err, "truncated: a section is said to end beyond the end "
-                 "of the file");
-  else if (position && (uint64_t)position <= start)
-    st = fail_at(r, err, "a section is said to end before it begins");
-  *next = position > 0 ? (size_t)position : 0;
-done:
-  return st;
-}
-
 static vg_status read_binary(struct reader *r, struct vg_error *err)
 {
-  int32_t code, version, value;
+  int32_t code;
   size_t next = 0;
   vg_status st;
 
-  r->binary = 1;
-  r->in->at = 4;
-  VG_TRY(vg_input_i32(r->in, 1, &version, "the version", err));
-  VG_TRY(set_version(r, version, err));
   for (;;) {
     int section;
 
-    VG_TRY(read_keyword(r, &code, &next, err));
-    if (code == CODE_END) return VG_OK;
+    VG_TRY(vg_gmf_keyword(&r->g, &code, &next, err));
+    if (code == VG_GMF_END) return VG_OK;
     section = find_code(code);
     if (section < N_SECTION) {
       VG_TRY(read_section(r, section, err));
-    } else if (code == CODE_DIMENSION) {
-      VG_TRY(vg_input_i32(r->in, 1, &value, "the dimension", err));
-      VG_TRY(set_dimension(r, value, err));
+    } else if (code == VG_GMF_DIMENSION) {
+      VG_TRY(vg_gmf_read_dimension(&r->g, err));
     }
-    if (!next || next == r->in->size) return VG_OK;
-    if (section < N_SECTION && r->in->at > next)
-      return fail_at(r, err, "a section is longer than its keyword says");
-    r->in->at = next;
+    if (!next || next == r->g.in->size) return VG_OK;
+    if (section < N_SECTION && r->g.in->at > next)
+      return vg_gmf_fail(&r->g, err, "a section is longer than its keyword "
+                         "says");
+    r->g.in->at = next;
   }
 done:
   return st;
-}
-
-/* A binary file begins with an int32 one, in its own byte order. */
-static int is_binary(struct vg_input *in)
-{
-  for (int big = 0; big < 2; big++) {
-    int32_t one = 0;
-
-    vg_input_order(in, big);
-    in->at = 0;
-    if (vg_input_i32(in, 1, &one, "", NULL) == VG_OK && one == 1) return 1;
-  }
-  in->at = 0;
-  return 0;
 }
 
 /* --- finishing --- */
@@ -361,14 +257,14 @@ static vg_status check_nodes(const struct reader *r, struct vg_error *err)
       if (node[i] >= r->m.n_point)
         return vg_fail(err, VG_ERR_INPUT,
                        "%s: %s, number %zu: vertex %lu is out of range: there "
-                       "are %zu", r->in->path, sections[s].name,
+                       "are %zu", r->g.in->path, sections[s].name,
                        i / width + 1, (unsigned long)node[i] + 1,
                        r->m.n_point);
   }
   if (total) return VG_OK;
   return vg_fail(err, VG_ERR_INPUT,
                  "%s: no triangles, quadrilaterals or cells: there is nothing "
-                 "to mesh", r->in->path);
+                 "to mesh", r->g.in->path);
 }
 
 static vg_status join_tags(struct reader *r, struct vg_error *err)
@@ -385,18 +281,11 @@ static vg_status join_tags(struct reader *r, struct vg_error *err)
 vg_status vg_medit_parse(struct vg_input *in, struct vg_mesh *out,
                          struct vg_error *err)
 {
-  struct reader r = { .in = in };
+  struct reader r = { .g = { .in = in } };
   vg_status st;
 
-  if (is_binary(in)) {
-    VG_TRY(read_binary(&r, err));
-  } else if (vg_input_is_text(in)) {
-    VG_TRY(read_text(&r, err));
-  } else {
-    return vg_fail(err, VG_ERR_FORMAT,
-                   "%s: neither text nor binary Medit: a binary file begins "
-                   "with the number 1", in->path);
-  }
+  VG_TRY(vg_gmf_open(&r.g, err));
+  VG_TRY(r.g.binary ? read_binary(&r, err) : read_text(&r, err));
   VG_TRY(vg_check_points(in->path, r.m.n_point, r.m.point, err));
   VG_TRY(check_nodes(&r, err));
   VG_TRY(join_tags(&r, err));
@@ -531,7 +420,7 @@ static void put_all(struct writer *w)
   if (w->binary) {
     vg_output_i32(&w->out, 1, &one);
     vg_output_i32(&w->out, 1, &version);
-    put_keyword(w, CODE_DIMENSION,
+    put_keyword(w, VG_GMF_DIMENSION,
                 (int64_t)(8 + keyword_size(version) + 4));
     vg_output_i32(&w->out, 1, &three);
   } else {
@@ -551,7 +440,7 @@ static void put_all(struct writer *w)
     if (s == VERTICES) put_vertices(w);
     else put_entities(w, s);
   }
-  if (w->binary) put_keyword(w, CODE_END, 0);
+  if (w->binary) put_keyword(w, VG_GMF_END, 0);
   else vg_output_text(&w->out, "End\n");
 }
 

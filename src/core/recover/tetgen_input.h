@@ -1,0 +1,41 @@
+/* core/recover/tetgen_input.h: a triangulation as TetGen takes it. In C++, for
+ * the adapters of tetgen.h, in whose children it is used. */
+#ifndef VG_CORE_RECOVER_TETGEN_INPUT_H
+#define VG_CORE_RECOVER_TETGEN_INPUT_H
+
+#include <cstddef>
+#include <cstdint>
+
+#define TETLIBRARY
+#include <tetgen.h>
+
+/** Room for n points, which the caller fills in, numbered from 0. TetGen's
+ * destructor frees it. */
+inline void vg_tetgen_points(tetgenio &in, std::size_t n)
+{
+  in.firstnumber = 0;
+  in.numberofpoints = static_cast<int>(n);
+  in.pointlist = new REAL[3 * n];
+}
+
+/** n triangles as facets of a polygon each. */
+inline void vg_tetgen_triangles(tetgenio &in, std::size_t n,
+                                const std::uint32_t (*tri)[3])
+{
+  in.numberoffacets = static_cast<int>(n);
+  in.facetlist = new tetgenio::facet[n];
+  for (std::size_t i = 0; i < n; i++) {
+    tetgenio::facet *f = &in.facetlist[i];
+
+    tetgenio::init(f);
+    f->numberofpolygons = 1;
+    f->polygonlist = new tetgenio::polygon[1];
+    tetgenio::init(f->polygonlist);
+    f->polygonlist->numberofvertices = 3;
+    f->polygonlist->vertexlist = new int[3];
+    for (int k = 0; k < 3; k++)
+      f->polygonlist->vertexlist[k] = static_cast<int>(tri[i][k]);
+  }
+}
+
+#endif
