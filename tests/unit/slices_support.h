@@ -198,4 +198,14 @@ static inline void cut_mesh(struct vg_mesh *out, struct vg_join_info *info,
   for (uint32_t k = 0; k < 8; k++) out->quad[k / 4][k % 4] = 3 * k;
 }
 
+/* Formats of faces take only what closes: without these quadrilaterals.
+ * Returns how many there were, to be put back. */
+static inline size_t cut_close(struct vg_mesh *m, const char *form)
+{
+  size_t n = m->n_quad;
+
+  if (!strcmp(form, "fluent.msh")) m->n_quad = 0;
+  return n;
+}
+
 #endif

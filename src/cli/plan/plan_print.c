@@ -37,6 +37,19 @@ static const struct form {
   { "cgns", 24, 16, 24, 12 },
 };
 
+/* Lines of one length: hexadecimal numbers of corners and two cells. */
+static double fluent_bytes(const struct vg_plan *p)
+{
+  int is_mixed = p->prism > 0, width = 1;
+  double faces = 2 * p->tet + 2.5 * p->prism +
+                 0.5 * (double)p->problem.surface.n_tri;
+
+  for (double n = p->tet + p->prism; n >= 16; n /= 16) width++;
+  return 76 * p->point + faces * ((is_mixed ? 6 : 5) * (width + 1) + 1 +
+                                  is_mixed) +
+         (is_mixed ? 2 * (p->tet + p->prism) : 0);
+}
+
 double vg_plan_bytes(const struct vg_plan *p, const char *item)
 {
   struct vg_foam_options foam;
@@ -50,8 +63,7 @@ double vg_plan_bytes(const struct vg_plan *p, const char *item)
       return f->point * p->point + f->tet * p->tet + f->prism * p->prism +
              f->face * boundary;
   }
-  if (!strcasecmp(item, VG_FLUENT_SUFFIX))
-    return 58 * p->point + 74 * p->tet + 100 * p->prism + 20 * boundary;
+  if (!strcasecmp(item, VG_FLUENT_SUFFIX)) return fluent_bytes(p);
   if (vg_foam_word(item, &foam)) {
     double faces = 2 * p->tet + 2.5 * p->prism + 0.5 * boundary;
 

@@ -6,20 +6,18 @@
 #include "base/memory.h"
 #include "io/mesh/foam_parts.h"
 #include "io/stream/boundary.h"
-#include "io/stream/patch_words.h"
-#include "io/stream/stream.h"
 #include "io/vgrid/mapbc.h"
 
 /* Numbers of zones; patches follow. */
 enum { POINTS = 1, FLUID, INTERIOR, PATCHES };
 enum { TYPE_INTERIOR = 2, MIXED = 0 };
 
-struct writing {
-  const struct vg_mesh *m;
-  struct vg_cell_links faces;
-  size_t *start, *order;     /* boundary faces by patch */
-  struct vg_output out;
-};
+/* A real and the blank before it: vg_format_real needs 24 at most. */
+#define REAL_WIDTH 25
+#define LINE 128
+
+/* Of the four kinds of cells. */
+static const char digit[VG_FLUENT_KINDS] = { '2', '5', '6', '4' };
 
 /* --- types of zones --- */
 
@@ -42,171 +40,363 @@ static const struct zone_type *zone_type(const struct vg_patch *p)
   }
 }
 
-/* --- points, cells --- */
+/* --- lines --- */
 
-static void put_points(struct writing *w)
+/* A blank and v, right in `width` columns, from *to on. */
+static void column(char **to, int width, uint64_t v)
 {
-  vg_output_format(&w->out, "(10 (0 1 %zx 0 3))\n(10 (%x 1 %zx 1 3)(\n",
-                   w->m->n_point, POINTS, w->m->n_point);
-  for (size_t i = 0; i < w->m->n_point; i++)
-    for (int k = 0; k < 3; k++) {
-      vg_output_real(&w->out, w->m->point[i][k]);
-      vg_output_bytes(&w->out, k < 2 ? " " : "\n", 1);
-    }
-  vg_output_text(&w->out, "))\n");
+  char *at = *to + width;
+
+  *to = at + 1;
+  do *at-- = "0123456789abcdef"[v & 15];
+  while (v >>= 4);
+  while (at >= *to - width - 1) *at-- = ' ';
+}
+
+/* Blanks for corners that a face has not, so that lines are of one length. */
+static uint64_t face_line(const struct vg_fluent *f, int kind)
+{
+  int n_column = (kind == MIXED ? 4 : kind) + 2;
+
+  return (kind == MIXED) + (uint64_t)(n_column * (f->width + 1)) + 1;
+}
+
+/* mate: the cell that the normal points out of, from 1; 0: none. */
+static void put_face(struct vg_output *out, const struct vg_fluent *f,
+                     int kind, int n, const uint32_t *node, uint32_t cell,
+                     uint32_t mate)
+{
+  char line[LINE], *to = line;
+  size_t length = (size_t)face_line(f, kind);
+
+  if (kind == MIXED) *to++ = (char)('0' + n);
+  for (int k = 0; k < n; k++) column(&to, f->width, (uint64_t)node[k] + 1);
+  column(&to, f->width, cell);
+  column(&to, f->width, mate);
+  memset(to, ' ', length - (size_t)(to - line));
+  line[length - 1] = '\n';
+  vg_output_bytes(out, line, length);
+}
+
+void vg_fluent_put_point(struct vg_output *out, const double x[3])
+{
+  char line[3 * REAL_WIDTH + 1], text[32], *to = line;
+
+  memset(line, ' ', sizeof line);
+  for (int k = 0; k < 3; k++) {
+    size_t n = vg_format_real(x[k], text);
+
+    to += REAL_WIDTH;
+    memcpy(to - n, text, n);
+  }
+  *to = '\n';
+  vg_output_bytes(out, line, sizeof line);
+}
+
+/* --- kinds --- */
+
+/* Of faces, n_quad of n with four corners. */
+static int face_kind(uint64_t n, uint64_t n_quad)
+{
+  return n_quad == 0 ? 3 : n_quad == n ? 4 : MIXED;
+}
+
+static int patch_kind(const struct vg_fluent *f, size_t patch)
+{
+  size_t first = f->start[patch], end = f->start[patch + 1], n_quad = 0;
+
+  for (size_t i = first; i < end; i++)
+    n_quad += f->order[i] >= f->frame->n_tri;
+  return face_kind(end - first, n_quad);
+}
+
+/* Of all cells, or MIXED. */
+static int cell_kind(const struct vg_fluent *f)
+{
+  const struct vg_mesh *m = f->frame;
+  const size_t n[VG_FLUENT_KINDS] = { m->n_tet, m->n_pyr, m->n_pri, m->n_hex };
+
+  for (int k = 0; k < VG_FLUENT_KINDS; k++)
+    if (n[k] == f->n_cell) return digit[k] - '0';
+  return MIXED;
+}
+
+/* --- the frame --- */
+
+static void put_head(struct vg_output *out, size_t zone, uint64_t before,
+                     uint64_t n, int type, int kind)
+{
+  vg_output_format(out, "(13 (%zx %llx %llx %x %x)(\n", zone,
+                   (unsigned long long)before + 1,
+                   (unsigned long long)(before + n), type, kind);
+}
+
+/* Numbers of zones are decimal here. */
+static void put_names(struct vg_output *out, const struct vg_fluent *f)
+{
+  vg_output_format(out, "(45 (%d fluid fluid)())\n", FLUID);
+  if (f->n_internal)
+    vg_output_format(out, "(45 (%d interior interior)())\n", INTERIOR);
+  for (size_t p = 0; p < f->frame->n_patch; p++)
+    if (f->start[p] < f->start[p + 1])
+      vg_output_format(out, "(45 (%zu %s %s)())\n", PATCHES + p,
+                       zone_type(f->frame->patch + p)->name, f->word[p]);
+}
+
+/* --- points, cells, faces ------------------------------------------------ */
+
+static void put_points(struct vg_output *out, const struct vg_fluent *f,
+                       int is_whole)
+{
+  const struct vg_mesh *m = f->frame;
+
+  if (!is_whole) vg_output_skip(out, m->n_point * (3 * REAL_WIDTH + 1));
+  for (size_t i = 0; is_whole && i < m->n_point; i++)
+    vg_fluent_put_point(out, m->point[i]);
+}
+
+static void put_kinds(struct vg_output *out, const struct vg_fluent *f,
+                      int kind, uint64_t cell, uint64_t n)
+{
+  for (uint64_t at = f->first[kind] + cell, end = at + n; at < end;) {
+    const char text[2] = { digit[kind], ++at % 32 ? ' ' : '\n' };
+
+    vg_output_bytes(out, text, 2);
+  }
 }
 
 /* Mixed cells are told kind by kind, a digit each. */
-static void put_cells(struct writing *w)
+static void put_cells(struct vg_output *out, struct vg_fluent *f, int is_whole)
 {
-  static const char digit[4] = { '2', '5', '6', '4' };
-  const size_t n[4] = { w->m->n_tet, w->m->n_pyr, w->m->n_pri, w->m->n_hex };
-  int n_kind = 0, only = 0;
-  size_t column = 0;
+  int kind = cell_kind(f);
 
-  for (int k = 0; k < 4; k++) {
-    n_kind += n[k] > 0;
-    if (n[k]) only = digit[k] - '0';
-  }
-  vg_output_format(&w->out, "(12 (0 1 %x 0 0))\n(12 (%x 1 %x 1 %x)",
-                   w->faces.n_cell, FLUID, w->faces.n_cell,
-                   n_kind == 1 ? only : MIXED);
-  if (n_kind > 1) vg_output_text(&w->out, "(\n");
-  for (int k = 0; k < 4 && n_kind > 1; k++)
-    for (size_t i = 0; i < n[k]; i++) {
-      const char text[2] = { digit[k], ++column % 32 ? ' ' : '\n' };
-
-      vg_output_bytes(&w->out, text, 2);
-    }
-  vg_output_text(&w->out, n_kind > 1 ? "))\n" : ")\n");
+  vg_output_format(out, "(12 (0 1 %llx 0 0))\n(12 (%x 1 %llx 1 %x)",
+                   (unsigned long long)f->n_cell, FLUID,
+                   (unsigned long long)f->n_cell, kind);
+  if (kind == MIXED) vg_output_text(out, "(\n");
+  f->at_cell = out->written;
+  if (kind == MIXED && !is_whole) vg_output_skip(out, 2 * f->n_cell);
+  for (int k = 0; kind == MIXED && is_whole && k < VG_FLUENT_KINDS; k++)
+    put_kinds(out, f, k, 0, (k + 1 < VG_FLUENT_KINDS ? f->first[k + 1]
+                             : f->n_cell) - f->first[k]);
+  vg_output_text(out, kind == MIXED ? "))\n" : ")\n");
 }
 
-/* --- faces --- */
-
-static char *put_hex(char *to, uint32_t v)
+static void put_interior(struct vg_output *out, struct vg_fluent *f,
+                         const struct vg_cell_links *links)
 {
-  int digits = 1;
-
-  while (digits < 8 && v >> 4 * digits) digits++;
-  for (int k = digits; k-- > 0;) *to++ = "0123456789abcdef"[v >> 4 * k & 15];
-  *to++ = ' ';
-  return to;
-}
-
-/* A half-face from its cell; mate: the other cell counted from 1, 0 for none.
- * Its own normal points out of the cell. */
-static void put_face(struct writing *w, uint32_t code, uint32_t mate,
-                     int is_mixed)
-{
-  char line[80], *to = line;
-  uint32_t node[4], cell = (code >> 3) + 1;
-  int n = vg_half_face_nodes(&w->faces, code, node);
-
-  if (is_mixed) to = put_hex(to, (uint32_t)n);
-  for (int k = 0; k < n; k++) to = put_hex(to, node[mate ? k : n - 1 - k] + 1);
-  to = put_hex(to, mate ? mate : cell);
-  to = put_hex(to, mate ? cell : 0);
-  to[-1] = '\n';
-  vg_output_bytes(&w->out, line, (size_t)(to - line));
-}
-
-/* The head of a zone of n faces, n_quad of them with four corners; whether the
- * faces must say how many they have. */
-static int put_head(struct writing *w, size_t zone, uint64_t first, uint64_t n,
-                    uint64_t n_quad, int type)
-{
-  int kind = n_quad == 0 ? 3 : n_quad == n ? 4 : MIXED;
-
-  vg_output_format(&w->out, "(13 (%zx %llx %llx %x %x)(\n", zone,
-                   (unsigned long long)first,
-                   (unsigned long long)(first + n - 1), type, kind);
-  return kind == MIXED;
-}
-
-static void put_interior(struct writing *w)
-{
-  const struct vg_cell_links *f = &w->faces;
-  uint64_t n_quad = f->n_corner - 3 * (uint64_t)w->m->n_tri -
-                    4 * (uint64_t)w->m->n_quad - 3 * f->n_internal;
-  uint32_t code[6], neighbour[6];
-  int is_mixed;
+  int kind = face_kind(f->n_internal, f->n_quad);
+  uint32_t code[6], neighbour[6], node[4];
 
   if (!f->n_internal) return;
-  is_mixed = put_head(w, INTERIOR, 1, f->n_internal, n_quad, TYPE_INTERIOR);
-  for (uint32_t cell = 0; cell < f->n_cell; cell++) {
-    int n = vg_foam_upper(f, cell, code, neighbour);
+  put_head(out, INTERIOR, 0, f->n_internal, TYPE_INTERIOR, kind);
+  f->at_internal = out->written;
+  if (!links) vg_output_skip(out, f->n_internal * face_line(f, kind));
+  for (uint32_t cell = 0; links && cell < links->n_cell; cell++) {
+    int n = vg_foam_upper(links, cell, code, neighbour);
 
-    for (int i = 0; i < n; i++)
-      put_face(w, code[i], neighbour[i] + 1, is_mixed);
+    for (int i = 0; i < n; i++) {
+      int n_node = vg_half_face_nodes(links, code[i], node);
+
+      vg_fluent_put_internal(out, f, n_node, node, cell, neighbour[i]);
+    }
   }
-  vg_output_text(&w->out, "))\n");
+  vg_output_text(out, "))\n");
 }
 
-static void put_patch(struct writing *w, size_t patch)
+static void put_patch(struct vg_output *out, struct vg_fluent *f, size_t patch,
+                      const struct vg_cell_links *links)
 {
-  size_t first = w->start[patch], end = w->start[patch + 1], n_quad = 0;
-  int is_mixed;
+  size_t first = f->start[patch], end = f->start[patch + 1];
+  int kind = f->kind[patch];
 
   if (first == end) return;
-  for (size_t i = first; i < end; i++) n_quad += w->order[i] >= w->m->n_tri;
-  is_mixed = put_head(w, PATCHES + patch, w->faces.n_internal + first + 1,
-                      end - first, n_quad, zone_type(w->m->patch + patch)->code);
-  for (size_t i = first; i < end; i++)
-    put_face(w, w->faces.boundary[w->order[i]], 0, is_mixed);
-  vg_output_text(&w->out, "))\n");
+  put_head(out, PATCHES + patch, f->n_internal + first, end - first,
+           zone_type(f->frame->patch + patch)->code, kind);
+  f->at_patch[patch] = out->written;
+  if (!links) vg_output_skip(out, (end - first) * face_line(f, kind));
+  for (size_t i = first; links && i < end; i++)
+    vg_fluent_put_boundary(out, f, i, links->boundary[f->order[i]] >> 3);
+  vg_output_text(out, "))\n");
 }
 
-/* --- the file --- */
-
-/* Numbers of zones are decimal here. */
-static vg_status put_names(struct writing *w, struct vg_error *err)
+/* links: of the whole mesh; NULL: points, cells and faces are skipped. */
+static void put_all(struct vg_output *out, struct vg_fluent *f,
+                    const struct vg_cell_links *links)
 {
-  char (*word)[VG_PATCH_WORD] = vg_patch_words(w->m, VG_PATCH_WORD_MOST);
+  const struct vg_mesh *m = f->frame;
 
-  if (!word) return vg_fail_memory(err, "the names of the patches");
-  vg_output_format(&w->out, "(45 (%d fluid fluid)())\n", FLUID);
-  if (w->faces.n_internal)
-    vg_output_format(&w->out, "(45 (%d interior interior)())\n", INTERIOR);
-  for (size_t p = 0; p < w->m->n_patch; p++)
-    if (w->start[p] < w->start[p + 1])
-      vg_output_format(&w->out, "(45 (%zu %s %s)())\n", PATCHES + p,
-                       zone_type(w->m->patch + p)->name, word[p]);
-  free(word);
+  vg_output_format(out, "(0 \"Vanguard\")\n(2 3)\n(10 (0 1 %zx 0 3))\n"
+                   "(10 (%x 1 %zx 1 3)(\n", m->n_point, POINTS, m->n_point);
+  f->at_point = out->written;
+  put_points(out, f, links != NULL);
+  vg_output_text(out, "))\n");
+  put_cells(out, f, links != NULL);
+  vg_output_format(out, "(13 (0 1 %llx 0 0))\n",
+                   (unsigned long long)(f->n_internal + m->n_tri + m->n_quad));
+  put_interior(out, f, links);
+  for (size_t p = 0; p < m->n_patch; p++) put_patch(out, f, p, links);
+  put_names(out, f);
+}
+
+void vg_fluent_put_frame(struct vg_output *out, struct vg_fluent *f)
+{
+  put_all(out, f, NULL);
+}
+
+/* --- parts --------------------------------------------------------------- */
+
+void vg_fluent_seek_point(struct vg_output *out, const struct vg_fluent *f,
+                          uint64_t point)
+{
+  vg_output_seek(out, f->at_point + point * (3 * REAL_WIDTH + 1));
+}
+
+void vg_fluent_put_kinds(struct vg_output *out, const struct vg_fluent *f,
+                         int kind, uint64_t cell, uint64_t n)
+{
+  if (cell_kind(f) != MIXED) return;
+  vg_output_seek(out, f->at_cell + 2 * (f->first[kind] + cell));
+  put_kinds(out, f, kind, cell, n);
+}
+
+void vg_fluent_seek_internal(struct vg_output *out, const struct vg_fluent *f,
+                             uint64_t face)
+{
+  int kind = face_kind(f->n_internal, f->n_quad);
+
+  vg_output_seek(out, f->at_internal + face * face_line(f, kind));
+}
+
+void vg_fluent_put_internal(struct vg_output *out, const struct vg_fluent *f,
+                            int n, const uint32_t *node, uint32_t cell,
+                            uint32_t mate)
+{
+  put_face(out, f, face_kind(f->n_internal, f->n_quad), n, node, mate + 1,
+           cell + 1);
+}
+
+static size_t patch_of(const struct vg_fluent *f, size_t at)
+{
+  size_t i = f->order[at], n_tri = f->frame->n_tri;
+
+  return i < n_tri ? f->frame->tri_patch[i] : f->frame->quad_patch[i - n_tri];
+}
+
+void vg_fluent_seek_boundary(struct vg_output *out, const struct vg_fluent *f,
+                             size_t at)
+{
+  size_t p = patch_of(f, at);
+
+  vg_output_seek(out, f->at_patch[p] +
+                 (at - f->start[p]) * face_line(f, f->kind[p]));
+}
+
+void vg_fluent_put_boundary(struct vg_output *out, const struct vg_fluent *f,
+                            size_t at, uint32_t cell)
+{
+  size_t i = f->order[at], n_tri = f->frame->n_tri;
+  int is_tri = i < n_tri;
+
+  put_face(out, f, f->kind[patch_of(f, at)], is_tri ? 3 : 4,
+           is_tri ? f->frame->tri[i] : f->frame->quad[i - n_tri], cell + 1, 0);
+}
+
+/* --- the file ------------------------------------------------------------ */
+
+static int digits(uint64_t n)
+{
+  int width = 1;
+
+  while (n >>= 4) width++;
+  return width;
+}
+
+static vg_status find_places(struct vg_fluent *f, struct vg_error *err)
+{
+  struct vg_output out = VG_OUTPUT_INIT;
+  vg_status st = vg_output_shared(NULL, &out, err);
+
+  if (st >= 0) put_all(&out, f, NULL);
+  vg_output_release(&out);
+  return st;
+}
+
+static vg_status check_counts(const char *path, const struct vg_fluent *f,
+                              struct vg_error *err)
+{
+  uint64_t n_corner = 3 * (f->n_internal + f->frame->n_tri) + f->n_quad +
+                      4 * (uint64_t)f->frame->n_quad;
+
+  if (!f->n_cell)
+    return vg_fail(err, VG_ERR_INPUT, "%s: the mesh has no cells; write the "
+                   "surface as .stl", path);
+  if (n_corner > INT32_MAX || f->n_cell > INT32_MAX)
+    return vg_fail(err, VG_ERR_UNSUPPORTED, "%s: %llu corners of faces are "
+                   "beyond the 32-bit labels of formats of faces", path,
+                   (unsigned long long)n_corner);
   return VG_OK;
 }
 
-static vg_status put_all(struct writing *w, struct vg_error *err)
+vg_status vg_fluent_plan(const char *path, const struct vg_mesh *frame,
+                         uint64_t n_internal, uint64_t n_quad,
+                         struct vg_fluent *f, struct vg_error *err)
 {
-  vg_output_text(&w->out, "(0 \"Vanguard\")\n(2 3)\n");
-  put_points(w);
-  put_cells(w);
-  vg_output_format(&w->out, "(13 (0 1 %llx 0 0))\n",
-                   (unsigned long long)(w->faces.n_internal + w->m->n_tri +
-                                        w->m->n_quad));
-  put_interior(w);
-  for (size_t p = 0; p < w->m->n_patch; p++) put_patch(w, p);
-  return put_names(w, err);
+  const size_t n[VG_FLUENT_KINDS] = { frame->n_tet, frame->n_pyr,
+                                      frame->n_pri, frame->n_hex };
+  vg_status st;
+
+  *f = (struct vg_fluent){ .frame = frame, .n_internal = n_internal,
+                           .n_quad = n_quad };
+  for (int k = 0; k < VG_FLUENT_KINDS; k++) {
+    f->first[k] = f->n_cell;
+    f->n_cell += n[k];
+  }
+  VG_TRY(check_counts(path, f, err));
+  f->width = digits(f->n_cell > frame->n_point ? f->n_cell : frame->n_point);
+  f->word = vg_patch_words(frame, VG_PATCH_WORD_MOST);
+  f->at_patch = vg_calloc(frame->n_patch, sizeof *f->at_patch);
+  f->kind = vg_calloc(frame->n_patch, sizeof *f->kind);
+  if (!f->word || !f->at_patch || !f->kind)
+    VG_TRY(vg_fail_memory(err, "the names of the patches"));
+  VG_TRY(vg_boundary_by_patch(frame, &f->start, &f->order, err));
+  for (size_t p = 0; p < frame->n_patch; p++) f->kind[p] = patch_kind(f, p);
+  st = find_places(f, err);
+done:
+  if (st < 0) vg_fluent_release(f);
+  return st;
+}
+
+void vg_fluent_release(struct vg_fluent *f)
+{
+  free(f->word);
+  free(f->start);
+  free(f->order);
+  free(f->kind);
+  free(f->at_patch);
+  memset(f, 0, sizeof *f);
 }
 
 vg_status vg_fluent_write(const char *path, const struct vg_mesh *m,
                           struct vg_error *err)
 {
-  struct writing w = { .m = m, .faces = VG_CELL_LINKS_INIT,
-                       .out = VG_OUTPUT_INIT };
+  struct vg_cell_links links = VG_CELL_LINKS_INIT;
+  struct vg_output out = VG_OUTPUT_INIT;
+  struct vg_fluent f = { .frame = NULL };
+  uint64_t n_quad;
   vg_status st;
 
-  if (!(m->n_tet + m->n_pyr + m->n_pri + m->n_hex))
-    return vg_fail(err, VG_ERR_INPUT, "%s: the mesh has no cells; write the "
-                   "surface as .stl", path);
-  VG_TRY(vg_boundary_by_patch(m, &w.start, &w.order, err));
-  VG_TRY(vg_foam_links(&w.faces, m, path, err));
-  VG_TRY(vg_output_open(path, &w.out, err));
-  VG_TRY(put_all(&w, err));
-  st = vg_output_commit(&w.out, err);
+  if (m->n_tet + m->n_pyr + m->n_pri + m->n_hex)
+    VG_TRY(vg_foam_links(&links, m, path, err));
+  n_quad = links.n_corner - 3 * (links.n_internal + m->n_tri) -
+           4 * (uint64_t)m->n_quad;
+  VG_TRY(vg_fluent_plan(path, m, links.n_internal, n_quad, &f, err));
+  VG_TRY(vg_output_open(path, &out, err));
+  put_all(&out, &f, &links);
+  st = vg_output_commit(&out, err);
 done:
-  vg_output_release(&w.out);
-  vg_cell_links_release(&w.faces);
-  free(w.start);
-  free(w.order);
+  vg_output_release(&out);
+  vg_cell_links_release(&links);
+  vg_fluent_release(&f);
   return st;
 }

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "io/mesh/fluent.h"
 #include "io/slices/slices_parts.h"
 #include "io/stream/shared_file.h"
 #include "io/vgrid/mapbc.h"
@@ -258,7 +259,7 @@ done:
 /* --- forms --- */
 
 enum form { FORM_NONE, FORM_UGRID, FORM_COGSG, FORM_VTU, FORM_PVTU, FORM_SU2,
-            FORM_GMSH, FORM_CGNS, FORM_PART, FORM_BOUNDARY };
+            FORM_GMSH, FORM_CGNS, FORM_FLUENT, FORM_PART, FORM_BOUNDARY };
 
 static enum form form_of(const char *word)
 {
@@ -272,6 +273,7 @@ static enum form form_of(const char *word)
   if (!strncmp(word, "part.", 5)) return FORM_PART;
   if (!strcmp(word, "msh")) return FORM_GMSH;
   if (!strcmp(word, "cgns")) return FORM_CGNS;
+  if (!strcmp(word, VG_FLUENT_SUFFIX)) return FORM_FLUENT;
   if (!strcmp(word, "mapbc") || !strcmp(word, "fun3d.mapbc") ||
       !strcmp(word, "surface.vtu"))
     return FORM_BOUNDARY;
@@ -358,13 +360,17 @@ vg_status vg_slices_write_with(struct vg_comm *comm,
     case FORM_CGNS:
       st = vg_slices_write_cgns(comm, s, path, o->threads, err);
       break;
+    case FORM_FLUENT:
+      st = vg_slices_write_fluent(comm, s, path, o->threads, err);
+      break;
     case FORM_BOUNDARY:
       st = write_boundary(comm, s, path, stem, form, o->threads, err);
       break;
     default:
       st = vg_fail(err, VG_ERR_UNSUPPORTED, "%s: a mesh in slices cannot be "
-                   "written in this form; known are cgns, cogsg, msh, pvtu, "
-                   "su2, vtu and the binary kinds of .ugrid, as lb8.ugrid",
+                   "written in this form; known are cgns, cogsg, fluent.msh, "
+                   "msh, pvtu, su2, vtu and the binary kinds of .ugrid, as "
+                   "lb8.ugrid",
                    path);
     }
   free(path);

@@ -18,7 +18,7 @@ struct vg_slices_options {
 
 /** Can a mesh in slices be written in this form? The words of the run deck's
  * write list: "cogsg", every binary .ugrid ("lb8.ugrid", ...), "vtu", "pvtu",
- * "su2", "msh", "cgns", and "mapbc", "fun3d.mapbc", "surface.vtu"; and
+ * "su2", "msh", "cgns", "fluent.msh", and "mapbc", "fun3d.mapbc", "surface.vtu"; and
  * "part.N". */
 int vg_slices_can_write(const char *form);
 
