@@ -9,7 +9,7 @@ cd "$(dirname "$0")"
 packages="cmake ninja-build gcc g++ pkg-config libtet1.5-dev zlib1g-dev \
 libjansson-dev libcmocka-dev liblapacke-dev libopenmpi-dev openmpi-bin \
 libhwloc-dev libxxhash-dev libmetis-dev libhdf5-dev libocct-data-exchange-dev \
-libocct-ocaf-dev libcgal-dev"
+libocct-ocaf-dev libcgal-dev libmicrohttpd-dev"
 
 install_missing() {
   missing=

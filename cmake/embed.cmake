@@ -1,6 +1,7 @@
 # Writes OUT, a C file with the bytes of FILES (separated by ;) as arrays
-# vg_asset_NAME, NAME with _ for what is no letter or digit, and their sizes.
-set(text "#include \"cli/html/assets.h\"\n")
+# vg_asset_NAME, NAME with _ for what is no letter or digit, and their sizes, as
+# HEADER declares them.
+set(text "#include \"${HEADER}\"\n")
 foreach(file ${FILES})
   get_filename_component(name ${file} NAME)
   string(REGEX REPLACE "[^a-z0-9]" "_" name ${name})

@@ -8,7 +8,8 @@
 # Starts munged, slurmctld and slurmd of its own on free ports, with all state
 # in the scratch folder, and ends them again. Jobs of two ranks: one in peace,
 # and, by mpirun and by srun, one that is told by Slurm that its time is up,
-# goes back into the queue and continues. All must write the same files. Needs
+# goes back into the queue and continues; and one that a portal starts, stops
+# and resumes. All must write the same files. Needs
 # root (slurmd has to change users) and Debian's slurm-wlm, munge and
 # openmpi-bin. Exit status: 0 as it should be, 1 a failure, 2 usage, 77 cannot
 # be tried.
@@ -161,7 +162,7 @@ told() {   # told NAME LAUNCHER
   [ "$end" = COMPLETED ] || die "$2: the resumed job ended as $end"
   grep -q 'continuing from' "$d.log" || die "$2: it did not continue"
   for file in "$work"/peace/box.*; do
-    case $file in *.json|*.deck) continue ;; esac
+    case $file in *.json|*.deck|*.html) continue ;; esac
     cmp "$file" "$d/${file##*/}" || die "$2: files differ"
     n=$((n + 1))
   done
@@ -176,3 +177,52 @@ if srun --mpi=list 2>&1 | grep -qw pmix; then
 else
   echo "srun: not tried, this Slurm has no pmix"
 fi
+
+# The same by a portal (docs/portal.md): a job started, stopped and resumed by
+# its forms.
+await_run() {   # await_run STATE SECONDS
+  local s=''
+  for _ in $(seq "$2"); do
+    s=$(curl -s "${url}runs.json" |
+      sed -n 's/.*"state": "\([a-z]*\)".*/\1/p')
+    [ "$s" != "$1" ] || return 0
+    sleep 1
+  done
+  die "the portal's run is $s, not $1"
+}
+post() {   # post PATH CURL-OPTION...
+  curl -s -o "$work/body" -H "Origin: ${url%/*/}" "${@:2}" "$url$1"
+}
+
+by_portal() {
+  local file n=0 run=$work/vanguard-runs/0001
+  rm -rf "$work/vanguard-runs"
+  "$vanguard" serve --port 0 --root "$work" >"$work/url" \
+    2> "$work/serve.log" &
+  daemons+=($!)
+  for _ in $(seq 100); do
+    [ ! -s "$work/url" ] || break
+    sleep 0.1
+  done
+  url=$(cat "$work/url")
+  [ -n "$url" ] || die "no portal: $(cat "$work/serve.log")"
+  post runs -d project=box.lb8.ugrid -d where=slurm -d ranks=2 -d cpus=1 \
+    -d s.leaf_cells=30000 -d time=00:10:00
+  for _ in $(seq 300); do
+    [ "$(find "$run/kept" -type f 2> /dev/null | wc -l)" -lt 6 ] || break
+    sleep 0.1
+  done
+  await_run running 30
+  post runs/1/stop -d x=
+  await_run stopped 60
+  post runs/1/resume -d x=
+  await_run done 900
+  for file in "$work"/peace/box.*; do
+    case $file in *.json|*.deck|*.html) continue ;; esac
+    cmp "$file" "$run/mesh/${file##*/}" || die "the portal's files differ"
+    n=$((n + 1))
+  done
+  [ $n -ge 3 ] || die "only $n files were compared"
+  echo "portal: stopped, resumed, $n files the same"
+}
+if command -v curl > /dev/null; then by_portal; fi

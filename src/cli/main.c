@@ -29,6 +29,8 @@ static const struct command {
     vg_cmd_plan, "vanguard plan", 0 },
   { "sweep", "mesh with many leaf sizes, ranks and threads, and compare",
     vg_cmd_sweep, "vanguard sweep", 0 },
+  { "serve", "start, watch and resume runs from a browser", vg_cmd_serve,
+    "vanguard serve", 0 },
   { "deck", "write a run deck with all defaults", vg_cmd_deck,
     "vanguard deck", 0 },
   { "demo", "write a complete example project", vg_cmd_demo,

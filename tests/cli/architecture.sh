@@ -112,6 +112,7 @@ adapter 'CGAL/[A-Za-z0-9_]*\.h' '^core/wrap/wrap_cgal\.cpp$'
 adapter zlib.h '^(io/[a-z]+/[a-z_]+|run/picture/image)\.c$'
 adapter jansson.h '^(run|cli)/'
 adapter argp.h '^cli/'
+adapter microhttpd.h '^cli/serve/http\.c$'
 # Its last bits differ between processors: never where a mesh is made.
 adapter lapacke.h '^partition/model/rates\.c$'
 adapter pthread.h '^(base|partition|core/mesher)/|^run/common/progress\.c$'

@@ -26,6 +26,7 @@ struct arguments {
   int argc;
   char **argv;
   int json, quiet, timeline;
+  double every;                    /* s between lines of progress; 0: 10 */
   struct vg_run_options run;
   struct vg_cli_overrides kept;
 };
@@ -41,7 +42,8 @@ struct run {
 };
 
 /* Options that are no settings: they do not change the mesh. */
-enum { KEY_TIMELINE = 1, KEY_LOG, KEY_RUN_DIR, KEY_RESUME, KEY_KEEP, KEY_LIMIT,
+enum { KEY_TIMELINE = 1, KEY_LOG, KEY_PROGRESS, KEY_RUN_DIR, KEY_RESUME,
+       KEY_KEEP, KEY_LIMIT,
        KEY_SHUFFLE, KEY_NODE_RANKS, KEY_DIFFER,
        KEY_FAIL };
 
@@ -80,6 +82,14 @@ static error_t fail_leaves(const char *text, struct vg_run_options *to,
   return 0;
 }
 
+static error_t seconds(const char *text, double *to,
+                       const struct argp_state *state)
+{
+  if (!vg_parse_real(text, strlen(text), to) || !(*to >= 0.1 && *to <= 86400))
+    argp_error(state, "'%s' is no time from 0.1 to 86400 s", text);
+  return 0;
+}
+
 static error_t option(int key, char *arg, struct argp_state *state)
 {
   struct arguments *a = state->input;
@@ -92,6 +102,7 @@ static error_t option(int key, char *arg, struct argp_state *state)
   case 'q': a->quiet = 1; return 0;
   case KEY_TIMELINE: a->timeline = a->run.near = 1; return 0;
   case KEY_LOG: a->log = arg; return 0;
+  case KEY_PROGRESS: return seconds(arg, &a->every, state);
   case KEY_RUN_DIR: a->run.dir = arg; return 0;
   case KEY_RESUME: a->run.resume = 1; return 0;
   case KEY_KEEP: a->run.keep = 1; return 0;
@@ -600,6 +611,7 @@ static int run(const struct arguments *a)
     return status;
   }
   vg_display_init(&r.show, a->quiet || r.mesh.rank);
+  if (a->every > 0) r.show.every = a->every;
   /* rank 0 puts the files into place; when it ends so do the others */
   vg_display_deadline(r.mesh.rank ? 1.8 : 1.5);
   if (run_stages(&r, a, &err) < 0) {
@@ -629,6 +641,8 @@ int vg_cmd_mesh(int argc, char **argv)
       "input]", 1 },
     { "json", 'j', NULL, 0, "report as JSON on standard output", 1 },
     { "quiet", 'q', NULL, 0, "no progress", 1 },
+    { "progress", KEY_PROGRESS, "SECONDS", 0, "between lines of progress where "
+      "standard error is no terminal [default 10]", 1 },
     { "timeline", KEY_TIMELINE, NULL, 0, "write what each worker did when, "
       "PROJECT.timeline.json, for 'vanguard plan' and 'vanguard sweep'; the "
       "report then tells of cells near interfaces", 1 },

@@ -13,11 +13,10 @@
 
 #include "base/memory.h"
 #include "cli/common/cli.h"
+#include "cli/common/process.h"
 #include "cli/sweep/sweep.h"
 #include "run/common/folder.h"
 #include "run/common/progress.h"
-
-struct words { size_t n, cap; char **word; };
 
 void vg_sweep_release(struct vg_sweep *s)
 {
@@ -145,36 +144,9 @@ done:
 
 /* --- command lines ------------------------------------------------------- */
 
-static void words_release(struct words *w)
-{
-  for (size_t i = 0; i < w->n; i++) free(w->word[i]);
-  free(w->word);
-}
-
-/* Takes `text` over; NULL stands for refused memory. */
-static vg_status add_word(struct words *w, char *text, struct vg_error *err)
-{
-  if (!text || vg_reserve(&w->word, &w->cap, w->n + 2, sizeof *w->word)) {
-    free(text);
-    return vg_fail_memory(err, "a command line");
-  }
-  w->word[w->n++] = text;
-  w->word[w->n] = NULL;
-  return VG_OK;
-}
-
-static vg_status add_pair(struct words *w, const char *name, int64_t v,
-                          struct vg_error *err)
-{
-  char text[32];
-  vg_status st = add_word(w, strdup(name), err);
-
-  snprintf(text, sizeof text, "%lld", (long long)v);
-  return st < 0 ? st : add_word(w, strdup(text), err);
-}
-
 /* What comes after '--' may have another rule for the layers. */
-static vg_status add_member(struct words *w, const struct vg_sweep_options *o,
+static vg_status add_member(struct vg_words *w,
+                            const struct vg_sweep_options *o,
                             const struct vg_sweep_case *c,
                             struct vg_error *err)
 {
@@ -182,97 +154,45 @@ static vg_status add_member(struct words *w, const struct vg_sweep_options *o,
   vg_status st;
 
   snprintf(text, sizeof text, "%.17g", o->scale * vg_sweep_scale(c->family));
-  VG_TRY(add_word(w, strdup("--scale"), err));
-  VG_TRY(add_word(w, strdup(text), err));
-  VG_TRY(add_word(w, strdup("--scale-layers"), err));
-  st = add_word(w, strdup("workshop"), err);
+  VG_TRY(vg_words_add(w, "--scale", err));
+  VG_TRY(vg_words_add(w, text, err));
+  VG_TRY(vg_words_add(w, "--scale-layers", err));
+  st = vg_words_add(w, "workshop", err);
 done:
   return st;
 }
 
-/* A word of the launcher with its places filled in. */
-static char *fill_in(const char *word, size_t len,
-                     const struct vg_sweep_case *c)
-{
-  char *out = vg_alloc(len * 4 + 32, 1);
-  size_t at = 0;
-
-  for (size_t i = 0; out && i < len; ) {
-    if (len - i >= 7 && !strncmp(word + i, "{ranks}", 7)) {
-      at += (size_t)snprintf(out + at, 16, "%d", c->ranks);
-      i += 7;
-    } else if (len - i >= 9 && !strncmp(word + i, "{threads}", 9)) {
-      at += (size_t)snprintf(out + at, 16, "%d", c->threads);
-      i += 9;
-    } else {
-      out[at++] = word[i++];
-    }
-  }
-  if (out) out[at] = 0;
-  return out;
-}
-
-static vg_status add_launcher(struct words *w, const char *text,
-                              const struct vg_sweep_case *c,
-                              struct vg_error *err)
-{
-  vg_status st = VG_OK;
-
-  while (st >= 0) {
-    size_t len;
-
-    text += strspn(text, " \t");
-    len = strcspn(text, " \t");
-    if (!len) break;
-    st = add_word(w, fill_in(text, len, c), err);
-    text += len;
-  }
-  return st;
-}
-
-static char *own_path(void)
-{
-  char path[4096];
-  ssize_t n = readlink("/proc/self/exe", path, sizeof path - 1);
-
-  if (n <= 0) return strdup("vanguard");
-  path[n] = 0;
-  return strdup(path);
-}
-
 static vg_status command_line(const struct vg_sweep_options *o,
-                              const struct vg_sweep_case *c, struct words *w,
-                              struct vg_error *err)
+                              const struct vg_sweep_case *c,
+                              struct vg_words *w, struct vg_error *err)
 {
-  const char *launcher = o->launcher;
   vg_status st;
 
-  if (!launcher && c->ranks > 1)
-    launcher = "mpirun -n {ranks} --bind-to none";
-  if (launcher) VG_TRY(add_launcher(w, launcher, c, err));
-  VG_TRY(add_word(w, o->program ? strdup(o->program) : own_path(), err));
-  VG_TRY(add_word(w, strdup("mesh"), err));
-  VG_TRY(add_word(w, strdup("-p"), err));
-  VG_TRY(add_word(w, strdup(o->project), err));
+  VG_TRY(vg_words_launcher(w, o->launcher, c->ranks, c->threads, err));
+  VG_TRY(vg_words_take(w, o->program ? strdup(o->program) : vg_own_path(),
+                       err));
+  VG_TRY(vg_words_add(w, "mesh", err));
+  VG_TRY(vg_words_add(w, "-p", err));
+  VG_TRY(vg_words_add(w, o->project, err));
   if (o->deck) {
-    VG_TRY(add_word(w, strdup("--deck"), err));
-    VG_TRY(add_word(w, strdup(o->deck), err));
+    VG_TRY(vg_words_add(w, "--deck", err));
+    VG_TRY(vg_words_add(w, o->deck, err));
   }
-  VG_TRY(add_pair(w, "--threads", c->threads, err));
-  if (c->levels >= 0) VG_TRY(add_pair(w, "--levels", c->levels, err));
+  VG_TRY(vg_words_pair(w, "--threads", c->threads, err));
+  if (c->levels >= 0) VG_TRY(vg_words_pair(w, "--levels", c->levels, err));
   if (c->leaf_cells >= 0)
-    VG_TRY(add_pair(w, "--leaf-cells", c->leaf_cells, err));
+    VG_TRY(vg_words_pair(w, "--leaf-cells", c->leaf_cells, err));
   if (c->way >= 0) {
-    VG_TRY(add_word(w, strdup("--decompose"), err));
-    VG_TRY(add_word(w, strdup(vg_ways[c->way].name), err));
+    VG_TRY(vg_words_add(w, "--decompose", err));
+    VG_TRY(vg_words_add(w, vg_ways[c->way].name, err));
   }
-  if (c->parts >= 0) VG_TRY(add_pair(w, "--parts", c->parts, err));
+  if (c->parts >= 0) VG_TRY(vg_words_pair(w, "--parts", c->parts, err));
   if (c->family) VG_TRY(add_member(w, o, c, err));
-  VG_TRY(add_word(w, strdup("--timeline"), err));
-  VG_TRY(add_word(w, strdup("-o"), err));
-  VG_TRY(add_word(w, strdup(c->dir), err));
+  VG_TRY(vg_words_add(w, "--timeline", err));
+  VG_TRY(vg_words_add(w, "-o", err));
+  VG_TRY(vg_words_add(w, c->dir, err));
   for (int i = 0; i < o->n_extra; i++)
-    VG_TRY(add_word(w, strdup(o->extra[i]), err));
+    VG_TRY(vg_words_add(w, o->extra[i], err));
 done:
   return st;
 }
@@ -353,34 +273,10 @@ static vg_status spawn(struct vg_sweep_case *c, char **word, int log,
   return VG_OK;
 }
 
-/* What went wrong: the last line that vanguard wrote; or else what follows
- * the first rule, as launchers put round their messages; or the last line. */
-static void find_note(const char *path, struct vg_sweep_case *c)
-{
-  enum { LAST, RULE, FRAMED, OURS } kept = LAST;
-  FILE *f = fopen(path, "r");
-  char *line = NULL;
-  size_t cap = 0;
-
-  snprintf(c->note, sizeof c->note, "see %.200s", path);
-  while (f && getline(&line, &cap, f) > 0) {
-    size_t ours = !strncmp(line, "vanguard: ", 10) ? 10
-                : !strncmp(line, "vanguard mesh: ", 15) ? 15 : 0;
-
-    line[strcspn(line, "\r\n")] = 0;
-    if (kept == LAST && !strncmp(line, "-----", 5)) kept = RULE;
-    if (!line[strspn(line, " \t-")] || (kept >= FRAMED && !ours)) continue;
-    kept = ours ? OURS : kept == RULE ? FRAMED : kept;
-    snprintf(c->note, sizeof c->note, "%s", line + ours);
-  }
-  free(line);
-  if (f) fclose(f);
-}
-
 vg_status vg_sweep_run(const struct vg_sweep_options *o,
                        struct vg_sweep_case *c, struct vg_error *err)
 {
-  struct words w = { 0, 0, NULL };
+  struct vg_words w = VG_WORDS_INIT;
   char *path = NULL;
   int log = -1;
   vg_status st;
@@ -403,12 +299,12 @@ vg_status vg_sweep_run(const struct vg_sweep_options *o,
   /* Missed limits on the layers leave a mesh that is whole. */
   c->is_done = c->exit_status == VG_EXIT_DONE ||
     c->exit_status == VG_EXIT_LIMIT;
-  if (!c->is_done) find_note(path, c);
+  if (!c->is_done) vg_failure_note(path, c->note, sizeof c->note);
   if (vg_display_interrupted())
     st = vg_fail(err, VG_ERR_IO, "interrupted during %s", c->name);
 done:
   if (log >= 0) close(log);
-  words_release(&w);
+  vg_words_release(&w);
   free(path);
   return st;
 }

@@ -198,6 +198,7 @@ void vg_display_init(struct vg_display *d, int quiet)
   d->quiet = quiet;
   d->logs = vg_log() != NULL;
   d->start = vg_display_now();
+  d->every = PLAIN_EVERY_S;
   d->live = !quiet && isatty(STDERR_FILENO);
   shows_line = d->live;
   vg_display_watch();
@@ -298,8 +299,7 @@ int vg_display_update(void *user, const char *stage, size_t done,
                       size_t expected)
 {
   struct vg_display *d = user;
-  double now = vg_display_now(), every = d->live ? LIVE_EVERY_S
-                                                 : PLAIN_EVERY_S;
+  double now = vg_display_now(), every = d->live ? LIVE_EVERY_S : d->every;
   int tells;
 
   if (d->logs && d->done > d->logged && strcmp(stage, d->stage) != 0)

@@ -18,6 +18,7 @@ struct vg_display {
   int quiet, live, open;    /* open: a live line stands without its end */
   int logs;                 /* lines go into the log (log.h), too */
   double start, stage_start, last_shown, last_logged;
+  double every;             /* s between plain lines; init: 10 */
   char stage[40];
   size_t done, expected;    /* of the stage; they never go back */
   size_t logged;            /* the last that was done */

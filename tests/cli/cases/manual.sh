@@ -1,6 +1,6 @@
 # Man pages and completions say what the program says.
 share=$(dirname "$program")/../share
-for command in mesh surface check partition plan sweep deck demo; do
+for command in mesh surface check partition plan sweep serve deck demo; do
   page=$share/man/man1/vanguard-$command.1
   exists "$page"
   vanguard $command --help

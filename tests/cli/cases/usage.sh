@@ -12,6 +12,7 @@ layers on the walls, tetrahedra around them.
   partition share a volume mesh out to a solver's processes
   plan      forecast cells, memory and time before a project is meshed
   sweep     mesh with many leaf sizes, ranks and threads, and compare
+  serve     start, watch and resume runs from a browser
   deck      write a run deck with all defaults
   demo      write a complete example project
 
@@ -42,7 +43,7 @@ vanguard help chekc
 exits 2
 says err "did you mean 'check'?"
 
-for command in mesh surface check partition sweep plan deck demo; do
+for command in mesh surface check partition sweep serve plan deck demo; do
   vanguard $command --help
   exits 0
   says out "Usage: vanguard $command [OPTION...]"

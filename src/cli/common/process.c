@@ -1,0 +1,115 @@
+#define _GNU_SOURCE
+#include "cli/common/process.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/memory.h"
+
+void vg_words_release(struct vg_words *w)
+{
+  for (size_t i = 0; i < w->n; i++) free(w->word[i]);
+  free(w->word);
+  memset(w, 0, sizeof *w);
+}
+
+vg_status vg_words_take(struct vg_words *w, char *text, struct vg_error *err)
+{
+  if (!text || vg_reserve(&w->word, &w->cap, w->n + 2, sizeof *w->word)) {
+    free(text);
+    return vg_fail_memory(err, "a command line");
+  }
+  w->word[w->n++] = text;
+  w->word[w->n] = NULL;
+  return VG_OK;
+}
+
+vg_status vg_words_add(struct vg_words *w, const char *text,
+                       struct vg_error *err)
+{
+  return vg_words_take(w, strdup(text), err);
+}
+
+vg_status vg_words_pair(struct vg_words *w, const char *name, int64_t v,
+                        struct vg_error *err)
+{
+  char text[32];
+  vg_status st = vg_words_add(w, name, err);
+
+  snprintf(text, sizeof text, "%lld", (long long)v);
+  return st < 0 ? st : vg_words_add(w, text, err);
+}
+
+/* A word of the launcher with its places filled in. */
+static char *fill_in(const char *word, size_t len, int ranks, int threads)
+{
+  char *out = vg_alloc(len * 4 + 32, 1);
+  size_t at = 0;
+
+  for (size_t i = 0; out && i < len; ) {
+    if (len - i >= 7 && !strncmp(word + i, "{ranks}", 7)) {
+      at += (size_t)snprintf(out + at, 16, "%d", ranks);
+      i += 7;
+    } else if (len - i >= 9 && !strncmp(word + i, "{threads}", 9)) {
+      at += (size_t)snprintf(out + at, 16, "%d", threads);
+      i += 9;
+    } else {
+      out[at++] = word[i++];
+    }
+  }
+  if (out) out[at] = 0;
+  return out;
+}
+
+vg_status vg_words_launcher(struct vg_words *w, const char *launcher,
+                            int ranks, int threads, struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  if (!launcher)
+    launcher = ranks > 1 ? "mpirun -n {ranks} --bind-to none" : "";
+  while (st >= 0) {
+    size_t len;
+
+    launcher += strspn(launcher, " \t");
+    len = strcspn(launcher, " \t");
+    if (!len) break;
+    st = vg_words_take(w, fill_in(launcher, len, ranks, threads), err);
+    launcher += len;
+  }
+  return st;
+}
+
+char *vg_own_path(void)
+{
+  char path[4096];
+  ssize_t n = readlink("/proc/self/exe", path, sizeof path - 1);
+
+  if (n <= 0) return strdup("vanguard");
+  path[n] = 0;
+  return strdup(path);
+}
+
+void vg_failure_note(const char *path, char *note, size_t size)
+{
+  enum { LAST, RULE, FRAMED, OURS } kept = LAST;
+  FILE *f = fopen(path, "re");
+  char *line = NULL;
+  size_t cap = 0;
+
+  snprintf(note, size, "see %.200s", path);
+  while (f && getline(&line, &cap, f) > 0) {
+    size_t ours = !strncmp(line, "vanguard: ", 10) ? 10
+                : !strncmp(line, "vanguard mesh: ", 15) ? 15 : 0;
+
+    line[strcspn(line, "\r\n")] = 0;
+    if (kept == LAST && !strncmp(line, "-----", 5)) kept = RULE;
+    if (!line[strspn(line, " \t-")] || (kept >= FRAMED && !ours)) continue;
+    kept = ours ? OURS : kept == RULE ? FRAMED : kept;
+    snprintf(note, size, "%s", line + ours);
+  }
+  free(line);
+  if (f) fclose(f);
+}

@@ -1,0 +1,12 @@
+/* Private to cli/serve: files of share, in the program. */
+#ifndef VG_CLI_SERVE_ASSETS_H
+#define VG_CLI_SERVE_ASSETS_H
+
+#include <stddef.h>
+
+extern const unsigned char vg_asset_portal_css[], vg_asset_portal_js[],
+  vg_asset_vanguard_sbatch[];
+extern const size_t vg_asset_portal_css_size, vg_asset_portal_js_size,
+  vg_asset_vanguard_sbatch_size;
+
+#endif

@@ -1,0 +1,182 @@
+/* From fields to settings. Declared in cli/serve/form.h. */
+#define _GNU_SOURCE
+#include "cli/serve/form.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/serve/inside.h"
+#include "cli/serve/rows.h"
+
+/* --- settings ------------------------------------------------------------ */
+
+/* Values at `base` by fields "PREFIX.NAME". */
+static vg_status take_params(const struct vg_fields *f, const char *prefix,
+                             const struct vg_param *p, size_t n, void *base,
+                             const void *defaults,
+                             struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  for (size_t i = 0; i < n && st >= 0; i++) {
+    char name[64];
+    const char *value;
+
+    snprintf(name, sizeof name, "%s.%s", prefix, p[i].name);
+    value = vg_fields_get(f, name);
+    if (!value) continue;
+    memcpy((char *)base + p[i].offset, (const char *)defaults + p[i].offset,
+           p[i].size);
+    if (*value) st = vg_param_set(&p[i], base, value, strlen(value), err);
+  }
+  return st;
+}
+
+/* Whether a row says anything but defaults. */
+static int is_given(const struct vg_table *t, const void *row,
+                    const void *defaults)
+{
+  for (size_t c = 0; c < t->n_column; c++)
+    if (memcmp((const char *)row + t->column[c].offset,
+               (const char *)defaults + t->column[c].offset,
+               t->column[c].size) != 0)
+      return 1;
+  return 0;
+}
+
+/* Settings, and the tables of one line. */
+static vg_status take_values(const struct vg_fields *f, struct vg_settings *s,
+                             struct vg_error *err)
+{
+  const struct vg_table *farfield = vg_settings_table(VG_TABLE_FARFIELD);
+  const struct vg_table *sweep = vg_settings_table(VG_TABLE_SWEEP);
+  struct vg_settings defaults;
+  size_t n;
+  const struct vg_param *p = vg_settings_params(&n);
+  vg_status st;
+
+  vg_settings_default(&defaults);
+  VG_TRY(take_params(f, "s", p, n, s, &defaults, err));
+  VG_TRY(take_params(f, "farfield", farfield->column, farfield->n_column,
+                     &s->farfield, &defaults.farfield, err));
+  st = take_params(f, "sweep", sweep->column, sweep->n_column, &s->sweep,
+                   &defaults.sweep, err);
+  s->n_sweep = is_given(sweep, &s->sweep, &defaults.sweep);
+done:
+  return st;
+}
+
+static vg_status take_tables(const struct vg_fields *f, struct vg_settings *s,
+                             struct vg_error *err)
+{
+  static const enum vg_table_kind tables[] = { VG_TABLE_PATCHES,
+    VG_TABLE_LAYERS, VG_TABLE_SOURCES };
+  vg_status st = VG_OK;
+
+  for (size_t i = 0; i < sizeof tables / sizeof *tables && st >= 0; i++) {
+    const char *text = vg_fields_get(f, vg_settings_table(tables[i])->name);
+
+    if (!text) continue;
+    if (tables[i] == VG_TABLE_PATCHES) s->n_patch = 0;
+    if (tables[i] == VG_TABLE_LAYERS) s->n_layer = 0;
+    if (tables[i] == VG_TABLE_SOURCES) s->n_source = 0;
+    st = vg_rows_read(text, tables[i], s, err);
+  }
+  return st;
+}
+
+static vg_status take_title(const struct vg_fields *f, struct vg_settings *s,
+                            struct vg_error *err)
+{
+  const char *title = vg_fields_text(f, "title");
+
+  if (strlen(title) > VG_TITLE_MAX || strpbrk(title, "\r\n\t"))
+    return vg_fail(err, VG_ERR_INPUT, "the title is one line of at most %d "
+                   "bytes", VG_TITLE_MAX);
+  title += strspn(title, " #");   /* a deck's title is no comment */
+  if (*title) snprintf(s->title, sizeof s->title, "%s", title);
+  return VG_OK;
+}
+
+/* What must not be is asked of the whole, wherever it came from. */
+static vg_status check_paths(const char *root, struct vg_settings *s,
+                             struct vg_error *err)
+{
+  char *real;
+  const char *name = s->sizes;
+  size_t n = strlen(root);
+  vg_status st;
+
+  if (strcmp(s->mesher, "builtin") != 0 && strcmp(s->mesher, "tetgen") != 0 &&
+      strcmp(s->mesher, "hxt") != 0)
+    return vg_fail(err, VG_ERR_INPUT, "mesher: a plug-in is a program, which "
+                   "a portal does not start; it takes builtin, tetgen or hxt");
+  if (!*name) return VG_OK;
+  if (*name == '/' && vg_inside_holds(root, name)) name += n > 1 ? n + 1 : 1;
+  st = vg_inside(root, name, &real, err);
+  if (st < 0) return st;
+  if (strlen(real) >= sizeof s->sizes)
+    st = vg_fail(err, VG_ERR_INPUT, "sizes: the path %.100s... is longer than "
+                 "%zu bytes", real, sizeof s->sizes - 1);
+  else
+    strcpy(s->sizes, real);
+  free(real);
+  return st;
+}
+
+vg_status vg_form_settings(const struct vg_fields *f, const char *root,
+                           struct vg_settings *s, struct vg_error *err)
+{
+  vg_status st;
+
+  VG_TRY(take_title(f, s, err));
+  VG_TRY(take_values(f, s, err));
+  VG_TRY(take_tables(f, s, err));
+  VG_TRY(vg_settings_check(s, err));
+  st = check_paths(root, s, err);
+done:
+  return st;
+}
+
+/* --- where --------------------------------------------------------------- */
+
+static vg_status take_word(const struct vg_fields *f, const char *name,
+                           const char *what, const char *allowed, char *to,
+                           size_t size, struct vg_error *err)
+{
+  const char *text = vg_fields_text(f, name);
+
+  if (strlen(text) >= size || strspn(text, allowed) != strlen(text) ||
+      *text == '-')
+    return vg_fail(err, VG_ERR_INPUT, "%s cannot be '%.40s'", what, text);
+  strcpy(to, text);
+  return VG_OK;
+}
+
+vg_status vg_form_run(const struct vg_fields *f, struct vg_serve_run *run,
+                      struct vg_error *err)
+{
+  static const char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                                "abcdefghijklmnopqrstuvwxyz0123456789_.-";
+  const char *where = vg_fields_text(f, "where");
+  vg_status st;
+
+  run->is_sweep = !strcmp(vg_fields_text(f, "what"), "sweep");
+  run->is_slurm = !strcmp(where, "slurm");
+  if (!run->is_slurm && *where && strcmp(where, "here") != 0)
+    return vg_fail(err, VG_ERR_INPUT, "a run is here or in slurm, not in "
+                   "'%.40s'", where);
+  if (run->is_slurm && run->is_sweep)
+    return vg_fail(err, VG_ERR_INPUT, "sweeps run on this machine; in a job of "
+                   "your own, 'vanguard sweep --launcher' does the same");
+  VG_TRY(vg_fields_count(f, "ranks", "ranks", 1, 100000, 1, &run->ranks, err));
+  VG_TRY(vg_fields_count(f, "nodes", "nodes", 1, 100000, 1, &run->nodes, err));
+  VG_TRY(vg_fields_count(f, "cpus", "CPUs per rank", 1, 4096, 1, &run->cpus,
+                         err));
+  VG_TRY(take_word(f, "time", "the time limit", "0123456789:-", run->time,
+                   sizeof run->time, err));
+  st = take_word(f, "partition", "the partition", letters, run->partition,
+                 sizeof run->partition, err);
+done:
+  return st;
+}

@@ -1,0 +1,36 @@
+/* In a build without libmicrohttpd: cli/serve/http.h. */
+#include <unistd.h>
+
+#include "cli/serve/http.h"
+
+static vg_status absent(struct vg_error *err)
+{
+  return vg_fail(err, VG_ERR_UNSUPPORTED, "this build has no portal: install "
+                 "libmicrohttpd-dev and configure again");
+}
+
+vg_status vg_http_open(int fd, const struct vg_http_handler *h,
+                       struct vg_http **out, struct vg_error *err)
+{
+  (void)h, (void)out;
+  if (fd >= 0) close(fd);
+  return absent(err);
+}
+
+void vg_http_close(struct vg_http *http)
+{
+  (void)http;
+}
+
+vg_status vg_http_connect(struct vg_http *http, int fd, struct vg_error *err)
+{
+  (void)http, (void)fd;
+  return absent(err);
+}
+
+vg_status vg_http_step(struct vg_http *http, int milliseconds,
+                       struct vg_error *err)
+{
+  (void)http, (void)milliseconds;
+  return absent(err);
+}

@@ -1,0 +1,99 @@
+/* Answers that are no page. Declared in cli/serve/portal_parts.h. */
+#define _GNU_SOURCE
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "cli/serve/inside.h"
+#include "cli/serve/portal_parts.h"
+
+/* What a run has written is shown as of an origin of its own, so that no script
+ * in it can use the portal; it loads nothing. */
+#define BOXED "default-src 'none'; img-src data:; style-src 'unsafe-inline'; " \
+  "frame-ancestors 'none'; base-uri 'none'; form-action 'none'; "
+static const char page_policy[] = BOXED "script-src 'unsafe-inline' "
+  "'unsafe-eval'; sandbox allow-scripts";
+static const char still_policy[] = BOXED "sandbox";
+
+static const struct { const char *end, *type, *policy; } shown[] = {
+  { ".report.html", "text/html; charset=utf-8", page_policy },
+  { ".svg", "image/svg+xml", still_policy },
+  { ".png", "image/png", still_policy },
+  { ".log", "text/plain; charset=utf-8", still_policy },
+  { ".txt", "text/plain; charset=utf-8", still_policy },
+  { ".deck", "text/plain; charset=utf-8", still_policy },
+  { ".csv", "text/plain; charset=utf-8", still_policy },
+  { ".json", "text/plain; charset=utf-8", still_policy },
+  { ".mapbc", "text/plain; charset=utf-8", still_policy },
+};
+
+void vg_reply_text(struct vg_reply *a, int status, const char *text)
+{
+  a->status = status;
+  a->type = "text/plain; charset=utf-8";
+  free(a->body);
+  a->body = NULL;
+  if (asprintf(&a->body, "%s\n", text) < 0) a->body = NULL;
+  a->size = a->body ? strlen(a->body) : 0;
+}
+
+void vg_reply_go(const struct vg_portal *p, struct vg_reply *a,
+                  const char *to)
+{
+  vg_reply_text(a, 303, "see there");
+  if (asprintf(&a->location, "/%s/%s", p->token, to) < 0) a->location = NULL;
+}
+
+/* As a name to save under: quotes and the like would end the header's value. */
+static char *plain_name(const char *name)
+{
+  const char *base = strrchr(name, '/');
+  char *copy = strdup(base ? base + 1 : name);
+
+  for (char *c = copy; c && *c; c++)
+    if (*c < ' ' || *c == '"' || *c == '\\' || *c == 127) *c = '_';
+  return copy;
+}
+
+static void choose_type(const char *name, struct vg_reply *a)
+{
+  size_t n = strlen(name);
+
+  a->type = "application/octet-stream";
+  a->policy = still_policy;
+  for (size_t i = 0; i < sizeof shown / sizeof *shown; i++) {
+    size_t m = strlen(shown[i].end);
+
+    if (n < m || strcasecmp(name + n - m, shown[i].end)) continue;
+    a->type = shown[i].type;
+    a->policy = shown[i].policy;
+    return;
+  }
+  a->download = plain_name(name);
+}
+
+void vg_reply_file(const struct vg_serve_run *run, const char *name,
+                    struct vg_reply *a)
+{
+  struct vg_error err;
+  struct stat s;
+  char *real;
+  int fd;
+
+  if (!*name || vg_inside(run->dir, name, &real, &err) < 0) {
+    vg_reply_text(a, 404, "There is no such file of this run.");
+    return;
+  }
+  fd = open(real, O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+  free(real);
+  if (fd < 0 || fstat(fd, &s) || !S_ISREG(s.st_mode)) {
+    if (fd >= 0) close(fd);
+    vg_reply_text(a, 404, "There is no such file of this run.");
+    return;
+  }
+  choose_type(name, a);
+  a->fd = fd;
+}

@@ -1,0 +1,288 @@
+/* What a request asks for. Declared in cli/serve/portal_parts.h. */
+#define _GNU_SOURCE
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/serve/assets.h"
+#include "cli/serve/form.h"
+#include "cli/serve/markup.h"
+#include "cli/serve/portal_parts.h"
+#include "cli/serve/projects.h"
+#include "run/settings/deck.h"
+
+static void not_there(struct vg_reply *a)
+{
+  vg_reply_text(a, 404, "There is nothing here.");
+}
+
+/* "12/log": 12 and "log"; 0: no number. */
+static int take_id(const char *path, const char **rest)
+{
+  size_t n = strspn(path, "0123456789");
+
+  if (!n || n > 4 || path[n] != '/') return 0;
+  *rest = path + n + 1;
+  return atoi(path);
+}
+
+static void answer_bytes(struct vg_reply *a, const char *type,
+                         const unsigned char *data, size_t size)
+{
+  a->type = type;
+  a->body = malloc(size + 1);
+  if (!a->body) {
+    vg_reply_text(a, 500, "There is not enough memory.");
+    return;
+  }
+  memcpy(a->body, data, size);
+  a->size = size;
+}
+
+/* What `print` writes, as a page. */
+static void answer_page(const struct vg_portal *p,
+                        const struct vg_page_view *v, int status,
+                        struct vg_reply *a)
+{
+  FILE *to = open_memstream(&a->body, &a->size);
+
+  a->status = status;
+  if (to) {
+    if (v) vg_page(p, v, to);
+    else vg_page_runs(p, to);
+  }
+  if (!to || fclose(to)) vg_reply_text(a, 500, "There is not enough memory.");
+}
+
+/* --- GET ----------------------------------------------------------------- */
+
+static void get_page(const struct vg_portal *p, const struct vg_request *r,
+                     struct vg_reply *a)
+{
+  struct vg_page_view v = { NULL, NULL, NULL, NULL };
+  const char *from = vg_fields_get(&r->query, "from");
+
+  v.project = vg_fields_get(&r->query, "project");
+  if (from && strlen(from) < 5) v.from = vg_runs_find(&p->runs, atoi(from));
+  if (v.from) v.project = v.from->project;
+  answer_page(p, &v, 200, a);
+}
+
+static void get_json(const struct vg_portal *p, struct vg_reply *a)
+{
+  a->type = "application/json";
+  a->body = vg_page_runs_json(p);
+  if (a->body) a->size = strlen(a->body);
+  else vg_reply_text(a, 500, "There is not enough memory.");
+}
+
+/* runs/12/report, log, output, deck, file/mesh/wing.vtu */
+static void get_of_run(const struct vg_portal *p, const char *path,
+                       struct vg_reply *a)
+{
+  static const char *const names[][2] = { { "log", "run.log" },
+    { "output", "output.log" }, { "deck", "run.deck" } };
+  const char *what = "";
+  const struct vg_serve_run *run = vg_runs_find(&p->runs,
+                                                take_id(path, &what));
+
+  if (!run) {
+    not_there(a);
+    return;
+  }
+  if (!strncmp(what, "file/", 5)) {
+    vg_reply_file(run, what + 5, a);
+    return;
+  }
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+    if (!strcmp(what, names[i][0])) {
+      vg_reply_file(run, names[i][1], a);
+      return;
+    }
+  not_there(a);
+}
+
+static void get(const struct vg_portal *p, const struct vg_request *r,
+                const char *path, struct vg_reply *a)
+{
+  if (!*path) get_page(p, r, a);
+  else if (!strcmp(path, "runs")) answer_page(p, NULL, 200, a);
+  else if (!strcmp(path, "runs.json")) get_json(p, a);
+  else if (!strcmp(path, "portal.css"))
+    answer_bytes(a, "text/css; charset=utf-8", vg_asset_portal_css,
+                 vg_asset_portal_css_size);
+  else if (!strcmp(path, "portal.js"))
+    answer_bytes(a, "text/javascript; charset=utf-8", vg_asset_portal_js,
+                 vg_asset_portal_js_size);
+  else if (!strncmp(path, "runs/", 5)) get_of_run(p, path + 5, a);
+  else not_there(a);
+}
+
+/* --- POST ---------------------------------------------------------------- */
+
+/* A run in its folder with its deck, in the queue. */
+static vg_status make_run(struct vg_portal *p, const struct vg_fields *f,
+                          struct vg_serve_run **out, struct vg_error *err)
+{
+  struct vg_settings s = VG_SETTINGS_INIT;
+  struct vg_serve_run given = { 0 }, *run;
+  const char *project = vg_fields_text(f, "project");
+  char path[4096], *name = NULL;
+  vg_status st;
+
+  VG_TRY(vg_project_settings(p->root, project, NULL, &s, err));
+  VG_TRY(vg_form_settings(f, p->root, &s, err));
+  VG_TRY(vg_form_run(f, &given, err));
+  if (given.is_slurm && !p->has_slurm) {
+    st = vg_fail(err, VG_ERR_INPUT, "there is no Slurm here: sbatch and squeue "
+                 "are not in the PATH of the portal");
+    goto done;
+  }
+  name = strdup(project);
+  if (!name) {
+    st = vg_fail_memory(err, "a run");
+    goto done;
+  }
+  VG_TRY(vg_runs_new(&p->runs, &run, err));
+  free(run->project);
+  run->project = name;
+  name = NULL;
+  snprintf(run->title, sizeof run->title, "%s", s.title);
+  run->is_sweep = given.is_sweep;
+  run->is_slurm = given.is_slurm;
+  run->ranks = given.ranks;
+  run->nodes = given.nodes;
+  run->cpus = given.is_slurm ? given.cpus : s.threads > 0 ? (int)s.threads : 1;
+  strcpy(run->time, given.time);
+  strcpy(run->partition, given.partition);
+  st = vg_deck_write(vg_run_path(run, "run.deck", path), &s, NULL, 0, err);
+  if (st >= 0) st = vg_record_write(run, err);
+  if (st < 0) {   /* it stays in the list, with the reason */
+    run->state = VG_SERVE_FAILED;
+    snprintf(run->note, sizeof run->note, "%.250s", err->text);
+  }
+  *out = run;
+done:
+  free(name);
+  vg_settings_release(&s);
+  return st;
+}
+
+static void go_to_run(const struct vg_portal *p,
+                      const struct vg_serve_run *run, struct vg_reply *a)
+{
+  char to[32];
+
+  snprintf(to, sizeof to, "#run-%d", run->id);
+  vg_reply_go(p, a, to);
+}
+
+static void refuse(const struct vg_portal *p, const struct vg_request *r,
+                   const char *message, struct vg_reply *a)
+{
+  struct vg_page_view v = { vg_fields_get(&r->form, "project"), message,
+                            &r->form, NULL };
+
+  answer_page(p, &v, 400, a);
+}
+
+static void post_run(struct vg_portal *p, struct vg_request *r,
+                     struct vg_reply *a)
+{
+  struct vg_error err = VG_ERROR_INIT;
+  struct vg_serve_run *run = NULL;
+
+  if (make_run(p, &r->form, &run, &err) < 0) {
+    refuse(p, r, err.text, a);
+    return;
+  }
+  if (run->is_slurm) vg_run_launch(&p->runs, run);
+  else vg_runs_watch(&p->runs);   /* at once, if it is its turn */
+  go_to_run(p, run, a);
+}
+
+static void resume(struct vg_portal *p, struct vg_serve_run *run)
+{
+  struct vg_error err;
+
+  if (!vg_run_can_resume(run)) return;
+  if (run->is_slurm) {
+    vg_run_launch(&p->runs, run);
+    return;
+  }
+  run->state = VG_SERVE_QUEUED;
+  run->note[0] = 0;
+  vg_record_write(run, &err);
+  vg_runs_watch(&p->runs);
+}
+
+/* runs/12/stop, kill, resume: what is no longer so is no failure, for pages may
+ * be older than runs. */
+static void post_to_run(struct vg_portal *p, const char *path,
+                        struct vg_reply *a)
+{
+  const char *what = "";
+  struct vg_serve_run *run = vg_runs_find(&p->runs, take_id(path, &what));
+
+  if (!run) {
+    not_there(a);
+    return;
+  }
+  if (!strcmp(what, "stop")) vg_run_stop(&p->runs, run, 0);
+  else if (!strcmp(what, "kill")) vg_run_stop(&p->runs, run, 1);
+  else if (!strcmp(what, "resume")) resume(p, run);
+  else {
+    not_there(a);
+    return;
+  }
+  go_to_run(p, run, a);
+}
+
+static void post_upload(struct vg_portal *p, struct vg_request *r,
+                        struct vg_reply *a)
+{
+  const char *under = vg_fields_text(&r->form, "folder");
+  struct vg_error err = VG_ERROR_INIT;
+  FILE *to;
+  char *address = NULL;
+  size_t size;
+
+  if (vg_upload_commit(&r->upload, &err) < 0) {
+    refuse(p, r, err.text, a);
+    return;
+  }
+  if (!r->upload.n_whole) {
+    refuse(p, r, "no file was chosen", a);
+    return;
+  }
+  to = open_memstream(&address, &size);
+  if (to) {
+    fputs(vg_projects_is_name(r->upload.name) ? "?project=" : "?uploaded=",
+          to);
+    vg_markup_path(to, under);
+    if (*under) fputs("/", to);
+    vg_markup_path(to, r->upload.name);
+    fclose(to);
+  }
+  vg_reply_go(p, a, address ? address : "");
+  free(address);
+}
+
+static void post(struct vg_portal *p, struct vg_request *r, const char *path,
+                 struct vg_reply *a)
+{
+  if (r->body < 0 && strcmp(path, "upload") != 0)
+    vg_reply_text(a, 400, r->error.text);
+  else if (r->body < 0) refuse(p, r, r->error.text, a);
+  else if (!strcmp(path, "runs")) post_run(p, r, a);
+  else if (!strcmp(path, "upload")) post_upload(p, r, a);
+  else if (!strncmp(path, "runs/", 5)) post_to_run(p, path + 5, a);
+  else not_there(a);
+}
+
+void vg_route(struct vg_portal *p, struct vg_request *r, const char *rest,
+              struct vg_reply *a)
+{
+  if (!*rest) vg_reply_go(p, a, "");   /* relative addresses need the '/' */
+  else if (!strcmp(r->method, "POST")) post(p, r, rest + 1, a);
+  else get(p, r, rest + 1, a);
+}

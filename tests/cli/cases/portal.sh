@@ -1,0 +1,288 @@
+# vanguard serve, asked by curl: who is let in, which paths are refused, runs,
+# stops and resumes, a portal that dies, jobs, sweeps. Needs curl.
+command -v curl >/dev/null || skip "no curl"
+servers=()
+stop_all() {
+  local file pid
+  for pid in "${servers[@]}"; do kill "$pid" 2>/dev/null; done
+  for file in */vanguard-runs/*/run.json; do   # what a failure leaves at work
+    [ -e "$file" ] || continue
+    pid=$(sed -n 's/.*"pid": \([0-9]*\).*/\1/p' "$file")
+    [ "${pid:-0}" -gt 1 ] || continue
+    ! grep -qs "$PWD" "/proc/$pid/cmdline" || kill -9 -- "-$pid" 2>/dev/null
+  done
+}
+trap stop_all EXIT
+
+# serve NAME OPTION...: a portal of the folder NAME; its address in $url, its
+# process in $server.
+serve() {
+  local name=$1
+  shift
+  rm -f "$name.url"
+  "$program" serve --port 0 --root "$name" "$@" >"$name.url" 2>"$name.err" &
+  server=$!
+  servers+=($server)
+  for _ in $(seq 100); do
+    ! [ -s "$name.url" ] || break
+    kill -0 $server 2>/dev/null || break
+    sleep 0.1
+  done
+  url=$(cat "$name.url")
+  origin=${url%/*/}
+}
+
+mkdir -p mine other
+"$program" demo box --cells 2000 --out mine >out 2>err
+"$program" demo box --cells 600000 --out mine/large >out 2>err
+serve mine --max-upload 100000
+grep -q 'portal' mine.err && grep -q libmicrohttpd mine.err &&
+  skip "$(cat mine.err)"
+[ -n "$url" ] || fail "no address: $(cat mine.err)"
+
+# asks STATUS CURL-ARGUMENT...: the body in `body`.
+asks() {
+  local expected=$1 got
+  shift
+  got=$(curl -s --max-time 60 -o body -w '%{http_code}' "$@")
+  [ "$got" = "$expected" ] || fail "status $got, not $expected, of $*"
+}
+# posts STATUS PATH CURL-ARGUMENT...: as the page does.
+posts() { asks "$1" -X POST -H "Origin: $origin" "${@:3}" "$url$2"; }
+
+# --- who is let in
+
+asks 200 "$url"
+says body 'box.lb8.ugrid'
+asks 403 "$origin/"
+asks 403 "$origin/00000000000000000000000000000000/"
+asks 403 -H "Host: evil.example" "$url"
+asks 200 -H "Host: localhost:1" "$url"
+asks 403 -X POST "${url}runs" -d project=box.lb8.ugrid
+asks 403 -X POST -H "Origin: http://evil.example" "${url}runs" -d project=x
+asks 403 -X POST -H "Origin: null" "${url}runs" -d project=x
+asks 405 -X DELETE "$url"
+[ "$(stat -c %a mine/vanguard-runs/portal.url)" = 600 ] || fail "its mode"
+[ "$(cat mine/vanguard-runs/portal.url)" = "$url" ] || fail "another address"
+lacks "/proc/$server/cmdline" "${url: -20:10}"
+
+# bound to this machine alone
+port=${origin##*:}
+hex=$(printf '%04X' "$port")
+grep -q "0100007F:$hex 00000000:0000 0A" /proc/net/tcp || fail "not on loopback"
+! grep -q "00000000:$hex 00000000:0000 0A" /proc/net/tcp || fail "on all"
+! grep -qs ":$hex [0:]* 0A" /proc/net/tcp6 || fail "on IPv6"
+for address in $(hostname -I 2>/dev/null); do
+  case $address in 127.*|*:*) continue ;; esac
+  ! (: <"/dev/tcp/$address/$port") 2>/dev/null || fail "reached by $address"
+done
+
+# two users, with a portal each; none in the other's folder
+first=$url
+serve other
+[ -n "$url" ] || fail "no second portal: $(cat other.err)"
+token=${first%/}
+asks 403 "$origin/${token##*/}/"
+token=${url%/}
+asks 403 "${first%/*/}/${token##*/}/"
+kill "$server"
+wait "$server"
+status=$?
+exits 0
+absent other/vanguard-runs/portal.url
+url=$first origin=${first%/*/} server=${servers[0]}
+"$program" serve --port 0 --root mine >out 2>err
+status=$?
+exits 1
+says err "another portal has"
+vanguard serve --port "$port" --root other
+exits 1
+says err "port $port of 127.0.0.1 cannot be had"
+vanguard serve --root nothing
+exits 1
+vanguard serve --jobs 0
+exits 2
+
+# --- paths and sizes
+
+ln -s "$PWD/other" mine/away
+echo SECRET >other/secret.stl
+ln -s "$PWD/other/secret.stl" mine/link.stl
+asks 200 "$url?project=link.stl"
+says body "leads out of the folder"
+for path in ../other/secret.stl away/secret.stl "$PWD/other/secret.stl" \
+    link.stl vanguard-runs/../../other/secret.stl; do
+  posts 400 runs --data-urlencode "project=$path"
+  lacks body SECRET
+done
+posts 400 runs -d project=box.lb8.ugrid -d s.sizes=/etc/passwd
+posts 400 runs -d project=box.lb8.ugrid -d s.mesher=./it.so
+says body "plug-in"
+posts 400 runs -d project=box.lb8.ugrid -d s.growth=0.3
+says body "growth is 0.3; it must be above 1"
+command -v sbatch >/dev/null ||
+  posts 400 runs -d project=box.lb8.ugrid -d where=slurm
+asks 404 --path-as-is "${url}runs/1/file/../../../box.lb8.ugrid"
+
+head -c 150000 /dev/zero >big.stl
+head -c 300000 /dev/zero >bigger.stl
+posts 413 upload -F "file=@bigger.stl"
+posts 400 upload -F "file=@big.stl"
+says body "--max-upload"
+absent mine/big.stl
+curl -s -o body -X POST -H "Origin: $origin" -H "Transfer-Encoding: chunked" \
+  -F "file=@bigger.stl" "${url}upload"
+says body "--max-upload"
+[ -z "$(find mine -name '*bigger*')" ] || fail "left of an upload"
+octahedron >octa.obj
+posts 303 upload -F folder= -F "file=@octa.obj"
+same octa.obj mine/octa.obj
+posts 400 upload -F "file=@octa.obj"
+says body "is there already"
+posts 400 upload -F "folder=away" -F "file=@big.stl;filename=x.obj"
+posts 400 upload -F "file=@octa.obj;filename=.profile"
+[ "$(ls other)" = "secret.stl
+vanguard-runs" ] || fail "other has $(ls other)"
+
+# heads without end
+head -c 60000 /dev/zero | tr '\0' x >long
+code=$(curl -s -o /dev/null -w '%{http_code}' -H "X: $(cat long)" "$url")
+[[ $code = 4* || $code = 000 ]] || fail "a long header: $code"
+many=()
+for k in $(seq 100); do many+=(-H "X-$k: 1"); done
+asks 431 "${many[@]}" "$url"
+asks 200 "$url"
+
+# --- runs
+
+# state ID: of run ID; await ID STATE SECONDS
+state() {
+  curl -s "${url}runs.json" >runs.json
+  tr -d '\n' <runs.json | sed 's/},/},\n/g' |
+    sed -n "s/.*\"id\": $1,.*\"state\": \"\([a-z]*\)\".*/\1/p"
+}
+await() {
+  local s=''
+  for _ in $(seq $(($3 * 10))); do
+    s=$(state "$1")
+    [ "$s" != "$2" ] || return 0
+    sleep 0.1
+  done
+  fail "run $1 is $s, not $2: $(tail -3 "mine/vanguard-runs/000$1/output.log")"
+}
+
+posts 303 runs -d project=box.lb8.ugrid -d s.hmax=0.2 \
+  --data-urlencode "title=<b>&"
+await 1 done 60
+asks 200 "${url}runs"
+says body '&lt;b&gt;&amp;'
+lacks body '<b>&'
+asks 200 "${url}runs/1/file/mesh/box.report.html"
+says body 'Vanguard mesh report'
+curl -s -D head -o body "${url}runs/1/file/mesh/box.report.html"
+says head 'sandbox allow-scripts'
+asks 200 "${url}runs/1/log"
+says body 'hmax                 0.2'
+"$program" mesh -q -p mine/box --hmax 0.2 --out plain >out 2>err
+asks 200 "${url}runs/1/file/mesh/box.b8.ugrid"
+same body plain/box.b8.ugrid
+posts 400 runs -d project=box.lb8.ugrid -d s.farfield_size=1 -d ranks=0
+
+# a run that fails says why
+posts 303 runs -d project=octa.obj -d farfield.kind=none -d s.max_cells=1
+await 2 failed 60
+says runs.json '1 are allowed'
+
+# stopped when something is kept, resumed: the same bytes; a second one waits
+slow=(-d project=large/box.lb8.ugrid -d s.threads=1 -d s.leaf_cells=30000
+  -d s.write=b8.ugrid)
+kept() { find "mine/vanguard-runs/$1/kept" -type f 2>/dev/null | wc -l; }
+until_kept() {
+  for _ in $(seq 600); do
+    [ "$(kept "$1")" -lt 6 ] || return 0
+    [[ $(state "${1#000}") = @(queued|submitted|pending|running) ]] || break
+    sleep 0.1
+  done
+  fail "run $1 keeps nothing"
+}
+posts 303 runs "${slow[@]}"
+posts 303 runs "${slow[@]}"
+[ "$(state 4)" = queued ] || fail "two runs at a time"
+until_kept 0003
+posts 303 runs/3/stop
+await 3 stopped 30
+says runs.json 'finished tasks are kept'
+# the next one begins by itself; its portal dies, it does not
+until_kept 0004
+kill -9 "$server"
+wait "$server" 2>/dev/null
+serve mine
+asks 200 "${url}runs"
+posts 303 runs/3/resume
+await 3 done 120
+await 4 done 120
+"$program" mesh -q -p mine/large/box --threads 1 --leaf-cells 30000 \
+  --write b8.ugrid --out whole >out 2>err
+same whole/box.b8.ugrid mine/vanguard-runs/0003/mesh/box.b8.ugrid
+same whole/box.b8.ugrid mine/vanguard-runs/0004/mesh/box.b8.ugrid
+absent mine/vanguard-runs/0003/kept
+
+# told to end, with a run at work: that goes on, and the next portal has it
+posts 303 runs "${slow[@]}"
+until_kept 0005
+kill "$server"
+wait "$server"
+status=$?
+exits 0
+says mine.err "1 run wait or go on"
+serve mine
+[[ $(state 5) = @(running|done) ]] || fail "run 5 is $(state 5)"
+posts 303 runs/5/stop
+await 5 stopped 30
+
+# a sweep
+posts 303 runs -d project=box.lb8.ugrid -d what=sweep -d sweep.threads=1,2
+await 6 done 60
+asks 200 "${url}runs/6/file/sweep/sweep.csv"
+asks 200 "${url}runs"
+says body 'sweep.csv'
+kill "$server"
+wait "$server"
+
+# --- jobs, with a Slurm that only says so
+
+mkdir -p bin
+cat >bin/sbatch <<'END_SBATCH'
+#!/bin/bash
+# Notes what it is asked, and starts the script behind.
+echo "sbatch $*" >>"$FAKE/calls"
+env | grep -E '^(PROJECT|OUT|RUN_DIR|OPTIONS|VANGUARD)=' >>"$FAKE/calls"
+echo "sbatch: a word of warning" >&2
+setsid bash "${@: -1}" >>output.log 2>&1 </dev/null &
+echo $! >"$FAKE/job.pid"
+echo 4711
+END_SBATCH
+cat >bin/squeue <<'END_SQUEUE'
+#!/bin/bash
+! kill -0 "$(cat "$FAKE/job.pid")" 2>/dev/null || echo "4711 RUNNING"
+END_SQUEUE
+cat >bin/scancel <<'END_SCANCEL'
+#!/bin/bash
+echo "scancel $*" >>"$FAKE/calls"
+kill "$(cat "$FAKE/job.pid")"
+END_SCANCEL
+chmod +x bin/*
+export FAKE=$PWD PATH=$PWD/bin:$PATH
+serve mine
+posts 303 runs "${slow[@]}" -d where=slurm -d ranks=1 -d cpus=1 \
+  -d time=01:00:00 -d partition=big
+until_kept 0007
+await 7 running 30
+says calls "--nodes 1 --ntasks-per-node 1 --cpus-per-task 1 --time=01:00:00 --partition=big vanguard.sbatch"
+says calls "PROJECT=$PWD/mine/large/box.lb8.ugrid"
+posts 303 runs/7/stop
+await 7 stopped 30
+says calls "scancel --batch --signal=TERM 4711"
+posts 303 runs/7/resume
+await 7 done 120
+same whole/box.b8.ugrid mine/vanguard-runs/0007/mesh/box.b8.ugrid

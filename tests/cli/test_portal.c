@@ -1,0 +1,654 @@
+#define _GNU_SOURCE
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "cli/serve/fields.h"
+#include "cli/serve/form.h"
+#include "cli/serve/inside.h"
+#include "cli/serve/markup.h"
+#include "cli/serve/projects.h"
+#include "cli/serve/runs.h"
+#include "portal_support.h"
+#include "run/settings/deck.h"
+
+static struct portal_scene scene;
+
+/* --- parts --------------------------------------------------------------- */
+
+static void put(struct vg_fields *f, const char *name, const char *value)
+{
+  struct vg_error err;
+
+  assert_int_equal(vg_fields_put(f, name, value, 0, strlen(value), &err),
+                   VG_OK);
+}
+
+static void fields_come_in_pieces(void **state)
+{
+  struct vg_fields f = VG_FIELDS_INIT;
+  struct vg_error err;
+  int n;
+
+  (void)state;
+  put(&f, "a", "one");
+  assert_int_equal(vg_fields_put(&f, "a", " two", 3, 4, &err), VG_OK);
+  assert_string_equal(vg_fields_get(&f, "a"), "one two");
+  assert_null(vg_fields_get(&f, "b"));
+  /* not the piece that follows; a zero byte; no more than the limit */
+  assert_int_equal(vg_fields_put(&f, "a", "x", 9, 1, &err), VG_ERR_INPUT);
+  assert_int_equal(vg_fields_put(&f, "b", "x", 1, 1, &err), VG_ERR_INPUT);
+  assert_int_equal(vg_fields_put(&f, "b", "x\0y", 0, 3, &err), VG_ERR_INPUT);
+  assert_int_equal(vg_fields_put(&f, "b", NULL, 0, VG_FIELDS_BYTES, &err),
+                   VG_ERR_INPUT);
+  put(&f, "n", "12");
+  assert_int_equal(vg_fields_count(&f, "n", "n", 1, 20, 3, &n, &err), VG_OK);
+  assert_int_equal(n, 12);
+  assert_int_equal(vg_fields_count(&f, "n", "n", 1, 11, 3, &n, &err),
+                   VG_ERR_INPUT);
+  assert_int_equal(vg_fields_count(&f, "m", "m", 1, 11, 3, &n, &err), VG_OK);
+  assert_int_equal(n, 3);
+  while (f.n < VG_FIELDS_MAX) put(&f, "x", "");
+  assert_int_equal(vg_fields_put(&f, "x", "", 0, 0, &err), VG_ERR_INPUT);
+  vg_fields_release(&f);
+}
+
+static void check_inside(const char *name, vg_status expected)
+{
+  char *real = NULL;
+  struct vg_error err = VG_ERROR_INIT;
+
+  assert_int_equal(vg_inside(scene.root, name, &real, &err), expected);
+  if (expected < 0) assert_null(real);
+  free(real);
+}
+
+static void paths_stay_inside(void **state)
+{
+  static const char *const bad[] = { "..", "../other/secret.obj", "/etc/passwd",
+    "./octa.obj", "octa.obj/", "a//b", "vanguard-runs/../../other", "out.obj",
+    "away", "away/secret.obj", "a\nb", "\xff", "a/..", "." };
+
+  (void)state;
+  check_inside("", VG_OK);
+  check_inside("octa.obj", VG_OK);
+  check_inside("vanguard-runs", VG_OK);
+  check_inside("nothing", VG_ERR_IO);
+  for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
+    check_inside(bad[i], VG_ERR_INPUT);
+  assert_true(vg_inside_holds("/", "/a"));
+  assert_true(vg_inside_holds("/a", "/a/b"));
+  assert_false(vg_inside_holds("/a", "/ab"));
+}
+
+static void names_of_files_are_plain(void **state)
+{
+  static const char *const bad[] = { "", ".", "..", ".x", "-x", "a/b", "a\\b",
+                                     "a\x01", "\xc0\x80" };
+  struct vg_error err;
+  char longest[202];
+
+  (void)state;
+  memset(longest, 'a', 201);
+  longest[201] = 0;
+  assert_int_equal(vg_inside_name(longest, &err), VG_ERR_INPUT);
+  longest[200] = 0;
+  assert_int_equal(vg_inside_name(longest, &err), VG_OK);
+  assert_int_equal(vg_inside_name("fl\xc3\xbcgel 2.stl", &err), VG_OK);
+  for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
+    assert_int_equal(vg_inside_name(bad[i], &err), VG_ERR_INPUT);
+}
+
+static void markup_is_escaped(void **state)
+{
+  char *text;
+  size_t size;
+  FILE *to = open_memstream(&text, &size);
+
+  (void)state;
+  vg_markup(to, "<b a=\"x\" b='y'>&\x01\xff\xc3\xa4\n");
+  fputs("|", to);
+  vg_markup_path(to, "a b/<c>.stl");
+  fputs("|", to);
+  vg_markup_size(to, 999);
+  fputs("|", to);
+  vg_markup_size(to, 1234567);
+  fclose(to);
+  assert_string_equal(text, "&lt;b a=&quot;x&quot; b=&#39;y&#39;&gt;&amp; "
+                      "?\xc3\xa4\n|a%20b/%3Cc%3E.stl|999 B|1.2 MB");
+  free(text);
+}
+
+static void lines_of_progress_are_understood(void **state)
+{
+  static const char *const other[] = { "", "vanguard: no room", "Surface",
+    "  points  12", "fill 12 of ~x", "fill 12 of ~20 nonsense", "fill 3 4",
+    "3 of 2: n1", "0 of 2: n1" };
+  static const char tail[] = "ill  1\nread\nfill         1 of ~2   50%\nx 9";
+  struct vg_tell t = VG_TELL_INIT;
+
+  (void)state;
+  assert_true(vg_tell_line("read", 4, &t));
+  assert_string_equal(t.stage, "read");
+  assert_true(t.share < 0);
+#define LINE "cut and join              12,345 of ~27,000   46%  350,000/s" \
+  "  ETA 2 min 10 s"
+  assert_true(vg_tell_line(LINE, sizeof LINE - 1, &t));
+  assert_string_equal(t.stage, "cut and join");
+  assert_string_equal(t.count, "12,345 of 27,000");
+  assert_string_equal(t.rate, "350,000/s");
+  assert_string_equal(t.left, "2 min 10 s");
+  assert_true(t.share > 0.459 && t.share < 0.461);
+  assert_true(vg_tell_line("2 of 4: n1-t2", 13, &t));
+  assert_string_equal(t.stage, "n1-t2");
+  assert_true(t.share == 0.25);
+  for (size_t i = 0; i < sizeof other / sizeof *other; i++)
+    assert_false(vg_tell_line(other[i], strlen(other[i]), &t));
+  assert_false(vg_tell_line("re\0d", 4, &t));
+  assert_true(vg_tell_tail(tail, sizeof tail - 1, &t));
+  assert_string_equal(t.count, "1 of 2");
+  assert_int_equal(vg_tell_status("x\nexit status 4 after 1.2 s\n", 27), 4);
+  assert_int_equal(vg_tell_status("exit status 4", 13), -1);
+  assert_int_equal(vg_tell_status("\nexit status 4", 14), -1);
+  assert_int_equal(vg_tell_status("\nexit status ", 13), -1);
+}
+
+/* --- settings ------------------------------------------------------------ */
+
+static vg_status settings_of(const struct vg_fields *f, struct vg_settings *s,
+                             struct vg_error *err)
+{
+  vg_settings_default(s);
+  return vg_form_settings(f, scene.root, s, err);
+}
+
+static void a_form_becomes_settings(void **state)
+{
+  struct vg_fields f = VG_FIELDS_INIT;
+  struct vg_settings s;
+  struct vg_error err = VG_ERROR_INIT;
+
+  (void)state;
+  put(&f, "title", "  Wing, Mach 0.8");
+  put(&f, "s.growth", "1.3");
+  put(&f, "s.hmax", "");
+  put(&f, "s.layers", "yes");
+  put(&f, "s.walls", "1-3, 5");
+  put(&f, "farfield.kind", "box");
+  put(&f, "farfield.lengths", "7");
+  put(&f, "sweep.threads", "1,2");
+  put(&f, "patches", "\r\nid bc name # it\r\n\r\n3 4 \"a wing\"\r\n4 - -");
+  put(&f, "layers", "id y_plus\n3 1");      /* needs what follows */
+  put(&f, "s.reynolds", "1e6");
+  put(&f, "s.reference_length", "1");
+  put(&f, "sources", "kind x0 h0\npoint 1 0.5\nsphere 2 0.25\n");
+  assert_int_equal(settings_of(&f, &s, &err), VG_OK);
+  assert_string_equal(s.title, "Wing, Mach 0.8");
+  assert_true(s.growth == 1.3 && s.hmax == 0);
+  assert_int_equal(s.layer.grow, VG_ANSWER_YES);
+  assert_int_equal(s.farfield.kind, VG_DOMAIN_BOX);
+  assert_true(s.farfield.lengths == 7);
+  assert_string_equal(s.sweep.threads, "1,2");
+  assert_int_equal(s.n_patch, 2);
+  assert_string_equal(s.patch[0].name, "a wing");
+  assert_int_equal(s.n_source, 2);
+  /* what is absent stays, what is empty does not */
+  f.item[1].value[0] = 0;
+  assert_string_equal(f.item[1].name, "s.growth");
+  s.hmin = 0.125;
+  s.layer.grow = VG_ANSWER_NO;
+  assert_int_equal(vg_form_settings(&f, scene.root, &s, &err), VG_OK);
+  assert_true(s.growth == 1.2 && s.hmin == 0.125);
+  assert_int_equal(s.layer.grow, VG_ANSWER_YES);
+  assert_int_equal(s.n_source, 2);
+  vg_settings_release(&s);
+  vg_fields_release(&f);
+}
+
+static void refuses(const char *name, const char *value, const char *why)
+{
+  struct vg_fields f = VG_FIELDS_INIT;
+  struct vg_settings s;
+  struct vg_error err = VG_ERROR_INIT;
+
+  put(&f, name, value);
+  assert_true(settings_of(&f, &s, &err) < 0);
+  if (!strstr(err.text, why)) fail_msg("'%s' lacks '%s'", err.text, why);
+  vg_settings_release(&s);
+  vg_fields_release(&f);
+}
+
+static void a_form_is_refused_by_name(void **state)
+{
+  char path[300];
+
+  (void)state;
+  refuses("s.growth", "0.5", "growth is 0.5; it must be above 1");
+  refuses("s.hmin", "x", "hmin must be a number");
+  refuses("title", "a\nb", "title");
+  refuses("sources", "kind x0\npoint 1", "sources, line 2: ");
+  refuses("sources", "\nkind x0 h0\n\npoint 1", "sources, line 4: 2 values");
+  refuses("sources", "kind h0 h0\npoint 1 1", "h0 is there twice");
+  refuses("patches", "id name\n3 \"wing", "line 2: a quote is not closed");
+  refuses("patches", "id bc\n3 4\n3 5", "patch 3 is listed twice");
+  refuses("farfield.lengths", "0", "lengths is 0");
+  refuses("s.first", "-1", "first");
+  refuses("s.mesher", "./it.so", "plug-in");
+  /* a table is nothing but that */
+  refuses("patches", "id bc\n1 4\n\nmesher\n./it.so", "line 4: 1 values");
+  refuses("s.sizes", "../other/secret.obj", "no path below");
+  refuses("s.sizes", "/etc/passwd", "no path below");
+  refuses("s.sizes", "out.obj", "leads out");
+  snprintf(path, sizeof path, "%s/../other/secret.obj", scene.root);
+  refuses("s.sizes", path, "no path below");
+}
+
+/* What the form shows is what it sends back. */
+static char *attribute(char *at, const char *name)
+{
+  char *found = strstr(at, name), *end;
+
+  if (!found) return NULL;
+  found += strlen(name);
+  end = strchr(found, '"');
+  *end = 0;
+  return found;
+}
+
+static void a_printed_form_comes_back(void **state)
+{
+  struct vg_settings s, back;
+  struct vg_fields f = VG_FIELDS_INIT, none = VG_FIELDS_INIT;
+  struct vg_source source = { .kind = VG_SOURCE_SPHERE, .h0 = 0.25,
+                              .p0 = { 1, 2, 3 }, .an = 1, .group = "a \"b\"" };
+  struct vg_error err = VG_ERROR_INIT;
+  char *text, *at, *table, path[300];
+  size_t size;
+  FILE *to = open_memstream(&text, &size);
+
+  (void)state;
+  vg_settings_default(&s);
+  s.growth = 1.1;
+  s.layer.first = 1e-5;
+  assert_int_equal(vg_settings_add(&s, VG_TABLE_SOURCES, &source, &err),
+                   VG_OK);
+  vg_form_print(to, "octa.obj", &s, &none, 1);
+  fclose(to);
+  table = strstr(text, "name=\"sources\"");
+  assert_non_null(table);
+  table = strstr(table, ">\n") + 2;
+  assert_non_null(strstr(table, "&quot;a &quot;&quot;b&quot;&quot;&quot;"));
+  assert_true(!strncmp(table, "kind", 4));
+  for (at = text; (at = strstr(at, "<input autocomplete")); ) {
+    char *name = attribute(at, " name=\""), *value;
+
+    value = attribute(name + strlen(name) + 1, " value=\"");
+    put(&f, name, value);
+    at = value + strlen(value) + 1;
+  }
+  put(&f, "farfield.kind", "auto");
+  assert_int_equal(settings_of(&f, &back, &err), VG_OK);
+  assert_true(back.growth == 1.1 && back.layer.first == 1e-5);
+  snprintf(path, sizeof path, "%s/back.deck", scene.dir);
+  assert_int_equal(vg_deck_write(path, &back, NULL, 0, &err), VG_OK);
+  assert_int_equal(vg_deck_read(path, &s, &err), VG_OK);
+  assert_true(s.growth == 1.1 && s.layer.first == 1e-5);
+  free(text);
+  vg_settings_release(&back);
+  vg_settings_release(&s);
+  vg_fields_release(&f);
+}
+
+static void places_are_checked(void **state)
+{
+  static const struct { const char *name, *value; vg_status st; } t[] = {
+    { "ranks", "2", VG_OK }, { "ranks", "0", VG_ERR_INPUT },
+    { "time", "1-02:00:00", VG_OK }, { "time", "1; rm", VG_ERR_INPUT },
+    { "partition", "--x", VG_ERR_INPUT }, { "partition", "big", VG_OK },
+    { "where", "moon", VG_ERR_INPUT }, { "where", "slurm", VG_OK } };
+  struct vg_error err;
+
+  (void)state;
+  for (size_t i = 0; i < sizeof t / sizeof *t; i++) {
+    struct vg_fields f = VG_FIELDS_INIT;
+    struct vg_serve_run run = { 0 };
+
+    put(&f, t[i].name, t[i].value);
+    assert_int_equal(vg_form_run(&f, &run, &err), t[i].st);
+    vg_fields_release(&f);
+  }
+}
+
+static void projects_are_found(void **state)
+{
+  struct vg_projects list;
+  struct vg_settings s;
+  struct vg_error err = VG_ERROR_INIT;
+
+  (void)state;
+  assert_int_equal(vg_projects_list(scene.root, &list, &err), VG_OK);
+  assert_int_equal(list.n, 1);
+  assert_string_equal(list.item[0].name, "octa.obj");
+  vg_projects_release(&list);
+  assert_int_equal(vg_project_settings(scene.root, "octa.obj", NULL, &s, &err),
+                   VG_OK);
+  assert_string_equal(s.title, "octa");
+  vg_settings_release(&s);
+  assert_int_equal(vg_project_settings(scene.root, "out.obj", NULL, &s, &err),
+                   VG_ERR_INPUT);
+  /* a file beside it that leads out */
+  portal_file(scene.root, "b.obj", "v 0 0 0\n");
+  {
+    char path[400];
+
+    snprintf(path, sizeof path, "%s/b.deck", scene.root);
+    assert_int_equal(symlink("../other/secret.obj", path), 0);
+    assert_int_equal(vg_project_settings(scene.root, "b.obj", NULL, &s, &err),
+                     VG_ERR_INPUT);
+    assert_non_null(strstr(err.text, "b.deck leads out"));
+    assert_null(strstr(err.text, PORTAL_SECRET));
+    unlink(path);
+  }
+}
+
+/* --- records and jobs ---------------------------------------------------- */
+
+static struct vg_serve_runs empty_runs(void)
+{
+  static const struct vg_portal_options o = VG_PORTAL_OPTIONS_INIT;
+  struct vg_serve_runs r = { .o = &o, .root = scene.root };
+
+  assert_true(asprintf(&r.dir, "%s/runs", scene.dir) > 0);
+  mkdir(r.dir, 0777);
+  return r;
+}
+
+static void records_come_back(void **state)
+{
+  struct vg_serve_runs r = empty_runs(), again = empty_runs();
+  struct vg_serve_run *run;
+  struct vg_error err = VG_ERROR_INIT;
+
+  (void)state;
+  assert_int_equal(vg_runs_new(&r, &run, &err), VG_OK);
+  assert_int_equal(run->id, 1);
+  free(run->project);
+  run->project = strdup("a \"b\".stl");
+  strcpy(run->title, "fl\xc3\xbcgel");
+  run->is_slurm = 1;
+  run->ranks = 7;
+  strcpy(run->job, "4711");
+  run->state = VG_SERVE_PENDING;
+  assert_int_equal(vg_record_write(run, &err), VG_OK);
+  assert_int_equal(vg_runs_new(&r, &run, &err), VG_OK);
+  /* at work when the portal went, and gone meanwhile */
+  run->state = VG_SERVE_RUNNING;
+  run->pid = getpid();
+  run->pid_start = vg_process_start(getpid()) + 1;
+  assert_true(run->pid_start > 1);
+  assert_int_equal(vg_record_write(run, &err), VG_OK);
+  assert_int_equal(vg_runs_new(&r, &run, &err), VG_OK);
+  portal_file(run->dir, "run.json", "{\"state\": \"done\"}");
+  assert_int_equal(vg_runs_open(&again, &err), VG_OK);
+  assert_int_equal(again.n, 2);       /* the third has no record */
+  run = again.item[0];
+  assert_string_equal(run->project, "a \"b\".stl");
+  assert_string_equal(run->title, "fl\xc3\xbcgel");
+  assert_int_equal(run->ranks, 7);
+  assert_int_equal(run->state, VG_SERVE_PENDING);
+  assert_int_equal(again.item[1]->state, VG_SERVE_FAILED);
+  assert_non_null(strstr(again.item[1]->note, "gone"));
+  /* a number that is taken is not given again */
+  assert_int_equal(vg_runs_new(&again, &run, &err), VG_OK);
+  assert_int_equal(run->id, 4);
+  vg_runs_release(&r);
+  vg_runs_release(&again);
+}
+
+static void damaged_records_are_refused(void **state)
+{
+  static const char *const bad[] = { "", "{}", "[1]", "{\"state\": 1}",
+    "{\"state\": \"done\", \"state\": \"done\"}" };
+  struct vg_serve_run run = { .id = 3 };
+  struct vg_error err;
+
+  (void)state;
+  for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
+    assert_int_equal(vg_record_parse("it", bad[i], strlen(bad[i]), &run,
+                                     &err), VG_ERR_FORMAT);
+  assert_null(run.project);
+}
+
+static void jobs_stand_as_squeue_says(void **state)
+{
+  struct vg_serve_runs r = empty_runs();
+  struct vg_serve_run *run[3];
+  struct vg_error err = VG_ERROR_INIT;
+
+  (void)state;
+  for (int k = 0; k < 3; k++) {
+    assert_int_equal(vg_runs_new(&r, &run[k], &err), VG_OK);
+    run[k]->is_slurm = 1;
+    run[k]->state = VG_SERVE_PENDING;
+    snprintf(run[k]->job, sizeof run[k]->job, "%d", 12 + k);
+  }
+  r.squeue_start = 5;
+  run[2]->submitted = 6;              /* later than squeue looked */
+  vg_runs_take_squeue(&r, "112 RUNNING\n12 RUNNING\n", 23);
+  assert_int_equal(run[0]->state, VG_SERVE_RUNNING);
+  assert_int_equal(run[1]->state, VG_SERVE_FAILED);
+  assert_int_equal(run[2]->state, VG_SERVE_PENDING);
+  portal_file(run[0]->dir, "run.log", "x\nexit status 4 after 3.00 s\n");
+  vg_runs_take_squeue(&r, "", 0);
+  assert_int_equal(run[0]->state, VG_SERVE_LIMIT);
+  vg_runs_release(&r);
+}
+
+/* --- requests ------------------------------------------------------------ */
+
+/* `format` with the token for its %s; asks, and says whether that is the
+ * status. */
+static void asks(int status, const char *format)
+{
+  char request[8192], expected[32];
+  int n = snprintf(request, sizeof request, format, scene.token);
+
+  assert_true(n > 0 && n < (int)sizeof request);
+  portal_ask(&scene, request, (size_t)n);
+  snprintf(expected, sizeof expected, "HTTP/1.1 %d ", status);
+  if (strncmp(scene.answer, expected, strlen(expected)) != 0)
+    fail_msg("not %d but '%.30s' %.200s for\n%s", status, scene.answer,
+             strstr(scene.answer, "role=\"alert\"")
+             ? strstr(scene.answer, "role=\"alert\"") : "", request);
+  assert_null(strstr(scene.answer, PORTAL_SECRET));
+}
+
+#define HOST "Host: 127.0.0.1:8765\r\n"
+#define OWN HOST "Origin: http://127.0.0.1:8765\r\n"
+#define FORM "Content-Type: application/x-www-form-urlencoded\r\n"
+
+static void need_server(void)
+{
+  if (!scene.p) skip();
+}
+
+static void gate_keeps_strangers_out(void **state)
+{
+  (void)state;
+  need_server();
+  asks(200, "GET /%s HTTP/1.1\r\n" HOST "\r\n");
+  asks(200, "GET /%s HTTP/1.1\r\nHost: localhost:9\r\n\r\n");
+  asks(200, "GET /%s HTTP/1.1\r\nHost: [::1]\r\n\r\n");
+  asks(403, "GET / HTTP/1.1\r\n" HOST "\r\n");
+  asks(403, "GET /0123456789abcdef0123456789abcdef/ HTTP/1.1\r\n" HOST
+       "\r\n");
+  asks(403, "GET /x%s HTTP/1.1\r\n" HOST "\r\n");
+  asks(403, "GET /%s HTTP/1.1\r\nHost: evil.example\r\n\r\n");
+  asks(403, "GET /%s HTTP/1.1\r\nHost: 127.0.0.1.evil.example\r\n\r\n");
+  asks(403, "GET /%s HTTP/1.1\r\nHost: localhost:80x\r\n\r\n");
+  asks(405, "PUT /%s HTTP/1.1\r\n" HOST "\r\n");
+  /* POST: from its own pages alone */
+  asks(403, "POST /%sruns HTTP/1.1\r\n" HOST FORM "Content-Length: 0\r\n\r\n");
+  asks(403, "POST /%sruns HTTP/1.1\r\n" HOST FORM "Origin: null\r\n"
+       "Content-Length: 0\r\n\r\n");
+  asks(403, "POST /%sruns HTTP/1.1\r\n" HOST FORM
+       "Origin: http://evil.example\r\nContent-Length: 0\r\n\r\n");
+  asks(413, "POST /%sruns HTTP/1.1\r\n" OWN FORM
+       "Content-Length: 2000000\r\n\r\n");
+  asks(413, "POST /%supload HTTP/1.1\r\n" OWN
+       "Content-Type: multipart/form-data; boundary=XYZ\r\n"
+       "Content-Length: 70000\r\n\r\n");
+}
+
+static void pages_are_safe(void **state)
+{
+  (void)state;
+  need_server();
+  asks(200, "GET /%s?project=octa.obj HTTP/1.1\r\n" HOST "\r\n");
+  assert_non_null(strstr(scene.answer, "frame-ancestors 'none'"));
+  assert_non_null(strstr(scene.answer, "X-Content-Type-Options: nosniff"));
+  assert_non_null(strstr(scene.answer, "name=\"s.growth\""));
+  asks(200, "GET /%s?project=%%3Cscript%%3Ealert(1) HTTP/1.1\r\n" HOST
+       "\r\n");
+  assert_null(strstr(scene.answer, "<script>alert"));
+  asks(200, "GET /%s?project=../other/secret.obj HTTP/1.1\r\n" HOST "\r\n");
+  asks(200, "GET /%s?project=out.obj HTTP/1.1\r\n" HOST "\r\n");
+  assert_non_null(strstr(scene.answer, "leads out"));
+  asks(404, "GET /%snothing HTTP/1.1\r\n" HOST "\r\n");
+  asks(404, "GET /%sruns/1/log HTTP/1.1\r\n" HOST "\r\n");
+  asks(200, "GET /%sruns.json HTTP/1.1\r\n" HOST "\r\n");
+}
+
+static void a_run_waits_and_is_stopped(void **state)
+{
+  (void)state;
+  need_server();
+  asks(400, "POST /%sruns HTTP/1.1\r\n" OWN FORM "Content-Length: 30\r\n\r\n"
+       "project=octa.obj&s.growth=0.50");
+  assert_non_null(strstr(scene.answer, "must be above 1"));
+  assert_non_null(strstr(scene.answer, "value=\"0.50\""));
+  asks(400, "POST /%sruns HTTP/1.1\r\n" OWN FORM "Content-Length: 27\r\n\r\n"
+       "project=../other/secret.obj");
+  asks(303, "POST /%sruns HTTP/1.1\r\n" OWN FORM "Content-Length: 30\r\n\r\n"
+       "project=octa.obj&title=%%3Cb%%3E");
+  asks(200, "GET /%sruns HTTP/1.1\r\n" HOST "\r\n");
+  assert_non_null(strstr(scene.answer, "data-state=\"queued\""));
+  assert_non_null(strstr(scene.answer, "&lt;b&gt;"));
+  asks(200, "GET /%sruns/1/deck HTTP/1.1\r\n" HOST "\r\n");
+  asks(200, "GET /%sruns/1/file/run.json HTTP/1.1\r\n" HOST "\r\n");
+  asks(404, "GET /%sruns/1/file/../../octa.obj HTTP/1.1\r\n" HOST "\r\n");
+  asks(404, "GET /%sruns/1/file/%%2e%%2e/lock HTTP/1.1\r\n" HOST "\r\n");
+  asks(404, "GET /%sruns/1/file/ HTTP/1.1\r\n" HOST "\r\n");
+  assert_int_equal(vg_portal_active(scene.p), 1);
+  asks(303, "POST /%sruns/1/stop HTTP/1.1\r\n" OWN FORM
+       "Content-Length: 0\r\n\r\n");
+  assert_int_equal(vg_portal_active(scene.p), 0);
+  asks(404, "POST /%sruns/1/burn HTTP/1.1\r\n" OWN FORM
+       "Content-Length: 0\r\n\r\n");
+  asks(404, "POST /%sruns/77/stop HTTP/1.1\r\n" OWN FORM
+       "Content-Length: 0\r\n\r\n");
+}
+
+/* A form of one file; `text` is its content. */
+static void brings(int status, const char *folder, const char *name,
+                   const char *text)
+{
+  char body[8192], request[12000];
+  int n = snprintf(body, sizeof body,
+    "--XYZ\r\nContent-Disposition: form-data; name=\"folder\"\r\n\r\n%s\r\n"
+    "--XYZ\r\nContent-Disposition: form-data; name=\"file\"; "
+    "filename=\"%s\"\r\n"
+    "Content-Type: application/octet-stream\r\n\r\n%s\r\n--XYZ--\r\n", folder,
+    name, text);
+
+  snprintf(request, sizeof request, "POST /%%supload HTTP/1.1\r\n" OWN
+           "Content-Type: multipart/form-data; boundary=XYZ\r\n"
+           "Content-Length: %d\r\n\r\n%s", n, body);
+  asks(status, request);
+}
+
+static void files_are_brought(void **state)
+{
+  char text[1200], path[512];
+  struct stat s;
+
+  (void)state;
+  need_server();
+  memset(text, 'v', sizeof text);
+  text[1001] = 0;
+  brings(303, "", "new.obj", "v 0 0 0\n");
+  assert_non_null(strstr(scene.answer, "?project=new.obj"));
+  brings(400, "", "new.obj", "v 1 1 1\n");
+  assert_non_null(strstr(scene.answer, "is there already"));
+  brings(400, "", "long.obj", text);
+  assert_non_null(strstr(scene.answer, "--max-upload"));
+  text[1000] = 0;
+  brings(303, "", "just.obj", text);
+  brings(400, "", "../up.obj", "v 0 0 0\n");
+  brings(400, "..", "up.obj", "v 0 0 0\n");
+  brings(400, "away", "up.obj", "v 0 0 0\n");
+  brings(400, "", ".hidden", "v 0 0 0\n");
+  brings(400, "", "out.obj", "v 0 0 0\n");
+  snprintf(path, sizeof path, "%s/new.obj", scene.root);
+  assert_int_equal(stat(path, &s), 0);
+  assert_int_equal(s.st_size, 8);
+  snprintf(path, sizeof path, "%s/long.obj", scene.root);
+  assert_int_equal(stat(path, &s), -1);
+  snprintf(path, sizeof path, "%s/other/up.obj", scene.dir);
+  assert_int_equal(stat(path, &s), -1);
+}
+
+static void a_second_portal_is_kept_off(void **state)
+{
+  struct vg_portal_options o = VG_PORTAL_OPTIONS_INIT;
+  struct vg_portal *p = NULL;
+  struct vg_error err = VG_ERROR_INIT;
+  char path[512];
+  struct stat s;
+
+  (void)state;
+  need_server();
+  o.root = scene.root;
+  o.port = -1;
+  assert_int_equal(vg_portal_open(&o, &p, &err), VG_ERR_IO);
+  assert_non_null(strstr(err.text, "another portal"));
+  snprintf(path, sizeof path, "%s/vanguard-runs/portal.url", scene.root);
+  assert_int_equal(stat(path, &s), 0);
+  assert_int_equal(s.st_mode & 0777, 0600);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(fields_come_in_pieces),
+    cmocka_unit_test(paths_stay_inside),
+    cmocka_unit_test(names_of_files_are_plain),
+    cmocka_unit_test(markup_is_escaped),
+    cmocka_unit_test(lines_of_progress_are_understood),
+    cmocka_unit_test(a_form_becomes_settings),
+    cmocka_unit_test(a_form_is_refused_by_name),
+    cmocka_unit_test(a_printed_form_comes_back),
+    cmocka_unit_test(places_are_checked),
+    cmocka_unit_test(projects_are_found),
+    cmocka_unit_test(records_come_back),
+    cmocka_unit_test(damaged_records_are_refused),
+    cmocka_unit_test(jobs_stand_as_squeue_says),
+    cmocka_unit_test(gate_keeps_strangers_out),
+    cmocka_unit_test(pages_are_safe),
+    cmocka_unit_test(a_run_waits_and_is_stopped),
+    cmocka_unit_test(files_are_brought),
+    cmocka_unit_test(a_second_portal_is_kept_off),
+  };
+  struct vg_error err = VG_ERROR_INIT;
+  int failed;
+
+  if (portal_scene_open(&scene, &err) < 0 && err.code != VG_ERR_UNSUPPORTED) {
+    fprintf(stderr, "%s\n", err.text);
+    return 1;
+  }
+  failed = cmocka_run_group_tests(tests, NULL, NULL);
+  portal_scene_close(&scene);
+  return failed;
+}
