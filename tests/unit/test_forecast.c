@@ -94,7 +94,8 @@ static void few_leaves_have_whole_planes(void **state)
  * it; a part that may be cut has the tasks that it would have by itself. */
 static void parts_follow_their_maker(void **state)
 {
-  static const struct vg_parting_rate rate = { 2e-6, 3e-6, 5e-6, 0.25, 1e-6 };
+  static const struct vg_parting_rate rate = { 2e-6, 3e-6, 5e-6, 0.25, 1e-6,
+                                                4e-6 };
   struct vg_forecast_part part[3];
   struct vg_forecast_parting all = { &rate, 7000, 1100, 3, part };
   struct vg_forecast o = VG_FORECAST_INIT, alone;
@@ -102,6 +103,7 @@ static void parts_follow_their_maker(void **state)
   struct vg_model_result f;
   struct vg_cut_rule rule;
   const struct vg_span *maker = NULL;
+  double coarse = 0;
   struct scene s;
 
   (void)state;
@@ -121,6 +123,7 @@ static void parts_follow_their_maker(void **state)
     const struct vg_span *one = &o.spans.span[i];
 
     if (!strcmp(one->path, "0J0")) maker = one;
+    if (one->path[0] == '1') coarse += one->cpu;
     if (strcmp(one->path, "0.1L")) continue;
     assert_string_equal(one->after, "0J0");
     assert_true(one->n_cell == (uint64_t)(s.load.cells + 0.5));
@@ -132,7 +135,9 @@ static void parts_follow_their_maker(void **state)
   assert_true(fabs(maker->loops - maker->cpu / 4) < 1e-12);
   m.ranks = 4;
   assert_int_equal(vg_model_replay(&o.spans, &m, &f, NULL, NULL), VG_OK);
-  assert_true(f.wall > maker->cpu && f.wall < o.spans.wall);
+  assert_string_equal(maker->after, "1R0");
+  assert_true(fabs(coarse - 4e-6 * 7000) < 1e-12);
+  assert_true(f.wall > coarse + maker->cpu && f.wall < o.spans.wall);
   m.cyclic = 1;
   assert_int_equal(vg_model_replay(&o.spans, &m, &f, NULL, NULL), VG_OK);
   vg_forecast_release(&o);

@@ -144,6 +144,7 @@ static vg_status run_whole(struct vg_partition *p, struct vg_comm *comm,
                            struct vg_spans *spans, struct vg_error *err)
 {
   struct vg_coarse_cells coarse = { .n_cell = 0 };
+  struct vg_spans before = VG_SPANS_INIT;
   struct vg_node *root = NULL;
   vg_status st = VG_OK;
 
@@ -154,13 +155,17 @@ static vg_status run_whole(struct vg_partition *p, struct vg_comm *comm,
   st = vg_comm_agree(comm, st, err);
   if (st == VG_OK) st = cut_like_parts(p, comm, root, err);
   if (st == VG_OK && p->options.maker == vg_discrete_part) {
-    st = vg_coarse_mesh(p, comm, root, &coarse, err);
+    st = vg_coarse_mesh(p, comm, root, &coarse, spans ? &before : NULL, err);
     if (root) p->options.parting.coarse = &coarse;
   }
   if (st == VG_OK) {
     st = run_tasks(p, comm, root != NULL, &root, spans, err);
     root = NULL;
   }
+  if (st == VG_OK && before.n)
+    st = vg_coarse_record(&before, spans, err);
+  st = vg_comm_agree(comm, st, err);
+  vg_spans_release(&before);
   vg_node_free(root);
   p->options.parting.coarse = NULL;
   vg_coarse_cells_release(&coarse);

@@ -167,7 +167,7 @@ static vg_status sizes(const struct vg_partition *p, struct vg_comm *comm,
 
 static vg_status grow(struct vg_partition *p, struct vg_comm *comm,
                       double factor, struct vg_partition **out,
-                      struct vg_error *err)
+                      struct vg_spans *spans, struct vg_error *err)
 {
   struct vg_partition_options o = p->options;
   struct vg_partition_report report = { 0 };
@@ -187,7 +187,7 @@ static vg_status grow(struct vg_partition *p, struct vg_comm *comm,
   o.stop = stop;
   o.user = p;
   if (st == VG_OK)
-    st = vg_partition_grow(comm, p->boundary, coarse, &o, out, &report, NULL,
+    st = vg_partition_grow(comm, p->boundary, coarse, &o, out, &report, spans,
                            err);
   if (st == VG_ERR_GEOMETRY || st == VG_ERR_UNSUPPORTED)
     vg_discrete_refuse(st, err->text, factor, err);
@@ -196,9 +196,51 @@ static vg_status grow(struct vg_partition *p, struct vg_comm *comm,
   return st;
 }
 
+/* Their paths begin with that of the whole, "0". What they made is none of the
+ * mesh's. */
+static void rename_tasks(struct vg_spans *s)
+{
+  for (size_t k = 0; k < s->n; k++) {
+    s->span[k].path[0] = '1';
+    if (s->span[k].after[0]) s->span[k].after[0] = '1';
+    s->span[k].n_cell = 0;
+    s->span[k].work = 0;
+  }
+  for (size_t k = 0; k < s->n_help; k++) s->help[k].path[0] = '1';
+}
+
+/* A repair, which waits for all that was filled as all of them do; or else the
+ * only leaf. */
+static const char *last_task(const struct vg_spans *s)
+{
+  const char *last = "";
+
+  for (size_t k = 0; k < s->n; k++)
+    if (s->span[k].kind == VG_SPAN_REPAIR) return s->span[k].path;
+    else if (s->span[k].kind == VG_SPAN_LEAF) last = s->span[k].path;
+  return last;
+}
+
+vg_status vg_coarse_record(struct vg_spans *before, struct vg_spans *spans,
+                           struct vg_error *err)
+{
+  const char *last = last_task(before);
+  vg_status st;
+
+  for (size_t k = 0; k < spans->n; k++)
+    if (!spans->span[k].after[0])
+      memcpy(spans->span[k].after, last, strlen(last) + 1);
+  st = vg_spans_append(before, spans, err);
+  if (st < 0) return st;
+  vg_spans_release(spans);
+  *spans = *before;
+  *before = (struct vg_spans)VG_SPANS_INIT;
+  return VG_OK;
+}
+
 vg_status vg_coarse_mesh(struct vg_partition *p, struct vg_comm *comm,
                          const struct vg_node *root, struct vg_coarse_cells *c,
-                         struct vg_error *err)
+                         struct vg_spans *spans, struct vg_error *err)
 {
   struct vg_parting_options o = VG_PARTING_OPTIONS_INIT;
   struct vg_partition *made = NULL;
@@ -212,7 +254,8 @@ vg_status vg_coarse_mesh(struct vg_partition *p, struct vg_comm *comm,
   }
   VG_TRY(vg_comm_agree(comm, st, err));
   VG_TRY(vg_comm_max(comm, 1, &factor, err));
-  st = grow(p, comm, factor, &made, err);
+  st = grow(p, comm, factor, &made, spans, err);
+  if (spans) rename_tasks(spans);
   if (st != VG_OK) goto done;          /* or stopped */
   VG_TRY(gather(p, comm, vg_partition_slices(made), c, err));
   if (root)

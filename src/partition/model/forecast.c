@@ -21,8 +21,8 @@ const struct vg_rates vg_rates_measured = {
   .join = { 0, 0, 0, 0.04e-6, 0, 0.12e-6, 0.98 },
   .close = { 0, 0, 0, 0.025e-6, 0.3e-3, 0, 0.98 },
   .split = { 0, 0, 0, 0.045e-6, 0, 0, 0.98 },
-  .discrete = { 0, 5.6e-6, 3.5e-6, 0.2, 6.7e-6 },   /* M9 */
-  .octree = { 1.6e-6, 23e-6, 1.9e-6, 0.45, 9.5e-6 },
+  .discrete = { 0, 3.3e-6, 3.5e-6, 0.47, 6.7e-6, 5e-6 },   /* M9 */
+  .octree = { 1.6e-6, 23e-6, 1.9e-6, 0.45, 9.5e-6, 0 },
 };
 
 /* Loops over fewer faces are of one chunk or two (node_split.c). */
@@ -34,6 +34,11 @@ static const double places_per_corner = 0.5, place_faces = 900;   /* M3 */
 
 /* Bytes of a front per face: three indices, half a point and its name. */
 static const double bytes_per_face = 28;
+
+/* Cells of a leaf of a coarse mesh (advance/coarse.c). */
+static const double coarse_leaf = 20000;   /* D10 */
+
+static const struct vg_task_rate no_time = { .task = 0 };
 
 /* Of less than a cell, what zones leave of a block is no void. */
 static const double least_void = 1;
@@ -492,16 +497,41 @@ static vg_status add_load(const struct vg_load *load, struct vg_part *p,
   return vg_load_index(&p->load, 1, err);
 }
 
+/* A coarse mesh that all workers make: equal leaves, and a repair, as which it
+ * is waited for. Its cuts are in the rate. */
+static vg_status add_coarse(struct forecast *c,
+                            const struct vg_forecast_parting *q)
+{
+  size_t n = (size_t)ceil(q->coarse / coarse_leaf);
+  struct vg_task_rate rate = { .task = q->rate->mesh * q->coarse / (double)n };
+  struct vg_amount a = { q->coarse / (double)n, 0 };
+  char path[VG_PATH_MAX];
+  vg_status st;
+
+  VG_TRY(add_task(c, "1J0", "", VG_SPAN_JOIN, &no_time, a, 0, 0));
+  for (size_t k = 0; k < n; k++) {
+    snprintf(path, sizeof path, "1.%zuL", k);
+    VG_TRY(add_task(c, path, "1J0", VG_SPAN_LEAF, &rate, a, 0, 0));
+    c->out->spans.span[c->out->spans.n - 1].n_cell = 0;   /* of the mesh */
+  }
+  st = add_task(c, "1R0", "1.0L", VG_SPAN_REPAIR, &no_time,
+                (struct vg_amount){0, 0}, 0, 0);
+done:
+  return st;
+}
+
 /* The task that makes the parts, which no zones come from. */
 static vg_status add_maker(struct forecast *c, const struct vg_part *root,
                            const struct vg_forecast_parting *q)
 {
-  static const struct vg_task_rate none = { .task = 0 };
+  int has_mesh = q->rate->mesh > 0 && q->coarse > 0;
   struct vg_span *made;
-  vg_status st = add_task(c, "0J0", "", VG_SPAN_JOIN, &none,
-                          (struct vg_amount){root->load.cells, 0},
-                          vg_bins_faces(&root->front), (double)root->load.n);
+  vg_status st = has_mesh ? add_coarse(c, q) : VG_OK;
 
+  if (st >= 0)
+    st = add_task(c, "0J0", has_mesh ? "1R0" : "", VG_SPAN_JOIN, &no_time,
+                  (struct vg_amount){root->load.cells, 0},
+                  vg_bins_faces(&root->front), (double)root->load.n);
   if (st < 0) return st;
   made = &c->out->spans.span[c->out->spans.n - 1];
   made->cpu = q->rate->face * vg_bins_faces(&root->front) +

@@ -21,8 +21,9 @@ struct vg_task_rate { double task, even, graded, face, made, hand, loops; };
 
 /** Seconds of one core that a maker of partings takes (cut/parting.h), per face
  * of the front, coarse cell or octant, and triangle of interfaces; the share of
- * them in loops; and of repairs at interfaces, per triangle of these. */
-struct vg_parting_rate { double face, coarse, side, loops, repair; };
+ * them in loops; of repairs at interfaces, per triangle of these; and per coarse
+ * cell of a mesh that all workers make first. */
+struct vg_parting_rate { double face, coarse, side, loops, repair, mesh; };
 
 struct vg_rates {
   struct vg_task_rate pencil, rib, tile, leaf;

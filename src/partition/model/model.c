@@ -665,7 +665,7 @@ static double extra_of_cuts(const struct sim *s, double cuts)
     const struct vg_span *one = &s->g.span[i];
 
     if (is_cut(one->kind)) n_zone += (double)one->n_cell;
-    if (one->kind != VG_SPAN_LEAF) continue;
+    if (one->kind != VG_SPAN_LEAF || !one->n_cell) continue;
     leaves += one->cpu;
     n_leaf += (double)one->n_cell;
   }
