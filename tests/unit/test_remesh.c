@@ -273,7 +273,7 @@ static void scales_all_sizes(void **unused)
     o.scale = i ? 0.5 : 1;
     remesh(&m, &o, &r);
     assert_float_equal(r.h_max, 0.2 * o.scale, 1e-12);
-    assert_float_equal(r.tolerance, 0.01 * o.scale * o.scale, 1e-12);
+    assert_float_equal(r.tolerance, 0.01 * o.scale, 1e-12);
     vg_surface_quality(&m, &q[i]);
     vg_mesh_release(&m);
   }

@@ -68,6 +68,7 @@ static void crossing_bricks(void **state)
 {
   struct vg_mesh m = VG_MESH_INIT;
   struct vg_wrap_report r;
+  size_t n_edge = 0;
 
   (void)state;
   add_brick(&m, 0, 12);
@@ -79,6 +80,12 @@ static void crossing_bricks(void **state)
   assert_int_equal(m.n_patch, 2);
   /* in the concave corner a ball of radius 0.1 stays so far away at most */
   assert_true(r.distance >= 0.9 * r.offset && r.distance < 0.1);
+  /* points are on the bricks, and along their edges on these */
+  assert_int_equal(r.n_point, m.n_point);
+  assert_true(r.n_fit > 0.8 * (double)r.n_point);
+  for (size_t i = 0; i < m.n_point; i++)
+    n_edge += fabs(m.point[i][0]) < 1e-9 && fabs(m.point[i][1]) < 1e-9;
+  assert_true(n_edge >= 5);   /* of a length of 1 in edges of about 0.1 */
   for (size_t i = 0; i < m.n_tri; i++) {
     double c = 0;
 

@@ -154,7 +154,7 @@ static vg_status settle(struct job *j, struct vg_error *err)
   r->length = e.is_domain ? length_of(m, outer) : whole;
   if (!(r->length > 0)) r->length = whole;
   j->jag = j->o->tolerance > 0 ? j->o->tolerance : TOLERANCE * r->length;
-  r->tolerance = j->jag * j->o->scale * j->o->scale;
+  r->tolerance = j->jag * j->o->scale * fmax(j->o->scale, 1);
   r->h_max = j->o->h_max > 0 ? j->o->h_max : H_MAX * r->length;
   if (e.is_domain) {
     j->far = fmin(r->h_max, H_MAX * r->length);
@@ -204,9 +204,9 @@ static vg_status prepare(struct job *j, struct vg_error *err)
     o->ridge_angle, j->jag, j->given->tri_patch, j->given->patch,
     o->hard }, err));
   VG_TRY(vg_sizes_make(&j->ref, &j->curves, &(struct vg_sizes_options){
-    o->per_turn / o->scale, CHORD * j->r.tolerance, o->scale, j->r.h_min,
-    j->r.h_max, vg_scaled_growth(o->growth, o->scale), j->cap, o->cap,
-    o->across, j->given->tri_patch }, err));
+    o->per_turn / o->scale, CHORD * j->jag * o->scale * o->scale, o->scale,
+    j->r.h_min, j->r.h_max, vg_scaled_growth(o->growth, o->scale), j->cap,
+    o->cap, o->across, j->given->tri_patch }, err));
   if (!j->looks) VG_TRY(check_number(j, err));
   j->source = vg_alloc(o->n_source, sizeof *j->source);
   if (!j->source) VG_TRY(vg_fail_memory(err, "the sources"));

@@ -31,8 +31,9 @@ struct vg_remesh_options {
   size_t n_source;          /* sources of sizes, as the volume uses them */
   const struct vg_source *source;
   double scale;             /* factor on all sizes: h_min, h_max, those of the
-                               shape and of the sources, on growth - 1, and its
-                               square on the tolerance */
+                               shape and of the sources, on growth - 1 and on
+                               the tolerance; above 1 its square on that, as
+                               arcs rise so */
   const struct vg_size_map *map;  /* sizes besides; or NULL */
   const double *cap;        /* [n_point] of m: largest size there; or NULL */
   const double *across;     /* [n_patch] edges across its strips; NULL: 1 */

@@ -8,6 +8,7 @@
 #include "core/wrap/wrap_parts.h"
 
 #define MOST_TRIANGLES 1e8
+#define REACH 1.5         /* S41: of the offset: farther, a gap was bridged */
 
 static double area(const struct vg_mesh *m)
 {
@@ -70,16 +71,25 @@ vg_status vg_wrap(struct vg_mesh *m, double size, struct vg_wrap_report *r,
 {
   struct vg_wrap_report report = { .offset = size * VG_WRAP_OFFSET };
   struct vg_mesh out = VG_MESH_INIT;
+  double (*near)[3] = NULL;
   vg_status st;
 
   VG_TRY(check(m, size, err));
-  VG_TRY(vg_wrap_cgal(m, size, report.offset, &out, &report, err));
+  VG_TRY(vg_wrap_cgal(m, size, report.offset, &out, &near, err));
   if (!out.n_tri) {
     st = vg_fail(err, VG_ERR_GEOMETRY, "nothing is left of a wrap of size %g: "
                  "it goes through the surface's holes; take a larger one",
                  size);
     goto done;
   }
+  out.patch = m->patch;     /* borrowed, for the check */
+  out.n_patch = m->n_patch;
+  st = vg_wrap_fit(&out, (const double (*)[3])near, REACH * report.offset,
+                   &report.n_fit, err);
+  out.patch = NULL;
+  out.n_patch = 0;
+  if (st < 0) goto done;
+  VG_TRY(vg_wrap_label(m, &out, &report, err));
   VG_TRY(count_empty(m, &out, &report.n_empty, err));
   out.patch = m->patch;
   out.n_patch = m->n_patch;
@@ -87,8 +97,10 @@ vg_status vg_wrap(struct vg_mesh *m, double size, struct vg_wrap_report *r,
   m->n_patch = 0;
   report.n_before = m->n_tri;
   vg_mesh_move(m, &out);
+  report.n_point = m->n_point;
   *r = report;
 done:
+  free(near);
   vg_mesh_release(&out);
   return st;
 }

@@ -25,6 +25,7 @@ extern "C" {
 struct vg_wrap_report {
   double offset;             /* size * VG_WRAP_OFFSET */
   size_t n_before;           /* triangles that went in */
+  size_t n_fit, n_point;     /* points that lie on the input; all */
   size_t n_empty;            /* patches that have none any more */
   double distance;           /* largest distance from the input of corners and
                                 centres of the new triangles */
@@ -34,7 +35,9 @@ struct vg_wrap_report {
 /** 1 when this build can wrap. */
 int vg_wrap_is_built(void);
 
-/** Put a surface around the triangles of m in their place.
+/** Put a surface around the triangles of m in their place. CGAL's points lie
+ * `offset` away from them; they are put onto the input, so that its ridges and
+ * corners come back, where they can without a fold or an intersection.
  *
  * A new triangle has the patch of the old one nearest to its centre; patches
  * keep their order, also those that are left without triangles.

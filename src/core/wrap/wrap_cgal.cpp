@@ -9,13 +9,25 @@ extern "C" int vg_wrap_is_built(void)
   return 0;
 }
 
-extern "C" vg_status vg_wrap_cgal(const struct vg_mesh *, double, double,
-                                  struct vg_mesh *, struct vg_wrap_report *,
-                                  struct vg_error *err)
+static vg_status not_built(struct vg_error *err)
 {
   return vg_fail(err, VG_ERR_UNSUPPORTED, "this build of vanguard cannot wrap: "
                  "install CGAL (Debian's libcgal-dev) and configure again, or "
                  "repair the surface elsewhere");
+}
+
+extern "C" vg_status vg_wrap_cgal(const struct vg_mesh *, double, double,
+                                  struct vg_mesh *, double (**)[3],
+                                  struct vg_error *err)
+{
+  return not_built(err);
+}
+
+extern "C" vg_status vg_wrap_label(const struct vg_mesh *, struct vg_mesh *,
+                                   struct vg_wrap_report *,
+                                   struct vg_error *err)
+{
+  return not_built(err);
 }
 
 #else
@@ -111,35 +123,55 @@ void farther(const Point &p, double d, vg_wrap_report *r)
   r->at[2] = p.z();
 }
 
-void give(const Mesh &from, const Input &in, vg_mesh *out, vg_wrap_report *r)
+/* near: of each point the nearest place of the input. */
+void give(const Mesh &from, const Input &in, vg_mesh *out,
+          double (**near)[3])
 {
   std::vector<uint32_t> place(from.num_vertices());
-  double d;
 
   if (!allocate(from.number_of_vertices(), from.number_of_faces(), out))
     throw std::bad_alloc();
+  *near = static_cast<double(*)[3]>(
+      std::malloc((from.number_of_vertices() + 1) * sizeof **near));
+  if (!*near) throw std::bad_alloc();
   for (Mesh::Vertex_index v : from.vertices()) {
     const Point &p = from.point(v);
-    const double x[3] = {p.x(), p.y(), p.z()};
+    const Point q = in.tree.closest_point(p);
 
-    in.nearest(p, &d);
-    farther(p, d, r);
     place[v] = static_cast<uint32_t>(out->n_point);
-    for (int k = 0; k < 3; k++) out->point[out->n_point][k] = x[k];
+    for (int k = 0; k < 3; k++) {
+      out->point[out->n_point][k] = p[k];
+      (*near)[out->n_point][k] = q[k];
+    }
     out->n_point++;
   }
   for (Mesh::Face_index f : from.faces()) {
-    Point corner[3];
     int k = 0;
 
-    for (Mesh::Vertex_index v : from.vertices_around_face(from.halfedge(f))) {
-      corner[k] = from.point(v);
+    for (Mesh::Vertex_index v : from.vertices_around_face(from.halfedge(f)))
       out->tri[out->n_tri][k++] = place[v];
-    }
-    Point c = CGAL::centroid(corner[0], corner[1], corner[2]);
+    out->tri_patch[out->n_tri++] = 0;
+  }
+}
+
+void label(const Input &in, vg_mesh *out, vg_wrap_report *r)
+{
+  double d;
+
+  for (size_t i = 0; i < out->n_point; i++) {
+    const Point p = point_of(out, static_cast<uint32_t>(i));
+
+    in.nearest(p, &d);
+    farther(p, d, r);
+  }
+  for (size_t i = 0; i < out->n_tri; i++) {
+    const uint32_t *t = out->tri[i];
+    Point c = CGAL::centroid(point_of(out, t[0]), point_of(out, t[1]),
+                             point_of(out, t[2]));
     size_t old = in.nearest(c, &d);
+
     farther(c, d, r);
-    out->tri_patch[out->n_tri++] = in.m->tri_patch[old];
+    out->tri_patch[i] = in.m->tri_patch[old];
   }
 }
 
@@ -152,8 +184,7 @@ extern "C" int vg_wrap_is_built(void)
 
 extern "C" vg_status vg_wrap_cgal(const struct vg_mesh *m, double size,
                                   double offset, struct vg_mesh *out,
-                                  struct vg_wrap_report *r,
-                                  struct vg_error *err)
+                                  double (**near)[3], struct vg_error *err)
 {
   try {
     Input in(m);
@@ -162,13 +193,26 @@ extern "C" vg_status vg_wrap_cgal(const struct vg_mesh *m, double size,
     if (in.triangle.empty())
       return vg_fail(err, VG_ERR_INPUT, "a wrap: all triangles are degenerate");
     wrap(m, size, offset, made);
-    give(made, in, out, r);
+    give(made, in, out, near);
     return VG_OK;
   } catch (const std::bad_alloc &) {
     return vg_fail_memory(err, "a wrap; take a larger size");
   } catch (const std::exception &e) {
     return vg_fail(err, VG_ERR_GEOMETRY, "CGAL could not wrap the surface: "
                    "%.300s", e.what());
+  }
+}
+
+extern "C" vg_status vg_wrap_label(const struct vg_mesh *m,
+                                   struct vg_mesh *out,
+                                   struct vg_wrap_report *r,
+                                   struct vg_error *err)
+{
+  try {
+    label(Input(m), out, r);
+    return VG_OK;
+  } catch (const std::bad_alloc &) {
+    return vg_fail_memory(err, "a wrap; take a larger size");
   }
 }
 
