@@ -90,6 +90,13 @@ for way in advancing discrete octree; do
   jq -e '.partition.near_interfaces | .cells > 5000 and .cells < 20000 and
     .angle_min_p1 > 20 and .angle_min_p1 < 45 and .angle_min <= .angle_min_p1' \
     one/box.report.json >out || fail "$way: cells near interfaces"
+  # The coarse mesh is made first, and recorded as void 1, of no cells.
+  jq -e --arg way $way '.columns as $c | [.spans[] | [$c, .] | transpose |
+    map({(.[0]): .[1]}) | add] | map(select(.path[:1] == "1")) as $first |
+    if $way != "discrete" then $first == [] else ($first | length) > 0 and
+    ($first | map(.cells + .work) | add) == 0 and
+    any(.[]; .path == "0J0" and .after[:1] == "1") end' \
+    one/box.timeline.json >out || fail "$way: the record of the coarse mesh"
   vanguard plan -r one/box.timeline.json -n 2 --schedule cyclic
   exits 0
   says out "Forecast, leaves dealt out in turn"
