@@ -21,8 +21,8 @@ n=0
 while IFS= read -r line; do
   line=${line%%#*}
   line=${line//100000/10000}
-  line=${line/-p wing.step/-p wing.step --edges-per-turn 6 --growth 2 \
-    --surface-size 400 --surface-tolerance 20 --hmin 25}
+  line=${line/ wing.step --/ wing.step --edges-per-turn 6 --growth 2 \
+    --surface-size 400 --surface-tolerance 20 --hmin 25 --}
   read -ra words <<<"$line"
   "$program" "${words[@]:1}" >out 2>err
   status=$?
