@@ -5,7 +5,8 @@
 #
 # usage: verification/decompositions.sh [--vanguard PROGRAM]
 #          [--meshcheck PROGRAM] [--data DIR] [--work DIR] [--out FILE]
-#          [--parts LIST] [--ways LIST] [--partitioners LIST] [CASE...]
+#          [--parts LIST] [--ways LIST] [--partitioners LIST] [--bare]
+#          [CASE...]
 #   --vanguard   the program (default build/release/bin/vanguard)
 #   --meshcheck  an independent judge of .lb8.ugrid files, called with one
 #   --data       folder of real geometry (verification/README.md)
@@ -15,6 +16,7 @@
 #   --ways       of advancing, octree, remesh, h-refine, the last two being the
 #                interfaces of the discrete decomposition (default: all)
 #   --partitioners  default "metis rcb"
+#   --bare       aircraft without layers
 #   CASE         names or patterns of the table at the end
 # Exit status: 0 all valid, 1 one is not or a run failed, 2 usage.
 set -euo pipefail
@@ -27,7 +29,8 @@ root=$(cd "$(dirname "$0")/.." && pwd)
 vanguard=$root/build/release/bin/vanguard
 meshcheck='' data='' work='' project='' parts='4 16 100' options=()
 ways='advancing octree remesh h-refine' partitioners='metis rcb'
-take_options "vanguard meshcheck data work out parts ways partitioners" "" \
+bare=0
+take_options "vanguard meshcheck data work out parts ways partitioners" bare \
   "$@"
 [ -x "$vanguard" ] || die "no program $vanguard: build it first"
 work_folder decompositions
@@ -36,21 +39,23 @@ work_folder decompositions
 need jq jq
 
 # Cells outside the layers, most over mean of leaves, triangles of interfaces,
-# 1st percentile of the smallest angle of these cells, parts filled with others.
+# 1st percentile of the smallest angle of these cells and of those within two
+# rings of interfaces, parts filled with others.
 row='[(.partition | (.leaf_cells | add) + .fragment_cells + .zone_cells
   + .repair_cells), (.partition.balance * 1000 | round / 1000),
   .partition.parting.interface_triangles // 0,
   (.field // .mesh).angle_min_p1,
+  .partition.near_interfaces.angle_min_p1 // "-",
   .partition.parts_widened] | map(tostring) | join(" | ")'
 
 # try WAY OPTIONS...: mesh the case, judge it; a row of the table.
 failed=0
 try() {
-  local way=$1 verdict=valid figures=' | | | | '
+  local way=$1 verdict=valid figures=' | | | | | '
   shift
   rm -rf "$work/files"
   if ! "$vanguard" mesh -q -p "$project" "${options[@]}" "$@" \
-       --write lb8.ugrid --out "$work/files" > "$work/log" 2>&1 < /dev/null
+       --timeline --write lb8.ugrid --out "$work/files" > "$work/log" 2>&1 < /dev/null
   then verdict="FAILED: $(tail -1 "$work/log")"
   elif ! "$vanguard" check -q "$work"/files/*.lb8.ugrid > "$work/log" 2>&1
   then verdict="NOT VALID"
@@ -65,8 +70,8 @@ try() {
 
 {
   echo "| case | decomposition | verdict | cells outside layers | balance |" \
-    "interface triangles | 1st percentile | parts widened |"
-  echo "|---|---|---|---|---|---|---|---|"
+    "interface triangles | 1st percentile | near interfaces | parts widened |"
+  echo "|---|---|---|---|---|---|---|---|---|"
 } | say
 while read -r name kind size; do
   wanted "$name" || continue
@@ -76,7 +81,8 @@ while read -r name kind size; do
             echo "SKIP $name: no --data with it" >&2
             continue
           fi
-          options+=(--cells mixed) ;;   # a third of the cells to judge
+          options+=(--cells mixed)   # a third of the cells to judge
+          [ "$bare" = 0 ] || options+=(--layers no) ;;
   esac
   for way in $ways; do
     case $way in
