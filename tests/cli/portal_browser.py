@@ -136,7 +136,7 @@ def start(b, url, project, k):
     """A run from the form; its settings are typed."""
     b.go(f"{url}?project={project}")
     b.type("#title", f"run {k}")
-    for name, value in (("s.leaf_cells", "20000"), ("s.threads", "1"),
+    for name, value in (("s.leaf_cells", "12000"), ("s.threads", "1"),
                         ("s.write", "b8.ugrid")):
         b.type(f"[name='{name}']", value)
         if not b.ask(f"document.querySelector(\"[name='{name}']\").closest("
@@ -198,7 +198,7 @@ def main():
                 raise SystemExit(f"{rows} rows for y_plus")
             for k in range(1, n + 1):
                 start(b, url, project, k)
-            stopped, resumed = work(b, n, picture, 600)
+            stopped, resumed = work(b, n, picture, 1200)
             print(f"{n} runs started, {len(stopped)} stopped, "
                   f"{len(resumed)} resumed")
             # without scripts: all is there, and a run can be started

@@ -222,6 +222,11 @@ static void print_run(FILE *to, const struct vg_serve_run *run)
   fputs("</article>\n", to);
 }
 
+static int is_at_work(const struct vg_serve_run *run)
+{
+  return vg_run_is_active(run) && run->state != VG_SERVE_QUEUED;
+}
+
 void vg_page_runs(const struct vg_portal *p, FILE *to)
 {
   const struct vg_serve_runs *r = &p->runs;
@@ -229,11 +234,15 @@ void vg_page_runs(const struct vg_portal *p, FILE *to)
 
   fprintf(to, "<div id=\"list\" data-active=\"%d\">\n", vg_portal_active(p));
   if (!r->n) fputs("<p class=\"about\">No run yet.</p>\n", to);
-  for (size_t i = 0; i < r->n; i++) {   /* the newest first */
-    const struct vg_serve_run *run = r->item[r->n - 1 - i];
+  /* Those at work first, then the newest. */
+  for (int at_work = 1; at_work >= 0; at_work--)
+    for (size_t i = 0; i < r->n; i++) {
+      const struct vg_serve_run *run = r->item[r->n - 1 - i];
 
-    if (i < n || vg_run_is_active(run)) print_run(to, run);
-  }
+      if (is_at_work(run) == at_work &&
+          (i < n || vg_run_is_active(run)))
+        print_run(to, run);
+    }
   if (n < r->n)
     fprintf(to, "<p class=\"about\">Of %zu runs these are the last ones and "
             "those at work; all are in vanguard-runs.</p>\n", r->n);

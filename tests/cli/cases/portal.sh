@@ -34,7 +34,7 @@ serve() {
 
 mkdir -p mine other
 "$program" demo box --cells 2000 --out mine >out 2>err
-"$program" demo box --cells 600000 --out mine/large >out 2>err
+"$program" demo box --cells 300000 --out mine/large >out 2>err
 serve mine --max-upload 100000
 grep -q 'portal' mine.err && grep -q libmicrohttpd mine.err &&
   skip "$(cat mine.err)"
@@ -194,7 +194,7 @@ await 2 failed 60
 says runs.json '1 are allowed'
 
 # stopped when something is kept, resumed: the same bytes; a second one waits
-slow=(-d project=large/box.lb8.ugrid -d s.threads=1 -d s.leaf_cells=30000
+slow=(-d project=large/box.lb8.ugrid -d s.threads=1 -d s.leaf_cells=15000
   -d s.write=b8.ugrid)
 kept() { find "mine/vanguard-runs/$1/kept" -type f 2>/dev/null | wc -l; }
 until_kept() {
@@ -221,7 +221,7 @@ asks 200 "${url}runs"
 posts 303 runs/3/resume
 await 3 done 120
 await 4 done 120
-"$program" mesh -q -p mine/large/box --threads 1 --leaf-cells 30000 \
+"$program" mesh -q -p mine/large/box --threads 1 --leaf-cells 15000 \
   --write b8.ugrid --out whole >out 2>err
 same whole/box.b8.ugrid mine/vanguard-runs/0003/mesh/box.b8.ugrid
 same whole/box.b8.ugrid mine/vanguard-runs/0004/mesh/box.b8.ugrid
@@ -246,6 +246,23 @@ await 6 done 60
 asks 200 "${url}runs/6/file/sweep/sweep.csv"
 asks 200 "${url}runs"
 says body 'sweep.csv'
+
+# on ranks: mpirun hands the wish to stop on
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
+  OMPI_MCA_rmaps_base_oversubscribe=1
+kill "$server"
+wait "$server"
+serve mine
+posts 303 runs "${slow[@]}" -d ranks=2
+if timeout 20 mpirun -n 2 true >/dev/null 2>&1; then
+  until_kept 0007
+  posts 303 runs/7/stop
+  await 7 stopped 60
+  says runs.json 'finished tasks are kept'
+  posts 303 runs/7/resume
+  await 7 done 120
+  same whole/box.b8.ugrid mine/vanguard-runs/0007/mesh/box.b8.ugrid
+fi
 kill "$server"
 wait "$server"
 
@@ -276,13 +293,13 @@ export FAKE=$PWD PATH=$PWD/bin:$PATH
 serve mine
 posts 303 runs "${slow[@]}" -d where=slurm -d ranks=1 -d cpus=1 \
   -d time=01:00:00 -d partition=big
-until_kept 0007
-await 7 running 30
+until_kept 0008
+await 8 running 30
 says calls "--nodes 1 --ntasks-per-node 1 --cpus-per-task 1 --time=01:00:00 --partition=big vanguard.sbatch"
 says calls "PROJECT=$PWD/mine/large/box.lb8.ugrid"
-posts 303 runs/7/stop
-await 7 stopped 30
+posts 303 runs/8/stop
+await 8 stopped 30
 says calls "scancel --batch --signal=TERM 4711"
-posts 303 runs/7/resume
-await 7 done 120
-same whole/box.b8.ugrid mine/vanguard-runs/0007/mesh/box.b8.ugrid
+posts 303 runs/8/resume
+await 8 done 120
+same whole/box.b8.ugrid mine/vanguard-runs/0008/mesh/box.b8.ugrid
