@@ -5,7 +5,7 @@ export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
   OMPI_MCA_hwloc_base_binding_policy=none \
   PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe \
   PRTE_MCA_hwloc_default_binding_policy=none
-vanguard demo sphere --cells 400000 --out p
+vanguard demo sphere --cells 200000 --out p
 launcher=
 ! mpirun -n 2 true >/dev/null 2>&1 || launcher='mpirun -n 2'
 
@@ -27,7 +27,7 @@ kill_after() {
 }
 
 for way in 'discrete' 'discrete --interfaces h-refine --partitioner rcb' \
-  'octree' 'advancing --leaf-cells 40000'; do
+  'octree' 'advancing --leaf-cells 20000'; do
   # shellcheck disable=SC2086 # words
   set -- mesh -q -p p/sphere --decompose $way --write b8.ugrid
   case $way in advancing*) ;; *) set -- "$@" --parts 12 ;; esac
