@@ -1,120 +1,6 @@
 /* The single changes of a surface: after any sequence of them it hangs
  * together, encloses what it did, and each has done what it says or nothing. */
-#include "remesh_shapes.h"
-
-#include "core/remesh/work.h"
-
-struct scene {
-  struct vg_mesh m;
-  struct vg_ref ref;
-  struct vg_curves curves;
-  struct vg_work w;
-};
-
-static void set(struct scene *s, double tolerance, double size)
-{
-  struct vg_error err = VG_ERROR_INIT;
-  const struct vg_curves_options o = { 40, tolerance, s->m.tri_patch,
-                                       s->m.patch, NULL };
-
-  if (vg_ref_build(&s->ref, &s->m, &err) < 0) fail_msg("%s", err.text);
-  if (vg_curves_find(&s->curves, &s->ref, &o, &err) < 0)
-    fail_msg("%s", err.text);
-  s->ref.size = malloc(s->m.n_point * sizeof *s->ref.size);
-  for (size_t p = 0; p < s->m.n_point; p++) s->ref.size[p] = size;
-  s->ref.slope = 0.2;
-  vg_ref_sizes(&s->ref);
-  s->w = (struct vg_work){ .ref = &s->ref, .curves = &s->curves,
-    .tolerance = tolerance, .relative = 1, .h_min = size, .h_max = size };
-  if (vg_work_begin(&s->w, &err) < 0) fail_msg("%s", err.text);
-}
-
-static void release(struct scene *s)
-{
-  vg_work_release(&s->w);
-  vg_curves_release(&s->curves);
-  vg_ref_release(&s->ref);
-  vg_mesh_release(&s->m);
-}
-
-static double drawn(uint32_t *state)
-{
-  *state = *state * 1664525u + 1013904223u;
-  return (double)(*state >> 8) / 16777216.;
-}
-
-/* Mates agree, lines cover their curves, Euler's number is 2, and every point
- * of the reference that is gone is a sample of just one triangle. */
-static void expect_whole(const struct scene *s)
-{
-  const struct vg_work *w = &s->w;
-  size_t n_tri = 0, n_point = 0, n_edge = 0, n_sample = 0, n_listed = 0;
-  double length = 0;
-
-  for (uint32_t h = 0; h < 3 * w->n_tri; h++) {
-    uint32_t g = w->mate[h];
-
-    if (vg_work_removed(w, h / 3)) continue;
-    n_tri += h % 3 == 0;
-    assert_int_equal(w->mate[g], h);
-    assert_int_equal(vg_work_from(w, g), vg_work_to(w, h));
-    assert_int_equal(w->edge[g], w->edge[h]);
-    n_edge += h < g;
-    if (h < g && w->edge[h])
-      length += w->line[w->edge[h] - 1].at[1] - w->line[w->edge[h] - 1].at[0];
-    for (uint32_t i = h % 3 ? VG_REF_NONE : w->first[h / 3];
-         i != VG_REF_NONE; i = w->follow[i]) n_listed++;
-  }
-  for (size_t p = 0; p < w->n_point; p++) {
-    uint32_t h = w->point[p].half;
-
-    if (h == VG_REF_NONE) continue;
-    n_point++;
-    assert_false(vg_work_removed(w, h / 3));
-    assert_int_equal(vg_work_from(w, h), p);
-  }
-  for (size_t p = 0; p < w->n_given; p++) n_sample += w->is_sample[p];
-  assert_int_equal(n_sample, n_listed);
-  assert_int_equal(n_point + n_tri, n_edge + 2);
-  assert_float_equal(length, s->curves.length, 1e-9);
-}
-
-static void expect_near(const struct scene *s, double tolerance)
-{
-  for (size_t p = 0; p < s->w.n_point; p++) {
-    uint32_t hint = VG_REF_NONE;
-    double y[3];
-
-    if (s->w.point[p].half == VG_REF_NONE) continue;
-    assert_true(vg_ref_nearest(&s->ref, s->w.point[p].x, NULL, &hint, y)
-                <= tolerance);
-  }
-}
-
-/* One change drawn at random; 1 when it was made. */
-static int change(struct vg_work *w, uint32_t *state)
-{
-  uint32_t h = (uint32_t)(drawn(state) * 3 * (double)w->n_tri);
-  int kind = (int)(drawn(state) * 4);
-  double before, x[3];
-  size_t t = h / 3;
-
-  if (vg_work_removed(w, t)) return 0;
-  if (kind == 0) return vg_work_split(w, h, NULL) != VG_REF_NONE;
-  if (kind == 1) return vg_work_collapse(w, h, 1e9, 0.01);
-  if (kind == 2) {
-    size_t other = w->mate[h] / 3;
-
-    before = fmin(vg_work_tri_shape(w, t), vg_work_tri_shape(w, other));
-    if (!vg_work_swap(w, h)) return 0;
-    assert_true(vg_work_tri_shape(w, t) > before);
-    assert_true(vg_work_tri_shape(w, other) > before);
-    return 1;
-  }
-  for (int k = 0; k < 3; k++)
-    x[k] = vg_work_at(w, vg_work_from(w, h))[k] + 0.1 * (drawn(state) - 0.5);
-  return vg_work_move(w, vg_work_from(w, h), x, 0.01);
-}
+#include "remesh_scene.h"
 
 static void any_sequence(struct scene *s, double tolerance)
 {
@@ -122,13 +8,13 @@ static void any_sequence(struct scene *s, double tolerance)
   size_t n = 0;
 
   for (int i = 0; i < 6000; i++) {
-    n += (size_t)change(&s->w, &state);
-    if (i % 500 == 0) expect_whole(s);
+    n += (size_t)scene_change(&s->w, &state);
+    if (i % 500 == 0) scene_expect_whole(s);
   }
   assert_true(n > 500);
   assert_true(s->w.n_split && s->w.n_collapse && s->w.n_swap && s->w.n_move);
-  expect_whole(s);
-  expect_near(s, tolerance);
+  scene_expect_whole(s);
+  scene_expect_near(s, tolerance);
 }
 
 static void any_sequence_on_a_ball(void **unused)
@@ -138,9 +24,9 @@ static void any_sequence_on_a_ball(void **unused)
 
   (void)unused;
   shape_ball(&s.m, size, 12);
-  set(&s, 0.02, 0.2);
+  scene_set(&s, 0.02, 0.2);
   any_sequence(&s, 0.02);
-  release(&s);
+  scene_release(&s);
 }
 
 static void any_sequence_on_a_box(void **unused)
@@ -151,9 +37,9 @@ static void any_sequence_on_a_box(void **unused)
 
   (void)unused;
   shape_box(&s.m, size, n);
-  set(&s, 1e-3, 0.1);
+  scene_set(&s, 1e-3, 0.1);
   any_sequence(&s, 1e-9);     /* its sides are planes */
-  release(&s);
+  scene_release(&s);
 }
 
 /* Corners stay, points of ridges leave only along them. */
@@ -166,7 +52,7 @@ static void corners_and_ridges_stay(void **unused)
 
   (void)unused;
   shape_box(&s.m, size, n);
-  set(&s, 1e-3, 1);
+  scene_set(&s, 1e-3, 1);
   for (uint32_t h = 0; h < 3 * w->n_tri; h++) {
     uint32_t p = vg_work_from(w, h);
     int kind = w->point[p].kind, on_line = w->edge[h] != 0;
@@ -179,8 +65,8 @@ static void corners_and_ridges_stay(void **unused)
                  && vg_work_move(w, p, (double[3]){ 0, 0, 0 }, 0));
     if (w->edge[h]) assert_false(vg_work_swap(w, h));
   }
-  expect_whole(&s);
-  release(&s);
+  scene_expect_whole(&s);
+  scene_release(&s);
 }
 
 /* What would leave the tolerance is refused: on a coarse ball no point can go
@@ -192,11 +78,11 @@ static void tolerance_is_kept(void **unused)
 
   (void)unused;
   shape_ball(&s.m, size, 6);
-  set(&s, 1e-3, 1);
+  scene_set(&s, 1e-3, 1);
   for (uint32_t h = 0; h < 3 * s.w.n_tri; h++)
     assert_false(vg_work_collapse(&s.w, h, 1e9, 0));
   assert_int_equal(s.w.n_collapse, 0);
-  release(&s);
+  scene_release(&s);
 }
 
 int main(void)

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "core/geometry/graded.h"
 #include "core/geometry/hilbert.h"
 #include "core/geometry/vector.h"
@@ -19,16 +20,17 @@
 struct curve_size {
   const struct vg_work *w;
   size_t curve;
+  uint32_t by;
 };
 
 static double size_along(void *user, double s)
 {
-  const struct curve_size *c = user;
+  struct curve_size *c = user;
   const struct vg_work *w = c->w;
   double x[3];
 
   vg_curve_at(w->curves, w->ref, c->curve, s, x);
-  return vg_work_size(w, x, VG_REF_NONE);
+  return vg_work_size(w, x, &c->by);
 }
 
 /* A half-edge of the line i; VG_REF_NONE: not found. */
@@ -48,22 +50,52 @@ static uint32_t half_of(const struct vg_work *w, uint32_t i)
   return VG_REF_NONE;
 }
 
-/* Put points into curve i, whose lines are first .. end - 1, and mark those
- * that stay. */
-static vg_status divide(struct vg_work *w, size_t i, uint32_t first,
-                        uint32_t end, uint8_t **stays, size_t *cap,
-                        struct vg_error *err)
-{
-  struct curve_size user = { w, i };
-  const double len = vg_curve_length(w->curves, i);
-  int loop = w->line[first].end[0] == w->line[end - 1].end[1];
-  double *s = NULL;
+/* Where curve i is to be divided, by the sizes along it. */
+struct steps {
   size_t n;
-  uint32_t cur = first, base = first;
+  double *s;                /* [n + 1] */
   vg_status st;
+  struct vg_error err;
+};
 
-  VG_TRY(vg_graded_steps(len, size_along, &user, loop ? 3 : 1, &n, &s, err));
-  for (size_t k = 1; k < n; k++) {
+struct dividing {
+  const struct vg_work *w;
+  struct steps *of;         /* [n_curve] */
+};
+
+static int is_loop(const struct vg_work *w, size_t i)
+{
+  const struct vg_curve *c = &w->curves->curve[i];
+
+  return w->curves->point[c->first] == w->curves->point[c->first + c->n - 1];
+}
+
+static void find_steps(void *context, size_t first, size_t end, int worker)
+{
+  const struct dividing *d = context;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++) {
+    struct curve_size user = { d->w, i, VG_REF_NONE };
+    struct steps *of = &d->of[i];
+
+    of->st = vg_graded_steps(vg_curve_length(d->w->curves, i), size_along,
+                             &user, is_loop(d->w, i) ? 3 : 1, &of->n, &of->s,
+                             &of->err);
+  }
+}
+
+/* Put points into a curve whose lines are first .. end - 1: those between the
+ * steps go, which stay is marked. */
+static void divide(struct vg_work *w, const struct steps *of, uint32_t first,
+                   uint32_t end)
+{
+  const double *s = of->s;
+  uint32_t cur = first, base = first;
+
+  for (uint32_t i = first; i + 1 < end; i++)
+    w->point[w->line[i].end[1]].goes = 1;
+  for (size_t k = 1; k < of->n && !w->failed; k++) {
     double slack = 0.02 * fmin(s[k] - s[k - 1], s[k + 1] - s[k]);
     uint32_t m = VG_REF_NONE, h;
 
@@ -76,21 +108,34 @@ static vg_status divide(struct vg_work *w, size_t i, uint32_t first,
       m = vg_work_split(w, h, &s[k]);
       if (m != VG_REF_NONE) cur = n_line;   /* the second half */
     }
-    if (m == VG_REF_NONE) continue;
-    if (m >= *cap) {
-      size_t old = *cap;
-
-      if (vg_reserve(stays, cap, m + 1, 1)) {
-        st = vg_fail_memory(err, "the curves of the surface");
-        goto done;
-      }
-      memset(*stays + old, 0, *cap - old);
-    }
-    (*stays)[m] = 1;
+    if (m != VG_REF_NONE) w->point[m].goes = 0;
   }
-done:
-  free(s);
-  return w->failed && st >= 0 ? vg_fail_memory(err, "the new surface") : st;
+}
+
+vg_status vg_pass_divide(struct vg_work *w, int threads, struct vg_error *err)
+{
+  const size_t n = w->curves->n_curve;
+  struct dividing d = { w, vg_calloc(n, sizeof *d.of) };
+  size_t line = 0;
+  vg_status st = VG_OK;
+
+  if (!d.of) return vg_fail_memory(err, "the curves of the surface");
+  vg_parallel_for(threads, n, 1, find_steps, &d);
+  for (size_t i = 0; i < n && st >= 0; i++) {
+    size_t end = line + w->curves->curve[i].n - 1;
+
+    if (d.of[i].st < 0) {
+      st = d.of[i].st;
+      if (err) *err = d.of[i].err;
+      break;
+    }
+    divide(w, &d.of[i], (uint32_t)line, (uint32_t)end);
+    line = end;
+  }
+  if (w->failed && st >= 0) st = vg_fail_memory(err, "the new surface");
+  for (size_t i = 0; i < n; i++) free(d.of[i].s);
+  free(d.of);
+  return st;
 }
 
 /* Towards that neighbour on the curve that is nearer. */
@@ -113,41 +158,32 @@ static int take_away(struct vg_work *w, uint32_t p)
   return 0;
 }
 
-vg_status vg_pass_curves(struct vg_work *w, struct vg_error *err)
+void vg_pass_curves(struct vg_work *w)
 {
-  size_t cap = w->n_point, n_given = w->n_point, line = 0, n = 1;
-  uint8_t *stays = vg_calloc(cap, 1);
-  vg_status st = VG_OK;
+  size_t n = 1;
 
-  if (!stays) return vg_fail_memory(err, "the curves of the surface");
-  for (size_t i = 0; i < w->curves->n_curve; i++) {
-    size_t end = line + w->curves->curve[i].n - 1;
-
-    VG_TRY(divide(w, i, (uint32_t)line, (uint32_t)end, &stays, &cap, err));
-    line = end;
-  }
   for (int round = 0; n && round < 4; round++) {
     n = 0;
-    for (uint32_t p = 0; p < n_given; p++)
-      if (w->point[p].kind == VG_WORK_CURVE && !stays[p]
-          && w->point[p].half != VG_REF_NONE) n += (size_t)take_away(w, p);
+    for (uint32_t p = 0; p < w->n_point; p++)
+      if (w->point[p].goes && w->point[p].half != VG_REF_NONE
+          && w->point[p].kind == VG_WORK_CURVE) n += (size_t)take_away(w, p);
     n += vg_pass_swap(w);
   }
-  if (w->failed) st = vg_fail_memory(err, "the new surface");
-done:
-  free(stays);
-  return st;
 }
 
 /* --- edges by length ----------------------------------------------------- */
 
 /* Edges with a ratio beyond the bounds, by rising ratio: of positive doubles
- * the bits rise with the values. */
-static vg_status edges_by_ratio(const struct vg_work *w, double lo, double hi,
-                                int falls, struct vg_key **key, size_t *n,
-                                struct vg_error *err)
+ * the bits rise with the values. Those that were looked at and have not
+ * changed since are left out. */
+static vg_status edges_by_ratio(struct vg_work *w, int look, double lo,
+                                double hi, int falls, struct vg_key **key,
+                                size_t *n, struct vg_error *err)
 {
+  const uint64_t since = w->looked[look];
   size_t cap = 0;
+
+  w->looked[look] = w->clock;
 
   *key = NULL;
   *n = 0;
@@ -156,7 +192,8 @@ static vg_status edges_by_ratio(const struct vg_work *w, double lo, double hi,
     uint64_t bits;
 
     if (vg_work_removed(w, h / 3)
-        || (w->mate[h] != VG_REF_NONE && w->mate[h] < h)) continue;
+        || (w->mate[h] != VG_REF_NONE && w->mate[h] < h)
+        || vg_work_is_old(w, h, since)) continue;
     r = vg_work_ratio(w, h);
     if (r >= lo && r <= hi) continue;
     memcpy(&bits, &r, sizeof bits);
@@ -198,7 +235,8 @@ vg_status vg_pass_collapse(struct vg_work *w, double least, double most,
   for (int round = 0; done && round < ROUNDS; round++) {
     done = 0;
     free(key);
-    VG_TRY(edges_by_ratio(w, least, INFINITY, 0, &key, &n_key, err));
+    VG_TRY(edges_by_ratio(w, VG_WORK_COLLAPSES, least, INFINITY, 0, &key,
+                          &n_key, err));
     for (size_t i = 0; i < n_key; i++) {
       uint32_t h = key[i].index;
 
@@ -231,15 +269,16 @@ static int is_longest(const struct vg_work *w, uint32_t h)
 vg_status vg_pass_split(struct vg_work *w, double most, int across, size_t *n,
                         struct vg_error *err)
 {
+  const int look = across ? VG_WORK_ACROSS : VG_WORK_SPLITS;
   vg_status st = VG_OK;
   struct vg_key *key = NULL;
   size_t n_key, done = 1;
 
   *n = 0;
-  for (int round = 0; done && round < ROUNDS; round++) {
+  for (int round = 0; done && round < (across ? 1 : ROUNDS); round++) {
     done = 0;
     free(key);
-    VG_TRY(edges_by_ratio(w, 0, most, 1, &key, &n_key, err));
+    VG_TRY(edges_by_ratio(w, look, 0, most, 1, &key, &n_key, err));
     for (size_t i = 0; i < n_key; i++) {
       uint32_t h = key[i].index;
 
@@ -263,21 +302,19 @@ size_t vg_pass_swap(struct vg_work *w)
   size_t n = 0, now = 1;
 
   for (int round = 0; now && round < ROUNDS; round++) {
-    const uint64_t before = w->swapped;
+    const uint64_t before = w->looked[VG_WORK_SWAPS];
 
     now = 0;
-    w->swapped = w->clock;
-    for (uint32_t h = 0; h < 3 * w->n_tri; h++) {
-      uint32_t g = w->mate[h];
+    w->looked[VG_WORK_SWAPS] = w->clock;
+    for (uint32_t t = 0; t < w->n_tri; t++) {
+      if (w->stamp[t] <= before || vg_work_removed(w, t)) continue;
+      for (uint32_t h = 3 * t; h < 3 * t + 3; h++) {
+        uint32_t g = w->mate[h];
 
-      if (vg_work_removed(w, h / 3) || g == VG_REF_NONE || g < h
-          || w->edge[h]) continue;
-      if (w->point[vg_work_from(w, h)].changed <= before
-          && w->point[vg_work_to(w, h)].changed <= before
-          && w->point[vg_work_from(w, vg_work_prev(h))].changed <= before
-          && w->point[vg_work_from(w, vg_work_prev(g))].changed <= before)
-        continue;
-      now += (size_t)vg_work_swap(w, h);
+        if (g == VG_REF_NONE || w->edge[h]
+            || (g < h && w->stamp[g / 3] > before)) continue;
+        now += (size_t)vg_work_swap(w, h);
+      }
     }
     n += now;
     if (200 * now < w->n_tri / 100) now = 0;
@@ -338,7 +375,8 @@ static int smooth_point(struct vg_work *w, uint32_t p)
     double y[3];
 
     for (int k = 0; k < 3; k++) y[k] = o[k] + step * (x[k] - o[k]);
-    if (vg_distance(y, o) < 0.01 * w->point[p].size) return 0;
+    if (vg_distance(y, o) < (worst > FINE2 ? 0.1 : 0.02) * w->point[p].size)
+      return 0;
     if (vg_work_move(w, p, y, worst > FINE2 ? worst
                      : worst + 0.02 * (1 - worst))) return 1;
   }
@@ -358,29 +396,58 @@ size_t vg_pass_smooth(struct vg_work *w, int sweeps)
 
 /* --- polish -------------------------------------------------------------- */
 
-/* Try places around p, nearer and nearer, for its worst triangle. */
+/* The least shape of the triangles around, were their point at x. */
+static double shape_at(const struct vg_work *w, const uint32_t *ring, size_t n,
+                       const double x[3])
+{
+  double least = 1;
+
+  for (size_t i = 0; i < n; i++) {
+    double s = vg_work_shape(x, vg_work_at(w, vg_work_to(w, ring[i])),
+                             vg_work_at(w, vg_work_from(w, vg_work_prev(
+                               ring[i]))));
+
+    if (s < least) least = s;
+  }
+  return least;
+}
+
+/* Try the best of some places around p, nearer and nearer, for its worst
+ * triangle. */
 static int search_place(struct vg_work *w, uint32_t p)
 {
   static const double way[8][2] = {
     { 1, 0 }, { -1, 0 }, { 0, 1 }, { 0, -1 }, { 0.7, 0.7 }, { -0.7, 0.7 },
     { 0.7, -0.7 }, { -0.7, -0.7 } };
   const uint32_t h = w->point[p].half;
-  double u[3], v[3], n[3], x[3], step = 0.2 * w->point[p].size;
-  int moved = 0;
+  uint32_t ring[VG_WORK_RING];
+  double u[3], v[3], n[3], step = 0.2 * w->point[p].size;
+  int moved = 0, open;
+  size_t n_ring;
 
   if (w->point[p].kind != VG_WORK_FACE) return 0;
+  n_ring = vg_work_ring(w, p, ring, &open);
   vg_sub(vg_work_at(w, vg_work_to(w, h)), vg_work_at(w, p), u);
   vg_sub(vg_work_at(w, vg_work_from(w, vg_work_prev(h))), vg_work_at(w, p),
          v);
   vg_cross(u, v, n);
-  if (!(vg_unit(u) > 0) || !(vg_unit(n) > 0)) return 0;
+  if (!n_ring || !(vg_unit(u) > 0) || !(vg_unit(n) > 0)) return 0;
   vg_cross(n, u, v);
-  for (int i = 0; i < 3; i++, step /= 3)
+  for (int i = 0; i < 3; i++, step /= 3) {
+    double best = 1.001 * shape_at(w, ring, n_ring, w->point[p].x), x[8][3];
+    int at = -1;
+
     for (int k = 0; k < 8; k++) {
+      double s;
+
       for (int d = 0; d < 3; d++)
-        x[d] = w->point[p].x[d] + step * (way[k][0] * u[d] + way[k][1] * v[d]);
-      moved += vg_work_move(w, p, x, 1);
+        x[k][d] = w->point[p].x[d]
+                  + step * (way[k][0] * u[d] + way[k][1] * v[d]);
+      s = shape_at(w, ring, n_ring, x[k]);
+      if (s > best) best = s, at = k;
     }
+    if (at >= 0) moved += vg_work_move(w, p, x[at], 1);
+  }
   return moved;
 }
 
@@ -416,9 +483,12 @@ static int polish_tri(struct vg_work *w, uint32_t t)
 vg_status vg_pass_polish(struct vg_work *w, double shape, size_t *n,
                          struct vg_error *err)
 {
+  const uint64_t before = w->looked[VG_WORK_POLISH];
+
   *n = 0;
+  w->looked[VG_WORK_POLISH] = w->clock;
   for (uint32_t t = 0; t < w->n_tri; t++)
-    if (!vg_work_removed(w, t) && vg_work_tri_shape(w, t) < shape)
-      *n += (size_t)polish_tri(w, t);
+    if (w->stamp[t] > before && !vg_work_removed(w, t)
+        && vg_work_tri_shape(w, t) < shape) *n += (size_t)polish_tri(w, t);
   return w->failed ? vg_fail_memory(err, "the new surface") : VG_OK;
 }

@@ -5,12 +5,17 @@
 
 #include "core/remesh/work.h"
 
-/** Divide the curves by size, and take away the points that they had. */
-vg_status vg_pass_curves(struct vg_work *w, struct vg_error *err);
+/** Divide the curves of a surface not changed yet by size: points that are
+ * not needed are marked to go. */
+vg_status vg_pass_divide(struct vg_work *w, int threads, struct vg_error *err);
+
+/** Take points of curves away that are marked. */
+void vg_pass_curves(struct vg_work *w);
 
 /** Collapse edges shorter than `least` sizes, shortest first, and split those
  * longer than `most`, longest first; each with swaps after it. *n: changes.
- * across: only edges that are the longest of both their triangles. */
+ * across: only edges that are the longest of both their triangles, each once.
+ * */
 vg_status vg_pass_collapse(struct vg_work *w, double least, double most,
                            size_t *n, struct vg_error *err);
 vg_status vg_pass_split(struct vg_work *w, double most, int across, size_t *n,

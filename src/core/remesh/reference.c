@@ -5,16 +5,18 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "core/geometry/hilbert.h"
 #include "core/geometry/vector.h"
 
-#define LEAF 4
-#define FACING 0.7        /* S22: cosine between what faces the same
-                             way */
+#define LEAF VG_REF_LEAF
 #define FLAT 1e-9         /* height over edge, below which a normal is noise */
-#define DEPTH 64
 #define PIECE 2.0         /* mean edges, about: longer triangles are cut up */
 #define PIECES 64         /* at most */
+#define GRAIN 256         /* leaves */
+#define OPPOSED 0.03      /* cosine: both may be taken to face a way and its
+                             opposite, by S22 */
+#define FEW 16            /* sides are sorted by insertion */
 
 /* --- building ------------------------------------------------------------ */
 
@@ -26,9 +28,41 @@ static int by_nodes(const void *pa, const void *pb)
 {
   const struct side *a = pa, *b = pb;
 
-  if (a->lo != b->lo) return a->lo < b->lo ? -1 : 1;
   if (a->hi != b->hi) return a->hi < b->hi ? -1 : 1;
   return (a->half > b->half) - (a->half < b->half);
+}
+
+/* Sides by their lower node, then the other one: by counting, then what is at
+ * one node, which mostly is little. */
+static vg_status sort_sides(const struct vg_ref *r, struct side *s,
+                            struct vg_error *err)
+{
+  size_t *start = vg_calloc(r->n_point + 1, sizeof *start);
+
+  if (!start) return vg_fail_memory(err, "the edges of the surface");
+  for (int pass = 0; pass < 2; pass++) {
+    for (size_t i = 0; i < 3 * r->n_tri; i++) {
+      uint32_t a = r->tri[i / 3][i % 3], b = r->tri[i / 3][(i + 1) % 3];
+      uint32_t lo = a < b ? a : b;
+
+      if (!pass) start[lo + 1]++;
+      else s[start[lo]++] = (struct side){ lo, a < b ? b : a, (uint32_t)i };
+    }
+    for (size_t p = 0; !pass && p < r->n_point; p++) start[p + 1] += start[p];
+  }
+  for (size_t p = 0, i = 0; p < r->n_point; i = start[p++])
+    if (start[p] - i > FEW)
+      qsort(s + i, start[p] - i, sizeof *s, by_nodes);
+    else
+      for (size_t k = i + 1; k < start[p]; k++)
+        for (size_t m = k; m > i && by_nodes(&s[m], &s[m - 1]) < 0; m--) {
+          struct side t = s[m];
+
+          s[m] = s[m - 1];
+          s[m - 1] = t;
+        }
+  free(start);
+  return VG_OK;
 }
 
 static vg_status refuse(const struct vg_ref *r, const struct side *s,
@@ -45,16 +79,11 @@ static vg_status find_mates(struct vg_ref *r, struct vg_error *err)
 {
   const size_t n = 3 * r->n_tri;
   struct side *s = vg_alloc(n, sizeof *s);
-  vg_status st = VG_OK;
+  vg_status st;
 
   if (!s) return vg_fail_memory(err, "the edges of the surface");
-  for (size_t i = 0; i < n; i++) {
-    uint32_t a = r->tri[i / 3][i % 3], b = r->tri[i / 3][(i + 1) % 3];
-
-    s[i] = (struct side){ a < b ? a : b, a < b ? b : a, (uint32_t)i };
-    r->mate[i] = VG_REF_NONE;
-  }
-  qsort(s, n, sizeof *s, by_nodes);
+  memset(r->mate, 0xff, n * sizeof *r->mate);
+  st = sort_sides(r, s, err);
   for (size_t i = 0, end; i < n && st >= 0; i = end) {
     for (end = i + 1; end < n && s[end].lo == s[i].lo
          && s[end].hi == s[i].hi;) end++;
@@ -289,304 +318,94 @@ void vg_ref_release(struct vg_ref *r)
   free(r->mate);
   free(r->shape);
   free(r->size);
+  free(r->thin);
   free(r->item);
   free(r->node);
   memset(r, 0, sizeof *r);
 }
 
-/* --- questions ----------------------------------------------------------- */
+/* --- sheets that are near ------------------------------------------------ */
 
-static double clamp(double x)
+struct thinning {
+  struct vg_ref *r;
+  double distance;
+};
+
+/* Do all corners of b lie on one side of a's plane, beyond the distance? */
+static int apart(const struct vg_ref_tri *a, const struct vg_ref_tri *b,
+                 double distance)
 {
-  return x < 0 ? 0 : x > 1 ? 1 : x;
+  double d[3], o, u, v;
+
+  vg_sub(b->a, a->a, d);
+  o = vg_dot(d, a->n);
+  u = o + vg_dot(b->u, a->n);
+  v = o + vg_dot(b->v, a->n);
+  return (o > distance && u > distance && v > distance)
+         || (o < -distance && u < -distance && v < -distance);
 }
 
-/* Barycentric coordinates (of u and v) of the nearest point of a triangle to
- * x; returns the squared distance. After Ericson, "Real-Time Collision
- * Detection", 2005, 5.1.5. */
-static double nearest(const struct vg_ref_tri *t, const double x[3],
-                      double *s, double *r)
+static int boxes_apart(const struct vg_ref_tri *a, const struct vg_ref_tri *b,
+                       double distance)
 {
-  double d[3], uu, uv, vv, du, dv, det, a, b;
-
-  vg_sub(x, t->a, d);
-  uu = vg_dot(t->u, t->u);
-  uv = vg_dot(t->u, t->v);
-  vv = vg_dot(t->v, t->v);
-  du = vg_dot(d, t->u);
-  dv = vg_dot(d, t->v);
-  det = uu * vv - uv * uv;
-  a = vv * du - uv * dv;
-  b = uu * dv - uv * du;
-  if (a >= 0 && b >= 0 && a + b <= det && det > 0) {
-    a /= det;
-    b /= det;
-  } else {
-    double ww = uu - 2 * uv + vv, best = INFINITY;
-    const double edge[3][2] = {
-      { uu > 0 ? clamp(du / uu) : 0, 0 },
-      { 0, vv > 0 ? clamp(dv / vv) : 0 },
-      { 1, ww > 0 ? clamp((uu - uv - du + dv) / ww) : 0 } };
-
-    a = b = 0;
-    for (int k = 0; k < 3; k++) {
-      double p = k < 2 ? edge[k][0] : 1 - edge[2][1];
-      double q = k < 2 ? edge[k][1] : edge[2][1];
-      double e2 = p * p * uu + 2 * p * q * uv + q * q * vv
-                  - 2 * (p * du + q * dv);
-
-      if (e2 < best) best = e2, a = p, b = q;
-    }
-  }
-  *s = a;
-  *r = b;
-  for (int k = 0; k < 3; k++) d[k] -= a * t->u[k] + b * t->v[k];
-  return vg_dot(d, d);
-}
-
-static double box2(const struct vg_ref_node *b, const double x[3])
-{
-  double sum = 0;
-
   for (int k = 0; k < 3; k++) {
-    double below = b->lo[k] - x[k], above = x[k] - b->hi[k];
-    double d = below > 0 ? below : above > 0 ? above : 0;
+    double al = a->a[k] + fmin(0, fmin(a->u[k], a->v[k]));
+    double ah = a->a[k] + fmax(0, fmax(a->u[k], a->v[k]));
+    double bl = b->a[k] + fmin(0, fmin(b->u[k], b->v[k]));
+    double bh = b->a[k] + fmax(0, fmax(b->u[k], b->v[k]));
 
-    sum += d * d;
-  }
-  return sum;
-}
-
-/* Triangles without a normal face every way. */
-static int faces(const struct vg_ref_tri *t, const double *n)
-{
-  double c;
-
-  if (!n) return 1;
-  c = vg_dot(t->n, n);
-  return c > FACING || (c == 0 && vg_dot(t->n, t->n) == 0);
-}
-
-/* Does the plane of a triangle come within the distance? */
-static int plane_near(const struct vg_ref_tri *t, const double x[3],
-                      double limit)
-{
-  double d[3], off;
-
-  vg_sub(x, t->a, d);
-  off = vg_dot(d, t->n);
-  return off * off <= limit;
-}
-
-int vg_ref_within(const struct vg_ref *r, const double x[3],
-                  const double n[3], double distance, uint32_t *hint,
-                  double *d2)
-{
-  size_t stack[DEPTH];
-  double limit = distance * distance, s, q;
-  int top = 0;
-
-  if (*hint != VG_REF_NONE && faces(&r->shape[*hint], n)
-      && (*d2 = nearest(&r->shape[*hint], x, &s, &q)) <= limit) return 1;
-  stack[top++] = 0;
-  while (top) {
-    size_t i = stack[--top], leaf;
-
-    if (box2(&r->node[i], x) > limit) continue;
-    if (i < r->first_leaf) {
-      stack[top++] = 2 * i + 2;
-      stack[top++] = 2 * i + 1;
-      continue;
-    }
-    leaf = LEAF * (i - r->first_leaf);
-    for (size_t k = leaf; k < leaf + LEAF && k < r->n_item; k++) {
-      const struct vg_ref_tri *t = &r->shape[r->item[k]];
-
-      if (!faces(t, n) || !plane_near(t, x, limit)) continue;
-      *d2 = nearest(t, x, &s, &q);
-      if (!(*d2 <= limit)) continue;
-      *hint = r->item[k];
-      return 1;
-    }
+    if (bl - ah > distance || al - bh > distance) return 1;
   }
   return 0;
 }
 
-static double search(const struct vg_ref *r, const double x[3],
-                     const double *n, uint32_t *hint, double out[3])
+/* Does triangle u face another way than t by some 90 degrees, or no way, come
+ * within the distance as far as planes and boxes tell? */
+static int opposes(const struct vg_ref *r, uint32_t t, uint32_t u,
+                   double distance)
 {
-  struct { size_t i; double d2; } stack[DEPTH];
-  double best = INFINITY, s, q, bs = 0, bq = 0;
-  uint32_t at = VG_REF_NONE;
-  int top = 0;
+  const struct vg_ref_tri *a = &r->shape[t], *b = &r->shape[u];
+  const double c = vg_dot(a->n, b->n);
 
-  if (*hint != VG_REF_NONE && faces(&r->shape[*hint], n)) {
-    best = nearest(&r->shape[*hint], x, &bs, &bq);
-    at = *hint;
-  }
-  stack[top].i = 0;
-  stack[top++].d2 = 0;
-  while (top) {
-    size_t i = stack[--top].i, leaf;
-
-    if (stack[top].d2 > best) continue;
-    if (i < r->first_leaf) {
-      double l = box2(&r->node[2 * i + 1], x);
-      double h = box2(&r->node[2 * i + 2], x);
-      int left = l <= h;      /* the nearer one on top */
-
-      stack[top].i = 2 * i + (left ? 2 : 1);
-      stack[top++].d2 = left ? h : l;
-      stack[top].i = 2 * i + (left ? 1 : 2);
-      stack[top++].d2 = left ? l : h;
-      continue;
-    }
-    leaf = LEAF * (i - r->first_leaf);
-    for (size_t k = leaf; k < leaf + LEAF && k < r->n_item; k++) {
-      const struct vg_ref_tri *t = &r->shape[r->item[k]];
-      double d2;
-
-      if (!faces(t, n) || !plane_near(t, x, best)) continue;
-      d2 = nearest(t, x, &s, &q);
-      if (d2 < best || (d2 == best && r->item[k] < at)) {
-        best = d2;
-        at = r->item[k];
-        bs = s;
-        bq = q;
-      }
-    }
-  }
-  if (at == VG_REF_NONE) return INFINITY;
-  *hint = at;
-  for (int k = 0; k < 3; k++)
-    out[k] = r->shape[at].a[k] + bs * r->shape[at].u[k]
-             + bq * r->shape[at].v[k];
-  return sqrt(best);
+  return t != u && (c < OPPOSED || vg_dot(a->n, a->n) == 0
+                    || vg_dot(b->n, b->n) == 0)
+         && !apart(a, b, distance) && !apart(b, a, distance)
+         && !boxes_apart(a, b, distance);
 }
 
-double vg_ref_nearest(const struct vg_ref *r, const double x[3],
-                      const double n[3], uint32_t *hint, double out[3])
+static void thin_leaf(const struct thinning *c, size_t leaf)
 {
-  double d = search(r, x, n, hint, out);
+  struct vg_ref *r = c->r;
+  const struct vg_ref_node *own = &r->node[r->first_leaf + leaf];
+  uint32_t near[1024];
+  size_t cap = sizeof near / sizeof *near, n;
 
-  return n && !(d < INFINITY) ? search(r, x, NULL, hint, out) : d;
-}
+  n = vg_ref_around(r, own->lo, own->hi, c->distance, cap, near);
+  for (size_t i = LEAF * leaf; i < LEAF * (leaf + 1) && i < r->n_item; i++) {
+    int thin = n > cap;
 
-/* What triangle t asks for at x: the size of its nearest point, or of a
- * corner, grown with the distance. */
-static double size_of(const struct vg_ref *r, uint32_t t, const double x[3])
-{
-  const uint32_t *c = r->tri[t];
-  double s, q, h, d = sqrt(nearest(&r->shape[t], x, &s, &q));
-
-  h = (1 - s - q) * r->size[c[0]] + s * r->size[c[1]] + q * r->size[c[2]]
-      + r->slope * d;
-  for (int k = 0; k < 3; k++) {
-    double own = r->size[c[k]];
-
-    if (own >= h) continue;
-    h = fmin(h, own + r->slope * vg_distance(r->point[c[k]], x));
+    for (size_t k = 0; k < n && !thin; k++)
+      thin = opposes(r, r->item[i], near[k], c->distance);
+    /* Others may have pieces of the same triangle. */
+    if (thin) __atomic_store_n(&r->thin[r->item[i]], 1, __ATOMIC_RELAXED);
   }
-  return h;
 }
 
-double vg_ref_size(const struct vg_ref *r, const double x[3], uint32_t hint)
+static void thin_leaves(void *context, size_t first, size_t end, int worker)
 {
-  size_t stack[DEPTH];
-  double h = INFINITY;
-  int top = 0;
-
-  if (hint != VG_REF_NONE) h = size_of(r, hint, x);
-  stack[top++] = 0;
-  while (top) {
-    size_t i = stack[--top], leaf;
-    double room = (h - r->node[i].size) / r->slope;
-
-    if (!(room > 0) || box2(&r->node[i], x) >= room * room) continue;
-    if (i < r->first_leaf) {
-      int left = box2(&r->node[2 * i + 1], x) <= box2(&r->node[2 * i + 2], x);
-
-      stack[top++] = 2 * i + (left ? 2 : 1);
-      stack[top++] = 2 * i + (left ? 1 : 2);
-      continue;
-    }
-    leaf = LEAF * (i - r->first_leaf);
-    for (size_t k = leaf; k < leaf + LEAF && k < r->n_item; k++)
-      h = fmin(h, size_of(r, r->item[k], x));
-  }
-  return h;
+  (void)worker;
+  for (size_t i = first; i < end; i++) thin_leaf(context, i);
 }
 
-/* --- rays ---------------------------------------------------------------- */
-
-struct ray {
-  const double *x, *d;
-  double inverse[3], reach; /* to the nearest triangle so far */
-  uint32_t tri;
-};
-
-static int ray_meets_box(const struct vg_ref_node *b, const struct ray *r)
+vg_status vg_ref_thin(struct vg_ref *r, double distance, int threads,
+                      struct vg_error *err)
 {
-  double from = 0, to = r->reach;
+  struct thinning c = { r, distance };
 
-  for (int k = 0; k < 3; k++) {
-    double s = (b->lo[k] - r->x[k]) * r->inverse[k];
-    double t = (b->hi[k] - r->x[k]) * r->inverse[k];
-
-    if (r->d[k] == 0) {
-      if (r->x[k] < b->lo[k] || r->x[k] > b->hi[k]) return 0;
-      continue;
-    }
-    from = fmax(from, fmin(s, t));
-    to = fmin(to, fmax(s, t));
-  }
-  return from <= to;
-}
-
-/* After Moeller and Trumbore, "Fast, minimum storage ray/triangle
- * intersection", Journal of Graphics Tools 2(1), 1997; from the front alone. */
-static void ray_meets(const struct vg_ref *ref, uint32_t t, struct ray *r)
-{
-  const struct vg_ref_tri *s = &ref->shape[t];
-  double p[3], q[3], w[3], det, a, b, far;
-
-  vg_cross(r->d, s->v, p);
-  det = vg_dot(s->u, p);
-  if (!(det > 0)) return;
-  vg_sub(r->x, s->a, w);
-  a = vg_dot(w, p);
-  if (a < 0 || a > det) return;
-  vg_cross(w, s->u, q);
-  b = vg_dot(r->d, q);
-  if (b < 0 || a + b > det) return;
-  far = vg_dot(s->v, q) / det;
-  if (!(far > 0) || far > r->reach || (far == r->reach && t > r->tri)) return;
-  r->reach = far;
-  r->tri = t;
-}
-
-uint32_t vg_ref_ray(const struct vg_ref *r, const double x[3],
-                    const double d[3], double most, double *far)
-{
-  struct ray ray = { x, d, { 1 / d[0], 1 / d[1], 1 / d[2] }, most,
-                     VG_REF_NONE };
-  size_t stack[DEPTH];
-  int top = 0;
-
-  stack[top++] = 0;
-  while (top) {
-    size_t i = stack[--top], leaf;
-
-    if (!ray_meets_box(&r->node[i], &ray)) continue;
-    if (i < r->first_leaf) {
-      stack[top++] = 2 * i + 2;
-      stack[top++] = 2 * i + 1;
-      continue;
-    }
-    leaf = LEAF * (i - r->first_leaf);
-    for (size_t k = leaf; k < leaf + LEAF && k < r->n_item; k++)
-      ray_meets(r, r->item[k], &ray);
-  }
-  *far = ray.reach;
-  return ray.tri;
+  free(r->thin);
+  r->thin = vg_calloc(r->n_tri, 1);
+  if (!r->thin) return vg_fail_memory(err, "the sheets of the surface");
+  vg_parallel_for(threads, (r->n_item + LEAF - 1) / LEAF, GRAIN, thin_leaves,
+                  &c);
+  return VG_OK;
 }

@@ -10,6 +10,7 @@
 #include "core/mesh/mesh.h"
 
 #define VG_REF_NONE UINT32_MAX
+#define VG_REF_LEAF 4     /* triangles of a leaf of the tree */
 
 struct vg_ref_tri {
   double a[3], u[3], v[3];  /* a corner, the edges from there */
@@ -30,6 +31,7 @@ struct vg_ref {
   struct vg_ref_tri *shape; /* [n_tri] */
   double *size;             /* [n_point] asked for there; vg_ref_sizes */
   double slope;             /* growth - 1 */
+  uint8_t *thin;            /* [n_tri] another sheet is near; vg_ref_thin */
   uint32_t *item;           /* [n_item] triangles along a space-filling
                                curve; long ones in pieces, more than once */
   struct vg_ref_node *node; /* heap: children of i are 2 i + 1, 2 i + 2 */
@@ -49,11 +51,17 @@ vg_status vg_ref_build_tree(struct vg_ref *r, const struct vg_mesh *m,
 /** Take size[n_point] into the tree. */
 void vg_ref_sizes(struct vg_ref *r);
 
+/** Mark the triangles that have one within `distance` which faces the other
+ * way, or may: where none has, the sheets of the surface cannot be taken for
+ * one another. O(n log n). VG_ERR_MEMORY. */
+vg_status vg_ref_thin(struct vg_ref *r, double distance, int threads,
+                      struct vg_error *err);
+
 void vg_ref_release(struct vg_ref *r);
 
 /** Is a triangle that faces the way of n (a unit vector; NULL: any) within
- * the distance of x? *hint: one to try first, out: the one found, at
- * the squared distance *d2. */
+ * the distance of x? *hint: one to begin with, from which neighbours are
+ * tried before the tree; out: the one found, at the squared distance *d2. */
 int vg_ref_within(const struct vg_ref *r, const double x[3],
                   const double n[3], double distance, uint32_t *hint,
                   double *d2);
@@ -70,7 +78,30 @@ double vg_ref_nearest(const struct vg_ref *r, const double x[3],
 uint32_t vg_ref_ray(const struct vg_ref *r, const double x[3],
                     const double d[3], double most, double *far);
 
-/** Size at x: the least of all points' own sizes grown with the distance. */
-double vg_ref_size(const struct vg_ref *r, const double x[3], uint32_t hint);
+/** A point near x on a triangle that faces the way of n, no farther than on
+ * those beside it: a few steps from *hint, which is a triangle. Returns the
+ * distance; INFINITY where the steps lead to one that faces another way. */
+double vg_ref_project(const struct vg_ref *r, const double x[3],
+                      const double n[3], uint32_t *hint, double out[3]);
+
+/** Size at x: the least of all points' own sizes grown with the distance.
+ * *by: a triangle to begin with, or VG_REF_NONE; out: the one that asks for
+ * the size. */
+double vg_ref_size(const struct vg_ref *r, const double x[3], uint32_t *by);
+
+/** What triangle t asks for at x. */
+double vg_ref_size_by(const struct vg_ref *r, uint32_t t, const double x[3]);
+
+/** Triangles with a box within `distance` of that from lo to hi, some of them
+ * more than once: those that are not within it are not all left out.
+ * Returns their number; beyond cap only counted. */
+size_t vg_ref_around(const struct vg_ref *r, const double lo[3],
+                     const double hi[3], double distance, size_t cap,
+                     uint32_t *tri);
+
+/** Barycentric coordinates (of u and v) of the point of a triangle that is
+ * nearest to x; returns the squared distance. */
+double vg_ref_tri_nearest(const struct vg_ref_tri *t, const double x[3],
+                          double *s, double *q);
 
 #endif

@@ -10,6 +10,7 @@
 
 #include "base/memory.h"
 #include "core/geometry/vector.h"
+#include "core/remesh/blocks.h"
 #include "core/remesh/passes.h"
 #include "core/remesh/result.h"
 #include "core/remesh/sizes.h"
@@ -25,10 +26,14 @@
 #define H_OUTER 0.04      /* of the domain's length */
 #define OUTER 0.9         /* S27: of the triangles of a patch: all of it is */
 #define TRIANGLES 3e8     /* more are refused */
-#define ROUNDS 6          /* until triangles no longer meet */
+#define ROUNDS 3          /* from the beginning, until triangles no longer
+                             meet */
+#define MENDS 4           /* in each: more and more triangles where they do */
 #define SPOTS 256         /* of them at a time */
 #define SHORT 0.7         /* S21: sizes: shorter edges go */
 #define LONG 1.4          /* longer ones are split */
+#define PHASES 2          /* of blocks, then the whole */
+#define HALVINGS 16       /* of needles, at most */
 #define POLISH2 0.3       /* (sin 33 degrees)^2: below, triangles are polished
                              one by one */
 
@@ -207,7 +212,11 @@ static vg_status prepare(struct job *j, struct vg_error *err)
     o->per_turn / o->scale, CHORD * j->jag * o->scale * o->scale, o->scale,
     j->r.h_min, j->r.h_max, vg_scaled_growth(o->growth, o->scale), j->cap,
     o->cap, o->across, j->given->tri_patch }, err));
-  if (!j->looks) VG_TRY(check_number(j, err));
+  if (!j->looks) {
+    VG_TRY(check_number(j, err));
+    VG_TRY(vg_ref_thin(&j->ref, (1 + VG_WORK_NEARER) * j->r.tolerance,
+                       o->threads, err));
+  }
   j->source = vg_alloc(o->n_source, sizeof *j->source);
   if (!j->source) VG_TRY(vg_fail_memory(err, "the sources"));
   if (o->n_source)
@@ -225,16 +234,22 @@ static vg_status stopped(const struct job *j, struct vg_error *err)
   return vg_fail(err, VG_ERR_GEOMETRY, "the surface was given up unfinished");
 }
 
-static vg_status change(struct job *j, struct vg_work *w, struct vg_error *err)
+static vg_status change_block(void *user, struct vg_work *w,
+                              struct vg_error *err)
 {
-  size_t n;
-  vg_status st;
+  const struct job *j = user;
+  size_t n = 1, n_gone;
+  vg_status st = VG_OK;
 
-  VG_TRY(vg_pass_curves(w, err));
+  vg_pass_curves(w);
   vg_pass_swap(w);
-  VG_TRY(vg_pass_collapse(w, SHORT, LONG, &n, err));
-  VG_TRY(stopped(j, err));
-  VG_TRY(vg_pass_split(w, LONG, 1, &n, err));
+  VG_TRY(vg_pass_collapse(w, SHORT, LONG, &n_gone, err));
+  /* Halves of needles collapse before they are halved again. */
+  for (int i = 0; n && i < HALVINGS; i++) {
+    VG_TRY(stopped(j, err));
+    VG_TRY(vg_pass_split(w, 2 * SHORT * LONG, 1, &n, err));
+    VG_TRY(vg_pass_collapse(w, SHORT, LONG, &n_gone, err));
+  }
   for (int i = 0; i < 4; i++) {
     VG_TRY(stopped(j, err));
     vg_pass_smooth(w, 1);
@@ -254,49 +269,33 @@ done:
   return st;
 }
 
+/* What is near the border of a block in one phase is inside one in the next;
+ * what is near both is left to one thread. */
+static vg_status change(struct job *j, struct vg_work *w, struct vg_error *err)
+{
+  size_t n;
+  vg_status st;
+
+  VG_TRY(vg_pass_divide(w, j->o->threads, err));
+  n = vg_blocks_number(w);
+  for (int phase = 0; n > 1 && phase < PHASES; phase++)
+    VG_TRY(vg_blocks_run(w, n + (size_t)phase, phase, j->o->threads,
+                         change_block, j, err));
+  VG_TRY(change_block(j, w, err));
+done:
+  return st;
+}
+
 static double source_size(const void *user, const double x[3])
 {
   return vg_source_at(user, x);
-}
-
-static vg_status make(struct job *j, struct vg_mesh *out,
-                      struct vg_error *err)
-{
-  const struct vg_sizing_options s = {
-    .growth = vg_scaled_growth(j->o->growth, j->o->scale),
-    .scale = j->o->scale };
-  struct vg_source_set set = VG_SOURCE_SET_INIT;
-  struct vg_remesh_report *r = &j->r;
-  struct vg_work w = { .ref = &j->ref, .curves = &j->curves,
-    .tolerance = r->tolerance, .relative = RELATIVE, .far = j->far,
-    .h_min = r->h_min, .h_max = r->h_max };
-  vg_status st = VG_OK;
-
-  if (j->n_source || j->o->map) {
-    VG_TRY(vg_source_check(j->n_source, j->source, err));
-    VG_TRY(vg_source_prepare(&s, j->n_source, j->source, 1, &set, err));
-    set.map = j->o->map;
-    w.other_size = source_size;
-    w.user = &set;
-  }
-  VG_TRY(vg_work_begin(&w, err));
-  if (!j->looks) VG_TRY(change(j, &w, err));
-  VG_TRY(vg_result_store(&w, j->given, out, r, err));
-  r->n_split = w.n_split;
-  r->n_collapse = w.n_collapse;
-  r->n_swap = w.n_swap;
-  r->n_move = w.n_move;
-done:
-  vg_work_release(&w);
-  vg_source_release(&set);
-  return st;
 }
 
 /* --- whether triangles meet ---------------------------------------------- */
 
 /* Ask for smaller triangles where face f is. */
 static vg_status add_spot(struct job *j, const struct vg_mesh *m, size_t f,
-                          int round, struct vg_error *err)
+                          struct vg_error *err)
 {
   struct vg_source s = { .kind = VG_SOURCE_POINT };
   const double *p[3];
@@ -308,7 +307,7 @@ static vg_status add_spot(struct job *j, const struct vg_mesh *m, size_t f,
     s.p0[k] = (p[0][k] + p[1][k] + p[2][k]) / 3;
   }
   s.r0 = edge;
-  s.h0 = s.h1 = fmax(edge, j->r.h_min) / (1 << (round + 1)) / j->o->scale;
+  s.h0 = s.h1 = fmax(edge, j->r.h_min) / 2 / j->o->scale;
   if (vg_reserve(&j->source, &j->cap_source, j->n_source + 1,
                  sizeof *j->source))
     return vg_fail_memory(err, "the sources");
@@ -318,7 +317,7 @@ static vg_status add_spot(struct job *j, const struct vg_mesh *m, size_t f,
 
 /* Whether the new surface is as sound as the one given; else spots are added
  * where it is not. */
-static vg_status is_sound(struct job *j, struct vg_mesh *m, int round,
+static vg_status is_sound(struct job *j, struct vg_mesh *m, int last,
                           int *sound, struct vg_error *err)
 {
   struct vg_surface_check_options o = { .threads = j->o->threads };
@@ -332,7 +331,7 @@ static vg_status is_sound(struct job *j, struct vg_mesh *m, int round,
 
     if (d->kind == VG_DEFECT_OPEN_EDGE || d->kind == VG_DEFECT_SHELL
         || d->kind == VG_DEFECT_NO_BC) continue;
-    if (!n && round + 1 == ROUNDS) {
+    if (last) {
       st = vg_fail(err, VG_ERR_GEOMETRY, "near (%g, %g, %g) new triangles "
                    "meet however small they are (%s): give a smaller "
                    "surface_tolerance, or mesh the surface as it is",
@@ -342,11 +341,101 @@ static vg_status is_sound(struct job *j, struct vg_mesh *m, int round,
     if (n++ >= SPOTS) break;
     for (int k = 0; k < 2; k++)
       if (d->face[k] != SIZE_MAX)
-        VG_TRY(add_spot(j, m, d->face[k], round, err));
+        VG_TRY(add_spot(j, m, d->face[k], err));
   }
   *sound = !n;
 done:
   vg_surface_report_release(&r);
+  return st;
+}
+
+/* What the next outcome says anew. */
+static void clear_report(struct vg_remesh_report *r)
+{
+  const struct vg_remesh_report kept = *r;
+
+  free(r->bad);
+  *r = (struct vg_remesh_report){ .length = kept.length,
+    .tolerance = kept.tolerance, .h_min = kept.h_min, .h_max = kept.h_max,
+    .n_round = kept.n_round + 1 };
+}
+
+/* --- all ----------------------------------------------------------------- */
+
+static vg_status ask_sources(const struct job *j, struct vg_work *w,
+                             struct vg_source_set *set, struct vg_error *err)
+{
+  const struct vg_sizing_options s = {
+    .growth = vg_scaled_growth(j->o->growth, j->o->scale),
+    .scale = j->o->scale };
+  vg_status st = VG_OK;
+
+  vg_source_release(set);
+  if (!j->n_source && !j->o->map) return VG_OK;
+  VG_TRY(vg_source_check(j->n_source, j->source, err));
+  VG_TRY(vg_source_prepare(&s, j->n_source, j->source, 1, set, err));
+  set->map = j->o->map;
+  w->other_size = source_size;
+  w->user = set;
+done:
+  return st;
+}
+
+/* Where the sources have become finer, triangles count as changed. */
+static void narrow(struct vg_work *w)
+{
+  if (!w->other_size) return;
+  for (size_t p = 0; p < w->n_point; p++) {
+    struct vg_work_point *q = &w->point[p];
+    double h;
+
+    if (q->half == VG_REF_NONE) continue;
+    h = w->other_size(w->user, q->x);
+    if (h < w->h_min) h = w->h_min;
+    if (!(h < q->size)) continue;
+    q->size = h;
+    q->changed = ++w->clock;
+  }
+  for (uint32_t t = 0; t < w->n_tri; t++)
+    if (!vg_work_is_old(w, 3 * t, w->looked[VG_WORK_POLISH])
+        || !vg_work_is_old(w, 3 * t + 1, w->looked[VG_WORK_POLISH]))
+      w->stamp[t] = w->clock;
+}
+
+/* Triangles that meet are made smaller where they are; should that not help,
+ * *sound is 0. */
+static vg_status make(struct job *j, struct vg_mesh *out, int last, int *sound,
+                      struct vg_error *err)
+{
+  struct vg_source_set set = VG_SOURCE_SET_INIT;
+  struct vg_remesh_report *r = &j->r;
+  struct vg_work w = { .ref = &j->ref, .curves = &j->curves,
+    .tolerance = r->tolerance, .relative = RELATIVE, .far = j->far,
+    .h_min = r->h_min, .h_max = r->h_max, .threads = j->o->threads };
+  vg_status st;
+
+  VG_TRY(ask_sources(j, &w, &set, err));
+  VG_TRY(vg_work_begin(&w, err));
+  if (!j->looks) VG_TRY(change(j, &w, err));
+  for (int mend = 0; !*sound && mend < MENDS; mend++) {
+    if (mend) {
+      VG_TRY(ask_sources(j, &w, &set, err));
+      narrow(&w);
+      VG_TRY(change_block(j, &w, err));
+    }
+    clear_report(r);
+    vg_mesh_release(out);
+    VG_TRY(vg_result_store(&w, j->given, out, r, err));
+    if (j->looks) break;
+    VG_TRY(is_sound(j, out, last && mend + 1 == MENDS, sound, err));
+  }
+  r->n_split = w.n_split;
+  r->n_collapse = w.n_collapse;
+  r->n_swap = w.n_swap;
+  r->n_move = w.n_move;
+done:
+  vg_work_release(&w);
+  vg_source_release(&set);
   return st;
 }
 
@@ -356,17 +445,8 @@ static vg_status repeat(struct job *j, struct vg_mesh *out,
   int sound = 0;
   vg_status st = VG_OK;
 
-  for (int round = 0; !sound; round++) {
-    struct vg_remesh_report kept = j->r;
-
-    vg_mesh_release(out);
-    free(kept.bad);
-    j->r = (struct vg_remesh_report){ .length = kept.length,
-      .tolerance = kept.tolerance, .h_min = kept.h_min, .h_max = kept.h_max,
-      .n_round = round + 1 };
-    VG_TRY(make(j, out, err));
-    VG_TRY(is_sound(j, out, round, &sound, err));
-  }
+  for (int round = 1; !sound; round++)
+    VG_TRY(make(j, out, round == ROUNDS, &sound, err));
 done:
   return st;
 }
@@ -424,12 +504,13 @@ vg_status vg_remesh_judge(const struct vg_mesh *m,
 {
   struct job j = { .given = m, .o = o, .looks = 1 };
   struct vg_mesh out = VG_MESH_INIT;
+  int sound = 0;
   vg_status st;
 
   VG_TRY(check_surface(m, err));
   VG_TRY(check_options(o, err));
   VG_TRY(prepare(&j, err));
-  VG_TRY(make(&j, &out, err));
+  VG_TRY(make(&j, &out, 0, &sound, err));
   tell(&j, &out, report);
 done:
   release(&j);

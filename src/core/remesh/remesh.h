@@ -40,7 +40,8 @@ struct vg_remesh_options {
   const uint8_t *hard;      /* [n_patch] all borders of the patch stay; or
                                NULL */
   int threads;              /* 0: one per core; the same bytes for any */
-  int (*stop)(void);        /* asked now and then: not 0 ends; or NULL */
+  int (*stop)(void);        /* asked now and then, on any thread: not 0 ends;
+                               or NULL */
 };
 #define VG_REMESH_OPTIONS_INIT { .ridge_angle = 40, .per_turn = 24, \
   .growth = 1.2, .scale = 1, .threads = 1 }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "core/geometry/vector.h"
 
 #define SWEEPS 8          /* over zigzags of soft borders */
@@ -31,7 +32,9 @@ static uint32_t patch_of(const struct vg_work *w, size_t t,
   vg_sub(vg_work_at(w, w->tri[t][1]), vg_work_at(w, w->tri[t][0]), u);
   vg_sub(vg_work_at(w, w->tri[t][2]), vg_work_at(w, w->tri[t][0]), v);
   vg_cross(u, v, n);
-  vg_ref_nearest(w->ref, x, vg_unit(n) > 0 ? n : NULL, &hint, y);
+  if (!(vg_unit(n) > 0)
+      || !(vg_ref_project(w->ref, x, n, &hint, y) < INFINITY))
+    vg_ref_nearest(w->ref, x, NULL, &hint, y);
   return patch[hint];
 }
 
@@ -93,18 +96,32 @@ static void keep_patches(const struct vg_work *w, const struct vg_mesh *given,
   }
 }
 
+struct labelling {
+  const struct vg_work *w;
+  const uint32_t *patch;    /* of the given triangles */
+  uint32_t *label;
+};
+
+static void find_labels(void *context, size_t first, size_t end, int worker)
+{
+  const struct labelling *l = context;
+
+  (void)worker;
+  for (size_t t = first; t < end; t++)
+    if (!vg_work_removed(l->w, t)) l->label[t] = patch_of(l->w, t, l->patch);
+}
+
 static vg_status label_all(const struct vg_work *w,
                            const struct vg_mesh *given, uint32_t *label,
                            struct vg_error *err)
 {
+  struct labelling l = { w, given->tri_patch, label };
   size_t *count = vg_calloc(given->n_patch, sizeof *count);
 
   if (!count) return vg_fail_memory(err, "the patches of the surface");
-  for (size_t t = 0; t < w->n_tri; t++) {
-    if (vg_work_removed(w, t)) continue;
-    label[t] = patch_of(w, t, given->tri_patch);
-    count[label[t]]++;
-  }
+  vg_parallel_for(w->threads, w->n_tri, 1024, find_labels, &l);
+  for (size_t t = 0; t < w->n_tri; t++)
+    if (!vg_work_removed(w, t)) count[label[t]]++;
   straighten(w, label, count);
   keep_patches(w, given, label, count);
   free(count);

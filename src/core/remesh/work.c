@@ -5,11 +5,13 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "core/geometry/vector.h"
 
 #define TRIFLE 1e-4       /* of the squared tolerance: on the reference */
-#define NEARER 1.5        /* S25 */
-
+#define FOLD 0.9986       /* S30: cosine of 3 degrees: edges that bend more have
+                             samples */
+#define PER_EDGE 64       /* at most */
 
 /* --- making -------------------------------------------------------------- */
 
@@ -51,12 +53,48 @@ static vg_status make_lines(struct vg_work *w, struct vg_error *err)
   return VG_OK;
 }
 
-double vg_work_size(const struct vg_work *w, const double x[3], uint32_t hint)
+static double bounded(const struct vg_work *w, const double x[3], double h)
 {
-  double h = vg_ref_size(w->ref, x, hint);
-
   if (w->other_size) h = fmin(h, w->other_size(w->user, x));
   return fmin(w->h_max, fmax(w->h_min, h));
+}
+
+double vg_work_size(const struct vg_work *w, const double x[3], uint32_t *by)
+{
+  return bounded(w, x, vg_ref_size(w->ref, x, by));
+}
+
+double vg_work_size_near(const struct vg_work *w, const double x[3],
+                         uint32_t home, size_t n, const uint32_t *point,
+                         uint32_t *by)
+{
+  double h = vg_ref_size_by(w->ref, home, x);
+  uint32_t last = home, found = home;
+
+  for (size_t i = 0; i < n; i++) {
+    uint32_t t = w->point[point[i]].by;
+    double asked;
+
+    if (t == last) continue;
+    last = t;
+    asked = vg_ref_size_by(w->ref, t, x);
+    if (asked < h) h = asked, found = t;
+  }
+  *by = found;
+  return bounded(w, x, h);
+}
+
+static void find_sizes(void *context, size_t first, size_t end, int worker)
+{
+  struct vg_work *w = context;
+
+  (void)worker;
+  for (size_t p = first; p < end; p++) {
+    struct vg_work_point *q = &w->point[p];
+
+    q->by = q->home;
+    q->size = vg_work_size(w, q->x, &q->by);
+  }
 }
 
 static vg_status make_points(struct vg_work *w, struct vg_error *err)
@@ -68,6 +106,7 @@ static vg_status make_points(struct vg_work *w, struct vg_error *err)
 
     memcpy(q->x, r->point[p], sizeof q->x);
     q->half = q->home = VG_REF_NONE;
+    q->given = (uint32_t)p;
     q->changed = 1;
   }
   for (uint32_t h = 0; h < 3 * w->n_tri; h++) {
@@ -84,7 +123,53 @@ static vg_status make_points(struct vg_work *w, struct vg_error *err)
     if (w->point[p].half == VG_REF_NONE)
       return vg_fail(err, VG_ERR_INPUT, "point %zu of the surface is used by "
                      "no triangle; repair it", p + 1);
-    w->point[p].size = vg_work_size(w, w->point[p].x, w->point[p].home);
+  }
+  vg_parallel_for(w->threads, w->n_point, 1024, find_sizes, w);
+  return VG_OK;
+}
+
+/* How many samples edge h has: it bends, or has only one side. */
+static size_t samples_on(const struct vg_work *w, uint32_t h)
+{
+  const struct vg_ref *r = w->ref;
+  uint32_t g = w->mate[h];
+  double n;
+
+  if (g == VG_REF_NONE || g < h || w->edge[h]
+      || vg_dot(r->shape[h / 3].n, r->shape[g / 3].n) > FOLD) return 0;
+  n = vg_work_ratio(w, h);
+  return n < 1 ? 1 : n > PER_EDGE - 1 ? PER_EDGE : (size_t)n + 1;
+}
+
+/* Those of the points have no triangle: they are points of this surface. */
+static vg_status make_samples(struct vg_work *w, struct vg_error *err)
+{
+  size_t n = w->ref->n_point;
+
+  for (uint32_t h = 0; h < 3 * w->n_tri; h++) n += samples_on(w, h);
+  if (n > UINT32_MAX - 2)
+    return vg_fail(err, VG_ERR_UNSUPPORTED, "the surface bends at too many "
+                   "edges to be made anew");
+  w->given = vg_alloc(n, sizeof *w->given);
+  w->follow = vg_alloc(n, sizeof *w->follow);
+  w->is_sample = vg_calloc(n, 1);
+  if (!w->given || !w->follow || !w->is_sample)
+    return vg_fail_memory(err, "the samples of the surface");
+  memcpy(w->given, w->ref->point, w->ref->n_point * sizeof *w->given);
+  w->n_given = w->ref->n_point;
+  for (uint32_t h = 0; h < 3 * w->n_tri; h++) {
+    const double *a = vg_work_at(w, vg_work_from(w, h));
+    const double *b = vg_work_at(w, vg_work_to(w, h));
+    size_t k = samples_on(w, h);
+
+    for (size_t i = 0; i < k; i++) {
+      double *x = w->given[w->n_given], t = ((double)i + 0.5) / (double)k;
+
+      for (int d = 0; d < 3; d++) x[d] = a[d] + t * (b[d] - a[d]);
+      w->is_sample[w->n_given] = 1;
+      w->follow[w->n_given] = w->first[h / 3];
+      w->first[h / 3] = (uint32_t)w->n_given++;
+    }
   }
   return VG_OK;
 }
@@ -94,24 +179,25 @@ vg_status vg_work_begin(struct vg_work *w, struct vg_error *err)
   const struct vg_ref *r = w->ref;
   vg_status st;
 
-  w->n_point = w->cap_point = w->n_given = r->n_point;
-  w->n_tri = w->cap_tri = w->cap_first = r->n_tri;
+  w->n_point = w->cap_point = r->n_point;
+  w->n_tri = w->cap_tri = w->cap_first = w->cap_stamp = r->n_tri;
   w->cap_mate = w->cap_edge = 3 * r->n_tri;
   w->clock = 1;
   w->point = vg_calloc(w->n_point, sizeof *w->point);
   w->tri = vg_alloc(w->n_tri, sizeof *w->tri);
   w->mate = vg_alloc(3 * w->n_tri, sizeof *w->mate);
   w->edge = vg_calloc(3 * w->n_tri, sizeof *w->edge);
+  w->stamp = vg_alloc(w->n_tri, sizeof *w->stamp);
   w->first = vg_alloc(w->n_tri, sizeof *w->first);
-  w->follow = vg_alloc(w->n_given, sizeof *w->follow);
-  w->is_sample = vg_calloc(w->n_given, 1);
-  if (!w->point || !w->tri || !w->mate || !w->edge || !w->first || !w->follow
-      || !w->is_sample) return vg_fail_memory(err, "the new surface");
+  if (!w->point || !w->tri || !w->mate || !w->edge || !w->stamp || !w->first)
+    return vg_fail_memory(err, "the new surface");
   memcpy(w->tri, r->tri, w->n_tri * sizeof *w->tri);
   memcpy(w->mate, r->mate, 3 * w->n_tri * sizeof *w->mate);
   memset(w->first, 0xff, w->n_tri * sizeof *w->first);
+  for (size_t t = 0; t < w->n_tri; t++) w->stamp[t] = 1;
   VG_TRY(make_lines(w, err));
   VG_TRY(make_points(w, err));
+  VG_TRY(make_samples(w, err));
 done:
   return st;
 }
@@ -122,10 +208,14 @@ void vg_work_release(struct vg_work *w)
   free(w->tri);
   free(w->mate);
   free(w->edge);
+  free(w->stamp);
   free(w->line);
   free(w->first);
-  free(w->follow);
-  free(w->is_sample);
+  if (!w->is_block) {
+    free(w->given);
+    free(w->follow);
+    free(w->is_sample);
+  }
   free(w->spare);
   memset(w, 0, sizeof *w);
 }
@@ -174,7 +264,8 @@ double vg_work_shape(const double *a, const double *b, const double *c)
   l[0] = vg_dot(u, u);
   l[1] = vg_dot(v, v);
   l[2] = vg_distance2(b, c);
-  least = fmin(l[0], fmin(l[1], l[2]));
+  least = l[0] < l[1] ? l[0] : l[1];
+  if (l[2] < least) least = l[2];
   if (!(least > 0)) return 0;
   return vg_dot(n, n) * least / (l[0] * l[1] * l[2]);
 }
@@ -197,7 +288,7 @@ void vg_cavity_begin(const struct vg_work *w, struct vg_cavity *c,
                      uint32_t point)
 {
   c->n_old = c->n_new = c->n_sample = 0;
-  c->fresh = SIZE_MAX;
+  c->fresh = VG_REF_NONE;
   c->hint = w->point[point].home;
   c->tolerance = vg_work_tolerance(w, w->point[point].size);
 }
@@ -221,9 +312,12 @@ void vg_cavity_add(struct vg_cavity *c, const double *x, const double *y,
 void vg_cavity_measure(struct vg_cavity *c)
 {
   c->shape = 1;
-  for (size_t i = 0; i < c->n_new; i++)
-    c->shape = fmin(c->shape, vg_work_shape(c->corner[i][0], c->corner[i][1],
-                                            c->corner[i][2]));
+  for (size_t i = 0; i < c->n_new; i++) {
+    double s = vg_work_shape(c->corner[i][0], c->corner[i][1],
+                             c->corner[i][2]);
+
+    if (s < c->shape) c->shape = s;
+  }
 }
 
 /* Is x within the tolerance of the sheet of the reference that faces the way
@@ -236,13 +330,15 @@ static int sample_near(const struct vg_work *w, struct vg_cavity *c,
   uint32_t other = VG_REF_NONE;
 
   if (!vg_ref_within(w->ref, x, n, c->tolerance, &c->hint, &d2)) return 0;
+  if (w->ref->thin && !w->ref->thin[c->hint]
+      && c->tolerance <= w->tolerance) return 1;
   if (d2 <= TRIFLE * c->tolerance * c->tolerance
-      || !vg_ref_within(w->ref, x, back, NEARER * sqrt(d2), &other, &o2))
-    return 1;
+      || !vg_ref_within(w->ref, x, back, VG_WORK_NEARER * sqrt(d2), &other,
+                        &o2)) return 1;
   /* What was found is not the nearest. */
   d2 = vg_ref_nearest(w->ref, x, n, &c->hint, y);
   other = VG_REF_NONE;
-  return !vg_ref_within(w->ref, x, back, NEARER * d2, &other, &o2);
+  return !vg_ref_within(w->ref, x, back, VG_WORK_NEARER * d2, &other, &o2);
 }
 
 static int tri_fits(const struct vg_work *w, struct vg_cavity *c, size_t i)
@@ -266,40 +362,6 @@ static int tri_fits(const struct vg_work *w, struct vg_cavity *c, size_t i)
   return 1;
 }
 
-static double segment2(const double *a, const double *u, const double x[3])
-{
-  double d[3], uu = vg_dot(u, u), t;
-
-  vg_sub(x, a, d);
-  t = uu > 0 ? vg_dot(d, u) / uu : 0;
-  t = t < 0 ? 0 : t > 1 ? 1 : t;
-  for (int k = 0; k < 3; k++) d[k] -= t * u[k];
-  return vg_dot(d, d);
-}
-
-/* Squared distance of x from a triangle. */
-static double distance2(const double *const *p, const double x[3])
-{
-  double e[3][3], n[3], d[3], s[3], best = INFINITY, nn;
-  int inside = 1;
-
-  for (int k = 0; k < 3; k++) vg_sub(p[(k + 1) % 3], p[k], e[k]);
-  vg_cross(e[0], e[1], n);
-  nn = vg_dot(n, n);
-  for (int k = 0; k < 3; k++) {
-    vg_sub(x, p[k], d);
-    vg_cross(n, e[k], s);
-    if (vg_dot(d, s) < 0) {
-      inside = 0;
-      best = fmin(best, segment2(p[k], e[k], x));
-    }
-  }
-  if (!inside || !(nn > 0)) return best;
-  vg_sub(x, p[0], d);
-  d[0] = vg_dot(d, n);
-  return d[0] * d[0] / nn;
-}
-
 static int sample_fits(const struct vg_work *w, struct vg_cavity *c,
                        uint32_t s)
 {
@@ -307,7 +369,7 @@ static int sample_fits(const struct vg_work *w, struct vg_cavity *c,
 
   if (c->n_sample == VG_WORK_SAMPLES) return 0;
   for (size_t i = 0; i < c->n_new; i++) {
-    double d2 = distance2(c->corner[i], w->ref->point[s]);
+    double u, v, d2 = vg_ref_tri_nearest(&c->made[i], w->given[s], &u, &v);
 
     if (!(d2 < best)) continue;
     best = d2;
@@ -317,10 +379,19 @@ static int sample_fits(const struct vg_work *w, struct vg_cavity *c,
   return best <= c->tolerance * c->tolerance;
 }
 
+static void make_triangles(struct vg_cavity *c)
+{
+  for (size_t i = 0; i < c->n_new; i++) {
+    memcpy(c->made[i].a, c->corner[i][0], sizeof c->made[i].a);
+    vg_sub(c->corner[i][1], c->corner[i][0], c->made[i].u);
+    vg_sub(c->corner[i][2], c->corner[i][0], c->made[i].v);
+  }
+}
+
 int vg_cavity_fits(const struct vg_work *w, struct vg_cavity *c)
 {
-  if (c->fresh != SIZE_MAX && !sample_fits(w, c, (uint32_t)c->fresh))
-    return 0;
+  make_triangles(c);
+  if (c->fresh != VG_REF_NONE && !sample_fits(w, c, c->fresh)) return 0;
   for (size_t i = 0; i < c->n_old; i++)
     for (uint32_t s = w->first[c->old[i]]; s != VG_REF_NONE;
          s = w->follow[s])

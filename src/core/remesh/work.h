@@ -6,17 +6,30 @@
 #include "core/remesh/curves.h"
 
 #define VG_WORK_RING 256       /* triangles around a point that may change */
+#define VG_WORK_NEARER 1.5     /* S25: than another sheet */
 
 enum { VG_WORK_FACE, VG_WORK_CURVE, VG_WORK_CORNER };
+
+enum { VG_WORK_FREE, VG_WORK_FROZEN, VG_WORK_FANS };
 
 struct vg_work_point {
   double x[3], size;
   uint32_t half;            /* one that leaves it; VG_REF_NONE: removed */
   uint32_t home;            /* triangle of the reference near it */
+  uint32_t by;              /* that which asks for its size */
+  uint32_t given;           /* its sample, once removed; VG_REF_NONE: none */
   uint8_t kind;
+  uint8_t goes;             /* a point of a curve that is to be taken away */
+  uint8_t frozen;           /* on the border of a block: stays, and no edges
+                               are made to others; FANS: none to it at all, as
+                               its triangles in the block do not hang together
+                               */
   uint64_t changed, tried;  /* when triangles at it changed, and when it was
                                last looked at */
 };
+
+enum { VG_WORK_SWAPS, VG_WORK_COLLAPSES, VG_WORK_ACROSS, VG_WORK_SPLITS,
+       VG_WORK_POLISH, VG_WORK_LOOKS };
 
 /* Edge along a curve. */
 struct vg_work_line {
@@ -34,23 +47,31 @@ struct vg_work {
   double (*other_size)(const void *user, const double x[3]);
   const void *user;         /* of other_size */
   double h_min, h_max;
-  size_t n_point, cap_point, n_tri, cap_tri, cap_mate, cap_edge, cap_first;
-  size_t n_line, cap_line, n_given;
+  int threads;              /* to begin with */
+  size_t n_point, cap_point, n_tri, cap_tri, cap_mate, cap_edge, cap_first,
+         cap_stamp;
+  size_t n_line, cap_line;
   struct vg_work_point *point;
   uint32_t (*tri)[3];       /* removed: three times the same point */
   uint32_t *mate;           /* VG_REF_NONE: open rim */
   uint32_t *edge;           /* [3 n_tri] line + 1 of it; 0: none */
+  uint64_t *stamp;          /* [n_tri] when it changed */
   struct vg_work_line *line;
-  /* Points of the reference that are none of this surface any more, each with
-   * the triangle near it: what keeps the given surface near this one. */
+  /* Samples of the reference: its points, then places along its edges where
+   * it bends. Those that are none of the points of this surface any more are
+   * each kept with the triangle near it: what keeps the given surface near
+   * this one. */
+  size_t n_given;
+  double (*given)[3];       /* [n_given] */
   uint32_t *first;          /* [n_tri] VG_REF_NONE: none */
   uint32_t *follow;         /* [n_given] the next one of the same triangle */
   uint8_t *is_sample;       /* [n_given] */
+  int is_block;             /* given, follow and is_sample are another's */
   uint32_t *spare;          /* removed triangles */
   size_t n_spare, cap_spare;
   size_t n_split, n_collapse, n_swap, n_move, n_refused;
-  uint64_t clock, swapped;  /* counts changes; when all edges were last
-                               looked at for swaps */
+  uint64_t clock;           /* counts changes */
+  uint64_t looked[VG_WORK_LOOKS];  /* when all was last looked at */
   int failed;               /* no memory */
 };
 
@@ -84,6 +105,28 @@ static inline int vg_work_removed(const struct vg_work *w, size_t t)
   return w->tri[t][0] == w->tri[t][1];
 }
 
+/** Has neither end of the edge changed since? */
+static inline int vg_work_is_old(const struct vg_work *w, uint32_t h,
+                                 uint64_t since)
+{
+  return w->point[vg_work_from(w, h)].changed <= since
+         && w->point[vg_work_to(w, h)].changed <= since;
+}
+
+/** An edge of the border of a block, which stays as it is. */
+static inline int vg_work_is_border(const struct vg_work *w, uint32_t h)
+{
+  return w->mate[h] == VG_REF_NONE && w->point[vg_work_from(w, h)].frozen
+         && w->point[vg_work_to(w, h)].frozen;
+}
+
+/** May there be a new edge between a and b? */
+static inline int vg_work_may_join(const struct vg_work *w, uint32_t a,
+                                   uint32_t b)
+{
+  return w->point[a].frozen + w->point[b].frozen < VG_WORK_FANS;
+}
+
 /** The surface of the reference, ready to be changed. */
 vg_status vg_work_begin(struct vg_work *w, struct vg_error *err);
 
@@ -94,8 +137,14 @@ void vg_work_release(struct vg_work *w);
 size_t vg_work_ring(const struct vg_work *w, uint32_t p, uint32_t *half,
                     int *open);
 
-/** Size asked for at x, near triangle `hint` of the reference. */
-double vg_work_size(const struct vg_work *w, const double x[3], uint32_t hint);
+/** Size asked for at x. *by: as vg_ref_size. */
+double vg_work_size(const struct vg_work *w, const double x[3], uint32_t *by);
+
+/** The same, from what asks for the sizes of the n points, and the triangle
+ * home: right but where a spot of finer sizes lies between them all. */
+double vg_work_size_near(const struct vg_work *w, const double x[3],
+                         uint32_t home, size_t n, const uint32_t *point,
+                         uint32_t *by);
 
 /** Length of the edge in parts of the sizes at its ends. */
 double vg_work_ratio(const struct vg_work *w, uint32_t h);

@@ -11,6 +11,10 @@
 #include "core/geometry/vector.h"
 
 #define GAIN 1.02         /* of a swap, in squares of sines */
+#define NEARBY 2.5        /* sizes: ends of shorter edges know the size between
+                             them */
+#define STRAY 0.1         /* of the edge or size: farther from it, steps along
+                             the reference have lost their way */
 #define ALMOST 0.95       /* of the shape, before a point is on the surface */
 #define SPLIT_LOSS 0.2    /* S23: least shape after a split, of what was
                              before */
@@ -37,6 +41,7 @@ static void set_tri(struct vg_work *w, uint32_t t, uint32_t a, uint32_t b,
     w->point[p[k]].half = 3 * t + k;
     w->point[p[k]].changed = ++w->clock;
   }
+  w->stamp[t] = w->clock;
 }
 
 static uint32_t new_tri(struct vg_work *w)
@@ -49,6 +54,8 @@ static uint32_t new_tri(struct vg_work *w)
                     sizeof *w->mate)
       || vg_reserve(&w->edge, &w->cap_edge, 3 * w->n_tri + 3,
                     sizeof *w->edge)
+      || vg_reserve(&w->stamp, &w->cap_stamp, w->n_tri + 1,
+                    sizeof *w->stamp)
       || vg_reserve(&w->first, &w->cap_first, w->n_tri + 1,
                     sizeof *w->first)) {
     w->failed = 1;
@@ -85,6 +92,7 @@ static void middle_of(const struct vg_work *w, uint32_t h, const double *at,
   const double *a = vg_work_at(w, vg_work_from(w, h));
   const double *b = vg_work_at(w, vg_work_to(w, h));
   double n[3] = { 0, 0, 0 }, x[3];
+  const double *n_or_any;
 
   if (w->edge[h]) {
     const struct vg_work_line *l = &w->line[w->edge[h] - 1];
@@ -96,7 +104,10 @@ static void middle_of(const struct vg_work *w, uint32_t h, const double *at,
   normal_of(w, h / 3, n);
   normal_of(w, w->mate[h] / 3, n);
   for (int k = 0; k < 3; k++) x[k] = (a[k] + b[k]) / 2;
-  vg_ref_nearest(w->ref, x, vg_unit(n) > 0 ? n : NULL, &p->home, p->x);
+  n_or_any = vg_unit(n) > 0 ? n : NULL;
+  if (!(vg_ref_project(w->ref, x, n_or_any, &p->home, p->x)
+        <= STRAY * vg_distance(a, b)))
+    vg_ref_nearest(w->ref, x, n_or_any, &p->home, p->x);
 }
 
 static int split_fits(const struct vg_work *w, uint32_t h, const double *m,
@@ -121,6 +132,17 @@ static int split_fits(const struct vg_work *w, uint32_t h, const double *m,
   }
   vg_cavity_measure(c);
   return c->shape > (face ? SPLIT_LOSS : 0.01) * shape && vg_cavity_fits(w, c);
+}
+
+/* Of a long edge, something finer may lie between its ends. */
+static void size_between(const struct vg_work *w, uint32_t h,
+                         struct vg_work_point *p)
+{
+  const uint32_t end[2] = { vg_work_from(w, h), vg_work_to(w, h) };
+
+  if (vg_work_ratio(w, h) < NEARBY)
+    p->size = vg_work_size_near(w, p->x, p->home, 2, end, &p->by);
+  else p->size = vg_work_size(w, p->x, &p->by);
 }
 
 static uint32_t add_point(struct vg_work *w, const struct vg_work_point *p)
@@ -188,15 +210,18 @@ uint32_t vg_work_split(struct vg_work *w, uint32_t h, const double *at)
   struct vg_work_point p = w->point[a];
   double s = 0;
 
-  middle_of(w, h, at, &p, &s);
-  p.kind = w->edge[h] ? VG_WORK_CURVE : VG_WORK_FACE;
+  if (vg_work_is_border(w, h)) return VG_REF_NONE;
   vg_cavity_begin(w, &c, a);
   vg_cavity_narrow(w, &c, b);
+  middle_of(w, h, at, &p, &s);
+  p.kind = w->edge[h] ? VG_WORK_CURVE : VG_WORK_FACE;
+  p.frozen = p.goes = 0;
+  p.given = VG_REF_NONE;
   c.hint = p.home;
   if (!split_fits(w, h, p.x, &c)) return VG_REF_NONE;
   if (w->edge[h] && vg_reserve(&w->line, &w->cap_line, w->n_line + 1,
                                sizeof *w->line)) w->failed = 1;
-  p.size = vg_work_size(w, p.x, c.hint);
+  size_between(w, h, &p);
   m = w->failed ? VG_REF_NONE : add_point(w, &p);
   for (size_t i = 0; i < c.n_old; i++) {
     t[2 * i] = c.old[i];
@@ -270,6 +295,25 @@ static int link_fits(const struct vg_work *w, uint32_t h,
   return common == wanted;
 }
 
+/* Edges from u to the neighbours of v that are new may be made. */
+static int joins_fit(const struct vg_work *w, uint32_t h,
+                     const uint32_t *ring, size_t n, int open)
+{
+  const uint32_t u = vg_work_to(w, h), g = w->mate[h];
+  const uint32_t o = vg_work_from(w, vg_work_prev(h));
+  const uint32_t q = g == VG_REF_NONE ? u : vg_work_from(w, vg_work_prev(g));
+
+  if (w->point[u].frozen == VG_WORK_FANS) return 0;
+  for (size_t i = 0; i < n; i++)
+    for (int end = 0; end < (open && i + 1 == n ? 2 : 1); end++) {
+      uint32_t p = end ? vg_work_from(w, vg_work_prev(ring[i]))
+                       : vg_work_to(w, ring[i]);
+
+      if (p != u && p != o && p != q && !vg_work_may_join(w, p, u)) return 0;
+    }
+  return 1;
+}
+
 static int collapse_fits(const struct vg_work *w, uint32_t h,
                          const uint32_t *ring, size_t n, double most,
                          double shape, struct vg_cavity *c)
@@ -299,7 +343,7 @@ static int collapse_fits(const struct vg_work *w, uint32_t h,
   if (!c->n_new) return 0;
   vg_cavity_measure(c);
   if (!(c->shape >= fmin(before, shape))) return 0;
-  if (v < w->n_given && !w->is_sample[v]) c->fresh = v;
+  c->fresh = w->point[v].given;
   return vg_cavity_fits(w, c);
 }
 
@@ -359,7 +403,7 @@ int vg_work_collapse(struct vg_work *w, uint32_t h, double most, double shape)
   size_t n;
   int open;
 
-  if (w->point[v].kind == VG_WORK_CORNER) return 0;
+  if (w->point[v].kind == VG_WORK_CORNER || w->point[v].frozen) return 0;
   n = vg_work_ring(w, v, ring, &open);
   if (!n) return 0;
   if (w->edge[h] && w->point[v].kind == VG_WORK_FACE) return 0;
@@ -371,9 +415,11 @@ int vg_work_collapse(struct vg_work *w, uint32_t h, double most, double shape)
     uint32_t p = vg_work_next(k), q = vg_work_prev(k);
 
     if (w->edge[p] && w->edge[q]) return 0;
+    if ((vg_work_is_border(w, p) && w->edge[q])
+        || (vg_work_is_border(w, q) && w->edge[p])) return 0;
     if (w->mate[p] == VG_REF_NONE && w->mate[q] == VG_REF_NONE) return 0;
   }
-  if (!link_fits(w, h, ring, n, open)
+  if (!joins_fit(w, h, ring, n, open) || !link_fits(w, h, ring, n, open)
       || !collapse_fits(w, h, ring, n, most, shape, &c)) return 0;
   collapse(w, h, ring, n, &c);
   return 1;
@@ -406,7 +452,8 @@ int vg_work_swap(struct vg_work *w, uint32_t h)
   before = fmin(vg_work_shape(x[0], x[1], x[2]),
                 vg_work_shape(x[0], x[1], x[3]));
   vg_cavity_measure(&c);
-  if (!(c.shape > GAIN * before) || p[2] == p[3]) return 0;
+  if (!(c.shape > GAIN * before) || p[2] == p[3]
+      || !vg_work_may_join(w, p[2], p[3])) return 0;
   n = vg_work_ring(w, p[2], ring, &open);
   if (!n || n + 1 >= VG_WORK_RING) return 0;
   for (size_t i = 0; i < n; i++)
@@ -437,12 +484,13 @@ int vg_work_move(struct vg_work *w, uint32_t p, const double x[3],
                  double shape)
 {
   struct vg_cavity c;
-  uint32_t ring[VG_WORK_RING], t[VG_WORK_RING], home = w->point[p].home;
+  uint32_t ring[VG_WORK_RING], t[VG_WORK_RING], near[VG_WORK_RING + 1];
+  uint32_t home = w->point[p].home;
   double y[3], n[3] = { 0, 0, 0 }, before = 1;
   size_t n_ring;
   int open;
 
-  if (w->point[p].kind != VG_WORK_FACE) return 0;
+  if (w->point[p].kind != VG_WORK_FACE || w->point[p].frozen) return 0;
   n_ring = vg_work_ring(w, p, ring, &open);
   if (!n_ring) return 0;
   for (size_t i = 0; i < n_ring; i++) normal_of(w, ring[i] / 3, n);
@@ -459,18 +507,22 @@ int vg_work_move(struct vg_work *w, uint32_t p, const double x[3],
   before = fmin(before, shape);
   vg_cavity_measure(&c);     /* roughly, which costs little, then exactly */
   if (!(c.shape > ALMOST * before)
-      || !(vg_ref_nearest(w->ref, x, n, &home, y) < INFINITY)) return 0;
+      || !(vg_ref_project(w->ref, x, n, &home, y)
+           <= STRAY * w->point[p].size)) return 0;
   c.hint = home;
   vg_cavity_measure(&c);
   if (!(c.shape > before)) return 0;
-  if (p < w->n_given && !w->is_sample[p]) c.fresh = p;
+  c.fresh = w->point[p].given;
   if (!vg_cavity_fits(w, &c)) return 0;
   memcpy(w->point[p].x, y, sizeof y);
   w->point[p].home = home;
-  w->point[p].size = vg_work_size(w, y, home);
-  for (size_t i = 0; i < n_ring; i++)
-    w->point[vg_work_to(w, ring[i])].changed = ++w->clock;
-  w->point[p].changed = ++w->clock;
+  w->point[p].given = VG_REF_NONE;
+  for (size_t i = 0; i < n_ring; i++) near[i] = vg_work_to(w, ring[i]);
+  near[n_ring] = p;
+  w->point[p].size = vg_work_size_near(w, y, home, n_ring + 1, near,
+                                       &w->point[p].by);
+  for (size_t i = 0; i <= n_ring; i++) w->point[near[i]].changed = ++w->clock;
+  for (size_t i = 0; i < n_ring; i++) w->stamp[t[i]] = w->clock;
   vg_cavity_settle(w, &c, t);
   w->n_move++;
   return 1;

@@ -17,8 +17,9 @@ struct vg_cavity {
                                          curve */
   double tolerance, shape;            /* out: of the new ones, the least */
   uint32_t hint;
-  size_t fresh;                       /* a point of the reference that will be
-                                         none of the surface; SIZE_MAX: none */
+  struct vg_ref_tri made[VG_WORK_NEW];  /* of the new ones, for samples */
+  uint32_t fresh;                     /* sample that a point is which goes;
+                                         VG_REF_NONE: none */
   uint32_t sample[VG_WORK_SAMPLES];
   uint16_t goes[VG_WORK_SAMPLES];     /* to which new one */
 };

@@ -141,7 +141,9 @@ says shown.vtu 'Name="distance"'
 printf 'Sizes of a bar\nsurface_size\n0.3\n' >size.deck
 vanguard check -q new/bar.lb8.ugrid --deck size.deck --json
 exits 0
-says out '"percent_edges_fit": 100.0'
+# Uniform sizes are to be met by 95 %.
+jq -e '.. | .percent_edges_fit? // empty | . >= 98' out >/dev/null ||
+  fail "edges do not fit: $(grep percent_edges_fit out)"
 says out '"corners": 8'
 says out '"edge_mean"'
 vanguard check -q new/bar.lb8.ugrid --against none.stl

@@ -1,0 +1,247 @@
+/* Outline: triangles are dealt to blocks; each block copies its own into a
+ * surface with numbers of its own, in which edges that others have the far side
+ * of are open and their ends frozen; when all have been changed they are put
+ * together along those edges. */
+#include "core/remesh/blocks_parts.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/parallel.h"
+
+struct blocks {
+  const struct vg_work *w;
+  size_t n;
+  struct vg_block *block;   /* [n] */
+  uint32_t *of;             /* [n_tri] block of each triangle */
+  uint32_t *tri;            /* [n_tri] triangles by block */
+  uint32_t *local;          /* [n_tri] number of a triangle in its block */
+  uint32_t *map;            /* [workers][n_point] numbers in a block;
+                               VG_REF_NONE between blocks */
+  vg_block_body body;
+  void *user;
+};
+
+/* --- out of the whole ---------------------------------------------------- */
+
+static vg_status room(struct vg_block *b, const struct vg_work *w,
+                      struct vg_error *err)
+{
+  struct vg_work *l = &b->w;
+
+  *l = (struct vg_work){ .ref = w->ref, .curves = w->curves,
+    .tolerance = w->tolerance, .relative = w->relative, .far = w->far,
+    .other_size = w->other_size, .user = w->user, .h_min = w->h_min,
+    .h_max = w->h_max, .n_given = w->n_given, .given = w->given,
+    .follow = w->follow, .is_sample = w->is_sample, .is_block = 1,
+    .n_tri = b->n_tri, .cap_tri = b->n_tri, .cap_first = b->n_tri,
+    .cap_stamp = b->n_tri, .cap_mate = 3 * b->n_tri,
+    .cap_edge = 3 * b->n_tri, .clock = 1 };
+  l->tri = vg_alloc(b->n_tri, sizeof *l->tri);
+  l->mate = vg_alloc(3 * b->n_tri, sizeof *l->mate);
+  l->edge = vg_calloc(3 * b->n_tri, sizeof *l->edge);
+  l->first = vg_alloc(b->n_tri, sizeof *l->first);
+  l->stamp = vg_alloc(b->n_tri, sizeof *l->stamp);
+  b->origin = vg_alloc(3 * b->n_tri, sizeof *b->origin);
+  if (l->tri && l->mate && l->edge && l->stamp && l->first && b->origin)
+    return VG_OK;
+  return vg_fail_memory(err, "a block of the surface");
+}
+
+static vg_status take_points(struct vg_block *b, const struct vg_work *w,
+                             uint32_t *map, struct vg_error *err)
+{
+  struct vg_work *l = &b->w;
+
+  for (size_t i = 0; i < b->n_tri; i++) {
+    l->first[i] = w->first[b->tri[i]];
+    l->stamp[i] = w->stamp[b->tri[i]] != 0;
+    for (int k = 0; k < 3; k++) {
+      uint32_t p = w->tri[b->tri[i]][k];
+
+      if (map[p] == VG_REF_NONE) {
+        map[p] = (uint32_t)b->n_origin;
+        b->origin[b->n_origin++] = p;
+      }
+      l->tri[i][k] = map[p];
+    }
+  }
+  l->n_point = l->cap_point = b->n_origin;
+  l->point = vg_alloc(l->n_point, sizeof *l->point);
+  if (!l->point) return vg_fail_memory(err, "a block of the surface");
+  for (size_t i = 0; i < l->n_point; i++) {
+    struct vg_work_point *p = &l->point[i];
+
+    *p = w->point[b->origin[i]];
+    p->half = VG_REF_NONE;
+    p->changed = p->changed != 0;   /* on the block's own clock */
+    p->tried = !p->changed;
+  }
+  for (uint32_t h = 0; h < 3 * l->n_tri; h++)
+    if (l->point[vg_work_from(l, h)].half == VG_REF_NONE)
+      l->point[vg_work_from(l, h)].half = h;
+  return VG_OK;
+}
+
+static vg_status take_line(struct vg_work *l, const struct vg_work *w,
+                           uint32_t line, const uint32_t *map, uint32_t *edge,
+                           struct vg_error *err)
+{
+  struct vg_work_line *to;
+
+  if (vg_reserve(&l->line, &l->cap_line, l->n_line + 1, sizeof *l->line))
+    return vg_fail_memory(err, "a block of the surface");
+  to = &l->line[l->n_line++];
+  *to = w->line[line];
+  for (int k = 0; k < 2; k++) to->end[k] = map[to->end[k]];
+  *edge = (uint32_t)l->n_line;
+  return VG_OK;
+}
+
+/* Mates and lines; ends of edges that another block has the far side of are
+ * frozen. */
+static vg_status take_edges(const struct blocks *s, struct vg_block *b,
+                            const uint32_t *map, struct vg_error *err)
+{
+  const struct vg_work *w = s->w;
+  struct vg_work *l = &b->w;
+  const uint32_t own = (uint32_t)(b - s->block);
+  vg_status st = VG_OK;
+
+  for (uint32_t h = 0; h < 3 * l->n_tri; h++) {
+    uint32_t from = 3 * b->tri[h / 3] + h % 3, g = w->mate[from];
+    int inside = g != VG_REF_NONE && s->of[g / 3] == own;
+
+    l->mate[h] = inside ? 3 * s->local[g / 3] + g % 3 : VG_REF_NONE;
+    if (g != VG_REF_NONE && !inside)
+      l->point[vg_work_from(l, h)].frozen
+        = l->point[vg_work_to(l, h)].frozen = VG_WORK_FROZEN;
+    if (!w->edge[from]) continue;
+    if (inside && l->mate[h] < h) l->edge[h] = l->edge[l->mate[h]];
+    else VG_TRY(take_line(l, w, w->edge[from] - 1, map, &l->edge[h], err));
+  }
+done:
+  return st;
+}
+
+/* Points with more than one open edge that leaves them have triangles that do
+ * not hang together. */
+static vg_status find_fans(struct vg_work *l, struct vg_error *err)
+{
+  uint8_t *open = vg_calloc(l->n_point, 1);
+
+  if (!open) return vg_fail_memory(err, "a block of the surface");
+  for (uint32_t h = 0; h < 3 * l->n_tri; h++) {
+    uint32_t p = vg_work_from(l, h);
+
+    if (l->mate[h] != VG_REF_NONE || !l->point[p].frozen) continue;
+    if (open[p]) l->point[p].frozen = VG_WORK_FANS;
+    open[p] = 1;
+  }
+  free(open);
+  return VG_OK;
+}
+
+static vg_status extract(const struct blocks *s, struct vg_block *b,
+                         uint32_t *map, struct vg_error *err)
+{
+  vg_status st;
+
+  VG_TRY(room(b, s->w, err));
+  st = take_points(b, s->w, map, err);
+  if (st >= 0) st = take_edges(s, b, map, err);
+  for (size_t i = 0; i < b->n_origin; i++) map[b->origin[i]] = VG_REF_NONE;
+  VG_TRY(st);
+  VG_TRY(find_fans(&b->w, err));
+done:
+  return st;
+}
+
+static void change(void *context, size_t first, size_t end, int worker)
+{
+  const struct blocks *s = context;
+
+  for (size_t i = first; i < end; i++) {
+    struct vg_block *b = &s->block[i];
+
+    b->st = extract(s, b, s->map + (size_t)worker * s->w->n_point, &b->err);
+    if (b->st >= 0) b->st = s->body(s->user, &b->w, &b->err);
+  }
+}
+
+/* --- all ----------------------------------------------------------------- */
+
+/* Triangles by block, and the numbers that they have there. */
+static vg_status deal(struct blocks *s, struct vg_error *err)
+{
+  size_t *start = vg_calloc(s->n + 1, sizeof *start);
+
+  if (!start) return vg_fail_memory(err, "the blocks of the surface");
+  for (size_t t = 0; t < s->w->n_tri; t++)
+    if (s->of[t] != VG_REF_NONE) start[s->of[t] + 1]++;
+  for (size_t i = 0; i < s->n; i++) {
+    s->block[i].tri = s->tri + start[i];
+    start[i + 1] += start[i];
+  }
+  for (uint32_t t = 0; t < s->w->n_tri; t++) {
+    struct vg_block *b;
+
+    if (s->of[t] == VG_REF_NONE) continue;
+    b = &s->block[s->of[t]];
+    s->local[t] = (uint32_t)b->n_tri++;
+    s->tri[start[s->of[t]]++] = t;
+  }
+  free(start);
+  return VG_OK;
+}
+
+static vg_status run_blocks(struct blocks *s, struct vg_work *w, int phase,
+                            int threads, struct vg_error *err)
+{
+  const size_t workers = (size_t)threads;
+  vg_status st;
+
+  s->block = vg_calloc(s->n, sizeof *s->block);
+  s->of = vg_alloc(w->n_tri, sizeof *s->of);
+  s->tri = vg_alloc(w->n_tri, sizeof *s->tri);
+  s->local = vg_alloc(w->n_tri, sizeof *s->local);
+  s->map = vg_alloc(workers * w->n_point, sizeof *s->map);
+  if (!s->block || !s->of || !s->tri || !s->local || !s->map)
+    VG_TRY(vg_fail_memory(err, "the blocks of the surface"));
+  memset(s->map, 0xff, workers * w->n_point * sizeof *s->map);
+  VG_TRY(vg_blocks_cut(w, s->n, phase, s->of, err));
+  VG_TRY(deal(s, err));
+  vg_parallel_for(threads, s->n, 1, change, s);
+  for (size_t i = 0; i < s->n; i++) {
+    if (s->block[i].st >= 0) continue;
+    if (err) *err = s->block[i].err;
+    st = s->block[i].st;
+    goto done;
+  }
+  VG_TRY(vg_blocks_join(w, s->n, s->block, threads, err));
+done:
+  return st;
+}
+
+vg_status vg_blocks_run(struct vg_work *w, size_t n, int phase, int threads,
+                        vg_block_body body, void *user, struct vg_error *err)
+{
+  struct blocks s = { .w = w, .n = n, .body = body, .user = user };
+  vg_status st;
+
+  if (n < 2) return body(user, w, err);
+  st = run_blocks(&s, w, phase, threads > 0 ? threads : vg_cores(), err);
+  for (size_t i = 0; s.block && i < n; i++) {
+    vg_work_release(&s.block[i].w);
+    free(s.block[i].origin);
+    free(s.block[i].point);
+    free(s.block[i].place);
+  }
+  free(s.block);
+  free(s.of);
+  free(s.tri);
+  free(s.local);
+  free(s.map);
+  return st;
+}

@@ -1,0 +1,300 @@
+/* Outline: what is left of the whole and what is new get numbers, block by
+ * block; each block writes its part; open edges of blocks are matched by their
+ * ends, which stayed; and points near them count as changed. */
+#include "core/remesh/blocks_parts.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/parallel.h"
+
+#define BAD2 0.25         /* S29: (sin 30 degrees)^2 */
+#define SHORT 0.7         /* S21 */
+#define LONG 1.4
+
+struct joining {
+  struct vg_work made;
+  struct vg_block *block;
+  uint32_t *number;         /* [n_point before] of points that stay */
+};
+
+struct side {
+  uint32_t lo, hi, half;
+};
+
+/* Old points that stay keep their order and come first, then new ones. */
+static vg_status number(const struct vg_work *w, size_t n, struct joining *j,
+                        struct vg_error *err)
+{
+  size_t n_point = 0, n_tri = 0, n_line = 0;
+
+  memset(j->number, 0xff, w->n_point * sizeof *j->number);
+  for (size_t i = 0; i < n; i++)
+    for (size_t p = 0; p < j->block[i].n_origin; p++)
+      if (j->block[i].w.point[p].half != VG_REF_NONE)
+        j->number[j->block[i].origin[p]] = 0;
+  for (size_t p = 0; p < w->n_point; p++)
+    if (j->number[p] != VG_REF_NONE) j->number[p] = (uint32_t)n_point++;
+  for (size_t i = 0; i < n; i++) {
+    struct vg_block *b = &j->block[i];
+
+    b->first_point = n_point;
+    b->first_tri = n_tri;
+    b->first_line = n_line;
+    for (size_t p = b->n_origin; p < b->w.n_point; p++)
+      n_point += b->w.point[p].half != VG_REF_NONE;
+    for (size_t t = 0; t < b->w.n_tri; t++)
+      n_tri += !vg_work_removed(&b->w, t);
+    n_line += b->w.n_line;
+  }
+  j->made.n_point = j->made.cap_point = n_point;
+  j->made.n_tri = j->made.cap_tri = j->made.cap_first = j->made.cap_stamp
+    = n_tri;
+  j->made.cap_mate = j->made.cap_edge = 3 * n_tri;
+  j->made.n_line = j->made.cap_line = n_line;
+  return n_point < UINT32_MAX - 2 && n_tri < UINT32_MAX / 3 ? VG_OK
+         : vg_fail(err, VG_ERR_UNSUPPORTED, "%zu triangles of the new surface "
+                   "are too many; ask for larger sizes", n_tri);
+}
+
+static vg_status room(struct joining *j, struct vg_error *err)
+{
+  struct vg_work *m = &j->made;
+
+  m->point = vg_alloc(m->n_point, sizeof *m->point);
+  m->tri = vg_alloc(m->n_tri, sizeof *m->tri);
+  m->mate = vg_alloc(3 * m->n_tri, sizeof *m->mate);
+  m->edge = vg_alloc(3 * m->n_tri, sizeof *m->edge);
+  m->stamp = vg_calloc(m->n_tri, sizeof *m->stamp);
+  m->first = vg_alloc(m->n_tri, sizeof *m->first);
+  m->line = vg_alloc(m->n_line, sizeof *m->line);
+  return m->point && m->tri && m->mate && m->edge && m->stamp && m->first
+         && m->line
+         ? VG_OK : vg_fail_memory(err, "the new surface");
+}
+
+/* --- a block into the whole ---------------------------------------------- */
+
+static void put_points(struct joining *j, struct vg_block *b)
+{
+  uint32_t next = (uint32_t)b->first_point;
+
+  for (size_t p = 0; p < b->w.n_point; p++) {
+    struct vg_work_point *q = &b->w.point[p];
+
+    b->point[p] = VG_REF_NONE;
+    if (q->half == VG_REF_NONE) continue;
+    b->point[p] = p < b->n_origin ? j->number[b->origin[p]] : next++;
+    if (q->frozen) continue;    /* others have it, too */
+    q->changed = q->tried = 0;
+    j->made.point[b->point[p]] = *q;
+  }
+}
+
+static void put_tris(struct joining *j, const struct vg_block *b)
+{
+  struct vg_work *m = &j->made;
+  const struct vg_work *l = &b->w;
+
+  for (size_t t = 0; t < l->n_tri; t++) {
+    uint32_t to = b->place[t];
+
+    if (to == VG_REF_NONE) continue;
+    m->first[to] = l->first[t];
+    for (uint32_t k = 0; k < 3; k++) {
+      uint32_t h = 3 * (uint32_t)t + k, g = l->mate[h];
+
+      m->tri[to][k] = b->point[l->tri[t][k]];
+      m->mate[3 * to + k] = g == VG_REF_NONE ? VG_REF_NONE
+                            : 3 * b->place[g / 3] + g % 3;
+      m->edge[3 * to + k] = l->edge[h]
+                            ? l->edge[h] + (uint32_t)b->first_line : 0;
+    }
+  }
+}
+
+static void put(void *context, size_t first, size_t end, int worker)
+{
+  struct joining *j = context;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++) {
+    struct vg_block *b = &j->block[i];
+    uint32_t next = (uint32_t)b->first_tri;
+
+    b->point = vg_alloc(b->w.n_point, sizeof *b->point);
+    b->place = vg_alloc(b->w.n_tri, sizeof *b->place);
+    if (!b->point || !b->place) {
+      b->st = VG_ERR_MEMORY;
+      continue;
+    }
+    for (size_t t = 0; t < b->w.n_tri; t++)
+      b->place[t] = vg_work_removed(&b->w, t) ? VG_REF_NONE : next++;
+    put_points(j, b);
+    put_tris(j, b);
+    for (size_t k = 0; k < b->w.n_line; k++) {
+      struct vg_work_line line = b->w.line[k];
+
+      for (int e = 0; e < 2; e++)
+        if (b->point[line.end[e]] != VG_REF_NONE)
+          line.end[e] = b->point[line.end[e]];
+        else line.end[e] = 0;   /* of a line that is no more */
+      j->made.line[b->first_line + k] = line;
+    }
+  }
+}
+
+/* --- borders ------------------------------------------------------------- */
+
+static int by_ends(const void *pa, const void *pb)
+{
+  const struct side *a = pa, *b = pb;
+
+  if (a->lo != b->lo) return a->lo < b->lo ? -1 : 1;
+  if (a->hi != b->hi) return a->hi < b->hi ? -1 : 1;
+  return (a->half > b->half) - (a->half < b->half);
+}
+
+static vg_status list_sides(const struct joining *j, size_t n,
+                            struct side **side, size_t *n_side,
+                            struct vg_error *err)
+{
+  size_t cap = 0;
+
+  for (size_t i = 0; i < n; i++) {
+    const struct vg_block *b = &j->block[i];
+
+    for (uint32_t h = 0; h < 3 * b->w.n_tri; h++) {
+      uint32_t p, q;
+
+      if (b->place[h / 3] == VG_REF_NONE || !vg_work_is_border(&b->w, h))
+        continue;
+      p = b->point[vg_work_from(&b->w, h)];
+      q = b->point[vg_work_to(&b->w, h)];
+      if (vg_reserve(side, &cap, *n_side + 1, sizeof **side))
+        return vg_fail_memory(err, "the borders of blocks");
+      (*side)[(*n_side)++] = (struct side){ p < q ? p : q, p < q ? q : p,
+                                            3 * b->place[h / 3] + h % 3 };
+    }
+  }
+  return VG_OK;
+}
+
+/* Open edges of blocks that no other has are rims of the surface. */
+static vg_status join_sides(struct joining *j, size_t n, struct vg_error *err)
+{
+  struct side *side = NULL;
+  size_t n_side = 0;
+  vg_status st;
+
+  VG_TRY(list_sides(j, n, &side, &n_side, err));
+  qsort(side, n_side, sizeof *side, by_ends);
+  for (size_t i = 1; i < n_side; i++) {
+    const struct side *a = &side[i - 1], *b = &side[i];
+
+    if (a->lo != b->lo || a->hi != b->hi) continue;
+    j->made.mate[a->half] = b->half;
+    j->made.mate[b->half] = a->half;
+    j->made.edge[b->half] = j->made.edge[a->half];
+  }
+done:
+  free(side);
+  return st;
+}
+
+/* What the blocks' changes left to be done: small angles, and edges that are
+ * too long or too short. */
+static int is_bad(const struct vg_work *w, uint32_t t)
+{
+  if (vg_work_tri_shape(w, t) < BAD2) return 1;
+  for (uint32_t h = 3 * t; h < 3 * t + 3; h++) {
+    double r = vg_work_ratio(w, h);
+
+    if (r < SHORT || r > LONG) return 1;
+  }
+  return 0;
+}
+
+static void finish_points(struct joining *j, size_t n)
+{
+  struct vg_work *m = &j->made;
+
+  for (size_t i = 0; i < n; i++) {
+    const struct vg_block *b = &j->block[i];
+
+    for (size_t p = 0; p < b->n_origin; p++)
+      if (b->w.point[p].frozen) m->point[b->point[p]] = b->w.point[p];
+  }
+  for (size_t p = 0; p < m->n_point; p++) m->point[p].half = VG_REF_NONE;
+  for (uint32_t h = 0; h < 3 * m->n_tri; h++) {
+    struct vg_work_point *p = &m->point[vg_work_from(m, h)];
+
+    if (p->half == VG_REF_NONE) p->half = h;
+  }
+  for (uint32_t t = 0; t < m->n_tri; t++) {
+    int near = is_bad(m, t);
+
+    for (int k = 0; k < 3; k++) near |= m->point[m->tri[t][k]].frozen;
+    for (int k = 0; near && k < 3; k++) m->point[m->tri[t][k]].changed = 1;
+    m->stamp[t] = (uint64_t)near;
+  }
+  for (size_t p = 0; p < m->n_point; p++) {
+    m->point[p].frozen = 0;
+    m->point[p].tried = !m->point[p].changed;
+  }
+}
+
+static void clear_arrays(struct vg_work *w)
+{
+  w->point = NULL;
+  w->tri = NULL;
+  w->mate = w->edge = w->first = NULL;
+  w->stamp = NULL;
+  w->line = NULL;
+}
+
+static void release_arrays(struct vg_work *w)
+{
+  free(w->point);
+  free(w->tri);
+  free(w->mate);
+  free(w->edge);
+  free(w->first);
+  free(w->stamp);
+  free(w->line);
+}
+
+vg_status vg_blocks_join(struct vg_work *w, size_t n, struct vg_block *b,
+                         int threads, struct vg_error *err)
+{
+  struct joining j = { .made = *w, .block = b };
+  vg_status st;
+
+  clear_arrays(&j.made);
+  j.made.n_spare = 0;
+  j.made.clock = 1;
+  memset(j.made.looked, 0, sizeof j.made.looked);
+  j.number = vg_alloc(w->n_point, sizeof *j.number);
+  if (!j.number) VG_TRY(vg_fail_memory(err, "the new surface"));
+  VG_TRY(number(w, n, &j, err));
+  VG_TRY(room(&j, err));
+  vg_parallel_for(threads, n, 1, put, &j);
+  for (size_t i = 0; i < n; i++)
+    if (b[i].st < 0) VG_TRY(vg_fail_memory(err, "the new surface"));
+  VG_TRY(join_sides(&j, n, err));
+  finish_points(&j, n);
+  for (size_t i = 0; i < n; i++) {
+    j.made.n_split += b[i].w.n_split;
+    j.made.n_collapse += b[i].w.n_collapse;
+    j.made.n_swap += b[i].w.n_swap;
+    j.made.n_move += b[i].w.n_move;
+  }
+  release_arrays(w);
+  *w = j.made;
+  clear_arrays(&j.made);
+done:
+  free(j.number);
+  release_arrays(&j.made);
+  return st;
+}

@@ -1,0 +1,405 @@
+#include "core/remesh/reference.h"
+
+#include <math.h>
+
+#include "core/geometry/vector.h"
+
+#define FACING 0.7        /* S22: cosine between what faces the same way */
+#define LEAF VG_REF_LEAF
+#define DEPTH 64
+#define WALK 24           /* triangles that are tried before the tree */
+
+static double clamp(double x)
+{
+  return x < 0 ? 0 : x > 1 ? 1 : x;
+}
+
+/* Barycentric coordinates (of u and v) of the nearest point of a triangle to
+ * x; returns the squared distance. After Ericson, "Real-Time Collision
+ * Detection", 2005, 5.1.5. */
+double vg_ref_tri_nearest(const struct vg_ref_tri *t, const double x[3],
+                          double *s, double *r)
+{
+  double d[3], uu, uv, vv, du, dv, det, a, b;
+
+  vg_sub(x, t->a, d);
+  uu = vg_dot(t->u, t->u);
+  uv = vg_dot(t->u, t->v);
+  vv = vg_dot(t->v, t->v);
+  du = vg_dot(d, t->u);
+  dv = vg_dot(d, t->v);
+  det = uu * vv - uv * uv;
+  a = vv * du - uv * dv;
+  b = uu * dv - uv * du;
+  if (a >= 0 && b >= 0 && a + b <= det && det > 0) {
+    a /= det;
+    b /= det;
+  } else {
+    double ww = uu - 2 * uv + vv, best = INFINITY;
+    const double edge[3][2] = {
+      { uu > 0 ? clamp(du / uu) : 0, 0 },
+      { 0, vv > 0 ? clamp(dv / vv) : 0 },
+      { 1, ww > 0 ? clamp((uu - uv - du + dv) / ww) : 0 } };
+
+    a = b = 0;
+    for (int k = 0; k < 3; k++) {
+      double p = k < 2 ? edge[k][0] : 1 - edge[2][1];
+      double q = k < 2 ? edge[k][1] : edge[2][1];
+      double e2 = p * p * uu + 2 * p * q * uv + q * q * vv
+                  - 2 * (p * du + q * dv);
+
+      if (e2 < best) best = e2, a = p, b = q;
+    }
+  }
+  *s = a;
+  *r = b;
+  for (int k = 0; k < 3; k++) d[k] -= a * t->u[k] + b * t->v[k];
+  return vg_dot(d, d);
+}
+
+static double box2(const struct vg_ref_node *b, const double x[3])
+{
+  double sum = 0;
+
+  for (int k = 0; k < 3; k++) {
+    double below = b->lo[k] - x[k], above = x[k] - b->hi[k];
+    double d = below > 0 ? below : above > 0 ? above : 0;
+
+    sum += d * d;
+  }
+  return sum;
+}
+
+/* Triangles without a normal face every way. */
+static int faces(const struct vg_ref_tri *t, const double *n)
+{
+  double c;
+
+  if (!n) return 1;
+  c = vg_dot(t->n, n);
+  return c > FACING || (c == 0 && vg_dot(t->n, t->n) == 0);
+}
+
+/* Does the plane of a triangle come within the distance? */
+static int plane_near(const struct vg_ref_tri *t, const double x[3],
+                      double limit)
+{
+  double d[3], off;
+
+  vg_sub(x, t->a, d);
+  off = vg_dot(d, t->n);
+  return off * off <= limit;
+}
+
+/* From triangle *t to the neighbour that is nearer to x, and on, until none is
+ * or one that faces the way of n is as near as `enough`. Returns the squared
+ * distance; INFINITY where the last one faces another way. */
+static double walk(const struct vg_ref *r, const double x[3], const double *n,
+                   double enough, uint32_t *t, double *s, double *q)
+{
+  double best = vg_ref_tri_nearest(&r->shape[*t], x, s, q);
+  uint32_t from = VG_REF_NONE;
+
+  for (int i = 0; i < WALK; i++) {
+    uint32_t to = VG_REF_NONE;
+
+    if (!r->mate || (best <= enough && faces(&r->shape[*t], n))) break;
+    for (uint32_t h = 3 * *t; h < 3 * *t + 3; h++) {
+      uint32_t u = r->mate[h] == VG_REF_NONE ? from : r->mate[h] / 3;
+      double us, uq, d2;
+
+      if (u == from) continue;
+      d2 = vg_ref_tri_nearest(&r->shape[u], x, &us, &uq);
+      if (!(d2 < best)) continue;
+      best = d2;
+      to = u;
+      *s = us;
+      *q = uq;
+    }
+    if (to == VG_REF_NONE) break;
+    from = *t;
+    *t = to;
+  }
+  return faces(&r->shape[*t], n) ? best : INFINITY;
+}
+
+int vg_ref_within(const struct vg_ref *r, const double x[3],
+                  const double n[3], double distance, uint32_t *hint,
+                  double *d2)
+{
+  size_t stack[DEPTH];
+  double limit = distance * distance, s, q;
+  int top = 0;
+
+  if (*hint != VG_REF_NONE) {
+    uint32_t t = *hint;
+
+    *d2 = walk(r, x, n, limit, &t, &s, &q);
+    if (*d2 <= limit) {
+      *hint = t;
+      return 1;
+    }
+  }
+  stack[top++] = 0;
+  while (top) {
+    size_t i = stack[--top], leaf;
+
+    if (box2(&r->node[i], x) > limit) continue;
+    if (i < r->first_leaf) {
+      stack[top++] = 2 * i + 2;
+      stack[top++] = 2 * i + 1;
+      continue;
+    }
+    leaf = LEAF * (i - r->first_leaf);
+    for (size_t k = leaf; k < leaf + LEAF && k < r->n_item; k++) {
+      const struct vg_ref_tri *t = &r->shape[r->item[k]];
+
+      if (!faces(t, n) || !plane_near(t, x, limit)) continue;
+      *d2 = vg_ref_tri_nearest(t, x, &s, &q);
+      if (!(*d2 <= limit)) continue;
+      *hint = r->item[k];
+      return 1;
+    }
+  }
+  return 0;
+}
+
+static double search(const struct vg_ref *r, const double x[3],
+                     const double *n, uint32_t *hint, double out[3])
+{
+  struct { size_t i; double d2; } stack[DEPTH];
+  double best = INFINITY, s, q, bs = 0, bq = 0;
+  uint32_t at = VG_REF_NONE;
+  int top = 0;
+
+  if (*hint != VG_REF_NONE) {
+    uint32_t t = *hint;
+
+    best = walk(r, x, n, 0, &t, &bs, &bq);
+    if (best < INFINITY) at = t;
+  }
+  stack[top].i = 0;
+  stack[top++].d2 = 0;
+  while (top) {
+    size_t i = stack[--top].i, leaf;
+
+    if (stack[top].d2 > best) continue;
+    if (i < r->first_leaf) {
+      double l = box2(&r->node[2 * i + 1], x);
+      double h = box2(&r->node[2 * i + 2], x);
+      int left = l <= h;      /* the nearer one on top */
+
+      stack[top].i = 2 * i + (left ? 2 : 1);
+      stack[top++].d2 = left ? h : l;
+      stack[top].i = 2 * i + (left ? 1 : 2);
+      stack[top++].d2 = left ? l : h;
+      continue;
+    }
+    leaf = LEAF * (i - r->first_leaf);
+    for (size_t k = leaf; k < leaf + LEAF && k < r->n_item; k++) {
+      const struct vg_ref_tri *t = &r->shape[r->item[k]];
+      double d2;
+
+      if (!faces(t, n) || !plane_near(t, x, best)) continue;
+      d2 = vg_ref_tri_nearest(t, x, &s, &q);
+      if (d2 < best || (d2 == best && r->item[k] < at)) {
+        best = d2;
+        at = r->item[k];
+        bs = s;
+        bq = q;
+      }
+    }
+  }
+  if (at == VG_REF_NONE) return INFINITY;
+  *hint = at;
+  for (int k = 0; k < 3; k++)
+    out[k] = r->shape[at].a[k] + bs * r->shape[at].u[k]
+             + bq * r->shape[at].v[k];
+  return sqrt(best);
+}
+
+double vg_ref_nearest(const struct vg_ref *r, const double x[3],
+                      const double n[3], uint32_t *hint, double out[3])
+{
+  double d = search(r, x, n, hint, out);
+
+  return n && !(d < INFINITY) ? search(r, x, NULL, hint, out) : d;
+}
+
+double vg_ref_project(const struct vg_ref *r, const double x[3],
+                      const double n[3], uint32_t *hint, double out[3])
+{
+  uint32_t t = *hint;
+  double s, q, d2 = walk(r, x, n, 0, &t, &s, &q);
+
+  if (!(d2 < INFINITY)) return INFINITY;
+  *hint = t;
+  for (int k = 0; k < 3; k++)
+    out[k] = r->shape[t].a[k] + s * r->shape[t].u[k] + q * r->shape[t].v[k];
+  return sqrt(d2);
+}
+
+/* Squared distance between a box and that of a node. */
+static double between2(const struct vg_ref_node *b, const double lo[3],
+                       const double hi[3])
+{
+  double sum = 0;
+
+  for (int k = 0; k < 3; k++) {
+    double d = fmax(fmax(b->lo[k] - hi[k], lo[k] - b->hi[k]), 0);
+
+    sum += d * d;
+  }
+  return sum;
+}
+
+size_t vg_ref_around(const struct vg_ref *r, const double lo[3],
+                     const double hi[3], double distance, size_t cap,
+                     uint32_t *tri)
+{
+  const double limit = distance * distance;
+  size_t stack[DEPTH], n = 0;
+  int top = 0;
+
+  stack[top++] = 0;
+  while (top) {
+    size_t i = stack[--top], leaf;
+
+    if (between2(&r->node[i], lo, hi) > limit) continue;
+    if (i < r->first_leaf) {
+      stack[top++] = 2 * i + 2;
+      stack[top++] = 2 * i + 1;
+      continue;
+    }
+    leaf = LEAF * (i - r->first_leaf);
+    for (size_t k = leaf; k < leaf + LEAF && k < r->n_item; k++, n++)
+      if (n < cap) tri[n] = r->item[k];
+  }
+  return n;
+}
+
+/* --- sizes --------------------------------------------------------------- */
+
+/* What triangle t asks for at x: the size of its nearest point, or of a
+ * corner, grown with the distance. */
+double vg_ref_size_by(const struct vg_ref *r, uint32_t t, const double x[3])
+{
+  const uint32_t *c = r->tri[t];
+  double s, q, h, d = sqrt(vg_ref_tri_nearest(&r->shape[t], x, &s, &q));
+
+  h = (1 - s - q) * r->size[c[0]] + s * r->size[c[1]] + q * r->size[c[2]]
+      + r->slope * d;
+  for (int k = 0; k < 3; k++) {
+    double own = r->size[c[k]];
+
+    if (own >= h) continue;
+    h = fmin(h, own + r->slope * vg_distance(r->point[c[k]], x));
+  }
+  return h;
+}
+
+double vg_ref_size(const struct vg_ref *r, const double x[3], uint32_t *by)
+{
+  size_t stack[DEPTH];
+  double h = INFINITY;
+  int top = 0;
+
+  if (*by != VG_REF_NONE) h = vg_ref_size_by(r, *by, x);
+  stack[top++] = 0;
+  while (top) {
+    size_t i = stack[--top], leaf;
+    double room = (h - r->node[i].size) / r->slope;
+
+    if (!(room > 0) || box2(&r->node[i], x) >= room * room) continue;
+    if (i < r->first_leaf) {
+      int left = box2(&r->node[2 * i + 1], x) <= box2(&r->node[2 * i + 2], x);
+
+      stack[top++] = 2 * i + (left ? 2 : 1);
+      stack[top++] = 2 * i + (left ? 1 : 2);
+      continue;
+    }
+    leaf = LEAF * (i - r->first_leaf);
+    for (size_t k = leaf; k < leaf + LEAF && k < r->n_item; k++) {
+      double asked = vg_ref_size_by(r, r->item[k], x);
+
+      if (!(asked < h)) continue;
+      h = asked;
+      *by = r->item[k];
+    }
+  }
+  return h;
+}
+
+/* --- rays ---------------------------------------------------------------- */
+
+struct ray {
+  const double *x, *d;
+  double inverse[3], reach; /* to the nearest triangle so far */
+  uint32_t tri;
+};
+
+static int ray_meets_box(const struct vg_ref_node *b, const struct ray *r)
+{
+  double from = 0, to = r->reach;
+
+  for (int k = 0; k < 3; k++) {
+    double s = (b->lo[k] - r->x[k]) * r->inverse[k];
+    double t = (b->hi[k] - r->x[k]) * r->inverse[k];
+
+    if (r->d[k] == 0) {
+      if (r->x[k] < b->lo[k] || r->x[k] > b->hi[k]) return 0;
+      continue;
+    }
+    from = fmax(from, fmin(s, t));
+    to = fmin(to, fmax(s, t));
+  }
+  return from <= to;
+}
+
+/* After Moeller and Trumbore, "Fast, minimum storage ray/triangle
+ * intersection", Journal of Graphics Tools 2(1), 1997; from the front alone. */
+static void ray_meets(const struct vg_ref *ref, uint32_t t, struct ray *r)
+{
+  const struct vg_ref_tri *s = &ref->shape[t];
+  double p[3], q[3], w[3], det, a, b, far;
+
+  vg_cross(r->d, s->v, p);
+  det = vg_dot(s->u, p);
+  if (!(det > 0)) return;
+  vg_sub(r->x, s->a, w);
+  a = vg_dot(w, p);
+  if (a < 0 || a > det) return;
+  vg_cross(w, s->u, q);
+  b = vg_dot(r->d, q);
+  if (b < 0 || a + b > det) return;
+  far = vg_dot(s->v, q) / det;
+  if (!(far > 0) || far > r->reach || (far == r->reach && t > r->tri)) return;
+  r->reach = far;
+  r->tri = t;
+}
+
+uint32_t vg_ref_ray(const struct vg_ref *r, const double x[3],
+                    const double d[3], double most, double *far)
+{
+  struct ray ray = { x, d, { 1 / d[0], 1 / d[1], 1 / d[2] }, most,
+                     VG_REF_NONE };
+  size_t stack[DEPTH];
+  int top = 0;
+
+  stack[top++] = 0;
+  while (top) {
+    size_t i = stack[--top], leaf;
+
+    if (!ray_meets_box(&r->node[i], &ray)) continue;
+    if (i < r->first_leaf) {
+      stack[top++] = 2 * i + 2;
+      stack[top++] = 2 * i + 1;
+      continue;
+    }
+    leaf = LEAF * (i - r->first_leaf);
+    for (size_t k = leaf; k < leaf + LEAF && k < r->n_item; k++)
+      ray_meets(r, r->item[k], &ray);
+  }
+  *far = ray.reach;
+  return ray.tri;
+}
