@@ -15,7 +15,7 @@
 #include "core/surface/surface_check.h"
 
 #define GRAIN 1024
-#define TURN 0.5          /* S28: cosine: a triangle turned by more is refused */
+#define TURN 0.5          /* S28: cosine: no triangle turns by more */
 #define SLIVER 0.12       /* (sin 20 degrees)^2: smaller angles may not become
                              smaller yet by LOSS */
 #define LOSS 0.7          /* of the square of the sine */

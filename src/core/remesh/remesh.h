@@ -99,8 +99,8 @@ vg_status vg_remesh(struct vg_mesh *m, const struct vg_remesh_options *o,
                     struct vg_remesh_report *r, struct vg_error *err);
 
 /** What vg_remesh would report of a surface that is as it should be already:
- * its lines and corners, edges against what is asked for, bad triangles with their
- * causes. No change is counted. Conditions, errors and cost as there. */
+ * its lines and corners, edges against what is asked for, bad triangles with
+ * their causes. No change is counted. Conditions, errors and cost as there. */
 vg_status vg_remesh_judge(const struct vg_mesh *m,
                           const struct vg_remesh_options *o,
                           struct vg_remesh_report *r, struct vg_error *err);
