@@ -113,6 +113,7 @@ static vg_status gather(const struct block *block, size_t n_block,
     if (block[i].refused) return vg_fail_memory(err, "the gaps");
     n += block[i].n;
   }
+  if (!n) return VG_OK;
   out->x = vg_alloc(n, sizeof *out->x);
   out->h = vg_alloc(n, sizeof *out->h);
   if (!out->x || !out->h) return vg_fail_memory(err, "the gaps");
