@@ -1,9 +1,8 @@
 /* Voids cut and filled by all ranks: the mesh that one rank makes alone; stops
  * and failures that every rank hears of; runs resumed on other ranks. */
 #define _GNU_SOURCE
-#include "mpi_support.h"
+#include "digest_support.h"
 
-#include "../unit/advance_support.h"
 #include "base/child.h"
 #include "io/slices/slices.h"
 
@@ -26,20 +25,6 @@ static int set_up(void **state)
 static int is_first(void)
 {
   return vg_comm_rank(job) == 0;
-}
-
-/* What rank 0 knows; the others have waited. */
-static struct mesh_digest tell(const struct mesh_digest *d)
-{
-  struct vg_bytes b = { sizeof *d, NULL };
-  struct mesh_digest out;
-
-  b.data = vg_calloc(1, sizeof *d);
-  if (is_first()) memcpy(b.data, d, sizeof *d);
-  assert_int_equal(vg_comm_bcast(job, 0, &b, NULL), VG_OK);
-  memcpy(&out, b.data, sizeof out);
-  free(b.data);
-  return out;
 }
 
 /* The mesh that rank 0 makes alone, in one thread. */

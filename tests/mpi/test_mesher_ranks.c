@@ -1,9 +1,8 @@
 /* Other meshers in the parts of all ways to decompose, on all ranks: the mesh
  * that one rank makes alone. */
 #define _GNU_SOURCE
-#include "mpi_support.h"
+#include "digest_support.h"
 
-#include "../unit/advance_support.h"
 #include "base/child.h"
 #include "partition/advance/ways.h"
 
@@ -35,17 +34,9 @@ static struct mesh_digest alone(const struct scene *s,
 {
   struct vg_partition_report r;
   struct mesh_digest d = { 0 };
-  struct vg_bytes b = { sizeof d, vg_calloc(1, sizeof d) };
 
-  assert_non_null(b.data);
-  if (!vg_comm_rank(job)) {
-    d = run_of(NULL, s, o, 1, &r);
-    memcpy(b.data, &d, sizeof d);
-  }
-  assert_int_equal(vg_comm_bcast(job, 0, &b, NULL), VG_OK);
-  memcpy(&d, b.data, sizeof d);
-  free(b.data);
-  return d;
+  if (!vg_comm_rank(job)) d = run_of(NULL, s, o, 1, &r);
+  return tell(&d);
 }
 
 /* is_whole: it fills every part. */

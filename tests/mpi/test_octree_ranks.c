@@ -1,9 +1,8 @@
 /* Voids parted by octants, filled by all ranks: the mesh that one rank makes
  * alone, and a run that another number of ranks had begun. */
 #define _GNU_SOURCE
-#include "mpi_support.h"
+#include "digest_support.h"
 
-#include "../unit/advance_support.h"
 #include "base/child.h"
 #include "partition/octree/octree.h"
 
@@ -54,16 +53,9 @@ static struct mesh_digest alone(const struct scene *s,
 {
   struct vg_partition_report r;
   struct mesh_digest d = { 0 };
-  struct vg_bytes b = { sizeof d, NULL };
 
   if (is_first()) d = run(NULL, s, o, 1, &r);
-  b.data = vg_calloc(1, sizeof d);
-  assert_non_null(b.data);
-  memcpy(b.data, &d, sizeof d);
-  assert_int_equal(vg_comm_bcast(job, 0, &b, NULL), VG_OK);
-  memcpy(&d, b.data, sizeof d);
-  free(b.data);
-  return d;
+  return tell(&d);
 }
 
 /* Octants and a gap that is cut by planes: both are there. */

@@ -1,23 +1,8 @@
 /* Parts that cannot be filled: on any number of ranks as on one. */
 #define _GNU_SOURCE
-#include "mpi_support.h"
+#include "digest_support.h"
 
-#include "../unit/advance_support.h"
 #include "base/child.h"
-
-static struct mesh_digest tell(const struct mesh_digest *d)
-{
-  struct vg_bytes b = { sizeof *d, NULL };
-  struct mesh_digest out;
-
-  b.data = vg_calloc(1, sizeof *d);
-  assert_non_null(b.data);
-  if (vg_comm_rank(job) == 0) memcpy(b.data, d, sizeof *d);
-  assert_int_equal(vg_comm_bcast(job, 0, &b, NULL), VG_OK);
-  memcpy(&out, b.data, sizeof out);
-  free(b.data);
-  return out;
-}
 
 static void as_on_one(const struct scene *s, double share, int rounds)
 {
