@@ -13,6 +13,7 @@
 #include "cli/plot/plot.h"
 #include "cli/plot/timeline.h"
 #include "io/stream/stream.h"
+#include "run/common/json_file.h"
 #include "run/common/log.h"
 #include "run/common/ranges.h"
 #include "run/common/text.h"
@@ -277,25 +278,6 @@ static json_t *report_json(const struct run *r, int ok,
   return o;
 }
 
-static vg_status write_json(const char *path, const json_t *o,
-                            struct vg_error *err)
-{
-  struct vg_output out = VG_OUTPUT_INIT;
-  char *text = json_dumps(o, JSON_INDENT(2));
-  vg_status st;
-
-  if (!text) return vg_fail_memory(err, "the report");
-  st = vg_output_open(path, &out, err);
-  if (st >= 0) {
-    vg_output_text(&out, text);
-    vg_output_text(&out, "\n");
-    st = vg_output_commit(&out, err);
-  }
-  vg_output_release(&out);
-  free(text);
-  return st;
-}
-
 /* Phases as the record of the run has them; spans are borrowed. */
 static struct vg_timeline timeline_of(const struct run *r)
 {
@@ -382,7 +364,7 @@ static vg_status finish(struct run *r, const struct arguments *a,
   if (r->problem.settings.report_html) VG_TRY(write_page(r, err));
   path = vg_outputs_temp_path(&r->outputs, "report.json");
   report = report_json(r, 1, NULL);
-  st = path && report ? write_json(path, report, err)
+  st = path && report ? vg_json_write(path, report, "the report", err)
                       : vg_fail_memory(err, "the report");
   if (st < 0) goto done;
   VG_TRY(vg_display_stopped(&r->show, err));

@@ -14,6 +14,7 @@
 #include "io/stream/stream.h"
 #include "io/vgrid/mapbc.h"
 #include "run/common/folder.h"
+#include "run/common/json_file.h"
 #include "run/common/text.h"
 #include "run/input/input.h"
 #include "run/report/report.h"
@@ -163,21 +164,6 @@ static json_t *report(const struct vg_problem *p, const struct files *f)
                    "notes", notes, "files", files);
 }
 
-static vg_status write_json(const char *path, const json_t *o,
-                            struct vg_error *err)
-{
-  char *text = json_dumps(o, JSON_INDENT(2));
-  FILE *to = text ? fopen(path, "w") : NULL;
-  int bad = 1;
-
-  if (to) {
-    bad = fprintf(to, "%s\n", text) < 0;
-    bad |= fclose(to) != 0;
-  }
-  free(text);
-  return bad ? vg_fail(err, VG_ERR_IO, "%s: cannot be written", path) : VG_OK;
-}
-
 static vg_status write_all(const struct vg_problem *p, struct files *f,
                            const json_t *o, struct vg_display *show,
                            struct vg_error *err)
@@ -190,7 +176,7 @@ static vg_status write_all(const struct vg_problem *p, struct files *f,
   VG_TRY(vg_mapbc_write(f->file[n].temp, &p->surface, VG_MAPBC_VGRID,
                         p->settings.title, NULL, err));
   VG_TRY(write_vtu(f->file[n + 1].temp, p, err));
-  VG_TRY(write_json(f->file[n + 2].temp, o, err));
+  VG_TRY(vg_json_write(f->file[n + 2].temp, o, "the report", err));
   VG_TRY(vg_display_stopped(show, err));
   VG_TRY(move_files(f, err));
 done:

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "cli/serve/runs.h"
-#include "io/stream/stream.h"
+#include "run/common/json_file.h"
 #include "run/common/text.h"
 
 #define RECORD_MAX 65536
@@ -41,21 +41,12 @@ static json_t *record_of(const struct vg_serve_run *run)
 vg_status vg_record_write(const struct vg_serve_run *run,
                           struct vg_error *err)
 {
-  struct vg_output out = VG_OUTPUT_INIT;
   json_t *o = record_of(run);
-  char *text = json_dumps(o, JSON_INDENT(2)), path[4096];
-  vg_status st;
+  char path[4096];
+  vg_status st = vg_json_write(vg_run_path(run, "run.json", path), o,
+                               "the record of a run", err);
 
   json_decref(o);
-  if (!text) return vg_fail_memory(err, "the record of a run");
-  st = vg_output_open(vg_run_path(run, "run.json", path), &out, err);
-  if (st >= 0) {
-    vg_output_text(&out, text);
-    vg_output_text(&out, "\n");
-    st = vg_output_commit(&out, err);
-  }
-  vg_output_release(&out);
-  free(text);
   return st;
 }
 

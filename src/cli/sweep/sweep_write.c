@@ -12,6 +12,7 @@
 #include "io/stream/stream.h"
 #include "partition/model/model.h"
 #include "partition/model/rates.h"
+#include "run/common/json_file.h"
 #include "run/common/text.h"
 #include "run/report/report.h"
 
@@ -207,10 +208,9 @@ static json_t *case_json(const struct vg_sweep *s,
 
 static vg_status write_json(const struct vg_sweep *s, struct vg_error *err)
 {
-  struct vg_output out = VG_OUTPUT_INIT;
   json_t *root = json_object(), *list = json_array();
   const struct vg_sweep_case *a, *b;
-  char *path = NULL, *text = NULL, file[64];
+  char *path = NULL, file[64];
   size_t compared;
   int differ = vg_sweep_differ(s, &compared, &a, &b, file);
   vg_status st;
@@ -221,19 +221,15 @@ static vg_status write_json(const struct vg_sweep *s, struct vg_error *err)
   json_object_set_new(root, "digests", json_string(differ ? "differ"
     : compared ? "agree" : "not compared"));
   json_object_set_new(root, "cases", list);
-  text = json_dumps(root, JSON_INDENT(2));
-  json_decref(root);
-  if (!text) return vg_fail_memory(err, "the table of cases");
   VG_TRY(path_of(s, "sweep.json", &path, err));
-  VG_TRY(vg_output_open(path, &out, err));
-  vg_output_text(&out, text);
-  vg_output_text(&out, "\n");
-  VG_TRY(vg_output_commit(&out, err));
-  if (s->o->json) puts(text);
+  VG_TRY(vg_json_write(path, root, "the table of cases", err));
+  if (s->o->json) {
+    json_dumpf(root, stdout, JSON_INDENT(2));
+    puts("");
+  }
 done:
-  vg_output_release(&out);
+  json_decref(root);
   free(path);
-  free(text);
   return st;
 }
 
