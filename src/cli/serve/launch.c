@@ -56,6 +56,22 @@ pid_t vg_run_spawn(const char *dir, char *const *word, const char *output,
   return child;
 }
 
+vg_status vg_run_start(struct vg_serve_run *run, char *const *word,
+                       const char *output, char *const *env,
+                       enum vg_serve_state state, struct vg_error *err)
+{
+  pid_t child = vg_run_spawn(run->dir, word, output, env);
+
+  run->pid = child > 0 ? child : 0;
+  if (child < 0)
+    return vg_fail(err, VG_ERR_IO, "cannot start another process: %s",
+                   strerror(errno));
+  run->is_child = 1;
+  run->pid_start = vg_process_start(child);
+  run->state = state;
+  return VG_OK;
+}
+
 unsigned long long vg_process_start(pid_t pid)
 {
   char path[64], text[1024], state;
@@ -149,16 +165,7 @@ static vg_status start_here(struct vg_serve_runs *r, struct vg_serve_run *run,
   vg_status st;
 
   VG_TRY((run->is_sweep ? sweep_line : mesh_line)(r, run, &w, err));
-  run->pid = vg_run_spawn(run->dir, w.word, "output.log", NULL);
-  if (run->pid < 0) {
-    run->pid = 0;
-    st = vg_fail(err, VG_ERR_IO, "cannot start another process: %s",
-                 strerror(errno));
-    goto done;
-  }
-  run->is_child = 1;
-  run->pid_start = vg_process_start(run->pid);
-  run->state = VG_SERVE_RUNNING;
+  st = vg_run_start(run, w.word, "output.log", NULL, VG_SERVE_RUNNING, err);
 done:
   vg_words_release(&w);
   return st;

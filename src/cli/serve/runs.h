@@ -108,6 +108,12 @@ void vg_run_launch(struct vg_serve_runs *r, struct vg_serve_run *run);
 pid_t vg_run_spawn(const char *dir, char *const *word, const char *output,
                    char *const *env);
 
+/** vg_run_spawn in the folder of the run, as its process: its state is then
+ * `state`. VG_ERR_IO: it has none, and keeps its state. */
+vg_status vg_run_start(struct vg_serve_run *run, char *const *word,
+                       const char *output, char *const *env,
+                       enum vg_serve_state state, struct vg_error *err);
+
 /** Start time of a process that is alive, by /proc; 0: it is not. */
 unsigned long long vg_process_start(pid_t pid);
 

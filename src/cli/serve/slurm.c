@@ -101,16 +101,8 @@ vg_status vg_slurm_submit(struct vg_serve_runs *r, struct vg_serve_run *run,
   VG_TRY(write_script(run, err));
   VG_TRY(sbatch_line(run, &line, err));
   VG_TRY(environment(r, run, &env, err));
-  run->pid = vg_run_spawn(run->dir, line.word, "sbatch.txt", env.word);
-  if (run->pid < 0) {
-    run->pid = 0;
-    st = vg_fail(err, VG_ERR_IO, "cannot start another process: %s",
-                 strerror(errno));
-    goto done;
-  }
-  run->is_child = 1;
-  run->pid_start = vg_process_start(run->pid);
-  run->state = VG_SERVE_SUBMITTED;
+  st = vg_run_start(run, line.word, "sbatch.txt", env.word,
+                    VG_SERVE_SUBMITTED, err);
 done:
   vg_words_release(&line);
   vg_words_release(&env);
