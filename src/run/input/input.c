@@ -401,26 +401,14 @@ struct vg_cad_options vg_cad_options_of(const struct vg_settings *s,
 vg_status vg_problem_cad(struct vg_problem *p, struct vg_comm *comm,
                          struct vg_error *err)
 {
-  struct vg_bytes b = { 0, NULL };
-  uint64_t number;
   vg_status st = VG_OK;
 
   if (vg_comm_size(comm) == 1 || *p->files.front ||
       !vg_format_is_cad(p->files.surface))
     return VG_OK;
-  if (!vg_comm_rank(comm)) {
-    st = read_surface_file(p, err);
-    if (st >= 0) st = vg_surface_pack(&p->surface, 0, &b, err);
-  }
-  VG_TRY(vg_comm_agree(comm, st, err));
-  VG_TRY(vg_comm_bcast(comm, 0, &b, err));
-  if (vg_comm_rank(comm))
-    st = vg_surface_unpack(&b, &p->surface, &number, err);
+  if (!vg_comm_rank(comm)) st = read_surface_file(p, err);
   p->is_read = 1;
-  st = vg_comm_agree(comm, st, err);
-done:
-  free(b.data);
-  return st;
+  return vg_surface_bcast(comm, 1, st, &p->surface, err);
 }
 
 static vg_status read_surface(struct vg_problem *p, struct vg_display *show,

@@ -151,20 +151,8 @@ void vg_renewal_release(struct vg_renewal *r)
 vg_status vg_problem_share(struct vg_problem *p, struct vg_comm *comm,
                            int is_maker, vg_status st, struct vg_error *err)
 {
-  struct vg_bytes b = { 0, NULL };
-  uint64_t number;
-
   if (vg_comm_size(comm) == 1 || *p->files.front
       || !vg_format_is_cad(p->files.surface) || !vg_problem_is_renewed(p))
     return vg_comm_agree(comm, st, err);
-  if (st >= 0 && !vg_comm_rank(comm))
-    st = vg_surface_pack(&p->surface, 0, &b, err);
-  VG_TRY(vg_comm_agree(comm, st, err));
-  VG_TRY(vg_comm_bcast(comm, 0, &b, err));
-  if (vg_comm_rank(comm) && is_maker)
-    st = vg_surface_unpack(&b, &p->surface, &number, err);
-  st = vg_comm_agree(comm, st, err);
-done:
-  free(b.data);
-  return st;
+  return vg_surface_bcast(comm, is_maker, st, &p->surface, err);
 }

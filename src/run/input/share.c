@@ -116,3 +116,19 @@ vg_status vg_surface_unpack(const struct vg_bytes *bytes, struct vg_mesh *m,
   vg_mesh_move(m, &got);
   return VG_OK;
 }
+
+vg_status vg_surface_bcast(struct vg_comm *c, int takes, vg_status st,
+                           struct vg_mesh *m, struct vg_error *err)
+{
+  struct vg_bytes b = { 0, NULL };
+  uint64_t number;
+
+  if (st >= 0 && !vg_comm_rank(c)) st = vg_surface_pack(m, 0, &b, err);
+  VG_TRY(vg_comm_agree(c, st, err));
+  VG_TRY(vg_comm_bcast(c, 0, &b, err));
+  if (vg_comm_rank(c) && takes) st = vg_surface_unpack(&b, m, &number, err);
+  st = vg_comm_agree(c, st, err);
+done:
+  free(b.data);
+  return st;
+}

@@ -26,4 +26,10 @@ vg_status vg_surface_pack(const struct vg_mesh *m, uint64_t number,
 vg_status vg_surface_unpack(const struct vg_bytes *bytes, struct vg_mesh *m,
                             uint64_t *number, struct vg_error *err);
 
+/** The boundary of rank 0 on the ranks with `takes`, whose *m it replaces.
+ * Collective over all ranks; every one gets the same status, that of rank 0
+ * before (st) included. */
+vg_status vg_surface_bcast(struct vg_comm *c, int takes, vg_status st,
+                           struct vg_mesh *m, struct vg_error *err);
+
 #endif
