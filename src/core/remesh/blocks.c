@@ -35,18 +35,10 @@ static vg_status room(struct vg_block *b, const struct vg_work *w,
     .other_size = w->other_size, .user = w->user, .h_min = w->h_min,
     .h_max = w->h_max, .n_given = w->n_given, .given = w->given,
     .follow = w->follow, .is_sample = w->is_sample, .is_block = 1,
-    .n_tri = b->n_tri, .cap_tri = b->n_tri, .cap_first = b->n_tri,
-    .cap_stamp = b->n_tri, .cap_mate = 3 * b->n_tri,
-    .cap_edge = 3 * b->n_tri, .clock = 1 };
-  l->tri = vg_alloc(b->n_tri, sizeof *l->tri);
-  l->mate = vg_alloc(3 * b->n_tri, sizeof *l->mate);
-  l->edge = vg_calloc(3 * b->n_tri, sizeof *l->edge);
-  l->first = vg_alloc(b->n_tri, sizeof *l->first);
-  l->stamp = vg_alloc(b->n_tri, sizeof *l->stamp);
+    .clock = 1 };
   b->origin = vg_alloc(3 * b->n_tri, sizeof *b->origin);
-  if (l->tri && l->mate && l->edge && l->stamp && l->first && b->origin)
-    return VG_OK;
-  return vg_fail_memory(err, "a block of the surface");
+  if (!b->origin) return vg_fail_memory(err, "a block of the surface");
+  return vg_work_room(l, b->n_tri, err);
 }
 
 static vg_status take_points(struct vg_block *b, const struct vg_work *w,

@@ -10,8 +10,6 @@
 #include "base/parallel.h"
 
 #define BAD2 0.25         /* S29: (sin 30 degrees)^2 */
-#define SHORT 0.7         /* S21 */
-#define LONG 1.4
 
 struct joining {
   struct vg_work made;
@@ -49,9 +47,7 @@ static vg_status number(const struct vg_work *w, size_t n, struct joining *j,
     n_line += b->w.n_line;
   }
   j->made.n_point = j->made.cap_point = n_point;
-  j->made.n_tri = j->made.cap_tri = j->made.cap_first = j->made.cap_stamp
-    = n_tri;
-  j->made.cap_mate = j->made.cap_edge = 3 * n_tri;
+  j->made.n_tri = n_tri;
   j->made.n_line = j->made.cap_line = n_line;
   return n_point < UINT32_MAX - 2 && n_tri < UINT32_MAX / 3 ? VG_OK
          : vg_fail(err, VG_ERR_UNSUPPORTED, "%zu triangles of the new surface "
@@ -61,17 +57,14 @@ static vg_status number(const struct vg_work *w, size_t n, struct joining *j,
 static vg_status room(struct joining *j, struct vg_error *err)
 {
   struct vg_work *m = &j->made;
+  vg_status st;
 
+  VG_TRY(vg_work_room(m, m->n_tri, err));
   m->point = vg_alloc(m->n_point, sizeof *m->point);
-  m->tri = vg_alloc(m->n_tri, sizeof *m->tri);
-  m->mate = vg_alloc(3 * m->n_tri, sizeof *m->mate);
-  m->edge = vg_alloc(3 * m->n_tri, sizeof *m->edge);
-  m->stamp = vg_calloc(m->n_tri, sizeof *m->stamp);
-  m->first = vg_alloc(m->n_tri, sizeof *m->first);
   m->line = vg_alloc(m->n_line, sizeof *m->line);
-  return m->point && m->tri && m->mate && m->edge && m->stamp && m->first
-         && m->line
-         ? VG_OK : vg_fail_memory(err, "the new surface");
+  if (!m->point || !m->line) st = vg_fail_memory(err, "the new surface");
+done:
+  return st;
 }
 
 /* --- a block into the whole ---------------------------------------------- */
@@ -211,7 +204,7 @@ static int is_bad(const struct vg_work *w, uint32_t t)
   for (uint32_t h = 3 * t; h < 3 * t + 3; h++) {
     double r = vg_work_ratio(w, h);
 
-    if (r < SHORT || r > LONG) return 1;
+    if (r < VG_WORK_SHORT || r > VG_WORK_LONG) return 1;
   }
   return 0;
 }
@@ -245,33 +238,17 @@ static void finish_points(struct joining *j, size_t n)
   }
 }
 
-static void clear_arrays(struct vg_work *w)
-{
-  w->point = NULL;
-  w->tri = NULL;
-  w->mate = w->edge = w->first = NULL;
-  w->stamp = NULL;
-  w->line = NULL;
-}
-
-static void release_arrays(struct vg_work *w)
-{
-  free(w->point);
-  free(w->tri);
-  free(w->mate);
-  free(w->edge);
-  free(w->first);
-  free(w->stamp);
-  free(w->line);
-}
-
 vg_status vg_blocks_join(struct vg_work *w, size_t n, struct vg_block *b,
                          int threads, struct vg_error *err)
 {
   struct joining j = { .made = *w, .block = b };
   vg_status st;
 
-  clear_arrays(&j.made);
+  j.made.point = NULL;
+  j.made.tri = NULL;
+  j.made.mate = j.made.edge = j.made.first = NULL;
+  j.made.stamp = NULL;
+  j.made.line = NULL;
   j.made.n_spare = 0;
   j.made.clock = 1;
   memset(j.made.looked, 0, sizeof j.made.looked);
@@ -290,11 +267,10 @@ vg_status vg_blocks_join(struct vg_work *w, size_t n, struct vg_block *b,
     j.made.n_swap += b[i].w.n_swap;
     j.made.n_move += b[i].w.n_move;
   }
-  release_arrays(w);
+  vg_work_free_arrays(w);
   *w = j.made;
-  clear_arrays(&j.made);
 done:
+  if (st < 0) vg_work_free_arrays(&j.made);
   free(j.number);
-  release_arrays(&j.made);
   return st;
 }

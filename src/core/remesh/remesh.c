@@ -1,7 +1,8 @@
 /* Outline: the surface as given becomes a reference; its lines and sizes are
  * found; a copy is changed pass by pass; the outcome is checked as any surface
  * that is to be meshed. Where triangles meet, which changes cannot see that
- * look around themselves only, sizes are halved and all is done again. */
+ * look around themselves only, those there are made smaller; should that not
+ * help, all is done again with these sizes. */
 #include "core/remesh/remesh.h"
 
 #include <math.h>
@@ -26,12 +27,10 @@
 #define H_OUTER 0.04      /* of the domain's length */
 #define OUTER 0.9         /* S27: of the triangles of a patch: all of it is */
 #define TRIANGLES 3e8     /* more are refused */
-#define ROUNDS 3          /* from the beginning, until triangles no longer
+#define ROUNDS 3          /* S31: from the beginning, until triangles no longer
                              meet */
 #define MENDS 4           /* in each: more and more triangles where they do */
 #define SPOTS 256         /* of them at a time */
-#define SHORT 0.7         /* S21: sizes: shorter edges go */
-#define LONG 1.4          /* longer ones are split */
 #define PHASES 2          /* of blocks, then the whole */
 #define HALVINGS 16       /* of needles, at most */
 #define POLISH2 0.3       /* (sin 33 degrees)^2: below, triangles are polished
@@ -243,12 +242,12 @@ static vg_status halve(const struct job *j, struct vg_work *w,
 
   vg_pass_curves(w);
   vg_pass_swap(w);
-  VG_TRY(vg_pass_collapse(w, SHORT, LONG, &n_gone, err));
+  VG_TRY(vg_pass_collapse(w, VG_WORK_SHORT, VG_WORK_LONG, &n_gone, err));
   /* Halves of needles collapse before they are halved again. */
   for (int i = 0; n && i < HALVINGS; i++) {
     VG_TRY(stopped(j, err));
-    VG_TRY(vg_pass_split(w, 2 * SHORT * LONG, 1, &n, err));
-    VG_TRY(vg_pass_collapse(w, SHORT, LONG, &n_gone, err));
+    VG_TRY(vg_pass_split(w, 2 * VG_WORK_SHORT * VG_WORK_LONG, 1, &n, err));
+    VG_TRY(vg_pass_collapse(w, VG_WORK_SHORT, VG_WORK_LONG, &n_gone, err));
   }
 done:
   return st;
@@ -265,8 +264,8 @@ static vg_status change_block(void *user, struct vg_work *w,
   for (int i = 0; i < 4; i++) {
     VG_TRY(stopped(j, err));
     vg_pass_smooth(w, 1);
-    VG_TRY(vg_pass_collapse(w, SHORT, LONG, &n, err));
-    VG_TRY(vg_pass_split(w, LONG, 0, &n, err));
+    VG_TRY(vg_pass_collapse(w, VG_WORK_SHORT, VG_WORK_LONG, &n, err));
+    VG_TRY(vg_pass_split(w, VG_WORK_LONG, 0, &n, err));
   }
   vg_pass_smooth(w, 3);
   vg_pass_swap(w);

@@ -174,23 +174,29 @@ static vg_status make_samples(struct vg_work *w, struct vg_error *err)
   return VG_OK;
 }
 
+vg_status vg_work_room(struct vg_work *w, size_t n, struct vg_error *err)
+{
+  w->n_tri = w->cap_tri = w->cap_first = w->cap_stamp = n;
+  w->cap_mate = w->cap_edge = 3 * n;
+  w->tri = vg_alloc(n, sizeof *w->tri);
+  w->mate = vg_alloc(3 * n, sizeof *w->mate);
+  w->edge = vg_calloc(3 * n, sizeof *w->edge);
+  w->stamp = vg_calloc(n, sizeof *w->stamp);
+  w->first = vg_alloc(n, sizeof *w->first);
+  return w->tri && w->mate && w->edge && w->stamp && w->first
+         ? VG_OK : vg_fail_memory(err, "the new surface");
+}
+
 vg_status vg_work_begin(struct vg_work *w, struct vg_error *err)
 {
   const struct vg_ref *r = w->ref;
   vg_status st;
 
-  w->n_point = w->cap_point = r->n_point;
-  w->n_tri = w->cap_tri = w->cap_first = w->cap_stamp = r->n_tri;
-  w->cap_mate = w->cap_edge = 3 * r->n_tri;
   w->clock = 1;
+  VG_TRY(vg_work_room(w, r->n_tri, err));
+  w->n_point = w->cap_point = r->n_point;
   w->point = vg_calloc(w->n_point, sizeof *w->point);
-  w->tri = vg_alloc(w->n_tri, sizeof *w->tri);
-  w->mate = vg_alloc(3 * w->n_tri, sizeof *w->mate);
-  w->edge = vg_calloc(3 * w->n_tri, sizeof *w->edge);
-  w->stamp = vg_alloc(w->n_tri, sizeof *w->stamp);
-  w->first = vg_alloc(w->n_tri, sizeof *w->first);
-  if (!w->point || !w->tri || !w->mate || !w->edge || !w->stamp || !w->first)
-    return vg_fail_memory(err, "the new surface");
+  if (!w->point) return vg_fail_memory(err, "the new surface");
   memcpy(w->tri, r->tri, w->n_tri * sizeof *w->tri);
   memcpy(w->mate, r->mate, 3 * w->n_tri * sizeof *w->mate);
   memset(w->first, 0xff, w->n_tri * sizeof *w->first);
@@ -202,15 +208,25 @@ done:
   return st;
 }
 
-void vg_work_release(struct vg_work *w)
+void vg_work_free_arrays(struct vg_work *w)
 {
   free(w->point);
   free(w->tri);
   free(w->mate);
   free(w->edge);
   free(w->stamp);
-  free(w->line);
   free(w->first);
+  free(w->line);
+  w->point = NULL;
+  w->tri = NULL;
+  w->mate = w->edge = w->first = NULL;
+  w->stamp = NULL;
+  w->line = NULL;
+}
+
+void vg_work_release(struct vg_work *w)
+{
+  vg_work_free_arrays(w);
   if (!w->is_block) {
     free(w->given);
     free(w->follow);

@@ -7,6 +7,8 @@
 
 #define VG_WORK_RING 256       /* triangles around a point that may change */
 #define VG_WORK_NEARER 1.5     /* S25: than another sheet */
+#define VG_WORK_SHORT 0.7      /* S21: sizes: shorter edges go */
+#define VG_WORK_LONG 1.4       /* longer ones are split */
 
 enum { VG_WORK_FACE, VG_WORK_CURVE, VG_WORK_CORNER };
 
@@ -131,6 +133,13 @@ static inline int vg_work_may_join(const struct vg_work *w, uint32_t a,
 vg_status vg_work_begin(struct vg_work *w, struct vg_error *err);
 
 void vg_work_release(struct vg_work *w);
+
+/** Arrays for n triangles, w->tri to w->first, and their counts; edges and
+ * stamps 0, the others not set. VG_ERR_MEMORY: some are there. */
+vg_status vg_work_room(struct vg_work *w, size_t n, struct vg_error *err);
+
+/** Free points, triangles and lines: NULL then. Counts stay. */
+void vg_work_free_arrays(struct vg_work *w);
 
 /** Half-edges that leave p, one for each of its triangles: [VG_WORK_RING];
  * *open: the point is on a rim. 0 when there are too many. */
