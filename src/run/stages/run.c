@@ -288,8 +288,10 @@ static vg_status fill(struct vg_run *r, const struct vg_problem *p,
   st = vg_partition_grow(r->comm, boundary, sizing, &o, &r->field,
                          &r->partition, &r->spans, err);
   r->time_fill = vg_display_now() - t - r->partition.number;
+  t = vg_display_now();
   if (st == VG_OK && r->options.near)
     st = vg_partition_near(r->field, r->comm, &r->near, err);
+  r->time_near = vg_display_now() - t;
   if (r->store) vg_store_state(r->store, &r->stored);
   if (st == VG_BLOCKED) st = say_stopped(r, err);
   if (st >= 0)

@@ -58,6 +58,7 @@ struct vg_run {
   double time_size, time_layers, time_judge;
   double time_put;           /* files written while slices are judged */
   double time_fill;          /* cuts, leaves and repairs */
+  double time_near;          /* looking at the cells near interfaces */
   double time_parts;
   size_t common;             /* bytes of surface, layers and sizes, one copy on
                                 the node */

@@ -4,7 +4,7 @@ browser=$(command -v chromium) || skip "no chromium"
 python=$(command -v /usr/bin/python3) || skip "no Python"
 
 mkdir root
-"$program" demo box --cells 400000 --out root >out 2>err
+"$program" demo box --cells 1500000 --out root >out 2>err
 "$program" serve --port 0 --root root --jobs 2 >url 2>err &
 server=$!
 stop_all() {
@@ -33,7 +33,7 @@ exits 0
 cat out
 says out "${VG_PORTAL_RUNS:-20} runs started"
 read -r _ _ _ stopped _ resumed _ <out
-least=$((${VG_PORTAL_RUNS:-20} / 4))   # a fast machine is done before the click
+least=$((${VG_PORTAL_RUNS:-20} * 3 / 4))
 [ "$stopped" -ge $least ] && [ "$resumed" -ge $least ] ||
   fail "only $stopped stopped and $resumed resumed while at work"
 [ "$(wc -c <portal.png)" -gt 30000 ] || fail "the picture is blank"
