@@ -15,10 +15,11 @@
 /* Samples are the points, then those of each triangle. */
 struct measuring {
   const struct vg_mesh *from;
-  const struct vg_ref *to;
-  uint32_t *hint;         /* [from->n_point] triangle near it; VG_REF_NONE: of
-                             none of the triangles */
-  double *d;              /* [n_point + PER_FACE n_tri] */
+  const struct vg_ref *own, *to;
+  uint32_t *by;             /* [from->n_point] triangle that measures there;
+                               VG_REF_NONE: it is of none */
+  uint32_t *order;          /* [from->n_tri] triangles, near ones together */
+  double *d;                /* [n_point + PER_FACE n_tri] */
 };
 
 static void face_sample(const struct vg_mesh *m, size_t t, int i, double x[3])
@@ -31,36 +32,72 @@ static void face_sample(const struct vg_mesh *m, size_t t, int i, double x[3])
            : (p[0][d] + p[1][d] + p[2][d]) / 3;
 }
 
-static void at_points(void *context, size_t first, size_t end, int worker)
+/* The middle of half-edge h, or the centroid. */
+static size_t slot_of(const struct vg_mesh *m, size_t t, size_t i)
 {
-  const struct measuring *m = context;
+  return m->n_point + PER_FACE * t + i;
+}
 
-  (void)worker;
-  for (size_t p = first; p < end; p++) {
-    uint32_t hint = VG_REF_NONE;
-    double y[3];
+/* What is shared is measured by the first triangle that has it. */
+static void at_face(const struct measuring *m, size_t t, uint32_t *hint)
+{
+  const struct vg_mesh *from = m->from;
+  double x[VG_REF_GROUP][3], d[VG_REF_GROUP];
+  size_t slot[VG_REF_GROUP], n = 0;
 
-    if (m->hint[p] == VG_REF_NONE) continue;
-    m->d[p] = vg_ref_nearest(m->to, m->from->point[p], NULL, &hint, y);
-    m->hint[p] = hint;
+  for (int k = 0; k < 3; k++) {
+    uint32_t p = from->tri[t][k];
+
+    if (m->by[p] != t) continue;
+    memcpy(x[n], from->point[p], sizeof *x);
+    slot[n++] = p;
   }
+  for (int i = 0; i < PER_FACE; i++) {
+    if (i < 3 && m->own->mate[3 * t + (size_t)i] < 3 * t) continue;
+    face_sample(from, t, i, x[n]);
+    slot[n++] = slot_of(from, t, (size_t)i);
+  }
+  vg_ref_distances(m->to, n, (const double (*)[3])x, hint, d);
+  for (size_t i = 0; i < n; i++) m->d[slot[i]] = d[i];
 }
 
 static void at_faces(void *context, size_t first, size_t end, int worker)
 {
   const struct measuring *m = context;
+  uint32_t hint = VG_REF_NONE;
 
   (void)worker;
-  for (size_t t = first; t < end; t++) {
-    uint32_t hint = m->hint[m->from->tri[t][0]];
+  for (size_t i = first; i < end; i++) at_face(m, m->order[i], &hint);
+}
 
-    for (int i = 0; i < PER_FACE; i++) {
-      size_t s = m->from->n_point + PER_FACE * t + (size_t)i;
-      double x[3], y[3];
+/* As the tree has them; what measures a point is the first of them. */
+static void arrange(struct measuring *m)
+{
+  const struct vg_mesh *from = m->from;
+  size_t n = 0;
 
-      face_sample(m->from, t, i, x);
-      m->d[s] = vg_ref_nearest(m->to, x, NULL, &hint, y);
-    }
+  memset(m->by, 0xff, from->n_point * sizeof *m->by);
+  memset(m->d, 0, from->n_tri * sizeof *m->d);   /* 1: is there */
+  for (size_t i = 0; i < m->own->n_item; i++) {
+    uint32_t t = m->own->item[i];
+
+    if (m->d[t] > 0) continue;
+    m->d[t] = 1;
+    m->order[n++] = t;
+    for (int k = 0; k < 3; k++)
+      if (m->by[from->tri[t][k]] == VG_REF_NONE) m->by[from->tri[t][k]] = t;
+  }
+  memset(m->d, 0, from->n_tri * sizeof *m->d);
+}
+
+static void share(const struct measuring *m)
+{
+  for (size_t h = 0; h < 3 * m->from->n_tri; h++) {
+    size_t g = m->own->mate[h];
+
+    if (g < h)
+      m->d[slot_of(m->from, h / 3, h % 3)]
+        = m->d[slot_of(m->from, g / 3, g % 3)];
   }
 }
 
@@ -105,33 +142,47 @@ static void find_most(const struct measuring *m, double *face,
   }
 }
 
-vg_status vg_remesh_measure(const struct vg_mesh *from,
-                            const struct vg_mesh *to, int threads,
-                            double *face, struct vg_remesh_distance *d,
-                            struct vg_error *err)
+static vg_status measure(const struct vg_mesh *from, const struct vg_ref *own,
+                         const struct vg_ref *to, int threads, double *face,
+                         struct vg_remesh_distance *d, struct vg_error *err)
 {
-  struct vg_ref ref = VG_REF_INIT;
-  struct measuring m = { .from = from, .to = &ref };
+  struct measuring m = { .from = from, .own = own, .to = to };
   const size_t n = from->n_point + PER_FACE * from->n_tri;
   vg_status st = VG_OK;
 
-  memset(d, 0, sizeof *d);
-  if (!from->n_tri || !to->n_tri) return VG_OK;
   m.d = vg_calloc(n, sizeof *m.d);
-  m.hint = vg_alloc(from->n_point, sizeof *m.hint);
-  if (!m.d || !m.hint)
+  m.by = vg_alloc(from->n_point, sizeof *m.by);
+  m.order = vg_alloc(from->n_tri, sizeof *m.order);
+  if (!m.d || !m.by || !m.order)
     VG_TRY(vg_fail_memory(err, "the distances of the surfaces"));
-  memset(m.hint, 0xff, from->n_point * sizeof *m.hint);
-  for (size_t i = 0; i < 3 * from->n_tri; i++)
-    m.hint[from->tri[i / 3][i % 3]] = 0;
-  VG_TRY(vg_ref_build(&ref, to, err));
-  vg_parallel_for(threads, from->n_point, GRAIN, at_points, &m);
+  arrange(&m);
   vg_parallel_for(threads, from->n_tri, GRAIN, at_faces, &m);
+  share(&m);
   find_most(&m, face, d);
   VG_TRY(find_99(n, m.d, &d->most_99, err));
 done:
-  vg_ref_release(&ref);
-  free(m.hint);
+  free(m.order);
+  free(m.by);
   free(m.d);
+  return st;
+}
+
+vg_status vg_remesh_measure(const struct vg_mesh *a, const struct vg_mesh *b,
+                            int threads, double *face,
+                            struct vg_remesh_distance d[2],
+                            struct vg_error *err)
+{
+  struct vg_ref of[2] = { VG_REF_INIT, VG_REF_INIT };
+  vg_status st;
+
+  memset(d, 0, 2 * sizeof *d);
+  if (!a->n_tri || !b->n_tri) return VG_OK;
+  VG_TRY(vg_ref_build(&of[0], a, err));
+  VG_TRY(vg_ref_build(&of[1], b, err));
+  VG_TRY(measure(a, &of[0], &of[1], threads, face, &d[0], err));
+  VG_TRY(measure(b, &of[1], &of[0], threads, NULL, &d[1], err));
+done:
+  vg_ref_release(&of[0]);
+  vg_ref_release(&of[1]);
   return st;
 }

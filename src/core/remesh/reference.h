@@ -11,6 +11,7 @@
 
 #define VG_REF_NONE UINT32_MAX
 #define VG_REF_LEAF 4     /* triangles of a leaf of the tree */
+#define VG_REF_GROUP 8    /* points that are asked for at once */
 
 struct vg_ref_tri {
   double a[3], u[3], v[3];  /* a corner, the edges from there */
@@ -71,6 +72,11 @@ int vg_ref_within(const struct vg_ref *r, const double x[3],
  * to begin with, out: its triangle. */
 double vg_ref_nearest(const struct vg_ref *r, const double x[3],
                       const double n[3], uint32_t *hint, double out[3]);
+
+/** Distances d[n] of points x[n], no more than VG_REF_GROUP, that are near each
+ * other. *hint: as above, or VG_REF_NONE; out: the triangle of the last. */
+void vg_ref_distances(const struct vg_ref *r, size_t n, const double (*x)[3],
+                      uint32_t *hint, double *d);
 
 /** The triangle that a ray from x, a unit vector d along it, meets first, from
  * the side that it faces, within `most`; VG_REF_NONE: none. *far out: how far

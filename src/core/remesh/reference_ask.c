@@ -8,6 +8,7 @@
 #define LEAF VG_REF_LEAF
 #define DEPTH 64
 #define WALK 24           /* triangles that are tried before the tree */
+#define AROUND 48         /* leaves around points that are asked for at once */
 
 static double clamp(double x)
 {
@@ -246,11 +247,89 @@ static double between2(const struct vg_ref_node *b, const double lo[3],
   double sum = 0;
 
   for (int k = 0; k < 3; k++) {
-    double d = fmax(fmax(b->lo[k] - hi[k], lo[k] - b->hi[k]), 0);
+    double below = b->lo[k] - hi[k], above = lo[k] - b->hi[k];
+    double d = below > 0 ? below : above > 0 ? above : 0;
 
     sum += d * d;
   }
   return sum;
+}
+
+/* --- some at a time ------------------------------------------------------ */
+
+/* Leaves within the root of `limit` of the box; their number, or cap + 1 where
+ * there are more. */
+static size_t leaves_around(const struct vg_ref *r, const double lo[3],
+                            const double hi[3], double limit, size_t cap,
+                            size_t *leaf)
+{
+  size_t stack[DEPTH], n = 0;
+  int top = 0;
+
+  stack[top++] = 0;
+  while (top) {
+    size_t i = stack[--top];
+
+    if (between2(&r->node[i], lo, hi) > limit) continue;
+    if (i < r->first_leaf) {
+      stack[top++] = 2 * i + 2;
+      stack[top++] = 2 * i + 1;
+      continue;
+    }
+    if (n == cap) return cap + 1;
+    leaf[n++] = i;
+  }
+  return n;
+}
+
+static double best_of_leaf(const struct vg_ref *r, size_t i,
+                           const double x[3], double best, uint32_t *at)
+{
+  const size_t leaf = LEAF * (i - r->first_leaf);
+
+  for (size_t k = leaf; k < leaf + LEAF && k < r->n_item; k++) {
+    const struct vg_ref_tri *t = &r->shape[r->item[k]];
+    double s, q, d2;
+
+    if (r->item[k] == *at || !plane_near(t, x, best)) continue;
+    d2 = vg_ref_tri_nearest(t, x, &s, &q);
+    if (d2 < best) best = d2, *at = r->item[k];
+  }
+  return best;
+}
+
+void vg_ref_distances(const struct vg_ref *r, size_t n, const double (*x)[3],
+                      uint32_t *hint, double *d)
+{
+  size_t leaf[AROUND], n_leaf;
+  uint32_t at[VG_REF_GROUP];
+  double lo[3], hi[3], most = 0, y[3];
+
+  for (int k = 0; k < 3; k++) lo[k] = INFINITY, hi[k] = -INFINITY;
+  for (size_t i = 0; i < n; i++) {
+    double s, q;
+
+    if (*hint == VG_REF_NONE) search(r, x[i], NULL, hint, y);
+    d[i] = walk(r, x[i], NULL, 0, hint, &s, &q);
+    at[i] = *hint;
+    if (d[i] > most) most = d[i];
+    for (int k = 0; k < 3; k++) {
+      if (x[i][k] < lo[k]) lo[k] = x[i][k];
+      if (x[i][k] > hi[k]) hi[k] = x[i][k];
+    }
+  }
+  n_leaf = leaves_around(r, lo, hi, most, AROUND, leaf);
+  for (size_t i = 0; i < n; i++) {
+    if (n_leaf > AROUND) {
+      d[i] = search(r, x[i], NULL, &at[i], y);
+      continue;
+    }
+    for (size_t k = 0; k < n_leaf; k++)
+      if (box2(&r->node[leaf[k]], x[i]) <= d[i])
+        d[i] = best_of_leaf(r, leaf[k], x[i], d[i], &at[i]);
+    d[i] = sqrt(d[i]);
+  }
+  if (n) *hint = at[n - 1];
 }
 
 size_t vg_ref_around(const struct vg_ref *r, const double lo[3],

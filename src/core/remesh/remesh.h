@@ -109,17 +109,19 @@ vg_status vg_remesh_judge(const struct vg_mesh *m,
 const char *vg_remesh_cause_name(enum vg_remesh_cause c);
 
 /** Distance of one surface from another, at points, middles of edges and
- * centroids of `from`. */
+ * centroids. */
 struct vg_remesh_distance {
   double most, at[3];       /* largest, and where */
   double most_99;           /* 99 % are below */
 };
 
-/** @param face  out: [from->n_tri] the largest at each; may be NULL
+/** Both ways: d[0] of a from b, d[1] of b from a.
+ *
+ * @param face  out: [a->n_tri] the largest at each; may be NULL
  * O(n log n). VG_ERR_INPUT as vg_remesh. */
-vg_status vg_remesh_measure(const struct vg_mesh *from,
-                            const struct vg_mesh *to, int threads,
-                            double *face, struct vg_remesh_distance *d,
+vg_status vg_remesh_measure(const struct vg_mesh *a, const struct vg_mesh *b,
+                            int threads, double *face,
+                            struct vg_remesh_distance d[2],
                             struct vg_error *err);
 
 #endif

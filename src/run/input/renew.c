@@ -88,19 +88,14 @@ static vg_status measure(struct vg_problem *p, const struct vg_mesh *given,
                          struct vg_error *err)
 {
   struct vg_renewal *r = &p->renewal;
-  vg_status st;
 
   r->face = vg_alloc(p->surface.n_tri, sizeof *r->face);
   r->n_patch = p->surface.n_patch;
   r->area = vg_calloc(2 * r->n_patch, sizeof *r->area);
   if (!r->face || !r->area) return vg_fail_memory(err, "the distances");
   areas(given, 0, r->area);
-  VG_TRY(vg_remesh_measure(&p->surface, given, p->threads, r->face,
-                           &r->off[0], err));
-  VG_TRY(vg_remesh_measure(given, &p->surface, p->threads, NULL, &r->off[1],
-                           err));
-done:
-  return st;
+  return vg_remesh_measure(&p->surface, given, p->threads, r->face, r->off,
+                           err);
 }
 
 vg_status vg_problem_renew(struct vg_problem *p, struct vg_display *show,
