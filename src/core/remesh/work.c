@@ -12,6 +12,7 @@
 #define FOLD 0.9986       /* S30: cosine of 3 degrees: edges that bend more have
                              samples */
 #define PER_EDGE 64       /* at most */
+#define SWEEPS 8          /* in which sizes are passed on to neighbours */
 
 /* --- making -------------------------------------------------------------- */
 
@@ -84,6 +85,33 @@ double vg_work_size_near(const struct vg_work *w, const double x[3],
   return bounded(w, x, h);
 }
 
+/* Triangles that ask for less than a point's own one, from neighbour to
+ * neighbour: all but exact where sizes grow along the surface, so that the
+ * tree has little to look at. */
+static void pass_sizes_on(struct vg_work *w)
+{
+  const uint32_t n = (uint32_t)(3 * w->n_tri);
+  int changed = 1;
+
+  for (int sweep = 0; changed && sweep < SWEEPS; sweep++) {
+    changed = 0;
+    for (uint32_t i = 0; i < n; i++) {
+      uint32_t h = sweep % 2 ? n - 1 - i : i;
+      const struct vg_work_point *a = &w->point[vg_work_from(w, h)];
+      struct vg_work_point *b = &w->point[vg_work_to(w, h)];
+      double gap = b->size - a->size, asked;
+
+      if (!(gap > 0) || gap * gap <= w->ref->slope * w->ref->slope
+                                     * vg_distance2(a->x, b->x)) continue;
+      asked = vg_ref_size_by(w->ref, a->by, b->x);
+      if (!(asked < b->size)) continue;
+      b->size = asked;
+      b->by = a->by;
+      changed = 1;
+    }
+  }
+}
+
 static void find_sizes(void *context, size_t first, size_t end, int worker)
 {
   struct vg_work *w = context;
@@ -92,7 +120,6 @@ static void find_sizes(void *context, size_t first, size_t end, int worker)
   for (size_t p = first; p < end; p++) {
     struct vg_work_point *q = &w->point[p];
 
-    q->by = q->home;
     q->size = vg_work_size(w, q->x, &q->by);
   }
 }
@@ -123,7 +150,10 @@ static vg_status make_points(struct vg_work *w, struct vg_error *err)
     if (w->point[p].half == VG_REF_NONE)
       return vg_fail(err, VG_ERR_INPUT, "point %zu of the surface is used by "
                      "no triangle; repair it", p + 1);
+    w->point[p].by = w->point[p].home;
+    w->point[p].size = r->size[p];
   }
+  pass_sizes_on(w);
   vg_parallel_for(w->threads, w->n_point, 1024, find_sizes, w);
   return VG_OK;
 }
