@@ -101,18 +101,28 @@ static vg_status find_mates(struct vg_ref *r, struct vg_error *err)
   return st;
 }
 
+void vg_ref_tri_make(struct vg_ref_tri *t, const double a[3],
+                     const double b[3], const double c[3])
+{
+  memcpy(t->a, a, sizeof t->a);
+  vg_sub(b, a, t->u);
+  vg_sub(c, a, t->v);
+  t->uu = vg_dot(t->u, t->u);
+  t->uv = vg_dot(t->u, t->v);
+  t->vv = vg_dot(t->v, t->v);
+  t->far = sqrt(t->uu > t->vv ? t->uu : t->vv);
+}
+
 static void make_shape(struct vg_ref *r, size_t t)
 {
   struct vg_ref_tri *s = &r->shape[t];
   const double *b = r->point[r->tri[t][1]], *c = r->point[r->tri[t][2]];
   double w[3], most;
 
-  memcpy(s->a, r->point[r->tri[t][0]], sizeof s->a);
-  vg_sub(b, s->a, s->u);
-  vg_sub(c, s->a, s->v);
+  vg_ref_tri_make(s, r->point[r->tri[t][0]], b, c);
   vg_sub(c, b, w);
   vg_cross(s->u, s->v, s->n);
-  most = fmax(vg_dot(w, w), fmax(vg_dot(s->u, s->u), vg_dot(s->v, s->v)));
+  most = fmax(vg_dot(w, w), fmax(s->uu, s->vv));
   if (!(vg_unit(s->n) > FLAT * most)) memset(s->n, 0, sizeof s->n);
 }
 

@@ -16,6 +16,8 @@
 struct vg_ref_tri {
   double a[3], u[3], v[3];  /* a corner, the edges from there */
   double n[3];              /* unit normal; 0: too flat to have one */
+  double uu, uv, vv;        /* their products */
+  double far;               /* of the points, from the corner */
 };
 
 struct vg_ref_node {
@@ -104,6 +106,10 @@ double vg_ref_size_by(const struct vg_ref *r, uint32_t t, const double x[3]);
 size_t vg_ref_around(const struct vg_ref *r, const double lo[3],
                      const double hi[3], double distance, size_t cap,
                      uint32_t *tri);
+
+/** All of a triangle but its normal. */
+void vg_ref_tri_make(struct vg_ref_tri *t, const double a[3],
+                     const double b[3], const double c[3]);
 
 /** Barycentric coordinates (of u and v) of the point of a triangle that is
  * nearest to x; returns the squared distance. */

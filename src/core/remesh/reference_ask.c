@@ -21,12 +21,10 @@ static double clamp(double x)
 double vg_ref_tri_nearest(const struct vg_ref_tri *t, const double x[3],
                           double *s, double *r)
 {
-  double d[3], uu, uv, vv, du, dv, det, a, b;
+  const double uu = t->uu, uv = t->uv, vv = t->vv;
+  double d[3], du, dv, det, a, b;
 
   vg_sub(x, t->a, d);
-  uu = vg_dot(t->u, t->u);
-  uv = vg_dot(t->u, t->v);
-  vv = vg_dot(t->v, t->v);
   du = vg_dot(d, t->u);
   dv = vg_dot(d, t->v);
   det = uu * vv - uv * uv;
@@ -377,6 +375,21 @@ double vg_ref_size_by(const struct vg_ref *r, uint32_t t, const double x[3])
   return h;
 }
 
+/* Could triangle t ask for less than h at x? */
+static int may_ask(const struct vg_ref *r, uint32_t t, const double x[3],
+                   double h)
+{
+  const uint32_t *c = r->tri[t];
+  double least = r->size[c[0]], room;
+
+  if (r->size[c[1]] < least) least = r->size[c[1]];
+  if (r->size[c[2]] < least) least = r->size[c[2]];
+  room = h - least;
+  if (!(room > 0)) return 0;
+  room = room / r->slope + r->shape[t].far;
+  return vg_distance2(x, r->shape[t].a) < room * room;
+}
+
 double vg_ref_size(const struct vg_ref *r, const double x[3], uint32_t *by)
 {
   size_t stack[DEPTH];
@@ -399,8 +412,10 @@ double vg_ref_size(const struct vg_ref *r, const double x[3], uint32_t *by)
     }
     leaf = LEAF * (i - r->first_leaf);
     for (size_t k = leaf; k < leaf + LEAF && k < r->n_item; k++) {
-      double asked = vg_ref_size_by(r, r->item[k], x);
+      double asked;
 
+      if (!may_ask(r, r->item[k], x, h)) continue;
+      asked = vg_ref_size_by(r, r->item[k], x);
       if (!(asked < h)) continue;
       h = asked;
       *by = r->item[k];

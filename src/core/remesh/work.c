@@ -427,11 +427,9 @@ static int sample_fits(const struct vg_work *w, struct vg_cavity *c,
 
 static void make_triangles(struct vg_cavity *c)
 {
-  for (size_t i = 0; i < c->n_new; i++) {
-    memcpy(c->made[i].a, c->corner[i][0], sizeof c->made[i].a);
-    vg_sub(c->corner[i][1], c->corner[i][0], c->made[i].u);
-    vg_sub(c->corner[i][2], c->corner[i][0], c->made[i].v);
-  }
+  for (size_t i = 0; i < c->n_new; i++)
+    vg_ref_tri_make(&c->made[i], c->corner[i][0], c->corner[i][1],
+                    c->corner[i][2]);
 }
 
 int vg_cavity_fits(const struct vg_work *w, struct vg_cavity *c)

@@ -113,6 +113,7 @@ vg_status vg_problem_renew(struct vg_problem *p, struct vg_display *show,
                    "the surface, which remesh_surface would take away: give "
                    "them by patch instead, or keep the surface");
   vg_display_update(show, "remesh", p->surface.n_tri, 0);
+  VG_TRY(vg_remesh_arrange(&p->surface, err));
   VG_TRY(vg_mesh_copy(&given, &p->surface, err));
   VG_TRY(hard_patches(p, &hard, err));
   VG_TRY(vg_surface_sizes_make(p, &sizes, err));
