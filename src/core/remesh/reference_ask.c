@@ -15,38 +15,57 @@ static double clamp(double x)
   return x < 0 ? 0 : x > 1 ? 1 : x;
 }
 
+/* The point on edge k of a triangle that is nearest: p and q of u and v;
+ * returns how much farther than the corner a it is, in squares. */
+static inline double on_edge(const struct vg_ref_tri *t, double du, double dv,
+                             int k, double *p, double *q)
+{
+  const double uu = t->uu, uv = t->uv, vv = t->vv, ww = uu - 2 * uv + vv;
+  double s;
+
+  if (k == 0) {
+    *p = uu > 0 ? clamp(du / uu) : 0;
+    *q = 0;
+    return *p * (*p * uu - 2 * du);
+  }
+  if (k == 1) {
+    *p = 0;
+    *q = vv > 0 ? clamp(dv / vv) : 0;
+    return *q * (*q * vv - 2 * dv);
+  }
+  s = ww > 0 ? clamp((uu - uv - du + dv) / ww) : 0;
+  *p = 1 - s;
+  *q = s;
+  return *p * (*p * uu - 2 * du) + s * (s * vv - 2 * dv) + 2 * *p * s * uv;
+}
+
 /* Barycentric coordinates (of u and v) of the nearest point of a triangle to
  * x; returns the squared distance. After Ericson, "Real-Time Collision
- * Detection", 2005, 5.1.5. */
+ * Detection", 2005, 5.1.5: inside, or on an edge that x is beyond. */
 double vg_ref_tri_nearest(const struct vg_ref_tri *t, const double x[3],
                           double *s, double *r)
 {
-  const double uu = t->uu, uv = t->uv, vv = t->vv;
   double d[3], du, dv, det, a, b;
 
   vg_sub(x, t->a, d);
   du = vg_dot(d, t->u);
   dv = vg_dot(d, t->v);
-  det = uu * vv - uv * uv;
-  a = vv * du - uv * dv;
-  b = uu * dv - uv * du;
+  det = t->uu * t->vv - t->uv * t->uv;
+  a = t->vv * du - t->uv * dv;
+  b = t->uu * dv - t->uv * du;
   if (a >= 0 && b >= 0 && a + b <= det && det > 0) {
     a /= det;
     b /= det;
   } else {
-    double ww = uu - 2 * uv + vv, best = INFINITY;
-    const double edge[3][2] = {
-      { uu > 0 ? clamp(du / uu) : 0, 0 },
-      { 0, vv > 0 ? clamp(dv / vv) : 0 },
-      { 1, ww > 0 ? clamp((uu - uv - du + dv) / ww) : 0 } };
+    const int flat = !(det > 0);
+    const int beyond[3] = { b < 0 || flat, a < 0 || flat,
+                            a + b > det || flat };
+    double best = INFINITY, p, q, e2;
 
     a = b = 0;
     for (int k = 0; k < 3; k++) {
-      double p = k < 2 ? edge[k][0] : 1 - edge[2][1];
-      double q = k < 2 ? edge[k][1] : edge[2][1];
-      double e2 = p * p * uu + 2 * p * q * uv + q * q * vv
-                  - 2 * (p * du + q * dv);
-
+      if (!beyond[k]) continue;
+      e2 = on_edge(t, du, dv, k, &p, &q);
       if (e2 < best) best = e2, a = p, b = q;
     }
   }
