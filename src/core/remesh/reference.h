@@ -92,10 +92,12 @@ uint32_t vg_ref_ray(const struct vg_ref *r, const double x[3],
 double vg_ref_project(const struct vg_ref *r, const double x[3],
                       const double n[3], uint32_t *hint, double out[3]);
 
-/** Size at x: the least of all points' own sizes grown with the distance.
+/** Size at x: the least of all points' own sizes grown with the distance, which
+ * is known not to be above `most` (INFINITY: nothing is known).
  * *by: a triangle to begin with, or VG_REF_NONE; out: the one that asks for
  * the size. */
-double vg_ref_size(const struct vg_ref *r, const double x[3], uint32_t *by);
+double vg_ref_size(const struct vg_ref *r, const double x[3], double most,
+                   uint32_t *by);
 
 /** What triangle t asks for at x. */
 double vg_ref_size_by(const struct vg_ref *r, uint32_t t, const double x[3]);

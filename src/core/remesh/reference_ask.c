@@ -1,5 +1,6 @@
 #include "core/remesh/reference.h"
 
+#include <float.h>
 #include <math.h>
 
 #include "core/geometry/vector.h"
@@ -409,13 +410,15 @@ static int may_ask(const struct vg_ref *r, uint32_t t, const double x[3],
   return vg_distance2(x, r->shape[t].a) < room * room;
 }
 
-double vg_ref_size(const struct vg_ref *r, const double x[3], uint32_t *by)
+double vg_ref_size(const struct vg_ref *r, const double x[3], double most,
+                   uint32_t *by)
 {
   size_t stack[DEPTH];
   double h = INFINITY;
   int top = 0;
 
   if (*by != VG_REF_NONE) h = vg_ref_size_by(r, *by, x);
+  if (h > most) h = most * (1 + 4 * DBL_EPSILON);   /* what asks is found */
   stack[top++] = 0;
   while (top) {
     size_t i = stack[--top], leaf;

@@ -62,7 +62,7 @@ static double bounded(const struct vg_work *w, const double x[3], double h)
 
 double vg_work_size(const struct vg_work *w, const double x[3], uint32_t *by)
 {
-  return bounded(w, x, vg_ref_size(w->ref, x, by));
+  return bounded(w, x, vg_ref_size(w->ref, x, INFINITY, by));
 }
 
 double vg_work_size_near(const struct vg_work *w, const double x[3],
@@ -120,7 +120,8 @@ static void find_sizes(void *context, size_t first, size_t end, int worker)
   for (size_t p = first; p < end; p++) {
     struct vg_work_point *q = &w->point[p];
 
-    q->size = vg_work_size(w, q->x, &q->by);
+    q->by = q->home;
+    q->size = bounded(w, q->x, vg_ref_size(w->ref, q->x, q->size, &q->by));
   }
 }
 

@@ -84,18 +84,22 @@ static vg_status remesh(struct vg_problem *p, const uint8_t *hard,
                                             : st;
 }
 
-static vg_status measure(struct vg_problem *p, const struct vg_mesh *given,
+static vg_status measure(struct vg_problem *p, struct vg_mesh *given,
                          struct vg_error *err)
 {
   struct vg_renewal *r = &p->renewal;
+  vg_status st;
 
   r->face = vg_alloc(p->surface.n_tri, sizeof *r->face);
   r->n_patch = p->surface.n_patch;
   r->area = vg_calloc(2 * r->n_patch, sizeof *r->area);
   if (!r->face || !r->area) return vg_fail_memory(err, "the distances");
   areas(given, 0, r->area);
-  return vg_remesh_measure(&p->surface, given, p->threads, r->face, r->off,
-                           err);
+  VG_TRY(vg_remesh_arrange(given, err));
+  VG_TRY(vg_remesh_measure(&p->surface, given, p->threads, r->face, r->off,
+                           err));
+done:
+  return st;
 }
 
 vg_status vg_problem_renew(struct vg_problem *p, struct vg_display *show,
@@ -113,7 +117,6 @@ vg_status vg_problem_renew(struct vg_problem *p, struct vg_display *show,
                    "the surface, which remesh_surface would take away: give "
                    "them by patch instead, or keep the surface");
   vg_display_update(show, "remesh", p->surface.n_tri, 0);
-  VG_TRY(vg_remesh_arrange(&p->surface, err));
   VG_TRY(vg_mesh_copy(&given, &p->surface, err));
   VG_TRY(hard_patches(p, &hard, err));
   VG_TRY(vg_surface_sizes_make(p, &sizes, err));
