@@ -234,9 +234,9 @@ static vg_status stopped(const struct job *j, struct vg_error *err)
 }
 
 /* Until no edge is much too long. */
-static vg_status halve(const struct job *j, struct vg_work *w,
-                       struct vg_error *err)
+static vg_status halve(void *user, struct vg_work *w, struct vg_error *err)
 {
+  const struct job *j = user;
   size_t n = 1, n_gone;
   vg_status st = VG_OK;
 
@@ -260,7 +260,7 @@ static vg_status change_block(void *user, struct vg_work *w,
   size_t n;
   vg_status st;
 
-  VG_TRY(halve(j, w, err));
+  VG_TRY(halve(user, w, err));
   for (int i = 0; i < 4; i++) {
     VG_TRY(stopped(j, err));
     vg_pass_smooth(w, 1);
@@ -281,15 +281,18 @@ done:
 }
 
 /* What is near the border of a block in one phase is inside one in the next;
- * what is near both is left to one thread. The borders are of triangles that
- * are small enough: beside large ones points come and go. */
+ * what is near both is left to one thread. Before, edges are halved, in blocks
+ * and then where they meet: beside large triangles, which the borders are of
+ * at first, points would come and go. */
 static vg_status change(struct job *j, struct vg_work *w, struct vg_error *err)
 {
   size_t n;
   vg_status st;
 
   VG_TRY(vg_pass_divide(w, j->o->threads, err));
-  VG_TRY(halve(j, w, err));
+  n = vg_blocks_number(w);
+  VG_TRY(vg_blocks_run(w, n, 0, j->o->threads, halve, j, err));
+  if (n > 1) VG_TRY(halve(j, w, err));
   n = vg_blocks_number(w);
   for (int phase = 0; n > 1 && phase < PHASES; phase++)
     VG_TRY(vg_blocks_run(w, n + (size_t)phase, phase, j->o->threads,
