@@ -12,14 +12,19 @@
 #define GRAIN 1024
 #define PER_FACE 4        /* samples: middles of edges, centroid */
 
-/* Samples are the points, then those of each triangle. */
+/* One way. Samples are the points, then those of each triangle. */
 struct measuring {
   const struct vg_mesh *from;
-  const struct vg_ref *own, *to;
+  struct vg_ref ref;        /* of it */
+  const struct vg_ref *to;
   uint32_t *by;             /* [from->n_point] triangle that measures there;
                                VG_REF_NONE: it is of none */
   uint32_t *order;          /* [from->n_tri] triangles, near ones together */
   double *d;                /* [n_point + PER_FACE n_tri] */
+  double *face;             /* [n_tri] or NULL */
+  struct vg_remesh_distance *out;
+  vg_status st;
+  struct vg_error err;
 };
 
 static void face_sample(const struct vg_mesh *m, size_t t, int i, double x[3])
@@ -53,7 +58,7 @@ static void at_face(const struct measuring *m, size_t t, uint32_t *hint)
     slot[n++] = p;
   }
   for (int i = 0; i < PER_FACE; i++) {
-    if (i < 3 && m->own->mate[3 * t + (size_t)i] < 3 * t) continue;
+    if (i < 3 && m->ref.mate[3 * t + (size_t)i] < 3 * t) continue;
     face_sample(from, t, i, x[n]);
     slot[n++] = slot_of(from, t, (size_t)i);
   }
@@ -78,8 +83,8 @@ static void arrange(struct measuring *m)
 
   memset(m->by, 0xff, from->n_point * sizeof *m->by);
   memset(m->d, 0, from->n_tri * sizeof *m->d);   /* 1: is there */
-  for (size_t i = 0; i < m->own->n_item; i++) {
-    uint32_t t = m->own->item[i];
+  for (size_t i = 0; i < m->ref.n_item; i++) {
+    uint32_t t = m->ref.item[i];
 
     if (m->d[t] > 0) continue;
     m->d[t] = 1;
@@ -93,7 +98,7 @@ static void arrange(struct measuring *m)
 static void share(const struct measuring *m)
 {
   for (size_t h = 0; h < 3 * m->from->n_tri; h++) {
-    size_t g = m->own->mate[h];
+    size_t g = m->ref.mate[h];
 
     if (g < h)
       m->d[slot_of(m->from, h / 3, h % 3)]
@@ -120,10 +125,10 @@ static vg_status find_99(size_t n, const double *d, double *out,
   return st;
 }
 
-static void find_most(const struct measuring *m, double *face,
-                      struct vg_remesh_distance *d)
+static void find_most(const struct measuring *m)
 {
   const struct vg_mesh *from = m->from;
+  struct vg_remesh_distance *d = m->out;
 
   for (size_t t = 0; t < from->n_tri; t++) {
     double most = -1;
@@ -138,33 +143,61 @@ static void find_most(const struct measuring *m, double *face,
       if (i < 3) memcpy(d->at, from->point[s], sizeof d->at);
       else face_sample(from, t, i - 3, d->at);
     }
-    if (face) face[t] = most;
+    if (m->face) m->face[t] = most;
   }
 }
 
-static vg_status measure(const struct vg_mesh *from, const struct vg_ref *own,
-                         const struct vg_ref *to, int threads, double *face,
-                         struct vg_remesh_distance *d, struct vg_error *err)
+static size_t n_samples(const struct measuring *m)
 {
-  struct measuring m = { .from = from, .own = own, .to = to };
-  const size_t n = from->n_point + PER_FACE * from->n_tri;
-  vg_status st = VG_OK;
+  return m->from->n_point + PER_FACE * m->from->n_tri;
+}
 
-  m.d = vg_calloc(n, sizeof *m.d);
-  m.by = vg_alloc(from->n_point, sizeof *m.by);
-  m.order = vg_alloc(from->n_tri, sizeof *m.order);
-  if (!m.d || !m.by || !m.order)
-    VG_TRY(vg_fail_memory(err, "the distances of the surfaces"));
-  arrange(&m);
-  vg_parallel_for(threads, from->n_tri, GRAIN, at_faces, &m);
-  share(&m);
-  find_most(&m, face, d);
-  VG_TRY(find_99(n, m.d, &d->most_99, err));
+static vg_status begin(struct measuring *m, struct vg_error *err)
+{
+  vg_status st;
+
+  m->d = vg_calloc(n_samples(m), sizeof *m->d);
+  m->by = vg_alloc(m->from->n_point, sizeof *m->by);
+  m->order = vg_alloc(m->from->n_tri, sizeof *m->order);
+  if (!m->d || !m->by || !m->order)
+    return vg_fail_memory(err, "the distances of the surfaces");
+  VG_TRY(vg_ref_build(&m->ref, m->from, err));
+  arrange(m);
 done:
-  free(m.order);
-  free(m.by);
-  free(m.d);
   return st;
+}
+
+static void begin_both(void *context, size_t first, size_t end, int worker)
+{
+  struct measuring *m = context;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++) m[i].st = begin(&m[i], &m[i].err);
+}
+
+static void end_both(void *context, size_t first, size_t end, int worker)
+{
+  struct measuring *m = context;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++) {
+    share(&m[i]);
+    find_most(&m[i]);
+    m[i].st = find_99(n_samples(&m[i]), m[i].d, &m[i].out->most_99,
+                      &m[i].err);
+  }
+}
+
+static vg_status run(struct measuring m[2], int threads, vg_loop_body body,
+                     struct vg_error *err)
+{
+  vg_parallel_for(threads, 2, 1, body, m);
+  for (int i = 0; i < 2; i++)
+    if (m[i].st < 0) {
+      if (err) *err = m[i].err;
+      return m[i].st;
+    }
+  return VG_OK;
 }
 
 vg_status vg_remesh_measure(const struct vg_mesh *a, const struct vg_mesh *b,
@@ -172,17 +205,26 @@ vg_status vg_remesh_measure(const struct vg_mesh *a, const struct vg_mesh *b,
                             struct vg_remesh_distance d[2],
                             struct vg_error *err)
 {
-  struct vg_ref of[2] = { VG_REF_INIT, VG_REF_INIT };
+  struct measuring m[2] = { { .from = a, .face = face, .out = &d[0],
+                              .err = VG_ERROR_INIT },
+                            { .from = b, .out = &d[1],
+                              .err = VG_ERROR_INIT } };
   vg_status st;
 
   memset(d, 0, 2 * sizeof *d);
   if (!a->n_tri || !b->n_tri) return VG_OK;
-  VG_TRY(vg_ref_build(&of[0], a, err));
-  VG_TRY(vg_ref_build(&of[1], b, err));
-  VG_TRY(measure(a, &of[0], &of[1], threads, face, &d[0], err));
-  VG_TRY(measure(b, &of[1], &of[0], threads, NULL, &d[1], err));
+  VG_TRY(run(m, threads, begin_both, err));
+  for (int i = 0; i < 2; i++) {
+    m[i].to = &m[!i].ref;
+    vg_parallel_for(threads, m[i].from->n_tri, GRAIN, at_faces, &m[i]);
+  }
+  VG_TRY(run(m, threads, end_both, err));
 done:
-  vg_ref_release(&of[0]);
-  vg_ref_release(&of[1]);
+  for (int i = 0; i < 2; i++) {
+    vg_ref_release(&m[i].ref);
+    free(m[i].order);
+    free(m[i].by);
+    free(m[i].d);
+  }
   return st;
 }
