@@ -173,34 +173,52 @@ void vg_pass_curves(struct vg_work *w)
 
 /* --- edges by length ----------------------------------------------------- */
 
-/* Edges with a ratio beyond the bounds, by rising ratio: of positive doubles
- * the bits rise with the values. Those that were looked at and have not
- * changed since are left out. */
+struct edge_list {
+  size_t n, cap;
+  struct vg_key *key;
+};
+
+/* Of positive doubles the bits rise with the values. */
+static int list_edge(const struct vg_work *w, uint32_t h, double lo, double hi,
+                     int falls, struct edge_list *l)
+{
+  double r;
+  uint64_t bits;
+
+  if (w->mate[h] != VG_REF_NONE && w->mate[h] < h) return 0;
+  r = vg_work_ratio(w, h);
+  if (r >= lo && r <= hi) return 0;
+  memcpy(&bits, &r, sizeof bits);
+  if (vg_reserve(&l->key, &l->cap, l->n + 1, sizeof *l->key)) return -1;
+  l->key[l->n++] = (struct vg_key){ falls ? ~bits : bits, h };
+  return 0;
+}
+
+/* Edges with a ratio beyond the bounds, by rising ratio. Those that were
+ * looked at and have not changed since are left out. */
 static vg_status edges_by_ratio(struct vg_work *w, int look, double lo,
                                 double hi, int falls, struct vg_key **key,
                                 size_t *n, struct vg_error *err)
 {
   const uint64_t since = w->looked[look];
-  size_t cap = 0;
+  struct edge_list l = { 0 };
+  int failed = 0;
 
   w->looked[look] = w->clock;
+  for (uint32_t t = 0; t < w->n_tri; t++) {
+    int is_new[3];
 
-  *key = NULL;
-  *n = 0;
-  for (uint32_t h = 0; h < 3 * w->n_tri; h++) {
-    double r;
-    uint64_t bits;
-
-    if (vg_work_removed(w, h / 3)
-        || (w->mate[h] != VG_REF_NONE && w->mate[h] < h)
-        || vg_work_is_old(w, h, since)) continue;
-    r = vg_work_ratio(w, h);
-    if (r >= lo && r <= hi) continue;
-    memcpy(&bits, &r, sizeof bits);
-    if (vg_reserve(key, &cap, *n + 1, sizeof **key))
-      return vg_fail_memory(err, "the edges of the surface");
-    (*key)[(*n)++] = (struct vg_key){ falls ? ~bits : bits, h };
+    for (int k = 0; k < 3; k++)
+      is_new[k] = w->point[w->tri[t][k]].changed > since;
+    if (!(is_new[0] | is_new[1] | is_new[2]) || vg_work_removed(w, t))
+      continue;
+    for (uint32_t k = 0; k < 3; k++)
+      if (is_new[k] || is_new[(k + 1) % 3])
+        failed |= list_edge(w, 3 * t + k, lo, hi, falls, &l);
   }
+  *key = l.key;
+  *n = l.n;
+  if (failed) return vg_fail_memory(err, "the edges of the surface");
   return *n ? vg_sort_keys(*n, *key, err) : VG_OK;
 }
 
