@@ -281,23 +281,30 @@ done:
 }
 
 /* What is near the border of a block in one phase is inside one in the next;
- * what is near both is left to one thread. Before, edges are halved, in blocks
- * and then where they meet: beside large triangles, which the borders are of
- * at first, points would come and go. */
+ * what is near both is left to one thread. */
+static vg_status run(struct job *j, struct vg_work *w, vg_block_body body,
+                     struct vg_error *err)
+{
+  const size_t n = vg_blocks_number(w);
+  vg_status st;
+
+  for (int phase = 0; n > 1 && phase < PHASES; phase++)
+    VG_TRY(vg_blocks_run(w, n + (size_t)phase, phase, j->o->threads, body, j,
+                         err));
+  VG_TRY(body(j, w, err));
+done:
+  return st;
+}
+
+/* Edges are halved everywhere before anything else is done: beside large
+ * triangles, where borders are, points would come and go. */
 static vg_status change(struct job *j, struct vg_work *w, struct vg_error *err)
 {
-  size_t n;
   vg_status st;
 
   VG_TRY(vg_pass_divide(w, j->o->threads, err));
-  n = vg_blocks_number(w);
-  VG_TRY(vg_blocks_run(w, n, 0, j->o->threads, halve, j, err));
-  if (n > 1) VG_TRY(halve(j, w, err));
-  n = vg_blocks_number(w);
-  for (int phase = 0; n > 1 && phase < PHASES; phase++)
-    VG_TRY(vg_blocks_run(w, n + (size_t)phase, phase, j->o->threads,
-                         change_block, j, err));
-  VG_TRY(change_block(j, w, err));
+  VG_TRY(run(j, w, halve, err));
+  VG_TRY(run(j, w, change_block, err));
 done:
   return st;
 }
