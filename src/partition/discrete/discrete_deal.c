@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/geometry/shape.h"
 #include "core/geometry/vector.h"
 #include "partition/discrete/discrete_parts.h"
 #include "partition/graph/bisect.h"
@@ -17,6 +18,10 @@ static const double small_piece = 0.1;   /* D4 */
 /* Most over mean while cells change sides, and how often all are looked at. */
 static const double evened = 1.04;   /* D5 */
 enum { EVEN_SWEEPS = 6 };
+/* A face of a flat coarse cell counts for so many triangles more, less where
+ * angles are larger, up to those with this sine: interfaces through flat cells
+ * leave slits, and cells of few degrees fill these. */
+static const double flat_costs = 10, flat_sine = 0.5;   /* D11 */
 
 /* --- weights ------------------------------------------------------------- */
 
@@ -26,6 +31,8 @@ struct weights {
   struct vg_load_finder *finder;
   const struct vg_sizing *sizing;
   double per_cube;
+  double *flat;              /* [c->t.n_cell] out: triangles that each adds to
+                                the cost of its faces */
 };
 
 /* D3: cells to a volume, as the load has them; where it has no cube, as at a wall,
@@ -72,6 +79,13 @@ static double density(const struct weights *w, double *const x[4])
   return sum / n;
 }
 
+static double flatness(double *const x[4])
+{
+  double sine = sqrt(fmax(0, vg_shape(x[0], x[1], x[2], x[3])));
+
+  return flat_costs * fmax(0, 1 - sine / flat_sine);
+}
+
 static void weigh(void *context, size_t first, size_t end, int worker)
 {
   const struct weights *w = context;
@@ -85,6 +99,7 @@ static void weigh(void *context, size_t first, size_t end, int worker)
     double cells = fabs(volume) * density(w, x);
 
     w->c->weight[q] = cells > 0 ? cells : 1e-6;
+    w->flat[q] = flatness(x);
   }
 }
 
@@ -122,10 +137,10 @@ static void dual_release(struct dual *d)
   free(d->edge);
 }
 
-static vg_status make_dual(const struct vg_coarse *c,
-                           const struct vg_sizing *sizing, struct dual *d,
+static vg_status make_dual(const struct weights *w, struct dual *d,
                            struct vg_error *err)
 {
+  const struct vg_coarse *c = w->c;
   size_t n = c->t.n_cell, m = 0;
 
   d->begin = vg_alloc(n + 1, sizeof *d->begin);
@@ -139,15 +154,17 @@ static vg_status make_dual(const struct vg_coarse *c,
       uint32_t link = c->t.cell[q].link[i];
       size_t low = q;
       int face = i;
+      double cost;
 
       if (link == VG_NONE) continue;
       if (link >> 2 < q) {             /* the same sum from both sides */
         low = link >> 2;
         face = (int)(link & 3);
       }
+      cost = face_size(c, w->sizing, low, face) +
+             fmax(w->flat[q], w->flat[link >> 2]);
       d->to[m] = link >> 2;
-      d->edge[m++] = 1 + (int32_t)fmin(4 * face_size(c, sizing, low, face),
-                                       1e6);
+      d->edge[m++] = 1 + (int32_t)fmin(4 * cost, 1e6);
     }
   }
   d->begin[n] = m;
@@ -364,24 +381,28 @@ vg_status vg_coarse_deal(struct vg_coarse *c, const struct vg_load *load,
                          const struct vg_engine *e, uint64_t *n_apart,
                          struct vg_error *err)
 {
-  struct weights w = { c, load, NULL, sizing, o->cells_per_cube };
+  struct weights w = { c, load, NULL, sizing, o->cells_per_cube,
+                       vg_alloc(c->t.n_cell, sizeof *w.flat) };
   struct dual d = { .begin = NULL };
   vg_status st = VG_OK;
 
   c->weight = vg_alloc(c->t.n_cell, sizeof *c->weight);
   c->part = vg_alloc(c->t.n_cell, sizeof *c->part);
   c->n_part = (uint32_t)o->n_part;
-  if (!c->weight || !c->part)
-    return vg_fail_memory(err, "dealing out the coarse mesh");
+  if (!c->weight || !c->part || !w.flat) {
+    st = vg_fail_memory(err, "dealing out the coarse mesh");
+    goto done;
+  }
   VG_TRY(vg_load_finder_new(load, &w.finder, err));
   vg_engine_loop(e, c->t.n_cell, 256, weigh, &w);
-  VG_TRY(make_dual(c, sizing, &d, err));
+  VG_TRY(make_dual(&w, &d, err));
   VG_TRY(deal(c, &d, o, err));
   VG_TRY(even_out(&d, c, err));
   VG_TRY(settle_pieces(&d, c, err));
   *n_apart = c->n_part > (uint32_t)o->n_part
                ? c->n_part - (uint32_t)o->n_part : 0;
 done:
+  free(w.flat);
   vg_load_finder_free(w.finder);
   dual_release(&d);
   return st;
