@@ -12,7 +12,7 @@
 #define STRIP 0.94        /* cosine: lines more oblique make a wedge */
 #define FLOOR 0.02        /* S26: of the size without strips: never finer */
 
-/* Curvature tensor at a point, summed over edges, with its area. */
+/* Curvature tensor of a triangle, summed over its edges, with its area. */
 struct bend {
   double t[6], area;
 };
@@ -46,10 +46,13 @@ static double angle_of(double sine, double cosine)
 /* --- curvature of faces -------------------------------------------------- */
 
 /* Cohen-Steiner and Morvan, "Restricted Delaunay triangulations and normal
- * cycle", 2003: an edge bends the surface by its angle, across itself. */
+ * cycle", 2003: an edge bends the surface by its angle, across itself. It is
+ * summed over triangles, so that what lies beyond a line, which may be a large
+ * plane, has no part in it. */
 static void add_edge(const struct vg_ref *r, uint32_t h, struct bend *bend)
 {
   const double *n = r->shape[h / 3].n, *m = r->shape[r->mate[h] / 3].n;
+  const uint32_t side[2] = { h / 3, r->mate[h] / 3 };
   double e[3], w[3], l, angle, k;
   uint32_t a = r->tri[h / 3][h % 3], b = r->tri[h / 3][next(h) % 3];
 
@@ -59,9 +62,9 @@ static void add_edge(const struct vg_ref *r, uint32_t h, struct bend *bend)
   vg_cross(n, m, w);
   angle = angle_of(vg_norm(w), vg_dot(n, m));
   if (vg_dot(w, e) < 0) angle = -angle;
-  k = angle * l / 2;        /* half of it to either end */
+  k = angle * l / 2;        /* half of it to either side */
   for (int i = 0; i < 2; i++) {
-    double *t = bend[i ? b : a].t;
+    double *t = bend[side[i]].t;
 
     t[0] += k * e[0] * e[0];
     t[1] += k * e[1] * e[1];
@@ -72,27 +75,20 @@ static void add_edge(const struct vg_ref *r, uint32_t h, struct bend *bend)
   }
 }
 
-static void add_area(const struct vg_ref *r, size_t t, struct bend *bend)
+static void add_bend(struct bend *to, const struct bend *b, double share)
 {
-  double n[3], a;
-
-  vg_cross(r->shape[t].u, r->shape[t].v, n);
-  a = vg_norm(n) / 6;
-  for (int k = 0; k < 3; k++) bend[r->tri[t][k]].area += a;
+  for (int k = 0; k < 6; k++) to->t[k] += share * b->t[k];
+  to->area += share * b->area;
 }
 
-/* Sums over a point and its neighbours, lines between them excepted. */
+/* Sums over a triangle and its neighbours but for those beyond lines. */
 static void spread(const struct vg_ref *r, const struct vg_curves *c,
                    const struct bend *from, struct bend *to)
 {
-  memcpy(to, from, r->n_point * sizeof *to);
-  for (uint32_t h = 0; h < 3 * r->n_tri; h++) {
-    uint32_t a = r->tri[h / 3][h % 3], b = r->tri[h / 3][next(h) % 3];
-
-    if (c->line[h] || r->mate[h] == VG_REF_NONE) continue;
-    for (int k = 0; k < 6; k++) to[a].t[k] += from[b].t[k] / 2;
-    to[a].area += from[b].area / 2;
-  }
+  memcpy(to, from, r->n_tri * sizeof *to);
+  for (uint32_t h = 0; h < 3 * r->n_tri; h++)
+    if (!c->line[h] && r->mate[h] != VG_REF_NONE)
+      add_bend(&to[h / 3], &from[r->mate[h] / 3], 0.5);
 }
 
 /* The larger of the two curvatures, by trace and norm. */
@@ -117,19 +113,63 @@ static double arc_size(const struct vg_sizes_options *o, double curvature,
   return is_far ? h : fmin(h, sqrt(8 * o->chord / curvature));
 }
 
+/* The curvature of the faces from line h around its start to the next line. */
+static double sector(const struct vg_ref *r, const struct vg_curves *c,
+                     const struct bend *bend, uint32_t h)
+{
+  struct bend sum = { { 0 }, 0 };
+
+  for (;;) {
+    add_bend(&sum, &bend[h / 3], 1);
+    if (c->line[prev(h)] || r->mate[prev(h)] == VG_REF_NONE) break;
+    h = r->mate[prev(h)];
+  }
+  return curvature(&sum);
+}
+
+/* At a point by all its triangles together; on a line by those on the side
+ * that bends the most. */
+static vg_status by_triangles(struct vg_ref *r, const struct vg_curves *c,
+                              const struct vg_sizes_options *o,
+                              const struct bend *bend, const uint8_t *far,
+                              struct vg_error *err)
+{
+  struct bend *sum = vg_calloc(r->n_point, sizeof *sum);
+
+  if (!sum) return vg_fail_memory(err, "the curvature of the surface");
+  for (size_t p = 0; p < r->n_point; p++) r->size[p] = INFINITY;
+  for (uint32_t h = 0; h < 3 * r->n_tri; h++) {
+    uint32_t p = r->tri[h / 3][h % 3];
+
+    add_bend(&sum[p], &bend[h / 3], 1);
+    if (c->line[h])
+      r->size[p] = fmin(r->size[p], arc_size(o, sector(r, c, bend, h),
+                                             far[p]));
+  }
+  for (size_t p = 0; p < r->n_point; p++) {
+    if (!(r->size[p] < INFINITY))
+      r->size[p] = arc_size(o, curvature(&sum[p]), far[p]);
+    r->size[p] = fmin(r->size[p], o->h_max);
+  }
+  free(sum);
+  return VG_OK;
+}
+
 static vg_status by_faces(struct vg_ref *r, const struct vg_curves *c,
                           const struct vg_sizes_options *o,
                           const uint8_t *far, struct vg_error *err)
 {
-  struct bend *b = vg_calloc(r->n_point, sizeof *b);
-  struct bend *s = vg_alloc(r->n_point, sizeof *s), *swap;
+  struct bend *b = vg_calloc(r->n_tri, sizeof *b);
+  struct bend *s = vg_alloc(r->n_tri, sizeof *s), *swap;
+  vg_status st = VG_OK;
 
-  if (!b || !s) {
-    free(b);
-    free(s);
-    return vg_fail_memory(err, "the curvature of the surface");
+  if (!b || !s) VG_TRY(vg_fail_memory(err, "the curvature of the surface"));
+  for (size_t t = 0; t < r->n_tri; t++) {
+    double n[3];
+
+    vg_cross(r->shape[t].u, r->shape[t].v, n);
+    b[t].area = vg_norm(n) / 2;
   }
-  for (size_t t = 0; t < r->n_tri; t++) add_area(r, t, b);
   for (uint32_t h = 0; h < 3 * r->n_tri; h++)
     if (r->mate[h] != VG_REF_NONE && h < r->mate[h] && !c->line[h])
       add_edge(r, h, b);
@@ -139,11 +179,11 @@ static vg_status by_faces(struct vg_ref *r, const struct vg_curves *c,
     b = s;
     s = swap;
   }
-  for (size_t p = 0; p < r->n_point; p++)
-    r->size[p] = fmin(o->h_max, arc_size(o, curvature(&b[p]), far[p]));
+  VG_TRY(by_triangles(r, c, o, b, far, err));
+done:
   free(b);
   free(s);
-  return VG_OK;
+  return st;
 }
 
 /* --- curves and strips --------------------------------------------------- */
