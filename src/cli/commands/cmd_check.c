@@ -124,7 +124,7 @@ static vg_status check(const struct arguments *a, struct vg_error *err)
   vg_display_update(&show, "read", 0, 0);
   vg_settings_default(&s);
   if (a->deck) VG_TRY(vg_deck_read(a->deck, &s, err));
-  cad = vg_cad_options_of(&s, &notes);
+  cad = vg_cad_options_of(&s, 0, &notes);
   VG_TRY(vg_mesh_read(a->one.file, &m, &info, err));
   vg_display_update(&show, "check", 0, 0);
   vg_display_clear(&show);

@@ -23,7 +23,7 @@
 #define RELATIVE 0.05     /* of the size */
 #define CHORD 0.6         /* of the tolerance: what sizes allow for arcs */
 #define H_MAX 0.02        /* of the length */
-#define H_MIN 2e-5
+#define H_MIN 2e-4        /* twice the tolerance */
 #define H_OUTER 0.04      /* of the domain's length */
 #define OUTER 0.9         /* S27: of the triangles of a patch: all of it is */
 #define TRIANGLES 3e8     /* more are refused */

@@ -24,7 +24,7 @@ struct vg_remesh_options {
   double ridge_angle;       /* degrees between faces, from which on their edge
                                is a ridge and stays */
   double per_turn;          /* edges round a full circle */
-  double h_min, h_max;      /* 0: 2e-5 and 0.02 of the body's length; of the
+  double h_min, h_max;      /* 0: 2e-4 and 0.02 of the body's length; of the
                                outer boundary of a whole domain, 0.04 of its
                                own */
   double growth;            /* > 1, of sizes along the surface */

@@ -21,6 +21,8 @@
 #include "run/settings/deck.h"
 
 /* Of struct vg_cad_options, however sizes are scaled. */
+#define FINE_CHORD 3e-4   /* S15: of what the surface is made anew from */
+#define FINE_ANGLE 12.0
 #define CHORD_MOST 0.5
 #define ANGLE_LEAST 1.0
 #define ANGLE_MOST 60.0
@@ -239,9 +241,11 @@ static void note_unused(struct vg_problem *p,
 /* Conditions are taken from the .mapbc beside the file. */
 static vg_status read_surface_file(struct vg_problem *p, struct vg_error *err)
 {
-  struct vg_cad_options cad = vg_cad_options_of(&p->settings, &p->notes);
+  const int is_renewed = vg_problem_is_renewed(p);
+  struct vg_cad_options cad = vg_cad_options_of(&p->settings, is_renewed,
+                                                &p->notes);
   struct vg_read_info info = { .cad = &cad,
-    .model = vg_problem_is_renewed(p) ? &p->model : NULL };
+    .model = is_renewed ? &p->model : NULL };
   const char *path = p->files.surface;
   vg_status st;
 
@@ -387,13 +391,20 @@ static int stop_cad(void *user)
 }
 
 struct vg_cad_options vg_cad_options_of(const struct vg_settings *s,
+                                        int is_renewed,
                                         struct vg_notes *notes)
 {
+  const struct vg_cad_options plain = VG_CAD_OPTIONS_INIT;
+  const double chord = s->cad.chord > 0 ? s->cad.chord
+                       : is_renewed ? FINE_CHORD : plain.chord;
+  const double angle = s->cad.angle > 0 ? s->cad.angle
+                       : is_renewed ? FINE_ANGLE : plain.angle;
+
   /* An arc of an edge S times as long turns by S, and rises by S * S. */
   return (struct vg_cad_options){ .unit = s->cad.unit,
     .patches = s->cad.patches, .tolerance = s->cad.tolerance,
-    .chord = fmin(s->cad.chord * s->scale * s->scale, CHORD_MOST),
-    .angle = fmin(fmax(s->cad.angle * s->scale, ANGLE_LEAST), ANGLE_MOST),
+    .chord = fmin(chord * s->scale * s->scale, CHORD_MOST),
+    .angle = fmin(fmax(angle * s->scale, ANGLE_LEAST), ANGLE_MOST),
     .seconds = s->cad.seconds,
     .note = note_cad, .stop = stop_cad, .user = notes };
 }

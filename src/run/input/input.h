@@ -129,8 +129,10 @@ struct vg_sizing_options vg_problem_sizing(const struct vg_problem *p);
 vg_status vg_problem_cad(struct vg_problem *p, struct vg_comm *comm,
                          struct vg_error *err);
 
-/** What settings and displays ask of CAD; notes go to *notes. */
+/** What settings and displays ask of CAD, finer where the surface is made
+ * anew; notes go to *notes. */
 struct vg_cad_options vg_cad_options_of(const struct vg_settings *s,
+                                        int is_renewed,
                                         struct vg_notes *notes);
 
 /** Weld, check and repair the surface, and make its triangles anew where

@@ -85,11 +85,13 @@ static const struct vg_param params[] = {
     "are sewn along edges that are no farther apart; 0: 1e-6 of its "
     "diagonal" },
   { "cad_chord", AT(cad.chord), .type = VG_PARAM_REAL, .hi = 0.5,
-    .above_lo = 1, .unit = "", .help = "distance of the triangles from the "
-    "curves of a CAD file, over the size of each curve" },
-  { "cad_angle", AT(cad.angle), .type = VG_PARAM_REAL, .lo = 1, .hi = 60,
+    .unit = "", .help = "distance of the triangles from the curves of a CAD "
+    "file, over the size of each curve; 0: 0.0003 where the surface is made "
+    "anew, else 0.002" },
+  { "cad_angle", AT(cad.angle), .type = VG_PARAM_REAL, .hi = 60,
     .unit = "degrees", .help = "turn of a CAD curve or face from one edge or "
-    "triangle to the next; 15: 24 edges a turn" },
+    "triangle to the next; 15: 24 edges a turn; 0: 12 where the surface is "
+    "made anew, else 15" },
   { "cad_seconds", AT(cad.seconds), REAL, .unit = "s",
     .help = "time after which reading CAD is given up; 0: none" },
   { "weld", AT(weld), LENGTH,
@@ -511,7 +513,7 @@ void vg_settings_default(struct vg_settings *s)
   s->surface_sizes = sizing.from_surface;
   s->d3m_sources = 1;
   s->cad = (struct vg_cad_settings){ cad.unit, cad.patches, cad.tolerance,
-                                     cad.chord, cad.angle, cad.seconds };
+                                     0, 0, cad.seconds };
   s->repair = 1;
   s->ridge_angle = remesh.ridge_angle;
   s->per_turn = remesh.per_turn;
