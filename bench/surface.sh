@@ -4,13 +4,17 @@
 # usage: bench/surface.sh --data DIR [--runs N] [--build DIR] [--out FILE]
 #                         [CASE...]
 #   --data   folder of real geometry (verification/README.md)
-#   --runs   runs of a case, of which the median counts (default 3)
+#   --runs   runs of a case on one thread and on two in turn, of which the
+#            medians count (default 3)
 #   --build  build folder (default build/release)
 #   --out    write the table to FILE too
-#   CASE     f16 p180 concorde low-boom tmx1242 falcon (default all)
+#   CASE     names of the table below (default all but those marked -)
 #
-# Triangles of the new surface per second of one thread, user time of the whole
-# program: reading, making, checking, measuring the distance both ways, writing.
+# Triangles of the new surface per second of one thread: user and system time
+# of the whole program: reading, making, checking, measuring the distance both
+# ways, writing. Wall time of one thread over that of two is for a machine with
+# nothing else to do. Cases that end in -1m ask for sizes that make about a
+# million triangles.
 set -euo pipefail
 
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -19,30 +23,54 @@ root=$(cd "$(dirname "$0")/.." && pwd)
 data='' runs=3 build=$root/build/release
 take_options "data runs build out" "" "$@"
 [ -d "$data" ] || skip "no folder of real geometry: --data DIR"
-declare -A file=([f16]=supersonic/f16_full [p180]=bizjet/p180_avanti_full
-  [concorde]=supersonic/concorde_full [low-boom]=supersonic/low_boom_sst_full
-  [tmx1242]=supersonic/tmx1242_wing_body
-  [falcon]=bizjet/falcon_full_mirrored)
-[ ${#cases[@]} -gt 0 ] || cases=(f16 p180 concorde low-boom tmx1242 falcon)
+need jq jq
+need /usr/bin/time time
+# name, file, options
+table='tmx1242 supersonic/tmx1242_wing_body
+tnd6480 supersonic/tnd6480_delta_wing_body
+f16 supersonic/f16_full
+falcon bizjet/falcon_full_mirrored
+dlr-f6 transport/dlr_f6_wbnp_half_coarse
+dlr-f6-medium transport/dlr_f6_wbnp_half_medium
+p180 bizjet/p180_avanti_full
+30p30n highlift/30p30n_swept_wing_in_box_coarse
+dlr-f6-1m transport/dlr_f6_wbnp_half_medium --scale 0.36
+f16-1m supersonic/f16_full --scale 0.29
+-concorde supersonic/concorde_full
+-low-boom supersonic/low_boom_sst_full'
+[ ${#cases[@]} -gt 0 ] || mapfile -t cases < <(grep -v ^- <<<"$table" |
+  cut -d' ' -f1)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
 row() { echo "$1"; [ -z "$out" ] || echo "$1" >>"$out"; }
 [ -z "$out" ] || : >"$out"
-row "| case | triangles | user s | triangles/s |"
-row "|---|---|---|---|"
+median() { sort -g | sed -n "$(((runs + 1) / 2))p"; }
+
+row "| case | triangles | s | triangles/s | wall, 1 over 2 threads | MB |"
+row "|---|---|---|---|---|---|"
 for name in "${cases[@]}"; do
-  [ -n "${file[$name]:-}" ] || die "no case '$name'"
-  xz -dc "$data/${file[$name]}.lb8.ugrid.xz" >"$work/$name.lb8.ugrid"
-  times=()
+  read -r _ file options < <(grep -E "^-?$name " <<<"$table") ||
+    die "no case '$name'"
+  xz -dc "$data/$file.lb8.ugrid.xz" >"$work/in.lb8.ugrid"
+  : >"$work/times1"; : >"$work/times2"
   for ((i = 0; i < runs; i++)); do
-    rm -rf "$work/new"
-    TIMEFORMAT=%U
-    times+=("$({ time "$build/bin/vanguard" surface -q -t 1 \
-      "$work/$name.lb8.ugrid" --out "$work/new" >"$work/out"; } 2>&1)")
+    for t in 1 2; do
+      rm -rf "$work/new$t"
+      # shellcheck disable=SC2086 # options are words
+      /usr/bin/time -a -o "$work/times$t" -f '%U %S %e %M' \
+        "$build/bin/vanguard" surface -q -j -t $t $options \
+        "$work/in.lb8.ugrid" --out "$work/new$t" >"$work/out" 2>"$work/err" ||
+        die "$name: $(tail -1 "$work/err")"
+    done
+    cmp -s "$work"/new[12]/in.lb8.ugrid ||
+      die "$name: other bytes on two threads"
   done
-  n=$(sed -n 's/.*, now \([0-9,]*\);.*/\1/p' "$work/out" | tr -d ,)
-  t=$(printf '%s\n' "${times[@]}" | sort -g | sed -n "$(((runs + 1) / 2))p")
-  row "$(awk -v c="$name" -v n="$n" -v t="$t" \
-    'BEGIN { printf "| %s | %d | %.2f | %.0f |", c, n, t, n / t }')"
+  row "$(awk -v c="$name" -v n="$(jq .remesh.triangles[1] "$work/out")" \
+    -v t="$(awk '{ print $1 + $2 }' "$work/times1" | median)" \
+    -v w1="$(awk '{ print $3 }' "$work/times1" | median)" \
+    -v w2="$(awk '{ print $3 }' "$work/times2" | median)" \
+    -v m="$(awk '{ print $4 }' "$work/times1" | median)" \
+    'BEGIN { printf "| %s | %d | %.2f | %.0f | %.2f | %.0f |", c, n, t, n / t,
+             w1 / w2, m / 1024 }')"
 done

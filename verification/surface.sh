@@ -12,7 +12,7 @@
 #   CASE        names below; default all
 #
 # Bars: no defect by vanguard check, but open edges where the input has them;
-# every corner and 99.9 % of the length of lines; distance both ways within
+# as many corners as before by vanguard check and 99.9 % of the length of lines; distance both ways within
 # twice the tolerance (samples are held to it, what lies between them is
 # measured); 1st percentile of the smallest angles 35 degrees; edges within a
 # factor 1.41 of the size 90 %; angles below 10 degrees as the table says.
@@ -59,8 +59,11 @@ judge() { # NAME BELOW-10
      (if $m.percent_edges_fit < 90 then "sizes" else empty end),
      (if $q.percent_below_5_10_20_30[1] > $below then "below-10" else empty
       end)] | join(" ")' "$r")
-  "$vanguard" check -q "$work/$1/in.lb8.ugrid" >"$work/$1/check" ||
+  "$vanguard" check -q -j "$work/$1/in.lb8.ugrid" >"$work/$1/check" ||
     missed+=" defects"
+  jq -e --argjson was "$(jq .remesh.corners "$r")" '.lines.corners >= $was' \
+    "$work/$1/check" >"$work/$1/corners" || missed+=" corners"
+  missed=${missed# }
   row "$(jq -r --arg name "$1" --arg missed "${missed:-none}" '
     def at(n): . * n | round / n;
     .remesh as $m | .surface.quality as $q |
