@@ -464,6 +464,47 @@ static void refuses(void **unused)
   vg_mesh_release(&m);
 }
 
+/* Boxes of which one is longer by 0.2: that far at its end, both ways, in any
+ * order of triangles, on any number of threads. */
+static void measures_in_any_order(void **unused)
+{
+  const double size[2][3] = { { 3, 2, 1 }, { 3.2, 2, 1 } };
+  const uint32_t n[2][3] = { { 2, 90, 4 }, { 7, 5, 30 } };
+  struct vg_mesh m[2] = { VG_MESH_INIT, VG_MESH_INIT };
+  struct vg_error err = VG_ERROR_INIT;
+  double area[2][6], *face;
+
+  (void)unused;
+  for (int i = 0; i < 2; i++) {
+    shape_box(&m[i], size[i], n[i]);
+    for (size_t p = 0; p < 6; p++) area[i][p] = shape_area(&m[i], p);
+  }
+  face = calloc(m[0].n_tri, sizeof *face);
+  assert_non_null(face);
+  for (int arranged = 0; arranged < 2; arranged++) {
+    for (int threads = 1; threads < 4; threads++) {
+      struct vg_remesh_distance d[2];
+      double most = 0;
+
+      assert_int_equal(vg_remesh_measure(&m[0], &m[1], threads, face, d,
+                                         &err), VG_OK);
+      for (size_t t = 0; t < m[0].n_tri; t++) most = fmax(most, face[t]);
+      assert_float_equal(d[0].most, 0.2, 1e-12);
+      assert_float_equal(d[1].most, 0.2, 1e-12);
+      assert_float_equal(d[1].at[0], 3.2, 1e-12);
+      assert_true(most == d[0].most);
+    }
+    for (int i = 0; i < 2; i++) {
+      assert_int_equal(vg_remesh_arrange(&m[i], &err), VG_OK);
+      for (size_t p = 0; p < 6; p++)
+        assert_float_equal(shape_area(&m[i], p), area[i][p], 1e-12);
+    }
+  }
+  free(face);
+  vg_mesh_release(&m[0]);
+  vg_mesh_release(&m[1]);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -477,6 +518,7 @@ int main(void)
     cmocka_unit_test(scales_all_sizes),
     cmocka_unit_test(judges_a_surface),
     cmocka_unit_test(same_bytes_for_any_threads),
+    cmocka_unit_test(measures_in_any_order),
     cmocka_unit_test(random_search),
     cmocka_unit_test(refuses),
   };

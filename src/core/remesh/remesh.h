@@ -82,8 +82,9 @@ struct vg_remesh_report {
 void vg_remesh_report_release(struct vg_remesh_report *r);
 
 /** Triangles of m in the order of a Hilbert curve, points as triangles use
- * them first: vg_remesh and vg_remesh_measure are fastest where neighbours are
- * near each other. Numbers change, nothing else. VG_ERR_MEMORY: untouched. */
+ * them first: vg_remesh_measure is fastest where neighbours are near each
+ * other. What vg_remesh makes depends on the order. Numbers change, nothing
+ * else. VG_ERR_MEMORY: untouched. O(n). */
 vg_status vg_remesh_arrange(struct vg_mesh *m, struct vg_error *err);
 
 /** Make the triangles of m anew. m is closed but for open rims, oriented and
