@@ -22,7 +22,8 @@
 
 /* Of struct vg_cad_options, however sizes are scaled. */
 #define FINE_CHORD 3e-4   /* S15: of what the surface is made anew from */
-#define FINE_ANGLE 12.0
+#define FINEST_CHORD 1e-4 /* where triangles of thin tips do not cross yet */
+#define FINE_ANGLE 8.0
 #define CHORD_MOST 0.5
 #define ANGLE_LEAST 1.0
 #define ANGLE_MOST 60.0
@@ -395,16 +396,18 @@ struct vg_cad_options vg_cad_options_of(const struct vg_settings *s,
                                         struct vg_notes *notes)
 {
   const struct vg_cad_options plain = VG_CAD_OPTIONS_INIT;
-  const double chord = s->cad.chord > 0 ? s->cad.chord
-                       : is_renewed ? FINE_CHORD : plain.chord;
-  const double angle = s->cad.angle > 0 ? s->cad.angle
-                       : is_renewed ? FINE_ANGLE : plain.angle;
-
+  const double scale2 = s->scale * s->scale;
   /* An arc of an edge S times as long turns by S, and rises by S * S. */
+  double chord = (s->cad.chord > 0 ? s->cad.chord : plain.chord) * scale2;
+  double angle = (s->cad.angle > 0 ? s->cad.angle : plain.angle) * s->scale;
+
+  if (is_renewed && !(s->cad.chord > 0))
+    chord = fmax(FINEST_CHORD, FINE_CHORD * fmin(scale2, 1));
+  if (is_renewed && !(s->cad.angle > 0)) angle = FINE_ANGLE;
   return (struct vg_cad_options){ .unit = s->cad.unit,
     .patches = s->cad.patches, .tolerance = s->cad.tolerance,
-    .chord = fmin(chord * s->scale * s->scale, CHORD_MOST),
-    .angle = fmin(fmax(angle * s->scale, ANGLE_LEAST), ANGLE_MOST),
+    .chord = fmin(chord, CHORD_MOST),
+    .angle = fmin(fmax(angle, ANGLE_LEAST), ANGLE_MOST),
     .seconds = s->cad.seconds,
     .note = note_cad, .stop = stop_cad, .user = notes };
 }

@@ -90,7 +90,7 @@ static const struct vg_param params[] = {
     "anew, else 0.002" },
   { "cad_angle", AT(cad.angle), .type = VG_PARAM_REAL, .hi = 60,
     .unit = "degrees", .help = "turn of a CAD curve or face from one edge or "
-    "triangle to the next; 15: 24 edges a turn; 0: 12 where the surface is "
+    "triangle to the next; 15: 24 edges a turn; 0: 8 where the surface is "
     "made anew, else 15" },
   { "cad_seconds", AT(cad.seconds), REAL, .unit = "s",
     .help = "time after which reading CAD is given up; 0: none" },
