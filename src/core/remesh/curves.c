@@ -15,6 +15,8 @@
 #define LEAD 0.6          /* S24: of the angle: where a ridge may go on */
 #define TURN 50.0         /* degrees: more is a corner */
 #define JAG 8.0           /* tolerances along the line: turns are measured on */
+#define THIN 8            /* triangles lower than the tolerance, at most, that
+                             are passed over */
 #define SPECK 20.0        /* tolerances: shorter loose pieces are dropped */
 
 struct finder {
@@ -52,13 +54,57 @@ static uint32_t to(const struct vg_ref *r, uint32_t h)
 
 /* --- edges --------------------------------------------------------------- */
 
-/* Cosine between the faces; flat ones say nothing. */
-static double cosine(const struct vg_ref *r, uint32_t h)
+/* Height of the triangle of h above its longest edge. */
+static double height(const struct vg_ref *r, uint32_t h)
 {
+  const struct vg_ref_tri *t = &r->shape[h / 3];
+  double n[3], w[3], longest2;
+
+  vg_cross(t->u, t->v, n);
+  vg_sub(t->v, t->u, w);
+  longest2 = fmax(vg_dot(w, w), fmax(vg_dot(t->u, t->u), vg_dot(t->v, t->v)));
+  return longest2 > 0 ? vg_norm(n) / sqrt(longest2) : 0;
+}
+
+static double length2(const struct vg_ref *r, uint32_t h)
+{
+  return vg_distance2(r->point[from(r, h)], r->point[to(r, h)]);
+}
+
+/* The first triangle on the side of h that says which way the surface faces
+ * there: those are passed over that are lower than the tolerance, together,
+ * since points that are off by as much turn them anyhow. */
+static uint32_t face_beside(const struct finder *f, uint32_t h)
+{
+  const struct vg_ref *r = f->r;
+  double room = f->o->tolerance;
+
+  for (int i = 0; i < THIN; i++) {
+    uint32_t a = next(h), b = next(a);
+
+    room -= height(r, h);
+    if (length2(r, b) > length2(r, a)) a = b;
+    if (!(room > 0) || length2(r, h) < length2(r, a) / 4
+        || r->mate[a] == VG_REF_NONE) break;
+    h = r->mate[a];
+  }
+  return h / 3;
+}
+
+/* Cosine between the faces; flat ones say nothing. */
+static double cosine(const struct finder *f, uint32_t h)
+{
+  const struct vg_ref *r = f->r;
   const double *a = r->shape[h / 3].n, *b = r->shape[r->mate[h] / 3].n;
+  double c;
 
   if (vg_dot(a, a) == 0 || vg_dot(b, b) == 0) return 1;
-  return vg_dot(a, b);
+  c = vg_dot(a, b);
+  if (c > f->lead) return c;
+  a = r->shape[face_beside(f, h)].n;
+  b = r->shape[face_beside(f, r->mate[h])].n;
+  if (vg_dot(a, a) == 0 || vg_dot(b, b) == 0) return 1;
+  return fmax(c, vg_dot(a, b));
 }
 
 static int is_hard(const struct finder *f, uint32_t h)
@@ -92,7 +138,7 @@ static void find_lines(struct finder *f)
     uint32_t m = f->r->mate[h];
 
     if (m != VG_REF_NONE && m < h) continue;
-    if (m == VG_REF_NONE || cosine(f->r, h) < f->sharp || is_hard(f, h))
+    if (m == VG_REF_NONE || cosine(f, h) < f->sharp || is_hard(f, h))
       set_line(f, h, 1);
   }
 }
@@ -168,7 +214,7 @@ static void lead_on(struct finder *f, uint32_t p)
       double s;
 
       if (f->c->line[h] || f->r->mate[h] == VG_REF_NONE
-          || cosine(f->r, h) > f->lead) continue;
+          || cosine(f, h) > f->lead) continue;
       s = straight(f->r, before, p, other_end(f->r, h, p));
       if (s > most) most = s, best = h;
     }

@@ -11,6 +11,7 @@
 #define TRIFLE 1e-4       /* of the squared tolerance: on the reference */
 #define FOLD 0.9986       /* S30: cosine of 3 degrees: edges that bend more have
                              samples */
+#define FLAT 1e-3         /* tolerances: lower triangles face any way */
 #define PER_EDGE 64       /* at most */
 #define SWEEPS 8          /* in which sizes are passed on to neighbours */
 
@@ -335,6 +336,7 @@ void vg_cavity_begin(const struct vg_work *w, struct vg_cavity *c,
                      uint32_t point)
 {
   c->n_old = c->n_new = c->n_sample = 0;
+  c->on_curve = 0;
   c->fresh = VG_REF_NONE;
   c->hint = w->point[point].home;
   c->tolerance = vg_work_tolerance(w, w->point[point].size);
@@ -390,13 +392,9 @@ static int sample_near(const struct vg_work *w, struct vg_cavity *c,
 
 static int tri_fits(const struct vg_work *w, struct vg_cavity *c, size_t i)
 {
-  const double *const *p = c->corner[i];
-  double u[3], v[3], n[3], x[3];
+  const double *const *p = c->corner[i], *n = c->made[i].n;
+  double x[3];
 
-  vg_sub(p[1], p[0], u);
-  vg_sub(p[2], p[0], v);
-  vg_cross(u, v, n);
-  if (!(vg_unit(n) > 0)) return 0;
   for (int k = 0; k < 3; k++) x[k] = (p[0][k] + p[1][k] + p[2][k]) / 3;
   if (!sample_near(w, c, x, n)) return 0;
   for (int e = 0; e < 3; e++) {
@@ -426,16 +424,71 @@ static int sample_fits(const struct vg_work *w, struct vg_cavity *c,
   return best <= c->tolerance * c->tolerance;
 }
 
-static void make_triangles(struct vg_cavity *c)
+/* Sets made, with normals, and the sum of these by area; 0 where one of the
+ * triangles has none. */
+static int make_triangles(struct vg_cavity *c, double sum[3])
 {
+  memset(sum, 0, 3 * sizeof *sum);
+  for (size_t i = 0; i < c->n_new; i++) {
+    struct vg_ref_tri *t = &c->made[i];
+
+    vg_ref_tri_make(t, c->corner[i][0], c->corner[i][1], c->corner[i][2]);
+    vg_cross(t->u, t->v, t->n);
+    for (int k = 0; k < 3; k++) sum[k] += t->n[k];
+    if (!(vg_unit(t->n) > 0)) return 0;
+  }
+  return 1;
+}
+
+/* Unit normal of a triangle as it is; returns its height over an edge. */
+static double facing(const struct vg_work *w, uint32_t t, double n[3])
+{
+  const double *a = vg_work_at(w, w->tri[t][0]);
+  double u[3], v[3], l;
+
+  vg_sub(vg_work_at(w, w->tri[t][1]), a, u);
+  vg_sub(vg_work_at(w, w->tri[t][2]), a, v);
+  l = sqrt(fmax(vg_dot(u, u), vg_dot(v, v)));
+  vg_cross(u, v, n);
+  return l > 0 ? vg_unit(n) / l : 0;
+}
+
+/* On a curve: does each triangle face the way of that before it? */
+static int faces_as_before(const struct vg_work *w, const struct vg_cavity *c)
+{
+  for (size_t i = 0; i < c->n_new; i++) {
+    double n[3];
+
+    if (facing(w, c->old[c->was[i]], n) > FLAT * c->tolerance
+        && !(vg_dot(c->made[i].n, n) > 0)) return 0;
+  }
+  return 1;
+}
+
+/* What is new has the rim of what was there, and so the same mean normal: no
+ * triangle faces away from that unless one does now. */
+static int is_unfolded(const struct vg_work *w, const struct vg_cavity *c,
+                       const double sum[3])
+{
+  double least = INFINITY, before = INFINITY;
+
+  if (c->on_curve) return faces_as_before(w, c);
   for (size_t i = 0; i < c->n_new; i++)
-    vg_ref_tri_make(&c->made[i], c->corner[i][0], c->corner[i][1],
-                    c->corner[i][2]);
+    least = fmin(least, vg_dot(c->made[i].n, sum));
+  if (least > 0) return 1;
+  for (size_t i = 0; i < c->n_old; i++) {
+    double n[3];
+
+    if (facing(w, c->old[i], n) > 0) before = fmin(before, vg_dot(n, sum));
+  }
+  return least > before;
 }
 
 int vg_cavity_fits(const struct vg_work *w, struct vg_cavity *c)
 {
-  make_triangles(c);
+  double sum[3];
+
+  if (!make_triangles(c, sum) || !is_unfolded(w, c, sum)) return 0;
   if (c->fresh != VG_REF_NONE && !sample_fits(w, c, c->fresh)) return 0;
   for (size_t i = 0; i < c->n_old; i++)
     for (uint32_t s = w->first[c->old[i]]; s != VG_REF_NONE;

@@ -116,6 +116,7 @@ static int split_fits(const struct vg_work *w, uint32_t h, const double *m,
   double shape = 1;
   int face = !w->edge[h];
 
+  c->on_curve = !face;
   for (int side = 0; side < 2; side++) {
     const double *a, *b, *o;
 
@@ -125,6 +126,7 @@ static int split_fits(const struct vg_work *w, uint32_t h, const double *m,
     a = vg_work_at(w, vg_work_from(w, h));
     b = vg_work_at(w, vg_work_to(w, h));
     o = vg_work_at(w, vg_work_from(w, vg_work_prev(h)));
+    c->was[c->n_new] = c->was[c->n_new + 1] = (uint16_t)c->n_old;
     c->old[c->n_old++] = h / 3;
     shape = fmin(shape, vg_work_shape(a, b, o));
     vg_cavity_add(c, a, m, o, side ? 2 : face + 2);
@@ -322,6 +324,7 @@ static int collapse_fits(const struct vg_work *w, uint32_t h,
   const struct vg_work_point *pu = &w->point[u];
   double before = 1, longest = most, l;
 
+  c->on_curve = w->point[v].kind == VG_WORK_CURVE;
   for (size_t i = 0; i < n; i++) {
     c->old[c->n_old++] = ring[i] / 3;
     vg_cavity_narrow(w, c, vg_work_to(w, ring[i]));
@@ -338,6 +341,7 @@ static int collapse_fits(const struct vg_work *w, uint32_t h,
     if (l > longest) return 0;
     /* u a is new unless a is next to the edge that goes; curves are seen to
      * elsewhere */
+    c->was[c->n_new] = (uint16_t)i;
     vg_cavity_add(c, pu->x, pa->x, pb->x, w->edge[ring[i]] ? 0 : 1);
   }
   if (!c->n_new) return 0;

@@ -15,6 +15,9 @@ struct vg_cavity {
   const double *corner[VG_WORK_NEW][3];
   uint8_t edges[VG_WORK_NEW];         /* bit k: edge k is new, and not on a
                                          curve */
+  uint16_t was[VG_WORK_NEW];          /* on a curve: of the old ones, that
+                                         which the new one takes the place of */
+  int on_curve;                       /* the triangles are on two sides of it */
   double tolerance, shape;            /* out: of the new ones, the least */
   uint32_t hint;
   struct vg_ref_tri made[VG_WORK_NEW];  /* of the new ones, for samples */
