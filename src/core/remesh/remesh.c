@@ -31,6 +31,7 @@
                              meet */
 #define MENDS 4           /* in each: more and more triangles where they do */
 #define SPOTS 256         /* of them at a time */
+#define SPOT_LEAST 0.0625 /* of h_min: sizes there */
 #define PHASES 2          /* of blocks, then the whole */
 #define HALVINGS 16       /* of needles, at most */
 #define POLISH2 0.3       /* (sin 33 degrees)^2: below, triangles are polished
@@ -330,7 +331,7 @@ static vg_status add_spot(struct job *j, const struct vg_mesh *m, size_t f,
     s.p0[k] = (p[0][k] + p[1][k] + p[2][k]) / 3;
   }
   s.r0 = edge;
-  s.h0 = s.h1 = fmax(edge, j->r.h_min) / 2 / j->o->scale;
+  s.h0 = s.h1 = fmax(edge / 2, SPOT_LEAST * j->r.h_min) / j->o->scale;
   if (vg_reserve(&j->source, &j->cap_source, j->n_source + 1,
                  sizeof *j->source))
     return vg_fail_memory(err, "the sources");
@@ -438,10 +439,12 @@ static vg_status make(struct job *j, struct vg_mesh *out, int last, int *sound,
   vg_status st;
 
   VG_TRY(ask_sources(j, &w, &set, err));
+  if (j->n_source > j->o->n_source) w.h_min *= SPOT_LEAST;
   VG_TRY(vg_work_begin(&w, err));
   if (!j->looks) VG_TRY(change(j, &w, err));
   for (int mend = 0; !*sound && mend < MENDS; mend++) {
     if (mend) {
+      w.h_min = SPOT_LEAST * r->h_min;
       VG_TRY(ask_sources(j, &w, &set, err));
       narrow(&w);
       VG_TRY(change_block(j, &w, err));
