@@ -16,6 +16,8 @@
 #define STRAY 0.1         /* of the edge or size: farther from it, steps along
                              the reference have lost their way */
 #define ALMOST 0.95       /* of the shape, before a point is on the surface */
+#define FLAT2 1e-8        /* of the sine of 0.006 degrees: flatter ones come from
+                             no split */
 #define SPLIT_LOSS 0.2    /* S23: least shape after a split, of what was
                              before */
 
@@ -133,7 +135,8 @@ static int split_fits(const struct vg_work *w, uint32_t h, const double *m,
     vg_cavity_add(c, m, b, o, side ? 0 : face);
   }
   vg_cavity_measure(c);
-  return c->shape > (face ? SPLIT_LOSS : 0.01) * shape && vg_cavity_fits(w, c);
+  return c->shape > (face ? SPLIT_LOSS : 0.01) * shape
+         && c->shape >= fmin(shape, FLAT2) && vg_cavity_fits(w, c);
 }
 
 /* Of a long edge, something finer may lie between its ends. */
