@@ -29,6 +29,40 @@ static double apart(const struct vg_mesh *a, const struct vg_mesh *b)
   return fmax(d[0].most, d[1].most);
 }
 
+/* A ridge that a point off by less than the tolerance makes is none. */
+static void leaves_out_false_ridges(void **unused)
+{
+  const double size[3] = { 3, 2, 1 };
+  const uint32_t n[3] = { 2, 90, 1 };
+
+  (void)unused;
+  for (int i = 0; i < 2; i++) {
+    struct vg_mesh m = VG_MESH_INIT;
+    struct vg_remesh_options o = VG_REMESH_OPTIONS_INIT;
+    struct vg_remesh_report r = VG_REMESH_REPORT_INIT;
+    size_t n_up = 0;
+
+    shape_box(&m, size, n);
+    for (size_t p = 0; p < m.n_point; p++) {
+      double *x = m.point[p];
+
+      /* 45 rows of 0.022 from the edge: needles there turn by 48 degrees */
+      if (x[0] != 1.5 || x[2] != 1 || fabs(x[1] - 1) > 1e-9) continue;
+      x[2] += 0.025;
+      n_up++;
+    }
+    assert_int_equal(n_up, 1);
+    o.h_max = 0.2;
+    o.tolerance = i ? 0.01 : 0.1;
+    remesh(&m, &o, &r);
+    shape_expect_sound(&m, 0);
+    if (i) assert_true(r.n_line > 12);
+    else assert_int_equal(r.n_line, 12);
+    vg_remesh_report_release(&r);
+    vg_mesh_release(&m);
+  }
+}
+
 /* Needles of 1 : 60 on a box become good triangles; its edges stay. */
 static void makes_needles_good(void **unused)
 {
@@ -508,6 +542,7 @@ static void measures_in_any_order(void **unused)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+    cmocka_unit_test(leaves_out_false_ridges),
     cmocka_unit_test(makes_needles_good),
     cmocka_unit_test(keeps_a_ball_round),
     cmocka_unit_test(keeps_hard_borders),

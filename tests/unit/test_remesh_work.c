@@ -42,6 +42,45 @@ static void any_sequence_on_a_box(void **unused)
   scene_release(&s);
 }
 
+/* A knife: half an angle of 0.002. On one side of its edge a quadrilateral
+ * that is not convex: its other diagonal would fold it, onto the other side,
+ * which is nearer than any tolerance. */
+static void knife(struct vg_mesh *m)
+{
+  enum { P0, P1, P2, P3, Q, A, B, C, D, E, F };
+  static const double at[11][2] = { { 0.05, 0.5 }, { 0.09, 0.5 },
+    { 0.02, 0.45 }, { 0.02, 0.55 }, { 0.03, 0.5 }, { 0, 0 }, { 0, 1 },
+    { 1, 0 }, { 1, 1 }, { 1, 0 }, { 1, 1 } };
+  static const uint32_t tri[][3] = {
+    { P0, P1, P2 }, { P1, P0, P3 }, { P2, Q, P0 }, { Q, P3, P0 },
+    { A, Q, P2 }, { A, B, Q }, { B, P3, Q }, { A, P2, P1 }, { A, P1, C },
+    { C, P1, D }, { D, P1, B }, { B, P1, P3 },
+    { A, E, F }, { A, F, B }, { C, D, F }, { C, F, E }, { A, C, E },
+    { B, F, D } };
+
+  vg_mesh_add_patch(m, 1, NULL);
+  for (uint32_t i = 0; i < 11; i++)
+    shape_point(m, at[i][0], (i < E ? 0.002 : -0.002) * at[i][0], at[i][1]);
+  for (size_t i = 0; i < sizeof tri / sizeof *tri; i++)
+    shape_tri(m, tri[i][0], tri[i][1], tri[i][2], 0);
+}
+
+static void does_not_fold(void **unused)
+{
+  struct scene s = { .m = VG_MESH_INIT };
+  struct vg_work *w = &s.w;
+  uint32_t h = 0;
+
+  (void)unused;
+  knife(&s.m);
+  scene_set(&s, 0.1, 1);
+  while (vg_work_from(w, h) != 0 || vg_work_to(w, h) != 1) h++;
+  assert_true(vg_work_tri_shape(w, h / 3) < 0.2);   /* worth a swap */
+  assert_false(vg_work_swap(w, h));
+  scene_expect_whole(&s);
+  scene_release(&s);
+}
+
 /* Corners stay, points of ridges leave only along them. */
 static void corners_and_ridges_stay(void **unused)
 {
@@ -88,6 +127,7 @@ static void tolerance_is_kept(void **unused)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+    cmocka_unit_test(does_not_fold),
     cmocka_unit_test(any_sequence_on_a_ball),
     cmocka_unit_test(any_sequence_on_a_box),
     cmocka_unit_test(corners_and_ridges_stay),
