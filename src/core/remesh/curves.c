@@ -15,8 +15,8 @@
 #define LEAD 0.6          /* S24: of the angle: where a ridge may go on */
 #define TURN 50.0         /* degrees: more is a corner */
 #define JAG 8.0           /* tolerances along the line: turns are measured on */
-#define THIN 8            /* triangles lower than the tolerance, at most, that
-                             are passed over */
+#define THIN 8            /* S32: triangles lower than the tolerance, at most,
+                             that are passed over */
 #define SPECK 20.0        /* tolerances: shorter loose pieces are dropped */
 
 struct finder {

@@ -31,7 +31,7 @@
                              meet */
 #define MENDS 4           /* in each: more and more triangles where they do */
 #define SPOTS 256         /* of them at a time */
-#define SPOT_LEAST 0.0625 /* of h_min: sizes there */
+#define SPOT_LEAST 0.0625 /* S34: of h_min: sizes there */
 #define PHASES 2          /* of blocks, then the whole */
 #define HALVINGS 16       /* of needles, at most */
 #define POLISH2 0.3       /* (sin 33 degrees)^2: below, triangles are polished

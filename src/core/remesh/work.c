@@ -11,7 +11,7 @@
 #define TRIFLE 1e-4       /* of the squared tolerance: on the reference */
 #define FOLD 0.9986       /* S30: cosine of 3 degrees: edges that bend more have
                              samples */
-#define FLAT 1e-3         /* tolerances: lower triangles face any way */
+#define FLAT 1e-3         /* S33: tolerances: lower triangles face any way */
 #define PER_EDGE 64       /* at most */
 #define SWEEPS 8          /* in which sizes are passed on to neighbours */
 

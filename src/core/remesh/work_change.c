@@ -16,7 +16,7 @@
 #define STRAY 0.1         /* of the edge or size: farther from it, steps along
                              the reference have lost their way */
 #define ALMOST 0.95       /* of the shape, before a point is on the surface */
-#define FLAT2 1e-8        /* of the sine of 0.006 degrees: flatter ones come from
+#define FLAT2 1e-8        /* S33: (sin 0.006 degrees)^2: flatter ones come from
                              no split */
 #define SPLIT_LOSS 0.2    /* S23: least shape after a split, of what was
                              before */
