@@ -104,6 +104,19 @@ static vg_status add_machines(struct vg_sweep *s, struct vg_sweep_case *c,
   return st;
 }
 
+/* A family has scales of its own, which one after '--' would undo. */
+static vg_status check_extra(const struct vg_sweep_options *o,
+                             struct vg_error *err)
+{
+  for (int i = 0; o->family.n && i < o->n_extra; i++)
+    if (!strcmp(o->extra[i], "--scale")
+        || !strncmp(o->extra[i], "--scale=", strlen("--scale=")))
+      return vg_fail(err, VG_ERR_INPUT, "--scale after '--' would take the "
+                     "place of the scales of --family: give that of the first "
+                     "level in the deck");
+  return VG_OK;
+}
+
 vg_status vg_sweep_plan(const struct vg_sweep_options *o, struct vg_sweep *s,
                         struct vg_error *err)
 {
@@ -112,8 +125,9 @@ vg_status vg_sweep_plan(const struct vg_sweep_options *o, struct vg_sweep *s,
   size_t n_cut = o->levels.n + o->leaf_cells.n;
   size_t n_mesh = n_cut + n_way * n_parts, n;
   size_t n_member = o->family.n ? o->family.n : 1;
-  vg_status st = VG_OK;
+  vg_status st;
 
+  VG_TRY(check_extra(o, err));
   s->o = o;
   if (!n_mesh) n_mesh = 1;
   n = n_mesh * n_member;

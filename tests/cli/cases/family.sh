@@ -55,6 +55,10 @@ awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i; next }
   END { exit bad || NR != 4 }' fam/family.csv >wrong ||
   fail "$(cat wrong) $(cat fam/family.csv)"
 
+vanguard sweep -q -p ball --family 1:2 -o never -- --scale 2
+exits 1
+says err "give that of the first level in the deck"
+
 # The deck's own scale is the first level's, and its table may name the levels.
 {
   sed 's/remesh_surface/scale remesh_surface/; s/^yes /2 yes /' ball.deck
