@@ -63,6 +63,34 @@ static void leaves_out_false_ridges(void **unused)
   }
 }
 
+/* Edges that are asked for across a strip are there, however narrow it is for
+ * the sizes around. */
+static void edges_go_across_strips(void **unused)
+{
+  const double size[3] = { 1, 1, 0.01 };
+  const uint32_t n[3] = { 4, 4, 1 };
+  const double across[6] = { 4, 1, 1, 1, 1, 1 };
+  size_t n_tri[2] = { 0, 0 };
+
+  (void)unused;
+  for (int i = 0; i < 2; i++) {
+    struct vg_mesh m = VG_MESH_INIT;
+    struct vg_remesh_options o = VG_REMESH_OPTIONS_INIT;
+
+    shape_box(&m, size, n);
+    o.h_max = 0.5;             /* 0.02 of it is as wide as the strip */
+    o.h_min = 1e-4;
+    o.across = i ? across : NULL;
+    remesh(&m, &o, NULL);
+    shape_expect_sound(&m, 0);
+    for (size_t t = 0; t < m.n_tri; t++) n_tri[i] += m.tri_patch[t] == 0;
+    vg_mesh_release(&m);
+  }
+  /* one edge across: 2 or 3 triangles to a square of 0.01; four: 32 or 48 */
+  assert_in_range(n_tri[0], 150, 450);
+  assert_in_range(n_tri[1], 2400, 7200);
+}
+
 /* Needles of 1 : 60 on a box become good triangles; its edges stay. */
 static void makes_needles_good(void **unused)
 {
@@ -543,6 +571,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(leaves_out_false_ridges),
+    cmocka_unit_test(edges_go_across_strips),
     cmocka_unit_test(makes_needles_good),
     cmocka_unit_test(keeps_a_ball_round),
     cmocka_unit_test(keeps_hard_borders),

@@ -275,10 +275,12 @@ static double width(const struct vg_ref *r, const struct vg_curves *c,
   return INFINITY;
 }
 
+/* The size is the width by `strip` over the edges asked for across. */
 static void by_strip(struct vg_ref *r, const struct vg_curves *c, uint32_t h,
-                     double factor, const double *limit)
+                     double strip, double across, const double *limit)
 {
   static const double share[3] = { 0.1, 0.5, 0.9 };
+  const double factor = strip / across;
   uint32_t end[2] = { r->tri[h / 3][h % 3], r->tri[h / 3][next(h) % 3] };
 
   for (int i = 0; i < 3; i++) {
@@ -289,7 +291,7 @@ static void by_strip(struct vg_ref *r, const struct vg_curves *c, uint32_t h,
     w = factor * width(r, c, h, x, most / factor);
     for (int k = 0; k < 2; k++)
       if (i != (k ? 0 : 2) && w < r->size[end[k]])
-        r->size[end[k]] = fmax(w, FLOOR * limit[end[k]]);
+        r->size[end[k]] = fmax(w, FLOOR / across * limit[end[k]]);
   }
 }
 
@@ -326,8 +328,8 @@ vg_status vg_sizes_make(struct vg_ref *r, const struct vg_curves *c,
   memcpy(limit, r->size, r->n_point * sizeof *limit);
   for (uint32_t h = 0; h < 3 * r->n_tri; h++)
     if (c->line[h])
-      by_strip(r, c, h, o->across ? o->strip / o->across[o->tri_patch[h / 3]]
-                                  : o->strip, limit);
+      by_strip(r, c, h, o->strip,
+               o->across ? o->across[o->tri_patch[h / 3]] : 1, limit);
   for (size_t p = 0; p < r->n_point; p++)
     r->size[p] = fmin(o->h_max, fmax(o->h_min, r->size[p]));
   vg_ref_sizes(r);
