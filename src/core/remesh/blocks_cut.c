@@ -9,7 +9,7 @@
 #include "base/memory.h"
 #include "core/geometry/vector.h"
 
-#define BLOCK 6000.0     /* S29: triangles, about: small enough for a cache */
+#define BLOCK 6000.0      /* S29: triangles, about: small enough for a cache */
 #define OLD 0.25          /* a triangle that is there counts as so many new
                              ones */
 #define BINS 1024

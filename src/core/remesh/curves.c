@@ -62,7 +62,7 @@ static double height(const struct vg_ref *r, uint32_t h)
 
   vg_cross(t->u, t->v, n);
   vg_sub(t->v, t->u, w);
-  longest2 = fmax(vg_dot(w, w), fmax(vg_dot(t->u, t->u), vg_dot(t->v, t->v)));
+  longest2 = fmax(vg_dot(w, w), fmax(t->uu, t->vv));
   return longest2 > 0 ? vg_norm(n) / sqrt(longest2) : 0;
 }
 
