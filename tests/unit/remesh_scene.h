@@ -19,7 +19,7 @@ static inline void scene_set(struct scene *s, double tolerance, double size)
   const struct vg_curves_options o = { 40, tolerance, s->m.tri_patch,
                                        s->m.patch, NULL };
 
-  if (vg_ref_build(&s->ref, &s->m, &err) < 0) fail_msg("%s", err.text);
+  if (vg_ref_build(&s->ref, &s->m, NULL, &err) < 0) fail_msg("%s", err.text);
   if (vg_curves_find(&s->curves, &s->ref, &o, &err) < 0)
     fail_msg("%s", err.text);
   s->ref.size = malloc(s->m.n_point * sizeof *s->ref.size);

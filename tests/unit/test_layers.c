@@ -73,7 +73,7 @@ static void grow(const struct bench *b, int threads, struct vg_layers *out,
 
 static void is_clean(const struct vg_mesh *m)
 {
-  struct vg_surface_check_options options = { 0, 0, 0, 1 };
+  struct vg_surface_check_options options = { .threads = 1 };
   struct vg_surface_report r = VG_SURFACE_REPORT_INIT;
   struct vg_mesh copy = VG_MESH_INIT;
   char text[300];

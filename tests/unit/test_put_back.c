@@ -9,8 +9,8 @@ static void put_back(struct vg_mesh *m, double (*to)[3], uint8_t *stays,
 {
   struct vg_error err = VG_ERROR_INIT;
 
-  if (vg_remesh_put_back(m, (const double (*)[3])to, 1, stays, n_refused, &err)
-      < 0) fail_msg("%s", err.text);
+  if (vg_remesh_put_back(m, (const double (*)[3])to, 1, NULL, stays, n_refused,
+                         &err) < 0) fail_msg("%s", err.text);
 }
 
 /* Half a ball as large again: all of it moves, what stays is kept. */
@@ -125,7 +125,7 @@ static void locates(void **unused)
     tri[k] = calloc(m.n_point, sizeof *tri[k]);
     assert_int_equal(vg_remesh_locate(&m, m.n_point,
                                       (const double (*)[3])m.point, 1 + 3 * k,
-                                      tri[k], foot, &err), VG_OK);
+                                      NULL, tri[k], foot, &err), VG_OK);
   }
   assert_memory_equal(tri[0], tri[1], m.n_point * sizeof **tri);
   for (size_t p = 0; p < m.n_point; p++) {
@@ -134,7 +134,8 @@ static void locates(void **unused)
     assert_true(v[0] == p || v[1] == p || v[2] == p);
     assert_float_equal(vg_distance(foot[p], m.point[p]), 0, 1e-15);
   }
-  assert_int_equal(vg_remesh_locate(&none, 0, NULL, 1, NULL, NULL, &err),
+  assert_int_equal(vg_remesh_locate(&none, 0, NULL, 1, NULL, NULL, NULL,
+                                    &err),
                    VG_ERR_INPUT);
   free(tri[0]);
   free(tri[1]);

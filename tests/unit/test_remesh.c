@@ -25,7 +25,7 @@ static double apart(const struct vg_mesh *a, const struct vg_mesh *b)
   struct vg_remesh_distance d[2];
   struct vg_error err = VG_ERROR_INIT;
 
-  assert_int_equal(vg_remesh_measure(a, b, 1, NULL, d, &err), VG_OK);
+  assert_int_equal(vg_remesh_measure(a, b, 1, NULL, NULL, d, &err), VG_OK);
   return fmax(d[0].most, d[1].most);
 }
 
@@ -478,11 +478,6 @@ static void refuse(struct vg_mesh *m, const struct vg_remesh_options *o,
   vg_mesh_release(&old);
 }
 
-static int stop_at_once(void)
-{
-  return 1;
-}
-
 static void refuses(void **unused)
 {
   const double size[3] = { 1, 1, 1 };
@@ -521,8 +516,74 @@ static void refuses(void **unused)
   o.growth = 1;
   refuse(&m, &o, VG_ERR_INPUT, "growth");
   o.growth = 1.2;
-  o.stop = stop_at_once;
-  refuse(&m, &o, VG_ERR_GEOMETRY, "given up");
+  vg_mesh_release(&m);
+}
+
+/* Says so from the k-th question on. */
+struct patience {
+  size_t asked, k;
+};
+
+static int is_over(void *user)
+{
+  struct patience *p = user;
+
+  return __atomic_add_fetch(&p->asked, 1, __ATOMIC_RELAXED) > p->k;
+}
+
+static vg_status remesh_until(struct vg_mesh *m, struct patience *p)
+{
+  struct vg_remesh_options o = VG_REMESH_OPTIONS_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+
+  o.h_max = 0.03;
+  o.threads = 2;
+  o.stop = (struct vg_stop){ is_over, p };
+  return vg_remesh(m, &o, NULL, &err);
+}
+
+/* It is asked before every change, so nothing goes on after the answer: each
+ * stage, or block of the surface, learns of it by a question or two. */
+static void stops_wherever_it_is(void **unused)
+{
+  struct vg_mesh m = VG_MESH_INIT, old = VG_MESH_INIT;
+  struct patience all = { 0, SIZE_MAX };
+  struct vg_error err = VG_ERROR_INIT;
+
+  (void)unused;
+  shape_ball(&m, (double[3]){ 1, 0.7, 0.4 }, 40);
+  assert_int_equal(vg_mesh_copy(&old, &m, &err), VG_OK);
+  assert_int_equal(remesh_until(&m, &all), VG_OK);
+  assert_true(all.asked > 10 * m.n_tri);
+  for (size_t i = 0; i <= 20; i++) {
+    struct patience p = { 0, i ? all.asked * (i - 1) / 20 : 0 };
+
+    vg_mesh_release(&m);
+    assert_int_equal(vg_mesh_copy(&m, &old, &err), VG_OK);
+    assert_int_equal(remesh_until(&m, &p), VG_ERR_STOPPED);
+    assert_true(p.asked < p.k + 40);
+    assert_int_equal(m.n_tri, old.n_tri);
+    assert_memory_equal(m.tri, old.tri, m.n_tri * sizeof *m.tri);
+  }
+  vg_mesh_release(&old);
+  vg_mesh_release(&m);
+}
+
+static void stops_measuring(void **unused)
+{
+  struct vg_mesh m = VG_MESH_INIT;
+  struct vg_remesh_distance d[2];
+  struct vg_error err = VG_ERROR_INIT;
+
+  (void)unused;
+  shape_ball(&m, (double[3]){ 1, 0.7, 0.4 }, 40);
+  for (size_t k = 0; k < 10; k += 3) {
+    struct patience p = { 0, k };
+    const struct vg_stop stop = { is_over, &p };
+
+    assert_int_equal(vg_remesh_measure(&m, &m, 2, &stop, NULL, d, &err),
+                     VG_ERR_STOPPED);
+  }
   vg_mesh_release(&m);
 }
 
@@ -548,7 +609,7 @@ static void measures_in_any_order(void **unused)
       struct vg_remesh_distance d[2];
       double most = 0;
 
-      assert_int_equal(vg_remesh_measure(&m[0], &m[1], threads, face, d,
+      assert_int_equal(vg_remesh_measure(&m[0], &m[1], threads, NULL, face, d,
                                          &err), VG_OK);
       for (size_t t = 0; t < m[0].n_tri; t++) most = fmax(most, face[t]);
       assert_float_equal(d[0].most, 0.2, 1e-12);
@@ -585,6 +646,8 @@ int main(void)
     cmocka_unit_test(measures_in_any_order),
     cmocka_unit_test(random_search),
     cmocka_unit_test(refuses),
+    cmocka_unit_test(stops_wherever_it_is),
+    cmocka_unit_test(stops_measuring),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

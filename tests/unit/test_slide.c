@@ -388,7 +388,7 @@ static void save(const struct vg_mesh *m, const char *name)
 
 static void assert_sound(struct made *a)
 {
-  const struct vg_surface_check_options o = { 0, 0, 0, 1 };
+  const struct vg_surface_check_options o = { .threads = 1 };
   struct vg_surface_report r = VG_SURFACE_REPORT_INIT;
   char text[200];
 

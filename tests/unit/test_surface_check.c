@@ -492,7 +492,8 @@ static void reports_quadrilaterals(void **unused)
 
 static void asks_for_boundary_conditions(void **unused)
 {
-  struct vg_surface_check_options o = { 1, 1, 1, 1 };
+  struct vg_surface_check_options o = { .repair = 1, .require_bc = 1,
+                                        .external = 1, .threads = 1 };
   NEW;
 
   add_box(&m, 0, 1, 1);
@@ -993,7 +994,7 @@ static void threads_find_the_same(void **unused)
     memset(r, 0, sizeof r);
     add_soup(&m, pass ? 3000 : 20000, size[pass], 7);
     for (int i = 0; i < 3; i++) {
-      struct vg_surface_check_options o = { 0, 0, 1, i + 1 };
+      struct vg_surface_check_options o = { .external = 1, .threads = i + 1 };
 
       assert_int_equal(vg_surface_check(&m, &o, &r[i], NULL), VG_OK);
     }

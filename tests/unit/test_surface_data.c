@@ -70,7 +70,8 @@ static const struct figures dirty[] = {
 /* Without the repair: the figures are of the surface as it is, welded. */
 static void check_figures(const struct figures *x)
 {
-  struct vg_surface_check_options o = { 0, 0, !x->is_domain, 1 };
+  struct vg_surface_check_options o = { .external = !x->is_domain,
+                                        .threads = 1 };
   struct vg_surface_report r = VG_SURFACE_REPORT_INIT;
   struct vg_mesh m = VG_MESH_INIT;
   struct vg_error err = VG_ERROR_INIT;
@@ -94,7 +95,9 @@ static void check_figures(const struct figures *x)
  * domain into the fluid and bodies out of the solid, whatever the file had. */
 static void check_repair(const struct figures *x)
 {
-  struct vg_surface_check_options o = { 1, 0, !x->is_domain, 1 };
+  struct vg_surface_check_options o = { .repair = 1,
+                                        .external = !x->is_domain,
+                                        .threads = 1 };
   struct vg_surface_report r = VG_SURFACE_REPORT_INIT;
   struct vg_mesh m = VG_MESH_INIT;
   struct vg_error err = VG_ERROR_INIT;
@@ -133,7 +136,8 @@ static void gives_the_figures_of_dirty_data(void **unused)
 /* The seams of the F-16's parts close within 1e-6, as its notes say. */
 static void closes_seams_within_a_tolerance(void **unused)
 {
-  struct vg_surface_check_options o = { 1, 0, 1, 1 };
+  struct vg_surface_check_options o = { .repair = 1, .external = 1,
+                                        .threads = 1 };
   struct vg_surface_report r = VG_SURFACE_REPORT_INIT;
   struct vg_mesh m = VG_MESH_INIT;
   struct vg_error err = VG_ERROR_INIT;
@@ -155,7 +159,8 @@ static void closes_seams_within_a_tolerance(void **unused)
 /* The same surface gives the same report, byte for byte. */
 static void repeats_itself(void **unused)
 {
-  struct vg_surface_check_options o = { 1, 0, 1, 1 };
+  struct vg_surface_check_options o = { .repair = 1, .external = 1,
+                                        .threads = 1 };
   struct vg_surface_report r[2];
   struct vg_mesh m[2];
   struct vg_error err = VG_ERROR_INIT;

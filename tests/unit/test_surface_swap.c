@@ -149,7 +149,7 @@ static double volume_of(const struct vg_mesh *m)
 
 static void assert_valid(struct vg_mesh *m)
 {
-  struct vg_surface_check_options o = { 0, 0, 1, 1 };
+  struct vg_surface_check_options o = { .external = 1, .threads = 1 };
   struct vg_surface_report r = VG_SURFACE_REPORT_INIT;
   struct vg_error err = VG_ERROR_INIT;
 
@@ -550,7 +550,8 @@ static const struct real real[] = {
 
 static void improve(const struct real *x)
 {
-  struct vg_surface_check_options o = { 1, 0, 1, 1 };
+  struct vg_surface_check_options o = { .repair = 1, .external = 1,
+                                        .threads = 1 };
   struct vg_surface_report s = VG_SURFACE_REPORT_INIT;
   struct vg_mesh m = VG_MESH_INIT, twin = VG_MESH_INIT;
   struct vg_error err = VG_ERROR_INIT;

@@ -60,7 +60,7 @@ static void wrap(struct vg_mesh *m, double size, struct vg_wrap_report *r)
 {
   struct vg_error err = VG_ERROR_INIT;
 
-  if (vg_wrap(m, size, r, &err)) fail_msg("%s", err.text);
+  if (vg_wrap(m, size, NULL, r, &err)) fail_msg("%s", err.text);
 }
 
 /* Parts that cross become one shell; patches follow nearness. */
@@ -135,6 +135,33 @@ static void a_small_hole_is_bridged_a_large_one_entered(void **state)
   vg_mesh_release(&m);
 }
 
+static int is_over(void *user)
+{
+  size_t *left = user;
+
+  return *left ? --*left, 0 : 1;
+}
+
+/* Carving asks once a facet, and what comes after it once a point or two. */
+static void stops_where_it_is(void **state)
+{
+  const size_t patience[4] = { 0, 1, 1000, 5000 };
+  struct vg_mesh m = VG_MESH_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+  struct vg_wrap_report r;
+
+  (void)state;
+  add_brick(&m, 0, 12);
+  for (int i = 0; i < 4; i++) {
+    size_t left = patience[i];
+    const struct vg_stop stop = { is_over, &left };
+
+    assert_int_equal(vg_wrap(&m, 0.05, &stop, &r, &err), VG_ERR_STOPPED);
+    assert_int_equal(m.n_tri, 12);
+  }
+  vg_mesh_release(&m);
+}
+
 static void the_same_twice(void **state)
 {
   struct vg_mesh m[2] = { VG_MESH_INIT, VG_MESH_INIT };
@@ -166,7 +193,7 @@ static void refuses(struct vg_mesh *m, double size, vg_status code,
   struct vg_mesh before = *m;
   struct vg_wrap_report r;
   struct vg_error err = VG_ERROR_INIT;
-  vg_status st = vg_wrap(m, size, &r, &err);
+  vg_status st = vg_wrap(m, size, NULL, &r, &err);
 
   if (st != code || !strstr(err.text, phrase))
     fail_msg("status %d: '%s'", st, err.text);
@@ -226,6 +253,7 @@ int main(void)
     cmocka_unit_test(crossing_bricks),
     cmocka_unit_test(what_is_inside_goes),
     cmocka_unit_test(a_small_hole_is_bridged_a_large_one_entered),
+    cmocka_unit_test(stops_where_it_is),
     cmocka_unit_test(the_same_twice),
     cmocka_unit_test(what_cannot_be_is_refused),
     cmocka_unit_test(real_soups_become_sound),

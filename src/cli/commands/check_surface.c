@@ -69,7 +69,8 @@ static vg_status compare(const struct vg_check_surface *a,
                    a->against));
   f->face = vg_alloc(m->n_tri, sizeof *f->face);
   if (!f->face) VG_TRY(vg_fail_memory(err, "the distances"));
-  VG_TRY(vg_remesh_measure(m, &f->other, 0, f->face, f->off, err));
+  VG_TRY(vg_remesh_measure(m, &f->other, 0, NULL, f->face, f->off,
+                           err));
 done:
   return st;
 }

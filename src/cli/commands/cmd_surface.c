@@ -200,6 +200,7 @@ static vg_status run(const struct arguments *a, struct vg_display *show,
   json_t *o = NULL;
   vg_status st;
 
+  vg_display_end_at_once(1);     /* nothing is written yet */
   vg_display_update(show, "read", 0, 0);
   VG_TRY(vg_input_find(a->one.file, a->deck, &p.files, err));
   VG_TRY(vg_problem_deck(&p, err));
@@ -216,6 +217,7 @@ static vg_status run(const struct arguments *a, struct vg_display *show,
   vg_problem_note_unused(&p, 0, VG_USE_JUDGED_SURFACE);
   o = report(&p, &f);
   if (!o) VG_TRY(vg_fail_memory(err, "the report"));
+  vg_display_end_at_once(0);
   vg_display_update(show, "write", p.surface.n_tri, 0);
   VG_TRY(write_all(&p, &f, o, show, err));
   vg_display_clear(show);

@@ -35,7 +35,7 @@ static vg_status room(struct vg_block *b, const struct vg_work *w,
     .other_size = w->other_size, .user = w->user, .h_min = w->h_min,
     .h_max = w->h_max, .n_given = w->n_given, .given = w->given,
     .follow = w->follow, .is_sample = w->is_sample, .is_block = 1,
-    .clock = 1 };
+    .clock = 1, .stop = w->stop };
   b->origin = vg_alloc(3 * b->n_tri, sizeof *b->origin);
   if (!b->origin) return vg_fail_memory(err, "a block of the surface");
   return vg_work_room(l, b->n_tri, err);
@@ -157,7 +157,9 @@ static void change(void *context, size_t first, size_t end, int worker)
   for (size_t i = first; i < end; i++) {
     struct vg_block *b = &s->block[i];
 
-    b->st = extract(s, b, s->map + (size_t)worker * s->w->n_point, &b->err);
+    b->st = vg_stopped(&s->w->stop, &b->err);
+    if (b->st >= 0)
+      b->st = extract(s, b, s->map + (size_t)worker * s->w->n_point, &b->err);
     if (b->st >= 0) b->st = s->body(s->user, &b->w, &b->err);
   }
 }

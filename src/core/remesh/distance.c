@@ -23,6 +23,7 @@ struct measuring {
   double *d;                /* [n_point + PER_FACE n_tri] */
   double *face;             /* [n_tri] or NULL */
   struct vg_remesh_distance *out;
+  const struct vg_stop *stop;
   vg_status st;
   struct vg_error err;
 };
@@ -72,6 +73,7 @@ static void at_faces(void *context, size_t first, size_t end, int worker)
   uint32_t hint = VG_REF_NONE;
 
   (void)worker;
+  if (vg_stops(m->stop)) return;
   for (size_t i = first; i < end; i++) at_face(m, m->order[i], &hint);
 }
 
@@ -161,7 +163,7 @@ static vg_status begin(struct measuring *m, struct vg_error *err)
   m->order = vg_alloc(m->from->n_tri, sizeof *m->order);
   if (!m->d || !m->by || !m->order)
     return vg_fail_memory(err, "the distances of the surfaces");
-  VG_TRY(vg_ref_build(&m->ref, m->from, err));
+  VG_TRY(vg_ref_build(&m->ref, m->from, m->stop, err));
   arrange(m);
 done:
   return st;
@@ -201,23 +203,26 @@ static vg_status run(struct measuring m[2], int threads, vg_loop_body body,
 }
 
 vg_status vg_remesh_measure(const struct vg_mesh *a, const struct vg_mesh *b,
-                            int threads, double *face,
+                            int threads, const struct vg_stop *stop,
+                            double *face,
                             struct vg_remesh_distance d[2],
                             struct vg_error *err)
 {
   struct measuring m[2] = { { .from = a, .face = face, .out = &d[0],
-                              .err = VG_ERROR_INIT },
+                              .stop = stop, .err = VG_ERROR_INIT },
                             { .from = b, .out = &d[1],
-                              .err = VG_ERROR_INIT } };
+                              .stop = stop, .err = VG_ERROR_INIT } };
   vg_status st;
 
   memset(d, 0, 2 * sizeof *d);
   if (!a->n_tri || !b->n_tri) return VG_OK;
   VG_TRY(run(m, threads, begin_both, err));
+  VG_TRY(vg_stopped(stop, err));
   for (int i = 0; i < 2; i++) {
     m[i].to = &m[!i].ref;
     vg_parallel_for(threads, m[i].from->n_tri, GRAIN, at_faces, &m[i]);
   }
+  VG_TRY(vg_stopped(stop, err));
   VG_TRY(run(m, threads, end_both, err));
 done:
   for (int i = 0; i < 2; i++) {

@@ -27,6 +27,7 @@ struct search {
   const struct vg_ref *ref;
   double edges, h_min, h_max;
   struct block *block;
+  const struct vg_stop *stop;
 };
 
 /* Width of the gap above x on triangle t, its other side into y; INFINITY:
@@ -62,6 +63,7 @@ static void visit(const struct search *s, size_t t, double p[3][3], int depth,
   double x[3], y[3], gap, most = 0, half[3][3], mid[3];
   int edge = 0;
 
+  if (vg_stops(s->stop)) return;
   for (int k = 0; k < 3; k++) {
     double l = vg_distance2(p[k], p[(k + 1) % 3]);
 
@@ -163,17 +165,19 @@ vg_status vg_gaps_find(const struct vg_mesh *m, const struct vg_gap_options *o,
                        struct vg_gaps *out, struct vg_error *err)
 {
   struct vg_ref ref = VG_REF_INIT;
-  struct search s = { .ref = &ref };
+  struct search s = { .ref = &ref, .stop = &o->stop };
   struct vg_gaps found = VG_GAPS_INIT;
   size_t n_block = (m->n_tri + GRAIN - 1) / GRAIN;
   vg_status st;
 
   if (!m->n_tri) return VG_OK;
-  VG_TRY(vg_ref_build(&ref, m, err));
+  VG_TRY(vg_ref_build(&ref, m, s.stop, err));
+  VG_TRY(vg_stopped(s.stop, err));
   VG_TRY(settle(m, o, &s, err));
   s.block = vg_calloc(n_block, sizeof *s.block);
   if (!s.block) VG_TRY(vg_fail_memory(err, "the gaps"));
   vg_parallel_for(o->threads, n_block, 1, visit_blocks, &s);
+  VG_TRY(vg_stopped(s.stop, err));
   VG_TRY(gather(s.block, n_block, &found, err));
   *out = found;
   found = (struct vg_gaps)VG_GAPS_INIT;

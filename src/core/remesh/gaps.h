@@ -11,6 +11,7 @@
 
 #include <stddef.h>
 
+#include "base/stop.h"
 #include "core/mesh/mesh.h"
 
 struct vg_gap_options {
@@ -19,6 +20,7 @@ struct vg_gap_options {
                                gaps wider than edges * h_max are none. h_min 0:
                                2e-5 of the surface's length, h_max 0: 0.04 */
   int threads;              /* 0: one per core; the same bytes for any */
+  struct vg_stop stop;
 };
 
 struct vg_gaps {
@@ -33,7 +35,7 @@ struct vg_gaps {
  * @param m    triangles that face the fluid, no index out of range
  * @param out  empty before, and on failure; vg_gaps_release
  * VG_ERR_INPUT for options out of range, edges of three triangles, or some 1e8
- * places; VG_ERR_MEMORY. Re-entrant. About a microsecond a place. */
+ * places; VG_ERR_MEMORY, VG_ERR_STOPPED. Re-entrant. About a microsecond a place. */
 vg_status vg_gaps_find(const struct vg_mesh *m, const struct vg_gap_options *o,
                        struct vg_gaps *out, struct vg_error *err);
 

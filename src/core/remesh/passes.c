@@ -75,7 +75,7 @@ static void find_steps(void *context, size_t first, size_t end, int worker)
   const struct dividing *d = context;
 
   (void)worker;
-  for (size_t i = first; i < end; i++) {
+  for (size_t i = first; i < end && !vg_stops(&d->w->stop); i++) {
     struct curve_size user = { d->w, i, VG_REF_NONE };
     struct steps *of = &d->of[i];
 
@@ -121,6 +121,7 @@ vg_status vg_pass_divide(struct vg_work *w, int threads, struct vg_error *err)
 
   if (!d.of) return vg_fail_memory(err, "the curves of the surface");
   vg_parallel_for(threads, n, 1, find_steps, &d);
+  st = vg_stopped(&w->stop, err);
   for (size_t i = 0; i < n && st >= 0; i++) {
     size_t end = line + w->curves->curve[i].n - 1;
 
@@ -132,7 +133,7 @@ vg_status vg_pass_divide(struct vg_work *w, int threads, struct vg_error *err)
     divide(w, &d.of[i], (uint32_t)line, (uint32_t)end);
     line = end;
   }
-  if (w->failed && st >= 0) st = vg_fail_memory(err, "the new surface");
+  if (st >= 0) st = vg_work_status(w, err);
   for (size_t i = 0; i < n; i++) free(d.of[i].s);
   free(d.of);
   return st;
@@ -164,7 +165,7 @@ void vg_pass_curves(struct vg_work *w)
 
   for (int round = 0; n && round < 4; round++) {
     n = 0;
-    for (uint32_t p = 0; p < w->n_point; p++)
+    for (uint32_t p = 0; p < w->n_point && !w->ends; p++)
       if (w->point[p].goes && w->point[p].half != VG_REF_NONE
           && w->point[p].kind == VG_WORK_CURVE) n += (size_t)take_away(w, p);
     n += vg_pass_swap(w);
@@ -255,7 +256,7 @@ vg_status vg_pass_collapse(struct vg_work *w, double least, double most,
     free(key);
     VG_TRY(edges_by_ratio(w, VG_WORK_COLLAPSES, least, INFINITY, 0, &key,
                           &n_key, err));
-    for (size_t i = 0; i < n_key; i++) {
+    for (size_t i = 0; i < n_key && !w->ends; i++) {
       uint32_t h = key[i].index;
 
       if (vg_work_removed(w, h / 3) || vg_work_ratio(w, h) >= least) continue;
@@ -265,7 +266,7 @@ vg_status vg_pass_collapse(struct vg_work *w, double least, double most,
     if (8 * done < n_key) done = 0;
     vg_pass_swap(w);
   }
-  if (w->failed) st = vg_fail_memory(err, "the new surface");
+  VG_TRY(vg_work_status(w, err));
 done:
   free(key);
   return st;
@@ -297,7 +298,7 @@ vg_status vg_pass_split(struct vg_work *w, double most, int across, size_t *n,
     done = 0;
     free(key);
     VG_TRY(edges_by_ratio(w, look, 0, most, 1, &key, &n_key, err));
-    for (size_t i = 0; i < n_key; i++) {
+    for (size_t i = 0; i < n_key && !w->ends; i++) {
       uint32_t h = key[i].index;
 
       if (vg_work_removed(w, h / 3) || vg_work_ratio(w, h) <= most
@@ -307,7 +308,7 @@ vg_status vg_pass_split(struct vg_work *w, double most, int across, size_t *n,
     *n += done;
     vg_pass_swap(w);
   }
-  if (w->failed) st = vg_fail_memory(err, "the new surface");
+  VG_TRY(vg_work_status(w, err));
 done:
   free(key);
   return st;
@@ -324,7 +325,7 @@ size_t vg_pass_swap(struct vg_work *w)
 
     now = 0;
     w->looked[VG_WORK_SWAPS] = w->clock;
-    for (uint32_t t = 0; t < w->n_tri; t++) {
+    for (uint32_t t = 0; t < w->n_tri && !w->ends; t++) {
       if (w->stamp[t] <= before || vg_work_removed(w, t)) continue;
       for (uint32_t h = 3 * t; h < 3 * t + 3; h++) {
         uint32_t g = w->mate[h];
@@ -406,7 +407,7 @@ size_t vg_pass_smooth(struct vg_work *w, int sweeps)
   size_t n = 0;
 
   for (int i = 0; i < sweeps; i++)
-    for (uint32_t p = 0; p < w->n_point; p++)
+    for (uint32_t p = 0; p < w->n_point && !w->ends; p++)
       if (w->point[p].half != VG_REF_NONE
           && w->point[p].kind == VG_WORK_FACE) n += (size_t)smooth_point(w, p);
   return n;
@@ -505,8 +506,8 @@ vg_status vg_pass_polish(struct vg_work *w, double shape, size_t *n,
 
   *n = 0;
   w->looked[VG_WORK_POLISH] = w->clock;
-  for (uint32_t t = 0; t < w->n_tri; t++)
+  for (uint32_t t = 0; t < w->n_tri && !w->ends; t++)
     if (w->stamp[t] > before && !vg_work_removed(w, t)
         && vg_work_tri_shape(w, t) < shape) *n += (size_t)polish_tri(w, t);
-  return w->failed ? vg_fail_memory(err, "the new surface") : VG_OK;
+  return vg_work_status(w, err);
 }

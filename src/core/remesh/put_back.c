@@ -28,6 +28,7 @@ struct locating {
   const double (*x)[3];
   uint32_t *tri;
   double (*foot)[3];
+  const struct vg_stop *stop;
 };
 
 /* Hints go on within a chunk, whose bounds are the same for any threads. */
@@ -37,6 +38,7 @@ static void locate(void *context, size_t first, size_t end, int worker)
   uint32_t hint = VG_REF_NONE;
 
   (void)worker;
+  if (vg_stops(l->stop)) return;
   for (size_t i = first; i < end; i++) {
     vg_ref_nearest(l->ref, l->x[i], NULL, &hint, l->foot[i]);
     l->tri[i] = hint;
@@ -44,17 +46,19 @@ static void locate(void *context, size_t first, size_t end, int worker)
 }
 
 vg_status vg_remesh_locate(const struct vg_mesh *on, size_t n,
-                           const double (*x)[3], int threads, uint32_t *tri,
+                           const double (*x)[3], int threads,
+                           const struct vg_stop *stop, uint32_t *tri,
                            double (*foot)[3], struct vg_error *err)
 {
   struct vg_ref ref = VG_REF_INIT;
-  struct locating l = { &ref, x, tri, foot };
+  struct locating l = { &ref, x, tri, foot, stop };
   vg_status st;
 
   if (!on->n_tri)
     return vg_fail(err, VG_ERR_INPUT, "there are no triangles to look on");
-  st = vg_ref_build_tree(&ref, on, err);
+  st = vg_ref_build_tree(&ref, on, stop, err);
   if (st >= 0) vg_parallel_for(threads, n, GRAIN, locate, &l);
+  if (st >= 0) st = vg_stopped(stop, err);
   vg_ref_release(&ref);
   return st;
 }
@@ -118,10 +122,12 @@ static void return_bad(struct moving *k)
   }
 }
 
-static vg_status return_meeting(struct moving *k, int threads, size_t *n,
+static vg_status return_meeting(struct moving *k, int threads,
+                                const struct vg_stop *stop, size_t *n,
                                 struct vg_error *err)
 {
-  const struct vg_surface_check_options o = { .threads = threads };
+  const struct vg_surface_check_options o = { .threads = threads,
+    .stop = stop ? *stop : (struct vg_stop){ NULL, NULL } };
   struct vg_surface_report r = VG_SURFACE_REPORT_INIT;
   vg_status st = vg_surface_check(k->m, &o, &r, err);
 
@@ -137,7 +143,8 @@ static vg_status return_meeting(struct moving *k, int threads, size_t *n,
 }
 
 vg_status vg_remesh_put_back(struct vg_mesh *m, const double (*to)[3],
-                             int threads, uint8_t *stays, size_t *n_refused,
+                             int threads, const struct vg_stop *stop,
+                             uint8_t *stays, size_t *n_refused,
                              struct vg_error *err)
 {
   double (*from)[3] = vg_alloc(m->n_point, sizeof *from);
@@ -153,7 +160,7 @@ vg_status vg_remesh_put_back(struct vg_mesh *m, const double (*to)[3],
     if (round == ROUNDS)
       for (size_t t = 0; t < m->n_tri; t++) return_corners(&k, t);
     return_bad(&k);
-    VG_TRY(return_meeting(&k, threads, &n, err));
+    VG_TRY(return_meeting(&k, threads, stop, &n, err));
   }
   *n_refused = k.n_refused;
 done:

@@ -6,16 +6,19 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/stop.h"
 #include "core/mesh/mesh.h"
 
 /** The triangle of `on` nearest to each point.
  *
  * @param on        any triangles; need not be closed or agree
+ * @param stop      may be NULL
  * @param tri       out: [n]
  * @param foot      out: [n][3] the nearest point
- * O(n log n). VG_ERR_INPUT without triangles, VG_ERR_MEMORY. */
+ * O(n log n). VG_ERR_INPUT without triangles, VG_ERR_MEMORY, VG_ERR_STOPPED. */
 vg_status vg_remesh_locate(const struct vg_mesh *on, size_t n,
-                           const double (*x)[3], int threads, uint32_t *tri,
+                           const double (*x)[3], int threads,
+                           const struct vg_stop *stop, uint32_t *tri,
                            double (*foot)[3], struct vg_error *err);
 
 /** Move points of a sound surface, each to its place or not at all: those stay
@@ -23,13 +26,15 @@ vg_status vg_remesh_locate(const struct vg_mesh *on, size_t n,
  * others.
  *
  * @param to         [n_point][3]
+ * @param stop       may be NULL
  * @param stays      in: [n_point] 1: keep this one; out: the refused ones too
  * @param n_refused  out
- * Untouched on failure: VG_ERR_MEMORY. The same for any threads. O(n log n)
+ * Untouched on failure: VG_ERR_MEMORY, VG_ERR_STOPPED. The same for any threads. O(n log n)
  * for each time that something is refused, twelve at most: then all points
  * stay. */
 vg_status vg_remesh_put_back(struct vg_mesh *m, const double (*to)[3],
-                             int threads, uint8_t *stays, size_t *n_refused,
+                             int threads, const struct vg_stop *stop,
+                             uint8_t *stays, size_t *n_refused,
                              struct vg_error *err);
 
 #endif

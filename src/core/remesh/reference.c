@@ -280,7 +280,8 @@ done:
 }
 
 static vg_status build(struct vg_ref *r, const struct vg_mesh *m,
-                       int with_mates, struct vg_error *err)
+                       int with_mates, const struct vg_stop *stop,
+                       struct vg_error *err)
 {
   struct vg_ref made = { .n_point = m->n_point, .n_tri = m->n_tri,
     .point = (const double (*)[3])m->point,
@@ -293,8 +294,10 @@ static vg_status build(struct vg_ref *r, const struct vg_mesh *m,
   if ((with_mates && !made.mate) || !made.shape)
     VG_TRY(vg_fail_memory(err, "the tree of the surface"));
   if (with_mates) VG_TRY(find_mates(&made, err));
+  VG_TRY(vg_stopped(stop, err));
   for (size_t t = 0; t < m->n_tri; t++) make_shape(&made, t);
   VG_TRY(make_pieces(&made, &piece, &made.n_item, err));
+  VG_TRY(vg_stopped(stop, err));
   VG_TRY(make_tree(&made, piece, err));
   *r = made;
   made = (struct vg_ref)VG_REF_INIT;
@@ -305,15 +308,15 @@ done:
 }
 
 vg_status vg_ref_build(struct vg_ref *r, const struct vg_mesh *m,
-                       struct vg_error *err)
+                       const struct vg_stop *stop, struct vg_error *err)
 {
-  return build(r, m, 1, err);
+  return build(r, m, 1, stop, err);
 }
 
 vg_status vg_ref_build_tree(struct vg_ref *r, const struct vg_mesh *m,
-                            struct vg_error *err)
+                            const struct vg_stop *stop, struct vg_error *err)
 {
-  return build(r, m, 0, err);
+  return build(r, m, 0, stop, err);
 }
 
 void vg_ref_sizes(struct vg_ref *r)
@@ -339,6 +342,7 @@ void vg_ref_release(struct vg_ref *r)
 struct thinning {
   struct vg_ref *r;
   double distance;
+  const struct vg_stop *stop;
 };
 
 /* Do all corners of b lie on one side of a's plane, beyond the distance? */
@@ -403,19 +407,21 @@ static void thin_leaf(const struct thinning *c, size_t leaf)
 
 static void thin_leaves(void *context, size_t first, size_t end, int worker)
 {
+  const struct thinning *c = context;
+
   (void)worker;
-  for (size_t i = first; i < end; i++) thin_leaf(context, i);
+  for (size_t i = first; i < end && !vg_stops(c->stop); i++) thin_leaf(c, i);
 }
 
 vg_status vg_ref_thin(struct vg_ref *r, double distance, int threads,
-                      struct vg_error *err)
+                      const struct vg_stop *stop, struct vg_error *err)
 {
-  struct thinning c = { r, distance };
+  struct thinning c = { r, distance, stop };
 
   free(r->thin);
   r->thin = vg_calloc(r->n_tri, 1);
   if (!r->thin) return vg_fail_memory(err, "the sheets of the surface");
   vg_parallel_for(threads, (r->n_item + LEAF - 1) / LEAF, GRAIN, thin_leaves,
                   &c);
-  return VG_OK;
+  return vg_stopped(stop, err);
 }

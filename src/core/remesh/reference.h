@@ -7,6 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/stop.h"
 #include "core/mesh/mesh.h"
 
 #define VG_REF_NONE UINT32_MAX
@@ -42,23 +43,24 @@ struct vg_ref {
 #define VG_REF_INIT { 0 }
 
 /** Over the triangles of m, which is borrowed and stays as it is. O(n log n).
- * VG_ERR_INPUT for edges of three faces or neighbours that disagree. */
+ * VG_ERR_INPUT for edges of three faces or neighbours that disagree;
+ * VG_ERR_STOPPED: stop may be NULL. */
 vg_status vg_ref_build(struct vg_ref *r, const struct vg_mesh *m,
-                       struct vg_error *err);
+                       const struct vg_stop *stop, struct vg_error *err);
 
 /** The same of any triangles, and without mates: vg_ref_nearest and
  * vg_ref_within alone can be asked. */
 vg_status vg_ref_build_tree(struct vg_ref *r, const struct vg_mesh *m,
-                            struct vg_error *err);
+                            const struct vg_stop *stop, struct vg_error *err);
 
 /** Take size[n_point] into the tree. */
 void vg_ref_sizes(struct vg_ref *r);
 
 /** Mark the triangles that have one within `distance` which faces the other
  * way, or may: where none has, the sheets of the surface cannot be taken for
- * one another. O(n log n). VG_ERR_MEMORY. */
+ * one another. O(n log n). VG_ERR_MEMORY, VG_ERR_STOPPED. */
 vg_status vg_ref_thin(struct vg_ref *r, double distance, int threads,
-                      struct vg_error *err);
+                      const struct vg_stop *stop, struct vg_error *err);
 
 void vg_ref_release(struct vg_ref *r);
 

@@ -204,18 +204,21 @@ static vg_status prepare(struct job *j, struct vg_error *err)
   vg_status st;
 
   VG_TRY(settle(j, err));
-  VG_TRY(vg_ref_build(&j->ref, j->given, err));
+  VG_TRY(vg_stopped(&o->stop, err));
+  VG_TRY(vg_ref_build(&j->ref, j->given, &o->stop, err));
+  VG_TRY(vg_stopped(&o->stop, err));
   VG_TRY(vg_curves_find(&j->curves, &j->ref, &(struct vg_curves_options){
     o->ridge_angle, j->jag, j->given->tri_patch, j->given->patch,
     o->hard }, err));
+  VG_TRY(vg_stopped(&o->stop, err));
   VG_TRY(vg_sizes_make(&j->ref, &j->curves, &(struct vg_sizes_options){
     o->per_turn / o->scale, CHORD * j->jag * o->scale * o->scale, o->scale,
     j->r.h_min, j->r.h_max, vg_scaled_growth(o->growth, o->scale), j->cap,
-    o->cap, o->across, j->given->tri_patch }, err));
+    o->cap, o->across, j->given->tri_patch, o->stop }, err));
   if (!j->looks) {
     VG_TRY(check_number(j, err));
     VG_TRY(vg_ref_thin(&j->ref, (1 + VG_WORK_NEARER) * j->r.tolerance,
-                       o->threads, err));
+                       o->threads, &o->stop, err));
   }
   j->source = vg_alloc(o->n_source, sizeof *j->source);
   if (!j->source) VG_TRY(vg_fail_memory(err, "the sources"));
@@ -228,25 +231,18 @@ done:
 
 /* --- one round ----------------------------------------------------------- */
 
-static vg_status stopped(const struct job *j, struct vg_error *err)
-{
-  if (!j->o->stop || !j->o->stop()) return VG_OK;
-  return vg_fail(err, VG_ERR_GEOMETRY, "the surface was given up unfinished");
-}
-
 /* Until no edge is much too long. */
 static vg_status halve(void *user, struct vg_work *w, struct vg_error *err)
 {
-  const struct job *j = user;
   size_t n = 1, n_gone;
   vg_status st = VG_OK;
 
+  (void)user;
   vg_pass_curves(w);
   vg_pass_swap(w);
   VG_TRY(vg_pass_collapse(w, VG_WORK_SHORT, VG_WORK_LONG, &n_gone, err));
   /* Halves of needles collapse before they are halved again. */
   for (int i = 0; n && i < HALVINGS; i++) {
-    VG_TRY(stopped(j, err));
     VG_TRY(vg_pass_split(w, 2 * VG_WORK_SHORT * VG_WORK_LONG, 1, &n, err));
     VG_TRY(vg_pass_collapse(w, VG_WORK_SHORT, VG_WORK_LONG, &n_gone, err));
   }
@@ -257,13 +253,11 @@ done:
 static vg_status change_block(void *user, struct vg_work *w,
                               struct vg_error *err)
 {
-  const struct job *j = user;
   size_t n;
   vg_status st;
 
   VG_TRY(halve(user, w, err));
   for (int i = 0; i < 4; i++) {
-    VG_TRY(stopped(j, err));
     vg_pass_smooth(w, 1);
     VG_TRY(vg_pass_collapse(w, VG_WORK_SHORT, VG_WORK_LONG, &n, err));
     VG_TRY(vg_pass_split(w, VG_WORK_LONG, 0, &n, err));
@@ -271,7 +265,6 @@ static vg_status change_block(void *user, struct vg_work *w,
   vg_pass_smooth(w, 3);
   vg_pass_swap(w);
   for (int i = 0; i < 5; i++) {
-    VG_TRY(stopped(j, err));
     VG_TRY(vg_pass_polish(w, POLISH2, &n, err));
     vg_pass_swap(w);
     vg_pass_smooth(w, 1);
@@ -344,7 +337,8 @@ static vg_status add_spot(struct job *j, const struct vg_mesh *m, size_t f,
 static vg_status is_sound(struct job *j, struct vg_mesh *m, int last,
                           int *sound, struct vg_error *err)
 {
-  struct vg_surface_check_options o = { .threads = j->o->threads };
+  struct vg_surface_check_options o = { .threads = j->o->threads,
+                                        .stop = j->o->stop };
   struct vg_surface_report r = VG_SURFACE_REPORT_INIT;
   size_t n = 0;
   vg_status st;
@@ -435,7 +429,8 @@ static vg_status make(struct job *j, struct vg_mesh *out, int last, int *sound,
   struct vg_remesh_report *r = &j->r;
   struct vg_work w = { .ref = &j->ref, .curves = &j->curves,
     .tolerance = r->tolerance, .relative = RELATIVE, .far = j->far,
-    .h_min = r->h_min, .h_max = r->h_max, .threads = j->o->threads };
+    .h_min = r->h_min, .h_max = r->h_max, .threads = j->o->threads,
+    .stop = j->o->stop };
   vg_status st;
 
   VG_TRY(ask_sources(j, &w, &set, err));

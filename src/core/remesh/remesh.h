@@ -14,6 +14,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/stop.h"
 #include "core/mesh/mesh.h"
 #include "core/sizing/sizing.h"
 
@@ -40,8 +41,7 @@ struct vg_remesh_options {
   const uint8_t *hard;      /* [n_patch] all borders of the patch stay; or
                                NULL */
   int threads;              /* 0: one per core; the same bytes for any */
-  int (*stop)(void);        /* asked now and then, on any thread: not 0 ends;
-                               or NULL */
+  struct vg_stop stop;      /* asked before every change */
 };
 #define VG_REMESH_OPTIONS_INIT { .ridge_angle = 40, .per_turn = 24, \
   .growth = 1.2, .scale = 1, .threads = 1 }
@@ -99,7 +99,7 @@ vg_status vg_remesh_arrange(struct vg_mesh *m, struct vg_error *err);
  * @param r  released first; may be NULL
  * Untouched on failure. VG_ERR_INPUT for a surface with quadrilaterals, edges
  * of three faces or faces that disagree, or options out of range;
- * VG_ERR_GEOMETRY where triangles meet whatever is tried, or stop said so;
+ * VG_ERR_GEOMETRY where triangles meet whatever is tried; VG_ERR_STOPPED;
  * VG_ERR_MEMORY. Re-entrant. About O(n log n). */
 vg_status vg_remesh(struct vg_mesh *m, const struct vg_remesh_options *o,
                     struct vg_remesh_report *r, struct vg_error *err);
@@ -123,10 +123,12 @@ struct vg_remesh_distance {
 
 /** Both ways: d[0] of a from b, d[1] of b from a.
  *
+ * @param stop  may be NULL
  * @param face  out: [a->n_tri] the largest at each; may be NULL
- * O(n log n). VG_ERR_INPUT as vg_remesh. */
+ * O(n log n). VG_ERR_INPUT as vg_remesh, VG_ERR_STOPPED. */
 vg_status vg_remesh_measure(const struct vg_mesh *a, const struct vg_mesh *b,
-                            int threads, double *face,
+                            int threads, const struct vg_stop *stop,
+                            double *face,
                             struct vg_remesh_distance d[2],
                             struct vg_error *err);
 

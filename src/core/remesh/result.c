@@ -107,6 +107,7 @@ static void find_labels(void *context, size_t first, size_t end, int worker)
   const struct labelling *l = context;
 
   (void)worker;
+  if (vg_stops(&l->w->stop)) return;
   for (size_t t = first; t < end; t++)
     if (!vg_work_removed(l->w, t)) l->label[t] = patch_of(l->w, t, l->patch);
 }
@@ -117,15 +118,18 @@ static vg_status label_all(const struct vg_work *w,
 {
   struct labelling l = { w, given->tri_patch, label };
   size_t *count = vg_calloc(given->n_patch, sizeof *count);
+  vg_status st;
 
   if (!count) return vg_fail_memory(err, "the patches of the surface");
   vg_parallel_for(w->threads, w->n_tri, 1024, find_labels, &l);
+  VG_TRY(vg_stopped(&w->stop, err));
   for (size_t t = 0; t < w->n_tri; t++)
     if (!vg_work_removed(w, t)) count[label[t]]++;
   straighten(w, label, count);
   keep_patches(w, given, label, count);
+done:
   free(count);
-  return VG_OK;
+  return st;
 }
 
 /* --- the report ---------------------------------------------------------- */

@@ -178,6 +178,7 @@ static vg_status by_faces(struct vg_ref *r, const struct vg_curves *c,
     swap = b;
     b = s;
     s = swap;
+    VG_TRY(vg_stopped(&o->stop, err));
   }
   VG_TRY(by_triangles(r, c, o, b, far, err));
 done:
@@ -319,6 +320,7 @@ vg_status vg_sizes_make(struct vg_ref *r, const struct vg_curves *c,
     VG_TRY(vg_fail_memory(err, "the sizes on the surface"));
   find_far(r, o->cap, far);
   VG_TRY(by_faces(r, c, o, far, err));
+  VG_TRY(vg_stopped(&o->stop, err));
   by_curves(r, c, o, far);
   for (size_t t = 0; o->cap && t < r->n_tri; t++)
     for (int k = 0; k < 3; k++)
@@ -327,12 +329,13 @@ vg_status vg_sizes_make(struct vg_ref *r, const struct vg_curves *c,
     r->size[p] = fmin(r->size[p], o->point_cap[p]);
   memcpy(limit, r->size, r->n_point * sizeof *limit);
   for (uint32_t h = 0; h < 3 * r->n_tri; h++)
-    if (c->line[h])
+    if (c->line[h] && !vg_stops(&o->stop))
       by_strip(r, c, h, o->strip,
                o->across ? o->across[o->tri_patch[h / 3]] : 1, limit);
   for (size_t p = 0; p < r->n_point; p++)
     r->size[p] = fmin(o->h_max, fmax(o->h_min, r->size[p]));
   vg_ref_sizes(r);
+  st = vg_stopped(&o->stop, err);
 done:
   free(limit);
   free(far);

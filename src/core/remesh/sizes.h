@@ -17,10 +17,11 @@ struct vg_sizes_options {
   const double *point_cap;  /* [n_point] largest size there, or NULL */
   const double *across;     /* [n_patch] edges across strips; NULL: 1 */
   const uint32_t *tri_patch;  /* [n_tri] for across */
+  struct vg_stop stop;
 };
 
 /** Fill r->size (and the tree): by the curvature of faces and curves, and by
- * the width of strips between two curves. O(n). VG_ERR_MEMORY. */
+ * the width of strips between two curves. O(n). VG_ERR_MEMORY, VG_ERR_STOPPED. */
 vg_status vg_sizes_make(struct vg_ref *r, const struct vg_curves *c,
                         const struct vg_sizes_options *o,
                         struct vg_error *err);

@@ -55,6 +55,12 @@ static vg_status make_lines(struct vg_work *w, struct vg_error *err)
   return VG_OK;
 }
 
+vg_status vg_work_status(const struct vg_work *w, struct vg_error *err)
+{
+  if (w->failed) return vg_fail_memory(err, "the new surface");
+  return w->ends ? vg_stopped(&w->stop, err) : VG_OK;
+}
+
 static double bounded(const struct vg_work *w, const double x[3], double h)
 {
   if (w->other_size) h = fmin(h, w->other_size(w->user, x));
@@ -94,7 +100,8 @@ static void pass_sizes_on(struct vg_work *w)
   const uint32_t n = (uint32_t)(3 * w->n_tri);
   int changed = 1;
 
-  for (int sweep = 0; changed && sweep < SWEEPS; sweep++) {
+  for (int sweep = 0; changed && sweep < SWEEPS && !vg_stops(&w->stop);
+       sweep++) {
     changed = 0;
     for (uint32_t i = 0; i < n; i++) {
       uint32_t h = sweep % 2 ? n - 1 - i : i;
@@ -118,6 +125,7 @@ static void find_sizes(void *context, size_t first, size_t end, int worker)
   struct vg_work *w = context;
 
   (void)worker;
+  if (vg_stops(&w->stop)) return;
   for (size_t p = first; p < end; p++) {
     struct vg_work_point *q = &w->point[p];
 
@@ -157,7 +165,7 @@ static vg_status make_points(struct vg_work *w, struct vg_error *err)
   }
   pass_sizes_on(w);
   vg_parallel_for(w->threads, w->n_point, 1024, find_sizes, w);
-  return VG_OK;
+  return vg_stopped(&w->stop, err);
 }
 
 /* How many samples edge h has: it bends, or has only one side. */
@@ -233,9 +241,12 @@ vg_status vg_work_begin(struct vg_work *w, struct vg_error *err)
   memcpy(w->mate, r->mate, 3 * w->n_tri * sizeof *w->mate);
   memset(w->first, 0xff, w->n_tri * sizeof *w->first);
   for (size_t t = 0; t < w->n_tri; t++) w->stamp[t] = 1;
+  VG_TRY(vg_stopped(&w->stop, err));
   VG_TRY(make_lines(w, err));
+  VG_TRY(vg_stopped(&w->stop, err));
   VG_TRY(make_points(w, err));
   VG_TRY(make_samples(w, err));
+  VG_TRY(vg_stopped(&w->stop, err));
 done:
   return st;
 }

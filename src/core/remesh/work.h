@@ -3,6 +3,7 @@
 #ifndef VG_CORE_REMESH_WORK_H
 #define VG_CORE_REMESH_WORK_H
 
+#include "base/stop.h"
 #include "core/remesh/curves.h"
 
 #define VG_WORK_RING 256       /* triangles around a point that may change */
@@ -75,7 +76,18 @@ struct vg_work {
   uint64_t clock;           /* counts changes */
   uint64_t looked[VG_WORK_LOOKS];  /* when all was last looked at */
   int failed;               /* no memory */
+  struct vg_stop stop;
+  int ends;                 /* it said so: nothing is changed any more */
 };
+
+static inline int vg_work_ends(struct vg_work *w)
+{
+  if (!w->ends) w->ends = vg_stops(&w->stop);
+  return w->ends;
+}
+
+/** What has kept changes from being made: VG_ERR_MEMORY, VG_ERR_STOPPED. */
+vg_status vg_work_status(const struct vg_work *w, struct vg_error *err);
 
 static inline uint32_t vg_work_next(uint32_t h)
 {
@@ -165,7 +177,7 @@ double vg_work_tri_shape(const struct vg_work *w, size_t t);
 
 /* The changes. Each looks whether the outcome is a surface like the one given,
  * within the distance, and nowhere folded, and else does nothing and returns
- * 0. */
+ * 0; so do all once work is to end. */
 
 /** Put a point into the edge, in its middle or, on a curve, at `at`. Returns
  * it, or VG_REF_NONE. */

@@ -431,6 +431,7 @@ static vg_status build(struct check *c)
   vg_status st;
 
   VG_TRY(vg_points_same(c->m, &c->same, c->err));
+  VG_TRY(vg_stopped(&c->o->stop, c->err));
   VG_TRY(list_owners(c));
   VG_TRY(vg_faces_build(&c->s, c->m, c->same, c->err));
   c->flip = vg_calloc(c->s.n, 1);
@@ -440,6 +441,7 @@ static vg_status build(struct check *c)
   r->tri_shell = vg_alloc(c->m->n_tri, sizeof *r->tri_shell);
   if (!c->flip || !c->shell || !r->face_kinds || !r->tri_shell)
     VG_TRY(vg_fail_memory(c->err, "the surface check"));
+  VG_TRY(vg_stopped(&c->o->stop, c->err));
   st = build_halves(c);
 done:
   return st;
@@ -460,7 +462,7 @@ static vg_status build_shells(struct check *c)
                            c->shell, c->flip, c->err));
   VG_TRY(vg_find_crossings(&c->cross, &c->s, (const uint32_t (*)[3])c->fan,
                            &c->tree, c->shell, r->n_shell, c->o->threads,
-                           c->err));
+                           &c->o->stop, c->err));
   VG_TRY(vg_nest_shells(r->shell, r->n_shell, &c->s, &c->tree, c->shell,
                         c->err));
   VG_TRY(vg_orient_shells(r->shell, c->shell_state, r->n_shell, c->o->external,
@@ -529,8 +531,11 @@ static vg_status run(struct check *c)
   vg_status st;
 
   if (c->o->repair) VG_TRY(tidy(c->m, r, c->err));
+  VG_TRY(vg_stopped(&c->o->stop, c->err));
   VG_TRY(build(c));
+  VG_TRY(vg_stopped(&c->o->stop, c->err));
   VG_TRY(build_shells(c));
+  VG_TRY(vg_stopped(&c->o->stop, c->err));
   VG_TRY(look_at_edges(c));
   VG_TRY(look_at_points(c));
   VG_TRY(look_at_faces(c));

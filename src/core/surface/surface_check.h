@@ -5,6 +5,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/stop.h"
 #include "core/mesh/mesh.h"
 
 enum vg_defect_kind {
@@ -75,8 +76,9 @@ struct vg_surface_check_options {
                                    the fluid). 0: outermost shells bound the
                                    fluid from outside (normals inward). */
   int threads;                  /* 0: one per core; the same result for any */
+  struct vg_stop stop;
 };
-#define VG_SURFACE_CHECK_OPTIONS_INIT { 1, 0, 0, 1 }
+#define VG_SURFACE_CHECK_OPTIONS_INIT { .repair = 1, .threads = 1 }
 
 /** Find (and with `repair` fix) the defects of the boundary faces of m.
  *
@@ -100,7 +102,7 @@ struct vg_surface_check_options {
  * the repair not counted.
  * Returns VG_OK also when defects remain: look at report->n_defect.
  * VG_ERR_INPUT for a node or patch index out of range, VG_ERR_UNSUPPORTED
- * beyond 1.4e9 triangles, VG_ERR_MEMORY. Threads: re-entrant. */
+ * beyond 1.4e9 triangles, VG_ERR_STOPPED, VG_ERR_MEMORY. Threads: re-entrant. */
 vg_status vg_surface_check(struct vg_mesh *m,
                            const struct vg_surface_check_options *options,
                            struct vg_surface_report *report,

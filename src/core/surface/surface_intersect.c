@@ -19,6 +19,7 @@ struct search {
   const struct vg_faces *s;
   const uint32_t (*fan)[3];
   const uint32_t *shell;
+  const struct vg_stop *stop;
   struct found *found;      /* by worker */
 };
 
@@ -47,6 +48,7 @@ static vg_status check_pair(void *context, int worker, uint32_t f, uint32_t g)
   struct search *x = context;
   struct vg_crossing *c = x->c;
 
+  if (vg_stops(x->stop)) return VG_ERR_STOPPED;
   if (vg_faces_source(x->s, f) == vg_faces_source(x->s, g)
       || !vg_triangles_meet(x->s->point, x->s->node[f], x->s->node[g],
                             x->fan[f], x->fan[g]))
@@ -92,10 +94,11 @@ vg_status vg_find_crossings(struct vg_crossing *c, const struct vg_faces *s,
                             const uint32_t (*fan)[3],
                                 const struct vg_aabb_tree *t,
                             const uint32_t *shell, size_t n_shell,
-                            int threads, struct vg_error *err)
+                            int threads, const struct vg_stop *stop,
+                            struct vg_error *err)
 {
   int n_found = vg_aabb_tree_workers(threads);
-  struct search x = { c, s, fan, shell,
+  struct search x = { c, s, fan, shell, stop,
                       vg_calloc((size_t)n_found, sizeof *x.found) };
   vg_status st = VG_ERR_MEMORY;
 
@@ -110,6 +113,7 @@ vg_status vg_find_crossings(struct vg_crossing *c, const struct vg_faces *s,
   free(x.found);
   if (st >= 0) return VG_OK;
   vg_crossing_release(c);
+  if (st == VG_ERR_STOPPED) return vg_stopped(stop, err);
   return vg_fail_memory(err, "the list of intersections");
 }
 

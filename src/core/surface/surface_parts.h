@@ -168,7 +168,8 @@ vg_status vg_find_crossings(struct vg_crossing *c, const struct vg_faces *s,
                             const uint32_t (*fan)[3],
                                 const struct vg_aabb_tree *t,
                             const uint32_t *shell, size_t n_shell,
-                            int threads, struct vg_error *err);
+                            int threads, const struct vg_stop *stop,
+                            struct vg_error *err);
 
 void vg_crossing_release(struct vg_crossing *c);
 

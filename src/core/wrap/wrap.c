@@ -66,8 +66,8 @@ static vg_status count_empty(const struct vg_mesh *before,
   return VG_OK;
 }
 
-vg_status vg_wrap(struct vg_mesh *m, double size, struct vg_wrap_report *r,
-                  struct vg_error *err)
+vg_status vg_wrap(struct vg_mesh *m, double size, const struct vg_stop *stop,
+                  struct vg_wrap_report *r, struct vg_error *err)
 {
   struct vg_wrap_report report = { .offset = size * VG_WRAP_OFFSET };
   struct vg_mesh out = VG_MESH_INIT;
@@ -75,7 +75,7 @@ vg_status vg_wrap(struct vg_mesh *m, double size, struct vg_wrap_report *r,
   vg_status st;
 
   VG_TRY(check(m, size, err));
-  VG_TRY(vg_wrap_cgal(m, size, report.offset, &out, &near, err));
+  VG_TRY(vg_wrap_cgal(m, size, report.offset, stop, &out, &near, err));
   if (!out.n_tri) {
     st = vg_fail(err, VG_ERR_GEOMETRY, "nothing is left of a wrap of size %g: "
                  "it goes through the surface's holes; take a larger one",
@@ -85,11 +85,11 @@ vg_status vg_wrap(struct vg_mesh *m, double size, struct vg_wrap_report *r,
   out.patch = m->patch;     /* borrowed, for the check */
   out.n_patch = m->n_patch;
   st = vg_wrap_fit(&out, (const double (*)[3])near, REACH * report.offset,
-                   &report.n_fit, err);
+                   stop, &report.n_fit, err);
   out.patch = NULL;
   out.n_patch = 0;
   if (st < 0) goto done;
-  VG_TRY(vg_wrap_label(m, &out, &report, err));
+  VG_TRY(vg_wrap_label(m, &out, stop, &report, err));
   VG_TRY(count_empty(m, &out, &report.n_empty, err));
   out.patch = m->patch;
   out.n_patch = m->n_patch;

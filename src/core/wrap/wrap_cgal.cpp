@@ -17,13 +17,14 @@ static vg_status not_built(struct vg_error *err)
 }
 
 extern "C" vg_status vg_wrap_cgal(const struct vg_mesh *, double, double,
-                                  struct vg_mesh *, double (**)[3],
-                                  struct vg_error *err)
+                                  const struct vg_stop *, struct vg_mesh *,
+                                  double (**)[3], struct vg_error *err)
 {
   return not_built(err);
 }
 
 extern "C" vg_status vg_wrap_label(const struct vg_mesh *, struct vg_mesh *,
+                                   const struct vg_stop *,
                                    struct vg_wrap_report *,
                                    struct vg_error *err)
 {
@@ -91,7 +92,28 @@ struct Input {
   Tree tree;
 };
 
-void wrap(const vg_mesh *m, double size, double offset, Mesh &out)
+struct Stopped {};
+
+void ask(const vg_stop *stop)
+{
+  if (vg_stops(stop)) throw Stopped();
+}
+
+/* Asks before each facet that the wrap is carved through. */
+struct Visitor : CGAL::Alpha_wraps_3::internal::Wrapping_default_visitor {
+  explicit Visitor(const vg_stop *s) : stop(s) {}
+
+  template <typename Wrapper, typename Gate>
+  void before_facet_treatment(const Wrapper &, const Gate &) const
+  {
+    ask(stop);
+  }
+
+  const vg_stop *stop;
+};
+
+void wrap(const vg_mesh *m, double size, double offset, const vg_stop *stop,
+          Mesh &out)
 {
   std::vector<Point> points;
   std::vector<std::array<size_t, 3>> faces;
@@ -100,7 +122,9 @@ void wrap(const vg_mesh *m, double size, double offset, Mesh &out)
     points.push_back(point_of(m, static_cast<uint32_t>(i)));
   for (size_t i = 0; i < m->n_tri; i++)
     faces.push_back({m->tri[i][0], m->tri[i][1], m->tri[i][2]});
-  CGAL::alpha_wrap_3(points, faces, size, offset, out);
+  CGAL::alpha_wrap_3(points, faces, size, offset, out,
+                     CGAL::parameters::default_values(),
+                     CGAL::parameters::visitor(Visitor(stop)));
 }
 
 bool allocate(size_t n_point, size_t n_tri, vg_mesh *out)
@@ -124,7 +148,7 @@ void farther(const Point &p, double d, vg_wrap_report *r)
 }
 
 /* near: of each point the nearest place of the input. */
-void give(const Mesh &from, const Input &in, vg_mesh *out,
+void give(const Mesh &from, const Input &in, const vg_stop *stop, vg_mesh *out,
           double (**near)[3])
 {
   std::vector<uint32_t> place(from.num_vertices());
@@ -138,6 +162,7 @@ void give(const Mesh &from, const Input &in, vg_mesh *out,
     const Point &p = from.point(v);
     const Point q = in.tree.closest_point(p);
 
+    ask(stop);
     place[v] = static_cast<uint32_t>(out->n_point);
     for (int k = 0; k < 3; k++) {
       out->point[out->n_point][k] = p[k];
@@ -154,13 +179,15 @@ void give(const Mesh &from, const Input &in, vg_mesh *out,
   }
 }
 
-void label(const Input &in, vg_mesh *out, vg_wrap_report *r)
+void label(const Input &in, const vg_stop *stop, vg_mesh *out,
+           vg_wrap_report *r)
 {
   double d;
 
   for (size_t i = 0; i < out->n_point; i++) {
     const Point p = point_of(out, static_cast<uint32_t>(i));
 
+    ask(stop);
     in.nearest(p, &d);
     farther(p, d, r);
   }
@@ -170,6 +197,7 @@ void label(const Input &in, vg_mesh *out, vg_wrap_report *r)
                              point_of(out, t[2]));
     size_t old = in.nearest(c, &d);
 
+    ask(stop);
     farther(c, d, r);
     out->tri_patch[i] = in.m->tri_patch[old];
   }
@@ -183,8 +211,9 @@ extern "C" int vg_wrap_is_built(void)
 }
 
 extern "C" vg_status vg_wrap_cgal(const struct vg_mesh *m, double size,
-                                  double offset, struct vg_mesh *out,
-                                  double (**near)[3], struct vg_error *err)
+                                  double offset, const struct vg_stop *stop,
+                                  struct vg_mesh *out, double (**near)[3],
+                                  struct vg_error *err)
 {
   try {
     Input in(m);
@@ -192,9 +221,12 @@ extern "C" vg_status vg_wrap_cgal(const struct vg_mesh *m, double size,
 
     if (in.triangle.empty())
       return vg_fail(err, VG_ERR_INPUT, "a wrap: all triangles are degenerate");
-    wrap(m, size, offset, made);
-    give(made, in, out, near);
+    ask(stop);
+    wrap(m, size, offset, stop, made);
+    give(made, in, stop, out, near);
     return VG_OK;
+  } catch (const Stopped &) {
+    return vg_stopped(stop, err);
   } catch (const std::bad_alloc &) {
     return vg_fail_memory(err, "a wrap; take a larger size");
   } catch (const std::exception &e) {
@@ -205,12 +237,15 @@ extern "C" vg_status vg_wrap_cgal(const struct vg_mesh *m, double size,
 
 extern "C" vg_status vg_wrap_label(const struct vg_mesh *m,
                                    struct vg_mesh *out,
+                                   const struct vg_stop *stop,
                                    struct vg_wrap_report *r,
                                    struct vg_error *err)
 {
   try {
-    label(Input(m), out, r);
+    label(Input(m), stop, out, r);
     return VG_OK;
+  } catch (const Stopped &) {
+    return vg_stopped(stop, err);
   } catch (const std::bad_alloc &) {
     return vg_fail_memory(err, "a wrap; take a larger size");
   }

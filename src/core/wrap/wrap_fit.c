@@ -74,12 +74,15 @@ static void settle(struct fit *f)
 }
 
 /* Points of triangles that meet go back; *n: how many. */
-static vg_status part(struct fit *f, size_t *n, struct vg_error *err)
+static vg_status part(struct fit *f, const struct vg_stop *stop, size_t *n,
+                      struct vg_error *err)
 {
   struct vg_surface_check_options o = { .external = 1, .threads = 1 };
   struct vg_surface_report r = VG_SURFACE_REPORT_INIT;
-  vg_status st = vg_surface_check(f->m, &o, &r, err);
+  vg_status st;
 
+  if (stop) o.stop = *stop;
+  st = vg_surface_check(f->m, &o, &r, err);
   *n = 0;
   for (size_t i = 0; i < r.n_defect && st >= 0; i++)
     for (int k = 0; k < 2; k++)
@@ -90,7 +93,8 @@ static vg_status part(struct fit *f, size_t *n, struct vg_error *err)
 }
 
 vg_status vg_wrap_fit(struct vg_mesh *m, const double (*near)[3], double most,
-                      size_t *n_fit, struct vg_error *err)
+                      const struct vg_stop *stop, size_t *n_fit,
+                      struct vg_error *err)
 {
   struct fit f = { .m = m, .near = near };
   size_t n = 1;
@@ -107,7 +111,7 @@ vg_status vg_wrap_fit(struct vg_mesh *m, const double (*near)[3], double most,
   }
   for (int round = 0; n && round < ROUNDS; round++) {
     settle(&f);
-    VG_TRY(part(&f, &n, err));
+    VG_TRY(part(&f, stop, &n, err));
   }
   if (n)   /* as it was, without a triangle that meets another */
     memcpy(m->point, f.old, m->n_point * sizeof *f.old);

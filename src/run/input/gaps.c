@@ -74,8 +74,8 @@ vg_status vg_problem_gaps(struct vg_problem *p, struct vg_display *show,
   if (!(s->gap_edges > 0) || p->gaps) return VG_OK;
   vg_display_update(show, "gaps", p->surface.n_tri, 0);
   VG_TRY(vg_gaps_find(&p->surface, &(struct vg_gap_options){
-    s->gap_edges / s->scale, s->hmin * s->scale, most * s->scale, p->threads },
-    &found, err));
+    s->gap_edges / s->scale, s->hmin * s->scale, most * s->scale, p->threads,
+    { vg_display_stop, show } }, &found, err));
   if (found.n)
     vg_note(&p->notes, "gap_edges %g: sizes from %zu places in gaps, the "
             "narrowest %.4g wide at (%.6g, %.6g, %.6g)%s", s->gap_edges,

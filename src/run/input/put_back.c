@@ -185,11 +185,12 @@ static vg_status locate(struct samples *s, const struct vg_problem *p,
                         double limit, struct vg_error *err)
 {
   const struct vg_cad_surface *c = &p->model.surface;
+  const struct vg_stop stop = { vg_display_stop, NULL };
   struct segment *list = NULL;
   vg_status st;
 
   VG_TRY(vg_remesh_locate(&c->mesh, s->n, (const double (*)[3])s->x,
-                          p->threads, s->tri, s->to, err));
+                          p->threads, &stop, s->tri, s->to, err));
   for (size_t i = 0; i < s->n; i++)
     s->distance[i] = vg_distance(s->x[i], s->to[i]) <= limit ? 0 : INFINITY;
   VG_TRY(list_segments(c, &list, err));
@@ -217,6 +218,7 @@ done:
 static vg_status move(struct vg_problem *p, const struct samples *s,
                       struct vg_put_back *b, struct vg_error *err)
 {
+  const struct vg_stop stop = { vg_display_stop, NULL };
   uint8_t *stays = vg_calloc(s->n_point, 1);
   vg_status st;
 
@@ -228,7 +230,7 @@ static vg_status move(struct vg_problem *p, const struct samples *s,
   }
   b->n_point = s->n_point;
   st = vg_remesh_put_back(&p->surface, (const double (*)[3])s->to, p->threads,
-                          stays, &b->n_refused, err);
+                          &stop, stays, &b->n_refused, err);
   free(stays);
   return st;
 }

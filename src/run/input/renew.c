@@ -8,11 +8,6 @@
 #include "run/input/input.h"
 #include "run/input/share.h"
 
-static int stop(void)
-{
-  return vg_display_interrupted();
-}
-
 int vg_problem_is_renewed(const struct vg_problem *p)
 {
   if (p->settings.remesh != VG_ANSWER_AUTO)
@@ -71,22 +66,20 @@ static vg_status remesh(struct vg_problem *p, const uint8_t *hard,
                         struct vg_display *show, struct vg_error *err)
 {
   struct vg_remesh_options o = vg_remesh_options_of(&p->settings);
-  vg_status st;
 
   o.map = p->map;
   o.hard = hard;
   o.cap = sizes->cap;
   o.across = sizes->across;
   o.threads = p->threads;
-  o.stop = stop;
-  st = vg_remesh(&p->surface, &o, &p->renewal.report, err);
-  return st < 0 && vg_display_interrupted() ? vg_display_stopped(show, err)
-                                            : st;
+  o.stop = (struct vg_stop){ vg_display_stop, show };
+  return vg_remesh(&p->surface, &o, &p->renewal.report, err);
 }
 
 static vg_status measure(struct vg_problem *p, struct vg_mesh *given,
-                         struct vg_error *err)
+                         struct vg_display *show, struct vg_error *err)
 {
+  const struct vg_stop stop = { vg_display_stop, show };
   struct vg_renewal *r = &p->renewal;
   vg_status st;
 
@@ -96,8 +89,8 @@ static vg_status measure(struct vg_problem *p, struct vg_mesh *given,
   if (!r->face || !r->area) return vg_fail_memory(err, "the distances");
   areas(given, 0, r->area);
   VG_TRY(vg_remesh_arrange(given, err));
-  VG_TRY(vg_remesh_measure(&p->surface, given, p->threads, r->face, r->off,
-                           err));
+  VG_TRY(vg_remesh_measure(&p->surface, given, p->threads, &stop, r->face,
+                           r->off, err));
 done:
   return st;
 }
@@ -122,7 +115,7 @@ vg_status vg_problem_renew(struct vg_problem *p, struct vg_display *show,
   VG_TRY(vg_surface_sizes_make(p, &sizes, err));
   VG_TRY(remesh(p, hard, &sizes, show, err));
   r->seconds = vg_display_now() - t;
-  VG_TRY(measure(p, &given, err));
+  VG_TRY(measure(p, &given, show, err));
   r->is_done = 1;
   vg_display_update(show, "put back", p->surface.n_tri, 0);
   if (p->model.cad) VG_TRY(vg_problem_put_back(p, err));

@@ -176,13 +176,14 @@ static vg_status split_quads(struct vg_mesh *m, struct vg_notes *notes,
 }
 
 static vg_status check(struct vg_problem *p, int *external,
-                       struct vg_error *err)
+                       struct vg_display *show, struct vg_error *err)
 {
   struct vg_surface_check_options o = VG_SURFACE_CHECK_OPTIONS_INIT;
 
   o.repair = p->settings.repair;
   o.require_bc = p->require_bc;
   o.threads = p->threads;
+  o.stop = (struct vg_stop){ vg_display_stop, show };
   vg_surface_report_release(&p->check);
   return vg_surface_examine(&p->surface, &o, external, &p->check, &p->notes,
                             err);
@@ -331,7 +332,7 @@ static vg_status close_body(struct vg_problem *p, struct vg_display *show,
   vg_display_update(show, "farfield", 0, 0);
   VG_TRY(complete(p, show, err));
   vg_display_update(show, "check", p->surface.n_tri, 0);
-  VG_TRY(check(p, &external, err));
+  VG_TRY(check(p, &external, show, err));
   VG_TRY(defects(p, err));
 done:
   return st;
@@ -361,9 +362,10 @@ done:
 static vg_status wrap(struct vg_problem *p, struct vg_display *show,
                       struct vg_error *err)
 {
+  const struct vg_stop stop = { vg_display_stop, show };
   double size = p->settings.wrap;
   struct vg_wrap_report r = { 0 };
-  vg_status st;
+  vg_status st = VG_OK;
 
   for (size_t i = 0; i < p->surface.n_patch; i++)
     if (is_outer_condition(&p->surface.patch[i]))
@@ -372,14 +374,13 @@ static vg_status wrap(struct vg_problem *p, struct vg_display *show,
                      "patch out of the surface (a farfield is added)",
                      (int)p->surface.patch[i].id);
   vg_display_update(show, "wrap", p->surface.n_tri, 0);
-  VG_TRY(vg_wrap(&p->surface, size, &r, err));
+  VG_TRY(vg_wrap(&p->surface, size, &stop, &r, err));
   vg_note(&p->notes, "the surface was wrapped: %zu triangles by %zu; of %zu "
           "points %zu lie on them, others about %.3g away; gaps narrower than "
           "%g were bridged; the farthest is %.3g away, at (%.6g, %.6g, %.6g); "
           "patches follow the nearest triangle, left without any: %zu",
           r.n_before, p->surface.n_tri, r.n_point, r.n_fit, r.offset, size,
           r.distance, r.at[0], r.at[1], r.at[2], r.n_empty);
-  st = vg_display_stopped(show, err);
 done:
   return st;
 }
@@ -402,7 +403,7 @@ vg_status vg_problem_shape(struct vg_problem *p, struct vg_display *show,
   p->external = s->farfield.kind == VG_DOMAIN_AUTO
                 ? -1 : s->farfield.kind != VG_DOMAIN_NONE;
   vg_display_update(show, "check", p->surface.n_tri, 0);
-  VG_TRY(check(p, &p->external, err));
+  VG_TRY(check(p, &p->external, show, err));
   s->remesh = vg_problem_is_renewed(p) ? VG_ANSWER_YES : VG_ANSWER_NO;
   if (!p->check.n_defect || is_only_open(&p->check))
     VG_TRY(vg_problem_gaps(p, show, err));
@@ -412,7 +413,8 @@ vg_status vg_problem_shape(struct vg_problem *p, struct vg_display *show,
   }
   p->is_shaped = 1;
 done:
-  return st;
+  /* the library's message says less */
+  return st == VG_ERR_STOPPED ? vg_display_stopped(show, err) : st;
 }
 
 vg_status vg_problem_close(struct vg_problem *p, struct vg_display *show,
@@ -424,15 +426,18 @@ vg_status vg_problem_close(struct vg_problem *p, struct vg_display *show,
   if (!p->is_shaped) VG_TRY(vg_problem_shape(p, show, err));
   if (p->renewal.is_done) {
     vg_display_update(show, "check", p->surface.n_tri, 0);
-    VG_TRY(check(p, &p->external, err));
+    VG_TRY(check(p, &p->external, show, err));
   }
   if (p->surface_only && (!p->check.n_defect || is_only_open(&p->check)))
     return VG_OK;
-  if (p->external) return close_body(p, show, err);
+  if (p->external) {
+    st = close_body(p, show, err);
+    goto done;
+  }
   s->farfield.kind = VG_DOMAIN_NONE;
   VG_TRY(defects(p, err));
 done:
-  return st;
+  return st == VG_ERR_STOPPED ? vg_display_stopped(show, err) : st;
 }
 
 /* Face f of the report as one or two triangles (quadrilaterals come after

@@ -113,6 +113,11 @@ stopped farfield plan -p octa --farfield-spacing 0.03
 stopped farfield mesh -p octa --farfield-spacing 0.03 --out o
 [ -z "$(ls -A o)" ] || fail "left behind: $(ls -A o)"
 
+# So does a surface that is made anew: millions of triangles are asked for.
+stopped remesh surface octa.obj --surface-size 1e-3 --out o
+stopped remesh mesh -p octa.obj --remesh-surface yes --surface-size 1e-3 --out o
+[ -z "$(ls -A o)" ] || fail "left behind: $(ls -A o)"
+
 # A run that looks only now and then is ended two seconds later, and leaves
 # nothing: this field of sizes takes an hour.
 start=$(date +%s%N)
