@@ -26,15 +26,16 @@ struct cutting {
 static double weight_of(const struct vg_work *w, size_t t)
 {
   const struct vg_work_point *p[3];
-  double u[3], v[3], n[3], size;
+  double u[3], v[3], n[3], size, area2;
 
   if (vg_work_removed(w, t)) return 0;
   for (int k = 0; k < 3; k++) p[k] = &w->point[w->tri[t][k]];
   vg_sub(p[1]->x, p[0]->x, u);
   vg_sub(p[2]->x, p[0]->x, v);
   vg_cross(u, v, n);
-  size = (p[0]->size + p[1]->size + p[2]->size) / 3;
-  return OLD + vg_norm(n) / (0.8660254037844386 * size * size);
+  size = (p[0]->asked.size + p[1]->asked.size + p[2]->asked.size) / 3;
+  area2 = vg_form_area2(vg_work_form(w, w->tri[t][0]), n);
+  return OLD + sqrt(area2) / (0.8660254037844386 * size * size);
 }
 
 size_t vg_blocks_number(const struct vg_work *w)

@@ -23,14 +23,31 @@ struct curve_size {
   uint32_t by;
 };
 
+/* Along the curve, where p is on it. */
+static double size_of_edges(const struct curve_size *c, double s,
+                            struct vg_work_point *p, double size)
+{
+  const struct vg_work *w = c->w;
+  const double whole = vg_curve_length(w->curves, c->curve);
+  double a[3], b[3], d[3];
+
+  vg_work_ask(w, p, size);
+  vg_curve_at(w->curves, w->ref, c->curve, fmax(s - size / 2, 0), a);
+  vg_curve_at(w->curves, w->ref, c->curve, fmin(s + size / 2, whole), b);
+  vg_sub(b, a, d);
+  return vg_norm(d) > 0 ? vg_metric_along(&p->asked, d) : size;
+}
+
 static double size_along(void *user, double s)
 {
   struct curve_size *c = user;
   const struct vg_work *w = c->w;
-  double x[3];
+  struct vg_work_point p;
+  double size;
 
-  vg_curve_at(w->curves, w->ref, c->curve, s, x);
-  return vg_work_size(w, x, &c->by);
+  vg_curve_at(w->curves, w->ref, c->curve, s, p.x);
+  size = vg_work_size(w, p.x, &c->by);
+  return w->form ? size_of_edges(c, s, &p, size) : size;
 }
 
 /* A half-edge of the line i; VG_REF_NONE: not found. */
@@ -344,10 +361,11 @@ size_t vg_pass_swap(struct vg_work *w)
 /* --- smooth -------------------------------------------------------------- */
 
 /* Mean of the places where p would make its triangles equilateral, seen from
- * the edges across. */
+ * the edges across and measured as p asks for. */
 static int better_place(const struct vg_work *w, uint32_t p, double x[3],
                         double *worst)
 {
+  const double *form = vg_work_form(w, p), *o = vg_work_at(w, p);
   uint32_t ring[VG_WORK_RING];
   int open;
   size_t n = vg_work_ring(w, p, ring, &open);
@@ -357,20 +375,21 @@ static int better_place(const struct vg_work *w, uint32_t p, double x[3],
   *worst = 1;
   memset(x, 0, 3 * sizeof *x);
   for (size_t i = 0; i < n; i++) {
-    const double *a = vg_work_at(w, vg_work_to(w, ring[i]));
-    const double *b = vg_work_at(w, vg_work_from(w, vg_work_prev(ring[i])));
-    const double *o = vg_work_at(w, p);
+    const uint32_t to = vg_work_to(w, ring[i]);
+    const uint32_t last = vg_work_from(w, vg_work_prev(ring[i]));
+    const double *a = vg_work_at(w, to), *b = vg_work_at(w, last);
     double e[3], d[3], mid[3], l2, along, high, weight;
-    double shape = vg_work_shape(o, a, b);
+    double shape = vg_work_shape(w, &w->point[p], &w->point[to],
+                                 &w->point[last]);
 
     *worst = fmin(*worst, shape);
     vg_sub(b, a, e);
-    l2 = vg_dot(e, e);
+    l2 = vg_form_dot(form, e, e);
     for (int k = 0; k < 3; k++) mid[k] = (a[k] + b[k]) / 2;
     vg_sub(o, mid, d);
-    along = vg_dot(d, e) / l2;
+    along = vg_form_dot(form, d, e) / l2;
     for (int k = 0; k < 3; k++) d[k] -= along * e[k];
-    high = vg_norm(d);
+    high = vg_form_norm(form, d);
     if (!(high > 0)) continue;
     weight = 1 / (0.05 + shape);
     for (int k = 0; k < 3; k++)
@@ -391,11 +410,12 @@ static int smooth_point(struct vg_work *w, uint32_t p)
   w->point[p].tried = ++w->clock;
   if (!better_place(w, p, x, &worst)) return 0;
   for (int i = 0; i < 2; i++, step /= 2) {
-    double y[3];
+    double y[3], d[3];
 
     for (int k = 0; k < 3; k++) y[k] = o[k] + step * (x[k] - o[k]);
-    if (vg_distance(y, o) < (worst > FINE2 ? 0.1 : 0.02) * w->point[p].size)
-      return 0;
+    vg_sub(y, o, d);
+    if (vg_form_norm(vg_work_form(w, p), d)
+        < (worst > FINE2 ? 0.1 : 0.02) * w->point[p].asked.size) return 0;
     if (vg_work_move(w, p, y, worst > FINE2 ? worst
                      : worst + 0.02 * (1 - worst))) return 1;
   }
@@ -415,16 +435,16 @@ size_t vg_pass_smooth(struct vg_work *w, int sweeps)
 
 /* --- polish -------------------------------------------------------------- */
 
-/* The least shape of the triangles around, were their point at x. */
+/* The least shape of the triangles around, were their point q. */
 static double shape_at(const struct vg_work *w, const uint32_t *ring, size_t n,
-                       const double x[3])
+                       const struct vg_work_point *q)
 {
   double least = 1;
 
   for (size_t i = 0; i < n; i++) {
-    double s = vg_work_shape(x, vg_work_at(w, vg_work_to(w, ring[i])),
-                             vg_work_at(w, vg_work_from(w, vg_work_prev(
-                               ring[i]))));
+    double s = vg_work_shape(w, q, &w->point[vg_work_to(w, ring[i])],
+                             &w->point[vg_work_from(w, vg_work_prev(
+                               ring[i]))]);
 
     if (s < least) least = s;
   }
@@ -440,7 +460,8 @@ static int search_place(struct vg_work *w, uint32_t p)
     { 0.7, -0.7 }, { -0.7, -0.7 } };
   const uint32_t h = w->point[p].half;
   uint32_t ring[VG_WORK_RING];
-  double u[3], v[3], n[3], step = 0.2 * w->point[p].size;
+  struct vg_work_point q;
+  double u[3], v[3], n[3], step = 0.2 * w->point[p].asked.size;
   int moved = 0, open;
   size_t n_ring;
 
@@ -452,20 +473,25 @@ static int search_place(struct vg_work *w, uint32_t p)
   vg_cross(u, v, n);
   if (!n_ring || !(vg_unit(u) > 0) || !(vg_unit(n) > 0)) return 0;
   vg_cross(n, u, v);
+  if (w->form) vg_form_frame(w->point[p].asked.form, u, v);
   for (int i = 0; i < 3; i++, step /= 3) {
-    double best = 1.001 * shape_at(w, ring, n_ring, w->point[p].x), x[8][3];
-    int at = -1;
+    double best = 1.001 * shape_at(w, ring, n_ring, &w->point[p]), x[3];
+    int found = 0;
 
+    q = w->point[p];
     for (int k = 0; k < 8; k++) {
       double s;
 
       for (int d = 0; d < 3; d++)
-        x[k][d] = w->point[p].x[d]
-                  + step * (way[k][0] * u[d] + way[k][1] * v[d]);
-      s = shape_at(w, ring, n_ring, x[k]);
-      if (s > best) best = s, at = k;
+        q.x[d] = w->point[p].x[d]
+                 + step * (way[k][0] * u[d] + way[k][1] * v[d]);
+      s = shape_at(w, ring, n_ring, &q);
+      if (!(s > best)) continue;
+      best = s;
+      found = 1;
+      memcpy(x, q.x, sizeof x);
     }
-    if (at >= 0) moved += vg_work_move(w, p, x[at], 1);
+    if (found) moved += vg_work_move(w, p, x, 1);
   }
   return moved;
 }

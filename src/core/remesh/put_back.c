@@ -10,8 +10,8 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "core/geometry/vector.h"
+#include "core/remesh/metric.h"
 #include "core/remesh/reference.h"
-#include "core/remesh/work.h"
 #include "core/surface/surface_check.h"
 
 #define GRAIN 1024
@@ -108,8 +108,8 @@ static int is_bad(const struct moving *k, size_t t)
   normal(x, v, after);
   if (vg_dot(before, after) <= TURN * vg_norm(before) * vg_norm(after))
     return 1;
-  is = vg_work_shape(x[v[0]], x[v[1]], x[v[2]]);
-  was = vg_work_shape(k->from[v[0]], k->from[v[1]], k->from[v[2]]);
+  is = vg_form_shape(NULL, x[v[0]], x[v[1]], x[v[2]]);
+  was = vg_form_shape(NULL, k->from[v[0]], k->from[v[1]], k->from[v[2]]);
   return is < SLIVER && is < LOSS * was;
 }
 

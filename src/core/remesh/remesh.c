@@ -410,8 +410,8 @@ static void narrow(struct vg_work *w)
     if (q->half == VG_REF_NONE) continue;
     h = w->other_size(w->user, q->x);
     if (h < w->h_min) h = w->h_min;
-    if (!(h < q->size)) continue;
-    q->size = h;
+    if (!(h < q->asked.size)) continue;
+    q->asked.size = h;
     q->changed = ++w->clock;
   }
   for (uint32_t t = 0; t < w->n_tri; t++)

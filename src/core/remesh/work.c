@@ -107,13 +107,13 @@ static void pass_sizes_on(struct vg_work *w)
       uint32_t h = sweep % 2 ? n - 1 - i : i;
       const struct vg_work_point *a = &w->point[vg_work_from(w, h)];
       struct vg_work_point *b = &w->point[vg_work_to(w, h)];
-      double gap = b->size - a->size, asked;
+      double gap = b->asked.size - a->asked.size, asked;
 
       if (!(gap > 0) || gap * gap <= w->ref->slope * w->ref->slope
                                      * vg_distance2(a->x, b->x)) continue;
       asked = vg_ref_size_by(w->ref, a->by, b->x);
-      if (!(asked < b->size)) continue;
-      b->size = asked;
+      if (!(asked < b->asked.size)) continue;
+      b->asked.size = asked;
       b->by = a->by;
       changed = 1;
     }
@@ -130,7 +130,8 @@ static void find_sizes(void *context, size_t first, size_t end, int worker)
     struct vg_work_point *q = &w->point[p];
 
     q->by = q->home;
-    q->size = bounded(w, q->x, vg_ref_size(w->ref, q->x, q->size, &q->by));
+    vg_work_ask(w, q, bounded(w, q->x, vg_ref_size(w->ref, q->x,
+                                                   q->asked.size, &q->by)));
   }
 }
 
@@ -161,7 +162,7 @@ static vg_status make_points(struct vg_work *w, struct vg_error *err)
       return vg_fail(err, VG_ERR_INPUT, "point %zu of the surface is used by "
                      "no triangle; repair it", p + 1);
     w->point[p].by = w->point[p].home;
-    w->point[p].size = r->size[p];
+    w->point[p].asked.size = r->size[p];
   }
   pass_sizes_on(w);
   vg_parallel_for(w->threads, w->n_point, 1024, find_sizes, w);
@@ -307,32 +308,26 @@ size_t vg_work_ring(const struct vg_work *w, uint32_t p, uint32_t *half,
 
 double vg_work_ratio(const struct vg_work *w, uint32_t h)
 {
-  const struct vg_work_point *a = &w->point[vg_work_from(w, h)];
-  const struct vg_work_point *b = &w->point[vg_work_to(w, h)];
-
-  return 2 * vg_distance(a->x, b->x) / (a->size + b->size);
+  return vg_work_length(w, &w->point[vg_work_from(w, h)],
+                        &w->point[vg_work_to(w, h)]);
 }
 
-double vg_work_shape(const double *a, const double *b, const double *c)
+double vg_work_shape(const struct vg_work *w, const struct vg_work_point *a,
+                     const struct vg_work_point *b,
+                     const struct vg_work_point *c)
 {
-  double u[3], v[3], n[3], l[3], least;
+  double form[6];
 
-  vg_sub(b, a, u);
-  vg_sub(c, a, v);
-  vg_cross(u, v, n);
-  l[0] = vg_dot(u, u);
-  l[1] = vg_dot(v, v);
-  l[2] = vg_distance2(b, c);
-  least = l[0] < l[1] ? l[0] : l[1];
-  if (l[2] < least) least = l[2];
-  if (!(least > 0)) return 0;
-  return vg_dot(n, n) * least / (l[0] * l[1] * l[2]);
+  if (!w->form) return vg_form_shape(NULL, a->x, b->x, c->x);
+  for (int k = 0; k < 6; k++)
+    form[k] = (a->asked.form[k] + b->asked.form[k] + c->asked.form[k]) / 3;
+  return vg_form_shape(form, a->x, b->x, c->x);
 }
 
 double vg_work_tri_shape(const struct vg_work *w, size_t t)
 {
-  return vg_work_shape(w->point[w->tri[t][0]].x, w->point[w->tri[t][1]].x,
-                       w->point[w->tri[t][2]].x);
+  return vg_work_shape(w, &w->point[w->tri[t][0]], &w->point[w->tri[t][1]],
+                       &w->point[w->tri[t][2]]);
 }
 
 double vg_work_tolerance(const struct vg_work *w, double size)
@@ -350,18 +345,19 @@ void vg_cavity_begin(const struct vg_work *w, struct vg_cavity *c,
   c->on_curve = 0;
   c->fresh = VG_REF_NONE;
   c->hint = w->point[point].home;
-  c->tolerance = vg_work_tolerance(w, w->point[point].size);
+  c->tolerance = vg_work_tolerance(w, w->point[point].asked.size);
 }
 
 void vg_cavity_narrow(const struct vg_work *w, struct vg_cavity *c,
                       uint32_t point)
 {
   c->tolerance = fmin(c->tolerance,
-                      vg_work_tolerance(w, w->point[point].size));
+                      vg_work_tolerance(w, w->point[point].asked.size));
 }
 
-void vg_cavity_add(struct vg_cavity *c, const double *x, const double *y,
-                   const double *z, int edges)
+void vg_cavity_add(struct vg_cavity *c, const struct vg_work_point *x,
+                   const struct vg_work_point *y,
+                   const struct vg_work_point *z, int edges)
 {
   c->corner[c->n_new][0] = x;
   c->corner[c->n_new][1] = y;
@@ -369,11 +365,11 @@ void vg_cavity_add(struct vg_cavity *c, const double *x, const double *y,
   c->edges[c->n_new++] = (uint8_t)edges;
 }
 
-void vg_cavity_measure(struct vg_cavity *c)
+void vg_cavity_measure(const struct vg_work *w, struct vg_cavity *c)
 {
   c->shape = 1;
   for (size_t i = 0; i < c->n_new; i++) {
-    double s = vg_work_shape(c->corner[i][0], c->corner[i][1],
+    double s = vg_work_shape(w, c->corner[i][0], c->corner[i][1],
                              c->corner[i][2]);
 
     if (s < c->shape) c->shape = s;
@@ -403,13 +399,14 @@ static int sample_near(const struct vg_work *w, struct vg_cavity *c,
 
 static int tri_fits(const struct vg_work *w, struct vg_cavity *c, size_t i)
 {
-  const double *const *p = c->corner[i], *n = c->made[i].n;
+  const struct vg_work_point *const *p = c->corner[i];
+  const double *n = c->made[i].n;
   double x[3];
 
-  for (int k = 0; k < 3; k++) x[k] = (p[0][k] + p[1][k] + p[2][k]) / 3;
+  for (int k = 0; k < 3; k++) x[k] = (p[0]->x[k] + p[1]->x[k] + p[2]->x[k]) / 3;
   if (!sample_near(w, c, x, n)) return 0;
   for (int e = 0; e < 3; e++) {
-    const double *a = p[e], *b = p[(e + 1) % 3];
+    const double *a = p[e]->x, *b = p[(e + 1) % 3]->x;
 
     if (!(c->edges[i] >> e & 1)) continue;
     for (int k = 0; k < 3; k++) x[k] = (a[k] + b[k]) / 2;
@@ -443,7 +440,8 @@ static int make_triangles(struct vg_cavity *c, double sum[3])
   for (size_t i = 0; i < c->n_new; i++) {
     struct vg_ref_tri *t = &c->made[i];
 
-    vg_ref_tri_make(t, c->corner[i][0], c->corner[i][1], c->corner[i][2]);
+    vg_ref_tri_make(t, c->corner[i][0]->x, c->corner[i][1]->x,
+                    c->corner[i][2]->x);
     vg_cross(t->u, t->v, t->n);
     for (int k = 0; k < 3; k++) sum[k] += t->n[k];
     if (!(vg_unit(t->n) > 0)) return 0;

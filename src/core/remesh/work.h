@@ -5,6 +5,7 @@
 
 #include "base/stop.h"
 #include "core/remesh/curves.h"
+#include "core/remesh/metric.h"
 
 #define VG_WORK_RING 256       /* triangles around a point that may change */
 #define VG_WORK_NEARER 1.5     /* S25: than another sheet */
@@ -16,7 +17,7 @@ enum { VG_WORK_FACE, VG_WORK_CURVE, VG_WORK_CORNER };
 enum { VG_WORK_FREE, VG_WORK_FROZEN, VG_WORK_FANS };
 
 struct vg_work_point {
-  double x[3], size;
+  double x[3];
   uint32_t half;            /* one that leaves it; VG_REF_NONE: removed */
   uint32_t home;            /* triangle of the reference near it */
   uint32_t by;              /* that which asks for its size */
@@ -27,8 +28,9 @@ struct vg_work_point {
                                are made to others; FANS: none to it at all, as
                                its triangles in the block do not hang together
                                */
-  uint64_t changed, tried;  /* when triangles at it changed, and when it was
-                               last looked at */
+  uint64_t changed;         /* when triangles at it changed */
+  struct vg_metric asked;   /* form: not set where the surface has none */
+  uint64_t tried;           /* when it was last looked at */
 };
 
 enum { VG_WORK_SWAPS, VG_WORK_COLLAPSES, VG_WORK_ACROSS, VG_WORK_SPLITS,
@@ -49,6 +51,11 @@ struct vg_work {
                                nowhere */
   double (*other_size)(const void *user, const double x[3]);
   const void *user;         /* of other_size */
+  /* The form at x, where edges are `size` long across what stretches them;
+   * NULL: they are as long in all directions */
+  void (*form)(const void *of_form, const double x[3], double size,
+               double form[6]);
+  const void *of_form;
   double h_min, h_max;
   int threads;              /* to begin with */
   size_t n_point, cap_point, n_tri, cap_tri, cap_mate, cap_edge, cap_first,
@@ -167,11 +174,39 @@ double vg_work_size_near(const struct vg_work *w, const double x[3],
                          uint32_t home, size_t n, const uint32_t *point,
                          uint32_t *by);
 
-/** Length of the edge in parts of the sizes at its ends. */
+/** Let q, which is in its place, ask for this size. */
+static inline void vg_work_ask(const struct vg_work *w,
+                               struct vg_work_point *q, double size)
+{
+  q->asked.size = size;
+  if (w->form) w->form(w->of_form, q->x, size, q->asked.form);
+}
+
+/** That of the point; NULL where nothing is stretched. */
+static inline const double *vg_work_form(const struct vg_work *w, uint32_t p)
+{
+  return w->form ? w->point[p].asked.form : NULL;
+}
+
+/** Length of an edge in parts of what its ends ask for. */
+static inline double vg_work_length(const struct vg_work *w,
+                                    const struct vg_work_point *a,
+                                    const struct vg_work_point *b)
+{
+  double e[3];
+
+  vg_sub(a->x, b->x, e);
+  if (w->form) return vg_metric_length(&a->asked, &b->asked, e);
+  return 2 * vg_norm(e) / (a->asked.size + b->asked.size);
+}
+
 double vg_work_ratio(const struct vg_work *w, uint32_t h);
 
-/** Square of the sine of the smallest angle of a triangle. */
-double vg_work_shape(const double *a, const double *b, const double *c);
+/** Square of the sine of the smallest angle of a triangle, measured by the mean
+ * of its points' forms. */
+double vg_work_shape(const struct vg_work *w, const struct vg_work_point *a,
+                     const struct vg_work_point *b,
+                     const struct vg_work_point *c);
 
 double vg_work_tri_shape(const struct vg_work *w, size_t t);
 

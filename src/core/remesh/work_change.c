@@ -112,29 +112,29 @@ static void middle_of(const struct vg_work *w, uint32_t h, const double *at,
     vg_ref_nearest(w->ref, x, n_or_any, &p->home, p->x);
 }
 
-static int split_fits(const struct vg_work *w, uint32_t h, const double *m,
-                      struct vg_cavity *c)
+static int split_fits(const struct vg_work *w, uint32_t h,
+                      const struct vg_work_point *m, struct vg_cavity *c)
 {
   double shape = 1;
   int face = !w->edge[h];
 
   c->on_curve = !face;
   for (int side = 0; side < 2; side++) {
-    const double *a, *b, *o;
+    const struct vg_work_point *a, *b, *o;
 
     if (side) h = w->mate[h];
     if (h == VG_REF_NONE) break;
     vg_cavity_narrow(w, c, vg_work_from(w, vg_work_prev(h)));
-    a = vg_work_at(w, vg_work_from(w, h));
-    b = vg_work_at(w, vg_work_to(w, h));
-    o = vg_work_at(w, vg_work_from(w, vg_work_prev(h)));
+    a = &w->point[vg_work_from(w, h)];
+    b = &w->point[vg_work_to(w, h)];
+    o = &w->point[vg_work_from(w, vg_work_prev(h))];
     c->was[c->n_new] = c->was[c->n_new + 1] = (uint16_t)c->n_old;
     c->old[c->n_old++] = h / 3;
-    shape = fmin(shape, vg_work_shape(a, b, o));
+    shape = fmin(shape, vg_work_shape(w, a, b, o));
     vg_cavity_add(c, a, m, o, side ? 2 : face + 2);
     vg_cavity_add(c, m, b, o, side ? 0 : face);
   }
-  vg_cavity_measure(c);
+  vg_cavity_measure(w, c);
   return c->shape > (face ? SPLIT_LOSS : 0.01) * shape
          && c->shape >= fmin(shape, FLAT2) && vg_cavity_fits(w, c);
 }
@@ -145,9 +145,9 @@ static void size_between(const struct vg_work *w, uint32_t h,
 {
   const uint32_t end[2] = { vg_work_from(w, h), vg_work_to(w, h) };
 
-  if (vg_work_ratio(w, h) < NEARBY)
-    p->size = vg_work_size_near(w, p->x, p->home, 2, end, &p->by);
-  else p->size = vg_work_size(w, p->x, &p->by);
+  vg_work_ask(w, p, vg_work_ratio(w, h) < NEARBY
+              ? vg_work_size_near(w, p->x, p->home, 2, end, &p->by)
+              : vg_work_size(w, p->x, &p->by));
 }
 
 static uint32_t add_point(struct vg_work *w, const struct vg_work_point *p)
@@ -222,8 +222,10 @@ uint32_t vg_work_split(struct vg_work *w, uint32_t h, const double *at)
   p.kind = w->edge[h] ? VG_WORK_CURVE : VG_WORK_FACE;
   p.frozen = p.goes = 0;
   p.given = VG_REF_NONE;
+  for (int k = 0; w->form && k < 6; k++)
+    p.asked.form[k] = (p.asked.form[k] + w->point[b].asked.form[k]) / 2;
   c.hint = p.home;
-  if (!split_fits(w, h, p.x, &c)) return VG_REF_NONE;
+  if (!split_fits(w, h, &p, &c)) return VG_REF_NONE;
   if (w->edge[h] && vg_reserve(&w->line, &w->cap_line, w->n_line + 1,
                                sizeof *w->line)) w->failed = 1;
   size_between(w, h, &p);
@@ -340,15 +342,15 @@ static int collapse_fits(const struct vg_work *w, uint32_t h,
     const struct vg_work_point *pa = &w->point[a], *pb = &w->point[b];
 
     if (a == u || b == u) continue;
-    l = 2 * vg_distance(pu->x, pa->x) / (pu->size + pa->size);
+    l = vg_work_length(w, pu, pa);
     if (l > longest) return 0;
     /* u a is new unless a is next to the edge that goes; curves are seen to
      * elsewhere */
     c->was[c->n_new] = (uint16_t)i;
-    vg_cavity_add(c, pu->x, pa->x, pb->x, w->edge[ring[i]] ? 0 : 1);
+    vg_cavity_add(c, pu, pa, pb, w->edge[ring[i]] ? 0 : 1);
   }
   if (!c->n_new) return 0;
-  vg_cavity_measure(c);
+  vg_cavity_measure(w, c);
   if (!(c->shape >= fmin(before, shape))) return 0;
   c->fresh = w->point[v].given;
   return vg_cavity_fits(w, c);
@@ -440,7 +442,7 @@ int vg_work_swap(struct vg_work *w, uint32_t h)
   struct vg_cavity c;
   uint32_t g = w->mate[h], ring[VG_WORK_RING], t[2] = { h / 3, g / 3 };
   uint32_t p[4], out[4], m[4], e[4];
-  const double *x[4];
+  const struct vg_work_point *x[4];
   double before;
   size_t n;
   int open;
@@ -450,16 +452,16 @@ int vg_work_swap(struct vg_work *w, uint32_t h)
   p[1] = vg_work_to(w, h);
   p[2] = vg_work_from(w, vg_work_prev(h));
   p[3] = vg_work_from(w, vg_work_prev(g));
-  for (int k = 0; k < 4; k++) x[k] = vg_work_at(w, p[k]);
+  for (int k = 0; k < 4; k++) x[k] = &w->point[p[k]];
   vg_cavity_begin(w, &c, p[0]);
   for (int k = 1; k < 4; k++) vg_cavity_narrow(w, &c, p[k]);
   c.old[c.n_old++] = h / 3;
   c.old[c.n_old++] = g / 3;
   vg_cavity_add(&c, x[2], x[0], x[3], 4);
   vg_cavity_add(&c, x[3], x[1], x[2], 0);
-  before = fmin(vg_work_shape(x[0], x[1], x[2]),
-                vg_work_shape(x[0], x[1], x[3]));
-  vg_cavity_measure(&c);
+  before = fmin(vg_work_shape(w, x[0], x[1], x[2]),
+                vg_work_shape(w, x[0], x[1], x[3]));
+  vg_cavity_measure(w, &c);
   if (!(c.shape > GAIN * before) || p[2] == p[3]
       || !vg_work_may_join(w, p[2], p[3])) return 0;
   n = vg_work_ring(w, p[2], ring, &open);
@@ -492,9 +494,9 @@ int vg_work_move(struct vg_work *w, uint32_t p, const double x[3],
                  double shape)
 {
   struct vg_cavity c;
+  struct vg_work_point q = w->point[p];
   uint32_t ring[VG_WORK_RING], t[VG_WORK_RING], near[VG_WORK_RING + 1];
-  uint32_t home = w->point[p].home;
-  double y[3], n[3] = { 0, 0, 0 }, before = 1;
+  double n[3] = { 0, 0, 0 }, before = 1;
   size_t n_ring;
   int open;
 
@@ -505,31 +507,30 @@ int vg_work_move(struct vg_work *w, uint32_t p, const double x[3],
   for (size_t i = 0; i < n_ring; i++) normal_of(w, ring[i] / 3, n);
   if (!(vg_unit(n) > 0)) return 0;
   vg_cavity_begin(w, &c, p);
-  memcpy(y, x, sizeof y);
+  memcpy(q.x, x, sizeof q.x);
   for (size_t i = 0; i < n_ring; i++) {
     t[i] = c.old[c.n_old++] = ring[i] / 3;
     vg_cavity_narrow(w, &c, vg_work_to(w, ring[i]));
     before = fmin(before, vg_work_tri_shape(w, t[i]));
-    vg_cavity_add(&c, y, vg_work_at(w, vg_work_to(w, ring[i])),
-                  vg_work_at(w, vg_work_from(w, vg_work_prev(ring[i]))), 1);
+    vg_cavity_add(&c, &q, &w->point[vg_work_to(w, ring[i])],
+                  &w->point[vg_work_from(w, vg_work_prev(ring[i]))], 1);
   }
   before = fmin(before, shape);
-  vg_cavity_measure(&c);     /* roughly, which costs little, then exactly */
+  vg_cavity_measure(w, &c);  /* roughly, which costs little, then exactly */
   if (!(c.shape > ALMOST * before)
-      || !(vg_ref_project(w->ref, x, n, &home, y)
-           <= STRAY * w->point[p].size)) return 0;
-  c.hint = home;
-  vg_cavity_measure(&c);
+      || !(vg_ref_project(w->ref, x, n, &q.home, q.x)
+           <= STRAY * q.asked.size)) return 0;
+  c.hint = q.home;
+  vg_cavity_measure(w, &c);
   if (!(c.shape > before)) return 0;
   c.fresh = w->point[p].given;
   if (!vg_cavity_fits(w, &c)) return 0;
-  memcpy(w->point[p].x, y, sizeof y);
-  w->point[p].home = home;
-  w->point[p].given = VG_REF_NONE;
   for (size_t i = 0; i < n_ring; i++) near[i] = vg_work_to(w, ring[i]);
   near[n_ring] = p;
-  w->point[p].size = vg_work_size_near(w, y, home, n_ring + 1, near,
-                                       &w->point[p].by);
+  q.given = VG_REF_NONE;
+  vg_work_ask(w, &q, vg_work_size_near(w, q.x, q.home, n_ring + 1, near,
+                                       &q.by));
+  w->point[p] = q;
   for (size_t i = 0; i <= n_ring; i++) w->point[near[i]].changed = ++w->clock;
   for (size_t i = 0; i < n_ring; i++) w->stamp[t[i]] = w->clock;
   vg_cavity_settle(w, &c, t);

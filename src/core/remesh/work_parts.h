@@ -12,7 +12,7 @@
 struct vg_cavity {
   size_t n_old, n_new, n_sample;
   uint32_t old[VG_WORK_NEW];          /* triangles */
-  const double *corner[VG_WORK_NEW][3];
+  const struct vg_work_point *corner[VG_WORK_NEW][3];
   uint8_t edges[VG_WORK_NEW];         /* bit k: edge k is new, and not on a
                                          curve */
   uint16_t was[VG_WORK_NEW];          /* on a curve: of the old ones, that
@@ -35,14 +35,15 @@ void vg_cavity_narrow(const struct vg_work *w, struct vg_cavity *c,
                       uint32_t point);
 
 /** Add a triangle that will be there. */
-void vg_cavity_add(struct vg_cavity *c, const double *x, const double *y,
-                   const double *z, int edges);
+void vg_cavity_add(struct vg_cavity *c, const struct vg_work_point *x,
+                   const struct vg_work_point *y,
+                   const struct vg_work_point *z, int edges);
 
 /** Tolerance at points of this size. */
 double vg_work_tolerance(const struct vg_work *w, double size);
 
 /** Sets c->shape: cheap, before what follows. */
-void vg_cavity_measure(struct vg_cavity *c);
+void vg_cavity_measure(const struct vg_work *w, struct vg_cavity *c);
 
 /** Are the new triangles within the tolerance of the reference, facing its
  * way, and the samples of the old ones within that of the new ones? */
