@@ -11,10 +11,12 @@
 
 #include "base/memory.h"
 #include "base/union_find.h"
+#include "core/geometry/hilbert.h"
 #include "core/geometry/vector.h"
 
 #define REACH 3         /* directions: the integer points of a cube's faces */
 #define N_DIRECTION (7 * 7 * 7 - 5 * 5 * 5)
+#define BOX 64          /* points */
 #define SLACK 0.1       /* of the longest edge: rounding, chords, diagonals */
 
 struct piece {
@@ -51,23 +53,64 @@ static double face(const struct envelope *e, size_t i, double n[3])
   return longest;
 }
 
-static void find_extremes(struct envelope *e)
+/* Points in the order given, some at a time, in boxes: neighbours mostly. */
+struct box {
+  double lo[3], hi[3];
+};
+
+static void find_boxes(const struct vg_mesh *m, size_t n, struct box *box)
 {
+  for (size_t i = 0; i < n; i++) {
+    box[i] = (struct box){ { INFINITY, INFINITY, INFINITY },
+                           { -INFINITY, -INFINITY, -INFINITY } };
+    for (size_t p = BOX * i; p < m->n_point && p < BOX * (i + 1); p++)
+      for (int c = 0; c < 3; c++) {
+        if (m->point[p][c] < box[i].lo[c]) box[i].lo[c] = m->point[p][c];
+        if (m->point[p][c] > box[i].hi[c]) box[i].hi[c] = m->point[p][c];
+      }
+  }
+}
+
+/* First of the points that are farthest along d. No point of a box is farther
+ * than its corner, rounding or not. */
+static uint32_t extreme(const struct vg_mesh *m, size_t n_box,
+                        const struct box *box, const double d[3])
+{
+  double best = -INFINITY;
+  uint32_t at = 0;
+
+  for (size_t i = 0; i < n_box; i++) {
+    double most[3];
+
+    for (int c = 0; c < 3; c++)
+      most[c] = d[c] > 0 ? box[i].hi[c] : box[i].lo[c];
+    if (!(vg_dot(d, most) > best)) continue;
+    for (size_t p = BOX * i; p < m->n_point && p < BOX * (i + 1); p++) {
+      const double s = vg_dot(d, m->point[p]);
+
+      if (s > best) best = s, at = (uint32_t)p;
+    }
+  }
+  return at;
+}
+
+static vg_status find_extremes(struct envelope *e, struct vg_error *err)
+{
+  const size_t n = (e->m->n_point + BOX - 1) / BOX;
+  struct box *box = vg_alloc(n, sizeof *box);
+
+  if (!box) return vg_fail_memory(err, "the pieces of the surface");
+  find_boxes(e->m, n, box);
   for (int i = -REACH; i <= REACH; i++)
     for (int j = -REACH; j <= REACH; j++)
       for (int k = -REACH; k <= REACH; k++) {
         const double d[3] = { i, j, k };
-        double best = -INFINITY;
-        uint32_t at = 0;
 
         if (abs(i) != REACH && abs(j) != REACH && abs(k) != REACH) continue;
-        for (uint32_t p = 0; p < e->m->n_point; p++) {
-          const double s = vg_dot(d, e->m->point[p]);
-
-          if (s > best) best = s, at = p;
-        }
-        e->extreme[e->n_extreme++] = at;
+        e->extreme[e->n_extreme++] = extreme(e->m, n, box, d);
       }
+  free(box);
+  return VG_OK;
 }
 
 static int is_on_hull(const struct envelope *e, size_t i)
@@ -88,38 +131,27 @@ static int is_on_hull(const struct envelope *e, size_t i)
 
 /* --- pieces -------------------------------------------------------------- */
 
-struct side {
-  uint32_t lo, hi, tri;
-};
-
-static int by_nodes(const void *pa, const void *pb)
-{
-  const struct side *a = pa, *b = pb;
-
-  if (a->lo != b->lo) return a->lo < b->lo ? -1 : 1;
-  if (a->hi != b->hi) return a->hi < b->hi ? -1 : 1;
-  return (a->tri > b->tri) - (a->tri < b->tri);
-}
-
 static vg_status join_pieces(struct envelope *e, struct vg_error *err)
 {
   const size_t n = 3 * e->m->n_tri;
-  struct side *side = vg_alloc(n, sizeof *side);
+  struct vg_key *side = vg_alloc(n, sizeof *side);
+  vg_status st;
 
   if (!side) return vg_fail_memory(err, "the pieces of the surface");
   for (size_t i = 0; i < n; i++) {
-    const uint32_t a = e->m->tri[i / 3][i % 3];
-    const uint32_t b = e->m->tri[i / 3][(i + 1) % 3];
+    const uint64_t a = e->m->tri[i / 3][i % 3];
+    const uint64_t b = e->m->tri[i / 3][(i + 1) % 3];
 
-    side[i] = (struct side){ a < b ? a : b, a < b ? b : a, (uint32_t)(i / 3) };
+    side[i] = (struct vg_key){ a < b ? a << 32 | b : b << 32 | a,
+                               (uint32_t)(i / 3) };
   }
-  qsort(side, n, sizeof *side, by_nodes);
-  for (size_t i = 1; i < n; i++)
-    if (side[i].lo == side[i - 1].lo && side[i].hi == side[i - 1].hi
-        && e->on[side[i].tri] == e->on[side[i - 1].tri])
-      vg_union(e->root, side[i].tri, side[i - 1].tri);
+  st = vg_sort_keys(n, side, err);
+  for (size_t i = 1; st >= 0 && i < n; i++)
+    if (side[i].key == side[i - 1].key
+        && e->on[side[i].index] == e->on[side[i - 1].index])
+      vg_union(e->root, side[i].index, side[i - 1].index);
   free(side);
-  return VG_OK;
+  return st;
 }
 
 static void measure_pieces(struct envelope *e)
@@ -254,7 +286,7 @@ vg_status vg_envelope_measure(const struct vg_mesh *m, uint8_t *outer,
     if (!e.on || !e.root || !e.piece)
       VG_TRY(vg_fail_memory(err, "the pieces of the surface"));
     if (signed_volume(&e) < 0) e.sign = -1;
-    find_extremes(&e);
+    VG_TRY(find_extremes(&e, err));
     for (uint32_t i = 0; i < m->n_tri; i++) {
       e.on[i] = (uint8_t)is_on_hull(&e, i);
       e.root[i] = i;

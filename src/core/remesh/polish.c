@@ -1,0 +1,227 @@
+/* Outline: what has a small angle is looked at one by one. Of each change it is
+ * first seen on the points around what it would bring, which costs little;
+ * only the best is held against the surface. */
+#include "core/remesh/passes.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/geometry/vector.h"
+
+#define LONGEST 1.7       /* sizes: no collapse makes edges longer */
+#define MOST 16           /* triangles around a point that is moved */
+#define STEP 0.2          /* of the size: the first of a search */
+#define LEAST 0.01        /* the last */
+#define GAIN 1.02         /* of a move, in squares of sines, around the point */
+#define BETTER 1.05       /* of the triangle */
+
+/* A point of a face and those around it. */
+struct ring {
+  size_t n;
+  uint32_t half[VG_WORK_RING];
+  const double *at[MOST + 1];   /* the first one again at the end */
+  double rim2[MOST];        /* squared lengths of the edges between them */
+};
+
+static int take_ring(const struct vg_work *w, uint32_t p, struct ring *r)
+{
+  int open;
+
+  if (w->point[p].kind != VG_WORK_FACE || w->point[p].frozen) return 0;
+  r->n = vg_work_ring(w, p, r->half, &open);
+  if (!r->n || r->n > MOST || open) return 0;
+  for (size_t i = 0; i < r->n; i++)
+    r->at[i] = vg_work_at(w, vg_work_to(w, r->half[i]));
+  r->at[r->n] = r->at[0];
+  for (size_t i = 0; i < r->n; i++)
+    r->rim2[i] = vg_distance2(r->at[i], r->at[i + 1]);
+  return 1;
+}
+
+/* As vg_work_shape, of the squared lengths of the sides; not exact where it is
+ * tiny. */
+static inline double shape_of(double a, double b, double c)
+{
+  const double dot2 = a + b - c;
+  double least = a < b ? a : b, product = a * b;
+
+  if (c < least) least = c;
+  return product > 0 ? (product - dot2 * dot2 / 4) * least / (product * c) : 0;
+}
+
+/* The least shape of the triangles around, were their point at x; 0 where that
+ * is not above `bound`. */
+static double shape_at(const struct ring *r, const double x[3], double bound)
+{
+  double least = 1, a = vg_distance2(x, r->at[0]);
+
+  for (size_t i = 0; i < r->n; i++) {
+    double b = vg_distance2(x, r->at[i + 1]);
+    double s = shape_of(a, b, r->rim2[i]);
+
+    if (s <= bound) return 0;
+    if (s < least) least = s;
+    a = b;
+  }
+  return least;
+}
+
+/* Two directions across the mean normal of the triangles around x. */
+static int tangents(const struct ring *r, const double x[3], double u[3],
+                    double v[3])
+{
+  double n[3] = { 0, 0, 0 }, a[3], b[3], m[3];
+
+  for (size_t i = 0; i < r->n; i++) {
+    vg_sub(r->at[i], x, a);
+    vg_sub(r->at[i + 1], x, b);
+    vg_cross(a, b, m);
+    for (int k = 0; k < 3; k++) n[k] += m[k];
+  }
+  vg_sub(r->at[0], x, u);
+  vg_cross(n, u, v);
+  vg_cross(v, n, u);
+  return vg_unit(u) > 0 && vg_unit(v) > 0;
+}
+
+/* Where a point is to go, and the least shape around it then. */
+struct place {
+  uint32_t p;
+  double x[3], shape;
+};
+
+/* Where the smallest angle around p is largest, step by step across the
+ * normal. Shape 0: p stays. */
+static void search_place(const struct vg_work *w, uint32_t p,
+                         struct place *to)
+{
+  static const double way[8][2] = {
+    { 1, 0 }, { -1, 0 }, { 0, 1 }, { 0, -1 }, { 0.7, 0.7 }, { -0.7, 0.7 },
+    { 0.7, -0.7 }, { -0.7, -0.7 } };
+  const double size = w->point[p].size;
+  struct ring r;
+  double u[3], v[3], before;
+
+  *to = (struct place){ .p = p };
+  if (!take_ring(w, p, &r) || !tangents(&r, w->point[p].x, u, v)) return;
+  memcpy(to->x, w->point[p].x, sizeof to->x);
+  before = to->shape = shape_at(&r, to->x, 0);
+  for (double step = STEP * size; step > LEAST * size;) {
+    double y[3], best[3];
+    int found = 0;
+
+    for (int k = 0; k < 8; k++) {
+      double s;
+
+      for (int d = 0; d < 3; d++)
+        y[d] = to->x[d] + step * (way[k][0] * u[d] + way[k][1] * v[d]);
+      s = shape_at(&r, y, to->shape);
+      if (!(s > to->shape)) continue;
+      to->shape = s;
+      memcpy(best, y, sizeof best);
+      found = 1;
+    }
+    if (found) memcpy(to->x, best, sizeof to->x);
+    else step /= 3;
+  }
+  if (!(to->shape > GAIN * before)) to->shape = 0;
+}
+
+/* Move that corner of t which makes it best; others, should that not do. */
+static int move_corner(struct vg_work *w, uint32_t t, double shape)
+{
+  struct place to[3];
+
+  for (int k = 0; k < 3; k++) search_place(w, w->tri[t][k], &to[k]);
+  for (;;) {
+    struct place *best = &to[0];
+
+    for (int k = 1; k < 3; k++)
+      if (to[k].shape > best->shape) best = &to[k];
+    if (!(best->shape > BETTER * shape)) return 0;
+    if (vg_work_move(w, best->p, best->x, 1)) return 1;
+    best->shape = 0;
+  }
+}
+
+/* The least shape of what is left when p goes onto neighbour i. */
+static double shape_without(const struct ring *r, size_t i, double bound)
+{
+  double least = 1;
+
+  for (size_t k = 1; k + 1 < r->n; k++) {
+    size_t j = (i + k) % r->n;
+    double s = shape_of(vg_distance2(r->at[i], r->at[j]),
+                        vg_distance2(r->at[i], r->at[j + 1]), r->rim2[j]);
+
+    if (s <= bound) return 0;
+    if (s < least) least = s;
+  }
+  return least;
+}
+
+/* Take p away, onto the neighbour where that is best for angles. */
+static int take_away(struct vg_work *w, uint32_t p)
+{
+  struct ring r;
+  double best;
+  size_t at = SIZE_MAX;
+
+  if (!take_ring(w, p, &r) || r.n > 6) return 0;
+  best = shape_at(&r, w->point[p].x, 0);
+  for (size_t i = 0; i < r.n; i++) {
+    double s = shape_without(&r, i, best);
+
+    if (s > best) best = s, at = i;
+  }
+  return at != SIZE_MAX && vg_work_collapse(w, r.half[at], LONGEST, 1);
+}
+
+static void sort_edges(const struct vg_work *w, uint32_t *order)
+{
+  for (int i = 0; i < 2; i++)
+    for (int k = 0; k < 2 - i; k++)
+      if (vg_work_ratio(w, order[k]) > vg_work_ratio(w, order[k + 1])) {
+        uint32_t h = order[k];
+
+        order[k] = order[k + 1];
+        order[k + 1] = h;
+      }
+}
+
+static int polish_tri(struct vg_work *w, uint32_t t)
+{
+  uint32_t order[3] = { 3 * t, 3 * t + 1, 3 * t + 2 };
+  const double shape = vg_work_tri_shape(w, t);
+
+  sort_edges(w, order);
+  for (int k = 2; k >= 0; k--)
+    if (vg_work_swap(w, order[k])) return 1;
+  for (int k = 0; k < 3; k++)
+    if (take_away(w, w->tri[t][k])) return 1;
+  if (move_corner(w, t, shape)) return 1;
+  for (int k = 0; k < 2; k++) {
+    uint32_t h = order[k], g = w->mate[h];
+
+    if (vg_work_ratio(w, h) > 1) break;
+    if (vg_work_collapse(w, h, LONGEST, 1)
+        || (g != VG_REF_NONE && vg_work_collapse(w, g, LONGEST, 1)))
+      return 1;
+  }
+  return 0;
+}
+
+vg_status vg_pass_polish(struct vg_work *w, double shape, size_t *n,
+                         struct vg_error *err)
+{
+  const uint64_t before = w->looked[VG_WORK_POLISH];
+
+  *n = 0;
+  w->looked[VG_WORK_POLISH] = w->clock;
+  for (uint32_t t = 0; t < w->n_tri; t++)
+    if (w->stamp[t] > before && !vg_work_removed(w, t)
+        && vg_work_tri_shape(w, t) < shape) *n += (size_t)polish_tri(w, t);
+  return w->failed ? vg_fail_memory(err, "the new surface") : VG_OK;
+}
