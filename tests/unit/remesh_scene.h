@@ -104,7 +104,7 @@ static inline void scene_expect_near(const struct scene *s, double tolerance)
 static inline int scene_change(struct vg_work *w, uint32_t *state)
 {
   uint32_t h = (uint32_t)(scene_drawn(state) * 3 * (double)w->n_tri);
-  int kind = (int)(scene_drawn(state) * 4);
+  int kind = (int)(scene_drawn(state) * 5);
   double before, x[3];
   size_t t = h / 3;
 
@@ -119,6 +119,13 @@ static inline int scene_change(struct vg_work *w, uint32_t *state)
     assert_true(vg_work_tri_shape(w, t) > before);
     assert_true(vg_work_tri_shape(w, other) > before);
     return 1;
+  }
+  if (kind == 3) {
+    struct vg_work_span s;
+
+    return vg_work_span(w, vg_work_from(w, h), &s)
+           && vg_work_slide(w, vg_work_from(w, h),
+                            s.lo + scene_drawn(state) * (s.hi - s.lo), 0.01);
   }
   for (int k = 0; k < 3; k++)
     x[k] = vg_work_at(w, vg_work_from(w, h))[k]

@@ -108,6 +108,45 @@ static void corners_and_ridges_stay(void **unused)
   scene_release(&s);
 }
 
+/* On a ridge of a box: each of its points slides to where its curve is at that
+ * length, and not past its neighbours; where angles get worse it stays. */
+static void points_slide_along_ridges(void **unused)
+{
+  const double size[3] = { 1, 1, 1 };
+  const uint32_t n[3] = { 4, 4, 4 };
+  struct scene s = { .m = VG_MESH_INIT };
+  struct vg_work *w = &s.w;
+  size_t n_slid = 0;
+
+  (void)unused;
+  shape_box(&s.m, size, n);
+  scene_set(&s, 1e-3, 1);
+  for (uint32_t p = 0; p < w->n_point; p++) {
+    struct vg_work_span a, b;
+    double x[3];
+
+    if (!vg_work_span(w, p, &a)) {
+      assert_int_not_equal(w->point[p].kind, VG_WORK_CURVE);
+      assert_false(vg_work_slide(w, p, 0.1, 0));
+      continue;
+    }
+    assert_false(vg_work_slide(w, p, a.lo, 0));
+    assert_false(vg_work_slide(w, p, a.hi + 0.1, 0));
+    assert_false(vg_work_slide(w, p, (3 * a.lo + a.hi) / 4, 1));
+    if (!vg_work_slide(w, p, (3 * a.lo + a.hi) / 4, 0)) continue;
+    n_slid++;
+    assert_true(vg_work_span(w, p, &b));
+    assert_true(b.lo == a.lo && b.hi == a.hi
+                && b.at == (3 * a.lo + a.hi) / 4);
+    vg_curve_at(w->curves, w->ref, b.curve, b.at, x);
+    assert_true(vg_distance(x, vg_work_at(w, p)) == 0);
+  }
+  assert_true(n_slid > 12);
+  scene_expect_whole(&s);
+  scene_expect_near(&s, 1e-9);
+  scene_release(&s);
+}
+
 /* What would leave the tolerance is refused: on a coarse ball no point can go
  * without its neighbourhood sinking. */
 static void tolerance_is_kept(void **unused)
@@ -131,6 +170,7 @@ int main(void)
     cmocka_unit_test(any_sequence_on_a_ball),
     cmocka_unit_test(any_sequence_on_a_box),
     cmocka_unit_test(corners_and_ridges_stay),
+    cmocka_unit_test(points_slide_along_ridges),
     cmocka_unit_test(tolerance_is_kept),
   };
 

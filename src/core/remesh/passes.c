@@ -10,7 +10,6 @@
 #include "core/geometry/hilbert.h"
 #include "core/geometry/vector.h"
 
-#define TOO_LONG 1.5      /* no collapse makes edges of more sizes */
 #define ANGLE2 0.0669873  /* (sin 15 degrees)^2: no collapse below */
 #define FINE2 0.45        /* (sin 42 degrees)^2: good enough */
 #define ROUNDS 12
@@ -431,109 +430,4 @@ size_t vg_pass_smooth(struct vg_work *w, int sweeps)
       if (w->point[p].half != VG_REF_NONE
           && w->point[p].kind == VG_WORK_FACE) n += (size_t)smooth_point(w, p);
   return n;
-}
-
-/* --- polish -------------------------------------------------------------- */
-
-/* The least shape of the triangles around, were their point q. */
-static double shape_at(const struct vg_work *w, const uint32_t *ring, size_t n,
-                       const struct vg_work_point *q)
-{
-  double least = 1;
-
-  for (size_t i = 0; i < n; i++) {
-    double s = vg_work_shape(w, q, &w->point[vg_work_to(w, ring[i])],
-                             &w->point[vg_work_from(w, vg_work_prev(
-                               ring[i]))]);
-
-    if (s < least) least = s;
-  }
-  return least;
-}
-
-/* Try the best of some places around p, nearer and nearer, for its worst
- * triangle. */
-static int search_place(struct vg_work *w, uint32_t p)
-{
-  static const double way[8][2] = {
-    { 1, 0 }, { -1, 0 }, { 0, 1 }, { 0, -1 }, { 0.7, 0.7 }, { -0.7, 0.7 },
-    { 0.7, -0.7 }, { -0.7, -0.7 } };
-  const uint32_t h = w->point[p].half;
-  uint32_t ring[VG_WORK_RING];
-  struct vg_work_point q;
-  double u[3], v[3], n[3], step = 0.2 * w->point[p].asked.size;
-  int moved = 0, open;
-  size_t n_ring;
-
-  if (w->point[p].kind != VG_WORK_FACE) return 0;
-  n_ring = vg_work_ring(w, p, ring, &open);
-  vg_sub(vg_work_at(w, vg_work_to(w, h)), vg_work_at(w, p), u);
-  vg_sub(vg_work_at(w, vg_work_from(w, vg_work_prev(h))), vg_work_at(w, p),
-         v);
-  vg_cross(u, v, n);
-  if (!n_ring || !(vg_unit(u) > 0) || !(vg_unit(n) > 0)) return 0;
-  vg_cross(n, u, v);
-  if (w->form) vg_form_frame(w->point[p].asked.form, u, v);
-  for (int i = 0; i < 3; i++, step /= 3) {
-    double best = 1.001 * shape_at(w, ring, n_ring, &w->point[p]), x[3];
-    int found = 0;
-
-    q = w->point[p];
-    for (int k = 0; k < 8; k++) {
-      double s;
-
-      for (int d = 0; d < 3; d++)
-        q.x[d] = w->point[p].x[d]
-                 + step * (way[k][0] * u[d] + way[k][1] * v[d]);
-      s = shape_at(w, ring, n_ring, &q);
-      if (!(s > best)) continue;
-      best = s;
-      found = 1;
-      memcpy(x, q.x, sizeof x);
-    }
-    if (found) moved += vg_work_move(w, p, x, 1);
-  }
-  return moved;
-}
-
-static int polish_tri(struct vg_work *w, uint32_t t)
-{
-  uint32_t order[3] = { 3 * t, 3 * t + 1, 3 * t + 2 };
-  double shape = vg_work_tri_shape(w, t);
-
-  for (int i = 0; i < 2; i++)       /* by length */
-    for (int k = 0; k < 2 - i; k++)
-      if (vg_work_ratio(w, order[k]) > vg_work_ratio(w, order[k + 1])) {
-        uint32_t h = order[k];
-
-        order[k] = order[k + 1];
-        order[k + 1] = h;
-      }
-  for (int k = 2; k >= 0; k--)
-    if (vg_work_swap(w, order[k])) return 1;
-  for (int k = 0; k < 3; k++)
-    if (search_place(w, w->tri[t][k]) && vg_work_tri_shape(w, t) > 1.1 * shape)
-      return 1;
-  for (int k = 0; k < 2; k++) {
-    uint32_t h = order[k], g = w->mate[h];
-
-    if (vg_work_ratio(w, h) > 1) break;
-    if (vg_work_collapse(w, h, TOO_LONG + 0.2, 1)
-        || (g != VG_REF_NONE && vg_work_collapse(w, g, TOO_LONG + 0.2, 1)))
-      return 1;
-  }
-  return 0;
-}
-
-vg_status vg_pass_polish(struct vg_work *w, double shape, size_t *n,
-                         struct vg_error *err)
-{
-  const uint64_t before = w->looked[VG_WORK_POLISH];
-
-  *n = 0;
-  w->looked[VG_WORK_POLISH] = w->clock;
-  for (uint32_t t = 0; t < w->n_tri && !w->ends; t++)
-    if (w->stamp[t] > before && !vg_work_removed(w, t)
-        && vg_work_tri_shape(w, t) < shape) *n += (size_t)polish_tri(w, t);
-  return vg_work_status(w, err);
 }

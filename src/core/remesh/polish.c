@@ -4,39 +4,60 @@
 #include "core/remesh/passes.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "core/geometry/vector.h"
 
-#define LONGEST 1.7       /* sizes: no collapse makes edges longer */
+#define LONGEST 1.7       /* sizes: longer edges come from no collapse */
 #define MOST 16           /* triangles around a point that is moved */
 #define STEP 0.2          /* of the size: the first of a search */
 #define LEAST 0.01        /* the last */
-#define GAIN 1.02         /* of a move, in squares of sines, around the point */
-#define BETTER 1.05       /* of the triangle */
+#define GAIN 1.01         /* of a move, in squares of sines, around the point */
+#define BETTER 1.01       /* of the triangle */
 
-/* A point of a face and those around it. */
+/* A point and those around it. */
 struct ring {
-  size_t n;
+  size_t n;                 /* triangles */
+  int is_stretched;
   uint32_t half[VG_WORK_RING];
-  const double *at[MOST + 1];   /* the first one again at the end */
+  const struct vg_work_point *at[MOST + 1];   /* the first one again at the
+                                                 end, but on a rim */
+  double form[MOST][6];     /* of the triangles, where edges are stretched */
   double rim2[MOST];        /* squared lengths of the edges between them */
 };
 
+static const double *form_of(const struct ring *r, size_t i)
+{
+  return r->is_stretched ? r->form[i] : NULL;
+}
+
+static double length2(const double *form, const double *a, const double *b)
+{
+  double e[3];
+
+  vg_sub(b, a, e);
+  return vg_form_dot(form, e, e);
+}
+
 static int take_ring(const struct vg_work *w, uint32_t p, struct ring *r)
 {
+  const double *own = w->point[p].asked.form;
   int open;
 
-  if (w->point[p].kind != VG_WORK_FACE || w->point[p].frozen) return 0;
+  if (w->point[p].kind == VG_WORK_CORNER || w->point[p].frozen) return 0;
   r->n = vg_work_ring(w, p, r->half, &open);
-  if (!r->n || r->n > MOST || open) return 0;
+  if (!r->n || r->n > MOST) return 0;
+  r->is_stretched = w->form != NULL;
   for (size_t i = 0; i < r->n; i++)
-    r->at[i] = vg_work_at(w, vg_work_to(w, r->half[i]));
-  r->at[r->n] = r->at[0];
-  for (size_t i = 0; i < r->n; i++)
-    r->rim2[i] = vg_distance2(r->at[i], r->at[i + 1]);
+    r->at[i] = &w->point[vg_work_to(w, r->half[i])];
+  r->at[r->n] = &w->point[vg_work_from(w, vg_work_prev(r->half[r->n - 1]))];
+  for (size_t i = 0; i < r->n; i++) {
+    const struct vg_work_point *a = r->at[i], *b = r->at[i + 1];
+
+    for (int k = 0; k < 6 && r->is_stretched; k++)
+      r->form[i][k] = (own[k] + a->asked.form[k] + b->asked.form[k]) / 3;
+    r->rim2[i] = length2(form_of(r, i), a->x, b->x);
+  }
   return 1;
 }
 
@@ -55,59 +76,60 @@ static inline double shape_of(double a, double b, double c)
  * is not above `bound`. */
 static double shape_at(const struct ring *r, const double x[3], double bound)
 {
-  double least = 1, a = vg_distance2(x, r->at[0]);
+  double least = 1, a = 0, b = 0;
 
   for (size_t i = 0; i < r->n; i++) {
-    double b = vg_distance2(x, r->at[i + 1]);
-    double s = shape_of(a, b, r->rim2[i]);
+    const double *form = form_of(r, i);
+    double s;
 
+    a = i && !form ? b : length2(form, x, r->at[i]->x);
+    b = length2(form, x, r->at[i + 1]->x);
+    s = shape_of(a, b, r->rim2[i]);
     if (s <= bound) return 0;
     if (s < least) least = s;
-    a = b;
   }
   return least;
 }
 
-/* Two directions across the mean normal of the triangles around x. */
-static int tangents(const struct ring *r, const double x[3], double u[3],
-                    double v[3])
+/* Two directions across the mean normal of the triangles around p. */
+static int tangents(const struct vg_work *w, const struct ring *r, uint32_t p,
+                    double u[3], double v[3])
 {
+  const double *x = vg_work_at(w, p);
   double n[3] = { 0, 0, 0 }, a[3], b[3], m[3];
 
   for (size_t i = 0; i < r->n; i++) {
-    vg_sub(r->at[i], x, a);
-    vg_sub(r->at[i + 1], x, b);
+    vg_sub(r->at[i]->x, x, a);
+    vg_sub(r->at[i + 1]->x, x, b);
     vg_cross(a, b, m);
     for (int k = 0; k < 3; k++) n[k] += m[k];
   }
-  vg_sub(r->at[0], x, u);
+  vg_sub(r->at[0]->x, x, u);
   vg_cross(n, u, v);
   vg_cross(v, n, u);
-  return vg_unit(u) > 0 && vg_unit(v) > 0;
+  if (!(vg_unit(u) > 0 && vg_unit(v) > 0)) return 0;
+  if (r->is_stretched) vg_form_frame(w->point[p].asked.form, u, v);
+  return 1;
 }
 
-/* Where a point is to go, and the least shape around it then. */
+/* Where a point is to go, and the least shape around it then; 0: nowhere. */
 struct place {
   uint32_t p;
-  double x[3], shape;
+  double shape, x[3];       /* of a face */
+  double at;                /* of a curve: length along it */
 };
 
-/* Where the smallest angle around p is largest, step by step across the
- * normal. Shape 0: p stays. */
-static void search_place(const struct vg_work *w, uint32_t p,
-                         struct place *to)
+/* Where the smallest angle is largest, step by step across the normal. */
+static void search_face(const struct vg_work *w, const struct ring *r,
+                        struct place *to)
 {
   static const double way[8][2] = {
     { 1, 0 }, { -1, 0 }, { 0, 1 }, { 0, -1 }, { 0.7, 0.7 }, { -0.7, 0.7 },
     { 0.7, -0.7 }, { -0.7, -0.7 } };
-  const double size = w->point[p].size;
-  struct ring r;
-  double u[3], v[3], before;
+  const double size = w->point[to->p].asked.size;
+  double u[3], v[3];
 
-  *to = (struct place){ .p = p };
-  if (!take_ring(w, p, &r) || !tangents(&r, w->point[p].x, u, v)) return;
-  memcpy(to->x, w->point[p].x, sizeof to->x);
-  before = to->shape = shape_at(&r, to->x, 0);
+  if (!tangents(w, r, to->p, u, v)) return;
   for (double step = STEP * size; step > LEAST * size;) {
     double y[3], best[3];
     int found = 0;
@@ -117,7 +139,7 @@ static void search_place(const struct vg_work *w, uint32_t p,
 
       for (int d = 0; d < 3; d++)
         y[d] = to->x[d] + step * (way[k][0] * u[d] + way[k][1] * v[d]);
-      s = shape_at(&r, y, to->shape);
+      s = shape_at(r, y, to->shape);
       if (!(s > to->shape)) continue;
       to->shape = s;
       memcpy(best, y, sizeof best);
@@ -126,6 +148,44 @@ static void search_place(const struct vg_work *w, uint32_t p,
     if (found) memcpy(to->x, best, sizeof to->x);
     else step /= 3;
   }
+}
+
+/* The same to and fro along a curve. */
+static void search_curve(const struct vg_work *w, const struct ring *r,
+                         struct place *to)
+{
+  struct vg_work_span s;
+
+  if (!vg_work_span(w, to->p, &s)) return;
+  to->at = s.at;
+  for (double step = STEP * (s.hi - s.lo); step > LEAST * (s.hi - s.lo);) {
+    const double from = to->at;
+
+    for (int way = -1; way <= 1; way += 2) {
+      const double at = from + way * step;
+      double x[3], shape;
+
+      if (!(at > s.lo && at < s.hi)) continue;
+      vg_curve_at(w->curves, w->ref, s.curve, at, x);
+      shape = shape_at(r, x, to->shape);
+      if (shape > to->shape) to->shape = shape, to->at = at;
+    }
+    if (to->at == from) step /= 3;
+  }
+}
+
+static void search_place(const struct vg_work *w, uint32_t p,
+                         struct place *to)
+{
+  struct ring r;
+  double before;
+
+  *to = (struct place){ .p = p };
+  if (!take_ring(w, p, &r)) return;
+  memcpy(to->x, w->point[p].x, sizeof to->x);
+  before = to->shape = shape_at(&r, to->x, 0);
+  if (w->point[p].kind == VG_WORK_FACE) search_face(w, &r, to);
+  else search_curve(w, &r, to);
   if (!(to->shape > GAIN * before)) to->shape = 0;
 }
 
@@ -141,20 +201,22 @@ static int move_corner(struct vg_work *w, uint32_t t, double shape)
     for (int k = 1; k < 3; k++)
       if (to[k].shape > best->shape) best = &to[k];
     if (!(best->shape > BETTER * shape)) return 0;
-    if (vg_work_move(w, best->p, best->x, 1)) return 1;
+    if (w->point[best->p].kind == VG_WORK_FACE
+        ? vg_work_move(w, best->p, best->x, 1)
+        : vg_work_slide(w, best->p, best->at, 1)) return 1;
     best->shape = 0;
   }
 }
 
 /* The least shape of what is left when p goes onto neighbour i. */
-static double shape_without(const struct ring *r, size_t i, double bound)
+static double shape_without(const struct vg_work *w, const struct ring *r,
+                            size_t i, double bound)
 {
   double least = 1;
 
   for (size_t k = 1; k + 1 < r->n; k++) {
     size_t j = (i + k) % r->n;
-    double s = shape_of(vg_distance2(r->at[i], r->at[j]),
-                        vg_distance2(r->at[i], r->at[j + 1]), r->rim2[j]);
+    double s = vg_work_shape(w, r->at[i], r->at[j], r->at[j + 1]);
 
     if (s <= bound) return 0;
     if (s < least) least = s;
@@ -169,14 +231,16 @@ static int take_away(struct vg_work *w, uint32_t p)
   double best;
   size_t at = SIZE_MAX;
 
-  if (!take_ring(w, p, &r) || r.n > 6) return 0;
+  if (w->point[p].kind != VG_WORK_FACE || !take_ring(w, p, &r) || r.n > 6)
+    return 0;
   best = shape_at(&r, w->point[p].x, 0);
   for (size_t i = 0; i < r.n; i++) {
-    double s = shape_without(&r, i, best);
+    double s = shape_without(w, &r, i, best);
 
     if (s > best) best = s, at = i;
   }
-  return at != SIZE_MAX && vg_work_collapse(w, r.half[at], LONGEST, 1);
+  return at != SIZE_MAX
+         && vg_work_collapse(w, r.half[at], VG_WORK_LONG, 1);
 }
 
 static void sort_edges(const struct vg_work *w, uint32_t *order)
@@ -220,8 +284,8 @@ vg_status vg_pass_polish(struct vg_work *w, double shape, size_t *n,
 
   *n = 0;
   w->looked[VG_WORK_POLISH] = w->clock;
-  for (uint32_t t = 0; t < w->n_tri; t++)
+  for (uint32_t t = 0; t < w->n_tri && !w->ends; t++)
     if (w->stamp[t] > before && !vg_work_removed(w, t)
         && vg_work_tri_shape(w, t) < shape) *n += (size_t)polish_tri(w, t);
-  return w->failed ? vg_fail_memory(err, "the new surface") : VG_OK;
+  return vg_work_status(w, err);
 }

@@ -34,8 +34,9 @@
 #define SPOT_LEAST 0.0625 /* S34: of h_min: sizes there */
 #define PHASES 2          /* of blocks, then the whole */
 #define HALVINGS 16       /* of needles, at most */
-#define POLISH2 0.3       /* (sin 33 degrees)^2: below, triangles are polished
-                             one by one */
+#define POLISH2 0.46      /* S21: (sin 42.7 degrees)^2: below, triangles are
+                             polished one by one */
+#define POLISHES 2        /* and once more after the last smoothing */
 
 struct job {
   const struct vg_mesh *given;
@@ -262,9 +263,9 @@ static vg_status change_block(void *user, struct vg_work *w,
     VG_TRY(vg_pass_collapse(w, VG_WORK_SHORT, VG_WORK_LONG, &n, err));
     VG_TRY(vg_pass_split(w, VG_WORK_LONG, 0, &n, err));
   }
-  vg_pass_smooth(w, 3);
+  vg_pass_smooth(w, 2);
   vg_pass_swap(w);
-  for (int i = 0; i < 5; i++) {
+  for (int i = 0; i < POLISHES; i++) {
     VG_TRY(vg_pass_polish(w, POLISH2, &n, err));
     vg_pass_swap(w);
     vg_pass_smooth(w, 1);

@@ -9,6 +9,7 @@
 #include "core/geometry/vector.h"
 
 #define TRIFLE 1e-4       /* of the squared tolerance: on the reference */
+#define ON 0.04           /* of the squared tolerance: as good as on a triangle */
 #define FOLD 0.9986       /* S30: cosine of 3 degrees: edges that bend more have
                              samples */
 #define FLAT 1e-3         /* S33: tolerances: lower triangles face any way */
@@ -415,21 +416,24 @@ static int tri_fits(const struct vg_work *w, struct vg_cavity *c, size_t i)
   return 1;
 }
 
+/* Goes to the nearest of the new triangles, or one that is as good as on it,
+ * from the one in the place of the old on. */
 static int sample_fits(const struct vg_work *w, struct vg_cavity *c,
-                       uint32_t s)
+                       uint32_t s, size_t old)
 {
+  const double most = c->tolerance * c->tolerance;
   double best = INFINITY;
+  size_t i = old < c->n_new ? old : 0;
 
   if (c->n_sample == VG_WORK_SAMPLES) return 0;
-  for (size_t i = 0; i < c->n_new; i++) {
+  for (size_t n = 0; n < c->n_new && best > ON * most; n++) {
     double u, v, d2 = vg_ref_tri_nearest(&c->made[i], w->given[s], &u, &v);
 
-    if (!(d2 < best)) continue;
-    best = d2;
-    c->goes[c->n_sample] = (uint16_t)i;
+    if (d2 < best) best = d2, c->goes[c->n_sample] = (uint16_t)i;
+    if (++i == c->n_new) i = 0;
   }
   c->sample[c->n_sample++] = s;
-  return best <= c->tolerance * c->tolerance;
+  return best <= most;
 }
 
 /* Sets made, with normals, and the sum of these by area; 0 where one of the
@@ -498,11 +502,11 @@ int vg_cavity_fits(const struct vg_work *w, struct vg_cavity *c)
   double sum[3];
 
   if (!make_triangles(c, sum) || !is_unfolded(w, c, sum)) return 0;
-  if (c->fresh != VG_REF_NONE && !sample_fits(w, c, c->fresh)) return 0;
+  if (c->fresh != VG_REF_NONE && !sample_fits(w, c, c->fresh, 0)) return 0;
   for (size_t i = 0; i < c->n_old; i++)
     for (uint32_t s = w->first[c->old[i]]; s != VG_REF_NONE;
          s = w->follow[s])
-      if (!sample_fits(w, c, s)) return 0;
+      if (!sample_fits(w, c, s, i)) return 0;
   for (size_t i = 0; i < c->n_new; i++)
     if (!tri_fits(w, c, i)) return 0;
   return 1;

@@ -231,4 +231,16 @@ int vg_work_swap(struct vg_work *w, uint32_t h);
 int vg_work_move(struct vg_work *w, uint32_t p, const double x[3],
                  double shape);
 
+/* The two lines at a point of a curve: lengths along it of their ends. */
+struct vg_work_span {
+  uint32_t line[2], curve;
+  double lo, at, hi;        /* the point is at `at` */
+};
+
+/** That of p; 0 where it has none, or may not move. */
+int vg_work_span(const struct vg_work *w, uint32_t p, struct vg_work_span *s);
+
+/** Move a point of a curve along it to the length `at`; shape as above. */
+int vg_work_slide(struct vg_work *w, uint32_t p, double at, double shape);
+
 #endif

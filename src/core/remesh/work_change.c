@@ -1,4 +1,4 @@
-/* The four changes. Each gathers the triangles that go and those that come,
+/* The five changes. Each gathers the triangles that go and those that come,
  * has them checked, cheapest question first, and only then touches the
  * surface. */
 #include "core/remesh/work_parts.h"
@@ -490,13 +490,55 @@ int vg_work_swap(struct vg_work *w, uint32_t h)
 
 /* --- move ---------------------------------------------------------------- */
 
+/* p becomes q: what is around it is told. */
+static void settle_move(struct vg_work *w, uint32_t p, const uint32_t *ring,
+                        const struct vg_cavity *c, struct vg_work_point *q)
+{
+  uint32_t near[VG_WORK_RING + 2];
+  size_t n = 0;
+
+  for (size_t i = 0; i < c->n_old; i++) near[n++] = vg_work_to(w, ring[i]);
+  if (w->mate[ring[0]] == VG_REF_NONE)
+    near[n++] = vg_work_from(w, vg_work_prev(ring[c->n_old - 1]));
+  near[n++] = p;
+  q->given = VG_REF_NONE;
+  vg_work_ask(w, q, vg_work_size_near(w, q->x, q->home, n, near, &q->by));
+  w->point[p] = *q;
+  for (size_t i = 0; i < n; i++) w->point[near[i]].changed = ++w->clock;
+  for (size_t i = 0; i < c->n_old; i++) w->stamp[c->old[i]] = w->clock;
+  vg_cavity_settle(w, c, c->old);
+  w->n_move++;
+}
+
+/* The triangles around p as they would be were it q; returns the least shape
+ * that they have now. */
+static double move_cavity(const struct vg_work *w, uint32_t p, size_t n,
+                          const uint32_t *ring, const struct vg_work_point *q,
+                          struct vg_cavity *c)
+{
+  double before = 1;
+
+  vg_cavity_begin(w, c, p);
+  for (size_t i = 0; i < n; i++) {
+    c->was[i] = (uint16_t)i;
+    c->old[c->n_old++] = ring[i] / 3;
+    vg_cavity_narrow(w, c, vg_work_to(w, ring[i]));
+    before = fmin(before, vg_work_tri_shape(w, ring[i] / 3));
+    vg_cavity_add(c, q, &w->point[vg_work_to(w, ring[i])],
+                  &w->point[vg_work_from(w, vg_work_prev(ring[i]))],
+                  w->edge[ring[i]] ? 0 : 1);
+  }
+  c->fresh = w->point[p].given;
+  return before;
+}
+
 int vg_work_move(struct vg_work *w, uint32_t p, const double x[3],
                  double shape)
 {
   struct vg_cavity c;
   struct vg_work_point q = w->point[p];
-  uint32_t ring[VG_WORK_RING], t[VG_WORK_RING], near[VG_WORK_RING + 1];
-  double n[3] = { 0, 0, 0 }, before = 1;
+  uint32_t ring[VG_WORK_RING];
+  double n[3] = { 0, 0, 0 }, before;
   size_t n_ring;
   int open;
 
@@ -506,34 +548,80 @@ int vg_work_move(struct vg_work *w, uint32_t p, const double x[3],
   if (!n_ring) return 0;
   for (size_t i = 0; i < n_ring; i++) normal_of(w, ring[i] / 3, n);
   if (!(vg_unit(n) > 0)) return 0;
-  vg_cavity_begin(w, &c, p);
   memcpy(q.x, x, sizeof q.x);
-  for (size_t i = 0; i < n_ring; i++) {
-    t[i] = c.old[c.n_old++] = ring[i] / 3;
-    vg_cavity_narrow(w, &c, vg_work_to(w, ring[i]));
-    before = fmin(before, vg_work_tri_shape(w, t[i]));
-    vg_cavity_add(&c, &q, &w->point[vg_work_to(w, ring[i])],
-                  &w->point[vg_work_from(w, vg_work_prev(ring[i]))], 1);
-  }
-  before = fmin(before, shape);
+  before = fmin(shape, move_cavity(w, p, n_ring, ring, &q, &c));
   vg_cavity_measure(w, &c);  /* roughly, which costs little, then exactly */
   if (!(c.shape > ALMOST * before)
       || !(vg_ref_project(w->ref, x, n, &q.home, q.x)
            <= STRAY * q.asked.size)) return 0;
   c.hint = q.home;
   vg_cavity_measure(w, &c);
-  if (!(c.shape > before)) return 0;
-  c.fresh = w->point[p].given;
-  if (!vg_cavity_fits(w, &c)) return 0;
-  for (size_t i = 0; i < n_ring; i++) near[i] = vg_work_to(w, ring[i]);
-  near[n_ring] = p;
-  q.given = VG_REF_NONE;
-  vg_work_ask(w, &q, vg_work_size_near(w, q.x, q.home, n_ring + 1, near,
-                                       &q.by));
-  w->point[p] = q;
-  for (size_t i = 0; i <= n_ring; i++) w->point[near[i]].changed = ++w->clock;
-  for (size_t i = 0; i < n_ring; i++) w->stamp[t[i]] = w->clock;
-  vg_cavity_settle(w, &c, t);
-  w->n_move++;
+  if (!(c.shape > before) || !vg_cavity_fits(w, &c)) return 0;
+  settle_move(w, p, ring, &c, &q);
+  return 1;
+}
+
+/* --- slide --------------------------------------------------------------- */
+
+/* The lines that end and begin at p, along their curve. */
+static int lines_at(const struct vg_work *w, uint32_t p, size_t n,
+                    const uint32_t *ring, uint32_t line[2])
+{
+  const struct vg_work_line *a, *b;
+  uint32_t first = other_line(w, ring, n, 0), second;
+
+  second = first ? other_line(w, ring, n, first) : 0;
+  if (!second) return 0;
+  a = &w->line[first - 1];
+  line[a->end[0] == p] = first - 1;
+  line[a->end[0] != p] = second - 1;
+  a = &w->line[line[0]];
+  b = &w->line[line[1]];
+  return a->curve == b->curve && a->end[1] == p && b->end[0] == p
+         && a->end[0] != p && b->end[1] != p && a->at[1] == b->at[0];
+}
+
+int vg_work_span(const struct vg_work *w, uint32_t p, struct vg_work_span *s)
+{
+  uint32_t ring[VG_WORK_RING];
+  size_t n;
+  int open;
+
+  if (w->point[p].kind != VG_WORK_CURVE || w->point[p].frozen) return 0;
+  n = vg_work_ring(w, p, ring, &open);
+  if (!n || !lines_at(w, p, n, ring, s->line)) return 0;
+  s->curve = w->line[s->line[0]].curve;
+  s->lo = w->line[s->line[0]].at[0];
+  s->at = w->line[s->line[0]].at[1];
+  s->hi = w->line[s->line[1]].at[1];
+  return 1;
+}
+
+int vg_work_slide(struct vg_work *w, uint32_t p, double at, double shape)
+{
+  struct vg_work_point q = w->point[p];
+  struct vg_work_span s;
+  struct vg_cavity c;
+  uint32_t ring[VG_WORK_RING];
+  double before, foot[3];
+  size_t n;
+  int open;
+
+  if (!vg_work_span(w, p, &s) || !(at > s.lo && at < s.hi)) return 0;
+  n = vg_work_ring(w, p, ring, &open);
+  vg_curve_at(w->curves, w->ref, s.curve, at, q.x);
+  before = fmin(shape, move_cavity(w, p, n, ring, &q, &c));
+  if (open)
+    vg_cavity_narrow(w, &c, vg_work_from(w, vg_work_prev(ring[n - 1])));
+  c.on_curve = 1;
+  vg_cavity_measure(w, &c);
+  if (!(c.shape > before)
+      || !(vg_curve_chord(w->curves, w->ref, s.curve, s.lo, at)
+           <= c.tolerance)
+      || !(vg_curve_chord(w->curves, w->ref, s.curve, at, s.hi)
+           <= c.tolerance) || !vg_cavity_fits(w, &c)) return 0;
+  vg_ref_nearest(w->ref, q.x, NULL, &q.home, foot);
+  settle_move(w, p, ring, &c, &q);
+  w->line[s.line[0]].at[1] = w->line[s.line[1]].at[0] = at;
   return 1;
 }

@@ -1,7 +1,8 @@
 # Grid families: a small body made at three levels follows the rule; settings
-# without effect are named; and edges across gaps.
+# without effect are named; and edges across gaps. The ellipsoids are given finer
+# than any level asks for: facets as large as that show in the numbers of edges.
 body() { # NAME X Y Z DX: an ellipsoid of these half axes, moved by DX
-  awk -v n=32 -v x="$2" -v y="$3" -v z="$4" -v dx="$5" 'BEGIN {
+  awk -v n=48 -v x="$2" -v y="$3" -v z="$4" -v dx="$5" 'BEGIN {
     pi = atan2(0, -1)
     printf "v %.15g 0 %.15g\n", dx, z
     for (j = 1; j < n; j++)
