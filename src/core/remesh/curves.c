@@ -138,7 +138,8 @@ static void find_lines(struct finder *f)
     uint32_t m = f->r->mate[h];
 
     if (m != VG_REF_NONE && m < h) continue;
-    if (m == VG_REF_NONE || cosine(f, h) < f->sharp || is_hard(f, h))
+    if (m == VG_REF_NONE || cosine(f, h) < f->sharp || is_hard(f, h)
+        || (f->o->stretch && f->o->stretch[h] > 1))
       set_line(f, h, 1);
   }
 }

@@ -30,6 +30,8 @@ struct vg_curves_options {
   const struct vg_patch *patch;
   const uint8_t *hard;      /* [n_patch] whose borders are lines; or NULL.
                                So are those between different conditions */
+  const double *stretch;    /* [3 n_tri] half-edges with more than 1 are lines;
+                               or NULL */
 };
 
 /** Find them. Decisions compare cosines with one that the angle gives by a

@@ -15,6 +15,7 @@
 #include "core/remesh/passes.h"
 #include "core/remesh/result.h"
 #include "core/remesh/sizes.h"
+#include "core/remesh/stretch.h"
 #include "core/sizing/sizing_source.h"
 #include "core/surface/envelope.h"
 #include "core/surface/surface_check.h"
@@ -111,6 +112,18 @@ static vg_status check_options(const struct vg_remesh_options *o,
   return VG_OK;
 }
 
+static vg_status check_stretch(const struct vg_mesh *m, const double *stretch,
+                               struct vg_error *err)
+{
+  for (size_t h = 0; stretch && h < 3 * m->n_tri; h++)
+    if (!(stretch[h] >= 0 && stretch[h] <= VG_REMESH_STRETCH))
+      return vg_fail(err, VG_ERR_INPUT, "edges along edge %zu of triangle %zu "
+                     "are to be %g times as long as across it: 1 to %d is "
+                     "possible", h % 3 + 1, h / 3 + 1, stretch[h],
+                     VG_REMESH_STRETCH);
+  return VG_OK;
+}
+
 static double length_of(const struct vg_mesh *m, const uint8_t *outer)
 {
   double lo[3] = { INFINITY, INFINITY, INFINITY }, most = 0;
@@ -204,13 +217,14 @@ static vg_status prepare(struct job *j, struct vg_error *err)
   const struct vg_remesh_options *o = j->o;
   vg_status st;
 
+  VG_TRY(check_stretch(j->given, o->stretch, err));
   VG_TRY(settle(j, err));
   VG_TRY(vg_stopped(&o->stop, err));
   VG_TRY(vg_ref_build(&j->ref, j->given, &o->stop, err));
   VG_TRY(vg_stopped(&o->stop, err));
   VG_TRY(vg_curves_find(&j->curves, &j->ref, &(struct vg_curves_options){
     o->ridge_angle, j->jag, j->given->tri_patch, j->given->patch,
-    o->hard }, err));
+    o->hard, o->stretch }, err));
   VG_TRY(vg_stopped(&o->stop, err));
   VG_TRY(vg_sizes_make(&j->ref, &j->curves, &(struct vg_sizes_options){
     o->per_turn / o->scale, CHORD * j->jag * o->scale * o->scale, o->scale,
@@ -427,6 +441,7 @@ static vg_status make(struct job *j, struct vg_mesh *out, int last, int *sound,
                       struct vg_error *err)
 {
   struct vg_source_set set = VG_SOURCE_SET_INIT;
+  struct vg_stretch stretch = { .by = j->o->stretch };
   struct vg_remesh_report *r = &j->r;
   struct vg_work w = { .ref = &j->ref, .curves = &j->curves,
     .tolerance = r->tolerance, .relative = RELATIVE, .far = j->far,
@@ -434,6 +449,7 @@ static vg_status make(struct job *j, struct vg_mesh *out, int last, int *sound,
     .stop = j->o->stop };
   vg_status st;
 
+  if (stretch.by) w.stretch = &stretch;
   VG_TRY(ask_sources(j, &w, &set, err));
   if (j->n_source > j->o->n_source) w.h_min *= SPOT_LEAST;
   VG_TRY(vg_work_begin(&w, err));
@@ -457,6 +473,7 @@ static vg_status make(struct job *j, struct vg_mesh *out, int last, int *sound,
   r->n_move = w.n_move;
 done:
   vg_work_release(&w);
+  vg_stretch_release(&stretch);
   vg_source_release(&set);
   return st;
 }

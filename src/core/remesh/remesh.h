@@ -38,11 +38,18 @@ struct vg_remesh_options {
   const struct vg_size_map *map;  /* sizes besides; or NULL */
   const double *cap;        /* [n_point] of m: largest size there; or NULL */
   const double *across;     /* [n_patch] edges across its strips; NULL: 1 */
+  const double *stretch;    /* [3 n_tri] of edge 3 t + k, from corner k of
+                               triangle t on, the same on both sides: such an
+                               edge stays as a line, and new edges along it are
+                               so many times as long as across it, which fades
+                               out around; 0 to VG_REMESH_STRETCH, 1 and less:
+                               not; or NULL */
   const uint8_t *hard;      /* [n_patch] all borders of the patch stay; or
                                NULL */
   int threads;              /* 0: one per core; the same bytes for any */
   struct vg_stop stop;      /* asked before every change */
 };
+#define VG_REMESH_STRETCH 20
 #define VG_REMESH_OPTIONS_INIT { .ridge_angle = 40, .per_turn = 24, \
   .growth = 1.2, .scale = 1, .threads = 1 }
 
@@ -63,6 +70,8 @@ struct vg_remesh_bad {
   enum vg_remesh_cause cause;
 };
 
+#define VG_REMESH_ASPECTS 5
+
 struct vg_remesh_report {
   double length, tolerance, h_min, h_max;  /* what was settled */
   size_t n_tri[2], n_point[2];             /* before, after */
@@ -73,6 +82,11 @@ struct vg_remesh_report {
                                met and sizes there were halved */
   size_t n_edge, n_edge_fit;  /* edges; those within a factor sqrt 2 of what
                                is asked for */
+  size_t n_aspect[VG_REMESH_ASPECTS];  /* triangles by how many times as long
+                               edges are asked for one way as the other, up to
+                               1.5, 3, 6, 12 and more. All angles here are as
+                               if these were not stretched */
+  double aspect_most, angle_min;
   size_t cause[VG_REMESH_N];
   size_t n_bad;
   struct vg_remesh_bad *bad;  /* [n_bad] owned, by face */

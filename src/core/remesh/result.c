@@ -155,6 +155,26 @@ static enum vg_remesh_cause cause_of(const struct vg_work *w, size_t t)
   return n_edge || n_line ? VG_REMESH_LINE : VG_REMESH_SURFACE;
 }
 
+static void count_aspect(const struct vg_work *w, size_t t,
+                         struct vg_remesh_report *r)
+{
+  const struct vg_work_point *p[3];
+  double u[3], v[3], n[3], form[6], aspect, upto = 1.5;
+  int i = 0;
+
+  for (int k = 0; k < 3; k++) p[k] = &w->point[w->tri[t][k]];
+  vg_sub(p[1]->x, p[0]->x, u);
+  vg_sub(p[2]->x, p[0]->x, v);
+  vg_cross(u, v, n);
+  for (int k = 0; k < 6; k++)
+    form[k] = (p[0]->asked.form[k] + p[1]->asked.form[k]
+               + p[2]->asked.form[k]) / 3;
+  aspect = vg_form_aspect(form, n);
+  for (; i + 1 < VG_REMESH_ASPECTS && aspect > upto; upto *= 2) i++;
+  r->n_aspect[i]++;
+  r->aspect_most = fmax(r->aspect_most, aspect);
+}
+
 static vg_status list_bad(const struct vg_work *w, size_t t, size_t face,
                           size_t *cap, struct vg_remesh_report *r,
                           struct vg_error *err)
@@ -162,10 +182,12 @@ static vg_status list_bad(const struct vg_work *w, size_t t, size_t face,
   const double sine = sqrt(vg_work_tri_shape(w, t));
   struct vg_remesh_bad b = { .face = face };
 
+  b.angle = asin(fmin(sine, 1)) * (180 / M_PI);   /* for the report only */
+  if (!face || b.angle < r->angle_min) r->angle_min = b.angle;
+  if (w->form) count_aspect(w, t, r);
   if (sine >= 0.34202014332566873) return VG_OK;  /* of VG_REMESH_BAD */
   if (vg_reserve(&r->bad, cap, r->n_bad + 1, sizeof *r->bad))
     return vg_fail_memory(err, "the list of bad triangles");
-  b.angle = asin(fmin(sine, 1)) * (180 / M_PI);   /* for the report only */
   b.cause = cause_of(w, t);
   middle(w, t, b.at);
   r->cause[b.cause]++;

@@ -1,3 +1,4 @@
+#include "core/remesh/stretch.h"
 #include "core/remesh/work_parts.h"
 
 #include <math.h>
@@ -245,6 +246,11 @@ vg_status vg_work_begin(struct vg_work *w, struct vg_error *err)
   for (size_t t = 0; t < w->n_tri; t++) w->stamp[t] = 1;
   VG_TRY(vg_stopped(&w->stop, err));
   VG_TRY(make_lines(w, err));
+  if (w->stretch) {
+    VG_TRY(vg_stretch_make(w->stretch, w, err));
+    w->form = vg_stretch_form;
+    w->of_form = w->stretch;
+  }
   VG_TRY(vg_stopped(&w->stop, err));
   VG_TRY(make_points(w, err));
   VG_TRY(make_samples(w, err));

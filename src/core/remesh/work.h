@@ -36,6 +36,8 @@ struct vg_work_point {
 enum { VG_WORK_SWAPS, VG_WORK_COLLAPSES, VG_WORK_ACROSS, VG_WORK_SPLITS,
        VG_WORK_POLISH, VG_WORK_LOOKS };
 
+struct vg_stretch;          /* stretch.h */
+
 /* Edge along a curve. */
 struct vg_work_line {
   uint32_t curve, end[2];
@@ -56,6 +58,7 @@ struct vg_work {
   void (*form)(const void *of_form, const double x[3], double size,
                double form[6]);
   const void *of_form;
+  struct vg_stretch *stretch; /* made to begin with, for the form; or NULL */
   double h_min, h_max;
   int threads;              /* to begin with */
   size_t n_point, cap_point, n_tri, cap_tri, cap_mate, cap_edge, cap_first,

@@ -157,6 +157,8 @@ struct vg_remesh_options vg_remesh_options_of(const struct vg_settings *s);
 struct vg_surface_sizes {
   double *cap;                      /* [n_point] largest size; INFINITY: none */
   double *across;                   /* [n_patch] edges across strips */
+  double *stretch;                  /* [3 n_tri] as vg_remesh_options has it;
+                                       NULL where nothing is stretched */
 };
 
 /** From the settings, for the surface as it is now. VG_ERR_INPUT for patches

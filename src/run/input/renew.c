@@ -71,6 +71,7 @@ static vg_status remesh(struct vg_problem *p, const uint8_t *hard,
   o.hard = hard;
   o.cap = sizes->cap;
   o.across = sizes->across;
+  o.stretch = sizes->stretch;
   o.threads = p->threads;
   o.stop = (struct vg_stop){ vg_display_stop, show };
   return vg_remesh(&p->surface, &o, &p->renewal.report, err);
@@ -99,7 +100,7 @@ vg_status vg_problem_renew(struct vg_problem *p, struct vg_display *show,
                            struct vg_error *err)
 {
   struct vg_renewal *r = &p->renewal;
-  struct vg_surface_sizes sizes = { NULL, NULL };
+  struct vg_surface_sizes sizes = { NULL, NULL, NULL };
   struct vg_mesh given = VG_MESH_INIT;
   uint8_t *hard = NULL;
   double t = vg_display_now();

@@ -1,6 +1,6 @@
 /* The table `surface`: sizes of single patches, curves, leading edges and
  * strips of a surface that is made anew, as largest sizes at the points that it
- * has now. */
+ * has now, and curves along which edges are stretched. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,7 +27,7 @@ static void lower(double *cap, uint32_t p, double size)
 
 /* --- curves -------------------------------------------------------------- */
 
-struct side { uint32_t lo, hi, patch; };
+struct side { uint32_t lo, hi, patch, half; };
 
 static int by_ends(const void *pa, const void *pb)
 {
@@ -40,7 +40,8 @@ static int by_ends(const void *pa, const void *pb)
 
 /* Edges between patches a and b. */
 static vg_status size_curve(const struct vg_mesh *m, size_t a, size_t b,
-                            double size, double *cap, struct vg_error *err)
+                            double size, double stretch,
+                            struct vg_surface_sizes *to, struct vg_error *err)
 {
   struct side *s = vg_alloc(3 * m->n_tri, sizeof *s);
   size_t n = 0, n_edge = 0;
@@ -51,14 +52,17 @@ static vg_status size_curve(const struct vg_mesh *m, size_t a, size_t b,
       uint32_t p = m->tri[t][k], q = m->tri[t][(k + 1) % 3];
 
       if (m->tri_patch[t] != a && m->tri_patch[t] != b) continue;
-      s[n++] = (struct side){ p < q ? p : q, p < q ? q : p, m->tri_patch[t] };
+      s[n++] = (struct side){ p < q ? p : q, p < q ? q : p, m->tri_patch[t],
+                              (uint32_t)(3 * t) + (uint32_t)k };
     }
   qsort(s, n, sizeof *s, by_ends);
   for (size_t i = 1; i < n; i++)
     if (s[i].lo == s[i - 1].lo && s[i].hi == s[i - 1].hi
         && s[i].patch != s[i - 1].patch) {
-      lower(cap, s[i].lo, size);
-      lower(cap, s[i].hi, size);
+      lower(to->cap, s[i].lo, size);
+      lower(to->cap, s[i].hi, size);
+      for (size_t j = i - 1; stretch > 0 && j <= i; j++)
+        to->stretch[s[j].half] = stretch;
       n_edge++;
     }
   free(s);
@@ -167,7 +171,11 @@ static vg_status take_row(const struct vg_problem *p,
   VG_TRY(find_patch(m, row->patch, &a, err));
   if (row->beside != VG_BC_NONE) {
     VG_TRY(find_patch(m, row->beside, &b, err));
-    st = size_curve(m, a, b, size, s->cap, err);
+    if (row->stretch > 0 && !s->stretch) {
+      s->stretch = vg_calloc(3 * m->n_tri, sizeof *s->stretch);
+      if (!s->stretch) VG_TRY(vg_fail_memory(err, "the stretched edges"));
+    }
+    st = size_curve(m, a, b, size, row->stretch, s, err);
     goto done;
   }
   for (size_t t = 0; t < m->n_tri; t++)
@@ -204,5 +212,6 @@ void vg_surface_sizes_release(struct vg_surface_sizes *s)
 {
   free(s->cap);
   free(s->across);
+  free(s->stretch);
   memset(s, 0, sizeof *s);
 }

@@ -44,6 +44,18 @@ static void back_text(FILE *to, const struct vg_put_back *b)
   distance_text(to, "from the CAD model now", &b->off[1]);
 }
 
+static void stretch_text(FILE *to, const struct vg_remesh_report *r)
+{
+  const size_t *n = r->n_aspect;
+
+  if (!(r->aspect_most > 0)) return;
+  fprintf(to, "  stretched: triangles by up to 1.5 times %zu, to 3 %zu, to 6 "
+          "%zu, to 12 %zu, more %zu; at most %.3g\n", n[0], n[1], n[2], n[3],
+          n[4], r->aspect_most);
+  fprintf(to, "  smallest angle %.3g, and those listed here, as if not "
+          "stretched\n", r->angle_min);
+}
+
 void vg_report_remesh_text(FILE *to, const struct vg_renewal *n)
 {
   const struct vg_remesh_report *r = &n->report;
@@ -63,6 +75,7 @@ void vg_report_remesh_text(FILE *to, const struct vg_renewal *n)
   if (r->n_round > 1)
     fprintf(to, "  made %d times: triangles met, and sizes there were "
             "halved\n", r->n_round);
+  stretch_text(to, r);
   bad_text(to, r);
 }
 
@@ -108,6 +121,17 @@ static json_t *bad_json(const struct vg_remesh_report *r, size_t shown)
   return list;
 }
 
+static json_t *stretch_json(const struct vg_remesh_report *r)
+{
+  const size_t *n = r->n_aspect;
+
+  if (!(r->aspect_most > 0)) return json_null();
+  return json_pack("{s:f s:f s:[IIIII]}", "most", r->aspect_most,
+    "smallest_angle", r->angle_min, "triangles_to_1.5_3_6_12_more",
+    (json_int_t)n[0], (json_int_t)n[1], (json_int_t)n[2], (json_int_t)n[3],
+    (json_int_t)n[4]);
+}
+
 json_t *vg_report_remesh_json(const struct vg_renewal *n,
                               const struct vg_mesh *m)
 {
@@ -115,7 +139,7 @@ json_t *vg_report_remesh_json(const struct vg_renewal *n,
 
   if (!n->is_done) return json_null();
   return json_pack("{s:[II] s:[II] s:I s:I s:[ff] s:f s:f s:f s:f s:i s:f s:o "
-                   "s:o s:o s:{s:I s:I s:I s:I} s:f s:o s:o}",
+                   "s:o s:o s:{s:I s:I s:I s:I} s:f s:o s:o s:o}",
     "triangles", (json_int_t)r->n_tri[0], (json_int_t)r->n_tri[1],
     "points", (json_int_t)r->n_point[0], (json_int_t)r->n_point[1],
     "corners", (json_int_t)r->n_corner, "lines", (json_int_t)r->n_line,
@@ -129,7 +153,8 @@ json_t *vg_report_remesh_json(const struct vg_renewal *n,
     "changes", "splits", (json_int_t)r->n_split, "collapses",
     (json_int_t)r->n_collapse, "swaps", (json_int_t)r->n_swap, "moves",
     (json_int_t)r->n_move, "seconds", n->seconds,
-    "patches", patches_json(n, m), "below_20_degrees", bad_json(r, SIZE_MAX));
+    "patches", patches_json(n, m), "below_20_degrees", bad_json(r, SIZE_MAX),
+    "stretched", stretch_json(r));
 }
 
 void vg_report_lines_text(FILE *to, const struct vg_remesh_report *r, int fit)

@@ -42,7 +42,7 @@ struct vg_patch_row {
  * is made anew. 0: not given. */
 struct vg_surface_row {
   int32_t patch, beside;           /* beside VG_BC_NONE: the patch itself */
-  double size, lead, across;
+  double size, lead, across, stretch;
 };
 
 /** Answers that a project may leave open. */

@@ -118,6 +118,20 @@ vanguard surface -q bar.obj --deck nothing.deck --out nothing
 exits 1
 says err "asks for nothing"
 
+# The curve again, with longer edges along it than across, but at corners.
+sed -e 's/  size$/  size  stretch/' -e 's/^2 .*/1      2       0.1   4/' \
+  end.deck >long.deck
+sed 's/^1 .*/1      -       0.1   4/' long.deck >nowhere.deck
+vanguard surface -q bar.obj --deck long.deck --out long
+exits 0
+says out "stretched: triangles by up to 1.5 times"
+says long/bar.surface.json '"stretched"'
+n_long=$(made)
+[ "$n_long" -lt "$n_rim" ] || fail "$n_rim, stretched $n_long triangles"
+vanguard surface -q bar.obj --deck nowhere.deck --out nowhere
+exits 1
+says err "stretch without a curve; give the patch beside"
+
 # Within a run.
 vanguard mesh -q -p bar.obj --remesh-surface yes --surface-size 0.3 \
   --out run --write lb8.ugrid --threads 1

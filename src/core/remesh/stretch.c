@@ -1,0 +1,282 @@
+#include "core/remesh/stretch.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/geometry/graded.h"
+#include "core/geometry/vector.h"
+#include "core/remesh/work_parts.h"
+
+#define LEAF 4            /* pieces between places */
+#define DEPTH 64
+#define CHORD 0.6         /* S45: of the tolerance: what edges may leave of the
+                             line */
+#define BEND 0.033        /* of an edge: its chord where 24 go round a circle */
+#define SHORTER 0.8       /* an edge whose chord is too far, again and again */
+
+/* --- making -------------------------------------------------------------- */
+
+/* Part of a curve that is to be stretched. */
+struct part {
+  const struct vg_work *w;
+  size_t curve;
+  double from, to, by;
+  uint32_t hint;
+};
+
+static double size_at(void *user, double s)
+{
+  struct part *p = user;
+  double x[3];
+
+  vg_curve_at(p->w->curves, p->w->ref, p->curve, p->from + s, x);
+  return vg_work_size(p->w, x, &p->hint);
+}
+
+static double chord(const struct part *p, double at, double along)
+{
+  return vg_curve_chord(p->w->curves, p->w->ref, p->curve,
+                        fmax(at - along / 2, p->from),
+                        fmin(at + along / 2, p->to));
+}
+
+static struct vg_stretch_place place_at(const struct vg_stretch *s,
+                                        struct part *p, double at)
+{
+  struct vg_stretch_place q = { .at = at };
+  const double size = size_at(p, at - p->from);
+  const double room = CHORD * vg_work_tolerance(p->w, size);
+  double a[3], b[3];
+
+  q.along = fmax(fmin(p->by * size, s->h_max), size);
+  while (q.along > size
+         && chord(p, at, q.along) > fmin(room, BEND * q.along))
+    q.along = fmax(SHORTER * q.along, size);
+  vg_curve_at(p->w->curves, p->w->ref, p->curve, at, q.x);
+  vg_curve_at(p->w->curves, p->w->ref, p->curve,
+              fmax(at - q.along / 2, p->from), a);
+  vg_curve_at(p->w->curves, p->w->ref, p->curve,
+              fmin(at + q.along / 2, p->to), b);
+  vg_sub(b, a, q.way);
+  vg_unit(q.way);
+  return q;
+}
+
+static void add_box(struct vg_stretch_box *b, const double x[3])
+{
+  for (int k = 0; k < 3; k++) {
+    b->lo[k] = fmin(b->lo[k], x[k]);
+    b->hi[k] = fmax(b->hi[k], x[k]);
+  }
+}
+
+/* Boxes of LEAF pieces each, and above them of two each. */
+static vg_status make_boxes(struct vg_stretch *s, struct vg_stretch_run *r,
+                            struct vg_error *err)
+{
+  static const struct vg_stretch_box none = {
+    { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } };
+  struct vg_stretch_box *b;
+
+  r->n_leaf = 1;
+  while (LEAF * r->n_leaf < r->n - 1) r->n_leaf *= 2;
+  r->box = s->n_box;
+  if (vg_reserve(&s->box, &s->cap_box, s->n_box + 2 * r->n_leaf,
+                 sizeof *s->box))
+    return vg_fail_memory(err, "the stretched lines");
+  s->n_box += 2 * r->n_leaf;
+  b = s->box + r->box;
+  for (size_t i = 0; i < 2 * r->n_leaf; i++) b[i] = none;
+  for (size_t i = 0; i + 1 < r->n; i++) {
+    add_box(&b[r->n_leaf + i / LEAF], s->place[r->first + i].x);
+    add_box(&b[r->n_leaf + i / LEAF], s->place[r->first + i + 1].x);
+  }
+  for (size_t i = r->n_leaf - 1; i > 0; i--) {
+    b[i] = b[2 * i];
+    for (int k = 0; k < 3; k++) {
+      b[i].lo[k] = fmin(b[i].lo[k], b[2 * i + 1].lo[k]);
+      b[i].hi[k] = fmax(b[i].hi[k], b[2 * i + 1].hi[k]);
+    }
+  }
+  return VG_OK;
+}
+
+/* Lengths along it change by no more than sizes do. */
+static void grade(const struct vg_stretch *s, struct vg_stretch_run *r)
+{
+  struct vg_stretch_place *p = s->place + r->first;
+
+  for (size_t i = 1; i < r->n; i++)
+    p[i].along = fmin(p[i].along, p[i - 1].along
+                                  + s->slope * (p[i].at - p[i - 1].at));
+  for (size_t i = r->n - 1; i > 0; i--)
+    p[i - 1].along = fmin(p[i - 1].along, p[i].along
+                                          + s->slope * (p[i].at
+                                                        - p[i - 1].at));
+  for (size_t i = 0; i < r->n; i++) r->most = fmax(r->most, p[i].along);
+}
+
+static vg_status add_run(struct vg_stretch *s, struct part *p,
+                         struct vg_error *err)
+{
+  struct vg_stretch_run r = { .first = s->n_place, .by = p->by };
+  double *step = NULL;
+  size_t n;
+  vg_status st;
+
+  VG_TRY(vg_graded_steps(p->to - p->from, size_at, p, 1, &n, &step, err));
+  r.n = n + 1;
+  if (vg_reserve(&s->place, &s->cap_place, s->n_place + r.n, sizeof *s->place)
+      || vg_reserve(&s->run, &s->cap_run, s->n_run + 1, sizeof *s->run))
+    VG_TRY(vg_fail_memory(err, "the stretched lines"));
+  for (size_t i = 0; i < r.n; i++)
+    s->place[s->n_place++] = place_at(s, p, p->from + step[i]);
+  grade(s, &r);
+  VG_TRY(make_boxes(s, &r, err));
+  s->run[s->n_run++] = r;
+done:
+  free(step);
+  return st;
+}
+
+vg_status vg_stretch_make(struct vg_stretch *s, const struct vg_work *w,
+                          struct vg_error *err)
+{
+  double *by = vg_calloc(w->n_line, sizeof *by);   /* of each line */
+  vg_status st = VG_OK;
+
+  if (!by) return vg_fail_memory(err, "the stretched lines");
+  s->slope = w->ref->slope;
+  s->h_max = w->h_max;
+  for (uint32_t h = 0; h < 3 * w->n_tri; h++)
+    if (w->edge[h]) by[w->edge[h] - 1] = s->by[h];
+  for (size_t i = 0, end; i < w->n_line; i = end) {
+    const struct vg_work_line *l = &w->line[i];
+    struct part p = { w, l->curve, l->at[0], l->at[1], by[i], VG_REF_NONE };
+
+    for (end = i + 1; end < w->n_line && w->line[end].curve == p.curve
+         && by[end] == p.by; end++) p.to = w->line[end].at[1];
+    if (p.by > 1) VG_TRY(add_run(s, &p, err));
+  }
+done:
+  free(by);
+  if (st < 0) vg_stretch_release(s);
+  return st;
+}
+
+void vg_stretch_release(struct vg_stretch *s)
+{
+  free(s->run);
+  free(s->place);
+  free(s->box);
+  *s = (struct vg_stretch){ .by = s->by };
+}
+
+/* --- asking -------------------------------------------------------------- */
+
+static double box2(const struct vg_stretch_box *b, const double x[3])
+{
+  double sum = 0;
+
+  for (int k = 0; k < 3; k++) {
+    double d = fmax(fmax(b->lo[k] - x[k], x[k] - b->hi[k]), 0);
+
+    sum += d * d;
+  }
+  return sum;
+}
+
+/* Squared distance from the piece between two places; how far on it. */
+static double piece2(const struct vg_stretch_place *p, const double x[3],
+                     double *t)
+{
+  double e[3], d[3], ee;
+
+  vg_sub(p[1].x, p[0].x, e);
+  vg_sub(x, p[0].x, d);
+  ee = vg_dot(e, e);
+  *t = ee > 0 ? fmin(fmax(vg_dot(d, e) / ee, 0), 1) : 0;
+  for (int k = 0; k < 3; k++) d[k] -= *t * e[k];
+  return vg_dot(d, d);
+}
+
+/* The piece nearest to x, nearer than d2; SIZE_MAX: none. */
+static size_t nearest(const struct vg_stretch *s,
+                      const struct vg_stretch_run *r, const double x[3],
+                      double *d2, double *t)
+{
+  const struct vg_stretch_box *b = s->box + r->box;
+  size_t stack[DEPTH], best = SIZE_MAX;
+  int top = 0;
+
+  stack[top++] = 1;
+  while (top) {
+    size_t i = stack[--top], leaf;
+
+    if (!(box2(&b[i], x) < *d2)) continue;
+    if (i < r->n_leaf) {
+      int left = box2(&b[2 * i], x) <= box2(&b[2 * i + 1], x);
+
+      stack[top++] = 2 * i + (size_t)left;
+      stack[top++] = 2 * i + (size_t)!left;
+      continue;
+    }
+    leaf = LEAF * (i - r->n_leaf);
+    for (size_t k = leaf; k < leaf + LEAF && k + 1 < r->n; k++) {
+      double u, own = piece2(s->place + r->first + k, x, &u);
+
+      if (!(own < *d2)) continue;
+      *d2 = own;
+      *t = u;
+      best = r->first + k;
+    }
+  }
+  return best;
+}
+
+/* How many times as long edges are along the run, and its direction. */
+static double ask(const struct vg_stretch *s, const struct vg_stretch_run *r,
+                  const double x[3], double size, double way[3])
+{
+  const double reach = (r->most - size) / s->slope;
+  double d2 = reach * reach, t, along;
+  const struct vg_stretch_place *p;
+  size_t i;
+
+  if (!(reach > 0)) return 1;
+  i = nearest(s, r, x, &d2, &t);
+  if (i == SIZE_MAX) return 1;
+  p = s->place + i;
+  for (int k = 0; k < 3; k++)
+    way[k] = p[0].way[k] + t * (p[1].way[k] - p[0].way[k]);
+  along = p[0].along + t * (p[1].along - p[0].along) - s->slope * sqrt(d2);
+  return vg_unit(way) > 0 ? fmin(along / size, r->by) : 1;
+}
+
+void vg_stretch_form(const void *stretch, const double x[3], double size,
+                     double form[6])
+{
+  const struct vg_stretch *s = stretch;
+  double best = 1, way[3] = { 0, 0, 0 }, other[3], rest;
+  size_t first = SIZE_MAX;
+
+  for (size_t i = 0; i < s->n_run; i++) {
+    double by = ask(s, &s->run[i], x, size, other);
+
+    if (!(by > best)) continue;
+    best = by;
+    first = i;
+    memcpy(way, other, sizeof way);
+  }
+  rest = best;
+  for (size_t i = 0; first != SIZE_MAX && i < s->n_run; i++) {
+    double by = i == first ? 1 : ask(s, &s->run[i], x, size, other), c;
+
+    if (!(by > 1)) continue;
+    c = vg_dot(way, other);
+    rest = fmin(rest, best - (by - 1) * (1 - c * c));
+  }
+  vg_form_stretch(form, way, fmax(rest, 1));
+}
