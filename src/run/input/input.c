@@ -22,7 +22,8 @@
 
 /* Of struct vg_cad_options, however sizes are scaled. */
 #define FINE_CHORD 3e-4   /* S15: of what the surface is made anew from */
-#define FINEST_CHORD 1e-4 /* where triangles of thin tips do not cross yet */
+#define FINEST_CHORD 1e-4 /* S45: where triangles of thin tips do not cross
+                             yet */
 #define FINE_ANGLE 8.0
 #define CHORD_MOST 0.5
 #define ANGLE_LEAST 1.0
@@ -391,6 +392,14 @@ static int stop_cad(void *user)
   return vg_display_stop(NULL);
 }
 
+/* Triangles along a line are held against facets beside it. */
+static int is_stretched(const struct vg_settings *s)
+{
+  for (size_t i = 0; i < s->n_surface; i++)
+    if (s->surface_row[i].stretch > 1) return 1;
+  return 0;
+}
+
 struct vg_cad_options vg_cad_options_of(const struct vg_settings *s,
                                         int is_renewed,
                                         struct vg_notes *notes)
@@ -402,7 +411,8 @@ struct vg_cad_options vg_cad_options_of(const struct vg_settings *s,
   double angle = (s->cad.angle > 0 ? s->cad.angle : plain.angle) * s->scale;
 
   if (is_renewed && !(s->cad.chord > 0))
-    chord = fmax(FINEST_CHORD, FINE_CHORD * fmin(scale2, 1));
+    chord = is_stretched(s) ? FINEST_CHORD
+            : fmax(FINEST_CHORD, FINE_CHORD * fmin(scale2, 1));
   if (is_renewed && !(s->cad.angle > 0)) angle = FINE_ANGLE;
   return (struct vg_cad_options){ .unit = s->cad.unit,
     .patches = s->cad.patches, .tolerance = s->cad.tolerance,

@@ -87,7 +87,7 @@ static const struct vg_param params[] = {
   { "cad_chord", AT(cad.chord), .type = VG_PARAM_REAL, .hi = 0.5,
     .unit = "", .help = "distance of the triangles from the curves of a CAD "
     "file, over the size of each curve; 0: 0.0003 where the surface is made "
-    "anew, else 0.002" },
+    "anew, 0.0001 where edges of it are stretched, else 0.002" },
   { "cad_angle", AT(cad.angle), .type = VG_PARAM_REAL, .hi = 60,
     .unit = "degrees", .help = "turn of a CAD curve or face from one edge or "
     "triangle to the next; 15: 24 edges a turn; 0: 8 where the surface is "
