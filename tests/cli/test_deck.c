@@ -127,7 +127,8 @@ static void everything_survives_a_round_trip(void **state)
   struct vg_patch_row patch = { -7, 4000, 1, "left wing" };
   struct vg_layer_row layer = { -7, VG_ANSWER_YES, 1e-5, 1.15, NAN, NAN, NAN,
                                 30, 2, 0.125, 0, { 98, 99.9, 70, NAN, 8 } };
-  struct vg_surface_row surface = { -7, VG_BC_NONE, 0.25, 0.002, 4 };
+  struct vg_surface_row surface = { -7, VG_BC_NONE, 0.25, 0.002, 4,
+                                    0 };
   struct vg_sweep_row sweep = { "1,2", "1:4:x2", "", "20000,50000",
                                 "1:3", "advancing,octree", "4,16", 3 };
 
@@ -156,6 +157,7 @@ static void everything_survives_a_round_trip(void **state)
   vg_settings_add(&s, VG_TABLE_SURFACE, &surface, NULL);
   surface.beside = 8;
   surface.lead = surface.across = 0;
+  surface.stretch = 12.5;
   vg_settings_add(&s, VG_TABLE_SURFACE, &surface, NULL);
   for (int kind = VG_SOURCE_VGRID_NODE; kind <= VG_SOURCE_CYLINDER; kind++)
     add_source(&s, kind);

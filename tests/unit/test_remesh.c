@@ -205,6 +205,75 @@ static void follows_strips(void **unused)
   vg_mesh_release(&m);
 }
 
+/* A bar of length 2 with a chamfer along one edge that is `from` wide at one
+ * end, `to` at the other. */
+static void shape_chamfered(struct vg_mesh *m, double from, double to)
+{
+  const struct vg_patch patch = { .id = 1, .bc = VG_BC_NONE,
+                                  .bc_fun3d = VG_BC_NONE };
+  uint32_t p[2][5];
+
+  m->patch = malloc(sizeof *m->patch);
+  m->patch[m->n_patch++] = patch;
+  for (int end = 0; end < 2; end++) {
+    double w = (end ? to : from) / sqrt(2), x = 2. * end;
+    const double at[5][2] = { { 0, 0 }, { 1, 0 }, { 1, 1 - w }, { 1 - w, 1 },
+                              { 0, 1 } };
+
+    for (int k = 0; k < 5; k++)
+      p[end][k] = shape_point(m, x, at[k][0], at[k][1]);
+  }
+  for (int k = 0; k < 5; k++) {
+    int l = (k + 1) % 5;
+
+    shape_tri(m, p[0][k], p[0][l], p[1][l], 0);
+    shape_tri(m, p[0][k], p[1][l], p[1][k], 0);
+  }
+  for (int k = 1; k < 4; k++) {
+    shape_tri(m, p[0][0], p[0][k + 1], p[0][k], 0);
+    shape_tri(m, p[1][0], p[1][k], p[1][k + 1], 0);
+  }
+}
+
+/* Where the edges of the chamfer are nearer to each other than the tolerance,
+ * one of the two is enough. */
+static void closes_narrow_strips(void **unused)
+{
+  const double from = 2e-5, to = 0.01, across = 2;
+
+  (void)unused;
+  for (int kept = 0; kept < 2; kept++) {
+    struct vg_mesh m = VG_MESH_INIT, given = VG_MESH_INIT;
+    struct vg_remesh_options o = VG_REMESH_OPTIONS_INIT;
+    struct vg_remesh_report r = VG_REMESH_REPORT_INIT;
+    struct vg_surface_quality q;
+    struct vg_error err = VG_ERROR_INIT;
+    double far;
+
+    shape_chamfered(&m, from, to);
+    assert_int_equal(vg_mesh_copy(&given, &m, &err), VG_OK);
+    o.across = kept ? &across : NULL;
+    remesh(&m, &o, &r);
+    shape_expect_sound(&m, 0);
+    assert_true(apart(&m, &given) <= r.tolerance);
+    vg_surface_quality(&m, &q);
+    far = 2 * (r.tolerance - from) / (to - from);
+    if (kept) {
+      assert_int_equal(r.n_closed, 0);
+      assert_true(q.angle_min < 10);
+    } else {
+      assert_int_equal(r.n_closed, 1);
+      assert_true(fabs(r.closed_length - far) < 0.01 * far);
+      assert_true(fabs(r.closed_width - r.tolerance) < 1e-3 * r.tolerance);
+      /* edges of up to 2.8 tolerances across a strip of 1 */
+      assert_true(q.angle_min > 15);
+    }
+    vg_remesh_report_release(&r);
+    vg_mesh_release(&m);
+    vg_mesh_release(&given);
+  }
+}
+
 /* Half a body: the rim stays in its plane. */
 static void keeps_open_rims(void **unused)
 {
@@ -637,6 +706,7 @@ int main(void)
     cmocka_unit_test(keeps_a_ball_round),
     cmocka_unit_test(keeps_hard_borders),
     cmocka_unit_test(follows_strips),
+    cmocka_unit_test(closes_narrow_strips),
     cmocka_unit_test(keeps_open_rims),
     cmocka_unit_test(obeys_sources),
     cmocka_unit_test(obeys_the_field_of_the_volume),

@@ -107,23 +107,26 @@ static double cosine(const struct finder *f, uint32_t h)
   return fmax(c, vg_dot(a, b));
 }
 
-static int is_hard(const struct finder *f, uint32_t h)
+int vg_curves_is_hard(const struct vg_curves_options *o,
+                      const struct vg_ref *r, uint32_t h)
 {
-  const uint32_t *of = f->o->tri_patch;
-  uint32_t p = of[h / 3], q = of[f->r->mate[h] / 3];
+  uint32_t p, q;
 
+  if (r->mate[h] == VG_REF_NONE || (o->stretch && o->stretch[h] > 1)) return 1;
+  p = o->tri_patch[h / 3];
+  q = o->tri_patch[r->mate[h] / 3];
   if (p == q) return 0;
-  if (f->o->hard && (f->o->hard[p] || f->o->hard[q])) return 1;
-  return f->o->patch[p].bc != f->o->patch[q].bc
-         || f->o->patch[p].bc_fun3d != f->o->patch[q].bc_fun3d;
+  if (o->hard && (o->hard[p] || o->hard[q])) return 1;
+  return o->patch[p].bc != o->patch[q].bc
+         || o->patch[p].bc_fun3d != o->patch[q].bc_fun3d;
 }
 
 static void set_line(struct finder *f, uint32_t h, int on)
 {
   uint32_t m = f->r->mate[h], ends[2] = { from(f->r, h), to(f->r, h) };
 
-  f->c->line[h] = (uint8_t)on;
-  if (m != VG_REF_NONE) f->c->line[m] = (uint8_t)on;
+  f->c->line[h] = (uint32_t)on;
+  if (m != VG_REF_NONE) f->c->line[m] = (uint32_t)on;
   for (int k = 0; k < 2; k++) {
     uint8_t *d = &f->degree[ends[k]];
 
@@ -132,15 +135,19 @@ static void set_line(struct finder *f, uint32_t h, int on)
   }
 }
 
+static int is_closed(const struct finder *f, uint32_t h)
+{
+  return f->o->closed && f->o->closed[h];
+}
+
 static void find_lines(struct finder *f)
 {
   for (uint32_t h = 0; h < 3 * f->r->n_tri; h++) {
     uint32_t m = f->r->mate[h];
 
     if (m != VG_REF_NONE && m < h) continue;
-    if (m == VG_REF_NONE || cosine(f, h) < f->sharp || is_hard(f, h)
-        || (f->o->stretch && f->o->stretch[h] > 1))
-      set_line(f, h, 1);
+    if (vg_curves_is_hard(f->o, f->r, h)
+        || (!is_closed(f, h) && cosine(f, h) < f->sharp)) set_line(f, h, 1);
   }
 }
 
@@ -214,6 +221,7 @@ static void lead_on(struct finder *f, uint32_t p)
       uint32_t h = f->half[k];
       double s;
 
+      if (is_closed(f, h)) return;
       if (f->c->line[h] || f->r->mate[h] == VG_REF_NONE
           || cosine(f, h) > f->lead) continue;
       s = straight(f->r, before, p, other_end(f->r, h, p));
@@ -314,6 +322,8 @@ static vg_status trace(struct finder *f, uint32_t p, uint32_t h, uint8_t *seen,
     seen[h] = 1;
     p = other_end(f->r, h, p);
     VG_TRY(add_point(c, f->r, p, err));
+    c->line[h] = (uint32_t)(c->n_point - c->n_curve);
+    if (f->r->mate[h] != VG_REF_NONE) c->line[f->r->mate[h]] = c->line[h];
     if (c->corner[p]) break;
     h = line_on(f, p, h);
   }
@@ -364,7 +374,8 @@ vg_status vg_curves_find(struct vg_curves *c, const struct vg_ref *r,
                       .lead = vg_cosine(LEAD * o->angle) };
   vg_status st = VG_OK;
 
-  c->line = vg_calloc(3 * r->n_tri, 1);
+  c->closed = o->closed;
+  c->line = vg_calloc(3 * r->n_tri, sizeof *c->line);
   c->corner = vg_calloc(r->n_point, 1);
   if (!c->line || !c->corner)
     VG_TRY(vg_fail_memory(err, "the ridges of the surface"));
@@ -395,6 +406,19 @@ void vg_curves_release(struct vg_curves *c)
 }
 
 /* --- along a curve ------------------------------------------------------- */
+
+size_t vg_curve_of(const struct vg_curves *c, uint32_t number)
+{
+  size_t lo = 0, hi = c->n_curve;
+
+  while (hi - lo > 1) {
+    size_t mid = (lo + hi) / 2;
+
+    if (c->curve[mid].first - mid < number) lo = mid;
+    else hi = mid;
+  }
+  return lo;
+}
 
 double vg_curve_length(const struct vg_curves *c, size_t i)
 {

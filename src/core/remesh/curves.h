@@ -11,7 +11,9 @@ struct vg_curve {
 };
 
 struct vg_curves {
-  uint8_t *line;            /* [3 n_tri] half-edges on lines; both sides */
+  uint32_t *line;           /* [3 n_tri] half-edges on lines, both sides:
+                               number + 1 of the piece from a point to the
+                               next, curve by curve; 0: on none */
   uint8_t *corner;          /* [n_point] */
   size_t n_curve, cap_curve, n_point, cap_point, cap_at;
   struct vg_curve *curve;
@@ -19,6 +21,7 @@ struct vg_curves {
   double *at;               /* [n_point] length of the line up to there */
   size_t n_corner;
   double length;            /* of all */
+  const uint8_t *closed;    /* as in the options, borrowed */
 };
 #define VG_CURVES_INIT { 0 }
 
@@ -32,6 +35,8 @@ struct vg_curves_options {
                                So are those between different conditions */
   const double *stretch;    /* [3 n_tri] half-edges with more than 1 are lines;
                                or NULL */
+  const uint8_t *closed;    /* [3 n_tri] edges that are no ridges, whatever
+                               their angle; or NULL */
 };
 
 /** Find them. Decisions compare cosines with one that the angle gives by a
@@ -41,6 +46,13 @@ vg_status vg_curves_find(struct vg_curves *c, const struct vg_ref *r,
                          struct vg_error *err);
 
 void vg_curves_release(struct vg_curves *c);
+
+/** Curve of the piece of a line with this number. */
+size_t vg_curve_of(const struct vg_curves *c, uint32_t number);
+
+/** Must the edge stay a line: a rim, a border that is hard, or stretched? */
+int vg_curves_is_hard(const struct vg_curves_options *o,
+                      const struct vg_ref *r, uint32_t h);
 
 /** Place at length s along curve i. */
 void vg_curve_at(const struct vg_curves *c, const struct vg_ref *r, size_t i,

@@ -331,6 +331,8 @@ void vg_ref_release(struct vg_ref *r)
   free(r->mate);
   free(r->shape);
   free(r->size);
+  free(r->plain);
+  free(r->strip);
   free(r->thin);
   free(r->item);
   free(r->node);

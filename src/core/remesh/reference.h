@@ -14,6 +14,8 @@
 #define VG_REF_LEAF 4     /* triangles of a leaf of the tree */
 #define VG_REF_GROUP 8    /* points that are asked for at once */
 
+enum { VG_REF_STRIP = 1, VG_REF_CLOSED };
+
 struct vg_ref_tri {
   double a[3], u[3], v[3];  /* a corner, the edges from there */
   double n[3];              /* unit normal; 0: too flat to have one */
@@ -34,6 +36,10 @@ struct vg_ref {
   uint32_t *mate;           /* [3 n_tri] VG_REF_NONE: open */
   struct vg_ref_tri *shape; /* [n_tri] */
   double *size;             /* [n_point] asked for there; vg_ref_sizes */
+  double *plain;            /* [n_point] the same but for narrow strips */
+  uint8_t *strip;           /* [n_tri] VG_REF_STRIP: asks for less than that;
+                               VG_REF_CLOSED: near a strip that is closed.
+                               NULL: there are none */
   double slope;             /* growth - 1 */
   uint8_t *thin;            /* [n_tri] another sheet is near; vg_ref_thin */
   uint32_t *item;           /* [n_item] triangles along a space-filling

@@ -16,6 +16,7 @@
 #include "core/remesh/result.h"
 #include "core/remesh/sizes.h"
 #include "core/remesh/stretch.h"
+#include "core/remesh/strips.h"
 #include "core/sizing/sizing_source.h"
 #include "core/surface/envelope.h"
 #include "core/surface/surface_check.h"
@@ -45,7 +46,10 @@ struct job {
   struct vg_remesh_report r;
   struct vg_ref ref;
   struct vg_curves curves;
+  struct vg_strips strips;  /* closed ones; then given is their mesh */
   double *cap;              /* [n_tri] largest size, or NULL */
+  double *point_cap;        /* [n_point] the same, with strips; or NULL */
+  double *stretch;          /* [3 n_tri] that of the options, with strips */
   double jag;               /* tolerance of lines, the same at any scale */
   double far;               /* larger sizes are on an outer boundary only;
                                0: there is none */
@@ -212,25 +216,99 @@ static vg_status check_number(const struct job *j, struct vg_error *err)
                  "triangles; are sizes and tolerance in its unit?", n);
 }
 
+static vg_status find_lines(struct job *j, const struct vg_curves_options *c,
+                            struct vg_error *err)
+{
+  const struct vg_remesh_options *o = j->o;
+  vg_status st;
+
+  VG_TRY(vg_ref_build(&j->ref, j->given, &o->stop, err));
+  VG_TRY(vg_stopped(&o->stop, err));
+  VG_TRY(vg_curves_find(&j->curves, &j->ref, c, err));
+  VG_TRY(vg_stopped(&o->stop, err));
+  VG_TRY(vg_sizes_make(&j->ref, &j->curves, &(struct vg_sizes_options){
+    o->per_turn / o->scale, CHORD * j->jag * o->scale * o->scale, o->scale,
+    j->r.h_min, j->r.h_max, vg_scaled_growth(o->growth, o->scale), j->cap,
+    j->point_cap ? j->point_cap : o->cap, o->across, j->given->tri_patch,
+    o->stop }, err));
+done:
+  return st;
+}
+
+/* Largest sizes of the mesh with the points where strips are cut. */
+static vg_status extend_caps(struct job *j, struct vg_error *err)
+{
+  const struct vg_strips *s = &j->strips;
+  const size_t n = s->mesh.n_point - s->n_new;
+  double *cap;
+
+  if (j->cap) {
+    cap = vg_alloc(s->mesh.n_tri, sizeof *cap);
+    if (!cap) return vg_fail_memory(err, "the sizes on the surface");
+    for (size_t t = 0; t < s->mesh.n_tri; t++) cap[t] = j->cap[s->tri_from[t]];
+    free(j->cap);
+    j->cap = cap;
+  }
+  if (!j->o->cap) return VG_OK;
+  cap = j->point_cap = vg_alloc(s->mesh.n_point, sizeof *cap);
+  if (!cap) return vg_fail_memory(err, "the sizes on the surface");
+  memcpy(cap, j->o->cap, n * sizeof *cap);
+  for (size_t i = 0; i < s->n_new; i++)
+    cap[n + i] = fmin(cap[s->ends[i][0]], cap[s->ends[i][1]]);
+  return VG_OK;
+}
+
+static vg_status extend_stretch(struct job *j, struct vg_error *err)
+{
+  const struct vg_strips *s = &j->strips;
+  const size_t n = 3 * s->mesh.n_tri;
+
+  if (!j->o->stretch) return VG_OK;
+  j->stretch = vg_calloc(n, sizeof *j->stretch);
+  if (!j->stretch) return vg_fail_memory(err, "the lines that are stretched");
+  for (size_t h = 0; h < n; h++)
+    if (s->half_from[h] != VG_REF_NONE)
+      j->stretch[h] = j->o->stretch[s->half_from[h]];
+  return VG_OK;
+}
+
+/* Where strips are closed, all is found again without them. */
+static vg_status close_strips(struct job *j, struct vg_curves_options *c,
+                              struct vg_error *err)
+{
+  vg_status st;
+
+  VG_TRY(vg_strips_find(&j->ref, &j->curves, j->given,
+    &(struct vg_strips_options){ j->r.tolerance, j->o->across, c },
+    &j->strips, err));
+  if (!j->strips.n) goto done;
+  VG_TRY(extend_caps(j, err));
+  VG_TRY(extend_stretch(j, err));
+  vg_curves_release(&j->curves);
+  vg_ref_release(&j->ref);
+  j->given = &j->strips.mesh;
+  c->tri_patch = j->given->tri_patch;
+  c->stretch = j->stretch;
+  c->closed = j->strips.closed;
+  VG_TRY(find_lines(j, c, err));
+done:
+  return st;
+}
+
 static vg_status prepare(struct job *j, struct vg_error *err)
 {
   const struct vg_remesh_options *o = j->o;
+  struct vg_curves_options c;
   vg_status st;
 
   VG_TRY(check_stretch(j->given, o->stretch, err));
   VG_TRY(settle(j, err));
   VG_TRY(vg_stopped(&o->stop, err));
-  VG_TRY(vg_ref_build(&j->ref, j->given, &o->stop, err));
-  VG_TRY(vg_stopped(&o->stop, err));
-  VG_TRY(vg_curves_find(&j->curves, &j->ref, &(struct vg_curves_options){
-    o->ridge_angle, j->jag, j->given->tri_patch, j->given->patch,
-    o->hard, o->stretch }, err));
-  VG_TRY(vg_stopped(&o->stop, err));
-  VG_TRY(vg_sizes_make(&j->ref, &j->curves, &(struct vg_sizes_options){
-    o->per_turn / o->scale, CHORD * j->jag * o->scale * o->scale, o->scale,
-    j->r.h_min, j->r.h_max, vg_scaled_growth(o->growth, o->scale), j->cap,
-    o->cap, o->across, j->given->tri_patch, o->stop }, err));
+  c = (struct vg_curves_options){ o->ridge_angle, j->jag, j->given->tri_patch,
+    j->given->patch, o->hard, o->stretch, NULL };
+  VG_TRY(find_lines(j, &c, err));
   if (!j->looks) {
+    VG_TRY(close_strips(j, &c, err));
     VG_TRY(check_number(j, err));
     VG_TRY(vg_ref_thin(&j->ref, (1 + VG_WORK_NEARER) * j->r.tolerance,
                        o->threads, &o->stop, err));
@@ -427,6 +505,7 @@ static void narrow(struct vg_work *w)
     if (h < w->h_min) h = w->h_min;
     if (!(h < q->asked.size)) continue;
     q->asked.size = h;
+    vg_work_find_room(w, q);
     q->changed = ++w->clock;
   }
   for (uint32_t t = 0; t < w->n_tri; t++)
@@ -441,7 +520,8 @@ static vg_status make(struct job *j, struct vg_mesh *out, int last, int *sound,
                       struct vg_error *err)
 {
   struct vg_source_set set = VG_SOURCE_SET_INIT;
-  struct vg_stretch stretch = { .by = j->o->stretch };
+  struct vg_stretch stretch = {
+    .by = j->stretch ? j->stretch : j->o->stretch };
   struct vg_remesh_report *r = &j->r;
   struct vg_work w = { .ref = &j->ref, .curves = &j->curves,
     .tolerance = r->tolerance, .relative = RELATIVE, .far = j->far,
@@ -490,11 +570,10 @@ done:
   return st;
 }
 
-static void tell(struct job *j, const struct vg_mesh *out,
-                 struct vg_remesh_report *report)
+/* Of m, which was given, and what came out. */
+static void tell(struct job *j, const struct vg_mesh *m,
+                 const struct vg_mesh *out, struct vg_remesh_report *report)
 {
-  const struct vg_mesh *m = j->given;
-
   j->r.n_tri[0] = m->n_tri;
   j->r.n_tri[1] = out->n_tri;
   j->r.n_point[0] = m->n_point;
@@ -502,6 +581,10 @@ static void tell(struct job *j, const struct vg_mesh *out,
   j->r.n_corner = j->curves.n_corner;
   j->r.n_line = j->curves.n_curve;
   j->r.line_length[0] = j->curves.length;
+  j->r.n_closed = j->strips.n;
+  j->r.closed_length = j->strips.length;
+  j->r.closed_width = j->strips.widest;
+  memcpy(j->r.closed_at, j->strips.at, sizeof j->r.closed_at);
   if (!report) return;
   vg_remesh_report_release(report);
   *report = j->r;
@@ -512,6 +595,9 @@ static void release(struct job *j)
 {
   free(j->r.bad);
   free(j->cap);
+  free(j->point_cap);
+  free(j->stretch);
+  vg_strips_release(&j->strips);
   free(j->source);
   vg_curves_release(&j->curves);
   vg_ref_release(&j->ref);
@@ -528,7 +614,7 @@ vg_status vg_remesh(struct vg_mesh *m, const struct vg_remesh_options *o,
   VG_TRY(check_options(o, err));
   VG_TRY(prepare(&j, err));
   VG_TRY(repeat(&j, &out, err));
-  tell(&j, &out, report);
+  tell(&j, m, &out, report);
   vg_mesh_move(m, &out);
 done:
   release(&j);
@@ -550,7 +636,7 @@ vg_status vg_remesh_judge(const struct vg_mesh *m,
   VG_TRY(check_options(o, err));
   VG_TRY(prepare(&j, err));
   VG_TRY(make(&j, &out, 0, &sound, err));
-  tell(&j, &out, report);
+  tell(&j, m, &out, report);
 done:
   release(&j);
   vg_mesh_release(&out);

@@ -77,6 +77,10 @@ struct vg_remesh_report {
   size_t n_tri[2], n_point[2];             /* before, after */
   size_t n_corner, n_line;  /* corners and lines: all are kept */
   double line_length[2];
+  size_t n_closed;          /* pieces of lines that are none any more: strips
+                               between them and another line were narrower
+                               than the tolerance */
+  double closed_length, closed_width, closed_at[3];  /* of all; the widest */
   size_t n_split, n_collapse, n_swap, n_move;
   int n_round;              /* 1, and one more for each time that triangles
                                met and sizes there were halved */
@@ -106,7 +110,9 @@ vg_status vg_remesh_arrange(struct vg_mesh *m, struct vg_error *err);
  * by the same check.
  *
  * Lines stay: ridges, open rims, borders between patches of different
- * conditions and hard ones; so do corners, in their places. Patches keep their
+ * conditions and hard ones; so do corners, in their places. Of two lines with a
+ * strip between them that is narrower than the tolerance one is enough: pieces
+ * of the shorter are given up there, but for rims and borders. Patches keep their
  * number and order; where the surface goes on smoothly their borders are led
  * along the edges of new triangles.
  *

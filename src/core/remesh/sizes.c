@@ -6,10 +6,10 @@
 
 #include "base/memory.h"
 #include "core/geometry/vector.h"
+#include "core/remesh/strips.h"
 
 #define SMOOTH 2          /* averages of the curvature over neighbours */
-#define STEPS 400         /* triangles that a walk across a strip crosses */
-#define STRIP 0.94        /* cosine: lines more oblique make a wedge */
+#define AROUND 3          /* S36: triangles around a strip that is closed */
 #define FLOOR 0.02        /* S26: of the size without strips: never finer */
 
 /* Curvature tensor of a triangle, summed over its edges, with its area. */
@@ -171,8 +171,8 @@ static vg_status by_faces(struct vg_ref *r, const struct vg_curves *c,
     b[t].area = vg_norm(n) / 2;
   }
   for (uint32_t h = 0; h < 3 * r->n_tri; h++)
-    if (r->mate[h] != VG_REF_NONE && h < r->mate[h] && !c->line[h])
-      add_edge(r, h, b);
+    if (r->mate[h] != VG_REF_NONE && h < r->mate[h] && !c->line[h]
+        && !(c->closed && c->closed[h])) add_edge(r, h, b);
   for (int i = 0; i < SMOOTH; i++) {
     spread(r, c, b, s);
     swap = b;
@@ -211,88 +211,23 @@ static void by_curves(struct vg_ref *r, const struct vg_curves *c,
     }
 }
 
-/* Unit vector in triangle t at right angles to its half-edge h, inward, and
- * one along it. */
-static int frame(const struct vg_ref *r, uint32_t h, double e[3], double in[3])
-{
-  vg_sub(at(r, next(h)), at(r, h), e);
-  if (!(vg_unit(e) > 0)) return 0;
-  vg_cross(r->shape[h / 3].n, e, in);
-  return vg_unit(in) > 0;
-}
-
-/* Where the ray from x along d leaves the triangle that it entered by h:
- * half-edge, and how far. */
-static uint32_t leave(const struct vg_ref *r, uint32_t h, const double x[3],
-                      const double d[3], double *far)
-{
-  uint32_t best = VG_REF_NONE, g[2] = { next(h), prev(h) };
-
-  *far = INFINITY;
-  for (int k = 0; k < 2; k++) {
-    double e[3], in[3], w[3], speed, gap;
-
-    if (!frame(r, g[k], e, in)) continue;
-    speed = -vg_dot(d, in);
-    if (!(speed > 1e-12)) continue;
-    vg_sub(x, at(r, g[k]), w);
-    gap = fmax(vg_dot(w, in), 0) / speed;
-    if (gap < *far) *far = gap, best = g[k];
-  }
-  return best;
-}
-
-/* Width of the surface from the point x of line h, straight across, to another
- * line nearly along it; INFINITY beyond `most` or where there is none. */
-static double width(const struct vg_ref *r, const struct vg_curves *c,
-                    uint32_t h, const double start[3], double most)
-{
-  double e[3], in[3], d[3], x[3], sum = 0;
-
-  if (!frame(r, h, e, d)) return INFINITY;
-  memcpy(x, start, sizeof x);
-  for (int i = 0; i < STEPS; i++) {
-    double far, a;
-    uint32_t g = leave(r, h, x, d, &far);
-
-    if (g == VG_REF_NONE) return INFINITY;
-    sum += far;
-    if (sum > most) return INFINITY;
-    for (int k = 0; k < 3; k++) x[k] += far * d[k];
-    vg_sub(at(r, next(g)), at(r, g), e);
-    vg_unit(e);
-    if (c->line[g] || r->mate[g] == VG_REF_NONE) {
-      /* As seen in the plane where the walk ends. */
-      a = vg_dot(e, d);
-      return a * a < 1 - STRIP * STRIP ? sum : INFINITY;
-    }
-    a = vg_dot(d, e);
-    h = r->mate[g];
-    if (!frame(r, h, e, in)) return INFINITY;
-    a = -a;                 /* along the mate's own direction */
-    for (int k = 0; k < 3; k++)
-      d[k] = a * e[k] + sqrt(fmax(0, 1 - a * a)) * in[k];
-  }
-  return INFINITY;
-}
-
 /* The size is the width by `strip` over the edges asked for across. */
 static void by_strip(struct vg_ref *r, const struct vg_curves *c, uint32_t h,
-                     double strip, double across, const double *limit)
+                     double strip, double across)
 {
   static const double share[3] = { 0.1, 0.5, 0.9 };
   const double factor = strip / across;
   uint32_t end[2] = { r->tri[h / 3][h % 3], r->tri[h / 3][next(h) % 3] };
 
   for (int i = 0; i < 3; i++) {
-    double x[3], w, most = fmax(limit[end[0]], limit[end[1]]);
+    double x[3], w, most = fmax(r->plain[end[0]], r->plain[end[1]]);
 
     for (int k = 0; k < 3; k++)
       x[k] = at(r, h)[k] + share[i] * (at(r, next(h))[k] - at(r, h)[k]);
-    w = factor * width(r, c, h, x, most / factor);
+    w = factor * vg_strip_width(r, c, h, x, most / factor, NULL);
     for (int k = 0; k < 2; k++)
       if (i != (k ? 0 : 2) && w < r->size[end[k]])
-        r->size[end[k]] = fmax(w, FLOOR / across * limit[end[k]]);
+        r->size[end[k]] = fmax(w, FLOOR / across * r->plain[end[k]]);
   }
 }
 
@@ -305,18 +240,45 @@ static void find_far(const struct vg_ref *r, const double *cap, uint8_t *far)
       if (cap[t] < INFINITY) far[r->tri[t][k]] = 0;
 }
 
+/* The triangles whose sizes follow strips; and those around edges that are
+ * closed. */
+static vg_status mark_strips(struct vg_ref *r, const struct vg_curves *c,
+                             struct vg_error *err)
+{
+  const uint32_t n = (uint32_t)(3 * r->n_tri);
+  uint8_t *near;
+
+  for (uint32_t h = 0; h < n; h++) {
+    uint32_t p = r->tri[h / 3][h % 3];
+
+    if (r->size[p] < r->plain[p]) r->strip[h / 3] = VG_REF_STRIP;
+  }
+  if (!c->closed) return VG_OK;
+  near = vg_calloc(r->n_point, 1);
+  if (!near) return vg_fail_memory(err, "the sizes on the surface");
+  for (int ring = 0; ring < AROUND; ring++) {
+    for (uint32_t h = 0; h < n; h++)
+      if (ring ? r->strip[h / 3] == VG_REF_CLOSED : c->closed[h])
+        near[r->tri[h / 3][h % 3]] = near[r->tri[h / 3][next(h) % 3]] = 1;
+    for (uint32_t h = 0; h < n; h++)
+      if (near[r->tri[h / 3][h % 3]]) r->strip[h / 3] = VG_REF_CLOSED;
+  }
+  free(near);
+  return VG_OK;
+}
+
 vg_status vg_sizes_make(struct vg_ref *r, const struct vg_curves *c,
                         const struct vg_sizes_options *o,
                         struct vg_error *err)
 {
-  double *limit = NULL;
   uint8_t *far = vg_alloc(r->n_point, 1);
   vg_status st = VG_OK;
 
   r->slope = o->growth - 1;
   r->size = vg_alloc(r->n_point, sizeof *r->size);
-  limit = vg_alloc(r->n_point, sizeof *limit);
-  if (!r->size || !limit || !far)
+  r->plain = vg_alloc(r->n_point, sizeof *r->plain);
+  r->strip = vg_calloc(r->n_tri, 1);
+  if (!r->size || !r->plain || !r->strip || !far)
     VG_TRY(vg_fail_memory(err, "the sizes on the surface"));
   find_far(r, o->cap, far);
   VG_TRY(by_faces(r, c, o, far, err));
@@ -327,17 +289,19 @@ vg_status vg_sizes_make(struct vg_ref *r, const struct vg_curves *c,
       r->size[r->tri[t][k]] = fmin(r->size[r->tri[t][k]], o->cap[t]);
   for (size_t p = 0; o->point_cap && p < r->n_point; p++)
     r->size[p] = fmin(r->size[p], o->point_cap[p]);
-  memcpy(limit, r->size, r->n_point * sizeof *limit);
+  for (size_t p = 0; p < r->n_point; p++)
+    r->size[p] = fmin(o->h_max, fmax(o->h_min, r->size[p]));
+  memcpy(r->plain, r->size, r->n_point * sizeof *r->plain);
   for (uint32_t h = 0; h < 3 * r->n_tri; h++)
     if (c->line[h] && !vg_stops(&o->stop))
       by_strip(r, c, h, o->strip,
-               o->across ? o->across[o->tri_patch[h / 3]] : 1, limit);
+               o->across ? o->across[o->tri_patch[h / 3]] : 1);
   for (size_t p = 0; p < r->n_point; p++)
-    r->size[p] = fmin(o->h_max, fmax(o->h_min, r->size[p]));
+    r->size[p] = fmax(o->h_min, r->size[p]);
   vg_ref_sizes(r);
-  st = vg_stopped(&o->stop, err);
+  VG_TRY(vg_stopped(&o->stop, err));
+  VG_TRY(mark_strips(r, c, err));
 done:
-  free(limit);
   free(far);
   return st;
 }

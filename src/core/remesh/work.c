@@ -22,7 +22,6 @@
 static vg_status make_lines(struct vg_work *w, struct vg_error *err)
 {
   const struct vg_curves *c = w->curves;
-  uint32_t *ends;
   size_t n = 0;
 
   for (size_t i = 0; i < c->n_curve; i++) n += c->curve[i].n - 1;
@@ -36,24 +35,7 @@ static vg_status make_lines(struct vg_work *w, struct vg_error *err)
       w->line[w->n_line++] = (struct vg_work_line){ (uint32_t)i,
         { c->point[k], c->point[k + 1] }, { c->at[k], c->at[k + 1] } };
   }
-  /* The line of a half-edge: through the lines at its start, as a list. */
-  ends = vg_alloc(w->n_point + 2 * n, sizeof *ends);
-  if (!ends) return vg_fail_memory(err, "the curves of the surface");
-  memset(ends, 0xff, (w->n_point + 2 * n) * sizeof *ends);
-  for (size_t i = 0; i < 2 * n; i++) {
-    uint32_t p = w->line[i / 2].end[i % 2];
-
-    ends[w->n_point + i] = ends[p];
-    ends[p] = (uint32_t)i;
-  }
-  for (uint32_t h = 0; h < 3 * w->n_tri; h++) {
-    uint32_t p = vg_work_from(w, h), q = vg_work_to(w, h), i;
-
-    if (!c->line[h]) continue;
-    for (i = ends[p]; i != UINT32_MAX; i = ends[w->n_point + i])
-      if (w->line[i / 2].end[!(i % 2)] == q) w->edge[h] = i / 2 + 1;
-  }
-  free(ends);
+  memcpy(w->edge, c->line, 3 * w->n_tri * sizeof *w->edge);
   return VG_OK;
 }
 
@@ -134,6 +116,7 @@ static void find_sizes(void *context, size_t first, size_t end, int worker)
     q->by = q->home;
     vg_work_ask(w, q, bounded(w, q->x, vg_ref_size(w->ref, q->x,
                                                    q->asked.size, &q->by)));
+    vg_work_find_room(w, q);
   }
 }
 
@@ -343,6 +326,22 @@ double vg_work_tolerance(const struct vg_work *w, double size)
   return fmin(w->tolerance, w->relative * size);
 }
 
+void vg_work_find_room(const struct vg_work *w, struct vg_work_point *p)
+{
+  const struct vg_ref *r = w->ref;
+  double size = p->asked.size;
+
+  p->room = w->tolerance;
+  if (r->strip && r->strip[p->home] == VG_REF_CLOSED) return;
+  if (r->strip && r->strip[p->by]) {
+    const uint32_t *q = r->tri[p->home];
+
+    size = fmax(size, fmin(r->plain[q[0]],
+                           fmin(r->plain[q[1]], r->plain[q[2]])));
+  }
+  p->room = vg_work_tolerance(w, size);
+}
+
 /* --- a cavity ------------------------------------------------------------ */
 
 void vg_cavity_begin(const struct vg_work *w, struct vg_cavity *c,
@@ -352,14 +351,13 @@ void vg_cavity_begin(const struct vg_work *w, struct vg_cavity *c,
   c->on_curve = 0;
   c->fresh = VG_REF_NONE;
   c->hint = w->point[point].home;
-  c->tolerance = vg_work_tolerance(w, w->point[point].asked.size);
+  c->tolerance = w->point[point].room;
 }
 
 void vg_cavity_narrow(const struct vg_work *w, struct vg_cavity *c,
                       uint32_t point)
 {
-  c->tolerance = fmin(c->tolerance,
-                      vg_work_tolerance(w, w->point[point].asked.size));
+  c->tolerance = fmin(c->tolerance, w->point[point].room);
 }
 
 void vg_cavity_add(struct vg_cavity *c, const struct vg_work_point *x,

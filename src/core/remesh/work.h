@@ -18,6 +18,7 @@ enum { VG_WORK_FREE, VG_WORK_FROZEN, VG_WORK_FANS };
 
 struct vg_work_point {
   double x[3];
+  double room;              /* vg_work_find_room: largest distance there */
   uint32_t half;            /* one that leaves it; VG_REF_NONE: removed */
   uint32_t home;            /* triangle of the reference near it */
   uint32_t by;              /* that which asks for its size */
@@ -176,6 +177,11 @@ double vg_work_size(const struct vg_work *w, const double x[3], uint32_t *by);
 double vg_work_size_near(const struct vg_work *w, const double x[3],
                          uint32_t home, size_t n, const uint32_t *point,
                          uint32_t *by);
+
+/** Set p->room by its size and place: the tolerance, and a part of the size. Of
+ * the size without strips, whose width says nothing of how exact the surface
+ * has to be; and not where one is closed. */
+void vg_work_find_room(const struct vg_work *w, struct vg_work_point *p);
 
 /** Let q, which is in its place, ask for this size. */
 static inline void vg_work_ask(const struct vg_work *w,

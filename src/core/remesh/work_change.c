@@ -135,8 +135,9 @@ static int split_fits(const struct vg_work *w, uint32_t h,
     vg_cavity_add(c, m, b, o, side ? 0 : face);
   }
   vg_cavity_measure(w, c);
+  /* A line that is not split where it is needed stays too long for good. */
   return c->shape > (face ? SPLIT_LOSS : 0.01) * shape
-         && c->shape >= fmin(shape, FLAT2) && vg_cavity_fits(w, c);
+         && (!face || c->shape >= fmin(shape, FLAT2)) && vg_cavity_fits(w, c);
 }
 
 /* Of a long edge, something finer may lie between its ends. */
@@ -148,6 +149,7 @@ static void size_between(const struct vg_work *w, uint32_t h,
   vg_work_ask(w, p, vg_work_ratio(w, h) < NEARBY
               ? vg_work_size_near(w, p->x, p->home, 2, end, &p->by)
               : vg_work_size(w, p->x, &p->by));
+  vg_work_find_room(w, p);
 }
 
 static uint32_t add_point(struct vg_work *w, const struct vg_work_point *p)
@@ -503,6 +505,7 @@ static void settle_move(struct vg_work *w, uint32_t p, const uint32_t *ring,
   near[n++] = p;
   q->given = VG_REF_NONE;
   vg_work_ask(w, q, vg_work_size_near(w, q->x, q->home, n, near, &q->by));
+  vg_work_find_room(w, q);
   w->point[p] = *q;
   for (size_t i = 0; i < n; i++) w->point[near[i]].changed = ++w->clock;
   for (size_t i = 0; i < c->n_old; i++) w->stamp[c->old[i]] = w->clock;

@@ -30,7 +30,7 @@ struct vg_cavity {
 void vg_cavity_begin(const struct vg_work *w, struct vg_cavity *c,
                      uint32_t point);
 
-/** The tolerance is that of the smallest size around. */
+/** The tolerance is the least around. */
 void vg_cavity_narrow(const struct vg_work *w, struct vg_cavity *c,
                       uint32_t point);
 

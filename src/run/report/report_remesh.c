@@ -66,6 +66,11 @@ void vg_report_remesh_text(FILE *to, const struct vg_renewal *n)
           "kept, length %.6g, now %.6g\n", vg_text_count(r->n_tri[0], was),
           vg_text_count(r->n_tri[1], now), r->n_corner, r->n_line,
           r->line_length[0], r->line_length[1]);
+  if (r->n_closed)
+    fprintf(to, "  strips narrower than the tolerance closed: %zu, length "
+            "%.6g, width %.3g at most, at (%g, %g, %g)\n", r->n_closed,
+            r->closed_length, r->closed_width, r->closed_at[0],
+            r->closed_at[1], r->closed_at[2]);
   fprintf(to, "  sizes %.3g to %.3g; edges within a factor 1.41 of the size: "
           "%.2f %%\n", r->h_min, r->h_max, percent(r->n_edge_fit, r->n_edge));
   fprintf(to, "  tolerance %.3g (and 0.05 of the size)\n", r->tolerance);
@@ -93,6 +98,14 @@ static json_t *back_json(const struct vg_put_back *b)
     (json_int_t)b->n_refused, "off_model", (json_int_t)b->n_far, "before",
     distance_json(&b->off[0]), "now", distance_json(&b->off[1]), "seconds",
     b->seconds);
+}
+
+static json_t *closed_json(const struct vg_remesh_report *r)
+{
+  if (!r->n_closed) return json_null();
+  return json_pack("{s:I s:f s:f s:[fff]}", "number", (json_int_t)r->n_closed,
+    "length", r->closed_length, "width", r->closed_width, "at",
+    r->closed_at[0], r->closed_at[1], r->closed_at[2]);
 }
 
 static json_t *patches_json(const struct vg_renewal *n,
@@ -139,7 +152,7 @@ json_t *vg_report_remesh_json(const struct vg_renewal *n,
 
   if (!n->is_done) return json_null();
   return json_pack("{s:[II] s:[II] s:I s:I s:[ff] s:f s:f s:f s:f s:i s:f s:o "
-                   "s:o s:o s:{s:I s:I s:I s:I} s:f s:o s:o s:o}",
+                   "s:o s:o s:o s:{s:I s:I s:I s:I} s:f s:o s:o s:o}",
     "triangles", (json_int_t)r->n_tri[0], (json_int_t)r->n_tri[1],
     "points", (json_int_t)r->n_point[0], (json_int_t)r->n_point[1],
     "corners", (json_int_t)r->n_corner, "lines", (json_int_t)r->n_line,
@@ -147,6 +160,7 @@ json_t *vg_report_remesh_json(const struct vg_renewal *n,
     "tolerance", r->tolerance, "body_length", r->length,
     "size_min", r->h_min, "size_max", r->h_max, "rounds", r->n_round,
     "percent_edges_fit", percent(r->n_edge_fit, r->n_edge),
+    "strips_closed", closed_json(r),
     "new_from_given", distance_json(&n->off[0]),
     "given_from_new", distance_json(&n->off[1]),
     "cad", back_json(&n->back),

@@ -1,0 +1,427 @@
+/* Outline: along every line, place by place, the strip beside it is measured;
+ * stretches of the shorter of two lines where it is narrow are closed. Edges
+ * are cut where these begin and end. */
+#include "core/remesh/strips.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/geometry/vector.h"
+#include "core/remesh/strips_cut.h"
+
+#define STEPS 400         /* triangles that a walk across a strip crosses */
+#define ALONG 0.94        /* cosine: lines more oblique make a wedge */
+#define CLOSED 1.0        /* S35: of the tolerance: narrower strips go */
+#define SLENDER 3.0       /* S35: widths of it: shorter stretches stay */
+#define APART 4.0         /* tolerances: places along a line, at most PLACES
+                             to a piece of it */
+#define PLACES 256
+#define LINES 8           /* closed ones that a walk crosses */
+#define BISECTIONS 24
+#define INSET 0.02        /* of a piece, or APART: its first and last place */
+
+static uint32_t next(uint32_t h)
+{
+  return h % 3 == 2 ? h - 2 : h + 1;
+}
+
+static uint32_t prev(uint32_t h)
+{
+  return h % 3 ? h - 1 : h + 2;
+}
+
+static const double *at(const struct vg_ref *r, uint32_t h)
+{
+  return r->point[r->tri[h / 3][h % 3]];
+}
+
+/* --- the width ----------------------------------------------------------- */
+
+/* Unit vector in triangle t at right angles to its half-edge h, inward, and
+ * one along it. */
+static int frame(const struct vg_ref *r, uint32_t h, double e[3], double in[3])
+{
+  vg_sub(at(r, next(h)), at(r, h), e);
+  if (!(vg_unit(e) > 0)) return 0;
+  vg_cross(r->shape[h / 3].n, e, in);
+  return vg_unit(in) > 0;
+}
+
+/* Where the ray from x along d leaves the triangle that it entered by h:
+ * half-edge, and how far. */
+static uint32_t leave(const struct vg_ref *r, uint32_t h, const double x[3],
+                      const double d[3], double *far)
+{
+  uint32_t best = VG_REF_NONE, g[2] = { next(h), prev(h) };
+
+  *far = INFINITY;
+  for (int k = 0; k < 2; k++) {
+    double e[3], in[3], w[3], speed, gap;
+
+    if (!frame(r, g[k], e, in)) continue;
+    speed = -vg_dot(d, in);
+    if (!(speed > 1e-12)) continue;
+    vg_sub(x, at(r, g[k]), w);
+    gap = fmax(vg_dot(w, in), 0) / speed;
+    if (gap < *far) *far = gap, best = g[k];
+  }
+  return best;
+}
+
+double vg_strip_width(const struct vg_ref *r, const struct vg_curves *c,
+                      uint32_t h, const double start[3], double most,
+                      struct vg_strip_end *end)
+{
+  double e[3], in[3], d[3], x[3], sum = 0;
+
+  if (!frame(r, h, e, d)) return INFINITY;
+  memcpy(x, start, sizeof x);
+  for (int i = 0; i < STEPS; i++) {
+    double far, a;
+    uint32_t g = leave(r, h, x, d, &far);
+
+    if (g == VG_REF_NONE) return INFINITY;
+    sum += far;
+    if (sum > most) return INFINITY;
+    for (int k = 0; k < 3; k++) x[k] += far * d[k];
+    vg_sub(at(r, next(g)), at(r, g), e);
+    vg_unit(e);
+    if (c->line[g] || r->mate[g] == VG_REF_NONE) {
+      /* As seen in the plane where the walk ends. */
+      a = vg_dot(e, d);
+      if (end) {
+        end->half = g;
+        memcpy(end->x, x, sizeof x);
+      }
+      return a * a < 1 - ALONG * ALONG ? sum : INFINITY;
+    }
+    a = vg_dot(d, e);
+    h = r->mate[g];
+    if (!frame(r, h, e, in)) return INFINITY;
+    a = -a;                 /* along the mate's own direction */
+    for (int k = 0; k < 3; k++)
+      d[k] = a * e[k] + sqrt(fmax(0, 1 - a * a)) * in[k];
+  }
+  return INFINITY;
+}
+
+/* --- which of two lines goes --------------------------------------------- */
+
+/* A stretch along a curve. */
+struct stretch {
+  double from, to;          /* lengths */
+  double width;             /* of the strip, largest */
+};
+
+struct claim {
+  int stays;                /* whatever is near */
+  double length;
+  size_t curve;
+};
+
+struct finder {
+  const struct vg_ref *r;
+  const struct vg_curves *c;
+  const struct vg_strips_options *o;
+  const uint32_t *tri_patch;
+  uint32_t (*side)[2];      /* [lines] half-edge along it, and against it */
+  struct claim *claim;      /* [n_curve] the last to go comes first */
+  size_t *rank;             /* [n_curve] where it is among these */
+  struct stretch *found;    /* closed ones, rising along each curve */
+  size_t n_found, cap_found;
+  size_t *first, *end;      /* [n_curve] among them */
+  struct vg_strips *s;
+};
+
+static vg_status list_sides(struct finder *f, struct vg_error *err)
+{
+  const struct vg_curves *c = f->c;
+  size_t n = c->n_point - c->n_curve;
+
+  f->side = vg_alloc(n, sizeof *f->side);
+  f->claim = vg_calloc(c->n_curve, sizeof *f->claim);
+  if (!f->side || !f->claim) return vg_fail_memory(err, "narrow strips");
+  memset(f->side, 0xff, n * sizeof *f->side);
+  for (uint32_t h = 0; h < 3 * f->r->n_tri; h++) {
+    uint32_t l = c->line[h];
+    size_t i;
+
+    if (!l) continue;
+    i = vg_curve_of(c, l);
+    f->side[l - 1][f->r->tri[h / 3][h % 3] != c->point[l - 1 + i]] = h;
+    f->claim[i].stays |= vg_curves_is_hard(f->o->lines, f->r, h);
+  }
+  return VG_OK;
+}
+
+/* Those that have to stay, then the longer, then those found first. */
+static int by_claim(const void *a, const void *b)
+{
+  const struct claim *p = a, *q = b;
+
+  if (p->stays != q->stays) return p->stays ? -1 : 1;
+  if (p->length != q->length) return p->length > q->length ? -1 : 1;
+  return p->curve < q->curve ? -1 : p->curve > q->curve;
+}
+
+static vg_status rank_curves(struct finder *f, struct vg_error *err)
+{
+  const size_t n = f->c->n_curve;
+
+  f->rank = vg_alloc(n, sizeof *f->rank);
+  f->first = vg_calloc(n, sizeof *f->first);
+  f->end = vg_calloc(n, sizeof *f->end);
+  if (!f->rank || !f->first || !f->end)
+    return vg_fail_memory(err, "narrow strips");
+  for (size_t i = 0; i < n; i++) {
+    f->claim[i].length = vg_curve_length(f->c, i);
+    f->claim[i].curve = i;
+  }
+  qsort(f->claim, n, sizeof *f->claim, by_claim);
+  for (size_t i = 0; i < n; i++) f->rank[f->claim[i].curve] = i;
+  return VG_OK;
+}
+
+/* --- where a strip is narrow --------------------------------------------- */
+
+static int is_closed(const struct finder *f, size_t curve, double s)
+{
+  for (size_t k = f->first[curve]; k < f->end[curve]; k++)
+    if (s >= f->found[k].from && s <= f->found[k].to) return 1;
+  return 0;
+}
+
+/* Is the strip on this side of the curve narrow at the place t of its piece k,
+ * up to a line that stays? *width out. */
+static int is_narrow(const struct finder *f, size_t curve, size_t k,
+                     uint32_t h, double t, double *width)
+{
+  const struct vg_curves *c = f->c;
+  const double *a = f->r->point[c->point[k]];
+  const double *b = f->r->point[c->point[k + 1]];
+  const double most = CLOSED * f->o->tolerance;
+  struct vg_strip_end end;
+  double x[3], s;
+  uint32_t l;
+  size_t j;
+
+  for (int d = 0; d < 3; d++) x[d] = a[d] + t * (b[d] - a[d]);
+  *width = 0;
+  for (int i = 0; i < LINES && h != VG_REF_NONE; i++) {
+    *width += vg_strip_width(f->r, c, h, x, most - *width, &end);
+    if (!(*width <= most)) return 0;
+    l = c->line[end.half];
+    if (!l) return 0;
+    j = vg_curve_of(c, l);
+    if (j == curve) return 0;
+    s = c->at[l - 1 + j]
+        + vg_distance(end.x, f->r->point[c->point[l - 1 + j]]);
+    if (!is_closed(f, j, s)) return f->rank[j] < f->rank[curve];
+    h = f->r->mate[end.half];
+    memcpy(x, end.x, sizeof x);
+  }
+  return 0;
+}
+
+/* Between two places of which one is narrow: where it changes. *width of the
+ * strip there. */
+static double change_at(const struct finder *f, size_t curve, size_t k,
+                        uint32_t h, double narrow, double wide, double *width)
+{
+  for (int i = 0; i < BISECTIONS; i++) {
+    double t = (narrow + wide) / 2, w;
+
+    if (is_narrow(f, curve, k, h, t, &w)) narrow = t, *width = fmax(*width, w);
+    else wide = t;
+  }
+  return narrow;
+}
+
+/* Add to those of the curve from `first` on; one that begins where the last
+ * ends goes on. */
+static vg_status add_stretch(struct finder *f, size_t first,
+                             const struct stretch *s, struct vg_error *err)
+{
+  struct stretch *last = f->n_found > first ? &f->found[f->n_found - 1] : NULL;
+
+  if (last && s->from <= last->to) {
+    last->to = fmax(last->to, s->to);
+    last->width = fmax(last->width, s->width);
+    return VG_OK;
+  }
+  if (vg_reserve(&f->found, &f->cap_found, f->n_found + 1, sizeof *f->found))
+    return vg_fail_memory(err, "narrow strips");
+  f->found[f->n_found++] = *s;
+  return VG_OK;
+}
+
+/* The stretches of a piece of a line that are narrow on the side of h. */
+static vg_status look_along(struct finder *f, size_t curve, size_t k,
+                            uint32_t h, size_t first, struct vg_error *err)
+{
+  const double s0 = f->c->at[k], length = f->c->at[k + 1] - s0;
+  const double apart = APART * f->o->tolerance, places = length / apart + 2;
+  const double inset = fmin(INSET, apart / length);
+  const int n = places < PLACES ? (int)places : PLACES;
+  struct stretch s = { 0 };
+  double last = 0, w;
+  int was = 0;
+  vg_status st = VG_OK;
+
+  for (int i = 0; i <= n; i++) {
+    double t = inset + (1 - 2 * inset) * i / n;
+    int is = is_narrow(f, curve, k, h, t, &w);
+
+    if (is && !was) {
+      s = (struct stretch){ s0, 0, 0 };
+      if (i) s.from += length * change_at(f, curve, k, h, t, last, &s.width);
+    }
+    if (is) s.width = fmax(s.width, w);
+    if (was && !is) {
+      s.to = s0 + length * change_at(f, curve, k, h, last, t, &s.width);
+      VG_TRY(add_stretch(f, first, &s, err));
+    }
+    was = is;
+    last = t;
+  }
+  if (!was) goto done;
+  s.to = f->c->at[k + 1];
+  VG_TRY(add_stretch(f, first, &s, err));
+done:
+  return st;
+}
+
+static int by_start(const void *a, const void *b)
+{
+  const struct stretch *p = a, *q = b;
+
+  return p->from < q->from ? -1 : p->from > q->from;
+}
+
+/* Those of both sides together; stubby ones stay. */
+static void merge(struct finder *f, size_t first)
+{
+  size_t n = first;
+
+  if (f->n_found - first > 1)
+    qsort(&f->found[first], f->n_found - first, sizeof *f->found, by_start);
+  for (size_t k = first; k < f->n_found; k++) {
+    const struct stretch *s = &f->found[k];
+
+    if (s->to - s->from < SLENDER * s->width
+        || s->to - s->from < f->o->tolerance) continue;
+    if (n > first && s->from <= f->found[n - 1].to) {
+      f->found[n - 1].to = fmax(f->found[n - 1].to, s->to);
+      f->found[n - 1].width = fmax(f->found[n - 1].width, s->width);
+    } else f->found[n++] = *s;
+  }
+  f->n_found = n;
+}
+
+static vg_status look_at_curve(struct finder *f, size_t i,
+                               struct vg_error *err)
+{
+  const struct vg_curve *curve = &f->c->curve[i];
+  const size_t first = f->n_found;
+  vg_status st = VG_OK;
+
+  for (int side = 0; side < 2; side++) {
+    size_t begun = f->n_found;
+
+    for (size_t k = curve->first; k + 1 < curve->first + curve->n; k++) {
+      uint32_t h = f->side[k - i][side];
+
+      if (h == VG_REF_NONE) continue;
+      if (f->o->across && f->o->across[f->tri_patch[h / 3]] > 1) continue;
+      VG_TRY(look_along(f, i, k, h, begun, err));
+    }
+  }
+  merge(f, first);
+  f->first[i] = first;
+  f->end[i] = f->n_found;
+done:
+  return st;
+}
+
+/* --- all ----------------------------------------------------------------- */
+
+static void count(struct finder *f, size_t i)
+{
+  struct vg_strips *s = f->s;
+
+  s->n += f->end[i] - f->first[i];
+  for (size_t j = f->first[i]; j < f->end[i]; j++) {
+    const struct stretch *p = &f->found[j];
+
+    s->length += p->to - p->from;
+    if (p->width <= s->widest) continue;
+    s->widest = p->width;
+    vg_curve_at(f->c, f->r, i, (p->from + p->to) / 2, s->at);
+  }
+}
+
+static vg_status close_all(struct finder *f, const struct vg_mesh *m,
+                           struct vg_error *err)
+{
+  struct vg_strip_cutter cut = { .s = f->s };
+  vg_status st;
+
+  VG_TRY(vg_strip_cutter_begin(&cut, f->r, m, err));
+  for (size_t i = 0; i < f->c->n_curve; i++) {
+    const struct vg_curve *curve = &f->c->curve[i];
+    size_t j = f->first[i];
+
+    count(f, i);
+    for (size_t k = curve->first; k + 1 < curve->first + curve->n; k++) {
+      double s0 = f->c->at[k], s1 = f->c->at[k + 1];
+      uint32_t h = f->side[k - i][0];
+
+      for (; j < f->end[i] && f->found[j].from < s1; j++) {
+        VG_TRY(vg_strip_cut(&cut, h, (f->found[j].from - s0) / (s1 - s0),
+                            (f->found[j].to - s0) / (s1 - s0), err));
+        if (f->found[j].to > s1) break;
+      }
+    }
+  }
+done:
+  vg_strip_cutter_release(&cut);
+  return st;
+}
+
+vg_status vg_strips_find(const struct vg_ref *r, const struct vg_curves *c,
+                         const struct vg_mesh *m,
+                         const struct vg_strips_options *o,
+                         struct vg_strips *s, struct vg_error *err)
+{
+  struct finder f = { .r = r, .c = c, .o = o, .tri_patch = m->tri_patch,
+                      .s = s };
+  vg_status st;
+
+  VG_TRY(list_sides(&f, err));
+  VG_TRY(rank_curves(&f, err));
+  for (size_t i = 0; i < c->n_curve; i++)
+    if (!f.claim[i].stays)
+      VG_TRY(look_at_curve(&f, f.claim[i].curve, err));
+  if (f.n_found) VG_TRY(close_all(&f, m, err));
+done:
+  free(f.side);
+  free(f.claim);
+  free(f.rank);
+  free(f.first);
+  free(f.end);
+  free(f.found);
+  if (st < 0) vg_strips_release(s);
+  return st;
+}
+
+void vg_strips_release(struct vg_strips *s)
+{
+  vg_mesh_release(&s->mesh);
+  free(s->closed);
+  free(s->tri_from);
+  free(s->half_from);
+  free(s->ends);
+  memset(s, 0, sizeof *s);
+}
