@@ -223,31 +223,55 @@ static void leaf_size(const struct vg_ref *r, size_t leaf,
       b->size = fmin(b->size, r->size[r->tri[r->item[i]][c]]);
 }
 
+/* A triangle without a normal faces every way. */
+static void add_normal(struct vg_ref_node *b, const double n[3])
+{
+  const int any = vg_dot(n, n) == 0, most = VG_REF_NORMAL;
+
+  for (int k = 0; k < 3; k++) {
+    int lo = any ? -most : (int)fmax(floor(most * n[k]), -most);
+    int hi = any ? most : (int)fmin(ceil(most * n[k]), most);
+
+    if (lo < b->normal[0][k]) b->normal[0][k] = (int8_t)lo;
+    if (hi > b->normal[1][k]) b->normal[1][k] = (int8_t)hi;
+  }
+}
+
 static void leaf_box(const struct vg_ref *r, const struct piece *piece,
                      const uint32_t *order, size_t leaf,
                      struct vg_ref_node *b)
 {
-  for (int k = 0; k < 3; k++) b->lo[k] = INFINITY, b->hi[k] = -INFINITY;
+  for (int k = 0; k < 3; k++) {
+    b->lo[k] = INFINITY, b->hi[k] = -INFINITY;
+    b->normal[0][k] = INT8_MAX, b->normal[1][k] = INT8_MIN;
+  }
   b->size = INFINITY;
-  for (size_t i = LEAF * leaf; i < LEAF * (leaf + 1) && i < r->n_item; i++)
+  for (size_t i = LEAF * leaf; i < LEAF * (leaf + 1) && i < r->n_item; i++) {
     for (int k = 0; k < 3; k++) {
       b->lo[k] = fmin(b->lo[k], piece[order[i]].lo[k]);
       b->hi[k] = fmax(b->hi[k], piece[order[i]].hi[k]);
     }
+    add_normal(b, r->shape[r->item[i]].n);
+  }
 }
 
 /* Inner nodes from their children. */
 static void join_nodes(struct vg_ref *r)
 {
   for (size_t i = r->first_leaf; i-- > 0;) {
+    const struct vg_ref_node *other = &r->node[2 * i + 2];
     struct vg_ref_node *b = &r->node[i];
 
     *b = r->node[2 * i + 1];
     for (int k = 0; k < 3; k++) {
-      b->lo[k] = fmin(b->lo[k], r->node[2 * i + 2].lo[k]);
-      b->hi[k] = fmax(b->hi[k], r->node[2 * i + 2].hi[k]);
+      b->lo[k] = fmin(b->lo[k], other->lo[k]);
+      b->hi[k] = fmax(b->hi[k], other->hi[k]);
+      if (other->normal[0][k] < b->normal[0][k])
+        b->normal[0][k] = other->normal[0][k];
+      if (other->normal[1][k] > b->normal[1][k])
+        b->normal[1][k] = other->normal[1][k];
     }
-    b->size = fmin(b->size, r->node[2 * i + 2].size);
+    b->size = fmin(b->size, other->size);
   }
 }
 
@@ -343,7 +367,8 @@ void vg_ref_release(struct vg_ref *r)
 
 struct thinning {
   struct vg_ref *r;
-  double distance;
+  double distance, far;
+  const double *cap;
   const struct vg_stop *stop;
 };
 
@@ -389,21 +414,41 @@ static int opposes(const struct vg_ref *r, uint32_t t, uint32_t u,
          && !boxes_apart(a, b, distance);
 }
 
-static void thin_leaf(const struct thinning *c, size_t leaf)
+static int is_outer(const struct thinning *c, uint32_t t)
+{
+  return isinf(c->cap[t]);
+}
+
+/* Others may have pieces of the same triangle. */
+static void mark(const struct thinning *c, uint32_t t, int as)
+{
+  __atomic_fetch_or(&c->r->thin[t], (uint8_t)as, __ATOMIC_RELAXED);
+}
+
+/* Mark those triangles of the leaf, or all but those that are not outer ones,
+ * which others oppose within the distance. */
+static void thin_leaf(const struct thinning *c, size_t leaf, double distance,
+                      int as)
 {
   struct vg_ref *r = c->r;
   const struct vg_ref_node *own = &r->node[r->first_leaf + leaf];
+  const size_t end = LEAF * (leaf + 1) < r->n_item ? LEAF * (leaf + 1)
+                                                   : r->n_item;
   uint32_t near[1024];
-  size_t cap = sizeof near / sizeof *near, n;
+  size_t cap = sizeof near / sizeof *near, n, first = LEAF * leaf;
 
-  n = vg_ref_around(r, own->lo, own->hi, c->distance, cap, near);
-  for (size_t i = LEAF * leaf; i < LEAF * (leaf + 1) && i < r->n_item; i++) {
-    int thin = n > cap;
+  if (as == VG_REF_THIN_FAR)
+    while (first < end && !is_outer(c, r->item[first]))
+      mark(c, r->item[first++], as);
+  if (first == end) return;
+  n = vg_ref_around(r, own->lo, own->hi, distance, cap, near);
+  for (size_t i = first; i < end; i++) {
+    const uint32_t t = r->item[i];
+    int thin = n > cap || (as == VG_REF_THIN_FAR && !is_outer(c, t));
 
     for (size_t k = 0; k < n && !thin; k++)
-      thin = opposes(r, r->item[i], near[k], c->distance);
-    /* Others may have pieces of the same triangle. */
-    if (thin) __atomic_store_n(&r->thin[r->item[i]], 1, __ATOMIC_RELAXED);
+      thin = opposes(r, t, near[k], distance);
+    if (thin) mark(c, t, as);
   }
 }
 
@@ -412,13 +457,17 @@ static void thin_leaves(void *context, size_t first, size_t end, int worker)
   const struct thinning *c = context;
 
   (void)worker;
-  for (size_t i = first; i < end && !vg_stops(c->stop); i++) thin_leaf(c, i);
+  for (size_t i = first; i < end && !vg_stops(c->stop); i++) {
+    thin_leaf(c, i, c->distance, VG_REF_THIN);
+    if (c->cap) thin_leaf(c, i, c->far, VG_REF_THIN_FAR);
+  }
 }
 
-vg_status vg_ref_thin(struct vg_ref *r, double distance, int threads,
+vg_status vg_ref_thin(struct vg_ref *r, double distance, double far,
+                      const double *cap, int threads,
                       const struct vg_stop *stop, struct vg_error *err)
 {
-  struct thinning c = { r, distance, stop };
+  struct thinning c = { r, distance, far, cap, stop };
 
   free(r->thin);
   r->thin = vg_calloc(r->n_tri, 1);

@@ -15,6 +15,7 @@
 #define VG_REF_GROUP 8    /* points that are asked for at once */
 
 enum { VG_REF_STRIP = 1, VG_REF_CLOSED };
+enum { VG_REF_THIN = 1, VG_REF_THIN_FAR = 2 };
 
 struct vg_ref_tri {
   double a[3], u[3], v[3];  /* a corner, the edges from there */
@@ -26,7 +27,10 @@ struct vg_ref_tri {
 struct vg_ref_node {
   double lo[3], hi[3];
   double size;              /* least below */
+  int8_t normal[2][3];      /* the box of the normals below, outward to whole
+                               numbers of VG_REF_NORMAL */
 };
+#define VG_REF_NORMAL 127
 
 /* Half-edge 3 t + k runs from corner k of triangle t to the next one. */
 struct vg_ref {
@@ -41,7 +45,8 @@ struct vg_ref {
                                VG_REF_CLOSED: near a strip that is closed.
                                NULL: there are none */
   double slope;             /* growth - 1 */
-  uint8_t *thin;            /* [n_tri] another sheet is near; vg_ref_thin */
+  uint8_t *thin;            /* [n_tri] another sheet is near: of vg_ref_thin
+                               these */
   uint32_t *item;           /* [n_item] triangles along a space-filling
                                curve; long ones in pieces, more than once */
   struct vg_ref_node *node; /* heap: children of i are 2 i + 1, 2 i + 2 */
@@ -64,8 +69,11 @@ void vg_ref_sizes(struct vg_ref *r);
 
 /** Mark the triangles that have one within `distance` which faces the other
  * way, or may: where none has, the sheets of the surface cannot be taken for
- * one another. O(n log n). VG_ERR_MEMORY, VG_ERR_STOPPED. */
-vg_status vg_ref_thin(struct vg_ref *r, double distance, int threads,
+ * one another. THIN_FAR: within `far`, or not where cap[n_tri] is INFINITY, and
+ * so not looked at; cap NULL: none is marked so.
+ * O(n log n). VG_ERR_MEMORY, VG_ERR_STOPPED. */
+vg_status vg_ref_thin(struct vg_ref *r, double distance, double far,
+                      const double *cap, int threads,
                       const struct vg_stop *stop, struct vg_error *err);
 
 void vg_ref_release(struct vg_ref *r);

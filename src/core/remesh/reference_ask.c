@@ -99,6 +99,16 @@ static int faces(const struct vg_ref_tri *t, const double *n)
   return c > FACING || (c == 0 && vg_dot(t->n, t->n) == 0);
 }
 
+/* May a triangle below the node? Leaves nothing to rounding. */
+static int may_face(const struct vg_ref_node *b, const double *n)
+{
+  double most = 0;
+
+  if (!n) return 1;
+  for (int k = 0; k < 3; k++) most += n[k] * b->normal[n[k] > 0][k];
+  return most > (FACING - 0.01) * VG_REF_NORMAL;
+}
+
 /* Does the plane of a triangle come within the distance? */
 static int plane_near(const struct vg_ref_tri *t, const double x[3],
                       double limit)
@@ -163,7 +173,7 @@ int vg_ref_within(const struct vg_ref *r, const double x[3],
   while (top) {
     size_t i = stack[--top], leaf;
 
-    if (box2(&r->node[i], x) > limit) continue;
+    if (box2(&r->node[i], x) > limit || !may_face(&r->node[i], n)) continue;
     if (i < r->first_leaf) {
       stack[top++] = 2 * i + 2;
       stack[top++] = 2 * i + 1;
@@ -202,7 +212,7 @@ static double search(const struct vg_ref *r, const double x[3],
   while (top) {
     size_t i = stack[--top].i, leaf;
 
-    if (stack[top].d2 > best) continue;
+    if (stack[top].d2 > best || !may_face(&r->node[i], n)) continue;
     if (i < r->first_leaf) {
       double l = box2(&r->node[2 * i + 1], x);
       double h = box2(&r->node[2 * i + 2], x);

@@ -311,6 +311,7 @@ static vg_status prepare(struct job *j, struct vg_error *err)
     VG_TRY(close_strips(j, &c, err));
     VG_TRY(check_number(j, err));
     VG_TRY(vg_ref_thin(&j->ref, (1 + VG_WORK_NEARER) * j->r.tolerance,
+                       (1 + VG_WORK_NEARER) * RELATIVE * j->r.h_max, j->cap,
                        o->threads, &o->stop, err));
   }
   j->source = vg_alloc(o->n_source, sizeof *j->source);

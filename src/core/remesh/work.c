@@ -387,12 +387,13 @@ static int sample_near(const struct vg_work *w, struct vg_cavity *c,
                        const double x[3], const double n[3])
 {
   const double back[3] = { -n[0], -n[1], -n[2] };
+  const int near = c->tolerance <= w->tolerance ? VG_REF_THIN
+                                                : VG_REF_THIN_FAR;
   double d2, o2, y[3];
   uint32_t other = VG_REF_NONE;
 
   if (!vg_ref_within(w->ref, x, n, c->tolerance, &c->hint, &d2)) return 0;
-  if (w->ref->thin && !w->ref->thin[c->hint]
-      && c->tolerance <= w->tolerance) return 1;
+  if (w->ref->thin && !(w->ref->thin[c->hint] & near)) return 1;
   if (d2 <= TRIFLE * c->tolerance * c->tolerance
       || !vg_ref_within(w->ref, x, back, VG_WORK_NEARER * sqrt(d2), &other,
                         &o2)) return 1;
