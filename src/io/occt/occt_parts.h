@@ -88,8 +88,12 @@ struct Surface {
   std::vector<double> point;
   std::vector<uint32_t> tri, face, patch, segment, curve;
   std::vector<vg_cad_patch> patches;
-  std::vector<gp_Pnt2d> uv;  /* of each corner of the triangles, on its face;
-                                stays here */
+  /* These stay here. */
+  std::vector<gp_Pnt2d> uv;  /* of each corner of the triangles, on its face */
+  std::vector<uint8_t> rim;  /* [triangles] bit k: the edge opposite corner k
+                                is on the rim of its face */
+  double bulge = 0;          /* the face's rim is no farther from such an edge,
+                                in parts of its length */
 };
 
 /** Triangles; faces that could not be are noted. */
@@ -100,14 +104,23 @@ void triangulate(const vg_cad_ask &ask, Model &model, Surface &out,
  * moves nothing. O(n log n). */
 void swap_caps(Surface &s, size_t from);
 
+/** A triangle of a face in the plane of parameters. */
+struct Piece {
+  gp_Pnt2d uv[3];
+  double least[3];           /* barycentric coordinates of places that are
+                                surely on the face are no less */
+  bool holds(const gp_Pnt2d &at) const;
+};
+
 /** The nearest points of a face, again and again. */
 class Projector {
 public:
   explicit Projector(const TopoDS_Face &face);
   ~Projector();
   gp_Pnt nearest(const gp_Pnt &p);
-  /* The same with a place to begin with, which is some ten times as fast. */
-  gp_Pnt nearest(const gp_Pnt &p, gp_Pnt2d guess);
+  /* The same with a place to begin with and the triangle that it is in, which
+   * is some ten times as fast. */
+  gp_Pnt nearest(const gp_Pnt &p, gp_Pnt2d guess, const Piece &piece);
 
 private:
   struct State;

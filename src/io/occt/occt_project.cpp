@@ -111,14 +111,29 @@ static bool walk(const BRepAdaptor_Surface &surface, const gp_Pnt &p,
   return false;
 }
 
-gp_Pnt Projector::nearest(const gp_Pnt &p, gp_Pnt2d guess)
+bool Piece::holds(const gp_Pnt2d &at) const
+{
+  gp_XY u = uv[1].XY() - uv[0].XY(), v = uv[2].XY() - uv[0].XY();
+  gp_XY d = at.XY() - uv[0].XY();
+  double det = u ^ v, a, b;
+
+  if (det == 0) return false;
+  a = (d ^ v) / det;
+  b = (u ^ d) / det;
+  return 1 - a - b >= least[0] && a >= least[1] && b >= least[2];
+}
+
+/* Whether a place is on the face takes longest to find out where its rim is
+ * long; most places are in the triangle where they began. */
+gp_Pnt Projector::nearest(const gp_Pnt &p, gp_Pnt2d guess, const Piece &piece)
 {
   State &s = *state_;
   gp_Pnt from = s.fast.Value(guess.X(), guess.Y()), foot;
 
   if (walk(s.fast, p, guess, foot) &&
       p.SquareDistance(foot) <= p.SquareDistance(from) &&
-      s.inside.Perform(guess) != TopAbs_OUT) return foot;
+      (piece.holds(guess) || s.inside.Perform(guess) != TopAbs_OUT))
+    return foot;
   return nearest(p);
 }
 

@@ -155,27 +155,43 @@ void put_on_faces(const Model &model, Points &p)
   }
 }
 
-/* The place of p on triangle t of its face. */
-gp_Pnt2d guess_on(const Surface &s, size_t t, const gp_Pnt &p)
-{
+struct Triangle {
+  Triangle(const Surface &s, size_t t) : piece{}
+  {
+    for (int i = 0; i < 3; i++) {
+      const double *at = s.point.data() + 3 * s.tri[3 * t + i];
+
+      x[i] = gp_Pnt(at[0], at[1], at[2]);
+      piece.uv[i] = s.uv[3 * t + i];
+    }
+    gp_Vec u(x[0], x[1]), v(x[0], x[2]);
+    double area = u.Crossed(v).Magnitude();
+    for (int i = 0; i < 3; i++)
+      if (s.rim[t] >> i & 1)   /* over the height of the corner */
+        piece.least[i] = area > 0
+            ? s.bulge * x[(i + 1) % 3].SquareDistance(x[(i + 2) % 3]) / area
+            : 2;
+  }
+
+  /* The place of p on it. */
+  gp_Pnt2d guess(const gp_Pnt &p) const
+  {
+    const gp_Pnt2d *uv = piece.uv;
+    gp_Vec u(x[0], x[1]), v(x[0], x[2]), d(x[0], p);
+    double uu = u * u, w = u * v, vv = v * v, det = uu * vv - w * w;
+    double a = 1. / 3, b = 1. / 3;
+
+    if (det > 0) {
+      a = (vv * (d * u) - w * (d * v)) / det;
+      b = (uu * (d * v) - w * (d * u)) / det;
+    }
+    return gp_Pnt2d(uv[0].XY() + a * (uv[1].XY() - uv[0].XY()) +
+                    b * (uv[2].XY() - uv[0].XY()));
+  }
+
   gp_Pnt x[3];
-  const gp_Pnt2d *uv = s.uv.data() + 3 * t;
-
-  for (int i = 0; i < 3; i++) {
-    const double *at = s.point.data() + 3 * s.tri[3 * t + i];
-
-    x[i] = gp_Pnt(at[0], at[1], at[2]);
-  }
-  gp_Vec u(x[0], x[1]), v(x[0], x[2]), d(x[0], p);
-  double uu = u * u, w = u * v, vv = v * v, det = uu * vv - w * w;
-  double a = 1. / 3, b = 1. / 3;
-  if (det > 0) {
-    a = (vv * (d * u) - w * (d * v)) / det;
-    b = (uu * (d * v) - w * (d * u)) / det;
-  }
-  return gp_Pnt2d(uv[0].XY() + a * (uv[1].XY() - uv[0].XY()) +
-                  b * (uv[2].XY() - uv[0].XY()));
-}
+  Piece piece;
+};
 
 void put_on_triangles(const Model &model, const Surface &s, Points &p)
 {
@@ -190,7 +206,8 @@ void put_on_triangles(const Model &model, const Surface &s, Points &p)
                                          i + 1, t)};
     std::unique_ptr<Projector> &on = open[s.face[t]];
     if (!on) on.reset(new Projector(model.faces[s.face[t] - 1].shape));
-    p.set(i, from, on->nearest(from, guess_on(s, t, from)));
+    const Triangle tri(s, t);
+    p.set(i, from, on->nearest(from, tri.guess(from), tri.piece));
   }
 }
 

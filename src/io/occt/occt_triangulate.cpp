@@ -25,6 +25,31 @@ namespace {
 
 const uint32_t none = UINT32_MAX;
 
+/* Edges of one triangle only, of those from number `from` on. */
+void find_rims(Surface &s, size_t from)
+{
+  struct Side { uint32_t a, b; size_t tri; int corner; };
+  std::vector<Side> sides;
+  auto same = [](const Side &x, const Side &y) {
+    return x.a == y.a && x.b == y.b;
+  };
+
+  s.rim.resize(s.face.size());
+  for (size_t t = from; t < s.face.size(); t++)
+    for (int k = 0; k < 3; k++) {
+      uint32_t a = s.tri[3 * t + (k + 1) % 3], b = s.tri[3 * t + (k + 2) % 3];
+
+      sides.push_back({std::min(a, b), std::max(a, b), t, k});
+    }
+  std::sort(sides.begin(), sides.end(), [](const Side &x, const Side &y) {
+    return x.a != y.a ? x.a < y.a : x.b < y.b;
+  });
+  for (size_t i = 0; i < sides.size(); i++)
+    if (!(i && same(sides[i], sides[i - 1])) &&
+        !(i + 1 < sides.size() && same(sides[i], sides[i + 1])))
+      s.rim[sides[i].tri] |= static_cast<uint8_t>(1 << sides[i].corner);
+}
+
 class Builder {
 public:
   Builder(Model &model, Surface &out) : model_(model), out_(out) {}
@@ -156,6 +181,7 @@ private:
       out_.patch.push_back(patch);
     }
     swap_caps(out_, from);
+    find_rims(out_, from);
   }
 
   Model &model_;
@@ -277,6 +303,9 @@ void triangulate(const vg_cad_ask &ask, Model &model, Surface &out,
   std::string bad;
 
   make_triangles(ask, model, talk);
+  /* An arc that turns by the angle rises by half of this over its chord;
+   * parameters need not run evenly. */
+  out.bulge = std::tan(ask.angle * (M_PI / 180) / 4);
   for (const Face &f : model.faces) {
     if (f.shape.IsNull()) continue;
     if (builder.add(f, patches.of(f))) continue;
