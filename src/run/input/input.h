@@ -43,8 +43,8 @@ struct vg_put_back {
   size_t n_point, n_curve;          /* of the surface; of them on curves */
   size_t n_far, n_refused;          /* that stay: off the model, and since
                                        triangles would fold or meet */
-  struct vg_remesh_distance off[2]; /* of points and centroids from the model,
-                                       before and after */
+  struct vg_remesh_distance off[2]; /* from the model: of points before, of
+                                       points and centroids after */
   double seconds;
 };
 

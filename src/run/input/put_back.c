@@ -1,8 +1,9 @@
 /* A surface that was made anew from CAD put back on its faces and curves.
  *
- * Samples are the points and the centroids of the new triangles: each lies on a
- * triangle of CAD's, which has a face; those on an edge of it that is part of a
- * curve belong to the curve. */
+ * Samples are the points and the centroids of the new triangles: each is near a
+ * triangle of CAD's, which has a face; points on an edge of it that is part of a
+ * curve belong to the curve. Points are put back; where that leaves centroids
+ * is measured. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,7 +23,10 @@ struct samples {
   uint32_t *tri;            /* of CAD's */
   uint32_t *curve;          /* [n_point] 0: none */
   double *distance;         /* of to from x; INFINITY: has no place there */
+  uint8_t *stays;           /* [n_point] is not put back */
 };
+
+struct range { size_t first, end; };
 
 static void release(struct samples *s)
 {
@@ -31,6 +35,7 @@ static void release(struct samples *s)
   free(s->tri);
   free(s->curve);
   free(s->distance);
+  free(s->stays);
 }
 
 static vg_status start(struct samples *s, const struct vg_mesh *m,
@@ -43,14 +48,19 @@ static vg_status start(struct samples *s, const struct vg_mesh *m,
   s->tri = vg_alloc(s->n, sizeof *s->tri);
   s->curve = vg_calloc(s->n_point, sizeof *s->curve);
   s->distance = vg_alloc(s->n, sizeof *s->distance);
-  if (!s->x || !s->to || !s->tri || !s->curve || !s->distance)
+  s->stays = vg_calloc(s->n_point, 1);
+  if (!s->x || !s->to || !s->tri || !s->curve || !s->distance || !s->stays)
     return vg_fail_memory(err, "the places on the CAD model");
   return VG_OK;
 }
 
-static void take_places(struct samples *s, const struct vg_mesh *m)
+static void take_points(struct samples *s, const struct vg_mesh *m)
 {
   memcpy(s->x, m->point, s->n_point * sizeof *s->x);
+}
+
+static void take_centroids(struct samples *s, const struct vg_mesh *m)
+{
   for (size_t t = 0; t < m->n_tri; t++)
     for (int d = 0; d < 3; d++)
       s->x[s->n_point + t][d] = (m->point[m->tri[t][0]][d]
@@ -118,18 +128,19 @@ static void find_curves(struct samples *s, const struct vg_cad_surface *c,
 /* --- places on the model ------------------------------------------------- */
 
 /* Those on curves, or the others. */
-static vg_status ask(struct samples *s, struct vg_cad *cad, int on_curves,
-                     struct vg_error *err)
+static vg_status ask(struct samples *s, struct vg_cad *cad, struct range of_all,
+                     int on_curves, struct vg_error *err)
 {
-  uint32_t *number = vg_alloc(s->n, sizeof *number);
-  size_t *of = vg_alloc(s->n, sizeof *of), n = 0;
-  double (*x)[3] = vg_alloc(s->n, sizeof *x);
-  double *far = vg_alloc(s->n, sizeof *far);
+  const size_t most = of_all.end - of_all.first;
+  uint32_t *number = vg_alloc(most, sizeof *number);
+  size_t *of = vg_alloc(most, sizeof *of), n = 0;
+  double (*x)[3] = vg_alloc(most, sizeof *x);
+  double *far = vg_alloc(most, sizeof *far);
   vg_status st = VG_OK;
 
   if (!number || !of || !x || !far)
     VG_TRY(vg_fail_memory(err, "the places on the CAD model"));
-  for (size_t i = 0; i < s->n; i++) {
+  for (size_t i = of_all.first; i < of_all.end; i++) {
     uint32_t curve = i < s->n_point ? s->curve[i] : 0;
 
     if ((curve > 0) != on_curves || !(s->distance[i] < INFINITY)) continue;
@@ -158,15 +169,15 @@ static int by_value(const void *pa, const void *pb)
   return (*a > *b) - (*a < *b);
 }
 
-static vg_status summarise(const struct samples *s,
+static vg_status summarise(const struct samples *s, size_t end,
                            struct vg_remesh_distance *d, struct vg_error *err)
 {
-  double *sorted = vg_alloc(s->n, sizeof *sorted);
+  double *sorted = vg_alloc(end, sizeof *sorted);
   size_t n = 0;
 
   if (!sorted) return vg_fail_memory(err, "the distances");
   memset(d, 0, sizeof *d);
-  for (size_t i = 0; i < s->n; i++) {
+  for (size_t i = 0; i < end; i++) {
     if (!(s->distance[i] < INFINITY)) continue;
     sorted[n++] = s->distance[i];
     if (!(s->distance[i] > d->most)) continue;
@@ -200,39 +211,61 @@ done:
   return st;
 }
 
+/* Where the points belong. */
 static vg_status find_places(struct samples *s, struct vg_cad *cad,
                              struct vg_remesh_distance *d,
                              struct vg_error *err)
 {
+  const struct range points = { 0, s->n_point };
   vg_status st;
 
-  VG_TRY(ask(s, cad, 0, err));
-  VG_TRY(ask(s, cad, 1, err));
-  VG_TRY(summarise(s, d, err));
+  VG_TRY(ask(s, cad, points, 0, err));
+  VG_TRY(ask(s, cad, points, 1, err));
+  VG_TRY(summarise(s, points.end, d, err));
+done:
+  return st;
+}
+
+/* How far the surface is now: points that stay are as far as they were, a
+ * triangle has a place where all its points have. */
+static vg_status measure(struct samples *s, const struct vg_mesh *m,
+                         struct vg_cad *cad, struct vg_remesh_distance *d,
+                         struct vg_error *err)
+{
+  vg_status st;
+
+  for (size_t p = 0; p < s->n_point; p++)
+    if (!s->stays[p]) s->distance[p] = 0;
+  for (size_t t = 0; t < m->n_tri; t++) {
+    const uint32_t *v = m->tri[t];
+
+    s->distance[s->n_point + t] = fmax(s->distance[v[0]],
+                                       fmax(s->distance[v[1]],
+                                            s->distance[v[2]]));
+  }
+  take_points(s, m);
+  take_centroids(s, m);
+  VG_TRY(ask(s, cad, (struct range){ s->n_point, s->n }, 0, err));
+  VG_TRY(summarise(s, s->n, d, err));
 done:
   return st;
 }
 
 /* --- all ----------------------------------------------------------------- */
 
-static vg_status move(struct vg_problem *p, const struct samples *s,
+static vg_status move(struct vg_problem *p, struct samples *s,
                       struct vg_put_back *b, struct vg_error *err)
 {
   const struct vg_stop stop = { vg_display_stop, NULL };
-  uint8_t *stays = vg_calloc(s->n_point, 1);
-  vg_status st;
 
-  if (!stays) return vg_fail_memory(err, "the places on the CAD model");
   for (size_t i = 0; i < s->n_point; i++) {
     if (!(s->distance[i] < INFINITY)) b->n_far++;
     if (s->curve[i]) b->n_curve++;
-    stays[i] = !(s->distance[i] < INFINITY);
+    s->stays[i] = !(s->distance[i] < INFINITY);
   }
   b->n_point = s->n_point;
-  st = vg_remesh_put_back(&p->surface, (const double (*)[3])s->to, p->threads,
-                          &stop, stays, &b->n_refused, err);
-  free(stays);
-  return st;
+  return vg_remesh_put_back(&p->surface, (const double (*)[3])s->to,
+                            p->threads, &stop, s->stays, &b->n_refused, err);
 }
 
 /* The largest of each triangle's own samples, where it has a place there. */
@@ -257,19 +290,19 @@ vg_status vg_problem_put_back(struct vg_problem *p, struct vg_error *err)
   vg_status st;
 
   VG_TRY(start(&s, &p->surface, err));
-  take_places(&s, &p->surface);
+  take_points(&s, &p->surface);
+  take_centroids(&s, &p->surface);
   VG_TRY(locate(&s, p, r->report.tolerance, err));
   VG_TRY(find_places(&s, p->model.cad, &b->off[0], err));
   VG_TRY(move(p, &s, b, err));
-  take_places(&s, &p->surface);
-  VG_TRY(find_places(&s, p->model.cad, &b->off[1], err));
+  VG_TRY(measure(&s, &p->surface, p->model.cad, &b->off[1], err));
   by_face(&s, &p->surface, r->face);
   b->seconds = vg_display_now() - t;
   b->is_done = 1;
   vg_note(&p->notes, "points were put back on the CAD model: %zu, %zu of them "
-          "on its curves; at most %.3g from it before, %.3g now, where "
-          "triangles are flat; refused, since triangles would fold or meet: "
-          "%zu", b->n_point - b->n_far - b->n_refused, b->n_curve,
+          "on its curves, from at most %.3g off it; middles of triangles, which "
+          "are flat, are at most %.3g off; refused, since triangles would fold "
+          "or meet: %zu", b->n_point - b->n_far - b->n_refused, b->n_curve,
           b->off[0].most, b->off[1].most, b->n_refused);
   if (b->n_far)
     vg_note(&p->notes, "%zu points lie farther than %.3g from the CAD model "

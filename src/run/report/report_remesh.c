@@ -40,7 +40,7 @@ static void back_text(FILE *to, const struct vg_put_back *b)
           "curves; refused %zu, off it %zu\n",
           b->n_point - b->n_refused - b->n_far, b->n_curve, b->n_refused,
           b->n_far);
-  distance_text(to, "from the CAD model before", &b->off[0]);
+  distance_text(to, "points from the CAD model before", &b->off[0]);
   distance_text(to, "from the CAD model now", &b->off[1]);
 }
 

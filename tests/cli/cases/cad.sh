@@ -54,7 +54,7 @@ says out "put back on the CAD model: "
 says out "refused 0, off it 0"
 says new/wing.mapbc "trailing_edge"
 says new/wing.surface.json '"on_curves": '
-awk '/from the CAD model before/ { before = $6 }
+awk '/from the CAD model before/ { before = $7 }
      /from the CAD model now/ { exit !($6 < before) }' out ||
   fail "farther from CAD than before"
 vanguard check -q new/wing.lb8.ugrid
