@@ -275,6 +275,37 @@ static void closes_narrow_strips(void **unused)
 }
 
 /* Half a body: the rim stays in its plane. */
+/* The same, where a wrap or the like can have made it: its edges are none, and
+ * what it is off is allowed for. */
+static void knows_what_the_given_is_worth(void **unused)
+{
+  const double size[3] = { 2, 1, 0.01 };
+  const uint32_t n[3] = { 4, 4, 1 };
+  size_t n_tri[3], n_line[3];
+
+  (void)unused;
+  for (int i = 0; i < 3; i++) {
+    struct vg_mesh m = VG_MESH_INIT;
+    struct vg_remesh_options o = VG_REMESH_OPTIONS_INIT;
+    struct vg_remesh_report r = VG_REMESH_REPORT_INIT;
+
+    shape_box(&m, size, n);
+    o.accuracy = i ? i > 1 ? 0.008 : 0.0005 : 0;
+    remesh(&m, &o, &r);
+    shape_expect_sound(&m, 0);
+    assert_float_equal(r.tolerance, i ? o.accuracy : 2e-4, 1e-12);
+    n_tri[i] = r.n_tri[1];
+    n_line[i] = r.n_line;
+    vg_remesh_report_release(&r);
+    vg_mesh_release(&m);
+  }
+  assert_int_equal(n_line[0], 12);
+  assert_int_equal(n_line[1], 12);
+  /* 0.01 across and less than 4.5 x 0.008: sizes are larger */
+  assert_true(n_tri[2] < n_tri[0] / 2);
+  assert_true(n_line[2] <= n_line[0]);
+}
+
 static void keeps_open_rims(void **unused)
 {
   const double size[3] = { 1, 1, 1 };
@@ -582,6 +613,9 @@ static void refuses(void **unused)
   o.tolerance = -1;
   refuse(&m, &o, VG_ERR_INPUT, "tolerance");
   o.tolerance = 0;
+  o.accuracy = NAN;
+  refuse(&m, &o, VG_ERR_INPUT, "accuracy");
+  o.accuracy = 0;
   o.growth = 1;
   refuse(&m, &o, VG_ERR_INPUT, "growth");
   o.growth = 1.2;
@@ -707,6 +741,7 @@ int main(void)
     cmocka_unit_test(keeps_hard_borders),
     cmocka_unit_test(follows_strips),
     cmocka_unit_test(closes_narrow_strips),
+    cmocka_unit_test(knows_what_the_given_is_worth),
     cmocka_unit_test(keeps_open_rims),
     cmocka_unit_test(obeys_sources),
     cmocka_unit_test(obeys_the_field_of_the_volume),

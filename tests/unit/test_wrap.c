@@ -135,6 +135,36 @@ static void a_small_hole_is_bridged_a_large_one_entered(void **state)
   vg_mesh_release(&m);
 }
 
+/* Points at an offset from an edge as sharp as a knife would fold if all of them
+ * went onto it; they are put together there. */
+static void knives_come_back(void **state)
+{
+  struct vg_mesh m = VG_MESH_INIT;
+  struct vg_wrap_report r;
+  size_t n_knife = 0;
+
+  (void)state;
+  add_brick(&m, 0, 12);        /* 0.1 high at x = 0, nothing at x = 1 */
+  for (size_t p = 0; p < 8; p++)
+    m.point[p][2] = 0.1 * m.point[p][2] * (1 - m.point[p][0]);
+  wrap(&m, 0.1, &r);
+  assert_int_equal(is_sound(&m), 1);
+  assert_true(r.n_zip > 0);
+  assert_int_equal(r.n_fit, r.n_point);
+  for (size_t p = 0; p < m.n_point; p++) {
+    assert_true(m.point[p][0] < 1 + 1e-9);
+    n_knife += m.point[p][0] > 1 - 1e-9;
+  }
+  assert_true(n_knife >= 6);   /* of a length of 1 in edges of about 0.1 */
+  for (size_t t = 0; t < m.n_tri; t++) {
+    size_t on = 0;
+
+    for (int k = 0; k < 3; k++) on += m.point[m.tri[t][k]][0] > 1 - 1e-9;
+    assert_true(on < 3);       /* no end is left between them */
+  }
+  vg_mesh_release(&m);
+}
+
 static int is_over(void *user)
 {
   size_t *left = user;
@@ -211,6 +241,9 @@ static void what_cannot_be_is_refused(void **state)
   refuses(&m, NAN, VG_ERR_INPUT, "must be > 0");
   refuses(&m, INFINITY, VG_ERR_INPUT, "must be > 0");
   refuses(&m, 1e-6, VG_ERR_INPUT, "in the unit of the surface?");
+  m.n_tri = 10;                /* 15 / 2.5 times as many, by a hole of 1 x 1 */
+  refuses(&m, 4e-3, VG_ERR_INPUT, "goes through holes");
+  m.n_tri = 12;
   m.tri[3][1] = 8;
   refuses(&m, 1, VG_ERR_INPUT, "triangle 4");
   m.tri[3][1] = 0;
@@ -253,6 +286,7 @@ int main(void)
     cmocka_unit_test(crossing_bricks),
     cmocka_unit_test(what_is_inside_goes),
     cmocka_unit_test(a_small_hole_is_bridged_a_large_one_entered),
+    cmocka_unit_test(knives_come_back),
     cmocka_unit_test(stops_where_it_is),
     cmocka_unit_test(the_same_twice),
     cmocka_unit_test(what_cannot_be_is_refused),

@@ -24,6 +24,9 @@
 #define TOLERANCE 1e-4    /* S20: of the body's length */
 #define RELATIVE 0.05     /* of the size */
 #define CHORD 0.6         /* of the tolerance: what sizes allow for arcs */
+#define JAGS 15.0         /* S43: of the accuracy of what is given: lines that
+                             it makes */
+#define NOISE 4.5         /* and sizes */
 #define H_MAX 0.02        /* of the length */
 #define H_MIN 2e-4        /* twice the tolerance */
 #define H_OUTER 0.04      /* of the domain's length */
@@ -97,11 +100,12 @@ static vg_status check_surface(const struct vg_mesh *m, struct vg_error *err)
 static vg_status check_options(const struct vg_remesh_options *o,
                                struct vg_error *err)
 {
-  if (!(o->tolerance >= 0 && o->h_min >= 0 && o->h_max >= 0
-        && isfinite(o->tolerance + o->h_min + o->h_max)))
-    return vg_fail(err, VG_ERR_INPUT, "tolerance %g and sizes %g, %g of the "
-                   "new surface must be lengths; 0: by the body", o->tolerance,
-                   o->h_min, o->h_max);
+  if (!(o->tolerance >= 0 && o->accuracy >= 0 && o->h_min >= 0
+        && o->h_max >= 0
+        && isfinite(o->tolerance + o->accuracy + o->h_min + o->h_max)))
+    return vg_fail(err, VG_ERR_INPUT, "tolerance %g, accuracy %g and sizes %g, "
+                   "%g of the new surface must be lengths; 0: by the body",
+                   o->tolerance, o->accuracy, o->h_min, o->h_max);
   if (!(o->scale > 0 && o->scale <= 1e4))
     return vg_fail(err, VG_ERR_INPUT, "scale %g of sizes is out of range (0 "
                    "to 1e4)", o->scale);
@@ -176,7 +180,8 @@ static vg_status settle(struct job *j, struct vg_error *err)
   if (e.is_domain) VG_TRY(complete_outer(m, outer, err));
   r->length = e.is_domain ? length_of(m, outer) : whole;
   if (!(r->length > 0)) r->length = whole;
-  j->jag = j->o->tolerance > 0 ? j->o->tolerance : TOLERANCE * r->length;
+  j->jag = j->o->tolerance > 0 ? j->o->tolerance
+           : fmax(TOLERANCE * r->length, j->o->accuracy);
   r->tolerance = j->jag * j->o->scale * fmax(j->o->scale, 1);
   r->h_max = j->o->h_max > 0 ? j->o->h_max : H_MAX * r->length;
   if (e.is_domain) {
@@ -228,7 +233,8 @@ static vg_status find_lines(struct job *j, const struct vg_curves_options *c,
   VG_TRY(vg_stopped(&o->stop, err));
   VG_TRY(vg_sizes_make(&j->ref, &j->curves, &(struct vg_sizes_options){
     o->per_turn / o->scale, CHORD * j->jag * o->scale * o->scale, o->scale,
-    j->r.h_min, j->r.h_max, vg_scaled_growth(o->growth, o->scale), j->cap,
+    j->r.h_min, j->r.h_max, NOISE * o->accuracy * o->scale,
+    vg_scaled_growth(o->growth, o->scale), j->cap,
     j->point_cap ? j->point_cap : o->cap, o->across, j->given->tri_patch,
     o->stop }, err));
 done:
@@ -304,8 +310,9 @@ static vg_status prepare(struct job *j, struct vg_error *err)
   VG_TRY(check_stretch(j->given, o->stretch, err));
   VG_TRY(settle(j, err));
   VG_TRY(vg_stopped(&o->stop, err));
-  c = (struct vg_curves_options){ o->ridge_angle, j->jag, j->given->tri_patch,
-    j->given->patch, o->hard, o->stretch, NULL };
+  c = (struct vg_curves_options){ o->ridge_angle,
+    fmax(j->jag, JAGS * o->accuracy), j->given->tri_patch, j->given->patch,
+    o->hard, o->stretch, NULL };
   VG_TRY(find_lines(j, &c, err));
   if (!j->looks) {
     VG_TRY(close_strips(j, &c, err));

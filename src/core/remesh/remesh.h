@@ -22,6 +22,9 @@ struct vg_remesh_options {
   double tolerance;         /* largest distance between the surfaces; 0: 1e-4
                                of the body's length; nowhere more than 0.05 of
                                the size */
+  double accuracy;          /* how far what is given may be from the shape that
+                               it stands for: a tolerance of 0 is no less,
+                               and lines and sizes of about that are none */
   double ridge_angle;       /* degrees between faces, from which on their edge
                                is a ridge and stays */
   double per_turn;          /* edges round a full circle */

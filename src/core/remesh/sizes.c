@@ -213,7 +213,7 @@ static void by_curves(struct vg_ref *r, const struct vg_curves *c,
 
 /* The size is the width by `strip` over the edges asked for across. */
 static void by_strip(struct vg_ref *r, const struct vg_curves *c, uint32_t h,
-                     double strip, double across)
+                     double strip, double across, double h_shape)
 {
   static const double share[3] = { 0.1, 0.5, 0.9 };
   const double factor = strip / across;
@@ -227,7 +227,8 @@ static void by_strip(struct vg_ref *r, const struct vg_curves *c, uint32_t h,
     w = factor * vg_strip_width(r, c, h, x, most / factor, NULL);
     for (int k = 0; k < 2; k++)
       if (i != (k ? 0 : 2) && w < r->size[end[k]])
-        r->size[end[k]] = fmax(w, FLOOR / across * r->plain[end[k]]);
+        r->size[end[k]] = fmax(w, fmin(r->plain[end[k]],
+          fmax(FLOOR * r->plain[end[k]], h_shape) / across));
   }
 }
 
@@ -284,6 +285,8 @@ vg_status vg_sizes_make(struct vg_ref *r, const struct vg_curves *c,
   VG_TRY(by_faces(r, c, o, far, err));
   VG_TRY(vg_stopped(&o->stop, err));
   by_curves(r, c, o, far);
+  for (size_t p = 0; p < r->n_point; p++)
+    r->size[p] = fmax(r->size[p], fmin(o->h_shape, o->h_max));
   for (size_t t = 0; o->cap && t < r->n_tri; t++)
     for (int k = 0; k < 3; k++)
       r->size[r->tri[t][k]] = fmin(r->size[r->tri[t][k]], o->cap[t]);
@@ -295,7 +298,7 @@ vg_status vg_sizes_make(struct vg_ref *r, const struct vg_curves *c,
   for (uint32_t h = 0; h < 3 * r->n_tri; h++)
     if (c->line[h] && !vg_stops(&o->stop))
       by_strip(r, c, h, o->strip,
-               o->across ? o->across[o->tri_patch[h / 3]] : 1);
+               o->across ? o->across[o->tri_patch[h / 3]] : 1, o->h_shape);
   for (size_t p = 0; p < r->n_point; p++)
     r->size[p] = fmax(o->h_min, r->size[p]);
   vg_ref_sizes(r);

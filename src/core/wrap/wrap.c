@@ -2,12 +2,17 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/memory.h"
 #include "core/geometry/vector.h"
+#include "core/surface/surface_check.h"
 #include "core/wrap/wrap_parts.h"
 
-#define MOST_TRIANGLES 1e8
+#define CLOSED 2.5        /* S44: triangles over area / size^2 */
+#define OPEN 15.0         /* where both sides of a sheet are wrapped */
+#define CRACK 1e-3        /* of the size: narrower rims are none */
+#define RIM 6.0           /* sizes: length of a rim that is gone through */
 #define REACH 1.5         /* S41: of the offset: farther, a gap was bridged */
 
 static double area(const struct vg_mesh *m)
@@ -28,8 +33,6 @@ static double area(const struct vg_mesh *m)
 static vg_status check(const struct vg_mesh *m, double size,
                        struct vg_error *err)
 {
-  double n;
-
   if (!(size > 0) || !isfinite(size))
     return vg_fail(err, VG_ERR_INPUT, "a wrap of size %g: it must be > 0",
                    size);
@@ -43,11 +46,72 @@ static vg_status check(const struct vg_mesh *m, double size,
       return vg_fail(err, VG_ERR_INPUT, "triangle %zu: an index is out of "
                      "range", i + 1);
   }
-  n = 4 * area(m) / (size * size);
-  if (n > MOST_TRIANGLES)
-    return vg_fail(err, VG_ERR_INPUT, "a wrap of size %g would have some %.2g "
-                   "triangles; is it in the unit of the surface?", size, n);
   return VG_OK;
+}
+
+struct side { uint32_t lo, hi; };
+
+static int by_ends(const void *pa, const void *pb)
+{
+  const struct side *a = pa, *b = pb;
+
+  if (a->lo != b->lo) return a->lo < b->lo ? -1 : 1;
+  return (a->hi > b->hi) - (a->hi < b->hi);
+}
+
+/* Length of the edges with one triangle, cracks left out. */
+static vg_status measure_rims(const struct vg_mesh *in, double size,
+                              double *length, struct vg_error *err)
+{
+  struct vg_mesh m = VG_MESH_INIT;
+  struct side *s = NULL;
+  size_t n;
+  vg_status st;
+
+  *length = 0;
+  VG_TRY(vg_mesh_copy(&m, in, err));
+  VG_TRY(vg_surface_weld(&m, CRACK * size, NULL, NULL, err));
+  n = 3 * m.n_tri;
+  s = vg_alloc(n, sizeof *s);
+  if (!s) VG_TRY(vg_fail_memory(err, "a wrap"));
+  for (size_t i = 0; i < n; i++) {
+    uint32_t a = m.tri[i / 3][i % 3], b = m.tri[i / 3][(i + 1) % 3];
+
+    s[i] = (struct side){ a < b ? a : b, a < b ? b : a };
+  }
+  qsort(s, n, sizeof *s, by_ends);
+  for (size_t i = 0; i < n; i++)
+    if ((!i || by_ends(&s[i - 1], &s[i]))
+        && (i + 1 == n || by_ends(&s[i], &s[i + 1])))
+      *length += vg_distance(m.point[s[i].lo], m.point[s[i].hi]);
+done:
+  free(s);
+  vg_mesh_release(&m);
+  return st;
+}
+
+/* What would take hours is refused. */
+static vg_status check_number(const struct vg_mesh *m, double size,
+                              struct vg_error *err)
+{
+  double rims, n = CLOSED * area(m) / (size * size);
+  int is_open = 0;
+  vg_status st = VG_OK;
+
+  if (n < VG_WRAP_MOST) {
+    VG_TRY(measure_rims(m, size, &rims, err));
+    is_open = rims > RIM * size;
+    if (is_open) n *= OPEN / CLOSED;
+  }
+  if (n > VG_WRAP_MOST)
+    return vg_fail(err, VG_ERR_INPUT, "a wrap of size %g would have some %.2g "
+                   "triangles%s, and %.2g are the most; is it in the unit of "
+                   "the surface? Sizes from %.2g on will do", size, n,
+                   is_open ? ", as it goes through holes and lies on both "
+                   "sides of the surface" : "", VG_WRAP_MOST,
+                   1.05 * size * sqrt(n / VG_WRAP_MOST));
+done:
+  return st;
 }
 
 /* Patches that had triangles, and have none. */
@@ -66,16 +130,72 @@ static vg_status count_empty(const struct vg_mesh *before,
   return VG_OK;
 }
 
+/* Triangles get the patch of the nearest one of the input. */
+static vg_status label(const struct vg_mesh *m, struct vg_mesh *out,
+                       const struct vg_stop *stop, struct vg_wrap_report *r,
+                       struct vg_error *err)
+{
+  size_t n = out->n_point + out->n_tri;
+  double (*x)[3] = vg_alloc(2 * n, sizeof *x);
+  uint32_t *near = vg_alloc(n, sizeof *near);
+  vg_status st;
+
+  if (!x || !near) VG_TRY(vg_fail_memory(err, "a wrap"));
+  memcpy(x, out->point, out->n_point * sizeof *x);
+  for (size_t i = 0; i < out->n_tri; i++)
+    for (int k = 0; k < 3; k++)
+      x[out->n_point + i][k] = (out->point[out->tri[i][0]][k]
+                                + out->point[out->tri[i][1]][k]
+                                + out->point[out->tri[i][2]][k]) / 3;
+  VG_TRY(vg_wrap_nearest(m, n, (const double (*)[3])x, stop, x + n, near,
+                         err));
+  for (size_t i = 0; i < n; i++) {
+    double d = vg_distance(x[i], x[n + i]);
+
+    if (d <= r->distance) continue;
+    r->distance = d;
+    memcpy(r->at, x[i], sizeof r->at);
+  }
+  for (size_t i = 0; i < out->n_tri; i++)
+    out->tri_patch[i] = m->tri_patch[near[out->n_point + i]];
+done:
+  free(x);
+  free(near);
+  return st;
+}
+
+/* Points onto the input. */
+static vg_status fit(const struct vg_mesh *m, struct vg_mesh *out,
+                     const struct vg_stop *stop, struct vg_wrap_report *r,
+                     struct vg_error *err)
+{
+  const double most = REACH * r->offset;
+  double (*near)[3] = vg_alloc(out->n_point, sizeof *near);
+  uint32_t *tri = vg_alloc(out->n_point, sizeof *tri);
+  vg_status st;
+
+  if (!near || !tri) VG_TRY(vg_fail_memory(err, "a wrap"));
+  VG_TRY(vg_wrap_nearest(m, out->n_point, (const double (*)[3])out->point,
+                         stop, near, tri, err));
+  VG_TRY(vg_wrap_zip(out, near, most, stop, &r->n_zip, err));
+  VG_TRY(vg_wrap_fit(out, (const double (*)[3])near, most, stop, &r->n_fit,
+                     err));
+done:
+  free(near);
+  free(tri);
+  return st;
+}
+
 vg_status vg_wrap(struct vg_mesh *m, double size, const struct vg_stop *stop,
                   struct vg_wrap_report *r, struct vg_error *err)
 {
   struct vg_wrap_report report = { .offset = size * VG_WRAP_OFFSET };
   struct vg_mesh out = VG_MESH_INIT;
-  double (*near)[3] = NULL;
   vg_status st;
 
   VG_TRY(check(m, size, err));
-  VG_TRY(vg_wrap_cgal(m, size, report.offset, stop, &out, &near, err));
+  VG_TRY(check_number(m, size, err));
+  VG_TRY(vg_wrap_cgal(m, size, report.offset, stop, &out, err));
   if (!out.n_tri) {
     st = vg_fail(err, VG_ERR_GEOMETRY, "nothing is left of a wrap of size %g: "
                  "it goes through the surface's holes; take a larger one",
@@ -84,12 +204,11 @@ vg_status vg_wrap(struct vg_mesh *m, double size, const struct vg_stop *stop,
   }
   out.patch = m->patch;     /* borrowed, for the check */
   out.n_patch = m->n_patch;
-  st = vg_wrap_fit(&out, (const double (*)[3])near, REACH * report.offset,
-                   stop, &report.n_fit, err);
+  st = fit(m, &out, stop, &report, err);
   out.patch = NULL;
   out.n_patch = 0;
   if (st < 0) goto done;
-  VG_TRY(vg_wrap_label(m, &out, stop, &report, err));
+  VG_TRY(label(m, &out, stop, &report, err));
   VG_TRY(count_empty(m, &out, &report.n_empty, err));
   out.patch = m->patch;
   out.n_patch = m->n_patch;
@@ -100,7 +219,6 @@ vg_status vg_wrap(struct vg_mesh *m, double size, const struct vg_stop *stop,
   report.n_point = m->n_point;
   *r = report;
 done:
-  free(near);
   vg_mesh_release(&out);
   return st;
 }

@@ -22,11 +22,14 @@ extern "C" {
 
 /* Distance of the wrap from the input over its size. */
 #define VG_WRAP_OFFSET (1.0 / 30)   /* S12 */
+#define VG_WRAP_MOST 4e6            /* triangles; more are refused */
 
 struct vg_wrap_report {
   double offset;             /* size * VG_WRAP_OFFSET */
   size_t n_before;           /* triangles that went in */
   size_t n_fit, n_point;     /* points that lie on the input; all */
+  size_t n_zip;              /* points taken away where two sides of the wrap
+                                meet in an edge of the input */
   size_t n_empty;            /* patches that have none any more */
   double distance;           /* largest distance from the input of corners and
                                 centres of the new triangles */
@@ -37,8 +40,9 @@ struct vg_wrap_report {
 int vg_wrap_is_built(void);
 
 /** Put a surface around the triangles of m in their place. CGAL's points lie
- * `offset` away from them; they are put onto the input, so that its ridges and
- * corners come back, where they can without a fold or an intersection.
+ * `offset` away from them; they are put onto the input, so that its ridges,
+ * knives and corners come back, where they can without a fold or an
+ * intersection.
  *
  * A new triangle has the patch of the old one nearest to its centre; patches
  * keep their order, also those that are left without triangles.
@@ -49,7 +53,7 @@ int vg_wrap_is_built(void);
  * @param size  > 0: the smallest gap that is entered, and about the longest
  *              edge, in the unit of m
  * VG_ERR_UNSUPPORTED in a build without CGAL; VG_ERR_INPUT for a size that is
- * not positive, or so small that some 1e8 triangles would come out, no
+ * not positive, or so small that more than VG_WRAP_MOST would come out, no
  * triangles, quadrilaterals or cells, an index out of range; VG_ERR_GEOMETRY
  * when nothing is left (an open sheet's holes are wider than size);
  * VG_ERR_STOPPED: stop, which may be NULL, is asked for every facet; VG_ERR_MEMORY.

@@ -18,15 +18,15 @@ static vg_status not_built(struct vg_error *err)
 
 extern "C" vg_status vg_wrap_cgal(const struct vg_mesh *, double, double,
                                   const struct vg_stop *, struct vg_mesh *,
-                                  double (**)[3], struct vg_error *err)
+                                  struct vg_error *err)
 {
   return not_built(err);
 }
 
-extern "C" vg_status vg_wrap_label(const struct vg_mesh *, struct vg_mesh *,
-                                   const struct vg_stop *,
-                                   struct vg_wrap_report *,
-                                   struct vg_error *err)
+extern "C" vg_status vg_wrap_nearest(const struct vg_mesh *, size_t,
+                                     const double (*)[3],
+                                     const struct vg_stop *, double (*)[3],
+                                     uint32_t *, struct vg_error *err)
 {
   return not_built(err);
 }
@@ -61,14 +61,27 @@ Point point_of(const vg_mesh *m, uint32_t v)
   return Point(m->point[v][0], m->point[v][1], m->point[v][2]);
 }
 
+Kernel::Triangle_3 triangle_of(const vg_mesh *m, size_t i)
+{
+  const uint32_t *v = m->tri[i];
+
+  return Kernel::Triangle_3(point_of(m, v[0]), point_of(m, v[1]),
+                            point_of(m, v[2]));
+}
+
+bool is_flat(const vg_mesh *m)
+{
+  for (size_t i = 0; i < m->n_tri; i++)
+    if (!triangle_of(m, i).is_degenerate()) return false;
+  return true;
+}
+
 /* The input's triangles, those without area left out, and which they are. */
 struct Input {
-  explicit Input(const vg_mesh *mesh) : m(mesh)
+  explicit Input(const vg_mesh *m)
   {
     for (size_t i = 0; i < m->n_tri; i++) {
-      const uint32_t *v = m->tri[i];
-      Kernel::Triangle_3 t(point_of(m, v[0]), point_of(m, v[1]),
-                           point_of(m, v[2]));
+      Kernel::Triangle_3 t = triangle_of(m, i);
 
       if (t.is_degenerate()) continue;
       triangle.push_back(t);
@@ -77,22 +90,13 @@ struct Input {
     tree.rebuild(triangle.cbegin(), triangle.cend());
   }
 
-  /* Number of the nearest triangle; its distance into *d. */
-  size_t nearest(const Point &p, double *d) const
-  {
-    auto hit = tree.closest_point_and_primitive(p);
-
-    *d = std::sqrt(CGAL::squared_distance(p, hit.first));
-    return number[static_cast<size_t>(hit.second - triangle.cbegin())];
-  }
-
-  const vg_mesh *m;
   Triangles triangle;
   std::vector<size_t> number;
   Tree tree;
 };
 
 struct Stopped {};
+struct TooMany {};
 
 void ask(const vg_stop *stop)
 {
@@ -109,7 +113,15 @@ struct Visitor : CGAL::Alpha_wraps_3::internal::Wrapping_default_visitor {
     ask(stop);
   }
 
+  /* A point makes two triangles. */
+  template <typename Wrapper, typename Vertex>
+  void after_Steiner_point_insertion(const Wrapper &, Vertex)
+  {
+    if (++points > VG_WRAP_MOST / 2) throw TooMany();
+  }
+
   const vg_stop *stop;
+  size_t points = 0;
 };
 
 void wrap(const vg_mesh *m, double size, double offset, const vg_stop *stop,
@@ -138,36 +150,16 @@ bool allocate(size_t n_point, size_t n_tri, vg_mesh *out)
   return out->point && out->tri && out->tri_patch;
 }
 
-void farther(const Point &p, double d, vg_wrap_report *r)
-{
-  if (d <= r->distance) return;
-  r->distance = d;
-  r->at[0] = p.x();
-  r->at[1] = p.y();
-  r->at[2] = p.z();
-}
-
-/* near: of each point the nearest place of the input. */
-void give(const Mesh &from, const Input &in, const vg_stop *stop, vg_mesh *out,
-          double (**near)[3])
+void give(const Mesh &from, vg_mesh *out)
 {
   std::vector<uint32_t> place(from.num_vertices());
 
   if (!allocate(from.number_of_vertices(), from.number_of_faces(), out))
     throw std::bad_alloc();
-  *near = static_cast<double(*)[3]>(
-      std::malloc((from.number_of_vertices() + 1) * sizeof **near));
-  if (!*near) throw std::bad_alloc();
   for (Mesh::Vertex_index v : from.vertices()) {
-    const Point &p = from.point(v);
-    const Point q = in.tree.closest_point(p);
-
-    ask(stop);
     place[v] = static_cast<uint32_t>(out->n_point);
-    for (int k = 0; k < 3; k++) {
-      out->point[out->n_point][k] = p[k];
-      (*near)[out->n_point][k] = q[k];
-    }
+    for (int k = 0; k < 3; k++)
+      out->point[out->n_point][k] = from.point(v)[k];
     out->n_point++;
   }
   for (Mesh::Face_index f : from.faces()) {
@@ -179,27 +171,36 @@ void give(const Mesh &from, const Input &in, const vg_stop *stop, vg_mesh *out,
   }
 }
 
-void label(const Input &in, const vg_stop *stop, vg_mesh *out,
-           vg_wrap_report *r)
+void find_nearest(const Input &in, size_t n, const double (*x)[3],
+                  const vg_stop *stop, double (*foot)[3], uint32_t *tri)
 {
-  double d;
-
-  for (size_t i = 0; i < out->n_point; i++) {
-    const Point p = point_of(out, static_cast<uint32_t>(i));
+  for (size_t i = 0; i < n; i++) {
+    auto hit = in.tree.closest_point_and_primitive(
+        Point(x[i][0], x[i][1], x[i][2]));
 
     ask(stop);
-    in.nearest(p, &d);
-    farther(p, d, r);
+    for (int k = 0; k < 3; k++) foot[i][k] = hit.first[k];
+    tri[i] = static_cast<uint32_t>(
+        in.number[static_cast<size_t>(hit.second - in.triangle.cbegin())]);
   }
-  for (size_t i = 0; i < out->n_tri; i++) {
-    const uint32_t *t = out->tri[i];
-    Point c = CGAL::centroid(point_of(out, t[0]), point_of(out, t[1]),
-                             point_of(out, t[2]));
-    size_t old = in.nearest(c, &d);
+}
 
-    ask(stop);
-    farther(c, d, r);
-    out->tri_patch[i] = in.m->tri_patch[old];
+/* No exception leaves this file. */
+template <typename Body>
+vg_status guarded(const vg_stop *stop, vg_error *err, Body body)
+{
+  try {
+    return body();
+  } catch (const Stopped &) {
+    return vg_stopped(stop, err);
+  } catch (const TooMany &) {
+    return vg_fail(err, VG_ERR_INPUT, "a wrap came to %.2g triangles and was "
+                   "not done: take a larger size", VG_WRAP_MOST);
+  } catch (const std::bad_alloc &) {
+    return vg_fail_memory(err, "a wrap; take a larger size");
+  } catch (const std::exception &e) {
+    return vg_fail(err, VG_ERR_GEOMETRY, "CGAL could not wrap the surface: "
+                   "%.300s", e.what());
   }
 }
 
@@ -212,43 +213,29 @@ extern "C" int vg_wrap_is_built(void)
 
 extern "C" vg_status vg_wrap_cgal(const struct vg_mesh *m, double size,
                                   double offset, const struct vg_stop *stop,
-                                  struct vg_mesh *out, double (**near)[3],
-                                  struct vg_error *err)
+                                  struct vg_mesh *out, struct vg_error *err)
 {
-  try {
-    Input in(m);
+  return guarded(stop, err, [&] {
     Mesh made;
 
-    if (in.triangle.empty())
+    if (is_flat(m))
       return vg_fail(err, VG_ERR_INPUT, "a wrap: all triangles are degenerate");
-    ask(stop);
     wrap(m, size, offset, stop, made);
-    give(made, in, stop, out, near);
+    give(made, out);
     return VG_OK;
-  } catch (const Stopped &) {
-    return vg_stopped(stop, err);
-  } catch (const std::bad_alloc &) {
-    return vg_fail_memory(err, "a wrap; take a larger size");
-  } catch (const std::exception &e) {
-    return vg_fail(err, VG_ERR_GEOMETRY, "CGAL could not wrap the surface: "
-                   "%.300s", e.what());
-  }
+  });
 }
 
-extern "C" vg_status vg_wrap_label(const struct vg_mesh *m,
-                                   struct vg_mesh *out,
-                                   const struct vg_stop *stop,
-                                   struct vg_wrap_report *r,
-                                   struct vg_error *err)
+extern "C" vg_status vg_wrap_nearest(const struct vg_mesh *m, size_t n,
+                                     const double (*x)[3],
+                                     const struct vg_stop *stop,
+                                     double (*foot)[3], uint32_t *tri,
+                                     struct vg_error *err)
 {
-  try {
-    label(Input(m), stop, out, r);
+  return guarded(stop, err, [&] {
+    find_nearest(Input(m), n, x, stop, foot, tri);
     return VG_OK;
-  } catch (const Stopped &) {
-    return vg_stopped(stop, err);
-  } catch (const std::bad_alloc &) {
-    return vg_fail_memory(err, "a wrap; take a larger size");
-  }
+  });
 }
 
 #endif

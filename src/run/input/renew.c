@@ -4,6 +4,7 @@
 
 #include "base/memory.h"
 #include "core/geometry/vector.h"
+#include "core/wrap/wrap.h"
 #include "io/mesh/format.h"
 #include "run/input/input.h"
 #include "run/input/share.h"
@@ -49,6 +50,7 @@ struct vg_remesh_options vg_remesh_options_of(const struct vg_settings *s)
   struct vg_remesh_options o = VG_REMESH_OPTIONS_INIT;
 
   o.tolerance = s->surface_tolerance;
+  o.accuracy = s->wrap * VG_WRAP_OFFSET;
   o.ridge_angle = s->ridge_angle;
   o.per_turn = s->per_turn;
   o.h_min = s->hmin;

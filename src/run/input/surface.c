@@ -376,10 +376,12 @@ static vg_status wrap(struct vg_problem *p, struct vg_display *show,
   vg_display_update(show, "wrap", p->surface.n_tri, 0);
   VG_TRY(vg_wrap(&p->surface, size, &stop, &r, err));
   vg_note(&p->notes, "the surface was wrapped: %zu triangles by %zu; of %zu "
-          "points %zu lie on them, others about %.3g away; gaps narrower than "
-          "%g were bridged; the farthest is %.3g away, at (%.6g, %.6g, %.6g); "
-          "patches follow the nearest triangle, left without any: %zu",
-          r.n_before, p->surface.n_tri, r.n_point, r.n_fit, r.offset, size,
+          "points %zu lie on them, others about %.3g away; put together where "
+          "two sides meet in an edge: %zu; gaps narrower than %g were bridged; "
+          "the farthest is %.3g away, at (%.6g, %.6g, %.6g); patches follow "
+          "the nearest triangle, left without any: %zu",
+          r.n_before, p->surface.n_tri, r.n_point, r.n_fit, r.offset, r.n_zip,
+          size,
           r.distance, r.at[0], r.at[1], r.at[2], r.n_empty);
 done:
   return st;

@@ -118,7 +118,8 @@ static const struct vg_param params[] = {
     "CAD, whose faces and curves the new points are put back on" },
   { "surface_tolerance", AT(surface_tolerance), .use = VG_USE_REMESH, LENGTH,
     .help = "largest distance of a new surface from the one given; 0: 1e-4 of "
-    "the body's length; nowhere more than 0.05 of the edges" },
+    "the body's length, or 1/30 of wrap if that is more; nowhere more than "
+    "0.05 of the edges" },
   { "surface_size", AT(surface_size), .use = VG_USE_REMESH, LENGTH,
     .help = "largest edge of a new surface; 0: hmax, or 0.02 of the body's "
     "length (of an outer boundary, 0.04 of its own)" },
