@@ -303,31 +303,59 @@ done:
   return st;
 }
 
-static vg_status build(struct vg_ref *r, const struct vg_mesh *m,
-                       int with_mates, const struct vg_stop *stop,
-                       struct vg_error *err)
+static vg_status set_faces(struct vg_ref *r, const struct vg_mesh *m,
+                           int with_mates, const struct vg_stop *stop,
+                           struct vg_error *err)
 {
   struct vg_ref made = { .n_point = m->n_point, .n_tri = m->n_tri,
     .point = (const double (*)[3])m->point,
     .tri = (const uint32_t (*)[3])m->tri };
-  struct piece *piece = NULL;
   vg_status st = VG_OK;
 
   if (with_mates) made.mate = vg_alloc(3 * m->n_tri, sizeof *made.mate);
   made.shape = vg_alloc(m->n_tri, sizeof *made.shape);
   if ((with_mates && !made.mate) || !made.shape)
-    VG_TRY(vg_fail_memory(err, "the tree of the surface"));
+    VG_TRY(vg_fail_memory(err, "the triangles of the surface"));
   if (with_mates) VG_TRY(find_mates(&made, err));
   VG_TRY(vg_stopped(stop, err));
   for (size_t t = 0; t < m->n_tri; t++) make_shape(&made, t);
-  VG_TRY(make_pieces(&made, &piece, &made.n_item, err));
-  VG_TRY(vg_stopped(stop, err));
-  VG_TRY(make_tree(&made, piece, err));
   *r = made;
   made = (struct vg_ref)VG_REF_INIT;
 done:
-  free(piece);
   vg_ref_release(&made);
+  return st;
+}
+
+vg_status vg_ref_set_faces(struct vg_ref *r, const struct vg_mesh *m,
+                           const struct vg_stop *stop, struct vg_error *err)
+{
+  return set_faces(r, m, 1, stop, err);
+}
+
+vg_status vg_ref_add_tree(struct vg_ref *r, const struct vg_stop *stop,
+                          struct vg_error *err)
+{
+  struct piece *piece = NULL;
+  vg_status st;
+
+  VG_TRY(make_pieces(r, &piece, &r->n_item, err));
+  VG_TRY(vg_stopped(stop, err));
+  VG_TRY(make_tree(r, piece, err));
+done:
+  free(piece);
+  return st;
+}
+
+static vg_status build(struct vg_ref *r, const struct vg_mesh *m,
+                       int with_mates, const struct vg_stop *stop,
+                       struct vg_error *err)
+{
+  vg_status st;
+
+  VG_TRY(set_faces(r, m, with_mates, stop, err));
+  VG_TRY(vg_ref_add_tree(r, stop, err));
+done:
+  if (st < 0) vg_ref_release(r);
   return st;
 }
 

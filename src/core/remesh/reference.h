@@ -59,6 +59,15 @@ struct vg_ref {
 vg_status vg_ref_build(struct vg_ref *r, const struct vg_mesh *m,
                        const struct vg_stop *stop, struct vg_error *err);
 
+/** The first half of that: mates and shapes, but no tree, which is all that
+ * lines and strips are found by. */
+vg_status vg_ref_set_faces(struct vg_ref *r, const struct vg_mesh *m,
+                           const struct vg_stop *stop, struct vg_error *err);
+
+/** The second half. On failure what was there stays. */
+vg_status vg_ref_add_tree(struct vg_ref *r, const struct vg_stop *stop,
+                          struct vg_error *err);
+
 /** The same of any triangles, and without mates: vg_ref_nearest and
  * vg_ref_within alone can be asked. */
 vg_status vg_ref_build_tree(struct vg_ref *r, const struct vg_mesh *m,

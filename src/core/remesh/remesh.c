@@ -224,12 +224,22 @@ static vg_status check_number(const struct job *j, struct vg_error *err)
 static vg_status find_lines(struct job *j, const struct vg_curves_options *c,
                             struct vg_error *err)
 {
+  vg_status st;
+
+  VG_TRY(vg_ref_set_faces(&j->ref, j->given, &j->o->stop, err));
+  VG_TRY(vg_stopped(&j->o->stop, err));
+  VG_TRY(vg_curves_find(&j->curves, &j->ref, c, err));
+  VG_TRY(vg_stopped(&j->o->stop, err));
+done:
+  return st;
+}
+
+static vg_status find_sizes(struct job *j, struct vg_error *err)
+{
   const struct vg_remesh_options *o = j->o;
   vg_status st;
 
-  VG_TRY(vg_ref_build(&j->ref, j->given, &o->stop, err));
-  VG_TRY(vg_stopped(&o->stop, err));
-  VG_TRY(vg_curves_find(&j->curves, &j->ref, c, err));
+  VG_TRY(vg_ref_add_tree(&j->ref, &o->stop, err));
   VG_TRY(vg_stopped(&o->stop, err));
   VG_TRY(vg_sizes_make(&j->ref, &j->curves, &(struct vg_sizes_options){
     o->per_turn / o->scale, CHORD * j->jag * o->scale * o->scale, o->scale,
@@ -278,7 +288,7 @@ static vg_status extend_stretch(struct job *j, struct vg_error *err)
   return VG_OK;
 }
 
-/* Where strips are closed, all is found again without them. */
+/* Where strips are closed, lines are found again without them. */
 static vg_status close_strips(struct job *j, struct vg_curves_options *c,
                               struct vg_error *err)
 {
@@ -314,8 +324,9 @@ static vg_status prepare(struct job *j, struct vg_error *err)
     fmax(j->jag, JAGS * o->accuracy), j->given->tri_patch, j->given->patch,
     o->hard, o->stretch, NULL };
   VG_TRY(find_lines(j, &c, err));
+  if (!j->looks) VG_TRY(close_strips(j, &c, err));
+  VG_TRY(find_sizes(j, err));
   if (!j->looks) {
-    VG_TRY(close_strips(j, &c, err));
     VG_TRY(check_number(j, err));
     VG_TRY(vg_ref_thin(&j->ref, (1 + VG_WORK_NEARER) * j->r.tolerance,
                        (1 + VG_WORK_NEARER) * RELATIVE * j->r.h_max, j->cap,

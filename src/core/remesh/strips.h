@@ -46,8 +46,8 @@ struct vg_strips {
 
 /** Of two lines that are so close that the tolerance hides what is between
  * them only one needs to stay: the longer one, and rims and hard borders
- * always. m is what r was built on; sizes are there. O(length of lines).
- * VG_ERR_MEMORY. */
+ * always. m is what the faces of r are; neither tree nor sizes are asked for.
+ * O(length of lines). VG_ERR_MEMORY. */
 vg_status vg_strips_find(const struct vg_ref *r, const struct vg_curves *c,
                          const struct vg_mesh *m,
                          const struct vg_strips_options *o,
