@@ -508,6 +508,19 @@ static double drawn(uint32_t *state, double lo, double hi)
 
 /* Boxes and ellipsoids of any proportion, two of them a gap apart: what comes
  * out is sound, near, and keeps its lines, whatever the settings. */
+/* Edges across z are lines, and new ones stretched along them: many lines that
+ * are near each other, closed ones and those that meet in corners. */
+static double *along_levels(const struct vg_mesh *m, double by)
+{
+  double *stretch = calloc(3 * m->n_tri, sizeof *stretch);
+
+  for (size_t t = 0; t < m->n_tri; t++)
+    for (int k = 0; k < 3; k++)
+      if (m->point[m->tri[t][k]][2] == m->point[m->tri[t][(k + 1) % 3]][2])
+        stretch[3 * t + (size_t)k] = by;
+  return stretch;
+}
+
 static void random_search(void **unused)
 {
   uint32_t state = 7;
@@ -518,7 +531,7 @@ static void random_search(void **unused)
     struct vg_remesh_options o = VG_REMESH_OPTIONS_INIT;
     struct vg_remesh_report r = VG_REMESH_REPORT_INIT;
     struct vg_error err = VG_ERROR_INIT;
-    double size[3], gap = drawn(&state, 0.001, 0.02);
+    double size[3], gap = drawn(&state, 0.001, 0.02), *stretch = NULL;
     uint32_t n[3];
     size_t first;
 
@@ -548,7 +561,9 @@ static void random_search(void **unused)
     o.h_max = drawn(&state, 0.05, 0.5);
     o.h_min = 2e-3;
     o.growth = drawn(&state, 1.1, 1.6);
+    if (i % 4 > 1) o.stretch = stretch = along_levels(&m, 1.5 * i / 2);
     remesh(&m, &o, &r);
+    free(stretch);
     shape_expect_sound(&m, 0);
     assert_true(apart(&m, &old) <= 2 * o.tolerance);
     if (i % 2)                  /* straight ones */
