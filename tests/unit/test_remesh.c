@@ -301,7 +301,7 @@ static void knows_what_the_given_is_worth(void **unused)
   }
   assert_int_equal(n_line[0], 12);
   assert_int_equal(n_line[1], 12);
-  /* 0.01 across and less than 4.5 x 0.008: sizes are larger */
+  /* 0.01 across and less than 3 x 0.008: sizes are larger */
   assert_true(n_tri[2] < n_tri[0] / 2);
   assert_true(n_line[2] <= n_line[0]);
 }

@@ -24,9 +24,8 @@
 #define TOLERANCE 1e-4    /* S20: of the body's length */
 #define RELATIVE 0.05     /* of the size */
 #define CHORD 0.6         /* of the tolerance: what sizes allow for arcs */
-#define JAGS 15.0         /* S43: of the accuracy of what is given: lines that
-                             it makes */
-#define NOISE 4.5         /* and sizes */
+#define NOISE 3.0         /* S43: of the accuracy of what is given: sizes that
+                             follow from it alone */
 #define H_MAX 0.02        /* of the length */
 #define H_MIN 2e-4        /* twice the tolerance */
 #define H_OUTER 0.04      /* of the domain's length */
@@ -320,9 +319,8 @@ static vg_status prepare(struct job *j, struct vg_error *err)
   VG_TRY(check_stretch(j->given, o->stretch, err));
   VG_TRY(settle(j, err));
   VG_TRY(vg_stopped(&o->stop, err));
-  c = (struct vg_curves_options){ o->ridge_angle,
-    fmax(j->jag, JAGS * o->accuracy), j->given->tri_patch, j->given->patch,
-    o->hard, o->stretch, NULL };
+  c = (struct vg_curves_options){ o->ridge_angle, j->jag, j->given->tri_patch,
+    j->given->patch, o->hard, o->stretch, NULL };
   VG_TRY(find_lines(j, &c, err));
   if (!j->looks) VG_TRY(close_strips(j, &c, err));
   VG_TRY(find_sizes(j, err));

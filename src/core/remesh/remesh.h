@@ -23,8 +23,8 @@ struct vg_remesh_options {
                                of the body's length; nowhere more than 0.05 of
                                the size */
   double accuracy;          /* how far what is given may be from the shape that
-                               it stands for: a tolerance of 0 is no less,
-                               and lines and sizes of about that are none */
+                               it stands for: a tolerance of 0 is no less, and
+                               its shape asks for no sizes near that */
   double ridge_angle;       /* degrees between faces, from which on their edge
                                is a ridge and stays */
   double per_turn;          /* edges round a full circle */
