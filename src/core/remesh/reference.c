@@ -149,8 +149,8 @@ static double longest_edge(const struct vg_ref *r, size_t t, int *which)
 static void into_box(struct piece *p, const double x[3])
 {
   for (int k = 0; k < 3; k++) {
-    p->lo[k] = fmin(p->lo[k], x[k]);
-    p->hi[k] = fmax(p->hi[k], x[k]);
+    if (x[k] < p->lo[k]) p->lo[k] = x[k];
+    if (x[k] > p->hi[k]) p->hi[k] = x[k];
   }
 }
 
@@ -163,6 +163,10 @@ static void box_piece(const struct vg_ref *r, size_t t, int edge, double from,
 
   *p = (struct piece){ { INFINITY, INFINITY, INFINITY },
                        { -INFINITY, -INFINITY, -INFINITY }, (uint32_t)t };
+  if (from < 0 && to > 1) {
+    for (int k = 0; k < 3; k++) into_box(p, r->point[r->tri[t][k]]);
+    return;
+  }
   vg_sub(r->point[r->tri[t][(edge + 1) % 3]], a, along);
   l2 = vg_dot(along, along);
   for (int k = 0; k < 3; k++) {
@@ -229,8 +233,9 @@ static void add_normal(struct vg_ref_node *b, const double n[3])
   const int any = vg_dot(n, n) == 0, most = VG_REF_NORMAL;
 
   for (int k = 0; k < 3; k++) {
-    int lo = any ? -most : (int)fmax(floor(most * n[k]), -most);
-    int hi = any ? most : (int)fmin(ceil(most * n[k]), most);
+    const int near = (int)(most * n[k]);
+    int lo = any || near <= -most ? -most : near - 1;
+    int hi = any || near >= most ? most : near + 1;
 
     if (lo < b->normal[0][k]) b->normal[0][k] = (int8_t)lo;
     if (hi > b->normal[1][k]) b->normal[1][k] = (int8_t)hi;
@@ -248,8 +253,8 @@ static void leaf_box(const struct vg_ref *r, const struct piece *piece,
   b->size = INFINITY;
   for (size_t i = LEAF * leaf; i < LEAF * (leaf + 1) && i < r->n_item; i++) {
     for (int k = 0; k < 3; k++) {
-      b->lo[k] = fmin(b->lo[k], piece[order[i]].lo[k]);
-      b->hi[k] = fmax(b->hi[k], piece[order[i]].hi[k]);
+      if (piece[order[i]].lo[k] < b->lo[k]) b->lo[k] = piece[order[i]].lo[k];
+      if (piece[order[i]].hi[k] > b->hi[k]) b->hi[k] = piece[order[i]].hi[k];
     }
     add_normal(b, r->shape[r->item[i]].n);
   }
@@ -264,8 +269,8 @@ static void join_nodes(struct vg_ref *r)
 
     *b = r->node[2 * i + 1];
     for (int k = 0; k < 3; k++) {
-      b->lo[k] = fmin(b->lo[k], other->lo[k]);
-      b->hi[k] = fmax(b->hi[k], other->hi[k]);
+      if (other->lo[k] < b->lo[k]) b->lo[k] = other->lo[k];
+      if (other->hi[k] > b->hi[k]) b->hi[k] = other->hi[k];
       if (other->normal[0][k] < b->normal[0][k])
         b->normal[0][k] = other->normal[0][k];
       if (other->normal[1][k] > b->normal[1][k])

@@ -71,24 +71,23 @@ static void find_boxes(const struct vg_mesh *m, size_t n, struct box *box)
   }
 }
 
-/* First of the points that are farthest along d. No point of a box is farther
- * than its corner, rounding or not. */
+/* First of the points that are farthest along d, begun with any. No point of a
+ * box is farther than its corner, rounding or not. */
 static uint32_t extreme(const struct vg_mesh *m, size_t n_box,
-                        const struct box *box, const double d[3])
+                        const struct box *box, const double d[3], uint32_t at)
 {
-  double best = -INFINITY;
-  uint32_t at = 0;
+  double best = vg_dot(d, m->point[at]);
 
   for (size_t i = 0; i < n_box; i++) {
     double most[3];
 
     for (int c = 0; c < 3; c++)
       most[c] = d[c] > 0 ? box[i].hi[c] : box[i].lo[c];
-    if (!(vg_dot(d, most) > best)) continue;
+    if (!(vg_dot(d, most) >= best)) continue;
     for (size_t p = BOX * i; p < m->n_point && p < BOX * (i + 1); p++) {
       const double s = vg_dot(d, m->point[p]);
 
-      if (s > best) best = s, at = (uint32_t)p;
+      if (s > best || (s == best && p < at)) best = s, at = (uint32_t)p;
     }
   }
   return at;
@@ -98,6 +97,7 @@ static vg_status find_extremes(struct envelope *e, struct vg_error *err)
 {
   const size_t n = (e->m->n_point + BOX - 1) / BOX;
   struct box *box = vg_alloc(n, sizeof *box);
+  uint32_t at = 0;            /* is near the next one, too */
 
   if (!box) return vg_fail_memory(err, "the pieces of the surface");
   find_boxes(e->m, n, box);
@@ -107,24 +107,30 @@ static vg_status find_extremes(struct envelope *e, struct vg_error *err)
         const double d[3] = { i, j, k };
 
         if (abs(i) != REACH && abs(j) != REACH && abs(k) != REACH) continue;
-        e->extreme[e->n_extreme++] = extreme(e->m, n, box, d);
+        at = extreme(e->m, n, box, d, at);
+        e->extreme[e->n_extreme++] = at;
       }
   free(box);
   return VG_OK;
 }
 
-static int is_on_hull(const struct envelope *e, size_t i)
+/* *above: what lay above the triangle before, which it may above this one too;
+ * out: what does. */
+static int is_on_hull(const struct envelope *e, size_t i, size_t *above)
 {
   const double *o = e->m->point[e->m->tri[i][0]];
   double n[3], most;
+  size_t k = *above;
 
   most = face(e, i, n);
   most = SLACK * sqrt(most * vg_dot(n, n));
-  for (size_t k = 0; k < e->n_extreme; k++) {
+  for (size_t j = 0; j < e->n_extreme; j++) {
     const double *x = e->m->point[e->extreme[k]];
     const double d[3] = { x[0] - o[0], x[1] - o[1], x[2] - o[2] };
 
+    *above = k;
     if (vg_dot(d, n) > most) return 0;
+    if (++k == e->n_extreme) k = 0;
   }
   return 1;
 }
@@ -277,6 +283,7 @@ vg_status vg_envelope_measure(const struct vg_mesh *m, uint8_t *outer,
 {
   struct envelope e = { .m = m, .sign = 1 };
   struct vg_envelope found = { 0 };
+  size_t above = 0;
   vg_status st = VG_OK;
 
   if (m->n_tri) {
@@ -288,7 +295,7 @@ vg_status vg_envelope_measure(const struct vg_mesh *m, uint8_t *outer,
     if (signed_volume(&e) < 0) e.sign = -1;
     VG_TRY(find_extremes(&e, err));
     for (uint32_t i = 0; i < m->n_tri; i++) {
-      e.on[i] = (uint8_t)is_on_hull(&e, i);
+      e.on[i] = (uint8_t)is_on_hull(&e, i, &above);
       e.root[i] = i;
     }
     VG_TRY(join_pieces(&e, err));
