@@ -13,8 +13,7 @@
 #
 # Bars: no defect by vanguard check, but open edges where the input has them;
 # as many corners as before by vanguard check and 99.9 % of the length of lines; distance both ways within
-# twice the tolerance (samples are held to it, what lies between them is
-# measured); 1st percentile of the smallest angles 35 degrees; edges within a
+# 1.065 times the tolerance (over the cosine of half the ridge angle); 1st percentile of the smallest angles 35 degrees; edges within a
 # factor 1.41 of the size 90 %; angles below 10 degrees as the table says.
 # With --volume: smallest angle of the field 5 degrees, 0.01 % below 10. Status
 # 0 when all of them are met.
@@ -54,7 +53,7 @@ judge() { # NAME BELOW-10
     [(if $m.line_length[1] < 0.999 * $m.line_length[0] then "lines" else empty
       end),
      (if ([$m.new_from_given.largest, $m.given_from_new.largest] | max)
-         > 2 * $m.tolerance then "distance" else empty end),
+         > 1.065 * $m.tolerance then "distance" else empty end),
      (if $q.angle_min_percentile_1 < 35 then "percentile" else empty end),
      (if $m.percent_edges_fit < 90 then "sizes" else empty end),
      (if $q.percent_below_5_10_20_30[1] > $below then "below-10" else empty

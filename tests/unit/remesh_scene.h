@@ -82,7 +82,7 @@ static inline void scene_expect_whole(const struct scene *s)
       for (size_t k = 0; k < i; k++)
         assert_int_not_equal(vg_work_to(w, ring[i]), vg_work_to(w, ring[k]));
   }
-  for (size_t p = 0; p < w->n_given; p++) n_sample += w->is_sample[p];
+  for (size_t p = 0; p < w->ref->n_point; p++) n_sample += w->is_sample[p];
   assert_int_equal(n_sample, n_listed);
   assert_int_equal(n_point + n_tri, n_edge + 2);
   assert_float_equal(length, s->curves.length, 1e-9);

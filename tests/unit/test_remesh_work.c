@@ -163,6 +163,40 @@ static void tolerance_is_kept(void **unused)
   scene_release(&s);
 }
 
+/* Over a fold 0.1 high an edge is farthest from the surface where it crosses
+ * the fold, seen along the normal of the side where it begins: 0.0334, and not
+ * in its middle, 0.0249. */
+static void follows_an_edge_over_a_fold(void **unused)
+{
+  const double a[3] = { -0.5, 0, 0.05 }, b[3] = { 0.25, 0, 0.075 };
+  const double up[3] = { 0, 0, 1 };
+  struct vg_mesh m = VG_MESH_INIT;
+  struct vg_ref r = VG_REF_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+  uint32_t p[4];
+  double x[3];
+
+  (void)unused;
+  vg_mesh_add_patch(&m, 1, NULL);
+  p[0] = shape_point(&m, 0, -1, 0.1);
+  p[1] = shape_point(&m, 0, 1, 0.1);
+  p[2] = shape_point(&m, -1, 0, 0);
+  p[3] = shape_point(&m, 1, 0, 0);
+  shape_tri(&m, p[0], p[3], p[1], 0);
+  shape_tri(&m, p[1], p[2], p[0], 0);
+  assert_int_equal(vg_ref_build(&r, &m, NULL, &err), VG_OK);
+  for (uint32_t hint = 0; hint < 2; hint++) {
+    assert_false(vg_ref_leaves(&r, a, b, up, 0.034, hint, x));
+    assert_true(vg_ref_leaves(&r, a, b, up, 0.033, hint, x));
+    assert_true(fabs(x[0]) < 0.004);
+    assert_true(vg_ref_leaves(&r, b, a, up, 0.033, hint, x));
+    assert_true(fabs(x[0]) < 0.004);
+  }
+  assert_false(vg_ref_leaves(&r, a, (double[3]){ 2, 0, 0.5 }, up, 1, 1, x));
+  vg_ref_release(&r);
+  vg_mesh_release(&m);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -172,6 +206,7 @@ int main(void)
     cmocka_unit_test(corners_and_ridges_stay),
     cmocka_unit_test(points_slide_along_ridges),
     cmocka_unit_test(tolerance_is_kept),
+    cmocka_unit_test(follows_an_edge_over_a_fold),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

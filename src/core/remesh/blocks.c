@@ -34,9 +34,8 @@ static vg_status room(struct vg_block *b, const struct vg_work *w,
     .tolerance = w->tolerance, .relative = w->relative, .far = w->far,
     .other_size = w->other_size, .user = w->user, .form = w->form,
     .of_form = w->of_form, .h_min = w->h_min, .h_max = w->h_max,
-    .n_given = w->n_given, .given = w->given, .follow = w->follow,
-    .is_sample = w->is_sample, .is_block = 1, .clock = 1,
-    .stop = w->stop };
+    .follow = w->follow, .is_sample = w->is_sample, .is_block = 1,
+    .clock = 1, .stop = w->stop };
   b->origin = vg_alloc(3 * b->n_tri, sizeof *b->origin);
   if (!b->origin) return vg_fail_memory(err, "a block of the surface");
   return vg_work_room(l, b->n_tri, err);

@@ -94,6 +94,16 @@ int vg_ref_within(const struct vg_ref *r, const double x[3],
                   const double n[3], double distance, uint32_t *hint,
                   double *d2);
 
+/** Is the segment from a, which is on the surface, to b farther than that from
+ * one of the edges below it, as it is followed from triangle to triangle? x out:
+ * where. Two surfaces of triangles are farthest from each other at points of
+ * one of them, or where their edges cross. hint: a triangle near a. 0 where it
+ * cannot be followed: beyond a rim, and where no triangle faces the way of
+ * n. */
+int vg_ref_leaves(const struct vg_ref *r, const double a[3], const double b[3],
+                  const double n[3], double distance, uint32_t hint,
+                  double x[3]);
+
 /** Nearest point to x on triangles that face the way of n (as above; those
  * of all ways where none does) into out; returns the distance. *hint: in: one
  * to begin with, out: its triangle. */

@@ -5,9 +5,11 @@
  * remeshing approach to multiresolution modeling", SGP 2004). Every change is
  * held against the surface as given before it is made: it may not leave the
  * tolerance, fold, or come nearer to another part of the surface than to its
- * own. That is looked at in samples, middles of edges and centroids of the new
- * triangles and points of the old ones; between samples of facets that bend it
- * can be more, up to twice as far as seen, which vg_remesh_measure tells. */
+ * own. Two surfaces of triangles are farthest apart at points of one of them or
+ * where their edges cross, and all of these are looked at: no part of either is
+ * farther from the other than the tolerance over the cosine of half the ridge
+ * angle, since at a fold the nearer of its sides counts. Of edges over triangles
+ * that turn away by 45 degrees the middle alone is looked at. */
 #ifndef VG_CORE_REMESH_REMESH_H
 #define VG_CORE_REMESH_REMESH_H
 

@@ -11,10 +11,7 @@
 
 #define TRIFLE 1e-4       /* of the squared tolerance: on the reference */
 #define ON 0.04           /* of the squared tolerance: as good as on a triangle */
-#define FOLD 0.9986       /* S30: cosine of 3 degrees: edges that bend more have
-                             samples */
 #define FLAT 1e-3         /* S33: tolerances: lower triangles face any way */
-#define PER_EDGE 64       /* at most */
 #define SWEEPS 8          /* in which sizes are passed on to neighbours */
 
 /* --- making -------------------------------------------------------------- */
@@ -154,50 +151,15 @@ static vg_status make_points(struct vg_work *w, struct vg_error *err)
   return vg_stopped(&w->stop, err);
 }
 
-/* How many samples edge h has: it bends, or has only one side. */
-static size_t samples_on(const struct vg_work *w, uint32_t h)
-{
-  const struct vg_ref *r = w->ref;
-  uint32_t g = w->mate[h];
-  double n;
-
-  if (g == VG_REF_NONE || g < h || w->edge[h]
-      || vg_dot(r->shape[h / 3].n, r->shape[g / 3].n) > FOLD) return 0;
-  n = vg_work_ratio(w, h);
-  return n < 1 ? 1 : n > PER_EDGE - 1 ? PER_EDGE : (size_t)n + 1;
-}
-
-/* Those of the points have no triangle: they are points of this surface. */
+/* None has a triangle: they are points of this surface. */
 static vg_status make_samples(struct vg_work *w, struct vg_error *err)
 {
-  size_t n = w->ref->n_point;
+  const size_t n = w->ref->n_point;
 
-  for (uint32_t h = 0; h < 3 * w->n_tri; h++) n += samples_on(w, h);
-  if (n > UINT32_MAX - 2)
-    return vg_fail(err, VG_ERR_UNSUPPORTED, "the surface bends at too many "
-                   "edges to be made anew");
-  w->given = vg_alloc(n, sizeof *w->given);
   w->follow = vg_alloc(n, sizeof *w->follow);
   w->is_sample = vg_calloc(n, 1);
-  if (!w->given || !w->follow || !w->is_sample)
-    return vg_fail_memory(err, "the samples of the surface");
-  memcpy(w->given, w->ref->point, w->ref->n_point * sizeof *w->given);
-  w->n_given = w->ref->n_point;
-  for (uint32_t h = 0; h < 3 * w->n_tri; h++) {
-    const double *a = vg_work_at(w, vg_work_from(w, h));
-    const double *b = vg_work_at(w, vg_work_to(w, h));
-    size_t k = samples_on(w, h);
-
-    for (size_t i = 0; i < k; i++) {
-      double *x = w->given[w->n_given], t = ((double)i + 0.5) / (double)k;
-
-      for (int d = 0; d < 3; d++) x[d] = a[d] + t * (b[d] - a[d]);
-      w->is_sample[w->n_given] = 1;
-      w->follow[w->n_given] = w->first[h / 3];
-      w->first[h / 3] = (uint32_t)w->n_given++;
-    }
-  }
-  return VG_OK;
+  return w->follow && w->is_sample
+         ? VG_OK : vg_fail_memory(err, "the samples of the surface");
 }
 
 vg_status vg_work_room(struct vg_work *w, size_t n, struct vg_error *err)
@@ -262,7 +224,6 @@ void vg_work_release(struct vg_work *w)
 {
   vg_work_free_arrays(w);
   if (!w->is_block) {
-    free(w->given);
     free(w->follow);
     free(w->is_sample);
   }
@@ -421,6 +382,23 @@ static int tri_fits(const struct vg_work *w, struct vg_cavity *c, size_t i)
   return 1;
 }
 
+/* Where new edges cross those of the reference they may be farther from it than
+ * in their middles. */
+static int crossings_fit(const struct vg_work *w, struct vg_cavity *c,
+                         size_t i)
+{
+  const struct vg_work_point *const *p = c->corner[i];
+  const double *n = c->made[i].n;
+  double x[3];
+
+  for (int e = 0; e < 3; e++)
+    if (c->edges[i] >> e & 1
+        && vg_ref_leaves(w->ref, p[e]->x, p[(e + 1) % 3]->x, n, c->tolerance,
+                         p[e]->home, x)
+        && !sample_near(w, c, x, n)) return 0;
+  return 1;
+}
+
 /* Goes to the nearest of the new triangles, or one that is as good as on it,
  * from the one in the place of the old on. */
 static int sample_fits(const struct vg_work *w, struct vg_cavity *c,
@@ -432,7 +410,7 @@ static int sample_fits(const struct vg_work *w, struct vg_cavity *c,
 
   if (c->n_sample == VG_WORK_SAMPLES) return 0;
   for (size_t n = 0; n < c->n_new && best > ON * most; n++) {
-    double u, v, d2 = vg_ref_tri_nearest(&c->made[i], w->given[s], &u, &v);
+    double u, v, d2 = vg_ref_tri_nearest(&c->made[i], w->ref->point[s], &u, &v);
 
     if (d2 < best) best = d2, c->goes[c->n_sample] = (uint16_t)i;
     if (++i == c->n_new) i = 0;
@@ -514,6 +492,8 @@ int vg_cavity_fits(const struct vg_work *w, struct vg_cavity *c)
       if (!sample_fits(w, c, s, i)) return 0;
   for (size_t i = 0; i < c->n_new; i++)
     if (!tri_fits(w, c, i)) return 0;
+  for (size_t i = 0; i < c->n_new; i++)
+    if (!crossings_fit(w, c, i)) return 0;
   return 1;
 }
 

@@ -71,16 +71,13 @@ struct vg_work {
   uint32_t *edge;           /* [3 n_tri] line + 1 of it; 0: none */
   uint64_t *stamp;          /* [n_tri] when it changed */
   struct vg_work_line *line;
-  /* Samples of the reference: its points, then places along its edges where
-   * it bends. Those that are none of the points of this surface any more are
-   * each kept with the triangle near it: what keeps the given surface near
-   * this one. */
-  size_t n_given;
-  double (*given)[3];       /* [n_given] */
+  /* Samples: points of the reference that are none of this surface's any more
+   * are each kept with the triangle near them, which keeps the given surface
+   * near this one. */
   uint32_t *first;          /* [n_tri] VG_REF_NONE: none */
-  uint32_t *follow;         /* [n_given] the next one of the same triangle */
-  uint8_t *is_sample;       /* [n_given] */
-  int is_block;             /* given, follow and is_sample are another's */
+  uint32_t *follow;         /* [points of ref] the next one of the triangle */
+  uint8_t *is_sample;       /* [the same] */
+  int is_block;             /* follow and is_sample are another's */
   uint32_t *spare;          /* removed triangles */
   size_t n_spare, cap_spare;
   size_t n_split, n_collapse, n_swap, n_move, n_refused;
