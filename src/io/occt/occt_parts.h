@@ -69,6 +69,10 @@ struct Model {
 void read(const vg_cad_ask &ask, const std::string &path, Model &model,
           const Talk &talk);
 
+/** Have shells of many faces mended in a time that grows as their number, from
+ * now on, by readers of STEP and IGES that are made later. */
+void mend_large_shells();
+
 /** All faces as one shape, without those that were dropped. */
 TopoDS_Compound together(const Model &model);
 

@@ -413,6 +413,7 @@ void read_brep(const vg_cad_ask &ask, const std::string &path, Model &model,
 void read(const vg_cad_ask &ask, const std::string &path, Model &model,
           const Talk &talk)
 {
+  mend_large_shells();
   if (ask.kind == 1) read_step(ask, path, model, talk);
   else if (ask.kind == 2) read_iges(ask, path, model, talk);
   else read_brep(ask, path, model, talk);

@@ -1,0 +1,79 @@
+/* Open CASCADE's mending of what it has translated, but for the orientation of
+ * faces in shells of very many: it looks through all faces for each of them. */
+#include "io/occt/occt_parts.h"
+
+#include <ShapeFix_Shape.hxx>
+#include <ShapeFix_Shell.hxx>
+#include <ShapeFix_Solid.hxx>
+#include <ShapeFix_Face.hxx>
+#include <ShapeFix_Wire.hxx>
+#include <ShapeProcess_ShapeContext.hxx>
+#include <TopExp_Explorer.hxx>
+#include <XSAlgo.hxx>
+#include <XSAlgo_AlgoContainer.hxx>
+
+namespace vg_occt {
+namespace {
+
+const size_t MANY = 4000;  /* faces: 2 s; four times as long for twice as many */
+
+bool has_many_faces(const TopoDS_Shape &shape)
+{
+  size_t n = 0;
+
+  for (TopExp_Explorer e(shape, TopAbs_FACE); e.More() && n <= MANY; e.Next())
+    n++;
+  return n > MANY;
+}
+
+class Mending : public XSAlgo_AlgoContainer {
+public:
+  TopoDS_Shape ProcessShape(const TopoDS_Shape &shape, const double precision,
+                            const double most, const char *resource,
+                            const char *sequence,
+                            Handle(Standard_Transient) &info,
+                            const Message_ProgressRange &progress,
+                            const bool non_manifold) const override;
+};
+
+/* As Open CASCADE does where nothing else is set. */
+TopoDS_Shape Mending::ProcessShape(const TopoDS_Shape &shape,
+                                   const double precision, const double most,
+                                   const char *resource, const char *sequence,
+                                   Handle(Standard_Transient) &info,
+                                   const Message_ProgressRange &progress,
+                                   const bool non_manifold) const
+{
+  if (!has_many_faces(shape))
+    return XSAlgo_AlgoContainer::ProcessShape(shape, precision, most, resource,
+                                              sequence, info, progress,
+                                              non_manifold);
+  Handle(ShapeProcess_ShapeContext) context =
+      new ShapeProcess_ShapeContext(shape, "");
+  Handle(ShapeFix_Shape) fix = new ShapeFix_Shape(shape);
+
+  context->SetNonManifold(non_manifold);
+  fix->SetPrecision(precision);
+  fix->SetMaxTolerance(most);
+  fix->FixFaceTool()->FixWireTool()->FixSameParameterMode() = 0;
+  fix->FixSolidTool()->CreateOpenSolidMode() = Standard_False;
+  fix->FixSolidTool()->FixShellTool()->FixOrientationMode() = 0;
+  fix->FixShellTool()->FixOrientationMode() = 0;
+  fix->Perform(progress);
+  if (!fix->Shape().IsNull() && !fix->Shape().IsSame(shape)) {
+    context->RecordModification(fix->Context());
+    context->SetResult(fix->Shape());
+  }
+  info = context;
+  return context->Result();
+}
+
+}  // namespace
+
+void mend_large_shells()
+{
+  XSAlgo::Init();              /* would else put its own there later */
+  XSAlgo::SetAlgoContainer(new Mending);
+}
+
+}  // namespace vg_occt
