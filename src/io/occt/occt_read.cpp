@@ -2,6 +2,7 @@
 #include "io/occt/occt_parts.h"
 
 #include <cmath>
+#include <fstream>
 
 #include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
@@ -329,6 +330,50 @@ void require(IFSelect_ReturnStatus got, const char *kind)
                                                : "its syntax is wrong")};
 }
 
+/* Open CASCADE needs 27 kB for each: 8 GB. */
+const size_t MOST_FACES = 300000;
+
+void refuse_too_many(size_t n)
+{
+  if (n <= MOST_FACES) return;
+  throw Failure{VG_ERR_UNSUPPORTED,
+                format("it has %zu faces, more than the %zu for which Open "
+                       "CASCADE's memory lasts; a tessellation that was saved "
+                       "as CAD is read as what it is from STL or OBJ",
+                       n, MOST_FACES)};
+}
+
+/* Names of entities that end in `tail`, or are `whole`. Before a STEP file is
+ * read: the reader looks through a list for each of its items, so that a shell of
+ * a million faces takes it hours. */
+size_t count_words(const std::string &path, const std::string &tail,
+                   const std::string &whole)
+{
+  std::ifstream in(path, std::ios::binary);
+  std::string word;
+  size_t n = 0;
+  char c;
+
+  while (in.get(c))
+    if ((c >= 'A' && c <= 'Z') || c == '_') word += c;
+    else {
+      n += c == '(' && (word == whole
+                        || (word.size() > tail.size()
+                            && !word.compare(word.size() - tail.size(),
+                                             tail.size(), tail)));
+      if (c != ' ') word.clear();
+    }
+  return n;
+}
+
+template <class Test> size_t count_entities(int n, Test is_face)
+{
+  size_t faces = 0;
+
+  for (int i = 1; i <= n; i++) faces += is_face(i);
+  return faces;
+}
+
 /* --- formats ------------------------------------------------------------- */
 
 void read_step(const vg_cad_ask &ask, const std::string &path, Model &model,
@@ -342,6 +387,7 @@ void read_step(const vg_cad_ask &ask, const std::string &path, Model &model,
   reader.SetNameMode(Standard_True);
   reader.SetColorMode(Standard_True);
   reader.SetLayerMode(Standard_True);
+  refuse_too_many(count_words(path, "_FACE", "FACE_SURFACE"));
   require(reader.ReadFile(path.c_str()), "STEP");
   given = step_unit(reader.ChangeReader(), called);
   Interface_Static::SetCVal(
@@ -368,6 +414,12 @@ void read_iges(const vg_cad_ask &ask, const std::string &path, Model &model,
   require(reader.ReadFile(path.c_str()), "IGES");
   file = reader.IGESModel();
   if (!file.IsNull()) {
+    /* trimmed and bounded surfaces, faces of solids */
+    refuse_too_many(count_entities(file->NbEntities(), [&](int i) {
+      const int type = file->Entity(i)->TypeNumber();
+
+      return type == 144 || type == 143 || type == 510;
+    }));
     given = file->GlobalSection().UnitValue();
     const Unit &to = choose_unit(ask, given, "its unit", talk);
     Interface_Static::SetCVal("xstep.cascade.unit", to.open_cascade);
@@ -400,6 +452,13 @@ void read_brep(const vg_cad_ask &ask, const std::string &path, Model &model,
   if (!load_brep(path, shape))
     throw Failure{VG_ERR_FORMAT, "Open CASCADE cannot read this BREP file; it "
                                  "is truncated or damaged: export it again"};
+  TopExp_Explorer faces(shape, TopAbs_FACE);
+  refuse_too_many(count_entities(static_cast<int>(MOST_FACES) + 1, [&](int) {
+    const bool more = faces.More();
+
+    if (more) faces.Next();
+    return more;
+  }));
   if (ask.unit)
     throw Failure{VG_ERR_INPUT, "a BREP file has no unit of length: cad_unit "
                                 "must be file, and its numbers stay as they "

@@ -22,6 +22,15 @@ says out "patches                            4,374"
 says out "closed"
 says out "no defects"
 
+# and more than it has memory for are refused before it is asked
+awk 'BEGIN { print "ISO-10303-21;"
+             for (i = 1; i <= 300001; i++) print "#" i "=FACE_SURFACE();"
+             print "END-ISO-10303-21;" }' >million.step
+vanguard check -q million.step
+exits 1
+says err "it has 300001 faces"
+says err "STL or OBJ"
+
 # settings of the deck hold for a check too
 printf 'metres\nunit cad_patches\nm layer\n' >m.deck
 vanguard check -d m.deck "$cad/wing.step"
