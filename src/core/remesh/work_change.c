@@ -11,6 +11,8 @@
 #include "core/geometry/vector.h"
 
 #define GAIN 1.02         /* of a swap, in squares of sines */
+#define STUCK 3.0         /* S37: sizes: edges as long are split within the
+                             tolerance alone */
 #define NEARBY 2.5        /* sizes: ends of shorter edges know the size between
                              them */
 #define STRAY 0.1         /* of the edge or size: farther from it, steps along
@@ -115,6 +117,7 @@ static void middle_of(const struct vg_work *w, uint32_t h, const double *at,
 static int split_fits(const struct vg_work *w, uint32_t h,
                       const struct vg_work_point *m, struct vg_cavity *c)
 {
+  const double ratio = vg_work_ratio(w, h);
   double shape = 1;
   int face = !w->edge[h];
 
@@ -135,6 +138,7 @@ static int split_fits(const struct vg_work *w, uint32_t h,
     vg_cavity_add(c, m, b, o, side ? 0 : face);
   }
   vg_cavity_measure(w, c);
+  if (ratio > STUCK) c->tolerance = fmax(c->tolerance, w->tolerance);
   /* A line that is not split where it is needed stays too long for good. */
   return c->shape > (face ? SPLIT_LOSS : 0.01) * shape
          && (!face || c->shape >= fmin(shape, FLAT2)) && vg_cavity_fits(w, c);
