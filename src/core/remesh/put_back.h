@@ -29,9 +29,9 @@ vg_status vg_remesh_locate(const struct vg_mesh *on, size_t n,
  * @param stop       may be NULL
  * @param stays      in: [n_point] 1: keep this one; out: the refused ones too
  * @param n_refused  out
- * Untouched on failure: VG_ERR_MEMORY, VG_ERR_STOPPED. The same for any threads. O(n log n)
- * for each time that something is refused, twelve at most: then all points
- * stay. */
+ * Untouched on failure: VG_ERR_MEMORY, VG_ERR_STOPPED. The same for any
+ * threads. O(n log n) for each time that something is refused, twelve at most:
+ * then all points stay. */
 vg_status vg_remesh_put_back(struct vg_mesh *m, const double (*to)[3],
                              int threads, const struct vg_stop *stop,
                              uint8_t *stays, size_t *n_refused,

@@ -22,7 +22,8 @@ struct vg_sizes_options {
 };
 
 /** Fill r->size (and the tree): by the curvature of faces and curves, and by
- * the width of strips between two curves. O(n). VG_ERR_MEMORY, VG_ERR_STOPPED. */
+ * the width of strips between two curves. O(n). VG_ERR_MEMORY,
+ * VG_ERR_STOPPED. */
 vg_status vg_sizes_make(struct vg_ref *r, const struct vg_curves *c,
                         const struct vg_sizes_options *o,
                         struct vg_error *err);

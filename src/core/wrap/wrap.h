@@ -56,8 +56,8 @@ int vg_wrap_is_built(void);
  * not positive, or so small that more than VG_WRAP_MOST would come out, no
  * triangles, quadrilaterals or cells, an index out of range; VG_ERR_GEOMETRY
  * when nothing is left (an open sheet's holes are wider than size);
- * VG_ERR_STOPPED: stop, which may be NULL, is asked for every facet; VG_ERR_MEMORY.
- * One thread, about 0.1 to 0.5 ms for each triangle that comes
+ * VG_ERR_STOPPED: stop, which may be NULL, is asked for every facet;
+ * VG_ERR_MEMORY. One thread, about 0.1 to 0.5 ms for each triangle that comes
  * out. Re-entrant. */
 vg_status vg_wrap(struct vg_mesh *m, double size, const struct vg_stop *stop,
                   struct vg_wrap_report *r, struct vg_error *err);

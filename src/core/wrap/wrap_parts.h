@@ -1,4 +1,4 @@
-/* core/wrap/wrap_parts.h: the adapter of CGAL, and what is done to its wraps. */
+/* core/wrap/wrap_parts.h: the adapter of CGAL, and what its wraps become. */
 #ifndef VG_CORE_WRAP_WRAP_PARTS_H
 #define VG_CORE_WRAP_WRAP_PARTS_H
 
@@ -27,9 +27,9 @@ vg_status vg_wrap_fit(struct vg_mesh *m, const double (*near)[3], double most,
                       const struct vg_stop *stop, size_t *n_fit,
                       struct vg_error *err);
 
-/** At an edge as sharp as a knife a wrap has an end as wide as twice its offset,
- * all of whose points have their places on the edge: its triangles are taken
- * away, so that both sides meet there. near: in: of each point; out: of those
+/** At an edge as sharp as a knife a wrap has an end as wide as twice its
+ * offset, all of whose points have their places on the edge: its triangles are
+ * taken away, so that both sides meet there. near: in: of each point; out: of those
  * that are left, places farther away than `most` being where the points are.
  * n: how many points went. */
 vg_status vg_wrap_zip(struct vg_mesh *m, double (*near)[3], double most,
