@@ -154,60 +154,6 @@ static double walk(const struct vg_ref *r, const double x[3], const double *n,
   return faces(&r->shape[*t], n) ? best : INFINITY;
 }
 
-/* Weights of the corners of a triangle at x, and how they change along e, times
- * the square of twice its area. */
-static void weights(const struct vg_ref_tri *t, const double x[3],
-                    const double e[3], double f[3], double df[3])
-{
-  const double det = t->uu * t->vv - t->uv * t->uv;
-  double d[3];
-
-  vg_sub(x, t->a, d);
-  for (int i = 0; i < 2; i++) {
-    const double *y = i ? e : d;
-    const double yu = vg_dot(y, t->u), yv = vg_dot(y, t->v);
-    double *to = i ? df : f;
-
-    to[1] = t->vv * yu - t->uv * yv;
-    to[2] = t->uu * yv - t->uv * yu;
-    to[0] = (i ? 0 : det) - to[1] - to[2];
-  }
-}
-
-int vg_ref_leaves(const struct vg_ref *r, const double a[3], const double b[3],
-                  const double n[3], double distance, uint32_t hint,
-                  double x[3])
-{
-  const double limit = distance * distance;
-  uint32_t t = hint, entry = 3;
-  double e[3], f[3], df[3], s, q, at = 0;
-
-  vg_sub(b, a, e);
-  if (!(walk(r, a, n, START * limit, &t, &s, &q) < INFINITY)) return 0;
-  for (int i = 0; i < FOLLOW; i++) {
-    uint32_t out = 3, g;
-    double end = 1;
-
-    weights(&r->shape[t], a, e, f, df);
-    for (uint32_t k = 0; k < 3; k++) {
-      const uint32_t c = (k + 2) % 3;   /* opposite edge k */
-
-      if (k == entry || !(df[c] < 0) || !(-f[c] > end * df[c])) continue;
-      end = -f[c] / df[c];
-      out = k;
-    }
-    if (out == 3) return 0;
-    if (end > at) at = end;
-    for (int k = 0; k < 3; k++) x[k] = a[k] + at * e[k];
-    if (vg_ref_tri_nearest(&r->shape[t], x, &s, &q) > limit) return 1;
-    g = r->mate[3 * t + out];
-    if (g == VG_REF_NONE || !faces(&r->shape[g / 3], n)) return 0;
-    t = g / 3;
-    entry = g % 3;
-  }
-  return 0;
-}
-
 int vg_ref_within(const struct vg_ref *r, const double x[3],
                   const double n[3], double distance, uint32_t *hint,
                   double *d2)
@@ -309,6 +255,62 @@ double vg_ref_nearest(const struct vg_ref *r, const double x[3],
   double d = search(r, x, n, hint, out);
 
   return n && !(d < INFINITY) ? search(r, x, NULL, hint, out) : d;
+}
+
+/* Weights of the corners of a triangle at x, and how they change along e, times
+ * the square of twice its area. */
+static void weights(const struct vg_ref_tri *t, const double x[3],
+                    const double e[3], double f[3], double df[3])
+{
+  const double det = t->uu * t->vv - t->uv * t->uv;
+  double d[3];
+
+  vg_sub(x, t->a, d);
+  for (int i = 0; i < 2; i++) {
+    const double *y = i ? e : d;
+    const double yu = vg_dot(y, t->u), yv = vg_dot(y, t->v);
+    double *to = i ? df : f;
+
+    to[1] = t->vv * yu - t->uv * yv;
+    to[2] = t->uu * yv - t->uv * yu;
+    to[0] = (i ? 0 : det) - to[1] - to[2];
+  }
+}
+
+int vg_ref_leaves(const struct vg_ref *r, const double a[3], const double b[3],
+                  const double n[3], double distance, uint32_t hint,
+                  double x[3])
+{
+  const double limit = distance * distance;
+  uint32_t t = hint, entry = 3;
+  double e[3], f[3], df[3], s, q, at = 0;
+
+  vg_sub(b, a, e);
+  /* On a line the hint may be on its other side. */
+  if (!(walk(r, a, n, START * limit, &t, &s, &q) <= limit)
+      && !(search(r, a, n, &t, x) < INFINITY)) return 0;
+  for (int i = 0; i < FOLLOW; i++) {
+    uint32_t out = 3, g;
+    double end = 1;
+
+    weights(&r->shape[t], a, e, f, df);
+    for (uint32_t k = 0; k < 3; k++) {
+      const uint32_t c = (k + 2) % 3;   /* opposite edge k */
+
+      if (k == entry || !(df[c] < 0) || !(-f[c] > end * df[c])) continue;
+      end = -f[c] / df[c];
+      out = k;
+    }
+    if (out == 3) return 0;
+    if (end > at) at = end;
+    for (int k = 0; k < 3; k++) x[k] = a[k] + at * e[k];
+    if (vg_ref_tri_nearest(&r->shape[t], x, &s, &q) > limit) return 1;
+    g = r->mate[3 * t + out];
+    if (g == VG_REF_NONE || !faces(&r->shape[g / 3], n)) return 0;
+    t = g / 3;
+    entry = g % 3;
+  }
+  return 0;
 }
 
 double vg_ref_project(const struct vg_ref *r, const double x[3],
