@@ -43,12 +43,14 @@
 #define POLISHES 2        /* and once more after the last smoothing */
 
 struct job {
-  const struct vg_mesh *given;
+  const struct vg_mesh *whole;  /* as given */
+  const struct vg_mesh *given;  /* the same, or with strips that are closed */
   const struct vg_remesh_options *o;
   struct vg_remesh_report r;
   struct vg_ref ref;
   struct vg_curves curves;
   struct vg_strips strips;  /* closed ones; then given is their mesh */
+  double *strip_cap;        /* cap with strips; or NULL */
   double *cap;              /* [n_tri] largest size, or NULL */
   double *point_cap;        /* [n_point] the same, with strips; or NULL */
   double *stretch;          /* [3 n_tri] that of the options, with strips */
@@ -220,6 +222,11 @@ static vg_status check_number(const struct job *j, struct vg_error *err)
                  "triangles; are sizes and tolerance in its unit?", n);
 }
 
+static const double *cap_of(const struct job *j)
+{
+  return j->strip_cap ? j->strip_cap : j->cap;
+}
+
 static vg_status find_lines(struct job *j, const struct vg_curves_options *c,
                             struct vg_error *err)
 {
@@ -243,7 +250,7 @@ static vg_status find_sizes(struct job *j, struct vg_error *err)
   VG_TRY(vg_sizes_make(&j->ref, &j->curves, &(struct vg_sizes_options){
     o->per_turn / o->scale, CHORD * j->jag * o->scale * o->scale, o->scale,
     j->r.h_min, j->r.h_max, NOISE * o->accuracy * o->scale,
-    vg_scaled_growth(o->growth, o->scale), j->cap,
+    vg_scaled_growth(o->growth, o->scale), cap_of(j),
     j->point_cap ? j->point_cap : o->cap, o->across, j->given->tri_patch,
     o->stop }, err));
 done:
@@ -258,11 +265,9 @@ static vg_status extend_caps(struct job *j, struct vg_error *err)
   double *cap;
 
   if (j->cap) {
-    cap = vg_alloc(s->mesh.n_tri, sizeof *cap);
+    cap = j->strip_cap = vg_alloc(s->mesh.n_tri, sizeof *cap);
     if (!cap) return vg_fail_memory(err, "the sizes on the surface");
     for (size_t t = 0; t < s->mesh.n_tri; t++) cap[t] = j->cap[s->tri_from[t]];
-    free(j->cap);
-    j->cap = cap;
   }
   if (!j->o->cap) return VG_OK;
   cap = j->point_cap = vg_alloc(s->mesh.n_point, sizeof *cap);
@@ -310,31 +315,52 @@ done:
   return st;
 }
 
+static void release_reference(struct job *j)
+{
+  free(j->strip_cap);
+  free(j->point_cap);
+  free(j->stretch);
+  j->strip_cap = j->point_cap = j->stretch = NULL;
+  vg_curves_release(&j->curves);
+  vg_ref_release(&j->ref);
+  vg_strips_release(&j->strips);
+  j->given = j->whole;
+}
+
+/* The reference with its lines and sizes. */
+static vg_status set_reference(struct job *j, int closes, struct vg_error *err)
+{
+  const struct vg_remesh_options *o = j->o;
+  struct vg_curves_options c = { o->ridge_angle, j->jag, j->whole->tri_patch,
+    j->whole->patch, o->hard, o->stretch, NULL };
+  vg_status st;
+
+  VG_TRY(find_lines(j, &c, err));
+  if (closes) VG_TRY(close_strips(j, &c, err));
+  VG_TRY(find_sizes(j, err));
+  if (j->looks) goto done;
+  VG_TRY(check_number(j, err));
+  VG_TRY(vg_ref_thin(&j->ref, (1 + VG_WORK_NEARER) * j->r.tolerance,
+                     (1 + VG_WORK_NEARER) * RELATIVE * j->r.h_max, cap_of(j),
+                     o->threads, &o->stop, err));
+done:
+  return st;
+}
+
 static vg_status prepare(struct job *j, struct vg_error *err)
 {
   const struct vg_remesh_options *o = j->o;
-  struct vg_curves_options c;
   vg_status st;
 
   VG_TRY(check_stretch(j->given, o->stretch, err));
   VG_TRY(settle(j, err));
   VG_TRY(vg_stopped(&o->stop, err));
-  c = (struct vg_curves_options){ o->ridge_angle, j->jag, j->given->tri_patch,
-    j->given->patch, o->hard, o->stretch, NULL };
-  VG_TRY(find_lines(j, &c, err));
-  if (!j->looks) VG_TRY(close_strips(j, &c, err));
-  VG_TRY(find_sizes(j, err));
-  if (!j->looks) {
-    VG_TRY(check_number(j, err));
-    VG_TRY(vg_ref_thin(&j->ref, (1 + VG_WORK_NEARER) * j->r.tolerance,
-                       (1 + VG_WORK_NEARER) * RELATIVE * j->r.h_max, j->cap,
-                       o->threads, &o->stop, err));
-  }
   j->source = vg_alloc(o->n_source, sizeof *j->source);
   if (!j->source) VG_TRY(vg_fail_memory(err, "the sources"));
   if (o->n_source)
     memcpy(j->source, o->source, o->n_source * sizeof *j->source);
   j->n_source = j->cap_source = o->n_source;
+  VG_TRY(set_reference(j, !j->looks, err));
 done:
   return st;
 }
@@ -578,11 +604,21 @@ done:
 static vg_status repeat(struct job *j, struct vg_mesh *out,
                         struct vg_error *err)
 {
+  size_t left = 0;
   int sound = 0;
   vg_status st = VG_OK;
 
-  for (int round = 1; !sound; round++)
-    VG_TRY(make(j, out, round == ROUNDS, &sound, err));
+  for (int round = 1; !sound; round++) {
+    VG_TRY(make(j, out, round == ROUNDS && !j->strips.n, &sound, err));
+    if (sound || !j->strips.n) continue;
+    /* They may be what made triangles meet: all again without. */
+    left = j->strips.n;
+    release_reference(j);
+    VG_TRY(set_reference(j, 0, err));
+    j->n_source = j->o->n_source;
+    round = 0;
+  }
+  j->r.n_left = left;
 done:
   return st;
 }
@@ -612,18 +648,14 @@ static void release(struct job *j)
 {
   free(j->r.bad);
   free(j->cap);
-  free(j->point_cap);
-  free(j->stretch);
-  vg_strips_release(&j->strips);
   free(j->source);
-  vg_curves_release(&j->curves);
-  vg_ref_release(&j->ref);
+  release_reference(j);
 }
 
 vg_status vg_remesh(struct vg_mesh *m, const struct vg_remesh_options *o,
                     struct vg_remesh_report *report, struct vg_error *err)
 {
-  struct job j = { .given = m, .o = o };
+  struct job j = { .whole = m, .given = m, .o = o };
   struct vg_mesh out = VG_MESH_INIT;
   vg_status st;
 
@@ -644,7 +676,7 @@ vg_status vg_remesh_judge(const struct vg_mesh *m,
                           struct vg_remesh_report *report,
                           struct vg_error *err)
 {
-  struct job j = { .given = m, .o = o, .looks = 1 };
+  struct job j = { .whole = m, .given = m, .o = o, .looks = 1 };
   struct vg_mesh out = VG_MESH_INIT;
   int sound = 0;
   vg_status st;

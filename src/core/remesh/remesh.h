@@ -85,6 +85,8 @@ struct vg_remesh_report {
   size_t n_closed;          /* pieces of lines that are none any more: strips
                                between them and another line were narrower
                                than the tolerance */
+  size_t n_left;            /* such pieces that are lines still, as triangles
+                               met when they were closed */
   double closed_length, closed_width, closed_at[3];  /* of all; the widest */
   size_t n_split, n_collapse, n_swap, n_move;
   int n_round;              /* 1, and one more for each time that triangles

@@ -66,6 +66,9 @@ void vg_report_remesh_text(FILE *to, const struct vg_renewal *n)
           "kept, length %.6g, now %.6g\n", vg_text_count(r->n_tri[0], was),
           vg_text_count(r->n_tri[1], now), r->n_corner, r->n_line,
           r->line_length[0], r->line_length[1]);
+  if (r->n_left)
+    fprintf(to, "  strips narrower than the tolerance left: %zu; triangles "
+            "met where they were closed\n", r->n_left);
   if (r->n_closed)
     fprintf(to, "  strips narrower than the tolerance closed: %zu, length "
             "%.6g, width %.3g at most, at (%g, %g, %g)\n", r->n_closed,
@@ -102,8 +105,9 @@ static json_t *back_json(const struct vg_put_back *b)
 
 static json_t *closed_json(const struct vg_remesh_report *r)
 {
-  if (!r->n_closed) return json_null();
-  return json_pack("{s:I s:f s:f s:[fff]}", "number", (json_int_t)r->n_closed,
+  if (!r->n_closed && !r->n_left) return json_null();
+  return json_pack("{s:I s:I s:f s:f s:[fff]}", "number", (json_int_t)r->n_closed,
+    "left", (json_int_t)r->n_left,
     "length", r->closed_length, "width", r->closed_width, "at",
     r->closed_at[0], r->closed_at[1], r->closed_at[2]);
 }
