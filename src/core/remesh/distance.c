@@ -10,7 +10,7 @@
 #include "core/remesh/reference.h"
 
 #define GRAIN 1024
-#define PER_FACE 4        /* samples: middles of edges, centroid */
+#define PER_FACE 3        /* samples: middles of edges */
 
 /* One way. Samples are the points, then those of each triangle. */
 struct measuring {
@@ -30,15 +30,13 @@ struct measuring {
 
 static void face_sample(const struct vg_mesh *m, size_t t, int i, double x[3])
 {
-  const double *p[3];
+  const double *a = m->point[m->tri[t][i]];
+  const double *b = m->point[m->tri[t][(i + 1) % 3]];
 
-  for (int k = 0; k < 3; k++) p[k] = m->point[m->tri[t][k]];
-  for (int d = 0; d < 3; d++)
-    x[d] = i < 3 ? (p[i][d] + p[(i + 1) % 3][d]) / 2
-           : (p[0][d] + p[1][d] + p[2][d]) / 3;
+  for (int d = 0; d < 3; d++) x[d] = (a[d] + b[d]) / 2;
 }
 
-/* The middle of half-edge h, or the centroid. */
+/* The middle of edge i of triangle t. */
 static size_t slot_of(const struct vg_mesh *m, size_t t, size_t i)
 {
   return m->n_point + PER_FACE * t + i;
@@ -59,7 +57,7 @@ static void at_face(const struct measuring *m, size_t t, uint32_t *hint)
     slot[n++] = p;
   }
   for (int i = 0; i < PER_FACE; i++) {
-    if (i < 3 && m->ref.mate[3 * t + (size_t)i] < 3 * t) continue;
+    if (m->ref.mate[3 * t + (size_t)i] < 3 * t) continue;
     face_sample(from, t, i, x[n]);
     slot[n++] = slot_of(from, t, (size_t)i);
   }

@@ -141,8 +141,8 @@ vg_status vg_remesh_judge(const struct vg_mesh *m,
 /** "corner", "strip", ... Static. */
 const char *vg_remesh_cause_name(enum vg_remesh_cause c);
 
-/** Distance of one surface from another, at points, middles of edges and
- * centroids. */
+/** Distance of one surface from another, at points and middles of edges: it is
+ * largest at a point of either or where their edges cross. */
 struct vg_remesh_distance {
   double most, at[3];       /* largest, and where */
   double most_99;           /* 99 % are below */
