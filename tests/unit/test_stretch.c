@@ -36,49 +36,54 @@ static double asked(const struct vg_stretch *s, double x, double y, double z,
   return vg_metric_along(&m, d);
 }
 
-/* Along the line what was asked for, less by growth - 1 (0.2) per length away
- * from it, and never below the size, which stays that across. */
-static void falls_with_the_distance(void **unused)
+/* A cube of sizes 0.05: one of its sides is stretched by 8, another by `by`. */
+static void stretch_cube(struct scene *s, struct vg_stretch *stretch, double by)
 {
   const double size[3] = { 4, 4, 4 };
   const uint32_t n[3] = { 3, 3, 3 };
   struct vg_error err = VG_ERROR_INIT;
+
+  shape_box(&s->m, size, n);
+  scene_set(s, 1e-3, 0.05);
+  s->w.h_max = 1;
+  stretch->by = two_sides(&s->m, 8, by);
+  assert_int_equal(vg_stretch_make(stretch, &s->w, &err), VG_OK);
+}
+
+static void release_cube(struct scene *s, struct vg_stretch *stretch)
+{
+  free((double *)stretch->by);
+  vg_stretch_release(stretch);
+  scene_release(s);
+}
+
+/* Along the line what was asked for, less by growth - 1 (0.2) per length away
+ * from it, and never below the size, which stays that across. */
+static void falls_with_the_distance(void **unused)
+{
   struct scene s = { .m = VG_MESH_INIT };
   struct vg_stretch stretch = { 0 };
 
   (void)unused;
-  shape_box(&s.m, size, n);
-  scene_set(&s, 1e-3, 0.05);
-  s.w.h_max = 1;
-  stretch.by = two_sides(&s.m, 8, 0);
-  assert_int_equal(vg_stretch_make(&stretch, &s.w, &err), VG_OK);
+  stretch_cube(&s, &stretch, 0);
   assert_int_equal(stretch.n_run, 1);
   assert_float_equal(asked(&stretch, 2, 0, 0, 1, 0), 0.4, 1e-9);
   assert_float_equal(asked(&stretch, 2, 0, 0, 0, 1), 0.05, 1e-9);
   assert_float_equal(asked(&stretch, 2, 0.5, 0, 1, 0), 0.3, 1e-9);
   assert_float_equal(asked(&stretch, 2, 0.3, 0.4, 1, 0), 0.3, 1e-9);
   assert_float_equal(asked(&stretch, 2, 2, 0, 1, 0), 0.05, 1e-9);
-  free((double *)stretch.by);
-  vg_stretch_release(&stretch);
-  scene_release(&s);
+  release_cube(&s, &stretch);
 }
 
 /* Where two lines at right angles meet none is stretched; by one of them edges
  * are as that asks for, but for what is left of the other. */
 static void lines_share_their_corner(void **unused)
 {
-  const double size[3] = { 4, 4, 4 };
-  const uint32_t n[3] = { 3, 3, 3 };
-  struct vg_error err = VG_ERROR_INIT;
   struct scene s = { .m = VG_MESH_INIT };
   struct vg_stretch stretch = { 0 };
 
   (void)unused;
-  shape_box(&s.m, size, n);
-  scene_set(&s, 1e-3, 0.05);
-  s.w.h_max = 1;
-  stretch.by = two_sides(&s.m, 8, 8);
-  assert_int_equal(vg_stretch_make(&stretch, &s.w, &err), VG_OK);
+  stretch_cube(&s, &stretch, 8);
   assert_int_equal(stretch.n_run, 2);
   assert_float_equal(asked(&stretch, 0, 0, 0, 1, 0), 0.05, 1e-9);
   assert_float_equal(asked(&stretch, 0, 0, 0, 0, 1), 0.05, 1e-9);
@@ -87,9 +92,7 @@ static void lines_share_their_corner(void **unused)
   assert_float_equal(asked(&stretch, 0, 3, 0, 0, 1), 0.4, 1e-9);
   /* 0.4 - 0.2 for what is 1 away, less the size, is taken from 0.4 */
   assert_float_equal(asked(&stretch, 1, 0, 0, 1, 0), 0.25, 1e-9);
-  free((double *)stretch.by);
-  vg_stretch_release(&stretch);
-  scene_release(&s);
+  release_cube(&s, &stretch);
 }
 
 /* --- wings --------------------------------------------------------------- */

@@ -37,21 +37,6 @@ double vg_cosine(double degrees)
   return c;
 }
 
-static uint32_t next(uint32_t h)
-{
-  return h % 3 == 2 ? h - 2 : h + 1;
-}
-
-static uint32_t from(const struct vg_ref *r, uint32_t h)
-{
-  return r->tri[h / 3][h % 3];
-}
-
-static uint32_t to(const struct vg_ref *r, uint32_t h)
-{
-  return from(r, next(h));
-}
-
 /* --- edges --------------------------------------------------------------- */
 
 /* Height of the triangle of h above its longest edge. */
@@ -68,7 +53,7 @@ static double height(const struct vg_ref *r, uint32_t h)
 
 static double length2(const struct vg_ref *r, uint32_t h)
 {
-  return vg_distance2(r->point[from(r, h)], r->point[to(r, h)]);
+  return vg_distance2(r->point[vg_ref_from(r, h)], r->point[vg_ref_to(r, h)]);
 }
 
 /* The first triangle on the side of h that says which way the surface faces
@@ -80,7 +65,7 @@ static uint32_t face_beside(const struct finder *f, uint32_t h)
   double room = f->o->tolerance;
 
   for (int i = 0; i < THIN; i++) {
-    uint32_t a = next(h), b = next(a);
+    uint32_t a = vg_ref_next(h), b = vg_ref_next(a);
 
     room -= height(r, h);
     if (length2(r, b) > length2(r, a)) a = b;
@@ -123,7 +108,8 @@ int vg_curves_is_hard(const struct vg_curves_options *o,
 
 static void set_line(struct finder *f, uint32_t h, int on)
 {
-  uint32_t m = f->r->mate[h], ends[2] = { from(f->r, h), to(f->r, h) };
+  uint32_t ends[2] = { vg_ref_from(f->r, h), vg_ref_to(f->r, h) };
+  uint32_t m = f->r->mate[h];
 
   f->c->line[h] = (uint32_t)on;
   if (m != VG_REF_NONE) f->c->line[m] = (uint32_t)on;
@@ -165,7 +151,7 @@ static vg_status list_halves(struct finder *f, struct vg_error *err)
     for (uint32_t h = 0; h < 3 * r->n_tri; h++) {
       if (r->mate[h] != VG_REF_NONE && r->mate[h] < h) continue;
       for (int k = 0; k < 2; k++) {
-        uint32_t p = k ? to(r, h) : from(r, h);
+        uint32_t p = k ? vg_ref_to(r, h) : vg_ref_from(r, h);
 
         if (!pass) f->start[p + 2]++;
         else f->half[f->start[p + 1]++] = h;
@@ -180,7 +166,7 @@ static vg_status list_halves(struct finder *f, struct vg_error *err)
 
 static uint32_t other_end(const struct vg_ref *r, uint32_t h, uint32_t p)
 {
-  return from(r, h) == p ? to(r, h) : from(r, h);
+  return vg_ref_from(r, h) == p ? vg_ref_to(r, h) : vg_ref_from(r, h);
 }
 
 /* The line at p other than h; VG_REF_NONE unless there is exactly one. */

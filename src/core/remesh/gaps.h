@@ -35,7 +35,8 @@ struct vg_gaps {
  * @param m    triangles that face the fluid, no index out of range
  * @param out  empty before, and on failure; vg_gaps_release
  * VG_ERR_INPUT for options out of range, edges of three triangles, or some 1e8
- * places; VG_ERR_MEMORY, VG_ERR_STOPPED. Re-entrant. About a microsecond a place. */
+ * places; VG_ERR_MEMORY, VG_ERR_STOPPED. Re-entrant. About a microsecond a
+ * place. */
 vg_status vg_gaps_find(const struct vg_mesh *m, const struct vg_gap_options *o,
                        struct vg_gaps *out, struct vg_error *err);
 

@@ -22,31 +22,31 @@ struct curve_size {
   uint32_t by;
 };
 
-/* Along the curve, where p is on it. */
+/* Along the curve, at its place x. */
 static double size_of_edges(const struct curve_size *c, double s,
-                            struct vg_work_point *p, double size)
+                            const double x[3], double size)
 {
   const struct vg_work *w = c->w;
   const double whole = vg_curve_length(w->curves, c->curve);
+  struct vg_metric asked = { .size = size };
   double a[3], b[3], d[3];
 
-  vg_work_ask(w, p, size);
+  w->form(w->of_form, x, size, asked.form);
   vg_curve_at(w->curves, w->ref, c->curve, fmax(s - size / 2, 0), a);
   vg_curve_at(w->curves, w->ref, c->curve, fmin(s + size / 2, whole), b);
   vg_sub(b, a, d);
-  return vg_norm(d) > 0 ? vg_metric_along(&p->asked, d) : size;
+  return vg_norm(d) > 0 ? vg_metric_along(&asked, d) : size;
 }
 
 static double size_along(void *user, double s)
 {
   struct curve_size *c = user;
   const struct vg_work *w = c->w;
-  struct vg_work_point p;
-  double size;
+  double x[3], size;
 
-  vg_curve_at(w->curves, w->ref, c->curve, s, p.x);
-  size = vg_work_size(w, p.x, &c->by);
-  return w->form ? size_of_edges(c, s, &p, size) : size;
+  vg_curve_at(w->curves, w->ref, c->curve, s, x);
+  size = vg_work_size(w, x, &c->by);
+  return w->form ? size_of_edges(c, s, x, size) : size;
 }
 
 /* A half-edge of the line i; VG_REF_NONE: not found. */
@@ -59,8 +59,8 @@ static uint32_t half_of(const struct vg_work *w, uint32_t i)
 
     for (size_t j = 0; j < n; j++) {
       if (w->edge[ring[j]] == i + 1) return ring[j];
-      if (w->edge[vg_work_prev(ring[j])] == i + 1)
-        return vg_work_prev(ring[j]);
+      if (w->edge[vg_ref_prev(ring[j])] == i + 1)
+        return vg_ref_prev(ring[j]);
     }
   }
   return VG_REF_NONE;
@@ -295,8 +295,8 @@ static int is_longest(const struct vg_work *w, uint32_t h)
 
   for (int side = 0; side < 2; side++, h = w->mate[h]) {
     if (h == VG_REF_NONE) break;
-    if (vg_work_ratio(w, vg_work_next(h)) > l
-        || vg_work_ratio(w, vg_work_prev(h)) > l) return 0;
+    if (vg_work_ratio(w, vg_ref_next(h)) > l
+        || vg_work_ratio(w, vg_ref_prev(h)) > l) return 0;
   }
   return 1;
 }
@@ -375,7 +375,7 @@ static int better_place(const struct vg_work *w, uint32_t p, double x[3],
   memset(x, 0, 3 * sizeof *x);
   for (size_t i = 0; i < n; i++) {
     const uint32_t to = vg_work_to(w, ring[i]);
-    const uint32_t last = vg_work_from(w, vg_work_prev(ring[i]));
+    const uint32_t last = vg_work_from(w, vg_ref_prev(ring[i]));
     const double *a = vg_work_at(w, to), *b = vg_work_at(w, last);
     double e[3], d[3], mid[3], l2, along, high, weight;
     double shape = vg_work_shape(w, &w->point[p], &w->point[to],

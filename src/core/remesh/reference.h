@@ -53,6 +53,32 @@ struct vg_ref {
 };
 #define VG_REF_INIT { 0 }
 
+static inline uint32_t vg_ref_next(uint32_t h)
+{
+  return h % 3 == 2 ? h - 2 : h + 1;
+}
+
+static inline uint32_t vg_ref_prev(uint32_t h)
+{
+  return h % 3 ? h - 1 : h + 2;
+}
+
+/** The point that half-edge h starts from. */
+static inline uint32_t vg_ref_from(const struct vg_ref *r, uint32_t h)
+{
+  return r->tri[h / 3][h % 3];
+}
+
+static inline uint32_t vg_ref_to(const struct vg_ref *r, uint32_t h)
+{
+  return vg_ref_from(r, vg_ref_next(h));
+}
+
+static inline const double *vg_ref_at(const struct vg_ref *r, uint32_t h)
+{
+  return r->point[vg_ref_from(r, h)];
+}
+
 /** Over the triangles of m, which is borrowed and stays as it is. O(n log n).
  * VG_ERR_INPUT for edges of three faces or neighbours that disagree;
  * VG_ERR_STOPPED: stop may be NULL. */

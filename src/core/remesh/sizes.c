@@ -17,21 +17,6 @@ struct bend {
   double t[6], area;
 };
 
-static uint32_t next(uint32_t h)
-{
-  return h % 3 == 2 ? h - 2 : h + 1;
-}
-
-static uint32_t prev(uint32_t h)
-{
-  return h % 3 ? h - 1 : h + 2;
-}
-
-static const double *at(const struct vg_ref *r, uint32_t h)
-{
-  return r->point[r->tri[h / 3][h % 3]];
-}
-
 /* Angle between unit vectors whose cross product is n, plain arithmetic: by
  * the tangent of half of it, atan(t) ~ t (1 + 0.2733 (1 - t)) pi / 4 ... */
 static double angle_of(double sine, double cosine)
@@ -54,7 +39,7 @@ static void add_edge(const struct vg_ref *r, uint32_t h, struct bend *bend)
   const double *n = r->shape[h / 3].n, *m = r->shape[r->mate[h] / 3].n;
   const uint32_t side[2] = { h / 3, r->mate[h] / 3 };
   double e[3], w[3], l, angle, k;
-  uint32_t a = r->tri[h / 3][h % 3], b = r->tri[h / 3][next(h) % 3];
+  uint32_t a = vg_ref_from(r, h), b = vg_ref_to(r, h);
 
   if (vg_dot(n, n) == 0 || vg_dot(m, m) == 0) return;
   vg_sub(r->point[b], r->point[a], e);
@@ -120,9 +105,11 @@ static double sector(const struct vg_ref *r, const struct vg_curves *c,
   struct bend sum = { { 0 }, 0 };
 
   for (;;) {
+    const uint32_t g = vg_ref_prev(h);
+
     add_bend(&sum, &bend[h / 3], 1);
-    if (c->line[prev(h)] || r->mate[prev(h)] == VG_REF_NONE) break;
-    h = r->mate[prev(h)];
+    if (c->line[g] || r->mate[g] == VG_REF_NONE) break;
+    h = r->mate[g];
   }
   return curvature(&sum);
 }
@@ -217,13 +204,14 @@ static void by_strip(struct vg_ref *r, const struct vg_curves *c, uint32_t h,
 {
   static const double share[3] = { 0.1, 0.5, 0.9 };
   const double factor = strip / across;
-  uint32_t end[2] = { r->tri[h / 3][h % 3], r->tri[h / 3][next(h) % 3] };
+  const double *a = vg_ref_at(r, h), *b = vg_ref_at(r, vg_ref_next(h));
+  uint32_t end[2] = { vg_ref_from(r, h), vg_ref_to(r, h) };
 
   for (int i = 0; i < 3; i++) {
     double x[3], w, most = fmax(r->plain[end[0]], r->plain[end[1]]);
 
     for (int k = 0; k < 3; k++)
-      x[k] = at(r, h)[k] + share[i] * (at(r, next(h))[k] - at(r, h)[k]);
+      x[k] = a[k] + share[i] * (b[k] - a[k]);
     w = factor * vg_strip_width(r, c, h, x, most / factor, NULL);
     for (int k = 0; k < 2; k++)
       if (i != (k ? 0 : 2) && w < r->size[end[k]])
@@ -260,7 +248,7 @@ static vg_status mark_strips(struct vg_ref *r, const struct vg_curves *c,
   for (int ring = 0; ring < AROUND; ring++) {
     for (uint32_t h = 0; h < n; h++)
       if (ring ? r->strip[h / 3] == VG_REF_CLOSED : c->closed[h])
-        near[r->tri[h / 3][h % 3]] = near[r->tri[h / 3][next(h) % 3]] = 1;
+        near[vg_ref_from(r, h)] = near[vg_ref_to(r, h)] = 1;
     for (uint32_t h = 0; h < n; h++)
       if (near[r->tri[h / 3][h % 3]]) r->strip[h / 3] = VG_REF_CLOSED;
   }

@@ -22,28 +22,13 @@
 #define BISECTIONS 24
 #define INSET 0.02        /* of a piece, or APART: its first and last place */
 
-static uint32_t next(uint32_t h)
-{
-  return h % 3 == 2 ? h - 2 : h + 1;
-}
-
-static uint32_t prev(uint32_t h)
-{
-  return h % 3 ? h - 1 : h + 2;
-}
-
-static const double *at(const struct vg_ref *r, uint32_t h)
-{
-  return r->point[r->tri[h / 3][h % 3]];
-}
-
 /* --- the width ----------------------------------------------------------- */
 
 /* Unit vector in triangle t at right angles to its half-edge h, inward, and
  * one along it. */
 static int frame(const struct vg_ref *r, uint32_t h, double e[3], double in[3])
 {
-  vg_sub(at(r, next(h)), at(r, h), e);
+  vg_sub(vg_ref_at(r, vg_ref_next(h)), vg_ref_at(r, h), e);
   if (!(vg_unit(e) > 0)) return 0;
   vg_cross(r->shape[h / 3].n, e, in);
   return vg_unit(in) > 0;
@@ -54,7 +39,7 @@ static int frame(const struct vg_ref *r, uint32_t h, double e[3], double in[3])
 static uint32_t leave(const struct vg_ref *r, uint32_t h, const double x[3],
                       const double d[3], double *far)
 {
-  uint32_t best = VG_REF_NONE, g[2] = { next(h), prev(h) };
+  uint32_t best = VG_REF_NONE, g[2] = { vg_ref_next(h), vg_ref_prev(h) };
 
   *far = INFINITY;
   for (int k = 0; k < 2; k++) {
@@ -63,7 +48,7 @@ static uint32_t leave(const struct vg_ref *r, uint32_t h, const double x[3],
     if (!frame(r, g[k], e, in)) continue;
     speed = -vg_dot(d, in);
     if (!(speed > 1e-12)) continue;
-    vg_sub(x, at(r, g[k]), w);
+    vg_sub(x, vg_ref_at(r, g[k]), w);
     gap = fmax(vg_dot(w, in), 0) / speed;
     if (gap < *far) *far = gap, best = g[k];
   }
@@ -86,7 +71,7 @@ double vg_strip_width(const struct vg_ref *r, const struct vg_curves *c,
     sum += far;
     if (sum > most) return INFINITY;
     for (int k = 0; k < 3; k++) x[k] += far * d[k];
-    vg_sub(at(r, next(g)), at(r, g), e);
+    vg_sub(vg_ref_at(r, vg_ref_next(g)), vg_ref_at(r, g), e);
     vg_unit(e);
     if (c->line[g] || r->mate[g] == VG_REF_NONE) {
       /* As seen in the plane where the walk ends. */
@@ -125,7 +110,6 @@ struct finder {
   const struct vg_ref *r;
   const struct vg_curves *c;
   const struct vg_strips_options *o;
-  const uint32_t *tri_patch;
   uint32_t (*side)[2];      /* [lines] half-edge along it, and against it */
   struct claim *claim;      /* [n_curve] the last to go comes first */
   size_t *rank;             /* [n_curve] where it is among these */
@@ -324,6 +308,7 @@ static vg_status look_at_curve(struct finder *f, size_t i,
                                struct vg_error *err)
 {
   const struct vg_curve *curve = &f->c->curve[i];
+  const double *across = f->o->across;
   const size_t first = f->n_found;
   vg_status st = VG_OK;
 
@@ -334,7 +319,7 @@ static vg_status look_at_curve(struct finder *f, size_t i,
       uint32_t h = f->side[k - i][side];
 
       if (h == VG_REF_NONE) continue;
-      if (f->o->across && f->o->across[f->tri_patch[h / 3]] > 1) continue;
+      if (across && across[f->o->lines->tri_patch[h / 3]] > 1) continue;
       VG_TRY(look_along(f, i, k, h, begun, err));
     }
   }
@@ -395,8 +380,7 @@ vg_status vg_strips_find(const struct vg_ref *r, const struct vg_curves *c,
                          const struct vg_strips_options *o,
                          struct vg_strips *s, struct vg_error *err)
 {
-  struct finder f = { .r = r, .c = c, .o = o, .tri_patch = m->tri_patch,
-                      .s = s };
+  struct finder f = { .r = r, .c = c, .o = o, .s = s };
   vg_status st;
 
   VG_TRY(list_sides(&f, err));

@@ -10,7 +10,8 @@
 #include "core/geometry/vector.h"
 
 #define TRIFLE 1e-4       /* of the squared tolerance: on the reference */
-#define ON 0.04           /* of the squared tolerance: as good as on a triangle */
+#define ON 0.04           /* of the squared tolerance: as good as on a
+                             triangle */
 #define FLAT 1e-3         /* S33: tolerances: lower triangles face any way */
 #define SWEEPS 8          /* in which sizes are passed on to neighbours */
 
@@ -113,7 +114,6 @@ static void find_sizes(void *context, size_t first, size_t end, int worker)
     q->by = q->home;
     vg_work_ask(w, q, bounded(w, q->x, vg_ref_size(w->ref, q->x,
                                                    q->asked.size, &q->by)));
-    vg_work_find_room(w, q);
   }
 }
 
@@ -242,7 +242,7 @@ size_t vg_work_ring(const struct vg_work *w, uint32_t p, uint32_t *half,
   *open = 0;
   /* To the rim, if there is one. */
   while (w->mate[h] != VG_REF_NONE) {
-    h = vg_work_next(w->mate[h]);
+    h = vg_ref_next(w->mate[h]);
     if (h == first) break;
     if (++n > VG_WORK_RING) return 0;
   }
@@ -252,7 +252,7 @@ size_t vg_work_ring(const struct vg_work *w, uint32_t p, uint32_t *half,
   do {
     if (n == VG_WORK_RING) return 0;
     half[n++] = h;
-    h = w->mate[vg_work_prev(h)];
+    h = w->mate[vg_ref_prev(h)];
   } while (h != VG_REF_NONE && h != first);
   return n;
 }

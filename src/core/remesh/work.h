@@ -97,16 +97,6 @@ static inline int vg_work_ends(struct vg_work *w)
 /** What has kept changes from being made: VG_ERR_MEMORY, VG_ERR_STOPPED. */
 vg_status vg_work_status(const struct vg_work *w, struct vg_error *err);
 
-static inline uint32_t vg_work_next(uint32_t h)
-{
-  return h % 3 == 2 ? h - 2 : h + 1;
-}
-
-static inline uint32_t vg_work_prev(uint32_t h)
-{
-  return h % 3 ? h - 1 : h + 2;
-}
-
 static inline uint32_t vg_work_from(const struct vg_work *w, uint32_t h)
 {
   return w->tri[h / 3][h % 3];
@@ -114,7 +104,7 @@ static inline uint32_t vg_work_from(const struct vg_work *w, uint32_t h)
 
 static inline uint32_t vg_work_to(const struct vg_work *w, uint32_t h)
 {
-  return w->tri[h / 3][vg_work_next(h) % 3];
+  return w->tri[h / 3][vg_ref_next(h) % 3];
 }
 
 static inline const double *vg_work_at(const struct vg_work *w, uint32_t p)
@@ -180,12 +170,13 @@ double vg_work_size_near(const struct vg_work *w, const double x[3],
  * has to be; and not where one is closed. */
 void vg_work_find_room(const struct vg_work *w, struct vg_work_point *p);
 
-/** Let q, which is in its place, ask for this size. */
+/** Let q, which is in its place, with home and by, ask for this size. */
 static inline void vg_work_ask(const struct vg_work *w,
                                struct vg_work_point *q, double size)
 {
   q->asked.size = size;
   if (w->form) w->form(w->of_form, q->x, size, q->asked.form);
+  vg_work_find_room(w, q);
 }
 
 /** That of the point; NULL where nothing is stretched. */

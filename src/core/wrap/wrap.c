@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/geometry/hilbert.h"
 #include "core/geometry/vector.h"
 #include "core/surface/surface_check.h"
 #include "core/wrap/wrap_parts.h"
@@ -49,22 +50,12 @@ static vg_status check(const struct vg_mesh *m, double size,
   return VG_OK;
 }
 
-struct side { uint32_t lo, hi; };
-
-static int by_ends(const void *pa, const void *pb)
-{
-  const struct side *a = pa, *b = pb;
-
-  if (a->lo != b->lo) return a->lo < b->lo ? -1 : 1;
-  return (a->hi > b->hi) - (a->hi < b->hi);
-}
-
 /* Length of the edges with one triangle, cracks left out. */
 static vg_status measure_rims(const struct vg_mesh *in, double size,
                               double *length, struct vg_error *err)
 {
   struct vg_mesh m = VG_MESH_INIT;
-  struct side *s = NULL;
+  struct vg_key *s = NULL;
   size_t n;
   vg_status st;
 
@@ -75,15 +66,16 @@ static vg_status measure_rims(const struct vg_mesh *in, double size,
   s = vg_alloc(n, sizeof *s);
   if (!s) VG_TRY(vg_fail_memory(err, "a wrap"));
   for (size_t i = 0; i < n; i++) {
-    uint32_t a = m.tri[i / 3][i % 3], b = m.tri[i / 3][(i + 1) % 3];
+    uint64_t a = m.tri[i / 3][i % 3], b = m.tri[i / 3][(i + 1) % 3];
 
-    s[i] = (struct side){ a < b ? a : b, a < b ? b : a };
+    s[i] = (struct vg_key){ a < b ? a << 32 | b : b << 32 | a, 0 };
   }
-  qsort(s, n, sizeof *s, by_ends);
+  VG_TRY(vg_sort_keys(n, s, err));
   for (size_t i = 0; i < n; i++)
-    if ((!i || by_ends(&s[i - 1], &s[i]))
-        && (i + 1 == n || by_ends(&s[i], &s[i + 1])))
-      *length += vg_distance(m.point[s[i].lo], m.point[s[i].hi]);
+    if ((!i || s[i - 1].key != s[i].key)
+        && (i + 1 == n || s[i].key != s[i + 1].key))
+      *length += vg_distance(m.point[s[i].key >> 32],
+                             m.point[(uint32_t)s[i].key]);
 done:
   free(s);
   vg_mesh_release(&m);

@@ -69,6 +69,9 @@ struct Model {
 void read(const vg_cad_ask &ask, const std::string &path, Model &model,
           const Talk &talk);
 
+/** Faces of a shape; `most` where there are as many or more. */
+size_t count_faces(const TopoDS_Shape &shape, size_t most);
+
 /** Have shells of many faces mended in a time that grows as their number, from
  * now on, by readers of STEP and IGES that are made later. */
 void mend_large_shells();

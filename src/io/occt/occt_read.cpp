@@ -343,11 +343,18 @@ void refuse_too_many(size_t n)
                        n, MOST_FACES)};
 }
 
-/* Names of entities that end in `tail`, or are `whole`. Before a STEP file is
- * read: the reader looks through a list for each of its items, so that a shell of
- * a million faces takes it hours. */
-size_t count_words(const std::string &path, const std::string &tail,
-                   const std::string &whole)
+bool names_face(const std::string &word)
+{
+  const std::string tail = "_FACE";
+
+  return word == "FACE_SURFACE"
+         || (word.size() > tail.size()
+             && !word.compare(word.size() - tail.size(), tail.size(), tail));
+}
+
+/* Before a STEP file is read: the reader looks through a list for each of its
+ * items, so that a shell of a million faces takes it hours. */
+size_t count_step_faces(const std::string &path)
 {
   std::ifstream in(path, std::ios::binary);
   std::string word;
@@ -357,21 +364,23 @@ size_t count_words(const std::string &path, const std::string &tail,
   while (in.get(c))
     if ((c >= 'A' && c <= 'Z') || c == '_') word += c;
     else {
-      n += c == '(' && (word == whole
-                        || (word.size() > tail.size()
-                            && !word.compare(word.size() - tail.size(),
-                                             tail.size(), tail)));
+      n += c == '(' && names_face(word);
       if (c != ' ') word.clear();
     }
   return n;
 }
 
-template <class Test> size_t count_entities(int n, Test is_face)
+/* Trimmed and bounded surfaces, faces of solids. */
+size_t count_iges_faces(const Handle(IGESData_IGESModel) &file)
 {
-  size_t faces = 0;
+  size_t n = 0;
 
-  for (int i = 1; i <= n; i++) faces += is_face(i);
-  return faces;
+  for (int i = 1; i <= file->NbEntities(); i++) {
+    const int type = file->Entity(i)->TypeNumber();
+
+    n += type == 144 || type == 143 || type == 510;
+  }
+  return n;
 }
 
 /* --- formats ------------------------------------------------------------- */
@@ -387,7 +396,7 @@ void read_step(const vg_cad_ask &ask, const std::string &path, Model &model,
   reader.SetNameMode(Standard_True);
   reader.SetColorMode(Standard_True);
   reader.SetLayerMode(Standard_True);
-  refuse_too_many(count_words(path, "_FACE", "FACE_SURFACE"));
+  refuse_too_many(count_step_faces(path));
   require(reader.ReadFile(path.c_str()), "STEP");
   given = step_unit(reader.ChangeReader(), called);
   Interface_Static::SetCVal(
@@ -414,12 +423,7 @@ void read_iges(const vg_cad_ask &ask, const std::string &path, Model &model,
   require(reader.ReadFile(path.c_str()), "IGES");
   file = reader.IGESModel();
   if (!file.IsNull()) {
-    /* trimmed and bounded surfaces, faces of solids */
-    refuse_too_many(count_entities(file->NbEntities(), [&](int i) {
-      const int type = file->Entity(i)->TypeNumber();
-
-      return type == 144 || type == 143 || type == 510;
-    }));
+    refuse_too_many(count_iges_faces(file));
     given = file->GlobalSection().UnitValue();
     const Unit &to = choose_unit(ask, given, "its unit", talk);
     Interface_Static::SetCVal("xstep.cascade.unit", to.open_cascade);
@@ -452,13 +456,7 @@ void read_brep(const vg_cad_ask &ask, const std::string &path, Model &model,
   if (!load_brep(path, shape))
     throw Failure{VG_ERR_FORMAT, "Open CASCADE cannot read this BREP file; it "
                                  "is truncated or damaged: export it again"};
-  TopExp_Explorer faces(shape, TopAbs_FACE);
-  refuse_too_many(count_entities(static_cast<int>(MOST_FACES) + 1, [&](int) {
-    const bool more = faces.More();
-
-    if (more) faces.Next();
-    return more;
-  }));
+  refuse_too_many(count_faces(shape, MOST_FACES + 1));
   if (ask.unit)
     throw Failure{VG_ERR_INPUT, "a BREP file has no unit of length: cad_unit "
                                 "must be file, and its numbers stay as they "

@@ -15,16 +15,7 @@
 namespace vg_occt {
 namespace {
 
-const size_t MANY = 4000;  /* faces: 2 s; four times as long for twice as many */
-
-bool has_many_faces(const TopoDS_Shape &shape)
-{
-  size_t n = 0;
-
-  for (TopExp_Explorer e(shape, TopAbs_FACE); e.More() && n <= MANY; e.Next())
-    n++;
-  return n > MANY;
-}
+const size_t MANY = 4000;  /* faces: 2 s; four times that for twice as many */
 
 class Mending : public XSAlgo_AlgoContainer {
 public:
@@ -44,7 +35,7 @@ TopoDS_Shape Mending::ProcessShape(const TopoDS_Shape &shape,
                                    const Message_ProgressRange &progress,
                                    const bool non_manifold) const
 {
-  if (!has_many_faces(shape))
+  if (count_faces(shape, MANY + 1) <= MANY)
     return XSAlgo_AlgoContainer::ProcessShape(shape, precision, most, resource,
                                               sequence, info, progress,
                                               non_manifold);
@@ -69,6 +60,15 @@ TopoDS_Shape Mending::ProcessShape(const TopoDS_Shape &shape,
 }
 
 }  // namespace
+
+size_t count_faces(const TopoDS_Shape &shape, size_t most)
+{
+  size_t n = 0;
+
+  for (TopExp_Explorer e(shape, TopAbs_FACE); e.More() && n < most; e.Next())
+    n++;
+  return n;
+}
 
 void mend_large_shells()
 {

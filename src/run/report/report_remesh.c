@@ -106,10 +106,10 @@ static json_t *back_json(const struct vg_put_back *b)
 static json_t *closed_json(const struct vg_remesh_report *r)
 {
   if (!r->n_closed && !r->n_left) return json_null();
-  return json_pack("{s:I s:I s:f s:f s:[fff]}", "number", (json_int_t)r->n_closed,
-    "left", (json_int_t)r->n_left,
-    "length", r->closed_length, "width", r->closed_width, "at",
-    r->closed_at[0], r->closed_at[1], r->closed_at[2]);
+  return json_pack("{s:I s:I s:f s:f s:[fff]}",
+    "number", (json_int_t)r->n_closed, "left", (json_int_t)r->n_left,
+    "length", r->closed_length, "width", r->closed_width,
+    "at", r->closed_at[0], r->closed_at[1], r->closed_at[2]);
 }
 
 static json_t *patches_json(const struct vg_renewal *n,
