@@ -353,13 +353,13 @@ const struct hostile hostile_shapes[] = {
   { .file = "tiny.tri", .phrase = "degenerate", .make = make_tiny },
   { .file = "inside_out.tri", .phrase = "turned", .verdict = MENDED,
     .make = make_inside_out },
-  { .file = "all_inward.tri", .phrase = "turned", .verdict = MENDED,
+  { .file = "all_inward.tri", .phrase = "--flow internal", .verdict = REFUSED,
     .make = make_all_inward },
   { .file = "turned.tri", .phrase = "turned", .verdict = MENDED,
     .make = make_turned },
   { .file = "doubled.tri", .phrase = "removed", .verdict = MENDED,
     .make = make_doubled },
-  { .file = "unused.tri", .phrase = "removed", .verdict = MENDED,
+  { .file = "unused.tri", .phrase = "accepts", .verdict = MENDED,
     .make = make_unused },
   { 0 }
 };

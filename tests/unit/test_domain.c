@@ -273,7 +273,7 @@ static vg_status completed(int axis, double deep, double rim, double at,
   double cut;
   int half;
 
-  assert_int_equal(vg_domain_half(&m, &half, &cut, &err), VG_OK);
+  assert_int_equal(vg_domain_half(&m, 0, &half, &cut, &err), VG_OK);
   far.symmetry = symmetry;
   st = vg_domain_complete(&m, &far, s, NULL, &err);
   if (st < 0) assert_non_null(strstr(err.text, "a hole"));
@@ -368,7 +368,18 @@ static void closes_holes_but_not_half_bodies(void **state)
   assert_int_equal(close_holes(&m, 0, &n), VG_OK);
   assert_int_equal(n, 2);
   check_closed(&m);
+  assert_int_equal(m.n_patch, 3);
+  assert_string_equal(m.patch[1].name, "cap_1");
+  assert_string_equal(m.patch[2].name, "cap_2");
+  assert_int_equal(m.patch[2].bc, VG_BC_NONE);
   assert_true(-volume(&m) > 0.95 * whole && -volume(&m) < whole);
+  vg_mesh_release(&m);
+  m = ball(-1, 0.1);                 /* open at both ends: no half model */
+  cut_end(&m, 1, 1, 0.3);
+  cut_end(&m, 1, -1, -0.3);
+  assert_int_equal(close_holes(&m, 0, &n), VG_OK);
+  assert_int_equal(n, 2);
+  check_closed(&m);
   vg_mesh_release(&m);
   m = ball(5, 0.1);
   cut_end(&m, 2, 1, 0.95);
@@ -457,10 +468,31 @@ static void refuses(struct vg_mesh m, const struct vg_farfield *far,
   vg_mesh_release(&m);
 }
 
+/* Without a farfield the surface is a half domain. */
+static void adds_a_symmetry_plane_alone(void **state)
+{
+  struct vg_farfield none = VG_FARFIELD_INIT;
+  struct vg_mesh m = ball(2, 0.3);
+  struct vg_sizing *s = field(&m, 1.2);
+  struct vg_domain_report r;
+  struct vg_error err = VG_ERROR_INIT;
+
+  (void)state;
+  none.kind = VG_FARFIELD_NONE;
+  none.symmetry = 1;
+  assert_int_equal(vg_domain_complete(&m, &none, s, &r, &err), VG_OK);
+  assert_true(r.added_symmetry && !r.added_farfield);
+  assert_int_equal(m.n_patch, 2);
+  assert_string_equal(m.patch[1].name, "symmetry");
+  check_closed(&m);
+  vg_sizing_free(s);
+  vg_mesh_release(&m);
+}
+
 static void refuses_bodies_it_cannot_complete(void **state)
 {
   struct vg_farfield far = VG_FARFIELD_INIT, small = VG_FARFIELD_INIT,
-                     none = VG_FARFIELD_INIT, nowhere = VG_FARFIELD_INIT;
+                     nowhere = VG_FARFIELD_INIT;
   struct vg_mesh m = ball(-1, 0.3);
 
   (void)state;
@@ -471,8 +503,6 @@ static void refuses_bodies_it_cannot_complete(void **state)
   small.kind = VG_FARFIELD_BOX;
   small.size = 0.9;
   refuses(ball(3, 0.3), &small, VG_ERR_GEOMETRY, "inside the farfield");
-  none.kind = VG_FARFIELD_NONE;
-  refuses(ball(2, 0.3), &none, VG_ERR_GEOMETRY, "open along y = 0");
   nowhere.lengths = NAN;
   refuses(ball(-1, 0.3), &nowhere, VG_ERR_INPUT, "positive");
   m = ball(-1, 0.3);
@@ -746,6 +776,7 @@ int main(void)
     cmocka_unit_test(a_hole_is_no_symmetry_plane),
     cmocka_unit_test(closes_holes_but_not_half_bodies),
     cmocka_unit_test(takes_several_bodies),
+    cmocka_unit_test(adds_a_symmetry_plane_alone),
     cmocka_unit_test(refuses_bodies_it_cannot_complete),
     cmocka_unit_test(marches_curves_as_vgrid_does),
     cmocka_unit_test(meshes_a_project_of_planes),

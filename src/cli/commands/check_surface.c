@@ -7,28 +7,27 @@
 #include "io/mesh/format.h"
 #include "io/mesh/vtu.h"
 #include "run/common/text.h"
+#include "run/input/layers.h"
 #include "run/report/report.h"
 
-/* What is found out. */
 struct findings {
-  struct vg_surface_report r;
-  int external, is_half;
-  int has_lines;            /* lines, of a surface without other defects */
+  int has_lines;            /* 1: the surface has no defects that keep its lines
+                               from being followed */
   struct vg_remesh_report lines;
-  struct vg_mesh other;     /* of `against` */
-  struct vg_remesh_distance off[2];  /* from it, it from this */
-  double *face;             /* [n_tri] of the first, or NULL */
+  struct vg_mesh other;     /* the surface to compare with */
+  struct vg_remesh_distance off[2];  /* this surface from the other, and the
+                               other from this one */
+  double *face;             /* [n_tri] distance of each triangle; or NULL */
 };
 
 static void release(struct findings *f)
 {
-  vg_surface_report_release(&f->r);
   vg_remesh_report_release(&f->lines);
   vg_mesh_release(&f->other);
   free(f->face);
 }
 
-/* Its lines can be followed: no edge has three faces. */
+/* Lines can be followed where no edge has three faces. */
 static int can_be_followed(const struct vg_mesh *m,
                            const struct vg_surface_report *r)
 {
@@ -36,21 +35,21 @@ static int can_be_followed(const struct vg_mesh *m,
          r->count[VG_DEFECT_OPEN_EDGE] == r->n_defect;
 }
 
-/* A surface may be sound and yet beyond what can be asked for on it. */
-static vg_status look_at_lines(const struct vg_settings *s,
-                               const struct vg_mesh *m, struct findings *f,
-                               struct vg_notes *notes, struct vg_error *err)
+/* A surface may be sound and yet beyond what the remesher can be asked for. */
+static vg_status look_at_lines(struct vg_problem *p, struct findings *f,
+                               struct vg_error *err)
 {
-  struct vg_remesh_options o = vg_remesh_options_of(s);
+  struct vg_remesh_options o = vg_remesh_options_of(&p->settings);
   struct vg_error why = VG_ERROR_INIT;
   vg_status st;
 
-  if (!can_be_followed(m, &f->r)) return VG_OK;
+  if (!can_be_followed(&p->surface, &p->check)) return VG_OK;
   o.threads = 0;
-  st = vg_remesh_judge(m, &o, &f->lines, &why);
+  st = vg_remesh_judge(&p->surface, &o, &f->lines, &why);
   f->has_lines = st >= 0;
   if (st == VG_ERR_MEMORY) return vg_fail_memory(err, "the lines");
-  if (st < 0) vg_note(notes, "lines were not looked at: %s", why.text);
+  if (st < 0)
+    vg_note(&p->notes, "feature lines were not examined: %s", why.text);
   return VG_OK;
 }
 
@@ -128,72 +127,115 @@ static json_t *notes_json(const struct vg_notes *notes)
   return list;
 }
 
-static void print_json(const struct vg_check_surface *a,
-                       const struct vg_mesh *m, const struct findings *f,
-                       const struct vg_notes *notes)
+/* Whether vanguard mesh adds a farfield to a surface like this. */
+static int adds_farfield(const struct vg_problem *p)
 {
-  json_t *o = json_pack("{s:o s:b s:s s:o s:o s:o s:o s:o s:o}", "file",
-    vg_text_json(a->file), "ok", f->is_half || !f->r.n_defect, "taken_as",
-    f->is_half ? "half" : f->external ? "bodies" : "domain", "size",
-    vg_report_size_json(m), "patches", vg_report_patches_json(m), "notes",
-    notes_json(notes), "surface",
-    vg_report_surface_json(m, &f->r, VG_SHOWN_DEFECTS), "lines",
+  return p->flow.kind == VG_FLOW_EXTERNAL
+         && p->settings.farfield.kind != VG_DOMAIN_NONE;
+}
+
+static void print_json(const struct vg_check_surface *a,
+                       const struct vg_problem *p, const struct findings *f,
+                       const json_t *body, vg_status st,
+                       const struct vg_error *err)
+{
+  json_t *o = json_pack("{s:o s:b s:o s:O s:o s:o s:o s:o}", "file",
+    vg_text_json(a->file), "ok", st >= 0, "flow",
+    vg_report_flow_json(&p->flow, adds_farfield(p)), "surface", body, "remesh",
+    vg_report_remesh_json(&p->renewal, &p->surface), "notes",
+    notes_json(&p->notes), "lines",
     f->has_lines ? vg_report_lines_json(&f->lines, a->has_deck) : json_null(),
     "against", a->against ? vg_report_distances_json(a->against, f->off)
                           : json_null());
 
+  if (st < 0) json_object_set_new(o, "error", vg_text_json(err->text));
+  json_object_set_new(o, "patches", vg_report_patches_json(&p->surface));
+  json_object_set_new(o, "size", vg_report_size_json(&p->surface));
   json_dumpf(o, stdout, JSON_INDENT(2));
   printf("\n");
   json_decref(o);
 }
 
 static vg_status print_text(const struct vg_check_surface *a,
-                            const struct vg_mesh *m, const struct findings *f,
-                            const struct vg_notes *notes, struct vg_error *err)
+                            const struct vg_problem *p,
+                            const struct findings *f, struct vg_error *err)
 {
   vg_status st;
 
-  printf("%s: surface, %s\n", a->file,
-         f->is_half ? "taken as half of bodies in a fluid around them"
-         : f->external ? "taken as bodies in a fluid around them"
-         : "taken as the boundary of a fluid inside it");
-  vg_report_size_text(stdout, m);
-  VG_TRY(vg_report_patches_text(stdout, m, err));
-  vg_report_surface_text(stdout, m, &f->r,
-                         f->is_half ? 0 : VG_SHOWN_DEFECTS);
+  printf("%s: surface\n\n", a->file);
+  vg_report_flow_text(stdout, &p->flow, adds_farfield(p));
+  for (size_t i = 0; i < p->notes.n; i++)
+    printf("  note: %s\n", p->notes.text[i]);
+  printf("\nSurface\n");
+  vg_report_size_text(stdout, &p->surface);
+  VG_TRY(vg_report_patches_text(stdout, &p->surface, err));
+  vg_report_remesh_text(stdout, &p->renewal);
+  vg_report_surface_text(stdout, &p->surface, &p->check, VG_SHOWN_DEFECTS);
   if (f->has_lines) vg_report_lines_text(stdout, &f->lines, a->has_deck);
   if (a->against) vg_report_distances_text(stdout, a->against, f->off);
-  for (size_t i = 0; i < notes->n; i++)
-    printf("  note: %s\n", notes->text[i]);
-  if (!f->r.n_defect) printf("  no defects\n");
+  if (!p->check.n_defect) printf("  no defects\n");
 done:
   return st;
 }
 
-vg_status vg_check_surface(const struct vg_check_surface *a,
-                           const struct vg_settings *s, struct vg_mesh *m,
-                           struct vg_notes *notes, struct vg_error *err)
+/* What was found on the surface itself, before the domain is completed. */
+static vg_status examine(const struct vg_check_surface *a,
+                         struct vg_problem *p, struct findings *f,
+                         struct vg_display *show, struct vg_error *err)
 {
-  struct vg_surface_check_options o = VG_SURFACE_CHECK_OPTIONS_INIT;
-  struct findings f = { .external = -1 };
   vg_status st;
 
-  o.require_bc = vg_surface_has_conditions(m);
-  VG_TRY(vg_surface_examine(m, &o, &f.external, &f.r, notes, err));
-  if (f.external) VG_TRY(vg_surface_half(m, &f.r, notes, &f.is_half, err));
-  VG_TRY(look_at_lines(s, m, &f, notes, err));
-  VG_TRY(compare(a, m, &f, err));
-  if (a->json) print_json(a, m, &f, notes);
-  else VG_TRY(print_text(a, m, &f, notes, err));
-  VG_TRY(write_defects(a, m, &f.r, err));
-  VG_TRY(write_vtu(a, m, &f, err));
-  if (f.r.n_defect && !f.is_half)
-    st = vg_fail(err, VG_ERR_GEOMETRY, "%s: the surface has %zu defects",
-                 a->file, f.r.n_defect);
-  else if (!m->n_tri)
-    st = vg_fail(err, VG_ERR_GEOMETRY, "%s: no surface is left: all its "
-                 "triangles are degenerate", a->file);
+  VG_TRY(look_at_lines(p, f, err));
+  VG_TRY(compare(a, &p->surface, f, err));
+  vg_display_clear(show);
+  if (!a->json) VG_TRY(print_text(a, p, f, err));
+  VG_TRY(write_defects(a, &p->surface, &p->check, err));
+  VG_TRY(write_vtu(a, &p->surface, f, err));
 done:
+  return st;
+}
+
+/* The rest of the path, as vanguard mesh takes it before it makes cells. */
+static vg_status finish(struct vg_problem *p, struct vg_display *show,
+                        struct vg_error *err)
+{
+  struct vg_layer_stage layers = { 0 };
+  vg_status st;
+
+  VG_TRY(vg_problem_close(p, show, err));
+  st = vg_layer_stage_plan(&layers, p, err);
+done:
+  vg_layer_stage_release(&layers);
+  return st;
+}
+
+vg_status vg_check_surface(const struct vg_check_surface *a,
+                           struct vg_problem *p, struct vg_display *show,
+                           struct vg_error *err)
+{
+  struct vg_error why = VG_ERROR_INIT;
+  struct findings f = { 0 };
+  json_t *body = NULL;
+  size_t n_note;
+  vg_status st = vg_problem_shape(p, show, &why), shape = st;
+
+  if (st < 0 && !p->check.face_kinds) {
+    st = vg_fail(err, st, "%s", why.text);
+    goto done;
+  }
+  VG_TRY(examine(a, p, &f, show, err));
+  body = vg_report_surface_json(&p->surface, &p->check, VG_SHOWN_DEFECTS);
+  n_note = p->notes.n;
+  if (shape >= 0) shape = finish(p, show, &why);
+  vg_display_clear(show);
+  if (a->json) print_json(a, p, &f, body, shape, &why);
+  else
+    for (size_t i = n_note; i < p->notes.n; i++)
+      printf("  note: %s\n", p->notes.text[i]);
+  if (shape < 0) st = vg_fail(err, shape, "%s", why.text);
+  else if (!a->json) printf("  vanguard mesh accepts this surface\n");
+done:
+  json_decref(body);
   release(&f);
   return st;
 }

@@ -14,9 +14,13 @@ struct vg_check_surface {
   int has_deck;             /* settings are a deck's, sizes are asked for */
 };
 
-/** Judge and print. VG_ERR_GEOMETRY when there are defects. */
+/** Take the path of vanguard mesh up to the closed boundary of the fluid, and
+ * print what that would do: flow domain, patches, repairs, remeshing, layers,
+ * defects. The status is that of the path: the message says why vanguard mesh
+ * would refuse the surface.
+ * @param p  files and settings; the surface is read here, if it is not */
 vg_status vg_check_surface(const struct vg_check_surface *a,
-                           const struct vg_settings *s, struct vg_mesh *m,
-                           struct vg_notes *notes, struct vg_error *err);
+                           struct vg_problem *p, struct vg_display *show,
+                           struct vg_error *err);
 
 #endif

@@ -1,8 +1,10 @@
 /* vanguard check: is this surface fit for meshing, is this mesh valid and how
  * good is it? */
 #define _GNU_SOURCE
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "cli/commands/check_surface.h"
 #include "cli/commands/commands.h"
@@ -13,11 +15,11 @@
 #include "run/common/text.h"
 #include "run/input/input.h"
 #include "run/report/report.h"
-#include "run/settings/deck.h"
 
 struct arguments {
   struct vg_cli_one one;
   const char *deck, *defects, *against, *vtu;
+  struct vg_cli_overrides kept;
 };
 
 static error_t option(int key, char *arg, struct argp_state *state)
@@ -29,8 +31,10 @@ static error_t option(int key, char *arg, struct argp_state *state)
   case 'f': a->defects = arg; return 0;
   case 'a': a->against = arg; return 0;
   case 'v': a->vtu = arg; return 0;
-  default: return vg_cli_one(&a->one, "file", key, arg, state);
+  default: break;
   }
+  if (!vg_cli_one(&a->one, "file", key, arg, state)) return 0;
+  return vg_cli_add_override(&a->kept, key, arg, state);
 }
 
 /* Spacing that edges are held against: that of the deck. */
@@ -106,65 +110,89 @@ done:
   return st;
 }
 
+/* A volume mesh, as read. */
+static vg_status check_volume(const struct arguments *a, struct vg_problem *p,
+                              struct vg_display *show, struct vg_error *err)
+{
+  struct vg_mesh m = VG_MESH_INIT;
+  struct vg_read_info info = { .format = NULL };
+  vg_status st;
+
+  VG_TRY(vg_mesh_read(a->one.file, &m, &info, err));
+  vg_display_clear(show);
+  st = check_mesh(a, &p->settings, &m, &info.turned, err);
+done:
+  vg_mesh_release(&m);
+  return st;
+}
+
 static vg_status check(const struct arguments *a, struct vg_error *err)
 {
-  struct vg_settings s;
+  struct vg_problem p = VG_PROBLEM_INIT;
   struct vg_display show;
-  struct vg_notes notes = { 0 };
-  struct vg_mesh m = VG_MESH_INIT;
-  struct vg_cad_options cad;
-  struct vg_read_info info = { .cad = &cad };
   const struct vg_check_surface surface = {
     a->one.file, a->defects, a->against, a->vtu, a->one.json,
     a->deck != NULL };
-  vg_status st = VG_OK;
+  vg_status st;
 
   vg_display_init(&show, a->one.quiet);
   vg_display_end_at_once(1);
   vg_display_update(&show, "read", 0, 0);
-  vg_settings_default(&s);
-  if (a->deck) VG_TRY(vg_deck_read(a->deck, &s, err));
-  cad = vg_cad_options_of(&s, 0, &notes);
-  VG_TRY(vg_mesh_read(a->one.file, &m, &info, err));
-  vg_display_update(&show, "check", 0, 0);
-  vg_display_clear(&show);
-  st = m.n_tet + m.n_pyr + m.n_pri + m.n_hex
-         ? check_mesh(a, &s, &m, &info.turned, err)
-         : vg_check_surface(&surface, &s, &m, &notes, err);
+  if (access(a->one.file, F_OK))
+    VG_TRY(vg_fail(err, VG_ERR_IO, "%s: %s", a->one.file, strerror(errno)));
+  VG_TRY(vg_input_find(a->one.file, a->deck, &p.files, err));
+  VG_TRY(vg_problem_deck(&p, err));
+  VG_TRY(vg_cli_apply(&a->kept, &p.settings, err));
+  p.threads = (int)p.settings.threads;
+  if (vg_format_holds_cells(a->one.file)) {
+    st = check_volume(a, &p, &show, err);
+    goto done;
+  }
+  VG_TRY(vg_problem_surface(&p, &show, err));
+  st = p.has_cells ? check_volume(a, &p, &show, err)
+                   : vg_check_surface(&surface, &p, &show, err);
 done:
   vg_display_clear(&show);
-  vg_notes_release(&notes);
-  vg_mesh_release(&m);
-  vg_settings_release(&s);
+  vg_problem_release(&p);
   return st;
 }
 
 int vg_cmd_check(int argc, char **argv)
 {
-  const struct argp_option options[] = {
-    { "deck", 'd', "FILE", 0, "hold edges against the sizes of this deck (of "
-      "a run: PROJECT.resolved.deck), those of a surface also against what its "
-      "shape asks for; read CAD as it says", 0 },
+  const struct argp_option own[] = {
+    { "deck", 'd', "FILE", 0, "settings, patches and sources [default STEM.deck "
+      "where that exists]; the edges of a mesh, and of a surface, are compared "
+      "with the sizes of a deck that is given", 1 },
     { "defects", 'f', "FILE", 0, "write all faces with a defect to this .vtu "
-      "file", 0 },
+      "file", 1 },
     { "against", 'a', "FILE", 0, "measure how far a surface is from this one, "
-      "and this one from it", 0 },
+      "and this one from it", 1 },
     { "vtu", 'v', "FILE", 0, "write the triangles of a surface with angles, "
-      "2 r/R and distance to this .vtu file", 0 },
-    { "json", 'j', NULL, 0, "report as JSON", 0 },
-    { "quiet", 'q', NULL, 0, "no progress", 0 },
+      "2 r/R and distance to this .vtu file", 1 },
+    { "json", 'j', NULL, 0, "report as JSON", 1 },
+    { "quiet", 'q', NULL, 0, "no progress", 1 },
     { 0 }
   };
-  const struct argp argp = { .options = options, .parser = option,
-    .args_doc = "FILE",
-    .doc = "Judge FILE: a volume mesh (validity, dihedral angles, radius "
-      "ratio, histograms, worst cells) or a surface (open and non-manifold "
-      "edges, orientation, duplicates, intersections, shells, conditions; "
-      "angles, 2 r/R, ridges).\v"
-      "Exit status 0 when nothing is wrong, 1 otherwise." };
+  struct vg_cli_options options;
+  struct argp argp = { .parser = option, .args_doc = "FILE",
+    .doc = "Judge FILE. A volume mesh: validity, dihedral angles, radius "
+      "ratio, histograms, worst cells. A surface: what 'vanguard mesh' with the "
+      "same options would do with it: flow domain, patches, repairs, "
+      "remeshing, and every defect for which it would be refused.\v"
+      "Exit status 0 when the mesh is valid or the surface accepted, 1 "
+      "otherwise." };
   struct arguments a = { 0 };
   struct vg_error err = VG_ERROR_INIT;
+  vg_status st;
 
+  if (vg_cli_options(own, &options) < 0) {
+    vg_fail_memory(&err, "the options");
+    return vg_cli_fail(&err);
+  }
+  argp.options = options.option;
   vg_cli_parse(&argp, argc, argv, &a);
-  return check(&a, &err) < 0 ? vg_cli_fail(&err) : VG_EXIT_DONE;
+  st = check(&a, &err);
+  vg_cli_options_free(&options);
+  free(a.kept.set);
+  return st < 0 ? vg_cli_fail(&err) : VG_EXIT_DONE;
 }

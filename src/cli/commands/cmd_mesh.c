@@ -234,6 +234,8 @@ static json_t *report_json(const struct run *r, int ok,
   json_object_set_new(o, "title", vg_text_json(p->settings.title));
   json_object_set_new(o, "ok", json_boolean(ok));
   if (!ok) json_object_set_new(o, "error", vg_text_json(err->text));
+  json_object_set_new(o, "flow", vg_report_flow_json(&p->flow,
+                                                     p->domain.added_farfield));
   json_object_set_new(o, "input", vg_report_size_json(&p->surface));
   json_object_set_new(o, "patches", vg_report_patches_json(&p->surface));
   json_object_set_new(o, "surface", vg_report_surface_json(&p->surface,
@@ -399,7 +401,11 @@ static void print_surface(FILE *to, const struct run *r)
 {
   const struct vg_problem *p = &r->problem;
 
-  fprintf(to, "%s\n\nSurface\n", p->settings.title);
+  fprintf(to, "%s\n\n", p->settings.title);
+  vg_report_flow_text(to, &p->flow, p->domain.added_farfield);
+  for (size_t i = 0; i < p->notes.n; i++)
+    fprintf(to, "  note: %s\n", p->notes.text[i]);
+  fprintf(to, "\nSurface\n");
   vg_report_size_text(to, &p->surface);
   if (p->n_welded || p->n_dropped)
     fprintf(to, "  welded: %zu points merged, %zu triangles dropped\n",
@@ -407,8 +413,6 @@ static void print_surface(FILE *to, const struct run *r)
   vg_report_remesh_text(to, &p->renewal);
   vg_report_domain_text(to, &p->domain);
   vg_report_surface_text(to, &p->surface, &p->check, VG_SHOWN_DEFECTS);
-  for (size_t i = 0; i < p->notes.n; i++)
-    fprintf(to, "  note: %s\n", p->notes.text[i]);
 }
 
 static void print_count(FILE *to, const char *name, size_t n)

@@ -80,7 +80,7 @@ static vg_status refuse_hole(const struct domain *d, struct vg_error *err)
   return vg_fail(err, VG_ERR_GEOMETRY, "the surface has a hole: %zu open edges "
                  "around (%.9g, %.9g, %.9g), %.4g wide, in a body %.4g long; "
                  "close it (close_holes yes). Should the body be half of a "
-                 "symmetric one, cut at %c = %.9g, say so (symmetry yes)",
+                 "symmetric one, cut at %c = %.9g, say so (half yes)",
                  d->open.n, centre[0], centre[1], centre[2], width, d->length,
                  "xyz"[d->axis], d->at);
 }
@@ -313,10 +313,9 @@ static vg_status build(struct domain *d, struct vg_error *err)
   VG_TRY(vg_open_edges(&d->m, &d->open, err));
   VG_TRY(find_symmetry(d, err));
   if (d->farfield->kind == VG_FARFIELD_NONE) {
-    if (d->axis >= 0)
-      st = vg_fail(err, VG_ERR_GEOMETRY, "the surface is open along %c = %.9g "
-                   "(%zu edges) and no farfield is asked for; choose farfield "
-                   "sphere or box", "xyz"[d->axis], d->at, d->open.n);
+    /* The outer boundary is given, and open along the symmetry plane too. */
+    d->radius = d->length;
+    if (d->axis >= 0) VG_TRY(add_symmetry(d, &border, err));
     goto done;
   }
   VG_TRY(check_orientation(d, err));
@@ -331,8 +330,8 @@ done:
   return st;
 }
 
-vg_status vg_domain_half(const struct vg_mesh *surface, int *axis, double *at,
-                         struct vg_error *err)
+vg_status vg_domain_half(const struct vg_mesh *surface, int symmetry,
+                         int *axis, double *at, struct vg_error *err)
 {
   struct domain d = { .m = *surface };
   vg_status st;
@@ -341,8 +340,11 @@ vg_status vg_domain_half(const struct vg_mesh *surface, int *axis, double *at,
   VG_TRY(vg_open_edges(&d.m, &d.open, err));
   find_plane(&d);
   *at = d.at;
-  *axis = d.axis >= 0 && vg_is_symmetry(&d.m, &d.open, d.axis, d.at) ? d.axis
-                                                                     : -1;
+  *axis = d.axis;
+  if (symmetry < 0
+      || (!symmetry && d.axis >= 0
+          && !vg_is_symmetry(&d.m, &d.open, d.axis, d.at)))
+    *axis = -1;
 done:
   vg_border_release(&d.open);
   return st;

@@ -1,6 +1,7 @@
-/* Outline: open edges into loops; those where a half body was cut stay; the
- * others are closed by plane patches on their rims. */
+/* Outline: open edges are joined to rims; those where a half model was cut stay
+ * open; each of the others is closed by a plane patch of its own. */
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 #include "base/memory.h"
@@ -15,9 +16,9 @@ struct holes {
   struct vg_mesh m;
   struct vg_border open;
   uint32_t *next;            /* [n_point] along the rim, or UINT32_MAX */
-  uint32_t *loop;            /* [n_point] number of its loop */
+  uint32_t *loop;            /* [n_point] number of its rim */
   uint32_t n_loop;
-  struct rim { uint32_t first, patch; double longest; int stays; } *rim;
+  struct rim { uint32_t first; int stays; } *rim;
   double lo[3], hi[3], tolerance;
 };
 
@@ -45,23 +46,6 @@ static vg_status follow_rims(struct holes *h, struct vg_error *err)
   return VG_OK;
 }
 
-/* A hole belongs to the patch at the longest edge of its rim. */
-static void find_patches(struct holes *h)
-{
-  for (size_t i = 0; i < 3 * h->m.n_tri; i++) {
-    uint32_t a = h->m.tri[i / 3][i % 3], b = h->m.tri[i / 3][(i + 1) % 3];
-    struct rim *r;
-    double l;
-
-    if (h->next[b] != a) continue;
-    r = &h->rim[h->loop[b]];
-    l = vg_distance(h->m.point[a], h->m.point[b]);
-    if (!(l > r->longest)) continue;
-    r->longest = l;
-    r->patch = h->m.tri_patch[i / 3];
-  }
-}
-
 static int is_in_plane(const struct holes *h, uint32_t k, int axis, double at)
 {
   uint32_t p = h->rim[k].first;
@@ -86,32 +70,65 @@ static vg_status list_edges(const struct holes *h, uint32_t k,
   return st;
 }
 
-/* Rims at one end of the body that are together where it was cut. */
-static vg_status keep_symmetry(struct holes *h, int symmetry,
-                               struct vg_error *err)
+/* Whether the rims in a plane are those of a half model. */
+static vg_status is_cut(const struct holes *h, int symmetry, int axis,
+                        double at, int *cut, struct vg_error *err)
 {
   struct vg_border some = VG_BORDER_INIT;
-  int found = 0;
   vg_status st = VG_OK;
 
-  for (int end = 0; end < 6 && symmetry >= 0 && !found; end++) {
-    int axis = (end / 2 + 1) % 3;      /* y first: the usual one */
-    double at = end % 2 ? h->hi[axis] : h->lo[axis];
-
-    some.n = 0;
-    for (uint32_t k = 0; k < h->n_loop; k++)
-      if (is_in_plane(h, k, axis, at)) VG_TRY(list_edges(h, k, &some, err));
-    found = some.n &&
-            (symmetry > 0 || vg_is_symmetry(&h->m, &some, axis, at));
-    for (uint32_t k = 0; found && k < h->n_loop; k++)
-      h->rim[k].stays = is_in_plane(h, k, axis, at);
-  }
+  for (uint32_t k = 0; k < h->n_loop; k++)
+    if (is_in_plane(h, k, axis, at)) VG_TRY(list_edges(h, k, &some, err));
+  *cut = some.n
+         && (symmetry > 0 || vg_is_symmetry(&h->m, &some, axis, at));
 done:
   vg_border_release(&some);
   return st;
 }
 
-static vg_status close_rim(struct holes *h, uint32_t k,
+/* A shaft or a wing section that is open at both ends is no half model. */
+static vg_status keep_symmetry(struct holes *h, int symmetry,
+                               struct vg_error *err)
+{
+  int found = 0;
+  vg_status st = VG_OK;
+
+  for (int i = 0; i < 3 && symmetry >= 0 && !found; i++) {
+    const int axis = (i + 1) % 3;      /* y first: the usual one */
+    int lo, hi;
+
+    VG_TRY(is_cut(h, symmetry, axis, h->lo[axis], &lo, err));
+    VG_TRY(is_cut(h, symmetry, axis, h->hi[axis], &hi, err));
+    found = lo != hi;
+    for (uint32_t k = 0; found && k < h->n_loop; k++)
+      h->rim[k].stays = is_in_plane(h, k, axis, lo ? h->lo[axis]
+                                                   : h->hi[axis]);
+  }
+done:
+  return st;
+}
+
+/* The patch of the n-th cap, with the lowest id above all others. */
+static vg_status add_cap(struct holes *h, size_t n, uint32_t *patch,
+                         struct vg_error *err)
+{
+  char name[VG_NAME_MAX];
+  int32_t id = 0;
+  size_t at;
+
+  for (size_t i = 0; i < h->m.n_patch; i++)
+    if (h->m.patch[i].id > id) id = h->m.patch[i].id;
+  if (id == INT32_MAX)
+    return vg_fail(err, VG_ERR_UNSUPPORTED, "no patch number is left for a "
+                   "cap; renumber the patches");
+  snprintf(name, sizeof name, "cap_%zu", n);
+  at = vg_mesh_add_patch(&h->m, id + 1, name);
+  if (at == SIZE_MAX) return vg_fail_memory(err, "a patch");
+  *patch = (uint32_t)at;
+  return VG_OK;
+}
+
+static vg_status close_rim(struct holes *h, uint32_t k, uint32_t patch,
                            const struct vg_size_law *law, struct vg_error *err)
 {
   struct vg_border rim = VG_BORDER_INIT;
@@ -121,7 +138,7 @@ static vg_status close_rim(struct holes *h, uint32_t k,
 
   VG_TRY(list_edges(h, k, &rim, err));
   st = vg_planar_patch_near(&h->m, rim.n, (const uint32_t (*)[2])rim.edge,
-                            law, HOLE_FLATNESS, h->rim[k].patch, &inner);
+                            law, HOLE_FLATNESS, patch, &inner);
   if (st < 0)
     st = vg_fail(err, st, "the hole at (%.9g, %.9g, %.9g), of %zu edges, "
                  "cannot be closed: %s", x[0], x[1], x[2], rim.n, inner.text);
@@ -130,7 +147,7 @@ done:
   return st;
 }
 
-static vg_status prepare(struct holes *h, int symmetry, struct vg_error *err)
+static vg_status prepare(struct holes *h, struct vg_error *err)
 {
   double length = 0;
   vg_status st;
@@ -145,10 +162,17 @@ static vg_status prepare(struct holes *h, int symmetry, struct vg_error *err)
   if (!h->next || !h->loop || !h->rim)
     return vg_fail_memory(err, "the holes of the surface");
   VG_TRY(follow_rims(h, err));
-  find_patches(h);
-  st = keep_symmetry(h, symmetry, err);
 done:
   return st;
+}
+
+static void release(struct holes *h)
+{
+  vg_mesh_release(&h->m);
+  vg_border_release(&h->open);
+  free(h->next);
+  free(h->loop);
+  free(h->rim);
 }
 
 vg_status vg_domain_close_holes(struct vg_mesh *surface, int symmetry,
@@ -158,23 +182,61 @@ vg_status vg_domain_close_holes(struct vg_mesh *surface, int symmetry,
 {
   struct holes h = { .n_loop = 0 };
   const struct vg_size_law law = vg_size_law_of(sizing);
+  uint32_t patch = 0;
   vg_status st;
 
   *n_hole = *n_tri = 0;
   VG_TRY(vg_mesh_copy(&h.m, surface, err));
-  VG_TRY(prepare(&h, symmetry, err));
+  VG_TRY(prepare(&h, err));
+  VG_TRY(keep_symmetry(&h, symmetry, err));
   for (uint32_t k = 0; k < h.n_loop; k++) {
     if (h.rim[k].stays) continue;
-    VG_TRY(close_rim(&h, k, &law, err));
-    ++*n_hole;
+    VG_TRY(add_cap(&h, ++*n_hole, &patch, err));
+    VG_TRY(close_rim(&h, k, patch, &law, err));
   }
   *n_tri = h.m.n_tri - surface->n_tri;
   vg_mesh_move(surface, &h.m);
 done:
-  vg_mesh_release(&h.m);
-  vg_border_release(&h.open);
-  free(h.next);
-  free(h.loop);
-  free(h.rim);
+  release(&h);
+  return st;
+}
+
+static struct vg_rim measure_rim(const struct holes *h, uint32_t k)
+{
+  double lo[3] = { INFINITY, INFINITY, INFINITY };
+  double hi[3] = { -INFINITY, -INFINITY, -INFINITY };
+  struct vg_rim r = { .axis = -1 };
+  uint32_t p = h->rim[k].first;
+
+  do {
+    for (int d = 0; d < 3; d++) {
+      lo[d] = fmin(lo[d], h->m.point[p][d]);
+      hi[d] = fmax(hi[d], h->m.point[p][d]);
+    }
+    r.n_edge++;
+    p = h->next[p];
+  } while (p != h->rim[k].first);
+  for (int d = 0; d < 3; d++) {
+    r.centre[d] = 0.5 * (lo[d] + hi[d]);
+    r.width = fmax(r.width, hi[d] - lo[d]);
+    if (hi[d] - lo[d] <= h->tolerance) r.axis = d;
+  }
+  return r;
+}
+
+vg_status vg_domain_rims(const struct vg_mesh *surface, size_t *n,
+                         struct vg_rim **rim, struct vg_error *err)
+{
+  struct holes h = { .m = *surface };
+  vg_status st;
+
+  VG_TRY(prepare(&h, err));
+  *rim = vg_alloc(h.n_loop, sizeof **rim);
+  if (!*rim) VG_TRY(vg_fail_memory(err, "the rims of the surface"));
+  for (uint32_t k = 0; k < h.n_loop; k++) (*rim)[k] = measure_rim(&h, k);
+  *n = h.n_loop;
+done:
+  h.m = (struct vg_mesh)VG_MESH_INIT;   /* borrowed */
+  release(&h);
   return st;
 }

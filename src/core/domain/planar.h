@@ -78,26 +78,45 @@ struct vg_domain_report {
   size_t n_added_tri;
 };
 
-/** Whether the surface is a half body as vg_domain_complete takes it, symmetry
- * left to it: its open edges are where it was cut at axis = *at. *axis out: -1
- * where it is none. Costs a sort of the edges. */
-vg_status vg_domain_half(const struct vg_mesh *surface, int *axis, double *at,
-                         struct vg_error *err);
+/** Whether the surface is a half model: all its open edges lie in a coordinate
+ * plane, x[*axis] = *at, at an end of it. Costs a sort of the edges.
+ *
+ * @param symmetry  as in vg_farfield: 0 also asks core/domain/symmetry.h whether
+ *                  half of a symmetric body was cut off there; 1: it was; -1:
+ *                  the answer is no
+ * @param axis      out: -1 where it is no half model */
+vg_status vg_domain_half(const struct vg_mesh *surface, int symmetry,
+                         int *axis, double *at, struct vg_error *err);
+
+/** A closed loop of open edges. */
+struct vg_rim {
+  size_t n_edge;
+  double centre[3];       /* of its bounding box */
+  double width;           /* longest side of that box */
+  int axis;               /* coordinate axis across which it is flat; -1 */
+};
+
+/** The rims of a surface, in the order of their first points; the caller frees
+ * *rim. VG_ERR_GEOMETRY where rims meet in a point: the message names it. */
+vg_status vg_domain_rims(const struct vg_mesh *surface, size_t *n,
+                         struct vg_rim **rim, struct vg_error *err);
 
 /** Close the holes of a surface with nearly plane rims (within 5 % of their
- * extent), triangulated to the sizes of the field; each goes to the patch at
- * the longest edge of its rim. Open edges where a half body was cut stay.
+ * extent), triangulated to the sizes of the field; each gets a patch of its own,
+ * cap_1, cap_2, ..., with the lowest free ids and no condition. The rims of a
+ * half model stay open: those in a coordinate plane at one end, unless there
+ * are such rims at the opposite end too.
  * VG_ERR_GEOMETRY, naming the hole, where rims meet or are not plane; surface
  * is then unchanged. What was closed may cross the surface: check it.
- * @param symmetry  as in vg_farfield: what is open in a plane at an end of the
- *                  body stays if it looks so (0), stays (1), is a hole (-1)
+ * @param symmetry  as in vg_domain_half
  * @param n_hole, n_tri  out: holes closed, triangles added */
 vg_status vg_domain_close_holes(struct vg_mesh *surface, int symmetry,
                                 const struct vg_sizing *sizing,
                                 size_t *n_hole, size_t *n_tri,
                                 struct vg_error *err);
 
-/** Complete a body to a closed fluid boundary.
+/** Complete a surface to a closed fluid boundary. Without a farfield only the
+ * symmetry plane of a half domain is added.
  *
  * A closed body gets a farfield around it; a half body (symmetry above) whose
  * open edges all lie in one coordinate plane gets that symmetry plane,

@@ -74,7 +74,9 @@ struct vg_surface_check_options {
                                    that a farfield will enclose: an outermost
                                    shell must have its normals outward (into
                                    the fluid). 0: outermost shells bound the
-                                   fluid from outside (normals inward). */
+                                   fluid from outside (normals inward). -1: not
+                                   known, the sides of shells are neither
+                                   judged nor changed */
   int threads;                  /* 0: one per core; the same result for any */
   struct vg_stop stop;
 };

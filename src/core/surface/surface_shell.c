@@ -353,8 +353,9 @@ vg_status vg_orient_shells(struct vg_shell *shell, uint8_t *state,
     st = vg_fail_memory(err, "the sides of the shells");
     goto done;
   }
-  external = external != 0;
   memset(turn, 0, n_shell);
+  if (external < 0) goto done;
+  external = external != 0;
   sort_by_depth(&x, shell, state, n_shell, at);
   judge(&x, shell, external);
   settle(&x, shell, state, external, repair, crossed, turn);

@@ -76,6 +76,7 @@ void vg_problem_release(struct vg_problem *p)
   else vg_mesh_release(&p->surface);
   free(p->heights.item);
   vg_surface_report_release(&p->check);
+  vg_flow_release(&p->flow);
   vg_renewal_release(&p->renewal);
   vg_cad_model_release(&p->model);
   vg_notes_release(&p->notes);
@@ -240,7 +241,14 @@ static void note_unused(struct vg_problem *p,
             (int)match->first_unused);
 }
 
-/* Conditions are taken from the .mapbc beside the file. */
+static enum vg_flow_side side_of(const char *format)
+{
+  if (!strncmp(format, "cogsg", 5)) return VG_SIDE_DEFINED;
+  return strstr(format, "ugrid") || !strncmp(format, "surf", 4)
+         ? VG_SIDE_USUAL : VG_SIDE_FREE;
+}
+
+/* Conditions are taken from the .mapbc next to the file. */
 static vg_status read_surface_file(struct vg_problem *p, struct vg_error *err)
 {
   const int is_renewed = vg_problem_is_renewed(p);
@@ -256,6 +264,8 @@ static vg_status read_surface_file(struct vg_problem *p, struct vg_error *err)
   /* the library's message says less */
   if (st < 0)
     return vg_display_stop(NULL) ? vg_display_stopped(NULL, err) : st;
+  p->has_cells = info.n_cell > 0;
+  p->side = side_of(info.format);
   if (info.n_cell)
     vg_note(&p->notes, "%s is a volume mesh: its boundary is meshed anew, its "
             "%zu cells are not used", path, info.n_cell);
@@ -341,8 +351,15 @@ static void set_condition(struct vg_patch *p, int32_t code, int axis)
   if (p->bc != before) p->family = p->bc;
 }
 
+int vg_problem_is_cap(const struct vg_problem *p, size_t i)
+{
+  return p->n_given_patch && i >= p->n_given_patch
+         && !strncmp(p->surface.patch[i].name, "cap_", 4);
+}
+
 /* The table wins over the .mapbc. */
-static vg_status apply_patch_table(struct vg_problem *p, struct vg_error *err)
+vg_status vg_problem_patch_table(struct vg_problem *p, int are_closed,
+                                 struct vg_error *err)
 {
   int *axis = vg_alloc(p->surface.n_patch, sizeof *axis);
   vg_status st = axis ? vg_patch_axes(&p->surface, axis, err)
@@ -353,6 +370,7 @@ static vg_status apply_patch_table(struct vg_problem *p, struct vg_error *err)
     size_t at = vg_mesh_find_patch(&p->surface, row->id);
     struct vg_patch *to = at == SIZE_MAX ? NULL : &p->surface.patch[at];
 
+    if (!to && p->settings.close_holes && !are_closed) continue;
     if (!to) {
       st = vg_fail(err, VG_ERR_INPUT, "patch table: patch %d is not in the "
                    "surface; 'vanguard deck' lists its patches",
@@ -443,6 +461,7 @@ static vg_status read_surface(struct vg_problem *p, struct vg_display *show,
   vg_status st;
 
   if (!*f->front && *f->surface) return read_surface_file(p, err);
+  p->side = VG_SIDE_DEFINED;
   st = *f->front ? vg_front_read(f->front, project, &p->surface, err)
                  : mesh_patches(p, show, err);
   return st < 0 ? st : apply_conditions(p, err);
@@ -613,13 +632,14 @@ vg_status vg_problem_given(struct vg_problem *p, const char *name,
   int bad = 0;
 
   vg_mesh_move(&p->surface, surface);
+  p->side = VG_SIDE_DEFINED;       /* as the interface has it */
   if (!p->given) p->given = vg_settings_given(&p->settings);
   f->stem = strdup(name);
   for (size_t i = 0; i < sizeof path / sizeof *path; i++)
     bad |= !(*path[i] = strdup(""));
   if (bad || !f->stem) return vg_fail_memory(err, "the names of a surface");
   st = vg_problem_sizes(p, err);
-  return st < 0 ? st : apply_patch_table(p, err);
+  return st < 0 ? st : vg_problem_patch_table(p, 0, err);
 }
 
 vg_status vg_problem_surface(struct vg_problem *p, struct vg_display *show,
@@ -640,7 +660,7 @@ vg_status vg_problem_surface(struct vg_problem *p, struct vg_display *show,
   VG_TRY(read_heights(p, err));
   /* What has been taken is in the settings, but for heights by point. */
   if (!p->heights.n) p->settings.layer.from_files = 0;
-  VG_TRY(apply_patch_table(p, err));
+  VG_TRY(vg_problem_patch_table(p, 0, err));
 done:
   return st;
 }

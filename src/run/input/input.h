@@ -8,6 +8,7 @@
 #include "base/comm.h"
 #include "core/domain/planar.h"
 #include "core/domain/project.h"
+#include "core/flow/flow.h"
 #include "core/remesh/remesh.h"
 #include "core/sizing/sizing_map.h"
 #include "core/surface/surface_check.h"
@@ -77,7 +78,14 @@ struct vg_problem {
   struct vg_point_heights heights;
   size_t n_welded, n_dropped;      /* by the weld */
   struct vg_surface_report check;
-  int is_shaped, external;         /* by vg_problem_shape */
+  int is_shaped;                   /* 1: vg_problem_shape was done */
+  struct vg_flow flow;             /* what was decided of the flow domain */
+  enum vg_flow_side side;          /* to which the format of the surface has
+                                      triangles point */
+  int has_cells;                   /* 1: the surface is the boundary of a volume
+                                      mesh */
+  size_t n_given_patch;            /* patches before holes were closed; the caps
+                                      follow them; 0: none were closed */
   int require_bc;                  /* the input gives conditions */
   int threads;                     /* for the check; 0: one per core */
   struct vg_renewal renewal;
@@ -88,7 +96,7 @@ struct vg_problem {
   uint8_t *given;                  /* vg_settings_given before anything was
                                       resolved; NULL: not known */
 };
-#define VG_PROBLEM_INIT { .project = VG_PROJECT_INIT }
+#define VG_PROBLEM_INIT { .project = VG_PROJECT_INIT, .flow = VG_FLOW_INIT }
 
 void vg_problem_release(struct vg_problem *p);
 
@@ -200,26 +208,14 @@ void vg_problem_note_unused(struct vg_problem *p, int layers_on,
  * tells which these are. Once conditions are final. */
 void vg_problem_note_unset(struct vg_problem *p);
 
-/** vg_surface_check with the question settled whether the closed shells of m
- * stand in a fluid (*external 1) or bound it (0).
- *
- * @param external  in: 1, 0, or -1 to find out: a patch with a farfield
- *                  condition, normals that point inward, shells inside
- *                  another one, or a single shell shaped as a flow domain
- *                  (core/surface/envelope.h; with a note) mean 0. out: 1 or 0
- * @param o         its `external` is set here */
-vg_status vg_surface_examine(struct vg_mesh *m,
-                             const struct vg_surface_check_options *o,
-                             int *external, struct vg_surface_report *r,
-                             struct vg_notes *notes, struct vg_error *err);
+/** Names and conditions of the table `patches`. VG_ERR_INPUT for a patch that
+ * the surface lacks; before holes are closed (are_closed 0) rows of caps that
+ * will be made then are left for later. */
+vg_status vg_problem_patch_table(struct vg_problem *p, int are_closed,
+                                 struct vg_error *err);
 
-/** Of bodies with the report *r: whether open edges are all that is wrong and
- * lie where half of a symmetric body was cut off, which vanguard mesh closes
- * (core/domain/planar.h); a note tells. */
-vg_status vg_surface_half(const struct vg_mesh *m,
-                          const struct vg_surface_report *r,
-                          struct vg_notes *notes, int *is_half,
-                          struct vg_error *err);
+/** 1 when patch i of the surface is a cap that closes a hole. */
+int vg_problem_is_cap(const struct vg_problem *p, size_t i);
 
 /** 1 when a patch has a boundary condition: then all of them should. */
 int vg_surface_has_conditions(const struct vg_mesh *m);

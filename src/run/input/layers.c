@@ -458,7 +458,12 @@ static void note_choice(const struct vg_layer_stage *s, struct vg_problem *p)
   if (n_odd)
     vg_note(&p->notes, "%zu patch%s layers, but a condition that is not "
             "viscous: number%s", n_odd, n_odd > 1 ? "es have" : " has", list);
-  if (n)
+  if (n && p->flow.kind == VG_FLOW_INTERNAL)
+    vg_note(&p->notes, "no patch has a condition: layers grow on %zu of %zu "
+            "patches, not on inlets, outlets, caps, and outer boundaries "
+            "around bodies (--walls, --slip or the table layers settle it)", n,
+            s->n_patch);
+  else if (n)
     vg_note(&p->notes, "no patch has a condition: layers grow on the whole "
             "body (--walls, --slip or the table layers settle it)");
   if (!l->by_source && l->y_plus > 0)

@@ -109,17 +109,32 @@ static int is_given(const struct vg_problem *p, int32_t id)
   return 0;
 }
 
+/* Patches without conditions that are walls when layers are asked for: all of a
+ * body; in a duct all but its ends; in another outer boundary the bodies
+ * inside it. A name that says wall decides everywhere. */
+static int is_bare_wall(const struct vg_problem *p, size_t i)
+{
+  const struct vg_flow *f = &p->flow;
+  const enum vg_flow_role role = vg_flow_role_of(&p->surface.patch[i]);
+
+  if (f->kind != VG_FLOW_INTERNAL) return 1;
+  if (role == VG_ROLE_WALL) return 1;
+  if (role != VG_ROLE_NONE && role != VG_ROLE_OTHER) return 0;
+  if (vg_problem_is_cap(p, i)) return 0;
+  return f->n_inlet + f->n_outlet || p->n_given_patch || !f->on_outer[i];
+}
+
 /* What the input says of patch i, settings aside. */
-static enum vg_wall_reason by_input(const struct vg_problem *p, size_t i)
+static enum vg_wall_reason by_input(const struct vg_problem *p, size_t i,
+                                    int has_faces)
 {
   const struct vg_patch *patch = &p->surface.patch[i];
-  int alone = p->settings.farfield.kind != VG_DOMAIN_NONE;
 
   if (meshing_class(&p->project, patch->id) == MESHING_WALL)
     return VG_WALL_CLASS;
   if (vg_is_viscous(patch)) return VG_WALL_CONDITION;
-  if (alone && !p->require_bc && vg_walls_asked(&p->settings) &&
-      is_given(p, patch->id))
+  if (has_faces && !p->require_bc && vg_walls_asked(&p->settings) &&
+      is_given(p, patch->id) && is_bare_wall(p, i))
     return VG_WALL_BODY;
   return VG_WALL_NOT;
 }
@@ -218,12 +233,15 @@ vg_status vg_walls_find(const struct vg_problem *p,
                         struct vg_error *err)
 {
   const struct vg_mesh *m = &p->surface;
-  uint8_t *mark_of = vg_calloc(2 * m->n_patch, 1);
+  uint8_t *mark_of = vg_calloc(3 * m->n_patch, 1);
+  uint8_t *has_faces = mark_of ? mark_of + 2 * m->n_patch : NULL;
   vg_status st;
 
   *n_wall = 0;
   if (!mark_of) return vg_fail_memory(err, "the patches");
-  for (size_t i = 0; i < m->n_patch; i++) reason[i] = by_input(p, i);
+  for (size_t i = 0; i < m->n_tri; i++) has_faces[m->tri_patch[i]] = 1;
+  for (size_t i = 0; i < m->n_patch; i++)
+    reason[i] = by_input(p, i, has_faces[i]);
   VG_TRY(by_settings(p, mark_of, mark_of + m->n_patch, reason, err));
   for (size_t i = 0; i < m->n_patch; i++)
     *n_wall += reason[i] != VG_WALL_NOT;

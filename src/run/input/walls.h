@@ -12,7 +12,8 @@ enum vg_wall_reason {
   VG_WALL_SETTING,   /* the layers table or the list of walls */
   VG_WALL_CLASS,     /* meshing class 2 of the .d3m */
   VG_WALL_CONDITION, /* a viscous condition */
-  VG_WALL_BODY       /* a body without any condition: all of it */
+  VG_WALL_BODY       /* no patch has a condition: bodies, and the sides of
+                        ducts */
 };
 
 /** In words. Static string. */

@@ -8,6 +8,7 @@
 
 #include "core/domain/planar.h"
 #include "core/fill/fill.h"
+#include "core/flow/flow.h"
 #include "core/judge/quality.h"
 #include "core/mesh/mesh.h"
 #include "core/surface/surface_check.h"
@@ -21,8 +22,8 @@
 void vg_report_size_text(FILE *to, const struct vg_mesh *m);
 json_t *vg_report_size_json(const struct vg_mesh *m);
 
-/** Number, faces, conditions and name of every patch; on screen at most
- * VG_SHOWN_PATCHES. */
+/** Number, faces, conditions, area, name and box of every patch; on screen at
+ * most VG_SHOWN_PATCHES. */
 #define VG_SHOWN_PATCHES 40
 vg_status vg_report_patches_text(FILE *to, const struct vg_mesh *m,
                                  struct vg_error *err);
@@ -68,6 +69,11 @@ void vg_report_faults(const struct vg_mesh_report *r, char *text,
 void vg_report_fill_text(FILE *to, const struct vg_fill_report *r,
                          size_t n_cell);
 json_t *vg_report_fill_json(const struct vg_fill_report *r, size_t n_cell);
+
+/** The flow domain with its evidence, as the head of a report.
+ * @param adds_farfield  1: a farfield is added, or was */
+void vg_report_flow_text(FILE *to, const struct vg_flow *f, int adds_farfield);
+json_t *vg_report_flow_json(const struct vg_flow *f, int adds_farfield);
 
 /** What was added around the body. */
 void vg_report_domain_text(FILE *to, const struct vg_domain_report *r);

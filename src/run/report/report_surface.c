@@ -1,8 +1,10 @@
 /* Reports on surfaces and domains. Declared in run/report/report.h. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/geometry/vector.h"
 #include "core/surface/surface_quality.h"
 #include "run/common/text.h"
 #include "run/report/report.h"
@@ -55,14 +57,47 @@ json_t *vg_report_size_json(const struct vg_mesh *m)
                    "upper", hi[0], hi[1], hi[2]);
 }
 
-/* Faces per patch; NULL when memory is refused. */
-static size_t *patch_faces(const struct vg_mesh *m)
-{
-  size_t *n = vg_calloc(m->n_patch, sizeof *n);
+/* Faces, area and box of a patch. */
+struct extent { size_t n; double area, lo[3], hi[3]; };
 
-  for (size_t i = 0; n && i < m->n_tri; i++) n[m->tri_patch[i]]++;
-  for (size_t i = 0; n && i < m->n_quad; i++) n[m->quad_patch[i]]++;
-  return n;
+static void add_face(struct extent *e, const struct vg_mesh *m,
+                     const uint32_t *node, int n)
+{
+  const double *o = m->point[node[0]];
+
+  e->n++;
+  for (int i = 0; i < n; i++)
+    for (int k = 0; k < 3; k++) {
+      const double x = m->point[node[i]][k];
+
+      if (x < e->lo[k]) e->lo[k] = x;
+      if (x > e->hi[k]) e->hi[k] = x;
+    }
+  for (int i = 2; i < n; i++) {
+    double u[3], v[3], normal[3];
+
+    vg_sub(m->point[node[i - 1]], o, u);
+    vg_sub(m->point[node[i]], o, v);
+    vg_cross(u, v, normal);
+    e->area += vg_norm(normal) / 2;
+  }
+}
+
+/* [n_patch]; NULL when memory is refused. */
+static struct extent *patch_extents(const struct vg_mesh *m)
+{
+  struct extent *e = vg_calloc(m->n_patch, sizeof *e);
+
+  for (size_t i = 0; e && i < m->n_patch; i++)
+    for (int k = 0; k < 3; k++) {
+      e[i].lo[k] = INFINITY;
+      e[i].hi[k] = -INFINITY;
+    }
+  for (size_t i = 0; e && i < m->n_tri; i++)
+    add_face(&e[m->tri_patch[i]], m, m->tri[i], 3);
+  for (size_t i = 0; e && i < m->n_quad; i++)
+    add_face(&e[m->quad_patch[i]], m, m->quad[i], 4);
+  return e;
 }
 
 static void code_text(int32_t code, char *text, size_t size)
@@ -74,22 +109,26 @@ static void code_text(int32_t code, char *text, size_t size)
 vg_status vg_report_patches_text(FILE *to, const struct vg_mesh *m,
                                  struct vg_error *err)
 {
-  size_t *faces = patch_faces(m);
+  struct extent *e = patch_extents(m);
   char count[32], bc[16], fun3d[16], name[VG_NAME_MAX];
 
-  if (!faces) return vg_fail_memory(err, "a report");
-  fprintf(to, "  %8s %15s %6s %6s  %s\n", "patch", "faces", "USM3D", "FUN3D",
-          "name");
+  if (!e) return vg_fail_memory(err, "a report");
+  fprintf(to, "  %8s %13s %6s %6s %10s  %s\n", "patch", "faces", "USM3D",
+          "FUN3D", "area", "name; box");
   for (size_t i = 0; i < m->n_patch && i < VG_SHOWN_PATCHES; i++) {
     code_text(m->patch[i].bc, bc, sizeof bc);
     code_text(m->patch[i].bc_fun3d, fun3d, sizeof fun3d);
-    fprintf(to, "  %8d %15s %6s %6s  %s\n", (int)m->patch[i].id,
-            vg_text_count(faces[i], count), bc, fun3d,
+    fprintf(to, "  %8d %13s %6s %6s %10.4g  %s", (int)m->patch[i].id,
+            vg_text_count(e[i].n, count), bc, fun3d, e[i].area,
             vg_text_clean(m->patch[i].name, name, sizeof name));
+    if (e[i].n)
+      fprintf(to, "; %.5g %.5g %.5g to %.5g %.5g %.5g", e[i].lo[0], e[i].lo[1],
+              e[i].lo[2], e[i].hi[0], e[i].hi[1], e[i].hi[2]);
+    fputc('\n', to);
   }
   if (m->n_patch > VG_SHOWN_PATCHES)
     fprintf(to, "  ... and %zu more\n", m->n_patch - VG_SHOWN_PATCHES);
-  free(faces);
+  free(e);
   return VG_OK;
 }
 
@@ -100,17 +139,26 @@ static json_t *code_json(int32_t code)
 
 json_t *vg_report_patches_json(const struct vg_mesh *m)
 {
-  size_t *faces = patch_faces(m);
+  struct extent *e = patch_extents(m);
   json_t *list = json_array();
 
-  for (size_t i = 0; faces && i < m->n_patch; i++)
-    json_array_append_new(list,
-      json_pack("{s:i s:o s:o s:o s:I}", "id", (int)m->patch[i].id, "name",
+  for (size_t i = 0; e && i < m->n_patch; i++) {
+    json_t *one =
+      json_pack("{s:i s:o s:o s:o s:I s:f}", "id", (int)m->patch[i].id, "name",
                 vg_text_json(m->patch[i].name), "usm3d",
                 code_json(m->patch[i].bc), "fun3d",
                 code_json(m->patch[i].bc_fun3d), "faces",
-                (json_int_t)faces[i]));
-  free(faces);
+                (json_int_t)e[i].n, "area", e[i].area);
+
+    if (e[i].n) {
+      json_object_set_new(one, "lower", json_pack("[fff]", e[i].lo[0],
+                                                  e[i].lo[1], e[i].lo[2]));
+      json_object_set_new(one, "upper", json_pack("[fff]", e[i].hi[0],
+                                                  e[i].hi[1], e[i].hi[2]));
+    }
+    json_array_append_new(list, one);
+  }
+  free(e);
   return list;
 }
 
@@ -295,6 +343,40 @@ json_t *vg_report_surface_json(const struct vg_mesh *m,
                    "removed_triangles", (json_int_t)r->n_removed_tri,
                    "turned_inside_out", r->turned_inside_out, "first",
                    defects_json(m, r, shown), "quality", quality_json(m));
+}
+
+void vg_report_flow_text(FILE *to, const struct vg_flow *f, int adds_farfield)
+{
+  char statement[VG_FLOW_TEXT];
+
+  vg_flow_statement(f, adds_farfield, statement);
+  fprintf(to, "Flow domain\n  %s.\n", statement);
+  for (int i = 0; i < f->n_evidence; i++)
+    fprintf(to, "  %s %s\n", i ? "         " : "Evidence:", f->evidence[i]);
+  if (f->kind == VG_FLOW_EXTERNAL)
+    fprintf(to, "  Should the surface bound a fluid inside it: --flow internal\n");
+  if (f->kind == VG_FLOW_INTERNAL)
+    fprintf(to, "  Should the surface be a body in a fluid: --flow external\n");
+}
+
+json_t *vg_report_flow_json(const struct vg_flow *f, int adds_farfield)
+{
+  static const char *const kind[] = { "unknown", "external", "internal" };
+  char statement[VG_FLOW_TEXT];
+  json_t *evidence = json_array();
+
+  vg_flow_statement(f, adds_farfield, statement);
+  for (int i = 0; i < f->n_evidence; i++)
+    json_array_append_new(evidence, vg_text_json(f->evidence[i]));
+  return json_pack("{s:s s:o s:o s:I s:I s:I s:I s:I s:s s:f}", "kind",
+                   kind[f->kind], "statement", vg_text_json(statement),
+                   "evidence", evidence, "bodies", (json_int_t)f->n_body,
+                   "outer_boundaries", (json_int_t)f->n_outer,
+                   "sealed_cavities", (json_int_t)f->n_cavity, "inlets",
+                   (json_int_t)f->n_inlet, "outlets", (json_int_t)f->n_outlet,
+                   "half", f->axis < 0 ? "no" : f->axis == 0 ? "x"
+                           : f->axis == 1 ? "y" : "z",
+                   "half_at", f->axis < 0 ? 0.0 : f->at);
 }
 
 void vg_report_domain_text(FILE *to, const struct vg_domain_report *r)

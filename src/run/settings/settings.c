@@ -8,6 +8,7 @@
 
 #include "base/memory.h"
 #include "core/fill/fill.h"
+#include "core/flow/flow.h"
 #include "core/remesh/remesh.h"
 #include "io/cad/cad.h"
 #include "layers/columns/law.h"
@@ -20,6 +21,12 @@
 
 static const char *const domain_words[] = { "auto", "none", "sphere", "box",
                                             NULL };
+/* In the order of enum vg_flow_kind, enum vg_flow_half. */
+static const char *const flow_words[] = { "auto", "external", "internal",
+                                          NULL };
+static const char *const half_words[] = { "auto", "no", "yes", "x", "y", "z",
+                                          NULL };
+static const char *const region_words[] = { "one", "all", NULL };
 static const char *const answer_words[] = { "auto", "no", "yes", NULL };
 /* In the order of enum vg_cad_unit, of enum vg_cad_patches. */
 static const char *const unit_words[] = { "file", "mm", "cm", "m", "km",
@@ -102,12 +109,24 @@ static const struct vg_param params[] = {
   { "repair", AT(repair), .type = VG_PARAM_FLAG, .unit = "",
     .help = "mend what needs no guess: orientation, unused and duplicate "
             "items" },
-  { "symmetry", AT(symmetry), .type = VG_PARAM_WORD, .words = answer_words,
-    .unit = "", .help = "open edges in a plane x, y or z = constant are where "
-    "a half body was cut: yes, no (they are a hole), or auto: if the surface "
-    "meets the plane steeply and they span a good part of the body" },
+  { "flow", AT(flow), .type = VG_PARAM_WORD, .words = flow_words, .unit = "",
+    .help = "external: the surface is bodies, and the fluid is outside; "
+    "internal: the surface bounds the fluid inside it; auto: decided by "
+    "conditions and names of patches, nesting and shape of shells, and "
+    "orientation where the format defines it; the report lists the evidence" },
+  { "half", AT(half), .type = VG_PARAM_WORD, .words = half_words, .unit = "",
+    .help = "half models. x, y, z: the symmetry plane lies across this axis, "
+    "and a flat cap in it is removed; yes: open edges in one plane x, y or z = "
+    "constant lie in the symmetry plane; no: the model is whole, and open "
+    "edges are holes; auto: open edges, if the surface meets their plane "
+    "steeply and they span a good part of the body, and caps with a symmetry "
+    "condition" },
+  { "regions", AT(all_regions), .type = VG_PARAM_WORD, .words = region_words,
+    .unit = "", .help = "one: sealed cavities are left out, and several "
+    "regions of fluid are an error; all: every region of fluid is meshed" },
   { "close_holes", AT(close_holes), .type = VG_PARAM_FLAG, .unit = "",
-    .help = "close holes of the surface whose rims are nearly plane" },
+    .help = "close holes of the surface whose rims are nearly plane; each gets "
+    "a patch of its own: cap_1, cap_2, ..." },
   { "surface_swap", AT(swap), .type = VG_PARAM_WORD, .words = answer_words,
     .unit = "", .help = "swap and collapse edges of the surface where its "
     "triangles are bad, without moving it visibly; auto: where layers grow "
@@ -692,6 +711,12 @@ vg_status vg_settings_check(const struct vg_settings *s, struct vg_error *err)
   const struct vg_farfield_row *f = &s->farfield;
   int centre = n_given(f->centre), lo = n_given(f->lo), hi = n_given(f->hi);
 
+  if (s->flow == VG_FLOW_INTERNAL && f->kind > VG_DOMAIN_NONE)
+    return vg_fail(err, VG_ERR_INPUT, "flow is internal, but farfield is %s: "
+                   "leave one of them out", domain_words[f->kind]);
+  if (s->flow == VG_FLOW_EXTERNAL && f->kind == VG_DOMAIN_NONE)
+    return vg_fail(err, VG_ERR_INPUT, "flow is external, but farfield is none: "
+                   "leave one of them out");
   if (s->constant_direction && !s->split_direction)
     return vg_fail(err, VG_ERR_INPUT, "constant_direction needs a "
                    "split_direction of 1, 2 or 3");
@@ -766,8 +791,7 @@ struct vg_farfield vg_settings_farfield(const struct vg_settings *s)
   f.lengths = row->lengths;
   f.size = row->size;
   f.spacing = row->spacing * s->scale;
-  f.symmetry = s->symmetry == VG_ANSWER_YES ? 1
-             : s->symmetry == VG_ANSWER_NO ? -1 : 0;
+  f.symmetry = s->half == VG_HALF_AUTO ? 0 : s->half == VG_HALF_NO ? -1 : 1;
   f.has_centre = n_given(row->centre) == 3;
   f.has_box = n_given(row->lo) == 3;
   for (int k = 0; k < 3; k++) {

@@ -107,7 +107,9 @@ struct vg_settings {
   int surface_sizes, d3m_sources;
   char sizes[VG_LIST_MAX];         /* a file with edge lengths; "": none */
   struct vg_cad_settings cad;
-  int symmetry;                    /* enum vg_answer */
+  int flow;                        /* enum vg_flow_kind of core/flow/flow.h */
+  int half;                        /* enum vg_flow_half */
+  int all_regions;                 /* 1: mesh every region of fluid */
   int close_holes;
   double weld, wrap;
   int repair;

@@ -37,7 +37,7 @@ vanguard check -d m.deck "$cad/wing.step"
 exits 0
 says out "were converted to m"
 says out "SKIN"
-says out "to 1.1 2.5 0.0597046"
+says out " to 1.1 2.5 0.0599668"
 
 # one command; names in every output; any number of ranks
 cp "$cad/wing.step" .

@@ -1,16 +1,17 @@
 # A surface that cannot bound a mesh is named, drawn and refused.
-# A unit tetrahedron as text, its third face missing.
+# A unit tetrahedron as text, its slanted face missing.
 cat >open.ugrid <<'END'
 4 3 0 0 0 0 0
 0 0 0  1 0 0  0 1 0  0 0 1
-1 2 3  1 4 2  2 4 3
-1 2 4
+1 2 3  1 4 2  1 3 4
+1 2 3
 END
 vanguard check -q open.ugrid --defects shown.vtu
 exits 1
 says out "open edge: 3"
 says out "(not closed)"
-says err "open.ugrid: the surface has 3 defects"
+says err "open: the surface is open: 1 rim"
+says err "close-holes yes"
 exists shown.vtu
 vanguard check -q --json open.ugrid
 exits 1
@@ -18,7 +19,7 @@ says out '"open edge": 3'
 vanguard mesh -q -p open --farfield none
 exits 1
 says out "open edge: 3"
-says err "cannot bound a mesh"
+says err "the surface is open"
 exists open.defects.vtu
 absent open.cogsg open.b8.ugrid open.resolved.deck open.report.json
 

@@ -2,7 +2,7 @@
 octahedron >octa.obj
 vanguard mesh -q -p octa --farfield-lengths 4 --growth 1.5
 exits 0
-says out "taken as a body in open air"
+says out "External flow around 1 closed body; farfield added."
 says out "added: farfield"
 says out "validity: valid"
 says octa.mapbc "farfield"
@@ -10,7 +10,7 @@ says octa.resolved.deck "sphere  4"
 vanguard mesh -q -p octa --deck octa.resolved.deck --out again
 exits 0
 same octa.b8.ugrid again/octa.b8.ugrid
-lacks out "taken as a body in open air"
+says out "Evidence: the option flow external"
 
 # Half of it, cut at y = 0.
 sed -e '/^v 0 -1 0/d' -e '/^f/d' octa.obj >half.obj

@@ -56,7 +56,7 @@ says out '"percent_within"'
 vanguard check -q p/box.lb8.ugrid
 exits 0
 says out "no defects"
-says out "boundary of a fluid inside it"
+says out "Flow inside a given outer boundary"
 
 vanguard mesh -q -p p/box --out limited --max-cells 100
 exits 1

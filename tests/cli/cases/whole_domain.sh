@@ -51,8 +51,8 @@ f 12 16 13
 END
 vanguard mesh -q -p room
 exits 0
-says out "taken as the boundary of a whole flow domain"
-says out "(most of patches 1 2)"
+says out "Flow inside a given outer boundary"
+says out "Evidence: it has a convex outer part that covers"
 says out "the whole surface was turned"
 lacks out "added: farfield"
 says out "3 patches have no boundary condition"
@@ -61,18 +61,17 @@ says out "volume 702"
 vanguard mesh -q -p room --deck room.resolved.deck --out again
 exits 0
 same room.b8.ugrid again/room.b8.ugrid
-lacks out "taken as"
+says out "Evidence: the option flow internal"
 vanguard check -q room.obj
 exits 0
-says out "taken as the boundary of a fluid inside it"
-says out "taken as the boundary of a whole flow domain"
+says out "Flow inside a given outer boundary"
 
 # The user knows better.
 vanguard mesh -q -p room --farfield sphere --farfield-lengths 3 \
   --growth 1.5 --out outside
 exits 0
 says out "added: farfield"
-lacks out "taken as"
+says out "Evidence: the option farfield sphere"
 
 # A brick says nothing: a body, and the note says how to have it otherwise.
 sed -e '/^g floor/,$d' room.obj >brick.obj
@@ -80,5 +79,5 @@ printf 'f 1 3 2\nf 1 4 3\n' >>brick.obj
 sed -i '/^v/{9,$d}' brick.obj
 vanguard mesh -q -p brick --farfield-lengths 3 --growth 1.5
 exits 0
-says out "taken as a body in open air"
-says out "farfield none"
+says out "External flow around 1 closed body; farfield added."
+says out "flow internal"

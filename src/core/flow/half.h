@@ -1,0 +1,39 @@
+/* core/flow/half.h: half models. Private to core/flow.
+ *
+ *        given with a cap          open              with its mirror image
+ *        z |  ______            z |  ______              ______ ______
+ *          | |      \             |        \            /      |      \
+ *        --+-|cap----) y        --+---------) y        (-------+-------)
+ *          | |______/             |  ______/            \______|______/
+ */
+#ifndef VG_CORE_FLOW_HALF_H
+#define VG_CORE_FLOW_HALF_H
+
+#include "core/flow/flow.h"
+
+/** A flat cap in a coordinate plane at an end of the surface. */
+struct vg_flow_cap {
+  int axis;                     /* -1: there is none */
+  double at;
+  size_t n_tri;
+  uint8_t *tri;                 /* [m->n_tri] 1: triangle of the cap; owned */
+};
+
+/** Find the cap that may close a half model.
+ *
+ * @param half  VG_HALF_X to _Z: across this axis; else the cap with a symmetry
+ *              condition or name, or else one at coordinate 0 whose plane the
+ *              surface meets steeply; *by_condition says which
+ * O(n) but for the border of the cap. */
+vg_status vg_flow_find_cap(const struct vg_mesh *m, enum vg_flow_half half,
+                           struct vg_flow_cap *cap, int *by_condition,
+                           struct vg_error *err);
+
+void vg_flow_cap_release(struct vg_flow_cap *cap);
+
+/** m with its mirror image across x[axis] = at; points in the plane are shared,
+ * triangles n_tri and up are the image. *out is empty before. */
+vg_status vg_flow_mirror(const struct vg_mesh *m, int axis, double at,
+                         struct vg_mesh *out, struct vg_error *err);
+
+#endif

@@ -1,0 +1,179 @@
+/* Where patches lie: flat ones, and ends of shells. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/flow/evidence.h"
+#include "core/geometry/hilbert.h"
+#include "core/geometry/vector.h"
+
+/* F1 */
+#define FLAT 1e-4         /* of the shell's length: deviation of a flat patch */
+#define STEEP 0.7         /* cosine between a wall and the plane of an end */
+#define MOSTLY 0.7        /* share of the border that meets it so steeply */
+#define LARGE 1e-3        /* of the area of all patches: a plain patch that is
+                             smaller is no opening */
+
+static void normal_of(const struct vg_mesh *m, size_t t, double n[3])
+{
+  double u[3], v[3];
+
+  vg_sub(m->point[m->tri[t][1]], m->point[m->tri[t][0]], u);
+  vg_sub(m->point[m->tri[t][2]], m->point[m->tri[t][0]], v);
+  vg_cross(u, v, n);
+}
+
+static void add_normals(const struct vg_mesh *m,
+                        const struct vg_surface_report *r,
+                        struct vg_flow_patch *patch)
+{
+  for (size_t t = 0; t < m->n_tri; t++) {
+    struct vg_flow_patch *p = &patch[m->tri_patch[t]];
+    double n[3];
+
+    normal_of(m, t, n);
+    if (!p->is_used) p->shell = r->tri_shell[t];
+    p->is_used = 1;
+    p->area += vg_norm(n) / 2;
+    for (int k = 0; k < 3; k++) p->normal[k] += n[k];
+  }
+}
+
+/* Range of the points of patches, and of their shells, along their normals. */
+struct range { double lo, hi, shell_lo, shell_hi; };
+
+static void widen(double x, double *lo, double *hi)
+{
+  if (x < *lo) *lo = x;
+  if (x > *hi) *hi = x;
+}
+
+/* The few patches that may be ends pay for a loop over all triangles. */
+static void measure_flat(const struct vg_mesh *m,
+                         const struct vg_surface_report *r,
+                         struct vg_flow_patch *p, size_t at)
+{
+  const struct vg_shell *s = &r->shell[p->shell];
+  struct range g = { INFINITY, -INFINITY, INFINITY, -INFINITY };
+  double unit[3], length = 0;
+  const double size = vg_norm(p->normal);
+
+  for (int k = 0; k < 3; k++) {
+    length = fmax(length, s->hi[k] - s->lo[k]);
+    unit[k] = p->normal[k] / size;
+  }
+  for (size_t t = 0; t < m->n_tri; t++) {
+    const int is_own = m->tri_patch[t] == at;
+
+    if (!is_own && r->tri_shell[t] != p->shell) continue;
+    for (int k = 0; k < 3; k++) {
+      const double x = vg_dot(unit, m->point[m->tri[t][k]]);
+
+      if (is_own) widen(x, &g.lo, &g.hi);
+      widen(x, &g.shell_lo, &g.shell_hi);
+    }
+  }
+  p->is_flat = g.hi - g.lo <= FLAT * length;
+  p->plane = 0.5 * (g.lo + g.hi);
+  p->is_end = p->is_flat && (g.shell_hi - p->plane <= FLAT * length
+                             || p->plane - g.shell_lo <= FLAT * length);
+}
+
+/* Length of the borders of patches, and of the steep part of them. */
+struct border { double all, steep; };
+
+static void add_border(const struct vg_mesh *m, size_t at, size_t beside,
+                       double length, const struct vg_flow_patch *patch,
+                       struct border *border)
+{
+  const uint32_t own = m->tri_patch[at];
+  double n[3];
+
+  if (!patch[own].is_end) return;
+  normal_of(m, beside, n);
+  border[own].all += length;
+  if (fabs(vg_dot(n, patch[own].normal))
+      <= STEEP * vg_norm(n) * vg_norm(patch[own].normal))
+    border[own].steep += length;
+}
+
+/* Ends are those flat patches whose borders are steep. */
+static vg_status find_ends(const struct vg_mesh *m, struct vg_flow_patch *patch,
+                           struct vg_error *err)
+{
+  const size_t n = 3 * m->n_tri;
+  struct vg_key *side = vg_alloc(n, sizeof *side);
+  struct border *border = vg_calloc(m->n_patch, sizeof *border);
+  vg_status st = VG_OK;
+
+  if (!side || !border) VG_TRY(vg_fail_memory(err, "the ends of the surface"));
+  for (size_t i = 0; i < n; i++) {
+    const uint64_t a = m->tri[i / 3][i % 3], b = m->tri[i / 3][(i + 1) % 3];
+
+    side[i] = (struct vg_key){ a < b ? a << 32 | b : b << 32 | a,
+                               (uint32_t)(i / 3) };
+  }
+  VG_TRY(vg_sort_keys(n, side, err));
+  for (size_t i = 1; i < n; i++) {
+    const size_t s = side[i - 1].index, t = side[i].index;
+    double length;
+
+    if (side[i].key != side[i - 1].key
+        || m->tri_patch[s] == m->tri_patch[t]) continue;
+    length = vg_distance(m->point[side[i].key >> 32],
+                         m->point[(uint32_t)side[i].key]);
+    add_border(m, s, t, length, patch, border);
+    add_border(m, t, s, length, patch, border);
+  }
+  for (size_t i = 0; i < m->n_patch; i++)
+    patch[i].is_end &= border[i].all > 0
+                       && border[i].steep >= MOSTLY * border[i].all;
+done:
+  free(side);
+  free(border);
+  return st;
+}
+
+/* Patches whose place is evidence: openings, symmetry planes, and, next to
+ * named walls, patches without condition and name. A flat patch has as much
+ * area as its normals add up to. */
+static int may_be_end(const struct vg_flow_patch *p, int has_walls, double area)
+{
+  if (!p->is_used || p->shell == UINT32_MAX
+      || vg_norm(p->normal) < 2 * p->area * (1 - FLAT)) return 0;
+  if (p->role == VG_ROLE_NONE) return has_walls && p->area >= LARGE * area;
+  return p->role == VG_ROLE_INLET || p->role == VG_ROLE_OUTLET
+         || p->role == VG_ROLE_SYMMETRY;
+}
+
+vg_status vg_flow_patches(const struct vg_mesh *m,
+                          const struct vg_surface_report *r,
+                          struct vg_flow_patch **out, struct vg_error *err)
+{
+  struct vg_flow_patch *patch = vg_calloc(m->n_patch, sizeof *patch);
+  double area = 0;
+  int any = 0, has_walls = 0;
+  vg_status st = VG_OK;
+
+  if (!patch) return vg_fail_memory(err, "the patches");
+  add_normals(m, r, patch);
+  for (size_t i = 0; i < m->n_patch; i++) {
+    struct vg_flow_patch *p = &patch[i];
+
+    p->role = vg_flow_role_of(&m->patch[i]);
+    p->has_condition = m->patch[i].bc != VG_BC_NONE
+                       || m->patch[i].bc_fun3d != VG_BC_NONE;
+    has_walls |= p->is_used && p->role == VG_ROLE_WALL;
+    area += p->area;
+  }
+  for (size_t i = 0; i < m->n_patch; i++) {
+    if (!may_be_end(&patch[i], has_walls, area)) continue;
+    measure_flat(m, r, &patch[i], i);
+    any |= patch[i].is_end;
+  }
+  if (any) st = find_ends(m, patch, err);
+  if (st < 0) free(patch);
+  else *out = patch;
+  return st;
+}

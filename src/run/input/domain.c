@@ -1,0 +1,199 @@
+/* The flow domain: the decision that core/flow makes, with what settings and
+ * files say of it, and the domain completed. Declared in run/input/input.h. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "io/stream/convention.h"
+#include "run/input/input.h"
+#include "run/input/shape_parts.h"
+#include "run/settings/deck.h"
+
+#define FARFIELD_TRIANGLES 1e8
+#define SHOWN_RIMS 3
+
+/* --- the decision -------------------------------------------------------- */
+
+struct vg_flow_options vg_problem_flow_options(const struct vg_problem *p,
+                                               struct vg_display *show)
+{
+  const struct vg_settings *s = &p->settings;
+  struct vg_flow_options o = { .kind = (enum vg_flow_kind)s->flow,
+    .half = (enum vg_flow_half)s->half,
+    .side = p->side,
+    .all_regions = s->all_regions, .repair = s->repair,
+    .require_bc = p->require_bc, .threads = p->threads,
+    .stop = { vg_display_stop, show } };
+
+  if (o.kind == VG_FLOW_EXTERNAL) {
+    o.asked_by = "flow external";
+  } else if (o.kind == VG_FLOW_INTERNAL) {
+    o.asked_by = "flow internal";
+  } else if (s->farfield.kind == VG_DOMAIN_NONE) {
+    o.kind = VG_FLOW_INTERNAL;
+    o.asked_by = "farfield none";
+  } else if (s->farfield.kind != VG_DOMAIN_AUTO) {
+    o.kind = VG_FLOW_EXTERNAL;
+    o.asked_by = s->farfield.kind == VG_DOMAIN_BOX ? "farfield box"
+                                                   : "farfield sphere";
+  } else if (p->has_cells) {
+    o.kind = VG_FLOW_INTERNAL;
+    o.asked_by = "that the boundary of a volume mesh is read";
+  }
+  return o;
+}
+
+static void note_cavities(struct vg_problem *p)
+{
+  const struct vg_flow *f = &p->flow;
+
+  if (f->n_cavity)
+    vg_note(&p->notes, "sealed cavities inside the bodies are not meshed: %zu, "
+            "volume %.4g, the largest around (%.6g, %.6g, %.6g) (--regions all "
+            "meshes them)", f->n_cavity, f->cavity_volume, f->cavity_at[0],
+            f->cavity_at[1], f->cavity_at[2]);
+}
+
+static void note_cap(struct vg_problem *p)
+{
+  const struct vg_flow *f = &p->flow;
+
+  if (f->cap_axis >= 0 && !f->n_cap_tri && f->kind == VG_FLOW_EXTERNAL
+      && p->settings.half == VG_HALF_AUTO)
+    vg_note(&p->notes, "flat cap at %c = %g: is this a half model? --half %c "
+            "removes the cap and adds the symmetry plane; --half no settles "
+            "that it is a whole body", "xyz"[f->cap_axis], f->cap_at,
+            "xyz"[f->cap_axis]);
+}
+
+/* Settings say what was decided, so that the run can be repeated. */
+static void resolve(struct vg_problem *p)
+{
+  struct vg_settings *s = &p->settings;
+  const struct vg_flow *f = &p->flow;
+
+  if (f->kind == VG_FLOW_UNKNOWN) return;
+  if (s->farfield.kind == VG_DOMAIN_AUTO)
+    s->farfield.kind = f->kind == VG_FLOW_EXTERNAL ? VG_DOMAIN_SPHERE
+                                                   : VG_DOMAIN_NONE;
+  s->flow = (int)f->kind;
+  s->half = f->axis < 0 ? VG_HALF_NO : (int)VG_HALF_X + f->axis;
+}
+
+vg_status vg_problem_decide(struct vg_problem *p, struct vg_display *show,
+                            struct vg_error *err)
+{
+  const struct vg_flow_options o = vg_problem_flow_options(p, show);
+  struct vg_error why = VG_ERROR_INIT;
+  vg_status st = vg_flow_settle(&p->surface, &p->check, &o, &p->flow, &why);
+
+  if (st < 0)
+    return st == VG_ERR_INPUT ? vg_fail(err, st, "%s: %s", p->files.stem,
+                                        why.text)
+                              : vg_fail(err, st, "%s", why.text);
+  note_cap(p);
+  note_cavities(p);
+  resolve(p);
+  return VG_OK;
+}
+
+/* --- open surfaces ------------------------------------------------------- */
+
+int vg_is_only_open(const struct vg_surface_report *r)
+{
+  return r->count[VG_DEFECT_OPEN_EDGE] &&
+         r->count[VG_DEFECT_OPEN_EDGE] == r->n_defect;
+}
+
+/* "; the first is 0.2 wide, of 24 edges, around (0, 0, 1)" for each. */
+static void list_rims(const struct vg_rim *rim, size_t n, char *text,
+                      size_t size)
+{
+  size_t at = 0;
+
+  *text = 0;
+  for (size_t i = 0; i < n && i < SHOWN_RIMS && at + 120 < size; i++)
+    at += (size_t)snprintf(text + at, size - at, "%s%.4g wide, %zu edges, around "
+                           "(%.6g, %.6g, %.6g)", i ? "; " : "", rim[i].width,
+                           rim[i].n_edge, rim[i].centre[0], rim[i].centre[1],
+                           rim[i].centre[2]);
+  if (n > SHOWN_RIMS) snprintf(text + at, size - at, "; ...");
+}
+
+vg_status vg_problem_refuse_open(const struct vg_problem *p,
+                                 struct vg_error *err)
+{
+  struct vg_error why = VG_ERROR_INIT;
+  struct vg_rim *rim = NULL;
+  char list[400], half[160] = "";
+  size_t n = 0;
+  vg_status st = vg_domain_rims(&p->surface, &n, &rim, &why);
+
+  if (st == VG_ERR_GEOMETRY)
+    return vg_fail(err, st, "%s: the surface is open, and %s; repair it, or "
+                   "wrap it (--wrap SIZE)", p->files.stem, why.text);
+  if (st < 0) return vg_fail(err, st, "%s", why.text);
+  list_rims(rim, n, list, sizeof list);
+  if (n == 1 && rim[0].axis >= 0)
+    snprintf(half, sizeof half, ". Should it be half of a symmetric model, cut "
+             "at %c = %g, give --half %c", "xyz"[rim[0].axis],
+             rim[0].centre[rim[0].axis], "xyz"[rim[0].axis]);
+  st = vg_fail(err, VG_ERR_GEOMETRY, "%s: the surface is open: %zu rim%s (%s). "
+               "--close-holes yes closes each with a flat cap in a patch of its "
+               "own (cap_1%s)%s", p->files.stem, n, n > 1 ? "s" : "", list,
+               n > 1 ? ", cap_2, ..." : "", half);
+  free(rim);
+  return st;
+}
+
+/* --- the domain completed ------------------------------------------------ */
+
+/* An edge in another unit would ask for more triangles than fit anywhere. */
+static vg_status check_farfield(const struct vg_problem *p,
+                                const struct vg_farfield *far,
+                                struct vg_error *err)
+{
+  double edge = far->spacing, lo[3], hi[3], size = 0, n;
+  double hmax = p->settings.hmax * p->settings.scale;
+
+  if (hmax > 0 && !(edge > 0 && edge < hmax)) edge = hmax;
+  vg_mesh_bounds(&p->surface, lo, hi);
+  for (int k = 0; k < 3; k++) {
+    size = fmax(size, far->lengths * (hi[k] - lo[k]));
+    if (far->has_box) size = fmax(size, (far->hi[k] - far->lo[k]) / 2);
+  }
+  if (far->size > 0) size = far->size;
+  /* The area of a sphere over that of a triangle. */
+  n = edge > 0 ? 29 * (size / edge) * (size / edge) : 0;
+  if (far->kind == VG_FARFIELD_NONE || n < FARFIELD_TRIANGLES) return VG_OK;
+  return vg_fail(err, VG_ERR_INPUT, "a farfield of size %g with edges of %g "
+                 "has some %.2g triangles; are its spacing and hmax in the "
+                 "unit of the surface?", size, edge, n);
+}
+
+vg_status vg_problem_complete(struct vg_problem *p, struct vg_display *show,
+                              struct vg_error *err)
+{
+  struct vg_settings *s = &p->settings;
+  struct vg_sizing_options options = vg_problem_sizing(p);
+  struct vg_farfield far = vg_settings_farfield(s);
+  struct vg_sizing *sizing = NULL;
+  vg_status st;
+
+  far.symmetry = p->flow.axis < 0 ? -1 : 1;
+  VG_TRY(check_farfield(p, &far, err));
+  /* The farfield is away from the body, whose own largest edge is no limit
+   * for it. */
+  if (!(options.h_max > 0)) options.h_max = INFINITY;
+  options.threads = p->threads;
+  VG_TRY(vg_sizing_new(&options, s->n_source, s->source, &p->surface, &sizing,
+                       err));
+  far.stop = vg_display_stop;
+  far.user = show;
+  VG_TRY(vg_domain_complete(&p->surface, &far, sizing, &p->domain, err));
+done:
+  vg_sizing_free(sizing);
+  /* the library's message says less */
+  return st < 0 && vg_display_stop(show) ? vg_display_stopped(show, err) : st;
+}

@@ -1,0 +1,32 @@
+/* run/input/shape_parts.h: the steps from triangles as read to the closed
+ * boundary of a fluid. Private to run/input. */
+#ifndef VG_RUN_INPUT_SHAPE_PARTS_H
+#define VG_RUN_INPUT_SHAPE_PARTS_H
+
+#include "run/input/input.h"
+
+/* run/input/domain.c ------------------------------------------------------*/
+
+/** What settings and files say of the flow domain. */
+struct vg_flow_options vg_problem_flow_options(const struct vg_problem *p,
+                                               struct vg_display *show);
+
+/** Decide which flow the surface bounds, with notes, and resolve the settings
+ * flow, half and farfield. p->check is of vg_surface_check with `external` -1.
+ * Errors as vg_flow_settle. */
+vg_status vg_problem_decide(struct vg_problem *p, struct vg_display *show,
+                            struct vg_error *err);
+
+/** VG_ERR_GEOMETRY that lists the rims of an open surface and says how they can
+ * be closed. */
+vg_status vg_problem_refuse_open(const struct vg_problem *p,
+                                 struct vg_error *err);
+
+/** Add farfield and symmetry plane as the decision asks for. */
+vg_status vg_problem_complete(struct vg_problem *p, struct vg_display *show,
+                              struct vg_error *err);
+
+/** Open edges are the only defects. */
+int vg_is_only_open(const struct vg_surface_report *r);
+
+#endif
