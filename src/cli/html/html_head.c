@@ -13,6 +13,23 @@ static const char policy[] =
   "img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline' "
   "'unsafe-eval'\">\n";
 
+/* The flow domain and its evidence: the first thing to know. */
+static void flow(struct page *p)
+{
+  const struct vg_problem *q = p->h->problem;
+  char statement[VG_FLOW_TEXT];
+
+  vg_flow_statement(&q->flow, q->domain.added_farfield, statement);
+  vg_page_markup(p, "<p><b>");
+  vg_page_text(p, statement);
+  vg_page_markup(p, ".</b> Evidence: ");
+  for (int i = 0; i < q->flow.n_evidence; i++) {
+    if (i) vg_page_markup(p, "; ");
+    vg_page_text(p, q->flow.evidence[i]);
+  }
+  vg_page_markup(p, ".</p>\n");
+}
+
 void vg_html_head(struct page *p)
 {
   const struct vg_problem *q = p->h->problem;
@@ -38,7 +55,9 @@ void vg_html_head(struct page *p)
     vg_page_format(p, " <span class=\"badge bad\">%zu limit%s on the layers "
                    "not met</span>", p->h->layers->n_missed,
                    p->h->layers->n_missed > 1 ? "s" : "");
-  vg_page_markup(p, "</p>\n</header>\n<main>\n\n");
+  vg_page_markup(p, "</p>\n");
+  flow(p);
+  vg_page_markup(p, "</header>\n<main>\n\n");
 }
 
 /* --- what to know first -------------------------------------------------- */

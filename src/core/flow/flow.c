@@ -107,11 +107,12 @@ done:
   return st;
 }
 
-static int is_only_open(const struct vg_surface_report *r)
+/* Rims can be followed where triangles agree. A reference surface may cross
+ * itself by less than the tolerance of the surface that is made from it. */
+static int has_rims(const struct vg_surface_report *r)
 {
-  return r->count[VG_DEFECT_OPEN_EDGE]
-         && r->count[VG_DEFECT_OPEN_EDGE] + r->count[VG_DEFECT_NO_BC]
-            == r->n_defect;
+  return r->count[VG_DEFECT_OPEN_EDGE] && !r->count[VG_DEFECT_ORIENTATION]
+         && !r->count[VG_DEFECT_NONMANIFOLD_EDGE];
 }
 
 /* An open surface may be a half model. */
@@ -124,7 +125,7 @@ static vg_status look_for_rims(struct settle *s, struct vg_error *err)
   double at;
   vg_status st;
 
-  if (symmetry < 0 || !is_only_open(s->r)) return VG_OK;
+  if (symmetry < 0 || !has_rims(s->r)) return VG_OK;
   VG_TRY(vg_domain_half(s->m, symmetry, &axis, &at, err));
   if (axis < 0) goto done;
   if (half >= VG_HALF_X && axis != (int)half - VG_HALF_X) {
