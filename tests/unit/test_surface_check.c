@@ -241,6 +241,7 @@ static void reports_three_faces_at_an_edge(void **unused)
   assert_int_equal(r.count[VG_DEFECT_NONMANIFOLD_EDGE], 1);
   assert_int_equal(r.count[VG_DEFECT_OPEN_EDGE], 2);
   assert_int_equal(r.count[VG_DEFECT_ORIENTATION], 0);
+  assert_int_equal(r.count[VG_DEFECT_INTERSECTION], 0); /* said once */
   assert_false(r.is_closed);
   assert_true(r.face_kinds[12] >> VG_DEFECT_NONMANIFOLD_EDGE & 1);
   assert_true(r.face_kinds[4] >> VG_DEFECT_NONMANIFOLD_EDGE & 1);
@@ -443,18 +444,116 @@ static void drops_copies_of_a_triangle(void **unused)
   add_box(&m, 0, 1, 1);
   add_tri(&m, m.tri[5][1], m.tri[5][2], m.tri[5][0], 0);
   check(&m, 0, 1, &r);
-  assert_int_equal(r.count[VG_DEFECT_DUPLICATE_TRIANGLE], 1);
-  assert_int_equal(r.count[VG_DEFECT_NONMANIFOLD_EDGE], 3);
+  assert_only(&r, VG_DEFECT_DUPLICATE_TRIANGLE, 1);
+  assert_true(r.is_closed && r.n_shell == 1);
+  assert_int_equal(r.defect[0].face[0], 5);
+  assert_int_equal(r.defect[0].face[1], 12);
   check(&m, 1, 1, &r);
   assert_none(&r);
   assert_int_equal(r.n_removed_tri, 1);
   add_tri(&m, m.tri[5][1], m.tri[5][0], m.tri[5][2], 0); /* other side */
   vg_mesh_add_patch(&m, 7, "paint");
   add_tri(&m, m.tri[0][0], m.tri[0][1], m.tri[0][2], 1); /* other patch */
+  add_tri(&m, m.tri[0][0], m.tri[0][1], m.tri[0][2], 1); /* a third one */
+  check(&m, 0, 1, &r);
+  assert_only(&r, VG_DEFECT_DUPLICATE_TRIANGLE, 3);
   check(&m, 1, 1, &r);
-  assert_int_equal(r.count[VG_DEFECT_DUPLICATE_TRIANGLE], 2);
-  assert_int_equal(r.n_removed_tri, 0);
-  assert_int_equal(r.defect[r.n_defect - 1].kind, VG_DEFECT_INTERSECTION);
+  assert_none(&r);
+  assert_int_equal(r.n_removed_tri, 3);
+  assert_int_equal(m.n_tri, 12);
+  assert_int_equal(m.tri_patch[0], 0); /* the first stays */
+  done(&m, &r);
+}
+
+/* All of a body twice, the second one inside out. */
+static void drops_a_second_skin(void **unused)
+{
+  NEW;
+
+  add_box(&m, 0, 1, 1);
+  add_box(&m, 0, 1, 0);
+  check(&m, 0, 1, &r);
+  assert_int_equal(r.count[VG_DEFECT_DUPLICATE_TRIANGLE], 12);
+  assert_int_equal(r.count[VG_DEFECT_NONMANIFOLD_EDGE], 0);
+  assert_int_equal(r.count[VG_DEFECT_INTERSECTION], 0);
+  check(&m, 1, 1, &r);
+  assert_none(&r);
+  assert_int_equal(r.n_removed_tri, 12);
+  assert_true(r.n_shell == 1 && r.shell[0].volume == 1);
+  done(&m, &r);
+}
+
+/* Two boxes with a common side, whichever way the second one looks. */
+static void unites_bodies_that_share_a_wall(void **unused)
+{
+  (void)unused;
+  for (int outward = 0; outward < 2; outward++) {
+    NEW;
+
+    add_box(&m, 0, 1, 1);
+    add_box(&m, 0, 1, outward);
+    move_from(&m, 8, 1, 0, 0);
+    /* The diagonals of the sides x = 0 and 1 of a box differ. */
+    for (int half = 0; half < 2; half++)
+      for (int k = 0; k < 3; k++)
+        m.tri[12 + half][k] = m.tri[2 + half][k] + 8 - 1;
+    for (int half = 0; outward && half < 2; half++) {
+      uint32_t n = m.tri[12 + half][1];
+
+      m.tri[12 + half][1] = m.tri[12 + half][2];
+      m.tri[12 + half][2] = n;
+    }
+    check(&m, 0, 1, &r);
+    assert_int_equal(r.count[VG_DEFECT_SHARED_WALL], 2);
+    assert_int_equal(r.count[VG_DEFECT_NONMANIFOLD_EDGE], 0);
+    assert_int_equal(r.count[VG_DEFECT_INTERSECTION], 0);
+    check(&m, 1, 1, &r);
+    assert_none(&r);
+    assert_int_equal(r.n_removed_wall, 4);
+    assert_int_equal(r.n_removed_tri, 0);
+    assert_int_equal(m.n_tri, 20);
+    assert_true(r.n_shell == 1 && r.shell[0].volume == 2);
+    done(&m, &r);
+  }
+}
+
+/* A wall that stands on a body with both of its sides: nothing is guessed. */
+static void leaves_a_wall_without_thickness(void **unused)
+{
+  uint32_t p;
+  NEW;
+
+  add_box(&m, 0, 1, 1);
+  p = add_point(&m, .5, .5, 2);
+  add_tri(&m, 4, 5, p, 0);
+  add_tri(&m, 5, 4, p, 0);
+  check(&m, 1, 1, &r);
+  assert_int_equal(r.count[VG_DEFECT_DUPLICATE_TRIANGLE], 1);
+  assert_int_equal(r.count[VG_DEFECT_NONMANIFOLD_EDGE], 1);
+  assert_int_equal(r.n_defect, 2);
+  assert_int_equal(m.n_tri, 14);
+  done(&m, &r);
+}
+
+/* A box on another one, of which a side is missing: without the wall they
+ * would have a hole. */
+static void keeps_a_shared_wall_at_a_hole(void **unused)
+{
+  NEW;
+
+  add_box(&m, 0, 1, 1);
+  add_box(&m, 0, 1, 1);
+  move_from(&m, 8, 1, 0, 0);
+  for (int half = 0; half < 2; half++) {
+    m.tri[12 + half][0] = m.tri[2 + half][0] + 7;
+    m.tri[12 + half][1] = m.tri[2 + half][2] + 7;
+    m.tri[12 + half][2] = m.tri[2 + half][1] + 7;
+  }
+  m.n_tri -= 2; /* z = 1 of the second box */
+  check(&m, 1, 1, &r);
+  assert_int_equal(r.count[VG_DEFECT_SHARED_WALL], 2);
+  assert_int_equal(r.count[VG_DEFECT_INTERSECTION], 0);
+  assert_true(r.count[VG_DEFECT_OPEN_EDGE] && !r.n_removed_wall);
   done(&m, &r);
 }
 
@@ -1034,6 +1133,10 @@ int main(void)
     cmocka_unit_test(drops_unused_points),
     cmocka_unit_test(knows_degenerate_triangles),
     cmocka_unit_test(drops_copies_of_a_triangle),
+    cmocka_unit_test(drops_a_second_skin),
+    cmocka_unit_test(unites_bodies_that_share_a_wall),
+    cmocka_unit_test(leaves_a_wall_without_thickness),
+    cmocka_unit_test(keeps_a_shared_wall_at_a_hole),
     cmocka_unit_test(reports_coordinates_that_are_not_finite),
     cmocka_unit_test(reports_quadrilaterals),
     cmocka_unit_test(asks_for_boundary_conditions),

@@ -58,8 +58,8 @@ static const struct figures clean[] = {
 };
 
 static const struct figures dirty[] = {
-  { "dirty/motorbike.obj.gz", 0, 4, 49, 100089, 0, 1679797, 67326 },
-  { "dirty/drivaer_fastback_body.obj.gz", 0, 1, 0, 33, 0, 1160, 0 },
+  { "dirty/motorbike.obj.gz", 0, 4, 49, 100089, 0, 0, 67326 },
+  { "dirty/drivaer_fastback_body.obj.gz", 0, 1, 0, 33, 0, 0, 0 },
   { "dirty/toy_airplane_with_holes.obj.xz", 0, 1, 341, 0, 0, 0, 0 },
   { "dirty/three_plugs.bin.tri.xz", 0, 3, 0, 0, 0, 704, 0 },
   { "dirty/f16_components_overlapping.stl.xz", 0, 11, 110, 0, 0, 2122, 0 },

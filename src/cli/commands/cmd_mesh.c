@@ -239,7 +239,7 @@ static json_t *report_json(const struct run *r, int ok,
   json_object_set_new(o, "input", vg_report_size_json(&p->surface));
   json_object_set_new(o, "patches", vg_report_patches_json(&p->surface));
   json_object_set_new(o, "surface", vg_report_surface_json(&p->surface,
-                      &p->check, VG_SHOWN_DEFECTS));
+                      &p->check, VG_LISTED_DEFECTS));
   json_object_set_new(o, "remesh", vg_report_remesh_json(&p->renewal,
                                                          &p->surface));
   json_object_set_new(o, "domain", vg_report_domain_json(&p->domain));

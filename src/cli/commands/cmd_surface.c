@@ -160,7 +160,7 @@ static json_t *report(const struct vg_problem *p, const struct files *f)
                    vg_report_remesh_json(&p->renewal, &p->surface), "patches",
                    vg_report_patches_json(&p->surface), "surface",
                    vg_report_surface_json(&p->surface, &p->check,
-                                          VG_SHOWN_DEFECTS),
+                                          VG_LISTED_DEFECTS),
                    "notes", notes, "files", files);
 }
 

@@ -135,7 +135,9 @@ static vg_status return_meeting(struct moving *k, int threads,
   for (size_t i = 0; st >= 0 && i < r.n_defect; i++)
     for (int j = 0; j < 2; j++)
       if ((r.defect[i].kind == VG_DEFECT_INTERSECTION
-           || r.defect[i].kind == VG_DEFECT_DEGENERATE_TRIANGLE)
+           || r.defect[i].kind == VG_DEFECT_DEGENERATE_TRIANGLE
+           || r.defect[i].kind == VG_DEFECT_NONMANIFOLD_EDGE
+           || r.defect[i].kind == VG_DEFECT_DUPLICATE_TRIANGLE)
           && r.defect[i].face[j] != SIZE_MAX)
         *n += return_corners(k, r.defect[i].face[j]);
   vg_surface_report_release(&r);

@@ -22,6 +22,7 @@ struct check {
   struct vg_aabb_tree tree;
   struct vg_crossing cross;
   uint32_t *first;          /* [s.n] lowest face with the same nodes */
+  uint8_t *copy;            /* [s.n] enum vg_copy; NULL: there are none */
   uint32_t (*fan)[3];       /* [s.n] */
   uint8_t *flip;            /* [s.n] faces to turn */
   uint32_t *shell;          /* [s.n] */
@@ -33,6 +34,7 @@ static void release(struct check *c)
   free(c->same);
   free(c->owner);
   free(c->first);
+  free(c->copy);
   free(c->fan);
   free(c->flip);
   free(c->shell);
@@ -68,35 +70,57 @@ static void mark_cells(uint8_t *used, const struct vg_mesh *m)
   mark(used, (uint32_t *)m->hex, 8 * m->n_hex);
 }
 
-/* Collapsed triangles and copies that differ in nothing from the first. */
+static int has_cells(const struct vg_mesh *m)
+{
+  return m->n_tet + m->n_pyr + m->n_pri + m->n_hex > 0;
+}
+
+static int has_copies(const struct vg_faces *s, const uint32_t *first)
+{
+  for (size_t f = 0; f < s->n; f++)
+    if (first[f] != f && !(s->state[f] & VG_FACE_COLLAPSED)) return 1;
+  return 0;
+}
+
+/* Collapsed triangles, copies, and both sides of walls that bodies share. In
+ * a mesh of cells a face with two sides bounds cells on both. */
 static void list_superfluous(const struct vg_mesh *m, const struct vg_faces *s,
-                             const uint32_t *first, uint8_t *drop)
+                             const uint32_t *first, const uint8_t *copy,
+                             uint8_t *drop, struct vg_surface_report *r)
 {
   for (size_t t = 0; t < m->n_tri; t++) {
     uint32_t f = first[t];
+    int is_wall = copy && copy[t] == VG_COPY_WALL && f < m->n_tri
+                  && !has_cells(m);
+    int is_copy = copy && f != t
+                  && (copy[t] == VG_COPY_SKIN
+                      || vg_faces_same_side(s->node[f], s->node[t]));
 
-    drop[t] = s->state[t] & VG_FACE_COLLAPSED
-              || (f != t && m->tri_patch[f] == m->tri_patch[t]
-                  && vg_faces_same_side(s->node[f], s->node[t]));
+    drop[t] = s->state[t] & VG_FACE_COLLAPSED || is_wall || is_copy;
+    r->n_removed_wall += is_wall;
+    r->n_removed_tri += drop[t] && !is_wall;
   }
 }
 
 static vg_status tidy_triangles(struct vg_mesh *m, const uint32_t *same,
-                                size_t *n_removed, struct vg_error *err)
+                                struct vg_surface_report *r,
+                                struct vg_error *err)
 {
   struct vg_faces s = VG_FACES_INIT;
   uint32_t *first = NULL;
-  uint8_t *drop = vg_alloc(m->n_tri, 1);
+  uint8_t *drop = vg_alloc(m->n_tri, 1), *copy = NULL;
   vg_status st = VG_OK;
 
   if (!drop) return vg_fail_memory(err, "a list of triangles");
   VG_TRY(vg_faces_build(&s, m, same, err));
   VG_TRY(vg_faces_duplicate(&s, &first, err));
-  list_superfluous(m, &s, first, drop);
-  *n_removed = vg_mesh_drop_tri(m, drop);
+  if (has_copies(&s, first)) VG_TRY(vg_faces_copies(&s, first, &copy, err));
+  list_superfluous(m, &s, first, copy, drop, r);
+  vg_mesh_drop_tri(m, drop);
 done:
   vg_faces_release(&s);
   free(first);
+  free(copy);
   free(drop);
   return st;
 }
@@ -111,7 +135,7 @@ static vg_status tidy(struct vg_mesh *m, struct vg_surface_report *r,
   vg_status st = VG_OK;
 
   VG_TRY(vg_points_same(m, &map, err));
-  VG_TRY(tidy_triangles(m, map, &r->n_removed_tri, err));
+  VG_TRY(tidy_triangles(m, map, r, err));
   used = vg_calloc(m->n_point, 1);
   if (!used) VG_TRY(vg_fail_memory(err, "a list of points"));
   mark(used, (uint32_t *)m->tri, 3 * m->n_tri);
@@ -205,8 +229,9 @@ static vg_status look_at_faces(struct check *c)
       VG_TRY(add(c, VG_DEFECT_DEGENERATE_TRIANGLE, g, SIZE_MAX, SIZE_MAX,
                  SIZE_MAX, at));
     if (first[f] != f && !(c->s.state[f] & VG_FACE_COLLAPSED))
-      VG_TRY(add(c, VG_DEFECT_DUPLICATE_TRIANGLE, source(c, first[f]), g,
-                 SIZE_MAX, SIZE_MAX, at));
+      VG_TRY(add(c, c->copy[f] == VG_COPY_WALL || c->copy[f] == VG_COPY_PART
+                    ? VG_DEFECT_SHARED_WALL : VG_DEFECT_DUPLICATE_TRIANGLE,
+                 source(c, first[f]), g, SIZE_MAX, SIZE_MAX, at));
   }
 done:
   return st;
@@ -382,12 +407,11 @@ static vg_status build_topology(struct check *c, struct vg_error *err)
 
   VG_TRY(vg_edges_build(&c->e, &c->s, err));
   VG_TRY(vg_orient_faces(&c->s, &c->e, c->flip, err));
-  VG_TRY(vg_label_fans(&c->s, &c->e, c->flip, &c->fan, err));
+  VG_TRY(vg_label_fans(&c->s, &c->e, &c->fan, err));
   if (!c->o->repair) memset(c->flip, 0, c->s.n);
   VG_TRY(vg_count_components(&c->s, &r->n_piece, err));
   VG_TRY(vg_label_shells(&c->s, &c->e, c->shell, &r->n_shell, err));
   for (size_t t = 0; t < c->m->n_tri; t++) r->tri_shell[t] = c->shell[t];
-  VG_TRY(vg_faces_duplicate(&c->s, &c->first, err));
 done:
   return st;
 }
@@ -425,6 +449,25 @@ static vg_status build_halves(struct check *c)
   return VG_OK;
 }
 
+/* Copies that are reported as such take no part in what follows, so that
+ * they are not reported as edges and intersections, too: all but the first
+ * face of a skin, and both faces of a wall that bodies share. */
+static vg_status find_copies(struct check *c)
+{
+  struct vg_faces *s = &c->s;
+  vg_status st;
+
+  VG_TRY(vg_faces_duplicate(s, &c->first, c->err));
+  if (!has_copies(s, c->first)) goto done;
+  VG_TRY(vg_faces_copies(s, c->first, &c->copy, c->err));
+  for (size_t f = 0; f < s->n; f++)
+    if (c->copy[f] == VG_COPY_WALL
+        || (c->copy[f] == VG_COPY_SKIN && c->first[f] != f))
+      s->state[f] |= VG_FACE_COPY;
+done:
+  return st;
+}
+
 static vg_status build(struct check *c)
 {
   struct vg_surface_report *r = c->r;
@@ -434,6 +477,7 @@ static vg_status build(struct check *c)
   VG_TRY(vg_stopped(&c->o->stop, c->err));
   VG_TRY(list_owners(c));
   VG_TRY(vg_faces_build(&c->s, c->m, c->same, c->err));
+  VG_TRY(find_copies(c));
   c->flip = vg_calloc(c->s.n, 1);
   c->shell = vg_alloc(c->s.n, sizeof *c->shell);
   r->face_kinds = vg_calloc(c->m->n_tri + c->m->n_quad,
@@ -460,9 +504,9 @@ static vg_status build_shells(struct check *c)
     VG_TRY(vg_fail_memory(c->err, "the shells of the surface"));
   VG_TRY(vg_measure_shells(r->shell, c->shell_state, r->n_shell, &c->s, &c->e,
                            c->shell, c->flip, c->err));
-  VG_TRY(vg_find_crossings(&c->cross, &c->s, (const uint32_t (*)[3])c->fan,
-                           &c->tree, c->shell, r->n_shell, c->o->threads,
-                           &c->o->stop, c->err));
+  VG_TRY(vg_find_crossings(&c->cross, &c->s, c->first,
+                           (const uint32_t (*)[3])c->fan, &c->tree, c->shell,
+                           r->n_shell, c->o->threads, &c->o->stop, c->err));
   VG_TRY(vg_nest_shells(r->shell, r->n_shell, &c->s, &c->tree, c->shell,
                         c->err));
   VG_TRY(vg_orient_shells(r->shell, c->shell_state, r->n_shell, c->o->external,

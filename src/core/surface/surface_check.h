@@ -16,6 +16,8 @@ enum vg_defect_kind {
   VG_DEFECT_UNUSED_POINT,
   VG_DEFECT_DEGENERATE_TRIANGLE,/* repeated node or exactly zero area */
   VG_DEFECT_DUPLICATE_TRIANGLE,
+  VG_DEFECT_SHARED_WALL,        /* two triangles of touching bodies have the
+                                   same points */
   VG_DEFECT_INTERSECTION,       /* two triangles cross or overlap */
   VG_DEFECT_SHELL,              /* nesting of closed shells is wrong */
   VG_DEFECT_NO_BC,              /* patch without boundary condition */
@@ -56,6 +58,8 @@ struct vg_surface_report {
                                    finding that touches the face */
   size_t n_flipped;             /* triangles turned by the repair */
   size_t n_removed_point, n_removed_tri; /* removed by the repair */
+  size_t n_removed_wall;        /* triangles of walls that touching bodies
+                                   shared, removed by the repair */
   int turned_inside_out;        /* every closed shell was turned as a whole */
   size_t n_piece;               /* components connected by nodes */
   size_t n_shell;               /* components connected by edges */
@@ -85,16 +89,23 @@ struct vg_surface_check_options {
 /** Find (and with `repair` fix) the defects of the boundary faces of m.
  *
  * The repair merges points with the same coordinates, drops unused points,
- * triangles with a repeated node and copies of a triangle (same nodes, side
- * and patch), makes neighbours agree (the fewer faces are turned) and turns
- * closed shells to the side that `external` asks for. A shell nested deeper
+ * triangles with a repeated node and copies of a triangle (same nodes and
+ * side, or a second copy of a piece of the skin that looks to the other side;
+ * the first stays, whatever their patches), and both faces of a wall that two
+ * bodies share where the bodies then have a common closed skin. It makes
+ * neighbours agree (the fewer faces are turned) and turns closed shells to
+ * the side that `external` asks for. A shell nested deeper
  * than the fluid's own boundary is never turned: whether it is a cavity or a
  * stray body is not ours to guess.
  *
+ * Each fault counts once. Copies that are reported take no part in edges and
+ * shells; of faces with the same nodes one takes part in intersections.
+ *
  * Intersections: pairs of triangles with a point in common that is not on a
  * common node or edge; exact, touching counts, degenerate ones excepted. A
- * node is common only to faces that hang together around it through edges of
- * two faces: sheets that meet in a node or a non-manifold edge touch.
+ * node is common only to faces that hang together around it through edges:
+ * sheets that meet in a node touch; the non-manifold edge in which sheets
+ * meet is a finding of its own.
  * With cells in m, points that only cells use are not unused.
  *
  * @param m       changed only by the repair; untouched on failure

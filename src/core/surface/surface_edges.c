@@ -47,7 +47,7 @@ static size_t fill_buckets(const struct vg_faces *s, uint64_t *key,
   uint32_t lo, hi, sum = 0;
 
   for (size_t h = 0; h < 3 * s->n; h++) {
-    if (s->state[h / 3] & VG_FACE_COLLAPSED) continue;
+    if (s->state[h / 3] & VG_FACE_OUT) continue;
     ends(s, h, &lo, &hi);
     at[lo]++;
   }
@@ -58,7 +58,7 @@ static size_t fill_buckets(const struct vg_faces *s, uint64_t *key,
     sum += n;
   }
   for (size_t h = 0; h < 3 * s->n; h++) {
-    if (s->state[h / 3] & VG_FACE_COLLAPSED) continue;
+    if (s->state[h / 3] & VG_FACE_OUT) continue;
     ends(s, h, &lo, &hi);
     key[at[lo]++] = (uint64_t)hi << 32 | h;
   }

@@ -17,6 +17,7 @@ struct found {
 struct search {
   struct vg_crossing *c;
   const struct vg_faces *s;
+  const uint32_t *first;
   const uint32_t (*fan)[3];
   const uint32_t *shell;
   const struct vg_stop *stop;
@@ -49,7 +50,8 @@ static vg_status check_pair(void *context, int worker, uint32_t f, uint32_t g)
   struct vg_crossing *c = x->c;
 
   if (vg_stops(x->stop)) return VG_ERR_STOPPED;
-  if (vg_faces_source(x->s, f) == vg_faces_source(x->s, g)
+  if (x->first[f] != f || x->first[g] != g
+      || vg_faces_source(x->s, f) == vg_faces_source(x->s, g)
       || !vg_triangles_meet(x->s->point, x->s->node[f], x->s->node[g],
                             x->fan[f], x->fan[g]))
     return VG_OK;
@@ -91,14 +93,14 @@ static vg_status gather_pairs(struct vg_crossing *c, const struct found *found,
 }
 
 vg_status vg_find_crossings(struct vg_crossing *c, const struct vg_faces *s,
-                            const uint32_t (*fan)[3],
-                                const struct vg_aabb_tree *t,
+                            const uint32_t *first, const uint32_t (*fan)[3],
+                            const struct vg_aabb_tree *t,
                             const uint32_t *shell, size_t n_shell,
                             int threads, const struct vg_stop *stop,
                             struct vg_error *err)
 {
   int n_found = vg_aabb_tree_workers(threads);
-  struct search x = { c, s, fan, shell, stop,
+  struct search x = { c, s, first, fan, shell, stop,
                       vg_calloc((size_t)n_found, sizeof *x.found) };
   vg_status st = VG_ERR_MEMORY;
 

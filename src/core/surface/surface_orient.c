@@ -64,7 +64,7 @@ vg_status vg_orient_faces(const struct vg_faces *s, const struct vg_edges *e,
     size_t n, n_turned = 0;
     int is_one_sided;
 
-    if (turn[f] != 2 || s->state[f] & VG_FACE_COLLAPSED) continue;
+    if (turn[f] != 2 || s->state[f] & VG_FACE_OUT) continue;
     n = walk(s, e, (uint32_t)f, queue, turn, &is_one_sided);
     if (is_one_sided) continue;
     for (size_t i = 0; i < n; i++) n_turned += turn[queue[i]];
@@ -90,23 +90,21 @@ static uint32_t next_corner(uint32_t h)
 }
 
 vg_status vg_label_fans(const struct vg_faces *s, const struct vg_edges *e,
-                        const uint8_t *flip, uint32_t (**fan)[3],
-                        struct vg_error *err)
+                        uint32_t (**fan)[3], struct vg_error *err)
 {
   uint32_t *up = each_alone(3 * s->n);
 
   if (!up) return vg_fail_memory(err, "the fans of the surface");
   for (size_t i = 0; i < e->n; i++) {
-    uint32_t g, h;
-    int same_way;
+    uint32_t g = e->half[e->start[i]];
 
-    if (e->start[i + 1] - e->start[i] != 2) continue;
-    g = e->half[e->start[i]];
-    h = e->half[e->start[i] + 1];
-    same_way = vg_edges_disagree(e, s, i);
-    if (same_way ^ flip[g / 3] ^ flip[h / 3]) continue;
-    vg_union(up, g, same_way ? h : next_corner(h));
-    vg_union(up, next_corner(g), same_way ? next_corner(h) : h);
+    for (uint32_t k = e->start[i] + 1; k < e->start[i + 1]; k++) {
+      uint32_t h = e->half[k];
+      int same_way = s->node[g / 3][g % 3] == s->node[h / 3][h % 3];
+
+      vg_union(up, g, same_way ? h : next_corner(h));
+      vg_union(up, next_corner(g), same_way ? next_corner(h) : h);
+    }
   }
   for (uint32_t i = 0; i < 3 * s->n; i++) up[i] = vg_root_of(up, i);
   *fan = (uint32_t (*)[3])up;
@@ -151,7 +149,7 @@ vg_status vg_label_shells(const struct vg_faces *s, const struct vg_edges *e,
   for (size_t f = 0; f < s->n; f++) { /* a root is the lowest of its shell */
     uint32_t r = vg_root_of(up, (uint32_t)f);
 
-    if (s->state[f] & VG_FACE_COLLAPSED) shell[f] = UINT32_MAX;
+    if (s->state[f] & VG_FACE_OUT) shell[f] = UINT32_MAX;
     else shell[f] = r == f ? n++ : shell[r];
   }
   free(up);

@@ -17,9 +17,11 @@ struct vg_faces {
 #define VG_FACES_INIT { 0 }
 
 enum {
-  VG_FACE_COLLAPSED = 1,    /* a repeated node: no part of the topology */
+  VG_FACE_COLLAPSED = 1,    /* a repeated node */
   VG_FACE_FLAT = 2,         /* exactly zero area, nodes distinct */
-  VG_FACE_NOT_FINITE = 4
+  VG_FACE_NOT_FINITE = 4,
+  VG_FACE_COPY = 8,         /* a copy that is reported as such */
+  VG_FACE_OUT = VG_FACE_COLLAPSED | VG_FACE_COPY /* no part of the topology */
 };
 
 /* Index of face f as vg_defect counts: quadrilaterals after the triangles. */
@@ -44,6 +46,24 @@ vg_status vg_faces_duplicate(const struct vg_faces *s, uint32_t **first,
 
 /** Whether two faces with the same nodes look to the same side. */
 int vg_faces_same_side(const uint32_t a[3], const uint32_t b[3]);
+
+/* surface_copies.c --------------------------------------------------------*/
+
+/* What faces with the same three nodes are. */
+enum vg_copy {
+  VG_COPY_NONE,             /* no other face has the nodes */
+  VG_COPY_SKIN,             /* a piece of a skin that is there twice or more */
+  VG_COPY_WALL,             /* a wall that two bodies share: without both faces
+                               every edge of its border has two faces */
+  VG_COPY_PART,             /* such a wall, but the border has other edges */
+  VG_COPY_OTHER             /* a wall without thickness */
+};
+
+/** (*copy)[f], an enum vg_copy, for each face; the caller frees it.
+ * @param first  as from vg_faces_duplicate
+ * O(n log n). */
+vg_status vg_faces_copies(const struct vg_faces *s, const uint32_t *first,
+                          uint8_t **copy, struct vg_error *err);
 
 /* surface_weld.c ----------------------------------------------------------*/
 
@@ -94,20 +114,19 @@ vg_status vg_orient_faces(const struct vg_faces *s, const struct vg_edges *e,
                           uint8_t *flip, struct vg_error *err);
 
 /** (*fan)[f][k]: corners with the same number belong to faces that hang
- * together around their node, through edges of two faces that agree once
- * flip[] is applied. A node of a clean surface has one fan; where a node or
- * an edge joins several sheets, each has its own. The caller frees it. O(n).
- */
+ * together around their node through common edges. A node of a clean surface
+ * has one fan; where a node joins several sheets, each has its own. Sheets
+ * that meet in an edge share its fans: the edge is the defect. The caller
+ * frees it. O(n). */
 vg_status vg_label_fans(const struct vg_faces *s, const struct vg_edges *e,
-                        const uint8_t *flip, uint32_t (**fan)[3],
-                        struct vg_error *err);
+                        uint32_t (**fan)[3], struct vg_error *err);
 
 /** Number of components connected by nodes. O(n). */
 vg_status vg_count_components(const struct vg_faces *s, size_t *n_piece,
                               struct vg_error *err);
 
 /** Number the edge-connected components by their lowest face: shell[f],
- * UINT32_MAX for collapsed faces. O(n). */
+ * UINT32_MAX for faces that are VG_FACE_OUT. O(n). */
 vg_status vg_label_shells(const struct vg_faces *s, const struct vg_edges *e,
                           uint32_t *shell, size_t *n_shell,
                           struct vg_error *err);
@@ -164,9 +183,11 @@ struct vg_crossing {
 };
 #define VG_CROSSING_INIT { 0 }
 
+/** @param first  as from vg_faces_duplicate: of faces with the same nodes only
+ *                the first takes part; the others are duplicates */
 vg_status vg_find_crossings(struct vg_crossing *c, const struct vg_faces *s,
-                            const uint32_t (*fan)[3],
-                                const struct vg_aabb_tree *t,
+                            const uint32_t *first, const uint32_t (*fan)[3],
+                            const struct vg_aabb_tree *t,
                             const uint32_t *shell, size_t n_shell,
                             int threads, const struct vg_stop *stop,
                             struct vg_error *err);

@@ -20,7 +20,6 @@ struct job {
   const struct vg_mesh *m;
   struct vg_error *err;
   uint32_t *same;           /* [n_point] every point is itself */
-  uint8_t *flip;            /* [n_tri] zeros */
   struct vg_faces s;
   struct vg_edges e;
   struct vg_aabb_tree tree;
@@ -43,7 +42,6 @@ static void release(struct job *j)
 
   release_topology(j);
   free(j->same);
-  free(j->flip);
   free(w->tri);
   free(w->mate);
   free(w->moved);
@@ -112,10 +110,9 @@ static vg_status allocate(struct job *j)
   w->locked = vg_calloc(w->n_point, 1);
   w->removed = vg_alloc(w->n_point, 1);
   w->mark = vg_calloc(w->n_point, sizeof *w->mark);
-  j->flip = vg_calloc(n, 1);
   j->same = vg_alloc(w->n_point, sizeof *j->same);
   if (!w->tri || !w->mate || !w->moved || !w->changed || !w->queue
-      || !w->queued || !w->locked || !w->removed || !w->mark || !j->flip
+      || !w->queued || !w->locked || !w->removed || !w->mark
       || !j->same)
     return vg_fail_memory(j->err, "the swaps of the surface");
   for (size_t p = 0; p < w->n_point; p++) j->same[p] = (uint32_t)p;
@@ -252,7 +249,7 @@ static vg_status test(struct job *j)
   VG_TRY(build_topology(j));
   test_faces(j);
   test_edges(j);
-  VG_TRY(vg_label_fans(&j->s, &j->e, j->flip, &j->fan, j->err));
+  VG_TRY(vg_label_fans(&j->s, &j->e, &j->fan, j->err));
   VG_TRY(vg_aabb_tree_build(&j->tree, &j->s, 1, j->err));
   VG_TRY(vg_aabb_tree_pairs(&j->tree, 1, test_pair, j));
 done:

@@ -8,8 +8,9 @@ const char *vg_defect_name(enum vg_defect_kind kind)
   static const char *const name[VG_DEFECT_N] = {
     "open edge",            "non-manifold edge",  "orientation",
     "duplicate point",      "unused point",       "degenerate triangle",
-    "duplicate triangle",   "self-intersection",  "shell nesting",
-    "no boundary condition", "coordinate not finite", "quadrilateral"
+    "duplicate triangle",   "shared wall",        "self-intersection",
+    "shell nesting",        "no boundary condition", "coordinate not finite",
+    "quadrilateral"
   };
 
   return (unsigned)kind < VG_DEFECT_N ? name[kind] : "unknown";
@@ -78,6 +79,9 @@ static const char *remedy(const struct vg_defect *d)
   case VG_DEFECT_DUPLICATE_TRIANGLE:
     return "two triangles have the same points; remove one, or both if they "
            "are a wall without thickness";
+  case VG_DEFECT_SHARED_WALL:
+    return "two bodies that touch both have this triangle; unite the bodies, "
+           "or use --wrap";
   case VG_DEFECT_INTERSECTION:
     return "these faces cross, overlap or touch; unite the bodies or "
            "move the surface apart there";

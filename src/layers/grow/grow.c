@@ -247,7 +247,11 @@ static vg_status try_front(struct vg_layer_work *w,
 {
   struct vg_surface_check_options o = VG_SURFACE_CHECK_OPTIONS_INIT;
   struct vg_surface_report r = VG_SURFACE_REPORT_INIT;
-  size_t n_cross;
+  static const enum vg_defect_kind kind[] = { VG_DEFECT_INTERSECTION,
+    VG_DEFECT_DEGENERATE_TRIANGLE, VG_DEFECT_NONMANIFOLD_EDGE,
+    VG_DEFECT_DUPLICATE_TRIANGLE, VG_DEFECT_SHARED_WALL };
+  size_t n_cross = 0;
+  uint32_t bits = 0;
   vg_status st;
 
   o.repair = 0;
@@ -255,12 +259,11 @@ static vg_status try_front(struct vg_layer_work *w,
   *n_bad = 0;
   memset(bad, 0, w->c->n_column);
   VG_TRY(vg_surface_check(&front->mesh, &o, &r, err));
-  n_cross = r.count[VG_DEFECT_INTERSECTION] +
-            r.count[VG_DEFECT_DEGENERATE_TRIANGLE];
+  for (size_t i = 0; i < sizeof kind / sizeof *kind; i++) {
+    n_cross += r.count[kind[i]];
+    bits |= 1u << kind[i];
+  }
   for (size_t t = 0; n_cross && t < front->mesh.n_tri; t++) {
-    const uint32_t bits = 1u << VG_DEFECT_INTERSECTION |
-                          1u << VG_DEFECT_DEGENERATE_TRIANGLE;
-
     if (!(r.face_kinds[t] & bits)) continue;
     for (int k = 0; k < 3; k++) {
       uint32_t c = front->column[front->mesh.tri[t][k]];

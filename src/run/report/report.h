@@ -15,7 +15,9 @@
 #include "partition/solver/solver.h"
 #include "run/input/layers.h"
 
-#define VG_SHOWN_DEFECTS 20   /* first ones of a kind put in words */
+#define VG_SHOWN_DEFECTS 3    /* first ones of a kind, for a person */
+#define VG_LISTED_DEFECTS 20  /* first ones of a kind, for a program */
+#define VG_SHOWN_ITEMS 20     /* shells, or numbers of patches, in one list */
 #define VG_SHOWN_FACES 3      /* as much of bad triangles */
 
 /** Counts of a mesh, its box and its patches. */

@@ -168,7 +168,7 @@ void vg_report_layers_note(const struct vg_layer_stage *s,
                            const struct vg_mesh *surface,
                            struct vg_notes *notes)
 {
-  char list[12 * VG_SHOWN_DEFECTS + 8] = "";
+  char list[12 * VG_SHOWN_ITEMS + 8] = "";
   size_t n = 0, at = 0;
   double first = 0;
 
@@ -176,10 +176,10 @@ void vg_report_layers_note(const struct vg_layer_stage *s,
     const struct vg_patch_layers *w = &s->wall[i];
 
     if (!w->n_face || bare_faces(w) < w->n_face) continue;
-    if (n++ < VG_SHOWN_DEFECTS)
+    if (n++ < VG_SHOWN_ITEMS)
       at += (size_t)snprintf(list + at, sizeof list - at, " %d",
                              (int)patch_of(surface, w)->id);
-    if (n == VG_SHOWN_DEFECTS + 1) snprintf(list + at, sizeof list - at,
+    if (n == VG_SHOWN_ITEMS + 1) snprintf(list + at, sizeof list - at,
                                             " ...");
     first = fmax(first, s->request[w->patch].law.delta1);
   }

@@ -198,7 +198,7 @@ json_t *vg_report_lines_json(const struct vg_remesh_report *r, int fit)
     "percent_edges_fit",
     fit ? json_real(percent(r->n_edge_fit, r->n_edge)) : json_null(),
     "below_20_degrees", (json_int_t)r->n_bad, "causes", cause, "first",
-    bad_json(r, VG_SHOWN_DEFECTS));
+    bad_json(r, VG_LISTED_DEFECTS));
 }
 
 void vg_report_distances_text(FILE *to, const char *file,

@@ -168,7 +168,7 @@ static void shells_text(FILE *to, const struct vg_surface_report *r)
 
   fprintf(to, "  %-24s %15s%s\n", "shells", vg_text_count(r->n_shell, count),
           r->is_closed ? "  (closed)" : "  (not closed)");
-  for (size_t i = 0; i < r->n_shell && i < VG_SHOWN_DEFECTS; i++) {
+  for (size_t i = 0; i < r->n_shell && i < VG_SHOWN_ITEMS; i++) {
     const struct vg_shell *s = &r->shell[i];
 
     fprintf(to, "    shell %zu: %s triangles, depth %d, volume %g, box %g %g "
@@ -176,8 +176,8 @@ static void shells_text(FILE *to, const struct vg_surface_report *r)
             s->depth, s->volume, s->lo[0], s->lo[1], s->lo[2], s->hi[0],
             s->hi[1], s->hi[2]);
   }
-  if (r->n_shell > VG_SHOWN_DEFECTS)
-    fprintf(to, "    ... and %zu more\n", r->n_shell - VG_SHOWN_DEFECTS);
+  if (r->n_shell > VG_SHOWN_ITEMS)
+    fprintf(to, "    ... and %zu more\n", r->n_shell - VG_SHOWN_ITEMS);
 }
 
 static void repair_text(FILE *to, const struct vg_surface_report *r)
@@ -201,6 +201,9 @@ static void repair_text(FILE *to, const struct vg_surface_report *r)
   if (r->n_removed_tri)
     fprintf(to, "  repaired: %zu duplicate or degenerate triangles removed\n",
             r->n_removed_tri);
+  if (r->n_removed_wall)
+    fprintf(to, "  repaired: %zu triangles of walls that touching bodies "
+            "shared removed\n", r->n_removed_wall);
 }
 
 /* Triangles that spoil the cells on them. */
@@ -285,8 +288,7 @@ void vg_report_surface_text(FILE *to, const struct vg_mesh *m,
       vg_defect_text(m, &r->defect[at], text, sizeof text);
       fprintf(to, "    %s\n", text);
     }
-    if (said > shown)
-      fprintf(to, "    ... and %zu more\n", said - shown);
+    if (n > shown) fprintf(to, "    ... and %zu more\n", n - shown);
   }
 }
 
@@ -335,12 +337,13 @@ json_t *vg_report_surface_json(const struct vg_mesh *m,
                 "lower", s->lo[0], s->lo[1], s->lo[2],
                 "upper", s->hi[0], s->hi[1], s->hi[2]));
   }
-  return json_pack("{s:b s:b s:I s:o s:o s:I s:I s:I s:b s:o s:o}",
+  return json_pack("{s:b s:b s:I s:o s:o s:I s:I s:I s:I s:b s:o s:o}",
                    "ok", r->n_defect == 0, "closed", r->is_closed,
                    "defects", (json_int_t)r->n_defect, "count", counts,
                    "shells", shells, "flipped", (json_int_t)r->n_flipped,
                    "removed_points", (json_int_t)r->n_removed_point,
                    "removed_triangles", (json_int_t)r->n_removed_tri,
+                   "removed_wall_triangles", (json_int_t)r->n_removed_wall,
                    "turned_inside_out", r->turned_inside_out, "first",
                    defects_json(m, r, shown), "quality", quality_json(m));
 }

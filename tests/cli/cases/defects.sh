@@ -36,6 +36,45 @@ vanguard check -q cross.ugrid
 exits 1
 says out "self-intersection"
 
+# A triangle that is there twice, the second one turned and of another solid:
+# one finding, which the repair removes.
+octahedron >twice.obj
+printf 'g copy\nf 3 1 5\n' >>twice.obj
+vanguard check -q twice.obj
+exits 0
+says out "repaired: 1 duplicate or degenerate triangles removed"
+lacks out "self-intersection"
+lacks out "non-manifold"
+printf 't\nrepair\nno\n' >twice.deck
+vanguard mesh -q -p twice.obj
+exits 1
+says out "duplicate triangle: 1"
+lacks out "self-intersection"
+lacks out "non-manifold"
+
+# Two bodies that share a wall, and have one skin without it.
+{ octahedron
+  echo "v 2 2 2"
+  echo "g second"
+  printf 'f %s\n' "1 5 3" "1 3 7" "3 5 7" "5 1 7"
+} >wall.obj
+vanguard check -q wall.obj
+exits 0
+says out "repaired: 2 triangles of walls that touching bodies shared removed"
+printf 't\nrepair\nno\n' >wall.deck
+vanguard mesh -q -p wall.obj
+exits 1
+says out "shared wall: 1"
+says out "unite the bodies, or use --wrap"
+lacks out "self-intersection"
+
+# Three lines of a kind, whatever their number.
+octahedron | head -12 >lines.obj
+vanguard check -q lines.obj
+exits 1
+says out "open edge: 5"
+says out "... and 2 more"
+
 # A condition that was forgotten.
 cat >tet.ugrid <<'END'
 4 4 0 0 0 0 0
