@@ -160,7 +160,8 @@ int vanguard_setting(size_t i, struct vanguard_setting *out)
 {
   static const char *const kind[] = {
     [VG_PARAM_REAL] = "real", [VG_PARAM_COUNT] = "count",
-    [VG_PARAM_ID] = "count", [VG_PARAM_FLAG] = "flag",
+    [VG_PARAM_ID] = "count", [VG_PARAM_PATCH] = "text",
+    [VG_PARAM_FLAG] = "flag",
     [VG_PARAM_WORD] = "word", [VG_PARAM_TEXT] = "text" };
   struct vanguard_setting s = { .struct_size = sizeof s };
   int in_farfield;

@@ -124,11 +124,11 @@ static void everything_survives_a_round_trip(void **state)
   struct vg_settings s;
   struct vg_farfield_row far = { VG_DOMAIN_BOX, 12.5, 0, 3, { NAN, NAN, NAN },
                                  { -1, -2, -3 }, { 1, 2, 1e9 } };
-  struct vg_patch_row patch = { -7, 4000, 1, "left wing" };
+  struct vg_patch_row patch = { -7, 4000, 1, "left wing", "" };
   struct vg_layer_row layer = { -7, VG_ANSWER_YES, 1e-5, 1.15, NAN, NAN, NAN,
-                                30, 2, 0.125, 0, { 98, 99.9, 70, NAN, 8 } };
-  struct vg_surface_row surface = { -7, VG_BC_NONE, 0.25, 0.002, 4,
-                                    0 };
+                                30, 2, 0.125, 0, { 98, 99.9, 70, NAN, 8 },
+                                "" };
+  struct vg_surface_row surface = { VG_BC_NONE, 4, 0.25, 0, 0, 2, "tail*", "" };
   struct vg_sweep_row sweep = { "1,2", "1:4:x2", "", "20000,50000",
                                 "1:3", "advancing,octree", "4,16", 3 };
 

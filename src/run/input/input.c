@@ -19,6 +19,7 @@
 #include "run/input/share.h"
 #include "run/input/sizes.h"
 #include "run/settings/deck.h"
+#include "run/settings/patch_names.h"
 
 /* Of struct vg_cad_options, however sizes are scaled. */
 #define FINE_CHORD 3e-4   /* S15: of what the surface is made anew from */
@@ -365,6 +366,7 @@ vg_status vg_problem_patch_table(struct vg_problem *p, int are_closed,
   vg_status st = axis ? vg_patch_axes(&p->surface, axis, err)
                       : vg_fail_memory(err, "the patches");
 
+  if (st >= 0) st = vg_patch_rows_resolve(&p->settings, &p->surface, err);
   for (size_t i = 0; i < p->settings.n_patch && st >= 0; i++) {
     const struct vg_patch_row *row = &p->settings.patch[i];
     size_t at = vg_mesh_find_patch(&p->surface, row->id);
@@ -546,6 +548,8 @@ static vg_status apply_aflr(struct vg_problem *p, const char *path,
   if (n_unused)
     vg_note(&p->notes, "%s lists %zu patches that the surface does not have",
             path, n_unused);
+  /* What the file asks for comes after rows that are given by name. */
+  VG_TRY(vg_patch_rows_resolve(&p->settings, &p->surface, err));
   for (size_t i = 0; i < a.n && p->settings.layer.from_files; i++)
     for (size_t j = 0; j < m->n_patch; j++)
       if (by_name ? strcmp(m->patch[j].name, a.patch[i].name) == 0

@@ -8,17 +8,10 @@
 #include "base/memory.h"
 #include "core/geometry/vector.h"
 #include "run/input/input.h"
+#include "run/settings/patch_names.h"
+#include "run/settings/surface_table.h"
 
 #define SECTIONS 256      /* along the span of a patch */
-
-static vg_status find_patch(const struct vg_mesh *m, int32_t id, size_t *at,
-                            struct vg_error *err)
-{
-  *at = vg_mesh_find_patch(m, id);
-  if (*at != SIZE_MAX) return VG_OK;
-  return vg_fail(err, VG_ERR_INPUT, "surface: there is no patch %d; vanguard "
-                 "check lists those of the surface", (int)id);
-}
 
 static void lower(double *cap, uint32_t p, double size)
 {
@@ -38,38 +31,43 @@ static int by_ends(const void *pa, const void *pb)
   return (a->patch > b->patch) - (a->patch < b->patch);
 }
 
-/* Edges between patches a and b. */
-static vg_status size_curve(const struct vg_mesh *m, size_t a, size_t b,
+/* Edges between patches with on[][0] and those with on[][1]. */
+static int is_between(const uint8_t (*on)[2], uint32_t p, uint32_t q)
+{
+  return p != q && ((on[p][0] && on[q][1]) || (on[p][1] && on[q][0]));
+}
+
+static vg_status size_curve(const struct vg_mesh *m, const uint8_t (*on)[2],
                             double size, double stretch,
-                            struct vg_surface_sizes *to, struct vg_error *err)
+                            struct vg_surface_sizes *to, size_t *n_edge,
+                            struct vg_error *err)
 {
   struct side *s = vg_alloc(3 * m->n_tri, sizeof *s);
-  size_t n = 0, n_edge = 0;
+  size_t n = 0;
+
+  *n_edge = 0;
 
   if (!s) return vg_fail_memory(err, "the edges of two patches");
   for (size_t t = 0; t < m->n_tri; t++)
     for (int k = 0; k < 3; k++) {
       uint32_t p = m->tri[t][k], q = m->tri[t][(k + 1) % 3];
 
-      if (m->tri_patch[t] != a && m->tri_patch[t] != b) continue;
+      if (!on[m->tri_patch[t]][0] && !on[m->tri_patch[t]][1]) continue;
       s[n++] = (struct side){ p < q ? p : q, p < q ? q : p, m->tri_patch[t],
                               (uint32_t)(3 * t) + (uint32_t)k };
     }
   qsort(s, n, sizeof *s, by_ends);
   for (size_t i = 1; i < n; i++)
     if (s[i].lo == s[i - 1].lo && s[i].hi == s[i - 1].hi
-        && s[i].patch != s[i - 1].patch) {
+        && is_between(on, s[i].patch, s[i - 1].patch)) {
       lower(to->cap, s[i].lo, size);
       lower(to->cap, s[i].hi, size);
       for (size_t j = i - 1; stretch > 0 && j <= i; j++)
         to->stretch[s[j].half] = stretch;
-      n_edge++;
+      ++*n_edge;
     }
   free(s);
-  if (n_edge) return VG_OK;
-  return vg_fail(err, VG_ERR_INPUT, "surface: patches %d and %d have no edge "
-                 "in common, so there is no curve between them",
-                 (int)m->patch[a].id, (int)m->patch[b].id);
+  return VG_OK;
 }
 
 /* --- leading edges ------------------------------------------------------- */
@@ -159,31 +157,80 @@ static void size_lead(const struct vg_mesh *m, size_t patch, double share,
 
 /* --- all ----------------------------------------------------------------- */
 
-static vg_status take_row(const struct vg_problem *p,
-                          const struct vg_surface_row *row,
-                          struct vg_surface_sizes *s, struct vg_error *err)
+static vg_status take_curve(const struct vg_mesh *m,
+                            const struct vg_surface_row *row,
+                            uint8_t (*on)[2], struct vg_surface_sizes *s,
+                            struct vg_error *err)
 {
-  const struct vg_mesh *m = &p->surface;
   const double size = row->size > 0 ? row->size : INFINITY;
-  size_t a, b;
+  char one[2 * VG_NAME_MAX + 4], two[2 * VG_NAME_MAX + 4];
+  size_t n_edge;
   vg_status st;
 
-  VG_TRY(find_patch(m, row->patch, &a, err));
-  if (row->beside != VG_BC_NONE) {
-    VG_TRY(find_patch(m, row->beside, &b, err));
-    if (row->stretch > 0 && !s->stretch) {
-      s->stretch = vg_calloc(3 * m->n_tri, sizeof *s->stretch);
-      if (!s->stretch) VG_TRY(vg_fail_memory(err, "the stretched edges"));
-    }
-    st = size_curve(m, a, b, size, row->stretch, s, err);
-    goto done;
+  if (row->stretch > 0 && !s->stretch) {
+    s->stretch = vg_calloc(3 * m->n_tri, sizeof *s->stretch);
+    if (!s->stretch) return vg_fail_memory(err, "the stretched edges");
   }
-  for (size_t t = 0; t < m->n_tri; t++)
-    for (int k = 0; k < 3 && m->tri_patch[t] == a; k++)
-      lower(s->cap, m->tri[t][k], size);
-  if (row->lead > 0) size_lead(m, a, row->lead, p->settings.growth, s->cap);
-  if (row->across > 0) s->across[a] = row->across;
+  st = size_curve(m, (const uint8_t (*)[2])on, size, row->stretch, s, &n_edge,
+                  err);
+  if (st < 0 || n_edge) return st;
+  vg_param_format(&vg_surface_table.column[0], row, one, sizeof one);
+  vg_param_format(&vg_surface_table.column[1], row, two, sizeof two);
+  return vg_fail(err, VG_ERR_INPUT, "surface: patches %s and %s have no edge "
+                 "in common, so there is no curve between them", one, two);
+}
+
+static void take_patch(const struct vg_problem *p, size_t patch,
+                       const struct vg_surface_row *row,
+                       struct vg_surface_sizes *s)
+{
+  const struct vg_mesh *m = &p->surface;
+
+  for (size_t t = 0; t < m->n_tri && row->size > 0; t++)
+    for (int k = 0; k < 3 && m->tri_patch[t] == patch; k++)
+      lower(s->cap, m->tri[t][k], row->size);
+  if (row->lead > 0)
+    size_lead(m, patch, row->lead, p->settings.growth, s->cap);
+  if (row->across > 0) s->across[patch] = row->across;
+}
+
+/* mark[2 * n_patch] and on[n_patch] are scratch space. */
+static vg_status take_row(const struct vg_problem *p,
+                          const struct vg_surface_row *row, uint8_t *mark,
+                          uint8_t (*on)[2], struct vg_surface_sizes *s,
+                          struct vg_error *err)
+{
+  const struct vg_mesh *m = &p->surface;
+  const int beside = vg_surface_row_has_beside(row);
+  vg_status st;
+
+  memset(mark, 0, 2 * m->n_patch);
+  VG_TRY(vg_patch_ref_mark("surface", row->patch, row->patch_name, m,
+                           m->n_patch, mark, err));
+  if (beside)
+    VG_TRY(vg_patch_ref_mark("surface", row->beside, row->beside_name, m,
+                             m->n_patch, mark + m->n_patch, err));
+  for (size_t i = 0; i < m->n_patch; i++) {
+    on[i][0] = mark[i];
+    on[i][1] = mark[m->n_patch + i];
+    if (!beside && mark[i]) take_patch(p, i, row, s);
+  }
+  if (beside) st = take_curve(m, row, on, s, err);
 done:
+  return st;
+}
+
+static vg_status take_rows(const struct vg_problem *p,
+                           struct vg_surface_sizes *s, struct vg_error *err)
+{
+  size_t n = p->surface.n_patch;
+  uint8_t *mark = vg_alloc(n, 2), (*on)[2] = vg_alloc(n, sizeof *on);
+  vg_status st = mark && on ? VG_OK : vg_fail_memory(err, "the patches");
+
+  for (size_t i = 0; i < p->settings.n_surface && st >= 0; i++)
+    st = take_row(p, &p->settings.surface_row[i], mark, on, s, err);
+  free(mark);
+  free(on);
   return st;
 }
 
@@ -200,8 +247,7 @@ vg_status vg_surface_sizes_make(const struct vg_problem *p,
     return vg_fail_memory(err, "the sizes on the surface");
   for (size_t i = 0; i < p->surface.n_point; i++) s->cap[i] = INFINITY;
   for (size_t i = 0; i < p->surface.n_patch; i++) s->across[i] = 1;
-  for (size_t i = 0; i < p->settings.n_surface; i++)
-    VG_TRY(take_row(p, &p->settings.surface_row[i], s, err));
+  VG_TRY(take_rows(p, s, err));
   for (size_t i = 0; i < p->surface.n_point; i++)
     s->cap[i] *= p->settings.scale;
 done:

@@ -10,10 +10,9 @@
 #include "core/surface/surface_swap.h"
 #include "io/stream/stream.h"
 #include "io/vgrid/mapbc.h"
-#include "run/settings/lists.h"
+#include "run/settings/patch_names.h"
 
 #define MESHING_WALL 2     /* class of a .d3m patch that grows layers */
-#define SHOWN_PATCHES 30
 
 const char *vg_wall_reason_name(enum vg_wall_reason reason)
 {
@@ -57,42 +56,6 @@ int vg_walls_asked(const struct vg_settings *s)
          *l->walls || vg_has_limits(&l->limit);
 }
 
-/* A whole number at *text, which moves behind it; 0 when there is none. */
-static vg_status mark(const char *name, const struct vg_mesh *m, int64_t from,
-                      int64_t to, uint8_t *on, struct vg_error *err)
-{
-  int found = 0;
-
-  for (size_t i = 0; i < m->n_patch; i++)
-    if (m->patch[i].id >= from && m->patch[i].id <= to) {
-      on[i] = 1;
-      found = 1;
-    }
-  if (found) return VG_OK;
-  if (from == to)
-    return vg_fail(err, VG_ERR_INPUT, "%s: patch %lld is not in the surface; "
-                   "'vanguard check' lists its patches", name,
-                   (long long)from);
-  return vg_fail(err, VG_ERR_INPUT, "%s: no patch of the surface is within "
-                 "%lld-%lld; 'vanguard check' lists its patches", name,
-                 (long long)from, (long long)to);
-}
-
-/* Patches in the list: on[i] is set to 1. VG_ERR_INPUT for a number or range
- * that the surface does not have. */
-static vg_status patch_list(const char *name, const char *list,
-                            const struct vg_mesh *m, uint8_t *on,
-                            struct vg_error *err)
-{
-  const char *at = list;
-  int64_t from, to;
-  vg_status st = vg_patch_list_check(name, list, err);
-
-  while (st >= 0 && vg_patch_list_next(&at, &from, &to))
-    st = mark(name, m, from, to, on, err);
-  return st;
-}
-
 /* Meshing class of patch id in the project, 0 where it says nothing. */
 static int32_t meshing_class(const struct vg_project *p, int32_t id)
 {
@@ -107,6 +70,65 @@ static int is_given(const struct vg_problem *p, int32_t id)
   for (size_t i = 0; i < p->settings.n_patch; i++)
     if (p->settings.patch[i].id == id) return 1;
   return 0;
+}
+
+/* A farfield or symmetry plane that this program added. Its number follows
+ * those of the surface, so that a range can include it by mistake. */
+static int is_added(const struct vg_problem *p, const struct vg_patch *patch)
+{
+  return !is_given(p, patch->id) && (patch->bc == 1 || patch->bc == 3);
+}
+
+/* The patches before those that this program added. */
+static size_t n_own(const struct vg_problem *p)
+{
+  size_t n = p->surface.n_patch;
+
+  while (n && is_added(p, &p->surface.patch[n - 1])) n--;
+  return n;
+}
+
+static vg_status refuse_added(const struct vg_problem *p, const char *what,
+                              size_t i, struct vg_error *err)
+{
+  const struct vg_patch *patch = &p->surface.patch[i];
+  char list[600];
+
+  vg_patch_list_text(&p->surface, n_own(p), list, sizeof list);
+  return vg_fail(err, VG_ERR_INPUT, "%s: patch %d is the %s that was added to "
+                 "the surface, on which no layers grow; leave it out. Patches: "
+                 "%s", what, (int)patch->id,
+                 patch->bc == 1 ? "symmetry plane" : "farfield", list);
+}
+
+/* Names mean patches of the surface; only numbers can mean one that was
+ * added. */
+static vg_status refuse_added_walls(const struct vg_problem *p,
+                                    struct vg_error *err)
+{
+  const char *at = p->settings.layer.walls;
+  struct vg_patch_item item;
+
+  while (vg_patch_list_next(&at, &item))
+    for (size_t i = n_own(p); i < p->surface.n_patch && !*item.name; i++)
+      if (p->surface.patch[i].id >= item.from &&
+          p->surface.patch[i].id <= item.to)
+        return refuse_added(p, "walls", i, err);
+  return VG_OK;
+}
+
+/* A patch without faces has no layers, whatever is asked for. */
+static vg_status refuse_empty(const struct vg_mesh *m, const uint8_t *has_faces,
+                              const enum vg_wall_reason *reason,
+                              struct vg_error *err)
+{
+  for (size_t i = 0; i < m->n_patch; i++)
+    if (reason[i] == VG_WALL_SETTING && !has_faces[i])
+      return vg_fail(err, VG_ERR_INPUT, "layers are asked for on patch %d%s%s, "
+                     "but none of its faces is left (the repair, or wrap, "
+                     "removed them); leave it out", (int)m->patch[i].id,
+                     *m->patch[i].name ? " " : "", m->patch[i].name);
+  return VG_OK;
 }
 
 /* Patches without conditions that are walls when layers are asked for: all of a
@@ -147,9 +169,11 @@ static vg_status apply_row(const struct vg_problem *p,
   size_t i = vg_mesh_find_patch(&p->surface, row->id);
 
   if (i == SIZE_MAX)
-    return vg_fail(err, VG_ERR_INPUT, "layers: patch %d is not in the "
-                   "surface; 'vanguard check' lists its patches",
-                   (int)row->id);
+    return vg_patch_ref_mark("layers", row->id, "", &p->surface, n_own(p),
+                             NULL, err);
+  if (i >= n_own(p) && (row->grow == VG_ANSWER_YES ||
+                        vg_has_limits(&row->limit)))
+    return refuse_added(p, "layers", i, err);
   if (row->grow == VG_ANSWER_NO && wall[i])
     return vg_fail(err, VG_ERR_INPUT, "patch %d is in the list walls, but the "
                    "table layers says grow no; remove one", (int)row->id);
@@ -169,8 +193,9 @@ static vg_status by_settings(const struct vg_problem *p, uint8_t *wall,
   const struct vg_mesh *m = &p->surface;
   vg_status st;
 
-  VG_TRY(patch_list("walls", s->layer.walls, m, wall, err));
-  VG_TRY(patch_list("slip", s->layer.slip, m, slip, err));
+  VG_TRY(refuse_added_walls(p, err));
+  VG_TRY(vg_patch_list_mark("walls", s->layer.walls, m, n_own(p), wall, err));
+  VG_TRY(vg_patch_list_mark("slip", s->layer.slip, m, m->n_patch, slip, err));
   for (size_t i = 0; i < m->n_patch; i++) {
     if (wall[i] && slip[i]) {
       st = vg_fail(err, VG_ERR_INPUT, "patch %d is in both lists, walls and "
@@ -184,27 +209,6 @@ static vg_status by_settings(const struct vg_problem *p, uint8_t *wall,
     VG_TRY(apply_row(p, &s->layer_row[i], wall, slip, reason, err));
 done:
   return st;
-}
-
-/* "  3 wing (bc 5), 4 tail (no condition), ..." */
-static void patch_words(const struct vg_mesh *m, char *text, size_t size)
-{
-  size_t at = 0;
-
-  *text = 0;
-  for (size_t i = 0; i < m->n_patch && at + 60 < size; i++) {
-    const struct vg_patch *p = &m->patch[i];
-    char bc[24] = "no condition";
-
-    if (i == SHOWN_PATCHES) {
-      snprintf(text + at, size - at, ", ...");
-      return;
-    }
-    if (p->bc != VG_BC_NONE) snprintf(bc, sizeof bc, "bc %d", (int)p->bc);
-    at += (size_t)snprintf(text + at, size - at, "%s%d%s%.20s (%s)",
-                           i ? ", " : "", (int)p->id, *p->name ? " " : "",
-                           p->name, bc);
-  }
 }
 
 /* Layers or nothing: a limit that is checked on no patch would be met. */
@@ -221,10 +225,10 @@ static vg_status no_walls(const struct vg_problem *p, struct vg_error *err)
 {
   char list[600];
 
-  patch_words(&p->surface, list, sizeof list);
+  vg_patch_list_text(&p->surface, n_own(p), list, sizeof list);
   return vg_fail(err, VG_ERR_INPUT, "%s: layers are asked for, but no patch "
                  "is known to be a wall; name them with --walls (as in "
-                 "--walls 3-12,15), give condition 4 in a .mapbc or the deck, "
+                 "--walls 3-12,wing*), give condition 4 in a .mapbc or the deck, "
                  "or say --layers no. Patches: %s", p->files.stem, list);
 }
 
@@ -243,6 +247,7 @@ vg_status vg_walls_find(const struct vg_problem *p,
   for (size_t i = 0; i < m->n_patch; i++)
     reason[i] = by_input(p, i, has_faces[i]);
   VG_TRY(by_settings(p, mark_of, mark_of + m->n_patch, reason, err));
+  VG_TRY(refuse_empty(m, has_faces, reason, err));
   for (size_t i = 0; i < m->n_patch; i++)
     *n_wall += reason[i] != VG_WALL_NOT;
   /* A whole domain in which conditions say that nothing is viscous is left

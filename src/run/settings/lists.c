@@ -6,43 +6,6 @@
 #include "io/mesh/format.h"
 #include "io/stream/stream.h"
 
-static int take_number(const char **text, int64_t *out)
-{
-  size_t n = **text == '-';
-
-  n += strspn(*text + n, "0123456789");
-  if (!vg_parse_int(*text, n, out)) return 0;
-  *text += n;
-  return 1;
-}
-
-int vg_patch_list_next(const char **text, int64_t *from, int64_t *to)
-{
-  const char *at = *text;
-
-  at += strspn(at, ", ");
-  *text = at;
-  if (!*at || !take_number(&at, from)) return 0;
-  *to = *from;
-  if (*at == '-' && (at++, !take_number(&at, to))) return 0;
-  if ((*at && !strchr(", ", *at)) || *to < *from) return 0;
-  *text = at;
-  return 1;
-}
-
-vg_status vg_patch_list_check(const char *name, const char *list,
-                              struct vg_error *err)
-{
-  const char *at = list;
-  int64_t from, to;
-
-  while (vg_patch_list_next(&at, &from, &to)) continue;
-  if (!*at) return VG_OK;
-  return vg_fail(err, VG_ERR_INPUT, "%s: '%s' is no list of patches; numbers "
-                 "and ranges are separated by commas, as in 3-12,15", name,
-                 list);
-}
-
 static int is_case(const char *item)
 {
   struct vg_foam_options options;

@@ -1,5 +1,5 @@
-/* run/settings/lists.h: settings that are lists: numbers of patches, files to
- * write. Uses io. */
+/* run/settings/lists.h: settings that are lists of files to write, or names
+ * of meshers. Uses io. */
 #ifndef VG_RUN_SETTINGS_LISTS_H
 #define VG_RUN_SETTINGS_LISTS_H
 
@@ -7,16 +7,6 @@
 #include <stdint.h>
 
 #include "base/status.h"
-
-/** Whether a list has numbers as in "3-12,15": ranges are inclusive, numbers
- * may be negative. A check of settings (struct vg_param); VG_ERR_INPUT names
- * the list. */
-vg_status vg_patch_list_check(const char *name, const char *list,
-                              struct vg_error *err);
-
-/** The next range of a list, *text behind it. 0: the list is at its end, or
- * what follows is none. */
-int vg_patch_list_next(const char **text, int64_t *from, int64_t *to);
 
 /* Kinds of file in a write list, and bytes of a name. */
 enum { VG_WRITE_ITEMS = 16, VG_WRITE_NAME = 24 };

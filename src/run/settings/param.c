@@ -41,6 +41,16 @@ static vg_status set_real(const struct vg_param *p, void *at,
   return VG_OK;
 }
 
+static vg_status check_characters(const struct vg_param *p, const char *text,
+                                  size_t len, struct vg_error *err)
+{
+  for (size_t i = 0; i < len; i++)
+    if ((unsigned char)text[i] < ' ' || text[i] == 127)
+      return vg_fail(err, VG_ERR_INPUT, "%s holds a control character",
+                     p->name);
+  return VG_OK;
+}
+
 static vg_status set_int(const struct vg_param *p, void *at, const char *text,
                          size_t len, struct vg_error *err)
 {
@@ -53,8 +63,33 @@ static vg_status set_int(const struct vg_param *p, void *at, const char *text,
                    "'%.*s'", p->name, (int)len, text);
   if (!in_range(p, (double)v)) return out_of_range(p, text, len, err);
   id = (int32_t)v;
-  if (p->type == VG_PARAM_ID) memcpy(at, &id, sizeof id);
-  else memcpy(at, &v, sizeof v);
+  if (p->type == VG_PARAM_COUNT) memcpy(at, &v, sizeof v);
+  else memcpy(at, &id, sizeof id);
+  return VG_OK;
+}
+
+/* A number, or else a name that the surface will know. */
+static vg_status set_patch(const struct vg_param *p, void *base,
+                           const char *text, size_t len, struct vg_error *err)
+{
+  const int32_t none = VG_BC_NONE;
+  char *name = (char *)base + p->name_at;
+  int64_t v;
+  vg_status st;
+
+  if (vg_parse_int(text, len, &v)) {
+    st = set_int(p, (char *)base + p->offset, text, len, err);
+    if (st >= 0) memset(name, 0, VG_NAME_MAX);
+    return st;
+  }
+  if (!len || len >= VG_NAME_MAX)
+    return vg_fail(err, VG_ERR_INPUT, "%s must be the number or name of a "
+                   "patch, found '%.*s'", p->name, (int)len, text);
+  st = check_characters(p, text, len, err);
+  if (st < 0) return st;
+  memcpy((char *)base + p->offset, &none, sizeof none);
+  memset(name, 0, VG_NAME_MAX);
+  memcpy(name, text, len);
   return VG_OK;
 }
 
@@ -96,10 +131,7 @@ static vg_status set_text(const struct vg_param *p, char *at,
   if (len >= p->size)
     return vg_fail(err, VG_ERR_INPUT, "%s has %zu characters; at most %zu "
                    "are kept", p->name, len, p->size - 1);
-  for (size_t i = 0; i < len; i++)
-    if ((unsigned char)text[i] < ' ' || text[i] == 127)
-      return vg_fail(err, VG_ERR_INPUT, "%s holds a control character",
-                     p->name);
+  if (check_characters(p, text, len, err) < 0) return VG_ERR_INPUT;
   memset(at, 0, p->size);
   memcpy(at, text, len);
   return p->check ? p->check(p->name, at, err) : VG_OK;
@@ -116,7 +148,10 @@ vg_status vg_param_set(const struct vg_param *p, void *base, const char *text,
 
   if (p->optional && vg_token_is(text, len, "-")) {
     if (p->type == VG_PARAM_REAL) memcpy(at, &unset, sizeof unset);
-    if (p->type == VG_PARAM_ID) memcpy(at, &none, sizeof none);
+    if (p->type == VG_PARAM_ID || p->type == VG_PARAM_PATCH)
+      memcpy(at, &none, sizeof none);
+    if (p->type == VG_PARAM_PATCH)
+      memset((char *)base + p->name_at, 0, VG_NAME_MAX);
     if (p->type == VG_PARAM_COUNT) memcpy(at, &no_count, sizeof no_count);
     return VG_OK;
   }
@@ -124,6 +159,7 @@ vg_status vg_param_set(const struct vg_param *p, void *base, const char *text,
   case VG_PARAM_REAL: return set_real(p, at, text, len, err);
   case VG_PARAM_COUNT:
   case VG_PARAM_ID: return set_int(p, at, text, len, err);
+  case VG_PARAM_PATCH: return set_patch(p, base, text, len, err);
   case VG_PARAM_FLAG: return set_word(p, yes_no, at, text, len, err);
   case VG_PARAM_WORD: return set_word(p, p->words, at, text, len, err);
   case VG_PARAM_TEXT: return set_text(p, at, text, len, err);
@@ -158,6 +194,10 @@ void vg_param_format(const struct vg_param *p, const void *base, char *out,
   int32_t id;
   int word;
 
+  if (p->type == VG_PARAM_PATCH && ((const char *)base)[p->name_at]) {
+    format_text((const char *)base + p->name_at, out, size);
+    return;
+  }
   switch (p->type) {
   case VG_PARAM_REAL:
     memcpy(&v, at, sizeof v);
@@ -171,6 +211,7 @@ void vg_param_format(const struct vg_param *p, const void *base, char *out,
     else snprintf(out, size, "%lld", (long long)count);
     break;
   case VG_PARAM_ID:
+  case VG_PARAM_PATCH:
     memcpy(&id, at, sizeof id);
     if (id == VG_BC_NONE && p->optional) snprintf(out, size, "-");
     else snprintf(out, size, "%d", (int)id);

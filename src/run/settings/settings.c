@@ -15,6 +15,7 @@
 #include "layers/expand/join.h"
 #include "partition/cut/partition.h"
 #include "run/settings/lists.h"
+#include "run/settings/patch_names.h"
 #include "run/settings/surface_table.h"
 
 #define HUGE_SIZE 1e60 /* beyond this the predicates are not safe */
@@ -259,11 +260,12 @@ static const struct vg_param params[] = {
     "none; -: 1.3, none where the .d3m gives the law" },
   { "walls", AT(layer.walls), .type = VG_PARAM_TEXT, .unit = "",
     .check = vg_patch_list_check,
-    .help = "patches with layers, and no others, as in 3-12,15; \"\": by "
-            "their conditions" },
+    .help = "patches with layers, and no others, by number or name, as in "
+            "3-12,15,wing*; \"\": by their conditions" },
   { "slip", AT(layer.slip), .type = VG_PARAM_TEXT, .unit = "",
     .check = vg_patch_list_check,
-    .help = "patches without layers whatever their condition, as in 4,7-9" },
+    .help = "patches without layers whatever their condition, as in "
+            "4,7-9,flap?" },
   { "fan_angle", AT(layer.fan_angle), .type = VG_PARAM_REAL, .lo = 0,
     .hi = 180, .unit = "degrees", .help = "convex edges that turn by more "
     "than this get several columns per point, fans; 0: only points that no one "
@@ -330,9 +332,9 @@ static const struct vg_param farfield_columns[] = {
   .size = sizeof ((struct vg_patch_row *)0)->field
 
 static const struct vg_param patch_columns[] = {
-  { "id", AT(id), .type = VG_PARAM_ID, .lo = INT32_MIN, .hi = INT32_MAX,
-    .unit = "", .required = 1, .help = "number of the patch in the surface "
-                                       "file" },
+  { "id", AT(id), VG_PATCH_COLUMN(struct vg_patch_row, id_name), .required = 1,
+    .help = "patch: its number in the surface file, or its name there (* and "
+            "? stand for characters)" },
   { "bc", AT(bc), .type = VG_PARAM_ID, .lo = -9999, .hi = 99999,
     .optional = 1, .unit = "", .help = "boundary condition, USM3D code (0 "
     "freestream, 1 symmetry, 3 farfield, 4 viscous wall, 5 inviscid wall) or "
@@ -351,8 +353,8 @@ static const struct vg_param patch_columns[] = {
     .above_lo = above, .optional = 1, .unit = units, .help = about }
 
 static const struct vg_param layer_columns[] = {
-  { "id", AT(id), .type = VG_PARAM_ID, .lo = INT32_MIN, .hi = INT32_MAX,
-    .unit = "", .required = 1, .help = "number of the patch" },
+  { "id", AT(id), VG_PATCH_COLUMN(struct vg_layer_row, id_name), .required = 1,
+    .help = "number of the patch, or its name (* and ? stand for characters)" },
   { "grow", AT(grow), .type = VG_PARAM_WORD, .words = answer_words,
     .unit = "", .help = "layers on this patch; auto: by its condition" },
   OWN("first", first, 0, HUGE_SIZE, 1, "length", "as the setting"),
@@ -487,7 +489,7 @@ void vg_settings_row_default(enum vg_table_kind kind, void *row)
   struct vg_patch_row patch = { .bc = VG_BC_NONE };
   struct vg_layer_row layer = { 0, VG_ANSWER_AUTO, NAN, NAN, NAN, NAN, NAN,
                                 VG_COUNT_NONE, VG_COUNT_NONE, NAN, NAN,
-                                VG_NO_LIMITS };
+                                VG_NO_LIMITS, "" };
   struct vg_surface_row surface = { .beside = VG_BC_NONE };
   struct vg_source source = { .kind = VG_SOURCE_POINT, .an = 1 };
   struct vg_sweep_row sweep = { .repeat = 0 };
@@ -634,7 +636,8 @@ static int compare_id(const void *a, const void *b)
   return (x > y) - (x < y);
 }
 
-/* Both tables of patches begin with the number. */
+/* Both tables of patches begin with the number. Names are compared when the
+ * surface is known. */
 static vg_status check_numbers(const struct vg_settings *s,
                                enum vg_table_kind kind, struct vg_error *err)
 {
@@ -647,7 +650,7 @@ static vg_status check_numbers(const struct vg_settings *s,
     memcpy(&id[i], vg_settings_row(s, kind, i), sizeof *id);
   qsort(id, n, sizeof *id, compare_id);
   for (size_t i = 1; i < n && !found; i++)
-    if (id[i] == id[i - 1]) found = 1, twice = id[i];
+    if (id[i] == id[i - 1] && id[i] != VG_BC_NONE) found = 1, twice = id[i];
   free(id);
   if (!found) return VG_OK;
   return vg_fail(err, VG_ERR_INPUT, "%s: patch %d is listed twice; "
@@ -657,21 +660,24 @@ static vg_status check_numbers(const struct vg_settings *s,
 static vg_status check_layer_rows(const struct vg_settings *s,
                                   struct vg_error *err)
 {
+  char who[2 * VG_NAME_MAX + 4];
+
   for (size_t i = 0; i < s->n_layer; i++) {
     const struct vg_layer_row *r = &s->layer_row[i];
 
+    vg_param_format(&layer_columns[0], r, who, sizeof who);
     if (!isnan(r->first) && !isnan(r->y_plus))
-      return vg_fail(err, VG_ERR_INPUT, "layers: patch %d has both first and "
-                     "y_plus; give one", (int)r->id);
+      return vg_fail(err, VG_ERR_INPUT, "layers: patch %s has both first and "
+                     "y_plus; give one", who);
     if (!isnan(r->ratio) && (!isnan(r->rate1) || !isnan(r->rate2)))
-      return vg_fail(err, VG_ERR_INPUT, "layers: patch %d has both ratio and "
-                     "rates; give one", (int)r->id);
+      return vg_fail(err, VG_ERR_INPUT, "layers: patch %s has both ratio and "
+                     "rates; give one", who);
     if (!isnan(r->y_plus) && !(s->layer.reynolds > 0))
-      return vg_fail(err, VG_ERR_INPUT, "layers: patch %d has y_plus, which "
-                     "needs reynolds and reference_length", (int)r->id);
+      return vg_fail(err, VG_ERR_INPUT, "layers: patch %s has y_plus, which "
+                     "needs reynolds and reference_length", who);
     if (!isnan(r->cap) && r->cap > 0 && r->cap < 1)
-      return vg_fail(err, VG_ERR_INPUT, "layers: cap of patch %d is %g; it "
-                     "must be at least 1, or 0 for none", (int)r->id, r->cap);
+      return vg_fail(err, VG_ERR_INPUT, "layers: cap of patch %s is %g; it "
+                     "must be at least 1, or 0 for none", who, r->cap);
   }
   return s->n_layer ? check_numbers(s, VG_TABLE_LAYERS, err) : VG_OK;
 }

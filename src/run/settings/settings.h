@@ -36,6 +36,8 @@ struct vg_patch_row {
   int32_t id, bc;                  /* bc: USM3D or FUN3D code */
   int hard;                        /* a new surface keeps its borders */
   char name[VG_NAME_MAX];          /* "": as the input says */
+  char id_name[VG_NAME_MAX];       /* a name or pattern in place of id; "": id
+                                      holds */
 };
 
 /** Largest sizes on a patch, or on the curve that parts two, of a surface that
@@ -43,6 +45,8 @@ struct vg_patch_row {
 struct vg_surface_row {
   int32_t patch, beside;           /* beside VG_BC_NONE: the patch itself */
   double size, lead, across, stretch;
+  /* Names or patterns in place of patch and beside; "": the numbers hold. */
+  char patch_name[VG_NAME_MAX], beside_name[VG_NAME_MAX];
 };
 
 /** Answers that a project may leave open. */
@@ -67,6 +71,7 @@ struct vg_layer_row {
   int64_t count, constant;
   double total, cap;
   struct vg_layer_limits limit;
+  char id_name[VG_NAME_MAX];       /* as in vg_patch_row */
 };
 
 /** Lists of numbers as run/common/ranges.h takes them, for vanguard sweep
@@ -152,6 +157,7 @@ enum vg_param_type {
   VG_PARAM_REAL,   /* double; "-" is NAN where `optional` */
   VG_PARAM_COUNT,  /* int64_t; "-" is VG_COUNT_NONE where `optional` */
   VG_PARAM_ID,     /* int32_t; "-" is VG_BC_NONE where `optional` */
+  VG_PARAM_PATCH,  /* int32_t as VG_PARAM_ID, or a name at name_at */
   VG_PARAM_FLAG,   /* int: yes or no */
   VG_PARAM_WORD,   /* int: position in words[] */
   VG_PARAM_TEXT    /* char[size] */
@@ -171,6 +177,9 @@ struct vg_param {
   enum vg_param_type type;
   enum vg_use use;
   size_t offset, size;      /* in the row or in vg_settings; size of a text */
+  size_t name_at;           /* offset of the char[VG_NAME_MAX] with the name or
+                               pattern of a VG_PARAM_PATCH; VG_BC_NONE is the
+                               number then */
   double lo, hi;            /* range of a number; see above_lo */
   int above_lo;             /* 1: lo itself is refused */
   int optional;             /* 1: "-" stands for "not given" */
@@ -183,6 +192,11 @@ struct vg_param {
   const char *help;
   const char *argument;     /* what help calls the value; NULL: by its type */
 };
+
+/** Type and range of a column with a patch; `name` is the member of the row
+ * that takes a name. */
+#define VG_PATCH_COLUMN(row, name) .type = VG_PARAM_PATCH, \
+  .name_at = offsetof(row, name), .lo = INT32_MIN, .hi = INT32_MAX, .unit = ""
 
 enum vg_table_kind { VG_TABLE_FARFIELD, VG_TABLE_PATCHES, VG_TABLE_LAYERS,
                      VG_TABLE_SURFACE, VG_TABLE_SOURCES, VG_TABLE_SWEEP, VG_TABLE_N };

@@ -8,11 +8,12 @@
   .size = sizeof ((struct vg_surface_row *)0)->field
 
 static const struct vg_param columns[] = {
-  { "patch", AT(patch), .type = VG_PARAM_ID, .lo = INT32_MIN, .hi = INT32_MAX,
-    .unit = "", .required = 1, .help = "number of the patch" },
-  { "beside", AT(beside), .type = VG_PARAM_ID, .lo = INT32_MIN,
-    .hi = INT32_MAX, .optional = 1, .unit = "", .help = "number of another "
-    "one: the size holds along the curve between them; -: on all the patch" },
+  { "patch", AT(patch), VG_PATCH_COLUMN(struct vg_surface_row, patch_name),
+    .required = 1, .help = "number of the patch, or its name (* and ? stand "
+    "for characters)" },
+  { "beside", AT(beside), VG_PATCH_COLUMN(struct vg_surface_row, beside_name),
+    .optional = 1, .help = "another one: the size holds along the curve "
+    "between them; -: on all the patch" },
   { "size", AT(size), .type = VG_PARAM_REAL, .hi = 1e60, .unit = "length",
     .help = "largest edge; 0: no limit" },
   { "lead", AT(lead), .type = VG_PARAM_REAL, .hi = 1, .unit = "chords",
@@ -30,31 +31,47 @@ const struct vg_table vg_surface_table = { "surface", "Sizes of a new surface "
   "on patches and along the curves between them.", columns,
   sizeof columns / sizeof *columns, sizeof (struct vg_surface_row) };
 
+int vg_surface_row_has_beside(const struct vg_surface_row *r)
+{
+  return r->beside != VG_BC_NONE || *r->beside_name;
+}
+
+/* One row: what asks for nothing, or does not go together. */
+static vg_status check_row(const struct vg_surface_row *r, size_t line,
+                           struct vg_error *err)
+{
+  const int beside = vg_surface_row_has_beside(r);
+  char one[2 * VG_NAME_MAX + 4], two[2 * VG_NAME_MAX + 4];
+
+  vg_param_format(&columns[0], r, one, sizeof one);
+  vg_param_format(&columns[1], r, two, sizeof two);
+  if (!(r->size > 0 || r->lead > 0 || r->across > 0 || r->stretch > 0))
+    return vg_fail(err, VG_ERR_INPUT, "surface: line %zu, patch %s, asks for "
+                   "nothing; give size, lead, across or stretch", line, one);
+  if (beside && (r->lead > 0 || r->across > 0))
+    return vg_fail(err, VG_ERR_INPUT, "surface: the curve between patches %s "
+                   "and %s has size and stretch only; give lead and across "
+                   "on a line without beside", one, two);
+  if (!beside && r->stretch > 0)
+    return vg_fail(err, VG_ERR_INPUT, "surface: line %zu, patch %s, asks for "
+                   "stretch without a curve; give the patch beside", line,
+                   one);
+  if (r->stretch > 0 && r->stretch < 1)
+    return vg_fail(err, VG_ERR_INPUT, "surface: stretch between patches %s "
+                   "and %s is %g; it must be at least 1", one, two,
+                   r->stretch);
+  if (r->across > 0 && r->across < 1)
+    return vg_fail(err, VG_ERR_INPUT, "surface: across of patch %s is %g; it "
+                   "must be at least 1", one, r->across);
+  return VG_OK;
+}
+
 vg_status vg_surface_rows_check(const struct vg_settings *s,
                                 struct vg_error *err)
 {
-  for (size_t i = 0; i < s->n_surface; i++) {
-    const struct vg_surface_row *r = &s->surface_row[i];
+  vg_status st = VG_OK;
 
-    if (!(r->size > 0 || r->lead > 0 || r->across > 0 || r->stretch > 0))
-      return vg_fail(err, VG_ERR_INPUT, "surface: line %zu, patch %d, asks for "
-                     "nothing; give size, lead, across or stretch", i + 1,
-                     (int)r->patch);
-    if (r->beside != VG_BC_NONE && (r->lead > 0 || r->across > 0))
-      return vg_fail(err, VG_ERR_INPUT, "surface: the curve between patches %d "
-                     "and %d has size and stretch only; give lead and across "
-                     "on a line without beside", (int)r->patch, (int)r->beside);
-    if (r->beside == VG_BC_NONE && r->stretch > 0)
-      return vg_fail(err, VG_ERR_INPUT, "surface: line %zu, patch %d, asks for "
-                     "stretch without a curve; give the patch beside", i + 1,
-                     (int)r->patch);
-    if (r->stretch > 0 && r->stretch < 1)
-      return vg_fail(err, VG_ERR_INPUT, "surface: stretch between patches %d "
-                     "and %d is %g; it must be at least 1", (int)r->patch,
-                     (int)r->beside, r->stretch);
-    if (r->across > 0 && r->across < 1)
-      return vg_fail(err, VG_ERR_INPUT, "surface: across of patch %d is %g; it "
-                     "must be at least 1", (int)r->patch, r->across);
-  }
-  return VG_OK;
+  for (size_t i = 0; i < s->n_surface && st >= 0; i++)
+    st = check_row(&s->surface_row[i], i + 1, err);
+  return st;
 }

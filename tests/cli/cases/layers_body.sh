@@ -35,10 +35,43 @@ exits 0
 [ "$(grep -c '"wall_by"' slip/body.report.json)" = 1 ] ||
   fail "a slip patch has layers"
 
-# The farfield, caught by a range: as said, and noted.
+# The farfield that is added, caught by a range: no layers grow on it.
 vanguard mesh -q -p body --first 0.01 --walls 1-3 --out far
+exits 1
+says err "walls: patch 3 is the farfield that was added to the surface"
+says err "Patches: 1 upper (no condition), 2 lower (no condition)"
+printf 't\nlayers\nid grow\n3 yes\n' >far.deck
+vanguard mesh -q -p body --first 0.01 --deck far.deck --out far
+exits 1
+says err "layers: patch 3 is the farfield that was added"
+
+# Patches by name, in lists and tables.
+vanguard mesh -q -p body --first 0.01 --walls "1,low*" --out byname
 exits 0
-says out "1 patch has layers, but a condition that is not viscous: number 3"
+same body.b8.ugrid byname/body.b8.ugrid
+vanguard mesh -q -p body --first 0.01 --walls "*" --out byname
+exits 0
+same body.b8.ugrid byname/body.b8.ugrid
+vanguard mesh -q -p body --first 0.01 --walls 1 --out one
+vanguard mesh -q -p body --first 0.01 --slip '"lower"' --out byname
+exits 0
+same one/body.b8.ugrid byname/body.b8.ugrid
+printf 't\nlayers\nid grow\nl?wer no\n' >low.deck
+vanguard mesh -q -p body --first 0.01 --deck low.deck --out byname
+exits 0
+same one/body.b8.ugrid byname/body.b8.ugrid
+printf 't\npatches\nid name\nlower keel\n' >low.deck
+vanguard mesh -q -p body --first 0.01 --deck low.deck --slip keel --out keel
+exits 0
+same one/body.b8.ugrid keel/body.b8.ugrid
+says keel/body.resolved.deck '2   -   keel'
+vanguard mesh -q -p body --first 0.01 --walls uper --out byname
+exits 1
+says err "walls: no patch of the surface is called 'uper'; did you mean 'upper'?"
+printf 't\nlayers\nid first\n2 0.01\n*er 0.02\n' >low.deck
+vanguard mesh -q -p body --deck low.deck --out byname
+exits 1
+says err "layers: patch 2 lower is listed twice, as 2 and as *er"
 
 # Not asked for: none.
 vanguard mesh -q -p body --out none

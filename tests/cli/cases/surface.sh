@@ -111,9 +111,13 @@ exits 0
 n_rim=$(made)
 [ "$n_plain" -lt "$n_rim" ] && [ "$n_rim" -le "$n_end" ] ||
   fail "$n_plain, $n_rim, $n_end triangles"
+sed 's/^2 .*/sid?   e*      0.1/' end.deck >names.deck
+vanguard surface -q bar.obj --deck names.deck --out names
+exits 0
+[ "$(made)" = "$n_rim" ] || fail "a curve by names is another one"
 vanguard surface -q bar.obj --deck none.deck --out none
 exits 1
-says err "there is no patch 7"
+says err "surface: patch 7 is not in the surface"
 vanguard surface -q bar.obj --deck nothing.deck --out nothing
 exits 1
 says err "asks for nothing"
