@@ -165,6 +165,44 @@ static void makes_edges_as_short(void **unused)
   vg_mesh_release(&m);
 }
 
+/* The plates of measures_a_slot: the forecast of places is right within a factor of 2 and that of triangles
+ * follows from the area of the gap; nothing is made where it is too high. */
+static void forecasts(void **unused)
+{
+  const double size[3] = { 1, 1, 0.2 }, gap = 0.02, edges = 4;
+  const double exact = 2 * 0.5 / (0.433 * (gap / edges) * (gap / edges));
+  const uint32_t n[3] = { 1, 1, 1 };
+  struct vg_mesh m = VG_MESH_INIT;
+  struct vg_gaps g = VG_GAPS_INIT, few = VG_GAPS_INIT;
+  struct vg_gap_options o = { .edges = edges, .threads = 1 };
+  struct vg_error err = VG_ERROR_INIT;
+
+  (void)unused;
+  shape_box(&m, size, n);
+  add_box(&m, size, n, 0.5, gap);
+  assert_int_equal(vg_gaps_find(&m, &o, &g, &err), VG_OK);
+  assert_true(g.n > 0);
+  o.most_place = 0.4 * (double)g.n;
+  assert_int_equal(vg_gaps_find(&m, &o, &few, &err), VG_BLOCKED);
+  assert_true(few.n == 0 && few.x == NULL);
+  assert_true(few.n_place > 0.5 * (double)g.n);
+  assert_true(few.n_place < 2 * (double)g.n);
+  assert_float_equal(few.narrowest, gap, 1e-12);
+  assert_true(few.n_tri > 0.95 * exact && few.n_tri < 1.05 * exact);
+  o.most_place = 3 * (double)g.n;
+  o.most_tri = 0.9 * exact;
+  assert_int_equal(vg_gaps_find(&m, &o, &few, &err), VG_BLOCKED);
+  assert_true(few.patch[0] != few.patch[1] || m.n_patch == 1);
+  o.most_tri = 1.1 * exact;
+  o.threads = 2;
+  vg_gaps_release(&few);
+  assert_int_equal(vg_gaps_find(&m, &o, &few, &err), VG_OK);
+  assert_int_equal(few.n, g.n); /* as without limits */
+  vg_gaps_release(&few);
+  vg_gaps_release(&g);
+  vg_mesh_release(&m);
+}
+
 static void refuses(void **unused)
 {
   const double size[3] = { 1, 1, 1 };
@@ -196,6 +234,7 @@ int main(void)
     cmocka_unit_test(leaves_the_rest_alone),
     cmocka_unit_test(follows_round_sides),
     cmocka_unit_test(makes_edges_as_short),
+    cmocka_unit_test(forecasts),
     cmocka_unit_test(refuses),
   };
 

@@ -15,31 +15,43 @@
 #define H_MIN 2e-5        /* of the length */
 #define H_MAX 0.04
 #define MOST 1e8          /* places */
+/* S60: samples of a forecast, and where gaps are narrow */
+#define SAMPLES 1e5
+#define SAMPLES_MOST 1e6
+#define FINE 1e4          /* parts of what is too much that a sample may be */
+#define TRIANGLE 0.433    /* area of a triangle of edge 1 */
+#define PLACE 0.15        /* area for each of the two places of a gap, over the
+                             square of its width */
 
-/* Places of some triangles. */
+/* Places of some triangles, or a forecast of them. */
 struct block {
   size_t n, cap_x, cap_h;
   double (*x)[3], *h;
   int refused;
+  double n_tri, n_place, narrowest, at[3];
+  uint32_t patch[2];
 };
 
 struct search {
   const struct vg_ref *ref;
+  const struct vg_mesh *m;
   double edges, h_min, h_max;
+  double coarse, fine;      /* edges of a forecast's samples */
+  double most_tri, most_place;
   struct block *block;
   const struct vg_stop *stop;
 };
 
-/* Width of the gap above x on triangle t, its other side into y; INFINITY:
- * there is none. */
+/* Width of the gap above x on triangle t, its other side into y, on triangle
+ * *other; INFINITY: there is none. */
 static double gap_at(const struct search *s, size_t t, const double x[3],
-                     double y[3])
+                     double y[3], uint32_t *other)
 {
   const double *n = s->ref->shape[t].n;
   double far;
-  uint32_t other = vg_ref_ray(s->ref, x, n, s->edges * s->h_max, &far);
 
-  if (other == VG_REF_NONE || vg_dot(s->ref->shape[other].n, n) > FACING)
+  *other = vg_ref_ray(s->ref, x, n, s->edges * s->h_max, &far);
+  if (*other == VG_REF_NONE || vg_dot(s->ref->shape[*other].n, n) > FACING)
     return INFINITY;
   for (int k = 0; k < 3; k++) y[k] = x[k] + far * n[k];
   return far;
@@ -56,23 +68,49 @@ static void add(struct block *b, const double x[3], double h)
   b->h[b->n++] = h;
 }
 
-/* A part of triangle t, halved until it is as small as its gap is wide. */
-static void visit(const struct search *s, size_t t, double p[3][3], int depth,
-                  struct block *b)
+/* The centre of a part, the length of its longest edge, and which it is. */
+static double measure(double p[3][3], double x[3], int *edge)
 {
-  double x[3], y[3], gap, most = 0, half[3][3], mid[3];
-  int edge = 0;
+  double most = 0;
 
-  if (vg_stops(s->stop)) return;
+  *edge = 0;
   for (int k = 0; k < 3; k++) {
     double l = vg_distance2(p[k], p[(k + 1) % 3]);
 
     x[k] = (p[0][k] + p[1][k] + p[2][k]) / 3;
-    if (l > most) most = l, edge = k;
+    if (l > most) most = l, *edge = k;
   }
-  gap = gap_at(s, t, x, y);
-  if (depth == DEPTH ||
-      sqrt(most) <= fmax(fmin(gap, s->h_max), s->edges * s->h_min)) {
+  return sqrt(most);
+}
+
+static void halve(double p[3][3], int edge, int side, double half[3][3])
+{
+  double mid[3];
+
+  for (int k = 0; k < 3; k++)
+    mid[k] = (p[edge][k] + p[(edge + 1) % 3][k]) / 2;
+  memcpy(half, p, 9 * sizeof **p);
+  memcpy(half[(edge + side) % 3], mid, sizeof mid);
+}
+
+/* Length of the parts in which places are. */
+static double part_size(const struct search *s, double gap)
+{
+  return fmax(fmin(gap, s->h_max), s->edges * s->h_min);
+}
+
+/* A part of triangle t, halved until it is as small as its gap is wide. */
+static void visit(const struct search *s, size_t t, double p[3][3], int depth,
+                  struct block *b)
+{
+  double x[3], y[3], gap, size, half[3][3];
+  uint32_t other;
+  int edge;
+
+  if (vg_stops(s->stop)) return;
+  size = measure(p, x, &edge);
+  gap = gap_at(s, t, x, y, &other);
+  if (depth == DEPTH || size <= part_size(s, gap)) {
     double h = fmax(gap / s->edges, s->h_min);
 
     if (!(h < s->h_max)) return;
@@ -80,13 +118,97 @@ static void visit(const struct search *s, size_t t, double p[3][3], int depth,
     add(b, y, h);
     return;
   }
-  for (int k = 0; k < 3; k++)
-    mid[k] = (p[edge][k] + p[(edge + 1) % 3][k]) / 2;
   for (int side = 0; side < 2; side++) {
-    memcpy(half, p, sizeof half);
-    memcpy(half[(edge + side) % 3], mid, sizeof mid);
+    halve(p, edge, side, half);
     visit(s, t, half, depth + 1, b);
   }
+}
+
+static double area_of(double p[3][3])
+{
+  double u[3], v[3], n[3];
+
+  vg_sub(p[1], p[0], u);
+  vg_sub(p[2], p[0], v);
+  vg_cross(u, v, n);
+  return vg_norm(n) / 2;
+}
+
+/* What a part of triangle t will have, by a gap for all of it. */
+static void forecast(const struct search *s, size_t t, double p[3][3],
+                     int depth, struct block *b)
+{
+  double x[3], y[3], gap, h, size, part, half[3][3], n_tri = 0, n_place = 0;
+  uint32_t other;
+  int edge, is_small;
+
+  if (vg_stops(s->stop)) return;
+  size = measure(p, x, &edge);
+  gap = gap_at(s, t, x, y, &other);
+  h = fmax(gap / s->edges, s->h_min);
+  part = part_size(s, gap);
+  if (h < s->h_max) {
+    n_tri = area_of(p) / (TRIANGLE * h * h);
+    n_place = area_of(p) / (PLACE * part * part);
+  }
+  is_small = FINE * n_tri < s->most_tri && FINE * n_place < s->most_place;
+  if (depth == DEPTH || size <= part || size <= s->fine ||
+      (size <= s->coarse && is_small)) {
+    b->n_tri += n_tri;
+    b->n_place += n_place;
+    if (!(n_tri > 0) || !(gap < b->narrowest)) return;
+    b->narrowest = gap;
+    memcpy(b->at, x, sizeof b->at);
+    b->patch[0] = s->m->tri_patch[t];
+    b->patch[1] = s->m->tri_patch[other];
+    return;
+  }
+  for (int side = 0; side < 2; side++) {
+    halve(p, edge, side, half);
+    forecast(s, t, half, depth + 1, b);
+  }
+}
+
+static void forecast_blocks(void *context, size_t first, size_t end,
+                            int worker)
+{
+  const struct search *s = context;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++) {
+    s->block[i].narrowest = INFINITY;
+    for (size_t t = GRAIN * i; t < GRAIN * (i + 1) && t < s->ref->n_tri; t++) {
+      const struct vg_ref_tri *shape = &s->ref->shape[t];
+      double p[3][3];
+
+      if (vg_dot(shape->n, shape->n) == 0) continue;
+      for (int k = 0; k < 3; k++)
+        memcpy(p[k], s->ref->point[s->ref->tri[t][k]], sizeof p[k]);
+      forecast(s, t, p, 0, &s->block[i]);
+    }
+  }
+}
+
+/* Whether the forecast is too high; it is in *out then. */
+static int is_too_much(const struct search *s, size_t n_block, int threads,
+                       struct vg_gaps *out)
+{
+  struct vg_gaps sum = VG_GAPS_INIT;
+
+  vg_parallel_for(threads, n_block, 1, forecast_blocks, (void *)s);
+  sum.narrowest = INFINITY;
+  for (size_t i = 0; i < n_block; i++) {
+    const struct block *b = &s->block[i];
+
+    sum.n_tri += b->n_tri;
+    sum.n_place += b->n_place;
+    if (!(b->narrowest < sum.narrowest)) continue;
+    sum.narrowest = b->narrowest;
+    memcpy(sum.at, b->at, sizeof sum.at);
+    memcpy(sum.patch, b->patch, sizeof sum.patch);
+  }
+  *out = sum;
+  return sum.n_tri > s->most_tri || sum.n_place > s->most_place;
 }
 
 static void visit_blocks(void *context, size_t first, size_t end, int worker)
@@ -155,6 +277,11 @@ static vg_status settle(const struct vg_mesh *m, const struct vg_gap_options *o,
     vg_cross(s->ref->shape[t].u, s->ref->shape[t].v, n);
     area += vg_norm(n) / 2;
   }
+  s->m = m;
+  s->coarse = sqrt(area / SAMPLES);
+  s->fine = sqrt(area / SAMPLES_MOST);
+  s->most_tri = o->most_tri > 0 ? o->most_tri : INFINITY;
+  s->most_place = o->most_place > 0 ? o->most_place : INFINITY;
   if (area < MOST * s->h_max * s->h_max) return VG_OK;
   return vg_fail(err, VG_ERR_INPUT, "gaps would be looked for at some %.2g "
                  "places; are sizes in the unit of the surface?",
@@ -176,6 +303,13 @@ vg_status vg_gaps_find(const struct vg_mesh *m, const struct vg_gap_options *o,
   VG_TRY(settle(m, o, &s, err));
   s.block = vg_calloc(n_block, sizeof *s.block);
   if (!s.block) VG_TRY(vg_fail_memory(err, "the gaps"));
+  if (is_too_much(&s, n_block, o->threads, &found)) {
+    VG_TRY(vg_stopped(s.stop, err));
+    *out = found;
+    st = VG_BLOCKED;
+    goto done;
+  }
+  VG_TRY(vg_stopped(s.stop, err));
   vg_parallel_for(o->threads, n_block, 1, visit_blocks, &s);
   VG_TRY(vg_stopped(s.stop, err));
   VG_TRY(gather(s.block, n_block, &found, err));

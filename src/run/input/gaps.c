@@ -3,10 +3,15 @@
 #include "core/remesh/gaps.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 #include "base/memory.h"
 #include "run/input/sizes.h"
+
+/* S60: limits of what gaps ask for. */
+#define MOST_TRI 1e8
+#define MOST_PLACE 2e7
 
 struct vg_gap_sizes {
   struct vg_size_samples *samples;
@@ -62,6 +67,41 @@ static vg_status make(struct vg_problem *p, const struct vg_gaps *found,
   return VG_OK;
 }
 
+/* What a new surface may have in gaps: a surface of more triangles than cells
+ * are allowed is refused before it is made. */
+static double most_triangles(const struct vg_settings *s)
+{
+  if (s->remesh != VG_ANSWER_YES) return 0;
+  return s->max_cells ? fmin((double)s->max_cells, MOST_TRI) : MOST_TRI;
+}
+
+static void patch_text(const struct vg_patch *p, char *text, size_t size)
+{
+  snprintf(text, size, "%d%s%s%s", (int)p->id, *p->name ? " (" : "", p->name,
+           *p->name ? ")" : "");
+}
+
+static vg_status too_many(const struct vg_problem *p, const struct vg_gaps *g,
+                          struct vg_error *err)
+{
+  const struct vg_settings *s = &p->settings;
+  const int is_tri = s->remesh == VG_ANSWER_YES && g->n_tri > most_triangles(s);
+  char one[VG_NAME_MAX + 24], two[VG_NAME_MAX + 24];
+
+  patch_text(&p->surface.patch[g->patch[0]], one, sizeof one);
+  patch_text(&p->surface.patch[g->patch[1]], two, sizeof two);
+  return vg_fail(err, VG_ERR_INPUT, "gap_edges %g needs some %.2g %s in gaps, "
+                 "%.9g are the limit%s; the narrowest gap is %.4g wide, "
+                 "between patches %s and %s at (%.6g, %.6g, %.6g). Lower "
+                 "gap_edges, raise hmin, or close the gap (--wrap)%s",
+                 s->gap_edges, is_tri ? g->n_tri : g->n_place,
+                 is_tri ? "surface triangles" : "places with a size",
+                 is_tri ? most_triangles(s) : MOST_PLACE,
+                 is_tri && s->max_cells ? " (max_cells)" : "", g->narrowest,
+                 one, two, g->at[0], g->at[1], g->at[2],
+                 is_tri && s->max_cells ? "; or raise max_cells" : "");
+}
+
 vg_status vg_problem_gaps(struct vg_problem *p, struct vg_display *show,
                           struct vg_error *err)
 {
@@ -74,8 +114,11 @@ vg_status vg_problem_gaps(struct vg_problem *p, struct vg_display *show,
   if (!(s->gap_edges > 0) || p->gaps) return VG_OK;
   vg_display_update(show, "gaps", p->surface.n_tri, 0);
   VG_TRY(vg_gaps_find(&p->surface, &(struct vg_gap_options){
-    s->gap_edges / s->scale, s->hmin * s->scale, most * s->scale, p->threads,
-    { vg_display_stop, show } }, &found, err));
+    .edges = s->gap_edges / s->scale, .h_min = s->hmin * s->scale,
+    .h_max = most * s->scale, .most_tri = most_triangles(s),
+    .most_place = MOST_PLACE, .threads = p->threads,
+    .stop = { vg_display_stop, show } }, &found, err));
+  if (st == VG_BLOCKED) VG_TRY(too_many(p, &found, err));
   if (found.n)
     vg_note(&p->notes, "gap_edges %g: sizes from %zu places in gaps, the "
             "narrowest %.4g wide at (%.6g, %.6g, %.6g)%s", s->gap_edges,

@@ -34,3 +34,16 @@ exits 0
 vanguard check o/gap.b8.ugrid
 exits 0
 says out valid
+
+# Edges across the gap: far too many triangles, said before any is made.
+for limit in "" "--max-cells 100000"; do
+  # shellcheck disable=SC2086
+  vanguard mesh -q -p gap.stl --farfield none --remesh-surface yes \
+    --gap-edges 3 $limit --out edges
+  exits 1
+  says err "gap_edges 3 needs some"
+  says err "surface triangles in gaps"
+  says err "the narrowest gap is 0.001656 wide, between patches 1 (hull)"
+  says err "Lower gap_edges, raise hmin, or close the gap"
+done
+says err "100000 are the limit (max_cells)"
