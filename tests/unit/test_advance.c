@@ -304,6 +304,12 @@ static void too_many_cells(void **state)
   assert_null(p);
   o.max_cells = d.n_cell;
   run_of(NULL, &s, &o, 0, &r);
+  o.max_cells = d.n_cell + 99; /* all that the layers leave */
+  o.layer_cells = 100;
+  assert_int_equal(grow(NULL, &s, &o, &p, &r, &err), VG_ERR_UNSUPPORTED);
+  assert_non_null(strstr(err.text, "100 of them in layers"));
+  o.layer_cells = 99;
+  run_of(NULL, &s, &o, 0, &r);
   scene_end(&s);
 }
 

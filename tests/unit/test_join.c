@@ -142,6 +142,16 @@ static size_t check_model(const struct model *m)
   assert_boundary_first(&tets, &a);
   assert_boundary_first(&mixed, &b);
   assert_int_equal(a.n_layer_tet, count_lifts(&m->layers.columns));
+  for (int k = 0; k < 2; k++) {
+    const struct vg_join_info *info = k ? &b : &a;
+    uint64_t n;
+
+    assert_int_equal(vg_layers_count(&m->layers, k ? VG_LAYER_MIXED
+                                                   : VG_LAYER_TETS, 1, &n,
+                                     NULL), VG_OK);
+    assert_int_equal(n, info->n_layer_tet + info->n_layer_pyr
+                        + info->n_layer_pri);
+  }
   assert_int_equal(tets.n_tet, a.n_layer_tet + m->field.n_tet);
   assert_int_equal(mixed.n_tet, b.n_layer_tet + m->field.n_tet);
   assert_int_equal(mixed.n_pyr, b.n_layer_pyr);

@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "layers/expand/expand_parts.h"
+#include "layers/expand/join.h"
 
 #define COLUMN_GRAIN 512
 
@@ -156,4 +157,27 @@ void vg_expand_points(const struct vg_expand *e, const struct vg_mesh *surface,
 
   vg_parallel_for(e->threads, e->columns->n_column, COLUMN_GRAIN,
                   place_columns, &p);
+}
+
+vg_status vg_layers_count(const struct vg_layers *layers,
+                          enum vg_layer_cells cells, int threads, uint64_t *n,
+                          struct vg_error *err)
+{
+  struct vg_expand e;
+  vg_status st = vg_expand_open(&e, &layers->columns, cells == VG_LAYER_MIXED,
+                                threads, err);
+
+  if (st < 0) return st;
+  /* Any numbers will do that are the same for columns of one root. */
+  for (size_t i = 0; i < layers->columns.n_column; i++) {
+    const struct vg_column *c = &layers->columns.column[i];
+
+    e.foot[i] = i && c[-1].root == c->root ? e.foot[i - 1] : (uint32_t)i;
+    e.base[i] = (uint32_t)(layers->columns.n_column + i);
+  }
+  vg_expand_count(&e);
+  *n = 0;
+  for (int k = 0; k < VG_N_KIND; k++) *n += e.n_cell[k];
+  vg_expand_close(&e);
+  return VG_OK;
 }

@@ -60,4 +60,11 @@ struct vg_wall_cell {
 int vg_join_wall_cells(const struct vg_columns *columns, size_t face,
                        struct vg_wall_cell cell[3]);
 
+/** Count the cells of all kinds that the columns become, as vg_layers_join
+ * makes them. The front and the field may be absent. Memory speed, in
+ * parallel. VG_ERR_MEMORY. */
+vg_status vg_layers_count(const struct vg_layers *layers,
+                          enum vg_layer_cells cells, int threads, uint64_t *n,
+                          struct vg_error *err);
+
 #endif

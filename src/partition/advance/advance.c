@@ -1,5 +1,6 @@
 #include "partition/advance/advance.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -87,11 +88,18 @@ done:
 static vg_status within_limit(const struct vg_partition *p, double cells,
                               const char *how, struct vg_error *err)
 {
-  if (!p->options.max_cells || cells <= (double)p->options.max_cells)
+  double all = cells + (double)p->options.layer_cells;
+  char layers[64] = "";
+
+  if (!p->options.max_cells || all <= (double)p->options.max_cells)
     return VG_OK;
-  return vg_fail(err, VG_ERR_UNSUPPORTED, "the mesh %s %.0f cells, %llu are "
-                 "allowed; use a coarser spacing or raise the limit", how,
-                 cells, (unsigned long long)p->options.max_cells);
+  if (p->options.layer_cells)
+    snprintf(layers, sizeof layers, ", %llu of them in layers",
+             (unsigned long long)p->options.layer_cells);
+  return vg_fail(err, VG_ERR_UNSUPPORTED, "the mesh %s %.0f cells%s; %llu are "
+                 "allowed (max_cells); use a coarser spacing or raise the "
+                 "limit", how, all, layers,
+                 (unsigned long long)p->options.max_cells);
 }
 
 /* The tasks that these voids lead to; the voids are taken over. Collective. */

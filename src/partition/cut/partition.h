@@ -28,6 +28,8 @@ struct vg_partition_options {
   int sweeps;                /* of optimisation */
   struct vg_mesher_pool *mesher; /* for leaves; NULL: the built-in kernel */
   uint64_t max_cells;        /* refuse to make more; 0: no limit */
+  uint64_t layer_cells;      /* cells that the mesh has besides, which count
+                                for max_cells */
   uint64_t shuffle;          /* see engine.h */
   struct vg_store *store;    /* may be NULL */
   struct vg_digest job;      /* of size field and options, for the store */

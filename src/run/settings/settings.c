@@ -158,7 +158,8 @@ static const struct vg_param params[] = {
     .unit = "sweeps", .help = "sweeps of smoothing and swapping after the "
                               "fill" },
   { "max_cells", AT(max_cells), .type = VG_PARAM_COUNT, .hi = 9e15,
-    .unit = "cells", .help = "stop rather than make more; 0: no limit" },
+    .unit = "cells", .help = "stop rather than make more, layers "
+    "included; 0: no limit" },
   { "write", AT(write), .type = VG_PARAM_TEXT, .unit = "",
     .check = vg_write_list_check,
     .help = "files to write, separated by commas; auto: cogsg,b8.ugrid, for "

@@ -251,7 +251,29 @@ static vg_status open_mesher(const struct vg_run *r, const struct vg_settings *s
   return vg_comm_agree(r->comm, st, err);
 }
 
+/* Cells of the layers, 0 without a limit of cells. They alone may be too many.
+ * Alike on all ranks. */
+static vg_status count_layers(const struct vg_run *r,
+                              const struct vg_settings *s,
+                              const struct vg_layers *layers, uint64_t *n,
+                              struct vg_error *err)
+{
+  vg_status st;
+
+  *n = 0;
+  if (!s->max_cells || !layers) return VG_OK;
+  st = vg_layers_count(layers, (enum vg_layer_cells)s->cells, r->threads, n,
+                       err);
+  if (st >= 0 && *n > (uint64_t)s->max_cells)
+    st = vg_fail(err, VG_ERR_UNSUPPORTED, "the layers alone have %llu cells; "
+                 "%llu are allowed (max_cells); use a coarser surface, fewer "
+                 "layers, cells mixed or raise the limit",
+                 (unsigned long long)*n, (unsigned long long)s->max_cells);
+  return vg_comm_agree(r->comm, st, err);
+}
+
 static vg_status fill(struct vg_run *r, const struct vg_problem *p,
+                      const struct vg_layers *layers,
                       const struct vg_mesh *boundary,
                       const struct vg_sizing *sizing, struct vg_display *show,
                       struct vg_error *err)
@@ -275,6 +297,7 @@ static vg_status fill(struct vg_run *r, const struct vg_problem *p,
   o.cyclic = r->cyclic = s->cyclic;
   o.sweeps = (int)s->optimise;
   o.max_cells = (uint64_t)s->max_cells;
+  VG_TRY(count_layers(r, s, layers, &o.layer_cells, err));
   o.shuffle = r->options.shuffle;
   o.fail_leaves = r->options.fail_leaves;
   o.fail_rounds = r->options.fail_rounds;
@@ -383,7 +406,7 @@ static vg_status mesh_plain(struct vg_run *r, const struct vg_problem *p,
   VG_TRY(vg_run_agree(r->comm, surface, NULL, sizing, r->options.change,
                       err));
   VG_TRY(look_at_sources(r, p, surface, sizing, err));
-  VG_TRY(fill(r, p, surface, sizing, show, err));
+  VG_TRY(fill(r, p, NULL, surface, sizing, show, err));
   r->slices = *vg_partition_slices(r->field);
   st = judge(r, p, NULL, sizing, show, err);
 done:
@@ -477,7 +500,7 @@ static vg_status mesh_layers(struct vg_run *r, const struct vg_problem *p,
   VG_TRY(vg_run_agree(r->comm, &p->surface, &layers->layers, sizing,
                       r->options.change, err));
   VG_TRY(look_at_sources(r, p, front, sizing, err));
-  VG_TRY(fill(r, p, front, sizing, show, err));
+  VG_TRY(fill(r, p, &layers->layers, front, sizing, show, err));
   st = vg_layer_slices_open(&p->surface, &layers->layers,
                             vg_partition_slices(r->field),
                             (enum vg_layer_cells)p->settings.cells, r->rank,

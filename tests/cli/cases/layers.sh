@@ -32,6 +32,27 @@ vanguard check -q two/box.cogsg
 exits 0
 says out "validity: valid"
 
+# max_cells counts the layers, in either kind of cells.
+for kind in tets mixed; do
+  vanguard mesh -q -p p/box --walls 5 --first 1e-3 --cells $kind --out all \
+    --write b8.ugrid
+  exits 0
+  n_all=$(sed -n '/"mesh": {/,$p' all/box.report.json | sed -n \
+    's/.*"cells": \([0-9]*\).*/\1/p' | head -1)
+  vanguard mesh -q -p p/box --walls 5 --first 1e-3 --cells $kind --out just \
+    --write b8.ugrid --max-cells "$n_all"
+  exits 0
+  vanguard mesh -q -p p/box --walls 5 --first 1e-3 --cells $kind --out over \
+    --write b8.ugrid --max-cells $((n_all - 1))
+  exits 1
+  says err "the mesh has $n_all cells, "
+  says err "of them in layers; $((n_all - 1)) are allowed (max_cells)"
+  absent over/box.b8.ugrid
+done
+vanguard mesh -q -p p/box --walls 5 --first 1e-3 --out over --max-cells 100
+exits 1
+says err "the layers alone have"
+
 # Nothing is grown unless somebody asks; --layers no wins over all.
 vanguard mesh -q -p p/box --out plain
 exits 0
