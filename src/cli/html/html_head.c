@@ -112,9 +112,12 @@ static void missed(struct list *l)
     patch_words(l->p, m->patch);
     vg_page_format(l->p, ": %s is ", m->name);
     vg_page_real(l->p, m->wanted, 10);
-    vg_page_format(l->p, "%s, reached ", m->unit);
-    vg_page_real(l->p, m->got, 10);
-    vg_page_markup(l->p, m->unit);
+    vg_page_format(l->p, m->is_bare ? "%s, but it has no layers"
+                                    : "%s, reached ", m->unit);
+    if (!m->is_bare) {
+      vg_page_real(l->p, m->got, 10);
+      vg_page_markup(l->p, m->unit);
+    }
     end(l);
   }
 }

@@ -49,8 +49,11 @@ struct vg_range { double min, mean, max; };
 struct vg_patch_layers {
   uint32_t patch;
   size_t n_face, n_point;
+  size_t n_bare;            /* faces for which law and local size ask for no
+                               level, so that they have all of them */
   double full;              /* % of faces of which all columns have the levels
-                               that law and local size ask for */
+                               that law and local size ask for; it and all
+                               other shares are 0 where no face has a level */
   double unsqueezed;        /* % of faces that are full at the law's growth */
   double any;               /* % of faces with at least one level at all three
                                corners */

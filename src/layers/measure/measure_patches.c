@@ -114,6 +114,7 @@ static void add_face(const struct patches_job *j, size_t f, struct tally *t)
          t->n_any);
   t->n_any += any;
   t->n_full += full;
+  t->p.n_bare += full && !any;
   t->n_unsqueezed += full && loose;
   add_share(j, f, t);
   t->p.n_face++;
@@ -138,6 +139,8 @@ static void finish(struct tally *t)
   finish_range(&p->growth, p->n_point);
   finish_range(&p->y_plus, t->n_any);
   finish_share(t);
+  if (!t->n_any)
+    p->full = p->unsqueezed = p->share_mean = p->share_low = p->share_area = 0;
 }
 
 /* Sort the faces of triangles by patch; *n out: patches with faces. */

@@ -1,45 +1,62 @@
 /* What layers must reach, once they and the field are known. */
+#include <math.h>
 #include <stdlib.h>
 
 #include "base/memory.h"
 #include "run/input/layers.h"
 
-/* NAN compares false: no limit. */
+/* NAN compares false: no limit. A patch without layers meets none. */
 static int is_missed(const struct vg_limit_missed *m)
 {
+  if (m->is_bare) return !isnan(m->wanted);
   return m->is_least ? m->got < m->wanted : m->got > m->wanted;
+}
+
+/* What patch i reached, `w`; NULL: it has no face from which layers grow. */
+static vg_status check_patch(struct vg_layer_stage *s, uint32_t i,
+                             const struct vg_patch_layers *w,
+                             struct vg_error *err)
+{
+  static const struct vg_patch_layers none = { .n_face = 0 };
+  const struct vg_layer_limits *l = &s->limit[i];
+  const int bare = !w || !(w->any > 0);
+  struct vg_limit_missed limit[] = {
+    { i, "min_full", " %", 1, bare, l->min_full, 0 },
+    { i, "min_any", " %", 1, bare, l->min_any, 0 },
+    { i, "min_height", " %", 1, bare, l->min_height, 0 },
+    { i, "max_first_error", " %", 0, bare, l->max_first_error, 0 },
+    { i, "max_top_ratio", "", 0, bare, l->max_top_ratio, 0 } };
+
+  if (!w) w = &none;
+  limit[0].got = w->full;
+  limit[1].got = w->any;
+  limit[2].got = 100 * w->share_mean;
+  limit[3].got = 100 * w->first_error;
+  limit[4].got = w->top_ratio[1];
+  for (size_t k = 0; k < sizeof limit / sizeof *limit; k++) {
+    if (!is_missed(&limit[k])) continue;
+    if (vg_reserve(&s->missed, &s->cap_missed, s->n_missed + 1,
+                   sizeof *s->missed))
+      return vg_fail_memory(err, "the limits");
+    s->missed[s->n_missed++] = limit[k];
+  }
+  return VG_OK;
 }
 
 vg_status vg_layer_stage_finish(struct vg_layer_stage *s,
                                 const struct vg_mesh *surface,
                                 struct vg_error *err)
 {
+  size_t at = 0;
   vg_status st;
 
   VG_TRY(vg_layers_tops(surface, &s->layers.columns, s->top, s->n_wall,
                         s->wall, &s->all, err));
-  for (size_t i = 0; i < s->n_wall; i++) {
-    const struct vg_patch_layers *w = &s->wall[i];
-    const struct vg_layer_limits *l = &s->limit[w->patch];
-    const struct vg_limit_missed limit[] = {
-      { w->patch, "min_full", " %", 1, l->min_full, w->full },
-      { w->patch, "min_any", " %", 1, l->min_any, w->any },
-      { w->patch, "min_height", " %", 1, l->min_height,
-        100 * w->share_mean },
-      { w->patch, "max_first_error", " %", 0, l->max_first_error,
-        100 * w->first_error },
-      { w->patch, "max_top_ratio", "", 0, l->max_top_ratio,
-        w->top_ratio[1] } };
-
-    for (size_t k = 0; k < sizeof limit / sizeof *limit; k++) {
-      if (!is_missed(&limit[k])) continue;
-      if (vg_reserve(&s->missed, &s->cap_missed, s->n_missed + 1,
-                     sizeof *s->missed)) {
-        st = vg_fail_memory(err, "the limits");
-        goto done;
-      }
-      s->missed[s->n_missed++] = limit[k];
-    }
+  for (uint32_t i = 0; i < s->n_patch; i++) { /* s->wall is by rising patch */
+    while (at < s->n_wall && s->wall[at].patch < i) at++;
+    if (s->reason[i] == VG_WALL_NOT) continue;
+    VG_TRY(check_patch(s, i, at < s->n_wall && s->wall[at].patch == i
+                             ? &s->wall[at] : NULL, err));
   }
 done:
   return st;

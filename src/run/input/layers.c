@@ -542,6 +542,20 @@ static vg_status allocate(struct vg_layer_stage *s, size_t n,
          ? VG_OK : vg_fail_memory(err, "the patches");
 }
 
+/* A limit would be met by nothing. */
+static vg_status refuse_limits(const struct vg_settings *s,
+                               struct vg_error *err)
+{
+  int found = vg_has_limits(&s->layer.limit);
+
+  for (size_t i = 0; i < s->n_layer; i++)
+    found |= vg_has_limits(&s->layer_row[i].limit);
+  if (!found) return VG_OK;
+  return vg_fail(err, VG_ERR_INPUT, "layers is no, but a limit on layers is "
+                 "set (min_full, min_any, min_height, max_first_error or "
+                 "max_top_ratio); remove the limit or let layers grow");
+}
+
 vg_status vg_layer_stage_plan(struct vg_layer_stage *s, struct vg_problem *p,
                               struct vg_error *err)
 {
@@ -552,7 +566,10 @@ vg_status vg_layer_stage_plan(struct vg_layer_stage *s, struct vg_problem *p,
 
   if (st < 0) goto done;
   VG_TRY(allocate(s, p->surface.n_patch, err));
-  if (l->grow == VG_ANSWER_NO) goto done;
+  if (l->grow == VG_ANSWER_NO) {
+    st = refuse_limits(&p->settings, err);
+    goto done;
+  }
   if (p->heights.n) VG_TRY(sort_heights(p, least, err));
   VG_TRY(vg_walls_find(p, s->reason, &n_wall, err));
   if (n_wall && !vg_walls_asked(&p->settings) &&

@@ -17,6 +17,7 @@ struct vg_limit_missed {
   uint32_t patch;           /* index in the surface */
   const char *name, *unit;  /* of the limit; static */
   int is_least;             /* a least value, not a largest */
+  int is_bare;              /* the patch has no layers: got means nothing */
   double wanted, got;
 };
 

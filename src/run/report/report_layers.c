@@ -156,14 +156,6 @@ static int cause_words(FILE *to, const char *lead, const size_t *count)
   return shown;
 }
 
-/* Faces that are full without any layer: the law asks for none there. */
-static size_t bare_faces(const struct vg_patch_layers *w)
-{
-  double percent = w->full - w->any;
-
-  return percent > 0 ? (size_t)((double)w->n_face * percent / 100 + 0.5) : 0;
-}
-
 void vg_report_layers_note(const struct vg_layer_stage *s,
                            const struct vg_mesh *surface,
                            struct vg_notes *notes)
@@ -175,7 +167,7 @@ void vg_report_layers_note(const struct vg_layer_stage *s,
   for (size_t i = 0; i < s->n_wall; i++) {
     const struct vg_patch_layers *w = &s->wall[i];
 
-    if (!w->n_face || bare_faces(w) < w->n_face) continue;
+    if (!w->n_face || w->n_bare < w->n_face) continue;
     if (n++ < VG_SHOWN_ITEMS)
       at += (size_t)snprintf(list + at, sizeof list - at, " %d",
                              (int)patch_of(surface, w)->id);
@@ -198,7 +190,7 @@ static void causes(FILE *to, const struct vg_layer_stage *s,
 
   for (size_t i = 0; i < s->n_wall && shown < VG_SHOWN_PATCHES; i++) {
     const struct vg_patch_layers *w = &s->wall[i];
-    size_t bare = bare_faces(w), sum = bare;
+    size_t bare = w->n_bare, sum = bare;
 
     for (int c = VG_CAUSE_PROXIMITY; c < VG_CAUSE_N; c++)
       sum += w->cause[c] + w->squeezed[c];
@@ -290,9 +282,10 @@ void vg_report_missed_text(FILE *to, const struct vg_layer_stage *s,
     const struct vg_limit_missed *m = &s->missed[i];
     const struct vg_patch *p = &surface->patch[m->patch];
 
-    fprintf(to, "limit not met: patch %d%s%s: %s is %.10g%s, reached %.10g%s"
-            "\n", (int)p->id, *p->name ? " " : "", p->name, m->name,
-            m->wanted, m->unit, m->got, m->unit);
+    fprintf(to, "limit not met: patch %d%s%s: %s is %.10g%s, ", (int)p->id,
+            *p->name ? " " : "", p->name, m->name, m->wanted, m->unit);
+    if (m->is_bare) fprintf(to, "but the patch has no layers\n");
+    else fprintf(to, "reached %.10g%s\n", m->got, m->unit);
   }
 }
 
@@ -381,7 +374,8 @@ static json_t *missed_json(const struct vg_layer_stage *s,
 
     json_array_append_new(list, json_pack("{s:i s:o s:s s:o s:o}", "patch",
       (int)p->id, "name", vg_text_json(p->name), "limit", m->name,
-      "wanted", real(m->wanted), "got", real(m->got)));
+      "wanted", real(m->wanted), "got",
+      m->is_bare ? json_null() : real(m->got)));
   }
   return list;
 }

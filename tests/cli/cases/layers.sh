@@ -141,6 +141,9 @@ says out "layers are asked for, but no patch has a viscous condition"
 # A limit without layers would be met by nothing.
 refuse "no patch is known to be a wall" --first 1e-3 --min-full 98
 refuse "no first height is known" --walls 5 --min-full 98
+refuse "layers is no, but a limit on layers is set" --layers no --min-full 98
+printf 't\nlayers\nid min_any\n5 98\n' >slip.deck
+refuse "layers is no, but a limit on layers is set" --layers no --deck slip.deck
 printf 't\nlayers\nid min_full\n6 98\n' >slip.deck
 refuse "patch 6 has a limit, but it is no wall" --deck slip.deck --walls 5 \
   --first 1e-3
@@ -189,3 +192,13 @@ same foam/box.b8.ugrid mixed/box.b8.ugrid
 vanguard mesh -q -p p/box --walls 5 --first 100 --out huge
 exits 0
 says out "no layers on 1 of 1 walls (patch 5): their first height, 100"
+
+# Without a layer there is no share of any, and no limit is met.
+for limit in min-full min-any min-height max-first-error max-top-ratio; do
+  vanguard mesh -q -p p/box --walls 5 --first 100 --$limit 50 --out huge
+  exits 4
+  says err "limit not met: patch 5 z-min: ${limit//-/_} is 50"
+  says err ", but the patch has no layers"
+done
+says huge/box.report.json '"percent_full": 0.0'
+says huge/box.report.json '"got": null'
