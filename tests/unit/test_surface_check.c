@@ -517,6 +517,52 @@ static void unites_bodies_that_share_a_wall(void **unused)
   }
 }
 
+/* A unit box from x, y, z on, with diagonals from the lowest to the highest
+ * corner of each side, so that those of neighbours are the same. */
+static void add_cell(struct vg_mesh *m, int x, int y, int z, int outward)
+{
+  static const uint32_t quad[6][4] = { /* lowest, .., highest, .. */
+    { 0, 4, 6, 2 }, { 1, 3, 7, 5 }, { 0, 1, 5, 4 }, { 2, 6, 7, 3 },
+    { 0, 2, 3, 1 }, { 4, 5, 7, 6 } };
+  uint32_t first = (uint32_t)m->n_point;
+  uint32_t patch = (uint32_t)vg_mesh_add_patch(m, (int32_t)m->n_patch + 1, "");
+
+  for (int k = 0; k < 8; k++)
+    add_point(m, x + (k & 1), y + (k >> 1 & 1), z + (k >> 2 & 1));
+  for (int s = 0; s < 6; s++)
+    for (int half = 0; half < 2; half++) {
+      uint32_t b = first + quad[s][1 + half], c = first + quad[s][2 + half];
+
+      add_tri(m, first + quad[s][0], outward ? b : c, outward ? c : b, patch);
+    }
+}
+
+/* 27 boxes, some of them inside out: walls meet in edges, and a body may have
+ * walls all around. Without one of them the others have a hole in a corner,
+ * in an edge, in a side or a cavity. */
+static void unites_many_bodies(void **unused)
+{
+  (void)unused;
+  for (int left_out = -1; left_out < 27; left_out++) {
+    int n_side = 0; /* sides of the box that is left out on the hull */
+    NEW;
+
+    for (int i = 0; i < 27; i++)
+      if (i != left_out) add_cell(&m, i % 3, i / 3 % 3, i / 9, i % 5 != 2);
+    for (int k = 0, i = left_out; i >= 0 && k < 3; k++, i /= 3)
+      n_side += i % 3 != 1;
+    check(&m, 1, 1, &r);
+    assert_none(&r);
+    assert_int_equal(m.n_tri, left_out < 0 ? 108
+                     : 108 - 2 * n_side + 2 * (6 - n_side));
+    assert_int_equal(r.n_removed_wall, left_out < 0 ? 216
+                     : 216 - 4 * (6 - n_side));
+    assert_int_equal(r.n_shell, left_out >= 0 && !n_side ? 2 : 1);
+    assert_true(r.shell[0].volume == (left_out >= 0 && n_side ? 26 : 27));
+    done(&m, &r);
+  }
+}
+
 /* A wall that stands on a body with both of its sides: nothing is guessed. */
 static void leaves_a_wall_without_thickness(void **unused)
 {
@@ -1135,6 +1181,7 @@ int main(void)
     cmocka_unit_test(drops_copies_of_a_triangle),
     cmocka_unit_test(drops_a_second_skin),
     cmocka_unit_test(unites_bodies_that_share_a_wall),
+    cmocka_unit_test(unites_many_bodies),
     cmocka_unit_test(leaves_a_wall_without_thickness),
     cmocka_unit_test(keeps_a_shared_wall_at_a_hole),
     cmocka_unit_test(reports_coordinates_that_are_not_finite),

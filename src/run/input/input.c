@@ -374,9 +374,8 @@ vg_status vg_problem_patch_table(struct vg_problem *p, int are_closed,
 
     if (!to && p->settings.close_holes && !are_closed) continue;
     if (!to) {
-      st = vg_fail(err, VG_ERR_INPUT, "patch table: patch %d is not in the "
-                   "surface; 'vanguard deck' lists its patches",
-                   (int)row->id);
+      st = vg_patch_ref_mark("patches", row->id, "", &p->surface,
+                             p->surface.n_patch, NULL, err);
       break;
     }
     if (*row->name) snprintf(to->name, sizeof to->name, "%s", row->name);
