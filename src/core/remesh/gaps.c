@@ -18,7 +18,7 @@
 /* S60: samples of a forecast, and where gaps are narrow */
 #define SAMPLES 1e5
 #define SAMPLES_MOST 1e6
-#define FINE 1e4          /* parts of what is too much that a sample may be */
+#define FINE 1e4          /* the limit over what one sample may count for */
 #define TRIANGLE 0.433    /* area of a triangle of edge 1 */
 #define PLACE 0.15        /* area for each of the two places of a gap, over the
                              square of its width */
@@ -43,7 +43,7 @@ struct search {
 };
 
 /* Width of the gap above x on triangle t, its other side into y, on triangle
- * *other; INFINITY: there is none. */
+ * *other; INFINITY: no surface faces x there. */
 static double gap_at(const struct search *s, size_t t, const double x[3],
                      double y[3], uint32_t *other)
 {

@@ -22,7 +22,7 @@ struct check {
   struct vg_aabb_tree tree;
   struct vg_crossing cross;
   uint32_t *first;          /* [s.n] lowest face with the same nodes */
-  uint8_t *copy;            /* [s.n] enum vg_copy; NULL: there are none */
+  uint8_t *copy;            /* [s.n] enum vg_copy; NULL: no face is a copy */
   uint32_t (*fan)[3];       /* [s.n] */
   uint8_t *flip;            /* [s.n] faces to turn */
   uint32_t *shell;          /* [s.n] */

@@ -103,7 +103,7 @@ struct vg_surface_check_options {
  *
  * Intersections: pairs of triangles with a point in common that is not on a
  * common node or edge; exact, touching counts, degenerate ones excepted. A
- * node is common only to faces that hang together around it through edges:
+ * node is common only to faces that are connected around it through edges:
  * sheets that meet in a node touch; the non-manifold edge in which sheets
  * meet is a finding of its own.
  * With cells in m, points that only cells use are not unused.

@@ -9,7 +9,7 @@
 #include "base/memory.h"
 #include "base/union_find.h"
 
-/* What the border of a region has; bits. */
+/* Edges of a region's border, and kinds of its groups; bits. */
 enum {
   BORDER_NONE = 1,          /* an edge without any other face */
   BORDER_ONE = 2,
@@ -33,7 +33,7 @@ static int is_multiple(const struct regions *x, uint32_t h)
 }
 
 /* Join the groups of one edge, so that roots are final before the borders
- * are looked at. */
+ * are examined. */
 static void join_edge(struct regions *x, const struct vg_edges *e, size_t edge)
 {
   uint32_t last = UINT32_MAX;

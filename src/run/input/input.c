@@ -547,7 +547,7 @@ static vg_status apply_aflr(struct vg_problem *p, const char *path,
   if (n_unused)
     vg_note(&p->notes, "%s lists %zu patches that the surface does not have",
             path, n_unused);
-  /* What the file asks for comes after rows that are given by name. */
+  /* A row that is given by name goes before one of the file. */
   VG_TRY(vg_patch_rows_resolve(&p->settings, &p->surface, err));
   for (size_t i = 0; i < a.n && p->settings.layer.from_files; i++)
     for (size_t j = 0; j < m->n_patch; j++)

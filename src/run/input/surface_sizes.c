@@ -176,8 +176,8 @@ static vg_status take_curve(const struct vg_mesh *m,
   if (st < 0 || n_edge) return st;
   vg_param_format(&vg_surface_table.column[0], row, one, sizeof one);
   vg_param_format(&vg_surface_table.column[1], row, two, sizeof two);
-  return vg_fail(err, VG_ERR_INPUT, "surface: patches %s and %s have no edge "
-                 "in common, so there is no curve between them", one, two);
+  return vg_fail(err, VG_ERR_INPUT, "surface: patches %s and %s share no edge, so "
+                 "there is no curve between them", one, two);
 }
 
 static void take_patch(const struct vg_problem *p, size_t patch,

@@ -12,7 +12,7 @@ static const struct vg_param columns[] = {
     .required = 1, .help = "number of the patch, or its name (* and ? stand "
     "for characters)" },
   { "beside", AT(beside), VG_PATCH_COLUMN(struct vg_surface_row, beside_name),
-    .optional = 1, .help = "another one: the size holds along the curve "
+    .optional = 1, .help = "another patch: the size holds along the curve "
     "between them; -: on all the patch" },
   { "size", AT(size), .type = VG_PARAM_REAL, .hi = 1e60, .unit = "length",
     .help = "largest edge; 0: no limit" },
