@@ -9,6 +9,11 @@
   "vertex 0 1 0\nendloop\nendfacet\n"
 #define T1 "0 0 0\n1 0 0\n0 1 0\n0 0 1\n"
 #define GMSH "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n"
+#define POINTER \
+  "version https://git-lfs.github.com/spec/v1\n" \
+  "oid sha256:4d7a214614ab2935c943f9e0ff69d22eadbb8f32b1258daaa5e2ca24d17e2393" \
+  "\nsize 12345\n"
+#define MARK "\xef\xbb\xbf"
 #define MEDIT "MeshVersionFormatted 2\nDimension 3\n"
 
 /* A long line and a long token must neither be copied to a short buffer nor
@@ -85,6 +90,14 @@ const struct hostile hostile_texts[] = {
   { .file = "empty.ugrid", .phrase = "empty", .text = "" },
   { .file = "empty.mesh", .phrase = "empty", .text = "" },
   { .file = "absent.tri", .phrase = "No such file", .make = make_folder_like },
+  { .file = "mark.stl", .phrase = "empty", .text = MARK },
+  { .file = "mark_mark.obj", .phrase = "no faces", .text = MARK MARK "\n" },
+  { .file = "mark.tri", .phrase = "'four'", .text = MARK "four 4\n" T1 },
+  { .file = "pointer.stl", .phrase = "git lfs pull", .text = POINTER },
+  { .file = "pointer.cgns", .phrase = "git lfs pull", .text = POINTER },
+  { .file = "pointer.step", .phrase = "git lfs pull", .text = POINTER },
+  { .file = "pointer.lb8.ugrid", .phrase = "git lfs pull",
+    .text = MARK POINTER },
   { .file = "blank.obj", .phrase = "no faces", .text = " \n\n\t\r\n" },
   { .file = "word.xyz", .phrase = "stl", .text = "hello\n" },
   { .file = "no_facets.stl", .phrase = "no facets",

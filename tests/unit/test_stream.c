@@ -41,6 +41,75 @@ static void names_what_cannot_be_opened(void **state)
   unlink(path);
 }
 
+static void open_bytes(const void *data, size_t size, struct vg_input *in)
+{
+  struct vg_error err = VG_ERROR_INIT;
+
+  if (vg_input_memory("case", data, size, in, &err) != VG_OK)
+    fail_msg("%s", err.text);
+}
+
+#define MARK "\xef\xbb\xbf"
+
+/* In a text the mark is dropped once; in binary data the same bytes stay. */
+static void drops_the_byte_order_mark_of_a_text(void **state)
+{
+  static const char twice[] = MARK MARK "v 1\n", binary[] = MARK "\0\0\1v";
+  const char *path = io_temp("stream_marked.txt");
+  struct vg_input in = VG_INPUT_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+
+  (void)state;
+  io_write_file(path, MARK "solid a\n", 11);
+  assert_int_equal(vg_input_open(path, &in, &err), VG_OK);
+  assert_int_equal(in.size, 8);
+  assert_string_equal((char *)in.data, "solid a\n");
+  vg_input_release(&in);
+  assert_int_equal(vg_input_open_head(path, 5, &in, &err), VG_OK);
+  assert_memory_equal(in.data, "so", 2);
+  vg_input_release(&in);
+  io_write_gzip(path, MARK "solid a\n", 11);
+  assert_int_equal(vg_input_open(path, &in, &err), VG_OK);
+  assert_string_equal((char *)in.data, "solid a\n");
+  vg_input_release(&in);
+  io_write_file(path, MARK, 3);
+  refuse_open(path, VG_ERR_FORMAT, "empty");
+  unlink(path);
+
+  open_bytes(twice, sizeof twice - 1, &in);
+  assert_int_equal(in.size, sizeof twice - 4);
+  vg_input_release(&in);
+  open_bytes(binary, sizeof binary - 1, &in);
+  assert_int_equal(in.size, sizeof binary - 1);
+  assert_memory_equal(in.data, binary, in.size);
+  vg_input_release(&in);
+  open_bytes(MARK, 2, &in);
+  assert_int_equal(in.size, 2);
+  vg_input_release(&in);
+}
+
+#define POINTER \
+  "version https://git-lfs.github.com/spec/v1\n" \
+  "oid sha256:4d7a214614ab2935c943f9e0ff69d22eadbb8f32b1258daaa5e2ca24d17e2393" \
+  "\nsize 12345\n"
+
+static void names_a_pointer_of_git_lfs(void **state)
+{
+  const char *path = io_temp("stream_pointer.lb8.ugrid");
+  struct vg_input in = VG_INPUT_INIT;
+
+  (void)state;
+  io_write_file(path, POINTER, sizeof POINTER - 1);
+  refuse_open(path, VG_ERR_FORMAT, "is a Git LFS pointer, not the file "
+              "itself; run `git lfs pull` in its repository");
+  io_write_file(path, MARK POINTER, sizeof POINTER + 2);
+  refuse_open(path, VG_ERR_FORMAT, "Git LFS pointer");
+  unlink(path);
+  /* only at the start */
+  open_bytes("# " POINTER, sizeof POINTER + 1, &in);
+  vg_input_release(&in);
+}
+
 static void unpacks_gzip_whatever_its_name(void **state)
 {
   const char *path = io_temp("stream_packed.txt");
@@ -466,6 +535,8 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(names_what_cannot_be_opened),
+    cmocka_unit_test(drops_the_byte_order_mark_of_a_text),
+    cmocka_unit_test(names_a_pointer_of_git_lfs),
     cmocka_unit_test(unpacks_gzip_whatever_its_name),
     cmocka_unit_test(refuses_gzip_cut_anywhere),
     cmocka_unit_test(refuses_gzip_that_explodes),

@@ -151,6 +151,32 @@ static vg_status unpack(const char *path, int is_head, unsigned char **data,
   return VG_OK;
 }
 
+/* A text file may begin with U+FEFF in UTF-8, which some editors of Windows
+ * write. In a binary file these bytes are data. */
+static void drop_byte_order_mark(struct vg_input *in)
+{
+  static const unsigned char mark[3] = { 0xef, 0xbb, 0xbf };
+
+  if (in->size < sizeof mark || memcmp(in->data, mark, sizeof mark) ||
+      !vg_input_is_text(in))
+    return;
+  in->size -= sizeof mark;
+  memmove(in->data, in->data + sizeof mark, in->size + 1);
+}
+
+/* A repository cloned without Git LFS holds a few lines of text in the place
+ * of each large file. */
+static vg_status refuse_pointer(const char *path, const unsigned char *data,
+                                size_t size, struct vg_error *err)
+{
+  static const char start[] = "version https://git-lfs.github.com/spec/";
+  const size_t n = sizeof start - 1;
+
+  if (size < n || memcmp(data, start, n)) return VG_OK;
+  return vg_fail(err, VG_ERR_FORMAT, "%s is a Git LFS pointer, not the file "
+                 "itself; run `git lfs pull` in its repository", path);
+}
+
 /* Takes over `data`. */
 static vg_status adopt(const char *path, int is_head, unsigned char *data,
                        size_t size, struct vg_input *in, struct vg_error *err)
@@ -158,16 +184,18 @@ static vg_status adopt(const char *path, int is_head, unsigned char *data,
   struct vg_input made = VG_INPUT_INIT;
   vg_status st = unpack(path, is_head, &data, &size, err);
 
-  if (st == VG_OK && !size)
+  made.data = data;
+  made.size = size;
+  if (st == VG_OK) drop_byte_order_mark(&made);
+  if (st == VG_OK && !made.size)
     st = vg_fail(err, VG_ERR_FORMAT, "%s: the file is empty", path);
+  if (st == VG_OK) st = refuse_pointer(path, made.data, made.size, err);
   if (st == VG_OK && !(made.path = copy_string(path)))
     st = vg_fail_memory(err, path);
   if (st != VG_OK) {
     free(data);
     return st;
   }
-  made.data = data;
-  made.size = size;
   *in = made;
   return VG_OK;
 }

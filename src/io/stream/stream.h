@@ -34,9 +34,11 @@ struct vg_input {
 };
 #define VG_INPUT_INIT { .line = 1 }  /* releasing this is a no-op */
 
-/** Read a file into the empty *in, unpacking gzip.
+/** Read a file into the empty *in, unpacking gzip. The byte order mark of
+ * UTF-8 at the start of a text is dropped.
  * VG_ERR_IO: missing, a directory, unreadable; VG_ERR_FORMAT: empty, broken
- * or truncated gzip; VG_ERR_MEMORY. *in is untouched on failure. */
+ * or truncated gzip, a pointer of Git LFS in the place of the file;
+ * VG_ERR_MEMORY. *in is untouched on failure. */
 vg_status vg_input_open(const char *path, struct vg_input *in,
                         struct vg_error *err);
 
