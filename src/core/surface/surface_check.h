@@ -145,4 +145,32 @@ vg_status vg_surface_weld(struct vg_mesh *m, double tolerance,
                           size_t *n_merged, size_t *n_dropped,
                           struct vg_error *err);
 
+/** Gaps between parts of a surface that coincide but for rounding: open edges
+ * of which both ends lie next to the ends of another open edge, and nearer than
+ * a tenth of the shortest edge there. The rim of a hole has no such partners.
+ *
+ * @param r       of m; without open edges nothing is done; NULL: not known
+ * @param gap     out: smallest tolerance at which vg_surface_weld_rims closes
+ *                all of them (rounded up by 1e-9 of itself); 0: there are none
+ * @param n_edge  out: open edges that have a partner
+ * O(n log n). On failure outputs are untouched: VG_ERR_INPUT for an index out of
+ * range, VG_ERR_UNSUPPORTED, VG_ERR_MEMORY. */
+vg_status vg_surface_rim_gap(const struct vg_mesh *m,
+                             const struct vg_surface_report *r, double *gap,
+                             size_t *n_edge, struct vg_error *err);
+
+/** Merge the ends of open edges that are partners within `tolerance`; the point
+ * of the lowest index keeps its place. Points with equal coordinates become one
+ * as well where there is such a pair. No other point moves, and the edges of a
+ * hole stay open. Triangles that collapse are dropped; a report is out of date.
+ *
+ * @param n_merged  out, may be NULL: points that are gone
+ * @param n_edge    out, may be NULL: open edges that found a partner
+ * O(n log n). On failure m is untouched: VG_ERR_INPUT for a tolerance that is
+ * not positive and finite or an index out of range, VG_ERR_UNSUPPORTED,
+ * VG_ERR_MEMORY. */
+vg_status vg_surface_weld_rims(struct vg_mesh *m, double tolerance,
+                               size_t *n_merged, size_t *n_edge,
+                               struct vg_error *err);
+
 #endif

@@ -288,6 +288,18 @@ static vg_status link_near(const struct vg_mesh *m, double tolerance,
   return st;
 }
 
+vg_status vg_points_near(const struct vg_mesh *m, double tolerance,
+                         uint32_t **near, struct vg_error *err)
+{
+  uint32_t *map = NULL;
+  vg_status st = vg_points_same(m, &map, err);
+
+  if (st >= 0 && tolerance > 0) st = link_near(m, tolerance, map, err);
+  if (st < 0) free(map);
+  else *near = map;
+  return st;
+}
+
 /* --- renumbering --------------------------------------------------------- */
 
 static size_t bad_index(const uint32_t *node, size_t n, size_t width,
@@ -387,8 +399,7 @@ vg_status vg_surface_weld(struct vg_mesh *m, double tolerance,
     return vg_fail(err, VG_ERR_INPUT, "weld tolerance %g: give 0 (points with "
                    "equal coordinates) or a positive distance", tolerance);
   VG_TRY(vg_mesh_check_index(m, err));
-  VG_TRY(vg_points_same(m, &map, err));
-  if (tolerance > 0) VG_TRY(link_near(m, tolerance, map, err));
+  VG_TRY(vg_points_near(m, tolerance, &map, err));
   drop = vg_alloc(m->n_tri, 1);
   if (!drop) VG_TRY(vg_fail_memory(err, "a list of triangles"));
   for (size_t t = 0; t < m->n_tri; t++) {
