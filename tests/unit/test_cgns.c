@@ -355,17 +355,14 @@ static void refuses_trees(void **state)
   (void)state;
   start(&t, 1);
   refuse(&t, VG_ERR_UNSUPPORTED, "dimensions");
-  start(&t, 3);
-  add(&t, t.root, "two", "CGNSBase_t", "I4", 1, 1, 2, size);
-  refuse(&t, VG_ERR_UNSUPPORTED, "2 bases");
   begin(&t);
   refuse(&t, VG_ERR_FORMAT, "0 bases");
   start(&t, 3);
   refuse(&t, VG_ERR_INPUT, "nothing to mesh");
   start(&t, 3);
   add_text(&t, add(&t, t.base, "block", "Zone_t", "I4", 2, 3, 9, size),
-           "ZoneType", "ZoneType_t", "Structured");
-  refuse(&t, VG_ERR_UNSUPPORTED, "Unstructured");
+           "ZoneType", "ZoneType_t", "UserDefined");
+  refuse(&t, VG_ERR_UNSUPPORTED, "neither Structured nor Unstructured");
   start(&t, 3);
   add_text(&t, add(&t, t.base, "empty", "Zone_t", "I4", 2, 1, 3, size),
            "ZoneType", "ZoneType_t", "Unstructured");
@@ -381,12 +378,317 @@ static void refuses_trees(void **state)
   vg_mesh_release(&m);
 }
 
+/* --- structured zones --- */
+
+/* Points i j k of a unit cube of n[] points, moved by `at` along x, and the
+ * indices permuted so that the first runs along `axis`; mirrored: they are
+ * left-handed. */
+struct lattice {
+  int n[3], axis, is_mirrored;
+  double at;
+};
+
+static void lattice_point(const struct lattice *l, const int i[3], double x[3])
+{
+  for (int k = 0; k < 3; k++) {
+    int m = l->n[k] - 1;
+    double share = m ? (double)i[k] / m : 0;
+
+    x[(k + l->axis) % 3] = l->is_mirrored && !k ? 1 - share : share;
+  }
+  x[0] += l->at;
+}
+
+static void block(struct tree *t, const char *name, int d,
+                  const struct lattice *l)
+{
+  static const char *const axis[3] = { "CoordinateX", "CoordinateY",
+                                       "CoordinateZ" };
+  size_t n = (size_t)l->n[0] * (size_t)l->n[1] * (size_t)l->n[2];
+  double *x = malloc(3 * n * sizeof *x);
+  int32_t size[9] = { 0 };
+  int64_t grid;
+
+  for (int k = 0; k < d; k++) {
+    size[k] = l->n[k];
+    size[d + k] = l->n[k] - 1;
+  }
+  for (size_t p = 0; p < n; p++) {
+    const int i[3] = { (int)p % l->n[0], (int)p / l->n[0] % l->n[1],
+                       (int)p / l->n[0] / l->n[1] };
+    double to[3];
+
+    lattice_point(l, i, to);
+    for (size_t k = 0; k < 3; k++) x[k * n + p] = to[k];
+  }
+  t->zone = add(t, t->base, name, "Zone_t", "I4", 2, (size_t)d, 3 * (size_t)d,
+                size);
+  add_text(t, t->zone, "ZoneType", "ZoneType_t", "Structured");
+  grid = add(t, t->zone, "GridCoordinates", "GridCoordinates_t", "MT", 0, 1, 0,
+             NULL);
+  for (size_t k = 0; k < 3; k++)
+    add(t, grid, axis[k], "DataArray_t", "R8", 1, 1, n, x + k * n);
+  free(x);
+}
+
+/* Six times the volume that the triangles enclose, > 0 where they look out. */
+static double volume6(const struct vg_mesh *m)
+{
+  double sum = 0;
+
+  for (size_t t = 0; t < m->n_tri; t++) {
+    const double *a = m->point[m->tri[t][0]], *b = m->point[m->tri[t][1]];
+    const double *c = m->point[m->tri[t][2]];
+
+    sum += a[0] * (b[1] * c[2] - b[2] * c[1]) +
+           a[1] * (b[2] * c[0] - b[0] * c[2]) +
+           a[2] * (b[0] * c[1] - b[1] * c[0]);
+  }
+  return sum;
+}
+
+/* Two zones of a surface with a side in common: points of the side are one, a
+ * zone or its family is the patch. */
+static void surface_blocks_are_joined(void **state)
+{
+  const struct lattice left = { { 4, 3, 1 }, 0, 0, 0 };
+  const struct lattice right = { { 3, 3, 1 }, 0, 0, 1 };
+  static const int32_t side[4] = { 1, 1, 1, 3 }, part[4] = { 1, 1, 2, 3 };
+  struct vg_mesh m = VG_MESH_INIT;
+  struct tree t;
+
+  (void)state;
+  start(&t, 2);
+  block(&t, "left", 2, &left);
+  /* a condition on an edge is none on faces */
+  condition(&t, conditions(&t), "edge", "BCWall", NULL, "PointRange", 4, side);
+  block(&t, "right", 2, &right);
+  condition(&t, conditions(&t), "part", "BCWallInviscid", NULL, "PointRange", 4,
+            part);
+  add_text(&t, t.zone, "FamilyName", "FamilyName_t", "wing");
+  accept(&t, &m);
+  assert_int_equal(m.n_point, 12 + 9 - 3);
+  assert_int_equal(m.n_tri, 2 * (6 + 4));
+  assert_int_equal(m.n_quad, 0);
+  assert_int_equal(m.n_patch, 3);
+  assert_string_equal(m.patch[0].name, "left");
+  assert_string_equal(m.patch[1].name, "part");
+  assert_int_equal(m.patch[1].bc, 5);
+  assert_string_equal(m.patch[2].name, "wing");
+  for (size_t i = 0; i < 20; i++)
+    assert_int_equal(m.tri_patch[i], i < 12 ? 0 : i / 2 % 2 ? 2 : 1);
+  vg_mesh_release(&m);
+}
+
+/* In a base of cells a zone with a single layer of points is a surface, the
+ * layer along any index. */
+static void a_layer_of_points_is_a_surface(void **state)
+{
+  static const int32_t whole[6] = { 1, 1, 1, 1, 1, 1 };
+  struct vg_mesh m = VG_MESH_INIT;
+  struct tree t;
+
+  (void)state;
+  for (int k = 0; k < 3; k++) {
+    struct lattice l = { { 3, 3, 3 }, 0, 0, 0 };
+    int32_t range[6];
+
+    l.n[k] = 1;
+    for (int i = 0; i < 6; i++) range[i] = i < 3 || i - 3 == k ? 1 : 2;
+    start(&t, 3);
+    block(&t, "skin", 3, &l);
+    condition(&t, conditions(&t), "corner", "BCWall", NULL, "PointRange", 6,
+              range);
+    accept(&t, &m);
+    assert_int_equal(m.n_point, 9);
+    assert_int_equal(m.n_tri, 8);
+    assert_int_equal(m.n_patch, 2);
+    assert_string_equal(m.patch[m.tri_patch[0]].name, "corner");
+    assert_string_equal(m.patch[m.tri_patch[2]].name, "skin");
+    vg_mesh_release(&m);
+  }
+  /* faces count cells: the first one */
+  start(&t, 3);
+  block(&t, "skin", 3, &(const struct lattice){ { 3, 3, 1 }, 0, 0, 0 });
+  condition(&t, conditions(&t), "corner", "BCWall", "KFaceCenter",
+            "PointRange", 6, whole);
+  accept(&t, &m);
+  assert_int_equal(m.tri_patch[1], 0);
+  assert_int_equal(m.tri_patch[2], 1);
+  vg_mesh_release(&m);
+}
+
+/* Quadrilaterals are cut along the shorter diagonal; those with equal corners
+ * give one triangle, or none. */
+static void collapsed_faces_are_dropped(void **state)
+{
+  static const double x[3][6] = { { 0, 0, 1, 2, 3, 3 }, { 0, 0, 0.25, 0, 0, 0 },
+                                  { 0, 0, 0, 0, 0, 0 } };
+  static const double y[6] = { 0, 0, 1, 1, 0.5, 0.5 };
+  static const char *const axis[3] = { "CoordinateX", "CoordinateY",
+                                       "CoordinateZ" };
+  static const int32_t size[6] = { 3, 2, 2, 1, 0, 0 };
+  double all_x[3][6];
+  struct vg_mesh m = VG_MESH_INIT;
+  struct tree t;
+  int64_t grid;
+
+  (void)state;
+  /* lower row: 0 0 1, upper row: 2 3 3; so cells 0 0 3 2 and 0 1 3 3 */
+  memcpy(all_x, x, sizeof x);
+  for (int i = 3; i < 6; i++) all_x[1][i] = y[i];
+  start(&t, 2);
+  t.zone = add(&t, t.base, "polar", "Zone_t", "I4", 2, 2, 6, size);
+  add_text(&t, t.zone, "ZoneType", "ZoneType_t", "Structured");
+  grid = add(&t, t.zone, "Grid", "GridCoordinates_t", "MT", 0, 1, 0, NULL);
+  for (int k = 0; k < 3; k++)
+    add(&t, grid, axis[k], "DataArray_t", "R8", 1, 1, 6, all_x[k]);
+  accept(&t, &m);
+  assert_int_equal(m.n_point, 4);
+  assert_int_equal(m.n_tri, 2);
+  vg_mesh_release(&m);
+}
+
+/* A block with cells gives the faces of its conditions, which look into it
+ * whatever way its indices run; points that no face uses are left out. */
+static void conditions_of_a_block_make_its_boundary(void **state)
+{
+  static const int32_t range[6][6] = {
+    { 1, 1, 1, 1, 4, 5 }, { 3, 1, 1, 3, 4, 5 }, { 1, 1, 1, 3, 1, 5 },
+    { 1, 4, 1, 3, 4, 5 }, { 1, 1, 1, 3, 4, 1 }, { 1, 1, 5, 3, 4, 5 } };
+  static const int32_t edge[6] = { 1, 1, 1, 3, 1, 1 };
+  static const int32_t face[6] = { 1, 1, 5, 2, 3, 5 };
+  char name[8];
+
+  (void)state;
+  for (int turn = 0; turn < 12; turn++) {
+    const struct lattice l = { { 3, 4, 5 }, turn / 2 % 3, turn % 2, 0.5 };
+    struct vg_mesh m = VG_MESH_INIT;
+    struct tree t;
+    int64_t bc;
+
+    start(&t, 3);
+    block(&t, "blk-1", 3, &l);
+    bc = conditions(&t);
+    condition(&t, bc, "line", "BCWall", NULL, "PointRange", 6, edge);
+    for (int k = 0; k < 6; k++) {
+      snprintf(name, sizeof name, "bc-%d", k);
+      if (k == 5 && turn > 5)
+        condition(&t, bc, name, "BCFarfield", turn % 2 ? "FaceCenter"
+                  : "KFaceCenter", "PointRange", 6, face);
+      else
+        condition(&t, bc, name, k ? "BCFarfield" : "BCWallViscous",
+                  k % 2 ? "Vertex" : NULL, "PointRange", 6, range[k]);
+    }
+    accept(&t, &m);
+    assert_int_equal(m.n_patch, 6);
+    assert_int_equal(m.patch[0].bc, 4);
+    assert_int_equal(m.n_tet + m.n_hex, 0);
+    /* all but the 1 x 2 x 3 points within */
+    assert_int_equal(m.n_point, 60 - 6);
+    assert_int_equal(m.n_tri, 4 * (2 * 3 + 3 * 4 + 4 * 2));
+    /* a cube of volume 1 seen from within; its coordinates are rounded */
+    assert_true(volume6(&m) < -6 + 1e-12 && volume6(&m) > -6 - 1e-12);
+    vg_mesh_release(&m);
+  }
+}
+
+/* A surface next to cells is not read twice; bases of one kind are joined. */
+static void bases_are_joined(void **state)
+{
+  const struct lattice l = { { 3, 3, 1 }, 0, 0, 0 };
+  const struct lattice r = { { 3, 3, 1 }, 0, 0, 1 };
+  static const int32_t cells[2] = { 3, 3 }, faces[2] = { 2, 3 };
+  static const int part[3] = { 0, 1, 2 };
+  static const int32_t tri[3] = { 1, 2, 3 };
+  struct vg_mesh m = VG_MESH_INIT;
+  struct tree t;
+
+  (void)state;
+  start(&t, 2);
+  block(&t, "one", 2, &l);
+  t.base = add(&t, t.root, "next", "CGNSBase_t", "I4", 1, 1, 2, faces);
+  block(&t, "two", 2, &r);
+  zone(&t, "three", 3, part);
+  section(&t, "Tri", 5, 1, 1, 3, tri);
+  accept(&t, &m);
+  /* corners of `three` are points of `one` */
+  assert_int_equal(m.n_point, 15);
+  assert_int_equal(m.n_tri, 17);
+  assert_int_equal(m.n_patch, 3);
+  vg_mesh_release(&m);
+  start(&t, 2);
+  block(&t, "copy", 2, &l);
+  t.base = add(&t, t.root, "cells", "CGNSBase_t", "I4", 1, 1, 2, cells);
+  zone(&t, "Zone 1", 4, all);
+  section(&t, "everything", 20, 1, 5, sizeof t1_mixed / 4, t1_mixed);
+  accept(&t, &m);
+  assert_int_equal(m.n_tri, 4);
+  vg_mesh_release(&m);
+}
+
+static void one_block(struct tree *t, const char *at, const char *list,
+                      size_t n, const int32_t *v)
+{
+  start(t, 3);
+  block(t, "blk-1", 3, &(const struct lattice){ { 3, 3, 3 }, 0, 0, 0 });
+  condition(t, conditions(t), "bc-1", "BCWall", at, list, n, v);
+}
+
+static void refuses_blocks(void **state)
+{
+  static const int32_t size[9] = { 2, 2, 0, 1, 1, 1 };
+  static const int32_t huge[9] = { 65536, 65536, 65536, 1, 1, 1 };
+  static const int32_t out[6] = { 1, 1, 1, 1, 3, 4 };
+  static const int32_t zero[6] = { 1, 0, 1, 1, 3, 3 };
+  static const int32_t within[6] = { 2, 1, 1, 2, 3, 3 };
+  static const int32_t faces[6] = { 1, 1, 1, 1, 3, 2 };
+  static const int32_t corner[6] = { 1, 1, 1, 1, 1, 2 };
+  const struct lattice l = { { 3, 3, 3 }, 0, 0, 0 };
+  struct tree t;
+
+  (void)state;
+  start(&t, 3);
+  block(&t, "inner", 3, &l);
+  refuse(&t, VG_ERR_INPUT, "no BC_t says which of their faces");
+  start(&t, 3);
+  block(&t, "flat", 2, &(const struct lattice){ { 3, 3, 1 }, 0, 0, 0 });
+  refuse(&t, VG_ERR_FORMAT, "its sizes");
+  for (int k = 0; k < 2; k++) {
+    start(&t, 3);
+    add_text(&t, add(&t, t.base, "none", "Zone_t", "I4", 2, 3, 9,
+                     k ? huge : size), "ZoneType", "ZoneType_t", "Structured");
+    refuse(&t, VG_ERR_FORMAT, "not positive, or beyond");
+  }
+  start(&t, 3);
+  add_text(&t, add(&t, t.base, "bare", "Zone_t", "I4", 2, 3, 9,
+                   (const int32_t[9]){ 2, 2, 2, 1, 1, 1 }), "ZoneType",
+           "ZoneType_t", "Structured");
+  refuse(&t, VG_ERR_FORMAT, "CoordinateX has 0 values for 8 points");
+  one_block(&t, NULL, "PointRange", 6, out);
+  refuse(&t, VG_ERR_FORMAT, "leaves the zone");
+  one_block(&t, NULL, "PointRange", 6, zero);
+  refuse(&t, VG_ERR_FORMAT, "leaves the zone");
+  one_block(&t, "IFaceCenter", "PointRange", 6, faces);
+  refuse(&t, VG_ERR_FORMAT, "leaves the zone");
+  one_block(&t, "FaceCenter", "PointRange", 6, corner);
+  refuse(&t, VG_ERR_UNSUPPORTED, "write IFaceCenter");
+  one_block(&t, NULL, "PointRange", 6, within);
+  refuse(&t, VG_ERR_UNSUPPORTED, "within the block");
+  one_block(&t, NULL, "PointRange", 4, out);
+  refuse(&t, VG_ERR_UNSUPPORTED, "PointRange of points or faces");
+  one_block(&t, NULL, "PointList", 6, out);
+  refuse(&t, VG_ERR_UNSUPPORTED, "PointRange of points or faces");
+  one_block(&t, "CellCenter", "PointRange", 6, out);
+  refuse(&t, VG_ERR_UNSUPPORTED, "PointRange of points or faces");
+}
+
 static void refuses_what_is_no_cgns(void **state)
 {
   (void)state;
   io_refuse(vg_cgns_parse, "solid x", VG_ERR_FORMAT, "neither HDF5 nor ADF");
   io_refuse(vg_cgns_parse, "@(#)ADF Database Version B02012>",
-            VG_ERR_UNSUPPORTED, "adf2hdf");
+            VG_ERR_UNSUPPORTED, "convert it with `adf2hdf FILE NEW.cgns`");
   io_refuse(vg_cgns_parse, "\x89HDF\r\n\x1a\n", VG_ERR_FORMAT,
             "cannot open it");
 }
@@ -441,6 +743,12 @@ int main(void)
     cmocka_unit_test(zones_are_joined),
     cmocka_unit_test(refuses_sections),
     cmocka_unit_test(refuses_trees),
+    cmocka_unit_test(surface_blocks_are_joined),
+    cmocka_unit_test(a_layer_of_points_is_a_surface),
+    cmocka_unit_test(collapsed_faces_are_dropped),
+    cmocka_unit_test(conditions_of_a_block_make_its_boundary),
+    cmocka_unit_test(bases_are_joined),
+    cmocka_unit_test(refuses_blocks),
     cmocka_unit_test(refuses_what_is_no_cgns),
     cmocka_unit_test(no_damage_is_swallowed),
   };

@@ -156,8 +156,11 @@ vg_status vg_cgns_parse(struct vg_input *in, struct vg_mesh *out,
 
   if (is_hdf5(in)) return read_apart(in, out, err);
   if (memmem(in->data, in->size < 64 ? in->size : 64, adf, sizeof adf - 1))
-    return vg_fail(err, VG_ERR_UNSUPPORTED, "%s: CGNS in ADF; convert it to "
-                   "HDF5 with `adf2hdf FILE NEW` of the CGNS tools", in->path);
+    return vg_fail(err, VG_ERR_UNSUPPORTED, "%s: this CGNS file is in ADF, "
+                   "not in HDF5; convert it with `adf2hdf FILE NEW.cgns` "
+                   "(Debian's package cgns-convert), or with `cgnsconvert -h "
+                   "FILE NEW.cgns`, then give NEW.cgns in its place",
+                   in->path);
   return vg_fail(err, VG_ERR_FORMAT, "%s: not a CGNS file: neither HDF5 nor "
                  "ADF", in->path);
 }

@@ -7,14 +7,13 @@
 
 #include "base/memory.h"
 #include "io/cgns/cgns_conditions.h"
-#include "io/cgns/cgns_tree.h"
+#include "io/cgns/cgns_read_parts.h"
 #include "io/stream/convention.h"
-#include "io/stream/soup.h"
 #include "io/vgrid/mapbc.h"
 
-#define NONE UINT32_MAX
+#define NONE VG_CGNS_NONE
 
-enum element { PASSED, TRI, QUAD, TET, PYR, PRI, HEX, N_ELEMENT };
+enum element { PASSED, TRI, QUAD, TET, PYR, PRI, HEX };
 enum { MIXED = 20, NODES_MOST = 8 };
 
 /* CGNS's types of elements of first order, and points and lines. Slot k of the
@@ -31,9 +30,7 @@ static const struct type {
   { 2, PASSED, 1, { 0 } }, { 3, PASSED, 2, { 0 } }, { 4, PASSED, 3, { 0 } },
 };
 
-struct family { char name[VG_CGNS_NAME], condition[VG_CGNS_NAME]; };
-
-struct section {
+struct vg_cgns_section {
   struct vg_cgns_node node;
   int64_t code, first, last;           /* element numbers */
   int64_t *v;                          /* [n_v] connectivity */
@@ -41,31 +38,18 @@ struct section {
   uint32_t *patch;                     /* [last - first + 1], NONE: no BC_t */
 };
 
-struct reader {
-  struct vg_input *in;
-  struct vg_cgns_tree *tree;
-  int64_t dimension;                   /* of the cells: 2 or 3 */
-  size_t n_zone, n_family, cap_quad, cap_quad_patch, cap[N_ELEMENT];
-  struct family *family;               /* by name */
-  struct vg_soup soup;
-  /* of the zone at hand */
-  struct vg_cgns_node zone;
-  uint32_t *point;                     /* [n_point] in the mesh */
-  size_t n_point, n_section;
-  struct section *section;             /* by rising numbers */
-};
-
 /* --- nodes --- */
 
-static vg_status fail_zone(const struct reader *r, struct vg_error *err,
-                           vg_status code, const char *what)
+vg_status vg_cgns_fail_zone(const struct vg_cgns_reader *r,
+                            struct vg_error *err, vg_status code,
+                            const char *what)
 {
   return vg_fail(err, code, "%s: zone '%s': %s", r->in->path, r->zone.name,
                  what);
 }
 
 /* Child of a label and, unless NULL, a name; id -1: there is none. */
-static vg_status find_child(struct reader *r, int64_t parent,
+static vg_status find_child(struct vg_cgns_reader *r, int64_t parent,
                             const char *label, const char *name,
                             struct vg_cgns_node *out, struct vg_error *err)
 {
@@ -82,9 +66,9 @@ static vg_status find_child(struct reader *r, int64_t parent,
 }
 
 /* Text of a child, cut to fit; "" where there is none. */
-static vg_status child_text(struct reader *r, int64_t parent,
-                            const char *label, const char *name,
-                            char to[VG_CGNS_NAME], struct vg_error *err)
+vg_status vg_cgns_child_text(struct vg_cgns_reader *r, int64_t parent,
+                             const char *label, const char *name,
+                             char to[VG_CGNS_NAME], struct vg_error *err)
 {
   struct vg_cgns_node node;
   char *text = NULL;
@@ -100,10 +84,10 @@ static vg_status child_text(struct reader *r, int64_t parent,
 }
 
 /* The name of a family, which may come with its base: "/Base/wing". */
-static vg_status family_name(struct reader *r, int64_t parent,
-                             char to[VG_CGNS_NAME], struct vg_error *err)
+vg_status vg_cgns_family_name(struct vg_cgns_reader *r, int64_t parent,
+                              char to[VG_CGNS_NAME], struct vg_error *err)
 {
-  vg_status st = child_text(r, parent, "FamilyName_t", NULL, to, err);
+  vg_status st = vg_cgns_child_text(r, parent, "FamilyName_t", NULL, to, err);
   char *slash = strrchr(to, '/');
 
   if (slash) memmove(to, slash + 1, strlen(slash));
@@ -112,11 +96,11 @@ static vg_status family_name(struct reader *r, int64_t parent,
 
 static int by_name(const void *a, const void *b)
 {
-  return strcmp(((const struct family *)a)->name,
-                ((const struct family *)b)->name);
+  return strcmp(((const struct vg_cgns_family *)a)->name,
+                ((const struct vg_cgns_family *)b)->name);
 }
 
-static vg_status read_families(struct reader *r, int64_t base,
+static vg_status read_families(struct vg_cgns_reader *r, int64_t base,
                                struct vg_error *err)
 {
   struct vg_cgns_node *list;
@@ -125,27 +109,27 @@ static vg_status read_families(struct reader *r, int64_t base,
                                        err);
 
   if (st < 0) return st;
-  r->family = vg_alloc(n, sizeof *r->family);
-  if (!r->family) st = vg_fail_memory(err, "the families");
+  if (vg_reserve(&r->family, &r->cap_family, r->n_family + n,
+                 sizeof *r->family))
+    st = vg_fail_memory(err, "the families");
   for (size_t i = 0; i < n && st >= 0; i++) {
-    struct family *f = &r->family[r->n_family++];
+    struct vg_cgns_family *f = &r->family[r->n_family++];
 
     memcpy(f->name, list[i].name, sizeof f->name);
-    st = child_text(r, list[i].id, "FamilyBC_t", NULL, f->condition, err);
+    st = vg_cgns_child_text(r, list[i].id, "FamilyBC_t", NULL, f->condition,
+                            err);
   }
   free(list);
-  if (st >= 0 && r->n_family)
-    qsort(r->family, r->n_family, sizeof *r->family, by_name);
   return st;
 }
 
 /* The patch of a name, with a condition: "" that of a family of its name. */
-static vg_status find_patch(struct reader *r, const char *name,
-                            const char *condition, uint32_t *at,
-                            struct vg_error *err)
+vg_status vg_cgns_find_patch(struct vg_cgns_reader *r, const char *name,
+                             const char *condition, uint32_t *at,
+                             struct vg_error *err)
 {
-  struct family key = { .name = "" };
-  const struct family *f = NULL;
+  struct vg_cgns_family key = { .name = "" };
+  const struct vg_cgns_family *f = NULL;
   struct vg_patch *p;
   vg_status st = vg_soup_named_patch(&r->soup, name, strlen(name), at, err);
 
@@ -161,29 +145,39 @@ static vg_status find_patch(struct reader *r, const char *name,
 
 /* --- points --- */
 
-static vg_status read_points(struct reader *r, struct vg_error *err)
+/* The three coordinates of the points, [n_point] each, which the caller frees
+ * also on failure. */
+vg_status vg_cgns_read_coordinates(struct vg_cgns_reader *r, double *x[3],
+                                   struct vg_error *err)
 {
   static const char *const name[3] = { "CoordinateX", "CoordinateY",
                                        "CoordinateZ" };
-  double *x[3] = { NULL, NULL, NULL };
   struct vg_cgns_node grid, node;
-  vg_status st;
+  vg_status st = find_child(r, r->zone.id, "GridCoordinates_t", NULL, &grid,
+                            err);
 
-  VG_TRY(find_child(r, r->zone.id, "GridCoordinates_t", NULL, &grid, err));
-  for (int k = 0; k < 3; k++) {
+  for (int k = 0; k < 3 && st >= 0; k++) {
     size_t n = 0;
 
     node.id = -1;
     if (grid.id >= 0)
-      VG_TRY(find_child(r, grid.id, "DataArray_t", name[k], &node, err));
-    if (node.id >= 0)
-      VG_TRY(vg_cgns_tree_reals(r->tree, node.id, name[k], &x[k], &n, err));
-    if (node.id >= 0 && n == r->n_point) continue;
-    st = vg_fail(err, VG_ERR_FORMAT, "%s: zone '%s': %s has %zu values for "
-                 "%zu points", r->in->path, r->zone.name, name[k], n,
-                 r->n_point);
-    goto done;
+      st = find_child(r, grid.id, "DataArray_t", name[k], &node, err);
+    if (st >= 0 && node.id >= 0)
+      st = vg_cgns_tree_reals(r->tree, node.id, name[k], &x[k], &n, err);
+    if (st >= 0 && (node.id < 0 || n != r->n_point))
+      st = vg_fail(err, VG_ERR_FORMAT, "%s: zone '%s': %s has %zu values for "
+                   "%zu points", r->in->path, r->zone.name, name[k], n,
+                   r->n_point);
   }
+  return st;
+}
+
+static vg_status read_points(struct vg_cgns_reader *r, struct vg_error *err)
+{
+  double *x[3] = { NULL, NULL, NULL };
+  vg_status st;
+
+  VG_TRY(vg_cgns_read_coordinates(r, x, err));
   r->point = vg_alloc(r->n_point, sizeof *r->point);
   if (!r->point) VG_TRY(vg_fail_memory(err, "the points"));
   for (size_t i = 0; i < r->n_point; i++) {
@@ -206,8 +200,9 @@ static const struct type *find_type(int64_t code)
   return NULL;
 }
 
-static vg_status unknown_type(const struct reader *r, const struct section *s,
-                              int64_t code, struct vg_error *err)
+static vg_status unknown_type(const struct vg_cgns_reader *r,
+                              const struct vg_cgns_section *s, int64_t code,
+                              struct vg_error *err)
 {
   return vg_fail(err, VG_ERR_UNSUPPORTED, "%s: section '%s': elements of type "
                  "%lld are polygons, or not of first order; write TRI_3, "
@@ -215,7 +210,8 @@ static vg_status unknown_type(const struct reader *r, const struct section *s,
                  (long long)code);
 }
 
-static vg_status fail_section(const struct reader *r, const struct section *s,
+static vg_status fail_section(const struct vg_cgns_reader *r,
+                              const struct vg_cgns_section *s,
                               const char *what, struct vg_error *err)
 {
   return vg_fail(err, VG_ERR_FORMAT, "%s: section '%s': %s", r->in->path,
@@ -223,8 +219,8 @@ static vg_status fail_section(const struct reader *r, const struct section *s,
 }
 
 /* Numbers, nodes and kind of a section. */
-static vg_status read_section(struct reader *r, struct section *s,
-                              struct vg_error *err)
+static vg_status read_section(struct vg_cgns_reader *r,
+                              struct vg_cgns_section *s, struct vg_error *err)
 {
   int64_t *kind = NULL, *range = NULL;
   struct vg_cgns_node node, nodes;
@@ -267,12 +263,12 @@ done:
 
 static int by_number(const void *a, const void *b)
 {
-  const struct section *p = a, *q = b;
+  const struct vg_cgns_section *p = a, *q = b;
 
   return (p->first > q->first) - (p->first < q->first);
 }
 
-static vg_status read_sections(struct reader *r, struct vg_error *err)
+static vg_status read_sections(struct vg_cgns_reader *r, struct vg_error *err)
 {
   struct vg_cgns_node *list;
   size_t n;
@@ -300,7 +296,7 @@ static vg_status read_sections(struct reader *r, struct vg_error *err)
 /* --- conditions --- */
 
 /* Section with this element, or the first behind it; n_section: none. */
-static size_t find_section(const struct reader *r, int64_t element)
+static size_t find_section(const struct vg_cgns_reader *r, int64_t element)
 {
   size_t lo = 0, hi = r->n_section;
 
@@ -313,11 +309,11 @@ static size_t find_section(const struct reader *r, int64_t element)
   return lo;
 }
 
-static void mark_range(struct reader *r, int64_t first, int64_t last,
+static void mark_range(struct vg_cgns_reader *r, int64_t first, int64_t last,
                        uint32_t patch)
 {
   for (size_t i = find_section(r, first); i < r->n_section; i++) {
-    struct section *s = &r->section[i];
+    struct vg_cgns_section *s = &r->section[i];
     int64_t from = first > s->first ? first : s->first;
     int64_t to = last < s->last ? last : s->last;
 
@@ -327,12 +323,12 @@ static void mark_range(struct reader *r, int64_t first, int64_t last,
 }
 
 /* What a BC_t is on: elements (1), or what is passed over (0). */
-static vg_status is_on_elements(struct reader *r, const struct vg_cgns_node *b,
-                                const char *list, int *on,
-                                struct vg_error *err)
+static vg_status is_on_elements(struct vg_cgns_reader *r,
+                                const struct vg_cgns_node *b, const char *list,
+                                int *on, struct vg_error *err)
 {
   char at[VG_CGNS_NAME];
-  vg_status st = child_text(r, b->id, "GridLocation_t", NULL, at, err);
+  vg_status st = vg_cgns_child_text(r, b->id, "GridLocation_t", NULL, at, err);
 
   if (st < 0) return st;
   /* old files call lists of elements so */
@@ -347,10 +343,10 @@ static vg_status is_on_elements(struct reader *r, const struct vg_cgns_node *b,
 }
 
 /* Elements of a BC_t: a range or a list. */
-static vg_status read_elements_of(struct reader *r,
-                                  const struct vg_cgns_node *b,
-                                  char name[VG_CGNS_NAME], int64_t **v,
-                                  size_t *n, struct vg_error *err)
+vg_status vg_cgns_elements_of(struct vg_cgns_reader *r,
+                              const struct vg_cgns_node *b,
+                              char name[VG_CGNS_NAME], int64_t **v, size_t *n,
+                              struct vg_error *err)
 {
   static const char *const label[] = { "IndexRange_t", "IndexArray_t" };
   static const char *const known[] = { "PointRange", "PointList",
@@ -367,24 +363,42 @@ static vg_status read_elements_of(struct reader *r,
   return vg_cgns_tree_ints(r->tree, node.id, node.name, v, n, err);
 }
 
-static vg_status read_condition(struct reader *r, const struct vg_cgns_node *b,
+/* The patch of a BC_t: that of its family, where it has one, else of its own
+ * name. */
+vg_status vg_cgns_condition_patch(struct vg_cgns_reader *r,
+                                  const struct vg_cgns_node *b,
+                                  uint32_t *patch, struct vg_error *err)
+{
+  char family[VG_CGNS_NAME], *type = NULL;
+  size_t n;
+  vg_status st;
+
+  VG_TRY(vg_cgns_family_name(r, b->id, family, err));
+  VG_TRY(vg_cgns_tree_text(r->tree, b->id, b->name, &type, &n, err));
+  st = vg_cgns_find_patch(r, *family ? family : b->name,
+                          strcmp(type, "FamilySpecified") ? type : "", patch,
+                          err);
+done:
+  free(type);
+  return st;
+}
+
+static vg_status read_condition(struct vg_cgns_reader *r,
+                                const struct vg_cgns_node *b,
                                 struct vg_error *err)
 {
-  char list[VG_CGNS_NAME] = "", family[VG_CGNS_NAME], *type = NULL;
+  char list[VG_CGNS_NAME] = "";
   int64_t *v = NULL;
-  size_t n, n_type;
+  size_t n;
   uint32_t patch;
   int on;
   vg_status st;
 
-  VG_TRY(read_elements_of(r, b, list, &v, &n, err));
+  VG_TRY(vg_cgns_elements_of(r, b, list, &v, &n, err));
   if (!n) goto done;
   VG_TRY(is_on_elements(r, b, list, &on, err));
   if (!on) goto done;
-  VG_TRY(family_name(r, b->id, family, err));
-  VG_TRY(vg_cgns_tree_text(r->tree, b->id, b->name, &type, &n_type, err));
-  VG_TRY(find_patch(r, *family ? family : b->name,
-                    strcmp(type, "FamilySpecified") ? type : "", &patch, err));
+  VG_TRY(vg_cgns_condition_patch(r, b, &patch, err));
   if (strstr(list, "Range")) {
     if (n != 2)
       VG_TRY(vg_fail(err, VG_ERR_FORMAT, "%s: condition '%s': its %s is no "
@@ -395,11 +409,12 @@ static vg_status read_condition(struct reader *r, const struct vg_cgns_node *b,
   }
 done:
   free(v);
-  free(type);
   return st;
 }
 
-static vg_status read_conditions(struct reader *r, struct vg_error *err)
+/* All conditions of the zone, by `read`. */
+vg_status vg_cgns_read_conditions(struct vg_cgns_reader *r,
+                                  vg_cgns_read_one *read, struct vg_error *err)
 {
   struct vg_cgns_node zone_bc, *list;
   size_t n;
@@ -409,7 +424,7 @@ static vg_status read_conditions(struct reader *r, struct vg_error *err)
   st = vg_cgns_tree_children(r->tree, zone_bc.id, "BC_t", &list, &n, err);
   if (st < 0) return st;
   for (size_t i = 0; i < n && st >= 0; i++)
-    st = read_condition(r, &list[i], err);
+    st = read(r, &list[i], err);
   free(list);
   return st;
 }
@@ -417,7 +432,8 @@ static vg_status read_conditions(struct reader *r, struct vg_error *err)
 /* --- elements --- */
 
 /* Room for one more, which is counted; NULL: no memory. */
-static uint32_t *next_element(struct reader *r, enum element e, uint32_t patch)
+static uint32_t *next_element(struct vg_cgns_reader *r, enum element e,
+                              uint32_t patch)
 {
   struct vg_mesh *m = &r->soup.m;
 
@@ -439,7 +455,8 @@ static uint32_t *next_element(struct reader *r, enum element e, uint32_t patch)
 #undef NEXT
 }
 
-static vg_status take_element(struct reader *r, const struct section *s,
+static vg_status take_element(struct vg_cgns_reader *r,
+                              const struct vg_cgns_section *s,
                               const struct type *t, int64_t number,
                               const int64_t *v, uint32_t patch,
                               struct vg_error *err)
@@ -463,21 +480,23 @@ static vg_status take_element(struct reader *r, const struct section *s,
 }
 
 /* The patch of faces without a condition: made when the first is met. */
-static vg_status default_patch(struct reader *r, const struct section *s,
+static vg_status default_patch(struct vg_cgns_reader *r,
+                               const struct vg_cgns_section *s,
                                uint32_t *patch, struct vg_error *err)
 {
   char family[VG_CGNS_NAME] = "";
   const char *name = s->node.name;
   vg_status st = VG_OK;
 
-  if (r->dimension == 2) st = family_name(r, r->zone.id, family, err);
+  if (r->dimension == 2) st = vg_cgns_family_name(r, r->zone.id, family, err);
   if (st < 0) return st;
   if (*family) name = family;
   else if (r->dimension == 2 && r->n_zone > 1) name = r->zone.name;
-  return find_patch(r, name, "", patch, err);
+  return vg_cgns_find_patch(r, name, "", patch, err);
 }
 
-static vg_status take_section(struct reader *r, const struct section *s,
+static vg_status take_section(struct vg_cgns_reader *r,
+                              const struct vg_cgns_section *s,
                               struct vg_error *err)
 {
   const struct type *t = find_type(s->code);
@@ -510,7 +529,7 @@ static vg_status take_section(struct reader *r, const struct section *s,
 
 /* --- zones --- */
 
-static void release_zone(struct reader *r)
+static void release_zone(struct vg_cgns_reader *r)
 {
   for (size_t i = 0; i < r->n_section; i++) {
     free(r->section[i].v);
@@ -518,83 +537,129 @@ static void release_zone(struct reader *r)
   }
   free(r->section);
   free(r->point);
+  free(r->cell);
+  vg_cgns_block_release(&r->block);
   r->section = NULL;
-  r->point = NULL;
+  r->point = r->cell = NULL;
   r->n_section = 0;
 }
 
-static vg_status read_zone(struct reader *r, struct vg_error *err)
+static vg_status read_elements(struct vg_cgns_reader *r, const int64_t *size,
+                               size_t n, struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  if (n < 3 || size[0] < 0 || (uint64_t)size[0] >= UINT32_MAX)
+    VG_TRY(vg_cgns_fail_zone(r, err, VG_ERR_FORMAT, "its number of points is "
+                             "missing, negative or beyond 32 bits"));
+  r->n_point = (size_t)size[0];
+  VG_TRY(read_points(r, err));
+  VG_TRY(read_sections(r, err));
+  VG_TRY(vg_cgns_read_conditions(r, read_condition, err));
+  for (size_t i = 0; i < r->n_section; i++)
+    VG_TRY(take_section(r, &r->section[i], err));
+done:
+  return st;
+}
+
+static vg_status read_zone(struct vg_cgns_reader *r, struct vg_error *err)
 {
   char type[VG_CGNS_NAME];
   int64_t *size = NULL;
   size_t n;
   vg_status st;
 
-  VG_TRY(child_text(r, r->zone.id, "ZoneType_t", NULL, type, err));
-  if (strcmp(type, "Unstructured") != 0)
-    VG_TRY(fail_zone(r, err, VG_ERR_UNSUPPORTED, "it is not Unstructured; "
-                     "convert it to a zone of elements"));
+  VG_TRY(vg_cgns_child_text(r, r->zone.id, "ZoneType_t", NULL, type, err));
   VG_TRY(vg_cgns_tree_ints(r->tree, r->zone.id, r->zone.name, &size, &n, err));
-  if (n < 3 || size[0] < 0 || (uint64_t)size[0] >= UINT32_MAX)
-    VG_TRY(fail_zone(r, err, VG_ERR_FORMAT, "its number of points is missing, "
-                     "negative or beyond 32 bits"));
-  r->n_point = (size_t)size[0];
-  VG_TRY(read_points(r, err));
-  VG_TRY(read_sections(r, err));
-  VG_TRY(read_conditions(r, err));
-  for (size_t i = 0; i < r->n_section; i++)
-    VG_TRY(take_section(r, &r->section[i], err));
+  if (!strcmp(type, "Unstructured"))
+    VG_TRY(read_elements(r, size, n, err));
+  else if (!strcmp(type, "Structured"))
+    VG_TRY(vg_cgns_read_block(r, size, n, err));
+  else
+    VG_TRY(vg_cgns_fail_zone(r, err, VG_ERR_UNSUPPORTED, "it is neither "
+                             "Structured nor Unstructured"));
 done:
   free(size);
   release_zone(r);
   return st;
 }
 
-static vg_status read_base(struct reader *r, int64_t root, int64_t *base,
+/* --- bases --- */
+
+struct base {
+  int64_t id, dimension;
+  struct vg_cgns_node *zone;           /* [n_zone] */
+  size_t n_zone;
+};
+
+static vg_status read_base(struct vg_cgns_reader *r,
+                           const struct vg_cgns_node *node, struct base *b,
                            struct vg_error *err)
 {
-  struct vg_cgns_node *list;
   int64_t *dimension = NULL;
   size_t n;
-  vg_status st = vg_cgns_tree_children(r->tree, root, "CGNSBase_t", &list, &n,
-                                       err);
+  vg_status st = vg_cgns_tree_ints(r->tree, node->id, node->name, &dimension,
+                                   &n, err);
 
   if (st < 0) return st;
-  if (n != 1) {
-    st = vg_fail(err, n ? VG_ERR_UNSUPPORTED : VG_ERR_FORMAT, "%s: %zu bases "
-                 "(CGNSBase_t) in it; one is wanted", r->in->path, n);
-    goto done;
-  }
-  *base = list[0].id;
-  VG_TRY(vg_cgns_tree_ints(r->tree, *base, list[0].name, &dimension, &n, err));
-  if (n != 2 || dimension[0] < 2 || dimension[0] > 3 || dimension[1] != 3)
-    st = vg_fail(err, VG_ERR_UNSUPPORTED, "%s: base '%s' has not cells of 2 or "
-                 "3 dimensions in space of 3", r->in->path, list[0].name);
-  else
-    r->dimension = dimension[0];
-done:
-  free(list);
+  b->id = node->id;
+  b->dimension = n == 2 && dimension[1] == 3 ? dimension[0] : 0;
   free(dimension);
+  return vg_cgns_tree_children(r->tree, b->id, "Zone_t", &b->zone, &b->n_zone,
+                               err);
+}
+
+static vg_status read_bases(struct vg_cgns_reader *r, struct base *b, size_t n,
+                            struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  for (size_t i = 0; i < n; i++)
+    if (b[i].dimension == r->dimension) {
+      r->n_zone += b[i].n_zone;
+      VG_TRY(read_families(r, b[i].id, err));
+    }
+  if (r->n_family) qsort(r->family, r->n_family, sizeof *r->family, by_name);
+  for (size_t i = 0; i < n; i++)
+    for (size_t k = 0; k < b[i].n_zone; k++) {
+      if (b[i].dimension != r->dimension) continue;
+      r->zone = b[i].zone[k];
+      VG_TRY(read_zone(r, err));
+    }
+done:
   return st;
 }
 
-static vg_status read_tree(struct reader *r, int64_t root,
+/* A base of surfaces next to one of cells is the boundary of these, often with
+ * a solution, and not read again. */
+static vg_status read_tree(struct vg_cgns_reader *r, int64_t root,
                            struct vg_error *err)
 {
-  struct vg_cgns_node *zone = NULL;
-  int64_t base = -1;
+  struct vg_cgns_node *list = NULL;
+  struct base *base = NULL;
+  size_t n = 0;
   vg_status st;
 
-  VG_TRY(read_base(r, root, &base, err));
-  VG_TRY(read_families(r, base, err));
-  VG_TRY(vg_cgns_tree_children(r->tree, base, "Zone_t", &zone, &r->n_zone,
-                               err));
-  for (size_t i = 0; i < r->n_zone; i++) {
-    r->zone = zone[i];
-    VG_TRY(read_zone(r, err));
+  VG_TRY(vg_cgns_tree_children(r->tree, root, "CGNSBase_t", &list, &n, err));
+  base = vg_calloc(n, sizeof *base);
+  if (!base) VG_TRY(vg_fail_memory(err, "the bases"));
+  for (size_t i = 0; i < n; i++) {
+    VG_TRY(read_base(r, &list[i], &base[i], err));
+    if (base[i].dimension <= 3 && base[i].dimension > r->dimension)
+      r->dimension = base[i].dimension;
   }
+  if (!n)
+    st = vg_fail(err, VG_ERR_FORMAT, "%s: 0 bases (CGNSBase_t) in it; at least "
+                 "one is wanted", r->in->path);
+  else if (r->dimension < 2)
+    st = vg_fail(err, VG_ERR_UNSUPPORTED, "%s: base '%s' has not cells of 2 or "
+                 "3 dimensions in space of 3", r->in->path, list[0].name);
+  else
+    st = read_bases(r, base, n, err);
 done:
-  free(zone);
+  for (size_t i = 0; base && i < n; i++) free(base[i].zone);
+  free(base);
+  free(list);
   return st;
 }
 
@@ -611,12 +676,18 @@ static vg_status set_axes(struct vg_mesh *m, struct vg_error *err)
   return st;
 }
 
-static vg_status finish(struct reader *r, struct vg_error *err)
+static vg_status finish(struct vg_cgns_reader *r, struct vg_error *err)
 {
   struct vg_mesh *m = &r->soup.m;
   int has_cells = m->n_tet || m->n_pyr || m->n_pri || m->n_hex;
   vg_status st;
 
+  if (!m->n_tri && !m->n_quad && !has_cells && r->n_volume_block)
+    return vg_fail(err, VG_ERR_INPUT, "%s: %zu structured blocks, and no BC_t "
+                   "says which of their faces bound the flow; write a BC_t "
+                   "with a PointRange for each wall, or the surface as zones "
+                   "in a base of cell dimension 2", r->in->path,
+                   r->n_volume_block);
   if (!m->n_tri && !m->n_quad && !has_cells)
     return vg_fail(err, VG_ERR_INPUT, "%s: no triangles, quadrilaterals or "
                    "cells: there is nothing to mesh", r->in->path);
@@ -632,7 +703,7 @@ done:
 vg_status vg_cgns_take(struct vg_input *in, struct vg_mesh *out,
                        struct vg_error *err)
 {
-  struct reader r = { .in = in, .soup = VG_SOUP_INIT };
+  struct vg_cgns_reader r = { .in = in, .soup = VG_SOUP_INIT };
   int64_t root;
   vg_status st = vg_cgns_tree_open(in, &r.tree, &root, err);
 
