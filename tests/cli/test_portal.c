@@ -243,6 +243,8 @@ static void a_form_is_refused_by_name(void **state)
   refuses("s.sizes", "out.obj", "leads out");
   snprintf(path, sizeof path, "%s/../other/secret.obj", scene.root);
   refuses("s.sizes", path, "no path below");
+  refuses("s.mapbc", path, "no path below");
+  refuses("s.mapbc", "out.obj", "leads out");
 }
 
 /* What the form shows is what it sends back. */

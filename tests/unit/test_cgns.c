@@ -650,7 +650,7 @@ static void refuses_blocks(void **state)
   (void)state;
   start(&t, 3);
   block(&t, "inner", 3, &l);
-  refuse(&t, VG_ERR_INPUT, "no BC_t says which of their faces");
+  refuse(&t, VG_ERR_INPUT, "no BC_t says which faces");
   start(&t, 3);
   block(&t, "flat", 2, &(const struct lattice){ { 3, 3, 1 }, 0, 0, 0 });
   refuse(&t, VG_ERR_FORMAT, "its sizes");

@@ -222,6 +222,47 @@ static void writes_patches_without_a_condition(void **state)
   vg_mesh_release(&m);
 }
 
+/* What is written next to a mesh is known again by its title alone, which a
+ * title as long as may be does not hide, nor an empty one. */
+static void an_output_is_known_again(void **state)
+{
+  const char *path = io_temp("mapbc_marked.mapbc");
+  struct vg_mapbc b = VG_MAPBC_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+  char title[1001];
+  struct vg_mesh m;
+  unsigned char *data;
+  size_t size;
+
+  (void)state;
+  memset(title, 't', sizeof title - 1);
+  title[sizeof title - 1] = 0;
+  io_make_t1(&m, 0);
+  for (int turn = 0; turn < 3; turn++) {
+    const char *t = turn ? turn > 1 ? title : "" : NULL;
+
+    assert_int_equal(vg_mapbc_write(path, &m, VG_MAPBC_VGRID, t, NULL, &err),
+                     VG_OK);
+    assert_int_equal(vg_mapbc_is_output(path), 0);
+    assert_int_equal(vg_mapbc_write_output(path, &m, t, NULL, &err), VG_OK);
+    assert_int_equal(vg_mapbc_is_output(path), 1);
+    if (vg_mapbc_read(path, &b, &err)) fail_msg("%s", err.text);
+    assert_int_equal(b.layout, VG_MAPBC_VGRID);
+    assert_int_equal(b.n, 4);
+  }
+  data = io_slurp(path, &size);
+  io_write_gzip(path, data, size);
+  assert_int_equal(vg_mapbc_is_output(path), 1);
+  /* in another line it says nothing */
+  io_write_file(path, "#\n# [written by vanguard mesh]\n", 31);
+  assert_int_equal(vg_mapbc_is_output(path), 0);
+  unlink(path);
+  assert_int_equal(vg_mapbc_is_output(path), 0);
+  free(data);
+  vg_mapbc_release(&b);
+  vg_mesh_release(&m);
+}
+
 static void survives_damage(void **state)
 {
   static const char *const sample[2] = {vgrid_sample, fun3d_sample};
@@ -274,6 +315,7 @@ int main(void)
     cmocka_unit_test(applies_to_a_mesh),
     cmocka_unit_test(writes_samples_byte_for_byte),
     cmocka_unit_test(writes_patches_without_a_condition),
+    cmocka_unit_test(an_output_is_known_again),
     cmocka_unit_test(survives_damage),
     cmocka_unit_test(reads_the_real_file),
   };

@@ -115,7 +115,7 @@ static vg_status check_volume(const struct arguments *a, struct vg_problem *p,
                               struct vg_display *show, struct vg_error *err)
 {
   struct vg_mesh m = VG_MESH_INIT;
-  struct vg_read_info info = { .format = NULL };
+  struct vg_read_info info = { .mapbc = p->settings.mapbc };
   vg_status st;
 
   VG_TRY(vg_mesh_read(a->one.file, &m, &info, err));

@@ -98,29 +98,41 @@ static vg_status take_title(const struct vg_fields *f, struct vg_settings *s,
   return VG_OK;
 }
 
+/* A file that a setting names lies below the root: to = its real path. */
+static vg_status check_path(const char *root, const char *setting,
+                            char to[VG_LIST_MAX], struct vg_error *err)
+{
+  const char *name = to;
+  size_t n = strlen(root);
+  char *real;
+  vg_status st;
+
+  if (!*name) return VG_OK;
+  if (*name == '/' && vg_inside_holds(root, name)) name += n > 1 ? n + 1 : 1;
+  st = vg_inside(root, name, &real, err);
+  if (st < 0) return st;
+  if (strlen(real) >= VG_LIST_MAX)
+    st = vg_fail(err, VG_ERR_INPUT, "%s: the path %.100s... is longer than %d "
+                 "bytes", setting, real, VG_LIST_MAX - 1);
+  else
+    strcpy(to, real);
+  free(real);
+  return st;
+}
+
 /* What must not be is asked of the whole, wherever it came from. */
 static vg_status check_paths(const char *root, struct vg_settings *s,
                              struct vg_error *err)
 {
-  char *real;
-  const char *name = s->sizes;
-  size_t n = strlen(root);
   vg_status st;
 
   if (strcmp(s->mesher, "builtin") != 0 && strcmp(s->mesher, "tetgen") != 0 &&
       strcmp(s->mesher, "hxt") != 0)
     return vg_fail(err, VG_ERR_INPUT, "mesher: a plug-in is a program, which "
                    "a portal does not start; it takes builtin, tetgen or hxt");
-  if (!*name) return VG_OK;
-  if (*name == '/' && vg_inside_holds(root, name)) name += n > 1 ? n + 1 : 1;
-  st = vg_inside(root, name, &real, err);
-  if (st < 0) return st;
-  if (strlen(real) >= sizeof s->sizes)
-    st = vg_fail(err, VG_ERR_INPUT, "sizes: the path %.100s... is longer than "
-                 "%zu bytes", real, sizeof s->sizes - 1);
-  else
-    strcpy(s->sizes, real);
-  free(real);
+  VG_TRY(check_path(root, "sizes", s->sizes, err));
+  VG_TRY(check_path(root, "mapbc", s->mapbc, err));
+done:
   return st;
 }
 

@@ -15,7 +15,7 @@
 #include "base/memory.h"
 #include "base/union_find.h"
 
-#define SHARE 0.1           /* S60: largest gap over the shortest edge there */
+#define SHARE 0.1           /* S61: largest gap over the shortest edge there */
 #define LEVEL_LEAST 1e-15   /* first tolerance over the extent of the surface */
 #define LEVEL_STEP 10
 

@@ -683,10 +683,10 @@ static vg_status finish(struct vg_cgns_reader *r, struct vg_error *err)
   vg_status st;
 
   if (!m->n_tri && !m->n_quad && !has_cells && r->n_volume_block)
-    return vg_fail(err, VG_ERR_INPUT, "%s: %zu structured blocks, and no BC_t "
-                   "says which of their faces bound the flow; write a BC_t "
-                   "with a PointRange for each wall, or the surface as zones "
-                   "in a base of cell dimension 2", r->in->path,
+    return vg_fail(err, VG_ERR_INPUT, "%s: no BC_t says which faces of its "
+                   "structured blocks (%zu) bound the flow; write a BC_t with "
+                   "a PointRange for each wall, or the surface as zones in a "
+                   "base of cell dimension 2", r->in->path,
                    r->n_volume_block);
   if (!m->n_tri && !m->n_quad && !has_cells)
     return vg_fail(err, VG_ERR_INPUT, "%s: no triangles, quadrilaterals or "

@@ -299,12 +299,18 @@ vg_status vg_format_read(const char *path, struct vg_mesh *out,
 static vg_status use_mapbc(const char *path, struct vg_mesh *m,
                            struct vg_read_info *info, struct vg_error *err)
 {
-  char *name = companion(path, ".mapbc", ".mapbc.gz");
+  const int is_named = info->mapbc && *info->mapbc;
+  char *name = is_named ? strdup(info->mapbc)
+                        : companion(path, ".mapbc", ".mapbc.gz");
   struct vg_mapbc b = VG_MAPBC_INIT;
   vg_status st = VG_OK;
 
   if (!name) return vg_fail_memory(err, "a file name");
   if (!*name) goto done;
+  if (!is_named && !info->n_cell && vg_mapbc_is_output(name)) {
+    info->has_own_mapbc = 1;
+    goto done;
+  }
   VG_TRY(vg_mapbc_read(name, &b, err));
   VG_TRY(vg_mapbc_apply(&b, m, &info->match, err));
   info->has_mapbc = 1;
@@ -315,11 +321,22 @@ done:
   return st;
 }
 
+/* What goes in. */
+static struct vg_read_info asked_of(const struct vg_read_info *info)
+{
+  struct vg_read_info asked = {0};
+
+  if (!info) return asked;
+  asked.cad = info->cad;
+  asked.model = info->model;
+  asked.mapbc = info->mapbc;
+  return asked;
+}
+
 vg_status vg_mesh_read(const char *path, struct vg_mesh *out,
                        struct vg_read_info *info, struct vg_error *err)
 {
-  struct vg_read_info found = {.cad = info ? info->cad : NULL,
-                               .model = info ? info->model : NULL};
+  struct vg_read_info found = asked_of(info);
   struct vg_mesh m = VG_MESH_INIT;
   vg_status st;
 
@@ -335,8 +352,7 @@ done:
 vg_status vg_surface_read(const char *path, struct vg_mesh *out,
                           struct vg_read_info *info, struct vg_error *err)
 {
-  struct vg_read_info found = {.cad = info ? info->cad : NULL,
-                               .model = info ? info->model : NULL};
+  struct vg_read_info found = asked_of(info);
   struct vg_mesh m = VG_MESH_INIT;
   vg_status st;
 

@@ -19,10 +19,15 @@ struct vg_read_info {
   const struct vg_cad_options *cad; /* in: for CAD; NULL: its defaults */
   struct vg_cad_model *model;     /* in: where the model of a CAD file is kept,
                                      empty; NULL: it is not */
+  const char *mapbc;              /* in: file with conditions; NULL or "":
+                                     STEM.mapbc, but next to a surface not one
+                                     that Vanguard wrote */
   const char *format;             /* suffix of the table; static */
   struct vg_turned turned;        /* zero for formats without cells */
   size_t n_cell;                  /* cells in the file */
-  int has_mapbc;                  /* STEM.mapbc stands beside and was used */
+  int has_mapbc;                  /* a .mapbc was used */
+  int has_own_mapbc;              /* STEM.mapbc was not used, since Vanguard
+                                     wrote it */
   enum vg_mapbc_layout layout;    /* its layout */
   struct vg_mapbc_match match;    /* patches it lacks, entries not used */
 };
@@ -59,9 +64,9 @@ vg_status vg_format_unknown(const char *path, struct vg_error *err);
 vg_status vg_format_read(const char *path, struct vg_mesh *out,
                          struct vg_error *err);
 
-/** As vg_format_read; conditions and names from STEM.mapbc where that stands
- * beside the file. info: what is asked of CAD goes in, the rest comes out; may
- * be NULL. */
+/** As vg_format_read; conditions and names from info->mapbc, or STEM.mapbc
+ * where that exists. info: what is asked of CAD and of conditions goes in, the
+ * rest comes out; may be NULL. */
 vg_status vg_mesh_read(const char *path, struct vg_mesh *out,
                        struct vg_read_info *info, struct vg_error *err);
 

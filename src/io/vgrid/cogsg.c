@@ -427,8 +427,7 @@ vg_status vg_cogsg_write_mapbc(const char *stem, const struct vg_mesh *m,
   vg_status st;
 
   if (!name) return vg_fail_memory(err, "a file name");
-  st = vg_mapbc_write(name, m, VG_MAPBC_VGRID, slash ? slash + 1 : stem,
-                      n_unset, err);
+  st = vg_mapbc_write_output(name, m, slash ? slash + 1 : stem, n_unset, err);
   free(name);
   return st;
 }

@@ -327,6 +327,25 @@ vg_status vg_mapbc_read(const char *path, struct vg_mapbc *out,
   return st;
 }
 
+/* At the end of the title of a file that is written next to a mesh. */
+static const char output_mark[] = " [written by vanguard mesh]";
+
+int vg_mapbc_is_output(const char *path)
+{
+  const size_t n = sizeof output_mark - 1;
+  struct vg_input in = VG_INPUT_INIT;
+  const char *text;
+  size_t len;
+  int is;
+
+  if (vg_input_open_head(path, 4096, &in, NULL) < 0) return 0;
+  is = vg_input_line(&in, &text, &len);
+  while (is && len && isspace((unsigned char)text[len - 1])) len--;
+  is = is && len >= n && !memcmp(text + len - n, output_mark, n);
+  vg_input_release(&in);
+  return is;
+}
+
 /* --- applying --- */
 
 static size_t find(const struct vg_patch **list, size_t n, int32_t id)
@@ -425,13 +444,13 @@ static void codes_of(const struct vg_patch *p, int axis, int32_t *usm3d,
 }
 
 static void put_header(struct vg_output *out, enum vg_mapbc_layout layout,
-                       const char *title, size_t n)
+                       const char *title, const char *mark, size_t n)
 {
   if (layout == VG_MAPBC_FUN3D) {
     vg_output_format(out, "%zu\n", n);
     return;
   }
-  vg_output_format(out, "#%.900s\n", title ? title : "vanguard");
+  vg_output_format(out, "#%.900s%s\n", title ? title : "vanguard", mark);
   vg_output_text(out,
                  "#bc.map\n"
                  "Patch #        BC             Family   #surf   surfIDs"
@@ -440,9 +459,10 @@ static void put_header(struct vg_output *out, enum vg_mapbc_layout layout,
                  "------------\n");
 }
 
-vg_status vg_mapbc_write(const char *path, const struct vg_mesh *m,
-                         enum vg_mapbc_layout layout, const char *title,
-                         size_t *n_unset, struct vg_error *err)
+static vg_status write_marked(const char *path, const struct vg_mesh *m,
+                              enum vg_mapbc_layout layout, const char *title,
+                              const char *mark, size_t *n_unset,
+                              struct vg_error *err)
 {
   struct vg_output out = VG_OUTPUT_INIT;
   int *axis = vg_alloc(m->n_patch, sizeof *axis);
@@ -452,7 +472,7 @@ vg_status vg_mapbc_write(const char *path, const struct vg_mesh *m,
   if (!axis) return vg_fail_memory(err, "the boundary conditions");
   VG_TRY(vg_patch_axes(m, axis, err));
   VG_TRY(vg_output_open(path, &out, err));
-  put_header(&out, layout, title, m->n_patch);
+  put_header(&out, layout, title, mark, m->n_patch);
   for (size_t i = 0; i < m->n_patch; i++) {
     const struct vg_patch *p = m->patch + i;
     char name[VG_NAME_MAX];
@@ -472,4 +492,19 @@ vg_status vg_mapbc_write(const char *path, const struct vg_mesh *m,
 done:
   free(axis);
   return st;
+}
+
+vg_status vg_mapbc_write(const char *path, const struct vg_mesh *m,
+                         enum vg_mapbc_layout layout, const char *title,
+                         size_t *n_unset, struct vg_error *err)
+{
+  return write_marked(path, m, layout, title, "", n_unset, err);
+}
+
+vg_status vg_mapbc_write_output(const char *path, const struct vg_mesh *m,
+                                const char *title, size_t *n_unset,
+                                struct vg_error *err)
+{
+  return write_marked(path, m, VG_MAPBC_VGRID, title, output_mark, n_unset,
+                      err);
 }

@@ -34,6 +34,10 @@ vg_status vg_mapbc_read(const char *path, struct vg_mapbc *out,
 vg_status vg_mapbc_parse(struct vg_input *in, struct vg_mapbc *out,
                          struct vg_error *err);
 
+/** 1 when Vanguard wrote the file next to a mesh (vg_mapbc_write_output): of a
+ * surface it is no input. 0 also when it cannot be read. */
+int vg_mapbc_is_output(const char *path);
+
 void vg_mapbc_release(struct vg_mapbc *b);
 
 /** Give the patches of m their codes and names. Patches without an entry
@@ -51,6 +55,12 @@ vg_status vg_mapbc_apply(const struct vg_mapbc *b, struct vg_mesh *m,
 vg_status vg_mapbc_write(const char *path, const struct vg_mesh *m,
                          enum vg_mapbc_layout layout, const char *title,
                          size_t *n_unset, struct vg_error *err);
+
+/** vg_mapbc_write in the VGRID layout, with a mark at the end of the title by
+ * which vg_mapbc_is_output knows the file. Solvers ignore the title. */
+vg_status vg_mapbc_write_output(const char *path, const struct vg_mesh *m,
+                                const char *title, size_t *n_unset,
+                                struct vg_error *err);
 
 /** Codes of the other solver; a code without a counterpart is returned as it
  * is, VG_BC_NONE for VG_BC_NONE.

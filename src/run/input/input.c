@@ -152,6 +152,10 @@ static vg_status find_beside(struct vg_input_files *f, const char *deck,
                              struct vg_error *err)
 {
   f->mapbc = beside(f->stem, "mapbc");
+  if (f->mapbc && !*f->mapbc) {
+    free(f->mapbc);
+    f->mapbc = beside(f->stem, "mapbc.gz");
+  }
   f->deck = deck ? strdup(deck) : beside(f->stem, "deck");
   f->tags = beside(f->stem, "tags");
   f->aflr = beside(f->stem, "bc");
@@ -237,8 +241,8 @@ static void note_unused(struct vg_problem *p,
                         const struct vg_mapbc_match *match)
 {
   if (match->n_unused)
-    vg_note(&p->notes, "%s.mapbc lists %zu patches that the surface does not "
-            "have (the first is %d)", p->files.stem, match->n_unused,
+    vg_note(&p->notes, "%s lists %zu patches that the surface does not "
+            "have (the first is %d)", p->files.mapbc, match->n_unused,
             (int)match->first_unused);
 }
 
@@ -249,18 +253,51 @@ static enum vg_flow_side side_of(const char *format)
          ? VG_SIDE_USUAL : VG_SIDE_FREE;
 }
 
-/* Conditions are taken from the .mapbc next to the file. */
+void vg_note_own_mapbc(struct vg_notes *notes, const char *stem, size_t n)
+{
+  vg_note(notes, "%.*s.mapbc was written by an earlier run of Vanguard and was "
+          "not read; give --mapbc %.*s.mapbc to use it", (int)n, stem, (int)n,
+          stem);
+}
+
+/* The .mapbc of an earlier run is no input, and may be overwritten. */
+static void leave_own_mapbc(struct vg_problem *p)
+{
+  vg_note_own_mapbc(&p->notes, p->files.stem, strlen(p->files.stem));
+  *p->files.mapbc = 0;
+}
+
+/* The file that the settings name takes the place of the project's. */
+static vg_status name_mapbc(struct vg_problem *p, struct vg_error *err)
+{
+  char *name;
+
+  if (!*p->settings.mapbc) return VG_OK;
+  name = strdup(p->settings.mapbc);
+  if (!name) return vg_fail_memory(err, "a path");
+  free(p->files.mapbc);
+  p->files.mapbc = name;
+  return VG_OK;
+}
+
+/* The conditions are those of the .mapbc that is named or has the stem of the
+ * file. */
 static vg_status read_surface_file(struct vg_problem *p, struct vg_error *err)
 {
   const int is_renewed = vg_problem_is_renewed(p);
   struct vg_cad_options cad = vg_cad_options_of(&p->settings, is_renewed,
                                                 &p->notes);
   struct vg_read_info info = { .cad = &cad,
-    .model = is_renewed ? &p->model : NULL };
+    .model = is_renewed ? &p->model : NULL, .mapbc = p->settings.mapbc };
   const char *path = p->files.surface;
-  vg_status st;
+  vg_status st = name_mapbc(p, err);
 
-  if (p->is_read) return VG_OK;
+  if (st < 0) return st;
+  if (p->is_read) {
+    if (!*p->settings.mapbc && vg_mapbc_is_output(p->files.mapbc))
+      leave_own_mapbc(p);
+    return VG_OK;
+  }
   st = vg_surface_read(path, &p->surface, &info, err);
   /* the library's message says less */
   if (st < 0)
@@ -276,6 +313,7 @@ static vg_status read_surface_file(struct vg_problem *p, struct vg_error *err)
   if (info.turned.loose_face)
     vg_note(&p->notes, "%s: %zu boundary faces belong to no cell", path,
             info.turned.loose_face);
+  if (info.has_own_mapbc) leave_own_mapbc(p);
   note_unused(p, &info.match);
   return VG_OK;
 }
@@ -391,11 +429,15 @@ static vg_status apply_conditions(struct vg_problem *p, struct vg_error *err)
   struct vg_mapbc_match match;
   vg_status st;
 
+  VG_TRY(name_mapbc(p, err));
+  if (!*p->settings.mapbc && vg_mapbc_is_output(p->files.mapbc))
+    leave_own_mapbc(p);
   if (!*p->files.mapbc) return VG_OK;
   st = vg_mapbc_read(p->files.mapbc, &bc, err);
   if (st >= 0) st = vg_mapbc_apply(&bc, &p->surface, &match, err);
-  vg_mapbc_release(&bc);
   if (st >= 0) note_unused(p, &match);
+done:
+  vg_mapbc_release(&bc);
   return st;
 }
 
@@ -642,6 +684,7 @@ vg_status vg_problem_given(struct vg_problem *p, const char *name,
     bad |= !(*path[i] = strdup(""));
   if (bad || !f->stem) return vg_fail_memory(err, "the names of a surface");
   st = vg_problem_sizes(p, err);
+  if (st >= 0) st = apply_conditions(p, err);
   return st < 0 ? st : vg_problem_patch_table(p, 0, err);
 }
 

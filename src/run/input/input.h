@@ -102,6 +102,10 @@ void vg_problem_release(struct vg_problem *p);
 
 void vg_notes_release(struct vg_notes *notes);
 
+/** Note that STEM.mapbc was not read since Vanguard wrote it. stem: its first
+ * n bytes. */
+void vg_note_own_mapbc(struct vg_notes *notes, const char *stem, size_t n);
+
 /** Add a line for the report; loses it when memory is refused. */
 void vg_note(struct vg_notes *notes, const char *format, ...)
     __attribute__((format(printf, 2, 3)));

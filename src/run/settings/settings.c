@@ -83,6 +83,10 @@ static const struct vg_param params[] = {
     "which sizes grow: Medit's .sol or .solb, with the mesh (.meshb, "
     ".b8.ugrid, ...) beside it, or a point array `size` of VTK's .vtu; \"\": "
     "none" },
+  { "mapbc", AT(mapbc), .type = VG_PARAM_TEXT, .unit = "",
+    .argument = "FILE", .help = "boundary conditions of the patches; \"\": "
+    "PROJECT.mapbc where it exists, unless an earlier run of Vanguard wrote "
+    "it" },
   { "unit", AT(cad.unit), .type = VG_PARAM_WORD, .words = unit_words,
     .unit = "", .help = "unit of length of the surface of a CAD file, and so "
     "of the mesh; file: as the file has it" },

@@ -111,6 +111,8 @@ struct vg_settings {
   double scale, growth, hmin, hmax;
   int surface_sizes, d3m_sources;
   char sizes[VG_LIST_MAX];         /* a file with edge lengths; "": none */
+  char mapbc[VG_LIST_MAX];         /* a file with conditions; "": that of the
+                                      project */
   struct vg_cad_settings cad;
   int flow;                        /* enum vg_flow_kind of core/flow/flow.h */
   int half;                        /* enum vg_flow_half */

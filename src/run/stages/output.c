@@ -423,9 +423,10 @@ static vg_status write_conditions(struct writing *w, const char *item,
 
   if (st >= 0 && !path) st = vg_fail_memory(err, "the output paths");
   if (st >= 0 && !w->o->is_guest)
-    st = vg_mapbc_write(path, &boundary, is_fun3d ? VG_MAPBC_FUN3D
-                                             : VG_MAPBC_VGRID,
-                        is_fun3d ? NULL : w->p->settings.title, NULL, err);
+    st = is_fun3d
+      ? vg_mapbc_write(path, &boundary, VG_MAPBC_FUN3D, NULL, NULL, err)
+      : vg_mapbc_write_output(path, &boundary, w->p->settings.title, NULL,
+                              err);
   vg_mesh_release(&boundary);
   free(path);
   st = vg_comm_agree(w->comm, st, err);
