@@ -130,6 +130,13 @@ vg_status vg_problem_refuse_open(const struct vg_problem *p,
   size_t n = 0;
   vg_status st = vg_domain_rims(&p->surface, &n, &rim, &why);
 
+  if (p->rim_gap > 0) {
+    free(rim);
+    return vg_fail(err, VG_ERR_GEOMETRY, "%s: the surface is open, but open "
+                   "edges lie next to each other, %.3g apart at most: --weld "
+                   "%.2g closes these gaps", p->files.stem, p->rim_gap,
+                   1.05 * p->rim_gap);
+  }
   if (st == VG_ERR_GEOMETRY)
     return vg_fail(err, st, "%s: the surface is open, and %s; repair it, or "
                    "wrap it (--wrap SIZE)", p->files.stem, why.text);

@@ -13,6 +13,8 @@
 #include "run/settings/deck.h"
 
 #define SHOWN_PATCHES 20   /* numbers in a note */
+#define ROUNDING 1e-9      /* S62: of the length: gaps between rims that are
+                              rounding of coordinates */
 
 int vg_surface_has_conditions(const struct vg_mesh *m)
 {
@@ -190,6 +192,32 @@ done:
   return st;
 }
 
+/* Rims that coincide but for rounding are welded; for wider gaps the refusal
+ * of an open surface names the tolerance. */
+static vg_status weld_rims(struct vg_problem *p, struct vg_display *show,
+                           struct vg_error *err)
+{
+  double lo[3], hi[3], length = 0, gap;
+  size_t n_edge, n_point;
+  vg_status st = VG_OK;
+
+  p->rim_gap = 0;
+  if (!p->check.count[VG_DEFECT_OPEN_EDGE] || !p->settings.repair)
+    return VG_OK;
+  VG_TRY(vg_surface_rim_gap(&p->surface, &p->check, &gap, &n_edge, err));
+  vg_mesh_bounds(&p->surface, lo, hi);
+  for (int k = 0; k < 3; k++) length = fmax(length, hi[k] - lo[k]);
+  if (gap > ROUNDING * length) p->rim_gap = gap;
+  if (!(gap > 0) || p->rim_gap > 0) goto done;
+  VG_TRY(vg_surface_weld_rims(&p->surface, gap, &n_point, &n_edge, err));
+  vg_note(&p->notes, "%zu open edges coincide with others within %.3g, but for "
+          "rounding: they were welded, %zu points merged", n_edge, gap,
+          n_point);
+  VG_TRY(check(p, -1, show, err));
+done:
+  return st;
+}
+
 /* The surface closed as far as settings ask for it, and looked at. */
 static vg_status close_surface(struct vg_problem *p, struct vg_display *show,
                                struct vg_error *err)
@@ -202,6 +230,7 @@ static vg_status close_surface(struct vg_problem *p, struct vg_display *show,
                            err));
   if (s->wrap > 0) VG_TRY(wrap(p, show, err));
   VG_TRY(check(p, -1, show, err));
+  VG_TRY(weld_rims(p, show, err));
   if (!s->close_holes || !p->check.count[VG_DEFECT_OPEN_EDGE]) goto done;
   /* Rims are followed along triangles that agree, as the check left them. */
   p->n_given_patch = p->surface.n_patch;
