@@ -148,8 +148,9 @@ vg_status vg_problem_refuse_open(const struct vg_problem *p,
              rim[0].centre[rim[0].axis], "xyz"[rim[0].axis]);
   st = vg_fail(err, VG_ERR_GEOMETRY, "%s: the surface is open: %zu rim%s (%s). "
                "--close-holes yes closes each with a flat cap in a patch of its "
-               "own (cap_1%s)%s", p->files.stem, n, n > 1 ? "s" : "", list,
-               n > 1 ? ", cap_2, ..." : "", half);
+               "own (cap_1%s%s)%s", p->files.stem, n, n > 1 ? "s" : "", list,
+               n > 1 ? ", cap_2, ..." : "", n > 1 ? "; in a duct with --flow "
+               "internal" : "", half);
   free(rim);
   return st;
 }
