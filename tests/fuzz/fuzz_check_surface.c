@@ -3,8 +3,26 @@
 #include "core/surface/surface_check.h"
 #include "io/mesh/tri.h"
 
-/* What follows reading a surface: the check with repair, and the text of
- * every defect. */
+/* Rims that coincide are found by the tolerance that is offered, which closes
+ * what it says. */
+static void weld(struct vg_mesh *m, const struct vg_surface_report *r,
+                 struct vg_error *err)
+{
+  size_t n_edge = 0, n_welded = 0;
+  double gap = -1;
+
+  fuzz_expect(vg_surface_rim_gap(m, r, &gap, &n_edge, err) == VG_OK &&
+              gap >= 0 && n_edge <= r->count[VG_DEFECT_OPEN_EDGE] &&
+              (gap > 0) == (n_edge > 0), "a gap goes with edges");
+  if (gap > 0) {
+    fuzz_expect(vg_surface_weld_rims(m, gap, NULL, &n_welded, err) == VG_OK,
+                "a surface can be welded");
+    fuzz_expect(n_welded > 0, "the gap that is offered welds edges");
+  }
+}
+
+/* What follows reading a surface: the check with repair, the text of every
+ * defect, and rims that may be welded. */
 static vg_status parse(struct vg_input *in, struct vg_mesh *m,
                        struct vg_error *err)
 {
@@ -19,6 +37,7 @@ static vg_status parse(struct vg_input *in, struct vg_mesh *m,
   fuzz_expect(st == VG_OK, "a surface can be checked");
   for (size_t i = 0; i < r.n_defect; i++)
     vg_defect_text(m, &r.defect[i], text, sizeof text);
+  weld(m, &r, err);
   vg_surface_report_release(&r);
   return st;
 }

@@ -165,9 +165,10 @@ static void names_and_conditions(void **state)
     if (vg_slices_write(job, &c.s, all, form[i], 1, &err) != VG_OK)
       fail_msg("%s: %s", form[i], err.text);
     if (!vg_comm_rank(job)) {
-      assert_int_equal(vg_mapbc_write(whole, &mesh[0], i == 1 ? VG_MAPBC_FUN3D
-                                      : VG_MAPBC_VGRID, strrchr(all, '/') + 1,
-                                      NULL, NULL), VG_OK);
+      assert_int_equal(i == 1
+        ? vg_mapbc_write(whole, &mesh[0], VG_MAPBC_FUN3D, NULL, NULL, NULL)
+        : vg_mapbc_write_output(whole, &mesh[0], strrchr(all, '/') + 1, NULL,
+                                NULL), VG_OK);
       same_bytes(path, whole);
       unlink(path);
       unlink(whole);

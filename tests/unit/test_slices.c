@@ -452,8 +452,8 @@ static void what_shows_the_boundary(void **state)
   assert_int_equal(vg_mapbc_write(whole, &mesh[1], VG_MAPBC_FUN3D, NULL, NULL,
                                   NULL), VG_OK);
   same_file(whole, cut_file("fun3d.mapbc"));
-  assert_int_equal(vg_mapbc_write(whole, &mesh[1], VG_MAPBC_VGRID,
-                                  "slices_cut", NULL, NULL), VG_OK);
+  assert_int_equal(vg_mapbc_write_output(whole, &mesh[1], "slices_cut", NULL,
+                                         NULL), VG_OK);
   same_file(whole, cut_file("mapbc"));
   unlink(whole);
   unlink(cut_file("surface.vtu"));

@@ -16,7 +16,8 @@
 #include "base/union_find.h"
 
 #define SHARE 0.1           /* S61: largest gap over the shortest edge there */
-#define LEVEL_LEAST 1e-15   /* first tolerance over the extent of the surface */
+#define LEVEL_LEAST 1e-15   /* first tolerance over the largest coordinate,
+                               which has no digits for less */
 #define LEVEL_STEP 10
 
 struct rim_edge {
@@ -30,7 +31,8 @@ struct rims {
   double *shortest;         /* [n_point] shortest edge there */
   struct rim_edge *edge;    /* [n_edge] still open */
   size_t n_edge, n_matched;
-  double extent, gap;       /* gap: largest distance of ends that became one */
+  double least;             /* first tolerance */
+  double gap;               /* largest distance of ends that became one */
   uint8_t *used;            /* [n_point] on the current level */
   uint32_t *near;           /* [n_point] group on the current level */
 };
@@ -109,7 +111,7 @@ static vg_status rims_init(struct rims *r, const struct vg_mesh *m,
   VG_TRY(list_open_edges(r, &s, err));
   vg_mesh_bounds(m, lo, hi);
   for (int k = 0; k < 3; k++)
-    if (hi[k] - lo[k] > r->extent) r->extent = hi[k] - lo[k];
+    r->least = fmax(r->least, LEVEL_LEAST * fmax(-lo[k], hi[k]));
 done:
   vg_faces_release(&s);
   return st;
@@ -243,10 +245,10 @@ static vg_status match_level(struct rims *r, double tolerance,
 static vg_status match_levels(struct rims *r, double most,
                               struct vg_error *err)
 {
-  double t = LEVEL_LEAST * r->extent;
+  double t = r->least;
   vg_status st = VG_OK;
 
-  if (!isfinite(r->extent) || !(t > 0)) return VG_OK;
+  if (!isfinite(t) || !(t > 0)) return VG_OK;
   for (; t < most && r->n_edge > 1 && st >= 0; t *= LEVEL_STEP)
     st = match_level(r, t, err);
   if (r->n_edge > 1 && st >= 0) st = match_level(r, most, err);
@@ -272,7 +274,7 @@ vg_status vg_surface_rim_gap(const struct vg_mesh *m,
   VG_TRY(match_levels(&r, most, err));
 done:
   if (st >= 0) {
-    *gap = r.gap * (1 + 1e-9);
+    *gap = r.n_matched ? fmax(r.gap, r.least) * (1 + 1e-9) : 0;
     *n_edge = r.n_matched;
   }
   rims_release(&r);
