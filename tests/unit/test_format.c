@@ -142,6 +142,35 @@ static void the_mapbc_beside_is_used(void **state)
   vg_mesh_release(&m);
 }
 
+/* What an earlier run wrote goes with a mesh, and not with a surface unless it
+ * is named. */
+static void the_mapbc_of_a_run_is_no_input(void **state)
+{
+  const char *grid = io_temp("format_own.lb8.ugrid");
+  const char *bc = io_temp("format_own.mapbc");
+  struct vg_error err = VG_ERROR_INIT;
+
+  (void)state;
+  for (int turn = 0; turn < 3; turn++) {
+    struct vg_read_info info = { .mapbc = turn == 2 ? bc : turn ? "" : NULL };
+    struct vg_mesh m, back = VG_MESH_INIT;
+    const int is_used = turn != 1;
+
+    io_make_t1(&m, turn == 0);
+    assert_int_equal(vg_format_write(grid, &m, &err), VG_OK);
+    m.patch[0].bc = 4;
+    assert_int_equal(vg_mapbc_write_output(bc, &m, "own", NULL, &err), VG_OK);
+    if (vg_mesh_read(grid, &back, &info, &err)) fail_msg("%s", err.text);
+    assert_int_equal(info.has_mapbc, is_used);
+    assert_int_equal(info.has_own_mapbc, !is_used);
+    assert_int_equal(back.patch[0].bc, is_used ? 4 : VG_BC_NONE);
+    vg_mesh_release(&back);
+    vg_mesh_release(&m);
+  }
+  unlink(grid);
+  unlink(bc);
+}
+
 /* A tetrahedron around a point inside it: four cells, five points. */
 static void surfaces_leave_inner_points_out(void **state)
 {
@@ -229,6 +258,7 @@ int main(void)
     cmocka_unit_test(unknown_suffixes_list_the_known),
     cmocka_unit_test(every_format_round_trips),
     cmocka_unit_test(the_mapbc_beside_is_used),
+    cmocka_unit_test(the_mapbc_of_a_run_is_no_input),
     cmocka_unit_test(surfaces_leave_inner_points_out),
     cmocka_unit_test(reads_the_real_project),
     cmocka_unit_test(reads_real_surfaces),
