@@ -197,23 +197,24 @@ done:
 static vg_status weld_rims(struct vg_problem *p, struct vg_display *show,
                            struct vg_error *err)
 {
-  double lo[3], hi[3], length = 0, gap;
-  size_t n_edge, n_point;
+  double lo[3], hi[3], length = 0;
+  size_t n_edge, n_point = 0;
   vg_status st = VG_OK;
 
   p->rim_gap = 0;
   if (!p->check.count[VG_DEFECT_OPEN_EDGE] || !p->settings.repair)
     return VG_OK;
-  VG_TRY(vg_surface_rim_gap(&p->surface, &p->check, &gap, &n_edge, err));
+  VG_TRY(vg_surface_rim_gap(&p->surface, &p->check, &p->rim_gap, &n_edge, err));
   vg_mesh_bounds(&p->surface, lo, hi);
   for (int k = 0; k < 3; k++) length = fmax(length, hi[k] - lo[k]);
-  if (gap > ROUNDING * length) p->rim_gap = gap;
-  if (!(gap > 0) || p->rim_gap > 0) goto done;
-  VG_TRY(vg_surface_weld_rims(&p->surface, gap, &n_point, &n_edge, err));
-  vg_note(&p->notes, "%zu open edges coincide with others within %.3g, but for "
-          "rounding: they were welded, %zu points merged", n_edge, gap,
-          n_point);
+  if (!(p->rim_gap > 0)) goto done;
+  VG_TRY(vg_surface_weld_rims(&p->surface, ROUNDING * length, &n_point, &n_edge,
+                              err));
+  if (!n_point) goto done;
+  vg_note(&p->notes, "%zu open edges coincide with others but for rounding: "
+          "they were welded, %zu points merged", n_edge, n_point);
   VG_TRY(check(p, -1, show, err));
+  VG_TRY(vg_surface_rim_gap(&p->surface, &p->check, &p->rim_gap, &n_edge, err));
 done:
   return st;
 }
