@@ -224,7 +224,7 @@ vg_status vg_check_surface(const struct vg_check_surface *a,
     goto done;
   }
   VG_TRY(examine(a, p, &f, show, err));
-  body = vg_report_surface_json(&p->surface, &p->check, VG_SHOWN_DEFECTS);
+  body = vg_report_surface_json(&p->surface, &p->check, VG_LISTED_DEFECTS);
   n_note = p->notes.n;
   if (shape >= 0) shape = finish(p, show, &why);
   vg_display_clear(show);
