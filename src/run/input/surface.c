@@ -54,11 +54,24 @@ static vg_status split_quads(struct vg_mesh *m, struct vg_notes *notes,
   return VG_OK;
 }
 
+/* Notes on triangles that the repair removed: the next check finds none. */
+static void note_removed(struct vg_problem *p)
+{
+  if (p->check.n_removed_wall)
+    vg_note(&p->notes, "%zu triangles of walls that touching bodies shared "
+            "were removed, so that the bodies have one skin",
+            p->check.n_removed_wall);
+  if (p->check.n_removed_tri)
+    vg_note(&p->notes, "%zu duplicate or degenerate triangles were removed",
+            p->check.n_removed_tri);
+}
+
 /* external: as in vg_surface_check_options. */
 static vg_status check(struct vg_problem *p, int external,
                        struct vg_display *show, struct vg_error *err)
 {
   struct vg_surface_check_options o = VG_SURFACE_CHECK_OPTIONS_INIT;
+  vg_status st;
 
   o.repair = p->settings.repair;
   o.require_bc = p->require_bc;
@@ -66,7 +79,9 @@ static vg_status check(struct vg_problem *p, int external,
   o.threads = p->threads;
   o.stop = (struct vg_stop){ vg_display_stop, show };
   vg_display_update(show, "check", p->surface.n_tri, 0);
-  return vg_surface_check(&p->surface, &o, &p->check, err);
+  st = vg_surface_check(&p->surface, &o, &p->check, err);
+  if (st >= 0) note_removed(p);
+  return st;
 }
 
 static vg_status defects(const struct vg_problem *p, struct vg_error *err)

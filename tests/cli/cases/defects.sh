@@ -61,6 +61,11 @@ lacks out "non-manifold"
 vanguard check -q wall.obj
 exits 0
 says out "repaired: 2 triangles of walls that touching bodies shared removed"
+vanguard mesh -q -p wall.obj --out united
+exits 0
+says out "note: 2 triangles of walls that touching bodies shared were removed"
+vanguard check -q united/wall.b8.ugrid
+exits 0
 printf 't\nrepair\nno\n' >wall.deck
 vanguard mesh -q -p wall.obj
 exits 1
