@@ -5,31 +5,10 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "core/geometry/hilbert.h"
 #include "core/geometry/vector.h"
-#include "core/surface/surface_check.h"
 #include "core/wrap/wrap_parts.h"
 
-#define CLOSED 2.5        /* S44: triangles over area / size^2 */
-#define OPEN 15.0         /* where both sides of a sheet are wrapped */
-#define CRACK 1e-3        /* of the size: narrower rims are none */
-#define RIM 6.0           /* sizes: length of a rim that is gone through */
 #define REACH 1.5         /* S41: of the offset: farther, a gap was bridged */
-
-static double area(const struct vg_mesh *m)
-{
-  double sum = 0;
-
-  for (size_t i = 0; i < m->n_tri; i++) {
-    double u[3], v[3], n[3];
-
-    vg_sub(m->point[m->tri[i][1]], m->point[m->tri[i][0]], u);
-    vg_sub(m->point[m->tri[i][2]], m->point[m->tri[i][0]], v);
-    vg_cross(u, v, n);
-    sum += vg_norm(n) / 2;
-  }
-  return sum;
-}
 
 static vg_status check(const struct vg_mesh *m, double size,
                        struct vg_error *err)
@@ -50,74 +29,34 @@ static vg_status check(const struct vg_mesh *m, double size,
   return VG_OK;
 }
 
-/* Length of the edges with one triangle, cracks left out. */
-static vg_status measure_rims(const struct vg_mesh *in, double size,
-                              double *length, struct vg_error *err)
-{
-  struct vg_mesh m = VG_MESH_INIT;
-  struct vg_key *s = NULL;
-  size_t n;
-  vg_status st;
-
-  *length = 0;
-  VG_TRY(vg_mesh_copy(&m, in, err));
-  VG_TRY(vg_surface_weld(&m, CRACK * size, NULL, NULL, err));
-  n = 3 * m.n_tri;
-  s = vg_alloc(n, sizeof *s);
-  if (!s) VG_TRY(vg_fail_memory(err, "a wrap"));
-  for (size_t i = 0; i < n; i++) {
-    uint64_t a = m.tri[i / 3][i % 3], b = m.tri[i / 3][(i + 1) % 3];
-
-    s[i] = (struct vg_key){ a < b ? a << 32 | b : b << 32 | a, 0 };
-  }
-  VG_TRY(vg_sort_keys(n, s, err));
-  for (size_t i = 0; i < n; i++)
-    if ((!i || s[i - 1].key != s[i].key)
-        && (i + 1 == n || s[i].key != s[i + 1].key))
-      *length += vg_distance(m.point[s[i].key >> 32],
-                             m.point[(uint32_t)s[i].key]);
-done:
-  free(s);
-  vg_mesh_release(&m);
-  return st;
-}
-
 /* What would take hours is refused. */
-static vg_status check_number(const struct vg_mesh *m, double size,
+static vg_status check_number(const struct vg_wrap_rims *rims, double size,
                               struct vg_error *err)
 {
-  double rims, n = CLOSED * area(m) / (size * size);
-  int is_open = 0;
-  vg_status st = VG_OK;
+  struct vg_wrap_forecast f = vg_wrap_count(rims, size);
 
-  if (n < VG_WRAP_MOST) {
-    VG_TRY(measure_rims(m, size, &rims, err));
-    is_open = rims > RIM * size;
-    if (is_open) n *= OPEN / CLOSED;
-  }
-  if (n > VG_WRAP_MOST)
-    return vg_fail(err, VG_ERR_INPUT, "a wrap of size %g would have some %.2g "
-                   "triangles%s, and %.2g are the most; is it in the unit of "
-                   "the surface? Sizes from %.2g on will do", size, n,
-                   is_open ? ", as it goes through holes and lies on both "
-                   "sides of the surface" : "", VG_WRAP_MOST,
-                   1.05 * size * sqrt(n / VG_WRAP_MOST));
-done:
-  return st;
+  if (f.triangles <= VG_WRAP_MOST) return VG_OK;
+  return vg_fail(err, VG_ERR_INPUT, "a wrap of size %g would have some %.2g "
+                 "triangles%s, and %.2g are the most; is it in the unit of "
+                 "the surface? Sizes from %.2g on will do", size, f.triangles,
+                 f.n_open ? ", as it may go through holes and lie on both "
+                 "sides of the surface" : "", VG_WRAP_MOST,
+                 1.05 * size * sqrt(f.triangles / VG_WRAP_MOST));
 }
 
 /* Patches that had triangles, and have none. */
-static vg_status count_empty(const struct vg_mesh *before,
-                             const struct vg_mesh *after, size_t *n,
-                             struct vg_error *err)
+static vg_status find_empty(const struct vg_mesh *before,
+                            const struct vg_mesh *after, uint8_t *empty,
+                            size_t *n, struct vg_error *err)
 {
-  size_t *had = vg_calloc(before->n_patch, sizeof *had);
+  uint8_t *had = vg_calloc(before->n_patch, sizeof *had);
 
   *n = 0;
   if (!had) return vg_fail_memory(err, "the patches");
   for (size_t i = 0; i < before->n_tri; i++) had[before->tri_patch[i]] = 1;
   for (size_t i = 0; i < after->n_tri; i++) had[after->tri_patch[i]] = 0;
   for (size_t i = 0; i < before->n_patch; i++) *n += had[i];
+  if (empty) memcpy(empty, had, before->n_patch);
   free(had);
   return VG_OK;
 }
@@ -178,39 +117,104 @@ done:
   return st;
 }
 
-vg_status vg_wrap(struct vg_mesh *m, double size, const struct vg_stop *stop,
-                  struct vg_wrap_report *r, struct vg_error *err)
+/* The triangles to wrap: all but those of outer boundaries. */
+static vg_status take_bodies(const struct vg_mesh *m, const uint8_t *keep,
+                             struct vg_mesh *in, struct vg_error *err)
 {
-  struct vg_wrap_report report = { .offset = size * VG_WRAP_OFFSET };
-  struct vg_mesh out = VG_MESH_INIT;
+  uint8_t *stays = vg_alloc(m->n_tri, 1);
   vg_status st;
 
-  VG_TRY(check(m, size, err));
-  VG_TRY(check_number(m, size, err));
-  VG_TRY(vg_wrap_cgal(m, size, report.offset, stop, &out, err));
-  if (!out.n_tri) {
+  if (!stays) VG_TRY(vg_fail_memory(err, "a wrap"));
+  for (size_t i = 0; i < m->n_tri; i++) stays[i] = !keep || !keep[i];
+  VG_TRY(vg_mesh_copy(in, m, err));
+  VG_TRY(vg_wrap_select(in, stays, err));
+  if (!in->n_tri)
+    st = vg_fail(err, VG_ERR_INPUT, "nothing to wrap: all triangles belong to "
+                 "an outer boundary");
+done:
+  free(stays);
+  return st;
+}
+
+/* The wrap of `in`, without patches. */
+static vg_status make(const struct vg_mesh *in, const struct vg_wrap_options *o,
+                      struct vg_mesh *out, struct vg_wrap_report *r,
+                      struct vg_error *err)
+{
+  const struct vg_stop *stop = &o->stop;
+  struct vg_wrap_rims rims = { .n_part = 0 };
+  struct vg_wrap_forecast f;
+  vg_status st;
+
+  VG_TRY(vg_wrap_rims_find(in, o->size, &rims, err));
+  VG_TRY(vg_wrap_refuse_open(&rims, o->size, stop, err));
+  VG_TRY(check_number(&rims, o->size, err));
+  f = vg_wrap_count(&rims, o->size);
+  r->widest = f.widest;
+  memcpy(r->widest_at, f.at, sizeof f.at);
+  VG_TRY(vg_wrap_cgal(in, o, (size_t)f.triangles / 2, out, err));
+  out->patch = in->patch;     /* borrowed, for checks */
+  out->n_patch = in->n_patch;
+  st = vg_wrap_prune(out, stop, r, err);
+  if (st >= 0 && out->n_tri) st = fit(in, out, stop, r, err);
+  if (st >= 0 && out->n_tri) st = vg_wrap_prune(out, stop, r, err);
+  out->patch = NULL;
+  out->n_patch = 0;
+  if (st < 0) goto done;
+  if (!out->n_tri) {
     st = vg_fail(err, VG_ERR_GEOMETRY, "nothing is left of a wrap of size %g: "
                  "it goes through the surface's holes; take a larger one",
-                 size);
+                 o->size);
     goto done;
   }
-  out.patch = m->patch;     /* borrowed, for the check */
-  out.n_patch = m->n_patch;
-  st = fit(m, &out, stop, &report, err);
-  out.patch = NULL;
-  out.n_patch = 0;
-  if (st < 0) goto done;
-  VG_TRY(label(m, &out, stop, &report, err));
-  VG_TRY(count_empty(m, &out, &report.n_empty, err));
+  VG_TRY(label(in, out, stop, r, err));
+  VG_TRY(vg_wrap_compare(&rims, out, o->size, stop, r, err));
+done:
+  vg_wrap_rims_release(&rims);
+  return st;
+}
+
+vg_status vg_wrap(struct vg_mesh *m, const struct vg_wrap_options *o,
+                  struct vg_wrap_report *r, struct vg_error *err)
+{
+  struct vg_wrap_report report = { .offset = o->size * VG_WRAP_OFFSET };
+  struct vg_mesh in = VG_MESH_INIT, out = VG_MESH_INIT;
+  vg_status st;
+
+  VG_TRY(check(m, o->size, err));
+  VG_TRY(take_bodies(m, o->keep, &in, err));
+  VG_TRY(make(&in, o, &out, &report, err));
+  report.n_before = in.n_tri;
+  report.n_kept = m->n_tri - in.n_tri;
+  report.n_point = out.n_point;
+  if (report.n_kept) VG_TRY(vg_wrap_join(m, o->keep, &o->stop, &out, err));
+  VG_TRY(find_empty(m, &out, o->empty, &report.n_empty, err));
   out.patch = m->patch;
   out.n_patch = m->n_patch;
   m->patch = NULL;
   m->n_patch = 0;
-  report.n_before = m->n_tri;
   vg_mesh_move(m, &out);
-  report.n_point = m->n_point;
   *r = report;
 done:
+  vg_mesh_release(&in);
   vg_mesh_release(&out);
+  return st;
+}
+
+vg_status vg_wrap_foresee(const struct vg_mesh *m,
+                          const struct vg_wrap_options *o,
+                          struct vg_wrap_forecast *f, struct vg_error *err)
+{
+  struct vg_wrap_rims rims = { .n_part = 0 };
+  struct vg_mesh in = VG_MESH_INIT;
+  vg_status st;
+
+  VG_TRY(check(m, o->size, err));
+  VG_TRY(take_bodies(m, o->keep, &in, err));
+  VG_TRY(vg_wrap_rims_find(&in, o->size, &rims, err));
+  *f = vg_wrap_count(&rims, o->size);
+done:
+  vg_wrap_rims_release(&rims);
+  vg_mesh_release(&in);
   return st;
 }

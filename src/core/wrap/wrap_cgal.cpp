@@ -16,9 +16,26 @@ static vg_status not_built(struct vg_error *err)
                  "repair the surface elsewhere");
 }
 
-extern "C" vg_status vg_wrap_cgal(const struct vg_mesh *, double, double,
-                                  const struct vg_stop *, struct vg_mesh *,
-                                  struct vg_error *err)
+extern "C" vg_status vg_wrap_cgal(const struct vg_mesh *,
+                                  const struct vg_wrap_options *, size_t,
+                                  struct vg_mesh *, struct vg_error *err)
+{
+  return not_built(err);
+}
+
+extern "C" vg_status vg_wrap_outside(const struct vg_mesh *, size_t,
+                                     const double (*)[3],
+                                     const struct vg_stop *, uint8_t *,
+                                     struct vg_error *err)
+{
+  return not_built(err);
+}
+
+extern "C" vg_status vg_wrap_crossings(const struct vg_mesh *, size_t,
+                                       const double (*)[3],
+                                       const double (*)[3],
+                                       const struct vg_stop *, uint32_t *,
+                                       struct vg_error *err)
 {
   return not_built(err);
 }
@@ -103,14 +120,16 @@ void ask(const vg_stop *stop)
   if (vg_stops(stop)) throw Stopped();
 }
 
-/* Asks before each facet that the wrap is carved through. */
+/* Asks before each facet that the wrap is carved through, and reports every
+ * 256th point. */
 struct Visitor : CGAL::Alpha_wraps_3::internal::Wrapping_default_visitor {
-  explicit Visitor(const vg_stop *s) : stop(s) {}
+  Visitor(const vg_wrap_options *options, size_t forecast)
+      : o(options), expected(forecast) {}
 
   template <typename Wrapper, typename Gate>
   void before_facet_treatment(const Wrapper &, const Gate &) const
   {
-    ask(stop);
+    ask(&o->stop);
   }
 
   /* A point makes two triangles. */
@@ -118,13 +137,15 @@ struct Visitor : CGAL::Alpha_wraps_3::internal::Wrapping_default_visitor {
   void after_Steiner_point_insertion(const Wrapper &, Vertex)
   {
     if (++points > VG_WRAP_MOST / 2) throw TooMany();
+    if (o->progress && points % 256 == 0)
+      o->progress(o->user, points, expected);
   }
 
-  const vg_stop *stop;
-  size_t points = 0;
+  const vg_wrap_options *o;
+  size_t expected, points = 0;
 };
 
-void wrap(const vg_mesh *m, double size, double offset, const vg_stop *stop,
+void wrap(const vg_mesh *m, const vg_wrap_options *o, size_t expected,
           Mesh &out)
 {
   std::vector<Point> points;
@@ -134,9 +155,9 @@ void wrap(const vg_mesh *m, double size, double offset, const vg_stop *stop,
     points.push_back(point_of(m, static_cast<uint32_t>(i)));
   for (size_t i = 0; i < m->n_tri; i++)
     faces.push_back({m->tri[i][0], m->tri[i][1], m->tri[i][2]});
-  CGAL::alpha_wrap_3(points, faces, size, offset, out,
+  CGAL::alpha_wrap_3(points, faces, o->size, o->size * VG_WRAP_OFFSET, out,
                      CGAL::parameters::default_values(),
-                     CGAL::parameters::visitor(Visitor(stop)));
+                     CGAL::parameters::visitor(Visitor(o, expected)));
 }
 
 bool allocate(size_t n_point, size_t n_tri, vg_mesh *out)
@@ -185,6 +206,34 @@ void find_nearest(const Input &in, size_t n, const double (*x)[3],
   }
 }
 
+/* The direction is parallel to no plane that a person would draw, so that the
+ * ray meets no edge in practice; a point for which it does gets one answer, the
+ * same each time. */
+void find_outside(const Input &in, size_t n, const double (*x)[3],
+                  const vg_stop *stop, uint8_t *outside)
+{
+  const Kernel::Vector_3 along(0.7548776662466927, 0.5698402909980532,
+                               0.3247179572447460);
+
+  for (size_t i = 0; i < n; i++) {
+    const Kernel::Ray_3 ray(Point(x[i][0], x[i][1], x[i][2]), along);
+
+    ask(stop);
+    outside[i] = in.tree.number_of_intersected_primitives(ray) % 2 == 0;
+  }
+}
+
+void find_crossings(const Input &in, size_t n, const double (*a)[3],
+                    const double (*b)[3], const vg_stop *stop, uint32_t *count)
+{
+  for (size_t i = 0; i < n; i++) {
+    ask(stop);
+    count[i] = static_cast<uint32_t>(in.tree.number_of_intersected_primitives(
+        Kernel::Segment_3(Point(a[i][0], a[i][1], a[i][2]),
+                          Point(b[i][0], b[i][1], b[i][2]))));
+  }
+}
+
 /* No exception leaves this file. */
 template <typename Body>
 vg_status guarded(const vg_stop *stop, vg_error *err, Body body)
@@ -211,17 +260,41 @@ extern "C" int vg_wrap_is_built(void)
   return 1;
 }
 
-extern "C" vg_status vg_wrap_cgal(const struct vg_mesh *m, double size,
-                                  double offset, const struct vg_stop *stop,
-                                  struct vg_mesh *out, struct vg_error *err)
+extern "C" vg_status vg_wrap_cgal(const struct vg_mesh *m,
+                                  const struct vg_wrap_options *o,
+                                  size_t expected, struct vg_mesh *out,
+                                  struct vg_error *err)
 {
-  return guarded(stop, err, [&] {
+  return guarded(&o->stop, err, [&] {
     Mesh made;
 
     if (is_flat(m))
       return vg_fail(err, VG_ERR_INPUT, "a wrap: all triangles are degenerate");
-    wrap(m, size, offset, stop, made);
+    wrap(m, o, expected, made);
     give(made, out);
+    return VG_OK;
+  });
+}
+
+extern "C" vg_status vg_wrap_outside(const struct vg_mesh *m, size_t n,
+                                     const double (*x)[3],
+                                     const struct vg_stop *stop,
+                                     uint8_t *outside, struct vg_error *err)
+{
+  return guarded(stop, err, [&] {
+    find_outside(Input(m), n, x, stop, outside);
+    return VG_OK;
+  });
+}
+
+extern "C" vg_status vg_wrap_crossings(const struct vg_mesh *m, size_t n,
+                                       const double (*a)[3],
+                                       const double (*b)[3],
+                                       const struct vg_stop *stop,
+                                       uint32_t *count, struct vg_error *err)
+{
+  return guarded(stop, err, [&] {
+    find_crossings(Input(m), n, a, b, stop, count);
     return VG_OK;
   });
 }

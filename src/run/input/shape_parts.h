@@ -26,6 +26,18 @@ vg_status vg_problem_refuse_open(const struct vg_problem *p,
 vg_status vg_problem_complete(struct vg_problem *p, struct vg_display *show,
                               struct vg_error *err);
 
+/* run/input/wrap_surface.c ------------------------------------------------*/
+
+/** Wrap the surface with the size of the setting `wrap`; notes tell what came
+ * out.
+ *
+ * @param keep  [p->surface.n_tri] 1: the triangle belongs to an outer boundary,
+ *              which stays as it is; NULL: none does
+ * VG_ERR_INPUT where a patch of `walls` or of the table `layers` is left
+ * without triangles; otherwise as vg_wrap. */
+vg_status vg_problem_wrap(struct vg_problem *p, const uint8_t *keep,
+                          struct vg_display *show, struct vg_error *err);
+
 /** Open edges are the only defects. */
 int vg_is_only_open(const struct vg_surface_report *r);
 

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "core/wrap/wrap.h"
 #include "io/mesh/vtu.h"
 #include "io/stream/convention.h"
 #include "run/input/shape_parts.h"
@@ -163,47 +162,21 @@ done:
   return st;
 }
 
-/* An outer boundary would be all that is left of what it encloses. */
-static vg_status refuse_outer(struct vg_problem *p, struct vg_display *show,
-                              struct vg_error *err)
-{
-  const struct vg_flow_options o = vg_problem_flow_options(p, show);
-  uint8_t *outer = vg_alloc(p->surface.n_tri, 1);
-  size_t n = 0;
-  vg_status st = outer ? VG_OK : vg_fail_memory(err, "the outer boundary");
-
-  VG_TRY(st);
-  VG_TRY(vg_flow_outer(&p->surface, &p->check, &o, outer, &n, err));
-  if (n)
-    st = vg_fail(err, VG_ERR_INPUT, "wrap: the surface has an outer boundary; "
-                 "only bodies can be wrapped, leave the outer boundary out of "
-                 "the surface (a farfield is added)");
-done:
-  free(outer);
-  return st;
-}
-
+/* Bodies are wrapped; outer boundaries stay as they are. */
 static vg_status wrap(struct vg_problem *p, struct vg_display *show,
                       struct vg_error *err)
 {
-  const struct vg_stop stop = { vg_display_stop, show };
-  double size = p->settings.wrap;
-  struct vg_wrap_report r = { 0 };
-  vg_status st = VG_OK;
+  const struct vg_flow_options o = vg_problem_flow_options(p, show);
+  uint8_t *outer = NULL;
+  size_t n = 0;
+  vg_status st;
 
-  VG_TRY(check(p, -1, show, err));
-  VG_TRY(refuse_outer(p, show, err));
-  vg_display_update(show, "wrap", p->surface.n_tri, 0);
-  VG_TRY(vg_wrap(&p->surface, size, &stop, &r, err));
-  vg_note(&p->notes, "the surface was wrapped: %zu triangles by %zu; of %zu "
-          "points %zu lie on them, others about %.3g away; put together where "
-          "two sides meet in an edge: %zu; gaps narrower than %g were bridged; "
-          "the farthest is %.3g away, at (%.6g, %.6g, %.6g); patches follow "
-          "the nearest triangle, left without any: %zu",
-          r.n_before, p->surface.n_tri, r.n_point, r.n_fit, r.offset, r.n_zip,
-          size,
-          r.distance, r.at[0], r.at[1], r.at[2], r.n_empty);
+  outer = vg_alloc(p->surface.n_tri, 1);
+  if (!outer) VG_TRY(vg_fail_memory(err, "the outer boundary"));
+  VG_TRY(vg_flow_outer(&p->surface, &p->check, &o, outer, &n, err));
+  VG_TRY(vg_problem_wrap(p, n ? outer : NULL, show, err));
 done:
+  free(outer);
   return st;
 }
 
@@ -244,15 +217,18 @@ static vg_status close_surface(struct vg_problem *p, struct vg_display *show,
   if (s->weld > 0)
     VG_TRY(vg_surface_weld(&p->surface, s->weld, &p->n_welded, &p->n_dropped,
                            err));
-  if (s->wrap > 0) VG_TRY(wrap(p, show, err));
   VG_TRY(check(p, -1, show, err));
   VG_TRY(weld_rims(p, show, err));
-  if (!s->close_holes || !p->check.count[VG_DEFECT_OPEN_EDGE]) goto done;
-  /* Rims are followed along triangles that agree, as the check left them. */
-  p->n_given_patch = p->surface.n_patch;
-  VG_TRY(close_holes(p, err));
-  VG_TRY(vg_problem_patch_table(p, 1, err));
-  VG_TRY(resolve_patches(p, err));
+  if (s->close_holes && p->check.count[VG_DEFECT_OPEN_EDGE]) {
+    /* Rims are followed along triangles that agree, as the check left them. */
+    p->n_given_patch = p->surface.n_patch;
+    VG_TRY(close_holes(p, err));
+    VG_TRY(vg_problem_patch_table(p, 1, err));
+    VG_TRY(resolve_patches(p, err));
+    VG_TRY(check(p, -1, show, err));
+  }
+  if (!(s->wrap > 0)) goto done;
+  VG_TRY(wrap(p, show, err));
   VG_TRY(check(p, -1, show, err));
 done:
   return st;

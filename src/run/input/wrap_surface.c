@@ -1,0 +1,123 @@
+/* The surface of a problem wrapped. */
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "base/memory.h"
+#include "core/wrap/wrap.h"
+#include "run/common/text.h"
+#include "run/input/shape_parts.h"
+#include "run/settings/patch_names.h"
+
+#define LONG 60.0          /* seconds that are announced */
+
+/* asked: [n_patch] 1: walls or the table layers name the patch. */
+static vg_status find_asked(const struct vg_problem *p, uint8_t *asked,
+                            struct vg_error *err)
+{
+  const struct vg_settings *s = &p->settings;
+  const struct vg_mesh *m = &p->surface;
+  vg_status st;
+
+  VG_TRY(vg_patch_list_mark("walls", s->layer.walls, m, m->n_patch, asked,
+                            err));
+  for (size_t i = 0; i < s->n_layer; i++) {
+    const struct vg_layer_row *row = &s->layer_row[i];
+
+    if (row->grow != VG_ANSWER_NO)
+      VG_TRY(vg_patch_ref_mark("layers", row->id, row->id_name, m, m->n_patch,
+                               asked, err));
+  }
+done:
+  return st;
+}
+
+static vg_status check_empty(const struct vg_problem *p, const uint8_t *empty,
+                             const uint8_t *asked, struct vg_error *err)
+{
+  for (size_t i = 0; i < p->surface.n_patch; i++)
+    if (empty[i] && asked[i])
+      return vg_fail(err, VG_ERR_INPUT, "wrap: nothing of patch %d is left, "
+                     "though walls or the table layers name it: it lies inside "
+                     "others, or is smaller than the size; remove it there, or "
+                     "take a smaller size", (int)p->surface.patch[i].id);
+  return VG_OK;
+}
+
+static void note_wrap(struct vg_problem *p, const struct vg_wrap_report *r)
+{
+  vg_note(&p->notes, "the surface was wrapped: %zu triangles by %zu; of %zu "
+          "points %zu lie on them, others about %.3g away; put together where "
+          "two sides meet in an edge: %zu; gaps narrower than %g were bridged; "
+          "the farthest point of the wrap is %.3g away, at (%.6g, %.6g, %.6g); "
+          "patches follow the nearest triangle, left without any: %zu",
+          r->n_before, p->surface.n_tri - r->n_kept, r->n_point, r->n_fit,
+          r->offset, r->n_zip, p->settings.wrap, r->distance, r->at[0],
+          r->at[1], r->at[2], r->n_empty);
+  vg_note(&p->notes, "what the wrap leaves out: no point of the input lies "
+          "farther than %.3g outside it (at %.6g, %.6g, %.6g); %.1f %% of the "
+          "input's area lies inside it, within other parts or behind gaps "
+          "narrower than its size", r->missing, r->missing_at[0],
+          r->missing_at[1], r->missing_at[2], 100 * r->inside);
+  if (r->sheet > 0)
+    vg_note(&p->notes, "%.1f %% of the wrapped area are sheets: they have "
+            "fluid on both sides, closer together than %.3g",
+            100 * r->sheet, 10 * r->offset);
+  if (r->sheet > 0 && r->widest > p->settings.wrap)
+    vg_note(&p->notes, "the surface has holes wider than the wrap, up to %.3g, "
+            "at (%.6g, %.6g, %.6g): a part that should be solid may have fluid "
+            "inside it (--close-holes yes, or a larger wrap)", r->widest,
+            r->widest_at[0], r->widest_at[1], r->widest_at[2]);
+  if (r->n_cavity || r->n_crumb)
+    vg_note(&p->notes, "shells of the wrap that were removed: inside it %zu, "
+            "of negligible volume %zu", r->n_cavity, r->n_crumb);
+  if (r->n_kept)
+    vg_note(&p->notes, "triangles of outer boundaries that were not wrapped: "
+            "%zu", r->n_kept);
+}
+
+/* What takes minutes says so before it begins. */
+static vg_status announce(struct vg_problem *p, const struct vg_wrap_options *o,
+                          struct vg_display *show, struct vg_error *err)
+{
+  struct vg_wrap_forecast f;
+  char stage[80], count[32];
+  vg_status st = vg_wrap_foresee(&p->surface, o, &f, err);
+
+  if (st < 0 || f.seconds < LONG) return st;
+  vg_text_count((unsigned long long)f.triangles, count);
+  snprintf(stage, sizeof stage, "wrap: %s triangles, %d min", count,
+           (int)(f.seconds / 60 + 0.5));
+  vg_display_update(show, stage, 0, 0);
+  vg_note(&p->notes, "forecast of the wrap: %s triangles, %.0f minutes; twice "
+          "the size takes a quarter of them", count, f.seconds / 60);
+  return VG_OK;
+}
+
+static void progress(void *user, size_t done, size_t expected)
+{
+  vg_display_update(user, "wrap", done, expected);
+}
+
+vg_status vg_problem_wrap(struct vg_problem *p, const uint8_t *keep,
+                          struct vg_display *show, struct vg_error *err)
+{
+  size_t n = p->surface.n_patch;
+  uint8_t *empty = vg_alloc(n, 1), *asked = vg_calloc(n, 1);
+  const struct vg_wrap_options o = {
+    .size = p->settings.wrap, .keep = keep, .empty = empty,
+    .stop = { vg_display_stop, show }, .progress = progress, .user = show };
+  struct vg_wrap_report r = { 0 };
+  vg_status st;
+
+  if (!empty || !asked) VG_TRY(vg_fail_memory(err, "the patches"));
+  VG_TRY(find_asked(p, asked, err));
+  VG_TRY(announce(p, &o, show, err));
+  vg_display_update(show, "wrap", 0, 0);
+  VG_TRY(vg_wrap(&p->surface, &o, &r, err));
+  VG_TRY(check_empty(p, empty, asked, err));
+  note_wrap(p, &r);
+done:
+  free(empty);
+  free(asked);
+  return st;
+}
