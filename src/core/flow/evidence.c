@@ -9,11 +9,6 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "core/geometry/vector.h"
-#include "core/surface/envelope.h"
-
-#define BOX_SHARE 0.98    /* F2: of a box's area on its bounding box */
-#define BOX_NEAR 1e-4     /* of its length */
 
 void vg_flow_evidence_release(struct vg_flow_evidence *e)
 {
@@ -107,71 +102,6 @@ static void list_shells(struct vg_flow_evidence *e, int by_box)
   }
 }
 
-/* --- shape --------------------------------------------------------------- */
-
-/* One shell of m as a mesh of its own; points are borrowed. */
-static vg_status take_shell(const struct vg_flow_evidence *e, uint32_t s,
-                            struct vg_mesh *out, struct vg_error *err)
-{
-  const struct vg_mesh *m = e->m;
-
-  *out = (struct vg_mesh)VG_MESH_INIT;
-  out->tri = vg_alloc(m->n_tri, sizeof *out->tri);
-  if (!out->tri) return vg_fail_memory(err, "a shell of the surface");
-  for (size_t t = 0; t < m->n_tri; t++)
-    if (e->r->tri_shell[t] == s)
-      memcpy(out->tri[out->n_tri++], m->tri[t], sizeof *out->tri);
-  out->n_point = m->n_point;
-  out->point = m->point;
-  return VG_OK;
-}
-
-static int is_box(const struct vg_mesh *m, const struct vg_shell *s)
-{
-  double all = 0, on = 0, length = 0;
-
-  for (int k = 0; k < 3; k++) length = fmax(length, s->hi[k] - s->lo[k]);
-  for (size_t t = 0; t < m->n_tri; t++) {
-    double u[3], v[3], n[3];
-    int is_on = 0;
-
-    vg_sub(m->point[m->tri[t][1]], m->point[m->tri[t][0]], u);
-    vg_sub(m->point[m->tri[t][2]], m->point[m->tri[t][0]], v);
-    vg_cross(u, v, n);
-    for (int k = 0; k < 3; k++) {
-      int lo = 1, hi = 1;
-
-      for (int i = 0; i < 3; i++) {
-        const double x = m->point[m->tri[t][i]][k];
-
-        lo &= x - s->lo[k] <= BOX_NEAR * length;
-        hi &= s->hi[k] - x <= BOX_NEAR * length;
-      }
-      is_on |= lo | hi;
-    }
-    all += vg_norm(n);
-    if (is_on) on += vg_norm(n);
-  }
-  return on >= BOX_SHARE * all;
-}
-
-static vg_status measure_shape(const struct vg_flow_evidence *e,
-                               struct vg_flow_shell *s, struct vg_error *err)
-{
-  struct vg_mesh one;
-  struct vg_envelope hull;
-  vg_status st;
-
-  VG_TRY(take_shell(e, s->shell, &one, err));
-  VG_TRY(vg_envelope_measure(&one, NULL, &hull, err));
-  s->covered = hull.covered;
-  s->has_pocket = !s->n_inside && hull.is_domain;
-  s->is_box = is_box(&one, &e->r->shell[s->shell]);
-done:
-  free(one.tri);
-  return st;
-}
-
 /* --- patches ------------------------------------------------------------- */
 
 static void list_patch(char *list, size_t size, const struct vg_patch *p)
@@ -236,7 +166,7 @@ vg_status vg_flow_collect(const struct vg_mesh *m,
   add_patches(e);
   for (size_t i = 0; i < e->n_shell; i++)
     if (e->shell[i].is_closed && (e->shell[i].n_inside || e->n_shell == 1))
-      VG_TRY(measure_shape(e, &e->shell[i], err));
+      VG_TRY(vg_flow_measure_shape(e, &e->shell[i], err));
 done:
   return st;
 }

@@ -38,7 +38,8 @@ struct vg_flow_shell {
   double covered;               /* share of its hull's silhouette that it
                                    covers (core/surface/envelope.h); where
                                    n_inside > 0 or the shell stands alone */
-  int has_pocket;               /* alone, and shaped as a flow domain */
+  int has_pocket;               /* alone, and a box or part of a sphere with a
+                                   body standing in it */
   int is_box;                   /* nearly all of it lies on its bounding box */
   int is_named_enclosure;       /* one of its patches is named as one */
   size_t n_role[VG_ROLE_N];     /* patches by role */
@@ -80,6 +81,11 @@ void vg_flow_evidence_release(struct vg_flow_evidence *e);
 vg_status vg_flow_patches(const struct vg_mesh *m,
                           const struct vg_surface_report *r,
                           struct vg_flow_patch **out, struct vg_error *err);
+
+/** core/flow/shape.c: the members that follow from the shape of the shell.
+ * O(n log n). */
+vg_status vg_flow_measure_shape(const struct vg_flow_evidence *e,
+                                struct vg_flow_shell *s, struct vg_error *err);
 
 /** core/flow/roles.c: the name is that of an enclosure, such as a tunnel. */
 int vg_flow_is_enclosure(const struct vg_patch *p);

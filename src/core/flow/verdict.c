@@ -100,9 +100,9 @@ enum vg_flow_verdict vg_flow_judge(const struct vg_flow_shell *s,
   if (s->n_opening) return by_openings(s, why);
   if (side && s->points_in) return by_orientation(s, side, why);
   if (s->has_pocket) {
-    snprintf(why, VG_FLOW_TEXT, "it has a convex outer part that covers %.0f %% "
-             "of every view along x, y and z, and the rest stands inside that "
-             "part", 100 * (s->covered < 1 ? s->covered : 1));
+    snprintf(why, VG_FLOW_TEXT, "its outer part is a box, or part of a sphere, "
+             "that covers %.0f %% of every view along x, y and z, and the rest "
+             "stands inside that part", 100 * (s->covered < 1 ? s->covered : 1));
     return VG_FLOW_OUTER;
   }
   if (s->n_inside) return by_contents(s, why);

@@ -52,7 +52,7 @@ END
 vanguard mesh -q -p room
 exits 0
 says out "Flow inside a given outer boundary"
-says out "Evidence: it has a convex outer part that covers"
+says out "Evidence: its outer part is a box, or part of a sphere"
 says out "the whole surface was turned"
 lacks out "added: farfield"
 says out "3 patches have no boundary condition"
