@@ -3,7 +3,7 @@
 # else has to load its seventy libraries.
 find_path(VG_OCCT_INCLUDE STEPCAFControl_Reader.hxx PATH_SUFFIXES opencascade)
 set(occt)
-foreach(part XDESTEP XDEIGES STEP IGES XSBase XCAF LCAF CDF Mesh ShHealing TopAlgo
+foreach(part XDESTEP XDEIGES STEP IGES XSBase XCAF LCAF CDF Mesh BO ShHealing TopAlgo
     GeomAlgo GeomBase BRep G3d G2d Math ernel)
   find_library(VG_OCCT_${part} TK${part})
   mark_as_advanced(VG_OCCT_${part})

@@ -262,7 +262,7 @@ static void crossing_bodies_are_for_the_check(void **state)
   struct vg_error err = VG_ERROR_INIT;
 
   (void)state;
-  read_file(FILE_OF("crossing.brep"), &cad, &m);
+  read_file(FILE_OF("crossing_faces.brep"), &cad, &m);
   assert_int_equal(vg_surface_check(&m, &o, &r, &err), VG_OK);
   assert_true(r.count[VG_DEFECT_INTERSECTION] > 0);
   vg_surface_report_release(&r);

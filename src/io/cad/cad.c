@@ -1,6 +1,7 @@
 #define _GNU_SOURCE
 #include "io/cad/cad.h"
 
+#include <ctype.h>
 #include <dlfcn.h>
 #include <poll.h>
 #include <stdio.h>
@@ -275,6 +276,8 @@ static vg_status take_surface(struct call *k, struct vg_cad_surface *s,
   m->n_point = n.n_point;
   VG_TRY(take_array(k, n.n_tri, sizeof *m->tri, &m->tri, err));
   m->n_tri = n.n_tri;
+  s->is_solid = n.is_solid != 0;
+  s->volume = n.volume;
   VG_TRY(take_array(k, n.n_tri, sizeof *s->tri_face, &s->tri_face, err));
   VG_TRY(take_array(k, n.n_tri, sizeof *m->tri_patch, &m->tri_patch, err));
   VG_TRY(take_array(k, n.n_segment, sizeof *s->segment, &s->segment, err));
@@ -314,17 +317,34 @@ static const char *last_line(const struct vg_input *in, const char **end)
   return data + at;
 }
 
-/* The shape of a BREP file: a line such as "+1 0", behind the '*' of its last
- * part. */
+static const char *skip_digits(const char *at, const char *end)
+{
+  while (at < end && *at >= '0' && *at <= '9') at++;
+  return at;
+}
+
+/* Does a BREP file have the number of its shape, such as "+1 0"? That number
+ * follows the last of its "TShapes N" parts, each of which ends in '*'. Text
+ * behind it belongs to other programs (attributes of .egads files). */
 static int ends_brep(const struct vg_input *in)
 {
-  const char *data = (const char *)in->data, *end, *at = last_line(in, &end);
-  const char *before = at;
+  static const char word[] = "TShapes ";
+  const char *data = (const char *)in->data, *end = data + in->size;
+  const char *at = memmem(data, in->size, word, sizeof word - 1), *from;
+  size_t n = 0;
 
-  if (!strchr("+-io", *at) || memchr(at, '*', (size_t)(end - at))) return 0;
-  while (before > data && before[-1] <= ' ') before--;
-  return before > data && before[-1] == '*' &&
-         memchr(at, ' ', (size_t)(end - at));
+  if (!at) return 0;
+  for (at += sizeof word - 1; at < end && *at >= '0' && *at <= '9'; at++)
+    n = 10 * n + (size_t)(*at - '0');
+  while (n && (at = memchr(at, '*', (size_t)(end - at)))) {
+    at++;
+    n--;
+  }
+  while (at && at < end && isspace((unsigned char)*at)) at++;
+  if (!at || at == end || !memchr("+-io", *at, 4)) return 0;
+  from = skip_digits(at + 1, end);
+  if (from == at + 1 || from == end || *from != ' ') return 0;
+  return skip_digits(from + 1, end) > from + 1;
 }
 
 static int is_whole(const struct vg_input *in, enum vg_cad_kind kind)
@@ -344,12 +364,24 @@ static const struct { const char *word, *last; } frames[] = {
   [VG_CAD_BREP] = { "CASCADE Topology V", "the number of its shape" },
 };
 
+static int is_pointer(const struct vg_input *in)
+{
+  static const char word[] = "version https://git-lfs";
+
+  return in->size >= sizeof word - 1 && !memcmp(in->data, word,
+                                                sizeof word - 1);
+}
+
 static vg_status check_frame(const struct vg_input *in, enum vg_cad_kind kind,
                              struct vg_error *err)
 {
   const char *word = frames[kind].word;
   size_t head = in->size < 4096 ? in->size : 4096;
 
+  if (is_pointer(in))
+    return vg_fail(err, VG_ERR_FORMAT, "%s: a pointer to a file in Git LFS "
+                   "(Large File Storage), not the file: fetch it with 'git lfs "
+                   "pull' in its repository", in->path);
   if (*word && !memmem(in->data, head, word, strlen(word)))
     return vg_fail(err, VG_ERR_FORMAT, "%s: no %s file: \"%s\" should stand "
                    "near its beginning", in->path,
@@ -363,25 +395,49 @@ static vg_status check_frame(const struct vg_input *in, enum vg_cad_kind kind,
                  "it must; export it again", in->path, frames[kind].last);
 }
 
-/* Where it does not listen it may have said why. */
+/* --- surfaces ------------------------------------------------------------ */
+
+static struct vg_cad_ask question(uint32_t what, uint32_t kind, uint64_t n,
+                                  const struct vg_cad_options *o)
+{
+  return (struct vg_cad_ask){ what, kind, o->unit, o->patches, n, o->tolerance,
+                              o->chord, o->angle, o->least };
+}
+
+/* A child that does not listen may have told the reason before it ended. */
 static void send_file(struct call *k, const struct vg_input *in,
                       enum vg_cad_kind kind)
 {
-  const struct vg_cad_options *o = k->o;
-  const struct vg_cad_ask ask = { VG_CAD_ASK_READ, (uint32_t)kind, o->unit,
-    o->patches, in->size, o->tolerance, o->chord, o->angle };
+  const struct vg_cad_ask ask = question(VG_CAD_ASK_READ, (uint32_t)kind,
+                                         in->size, k->o);
 
   if (vg_child_put(k->cad->child.fd, &ask, sizeof ask))
     vg_child_put(k->cad->child.fd, in->data, in->size);
+}
+
+/* *out is untouched on failure. */
+static vg_status await_surface(struct call *k, struct vg_cad_surface *out,
+                               struct vg_error *err)
+{
+  struct vg_cad_surface s = VG_CAD_SURFACE_INIT;
+  struct vg_cad_tell t;
+  vg_status st;
+
+  VG_TRY(next(k, &t, err));
+  VG_TRY(t.what == VG_CAD_TELL_SURFACE ? VG_OK : gone(k, err));
+  VG_TRY(take_surface(k, &s, err));
+  *out = s;
+  return VG_OK;
+done:
+  vg_cad_surface_release(&s);
+  return st;
 }
 
 vg_status vg_cad_parse(struct vg_cad *c, struct vg_input *in,
                        enum vg_cad_kind kind, const struct vg_cad_options *o,
                        struct vg_cad_surface *out, struct vg_error *err)
 {
-  struct vg_cad_surface s = VG_CAD_SURFACE_INIT;
   struct call k = { c, in->path, o, vg_clock() };
-  struct vg_cad_tell t;
   vg_status st;
 
   if (kind <= VG_CAD_NONE || kind > VG_CAD_BREP)
@@ -392,17 +448,23 @@ vg_status vg_cad_parse(struct vg_cad *c, struct vg_input *in,
   c->has_model = 0;
   c->o = *o;
   send_file(&k, in, kind);
-  VG_TRY(next(&k, &t, err));
-  if (t.what != VG_CAD_TELL_SURFACE) st = gone(&k, err);
-  if (st >= 0) VG_TRY(take_surface(&k, &s, err));
-  c->has_model = st >= 0;
-  if (st >= 0) {
-    *out = s;
-    return VG_OK;
-  }
+  VG_TRY(await_surface(&k, out, err));
+  c->has_model = 1;
 done:
-  vg_cad_surface_release(&s);
   return st;
+}
+
+vg_status vg_cad_again(struct vg_cad *c, const struct vg_cad_options *o,
+                       struct vg_cad_surface *out, struct vg_error *err)
+{
+  const struct vg_cad_ask ask = question(VG_CAD_ASK_AGAIN, 0, 0, o);
+  struct call k = { c, "the CAD model", o, vg_clock() };
+
+  if (!c->has_model)
+    return vg_fail(err, VG_ERR_INPUT, "no CAD model was read");
+  c->o = *o;
+  if (!vg_child_put(c->child.fd, &ask, sizeof ask)) return gone(&k, err);
+  return await_surface(&k, out, err);
 }
 
 vg_status vg_cad_read(const char *path, enum vg_cad_kind kind,

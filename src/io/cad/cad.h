@@ -39,6 +39,10 @@ struct vg_cad_options {
                                 face the largest of its edges */
   double angle;              /* degrees between neighbouring edges on a curve,
                                 and triangles on a face */
+  double least;              /* shortest edge worth having, in the unit of what
+                                is read. Shorter edges collapse, except
+                                between two corners of the model. 0: 1e-6 of
+                                the diagonal of the box around all */
   double seconds;            /* give up then; 0: never */
   void (*note)(void *user, const char *text); /* what a report should say, line
                                 by line: unit, what was healed or dropped, with
@@ -61,6 +65,13 @@ struct vg_cad_surface {
   size_t n_segment;
   uint32_t (*segment)[2];    /* [n_segment] points on curves, in order */
   uint32_t *segment_curve;   /* [n_segment] number of the curve */
+  int is_solid;              /* 1: every face bounds a closed solid of the file,
+                                whose normals point out of its material */
+  double volume;             /* that the faces enclose, integrated over their
+                                exact geometry. Solids: volume of their
+                                material. Other faces: sum of the absolute
+                                volumes of connected shells. NAN where an edge
+                                does not have two faces */
 };
 #define VG_CAD_SURFACE_INIT { .mesh = VG_MESH_INIT }
 void vg_cad_surface_release(struct vg_cad_surface *s);
@@ -90,6 +101,16 @@ void vg_cad_close(struct vg_cad *c);
  * Threads: one at a time for each child. */
 vg_status vg_cad_parse(struct vg_cad *c, struct vg_input *in,
                        enum vg_cad_kind kind, const struct vg_cad_options *o,
+                       struct vg_cad_surface *out, struct vg_error *err);
+
+/** Triangulate the model that the last vg_cad_parse read once more, with the
+ * patches, chord, angle and least of `o`. The file is not read again and unit
+ * and tolerance stay as they were; the result is that of vg_cad_parse with
+ * these options. VG_CAD_ON_TRIANGLES then refers to the new triangles. On
+ * failure it refers to the former ones, as long as the child lives.
+ * Status: as vg_cad_parse; VG_ERR_INPUT without a model. *out is untouched on
+ * failure. */
+vg_status vg_cad_again(struct vg_cad *c, const struct vg_cad_options *o,
                        struct vg_cad_surface *out, struct vg_error *err);
 
 /** Points put on faces, or on curves, of the model.

@@ -10,14 +10,15 @@
 extern "C" {
 #endif
 
-/* A question, with n bytes of a file, or n numbers (uint32_t) and n points. */
+/* A question. READ is followed by n bytes of a file, AGAIN by nothing, the
+ * others by n numbers (uint32_t) and n points. */
 enum { VG_CAD_ASK_READ, VG_CAD_ASK_FACES, VG_CAD_ASK_CURVES,
-       VG_CAD_ASK_TRIANGLES };
+       VG_CAD_ASK_TRIANGLES, VG_CAD_ASK_AGAIN };
 struct vg_cad_ask {
   uint32_t what, kind;
   int32_t unit, patches;
   uint64_t n;
-  double tolerance, chord, angle;
+  double tolerance, chord, angle, least;
 };
 
 /* Answers: any number of notes and stages (n characters), then a failure (n
@@ -34,6 +35,8 @@ struct vg_cad_tell {
  * patches of triangles, segments [][2], curves of segments, patches. */
 struct vg_cad_counts {
   uint64_t n_point, n_tri, n_segment, n_patch;
+  int64_t is_solid;
+  double volume;
 };
 
 struct vg_cad_patch {

@@ -142,7 +142,7 @@ static const struct format {
   { "su2", NULL, vg_su2_write },
   { "vtu", NULL, write_vtu },
   { "step", NULL, NULL }, { "stp", NULL, NULL }, { "iges", NULL, NULL },
-  { "igs", NULL, NULL }, { "brep", NULL, NULL },
+  { "igs", NULL, NULL }, { "brep", NULL, NULL }, { "egads", NULL, NULL },
 };
 #define N_FORMAT (sizeof formats / sizeof formats[0])
 
@@ -150,6 +150,7 @@ static const struct format {
 static const struct { const char *suffix; enum vg_cad_kind kind; } cad[] = {
   { "step", VG_CAD_STEP }, { "stp", VG_CAD_STEP }, { "iges", VG_CAD_IGES },
   { "igs", VG_CAD_IGES }, { "brep", VG_CAD_BREP },
+  { "egads", VG_CAD_BREP },
 };
 
 static enum vg_cad_kind cad_kind(const struct format *f)
@@ -165,12 +166,13 @@ static const char *const input_suffix[] = {
   "b4.ugrid", "lb4.ugrid", "r8.ugrid", "lr8.ugrid", "r4.ugrid", "lr4.ugrid",
   "b8l.ugrid", "lb8l.ugrid", "b8.ugrid64", "lb8.ugrid64", "ugrid",
   "surf", "msh", "cgns", "step", "stp", "iges", "igs", "brep",
+  "egads",
   "stl.gz", "tri.gz", "triq.gz", "obj.gz", "mesh.gz", "meshb.gz",
   "b8.ugrid.gz", "lb8.ugrid.gz", "b4.ugrid.gz", "lb4.ugrid.gz",
   "r8.ugrid.gz", "lr8.ugrid.gz", "r4.ugrid.gz", "lr4.ugrid.gz",
   "b8l.ugrid.gz", "lb8l.ugrid.gz", "b8.ugrid64.gz", "lb8.ugrid64.gz",
   "ugrid.gz", "surf.gz", "msh.gz", "cgns.gz", "step.gz", "stp.gz", "iges.gz",
-  "igs.gz", "brep.gz"
+  "igs.gz", "brep.gz", "egads.gz"
 };
 
 const char *vg_format_input_suffix(size_t i)

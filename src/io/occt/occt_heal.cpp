@@ -3,14 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include <BRepBndLib.hxx>
-#include <BRepBuilderAPI_Sewing.hxx>
 #include <BRepGProp.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
 #include <Bnd_Box.hxx>
 #include <GProp_GProps.hxx>
+#include <Geom_Surface.hxx>
+#include <Precision.hxx>
+#include <ShapeAnalysis_Surface.hxx>
 #include <ShapeBuild_ReShape.hxx>
 #include <ShapeFix_Shape.hxx>
 #include <Standard_Failure.hxx>
@@ -27,6 +30,9 @@ const double width_least = 1e-9;   /* S13 */
  * centres agree by so much; points on a grid decide. */
 const double area_near = 1e-2, centre_near = 1e-2, copy_near = 1e-4;
 const int copy_grid = 7;
+/* A solid fills a hollow of another one where its box is within that one's, and
+ * so much of its area is common to both. */
+const double hollow_share = 0.5, box_near = 1e-6;   /* S54 */
 
 struct Measure {
   size_t at;                 /* index of the face */
@@ -40,12 +46,6 @@ Measure measure(const Model &model, size_t at)
 
   BRepGProp::SurfaceProperties(model.faces[at].shape, g);
   return {at, std::fabs(g.Mass()), g.CentreOfMass()};
-}
-
-std::string named(const Face &f)
-{
-  return f.name.empty() ? format("face %u", f.number)
-                        : format("face %u (%.60s)", f.number, f.name.c_str());
 }
 
 /* --- faces to mend ------------------------------------------------------- */
@@ -85,19 +85,164 @@ bool are_copies(const Model &model, const Measure &a, const Measure &b)
          lies_on(f, g, copy_near * size) && lies_on(g, f, copy_near * size);
 }
 
-/* The later one of two in the file goes. */
-void drop_copy(Model &model, size_t i, size_t j, const Talk &talk)
+/* The normal of a face in the middle of its range of parameters, turned as the
+ * face is, at the point of it that is nearest to p. */
+gp_Vec normal_at(const TopoDS_Face &face, const gp_Pnt &p)
+{
+  Handle(Geom_Surface) surface = BRep_Tool::Surface(face);
+  gp_Pnt2d uv = ShapeAnalysis_Surface(surface).ValueOfUV(
+      p, Precision::Confusion());
+  gp_Pnt at;
+  gp_Vec du, dv;
+
+  surface->D1(uv.X(), uv.Y(), at, du, dv);
+  return face.Orientation() == TopAbs_REVERSED ? dv.Crossed(du)
+                                               : du.Crossed(dv);
+}
+
+/* Is the wall that two copies make between the materials of two solids? */
+bool is_between(const Face &a, const Face &b)
+{
+  gp_Pnt p = point_of(a.shape);
+
+  return a.solid >= 0 && b.solid >= 0 && a.solid != b.solid &&
+         normal_at(a.shape, p) * normal_at(b.shape, p) < 0;
+}
+
+/* The later one of two in the file goes. Equal faces of solids that overlap are
+ * left for their union, the first time that they are seen. */
+void drop_copy(Model &model, size_t i, size_t j, bool again, const Talk &talk)
 {
   Face &later = model.faces[std::max(i, j)];
+  Face &first = model.faces[std::min(i, j)];
 
+  if (!again && first.solid >= 0 && later.solid >= 0 &&
+      first.solid != later.solid) return;
   talk.note(format("%s at %s repeats face %u and was dropped",
                    named(later).c_str(), place(point_of(later.shape)).c_str(),
-                   model.faces[std::min(i, j)].number));
+                   first.number));
   later.shape.Nullify();
 }
 
-void drop_copies(Model &model, std::vector<Measure> &list, const Talk &talk)
+/* Walls between solids: faces, or two copies of one. */
+class Walls {
+public:
+  Walls(Model &model, const std::vector<Measure> &list)
+      : model_(model), area_(model.faces.size(), 0),
+        box_(static_cast<size_t>(model.n_solid)),
+        total_(box_.size(), 0)
+  {
+    for (const Measure &m : list) area_[m.at] = m.area;
+    for (size_t i = 0; i < model.faces.size(); i++) {
+      const Face &f = model.faces[i];
+
+      if (f.shape.IsNull()) continue;
+      if (f.solid >= 0) add(static_cast<size_t>(f.solid), i);
+      if (f.behind >= 0) add(static_cast<size_t>(f.behind), i);
+    }
+  }
+
+  void add_pair(size_t i, size_t j)
+  {
+    const Face &f = model_.faces[i], &g = model_.faces[j];
+    int a = f.solid, b = i == j ? f.behind : g.solid;
+
+    pairs_.push_back({i, j, std::min(a, b), std::max(a, b)});
+    shared_[{std::min(a, b), std::max(a, b)}] += area_[i];
+  }
+
+  /* A wall goes, and its solids become one, unless one of them fills a hollow
+   * of the other: that may be the fluid around it. */
+  void drop(bool again, const Talk &talk)
+  {
+    for (const Pair &p : pairs_) {
+      Face &f = model_.faces[p.i], &g = model_.faces[p.j];
+
+      if (f.shape.IsNull() || g.shape.IsNull()) continue;
+      if (fills_hollow(p)) {
+        if (p.i != p.j) drop_copy(model_, p.i, p.j, again, talk);
+        continue;
+      }
+      talk.note(format("%s%s at %s %s between two solids that touch and %s "
+                       "dropped", named(f).c_str(),
+                       p.i == p.j ? "" : format(" and face %u",
+                                                g.number).c_str(),
+                       place(point_of(f.shape)).c_str(),
+                       p.i == p.j ? "is a wall" : "are a wall",
+                       p.i == p.j ? "was" : "were"));
+      f.shape.Nullify();
+      g.shape.Nullify();
+      joined_.push_back({p.a, p.b});
+    }
+    for (const std::pair<int, int> &p : joined_) join(p.first, p.second);
+  }
+
+private:
+  struct Pair {
+    size_t i, j;
+    int a, b;                  /* solids, a < b */
+  };
+
+  void add(size_t solid, size_t face)
+  {
+    BRepBndLib::Add(model_.faces[face].shape, box_[solid], Standard_False);
+    total_[solid] += area_[face];
+  }
+
+  bool is_within(size_t inner, size_t outer) const
+  {
+    Bnd_Box both = box_[outer];
+
+    both.Add(box_[inner]);
+    return both.SquareExtent() <= box_[outer].SquareExtent() * (1 + box_near);
+  }
+
+  bool fills_hollow(const Pair &p) const
+  {
+    const size_t a = static_cast<size_t>(p.a), b = static_cast<size_t>(p.b);
+    const double area = shared_.at({p.a, p.b});
+
+    return (is_within(a, b) && area >= hollow_share * total_[a]) ||
+           (is_within(b, a) && area >= hollow_share * total_[b]);
+  }
+
+  void join(int a, int b)
+  {
+    auto now = [this](int k) {
+      for (const std::pair<int, int> &r : renamed_)
+        if (r.first == k) k = r.second;
+      return k;
+    };
+    const int x = now(a), y = now(b);
+
+    if (x == y) return;
+    renamed_.push_back({std::max(x, y), std::min(x, y)});
+    for (Face &f : model_.faces)
+      if (f.solid == std::max(x, y)) f.solid = std::min(x, y);
+  }
+
+  Model &model_;
+  std::vector<double> area_;           /* of faces */
+  std::vector<Bnd_Box> box_;           /* of solids */
+  std::vector<double> total_;          /* area of solids */
+  std::vector<Pair> pairs_;
+  std::map<std::pair<int, int>, double> shared_;
+  std::vector<std::pair<int, int>> joined_, renamed_;
+};
+
+void drop_copies(Model &model, std::vector<Measure> &list, bool again,
+                 const Talk &talk)
 {
+  Walls walls(model, list);
+  std::vector<bool> is_wall(model.faces.size(), false);
+
+  for (size_t i = 0; i < model.faces.size(); i++) {
+    const Face &f = model.faces[i];
+
+    if (f.shape.IsNull() || f.behind < 0 || f.solid < 0) continue;
+    walls.add_pair(i, i);
+    is_wall[i] = true;
+  }
   std::sort(list.begin(), list.end(), [](const Measure &a, const Measure &b) {
     return a.centre.X() != b.centre.X() ? a.centre.X() < b.centre.X()
                                         : a.at < b.at;
@@ -107,11 +252,15 @@ void drop_copies(Model &model, std::vector<Measure> &list, const Talk &talk)
       const Measure &a = list[i], &b = list[j];
 
       if (b.centre.X() - a.centre.X() > centre_near * std::sqrt(a.area)) break;
-      if (model.faces[a.at].shape.IsNull()) break;
-      if (model.faces[b.at].shape.IsNull() || !are_copies(model, a, b))
-        continue;
-      drop_copy(model, a.at, b.at, talk);
+      if (model.faces[a.at].shape.IsNull() || is_wall[a.at]) break;
+      if (model.faces[b.at].shape.IsNull() || is_wall[b.at] ||
+          !are_copies(model, a, b)) continue;
+      if (is_between(model.faces[a.at], model.faces[b.at])) {
+        walls.add_pair(std::min(a.at, b.at), std::max(a.at, b.at));
+        is_wall[a.at] = is_wall[b.at] = true;
+      } else drop_copy(model, a.at, b.at, again, talk);
     }
+  walls.drop(again, talk);
 }
 
 /* What has no area goes at once; the others are returned. */
@@ -122,6 +271,7 @@ std::vector<Measure> drop_slits(Model &model, const Talk &talk)
   for (size_t i = 0; i < model.faces.size(); i++) {
     Face &f = model.faces[i];
 
+    if (f.shape.IsNull()) continue;
     try {
       Measure m = measure(model, i);
 
@@ -141,98 +291,13 @@ std::vector<Measure> drop_slits(Model &model, const Talk &talk)
   return kept;
 }
 
-/* --- open edges ---------------------------------------------------------- */
-
-struct Edges {
-  size_t n_open = 0, n_many = 0;
-  TopoDS_Shape open, many;   /* the first of each */
-  size_t open_face = 0, many_face = 0;
-};
-
-/* Edges with one face, and with more than two. A seam counts twice in its
- * face. */
-Edges count_edges(const Model &model)
-{
-  TopTools_IndexedMapOfShape map;
-  std::vector<uint32_t> n, face;
-  Edges out;
-
-  for (const Face &f : model.faces) {
-    if (f.shape.IsNull()) continue;
-    for (TopExp_Explorer e(f.shape, TopAbs_EDGE); e.More(); e.Next()) {
-      if (BRep_Tool::Degenerated(TopoDS::Edge(e.Current()))) continue;
-      size_t at = static_cast<size_t>(map.Add(e.Current()));
-      if (at > n.size()) {
-        n.push_back(0);
-        face.push_back(f.number);
-      }
-      n[at - 1]++;
-    }
-  }
-  for (size_t k = n.size(); k-- > 0;) {
-    const TopoDS_Shape &e = map.FindKey(static_cast<int>(k + 1));
-
-    if (n[k] == 1) {
-      out.n_open++;
-      out.open = e;
-      out.open_face = face[k];
-    } else if (n[k] > 2) {
-      out.n_many++;
-      out.many = e;
-      out.many_face = face[k];
-    }
-  }
-  return out;
-}
-
-std::string middle(const TopoDS_Shape &edge)
-{
-  double first, last;
-  Handle(Geom_Curve) c = BRep_Tool::Curve(TopoDS::Edge(edge), first, last);
-
-  return c.IsNull() ? "an unknown place"
-                    : place(c->Value((first + last) / 2));
-}
-
-void sew(Model &model, double tolerance, const Edges &before, const Talk &talk)
-{
-  BRepBuilderAPI_Sewing sewing(tolerance);
-  Model sewn = model;
-  size_t after;
-
-  for (const Face &f : model.faces)
-    if (!f.shape.IsNull()) sewing.Add(f.shape);
-  sewing.Perform();
-  for (Face &f : sewn.faces) {
-    if (f.shape.IsNull() || !sewing.IsModifiedSubShape(f.shape)) continue;
-    TopoDS_Shape to = sewing.ModifiedSubShape(f.shape);
-
-    if (to.IsNull() || to.ShapeType() != TopAbs_FACE) return;
-    f.shape = TopoDS::Face(to);
-  }
-  after = count_edges(sewn).n_open;
-  if (after >= before.n_open) return;
-  talk.note(format("%zu edges had one face only; by sewing within %.3g %zu of "
-                   "them found a partner", before.n_open, tolerance,
-                   before.n_open - after));
-  model = sewn;
-}
-
-void note_edges(const Edges &e, double tolerance, const Talk &talk)
-{
-  if (e.n_open)
-    talk.note(format("%zu edges have one face only, the first is of face %zu "
-                     "at %s: a face is missing there, the gap is wider than "
-                     "%.3g (cad_tolerance), or half of a body ends there",
-                     e.n_open, e.open_face, middle(e.open).c_str(),
-                     tolerance));
-  if (e.n_many)
-    talk.note(format("%zu edges have three faces or more, the first is of face "
-                     "%zu at %s: faces that repeat or divide others",
-                     e.n_many, e.many_face, middle(e.many).c_str()));
-}
-
 }  // namespace
+
+std::string named(const Face &f)
+{
+  return f.name.empty() ? format("face %u", f.number)
+                        : format("face %u (%.60s)", f.number, f.name.c_str());
+}
 
 TopoDS_Compound together(const Model &model)
 {
@@ -288,20 +353,20 @@ void complete(Model &model, const Talk &talk)
 
 void heal(const vg_cad_ask &ask, Model &model, const Talk &talk)
 {
-  double tolerance = ask.tolerance > 0 ? ask.tolerance
-                                       : 1e-6 * model.diagonal;
   std::vector<Measure> list = drop_slits(model, talk);
-  Edges edges;
+  double tolerance;
 
   talk.stage("looking for faces that repeat others");
-  drop_copies(model, list, talk);
-  edges = count_edges(model);
-  if (edges.n_open) {
-    talk.stage("sewing its faces");
-    sew(model, tolerance, edges, talk);
-    edges = count_edges(model);
+  drop_copies(model, list, model.n_solid < 2, talk);
+  tolerance = sew(ask, model, talk);
+  if (model.n_solid > 1) {
+    unite(ask, model, talk);
+    list = drop_slits(model, talk);
+    drop_copies(model, list, true, talk);
+    tolerance = sew(ask, model, talk);
   }
-  note_edges(edges, tolerance, talk);
+  orient(model, tolerance, talk);
+  measure_volume(model);
 }
 
 }  // namespace vg_occt

@@ -51,17 +51,24 @@ private:
   const vg_cad_wire *wire_;
 };
 
-/** A face of the file. Words are "" where the file has none. */
+/** A face of the file, or a piece of one. Words are "" where the file has
+ * none. */
 struct Face {
   uint32_t number;           /* in the file, from 1 */
   TopoDS_Face shape;         /* oriented as in its solid; null: dropped */
+  int solid = -1;            /* number of the solid that it bounds; -1: none */
+  int behind = -1;           /* number of a second solid that has this face */
   std::string name, colour, layer, part;
 };
 
 struct Model {
-  std::vector<Face> faces;
+  std::vector<Face> faces;   /* by number; pieces of one face are neighbours */
+  int n_solid = 0;           /* of the file; those that were joined count as
+                                the first of them, the others have no faces */
   std::vector<TopoDS_Edge> curves;     /* [number - 1], when triangulated */
   double diagonal = 0;       /* of the box around all */
+  bool is_solid = false;     /* as in struct vg_cad_surface */
+  double volume = 0;
 };
 
 /** Faces with names, lengths in the unit asked for.
@@ -87,15 +94,43 @@ void mend(Model &model, const Talk &talk);
  * the model. */
 void complete(Model &model, const Talk &talk);
 
-/** Drop faces that repeat others or have no area; sew open edges. */
+/** Unite solids, drop faces that repeat others or have no area, sew open edges,
+ * orient faces alike. */
 void heal(const vg_cad_ask &ask, Model &model, const Talk &talk);
+
+/** Replace the faces of solids that touch or overlap by the outer faces of
+ * their union. Solids that contain others stay as they are. */
+void unite(const vg_cad_ask &ask, Model &model, const Talk &talk);
+
+/** Tolerances to try in turn: ask.tolerance, or shares of the diagonal. */
+std::vector<double> tolerances(const vg_cad_ask &ask, const Model &model);
+
+/** Join open edges to their partners, by the tolerance that leaves the fewest.
+ * Returns it. */
+double sew(const vg_cad_ask &ask, Model &model, const Talk &talk);
+
+/** Turn faces that are not of solids like their neighbours; note edges that do
+ * not have two faces. tolerance: that of sewing. */
+void orient(Model &model, double tolerance, const Talk &talk);
+
+/** Shells, faces that are connected by edges: for each face of the model the
+ * index of the first face of its shell. */
+std::vector<size_t> find_shells(const Model &model);
+
+/** Find out whether the model is solid, and its volume. */
+void measure_volume(Model &model);
+
+/** "face 3 (wing)", for messages. */
+std::string named(const Face &f);
 
 /** As io/cad/wire.h sends it. */
 struct Surface {
   std::vector<double> point;
-  std::vector<uint32_t> tri, face, patch, segment, curve;
+  std::vector<uint32_t> tri, face, patch, segment, curve;   /* face: number */
   std::vector<vg_cad_patch> patches;
   /* These stay here. */
+  std::vector<uint32_t> piece;   /* of triangles: index into Model.faces */
+  std::vector<bool> corner;      /* [points] is a vertex of the model */
   std::vector<gp_Pnt2d> uv;  /* of each corner of the triangles, on its face */
   std::vector<uint8_t> rim;  /* [triangles] bit k: the edge opposite corner k
                                 is on the rim of its face */
@@ -110,6 +145,17 @@ void triangulate(const vg_cad_ask &ask, Model &model, Surface &out,
 /** Triangles without area, from number `from` on, swapped away where that
  * moves nothing. O(n log n). */
 void swap_caps(Surface &s, size_t from);
+
+/** Collapse edges shorter than `least`. Corners stay where they are, points of
+ * curves move along their curve. */
+void collapse_short(Surface &s, double least);
+
+/** Replace triangles that do not follow their face: those whose corners all lie
+ * on the rim of a curved face, and folds. New points lie on the face. */
+void follow_faces(Surface &s, const Model &model);
+
+/** Drop points that neither triangles nor segments have. */
+void drop_unused(Surface &s);
 
 /** A triangle of a face in the plane of parameters. */
 struct Piece {

@@ -248,8 +248,14 @@ public:
   void add(const TopoDS_Shape &s, Face from)
   {
     if (words_) inherit(s, from);
+    if (s.ShapeType() == TopAbs_SOLID) from.solid = model_.n_solid++;
     if (s.ShapeType() == TopAbs_FACE) {
-      if (seen_.Contains(s)) return;
+      if (int known = seen_.FindIndex(s)) {
+        Face &same = model_.faces[static_cast<size_t>(known) - 1];
+
+        if (same.solid != from.solid) same.behind = from.solid;
+        return;
+      }
       seen_.Add(s);
       from.number = static_cast<uint32_t>(seen_.Extent());
       from.shape = TopoDS::Face(s);
@@ -420,6 +426,8 @@ void read_iges(const vg_cad_ask &ask, const std::string &path, Model &model,
   reader.SetNameMode(Standard_True);
   reader.SetColorMode(Standard_True);
   reader.SetLayerMode(Standard_True);
+  /* The reader scales by what an earlier file has left here. */
+  Interface_Static::SetCVal("xstep.cascade.unit", units[0].open_cascade);
   require(reader.ReadFile(path.c_str()), "IGES");
   file = reader.IGESModel();
   if (!file.IsNull()) {

@@ -92,11 +92,12 @@ private:
   int fd_;
 };
 
-void send(const Surface &s, const Talk &talk)
+void send(const Model &model, const Surface &s, const Talk &talk)
 {
   const vg_cad_tell t = {VG_CAD_TELL_SURFACE, 0, 1};
   const vg_cad_counts n = {s.point.size() / 3, s.tri.size() / 3,
-                           s.segment.size() / 2, s.patches.size()};
+                           s.segment.size() / 2, s.patches.size(),
+                           model.is_solid, model.volume};
 
   talk.put(&t, sizeof t);
   talk.put(&n, sizeof n);
@@ -109,21 +110,36 @@ void send(const Surface &s, const Talk &talk)
   talk.put(s.patches.data(), s.patches.size() * sizeof s.patches[0]);
 }
 
-void answer_read(const vg_cad_ask &ask, Model &model, Surface &surface,
-                 const Talk &talk)
+/* What the child holds between questions. */
+struct Held {
+  Model healed;              /* as it was before it was triangulated */
+  Model model;
+  Surface surface;
+};
+
+void answer_again(const vg_cad_ask &ask, Held &held, const Talk &talk)
+{
+  Model model = held.healed;
+  Surface surface;
+
+  talk.stage("triangulating its faces");
+  triangulate(ask, model, surface, talk);
+  send(model, surface, talk);
+  held.model = model;
+  held.surface = std::move(surface);
+}
+
+void answer_read(const vg_cad_ask &ask, Held &held, const Talk &talk)
 {
   MemoryFile file(talk, ask.n);
 
-  model = Model();
-  surface = Surface();
+  held = Held();
   talk.stage("reading the file");
-  read(ask, file.path(), model, talk);
+  read(ask, file.path(), held.healed, talk);
   talk.stage("looking for faults of its faces");
-  complete(model, talk);
-  heal(ask, model, talk);
-  talk.stage("triangulating its faces");
-  triangulate(ask, model, surface, talk);
-  send(surface, talk);
+  complete(held.healed, talk);
+  heal(ask, held.healed, talk);
+  answer_again(ask, held, talk);
 }
 
 struct Points {
@@ -139,18 +155,44 @@ struct Points {
   }
 };
 
+/* A face of the file: all of its pieces. */
+class Pieces {
+public:
+  Pieces(const Model &model, uint32_t number)
+  {
+    for (const Face &f : model.faces)
+      if (f.number == number && !f.shape.IsNull())
+        list_.emplace_back(new Projector(f.shape));
+  }
+  bool none() const { return list_.empty(); }
+  gp_Pnt nearest(const gp_Pnt &p)
+  {
+    gp_Pnt best = list_[0]->nearest(p);
+
+    for (size_t i = 1; i < list_.size(); i++) {
+      gp_Pnt to = list_[i]->nearest(p);
+
+      if (p.SquareDistance(to) < p.SquareDistance(best)) best = to;
+    }
+    return best;
+  }
+
+private:
+  std::vector<std::unique_ptr<Projector>> list_;
+};
+
 void put_on_faces(const Model &model, Points &p)
 {
-  std::map<uint32_t, std::unique_ptr<Projector>> open;
+  std::map<uint32_t, std::unique_ptr<Pieces>> open;
 
   for (size_t i = 0; i < p.number.size(); i++) {
     uint32_t k = p.number[i];
     gp_Pnt from(p.x[3 * i], p.x[3 * i + 1], p.x[3 * i + 2]);
 
-    if (!k || k > model.faces.size() || model.faces[k - 1].shape.IsNull())
+    if (!open[k]) open[k].reset(new Pieces(model, k));
+    if (open[k]->none())
       throw Failure{VG_ERR_INPUT, format("point %zu: there is no face %u",
                                          i + 1, k)};
-    if (!open[k]) open[k].reset(new Projector(model.faces[k - 1].shape));
     p.set(i, from, open[k]->nearest(from));
   }
 }
@@ -204,8 +246,8 @@ void put_on_triangles(const Model &model, const Surface &s, Points &p)
     if (t >= s.face.size())
       throw Failure{VG_ERR_INPUT, format("point %zu: there is no triangle %u",
                                          i + 1, t)};
-    std::unique_ptr<Projector> &on = open[s.face[t]];
-    if (!on) on.reset(new Projector(model.faces[s.face[t] - 1].shape));
+    std::unique_ptr<Projector> &on = open[s.piece[t]];
+    if (!on) on.reset(new Projector(model.faces[s.piece[t]].shape));
     const Triangle tri(s, t);
     p.set(i, from, on->nearest(from, tri.guess(from), tri.piece));
   }
@@ -224,8 +266,7 @@ void put_on_curves(const Model &model, Points &p)
   }
 }
 
-void answer_points(const vg_cad_ask &ask, const Model &model,
-                   const Surface &surface, const Talk &talk)
+void answer_points(const vg_cad_ask &ask, const Held &held, const Talk &talk)
 {
   const vg_cad_tell t = {VG_CAD_TELL_POINTS, 0, ask.n};
   Points p;
@@ -236,20 +277,20 @@ void answer_points(const vg_cad_ask &ask, const Model &model,
   if (!talk.get(p.number.data(), ask.n * sizeof p.number[0]) ||
       !talk.get(p.x.data(), 3 * ask.n * sizeof p.x[0])) _exit(0);
   talk.stage("putting points on its faces");
-  if (ask.what == VG_CAD_ASK_FACES) put_on_faces(model, p);
-  else if (ask.what == VG_CAD_ASK_CURVES) put_on_curves(model, p);
-  else put_on_triangles(model, surface, p);
+  if (ask.what == VG_CAD_ASK_FACES) put_on_faces(held.model, p);
+  else if (ask.what == VG_CAD_ASK_CURVES) put_on_curves(held.model, p);
+  else put_on_triangles(held.model, held.surface, p);
   talk.put(&t, sizeof t);
   talk.put(p.x.data(), 3 * ask.n * sizeof p.x[0]);
   talk.put(p.distance.data(), ask.n * sizeof p.distance[0]);
 }
 
-void answer(const vg_cad_ask &ask, Model &model, Surface &surface,
-            const Talk &talk)
+void answer(const vg_cad_ask &ask, Held &held, const Talk &talk)
 {
   try {
-    if (ask.what == VG_CAD_ASK_READ) answer_read(ask, model, surface, talk);
-    else answer_points(ask, model, surface, talk);
+    if (ask.what == VG_CAD_ASK_READ) answer_read(ask, held, talk);
+    else if (ask.what == VG_CAD_ASK_AGAIN) answer_again(ask, held, talk);
+    else answer_points(ask, held, talk);
   } catch (const Failure &f) {
     talk.fail(f);
   } catch (const std::bad_alloc &) {
@@ -306,12 +347,11 @@ extern "C" vg_occt_entry vg_occt_serve;
 void vg_occt_serve(int fd, const vg_cad_wire *wire)
 {
   Talk talk(fd, wire);
-  Model model;
-  Surface surface;
+  Held held;
   vg_cad_ask ask;
 
   limit_memory();
   std::thread(watch, fd).detach();
-  while (talk.get(&ask, sizeof ask)) answer(ask, model, surface, talk);
+  while (talk.get(&ask, sizeof ask)) answer(ask, held, talk);
   _exit(0);
 }

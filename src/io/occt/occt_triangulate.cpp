@@ -24,9 +24,12 @@ namespace vg_occt {
 namespace {
 
 const uint32_t none = UINT32_MAX;
+/* Shortest edge worth having, over the diagonal. */
+const double least_share = 1e-6;   /* S51 */
 
-/* Edges of one triangle only, of those from number `from` on. */
-void find_rims(Surface &s, size_t from)
+/* Mark in s.rim which edges of triangles are on the rims of their faces: those
+ * of one triangle only. Triangles of one face are neighbours in the list. */
+void find_rims(Surface &s)
 {
   struct Side { uint32_t a, b; size_t tri; int corner; };
   std::vector<Side> sides;
@@ -34,20 +37,25 @@ void find_rims(Surface &s, size_t from)
     return x.a == y.a && x.b == y.b;
   };
 
-  s.rim.resize(s.face.size());
-  for (size_t t = from; t < s.face.size(); t++)
-    for (int k = 0; k < 3; k++) {
-      uint32_t a = s.tri[3 * t + (k + 1) % 3], b = s.tri[3 * t + (k + 2) % 3];
+  s.rim.assign(s.face.size(), 0);
+  for (size_t from = 0, end; from < s.face.size(); from = end) {
+    sides.clear();
+    for (end = from; end < s.face.size() && s.piece[end] == s.piece[from];
+         end++)
+      for (int k = 0; k < 3; k++) {
+        uint32_t a = s.tri[3 * end + (k + 1) % 3];
+        uint32_t b = s.tri[3 * end + (k + 2) % 3];
 
-      sides.push_back({std::min(a, b), std::max(a, b), t, k});
-    }
-  std::sort(sides.begin(), sides.end(), [](const Side &x, const Side &y) {
-    return x.a != y.a ? x.a < y.a : x.b < y.b;
-  });
-  for (size_t i = 0; i < sides.size(); i++)
-    if (!(i && same(sides[i], sides[i - 1])) &&
-        !(i + 1 < sides.size() && same(sides[i], sides[i + 1])))
-      s.rim[sides[i].tri] |= static_cast<uint8_t>(1 << sides[i].corner);
+        sides.push_back({std::min(a, b), std::max(a, b), end, k});
+      }
+    std::sort(sides.begin(), sides.end(), [](const Side &x, const Side &y) {
+      return x.a != y.a ? x.a < y.a : x.b < y.b;
+    });
+    for (size_t i = 0; i < sides.size(); i++)
+      if (!(i && same(sides[i], sides[i - 1])) &&
+          !(i + 1 < sides.size() && same(sides[i], sides[i + 1])))
+        s.rim[sides[i].tri] |= static_cast<uint8_t>(1 << sides[i].corner);
+  }
 }
 
 class Builder {
@@ -55,8 +63,9 @@ public:
   Builder(Model &model, Surface &out) : model_(model), out_(out) {}
 
   /* Returns false for a face without triangles. */
-  bool add(const Face &f, uint32_t patch)
+  bool add(size_t piece, uint32_t patch)
   {
+    const Face &f = model_.faces[piece];
     TopLoc_Location at;
     Handle(Poly_Triangulation) t = BRep_Tool::Triangulation(f.shape, at);
 
@@ -67,7 +76,7 @@ public:
     for (int k = 1; k <= t->NbNodes(); k++)
       if (global_[static_cast<size_t>(k)] == none)
         global_[static_cast<size_t>(k)] = point(node(t, at, k));
-    add_triangles(f, t, patch);
+    add_triangles(piece, t, patch);
     return true;
   }
 
@@ -84,6 +93,7 @@ private:
 
     out_.point.insert(out_.point.end(), {p.X() + 0.0, p.Y() + 0.0,
                                          p.Z() + 0.0});
+    out_.corner.push_back(false);
     return at;
   }
 
@@ -91,7 +101,10 @@ private:
   {
     size_t at = static_cast<size_t>(vertices_.Add(v));
 
-    if (at > vertex_.size()) vertex_.push_back(point(BRep_Tool::Pnt(v)));
+    if (at > vertex_.size()) {
+      vertex_.push_back(point(BRep_Tool::Pnt(v)));
+      out_.corner.back() = true;
+    }
     return vertex_[at - 1];
   }
 
@@ -160,9 +173,10 @@ private:
   }
 
   /* Those that a vertex took in are gone. */
-  void add_triangles(const Face &f, const Handle(Poly_Triangulation) &t,
+  void add_triangles(size_t piece, const Handle(Poly_Triangulation) &t,
                      uint32_t patch)
   {
+    const Face &f = model_.faces[piece];
     bool turned = f.shape.Orientation() == TopAbs_REVERSED;
     size_t from = out_.face.size();
 
@@ -179,9 +193,9 @@ private:
         out_.uv.push_back(t->HasUVNodes() ? t->UVNode(i) : gp_Pnt2d());
       out_.face.push_back(f.number);
       out_.patch.push_back(patch);
+      out_.piece.push_back(static_cast<uint32_t>(piece));
     }
     swap_caps(out_, from);
-    find_rims(out_, from);
   }
 
   Model &model_;
@@ -231,11 +245,10 @@ public:
     uint32_t next = static_cast<uint32_t>(list_.size());
     vg_cad_patch p;
 
-    if (ask_.patches) {
-      auto found = known_.emplace(name, next);
+    auto found = known_.emplace(ask_.patches ? name
+                                             : std::to_string(f.number), next);
 
-      if (!found.second) return found.first->second;
-    }
+    if (!found.second) return found.first->second;
     p.id = ask_.patches ? static_cast<int32_t>(next + 1)
                         : static_cast<int32_t>(f.number);
     set_name(p, name);
@@ -252,14 +265,14 @@ private:
 /* Deflections go by the size of each edge, so that a far boundary does not
  * coarsen the body in it. One thread: the same for everybody. */
 void run_mesher(const vg_cad_ask &ask, const TopoDS_Shape &shape,
-                double diagonal)
+                double least)
 {
   IMeshTools_Parameters p;
 
   p.Relative = Standard_True;
   p.Deflection = ask.chord;
   p.Angle = ask.angle * (M_PI / 180);
-  p.MinSize = std::max(1e-7 * diagonal, Precision::Confusion());
+  p.MinSize = std::max(least, Precision::Confusion());
   p.InParallel = Standard_False;
   BRepTools::Clean(shape);
   BRepMesh_IncrementalMesh(shape, p);
@@ -277,19 +290,20 @@ size_t count_bare(const Model &model)
 }
 
 /* Where faces stay bare, mended ones may not. */
-void make_triangles(const vg_cad_ask &ask, Model &model, const Talk &talk)
+void make_triangles(const vg_cad_ask &ask, Model &model, double least,
+                    const Talk &talk)
 {
   Model mended = model;
   size_t bare;
 
-  run_mesher(ask, together(model), model.diagonal);
+  run_mesher(ask, together(model), least);
   bare = count_bare(model);
   if (!bare) return;
   talk.stage("mending its faces");
   mend(mended, talk);
-  run_mesher(ask, together(mended), model.diagonal);
+  run_mesher(ask, together(mended), least);
   if (count_bare(mended) < bare) model = mended;
-  else run_mesher(ask, together(model), model.diagonal);
+  else run_mesher(ask, together(model), least);
 }
 
 }  // namespace
@@ -299,16 +313,20 @@ void triangulate(const vg_cad_ask &ask, Model &model, Surface &out,
 {
   Builder builder(model, out);
   Patches patches(ask, out.patches);
+  double least = ask.least > 0 ? ask.least : least_share * model.diagonal;
   size_t n_bad = 0;
   std::string bad;
 
-  make_triangles(ask, model, talk);
+  model.curves.clear();
+  make_triangles(ask, model, least, talk);
   /* An arc that turns by the angle rises by half of this over its chord;
    * parameters need not run evenly. */
   out.bulge = std::tan(ask.angle * (M_PI / 180) / 4);
-  for (const Face &f : model.faces) {
+  for (size_t i = 0; i < model.faces.size(); i++) {
+    const Face &f = model.faces[i];
+
     if (f.shape.IsNull()) continue;
-    if (builder.add(f, patches.of(f))) continue;
+    if (builder.add(i, patches.of(f))) continue;
     if (!n_bad++)
       bad = format("face %u%s%.60s at %s", f.number, f.name.empty() ? "" : " ",
                    f.name.c_str(), place(point_of(f.shape)).c_str());
@@ -319,6 +337,9 @@ void triangulate(const vg_cad_ask &ask, Model &model, Surface &out,
                      bad.c_str()));
   if (out.tri.empty())
     throw Failure{VG_ERR_GEOMETRY, "none of its faces could be triangulated"};
+  collapse_short(out, least);
+  follow_faces(out, model);
+  find_rims(out);
 }
 
 }  // namespace vg_occt

@@ -106,7 +106,7 @@ absent c/cut.b8.ugrid
 vanguard check empty.step
 exits 1
 says err "empty.step"
-vanguard mesh -q -p "$cad/crossing.brep" --out x
+vanguard mesh -q -p "$cad/crossing_faces.brep" --out x
 exits 1
 says out "self-intersection"
 vanguard mesh -q -p wing.step --cad-angle 1 --cad-chord 1e-7 \

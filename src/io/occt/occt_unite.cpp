@@ -1,0 +1,398 @@
+/* Solids that touch or overlap, by their union.
+ *
+ * Open CASCADE's general fuse divides all solids of a group by each other into
+ * cells that share faces. A face of one cell is outer; a face of two cells is
+ * between materials and goes. A solid whose cells are among those of another
+ * one lies in it: the larger one may be the fluid around it, so it stays as it
+ * is. */
+#include "io/occt/occt_parts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <BOPAlgo_Builder.hxx>
+#include <BRepBndLib.hxx>
+#include <BRepCheck_Analyzer.hxx>
+#include <BRepGProp.hxx>
+#include <BRep_Builder.hxx>
+#include <BRep_Tool.hxx>
+#include <Bnd_Box.hxx>
+#include <GProp_GProps.hxx>
+#include <Standard_Failure.hxx>
+#include <TopExp.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopTools_ListOfShape.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Shell.hxx>
+#include <TopoDS_Solid.hxx>
+
+namespace vg_occt {
+
+namespace {
+
+/* Faces of all solids of a group for which the union is tried: beyond, the time
+ * that it takes grows out of bounds. */
+const size_t most_faces = 5000;
+
+/* The cells of a solid have its volume, but for this share. */
+const double volume_near = 1e-2;   /* S54 */
+
+typedef std::vector<size_t> Group;   /* of solids, by number, ascending */
+typedef std::vector<TopoDS_Shape> Solids;   /* null: no closed one */
+
+/* Has every edge an even number of these faces? */
+bool is_closed(const std::vector<TopoDS_Shape> &faces)
+{
+  TopTools_IndexedMapOfShape edges;
+  std::vector<size_t> n;
+
+  for (const TopoDS_Shape &f : faces)
+    for (TopExp_Explorer e(f, TopAbs_EDGE); e.More(); e.Next()) {
+      if (BRep_Tool::Degenerated(TopoDS::Edge(e.Current()))) continue;
+      size_t at = static_cast<size_t>(edges.Add(e.Current()));
+
+      if (at > n.size()) n.push_back(0);
+      n[at - 1]++;
+    }
+  return !n.empty() && std::all_of(n.begin(), n.end(), [](size_t k) {
+    return k % 2 == 0;
+  });
+}
+
+/* The solids that the faces of the model bound. */
+Solids build_solids(const Model &model)
+{
+  const std::vector<size_t> of = find_shells(model);
+  std::vector<TopoDS_Shell> shell(of.size());
+  std::vector<std::vector<TopoDS_Shape>> faces(
+      static_cast<size_t>(model.n_solid));
+  Solids out(faces.size());
+  BRep_Builder builder;
+
+  for (size_t i = 0; i < of.size(); i++) {
+    const Face &f = model.faces[i];
+
+    if (f.shape.IsNull() || f.solid < 0) continue;
+    faces[static_cast<size_t>(f.solid)].push_back(f.shape);
+    if (shell[of[i]].IsNull()) builder.MakeShell(shell[of[i]]);
+    builder.Add(shell[of[i]], f.shape);
+  }
+  for (size_t i = 0; i < of.size(); i++) {
+    if (shell[i].IsNull()) continue;
+    const size_t k = static_cast<size_t>(model.faces[i].solid);
+    TopoDS_Solid solid;
+
+    if (!is_closed(faces[k])) continue;
+    if (out[k].IsNull()) {
+      builder.MakeSolid(solid);
+      out[k] = solid;
+    }
+    shell[i].Closed(Standard_True);
+    builder.Add(out[k], shell[i]);
+  }
+  return out;
+}
+
+/* Groups of solids whose boxes touch, directly or by others. */
+std::vector<Group> touching(const Solids &solids, double tolerance)
+{
+  std::vector<Bnd_Box> box(solids.size());
+  std::vector<size_t> of(box.size());
+  std::vector<Group> out(box.size());
+
+  for (size_t i = 0; i < box.size(); i++) {
+    of[i] = i;
+    if (solids[i].IsNull()) continue;   /* its box stays void: it is out */
+    BRepBndLib::Add(solids[i], box[i], Standard_False);
+    box[i].Enlarge(tolerance);
+    for (size_t j = 0; j < i; j++)
+      if (of[j] != of[i] && !box[i].IsOut(box[j])) {
+        size_t from = std::max(of[i], of[j]), to = std::min(of[i], of[j]);
+
+        std::replace(of.begin(), of.begin() + static_cast<ptrdiff_t>(i) + 1,
+                     from, to);
+      }
+  }
+  for (size_t i = 0; i < of.size(); i++) out[of[i]].push_back(i);
+  out.erase(std::remove_if(out.begin(), out.end(),
+                           [](const Group &g) { return g.size() < 2; }),
+            out.end());
+  return out;
+}
+
+/* The cells of a group of solids. */
+class Cells {
+public:
+  Cells(const Solids &solids, const Group &group, double tolerance)
+      : group_(group)
+  {
+    for (size_t k : group) fuse_.AddArgument(solids[k]);
+    fuse_.SetNonDestructive(Standard_True);
+    fuse_.SetRunParallel(Standard_False);
+    fuse_.SetFuzzyValue(tolerance);
+    fuse_.Perform();
+    failed_ = fuse_.HasErrors();
+    if (failed_) return;
+    for (size_t k : group) {
+      cells_.push_back(cells_of(solids[k]));
+      failed_ = failed_ || !fills(cells_.back(), solids[k]);
+    }
+    take_faces();
+  }
+
+  bool failed() const { return failed_; }
+
+  /* Does any of them touch another one? */
+  bool touch() const
+  {
+    TopTools_IndexedMapOfShape all;
+
+    for (const TopTools_IndexedMapOfShape &cells : cells_) {
+      TopTools_IndexedMapOfShape mine;
+
+      for (int i = 1; i <= cells.Extent(); i++)
+        TopExp::MapShapes(cells(i), TopAbs_VERTEX, mine);
+      for (int i = 1; i <= mine.Extent(); i++)
+        if (all.Contains(mine(i))) return true;
+      for (int i = 1; i <= mine.Extent(); i++) all.Add(mine(i));
+    }
+    return false;
+  }
+
+  /* Solids that contain another one wholly, and more. */
+  Group containers() const
+  {
+    Group out;
+
+    for (size_t i = 0; i < group_.size(); i++)
+      for (size_t j = 0; j < group_.size(); j++)
+        if (i != j && contains(cells_[i], cells_[j])) {
+          out.push_back(group_[i]);
+          break;
+        }
+    return out;
+  }
+
+  /* The outer faces that a face of the file became, each once for all faces of
+   * the file. */
+  std::vector<TopoDS_Face> take(const TopoDS_Face &face)
+  {
+    const TopTools_ListOfShape &list = fuse_.Modified(face);
+    std::vector<TopoDS_Face> out;
+
+    if (list.IsEmpty()) add(face, out);
+    for (const TopoDS_Shape &s : list) add(s, out);
+    return out;
+  }
+
+  /* Are all cells valid, the outer faces closed, and all of them taken? */
+  bool is_whole() const
+  {
+    std::vector<TopoDS_Shape> outer;
+
+    for (const TopTools_IndexedMapOfShape &cells : cells_)
+      for (int i = 1; i <= cells.Extent(); i++)
+        if (!BRepCheck_Analyzer(cells(i)).IsValid()) return false;
+    for (int i = 1; i <= faces_.Extent(); i++) {
+      if (count_[static_cast<size_t>(i) - 1] != 1) continue;
+      if (!taken_[static_cast<size_t>(i) - 1]) return false;
+      outer.push_back(faces_(i));
+    }
+    return is_closed(outer);
+  }
+
+private:
+  TopTools_IndexedMapOfShape cells_of(const TopoDS_Shape &solid)
+  {
+    const TopTools_ListOfShape &list = fuse_.Modified(solid);
+    TopTools_IndexedMapOfShape out;
+
+    if (list.IsEmpty()) out.Add(solid);
+    for (const TopoDS_Shape &s : list) out.Add(s);
+    return out;
+  }
+
+  /* The fuse may lose cells without an error. */
+  static bool fills(const TopTools_IndexedMapOfShape &cells,
+                    const TopoDS_Shape &solid)
+  {
+    double sum = 0, whole = volume(solid);
+
+    for (int i = 1; i <= cells.Extent(); i++) sum += volume(cells(i));
+    return whole > 0 && std::fabs(sum - whole) <= volume_near * whole;
+  }
+
+  static double volume(const TopoDS_Shape &s)
+  {
+    GProp_GProps g;
+
+    BRepGProp::VolumeProperties(s, g, volume_near / 10);
+    return g.Mass();
+  }
+
+  static bool contains(const TopTools_IndexedMapOfShape &a,
+                       const TopTools_IndexedMapOfShape &b)
+  {
+    for (int i = 1; i <= b.Extent(); i++)
+      if (!a.Contains(b(i))) return false;
+    return a.Extent() > b.Extent();
+  }
+
+  /* The faces of all cells, oriented as the first cell has them. */
+  void take_faces()
+  {
+    TopTools_IndexedMapOfShape all;
+
+    for (const TopTools_IndexedMapOfShape &cells : cells_)
+      for (int i = 1; i <= cells.Extent(); i++) all.Add(cells(i));
+    for (int i = 1; i <= all.Extent(); i++)
+      for (TopExp_Explorer e(all(i), TopAbs_FACE); e.More(); e.Next()) {
+        size_t at = static_cast<size_t>(faces_.Add(e.Current()));
+
+        if (at > count_.size()) count_.push_back(0);
+        count_[at - 1]++;
+      }
+    taken_.assign(count_.size(), false);
+  }
+
+  void add(const TopoDS_Shape &s, std::vector<TopoDS_Face> &out)
+  {
+    size_t at = static_cast<size_t>(faces_.FindIndex(s));
+
+    if (!at || count_[at - 1] != 1 || taken_[at - 1]) return;
+    taken_[at - 1] = true;
+    out.push_back(TopoDS::Face(faces_(static_cast<int>(at))));
+  }
+
+  const Group &group_;
+  BOPAlgo_Builder fuse_;
+  bool failed_ = false;
+  std::vector<TopTools_IndexedMapOfShape> cells_;   /* of each solid */
+  TopTools_IndexedMapOfShape faces_;
+  std::vector<size_t> count_;        /* cells of each face */
+  std::vector<bool> taken_;
+};
+
+bool has(const Group &group, int solid)
+{
+  return solid >= 0 && std::binary_search(group.begin(), group.end(),
+                                          static_cast<size_t>(solid));
+}
+
+std::string where(const Model &model, size_t solid)
+{
+  for (const Face &f : model.faces)
+    if (f.solid == static_cast<int>(solid) && !f.shape.IsNull())
+      return format("%s%sat %s", f.part.substr(0, 60).c_str(),
+                    f.part.empty() ? "" : " ",
+                    place(point_of(f.shape)).c_str());
+  return "somewhere";
+}
+
+/* Faces of the group by those of its union; false where it is not closed. */
+bool replace_faces(Cells &cells, const Group &group, Model &model)
+{
+  std::vector<Face> out;
+
+  for (const Face &f : model.faces) {
+    if (f.shape.IsNull() || !has(group, f.solid)) {
+      out.push_back(f);
+      continue;
+    }
+    std::vector<TopoDS_Face> pieces = cells.take(f.shape);
+    Face next = f;
+
+    next.shape.Nullify();
+    if (pieces.empty()) out.push_back(next);
+    for (const TopoDS_Face &piece : pieces) {
+      next.shape = piece;
+      out.push_back(next);
+    }
+  }
+  if (!cells.is_whole()) return false;
+  model.faces = out;
+  return true;
+}
+
+/* One group, without the solids that contain others; notes go to `say`. */
+void unite_group(const Solids &solids, Group group, double tolerance,
+                 Model &model, std::vector<std::string> &say)
+{
+  for (;;) {
+    Cells cells(solids, group, tolerance);
+
+    if (cells.failed())
+      throw Failure{VG_ERR_GEOMETRY, "the general fuse failed"};
+    if (!cells.touch()) return;
+    Group outer = cells.containers(), rest;
+    if (outer.empty()) {
+      std::string first = where(model, group[0]);
+
+      if (!replace_faces(cells, group, model))
+        throw Failure{VG_ERR_GEOMETRY, "its result is not valid"};
+      say.push_back(format("%zu solids touch or overlap and were united within "
+                           "%.3g: their common walls were dropped, the first "
+                           "solid is %s", group.size(), tolerance,
+                           first.c_str()));
+      return;
+    }
+    for (size_t k : outer)
+      say.push_back(format("the solid %s contains another one; it was not "
+                           "united with it. Where they touch, subtract the "
+                           "inner one if the outer one is the fluid, else "
+                           "delete it", where(model, k).c_str()));
+    std::set_difference(group.begin(), group.end(), outer.begin(), outer.end(),
+                        std::back_inserter(rest));
+    if (rest.size() < 2) return;
+    group = rest;
+  }
+}
+
+/* The reason of a failure; empty: none. */
+std::string try_to_unite(const Solids &solids, const Group &group,
+                         double tolerance, Model &model, const Talk &talk)
+{
+  std::vector<std::string> say;
+
+  try {
+    unite_group(solids, group, tolerance, model, say);
+  } catch (const Failure &f) {
+    return f.text;
+  } catch (const Standard_Failure &f) {
+    return f.DynamicType()->Name();
+  }
+  for (const std::string &text : say) talk.note(text);
+  return "";
+}
+
+size_t count_faces_of(const Model &model, const Group &group)
+{
+  return static_cast<size_t>(std::count_if(
+      model.faces.begin(), model.faces.end(), [&](const Face &f) {
+        return has(group, f.solid);
+      }));
+}
+
+}  // namespace
+
+void unite(const vg_cad_ask &ask, Model &model, const Talk &talk)
+{
+  const Solids solids = build_solids(model);
+  const std::vector<double> list = tolerances(ask, model);
+
+  for (const Group &group : touching(solids, list[0])) {
+    std::string why = "its faces are too many";
+
+    talk.stage("uniting its solids");
+    if (count_faces_of(model, group) <= most_faces)
+      for (size_t i = 0; i < list.size() && !why.empty(); i++)
+        why = try_to_unite(solids, group, list[i], model, talk);
+    if (!why.empty())
+      talk.note(format("%zu solids touch or overlap, but could not be united "
+                       "(%s); only walls that they share as a whole are "
+                       "dropped; the first solid is %s", group.size(),
+                       why.c_str(), where(model, group[0]).c_str()));
+  }
+}
+
+}  // namespace vg_occt
