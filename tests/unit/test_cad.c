@@ -239,6 +239,143 @@ static void a_doubled_face_goes(void **state)
   vg_mesh_release(&m);
 }
 
+/* --- solids that touch --------------------------------------------------- */
+
+static struct vg_cad *parse_file(const char *path, enum vg_cad_kind kind,
+                                 const struct vg_cad_options *o,
+                                 struct vg_cad_surface *s);
+
+/* One closed shell of the union's volume. */
+static void solids_that_touch_are_united(void **state)
+{
+  static const struct {
+    const char *path;
+    size_t patches;
+    double volume;
+    const char *note;
+  } cases[] = {
+    { FILE_OF("stacked.brep"), 10, 8, "face 6 and face 11 at" },
+    { FILE_OF("glued.brep"), 10, 8, "face 6 at (0.5, 1, 3) is a wall" },
+    { FILE_OF("leaning.brep"), 11, 8, "2 solids touch or overlap" },
+    { FILE_OF("crossing.brep"), 12, 10.125, "2 solids touch or overlap" } };
+
+  (void)state;
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    struct vg_cad_surface s = VG_CAD_SURFACE_INIT;
+    struct notes n;
+    struct vg_cad_options o = options(&n);
+    struct vg_cad *c = parse_file(cases[i].path, VG_CAD_BREP, &o, &s);
+
+    says(&n, cases[i].note);
+    assert_int_equal(s.mesh.n_patch, cases[i].patches);
+    assert_int_equal(s.is_solid, 1);
+    near(s.volume, cases[i].volume, 1e-9);
+    is_sound(&s.mesh, 1);
+    vg_cad_surface_release(&s);
+    vg_cad_close(c);
+  }
+}
+
+/* Points go to all pieces of a face that the union divided. */
+static void pieces_of_a_face_have_its_number(void **state)
+{
+  struct vg_cad_surface s = VG_CAD_SURFACE_INIT;
+  struct notes n;
+  struct vg_cad_options o = options(&n);
+  struct vg_cad *c = parse_file(FILE_OF("crossing.brep"), VG_CAD_BREP, &o, &s);
+  struct vg_error err = VG_ERROR_INIT;
+  uint32_t *tri = calloc(s.mesh.n_tri, sizeof *tri);
+  double (*x)[3] = calloc(s.mesh.n_tri, sizeof *x);
+  double *d = calloc(s.mesh.n_tri, sizeof *d);
+
+  (void)state;
+  for (size_t t = 0; t < s.mesh.n_tri; t++) {
+    tri[t] = (uint32_t)t;
+    assert_true(s.tri_face[t] >= 1 && s.tri_face[t] <= 12);
+    assert_int_equal(s.mesh.patch[s.mesh.tri_patch[t]].id, s.tri_face[t]);
+    for (int k = 0; k < 3; k++)
+      for (int j = 0; j < 3; j++)
+        x[t][k] += s.mesh.point[s.mesh.tri[t][j]][k] / 3;
+  }
+  for (int by_face = 0; by_face < 2; by_face++) {
+    if (vg_cad_project(c, by_face ? VG_CAD_ON_FACES : VG_CAD_ON_TRIANGLES,
+                       s.mesh.n_tri, by_face ? s.tri_face : tri, x, d, &err))
+      fail_msg("%s", err.text);
+    for (size_t t = 0; t < s.mesh.n_tri; t++) near(d[t], 0, 1e-12);
+  }
+  free(tri);
+  free(x);
+  free(d);
+  vg_cad_surface_release(&s);
+  vg_cad_close(c);
+}
+
+/* The larger one may be the fluid: the inner one must not vanish. */
+static void a_solid_that_contains_another_stays(void **state)
+{
+  static const struct { const char *path; size_t patches; } cases[] = {
+    { FILE_OF("inside.brep"), 12 }, { FILE_OF("filled.brep"), 12 } };
+
+  (void)state;
+  for (size_t i = 0; i < 2; i++) {
+    struct notes n;
+    struct vg_cad_options o = options(&n);
+    struct vg_mesh m = VG_MESH_INIT;
+
+    read_file(cases[i].path, &o, &m);
+    says(&n, "contains another one; it was not united");
+    assert_int_equal(m.n_patch, cases[i].patches);
+    vg_mesh_release(&m);
+  }
+}
+
+static void a_rocket_of_ten_solids_is_one_shell(void **state)
+{
+  struct vg_mesh m = VG_MESH_INIT;
+  struct notes n;
+  struct vg_cad_options o = options(&n);
+
+  (void)state;
+  read_file(io_real("field/rocket_touching_solids.step.gz"), &o, &m);
+  says(&n, "7 solids touch or overlap and were united");
+  is_sound(&m, 1);
+  vg_mesh_release(&m);
+}
+
+/* --- faces of no solid --------------------------------------------------- */
+
+/* Six faces of a box with gaps of 2e-5, three of them turned. */
+static void wide_gaps_are_sewn_and_faces_turned(void **state)
+{
+  struct vg_cad_surface s = VG_CAD_SURFACE_INIT;
+  struct notes n;
+  struct vg_cad_options o = options(&n);
+  struct vg_cad *c = parse_file(FILE_OF("gaps.brep"), VG_CAD_BREP, &o, &s);
+  struct vg_surface_check_options check = VG_SURFACE_CHECK_OPTIONS_INIT;
+  struct vg_surface_report r = VG_SURFACE_REPORT_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+
+  (void)state;
+  says(&n, "by sewing within 3.74e-05 24 of them found a partner, the first "
+       "at (");
+  says(&n, "3 faces that are not of a solid were turned");
+  assert_int_equal(s.is_solid, 0);
+  near(s.volume, 6, 1e-4);
+  assert_int_equal(vg_surface_check(&s.mesh, &check, &r, &err), VG_OK);
+  assert_int_equal(r.n_defect, 0);
+  assert_true(r.n_flipped == 0 || r.n_flipped == s.mesh.n_tri);
+  vg_surface_report_release(&r);
+  vg_cad_surface_release(&s);
+  o = options(&n);
+  o.tolerance = 1e-7;        /* used as given */
+  vg_cad_close(c);
+  c = parse_file(FILE_OF("gaps.brep"), VG_CAD_BREP, &o, &s);
+  says(&n, "the gap is wider than 1e-07");
+  assert_true(isnan(s.volume));
+  vg_cad_surface_release(&s);
+  vg_cad_close(c);
+}
+
 static void a_missing_face_is_named(void **state)
 {
   struct vg_mesh m = VG_MESH_INIT;
@@ -315,6 +452,67 @@ static void what_is_no_cad_is_refused(void **state)
   vg_cad_close(c);
   assert_int_equal(vg_cad_read("absent.step", VG_CAD_STEP, NULL, NULL, &m,
                                &err), VG_ERR_IO);
+}
+
+/* Text of other programs behind a BREP, as Engineering Sketch Pad writes it. */
+static void text_behind_a_brep_is_no_damage(void **state)
+{
+  static const char tail[] = "\n##EGADS HEADER FILE-REV 1 ##\n1 1 8 12 6 1\n"
+                             "#FACE 0.0 attribute *\n";
+  struct vg_cad_surface s = VG_CAD_SURFACE_INIT;
+  const struct vg_cad_options o = VG_CAD_OPTIONS_INIT;
+  struct vg_input in = VG_INPUT_INIT, all = VG_INPUT_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+  struct vg_cad *c = NULL;
+  char *text;
+
+  (void)state;
+  load(FILE_OF("box.brep"), &in);
+  text = malloc(in.size + sizeof tail);
+  memcpy(text, in.data, in.size);
+  memcpy(text + in.size, tail, sizeof tail);
+  assert_int_equal(vg_cad_open(&c, &err), VG_OK);
+  assert_int_equal(vg_input_memory("case", text, in.size + sizeof tail - 1,
+                                   &all, &err), VG_OK);
+  if (vg_cad_parse(c, &all, VG_CAD_BREP, &o, &s, &err))
+    fail_msg("%s", err.text);
+  assert_int_equal(s.mesh.n_tri, 12);
+  vg_cad_surface_release(&s);
+  vg_input_release(&all);
+  /* Cut within the BREP, and the text follows: truncated. */
+  memcpy(text + in.size - 300, tail, sizeof tail);
+  refuses(c, text, in.size - 300 + sizeof tail - 1, VG_CAD_BREP, VG_ERR_FORMAT,
+          "truncated");
+  free(text);
+  vg_input_release(&in);
+  vg_cad_close(c);
+}
+
+static void egads_is_a_suffix(void **state)
+{
+  struct vg_mesh m = VG_MESH_INIT;
+
+  (void)state;
+  read_file(FILE_OF("box.egads"), NULL, &m);
+  assert_int_equal(m.n_tri, 12);
+  is_sound(&m, 1);
+  vg_mesh_release(&m);
+}
+
+static void a_pointer_of_git_lfs_is_called_that(void **state)
+{
+  static const char text[] = "version https://git-lfs.github.com/spec/v1\n"
+                             "oid sha256:4d7a214614ab2935c943f9e0ff69d22eadbb8f"
+                             "32b1258daaa5e2ca24d17e2393\nsize 12345\n";
+  struct vg_error err = VG_ERROR_INIT;
+  struct vg_cad *c = NULL;
+
+  (void)state;
+  assert_int_equal(vg_cad_open(&c, &err), VG_OK);
+  for (int kind = VG_CAD_STEP; kind <= VG_CAD_BREP; kind++)
+    refuses(c, text, sizeof text - 1, (enum vg_cad_kind)kind, VG_ERR_FORMAT,
+            "git lfs pull");
+  vg_cad_close(c);
 }
 
 static void what_is_cut_short_is_refused(void **state)
@@ -431,19 +629,164 @@ static void bytes_are_the_same(void **state)
 
 /* --- back to faces and curves -------------------------------------------- */
 
-static struct vg_cad *open_file(const char *path, enum vg_cad_kind kind,
-                                struct vg_cad_surface *s)
+static struct vg_cad *parse_file(const char *path, enum vg_cad_kind kind,
+                                 const struct vg_cad_options *o,
+                                 struct vg_cad_surface *s)
 {
-  const struct vg_cad_options o = VG_CAD_OPTIONS_INIT;
   struct vg_input in = VG_INPUT_INIT;
   struct vg_error err = VG_ERROR_INIT;
   struct vg_cad *c = NULL;
 
   load(path, &in);
-  if (vg_cad_open(&c, &err) || vg_cad_parse(c, &in, kind, &o, s, &err))
+  if (vg_cad_open(&c, &err) || vg_cad_parse(c, &in, kind, o, s, &err))
     fail_msg("%s", err.text);
   vg_input_release(&in);
   return c;
+}
+
+static struct vg_cad *open_file(const char *path, enum vg_cad_kind kind,
+                                struct vg_cad_surface *s)
+{
+  const struct vg_cad_options o = VG_CAD_OPTIONS_INIT;
+
+  return parse_file(path, kind, &o, s);
+}
+
+static void same_surface(const struct vg_cad_surface *a,
+                         const struct vg_cad_surface *b)
+{
+  assert_int_equal(a->mesh.n_point, b->mesh.n_point);
+  assert_int_equal(a->mesh.n_tri, b->mesh.n_tri);
+  assert_int_equal(a->n_segment, b->n_segment);
+  assert_memory_equal(a->mesh.point, b->mesh.point,
+                      a->mesh.n_point * sizeof *a->mesh.point);
+  assert_memory_equal(a->mesh.tri, b->mesh.tri,
+                      a->mesh.n_tri * sizeof *a->mesh.tri);
+  assert_memory_equal(a->segment, b->segment,
+                      a->n_segment * sizeof *a->segment);
+  near(a->volume, b->volume, 0);
+  assert_int_equal(a->is_solid, b->is_solid);
+}
+
+/* Coarse, fine and coarse: what a fresh child makes with these options. */
+static void again_gives_what_parsing_gives(void **state)
+{
+  const double angle[] = { 30, 8, 30 };
+  struct vg_cad_surface first = VG_CAD_SURFACE_INIT;
+  struct vg_cad *c = open_file(FILE_OF("wing.step"), VG_CAD_STEP, &first);
+  struct vg_error err = VG_ERROR_INIT;
+
+  (void)state;
+  for (int i = 0; i < 3; i++) {
+    struct vg_cad_options o = VG_CAD_OPTIONS_INIT;
+    struct vg_cad_surface s = VG_CAD_SURFACE_INIT, fresh = VG_CAD_SURFACE_INIT;
+    uint32_t last;
+    double x[3], d;
+
+    o.angle = angle[i];
+    if (vg_cad_again(c, &o, &s, &err)) fail_msg("%s", err.text);
+    vg_cad_close(parse_file(FILE_OF("wing.step"), VG_CAD_STEP, &o, &fresh));
+    same_surface(&s, &fresh);
+    last = (uint32_t)s.mesh.n_tri - 1;   /* triangles are the new ones */
+    memcpy(x, s.mesh.point[s.mesh.tri[last][0]], sizeof x);
+    if (vg_cad_project(c, VG_CAD_ON_TRIANGLES, 1, &last, &x, &d, &err))
+      fail_msg("%s", err.text);
+    near(d, 0, 1e-4);
+    last++;
+    assert_int_equal(vg_cad_project(c, VG_CAD_ON_TRIANGLES, 1, &last, &x, &d,
+                                    &err), VG_ERR_INPUT);
+    vg_cad_surface_release(&s);
+    vg_cad_surface_release(&fresh);
+  }
+  vg_cad_surface_release(&first);
+  vg_cad_close(c);
+  assert_int_equal(vg_cad_open(&c, &err), VG_OK);
+  assert_int_equal(vg_cad_again(c, &(struct vg_cad_options)VG_CAD_OPTIONS_INIT,
+                                &first, &err), VG_ERR_INPUT);
+  vg_cad_close(c);
+}
+
+static size_t count_short(const struct vg_mesh *m, double least)
+{
+  size_t n = 0;
+
+  for (size_t t = 0; t < m->n_tri; t++)
+    for (int k = 0; k < 3; k++) {
+      const double *a = m->point[m->tri[t][k]];
+      const double *b = m->point[m->tri[t][(k + 1) % 3]];
+      double d2 = 0;
+
+      for (int j = 0; j < 3; j++) d2 += (a[j] - b[j]) * (a[j] - b[j]);
+      n += d2 < least * least;
+    }
+  return n;
+}
+
+/* The wing is 2.5 m long; its faces have corners that are 10 mm apart. */
+static void short_edges_collapse(void **state)
+{
+  struct vg_cad_surface s = VG_CAD_SURFACE_INIT;
+  struct vg_cad_options o = VG_CAD_OPTIONS_INIT;
+  size_t without, with;
+
+  (void)state;
+  o.angle = 3;
+  vg_cad_close(parse_file(FILE_OF("wing.step"), VG_CAD_STEP, &o, &s));
+  without = count_short(&s.mesh, 2);
+  vg_cad_surface_release(&s);
+  o.least = 2;
+  vg_cad_close(parse_file(FILE_OF("wing.step"), VG_CAD_STEP, &o, &s));
+  with = count_short(&s.mesh, 2);
+  is_sound(&s.mesh, 1);
+  if (!(without > 100 && with * 10 < without))
+    fail_msg("%zu edges shorter than 2 mm, %zu with a bound", without, with);
+  vg_cad_surface_release(&s);
+}
+
+/* No triangle of the wing lies in the cap at its root, face 4. */
+static void rims_are_left(void **state)
+{
+  struct vg_surface_check_options check = VG_SURFACE_CHECK_OPTIONS_INIT;
+  struct vg_cad_surface s = VG_CAD_SURFACE_INIT;
+  struct vg_surface_report r = VG_SURFACE_REPORT_INIT;
+  struct vg_cad_options o = VG_CAD_OPTIONS_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+
+  (void)state;
+  o.chord = 3e-4;
+  o.angle = 8;
+  vg_cad_close(parse_file(io_real("field/onera_m6_root_cap.igs.gz"),
+                          VG_CAD_IGES, &o, &s));
+  assert_int_equal(vg_surface_check(&s.mesh, &check, &r, &err), VG_OK);
+  for (size_t i = 0; i < r.n_defect; i++)
+    for (int k = 0; k < 2; k++)
+      if (r.defect[i].face[k] < s.mesh.n_tri)
+        assert_int_not_equal(s.tri_face[r.defect[i].face[k]], 4);
+  assert_int_equal(r.count[VG_DEFECT_OPEN_EDGE], 0);
+  assert_int_equal(r.count[VG_DEFECT_NONMANIFOLD_EDGE], 0);
+  vg_surface_report_release(&r);
+  vg_cad_surface_release(&s);
+}
+
+/* Exact volume of a wing with splines; its triangles come near. */
+static void volume_is_exact(void **state)
+{
+  struct vg_cad_surface s = VG_CAD_SURFACE_INIT;
+  struct vg_surface_check_options check = VG_SURFACE_CHECK_OPTIONS_INIT;
+  struct vg_surface_report r = VG_SURFACE_REPORT_INIT;
+  struct vg_cad_options o = VG_CAD_OPTIONS_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+
+  (void)state;
+  o.chord = 1e-4;
+  o.angle = 4;
+  vg_cad_close(parse_file(io_real("field/vtol_wing_thin_te.step.gz"),
+                          VG_CAD_STEP, &o, &s));
+  assert_int_equal(vg_surface_check(&s.mesh, &check, &r, &err), VG_OK);
+  assert_int_equal(s.is_solid, 1);
+  near(fabs(r.shell[0].volume), s.volume, 1e-3 * s.volume);
+  vg_surface_report_release(&r);
+  vg_cad_surface_release(&s);
 }
 
 static void points_go_to_the_faces_of_a_box(void **state)
@@ -615,6 +958,18 @@ int main(void)
     cmocka_unit_test(loose_faces_are_sewn),
     cmocka_unit_test(missing_curves_of_parameters_are_made),
     cmocka_unit_test(a_doubled_face_goes),
+    cmocka_unit_test(solids_that_touch_are_united),
+    cmocka_unit_test(pieces_of_a_face_have_its_number),
+    cmocka_unit_test(a_solid_that_contains_another_stays),
+    cmocka_unit_test(a_rocket_of_ten_solids_is_one_shell),
+    cmocka_unit_test(wide_gaps_are_sewn_and_faces_turned),
+    cmocka_unit_test(again_gives_what_parsing_gives),
+    cmocka_unit_test(short_edges_collapse),
+    cmocka_unit_test(rims_are_left),
+    cmocka_unit_test(volume_is_exact),
+    cmocka_unit_test(text_behind_a_brep_is_no_damage),
+    cmocka_unit_test(egads_is_a_suffix),
+    cmocka_unit_test(a_pointer_of_git_lfs_is_called_that),
     cmocka_unit_test(a_missing_face_is_named),
     cmocka_unit_test(crossing_bodies_are_for_the_check),
     cmocka_unit_test(what_is_no_cad_is_refused),

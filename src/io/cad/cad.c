@@ -401,16 +401,17 @@ static struct vg_cad_ask question(uint32_t what, uint32_t kind, uint64_t n,
                                   const struct vg_cad_options *o)
 {
   return (struct vg_cad_ask){ what, kind, o->unit, o->patches, n, o->tolerance,
-                              o->chord, o->angle, o->least };
+                              o->chord, o->angle, o->least, 0 };
 }
 
 /* A child that does not listen may have told the reason before it ended. */
 static void send_file(struct call *k, const struct vg_input *in,
-                      enum vg_cad_kind kind)
+                      enum vg_cad_kind kind, int leave_apart)
 {
-  const struct vg_cad_ask ask = question(VG_CAD_ASK_READ, (uint32_t)kind,
-                                         in->size, k->o);
+  struct vg_cad_ask ask = question(VG_CAD_ASK_READ, (uint32_t)kind, in->size,
+                                   k->o);
 
+  ask.leave_apart = leave_apart;
   if (vg_child_put(k->cad->child.fd, &ask, sizeof ask))
     vg_child_put(k->cad->child.fd, in->data, in->size);
 }
@@ -433,6 +434,16 @@ done:
   return st;
 }
 
+/* Did the child end by itself while it united solids? */
+static int crashed_uniting(const struct call *k)
+{
+  const struct vg_cad_options *o = k->o;
+
+  return !k->cad->is_open && !strcmp(k->cad->stage, VG_CAD_STAGE_UNITE)
+         && !(o->seconds > 0 && vg_clock() - k->start > o->seconds)
+         && !(o->stop && o->stop(o->user));
+}
+
 vg_status vg_cad_parse(struct vg_cad *c, struct vg_input *in,
                        enum vg_cad_kind kind, const struct vg_cad_options *o,
                        struct vg_cad_surface *out, struct vg_error *err)
@@ -447,9 +458,17 @@ vg_status vg_cad_parse(struct vg_cad *c, struct vg_input *in,
   VG_TRY(start_child(c, err));
   c->has_model = 0;
   c->o = *o;
-  send_file(&k, in, kind);
-  VG_TRY(await_surface(&k, out, err));
-  c->has_model = 1;
+  send_file(&k, in, kind, 0);
+  st = await_surface(&k, out, err);
+  if (st < 0 && crashed_uniting(&k)) {
+    if (o->note)
+      o->note(o->user, "Open CASCADE crashed while it united solids that touch "
+              "or overlap; the file was read again without that");
+    VG_TRY(start_child(c, err));
+    send_file(&k, in, kind, 1);
+    st = await_surface(&k, out, err);
+  }
+  c->has_model = st >= 0;
 done:
   return st;
 }

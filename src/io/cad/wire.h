@@ -19,7 +19,11 @@ struct vg_cad_ask {
   int32_t unit, patches;
   uint64_t n;
   double tolerance, chord, angle, least;
+  int64_t leave_apart;       /* 1: do not unite solids */
 };
+
+/* The stage in which solids are united. */
+#define VG_CAD_STAGE_UNITE "uniting its solids"
 
 /* Answers: any number of notes and stages (n characters), then a failure (n
  * characters; code: a vg_status), or a surface (n: 1, with its counts and

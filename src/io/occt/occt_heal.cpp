@@ -30,9 +30,6 @@ const double width_least = 1e-9;   /* S13 */
  * centres agree by so much; points on a grid decide. */
 const double area_near = 1e-2, centre_near = 1e-2, copy_near = 1e-4;
 const int copy_grid = 7;
-/* A solid fills a hollow of another one where its box is within that one's, and
- * so much of its area is common to both. */
-const double hollow_share = 0.5, box_near = 1e-6;   /* S54 */
 
 struct Measure {
   size_t at;                 /* index of the face */

@@ -98,6 +98,10 @@ void complete(Model &model, const Talk &talk);
  * orient faces alike. */
 void heal(const vg_cad_ask &ask, Model &model, const Talk &talk);
 
+/** A solid fills a hollow of another one where its box is within that one's, and
+ * this share of its area is common to both. */
+const double hollow_share = 0.5, box_near = 1e-3;   /* S54 */
+
 /** Replace the faces of solids that touch or overlap by the outer faces of
  * their union. Solids that contain others stay as they are. */
 void unite(const vg_cad_ask &ask, Model &model, const Talk &talk);

@@ -159,14 +159,15 @@ public:
     return false;
   }
 
-  /* Solids that contain another one wholly, and more. */
+  /* Solids that contain another one wholly, and more, or that have a hollow
+   * which another one fills. */
   Group containers() const
   {
     Group out;
 
     for (size_t i = 0; i < group_.size(); i++)
       for (size_t j = 0; j < group_.size(); j++)
-        if (i != j && contains(cells_[i], cells_[j])) {
+        if (i != j && (contains(cells_[i], cells_[j]) || is_hollow(i, j))) {
           out.push_back(group_[i]);
           break;
         }
@@ -228,6 +229,41 @@ private:
 
     BRepGProp::VolumeProperties(s, g, volume_near / 10);
     return g.Mass();
+  }
+
+  /* Is solid j within the box of solid i, with much of its area but none of its
+   * material in common? */
+  bool is_hollow(size_t i, size_t j) const
+  {
+    TopTools_IndexedMapOfShape mine, other;
+    Bnd_Box box = box_of(i), both = box;
+    double total = 0, common = 0;
+
+    for (int k = 1; k <= cells_[j].Extent(); k++)
+      if (cells_[i].Contains(cells_[j](k))) return false;
+    both.Add(box_of(j));
+    if (both.SquareExtent() > box.SquareExtent() * (1 + box_near)) return false;
+    for (int k = 1; k <= cells_[i].Extent(); k++)
+      TopExp::MapShapes(cells_[i](k), TopAbs_FACE, mine);
+    for (int k = 1; k <= cells_[j].Extent(); k++)
+      TopExp::MapShapes(cells_[j](k), TopAbs_FACE, other);
+    for (int k = 1; k <= other.Extent(); k++) {
+      GProp_GProps g;
+
+      BRepGProp::SurfaceProperties(other(k), g);
+      total += g.Mass();
+      if (mine.Contains(other(k))) common += g.Mass();
+    }
+    return common >= hollow_share * total;
+  }
+
+  Bnd_Box box_of(size_t i) const
+  {
+    Bnd_Box box;
+
+    for (int k = 1; k <= cells_[i].Extent(); k++)
+      BRepBndLib::Add(cells_[i](k), box, Standard_False);
+    return box;
   }
 
   static bool contains(const TopTools_IndexedMapOfShape &a,
@@ -377,13 +413,14 @@ size_t count_faces_of(const Model &model, const Group &group)
 
 void unite(const vg_cad_ask &ask, Model &model, const Talk &talk)
 {
+  if (ask.leave_apart) return;
   const Solids solids = build_solids(model);
   const std::vector<double> list = tolerances(ask, model);
 
   for (const Group &group : touching(solids, list[0])) {
     std::string why = "its faces are too many";
 
-    talk.stage("uniting its solids");
+    talk.stage(VG_CAD_STAGE_UNITE);
     if (count_faces_of(model, group) <= most_faces)
       for (size_t i = 0; i < list.size() && !why.empty(); i++)
         why = try_to_unite(solids, group, list[i], model, talk);
