@@ -40,9 +40,13 @@ struct vg_cad_options {
   double angle;              /* degrees between neighbouring edges on a curve,
                                 and triangles on a face */
   double least;              /* shortest edge worth having, in the unit of what
-                                is read. Shorter edges collapse, except
-                                between two corners of the model. 0: 1e-6 of
-                                the diagonal of the box around all */
+                                is read. Curves and faces are not divided below
+                                it, and shorter edges collapse, except between
+                                two corners of the model and where triangles
+                                would turn. 0: no edge collapses, and the bound
+                                of division is 1e-7 of the diagonal of the box
+                                around all or 1e-6 of that of the median face,
+                                whichever is larger */
   double seconds;            /* give up then; 0: never */
   void (*note)(void *user, const char *text); /* what a report should say, line
                                 by line: unit, what was healed or dropped, with

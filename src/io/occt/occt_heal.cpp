@@ -41,7 +41,7 @@ Measure measure(const Model &model, size_t at)
 {
   GProp_GProps g;
 
-  BRepGProp::SurfaceProperties(model.faces[at].shape, g);
+  BRepGProp::SurfaceProperties(model.faces[at].shape, g, area_near / 10);
   return {at, std::fabs(g.Mass()), g.CentreOfMass()};
 }
 
@@ -330,6 +330,7 @@ void mend(Model &model, const Talk &talk)
 
 void complete(Model &model, const Talk &talk)
 {
+  std::vector<double> sizes;
   Bnd_Box box;
   size_t n = 0;
 
@@ -341,11 +342,20 @@ void complete(Model &model, const Talk &talk)
                        "kind", named(f).c_str()));
   }
   if (n) mend(model, talk);
-  for (const Face &f : model.faces)
-    BRepBndLib::Add(f.shape, box, Standard_False);
+  for (const Face &f : model.faces) {
+    Bnd_Box one;
+
+    BRepBndLib::Add(f.shape, one, Standard_False);
+    if (!one.IsVoid() && !one.IsOpen())
+      sizes.push_back(std::sqrt(one.SquareExtent()));
+    box.Add(one);
+  }
   if (box.IsVoid() || box.IsOpen())
     throw Failure{VG_ERR_INPUT, "a face of it reaches to infinity"};
   model.diagonal = std::sqrt(box.SquareExtent());
+  std::nth_element(sizes.begin(), sizes.begin() + sizes.size() / 2,
+                   sizes.end());
+  model.face_size = sizes[sizes.size() / 2];
 }
 
 void heal(const vg_cad_ask &ask, Model &model, const Talk &talk)

@@ -67,6 +67,7 @@ struct Model {
                                 the first of them, the others have no faces */
   std::vector<TopoDS_Edge> curves;     /* [number - 1], when triangulated */
   double diagonal = 0;       /* of the box around all */
+  double face_size = 0;      /* median of the diagonals of the faces' boxes */
   bool is_solid = false;     /* as in struct vg_cad_surface */
   double volume = 0;
 };

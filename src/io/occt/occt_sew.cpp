@@ -27,6 +27,8 @@ const double sequence[] = {1e-6, 1e-5, 1e-4}, share_of_edge = 0.1;   /* S52 */
 /* More open edges than this are not compared with each other. */
 const size_t most_compared = 2000;
 const int most_places = 3;
+/* Error of a shell's volume that Open CASCADE aims at. */
+const double integral_near = 1e-6;   /* S55 */
 
 /* An edge of a face, as the face has it. */
 struct Use {
@@ -365,7 +367,7 @@ void measure_volume(Model &model)
     GProp_GProps g;
 
     if (s.IsNull()) continue;
-    BRepGProp::VolumeProperties(s, g, 1e-5);
+    BRepGProp::VolumeProperties(s, g, integral_near);
     sum += g.Mass();
     absolute += std::fabs(g.Mass());
   }

@@ -11,6 +11,8 @@ namespace vg_occt {
 namespace {
 
 const int most_passes = 10;
+/* Square of the cosine by which a triangle may turn: 60 degrees. */
+const double most_turn = 0.25;   /* S51 */
 
 struct Short {
   double length2;
@@ -156,7 +158,10 @@ private:
       std::copy(&s_.tri[3 * t], &s_.tri[3 * t] + 3, v);
       gp_Vec was = normal(v);
       std::replace(v, v + 3, gone, to);
-      if (!(normal(v) * was > 0)) return false;
+      gp_Vec is = normal(v);
+      double dot = is * was;
+      if (!(dot > 0 && dot * dot >= most_turn * is.SquareMagnitude() *
+                                        was.SquareMagnitude())) return false;
     }
     return true;
   }

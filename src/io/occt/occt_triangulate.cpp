@@ -24,8 +24,9 @@ namespace vg_occt {
 namespace {
 
 const uint32_t none = UINT32_MAX;
-/* Shortest edge worth having, over the diagonal. */
-const double least_share = 1e-6;   /* S51 */
+/* Shortest edge worth having, over the diagonal and over the size of the median
+ * face, which a far boundary does not change. */
+const double least_of_all = 1e-7, least_of_face = 1e-6;   /* S51 */
 
 /* Mark in s.rim which edges of triangles are on the rims of their faces: those
  * of one triangle only. Triangles of one face are neighbours in the list. */
@@ -313,7 +314,9 @@ void triangulate(const vg_cad_ask &ask, Model &model, Surface &out,
 {
   Builder builder(model, out);
   Patches patches(ask, out.patches);
-  double least = ask.least > 0 ? ask.least : least_share * model.diagonal;
+  double least = ask.least > 0 ? ask.least
+                               : std::max(least_of_all * model.diagonal,
+                                          least_of_face * model.face_size);
   size_t n_bad = 0;
   std::string bad;
 
@@ -337,7 +340,7 @@ void triangulate(const vg_cad_ask &ask, Model &model, Surface &out,
                      bad.c_str()));
   if (out.tri.empty())
     throw Failure{VG_ERR_GEOMETRY, "none of its faces could be triangulated"};
-  collapse_short(out, least);
+  if (ask.least > 0) collapse_short(out, least);
   follow_faces(out, model);
   find_rims(out);
 }
