@@ -401,17 +401,18 @@ static struct vg_cad_ask question(uint32_t what, uint32_t kind, uint64_t n,
                                   const struct vg_cad_options *o)
 {
   return (struct vg_cad_ask){ what, kind, o->unit, o->patches, n, o->tolerance,
-                              o->chord, o->angle, o->least, 0 };
+                              o->chord, o->angle, o->least, 0, 0 };
 }
 
 /* A child that does not listen may have told the reason before it ended. */
 static void send_file(struct call *k, const struct vg_input *in,
-                      enum vg_cad_kind kind, int leave_apart)
+                      enum vg_cad_kind kind, int leave_apart, int with_volume)
 {
   struct vg_cad_ask ask = question(VG_CAD_ASK_READ, (uint32_t)kind, in->size,
                                    k->o);
 
   ask.leave_apart = leave_apart;
+  ask.with_volume = with_volume;
   if (vg_child_put(k->cad->child.fd, &ask, sizeof ask))
     vg_child_put(k->cad->child.fd, in->data, in->size);
 }
@@ -444,9 +445,10 @@ static int crashed_uniting(const struct call *k)
          && !(o->stop && o->stop(o->user));
 }
 
-vg_status vg_cad_parse(struct vg_cad *c, struct vg_input *in,
+static vg_status parse(struct vg_cad *c, struct vg_input *in,
                        enum vg_cad_kind kind, const struct vg_cad_options *o,
-                       struct vg_cad_surface *out, struct vg_error *err)
+                       int with_volume, struct vg_cad_surface *out,
+                       struct vg_error *err)
 {
   struct call k = { c, in->path, o, vg_clock() };
   vg_status st;
@@ -458,19 +460,26 @@ vg_status vg_cad_parse(struct vg_cad *c, struct vg_input *in,
   VG_TRY(start_child(c, err));
   c->has_model = 0;
   c->o = *o;
-  send_file(&k, in, kind, 0);
+  send_file(&k, in, kind, 0, with_volume);
   st = await_surface(&k, out, err);
   if (st < 0 && crashed_uniting(&k)) {
     if (o->note)
       o->note(o->user, "Open CASCADE crashed while it united solids that touch "
               "or overlap; the file was read again without that");
     VG_TRY(start_child(c, err));
-    send_file(&k, in, kind, 1);
+    send_file(&k, in, kind, 1, with_volume);
     st = await_surface(&k, out, err);
   }
   c->has_model = st >= 0;
 done:
   return st;
+}
+
+vg_status vg_cad_parse(struct vg_cad *c, struct vg_input *in,
+                       enum vg_cad_kind kind, const struct vg_cad_options *o,
+                       struct vg_cad_surface *out, struct vg_error *err)
+{
+  return parse(c, in, kind, o, 1, out, err);
 }
 
 vg_status vg_cad_again(struct vg_cad *c, const struct vg_cad_options *o,
@@ -499,7 +508,8 @@ vg_status vg_cad_read(const char *path, enum vg_cad_kind kind,
 
   VG_TRY(vg_input_open(path, &in, err));
   VG_TRY(vg_cad_open(&c, err));
-  VG_TRY(vg_cad_parse(c, &in, kind, options ? options : &plain, &s, err));
+  VG_TRY(parse(c, &in, kind, options ? options : &plain, keep != NULL, &s,
+               err));
   if (keep) {
     struct vg_mesh copy = VG_MESH_INIT;
 

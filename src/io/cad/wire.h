@@ -19,7 +19,8 @@ struct vg_cad_ask {
   int32_t unit, patches;
   uint64_t n;
   double tolerance, chord, angle, least;
-  int64_t leave_apart;       /* 1: do not unite solids */
+  int32_t leave_apart;       /* 1: do not unite solids */
+  int32_t with_volume;       /* 1: find out is_solid and volume */
 };
 
 /* The stage in which solids are united. */

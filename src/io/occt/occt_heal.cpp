@@ -373,7 +373,7 @@ void heal(const vg_cad_ask &ask, Model &model, const Talk &talk)
     tolerance = sew(ask, model, talk);
   }
   orient(model, tolerance, talk);
-  measure_volume(model);
+  if (ask.with_volume) measure_volume(model);
 }
 
 }  // namespace vg_occt

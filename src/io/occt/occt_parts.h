@@ -99,8 +99,8 @@ void complete(Model &model, const Talk &talk);
  * orient faces alike. */
 void heal(const vg_cad_ask &ask, Model &model, const Talk &talk);
 
-/** A solid fills a hollow of another one where its box is within that one's, and
- * this share of its area is common to both. */
+/** A solid fills a hollow of another one where its box is within that one's,
+ * and both share this part of its area. */
 const double hollow_share = 0.5, box_near = 1e-3;   /* S54 */
 
 /** Replace the faces of solids that touch or overlap by the outer faces of

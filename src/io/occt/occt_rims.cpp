@@ -1,10 +1,10 @@
 /* Triangles that do not follow their face.
  *
- * A triangle of a curved face whose corners all lie on the rim lies in the plane
- * of the rim: where the neighbouring face is a plane cap, or has such a triangle
- * too, the two overlap. Near a cusp, points of the face lie beyond the chord of
- * its rim, so that triangles fold. Swapping an edge, a new point of the face, or
- * taking a point of the face away mends both. */
+ * A triangle of a curved face whose corners all lie on the rim lies in the
+ * plane of the rim. Where the neighbouring face is a plane cap, or has such a
+ * triangle too, the two overlap. Near a cusp, points of the face lie beyond the
+ * chord of its rim, so that triangles fold. Swapping an edge, inserting a point
+ * of the face, or removing one mends both. */
 #include "io/occt/occt_parts.h"
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace {
 /* Squares of the cosines of angles between a triangle and its face: corners on
  * the rim, 1 degree where one neighbouring face has them all, else 30; other
  * triangles 60. */
-const double near_cap = 0.9996954, near_rim = 0.75, near_face = 0.25;   /* S53 */
+const double near_cap = 0.9996954, near_rim = 0.75, near_face = 0.25; /* S53 */
 const double pull[] = {0, 0.25, 0.5, 0.75};   /* from an edge into the face */
 /* Height over longest edge: below it a triangle is useless. */
 const double flat = 1e-7;
@@ -190,6 +190,11 @@ private:
            !is_bad(t);
   }
 
+  bool all_good(const Tri *t, size_t n) const
+  {
+    return std::all_of(t, t + n, [this](const Tri &f) { return is_good(f); });
+  }
+
   void list_sides()
   {
     sides_.clear();
@@ -251,7 +256,7 @@ private:
     return any;
   }
 
-  /* Triangles beside a bad one may be bad without a fold between them. */
+  /* Triangles next to a bad one may be bad without a fold between them. */
   bool spread(size_t t)
   {
     bool was = tri_[t].is_suspect || tri_[t].was_suspect;
@@ -389,7 +394,7 @@ private:
       Corner x = new_point((1 - part) * middle + part * q.uv.XY());
       const Tri to[4] = {{p, a, x}, {p, x, b}, {q, b, x}, {q, x, a}};
 
-      if (std::all_of(to, to + 4, [this](const Tri &f) { return is_good(f); })) {
+      if (all_good(to, 4)) {
         tri_[t] = to[0];
         tri_[other.tri] = to[2];
         tri_.push_back(to[1]);
@@ -408,7 +413,7 @@ private:
     Corner x = new_point((a.uv.XY() + b.uv.XY() + c.uv.XY()) / 3);
     const Tri to[3] = {{a, b, x}, {b, c, x}, {c, a, x}};
 
-    if (!std::all_of(to, to + 3, [this](const Tri &f) { return is_good(f); })) {
+    if (!all_good(to, 3)) {
       forget_point();
       return false;
     }

@@ -110,7 +110,7 @@ void send(const Model &model, const Surface &s, const Talk &talk)
   talk.put(s.patches.data(), s.patches.size() * sizeof s.patches[0]);
 }
 
-/* What the child holds between questions. */
+/* The state of the child between questions. */
 struct Held {
   Model healed;              /* as it was before it was triangulated */
   Model model;

@@ -1,5 +1,4 @@
-/* Edges that should be one, faces that should be oriented alike, and what they
- * enclose. */
+/* Sewing of open edges, orientation of faces, and the volume of the model. */
 #include "io/occt/occt_parts.h"
 
 #include <algorithm>

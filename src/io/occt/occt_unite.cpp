@@ -231,8 +231,8 @@ private:
     return g.Mass();
   }
 
-  /* Is solid j within the box of solid i, with much of its area but none of its
-   * material in common? */
+  /* Is solid j within the box of solid i, while the two share much of its area
+   * but none of its material? */
   bool is_hollow(size_t i, size_t j) const
   {
     TopTools_IndexedMapOfShape mine, other;
