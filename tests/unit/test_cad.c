@@ -499,22 +499,6 @@ static void egads_is_a_suffix(void **state)
   vg_mesh_release(&m);
 }
 
-static void a_pointer_of_git_lfs_is_called_that(void **state)
-{
-  static const char text[] = "version https://git-lfs.github.com/spec/v1\n"
-                             "oid sha256:4d7a214614ab2935c943f9e0ff69d22eadbb8f"
-                             "32b1258daaa5e2ca24d17e2393\nsize 12345\n";
-  struct vg_error err = VG_ERROR_INIT;
-  struct vg_cad *c = NULL;
-
-  (void)state;
-  assert_int_equal(vg_cad_open(&c, &err), VG_OK);
-  for (int kind = VG_CAD_STEP; kind <= VG_CAD_BREP; kind++)
-    refuses(c, text, sizeof text - 1, (enum vg_cad_kind)kind, VG_ERR_FORMAT,
-            "git lfs pull");
-  vg_cad_close(c);
-}
-
 static void what_is_cut_short_is_refused(void **state)
 {
   static const struct {
@@ -969,7 +953,6 @@ int main(void)
     cmocka_unit_test(volume_is_exact),
     cmocka_unit_test(text_behind_a_brep_is_no_damage),
     cmocka_unit_test(egads_is_a_suffix),
-    cmocka_unit_test(a_pointer_of_git_lfs_is_called_that),
     cmocka_unit_test(a_missing_face_is_named),
     cmocka_unit_test(crossing_bodies_are_for_the_check),
     cmocka_unit_test(what_is_no_cad_is_refused),

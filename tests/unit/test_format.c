@@ -25,7 +25,7 @@ static void suffixes_are_known(void **state)
     snprintf(name, sizeof name, "x.%s", s);
     assert_int_equal(vg_format_suffix_length(name), strlen(s) + 1);
   }
-  assert_int_equal(n, 54);
+  assert_int_equal(n, 56);
   assert_true(vg_format_can_write("b8.ugrid"));
   assert_true(vg_format_can_write("cogsg"));
   assert_true(vg_format_can_write("vtu"));

@@ -364,24 +364,12 @@ static const struct { const char *word, *last; } frames[] = {
   [VG_CAD_BREP] = { "CASCADE Topology V", "the number of its shape" },
 };
 
-static int is_pointer(const struct vg_input *in)
-{
-  static const char word[] = "version https://git-lfs";
-
-  return in->size >= sizeof word - 1 && !memcmp(in->data, word,
-                                                sizeof word - 1);
-}
-
 static vg_status check_frame(const struct vg_input *in, enum vg_cad_kind kind,
                              struct vg_error *err)
 {
   const char *word = frames[kind].word;
   size_t head = in->size < 4096 ? in->size : 4096;
 
-  if (is_pointer(in))
-    return vg_fail(err, VG_ERR_FORMAT, "%s: a pointer to a file in Git LFS "
-                   "(Large File Storage), not the file: fetch it with 'git lfs "
-                   "pull' in its repository", in->path);
   if (*word && !memmem(in->data, head, word, strlen(word)))
     return vg_fail(err, VG_ERR_FORMAT, "%s: no %s file: \"%s\" should stand "
                    "near its beginning", in->path,
