@@ -101,6 +101,40 @@ static void refuses_meeting(void **unused)
   vg_mesh_release(&old);
 }
 
+/* Two sides of a plate meet at one place: the points of the other places move
+ * all the same. */
+static void keeps_conflicts_local(void **unused)
+{
+  const double size[3] = { 1, 1, 0.01 };
+  const uint32_t n[3] = { 24, 24, 1 };
+  struct vg_mesh m = VG_MESH_INIT;
+  double (*to)[3];
+  uint8_t *stays;
+  size_t n_refused = 0, n_inside = 0;
+
+  (void)unused;
+  shape_box(&m, size, n);
+  to = calloc(m.n_point, sizeof *to);
+  stays = calloc(m.n_point, 1);
+  for (size_t p = 0; p < m.n_point; p++) {
+    const double *x = m.point[p];
+    const double far = hypot(x[0] - 0.5, x[1] - 0.5);
+    const int inside = x[0] > 0 && x[0] < 1 && x[1] > 0 && x[1] < 1;
+
+    memcpy(to[p], x, sizeof *to);
+    if (!inside) continue;
+    to[p][2] += x[2] > 0 ? 1e-3 : -1e-3;
+    if (x[2] > 0 && far < 0.1) to[p][2] -= 0.02;
+    n_inside++;
+  }
+  put_back(&m, to, stays, &n_refused);
+  assert_true(n_refused > 0 && n_refused < n_inside / 10);
+  shape_expect_sound(&m, 0);
+  free(to);
+  free(stays);
+  vg_mesh_release(&m);
+}
+
 /* Every point of a box is found on a triangle that has it, whatever way
  * triangles face, for any threads. */
 static void locates(void **unused)
@@ -149,6 +183,7 @@ int main(void)
     cmocka_unit_test(moves_all),
     cmocka_unit_test(refuses_folds),
     cmocka_unit_test(refuses_meeting),
+    cmocka_unit_test(keeps_conflicts_local),
     cmocka_unit_test(locates),
   };
 

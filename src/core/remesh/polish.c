@@ -44,7 +44,8 @@ static int take_ring(const struct vg_work *w, uint32_t p, struct ring *r)
   const double *own = w->point[p].asked.form;
   int open;
 
-  if (w->point[p].kind == VG_WORK_CORNER || w->point[p].frozen) return 0;
+  if (w->point[p].kind == VG_WORK_CORNER || w->point[p].frozen
+      || w->point[p].kept) return 0;
   r->n = vg_work_ring(w, p, r->half, &open);
   if (!r->n || r->n > MOST) return 0;
   r->is_stretched = w->form != NULL;

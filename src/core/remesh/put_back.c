@@ -1,7 +1,7 @@
-/* Outline: all points go at once, since neighbours go nearly the same way;
- * then those at triangles that came out bad go back, until there are none, and
- * those at triangles that meet. Where all are back the surface is the one that
- * was given, which is sound: so it ends. */
+/* Outline: all points move at once, since neighbours move nearly the same way.
+ * Points of bad triangles then return, until no triangle is bad, and so do
+ * points of triangles that meet. If triangles still meet, more and more rings
+ * of points around them return. The given surface is sound, so this ends. */
 #include "core/remesh/put_back.h"
 
 #include <stdlib.h>
@@ -19,7 +19,9 @@
 #define SLIVER 0.12       /* (sin 20 degrees)^2: smaller angles may not become
                              smaller yet by LOSS */
 #define LOSS 0.7          /* of the square of the sine */
-#define ROUNDS 12
+#define TIGHT 3           /* rounds that return the points of meeting triangles
+                             alone; each further round doubles the rings */
+#define ROUNDS 9          /* then all points return */
 
 /* --- where they are ------------------------------------------------------ */
 
@@ -69,23 +71,42 @@ struct moving {
   struct vg_mesh *m;
   const double (*from)[3];
   uint8_t *stays;
+  uint8_t *ring;            /* [n_point] number of the ring around triangles
+                               that meet, from 1; 0: in none */
   size_t n_refused;
 };
+
+static size_t return_point(struct moving *k, uint32_t p)
+{
+  if (k->stays[p]) return 0;
+  k->stays[p] = 1;
+  k->n_refused += vg_distance2(k->m->point[p], k->from[p]) > 0;
+  memcpy(k->m->point[p], k->from[p], sizeof *k->from);
+  return 1;
+}
 
 static size_t return_corners(struct moving *k, size_t t)
 {
   size_t n = 0;
 
-  for (int i = 0; i < 3; i++) {
-    uint32_t p = k->m->tri[t][i];
-
-    if (k->stays[p]) continue;
-    k->stays[p] = 1;
-    k->n_refused += vg_distance2(k->m->point[p], k->from[p]) > 0;
-    memcpy(k->m->point[p], k->from[p], sizeof *k->from);
-    n++;
-  }
+  for (int i = 0; i < 3; i++) n += return_point(k, k->m->tri[t][i]);
   return n;
+}
+
+/* Return the points in the first n rings around the marked points. */
+static void return_rings(struct moving *k, int n)
+{
+  for (uint8_t ring = 1; ring <= n; ring++)
+    for (size_t t = 0; t < k->m->n_tri; t++) {
+      const uint32_t *v = k->m->tri[t];
+
+      if (k->ring[v[0]] != ring && k->ring[v[1]] != ring
+          && k->ring[v[2]] != ring) continue;
+      for (int i = 0; i < 3; i++)
+        if (!k->ring[v[i]]) k->ring[v[i]] = (uint8_t)(ring + 1);
+    }
+  for (uint32_t p = 0; p < k->m->n_point; p++)
+    if (k->ring[p]) return_point(k, p);
 }
 
 static void normal(const double (*x)[3], const uint32_t *v, double n[3])
@@ -122,7 +143,7 @@ static void return_bad(struct moving *k)
   }
 }
 
-static vg_status return_meeting(struct moving *k, int threads,
+static vg_status return_meeting(struct moving *k, int rings, int threads,
                                 const struct vg_stop *stop, size_t *n,
                                 struct vg_error *err)
 {
@@ -132,14 +153,20 @@ static vg_status return_meeting(struct moving *k, int threads,
   vg_status st = vg_surface_check(k->m, &o, &r, err);
 
   *n = 0;
+  memset(k->ring, 0, k->m->n_point);
   for (size_t i = 0; st >= 0 && i < r.n_defect; i++)
-    for (int j = 0; j < 2; j++)
-      if ((r.defect[i].kind == VG_DEFECT_INTERSECTION
-           || r.defect[i].kind == VG_DEFECT_DEGENERATE_TRIANGLE
-           || r.defect[i].kind == VG_DEFECT_NONMANIFOLD_EDGE
-           || r.defect[i].kind == VG_DEFECT_DUPLICATE_TRIANGLE)
-          && r.defect[i].face[j] != SIZE_MAX)
-        *n += return_corners(k, r.defect[i].face[j]);
+    for (int j = 0; j < 2; j++) {
+      const size_t f = r.defect[i].face[j];
+
+      if ((r.defect[i].kind != VG_DEFECT_INTERSECTION
+           && r.defect[i].kind != VG_DEFECT_DEGENERATE_TRIANGLE
+           && r.defect[i].kind != VG_DEFECT_NONMANIFOLD_EDGE
+           && r.defect[i].kind != VG_DEFECT_DUPLICATE_TRIANGLE)
+          || f == SIZE_MAX) continue;
+      *n += return_corners(k, f);
+      for (int c = 0; c < 3; c++) k->ring[k->m->tri[f][c]] = 1;
+    }
+  if (*n && rings) return_rings(k, rings);
   vg_surface_report_release(&r);
   return st;
 }
@@ -150,23 +177,30 @@ vg_status vg_remesh_put_back(struct vg_mesh *m, const double (*to)[3],
                              struct vg_error *err)
 {
   double (*from)[3] = vg_alloc(m->n_point, sizeof *from);
-  struct moving k = { m, (const double (*)[3])from, stays, 0 };
+  struct moving k = { m, (const double (*)[3])from, stays,
+                      vg_alloc(m->n_point, 1), 0 };
   size_t n = 1;
   vg_status st = VG_OK;
 
-  if (!from) return vg_fail_memory(err, "the points of the surface");
+  if (!from || !k.ring) {
+    free(from);
+    free(k.ring);
+    return vg_fail_memory(err, "the points of the surface");
+  }
   memcpy(from, m->point, m->n_point * sizeof *from);
   for (size_t p = 0; p < m->n_point; p++)
     if (!stays[p]) memcpy(m->point[p], to[p], sizeof *to);
   for (int round = 0; n; round++) {
     if (round == ROUNDS)
-      for (size_t t = 0; t < m->n_tri; t++) return_corners(&k, t);
+      for (uint32_t p = 0; p < m->n_point; p++) return_point(&k, p);
     return_bad(&k);
-    VG_TRY(return_meeting(&k, threads, stop, &n, err));
+    VG_TRY(return_meeting(&k, round < TIGHT ? 0 : 1 << (round - TIGHT), threads,
+                          stop, &n, err));
   }
   *n_refused = k.n_refused;
 done:
   if (st < 0) memcpy(m->point, from, m->n_point * sizeof *from);
   free(from);
+  free(k.ring);
   return st;
 }

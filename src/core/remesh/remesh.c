@@ -12,55 +12,30 @@
 #include "base/memory.h"
 #include "core/geometry/vector.h"
 #include "core/remesh/blocks.h"
+#include "core/remesh/job.h"
+#include "core/remesh/flat.h"
 #include "core/remesh/passes.h"
 #include "core/remesh/result.h"
-#include "core/remesh/sizes.h"
 #include "core/remesh/stretch.h"
-#include "core/remesh/strips.h"
 #include "core/sizing/sizing_source.h"
-#include "core/surface/envelope.h"
 #include "core/surface/surface_check.h"
 
-#define TOLERANCE 1e-4    /* S20: of the body's length */
-#define RELATIVE 0.05     /* of the size */
-#define CHORD 0.6         /* of the tolerance: what sizes allow for arcs */
-#define NOISE 3.0         /* S43: of the accuracy of what is given: sizes that
-                             follow from it alone */
-#define H_MAX 0.02        /* of the length */
-#define H_MIN 2e-4        /* twice the tolerance */
-#define H_OUTER 0.04      /* of the domain's length */
-#define OUTER 0.9         /* S27: of the triangles of a patch: all of it is */
-#define TRIANGLES 3e8     /* more are refused */
-#define ROUNDS 3          /* S31: from the beginning, until triangles no longer
-                             meet */
+#define ROUNDS 2          /* S31: from the beginning, until triangles no longer
+                             meet; 1 of a reference with faults */
+#define KEEPS 7           /* S48: then, each time keeping the given triangles of
+                             twice as wide a neighbourhood */
 #define MENDS 4           /* in each: more and more triangles where they do */
 #define SPOTS 256         /* of them at a time */
 #define SPOT_LEAST 0.0625 /* S34: of h_min: sizes there */
+#define FLAT 0.1          /* of the tolerance: height of flat triangles that are
+                             swapped at the end */
+#define BAD 0.005         /* S47: of the triangles below VG_REMESH_BAD: more are
+                             worse than small sizes all along an edge */
 #define PHASES 2          /* of blocks, then the whole */
 #define HALVINGS 16       /* of needles, at most */
 #define POLISH2 0.46      /* S21: (sin 42.7 degrees)^2: below, triangles are
                              polished one by one */
 #define POLISHES 2        /* and once more after the last smoothing */
-
-struct job {
-  const struct vg_mesh *whole;  /* as given */
-  const struct vg_mesh *given;  /* the same, or with strips that are closed */
-  const struct vg_remesh_options *o;
-  struct vg_remesh_report r;
-  struct vg_ref ref;
-  struct vg_curves curves;
-  struct vg_strips strips;  /* closed ones; then given is their mesh */
-  double *strip_cap;        /* cap with strips; or NULL */
-  double *cap;              /* [n_tri] largest size, or NULL */
-  double *point_cap;        /* [n_point] the same, with strips; or NULL */
-  double *stretch;          /* [3 n_tri] that of the options, with strips */
-  double jag;               /* tolerance of lines, the same at any scale */
-  double far;               /* larger sizes are on an outer boundary only;
-                               0: there is none */
-  struct vg_source *source; /* those of the options, then spots */
-  size_t n_source, cap_source;
-  int looks;                /* nothing is changed */
-};
 
 static const char *const cause_names[] = { "corner", "strip", "line",
                                            "surface" };
@@ -133,238 +108,6 @@ static vg_status check_stretch(const struct vg_mesh *m, const double *stretch,
   return VG_OK;
 }
 
-static double length_of(const struct vg_mesh *m, const uint8_t *outer)
-{
-  double lo[3] = { INFINITY, INFINITY, INFINITY }, most = 0;
-  double hi[3] = { -INFINITY, -INFINITY, -INFINITY };
-
-  for (size_t t = 0; t < m->n_tri; t++)
-    for (int k = 0; k < 3 && !(outer && outer[t]); k++)
-      for (int d = 0; d < 3; d++) {
-        lo[d] = fmin(lo[d], m->point[m->tri[t][k]][d]);
-        hi[d] = fmax(hi[d], m->point[m->tri[t][k]][d]);
-      }
-  for (int d = 0; d < 3; d++) most = fmax(most, hi[d] - lo[d]);
-  return most;
-}
-
-/* A patch that is outer but for a sliver or two is outer: one of them would
- * make the body as long as the domain. */
-static vg_status complete_outer(const struct vg_mesh *m, uint8_t *outer,
-                                struct vg_error *err)
-{
-  size_t (*n)[2] = vg_calloc(m->n_patch, sizeof *n);
-
-  if (!n) return vg_fail_memory(err, "the patches");
-  for (size_t t = 0; t < m->n_tri; t++) n[m->tri_patch[t]][!!outer[t]]++;
-  for (size_t t = 0; t < m->n_tri; t++) {
-    const size_t *of = n[m->tri_patch[t]];
-
-    if ((double)of[1] >= OUTER * (double)(of[0] + of[1])) outer[t] = 1;
-  }
-  free(n);
-  return VG_OK;
-}
-
-/* Lengths by the body; the outer boundary of a whole domain has its own. */
-static vg_status settle(struct job *j, struct vg_error *err)
-{
-  const struct vg_mesh *m = j->given;
-  struct vg_remesh_report *r = &j->r;
-  struct vg_envelope e;
-  uint8_t *outer = vg_alloc(m->n_tri, 1);
-  double whole = length_of(m, NULL);
-  vg_status st = VG_OK;
-
-  if (!outer) VG_TRY(vg_fail_memory(err, "the outer boundary"));
-  VG_TRY(vg_envelope_measure(m, outer, &e, err));
-  if (e.is_domain) VG_TRY(complete_outer(m, outer, err));
-  r->length = e.is_domain ? length_of(m, outer) : whole;
-  if (!(r->length > 0)) r->length = whole;
-  j->jag = j->o->tolerance > 0 ? j->o->tolerance
-           : fmax(TOLERANCE * r->length, j->o->accuracy);
-  r->tolerance = j->jag * j->o->scale * fmax(j->o->scale, 1);
-  r->h_max = j->o->h_max > 0 ? j->o->h_max : H_MAX * r->length;
-  if (e.is_domain) {
-    j->far = fmin(r->h_max, H_MAX * r->length);
-    j->cap = vg_alloc(m->n_tri, sizeof *j->cap);
-    if (!j->cap) VG_TRY(vg_fail_memory(err, "the sizes on the surface"));
-    for (size_t t = 0; t < m->n_tri; t++)
-      j->cap[t] = outer[t] ? INFINITY : j->far;
-    if (!(j->o->h_max > 0)) r->h_max = fmax(r->h_max, H_OUTER * whole);
-  }
-  r->h_min = j->o->h_min > 0 ? j->o->h_min : fmin(H_MIN * r->length, r->h_max);
-  for (size_t t = 0; j->cap && t < m->n_tri; t++) j->cap[t] *= j->o->scale;
-  r->h_max *= j->o->scale;
-  j->far *= j->o->scale;
-  r->h_min *= j->o->scale;
-done:
-  free(outer);
-  return st;
-}
-
-/* Sizes in another unit would ask for more triangles than fit anywhere. */
-static vg_status check_number(const struct job *j, struct vg_error *err)
-{
-  const struct vg_ref *r = &j->ref;
-  double n = 0, size;
-
-  for (size_t t = 0; t < r->n_tri; t++) {
-    double x[3];
-
-    vg_cross(r->shape[t].u, r->shape[t].v, x);
-    size = (r->size[r->tri[t][0]] + r->size[r->tri[t][1]]
-            + r->size[r->tri[t][2]]) / 3;
-    n += vg_norm(x) / (0.8660254037844386 * size * size);
-  }
-  if (n < TRIANGLES) return VG_OK;
-  return vg_fail(err, VG_ERR_INPUT, "the new surface would have some %.2g "
-                 "triangles; are sizes and tolerance in its unit?", n);
-}
-
-static const double *cap_of(const struct job *j)
-{
-  return j->strip_cap ? j->strip_cap : j->cap;
-}
-
-static vg_status find_lines(struct job *j, const struct vg_curves_options *c,
-                            struct vg_error *err)
-{
-  vg_status st;
-
-  VG_TRY(vg_ref_set_faces(&j->ref, j->given, &j->o->stop, err));
-  VG_TRY(vg_stopped(&j->o->stop, err));
-  VG_TRY(vg_curves_find(&j->curves, &j->ref, c, err));
-  VG_TRY(vg_stopped(&j->o->stop, err));
-done:
-  return st;
-}
-
-static vg_status find_sizes(struct job *j, struct vg_error *err)
-{
-  const struct vg_remesh_options *o = j->o;
-  vg_status st;
-
-  VG_TRY(vg_ref_add_tree(&j->ref, &o->stop, err));
-  VG_TRY(vg_stopped(&o->stop, err));
-  VG_TRY(vg_sizes_make(&j->ref, &j->curves, &(struct vg_sizes_options){
-    o->per_turn / o->scale, CHORD * j->jag * o->scale * o->scale, o->scale,
-    j->r.h_min, j->r.h_max, NOISE * o->accuracy * o->scale,
-    vg_scaled_growth(o->growth, o->scale), cap_of(j),
-    j->point_cap ? j->point_cap : o->cap, o->across, j->given->tri_patch,
-    o->stop }, err));
-done:
-  return st;
-}
-
-/* Largest sizes of the mesh with the points where strips are cut. */
-static vg_status extend_caps(struct job *j, struct vg_error *err)
-{
-  const struct vg_strips *s = &j->strips;
-  const size_t n = s->mesh.n_point - s->n_new;
-  double *cap;
-
-  if (j->cap) {
-    cap = j->strip_cap = vg_alloc(s->mesh.n_tri, sizeof *cap);
-    if (!cap) return vg_fail_memory(err, "the sizes on the surface");
-    for (size_t t = 0; t < s->mesh.n_tri; t++) cap[t] = j->cap[s->tri_from[t]];
-  }
-  if (!j->o->cap) return VG_OK;
-  cap = j->point_cap = vg_alloc(s->mesh.n_point, sizeof *cap);
-  if (!cap) return vg_fail_memory(err, "the sizes on the surface");
-  memcpy(cap, j->o->cap, n * sizeof *cap);
-  for (size_t i = 0; i < s->n_new; i++)
-    cap[n + i] = fmin(cap[s->ends[i][0]], cap[s->ends[i][1]]);
-  return VG_OK;
-}
-
-static vg_status extend_stretch(struct job *j, struct vg_error *err)
-{
-  const struct vg_strips *s = &j->strips;
-  const size_t n = 3 * s->mesh.n_tri;
-
-  if (!j->o->stretch) return VG_OK;
-  j->stretch = vg_calloc(n, sizeof *j->stretch);
-  if (!j->stretch) return vg_fail_memory(err, "the lines that are stretched");
-  for (size_t h = 0; h < n; h++)
-    if (s->half_from[h] != VG_REF_NONE)
-      j->stretch[h] = j->o->stretch[s->half_from[h]];
-  return VG_OK;
-}
-
-/* Where strips are closed, lines are found again without them. */
-static vg_status close_strips(struct job *j, struct vg_curves_options *c,
-                              struct vg_error *err)
-{
-  vg_status st;
-
-  VG_TRY(vg_strips_find(&j->ref, &j->curves, j->given,
-    &(struct vg_strips_options){ j->r.tolerance, j->o->across, c },
-    &j->strips, err));
-  if (!j->strips.n) goto done;
-  VG_TRY(extend_caps(j, err));
-  VG_TRY(extend_stretch(j, err));
-  vg_curves_release(&j->curves);
-  vg_ref_release(&j->ref);
-  j->given = &j->strips.mesh;
-  c->tri_patch = j->given->tri_patch;
-  c->stretch = j->stretch;
-  c->closed = j->strips.closed;
-  VG_TRY(find_lines(j, c, err));
-done:
-  return st;
-}
-
-static void release_reference(struct job *j)
-{
-  free(j->strip_cap);
-  free(j->point_cap);
-  free(j->stretch);
-  j->strip_cap = j->point_cap = j->stretch = NULL;
-  vg_curves_release(&j->curves);
-  vg_ref_release(&j->ref);
-  vg_strips_release(&j->strips);
-  j->given = j->whole;
-}
-
-/* The reference with its lines and sizes. */
-static vg_status set_reference(struct job *j, int closes, struct vg_error *err)
-{
-  const struct vg_remesh_options *o = j->o;
-  struct vg_curves_options c = { o->ridge_angle, j->jag, j->whole->tri_patch,
-    j->whole->patch, o->hard, o->stretch, NULL };
-  vg_status st;
-
-  VG_TRY(find_lines(j, &c, err));
-  if (closes) VG_TRY(close_strips(j, &c, err));
-  VG_TRY(find_sizes(j, err));
-  if (j->looks) goto done;
-  VG_TRY(check_number(j, err));
-  VG_TRY(vg_ref_thin(&j->ref, (1 + VG_WORK_NEARER) * j->r.tolerance,
-                     (1 + VG_WORK_NEARER) * RELATIVE * j->r.h_max, cap_of(j),
-                     o->threads, &o->stop, err));
-done:
-  return st;
-}
-
-static vg_status prepare(struct job *j, struct vg_error *err)
-{
-  const struct vg_remesh_options *o = j->o;
-  vg_status st;
-
-  VG_TRY(check_stretch(j->given, o->stretch, err));
-  VG_TRY(settle(j, err));
-  VG_TRY(vg_stopped(&o->stop, err));
-  j->source = vg_alloc(o->n_source, sizeof *j->source);
-  if (!j->source) VG_TRY(vg_fail_memory(err, "the sources"));
-  if (o->n_source)
-    memcpy(j->source, o->source, o->n_source * sizeof *j->source);
-  j->n_source = j->cap_source = o->n_source;
-  VG_TRY(set_reference(j, !j->looks, err));
-done:
-  return st;
-}
-
 /* --- one round ----------------------------------------------------------- */
 
 /* Until no edge is much too long. */
@@ -412,7 +155,7 @@ done:
 
 /* What is near the border of a block in one phase is inside one in the next;
  * what is near both is left to one thread. */
-static vg_status run(struct job *j, struct vg_work *w, vg_block_body body,
+static vg_status run(struct vg_remesh_job *j, struct vg_work *w, vg_block_body body,
                      struct vg_error *err)
 {
   const size_t n = vg_blocks_number(w);
@@ -428,7 +171,7 @@ done:
 
 /* Edges are halved everywhere before anything else is done: beside large
  * triangles, where borders are, points would come and go. */
-static vg_status change(struct job *j, struct vg_work *w, struct vg_error *err)
+static vg_status change(struct vg_remesh_job *j, struct vg_work *w, struct vg_error *err)
 {
   vg_status st;
 
@@ -446,8 +189,14 @@ static double source_size(const void *user, const double x[3])
 
 /* --- whether triangles meet ---------------------------------------------- */
 
+static int is_fault(const struct vg_defect *d)
+{
+  return d->kind != VG_DEFECT_OPEN_EDGE && d->kind != VG_DEFECT_SHELL
+         && d->kind != VG_DEFECT_NO_BC;
+}
+
 /* Ask for smaller triangles where face f is. */
-static vg_status add_spot(struct job *j, const struct vg_mesh *m, size_t f,
+static vg_status add_spot(struct vg_remesh_job *j, const struct vg_mesh *m, size_t f,
                           struct vg_error *err)
 {
   struct vg_source s = { .kind = VG_SOURCE_POINT };
@@ -468,10 +217,86 @@ static vg_status add_spot(struct job *j, const struct vg_mesh *m, size_t f,
   return VG_OK;
 }
 
-/* Whether the new surface is as sound as the one given; else spots are added
- * where it is not. */
-static vg_status is_sound(struct job *j, struct vg_mesh *m, int last,
-                          int *sound, struct vg_error *err)
+/* Keep the given triangles within the distance of face f. Returns how many
+ * points are kept more than before. */
+static size_t keep_near(struct vg_remesh_job *j, const struct vg_mesh *m,
+                        size_t f, double distance)
+{
+  double lo[3] = { INFINITY, INFINITY, INFINITY };
+  double hi[3] = { -INFINITY, -INFINITY, -INFINITY };
+  uint32_t *tri;
+  size_t n, n_new = 0;
+
+  for (int k = 0; k < 3; k++)
+    for (int d = 0; d < 3; d++) {
+      lo[d] = fmin(lo[d], m->point[m->tri[f][k]][d]);
+      hi[d] = fmax(hi[d], m->point[m->tri[f][k]][d]);
+    }
+  n = vg_ref_around(&j->ref, lo, hi, distance, 0, NULL);
+  tri = vg_alloc(n, sizeof *tri);
+  if (!tri) return 0;
+  vg_ref_around(&j->ref, lo, hi, distance, n, tri);
+  for (size_t i = 0; i < 3 * n; i++) {
+    uint8_t *keep = &j->keep[j->ref.tri[tri[i / 3]][i % 3]];
+
+    n_new += !*keep;
+    *keep = 1;
+  }
+  free(tri);
+  return n_new;
+}
+
+static double edge_of(const struct vg_mesh *m, size_t f)
+{
+  double most = 0;
+
+  for (int k = 0; k < 3; k++)
+    most = fmax(most, vg_distance(m->point[m->tri[f][k]],
+                                  m->point[m->tri[f][(k + 1) % 3]]));
+  return most;
+}
+
+static vg_status keep_around(struct vg_remesh_job *j, const struct vg_mesh *m,
+                             const struct vg_surface_report *r, double rings,
+                             struct vg_error *err)
+{
+  size_t n = 0;
+
+  if (!j->keep) j->keep = vg_calloc(j->whole->n_point, 1);
+  if (!j->keep) return vg_fail_memory(err, "the new surface");
+  for (size_t i = 0; i < r->n_defect; i++)
+    for (int k = 0; k < 2; k++) {
+      const struct vg_defect *d = &r->defect[i];
+
+      if (!is_fault(d) || d->face[k] == SIZE_MAX) continue;
+      if (!j->n_keep && !n) memcpy(j->r.kept_at, d->at, sizeof d->at);
+      n += keep_near(j, m, d->face[k], rings * edge_of(m, d->face[k]));
+    }
+  j->n_keep += n;
+  j->is_all_kept = !n;
+  return VG_OK;
+}
+
+static vg_status refuse(const struct vg_remesh_job *j,
+                        const struct vg_defect *d, struct vg_error *err)
+{
+  if (j->r.n_crossing[1])
+    return vg_fail(err, VG_ERR_GEOMETRY, "near (%g, %g, %g) the surface "
+                   "intersects itself (%s) by more than the new surface's "
+                   "tolerance, %g, hides: repair the model there, or wrap the "
+                   "surface (--wrap SIZE)", d->at[0], d->at[1], d->at[2],
+                   vg_defect_name(d->kind), j->r.tolerance);
+  return vg_fail(err, VG_ERR_GEOMETRY, "near (%g, %g, %g) new triangles meet "
+                 "however small they are (%s): give a smaller "
+                 "surface_tolerance, or mesh the surface as it is", d->at[0],
+                 d->at[1], d->at[2], vg_defect_name(d->kind));
+}
+
+/* Whether the new surface is as sound as the one given. If it is not, spots are
+ * added there, or, with rings > 0, given triangles are kept. */
+static vg_status is_sound(struct vg_remesh_job *j, struct vg_mesh *m,
+                          int last, double rings, int *sound,
+                          struct vg_error *err)
 {
   struct vg_surface_check_options o = { .threads = j->o->threads,
                                         .stop = j->o->stop };
@@ -480,23 +305,18 @@ static vg_status is_sound(struct job *j, struct vg_mesh *m, int last,
   vg_status st;
 
   VG_TRY(vg_surface_check(m, &o, &r, err));
+  j->n_fault[0] = j->n_fault[1];
+  j->n_fault[1] = r.count[VG_DEFECT_INTERSECTION];
   for (size_t i = 0; i < r.n_defect; i++) {
     const struct vg_defect *d = &r.defect[i];
 
-    if (d->kind == VG_DEFECT_OPEN_EDGE || d->kind == VG_DEFECT_SHELL
-        || d->kind == VG_DEFECT_NO_BC) continue;
-    if (last) {
-      st = vg_fail(err, VG_ERR_GEOMETRY, "near (%g, %g, %g) new triangles "
-                   "meet however small they are (%s): give a smaller "
-                   "surface_tolerance, or mesh the surface as it is",
-                   d->at[0], d->at[1], d->at[2], vg_defect_name(d->kind));
-      goto done;
-    }
-    if (n++ >= SPOTS) break;
+    if (!is_fault(d)) continue;
+    if (last) VG_TRY(refuse(j, d, err));
+    if (n++ >= SPOTS || rings > 0) break;
     for (int k = 0; k < 2; k++)
-      if (d->face[k] != SIZE_MAX)
-        VG_TRY(add_spot(j, m, d->face[k], err));
+      if (d->face[k] != SIZE_MAX) VG_TRY(add_spot(j, m, d->face[k], err));
   }
+  if (n && rings > 0) VG_TRY(keep_around(j, m, &r, rings, err));
   *sound = !n;
 done:
   vg_surface_report_release(&r);
@@ -511,12 +331,16 @@ static void clear_report(struct vg_remesh_report *r)
   free(r->bad);
   *r = (struct vg_remesh_report){ .length = kept.length,
     .tolerance = kept.tolerance, .h_min = kept.h_min, .h_max = kept.h_max,
-    .n_round = kept.n_round + 1 };
+    .n_round = kept.n_round + 1, .n_clean = kept.n_clean,
+    .n_crossing = { kept.n_crossing[0], kept.n_crossing[1] },
+    .crossing_depth = kept.crossing_depth };
+  memcpy(r->kept_at, kept.kept_at, sizeof r->kept_at);
+  memcpy(r->crossing_at, kept.crossing_at, sizeof r->crossing_at);
 }
 
 /* --- all ----------------------------------------------------------------- */
 
-static vg_status ask_sources(const struct job *j, struct vg_work *w,
+static vg_status ask_sources(const struct vg_remesh_job *j, struct vg_work *w,
                              struct vg_source_set *set, struct vg_error *err)
 {
   const struct vg_sizing_options s = {
@@ -557,9 +381,53 @@ static void narrow(struct vg_work *w)
       w->stamp[t] = w->clock;
 }
 
-/* Triangles that meet are made smaller where they are; should that not help,
- * *sound is 0. */
-static vg_status make(struct job *j, struct vg_mesh *out, int last, int *sound,
+static double angle_of(const struct vg_mesh *m, size_t t)
+{
+  const double sine2 = vg_form_shape(NULL, m->point[m->tri[t][0]],
+                                     m->point[m->tri[t][1]],
+                                     m->point[m->tri[t][2]]);
+
+  return asin(fmin(sqrt(sine2), 1)) * (180 / M_PI);   /* for the report only */
+}
+
+/* Take flat triangles out of the new surface, and bring the report up to
+ * date. */
+static vg_status swap_flat(struct vg_remesh_job *j, struct vg_mesh *m,
+                           struct vg_error *err)
+{
+  struct vg_remesh_report *r = &j->r;
+  size_t n = 0;
+  vg_status st;
+
+  if (j->stretch || j->o->stretch) return VG_OK;
+  VG_TRY(vg_flat_swap(m, &(struct vg_flat_limit){ FLAT * r->tolerance,
+    j->far }, &j->n_flat, err));
+  if (!j->n_flat) goto done;
+  r->angle_min = 60;
+  for (size_t t = 0; t < m->n_tri; t++)
+    r->angle_min = fmin(r->angle_min, angle_of(m, t));
+  memset(r->cause, 0, sizeof r->cause);
+  for (size_t i = 0; i < r->n_bad; i++) {
+    r->bad[i].angle = angle_of(m, r->bad[i].face);
+    if (r->bad[i].angle >= VG_REMESH_BAD) continue;
+    r->cause[r->bad[i].cause]++;
+    r->bad[n++] = r->bad[i];
+  }
+  r->n_bad = n;
+done:
+  return st;
+}
+
+/* How often triangles that meet are made smaller; whether failure is final; how
+ * wide a neighbourhood of them is kept next, in their edges. */
+struct attempt {
+  int mends, last;
+  double rings;
+};
+
+/* Triangles that meet are made smaller; if that does not help, *sound is 0. */
+static vg_status make(struct vg_remesh_job *j, struct vg_mesh *out,
+                      const struct attempt *a, int *sound,
                       struct vg_error *err)
 {
   struct vg_source_set set = VG_SOURCE_SET_INIT;
@@ -567,9 +435,9 @@ static vg_status make(struct job *j, struct vg_mesh *out, int last, int *sound,
     .by = j->stretch ? j->stretch : j->o->stretch };
   struct vg_remesh_report *r = &j->r;
   struct vg_work w = { .ref = &j->ref, .curves = &j->curves,
-    .tolerance = r->tolerance, .relative = RELATIVE, .far = j->far,
+    .tolerance = r->tolerance, .relative = VG_JOB_RELATIVE, .far = j->far,
     .h_min = r->h_min, .h_max = r->h_max, .threads = j->o->threads,
-    .stop = j->o->stop };
+    .keep = j->keep, .stop = j->o->stop };
   vg_status st;
 
   if (stretch.by) w.stretch = &stretch;
@@ -577,7 +445,9 @@ static vg_status make(struct job *j, struct vg_mesh *out, int last, int *sound,
   if (j->n_source > j->o->n_source) w.h_min *= SPOT_LEAST;
   VG_TRY(vg_work_begin(&w, err));
   if (!j->looks) VG_TRY(change(j, &w, err));
-  for (int mend = 0; !*sound && mend < MENDS; mend++) {
+  for (int mend = 0; !*sound && mend < a->mends; mend++) {
+    const int is_end = mend + 1 == a->mends;
+
     if (mend) {
       w.h_min = SPOT_LEAST * r->h_min;
       VG_TRY(ask_sources(j, &w, &set, err));
@@ -588,11 +458,18 @@ static vg_status make(struct job *j, struct vg_mesh *out, int last, int *sound,
     vg_mesh_release(out);
     VG_TRY(vg_result_store(&w, j->given, out, r, err));
     if (j->looks) break;
-    VG_TRY(is_sound(j, out, last && mend + 1 == MENDS, sound, err));
+    VG_TRY(swap_flat(j, out, err));
+    VG_TRY(is_sound(j, out, a->last && is_end, is_end ? a->rings : 0, sound,
+                    err));
+    if (!mend || *sound || j->n_fault[1] <= j->n_fault[0]) continue;
+    /* Smaller triangles make it worse. */
+    if (a->rings > 0 && !is_end)
+      VG_TRY(is_sound(j, out, a->last, a->rings, sound, err));
+    break;
   }
   r->n_split = w.n_split;
   r->n_collapse = w.n_collapse;
-  r->n_swap = w.n_swap;
+  r->n_swap = w.n_swap + j->n_flat;
   r->n_move = w.n_move;
 done:
   vg_work_release(&w);
@@ -601,30 +478,80 @@ done:
   return st;
 }
 
-static vg_status repeat(struct job *j, struct vg_mesh *out,
-                        struct vg_error *err)
+/* New triangles still meet: given ones are kept there, more and more of them,
+ * at the sizes that were asked for. */
+static vg_status keep(struct vg_remesh_job *j, struct vg_mesh *out,
+                      struct vg_error *err)
 {
-  size_t left = 0;
   int sound = 0;
   vg_status st = VG_OK;
 
-  for (int round = 1; !sound; round++) {
-    VG_TRY(make(j, out, round == ROUNDS && !j->strips.n, &sound, err));
+  j->n_source = j->o->n_source;
+  for (int i = 1; !sound; i++) {
+    const struct attempt a = { 1, i == KEEPS || j->is_all_kept, 1 << i };
+
+    VG_TRY(make(j, out, &a, &sound, err));
+  }
+  for (size_t t = 0; t < j->whole->n_tri; t++) {
+    const uint32_t *v = j->whole->tri[t];
+
+    j->r.n_kept += j->keep[v[0]] && j->keep[v[1]] && j->keep[v[2]];
+  }
+done:
+  return st;
+}
+
+/* The first attempt, where long edges are cut. */
+static vg_status begin_simply(struct vg_remesh_job *j, const struct vg_mesh *m,
+                              const struct vg_remesh_options *o,
+                              struct vg_mesh *out, int *sound,
+                              struct vg_error *err)
+{
+  const struct attempt once = { 1, 0, 0 };
+  vg_status st = VG_OK;
+
+  if (!j->is_cut) return VG_OK;
+  VG_TRY(make(j, out, &once, sound, err));
+  /* Sizes that are larger in the middle may be what made triangles meet, or what
+   * keeps needles beside a knife's edge from being divided. */
+  if ((double)j->r.n_bad > BAD * (double)out->n_tri) *sound = 0;
+  if (!*sound) VG_TRY(vg_job_restart(j, m, o, err));
+done:
+  return st;
+}
+
+static vg_status repeat(struct vg_remesh_job *j, const struct vg_mesh *m,
+                        const struct vg_remesh_options *o,
+                        struct vg_mesh *out, struct vg_error *err)
+{
+  const int rounds = j->r.n_crossing[0] ? 1 : ROUNDS;
+  const int hopeless = j->r.n_crossing[1] > 0;
+  size_t left = 0;
+  int sound = 0;
+  vg_status st;
+
+  VG_TRY(begin_simply(j, m, o, out, &sound, err));
+  for (int round = 1; !sound && round <= rounds; round++) {
+    const struct attempt a = { hopeless ? 1 : MENDS, hopeless,
+                               !j->strips.n && round == rounds ? 1 : 0 };
+
+    VG_TRY(make(j, out, &a, &sound, err));
     if (sound || !j->strips.n) continue;
     /* They may be what made triangles meet: all again without. */
     left = j->strips.n;
-    release_reference(j);
-    VG_TRY(set_reference(j, 0, err));
+    vg_job_release_reference(j);
+    VG_TRY(vg_job_set_reference(j, 0, err));
     j->n_source = j->o->n_source;
     round = 0;
   }
+  if (!sound) VG_TRY(keep(j, out, err));
   j->r.n_left = left;
 done:
   return st;
 }
 
 /* Of m, which was given, and what came out. */
-static void tell(struct job *j, const struct vg_mesh *m,
+static void tell(struct vg_remesh_job *j, const struct vg_mesh *m,
                  const struct vg_mesh *out, struct vg_remesh_report *report)
 {
   j->r.n_tri[0] = m->n_tri;
@@ -644,29 +571,23 @@ static void tell(struct job *j, const struct vg_mesh *m,
   j->r.bad = NULL;
 }
 
-static void release(struct job *j)
-{
-  free(j->r.bad);
-  free(j->cap);
-  free(j->source);
-  release_reference(j);
-}
-
 vg_status vg_remesh(struct vg_mesh *m, const struct vg_remesh_options *o,
                     struct vg_remesh_report *report, struct vg_error *err)
 {
-  struct job j = { .whole = m, .given = m, .o = o };
+  struct vg_remesh_job j = { .whole = m, .given = m, .o = o };
   struct vg_mesh out = VG_MESH_INIT;
   vg_status st;
 
   VG_TRY(check_surface(m, err));
   VG_TRY(check_options(o, err));
-  VG_TRY(prepare(&j, err));
-  VG_TRY(repeat(&j, &out, err));
+  VG_TRY(check_stretch(m, o->stretch, err));
+  VG_TRY(vg_job_prepare(&j, err));
+  VG_TRY(repeat(&j, m, o, &out, err));
   tell(&j, m, &out, report);
   vg_mesh_move(m, &out);
 done:
-  release(&j);
+  free(j.r.bad);
+  vg_job_release(&j);
   vg_mesh_release(&out);
   return st;
 }
@@ -676,18 +597,20 @@ vg_status vg_remesh_judge(const struct vg_mesh *m,
                           struct vg_remesh_report *report,
                           struct vg_error *err)
 {
-  struct job j = { .whole = m, .given = m, .o = o, .looks = 1 };
+  struct vg_remesh_job j = { .whole = m, .given = m, .o = o, .looks = 1 };
   struct vg_mesh out = VG_MESH_INIT;
   int sound = 0;
   vg_status st;
 
   VG_TRY(check_surface(m, err));
   VG_TRY(check_options(o, err));
-  VG_TRY(prepare(&j, err));
-  VG_TRY(make(&j, &out, 0, &sound, err));
+  VG_TRY(check_stretch(m, o->stretch, err));
+  VG_TRY(vg_job_prepare(&j, err));
+  VG_TRY(make(&j, &out, &(struct attempt){ 1, 0, 0 }, &sound, err));
   tell(&j, m, &out, report);
 done:
-  release(&j);
+  free(j.r.bad);
+  vg_job_release(&j);
   vg_mesh_release(&out);
   return st;
 }

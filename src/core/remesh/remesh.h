@@ -49,6 +49,13 @@ struct vg_remesh_options {
                                so many times as long as across it, which fades
                                out around; 0 to VG_REMESH_STRETCH, 1 and less:
                                not; or NULL */
+  int is_body;              /* 1: a body in open air, never the boundary of a
+                               whole domain */
+  int is_reference;         /* 1: the surface may intersect itself and have
+                               degenerate triangles, as tessellations of CAD
+                               do: faults that the tolerance hides are removed
+                               before anything else, and only the new surface
+                               is judged */
   const uint8_t *hard;      /* [n_patch] all borders of the patch stay; or
                                NULL */
   int threads;              /* 0: one per core; the same bytes for any */
@@ -87,6 +94,15 @@ struct vg_remesh_report {
                                than the tolerance */
   size_t n_left;            /* such pieces that are lines still, as triangles
                                met when they were closed */
+  size_t n_clean;           /* with is_reference: edges of the given surface
+                               below the tolerance that were collapsed */
+  size_t n_crossing[2];     /* the same: pairs of given triangles that
+                               intersect each other, as given and after the
+                               repair of those that the tolerance hides */
+  double crossing_depth, crossing_at[3];  /* the deepest of the first ones */
+  size_t n_kept;            /* given triangles that stay as they are, since new
+                               ones met there */
+  double kept_at[3];        /* the first of them */
   double closed_length, closed_width, closed_at[3];  /* of all; the widest */
   size_t n_split, n_collapse, n_swap, n_move;
   int n_round;              /* 1, and one more for each time that triangles

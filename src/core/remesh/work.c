@@ -127,6 +127,7 @@ static vg_status make_points(struct vg_work *w, struct vg_error *err)
     memcpy(q->x, r->point[p], sizeof q->x);
     q->half = q->home = VG_REF_NONE;
     q->given = (uint32_t)p;
+    q->kept = w->keep && w->keep[p];
     q->changed = 1;
   }
   for (uint32_t h = 0; h < 3 * w->n_tri; h++) {

@@ -29,6 +29,7 @@ struct vg_work_point {
                                are made to others; FANS: none to it at all, as
                                its triangles in the block do not hang together
                                */
+  uint8_t kept;             /* point of given triangles that stay as they are */
   uint64_t changed;         /* when triangles at it changed */
   struct vg_metric asked;   /* form: not set where the surface has none */
   uint64_t tried;           /* when it was last looked at */
@@ -62,6 +63,8 @@ struct vg_work {
   struct vg_stretch *stretch; /* made to begin with, for the form; or NULL */
   double h_min, h_max;
   int threads;              /* to begin with */
+  const uint8_t *keep;      /* [points of ref] given triangles of three such
+                               points stay as they are; NULL: none */
   size_t n_point, cap_point, n_tri, cap_tri, cap_mate, cap_edge, cap_first,
          cap_stamp;
   size_t n_line, cap_line;
@@ -130,6 +133,14 @@ static inline int vg_work_is_border(const struct vg_work *w, uint32_t h)
 {
   return w->mate[h] == VG_REF_NONE && w->point[vg_work_from(w, h)].frozen
          && w->point[vg_work_to(w, h)].frozen;
+}
+
+/** An edge that stays as it is: of the border of a block, or of given triangles
+ * that are kept. */
+static inline int vg_work_stays(const struct vg_work *w, uint32_t h)
+{
+  return vg_work_is_border(w, h) || (w->point[vg_work_from(w, h)].kept
+                                     && w->point[vg_work_to(w, h)].kept);
 }
 
 /** May there be a new edge between a and b? */

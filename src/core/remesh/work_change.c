@@ -220,12 +220,12 @@ uint32_t vg_work_split(struct vg_work *w, uint32_t h, const double *at)
   struct vg_work_point p = w->point[a];
   double s = 0;
 
-  if (vg_work_ends(w) || vg_work_is_border(w, h)) return VG_REF_NONE;
+  if (vg_work_ends(w) || vg_work_stays(w, h)) return VG_REF_NONE;
   vg_cavity_begin(w, &c, a);
   vg_cavity_narrow(w, &c, b);
   middle_of(w, h, at, &p, &s);
   p.kind = w->edge[h] ? VG_WORK_CURVE : VG_WORK_FACE;
-  p.frozen = p.goes = 0;
+  p.frozen = p.kept = p.goes = 0;
   p.given = VG_REF_NONE;
   for (int k = 0; w->form && k < 6; k++)
     p.asked.form[k] = (p.asked.form[k] + w->point[b].asked.form[k]) / 2;
@@ -418,7 +418,7 @@ int vg_work_collapse(struct vg_work *w, uint32_t h, double most, double shape)
   int open;
 
   if (vg_work_ends(w) || w->point[v].kind == VG_WORK_CORNER
-      || w->point[v].frozen) return 0;
+      || w->point[v].frozen || w->point[v].kept) return 0;
   n = vg_work_ring(w, v, ring, &open);
   if (!n) return 0;
   if (w->edge[h] && w->point[v].kind == VG_WORK_FACE) return 0;
@@ -452,7 +452,8 @@ int vg_work_swap(struct vg_work *w, uint32_t h)
   size_t n;
   int open;
 
-  if (vg_work_ends(w) || g == VG_REF_NONE || w->edge[h]) return 0;
+  if (vg_work_ends(w) || g == VG_REF_NONE || w->edge[h]
+      || vg_work_stays(w, h)) return 0;
   p[0] = vg_work_from(w, h);
   p[1] = vg_work_to(w, h);
   p[2] = vg_work_from(w, vg_ref_prev(h));
@@ -548,7 +549,7 @@ int vg_work_move(struct vg_work *w, uint32_t p, const double x[3],
   int open;
 
   if (vg_work_ends(w) || w->point[p].kind != VG_WORK_FACE
-      || w->point[p].frozen) return 0;
+      || w->point[p].frozen || w->point[p].kept) return 0;
   n_ring = vg_work_ring(w, p, ring, &open);
   if (!n_ring) return 0;
   for (size_t i = 0; i < n_ring; i++) normal_of(w, ring[i] / 3, n);
@@ -592,7 +593,8 @@ int vg_work_span(const struct vg_work *w, uint32_t p, struct vg_work_span *s)
   size_t n;
   int open;
 
-  if (w->point[p].kind != VG_WORK_CURVE || w->point[p].frozen) return 0;
+  if (w->point[p].kind != VG_WORK_CURVE || w->point[p].frozen
+      || w->point[p].kept) return 0;
   n = vg_work_ring(w, p, ring, &open);
   if (!n || !lines_at(w, p, n, ring, s->line)) return 0;
   s->curve = w->line[s->line[0]].curve;

@@ -236,6 +236,16 @@ int vg_format_is_cad(const char *path)
   return cad_kind(f) != VG_CAD_NONE;
 }
 
+int vg_format_is_tessellation(const char *path)
+{
+  static const char *const name[] = { "stl", "tri", "triq", "obj" };
+  const struct format *f = find(path, without_gz(path));
+
+  for (size_t i = 0; f && i < sizeof name / sizeof *name; i++)
+    if (!strcmp(f->suffix, name[i])) return 1;
+  return 0;
+}
+
 int vg_format_holds_cells(const char *path)
 {
   const struct format *f = find(path, without_gz(path));

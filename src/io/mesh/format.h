@@ -46,6 +46,10 @@ int vg_format_can_write(const char *suffix);
 /** 1 when the suffix of path is that of a CAD file. */
 int vg_format_is_cad(const char *path);
 
+/** 1 for a format whose triangles stand for a shape and were not made to be
+ * meshed: STL, OBJ, Cart3D. */
+int vg_format_is_tessellation(const char *path);
+
 /** 1 when the file at `path` holds volume cells, by its header where the
  * format has one; 0 also when it cannot be read. */
 int vg_format_holds_cells(const char *path);

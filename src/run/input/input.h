@@ -160,8 +160,9 @@ vg_status vg_problem_shape(struct vg_problem *p, struct vg_display *show,
 vg_status vg_problem_close(struct vg_problem *p, struct vg_display *show,
                            struct vg_error *err);
 
-/** Make the triangles of the surface anew where settings ask for it; distances
- * are measured, notes tell. The surface is as the check left it. */
+/** Remesh the surface; distances are measured, notes tell. The surface is as
+ * the check left it. A CAD model whose tessellation leads to no sound surface is
+ * tessellated again, by other bounds. */
 vg_status vg_problem_renew(struct vg_problem *p, struct vg_display *show,
                            struct vg_error *err);
 
@@ -184,8 +185,21 @@ vg_status vg_surface_sizes_make(const struct vg_problem *p,
 
 void vg_surface_sizes_release(struct vg_surface_sizes *s);
 
-/** 1 where settings make the triangles anew: `auto` does those of CAD. */
+/** 1 where settings remesh the surface: `auto` remeshes CAD, and tessellations
+ * (STL, OBJ, Cart3D) more than half of whose triangles are slivers. */
 int vg_problem_is_renewed(const struct vg_problem *p);
+
+/** Share of the triangles that have an angle below 10 degrees. */
+double vg_surface_sliver_share(const struct vg_mesh *m);
+
+/** A note where `auto` decides by the slivers of the surface, and a warning
+ * where slivers stay. */
+void vg_problem_note_slivers(struct vg_problem *p);
+
+/** 1 where the defects in *r are such that the remesher may repair: it judges
+ * the new surface. Edges of four triangles count as such where triangles lie
+ * back to back. */
+int vg_surface_is_reference(const struct vg_surface_report *r);
 
 /** After vg_problem_shape on several ranks: what the first one put back on CAD
  * goes to those that have their own (is_maker); nothing happens for other

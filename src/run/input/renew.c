@@ -1,4 +1,6 @@
-/* The triangles of the surface made anew, as settings ask for it. */
+/* The surface remeshed, as settings ask for it. Where one tessellation of a CAD
+ * model leads to no sound surface, others are tried in a fixed order. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,13 +11,70 @@
 #include "run/input/input.h"
 #include "run/input/share.h"
 
+#define SLIVER2 0.03015369  /* S49: (sin 10 degrees)^2 */
+#define MOST 0.5          /* of the triangles: then most of them are slivers */
+
+/* Tessellations after the first, as factors on its chord and angle: coarser
+ * ones, whose sheets do not cross at cusps, then a finer one, whose sheets come
+ * apart where chords are larger than a body is thick. */
+static const double again[][2] = { { 7, 2 }, { 30, 3 }, { 0.1, 0.6 } };
+#define TRIES (sizeof again / sizeof *again)
+
+/* --- which surfaces are remeshed ----------------------------------------- */
+
+/* Is the smallest angle below 10 degrees? */
+static int is_sliver(const struct vg_mesh *m, const uint32_t v[3])
+{
+  double e[3][3], l[3], n[3], least;
+
+  for (int k = 0; k < 3; k++) {
+    vg_sub(m->point[v[(k + 1) % 3]], m->point[v[k]], e[k]);
+    l[k] = vg_dot(e[k], e[k]);
+  }
+  vg_cross(e[0], e[1], n);
+  least = fmin(l[0], fmin(l[1], l[2]));
+  return vg_dot(n, n) * least <= SLIVER2 * l[0] * l[1] * l[2];
+}
+
+double vg_surface_sliver_share(const struct vg_mesh *m)
+{
+  size_t n = 0;
+
+  for (size_t t = 0; t < m->n_tri; t++) n += (size_t)is_sliver(m, m->tri[t]);
+  return m->n_tri ? (double)n / (double)m->n_tri : 0;
+}
+
+static int is_tessellation(const struct vg_problem *p)
+{
+  return !*p->files.front && !(p->settings.wrap > 0) && !p->heights.n
+         && *p->files.surface && vg_format_is_tessellation(p->files.surface);
+}
+
 int vg_problem_is_renewed(const struct vg_problem *p)
 {
   if (p->settings.remesh != VG_ANSWER_AUTO)
     return p->settings.remesh == VG_ANSWER_YES;
+  if (is_tessellation(p)) return vg_surface_sliver_share(&p->surface) > MOST;
   return !*p->files.front && vg_format_is_cad(p->files.surface)
          && !(p->settings.wrap > 0);
 }
+
+void vg_problem_note_slivers(struct vg_problem *p)
+{
+  const double share = vg_surface_sliver_share(&p->surface);
+
+  if (p->settings.remesh != VG_ANSWER_AUTO || !(share > MOST)) return;
+  if (vg_problem_is_renewed(p))
+    vg_note(&p->notes, "%.0f %% of the triangles have an angle below 10 "
+            "degrees: the surface is taken for a tessellation and is remeshed "
+            "(--remesh-surface no: as given)", 100 * share);
+  else if (!(p->settings.wrap > 0))
+    vg_note(&p->notes, "%.0f %% of the triangles have an angle below 10 "
+            "degrees, and so will cells on them: --remesh-surface yes remeshes "
+            "the surface", 100 * share);
+}
+
+/* --- the new surface ----------------------------------------------------- */
 
 /* *hard: [n_patch], NULL where none is asked for. */
 static vg_status hard_patches(const struct vg_problem *p, uint8_t **hard,
@@ -71,6 +130,8 @@ static vg_status remesh(struct vg_problem *p, const uint8_t *hard,
 
   o.map = p->map;
   o.hard = hard;
+  o.is_body = p->flow.kind == VG_FLOW_EXTERNAL;
+  o.is_reference = p->check.n_defect > p->check.count[VG_DEFECT_OPEN_EDGE];
   o.cap = sizes->cap;
   o.across = sizes->across;
   o.stretch = sizes->stretch;
@@ -98,8 +159,24 @@ done:
   return st;
 }
 
-vg_status vg_problem_renew(struct vg_problem *p, struct vg_display *show,
-                           struct vg_error *err)
+static void note_faults(struct vg_problem *p)
+{
+  const struct vg_remesh_report *r = &p->renewal.report;
+
+  if (r->n_crossing[0])
+    vg_note(&p->notes, "the surface as given intersects itself in %zu pairs of "
+            "triangles, by %.3g at most, at (%.6g, %.6g, %.6g); the new "
+            "surface, which is within %.3g of it, does not", r->n_crossing[0],
+            r->crossing_depth, r->crossing_at[0], r->crossing_at[1],
+            r->crossing_at[2], r->tolerance);
+  if (r->n_kept)
+    vg_note(&p->notes, "%zu triangles stay as given, since new ones met there; "
+            "the first are near (%.6g, %.6g, %.6g)", r->n_kept, r->kept_at[0],
+            r->kept_at[1], r->kept_at[2]);
+}
+
+static vg_status renew(struct vg_problem *p, struct vg_display *show,
+                       struct vg_error *err)
 {
   struct vg_renewal *r = &p->renewal;
   struct vg_surface_sizes sizes = { NULL, NULL, NULL };
@@ -123,7 +200,8 @@ vg_status vg_problem_renew(struct vg_problem *p, struct vg_display *show,
   vg_display_update(show, "put back", p->surface.n_tri, 0);
   if (p->model.cad) VG_TRY(vg_problem_put_back(p, err));
   areas(&p->surface, 1, r->area);
-  vg_note(&p->notes, "the surface was made anew (remesh_surface): %zu "
+  note_faults(p);
+  vg_note(&p->notes, "the surface was remeshed (remesh_surface): %zu "
           "triangles, before %zu, at most %.3g from it, tolerance %.3g",
           r->report.n_tri[1], r->report.n_tri[0],
           r->off[0].most > r->off[1].most ? r->off[0].most : r->off[1].most,
@@ -132,6 +210,85 @@ done:
   vg_surface_sizes_release(&sizes);
   free(hard);
   vg_mesh_release(&given);
+  return st;
+}
+
+/* --- other tessellations ------------------------------------------------- */
+
+/* Conditions and names are those of the same patches as they were read. */
+static void keep_conditions(const struct vg_mesh *from, struct vg_mesh *to)
+{
+  for (size_t i = 0; i < to->n_patch; i++) {
+    const size_t at = vg_mesh_find_patch(from, to->patch[i].id);
+
+    if (at != SIZE_MAX) to->patch[i] = from->patch[at];
+  }
+}
+
+/* Tessellate the CAD model with other bounds: *usable 0 where the outcome is no
+ * reference. */
+static vg_status tessellate(struct vg_problem *p, const double by[2],
+                            struct vg_cad_options *cad, int *usable,
+                            struct vg_display *show, struct vg_error *err)
+{
+  struct vg_surface_check_options o = VG_SURFACE_CHECK_OPTIONS_INIT;
+  struct vg_cad_model model = VG_CAD_MODEL_INIT;
+  struct vg_read_info info = { .cad = cad, .model = &model };
+  struct vg_mesh m = VG_MESH_INIT;
+  vg_status st;
+
+  *cad = vg_cad_options_of(&p->settings, 1, NULL);
+  cad->note = NULL;
+  cad->chord = fmin(cad->chord * by[0], 0.1);
+  cad->angle = fmin(fmax(cad->angle * by[1], 2), 30);
+  vg_display_update(show, "tessellate", 0, 0);
+  VG_TRY(vg_surface_read(p->files.surface, &m, &info, err));
+  vg_mesh_keep_boundary(&m);
+  keep_conditions(&p->surface, &m);
+  o.repair = p->settings.repair;
+  o.require_bc = p->require_bc;
+  o.external = p->flow.kind == VG_FLOW_UNKNOWN
+               ? -1 : p->flow.kind == VG_FLOW_EXTERNAL;
+  o.threads = p->threads;
+  o.stop = (struct vg_stop){ vg_display_stop, show };
+  VG_TRY(vg_surface_check(&m, &o, &p->check, err));
+  *usable = vg_surface_is_reference(&p->check);
+  vg_mesh_release(&p->surface);
+  vg_mesh_move(&p->surface, &m);
+  vg_cad_model_release(&p->model);
+  p->model = model;
+  model = (struct vg_cad_model)VG_CAD_MODEL_INIT;
+done:
+  vg_mesh_release(&m);
+  vg_cad_model_release(&model);
+  return st;
+}
+
+vg_status vg_problem_renew(struct vg_problem *p, struct vg_display *show,
+                           struct vg_error *err)
+{
+  struct vg_error why = VG_ERROR_INIT;
+  struct vg_cad_options cad;
+  int usable = vg_surface_is_reference(&p->check);
+  vg_status st = VG_ERR_GEOMETRY;
+
+  if (usable) st = renew(p, show, &why);
+  if (st == VG_ERR_GEOMETRY && p->model.cad && !p->settings.close_holes
+      && !(p->settings.weld > 0) && !(p->settings.wrap > 0))
+    for (size_t i = 0; i < TRIES && st == VG_ERR_GEOMETRY; i++) {
+      vg_status read = tessellate(p, again[i], &cad, &usable, show, err);
+
+      if (read < 0) return read;
+      vg_renewal_release(&p->renewal);
+      if (!usable) continue;
+      st = renew(p, show, err);
+      if (st >= 0)
+        vg_note(&p->notes, "the first tessellation of the CAD model led to no "
+                "sound surface%s%s; one with chord %.2g and angle %.3g did "
+                "(cad_chord, cad_angle)", *why.text ? ": " : "", why.text,
+                cad.chord, cad.angle);
+    }
+  if (st < 0 && *why.text) *err = why;
   return st;
 }
 

@@ -93,6 +93,19 @@ static vg_status defects(const struct vg_problem *p, struct vg_error *err)
                  "cannot bound a mesh", p->files.stem, p->check.n_defect);
 }
 
+/* Defects that the remesher tolerates, since the new surface is judged. Edges
+ * of four triangles are tolerated where triangles lie back to back. */
+int vg_surface_is_reference(const struct vg_surface_report *r)
+{
+  const size_t n_double = r->count[VG_DEFECT_DUPLICATE_TRIANGLE];
+
+  return r->n_defect == r->count[VG_DEFECT_OPEN_EDGE]
+                        + r->count[VG_DEFECT_INTERSECTION]
+                        + r->count[VG_DEFECT_DEGENERATE_TRIANGLE]
+                        + r->count[VG_DEFECT_SHELL] + n_double
+                        + (n_double ? r->count[VG_DEFECT_NONMANIFOLD_EDGE] : 0);
+}
+
 /* Names and conditions of the patches as they are now, for the resolved
  * settings; what is added later comes by itself when the run is repeated. */
 static vg_status resolve_patches(struct vg_problem *p, struct vg_error *err)
@@ -246,11 +259,12 @@ vg_status vg_problem_shape(struct vg_problem *p, struct vg_display *show,
   VG_TRY(resolve_patches(p, err));
   VG_TRY(close_surface(p, show, err));
   VG_TRY(vg_problem_decide(p, show, err));
+  vg_problem_note_slivers(p);
   s->remesh = vg_problem_is_renewed(p) ? VG_ANSWER_YES : VG_ANSWER_NO;
   if (!p->check.n_defect || vg_is_only_open(&p->check))
     VG_TRY(vg_problem_gaps(p, show, err));
   if (s->remesh == VG_ANSWER_YES) {
-    if (p->check.n_defect && !vg_is_only_open(&p->check))
+    if (!p->model.cad && !vg_surface_is_reference(&p->check))
       return defects(p, err);
     VG_TRY(vg_problem_renew(p, show, err));
   }

@@ -13,6 +13,7 @@
 #include "run/settings/patch_names.h"
 
 #define MESHING_WALL 2     /* class of a .d3m patch that grows layers */
+#define FLAT 1e-4         /* S50: height over the longest edge: 0.006 degrees */
 
 const char *vg_wall_reason_name(enum vg_wall_reason reason)
 {
@@ -260,8 +261,9 @@ done:
   return st;
 }
 
-/* Lower than VG_SWAP_SLIVER of its longest edge. */
-static int is_sliver(const struct vg_mesh *m, const uint32_t t[3])
+/* Lower than this share of its longest edge. */
+static int is_sliver(const struct vg_mesh *m, const uint32_t t[3],
+                     double share)
 {
   double e[3][3], n[3], longest = 0;
 
@@ -270,16 +272,18 @@ static int is_sliver(const struct vg_mesh *m, const uint32_t t[3])
     longest = fmax(longest, vg_dot(e[k], e[k]));
   }
   vg_cross(e[0], e[1], n);
-  return vg_norm(n) < VG_SWAP_SLIVER * longest;
+  return vg_norm(n) < share * longest;
 }
 
-/* Patches beside the walls are meshed anew in any case. */
-static int walls_have_slivers(const struct vg_mesh *m,
-                              const enum vg_wall_reason *reason)
+/* On walls, layers would invert on slivers; elsewhere only flat triangles spoil
+ * the cells on them. Patches beside the walls are triangulated again anyway. */
+static int has_slivers(const struct vg_mesh *m,
+                       const enum vg_wall_reason *reason)
 {
   for (size_t i = 0; i < m->n_tri; i++)
-    if (reason[m->tri_patch[i]] != VG_WALL_NOT && is_sliver(m, m->tri[i]))
-      return 1;
+    if (!reason || reason[m->tri_patch[i]] != VG_WALL_NOT) {
+      if (is_sliver(m, m->tri[i], reason ? VG_SWAP_SLIVER : FLAT)) return 1;
+    }
   return 0;
 }
 
@@ -293,8 +297,7 @@ vg_status vg_walls_swap(struct vg_problem *p,
   vg_status st;
 
   if (*answer == VG_ANSWER_AUTO)
-    *answer = reason && walls_have_slivers(&p->surface, reason)
-              ? VG_ANSWER_YES : VG_ANSWER_NO;
+    *answer = has_slivers(&p->surface, reason) ? VG_ANSWER_YES : VG_ANSWER_NO;
   if (*answer == VG_ANSWER_NO) return VG_OK;
   st = vg_surface_swap(&p->surface, &o, &r, err);
   if (st < 0) return st;

@@ -37,8 +37,8 @@ vg_status vg_walls_find(const struct vg_problem *p,
                         struct vg_error *err);
 
 /** Swap and collapse edges of the closed surface as settings say; `auto` does
- * so where a wall has slivers, on which layers would invert. With a note;
- * settings are resolved.
+ * so where a wall has slivers, on which layers would invert, and without layers
+ * where the surface has flat triangles. With a note; settings are resolved.
  * @param reason  [n_patch] of the walls; NULL: no layers grow */
 vg_status vg_walls_swap(struct vg_problem *p,
                         const enum vg_wall_reason *reason,
