@@ -9,7 +9,7 @@
 #include "core/remesh/metric.h"
 #include "core/remesh/reference.h"
 
-#define FLAT2 3.046e-4    /* S50: (sin 1 degree)^2: flatter ones are looked at */
+#define FLAT2 3.046e-4    /* S50: (sin 1 degree)^2 */
 #define OUTER 1e-3        /* of the longest edge: height of a flat triangle of
                              the outer boundary */
 #define SWEEPS 12
@@ -99,7 +99,7 @@ static vg_status list_flat(const struct vg_mesh *m,
 struct swapper {
   struct vg_mesh *m;
   struct vg_ref ref;        /* faces as they were when the sweep began */
-  uint8_t *busy;            /* [n_tri] changed, or beside one that was */
+  uint8_t *busy;            /* [n_tri] changed, or next to one that was */
   size_t *count;            /* [n_patch] triangles */
 };
 

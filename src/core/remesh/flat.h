@@ -8,8 +8,9 @@
 
 struct vg_flat_limit {
   double height;            /* largest height of a triangle that is flat */
-  double far;               /* longer edges are on an outer boundary, where the
-                               height is a share of the edge; 0: there is none */
+  double far;               /* longer edges are on an outer boundary, where
+                               the height is a share of the edge; 0: there is
+                               none */
 };
 
 /** Swap the longest edge of triangles whose three corners are nearly on a line.

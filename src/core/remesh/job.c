@@ -1,6 +1,6 @@
 /* Outline: small faults of the given surface are removed, lines found, strips
- * closed, sizes found. Long edges of lines are cut where the sizes of their ends
- * say nothing of their middles, and lines and sizes are then found again. */
+ * closed, sizes found. Long edges of lines are cut where the sizes of their
+ * ends say nothing of their middles, and lines and sizes are then found again. */
 #include "core/remesh/job.h"
 
 #include <math.h>
@@ -100,7 +100,8 @@ done:
 }
 
 /* Sizes in another unit would ask for more triangles than fit anywhere. */
-static vg_status check_number(const struct vg_remesh_job *j, struct vg_error *err)
+static vg_status check_number(const struct vg_remesh_job *j,
+                              struct vg_error *err)
 {
   const struct vg_ref *r = &j->ref;
   double n = 0, size;
@@ -123,7 +124,8 @@ static const double *cap_of(const struct vg_remesh_job *j)
   return j->strip_cap ? j->strip_cap : j->cap;
 }
 
-static vg_status find_lines(struct vg_remesh_job *j, const struct vg_curves_options *c,
+static vg_status find_lines(struct vg_remesh_job *j,
+                            const struct vg_curves_options *c,
                             struct vg_error *err)
 {
   vg_status st;

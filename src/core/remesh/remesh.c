@@ -155,7 +155,8 @@ done:
 
 /* What is near the border of a block in one phase is inside one in the next;
  * what is near both is left to one thread. */
-static vg_status run(struct vg_remesh_job *j, struct vg_work *w, vg_block_body body,
+static vg_status run(struct vg_remesh_job *j,
+                     struct vg_work *w, vg_block_body body,
                      struct vg_error *err)
 {
   const size_t n = vg_blocks_number(w);
@@ -171,7 +172,8 @@ done:
 
 /* Edges are halved everywhere before anything else is done: beside large
  * triangles, where borders are, points would come and go. */
-static vg_status change(struct vg_remesh_job *j, struct vg_work *w, struct vg_error *err)
+static vg_status change(struct vg_remesh_job *j,
+                        struct vg_work *w, struct vg_error *err)
 {
   vg_status st;
 
@@ -196,7 +198,8 @@ static int is_fault(const struct vg_defect *d)
 }
 
 /* Ask for smaller triangles where face f is. */
-static vg_status add_spot(struct vg_remesh_job *j, const struct vg_mesh *m, size_t f,
+static vg_status add_spot(struct vg_remesh_job *j,
+                          const struct vg_mesh *m, size_t f,
                           struct vg_error *err)
 {
   struct vg_source s = { .kind = VG_SOURCE_POINT };
@@ -512,8 +515,8 @@ static vg_status begin_simply(struct vg_remesh_job *j, const struct vg_mesh *m,
 
   if (!j->is_cut) return VG_OK;
   VG_TRY(make(j, out, &once, sound, err));
-  /* Sizes that are larger in the middle may be what made triangles meet, or what
-   * keeps needles beside a knife's edge from being divided. */
+  /* Sizes that are larger in the middle may be what made triangles meet, or
+   * what keeps needles next to a knife's edge from being divided. */
   if ((double)j->r.n_bad > BAD * (double)out->n_tri) *sound = 0;
   if (!*sound) VG_TRY(vg_job_restart(j, m, o, err));
 done:

@@ -276,7 +276,7 @@ static int is_sliver(const struct vg_mesh *m, const uint32_t t[3],
 }
 
 /* On walls, layers would invert on slivers; elsewhere only flat triangles spoil
- * the cells on them. Patches beside the walls are triangulated again anyway. */
+ * the cells on them. Patches next to the walls are triangulated again anyway. */
 static int has_slivers(const struct vg_mesh *m,
                        const enum vg_wall_reason *reason)
 {
