@@ -275,8 +275,8 @@ static int is_sliver(const struct vg_mesh *m, const uint32_t t[3],
   return vg_norm(n) < share * longest;
 }
 
-/* On walls, layers would invert on slivers; elsewhere only flat triangles spoil
- * the cells on them. Patches next to the walls are triangulated again anyway. */
+/* On walls, layers would invert on slivers. Elsewhere only flat triangles spoil
+ * the cells on them. Patches next to walls are triangulated again anyway. */
 static int has_slivers(const struct vg_mesh *m,
                        const enum vg_wall_reason *reason)
 {

@@ -141,7 +141,7 @@ vanguard mesh -q -p bar.obj --remesh-surface yes --surface-size 0.3 \
   --out run --write lb8.ugrid --threads 1
 exits 0
 says out "made anew: "
-says out "note: the surface was made anew (remesh_surface)"
+says out "note: the surface was remeshed (remesh_surface)"
 says run/bar.report.json '"remesh": {'
 says run/bar.resolved.deck "remesh_surface"
 vanguard mesh -q -p bar.obj --deck run/bar.resolved.deck --out rerun
