@@ -1,7 +1,7 @@
 /* Outline: sweeps collapse short edges, the shortest first, where no triangle
  * was changed in the same sweep. At triangles that intersect each other, longer
  * edges count as short. */
-#include "core/remesh/clean.h"
+#include "core/remesh/job.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -9,13 +9,15 @@
 
 #include "base/memory.h"
 #include "core/geometry/vector.h"
-#include "core/remesh/clean_parts.h"
 #include "core/surface/surface_check.h"
 
 #define SHORT 0.02        /* S46: of the tolerance: no new edge is near */
 #define CROSSED 1.0       /* the same, at triangles that intersect */
 #define SWEEPS 24
 #define CLEARINGS 14      /* searches for intersections */
+#define DEEPEST 0.25      /* S46: of the tolerance: deeper ones are not moved
+                             apart */
+#define CLEAR 1e-4        /* of the tolerance: how far beyond, at least */
 #define RING 256          /* triangles at a point that may be collapsed */
 
 /* --- what is around a point ---------------------------------------------- */
@@ -319,6 +321,106 @@ static vg_status collapse_short(struct vg_clean *c,
 
 /* --- intersections ------------------------------------------------------- */
 
+/* Distances of the corners of triangle a from the plane of b; 0 where b has no
+ * plane. */
+static int heights(const struct vg_mesh *m, size_t a, size_t b, double n[3],
+                   double h[3])
+{
+  const double *o = m->point[m->tri[b][0]];
+  double u[3], v[3];
+
+  vg_sub(m->point[m->tri[b][1]], o, u);
+  vg_sub(m->point[m->tri[b][2]], o, v);
+  vg_cross(u, v, n);
+  if (!(vg_unit(n) > 0)) return 0;
+  for (int k = 0; k < 3; k++) {
+    const uint32_t p = m->tri[a][k];
+
+    vg_sub(m->point[p], o, u);
+    h[k] = vg_dot(u, n);
+    for (int j = 0; j < 3; j++)
+      if (m->tri[b][j] == p) h[k] = 0;
+  }
+  return 1;
+}
+
+/* How far triangle a reaches through the plane of b. */
+static double reach(const double h[3])
+{
+  const double lo = fmin(h[0], fmin(h[1], h[2]));
+  const double hi = fmax(h[0], fmax(h[1], h[2]));
+
+  return fmax(0, fmin(-lo, hi));
+}
+
+static int is_pair(const struct vg_defect *d)
+{
+  return d->kind == VG_DEFECT_INTERSECTION && d->face[0] != SIZE_MAX
+         && d->face[1] != SIZE_MAX;
+}
+
+/* Set depth and place of the deepest intersection. */
+static void find_depth(const struct vg_mesh *m,
+                       const struct vg_surface_report *r, struct vg_clean *c)
+{
+  c->depth = 0;
+  for (size_t i = 0; i < r->n_defect; i++) {
+    const struct vg_defect *d = &r->defect[i];
+    double n[3], h[3], deep = INFINITY;
+
+    if (!is_pair(d)) continue;
+    for (int k = 0; k < 2; k++)
+      if (heights(m, d->face[k], d->face[!k], n, h))
+        deep = fmin(deep, reach(h));
+    if (!(deep < INFINITY)) deep = 0;
+    if (i && deep < c->depth) continue;
+    c->depth = deep;
+    memcpy(c->at, d->at, sizeof c->at);
+  }
+}
+
+/* Corners of a that are barely on the wrong side of b move over to the other
+ * one, where most of a is. */
+static void push(const struct vg_mesh *m, size_t a, size_t b, double tolerance,
+                 double (*move)[3])
+{
+  double n[3], h[3], side;
+
+  if (!heights(m, a, b, n, h)) return;
+  if (!(reach(h) > 0 && reach(h) < DEEPEST * tolerance)) return;
+  side = h[0] + h[1] + h[2] > 0 ? 1 : -1;
+  for (int k = 0; k < 3; k++) {
+    const uint32_t p = m->tri[a][k];
+    double by = fmax(CLEAR * tolerance, -0.5 * side * h[k]) - side * h[k];
+
+    if (!(side * h[k] < 0) || by * by <= vg_dot(move[p], move[p])) continue;
+    for (int d = 0; d < 3; d++) move[p][d] = side * by * n[d];
+  }
+}
+
+/* Move points of intersecting triangles along the normals there, so that the
+ * two sheets of a thin place come apart. */
+static vg_status part(struct vg_mesh *m, const struct vg_surface_report *r,
+                      double tolerance, size_t *n_moved,
+                      struct vg_error *err)
+{
+  double (*move)[3] = vg_calloc(m->n_point, sizeof *move);
+
+  *n_moved = 0;
+  if (!move) return vg_fail_memory(err, "intersections of the surface");
+  for (size_t i = 0; i < r->n_defect; i++)
+    for (int k = 0; k < 2; k++)
+      if (is_pair(&r->defect[i]))
+        push(m, r->defect[i].face[k], r->defect[i].face[!k], tolerance, move);
+  for (size_t p = 0; p < m->n_point; p++) {
+    if (!(vg_dot(move[p], move[p]) > 0)) continue;
+    for (int d = 0; d < 3; d++) m->point[p][d] += move[p][d];
+    ++*n_moved;
+  }
+  free(move);
+  return VG_OK;
+}
+
 static vg_status clear_crossings(struct vg_clean *c,
                                  const struct vg_clean_options *o,
                                  struct vg_error *err)
@@ -337,7 +439,7 @@ static vg_status clear_crossings(struct vg_clean *c,
 
     VG_TRY(vg_surface_check(&c->mesh, &co, &r, err));
     c->n_crossing[i > 0] = r.count[VG_DEFECT_INTERSECTION];
-    if (!i) vg_clean_depth(&c->mesh, &r, c);
+    if (!i) find_depth(&c->mesh, &r, c);
     if (!r.count[VG_DEFECT_INTERSECTION]) break;
     memset(crossed, 0, c->mesh.n_tri);
     for (size_t k = 0; k < r.n_defect; k++)
@@ -347,7 +449,7 @@ static vg_status clear_crossings(struct vg_clean *c,
           crossed[r.defect[k].face[j]] = 1;
     VG_TRY(collapse_short(c, o, crossed, longer, err));
     if (c->n_collapse == n && longer >= CROSSED * o->tolerance)
-      VG_TRY(vg_clean_part(&c->mesh, &r, o->tolerance, &n_moved, err));
+      VG_TRY(part(&c->mesh, &r, o->tolerance, &n_moved, err));
     if (c->n_collapse == n && !n_moved && longer >= CROSSED * o->tolerance)
       break;
     longer = fmin(2 * longer, CROSSED * o->tolerance);

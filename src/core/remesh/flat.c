@@ -1,4 +1,4 @@
-#include "core/remesh/flat.h"
+#include "core/remesh/job.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -3,7 +3,6 @@
 #ifndef VG_CORE_REMESH_JOB_H
 #define VG_CORE_REMESH_JOB_H
 
-#include "core/remesh/clean.h"
 #include "core/remesh/curves.h"
 #include "core/remesh/remesh.h"
 #include "core/remesh/strips.h"
@@ -63,5 +62,64 @@ void vg_job_release_reference(struct vg_remesh_job *j);
 
 /** Empty all but the report's list. */
 void vg_job_release(struct vg_remesh_job *j);
+
+/* --- faults of the given surface and the new one (clean.c, flat.c) ------- */
+
+struct vg_clean_options {
+  double tolerance;         /* largest distance between the surfaces */
+  const struct vg_curves_options *lines;  /* which edges are hard */
+  int threads;
+  struct vg_stop stop;
+};
+
+/* The reference without its small faults. Points and triangles keep their
+ * order. */
+struct vg_clean {
+  struct vg_mesh mesh;      /* empty: nothing was changed */
+  uint32_t *point_from;     /* [mesh.n_point] number before */
+  uint32_t *tri_from;       /* [mesh.n_tri] the same; corners keep their
+                               places */
+  size_t n_flap;            /* pairs of opposite triangles on the same points
+                               that were dropped */
+  size_t n_collapse;        /* edges that were collapsed */
+  size_t n_crossing[2];     /* pairs of triangles that intersect each other,
+                               before and after */
+  double depth, at[3];      /* the deepest such pair before: how far the two
+                               triangles reach through each other, and where */
+};
+#define VG_CLEAN_INIT { .mesh = VG_MESH_INIT }
+
+/** Of a surface that has faults: drop thin triangles that lie back to back,
+ * collapse edges far below the tolerance, which no new edge could follow, and
+ * edges below the tolerance at triangles that intersect each other, and move
+ * points of thin places apart, as long as the tolerance hides it. A sound
+ * surface is better left alone: a collapse across a thin edge makes sheets intersect.
+ *
+ * Edges of three triangles, and neighbours of opposite orientation, stop the
+ * work: c is then empty, and vg_ref_set_faces says what is wrong.
+ * m is untouched. O(n log n) for each sweep. VG_ERR_MEMORY, VG_ERR_STOPPED. */
+vg_status vg_clean_find(const struct vg_mesh *m,
+                        const struct vg_clean_options *o, struct vg_clean *c,
+                        struct vg_error *err);
+
+void vg_clean_release(struct vg_clean *c);
+
+struct vg_flat_limit {
+  double height;            /* largest height of a triangle that is flat */
+  double far;               /* longer edges are on an outer boundary, where
+                               the height is a share of the edge; 0: there is
+                               none */
+};
+
+/** Swap the longest edge of triangles whose three corners are nearly on a line.
+ * The edge may be part of a line that stays: its two new pieces are within the
+ * limit of it, and the flat triangle joins the patch of its neighbour.
+ *
+ * @param n      out: edges swapped
+ * O(n), and O(n log n) for each sweep where there are any. VG_ERR_INPUT for a
+ * surface that is not manifold or not oriented; VG_ERR_MEMORY. Untouched on
+ * failure. */
+vg_status vg_flat_swap(struct vg_mesh *m, const struct vg_flat_limit *limit,
+                       size_t *n, struct vg_error *err);
 
 #endif

@@ -13,7 +13,6 @@
 #include "core/geometry/vector.h"
 #include "core/remesh/blocks.h"
 #include "core/remesh/job.h"
-#include "core/remesh/flat.h"
 #include "core/remesh/passes.h"
 #include "core/remesh/result.h"
 #include "core/remesh/stretch.h"
