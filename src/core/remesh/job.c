@@ -1,6 +1,6 @@
 /* Outline: small faults of the given surface are removed, lines found, strips
  * closed, sizes found. Long edges of lines are cut where the sizes of their
- * ends say nothing of their middles, and lines and sizes are then found again. */
+ * ends say nothing of their middles. Lines and sizes are then found again. */
 #include "core/remesh/job.h"
 
 #include <math.h>

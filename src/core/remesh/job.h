@@ -93,7 +93,8 @@ struct vg_clean {
  * collapse edges far below the tolerance, which no new edge could follow, and
  * edges below the tolerance at triangles that intersect each other, and move
  * points of thin places apart, as long as the tolerance hides it. A sound
- * surface is better left alone: a collapse across a thin edge makes sheets intersect.
+ * surface is better left alone: a collapse across a thin edge makes sheets
+ * intersect.
  *
  * Edges of three triangles, and neighbours of opposite orientation, stop the
  * work: c is then empty, and vg_ref_set_faces says what is wrong.
