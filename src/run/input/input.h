@@ -161,8 +161,7 @@ vg_status vg_problem_close(struct vg_problem *p, struct vg_display *show,
                            struct vg_error *err);
 
 /** Remesh the surface; distances are measured, notes tell. The surface is as
- * the check left it. A CAD model whose tessellation leads to no sound surface
- * is tessellated again, by other bounds. */
+ * the check left it. VG_ERR_GEOMETRY where no sound surface came out. */
 vg_status vg_problem_renew(struct vg_problem *p, struct vg_display *show,
                            struct vg_error *err);
 

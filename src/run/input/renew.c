@@ -8,13 +8,13 @@
 #include "core/geometry/vector.h"
 #include "core/wrap/wrap.h"
 #include "io/mesh/format.h"
-#include "run/input/input.h"
+#include "run/input/shape_parts.h"
 #include "run/input/share.h"
 
 #define SLIVER2 0.03015369  /* S49: (sin 10 degrees)^2 */
 #define MOST 0.5          /* of the triangles: then most of them are slivers */
 
-/* Tessellations after the first, as factors on its chord and angle: coarser
+/* S48: tessellations after the first, as factors on its chord and angle: coarser
  * ones, whose sheets do not cross at cusps, then a finer one, whose sheets come
  * apart where chords are larger than a body is thick. */
 static const double again[][2] = { { 7, 2 }, { 30, 3 }, { 0.1, 0.6 } };
@@ -175,8 +175,8 @@ static void note_faults(struct vg_problem *p)
             r->kept_at[1], r->kept_at[2]);
 }
 
-static vg_status renew(struct vg_problem *p, struct vg_display *show,
-                       struct vg_error *err)
+vg_status vg_problem_renew(struct vg_problem *p, struct vg_display *show,
+                           struct vg_error *err)
 {
   struct vg_renewal *r = &p->renewal;
   struct vg_surface_sizes sizes = { NULL, NULL, NULL };
@@ -225,70 +225,38 @@ static void keep_conditions(const struct vg_mesh *from, struct vg_mesh *to)
   }
 }
 
-/* Tessellate the CAD model with other bounds: *usable 0 where the outcome is no
- * reference. */
-static vg_status tessellate(struct vg_problem *p, const double by[2],
-                            struct vg_cad_options *cad, int *usable,
-                            struct vg_display *show, struct vg_error *err)
+vg_status vg_problem_tessellate(struct vg_problem *p, size_t i,
+                                const struct vg_patch *patch, size_t n_patch,
+                                size_t n_note, struct vg_display *show,
+                                struct vg_error *err)
 {
-  struct vg_surface_check_options o = VG_SURFACE_CHECK_OPTIONS_INIT;
-  struct vg_cad_model model = VG_CAD_MODEL_INIT;
-  struct vg_read_info info = { .cad = cad, .model = &model };
+  const struct vg_mesh given = { .n_patch = n_patch,
+                                 .patch = (struct vg_patch *)(uintptr_t)patch };
+  struct vg_cad_options cad = vg_cad_options_of(&p->settings, 1, NULL);
+  struct vg_cad_surface fresh = VG_CAD_SURFACE_INIT;
   struct vg_mesh m = VG_MESH_INIT;
   vg_status st;
 
-  *cad = vg_cad_options_of(&p->settings, 1, NULL);
-  cad->note = NULL;
-  cad->chord = fmin(cad->chord * by[0], 0.1);
-  cad->angle = fmin(fmax(cad->angle * by[1], 2), 30);
+  if (i >= TRIES || !p->model.cad) return VG_BLOCKED;
+  cad.note = NULL;
+  cad.chord = fmin(cad.chord * again[i][0], 0.1);
+  cad.angle = fmin(fmax(cad.angle * again[i][1], 2), 30);
   vg_display_update(show, "tessellate", 0, 0);
-  VG_TRY(vg_surface_read(p->files.surface, &m, &info, err));
-  vg_mesh_keep_boundary(&m);
-  keep_conditions(&p->surface, &m);
-  o.repair = p->settings.repair;
-  o.require_bc = p->require_bc;
-  o.external = p->flow.kind == VG_FLOW_UNKNOWN
-               ? -1 : p->flow.kind == VG_FLOW_EXTERNAL;
-  o.threads = p->threads;
-  o.stop = (struct vg_stop){ vg_display_stop, show };
-  VG_TRY(vg_surface_check(&m, &o, &p->check, err));
-  *usable = vg_surface_is_reference(&p->check);
-  vg_mesh_release(&p->surface);
+  VG_TRY(vg_cad_again(p->model.cad, &cad, &fresh, err));
+  VG_TRY(vg_mesh_copy(&m, &fresh.mesh, err));
+  keep_conditions(&given, &m);
   vg_mesh_move(&p->surface, &m);
-  vg_cad_model_release(&p->model);
-  p->model = model;
-  model = (struct vg_cad_model)VG_CAD_MODEL_INIT;
+  vg_cad_surface_release(&p->model.surface);
+  p->model.surface = fresh;
+  vg_renewal_release(&p->renewal);
+  while (p->notes.n > n_note) free(p->notes.text[--p->notes.n]);
+  vg_note(&p->notes, "the first tessellation of the CAD model led to no sound "
+          "surface; this one has chord %.2g and angle %.3g (cad_chord, "
+          "cad_angle)", cad.chord, cad.angle);
+  return VG_OK;
 done:
+  vg_cad_surface_release(&fresh);
   vg_mesh_release(&m);
-  vg_cad_model_release(&model);
-  return st;
-}
-
-vg_status vg_problem_renew(struct vg_problem *p, struct vg_display *show,
-                           struct vg_error *err)
-{
-  struct vg_error why = VG_ERROR_INIT;
-  struct vg_cad_options cad;
-  int usable = vg_surface_is_reference(&p->check);
-  vg_status st = VG_ERR_GEOMETRY;
-
-  if (usable) st = renew(p, show, &why);
-  if (st == VG_ERR_GEOMETRY && p->model.cad && !p->settings.close_holes
-      && !(p->settings.weld > 0) && !(p->settings.wrap > 0))
-    for (size_t i = 0; i < TRIES && st == VG_ERR_GEOMETRY; i++) {
-      vg_status read = tessellate(p, again[i], &cad, &usable, show, err);
-
-      if (read < 0) return read;
-      vg_renewal_release(&p->renewal);
-      if (!usable) continue;
-      st = renew(p, show, err);
-      if (st >= 0)
-        vg_note(&p->notes, "the first tessellation of the CAD model led to no "
-                "sound surface%s%s; one with chord %.2g and angle %.3g did "
-                "(cad_chord, cad_angle)", *why.text ? ": " : "", why.text,
-                cad.chord, cad.angle);
-    }
-  if (st < 0 && *why.text) *err = why;
   return st;
 }
 
@@ -306,5 +274,7 @@ vg_status vg_problem_share(struct vg_problem *p, struct vg_comm *comm,
   if (vg_comm_size(comm) == 1 || *p->files.front
       || !vg_format_is_cad(p->files.surface) || !vg_problem_is_renewed(p))
     return vg_comm_agree(comm, st, err);
-  return vg_surface_bcast(comm, is_maker, st, &p->surface, err);
+  st = vg_surface_bcast(comm, is_maker, st, &p->surface, err);
+  if (st >= 0 && vg_comm_rank(comm)) p->renewal.is_done = is_maker;
+  return st;
 }

@@ -5,6 +5,20 @@
 
 #include "run/input/input.h"
 
+/* run/input/renew.c -------------------------------------------------------*/
+
+/** The surface of a CAD model, whose tessellation led to no sound surface, by
+ * the next tessellation of a fixed order, with a note.
+ *
+ * @param i      0 for the first one after that which was read
+ * @param patch  [n_patch] names and conditions as they were read
+ * @param n_note notes beyond these are of the tessellation before
+ * VG_BLOCKED when there is no further one, or no model: nothing happened. */
+vg_status vg_problem_tessellate(struct vg_problem *p, size_t i,
+                                const struct vg_patch *patch, size_t n_patch,
+                                size_t n_note, struct vg_display *show,
+                                struct vg_error *err);
+
 /* run/input/domain.c ------------------------------------------------------*/
 
 /** What settings and files say of the flow domain. */

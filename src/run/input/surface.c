@@ -93,19 +93,6 @@ static vg_status defects(const struct vg_problem *p, struct vg_error *err)
                  "cannot bound a mesh", p->files.stem, p->check.n_defect);
 }
 
-/* Defects that the remesher tolerates, since the new surface is judged. Edges
- * of four triangles are tolerated where triangles lie back to back. */
-int vg_surface_is_reference(const struct vg_surface_report *r)
-{
-  const size_t n_double = r->count[VG_DEFECT_DUPLICATE_TRIANGLE];
-
-  return r->n_defect == r->count[VG_DEFECT_OPEN_EDGE]
-                        + r->count[VG_DEFECT_INTERSECTION]
-                        + r->count[VG_DEFECT_DEGENERATE_TRIANGLE]
-                        + r->count[VG_DEFECT_SHELL] + n_double
-                        + (n_double ? r->count[VG_DEFECT_NONMANIFOLD_EDGE] : 0);
-}
-
 /* Names and conditions of the patches as they are now, for the resolved
  * settings; what is added later comes by itself when the run is repeated. */
 static vg_status resolve_patches(struct vg_problem *p, struct vg_error *err)
@@ -247,29 +234,105 @@ done:
   return st;
 }
 
-vg_status vg_problem_shape(struct vg_problem *p, struct vg_display *show,
-                           struct vg_error *err)
+/* Defects that the remesher tolerates, since the new surface is judged. Edges
+ * of four triangles are tolerated where triangles lie back to back. */
+int vg_surface_is_reference(const struct vg_surface_report *r)
 {
-  struct vg_settings *s = &p->settings;
-  vg_status st = VG_OK;
+  const size_t n_double = r->count[VG_DEFECT_DUPLICATE_TRIANGLE];
 
-  vg_mesh_keep_boundary(&p->surface);
-  p->require_bc = vg_surface_has_conditions(&p->surface);
+  return r->n_defect == r->count[VG_DEFECT_OPEN_EDGE]
+                        + r->count[VG_DEFECT_INTERSECTION]
+                        + r->count[VG_DEFECT_DEGENERATE_TRIANGLE]
+                        + r->count[VG_DEFECT_SHELL] + n_double
+                        + (n_double ? r->count[VG_DEFECT_NONMANIFOLD_EDGE] : 0);
+}
+
+/* Remeshed by another rank, which has the CAD model. */
+static int is_made_elsewhere(const struct vg_problem *p)
+{
+  return p->is_read && !p->model.cad;
+}
+
+/* One tessellation of the surface: closed, decided, remeshed. */
+static vg_status shape(struct vg_problem *p, struct vg_display *show,
+                       struct vg_error *err)
+{
+  const int is_renewed = p->settings.remesh == VG_ANSWER_YES;
+  vg_status st;
+
   VG_TRY(split_quads(&p->surface, &p->notes, err));
   VG_TRY(resolve_patches(p, err));
   VG_TRY(close_surface(p, show, err));
   VG_TRY(vg_problem_decide(p, show, err));
-  vg_problem_note_slivers(p);
-  s->remesh = vg_problem_is_renewed(p) ? VG_ANSWER_YES : VG_ANSWER_NO;
   if (!p->check.n_defect || vg_is_only_open(&p->check))
     VG_TRY(vg_problem_gaps(p, show, err));
-  if (s->remesh == VG_ANSWER_YES) {
-    if (!p->model.cad && !vg_surface_is_reference(&p->check))
-      return defects(p, err);
-    VG_TRY(vg_problem_renew(p, show, err));
-  }
-  p->is_shaped = 1;
+  if (!is_renewed || is_made_elsewhere(p)) goto done;
+  if (!vg_surface_is_reference(&p->check)) return defects(p, err);
+  VG_TRY(vg_problem_renew(p, show, err));
 done:
+  return st;
+}
+
+/* What the next tessellation is to find as the first one did. */
+struct given {
+  int flow, half, farfield;
+  size_t n_note, n_patch;
+  struct vg_patch *patch;   /* [n_patch] owned */
+};
+
+static vg_status take_given(const struct vg_problem *p, struct given *g,
+                            struct vg_error *err)
+{
+  *g = (struct given){ p->settings.flow, p->settings.half,
+    p->settings.farfield.kind, p->notes.n, p->surface.n_patch, NULL };
+  g->patch = vg_alloc(g->n_patch, sizeof *g->patch);
+  if (!g->patch) return vg_fail_memory(err, "the patches");
+  if (g->n_patch)
+    memcpy(g->patch, p->surface.patch, g->n_patch * sizeof *g->patch);
+  return VG_OK;
+}
+
+static void put_back_given(struct vg_problem *p, const struct given *g)
+{
+  p->settings.flow = g->flow;
+  p->settings.half = g->half;
+  p->settings.farfield.kind = g->farfield;
+  p->n_given_patch = 0;
+  vg_flow_release(&p->flow);
+}
+
+vg_status vg_problem_shape(struct vg_problem *p, struct vg_display *show,
+                           struct vg_error *err)
+{
+  struct vg_error why = VG_ERROR_INIT;
+  struct given g = { .patch = NULL };
+  vg_status st, next;
+
+  vg_mesh_keep_boundary(&p->surface);
+  p->require_bc = vg_surface_has_conditions(&p->surface);
+  vg_problem_note_slivers(p);
+  p->settings.remesh = vg_problem_is_renewed(p) ? VG_ANSWER_YES
+                                                : VG_ANSWER_NO;
+  VG_TRY(take_given(p, &g, err));
+  st = shape(p, show, &why);
+  for (size_t i = 0; st == VG_ERR_GEOMETRY; i++) {
+    struct vg_error again = VG_ERROR_INIT;
+
+    next = vg_problem_tessellate(p, i, g.patch, g.n_patch, g.n_note,
+                                 show, &again);
+    if (next == VG_BLOCKED) break;
+    if (next < 0) {
+      st = vg_fail(err, next, "%s", again.text);
+      goto done;
+    }
+    put_back_given(p, &g);
+    st = shape(p, show, &again);
+    if (st < 0 && st != VG_ERR_GEOMETRY) why = again;
+  }
+  if (st < 0) *err = why;
+  p->is_shaped = st >= 0;
+done:
+  free(g.patch);
   /* the library's message says less */
   return st == VG_ERR_STOPPED ? vg_display_stopped(show, err) : st;
 }
