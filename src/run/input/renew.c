@@ -12,6 +12,8 @@
 #include "run/input/share.h"
 
 #define SLIVER2 0.03015369  /* S49: (sin 10 degrees)^2 */
+#define NEEDLE 5.0        /* S56: degrees */
+#define MANY 1e-3         /* of the triangles: so many needles are repaired */
 #define MOST 0.5          /* of the triangles: then most of them are slivers */
 
 /* S48: tessellations after the first, as factors on its chord and angle: coarser
@@ -123,7 +125,7 @@ struct vg_remesh_options vg_remesh_options_of(const struct vg_settings *s)
 }
 
 static vg_status remesh(struct vg_problem *p, const uint8_t *hard,
-                        const struct vg_surface_sizes *sizes,
+                        const struct vg_surface_sizes *sizes, int is_reference,
                         struct vg_display *show, struct vg_error *err)
 {
   struct vg_remesh_options o = vg_remesh_options_of(&p->settings);
@@ -131,13 +133,57 @@ static vg_status remesh(struct vg_problem *p, const uint8_t *hard,
   o.map = p->map;
   o.hard = hard;
   o.is_body = p->flow.kind == VG_FLOW_EXTERNAL;
-  o.is_reference = p->check.n_defect > p->check.count[VG_DEFECT_OPEN_EDGE];
+  o.is_reference = is_reference;
   o.cap = sizes->cap;
   o.across = sizes->across;
   o.stretch = sizes->stretch;
   o.threads = p->threads;
   o.stop = (struct vg_stop){ vg_display_stop, show };
   return vg_remesh(&p->surface, &o, &p->renewal.report, err);
+}
+
+static size_t n_needle(const struct vg_remesh_report *r)
+{
+  size_t n = 0;
+
+  for (size_t i = 0; i < r->n_bad; i++) n += r->bad[i].angle < NEEDLE;
+  return n;
+}
+
+/* A tessellation without defects is remeshed as it is. Where CAD leads to many
+ * needles that way, since its own are feature edges too, it is repaired as one
+ * with defects is, and the outcome with fewer needles stays. */
+static vg_status remesh_cad(struct vg_problem *p, const struct vg_mesh *given,
+                            const uint8_t *hard,
+                            const struct vg_surface_sizes *sizes,
+                            struct vg_display *show, struct vg_error *err)
+{
+  const int has_defects =
+    p->check.n_defect > p->check.count[VG_DEFECT_OPEN_EDGE];
+  struct vg_remesh_report first = VG_REMESH_REPORT_INIT;
+  struct vg_mesh made = VG_MESH_INIT;
+  vg_status st;
+
+  VG_TRY(remesh(p, hard, sizes, has_defects, show, err));
+  if (has_defects || !p->model.cad
+      || (double)n_needle(&p->renewal.report)
+         <= MANY * (double)p->surface.n_tri) goto done;
+  vg_mesh_move(&made, &p->surface);
+  first = p->renewal.report;
+  p->renewal.report = (struct vg_remesh_report)VG_REMESH_REPORT_INIT;
+  VG_TRY(vg_mesh_copy(&p->surface, given, err));
+  st = remesh(p, hard, sizes, 1, show, err);
+  if (st < 0 && st != VG_ERR_GEOMETRY) goto done;
+  if (st >= 0 && n_needle(&p->renewal.report) < n_needle(&first)) goto done;
+  st = VG_OK;
+  vg_mesh_move(&p->surface, &made);
+  vg_remesh_report_release(&p->renewal.report);
+  p->renewal.report = first;
+  first = (struct vg_remesh_report)VG_REMESH_REPORT_INIT;
+done:
+  vg_remesh_report_release(&first);
+  vg_mesh_release(&made);
+  return st;
 }
 
 static vg_status measure(struct vg_problem *p, struct vg_mesh *given,
@@ -193,7 +239,7 @@ vg_status vg_problem_renew(struct vg_problem *p, struct vg_display *show,
   VG_TRY(vg_mesh_copy(&given, &p->surface, err));
   VG_TRY(hard_patches(p, &hard, err));
   VG_TRY(vg_surface_sizes_make(p, &sizes, err));
-  VG_TRY(remesh(p, hard, &sizes, show, err));
+  VG_TRY(remesh_cad(p, &given, hard, &sizes, show, err));
   r->seconds = vg_display_now() - t;
   VG_TRY(measure(p, &given, show, err));
   r->is_done = 1;
