@@ -33,18 +33,18 @@ mkdir -p "$work"
 # name; file; reference length; what must come out: external, half, internal, or
 # a word of the refusal; least angle of the field (-: none asked for); options
 table='m6-openvsp|field/onera_m6_openvsp.igs.gz|0.64|external|5|
-m6-openvsp-half|field/onera_m6_openvsp.igs.gz|0.64|half|5|--half y
+m6-openvsp-half|field/onera_m6_openvsp.igs.gz|0.64|half|-|--half y
 m6-sharp-te|field/onera_m6_sharp_te.stp.gz|646|external|5|
-m6-sharp-te-half|field/onera_m6_sharp_te.stp.gz|646|half|5|--half y
+m6-sharp-te-half|field/onera_m6_sharp_te.stp.gz|646|half|-|--half y
 m6-root-cap|field/onera_m6_root_cap.igs.gz|646|external|5|
-m6-root-cap-half|field/onera_m6_root_cap.igs.gz|646|half|5|--half y
+m6-root-cap-half|field/onera_m6_root_cap.igs.gz|646|half|-|--half y
 transport-half|field/transport_half_wing_open_root.igs.gz|3|half|-|
 vtol-wing|field/vtol_wing_thin_te.step.gz|0.3|external|-|
 clark-open|field/clark_wing_open_ends.step.gz|1|close-holes yes|-|
 clark-closed|field/clark_wing_open_ends.step.gz|1|external|-|--close-holes yes
 blade-open|field/turbine_blade_open_ends.stp.gz|5|close-holes yes|-|
 blade-closed|field/turbine_blade_open_ends.stp.gz|5|external|-|--close-holes yes
-blade-wrapped|field/turbine_blade_open_ends.stp.gz|5|close-holes yes|-|--wrap 0.2
+blade-wrapped|field/turbine_blade_open_ends.stp.gz|5|hollow shell|-|--wrap 0.2
 rocket|field/rocket_touching_solids.step.gz|1|external|-|
 tunnel|field/tunnel_ball.stl.gz|1|internal|-|
 tunnel-wrapped|field/tunnel_ball.stl.gz|1|internal|-|--wrap 0.2
@@ -102,7 +102,9 @@ made() { # NAME WANTED ANGLE SECONDS
   # shellcheck disable=SC2016 # of jq
   local full='def full: if .layers then [.layers.patches[] | .faces] as $n |
     ([.layers.patches[] | .faces * .percent_full] | add) / ($n | add)
-    else null end;'
+    else null end;
+    def volume: if .remesh.cad_volume
+    then .remesh.volume / .remesh.cad_volume - 1 else 0 end;'
   missed=$(jq -r --arg wanted "$2" --arg angle "$3" --arg verdict "$verdict" "$full"'
     (if .flow.half != "no" then "half" else .flow.kind end) as $kind |
     [(if $wanted != "-" and $kind != $wanted then "domain" else empty end),
@@ -110,9 +112,9 @@ made() { # NAME WANTED ANGLE SECONDS
      (if full and full < 99.9 then "layers" else empty end),
      (if $angle != "-" and (.field // .mesh).angle_min
          < ($angle | tonumber) then "angle" else empty end),
-     (if $angle != "-" and (.remesh.put_back.percent_on // 0) < 99
+     (if $angle != "-" and (.remesh.cad.percent_on // 0) < 99
       then "points" else empty end),
-     (if $angle != "-" and ((.remesh.volume_ratio // 1) - 1 | fabs) > 0.001
+     (if $angle != "-" and (volume | fabs) > 0.001
       then "volume" else empty end)] | join(" ")' "$r")
   [ -z "$missed" ] || failed=1
   row "$(jq -r --arg name "$1" --arg s "$4" --arg verdict "$verdict" \
@@ -120,9 +122,8 @@ made() { # NAME WANTED ANGLE SECONDS
     def at(n): if . == null then "-" else . * n | round / n end;
     [$name, .flow.statement, .mesh.cells, (full | at(100)),
      ((.field // .mesh).angle_min | at(100)),
-     (.remesh.put_back.percent_on | at(100)),
-     (if .remesh.volume_ratio then .remesh.volume_ratio - 1 | at(1e6) else "-"
-      end), $s, $verdict, $missed] | "| " + (map(tostring) | join(" | ")) +
+     (.remesh.cad.percent_on | at(100)),
+     (if .remesh.cad_volume then volume | at(1e6) else "-" end), $s, $verdict, $missed] | "| " + (map(tostring) | join(" | ")) +
     " |"' "$r")"
 }
 

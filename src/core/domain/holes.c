@@ -11,6 +11,8 @@
 #include "core/geometry/vector.h"
 
 #define HOLE_FLATNESS 0.05 /* S11 */
+#define OPPOSITE 0.1       /* S11: of the extent: rims so near to an end are of
+                              that end */
 
 struct holes {
   struct vg_mesh m;
@@ -86,6 +88,20 @@ done:
   return st;
 }
 
+/* A rim at the end of the body that is opposite to the plane. */
+static int is_open_opposite(const struct holes *h, int axis, int is_lo)
+{
+  const double extent = h->hi[axis] - h->lo[axis];
+
+  for (uint32_t k = 0; k < h->n_loop; k++) {
+    const double x = h->m.point[h->rim[k].first][axis];
+
+    if ((is_lo ? h->hi[axis] - x : x - h->lo[axis]) < OPPOSITE * extent)
+      return 1;
+  }
+  return 0;
+}
+
 /* A shaft or a wing section that is open at both ends is no half model. */
 static vg_status keep_symmetry(struct holes *h, int symmetry,
                                struct vg_error *err)
@@ -99,7 +115,7 @@ static vg_status keep_symmetry(struct holes *h, int symmetry,
 
     VG_TRY(is_cut(h, symmetry, axis, h->lo[axis], &lo, err));
     VG_TRY(is_cut(h, symmetry, axis, h->hi[axis], &hi, err));
-    found = lo != hi;
+    found = lo != hi && !is_open_opposite(h, axis, lo);
     for (uint32_t k = 0; found && k < h->n_loop; k++)
       h->rim[k].stays = is_in_plane(h, k, axis, lo ? h->lo[axis]
                                                    : h->hi[axis]);

@@ -122,31 +122,33 @@ static void list_rims(const struct vg_rim *rim, size_t n, char *text,
 }
 
 vg_status vg_problem_refuse_open(const struct vg_problem *p,
-                                 struct vg_error *err)
+                                 struct vg_display *show, struct vg_error *err)
 {
   struct vg_error why = VG_ERROR_INIT;
   struct vg_rim *rim = NULL;
-  char list[400], half[160] = "";
+  char list[400], half[160] = "", remedy[120];
   size_t n = 0;
   vg_status st = vg_domain_rims(&p->surface, &n, &rim, &why);
 
   if (p->rim_gap > 0) {
     free(rim);
-    return vg_fail(err, VG_ERR_GEOMETRY, "%s: the surface is open, but open "
+    return vg_fail(err, VG_ERR_INPUT, "%s: the surface is open, but open "
                    "edges lie next to each other, %.3g apart at most: --weld "
                    "%.2g closes these gaps", p->files.stem, p->rim_gap,
                    1.05 * p->rim_gap);
   }
-  if (st == VG_ERR_GEOMETRY)
-    return vg_fail(err, st, "%s: the surface is open, and %s; repair it, or "
-                   "wrap it (--wrap SIZE)", p->files.stem, why.text);
+  if (st == VG_ERR_GEOMETRY) {
+    vg_problem_suggest_wrap(p, show, remedy, sizeof remedy);
+    return vg_fail(err, VG_ERR_INPUT, "%s: the surface is open, and %s%s",
+                   p->files.stem, why.text, remedy);
+  }
   if (st < 0) return vg_fail(err, st, "%s", why.text);
   list_rims(rim, n, list, sizeof list);
   if (n == 1 && rim[0].axis >= 0)
     snprintf(half, sizeof half, ". Should it be half of a symmetric model, cut "
              "at %c = %g, give --half %c", "xyz"[rim[0].axis],
              rim[0].centre[rim[0].axis], "xyz"[rim[0].axis]);
-  st = vg_fail(err, VG_ERR_GEOMETRY, "%s: the surface is open: %zu rim%s (%s). "
+  st = vg_fail(err, VG_ERR_INPUT, "%s: the surface is open: %zu rim%s (%s). "
                "--close-holes yes closes each with a flat cap in a patch of its "
                "own (cap_1%s%s)%s", p->files.stem, n, n > 1 ? "s" : "", list,
                n > 1 ? ", cap_2, ..." : "", n > 1 ? "; in a duct with --flow "

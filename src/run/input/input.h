@@ -41,7 +41,10 @@ double *vg_point_height(const struct vg_point_heights *h, const double x[3]);
 /** A new surface that was put back on the CAD model that it comes from. */
 struct vg_put_back {
   int is_done;
-  size_t n_point, n_curve;          /* of the surface; of them on curves */
+  size_t n_cap;                     /* points inside caps, which the model does
+                                       not have */
+  size_t n_point, n_curve;          /* other points of the surface; of them on
+                                       curves */
   size_t n_far, n_refused;          /* that stay: off the model, and since
                                        triangles would fold or meet */
   struct vg_remesh_distance off[2]; /* from the model: of points before, of
@@ -60,6 +63,9 @@ struct vg_renewal {
   double *area;                     /* [n_patch][2] of patches, before, after */
   double seconds;
   struct vg_put_back back;
+  double volume[2];                 /* enclosed by the new surface, and by the
+                                       CAD model as Open CASCADE integrates it;
+                                       NAN where one of them is not closed */
 };
 
 struct vg_problem {

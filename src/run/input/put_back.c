@@ -1,4 +1,4 @@
-/* A surface that was made anew from CAD put back on its faces and curves.
+/* A surface that was remeshed from CAD is put back on its faces and curves.
  *
  * Samples are the points and the centroids of the new triangles: each is near a
  * triangle of CAD's, which has a face; points on an edge of it that is part of a
@@ -253,17 +253,36 @@ done:
 
 /* --- all ----------------------------------------------------------------- */
 
+/* The model has no caps over its holes: points inside them stay and do not
+ * count, distance INFINITY. */
+static void leave_caps(struct samples *s, const struct vg_problem *p,
+                       struct vg_put_back *b)
+{
+  const struct vg_mesh *m = &p->surface;
+
+  if (!p->n_given_patch) return;
+  memset(s->stays, 1, s->n_point);
+  for (size_t t = 0; t < m->n_tri; t++)
+    for (int k = 0; k < 3 && !vg_problem_is_cap(p, m->tri_patch[t]); k++)
+      s->stays[m->tri[t][k]] = 0;
+  for (size_t i = 0; i < s->n_point; i++)
+    if (s->stays[i]) {
+      s->distance[i] = INFINITY;
+      b->n_cap++;
+    }
+}
+
 static vg_status move(struct vg_problem *p, struct samples *s,
                       struct vg_put_back *b, struct vg_error *err)
 {
   const struct vg_stop stop = { vg_display_stop, NULL };
 
   for (size_t i = 0; i < s->n_point; i++) {
-    if (!(s->distance[i] < INFINITY)) b->n_far++;
+    if (!(s->distance[i] < INFINITY) && !s->stays[i]) b->n_far++;
     if (s->curve[i]) b->n_curve++;
     s->stays[i] = !(s->distance[i] < INFINITY);
   }
-  b->n_point = s->n_point;
+  b->n_point = s->n_point - b->n_cap;
   return vg_remesh_put_back(&p->surface, (const double (*)[3])s->to,
                             p->threads, &stop, s->stays, &b->n_refused, err);
 }
@@ -293,6 +312,7 @@ vg_status vg_problem_put_back(struct vg_problem *p, struct vg_error *err)
   take_points(&s, &p->surface);
   take_centroids(&s, &p->surface);
   VG_TRY(locate(&s, p, r->report.tolerance, err));
+  leave_caps(&s, p, b);
   VG_TRY(find_places(&s, p->model.cad, &b->off[0], err));
   VG_TRY(move(p, &s, b, err));
   VG_TRY(measure(&s, &p->surface, p->model.cad, &b->off[1], err));

@@ -142,6 +142,29 @@ static vg_status remesh(struct vg_problem *p, const uint8_t *hard,
   return vg_remesh(&p->surface, &o, &p->renewal.report, err);
 }
 
+/* Volumes of the new surface and of the CAD model, where both are closed and
+ * nothing was dropped or capped. About a corner: small numbers wherever the
+ * body is. */
+static void take_volumes(struct vg_problem *p)
+{
+  const struct vg_mesh *m = &p->surface;
+  const int is_whole = p->flow.kind != VG_FLOW_UNKNOWN && p->flow.axis < 0
+                       && !p->flow.n_cavity && !p->n_given_patch;
+  double sum = 0;
+
+  p->renewal.volume[0] = p->renewal.volume[1] = NAN;
+  if (!p->model.cad || !is_whole || !m->n_tri) return;
+  for (size_t t = 0; t < m->n_tri; t++) {
+    double v[3][3];
+
+    for (int k = 0; k < 3; k++)
+      vg_sub(m->point[m->tri[t][k]], m->point[0], v[k]);
+    sum += vg_triple(v[0], v[1], v[2]);
+  }
+  p->renewal.volume[0] = fabs(sum) / 6;
+  p->renewal.volume[1] = p->model.surface.volume;
+}
+
 static size_t n_needle(const struct vg_remesh_report *r)
 {
   size_t n = 0;
@@ -245,6 +268,7 @@ vg_status vg_problem_renew(struct vg_problem *p, struct vg_display *show,
   r->is_done = 1;
   vg_display_update(show, "put back", p->surface.n_tri, 0);
   if (p->model.cad) VG_TRY(vg_problem_put_back(p, err));
+  take_volumes(p);
   areas(&p->surface, 1, r->area);
   note_faults(p);
   vg_note(&p->notes, "the surface was remeshed (remesh_surface): %zu "

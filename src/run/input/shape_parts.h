@@ -31,10 +31,10 @@ struct vg_flow_options vg_problem_flow_options(const struct vg_problem *p,
 vg_status vg_problem_decide(struct vg_problem *p, struct vg_display *show,
                             struct vg_error *err);
 
-/** VG_ERR_GEOMETRY that lists the rims of an open surface and says how they can
- * be closed. */
+/** VG_ERR_INPUT that lists the rims of an open surface and says how they can be
+ * closed. */
 vg_status vg_problem_refuse_open(const struct vg_problem *p,
-                                 struct vg_error *err);
+                                 struct vg_display *show, struct vg_error *err);
 
 /** Add farfield and symmetry plane as the decision asks for. */
 vg_status vg_problem_complete(struct vg_problem *p, struct vg_display *show,
@@ -51,6 +51,12 @@ vg_status vg_problem_complete(struct vg_problem *p, struct vg_display *show,
  * without triangles; otherwise as vg_wrap. */
 vg_status vg_problem_wrap(struct vg_problem *p, const uint8_t *keep,
                           struct vg_display *show, struct vg_error *err);
+
+/** What will do for a surface that cannot be repaired, as the end of a message:
+ * "; --wrap 0.2 puts a closed surface around it". A wrap is tried for it, which
+ * takes some seconds. "" where a wrap is no remedy: text[120] */
+void vg_problem_suggest_wrap(const struct vg_problem *p,
+                             struct vg_display *show, char *text, size_t size);
 
 /** Open edges are the only defects. */
 int vg_is_only_open(const struct vg_surface_report *r);

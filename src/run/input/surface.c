@@ -83,14 +83,19 @@ static vg_status check(struct vg_problem *p, int external,
   return st;
 }
 
-static vg_status defects(const struct vg_problem *p, struct vg_error *err)
+static vg_status defects(const struct vg_problem *p, struct vg_display *show,
+                         struct vg_error *err)
 {
+  char remedy[120];
+
   if (!p->check.n_defect && !p->surface.n_tri)
     return vg_fail(err, VG_ERR_GEOMETRY, "%s: no surface is left: all its "
                    "triangles are degenerate", p->files.stem);
   if (!p->check.n_defect) return VG_OK;
+  vg_problem_suggest_wrap(p, show, remedy, sizeof remedy);
   return vg_fail(err, VG_ERR_GEOMETRY, "%s: the surface has %zu defects and "
-                 "cannot bound a mesh", p->files.stem, p->check.n_defect);
+                 "cannot bound a mesh%s", p->files.stem, p->check.n_defect,
+                 remedy);
 }
 
 /* Names and conditions of the patches as they are now, for the resolved
@@ -253,11 +258,22 @@ static int is_made_elsewhere(const struct vg_problem *p)
   return p->is_read && !p->model.cad;
 }
 
+/* Open, and no half model; vanguard surface takes it as it is. */
+static int is_open_for_good(const struct vg_problem *p)
+{
+  const size_t *n = p->check.count;
+
+  return !p->surface_only && p->flow.axis < 0 && n[VG_DEFECT_OPEN_EDGE]
+         && !n[VG_DEFECT_NONMANIFOLD_EDGE] && !n[VG_DEFECT_ORIENTATION];
+}
+
 /* One tessellation of the surface: closed, decided, remeshed. */
 static vg_status shape(struct vg_problem *p, struct vg_display *show,
                        struct vg_error *err)
 {
   const int is_renewed = p->settings.remesh == VG_ANSWER_YES;
+  struct vg_error why = VG_ERROR_INIT;
+  char remedy[120] = "";
   vg_status st;
 
   VG_TRY(split_quads(&p->surface, &p->notes, err));
@@ -266,9 +282,15 @@ static vg_status shape(struct vg_problem *p, struct vg_display *show,
   VG_TRY(vg_problem_decide(p, show, err));
   if (!p->check.n_defect || vg_is_only_open(&p->check))
     VG_TRY(vg_problem_gaps(p, show, err));
+  if (is_open_for_good(p)) return vg_problem_refuse_open(p, show, err);
   if (!is_renewed || is_made_elsewhere(p)) goto done;
-  if (!vg_surface_is_reference(&p->check)) return defects(p, err);
-  VG_TRY(vg_problem_renew(p, show, err));
+  if (!vg_surface_is_reference(&p->check)) return defects(p, show, err);
+  st = vg_problem_renew(p, show, &why);
+  if (st < 0) {
+    if (st == VG_ERR_GEOMETRY)
+      vg_problem_suggest_wrap(p, show, remedy, sizeof remedy);
+    st = vg_fail(err, st, "%s%s", why.text, remedy);
+  }
 done:
   return st;
 }
@@ -346,7 +368,7 @@ static vg_status complete(struct vg_problem *p, struct vg_display *show,
   vg_display_update(show, "farfield", 0, 0);
   VG_TRY(vg_problem_complete(p, show, err));
   VG_TRY(check(p, 0, show, err));
-  VG_TRY(defects(p, err));
+  VG_TRY(defects(p, show, err));
 done:
   return st;
 }
@@ -364,13 +386,13 @@ vg_status vg_problem_close(struct vg_problem *p, struct vg_display *show,
   is_open = vg_is_only_open(&p->check);
   if (p->surface_only && (!p->check.n_defect || is_open)) return VG_OK;
   if (is_open && p->flow.axis < 0)
-    st = vg_problem_refuse_open(p, err);
+    st = vg_problem_refuse_open(p, show, err);
   else if (p->check.n_defect && !is_open)
-    st = defects(p, err);
+    st = defects(p, show, err);
   else if (p->flow.kind == VG_FLOW_EXTERNAL || is_open)
     st = complete(p, show, err);
   else
-    st = defects(p, err);
+    st = defects(p, show, err);
 done:
   return st == VG_ERR_STOPPED ? vg_display_stopped(show, err) : st;
 }

@@ -121,3 +121,26 @@ done:
   free(asked);
   return st;
 }
+
+void vg_problem_suggest_wrap(const struct vg_problem *p,
+                             struct vg_display *show, char *text, size_t size)
+{
+  const struct vg_stop stop = { vg_display_stop, show };
+  const size_t *n = p->check.count;
+  struct vg_error why = VG_ERROR_INIT;
+  enum vg_wrap_reason reason;
+  double wrap = 0;
+
+  *text = 0;
+  if (!vg_wrap_is_built() || p->settings.wrap > 0
+      || p->flow.kind == VG_FLOW_INTERNAL || n[VG_DEFECT_NOT_FINITE]
+      || n[VG_DEFECT_NO_BC] == p->check.n_defect) return;
+  vg_display_update(show, "wrap that would do", 0, 0);
+  if (vg_wrap_suggest(&p->surface, &stop, &wrap, &reason, &why) < 0) return;
+  if (reason == VG_WRAP_SHEETS)
+    snprintf(text, size, "; its sheets without thickness bound no body, so that "
+             "no wrap will do");
+  else
+    snprintf(text, size, "; --wrap %.2g puts a closed surface around it%s",
+             wrap, reason == VG_WRAP_HOLES ? " that bridges its holes" : "");
+}

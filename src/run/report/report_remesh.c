@@ -62,7 +62,7 @@ void vg_report_remesh_text(FILE *to, const struct vg_renewal *n)
   char was[32], now[32];
 
   if (!n->is_done) return;
-  fprintf(to, "  made anew: %s triangles, now %s; %zu corners and %zu lines "
+  fprintf(to, "  remeshed: %s triangles, now %s; %zu corners and %zu lines "
           "kept, length %.6g, now %.6g\n", vg_text_count(r->n_tri[0], was),
           vg_text_count(r->n_tri[1], now), r->n_corner, r->n_line,
           r->line_length[0], r->line_length[1]);
@@ -80,6 +80,10 @@ void vg_report_remesh_text(FILE *to, const struct vg_renewal *n)
   distance_text(to, "new from given", &n->off[0]);
   distance_text(to, "given from new", &n->off[1]);
   if (n->back.is_done) back_text(to, &n->back);
+  if (n->volume[1] > 0)
+    fprintf(to, "  volume %.9g, of the CAD model %.9g (%+.3g %%)\n",
+            n->volume[0], n->volume[1],
+            100 * (n->volume[0] / n->volume[1] - 1));
   if (r->n_round > 1)
     fprintf(to, "  made %d times: triangles met, and sizes there were "
             "halved\n", r->n_round);
@@ -96,11 +100,18 @@ static json_t *distance_json(const struct vg_remesh_distance *d)
 static json_t *back_json(const struct vg_put_back *b)
 {
   if (!b->is_done) return json_null();
-  return json_pack("{s:I s:I s:I s:I s:o s:o s:f}", "points",
-    (json_int_t)b->n_point, "on_curves", (json_int_t)b->n_curve, "refused",
+  return json_pack("{s:I s:f s:I s:I s:I s:o s:o s:f}", "points",
+    (json_int_t)b->n_point, "percent_on",
+    percent(b->n_point - b->n_far - b->n_refused, b->n_point),
+    "on_curves", (json_int_t)b->n_curve, "refused",
     (json_int_t)b->n_refused, "off_model", (json_int_t)b->n_far, "before",
     distance_json(&b->off[0]), "now", distance_json(&b->off[1]), "seconds",
     b->seconds);
+}
+
+static json_t *volume_json(double v)
+{
+  return v > 0 ? json_real(v) : json_null();
 }
 
 static json_t *closed_json(const struct vg_remesh_report *r)
@@ -156,7 +167,7 @@ json_t *vg_report_remesh_json(const struct vg_renewal *n,
 
   if (!n->is_done) return json_null();
   return json_pack("{s:[II] s:[II] s:I s:I s:[ff] s:f s:f s:f s:f s:i s:f s:o "
-                   "s:o s:o s:o s:{s:I s:I s:I s:I} s:f s:o s:o s:o}",
+                   "s:o s:o s:o s:o s:o s:{s:I s:I s:I s:I} s:f s:o s:o s:o}",
     "triangles", (json_int_t)r->n_tri[0], (json_int_t)r->n_tri[1],
     "points", (json_int_t)r->n_point[0], (json_int_t)r->n_point[1],
     "corners", (json_int_t)r->n_corner, "lines", (json_int_t)r->n_line,
@@ -167,7 +178,8 @@ json_t *vg_report_remesh_json(const struct vg_renewal *n,
     "strips_closed", closed_json(r),
     "new_from_given", distance_json(&n->off[0]),
     "given_from_new", distance_json(&n->off[1]),
-    "cad", back_json(&n->back),
+    "cad", back_json(&n->back), "volume", volume_json(n->volume[0]),
+    "cad_volume", volume_json(n->volume[1]),
     "changes", "splits", (json_int_t)r->n_split, "collapses",
     (json_int_t)r->n_collapse, "swaps", (json_int_t)r->n_swap, "moves",
     (json_int_t)r->n_move, "seconds", n->seconds,

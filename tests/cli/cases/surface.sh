@@ -140,7 +140,7 @@ says err "stretch without a curve; give the patch beside"
 vanguard mesh -q -p bar.obj --remesh-surface yes --surface-size 0.3 \
   --out run --write lb8.ugrid --threads 1
 exits 0
-says out "made anew: "
+says out "remeshed: "
 says out "note: the surface was remeshed (remesh_surface)"
 says run/bar.report.json '"remesh": {'
 says run/bar.resolved.deck "remesh_surface"
