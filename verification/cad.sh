@@ -62,11 +62,11 @@ tubes|field/tube_row_in_duct.msh.gz|1|internal|-|--walls 3
 doubled|field/one_doubled_triangle.stl.gz|1|external|-|
 byte-order-mark|field/byte_order_mark.stl.gz|1|external|-|
 naca0012|hard/naca0012_extruded.obj.gz|1|external|-|
-dlr-f6|transport/dlr_f6_wbnp_half.brep.xz|141.2|internal|-|--walls 1-123
-m6-farfield|transport/onera_m6_sharp_te_farfield.stp.xz|0.646|internal|-|--walls 1-9
-hemisphere|simple/hemisphere_cylinder_farfield.stp|1|internal|-|--walls 1-3
-cone-cone|simple/cone_cone.step|1|-|-|--layers no
-cube-cylinder|simple/cube_cylinder.step|1|-|-|--layers no'
+dlr-f6|transport/dlr_f6_wbnp_half.brep.xz|141.2|internal|-|
+m6-farfield|transport/onera_m6_sharp_te_farfield.stp.xz|0.646|internal|-|
+hemisphere|simple/hemisphere_cylinder_farfield.stp|1|internal|-|
+cone-cone|simple/cone_cone.step|1|external|-|--layers no
+cube-cylinder|simple/cube_cylinder.step|1|external|-|--layers no'
 brief=' tunnel hollow inside-out duct duct-fun3d duct-usm3d pipe-open pipe-asked
 pipe-closed gap doubled byte-order-mark clark-open '
 if [ ${#cases[@]} -eq 0 ]; then

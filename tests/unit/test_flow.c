@@ -58,6 +58,8 @@ static void add_ball(struct vg_mesh *m, double x, double y, double z, double r,
   vg_border_release(&border);
 }
 
+static int box_edges = 4;           /* along the longest side of a box */
+
 /* A box with six patches, normals inward; open as in vg_add_box. */
 static void add_box(struct vg_mesh *m, const double lo[3], const double hi[3],
                     int open, const char *const name[6], const int32_t *bc)
@@ -68,7 +70,7 @@ static void add_box(struct vg_mesh *m, const double lo[3], const double hi[3],
   struct vg_error err = VG_ERROR_INIT;
   uint32_t p[6];
 
-  for (int k = 0; k < 3; k++) h = fmax(h, (hi[k] - lo[k]) / 4);
+  for (int k = 0; k < 3; k++) h = fmax(h, (hi[k] - lo[k]) / box_edges);
   for (int i = 0; i < 6; i++)
     p[i] = patch_of(m, name[i], bc ? bc[i] : VG_BC_NONE);
   assert_int_equal(vg_add_box(m, lo, hi, open, &law, p, &border, &err), VG_OK);
@@ -294,6 +296,50 @@ static void bubbles_are_left_out(void **state)
   is_kind(&a, VG_FLOW_EXTERNAL);
   assert_int_equal(a.flow.n_cavity, 1);
   assert_true(a.volume > 3.5);
+}
+
+/* A block on the floor of a room: its patch is no part of the outer boundary.
+ * A ball with the same block would be one with a hole: a body. */
+static void a_room_keeps_its_block(void **state)
+{
+  const double lo[3] = { 0, 0, 0 }, hi[3] = { 1, 1, 1 };
+  const char *const room[6] = { "a", "b", "c", "d", "floor", "e" };
+  struct vg_mesh m = VG_MESH_INIT;
+  struct vg_surface_report r = VG_SURFACE_REPORT_INIT;
+  struct vg_flow f = VG_FLOW_INIT;
+  const struct vg_surface_check_options c = { .repair = 1, .external = -1,
+                                              .threads = 1 };
+  struct vg_error err = VG_ERROR_INIT;
+  uint32_t block;
+  size_t n = 0;
+
+  (void)state;
+  box_edges = 12;
+  add_box(&m, lo, hi, -1, room, NULL);
+  box_edges = 4;
+  block = patch_of(&m, "block", VG_BC_NONE);
+  /* The points of the floor inside the rim of a square are lifted. */
+  for (size_t i = 0; i < m.n_point; i++) {
+    double *x = m.point[i];
+
+    if (x[2] == 0 && fabs(x[0] - 0.5) < 0.2 && fabs(x[1] - 0.5) < 0.2) {
+      x[2] = 0.4;
+      n++;
+    }
+  }
+  assert_true(n > 0);
+  for (size_t t = 0; t < m.n_tri; t++)
+    for (int k = 0; k < 3; k++)
+      if (m.tri_patch[t] == 4 && m.point[m.tri[t][k]][2] > 0)
+        m.tri_patch[t] = block;
+  assert_int_equal(vg_surface_check(&m, &c, &r, &err), VG_OK);
+  assert_int_equal(vg_flow_settle(&m, &r, &plain, &f, &err), VG_OK);
+  assert_int_equal(f.kind, VG_FLOW_INTERNAL);
+  for (size_t i = 0; i < 6; i++) assert_int_equal(f.on_outer[i], 1);
+  assert_int_equal(f.on_outer[block], 0);
+  vg_flow_release(&f);
+  vg_surface_report_release(&r);
+  vg_mesh_release(&m);
 }
 
 /* A thick hollow block, or a box with something large in it. */
@@ -618,6 +664,7 @@ int main(void)
     cmocka_unit_test(orientation_counts_where_it_is_defined),
     cmocka_unit_test(sealed_cavities_are_left_out),
     cmocka_unit_test(a_tunnel_keeps_its_ball),
+    cmocka_unit_test(a_room_keeps_its_block),
     cmocka_unit_test(bubbles_are_left_out),
     cmocka_unit_test(doubtful_contents_are_refused),
     cmocka_unit_test(ducts_are_internal),

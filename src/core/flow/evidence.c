@@ -17,6 +17,7 @@ void vg_flow_evidence_release(struct vg_flow_evidence *e)
   free(e->slot);
   free(e->depth);
   free(e->crossed);
+  free(e->in_pocket);
   memset(e, 0, sizeof *e);
 }
 

@@ -63,6 +63,9 @@ struct vg_flow_evidence {
                                    outermost shell around each, or of itself;
                                    owned */
   int *depth;                   /* [r->n_shell] 0 outermost; owned */
+  uint8_t *in_pocket;           /* [m->n_tri] 1: the triangle belongs to what
+                                   stands in an outer boundary of the same
+                                   shell; owned; NULL: there is no such shell */
   uint8_t *crossed;             /* [r->n_shell] 1: the shell meets another one,
                                    so that it lies in none; owned */
 };
@@ -84,7 +87,7 @@ vg_status vg_flow_patches(const struct vg_mesh *m,
 
 /** core/flow/shape.c: the members that follow from the shape of the shell.
  * O(n log n). */
-vg_status vg_flow_measure_shape(const struct vg_flow_evidence *e,
+vg_status vg_flow_measure_shape(struct vg_flow_evidence *e,
                                 struct vg_flow_shell *s, struct vg_error *err);
 
 /** core/flow/roles.c: the name is that of an enclosure, such as a tunnel. */

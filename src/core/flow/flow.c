@@ -271,16 +271,25 @@ static void count_shell(struct settle *s, uint32_t shell, double *largest)
     s->out.cavity_at[k] = 0.5 * (x->lo[k] + x->hi[k]);
 }
 
-/* Patches of the outer boundary. */
-static void mark_outer(struct settle *s)
+/* Patches of the outer boundary; those that stand in its pocket are not: more
+ * than half of their triangles do. */
+static vg_status mark_outer(struct settle *s, struct vg_error *err)
 {
-  for (size_t i = 0; i < s->e.m->n_patch; i++) {
-    const struct vg_flow_patch *p = &s->e.patch[i];
+  const struct vg_flow_evidence *e = &s->e;
+  size_t (*n)[2] = vg_calloc(e->m->n_patch, sizeof *n);
+
+  if (!n) return vg_fail_memory(err, "the patches");
+  for (size_t t = 0; t < e->m->n_tri && e->in_pocket; t++)
+    n[e->m->tri_patch[t]][e->in_pocket[t]]++;
+  for (size_t i = 0; i < e->m->n_patch; i++) {
+    const struct vg_flow_patch *p = &e->patch[i];
 
     s->out.on_outer[i] = p->is_used && p->shell != UINT32_MAX
-                         && !s->e.depth[p->shell]
-                         && s->verdict[s->e.slot[p->shell]] == VG_FLOW_OUTER;
+                         && !e->depth[p->shell] && n[i][1] <= n[i][0]
+                         && s->verdict[e->slot[p->shell]] == VG_FLOW_OUTER;
   }
+  free(n);
+  return VG_OK;
 }
 
 static void count_shells(struct settle *s)
@@ -420,7 +429,7 @@ vg_status vg_flow_settle(struct vg_mesh *m, struct vg_surface_report *r,
   if (is_judged(&s)) {
     s.out.on_outer = vg_calloc(m->n_patch, 1);
     if (!s.out.on_outer) VG_TRY(vg_fail_memory(err, "the patches"));
-    mark_outer(&s);
+    VG_TRY(mark_outer(&s, err));
     count_shells(&s);
     VG_TRY(apply(&s, err));
   }

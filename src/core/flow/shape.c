@@ -195,7 +195,20 @@ static double depth(const struct hull *h)
   return most;
 }
 
-vg_status vg_flow_measure_shape(const struct vg_flow_evidence *e,
+/* outer: [n] of the triangles of the shell, in their order. */
+static vg_status mark_pocket(struct vg_flow_evidence *e, uint32_t shell,
+                             const uint8_t *outer, struct vg_error *err)
+{
+  size_t n = 0;
+
+  e->in_pocket = vg_calloc(e->m->n_tri, 1);
+  if (!e->in_pocket) return vg_fail_memory(err, "a shell of the surface");
+  for (size_t t = 0; t < e->m->n_tri; t++)
+    if (e->r->tri_shell[t] == shell) e->in_pocket[t] = !outer[n++];
+  return VG_OK;
+}
+
+vg_status vg_flow_measure_shape(struct vg_flow_evidence *e,
                                 struct vg_flow_shell *s, struct vg_error *err)
 {
   struct vg_mesh one = VG_MESH_INIT;
@@ -217,6 +230,7 @@ vg_status vg_flow_measure_shape(const struct vg_flow_evidence *e,
   h.outer = outer;
   shape = is_box(&h) || is_round(&h);
   s->has_pocket = shape && depth(&h) > DEEP * h.length;
+  if (s->has_pocket) st = mark_pocket(e, s->shell, outer, err);
 done:
   vg_mesh_release(&one);
   free(outer);
