@@ -7,7 +7,7 @@
 #   --data       folder of real geometry (verification/README.md)
 #   --vanguard   program (default build/release/bin/vanguard)
 #   --meshcheck  independent judge of a .ugrid; without it vanguard check judges
-#   --work       folder for what is made (default: a temporary one)
+#   --work       folder for all results (default: a temporary one)
 #   --out        write the table to FILE too
 #   --quick      the cases of folder field that take a few seconds
 #   CASE         names of the table below; default all

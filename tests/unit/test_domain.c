@@ -381,14 +381,20 @@ static void closes_holes_but_not_half_bodies(void **state)
   assert_int_equal(n, 2);
   check_closed(&m);
   vg_mesh_release(&m);
-  m = ball(5, 0.1);
+  m = ball(5, 0.1);                  /* half a ball with a hole at its end */
   cut_end(&m, 2, 1, 0.95);
-  assert_int_equal(close_holes(&m, 0, &n), VG_OK);
+  assert_int_equal(close_holes(&m, 1, &n), VG_OK);
   assert_int_equal(n, 1);
   assert_int_equal(close_holes(&m, 0, &n), VG_OK);
   assert_int_equal(n, 0);
   assert_int_equal(close_holes(&m, -1, &n), VG_OK);
   assert_int_equal(n, 1);
+  check_closed(&m);
+  vg_mesh_release(&m);
+  m = ball(5, 0.1);                  /* as a section that is open at both ends */
+  cut_end(&m, 2, 1, 0.95);
+  assert_int_equal(close_holes(&m, 0, &n), VG_OK);
+  assert_int_equal(n, 2);
   check_closed(&m);
   vg_mesh_release(&m);
   m = open_body(0, 1, 0.3, 0);

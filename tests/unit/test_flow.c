@@ -112,7 +112,7 @@ struct answer {
   vg_status st;
   struct vg_flow flow;
   struct vg_error err;
-  double volume;            /* of what is left, by its normals */
+  double volume;            /* of the remaining triangles, by their normals */
 };
 
 /* m is released. */
@@ -132,7 +132,7 @@ static struct answer ask_with(struct vg_mesh *m,
     const struct vg_surface_check_options last = { .threads = 1,
       .external = a.flow.kind == VG_FLOW_EXTERNAL };
 
-    /* The check agrees with what was turned and dropped. */
+    /* The check agrees with the triangles that were turned and dropped. */
     assert_int_equal(vg_surface_check(m, &last, &r, &a.err), VG_OK);
     if (known && !o->all_regions) assert_int_equal(r.n_defect, 0);
   }
@@ -633,7 +633,8 @@ static void random_surfaces_are_read_or_refused(void **state)
     if (chance() < 0.5) turn(&m, 0);
     for (int k = 0; k < n; k++) {
       from = m.n_tri;
-      add_ball(&m, 0.5 * size * (k - 1), 0, 0, 0.2 * size * (0.1 + 0.9 * chance()),
+      add_ball(&m, 0.5 * size * (k - 1), 0, 0,
+               0.2 * size * (0.1 + 0.9 * chance()),
                half && (kind == 0 || kind == 4) ? 3 : -1, "");
       if (kind == 4) add_ball(&m, 0.5 * size * (k - 1), 0, 0, 1e-3 * size,
                               half ? 3 : -1, "");

@@ -1,4 +1,5 @@
-/* Rims that coincide but for rounding are told from holes and become one. */
+/* Rims that coincide but for rounding are distinguished from holes, and welded.
+ */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

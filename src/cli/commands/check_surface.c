@@ -178,7 +178,7 @@ done:
   return st;
 }
 
-/* What was found on the surface itself, before the domain is completed. */
+/* Examine the surface itself, before the domain is completed. */
 static vg_status examine(const struct vg_check_surface *a,
                          struct vg_problem *p, struct findings *f,
                          struct vg_display *show, struct vg_error *err)

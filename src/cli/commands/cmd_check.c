@@ -160,8 +160,8 @@ done:
 int vg_cmd_check(int argc, char **argv)
 {
   const struct argp_option own[] = {
-    { "deck", 'd', "FILE", 0, "settings, patches and sources [default STEM.deck "
-      "where that exists]; the edges of a mesh, and of a surface, are compared "
+    { "deck", 'd', "FILE", 0, "settings, patches and sources [default "
+      "STEM.deck where that exists]; the edges of a mesh, and of a surface, are compared "
       "with the sizes of a deck that is given", 1 },
     { "defects", 'f', "FILE", 0, "write all faces with a defect to this .vtu "
       "file", 1 },
@@ -176,8 +176,8 @@ int vg_cmd_check(int argc, char **argv)
   struct vg_cli_options options;
   struct argp argp = { .parser = option, .args_doc = "FILE",
     .doc = "Judge FILE. A volume mesh: validity, dihedral angles, radius "
-      "ratio, histograms, worst cells. A surface: what 'vanguard mesh' with the "
-      "same options would do with it: flow domain, patches, repairs, "
+      "ratio, histograms, worst cells. A surface: what 'vanguard mesh' with "
+      "the same options would do with it: flow domain, patches, repairs, "
       "remeshing, and every defect for which it would be refused.\v"
       "Exit status 0 when the mesh is valid or the surface accepted, 1 "
       "otherwise." };

@@ -26,7 +26,8 @@ struct holes {
 
 static vg_status follow_rims(struct holes *h, struct vg_error *err)
 {
-  for (size_t i = 0; i < h->m.n_point; i++) h->next[i] = h->loop[i] = UINT32_MAX;
+  for (size_t i = 0; i < h->m.n_point; i++)
+    h->next[i] = h->loop[i] = UINT32_MAX;
   for (size_t i = 0; i < h->open.n; i++) {
     const uint32_t *e = h->open.edge[i];
     const double *x = h->m.point[e[0]];
@@ -115,7 +116,11 @@ static vg_status keep_symmetry(struct holes *h, int symmetry,
 
     VG_TRY(is_cut(h, symmetry, axis, h->lo[axis], &lo, err));
     VG_TRY(is_cut(h, symmetry, axis, h->hi[axis], &hi, err));
-    found = lo != hi && !is_open_opposite(h, axis, lo);
+    if (lo && hi && symmetry > 0) {   /* the end that looks like a cut */
+      VG_TRY(is_cut(h, 0, axis, h->lo[axis], &lo, err));
+      VG_TRY(is_cut(h, 0, axis, h->hi[axis], &hi, err));
+    }
+    found = lo != hi && (symmetry > 0 || !is_open_opposite(h, axis, lo));
     for (uint32_t k = 0; found && k < h->n_loop; k++)
       h->rim[k].stays = is_in_plane(h, k, axis, lo ? h->lo[axis]
                                                    : h->hi[axis]);

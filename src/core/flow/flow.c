@@ -129,8 +129,8 @@ static vg_status look_for_rims(struct settle *s, struct vg_error *err)
   VG_TRY(vg_domain_half(s->m, symmetry, &axis, &at, err));
   if (axis < 0) goto done;
   if (half >= VG_HALF_X && axis != (int)half - VG_HALF_X) {
-    st = vg_fail(err, VG_ERR_INPUT, "half %c: the open edges of the surface lie "
-                 "in the plane %c = %g; give half %c, or close them "
+    st = vg_fail(err, VG_ERR_INPUT, "half %c: the open edges of the surface "
+                 "lie in the plane %c = %g; give half %c, or close them "
                  "(close_holes yes)", "xyz"[half - VG_HALF_X], "xyz"[axis], at,
                  "xyz"[axis]);
     goto done;
@@ -138,8 +138,8 @@ static vg_status look_for_rims(struct settle *s, struct vg_error *err)
   s->out.axis = axis;
   s->out.at = at;
   if (!s->out.n_cap_tri)
-    tell(&s->out, "all %zu open edges lie in the plane %c = %g at an end of the "
-         "surface: half of a symmetric model",
+    tell(&s->out, "all %zu open edges lie in the plane %c = %g at an end of "
+         "the surface: half of a symmetric model",
          s->r->count[VG_DEFECT_OPEN_EDGE], "xyz"[axis], at);
   VG_TRY(vg_flow_mirror(s->m, axis, at, &s->whole, err));
   VG_TRY(vg_surface_check(&s->whole, &(struct vg_surface_check_options){
@@ -481,8 +481,8 @@ void vg_flow_statement(const struct vg_flow *f, int adds_farfield, char *out)
   else if (f->kind != VG_FLOW_INTERNAL)
     snprintf(out, VG_FLOW_TEXT, "Not decided");
   else if (f->n_inlet + f->n_outlet)
-    snprintf(out, VG_FLOW_TEXT, "Internal flow in a closed duct%s%s: inlet %zu, "
-             "outlet %zu", bodies, half, f->n_inlet, f->n_outlet);
+    snprintf(out, VG_FLOW_TEXT, "Internal flow in a closed duct%s%s: inlet "
+             "%zu, outlet %zu", bodies, half, f->n_inlet, f->n_outlet);
   else
     snprintf(out, VG_FLOW_TEXT, "Flow inside %s given outer boundar%s%s%s",
              f->n_outer > 1 ? "several" : "a", f->n_outer > 1 ? "ies" : "y",

@@ -37,7 +37,7 @@ enum vg_flow_kind {
   VG_FLOW_INTERNAL              /* the surface is the whole boundary */
 };
 
-/** What is known of half models; the words of the setting `half`. */
+/** Half models: the words of the setting `half`. */
 enum vg_flow_half {
   VG_HALF_AUTO,                 /* open rims, and conditions, decide */
   VG_HALF_NO,                   /* the model is whole */
@@ -46,10 +46,11 @@ enum vg_flow_half {
                                 cap in it is removed */
 };
 
-/** What the format of the input says of the side to which triangles point. */
+/** The side to which triangles point, as the format of the input defines it. */
 enum vg_flow_side {
   VG_SIDE_FREE,                 /* nothing, or files are found both ways */
-  VG_SIDE_USUAL,                /* into the fluid, with exceptions (UGRID, AFLR) */
+  VG_SIDE_USUAL,                /* into the fluid, with exceptions (UGRID,
+                                   AFLR) */
   VG_SIDE_DEFINED               /* into the fluid (VGRID, this interface) */
 };
 

@@ -116,8 +116,9 @@ vg_status vg_flow_find_cap(const struct vg_mesh *m, enum vg_flow_half half,
   for (int pass = 0; pass < 2 && !found; pass++)
     for (int end = 0; end < 6 && !found; end++) {
       const int axis = (end / 2 + 1) % 3;   /* y first: the usual one */
-      const double at = end % 2 ? b.hi[axis] : b.lo[axis];
+      double at = end % 2 ? b.hi[axis] : b.lo[axis];
 
+      if (fabs(at) <= near) at = 0;
       if (half >= VG_HALF_X && axis != (int)half - VG_HALF_X) continue;
       if (pass && half < VG_HALF_X && fabs(at) > ZERO * b.length) continue;
       if (!(b.hi[axis] - b.lo[axis] > 4 * near)) continue;

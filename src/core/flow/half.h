@@ -13,7 +13,7 @@
 
 /** A flat cap in a coordinate plane at an end of the surface. */
 struct vg_flow_cap {
-  int axis;                     /* -1: there is none */
+  int axis;                     /* -1: no cap was found */
   double at;
   size_t n_tri;
   uint8_t *tri;                 /* [m->n_tri] 1: triangle of the cap; owned */

@@ -136,8 +136,8 @@ done:
 }
 
 /* Patches whose place is evidence: openings, symmetry planes, and, next to
- * named walls, patches without condition and name. A flat patch has as much
- * area as its normals add up to. */
+ * named walls, patches without condition and name. The area of a
+ * flat patch is the length of the sum of its normals. */
 static int may_be_end(const struct vg_flow_patch *p, int has_walls, double area)
 {
   if (!p->is_used || p->shell == UINT32_MAX

@@ -4,9 +4,9 @@
 
 /* F3: thresholds of rule 5. */
 #define CONVEX 0.7        /* of its hull's silhouette: less is no enclosure */
-#define HOLLOW 0.3        /* of its volume: a shell with more inside is hollow */
+#define HOLLOW 0.3        /* of its volume: with more inside it is hollow */
 #define FILLED 0.02       /* of its volume: a tunnel is not filled more */
-#define FINE 0.2          /* triangles inside over those of a tunnel, at least */
+#define FINE 0.2          /* least triangles inside over those of a tunnel */
 #define BUBBLE 1e-3       /* of its volume, and */
 #define COARSE 0.05       /* of its triangles: what a bubble has at most */
 
@@ -29,8 +29,8 @@ static enum vg_flow_verdict by_openings(const struct vg_flow_shell *s,
     return VG_FLOW_OUTER;
   }
   if (!s->n_opening_end) {
-    snprintf(why, VG_FLOW_TEXT, "the inlets and outlets, patches %s, lie inside "
-             "the body's silhouette as engine faces do", s->openings);
+    snprintf(why, VG_FLOW_TEXT, "the inlets and outlets, patches %s, lie "
+             "inside the body's silhouette as engine faces do", s->openings);
     return VG_FLOW_BODY;
   }
   snprintf(why, VG_FLOW_TEXT, "the inlets and outlets are patches %s, %zu of "
@@ -72,8 +72,8 @@ static enum vg_flow_verdict by_contents(const struct vg_flow_shell *s,
     return VG_FLOW_BODY;
   }
   if (s->share >= HOLLOW) {
-    snprintf(why, VG_FLOW_TEXT, "the shells inside it (%zu) fill %.0f %% of its "
-             "volume: it is hollow", s->n_inside, 100 * s->share);
+    snprintf(why, VG_FLOW_TEXT, "the shells inside it (%zu) fill %.0f %% of "
+             "its volume: it is hollow", s->n_inside, 100 * s->share);
     return VG_FLOW_BODY;
   }
   if (s->share <= BUBBLE && s->detail <= COARSE) {
@@ -102,13 +102,14 @@ enum vg_flow_verdict vg_flow_judge(const struct vg_flow_shell *s,
   if (s->has_pocket) {
     snprintf(why, VG_FLOW_TEXT, "its outer part is a box, or part of a sphere, "
              "that covers %.0f %% of every view along x, y and z, and the rest "
-             "stands inside that part", 100 * (s->covered < 1 ? s->covered : 1));
+             "stands inside that part",
+             100 * (s->covered < 1 ? s->covered : 1));
     return VG_FLOW_OUTER;
   }
   if (s->n_inside) return by_contents(s, why);
   if (s->n_role[VG_ROLE_WALL] && s->n_plain_end) {
-    snprintf(why, VG_FLOW_TEXT, "patches %s are flat ends without condition and "
-             "name next to named walls: they may be openings of a duct or "
+    snprintf(why, VG_FLOW_TEXT, "patches %s are flat ends without condition "
+             "and name next to named walls: they may be openings of a duct or "
              "walls of a body", s->plain);
     return VG_FLOW_EITHER;
   }

@@ -18,8 +18,8 @@ enum vg_flow_verdict {
  *     all of them inside the silhouette: body with engine faces; else either;
  *  3. orientation, for formats that define it: inward is an outer boundary;
  *     where the format has exceptions and every patch is a wall: either;
- *  4. one shell shaped as a flow domain, a box or part of a sphere with a pocket
- *     around a body (core/flow/shape.c): outer boundary;
+ *  4. one shell shaped as a flow domain, a box or part of a sphere with a
+ *     pocket around a body (core/flow/shape.c): outer boundary;
  *  5. shells inside: an enclosure by name is an outer boundary; a shell that
  *     covers little of its hull is a body, so is one that the shells inside
  *     fill by much, and one with bubbles of few triangles; a box with detailed

@@ -285,7 +285,7 @@ static vg_status pack(struct vg_clean *c, const struct sweep *s,
   return VG_OK;
 }
 
-/* Collapse short edges until no more of them may be collapsed. */
+/* Collapse short edges until none of the rest may be collapsed. */
 static vg_status collapse_short(struct vg_clean *c,
                                 const struct vg_clean_options *o,
                                 uint8_t *crossed, double longer,

@@ -40,8 +40,8 @@ static vg_status fail_range(const struct vg_cgns_reader *r,
 }
 
 /* The axis that a range of faces is normal to: one along which all have the
- * number of the first point, or that of the last, which no cell has. -1: there
- * is none, -2: more than one. */
+ * number of the first point, or that of the last, which no cell has. -1: no
+ * axis, -2: more than one. */
 static int normal_of_faces(const struct vg_cgns_reader *r,
                            const struct vg_cgns_range *range)
 {

@@ -333,7 +333,7 @@ done:
   return st;
 }
 
-/* What goes in. */
+/* The members that the caller sets. */
 static struct vg_read_info asked_of(const struct vg_read_info *info)
 {
   struct vg_read_info asked = {0};

@@ -114,8 +114,8 @@ static void list_rims(const struct vg_rim *rim, size_t n, char *text,
 
   *text = 0;
   for (size_t i = 0; i < n && i < SHOWN_RIMS && at + 120 < size; i++)
-    at += (size_t)snprintf(text + at, size - at, "%s%.4g wide, %zu edges, around "
-                           "(%.6g, %.6g, %.6g)", i ? "; " : "", rim[i].width,
+    at += (size_t)snprintf(text + at, size - at, "%s%.4g wide, %zu edges, "
+                           "around (%.6g, %.6g, %.6g)", i ? "; " : "", rim[i].width,
                            rim[i].n_edge, rim[i].centre[0], rim[i].centre[1],
                            rim[i].centre[2]);
   if (n > SHOWN_RIMS) snprintf(text + at, size - at, "; ...");
@@ -132,14 +132,14 @@ vg_status vg_problem_refuse_open(const struct vg_problem *p,
 
   if (p->rim_gap > 0) {
     free(rim);
-    return vg_fail(err, VG_ERR_INPUT, "%s: the surface is open, but open "
+    return vg_fail(err, VG_ERR_GEOMETRY, "%s: the surface is open, but open "
                    "edges lie next to each other, %.3g apart at most: --weld "
                    "%.2g closes these gaps", p->files.stem, p->rim_gap,
                    1.05 * p->rim_gap);
   }
   if (st == VG_ERR_GEOMETRY) {
     vg_problem_suggest_wrap(p, show, remedy, sizeof remedy);
-    return vg_fail(err, VG_ERR_INPUT, "%s: the surface is open, and %s%s",
+    return vg_fail(err, VG_ERR_GEOMETRY, "%s: the surface is open, and %s%s",
                    p->files.stem, why.text, remedy);
   }
   if (st < 0) return vg_fail(err, st, "%s", why.text);
@@ -148,9 +148,9 @@ vg_status vg_problem_refuse_open(const struct vg_problem *p,
     snprintf(half, sizeof half, ". Should it be half of a symmetric model, cut "
              "at %c = %g, give --half %c", "xyz"[rim[0].axis],
              rim[0].centre[rim[0].axis], "xyz"[rim[0].axis]);
-  st = vg_fail(err, VG_ERR_INPUT, "%s: the surface is open: %zu rim%s (%s). "
-               "--close-holes yes closes each with a flat cap in a patch of its "
-               "own (cap_1%s%s)%s", p->files.stem, n, n > 1 ? "s" : "", list,
+  st = vg_fail(err, VG_ERR_GEOMETRY, "%s: the surface is open: %zu rim%s (%s). "
+               "--close-holes yes closes each with a flat cap in a patch of "
+               "its own (cap_1%s%s)%s", p->files.stem, n, n > 1 ? "s" : "", list,
                n > 1 ? ", cap_2, ..." : "", n > 1 ? "; in a duct with --flow "
                "internal" : "", half);
   free(rim);

@@ -320,8 +320,8 @@ vg_status vg_problem_put_back(struct vg_problem *p, struct vg_error *err)
   b->seconds = vg_display_now() - t;
   b->is_done = 1;
   vg_note(&p->notes, "points were put back on the CAD model: %zu, %zu of them "
-          "on its curves, from at most %.3g off it; middles of triangles, which "
-          "are flat, are at most %.3g off; refused, since triangles would fold "
+          "on its curves, from at most %.3g off it; middles of triangles, "
+          "which are flat, are at most %.3g off; refused, since triangles would fold "
           "or meet: %zu", b->n_point - b->n_far - b->n_refused, b->n_curve,
           b->off[0].most, b->off[1].most, b->n_refused);
   if (b->n_far)

@@ -13,11 +13,12 @@
 
 #define SLIVER2 0.03015369  /* S49: (sin 10 degrees)^2 */
 #define NEEDLE 5.0        /* S56: degrees */
-#define MANY 1e-3         /* of the triangles: so many needles are repaired */
+#define MANY 1e-3         /* of the triangles: a larger share of needles is
+                             repaired */
 #define MOST 0.5          /* of the triangles: then most of them are slivers */
 
-/* S48: tessellations after the first, as factors on its chord and angle: coarser
- * ones, whose sheets do not cross at cusps, then a finer one, whose sheets come
+/* S49: tessellations after the first, as factors on its chord and angle:
+ * coarser ones, whose sheets do not cross at cusps, then a finer one, whose sheets come
  * apart where chords are larger than a body is thick. */
 static const double again[][2] = { { 7, 2 }, { 30, 3 }, { 0.1, 0.6 } };
 #define TRIES (sizeof again / sizeof *again)

@@ -31,7 +31,7 @@ struct vg_flow_options vg_problem_flow_options(const struct vg_problem *p,
 vg_status vg_problem_decide(struct vg_problem *p, struct vg_display *show,
                             struct vg_error *err);
 
-/** VG_ERR_INPUT that lists the rims of an open surface and says how they can be
+/** VG_ERR_GEOMETRY that lists the rims of an open surface and says how they can be
  * closed. */
 vg_status vg_problem_refuse_open(const struct vg_problem *p,
                                  struct vg_display *show, struct vg_error *err);

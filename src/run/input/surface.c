@@ -212,7 +212,7 @@ done:
   return st;
 }
 
-/* The surface closed as far as settings ask for it, and looked at. */
+/* Close the surface as far as settings ask for it, and check it. */
 static vg_status close_surface(struct vg_problem *p, struct vg_display *show,
                                struct vg_error *err)
 {
@@ -279,6 +279,7 @@ static vg_status shape(struct vg_problem *p, struct vg_display *show,
   VG_TRY(split_quads(&p->surface, &p->notes, err));
   VG_TRY(resolve_patches(p, err));
   VG_TRY(close_surface(p, show, err));
+  if (!p->surface.n_tri) return defects(p, show, err);
   VG_TRY(vg_problem_decide(p, show, err));
   if (!p->check.n_defect || vg_is_only_open(&p->check))
     VG_TRY(vg_problem_gaps(p, show, err));
@@ -289,13 +290,13 @@ static vg_status shape(struct vg_problem *p, struct vg_display *show,
   if (st < 0) {
     if (st == VG_ERR_GEOMETRY)
       vg_problem_suggest_wrap(p, show, remedy, sizeof remedy);
-    st = vg_fail(err, st, "%s%s", why.text, remedy);
+    st = vg_fail(err, st, "%s: %s%s", p->files.stem, why.text, remedy);
   }
 done:
   return st;
 }
 
-/* What the next tessellation is to find as the first one did. */
+/* State of the problem before the first tessellation, for the next one. */
 struct given {
   int flow, half, farfield;
   size_t n_note, n_patch;
@@ -337,7 +338,7 @@ vg_status vg_problem_shape(struct vg_problem *p, struct vg_display *show,
                                                 : VG_ANSWER_NO;
   VG_TRY(take_given(p, &g, err));
   st = shape(p, show, &why);
-  for (size_t i = 0; st == VG_ERR_GEOMETRY; i++) {
+  for (size_t i = 0; st == VG_ERR_GEOMETRY && !is_open_for_good(p); i++) {
     struct vg_error again = VG_ERROR_INIT;
 
     next = vg_problem_tessellate(p, i, g.patch, g.n_patch, g.n_note,
@@ -359,7 +360,7 @@ done:
   return st == VG_ERR_STOPPED ? vg_display_stopped(show, err) : st;
 }
 
-/* Farfield and symmetry plane, and a last look at the whole boundary. */
+/* Add farfield and symmetry plane, and check the whole boundary. */
 static vg_status complete(struct vg_problem *p, struct vg_display *show,
                           struct vg_error *err)
 {

@@ -138,8 +138,8 @@ void vg_problem_suggest_wrap(const struct vg_problem *p,
   vg_display_update(show, "wrap that would do", 0, 0);
   if (vg_wrap_suggest(&p->surface, &stop, &wrap, &reason, &why) < 0) return;
   if (reason == VG_WRAP_SHEETS)
-    snprintf(text, size, "; its sheets without thickness bound no body, so that "
-             "no wrap will do");
+    snprintf(text, size, "; its sheets without thickness bound no body, so "
+             "that no wrap will do");
   else
     snprintf(text, size, "; --wrap %.2g puts a closed surface around it%s",
              wrap, reason == VG_WRAP_HOLES ? " that bridges its holes" : "");

@@ -203,7 +203,7 @@ static void refuses_bad_surfaces(void)
                           cube.tri[0], cube.patch));
   CHECK(!vanguard_set(job, "farfield", "none"));
   CHECK(vanguard_mesh(job, NULL, NULL) == VANGUARD_ERR_GEOMETRY &&
-        says(job, "defects"));
+        says(job, "the surface is open"));
   CHECK(strstr(vanguard_details(job), "open"));
   vanguard_free(job);
 }

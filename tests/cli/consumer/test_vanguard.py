@@ -165,7 +165,7 @@ def test_progress():
         raise AssertionError("an error of a progress function is lost")
     except ZeroDivisionError:
         pass
-    error = refused("geometry", "defects", open_cube(job).mesh)
+    error = refused("geometry", "the surface is open", open_cube(job).mesh)
     assert "open" in error.details
 
 
