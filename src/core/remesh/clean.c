@@ -1,6 +1,7 @@
 /* Outline: sweeps collapse short edges, the shortest first, where no triangle
- * was changed in the same sweep. At triangles that intersect each other, longer
- * edges count as short. */
+ * was changed in the same sweep. After each sweep the longest edges of flat
+ * triangles are swapped. At triangles that intersect each other, longer edges
+ * count as short. */
 #include "core/remesh/job.h"
 
 #include <math.h>
@@ -12,6 +13,7 @@
 #include "core/surface/surface_check.h"
 
 #define SHORT 0.02        /* S46: of the tolerance: no new edge is near */
+#define FLAT 0.02         /* S46: the same: lower triangles are flat */
 #define CROSSED 1.0       /* the same, at triangles that intersect */
 #define SWEEPS 24
 #define CLEARINGS 14      /* searches for intersections */
@@ -285,7 +287,9 @@ static vg_status pack(struct vg_clean *c, const struct sweep *s,
   return VG_OK;
 }
 
-/* Collapse short edges until none of the rest may be collapsed. */
+/* Collapse short edges and swap edges of flat triangles until nothing changes.
+ * CAD systems often divide one edge of two patches differently: flat triangles
+ * along that edge then hide the feature edge and touch the other patch. */
 static vg_status collapse_short(struct vg_clean *c,
                                 const struct vg_clean_options *o,
                                 uint8_t *crossed, double longer,
@@ -314,7 +318,12 @@ static vg_status collapse_short(struct vg_clean *c,
     if (st >= 0 && done) st = pack(c, &s, crossed, err);
     free(list);
     release_sweep(&s);
-    if (!done) break;
+    n = 0;
+    if (st >= 0)
+      st = vg_flat_swap(&c->mesh, &(struct vg_flat_limit){
+        FLAT * o->tolerance, 0 }, &n, err);
+    c->n_swap += n;
+    if (!done && !n) break;
   }
   return st;
 }

@@ -308,7 +308,7 @@ static vg_status clean(struct vg_remesh_job *j, struct vg_error *err)
   memcpy(j->r.n_crossing, c.n_crossing, sizeof c.n_crossing);
   j->r.crossing_depth = c.depth;
   memcpy(j->r.crossing_at, c.at, sizeof c.at);
-  if (!c.n_collapse && !c.n_flap && !c.n_crossing[0]) goto done;
+  if (!c.n_collapse && !c.n_flap && !c.n_swap && !c.n_crossing[0]) goto done;
   if (o->cap) {
     cap = vg_alloc(c.mesh.n_point, sizeof *cap);
     if (!cap) VG_TRY(vg_fail_memory(err, "the sizes on the surface"));

@@ -79,6 +79,8 @@ struct vg_clean {
   uint32_t *point_from;     /* [mesh.n_point] number before */
   uint32_t *tri_from;       /* [mesh.n_tri] the same; corners keep their
                                places */
+  size_t n_swap;            /* longest edges of flat triangles that were
+                               swapped */
   size_t n_flap;            /* pairs of opposite triangles on the same points
                                that were dropped */
   size_t n_collapse;        /* edges that were collapsed */
@@ -89,10 +91,11 @@ struct vg_clean {
 };
 #define VG_CLEAN_INIT { .mesh = VG_MESH_INIT }
 
-/** Of a surface that has faults: drop thin triangles that lie back to back,
- * collapse edges far below the tolerance, which no new edge could follow, and
- * edges below the tolerance at triangles that intersect each other, and move
- * points of thin places apart, as long as the tolerance hides it. A sound
+/** Repair a surface that has faults, as far as the tolerance hides it. Thin
+ * triangles that lie back to back are dropped. Edges far below the tolerance
+ * are collapsed, since no new edge could follow them, and so are edges below
+ * the tolerance at triangles that intersect each other. The longest edges of
+ * flat triangles are swapped. Points of thin places are moved apart. A sound
  * surface is better left alone: a collapse across a thin edge makes sheets
  * intersect.
  *
