@@ -9,7 +9,7 @@
 #include "core/remesh/metric.h"
 #include "core/remesh/reference.h"
 
-#define FLAT2 3.046e-4    /* S50: (sin 1 degree)^2 */
+#define FLAT2 7.596e-3    /* S50: (sin 5 degrees)^2 */
 #define OUTER 1e-3        /* of the longest edge: height of a flat triangle of
                              the outer boundary */
 #define SWEEPS 12
