@@ -285,8 +285,9 @@ static vg_status refuse(const struct vg_remesh_job *j,
   if (j->r.n_crossing[1])
     return vg_fail(err, VG_ERR_GEOMETRY, "near (%g, %g, %g) the surface "
                    "intersects itself (%s) by more than the new surface's "
-                   "tolerance, %g, hides: repair the model there", d->at[0], d->at[1], d->at[2],
-                   vg_defect_name(d->kind), j->r.tolerance);
+                   "tolerance, %g, hides: repair the model there",
+                   d->at[0], d->at[1], d->at[2], vg_defect_name(d->kind),
+                   j->r.tolerance);
   return vg_fail(err, VG_ERR_GEOMETRY, "near (%g, %g, %g) new triangles meet "
                  "however small they are (%s): give a smaller "
                  "surface_tolerance, or mesh the surface as it is", d->at[0],
