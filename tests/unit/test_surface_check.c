@@ -287,33 +287,6 @@ static void turns_a_surface_inside_out(void **unused)
   done(&m, &r);
 }
 
-/* What a second look would make of it. */
-static void turns_a_shell_as_a_check_would(void **unused)
-{
-  struct vg_mesh other = VG_MESH_INIT;
-  struct vg_surface_report looked = VG_SURFACE_REPORT_INIT;
-  NEW;
-
-  add_box(&m, 0, 2, 1);
-  add_box(&other, 0, 2, 1);
-  check(&m, 1, 1, &r);
-  assert_int_equal(vg_surface_turn(&m, &r), 1);
-  check(&other, 1, 1, &looked);
-  check(&other, 1, 0, &looked);
-  assert_none(&r);
-  assert_memory_equal(m.tri, other.tri, m.n_tri * sizeof *m.tri);
-  assert_memory_equal(r.shell, looked.shell, sizeof *r.shell);
-  assert_int_equal(r.n_flipped, looked.n_flipped);
-  assert_int_equal(r.turned_inside_out, looked.turned_inside_out);
-  add_box(&m, 4, 5, 1); /* two shells take a look */
-  check(&m, 1, 1, &r);
-  memcpy(other.tri, m.tri, 12 * sizeof *m.tri);
-  assert_int_equal(vg_surface_turn(&m, &r), 0);
-  assert_memory_equal(other.tri, m.tri, 12 * sizeof *m.tri);
-  done(&m, &r);
-  done(&other, &looked);
-}
-
 static void leaves_a_moebius_strip(void **unused)
 {
   uint32_t a[6], b[6], before[12][3];
@@ -1173,7 +1146,6 @@ int main(void)
     cmocka_unit_test(reports_three_faces_at_an_edge),
     cmocka_unit_test(turns_a_face_back),
     cmocka_unit_test(turns_a_surface_inside_out),
-    cmocka_unit_test(turns_a_shell_as_a_check_would),
     cmocka_unit_test(leaves_a_moebius_strip),
     cmocka_unit_test(welds_a_soup),
     cmocka_unit_test(drops_unused_points),

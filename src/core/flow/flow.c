@@ -3,6 +3,7 @@
  * shells are turned and sealed cavities dropped. */
 #include "core/flow/flow.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -244,6 +245,7 @@ static enum fate fate_of(const struct settle *s, uint32_t shell)
   const int outer = s->verdict[e->slot[shell]] == VG_FLOW_OUTER;
   const int depth = e->depth[shell];
 
+  assert(shell < e->r->n_shell && e->slot[shell] < e->n_shell);
   if (depth > outer && !s->o->all_regions) return DROP;
   return depth % 2 == outer ? KEEP_OUT : KEEP_IN;
 }

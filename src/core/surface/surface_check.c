@@ -556,19 +556,6 @@ static void apply_flips(struct check *c)
     }
 }
 
-int vg_surface_turn(struct vg_mesh *m, struct vg_surface_report *report)
-{
-  if (report->n_defect || report->n_shell != 1 || !report->is_closed ||
-      !report->shell[0].is_closed)
-    return 0;
-  for (size_t t = 0; t < m->n_tri; t++) turn_tri(m->tri[t]);
-  for (size_t q = 0; q < m->n_quad; q++) turn_quad(m->quad[q]);
-  report->shell[0].volume = -report->shell[0].volume;
-  report->n_flipped = m->n_tri + m->n_quad;
-  report->turned_inside_out = 1;
-  return 1;
-}
-
 static vg_status run(struct check *c)
 {
   struct vg_surface_report *r = c->r;

@@ -121,11 +121,6 @@ vg_status vg_surface_check(struct vg_mesh *m,
                            struct vg_surface_report *report,
                            struct vg_error *err);
 
-/** What vg_surface_check with repair would make of m and report now, were
- * `external` the other way, where that needs no new look: of one closed shell
- * without defects, which is turned. Returns 0, nothing done, elsewhere. */
-int vg_surface_turn(struct vg_mesh *m, struct vg_surface_report *report);
-
 void vg_surface_report_release(struct vg_surface_report *r);
 
 /** One line for a person: patch, face (1-based), coordinates, what to do. */
