@@ -29,7 +29,8 @@ static int sweep_line(const char *line, struct vg_tell *t)
   unsigned i, n;
   int at = 0;
 
-  if (sscanf(line, "%9u of %9u: %n", &i, &n, &at) != 2 || !at || !i || i > n)
+  if (sscanf(line, "%9u of %9u: %n", &i, &n, &at) != 2 || !at || !line[at] ||
+      !i || i > n)
     return 0;
   snprintf(t->stage, sizeof t->stage, "%s", line + at);
   snprintf(t->count, sizeof t->count, "case %u of %u", i, n);
