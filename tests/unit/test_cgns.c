@@ -447,8 +447,8 @@ static double volume6(const struct vg_mesh *m)
   return sum;
 }
 
-/* Two zones of a surface with a side in common: points of the side are one, a
- * zone or its family is the patch. */
+/* Two zones of a surface share a side: the points of the side are joined, and
+ * each zone or its family becomes a patch. */
 static void surface_blocks_are_joined(void **state)
 {
   const struct lattice left = { { 4, 3, 1 }, 0, 0, 0 };
@@ -460,7 +460,7 @@ static void surface_blocks_are_joined(void **state)
   (void)state;
   start(&t, 2);
   block(&t, "left", 2, &left);
-  /* a condition on an edge is none on faces */
+  /* a condition on an edge does not apply to faces */
   condition(&t, conditions(&t), "edge", "BCWall", NULL, "PointRange", 4, side);
   block(&t, "right", 2, &right);
   condition(&t, conditions(&t), "part", "BCWallInviscid", NULL, "PointRange", 4,

@@ -222,8 +222,8 @@ static void writes_patches_without_a_condition(void **state)
   vg_mesh_release(&m);
 }
 
-/* What is written next to a mesh is known again by its title alone, which a
- * title as long as may be does not hide, nor an empty one. */
+/* The reader recognises a .mapbc that a run wrote by the mark in its title. The
+ * longest title and an empty one keep the mark. */
 static void an_output_is_known_again(void **state)
 {
   const char *path = io_temp("mapbc_marked.mapbc");

@@ -169,6 +169,23 @@ static void forecast(const struct search *s, size_t t, double p[3][3],
   }
 }
 
+/* Applies `to_part` to every triangle of block i that has an area. */
+static void each_triangle(const struct search *s, size_t i,
+                          void (*to_part)(const struct search *s, size_t t,
+                                          double p[3][3], int depth,
+                                          struct block *b))
+{
+  for (size_t t = GRAIN * i; t < GRAIN * (i + 1) && t < s->ref->n_tri; t++) {
+    const struct vg_ref_tri *shape = &s->ref->shape[t];
+    double p[3][3];
+
+    if (vg_dot(shape->n, shape->n) == 0) continue;
+    for (int k = 0; k < 3; k++)
+      memcpy(p[k], s->ref->point[s->ref->tri[t][k]], sizeof p[k]);
+    to_part(s, t, p, 0, &s->block[i]);
+  }
+}
+
 static void forecast_blocks(void *context, size_t first, size_t end,
                             int worker)
 {
@@ -177,15 +194,7 @@ static void forecast_blocks(void *context, size_t first, size_t end,
   (void)worker;
   for (size_t i = first; i < end; i++) {
     s->block[i].narrowest = INFINITY;
-    for (size_t t = GRAIN * i; t < GRAIN * (i + 1) && t < s->ref->n_tri; t++) {
-      const struct vg_ref_tri *shape = &s->ref->shape[t];
-      double p[3][3];
-
-      if (vg_dot(shape->n, shape->n) == 0) continue;
-      for (int k = 0; k < 3; k++)
-        memcpy(p[k], s->ref->point[s->ref->tri[t][k]], sizeof p[k]);
-      forecast(s, t, p, 0, &s->block[i]);
-    }
+    each_triangle(s, i, forecast);
   }
 }
 
@@ -216,16 +225,7 @@ static void visit_blocks(void *context, size_t first, size_t end, int worker)
   const struct search *s = context;
 
   (void)worker;
-  for (size_t i = first; i < end; i++)
-    for (size_t t = GRAIN * i; t < GRAIN * (i + 1) && t < s->ref->n_tri; t++) {
-      const struct vg_ref_tri *shape = &s->ref->shape[t];
-      double p[3][3];
-
-      if (vg_dot(shape->n, shape->n) == 0) continue;
-      for (int k = 0; k < 3; k++)
-        memcpy(p[k], s->ref->point[s->ref->tri[t][k]], sizeof p[k]);
-      visit(s, t, p, 0, &s->block[i]);
-    }
+  for (size_t i = first; i < end; i++) each_triangle(s, i, visit);
 }
 
 static vg_status gather(const struct block *block, size_t n_block,

@@ -17,8 +17,8 @@
 
 #define TOLERANCE 1e-4    /* S20: of the body's length */
 #define CHORD 0.6         /* of the tolerance: what sizes allow for arcs */
-#define NOISE 3.0         /* S43: of the accuracy of what is given: sizes that
-                             follow from it alone */
+#define NOISE 3.0         /* S43: of the accuracy of the given surface: sizes
+                             that follow from it alone */
 #define H_MAX 0.02        /* of the length */
 #define H_MIN 2e-4        /* twice the tolerance */
 #define H_OUTER 0.04      /* of the domain's length */

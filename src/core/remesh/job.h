@@ -26,7 +26,7 @@ struct vg_remesh_job {
   double *stretch;          /* [3 n_tri] that of the options, with strips */
   double jag;               /* tolerance of lines, the same at any scale */
   double far;               /* larger sizes are on an outer boundary only;
-                               0: there is none */
+                               0: no outer boundary */
   struct vg_source *source; /* those of the options, then spots */
   size_t n_source, cap_source;
   uint8_t *keep;            /* [whole->n_point] corners of given triangles that

@@ -146,7 +146,7 @@ vg_status vg_surface_weld(struct vg_mesh *m, double tolerance,
  *
  * @param r       of m; without open edges nothing is done; NULL: not known
  * @param gap     out: smallest tolerance at which vg_surface_weld_rims closes
- *                all of them (rounded up by 1e-9 of itself); 0: there are none
+ *                all of them (rounded up by 1e-9 of itself); 0: no partners
  * @param n_edge  out: open edges that have a partner
  * O(n log n). On failure outputs are untouched: VG_ERR_INPUT for an index out of
  * range, VG_ERR_UNSUPPORTED, VG_ERR_MEMORY. */

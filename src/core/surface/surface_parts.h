@@ -72,7 +72,7 @@ vg_status vg_faces_copies(const struct vg_faces *s, const uint32_t *first,
 vg_status vg_points_same(const struct vg_mesh *m, uint32_t **same,
                          struct vg_error *err);
 
-/** (*near)[p] is the lowest index of the points that hang together with p by
+/** (*near)[p] is the lowest index of the points that are connected with p by
  * steps of at most `tolerance` (0: equal coordinates). The caller frees it. O(n). */
 vg_status vg_points_near(const struct vg_mesh *m, double tolerance,
                          uint32_t **near, struct vg_error *err);

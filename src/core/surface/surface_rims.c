@@ -14,6 +14,7 @@
 
 #include "base/memory.h"
 #include "base/union_find.h"
+#include "core/geometry/vector.h"
 
 #define SHARE 0.1           /* S61: largest gap over the shortest edge there */
 #define LEVEL_LEAST 1e-15   /* first tolerance over the largest coordinate,
@@ -46,14 +47,6 @@ static void rims_release(struct rims *r)
   free(r->near);
 }
 
-static double distance(const struct vg_mesh *m, uint32_t a, uint32_t b)
-{
-  const double *p = m->point[a], *q = m->point[b];
-  double x = p[0] - q[0], y = p[1] - q[1], z = p[2] - q[2];
-
-  return sqrt(x * x + y * y + z * z);
-}
-
 static void measure_edges(struct rims *r, const struct vg_faces *s)
 {
   for (size_t i = 0; i < r->m->n_point; i++) r->shortest[i] = INFINITY;
@@ -61,7 +54,7 @@ static void measure_edges(struct rims *r, const struct vg_faces *s)
     if (s->state[f] & VG_FACE_COLLAPSED) continue;
     for (int k = 0; k < 3; k++) {
       uint32_t a = s->node[f][k], b = s->node[f][(k + 1) % 3];
-      double h = distance(r->m, a, b);
+      double h = vg_distance(r->m->point[a], r->m->point[b]);
 
       if (h < r->shortest[a]) r->shortest[a] = h;
       if (h < r->shortest[b]) r->shortest[b] = h;
@@ -133,8 +126,8 @@ static void take_groups(struct rims *r, const uint32_t *number,
   }
 }
 
-/* Ends of open edges whose edges are long beside the tolerance, alone in a
- * mesh: r->near becomes the group of each, by its lowest point. */
+/* Groups the ends of open edges that are long compared with the tolerance.
+ * r->near becomes the group of each end, named by its lowest point. */
 static vg_status group_ends(struct rims *r, double tolerance,
                             struct vg_error *err)
 {
@@ -208,7 +201,7 @@ static void match(struct rims *r, const struct rim_edge *e,
 
   for (int k = 0; k < 2; k++) {
     uint32_t a = e->end[k], b = f->end[k ^ turned];
-    double d = distance(r->m, a, b);
+    double d = vg_distance(r->m->point[a], r->m->point[b]);
 
     if (d > r->gap) r->gap = d;
     vg_union(r->up, a, b);

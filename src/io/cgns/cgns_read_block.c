@@ -69,8 +69,8 @@ static int normal_of_points(const struct vg_cgns_range *range)
   return n == 1 ? axis : -1;
 }
 
-/* Points of a BC_t. Its range counts points or the faces between them. *axis:
- * what these are normal to, -1 where there are none. */
+/* Points of a BC_t. Its range counts points or the faces between them. *axis
+ * becomes the index direction normal to the faces; -1: the range has no faces. */
 static vg_status take_range(const struct vg_cgns_reader *r,
                             const struct vg_cgns_node *b, const int64_t *v,
                             const char *at, struct vg_cgns_range *range,

@@ -21,7 +21,7 @@ struct vg_cgns_reader {
   size_t cap_quad, cap_quad_patch, cap[VG_CGNS_N_ELEMENT];
   struct vg_cgns_family *family;       /* by name */
   struct vg_soup soup;
-  /* of the zone at hand */
+  /* of the current zone */
   struct vg_cgns_node zone;
   uint32_t *point;                     /* [n_point] in the mesh */
   size_t n_point, n_section;
@@ -41,7 +41,7 @@ vg_status vg_cgns_fail_zone(const struct vg_cgns_reader *r,
                             struct vg_error *err, vg_status code,
                             const char *what);
 
-/** Text of a child, cut to fit; "" where there is none. */
+/** Text of a child, cut to fit; "" if the node has no such child. */
 vg_status vg_cgns_child_text(struct vg_cgns_reader *r, int64_t parent,
                              const char *label, const char *name,
                              char to[VG_CGNS_NAME], struct vg_error *err);

@@ -91,7 +91,7 @@ struct vg_problem {
   int has_cells;                   /* 1: the surface is the boundary of a volume
                                       mesh */
   double rim_gap;                  /* weld tolerance at which open edges find
-                                      partners; 0: there is none */
+                                      partners; 0: no partners */
   size_t n_given_patch;            /* patches before holes were closed; the caps
                                       follow them; 0: none were closed */
   int require_bc;                  /* the input gives conditions */
