@@ -357,10 +357,9 @@ void vg_report_flow_text(FILE *to, const struct vg_flow *f, int adds_farfield)
   for (int i = 0; i < f->n_evidence; i++)
     fprintf(to, "  %s %s\n", i ? "         " : "Evidence:", f->evidence[i]);
   if (f->kind == VG_FLOW_EXTERNAL)
-    fprintf(to, "  Should the surface bound a fluid inside it: --flow "
-            "internal\n");
+    fprintf(to, "  If the fluid is inside the surface, give --flow internal\n");
   if (f->kind == VG_FLOW_INTERNAL)
-    fprintf(to, "  Should the surface be a body in a fluid: --flow external\n");
+    fprintf(to, "  If the surface is a body in a fluid, give --flow external\n");
 }
 
 json_t *vg_report_flow_json(const struct vg_flow *f, int adds_farfield)

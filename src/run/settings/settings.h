@@ -40,10 +40,11 @@ struct vg_patch_row {
                                       holds */
 };
 
-/** Largest sizes on a patch, or on the curve that parts two, of a surface that
- * is made anew. 0: not given. */
+/** Largest edges of a remeshed surface on a patch, or on the curve between two
+ * patches. 0: not given. */
 struct vg_surface_row {
-  int32_t patch, beside;           /* beside VG_BC_NONE: the patch itself */
+  int32_t patch, beside;           /* the patch, and the other patch of the
+                                      curve; VG_BC_NONE: no curve */
   double size, lead, across, stretch;
   /* Names or patterns in place of patch and beside; "": the numbers hold. */
   char patch_name[VG_NAME_MAX], beside_name[VG_NAME_MAX];
