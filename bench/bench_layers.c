@@ -22,7 +22,9 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "base/memory.h"
 #include "cli/examples/demo.h"
+#include "core/fill/fill.h"
 #include "core/surface/surface_check.h"
 #include "io/mesh/format.h"
 #include "layers/expand/join.h"
@@ -137,21 +139,48 @@ static vg_status read_surface(struct bench *b, struct vg_error *err)
   return st;
 }
 
+/* The front's boundary and points, with the new points and the cells. */
+static vg_status fill(const struct vg_mesh *surface,
+                      const struct vg_sizing *sizing, struct vg_mesh *field,
+                      struct vg_error *err)
+{
+  const struct vg_front front = vg_front_of(surface);
+  const struct vg_fill_options o = VG_FILL_OPTIONS_INIT;
+  struct vg_fill_report r = {0};
+  struct vg_filled made = VG_FILLED_INIT;
+  size_t cap = surface->n_point;
+  vg_status st = vg_mesh_copy(field, surface, err);
+
+  if (st >= 0) st = vg_fill_front(&front, NULL, sizing, &o, &made, &r, err);
+  if (st >= 0 && vg_reserve(&field->point, &cap, cap + made.n_point,
+                            sizeof *field->point))
+    st = vg_fail_memory(err, "the field");
+  if (st >= 0) {
+    memcpy(field->point + field->n_point, made.x,
+           made.n_point * sizeof *made.x);
+    field->n_point += made.n_point;
+    free(field->tet);
+    field->tet = made.cell;
+    field->n_tet = made.n_cell;
+    made.cell = NULL;
+  }
+  vg_filled_release(&made);
+  return st;
+}
+
 /* A mesh of the front without cells: what is then joined is layers alone. */
 static vg_status make_field(const struct bench *b,
                             const struct vg_layers *layers,
                             struct vg_mesh *field, struct vg_error *err)
 {
-  struct vg_fill_options o = VG_FILL_OPTIONS_INIT;
-  struct vg_fill_report r;
+  const struct vg_mesh front = vg_front_mesh(&layers->front, &b->surface);
   struct vg_sizing *sizing = NULL;
   vg_status st;
 
-  if (!b->o.fill) return vg_mesh_copy(field, &layers->front.mesh, err);
-  st = vg_sizing_new(&b->sizing, b->n_source, b->source, &layers->front.mesh,
+  if (!b->o.fill) return vg_mesh_copy(field, &front, err);
+  st = vg_sizing_new(&b->sizing, b->n_source, b->source, &front,
                      &sizing, err);
-  if (st >= 0)
-    st = vg_fill(&layers->front.mesh, sizing, &o, field, &r, err);
+  if (st >= 0) st = fill(&front, sizing, field, err);
   vg_sizing_free(sizing);
   return st;
 }

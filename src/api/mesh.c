@@ -113,15 +113,15 @@ static void describe_surface(vanguard_job *job)
 static vg_status make(vanguard_job *job)
 {
   struct vg_run *r = &job->run;
-  const struct vg_mesh *front = &job->layers.layers.front.mesh;
+  struct vg_mesh front;
   struct vg_problem *p = &job->problem;
   vg_status st;
 
   VG_TRY(vg_comm_agree(job->comm, read_input(job), &job->err));
   VG_TRY(vg_run_surface(r, p, &job->layers, &job->show, &job->err));
   VG_TRY(vg_run_mesh(r, p, &job->layers, &job->show, &job->err));
-  if (!job->layers.is_on) front = &p->surface;
-  vg_effects_note(&r->effects, front, p);
+  front = vg_layer_stage_front(&job->layers, &p->surface);
+  vg_effects_note(&r->effects, &front, p);
   vg_problem_note_unused(p, job->layers.is_on, VG_USE_JUDGED_MESH);
   if (!r->rank)
     vg_report_layers_note(&job->layers, &p->surface, &p->notes);

@@ -166,9 +166,9 @@ static void stopped(struct vg_comm *comm, const struct scene *s, double leaf)
 
   o.store = stopper.store;
   o.job = job_digest(1);
-  o.user = &stopper;
-  if (vg_comm_rank(comm) == vg_comm_size(comm) - 1) o.stop = stop_after;
-  assert_int_equal(grow(comm, s, &o, &p, &r, NULL), VG_BLOCKED);
+  if (vg_comm_rank(comm) == vg_comm_size(comm) - 1)
+    o.stop = (struct vg_stop){ stop_after, &stopper };
+  assert_int_equal(grow(comm, s, &o, &p, &r, NULL), VG_ERR_STOPPED);
   assert_null(p);
   vg_store_close(stopper.store, 0);
 }
@@ -252,8 +252,8 @@ static void all_ranks_hear_of_it(void **state)
   refused(&s, &few, VG_ERR_UNSUPPORTED);
   few.max_cells = 35000;     /* less than it has, not by half: seen late */
   refused(&s, &few, VG_ERR_UNSUPPORTED);
-  if (vg_comm_rank(job) == vg_comm_size(job) - 1) stop.stop = at_once;
-  refused(&s, &stop, VG_BLOCKED);
+  if (vg_comm_rank(job) == vg_comm_size(job) - 1) stop.stop.ask = at_once;
+  refused(&s, &stop, VG_ERR_STOPPED);
   scene_turn(&s.m);
   refused(&s, &o, VG_ERR_GEOMETRY);
   scene_turn(&s.m);

@@ -157,7 +157,7 @@ static void moved_and_stopped(void **state)
   (void)state;
   assert_true(forest_grow(&f, job, 2, 0, NULL, NULL) == VG_ERR_GEOMETRY);
   check_rest(&f);
-  assert_true(forest_grow(&g, job, 2, 0, NULL, NULL) == VG_BLOCKED);
+  assert_true(forest_grow(&g, job, 2, 0, NULL, NULL) == VG_ERR_STOPPED);
   check_rest(&g);
 }
 
@@ -212,7 +212,7 @@ static void it_stops(void **state)
     struct forest f = { .threads = threads, .depth = 4, .spin = 1e-4,
                         .stop_at = "a12" };
 
-    assert_true(forest_grow(&f, job, 4, 0, NULL, NULL) == VG_BLOCKED);
+    assert_true(forest_grow(&f, job, 4, 0, NULL, NULL) == VG_ERR_STOPPED);
     check_rest(&f);
   }
 }
@@ -224,7 +224,7 @@ static void one_rank_stops_all(void **state)
 
   (void)state;
   f.stop = vg_comm_rank(job) == vg_comm_size(job) - 1;
-  assert_true(forest_grow(&f, job, 4, 0, NULL, NULL) == VG_BLOCKED);
+  assert_true(forest_grow(&f, job, 4, 0, NULL, NULL) == VG_ERR_STOPPED);
   check_rest(&f);
 }
 
@@ -352,7 +352,7 @@ static void dealing_changes_nothing(void **state)
   check_rest(&f);
   assert_true(forest_grow(&g, job, 3, 0, NULL, NULL) == VG_ERR_GEOMETRY);
   check_rest(&g);
-  assert_true(forest_grow(&h, job, 3, 0, NULL, NULL) == VG_BLOCKED);
+  assert_true(forest_grow(&h, job, 3, 0, NULL, NULL) == VG_ERR_STOPPED);
   check_rest(&h);
 }
 

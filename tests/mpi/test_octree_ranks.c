@@ -104,9 +104,8 @@ static void resumed_elsewhere(void **state)
     remove_folder(dir);
     o.store = stopper.store = store_of(NULL, 0);
     o.job = job_digest(1);
-    o.user = &stopper;
-    o.stop = stop_after;
-    assert_int_equal(grow(NULL, &s, &o, &p, &r, NULL), VG_BLOCKED);
+    o.stop = (struct vg_stop){ stop_after, &stopper };
+    assert_int_equal(grow(NULL, &s, &o, &p, &r, NULL), VG_ERR_STOPPED);
     vg_store_close(o.store, 0);
   }
   assert_int_equal(vg_comm_agree(job, VG_OK, NULL), VG_OK);

@@ -107,9 +107,8 @@ static void stopped_and_resumed(void **state)
   stopper = (struct stopper){ store_of(0), 2 };
   o.store = stopper.store;
   o.job = job_digest(1);
-  o.user = &stopper;
-  o.stop = stop_after;
-  assert_int_equal(grow(job, &s, &o, &p, &r, NULL), VG_BLOCKED);
+  o.stop = (struct vg_stop){ stop_after, &stopper };
+  assert_int_equal(grow(job, &s, &o, &p, &r, NULL), VG_ERR_STOPPED);
   vg_store_close(stopper.store, 0);
   o = options(9, 2, 3);
   o.store = store_of(1);

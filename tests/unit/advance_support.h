@@ -23,8 +23,7 @@ struct scene {
 
 static inline double scene_volume(const struct vg_mesh *m)
 {
-  struct vg_front f = { .n_point = m->n_point, .n_face = m->n_tri,
-                        .x = m->point, .face = m->tri };
+  const struct vg_front f = vg_front_of(m);
 
   return vg_front_volume(&f);
 }

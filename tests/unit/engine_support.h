@@ -174,7 +174,7 @@ static inline vg_status forest_run(void *user, const struct vg_engine *e,
     atomic_store(&f->stop, 1);
     while (!vg_engine_stopping(e)) forest_spin(1e-4);
     forest_loops(f, e, worker);
-    return VG_BLOCKED;
+    return VG_ERR_STOPPED;
   }
   out = vg_alloc(1, sizeof *out);
   if (!out) return vg_fail_memory(err, "an outcome");
@@ -273,15 +273,14 @@ static inline int forest_stop(void *user)
   return atomic_load(&((struct forest *)user)->stop);
 }
 
-static inline int forest_progress(void *user, double done, double known,
-                                  size_t n_done, size_t n_known)
+static inline void forest_progress(void *user, double done, double known,
+                                   size_t n_done, size_t n_known)
 {
   struct forest *f = user;
 
   if (done < f->last_done || known < 0 || n_done > n_known) f->bad++;
   f->last_done = done;
   f->last_known = known;
-  return 0;
 }
 
 /* Run `n_tree` trees, from ranks in turn: tree t begins at rank t % size. */
@@ -295,7 +294,8 @@ static inline vg_status forest_grow(struct forest *f, struct vg_comm *comm,
     forest_pack_outcome, forest_unpack, forest_release, forest_release
   };
   struct vg_engine_options options = {
-    f->threads, shuffle, f->deal, forest_progress, forest_stop, f
+    f->threads, shuffle, f->deal, forest_progress, f,
+    { forest_stop, f }
   };
   struct vg_task first[64];
   size_t n = 0;

@@ -18,6 +18,10 @@ static inline void shape_need(const void *p)
   if (!p) abort();
 }
 
+/* A front with patches as a mesh of the surface's patches, in this block. */
+#define FRONT_MESH(front, surface) \
+  ((struct vg_mesh[1]){ vg_front_mesh((front), (surface)) })
+
 static inline uint32_t shape_point(struct vg_mesh *m, double x, double y,
                                    double z)
 {

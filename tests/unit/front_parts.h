@@ -175,9 +175,9 @@ static vg_status part_allocate(struct vg_front *f, size_t n_point,
 {
   memset(f, 0, sizeof *f);
   f->x = vg_alloc(n_point, sizeof *f->x);
-  f->name = vg_alloc(n_point, sizeof *f->name);
+  f->id = vg_alloc(n_point, sizeof *f->id);
   f->face = vg_alloc(n_face, sizeof *f->face);
-  if (f->x && f->name && f->face) return VG_OK;
+  if (f->x && f->id && f->face) return VG_OK;
   vg_front_release(f);
   return vg_fail_memory(err, "a front");
 }
@@ -202,7 +202,7 @@ static vg_status part_take(const struct vg_front *f, size_t n,
 
       out->face[i][k] = to[p];
       memcpy(out->x[to[p]], f->x[p], sizeof *out->x);
-      out->name[to[p]] = f->name[p];
+      out->id[to[p]] = f->id[p];
     }
   for (size_t i = 0; i < n; i++)
     for (int k = 0; k < 3; k++) to[f->face[face[i]][k]] = UINT32_MAX;

@@ -21,10 +21,7 @@ static inline void model_release(struct model *m)
   vg_mesh_release(&m->surface);
   vg_mesh_release(&m->field);
   vg_columns_release(&m->layers.columns);
-  vg_mesh_release(&m->layers.front.mesh);
-  free(m->layers.front.column);
-  free(m->layers.front.point);
-  free(m->layers.front.face);
+  vg_front_release(&m->layers.front);
   memset(m, 0, sizeof *m);
 }
 
@@ -194,30 +191,35 @@ static inline void model_relax(struct model *m)
 }
 
 static inline uint32_t model_front_point(struct model *m, const double x[3],
-                                         uint32_t column, uint32_t point)
+                                         uint64_t id)
 {
-  struct vg_layer_front *f = &m->layers.front;
-  size_t n = f->mesh.n_point;
+  struct vg_front *f = &m->layers.front;
+  size_t n = f->n_point;
 
-  GROW(f->column, n);
-  GROW(f->point, n);
-  shape_need(f->column);
-  shape_need(f->point);
-  f->column[n] = column;
-  f->point[n] = point;
-  return shape_point(&f->mesh, x[0], x[1], x[2]);
+  GROW(f->id, n);
+  GROW(f->x, n);
+  shape_need(f->id);
+  shape_need(f->x);
+  f->id[n] = id;
+  memcpy(f->x[n], x, sizeof *f->x);
+  return (uint32_t)f->n_point++;
 }
 
 static inline void model_front_tri(struct model *m, const uint32_t t[3],
                                    uint32_t patch, uint32_t face)
 {
-  struct vg_layer_front *f = &m->layers.front;
+  struct vg_front *f = &m->layers.front;
 
   if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) return;
-  GROW(f->face, f->mesh.n_tri);
+  GROW(f->face, f->n_face);
+  GROW(f->patch, f->n_face);
+  GROW(f->face_id, f->n_face);
   shape_need(f->face);
-  f->face[f->mesh.n_tri] = face;
-  shape_tri(&f->mesh, t[0], t[1], t[2], patch);
+  shape_need(f->patch);
+  shape_need(f->face_id);
+  memcpy(f->face[f->n_face], t, sizeof *f->face);
+  f->patch[f->n_face] = patch;
+  f->face_id[f->n_face++] = face;
 }
 
 /* Front point of each column into top, of each other point into point. */
@@ -237,14 +239,14 @@ static inline void model_front_points(struct model *m, uint32_t *top,
     if (!c->column[i].n) point[c->column[i].root] = 0;
   for (size_t i = 0; i < m->surface.n_point; i++)
     if (point[i] != VG_NO_INDEX)
-      point[i] = model_front_point(m, m->surface.point[i], VG_NO_INDEX,
-                                   (uint32_t)i);
+      point[i] = model_front_point(m, m->surface.point[i],
+                                   vg_layer_point_id((uint32_t)i));
   for (size_t i = 0; i < c->n_column; i++) {
     double x[3];
 
     vg_column_top(c, &m->surface, i, x);
     top[i] = c->column[i].n
-           ? model_front_point(m, x, (uint32_t)i, VG_NO_INDEX)
+           ? model_front_point(m, x, vg_layer_top_id((uint32_t)i))
            : point[c->column[i].root];
   }
 }
@@ -255,7 +257,7 @@ static inline void model_front(struct model *m)
   const struct vg_columns *c = &m->layers.columns;
   uint32_t *top = vg_alloc(c->n_column, sizeof *top);
   uint32_t *point = vg_alloc(m->surface.n_point, sizeof *point);
-  struct vg_layer_front *f = &m->layers.front;
+  struct vg_front *f = &m->layers.front;
   int raised = 0;
 
   shape_need(top);
@@ -270,7 +272,7 @@ static inline void model_front(struct model *m)
   for (size_t r = 0; r < c->n_border; r++)
     raised |= c->column[c->border[r][0]].n || c->column[c->border[r][1]].n;
   /* A re-meshed patch has points of its own. */
-  if (raised) f->point[point[m->apex]] = VG_NO_INDEX;
+  if (raised) f->id[point[m->apex]] = VG_LAYER_NEW;
   for (size_t r = 0; r < c->n_border; r++) {
     uint32_t t[3] = { top[c->border[r][1]], top[c->border[r][0]],
                       point[m->apex] };
@@ -291,15 +293,15 @@ static inline void model_front(struct model *m)
 /* Does each edge of the front join two triangles? */
 static inline int model_front_is_manifold(const struct model *m)
 {
-  const struct vg_mesh *f = &m->layers.front.mesh;
-  uint32_t (*edge)[2] = model_edges(f->n_tri, f->tri);
+  const struct vg_front *f = &m->layers.front;
+  uint32_t (*edge)[2] = model_edges(f->n_face, f->face);
   int fine = 1;
 
-  for (size_t i = 0; i < 3 * f->n_tri; i++) {
+  for (size_t i = 0; i < 3 * f->n_face; i++) {
     const uint32_t back[2] = { edge[i][1], edge[i][0] };
 
     if (i && !model_cmp_edge(edge[i], edge[i - 1])) fine = 0;
-    if (!bsearch(back, edge, 3 * f->n_tri, sizeof *edge, model_cmp_edge))
+    if (!bsearch(back, edge, 3 * f->n_face, sizeof *edge, model_cmp_edge))
       fine = 0;
   }
   free(edge);
@@ -309,19 +311,19 @@ static inline int model_front_is_manifold(const struct model *m)
 /* A field for the front: the cone over the tops. */
 static inline void model_field(struct model *m)
 {
-  const struct vg_layer_front *f = &m->layers.front;
+  const struct vg_front *f = &m->layers.front;
   uint32_t apex = VG_NO_INDEX;
 
-  if (vg_mesh_copy(&m->field, &f->mesh, NULL) < 0) abort();
-  m->field.tet = vg_alloc(f->mesh.n_tri, sizeof *m->field.tet);
+  if (vg_mesh_copy(&m->field, FRONT_MESH(f, &m->surface), NULL) < 0) abort();
+  m->field.tet = vg_alloc(f->n_face, sizeof *m->field.tet);
   shape_need(m->field.tet);
-  for (size_t i = 0; i < f->mesh.n_point; i++)
-    if (f->mesh.point[i][2] == 5) apex = (uint32_t)i;
-  for (size_t i = 0; i < f->mesh.n_tri; i++) {
+  for (size_t i = 0; i < f->n_point; i++)
+    if (f->x[i][2] == 5) apex = (uint32_t)i;
+  for (size_t i = 0; i < f->n_face; i++) {
     uint32_t *t = m->field.tet[m->field.n_tet];
 
-    if (f->face[i] == VG_NO_INDEX) continue;
-    memcpy(t, f->mesh.tri[i], 3 * sizeof *t);
+    if (f->face_id[i] == VG_NO_INDEX) continue;
+    memcpy(t, f->face[i], 3 * sizeof *t);
     t[3] = apex;
     m->field.n_tet++;
   }

@@ -8,42 +8,28 @@
 #include <math.h>
 
 #include "cli/examples/demo.h"
-#include "core/fill/fill.h"
+#include "fill_support.h"
 #include "partition/load/load.h"
 
 struct scene {
-  struct vg_void v;
+  struct vg_mesh m;
+  struct vg_front front;     /* of m, which keeps its arrays */
   struct vg_sizing *sizing;
   double volume;
 };
 
-static inline double enclosed(const struct vg_void *v)
-{
-  double sum = 0;
-
-  for (size_t i = 0; i < v->n_face; i++) {
-    const double *a = v->x[v->face[i][0]], *b = v->x[v->face[i][1]];
-    const double *c = v->x[v->face[i][2]];
-
-    sum -= a[0] * (b[1] * c[2] - b[2] * c[1])
-           + a[1] * (b[2] * c[0] - b[0] * c[2])
-           + a[2] * (b[0] * c[1] - b[1] * c[0]);
-  }
-  return sum / 6;
-}
-
-/* Takes the triangles of m; m is released. */
+/* The scene takes m over, which is empty then. */
 static inline void make_sized(struct scene *s, struct vg_mesh *m,
                        const struct vg_sizing_options *o,
                        const struct vg_source *source)
 {
   memset(s, 0, sizeof *s);
-  assert_int_equal(vg_void_from_mesh(&s->v, m, NULL), VG_OK);
   assert_int_equal(vg_sizing_new(o, source != NULL, source, m, &s->sizing,
                                  NULL), VG_OK);
-  s->volume = enclosed(&s->v);
+  vg_mesh_move(&s->m, m);
+  s->front = vg_front_of(&s->m);
+  s->volume = vg_front_volume(&s->front);
   assert_true(s->volume > 0);
-  vg_mesh_release(m);
 }
 
 /* even: the edge everywhere; 0: as the triangles have it. */
@@ -82,7 +68,7 @@ static inline void make_demo(struct scene *s, const char *name, size_t n_cell)
 
 static inline void release_scene(struct scene *s)
 {
-  vg_void_release(&s->v);
+  vg_mesh_release(&s->m);
   vg_sizing_free(s->sizing);
 }
 
@@ -92,8 +78,8 @@ static inline void estimate(const struct scene *s, int threads,
   struct vg_error err = VG_ERROR_INIT;
 
   *l = (struct vg_load)VG_LOAD_INIT;
-  if (vg_load_new(&s->v, s->sizing, VG_LOAD_CELLS_PER_CUBE, threads, l, &err)
-      < 0)
+  if (vg_load_new(&s->front, s->sizing, VG_LOAD_CELLS_PER_CUBE, threads, l,
+                  &err) < 0)
     fail_msg("%s", err.text);
 }
 
@@ -156,7 +142,7 @@ static inline void compare_sourced(const char *name, size_t n_cell,
   estimate(&s, 1, &l);
   assert_int_equal(vg_demo_make(name, n_cell, &d, NULL), VG_OK);
   memset(&r, 0, sizeof r);
-  assert_int_equal(vg_fill(&d.surface, s.sizing, &o, &out, &r, NULL), VG_OK);
+  assert_int_equal(fill_mesh(&d.surface, s.sizing, &o, &out, &r, NULL), VG_OK);
   ratio = (double)out.n_tet / l.cells;
   print_message("%s: %zu cells made, %.0f expected: %.3f\n", name, out.n_tet,
                 l.cells, ratio);

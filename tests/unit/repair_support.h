@@ -130,7 +130,7 @@ static inline void fill_slab(const struct scene *s, int g, const int *owner,
     for (size_t p = 0; p < t->n_point; p++) {
       if (to[p] == VG_NONE || (owner[p] == g) != pass) continue;
       if (pass == 0)
-        q->in[q->n_in] = VG_POINT_NAME(owner[p] + 1, place[p]);
+        q->in[q->n_in] = VG_POINT_ID(owner[p] + 1, place[p]);
       to[p] = (uint32_t)(q->n_in + q->n_point);
       memcpy(q->x[to[p]], t->x[p], sizeof *q->x);
       if (pass) q->n_point++;

@@ -9,6 +9,7 @@
 
 #include "base/memory.h"
 #include "core/mesh/slices.h"
+#include "fill_support.h"
 #include "join_support.h"
 
 struct cut {
@@ -180,8 +181,8 @@ static inline void cut_mesh(struct vg_mesh *out, struct vg_join_info *info,
   uint64_t seed = 5;
 
   model_sphere(&m, 6, 6, &seed);
-  sizing = shape_sizing(&m.layers.front.mesh, 1.5, 0);
-  if (vg_fill(&m.layers.front.mesh, sizing, &options, &m.field, &report,
+  sizing = shape_sizing(FRONT_MESH(&m.layers.front, &m.surface), 1.5, 0);
+  if (fill_mesh(FRONT_MESH(&m.layers.front, &m.surface), sizing, &options, &m.field, &report,
               NULL) < 0)
     abort();
   vg_sizing_free(sizing);

@@ -4,6 +4,7 @@
 #include "advance_support.h"
 
 #include "base/child.h"
+#include "fill_support.h"
 
 /* --- without cuts it is the fill ----------------------------------------- */
 
@@ -16,7 +17,7 @@ static void as_filled(const struct scene *s, double leaf)
   struct vg_partition_report r;
   struct vg_partition *p;
 
-  assert_int_equal(vg_fill(&s->m, s->sizing, &fill_options, &fill,
+  assert_int_equal(fill_mesh(&s->m, s->sizing, &fill_options, &fill,
                            &fill_report, NULL), VG_OK);
   assert_int_equal(grow(NULL, s, &o, &p, &r, NULL), VG_OK);
   assert_int_equal(r.n_leaf, 1);

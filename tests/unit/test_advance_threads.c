@@ -58,14 +58,13 @@ static void stopped_and_resumed(void **state)
   stopper = (struct stopper){ store, 3 };
   o.job = job_digest(1);
   o.store = store;
-  o.stop = stop_after;
-  o.user = &stopper;
-  assert_int_equal(grow(NULL, &s, &o, &p, &r, NULL), VG_BLOCKED);
+  o.stop = (struct vg_stop){ stop_after, &stopper };
+  assert_int_equal(grow(NULL, &s, &o, &p, &r, NULL), VG_ERR_STOPPED);
   assert_null(p);
   vg_store_close(store, 0);
   assert_int_equal(open_store(NULL, dir, 1, 1, &store, NULL), VG_OK);
   o.store = store;
-  o.stop = NULL;
+  o.stop = (struct vg_stop){ NULL, NULL };
   o.threads = 3;
   o.shuffle = 5;
   d = run_of(NULL, &s, &o, 0, &r);

@@ -576,11 +576,11 @@ static void patience_ends(void **state)
   struct vg_mesh m = VG_MESH_INIT;
 
   (void)state;
-  o.stop = at_once;
+  o.stop.ask = at_once;
   assert_int_equal(vg_cad_read(FILE_OF("wing.step"), VG_CAD_STEP, &o, NULL,
-                               &m, &err), VG_ERR_IO);
+                               &m, &err), VG_ERR_STOPPED);
   assert_non_null(strstr(err.text, "stopped"));
-  o.stop = NULL;
+  o.stop.ask = NULL;
   o.seconds = 0.2;           /* of about a minute's work */
   o.angle = 1;
   o.chord = 1e-7;

@@ -22,25 +22,21 @@ struct case_of {
 
 static void case_begin(struct case_of *c, const char *name, size_t n)
 {
-  struct vg_void v;
 
   scene_demo(&c->s, name, n);
-  c->front = (struct vg_front){ c->s.m.n_point, c->s.m.n_tri, c->s.m.point,
-                                NULL, c->s.m.tri };
-  c->front.name = vg_alloc(c->front.n_point, sizeof *c->front.name);
-  assert_non_null(c->front.name);
+  c->front = vg_front_of(&c->s.m);
+  c->front.id = vg_alloc(c->front.n_point, sizeof *c->front.id);
+  assert_non_null(c->front.id);
   for (size_t k = 0; k < c->front.n_point; k++)
-    c->front.name[k] = VG_POINT_NAME(0, k);
-  v = (struct vg_void){ .n_point = c->s.m.n_point, .x = c->s.m.point,
-                        .n_face = c->s.m.n_tri, .face = c->s.m.tri };
+    c->front.id[k] = VG_POINT_ID(0, k);
   memset(&c->load, 0, sizeof c->load);
-  assert_int_equal(vg_load_new(&v, c->s.sizing, VG_LOAD_CELLS_PER_CUBE, 1,
-                               &c->load, NULL), VG_OK);
+  assert_int_equal(vg_load_new(&c->front, c->s.sizing, VG_LOAD_CELLS_PER_CUBE,
+                               1, &c->load, NULL), VG_OK);
 }
 
 static void case_end(struct case_of *c)
 {
-  free(c->front.name);
+  free(c->front.id);
   vg_load_release(&c->load);
   scene_end(&c->s);
 }
@@ -121,7 +117,7 @@ static void interfaces_have_the_local_size(void **state)
         uint32_t a = f->face[i / 3][i % 3], b = f->face[i / 3][(i + 1) % 3];
         double r;
 
-        if (f->name[a] >> 32 != SERIAL || f->name[b] >> 32 != SERIAL)
+        if (f->id[a] >> 32 != SERIAL || f->id[b] >> 32 != SERIAL)
           continue;
         r = vg_distance(f->x[a], f->x[b]) / vg_sizing_at(c.s.sizing, f->x[a]);
         assert_true(r < 2.5);
@@ -324,12 +320,12 @@ static void what_is_no_parting(void **state)
                    VG_ERR_GEOMETRY);
   f->face[7][1] = f->face[7][0];
   f->face[7][0] = v;
-  name = f->name[f->face[f->n_face - 1][0]];
+  name = f->id[f->face[f->n_face - 1][0]];
   assert_int_equal(vg_parting_check(&p, &c.front, SERIAL, NULL), VG_OK);
-  f->name[f->face[f->n_face - 1][0]] = VG_POINT_NAME(SERIAL, p.n_point);
+  f->id[f->face[f->n_face - 1][0]] = VG_POINT_ID(SERIAL, p.n_point);
   assert_int_equal(vg_parting_check(&p, &c.front, SERIAL, NULL),
                    VG_ERR_GEOMETRY);
-  f->name[f->face[f->n_face - 1][0]] = name;
+  f->id[f->face[f->n_face - 1][0]] = name;
   vg_parting_release(&p);
   case_end(&c);
 }

@@ -185,7 +185,7 @@ static void puts_a_box_around_a_body(void **state)
   struct vg_mesh m = ball(-1, 0.1);
   struct vg_sizing *s = field(&m, 1.2);
   struct vg_farfield far = { VG_FARFIELD_BOX, 0, 0, { 0 }, 0, { -9, -5, -4 },
-                             { 7, 5, 4 }, 1, 0, 0.8, NULL, NULL };
+                             { 7, 5, 4 }, 1, 0, 0.8, { NULL, NULL } };
   struct vg_error err = VG_ERROR_INIT;
   double body, lo[3], hi[3];
 
@@ -587,7 +587,7 @@ static void marches_curves_as_vgrid_does(void **state)
 
   (void)state;
   box_project(&p);
-  assert_int_equal(vg_project_surface(&p, NULL, NULL, NULL, &m, &err), VG_OK);
+  assert_int_equal(vg_project_surface(&p, NULL, NULL, &m, &err), VG_OK);
   for (int i = 0; i < 8; i++)
     assert_memory_equal(m.point[i], p.point[i], sizeof m.point[i]);
   for (int i = 0; i < 18; i++)
@@ -611,7 +611,7 @@ static void meshes_a_project_of_planes(void **state)
   box_project(&p);
   assert_int_equal(vg_sizing_new(&o, p.n_source, p.source, NULL, &s, &err),
                    VG_OK);
-  assert_int_equal(vg_project_surface(&p, s, NULL, NULL, &m, &err), VG_OK);
+  assert_int_equal(vg_project_surface(&p, s, NULL, &m, &err), VG_OK);
   check_closed(&m);
   assert_true(fabs(volume(&m) - 8000) < 1e-8);
   assert_true(angle_min_deg(&m) > 30);
@@ -645,7 +645,7 @@ static void meshes_the_box_of_vgrid(void **state)
   if (!f) skip();
   fclose(f);
   assert_int_equal(vg_d3m_read(path, &p, &err), VG_OK);
-  assert_int_equal(vg_project_surface(&p, NULL, NULL, NULL, &m, &err), VG_OK);
+  assert_int_equal(vg_project_surface(&p, NULL, NULL, &m, &err), VG_OK);
   check_closed(&m);
   assert_true(fabs(volume(&m) - 8000) < 1e-8);
   assert_int_equal(m.n_patch, 6);
@@ -672,6 +672,7 @@ static void keeps_corners_of_chains(void **state)
 {
   struct vg_project p = VG_PROJECT_INIT;
   struct vg_mesh m = VG_MESH_INIT;
+  struct vg_stop stop;
   struct vg_error err = VG_ERROR_INIT;
   double h = 0.21, area = 0;
   size_t n_asked = SIZE_MAX;
@@ -703,7 +704,7 @@ static void keeps_corners_of_chains(void **state)
     p.curve->point[i] = i < 40 ? i : 0;
   }
   p.n_point = 40;
-  assert_int_equal(vg_project_surface(&p, NULL, NULL, NULL, &m, &err), VG_OK);
+  assert_int_equal(vg_project_surface(&p, NULL, NULL, &m, &err), VG_OK);
   for (size_t i = 0; i < m.n_tri; i++) {
     const double *a = m.point[m.tri[i][0]], *b = m.point[m.tri[i][1]],
                  *c = m.point[m.tri[i][2]];
@@ -713,23 +714,24 @@ static void keeps_corners_of_chains(void **state)
   }
   assert_true(fabs(area - 1) < 1e-9);
   vg_mesh_release(&m);
-  assert_int_equal(vg_project_surface(&p, NULL, counts_down, &n_asked, &m,
-                                      &err), VG_OK);
+  stop = (struct vg_stop){ counts_down, &n_asked };
+  assert_int_equal(vg_project_surface(&p, NULL, &stop, &m, &err), VG_OK);
   vg_mesh_release(&m);
   n_asked = SIZE_MAX - n_asked;
   for (int last = 0; last < 2; last++) {   /* on a curve; inside the patch */
     size_t left = last ? n_asked : 1;
 
-    assert_int_equal(vg_project_surface(&p, NULL, counts_down, &left, &m,
-                                        &err), VG_ERR_IO);
+    stop.user = &left;
+    assert_int_equal(vg_project_surface(&p, NULL, &stop, &m, &err),
+                     VG_ERR_STOPPED);
     assert_null(m.tri);
   }
   p.point[5][2] += 1;   /* no longer plane */
   p.point[6][2] += 1;
-  assert_int_equal(vg_project_surface(&p, NULL, NULL, NULL, &m, &err),
+  assert_int_equal(vg_project_surface(&p, NULL, NULL, &m, &err),
                    VG_ERR_GEOMETRY);
   p.curve->point[3] = 77;
-  assert_int_equal(vg_project_surface(&p, NULL, NULL, NULL, &m, &err),
+  assert_int_equal(vg_project_surface(&p, NULL, NULL, &m, &err),
                    VG_ERR_INPUT);
   assert_null(m.tri);
   vg_project_release(&p);
@@ -754,14 +756,13 @@ static void stops_when_asked(void **state)
       far.kind = kind[k];
       far.lengths = 2;
       far.spacing = 0.2;
-      far.stop = counts_down;
-      far.user = &left;
+      far.stop = (struct vg_stop){ counts_down, &left };
       for (n = 1; n < 1000; n *= 3) {
         vg_status st;
 
         left = n;
         st = vg_domain_complete(&m, &far, NULL, NULL, &err);
-        assert_int_equal(st, left ? VG_OK : VG_ERR_IO);
+        assert_int_equal(st, left ? VG_OK : VG_ERR_STOPPED);
         if (left) break;
         assert_int_equal(m.n_tri, n_tri);
         assert_int_equal(m.n_patch, n_patch);

@@ -133,7 +133,7 @@ static void it_stops_when_told(void **state)
   for (int threads = 1; threads < 4; threads++) {
     struct forest f = { .threads = threads, .depth = 6, .stop_at = "a12" };
 
-    assert_int_equal(forest_grow(&f, NULL, 3, 0, NULL, NULL), VG_BLOCKED);
+    assert_int_equal(forest_grow(&f, NULL, 3, 0, NULL, NULL), VG_ERR_STOPPED);
     assert_int_equal(f.alive, 0);
     assert_int_equal(f.n_run, f.n_done);
     assert_int_equal(f.bad, 0);
@@ -203,7 +203,7 @@ static void loops_are_finished_after_a_stop(void **state)
     struct forest f = { .threads = threads, .depth = 5, .stop_at = "a12",
                         .loop = 9, .spin_item = 2e-5 };
 
-    assert_int_equal(forest_grow(&f, NULL, 3, 0, NULL, NULL), VG_BLOCKED);
+    assert_int_equal(forest_grow(&f, NULL, 3, 0, NULL, NULL), VG_ERR_STOPPED);
     assert_int_equal(f.alive, 0);
     assert_int_equal(f.n_run, f.n_done);
     assert_int_equal(f.bad, 0);

@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "fill_shapes.h"
+#include "fill_support.h"
 
 static const double origin[3] = { 0, 0, 0 };
 
@@ -40,7 +41,7 @@ static struct vg_mesh_report fill_and_judge(const struct vg_mesh *s,
   struct vg_mesh_report r;
   struct vg_fill_report other;
 
-  if (vg_fill(s, sizing, &options, &m, fill, &err) != VG_OK)
+  if (fill_mesh(s, sizing, &options, &m, fill, &err) != VG_OK)
     fail_msg("%s", err.text);
   assert_int_equal(vg_mesh_judge(&m, sizing, &r, &err), VG_OK);
   assert_int_equal(r.not_positive, 0);
@@ -55,7 +56,7 @@ static struct vg_mesh_report fill_and_judge(const struct vg_mesh *s,
   assert_true(r.is_valid);
   assert_int_equal(m.n_pyr + m.n_pri + m.n_hex + m.n_quad, 0);
   surface_is_kept(&m, s);
-  assert_int_equal(vg_fill(s, sizing, &options, &again, &other, &err), VG_OK);
+  assert_int_equal(fill_mesh(s, sizing, &options, &again, &other, &err), VG_OK);
   assert_int_equal(again.n_point, m.n_point);
   assert_int_equal(again.n_tet, m.n_tet);
   same_array(again.point, m.point, m.n_point, sizeof *m.point);
@@ -266,12 +267,8 @@ static void far_from_the_origin(void **state)
   assert_true(fabs(r.volume - 1) < 1e-8);
 }
 
-static int stop_at_once(void *user, const char *stage, size_t done,
-                        size_t expected)
+static int stop_at_once(void *user)
 {
-  (void)stage;
-  (void)done;
-  (void)expected;
   ++*(int *)user;
   return 1;
 }
@@ -288,17 +285,16 @@ static void it_can_be_stopped(void **state)
   (void)state;
   shape_box(&s, 12, 0.5);
   sizing = shape_sizing(&s, 1.2, 0.1);
-  options.progress = stop_at_once;
-  options.user = &calls;
-  assert_int_equal(vg_fill(&s, sizing, &options, &m, &fill, &err),
-                   VG_BLOCKED);
+  options.stop = (struct vg_stop){ stop_at_once, &calls };
+  assert_int_equal(fill_mesh(&s, sizing, &options, &m, &fill, &err),
+                   VG_ERR_STOPPED);
   assert_int_equal(calls, 1);
   assert_int_equal(m.n_tet + m.n_point, 0);
   vg_sizing_free(sizing);
   vg_mesh_release(&s);
 }
 
-static void more_cells_than_allowed_are_refused(void **state)
+static void more_points_than_allowed_are_refused(void **state)
 {
   struct vg_mesh s = VG_MESH_INIT, m = VG_MESH_INIT;
   struct vg_fill_options options = VG_FILL_OPTIONS_INIT;
@@ -309,8 +305,9 @@ static void more_cells_than_allowed_are_refused(void **state)
   (void)state;
   shape_box(&s, 8, 0.5);
   sizing = shape_sizing(&s, 1.2, 0.02);
-  options.max_cells = 2000;
-  assert_true(vg_fill(&s, sizing, &options, &m, &fill, &err) < 0);
+  options.point_limit = 400;
+  assert_int_equal(fill_mesh(&s, sizing, &options, &m, &fill, &err),
+                   VG_ERR_UNSUPPORTED);
   assert_true(err.text[0]);
   assert_int_equal(m.n_tet + m.n_point, 0);
   vg_sizing_free(sizing);
@@ -325,20 +322,26 @@ static void refused(const struct vg_mesh *s, const struct vg_sizing *sizing)
   struct vg_fill_report fill;
   struct vg_error err = VG_ERROR_INIT;
 
-  assert_true(vg_fill(s, sizing, &options, &m, &fill, &err) < 0);
+  assert_true(fill_mesh(s, sizing, &options, &m, &fill, &err) < 0);
   assert_true(strlen(err.text) > 10);
   assert_int_equal(m.n_tet + m.n_point, 0);
 }
 
-static void nothing_at_all_is_refused(void **state)
+/* A front without faces bounds no void. */
+static void an_empty_front_gets_no_cells(void **state)
 {
-  struct vg_mesh s = VG_MESH_INIT, empty = VG_MESH_INIT;
+  struct vg_fill_options options = VG_FILL_OPTIONS_INIT;
+  struct vg_mesh s = VG_MESH_INIT, empty = VG_MESH_INIT, m = VG_MESH_INIT;
+  struct vg_fill_report fill;
   struct vg_sizing *sizing;
 
   (void)state;
   shape_box(&s, 4, 0.5);
   sizing = shape_sizing(&s, 1.2, 0);
-  refused(&empty, sizing);
+  assert_int_equal(fill_mesh(&empty, sizing, &options, &m, &fill, NULL),
+                   VG_OK);
+  assert_int_equal(m.n_tet + m.n_point, 0);
+  vg_mesh_release(&m);
   vg_sizing_free(sizing);
   vg_mesh_release(&s);
 }
@@ -404,8 +407,8 @@ static void optimisation_is_optional(void **state)
   (void)state;
   shape_box(&s, 8, 0.5);
   sizing = shape_sizing(&s, 1.2, 0);
-  options.optimise = 0;
-  assert_int_equal(vg_fill(&s, sizing, &options, &m, &fill, &err), VG_OK);
+  options.sweeps = 0;
+  assert_int_equal(fill_mesh(&s, sizing, &options, &m, &fill, &err), VG_OK);
   assert_int_equal(vg_mesh_judge(&m, NULL, &r, &err), VG_OK);
   assert_true(r.is_valid);
   assert_int_equal(fill.n_smoothed + fill.n_flip, 0);
@@ -429,8 +432,8 @@ int main(void)
     cmocka_unit_test(sizes_over_five_orders),
     cmocka_unit_test(far_from_the_origin),
     cmocka_unit_test(it_can_be_stopped),
-    cmocka_unit_test(more_cells_than_allowed_are_refused),
-    cmocka_unit_test(nothing_at_all_is_refused),
+    cmocka_unit_test(more_points_than_allowed_are_refused),
+    cmocka_unit_test(an_empty_front_gets_no_cells),
     cmocka_unit_test(what_is_not_a_boundary_is_refused),
     cmocka_unit_test(shells_that_cross_are_refused),
     cmocka_unit_test(optimisation_is_optional),

@@ -12,6 +12,7 @@
 #include "cli/examples/demo.h"
 #include "base/child.h"
 #include "fill_shapes.h"
+#include "fill_support.h"
 
 struct job {
   const struct vg_mesh *surface;
@@ -27,7 +28,7 @@ static void *work(void *data)
   struct job *j = data;
   struct vg_fill_options options = VG_FILL_OPTIONS_INIT;
 
-  j->st = vg_fill(j->surface, j->sizing, &options, &j->mesh, &j->report,
+  j->st = fill_mesh(j->surface, j->sizing, &options, &j->mesh, &j->report,
                   &j->err);
   return NULL;
 }

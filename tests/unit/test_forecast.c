@@ -17,7 +17,7 @@
 struct scene {
   struct vg_demo demo;
   struct vg_sizing *sizing;
-  struct vg_void v;
+  struct vg_front front;     /* of the demo's surface */
   struct vg_load load;
 };
 
@@ -30,11 +30,8 @@ static void make(struct scene *s, const char *name, size_t n_cell)
   m = &s->demo.surface;
   assert_int_equal(vg_sizing_new(&s->demo.sizing, s->demo.n_source,
                                  s->demo.source, m, &s->sizing, NULL), VG_OK);
-  s->v.n_point = m->n_point;
-  s->v.x = m->point;
-  s->v.n_face = m->n_tri;
-  s->v.face = m->tri;
-  assert_int_equal(vg_load_new(&s->v, s->sizing, VG_LOAD_CELLS_PER_CUBE, 1,
+  s->front = vg_front_of(m);
+  assert_int_equal(vg_load_new(&s->front, s->sizing, VG_LOAD_CELLS_PER_CUBE, 1,
                                &s->load, NULL), VG_OK);
 }
 
@@ -58,8 +55,8 @@ static struct vg_forecast look(const struct scene *s, struct vg_cut_rule rule,
   struct vg_forecast o = VG_FORECAST_INIT;
   struct vg_error err = VG_ERROR_INIT;
 
-  if (vg_forecast_new(&s->v, &s->load, &rule, levels, &vg_rates_measured, &o,
-                      &err) < 0) fail_msg("%s", err.text);
+  if (vg_forecast_new(&s->front, &s->load, &rule, levels, &vg_rates_measured,
+                      &o, &err) < 0) fail_msg("%s", err.text);
   return o;
 }
 
@@ -110,9 +107,9 @@ static void parts_follow_their_maker(void **state)
   make(&s, "box", 20000);
   rule = leaves_of(s.load.cells / 4);
   for (int k = 0; k < 3; k++)
-    part[k] = (struct vg_forecast_part){ s.v, &s.load, k == 2 };
+    part[k] = (struct vg_forecast_part){ s.front, &s.load, k == 2 };
   alone = look(&s, rule, 0);
-  assert_int_equal(vg_forecast_parted(&s.v, &s.load, &all, &rule, 0,
+  assert_int_equal(vg_forecast_parted(&s.front, &s.load, &all, &rule, 0,
                                       &vg_rates_measured, &o, NULL), VG_OK);
   assert_int_equal(o.n_leaf, 2 + alone.n_leaf);
   assert_int_equal(o.n_tile, alone.n_tile);
@@ -130,7 +127,7 @@ static void parts_follow_their_maker(void **state)
     assert_true(one->work > 0);
   }
   assert_non_null(maker);
-  assert_true(fabs(maker->cpu - (2e-6 * (double)s.v.n_face + 3e-6 * 7000 +
+  assert_true(fabs(maker->cpu - (2e-6 * (double)s.front.n_face + 3e-6 * 7000 +
                                  5e-6 * 1100)) < 1e-12);
   assert_true(fabs(maker->loops - maker->cpu / 4) < 1e-12);
   m.ranks = 4;
@@ -343,8 +340,8 @@ static void a_faster_core_needs_less(void **state)
   half.leaf.graded /= 2;
   half.leaf.face /= 2;
   a = look(&s, rule, 0);
-  assert_int_equal(vg_forecast_new(&s.v, &s.load, &rule, 0, &half, &b, NULL),
-                   VG_OK);
+  assert_int_equal(vg_forecast_new(&s.front, &s.load, &rule, 0, &half, &b,
+                                   NULL), VG_OK);
   assert_int_equal(a.spans.n, b.spans.n);
   for (size_t i = 0; i < a.spans.n; i++) {
     double twice = b.spans.span[i].cpu;

@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "core/judge/quality.h"
+#include "fill_support.h"
 #include "join_support.h"
 
 static double volume6(const struct vg_mesh *m, uint32_t a, uint32_t b,
@@ -262,14 +263,8 @@ static void make_ridge(struct model *m, int np, int nq, const int order[4],
 
 static void clear_front(struct model *m)
 {
-  struct vg_layer_front *f = &m->layers.front;
-
   vg_mesh_release(&m->field);
-  vg_mesh_release(&f->mesh);
-  free(f->column);
-  free(f->point);
-  free(f->face);
-  memset(f, 0, sizeof *f);
+  vg_front_release(&m->layers.front);
 }
 
 /* Do all columns of each fan rise, or none? If not, opposite corners of a
@@ -370,11 +365,11 @@ static void roofs_with_equal_fans(void **state)
 static void fill_model(struct model *m)
 {
   struct vg_fill_options options = VG_FILL_OPTIONS_INIT;
-  struct vg_sizing *sizing = shape_sizing(&m->layers.front.mesh, 1.5, 0);
+  struct vg_sizing *sizing = shape_sizing(FRONT_MESH(&m->layers.front, &m->surface), 1.5, 0);
   struct vg_fill_report report;
   struct vg_error err = VG_ERROR_INIT;
 
-  if (vg_fill(&m->layers.front.mesh, sizing, &options, &m->field, &report,
+  if (fill_mesh(FRONT_MESH(&m->layers.front, &m->surface), sizing, &options, &m->field, &report,
               &err) != VG_OK)
     fail_msg("%s", err.text);
   vg_sizing_free(sizing);
@@ -499,7 +494,7 @@ static void any_number_of_threads(void **state)
   (void)state;
   model_sphere(&m, 40, 6, &seed);
   assert_true(m.layers.columns.n_face > 6000);
-  assert_int_equal(vg_mesh_copy(&m.field, &m.layers.front.mesh, NULL), VG_OK);
+  assert_int_equal(vg_mesh_copy(&m.field, FRONT_MESH(&m.layers.front, &m.surface), NULL), VG_OK);
   for (int cells = 0; cells < 2; cells++) {
     struct vg_mesh mesh[3] = { VG_MESH_INIT, VG_MESH_INIT, VG_MESH_INIT };
     struct vg_join_info info;
@@ -535,7 +530,7 @@ static void refuses_what_does_not_fit(void **state)
                                   VG_LAYER_TETS, 1, &mesh, NULL, &err),
                    VG_ERR_INPUT);
   assert_non_null(strstr(err.text, "does not fill"));
-  assert_int_equal(vg_mesh_copy(&m.field, &m.layers.front.mesh, NULL), VG_OK);
+  assert_int_equal(vg_mesh_copy(&m.field, FRONT_MESH(&m.layers.front, &m.surface), NULL), VG_OK);
   model_column(&m, 0, (const double[3]){ 0, 0, 1 });
   m.layers.columns.column[7].n = 1;
   m.layers.columns.column[m.layers.columns.n_column - 1].n = 1;

@@ -14,14 +14,12 @@ struct scene {
 static void scene_of(struct scene *s, struct vg_mesh *m, double growth,
                      double h_max)
 {
-  struct vg_void v = VG_VOID_INIT;
+  const struct vg_front front = vg_front_of(m);
 
   s->load = (struct vg_load)VG_LOAD_INIT;
   s->sizing = shape_sizing(m, growth, h_max);
-  assert_int_equal(vg_void_from_mesh(&v, m, NULL), VG_OK);
-  assert_int_equal(vg_load_new(&v, s->sizing, VG_LOAD_CELLS_PER_CUBE, 1,
+  assert_int_equal(vg_load_new(&front, s->sizing, VG_LOAD_CELLS_PER_CUBE, 1,
                                &s->load, NULL), VG_OK);
-  vg_void_release(&v);
   vg_mesh_release(m);
 }
 

@@ -11,6 +11,7 @@
 
 #include "base/parallel.h"
 #include "core/judge/quality_parts.h"
+#include "fill_support.h"
 #include "join_support.h"
 #include "layer_cases.h"
 #include "layers/expand/slices.h"
@@ -358,7 +359,7 @@ static size_t check_split(const struct model *m, const struct vg_mesh *whole,
 
   check_start(&c, whole);
   for (int rank = 0; rank < size; rank++) {
-    struct server server = { &m->field, m->layers.front.mesh.n_point, n_piece,
+    struct server server = { &m->field, m->layers.front.n_point, n_piece,
                              (size_t)rank, (size_t)size, apart, 0 };
     struct vg_slices field = serve(&server), s;
     struct vg_layer_slices *keep;
@@ -399,7 +400,7 @@ static void check_blocks(const struct model *m, const struct vg_mesh *whole,
   check_start(&c, whole);
   assert_int_equal(vg_join_plan_open(&plan, &m->surface, &m->layers,
                                      m->field.n_point -
-                                     m->layers.front.mesh.n_point, cells, 1,
+                                     m->layers.front.n_point, cells, 1,
                                      NULL), VG_OK);
   for (size_t b = 0; b < plan.expand.n_block; b++) {
     struct vg_layer_slice at = { .is_field = 0 };
@@ -479,7 +480,7 @@ static void many_slices(void **state)
   (void)state;
   model_sphere(&m, 66, 70, &seed);
   assert_true(m.surface.n_point > 16384);
-  assert_int_equal(vg_mesh_copy(&m.field, &m.layers.front.mesh, NULL), VG_OK);
+  assert_int_equal(vg_mesh_copy(&m.field, FRONT_MESH(&m.layers.front, &m.surface), NULL), VG_OK);
   assert_true(check_model(&m, 4) >= 4);
   model_release(&m);
 }
@@ -491,7 +492,7 @@ static void without_layers(void **state)
 
   (void)state;
   model_sphere(&m, 5, 0, &seed);
-  assert_int_equal(vg_mesh_copy(&m.field, &m.layers.front.mesh, NULL), VG_OK);
+  assert_int_equal(vg_mesh_copy(&m.field, FRONT_MESH(&m.layers.front, &m.surface), NULL), VG_OK);
   assert_int_equal(check_model(&m, 3), 1);
   vg_columns_release(&m.layers.columns);
   assert_int_equal(check_model(&m, 3), 1);
@@ -521,12 +522,12 @@ static void check_grown(struct model *m, double h)
   if (vg_layers_grow(&m->surface, sizing, &o, &m->layers, &report, &err) < 0)
     fail_msg("%s", err.text);
   vg_sizing_free(sizing);
-  sizing = shape_sizing(&m->layers.front.mesh, 1.3, 0);
-  if (vg_fill(&m->layers.front.mesh, sizing, &fill, &m->field, &filled,
+  sizing = shape_sizing(FRONT_MESH(&m->layers.front, &m->surface), 1.3, 0);
+  if (fill_mesh(FRONT_MESH(&m->layers.front, &m->surface), sizing, &fill, &m->field, &filled,
               &err) < 0)
     fail_msg("%s", err.text);
   vg_sizing_free(sizing);
-  assert_true(m->field.n_point > m->layers.front.mesh.n_point);
+  assert_true(m->field.n_point > m->layers.front.n_point);
   assert_true(m->layers.columns.n_border > 0);
   assert_true(report.n_virtual_face > 0);
   check_model(m, 3);
@@ -560,7 +561,7 @@ static void refusals(void **state)
                                         VG_LAYER_TETS, 0, 1, 1, &s, &keep,
                                         NULL, &err), VG_ERR_INPUT);
   assert_non_null(strstr(err.text, "does not fill"));
-  assert_int_equal(vg_mesh_copy(&m.field, &m.layers.front.mesh, NULL), VG_OK);
+  assert_int_equal(vg_mesh_copy(&m.field, FRONT_MESH(&m.layers.front, &m.surface), NULL), VG_OK);
   server.n_front = m.field.n_point;
   field = serve(&server);
   field.n_point += UINT32_MAX;

@@ -10,11 +10,11 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "core/fill/fill.h"
 #include "core/geometry/predicates.h"
 #include "core/geometry/vector.h"
 #include "core/judge/quality.h"
 #include "core/surface/surface_check.h"
+#include "fill_support.h"
 #include "layer_cases.h"
 #include "layers/columns/layers.h"
 #include "layers/expand/join.h"
@@ -247,7 +247,7 @@ static void volumes_add_up(const struct bench *b)
 {
   long double whole = enclosed(&b->surface), sum;
 
-  sum = enclosed(&b->layers.front.mesh);
+  sum = enclosed(FRONT_MESH(&b->layers.front, &b->surface));
   assert_true(sum > 0);
   for (size_t f = 0; f < b->layers.columns.n_face; f++)
     sum += volume_over(&b->layers.columns, &b->surface, f);
@@ -258,32 +258,33 @@ static void volumes_add_up(const struct bench *b)
 /* Every front point is what it says; the top of a face is that face's. */
 static void front_is_what_it_says(const struct bench *b)
 {
-  const struct vg_layer_front *f = &b->layers.front;
+  const struct vg_front *f = &b->layers.front;
   const struct vg_columns *c = &b->layers.columns;
 
-  assert_int_equal(f->mesh.n_patch, b->surface.n_patch);
-  for (size_t p = 0; p < f->mesh.n_point; p++) {
+  for (size_t p = 0; p < f->n_point; p++) {
+    uint32_t column = vg_layer_column_of(f->id[p]);
+    uint32_t point = vg_layer_point_of(f->id[p]);
     double x[3];
 
-    if (f->column[p] != VG_NO_INDEX) {
-      assert_true(c->column[f->column[p]].n >= 1);
-      vg_column_top(c, &b->surface, f->column[p], x);
-      assert_memory_equal(x, f->mesh.point[p], sizeof x);
-      assert_int_equal(f->point[p], VG_NO_INDEX);
-    } else if (f->point[p] != VG_NO_INDEX) {
-      assert_memory_equal(b->surface.point[f->point[p]], f->mesh.point[p],
-                          sizeof x);
+    if (column != VG_NO_INDEX) {
+      assert_true(c->column[column].n >= 1);
+      vg_column_top(c, &b->surface, column, x);
+      assert_memory_equal(x, f->x[p], sizeof x);
+      assert_int_equal(point, VG_NO_INDEX);
+    } else if (point != VG_NO_INDEX) {
+      assert_memory_equal(b->surface.point[point], f->x[p], sizeof x);
     }
   }
-  for (size_t t = 0; t < f->mesh.n_tri; t++) {
-    if (f->face[t] == VG_NO_INDEX) continue;
-    assert_true(f->face[t] < c->n_face);
+  for (size_t t = 0; t < f->n_face; t++) {
+    assert_true(f->patch[t] < b->surface.n_patch);
+    if (f->face_id[t] == VG_NO_INDEX) continue;
+    assert_true(f->face_id[t] < c->n_face);
     for (int k = 0; k < 3; k++) {
-      uint32_t p = f->mesh.tri[t][k], at = f->column[p];
+      const uint32_t *of = c->face[f->face_id[t]];
+      uint32_t at = vg_layer_column_of(f->id[f->face[t][k]]);
 
       if (at == VG_NO_INDEX) continue;
-      assert_true(at == c->face[f->face[t]][0] ||
-                  at == c->face[f->face[t]][1] || at == c->face[f->face[t]][2]);
+      assert_true(at == of[0] || at == of[1] || at == of[2]);
     }
   }
 }
@@ -292,7 +293,7 @@ static void front_is_what_it_says(const struct bench *b)
  * cover as much less as the flanks took. */
 static void planes_stay_planes(const struct bench *b)
 {
-  const struct vg_mesh *s = &b->surface, *f = &b->layers.front.mesh;
+  const struct vg_mesh *s = &b->surface, *f = FRONT_MESH(&b->layers.front, &b->surface);
 
   for (size_t p = 0; p < s->n_patch; p++)
     for (int k = 0; k < 3; k++) {
@@ -318,7 +319,7 @@ static void same(const void *a, const void *b, size_t n, size_t size)
 static void same_layers(const struct vg_layers *a, const struct vg_layers *b)
 {
   const struct vg_columns *c = &a->columns, *d = &b->columns;
-  const struct vg_mesh *m = &a->front.mesh, *n = &b->front.mesh;
+  const struct vg_front *m = &a->front, *n = &b->front;
 
   assert_int_equal(c->n_column, d->n_column);
   assert_int_equal(c->n_face, d->n_face);
@@ -333,13 +334,12 @@ static void same_layers(const struct vg_layers *a, const struct vg_layers *b)
   }
   same(c->path, d->path, c->n_path, sizeof *c->path);
   assert_int_equal(m->n_point, n->n_point);
-  assert_int_equal(m->n_tri, n->n_tri);
-  same(m->point, n->point, m->n_point, sizeof *m->point);
-  same(m->tri, n->tri, m->n_tri, sizeof *m->tri);
-  same(m->tri_patch, n->tri_patch, m->n_tri, sizeof *m->tri_patch);
-  same(a->front.column, b->front.column, m->n_point, sizeof(uint32_t));
-  same(a->front.point, b->front.point, m->n_point, sizeof(uint32_t));
-  same(a->front.face, b->front.face, m->n_tri, sizeof(uint32_t));
+  assert_int_equal(m->n_face, n->n_face);
+  same(m->x, n->x, m->n_point, sizeof *m->x);
+  same(m->id, n->id, m->n_point, sizeof *m->id);
+  same(m->face, n->face, m->n_face, sizeof *m->face);
+  same(m->patch, n->patch, m->n_face, sizeof *m->patch);
+  same(m->face_id, n->face_id, m->n_face, sizeof *m->face_id);
 }
 
 static void grow_and_check(struct bench *b)
@@ -349,7 +349,7 @@ static void grow_and_check(struct bench *b)
   tops_are_no_steeper(b);
   heights_are_kept(b);
   limits_are_explained(b);
-  is_clean(&b->layers.front.mesh);
+  is_clean(FRONT_MESH(&b->layers.front, &b->surface));
   front_is_what_it_says(b);
   planes_stay_planes(b);
   volumes_add_up(b);
@@ -401,14 +401,14 @@ static void join_and_judge(const struct bench *b, const struct vg_mesh *field,
 
 static void fill_and_join(const struct bench *b)
 {
-  const struct vg_mesh *front = &b->layers.front.mesh;
+  const struct vg_mesh *front = FRONT_MESH(&b->layers.front, &b->surface);
   struct vg_fill_options options = VG_FILL_OPTIONS_INIT;
   struct vg_sizing *sizing = shape_sizing(front, 1.3, 0);
   struct vg_mesh field = VG_MESH_INIT;
   struct vg_fill_report report;
   struct vg_error err = VG_ERROR_INIT;
 
-  if (vg_fill(front, sizing, &options, &field, &report, &err) < 0)
+  if (fill_mesh(front, sizing, &options, &field, &report, &err) < 0)
     fail_msg("%s", err.text);
   join_and_judge(b, &field, VG_LAYER_TETS);
   join_and_judge(b, &field, VG_LAYER_MIXED);
@@ -874,13 +874,9 @@ static void a_law_that_varies(void **state)
   finish(&b);
 }
 
-static int stop_at_once(void *user, const char *stage, size_t done,
-                        size_t expected)
+static int stop_at_once(void *user)
 {
   (void)user;
-  (void)stage;
-  (void)done;
-  (void)expected;
   return 1;
 }
 
@@ -898,11 +894,11 @@ static void refusals_leave_nothing(void **state)
   assert_non_null(strstr(err.text, "patch 21"));
   assert_null(b.layers.columns.column);
   b.request[0].law.delta1 = 2e-4;
-  b.options.progress = stop_at_once;
+  b.options.stop.ask = stop_at_once;
   assert_int_equal(vg_layers_grow(&b.surface, b.sizing, &b.options, &b.layers,
-                                  &b.report, &err), VG_BLOCKED);
+                                  &b.report, &err), VG_ERR_STOPPED);
   assert_null(b.layers.columns.column);
-  assert_null(b.layers.front.mesh.point);
+  assert_null(b.layers.front.x);
   finish(&b);
 }
 

@@ -109,7 +109,7 @@ static void faces_have_cells_of_their_own(void **state)
   (void)state;
   make_grown(&s, "sphere", 20000, 4);
   estimate(&s, 1, &l);
-  assert_true(l.cells >= 1.499 * (double)s.v.n_face);
+  assert_true(l.cells >= 1.499 * (double)s.front.n_face);
   for (size_t i = 0; i < l.n; i++) sum += (double)l.cube[i].cells;
   assert_true(fabs(sum / l.cells - 1) < 1e-6);
   vg_load_release(&l);
@@ -137,16 +137,13 @@ static int in_rest(const int at[3])
 static int (*const piece[3])(const int at[3]) = { in_slab, in_corner, in_rest };
 static const double share[3] = { 5. / 12, 4.5 / 12, 0.375 / 12 };
 
-static void make_piece(struct vg_void *v, int (*in)(const int at[3]))
+static void make_piece(struct vg_mesh *m, int (*in)(const int at[3]))
 {
   const int n[3] = { 12, 4, 4 };
   const double lo[3] = { 0, 0, 0 }, hi[3] = { 3, 1, 1 };
-  struct vg_mesh m = VG_MESH_INIT;
 
-  memset(v, 0, sizeof *v);
-  shape_block(&m, n, lo, hi, in);
-  assert_int_equal(vg_void_from_mesh(v, &m, NULL), VG_OK);
-  vg_mesh_release(&m);
+  *m = (struct vg_mesh)VG_MESH_INIT;
+  shape_block(m, n, lo, hi, in);
 }
 
 static void make_bar(struct scene *s)
@@ -162,16 +159,20 @@ static void make_bar(struct scene *s)
 static void children_get_their_share(void **state)
 {
   struct vg_load l, part[3];
-  struct vg_void v[3];
+  struct vg_mesh m[3];
+  struct vg_front front[3];
   struct scene s;
 
   (void)state;
   make_bar(&s);
   estimate(&s, 1, &l);
-  for (int c = 0; c < 3; c++) make_piece(&v[c], piece[c]);
-  assert_int_equal(vg_load_split(&l, 3, v, 1.5, NULL, part, NULL), VG_OK);
   for (int c = 0; c < 3; c++) {
-    const double volume = enclosed(&v[c]);
+    make_piece(&m[c], piece[c]);
+    front[c] = vg_front_of(&m[c]);
+  }
+  assert_int_equal(vg_load_split(&l, 3, front, 1.5, NULL, part, NULL), VG_OK);
+  for (int c = 0; c < 3; c++) {
+    const double volume = vg_front_volume(&front[c]);
 
     assert_true(part[c].n > 0 && part[c].n < l.n);
     assert_true(fabs(volume / 3 - share[c]) < 1e-12);
@@ -181,7 +182,7 @@ static void children_get_their_share(void **state)
     /* even spacing, so cells go by volume, but for the rounding of numbers */
     assert_true(fabs(part[c].cells / (1.5 * l.cells * volume / 3) - 1)
                 < 1e-4);
-    vg_void_release(&v[c]);
+    vg_mesh_release(&m[c]);
     vg_load_release(&part[c]);
   }
   vg_load_release(&l);
@@ -202,7 +203,8 @@ static void generations_do_not_drift(void **state)
   cells = l.cells;
   n = l.n;
   for (int i = 0; i < 5; i++) {
-    assert_int_equal(vg_load_split(&l, 1, &s.v, 1, NULL, &next, NULL), VG_OK);
+    assert_int_equal(vg_load_split(&l, 1, &s.front, 1, NULL, &next, NULL),
+                     VG_OK);
     assert_int_equal(next.n, n);
     assert_true(fabs(next.cells / cells - 1) < 1e-3);
     vg_load_release(&l);
@@ -216,7 +218,7 @@ static void tiny_and_empty_children(void **state)
 {
   const double at[3] = { 0.71, 0.53, 0.47 };
   struct vg_load l, part[2];
-  struct vg_void v[2] = { VG_VOID_INIT, VG_VOID_INIT };
+  struct vg_front front[2] = { VG_FRONT_INIT, VG_FRONT_INIT };
   struct vg_mesh m = VG_MESH_INIT;
   struct scene s;
   double volume;
@@ -231,19 +233,17 @@ static void tiny_and_empty_children(void **state)
     m.tri[i][0] = m.tri[i][1];
     m.tri[i][1] = a;
   }
-  assert_int_equal(vg_void_from_mesh(&v[0], &m, NULL), VG_OK);
-  volume = enclosed(&v[0]);
+  front[0] = vg_front_of(&m);
+  volume = vg_front_volume(&front[0]);
   assert_true(volume > 0);
-  assert_int_equal(vg_load_split(&l, 2, v, 1, NULL, part, NULL), VG_OK);
+  assert_int_equal(vg_load_split(&l, 2, front, 1, NULL, part, NULL), VG_OK);
   assert_int_equal(part[0].n, 1);
   assert_true(fabs(part[0].cells / (l.cells * volume / 3) - 1) < 0.1);
   assert_int_equal(part[1].n, 0);
   assert_true(part[1].cells == 0);
-  for (int c = 0; c < 2; c++) {
-    vg_load_release(&part[c]);
-    vg_void_release(&v[c]);
-  }
-  assert_int_equal(vg_load_new(&v[1], s.sizing, 9, 1, &part[1], NULL), VG_OK);
+  for (int c = 0; c < 2; c++) vg_load_release(&part[c]);
+  assert_int_equal(vg_load_new(&front[1], s.sizing, 9, 1, &part[1], NULL),
+                   VG_OK);
   assert_int_equal(part[1].n, 0);
   vg_mesh_release(&m);
   vg_load_release(&l);
@@ -262,7 +262,7 @@ static void sizes_in_another_unit_are_named(void **state)
   shape_box(&m, 2, 1);
   make_scene(&s, &m, 1e-6);
   for (int threads = 1; threads <= 2; threads++) {
-    assert_int_equal(vg_load_new(&s.v, s.sizing, VG_LOAD_CELLS_PER_CUBE,
+    assert_int_equal(vg_load_new(&s.front, s.sizing, VG_LOAD_CELLS_PER_CUBE,
                                  threads, &l, &err), VG_ERR_UNSUPPORTED);
     assert_non_null(strstr(err.text, "10 billion cells"));
     assert_null(l.cube);

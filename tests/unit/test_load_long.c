@@ -20,26 +20,27 @@ static void check_real(const char *name)
 {
   struct vg_error err = VG_ERROR_INIT;
   struct vg_mesh m = VG_MESH_INIT;
-  struct vg_void v = VG_VOID_INIT;
   const char *path = io_real(name);
   vg_status st = vg_ugrid_read(path, &m, NULL, &err);
+  struct vg_front front;
+  int is_inside_out;
   struct vg_load l;
   struct scene s;
 
   if (!strncmp(path, VG_TMP_DIR, strlen(VG_TMP_DIR))) remove(path);
   if (st < 0) fail_msg("%s: %s", name, err.text);
-  assert_int_equal(vg_void_from_mesh(&v, &m, NULL), VG_OK);
-  for (size_t i = 0; enclosed(&v) < 0 && i < m.n_tri; i++) {
+  front = vg_front_of(&m);
+  is_inside_out = vg_front_volume(&front) < 0;
+  for (size_t i = 0; is_inside_out && i < m.n_tri; i++) {
     const uint32_t a = m.tri[i][0];
 
     m.tri[i][0] = m.tri[i][1];
     m.tri[i][1] = a;
   }
-  vg_void_release(&v);
   make_scene(&s, &m, 0);
   estimate(&s, 2, &l);
   print_message("%s: %zu triangles, %zu cubes, %.0f cells, volume %.4f\n",
-                name, s.v.n_face, l.n, l.cells, sampled(&l) / s.volume);
+                name, s.front.n_face, l.n, l.cells, sampled(&l) / s.volume);
   check_volume(&s, &l);
   vg_load_release(&l);
   release_scene(&s);

@@ -17,50 +17,31 @@
 #include "core/mesher/fill_with.h"
 #include "core/mesher/mesher_parts.h"
 #include "fill_shapes.h"
+#include "fill_support.h"
 
 static struct vg_sizing *sizing;
-static struct vg_void box, hollow;      /* a box; one around a sphere */
-
-static void make_void(struct vg_void *v, int has_sphere)
-{
-  static const double centre[3] = { 0.1, 0, -0.2 };
-  struct vg_mesh m = VG_MESH_INIT;
-
-  shape_box(&m, 4, 3);
-  if (has_sphere) shape_sphere(&m, 6, centre, 1, 40);
-  memset(v, 0, sizeof *v);
-  if (vg_void_from_mesh(v, &m, NULL) != VG_OK) abort();
-  if (has_sphere) sizing = shape_sizing(&m, 1.2, 0);
-  vg_mesh_release(&m);
-}
+static struct vg_mesh surface[2];
+static struct vg_front box, hollow;     /* a box; one around a sphere */
 
 static int set_up(void **state)
 {
+  static const double centre[3] = { 0.1, 0, -0.2 };
+
   (void)state;
-  make_void(&box, 0);
-  make_void(&hollow, 1);
+  for (int i = 0; i < 2; i++) shape_box(&surface[i], 4, 3);
+  shape_sphere(&surface[1], 6, centre, 1, 40);
+  sizing = shape_sizing(&surface[1], 1.2, 0);
+  box = vg_front_of(&surface[0]);
+  hollow = vg_front_of(&surface[1]);
   return 0;
 }
 
 static int tear_down(void **state)
 {
   (void)state;
-  vg_void_release(&box);
-  vg_void_release(&hollow);
+  for (int i = 0; i < 2; i++) vg_mesh_release(&surface[i]);
   vg_sizing_free(sizing);
   return 0;
-}
-
-static void copy_void(struct vg_void *to, const struct vg_void *from)
-{
-  memset(to, 0, sizeof *to);
-  if (vg_reserve(&to->x, &to->cap_point, from->n_point, sizeof *to->x) ||
-      vg_reserve(&to->face, &to->cap_face, from->n_face, sizeof *to->face))
-    abort();
-  memcpy(to->x, from->x, from->n_point * sizeof *to->x);
-  memcpy(to->face, from->face, from->n_face * sizeof *to->face);
-  to->n_point = from->n_point;
-  to->n_face = from->n_face;
 }
 
 static const char *plugin(const char *name)
@@ -88,14 +69,20 @@ static struct vg_mesher_pool *open_mesher(const char *name)
   return p;
 }
 
-static vg_status fill(struct vg_mesher_pool *p, struct vg_void *v,
-                      const struct vg_grow_options *o,
+/* Nothing is returned but with VG_OK. */
+static vg_status fill(struct vg_mesher_pool *p, const struct vg_front *front,
+                      const struct vg_fill_options *o, struct vg_filled *out,
                       struct vg_fill_report *r)
 {
-  const struct vg_grow_options plain = VG_GROW_OPTIONS_INIT;
+  const struct vg_fill_options plain = VG_FILL_OPTIONS_INIT;
+  const struct vg_filled empty = VG_FILLED_INIT;
   struct vg_error err = VG_ERROR_INIT;
+  vg_status st;
 
-  return vg_mesher_fill(p, v, sizing, o ? o : &plain, r, &err);
+  *out = empty;
+  st = vg_mesher_fill(p, front, sizing, o ? o : &plain, out, r, &err);
+  if (st != VG_OK) assert_memory_equal(out, &empty, sizeof empty);
+  return st;
 }
 
 /* --- the check ----------------------------------------------------------- */
@@ -109,14 +96,15 @@ struct sample {
 /* What the kernel makes of the hollow void. */
 static void take_sample(struct sample *s)
 {
-  const struct vg_grow_options o = VG_GROW_OPTIONS_INIT;
+  const struct vg_fill_options o = VG_FILL_OPTIONS_INIT;
   struct vg_fill_report r = { 0 };
-  struct vg_void v;
+  struct vg_mesh m = VG_MESH_INIT;
 
-  copy_void(&v, &hollow);
-  assert_int_equal(vg_grow(&v, sizing, &o, &r, NULL), VG_OK);
-  *s = (struct sample){ hollow.n_point, v.n_point, v.n_cell, v.x, v.cell };
-  free(v.face);
+  assert_int_equal(fill_mesh(&surface[1], sizing, &o, &m, &r, NULL), VG_OK);
+  *s = (struct sample){ hollow.n_point, m.n_point, m.n_tet, m.point, m.tet };
+  m.point = NULL;
+  m.tet = NULL;
+  vg_mesh_release(&m);
 }
 
 static const char *check(struct sample *s)
@@ -210,24 +198,21 @@ static void the_example_fills_a_box(void **state)
 {
   struct vg_mesher_pool *p = open_mesher(plugin("star"));
   struct vg_fill_report r = { 0 };
-  struct vg_void v;
+  struct vg_filled f;
 
   (void)state;
   for (int k = 0; k < 3; k++) {          /* the process is used again */
-    copy_void(&v, &box);
-    assert_int_equal(fill(p, &v, NULL, &r), VG_OK);
-    assert_int_equal(v.n_cell, box.n_face);
-    assert_int_equal(v.n_point, box.n_point + 1);
-    assert_int_equal(v.n_face, 0);
+    assert_int_equal(fill(p, &box, NULL, &f, &r), VG_OK);
+    assert_int_equal(f.n_cell, box.n_face);
+    assert_int_equal(f.n_point, 1);
+    assert_int_equal(f.n_face + f.n_consumed, 0);
+    assert_int_equal(vg_filled_defects(&box, &f, 0), 0);
     assert_int_equal(r.n_other, k + 1);
-    vg_void_release(&v);
+    vg_filled_release(&f);
   }
-  copy_void(&v, &hollow);                /* and says where it cannot */
-  assert_int_equal(fill(p, &v, NULL, &r), VG_NOT_BETTER);
+  /* and says where it cannot */
+  assert_int_equal(fill(p, &hollow, NULL, &f, &r), VG_NOT_BETTER);
   assert_int_equal(r.n_other_failed, 1);
-  assert_int_equal(v.n_face, hollow.n_face);
-  assert_int_equal(v.n_cell, 0);
-  vg_void_release(&v);
   vg_mesher_close(p);
 }
 
@@ -237,21 +222,21 @@ static void fills_by_size(const char *name)
 {
   struct vg_mesher_pool *p = open_mesher(name);
   struct vg_fill_report r = { 0 };
-  struct vg_void v, again;
+  struct vg_filled f, again;
   struct sample s;
 
   take_sample(&s);
-  copy_void(&v, &hollow);
-  copy_void(&again, &hollow);
-  assert_int_equal(fill(p, &v, NULL, &r), VG_OK);
-  assert_int_equal(r.n_other_cell, v.n_cell);
-  assert_true(v.n_cell > s.n_cell / 2 && v.n_cell < 2 * s.n_cell);
-  assert_int_equal(fill(p, &again, NULL, &r), VG_OK);
-  assert_int_equal(v.n_cell, again.n_cell);
-  assert_memory_equal(v.cell, again.cell, v.n_cell * sizeof *v.cell);
-  assert_memory_equal(v.x, again.x, v.n_point * sizeof *v.x);
-  vg_void_release(&v);
-  vg_void_release(&again);
+  assert_int_equal(fill(p, &hollow, NULL, &f, &r), VG_OK);
+  assert_int_equal(r.n_other_cell, f.n_cell);
+  assert_int_equal(vg_filled_defects(&hollow, &f, 0), 0);
+  assert_true(f.n_cell > s.n_cell / 2 && f.n_cell < 2 * s.n_cell);
+  assert_int_equal(fill(p, &hollow, NULL, &again, &r), VG_OK);
+  assert_int_equal(f.n_cell, again.n_cell);
+  assert_int_equal(f.n_point, again.n_point);
+  assert_memory_equal(f.cell, again.cell, f.n_cell * sizeof *f.cell);
+  assert_memory_equal(f.x, again.x, f.n_point * sizeof *f.x);
+  vg_filled_release(&f);
+  vg_filled_release(&again);
   free(s.x);
   free(s.cell);
   vg_mesher_close(p);
@@ -348,17 +333,11 @@ static void gives_up_plugins_that_fail(void **state)
   for (int k = 5; k <= 15; k++) {
     struct vg_mesher_pool *p = open_mesher(bad(k));
     struct vg_fill_report r = { 0 };
-    struct vg_void v;
+    struct vg_filled f;
 
     vg_mesher_patience(p, 0.05, 0);
-    for (int again = 0; again < 2; again++) {
-      copy_void(&v, &box);
-      assert_int_equal(fill(p, &v, NULL, &r), VG_NOT_BETTER);
-      assert_int_equal(v.n_cell, 0);
-      assert_int_equal(v.n_point, box.n_point);
-      assert_int_equal(v.n_face, box.n_face);
-      vg_void_release(&v);
-    }
+    for (int again = 0; again < 2; again++)
+      assert_int_equal(fill(p, &box, NULL, &f, &r), VG_NOT_BETTER);
     /* 5 to 8 and 15 end or hang, the others return what is wrong */
     assert_int_equal(r.n_other_ended, k <= 8 || k == 15 ? 2 : 0);
     assert_int_equal(r.n_other_wrong, k <= 8 || k == 15 ? 0 : 2);
@@ -367,35 +346,27 @@ static void gives_up_plugins_that_fail(void **state)
   }
 }
 
-static int stop(void *user, const char *stage, size_t done, size_t expected)
+static int at_once(void *user)
 {
   (void)user;
-  (void)stage;
-  (void)done;
-  (void)expected;
   return 1;
 }
 
 static void stops_and_keeps_limits(void **state)
 {
   struct vg_mesher_pool *p = open_mesher(bad(8));   /* sleeps */
-  struct vg_grow_options o = VG_GROW_OPTIONS_INIT;
+  struct vg_fill_options o = VG_FILL_OPTIONS_INIT;
   struct vg_fill_report r = { 0 };
-  struct vg_void v;
+  struct vg_filled f;
 
   (void)state;
-  o.progress = stop;
-  copy_void(&v, &box);
-  assert_int_equal(fill(p, &v, &o, &r), VG_BLOCKED);
+  o.stop.ask = at_once;
+  assert_int_equal(fill(p, &box, &o, &f, &r), VG_ERR_STOPPED);
   vg_mesher_close(p);
   p = open_mesher("tetgen");
-  o.progress = NULL;
+  o.stop.ask = NULL;
   o.point_limit = 3;
-  vg_void_release(&v);
-  copy_void(&v, &hollow);
-  assert_int_equal(fill(p, &v, &o, &r), VG_ERR_UNSUPPORTED);
-  assert_int_equal(v.n_cell, 0);
-  vg_void_release(&v);
+  assert_int_equal(fill(p, &hollow, &o, &f, &r), VG_ERR_UNSUPPORTED);
   vg_mesher_close(p);
 }
 

@@ -27,7 +27,7 @@ static void copy_front(struct vg_front *to, const struct vg_front *from)
 /* Cut at x = 0 and y = 0. */
 static void scene_of(struct scene *s, struct vg_mesh *m)
 {
-  struct vg_void v = VG_VOID_INIT;
+  const struct vg_front front = vg_front_of(m);
   struct vg_front f = VG_FRONT_INIT;
 
   memset(s, 0, sizeof *s);
@@ -40,20 +40,18 @@ static void scene_of(struct scene *s, struct vg_mesh *m)
   f.n_point = m->n_point;
   f.n_face = m->n_tri;
   f.x = vg_alloc(m->n_point, sizeof *f.x);
-  f.name = vg_alloc(m->n_point, sizeof *f.name);
+  f.id = vg_alloc(m->n_point, sizeof *f.id);
   f.face = vg_alloc(m->n_tri, sizeof *f.face);
-  assert_true(f.x && f.name && f.face);
+  assert_true(f.x && f.id && f.face);
   memcpy(f.x, m->point, m->n_point * sizeof *f.x);
   memcpy(f.face, m->tri, m->n_tri * sizeof *f.face);
-  for (size_t k = 0; k < m->n_point; k++) f.name[k] = VG_POINT_NAME(0, k);
+  for (size_t k = 0; k < m->n_point; k++) f.id[k] = VG_POINT_ID(0, k);
   copy_front(&s->was, &f);
   s->n = vg_node_new("0", &f);
   assert_non_null(s->n);
-  assert_int_equal(vg_void_from_mesh(&v, m, NULL), VG_OK);
-  assert_int_equal(vg_load_new(&v, s->sizing, VG_LOAD_CELLS_PER_CUBE, 1,
+  assert_int_equal(vg_load_new(&front, s->sizing, VG_LOAD_CELLS_PER_CUBE, 1,
                                &s->n->load, NULL), VG_OK);
   s->n->lattice.n[0] = s->n->lattice.n[1] = 1;
-  vg_void_release(&v);
   vg_mesh_release(m);
 }
 
@@ -112,7 +110,7 @@ static void dealt_out(const struct scene *s, const struct vg_front *was,
 
       assert_true(p <= seen[child[b]]);
       seen[child[b]] += p == seen[child[b]];
-      assert_int_equal(c->name[p], was->name[v[k]]);
+      assert_int_equal(c->id[p], was->id[v[k]]);
       assert_memory_equal(c->x[p], was->x[v[k]], sizeof *c->x);
     }
     at[child[b]]++;
@@ -314,24 +312,25 @@ static void cell_on(struct vg_node *n, size_t i, uint32_t gone,
                     uint32_t serial)
 {
   struct vg_change *c = &n->change[i];
+  struct vg_filled *f = &c->made;
 
-  *c = (struct vg_change){ .serial = serial, .n_part = 3, .n_point = 1,
-                           .n_face = 3, .n_gone = 1, .n_cell = 1,
-                           .volume = 0.25 };
+  *c = (struct vg_change){ .serial = serial, .n_part = 3,
+                           .made = { .n_point = 1, .n_face = 3, .n_cell = 1,
+                                     .n_consumed = 1, .volume = 0.25 } };
   n->point[i] = vg_alloc(3, sizeof **n->point);
   n->face[i] = vg_alloc(1, sizeof **n->face);
-  c->x = vg_calloc(1, sizeof *c->x);
-  c->face = vg_alloc(3, sizeof *c->face);
-  c->gone = vg_calloc(1, sizeof *c->gone);
-  assert_true(n->point[i] && n->face[i] && c->x && c->face && c->gone);
+  f->x = vg_calloc(1, sizeof *f->x);
+  f->face = vg_alloc(3, sizeof *f->face);
+  f->consumed = vg_calloc(1, sizeof *f->consumed);
+  assert_true(n->point[i] && n->face[i] && f->x && f->face && f->consumed);
   n->face[i][0] = gone;
   memcpy(n->point[i], n->front.face[gone], 3 * sizeof **n->point);
   for (int k = 0; k < 3; k++) {
-    c->face[k][0] = (uint32_t)k;
-    c->face[k][1] = (uint32_t)(k + 1) % 3;
-    c->face[k][2] = 3;
+    f->face[k][0] = (uint32_t)k;
+    f->face[k][1] = (uint32_t)(k + 1) % 3;
+    f->face[k][2] = 3;
     for (int j = 0; j < 3; j++)
-      c->x[0][j] += n->front.x[n->point[i][k]][j] / 3;
+      f->x[0][j] += n->front.x[n->point[i][k]][j] / 3;
   }
 }
 
@@ -375,7 +374,7 @@ static void changes_are_put_in(void **state)
     size_t new = s.was.n_point + i;
     uint32_t gone = i < 2 ? n->open[3 * i] : 7 * i;
 
-    assert_int_equal(n->front.name[new], VG_POINT_NAME(9 - i, 0));
+    assert_int_equal(n->front.id[new], VG_POINT_ID(9 - i, 0));
     assert_int_equal(n->front.face[gone][0], VG_FACE_GONE);
     for (uint32_t k = 0; k < 3; k++) {
       const uint32_t *v = n->front.face[s.was.n_face + 3 * i + k];
@@ -437,7 +436,7 @@ static void put_long_cell(struct scene *s, double x, double y, double z,
   works_of(n, 2);
   cell_on(n, 0, face_towards(&n->front), 5);
   cell_on(n, 1, 0, 6);
-  memcpy(n->change[0].x, tip, sizeof tip);
+  memcpy(n->change[0].made.x, tip, sizeof tip);
   n->region[0] = n->region[1] = *region;
   s->p.report.n_zone_cell = 2;
   assert_int_equal(vg_node_put(&s->p, n, NULL, NULL), VG_OK);
@@ -509,7 +508,7 @@ static void what_holds_a_body_stays_out(void **state)
 static void dropped_cells_are_forgotten(void **state)
 {
   struct vg_partition p = { .size = 1 };
-  const struct vg_change c = { .serial = 5, .n_cell = 3 };
+  const struct vg_change c = { .serial = 5, .made.n_cell = 3 };
   struct vg_spans spans = VG_SPANS_INIT;
 
   (void)state;

@@ -4,7 +4,7 @@
 #define _GNU_SOURCE
 #include "advance_support.h"
 
-#include "core/fill/grow.h"
+#include "core/fill/fill.h"
 #include "partition/octree/octree.h"
 #include "partition/octree/octree_parts.h"
 
@@ -17,35 +17,26 @@ struct parted {
   struct vg_parting p;
 };
 
-static struct vg_void view(const struct vg_front *f)
-{
-  return (struct vg_void){ .n_point = f->n_point, .x = f->x,
-                           .n_face = f->n_face, .face = f->face };
-}
-
 /* A front and its load of the scene, which is there. */
 static void enter(struct parted *q)
 {
   struct vg_error err = VG_ERROR_INIT;
-  struct vg_void v;
 
-  q->front = (struct vg_front){ .n_point = q->s.m.n_point, .x = q->s.m.point,
-                                .n_face = q->s.m.n_tri, .face = q->s.m.tri };
-  q->front.name = vg_alloc(q->front.n_point, sizeof *q->front.name);
-  assert_non_null(q->front.name);
+  q->front = vg_front_of(&q->s.m);
+  q->front.id = vg_alloc(q->front.n_point, sizeof *q->front.id);
+  assert_non_null(q->front.id);
   for (size_t k = 0; k < q->front.n_point; k++)
-    q->front.name[k] = VG_POINT_NAME(0, k);
-  v = view(&q->front);
+    q->front.id[k] = VG_POINT_ID(0, k);
   q->load = (struct vg_load)VG_LOAD_INIT;
-  if (vg_load_new(&v, q->s.sizing, VG_LOAD_CELLS_PER_CUBE, 1, &q->load,
-                  &err) < 0)
+  if (vg_load_new(&q->front, q->s.sizing, VG_LOAD_CELLS_PER_CUBE, 1,
+                  &q->load, &err) < 0)
     fail_msg("%s", err.text);
   q->p = (struct vg_parting)VG_PARTING_INIT;
 }
 
 static void leave(struct parted *q)
 {
-  free(q->front.name);
+  free(q->front.id);
   vg_load_release(&q->load);
   vg_parting_release(&q->p);
   scene_end(&q->s);
@@ -101,7 +92,7 @@ static int by_names(const void *p, const void *q)
 /* A face by its names, rising, and which way round it is. */
 static struct side side_of(const struct vg_front *f, const uint32_t v[3])
 {
-  struct side s = { { f->name[v[0]], f->name[v[1]], f->name[v[2]] }, 0 };
+  struct side s = { { f->id[v[0]], f->id[v[1]], f->id[v[2]] }, 0 };
 
   for (int pass = 0; pass < 3; pass++)
     for (int j = 0; j < 2; j++)
@@ -153,10 +144,10 @@ static void check_points(const struct parted *q)
     const struct vg_front *f = &q->p.part[k].front;
 
     for (size_t i = 0; i < f->n_point; i++) {
-      const uint32_t v = (uint32_t)f->name[i];
-      const int is_new = f->name[i] >> 32 == SERIAL;
+      const uint32_t v = (uint32_t)f->id[i];
+      const int is_new = f->id[i] >> 32 == SERIAL;
 
-      assert_true(is_new || f->name[i] >> 32 == 0);
+      assert_true(is_new || f->id[i] >> 32 == 0);
       assert_true(v < (is_new ? q->p.n_point : q->front.n_point));
       assert_memory_equal(f->x[i], is_new ? q->p.x[v] : q->front.x[v],
                           sizeof *f->x);
@@ -170,11 +161,11 @@ static void check_volumes(const struct parted *q)
   double sum = 0;
 
   for (size_t k = 0; k < q->p.n_part; k++) {
-    const struct vg_void v = view(&q->p.part[k].front);
+    const struct vg_front *f = &q->p.part[k].front;
 
-    assert_int_equal(vg_void_defects(&v), 0);
-    assert_true(vg_front_volume(&q->p.part[k].front) > 0);
-    sum += vg_front_volume(&q->p.part[k].front);
+    assert_int_equal(vg_front_open_edges(f), 0);
+    assert_true(vg_front_volume(f) > 0);
+    sum += vg_front_volume(f);
   }
   assert_true(fabs(sum - q->s.volume) < 1e-9 * q->s.volume);
 }
@@ -202,11 +193,10 @@ static double most_cells(const struct parted *q, size_t n, double *mean)
   double most = 0, sum = 0;
 
   for (size_t k = 0; k < n; k++) {
-    const struct vg_void v = view(&q->p.part[k].front);
     struct vg_load l = VG_LOAD_INIT;
 
-    assert_int_equal(vg_load_new(&v, q->s.sizing, VG_LOAD_CELLS_PER_CUBE, 1, &l,
-                                 NULL), VG_OK);
+    assert_int_equal(vg_load_new(&q->p.part[k].front, q->s.sizing,
+                                 VG_LOAD_CELLS_PER_CUBE, 1, &l, NULL), VG_OK);
     if (l.cells > most) most = l.cells;
     sum += l.cells;
     vg_load_release(&l);
@@ -278,14 +268,13 @@ static void octants_are_balanced_and_off_the_front(void **state)
   struct vg_octants t = { .n = 0 };
   struct vg_error err = VG_ERROR_INIT;
   struct parted q;
-  struct vg_void v;
   size_t n_step = 0, n_free = 0;
 
   (void)state;
   graded_scene(&q.s, 20000);
   enter(&q);
-  v = view(&q.front);
-  if (vg_octants_make(&v, &q.load, q.s.sizing, 4, NULL, &t, &err) != VG_OK)
+  if (vg_octants_make(&q.front, &q.load, q.s.sizing, 4, NULL, &t,
+                      &err) != VG_OK)
     fail_msg("%s", err.text);
   for (size_t f = 0; f < t.n_face; f++) {
     const struct vg_octant *a = &t.octant[t.face[f].leaf[0]];
@@ -303,12 +292,13 @@ static void octants_are_balanced_and_off_the_front(void **state)
 
     if (o->state != VG_OCTANT_FREE) continue;
     n_free++;
-    for (size_t p = 0; p < v.n_point; p++) {
+    for (size_t p = 0; p < q.front.n_point; p++) {
       double off = 0;
 
       for (int k = 0; k < 3; k++) {
         const double lo = vg_octants_place(&t, k, o->at[k]);
-        const double d = fmax(fmax(lo - v.x[p][k], v.x[p][k] - lo - side), 0);
+        const double x = q.front.x[p][k];
+        const double d = fmax(fmax(lo - x, x - lo - side), 0);
 
         off += d * d;
       }
@@ -332,22 +322,15 @@ static void parts_can_be_filled(void **state)
   assert_true(check_parts(&q) > 1);
   for (size_t k = 0; k < q.p.n_part; k++) {
     const struct vg_front *f = &q.p.part[k].front;
-    struct vg_grow_options o = VG_GROW_OPTIONS_INIT;
+    struct vg_fill_options o = VG_FILL_OPTIONS_INIT;
     struct vg_fill_report r = { 0 };
-    struct vg_void v = VG_VOID_INIT;
+    struct vg_filled made = VG_FILLED_INIT;
 
-    assert_int_equal(vg_reserve(&v.x, &v.cap_point, f->n_point, sizeof *v.x),
-                     0);
-    assert_int_equal(vg_reserve(&v.face, &v.cap_face, f->n_face,
-                                sizeof *v.face), 0);
-    memcpy(v.x, f->x, f->n_point * sizeof *v.x);
-    memcpy(v.face, f->face, f->n_face * sizeof *v.face);
-    v.n_point = f->n_point;
-    v.n_face = f->n_face;
-    if (vg_grow(&v, q.s.sizing, &o, &r, &err) != VG_OK) fail_msg("%s", err.text);
-    assert_int_equal(v.n_face, 0);
-    assert_int_equal(vg_void_defects(&v), 0);
-    vg_void_release(&v);
+    if (vg_fill_front(f, NULL, q.s.sizing, &o, &made, &r, &err) != VG_OK)
+      fail_msg("%s", err.text);
+    assert_true(made.n_cell > 0);
+    assert_int_equal(vg_filled_defects(f, &made, 0), 0);
+    vg_filled_release(&made);
   }
   leave(&q);
 }
@@ -400,7 +383,7 @@ static void it_is_the_same_every_time(void **state)
 
     assert_int_equal(a->n_point, b->n_point);
     assert_int_equal(a->n_face, b->n_face);
-    assert_memory_equal(a->name, b->name, a->n_point * sizeof *a->name);
+    assert_memory_equal(a->id, b->id, a->n_point * sizeof *a->id);
     assert_memory_equal(a->face, b->face, a->n_face * sizeof *a->face);
   }
   vg_parting_release(&again);

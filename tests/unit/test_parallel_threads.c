@@ -124,7 +124,7 @@ static void layers_are_joined(void **state)
 
   (void)state;
   model_sphere(&m, 40, 4, &seed);
-  assert_int_equal(vg_mesh_copy(&m.field, &m.layers.front.mesh, NULL), VG_OK);
+  assert_int_equal(vg_mesh_copy(&m.field, FRONT_MESH(&m.layers.front, &m.surface), NULL), VG_OK);
   for (int cells = VG_LAYER_TETS; cells <= VG_LAYER_MIXED; cells++) {
     struct vg_mesh mesh[3] = { VG_MESH_INIT, VG_MESH_INIT, VG_MESH_INIT };
 

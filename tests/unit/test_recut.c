@@ -20,7 +20,7 @@ static struct vg_piece piece_of(size_t n_cell, const uint32_t (*cell)[4])
   q.x = vg_alloc(5, sizeof *q.x);
   q.cell = vg_alloc(n_cell, sizeof *q.cell);
   assert_true(q.in && q.x && q.cell);
-  for (uint32_t k = 0; k < 5; k++) q.in[k] = VG_POINT_NAME(3, 9 - k);
+  for (uint32_t k = 0; k < 5; k++) q.in[k] = VG_POINT_ID(3, 9 - k);
   memcpy(q.x, x, sizeof x);
   memcpy(q.cell, cell, n_cell * sizeof *cell);
   return q;
@@ -52,7 +52,7 @@ static void what_bounds_cells(void **state)
     assert_int_equal(f.n_face, whole.n_face);
     assert_int_equal(f.n_point, whole.n_point);
     assert_memory_equal(f.x, whole.x, 5 * sizeof *f.x);
-    assert_memory_equal(f.name, whole.name, 5 * sizeof *f.name);
+    assert_memory_equal(f.id, whole.id, 5 * sizeof *f.id);
     assert_memory_equal(f.face, whole.face, 6 * sizeof *f.face);
     vg_front_release(&f);
     vg_front_release(&g);

@@ -53,7 +53,7 @@ static void whole(const struct scene *s, struct vg_tets *t)
     const struct vg_piece *q = &s->p.piece[k];
 
     for (size_t i = 0; i < q->n_point; i++)
-      memcpy(x[index_of(s, VG_POINT_NAME(q->serial, i), n_hull)],
+      memcpy(x[index_of(s, VG_POINT_ID(q->serial, i), n_hull)],
              q->x[q->n_in + i], sizeof *x);
   }
   for (size_t k = 0; k < s->p.n_piece; k++) {
@@ -63,7 +63,7 @@ static void whole(const struct scene *s, struct vg_tets *t)
       for (int i = 0; i < 4; i++) {
         uint32_t v = q->cell[c][i];
         size_t p = index_of(s, v < q->n_in ? q->in[v]
-                              : VG_POINT_NAME(q->serial, v - q->n_in),
+                              : VG_POINT_ID(q->serial, v - q->n_in),
                             n_hull);
 
         cell[at][i] = (uint32_t)p;

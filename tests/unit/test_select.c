@@ -16,15 +16,15 @@ static void front_of(const struct vg_mesh *m, struct vg_front *f)
   f->n_point = m->n_point;
   f->n_face = m->n_tri;
   f->x = vg_alloc(m->n_point, sizeof *f->x);
-  f->name = vg_alloc(m->n_point, sizeof *f->name);
+  f->id = vg_alloc(m->n_point, sizeof *f->id);
   f->face = vg_alloc(m->n_tri, sizeof *f->face);
   assert_non_null(f->x);
-  assert_non_null(f->name);
+  assert_non_null(f->id);
   assert_non_null(f->face);
   memcpy(f->x, m->point, m->n_point * sizeof *f->x);
   memcpy(f->face, m->tri, m->n_tri * sizeof *f->face);
   for (size_t k = 0; k < m->n_point; k++)
-    f->name[k] = VG_POINT_NAME(3, 7 * k);
+    f->id[k] = VG_POINT_ID(3, 7 * k);
   assert_int_equal(vg_select_sort(f, NULL), VG_OK);
 }
 
@@ -78,7 +78,7 @@ static void numbers_lead_back(const struct vg_front *f, const struct part *p)
   assert_int_equal(seen, p->f.n_point);
   for (size_t v = 0; v < p->f.n_point; v++) {
     assert_memory_equal(p->f.x[v], f->x[p->point[v]], sizeof *f->x);
-    assert_int_equal(p->f.name[v], f->name[p->point[v]]);
+    assert_int_equal(p->f.id[v], f->id[p->point[v]]);
   }
 }
 
@@ -112,19 +112,18 @@ static size_t is_complete(const struct vg_front *f, const struct part *p,
   return n;
 }
 
-/* What select_near leaves are those that may meet, and no others. */
-static void near_is_exact(const struct part *p, const struct vg_region *r,
+/* What select_near leaves of a part of f are the n faces that may meet, and no
+ * others, in numbers that still lead back to f. */
+static void near_is_exact(const struct vg_front *f, struct part *p,
+                          const struct vg_region *r,
                           const struct vg_sizing *sizing, size_t n)
 {
-  struct part near;
-
-  assert_int_equal(vg_select_near(&p->f, r, sizing, &near.f, &near.point,
-                                  &near.face, NULL), VG_OK);
-  assert_int_equal(near.f.n_face, n);
-  numbers_lead_back(&p->f, &near);
+  assert_int_equal(vg_select_near(&p->f, r, sizing, &p->point, &p->face, NULL),
+                   VG_OK);
+  assert_int_equal(p->f.n_face, n);
+  numbers_lead_back(f, p);
   for (size_t i = 0; i < n; i++)
-    assert_true(may_meet(&p->f, near.face[i], r, sizing));
-  part_end(&near);
+    assert_true(may_meet(f, p->face[i], r, sizing));
 }
 
 /* Regions of all stages, and wider ones as patches are. most: faces there are
@@ -154,8 +153,8 @@ static void regions_get_what_they_need(const char *name, size_t cells,
       select_part(&s, &r, &p);
       numbers_lead_back(&f, &p);
       n = is_complete(&f, &p, &r, scene.sizing);
-      near_is_exact(&p, &r, scene.sizing, n);
       given += p.f.n_face;
+      near_is_exact(&f, &p, &r, scene.sizing, n);
       needed += n;
       part_end(&p);
     }
@@ -237,14 +236,14 @@ static void triangles_of_their_own(void **state)
   own.n_face = f.n_face;
   own.n_point = 3 * f.n_face;
   own.x = vg_alloc(own.n_point, sizeof *own.x);
-  own.name = vg_alloc(own.n_point, sizeof *own.name);
+  own.id = vg_alloc(own.n_point, sizeof *own.id);
   own.face = vg_alloc(own.n_face, sizeof *own.face);
   for (size_t i = 0; i < f.n_face; i++)
     for (size_t k = 0; k < 3; k++) {
       size_t v = own.n_point - 1 - (3 * i + k);
 
       own.face[i][k] = (uint32_t)v;
-      own.name[v] = VG_POINT_NAME(1, v);
+      own.id[v] = VG_POINT_ID(1, v);
       memcpy(own.x[v], f.x[f.face[i][k]], sizeof *own.x);
     }
   vg_select_init(&s, &own, scene.sizing);
@@ -308,7 +307,7 @@ static void lone_face(struct lone *t, const struct scene *scene,
     t->x[k][2] = 0.5 + z[k] * h;
     t->face[0][k] = (uint32_t)k;
   }
-  t->f = (struct vg_front){ .n_point = 3, .x = t->x, .name = t->name,
+  t->f = (struct vg_front){ .n_point = 3, .x = t->x, .id = t->name,
                             .n_face = 1, .face = t->face };
   vg_select_init(&t->select, &t->f, scene->sizing);
   assert_int_equal(vg_select_update(&t->select, NULL, NULL), VG_OK);

@@ -15,6 +15,7 @@
 #include "core/geometry/predicates.h"
 #include "core/geometry/vector.h"
 #include "core/surface/surface_check.h"
+#include "fill_shapes.h"
 #include "layers/slide/slide.h"
 
 /* Surfaces ----------------------------------------------------------------*/
@@ -222,7 +223,7 @@ struct made {
   struct vg_slide *slide;
   struct vg_columns c;
   struct vg_sizing *sizing;
-  struct vg_layer_front front;
+  struct vg_front front;
   struct vg_slide_failure failure;
   struct vg_error err;
 };
@@ -233,7 +234,7 @@ static void release(struct made *a)
   free(a->slide);
   vg_columns_release(&a->c);
   vg_sizing_free(a->sizing);
-  vg_layer_front_release(&a->front);
+  vg_front_release(&a->front);
   free(a->failure.column);
 }
 
@@ -392,9 +393,9 @@ static void assert_sound(struct made *a)
   struct vg_surface_report r = VG_SURFACE_REPORT_INIT;
   char text[200];
 
-  assert_int_equal(vg_surface_check(&a->front.mesh, &o, &r, &a->err), VG_OK);
+  assert_int_equal(vg_surface_check(FRONT_MESH(&a->front, &a->g.m), &o, &r, &a->err), VG_OK);
   for (size_t i = 0; i < r.n_defect && i < 4; i++) {
-    vg_defect_text(&a->front.mesh, &r.defect[i], text, sizeof text);
+    vg_defect_text(FRONT_MESH(&a->front, &a->g.m), &r.defect[i], text, sizeof text);
     print_message("%s\n", text);
   }
   assert_int_equal(r.n_defect, 0);
@@ -434,7 +435,7 @@ static double least_angle(const struct vg_mesh *m, size_t t)
 static void assert_plane(struct made *a, size_t s, double min_angle)
 {
   const struct vg_slide *sl = &a->slide[s];
-  const struct vg_mesh *m = &a->front.mesh, *o = &a->g.m;
+  const struct vg_mesh *m = FRONT_MESH(&a->front, &a->g.m), *o = &a->g.m;
   double area = 0, before = 0, n[3], least = 180;
 
   assert_true(sl->is_plane);
@@ -447,7 +448,7 @@ static void assert_plane(struct made *a, size_t s, double min_angle)
     assert_true(vg_dot(n, sl->normal) > 0);
     area += vg_dot(n, sl->normal);
     least = fmin(least, least_angle(m, t));
-    assert_int_equal(a->front.face[t], VG_NO_INDEX);
+    assert_int_equal(a->front.face_id[t], VG_NO_INDEX);
   }
   if (least < min_angle) print_message("least angle %.3f\n", least);
   assert_true(least >= min_angle);
@@ -476,38 +477,38 @@ static void assert_plane(struct made *a, size_t s, double min_angle)
 /* Every top is at its column's end; points of the surface are themselves. */
 static void assert_points(const struct made *a)
 {
-  const struct vg_layer_front *f = &a->front;
+  const struct vg_front *f = &a->front;
 
-  for (size_t i = 0; i < f->mesh.n_point; i++) {
+  for (size_t i = 0; i < f->n_point; i++) {
+    uint32_t column = vg_layer_column_of(f->id[i]);
+    uint32_t point = vg_layer_point_of(f->id[i]);
     double x[3];
 
-    if (f->column[i] != VG_NO_INDEX) {
-      assert_true(a->c.column[f->column[i]].n > 0);
-      vg_column_top(&a->c, &a->g.m, f->column[i], x);
-      assert_memory_equal(x, f->mesh.point[i], sizeof x);
-      assert_int_equal(f->point[i], VG_NO_INDEX);
-    } else if (f->point[i] != VG_NO_INDEX) {
-      assert_memory_equal(a->g.m.point[f->point[i]], f->mesh.point[i],
-                          sizeof x);
+    if (column != VG_NO_INDEX) {
+      assert_true(a->c.column[column].n > 0);
+      vg_column_top(&a->c, &a->g.m, column, x);
+      assert_memory_equal(x, f->x[i], sizeof x);
+      assert_int_equal(point, VG_NO_INDEX);
+    } else if (point != VG_NO_INDEX) {
+      assert_memory_equal(a->g.m.point[point], f->x[i], sizeof x);
     }
-    if (i && f->point[i] != VG_NO_INDEX)
-      assert_true(f->point[i - 1] < f->point[i]);
+    if (i && point != VG_NO_INDEX) assert_true(f->id[i - 1] < f->id[i]);
   }
 }
 
 static void assert_same_again(struct made *a)
 {
-  struct vg_layer_front first = a->front;
+  struct vg_front first = a->front;
 
-  a->front = (struct vg_layer_front)VG_LAYER_FRONT_INIT;
+  a->front = (struct vg_front)VG_FRONT_INIT;
   assert_int_equal(front(a), VG_OK);
-  assert_int_equal(first.mesh.n_tri, a->front.mesh.n_tri);
-  assert_int_equal(first.mesh.n_point, a->front.mesh.n_point);
-  assert_memory_equal(first.mesh.point, a->front.mesh.point,
-                      first.mesh.n_point * sizeof *first.mesh.point);
-  assert_memory_equal(first.mesh.tri, a->front.mesh.tri,
-                      first.mesh.n_tri * sizeof *first.mesh.tri);
-  vg_layer_front_release(&first);
+  assert_int_equal(first.n_face, a->front.n_face);
+  assert_int_equal(first.n_point, a->front.n_point);
+  assert_memory_equal(first.x, a->front.x,
+                      first.n_point * sizeof *first.x);
+  assert_memory_equal(first.face, a->front.face,
+                      first.n_face * sizeof *first.face);
+  vg_front_release(&first);
 }
 
 /* Tests -------------------------------------------------------------------*/
@@ -601,7 +602,7 @@ static void dome_on_a_plane(void **state)
   make_dome(&a.g, 32, 8, 14);
   grow(&a, 0, 0, 15);
   assert_int_equal(front(&a), VG_OK);
-  save(&a.front.mesh, "dome");
+  save(FRONT_MESH(&a.front, &a.g.m), "dome");
   assert_sound(&a);
   assert_points(&a);
   assert_plane(&a, 0, 15);
@@ -624,7 +625,7 @@ static void body_between_planes(void **state)
       vg_unit(a.c.column[j].dir);
     }
     assert_int_equal(front(&a), VG_OK);
-    save(&a.front.mesh, "duct");
+    save(FRONT_MESH(&a.front, &a.g.m), "duct");
     assert_sound(&a);
     assert_points(&a);
     assert_plane(&a, 0, 15);
@@ -654,9 +655,9 @@ static void levels_climb_from_nothing(void **state)
   assert_sound(&a);
   assert_points(&a);
   assert_plane(&a, 0, 8);
-  for (size_t t = 0; t < a.front.mesh.n_tri; t++)
-    n_wall += a.front.mesh.tri_patch[t] == 0
-              && a.front.face[t] == VG_NO_INDEX;
+  for (size_t t = 0; t < a.front.n_face; t++)
+    n_wall += a.front.patch[t] == 0
+              && a.front.face_id[t] == VG_NO_INDEX;
   assert_true(n_wall > 36 * 6 / 2);
   release(&a);
 }
@@ -669,8 +670,8 @@ static void nothing_grows_nothing_changes(void **state)
   make_box(&a.g, 5, 0, NULL);
   grow(&a, 0, 0, 0);
   assert_int_equal(front(&a), VG_OK);
-  assert_int_equal(a.front.mesh.n_tri, a.g.m.n_tri);
-  assert_memory_equal(a.front.mesh.tri, a.g.m.tri,
+  assert_int_equal(a.front.n_face, a.g.m.n_tri);
+  assert_memory_equal(a.front.face, a.g.m.tri,
                       a.g.m.n_tri * sizeof *a.g.m.tri);
   release(&a);
 }
@@ -685,7 +686,7 @@ static void floor_with_four_sides(void **state)
     make_box(&a.g, 10, 0, NULL);
     grow(&a, 0, 0, n);
     assert_int_equal(front(&a), VG_OK);
-    save(&a.front.mesh, "box");
+    save(FRONT_MESH(&a.front, &a.g.m), "box");
     assert_sound(&a);
     assert_points(&a);
     for (size_t s = 0; s < 4; s++) assert_plane(&a, s, 15);
@@ -738,7 +739,7 @@ static void floor_and_roof(void **state)
     } else {
       assert_true(a.failure.n >= 8);
       assert_true(a.failure.text[0] != 0);
-      assert_null(a.front.mesh.point);
+      assert_null(a.front.x);
     }
     release(&a);
   }
@@ -788,7 +789,7 @@ static void gently_curved_side(void **state)
   assert_int_equal(a.n_slide, 4);
   assert_false(a.slide[2].is_plane);
   assert_int_equal(front(&a), VG_OK);
-  save(&a.front.mesh, "bulge");
+  save(FRONT_MESH(&a.front, &a.g.m), "bulge");
   assert_sound(&a);
   assert_points(&a);
   for (size_t i = 0; i < a.c.n_column; i++) {
@@ -804,9 +805,9 @@ static void gently_curved_side(void **state)
   }
   assert_int_equal(n_bent, 13);
   /* New points lie on facets of edges 1/12: within their sagitta. */
-  for (size_t t = 0; t < a.front.mesh.n_tri; t++)
-    for (int k = 0; k < 3 && a.front.mesh.tri_patch[t] == 4; k++) {
-      const double *p = a.front.mesh.point[a.front.mesh.tri[t][k]];
+  for (size_t t = 0; t < a.front.n_face; t++)
+    for (int k = 0; k < 3 && a.front.patch[t] == 4; k++) {
+      const double *p = a.front.x[a.front.face[t][k]];
       const double b = -0.6 * p[1] * (1 - p[1]) * (1 + p[2]);
 
       assert_true(fabs(p[0] - b) < 0.003);
@@ -866,7 +867,7 @@ static void plane_in_two_patches(void **state)
     vg_unit(c->dir);
   }
   assert_int_equal(front(&a), VG_OK);
-  save(&a.front.mesh, "split");
+  save(FRONT_MESH(&a.front, &a.g.m), "split");
   assert_sound(&a);
   assert_points(&a);
   assert_plane(&a, 1, 15);
@@ -938,17 +939,17 @@ static void fan_at_the_plane(void **state)
   c->border_patch[n_border + 1] = 2;
   c->n_border += 2;
   assert_int_equal(front(&a), VG_OK);
-  save(&a.front.mesh, "fan");
+  save(FRONT_MESH(&a.front, &a.g.m), "fan");
   assert_sound(&a);
   assert_points(&a);
   assert_plane(&a, 0, 15);
   assert_plane(&a, 1, 15);
   /* With no levels at all the fan is one point and its faces vanish. */
   for (size_t i = 0; i < c->n_column; i++) c->column[i].n = 0;
-  vg_layer_front_release(&a.front);
+  vg_front_release(&a.front);
   assert_int_equal(front(&a), VG_OK);
   assert_sound(&a);
-  assert_int_equal(a.front.mesh.n_tri, a.g.m.n_tri);
+  assert_int_equal(a.front.n_face, a.g.m.n_tri);
   release(&a);
 }
 
@@ -993,7 +994,7 @@ static void curved_side_from_both_ends(void **state)
   make_box(&a.g, 12, 0, bulge);
   grow(&a, 0, 1, 8);
   assert_int_equal(front(&a), VG_OK);
-  save(&a.front.mesh, "bulge2");
+  save(FRONT_MESH(&a.front, &a.g.m), "bulge2");
   assert_sound(&a);
   assert_points(&a);
   release(&a);
@@ -1052,7 +1053,7 @@ static void only_the_surroundings(void **state)
   assert_int_equal(a.n_slide, 2);
   assert_false(a.slide[0].is_plane);
   assert_int_equal(front(&a), VG_OK);
-  save(&a.front.mesh, "wrap");
+  save(FRONT_MESH(&a.front, &a.g.m), "wrap");
   assert_sound(&a);
   assert_points(&a);
   for (size_t t = 0; t < a.g.m.n_tri; t++) {
@@ -1060,17 +1061,17 @@ static void only_the_surroundings(void **state)
 
     if (a.g.m.tri_patch[t] != 1) continue;
     n_patch++;
-    for (size_t u = 0; u < a.front.mesh.n_tri; u++) {
-      const uint32_t *f = a.front.mesh.tri[u];
+    for (size_t u = 0; u < a.front.n_face; u++) {
+      const uint32_t *f = a.front.face[u];
 
-      n_same += a.front.point[f[0]] == v[0] && a.front.point[f[1]] == v[1]
-                && a.front.point[f[2]] == v[2];
+      n_same += a.front.id[f[0]] == v[0] && a.front.id[f[1]] == v[1]
+                && a.front.id[f[2]] == v[2];
     }
   }
   assert_true(n_same > n_patch / 10 && n_same < n_patch);
-  for (size_t u = 0; u < a.front.mesh.n_tri; u++)
-    for (int k = 0; k < 3 && a.front.mesh.tri_patch[u] == 1; k++) {
-      const double *x = a.front.mesh.point[a.front.mesh.tri[u][k]];
+  for (size_t u = 0; u < a.front.n_face; u++)
+    for (int k = 0; k < 3 && a.front.patch[u] == 1; k++) {
+      const double *x = a.front.x[a.front.face[u][k]];
 
       /* Sagitta of edges of 0.8 on a radius of 3. */
       assert_true(fabs(hypot(x[0], x[1]) - WRAP) < 0.03);

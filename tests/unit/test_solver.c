@@ -3,6 +3,7 @@
 #include "io_support.h"
 
 #include "base/bytes.h"
+#include "fill_support.h"
 #include "io/mesh/foam.h"
 #include "io/mesh/format.h"
 #include "io/mesh/metis_part.h"
@@ -30,8 +31,8 @@ static void make(struct made *m, enum vg_layer_cells cells, double growth)
 
   memset(m, 0, sizeof *m);
   model_sphere(&m->model, 6, 6, &seed);
-  sizing = shape_sizing(&m->model.layers.front.mesh, growth, 0);
-  assert_int_equal(vg_fill(&m->model.layers.front.mesh, sizing, &options,
+  sizing = shape_sizing(FRONT_MESH(&m->model.layers.front, &m->model.surface), growth, 0);
+  assert_int_equal(fill_mesh(FRONT_MESH(&m->model.layers.front, &m->model.surface), sizing, &options,
                            &m->model.field, &report, NULL), VG_OK);
   vg_sizing_free(sizing);
   assert_int_equal(vg_layers_join(&m->model.surface, &m->model.layers,

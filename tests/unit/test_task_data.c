@@ -1,5 +1,5 @@
 /* Fronts as tasks get them: their parts where voids touch, splitting and
- * joining, their volume, bytes and back. */
+ * joining, checks, their volume, bytes and back. */
 #include "io_support.h"
 
 #include "base/bytes.h"
@@ -17,13 +17,13 @@ static struct vg_front front_of(struct vg_mesh *m)
   f.n_point = m->n_point;
   f.n_face = m->n_tri;
   f.x = vg_alloc(f.n_point, sizeof *f.x);
-  f.name = vg_alloc(f.n_point, sizeof *f.name);
+  f.id = vg_alloc(f.n_point, sizeof *f.id);
   f.face = vg_alloc(f.n_face, sizeof *f.face);
-  assert_true(f.x && f.name && f.face);
+  assert_true(f.x && f.id && f.face);
   memcpy(f.x, m->point, f.n_point * sizeof *f.x);
   memcpy(f.face, m->tri, f.n_face * sizeof *f.face);
   for (size_t k = 0; k < f.n_point; k++)
-    f.name[k] = VG_POINT_NAME(7 + k % 3, 1000000 - k);
+    f.id[k] = VG_POINT_ID(7 + k % 3, 1000000 - k);
   vg_mesh_release(m);
   return f;
 }
@@ -202,8 +202,8 @@ static uint64_t (*named(const struct vg_front *f))[3]
     int low = 0;
 
     for (int k = 1; k < 3; k++)
-      if (f->name[f->face[i][k]] < f->name[f->face[i][low]]) low = k;
-    for (int k = 0; k < 3; k++) t[i][k] = f->name[f->face[i][(low + k) % 3]];
+      if (f->id[f->face[i][k]] < f->id[f->face[i][low]]) low = k;
+    for (int k = 0; k < 3; k++) t[i][k] = f->id[f->face[i][(low + k) % 3]];
   }
   qsort(t, f->n_face, sizeof *t, by_name);
   return t;
@@ -235,7 +235,7 @@ static void is_part_of(const struct vg_front *f, const struct vg_front *whole)
     size_t w = 0;
 
     assert_true(used[k]);
-    while (w < whole->n_point && whole->name[w] != f->name[k]) w++;
+    while (w < whole->n_point && whole->id[w] != f->id[k]) w++;
     assert_true(w < whole->n_point);
     assert_memory_equal(f->x[k], whole->x[w], sizeof *f->x);
   }
@@ -244,10 +244,7 @@ static void is_part_of(const struct vg_front *f, const struct vg_front *whole)
 
 static int is_closed(const struct vg_front *f)
 {
-  struct vg_void v = { .n_point = f->n_point, .x = f->x,
-                       .n_face = f->n_face, .face = f->face };
-
-  return !vg_void_defects(&v);
+  return !vg_front_open_edges(f);
 }
 
 /* Split into parts and joined again. */
@@ -314,6 +311,60 @@ static void an_empty_part(void **state)
   free(part);
 }
 
+/* --- checks -------------------------------------------------------------- */
+
+static void check_says(const struct vg_front *f, const char *words)
+{
+  struct vg_error err = VG_ERROR_INIT;
+
+  assert_int_equal(vg_front_check(f, &err), VG_ERR_INPUT);
+  assert_non_null(strstr(err.text, words));
+}
+
+static void a_check_names_what_is_wrong(void **state)
+{
+  const struct vg_front empty = VG_FRONT_INIT;
+  struct vg_front f = block(2, 3, 4, shape_all);
+  size_t n = f.n_face;
+  uint32_t keep = f.face[4][1];
+
+  (void)state;
+  assert_int_equal(vg_front_check(&empty, NULL), VG_OK);
+  assert_int_equal(vg_front_check(&f, NULL), VG_OK);
+  f.face[4][1] = (uint32_t)f.n_point;
+  check_says(&f, "triangle 5 ");
+  f.face[4][1] = UINT32_MAX;
+  check_says(&f, "triangle 5 ");
+  f.face[4][1] = keep;
+  for (size_t i = 0; i < n; i++)          /* point 7 is point 8 */
+    for (int k = 0; k < 3; k++) f.face[i][k] += f.face[i][k] == 6;
+  check_says(&f, "point 7 ");
+  f.n_face = 0;
+  check_says(&f, "point 1 ");
+  vg_front_release(&f);
+}
+
+static void open_edges_are_counted(void **state)
+{
+  struct vg_front f = block(2, 3, 4, shape_all);
+  struct vg_front touching = block(2, 2, 1, two_at_an_edge);
+  const struct vg_front empty = VG_FRONT_INIT;
+  uint32_t keep = f.face[9][0];
+
+  (void)state;
+  assert_int_equal(vg_front_open_edges(&empty), 0);
+  assert_int_equal(vg_front_open_edges(&f), 0);
+  assert_int_equal(vg_front_open_edges(&touching), 0);
+  f.n_face--;
+  assert_int_equal(vg_front_open_edges(&f), 3);
+  f.n_face++;
+  f.face[9][0] = f.face[9][1];            /* turned over */
+  f.face[9][1] = keep;
+  assert_int_equal(vg_front_open_edges(&f), 3);
+  vg_front_release(&f);
+  vg_front_release(&touching);
+}
+
 /* --- what a front encloses ----------------------------------------------- */
 
 static void volumes(void **state)
@@ -346,7 +397,7 @@ static void equal_fronts(const struct vg_front *a, const struct vg_front *b,
   assert_int_equal(a->n_face, b->n_face);
   assert_memory_equal(a->x, b->x, a->n_point * sizeof *a->x);
   assert_memory_equal(a->face, b->face, a->n_face * sizeof *a->face);
-  if (names) assert_memory_equal(a->name, b->name, a->n_point * 8);
+  if (names) assert_memory_equal(a->id, b->id, a->n_point * 8);
 }
 
 static void is_refused(const void *bytes, size_t n, int names)
@@ -385,7 +436,7 @@ static void fronts_as_bytes(void **state)
     assert_false(r.bad);
     assert_int_equal(r.at, r.n);
     equal_fronts(&f, &back, names);
-    if (!names) assert_null(back.name);
+    if (!names) assert_null(back.id);
     vg_front_release(&back);
     for (size_t n = 0; n < w.bytes.n; n++) is_refused(w.bytes.data, n, names);
     for (int k = 0; k < 8; k++) {
@@ -442,10 +493,13 @@ static void several_in_a_row(void **state)
 static void changes_as_bytes(void **state)
 {
   double x[2][3] = {{1, 2, 3}, {4, 5, 6}};
-  uint32_t face[3][3] = {{0, 1, 2}, {9, 8, 7}, {3, 4, 10}}, gone[4] = {5, 1};
-  struct vg_change c = { .blocked = 1, .serial = 77, .n_part = 9, .n_point = 2,
-                         .n_face = 3, .n_gone = 4, .n_cell = 12, .n_hole = 3,
-                         .volume = 0.125, .x = x, .face = face, .gone = gone };
+  uint32_t face[3][3] = {{0, 1, 2}, {9, 8, 7}, {3, 4, 10}};
+  uint32_t consumed[4] = {1, 5, 6, 8};
+  struct vg_change c = { .blocked = 1, .serial = 77, .n_part = 9,
+                         .made = { .n_point = 2, .n_face = 3, .n_consumed = 4,
+                                   .n_cell = 12, .n_hole = 3, .volume = 0.125,
+                                   .x = x, .face = face,
+                                   .consumed = consumed } };
   const struct vg_change empty = VG_CHANGE_INIT;
   struct vg_change back;
   struct vg_writer w = { .cap = 0 };
@@ -467,13 +521,16 @@ static void changes_as_bytes(void **state)
   assert_int_equal(back.blocked, 1);
   assert_int_equal(back.serial, 77);
   assert_int_equal(back.n_part, 9);
-  assert_int_equal(back.n_cell, 12);
-  assert_int_equal(back.n_hole, 3);
-  assert_true(back.volume >= 0.125 && back.volume <= 0.125);
-  assert_int_equal(back.n_point + back.n_face + back.n_gone, 9);
-  assert_memory_equal(back.x, x, sizeof x);
-  assert_memory_equal(back.face, face, sizeof face);
-  assert_memory_equal(back.gone, gone, sizeof gone);
+  assert_int_equal(back.made.n_cell, 12);
+  assert_null(back.made.cell);
+  assert_int_equal(back.made.n_hole, 3);
+  assert_true(back.made.volume >= 0.125 && back.made.volume <= 0.125);
+  assert_int_equal(back.made.n_point, 2);
+  assert_int_equal(back.made.n_face, 3);
+  assert_int_equal(back.made.n_consumed, 4);
+  assert_memory_equal(back.made.x, x, sizeof x);
+  assert_memory_equal(back.made.face, face, sizeof face);
+  assert_memory_equal(back.made.consumed, consumed, sizeof consumed);
   vg_change_release(&back);
   assert_memory_equal(&back, &empty, sizeof back);
   free(w.bytes.data);
@@ -494,7 +551,8 @@ static void an_empty_change(void **state)
   assert_false(r.bad);
   assert_int_equal(r.at, r.n);
   assert_int_equal(back.blocked, 1);
-  assert_int_equal(back.n_point + back.n_face + back.n_gone, 0);
+  assert_int_equal(back.made.n_point + back.made.n_face +
+                   back.made.n_consumed, 0);
   vg_change_release(&back);
   free(w.bytes.data);
 }
@@ -509,6 +567,8 @@ int main(void)
     cmocka_unit_test(no_front_has_no_parts),
     cmocka_unit_test(parts_are_split_and_joined),
     cmocka_unit_test(an_empty_part),
+    cmocka_unit_test(a_check_names_what_is_wrong),
+    cmocka_unit_test(open_edges_are_counted),
     cmocka_unit_test(volumes),
     cmocka_unit_test(fronts_as_bytes),
     cmocka_unit_test(several_in_a_row),

@@ -23,9 +23,9 @@ static void three_zones_make_eight_boxes(void **state)
     parts_are(&s, (size_t)2 << axis);
   }
   assert_int_equal(s.report.whole_void, 0);
-  assert_true(smallest_angle(&s.v, 0) > 5);
+  assert_true(smallest_angle(&s, 0) > 5);
   print_message("%zu cells, smallest angle %.1f\n", made,
-                smallest_angle(&s.v, 0));
+                smallest_angle(&s, 0));
   is_filled(&s);
   scene_end(&s);
 }
@@ -92,9 +92,9 @@ static void zones_around_a_sphere(void **state)
     assert_true(cut(&s, &r) > 100);
     parts_are(&s, want[axis]);
   }
-  print_message("%zu cells, smallest angle %.1f\n", s.v.n_cell,
-                smallest_angle(&s.v, 0));
-  assert_true(smallest_angle(&s.v, 0) > 5);
+  print_message("%zu cells, smallest angle %.1f\n", s.n_cell,
+                smallest_angle(&s, 0));
+  assert_true(smallest_angle(&s, 0) > 5);
   is_filled(&s);
   scene_end(&s);
 }
@@ -117,47 +117,47 @@ static void a_zone_beside_the_sphere(void **state)
 
 /* A box of 6 x 6 x n cells of edge 1, cut at z = 5.3: what the zone is given,
  * and what it makes. */
-static void zone_of_tower(int n, struct vg_zone *z, size_t *n_point,
+static void zone_of_tower(int n, struct vg_filled *z, size_t *n_point,
                           size_t *n_face)
 {
   const int count[3] = {6, 6, n};
   const double lo[3] = {0, 0, 0}, hi[3] = {6, 6, n};
-  struct vg_grow_options options = VG_GROW_OPTIONS_INIT;
+  struct vg_fill_options options = VG_FILL_OPTIONS_INIT;
   struct vg_region r = plane_at(2, 5.3);
   struct zone_part p;
   struct scene s;
 
-  memset(&s.m, 0, sizeof s.m);
+  memset(&s, 0, sizeof s);
   shape_block(&s.m, count, lo, hi, shape_all);
-  scene_void(&s, 1.2, 1);
-  zone_select(&s.v, s.sizing, &r, &p);
-  assert_true(p.n_face < s.v.n_face);
-  assert_int_equal(zone_make(&p, &r, s.sizing, &options, z, &s.report, NULL),
-                   VG_OK);
-  *n_point = p.n_point;
-  *n_face = p.n_face;
+  scene_begin(&s, 1.2, 1);
+  zone_select(&s, &r, &p);
+  assert_true(p.front.n_face < s.front.n_face);
+  assert_int_equal(zone_make(&s, &p, &r, &options, z, NULL), VG_OK);
+  *n_point = p.front.n_point;
+  *n_face = p.front.n_face;
   zone_part_release(&p);
   scene_end(&s);
 }
 
-static void same_zone(const struct vg_zone *a, const struct vg_zone *b,
-                      size_t n_front_face)
+static void same_zone(const struct vg_filled *a, const struct vg_filled *b)
 {
   assert_int_equal(a->n_point, b->n_point);
   assert_int_equal(a->n_face, b->n_face);
   assert_int_equal(a->n_cell, b->n_cell);
+  assert_int_equal(a->n_consumed, b->n_consumed);
   assert_int_equal(a->n_hole, b->n_hole);
   assert_memory_equal(&a->volume, &b->volume, sizeof a->volume);
   assert_memory_equal(a->x, b->x, a->n_point * sizeof *a->x);
   assert_memory_equal(a->face, b->face, a->n_face * sizeof *a->face);
   assert_memory_equal(a->cell, b->cell, a->n_cell * sizeof *a->cell);
-  assert_memory_equal(a->gone, b->gone, n_front_face);
+  assert_memory_equal(a->consumed, b->consumed,
+                      a->n_consumed * sizeof *a->consumed);
 }
 
 /* A zone is given as many faces, whatever else the front has. */
 static void a_zone_costs_what_is_near(void **state)
 {
-  struct vg_zone z[3] = { VG_ZONE_INIT, VG_ZONE_INIT, VG_ZONE_INIT };
+  struct vg_filled z[3] = { VG_FILLED_INIT, VG_FILLED_INIT, VG_FILLED_INIT };
   size_t n_point[3], n_face[3];
 
   (void)state;
@@ -174,19 +174,19 @@ static void a_zone_costs_what_is_near(void **state)
     assert_true(fabs((double)z[k].n_cell / (double)z[0].n_cell - 1) < 0.05);
     assert_true(fabs(z[k].volume / z[0].volume - 1) < 0.05);
   }
-  for (int k = 0; k < 3; k++) vg_zone_release(&z[k]);
+  for (int k = 0; k < 3; k++) vg_filled_release(&z[k]);
 }
 
 static void the_same_bytes_again(void **state)
 {
-  struct vg_zone z[2] = { VG_ZONE_INIT, VG_ZONE_INIT };
+  struct vg_filled z[2] = { VG_FILLED_INIT, VG_FILLED_INIT };
   size_t n_point[2], n_face[2];
 
   (void)state;
   for (int k = 0; k < 2; k++) zone_of_tower(20, &z[k], &n_point[k], &n_face[k]);
   assert_int_equal(n_face[0], n_face[1]);
-  same_zone(&z[0], &z[1], n_face[0]);
-  for (int k = 0; k < 2; k++) vg_zone_release(&z[k]);
+  same_zone(&z[0], &z[1]);
+  for (int k = 0; k < 2; k++) vg_filled_release(&z[k]);
   assert_null(z[0].cell);
   assert_int_equal(z[0].n_cell + z[0].n_face + z[0].n_point, 0);
 }
@@ -195,60 +195,64 @@ static void the_same_bytes_again(void **state)
  * is listed is in range and used. */
 static void what_a_zone_says_of_itself(void **state)
 {
-  struct vg_grow_options options = VG_GROW_OPTIONS_INIT;
+  struct vg_fill_options options = VG_FILL_OPTIONS_INIT;
   struct vg_region r = plane_at(0, 0.04);
-  struct vg_zone z = VG_ZONE_INIT;
+  struct vg_filled z = VG_FILLED_INIT;
   struct zone_part p;
   struct scene s;
   uint8_t *used, *is_gone;
-  size_t n_front, n_gone = 0;
+  size_t n_front, n_gone;
   double sum = 0, h;
 
   (void)state;
   box_scene(&s, 8);
-  zone_select(&s.v, s.sizing, &r, &p);
-  assert_int_equal(zone_make(&p, &r, s.sizing, &options, &z, &s.report, NULL),
-                   VG_OK);
-  used = vg_calloc(p.n_point + z.n_point, 1);
-  is_gone = vg_calloc(s.v.n_face, 1);
+  zone_select(&s, &r, &p);
+  assert_int_equal(zone_make(&s, &p, &r, &options, &z, NULL), VG_OK);
+  used = vg_calloc(p.front.n_point + z.n_point, 1);
+  is_gone = vg_calloc(s.front.n_face, 1);
   assert_true(used && is_gone);
   for (size_t c = 0; c < z.n_cell; c++)
     for (int k = 0; k < 4; k++) {
-      assert_true(z.cell[c][k] < p.n_point + z.n_point);
+      assert_true(z.cell[c][k] < p.front.n_point + z.n_point);
       used[z.cell[c][k]] = 1;
     }
   for (size_t i = 0; i < z.n_face; i++)
     for (int k = 0; k < 3; k++) {
-      assert_true(z.face[i][k] < p.n_point + z.n_point);
+      assert_true(z.face[i][k] < p.front.n_point + z.n_point);
       assert_true(used[z.face[i][k]]);
     }
-  for (size_t q = 0; q < z.n_point; q++) assert_true(used[p.n_point + q]);
-  for (size_t i = 0; i < p.n_face; i++) n_gone += z.gone[i] == 1;
-  assert_true(n_gone > 30 && n_gone < p.n_face);
+  for (size_t q = 0; q < z.n_point; q++) assert_true(used[p.front.n_point + q]);
+  for (size_t i = 0; i < z.n_consumed; i++) {   /* a set of faces, ascending */
+    assert_true(z.consumed[i] < p.front.n_face);
+    if (i) assert_true(z.consumed[i - 1] < z.consumed[i]);
+  }
+  n_gone = z.n_consumed;
+  assert_true(n_gone > 30 && n_gone < p.front.n_face);
   assert_int_equal((n_gone + z.n_face) % 2, 0);
-  n_front = s.v.n_face;
-  zone_add(&s.v, &p, &z, is_gone);
-  zone_compact(&s.v, is_gone, n_front);
-  assert_int_equal(s.v.n_face, n_front - n_gone + z.n_face);
+  n_front = s.front.n_face;
+  zone_add(&s, &p, &z, is_gone);
+  zone_compact(&s.front, is_gone, n_front);
+  assert_int_equal(s.front.n_face, n_front - n_gone + z.n_face);
   is_valid(&s);
-  for (size_t c = 0; c < s.v.n_cell; c++) sum += volume_of_cell(&s.v, c);
-  h = vg_sizing_at(s.sizing, p.x[0]);
+  for (size_t c = 0; c < s.n_cell; c++) sum += volume_of_cell(&s, c);
+  h = vg_sizing_at(s.sizing, p.front.x[0]);
   assert_true(fabs(sum / (h * h * h) / z.volume - 1) < 1e-6);
   free(used);
   free(is_gone);
-  vg_zone_release(&z);
+  vg_filled_release(&z);
   zone_part_release(&p);
   scene_end(&s);
 }
 
 static int passes(const struct scene *s, size_t c, const struct vg_region *r)
 {
-  const uint32_t *v = s->v.cell[c];
+  const double (*x)[3] = (const double (*)[3])s->front.x;
+  const uint32_t *v = s->cell[c];
   struct vg_region line = *r;
 
   line.reach = 0;
-  return vg_region_has_cell(&line, s->sizing, s->v.x[v[0]], s->v.x[v[1]],
-                            s->v.x[v[2]], s->v.x[v[3]]);
+  return vg_region_has_cell(&line, s->sizing, x[v[0]], x[v[1]], x[v[2]],
+                            x[v[3]]);
 }
 
 /* Longest edge over the spacing in its middle, of cells that a line does not
@@ -257,11 +261,11 @@ static double longest_edge(const struct scene *s, const struct vg_region *r)
 {
   double most = 0;
 
-  for (size_t c = 0; c < s->v.n_cell; c++)
+  for (size_t c = 0; c < s->n_cell; c++)
     for (int i = 0; i < 4 && !passes(s, c, r); i++)
       for (int j = 0; j < i; j++) {
-        const double *a = s->v.x[s->v.cell[c][i]];
-        const double *b = s->v.x[s->v.cell[c][j]];
+        const double *a = s->front.x[s->cell[c][i]];
+        const double *b = s->front.x[s->cell[c][j]];
         double middle[3], d2 = 0, ratio;
 
         for (int k = 0; k < 3; k++) {
@@ -289,9 +293,9 @@ static void a_pencil_leaves_a_plume(void **state)
   struct scene s;
 
   (void)state;
-  memset(&s.m, 0, sizeof s.m);
+  memset(&s, 0, sizeof s);
   shape_block(&s.m, count, lo, hi, shape_all);
-  scene_void(&s, 1.2, 0);
+  scene_begin(&s, 1.2, 0);
   vg_sizing_free(s.sizing);
   assert_int_equal(vg_sizing_new(&o, 1, &plume, &s.m, &s.sizing, NULL), VG_OK);
   line.reach = 1.3;
@@ -332,7 +336,7 @@ static void a_real_surface(void **state)
   struct scene s;
 
   (void)state;
-  memset(&s.m, 0, sizeof s.m);
+  memset(&s, 0, sizeof s);
   if (vg_ugrid_read(path, &s.m, NULL, &err) < 0) fail_msg("%s", err.text);
   remove(path);
   for (size_t i = 0; i < s.m.n_tri; i++) {     /* normals point outwards */
@@ -341,14 +345,14 @@ static void a_real_surface(void **state)
     s.m.tri[i][0] = s.m.tri[i][1];
     s.m.tri[i][1] = keep;
   }
-  scene_void(&s, 1.25, 0);
+  scene_begin(&s, 1.25, 0);
   vg_mesh_bounds(&s.m, lo, hi);
   for (int axis = 0; axis < 3; axis++) {
     struct vg_region r = plane_at(axis, lo[axis] + 0.4 * (hi[axis] - lo[axis]));
     size_t n_fragment, made = cut(&s, &r);
 
     print_message("axis %d: %zu cells, %zu parts", axis, made,
-                  parts_of(&s.v, &n_fragment));
+                  parts_of(&s.front, &n_fragment));
     print_message(", %zu fragments\n", n_fragment);
   }
   is_filled(&s);
@@ -357,27 +361,26 @@ static void a_real_surface(void **state)
 
 /* --- refusal ------------------------------------------------------------- */
 
-static void is_empty(const struct vg_zone *z)
+static void is_empty(const struct vg_filled *z)
 {
-  const struct vg_zone empty = VG_ZONE_INIT;
+  const struct vg_filled empty = VG_FILLED_INIT;
 
   assert_memory_equal(z, &empty, sizeof empty);
 }
 
 static void no_front_near(void **state)
 {
-  struct vg_grow_options options = VG_GROW_OPTIONS_INIT;
+  struct vg_fill_options options = VG_FILL_OPTIONS_INIT;
   struct vg_region r = plane_at(1, 2);
-  struct vg_zone z = VG_ZONE_INIT;
+  struct vg_filled z = VG_FILLED_INIT;
   struct zone_part p;
   struct scene s;
 
   (void)state;
   box_scene(&s, 6);
-  zone_select(&s.v, s.sizing, &r, &p);
-  assert_int_equal(p.n_face, 0);
-  assert_int_equal(zone_make(&p, &r, s.sizing, &options, &z, &s.report, NULL),
-                   VG_BLOCKED);
+  zone_select(&s, &r, &p);
+  assert_int_equal(p.front.n_face, 0);
+  assert_int_equal(zone_make(&s, &p, &r, &options, &z, NULL), VG_BLOCKED);
   is_empty(&z);
   zone_part_release(&p);
   scene_end(&s);
@@ -386,7 +389,7 @@ static void no_front_near(void **state)
 /* There is front near, but the plane is on its outer side: nothing is made. */
 static void a_plane_outside(void **state)
 {
-  struct vg_grow_options options = VG_GROW_OPTIONS_INIT;
+  struct vg_fill_options options = VG_FILL_OPTIONS_INIT;
   struct scene s;
 
   (void)state;
@@ -394,17 +397,17 @@ static void a_plane_outside(void **state)
   for (double off = 0.25; off < VG_BAND_FRONT; off += 0.25)
     for (int side = -1; side <= 1; side += 2) {
       struct vg_region r = plane_at(1, side * (0.5 + off / 6));
-      struct vg_zone z = VG_ZONE_INIT;
+      struct vg_filled z = VG_FILLED_INIT;
       struct zone_part p;
       vg_status st;
 
-      zone_select(&s.v, s.sizing, &r, &p);
-      assert_true(p.n_face > 0);
-      st = zone_make(&p, &r, s.sizing, &options, &z, &s.report, NULL);
+      zone_select(&s, &r, &p);
+      assert_true(p.front.n_face > 0);
+      st = zone_make(&s, &p, &r, &options, &z, NULL);
       assert_true(st == VG_OK || st == VG_BLOCKED);
       if (z.n_cell + z.n_face)
         fail_msg("%zu cells %g spacings outside", z.n_cell, off);
-      vg_zone_release(&z);
+      vg_filled_release(&z);
       zone_part_release(&p);
     }
   scene_end(&s);
@@ -418,17 +421,19 @@ static int is_below_and_above(const struct zone_part *p, size_t face,
   int below = 0, above = 0;
 
   for (int k = 0; k < 3; k++) {
-    below |= p->x[p->face[face][k]][1] < at;
-    above |= p->x[p->face[face][k]][1] > at;
+    double y = p->front.x[p->front.face[face][k]][1];
+
+    below |= y < at;
+    above |= y > at;
   }
   return below && above;
 }
 
 static void a_damaged_front(void **state)
 {
-  struct vg_grow_options options = VG_GROW_OPTIONS_INIT;
+  struct vg_fill_options options = VG_FILL_OPTIONS_INIT;
   struct vg_region r = plane_at(1, 0.03);
-  struct vg_zone z = VG_ZONE_INIT;
+  struct vg_filled z = VG_FILLED_INIT;
   struct zone_part p;
   struct scene s;
   uint32_t keep;
@@ -437,12 +442,12 @@ static void a_damaged_front(void **state)
 
   (void)state;
   box_scene(&s, 8);
-  zone_select(&s.v, s.sizing, &r, &p);
+  zone_select(&s, &r, &p);
   while (!is_below_and_above(&p, at, 0.03)) at++;
-  keep = p.face[at][0];
-  p.face[at][0] = p.face[at][1];
-  p.face[at][1] = keep;
-  st = zone_make(&p, &r, s.sizing, &options, &z, &s.report, NULL);
+  keep = p.front.face[at][0];
+  p.front.face[at][0] = p.front.face[at][1];
+  p.front.face[at][1] = keep;
+  st = zone_make(&s, &p, &r, &options, &z, NULL);
   assert_int_equal(st, VG_BLOCKED);
   assert_true(s.report.n_retry > 0);
   is_empty(&z);
@@ -452,22 +457,18 @@ static void a_damaged_front(void **state)
 
 struct stop { int at, calls; };
 
-static int stop_later(void *user, const char *stage, size_t done,
-                      size_t expected)
+static int stop_later(void *user)
 {
   struct stop *s = user;
 
-  (void)done;
-  (void)expected;
-  assert_non_null(stage);
   return ++s->calls >= s->at;
 }
 
 static void it_can_be_stopped_at_every_call(void **state)
 {
-  struct vg_grow_options options = VG_GROW_OPTIONS_INIT;
+  struct vg_fill_options options = VG_FILL_OPTIONS_INIT;
   struct vg_region r = plane_at(2, 0.03);
-  struct vg_zone z = VG_ZONE_INIT;
+  struct vg_filled z = VG_FILLED_INIT;
   struct stop stop = {1, 0};
   struct zone_part p;
   struct scene s;
@@ -475,38 +476,37 @@ static void it_can_be_stopped_at_every_call(void **state)
 
   (void)state;
   box_scene(&s, 8);
-  zone_select(&s.v, s.sizing, &r, &p);
-  options.progress = stop_later;
-  options.user = &stop;
+  zone_select(&s, &r, &p);
+  options.stop = (struct vg_stop){ stop_later, &stop };
   for (; stop.at < 100; stop.at++, stop.calls = 0) {
-    st = zone_make(&p, &r, s.sizing, &options, &z, &s.report, NULL);
+    st = zone_make(&s, &p, &r, &options, &z, NULL);
     if (st == VG_OK) break;
-    assert_int_equal(st, VG_BLOCKED);
+    assert_int_equal(st, VG_ERR_STOPPED);
     assert_int_equal(stop.calls, stop.at);
     is_empty(&z);
   }
   assert_int_equal(st, VG_OK);
   assert_true(stop.at > 3);
   assert_true(z.n_cell > 200);
-  vg_zone_release(&z);
+  vg_filled_release(&z);
   zone_part_release(&p);
   scene_end(&s);
 }
 
 static void the_point_limit_refuses(void **state)
 {
-  struct vg_grow_options options = VG_GROW_OPTIONS_INIT;
+  struct vg_fill_options options = VG_FILL_OPTIONS_INIT;
   struct vg_error err = VG_ERROR_INIT;
   struct vg_region r = plane_at(2, 0.03);
-  struct vg_zone z = VG_ZONE_INIT;
+  struct vg_filled z = VG_FILLED_INIT;
   struct zone_part p;
   struct scene s;
 
   (void)state;
   box_scene(&s, 8);
-  zone_select(&s.v, s.sizing, &r, &p);
+  zone_select(&s, &r, &p);
   options.point_limit = 3;
-  assert_int_equal(zone_make(&p, &r, s.sizing, &options, &z, &s.report, &err),
+  assert_int_equal(zone_make(&s, &p, &r, &options, &z, &err),
                    VG_ERR_UNSUPPORTED);
   assert_true(strlen(err.text) > 10);
   is_empty(&z);

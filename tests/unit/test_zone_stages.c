@@ -6,7 +6,7 @@
 struct stage {
   size_t n;
   struct zone_part *part;
-  struct vg_zone *zone;
+  struct vg_filled *made;
   struct vg_region *region;
 };
 
@@ -14,54 +14,52 @@ struct stage {
 static void grow_stage(struct scene *s, const struct vg_lattice *l, int stage,
                        struct stage *out)
 {
-  struct vg_grow_options options = VG_GROW_OPTIONS_INIT;
+  const struct vg_fill_options options = VG_FILL_OPTIONS_INIT;
   struct vg_error err = VG_ERROR_INIT;
 
   out->n = vg_lattice_count(l, stage);
   out->part = vg_calloc(out->n, sizeof *out->part);
-  out->zone = vg_calloc(out->n, sizeof *out->zone);
+  out->made = vg_calloc(out->n, sizeof *out->made);
   out->region = vg_calloc(out->n, sizeof *out->region);
-  assert_true(out->part && out->zone && out->region);
+  assert_true(out->part && out->made && out->region);
   for (size_t k = 0; k < out->n; k++) {
     vg_lattice_region(l, stage, k, &out->region[k]);
-    zone_select(&s->v, s->sizing, &out->region[k], &out->part[k]);
-    if (zone_make(&out->part[k], &out->region[k], s->sizing, &options,
-                  &out->zone[k], &s->report, &err) != VG_OK)
+    zone_select(s, &out->region[k], &out->part[k]);
+    if (zone_make(s, &out->part[k], &out->region[k], &options, &out->made[k],
+                  &err) != VG_OK)
       fail_msg("stage %d, region %zu: %s", stage, k, err.text);
   }
 }
 
-/* Put them into the void; no two have taken the same face, all cells are
+/* Put them into the scene; no two have taken the same face, all cells are
  * within their region's walls. Returns the cells. */
 static size_t join_stage(struct scene *s, struct stage *g)
 {
-  uint8_t *is_gone = vg_calloc(s->v.n_face, 1);
-  uint8_t *before = vg_calloc(s->v.n_face, 1);
-  size_t n_front = s->v.n_face, first = s->v.n_cell;
+  size_t n_front = s->front.n_face, first = s->n_cell;
+  uint8_t *is_gone = vg_calloc(n_front, 1);
 
-  assert_true(is_gone && before);
+  assert_non_null(is_gone);
   for (size_t k = 0; k < g->n; k++) {
-    size_t c = s->v.n_cell;
+    const struct vg_filled *made = &g->made[k];
+    size_t c = s->n_cell;
 
-    memcpy(before, is_gone, n_front);
-    for (size_t i = 0; i < g->part[k].n_face; i++)
-      assert_false(g->zone[k].gone[i] && before[g->part[k].from[i]]);
-    zone_add(&s->v, &g->part[k], &g->zone[k], is_gone);
-    for (; c < s->v.n_cell; c++)
+    for (size_t i = 0; i < made->n_consumed; i++)
+      assert_false(is_gone[g->part[k].from[made->consumed[i]]]);
+    zone_add(s, &g->part[k], made, is_gone);
+    for (; c < s->n_cell; c++)
       for (int i = 0; i < 4; i++)
         assert_true(vg_region_within(&g->region[k],
-                                     s->v.x[s->v.cell[c][i]]));
-    vg_zone_release(&g->zone[k]);
+                                     s->front.x[s->cell[c][i]]));
+    vg_filled_release(&g->made[k]);
     zone_part_release(&g->part[k]);
   }
-  zone_compact(&s->v, is_gone, n_front);
-  free(before);
+  zone_compact(&s->front, is_gone, n_front);
   free(is_gone);
   free(g->part);
-  free(g->zone);
+  free(g->made);
   free(g->region);
   is_valid(s);
-  return s->v.n_cell - first;
+  return s->n_cell - first;
 }
 
 /* Cut by a lattice, all regions of a stage from the same front. */
@@ -85,9 +83,9 @@ static void two_planes_at_once(void **state)
   struct scene s;
 
   (void)state;
-  memset(&s.m, 0, sizeof s.m);
+  memset(&s, 0, sizeof s);
   shape_block(&s.m, count, lo, hi, shape_all);
-  scene_void(&s, 1.2, 1);
+  scene_begin(&s, 1.2, 1);
   cut_by(&s, &l, made);
   assert_int_equal(made[0] + made[1], 0);
   parts_are(&s, 3);
@@ -108,9 +106,9 @@ static void a_pencil_and_four_tiles(void **state)
   assert_true(made[0] > 14 * 10 && made[0] < made[VG_LATTICE_TILES]);
   assert_int_equal(made[1], 0);
   parts_are(&s, 4);
-  assert_true(smallest_angle(&s.v, 0) > 5);
+  assert_true(smallest_angle(&s, 0) > 5);
   print_message("pencil %zu, tiles %zu, smallest angle %.1f\n", made[0],
-                made[VG_LATTICE_TILES], smallest_angle(&s.v, 0));
+                made[VG_LATTICE_TILES], smallest_angle(&s, 0));
   is_filled(&s);
   scene_end(&s);
 }
@@ -130,8 +128,8 @@ static void a_lattice_in_a_box(void **state)
               made[VG_LATTICE_TILES] > made[1]);
   parts_are(&s, 8);
   print_message("lines %zu and %zu, tiles %zu, smallest angle %.1f\n", made[0],
-                made[1], made[VG_LATTICE_TILES], smallest_angle(&s.v, 0));
-  assert_true(smallest_angle(&s.v, 0) > 5);
+                made[1], made[VG_LATTICE_TILES], smallest_angle(&s, 0));
+  assert_true(smallest_angle(&s, 0) > 5);
   is_filled(&s);
   scene_end(&s);
 }
@@ -150,8 +148,8 @@ static void a_lattice_around_a_sphere(void **state)
   assert_true(made[0] > 0 && made[1] > 0 && made[VG_LATTICE_TILES] > 0);
   parts_are(&s, 8);
   print_message("lines %zu and %zu, tiles %zu, smallest angle %.1f\n", made[0],
-                made[1], made[VG_LATTICE_TILES], smallest_angle(&s.v, 0));
-  assert_true(smallest_angle(&s.v, 0) > 5);
+                made[1], made[VG_LATTICE_TILES], smallest_angle(&s, 0));
+  assert_true(smallest_angle(&s, 0) > 5);
   is_filled(&s);
   scene_end(&s);
 }
@@ -171,7 +169,7 @@ static void all_lines_at_once(void **state)
   assert_true(made[0] > 0 && made[VG_LATTICE_TILES] > 0);
   assert_int_equal(made[1], 0);
   parts_are(&s, 8);
-  assert_true(smallest_angle(&s.v, 0) > 5);
+  assert_true(smallest_angle(&s, 0) > 5);
   is_filled(&s);
   scene_end(&s);
 }
@@ -192,7 +190,7 @@ static void a_plane_in_pieces(void **state)
   assert_int_equal(made[0] + made[1], 0);
   assert_true(made[2] > 16 * 2 * 4 && made[2] < made[VG_LATTICE_TILES] / 4);
   parts_are(&s, 2);
-  assert_true(smallest_angle(&s.v, 0) > 5);
+  assert_true(smallest_angle(&s, 0) > 5);
   is_filled(&s);
   scene_end(&s);
 }
@@ -220,7 +218,7 @@ static void ribs_from_a_body(void **state)
   cut_by(&s, &l, made);
   assert_true(made[0] > 0 && made[2] > 0 && made[VG_LATTICE_TILES] > made[2]);
   parts_are(&s, 8);
-  assert_true(smallest_angle(&s.v, 0) > 5);
+  assert_true(smallest_angle(&s, 0) > 5);
   is_filled(&s);
   scene_end(&s);
 }

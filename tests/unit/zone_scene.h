@@ -7,56 +7,48 @@
 
 #include "fill_shapes.h"
 #include "front_parts.h"
-#include "partition/cut/task_data.h"
 #include "zone_support.h"
 
-struct scene {
-  struct vg_mesh m;
-  struct vg_sizing *sizing;
-  struct vg_void v;
-  struct vg_fill_report report;
-  double volume;
-};
-
-static inline double volume_of_front(const struct vg_void *v)
+/* The front of the surface m, which the scene has. */
+static inline void scene_begin(struct scene *s, double growth, double h_max)
 {
-  struct vg_front f = { .n_point = v->n_point, .n_face = v->n_face,
-                        .x = v->x, .face = v->face };
+  struct vg_front *f = &s->front;
 
-  return v->n_face ? vg_front_volume(&f) : 0;
-}
-
-static inline void scene_void(struct scene *s, double growth, double h_max)
-{
-  s->v = (struct vg_void)VG_VOID_INIT;
-  memset(&s->report, 0, sizeof s->report);
   s->sizing = shape_sizing(&s->m, growth, h_max);
-  assert_int_equal(vg_void_from_mesh(&s->v, &s->m, NULL), VG_OK);
-  assert_int_equal(vg_void_defects(&s->v), 0);
-  s->volume = volume_of_front(&s->v);
+  if (vg_reserve(&f->x, &s->cap_point, s->m.n_point, sizeof *f->x) ||
+      vg_reserve(&f->face, &s->cap_face, s->m.n_tri, sizeof *f->face))
+    abort();
+  memcpy(f->x, s->m.point, s->m.n_point * sizeof *f->x);
+  memcpy(f->face, s->m.tri, s->m.n_tri * sizeof *f->face);
+  f->n_point = s->m.n_point;
+  f->n_face = s->m.n_tri;
+  assert_int_equal(vg_front_check(f, NULL), VG_OK);
+  assert_int_equal(vg_front_open_edges(f), 0);
+  s->volume = vg_front_volume(f);
   assert_true(s->volume > 0);
 }
 
 static inline void box_scene(struct scene *s, int n)
 {
-  memset(&s->m, 0, sizeof s->m);
+  memset(s, 0, sizeof *s);
   shape_box(&s->m, n, 0.5);
-  scene_void(s, 1.2, 1.0 / n);
+  scene_begin(s, 1.2, 1.0 / n);
 }
 
 static inline void sphere_scene(struct scene *s)
 {
   const double centre[3] = {0.1, 0, 0};
 
-  memset(&s->m, 0, sizeof s->m);
+  memset(s, 0, sizeof *s);
   shape_box(&s->m, 8, 3);
   shape_sphere(&s->m, 8, centre, 1, 7);
-  scene_void(s, 1.3, 0);
+  scene_begin(s, 1.3, 0);
 }
 
 static inline void scene_end(struct scene *s)
 {
-  vg_void_release(&s->v);
+  vg_front_release(&s->front);
+  free(s->cell);
   vg_sizing_free(s->sizing);
   vg_mesh_release(&s->m);
 }
@@ -83,13 +75,14 @@ static inline struct vg_region line_at(int a, double at, int b, double there)
 
 /* --- what must hold at any moment ---------------------------------------- */
 
-static inline double volume_of_cell(const struct vg_void *v, size_t c)
+static inline double volume_of_cell(const struct scene *s, size_t c)
 {
-  const double *a = v->x[v->cell[c][0]];
+  const double (*x)[3] = (const double (*)[3])s->front.x;
+  const double *a = x[s->cell[c][0]];
   double e[3][3];
 
   for (int i = 0; i < 3; i++)
-    for (int k = 0; k < 3; k++) e[i][k] = v->x[v->cell[c][i + 1]][k] - a[k];
+    for (int k = 0; k < 3; k++) e[i][k] = x[s->cell[c][i + 1]][k] - a[k];
   return (e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) +
           e[0][1] * (e[1][2] * e[2][0] - e[1][0] * e[2][2]) +
           e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0])) / 6;
@@ -98,10 +91,11 @@ static inline double volume_of_cell(const struct vg_void *v, size_t c)
 /* A closed front, positive cells, and together the volume of the domain. */
 static inline void is_valid(const struct scene *s)
 {
-  double sum = volume_of_front(&s->v);
+  const struct vg_filled all = { .n_cell = s->n_cell, .cell = s->cell };
+  double sum = vg_front_volume(&s->front);
 
-  assert_int_equal(vg_void_defects(&s->v), 0);
-  for (size_t c = 0; c < s->v.n_cell; c++) sum += volume_of_cell(&s->v, c);
+  assert_int_equal(vg_filled_defects(&s->front, &all, 1), 0);
+  for (size_t c = 0; c < s->n_cell; c++) sum += volume_of_cell(s, c);
   if (!(fabs(sum - s->volume) < 1e-10 * s->volume))
     fail_msg("volume %.17g instead of %.17g", sum, s->volume);
 }
@@ -110,18 +104,16 @@ static inline void is_valid(const struct scene *s)
  * cavities left where cells of a zone are not well shaped. */
 enum { CRUMB = 20 };
 
-static inline size_t parts_of(const struct vg_void *v, size_t *n_fragment)
+static inline size_t parts_of(const struct vg_front *f, size_t *n_fragment)
 {
-  struct vg_front f = { .n_point = v->n_point, .n_face = v->n_face,
-                        .x = v->x, .face = v->face };
-  uint32_t *part = vg_alloc(v->n_face, sizeof *part);
+  uint32_t *part = vg_alloc(f->n_face, sizeof *part);
   size_t n, large = 0, *size;
 
   assert_non_null(part);
-  assert_int_equal(front_parts(&f, part, &n, NULL), VG_OK);
+  assert_int_equal(front_parts(f, part, &n, NULL), VG_OK);
   size = vg_calloc(n, sizeof *size);
   assert_non_null(size);
-  for (size_t i = 0; i < v->n_face; i++) {
+  for (size_t i = 0; i < f->n_face; i++) {
     assert_true(part[i] < n);
     size[part[i]]++;
   }
@@ -138,30 +130,30 @@ static inline size_t parts_of(const struct vg_void *v, size_t *n_fragment)
 /* Fragments: at most one to 200 cells made, and two. */
 static inline void parts_are(const struct scene *s, size_t want)
 {
-  size_t n_fragment, n = parts_of(&s->v, &n_fragment);
+  size_t n_fragment, n = parts_of(&s->front, &n_fragment);
 
-  if (n != want || n_fragment > 2 + s->v.n_cell / 200)
+  if (n != want || n_fragment > 2 + s->n_cell / 200)
     fail_msg("%zu parts and %zu fragments of %zu cells instead of %zu parts", n,
-             n_fragment, s->v.n_cell, want);
+             n_fragment, s->n_cell, want);
 }
 
 /* The rest is filled: what was made is a mesh of the surface, so no cell
  * overlaps another. */
 static inline void is_filled(struct scene *s)
 {
-  struct vg_grow_options options = VG_GROW_OPTIONS_INIT;
+  const struct vg_fill_options options = VG_FILL_OPTIONS_INIT;
   struct vg_error err = VG_ERROR_INIT;
   struct vg_mesh all = s->m;
   struct vg_mesh_report r;
 
-  if (vg_grow(&s->v, s->sizing, &options, &s->report, &err) != VG_OK)
-    fail_msg("%s", err.text);
-  assert_int_equal(s->v.n_face, 0);
-  all.point = s->v.x;
-  all.n_point = s->v.n_point;
-  all.tet = s->v.cell;
-  all.n_tet = s->v.n_cell;
-  assert_memory_equal(s->v.x, s->m.point, s->m.n_point * sizeof *s->m.point);
+  if (zone_take(s, NULL, &options, &err) != VG_OK) fail_msg("%s", err.text);
+  assert_int_equal(s->front.n_face, 0);
+  all.point = s->front.x;
+  all.n_point = s->front.n_point;
+  all.tet = s->cell;
+  all.n_tet = s->n_cell;
+  assert_memory_equal(s->front.x, s->m.point,
+                      s->m.n_point * sizeof *s->m.point);
   assert_int_equal(vg_mesh_judge(&all, NULL, &r, NULL), VG_OK);
   assert_int_equal(r.not_positive, 0);
   assert_int_equal(r.open_face + r.crowded_face + r.same_side_face, 0);
@@ -175,15 +167,14 @@ static inline void is_filled(struct scene *s)
 /* One zone; the state must be valid after it. Returns the cells it made. */
 static inline size_t cut(struct scene *s, const struct vg_region *region)
 {
-  struct vg_grow_options options = VG_GROW_OPTIONS_INIT;
+  const struct vg_fill_options options = VG_FILL_OPTIONS_INIT;
   struct vg_error err = VG_ERROR_INIT;
-  size_t before = s->v.n_cell;
-  vg_status st = zone_take(&s->v, s->sizing, region, &options, &s->report,
-                           &err);
+  size_t before = s->n_cell;
+  vg_status st = zone_take(s, region, &options, &err);
 
   if (st != VG_OK) fail_msg("%d: %s", (int)st, err.text);
   is_valid(s);
-  return s->v.n_cell - before;
+  return s->n_cell - before;
 }
 
 static inline void unit_normal(const double a[3], const double b[3],
@@ -202,17 +193,18 @@ static inline void unit_normal(const double a[3], const double b[3],
 }
 
 /* The smallest dihedral angle of the cells from `first` on, in degrees. */
-static inline double smallest_angle(const struct vg_void *v, size_t first)
+static inline double smallest_angle(const struct scene *s, size_t first)
 {
   static const int face[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+  const double (*x)[3] = (const double (*)[3])s->front.x;
   double least = 180;
 
-  for (size_t c = first; c < v->n_cell; c++) {
+  for (size_t c = first; c < s->n_cell; c++) {
+    const uint32_t *v = s->cell[c];
     double n[4][3];
 
     for (int i = 0; i < 4; i++)
-      unit_normal(v->x[v->cell[c][face[i][0]]], v->x[v->cell[c][face[i][1]]],
-                  v->x[v->cell[c][face[i][2]]], n[i]);
+      unit_normal(x[v[face[i][0]]], x[v[face[i][1]]], x[v[face[i][2]]], n[i]);
     for (int i = 0; i < 4; i++)
       for (int j = 0; j < i; j++) {
         double cosine = -(n[i][0] * n[j][0] + n[i][1] * n[j][1] +

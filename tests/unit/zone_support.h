@@ -1,5 +1,6 @@
-/* A zone taken out of a void, as a task does it for the front of a whole
- * domain. Header only: one program per module. */
+/* A domain that is filled piece by piece, as the advancing partition does it:
+ * the kernel fills regions of its void, one after the other, and at last the
+ * whole void that is left. Header only: one program per module. */
 #ifndef TESTS_UNIT_ZONE_SUPPORT_H
 #define TESTS_UNIT_ZONE_SUPPORT_H
 
@@ -7,22 +8,31 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "core/fill/grow.h"
+#include "core/fill/fill.h"
 
-/* The part of a void's front that a region needs. */
+struct scene {
+  struct vg_mesh m;          /* The surface of the domain. */
+  struct vg_sizing *sizing;
+  struct vg_front front;     /* The front of the void that is left, with all
+                                points: those of m, then new ones. */
+  size_t cap_point, cap_face;
+  size_t n_cell, cap_cell;
+  uint32_t (*cell)[4];       /* [n_cell] The cells made so far. */
+  struct vg_fill_report report;
+  double volume;             /* The volume of the domain. */
+};
+
+/* The part of a scene's front that a region needs. */
 struct zone_part {
-  size_t n_point, n_face;
-  double (*x)[3];
-  uint32_t *point;           /* [n_point] their numbers in the void */
-  uint32_t (*face)[3];
-  uint32_t *from;            /* [n_face] likewise */
+  struct vg_front front;
+  uint32_t *point;           /* [front.n_point] Points of the scene's front. */
+  uint32_t *from;            /* [front.n_face] Faces of the scene's front. */
 };
 
 static inline void zone_part_release(struct zone_part *p)
 {
-  free(p->x);
+  vg_front_release(&p->front);
   free(p->point);
-  free(p->face);
   free(p->from);
   memset(p, 0, sizeof *p);
 }
@@ -32,128 +42,127 @@ static inline void zone_need(const void *p)
   if (!p) abort();
 }
 
-static inline uint32_t zone_point(struct zone_part *p, const struct vg_void *v,
+static inline uint32_t zone_point(struct zone_part *p, const struct scene *s,
                                   uint32_t *local, uint32_t at)
 {
   if (local[at] == UINT32_MAX) {
-    memcpy(p->x[p->n_point], v->x[at], sizeof *p->x);
-    p->point[p->n_point] = at;
-    local[at] = (uint32_t)p->n_point++;
+    memcpy(p->front.x[p->front.n_point], s->front.x[at], sizeof *p->front.x);
+    p->point[p->front.n_point] = at;
+    local[at] = (uint32_t)p->front.n_point++;
   }
   return local[at];
 }
 
-/* The faces near the region: those, and no other. */
-static inline void zone_select(const struct vg_void *v,
-                               const struct vg_sizing *sizing,
-                               const struct vg_region *r, struct zone_part *p)
+/* The faces near the region, those and no others; all faces when there is no
+ * region. Points that no face uses are left out: the kernel refuses them. */
+static inline void zone_select(const struct scene *s, const struct vg_region *r,
+                               struct zone_part *p)
 {
-  uint32_t *local = vg_alloc(v->n_point, sizeof *local);
+  const struct vg_front *f = &s->front;
+  uint32_t *local = vg_alloc(f->n_point, sizeof *local);
 
   memset(p, 0, sizeof *p);
-  p->x = vg_alloc(v->n_point, sizeof *p->x);
-  p->point = vg_alloc(v->n_point, sizeof *p->point);
-  p->face = vg_alloc(v->n_face, sizeof *p->face);
-  p->from = vg_alloc(v->n_face, sizeof *p->from);
+  p->front.x = vg_alloc(f->n_point, sizeof *p->front.x);
+  p->front.face = vg_alloc(f->n_face, sizeof *p->front.face);
+  p->point = vg_alloc(f->n_point, sizeof *p->point);
+  p->from = vg_alloc(f->n_face, sizeof *p->from);
   zone_need(local);
-  zone_need(p->x);
+  zone_need(p->front.x);
+  zone_need(p->front.face);
   zone_need(p->point);
-  zone_need(p->face);
   zone_need(p->from);
-  memset(local, 0xff, v->n_point * sizeof *local);
-  for (size_t i = 0; i < v->n_face; i++) {
-    const uint32_t *f = v->face[i];
+  memset(local, 0xff, f->n_point * sizeof *local);
+  for (size_t i = 0; i < f->n_face; i++) {
+    const uint32_t *v = f->face[i];
 
-    if (!vg_region_meets(r, sizing, v->x[f[0]], v->x[f[1]], v->x[f[2]],
-                         VG_BAND_FRONT))
+    if (r && !vg_region_meets(r, s->sizing, f->x[v[0]], f->x[v[1]], f->x[v[2]],
+                              VG_BAND_FRONT))
       continue;
     for (int k = 0; k < 3; k++)
-      p->face[p->n_face][k] = zone_point(p, v, local, f[k]);
-    p->from[p->n_face++] = (uint32_t)i;
+      p->front.face[p->front.n_face][k] = zone_point(p, s, local, v[k]);
+    p->from[p->front.n_face++] = (uint32_t)i;
   }
   free(local);
 }
 
-static inline vg_status zone_make(const struct zone_part *p,
+static inline vg_status zone_make(struct scene *s, const struct zone_part *p,
                                   const struct vg_region *r,
-                                  const struct vg_sizing *sizing,
-                                  const struct vg_grow_options *options,
-                                  struct vg_zone *z,
-                                  struct vg_fill_report *report,
-                                  struct vg_error *err)
+                                  const struct vg_fill_options *options,
+                                  struct vg_filled *made, struct vg_error *err)
 {
-  return vg_zone_grow(p->n_point, (const double (*)[3])p->x, p->n_face,
-                      (const uint32_t (*)[3])p->face, r, sizing, options, z,
-                      report, err);
+  return vg_fill_front(&p->front, r, s->sizing, options, made, &s->report,
+                       err);
+}
+
+/* Numbers in the scene of n corners, whose new points begin at `base`. */
+static inline void zone_number(const struct zone_part *p, size_t base, size_t n,
+                               const uint32_t *from, uint32_t *to)
+{
+  for (size_t i = 0; i < n; i++)
+    to[i] = from[i] < p->front.n_point
+              ? p->point[from[i]]
+              : (uint32_t)(base + from[i] - p->front.n_point);
 }
 
 /* Append what was made, and flag the faces that have a cell now: they are
  * removed by zone_compact once all zones of a stage are in. */
-static inline void zone_add(struct vg_void *v, const struct zone_part *p,
-                            const struct vg_zone *z, uint8_t *is_gone)
+static inline void zone_add(struct scene *s, const struct zone_part *p,
+                            const struct vg_filled *made, uint8_t *is_gone)
 {
-  size_t base = v->n_point;
+  struct vg_front *f = &s->front;
+  size_t base = f->n_point;
 
-  if (vg_reserve(&v->x, &v->cap_point, base + z->n_point, sizeof *v->x) ||
-      vg_reserve(&v->cell, &v->cap_cell, v->n_cell + z->n_cell,
-                 sizeof *v->cell) ||
-      vg_reserve(&v->face, &v->cap_face, v->n_face + z->n_face,
-                 sizeof *v->face))
+  if (vg_reserve(&f->x, &s->cap_point, base + made->n_point, sizeof *f->x) ||
+      vg_reserve(&f->face, &s->cap_face, f->n_face + made->n_face,
+                 sizeof *f->face) ||
+      vg_reserve(&s->cell, &s->cap_cell, s->n_cell + made->n_cell,
+                 sizeof *s->cell))
     abort();
-  if (z->n_point) memcpy(v->x + base, z->x, z->n_point * sizeof *v->x);
-  v->n_point += z->n_point;
-  for (size_t c = 0; c < z->n_cell; c++, v->n_cell++)
-    for (int k = 0; k < 4; k++) {
-      size_t q = z->cell[c][k];
-
-      v->cell[v->n_cell][k] =
-          q < p->n_point ? p->point[q] : (uint32_t)(base + q - p->n_point);
-    }
-  for (size_t i = 0; i < z->n_face; i++, v->n_face++)
-    for (int k = 0; k < 3; k++) {
-      size_t q = z->face[i][k];
-
-      v->face[v->n_face][k] =
-          q < p->n_point ? p->point[q] : (uint32_t)(base + q - p->n_point);
-    }
-  for (size_t i = 0; i < p->n_face; i++)
-    if (z->gone[i]) is_gone[p->from[i]] = 1;
+  if (made->n_point) memcpy(f->x + base, made->x, made->n_point * sizeof *f->x);
+  if (made->n_face)
+    zone_number(p, base, 3 * made->n_face, made->face[0], f->face[f->n_face]);
+  if (made->n_cell)
+    zone_number(p, base, 4 * made->n_cell, made->cell[0], s->cell[s->n_cell]);
+  for (size_t i = 0; i < made->n_consumed; i++)
+    is_gone[p->from[made->consumed[i]]] = 1;
+  f->n_point += made->n_point;
+  f->n_face += made->n_face;
+  s->n_cell += made->n_cell;
 }
 
 /* Remove the faces flagged among the first n. */
-static inline void zone_compact(struct vg_void *v, const uint8_t *is_gone,
+static inline void zone_compact(struct vg_front *f, const uint8_t *is_gone,
                                 size_t n)
 {
   size_t kept = 0;
 
-  for (size_t i = 0; i < v->n_face; i++)
+  for (size_t i = 0; i < f->n_face; i++)
     if (i >= n || !is_gone[i])
-      memmove(v->face[kept++], v->face[i], sizeof *v->face);
-  v->n_face = kept;
+      memmove(f->face[kept++], f->face[i], sizeof *f->face);
+  f->n_face = kept;
 }
 
-/* Grow a region out of v; v is unchanged unless VG_OK is returned. */
-static inline vg_status zone_take(struct vg_void *v,
-                                  const struct vg_sizing *sizing,
-                                  const struct vg_region *r,
-                                  const struct vg_grow_options *options,
-                                  struct vg_fill_report *report,
+/* Fill a region, or all that is left when r is NULL. The scene is unchanged
+ * unless VG_OK is returned. */
+static inline vg_status zone_take(struct scene *s, const struct vg_region *r,
+                                  const struct vg_fill_options *options,
                                   struct vg_error *err)
 {
-  struct vg_zone z = VG_ZONE_INIT;
+  struct vg_filled made = VG_FILLED_INIT;
+  size_t n = s->front.n_face;
+  uint8_t *is_gone = vg_calloc(n, 1);
   struct zone_part p;
-  uint8_t *is_gone = vg_calloc(v->n_face, 1);
-  size_t n = v->n_face;
   vg_status st;
 
   zone_need(is_gone);
-  zone_select(v, sizing, r, &p);
-  st = zone_make(&p, r, sizing, options, &z, report, err);
+  zone_select(s, r, &p);
+  st = zone_make(s, &p, r, options, &made, err);
   if (st == VG_OK) {
-    zone_add(v, &p, &z, is_gone);
-    zone_compact(v, is_gone, n);
+    if (!r) memset(is_gone, 1, n);
+    zone_add(s, &p, &made, is_gone);
+    zone_compact(&s->front, is_gone, n);
   }
-  vg_zone_release(&z);
+  vg_filled_release(&made);
   zone_part_release(&p);
   free(is_gone);
   return st;

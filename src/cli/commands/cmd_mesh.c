@@ -216,17 +216,11 @@ static json_t *files_json(const struct run *r)
   return list;
 }
 
-/* What bounds the field. */
-static const struct vg_mesh *front_of(const struct run *r)
-{
-  return r->layers.is_on ? &r->layers.layers.front.mesh
-                         : &r->problem.surface;
-}
-
 static json_t *report_json(const struct run *r, int ok,
                            const struct vg_error *err)
 {
   const struct vg_problem *p = &r->problem;
+  const struct vg_mesh front = vg_layer_stage_front(&r->layers, &p->surface);
   json_t *o = json_object();
 
   json_object_set_new(o, "vanguard", json_string(VG_VERSION));
@@ -246,7 +240,7 @@ static json_t *report_json(const struct run *r, int ok,
   json_object_set_new(o, "notes", strings(&p->notes));
   if (ok) {
     json_object_set_new(o, "sources",
-                        vg_effects_json(&r->mesh.effects, front_of(r),
+                        vg_effects_json(&r->mesh.effects, &front,
                                         &p->settings));
     json_object_set_new(o, "mesh", vg_report_mesh_json(&r->mesh.judge));
     json_object_set_new(o, "fill",
@@ -516,6 +510,7 @@ static vg_status run_stages(struct run *r, const struct arguments *a,
                             struct vg_error *err)
 {
   struct vg_run *m = &r->mesh;
+  struct vg_mesh front;
   vg_status st;
 
   r->mesh.options = a->run;
@@ -523,7 +518,8 @@ static vg_status run_stages(struct run *r, const struct arguments *a,
   VG_TRY(read_project(r, a, err));
   VG_TRY(close_surface(r, err));
   VG_TRY(vg_run_mesh(m, &r->problem, &r->layers, &r->show, err));
-  vg_effects_note(&m->effects, front_of(r), &r->problem);
+  front = vg_layer_stage_front(&r->layers, &r->problem.surface);
+  vg_effects_note(&m->effects, &front, &r->problem);
   vg_problem_note_unused(&r->problem, r->layers.is_on, VG_USE_JUDGED_MESH);
   vg_report_layers_note(&r->layers, &r->problem.surface, &r->problem.notes);
   st = write_all(r, a, err);

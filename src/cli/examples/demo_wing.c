@@ -454,7 +454,7 @@ static vg_status fill_skin(struct frame *f, struct vg_error *err)
   size_t n_new = 0, n_tri = 0;
   double (*add)[2] = NULL;
   uint32_t (*tri)[3] = NULL, first;
-  const struct vg_planar_law law = { size_on_cone, NULL, &f->c };
+  const struct vg_planar_law law = { .at = size_on_cone, .user = &f->c };
   vg_status st = VG_OK;
 
   if (make_outline(f, &o)) {

@@ -235,7 +235,8 @@ static vg_status make_layers(struct vg_plan *p, struct vg_error *err)
                                err));
     p->layer_tet = (double)p->layers.report.n_cell;
     p->layer_point = (double)p->layers.report.n_layer_point;
-    p->front = &p->layers.layers.front.mesh;
+    p->grown = vg_front_mesh(&p->layers.layers.front, surface);
+    p->front = &p->grown;
   } else {
     VG_TRY(estimate_layers(p, err));
   }
@@ -297,10 +298,7 @@ static void count_memory(struct vg_plan *p)
 static vg_status forecast(const struct vg_plan *p, double leaf_cells,
                           struct vg_forecast *out, struct vg_error *err)
 {
-  const struct vg_void v = { .n_point = p->front->n_point,
-                             .x = p->front->point,
-                             .n_face = p->front->n_tri,
-                             .face = p->front->tri };
+  const struct vg_front v = vg_front_of(p->front);
   struct vg_cut_rule rule = p->rule;
 
   rule.leaf_cells = leaf_cells;
@@ -456,7 +454,7 @@ done:
 static vg_status make(struct vg_plan *p, struct vg_error *err)
 {
   const struct vg_settings *s = &p->problem.settings;
-  struct vg_void v = { .n_point = 0 };
+  struct vg_front v;
   vg_status st;
 
   VG_TRY(learn_rates(p, err));
@@ -468,10 +466,7 @@ static vg_status make(struct vg_plan *p, struct vg_error *err)
   VG_TRY(vg_problem_effects(&p->problem, p->front, p->sizing, &p->effects,
                             err));
   vg_effects_note(&p->effects, p->front, &p->problem);
-  v.n_point = p->front->n_point;
-  v.x = p->front->point;
-  v.n_face = p->front->n_tri;
-  v.face = p->front->tri;
+  v = vg_front_of(p->front);
   vg_display_update(&p->show, "forecast", 0, 0);
   VG_TRY(vg_load_new(&v, p->sizing, VG_LOAD_CELLS_PER_CUBE, vg_cores(),
                      &p->load, err));

@@ -39,6 +39,8 @@ struct vg_plan {
   struct vg_problem problem;
   struct vg_layer_stage layers;
   struct vg_mesh lifted;        /* the surface on top of estimated layers */
+  struct vg_mesh grown;         /* the front above layers that were grown;
+                                   borrowed from layers and problem */
   const struct vg_mesh *front;  /* what bounds the field; borrowed */
   struct vg_sizing *sizing;     /* over the front */
   struct vg_effects effects;
@@ -81,7 +83,7 @@ vg_status vg_plan_part(struct vg_plan *p, struct vg_error *err);
 void vg_plan_parting_release(struct vg_plan_parting *q);
 
 /** The forecast of the tasks of p->parting. (plan_parting.c) */
-vg_status vg_plan_parted(const struct vg_plan *p, const struct vg_void *v,
+vg_status vg_plan_parted(const struct vg_plan *p, const struct vg_front *v,
                          const struct vg_cut_rule *rule,
                          struct vg_forecast *out, struct vg_error *err);
 

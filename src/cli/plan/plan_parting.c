@@ -8,12 +8,6 @@
 #include "cli/plan/plan_estimate.h"
 #include "partition/advance/ways.h"
 
-static struct vg_void view(const struct vg_front *f)
-{
-  return (struct vg_void){ .n_point = f->n_point, .x = f->x,
-                           .n_face = f->n_face, .face = f->face };
-}
-
 void vg_plan_parting_release(struct vg_plan_parting *q)
 {
   for (size_t k = 0; q->load && k < q->n_part; k++)
@@ -28,13 +22,13 @@ void vg_plan_parting_release(struct vg_plan_parting *q)
 static vg_status weigh_parts(const struct vg_load *load,
                              struct vg_plan_parting *q, struct vg_error *err)
 {
-  struct vg_void *v = vg_calloc(q->n_part, sizeof *v);
+  struct vg_front *v = vg_calloc(q->n_part, sizeof *v);
   vg_status st;
 
   q->load = vg_calloc(q->n_part, sizeof *q->load);
   st = v && q->load ? VG_OK : vg_fail_memory(err, "the parts");
   for (size_t k = 0; st == VG_OK && k < q->n_part; k++)
-    v[k] = view(&q->made.part[k].front);
+    v[k] = q->made.part[k].front;
   if (st == VG_OK)
     st = vg_load_split(load, q->n_part, v, 1, NULL, q->load, err);
   for (size_t k = 0; st == VG_OK && k < q->n_part; k++) {
@@ -64,28 +58,26 @@ static struct vg_parting_options options_of(const struct vg_plan *p)
 vg_status vg_plan_part(struct vg_plan *p, struct vg_error *err)
 {
   const struct vg_way *way = &vg_ways[p->problem.settings.decompose];
-  const struct vg_mesh *m = p->front;
-  struct vg_front f = { .n_point = m->n_point, .n_face = m->n_tri,
-                        .x = m->point, .face = m->tri };
+  struct vg_front f = vg_front_of(p->front);
   struct vg_parting_options o = options_of(p);
   double t = vg_clock();
   vg_status st;
 
   if (!way->maker) return VG_OK;
-  f.name = vg_alloc(f.n_point, sizeof *f.name);
-  if (!f.name) return vg_fail_memory(err, "the front");
-  for (size_t k = 0; k < f.n_point; k++) f.name[k] = VG_POINT_NAME(0, k);
+  f.id = vg_alloc(f.n_point, sizeof *f.id);
+  if (!f.id) return vg_fail_memory(err, "the front");
+  for (size_t k = 0; k < f.n_point; k++) f.id[k] = VG_POINT_ID(0, k);
   st = way->maker(&f, &p->load, p->sizing, &o, 1, NULL, &p->parting.made, err);
   if (st == VG_OK) {
     p->parting.n_part = p->parting.made.n_part;
     p->parting.seconds = vg_clock() - t;
     st = weigh_parts(&p->load, &p->parting, err);
   }
-  free(f.name);
+  free(f.id);
   return st;
 }
 
-vg_status vg_plan_parted(const struct vg_plan *p, const struct vg_void *v,
+vg_status vg_plan_parted(const struct vg_plan *p, const struct vg_front *v,
                          const struct vg_cut_rule *rule,
                          struct vg_forecast *out, struct vg_error *err)
 {
@@ -100,7 +92,7 @@ vg_status vg_plan_parted(const struct vg_plan *p, const struct vg_void *v,
 
   if (!part) return vg_fail_memory(err, "the forecast");
   for (size_t k = 0; k < q->n_part; k++)
-    part[k] = (struct vg_forecast_part){ view(&q->made.part[k].front),
+    part[k] = (struct vg_forecast_part){ q->made.part[k].front,
                                          &q->load[k],
                                          q->made.part[k].may_cut };
   st = vg_forecast_parted(v, &p->load, &all, rule, (int)s->levels, &p->rates,

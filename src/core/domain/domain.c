@@ -173,13 +173,6 @@ static double domain_size(void *user, const double x[3])
   return h < d->radius / 4 ? h : d->radius / 4;
 }
 
-static int domain_stop(void *user)
-{
-  const struct domain *d = user;
-
-  return d->farfield->stop && d->farfield->stop(d->farfield->user);
-}
-
 static vg_status place_farfield(struct domain *d, struct vg_error *err)
 {
   const struct vg_farfield *f = d->farfield;
@@ -213,7 +206,7 @@ static vg_status outside(const struct domain *d, size_t i,
 static vg_status add_sphere(struct domain *d, uint32_t patch,
                             struct vg_border *border, struct vg_error *err)
 {
-  const struct vg_size_law law = { domain_size, domain_stop, d };
+  const struct vg_size_law law = { domain_size, d, d->farfield->stop };
   const double most = FARFIELD_ROOM * d->radius;
 
   for (size_t i = 0; i < d->m.n_point; i++) {
@@ -233,7 +226,7 @@ static vg_status add_box(struct domain *d, uint32_t patch,
                          struct vg_border *border, struct vg_error *err)
 {
   const struct vg_farfield *f = d->farfield;
-  const struct vg_size_law law = { domain_size, domain_stop, d };
+  const struct vg_size_law law = { domain_size, d, d->farfield->stop };
   const uint32_t of[6] = { patch, patch, patch, patch, patch, patch };
   const int open = d->axis < 0 ? -1 : 2 * d->axis + !d->side;
   double lo[3], hi[3];
@@ -286,7 +279,7 @@ static vg_status add_patch(struct vg_mesh *m, const char *name, int32_t bc,
 static vg_status add_symmetry(struct domain *d, struct vg_border *border,
                               struct vg_error *err)
 {
-  const struct vg_size_law law = { domain_size, domain_stop, d };
+  const struct vg_size_law law = { domain_size, d, d->farfield->stop };
   struct vg_error inner = VG_ERROR_INIT;
   uint32_t patch = 0;
   vg_status st;

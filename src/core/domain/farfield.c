@@ -44,8 +44,8 @@ static vg_status divide(double len, double (*size)(void *user, double s),
 {
   vg_status st = vg_graded_steps(len, size, user, least, n, s, err);
 
-  if (st < 0 && vg_size_law_stops(law))
-    st = vg_fail(err, VG_ERR_IO, "interrupted");
+  if (st < 0 && vg_stops(&law->stop))
+    st = vg_fail(err, VG_ERR_STOPPED, "interrupted");
   return st;
 }
 
@@ -81,11 +81,6 @@ static double size_on_disc(void *user, const double p[2])
          * (1 + p[0] * p[0] + p[1] * p[1]) / (2 * s->radius);
 }
 
-static int stop_on_disc(void *user)
-{
-  return vg_size_law_stops(((const struct half_sphere *)user)->size);
-}
-
 /* Point of the unit circle, turn in quarters, 0 <= turn < 4. */
 static void on_circle(double turn, double p[2])
 {
@@ -102,7 +97,7 @@ static double size_on_circle(void *user, double turn)
   const struct half_sphere *s = user;
   double p[2], x[3];
 
-  if (vg_size_law_stops(s->size)) return 0;
+  if (vg_stops(&s->size->stop)) return 0;
   on_circle(turn >= 4 ? 0 : turn, p);
   to_sphere(s, p, x);
   return s->size->at(s->size->user, x) / (s->radius * 1.57079632679489662);
@@ -144,7 +139,8 @@ static vg_status add_half(struct vg_mesh *m, const struct half_sphere *s,
   double (*add)[2] = NULL;
   uint32_t (*edge)[2] = vg_alloc(n, sizeof *edge), (*tri)[3] = NULL;
   uint32_t (*list)[3], *of, base;
-  const struct vg_planar_law law = { size_on_disc, stop_on_disc, (void *)s };
+  const struct vg_planar_law law = { size_on_disc, (void *)s,
+                                     s->size->stop };
   vg_status st = VG_OK;
 
   if (!edge) {
@@ -233,7 +229,7 @@ static double size_on_line(void *user, double s)
   const struct line *l = user;
   double x[3] = { l->a[0], l->a[1], l->a[2] };
 
-  if (vg_size_law_stops(l->size)) return 0;
+  if (vg_stops(&l->size->stop)) return 0;
   x[l->axis] += s;
   return l->size->at(l->size->user, x);
 }

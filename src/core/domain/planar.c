@@ -265,7 +265,7 @@ vg_status vg_planar_mesh(size_t n, const double (*p)[2], size_t n_edge,
   bad = vg_tri2_fill(&r.t, law);
   if (!bad) bad = vg_tri2_improve(&r.t, (uint32_t)n + 3, N_SWEEP, law);
   if (bad > 0) {
-    st = vg_fail(err, VG_ERR_IO, "interrupted");
+    st = vg_fail(err, VG_ERR_STOPPED, "interrupted");
     goto done;
   }
   if (bad) {

@@ -7,16 +7,16 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/stop.h"
 #include "core/domain/project.h"
 #include "core/mesh/mesh.h"
 #include "core/sizing/sizing.h"
 
-/** Target edge length at a point of a plane. stop, which may be NULL, is asked
- * now and then and costs next to nothing: non-zero ends the work, VG_ERR_IO. */
+/** Target edge length at a point of a plane. */
 struct vg_planar_law {
   double (*at)(void *user, const double x[2]);
-  int (*stop)(void *user);
   void *user;
+  struct vg_stop stop;     /* asked now and then */
 };
 
 /** Triangulate a plane region bounded by closed loops of segments.
@@ -30,8 +30,8 @@ struct vg_planar_law {
  *                   points, owned by the caller
  * Boundary segments are kept as they are. No minimum angle is promised where
  * the boundary itself is sharp. Same bytes for the same input.
- * VG_ERR_GEOMETRY names the first pair of crossing segments; VG_ERR_IO:
- * stopped. */
+ * VG_ERR_GEOMETRY names the first pair of crossing segments;
+ * VG_ERR_STOPPED. */
 vg_status vg_planar_mesh(size_t n, const double (*p)[2], size_t n_edge,
                          const uint32_t (*edge)[2],
                          const struct vg_planar_law *law, size_t *n_new,
@@ -41,10 +41,10 @@ vg_status vg_planar_mesh(size_t n, const double (*p)[2], size_t n_edge,
 /** Surface of a project made of planar patches: curves are marched as VGRID
  * does (formats.md 1.7), then each patch is triangulated.
  * Point order as VGRID's: configuration points, curve points, others.
- * @param stop  asked now and then, may be NULL; non-zero: VG_ERR_IO */
+ * @param stop  asked now and then; NULL: never. VG_ERR_STOPPED */
 vg_status vg_project_surface(const struct vg_project *project,
                              const struct vg_sizing *sizing,
-                             int (*stop)(void *user), void *user,
+                             const struct vg_stop *stop,
                              struct vg_mesh *out, struct vg_error *err);
 
 enum vg_farfield_kind { VG_FARFIELD_NONE, VG_FARFIELD_SPHERE,
@@ -64,12 +64,10 @@ struct vg_farfield {
                              1: are; -1: are not */
   double spacing;         /* edge length on the farfield; 0: from the growth
                              of the field */
-  int (*stop)(void *user); /* asked now and then, may be NULL; non-zero:
-                             VG_ERR_IO */
-  void *user;
+  struct vg_stop stop;    /* asked now and then */
 };
 #define VG_FARFIELD_INIT \
-  { VG_FARFIELD_SPHERE, 0, 20, {0}, 0, {0}, {0}, 0, 0, 0, NULL, NULL }
+  { VG_FARFIELD_SPHERE, 0, 20, {0}, 0, {0}, {0}, 0, 0, 0, { NULL, NULL } }
 
 struct vg_domain_report {
   int added_farfield, added_symmetry;

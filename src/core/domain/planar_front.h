@@ -13,7 +13,7 @@
 /** Is the caller asked to stop? k counts steps: not at every one of them. */
 static inline int vg_tri2_stops(const struct vg_planar_law *law, size_t k)
 {
-  return k % 256 == 0 && law->stop && law->stop(law->user);
+  return k % 256 == 0 && vg_stops(&law->stop);
 }
 
 /** Add points until the triangles have the target size.

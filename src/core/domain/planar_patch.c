@@ -66,11 +66,6 @@ static double size_in_plane(void *user, const double p[2])
   return f->size->at(f->size->user, x);
 }
 
-static int stop_in_plane(void *user)
-{
-  return vg_size_law_stops(((const struct frame *)user)->size);
-}
-
 /* Axis that all points share exactly, or -1. */
 static int shared_axis(const struct vg_mesh *m, size_t n_edge,
                        const uint32_t (*edge)[2], const double n[3])
@@ -222,7 +217,7 @@ vg_status vg_planar_patch_near(struct vg_mesh *m, size_t n_edge,
 {
   vg_status st;
   struct frame f = { .size = size, .flatness = flatness };
-  const struct vg_planar_law law = { size_in_plane, stop_in_plane, &f };
+  const struct vg_planar_law law = { size_in_plane, &f, size->stop };
   struct local l = { 0 };
   size_t n_new = 0, n_tri = 0;
   double (*add)[2] = NULL;

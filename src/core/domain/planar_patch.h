@@ -6,25 +6,20 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/stop.h"
 #include "core/mesh/mesh.h"
 
-/** Target edge length in space; stop as in vg_planar_law. */
+/** Target edge length in space. */
 struct vg_size_law {
   double (*at)(void *user, const double x[3]);
-  int (*stop)(void *user);
   void *user;
+  struct vg_stop stop;     /* asked now and then */
 };
 
 struct vg_sizing;
 
 /** The law of a size field, borrowed. */
 struct vg_size_law vg_size_law_of(const struct vg_sizing *sizing);
-
-/** Does the law's user want to stop? */
-static inline int vg_size_law_stops(const struct vg_size_law *law)
-{
-  return law->stop && law->stop(law->user);
-}
 
 /** Append the triangles of the plane region on the left of `edge` to m.
  *
@@ -35,7 +30,7 @@ static inline int vg_size_law_stops(const struct vg_size_law *law)
  * @param patch   index in m->patch of the new triangles
  * A region whose points share one coordinate exactly keeps it in every new
  * point. VG_ERR_GEOMETRY: points off the plane by more than 1e-6 of the
- * extent, or loops that cross. VG_ERR_IO: stopped. */
+ * extent, or loops that cross. VG_ERR_STOPPED. */
 vg_status vg_planar_patch(struct vg_mesh *m, size_t n_edge,
                           const uint32_t (*edge)[2],
                           const struct vg_size_law *size, uint32_t patch,

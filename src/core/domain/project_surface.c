@@ -18,8 +18,7 @@
 struct builder {
   const struct vg_project *project;
   const struct vg_sizing *sizing;
-  int (*stop)(void *user);
-  void *user;
+  struct vg_stop stop;
   struct vg_mesh m;
   size_t cap_point;
   uint32_t *corner;        /* [project n_point] mesh point, or UINT32_MAX */
@@ -38,13 +37,6 @@ static double size_at(void *user, const double x[3])
   o.scale = b->project->ifact;
   return vg_sizing_sources_at(&o, b->project->n_source, b->project->source,
                               x);
-}
-
-static int stopped(void *user)
-{
-  const struct builder *b = user;
-
-  return b->stop && b->stop(b->user);
 }
 
 static uint32_t add_point(struct builder *b, const double x[3])
@@ -165,7 +157,7 @@ static int march(struct builder *b, struct run *r, double **step, size_t *n)
     run_point(r, s, x);
     h = size_at(b, x);
     if (!(h > len * 1e-9)) return 1;
-    if (stopped(b)) return 2;
+    if (vg_stops(&b->stop)) return 2;
     s += h;
   }
   /* *n steps, the last one cut off by the end */
@@ -186,7 +178,7 @@ static vg_status trace_run(struct builder *b, size_t curve, struct run *r,
   vg_status st = VG_OK;
 
   if (bad == 2)
-    st = vg_fail(err, VG_ERR_IO, "interrupted");
+    st = vg_fail(err, VG_ERR_STOPPED, "interrupted");
   else if (bad > 0)
     st = vg_fail(err, VG_ERR_INPUT, "%s: curve %" PRId32 " is more than 1e9 "
                  "times longer than the spacing on it; check the sources",
@@ -240,7 +232,7 @@ static vg_status trace_curve(struct builder *b, size_t i,
 static vg_status fill_shape(struct builder *b, size_t i, struct vg_error *err)
 {
   const struct vg_patch_shape *shape = &b->project->shape[i];
-  const struct vg_size_law law = { size_at, stopped, b };
+  const struct vg_size_law law = { size_at, b, b->stop };
   uint32_t (*edge)[2];
   size_t n = 0;
   struct vg_error inner = VG_ERROR_INIT;
@@ -282,13 +274,13 @@ static vg_status copy_patches(struct builder *b, struct vg_error *err)
 
 vg_status vg_project_surface(const struct vg_project *project,
                              const struct vg_sizing *sizing,
-                             int (*stop)(void *user), void *user,
+                             const struct vg_stop *stop,
                              struct vg_mesh *out, struct vg_error *err)
 {
-  struct builder b = { .project = project, .sizing = sizing, .stop = stop,
-                       .user = user };
+  struct builder b = { .project = project, .sizing = sizing };
   vg_status st;
 
+  if (stop) b.stop = *stop;
   VG_TRY(check_project(project, err));
   VG_TRY(copy_patches(&b, err));
   VG_TRY(place_corners(&b, err));

@@ -1,90 +1,92 @@
 #include "core/fill/fill.h"
 
-#include <inttypes.h>
-#include <stdlib.h>
-#include <string.h>
+#include <assert.h>
 
-#include "base/memory.h"
-#include "core/fill/grow.h"
+#include "base/clock.h"
+#include "core/fill/fill_parts.h"
+#include "core/recover/boundary.h"
 
-static vg_status all_points_used(const struct vg_mesh *m,
-                                 struct vg_error *err)
+static void add_boundary(struct vg_fill_report *to,
+                         const struct vg_boundary_report *b)
 {
-  uint8_t *used = vg_calloc(m->n_point, 1);
-  size_t p = 0;
-
-  if (!used) return vg_fail_memory(err, "the front");
-  for (size_t i = 0; i < m->n_tri; i++)
-    for (int k = 0; k < 3; k++) used[m->tri[i][k]] = 1;
-  while (p < m->n_point && used[p]) p++;
-  free(used);
-  if (p == m->n_point) return VG_OK;
-  return vg_fail(err, VG_ERR_INPUT,
-                 "point %zu (%g %g %g) is in no triangle; remove it", p + 1,
-                 m->point[p][0], m->point[p][1], m->point[p][2]);
+  to->n_surface_face_lost += b->n_face_lost;
+  to->n_pocket += b->n_pocket;
+  to->n_pocket_cell += b->n_pocket_cell;
+  to->n_retry += b->n_retry;
+  to->whole_void |= b->whole_void;
+  to->n_steiner += b->n_steiner;
 }
 
-/* The void's arrays become the mesh's; the boundary is copied. */
-static vg_status to_mesh(struct vg_void *v, const struct vg_mesh *surface,
-                         struct vg_mesh *out, struct vg_error *err)
+/* A front that this region alone does not settle is no failure: the cut may be
+ * made elsewhere, or the void filled as it is. */
+static vg_status recover(struct vg_filling *g, struct vg_error *err)
 {
-  struct vg_mesh bare = *surface, m = VG_MESH_INIT;
+  const struct vg_front *f = g->front;
+  const double (*x)[3] = (const double (*)[3])f->x;
+  const uint32_t (*face)[3] = (const uint32_t (*)[3])f->face;
+  struct vg_boundary_report b = {0};
+  double t0 = vg_clock();
   vg_status st;
 
-  bare.n_point = bare.n_tet = bare.n_pyr = bare.n_pri = bare.n_hex = 0;
-  bare.n_quad = 0;
-  VG_TRY(vg_mesh_copy(&m, &bare, err));
-  m.point = v->x;
-  m.n_point = v->n_point;
-  m.tet = v->cell;
-  m.n_tet = v->n_cell;
-  v->x = NULL;
-  v->cell = NULL;
-  vg_mesh_move(out, &m);
-done:
+  if (g->region)
+    st = vg_boundary_open(f->n_point, x, f->n_face, face, g->region, g->sizing,
+                          &g->t, &b, err);
+  else
+    st = vg_boundary_tets(f->n_point, x, f->n_face, face, &g->t, &b, err);
+  add_boundary(g->report, &b);
+  g->report->time_boundary += vg_clock() - t0;
+  if (st != VG_ERR_GEOMETRY || !g->region) return st;
+  g->report->n_retry++;
+  return VG_BLOCKED;
+}
+
+/* VG_MARK on the cells that are kept: all, or those of a region. */
+static vg_status choose(struct vg_filling *g, struct vg_error *err)
+{
+  struct vg_tets *t = &g->t;
+
+  if (g->region) return vg_zone_choose(g, err);
+  for (size_t c = 0; c < t->n_cell; c++) {
+    if (t->flag[c] & VG_DEAD) continue;
+    t->flag[c] |= VG_MARK;
+    g->out.n_cell++;
+  }
+  return VG_OK;
+}
+
+static vg_status make(struct vg_filling *g, struct vg_error *err)
+{
+  vg_status st = vg_stopped(&g->options->stop, err);
+
+  if (st == VG_OK) st = recover(g, err);
+  if (st == VG_OK) st = vg_filling_populate(g, err);
+  if (st == VG_OK && g->region) st = vg_zone_narrow(g, err);
+  if (st == VG_OK) st = vg_filling_improve(g, err);
+  if (st == VG_OK) st = choose(g, err);
+  if (st == VG_OK) st = vg_filled_take(g, err);
   return st;
 }
 
-/* Field points make five cells each and more: beyond this many the limit on
- * cells cannot be kept, which is known before most of the work is done. */
-static size_t most_points(uint64_t max_cells)
+vg_status vg_fill_front(const struct vg_front *front,
+                        const struct vg_region *region,
+                        const struct vg_sizing *sizing,
+                        const struct vg_fill_options *options,
+                        struct vg_filled *out, struct vg_fill_report *report,
+                        struct vg_error *err)
 {
-  if (!max_cells) return 0;
-  return max_cells < 5 ? 1 : (size_t)(max_cells / 5);
-}
-
-static vg_status within_limit(const struct vg_void *v, uint64_t max_cells,
-                              struct vg_error *err)
-{
-  if (!max_cells || v->n_cell <= max_cells) return VG_OK;
-  return vg_fail(err, VG_ERR_UNSUPPORTED, "the mesh has %zu cells, %" PRIu64
-                 " are allowed; use a coarser spacing or raise the limit",
-                 v->n_cell, max_cells);
-}
-
-vg_status vg_fill(const struct vg_mesh *surface, const struct vg_sizing *sizing,
-                  const struct vg_fill_options *options, struct vg_mesh *out,
-                  struct vg_fill_report *report, struct vg_error *err)
-{
-  struct vg_void v = VG_VOID_INIT;
-  struct vg_grow_options grow = VG_GROW_OPTIONS_INIT;
+  struct vg_filling g = { front, region, sizing, options, report,
+                          VG_TETS_INIT, VG_FILLED_INIT };
+  double t0 = vg_clock();
   vg_status st;
 
-  memset(report, 0, sizeof *report);
-  grow.sweeps = options->optimise;
-  grow.point_limit = most_points(options->max_cells);
-  grow.progress = options->progress;
-  grow.user = options->user;
-  if (!surface->n_tri)
-    return vg_fail(err, VG_ERR_GEOMETRY, "the surface has no triangles: it "
-                   "encloses nothing to fill");
-  VG_TRY(vg_void_from_mesh(&v, surface, err));
-  VG_TRY(all_points_used(surface, err));
-  st = vg_grow(&v, sizing, &grow, report, err);
-  if (st != VG_OK) goto done;
-  VG_TRY(within_limit(&v, options->max_cells, err));
-  st = to_mesh(&v, surface, out, err);
-done:
-  vg_void_release(&v);
+  assert(!region || region->n_plane > 0);
+  assert(!out->n_point && !out->n_cell && !out->x && !out->cell);
+  if (!front->n_face) return region ? VG_BLOCKED : VG_OK;
+  st = vg_front_check(front, err);
+  if (st == VG_OK) st = make(&g, err);
+  if (st == VG_OK) *out = g.out;
+  else vg_filled_release(&g.out);
+  vg_tets_release(&g.t);
+  report->time_total += vg_clock() - t0;
   return st;
 }

@@ -1,30 +1,42 @@
-/* core/fill/fill.h: a closed surface and a size field in, tetrahedra out. */
+/* core/fill/fill.h: the one kernel that makes cells.
+ *
+ * The kernel tetrahedralises a front (core/recover/boundary.h), places points
+ * that advance from the front by the local spacing (core/fill/place.h), inserts
+ * them (core/delaunay/insert.h) and optimises the cells
+ * (core/optimise/optimise.h). Without a region it fills the whole void. With a
+ * region it keeps the cells along the region's planes, and the front around
+ * them becomes part of the front of what is left:
+ *
+ *     front   ___________           ___________
+ *            |     :     |         |   |xxx|   |   x  cells that are kept
+ *            |     :     |   ->    |   |xxx|   |   |  new faces of the front
+ *            |_____:_____|         |___|xxx|___|   :  plane of the region
+ *
+ * The decomposition, its coarse mesh, other meshers (core/mesher/fill_with.h)
+ * and tests make cells through vg_filled. */
 #ifndef VG_CORE_FILL_FILL_H
 #define VG_CORE_FILL_FILL_H
 
 #include <stddef.h>
 #include <stdint.h>
 
-#include "core/mesh/mesh.h"
+#include "base/entries.h"
+#include "base/stop.h"
+#include "core/front/front.h"
+#include "core/front/region.h"
 #include "core/sizing/sizing.h"
 
-/** Called now and then with the work done so far; return non-zero to stop
- * (the fill then ends with VG_BLOCKED and no mesh). May be NULL. */
-typedef int (*vg_progress)(void *user, const char *stage, size_t done,
-                           size_t expected);
-
 struct vg_fill_options {
-  int optimise;            /* sweeps of optimisation, 0: none; default 2 */
-  uint64_t max_cells;      /* refuse to make more; 0: no limit */
-  vg_progress progress;
-  void *user;
+  int sweeps;                /* of optimisation over all cells; 0: none */
+  uint64_t point_limit;      /* refuse to place more points; 0: no limit */
+  struct vg_stop stop;       /* asked now and then, on the caller's thread */
 };
-#define VG_FILL_OPTIONS_INIT { 2, 0, NULL, NULL }
+#define VG_FILL_OPTIONS_INIT { 2, 0, { NULL, NULL } }
 
 /** What happened, for the report. Times are wall seconds. */
 struct vg_fill_report {
-  size_t n_surface_face_lost; /* surface triangles to be recovered: not among
-                                 the Delaunay faces of the surface's points */
+  size_t n_surface_face_lost; /* front faces to be recovered: not among the
+                                 Delaunay faces of the front's points */
   size_t n_pocket, n_pocket_cell; /* pockets closed by TetGen, their cells */
   size_t n_retry;          /* larger pockets that had to be tried */
   int whole_void;          /* 1: TetGen had to close a whole void */
@@ -43,17 +55,67 @@ struct vg_fill_report {
   double time_boundary, time_place, time_insert, time_optimise, time_total;
 };
 
-/** Tetrahedralise what the boundary triangles of `surface` enclose.
+/** Its fields (report.c). */
+extern const struct vg_entries vg_fill_entries;
+
+/** What became of a front: its change. Corners of cells and faces are indices
+ * of points: those of the front first, new points behind them. */
+struct vg_filled {
+  size_t n_point, n_cell, n_face, n_consumed;
+  double (*x)[3];            /* [n_point] coordinates of the new points */
+  uint32_t (*cell)[4];       /* [n_cell] corners of cells of positive volume;
+                                NULL: the cells are elsewhere */
+  uint32_t (*face)[3];       /* [n_face] new faces of the front, which look into
+                                the void that is left */
+  uint32_t *consumed;        /* [n_consumed] faces of the front that have a cell
+                                now, ascending. Without a region all of them
+                                have, and the list is empty */
+  size_t n_hole;             /* cells of the region that could not be kept */
+  double volume;             /* sum over a region's cells of V / h^3 */
+};
+#define VG_FILLED_INIT { 0 }
+
+/** Frees the arrays. *f is empty then. */
+void vg_filled_release(struct vg_filled *f);
+
+/** Append *f to the bytes of a message or record; cells 0: without cells. */
+struct vg_writer;
+struct vg_reader;
+void vg_filled_put(struct vg_writer *w, const struct vg_filled *f, int cells);
+/** The reverse. Damaged data set r->bad and leave *f empty. */
+void vg_filled_get(struct vg_reader *r, struct vg_filled *f, int cells);
+
+/** Number of defects: cells without positive volume (exact), indices out of
+ * range, edges of the front of what is left that are not balanced, for a front
+ * that was closed. 0 where all is well; SIZE_MAX when memory is refused, or
+ * where the consumed faces do not ascend or are out of range. has_region: as in the call that made *f. O(n log n). For checks. */
+size_t vg_filled_defects(const struct vg_front *front,
+                         const struct vg_filled *f, int has_region);
+
+/** Make cells from a front.
  *
- * @param surface  closed, oriented into the fluid, free of intersections
- *                 (see surface_check.h), no quads; cells ignored; borrowed
- * @param out      the volume mesh: its first surface->n_point points, its
- *                 triangles and its patches are those of `surface`, in order
- *                 (points of the surface that no triangle uses are refused)
- * Threads: re-entrant. Same bytes for the same input.
- * Returns VG_ERR_GEOMETRY when the surface cannot bound a mesh. */
-vg_status vg_fill(const struct vg_mesh *surface, const struct vg_sizing *sizing,
-                  const struct vg_fill_options *options, struct vg_mesh *out,
-                  struct vg_fill_report *report, struct vg_error *err);
+ * @param front   faces into the void. Every point is a corner of a face. Without
+ *                a region: closed, free of intersections. With a region: all
+ *                faces that vg_region_may_meet within VG_BAND_FRONT, and no
+ *                others
+ * @param region  NULL: fill the void. Else at least one plane; cells lie within
+ *                the walls, so that regions which walls keep apart may be made
+ *                from the same front at the same time, at a cost that does not
+ *                depend on the rest of the front
+ * @param out     empty; untouched on failure
+ * @param report  counts and times are added
+ * An empty front bounds nothing: VG_OK and no cells, or, with a region,
+ * VG_BLOCKED. Same bytes for the same input. Threads: re-entrant.
+ * VG_BLOCKED: no cells can be made along this region (the front cannot be
+ * recovered, or its inner side not told from its outer side, which
+ * report->n_retry counts). VG_ERR_STOPPED: as asked. VG_ERR_GEOMETRY: the front does not
+ * bound a fluid. VG_ERR_UNSUPPORTED: the limit of points is passed.
+ * VG_ERR_INPUT: see vg_front_check. */
+vg_status vg_fill_front(const struct vg_front *front,
+                        const struct vg_region *region,
+                        const struct vg_sizing *sizing,
+                        const struct vg_fill_options *options,
+                        struct vg_filled *out, struct vg_fill_report *report,
+                        struct vg_error *err);
 
 #endif

@@ -121,22 +121,14 @@ enum outcome { FILLED, STOPPED, TOO_MANY, FAILED, ENDED };
 
 struct filling {
   int fd;
-  const struct vg_void *v;
+  const struct vg_front *front;
   const struct vg_sizing *sizing;
-  const struct vg_grow_options *options;
+  const struct vg_fill_options *options;
   double seconds;
   size_t n, n_cell;
   double (*x)[3];            /* [n] the front's points first */
   uint32_t (*cell)[4];
 };
-
-static int is_stopped(const struct filling *f)
-{
-  const struct vg_grow_options *o = f->options;
-
-  return o->progress &&
-         o->progress(o->user, "filling", 0, f->v->n_face) != 0;
-}
 
 /* Until there is something to be read. */
 static enum outcome await(const struct filling *f)
@@ -149,14 +141,14 @@ static enum outcome await(const struct filling *f)
 
     if (n > 0) return FILLED;
     if (n < 0 && errno != EINTR) return ENDED;
-    if (is_stopped(f)) return STOPPED;
+    if (vg_stops(&f->options->stop)) return STOPPED;
     if (vg_clock() > end) return ENDED;
   }
 }
 
 static int put_job(const struct filling *f)
 {
-  const struct vg_void *v = f->v;
+  const struct vg_front *v = f->front;
   const struct vg_mesher_job job = { v->n_point, v->n_face, f->seconds };
 
   return vg_child_put(f->fd, &job, sizeof job) &&
@@ -180,7 +172,7 @@ static int answer_sizes(const struct filling *f, uint64_t n)
 static enum outcome take_cells(struct filling *f,
                                const struct vg_mesher_word *w)
 {
-  size_t n_front = f->v->n_point;
+  size_t n_front = f->front->n_point;
 
   if (f->options->point_limit && w->n > f->options->point_limit)
     return TOO_MANY;
@@ -190,7 +182,7 @@ static enum outcome take_cells(struct filling *f,
   f->x = vg_alloc(f->n, sizeof *f->x);
   f->cell = vg_alloc(f->n_cell, sizeof *f->cell);
   if (!f->x || !f->cell) return ENDED;
-  memcpy(f->x, f->v->x, n_front * sizeof *f->x);
+  memcpy(f->x, f->front->x, n_front * sizeof *f->x);
   if (!vg_child_get(f->fd, f->x + n_front, w->n * sizeof *f->x) ||
       !vg_child_get(f->fd, f->cell, w->n_cell * sizeof *f->cell))
     return ENDED;
@@ -213,57 +205,56 @@ static enum outcome converse(struct filling *f)
   }
 }
 
-/* The checked cells into the void. */
-static vg_status commit(struct filling *f, struct vg_void *v,
-                        struct vg_error *err)
+/* The checked cells, without the points of the front. */
+static vg_status take(struct filling *f, struct vg_filled *out,
+                      struct vg_error *err)
 {
-  size_t n_new = f->n - v->n_point;
+  size_t n_front = f->front->n_point, n_new = f->n - n_front;
 
-  if (vg_reserve(&v->x, &v->cap_point, f->n, sizeof *v->x) ||
-      vg_reserve(&v->cell, &v->cap_cell, v->n_cell + f->n_cell,
-                 sizeof *v->cell))
-    return vg_fail_memory(err, "the cells of the mesh");
-  if (n_new) memcpy(v->x + v->n_point, f->x + v->n_point, n_new * sizeof *v->x);
-  memcpy(v->cell + v->n_cell, f->cell, f->n_cell * sizeof *v->cell);
-  v->n_point = f->n;
-  v->n_cell += f->n_cell;
-  v->n_face = 0;
+  out->x = vg_alloc(n_new, sizeof *out->x);
+  if (!out->x) return vg_fail_memory(err, "the cells of the mesh");
+  if (n_new) memcpy(out->x, f->x + n_front, n_new * sizeof *out->x);
+  out->n_point = n_new;
+  out->cell = f->cell;
+  out->n_cell = f->n_cell;
+  f->cell = NULL;
   return VG_OK;
 }
 
-static vg_status judge(struct filling *f, struct vg_void *v,
+static vg_status judge(struct filling *f, struct vg_filled *out,
                        struct vg_fill_report *r, struct vg_error *err)
 {
+  const struct vg_front *front = f->front;
   const char *wrong;
-  size_t n_front = v->n_point;
-  vg_status st = vg_mesher_check(n_front, v->n_face,
-                                 (const uint32_t (*)[3])v->face, &f->n, f->x,
-                                 f->n_cell, f->cell, &wrong, err);
+  vg_status st = vg_mesher_check(front->n_point, front->n_face,
+                                 (const uint32_t (*)[3])front->face, &f->n,
+                                 f->x, f->n_cell, f->cell, &wrong, err);
 
   if (st == VG_NOT_BETTER) r->n_other_wrong++;
   if (st != VG_OK) return st;
-  st = commit(f, v, err);
+  st = take(f, out, err);
   if (st < 0) return st;
   r->n_other++;
-  r->n_other_cell += f->n_cell;
-  r->n_placed += f->n - n_front;
-  r->n_inserted += f->n - n_front;
+  r->n_other_cell += out->n_cell;
+  r->n_placed += out->n_point;
+  r->n_inserted += out->n_point;
   return VG_OK;
 }
 
-vg_status vg_mesher_fill(struct vg_mesher_pool *p, struct vg_void *v,
+vg_status vg_mesher_fill(struct vg_mesher_pool *p, const struct vg_front *front,
                          const struct vg_sizing *sizing,
-                         const struct vg_grow_options *options,
-                         struct vg_fill_report *report, struct vg_error *err)
+                         const struct vg_fill_options *options,
+                         struct vg_filled *out, struct vg_fill_report *report,
+                         struct vg_error *err)
 {
-  struct filling f = { .v = v, .sizing = sizing, .options = options,
-    .seconds = p->patience + p->patience_each * (double)v->n_face };
+  struct filling f = { .front = front, .sizing = sizing, .options = options,
+    .seconds = p->patience + p->patience_each * (double)front->n_face };
   double t = vg_clock();
   struct vg_child c;
   enum outcome o;
   vg_status st;
 
-  if (!v->n_face) return VG_OK;
+  if (!front->n_face) return VG_OK;
   st = borrow(p, &c, err);
   if (st < 0) return st;
   f.fd = c.fd;
@@ -272,8 +263,8 @@ vg_status vg_mesher_fill(struct vg_mesher_pool *p, struct vg_void *v,
   else vg_child_close(&c);
   st = VG_NOT_BETTER;
   switch (o) {
-  case FILLED: st = judge(&f, v, report, err); break;
-  case STOPPED: st = VG_BLOCKED; break;
+  case FILLED: st = judge(&f, out, report, err); break;
+  case STOPPED: st = vg_stopped(&options->stop, err); break;
   case TOO_MANY:
     st = vg_fail(err, VG_ERR_UNSUPPORTED, "a void takes more than %llu points",
                  (unsigned long long)options->point_limit);

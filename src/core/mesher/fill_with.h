@@ -3,8 +3,7 @@
 #ifndef VG_CORE_MESHER_FILL_WITH_H
 #define VG_CORE_MESHER_FILL_WITH_H
 
-#include "core/fill/grow.h"
-#include "core/front/void.h"
+#include "core/fill/fill.h"
 #include "core/sizing/sizing.h"
 
 /** A mesher that is ready, and the processes that have loaded it. */
@@ -22,21 +21,22 @@ vg_status vg_mesher_open(const char *name, struct vg_mesher_pool **out,
 /** Accepts NULL. No void may be under way. */
 void vg_mesher_close(struct vg_mesher_pool *p);
 
-/** Fill v whole, as vg_grow does, but by the pool's mesher: v->cell, v->x and
- * an empty front. options->sweeps is not for it.
+/** Fill the void within a front, as vg_fill_front does without a region, but
+ * by the pool's mesher, which does not use options->sweeps.
  *
  * What comes back is checked: points finite and used, every triangle of the
  * front the face of one cell on its inner side, every other face that of two
  * cells on both sides of it, all volumes positive (exactly), their sum that of
  * the front.
- * Returns VG_NOT_BETTER when there is nothing that stands up to that: v is
- * unchanged, and *report counts why (n_other_...); VG_BLOCKED when stopped;
+ * Returns VG_NOT_BETTER when the cells do not pass, or there are none: *out is
+ * untouched, and *report counts why (n_other_...); VG_ERR_STOPPED;
  * VG_ERR_UNSUPPORTED beyond options->point_limit.
  * Threads: any number of voids at a time. */
-vg_status vg_mesher_fill(struct vg_mesher_pool *p, struct vg_void *v,
+vg_status vg_mesher_fill(struct vg_mesher_pool *p, const struct vg_front *front,
                          const struct vg_sizing *sizing,
-                         const struct vg_grow_options *options,
-                         struct vg_fill_report *report, struct vg_error *err);
+                         const struct vg_fill_options *options,
+                         struct vg_filled *out, struct vg_fill_report *report,
+                         struct vg_error *err);
 
 /** Seconds on the processor, and more for each triangle of a front, after which
  * a void is given up; ten times as long without a sign of life, too. */

@@ -97,7 +97,7 @@ static void find_range(struct vg_sizing *s)
 
 /* The part of vg_sizing_new that has checked input and owns nothing. */
 static vg_status build(const struct vg_sizing_options *o,
-                       const struct vg_mesh *surface, struct vg_field *f,
+                       const struct vg_mesh *surface, struct vg_stat *f,
                        const struct vg_samples *samples, struct vg_sizing *s,
                        struct vg_error *err)
 {
@@ -172,7 +172,7 @@ vg_status vg_sizing_new(const struct vg_sizing_options *given, size_t n,
   atomic_int is_steep = 0;
   int steep;
   struct vg_map_fault fault = { ATOMIC_FLAG_INIT, 0, { 0, 0, 0 }, 0 };
-  struct vg_field f = { .set = VG_SOURCE_SET_INIT, .is_steep = &is_steep };
+  struct vg_stat f = { .set = VG_SOURCE_SET_INIT, .is_steep = &is_steep };
   struct vg_samples samples = VG_SAMPLES_INIT;
   struct vg_bvh *near = NULL, *under = NULL;
   struct vg_sizing *s = NULL;

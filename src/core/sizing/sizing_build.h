@@ -29,7 +29,7 @@ struct vg_octree_point {
 
 /* Cells of a level follow each other, eight children of a cell too. */
 struct vg_octree_build {
-  const struct vg_field *f;
+  const struct vg_stat *f;
   struct vg_octree_cell *cell;
   struct vg_octree_point *point;
   size_t n_cell, n_point, cap_cell, cap_point, max_cell;

@@ -5,7 +5,7 @@
  * allows. */
 #define FINER 0.65
 
-double vg_field_clamp(const struct vg_field *f, double h)
+double vg_stat_clamp(const struct vg_stat *f, double h)
 {
   h = h < f->h_max ? h : f->h_max;
   return h > f->h_min ? h : f->h_min;
@@ -13,28 +13,28 @@ double vg_field_clamp(const struct vg_field *f, double h)
 
 /* Where the upper bound is below the sources it holds, and the lower one,
  * which costs most, need not be known. */
-double vg_field_combine(const struct vg_field *f, const double x[3],
+double vg_stat_combine(const struct vg_stat *f, const double x[3],
                         double source, struct vg_bvh_reach *reach,
                         uint32_t *hint)
 {
   double h = source < f->h_max ? source : f->h_max, most, by;
 
-  if (!f->near) return vg_field_clamp(f, h);
+  if (!f->near) return vg_stat_clamp(f, h);
   most = vg_bvh_above(f->near, x, x, f->h_max, hint);
-  if (most <= h) return vg_field_clamp(f, most);
+  if (most <= h) return vg_stat_clamp(f, most);
   h = vg_bvh_below(f->under, x, h, most, reach, &by);
   if (h < most && h < vg_bvh_knee(f->under, by))
     atomic_store_explicit(f->is_steep, 1, memory_order_relaxed);
-  return vg_field_clamp(f, h < most ? h : most);
+  return vg_stat_clamp(f, h < most ? h : most);
 }
 
-double vg_field_at(const struct vg_field *f, const double x[3],
+double vg_stat_at(const struct vg_stat *f, const double x[3],
                    struct vg_bvh_reach *reach, uint32_t *hint)
 {
-  return vg_field_combine(f, x, vg_source_at(&f->set, x), reach, hint);
+  return vg_stat_combine(f, x, vg_source_at(&f->set, x), reach, hint);
 }
 
-double vg_field_floor(const struct vg_field *f, const double lo[3],
+double vg_stat_floor(const struct vg_stat *f, const double lo[3],
                       double side, struct vg_bvh_reach *reach,
                       uint32_t *hint, int *by_sources)
 {
@@ -53,14 +53,14 @@ double vg_field_floor(const struct vg_field *f, const double lo[3],
   }
   if (!(h < f->h_max)) h = f->h_max;
   *by_sources = 1;
-  if (!f->near) return vg_field_clamp(f, h);
+  if (!f->near) return vg_stat_clamp(f, h);
   most = vg_bvh_above(f->near, lo, hi, f->h_max, hint);
   *by_sources = h < FINER * most;
-  if (most <= h) return vg_field_clamp(f, most);
+  if (most <= h) return vg_stat_clamp(f, most);
   below = vg_bvh_below(f->under, mid, h + fall, most + fall, reach, &by);
   more = vg_bvh_falls(f->under, by, below, far);
   below -= fall;
   if (more > 0 && below - more > h) h = below - more;
   else if (!(more > 0)) h = below;
-  return vg_field_clamp(f, h < most ? h : most);
+  return vg_stat_clamp(f, h < most ? h : most);
 }

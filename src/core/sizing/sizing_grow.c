@@ -91,7 +91,7 @@ static float sample(struct family *y, const struct vg_octree_cell *c, int i)
   coordinates(i, at);
   for (int k = 0; k < 3; k++) q[k] = c->at[k] + l->half * (uint32_t)at[k];
   vg_octree_place(l->b, q, x);
-  return (float)vg_field_at(l->b->f, x, &y->reach, &hint);
+  return (float)vg_stat_at(l->b->f, x, &y->reach, &hint);
 }
 
 /* Siblings share faces. */
@@ -158,7 +158,7 @@ static int wants_split(struct family *y, struct vg_octree_cell *c,
   if (l->side <= b->floor * (double)c->floor) return 0;
   vg_octree_place(b, c->at, lo);
   for (int k = 0; k < 3; k++) hi[k] = lo[k] + l->side;
-  c->floor = (float)vg_field_floor(b->f, lo, l->side, &y->reach, &c->hint,
+  c->floor = (float)vg_stat_floor(b->f, lo, l->side, &y->reach, &c->hint,
                                    &by_sources);
   c->rest = by_sources ? c->floor : c->floor * b->surface;
   if (l->side <= b->floor * (double)c->rest) return 0;
@@ -515,7 +515,7 @@ static int make_root(struct vg_octree_build *b)
     *p = (struct vg_octree_point){ .hint = 0 };
     for (int k = 0; k < 3; k++) p->at[k] = (i >> k & 1) * VG_OCTREE_TOP;
     vg_octree_place(b, p->at, x);
-    p->h = (float)vg_field_at(b->f, x, NULL, &p->hint);
+    p->h = (float)vg_stat_at(b->f, x, NULL, &p->hint);
     b->cell->corner[i] = i;
   }
   return 0;

@@ -122,7 +122,7 @@ static void source_body(void *context, size_t first, size_t end, int worker)
   (void)worker;
   for (size_t i = first; i < end; i++) {
     vg_octree_place(b, b->point[i].at, x);
-    l->before[i] = (float)vg_field_clamp(b->f, vg_source_at(&b->f->set, x));
+    l->before[i] = (float)vg_stat_clamp(b->f, vg_source_at(&b->f->set, x));
     atomic_init(l->bits + i, bits_of(l->before[i]));
   }
 }
@@ -140,7 +140,7 @@ static void renew_body(void *context, size_t first, size_t end, int worker)
 
     if (p->hangs || h == l->before[i]) continue;
     vg_octree_place(b, p->at, x);
-    p->h = (float)vg_field_combine(b->f, x, (double)h, NULL, &p->hint);
+    p->h = (float)vg_stat_combine(b->f, x, (double)h, NULL, &p->hint);
   }
 }
 

@@ -117,7 +117,7 @@ static int compact(const struct vg_octree_build *b, struct vg_octree *t)
   return 0;
 }
 
-vg_status vg_octree_build(const struct vg_field *f, const double lo[3],
+vg_status vg_octree_build(const struct vg_stat *f, const double lo[3],
                           double side, double coarseness, size_t max_leaf,
                           int threads, struct vg_team *team,
                           struct vg_octree *out, struct vg_error *err)

@@ -12,7 +12,7 @@
  * below are the growth of the surface (sizing_bvh.h). So the field equals
  * the local size on the surface, and departs from it at the growth rate; down
  * to sources that are much finer than faces nearby, faster in the end. */
-struct vg_field {
+struct vg_stat {
   const struct vg_bvh *near;  /* from above; NULL: no surface */
   const struct vg_bvh *under; /* from below; NULL: nor any source */
   struct vg_source_set set;
@@ -35,29 +35,29 @@ struct vg_octree {
 };
 #define VG_OCTREE_INIT { 0 }
 
-double vg_field_clamp(const struct vg_field *f, double h);
+double vg_stat_clamp(const struct vg_stat *f, double h);
 
 /** Value of the field at x before its gradient is limited. reach, hint: for
  * the searches (sizing_bvh.h), without influence. */
-double vg_field_at(const struct vg_field *f, const double x[3],
+double vg_stat_at(const struct vg_stat *f, const double x[3],
                    struct vg_bvh_reach *reach, uint32_t *hint);
 
 /** The surface's bounds applied to the sources' size at x. */
-double vg_field_combine(const struct vg_field *f, const double x[3],
+double vg_stat_combine(const struct vg_stat *f, const double x[3],
                         double source, struct vg_bvh_reach *reach,
                         uint32_t *hint);
 
 /** Lower bound of the field within a cube; of VGRID's mean an estimate from
  * the centre, which is good in a cube that resolves its sources.
  * by_sources out: 1: they ask for less than the surface does. */
-double vg_field_floor(const struct vg_field *f, const double lo[3],
+double vg_stat_floor(const struct vg_stat *f, const double lo[3],
                       double side, struct vg_bvh_reach *reach,
                       uint32_t *hint, int *by_sources);
 
 /** Build over the cube lo, side with about max_leaf leaves at most. *out is
  * empty before, and on failure. threads: as vg_parallel_for's; the same tree
  * for any number. team: NULL, or those who make it together. */
-vg_status vg_octree_build(const struct vg_field *f, const double lo[3],
+vg_status vg_octree_build(const struct vg_stat *f, const double lo[3],
                           double side, double coarseness, size_t max_leaf,
                           int threads, struct vg_team *team,
                           struct vg_octree *out, struct vg_error *err);

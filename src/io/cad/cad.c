@@ -148,9 +148,9 @@ static vg_status await(struct call *k, struct vg_error *err)
   struct pollfd p = { .fd = k->cad->child.fd, .events = POLLIN };
 
   do {
-    if (o && o->stop && o->stop(o->user)) {
+    if (o && vg_stops(&o->stop)) {
       end_child(k->cad);
-      return vg_fail(err, VG_ERR_IO, "%s: stopped while reading it", k->path);
+      return vg_fail(err, VG_ERR_STOPPED, "%s: stopped while reading it", k->path);
     }
     if (o && o->seconds > 0 && vg_clock() - k->start > o->seconds) {
       end_child(k->cad);
@@ -430,7 +430,7 @@ static int crashed_uniting(const struct call *k)
 
   return !k->cad->is_open && !strcmp(k->cad->stage, VG_CAD_STAGE_UNITE)
          && !(o->seconds > 0 && vg_clock() - k->start > o->seconds)
-         && !(o->stop && o->stop(o->user));
+         && !vg_stops(&o->stop);
 }
 
 static vg_status parse(struct vg_cad *c, struct vg_input *in,

@@ -14,6 +14,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/stop.h"
 #include "core/mesh/mesh.h"
 #include "io/stream/stream.h"
 
@@ -51,8 +52,8 @@ struct vg_cad_options {
   void (*note)(void *user, const char *text); /* what a report should say, line
                                 by line: unit, what was healed or dropped, with
                                 places; NULL: lost */
-  int (*stop)(void *user);   /* 1: give up; asked ten times a second; NULL */
-  void *user;
+  void *user;                /* of note */
+  struct vg_stop stop;       /* asked ten times a second: give up? */
 };
 #define VG_CAD_OPTIONS_INIT \
   { .chord = 2e-3, .angle = 15, .seconds = 3600 }   /* S15 */

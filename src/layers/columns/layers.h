@@ -3,7 +3,7 @@
  *
  * vg_layers_grow turns walls into columns and leaves the front: the tops of
  * the columns, the slide patches re-meshed around their footprint, and all
- * other patches as they were. The front bounds what vg_fill has to fill;
+ * other patches as they were. vg_fill_front fills the void within the front;
  * vg_layers_join then puts layers and field together. */
 #ifndef VG_LAYERS_COLUMNS_LAYERS_H
 #define VG_LAYERS_COLUMNS_LAYERS_H
@@ -12,7 +12,9 @@
 #include <stdint.h>
 
 #include "base/comm.h"
-#include "core/fill/fill.h"
+#include "base/progress.h"
+#include "base/stop.h"
+#include "core/front/front.h"
 #include "core/mesh/mesh.h"
 #include "core/sizing/sizing.h"
 #include "layers/columns/columns.h"
@@ -44,12 +46,12 @@ struct vg_layer_options {
   int smooth;               /* sweeps over the directions */
   int threads;              /* 0: one per core */
   struct vg_team *team;     /* that makes them together (base/team.h), or NULL */
-  vg_progress progress;
-  void *user;
+  struct vg_progress progress;
+  struct vg_stop stop;      /* asked between rounds */
 };
 /* L1 */
 #define VG_LAYER_OPTIONS_INIT { NULL, NULL, NULL, 0, 0.95, 0.4, 2, 100, \
-                                1, NULL, NULL, NULL }
+                                1, NULL, { NULL, NULL }, { NULL, NULL } }
 
 /** What happened. Times are wall seconds. */
 /* Faces of a column that lines start from where it looks ahead (clear.h). */
@@ -68,29 +70,44 @@ struct vg_layer_report {
          time_total;
 };
 
-/** The boundary of what is left to fill. */
-struct vg_layer_front {
-  struct vg_mesh mesh;      /* closed; patches are those of the surface */
-  uint32_t *column;         /* [mesh.n_point] the column whose top it is (n >=
-                               1), else VG_NO_INDEX */
-  uint32_t *point;          /* [mesh.n_point] the point of the surface that it
-                               is (n = 0, or off the walls); VG_NO_INDEX for
-                               tops and new points of re-meshed patches */
-  uint32_t *face;           /* [mesh.n_tri] the face of the columns of which it
-                               is the top, VG_NO_INDEX: none (a triangle of a
-                               patch that is boundary of the result too) */
-};
-#define VG_LAYER_FRONT_INIT { { 0 }, NULL, NULL, NULL }
+/* Ids of the points of the front above layers. */
+#define VG_LAYER_NEW UINT64_MAX  /* a new point of a patch that was remeshed */
 
-void vg_layer_front_release(struct vg_layer_front *f);
+/** The top of a column of at least one level. */
+static inline uint64_t vg_layer_top_id(uint32_t column)
+{
+  return (uint64_t)1 << 32 | column;
+}
+
+/** A point of the surface: off the walls, or a root without levels. */
+static inline uint64_t vg_layer_point_id(uint32_t point)
+{
+  return point;
+}
+
+/** The column whose top it is, or VG_NO_INDEX. */
+static inline uint32_t vg_layer_column_of(uint64_t id)
+{
+  return id >> 32 == 1 ? (uint32_t)id : VG_NO_INDEX;
+}
+
+/** The point of the surface that it is, or VG_NO_INDEX. */
+static inline uint32_t vg_layer_point_of(uint64_t id)
+{
+  return id >> 32 == 0 ? (uint32_t)id : VG_NO_INDEX;
+}
 
 struct vg_layers {
   struct vg_columns columns;
-  struct vg_layer_front front;
+  struct vg_front front;    /* of the void above, closed, with the patches of the
+                               surface. Ids of points: above. Ids of faces: the
+                               face of the columns of which it is the top, or
+                               VG_NO_INDEX for a triangle of a patch that is
+                               boundary of the result too */
   struct vg_shmem common;   /* where the arrays are, if a node has them in
                                common (layers/columns/share.h) */
 };
-#define VG_LAYERS_INIT { VG_COLUMNS_INIT, VG_LAYER_FRONT_INIT, { 0 } }
+#define VG_LAYERS_INIT { VG_COLUMNS_INIT, VG_FRONT_INIT, { 0 } }
 
 void vg_layers_release(struct vg_layers *l);
 

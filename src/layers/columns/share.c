@@ -8,13 +8,13 @@ struct array {
   size_t bytes;
 };
 
-enum { N_ARRAY = 14 };
+enum { N_ARRAY = 12 };
 
 /* All arrays of layers whose counts are set. */
 static void list_arrays(struct vg_layers *l, struct array a[N_ARRAY])
 {
   struct vg_columns *c = &l->columns;
-  struct vg_mesh *m = &l->front.mesh;
+  struct vg_front *f = &l->front;
   const struct array list[N_ARRAY] = {
     { (void **)&c->column, c->n_column * sizeof *c->column },
     { (void **)&c->face, c->n_face * sizeof *c->face },
@@ -23,13 +23,11 @@ static void list_arrays(struct vg_layers *l, struct array a[N_ARRAY])
     { (void **)&c->border_patch, c->n_border * sizeof *c->border_patch },
     { (void **)&c->law, c->n_law * sizeof *c->law },
     { (void **)&c->path, c->n_path * sizeof *c->path },
-    { (void **)&m->point, m->n_point * sizeof *m->point },
-    { (void **)&m->tri, m->n_tri * sizeof *m->tri },
-    { (void **)&m->tri_patch, m->n_tri * sizeof *m->tri_patch },
-    { (void **)&m->patch, m->n_patch * sizeof *m->patch },
-    { (void **)&l->front.column, m->n_point * sizeof *l->front.column },
-    { (void **)&l->front.point, m->n_point * sizeof *l->front.point },
-    { (void **)&l->front.face, m->n_tri * sizeof *l->front.face }
+    { (void **)&f->x, f->n_point * sizeof *f->x },
+    { (void **)&f->id, f->n_point * sizeof *f->id },
+    { (void **)&f->face, f->n_face * sizeof *f->face },
+    { (void **)&f->patch, f->n_face * sizeof *f->patch },
+    { (void **)&f->face_id, f->n_face * sizeof *f->face_id }
   };
 
   memcpy(a, list, sizeof list);
@@ -43,9 +41,7 @@ void vg_layers_show(const struct vg_layers *layers,
   struct array a[N_ARRAY];
 
   list_arrays(&view, a);
-  for (int i = 0; i < N_ARRAY; i++)
-    if (a[i].at != (void **)&view.front.mesh.patch)
-      look(user, a[i].bytes, *a[i].at);
+  for (int i = 0; i < N_ARRAY; i++) look(user, a[i].bytes, *a[i].at);
 }
 
 /* The layers' counts, then their arrays. */

@@ -21,7 +21,7 @@ struct join {
 static vg_status place_points(struct join *j, struct vg_error *err)
 {
   const struct vg_join_plan *p = &j->plan;
-  size_t n_front = p->front->mesh.n_point;
+  size_t n_front = p->front->n_point;
   size_t n_field = j->field->n_point - n_front;
 
   j->m->point = vg_alloc(p->n_point, sizeof *j->m->point);
@@ -60,7 +60,7 @@ static void fill_field(void *context, size_t first, size_t end, int worker)
 {
   const struct join *j = context;
   const struct vg_join_plan *p = &j->plan;
-  size_t n_front = p->front->mesh.n_point;
+  size_t n_front = p->front->n_point;
   uint32_t (*tet)[4] = j->m->tet + p->expand.n_cell[VG_KIND_TET];
 
   (void)worker;
@@ -106,7 +106,7 @@ vg_status vg_layers_join(const struct vg_mesh *surface,
   VG_TRY(vg_join_check_field(&layers->front, field->n_point, field->n_tri,
                              field->n_pyr + field->n_pri + field->n_hex, err));
   VG_TRY(vg_join_plan_open(&j.plan, surface, layers,
-                           field->n_point - layers->front.mesh.n_point, cells,
+                           field->n_point - layers->front.n_point, cells,
                            threads, err));
   vg_mesh_move(&m, &j.plan.boundary);
   VG_TRY(place_points(&j, err));

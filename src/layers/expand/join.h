@@ -33,8 +33,8 @@ struct vg_join_info {
  * and tetrahedra (a prism over an edge collapsed to a point is no cell of any
  * format), and flanks of triangles.
  *
- * @param field   vg_fill's mesh of layers->front.mesh: its first points are
- *                the front's
+ * @param field   mesh of the void within layers->front; its first points are
+ *                those of the front
  * @param out     replaced on success, untouched on failure
  * VG_ERR_INPUT when the field is not the front's; VG_ERR_UNSUPPORTED beyond
  * 2^32 - 1 points.

@@ -18,10 +18,9 @@ struct work {
 static int same_tri(const struct work *w, size_t f, size_t s)
 {
   for (int k = 0; k < 3; k++) {
-    uint32_t p = w->p->front->mesh.tri[f][k];
+    uint32_t v = w->p->front->face[f][k];
 
-    if (w->p->front->column[p] != VG_NO_INDEX ||
-        w->p->front->point[p] != w->p->surface->tri[s][k])
+    if (w->p->front->id[v] != vg_layer_point_id(w->p->surface->tri[s][k]))
       return 0;
   }
   return 1;
@@ -33,7 +32,8 @@ static int same_tri(const struct work *w, size_t f, size_t s)
 static void compare_patches(struct work *w, const uint8_t *is_wall, size_t *at,
                             uint32_t *list)
 {
-  const struct vg_mesh *s = w->p->surface, *f = &w->p->front->mesh;
+  const struct vg_mesh *s = w->p->surface;
+  const struct vg_front *f = w->p->front;
   size_t sum = 0;
 
   for (size_t i = 0; i < s->n_tri; i++)
@@ -48,10 +48,10 @@ static void compare_patches(struct work *w, const uint8_t *is_wall, size_t *at,
     if (!w->stays[i]) list[at[s->tri_patch[i]]++] = (uint32_t)i;
   for (size_t q = s->n_patch; q; q--) at[q] = at[q - 1];
   at[0] = 0;
-  for (size_t i = 0; i < f->n_tri; i++) {
-    uint32_t q = f->tri_patch[i];
+  for (size_t i = 0; i < f->n_face; i++) {
+    uint32_t q = f->patch[i];
 
-    if (w->p->front->face[i] != VG_NO_INDEX || is_wall[q]) continue;
+    if (f->face_id[i] != VG_NO_INDEX || is_wall[q]) continue;
     if (at[q] < sum && s->tri_patch[list[at[q]]] == q &&
         same_tri(w, i, list[at[q]]))
       at[q]++;
@@ -107,15 +107,16 @@ static vg_status reserve_boundary(struct vg_mesh *m, struct vg_error *err)
 /* Is triangle i of the front boundary of the mesh, and none of the surface? */
 static int is_new(const struct work *w, size_t i)
 {
-  return w->p->front->face[i] == VG_NO_INDEX &&
-         w->changed[w->p->front->mesh.tri_patch[i]];
+  return w->p->front->face_id[i] == VG_NO_INDEX &&
+         w->changed[w->p->front->patch[i]];
 }
 
 /* Counts faces by patch, then turns them into where each patch begins. */
 static void count_boundary(struct work *w)
 {
   const struct vg_columns *c = w->p->columns;
-  const struct vg_mesh *f = &w->p->front->mesh, *s = w->p->surface;
+  const struct vg_front *f = w->p->front;
+  const struct vg_mesh *s = w->p->surface;
   size_t n_tri = 0, n_quad = 0;
 
   for (size_t r = 0; r < c->n_border; r++) {
@@ -125,8 +126,8 @@ static void count_boundary(struct work *w)
     w->tri[c->border_patch[r]] += tri;
     w->quad[c->border_patch[r]] += quad;
   }
-  for (size_t i = 0; i < f->n_tri; i++)
-    if (is_new(w, i)) w->tri[f->tri_patch[i]]++;
+  for (size_t i = 0; i < f->n_face; i++)
+    if (is_new(w, i)) w->tri[f->patch[i]]++;
   for (size_t i = 0; i < s->n_tri; i++) n_tri += w->stays[i];
   for (size_t q = 0; q < s->n_patch; q++) {
     size_t tri = w->tri[q], quad = w->quad[q];
@@ -159,7 +160,8 @@ static void fill_flanks(struct work *w)
 
 static void fill_boundary(struct work *w)
 {
-  const struct vg_mesh *s = w->p->surface, *f = &w->p->front->mesh;
+  const struct vg_mesh *s = w->p->surface;
+  const struct vg_front *f = w->p->front;
   struct vg_mesh *m = w->m;
   size_t at = 0;
 
@@ -169,12 +171,12 @@ static void fill_boundary(struct work *w)
       m->tri_patch[at++] = s->tri_patch[i];
     }
   fill_flanks(w);
-  for (size_t i = 0; i < f->n_tri; i++)
+  for (size_t i = 0; i < f->n_face; i++)
     if (is_new(w, i)) {
-      size_t to = w->tri[f->tri_patch[i]]++;
+      size_t to = w->tri[f->patch[i]]++;
 
-      for (int k = 0; k < 3; k++) m->tri[to][k] = w->p->id[f->tri[i][k]];
-      m->tri_patch[to] = f->tri_patch[i];
+      for (int k = 0; k < 3; k++) m->tri[to][k] = w->p->id[f->face[i][k]];
+      m->tri_patch[to] = f->patch[i];
     }
 }
 

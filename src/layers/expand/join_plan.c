@@ -7,40 +7,40 @@
 
 #include "base/memory.h"
 
-vg_status vg_join_check_field(const struct vg_layer_front *front,
+vg_status vg_join_check_field(const struct vg_front *f,
                               uint64_t n_point, uint64_t n_tri,
                               uint64_t n_other_cell, struct vg_error *err)
 {
-  const struct vg_mesh *f = &front->mesh;
-
-  if (n_point >= f->n_point && n_tri == f->n_tri && !n_other_cell)
+  if (n_point >= f->n_point && n_tri == f->n_face && !n_other_cell)
     return VG_OK;
   return vg_fail(err, VG_ERR_INPUT,
                  "the field (%" PRIu64 " points, %" PRIu64 " boundary "
                  "triangles) does not fill the front of the layers (%zu "
                  "points, %zu triangles)",
-                 n_point, n_tri, f->n_point, f->n_tri);
+                 n_point, n_tri, f->n_point, f->n_face);
 }
 
 /* Is point i of the front new with a re-meshed patch? */
-static int is_new(const struct vg_layer_front *f, size_t i)
+static int is_new(const struct vg_front *f, size_t i)
 {
-  return f->column[i] == VG_NO_INDEX && f->point[i] == VG_NO_INDEX;
+  return f->id[i] == VG_LAYER_NEW;
 }
 
 /* Number the points of the surface in use: roots, and what the front has.
  * Returns how many there are. */
 static size_t number_surface(struct vg_join_plan *p)
 {
-  const struct vg_layer_front *f = p->front;
+  const struct vg_front *f = p->front;
   size_t n = 0;
 
   memset(p->root, 0xff, p->surface->n_point * sizeof *p->root);
   for (size_t i = 0; i < p->columns->n_column; i++)
     p->root[p->columns->column[i].root] = 0;
-  for (size_t i = 0; i < f->mesh.n_point; i++)
-    if (f->column[i] == VG_NO_INDEX && f->point[i] != VG_NO_INDEX)
-      p->root[f->point[i]] = 0;
+  for (size_t i = 0; i < f->n_point; i++) {
+    uint32_t v = vg_layer_point_of(f->id[i]);
+
+    if (v != VG_NO_INDEX) p->root[v] = 0;
+  }
   for (size_t i = 0; i < p->surface->n_point; i++)
     if (p->root[i] != VG_NO_INDEX) p->root[i] = (uint32_t)n++;
   return n;
@@ -49,17 +49,17 @@ static size_t number_surface(struct vg_join_plan *p)
 /* Numbers of the front's points, once columns have theirs. */
 static void number_front(struct vg_join_plan *p)
 {
-  const struct vg_layer_front *f = p->front;
+  const struct vg_front *f = p->front;
   const struct vg_expand *e = &p->expand;
   size_t next = p->first_new;
 
-  for (size_t i = 0; i < f->mesh.n_point; i++) {
-    uint32_t c = f->column[i];
+  for (size_t i = 0; i < f->n_point; i++) {
+    uint32_t c = vg_layer_column_of(f->id[i]);
     unsigned n = c != VG_NO_INDEX ? vg_mark_n(e->mark[c]) : 0;
 
     if (c != VG_NO_INDEX) p->id[i] = n ? e->base[c] + n - 1 : e->foot[c];
     else if (is_new(f, i)) p->id[i] = (uint32_t)next++;
-    else p->id[i] = p->root[f->point[i]];
+    else p->id[i] = p->root[vg_layer_point_of(f->id[i])];
   }
 }
 
@@ -70,7 +70,7 @@ static vg_status number_points(struct vg_join_plan *p, uint64_t n_field_point,
   size_t first[2], n_new = 0;
   vg_status st;
 
-  for (size_t i = 0; i < p->front->mesh.n_point; i++)
+  for (size_t i = 0; i < p->front->n_point; i++)
     n_new += (size_t)is_new(p->front, i);
   p->first_flank = number_surface(p);
   p->first_new = p->first_flank + e->n_point[VG_FLANK];
@@ -103,7 +103,7 @@ vg_status vg_join_plan_open(struct vg_join_plan *p,
   p->columns = &layers->columns;
   p->front = &layers->front;
   p->root = vg_alloc(surface->n_point, sizeof *p->root);
-  p->id = vg_alloc(p->front->mesh.n_point, sizeof *p->id);
+  p->id = vg_alloc(p->front->n_point, sizeof *p->id);
   if (!p->root || !p->id) {
     st = vg_fail_memory(err, "joining layers and field");
     goto done;
@@ -130,14 +130,14 @@ void vg_join_plan_points(const struct vg_join_plan *p, int boundary_only,
                          double (*point)[3])
 {
   const struct vg_mesh *s = p->surface;
-  const struct vg_layer_front *f = p->front;
+  const struct vg_front *f = p->front;
 
   for (size_t i = 0; i < s->n_point; i++)
     if (p->root[i] != VG_NO_INDEX)
       memcpy(point[p->root[i]], s->point[i], sizeof *point);
   vg_expand_points(&p->expand, s, boundary_only, point);
-  for (size_t i = 0; i < f->mesh.n_point; i++)
-    if (is_new(f, i)) memcpy(point[p->id[i]], f->mesh.point[i], sizeof *point);
+  for (size_t i = 0; i < f->n_point; i++)
+    if (is_new(f, i)) memcpy(point[p->id[i]], f->x[i], sizeof *point);
 }
 
 void vg_join_plan_describe(const struct vg_join_plan *p, double time,

@@ -10,7 +10,7 @@
 struct vg_join_plan {
   const struct vg_mesh *surface;
   const struct vg_columns *columns;
-  const struct vg_layer_front *front;
+  const struct vg_front *front;
   struct vg_expand expand;
   uint32_t *root;          /* [surface->n_point] point of the mesh, or
                               VG_NO_INDEX */
@@ -22,7 +22,7 @@ struct vg_join_plan {
 };
 
 /** Does a mesh of these counts fill the front? VG_ERR_INPUT if not. */
-vg_status vg_join_check_field(const struct vg_layer_front *front,
+vg_status vg_join_check_field(const struct vg_front *f,
                               uint64_t n_point, uint64_t n_tri,
                               uint64_t n_other_cell, struct vg_error *err);
 

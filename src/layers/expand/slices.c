@@ -148,7 +148,7 @@ static vg_status get_part(const struct vg_layer_slices *k, size_t part,
  * had nothing else is left empty. */
 static void leave_front(const struct vg_layer_slices *k, struct vg_slice *s)
 {
-  uint64_t n_front = k->plan.front->mesh.n_point;
+  uint64_t n_front = k->plan.front->n_point;
   size_t n_cell = 0;
 
   if (s->point_at < n_front) {
@@ -171,7 +171,7 @@ static vg_status get_field(const struct vg_layer_slices *k, size_t i,
                            struct vg_layer_slice *at, struct vg_slice *s,
                            struct vg_error *err)
 {
-  size_t n_front = k->plan.front->mesh.n_point;
+  size_t n_front = k->plan.front->n_point;
   vg_status st = k->field->get(k->field, i, &at->field, err);
 
   if (st < 0) return st;
@@ -284,7 +284,7 @@ vg_status vg_layer_slices_open(const struct vg_mesh *surface,
                              field->n_cell[VG_SLICE_PYR] +
                              field->n_cell[VG_SLICE_PRI], err));
   VG_TRY(vg_join_plan_open(&k->plan, surface, layers,
-                           field->n_point - layers->front.mesh.n_point, cells,
+                           field->n_point - layers->front.n_point, cells,
                            threads, err));
   VG_TRY(find_slices(k, err));
   VG_TRY(share_equally(k, err));

@@ -19,7 +19,7 @@
  * Kept per rank: the surface's and front's numbers, columns', and the
  * boundary with its points, all O(surface). A slice at hand costs its own
  * cells and points.
- * @param field  of layers->front.mesh: its first points are the front's. They
+ * @param field  of the void within layers->front, whose points come first. They
  *               are taken out of the slices that own them; what then has
  *               neither points nor cells is passed on as an empty slice.
  *               Borrowed until closed, as are surface and layers

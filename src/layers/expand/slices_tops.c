@@ -31,7 +31,7 @@ static void sort3(const uint32_t v[3], uint32_t s[3])
 /* Where a triangle is in the table, or would go. */
 static size_t find(const struct tops *t, const uint32_t v[3])
 {
-  const uint32_t (*tri)[3] = (const uint32_t (*)[3])t->p->front->mesh.tri;
+  const uint32_t (*tri)[3] = (const uint32_t (*)[3])t->p->front->face;
   uint32_t key[3], other[3];
   uint64_t mix;
   size_t i;
@@ -49,17 +49,17 @@ static size_t find(const struct tops *t, const uint32_t v[3])
 
 static vg_status make_table(struct tops *t, struct vg_error *err)
 {
-  const struct vg_layer_front *f = t->p->front;
+  const struct vg_front *f = t->p->front;
   size_t size = 16;
 
-  while (size < 2 * f->mesh.n_tri) size *= 2;
+  while (size < 2 * f->n_face) size *= 2;
   t->slot = vg_alloc(size, sizeof *t->slot);
   if (!t->slot) return vg_fail_memory(err, "the tops of the layers");
   t->mask = size - 1;
   memset(t->slot, 0xff, size * sizeof *t->slot);
-  for (size_t i = 0; i < f->mesh.n_tri; i++)
-    if (f->face[i] != VG_NO_INDEX)
-      t->slot[find(t, f->mesh.tri[i])] = (uint32_t)i;
+  for (size_t i = 0; i < f->n_face; i++)
+    if (f->face_id[i] != VG_NO_INDEX)
+      t->slot[find(t, f->face[i])] = (uint32_t)i;
   return VG_OK;
 }
 
@@ -87,16 +87,16 @@ static void meet(const struct tops *t, const struct vg_slice *s,
                  const uint32_t cell[4], const uint32_t v[3])
 {
   static const uint32_t whole[4] = { 0, 1, 2, 3 };
-  const struct vg_layer_front *f = t->p->front;
+  const struct vg_front *f = t->p->front;
   uint32_t i = t->slot[find(t, v)];
   double x[4][3], above, below;
 
   if (i == VG_NO_INDEX) return;
-  below = volume_below(t, f->face[i]);
+  below = volume_below(t, f->face_id[i]);
   if (!(below > 0)) return;
   for (int k = 0; k < 4; k++) memcpy(x[k], s->x[cell[k]], sizeof *x);
   above = vg_cell_volume((const double (*)[3])x, 0, whole);
-  t->ratio[f->face[i]] = above > below ? above / below : below / above;
+  t->ratio[f->face_id[i]] = above > below ? above / below : below / above;
 }
 
 static vg_status look_through(void *context, const struct vg_slice *s,
@@ -104,7 +104,7 @@ static vg_status look_through(void *context, const struct vg_slice *s,
 {
   const struct tops *t = context;
   const uint32_t (*tet)[4] = (const uint32_t (*)[4])s->cell[VG_SLICE_TET];
-  size_t n_front = t->p->front->mesh.n_point;
+  size_t n_front = t->p->front->n_point;
 
   (void)err;
   for (size_t i = 0; i < s->n_cell[VG_SLICE_TET]; i++) {

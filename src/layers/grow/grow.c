@@ -180,7 +180,7 @@ static vg_status try_tops(struct vg_layer_work *w, const uint8_t *active,
 }
 
 static vg_status try_slides(struct vg_layer_work *w,
-                            struct vg_layer_front *front, size_t round,
+                            struct vg_front *front, size_t round,
                             size_t *n_bad, struct vg_error *err)
 {
   struct vg_slide_failure failure = { 0 };
@@ -242,11 +242,12 @@ static void try_sides(struct vg_layer_work *w, uint8_t *bad, size_t round,
 
 /* The front as it will be filled: re-meshed patches against tops. */
 static vg_status try_front(struct vg_layer_work *w,
-                           struct vg_layer_front *front, uint8_t *bad,
+                           struct vg_front *front, uint8_t *bad,
                            size_t round, size_t *n_bad, struct vg_error *err)
 {
   struct vg_surface_check_options o = VG_SURFACE_CHECK_OPTIONS_INIT;
   struct vg_surface_report r = VG_SURFACE_REPORT_INIT;
+  struct vg_mesh mesh = vg_front_mesh(front, w->m);  /* not repaired */
   static const enum vg_defect_kind kind[] = { VG_DEFECT_INTERSECTION,
     VG_DEFECT_DEGENERATE_TRIANGLE, VG_DEFECT_NONMANIFOLD_EDGE,
     VG_DEFECT_DUPLICATE_TRIANGLE, VG_DEFECT_SHARED_WALL };
@@ -258,15 +259,15 @@ static vg_status try_front(struct vg_layer_work *w,
   o.threads = w->o->threads;
   *n_bad = 0;
   memset(bad, 0, w->c->n_column);
-  VG_TRY(vg_surface_check(&front->mesh, &o, &r, err));
+  VG_TRY(vg_surface_check(&mesh, &o, &r, err));
   for (size_t i = 0; i < sizeof kind / sizeof *kind; i++) {
     n_cross += r.count[kind[i]];
     bits |= 1u << kind[i];
   }
-  for (size_t t = 0; n_cross && t < front->mesh.n_tri; t++) {
+  for (size_t t = 0; n_cross && t < front->n_face; t++) {
     if (!(r.face_kinds[t] & bits)) continue;
     for (int k = 0; k < 3; k++) {
-      uint32_t c = front->column[front->mesh.tri[t][k]];
+      uint32_t c = vg_layer_column_of(front->id[front->face[t][k]]);
 
       if (c != VG_NO_INDEX) bad[c] = 1;
     }
@@ -327,7 +328,7 @@ static vg_status settle(struct vg_layer_work *w, struct rounds *q,
 /* The first test that fails lowers columns, and the round begins again with
  * those that moved. Heights only ever shrink, so it ends. */
 static vg_status one_round(struct vg_layer_work *w, struct rounds *q,
-                           struct vg_layer_front *front,
+                           struct vg_front *front,
                            struct vg_layer_report *r, size_t *n_bad,
                            struct vg_error *err)
 {
@@ -361,7 +362,7 @@ done:
 }
 
 static vg_status until_clear(struct vg_layer_work *w,
-                             struct vg_layer_front *front,
+                             struct vg_front *front,
                              struct vg_layer_report *r, struct vg_error *err)
 {
   size_t n = w->c->n_column, n_bad = 1;
@@ -375,13 +376,11 @@ static vg_status until_clear(struct vg_layer_work *w,
     goto done;
   }
   for (r->n_round = 0; n_bad && r->n_round < ROUNDS_MAX; r->n_round++) {
-    if (w->o->progress && w->o->progress(w->o->user, "layers", r->n_round, 0)) {
-      st = VG_BLOCKED;
-      goto done;
-    }
+    vg_tell(&w->o->progress, "layers", r->n_round, 0);
+    VG_TRY(vg_stopped(&w->o->stop, err));
     w->last_resort = r->n_round >= LAST_RESORT;
     t = vg_clock();
-    vg_layer_front_release(front);
+    vg_front_release(front);
     unbend(w->c);
     VG_TRY(settle(w, &q, err));
     r->time_height += vg_clock() - t;
@@ -428,7 +427,7 @@ static size_t face_cells(const struct vg_columns *c, const uint32_t face[3])
 }
 
 static void count(const struct vg_layer_work *w,
-                  const struct vg_layer_front *front,
+                  const struct vg_front *front,
                   struct vg_layer_report *r)
 {
   const struct vg_columns *c = w->c;
@@ -448,9 +447,9 @@ static void count(const struct vg_layer_work *w,
     r->n_cell += face_cells(c, c->face[f]);
   }
   r->n_slide_patch = w->n_slide;
-  for (size_t t = 0; t < front->mesh.n_tri; t++)
-    r->n_slide_tri += front->face[t] == VG_NO_INDEX &&
-                      w->is_slide[front->mesh.tri_patch[t]];
+  for (size_t t = 0; t < front->n_face; t++)
+    r->n_slide_tri += front->face_id[t] == VG_NO_INDEX &&
+                      w->is_slide[front->patch[t]];
 }
 
 static vg_status columns(struct vg_layer_work *w, struct vg_layer_report *r,
@@ -495,7 +494,6 @@ vg_status vg_layers_grow(const struct vg_mesh *surface,
   VG_TRY(columns(&w, &r, err));
   VG_TRY(first_allowed(&w, &r, err));
   VG_TRY(until_clear(&w, &l.front, &r, err));
-  if (st == VG_BLOCKED) goto done;
   count(&w, &l.front, &r);
   VG_TRY(vg_layers_order(surface, &l, err));
   r.time_total = vg_clock() - start;

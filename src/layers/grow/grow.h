@@ -17,8 +17,8 @@
  * On return every cell that the columns imply is positive, every prism among
  * them has positive corners, and the front does not touch itself.
  * Same bytes for any number of threads.
- * VG_ERR_INPUT for settings that cannot be (names the patch), VG_BLOCKED when
- * stopped, VG_ERR_GEOMETRY, VG_ERR_MEMORY. */
+ * VG_ERR_INPUT for settings that cannot be (names the patch), VG_ERR_STOPPED,
+ * VG_ERR_GEOMETRY, VG_ERR_MEMORY. */
 vg_status vg_layers_grow(const struct vg_mesh *surface,
                          const struct vg_sizing *sizing,
                          const struct vg_layer_options *options,

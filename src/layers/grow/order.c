@@ -47,8 +47,9 @@ vg_status vg_layers_order(const struct vg_mesh *surface, struct vg_layers *l,
   }
   memcpy(c->face, face, n * sizeof *face);
   memcpy(c->face_tri, tri, n * sizeof *tri);
-  for (size_t t = 0; t < l->front.mesh.n_tri; t++)
-    if (l->front.face[t] < n) l->front.face[t] = at[l->front.face[t]];
+  for (size_t i = 0; i < l->front.n_face; i++)
+    if (l->front.face_id[i] < n)
+      l->front.face_id[i] = at[l->front.face_id[i]];
 done:
   free(x);
   free(order);

@@ -219,7 +219,7 @@ static vg_status check_roots(struct vg_slide_work *w, const struct list *l)
 /* Number the points in use, in the order of the work. */
 static vg_status number_points(const struct vg_slide_work *w,
                                const struct list *l,
-                               struct vg_layer_front *f)
+                               struct vg_front *f)
 {
   const size_t n_m = w->m->n_point, n_c = w->c->n_column;
   uint32_t *number = vg_calloc(w->n_x, sizeof *number);
@@ -228,21 +228,20 @@ static vg_status number_points(const struct vg_slide_work *w,
   for (size_t i = 0; number && i < 3 * l->n; i++)
     number[l->tri[i / 3][i % 3]] = 1;
   for (size_t i = 0; number && i < w->n_x; i++) n += number[i];
-  f->mesh.point = vg_alloc(n, sizeof *f->mesh.point);
-  f->column = vg_alloc(n, sizeof *f->column);
-  f->point = vg_alloc(n, sizeof *f->point);
-  if (!number || !f->mesh.point || !f->column || !f->point) {
+  f->x = vg_alloc(n, sizeof *f->x);
+  f->id = vg_alloc(n, sizeof *f->id);
+  if (!number || !f->x || !f->id) {
     free(number);
     return vg_fail_memory(w->err, "the front of the layers");
   }
-  f->mesh.n_point = n;
+  f->n_point = n;
   n = 0;
   for (size_t i = 0; i < w->n_x; i++) {
     if (!number[i]) continue;
-    memcpy(f->mesh.point[n], w->x[i], sizeof w->x[i]);
-    f->point[n] = i < n_m ? (uint32_t)i : VG_NO_INDEX;
-    f->column[n] = i >= n_m && i < n_m + n_c ? (uint32_t)(i - n_m)
-                                             : VG_NO_INDEX;
+    memcpy(f->x[n], w->x[i], sizeof w->x[i]);
+    f->id[n] = i < n_m         ? vg_layer_point_id((uint32_t)i)
+               : i < n_m + n_c ? vg_layer_top_id((uint32_t)(i - n_m))
+                               : VG_LAYER_NEW;
     number[i] = (uint32_t)n++;
   }
   for (size_t i = 0; i < 3 * l->n; i++)
@@ -251,9 +250,9 @@ static vg_status number_points(const struct vg_slide_work *w,
   return VG_OK;
 }
 
-static vg_status assemble(struct vg_slide_work *w, struct vg_layer_front *out)
+static vg_status assemble(struct vg_slide_work *w, struct vg_front *out)
 {
-  struct vg_layer_front f = VG_LAYER_FRONT_INIT;
+  struct vg_front f = VG_FRONT_INIT;
   struct list l = { 0, NULL, NULL, NULL };
   vg_status st;
 
@@ -261,26 +260,17 @@ static vg_status assemble(struct vg_slide_work *w, struct vg_layer_front *out)
   VG_TRY(check_roots(w, &l));
   if (w->n_bad) goto done;
   VG_TRY(number_points(w, &l, &f));
-  f.mesh.patch = vg_alloc(w->m->n_patch, sizeof *f.mesh.patch);
-  if (!f.mesh.patch) {
-    st = vg_fail_memory(w->err, "the front of the layers");
-    goto done;
-  }
-  memcpy(f.mesh.patch, w->m->patch, w->m->n_patch * sizeof *f.mesh.patch);
-  f.mesh.n_patch = w->m->n_patch;
-  f.mesh.n_tri = l.n;
-  f.mesh.tri = l.tri;
-  f.mesh.tri_patch = l.patch;
-  f.face = l.face;
+  f.n_face = l.n;
+  f.face = l.tri;
+  f.patch = l.patch;
+  f.face_id = l.face;
   *out = f;
   return VG_OK;
 done:
   free(l.tri);
   free(l.patch);
   free(l.face);
-  free(f.mesh.point);
-  free(f.column);
-  free(f.point);
+  vg_front_release(&f);
   return st;
 }
 
@@ -307,7 +297,7 @@ vg_status vg_slide_front(const struct vg_mesh *surface, size_t n_slide,
                          const struct vg_slide *slide,
                          struct vg_columns *columns,
                          const struct vg_sizing *sizing,
-                         struct vg_layer_front *front,
+                         struct vg_front *front,
                          struct vg_slide_failure *failure,
                          struct vg_error *err)
 {
@@ -317,7 +307,7 @@ vg_status vg_slide_front(const struct vg_mesh *surface, size_t n_slide,
   vg_status st;
 
   memset(failure, 0, sizeof *failure);
-  *front = (struct vg_layer_front)VG_LAYER_FRONT_INIT;
+  *front = (struct vg_front)VG_FRONT_INIT;
   VG_TRY(prepare(&w));
   VG_TRY(vg_slide_curves(&w));
   w.local = vg_alloc(w.n_x, sizeof *w.local);

@@ -83,7 +83,7 @@ vg_status vg_slide_front(const struct vg_mesh *surface, size_t n_slide,
                          const struct vg_slide *slide,
                          struct vg_columns *columns,
                          const struct vg_sizing *sizing,
-                         struct vg_layer_front *front,
+                         struct vg_front *front,
                          struct vg_slide_failure *failure,
                          struct vg_error *err);
 

@@ -15,31 +15,22 @@
 
 /* Tasks as long as all of them plan, grow zones and join these into fronts;
  * then cells. */
-static int progress(void *user, double done_cells, double known,
-                    size_t n_done, size_t n_known)
+static void progress(void *user, double done_cells, double known,
+                     size_t n_done, size_t n_known)
 {
   struct vg_partition *p = user;
   double all = p->report.estimate;
   uint64_t n_leaf;
 
   (void)known;
-  if (!p->options.progress) return 0;
   pthread_mutex_lock(&p->lock);
   n_leaf = p->report.n_leaf;
   pthread_mutex_unlock(&p->lock);
-  if (!n_leaf && n_known > 1)
-    return p->options.progress(p->options.user, "cut and join", n_done,
-                               n_known);
   if (done_cells > all) all = done_cells;
-  return p->options.progress(p->options.user, p->stage, (size_t)done_cells,
-                             (size_t)all);
-}
-
-static int stop(void *user)
-{
-  struct vg_partition *p = user;
-
-  return p->options.stop && p->options.stop(p->options.user);
+  if (!n_leaf && n_known > 1)
+    vg_partition_tell(p, "cut and join", n_done, n_known);
+  else
+    vg_partition_tell(p, p->stage, (size_t)done_cells, (size_t)all);
 }
 
 /* The root: the whole void, with its load. By rank 0, on the cores of its
@@ -49,17 +40,15 @@ static vg_status make_root(struct vg_partition *p, struct vg_comm *comm,
 {
   const struct vg_mesh *m = p->boundary;
   struct vg_front f = VG_FRONT_INIT;
-  struct vg_void v = { .n_point = m->n_point, .x = m->point,
-                       .n_face = m->n_tri, .face = m->tri };
   struct vg_node *n = NULL;
   vg_status st = VG_OK;
 
   f.n_point = m->n_point;
   f.n_face = m->n_tri;
   f.x = vg_alloc(m->n_point, sizeof *f.x);
-  f.name = vg_alloc(m->n_point, sizeof *f.name);
+  f.id = vg_alloc(m->n_point, sizeof *f.id);
   f.face = vg_alloc(m->n_tri, sizeof *f.face);
-  if (f.x && f.name && f.face) n = vg_node_new("0", &f);
+  if (f.x && f.id && f.face) n = vg_node_new("0", &f);
   if (!n) {
     vg_front_release(&f);
     return vg_fail_memory(err, "the front");
@@ -67,11 +56,11 @@ static vg_status make_root(struct vg_partition *p, struct vg_comm *comm,
   memcpy(n->front.x, m->point, m->n_point * sizeof *n->front.x);
   memcpy(n->front.face, m->tri, m->n_tri * sizeof *n->front.face);
   for (size_t k = 0; k < m->n_point; k++)
-    n->front.name[k] = VG_POINT_NAME(0, k);
+    n->front.id[k] = VG_POINT_ID(0, k);
   n->levels = p->options.levels;
   n->per_cube = p->options.cells_per_cube;
   vg_comm_bind_node(comm, 1);
-  st = vg_load_new(&v, p->sizing, n->per_cube,
+  st = vg_load_new(&n->front, p->sizing, n->per_cube,
                    p->options.threads * vg_comm_node_size(comm), &n->load,
                    err);
   vg_comm_bind_node(comm, 0);
@@ -110,7 +99,8 @@ static vg_status run_tasks(struct vg_partition *p, struct vg_comm *comm,
   struct vg_engine_options o = { .threads = p->options.threads,
                                  .shuffle = p->options.shuffle,
                                  .cyclic = p->options.cyclic,
-                                 .progress = progress, .stop = stop,
+                                 .progress = progress,
+                                 .stop = p->options.stop,
                                  .user = p };
   struct vg_task *first = vg_calloc(n, sizeof *first);
   vg_status st = first ? VG_OK : vg_fail_memory(err, "a task");
@@ -212,53 +202,15 @@ static vg_status run_again(struct vg_partition *p, struct vg_comm *comm,
 }
 
 /* Counts and times of all ranks together. */
-static vg_status sum_report(struct vg_partition *p, struct vg_comm *comm,
+static vg_status sum_report(struct vg_partition_report *r, struct vg_comm *comm,
                             struct vg_error *err)
 {
-  struct vg_partition_report *r = &p->report;
-  struct vg_fill_report *f = &r->fill;
-  uint64_t whole = (uint64_t)f->whole_void;
-  double *time[] = {&f->time_other, &f->time_boundary, &f->time_place, &f->time_insert,
-                     &f->time_optimise, &f->time_total};
-  size_t *count[] = {&f->n_surface_face_lost, &f->n_pocket,
-    &f->n_pocket_cell, &f->n_retry, &f->n_steiner, &f->n_placed,
-    &f->n_inserted, &f->n_refused, &f->n_smoothed, &f->n_flip,
-    &f->n_collapse, &f->n_split, &f->n_list_cut, &f->n_left, &f->n_other,
-    &f->n_other_cell, &f->n_other_failed, &f->n_other_ended,
-    &f->n_other_wrong};
-  uint64_t *more[] = {&r->n_node, &r->n_pencil, &r->n_tile, &r->n_leaf,
-    &r->n_zone_cell, &r->n_blocked, &r->n_crossing, &r->n_retry, &r->n_uncut,
-    &r->n_outgrown, &r->n_open_left, &r->n_found,
-    &r->n_widened, &r->n_widened_cell, &whole, &r->n_part,
-    &r->parting.n_coarse, &r->parting.n_gap, &r->parting.n_apart,
-    &r->parting.n_asked, &r->parting.n_face};
-  enum { N_COUNT = sizeof count / sizeof *count,
-         N_MORE = sizeof more / sizeof *more,
-         N_TIME = sizeof time / sizeof *time };
-  uint64_t v[N_COUNT + N_MORE + N_TIME];
-  enum { N_MOST = 3 };
-  double most[N_MOST + VG_PARTING_STEPS] = {
-    r->estimate, r->parting.coarsening, r->parting.coarse_cells };
-  vg_status st;
+  vg_status st = vg_entries_agree(&vg_fill_entries, &r->fill, comm, err);
 
-  for (size_t k = 0; k < N_COUNT; k++) v[k] = *count[k];
-  for (size_t k = 0; k < N_MORE; k++) v[N_COUNT + k] = *more[k];
-  for (size_t k = 0; k < N_TIME; k++)
-    v[N_COUNT + N_MORE + k] = (uint64_t)(*time[k] * 1e6);
-  memcpy(most + N_MOST, r->parting.time, sizeof r->parting.time);
-  st = vg_comm_sum(comm, sizeof v / sizeof *v, v, err);
-  if (st == VG_OK) st = vg_comm_max(comm, N_MOST + VG_PARTING_STEPS, most, err);
-  if (st < 0) return st;
-  for (size_t k = 0; k < N_COUNT; k++) *count[k] = v[k];
-  for (size_t k = 0; k < N_MORE; k++) *more[k] = v[N_COUNT + k];
-  for (size_t k = 0; k < N_TIME; k++)
-    *time[k] = 1e-6 * (double)v[N_COUNT + N_MORE + k];
-  f->whole_void = (int)whole;
-  r->estimate = most[0];
-  r->parting.coarsening = most[1];
-  r->parting.coarse_cells = most[2];
-  memcpy(r->parting.time, most + N_MOST, sizeof r->parting.time);
-  return VG_OK;
+  if (st == VG_OK) st = vg_entries_agree(&vg_partition_entries, r, comm, err);
+  if (st == VG_OK)
+    st = vg_entries_agree(&vg_parting_entries, &r->parting, comm, err);
+  return st;
 }
 
 vg_status vg_partition_grow(struct vg_comm *comm, const struct vg_mesh *front,
@@ -281,7 +233,8 @@ vg_status vg_partition_grow(struct vg_comm *comm, const struct vg_mesh *front,
   pthread_mutex_init(&p->lock, NULL);
   p->rank = vg_comm_rank(comm);
   p->size = vg_comm_size(comm);
-  p->boundary = front;
+  p->front = *front;
+  p->boundary = &p->front;
   p->sizing = sizing;
   p->options = *options;
   if (p->options.threads < 1) p->options.threads = 1;
@@ -295,7 +248,7 @@ vg_status vg_partition_grow(struct vg_comm *comm, const struct vg_mesh *front,
   if (st == VG_OK) st = vg_partition_repair(p, comm, spans, err);
   if (st == VG_OK) vg_partition_tell(p, "number", p->n_piece, 0);
   if (st == VG_OK) st = vg_partition_number(p, comm, err);
-  if (st == VG_OK) st = sum_report(p, comm, err);
+  if (st == VG_OK) st = sum_report(&p->report, comm, err);
   p->report.number = vg_clock() - t0 - p->report.wall - p->report.repair;
   if (st == VG_OK)
     st = within_limit(p, (double)p->slices.n_cell[VG_SLICE_TET], "has", err);

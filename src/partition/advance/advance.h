@@ -22,11 +22,11 @@
 
 /** Fill what the triangles of `front` enclose. Collective.
  *
- * @param front  as vg_fill's surface, the same on every rank; borrowed until
- *               vg_partition_free
+ * @param front  closed, free of intersections, the same on every rank; its arrays
+ *               are borrowed until vg_partition_free
  * @param spans  see vg_engine_run
  * The cells follow from front, sizing, rule, levels and sweeps alone.
- * Returns on all ranks alike: VG_BLOCKED when stopped; VG_ERR_GEOMETRY;
+ * Returns on all ranks alike: VG_ERR_STOPPED as asked; VG_ERR_GEOMETRY;
  * VG_ERR_UNSUPPORTED beyond max_cells or 2^32 - 1 points. */
 vg_status vg_partition_grow(struct vg_comm *comm, const struct vg_mesh *front,
                             const struct vg_sizing *sizing,

@@ -36,7 +36,7 @@ static vg_status run_leaf(struct vg_partition *p, struct vg_work *w,
                           struct vg_error *err)
 {
   int outgrown;
-  vg_status st = vg_work_leaf(p, w, &outgrown, &o->change.n_cell, e, err);
+  vg_status st = vg_work_leaf(p, w, &outgrown, &o->change.made.n_cell, e, err);
 
   if (st == VG_ERR_GEOMETRY) {
     w->node->serial = w->serial;
@@ -83,7 +83,7 @@ static vg_status run(void *user, const struct vg_engine *e,
   if (!o) return vg_fail_memory(err, "the outcome of a task");
   done->n_face = faces_of(task->input);
   st = run_work(user, task->input, o, e, err);
-  done->n_cell = o->change.n_cell;
+  done->n_cell = o->change.made.n_cell;
   if (o->what == VG_WORK_START) done->elsewhere = o->node->elsewhere;
   if (st == VG_OK) *outcome = o;
   else free_outcome(o);
@@ -261,7 +261,7 @@ static vg_status zone_done(struct vg_partition *p, struct vg_engine *e,
   memset(&o->change, 0, sizeof o->change);
   pthread_mutex_lock(&p->lock);
   p->report.n_blocked += (uint64_t)change->blocked;
-  p->report.n_zone_cell += change->n_cell;
+  p->report.n_zone_cell += change->made.n_cell;
   pthread_mutex_unlock(&p->lock);
   return --n->n_left ? VG_OK : submit_join(e, n, err);
 }

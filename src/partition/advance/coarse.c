@@ -116,7 +116,7 @@ static vg_status renumber(const struct vg_front *f, size_t n_boundary,
     free(x);
     return vg_fail_memory(err, "the coarse mesh");
   }
-  for (size_t k = 0; k < f->n_point; k++) to[(uint32_t)f->name[k]] = (uint32_t)k;
+  for (size_t k = 0; k < f->n_point; k++) to[(uint32_t)f->id[k]] = (uint32_t)k;
   memcpy(x, f->x, f->n_point * sizeof *x);
   memcpy(x + f->n_point, c->x + n_boundary,
          (c->n_point - n_boundary) * sizeof *x);
@@ -134,22 +134,11 @@ static vg_status renumber(const struct vg_front *f, size_t n_boundary,
 
 /* --- made ---------------------------------------------------------------- */
 
-static int progress(void *user, const char *stage, size_t done,
-                    size_t expected)
+static void progress(void *user, const char *stage, size_t done,
+                     size_t expected)
 {
-  const struct vg_partition *p = user;
-
   (void)stage;
-  return p->options.progress
-           ? p->options.progress(p->options.user, "coarse mesh", done, expected)
-           : 0;
-}
-
-static int stop(void *user)
-{
-  const struct vg_partition *p = user;
-
-  return p->options.stop && p->options.stop(p->options.user);
+  vg_partition_tell(user, "coarse mesh", done, expected);
 }
 
 /* Its sizes, on all ranks of a node in common. */
@@ -183,9 +172,7 @@ static vg_status grow(struct vg_partition *p, struct vg_comm *comm,
   o.max_cells = 0;
   o.fail_leaves = 0;
   o.job = vg_digest_of(o.job, 6, "coarse");
-  o.progress = progress;
-  o.stop = stop;
-  o.user = p;
+  o.progress = (struct vg_progress){ progress, p };
   if (st == VG_OK)
     st = vg_partition_grow(comm, p->boundary, coarse, &o, out, &report, spans,
                            err);

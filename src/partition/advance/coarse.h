@@ -11,7 +11,7 @@
  * vg_coarse_cells_release.
  * spans out: what its tasks were, as those of a void "1" (the mesh's own is "0")
  * that make none of the mesh's cells; empty before; may be NULL.
- * Follows from the input alone. VG_BLOCKED: stopped; VG_ERR_GEOMETRY,
+ * Follows from the input alone. VG_ERR_STOPPED: as asked; VG_ERR_GEOMETRY,
  * VG_ERR_UNSUPPORTED: there is none, with the reason and a remedy. */
 vg_status vg_coarse_mesh(struct vg_partition *p, struct vg_comm *comm,
                          const struct vg_node *root, struct vg_coarse_cells *c,

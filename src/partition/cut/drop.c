@@ -19,7 +19,7 @@ vg_status vg_partition_note_drop(struct vg_partition *p,
     p->drop[p->n_drop++] = c->serial;
     p->report.n_crossing++;
     p->report.n_blocked++;
-    p->report.n_zone_cell -= c->n_cell;
+    p->report.n_zone_cell -= c->made.n_cell;
   }
   pthread_mutex_unlock(&p->lock);
   return st;

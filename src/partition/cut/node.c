@@ -140,6 +140,21 @@ done:
   return st;
 }
 
+/* The boxes tell about runs of faces, then the faces by themselves.
+ * n->face[i] is NULL where the boxes hold no face. */
+static vg_status find_part(struct vg_node *n, struct vg_work *w, size_t i)
+{
+  vg_status st = select_part(n, w, i, NULL);
+
+  if (st < 0) return st;
+  if (w->part.n_face)
+    return vg_select_near(&w->part, &w->region, n->select.sizing, &n->point[i],
+                          &n->face[i], NULL);
+  free(n->face[i]);
+  n->face[i] = NULL;
+  return VG_OK;
+}
+
 struct stage {
   struct vg_node *n;
   const struct vg_region *region;  /* [n->n_work] of the works */
@@ -160,14 +175,14 @@ static void make_works(void *context, size_t first, size_t end, int worker)
     w->kind = n->stage < VG_LATTICE_TILES ? VG_SPAN_PENCIL : VG_SPAN_TILE;
     w->node = n;
     w->region = s->region[k];
-    if (select_part(n, w, k, NULL) < 0)
+    if (find_part(n, w, k) < 0)
       vg_work_free(w);
     else
       n->work[k] = w;
   }
 }
 
-/* Keep the works that have a front, and name them. */
+/* Keep the works whose boxes hold a front, and name them. */
 static void name_works(struct vg_partition *p, struct vg_node *n)
 {
   size_t left = 0;
@@ -175,10 +190,9 @@ static void name_works(struct vg_partition *p, struct vg_node *n)
   for (size_t k = 0; k < n->n_work; k++) {
     struct vg_work *w = n->work[k];
 
-    if (!w->part.n_face) {
+    if (!n->face[k]) {
       vg_work_free(w);
       free(n->point[k]);
-      free(n->face[k]);
       continue;
     }
     snprintf(w->path, sizeof w->path, "%.*s%c%zu", VG_PATH_MAX - 12, n->path,

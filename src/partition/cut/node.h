@@ -90,7 +90,8 @@ struct vg_work {
 
 struct vg_partition {
   int rank, size;
-  const struct vg_mesh *boundary;
+  struct vg_mesh front;      /* of the whole void; its arrays are borrowed */
+  const struct vg_mesh *boundary;  /* the same */
   const struct vg_sizing *sizing;
   struct vg_partition_options options;
   const char *stage;         /* for progress: "fill", "recut" */
@@ -117,14 +118,12 @@ struct vg_partition {
   struct vg_mesh boundary_faces;        /* the boundary without points */
 };
 
-/** Tell the options' progress, on rank 0. What it answers is left to their
- * stop. */
+/** Tell the options' progress, on rank 0. */
 static inline void vg_partition_tell(const struct vg_partition *p,
                                      const char *stage, size_t done,
                                      size_t expected)
 {
-  if (p->options.progress && !p->rank)
-    p->options.progress(p->options.user, stage, done, expected);
+  if (!p->rank) vg_tell(&p->options.progress, stage, done, expected);
 }
 
 /** A serial that no other task of any rank has. Threads: safe. */

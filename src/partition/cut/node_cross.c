@@ -67,24 +67,23 @@ static int stays(struct band *b, const double *const x[3])
 struct crossing {
   const struct vg_node *n;
   size_t work, first;        /* its new points are there in the front */
+  const struct vg_filled *made;  /* what the work made */
   uint32_t v[3];             /* the face at hand */
 };
 
-/* Faces around the cells: new ones, then those that are gone. */
+/* Faces around the cells: new ones, then consumed ones. */
 static size_t n_around(const struct crossing *c)
 {
-  return c->n->change[c->work].n_face + c->n->change[c->work].n_gone;
+  return c->made->n_face + c->made->n_consumed;
 }
 
 static void face_around(const struct crossing *c, size_t k, uint32_t v[3])
 {
-  const struct vg_change *change = &c->n->change[c->work];
-
-  if (k < change->n_face) {
+  if (k < c->made->n_face) {
     for (int j = 0; j < 3; j++)
-      v[j] = vg_node_point(c->n, c->work, c->first, change->face[k][j]);
+      v[j] = vg_node_point(c->n, c->work, c->first, c->made->face[k][j]);
   } else {
-    uint32_t face = change->gone[k - change->n_face];
+    uint32_t face = c->made->consumed[k - c->made->n_face];
 
     memcpy(v, c->n->front.face[c->n->face[c->work][face]], 3 * sizeof *v);
   }
@@ -93,10 +92,8 @@ static void face_around(const struct crossing *c, size_t k, uint32_t v[3])
 /* Faces that have a cell of the zone now are no longer there. */
 static int is_gone(const struct crossing *c, uint32_t face)
 {
-  const struct vg_change *change = &c->n->change[c->work];
-
-  for (size_t k = 0; k < change->n_gone; k++)
-    if (c->n->face[c->work][change->gone[k]] == face) return 1;
+  for (size_t k = 0; k < c->made->n_consumed; k++)
+    if (c->n->face[c->work][c->made->consumed[k]] == face) return 1;
   return 0;
 }
 
@@ -371,7 +368,8 @@ int vg_node_crosses(const struct vg_node *n, size_t i, size_t first)
 {
   const struct vg_sizing *sizing = n->select.sizing;
   const struct vg_region *r = &n->region[i];
-  struct crossing c = { .n = n, .work = i, .first = first };
+  struct crossing c = { .n = n, .work = i, .first = first,
+                        .made = &n->change[i].made };
   struct body body = { .c = &c };
   int found = 0;
   struct band b = { .region = r, .sizing = sizing,
@@ -385,7 +383,7 @@ int vg_node_crosses(const struct vg_node *n, size_t i, size_t first)
     face_around(&c, k, c.v);
     for (int j = 0; j < 3; j++) x[j] = n->front.x[c.v[j]];
     if (stays(&b, x)) continue;
-    if (k < n->change[i].n_face &&
+    if (k < c.made->n_face &&
         vg_select_touched(&n->select, x, crosses, &c))
       found = 1;
     else if (!body.is_beside && prepare(&body))

@@ -111,7 +111,7 @@ static void claim(struct shares *s, int may_cut)
 
     if (!q->may_cut != !may_cut) continue;
     for (size_t v = 0; v < q->front.n_point; v++) {
-      uint64_t name = q->front.name[v];
+      uint64_t name = q->front.id[v];
 
       if (name >> 32 == s->serial && s->owner[(uint32_t)name] == NOBODY)
         s->owner[(uint32_t)name] = (uint32_t)k;
@@ -164,26 +164,26 @@ static vg_status rename_front(const struct shares *s, size_t part,
     return vg_fail_memory(err, "the parts of a void");
   }
   for (size_t v = 0; v < f->n_point; v++)
-    n -= f->name[v] >> 32 == s->serial &&
-         s->owner[(uint32_t)f->name[v]] == part;
+    n -= f->id[v] >> 32 == s->serial &&
+         s->owner[(uint32_t)f->id[v]] == part;
   for (size_t v = 0, other = 0; v < f->n_point; v++) {
-    uint32_t q = (uint32_t)f->name[v], owner = NOBODY;
+    uint32_t q = (uint32_t)f->id[v], owner = NOBODY;
     size_t at;
 
-    if (f->name[v] >> 32 == s->serial) owner = s->owner[q];
+    if (f->id[v] >> 32 == s->serial) owner = s->owner[q];
     at = owner == part ? n + s->number[q] : other++;
     to[v] = (uint32_t)at;
     memcpy(x[at], f->x[v], sizeof *x);
-    name[at] = owner == NOBODY ? f->name[v]
-                               : VG_POINT_NAME(s->of[owner], s->number[q]);
+    name[at] = owner == NOBODY ? f->id[v]
+                               : VG_POINT_ID(s->of[owner], s->number[q]);
   }
   for (size_t i = 0; i < f->n_face; i++)
     for (int k = 0; k < 3; k++) f->face[i][k] = to[f->face[i][k]];
   free(f->x);
-  free(f->name);
+  free(f->id);
   free(to);
   f->x = x;
-  f->name = name;
+  f->id = name;
   return VG_OK;
 }
 

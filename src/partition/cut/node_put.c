@@ -30,10 +30,11 @@ static void test_part(void *context, size_t first, size_t end, int worker)
   for (size_t i = first; i < end; i++) {
     const struct vg_change *c = &p->n->change[i];
 
-    if (c->n_point)
-      memcpy(f->x + p->at[i].point, c->x, c->n_point * sizeof *f->x);
-    for (size_t k = 0; k < c->n_point; k++)
-      f->name[p->at[i].point + k] = VG_POINT_NAME(c->serial, k);
+    if (c->made.n_point)
+      memcpy(f->x + p->at[i].point, c->made.x,
+             c->made.n_point * sizeof *f->x);
+    for (size_t k = 0; k < c->made.n_point; k++)
+      f->id[p->at[i].point + k] = VG_POINT_ID(c->serial, k);
     p->crosses[i] = (int8_t)vg_node_crosses(p->n, i, p->at[i].point);
   }
 }
@@ -47,13 +48,13 @@ static void put_change(struct vg_node *n, size_t i, const struct place *at,
   struct vg_change *c = &n->change[i];
   struct vg_front *f = &n->front;
 
-  for (size_t k = 0; k < c->n_gone && !crosses; k++)
-    f->face[n->face[i][c->gone[k]]][0] = VG_FACE_GONE;
-  for (size_t k = 0; k < c->n_face; k++)
+  for (size_t k = 0; k < c->made.n_consumed && !crosses; k++)
+    f->face[n->face[i][c->made.consumed[k]]][0] = VG_FACE_GONE;
+  for (size_t k = 0; k < c->made.n_face; k++)
     for (int j = 0; j < 3; j++)
       f->face[at->face + k][j] =
         crosses ? VG_FACE_GONE
-                : vg_node_point(n, i, at->point, c->face[k][j]);
+                : vg_node_point(n, i, at->point, c->made.face[k][j]);
 }
 
 static void put_part(void *context, size_t first, size_t end, int worker)
@@ -84,14 +85,14 @@ static vg_status make_room(struct put *p, const struct vg_engine *e,
   if (!p->at || !p->crosses) return vg_fail_memory(err, "cutting a front");
   for (size_t i = 0; i < n->n_work; i++) {
     p->at[i] = (struct place){ np, nf };
-    np += n->change[i].n_point;
-    nf += n->change[i].n_face;
+    np += n->change[i].made.n_point;
+    nf += n->change[i].made.n_face;
   }
   if (!n->cap_x) n->cap_x = n->cap_name = f->n_point;
   if (!n->cap_face) n->cap_face = f->n_face;
   if (vg_engine_reserve(e, &f->x, &n->cap_x, f->n_point, np, sizeof *f->x) ||
-      vg_engine_reserve(e, &f->name, &n->cap_name, f->n_point, np,
-                        sizeof *f->name) ||
+      vg_engine_reserve(e, &f->id, &n->cap_name, f->n_point, np,
+                        sizeof *f->id) ||
       vg_engine_reserve(e, &f->face, &n->cap_face, f->n_face, nf,
                         sizeof *f->face))
     return vg_fail_memory(err, "cutting a front");
@@ -116,8 +117,8 @@ static vg_status count_changes(const struct put *put, struct vg_partition *p,
       st = vg_partition_note_drop(p, c, err);
       continue;
     }
-    n->zone_cells += (double)c->n_cell;
-    n->zone_volume += c->volume;
+    n->zone_cells += (double)c->made.n_cell;
+    n->zone_volume += c->made.volume;
   }
   return st;
 }

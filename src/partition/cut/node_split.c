@@ -189,11 +189,11 @@ static int number_points(const struct deal *d, struct vg_front *part)
     }
   }
   part->x = bad ? NULL : vg_alloc(n, sizeof *part->x);
-  part->name = bad ? NULL : vg_alloc(n, sizeof *part->name);
-  bad = !part->x || !part->name;
+  part->id = bad ? NULL : vg_alloc(n, sizeof *part->id);
+  bad = !part->x || !part->id;
   for (size_t k = 0; k < n && !bad; k++) {
     memcpy(part->x[k], f->x[point[k]], sizeof *part->x);
-    part->name[k] = f->name[point[k]];
+    part->id[k] = f->id[point[k]];
   }
   part->n_point = bad ? 0 : n;
   free(point);
@@ -235,7 +235,7 @@ static vg_status split_front(struct split *s, struct vg_error *err)
   vg_status st = d.number && d.is_short
                    ? deal_out(&d, err)
                    : vg_fail_memory(err, "the parts of a front");
-  void *const whole[] = {f->x, f->name, f->face, d.number, d.is_short};
+  void *const whole[] = {f->x, f->id, f->face, d.number, d.is_short};
 
   vg_engine_free(s->e, sizeof whole / sizeof *whole, whole);
   memset(f, 0, sizeof *f);
@@ -361,17 +361,13 @@ static vg_status load_of_blocks(struct split *s, struct vg_error *err)
 vg_status vg_node_share_load(struct vg_node *n, double correction,
                              const struct vg_engine *e, struct vg_error *err)
 {
-  struct vg_void *v = vg_calloc(n->n_child, sizeof *v);
+  struct vg_front *v = vg_calloc(n->n_child, sizeof *v);
   struct vg_load *load = vg_calloc(n->n_child, sizeof *load);
   vg_status st = VG_OK;
 
   if (!v || !load) st = vg_fail_memory(err, "the load of a void");
-  for (size_t k = 0; st == VG_OK && k < n->n_child; k++) {
-    v[k].n_point = n->child[k]->front.n_point;
-    v[k].x = n->child[k]->front.x;
-    v[k].n_face = n->child[k]->front.n_face;
-    v[k].face = n->child[k]->front.face;
-  }
+  for (size_t k = 0; st == VG_OK && k < n->n_child; k++)
+    v[k] = n->child[k]->front;
   if (st == VG_OK)
     st = vg_load_split(&n->load, n->n_child, v, correction, e, load, err);
   for (size_t k = 0; st == VG_OK && k < n->n_child; k++) {

@@ -69,7 +69,7 @@ struct side {
 static struct side side_of(const struct vg_front *f, const uint32_t v[3],
                            int is_part)
 {
-  struct side s = { { f->name[v[0]], f->name[v[1]], f->name[v[2]] },
+  struct side s = { { f->id[v[0]], f->id[v[1]], f->id[v[2]] },
                     f->x[v[0]], 1, (int8_t)is_part };
 
   for (int k = 0; k < 3; k++) {
@@ -119,9 +119,9 @@ static vg_status check_names(const struct vg_parting *p, uint32_t serial,
     const struct vg_front *f = &p->part[k].front;
 
     for (size_t v = 0; v < f->n_point; v++) {
-      uint32_t at = (uint32_t)f->name[v];
+      uint32_t at = (uint32_t)f->id[v];
 
-      if (f->name[v] >> 32 != serial) continue;
+      if (f->id[v] >> 32 != serial) continue;
       if (at < p->n_point && !memcmp(p->x[at], f->x[v], sizeof *f->x))
         continue;
       return vg_fail(err, VG_ERR_GEOMETRY, "part %zu of %zu has a point at "
@@ -171,8 +171,8 @@ static const uint32_t any_serial = UINT32_MAX;
 static void give_names(struct vg_front *f, uint32_t from, uint32_t to)
 {
   for (size_t k = 0; k < f->n_point; k++)
-    if (f->name[k] >> 32 == from)
-      f->name[k] = VG_POINT_NAME(to, f->name[k]);
+    if (f->id[k] >> 32 == from)
+      f->id[k] = VG_POINT_ID(to, f->id[k]);
 }
 
 void vg_parting_put(struct vg_writer *w, struct vg_parting *p,

@@ -69,7 +69,7 @@ struct vg_parting {
   size_t n_part;
   struct vg_part {
     struct vg_front front;   /* closed, into the part; names: of the void's own
-                                points as they were, of x[k] VG_POINT_NAME(
+                                points as they were, of x[k] VG_POINT_ID(
                                 serial of the parting, k) */
     int may_cut;             /* 1: the advancing partition may cut it further,
                                 if each of its interface points is on a part,
@@ -106,7 +106,7 @@ vg_status vg_parting_check_options(const struct vg_parting_options *o,
  * @param out     empty; untouched on failure
  * Follows from the arguments alone, e and the serial aside, bit by bit.
  * Threads: several may run at once.
- * VG_BLOCKED: stopped; VG_ERR_GEOMETRY, VG_ERR_UNSUPPORTED: it cannot be parted
+ * VG_ERR_STOPPED: as asked; VG_ERR_GEOMETRY, VG_ERR_UNSUPPORTED: it cannot be parted
  * so, with the reason and a remedy; VG_ERR_MEMORY. */
 typedef vg_status vg_parting_maker(const struct vg_front *front,
                                    const struct vg_load *load,

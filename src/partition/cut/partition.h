@@ -5,6 +5,8 @@
 
 #include <stdint.h>
 
+#include "base/progress.h"
+#include "base/stop.h"
 #include "core/fill/fill.h"
 #include "core/mesher/fill_with.h"
 #include "partition/cut/lattice.h"
@@ -37,9 +39,8 @@ struct vg_partition_options {
                                 their paths, nor the first fail_rounds - 1 times
                                 that they are made larger: for tests; 0 */
   int fail_rounds;
-  vg_progress progress;      /* on rank 0; cells done, expected */
-  int (*stop)(void *user);
-  void *user;
+  struct vg_progress progress;  /* on rank 0; cells done, expected */
+  struct vg_stop stop;       /* asked on every rank */
 };
 #define VG_PARTITION_OPTIONS_INIT \
   { .rule = { VG_LEAF_CELLS, -1, 0 }, .threads = 1, .sweeps = 2, \
@@ -84,6 +85,9 @@ struct vg_partition_report {
   double wall;               /* seconds of the engine */
   double number;             /* seconds of numbering */
 };
+
+/** Fields of it, and of its parting, that ranks combine (report.c). */
+extern const struct vg_entries vg_partition_entries, vg_parting_entries;
 
 /** The cells of a void, on the ranks that made them. */
 struct vg_partition;

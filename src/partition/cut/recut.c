@@ -111,8 +111,8 @@ static void put_void(struct vg_writer *w, const struct vg_node *n,
   vg_put(w, 1, sizeof n_face, &n_face);
   for (size_t k = 0; k < f->n_face; k++) {
     const uint32_t *v = f->face[k];
-    struct corners c = corners_of(f->name[v[0]], f->name[v[1]],
-                                  f->name[v[2]]);
+    struct corners c = corners_of(f->id[v[0]], f->id[v[1]],
+                                  f->id[v[2]]);
 
     vg_put(w, 3, sizeof *c.name, c.name);
   }
@@ -210,7 +210,7 @@ static int boxes_meet(const struct unfilled *u, const struct vg_piece *q)
 
 static uint64_t name_in(const struct vg_piece *q, uint32_t v)
 {
-  return v < q->n_in ? q->in[v] : VG_POINT_NAME(q->serial, v - q->n_in);
+  return v < q->n_in ? q->in[v] : VG_POINT_ID(q->serial, v - q->n_in);
 }
 
 /* Faces that a piece has in common with a void; no more than `most` are
@@ -490,7 +490,6 @@ static vg_status new_node(struct vg_partition *p, const char *path,
   struct vg_front *f = &wider->front;
   char longer[VG_PATH_MAX];
   struct vg_node *n;
-  struct vg_void v;
   vg_status st;
 
   VG_TRY(vg_front_weld(f, err));
@@ -501,9 +500,7 @@ static vg_status new_node(struct vg_partition *p, const char *path,
   n->per_cube = wider->per_cube;
   n->is_final = 1;
   n->serial = vg_partition_serial(p);
-  v = (struct vg_void){ .n_point = n->front.n_point, .x = n->front.x,
-                        .n_face = n->front.n_face, .face = n->front.face };
-  VG_TRY(vg_load_new(&v, p->sizing, n->per_cube, p->options.threads,
+  VG_TRY(vg_load_new(&n->front, p->sizing, n->per_cube, p->options.threads,
                      &n->load, err));
   st = vg_select_sort(&n->front, err);
 done:

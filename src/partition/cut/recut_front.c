@@ -88,14 +88,14 @@ static void place_points(struct vg_front *f, struct spot *s, uint32_t *to)
 
       if (to[v] != UINT32_MAX) continue;
       to[v] = 0;
-      s[n] = (struct spot){ .name = f->name[v], .was = v };
+      s[n] = (struct spot){ .name = f->id[v], .was = v };
       memcpy(s[n++].x, f->x[v], sizeof s->x);
     }
   if (n) qsort(s, n, sizeof *s, by_place);
   for (size_t k = 0; k < n; k++) {
     to[s[k].was] = (uint32_t)k;
     memcpy(f->x[k], s[k].x, sizeof *f->x);
-    f->name[k] = s[k].name;
+    f->id[k] = s[k].name;
   }
   f->n_point = n;
   for (size_t k = 0; k < f->n_face; k++)
@@ -121,13 +121,13 @@ vg_status vg_recut_front(const struct vg_piece *q, struct vg_front *f,
   f->n_point = q->n_in + q->n_point;
   f->n_face = 4 * q->n_cell;
   f->x = vg_alloc(f->n_point, sizeof *f->x);
-  f->name = vg_alloc(f->n_point, sizeof *f->name);
+  f->id = vg_alloc(f->n_point, sizeof *f->id);
   f->face = vg_alloc(f->n_face, sizeof *f->face);
-  if (!f->x || !f->name || !f->face) return vg_fail_memory(err, "a front");
+  if (!f->x || !f->id || !f->face) return vg_fail_memory(err, "a front");
   memcpy(f->x, q->x, f->n_point * sizeof *f->x);
   for (size_t k = 0; k < f->n_point; k++)
-    f->name[k] = k < q->n_in ? q->in[k]
-                             : VG_POINT_NAME(q->serial, k - q->n_in);
+    f->id[k] = k < q->n_in ? q->in[k]
+                             : VG_POINT_ID(q->serial, k - q->n_in);
   for (size_t k = 0; k < f->n_face; k++)
     for (int i = 0; i < 3; i++)
       f->face[k][i] = q->cell[k / 4][vg_face[k % 4][i]];

@@ -84,7 +84,7 @@ static vg_status list_claims(size_t n_gone, const uint32_t *gone, size_t n,
 
   for (size_t i = 0; i < n; i++)
     for (size_t v = 0; v < node[i]->front.n_point; v++) {
-      uint64_t name = node[i]->front.name[v];
+      uint64_t name = node[i]->front.id[v];
 
       if (!is_gone(n_gone, gone, name)) continue;
       if (vg_reserve(out, &cap, *n_out + 1, sizeof **out))
@@ -121,22 +121,22 @@ static vg_status adopt(struct vg_node *node, uint32_t k, size_t n_claim,
   }
   for (int own = 0; own < 2; own++)
     for (size_t v = 0; v < f->n_point; v++) {
-      if (is_won(n_claim, all, f->name[v], k) != own) continue;
+      if (is_won(n_claim, all, f->id[v], k) != own) continue;
       to[v] = (uint32_t)n;
       memcpy(x[n], f->x[v], sizeof *x);
-      name[n] = f->name[v];
+      name[n] = f->id[v];
       if (own) {
         if (vg_reserve(map, cap_map, *n_map + 1, sizeof **map)) {
           st = vg_fail_memory(err, "names of points");
           goto done;
         }
-        name[n] = VG_POINT_NAME(node->serial, n_own++);
-        (*map)[(*n_map)++] = (struct rename){ f->name[v], name[n] };
+        name[n] = VG_POINT_ID(node->serial, n_own++);
+        (*map)[(*n_map)++] = (struct rename){ f->id[v], name[n] };
       }
       n++;
     }
   memcpy(f->x, x, n * sizeof *x);
-  memcpy(f->name, name, n * sizeof *name);
+  memcpy(f->id, name, n * sizeof *name);
   for (size_t i = 0; i < f->n_face; i++)
     for (int j = 0; j < 3; j++) f->face[i][j] = to[f->face[i][j]];
 done:
@@ -188,7 +188,7 @@ vg_status vg_recut_adopt(struct vg_partition *p, struct vg_comm *comm,
                p->piece[i].in);
   for (size_t i = 0; i < n; i++)
     rename_all(n_every, every, n_gone, gone, node[i]->front.n_point,
-               node[i]->front.name);
+               node[i]->front.id);
 done:
   free(claim);
   free(all);

@@ -320,12 +320,12 @@ static int gather(const struct vg_front *f, const struct numbers *t,
                   struct vg_front *part)
 {
   part->x = vg_alloc(t->n, sizeof *part->x);
-  part->name = vg_alloc(t->n, sizeof *part->name);
-  if (!part->x || !part->name) return -1;
+  part->id = vg_alloc(t->n, sizeof *part->id);
+  if (!part->x || !part->id) return -1;
   part->n_point = t->n;
   for (size_t k = 0; k < t->n; k++) {
     memcpy(part->x[k], f->x[t->point[k]], sizeof *part->x);
-    part->name[k] = f->name[t->point[k]];
+    part->id[k] = f->id[t->point[k]];
   }
   return 0;
 }
@@ -429,29 +429,47 @@ vg_status vg_select_widen(const struct vg_select *s, struct vg_region *region,
   return st;
 }
 
-vg_status vg_select_near(const struct vg_front *part,
-                         const struct vg_region *region,
-                         const struct vg_sizing *sizing,
-                         struct vg_front *near, uint32_t **point,
-                         uint32_t **face, struct vg_error *err)
+/* Faces of the part that come near enough: [n], ascending. */
+static vg_status list_near(const struct vg_front *part,
+                           const struct vg_region *region,
+                           const struct vg_sizing *sizing, uint32_t *near,
+                           size_t *n, struct vg_error *err)
 {
   struct vg_region_cache cache = { .spacing = NULL };
-  size_t n = 0;
   vg_status st = vg_region_cache_init(&cache, region, sizing, part->n_point,
                                       (const double (*)[3])part->x, err);
 
-  memset(near, 0, sizeof *near);
-  *point = NULL;
-  *face = vg_alloc(part->n_face, sizeof **face);
-  if (st == VG_OK && !*face) st = vg_fail_memory(err, "cutting a front");
+  *n = 0;
   for (size_t i = 0; st == VG_OK && i < part->n_face; i++)
     if (vg_region_cache_may_meet(&cache, part->face[i], VG_BAND_FRONT))
-      (*face)[n++] = (uint32_t)i;
+      near[(*n)++] = (uint32_t)i;
   vg_region_cache_release(&cache);
-  if (st == VG_OK) st = take(part, n, *face, near, point, err);
-  if (st == VG_OK) return VG_OK;
+  return st;
+}
+
+vg_status vg_select_near(struct vg_front *part, const struct vg_region *region,
+                         const struct vg_sizing *sizing, uint32_t **point,
+                         uint32_t **face, struct vg_error *err)
+{
+  uint32_t *near = vg_alloc(part->n_face, sizeof *near), *of_part = NULL;
+  struct vg_front less = VG_FRONT_INIT;
+  size_t n = 0;
+  vg_status st = near ? list_near(part, region, sizing, near, &n, err)
+                      : vg_fail_memory(err, "cutting a front");
+
+  if (st < 0 || n == part->n_face) goto done;
+  VG_TRY(take(part, n, near, &less, &of_part, err));
+  for (size_t k = 0; k < less.n_point; k++) of_part[k] = (*point)[of_part[k]];
+  for (size_t i = 0; i < n; i++) near[i] = (*face)[near[i]];
+  vg_front_release(part);
+  free(*point);
   free(*face);
-  *face = NULL;
+  *part = less;
+  *point = of_part;
+  *face = near;
+  return VG_OK;
+done:
+  free(near);
   return st;
 }
 

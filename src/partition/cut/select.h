@@ -48,11 +48,10 @@ vg_status vg_select_part(const struct vg_select *s,
 vg_status vg_select_widen(const struct vg_select *s, struct vg_region *region,
                           struct vg_error *err);
 
-/** Of such a part the faces that vg_region_may_meet, likewise. */
-vg_status vg_select_near(const struct vg_front *part,
-                         const struct vg_region *region,
-                         const struct vg_sizing *sizing,
-                         struct vg_front *near, uint32_t **point,
+/** Of such a part only the faces that vg_region_may_meet stay, with their
+ * points; point and face follow. Untouched on failure. O(part). */
+vg_status vg_select_near(struct vg_front *part, const struct vg_region *region,
+                         const struct vg_sizing *sizing, uint32_t **point,
                          uint32_t **face, struct vg_error *err);
 
 /** Call visit(context, f) for the faces of the front that the triangle x may

@@ -7,48 +7,20 @@
 #include <stdint.h>
 
 #include "base/comm.h"
-#include "core/fill/grow.h"
+#include "core/fill/fill.h"
+#include "core/front/front.h"
 #include "core/front/region.h"
 #include "partition/load/load.h"
 
-/* A point's name: the serial of the task that made it, and its place there.
- * Serials depend on timing; so names are compared for equality only, and
- * numbers are given at the end (number.c). Serial 0: the points of the
+/* The id of a point in a front: the serial of the task that made it, and its
+ * place there. Serials depend on timing; so ids are compared for equality only,
+ * and numbers are given at the end (number.c). Serial 0: the points of the
  * boundary, in their order. */
-#define VG_POINT_NAME(serial, k) ((uint64_t)(serial) << 32 | (uint32_t)(k))
-
-/** A front, or the part of it that a task needs. */
-struct vg_front {
-  size_t n_point, n_face;
-  double (*x)[3];
-  uint64_t *name;            /* [n_point] */
-  uint32_t (*face)[3];
-};
-#define VG_FRONT_INIT { 0 }
+#define VG_POINT_ID(serial, k) ((uint64_t)(serial) << 32 | (uint32_t)(k))
 
 /** The first point of a face that is no longer part of a front: only while a
  * node is being cut (node.c); fronts of tasks have none. */
 #define VG_FACE_GONE UINT32_MAX
-
-void vg_front_release(struct vg_front *f);
-
-/** Bytes of a front and back. */
-struct vg_writer;
-struct vg_reader;
-void vg_front_put(struct vg_writer *w, const struct vg_front *f, int names);
-/** Sets r->bad, and leaves *f empty, where the data cannot be. */
-void vg_front_get(struct vg_reader *r, struct vg_front *f, int names);
-
-/** Add the faces and points of `from` to a front; make points of one name one;
- * both. *to is released by the caller also on failure. VG_ERR_MEMORY. */
-vg_status vg_front_join(struct vg_front *to, const struct vg_front *from,
-                        struct vg_error *err);
-vg_status vg_front_weld(struct vg_front *f, struct vg_error *err);
-vg_status vg_front_append(struct vg_front *to, const struct vg_front *from,
-                          struct vg_error *err);
-
-/** What a front encloses; negative for a shell around a body. */
-double vg_front_volume(const struct vg_front *f);
 
 /** PVGRID's estimate of what a part takes to fill, from its front alone: its
  * volume times the number of its faces over their area (length). 0 where the
@@ -73,16 +45,14 @@ void vg_piece_release(struct vg_piece *p);
 /** What its home hears of a zone: the change of the front. */
 struct vg_change {
   int blocked;               /* nothing was made */
-  uint32_t serial;
-  size_t n_part;             /* points of the front given */
-  size_t n_point, n_face, n_gone, n_cell, n_hole;
-  double volume;             /* sum of V / h^3 */
-  double (*x)[3];            /* [n_point] new points */
-  uint32_t (*face)[3];       /* [n_face] points of the front given, then new */
-  uint32_t *gone;            /* [n_gone] faces of the front given */
+  uint32_t serial;           /* of the zone's task */
+  size_t n_part;             /* points of the front that the zone was given */
+  struct vg_filled made;     /* without cells, which stay with the piece */
 };
 #define VG_CHANGE_INIT { 0 }
 
+struct vg_writer;
+struct vg_reader;
 void vg_change_release(struct vg_change *c);
 void vg_change_put(struct vg_writer *w, const struct vg_change *c);
 void vg_change_get(struct vg_reader *r, struct vg_change *c);

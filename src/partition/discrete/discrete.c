@@ -126,8 +126,8 @@ static vg_status make_points(const struct fill *a, struct vg_front *f,
                              struct vg_error *err)
 {
   f->x = vg_alloc(3 * f->n_face, sizeof *f->x);
-  f->name = vg_alloc(3 * f->n_face, sizeof *f->name);
-  if (!f->x || !f->name) return vg_fail_memory(err, "the parts");
+  f->id = vg_alloc(3 * f->n_face, sizeof *f->id);
+  if (!f->x || !f->id) return vg_fail_memory(err, "the parts");
   for (size_t k = 0; k < 3 * f->n_face; k++)
     a->number[f->face[k / 3][k % 3]] = VG_NONE;
   for (size_t k = 0; k < 3 * f->n_face; k++) {
@@ -135,9 +135,9 @@ static vg_status make_points(const struct fill *a, struct vg_front *f,
 
     if (a->number[v] == VG_NONE) {
       memcpy(f->x[f->n_point], point_of(a, v), sizeof *f->x);
-      f->name[f->n_point] = v < a->c->n_front
-                              ? a->front->name[v]
-                              : VG_POINT_NAME(a->serial, a->name[v]);
+      f->id[f->n_point] = v < a->c->n_front
+                              ? a->front->id[v]
+                              : VG_POINT_ID(a->serial, a->name[v]);
       a->number[v] = (uint32_t)f->n_point++;
     }
     f->face[k / 3][k % 3] = a->number[v];

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "core/fill/grow.h"
+#include "core/fill/fill.h"
 #include "partition/discrete/discrete_parts.h"
 
 void vg_coarse_release(struct vg_coarse *c)
@@ -41,51 +41,53 @@ vg_status vg_discrete_sizes(const struct vg_mesh *front,
   return st;
 }
 
-static int stop(void *user, const char *stage, size_t done, size_t expected)
+/* Points of a coarse mesh: the front's, then new ones. */
+static vg_status join_points(const struct vg_front *f, struct vg_filled *made,
+                             struct vg_coarse_cells *out, struct vg_error *err)
 {
-  (void)stage;
-  (void)done;
-  (void)expected;
-  return vg_engine_stopping(user);
+  out->n_point = f->n_point + made->n_point;
+  out->x = vg_alloc(out->n_point, sizeof *out->x);
+  if (!out->x) return vg_fail_memory(err, "the coarse mesh");
+  memcpy(out->x, f->x, f->n_point * sizeof *out->x);
+  if (made->n_point)
+    memcpy(out->x + f->n_point, made->x, made->n_point * sizeof *out->x);
+  out->n_cell = made->n_cell;
+  out->cell = made->cell;
+  made->cell = NULL;
+  return VG_OK;
 }
 
-static vg_status grow(const struct vg_front *f, const struct vg_sizing *sizing,
+static vg_status fill(const struct vg_front *f, const struct vg_sizing *sizing,
                       double factor, const struct vg_engine *e,
-                      struct vg_void *v, struct vg_error *err)
+                      struct vg_coarse_cells *out, struct vg_error *err)
 {
   struct vg_mesh m = { .n_point = f->n_point, .point = f->x,   /* borrowed */
                        .n_tri = f->n_face, .tri = f->face };
-  struct vg_grow_options o = VG_GROW_OPTIONS_INIT;
+  struct vg_fill_options o = VG_FILL_OPTIONS_INIT;
   struct vg_fill_report report = {0};
+  struct vg_filled made = VG_FILLED_INIT;
   struct vg_sizing *coarse = NULL;
   vg_status st;
 
-  if (e) o.progress = stop;
-  o.user = (void *)(uintptr_t)e;
-  if (vg_reserve(&v->x, &v->cap_point, f->n_point, sizeof *v->x) ||
-      vg_reserve(&v->face, &v->cap_face, f->n_face, sizeof *v->face))
-    return vg_fail_memory(err, "the coarse mesh");
-  memcpy(v->x, f->x, f->n_point * sizeof *v->x);
-  memcpy(v->face, f->face, f->n_face * sizeof *v->face);
-  v->n_point = f->n_point;
-  v->n_face = f->n_face;
-  st = vg_discrete_sizes(&m, sizing, factor, &coarse, err);
-  if (st == VG_OK) st = vg_grow(v, coarse, &o, &report, err);
+  o.stop = vg_engine_stop(e);
+  VG_TRY(vg_discrete_sizes(&m, sizing, factor, &coarse, err));
+  VG_TRY(vg_fill_front(f, NULL, coarse, &o, &made, &report, err));
+  st = join_points(f, &made, out, err);
+done:
+  vg_filled_release(&made);
   vg_sizing_free(coarse);
   return st;
 }
 
-/* A copy: what is given stays the giver's. */
-static vg_status take(const struct vg_coarse_cells *given, struct vg_void *v,
-                      struct vg_error *err)
+/* The coarse mesh that was made before is borrowed, so its points are copied
+ * for the tetrahedra, which take theirs over. */
+static vg_status copy_points(const struct vg_coarse_cells *given,
+                             struct vg_coarse_cells *out, struct vg_error *err)
 {
-  if (vg_reserve(&v->x, &v->cap_point, given->n_point, sizeof *v->x) ||
-      vg_reserve(&v->cell, &v->cap_cell, given->n_cell, sizeof *v->cell))
-    return vg_fail_memory(err, "the coarse mesh");
-  memcpy(v->x, given->x, given->n_point * sizeof *v->x);
-  memcpy(v->cell, given->cell, given->n_cell * sizeof *v->cell);
-  v->n_point = given->n_point;
-  v->n_cell = given->n_cell;
+  *out = *given;
+  out->x = vg_alloc(given->n_point, sizeof *out->x);
+  if (!out->x) return vg_fail_memory(err, "the coarse mesh");
+  memcpy(out->x, given->x, given->n_point * sizeof *out->x);
   return VG_OK;
 }
 
@@ -141,17 +143,18 @@ vg_status vg_coarse_fill(const struct vg_front *front,
                          const struct vg_engine *e, struct vg_coarse *c,
                          struct vg_error *err)
 {
-  struct vg_void v = VG_VOID_INIT;
-  vg_status st = given ? take(given, &v, err)
-                       : grow(front, sizing, factor, e, &v, err);
+  struct vg_coarse_cells all = { .n_cell = 0 };
+  vg_status st;
 
-  if (st != VG_OK) goto done;          /* or stopped */
+  VG_TRY(given ? copy_points(given, &all, err)
+               : fill(front, sizing, factor, e, &all, err));
   c->n_front = front->n_point;
-  st = vg_tets_from_cells(&c->t, v.n_point, v.x, v.n_cell,
-                          (const uint32_t (*)[4])v.cell, err);
-  v.x = NULL;
+  st = vg_tets_from_cells(&c->t, all.n_point, all.x, all.n_cell,
+                          (const uint32_t (*)[4])all.cell, err);
+  all.x = NULL;
   if (st == VG_OK) st = find_front(front, c, err);
 done:
-  vg_void_release(&v);
+  free(all.x);
+  if (!given) free(all.cell);
   return st;
 }

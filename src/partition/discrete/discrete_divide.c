@@ -248,7 +248,7 @@ static vg_status mesh_face(const struct facets *a, const double *const x[3],
                            struct facet *o)
 {
   struct plane p = { .sizing = a->sizing };
-  const struct vg_planar_law law = { size_at, NULL, &p };
+  const struct vg_planar_law law = { .at = size_at, .user = &p };
   double (*at)[2] = vg_alloc(o->n_side, sizeof *at), (*add)[2] = NULL;
   uint32_t (*edge)[2] = vg_alloc(o->n_side, sizeof *edge);
   vg_status st = at && edge ? VG_OK : vg_fail_memory(&o->err, "interfaces");

@@ -23,7 +23,7 @@ struct vg_coarse {
 void vg_coarse_release(struct vg_coarse *c);
 
 /** Fill the void at sizes times a factor, or with the cells given; c is empty.
- * VG_BLOCKED: stopped. (discrete_coarse.c) */
+ * VG_ERR_STOPPED: as asked. (discrete_coarse.c) */
 vg_status vg_coarse_fill(const struct vg_front *front,
                          const struct vg_sizing *sizing, double factor,
                          const struct vg_coarse_cells *given,

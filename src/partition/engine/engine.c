@@ -25,6 +25,16 @@ int vg_engine_stopping(const struct vg_engine *e)
   return atomic_load(&e->stopping);
 }
 
+static int stopping(void *e)
+{
+  return vg_engine_stopping(e);
+}
+
+struct vg_stop vg_engine_stop(const struct vg_engine *e)
+{
+  return (struct vg_stop){ e ? stopping : NULL, (void *)(uintptr_t)e };
+}
+
 void vg_task_state_free(struct vg_engine *e, struct vg_task_state *j)
 {
   if (!j) return;
@@ -196,6 +206,8 @@ static vg_status final_status(const struct vg_engine *e, struct vg_error *err)
   const struct vg_final_status *v = &e->final_status;
 
   if (v->status >= 0) return (vg_status)v->status;
+  if (v->status == VG_ERR_STOPPED)
+    return vg_fail(err, VG_ERR_STOPPED, "given up unfinished, as asked for");
   if (v->from == e->rank)
     return vg_fail(err, (vg_status)v->status, "%s", v->text);
   return vg_fail(err, (vg_status)v->status, "rank %d: %s", v->from, v->text);

@@ -16,6 +16,7 @@
 #include <stdint.h>
 
 #include "base/comm.h"
+#include "base/stop.h"
 #include "base/parallel.h"
 #include "base/status.h"
 #include "partition/engine/spans.h"
@@ -50,7 +51,7 @@ struct vg_engine_ops {
   /** Do the task. Allowed to keep results on this rank (in user).
    * outcome out: what its home needs to know, for `done` (may be left NULL).
    * worker: 0 .. threads - 1, names scratch space.
-   * VG_BLOCKED: stopped half-way because vg_engine_stopping(e); counts as not
+   * VG_ERR_STOPPED: given up because vg_engine_stopping(e); counts as not
    * done (and stops the job, should it not be stopping yet).
    * done in: zeros; out: what was done, for progress and records. */
   vg_status (*run)(void *user, const struct vg_engine *e,
@@ -86,13 +87,12 @@ struct vg_engine_options {
                                 turn, most work first: a worker does those it
                                 was dealt, and none of others */
   /** Called on rank 0 now and then: cells done and known so far, tasks done
-   * and known. Non-zero: stop. May be NULL. */
-  int (*progress)(void *user, double done, double known, size_t n_done,
-                  size_t n_known);
-  /** Polled on every rank (a signal's flag, say): non-zero stops all ranks
-   * after the tasks under way. May be NULL. */
-  int (*stop)(void *user);
-  void *user;
+   * and known. May be NULL. */
+  void (*progress)(void *user, double done, double known, size_t n_done,
+                   size_t n_known);
+  void *user;                /* of progress */
+  struct vg_stop stop;       /* asked on every rank; stops all ranks after the
+                                tasks under way */
 };
 
 /** Run until no task is left anywhere. Collective.
@@ -101,7 +101,7 @@ struct vg_engine_options {
  * @param spans  out: what this rank's workers did when (all of the job's on
  *               rank 0), by path, also after a stop; owned by the caller:
  *               vg_spans_release; may be NULL
- * Returns on all ranks VG_OK; VG_BLOCKED when stopped; or the first failure,
+ * Returns on all ranks VG_OK; VG_ERR_STOPPED; or the first failure,
  * on other ranks too, with its message ("rank 3: ..."). Tasks that were not
  * done are released. A rank that dies ends the job through the launcher. */
 vg_status vg_engine_run(struct vg_comm *comm,
@@ -119,6 +119,9 @@ vg_status vg_engine_submit(struct vg_engine *e, const struct vg_task *task,
 /** 1 when the job is being stopped (by a failure, too): for a long `run` to
  * ask now and then. Threads: safe. */
 int vg_engine_stopping(const struct vg_engine *e);
+
+/** The same question for those who take a vg_stop. e NULL: never. */
+struct vg_stop vg_engine_stop(const struct vg_engine *e);
 
 /** As vg_parallel_for, in the calling worker and in those of this rank that
  * have nothing else to do: for `run`.

@@ -290,16 +290,21 @@ void vg_schedule_moved(struct vg_engine *e, int from, int to, int ok)
   dispatch(e);
 }
 
-/* Of several failures the one with the lowest path is told, so that messages
- * repeat as far as can be; any failure rather than a mere stop. */
+static int is_failure(const struct vg_final_status *v)
+{
+  return v->status < 0 && v->status != VG_ERR_STOPPED;
+}
+
+/* Of several failures the one with the lowest path is reported, so that
+ * messages repeat as far as can be; any failure rather than a mere stop. */
 void vg_schedule_fail(struct vg_engine *e, const struct vg_final_status *v)
 {
   struct vg_schedule *l = &e->schedule;
   struct vg_final_status *w = &l->final_status;
 
   if (l->ended) return;
-  if (!w->status || (v->status < 0 && w->status > 0) ||
-      (v->status < 0 && strcmp(v->path, w->path) < 0))
+  if (!w->status ||
+      (is_failure(v) && (!is_failure(w) || strcmp(v->path, w->path) < 0)))
     *w = *v;
   if (!l->draining) {
     l->draining = 1;

@@ -104,7 +104,7 @@ static void send_input(struct vg_engine *e, struct vg_task_state *j)
 
   if (vg_engine_stopping(e) || (st = pack(e, j, &err))) {
     vg_engine_lock(e);
-    if (st) vg_notify_fail(e, st < 0 ? st : VG_BLOCKED, j->task.path, &err);
+    if (st) vg_notify_fail(e, st, j->task.path, &err);
     vg_engine_unlock(e);
     vg_work_drop(e, j);
     return;
@@ -290,11 +290,9 @@ static int receive(struct vg_engine *e, double *failing)
 
 static void ask_stop(struct vg_engine *e)
 {
-  const struct vg_engine_options *o = e->options;
-
-  if (!o->stop || vg_engine_stopping(e) || !o->stop(o->user)) return;
+  if (vg_engine_stopping(e) || !vg_stops(&e->options->stop)) return;
   vg_engine_lock(e);
-  vg_notify_fail(e, VG_BLOCKED, "", NULL);
+  vg_notify_fail(e, VG_ERR_STOPPED, "", NULL);
   vg_engine_unlock(e);
 }
 
@@ -312,12 +310,7 @@ static void show_progress(struct vg_engine *e)
   n_done = l->n_done;
   n_known = l->n_known;
   vg_engine_unlock(e);
-  if (!o->progress(o->user, cells, known, n_done, n_known) ||
-      vg_engine_stopping(e))
-    return;
-  vg_engine_lock(e);
-  vg_notify_fail(e, VG_BLOCKED, "", NULL);
-  vg_engine_unlock(e);
+  o->progress(o->user, cells, known, n_done, n_known);
 }
 
 /* Nothing is left, and no message is on its way to this rank. */

@@ -146,8 +146,8 @@ static void fail(struct vg_engine *e, const struct vg_task_state *j,
                  const struct vg_error *err)
 {
   vg_engine_lock(e);
-  if (st < 0) vg_notify_fail(e, st, j->task.path, err);
-  else if (!vg_engine_stopping(e)) vg_notify_fail(e, VG_BLOCKED, "", NULL);
+  if (st != VG_ERR_STOPPED) vg_notify_fail(e, st, j->task.path, err);
+  else if (!vg_engine_stopping(e)) vg_notify_fail(e, st, "", NULL);
   vg_engine_unlock(e);
 }
 

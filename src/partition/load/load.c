@@ -568,7 +568,7 @@ static vg_status refused(const struct maker *m, struct vg_error *err)
 
 /* The best of several places of the root cube; nearly always the first. */
 static vg_status build(struct maker *m, struct vg_load_tree *t,
-                       const struct vg_void *v, double volume, int threads,
+                       const struct vg_front *v, double volume, int threads,
                        struct vg_load *out, struct vg_error *err)
 {
   double lo[3], hi[3], best = INFINITY;
@@ -604,7 +604,7 @@ static vg_status build(struct maker *m, struct vg_load_tree *t,
 
 /* The field of sizes that the front alone asks for, if it is left faster than
  * cells can follow. */
-static vg_status find_pace(const struct vg_void *v,
+static vg_status find_pace(const struct vg_front *v,
                            const struct vg_sizing *sizing, int threads,
                            struct vg_sizing **out, struct vg_error *err)
 {
@@ -635,7 +635,7 @@ static void raise_to(struct vg_load *l, double least)
   }
 }
 
-vg_status vg_load_new(const struct vg_void *v, const struct vg_sizing *sizing,
+vg_status vg_load_new(const struct vg_front *v, const struct vg_sizing *sizing,
                       double cells_per_cube, int threads, struct vg_load *out,
                       struct vg_error *err)
 {

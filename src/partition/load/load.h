@@ -12,7 +12,7 @@
 #include <stdint.h>
 
 #include "base/status.h"
-#include "core/front/void.h"
+#include "core/front/front.h"
 #include "core/sizing/sizing.h"
 
 /** Cells per cube of the target edge where spacing is even, measured over
@@ -67,7 +67,7 @@ void vg_load_release(struct vg_load *l);
  * Cost: O(front + cubes) times a logarithm. Result follows from the arguments
  * alone, bit by bit. VG_ERR_UNSUPPORTED beyond 4 M cubes, some 10 billion
  * cells: sizes in another unit than the surface. VG_ERR_MEMORY. */
-vg_status vg_load_new(const struct vg_void *v, const struct vg_sizing *sizing,
+vg_status vg_load_new(const struct vg_front *v, const struct vg_sizing *sizing,
                       double cells_per_cube, int threads, struct vg_load *out,
                       struct vg_error *err);
 
@@ -82,7 +82,7 @@ vg_status vg_load_new(const struct vg_void *v, const struct vg_sizing *sizing,
  * ancestors' zones. Children are looked at in a loop of e, which may be NULL.
  * O(cubes + fronts) times a logarithm. */
 vg_status vg_load_split(const struct vg_load *parent, size_t n,
-                        const struct vg_void *child, double correction,
+                        const struct vg_front *child, double correction,
                         const struct vg_engine *e, struct vg_load *out,
                         struct vg_error *err);
 

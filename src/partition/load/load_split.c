@@ -202,7 +202,7 @@ static const struct vg_load_cube *cube_at(const struct split *s,
 }
 
 /* A child too small for any sample: one cube around it. */
-static int lone_cube(const struct split *s, const struct vg_void *v,
+static int lone_cube(const struct split *s, const struct vg_front *v,
                      double volume, double correction, struct vg_load *out)
 {
   double lo[3], hi[3], x[3], side = 0, old;
@@ -243,7 +243,7 @@ static void take_share(const struct split *s, const struct share *from,
                       / (double)c->part);
 }
 
-static int deal(const struct split *s, const struct vg_void *child,
+static int deal(const struct split *s, const struct vg_front *child,
                 double correction, struct vg_load *made)
 {
   const double volume = vg_load_volume(child);
@@ -261,7 +261,7 @@ static int deal(const struct split *s, const struct vg_void *child,
 
 struct children {
   const struct vg_load *parent;
-  const struct vg_void *child;
+  const struct vg_front *child;
   double correction;
   struct vg_load *made;
   int *bad;
@@ -291,7 +291,7 @@ static void split_part(void *context, size_t first, size_t end, int worker)
 }
 
 vg_status vg_load_split(const struct vg_load *parent, size_t n,
-                        const struct vg_void *child, double correction,
+                        const struct vg_front *child, double correction,
                         const struct vg_engine *e, struct vg_load *out,
                         struct vg_error *err)
 {

@@ -22,7 +22,7 @@ enum { GRAIN = 1 << 14, FIT_PASSES = 4 };
 
 /* --- fronts -------------------------------------------------------------- */
 
-double vg_load_volume(const struct vg_void *v)
+double vg_load_volume(const struct vg_front *v)
 {
   const double *o = v->n_face ? v->x[v->face[0][0]] : NULL;
   double sum = 0;
@@ -39,7 +39,7 @@ double vg_load_volume(const struct vg_void *v)
   return -sum / 6;               /* normals point inwards */
 }
 
-void vg_load_box(const struct vg_void *v, double lo[3], double hi[3])
+void vg_load_box(const struct vg_front *v, double lo[3], double hi[3])
 {
   for (int k = 0; k < 3; k++) {
     lo[k] = INFINITY;
@@ -68,7 +68,7 @@ static void enter_part(void *context, size_t first, size_t end, int worker)
 {
   const struct enter_job *job = context;
   const struct vg_load_tree *t = job->t;
-  const struct vg_void *v = &t->child[job->child];
+  const struct vg_front *v = &t->child[job->child];
   const double scale = 1 / t->unit;
 
   (void)worker;
@@ -91,7 +91,7 @@ static void enter_part(void *context, size_t first, size_t end, int worker)
 }
 
 vg_status vg_load_tree_new(struct vg_load_tree *t, size_t n,
-                           const struct vg_void *child, int threads,
+                           const struct vg_front *child, int threads,
                            struct vg_error *err)
 {
   struct enter_job job = { t, 0, 0 };
@@ -145,7 +145,7 @@ static int crossing(const struct vg_load_tree *t,
                     const uint32_t p[3], uint32_t to)
 {
   const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-  const struct vg_void *f = &t->child[tri->child];
+  const struct vg_front *f = &t->child[tri->child];
   const uint32_t *face = f->face[tri->face];
   const double *a = f->x[face[0]], *b = f->x[face[1]], *c = f->x[face[2]];
   double x[3], y[3], q[2];

@@ -11,7 +11,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "core/front/void.h"
+#include "core/front/front.h"
 #include "partition/load/load.h"
 
 enum { VG_LOAD_BITS = 31, VG_LOAD_LEVELS = 24, VG_LOAD_SAMPLES = 8 };
@@ -23,7 +23,7 @@ struct vg_load_tri {
 
 struct vg_load_tree {
   double lo[3], unit;
-  const struct vg_void *child;
+  const struct vg_front *child;
   size_t n_tri;
   struct vg_load_tri *tri;   /* [n_tri] of all children */
 };
@@ -52,12 +52,12 @@ static inline uint32_t vg_load_side(const struct vg_load_node *node)
 }
 
 /** Volume that a front encloses: 0 for an empty one. Box: of its points. */
-double vg_load_volume(const struct vg_void *v);
-void vg_load_box(const struct vg_void *v, double lo[3], double hi[3]);
+double vg_load_volume(const struct vg_front *v);
+void vg_load_box(const struct vg_front *v, double lo[3], double hi[3]);
 
 /** Take in the fronts of n voids; t->lo and unit are given. */
 vg_status vg_load_tree_new(struct vg_load_tree *t, size_t n,
-                           const struct vg_void *child, int threads,
+                           const struct vg_front *child, int threads,
                            struct vg_error *err);
 void vg_load_tree_release(struct vg_load_tree *t);
 

@@ -448,7 +448,7 @@ static void line_up(struct vg_spans *s)
   }
 }
 
-static vg_status add_surface(const struct vg_void *v, struct vg_part *p,
+static vg_status add_surface(const struct vg_front *v, struct vg_part *p,
                              struct vg_error *err)
 {
   p->front.bit = vg_alloc(v->n_face, sizeof *p->front.bit);
@@ -571,7 +571,7 @@ done:
   return st;
 }
 
-vg_status vg_forecast_parted(const struct vg_void *v,
+vg_status vg_forecast_parted(const struct vg_front *v,
                              const struct vg_load *load,
                              const struct vg_forecast_parting *parting,
                              const struct vg_cut_rule *rule, int levels,
@@ -601,7 +601,7 @@ done:
   return st;
 }
 
-vg_status vg_forecast_new(const struct vg_void *v, const struct vg_load *load,
+vg_status vg_forecast_new(const struct vg_front *v, const struct vg_load *load,
                           const struct vg_cut_rule *rule, int levels,
                           const struct vg_rates *rates, struct vg_forecast *out,
                           struct vg_error *err)

@@ -79,14 +79,14 @@ void vg_forecast_release(struct vg_forecast *o);
  * @param out     replaced; untouched on failure
  * Result follows from the arguments alone. O((cubes + faces) x depth), times
  * the number of zones of a cut. VG_ERR_MEMORY. */
-vg_status vg_forecast_new(const struct vg_void *v, const struct vg_load *load,
+vg_status vg_forecast_new(const struct vg_front *v, const struct vg_load *load,
                           const struct vg_cut_rule *rule, int levels,
                           const struct vg_rates *rates, struct vg_forecast *out,
                           struct vg_error *err);
 
 /** A part of a void that is parted before it is filled (cut/parting.h). */
 struct vg_forecast_part {
-  struct vg_void v;          /* its front */
+  struct vg_front v;          /* its front */
   const struct vg_load *load;
   int may_cut;               /* 1: planes may cut it further */
 };
@@ -101,7 +101,7 @@ struct vg_forecast_parting {
 
 /** As vg_forecast_new, of a void that is parted so. All is borrowed. Nodes: the
  * whole, then its parts. */
-vg_status vg_forecast_parted(const struct vg_void *v,
+vg_status vg_forecast_parted(const struct vg_front *v,
                              const struct vg_load *load,
                              const struct vg_forecast_parting *parting,
                              const struct vg_cut_rule *rule, int levels,

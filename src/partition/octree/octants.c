@@ -85,7 +85,7 @@ static vg_status refine(struct maker *m, uint32_t i,
   if (o->state == VG_OCTANT_OUT || o->level == VG_LOAD_LEVELS ||
       !is_wide(m, o))
     return VG_OK;
-  if (m->engine && vg_engine_stopping(m->engine)) return VG_BLOCKED;
+  if (m->engine && vg_engine_stopping(m->engine)) return VG_ERR_STOPPED;
   if (vg_load_octants(&m->triangles, &m->stack, node, part, 1))
     return vg_fail_memory(err, "the octants");
   st = split(m, i, err);
@@ -95,7 +95,7 @@ static vg_status refine(struct maker *m, uint32_t i,
   return st;
 }
 
-static vg_status refine_all(struct maker *m, const struct vg_void *v,
+static vg_status refine_all(struct maker *m, const struct vg_front *v,
                             struct vg_error *err)
 {
   struct vg_octants *t = m->t;
@@ -204,7 +204,7 @@ static void take_out(const struct vg_octants *t, uint32_t i, const double lo[3],
     take_out(t, o->child + c, lo, hi);
 }
 
-static void leave_room(const struct maker *m, const struct vg_void *v)
+static void leave_room(const struct maker *m, const struct vg_front *v)
 {
   set_reach(m, 0);
   for (size_t i = 0; i < v->n_face; i++) {
@@ -262,7 +262,7 @@ static vg_status list_faces(struct vg_octants *t, struct vg_error *err)
   return VG_OK;
 }
 
-vg_status vg_octants_make(const struct vg_void *v, const struct vg_load *load,
+vg_status vg_octants_make(const struct vg_front *v, const struct vg_load *load,
                          const struct vg_sizing *sizing, double coarsening,
                          const struct vg_engine *e, struct vg_octants *t,
                          struct vg_error *err)

@@ -381,7 +381,7 @@ static uint32_t unite_box(struct chooser *c, uint32_t i, const double lo[3],
   return first;
 }
 
-static void box_of(const struct vg_void *v, size_t i, double lo[3],
+static void box_of(const struct vg_front *v, size_t i, double lo[3],
                    double hi[3])
 {
   for (int k = 0; k < 3; k++) {
@@ -396,7 +396,7 @@ static void box_of(const struct vg_void *v, size_t i, double lo[3],
 }
 
 /* Ids of all leaves, and of the gap at each triangle. up: sets. */
-static vg_status give_ids(struct chooser *c, const struct vg_void *v,
+static vg_status give_ids(struct chooser *c, const struct vg_front *v,
                           uint32_t *gap, struct vg_error *err)
 {
   struct vg_octants *t = c->t;
@@ -433,7 +433,7 @@ static vg_status give_ids(struct chooser *c, const struct vg_void *v,
 
 /* --- all ----------------------------------------------------------------- */
 
-static vg_status choose(struct chooser *c, const struct vg_void *v,
+static vg_status choose(struct chooser *c, const struct vg_front *v,
                         double cells, uint32_t *gap, struct vg_error *err)
 {
   const double mean = cells / c->options->n_part;
@@ -456,7 +456,7 @@ static vg_status choose(struct chooser *c, const struct vg_void *v,
   return st;
 }
 
-vg_status vg_octants_part(struct vg_octants *t, const struct vg_void *v,
+vg_status vg_octants_part(struct vg_octants *t, const struct vg_front *v,
                                 const struct vg_sizing *sizing, double cells,
                                 const struct vg_parting_options *o,
                                 uint32_t *gap, struct vg_error *err)

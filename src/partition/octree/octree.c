@@ -23,7 +23,6 @@
 
 struct maker {
   const struct vg_front *front;
-  struct vg_void v;          /* the same; borrowed */
   const struct vg_load *load;
   const struct vg_sizing *sizing;
   const struct vg_parting_options *options;
@@ -77,10 +76,10 @@ static vg_status make_octants(struct maker *m, struct vg_error *err)
   vg_status st;
 
   m->out.report.coarsening = wide;
-  st = vg_octants_make(&m->v, m->load, m->sizing, wide, m->engine, &m->t, err);
+  st = vg_octants_make(m->front, m->load, m->sizing, wide, m->engine, &m->t, err);
   note_time(m, VG_PARTING_COARSE);
   if (st != VG_OK) return st;
-  st = vg_octants_part(&m->t, &m->v, m->sizing, m->load->cells, m->options,
+  st = vg_octants_part(&m->t, m->front, m->sizing, m->load->cells, m->options,
                        m->gap, err);
   note_time(m, VG_PARTING_GRAPH);
   return st;
@@ -102,7 +101,7 @@ static uint32_t take_point(struct filler *f, uint32_t *number,
 
   if (*number == VG_OCTANT_NONE) {
     memcpy(to->x[to->n_point], x, sizeof *to->x);
-    to->name[to->n_point] = name;
+    to->id[to->n_point] = name;
     *number = (uint32_t)to->n_point++;
   }
   return *number;
@@ -115,18 +114,18 @@ static vg_status make_room(struct vg_part *p, size_t n_face,
 
   to->face = vg_alloc(n_face, sizeof *to->face);
   to->x = vg_alloc(n_face, 3 * sizeof *to->x);
-  to->name = vg_alloc(n_face, 3 * sizeof *to->name);
-  return to->face && to->x && to->name ? VG_OK
+  to->id = vg_alloc(n_face, 3 * sizeof *to->id);
+  return to->face && to->x && to->id ? VG_OK
                                        : vg_fail_memory(err, "a part's front");
 }
 
 static void give_back(struct vg_front *f)
 {
   void *x = vg_realloc(f->x, f->n_point, sizeof *f->x);
-  void *name = vg_realloc(f->name, f->n_point, sizeof *f->name);
+  void *name = vg_realloc(f->id, f->n_point, sizeof *f->id);
 
   if (x) f->x = x;
-  if (name) f->name = name;
+  if (name) f->id = name;
 }
 
 /* Interface triangles of a patch, seen from above or from below. */
@@ -142,7 +141,7 @@ static void take_patch(struct filler *f, size_t patch, int above)
       const uint32_t v = m->faces.tri[i][above ? j : 2 - j];
 
       face[j] = take_point(f, &f->new[v], m->faces.x[v],
-                           VG_POINT_NAME(m->serial, v));
+                           VG_POINT_ID(m->serial, v));
     }
   }
 }
@@ -156,7 +155,7 @@ static void take_triangle(struct filler *f, size_t i)
   for (int j = 0; j < 3; j++) {
     const uint32_t v = from->face[i][j];
 
-    face[j] = take_point(f, &f->own[v], from->x[v], from->name[v]);
+    face[j] = take_point(f, &f->own[v], from->x[v], from->id[v]);
   }
 }
 
@@ -259,12 +258,6 @@ done:
 
 /* --- checks -------------------------------------------------------------- */
 
-static struct vg_void view_of(const struct vg_front *f)
-{
-  return (struct vg_void){ .n_point = f->n_point, .x = f->x,
-                           .n_face = f->n_face, .face = f->face };
-}
-
 /* Of the octants of each part; 0 for the gap. */
 static void add_octants(const struct vg_octants *t, double *volume)
 {
@@ -279,15 +272,14 @@ static void add_octants(const struct vg_octants *t, double *volume)
 static vg_status check(const struct maker *m, struct vg_error *err)
 {
   const struct vg_parting *p = &m->out;
-  const double whole = vg_load_volume(&m->v);
+  const double whole = vg_load_volume(m->front);
   double *octants = vg_calloc(p->n_part, sizeof *octants), sum = 0;
   vg_status st = octants ? VG_OK : vg_fail_memory(err, "the parts");
 
   if (st == VG_OK) add_octants(&m->t, octants);
   for (size_t k = 0; st == VG_OK && k < p->n_part; k++) {
-    const struct vg_void v = view_of(&p->part[k].front);
-    const double volume = vg_load_volume(&v);
-    const size_t bad = vg_void_defects(&v);
+    const double volume = vg_load_volume(&p->part[k].front);
+    const size_t bad = vg_front_open_edges(&p->part[k].front);
 
     sum += volume;
     if (bad)
@@ -361,7 +353,7 @@ vg_status vg_octree_part(const struct vg_front *front,
                          const struct vg_engine *e, struct vg_parting *out,
                          struct vg_error *err)
 {
-  struct maker m = { .front = front, .v = view_of(front), .load = load,
+  struct maker m = { .front = front, .load = load,
                      .sizing = sizing, .options = o, .engine = e,
                      .serial = serial };
   vg_status st = check_options(o, err);

@@ -24,7 +24,7 @@
  * of the interfaces.
  * VG_ERR_INPUT: n_part < 1, a coarsening below 2 or not finite, h_refine;
  * VG_ERR_GEOMETRY: the front is not closed; VG_ERR_UNSUPPORTED: more than 16 M
- * octants; VG_BLOCKED: stopped. */
+ * octants; VG_ERR_STOPPED: as asked. */
 vg_parting_maker vg_octree_part;
 
 #endif

@@ -66,8 +66,8 @@ static inline double vg_octants_place(const struct vg_octants *t, int axis,
 /** Octants no wider than `coarsening` times the least size in them, balanced
  * 2 : 1 over faces; those free that are off the front (octants.c). Then the
  * faces between them. *t is released by the caller also on failure.
- * VG_ERR_UNSUPPORTED beyond 16 M octants. VG_BLOCKED: stopped. */
-vg_status vg_octants_make(const struct vg_void *v, const struct vg_load *load,
+ * VG_ERR_UNSUPPORTED beyond 16 M octants. VG_ERR_STOPPED: as asked. */
+vg_status vg_octants_make(const struct vg_front *v, const struct vg_load *load,
                          const struct vg_sizing *sizing, double coarsening,
                          const struct vg_engine *e, struct vg_octants *t,
                          struct vg_error *err);
@@ -78,7 +78,7 @@ void vg_octants_release(struct vg_octants *t);
  * with too few for a part join the gap, which is numbered by where it hangs
  * together (octants_part.c).
  * gap out: [v->n_face] the id of the gap that each triangle bounds. */
-vg_status vg_octants_part(struct vg_octants *t, const struct vg_void *v,
+vg_status vg_octants_part(struct vg_octants *t, const struct vg_front *v,
                                 const struct vg_sizing *sizing, double cells,
                                 const struct vg_parting_options *o,
                                 uint32_t *gap, struct vg_error *err);
@@ -120,7 +120,7 @@ struct vg_interfaces {
 };
 
 /** Triangulate to the sizes, curves first. (patches.c) *out is released by the
- * caller also on failure. VG_BLOCKED: stopped. */
+ * caller also on failure. VG_ERR_STOPPED: as asked. */
 vg_status vg_interfaces_make(const struct vg_octants *t,
                              const struct vg_patches *p,
                              const struct vg_sizing *sizing,

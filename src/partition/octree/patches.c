@@ -65,7 +65,7 @@ static void note(struct mesher *m, size_t item, vg_status st,
 static vg_status outcome(const struct mesher *m, struct vg_error *err)
 {
   if (m->st == VG_OK) return VG_OK;
-  if (stops(m)) return VG_BLOCKED;
+  if (stops(m)) return VG_ERR_STOPPED;
   return vg_fail(err, m->st, "an interface: %s", m->err.text);
 }
 
@@ -188,11 +188,6 @@ static double size_in_plane(void *user, const double y[2])
   return vg_sizing_at(p->m->sizing, x);
 }
 
-static int stop_in_plane(void *user)
-{
-  return stops(((const struct plane *)user)->m);
-}
-
 static int by_number(const void *p, const void *q)
 {
   const uint32_t a = *(const uint32_t *)p, b = *(const uint32_t *)q;
@@ -234,7 +229,8 @@ static vg_status fill_patch(const struct mesher *m, size_t i, struct piece *q,
   struct plane pl = { m, &m->p->patch[i],
                       vg_octants_place(m->t, m->p->patch[i].axis,
                                       m->p->patch[i].at) };
-  const struct vg_planar_law law = { size_in_plane, stop_in_plane, &pl };
+  const struct vg_planar_law law = { size_in_plane, &pl,
+                                     vg_engine_stop(m->engine) };
   const size_t n = walk_border(m, i, NULL);
   uint32_t (*edge)[2] = vg_alloc(n, sizeof *edge);
   double (*y)[2] = vg_alloc(2 * n, sizeof *y);

@@ -142,7 +142,7 @@ static vg_status pick(struct repair *r, struct vg_error *err)
 
 static uint64_t name_of(const struct vg_piece *q, uint32_t v)
 {
-  return v < q->n_in ? q->in[v] : VG_POINT_NAME(q->serial, v - q->n_in);
+  return v < q->n_in ? q->in[v] : VG_POINT_ID(q->serial, v - q->n_in);
 }
 
 /* Corners in the ball of a further cluster: that one does not get the cell, so
@@ -513,27 +513,19 @@ static vg_status all_rounds(struct vg_partition *p, struct vg_comm *comm,
   return st;
 }
 
-/* Sums and extremes over all ranks. */
-static vg_status agree_report(struct vg_partition *p, struct vg_comm *comm,
-                              struct vg_error *err)
-{
-  struct vg_partition_report *r = &p->report;
-  uint64_t v[5] = {r->n_repair_cell, r->n_repair_bad, r->n_repair_bad_left,
-                   r->n_repair_moved, r->n_repair_swapped};
-  double least[2] = {-r->repair_worst, -r->repair_worst_left};
-  vg_status st = vg_comm_sum(comm, 5, v, err);
-
-  if (st == VG_OK) st = vg_comm_max(comm, 2, least, err);
-  if (st < 0) return st;
-  r->n_repair_cell = v[0];
-  r->n_repair_bad = v[1];
-  r->n_repair_bad_left = v[2];
-  r->n_repair_moved = v[3];
-  r->n_repair_swapped = v[4];
-  r->repair_worst = -least[0];
-  r->repair_worst_left = -least[1];
-  return VG_OK;
-}
+/* What ranks combine: sums and extremes. */
+#define ROW(member, kind, rule) \
+  VG_ENTRY(NULL, struct vg_partition_report, member, kind, rule)
+static const struct vg_entry entry[] = {
+  ROW(n_repair_cell, COUNT, SUM),
+  ROW(n_repair_bad, COUNT, SUM),
+  ROW(n_repair_bad_left, COUNT, SUM),
+  ROW(n_repair_moved, COUNT, SUM),
+  ROW(n_repair_swapped, COUNT, SUM),
+  ROW(repair_worst, REAL, LEAST),
+  ROW(repair_worst_left, REAL, LEAST),
+};
+static const struct vg_entries fields = { sizeof entry / sizeof *entry, entry };
 
 vg_status vg_partition_repair(struct vg_partition *p, struct vg_comm *comm,
                               struct vg_spans *spans, struct vg_error *err)
@@ -545,7 +537,7 @@ vg_status vg_partition_repair(struct vg_partition *p, struct vg_comm *comm,
   /* the regular tetrahedron, where there is nothing to do */
   p->report.repair_worst = p->report.repair_worst_left = 8.0 / 9;
   st = all_rounds(p, comm, &own, err);
-  if (st == VG_OK) st = agree_report(p, comm, err);
+  if (st == VG_OK) st = vg_entries_agree(&fields, &p->report, comm, err);
   if (st == VG_OK && spans)
     st = vg_repair_record(p, comm, t0, &own, spans, err);
   vg_spans_release(&own);

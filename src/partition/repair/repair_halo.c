@@ -225,7 +225,7 @@ static vg_status fill_halo(struct user *u, uint32_t owner, size_t n,
 
     memcpy(s->x[k], q->x[v], sizeof *s->x);
     s->name[k] = v < q->n_in ? q->in[v]
-                             : VG_POINT_NAME(q->serial, v - q->n_in);
+                             : VG_POINT_ID(q->serial, v - q->n_in);
     s->zone[k] = zone_of(u, v);
   }
   for (size_t c = 0; c < n; c++) {
@@ -273,7 +273,7 @@ vg_status vg_halos_of(const struct vg_partition *p, size_t k,
   const struct vg_piece *q = &p->piece[k];
   struct user u = { .q = q,
                     .self = vg_owners_find(owners,
-                                           VG_POINT_NAME(q->serial, 0)) };
+                                           VG_POINT_ID(q->serial, 0)) };
   vg_status st;
 
   *n = *n_hit = 0;

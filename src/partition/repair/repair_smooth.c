@@ -262,7 +262,7 @@ static vg_status smooth_piece(const struct smoothing *s, size_t k,
   struct vg_overlap f = {
     .q = q, .halo = s->halo + s->first_halo[k],
     .n_halo = s->first_halo[k + 1] - s->first_halo[k],
-    .self = vg_owners_find(s->owners, VG_POINT_NAME(q->serial, 0)) };
+    .self = vg_owners_find(s->owners, VG_POINT_ID(q->serial, 0)) };
   vg_status st;
 
   free(out->moved);

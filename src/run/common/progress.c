@@ -295,8 +295,8 @@ static int move_on(struct vg_display *d, const char *stage, size_t done,
   return tells;
 }
 
-int vg_display_update(void *user, const char *stage, size_t done,
-                      size_t expected)
+void vg_display_update(void *user, const char *stage, size_t done,
+                       size_t expected)
 {
   struct vg_display *d = user;
   double now = vg_display_now(), every = d->live ? LIVE_EVERY_S : d->every;
@@ -311,5 +311,4 @@ int vg_display_update(void *user, const char *stage, size_t done,
   if (!d->quiet && (tells || now - d->last_shown > every)) show(d, now);
   if (d->logs && (tells || now - d->last_logged > PLAIN_EVERY_S))
     log_line(d, now);
-  return vg_display_stop(d);
 }

@@ -36,11 +36,10 @@ void vg_display_watch(void);
  * signals, if that has not begun. */
 void vg_display_init(struct vg_display *d, int quiet);
 
-/** A vg_progress callback (core/fill/fill.h); user is the display. Within a
- * stage neither count nor share runs backwards. Returns 1 when the user asked
- * to stop. */
-int vg_display_update(void *user, const char *stage, size_t done,
-                      size_t expected);
+/** The callback of a vg_progress (base/progress.h); user is the display. Within
+ * a stage neither count nor share runs backwards. */
+void vg_display_update(void *user, const char *stage, size_t done,
+                       size_t expected);
 
 /** Remove the live line, before something else is printed. */
 void vg_display_clear(struct vg_display *d);

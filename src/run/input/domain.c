@@ -199,11 +199,10 @@ vg_status vg_problem_complete(struct vg_problem *p, struct vg_display *show,
   options.threads = p->threads;
   VG_TRY(vg_sizing_new(&options, s->n_source, s->source, &p->surface, &sizing,
                        err));
-  far.stop = vg_display_stop;
-  far.user = show;
+  far.stop = (struct vg_stop){ vg_display_stop, show };
   VG_TRY(vg_domain_complete(&p->surface, &far, sizing, &p->domain, err));
 done:
   vg_sizing_free(sizing);
   /* the library's message says less */
-  return st < 0 && vg_display_stop(show) ? vg_display_stopped(show, err) : st;
+  return st == VG_ERR_STOPPED ? vg_display_stopped(show, err) : st;
 }

@@ -325,6 +325,7 @@ static vg_status mesh_patches(struct vg_problem *p, struct vg_display *show,
   struct vg_sizing_options options = vg_problem_sizing(p);
   const struct vg_mesh corners = { .n_point = p->project.n_point,
                                    .point = p->project.point };
+  const struct vg_stop stop = { vg_display_stop, show };
   struct vg_sizing *sizing = NULL;
   vg_status st;
 
@@ -334,12 +335,11 @@ static vg_status mesh_patches(struct vg_problem *p, struct vg_display *show,
                    p->files.d3m);
   VG_TRY(vg_sizing_new(&options, p->settings.n_source, p->settings.source,
                        &corners, &sizing, err));
-  VG_TRY(vg_project_surface(&p->project, sizing, vg_display_stop, show,
-                            &p->surface, err));
+  VG_TRY(vg_project_surface(&p->project, sizing, &stop, &p->surface, err));
 done:
   vg_sizing_free(sizing);
   /* the library's message says less */
-  return st < 0 && vg_display_stop(show) ? vg_display_stopped(show, err) : st;
+  return st == VG_ERR_STOPPED ? vg_display_stopped(show, err) : st;
 }
 
 /* VGRID's factor on all sources. */
@@ -446,13 +446,6 @@ static void note_cad(void *user, const char *text)
   vg_note(user, "CAD: %s", text);
 }
 
-/* user: the notes. */
-static int stop_cad(void *user)
-{
-  (void)user;
-  return vg_display_stop(NULL);
-}
-
 /* Triangles along a line are held against facets beside it. */
 static int is_stretched(const struct vg_settings *s)
 {
@@ -480,7 +473,7 @@ struct vg_cad_options vg_cad_options_of(const struct vg_settings *s,
     .chord = fmin(chord, CHORD_MOST),
     .angle = fmin(fmax(angle, ANGLE_LEAST), ANGLE_MOST),
     .seconds = s->cad.seconds,
-    .note = note_cad, .stop = stop_cad, .user = notes };
+    .note = note_cad, .user = notes, .stop = { vg_display_stop, NULL } };
 }
 
 vg_status vg_problem_cad(struct vg_problem *p, struct vg_comm *comm,

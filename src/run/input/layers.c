@@ -666,14 +666,12 @@ vg_status vg_layer_stage_grow(struct vg_layer_stage *s,
   double t;
   vg_status st;
 
-  s->options.progress = vg_display_update;
-  s->options.user = show;
-  VG_TRY(vg_layers_grow(surface, sizing, &s->options, &s->layers, &s->report,
-                        err));
-  if (st == VG_BLOCKED) {
-    st = vg_display_stopped(show, err);
-    goto done;
-  }
+  s->options.progress = (struct vg_progress){ vg_display_update, show };
+  s->options.stop = (struct vg_stop){ vg_display_stop, show };
+  st = vg_layers_grow(surface, sizing, &s->options, &s->layers, &s->report,
+                      err);
+  if (st == VG_ERR_STOPPED) st = vg_display_stopped(show, err);
+  VG_TRY(st);
   t = vg_display_now();
   vg_display_update(show, "measure layers", s->report.n_cell, 0);
   VG_TRY(judge(s, surface, err));

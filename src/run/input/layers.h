@@ -65,7 +65,15 @@ vg_status vg_layer_stage_sizes(const struct vg_layer_stage *s,
                                const struct vg_problem *p,
                                struct vg_mesh *out, struct vg_error *err);
 
-/** Grow, judge and measure. What is left to fill is s->layers.front.mesh.
+/** What bounds the field: the front above the layers, or, without layers, the
+ * surface. Borrowed from both. */
+static inline struct vg_mesh vg_layer_stage_front(
+  const struct vg_layer_stage *s, const struct vg_mesh *surface)
+{
+  return s->is_on ? vg_front_mesh(&s->layers.front, surface) : *surface;
+}
+
+/** Grow, judge and measure. s->layers.front bounds the void that is left.
  * VG_ERR_GEOMETRY when cells are wrong: a fault of the program. */
 vg_status vg_layer_stage_grow(struct vg_layer_stage *s,
                               const struct vg_mesh *surface,

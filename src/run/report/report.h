@@ -67,6 +67,11 @@ json_t *vg_report_mesh_json(const struct vg_mesh_report *r);
 void vg_report_faults(const struct vg_mesh_report *r, char *text,
                       size_t size);
 
+/** Add the fields of a report (base/entries.h) to o in their order; times to
+ * seconds, which may be o. */
+void vg_report_entries(json_t *o, json_t *seconds, const struct vg_entries *l,
+                      const void *report);
+
 /** What the fill did and how fast. */
 void vg_report_fill_text(FILE *to, const struct vg_fill_report *r,
                          size_t n_cell);

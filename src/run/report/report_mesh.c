@@ -300,32 +300,31 @@ void vg_report_fill_text(FILE *to, const struct vg_fill_report *r,
           vg_text_count((unsigned long long)rate, a));
 }
 
+void vg_report_entries(json_t *o, json_t *seconds, const struct vg_entries *l,
+                      const void *report)
+{
+  for (size_t k = 0; k < l->n; k++) {
+    const struct vg_entry *f = &l->entry[k];
+
+    if (!f->name) continue;
+    if (f->type == VG_ENTRY_REAL || f->type == VG_ENTRY_SECONDS)
+      json_object_set_new(f->type == VG_ENTRY_SECONDS ? seconds : o, f->name,
+                          json_real(vg_entry_real(f, report)));
+    else if (f->type == VG_ENTRY_FLAG)
+      json_object_set_new(o, f->name,
+                          json_boolean(vg_entry_count(f, report)));
+    else
+      json_object_set_new(o, f->name,
+                          json_integer((json_int_t)vg_entry_count(f, report)));
+  }
+}
+
 json_t *vg_report_fill_json(const struct vg_fill_report *r, size_t n_cell)
 {
-  const struct { const char *name; size_t n; } row[] = {
-    { "triangles_recovered", r->n_surface_face_lost },
-    { "pockets", r->n_pocket },
-    { "pocket_cells", r->n_pocket_cell }, { "retries", r->n_retry },
-    { "steiner_points", r->n_steiner }, { "placed", r->n_placed },
-    { "parts_by_other_mesher", r->n_other },
-    { "cells_by_other_mesher", r->n_other_cell },
-    { "parts_given_back", r->n_other_failed },
-    { "parts_crashed", r->n_other_ended },
-    { "parts_not_valid", r->n_other_wrong },
-    { "inserted", r->n_inserted }, { "refused", r->n_refused },
-    { "smoothed", r->n_smoothed }, { "swapped", r->n_flip },
-    { "collapsed", r->n_collapse }, { "split", r->n_split },
-    { "lists_cut_short", r->n_list_cut }, { "bad_cells_left", r->n_left },
-  };
-  json_t *o = json_object();
+  json_t *o = json_object(), *seconds = json_object();
 
-  for (size_t i = 0; i < sizeof row / sizeof *row; i++)
-    json_object_set_new(o, row[i].name, json_integer((json_int_t)row[i].n));
-  json_object_set_new(o, "whole_void", json_boolean(r->whole_void));
-  json_object_set_new(o, "seconds", json_pack("{s:f s:f s:f s:f s:f s:f}",
-    "other_mesher", r->time_other, "boundary", r->time_boundary, "place",
-    r->time_place, "insert", r->time_insert, "optimise", r->time_optimise,
-    "total", r->time_total));
+  vg_report_entries(o, seconds, &vg_fill_entries, r);
+  json_object_set_new(o, "seconds", seconds);
   json_object_set_new(o, "cells_per_second",
                       real(r->time_total > 0
                            ? (double)n_cell / r->time_total : 0));

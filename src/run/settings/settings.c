@@ -544,7 +544,7 @@ void vg_settings_default(struct vg_settings *s)
   s->repair = 1;
   s->ridge_angle = remesh.ridge_angle;
   s->per_turn = remesh.per_turn;
-  s->optimise = fill.optimise;
+  s->optimise = fill.sweeps;
   s->leaf_cells = VG_LEAF_CELLS;
   s->report_html = 1;
   s->parts = VG_COUNT_NONE;

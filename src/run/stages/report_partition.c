@@ -4,6 +4,7 @@
 
 #include "base/memory.h"
 #include "run/common/text.h"
+#include "run/report/report.h"
 #include "run/stages/run.h"
 
 /* Leaves by what they were filled with. Fragments are parts of a void that are
@@ -118,11 +119,16 @@ static void print_parting(FILE *to, const struct vg_run *r,
           q->time[VG_PARTING_FACES]);
 }
 
+static json_t *count(uint64_t n)
+{
+  return json_integer((json_int_t)n);
+}
+
 static void put_parting(const struct vg_run *r, const struct leaves *l,
                         json_t *o)
 {
   const struct vg_partition_report *p = &r->partition;
-  const struct vg_parting_report *q = &p->parting;
+  json_t *parting;
 
   json_object_set_new(o, "decomposition", json_string(r->decomposition));
   json_object_set_new(o, "schedule",
@@ -133,17 +139,10 @@ static void put_parting(const struct vg_run *r, const struct leaves *l,
       "{s:I s:f s:f}", "cells", (json_int_t)r->near.n_cell, "angle_min",
       r->near.angle_min, "angle_min_p1", r->near.angle_min_p1));
   if (!p->n_part) return;
-  json_object_set_new(o, "parting", json_pack(
-    "{s:I s:I s:I s:f s:I s:I s:f s:I s:f s:f s:f s:f}", "parts", (json_int_t)p->n_part,
-    "parts_asked", (json_int_t)q->n_asked,
-    "parts_apart", (json_int_t)q->n_apart, "coarsening", q->coarsening,
-    "coarse_cells", (json_int_t)q->n_coarse,
-    "gap_parts", (json_int_t)q->n_gap, "octants_hold", q->coarse_cells,
-    "interface_triangles", (json_int_t)q->n_face,
-    "coarse_seconds", q->time[VG_PARTING_COARSE],
-    "deal_seconds", q->time[VG_PARTING_GRAPH],
-    "smooth_seconds", q->time[VG_PARTING_SMOOTH],
-    "divide_seconds", q->time[VG_PARTING_FACES]));
+  parting = json_object();
+  json_object_set_new(parting, "parts", count(p->n_part));
+  vg_report_entries(parting, parting, &vg_parting_entries, &p->parting);
+  json_object_set_new(o, "parting", parting);
 }
 
 void vg_report_partition_text(FILE *to, const struct vg_run *r)
@@ -198,37 +197,25 @@ void vg_report_partition_text(FILE *to, const struct vg_run *r)
     fprintf(to, "  not all tasks were kept there: %s\n", r->stored.stopped);
 }
 
-static json_t *count(uint64_t n)
-{
-  return json_integer((json_int_t)n);
-}
-
 json_t *vg_report_partition_json(const struct vg_run *r)
 {
   const struct vg_partition_report *p = &r->partition;
   struct leaves l = leaves_of(&r->spans);
   const struct { const char *name; uint64_t n; } row[] = {
     { "ranks", (uint64_t)r->size }, { "threads", (uint64_t)r->threads },
-    { "cuts", p->n_node }, { "pencils", p->n_pencil }, { "tiles", p->n_tile },
     { "leaves", l.n }, { "fragment_leaves", l.n_fragment },
-    { "fragment_cells", l.fragment_cells }, { "zone_cells", p->n_zone_cell },
-    { "zones_given_up", p->n_blocked },
-    { "zones_crossing", p->n_crossing }, { "cuts_repeated", p->n_retry },
-    { "leaves_cut_again", p->n_outgrown }, { "leaves_left_large", p->n_uncut },
-    { "stages_left_open", p->n_open_left },
-    { "tasks_found", p->n_found }, { "regions_bad", p->n_repair },
+    { "fragment_cells", l.fragment_cells }, { "regions_bad", p->n_repair },
     { "regions_repaired", p->n_repaired },
     { "cells_in_regions", p->n_repair_cell },
     { "points_moved_across", p->n_repair_moved },
     { "swaps_across", p->n_repair_swapped },
-    { "parts_widened", p->n_widened },
-    { "cells_made_again", p->n_widened_cell },
   };
   json_t *o = json_object(), *leaves = json_array();
   json_int_t by_repair = repair_cells(r, &l);
 
   for (size_t i = 0; i < sizeof row / sizeof *row; i++)
     json_object_set_new(o, row[i].name, count(row[i].n));
+  vg_report_entries(o, o, &vg_partition_entries, p);
   for (size_t i = 0; i < l.n; i++)
     json_array_append_new(leaves, count(l.cells[i]));
   put_parting(r, &l, o);
@@ -237,7 +224,6 @@ json_t *vg_report_partition_json(const struct vg_run *r)
   json_object_set_new(o, "repair_cells", json_integer(by_repair));
   json_object_set_new(o, "parts_widened_seconds", json_real(p->widened));
   json_object_set_new(o, "repair_seconds", json_real(p->repair));
-  json_object_set_new(o, "estimate", json_real(p->estimate));
   json_object_set_new(o, "busy", json_real(vg_spans_busy(&r->spans)));
   json_object_set_new(o, "imbalance",
                       json_real(vg_spans_imbalance(&r->spans)));

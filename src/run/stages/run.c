@@ -301,9 +301,8 @@ static vg_status fill(struct vg_run *r, const struct vg_problem *p,
   o.shuffle = r->options.shuffle;
   o.fail_leaves = r->options.fail_leaves;
   o.fail_rounds = r->options.fail_rounds;
-  o.progress = vg_display_update;
-  o.stop = vg_display_stop;
-  o.user = show;
+  o.progress = (struct vg_progress){ vg_display_update, show };
+  o.stop = (struct vg_stop){ vg_display_stop, show };
   VG_TRY(open_mesher(r, s, &o.mesher, err));
   vg_display_update(show, "load", 0, 0);
   VG_TRY(open_store(r, p, boundary, sizing, &o, err));
@@ -316,7 +315,7 @@ static vg_status fill(struct vg_run *r, const struct vg_problem *p,
     st = vg_partition_near(r->field, r->comm, &r->near, err);
   r->time_near = vg_display_now() - t;
   if (r->store) vg_store_state(r->store, &r->stored);
-  if (st == VG_BLOCKED) st = say_stopped(r, err);
+  if (st == VG_ERR_STOPPED) st = say_stopped(r, err);
   if (st >= 0)
     r->n_field_cell =
       vg_partition_slices(r->field)->n_cell[VG_SLICE_TET];
@@ -356,7 +355,7 @@ static vg_status judge(struct vg_run *r, const struct vg_problem *p,
                        const struct vg_sizing *sizing,
                        struct vg_display *show, struct vg_error *err)
 {
-  size_t front_faces = layers ? layers->front.mesh.n_tri : 0;
+  size_t front_faces = layers ? layers->front.n_face : 0;
   double t = vg_display_now();
   vg_status st;
 
@@ -421,7 +420,7 @@ static vg_status grow_layers(struct vg_run *r, const struct vg_problem *p,
                              struct vg_team *team, struct vg_display *show,
                              struct vg_sizing **sizing, struct vg_error *err)
 {
-  struct vg_mesh view = VG_MESH_INIT;
+  struct vg_mesh view = VG_MESH_INIT, front;
   int threads = node_threads(r, &p->settings);
   double t;
   vg_status st;
@@ -437,8 +436,8 @@ static vg_status grow_layers(struct vg_run *r, const struct vg_problem *p,
   VG_TRY(vg_display_stopped(show, err));
   vg_sizing_free(*sizing);
   *sizing = NULL;
-  st = measure_sizes(r, p, &layers->layers.front.mesh, 1, threads, team, show,
-                     sizing, err);
+  front = vg_front_mesh(&layers->layers.front, &p->surface);
+  st = measure_sizes(r, p, &front, 1, threads, team, show, sizing, err);
 done:
   layers->options.team = NULL;
   st = vg_team_close(team, st, err);
@@ -489,18 +488,19 @@ static vg_status mesh_layers(struct vg_run *r, const struct vg_problem *p,
                              struct vg_layer_stage *layers,
                              struct vg_display *show, struct vg_error *err)
 {
-  const struct vg_mesh *front = &layers->layers.front.mesh;
   struct vg_sizing *sizing = NULL;
+  struct vg_mesh front;
   struct vg_team *team;
   vg_status st = vg_team_open(r->comm, &team, err);
 
   if (st < 0) return st;
   if (leads_node(r)) st = grow_layers(r, p, layers, team, show, &sizing, err);
   VG_TRY(share_with_node(r, st, &layers->layers, show, &sizing, err));
+  front = vg_front_mesh(&layers->layers.front, &p->surface);
   VG_TRY(vg_run_agree(r->comm, &p->surface, &layers->layers, sizing,
                       r->options.change, err));
-  VG_TRY(look_at_sources(r, p, front, sizing, err));
-  VG_TRY(fill(r, p, &layers->layers, front, sizing, show, err));
+  VG_TRY(look_at_sources(r, p, &front, sizing, err));
+  VG_TRY(fill(r, p, &layers->layers, &front, sizing, show, err));
   st = vg_layer_slices_open(&p->surface, &layers->layers,
                             vg_partition_slices(r->field),
                             (enum vg_layer_cells)p->settings.cells, r->rank,

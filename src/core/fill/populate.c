@@ -1,4 +1,5 @@
-#include "core/fill/growth.h"
+/* Points into the cells of a front, and the cells improved. */
+#include "core/fill/fill_parts.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -21,16 +22,9 @@ static const double margin = 0.3;   /* K8 */
 /* The first points of all keep farther off: the front decides near it. */
 static const double seed_distance = 0.8;   /* K7 */
 
-enum { PROGRESS_STEP = 1 << 15 };
+enum { STOP_STEP = 1 << 15 };
 
-int vg_growth_stopped(const struct vg_growth *g, const char *stage,
-                      size_t done, size_t expected)
-{
-  return g->options->progress &&
-         g->options->progress(g->options->user, stage, done, expected);
-}
-
-static vg_status insert_one(struct vg_growth *g, struct vg_inserter *s,
+static vg_status insert_one(struct vg_filling *g, struct vg_inserter *s,
                             const double x[3], double nearest, uint32_t *at,
                             struct vg_error *err)
 {
@@ -53,7 +47,8 @@ static vg_status insert_one(struct vg_growth *g, struct vg_inserter *s,
   return st;
 }
 
-static vg_status insert_all(struct vg_growth *g, const struct vg_placed *placed,
+static vg_status insert_all(struct vg_filling *g,
+                            const struct vg_placed *placed,
                             const uint32_t *order, double nearest,
                             struct vg_error *err)
 {
@@ -68,17 +63,13 @@ static vg_status insert_all(struct vg_growth *g, const struct vg_placed *placed,
     st = insert_one(g, &s, placed->x[order[i]], nearest, &at, err);
     g->report->n_inserted += st == VG_OK;
     g->report->n_refused += st == VG_BLOCKED;
-    if (i % PROGRESS_STEP == 0 &&
-        vg_growth_stopped(g, "inserting", i, placed->n)) {
-      vg_inserter_release(&s);
-      return VG_BLOCKED;
-    }
+    if (st >= 0 && i % STOP_STEP == 0) st = vg_stopped(&g->options->stop, err);
   }
   vg_inserter_release(&s);
   return st < 0 ? st : VG_OK;
 }
 
-static vg_status insert_placed(struct vg_growth *g, struct vg_placed *placed,
+static vg_status insert_placed(struct vg_filling *g, struct vg_placed *placed,
                                double nearest, struct vg_error *err)
 {
   uint32_t *order = vg_alloc(placed->n, sizeof *order);
@@ -100,14 +91,14 @@ done:
   return st;
 }
 
-vg_status vg_growth_populate(struct vg_growth *g, struct vg_error *err)
+vg_status vg_filling_populate(struct vg_filling *g, struct vg_error *err)
 {
   struct vg_placed placed = {0};
   double t0;
   vg_status st;
 
-  VG_TRY(vg_place_seeds(g->n_front, (const double (*)[3])g->t.x, g->sizing,
-                        g->region, &placed, err));
+  VG_TRY(vg_place_seeds(g->front->n_point, (const double (*)[3])g->t.x,
+                        g->sizing, g->region, &placed, err));
   st = insert_placed(g, &placed, seed_distance, err);
   if (st != VG_OK) goto done;
   t0 = vg_clock();
@@ -120,19 +111,19 @@ done:
   return st;
 }
 
-vg_status vg_growth_improve(struct vg_growth *g, struct vg_error *err)
+vg_status vg_filling_improve(struct vg_filling *g, struct vg_error *err)
 {
   struct vg_optimise_report r = {0};
   struct vg_region near = {0};
   double t0 = vg_clock();
   vg_status st = VG_OK;
 
-  VG_TRY(vg_tets_compact(&g->t, g->n_front, err));
-  if (vg_growth_stopped(g, "optimising", 0, 1)) return VG_BLOCKED;
+  VG_TRY(vg_tets_compact(&g->t, g->front->n_point, err));
+  VG_TRY(vg_stopped(&g->options->stop, err));
   if (g->region) near = *g->region;
   near.reach += margin;
   if (g->options->sweeps > 0) {
-    st = vg_optimise(&g->t, g->n_front, g->options->sweeps,
+    st = vg_optimise(&g->t, g->front->n_point, g->options->sweeps,
                      g->region ? &near : NULL, g->sizing, &r, err);
     g->report->n_smoothed += r.n_smoothed;
     g->report->n_flip += r.n_flip;
