@@ -5,7 +5,8 @@
 
 #include "io/vgrid/vgrid.h"
 
-/* The worked example of formats.md 1.6. */
+/* T1 as a project (formats.md 1.6), with other values for each field of its
+ * source. */
 static const char t1_d3m[] =
   "#VGRID VERSION\n3.6\n#Project Name\nT1\n#\n"
   "               1 (grid)\n            0.15 (rate1)\n"

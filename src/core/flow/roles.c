@@ -7,7 +7,7 @@
 
 struct code_range { int32_t first, last; enum vg_flow_role role; };
 
-/* formats.md, "Boundary conditions". USM3D's codes end at 11,111. */
+/* Codes of formats.md 1.4 and 1.5. USM3D's end at 11,111. */
 static const struct code_range codes[] = {
   { 0, 0, VG_ROLE_FARFIELD },        /* USM3D freestream */
   { 1, 1, VG_ROLE_SYMMETRY },

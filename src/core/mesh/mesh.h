@@ -7,7 +7,7 @@
  *   - boundary faces point INTO the fluid (right-hand normal), as VGRID's;
  *   - cells have UGRID's node order: tet 0 1 2 counter-clockwise seen from 3;
  *     pyramid base 0 3 4 1 with apex 2; prism 0 1 2 below 3 4 5; hex 0..3
- *     below 4..7 (formats: AFLR UGRID), all of positive volume. */
+ *     below 4..7 (formats.md 2.3), all of positive volume. */
 #ifndef VG_CORE_MESH_MESH_H
 #define VG_CORE_MESH_MESH_H
 

@@ -1,7 +1,7 @@
 /* core/sizing/sizing.h: target edge length in space. Uses base and
  * core/mesh/mesh.h.
  *
- * Two families of sources (formats.md 1.7, algorithms.md 3):
+ * Two families of sources (formats.md 1.7; deck.md, "Table sources"):
  *   inverse square: VGRID's nodal and line sources,
  *     S(x) = sum(a_i S_i / r_i^2) / sum(a_i / r_i^2);
  *   bounded growth: h(d) = h0 inside the shape, h0 + (g - 1) d outside at

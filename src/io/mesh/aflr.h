@@ -1,5 +1,5 @@
-/* io/mesh/aflr.h: surfaces and layer settings of AFLR3: .surf (formats.md 2.5),
- * .tags and AFLR's .bc (2.6). All are text; 1-based. */
+/* io/mesh/aflr.h: surfaces and layer settings of AFLR3: .surf, .tags and
+ * AFLR's .bc (formats.md 2.5 and 2.6). All are text; 1-based. */
 #ifndef VG_IO_MESH_AFLR_H
 #define VG_IO_MESH_AFLR_H
 

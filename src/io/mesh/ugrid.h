@@ -46,8 +46,8 @@ vg_status vg_ugrid_parse(struct vg_input *in, const struct vg_ugrid_kind *kind,
 vg_status vg_ugrid_peek(const char *path, uint64_t count[7],
                         struct vg_error *err);
 
-/** The number of tetrahedra in layers, where a tail tells it (formats.md 2.2,
- * item 10): *is_known says whether one does. Of text kinds no tail is read. */
+/** The number of tetrahedra in layers, where a tail tells it (formats.md 2.4):
+ * *is_known says whether one does. Of text kinds no tail is read. */
 vg_status vg_ugrid_layer_tets(const char *path, int *is_known, size_t *n,
                               struct vg_error *err);
 
@@ -58,8 +58,8 @@ vg_status vg_ugrid_layer_tets(const char *path, int *is_known, size_t *n,
 vg_status vg_ugrid_write(const char *path, const struct vg_mesh *m,
                          struct vg_error *err);
 
-/** As vg_ugrid_write, followed by the first part of the tail (formats.md 2.2,
- * item 10): the number of tetrahedra in the layers, an integer of the kind's
+/** As vg_ugrid_write, followed by the first part of the tail (formats.md 2.4):
+ * the number of tetrahedra in the layers, an integer of the kind's
  * size; a record of its own in Fortran kinds. Layer tetrahedra are meant to
  * be the first ones of the file. Readers, ours too, ignore it.
  * @param n_layer_tet  0 .. m->n_tet, else VG_ERR_INPUT; mixed meshes, whose

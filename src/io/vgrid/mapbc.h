@@ -1,5 +1,5 @@
-/* io/vgrid/mapbc.h: boundary conditions per patch, both layouts of .mapbc
- * (formats.md 1.4 VGRID / USM3D, 1.5 FUN3D) and the translation of codes. */
+/* io/vgrid/mapbc.h: boundary conditions per patch, both layouts of .mapbc,
+ * USM3D's and FUN3D's (formats.md 1.4 and 1.5), and the translation of codes. */
 #ifndef VG_IO_VGRID_MAPBC_H
 #define VG_IO_VGRID_MAPBC_H
 

@@ -1,0 +1,134 @@
+#!/usr/bin/env python3
+"""Resolves every reference to a document. It complains when one is missing:
+
+  NAME.md                    a document of docs, of the root, or beside the file
+  NAME.md 1.2                the heading with that number; also "1.2 and 1.3"
+  NAME.md, "Title"           the heading of that title
+  row K17, rows K17 to K19,  a row of a table of docs/decisions.md
+  /* K17 ..., (K17)            the same, as comments of the code name rows
+  [text](FILE#anchor)        in documents: the file, and its heading
+
+references.py ROOT
+"""
+import os
+import re
+import sys
+
+CODE = (".c", ".h", ".cpp", ".sh", ".py", ".in", ".txt", ".cmake", ".js")
+FOLDERS = ("src", "tests", "bench", "cmake", "docs", "python", "examples",
+           "share", "verification")
+LIST = r"(?:,? (?:and|to) |, )"
+NUMBER = r"\d+(?:\.\d+)*"
+ROW = r"[A-Z]\d{1,2}"
+CITED = re.compile(rf"(?:\$\w+/)?([\w./-]*\w\.md)\b`?((?: {NUMBER}(?:{LIST}{NUMBER})*)?)"
+                   rf"(?:,? \"([A-Z][^\"]*)\")?")
+ROWS = re.compile(rf"\b[Rr]ows? ({ROW}(?:{LIST}{ROW})*)")
+TAGS = re.compile(rf"^/\*\s+({ROW}(?:{LIST}{ROW})*)(?=[:,.;]| \*/|$)")
+IN_BRACKETS = re.compile(rf"\(({ROW}(?:{LIST}{ROW})*)\)")
+LINK = re.compile(r"\]\(([^)\s#]*)(?:#([^)\s]+))?\)")
+problems = []
+
+
+def complain(path, what):
+    problems.append(f"{path}: {what}")
+
+
+def files(root):
+    """Documents and code, as paths from the root."""
+    found = [f for f in os.listdir(root) if f.endswith(".md")]
+    for folder in FOLDERS:
+        for at, below, names in os.walk(os.path.join(root, folder)):
+            below.sort()
+            found += [os.path.relpath(os.path.join(at, name), root)
+                      for name in names if name.endswith(CODE + (".md",))]
+    return sorted(found)
+
+
+def read(root, path):
+    with open(os.path.join(root, path), encoding="utf-8") as f:
+        return f.read()
+
+
+def running(text):
+    """Text without line ends and what begins the lines of a comment."""
+    return re.sub(r"\s*\n[ \t]*(?:(?:\*|#|//)[ \t]+)?", " ", text)
+
+
+class Document:
+    """Headings of a document by number, title and anchor."""
+
+    def __init__(self, text):
+        titles = re.findall(r"^#+ (.*?)\s*$", text, re.M)
+        self.numbers = {m[1] for t in titles
+                        if (m := re.match(rf"({NUMBER}) ", t))}
+        self.titles = {re.sub(rf"^{NUMBER} ", "", t).replace("`", "")
+                       for t in titles}
+        self.anchors = {re.sub(r"[^\w -]", "", t.lower()).replace(" ", "-")
+                        for t in titles}
+
+
+def check_cited(root, path, text, documents):
+    for m in CITED.finditer(text):
+        name, numbers, title = m[1], re.findall(NUMBER, m[2]), m[3]
+        places = (os.path.join("docs", name), name,
+                  os.path.join(os.path.dirname(path), name))
+        target = next((p for p in map(os.path.normpath, places)
+                       if os.path.exists(os.path.join(root, p))), None)
+        if not target:
+            complain(path, f"{name} does not exist")
+            continue
+        if target not in documents:
+            documents[target] = Document(read(root, target))
+        for number in numbers:
+            if number not in documents[target].numbers:
+                complain(path, f"{target} has no section {number}")
+        if title and title not in documents[target].titles:
+            complain(path, f'{target} has no heading "{title}"')
+
+
+def check_rows(path, text, rows):
+    named = ROWS.findall(text)
+    if path.endswith((".c", ".h", ".cpp")):
+        for comment in re.findall(r"/\*.*?\*/", text):
+            named += TAGS.findall(comment) + IN_BRACKETS.findall(comment)
+    for row in (row for group in named for row in re.findall(ROW, group)):
+        if row not in rows:
+            complain(path, f"docs/decisions.md has no row {row}")
+
+
+def check_links(root, path, text, documents):
+    for target, anchor in LINK.findall(re.sub(r"`[^`]*`", "", text)):
+        if re.match(r"\w+:", target):
+            continue
+        file = path
+        if target:
+            file = os.path.normpath(os.path.join(os.path.dirname(path), target))
+        if not os.path.exists(os.path.join(root, file)):
+            complain(path, f"the link to {target} leads nowhere")
+        elif anchor and file in documents and \
+                anchor not in documents[file].anchors:
+            complain(path, f"{file} has no heading for #{anchor}")
+
+
+def main(root):
+    texts = {path: read(root, path) for path in files(root)
+             if "references" not in path and not path.endswith("_fails.sh")}
+    documents = {path: Document(text) for path, text in texts.items()
+                 if path.endswith(".md")}
+    listed = re.findall(rf"^\| ({ROW}) \|",
+                        texts.get("docs/decisions.md", ""), re.M)
+    for row in sorted({row for row in listed if listed.count(row) > 1}):
+        complain("docs/decisions.md", f"row {row} occurs twice")
+    for path, text in texts.items():
+        joined = running(text)
+        check_cited(root, path, joined, documents)
+        check_rows(path, joined, set(listed))
+        if path in documents:
+            check_links(root, path, text, documents)
+    print("\n".join(problems) or
+          f"{len(texts)} files: every reference leads somewhere")
+    return 1 if problems else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1]))
