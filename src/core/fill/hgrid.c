@@ -12,12 +12,16 @@
 
 #define VG_NONE UINT32_MAX
 
-/* Level k has cells of side 2^k, between 1.4 and 2.8 of the spacing. */
+/* Level k has cells of side 2^k, between half of this and this, in spacings. */
+static const double widest_cell = 2.8;   /* K39 */
+/* A search expects the spacing to change by no more than this share. */
+static const double largest_change = 0.6;   /* K39 */
+
 static int level_of(double h)
 {
   int e;
 
-  frexp(2.8 * h, &e);
+  frexp(widest_cell * h, &e);
   return e - 1;
 }
 
@@ -308,7 +312,7 @@ static void find_level(struct vg_hgrid *s, const double c[3], double r,
  * the levels that the gradient of the field allows. */
 void vg_hgrid_gather(struct vg_hgrid *s, const double c[3], double h, double r)
 {
-  double change = fmin(s->slope * r, 0.6 * h);
+  double change = fmin(s->slope * r, largest_change * h);
 
   s->n = s->n_cell = 0;
   for (int level = level_of(h - change); level <= level_of(h + change);

@@ -32,6 +32,18 @@ static const double sideways = 0.65;   /* K13 */
 /* A field that changes less than this over one edge counts as level. */
 static const double level_within = 1e-3;   /* K14 */
 
+/* A place is given up at this share of the exclusion already, before the
+ * spacing there is looked up. */
+static const double exclusion_early = 0.9;   /* K35 */
+/* Square of the distance, in halves of the pattern's side, within which a point
+ * proposes sites of the lattice: neighbours are at sqrt(3) and 2 of them. */
+static const double neighbour2 = 4.84;   /* K36: 2.2 of them */
+/* Range of the displacements that shake the lattice, in halves of its side. */
+static const double shaken = 2e-4;   /* K37 */
+/* Radius of the list of surroundings, over the step to a place and the
+ * exclusion there: from a point where the field is level, from a face. */
+static const double list_level = 1.05, list_face = 1.1;   /* K38 */
+
 enum { N_BUCKET = 8192, BUCKET_ZERO = 4096 };
 
 struct placer {
@@ -159,7 +171,7 @@ static int propose(struct placer *p, const double c[3], const double unit[3],
   double d[3], there;
 
   for (int k = 0; k < 3; k++) d[k] = unit[k] * h;
-  if (vg_hgrid_count(&p->near, d, 0.9 * exclusion * h)) return 0;
+  if (vg_hgrid_count(&p->near, d, exclusion_early * exclusion * h)) return 0;
   there = aim(p, c, unit, h, d);
   if (vg_hgrid_count(&p->near, d,
                      (is_far ? exclusion_region : exclusion) * there))
@@ -203,14 +215,14 @@ static double shake(const int64_t i[3], int k)
   mix ^= mix >> 32;
   mix *= 0xd6e8feb86659fd93u;
   mix ^= mix >> 32;
-  return ((double)(mix & 0xffff) / 65536 - 0.5) * 2e-4;
+  return ((double)(mix & 0xffff) / 65536 - 0.5) * shaken;
 }
 
 /* What stands around point c: once for all that it proposes. */
 static void list_around(struct placer *p, const double c[3], double h)
 {
   if (p->is_listed) return;
-  vg_hgrid_gather(&p->near, c, h, (lattice + exclusion_level) * 1.05 * h);
+  vg_hgrid_gather(&p->near, c, h, (lattice + exclusion_level) * list_level * h);
   p->is_listed = 1;
 }
 
@@ -225,7 +237,7 @@ static int propose_site(struct placer *p, const double c[3], double h,
     x[k] = half * ((double)i[k] + shake(i, k));
     d[k] = x[k] - c[k];
   }
-  if (vg_dot(d, d) > 4.84 * half * half) return 0;
+  if (vg_dot(d, d) > neighbour2 * half * half) return 0;
   list_around(p, c, h);
   if (vg_hgrid_count(&p->near, d, exclusion_level * h)) return 1;
   if (!everywhere && !is_level(p, x, h)) return 0;
@@ -348,7 +360,7 @@ static int grow_face(struct placer *p, uint32_t link)
     if (!is_wanted(p, d, there, fabs(there - h))) return 0;
   }
   p->now = 0;
-  vg_hgrid_gather(&p->near, c, h, (apex + exclusion) * 1.1 * h);
+  vg_hgrid_gather(&p->near, c, h, (apex + exclusion) * list_face * h);
   return propose(p, c, unit, h, link >> 2);
 }
 

@@ -122,12 +122,17 @@ static int move(struct mover *m, const double g[3], double length)
     return 0;
   weigh(&to, m->faces.n);
   to.sum += vg_ball_other(&m->faces, to.x);
-  if (to.worst < aim ? to.worst <= m->now.worst * 1.001 + VG_SHAPE_FLAT
-                     : m->now.worst >= aim && to.sum <= m->now.sum * 1.0005)
+  if (to.worst < aim ? to.worst <= m->now.worst * VG_GAIN_WORST + VG_SHAPE_FLAT
+                     : m->now.worst >= aim &&
+                       to.sum <= m->now.sum * VG_GAIN_SUM)
     return 0;
   m->now = to;
   return 1;
 }
+
+/* K40: steps up the slope of all cells, in lengths of an edge. */
+#define ALL_FIRST 0.05
+#define ALL_LEAST 0.015
 
 /* Up the slope of cells first ... end - 1, by a share of an edge. */
 static int climb(struct mover *m, size_t first, size_t end, double share,
@@ -144,7 +149,7 @@ static int climb(struct mover *m, size_t first, size_t end, double share,
   vg_ball_slope(&m->faces, first, end, s->x, g);
   size = g[0] * g[0] + g[1] * g[1] + g[2] * g[2];
   if (!(size > 0)) return 0;
-  for (; share > least; share *= 0.4)
+  for (; share > least; share *= VG_CLIMB_NEXT)
     if (move(m, g, share * sqrt(edge2 / size))) return 1;
   return 0;
 }
@@ -159,13 +164,14 @@ static int improve(struct mover *m)
 
   vg_ball_ideal(&m->faces, m->now.q, m->now.x, to);
   for (int a = 0; a < 3; a++) g[a] = to[a] - m->now.x[a];
-  for (double share = 1; share > 0.2 && !better; share *= 0.5)
+  for (double share = 1; share > VG_SHARE_LEAST && !better; share *= 0.5)
     better = move(m, g, share);
   for (int k = 0; k < 4 && m->now.worst < VG_SHAPE_TARGET; k++) {
-    if (!climb(m, m->now.at, m->now.at + 1, 0.25, 0.01)) return better;
+    if (!climb(m, m->now.at, m->now.at + 1, VG_CLIMB_FIRST, VG_CLIMB_LEAST))
+      return better;
     better = 1;
   }
-  for (int k = 0; k < 2 && climb(m, 0, m->faces.n, 0.05, 0.015); k++)
+  for (int k = 0; k < 2 && climb(m, 0, m->faces.n, ALL_FIRST, ALL_LEAST); k++)
     better = 1;
   return better;
 }

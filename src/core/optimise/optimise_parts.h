@@ -39,6 +39,17 @@ struct vg_optimiser {
 /** A cell of a shape from here on is as good as it need be (45, 135). */
 #define VG_SHAPE_GOOD 0.5f
 
+/* K40: moves of a point. Least factor on the worst shape below what is aimed
+ * at, and on the sum of the shapes above it, that a move is worth. */
+#define VG_GAIN_WORST 1.001
+#define VG_GAIN_SUM 1.0005
+/* Least share of the way to a target; steps up the slope of the worst shape, in
+ * lengths of an edge: the first, the factor to the next one, the least. */
+#define VG_SHARE_LEAST 0.2
+#define VG_CLIMB_FIRST 0.25
+#define VG_CLIMB_NEXT 0.4
+#define VG_CLIMB_LEAST 0.01
+
 static inline double vg_cell_shape(const struct vg_tets *t, uint32_t c)
 {
   const uint32_t *v = t->cell[c].v;

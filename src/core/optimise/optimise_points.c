@@ -8,9 +8,13 @@
 #include "core/geometry/vector.h"
 #include "core/optimise/optimise_parts.h"
 
+/* K41: least gain of the worst shape that a change of the points is worth, and
+ * least share of the way to a place above a face that is tried. */
+static const double gain = 1.01, least_share = 0.2;
+
 static double worth(double old)
 {
-  return old < VG_SHAPE_FLAT ? VG_SHAPE_FLAT : old * 1.01;
+  return old < VG_SHAPE_FLAT ? VG_SHAPE_FLAT : old * gain;
 }
 
 /* --- taking a point away ------------------------------------------------- */
@@ -326,7 +330,7 @@ static int split_above(struct vg_optimiser *o, uint32_t c, double aim)
 
   for (int i = 0; i < 4; i++) {
     if (!(o->t->flag[c] >> i & 1)) continue;
-    for (double share = 1; share > 0.2; share *= 0.5) {
+    for (double share = 1; share > least_share; share *= 0.5) {
       above(o->t, c, i, share, x);
       if (split_at(o, c, x, aim)) return 1;
     }

@@ -111,10 +111,15 @@ static double gradient(const struct vg_optimiser *o, uint32_t p, size_t worst,
   return sqrt(length);
 }
 
-/* Beside a flat cell far smaller steps help too: any sign is a gain. */
+/* K40: least step next to a flat cell, and half the width of differences, in
+ * lengths of an edge. */
+#define STEP_FLAT 1e-5
+#define DIFFERENCE 1e-3
+
+/* Next to a flat cell far smaller steps help too: any sign is a gain. */
 static int climb(struct vg_optimiser *o, uint32_t p, struct ball_state *now)
 {
-  const double least = now->worst < VG_SHAPE_FLAT ? 1e-5 : 0.01;
+  const double least = now->worst < VG_SHAPE_FLAT ? STEP_FLAT : VG_CLIMB_LEAST;
   float q[VG_BALL_MAX];
   size_t worst = 0;
   double g[3], length, scale = 0, x[3];
@@ -131,12 +136,13 @@ static int climb(struct vg_optimiser *o, uint32_t p, struct ball_state *now)
     scale += d * d;
   }
   scale = sqrt(scale);
-  length = gradient(o, p, worst, 1e-3 * scale, g);
+  length = gradient(o, p, worst, DIFFERENCE * scale, g);
   if (!(length > 0)) return 0;
-  for (double step = 0.25; step > least; step *= 0.4) {
+  for (double step = VG_CLIMB_FIRST; step > least; step *= VG_CLIMB_NEXT) {
     for (int i = 0; i < 3; i++)
       x[i] = o->t->x[p][i] + g[i] / length * step * scale;
-    if (!try_at(o, x, now->worst * 1.001 + VG_SHAPE_FLAT, q, &s)) continue;
+    if (!try_at(o, x, now->worst * VG_GAIN_WORST + VG_SHAPE_FLAT, q, &s))
+      continue;
     keep(o, p, x, q);
     *now = s;
     return 1;
@@ -153,13 +159,13 @@ static int smooth_ball(struct vg_optimiser *o, uint32_t p, double aim)
 
   present(o, &now);
   target(o, o->t->x[p], to);
-  for (double share = 1; share > 0.2 && !better; share *= 0.5) {
+  for (double share = 1; share > VG_SHARE_LEAST && !better; share *= 0.5) {
     for (int i = 0; i < 3; i++)
       x[i] = o->t->x[p][i] + share * (to[i] - o->t->x[p][i]);
     stop = now.worst < aim ? now.worst : aim;
     if (!try_at(o, x, stop, q, &s)) continue;
-    if (s.worst < aim ? s.worst > now.worst * 1.001 + VG_SHAPE_FLAT
-                      : now.worst < aim || s.sum > now.sum * 1.0005) {
+    if (s.worst < aim ? s.worst > now.worst * VG_GAIN_WORST + VG_SHAPE_FLAT
+                      : now.worst < aim || s.sum > now.sum * VG_GAIN_SUM) {
       keep(o, p, x, q);
       now = s;
       better = 1;

@@ -12,9 +12,11 @@ static double shape_of(const struct vg_tets *t, uint32_t a, uint32_t b,
 }
 
 /* Gain that is worth the work; also keeps rounding from swapping for ever. */
+static const double gain = 1.0001;   /* K41 */
+
 static double worth(double old)
 {
-  return old < VG_SHAPE_FLAT ? VG_SHAPE_FLAT : old * 1.0001;
+  return old < VG_SHAPE_FLAT ? VG_SHAPE_FLAT : old * gain;
 }
 
 /* --- face removal: 2 cells to 3 ------------------------------------------ */

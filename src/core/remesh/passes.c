@@ -13,6 +13,17 @@
 #define ANGLE2 0.0669873  /* (sin 15 degrees)^2: no collapse below */
 #define FINE2 0.45        /* (sin 42 degrees)^2: good enough */
 #define ROUNDS 12
+/* S72: another round of collapses follows where one in so many edges went; a
+ * round of swaps where one swap was made in so many hundreds of triangles. */
+#define COLLAPSED_OF 8
+#define SWAPPED_OF 200
+#define GIVEN_WITHIN 0.02 /* S73: of a step: a given point stays in its place */
+#define LONGEST 0.999     /* S74: of the length: sides that are no longer */
+/* S75: smoothing. The weight of a triangle is 1 over its shape and this. */
+#define SHAPE_FLOOR 0.05
+#define STEP_GOOD 0.1     /* of the size: least step among good triangles */
+#define STEP_BAD 0.02     /* and where one of them is not good */
+#define SHAPE_GAIN 0.02   /* of what the worst shape lacks: least gain there */
 
 /* --- curves -------------------------------------------------------------- */
 
@@ -112,7 +123,7 @@ static void divide(struct vg_work *w, const struct steps *of, uint32_t first,
   for (uint32_t i = first; i + 1 < end; i++)
     w->point[w->line[i].end[1]].goes = 1;
   for (size_t k = 1; k < of->n && !w->failed; k++) {
-    double slack = 0.02 * fmin(s[k] - s[k - 1], s[k + 1] - s[k]);
+    double slack = GIVEN_WITHIN * fmin(s[k] - s[k - 1], s[k + 1] - s[k]);
     uint32_t m = VG_REF_NONE, h;
 
     while (w->line[cur].at[1] < s[k] - slack && base + 1 < end) cur = ++base;
@@ -279,7 +290,7 @@ vg_status vg_pass_collapse(struct vg_work *w, double least, double most,
       done += (size_t)try_collapse(w, h, most);
     }
     *n += done;
-    if (8 * done < n_key) done = 0;
+    if (COLLAPSED_OF * done < n_key) done = 0;
     vg_pass_swap(w);
   }
   VG_TRY(vg_work_status(w, err));
@@ -291,7 +302,7 @@ done:
 /* Of both of its triangles: needles are cut across, not along. */
 static int is_longest(const struct vg_work *w, uint32_t h)
 {
-  const double l = 0.999 * vg_work_ratio(w, h);
+  const double l = LONGEST * vg_work_ratio(w, h);
 
   for (int side = 0; side < 2; side++, h = w->mate[h]) {
     if (h == VG_REF_NONE) break;
@@ -352,7 +363,7 @@ size_t vg_pass_swap(struct vg_work *w)
       }
     }
     n += now;
-    if (200 * now < w->n_tri / 100) now = 0;
+    if (SWAPPED_OF * now < w->n_tri / 100) now = 0;
   }
   return n;
 }
@@ -390,7 +401,7 @@ static int better_place(const struct vg_work *w, uint32_t p, double x[3],
     for (int k = 0; k < 3; k++) d[k] -= along * e[k];
     high = vg_form_norm(form, d);
     if (!(high > 0)) continue;
-    weight = 1 / (0.05 + shape);
+    weight = 1 / (SHAPE_FLOOR + shape);
     for (int k = 0; k < 3; k++)
       x[k] += weight * (mid[k] + d[k] * 0.8660254037844386 * sqrt(l2) / high);
     sum += weight;
@@ -414,9 +425,10 @@ static int smooth_point(struct vg_work *w, uint32_t p)
     for (int k = 0; k < 3; k++) y[k] = o[k] + step * (x[k] - o[k]);
     vg_sub(y, o, d);
     if (vg_form_norm(vg_work_form(w, p), d)
-        < (worst > FINE2 ? 0.1 : 0.02) * w->point[p].asked.size) return 0;
+        < (worst > FINE2 ? STEP_GOOD : STEP_BAD) * w->point[p].asked.size)
+      return 0;
     if (vg_work_move(w, p, y, worst > FINE2 ? worst
-                     : worst + 0.02 * (1 - worst))) return 1;
+                     : worst + SHAPE_GAIN * (1 - worst))) return 1;
   }
   return 0;
 }

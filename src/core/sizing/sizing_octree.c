@@ -11,6 +11,8 @@
 /* Cells are not split below FLOOR times the size (H2), where the surface rules
  * SURFACE times as much (H6), unless sizes grow by more than STEEP. */
 #define FLOOR 1.25
+#define FLOOR_SLOPE 0.2   /* H11: FLOOR holds here, else with 1 / sqrt(slope) */
+#define FLOOR_MOST 2      /* and is no more than this */
 #define SURFACE 2
 #define STEEP 0.5
 
@@ -128,8 +130,8 @@ vg_status vg_octree_build(const struct vg_stat *f, const double lo[3],
   vg_status st;
 
   if (b.max_cell > VG_OCTREE_LEAF / 2) b.max_cell = VG_OCTREE_LEAF / 2;
-  b.floor = FLOOR * sqrt(0.2 / f->slope);
-  if (b.floor > 2) b.floor = 2;
+  b.floor = FLOOR * sqrt(FLOOR_SLOPE / f->slope);
+  if (b.floor > FLOOR_MOST) b.floor = FLOOR_MOST;
   b.floor *= coarseness;
   b.surface = f->slope > STEEP ? 1 : SURFACE;
   for (int k = 0; k < 3; k++) b.lo[k] = out->lo[k] = lo[k];

@@ -430,6 +430,8 @@ static void prepare_mean(const struct vg_sizing_options *o,
   m->h0 = 0.5 * (m->h0 + m->h1);
 }
 
+#define REACH 0.25   /* H10: that fraction */
+
 /* The mean varies next to a node over a fraction of the distance to the next
  * source, next to a line over a fraction of its length. Quadratic, as is the
  * use of the sources by then: every sample of the field costs all of them. */
@@ -450,7 +452,7 @@ static void find_reach(struct vg_source_set *set)
         d = least(d, segment_distance(o->p0, is_line ? o->p1 : o->p0, s->p0,
                                       &t));
       }
-    set->reach[i] = 0.25 * d;
+    set->reach[i] = REACH * d;
   }
 }
 

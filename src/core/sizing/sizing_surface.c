@@ -85,10 +85,14 @@ static void add_face(const struct vg_mesh *m, const uint32_t *v, int n,
   }
 }
 
+/* H9: least size at a point, over the edge of an equilateral triangle of the
+ * mean area there: needles do not ask for their short side. */
+#define LEAST_SHARE 0.25
+
 static double point_size(const struct sum *s)
 {
   double h = s->n_edge / s->inverse;
-  double least = 0.25 * sqrt(EQUILATERAL * s->area / s->n_face);
+  double least = LEAST_SHARE * sqrt(EQUILATERAL * s->area / s->n_face);
 
   return h > least ? h : least;
 }

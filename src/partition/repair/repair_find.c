@@ -7,8 +7,8 @@
 #include "core/geometry/vector.h"
 #include "partition/repair/repair_parts.h"
 
-/* The worse a cell, the larger its ball: `reach` local spacings, and `most`
- * times as far as its own corners. Beside long triangles of a sharp edge, what
+/* R10: the worse a cell, the larger its ball: `reach` local spacings, and
+ * `most` times as far as its own corners. Beside long triangles of a sharp edge, what
  * stayed bad needs much room. */
 static const struct { double reach, most; } ball[VG_SPOT_SIZES] = {
   { 1.2, 1.01 }, { 2.5, 1.01 }, { 4, 2 } };

@@ -248,6 +248,11 @@ vg_status vg_spot_grid_new(size_t n, const struct vg_spot *spot, size_t most,
   return st;
 }
 
+/* R9: an earlier ball of at least this share of the radius, with the middle
+ * within the root of this share of its own, makes a ball needless. */
+#define COVER_RADIUS 0.8
+#define COVER_DEPTH2 0.2
+
 /* Is ball i's middle deep in an earlier ball that stays, not much smaller? */
 static int is_covered(const struct vg_spot_grid *b, uint32_t i)
 {
@@ -262,8 +267,8 @@ static int is_covered(const struct vg_spot_grid *b, uint32_t i)
       const struct vg_spot *t = &b->spot[b->ball[k]];
 
       if (b->cluster[b->ball[k]] != VG_NO_CLUSTER && b->ball[k] < i &&
-          t->radius > 0.8 * s->radius &&
-          vg_distance2(s->at, t->at) < 0.2 * t->radius * t->radius)
+          t->radius > COVER_RADIUS * s->radius &&
+          vg_distance2(s->at, t->at) < COVER_DEPTH2 * t->radius * t->radius)
         return 1;
     }
   }
