@@ -8,6 +8,8 @@
 #     header (NAME_parts.h, or "Private to" in it) of another module
 #   - headers that include each other
 #   - a third-party header outside the file that adapts it
+#   - a struct, union or enum vg_NAME that is defined twice
+#   - a file name that two modules have, unless it is listed below
 #   - a test that tests/README.md does not name
 #   - a symbol of a module further up, with a BUILD folder to look into
 # architecture.sh SOURCE_ROOT [BUILD]
@@ -122,6 +124,25 @@ adapter metis.h '^partition/graph/graph_metis\.c$'
 adapter hdf5.h '^io/cgns/cgns_tree\.c$'
 adapter hwloc.h '^base/comm_cores\.c$'
 adapter xxhash.h '^partition/store/store[a-z_]*\.c$'
+
+# --- names ---
+
+while read -r n tag; do
+  [ "$n" = 1 ] || complain "$tag is defined $n times:" $(grep -rlE \
+    "\\b$tag \{" --include='*.[ch]' --include='*.cpp' .)
+done < <(grep -rhoE '\b(struct|union|enum) (vg|vanguard)_[a-z0-9_]+ \{' \
+  --include='*.[ch]' --include='*.cpp' . | sed 's/ {$//' | sort | uniq -c)
+
+# Names that two modules share, since the folder says which of the two it is.
+declare -A shared
+for name in assets boundary child domain gaps grow input job layers mesh output \
+    page patches put_back share sizes slices slices_parts text walls work; do
+  shared[$name]=1
+done
+while read -r file; do
+  [ -n "${shared[${file%.*}]-}" ] ||
+    complain "two files are called $file:" $(find . -name "$file")
+done < <(find . -name '*.[ch]*' -printf '%f\n' | sort | uniq -d)
 
 # Every test is in the table of what covers what.
 table=../tests/README.md

@@ -10,7 +10,7 @@ struct scene {
   struct vg_mesh m;
   struct vg_ref ref;
   struct vg_curves curves;
-  struct vg_work w;
+  struct vg_tris w;
 };
 
 static inline void scene_set(struct scene *s, double tolerance, double size)
@@ -26,7 +26,7 @@ static inline void scene_set(struct scene *s, double tolerance, double size)
   for (size_t p = 0; p < s->m.n_point; p++) s->ref.size[p] = size;
   s->ref.slope = 0.2;
   vg_ref_sizes(&s->ref);
-  s->w = (struct vg_work){ .ref = &s->ref, .curves = &s->curves,
+  s->w = (struct vg_tris){ .ref = &s->ref, .curves = &s->curves,
     .tolerance = tolerance, .relative = 1, .h_min = size, .h_max = size };
   if (vg_work_begin(&s->w, &err) < 0) fail_msg("%s", err.text);
 }
@@ -50,7 +50,7 @@ static inline double scene_drawn(uint32_t *state)
  * triangle. */
 static inline void scene_expect_whole(const struct scene *s)
 {
-  const struct vg_work *w = &s->w;
+  const struct vg_tris *w = &s->w;
   size_t n_tri = 0, n_point = 0, n_edge = 0, n_sample = 0, n_listed = 0;
   double length = 0;
 
@@ -101,7 +101,7 @@ static inline void scene_expect_near(const struct scene *s, double tolerance)
 }
 
 /* One change drawn at random; 1 when it was made. */
-static inline int scene_change(struct vg_work *w, uint32_t *state)
+static inline int scene_change(struct vg_tris *w, uint32_t *state)
 {
   uint32_t h = (uint32_t)(scene_drawn(state) * 3 * (double)w->n_tri);
   int kind = (int)(scene_drawn(state) * 5);

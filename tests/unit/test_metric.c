@@ -90,7 +90,7 @@ static void falling(const void *unused, const double x[3], double size,
 static void change(struct scene *s)
 {
   struct vg_error err = VG_ERROR_INIT;
-  struct vg_work *w = &s->w;
+  struct vg_tris *w = &s->w;
   size_t n;
 
   if (vg_pass_divide(w, 1, &err) < 0) fail_msg("%s", err.text);
@@ -117,7 +117,7 @@ static void a_plate_gets_the_triangles_of_its_metric(void **unused)
   double worst = 1, wanted = 0;
   size_t n_edge = 0, n_fit = 0, n_tri = 0;
   struct scene s = { .m = VG_MESH_INIT };
-  struct vg_work *w = &s.w;
+  struct vg_tris *w = &s.w;
 
   (void)unused;
   shape_box(&s.m, size, n);

@@ -7,7 +7,7 @@
 #define TOLERANCE 0.02
 
 /* Changes drawn by what the block is, not by who does it. */
-static vg_status draw_changes(void *user, struct vg_work *w,
+static vg_status draw_changes(void *user, struct vg_tris *w,
                               struct vg_error *err)
 {
   uint32_t state = (uint32_t)(w->n_tri * 7 + w->n_point);
@@ -20,7 +20,7 @@ static vg_status draw_changes(void *user, struct vg_work *w,
   return VG_OK;
 }
 
-static vg_status change_nothing(void *user, struct vg_work *w,
+static vg_status change_nothing(void *user, struct vg_tris *w,
                                 struct vg_error *err)
 {
   (void)err;
@@ -28,7 +28,7 @@ static vg_status change_nothing(void *user, struct vg_work *w,
   return VG_OK;
 }
 
-static vg_status fail_where_large(void *user, struct vg_work *w,
+static vg_status fail_where_large(void *user, struct vg_tris *w,
                                   struct vg_error *err)
 {
   (void)user;

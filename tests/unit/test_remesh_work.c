@@ -68,7 +68,7 @@ static void knife(struct vg_mesh *m)
 static void does_not_fold(void **unused)
 {
   struct scene s = { .m = VG_MESH_INIT };
-  struct vg_work *w = &s.w;
+  struct vg_tris *w = &s.w;
   uint32_t h = 0;
 
   (void)unused;
@@ -87,7 +87,7 @@ static void corners_and_ridges_stay(void **unused)
   const double size[3] = { 1, 1, 1 };
   const uint32_t n[3] = { 2, 2, 2 };
   struct scene s = { .m = VG_MESH_INIT };
-  struct vg_work *w = &s.w;
+  struct vg_tris *w = &s.w;
 
   (void)unused;
   shape_box(&s.m, size, n);
@@ -115,7 +115,7 @@ static void points_slide_along_ridges(void **unused)
   const double size[3] = { 1, 1, 1 };
   const uint32_t n[3] = { 4, 4, 4 };
   struct scene s = { .m = VG_MESH_INIT };
-  struct vg_work *w = &s.w;
+  struct vg_tris *w = &s.w;
   size_t n_slid = 0;
 
   (void)unused;

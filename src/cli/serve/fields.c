@@ -20,7 +20,7 @@ void vg_fields_release(struct vg_fields *f)
 static vg_status begin(struct vg_fields *f, const char *name,
                        struct vg_error *err)
 {
-  struct vg_field one = { NULL, NULL, 0 };
+  struct vg_form_field one = { NULL, NULL, 0 };
 
   if (f->n == VG_FIELDS_MAX)
     return vg_fail(err, VG_ERR_INPUT, "more than %d fields", VG_FIELDS_MAX);
@@ -40,7 +40,7 @@ vg_status vg_fields_put(struct vg_fields *f, const char *name,
                         const char *data, size_t offset, size_t size,
                         struct vg_error *err)
 {
-  struct vg_field *at;
+  struct vg_form_field *at;
   size_t more = size + (offset ? 0 : strlen(name));
   char *longer;
 

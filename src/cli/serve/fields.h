@@ -12,7 +12,7 @@ enum { VG_FIELDS_MAX = 400, VG_FIELDS_BYTES = 1 << 20 };
 
 struct vg_fields {
   size_t n, cap, bytes;
-  struct vg_field { char *name, *value; size_t size; } *item;
+  struct vg_form_field { char *name, *value; size_t size; } *item;
 };
 #define VG_FIELDS_INIT { 0, 0, 0, NULL }
 

@@ -11,7 +11,7 @@
 #include "base/parallel.h"
 
 struct blocks {
-  const struct vg_work *w;
+  const struct vg_tris *w;
   size_t n;
   struct vg_block *block;   /* [n] */
   uint32_t *of;             /* [n_tri] block of each triangle */
@@ -25,12 +25,12 @@ struct blocks {
 
 /* --- out of the whole ---------------------------------------------------- */
 
-static vg_status room(struct vg_block *b, const struct vg_work *w,
+static vg_status room(struct vg_block *b, const struct vg_tris *w,
                       struct vg_error *err)
 {
-  struct vg_work *l = &b->w;
+  struct vg_tris *l = &b->w;
 
-  *l = (struct vg_work){ .ref = w->ref, .curves = w->curves,
+  *l = (struct vg_tris){ .ref = w->ref, .curves = w->curves,
     .tolerance = w->tolerance, .relative = w->relative, .far = w->far,
     .other_size = w->other_size, .user = w->user, .form = w->form,
     .of_form = w->of_form, .h_min = w->h_min, .h_max = w->h_max,
@@ -41,10 +41,10 @@ static vg_status room(struct vg_block *b, const struct vg_work *w,
   return vg_work_room(l, b->n_tri, err);
 }
 
-static vg_status take_points(struct vg_block *b, const struct vg_work *w,
+static vg_status take_points(struct vg_block *b, const struct vg_tris *w,
                              uint32_t *map, struct vg_error *err)
 {
-  struct vg_work *l = &b->w;
+  struct vg_tris *l = &b->w;
 
   for (size_t i = 0; i < b->n_tri; i++) {
     l->first[i] = w->first[b->tri[i]];
@@ -76,7 +76,7 @@ static vg_status take_points(struct vg_block *b, const struct vg_work *w,
   return VG_OK;
 }
 
-static vg_status take_line(struct vg_work *l, const struct vg_work *w,
+static vg_status take_line(struct vg_tris *l, const struct vg_tris *w,
                            uint32_t line, const uint32_t *map, uint32_t *edge,
                            struct vg_error *err)
 {
@@ -96,8 +96,8 @@ static vg_status take_line(struct vg_work *l, const struct vg_work *w,
 static vg_status take_edges(const struct blocks *s, struct vg_block *b,
                             const uint32_t *map, struct vg_error *err)
 {
-  const struct vg_work *w = s->w;
-  struct vg_work *l = &b->w;
+  const struct vg_tris *w = s->w;
+  struct vg_tris *l = &b->w;
   const uint32_t own = (uint32_t)(b - s->block);
   vg_status st = VG_OK;
 
@@ -119,7 +119,7 @@ done:
 
 /* Points with more than one open edge that leaves them have triangles that do
  * not hang together. */
-static vg_status find_fans(struct vg_work *l, struct vg_error *err)
+static vg_status find_fans(struct vg_tris *l, struct vg_error *err)
 {
   uint8_t *open = vg_calloc(l->n_point, 1);
 
@@ -190,7 +190,7 @@ static vg_status deal(struct blocks *s, struct vg_error *err)
   return VG_OK;
 }
 
-static vg_status run_blocks(struct blocks *s, struct vg_work *w, int phase,
+static vg_status run_blocks(struct blocks *s, struct vg_tris *w, int phase,
                             int threads, struct vg_error *err)
 {
   const size_t workers = (size_t)threads;
@@ -218,7 +218,7 @@ done:
   return st;
 }
 
-vg_status vg_blocks_run(struct vg_work *w, size_t n, int phase, int threads,
+vg_status vg_blocks_run(struct vg_tris *w, size_t n, int phase, int threads,
                         vg_block_body body, void *user, struct vg_error *err)
 {
   struct blocks s = { .w = w, .n = n, .body = body, .user = user };

@@ -15,7 +15,7 @@
 #define BINS 1024
 
 struct cutting {
-  const struct vg_work *w;
+  const struct vg_tris *w;
   int phase;
   double *weight;           /* [n_tri] */
   double (*middle)[3];      /* [n_tri] */
@@ -23,7 +23,7 @@ struct cutting {
   uint32_t *block;
 };
 
-static double weight_of(const struct vg_work *w, size_t t)
+static double weight_of(const struct vg_tris *w, size_t t)
 {
   const struct vg_work_point *p[3];
   double u[3], v[3], n[3], size, area2;
@@ -38,7 +38,7 @@ static double weight_of(const struct vg_work *w, size_t t)
   return OLD + sqrt(area2) / (0.8660254037844386 * size * size);
 }
 
-size_t vg_blocks_number(const struct vg_work *w)
+size_t vg_blocks_number(const struct vg_tris *w)
 {
   double sum = 0;
 
@@ -114,7 +114,7 @@ static void bisect(const struct cutting *c, uint32_t *list, size_t n,
   bisect(c, list + n_left, n_right, first + left, k - left);
 }
 
-vg_status vg_blocks_cut(const struct vg_work *w, size_t k, int phase,
+vg_status vg_blocks_cut(const struct vg_tris *w, size_t k, int phase,
                         uint32_t *block, struct vg_error *err)
 {
   struct cutting c = { .w = w, .phase = phase, .block = block };

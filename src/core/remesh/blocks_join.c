@@ -12,7 +12,7 @@
 #define BAD2 0.25         /* S29: (sin 30 degrees)^2 */
 
 struct joining {
-  struct vg_work made;
+  struct vg_tris made;
   struct vg_block *block;
   uint32_t *number;         /* [n_point before] of points that stay */
 };
@@ -22,7 +22,7 @@ struct side {
 };
 
 /* Old points that stay keep their order and come first, then new ones. */
-static vg_status number(const struct vg_work *w, size_t n, struct joining *j,
+static vg_status number(const struct vg_tris *w, size_t n, struct joining *j,
                         struct vg_error *err)
 {
   size_t n_point = 0, n_tri = 0, n_line = 0;
@@ -56,7 +56,7 @@ static vg_status number(const struct vg_work *w, size_t n, struct joining *j,
 
 static vg_status room(struct joining *j, struct vg_error *err)
 {
-  struct vg_work *m = &j->made;
+  struct vg_tris *m = &j->made;
   vg_status st;
 
   VG_TRY(vg_work_room(m, m->n_tri, err));
@@ -87,8 +87,8 @@ static void put_points(struct joining *j, struct vg_block *b)
 
 static void put_tris(struct joining *j, const struct vg_block *b)
 {
-  struct vg_work *m = &j->made;
-  const struct vg_work *l = &b->w;
+  struct vg_tris *m = &j->made;
+  const struct vg_tris *l = &b->w;
 
   for (size_t t = 0; t < l->n_tri; t++) {
     uint32_t to = b->place[t];
@@ -198,7 +198,7 @@ done:
 
 /* What the blocks' changes left to be done: small angles, and edges that are
  * too long or too short. */
-static int is_bad(const struct vg_work *w, uint32_t t)
+static int is_bad(const struct vg_tris *w, uint32_t t)
 {
   if (vg_work_tri_shape(w, t) < BAD2) return 1;
   for (uint32_t h = 3 * t; h < 3 * t + 3; h++) {
@@ -211,7 +211,7 @@ static int is_bad(const struct vg_work *w, uint32_t t)
 
 static void finish_points(struct joining *j, size_t n)
 {
-  struct vg_work *m = &j->made;
+  struct vg_tris *m = &j->made;
 
   for (size_t i = 0; i < n; i++) {
     const struct vg_block *b = &j->block[i];
@@ -238,7 +238,7 @@ static void finish_points(struct joining *j, size_t n)
   }
 }
 
-vg_status vg_blocks_join(struct vg_work *w, size_t n, struct vg_block *b,
+vg_status vg_blocks_join(struct vg_tris *w, size_t n, struct vg_block *b,
                          int threads, struct vg_error *err)
 {
   struct joining j = { .made = *w, .block = b };

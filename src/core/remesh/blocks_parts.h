@@ -8,7 +8,7 @@
 struct vg_block {
   size_t n_tri;
   const uint32_t *tri;      /* [n_tri] of the whole, rising */
-  struct vg_work w;
+  struct vg_tris w;
   size_t n_origin;
   uint32_t *origin;         /* [n_origin] points of the whole that its first
                                ones are */
@@ -20,11 +20,11 @@ struct vg_block {
 };
 
 /** block[n_tri]: 0 to k - 1; of removed triangles VG_REF_NONE. */
-vg_status vg_blocks_cut(const struct vg_work *w, size_t k, int phase,
+vg_status vg_blocks_cut(const struct vg_tris *w, size_t k, int phase,
                         uint32_t *block, struct vg_error *err);
 
 /** The blocks take the place of what w was. */
-vg_status vg_blocks_join(struct vg_work *w, size_t n, struct vg_block *b,
+vg_status vg_blocks_join(struct vg_tris *w, size_t n, struct vg_block *b,
                          int threads, struct vg_error *err);
 
 #endif

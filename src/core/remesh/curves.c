@@ -278,7 +278,7 @@ static int turns(const struct finder *f, uint32_t p)
 static vg_status add_point(struct vg_curves *c, const struct vg_ref *r,
                            uint32_t p, struct vg_error *err)
 {
-  struct vg_curve *k = &c->curve[c->n_curve - 1];
+  struct vg_feature_curve *k = &c->curve[c->n_curve - 1];
   double s = 0;
 
   if (vg_reserve(&c->point, &c->cap_point, c->n_point + 1, sizeof *c->point)
@@ -302,7 +302,7 @@ static vg_status trace(struct finder *f, uint32_t p, uint32_t h, uint8_t *seen,
 
   if (vg_reserve(&c->curve, &c->cap_curve, c->n_curve + 1, sizeof *c->curve))
     return vg_fail_memory(err, "the ridges of the surface");
-  c->curve[c->n_curve++] = (struct vg_curve){ c->n_point, 0 };
+  c->curve[c->n_curve++] = (struct vg_feature_curve){ c->n_point, 0 };
   VG_TRY(add_point(c, f->r, p, err));
   for (;;) {
     seen[h] = 1;

@@ -6,7 +6,7 @@
 #include "core/remesh/reference.h"
 
 /* A line from corner to corner, or round to where it began. */
-struct vg_curve {
+struct vg_feature_curve {
   size_t first, n;          /* its points among those of all */
 };
 
@@ -16,7 +16,7 @@ struct vg_curves {
                                next, curve by curve; 0: on none */
   uint8_t *corner;          /* [n_point] */
   size_t n_curve, cap_curve, n_point, cap_point, cap_at;
-  struct vg_curve *curve;
+  struct vg_feature_curve *curve;
   uint32_t *point;          /* [n_point] points of the surface, in order */
   double *at;               /* [n_point] length of the line up to there */
   size_t n_corner;

@@ -28,7 +28,7 @@
 /* --- curves -------------------------------------------------------------- */
 
 struct curve_size {
-  const struct vg_work *w;
+  const struct vg_tris *w;
   size_t curve;
   uint32_t by;
 };
@@ -37,7 +37,7 @@ struct curve_size {
 static double size_of_edges(const struct curve_size *c, double s,
                             const double x[3], double size)
 {
-  const struct vg_work *w = c->w;
+  const struct vg_tris *w = c->w;
   const double whole = vg_curve_length(w->curves, c->curve);
   struct vg_metric asked = { .size = size };
   double a[3], b[3], d[3];
@@ -52,7 +52,7 @@ static double size_of_edges(const struct curve_size *c, double s,
 static double size_along(void *user, double s)
 {
   struct curve_size *c = user;
-  const struct vg_work *w = c->w;
+  const struct vg_tris *w = c->w;
   double x[3], size;
 
   vg_curve_at(w->curves, w->ref, c->curve, s, x);
@@ -61,7 +61,7 @@ static double size_along(void *user, double s)
 }
 
 /* A half-edge of the line i; VG_REF_NONE: not found. */
-static uint32_t half_of(const struct vg_work *w, uint32_t i)
+static uint32_t half_of(const struct vg_tris *w, uint32_t i)
 {
   for (int k = 0; k < 2; k++) {
     uint32_t ring[VG_WORK_RING];
@@ -86,13 +86,13 @@ struct steps {
 };
 
 struct dividing {
-  const struct vg_work *w;
+  const struct vg_tris *w;
   struct steps *of;         /* [n_curve] */
 };
 
-static int is_loop(const struct vg_work *w, size_t i)
+static int is_loop(const struct vg_tris *w, size_t i)
 {
-  const struct vg_curve *c = &w->curves->curve[i];
+  const struct vg_feature_curve *c = &w->curves->curve[i];
 
   return w->curves->point[c->first] == w->curves->point[c->first + c->n - 1];
 }
@@ -114,7 +114,7 @@ static void find_steps(void *context, size_t first, size_t end, int worker)
 
 /* Put points into a curve whose lines are first .. end - 1: those between the
  * steps go, which stay is marked. */
-static void divide(struct vg_work *w, const struct steps *of, uint32_t first,
+static void divide(struct vg_tris *w, const struct steps *of, uint32_t first,
                    uint32_t end)
 {
   const double *s = of->s;
@@ -139,7 +139,7 @@ static void divide(struct vg_work *w, const struct steps *of, uint32_t first,
   }
 }
 
-vg_status vg_pass_divide(struct vg_work *w, int threads, struct vg_error *err)
+vg_status vg_pass_divide(struct vg_tris *w, int threads, struct vg_error *err)
 {
   const size_t n = w->curves->n_curve;
   struct dividing d = { w, vg_calloc(n, sizeof *d.of) };
@@ -167,7 +167,7 @@ vg_status vg_pass_divide(struct vg_work *w, int threads, struct vg_error *err)
 }
 
 /* Towards that neighbour on the curve that is nearer. */
-static int take_away(struct vg_work *w, uint32_t p)
+static int take_away(struct vg_tris *w, uint32_t p)
 {
   uint32_t ring[VG_WORK_RING], h[2], n_h = 0;
   int open;
@@ -186,7 +186,7 @@ static int take_away(struct vg_work *w, uint32_t p)
   return 0;
 }
 
-void vg_pass_curves(struct vg_work *w)
+void vg_pass_curves(struct vg_tris *w)
 {
   size_t n = 1;
 
@@ -207,7 +207,7 @@ struct edge_list {
 };
 
 /* Of positive doubles the bits rise with the values. */
-static int list_edge(const struct vg_work *w, uint32_t h, double lo, double hi,
+static int list_edge(const struct vg_tris *w, uint32_t h, double lo, double hi,
                      int falls, struct edge_list *l)
 {
   double r;
@@ -224,7 +224,7 @@ static int list_edge(const struct vg_work *w, uint32_t h, double lo, double hi,
 
 /* Edges with a ratio beyond the bounds, by rising ratio. Those that were
  * looked at and have not changed since are left out. */
-static vg_status edges_by_ratio(struct vg_work *w, int look, double lo,
+static vg_status edges_by_ratio(struct vg_tris *w, int look, double lo,
                                 double hi, int falls, struct vg_key **key,
                                 size_t *n, struct vg_error *err)
 {
@@ -250,7 +250,7 @@ static vg_status edges_by_ratio(struct vg_work *w, int look, double lo,
   return *n ? vg_sort_keys(*n, *key, err) : VG_OK;
 }
 
-static int try_collapse(struct vg_work *w, uint32_t h, double most)
+static int try_collapse(struct vg_tris *w, uint32_t h, double most)
 {
   uint32_t g = w->mate[h];
 
@@ -270,7 +270,7 @@ static int try_collapse(struct vg_work *w, uint32_t h, double most)
          || (g != VG_REF_NONE && vg_work_collapse(w, g, most, ANGLE2));
 }
 
-vg_status vg_pass_collapse(struct vg_work *w, double least, double most,
+vg_status vg_pass_collapse(struct vg_tris *w, double least, double most,
                            size_t *n, struct vg_error *err)
 {
   vg_status st = VG_OK;
@@ -300,7 +300,7 @@ done:
 }
 
 /* Of both of its triangles: needles are cut across, not along. */
-static int is_longest(const struct vg_work *w, uint32_t h)
+static int is_longest(const struct vg_tris *w, uint32_t h)
 {
   const double l = LONGEST * vg_work_ratio(w, h);
 
@@ -312,7 +312,7 @@ static int is_longest(const struct vg_work *w, uint32_t h)
   return 1;
 }
 
-vg_status vg_pass_split(struct vg_work *w, double most, int across, size_t *n,
+vg_status vg_pass_split(struct vg_tris *w, double most, int across, size_t *n,
                         struct vg_error *err)
 {
   const int look = across ? VG_WORK_ACROSS : VG_WORK_SPLITS;
@@ -343,7 +343,7 @@ done:
 
 /* --- swap ---------------------------------------------------------------- */
 
-size_t vg_pass_swap(struct vg_work *w)
+size_t vg_pass_swap(struct vg_tris *w)
 {
   size_t n = 0, now = 1;
 
@@ -372,7 +372,7 @@ size_t vg_pass_swap(struct vg_work *w)
 
 /* Mean of the places where p would make its triangles equilateral, seen from
  * the edges across and measured as p asks for. */
-static int better_place(const struct vg_work *w, uint32_t p, double x[3],
+static int better_place(const struct vg_tris *w, uint32_t p, double x[3],
                         double *worst)
 {
   const double *form = vg_work_form(w, p), *o = vg_work_at(w, p);
@@ -411,7 +411,7 @@ static int better_place(const struct vg_work *w, uint32_t p, double x[3],
   return 1;
 }
 
-static int smooth_point(struct vg_work *w, uint32_t p)
+static int smooth_point(struct vg_tris *w, uint32_t p)
 {
   double x[3], worst, step = 1;
   const double *o = w->point[p].x;
@@ -433,7 +433,7 @@ static int smooth_point(struct vg_work *w, uint32_t p)
   return 0;
 }
 
-size_t vg_pass_smooth(struct vg_work *w, int sweeps)
+size_t vg_pass_smooth(struct vg_tris *w, int sweeps)
 {
   size_t n = 0;
 

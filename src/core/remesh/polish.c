@@ -39,7 +39,7 @@ static double length2(const double *form, const double *a, const double *b)
   return vg_form_dot(form, e, e);
 }
 
-static int take_ring(const struct vg_work *w, uint32_t p, struct ring *r)
+static int take_ring(const struct vg_tris *w, uint32_t p, struct ring *r)
 {
   const double *own = w->point[p].asked.form;
   int open;
@@ -93,7 +93,7 @@ static double shape_at(const struct ring *r, const double x[3], double bound)
 }
 
 /* Two directions across the mean normal of the triangles around p. */
-static int tangents(const struct vg_work *w, const struct ring *r, uint32_t p,
+static int tangents(const struct vg_tris *w, const struct ring *r, uint32_t p,
                     double u[3], double v[3])
 {
   const double *x = vg_work_at(w, p);
@@ -121,7 +121,7 @@ struct place {
 };
 
 /* Where the smallest angle is largest, step by step across the normal. */
-static void search_face(const struct vg_work *w, const struct ring *r,
+static void search_face(const struct vg_tris *w, const struct ring *r,
                         struct place *to)
 {
   static const double way[8][2] = {
@@ -152,7 +152,7 @@ static void search_face(const struct vg_work *w, const struct ring *r,
 }
 
 /* The same to and fro along a curve. */
-static void search_curve(const struct vg_work *w, const struct ring *r,
+static void search_curve(const struct vg_tris *w, const struct ring *r,
                          struct place *to)
 {
   struct vg_work_span s;
@@ -175,7 +175,7 @@ static void search_curve(const struct vg_work *w, const struct ring *r,
   }
 }
 
-static void search_place(const struct vg_work *w, uint32_t p,
+static void search_place(const struct vg_tris *w, uint32_t p,
                          struct place *to)
 {
   struct ring r;
@@ -191,7 +191,7 @@ static void search_place(const struct vg_work *w, uint32_t p,
 }
 
 /* Move that corner of t which makes it best; others, should that not do. */
-static int move_corner(struct vg_work *w, uint32_t t, double shape)
+static int move_corner(struct vg_tris *w, uint32_t t, double shape)
 {
   struct place to[3];
 
@@ -210,7 +210,7 @@ static int move_corner(struct vg_work *w, uint32_t t, double shape)
 }
 
 /* The least shape of what is left when p goes onto neighbour i. */
-static double shape_without(const struct vg_work *w, const struct ring *r,
+static double shape_without(const struct vg_tris *w, const struct ring *r,
                             size_t i, double bound)
 {
   double least = 1;
@@ -226,7 +226,7 @@ static double shape_without(const struct vg_work *w, const struct ring *r,
 }
 
 /* Take p away, onto the neighbour where that is best for angles. */
-static int take_away(struct vg_work *w, uint32_t p)
+static int take_away(struct vg_tris *w, uint32_t p)
 {
   struct ring r;
   double best;
@@ -244,7 +244,7 @@ static int take_away(struct vg_work *w, uint32_t p)
          && vg_work_collapse(w, r.half[at], VG_WORK_LONG, 1);
 }
 
-static void sort_edges(const struct vg_work *w, uint32_t *order)
+static void sort_edges(const struct vg_tris *w, uint32_t *order)
 {
   for (int i = 0; i < 2; i++)
     for (int k = 0; k < 2 - i; k++)
@@ -256,7 +256,7 @@ static void sort_edges(const struct vg_work *w, uint32_t *order)
       }
 }
 
-static int polish_tri(struct vg_work *w, uint32_t t)
+static int polish_tri(struct vg_tris *w, uint32_t t)
 {
   uint32_t order[3] = { 3 * t, 3 * t + 1, 3 * t + 2 };
   const double shape = vg_work_tri_shape(w, t);
@@ -278,7 +278,7 @@ static int polish_tri(struct vg_work *w, uint32_t t)
   return 0;
 }
 
-vg_status vg_pass_polish(struct vg_work *w, double shape, size_t *n,
+vg_status vg_pass_polish(struct vg_tris *w, double shape, size_t *n,
                          struct vg_error *err)
 {
   const uint64_t before = w->looked[VG_WORK_POLISH];

@@ -110,7 +110,7 @@ static vg_status check_stretch(const struct vg_mesh *m, const double *stretch,
 /* --- one round ----------------------------------------------------------- */
 
 /* Until no edge is much too long. */
-static vg_status halve(void *user, struct vg_work *w, struct vg_error *err)
+static vg_status halve(void *user, struct vg_tris *w, struct vg_error *err)
 {
   size_t n = 1, n_gone;
   vg_status st = VG_OK;
@@ -128,7 +128,7 @@ done:
   return st;
 }
 
-static vg_status change_block(void *user, struct vg_work *w,
+static vg_status change_block(void *user, struct vg_tris *w,
                               struct vg_error *err)
 {
   size_t n;
@@ -155,7 +155,7 @@ done:
 /* What is near the border of a block in one phase is inside one in the next;
  * what is near both is left to one thread. */
 static vg_status run(struct vg_remesh_job *j,
-                     struct vg_work *w, vg_block_body body,
+                     struct vg_tris *w, vg_block_body body,
                      struct vg_error *err)
 {
   const size_t n = vg_blocks_number(w);
@@ -172,7 +172,7 @@ done:
 /* Edges are halved everywhere before anything else is done: beside large
  * triangles, where borders are, points would come and go. */
 static vg_status change(struct vg_remesh_job *j,
-                        struct vg_work *w, struct vg_error *err)
+                        struct vg_tris *w, struct vg_error *err)
 {
   vg_status st;
 
@@ -342,7 +342,7 @@ static void clear_report(struct vg_remesh_report *r)
 
 /* --- all ----------------------------------------------------------------- */
 
-static vg_status ask_sources(const struct vg_remesh_job *j, struct vg_work *w,
+static vg_status ask_sources(const struct vg_remesh_job *j, struct vg_tris *w,
                              struct vg_source_set *set, struct vg_error *err)
 {
   const struct vg_sizing_options s = {
@@ -362,7 +362,7 @@ done:
 }
 
 /* Where the sources have become finer, triangles count as changed. */
-static void narrow(struct vg_work *w)
+static void narrow(struct vg_tris *w)
 {
   if (!w->other_size) return;
   for (size_t p = 0; p < w->n_point; p++) {
@@ -436,7 +436,7 @@ static vg_status make(struct vg_remesh_job *j, struct vg_mesh *out,
   struct vg_stretch stretch = {
     .by = j->stretch ? j->stretch : j->o->stretch };
   struct vg_remesh_report *r = &j->r;
-  struct vg_work w = { .ref = &j->ref, .curves = &j->curves,
+  struct vg_tris w = { .ref = &j->ref, .curves = &j->curves,
     .tolerance = r->tolerance, .relative = VG_JOB_RELATIVE, .far = j->far,
     .h_min = r->h_min, .h_max = r->h_max, .threads = j->o->threads,
     .keep = j->keep, .stop = j->o->stop };

@@ -13,7 +13,7 @@
 
 /* --- patches ------------------------------------------------------------- */
 
-static void middle(const struct vg_work *w, size_t t, double x[3])
+static void middle(const struct vg_tris *w, size_t t, double x[3])
 {
   for (int d = 0; d < 3; d++) {
     x[d] = 0;
@@ -22,7 +22,7 @@ static void middle(const struct vg_work *w, size_t t, double x[3])
 }
 
 /* That of the given triangle below its middle. */
-static uint32_t patch_of(const struct vg_work *w, size_t t,
+static uint32_t patch_of(const struct vg_tris *w, size_t t,
                          const uint32_t *patch)
 {
   uint32_t hint = w->point[w->tri[t][0]].home;
@@ -40,7 +40,7 @@ static uint32_t patch_of(const struct vg_work *w, size_t t,
 
 /* Triangles with two neighbours of one other patch join it, so that soft
  * borders do not run to and fro; none loses its last one. */
-static void straighten(const struct vg_work *w, uint32_t *label, size_t *count)
+static void straighten(const struct vg_tris *w, uint32_t *label, size_t *count)
 {
   size_t n = 1;
 
@@ -72,7 +72,7 @@ static void straighten(const struct vg_work *w, uint32_t *label, size_t *count)
 }
 
 /* A patch smaller than the triangles there gets the one nearest to it. */
-static void keep_patches(const struct vg_work *w, const struct vg_mesh *given,
+static void keep_patches(const struct vg_tris *w, const struct vg_mesh *given,
                          uint32_t *label, size_t *count)
 {
   for (size_t i = 0; i < given->n_tri; i++) {
@@ -97,7 +97,7 @@ static void keep_patches(const struct vg_work *w, const struct vg_mesh *given,
 }
 
 struct labelling {
-  const struct vg_work *w;
+  const struct vg_tris *w;
   const uint32_t *patch;    /* of the given triangles */
   uint32_t *label;
 };
@@ -112,7 +112,7 @@ static void find_labels(void *context, size_t first, size_t end, int worker)
     if (!vg_work_removed(l->w, t)) l->label[t] = patch_of(l->w, t, l->patch);
 }
 
-static vg_status label_all(const struct vg_work *w,
+static vg_status label_all(const struct vg_tris *w,
                            const struct vg_mesh *given, uint32_t *label,
                            struct vg_error *err)
 {
@@ -134,7 +134,7 @@ done:
 
 /* --- the report ---------------------------------------------------------- */
 
-static enum vg_remesh_cause cause_of(const struct vg_work *w, size_t t)
+static enum vg_remesh_cause cause_of(const struct vg_tris *w, size_t t)
 {
   double least = INFINITY;
   uint32_t at = 0;
@@ -155,7 +155,7 @@ static enum vg_remesh_cause cause_of(const struct vg_work *w, size_t t)
   return n_edge || n_line ? VG_REMESH_LINE : VG_REMESH_SURFACE;
 }
 
-static void count_aspect(const struct vg_work *w, size_t t,
+static void count_aspect(const struct vg_tris *w, size_t t,
                          struct vg_remesh_report *r)
 {
   const struct vg_work_point *p[3];
@@ -175,7 +175,7 @@ static void count_aspect(const struct vg_work *w, size_t t,
   r->aspect_most = fmax(r->aspect_most, aspect);
 }
 
-static vg_status list_bad(const struct vg_work *w, size_t t, size_t face,
+static vg_status list_bad(const struct vg_tris *w, size_t t, size_t face,
                           size_t *cap, struct vg_remesh_report *r,
                           struct vg_error *err)
 {
@@ -195,7 +195,7 @@ static vg_status list_bad(const struct vg_work *w, size_t t, size_t face,
   return VG_OK;
 }
 
-static void count_edges(const struct vg_work *w, struct vg_remesh_report *r)
+static void count_edges(const struct vg_tris *w, struct vg_remesh_report *r)
 {
   for (uint32_t h = 0; h < 3 * w->n_tri; h++) {
     double ratio;
@@ -213,7 +213,7 @@ static void count_edges(const struct vg_work *w, struct vg_remesh_report *r)
 
 /* --- all ----------------------------------------------------------------- */
 
-static vg_status store(const struct vg_work *w, const uint32_t *label,
+static vg_status store(const struct vg_tris *w, const uint32_t *label,
                        uint32_t *map, struct vg_mesh *out,
                        struct vg_remesh_report *r, struct vg_error *err)
 {
@@ -239,7 +239,7 @@ done:
   return st;
 }
 
-vg_status vg_result_store(const struct vg_work *w, const struct vg_mesh *given,
+vg_status vg_result_store(const struct vg_tris *w, const struct vg_mesh *given,
                           struct vg_mesh *out, struct vg_remesh_report *r,
                           struct vg_error *err)
 {

@@ -8,7 +8,7 @@
 
 /** The surface into the empty mesh *out, patches (with all their triangles'
  * numbers) as `given` has them; edges and bad triangles into *r. */
-vg_status vg_result_store(const struct vg_work *w, const struct vg_mesh *given,
+vg_status vg_result_store(const struct vg_tris *w, const struct vg_mesh *given,
                           struct vg_mesh *out, struct vg_remesh_report *r,
                           struct vg_error *err);
 

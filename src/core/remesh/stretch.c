@@ -20,7 +20,7 @@
 
 /* Part of a curve that is to be stretched. */
 struct part {
-  const struct vg_work *w;
+  const struct vg_tris *w;
   size_t curve;
   double from, to, by;
   uint32_t hint;
@@ -141,7 +141,7 @@ done:
   return st;
 }
 
-vg_status vg_stretch_make(struct vg_stretch *s, const struct vg_work *w,
+vg_status vg_stretch_make(struct vg_stretch *s, const struct vg_tris *w,
                           struct vg_error *err)
 {
   double *by = vg_calloc(w->n_line, sizeof *by);   /* of each line */

@@ -40,12 +40,12 @@ struct vg_stretch {
 
 /** From s->by, along lines of w, which has sizes and lines. O(n).
  * VG_ERR_INPUT, VG_ERR_MEMORY. */
-vg_status vg_stretch_make(struct vg_stretch *s, const struct vg_work *w,
+vg_status vg_stretch_make(struct vg_stretch *s, const struct vg_tris *w,
                           struct vg_error *err);
 
 void vg_stretch_release(struct vg_stretch *s);
 
-/** As vg_work.form, of a struct vg_stretch. O(log n) for each run near x. */
+/** As vg_tris.form, of a struct vg_stretch. O(log n) for each run near x. */
 void vg_stretch_form(const void *stretch, const double x[3], double size,
                      double form[6]);
 

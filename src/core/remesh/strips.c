@@ -307,7 +307,7 @@ static void merge(struct finder *f, size_t first)
 static vg_status look_at_curve(struct finder *f, size_t i,
                                struct vg_error *err)
 {
-  const struct vg_curve *curve = &f->c->curve[i];
+  const struct vg_feature_curve *curve = &f->c->curve[i];
   const double *across = f->o->across;
   const size_t first = f->n_found;
   vg_status st = VG_OK;
@@ -355,7 +355,7 @@ static vg_status close_all(struct finder *f, const struct vg_mesh *m,
 
   VG_TRY(vg_strip_cutter_begin(&cut, f->r, m, err));
   for (size_t i = 0; i < f->c->n_curve; i++) {
-    const struct vg_curve *curve = &f->c->curve[i];
+    const struct vg_feature_curve *curve = &f->c->curve[i];
     size_t j = f->first[i];
 
     count(f, i);

@@ -17,7 +17,7 @@
 
 /* --- making -------------------------------------------------------------- */
 
-static vg_status make_lines(struct vg_work *w, struct vg_error *err)
+static vg_status make_lines(struct vg_tris *w, struct vg_error *err)
 {
   const struct vg_curves *c = w->curves;
   size_t n = 0;
@@ -37,24 +37,24 @@ static vg_status make_lines(struct vg_work *w, struct vg_error *err)
   return VG_OK;
 }
 
-vg_status vg_work_status(const struct vg_work *w, struct vg_error *err)
+vg_status vg_work_status(const struct vg_tris *w, struct vg_error *err)
 {
   if (w->failed) return vg_fail_memory(err, "the new surface");
   return w->ends ? vg_stopped(&w->stop, err) : VG_OK;
 }
 
-static double bounded(const struct vg_work *w, const double x[3], double h)
+static double bounded(const struct vg_tris *w, const double x[3], double h)
 {
   if (w->other_size) h = fmin(h, w->other_size(w->user, x));
   return fmin(w->h_max, fmax(w->h_min, h));
 }
 
-double vg_work_size(const struct vg_work *w, const double x[3], uint32_t *by)
+double vg_work_size(const struct vg_tris *w, const double x[3], uint32_t *by)
 {
   return bounded(w, x, vg_ref_size(w->ref, x, INFINITY, by));
 }
 
-double vg_work_size_near(const struct vg_work *w, const double x[3],
+double vg_work_size_near(const struct vg_tris *w, const double x[3],
                          uint32_t home, size_t n, const uint32_t *point,
                          uint32_t *by)
 {
@@ -77,7 +77,7 @@ double vg_work_size_near(const struct vg_work *w, const double x[3],
 /* Triangles that ask for less than a point's own one, from neighbour to
  * neighbour: all but exact where sizes grow along the surface, so that the
  * tree has little to look at. */
-static void pass_sizes_on(struct vg_work *w)
+static void pass_sizes_on(struct vg_tris *w)
 {
   const uint32_t n = (uint32_t)(3 * w->n_tri);
   int changed = 1;
@@ -104,7 +104,7 @@ static void pass_sizes_on(struct vg_work *w)
 
 static void find_sizes(void *context, size_t first, size_t end, int worker)
 {
-  struct vg_work *w = context;
+  struct vg_tris *w = context;
 
   (void)worker;
   if (vg_stops(&w->stop)) return;
@@ -117,7 +117,7 @@ static void find_sizes(void *context, size_t first, size_t end, int worker)
   }
 }
 
-static vg_status make_points(struct vg_work *w, struct vg_error *err)
+static vg_status make_points(struct vg_tris *w, struct vg_error *err)
 {
   const struct vg_ref *r = w->ref;
 
@@ -153,7 +153,7 @@ static vg_status make_points(struct vg_work *w, struct vg_error *err)
 }
 
 /* None has a triangle: they are points of this surface. */
-static vg_status make_samples(struct vg_work *w, struct vg_error *err)
+static vg_status make_samples(struct vg_tris *w, struct vg_error *err)
 {
   const size_t n = w->ref->n_point;
 
@@ -163,7 +163,7 @@ static vg_status make_samples(struct vg_work *w, struct vg_error *err)
          ? VG_OK : vg_fail_memory(err, "the samples of the surface");
 }
 
-vg_status vg_work_room(struct vg_work *w, size_t n, struct vg_error *err)
+vg_status vg_work_room(struct vg_tris *w, size_t n, struct vg_error *err)
 {
   w->n_tri = w->cap_tri = w->cap_first = w->cap_stamp = n;
   w->cap_mate = w->cap_edge = 3 * n;
@@ -176,7 +176,7 @@ vg_status vg_work_room(struct vg_work *w, size_t n, struct vg_error *err)
          ? VG_OK : vg_fail_memory(err, "the new surface");
 }
 
-vg_status vg_work_begin(struct vg_work *w, struct vg_error *err)
+vg_status vg_work_begin(struct vg_tris *w, struct vg_error *err)
 {
   const struct vg_ref *r = w->ref;
   vg_status st;
@@ -205,7 +205,7 @@ done:
   return st;
 }
 
-void vg_work_free_arrays(struct vg_work *w)
+void vg_work_free_arrays(struct vg_tris *w)
 {
   free(w->point);
   free(w->tri);
@@ -221,7 +221,7 @@ void vg_work_free_arrays(struct vg_work *w)
   w->line = NULL;
 }
 
-void vg_work_release(struct vg_work *w)
+void vg_work_release(struct vg_tris *w)
 {
   vg_work_free_arrays(w);
   if (!w->is_block) {
@@ -234,7 +234,7 @@ void vg_work_release(struct vg_work *w)
 
 /* --- looking ------------------------------------------------------------- */
 
-size_t vg_work_ring(const struct vg_work *w, uint32_t p, uint32_t *half,
+size_t vg_work_ring(const struct vg_tris *w, uint32_t p, uint32_t *half,
                     int *open)
 {
   uint32_t h = w->point[p].half, first = h;
@@ -258,13 +258,13 @@ size_t vg_work_ring(const struct vg_work *w, uint32_t p, uint32_t *half,
   return n;
 }
 
-double vg_work_ratio(const struct vg_work *w, uint32_t h)
+double vg_work_ratio(const struct vg_tris *w, uint32_t h)
 {
   return vg_work_length(w, &w->point[vg_work_from(w, h)],
                         &w->point[vg_work_to(w, h)]);
 }
 
-double vg_work_shape(const struct vg_work *w, const struct vg_work_point *a,
+double vg_work_shape(const struct vg_tris *w, const struct vg_work_point *a,
                      const struct vg_work_point *b,
                      const struct vg_work_point *c)
 {
@@ -276,19 +276,19 @@ double vg_work_shape(const struct vg_work *w, const struct vg_work_point *a,
   return vg_form_shape(form, a->x, b->x, c->x);
 }
 
-double vg_work_tri_shape(const struct vg_work *w, size_t t)
+double vg_work_tri_shape(const struct vg_tris *w, size_t t)
 {
   return vg_work_shape(w, &w->point[w->tri[t][0]], &w->point[w->tri[t][1]],
                        &w->point[w->tri[t][2]]);
 }
 
-double vg_work_tolerance(const struct vg_work *w, double size)
+double vg_work_tolerance(const struct vg_tris *w, double size)
 {
   if (w->far > 0 && size > w->far) return w->relative * size;
   return fmin(w->tolerance, w->relative * size);
 }
 
-void vg_work_find_room(const struct vg_work *w, struct vg_work_point *p)
+void vg_work_find_room(const struct vg_tris *w, struct vg_work_point *p)
 {
   const struct vg_ref *r = w->ref;
   double size = p->asked.size;
@@ -306,7 +306,7 @@ void vg_work_find_room(const struct vg_work *w, struct vg_work_point *p)
 
 /* --- a cavity ------------------------------------------------------------ */
 
-void vg_cavity_begin(const struct vg_work *w, struct vg_cavity *c,
+void vg_cavity_begin(const struct vg_tris *w, struct vg_cavity *c,
                      uint32_t point)
 {
   c->n_old = c->n_new = c->n_sample = 0;
@@ -316,7 +316,7 @@ void vg_cavity_begin(const struct vg_work *w, struct vg_cavity *c,
   c->tolerance = w->point[point].room;
 }
 
-void vg_cavity_narrow(const struct vg_work *w, struct vg_cavity *c,
+void vg_cavity_narrow(const struct vg_tris *w, struct vg_cavity *c,
                       uint32_t point)
 {
   c->tolerance = fmin(c->tolerance, w->point[point].room);
@@ -332,7 +332,7 @@ void vg_cavity_add(struct vg_cavity *c, const struct vg_work_point *x,
   c->edges[c->n_new++] = (uint8_t)edges;
 }
 
-void vg_cavity_measure(const struct vg_work *w, struct vg_cavity *c)
+void vg_cavity_measure(const struct vg_tris *w, struct vg_cavity *c)
 {
   c->shape = 1;
   for (size_t i = 0; i < c->n_new; i++) {
@@ -345,7 +345,7 @@ void vg_cavity_measure(const struct vg_work *w, struct vg_cavity *c)
 
 /* Is x within the tolerance of the sheet of the reference that faces the way
  * of n, and clearly nearer to it than to one that faces the other way? */
-static int sample_near(const struct vg_work *w, struct vg_cavity *c,
+static int sample_near(const struct vg_tris *w, struct vg_cavity *c,
                        const double x[3], const double n[3])
 {
   const double back[3] = { -n[0], -n[1], -n[2] };
@@ -365,7 +365,7 @@ static int sample_near(const struct vg_work *w, struct vg_cavity *c,
   return !vg_ref_within(w->ref, x, back, VG_WORK_NEARER * d2, &other, &o2);
 }
 
-static int tri_fits(const struct vg_work *w, struct vg_cavity *c, size_t i)
+static int tri_fits(const struct vg_tris *w, struct vg_cavity *c, size_t i)
 {
   const struct vg_work_point *const *p = c->corner[i];
   const double *n = c->made[i].n;
@@ -385,7 +385,7 @@ static int tri_fits(const struct vg_work *w, struct vg_cavity *c, size_t i)
 
 /* Where new edges cross those of the reference they may be farther from it than
  * in their middles. */
-static int crossings_fit(const struct vg_work *w, struct vg_cavity *c,
+static int crossings_fit(const struct vg_tris *w, struct vg_cavity *c,
                          size_t i)
 {
   const struct vg_work_point *const *p = c->corner[i];
@@ -402,7 +402,7 @@ static int crossings_fit(const struct vg_work *w, struct vg_cavity *c,
 
 /* Goes to the nearest of the new triangles, or one that is as good as on it,
  * from the one in the place of the old on. */
-static int sample_fits(const struct vg_work *w, struct vg_cavity *c,
+static int sample_fits(const struct vg_tris *w, struct vg_cavity *c,
                        uint32_t s, size_t old)
 {
   const double most = c->tolerance * c->tolerance;
@@ -438,7 +438,7 @@ static int make_triangles(struct vg_cavity *c, double sum[3])
 }
 
 /* Unit normal of a triangle as it is; returns its height over an edge. */
-static double facing(const struct vg_work *w, uint32_t t, double n[3])
+static double facing(const struct vg_tris *w, uint32_t t, double n[3])
 {
   const double *a = vg_work_at(w, w->tri[t][0]);
   double u[3], v[3], l;
@@ -451,7 +451,7 @@ static double facing(const struct vg_work *w, uint32_t t, double n[3])
 }
 
 /* On a curve: does each triangle face the way of that before it? */
-static int faces_as_before(const struct vg_work *w, const struct vg_cavity *c)
+static int faces_as_before(const struct vg_tris *w, const struct vg_cavity *c)
 {
   for (size_t i = 0; i < c->n_new; i++) {
     double n[3];
@@ -464,7 +464,7 @@ static int faces_as_before(const struct vg_work *w, const struct vg_cavity *c)
 
 /* What is new has the rim of what was there, and so the same mean normal: no
  * triangle faces away from that unless one does now. */
-static int is_unfolded(const struct vg_work *w, const struct vg_cavity *c,
+static int is_unfolded(const struct vg_tris *w, const struct vg_cavity *c,
                        const double sum[3])
 {
   double least = INFINITY, before = INFINITY;
@@ -481,7 +481,7 @@ static int is_unfolded(const struct vg_work *w, const struct vg_cavity *c,
   return least > before;
 }
 
-int vg_cavity_fits(const struct vg_work *w, struct vg_cavity *c)
+int vg_cavity_fits(const struct vg_tris *w, struct vg_cavity *c)
 {
   double sum[3];
 
@@ -498,7 +498,7 @@ int vg_cavity_fits(const struct vg_work *w, struct vg_cavity *c)
   return 1;
 }
 
-void vg_cavity_settle(struct vg_work *w, const struct vg_cavity *c,
+void vg_cavity_settle(struct vg_tris *w, const struct vg_cavity *c,
                       const uint32_t *t)
 {
   for (size_t i = 0; i < c->n_old; i++) w->first[c->old[i]] = VG_REF_NONE;

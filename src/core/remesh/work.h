@@ -47,7 +47,7 @@ struct vg_work_line {
 };
 
 /* Half-edge 3 t + k runs from corner k of triangle t to the next one. */
-struct vg_work {
+struct vg_tris {
   const struct vg_ref *ref;
   const struct vg_curves *curves;
   double tolerance, relative; /* largest distance, and in parts of the size */
@@ -91,37 +91,37 @@ struct vg_work {
   int ends;                 /* it said so: nothing is changed any more */
 };
 
-static inline int vg_work_ends(struct vg_work *w)
+static inline int vg_work_ends(struct vg_tris *w)
 {
   if (!w->ends) w->ends = vg_stops(&w->stop);
   return w->ends;
 }
 
 /** What has kept changes from being made: VG_ERR_MEMORY, VG_ERR_STOPPED. */
-vg_status vg_work_status(const struct vg_work *w, struct vg_error *err);
+vg_status vg_work_status(const struct vg_tris *w, struct vg_error *err);
 
-static inline uint32_t vg_work_from(const struct vg_work *w, uint32_t h)
+static inline uint32_t vg_work_from(const struct vg_tris *w, uint32_t h)
 {
   return w->tri[h / 3][h % 3];
 }
 
-static inline uint32_t vg_work_to(const struct vg_work *w, uint32_t h)
+static inline uint32_t vg_work_to(const struct vg_tris *w, uint32_t h)
 {
   return w->tri[h / 3][vg_ref_next(h) % 3];
 }
 
-static inline const double *vg_work_at(const struct vg_work *w, uint32_t p)
+static inline const double *vg_work_at(const struct vg_tris *w, uint32_t p)
 {
   return w->point[p].x;
 }
 
-static inline int vg_work_removed(const struct vg_work *w, size_t t)
+static inline int vg_work_removed(const struct vg_tris *w, size_t t)
 {
   return w->tri[t][0] == w->tri[t][1];
 }
 
 /** Has neither end of the edge changed since? */
-static inline int vg_work_is_old(const struct vg_work *w, uint32_t h,
+static inline int vg_work_is_old(const struct vg_tris *w, uint32_t h,
                                  uint64_t since)
 {
   return w->point[vg_work_from(w, h)].changed <= since
@@ -129,7 +129,7 @@ static inline int vg_work_is_old(const struct vg_work *w, uint32_t h,
 }
 
 /** An edge of the border of a block, which stays as it is. */
-static inline int vg_work_is_border(const struct vg_work *w, uint32_t h)
+static inline int vg_work_is_border(const struct vg_tris *w, uint32_t h)
 {
   return w->mate[h] == VG_REF_NONE && w->point[vg_work_from(w, h)].frozen
          && w->point[vg_work_to(w, h)].frozen;
@@ -137,52 +137,52 @@ static inline int vg_work_is_border(const struct vg_work *w, uint32_t h)
 
 /** An edge that stays as it is: of the border of a block, or of given triangles
  * that are kept. */
-static inline int vg_work_stays(const struct vg_work *w, uint32_t h)
+static inline int vg_work_stays(const struct vg_tris *w, uint32_t h)
 {
   return vg_work_is_border(w, h) || (w->point[vg_work_from(w, h)].kept
                                      && w->point[vg_work_to(w, h)].kept);
 }
 
 /** May there be a new edge between a and b? */
-static inline int vg_work_may_join(const struct vg_work *w, uint32_t a,
+static inline int vg_work_may_join(const struct vg_tris *w, uint32_t a,
                                    uint32_t b)
 {
   return w->point[a].frozen + w->point[b].frozen < VG_WORK_FANS;
 }
 
 /** The surface of the reference, ready to be changed. */
-vg_status vg_work_begin(struct vg_work *w, struct vg_error *err);
+vg_status vg_work_begin(struct vg_tris *w, struct vg_error *err);
 
-void vg_work_release(struct vg_work *w);
+void vg_work_release(struct vg_tris *w);
 
 /** Arrays for n triangles, w->tri to w->first, and their counts; edges and
  * stamps 0, the others not set. VG_ERR_MEMORY: some are there. */
-vg_status vg_work_room(struct vg_work *w, size_t n, struct vg_error *err);
+vg_status vg_work_room(struct vg_tris *w, size_t n, struct vg_error *err);
 
 /** Free points, triangles and lines: NULL then. Counts stay. */
-void vg_work_free_arrays(struct vg_work *w);
+void vg_work_free_arrays(struct vg_tris *w);
 
 /** Half-edges that leave p, one for each of its triangles: [VG_WORK_RING];
  * *open: the point is on a rim. 0 when there are too many. */
-size_t vg_work_ring(const struct vg_work *w, uint32_t p, uint32_t *half,
+size_t vg_work_ring(const struct vg_tris *w, uint32_t p, uint32_t *half,
                     int *open);
 
 /** Size asked for at x. *by: as vg_ref_size. */
-double vg_work_size(const struct vg_work *w, const double x[3], uint32_t *by);
+double vg_work_size(const struct vg_tris *w, const double x[3], uint32_t *by);
 
 /** The same, from what asks for the sizes of the n points, and the triangle
  * home: right but where a spot of finer sizes lies between them all. */
-double vg_work_size_near(const struct vg_work *w, const double x[3],
+double vg_work_size_near(const struct vg_tris *w, const double x[3],
                          uint32_t home, size_t n, const uint32_t *point,
                          uint32_t *by);
 
 /** Set p->room by its size and place: the tolerance, and a part of the size. Of
  * the size without strips, whose width says nothing of how exact the surface
  * has to be; and not where one is closed. */
-void vg_work_find_room(const struct vg_work *w, struct vg_work_point *p);
+void vg_work_find_room(const struct vg_tris *w, struct vg_work_point *p);
 
 /** Let q, which is in its place, with home and by, ask for this size. */
-static inline void vg_work_ask(const struct vg_work *w,
+static inline void vg_work_ask(const struct vg_tris *w,
                                struct vg_work_point *q, double size)
 {
   q->asked.size = size;
@@ -191,13 +191,13 @@ static inline void vg_work_ask(const struct vg_work *w,
 }
 
 /** That of the point; NULL where nothing is stretched. */
-static inline const double *vg_work_form(const struct vg_work *w, uint32_t p)
+static inline const double *vg_work_form(const struct vg_tris *w, uint32_t p)
 {
   return w->form ? w->point[p].asked.form : NULL;
 }
 
 /** Length of an edge in parts of what its ends ask for. */
-static inline double vg_work_length(const struct vg_work *w,
+static inline double vg_work_length(const struct vg_tris *w,
                                     const struct vg_work_point *a,
                                     const struct vg_work_point *b)
 {
@@ -208,15 +208,15 @@ static inline double vg_work_length(const struct vg_work *w,
   return 2 * vg_norm(e) / (a->asked.size + b->asked.size);
 }
 
-double vg_work_ratio(const struct vg_work *w, uint32_t h);
+double vg_work_ratio(const struct vg_tris *w, uint32_t h);
 
 /** Square of the sine of the smallest angle of a triangle, measured by the mean
  * of its points' forms. */
-double vg_work_shape(const struct vg_work *w, const struct vg_work_point *a,
+double vg_work_shape(const struct vg_tris *w, const struct vg_work_point *a,
                      const struct vg_work_point *b,
                      const struct vg_work_point *c);
 
-double vg_work_tri_shape(const struct vg_work *w, size_t t);
+double vg_work_tri_shape(const struct vg_tris *w, size_t t);
 
 /* The changes. Each looks whether the outcome is a surface like the one given,
  * within the distance, and nowhere folded, and else does nothing and returns
@@ -224,19 +224,19 @@ double vg_work_tri_shape(const struct vg_work *w, size_t t);
 
 /** Put a point into the edge, in its middle or, on a curve, at `at`. Returns
  * it, or VG_REF_NONE. */
-uint32_t vg_work_split(struct vg_work *w, uint32_t h, const double *at);
+uint32_t vg_work_split(struct vg_tris *w, uint32_t h, const double *at);
 
 /** Take the start of h away, onto its end. No edge gets longer than `most`
  * sizes, unless one is now; no angle smaller than `shape` (square of the
  * sine), unless one is now. */
-int vg_work_collapse(struct vg_work *w, uint32_t h, double most, double shape);
+int vg_work_collapse(struct vg_tris *w, uint32_t h, double most, double shape);
 
 /** The other diagonal, where the smallest angle gets larger. */
-int vg_work_swap(struct vg_work *w, uint32_t h);
+int vg_work_swap(struct vg_tris *w, uint32_t h);
 
 /** Move a point of a face near x, on the reference; no angle smaller than
  * `shape` unless that is better than now. */
-int vg_work_move(struct vg_work *w, uint32_t p, const double x[3],
+int vg_work_move(struct vg_tris *w, uint32_t p, const double x[3],
                  double shape);
 
 /* The two lines at a point of a curve: lengths along it of their ends. */
@@ -246,9 +246,9 @@ struct vg_work_span {
 };
 
 /** That of p; 0 where it has none, or may not move. */
-int vg_work_span(const struct vg_work *w, uint32_t p, struct vg_work_span *s);
+int vg_work_span(const struct vg_tris *w, uint32_t p, struct vg_work_span *s);
 
 /** Move a point of a curve along it to the length `at`; shape as above. */
-int vg_work_slide(struct vg_work *w, uint32_t p, double at, double shape);
+int vg_work_slide(struct vg_tris *w, uint32_t p, double at, double shape);
 
 #endif

@@ -25,7 +25,7 @@
 
 /* --- bookkeeping --------------------------------------------------------- */
 
-static void attach(struct vg_work *w, uint32_t h, uint32_t mate,
+static void attach(struct vg_tris *w, uint32_t h, uint32_t mate,
                    uint32_t edge)
 {
   w->mate[h] = mate;
@@ -35,7 +35,7 @@ static void attach(struct vg_work *w, uint32_t h, uint32_t mate,
   w->edge[mate] = edge;
 }
 
-static void set_tri(struct vg_work *w, uint32_t t, uint32_t a, uint32_t b,
+static void set_tri(struct vg_tris *w, uint32_t t, uint32_t a, uint32_t b,
                     uint32_t c)
 {
   const uint32_t p[3] = { a, b, c };
@@ -48,7 +48,7 @@ static void set_tri(struct vg_work *w, uint32_t t, uint32_t a, uint32_t b,
   w->stamp[t] = w->clock;
 }
 
-static uint32_t new_tri(struct vg_work *w)
+static uint32_t new_tri(struct vg_tris *w)
 {
   uint32_t t;
 
@@ -70,7 +70,7 @@ static uint32_t new_tri(struct vg_work *w)
   return t;
 }
 
-static void remove_tri(struct vg_work *w, uint32_t t)
+static void remove_tri(struct vg_tris *w, uint32_t t)
 {
   if (vg_reserve(&w->spare, &w->cap_spare, w->n_spare + 1,
                  sizeof *w->spare)) w->failed = 1;
@@ -78,7 +78,7 @@ static void remove_tri(struct vg_work *w, uint32_t t)
   w->tri[t][1] = w->tri[t][2] = w->tri[t][0];
 }
 
-static void normal_of(const struct vg_work *w, uint32_t t, double n[3])
+static void normal_of(const struct vg_tris *w, uint32_t t, double n[3])
 {
   double u[3], v[3], m[3];
 
@@ -90,7 +90,7 @@ static void normal_of(const struct vg_work *w, uint32_t t, double n[3])
 
 /* --- split --------------------------------------------------------------- */
 
-static void middle_of(const struct vg_work *w, uint32_t h, const double *at,
+static void middle_of(const struct vg_tris *w, uint32_t h, const double *at,
                       struct vg_work_point *p, double *s)
 {
   const double *a = vg_work_at(w, vg_work_from(w, h));
@@ -114,7 +114,7 @@ static void middle_of(const struct vg_work *w, uint32_t h, const double *at,
     vg_ref_nearest(w->ref, x, n_or_any, &p->home, p->x);
 }
 
-static int split_fits(const struct vg_work *w, uint32_t h,
+static int split_fits(const struct vg_tris *w, uint32_t h,
                       const struct vg_work_point *m, struct vg_cavity *c)
 {
   const double ratio = vg_work_ratio(w, h);
@@ -145,7 +145,7 @@ static int split_fits(const struct vg_work *w, uint32_t h,
 }
 
 /* Of a long edge, something finer may lie between its ends. */
-static void size_between(const struct vg_work *w, uint32_t h,
+static void size_between(const struct vg_tris *w, uint32_t h,
                          struct vg_work_point *p)
 {
   const uint32_t end[2] = { vg_work_from(w, h), vg_work_to(w, h) };
@@ -155,7 +155,7 @@ static void size_between(const struct vg_work *w, uint32_t h,
               : vg_work_size(w, p->x, &p->by));
 }
 
-static uint32_t add_point(struct vg_work *w, const struct vg_work_point *p)
+static uint32_t add_point(struct vg_tris *w, const struct vg_work_point *p)
 {
   if (w->n_point > UINT32_MAX - 2
       || vg_reserve(&w->point, &w->cap_point, w->n_point + 1,
@@ -169,7 +169,7 @@ static uint32_t add_point(struct vg_work *w, const struct vg_work_point *p)
 
 /* Divide the line of h at length s by point m: returns the line of the first
  * half of h; the other is *second. */
-static uint32_t split_line(struct vg_work *w, uint32_t h, uint32_t m,
+static uint32_t split_line(struct vg_tris *w, uint32_t h, uint32_t m,
                            double s, uint32_t *second)
 {
   uint32_t i = w->edge[h] - 1, j = (uint32_t)w->n_line;
@@ -185,7 +185,7 @@ static uint32_t split_line(struct vg_work *w, uint32_t h, uint32_t m,
 
 /* Put m into the edge of h: t[0], t[1] are the halves of its triangle, t[2] and
  * t[3] those of the other, in the order in which they run along their edge. */
-static void stitch(struct vg_work *w, uint32_t h, uint32_t m,
+static void stitch(struct vg_tris *w, uint32_t h, uint32_t m,
                    const uint32_t *t, const uint32_t *e)
 {
   const uint32_t end[2] = { vg_work_from(w, h), vg_work_to(w, h) };
@@ -213,7 +213,7 @@ static void stitch(struct vg_work *w, uint32_t h, uint32_t m,
   }
 }
 
-uint32_t vg_work_split(struct vg_work *w, uint32_t h, const double *at)
+uint32_t vg_work_split(struct vg_tris *w, uint32_t h, const double *at)
 {
   struct vg_cavity c;
   uint32_t a = vg_work_from(w, h), b = vg_work_to(w, h), m, t[4], e[2];
@@ -251,7 +251,7 @@ uint32_t vg_work_split(struct vg_work *w, uint32_t h, const double *at)
 /* --- collapse ------------------------------------------------------------ */
 
 /* Line at curve point v other than that of h. */
-static uint32_t other_line(const struct vg_work *w, const uint32_t *ring,
+static uint32_t other_line(const struct vg_tris *w, const uint32_t *ring,
                            size_t n, uint32_t line)
 {
   for (size_t i = 0; i < n; i++) {
@@ -264,7 +264,7 @@ static uint32_t other_line(const struct vg_work *w, const uint32_t *ring,
 }
 
 /* A point of a curve goes along it only, where the chord stays near it. */
-static int curve_fits(const struct vg_work *w, uint32_t h,
+static int curve_fits(const struct vg_tris *w, uint32_t h,
                       const uint32_t *ring, size_t n, double tolerance)
 {
   const struct vg_work_line *a, *b;
@@ -283,7 +283,7 @@ static int curve_fits(const struct vg_work *w, uint32_t h,
 }
 
 /* The ends have only the nodes opposite the edge as common neighbours. */
-static int link_fits(const struct vg_work *w, uint32_t h,
+static int link_fits(const struct vg_tris *w, uint32_t h,
                      const uint32_t *ring, size_t n, int open)
 {
   uint32_t u = vg_work_to(w, h), other[VG_WORK_RING];
@@ -308,7 +308,7 @@ static int link_fits(const struct vg_work *w, uint32_t h,
 }
 
 /* Edges from u to the neighbours of v that are new may be made. */
-static int joins_fit(const struct vg_work *w, uint32_t h,
+static int joins_fit(const struct vg_tris *w, uint32_t h,
                      const uint32_t *ring, size_t n, int open)
 {
   const uint32_t u = vg_work_to(w, h), g = w->mate[h];
@@ -326,7 +326,7 @@ static int joins_fit(const struct vg_work *w, uint32_t h,
   return 1;
 }
 
-static int collapse_fits(const struct vg_work *w, uint32_t h,
+static int collapse_fits(const struct vg_tris *w, uint32_t h,
                          const uint32_t *ring, size_t n, double most,
                          double shape, struct vg_cavity *c)
 {
@@ -361,7 +361,7 @@ static int collapse_fits(const struct vg_work *w, uint32_t h,
   return vg_cavity_fits(w, c);
 }
 
-static void collapse(struct vg_work *w, uint32_t h, const uint32_t *ring,
+static void collapse(struct vg_tris *w, uint32_t h, const uint32_t *ring,
                      size_t n, const struct vg_cavity *c)
 {
   uint32_t u = vg_work_to(w, h), g = w->mate[h], t[VG_WORK_RING], n_t = 0;
@@ -410,7 +410,7 @@ static void collapse(struct vg_work *w, uint32_t h, const uint32_t *ring,
   w->n_collapse++;
 }
 
-int vg_work_collapse(struct vg_work *w, uint32_t h, double most, double shape)
+int vg_work_collapse(struct vg_tris *w, uint32_t h, double most, double shape)
 {
   struct vg_cavity c;
   uint32_t ring[VG_WORK_RING], v = vg_work_from(w, h), k = h, g = w->mate[h];
@@ -442,7 +442,7 @@ int vg_work_collapse(struct vg_work *w, uint32_t h, double most, double shape)
 
 /* --- swap ---------------------------------------------------------------- */
 
-int vg_work_swap(struct vg_work *w, uint32_t h)
+int vg_work_swap(struct vg_tris *w, uint32_t h)
 {
   struct vg_cavity c;
   uint32_t g = w->mate[h], ring[VG_WORK_RING], t[2] = { h / 3, g / 3 };
@@ -497,7 +497,7 @@ int vg_work_swap(struct vg_work *w, uint32_t h)
 /* --- move ---------------------------------------------------------------- */
 
 /* p becomes q: what is around it is told. */
-static void settle_move(struct vg_work *w, uint32_t p, const uint32_t *ring,
+static void settle_move(struct vg_tris *w, uint32_t p, const uint32_t *ring,
                         const struct vg_cavity *c, struct vg_work_point *q)
 {
   uint32_t near[VG_WORK_RING + 2];
@@ -518,7 +518,7 @@ static void settle_move(struct vg_work *w, uint32_t p, const uint32_t *ring,
 
 /* The triangles around p as they would be were it q; returns the least shape
  * that they have now. */
-static double move_cavity(const struct vg_work *w, uint32_t p, size_t n,
+static double move_cavity(const struct vg_tris *w, uint32_t p, size_t n,
                           const uint32_t *ring, const struct vg_work_point *q,
                           struct vg_cavity *c)
 {
@@ -538,7 +538,7 @@ static double move_cavity(const struct vg_work *w, uint32_t p, size_t n,
   return before;
 }
 
-int vg_work_move(struct vg_work *w, uint32_t p, const double x[3],
+int vg_work_move(struct vg_tris *w, uint32_t p, const double x[3],
                  double shape)
 {
   struct vg_cavity c;
@@ -570,7 +570,7 @@ int vg_work_move(struct vg_work *w, uint32_t p, const double x[3],
 /* --- slide --------------------------------------------------------------- */
 
 /* The lines that end and begin at p, along their curve. */
-static int lines_at(const struct vg_work *w, uint32_t p, size_t n,
+static int lines_at(const struct vg_tris *w, uint32_t p, size_t n,
                     const uint32_t *ring, uint32_t line[2])
 {
   const struct vg_work_line *a, *b;
@@ -587,7 +587,7 @@ static int lines_at(const struct vg_work *w, uint32_t p, size_t n,
          && a->end[0] != p && b->end[1] != p && a->at[1] == b->at[0];
 }
 
-int vg_work_span(const struct vg_work *w, uint32_t p, struct vg_work_span *s)
+int vg_work_span(const struct vg_tris *w, uint32_t p, struct vg_work_span *s)
 {
   uint32_t ring[VG_WORK_RING];
   size_t n;
@@ -604,7 +604,7 @@ int vg_work_span(const struct vg_work *w, uint32_t p, struct vg_work_span *s)
   return 1;
 }
 
-int vg_work_slide(struct vg_work *w, uint32_t p, double at, double shape)
+int vg_work_slide(struct vg_tris *w, uint32_t p, double at, double shape)
 {
   struct vg_work_point q = w->point[p];
   struct vg_work_span s;

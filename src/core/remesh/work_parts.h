@@ -27,11 +27,11 @@ struct vg_cavity {
   uint16_t goes[VG_WORK_SAMPLES];     /* to which new one */
 };
 
-void vg_cavity_begin(const struct vg_work *w, struct vg_cavity *c,
+void vg_cavity_begin(const struct vg_tris *w, struct vg_cavity *c,
                      uint32_t point);
 
 /** The tolerance is the least around. */
-void vg_cavity_narrow(const struct vg_work *w, struct vg_cavity *c,
+void vg_cavity_narrow(const struct vg_tris *w, struct vg_cavity *c,
                       uint32_t point);
 
 /** Add a triangle that will be there. */
@@ -40,18 +40,18 @@ void vg_cavity_add(struct vg_cavity *c, const struct vg_work_point *x,
                    const struct vg_work_point *z, int edges);
 
 /** Tolerance at points of this size. */
-double vg_work_tolerance(const struct vg_work *w, double size);
+double vg_work_tolerance(const struct vg_tris *w, double size);
 
 /** Sets c->shape: cheap, before what follows. */
-void vg_cavity_measure(const struct vg_work *w, struct vg_cavity *c);
+void vg_cavity_measure(const struct vg_tris *w, struct vg_cavity *c);
 
 /** Are the new triangles within the tolerance of the reference, facing its
  * way, and the samples of the old ones within that of the new ones? */
-int vg_cavity_fits(const struct vg_work *w, struct vg_cavity *c);
+int vg_cavity_fits(const struct vg_tris *w, struct vg_cavity *c);
 
 /** Give the samples to the new triangles, numbers t[n_new]. The old ones'
  * lists are empty afterwards. */
-void vg_cavity_settle(struct vg_work *w, const struct vg_cavity *c,
+void vg_cavity_settle(struct vg_tris *w, const struct vg_cavity *c,
                       const uint32_t *t);
 
 #endif

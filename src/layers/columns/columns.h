@@ -8,7 +8,7 @@
  * now) of positive volume: the lift rule. What is left on top is the face
  * with each column at its own n: the top, one triangle per face, so tops are
  * as conforming as the wall is. Neighbours may differ by any number of levels;
- * what is bounded is the slope of the tops between them (layers/grow/work.h).
+ * what is bounded is the slope of the tops between them (layers/grow/grow_parts.h).
  *
  * At a convex edge a point may have several columns, a fan. Between them lie
  * virtual faces: triangles of columns with two or three equal roots, of no

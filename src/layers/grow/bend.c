@@ -1,4 +1,4 @@
-/* Directions bent apart. Declared in layers/grow/work.h.
+/* Directions bent apart. Declared in layers/grow/grow_parts.h.
  *
  * Where columns converge (a concave corner, a wall at an acute angle to a
  * slide plane), directions within BAND heights are relaxed towards the mean

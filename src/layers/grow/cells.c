@@ -1,5 +1,5 @@
 /* Are the cells that columns imply fit to be written? Declared in
- * layers/grow/work.h. */
+ * layers/grow/grow_parts.h. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,7 +8,7 @@
 #include "base/team.h"
 #include "core/geometry/vector.h"
 #include "layers/expand/join.h"
-#include "layers/grow/work.h"
+#include "layers/grow/grow_parts.h"
 
 #define GRAIN 1024
 #define FLAT (0.25 * VG_VIEW_MIN)  /* L3: least sine of a column on a layer */

@@ -1,5 +1,5 @@
 /* Marching directions: normal to the wall where it is smooth, in view of all
- * faces at edges and corners. Declared in layers/grow/work.h. */
+ * faces at edges and corners. Declared in layers/grow/grow_parts.h. */
 #include "layers/grow/direct.h"
 
 #include <math.h>

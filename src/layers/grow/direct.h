@@ -4,7 +4,7 @@
 #ifndef VG_LAYERS_GROW_DIRECT_H
 #define VG_LAYERS_GROW_DIRECT_H
 
-#include "layers/grow/work.h"
+#include "layers/grow/grow_parts.h"
 
 #define VG_GRAIN 2048
 #define VG_VIEW_KEPT 0.6   /* L6: share of the first view that turning leaves */

@@ -7,7 +7,7 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "core/surface/surface_check.h"
-#include "layers/grow/work.h"
+#include "layers/grow/grow_parts.h"
 
 #define ROUNDS_MAX 300   /* L2 */
 #define LAST_RESORT 150  /* rounds after which what is bad gets no layers */

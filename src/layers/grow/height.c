@@ -1,5 +1,5 @@
 /* Heights: how many layers, how high, and how much less where they must be.
- * Declared in layers/grow/work.h.
+ * Declared in layers/grow/grow_parts.h.
  *
  * Growth is lowered first: a column keeps its first height and its
  * number of layers and grows more slowly (the cap of its law is lowered).
@@ -12,7 +12,7 @@
 #include "base/memory.h"
 #include "base/team.h"
 #include "core/geometry/vector.h"
-#include "layers/grow/work.h"
+#include "layers/grow/grow_parts.h"
 
 #define GRAIN 2048
 #define EDGE_SWEEPS 3

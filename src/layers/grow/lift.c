@@ -1,5 +1,5 @@
 /* Lengths of the columns, first points, and columns made more alike.
- * Declared in layers/grow/work.h. */
+ * Declared in layers/grow/grow_parts.h. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -5,7 +5,7 @@
 
 #include "base/memory.h"
 #include "core/geometry/hilbert.h"
-#include "layers/grow/work.h"
+#include "layers/grow/grow_parts.h"
 
 /* Three times the centres of the first n faces. */
 static void centre_faces(const struct vg_columns *c, const struct vg_mesh *m,

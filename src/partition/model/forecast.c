@@ -108,7 +108,7 @@ static vg_status add_task(struct forecast *c, const char *path,
 }
 /* --- the tree ------------------------------------------------------------ */
 
-static vg_status add_node(struct forecast *c, const struct vg_part *p,
+static vg_status add_node(struct forecast *c, const struct vg_subdomain *p,
                           const struct vg_lattice *l, size_t *index)
 {
   struct vg_forecast *o = c->out;
@@ -158,7 +158,7 @@ static double work_of(const struct vg_bins *f, double volume)
   return area > 0 ? volume * faces / area : 0;
 }
 
-static vg_status add_leaf(struct forecast *c, const struct vg_part *p,
+static vg_status add_leaf(struct forecast *c, const struct vg_subdomain *p,
                           struct vg_amount a, double volume, const char *after)
 {
   char path[VG_PATH_MAX];
@@ -204,7 +204,7 @@ static vg_status add_repairs(struct forecast *c,
   return st;
 }
 
-static vg_status add_join(struct forecast *c, const struct vg_part *p,
+static vg_status add_join(struct forecast *c, const struct vg_subdomain *p,
                           int number, const struct vg_task_rate *rate,
                           char *after)
 {
@@ -234,7 +234,7 @@ static void pay_tasks(struct forecast *c, size_t index,
 
 /* The zones of a stage. All see the front that the stage before left.
  * after in: the task that makes them; out: one of them, if there is any. */
-static vg_status grow_stage(struct forecast *c, struct vg_part *p,
+static vg_status grow_stage(struct forecast *c, struct vg_subdomain *p,
                             const struct vg_lattice *l, int stage,
                             size_t *n_pencil, char *after)
 {
@@ -284,7 +284,7 @@ done:
 }
 
 /* Where three planes meet parts may still hang together. */
-static vg_status close_places(struct forecast *c, const struct vg_part *p,
+static vg_status close_places(struct forecast *c, const struct vg_subdomain *p,
                               const struct vg_lattice *l, char *after)
 {
   double corners = (double)l->n[0] * l->n[1] * l->n[2];
@@ -306,7 +306,7 @@ static vg_status close_places(struct forecast *c, const struct vg_part *p,
 }
 
 /* Joins and zones of a void. */
-static vg_status grow_zones(struct forecast *c, struct vg_part *p,
+static vg_status grow_zones(struct forecast *c, struct vg_subdomain *p,
                             const struct vg_lattice *l, char *after)
 {
   int has_corners = l->n[0] && l->n[1] && l->n[2], n_join = 0;
@@ -334,15 +334,15 @@ done:
   return st;
 }
 
-static vg_status go_down(struct forecast *c, struct vg_part *p,
+static vg_status go_down(struct forecast *c, struct vg_subdomain *p,
                          const char *after);
 
 /* Small voids are filled together. */
-static vg_status add_rest(struct forecast *c, const struct vg_part *from,
+static vg_status add_rest(struct forecast *c, const struct vg_subdomain *from,
                           size_t parent, struct vg_blocks *b, double least,
                           const char *after)
 {
-  struct vg_part rest = { .parent = parent, .depth = from->depth + 1 };
+  struct vg_subdomain rest = { .parent = parent, .depth = from->depth + 1 };
   struct vg_amount a = {0, 0};
   double volume = 0;
   vg_status st = VG_OK;
@@ -352,7 +352,7 @@ static vg_status add_rest(struct forecast *c, const struct vg_part *from,
   memcpy(rest.lo, from->lo, sizeof rest.lo);
   memcpy(rest.hi, from->hi, sizeof rest.hi);
   for (size_t i = 0; st >= 0 && i < b->n; i++) {
-    struct vg_part *p = &b->part[i];
+    struct vg_subdomain *p = &b->part[i];
 
     if (p->load.cells >= least) continue;
     rest.load.cells += p->load.cells;
@@ -369,9 +369,9 @@ static vg_status add_rest(struct forecast *c, const struct vg_part *from,
   return st;
 }
 
-static vg_status add_children(struct forecast *c, const struct vg_part *from,
-                              size_t parent, struct vg_blocks *b, int used,
-                              const char *after)
+static vg_status add_children(struct forecast *c,
+                              const struct vg_subdomain *from, size_t parent,
+                              struct vg_blocks *b, int used, const char *after)
 {
   double sum = 0, least = fmax(VG_SMALL_SHARE * c->rule->leaf_cells,
                                least_void);
@@ -380,7 +380,7 @@ static vg_status add_children(struct forecast *c, const struct vg_part *from,
 
   for (size_t i = 0; i < b->n; i++) sum += b->part[i].load.cells;
   for (size_t i = 0; st >= 0 && i < b->n; i++) {
-    struct vg_part *p = &b->part[i];
+    struct vg_subdomain *p = &b->part[i];
 
     if (!(p->load.cells > 0)) continue;
     snprintf(p->path, sizeof p->path, "%.*s.%zu", VG_PATH_MAX - 24,
@@ -394,12 +394,12 @@ static vg_status add_children(struct forecast *c, const struct vg_part *from,
       p->retry = from->retry + 1;
     }
     st = go_down(c, p, after);
-    vg_part_release(p);
+    vg_subdomain_release(p);
   }
   return st < 0 ? st : add_rest(c, from, parent, b, least, after);
 }
 
-static vg_status cut(struct forecast *c, struct vg_part *p,
+static vg_status cut(struct forecast *c, struct vg_subdomain *p,
                      const struct vg_lattice *l, int used, const char *maker)
 {
   struct vg_blocks b = { .n = 0 };
@@ -413,14 +413,14 @@ static vg_status cut(struct forecast *c, struct vg_part *p,
   VG_TRY(grow_zones(c, p, l, after));
   c->out->node[index].zone = c->out->zone_cells - before;
   VG_TRY(vg_blocks_open(&b, l, p, c->err));
-  vg_part_release(p);
+  vg_subdomain_release(p);
   st = add_children(c, p, index, &b, used, after);
 done:
   vg_blocks_release(&b);
   return st;
 }
 
-static vg_status go_down(struct forecast *c, struct vg_part *p,
+static vg_status go_down(struct forecast *c, struct vg_subdomain *p,
                          const char *after)
 {
   struct vg_lattice l;
@@ -448,7 +448,7 @@ static void line_up(struct vg_spans *s)
   }
 }
 
-static vg_status add_surface(const struct vg_front *v, struct vg_part *p,
+static vg_status add_surface(const struct vg_front *v, struct vg_subdomain *p,
                              struct vg_error *err)
 {
   p->front.bit = vg_alloc(v->n_face, sizeof *p->front.bit);
@@ -471,7 +471,7 @@ static vg_status add_surface(const struct vg_front *v, struct vg_part *p,
   return VG_OK;
 }
 
-static vg_status add_load(const struct vg_load *load, struct vg_part *p,
+static vg_status add_load(const struct vg_load *load, struct vg_subdomain *p,
                           struct vg_error *err)
 {
   p->load = *load;
@@ -521,7 +521,7 @@ done:
 }
 
 /* The task that makes the parts, which no zones come from. */
-static vg_status add_maker(struct forecast *c, const struct vg_part *root,
+static vg_status add_maker(struct forecast *c, const struct vg_subdomain *root,
                            const struct vg_forecast_parting *q)
 {
   int has_mesh = q->rate->mesh > 0 && q->coarse > 0;
@@ -540,10 +540,10 @@ static vg_status add_maker(struct forecast *c, const struct vg_part *root,
   return VG_OK;
 }
 
-static vg_status add_part(struct forecast *c, const struct vg_part *root,
+static vg_status add_part(struct forecast *c, const struct vg_subdomain *root,
                           const struct vg_forecast_part *from, size_t number)
 {
-  struct vg_part p = { .parent = 0, .depth = 1, .levels = root->levels };
+  struct vg_subdomain p = { .parent = 0, .depth = 1, .levels = root->levels };
   vg_status st;
 
   snprintf(p.path, sizeof p.path, "0.%zu", number);
@@ -553,11 +553,11 @@ static vg_status add_part(struct forecast *c, const struct vg_part *root,
                      : add_leaf(c, &p, amount_of(&p.load), volume_of(&p.load),
                                 "0J0");
 done:
-  vg_part_release(&p);
+  vg_subdomain_release(&p);
   return st;
 }
 
-static vg_status add_parts(struct forecast *c, struct vg_part *root,
+static vg_status add_parts(struct forecast *c, struct vg_subdomain *root,
                            const struct vg_forecast_parting *q)
 {
   size_t index = 0;
@@ -580,7 +580,8 @@ vg_status vg_forecast_parted(const struct vg_front *v,
 {
   struct vg_forecast o = VG_FORECAST_INIT;
   struct forecast c = { .out = &o, .rule = rule, .rates = rates, .err = err };
-  struct vg_part root = { .path = "0", .parent = SIZE_MAX, .levels = levels };
+  struct vg_subdomain root = { .path = "0", .parent = SIZE_MAX,
+                               .levels = levels };
   vg_status st;
 
   o.cells = load->cells;
@@ -596,7 +597,7 @@ vg_status vg_forecast_parted(const struct vg_front *v,
   *out = o;
   memset(&o, 0, sizeof o);
 done:
-  vg_part_release(&root);
+  vg_subdomain_release(&root);
   vg_forecast_release(&o);
   return st;
 }

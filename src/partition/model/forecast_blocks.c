@@ -12,7 +12,7 @@ static int side_of(const struct vg_lattice *l, int axis, double x)
   return k;
 }
 
-static struct vg_part *block_at(struct vg_blocks *b, const int at[3])
+static struct vg_subdomain *block_at(struct vg_blocks *b, const int at[3])
 {
   return &b->part[at[0] + (b->l->n[0] + 1) *
                   (at[1] + (b->l->n[1] + 1) * at[2])];
@@ -47,10 +47,10 @@ static vg_status share_front(struct vg_blocks *b, const struct vg_bins *f,
   return st;
 }
 
-static void set_box(const struct vg_blocks *b, const struct vg_part *from,
+static void set_box(const struct vg_blocks *b, const struct vg_subdomain *from,
                     size_t i)
 {
-  struct vg_part *p = &b->part[i];
+  struct vg_subdomain *p = &b->part[i];
 
   for (int k = 0; k < 3; k++) {
     int n = b->l->n[k], at = (int)(i % (size_t)(n + 1));
@@ -63,12 +63,12 @@ static void set_box(const struct vg_blocks *b, const struct vg_part *from,
 
 void vg_blocks_release(struct vg_blocks *b)
 {
-  for (size_t i = 0; i < b->n; i++) vg_part_release(&b->part[i]);
+  for (size_t i = 0; i < b->n; i++) vg_subdomain_release(&b->part[i]);
   free(b->part);
 }
 
 vg_status vg_blocks_open(struct vg_blocks *b, const struct vg_lattice *l,
-                         const struct vg_part *p, struct vg_error *err)
+                         const struct vg_subdomain *p, struct vg_error *err)
 {
   vg_status st;
 

@@ -12,7 +12,7 @@
  * spheres. */
 static const double pencil_reach = 1.9, rib_reach = 0.5;   /* M4 */
 
-void vg_part_release(struct vg_part *p)
+void vg_subdomain_release(struct vg_subdomain *p)
 {
   vg_load_release(&p->load);
   free(p->front.bit);
@@ -164,7 +164,7 @@ double vg_bins_near(const struct vg_bins *f, size_t n,
 }
 
 /* Cells of the region leave the load and, if it has a front, make sides. */
-vg_status vg_bins_take(struct vg_part *p, const struct vg_region *r,
+vg_status vg_bins_take(struct vg_subdomain *p, const struct vg_region *r,
                        struct vg_bins *made, struct vg_amount *a,
                        struct vg_error *err)
 {

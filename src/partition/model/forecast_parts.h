@@ -20,8 +20,8 @@ struct vg_bins { size_t n, cap; struct vg_bin *bit; };
 /* Cells, and how many of them lie where spacing varies. */
 struct vg_amount { double cells, graded; };
 
-/* A void on its way down the tree. */
-struct vg_part {
+/* A subdomain of the forecast: a void on its way down the tree of cuts. */
+struct vg_subdomain {
   struct vg_load load;
   struct vg_bins front;
   double lo[3], hi[3];
@@ -32,7 +32,7 @@ struct vg_part {
 
 /* --- front and load (forecast_front.c) ------------------------------------ */
 
-void vg_part_release(struct vg_part *p);
+void vg_subdomain_release(struct vg_subdomain *p);
 
 vg_status vg_bins_add(struct vg_bins *f, const struct vg_bin *b,
                       struct vg_error *err);
@@ -44,7 +44,7 @@ void vg_amount_add(struct vg_amount *a, const struct vg_load_cube *c,
 
 /** Cells of the region leave the load, counted in a; where it has some, the
  * faces that it leaves go to made. */
-vg_status vg_bins_take(struct vg_part *p, const struct vg_region *r,
+vg_status vg_bins_take(struct vg_subdomain *p, const struct vg_region *r,
                        struct vg_bins *made, struct vg_amount *a,
                        struct vg_error *err);
 
@@ -60,13 +60,13 @@ double vg_bins_near(const struct vg_bins *f, size_t n,
 struct vg_blocks {
   const struct vg_lattice *l;    /* borrowed */
   size_t n;
-  struct vg_part *part;          /* [n] x first */
+  struct vg_subdomain *part;          /* [n] x first */
 };
 
 /** Load, front and box of p divided among the blocks of a lattice. Call
  * vg_blocks_release in any case. */
 vg_status vg_blocks_open(struct vg_blocks *b, const struct vg_lattice *l,
-                         const struct vg_part *p, struct vg_error *err);
+                         const struct vg_subdomain *p, struct vg_error *err);
 void vg_blocks_release(struct vg_blocks *b);
 
 #endif

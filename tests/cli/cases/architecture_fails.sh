@@ -69,6 +69,15 @@ mkdir -p untold/tests/unit
 touch untold/tests/README.md untold/tests/unit/test_x.c
 refused untold "tests/unit/test_x.c is missing in tests/README.md"
 
+cp -r good tag
+echo 'struct vg_x { int a; };' >>tag/src/core/mesh/m.h
+echo 'struct vg_y { struct vg_x { int b; } c; };' >>tag/src/core/fill/f.c
+refused tag "struct vg_x is defined 2 times: "
+
+cp -r good name
+echo '#include "base/x.h"' >name/src/core/mesh/x.h
+refused name "two files are called x.h: "
+
 # A symbol that is declared below and defined above.
 cp -r good symbol
 objects=build/src/CMakeFiles

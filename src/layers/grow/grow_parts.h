@@ -1,8 +1,8 @@
-/* layers/grow/work.h: what the steps of vg_layers_grow share. Private to
+/* layers/grow/grow_parts.h: what the steps of vg_layers_grow share. Private to
  * layers. Arrays are per column unless said otherwise; "height" counts in units
  * of column.dir, so that the wall distance of the first point is delta1. */
-#ifndef VG_LAYERS_GROW_WORK_H
-#define VG_LAYERS_GROW_WORK_H
+#ifndef VG_LAYERS_GROW_GROW_PARTS_H
+#define VG_LAYERS_GROW_GROW_PARTS_H
 
 #include "core/geometry/vector.h"
 #include "layers/clear/clear.h"
