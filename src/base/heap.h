@@ -1,0 +1,49 @@
+/* base/heap.h: a binary heap in an array of the caller. Uses nothing.
+ *
+ * Items that are equal by `before` leave in an order that depends on the order
+ * of all calls. Whoever needs one order makes `before` total, by a number of
+ * the item. Threads: one at a time. */
+#ifndef VG_BASE_HEAP_H
+#define VG_BASE_HEAP_H
+
+#include <stddef.h>
+
+/** Define NAME_push and NAME_pop for a heap of items of a type:
+ *
+ *   static void NAME_push(TYPE *heap, size_t *n, TYPE item)
+ *     One more item; heap has room for *n + 1. O(log n).
+ *   static TYPE NAME_pop(TYPE *heap, size_t *n)
+ *     Remove the item that is before all others; *n > 0. O(log n).
+ *
+ * heap[0] is the item that leaves next.
+ * @param before  int before(const TYPE *a, const TYPE *b): does a leave first?
+ *                A function or macro, compiled into both. */
+#define VG_HEAP_DEFINE(name, type, before)                              \
+  static inline void name##_push(type *heap, size_t *n, type item)      \
+  {                                                                     \
+    size_t at = (*n)++;                                                 \
+                                                                        \
+    while (at && before(&item, &heap[(at - 1) / 2])) {                  \
+      heap[at] = heap[(at - 1) / 2];                                    \
+      at = (at - 1) / 2;                                                \
+    }                                                                   \
+    heap[at] = item;                                                    \
+  }                                                                     \
+                                                                        \
+  static inline type name##_pop(type *heap, size_t *n)                  \
+  {                                                                     \
+    type top = heap[0], last = heap[--*n];                              \
+    size_t at = 0, child;                                               \
+                                                                        \
+    while ((child = 2 * at + 1) < *n) {                                 \
+      if (child + 1 < *n && before(&heap[child + 1], &heap[child]))     \
+        child++;                                                        \
+      if (before(&last, &heap[child])) break;                           \
+      heap[at] = heap[child];                                           \
+      at = child;                                                       \
+    }                                                                   \
+    heap[at] = last;                                                    \
+    return top;                                                         \
+  }
+
+#endif

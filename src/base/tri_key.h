@@ -1,0 +1,69 @@
+/* base/tri_key.h: corners of edges, triangles and quadrilaterals in rising
+ * order, as keys under which both sides of a face are found. Uses hash.h. */
+#ifndef VG_BASE_TRI_KEY_H
+#define VG_BASE_TRI_KEY_H
+
+#include <stdint.h>
+
+#include "base/hash.h"
+
+/** Put two numbers in order; returns 1 where they were exchanged, else 0. */
+static inline uint32_t vg_order2(uint32_t *a, uint32_t *b)
+{
+  uint32_t low = *a < *b ? *a : *b, high = *a < *b ? *b : *a;
+  uint32_t exchanged = *a > *b;
+
+  *a = low;
+  *b = high;
+  return exchanged;
+}
+
+/** Put three numbers in order; returns 1 after an odd number of exchanges. */
+static inline uint32_t vg_order3(uint32_t v[3])
+{
+  uint32_t odd = vg_order2(&v[0], &v[1]);
+
+  odd ^= vg_order2(&v[1], &v[2]);
+  return odd ^ vg_order2(&v[0], &v[1]);
+}
+
+/** The same of four numbers. */
+static inline uint32_t vg_order4(uint32_t v[4])
+{
+  uint32_t odd = vg_order2(&v[0], &v[1]) ^ vg_order2(&v[2], &v[3]);
+
+  odd ^= vg_order2(&v[0], &v[2]) ^ vg_order2(&v[1], &v[3]);
+  return odd ^ vg_order2(&v[1], &v[2]);
+}
+
+/** An edge, in either direction. */
+static inline uint64_t vg_edge_key(uint32_t a, uint32_t b)
+{
+  return a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
+}
+
+/* A triangle, in any order of its corners. */
+struct vg_tri_key {
+  uint64_t low;              /* lowest corner << 32 | middle one */
+  uint32_t high;             /* highest corner */
+};
+
+static inline struct vg_tri_key vg_tri_key(const uint32_t corner[3])
+{
+  uint32_t v[3] = { corner[0], corner[1], corner[2] };
+
+  vg_order3(v);
+  return (struct vg_tri_key){ (uint64_t)v[0] << 32 | v[1], v[2] };
+}
+
+static inline int vg_tri_key_same(struct vg_tri_key a, struct vg_tri_key b)
+{
+  return a.low == b.low && a.high == b.high;
+}
+
+static inline uint64_t vg_tri_key_hash(struct vg_tri_key k)
+{
+  return k.low * VG_GOLDEN + k.high * VG_HASH_2;
+}
+
+#endif

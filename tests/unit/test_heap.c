@@ -1,0 +1,94 @@
+/* base/heap.h beside a list that is searched. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include "base/hash.h"
+#include "base/heap.h"
+
+enum { MOST = 500 };
+
+struct item { double key; uint32_t number; };
+
+static int before(const struct item *a, const struct item *b)
+{
+  if (a->key != b->key) return a->key < b->key;
+  return a->number < b->number;
+}
+
+VG_HEAP_DEFINE(item, struct item, before)
+
+static size_t first_of(const struct item *list, size_t n)
+{
+  size_t first = 0;
+
+  for (size_t i = 1; i < n; i++)
+    if (before(&list[i], &list[first])) first = i;
+  return first;
+}
+
+/* Items come and leave at random; few different keys, so that the number
+ * decides often. */
+static void leave_in_order(void **state)
+{
+  static struct item heap[MOST], list[MOST];
+  size_t n = 0, n_list = 0;
+  uint64_t draw = 1;
+
+  (void)state;
+  for (uint32_t i = 0; i < 20000; i++) {
+    draw = vg_hash_mix(draw + VG_GOLDEN);
+    if (n < MOST && (!n || draw >> 40 & 1)) {
+      struct item it = { (double)(draw % 20), i };
+
+      item_push(heap, &n, it);
+      list[n_list++] = it;
+    } else {
+      size_t first = first_of(list, n_list);
+      struct item it = item_pop(heap, &n);
+
+      assert_int_equal(it.number, list[first].number);
+      assert_true(it.key == list[first].key);
+      list[first] = list[--n_list];
+    }
+    assert_int_equal(n, n_list);
+    if (n) assert_int_equal(heap[0].number, list[first_of(list, n)].number);
+  }
+}
+
+/* Rising, falling and equal keys, all sizes up to 40. */
+static void leave_sorted(void **state)
+{
+  struct item heap[40], last;
+
+  (void)state;
+  for (uint32_t most = 1; most <= 40; most++)
+    for (int kind = 0; kind < 3; kind++) {
+      size_t n = 0;
+
+      for (uint32_t i = 0; i < most; i++)
+        item_push(heap, &n, (struct item){ kind == 0 ? i : kind == 1 ? -1. * i
+                                           : 0, i });
+      last = item_pop(heap, &n);
+      while (n) {
+        struct item next = item_pop(heap, &n);
+
+        assert_true(before(&last, &next));
+        last = next;
+      }
+    }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(leave_in_order),
+    cmocka_unit_test(leave_sorted),
+  };
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
