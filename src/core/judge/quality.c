@@ -5,7 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/hash.h"
 #include "base/memory.h"
+#include "base/table.h"
 #include "core/geometry/vector.h"
 #include "core/judge/quality_parts.h"
 
@@ -86,46 +88,29 @@ static vg_status count_unused(const struct vg_mesh *m, struct vg_counts *n,
   return VG_OK;
 }
 
-static uint64_t hash_point(const double x[3])
-{
-  uint64_t h = 0, bits;
-
-  for (int k = 0; k < 3; k++) {
-    double v = x[k] + 0.0;   /* -0 and +0 are the same place */
-
-    memcpy(&bits, &v, sizeof bits);
-    h = (h ^ bits) * UINT64_C(0x9E3779B97F4A7C15);
-    h ^= h >> 29;
-  }
-  return h;
-}
-
 static int same_place(const double a[3], const double b[3])
 {
   return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }
 
-/* Points at the place of an earlier one. Open addressing with at most half
- * the slots taken; a slot holds index + 1. Points that coincide with one in
- * the table are not entered, so a crowd at one place stays cheap. */
+/* Points at the place of an earlier one. Points that coincide with one in the
+ * table are not entered, so a crowd at one place stays cheap. */
 static vg_status count_duplicates(const struct vg_mesh *m,
                                   struct vg_counts *n, struct vg_error *err)
 {
-  size_t n_slot = 16;
-  uint32_t *slot;
+  struct vg_table t;
 
-  while (n_slot < 2 * m->n_point) n_slot *= 2;
-  slot = vg_calloc(n_slot, sizeof *slot);
-  if (!slot) return vg_fail_memory(err, "the table of points");
+  if (vg_table_init(&t, m->n_point))
+    return vg_fail_memory(err, "the table of points");
   for (size_t i = 0; i < m->n_point; i++) {
-    size_t at = (size_t)hash_point(m->point[i]) & (n_slot - 1);
+    uint32_t *at;
 
-    while (slot[at] && !same_place(m->point[slot[at] - 1], m->point[i]))
-      at = (at + 1) & (n_slot - 1);
-    if (slot[at]) n->duplicate_point++;
-    else slot[at] = (uint32_t)(i + 1);
+    VG_TABLE_FIND(&t, at, vg_hash_point(m->point[i]),
+                  same_place(m->point[*at], m->point[i]));
+    if (*at != VG_TABLE_FREE) n->duplicate_point++;
+    else *at = (uint32_t)i;
   }
-  free(slot);
+  vg_table_release(&t);
   return VG_OK;
 }
 

@@ -6,6 +6,8 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/table.h"
+#include "base/tri_key.h"
 #include "core/geometry/predicates.h"
 
 /* Exactly zero area: the triangle is a line in all three projections. */
@@ -82,40 +84,6 @@ void vg_faces_release(struct vg_faces *s)
   memset(s, 0, sizeof *s);
 }
 
-static void sort3(const uint32_t from[3], uint32_t to[3])
-{
-  uint32_t a = from[0], b = from[1], c = from[2], t;
-
-  if (a > b) t = a, a = b, b = t;
-  if (b > c) t = b, b = c, c = t;
-  if (a > b) t = a, a = b, b = t;
-  to[0] = a;
-  to[1] = b;
-  to[2] = c;
-}
-
-static int same_nodes(const uint32_t a[3], const uint32_t b[3])
-{
-  uint32_t p[3], q[3];
-
-  sort3(a, p);
-  sort3(b, q);
-  return !memcmp(p, q, sizeof p);
-}
-
-static size_t hash_nodes(const uint32_t n[3])
-{
-  uint32_t p[3];
-  uint64_t h = 0;
-
-  sort3(n, p);
-  for (int k = 0; k < 3; k++) {
-    h = (h + p[k]) * 0x9e3779b97f4a7c15u;
-    h ^= h >> 32;
-  }
-  return (size_t)h;
-}
-
 int vg_faces_same_side(const uint32_t a[3], const uint32_t b[3])
 {
   int k = 0;
@@ -127,28 +95,24 @@ int vg_faces_same_side(const uint32_t a[3], const uint32_t b[3])
 vg_status vg_faces_duplicate(const struct vg_faces *s, uint32_t **first,
                              struct vg_error *err)
 {
-  size_t size = 16;
-  uint32_t *slot, *out;
+  struct vg_table t;
+  int bad = vg_table_init(&t, s->n);
+  uint32_t *at, *out = vg_alloc(s->n, sizeof *out);
 
-  while (size / 2 < s->n) size *= 2;
-  slot = vg_alloc(size, sizeof *slot);
-  out = vg_alloc(s->n, sizeof *out);
-  if (!slot || !out) {
-    free(slot);
+  if (bad || !out) {
+    vg_table_release(&t);
     free(out);
     return vg_fail_memory(err, "a table of triangles");
   }
-  memset(slot, 0xff, size * sizeof *slot);
   for (size_t f = 0; f < s->n; f++) {
-    size_t at = hash_nodes(s->node[f]) & (size - 1);
+    struct vg_tri_key key = vg_tri_key(s->node[f]);
 
-    while (slot[at] != UINT32_MAX
-           && !same_nodes(s->node[slot[at]], s->node[f]))
-      at = (at + 1) & (size - 1);
-    if (slot[at] == UINT32_MAX) slot[at] = (uint32_t)f;
-    out[f] = slot[at];
+    VG_TABLE_FIND(&t, at, vg_tri_key_hash(key),
+                  vg_tri_key_same(vg_tri_key(s->node[*at]), key));
+    if (*at == VG_TABLE_FREE) *at = (uint32_t)f;
+    out[f] = *at;
   }
-  free(slot);
+  vg_table_release(&t);
   *first = out;
   return VG_OK;
 }

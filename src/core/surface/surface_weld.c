@@ -6,34 +6,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/hash.h"
 #include "base/memory.h"
+#include "base/table.h"
 #include "base/union_find.h"
 
 #define NONE UINT32_MAX
-
-static uint64_t mix(uint64_t h)
-{
-  h ^= h >> 32;
-  h *= 0xd6e8feb86659fd93u;
-  h ^= h >> 32;
-  h *= 0xd6e8feb86659fd93u;
-  return h ^ h >> 32;
-}
-
-/* Of three doubles; equal values (0 and -0 too) have equal hashes. */
-static uint64_t hash3(const double x[3])
-{
-  uint64_t h = 0;
-
-  for (int k = 0; k < 3; k++) {
-    double v = x[k] + 0.0; /* -0 becomes 0 */
-    uint64_t bits;
-
-    memcpy(&bits, &v, sizeof bits);
-    h = mix(h + bits);
-  }
-  return h;
-}
 
 static int equal3(const double a[3], const double b[3])
 {
@@ -45,50 +23,31 @@ static int finite3(const double p[3])
   return isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2]);
 }
 
-/* Open addressing; at most half full. */
-struct table {
-  size_t mask;
-  uint32_t *slot;
-};
-
-static int table_init(struct table *t, size_t n)
-{
-  size_t size = 16;
-
-  while (size / 2 < n) size *= 2;
-  t->mask = size - 1;
-  t->slot = vg_alloc(size, sizeof *t->slot);
-  if (!t->slot) return -1;
-  memset(t->slot, 0xff, size * sizeof *t->slot);
-  return 0;
-}
-
 /* Slot that holds an index i with key[i] equal to x, or the free one where
  * such an index belongs. */
-static uint32_t *table_find(const struct table *t, const double (*key)[3],
-                            const double x[3])
+static uint32_t *find(const struct vg_table *t, const double (*key)[3],
+                      const double x[3])
 {
-  size_t at = (size_t)hash3(x) & t->mask;
+  uint32_t *at;
 
-  while (t->slot[at] != NONE && !equal3(key[t->slot[at]], x))
-    at = (at + 1) & t->mask;
-  return &t->slot[at];
+  VG_TABLE_FIND(t, at, vg_hash_point(x), equal3(key[*at], x));
+  return at;
 }
 
 vg_status vg_points_same(const struct vg_mesh *m, uint32_t **same,
                          struct vg_error *err)
 {
   const double (*point)[3] = (const double (*)[3])m->point;
-  struct table t;
+  struct vg_table t;
   uint32_t *map;
 
   if (m->n_point >= NONE)
     return vg_fail(err, VG_ERR_UNSUPPORTED, "%zu points: the limit is %u",
                    m->n_point, (unsigned)NONE - 1);
-  if (table_init(&t, m->n_point)) return vg_fail_memory(err, "a point table");
+  if (vg_table_init(&t, m->n_point)) return vg_fail_memory(err, "a point table");
   map = vg_alloc(m->n_point, sizeof *map);
   if (!map) {
-    free(t.slot);
+    vg_table_release(&t);
     return vg_fail_memory(err, "a point map");
   }
   for (size_t i = 0; i < m->n_point; i++) {
@@ -96,11 +55,11 @@ vg_status vg_points_same(const struct vg_mesh *m, uint32_t **same,
 
     map[i] = (uint32_t)i;
     if (!finite3(point[i])) continue;
-    slot = table_find(&t, point, point[i]);
-    if (*slot == NONE) *slot = (uint32_t)i;
+    slot = find(&t, point, point[i]);
+    if (*slot == VG_TABLE_FREE) *slot = (uint32_t)i;
     map[i] = *slot;
   }
-  free(t.slot);
+  vg_table_release(&t);
   *same = map;
   return VG_OK;
 }
@@ -114,7 +73,7 @@ vg_status vg_points_same(const struct vg_mesh *m, uint32_t **same,
 #define CROWD 62            /* cells in reach, half of them: one side looks */
 
 struct grid {
-  struct table cell, block; /* first point of each */
+  struct vg_table cell, block; /* first point of each */
   double (*key)[3];         /* [n] cell of each point, whole numbers */
   double (*block_key)[3];   /* [n] block, of points that are first in theirs */
   uint32_t *next;           /* [n] in the same cell */
@@ -148,7 +107,7 @@ static void link_by_cell(const struct grid *g, uint32_t *map, uint32_t a)
     const double *k = g->key[a];
     double x[3] = { k[0] + o / 25 - REACH, k[1] + o / 5 % 5 - REACH,
                     k[2] + o % 5 - REACH };
-    uint32_t b = *table_find(&g->cell, (const double (*)[3])g->key, x);
+    uint32_t b = *find(&g->cell, (const double (*)[3])g->key, x);
 
     if (b != NONE) link_cells(g, map, a, b);
   }
@@ -186,7 +145,7 @@ static void link_neighbours(const struct grid *g, uint32_t *map, uint32_t a)
     uint32_t b;
 
     if (!block_in_reach(g->key[a], o, x)) continue;
-    b = *table_find(&g->block, (const double (*)[3])g->block_key, x);
+    b = *find(&g->block, (const double (*)[3])g->block_key, x);
     if (b == NONE) continue;
     if (g->n_cell[b] > CROWD) {
       link_by_cell(g, map, a);
@@ -205,11 +164,11 @@ static void enter_block(struct grid *g, uint32_t i)
 
   for (int k = 0; k < 3; k++)
     g->block_key[i][k] = floor(g->key[i][k] / BLOCK);
-  slot = table_find(&g->block, (const double (*)[3])g->block_key,
+  slot = find(&g->block, (const double (*)[3])g->block_key,
                     g->block_key[i]);
   g->next_cell[i] = NONE;
   g->n_cell[i] = 1;
-  if (*slot == NONE) {
+  if (*slot == VG_TABLE_FREE) {
     *slot = i;
   } else {
     g->next_cell[i] = g->next_cell[*slot];
@@ -227,9 +186,9 @@ static void link_grid(struct grid *g, uint32_t *map, size_t n, double side)
 
     if (map[i] != i || !finite3(g->point[i])) continue;
     for (int k = 0; k < 3; k++) g->key[i][k] = floor(g->point[i][k] / side);
-    slot = table_find(&g->cell, (const double (*)[3])g->key, g->key[i]);
+    slot = find(&g->cell, (const double (*)[3])g->key, g->key[i]);
     g->next[i] = NONE;
-    if (*slot == NONE) {
+    if (*slot == VG_TABLE_FREE) {
       *slot = i;
       enter_block(g, i);
     } else {
@@ -273,7 +232,7 @@ static vg_status link_near(const struct vg_mesh *m, double tolerance,
   g.next = vg_alloc(n, sizeof *g.next);
   g.next_cell = vg_alloc(n, sizeof *g.next_cell);
   g.n_cell = vg_calloc(n, sizeof *g.n_cell);
-  bad = table_init(&g.cell, n) + table_init(&g.block, n);
+  bad = vg_table_init(&g.cell, n) + vg_table_init(&g.block, n);
   if (bad || !g.key || !g.block_key || !g.next || !g.next_cell || !g.n_cell)
     st = vg_fail_memory(err, "the weld grid");
   else
@@ -283,8 +242,8 @@ static vg_status link_near(const struct vg_mesh *m, double tolerance,
   free(g.next);
   free(g.next_cell);
   free(g.n_cell);
-  free(g.cell.slot);
-  free(g.block.slot);
+  vg_table_release(&g.cell);
+  vg_table_release(&g.block);
   return st;
 }
 
