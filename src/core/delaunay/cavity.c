@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/tri_key.h"
 
 /* --- the ring around an edge --------------------------------------------- */
 
@@ -60,17 +61,8 @@ struct border {                 /* a face of the cavity, or a face waiting */
 
 void vg_cavity_face(const struct vg_cell *c, int i, uint32_t v[3])
 {
-  uint32_t a = c->v[vg_face[i][0]], b = c->v[vg_face[i][1]];
-  uint32_t d = c->v[vg_face[i][2]], keep;
-
-#define ORDER(x, y) if (x > y) { keep = x; x = y; y = keep; }
-  ORDER(a, b)
-  ORDER(b, d)
-  ORDER(a, b)
-#undef ORDER
-  v[0] = a;
-  v[1] = b;
-  v[2] = d;
+  for (int k = 0; k < 3; k++) v[k] = c->v[vg_face[i][k]];
+  vg_order3(v);
 }
 
 static int collect_border(const struct vg_tets *t, int n_old,

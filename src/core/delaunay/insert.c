@@ -3,7 +3,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/hash.h"
 #include "base/memory.h"
+#include "base/table.h"
+#include "base/tri_key.h"
 #include "core/delaunay/cell_signs.h"
 #include "core/geometry/vector.h"
 
@@ -26,7 +29,6 @@ void vg_inserter_release(struct vg_inserter *s)
   free(s->tried);
   free(s->face);
   free(s->local);
-  free(s->edge);
   memset(s, 0, sizeof *s);
 }
 
@@ -276,51 +278,6 @@ static int too_low_anywhere(const struct vg_inserter *s, const double x[3],
 
 /* --- refilling ----------------------------------------------------------- */
 
-static int grow_edges(struct vg_inserter *s)
-{
-  size_t need = 1024;
-
-  while (need < 6 * s->n_face) need *= 2;
-  if (need > s->cap_edge) {
-    struct vg_edge_slot *table = vg_calloc(need, sizeof *table);
-
-    if (!table) return -1;
-    free(s->edge);
-    s->edge = table;
-    s->cap_edge = need;
-    s->epoch = 0;
-  }
-  if (++s->epoch == 0) {
-    memset(s->edge, 0, s->cap_edge * sizeof *s->edge);
-    s->epoch = 1;
-  }
-  return 0;
-}
-
-/* Link the face of `link` whose edge away from the new point is (a, b). */
-static void link_edge(struct vg_inserter *s, uint32_t a, uint32_t b,
-                      uint32_t link)
-{
-  uint64_t key = a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
-  size_t mask = s->cap_edge - 1;
-  size_t at = key * 0x9e3779b97f4a7c15u >> 40 & mask;
-
-  for (;; at = (at + 1) & mask) {
-    struct vg_edge_slot *e = &s->edge[at];
-
-    if (e->epoch != s->epoch) {
-      e->epoch = s->epoch;
-      e->key = key;
-      e->link = link;
-      return;
-    }
-    if (e->key == key) {
-      vg_tets_connect(s->t, e->link, link);
-      return;
-    }
-  }
-}
-
 /* A cell before each face of the cavity, which learns its number instead of
  * what lies behind it. */
 static void make_cells(struct vg_inserter *s, uint32_t p)
@@ -368,13 +325,29 @@ static void link_by_table(struct vg_inserter *s)
   }
 }
 
-static void link_by_edges(struct vg_inserter *s)
+/* An edge of the cavity's hull: that of corner half % 3 of face half / 3. */
+static uint64_t hull_edge(const struct vg_inserter *s, uint32_t half)
 {
-  for (size_t k = 0; k < s->n_face; k++) {
-    const struct vg_cavity_face *f = &s->face[k];
+  const uint32_t *v = s->face[half / 3].v;
 
-    for (uint32_t i = 0; i < 3; i++)
-      link_edge(s, f->v[(i + 1) % 3], f->v[(i + 2) % 3], 4 * f->link + i);
+  return vg_edge_key(v[(half + 1) % 3], v[(half + 2) % 3]);
+}
+
+static uint32_t hull_link(const struct vg_inserter *s, uint32_t half)
+{
+  return 4 * s->face[half / 3].link + half % 3;
+}
+
+/* The same for many vertices. edge: empty, with room. */
+static void link_by_edges(struct vg_inserter *s, const struct vg_table *edge)
+{
+  for (uint32_t half = 0; half < 3 * s->n_face; half++) {
+    uint64_t key = hull_edge(s, half);
+    uint32_t *at;
+
+    VG_TABLE_FIND(edge, at, vg_hash_1(key), hull_edge(s, *at) == key);
+    if (*at == VG_TABLE_FREE) *at = half;
+    else vg_tets_connect(s->t, hull_link(s, *at), hull_link(s, half));
   }
 }
 
@@ -384,6 +357,7 @@ vg_status vg_insert(struct vg_inserter *s, uint32_t p, uint32_t at,
   struct vg_tets *t = s->t;
   double x[3];
   vg_d2 both[3];
+  struct vg_table edge = VG_TABLE_INIT;
   int state;
 
   memcpy(x, t->x[p], sizeof x);
@@ -398,18 +372,24 @@ vg_status vg_insert(struct vg_inserter *s, uint32_t p, uint32_t at,
   }
   if (state == 2) state = too_low_anywhere(s, x, clearance, 2 * nearest);
   if (!state &&
-      ((!s->n_vertex && grow_edges(s)) || vg_tets_reserve_cells(t, s->n_face) ||
+      ((!s->n_vertex && vg_table_init(&edge, 2 * s->n_face)) ||
+       vg_tets_reserve_cells(t, s->n_face) ||
        vg_reserve(&t->free, &t->cap_free, t->n_free + s->n_cell,
                   sizeof *t->free)))
     state = -1;
   if (state) {
+    vg_table_release(&edge);
     clear_marks(s);
     return state > 0 ? VG_BLOCKED
                      : vg_fail_memory(err, "the cells of the volume mesh");
   }
   make_cells(s, p);
-  if (s->n_vertex) link_by_table(s);
-  else link_by_edges(s);
+  if (s->n_vertex) {
+    link_by_table(s);
+  } else {
+    link_by_edges(s, &edge);
+    vg_table_release(&edge);
+  }
   for (size_t k = 0; k < s->n_tried; k++)
     t->flag[s->tried[k]] &= (uint8_t)~VG_TRIED;
   s->n_cell = s->n_tried = s->n_face = 0;

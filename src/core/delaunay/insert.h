@@ -43,9 +43,6 @@ struct vg_inserter {
   uint32_t n_vertex;         /* 0: of too many */
   uint32_t vertex[VG_CAVITY_TABLE];
   uint32_t table[VG_CAVITY_TABLE][VG_CAVITY_TABLE];  /* link of an edge */
-  size_t cap_edge;           /* of larger cavities */
-  struct vg_edge_slot { uint64_t key; uint32_t link, epoch; } *edge;
-  uint32_t epoch;
   uint32_t last;             /* a cell made by the last insertion */
 };
 

@@ -4,6 +4,8 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/table.h"
+#include "base/tri_key.h"
 #include "core/geometry/hilbert.h"
 #include "core/geometry/predicates.h"
 
@@ -49,71 +51,59 @@ int vg_tets_free_cell(struct vg_tets *t, uint32_t cell)
 
 /* --- links --------------------------------------------------------------- */
 
-static void sort3(uint32_t v[3])
+static struct vg_tri_key face_key(const struct vg_cell *c, uint32_t i)
 {
-#define ORDER(a, b) \
-  if (v[a] > v[b]) { uint32_t keep = v[a]; v[a] = v[b]; v[b] = keep; }
-  ORDER(0, 1)
-  ORDER(1, 2)
-  ORDER(0, 1)
-#undef ORDER
+  const uint32_t v[3] = { c->v[vg_face[i][0]], c->v[vg_face[i][1]],
+                          c->v[vg_face[i][2]] };
+
+  return vg_tri_key(v);
 }
 
-static uint64_t face_key(const struct vg_cell *c, int i, uint32_t v[3])
+static int has_key(const struct vg_tets *t, uint32_t half,
+                   struct vg_tri_key key)
 {
-  for (int k = 0; k < 3; k++) v[k] = c->v[vg_face[i][k]];
-  sort3(v);
-  return (v[0] * 0x9e3779b97f4a7c15u) ^ (v[1] * 0xc2b2ae3d27d4eb4fu) ^
-         (v[2] * 0x165667b19e3779f9u);
+  return vg_tri_key_same(face_key(&t->cell[half >> 2], half & 3), key);
 }
 
-/* Faces met once wait in an open-addressing table; the second visit takes
- * them out again as a tombstone, so load is bounded by faces, not pairs. */
-static vg_status link_faces(struct vg_tets *t, uint32_t *table, size_t mask,
+/* The first half of a face enters the table, the second is linked with it; a
+ * third is one too many. */
+static vg_status link_faces(struct vg_tets *t, const struct vg_table *table,
                             struct vg_error *err)
 {
   for (uint32_t c = 0; c < t->n_cell; c++) {
     if (t->flag[c] & VG_DEAD) continue;
     for (uint32_t i = 0; i < 4; i++) {
-      uint32_t v[3], w[3];
-      uint64_t key = face_key(&t->cell[c], (int)i, v);
-      size_t at = (key ^ key >> 29) & mask;
+      struct vg_tri_key key = face_key(&t->cell[c], i);
+      uint32_t *at;
 
-      for (;; at = (at + 1) & mask) {
-        uint32_t other = table[at];
-
-        if (other == VG_NONE) {
-          table[at] = 4 * c + i;
-          break;
-        }
-        face_key(&t->cell[other >> 2], other & 3, w);
-        if (memcmp(v, w, sizeof v)) continue;
-        if (t->cell[other >> 2].link[other & 3] != VG_NONE)
-          return vg_fail(err, VG_ERR_GEOMETRY,
-                         "face of points %u %u %u has more than two cells",
-                         v[0] + 1, v[1] + 1, v[2] + 1);
-        vg_tets_connect(t, other, 4 * c + i);
-        break;
+      VG_TABLE_FIND(table, at, vg_tri_key_hash(key), has_key(t, *at, key));
+      if (*at == VG_TABLE_FREE) {
+        *at = 4 * c + i;
+        continue;
       }
+      if (t->cell[*at >> 2].link[*at & 3] != VG_NONE)
+        return vg_fail(err, VG_ERR_GEOMETRY,
+                       "face of points %u %u %u has more than two cells",
+                       (uint32_t)(key.low >> 32) + 1, (uint32_t)key.low + 1,
+                       key.high + 1);
+      vg_tets_connect(t, *at, 4 * c + i);
     }
   }
   return VG_OK;
 }
 
+/* Half of the 4 n_cell halves enter the table, and those of the hull. */
 vg_status vg_tets_link(struct vg_tets *t, struct vg_error *err)
 {
-  size_t size = 64;
-  uint32_t *table;
+  struct vg_table table;
   vg_status st;
 
-  while (size < 5 * t->n_cell) size *= 2;
-  table = vg_alloc(size, sizeof *table);
-  if (!table) return vg_fail_memory(err, "the neighbour table");
-  memset(table, 0xff, size * sizeof *table);
+  if (vg_table_init(&table, 5 * t->n_cell / 2))
+    return vg_fail_memory(err, "the neighbour table");
   for (size_t c = 0; c < t->n_cell; c++)
     memset(t->cell[c].link, 0xff, sizeof t->cell[c].link);
-  st = link_faces(t, table, size - 1, err);
-  free(table);
+  st = link_faces(t, &table, err);
+  vg_table_release(&table);
   return st;
 }
 
@@ -167,12 +157,11 @@ uint32_t vg_tets_locate(const struct vg_tets *t, uint32_t start,
 {
   uint32_t c = start, from = VG_NONE, most = 4096 + t->n_cell / 64;
 
-  /* The first face tried turns with the step: a walk in a mesh that is not
-   * Delaunay cannot circle for ever in step with a fixed order. One along a
-   * sheet of many points is long, but shorter than a look at all cells. */
+  /* A walk along a sheet of many points is long, but shorter than a look at
+   * all cells. */
   for (uint32_t step = 0; step < most; step++) {
     const struct vg_cell *cell = &t->cell[c];
-    uint32_t turn = step * 0x9e3779b1u >> 30, k = 0;
+    uint32_t turn = vg_walk_turn(step), k = 0;
 
     for (; k < 4; k++) {
       uint32_t i = (turn + k) & 3;
@@ -324,13 +313,11 @@ size_t vg_tets_defects(const struct vg_tets *t)
     bad += !(vg_orient3d(t->x[cell->v[0]], t->x[cell->v[1]],
                          t->x[cell->v[2]], t->x[cell->v[3]]) > 0);
     for (uint32_t i = 0; i < 4; i++) {
-      uint32_t l = cell->link[i], v[3], w[3];
+      uint32_t l = cell->link[i];
 
       if (l == VG_NONE) continue;
-      face_key(cell, (int)i, v);
-      face_key(&t->cell[l >> 2], l & 3, w);
       bad += t->cell[l >> 2].link[l & 3] != 4 * c + i ||
-             memcmp(v, w, sizeof v) || t->flag[l >> 2] & VG_DEAD ||
+             !has_key(t, l, face_key(cell, i)) || t->flag[l >> 2] & VG_DEAD ||
              (t->flag[c] >> i & 1) != (t->flag[l >> 2] >> (l & 3) & 1);
     }
   }

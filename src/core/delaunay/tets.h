@@ -11,6 +11,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/hash.h"
 #include "base/status.h"
 
 #define VG_NONE UINT32_MAX
@@ -73,6 +74,13 @@ vg_status vg_tets_link(struct vg_tets *t, struct vg_error *err);
 vg_status vg_tets_from_cells(struct vg_tets *t, size_t n_point, double (*x)[3],
                              size_t n_cell, const uint32_t (*v)[4],
                              struct vg_error *err);
+
+/** First face that step `step` of a walk tries, 0 to 3. It turns with the step,
+ * so that a walk in a mesh that is not Delaunay does not circle for ever. */
+static inline uint32_t vg_walk_turn(uint32_t step)
+{
+  return step * VG_GOLDEN_32 >> 30;
+}
 
 /** Walk from `start` to a cell that contains x (boundary included), through
  * constrained faces, ignoring dead cells. VG_NONE when x is outside all: sure

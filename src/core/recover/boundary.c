@@ -3,7 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/hash.h"
 #include "base/memory.h"
+#include "base/table.h"
 #include "core/delaunay/insert.h"
 #include "core/geometry/hilbert.h"
 #include "core/recover/cdt_tetgen.h"
@@ -12,18 +14,16 @@
 /* --- surface triangles found among cell faces ---------------------------- */
 
 struct tri_table {
-  size_t mask;
-  uint32_t *slot;            /* index of a triangle, or VG_NONE */
+  struct vg_table table;
   const uint32_t (*tri)[3];
 };
 
+/* The same for the three in any order, so that no look-up sorts them. */
 static uint64_t hash3(const uint32_t v[3])
 {
   uint64_t a = v[0], b = v[1], c = v[2];
 
-  /* symmetric in the three, so no sorting is needed to look up */
-  a = (a + b + c) * 0x9e3779b97f4a7c15u ^ (a * b + b * c + c * a);
-  return (a ^ a >> 31) * 0xc2b2ae3d27d4eb4fu >> 20;
+  return vg_hash_1((a + b + c) * VG_GOLDEN ^ (a * b + b * c + c * a));
 }
 
 /* 1: same turning sense, -1: opposite, 0: other points. */
@@ -37,36 +37,29 @@ static int same_triangle(const uint32_t a[3], const uint32_t b[3])
   return 0;
 }
 
-static vg_status tri_table_init(struct tri_table *table, size_t n,
+static vg_status tri_table_init(struct tri_table *t, size_t n,
                                 const uint32_t (*tri)[3], struct vg_error *err)
 {
-  size_t size = 16;
-
-  while (size < 2 * n) size *= 2;
-  table->mask = size - 1;
-  table->tri = tri;
-  table->slot = vg_alloc(size, sizeof *table->slot);
-  if (!table->slot) return vg_fail_memory(err, "the surface table");
-  memset(table->slot, 0xff, size * sizeof *table->slot);
+  t->tri = tri;
+  if (vg_table_init(&t->table, n))
+    return vg_fail_memory(err, "the surface table");
   for (uint32_t i = 0; i < n; i++) {
-    size_t at = hash3(tri[i]) & table->mask;
+    uint32_t *at;
 
-    while (table->slot[at] != VG_NONE) at = (at + 1) & table->mask;
-    table->slot[at] = i;
+    VG_TABLE_FIND(&t->table, at, hash3(tri[i]), 0);
+    *at = i;
   }
   return VG_OK;
 }
 
-static uint32_t tri_table_find(const struct tri_table *table,
-                               const uint32_t v[3], int *sense)
+static uint32_t tri_table_find(const struct tri_table *t, const uint32_t v[3],
+                               int *sense)
 {
-  size_t at = hash3(v) & table->mask;
+  uint32_t *at;
 
-  for (; table->slot[at] != VG_NONE; at = (at + 1) & table->mask) {
-    *sense = same_triangle(v, table->tri[table->slot[at]]);
-    if (*sense) return table->slot[at];
-  }
-  return VG_NONE;
+  VG_TABLE_FIND(&t->table, at, hash3(v),
+                (*sense = same_triangle(v, t->tri[*at])));
+  return *at;
 }
 
 vg_status vg_boundary_fix(struct vg_tets *t, size_t n_tri,
@@ -98,7 +91,7 @@ vg_status vg_boundary_fix(struct vg_tets *t, size_t n_tri,
   for (size_t i = 0; missing && st == VG_OK && i < n_tri; i++)
     missing[i] = !found[i];
   free(found);
-  free(table.slot);
+  vg_table_release(&table.table);
   return st;
 }
 
@@ -349,7 +342,7 @@ vg_status vg_boundary_sides(struct vg_tets *t, size_t n_tri,
   free(s.near);
   free(s.queue);
   vg_region_cache_release(&cache);
-  free(table.slot);
+  vg_table_release(&table.table);
   return st;
 }
 

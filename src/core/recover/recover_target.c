@@ -50,7 +50,7 @@ static uint32_t towards(const struct vg_flipper *f, uint32_t p, uint32_t q)
 
   for (uint32_t step = 0; c != VG_NONE && step < WALK_MAX; step++) {
     const struct vg_cell *at = &t->cell[c];
-    uint32_t turn = step * 0x9e3779b1u >> 30, k = 0;
+    uint32_t turn = vg_walk_turn(step), k = 0;
 
     for (; k < 4; k++) {
       uint32_t i = (turn + k) & 3;
