@@ -7,15 +7,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/hash.h"
 #include "base/memory.h"
+#include "base/table.h"
 #include "layers/expand/slices_parts.h"
-
-/* From numbers to 0, 1, 2, ... by first appearance. */
-struct table {
-  uint32_t *key, *value;   /* value VG_NO_INDEX: vacant */
-  unsigned shift;
-  size_t mask;
-};
 
 struct run {
   const struct vg_join_plan *p;
@@ -26,36 +21,8 @@ struct run {
   uint32_t (*corner)[3];   /* [n_face] local columns */
   uint32_t *column;        /* [n_column] of the plan */
   uint32_t *foot, *base;   /* [n_column] local points at levels 0 and 1 */
-  struct table table;
+  struct vg_table table;   /* of columns, then of feet */
 };
-
-static int reserve_table(struct table *t, size_t n)
-{
-  size_t size = 16;
-
-  t->shift = 28;
-  for (; size < 2 * n; size *= 2) t->shift--;
-  t->mask = size - 1;
-  t->key = vg_alloc(size, sizeof *t->key);
-  t->value = vg_alloc(size, sizeof *t->value);
-  return t->key && t->value;
-}
-
-static void clear_table(struct table *t)
-{
-  memset(t->value, 0xff, (t->mask + 1) * sizeof *t->value);
-}
-
-/* The value of a key; `next` where the key is new. */
-static uint32_t look_up(struct table *t, uint32_t key, uint32_t next)
-{
-  size_t i = (key * UINT32_C(2654435769)) >> t->shift;  /* 2^32 / golden r. */
-
-  while (t->value[i] != VG_NO_INDEX && t->key[i] != key) i = (i + 1) & t->mask;
-  if (t->value[i] != VG_NO_INDEX) return t->value[i];
-  t->key[i] = key;
-  return t->value[i] = next;
-}
 
 static int has_levels(const struct vg_expand *e, size_t face)
 {
@@ -86,7 +53,7 @@ static vg_status reserve_run(struct run *r, struct vg_error *err)
   r->foot = vg_alloc(most, sizeof *r->foot);
   r->base = vg_alloc(most, sizeof *r->base);
   if (r->face && r->corner && r->column && r->foot && r->base &&
-      reserve_table(&r->table, most))
+      !vg_table_init(&r->table, most))
     return VG_OK;
   return vg_fail_memory(err, "a slice of the layers");
 }
@@ -98,8 +65,7 @@ static void release_run(struct run *r)
   free(r->column);
   free(r->foot);
   free(r->base);
-  free(r->table.key);
-  free(r->table.value);
+  vg_table_release(&r->table);
 }
 
 static void list_columns(struct run *r)
@@ -107,15 +73,18 @@ static void list_columns(struct run *r)
   const struct vg_expand *e = &r->p->expand;
   size_t n = 0;
 
-  clear_table(&r->table);
   for (size_t i = r->first * VG_FACE_BLOCK; i < end_face(r); i++) {
     if (!has_levels(e, i)) continue;
     for (int k = 0; k < 3; k++) {
       uint32_t c = e->columns->face[i][k];
-      uint32_t at = look_up(&r->table, c, (uint32_t)r->n_column);
+      uint32_t *at;
 
-      if (at == r->n_column) r->column[r->n_column++] = c;
-      r->corner[n][k] = at;
+      VG_TABLE_FIND(&r->table, at, vg_hash_1(c), r->column[*at] == c);
+      if (*at == VG_TABLE_FREE) {
+        *at = (uint32_t)r->n_column;
+        r->column[r->n_column++] = c;
+      }
+      r->corner[n][k] = *at;
     }
     r->face[n++] = (uint32_t)i;
   }
@@ -138,10 +107,18 @@ static size_t number_points(struct run *r)
       n += vg_mark_n(e->mark[r->column[i]]);
     }
   }
-  clear_table(&r->table);
+  vg_table_clear(&r->table);
   for (size_t i = 0; i < r->n_column; i++) {
-    r->foot[i] = look_up(&r->table, e->foot[r->column[i]], (uint32_t)n);
-    n += r->foot[i] == n;
+    uint32_t foot = e->foot[r->column[i]], *at;
+
+    VG_TABLE_FIND(&r->table, at, vg_hash_1(foot),
+                  e->foot[r->column[*at]] == foot);
+    if (*at == VG_TABLE_FREE) {
+      *at = (uint32_t)i;
+      r->foot[i] = (uint32_t)n++;
+    } else {
+      r->foot[i] = r->foot[*at];
+    }
   }
   return n;
 }

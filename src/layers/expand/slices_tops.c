@@ -6,60 +6,38 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
+#include "base/table.h"
+#include "base/tri_key.h"
 #include "core/judge/quality.h"
 #include "layers/expand/slices_parts.h"
 
 struct tops {
   const struct vg_join_plan *p;
-  uint32_t *slot;          /* [mask + 1] triangle of the front, VG_NO_INDEX:
-                              vacant */
-  size_t mask;
-  double *ratio;           /* [n_face]; a top has one cell of the field, so
+  struct vg_table table;     /* triangles of the front that are tops */
+  double *ratio;             /* [n_face]; a top has one cell of the field, so
                               one thread writes it */
 };
 
-static void sort3(const uint32_t v[3], uint32_t s[3])
-{
-  uint32_t low = v[0] < v[1] ? v[0] : v[1], high = v[0] < v[1] ? v[1] : v[0];
-
-  s[0] = v[2] < low ? v[2] : low;
-  s[2] = v[2] > high ? v[2] : high;
-  s[1] = v[2] < low ? low : v[2] > high ? high : v[2];
-}
-
 /* Where a triangle is in the table, or would go. */
-static size_t find(const struct tops *t, const uint32_t v[3])
+static uint32_t *find(const struct tops *t, const uint32_t v[3])
 {
   const uint32_t (*tri)[3] = (const uint32_t (*)[3])t->p->front->face;
-  uint32_t key[3], other[3];
-  uint64_t mix;
-  size_t i;
+  struct vg_tri_key key = vg_tri_key(v);
+  uint32_t *at;
 
-  sort3(v, key);
-  mix = ((uint64_t)key[0] << 32 | key[1]) * UINT64_C(0x9E3779B97F4A7C15) +
-        key[2] * UINT64_C(0xC2B2AE3D27D4EB4F);
-  for (i = (size_t)(mix >> 24) & t->mask; t->slot[i] != VG_NO_INDEX;
-       i = (i + 1) & t->mask) {
-    sort3(tri[t->slot[i]], other);
-    if (!memcmp(key, other, sizeof key)) break;
-  }
-  return i;
+  VG_TABLE_FIND(&t->table, at, vg_tri_key_hash(key),
+                vg_tri_key_same(vg_tri_key(tri[*at]), key));
+  return at;
 }
 
 static vg_status make_table(struct tops *t, struct vg_error *err)
 {
   const struct vg_front *f = t->p->front;
-  size_t size = 16;
 
-  while (size < 2 * f->n_face) size *= 2;
-  t->slot = vg_alloc(size, sizeof *t->slot);
-  if (!t->slot) return vg_fail_memory(err, "the tops of the layers");
-  t->mask = size - 1;
-  memset(t->slot, 0xff, size * sizeof *t->slot);
+  if (vg_table_init(&t->table, f->n_face))
+    return vg_fail_memory(err, "the tops of the layers");
   for (size_t i = 0; i < f->n_face; i++)
-    if (f->face_id[i] != VG_NO_INDEX)
-      t->slot[find(t, f->face[i])] = (uint32_t)i;
+    if (f->face_id[i] != VG_NO_INDEX) *find(t, f->face[i]) = (uint32_t)i;
   return VG_OK;
 }
 
@@ -88,10 +66,10 @@ static void meet(const struct tops *t, const struct vg_slice *s,
 {
   static const uint32_t whole[4] = { 0, 1, 2, 3 };
   const struct vg_front *f = t->p->front;
-  uint32_t i = t->slot[find(t, v)];
+  uint32_t i = *find(t, v);
   double x[4][3], above, below;
 
-  if (i == VG_NO_INDEX) return;
+  if (i == VG_TABLE_FREE) return;
   below = volume_below(t, f->face_id[i]);
   if (!(below > 0)) return;
   for (int k = 0; k < 4; k++) memcpy(x[k], s->x[cell[k]], sizeof *x);
@@ -136,7 +114,7 @@ vg_status vg_layer_tops(struct vg_comm *comm, const struct vg_join_plan *p,
   VG_TRY(make_table(&t, err));
   st = vg_slices_each(field, p->expand.threads, look_through, &t, err);
 done:
-  free(t.slot);
+  vg_table_release(&t.table);
   st = vg_comm_agree(comm, st, err);
   return st < 0 ? st : vg_comm_max(comm, p->columns->n_face, ratio, err);
 }

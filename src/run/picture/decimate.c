@@ -4,7 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/hash.h"
 #include "base/memory.h"
+#include "base/table.h"
 #include "core/geometry/vector.h"
 
 #define COARSER 1.25       /* the next lattice, where one was too fine */
@@ -18,19 +20,18 @@ void vg_decimated_release(struct vg_decimated *c)
   *c = (struct vg_decimated)VG_DECIMATED_INIT;
 }
 
-/* Cubes that hold points, in an open table of the power of two `size`. */
+/* Cubes that hold points, numbered as their first points come. */
 struct cubes {
-  size_t size;
-  uint64_t *key;            /* of the cube + 1; 0: free */
-  uint32_t *id;             /* number of the cube, by its first point */
-  uint32_t *of;             /* [n_point] */
+  struct vg_table table;
+  uint64_t *key;            /* [n_cube] place on the lattice */
+  uint32_t *of;             /* [n_point] cube of each point */
   uint32_t *count;          /* [n_cube] points */
 };
 
 static void release(struct cubes *q)
 {
+  vg_table_release(&q->table);
   free(q->key);
-  free(q->id);
   free(q->of);
   free(q->count);
 }
@@ -38,15 +39,15 @@ static void release(struct cubes *q)
 static vg_status reserve(const struct vg_mesh *m, struct cubes *q,
                          struct vg_decimated *c, struct vg_error *err)
 {
-  for (q->size = 64; q->size < 2 * m->n_point; q->size *= 2) { }
-  q->key = vg_alloc(q->size, sizeof *q->key);
-  q->id = vg_alloc(q->size, sizeof *q->id);
+  int bad = vg_table_init(&q->table, m->n_point);
+
+  q->key = vg_alloc(m->n_point, sizeof *q->key);
   q->of = vg_alloc(m->n_point, sizeof *q->of);
   q->count = vg_alloc(m->n_point, sizeof *q->count);
   c->point = vg_alloc(m->n_point, sizeof *c->point);
   c->tri = vg_alloc(m->n_tri, sizeof *c->tri);
   c->from = vg_alloc(m->n_tri, sizeof *c->from);
-  return q->key && q->id && q->of && q->count && c->point && c->tri && c->from
+  return !bad && q->key && q->of && q->count && c->point && c->tri && c->from
          ? VG_OK : vg_fail_memory(err, "a coarser surface");
 }
 
@@ -59,30 +60,30 @@ static uint64_t key_of(const double x[3], const double lo[3], double step)
 
     key = key << 21 | (uint64_t)(at < 2097151 ? at : 2097151);
   }
-  return key + 1;
+  return key;
 }
 
 static uint32_t find(struct cubes *q, uint64_t key, size_t *n)
 {
-  size_t at = (size_t)(key * 0x9e3779b97f4a7c15ull >> 20) & (q->size - 1);
+  uint32_t *at;
 
-  while (q->key[at] && q->key[at] != key) at = (at + 1) & (q->size - 1);
-  if (!q->key[at]) {
-    q->key[at] = key;
-    q->id[at] = (uint32_t)(*n)++;
+  VG_TABLE_FIND(&q->table, at, vg_hash_1(key), q->key[*at] == key);
+  if (*at == VG_TABLE_FREE) {
+    q->key[*n] = key;
+    *at = (uint32_t)(*n)++;
   }
-  return q->id[at];
+  return *at;
 }
 
 static void merge_points(const struct vg_mesh *m, const double lo[3],
                          double step, struct cubes *q, struct vg_decimated *c)
 {
-  memset(q->key, 0, q->size * sizeof *q->key);
+  vg_table_clear(&q->table);
   memset(q->count, 0, m->n_point * sizeof *q->count);
   memset(c->point, 0, m->n_point * sizeof *c->point);
   c->n_point = 0;
   for (size_t i = 0; i < m->n_point; i++) {
-    uint32_t id = find(q, step > 0 ? key_of(m->point[i], lo, step) : i + 1,
+    uint32_t id = find(q, step > 0 ? key_of(m->point[i], lo, step) : i,
                        &c->n_point);
 
     q->of[i] = id;
@@ -144,7 +145,7 @@ static double first_step(const struct vg_mesh *m, size_t n)
 vg_status vg_decimate(const struct vg_mesh *m, size_t n_most,
                       struct vg_decimated *out, struct vg_error *err)
 {
-  struct cubes q = { 0, NULL, NULL, NULL, NULL };
+  struct cubes q = { .table = VG_TABLE_INIT };
   struct vg_decimated c = VG_DECIMATED_INIT;
   double lo[3], hi[3];
   vg_status st = reserve(m, &q, &c, err);
