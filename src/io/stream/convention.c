@@ -5,7 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/hash.h"
 #include "base/memory.h"
+#include "base/table.h"
+#include "base/tri_key.h"
 #include "core/geometry/predicates.h"
 #include "core/geometry/vector.h"
 #include "core/mesh/cell_faces.h"
@@ -56,52 +59,33 @@ vg_status vg_index_from_file(const char *path, const char *element, size_t n,
 
 /* --- patches --- */
 
-static uint32_t mix(uint32_t x)
-{
-  x ^= x >> 16;
-  x *= 0x7feb352du;
-  x ^= x >> 15;
-  x *= 0x846ca68bu;
-  return x ^ x >> 16;
-}
-
-struct tag_table {
-  size_t mask, n, cap;
-  uint32_t *slot;   /* [mask + 1] index into id + 1; 0: free */
-  int32_t *id;      /* [n] */
+struct tags {
+  struct vg_table table;
+  size_t n, cap;
+  int32_t *id;      /* [n] as they were found */
 };
 
-static int tag_grow(struct tag_table *t)
+static uint64_t hash_tag(const void *of, uint32_t i)
 {
-  size_t mask = t->mask ? 2 * t->mask + 1 : 255;
-  uint32_t *slot = vg_calloc(mask + 1, sizeof *slot);
+  const struct tags *t = of;
 
-  if (!slot) return -1;
-  for (size_t i = 0; i < t->n; i++) {
-    size_t at = mix((uint32_t)t->id[i]) & mask;
-
-    while (slot[at]) at = (at + 1) & mask;
-    slot[at] = (uint32_t)i + 1;
-  }
-  free(t->slot);
-  t->slot = slot;
-  t->mask = mask;
-  return 0;
+  return vg_hash_1((uint32_t)t->id[i]);
 }
 
 /* Index of a tag, added when new; -1 when memory is refused. */
-static int64_t tag_index(struct tag_table *t, int32_t id)
+static int64_t tag_index(struct tags *t, int32_t id)
 {
-  size_t at;
+  uint32_t *at;
 
-  if (2 * t->n >= t->mask && tag_grow(t) < 0) return -1;
-  at = mix((uint32_t)id) & t->mask;
-  for (; t->slot[at]; at = (at + 1) & t->mask)
-    if (t->id[t->slot[at] - 1] == id) return t->slot[at] - 1;
-  if (vg_reserve(&t->id, &t->cap, t->n + 1, sizeof *t->id) < 0) return -1;
-  t->id[t->n++] = id;
-  t->slot[at] = (uint32_t)t->n;
-  return (int64_t)t->n - 1;
+  if (vg_table_reserve(&t->table, t->n + 1, hash_tag, t) ||
+      vg_reserve(&t->id, &t->cap, t->n + 1, sizeof *t->id))
+    return -1;
+  VG_TABLE_FIND(&t->table, at, vg_hash_1((uint32_t)id), t->id[*at] == id);
+  if (*at == VG_TABLE_FREE) {
+    *at = (uint32_t)t->n;
+    t->id[t->n++] = id;
+  }
+  return *at;
 }
 
 static int compare_patch(const void *a, const void *b)
@@ -112,7 +96,7 @@ static int compare_patch(const void *a, const void *b)
 }
 
 /* Patches sorted by id; rank[i] is the place of the i-th tag found. */
-static vg_status make_patches(struct vg_mesh *m, const struct tag_table *t,
+static vg_status make_patches(struct vg_mesh *m, const struct tags *t,
                               uint32_t *rank, struct vg_error *err)
 {
   struct vg_patch *patch = vg_calloc(t->n, sizeof *patch);
@@ -136,7 +120,7 @@ static vg_status make_patches(struct vg_mesh *m, const struct tag_table *t,
 vg_status vg_patches_from_tags(struct vg_mesh *m, const int32_t *tag,
                                struct vg_error *err)
 {
-  struct tag_table t = {0};
+  struct tags t = {0};
   size_t n = m->n_tri + m->n_quad;
   uint32_t *of = vg_alloc(n, sizeof *of), *rank = NULL;
   uint32_t *tri = vg_alloc(m->n_tri, sizeof *tri);
@@ -168,7 +152,7 @@ done:
   free(rank);
   free(tri);
   free(quad);
-  free(t.slot);
+  vg_table_release(&t.table);
   free(t.id);
   return st;
 }
@@ -241,26 +225,16 @@ static size_t turn_cells(struct vg_mesh *m)
 /* Boundary faces by their sorted nodes; a triangle has UINT32_MAX last. Of
  * several faces on the same nodes the first is kept. */
 struct face_table {
-  size_t mask;
-  uint32_t *slot;          /* face + 1 */
+  struct vg_table table;
   unsigned char *found;    /* [n_tri + n_quad] */
   unsigned char *on;       /* [n_point] the point is on the boundary */
 };
 
-static void order(uint32_t *k, int a, int b)
-{
-  if (k[a] > k[b]) swap(k, a, b);
-}
-
 static void make_key(const uint32_t *n, int width, uint32_t key[4])
 {
-  for (int i = 0; i < width; i++) key[i] = n[i];
+  memcpy(key, n, (size_t)width * sizeof *key);
   if (width == 3) key[3] = UINT32_MAX;
-  order(key, 0, 1);
-  order(key, 2, 3);
-  order(key, 0, 2);
-  order(key, 1, 3);
-  order(key, 1, 2);
+  vg_order4(key);
 }
 
 static const uint32_t *face_nodes(const struct vg_mesh *m, size_t f,
@@ -270,34 +244,32 @@ static const uint32_t *face_nodes(const struct vg_mesh *m, size_t f,
   return f < m->n_tri ? m->tri[f] : m->quad[f - m->n_tri];
 }
 
-static size_t slot_of(const struct face_table *t, const uint32_t key[4])
+static int has_key(const struct vg_mesh *m, size_t f, const uint32_t key[4])
 {
-  uint32_t h = mix(key[0] ^ mix(key[1] ^ mix(key[2] ^ mix(key[3]))));
+  uint32_t other[4];
+  int width;
+  const uint32_t *node = face_nodes(m, f, &width);
 
-  return h & t->mask;
+  make_key(node, width, other);
+  return !memcmp(key, other, sizeof other);
 }
 
-/* The boundary face with this key, or SIZE_MAX and the free slot for it. */
-static size_t find_face(const struct vg_mesh *m, const struct face_table *t,
-                        const uint32_t key[4], size_t *free_slot)
+/* Where the boundary face on these nodes is, or belongs. */
+static uint32_t *find_face(const struct vg_mesh *m, const struct face_table *t,
+                           const uint32_t *node, int width)
 {
-  size_t at = slot_of(t, key);
+  uint32_t key[4], *at;
 
-  for (; t->slot[at]; at = (at + 1) & t->mask) {
-    int width;
-    const uint32_t *node = face_nodes(m, t->slot[at] - 1, &width);
-    uint32_t other[4];
-
-    make_key(node, width, other);
-    if (!memcmp(key, other, sizeof other)) return t->slot[at] - 1;
-  }
-  if (free_slot) *free_slot = at;
-  return SIZE_MAX;
+  make_key(node, width, key);
+  VG_TABLE_FIND(&t->table, at,
+                vg_hash_3((uint64_t)key[0] << 32 | key[1], key[2], key[3]),
+                has_key(m, *at, key));
+  return at;
 }
 
 static void face_release(struct face_table *t)
 {
-  free(t->slot);
+  vg_table_release(&t->table);
   free(t->found);
   free(t->on);
 }
@@ -305,26 +277,22 @@ static void face_release(struct face_table *t)
 static vg_status face_build(struct face_table *t, const struct vg_mesh *m,
                             struct vg_error *err)
 {
-  size_t n = m->n_tri + m->n_quad, size = 16;
+  size_t n = m->n_tri + m->n_quad;
+  int bad = vg_table_init(&t->table, n);
 
-  while (size < 2 * n) size *= 2;
-  t->mask = size - 1;
-  t->slot = vg_calloc(size, sizeof *t->slot);
   t->found = vg_calloc(n, 1);
   t->on = vg_calloc(m->n_point, 1);
-  if (!t->slot || !t->found || !t->on || n >= UINT32_MAX) {
+  if (bad || !t->found || !t->on) {
     face_release(t);
     return vg_fail_memory(err, "a table of the boundary faces");
   }
   for (size_t f = 0; f < n; f++) {
     int width;
     const uint32_t *node = face_nodes(m, f, &width);
-    uint32_t key[4];
-    size_t at;
+    uint32_t *at = find_face(m, t, node, width);
 
     for (int k = 0; k < width; k++) t->on[node[k]] = 1;
-    make_key(node, width, key);
-    if (find_face(m, t, key, &at) == SIZE_MAX) t->slot[at] = (uint32_t)f + 1;
+    if (*at == VG_TABLE_FREE) *at = (uint32_t)f;
   }
   return VG_OK;
 }
@@ -349,13 +317,10 @@ static void meet_face(struct vg_mesh *m, struct face_table *t,
                       const uint32_t *inward, int width,
                       struct vg_turned *turned)
 {
-  uint32_t key[4], *node;
-  size_t f;
+  uint32_t f = *find_face(m, t, inward, width), *node;
   int w, forwards;
 
-  make_key(inward, width, key);
-  f = find_face(m, t, key, NULL);
-  if (f == SIZE_MAX || t->found[f]) return;
+  if (f == VG_TABLE_FREE || t->found[f]) return;
   node = (uint32_t *)face_nodes(m, f, &w);
   forwards = same_cycle(node, inward, w, 1);
   if (!forwards && !same_cycle(node, inward, w, w - 1)) return;

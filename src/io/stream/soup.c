@@ -3,14 +3,15 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/hash.h"
 #include "base/memory.h"
 #include "io/stream/convention.h"
 
 void vg_soup_release(struct vg_soup *s)
 {
   vg_mesh_release(&s->m);
-  free(s->weld);
-  free(s->named);
+  vg_table_release(&s->weld);
+  vg_table_release(&s->named);
   memset(s, 0, sizeof *s);
 }
 
@@ -38,59 +39,25 @@ vg_status vg_soup_point(struct vg_soup *s, const double x[3], uint32_t *at,
   return VG_OK;
 }
 
-static uint64_t mix(uint64_t h, uint64_t v)
-{
-  h = (h ^ v) * 0x9e3779b97f4a7c15u;
-  return h ^ h >> 32;
-}
-
-static uint64_t hash_point(const double x[3])
-{
-  uint64_t bits[3];
-
-  memcpy(bits, x, sizeof bits);
-  return mix(mix(mix(0, bits[0]), bits[1]), bits[2]);
-}
-
 static uint64_t hash_name(const char *name)
 {
   uint64_t h = 0;
 
-  for (; *name; name++) h = mix(h, (unsigned char)*name);
+  for (; *name; name++) h = vg_hash_add(h, (unsigned char)*name);
   return h;
 }
 
-/* Double a table whose items (0 .. n-1) hash by `hash(item)`. */
-static vg_status grow(uint32_t **table, size_t *size, size_t n,
-                      const struct vg_soup *s,
-                      uint64_t (*hash)(const struct vg_soup *, size_t),
-                      struct vg_error *err)
+static uint64_t point_hash(const void *soup, uint32_t i)
 {
-  size_t new_size = *size ? 2 * *size : 64, mask = new_size - 1;
-  uint32_t *t;
+  const struct vg_soup *s = soup;
 
-  if (2 * n < *size) return VG_OK;
-  t = vg_calloc(new_size, sizeof *t);
-  if (!t) return vg_fail_memory(err, "welding the points of a surface");
-  for (size_t i = 0; i < n; i++) {
-    size_t at = (size_t)hash(s, i) & mask;
-
-    while (t[at]) at = (at + 1) & mask;
-    t[at] = (uint32_t)i + 1;
-  }
-  free(*table);
-  *table = t;
-  *size = new_size;
-  return VG_OK;
+  return vg_hash_point(s->m.point[i]);
 }
 
-static uint64_t point_hash(const struct vg_soup *s, size_t i)
+static uint64_t patch_hash(const void *soup, uint32_t i)
 {
-  return hash_point(s->m.point[i]);
-}
+  const struct vg_soup *s = soup;
 
-static uint64_t patch_hash(const struct vg_soup *s, size_t i)
-{
   return hash_name(s->m.patch[i].name);
 }
 
@@ -98,20 +65,19 @@ vg_status vg_soup_weld(struct vg_soup *s, const double x[3], uint32_t *at,
                        struct vg_error *err)
 {
   double p[3] = { x[0] + 0.0, x[1] + 0.0, x[2] + 0.0 };
-  size_t slot, mask;
-  vg_status st = grow(&s->weld, &s->weld_size, s->m.n_point, s, point_hash,
-                      err);
+  uint32_t *slot;
+  vg_status st;
 
-  if (st < 0) return st;
-  mask = s->weld_size - 1;
-  slot = (size_t)hash_point(p) & mask;
-  for (; s->weld[slot]; slot = (slot + 1) & mask)
-    if (!memcmp(s->m.point[s->weld[slot] - 1], p, sizeof p)) {
-      *at = s->weld[slot] - 1;
-      return VG_OK;
-    }
+  if (vg_table_reserve(&s->weld, s->m.n_point + 1, point_hash, s))
+    return vg_fail_memory(err, "welding the points of a surface");
+  VG_TABLE_FIND(&s->weld, slot, vg_hash_point(p),
+                !memcmp(s->m.point[*slot], p, sizeof p));
+  if (*slot != VG_TABLE_FREE) {
+    *at = *slot;
+    return VG_OK;
+  }
   st = vg_soup_point(s, p, at, err);
-  if (st == VG_OK) s->weld[slot] = *at + 1;
+  if (st == VG_OK) *slot = *at;
   return st;
 }
 
@@ -181,20 +147,19 @@ vg_status vg_soup_named_patch(struct vg_soup *s, const char *name, size_t len,
                               uint32_t *at, struct vg_error *err)
 {
   struct vg_patch p = make_patch(name, len);
-  size_t slot, mask;
-  vg_status st = grow(&s->named, &s->named_size, s->m.n_patch, s, patch_hash,
-                      err);
+  uint32_t *slot;
+  vg_status st;
 
-  if (st < 0) return st;
-  mask = s->named_size - 1;
-  slot = (size_t)hash_name(p.name) & mask;
-  for (; s->named[slot]; slot = (slot + 1) & mask)
-    if (!strcmp(s->m.patch[s->named[slot] - 1].name, p.name)) {
-      *at = s->named[slot] - 1;
-      return VG_OK;
-    }
+  if (vg_table_reserve(&s->named, s->m.n_patch + 1, patch_hash, s))
+    return vg_fail_memory(err, "patches");
+  VG_TABLE_FIND(&s->named, slot, hash_name(p.name),
+                !strcmp(s->m.patch[*slot].name, p.name));
+  if (*slot != VG_TABLE_FREE) {
+    *at = *slot;
+    return VG_OK;
+  }
   st = append_patch(s, &p, at, err);
-  if (st == VG_OK) s->named[slot] = *at + 1;
+  if (st == VG_OK) *slot = *at;
   return st;
 }
 

@@ -7,13 +7,14 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/table.h"
 #include "core/mesh/mesh.h"
 
 struct vg_soup {
   struct vg_mesh m;         /* what has been collected; valid at any time */
   size_t cap_point, cap_tri, cap_tri_patch, cap_patch;
-  uint32_t *weld, *named;   /* hash tables of index + 1, 0 is free */
-  size_t weld_size, named_size; /* powers of two, or 0 */
+  struct vg_table weld;     /* points of vg_soup_weld */
+  struct vg_table named;    /* patches of vg_soup_named_patch */
 };
 #define VG_SOUP_INIT { .cap_point = 0 }
 
@@ -25,7 +26,8 @@ void vg_soup_release(struct vg_soup *s);
 vg_status vg_soup_point(struct vg_soup *s, const double x[3], uint32_t *at,
                         struct vg_error *err);
 
-/** The point with exactly these coordinates, appended when new. O(1). */
+/** The point of earlier calls with exactly these coordinates, appended when
+ * new. O(1). */
 vg_status vg_soup_weld(struct vg_soup *s, const double x[3], uint32_t *at,
                        struct vg_error *err);
 

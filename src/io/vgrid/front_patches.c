@@ -1,7 +1,7 @@
 /* Which patch is each face of a front? The file does not say (formats.md
  * 1.9), but it lists the edges on the curves of the project.
  *
- *   1. Every mesh edge goes into a table; curve edges are marked there.
+ *   1. Every mesh edge goes into a list; curve edges are marked there.
  *   2. Faces are flooded across the other edges into regions.
  *   3. Curve edges are chained between curve ends, and each chain is matched
  *      with the curve of the project that has these ends (the nearest one,
@@ -14,14 +14,17 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/hash.h"
 #include "base/memory.h"
+#include "base/table.h"
+#include "base/tri_key.h"
 #include "core/geometry/vector.h"
 #include "io/vgrid/vgrid.h"
 
 #define NONE UINT32_MAX
 
-struct cell {            /* an edge of the mesh, a < b */
-  uint32_t a, b;         /* a == NONE: free */
+struct edge {            /* of the mesh, a < b */
+  uint32_t a, b;
   uint32_t face[2];
   int n_face;
   int on_curve;
@@ -31,15 +34,16 @@ struct cell {            /* an edge of the mesh, a < b */
 /* A curve edge seen from one end. */
 struct link {
   uint32_t from, to;
-  uint32_t slot;
+  uint32_t edge;
 };
 
 struct front {
   struct vg_mesh *m;
   const struct vg_project *project;
   const char *path;
-  size_t mask;
-  struct cell *cell;     /* [mask + 1] */
+  struct vg_table table; /* edges by their points */
+  size_t n_edge;
+  struct edge *edge;     /* [n_edge] */
   uint32_t *region;      /* [n_tri] */
   uint32_t *seed;        /* [n_region] first face */
   size_t n_region, n_link;
@@ -48,45 +52,38 @@ struct front {
   unsigned char *is_end; /* [n_point] */
 };
 
-static size_t cell_of(struct front *w, uint32_t p, uint32_t q)
+/* The edge of two points, made if need be. */
+static struct edge *edge_of(struct front *w, uint32_t p, uint32_t q)
 {
-  uint32_t a = p < q ? p : q, b = p < q ? q : p;
-  uint64_t h = ((uint64_t)a << 32 | b) * 0x9e3779b97f4a7c15u;
-  size_t at = (size_t)(h >> 20) & w->mask;
+  uint32_t a = p < q ? p : q, b = p < q ? q : p, *at;
 
-  while (w->cell[at].a != NONE &&
-         (w->cell[at].a != a || w->cell[at].b != b))
-    at = (at + 1) & w->mask;
-  if (w->cell[at].a == NONE) {
-    w->cell[at].a = a;
-    w->cell[at].b = b;
+  VG_TABLE_FIND(&w->table, at, vg_hash_1(vg_edge_key(a, b)),
+                w->edge[*at].a == a && w->edge[*at].b == b);
+  if (*at == VG_TABLE_FREE) {
+    *at = (uint32_t)w->n_edge;
+    w->edge[w->n_edge++] = (struct edge){.a = a, .b = b};
   }
-  return at;
+  return &w->edge[*at];
 }
 
 static vg_status build_edges(struct front *w, size_t n_edge,
                              const uint32_t (*edge)[2], struct vg_error *err)
 {
   const struct vg_mesh *m = w->m;
-  size_t size = 64, most = 3 * m->n_tri + n_edge;
+  size_t most = 3 * m->n_tri + n_edge;
 
-  /* A closed surface has half as many edges: load 0.4 or less then. */
-  while (size < most + most / 4) size *= 2;
-  w->mask = size - 1;
-  w->cell = vg_calloc(size, sizeof *w->cell);
-  if (!w->cell || size > UINT32_MAX)
+  w->edge = vg_alloc(most, sizeof *w->edge);
+  if (!w->edge || vg_table_init(&w->table, most))
     return vg_fail_memory(err, "the edges of a front");
-  for (size_t i = 0; i < size; i++) w->cell[i].a = NONE;
   for (size_t f = 0; f < m->n_tri; f++)
     for (int k = 0; k < 3; k++) {
-      struct cell *c =
-          w->cell + cell_of(w, m->tri[f][k], m->tri[f][(k + 1) % 3]);
+      struct edge *c = edge_of(w, m->tri[f][k], m->tri[f][(k + 1) % 3]);
 
       if (c->n_face < 2) c->face[c->n_face] = (uint32_t)f;
       c->n_face += c->n_face < 3;
     }
   for (size_t i = 0; i < n_edge; i++) {
-    struct cell *c = w->cell + cell_of(w, edge[i][0], edge[i][1]);
+    struct edge *c = edge_of(w, edge[i][0], edge[i][1]);
 
     c->on_curve = 1;
     if (!c->n_face)
@@ -120,8 +117,8 @@ static vg_status flood(struct front *w, struct vg_error *err)
       uint32_t f = stack[--n];
 
       for (int k = 0; k < 3; k++) {
-        const struct cell *c =
-            w->cell + cell_of(w, m->tri[f][k], m->tri[f][(k + 1) % 3]);
+        const struct edge *c =
+            edge_of(w, m->tri[f][k], m->tri[f][(k + 1) % 3]);
         uint32_t g = c->face[0] == f ? c->face[1] : c->face[0];
 
         if (c->on_curve || c->n_face != 2 || w->region[g] != NONE) continue;
@@ -152,11 +149,11 @@ static vg_status build_links(struct front *w, struct vg_error *err)
 {
   size_t n = 0;
 
-  for (size_t i = 0; i <= w->mask; i++) n += w->cell[i].on_curve;
+  for (size_t i = 0; i < w->n_edge; i++) n += w->edge[i].on_curve;
   w->link = vg_alloc(2 * n, sizeof *w->link);
   if (!w->link) return vg_fail_memory(err, "the curves of a front");
-  for (size_t i = 0; i <= w->mask; i++) {
-    const struct cell *c = w->cell + i;
+  for (size_t i = 0; i < w->n_edge; i++) {
+    const struct edge *c = w->edge + i;
 
     if (!c->on_curve) continue;
     w->link[w->n_link++] = (struct link){c->a, c->b, (uint32_t)i};
@@ -314,15 +311,15 @@ static double along(const struct vg_project *p, const struct vg_curve *c,
 
 struct chain {
   size_t n;              /* points */
-  size_t cap, cap_slot;
+  size_t cap, cap_edge;
   uint32_t *point;       /* [n] */
-  uint32_t *slot;        /* [n - 1] */
+  uint32_t *edge;        /* [n - 1] */
 };
 
 static int chain_add(struct chain *c, uint32_t p)
 {
   if (vg_reserve(&c->point, &c->cap, c->n + 1, sizeof *c->point) < 0 ||
-      vg_reserve(&c->slot, &c->cap_slot, c->n + 1, sizeof *c->slot) < 0)
+      vg_reserve(&c->edge, &c->cap_edge, c->n + 1, sizeof *c->edge) < 0)
     return -1;
   c->point[c->n++] = p;
   return 0;
@@ -336,14 +333,14 @@ static int follow(const struct front *w, size_t l, struct chain *c)
   c->n = 0;
   if (chain_add(c, p) < 0) return -1;
   for (;;) {
-    uint32_t slot = w->link[l].slot;
+    uint32_t edge = w->link[l].edge;
 
-    c->slot[c->n - 1] = slot;
+    c->edge[c->n - 1] = edge;
     p = w->link[l].to;
     if (chain_add(c, p) < 0) return -1;
     if (w->is_end[p] || p == start || degree(w, p) != 2) return 0;
     l = first_link(w, p);
-    if (w->link[l].slot == slot) l++;
+    if (w->link[l].edge == edge) l++;
   }
 }
 
@@ -421,7 +418,7 @@ static vg_status name_chain(struct front *w, const struct ends *list,
                    x[0], x[1], x[2]);
   forward = is_forward(w, curve, c);
   for (size_t i = 0; i + 1 < c->n; i++) {
-    struct cell *e = w->cell + c->slot[i];
+    struct edge *e = w->edge + c->edge[i];
 
     e->curve = (e->a == c->point[i]) == forward ? (int32_t)curve + 1
                                                 : -(int32_t)curve - 1;
@@ -445,7 +442,7 @@ static vg_status name_curves(struct front *w, struct vg_error *err)
   for (size_t l = 0; l < w->n_link && st == VG_OK; l++) {
     uint32_t from = w->link[l].from;
 
-    if (w->cell[w->link[l].slot].curve ||
+    if (w->edge[w->link[l].edge].curve ||
         (!w->is_end[from] && degree(w, from) == 2))
       continue;
     st = follow(w, l, &c) < 0 ? vg_fail_memory(err, "a curve of a front")
@@ -453,7 +450,7 @@ static vg_status name_curves(struct front *w, struct vg_error *err)
   }
   free(list);
   free(c.point);
-  free(c.slot);
+  free(c.edge);
   return st;
 }
 
@@ -546,7 +543,7 @@ static vg_status signatures(struct front *w, struct matching *g,
   for (size_t f = 0; f < w->m->n_tri; f++)
     for (int k = 0; k < 3; k++) {
       uint32_t a = w->m->tri[f][k], b = w->m->tri[f][(k + 1) % 3];
-      const struct cell *c = w->cell + cell_of(w, a, b);
+      const struct edge *c = edge_of(w, a, b);
 
       /* Three faces on a curve edge would pass the room that was made. */
       if (c->curve && n < n_max)
@@ -661,7 +658,8 @@ vg_status vg_front_patches(struct vg_mesh *m, size_t n_edge,
   if (project && project->n_shape) VG_TRY(match_project(&w, err));
   else VG_TRY(set_patches(&w, NULL, err));
 done:
-  free(w.cell);
+  vg_table_release(&w.table);
+  free(w.edge);
   free(w.region);
   free(w.seed);
   free(w.link);

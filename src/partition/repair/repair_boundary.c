@@ -3,19 +3,8 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/tri_key.h"
 #include "partition/repair/repair_parts.h"
-
-static void sort3(const uint32_t v[3], uint32_t out[3])
-{
-  uint32_t a = v[0], b = v[1], c = v[2], keep;
-
-  if (a > b) { keep = a; a = b; b = keep; }
-  if (b > c) { keep = b; b = c; c = keep; }
-  if (a > b) { keep = a; a = b; b = keep; }
-  out[0] = a;
-  out[1] = b;
-  out[2] = c;
-}
 
 static int by_points(const void *a, const void *b)
 {
@@ -41,7 +30,9 @@ static vg_status list(const struct vg_mesh *m, const uint8_t *in,
   for (size_t k = 0; k < m->n_tri; k++) {
     const uint32_t *v = m->tri[k];
 
-    if (in[v[0]] && in[v[1]] && in[v[2]]) sort3(v, r->tri[r->n++]);
+    if (!in[v[0]] || !in[v[1]] || !in[v[2]]) continue;
+    memcpy(r->tri[r->n], v, sizeof *r->tri);
+    vg_order3(r->tri[r->n++]);
   }
   if (r->n) qsort(r->tri, r->n, sizeof *r->tri, by_points);
   return VG_OK;
@@ -78,8 +69,8 @@ void vg_repair_boundary_release(struct vg_repair_boundary *r)
 int vg_repair_boundary_has(const struct vg_repair_boundary *r,
                            const uint32_t v[3])
 {
-  uint32_t key[3];
+  uint32_t key[3] = { v[0], v[1], v[2] };
 
-  sort3(v, key);
+  vg_order3(key);
   return r->n && bsearch(key, r->tri, r->n, sizeof *r->tri, by_points);
 }

@@ -2,7 +2,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/hash.h"
 #include "base/memory.h"
+#include "base/table.h"
 #include "core/delaunay/tets.h"
 #include "core/geometry/shape.h"
 #include "partition/repair/repair_parts.h"
@@ -74,8 +76,7 @@ struct joint {
   uint8_t *fixed;
   uint32_t *number;          /* [n_point] in the tetrahedra, fixed ones first */
   uint32_t *point;           /* [n_point] and back */
-  uint64_t mask;
-  uint32_t *slot;            /* [mask + 1] points by the hash of their name */
+  struct vg_table table;     /* points by their names */
   uint32_t **local;          /* [n_block][block.n_point] */
   struct vg_tets t;
 };
@@ -89,7 +90,7 @@ static void joint_free(struct joint *j)
   free(j->fixed);
   free(j->number);
   free(j->point);
-  free(j->slot);
+  vg_table_release(&j->table);
   vg_tets_release(&j->t);
 }
 
@@ -101,19 +102,15 @@ static vg_status joint_new(struct joint *j, struct vg_error *err)
     n += j->block[k].n_point;
     j->n_cell += j->block[k].n_cell;
   }
-  j->mask = 63;
-  while (j->mask < 2 * n) j->mask = 2 * j->mask + 1;
   j->name = vg_alloc(n, sizeof *j->name);
   j->x = vg_alloc(n, sizeof *j->x);
   j->fixed = vg_calloc(n, 1);
   j->number = vg_alloc(n, sizeof *j->number);
   j->point = vg_alloc(n, sizeof *j->point);
-  j->slot = vg_alloc(j->mask + 1, sizeof *j->slot);
   j->local = vg_calloc(j->n_block, sizeof *j->local);
   if (!j->name || !j->x || !j->fixed || !j->number || !j->point ||
-      !j->slot || !j->local)
+      !j->local || vg_table_init(&j->table, n))
     return vg_fail_memory(err, "repairs");
-  memset(j->slot, 0xff, (j->mask + 1) * sizeof *j->slot);
   for (size_t k = 0; k < j->n_block; k++) {
     j->local[k] = vg_alloc(j->block[k].n_point, sizeof **j->local);
     if (!j->local[k]) return vg_fail_memory(err, "repairs");
@@ -124,12 +121,11 @@ static vg_status joint_new(struct joint *j, struct vg_error *err)
 /* The point of that name, which is added when it is new. */
 static uint32_t point_of(struct joint *j, uint64_t name, const double x[3])
 {
-  uint64_t h = name * 0x9e3779b97f4a7c15u;
+  uint32_t *at;
 
-  for (h = (h ^ h >> 32) & j->mask; j->slot[h] != VG_NONE;
-       h = (h + 1) & j->mask)
-    if (j->name[j->slot[h]] == name) return j->slot[h];
-  j->slot[h] = (uint32_t)j->n_point;
+  VG_TABLE_FIND(&j->table, at, vg_hash_1(name), j->name[*at] == name);
+  if (*at != VG_TABLE_FREE) return *at;
+  *at = (uint32_t)j->n_point;
   j->name[j->n_point] = name;
   memcpy(j->x[j->n_point], x, sizeof *j->x);
   return (uint32_t)j->n_point++;

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/hash.h"
 #include "base/memory.h"
 #include "core/geometry/shape.h"
 #include "partition/repair/repair_parts.h"
@@ -13,7 +14,7 @@ void vg_overlap_release(struct vg_overlap *f)
   free(f->shared);
   free(f->stays);
   free(f->other);
-  free(f->slot);
+  vg_table_release(&f->table);
   free(f->place);
   free(f->kind);
   free(f->shape);
@@ -32,21 +33,30 @@ static int has_shared(const struct vg_overlap *f, const uint32_t *v)
          is_shared(f, v[3]);
 }
 
+static uint64_t name_of(const struct vg_overlap *f, uint32_t v)
+{
+  return v < f->q->n_in ? f->q->in[v] : f->other[v - f->n_base];
+}
+
+static uint32_t *find_name(const struct vg_overlap *f, uint64_t name)
+{
+  uint32_t *at;
+
+  VG_TABLE_FIND(&f->table, at, vg_hash_1(name), name_of(f, *at) == name);
+  return at;
+}
+
 /* The vertex of that name, which is added when it is new. */
 static uint32_t vertex_of(struct vg_overlap *f, uint64_t name,
                           const double x[3])
 {
-  const struct vg_piece *q = f->q;
-  uint64_t h = name * 0x9e3779b97f4a7c15u;
+  uint32_t *at;
 
-  if (name >> 32 == q->serial) return (uint32_t)(q->n_in + (uint32_t)name);
-  for (h = (h ^ h >> 32) & f->mask; f->slot[h] != VG_NONE;
-       h = (h + 1) & f->mask) {
-    uint32_t v = f->slot[h];
-
-    if ((v < q->n_in ? q->in[v] : f->other[v - f->n_base]) == name) return v;
-  }
-  f->slot[h] = (uint32_t)f->t.n_point;
+  if (name >> 32 == f->q->serial)
+    return (uint32_t)(f->q->n_in + (uint32_t)name);
+  at = find_name(f, name);
+  if (*at != VG_TABLE_FREE) return *at;
+  *at = (uint32_t)f->t.n_point;
   f->other[f->n_other++] = name;
   memcpy(f->t.x[f->t.n_point], x, sizeof *f->t.x);
   return (uint32_t)f->t.n_point++;
@@ -56,18 +66,13 @@ static vg_status new_names(struct vg_overlap *f, size_t n_other)
 {
   const struct vg_piece *q = f->q;
 
-  f->mask = 63;
-  while (f->mask < 2 * (q->n_in + n_other)) f->mask = 2 * f->mask + 1;
-  f->slot = vg_alloc(f->mask + 1, sizeof *f->slot);
   f->other = vg_alloc(n_other, sizeof *f->other);
-  if (!f->slot || !f->other) return VG_ERR_MEMORY;
-  memset(f->slot, 0xff, (f->mask + 1) * sizeof *f->slot);
+  if (!f->other || vg_table_init(&f->table, q->n_in + n_other))
+    return VG_ERR_MEMORY;
   for (uint32_t v = 0; v < q->n_in; v++) {
-    uint64_t h = q->in[v] * 0x9e3779b97f4a7c15u;
+    uint32_t *at = find_name(f, q->in[v]);
 
-    h = (h ^ h >> 32) & f->mask;
-    while (f->slot[h] != VG_NONE) h = (h + 1) & f->mask;
-    f->slot[h] = v;
+    if (*at == VG_TABLE_FREE) *at = v;
   }
   return VG_OK;
 }

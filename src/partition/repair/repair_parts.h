@@ -3,6 +3,7 @@
 #define VG_PARTITION_REPAIR_REPAIR_PARTS_H
 
 #include "base/bytes.h"
+#include "base/table.h"
 #include "core/optimise/optimise.h"
 #include "partition/repair/repair.h"
 
@@ -142,8 +143,7 @@ struct vg_overlap {
   uint8_t *stays;            /* [q.n_point] an earlier owner's point is near */
   size_t n_base, n_other;    /* vertices of q, then those of the halos */
   uint64_t *other;           /* [n_other] their names */
-  uint64_t mask;
-  uint32_t *slot;            /* [mask + 1] vertices by the hash of names */
+  struct vg_table table;     /* vertices by their names */
   size_t n_own;              /* cells of q come first */
   uint32_t *place;           /* [n_own] in q */
   struct vg_tets t;          /* without links */
@@ -186,7 +186,10 @@ vg_status vg_overlap_take(const struct vg_overlap *f, struct vg_edit *out);
 
 enum { VG_LEVEL_MAX = 64 };
 
-/* Balls, to be found by points in them. */
+/* Balls, to be found by points in them. No vg_table: a cell of a grid is in
+ * many balls, and its key would take 32 bytes. Here a ball takes 4 bytes for
+ * each of its cells, 8 at most, and 32 to 64 for the slots; balls of other
+ * cells in a slot are told apart by their distance. */
 struct vg_spot_grid {
   size_t n;
   const struct vg_spot *spot;  /* [n] borrowed */

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/hash.h"
 #include "base/memory.h"
 #include "base/union_find.h"
 #include "core/geometry/vector.h"
@@ -27,12 +28,9 @@ static int64_t grid(double x, double share)
 
 static uint64_t hash(int level, int64_t i, int64_t j, int64_t k)
 {
-  uint64_t h = (uint64_t)level * 0x9e3779b97f4a7c15u;
+  uint64_t h = vg_hash_add((uint64_t)level, (uint64_t)i);
 
-  h = (h ^ (uint64_t)i) * 0xff51afd7ed558ccdu;
-  h = (h ^ h >> 32 ^ (uint64_t)j) * 0xc4ceb9fe1a85ec53u;
-  h = (h ^ h >> 32 ^ (uint64_t)k) * 0xff51afd7ed558ccdu;
-  return h ^ h >> 32;
+  return vg_hash_add(vg_hash_add(h, (uint64_t)j), (uint64_t)k);
 }
 
 /* Slots of the cells of a level's grid that a ball meets: [8]; returns how
