@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/geometry/hilbert.h"
 #include "core/geometry/predicates.h"
 
 void vg_tri2_release(struct vg_tri2 *t)
@@ -238,15 +239,6 @@ static int order_compare(const void *pa, const void *pb)
   return a->point < b->point ? -1 : a->point > b->point;
 }
 
-static uint64_t spread(uint64_t v)
-{
-  v = (v | v << 16) & 0x0000ffff0000ffffu;
-  v = (v | v << 8) & 0x00ff00ff00ff00ffu;
-  v = (v | v << 4) & 0x0f0f0f0f0f0f0f0fu;
-  v = (v | v << 2) & 0x3333333333333333u;
-  return (v | v << 1) & 0x5555555555555555u;
-}
-
 static uint32_t round_of(uint32_t i)
 {
   uint32_t h = (i + 1) * 2654435769u;
@@ -274,8 +266,8 @@ static void make_order(const struct vg_tri2 *t, size_t n,
     for (int k = 0; k < 2; k++) {
       const double w = hi[k] > lo[k] ? hi[k] - lo[k] : 1;
 
-      key |= spread((uint64_t)((t->x[list[i]][k] - lo[k]) / w * 4294967295.0))
-             << k;
+      key |= vg_interleave2((uint64_t)((t->x[list[i]][k] - lo[k]) / w *
+                                       4294967295.0)) << k;
     }
     order[i] = (struct order){ key, 32 - round_of(list[i]), list[i] };
   }

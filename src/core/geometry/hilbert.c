@@ -3,19 +3,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/hash.h"
 #include "base/memory.h"
 
 enum { BITS = 20 };
-
-/* The 20 bits of q, two clear ones between any two. */
-static uint64_t spread(uint64_t q)
-{
-  q = (q | q << 32) & 0x001f00000000ffffu;
-  q = (q | q << 16) & 0x001f0000ff0000ffu;
-  q = (q | q << 8) & 0x100f00f00f00f00fu;
-  q = (q | q << 4) & 0x10c30c30c30c30c3u;
-  return (q | q << 2) & 0x1249249249249249u;
-}
 
 /* The curve through the eight parts of a cube, in each of its 24 positions:
  * 8 times the position in a part, plus when it is passed. The positions of
@@ -56,7 +47,7 @@ uint64_t vg_hilbert_key(const double x[3], const double lo[3], double scale)
     uint32_t q = !(cell > 0) ? 0
                  : cell >= (1u << BITS) - 1 ? (1u << BITS) - 1 : (uint32_t)cell;
 
-    part = part << 1 | spread(q);
+    part = part << 1 | vg_interleave3(q);
   }
   for (int shift = 3 * (BITS - 1); shift >= 0; shift -= 3) {
     unsigned to = passed[position][part >> shift & 7];
@@ -128,11 +119,8 @@ vg_status vg_hilbert_order(size_t n, const double (*x)[3], uint32_t *order,
  * fixed hash of the index, so the rounds are the same on every machine. */
 static uint64_t round_of(size_t i)
 {
-  uint64_t mix = (i + 1) * 0x9e3779b97f4a7c15u, round = 15;
+  uint64_t mix = vg_hash_mix((i + 1) * VG_GOLDEN), round = 15;
 
-  mix ^= mix >> 32;
-  mix *= 0xd6e8feb86659fd93u;
-  mix ^= mix >> 32;
   for (; round && !(mix & 7); round--) mix >>= 3;
   return round;
 }

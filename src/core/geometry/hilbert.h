@@ -10,6 +10,27 @@
 
 struct vg_key { uint64_t key; uint32_t index; };
 
+/** Bits of q, two clear ones between any two: three numbers of 21 bits become
+ * a Morton code (Morton, IBM Ltd., 1966) by x | y << 1 | z << 2. */
+static inline uint64_t vg_interleave3(uint64_t q)
+{
+  q = (q | q << 32) & 0x001f00000000ffffu;
+  q = (q | q << 16) & 0x001f0000ff0000ffu;
+  q = (q | q << 8) & 0x100f00f00f00f00fu;
+  q = (q | q << 4) & 0x10c30c30c30c30c3u;
+  return (q | q << 2) & 0x1249249249249249u;
+}
+
+/** The same with one clear bit between any two, of 32 bits. */
+static inline uint64_t vg_interleave2(uint64_t q)
+{
+  q = (q | q << 16) & 0x0000ffff0000ffffu;
+  q = (q | q << 8) & 0x00ff00ff00ff00ffu;
+  q = (q | q << 4) & 0x0f0f0f0f0f0f0f0fu;
+  q = (q | q << 2) & 0x3333333333333333u;
+  return (q | q << 1) & 0x5555555555555555u;
+}
+
 /** Position of x along the Hilbert curve of the cube at lo with 2^20 cells
  * per side of length 1 / scale. Coordinates outside are clamped.
  * (Skilling, "Programming the Hilbert curve", AIP Conf. Proc. 707, 2004.) */

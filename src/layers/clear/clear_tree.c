@@ -60,16 +60,6 @@ static inline void tri_box_float(const struct vg_boxes *b,
 
 /* --- building ------------------------------------------------------------ */
 
-/* Every third bit: 21 bits of x. */
-static inline uint64_t spread(uint64_t x)
-{
-  x = (x | x << 32) & 0x1f00000000ffffu;
-  x = (x | x << 16) & 0x1f0000ff0000ffu;
-  x = (x | x << 8) & 0x100f00f00f00f00fu;
-  x = (x | x << 4) & 0x10c30c30c30c30c3u;
-  return (x | x << 2) & 0x1249249249249249u;
-}
-
 static void make_keys(void *context, size_t first, size_t end, int worker)
 {
   struct build *x = context;
@@ -86,7 +76,7 @@ static void make_keys(void *context, size_t first, size_t end, int worker)
 
       /* 18 bits each: what is closer together than 4e-6 of the whole may
        * stay in the order given; saves one round of sorting. */
-      key |= spread(!(q > 0) ? 0 : q >= 262143 ? 262143 : (uint64_t)q) << k;
+      key |= vg_interleave3(!(q > 0) ? 0 : q >= 262143 ? 262143 : (uint64_t)q) << k;
     }
     x->key[i] = (struct vg_key){ key, t };
   }

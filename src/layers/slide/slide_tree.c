@@ -3,20 +3,12 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
+#include "core/geometry/hilbert.h"
 #include "layers/slide/slide_parts.h"
 
 enum { GROUP = 4, DEPTH = 64 };
 
 struct key { uint64_t code; uint32_t item; };
-
-static uint64_t spread(uint64_t x)
-{
-  x = (x | x << 16) & 0x0000ffff0000ffffu;
-  x = (x | x << 8) & 0x00ff00ff00ff00ffu;
-  x = (x | x << 4) & 0x0f0f0f0f0f0f0f0fu;
-  x = (x | x << 2) & 0x3333333333333333u;
-  return (x | x << 1) & 0x5555555555555555u;
-}
 
 static int compare(const void *a, const void *b)
 {
@@ -53,7 +45,7 @@ static void make_keys(size_t n, const struct vg_box2 *box, struct key *key)
     for (int k = 0; k < 2; k++)
       c[k] = (uint64_t)((0.5 * (box[i].lo[k] + box[i].hi[k]) - all.lo[k])
                         * scale[k]);
-    key[i].code = spread(c[0]) | spread(c[1]) << 1;
+    key[i].code = vg_interleave2(c[0]) | vg_interleave2(c[1]) << 1;
     key[i].item = (uint32_t)i;
   }
 }
