@@ -9,22 +9,21 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/hash.h"
 #include "base/memory.h"
+#include "base/table.h"
 #include "base/team.h"
 #include "core/geometry/predicates.h"
 #include "layers/expand/join.h"
 
 #define DEGREE 57.295779513082320877
 
-enum {
-  GRAIN = 1024,             /* faces per chunk */
-  SLOTS = 8192              /* of a chunk's table: over twice its columns */
-};
+enum { GRAIN = 1024 };      /* faces per chunk */
 
 /* Levels of a chunk's columns; one per worker. */
 struct chunk_points {
-  uint32_t *key;            /* [SLOTS] column, VG_NO_INDEX: free */
-  uint32_t *place;          /* [SLOTS] of its points, in columns */
+  struct vg_table table;    /* columns by their numbers */
+  uint32_t *column;         /* [3 * GRAIN] as they come */
   double (*x)[3];           /* [3 * GRAIN][job->stride] */
 };
 
@@ -45,17 +44,15 @@ static const double (*levels_of(const struct judge_job *j,
                                 uint32_t c))[3]
 {
   double d[VG_LEVELS_MAX + 1];
-  uint32_t at = c * 2654435769u >> 19;   /* 13 bits: SLOTS */
+  uint32_t *at;
 
-  while (s->key[at] != c && s->key[at] != VG_NO_INDEX)
-    at = (at + 1) % SLOTS;
-  if (s->key[at] != c) {
-    s->key[at] = c;
-    s->place[at] = (*n_used)++;
-    vg_column_points(j->columns, j->surface, c, d,
-                     s->x + s->place[at] * j->stride);
+  VG_TABLE_FIND(&s->table, at, vg_hash_1(c), s->column[*at] == c);
+  if (*at == VG_TABLE_FREE) {
+    *at = (*n_used)++;
+    s->column[*at] = c;
+    vg_column_points(j->columns, j->surface, c, d, s->x + *at * j->stride);
   }
-  return (const double (*)[3])(s->x + s->place[at] * j->stride);
+  return (const double (*)[3])(s->x + *at * j->stride);
 }
 
 /* A face as the lift rule sees it. */
@@ -265,7 +262,7 @@ static void judge_faces(void *context, size_t first, size_t end, int worker)
   double cosine = -1;
   uint32_t n_used = 0;
 
-  memset(points->key, 0xff, SLOTS * sizeof *points->key);
+  vg_table_clear(&points->table);
   for (size_t f = first; f < end; f++) {
     const uint32_t *v = j->columns->face[f];
     struct stack s = stack_of(j, points, &n_used, v);
@@ -380,10 +377,9 @@ static vg_status prepare(struct judge_job *j, int workers, size_t n_chunk,
   for (int i = 0; i < workers; i++) {
     struct chunk_points *s = &j->scratch[i];
 
-    s->key = vg_alloc(SLOTS, sizeof *s->key);
-    s->place = vg_alloc(SLOTS, sizeof *s->place);
+    s->column = vg_alloc(3 * GRAIN, sizeof *s->column);
     s->x = vg_alloc(3 * GRAIN * j->stride, sizeof *s->x);
-    if (!s->key || !s->place || !s->x)
+    if (!s->column || !s->x || vg_table_init(&s->table, 3 * GRAIN))
       return vg_fail_memory(err, "judging layers");
   }
   return find_axes(j, err);
@@ -392,8 +388,8 @@ static vg_status prepare(struct judge_job *j, int workers, size_t n_chunk,
 static void release(struct judge_job *j, int workers)
 {
   for (int i = 0; i < workers && j->scratch; i++) {
-    free(j->scratch[i].key);
-    free(j->scratch[i].place);
+    vg_table_release(&j->scratch[i].table);
+    free(j->scratch[i].column);
     free(j->scratch[i].x);
   }
   free(j->scratch);
