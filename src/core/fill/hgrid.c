@@ -8,6 +8,7 @@
 #include <emmintrin.h>
 #endif
 
+#include "base/hash.h"
 #include "base/memory.h"
 
 #define VG_NONE UINT32_MAX
@@ -25,14 +26,19 @@ static int level_of(double h)
   return e - 1;
 }
 
-/* Cells are kept in blocks of 4 x 4 x 4, which share a hash entry and lie
- * together in memory: the surroundings of a point touch few of them. */
-static uint64_t block_key(int level, const int64_t i[3])
+/* Cells are kept in blocks of 4 x 4 x 4, which share an entry of the table and
+ * stand together in memory: the surroundings of a point touch few of them. */
+static uint64_t hash(int level, const int64_t block[3])
 {
-  return ((uint64_t)(level + 512) << 54) ^
-         ((uint64_t)(i[0] >> 2) & 0x3ffff) << 36 ^
-         ((uint64_t)(i[1] >> 2) & 0x3ffff) << 18 ^
-         ((uint64_t)(i[2] >> 2) & 0x3ffff);
+  return vg_hash_1(vg_hash_3((uint64_t)block[0], (uint64_t)block[1],
+                             (uint64_t)block[2]) + (uint64_t)level);
+}
+
+static uint64_t block_hash(const void *grid, uint32_t block)
+{
+  const struct vg_hgrid *s = grid;
+
+  return hash(s->block[block].level, s->block[block].at);
 }
 
 static uint32_t cell_in_block(const int64_t i[3])
@@ -50,76 +56,45 @@ static uint64_t cells_between(const int from[3], const int to[3])
   return x & y * 0x0001000100010001u & z * 0x1111111111111111u;
 }
 
-static size_t first_slot(const struct vg_hgrid *s, uint64_t key)
-{
-  uint64_t mix = (key ^ key >> 31) * 0x9e3779b97f4a7c15u;
-
-  return (mix ^ mix >> 29) * 0xbf58476d1ce4e5b9u >> 32 & (s->n_slot - 1);
-}
-
-/* Is it the block of cell i? */
 static int is_block(const struct vg_hgrid_block *b, int level,
-                    const int64_t i[3])
+                    const int64_t at[3])
 {
-  return b->at[0] == i[0] >> 2 && b->at[1] == i[1] >> 2 &&
-         b->at[2] == i[2] >> 2 && b->level == level;
+  return b->at[0] == at[0] && b->at[1] == at[1] && b->at[2] == at[2] &&
+         b->level == level;
 }
 
-/* That of the block of cell i, or where it belongs. */
-static size_t find_slot(const struct vg_hgrid *s, uint64_t key, int level,
-                        const int64_t i[3])
+/* Slot of a block, or where it belongs. */
+static inline uint32_t *find_slot(const struct vg_hgrid *s, int level,
+                                  const int64_t block[3])
 {
-  size_t at = first_slot(s, key);
+  uint32_t *at;
 
-  while (s->slot[at].block != VG_NONE &&
-         (s->slot[at].key != key ||
-          !is_block(&s->block[s->slot[at].block], level, i)))
-    at = (at + 1) & (s->n_slot - 1);
+  VG_TABLE_FIND(&s->table, at, hash(level, block),
+                is_block(&s->block[*at], level, block));
   return at;
-}
-
-static int resize(struct vg_hgrid *s, size_t size)
-{
-  struct vg_hgrid_slot *old = s->slot, *slot = vg_alloc(size, sizeof *slot);
-  size_t n = s->n_slot;
-
-  if (!slot) return -1;
-  memset(slot, 0xff, size * sizeof *slot);
-  s->slot = slot;
-  s->n_slot = size;
-  for (size_t i = 0; i < n; i++)
-    if (old[i].block != VG_NONE) {
-      size_t at = first_slot(s, old[i].key);
-
-      while (s->slot[at].block != VG_NONE) at = (at + 1) & (size - 1);
-      s->slot[at] = old[i];
-    }
-  free(old);
-  return 0;
 }
 
 /* Head of the pages of cell i, made if need be; NULL: memory refused. */
 static uint32_t *cell_head(struct vg_hgrid *s, int level, const int64_t i[3])
 {
-  uint64_t key = block_key(level, i);
+  const int64_t at[3] = { i[0] >> 2, i[1] >> 2, i[2] >> 2 };
   struct vg_hgrid_block *block;
-  size_t at;
+  uint32_t *slot;
 
-  if (2 * s->n_block >= s->n_slot && resize(s, 2 * s->n_slot))
-    return NULL;
-  at = find_slot(s, key, level, i);
-  if (s->slot[at].block == VG_NONE) {
+  if (vg_table_reserve(&s->table, s->n_block + 1, block_hash, s)) return NULL;
+  slot = find_slot(s, level, at);
+  if (*slot == VG_TABLE_FREE) {
     if (vg_reserve(&s->block, &s->cap_block, s->n_block + 1,
                    sizeof *s->block))
       return NULL;
-    memset(&s->block[s->n_block], 0xff, sizeof *s->block);
-    s->block[s->n_block].used = 0;
-    s->block[s->n_block].level = level;
-    for (int k = 0; k < 3; k++) s->block[s->n_block].at[k] = i[k] >> 2;
-    s->slot[at].key = key;
-    s->slot[at].block = (uint32_t)s->n_block++;
+    block = &s->block[s->n_block];
+    memset(block, 0xff, sizeof *block);
+    block->used = 0;
+    block->level = level;
+    memcpy(block->at, at, sizeof at);
+    *slot = (uint32_t)s->n_block++;
   }
-  block = &s->block[s->slot[at].block];
+  block = &s->block[*slot];
   block->used |= (uint64_t)1 << cell_in_block(i);
   return &block->page[cell_in_block(i)];
 }
@@ -297,11 +272,10 @@ static void find_level(struct vg_hgrid *s, const double c[3], double r,
       double gxy = gx + along(s, &q, 1, 4 * b[1], 4 * q.side, &d);
 
       for (b[2] = q.lo[2] >> 2; b[2] <= q.hi[2] >> 2; b[2]++) {
-        int64_t i[3] = { 4 * b[0], 4 * b[1], 4 * b[2] };
         uint32_t block;
 
-        if (gxy + along(s, &q, 2, i[2], 4 * q.side, &d) > q.r2) continue;
-        block = s->slot[find_slot(s, block_key(level, i), level, i)].block;
+        if (gxy + along(s, &q, 2, 4 * b[2], 4 * q.side, &d) > q.r2) continue;
+        block = *find_slot(s, level, b);
         if (block != VG_NONE) find_in_block(s, &q, b, &s->block[block]);
       }
     }
@@ -332,12 +306,12 @@ int vg_hgrid_init(struct vg_hgrid *s, const double lo[3], double h_min,
   s->slope = slope;
   s->level_lo = level_of(h_min) - 1;
   s->level_hi = level_of(h_max) + 1;
-  return resize(s, 1 << 10);
+  return vg_table_init(&s->table, 1 << 9);
 }
 
 void vg_hgrid_release(struct vg_hgrid *s)
 {
-  free(s->slot);
+  vg_table_release(&s->table);
   free(s->block);
   free(s->page);
 }

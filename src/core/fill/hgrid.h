@@ -10,6 +10,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/table.h"
+
 enum { VG_HGRID_MAX = 2048, VG_HGRID_CELLS = 4096, VG_HGRID_PAGE = 8 };
 
 struct vg_hgrid_page {        /* some points of a cell, from its corner; what
@@ -22,13 +24,12 @@ struct vg_hgrid {
   double lo[3];              /* origin of the cells */
   double slope;              /* bound on the gradient of the spacing */
   int level_lo, level_hi;    /* levels that the spacing can ask for */
-  size_t n_slot;             /* open addressing, a power of 2 */
-  struct vg_hgrid_slot { uint64_t key; uint32_t block; } *slot;
+  struct vg_table table;     /* blocks by level and place */
   size_t n_block, cap_block;
   struct vg_hgrid_block {     /* 4 x 4 x 4 cells */
     uint64_t used;           /* bit i: cell i has points */
-    int64_t at[3];           /* which it is, since keys of blocks far from */
-    int level;               /* each other may be the same */
+    int64_t at[3];           /* place on its level, in 4 cells */
+    int level;
     uint32_t page[64];       /* first of each cell */
   } *block;
   size_t n_page, cap_page;

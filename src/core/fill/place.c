@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/hash.h"
 #include "base/memory.h"
 #include "core/fill/hgrid.h"
 #include "core/fill/sites.h"
@@ -208,13 +209,9 @@ static int level_around(const struct placer *p, const double c[3], double h)
  * every predicate would have to be exact. */
 static double shake(const int64_t i[3], int k)
 {
-  uint64_t mix = (uint64_t)i[0] * 0x9e3779b97f4a7c15u +
-                 (uint64_t)i[1] * 0xc2b2ae3d27d4eb4fu +
-                 (uint64_t)i[2] * 0x165667b19e3779f9u + (uint64_t)k;
+  uint64_t mix = vg_hash_mix(vg_hash_3((uint64_t)i[0], (uint64_t)i[1],
+                                       (uint64_t)i[2]) + (uint64_t)k);
 
-  mix ^= mix >> 32;
-  mix *= 0xd6e8feb86659fd93u;
-  mix ^= mix >> 32;
   return ((double)(mix & 0xffff) / 65536 - 0.5) * shaken;
 }
 

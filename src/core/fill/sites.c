@@ -3,59 +3,48 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/hash.h"
 #include "base/memory.h"
 
 void vg_sites_release(struct vg_sites *s)
 {
-  free(s->slot);
+  vg_table_release(&s->table);
+  free(s->block);
   memset(s, 0, sizeof *s);
 }
 
-static struct vg_site_block *find(const struct vg_sites *s,
-                                  const int32_t at[3], float h)
+static uint64_t hash(const int32_t at[3])
 {
-  uint64_t mix = (uint32_t)at[0] * 0x9e3779b97f4a7c15u +
-                 (uint32_t)at[1] * 0xc2b2ae3d27d4eb4fu +
-                 (uint32_t)at[2] * 0x165667b19e3779f9u;
-  size_t k = (mix ^ mix >> 29) * 0xbf58476d1ce4e5b9u >> 32 & (s->size - 1);
-
-  for (;; k = (k + 1) & (s->size - 1)) {
-    struct vg_site_block *b = &s->slot[k];
-
-    if (!(b->h > 0) || (b->h == h && !memcmp(b->at, at, sizeof b->at)))
-      return b;
-  }
+  return vg_hash_1(vg_hash_3((uint32_t)at[0], (uint32_t)at[1],
+                             (uint32_t)at[2]));
 }
 
-static int grow(struct vg_sites *s)
+static uint64_t block_hash(const void *sites, uint32_t block)
 {
-  struct vg_sites old = *s;
+  const struct vg_sites *s = sites;
 
-  s->size = old.size ? 2 * old.size : 64;
-  s->slot = vg_calloc(s->size, sizeof *s->slot);
-  if (!s->slot) {
-    *s = old;
-    return -1;
-  }
-  for (size_t k = 0; k < old.size; k++)
-    if (old.slot[k].h > 0)
-      *find(s, old.slot[k].at, old.slot[k].h) = old.slot[k];
-  free(old.slot);
-  return 0;
+  return hash(s->block[block].at);
+}
+
+static int is_block(const struct vg_site_block *b, const int32_t at[3],
+                    float h)
+{
+  return b->h == h && !memcmp(b->at, at, sizeof b->at);
 }
 
 struct vg_site_block *vg_sites_block(struct vg_sites *s, const int64_t i[3],
                                      float h)
 {
-  int32_t at[3] = { (int32_t)(i[0] >> 3), (int32_t)(i[1] >> 3),
-                    (int32_t)(i[2] >> 3) };
-  struct vg_site_block *b;
+  const int32_t at[3] = { (int32_t)(i[0] >> 3), (int32_t)(i[1] >> 3),
+                          (int32_t)(i[2] >> 3) };
+  uint32_t *slot;
 
-  if (2 * s->n >= s->size && grow(s)) return NULL;
-  b = find(s, at, h);
-  if (b->h > 0) return b;
-  memcpy(b->at, at, sizeof b->at);
-  b->h = h;
-  s->n++;
-  return b;
+  if (vg_table_reserve(&s->table, s->n + 1, block_hash, s)) return NULL;
+  VG_TABLE_FIND(&s->table, slot, hash(at), is_block(&s->block[*slot], at, h));
+  if (*slot != VG_TABLE_FREE) return &s->block[*slot];
+  if (vg_reserve(&s->block, &s->cap, s->n + 1, sizeof *s->block)) return NULL;
+  *slot = (uint32_t)s->n;
+  s->block[s->n] = (struct vg_site_block){ .h = h };
+  memcpy(s->block[s->n].at, at, sizeof at);
+  return &s->block[s->n++];
 }

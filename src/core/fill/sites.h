@@ -7,13 +7,16 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/table.h"
+
 struct vg_sites {
-  size_t n, size;            /* blocks; slots, a power of 2, or 0 */
+  struct vg_table table;
+  size_t n, cap;
   struct vg_site_block {
     int32_t at[3];           /* of the block, in 8 half sides */
-    float h;                 /* spacing that the lattice is of; 0: free */
+    float h;                 /* spacing that the lattice is of */
     uint64_t bit[8];
-  } *slot;                   /* open addressing */
+  } *block;                  /* [n] */
 };
 
 void vg_sites_release(struct vg_sites *s);
