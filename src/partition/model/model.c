@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/heap.h"
 #include "base/memory.h"
 
 #define NONE VG_MODEL_NONE
@@ -22,8 +23,8 @@ enum event_kind { EVENT_COMPUTED, EVENT_ENDED };
 
 struct event { double time; uint32_t task; enum event_kind kind; };
 
-/* A binary heap of ready tasks by their place in the order of priority. */
-struct ready { uint32_t n; uint32_t *place; };
+/* Heap of ready tasks by their places in the order of priority. */
+struct ready { size_t n, cap; uint32_t *place; };
 
 /* A worker without a task is in two lists, that of all and that of its rank,
  * the longest idle first. Index n_worker + rank, and n_worker + ranks for all,
@@ -39,18 +40,18 @@ struct sim {
   double *chain, *group_chain; /* longest chain up to a task's or group's end */
   double *in, *out;          /* [n] bytes to and from a rank */
   uint32_t *worker;          /* [n] who does it */
-  struct ready ready;
+  struct ready ready;        /* that any rank may do */
+  struct ready *joins;       /* [ranks] that wait for their rank */
   struct vg_dealt dealt;
   uint32_t *home;            /* [n] where it was made, then where it belongs */
-  /* Joins that wait for their rank: leftist heaps, first[ranks] on top. */
-  uint32_t *first, *left_of, *right_of, *depth;
   struct links all, own;
   uint32_t *n_idle;          /* [ranks] */
   uint32_t *n_looping;       /* [ranks] tasks with loops under way */
   uint32_t n_started, *started;  /* [n_started] handed out at this moment */
   struct vg_spans *helps;    /* who helped; may be NULL */
   struct event *event;       /* heap by time, kind, task */
-  uint32_t n_event, n_ended;
+  size_t n_event;
+  uint32_t n_ended;
   double *sent, *received;   /* [ranks] until when a rank's link is in use */
   double *busy;              /* [n_worker] */
   /* Ranks that may hand joins out: [n_touched], each once. */
@@ -121,55 +122,25 @@ static void find_bytes(struct sim *s)
 
 /* --- heaps and lists ----------------------------------------------------- */
 
-static void ready_push(struct ready *r, uint32_t place)
+static int is_lower(const uint32_t *a, const uint32_t *b)
 {
-  uint32_t at = r->n++;
-
-  while (at && place < r->place[(at - 1) / 2]) {
-    r->place[at] = r->place[(at - 1) / 2];
-    at = (at - 1) / 2;
-  }
-  r->place[at] = place;
+  return *a < *b;
 }
 
-static uint32_t ready_pop(struct ready *r)
-{
-  uint32_t top = r->place[0], last = r->place[--r->n], at = 0, child;
+VG_HEAP_DEFINE(place, uint32_t, is_lower)
 
-  while ((child = 2 * at + 1) < r->n) {
-    if (child + 1 < r->n && r->place[child + 1] < r->place[child]) child++;
-    if (last < r->place[child]) break;
-    r->place[at] = r->place[child];
-    at = child;
-  }
-  r->place[at] = last;
-  return top;
+static vg_status ready_push(struct ready *r, uint32_t place,
+                            struct vg_error *err)
+{
+  if (vg_reserve(&r->place, &r->cap, r->n + 1, sizeof *r->place))
+    return vg_fail_memory(err, "the simulation");
+  place_push(r->place, &r->n, place);
+  return VG_OK;
 }
 
-/* Two leftist heaps of tasks as one: the right path is the short one, so this
- * is no deeper than their logarithms. */
-static uint32_t merge(struct sim *s, uint32_t a, uint32_t b)
+static uint32_t ready_pop(struct sim *s, struct ready *r)
 {
-  uint32_t left, right;
-
-  if (a == NONE || b == NONE) return a == NONE ? b : a;
-  if (s->place[b] < s->place[a]) {
-    uint32_t swap = a;
-
-    a = b;
-    b = swap;
-  }
-  right = merge(s, s->right_of[a], b);
-  left = s->left_of[a];
-  if (left == NONE || s->depth[left] < s->depth[right]) {
-    s->left_of[a] = right;
-    s->right_of[a] = left;
-  } else {
-    s->right_of[a] = right;
-  }
-  right = s->right_of[a];
-  s->depth[a] = right == NONE ? 1 : s->depth[right] + 1;
-  return a;
+  return s->order[place_pop(r->place, &r->n)];
 }
 
 static int is_before(const struct event *a, const struct event *b)
@@ -179,34 +150,12 @@ static int is_before(const struct event *a, const struct event *b)
   return a->task < b->task;
 }
 
-static void event_push(struct sim *s, double time, enum event_kind kind,
-                       uint32_t task)
+VG_HEAP_DEFINE(event, struct event, is_before)
+
+static void add_event(struct sim *s, double time, enum event_kind kind,
+                      uint32_t task)
 {
-  struct event new = { time, task, kind };
-  uint32_t at = s->n_event++;
-
-  while (at && is_before(&new, &s->event[(at - 1) / 2])) {
-    s->event[at] = s->event[(at - 1) / 2];
-    at = (at - 1) / 2;
-  }
-  s->event[at] = new;
-}
-
-static struct event event_pop(struct sim *s)
-{
-  struct event top = s->event[0], last = s->event[--s->n_event];
-  uint32_t at = 0, child;
-
-  while ((child = 2 * at + 1) < s->n_event) {
-    if (child + 1 < s->n_event &&
-        is_before(&s->event[child + 1], &s->event[child]))
-      child++;
-    if (is_before(&last, &s->event[child])) break;
-    s->event[at] = s->event[child];
-    at = child;
-  }
-  s->event[at] = last;
-  return top;
+  event_push(s->event, &s->n_event, (struct event){ time, task, kind });
 }
 
 static void link_last(struct links *l, uint32_t head, uint32_t item)
@@ -347,13 +296,14 @@ static vg_status set_durations(struct sim *s, struct vg_error *err)
     }
     span->end = span->start + took;
     s->busy[s->worker[s->started[i]]] += took;
-    event_push(s, span->end, EVENT_COMPUTED, s->started[i]);
+    add_event(s, span->end, EVENT_COMPUTED, s->started[i]);
   }
   s->n_started = 0;
   return st;
 }
 
-static void make_ready(struct sim *s, uint32_t task)
+static vg_status make_ready(struct sim *s, uint32_t task,
+                            struct vg_error *err)
 {
   const struct vg_span *span = &s->g.span[task];
   uint32_t after = s->g.after[task], *home = &s->home[task];
@@ -362,27 +312,19 @@ static void make_ready(struct sim *s, uint32_t task)
                         : (uint32_t)span->home % (uint32_t)s->machine->ranks;
   if (s->machine->cyclic && span->kind == VG_SPAN_LEAF && span->work > 0) {
     s->dealt.held[s->dealt.n_held++] = task;
-    return;
+    return VG_OK;
   }
   if (span->kind != VG_SPAN_JOIN || s->g.moves[task] ||
-      s->machine->joins_roam) {
-    ready_push(&s->ready, s->place[task]);
-    return;
-  }
-  s->left_of[task] = s->right_of[task] = NONE;
-  s->depth[task] = 1;
-  s->first[*home] = merge(s, s->first[*home], task);
+      s->machine->joins_roam)
+    return ready_push(&s->ready, s->place[task], err);
   touch(s, *home);
+  return ready_push(&s->joins[*home], s->place[task], err);
 }
 
 static void hand_out_joins(struct sim *s, uint32_t rank)
 {
-  while (s->first[rank] != NONE && idle_of(s, rank) != NONE) {
-    uint32_t task = s->first[rank];
-
-    s->first[rank] = merge(s, s->left_of[task], s->right_of[task]);
-    hand_out(s, task, idle_of(s, rank));
-  }
+  while (s->joins[rank].n && idle_of(s, rank) != NONE)
+    hand_out(s, ready_pop(s, &s->joins[rank]), idle_of(s, rank));
 }
 
 static void hand_out_dealt(struct sim *s)
@@ -410,7 +352,7 @@ static vg_status hand_out_all(struct sim *s, struct vg_error *err)
     hand_out_joins(s, rank);
   }
   while (s->ready.n && idle_any(s) != NONE) {
-    uint32_t task = s->order[ready_pop(&s->ready)];
+    uint32_t task = ready_pop(s, &s->ready);
     uint32_t worker = idle_of(s, s->home[task]);
 
     hand_out(s, task, worker != NONE ? worker : idle_any(s));
@@ -427,9 +369,10 @@ static double least_time(const struct sim *s, const struct vg_span *span)
   return (span->cpu - span->loops + span->loops / k) / s->machine->rate;
 }
 
-static void end_task(struct sim *s, uint32_t task)
+static vg_status end_task(struct sim *s, uint32_t task, struct vg_error *err)
 {
   struct vg_model_graph *g = &s->g;
+  vg_status st = VG_OK;
 
   s->n_ended++;
   for (uint32_t i = g->in_first[task]; i < g->in_first[task + 1]; i++) {
@@ -443,9 +386,11 @@ static void end_task(struct sim *s, uint32_t task)
 
       s->chain[next] = s->group_chain[group] +
         least_time(s, &g->span[next]);
-      make_ready(s, next);
+      VG_TRY(make_ready(s, next, err));
     }
   }
+done:
+  return st;
 }
 
 static void computed(struct sim *s, uint32_t task)
@@ -459,9 +404,9 @@ static void computed(struct sim *s, uint32_t task)
   if (is_cut(span->kind) && s->cuts_wall < span->end)
     s->cuts_wall = span->end;
   if (rank == home)
-    event_push(s, s->now, EVENT_ENDED, task);
+    add_event(s, s->now, EVENT_ENDED, task);
   else
-    event_push(s, send(s, rank, home, s->out[task]), EVENT_ENDED, task);
+    add_event(s, send(s, rank, home, s->out[task]), EVENT_ENDED, task);
 }
 
 /* --- a run --------------------------------------------------------------- */
@@ -480,10 +425,9 @@ static void sim_release(struct sim *s)
   free(s->ready.place);
   vg_dealt_release(&s->dealt);
   free(s->home);
-  free(s->first);
-  free(s->left_of);
-  free(s->right_of);
-  free(s->depth);
+  for (int r = 0; s->joins && r < s->machine->ranks; r++)
+    free(s->joins[r].place);
+  free(s->joins);
   free(s->all.prev);
   free(s->all.next);
   free(s->own.prev);
@@ -512,12 +456,8 @@ static vg_status sim_allocate(struct sim *s, struct vg_error *err)
   s->in = vg_alloc(n, sizeof *s->in);
   s->out = vg_alloc(n, sizeof *s->out);
   s->worker = vg_alloc(n, sizeof *s->worker);
-  s->ready.place = vg_alloc(n, sizeof *s->ready.place);
   s->home = vg_alloc(n, sizeof *s->home);
-  s->first = vg_alloc(ranks, sizeof *s->first);
-  s->left_of = vg_alloc(n, sizeof *s->left_of);
-  s->right_of = vg_alloc(n, sizeof *s->right_of);
-  s->depth = vg_alloc(n, sizeof *s->depth);
+  s->joins = vg_calloc(ranks, sizeof *s->joins);
   s->all.prev = vg_alloc(n_link, sizeof *s->all.prev);
   s->all.next = vg_alloc(n_link, sizeof *s->all.next);
   s->own.prev = vg_alloc(n_link, sizeof *s->own.prev);
@@ -532,8 +472,7 @@ static vg_status sim_allocate(struct sim *s, struct vg_error *err)
   s->touched = vg_alloc(ranks, sizeof *s->touched);
   s->is_touched = vg_calloc(ranks, sizeof *s->is_touched);
   if (!s->order || !s->place || !s->left || !s->chain || !s->group_chain ||
-      !s->in || !s->out || !s->worker || !s->ready.place || !s->home ||
-      !s->first || !s->left_of || !s->right_of || !s->depth ||
+      !s->in || !s->out || !s->worker || !s->home || !s->joins ||
       !s->all.prev || !s->all.next || !s->own.prev || !s->own.next ||
       !s->n_idle || !s->n_looping || !s->started || !s->event ||
       !s->sent || !s->received || !s->busy || !s->touched || !s->is_touched)
@@ -576,7 +515,6 @@ static void set_lists(struct sim *s)
 {
   uint32_t ranks = (uint32_t)s->machine->ranks;
 
-  for (uint32_t r = 0; r < ranks; r++) s->first[r] = NONE;
   for (uint32_t i = s->n_worker; i <= s->n_worker + ranks; i++)
     s->all.prev[i] = s->all.next[i] = s->own.prev[i] = s->own.next[i] = i;
   for (uint32_t w = 0; w < s->n_worker; w++) set_idle(s, w);
@@ -591,7 +529,7 @@ static vg_status simulate(struct sim *s, struct vg_error *err)
   for (uint32_t i = 0; i < s->g.n; i++) {
     if (s->g.wait[i] != NONE) continue;
     s->chain[i] = least_time(s, &s->g.span[i]);
-    make_ready(s, i);
+    VG_TRY(make_ready(s, i, err));
   }
   VG_TRY(hand_out_all(s, err));
   for (;;) {
@@ -602,9 +540,9 @@ static vg_status simulate(struct sim *s, struct vg_error *err)
     if (!s->n_event) break;
     s->now = s->event[0].time;
     while (s->n_event && s->event[0].time == s->now) {
-      struct event e = event_pop(s);
+      struct event e = event_pop(s->event, &s->n_event);
 
-      if (e.kind == EVENT_ENDED) end_task(s, e.task);
+      if (e.kind == EVENT_ENDED) VG_TRY(end_task(s, e.task, err));
       else computed(s, e.task);
     }
     VG_TRY(hand_out_all(s, err));
