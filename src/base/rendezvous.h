@@ -1,4 +1,5 @@
-/* base/rendezvous.h: where equal items of all ranks meet. Uses comm.h.
+/* base/rendezvous.h: where equal items of all ranks meet. Uses comm.h
+ * and hash.h.
  *
  * An item begins with its key, a few 32-bit words. Items of equal keys go to
  * the rank that a hash of the key names, and are looked at there together. */
@@ -10,6 +11,7 @@
 #include <string.h>
 
 #include "base/comm.h"
+#include "base/hash.h"
 
 /** A list of items; zeroed: none. */
 struct vg_items {
@@ -48,11 +50,9 @@ static inline uint64_t vg_rendezvous_hash(const void *key, size_t n)
     uint32_t word;
 
     memcpy(&word, (const unsigned char *)key + i, sizeof word);
-    h = (h ^ word) * UINT64_C(0x9E3779B97F4A7C15);
-    h ^= h >> 32;
+    h = vg_hash_add(h, word);
   }
-  h *= UINT64_C(0xD6E8FEB86659FD93);
-  return h ^ h >> 32;
+  return vg_hash_mix(h);
 }
 
 /** Rank on which items of a key meet. */

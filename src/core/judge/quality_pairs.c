@@ -7,6 +7,9 @@
  * which never gets there. This takes less than two thirds of the time of
  * quality_faces.c, which sees all sides of a face together.
  *
+ * base/table.h keeps what has entered it. For 2,076,831 tetrahedra of a wing it
+ * would have 67 MB of slots for 4.2 million faces; these buckets take 2.1 MB.
+ *
  * What it does not see is a face with four sides, two and two. If cells are
  * positive and their faces leave in pairs of opposite sides, then they cover
  * each place equally often, so that such a mesh has a multiple of the volume
@@ -15,6 +18,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/tri_key.h"
 #include "base/union_find.h"
 #include "core/judge/quality_parts.h"
 
@@ -52,8 +56,9 @@ struct pairing {
 
 static size_t home(const struct pairing *p, uint64_t key, uint32_t high)
 {
-  return (size_t)((key * UINT64_C(0x9E3779B97F4A7C15) +
-                   high * UINT64_C(0xC2B2AE3D27D4EB4F)) >> p->shift);
+  struct vg_tri_key k = { key, high };
+
+  return (size_t)(vg_tri_key_hash(k) >> p->shift);
 }
 
 static int make_buckets(struct pairing *p, unsigned bits)
@@ -151,42 +156,27 @@ static void come(struct pairing *p, const struct face *f)
   if (++p->n > p->mask * (SLOTS / 2)) grow(p);
 }
 
-/* Returns whether the two were exchanged. */
-static uint32_t put_in_order(uint32_t *a, uint32_t *b)
-{
-  uint32_t low = *a < *b ? *a : *b, high = *a < *b ? *b : *a;
-  uint32_t turned = *a > *b;
-
-  *a = low;
-  *b = high;
-  return turned;
-}
-
 /* With the nodes a < b < c < d of a tetrahedron in a positive order, b c d and
  * a b d wind by rising numbers seen from outside, the others the other way;
  * each exchange turns all four. The side is 1 as in quality_faces.c: the
  * cycle goes on from its lowest node to the higher of the others. */
 static void faces_of_tet(const uint32_t n[4], uint32_t cell, struct face f[4])
 {
-  uint32_t a = n[0], b = n[1], c = n[2], d = n[3];
-  uint32_t side = 2 * cell;
+  uint32_t v[4] = { n[0], n[1], n[2], n[3] };
+  uint32_t side = 2 * cell ^ vg_order4(v);
+  uint64_t a = v[0], b = v[1], c = v[2];
 
-  side ^= put_in_order(&a, &b) ^ put_in_order(&c, &d);
-  side ^= put_in_order(&a, &c) ^ put_in_order(&b, &d);
-  side ^= put_in_order(&b, &c);
-  f[0] = (struct face){ (uint64_t)a << 32 | b, c, side ^ 1 };
-  f[1] = (struct face){ (uint64_t)a << 32 | b, d, side };
-  f[2] = (struct face){ (uint64_t)a << 32 | c, d, side ^ 1 };
-  f[3] = (struct face){ (uint64_t)b << 32 | c, d, side };
+  f[0] = (struct face){ a << 32 | b, v[2], side ^ 1 };
+  f[1] = (struct face){ a << 32 | b, v[3], side };
+  f[2] = (struct face){ a << 32 | c, v[3], side ^ 1 };
+  f[3] = (struct face){ b << 32 | c, v[3], side };
 }
 
 static struct face face_of_tri(const uint32_t n[3], uint32_t owner)
 {
-  uint32_t a = n[0], b = n[1], c = n[2], side = 2 * owner;
+  uint32_t v[3] = { n[0], n[1], n[2] }, side = 2 * owner ^ vg_order3(v);
 
-  side ^= put_in_order(&a, &b) ^ put_in_order(&b, &c);
-  side ^= put_in_order(&a, &b);
-  return (struct face){ (uint64_t)a << 32 | b, c, side };
+  return (struct face){ (uint64_t)v[0] << 32 | v[1], v[2], side };
 }
 
 /* The face that leaves out a node, of those of faces_of_tet. */

@@ -2,8 +2,9 @@
  *
  * Cells are passed once, in order. A half-face whose mate has not been met
  * waits in a chain; its entry of link[] holds the next in the chain until the
- * mate comes, then the mate. So the table costs one word per half-face and
- * the heads. Heads lie near the number of the face's lowest point: cells that
+ * mate comes, then the mate. So the heads, 16 bytes a point or 3 for each of
+ * its tetrahedra, are all that the table costs; base/table.h would take 16 to
+ * 32 bytes a tetrahedron. Heads lie near the number of the face's lowest point: cells that
  * are numbered near each other share cache lines, and a point with very many
  * faces spreads over a window of heads. */
 #include "core/mesh/cell_links.h"
@@ -12,11 +13,13 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/tri_key.h"
 #include "core/mesh/cell_faces.h"
 
 #define NONE UINT32_MAX
 #define HEADS 4u        /* per point */
-#define WINDOW 4096u    /* power of two */
+#define WINDOW_BITS 12u
+#define WINDOW (1u << WINDOW_BITS)
 /* 8 * cell + face stays below NONE. */
 #define MAX_CELL ((UINT32_MAX >> 3) - 1)
 
@@ -79,38 +82,24 @@ int vg_half_face_nodes(const struct vg_cell_links *f, uint32_t code,
 
 /* --- keys: sorted nodes, NONE behind those of a triangle --- */
 
-static inline void order(uint32_t *a, uint32_t *b)
-{
-  uint32_t lo = *a < *b ? *a : *b, hi = *a < *b ? *b : *a;
-
-  *a = lo;
-  *b = hi;
-}
-
 static inline void make_key(const uint32_t *c, const unsigned char *q,
                             uint32_t key[4])
 {
   for (int k = 0; k < 3; k++) key[k] = c[q[k]];
-  order(&key[0], &key[1]);
   if (q[2] == q[3]) {
-    order(&key[1], &key[2]);
-    order(&key[0], &key[1]);
+    vg_order3(key);
     key[3] = NONE;
     return;
   }
   key[3] = c[q[3]];
-  order(&key[2], &key[3]);
-  order(&key[0], &key[2]);
-  order(&key[1], &key[3]);
-  order(&key[1], &key[2]);
+  vg_order4(key);
 }
 
 static inline size_t slot_of(const uint32_t key[4])
 {
-  uint32_t h = (key[1] * 0x9e3779b1u) ^ (key[2] * 0x85ebca6bu);
+  uint64_t h = key[1] * VG_GOLDEN + key[2] * VG_HASH_2;
 
-  h ^= h >> 15;
-  return HEADS * (size_t)key[0] + (h & (WINDOW - 1));
+  return HEADS * (size_t)key[0] + (size_t)(h >> (64 - WINDOW_BITS));
 }
 
 static inline int has_key(const struct vg_cell_links *f, uint32_t code,

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/hash.h"
 #include "base/memory.h"
 #include "partition/engine/engine_parts.h"
 
@@ -46,17 +47,13 @@ void vg_task_state_free(struct vg_engine *e, struct vg_task_state *j)
 
 /* --- tasks --------------------------------------------------------------- */
 
-/* A number in [0, 1) that follows from path and seed alone: FNV-1a, then the
- * finalizer of splitmix64. */
+/* A number in [0, 1) that follows from path and seed alone. */
 static double draw(const char *path, uint64_t seed)
 {
-  uint64_t h = seed ^ 0xcbf29ce484222325u;
+  uint64_t h = seed;
 
-  for (; *path; path++) h = (h ^ (unsigned char)*path) * 0x100000001b3u;
-  h = (h ^ h >> 30) * 0xbf58476d1ce4e5b9u;
-  h = (h ^ h >> 27) * 0x94d049bb133111ebu;
-  h ^= h >> 31;
-  return (double)(h >> 11) * 0x1p-53;
+  for (; *path; path++) h = vg_hash_add(h, (unsigned char)*path);
+  return (double)(vg_hash_mix(h) >> 11) * 0x1p-53;
 }
 
 static int legal(const struct vg_task *t)

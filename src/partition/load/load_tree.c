@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/hash.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "core/geometry/predicates.h"
@@ -275,7 +276,7 @@ static uint64_t scatter(const struct vg_load_node *node)
   uint64_t z = 0;
 
   for (int k = 0; k < 3; k++) {
-    z += node->at[k] + UINT64_C(0x9e3779b97f4a7c15);
+    z += node->at[k] + VG_GOLDEN;
     z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
     z = (z ^ z >> 27) * UINT64_C(0x94d049bb133111eb);
     z ^= z >> 31;
