@@ -1,6 +1,6 @@
 /* base/hash.h: numbers scattered evenly over 64 bits. Uses nothing.
  *
- * Tables look at the upper bits of these values only. Where points of a mesh
+ * Tables use the upper bits of these values only. Where points of a mesh
  * stand follows from some of the values too, so none of them may change. */
 #ifndef VG_BASE_HASH_H
 #define VG_BASE_HASH_H

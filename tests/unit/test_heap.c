@@ -1,4 +1,4 @@
-/* base/heap.h beside a list that is searched. */
+/* base/heap.h and base/buckets.h against a list that is searched. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -7,6 +7,7 @@
 
 #include <cmocka.h>
 
+#include "base/buckets.h"
 #include "base/hash.h"
 #include "base/heap.h"
 
@@ -83,11 +84,59 @@ static void leave_sorted(void **state)
     }
 }
 
+/* The first of the lowest class, as the list is in the order of arrival. */
+static size_t lowest_of(const int *class, const uint32_t *item, size_t n)
+{
+  size_t lowest = 0;
+
+  for (size_t i = 1; i < n; i++)
+    if (class[item[i]] < class[item[lowest]]) lowest = i;
+  return lowest;
+}
+
+/* Items come and leave at random, some again; classes beyond the ends too. */
+static void classes_in_turn(void **state)
+{
+  static int class[MOST];
+  static uint32_t list[MOST], spare[MOST];
+  struct vg_buckets b = { .n = 0 };
+  size_t n = 0, n_spare = 0;
+  uint64_t draw = 1;
+
+  (void)state;
+  assert_int_equal(vg_buckets_init(&b, 10), 0);
+  for (uint32_t i = 0; i < MOST; i++) {
+    assert_int_equal(vg_buckets_reserve(&b, i + 1), 0);
+    spare[n_spare++] = i;
+  }
+  for (int i = 0; i < 20000; i++) {
+    draw = vg_hash_mix(draw + VG_GOLDEN);
+    if (n_spare && (!n || draw >> 40 & 1)) {
+      uint32_t item = spare[--n_spare];
+      int wanted = (int)(draw % 14) - 2;
+
+      vg_buckets_push(&b, wanted, item);
+      class[item] = wanted < 0 ? 0 : wanted > 9 ? 9 : wanted;
+      list[n++] = item;
+    } else {
+      size_t at = lowest_of(class, list, n);
+
+      assert_int_equal(vg_buckets_pop(&b), list[at]);
+      spare[n_spare++] = list[at];
+      for (n--; at < n; at++) list[at] = list[at + 1];
+    }
+  }
+  for (; n; n--) assert_true(vg_buckets_pop(&b) != VG_BUCKETS_NONE);
+  assert_true(vg_buckets_pop(&b) == VG_BUCKETS_NONE);
+  vg_buckets_release(&b);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(leave_in_order),
     cmocka_unit_test(leave_sorted),
+    cmocka_unit_test(classes_in_turn),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

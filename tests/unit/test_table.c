@@ -1,4 +1,4 @@
-/* base/table.h, base/hash.h, base/tri_key.h: tables beside plain lists. */
+/* base/table.h, base/hash.h, base/tri_key.h: tables against plain lists. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

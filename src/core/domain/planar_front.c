@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/buckets.h"
 #include "base/memory.h"
 #include "core/geometry/predicates.h"
 
@@ -26,18 +27,15 @@
  * about as long as the boundary's, they fall in one list. */
 enum { N_BUCKET = 2200, BUCKET_ZERO = 1100 };
 
-struct entry {
-  uint32_t face, stamp, next;
-};
+struct entry { uint32_t face, stamp; };
 
 struct front {
   struct vg_tri2 *t;
   const struct vg_planar_law *law;
-  struct entry *entry;
-  size_t n, cap;
-  uint32_t free;                       /* recycled entries */
-  uint32_t head[N_BUCKET], tail[N_BUCKET];
-  int low;
+  struct entry *entry;                 /* [n] items of the queue */
+  uint32_t *free;                      /* [n_free] entries that have left it */
+  size_t n, cap, n_free, cap_free;
+  struct vg_buckets queue;
   double scale;
 };
 
@@ -105,44 +103,35 @@ static uint32_t front_edge(const struct vg_tri2 *t, uint32_t at, double *len)
 static int push(struct front *f, uint32_t at)
 {
   double len;
-  int bucket;
-  uint32_t slot = f->free;
+  int octave;
+  uint32_t slot;
 
   if (front_edge(f->t, at, &len) == VG_T2_NONE) return 0;
-  frexp(len * f->scale, &bucket);
-  bucket += BUCKET_ZERO;
-  if (bucket < 0) bucket = 0;
-  if (bucket >= N_BUCKET) bucket = N_BUCKET - 1;
-  if (slot != VG_T2_NONE) f->free = f->entry[slot].next;
-  else {
+  frexp(len * f->scale, &octave);
+  if (f->n_free) {
+    slot = f->free[--f->n_free];
+  } else {
     if (f->n >= VG_T2_NONE - 1
-        || vg_reserve(&f->entry, &f->cap, f->n + 1, sizeof *f->entry))
+        || vg_reserve(&f->entry, &f->cap, f->n + 1, sizeof *f->entry)
+        || vg_reserve(&f->free, &f->cap_free, f->n + 1, sizeof *f->free)
+        || vg_buckets_reserve(&f->queue, f->n + 1))
       return -1;
     slot = (uint32_t)f->n++;
   }
-  f->entry[slot] = (struct entry){ at, f->t->face[at].stamp, VG_T2_NONE };
-  if (f->head[bucket] == VG_T2_NONE) f->head[bucket] = slot;
-  else f->entry[f->tail[bucket]].next = slot;
-  f->tail[bucket] = slot;
-  if (bucket < f->low) f->low = bucket;
+  f->entry[slot] = (struct entry){ at, f->t->face[at].stamp };
+  vg_buckets_push(&f->queue, octave + BUCKET_ZERO, slot);
   return 0;
 }
 
 /* Next live unfinished triangle, or NONE. */
 static uint32_t pop(struct front *f)
 {
-  while (f->low < N_BUCKET) {
-    const uint32_t slot = f->head[f->low];
-    struct entry e;
+  uint32_t slot;
 
-    if (slot == VG_T2_NONE) {
-      f->low++;
-      continue;
-    }
-    e = f->entry[slot];
-    f->head[f->low] = e.next;
-    f->entry[slot].next = f->free;
-    f->free = slot;
+  while ((slot = vg_buckets_pop(&f->queue)) != VG_BUCKETS_NONE) {
+    const struct entry e = f->entry[slot];
+
+    f->free[f->n_free++] = slot;
     if (f->t->face[e.face].stamp == e.stamp
         && !(f->t->face[e.face].flag & (VG_T2_DONE | VG_T2_DEAD)))
       return e.face;
@@ -299,23 +288,18 @@ static double shortest_fixed(const struct vg_tri2 *t)
 
 int vg_tri2_fill(struct vg_tri2 *t, const struct vg_planar_law *law)
 {
-  struct front *f = vg_calloc(1, sizeof *f);
-  int bad = !f;
+  struct front f = { .t = t, .law = law,
+                     .scale = 1.41421356 / shortest_fixed(t) };
+  int bad = vg_buckets_init(&f.queue, N_BUCKET);
 
-  if (bad) return -1;
-  f->t = t;
-  f->law = law;
-  f->free = VG_T2_NONE;
-  f->low = N_BUCKET;
-  f->scale = 1.41421356 / shortest_fixed(t);
-  for (int i = 0; i < N_BUCKET; i++) f->head[i] = VG_T2_NONE;
   for (uint32_t i = 0; i < t->n_face; i++)
     if (!(t->face[i].flag & VG_T2_DEAD) && is_done(t, i))
       t->face[i].flag |= VG_T2_DONE;
   for (uint32_t i = 0; !bad && i < t->n_face; i++)
-    if (!(t->face[i].flag & (VG_T2_DEAD | VG_T2_DONE))) bad = push(f, i);
-  if (!bad) bad = advance(f);
-  free(f->entry);
-  free(f);
+    if (!(t->face[i].flag & (VG_T2_DEAD | VG_T2_DONE))) bad = push(&f, i);
+  if (!bad) bad = advance(&f);
+  vg_buckets_release(&f.queue);
+  free(f.entry);
+  free(f.free);
   return bad;
 }

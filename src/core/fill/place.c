@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/buckets.h"
 #include "base/hash.h"
 #include "base/memory.h"
 #include "core/fill/hgrid.h"
@@ -51,18 +52,16 @@ struct placer {
   const struct vg_tets *t;
   const struct vg_sizing *sizing;
   const struct vg_region *region;
-  size_t n, cap, cap_h, cap_cell, cap_steps, cap_queue;
+  size_t n, cap, cap_h, cap_cell, cap_steps;
   double (*x)[3];            /* surface points first */
   float *h;
   uint32_t *cell;            /* cell of t that holds the point */
   uint8_t *steps;            /* proposals that lead to the point from points
                                 of the front or from what its faces propose,
                                 which have 0; UINT8_MAX: that many or more */
-  uint32_t *queue;           /* next item in the same bucket */
+  struct vg_buckets queue;   /* faces of the surface, then points */
   size_t n_face;
   uint32_t *face;            /* links 4 * cell + face of the surface */
-  uint32_t first[N_BUCKET], last[N_BUCKET];
-  int lowest;                /* no bucket below it has items */
   struct vg_hgrid near;
   int is_listed;             /* near has what is around the growing point */
   int now;                   /* steps of what is proposed now */
@@ -81,31 +80,12 @@ static int bucket_of(double h)
   double m = frexp(h, &e);
 
   while (k && m < step[k]) k--;
-  e = 8 * e + k + BUCKET_ZERO;
-  return e < 0 ? 0 : e >= N_BUCKET ? N_BUCKET - 1 : e;
+  return 8 * e + k + BUCKET_ZERO;
 }
 
 static void push(struct placer *p, uint32_t item, double h)
 {
-  int b = bucket_of(h);
-
-  p->queue[item] = VG_NONE;
-  if (p->first[b] == VG_NONE) p->first[b] = item;
-  else p->queue[p->last[b]] = item;
-  p->last[b] = item;
-  if (b < p->lowest) p->lowest = b;
-}
-
-static uint32_t pop(struct placer *p)
-{
-  for (; p->lowest < N_BUCKET; p->lowest++) {
-    uint32_t item = p->first[p->lowest];
-
-    if (item == VG_NONE) continue;
-    p->first[p->lowest] = p->queue[item];
-    return item;
-  }
-  return VG_NONE;
+  vg_buckets_push(&p->queue, bucket_of(h), item);
 }
 
 /* --- proposals ----------------------------------------------------------- */
@@ -116,8 +96,7 @@ static int reserve(struct placer *p, size_t n)
          vg_reserve(&p->h, &p->cap_h, n, sizeof *p->h) ||
          vg_reserve(&p->cell, &p->cap_cell, n, sizeof *p->cell) ||
          vg_reserve(&p->steps, &p->cap_steps, n, sizeof *p->steps) ||
-         vg_reserve(&p->queue, &p->cap_queue, p->n_face + n,
-                    sizeof *p->queue);
+         vg_buckets_reserve(&p->queue, p->n_face + n);
 }
 
 /* Are points to be placed at x? h: the spacing, not farther off than `off`. */
@@ -631,7 +610,7 @@ static void release(struct placer *p)
   free(p->h);
   free(p->cell);
   free(p->steps);
-  free(p->queue);
+  vg_buckets_release(&p->queue);
   free(p->face);
   vg_hgrid_release(&p->near);
   vg_sites_release(&p->sites);
@@ -649,11 +628,11 @@ static struct placer *start(const struct vg_tets *t,
   p->t = t;
   p->sizing = sizing;
   p->region = region;
-  p->lowest = N_BUCKET;
-  memset(p->first, 0xff, sizeof p->first);
   if (t->n_point) memcpy(origin, t->x[0], sizeof origin);
   vg_sizing_range(sizing, &h_min, &h_max);
-  if (vg_hgrid_init(&p->near, origin, h_min, h_max, vg_sizing_slope(sizing)) ||
+  if (vg_buckets_init(&p->queue, N_BUCKET) ||
+      vg_hgrid_init(&p->near, origin, h_min, h_max,
+                    vg_sizing_slope(sizing)) ||
       start_faces(p) || push_faces(p) || start_points(p)) {
     release(p);
     return NULL;
@@ -670,7 +649,7 @@ vg_status vg_place(const struct vg_tets *t, const struct vg_sizing *sizing,
   int bad = 0;
 
   if (!p) return vg_fail_memory(err, "placing points");
-  while (!bad && (item = pop(p)) != VG_NONE) {
+  while (!bad && (item = vg_buckets_pop(&p->queue)) != VG_NONE) {
     bad = item < p->n_face ? grow_face(p, p->face[item])
                            : grow_point(p, item - (uint32_t)p->n_face);
     if (limit && p->n - t->n_point > limit) break;
