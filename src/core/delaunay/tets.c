@@ -157,7 +157,7 @@ uint32_t vg_tets_locate(const struct vg_tets *t, uint32_t start,
 {
   uint32_t c = start, from = VG_NONE, most = 4096 + t->n_cell / 64;
 
-  /* A walk along a sheet of many points is long, but shorter than a look at
+  /* A walk along a sheet of many points is long, but shorter than a search of
    * all cells. */
   for (uint32_t step = 0; step < most; step++) {
     const struct vg_cell *cell = &t->cell[c];

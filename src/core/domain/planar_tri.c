@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/hash.h"
 #include "base/memory.h"
 #include "core/geometry/hilbert.h"
 #include "core/geometry/predicates.h"
@@ -241,7 +242,7 @@ static int order_compare(const void *pa, const void *pb)
 
 static uint32_t round_of(uint32_t i)
 {
-  uint32_t h = (i + 1) * 2654435769u;
+  uint32_t h = (i + 1) * (uint32_t)(VG_GOLDEN >> 32);
 
   h = (h ^ h >> 15) * 2246822519u;
   h ^= h >> 13;

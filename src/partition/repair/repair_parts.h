@@ -189,7 +189,7 @@ enum { VG_LEVEL_MAX = 64 };
 /* Balls, to be found by points in them. No vg_table: a cell of a grid is in
  * many balls, and its key would take 32 bytes. Here a ball takes 4 bytes for
  * each of its cells, 8 at most, and 32 to 64 for the slots; balls of other
- * cells in a slot are told apart by their distance. */
+ * cells in a slot are recognised by their distance. */
 struct vg_spot_grid {
   size_t n;
   const struct vg_spot *spot;  /* [n] borrowed */
@@ -197,8 +197,8 @@ struct vg_spot_grid {
   size_t n_cluster;
   int n_level, level[VG_LEVEL_MAX];  /* binary exponents of the radii */
   double share[VG_LEVEL_MAX];  /* grid cells of each level to a length */
-  uint64_t mask;
-  uint32_t *first, *ball;    /* [mask + 2] into ball: by hash of grid cells */
+  unsigned shift;            /* 64 minus the logarithm of the slots */
+  uint32_t *first, *ball;    /* [slots + 2] into ball, by hash of grid cells */
 };
 
 /** Leave out balls around what is deep in others. */

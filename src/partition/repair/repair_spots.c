@@ -50,7 +50,7 @@ static int slots(const struct vg_spot_grid *b, const struct vg_spot *s,
   for (int64_t i = lo[0]; i <= hi[0]; i++)
     for (int64_t j = lo[1]; j <= hi[1]; j++)
       for (int64_t k = lo[2]; k <= hi[2] && n < 8; k++)
-        slot[n++] = hash(level, i, j, k) & b->mask;
+        slot[n++] = hash(level, i, j, k) >> b->shift;
   return n;
 }
 
@@ -70,8 +70,8 @@ static vg_status fill_grid(struct vg_spot_grid *b, struct vg_error *err)
 {
   uint64_t slot[8], size = 64;
 
-  while (size < 8 * b->n) size *= 2;
-  b->mask = size - 1;
+  b->shift = 58;
+  for (; size < 8 * b->n; size *= 2) b->shift--;
   b->first = vg_calloc(size + 2, sizeof *b->first);
   b->ball = vg_alloc(8 * b->n, sizeof *b->ball);
   if (!b->first || !b->ball) return vg_fail_memory(err, "repairs");
@@ -94,7 +94,7 @@ uint32_t vg_spot_grid_at(const struct vg_spot_grid *b, const double x[3])
   for (int l = 0; l < b->n_level; l++) {
     double m = b->share[l];
     uint64_t s = hash(b->level[l], grid(x[0], m), grid(x[1], m),
-                      grid(x[2], m)) & b->mask;
+                      grid(x[2], m)) >> b->shift;
 
     for (uint32_t k = b->first[s]; k < b->first[s + 1]; k++) {
       const struct vg_spot *t = &b->spot[b->ball[k]];
@@ -259,7 +259,7 @@ static int is_covered(const struct vg_spot_grid *b, uint32_t i)
   for (int l = 0; l < b->n_level; l++) {
     double m = b->share[l];
     uint64_t at = hash(b->level[l], grid(s->at[0], m), grid(s->at[1], m),
-                       grid(s->at[2], m)) & b->mask;
+                       grid(s->at[2], m)) >> b->shift;
 
     for (uint32_t k = b->first[at]; k < b->first[at + 1]; k++) {
       const struct vg_spot *t = &b->spot[b->ball[k]];
