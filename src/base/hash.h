@@ -1,21 +1,21 @@
-/* base/hash.h: numbers scattered evenly over 64 bits. Uses nothing.
+/* base/hash.h: hash functions of numbers and places. Uses nothing.
  *
- * Tables use the upper bits of these values only. Where points of a mesh
- * stand follows from some of the values too, so none of them may change. */
+ * base/table.h uses the upper bits of a hash. Some values also decide where the
+ * points of a mesh stand, so a change of any function changes meshes. */
 #ifndef VG_BASE_HASH_H
 #define VG_BASE_HASH_H
 
 #include <stdint.h>
 #include <string.h>
 
-/* 2^64 and 2^32 over the golden ratio, and two more odd multipliers without a
- * pattern in their bits. */
+/* 2^64 and 2^32 divided by the golden ratio, and two other odd multipliers
+ * (primes 2 and 3 of XXH64). */
 #define VG_GOLDEN UINT64_C(0x9E3779B97F4A7C15)
 #define VG_GOLDEN_32 UINT32_C(0x9E3779B1)
 #define VG_HASH_2 UINT64_C(0xC2B2AE3D27D4EB4F)
 #define VG_HASH_3 UINT64_C(0x165667B19E3779F9)
 
-/** Each bit of the result depends on each bit of x. */
+/** Mix a number: each bit of the result depends on each bit of x. */
 static inline uint64_t vg_hash_mix(uint64_t x)
 {
   x ^= x >> 32;
@@ -23,27 +23,29 @@ static inline uint64_t vg_hash_mix(uint64_t x)
   return x ^ x >> 32;
 }
 
-/** One number; its upper bits depend on all bits of x. One multiplication. */
+/** Hash of one number. Its upper bits depend on all bits of x, for the price of
+ * one multiplication. */
 static inline uint64_t vg_hash_1(uint64_t x)
 {
   return (x ^ x >> 32) * VG_GOLDEN;
 }
 
-/** Three numbers in order, as vg_hash_1: of less than 32 bits each. */
+/** Hash of three numbers in order, a sum of products. Its upper bits depend on
+ * all bits of numbers below 2^32. */
 static inline uint64_t vg_hash_3(uint64_t a, uint64_t b, uint64_t c)
 {
   return a * VG_GOLDEN + b * VG_HASH_2 + c * VG_HASH_3;
 }
 
-/** The hash of a sequence whose hash was h, with one more word at its end; 0
- * is the hash of the empty sequence. */
+/** Hash of a sequence with one more word at its end. h: hash of the sequence
+ * without it, 0 of the empty one. */
 static inline uint64_t vg_hash_add(uint64_t h, uint64_t word)
 {
   h = (h ^ word) * VG_GOLDEN;
   return h ^ h >> 32;
 }
 
-/** A place; -0 and 0 have the same hash. */
+/** Hash of a place. -0 and 0 have the same hash. */
 static inline uint64_t vg_hash_point(const double x[3])
 {
   uint64_t h = 0;

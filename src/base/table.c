@@ -33,7 +33,7 @@ int vg_table_reserve(struct vg_table *t, size_t n,
 {
   struct vg_table more;
 
-  if (2 * n <= n_slot(t)) return 0;
+  if (n <= n_slot(t) / 2) return 0;
   if (vg_table_init(&more, n > n_slot(t) ? n : n_slot(t))) return -1;
   for (const uint32_t *from = t->slot; from != t->end; from++) {
     uint32_t *at;

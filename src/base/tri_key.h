@@ -27,7 +27,7 @@ static inline uint32_t vg_order3(uint32_t v[3])
   return odd ^ vg_order2(&v[0], &v[1]);
 }
 
-/** The same of four numbers. */
+/** Put four numbers in order; returns 1 after an odd number of exchanges. */
 static inline uint32_t vg_order4(uint32_t v[4])
 {
   uint32_t odd = vg_order2(&v[0], &v[1]) ^ vg_order2(&v[2], &v[3]);
@@ -36,16 +36,16 @@ static inline uint32_t vg_order4(uint32_t v[4])
   return odd ^ vg_order2(&v[1], &v[2]);
 }
 
-/** An edge, in either direction. */
+/** Key of the edge between two points, the same in both directions. */
 static inline uint64_t vg_edge_key(uint32_t a, uint32_t b)
 {
   return a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
 }
 
-/* A triangle, in any order of its corners. */
+/* Key of a triangle, the same for all orders of its corners. */
 struct vg_tri_key {
-  uint64_t low;              /* lowest corner << 32 | middle one */
-  uint32_t high;             /* highest corner */
+  uint64_t low;              /* Lowest corner << 32 | middle corner. */
+  uint32_t high;             /* Highest corner. */
 };
 
 static inline struct vg_tri_key vg_tri_key(const uint32_t corner[3])

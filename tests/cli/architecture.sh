@@ -10,6 +10,7 @@
 #   - a third-party header outside the file that adapts it
 #   - a struct, union or enum vg_NAME that is defined twice
 #   - a file name that two modules have, unless it is listed below
+#   - a constant of a hash function outside base/hash.h: a hash table by hand
 #   - a test that tests/README.md does not name
 #   - a symbol of a module further up, with a BUILD folder to look into
 # architecture.sh SOURCE_ROOT [BUILD]
@@ -143,6 +144,13 @@ while read -r file; do
   [ -n "${shared[${file%.*}]-}" ] ||
     complain "two files are called $file:" $(find . -name "$file")
 done < <(find . -name '*.[ch]*' -printf '%f\n' | sort | uniq -d)
+
+# Constants of hash functions; partition/cut still has a table of its own.
+while IFS= read -r file; do
+  complain "src/$file has a constant of base/hash.h: use base/table.h"
+done < <(grep -rliE '0x(9e3779b|c2b2ae3d|165667b1|d6e8feb8)|2654435769' \
+  --include='*.[ch]' . | sed 's,^\./,,' |
+  grep -vE '^(base/hash\.h|partition/cut/(select|work)\.c)$')
 
 # Every test is in the table of what covers what.
 table=../tests/README.md

@@ -325,7 +325,7 @@ static void link_by_table(struct vg_inserter *s)
   }
 }
 
-/* An edge of the cavity's hull: that of corner half % 3 of face half / 3. */
+/* Key of the edge opposite corner half % 3 of face half / 3 of the cavity. */
 static uint64_t hull_edge(const struct vg_inserter *s, uint32_t half)
 {
   const uint32_t *v = s->face[half / 3].v;
@@ -333,12 +333,14 @@ static uint64_t hull_edge(const struct vg_inserter *s, uint32_t half)
   return vg_edge_key(v[(half + 1) % 3], v[(half + 2) % 3]);
 }
 
+/* Face of a new cell at that edge, as a link. */
 static uint32_t hull_link(const struct vg_inserter *s, uint32_t half)
 {
   return 4 * s->face[half / 3].link + half % 3;
 }
 
-/* The same for many vertices. edge: empty, with room. */
+/* Link the new cells of a cavity with many vertices. edge: an empty table with
+ * room for its edges. */
 static void link_by_edges(struct vg_inserter *s, const struct vg_table *edge)
 {
   for (uint32_t half = 0; half < 3 * s->n_face; half++) {

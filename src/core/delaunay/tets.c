@@ -65,8 +65,8 @@ static int has_key(const struct vg_tets *t, uint32_t half,
   return vg_tri_key_same(face_key(&t->cell[half >> 2], half & 3), key);
 }
 
-/* The first half of a face enters the table, the second is linked with it; a
- * third is one too many. */
+/* The first half of a face enters the table, and the second one is linked with
+ * it. A third half is an error. */
 static vg_status link_faces(struct vg_tets *t, const struct vg_table *table,
                             struct vg_error *err)
 {
@@ -92,7 +92,8 @@ static vg_status link_faces(struct vg_tets *t, const struct vg_table *table,
   return VG_OK;
 }
 
-/* Half of the 4 n_cell halves enter the table, and those of the hull. */
+/* Of the 4 n_cell halves one of each inner face enters the table, and all of
+ * the hull. */
 vg_status vg_tets_link(struct vg_tets *t, struct vg_error *err)
 {
   struct vg_table table;

@@ -32,8 +32,8 @@ struct entry { uint32_t face, stamp; };
 struct front {
   struct vg_tri2 *t;
   const struct vg_planar_law *law;
-  struct entry *entry;                 /* [n] items of the queue */
-  uint32_t *free;                      /* [n_free] entries that have left it */
+  struct entry *entry;                 /* [n] Items of the queue. */
+  uint32_t *free;                      /* [n_free] Entries that have left it. */
   size_t n, cap, n_free, cap_free;
   struct vg_buckets queue;
   double scale;

@@ -26,8 +26,8 @@ static int level_of(double h)
   return e - 1;
 }
 
-/* Cells are kept in blocks of 4 x 4 x 4, which share an entry of the table and
- * stand together in memory: the surroundings of a point touch few of them. */
+/* Blocks of 4 x 4 x 4 cells share an entry of the table and are contiguous in
+ * memory, so that a query touches few of them. */
 static uint64_t hash(int level, const int64_t block[3])
 {
   return vg_hash_1(vg_hash_3((uint64_t)block[0], (uint64_t)block[1],

@@ -10,8 +10,9 @@
 
 struct vg_key { uint64_t key; uint32_t index; };
 
-/** Bits of q, two clear ones between any two: three numbers of 21 bits become
- * a Morton code (Morton, IBM Ltd., 1966) by x | y << 1 | z << 2. */
+/** Spread the 21 bits of q so that two clear bits follow each of them. Three
+ * such numbers make a Morton code, x | y << 1 | z << 2 (Morton, IBM Ltd.,
+ * 1966). */
 static inline uint64_t vg_interleave3(uint64_t q)
 {
   q = (q | q << 32) & 0x001f00000000ffffu;
@@ -21,7 +22,7 @@ static inline uint64_t vg_interleave3(uint64_t q)
   return (q | q << 2) & 0x1249249249249249u;
 }
 
-/** The same with one clear bit between any two, of 32 bits. */
+/** Spread the 32 bits of q so that one clear bit follows each of them. */
 static inline uint64_t vg_interleave2(uint64_t q)
 {
   q = (q | q << 16) & 0x0000ffff0000ffffu;

@@ -7,8 +7,8 @@
  * which never gets there. This takes less than two thirds of the time of
  * quality_faces.c, which sees all sides of a face together.
  *
- * base/table.h keeps what has entered it. For 2,076,831 tetrahedra of a wing it
- * would have 67 MB of slots for 4.2 million faces; these buckets take 2.1 MB.
+ * Items cannot leave a table of base/table.h. For 2,076,831 tetrahedra of a wing
+ * it would have 67 MB of slots for 4.2 million faces; these buckets take 2.1 MB.
  *
  * What it does not see is a face with four sides, two and two. If cells are
  * positive and their faces leave in pairs of opposite sides, then they cover

@@ -18,7 +18,8 @@ struct tri_table {
   const uint32_t (*tri)[3];
 };
 
-/* The same for the three in any order, so that no look-up sorts them. */
+/* The hash is the same for all orders of the corners, so a search need not sort
+ * them. */
 static uint64_t hash3(const uint32_t v[3])
 {
   uint64_t a = v[0], b = v[1], c = v[2];

@@ -26,8 +26,8 @@ void vg_soup_release(struct vg_soup *s);
 vg_status vg_soup_point(struct vg_soup *s, const double x[3], uint32_t *at,
                         struct vg_error *err);
 
-/** The point of earlier calls with exactly these coordinates, appended when
- * new. O(1). */
+/** Find the point that an earlier call of this function appended with exactly
+ * these coordinates, or append it. O(1). */
 vg_status vg_soup_weld(struct vg_soup *s, const double x[3], uint32_t *at,
                        struct vg_error *err);
 

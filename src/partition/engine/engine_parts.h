@@ -43,9 +43,10 @@ enum {
 /* --- a heap that needs no memory of its own ------------------------------ */
 
 /* Pairing heap (Fredman et al., 1986): first member of what is in it. A task
- * enters a queue when a message says so, and that cannot be refused: heaps of
- * base/heap.h would need room for all tasks of the rank in each of 2 + threads
- * queues before a task is accepted. This one takes 32 bytes of each task. */
+ * enters a queue when a message arrives, which cannot fail any more. Heaps of
+ * base/heap.h would have to reserve room for all tasks of the rank in each of
+ * 2 + threads queues before a task is accepted; this one takes 32 bytes of each
+ * task. */
 struct vg_heap {
   double key;                /* higher first */
   const char *path;          /* lower first, where keys are equal */

@@ -40,8 +40,8 @@ struct sim {
   double *chain, *group_chain; /* longest chain up to a task's or group's end */
   double *in, *out;          /* [n] bytes to and from a rank */
   uint32_t *worker;          /* [n] who does it */
-  struct ready ready;        /* that any rank may do */
-  struct ready *joins;       /* [ranks] that wait for their rank */
+  struct ready ready;        /* Tasks that any rank may do. */
+  struct ready *joins;       /* [ranks] Joins that wait for their rank. */
   struct vg_dealt dealt;
   uint32_t *home;            /* [n] where it was made, then where it belongs */
   struct links all, own;

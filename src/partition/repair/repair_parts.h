@@ -186,10 +186,10 @@ vg_status vg_overlap_take(const struct vg_overlap *f, struct vg_edit *out);
 
 enum { VG_LEVEL_MAX = 64 };
 
-/* Balls, to be found by points in them. No vg_table: a cell of a grid is in
- * many balls, and its key would take 32 bytes. Here a ball takes 4 bytes for
- * each of its cells, 8 at most, and 32 to 64 for the slots; balls of other
- * cells in a slot are recognised by their distance. */
+/* Balls, to be found by points in them. A grid cell can meet many balls, which
+ * base/table.h does not store, and its key takes 32 bytes. Here a ball takes 4
+ * bytes for each of the at most 8 cells that it meets, and 32 to 64 bytes of
+ * slots. A slot can list balls of other cells; their distance excludes them. */
 struct vg_spot_grid {
   size_t n;
   const struct vg_spot *spot;  /* [n] borrowed */

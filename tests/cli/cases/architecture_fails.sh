@@ -39,6 +39,10 @@ cp -r good bare
 echo '#include "m.h"' >>bare/src/core/fill/f.c
 refused bare "does not name its folder"
 
+cp -r good hash
+echo 'int h(int x) { return x * 0x9e3779b1u; }' >>hash/src/core/fill/f.c
+refused hash "src/core/fill/f.c has a constant of base/hash.h"
+
 cp -r good foreign
 echo '#include <tetgen.h>' >>foreign/src/core/fill/f.c
 refused foreign "includes <tetgen.h>"
