@@ -7,6 +7,7 @@
 #ifndef VG_BASE_BUCKETS_H
 #define VG_BASE_BUCKETS_H
 
+#include <assert.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -58,6 +59,7 @@ static inline void vg_buckets_push(struct vg_buckets *b, int class,
                                    uint32_t item)
 {
   class = class < 0 ? 0 : class < b->n ? class : b->n - 1;
+  assert(b->n > 0 && item < b->cap);
   b->next[item] = VG_BUCKETS_NONE;
   if (b->first[class] == VG_BUCKETS_NONE) b->first[class] = item;
   else b->next[b->last[class]] = item;

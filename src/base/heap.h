@@ -6,6 +6,7 @@
 #ifndef VG_BASE_HEAP_H
 #define VG_BASE_HEAP_H
 
+#include <assert.h>
 #include <stddef.h>
 
 /** Define NAME_push and NAME_pop for a heap of items of a type:
@@ -32,11 +33,15 @@
                                                                         \
   static inline type name##_pop(type *heap, size_t *n)                  \
   {                                                                     \
-    type top = heap[0], last = heap[--*n];                              \
-    size_t at = 0, child;                                               \
+    size_t left, at = 0, child;                                         \
+    type top, last;                                                     \
                                                                         \
-    while ((child = 2 * at + 1) < *n) {                                 \
-      if (child + 1 < *n && before(&heap[child + 1], &heap[child]))     \
+    assert(*n > 0);                                                     \
+    left = --*n;                                                        \
+    top = heap[0];                                                      \
+    last = heap[left];                                                  \
+    while ((child = 2 * at + 1) < left) {                               \
+      if (child + 1 < left && before(&heap[child + 1], &heap[child]))   \
         child++;                                                        \
       if (before(&last, &heap[child])) break;                           \
       heap[at] = heap[child];                                           \

@@ -16,6 +16,7 @@
 #ifndef VG_BASE_TABLE_H
 #define VG_BASE_TABLE_H
 
+#include <assert.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -50,6 +51,7 @@ void vg_table_release(struct vg_table *t);
 
 static inline uint32_t *vg_table_home(const struct vg_table *t, uint64_t hash)
 {
+  assert(t->slot);
   return t->slot + (hash >> t->shift);
 }
 
