@@ -136,8 +136,8 @@ done < <(grep -rhoE '\b(struct|union|enum) (vg|vanguard)_[a-z0-9_]+ \{' \
 
 # Names that two modules share, since the folder says which of the two it is.
 declare -A shared
-for name in assets boundary child domain gaps grow input job layers mesh output \
-    page patches put_back share sizes slices slices_parts text walls work; do
+for name in assets boundary child domain front gaps input job layers mesh output \
+    page patches progress put_back share sizes slices slices_parts text walls work; do
   shared[$name]=1
 done
 while read -r file; do

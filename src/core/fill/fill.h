@@ -55,7 +55,7 @@ struct vg_fill_report {
   double time_boundary, time_place, time_insert, time_optimise, time_total;
 };
 
-/** Its fields (report.c). */
+/** Its fields (fill_report.c). */
 extern const struct vg_entries vg_fill_entries;
 
 /** What became of a front: its change. Corners of cells and faces are indices

@@ -86,7 +86,7 @@ struct vg_partition_report {
   double number;             /* seconds of numbering */
 };
 
-/** Fields of it, and of its parting, that ranks combine (report.c). */
+/** Fields of it, and of its parting, that ranks combine (partition_report.c). */
 extern const struct vg_entries vg_partition_entries, vg_parting_entries;
 
 /** The cells of a void, on the ranks that made them. */
