@@ -4,7 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/hash.h"
 #include "base/memory.h"
+#include "base/table.h"
 #include "core/geometry/hilbert.h"
 #include "partition/engine/engine_memory.h"
 
@@ -260,57 +262,36 @@ static int list_faces(struct list *l)
   return 0;
 }
 
-/* Which number a point has among those listed: a hash table with linear
- * probing, of the size of the part; a list by point would be as long as the
- * front, in each thread. */
+/* Numbers of the points listed. The table is of the size of the part; an array
+ * over all points would be as long as the front, in each thread. */
 struct numbers {
-  int bits;
+  struct vg_table table;
   size_t n;                  /* points listed */
-  uint32_t *slot;            /* [2^bits] number + 1, 0: free */
   uint32_t *point;           /* [n] */
 };
 
-/* Where the point is, or belongs. */
-static uint32_t *slot_of(const struct numbers *t, uint32_t p)
+static uint64_t hash_of(const void *numbers, uint32_t k)
 {
-  uint32_t mask = (uint32_t)(((uint64_t)1 << t->bits) - 1);
-  uint32_t i = p * UINT32_C(0x9e3779b1) >> (32 - t->bits);
-
-  while (t->slot[i] && t->point[t->slot[i] - 1] != p) i = (i + 1) & mask;
-  return &t->slot[i];
+  return vg_hash_1(((const struct numbers *)numbers)->point[k]);
 }
 
-static int set_bits(struct numbers *t, int bits)
-{
-  free(t->slot);
-  t->bits = bits;
-  t->slot = vg_calloc((size_t)1 << bits, sizeof *t->slot);
-  if (!t->slot) return -1;
-  for (uint32_t k = 0; k < t->n; k++) *slot_of(t, t->point[k]) = k + 1;
-  return 0;
-}
-
-/* Points of the listed faces, numbered as they come. to out: [n] the faces in
- * these numbers. */
+/* Number the corners of the faces listed, by first use; to: [n] these faces in
+ * the new numbers. */
 static int number_points(struct numbers *t, const uint32_t (*from)[3],
                          size_t n, const uint32_t *face, uint32_t (*to)[3])
 {
-  int bits = 4;
-
-  while (bits < 32 && 2 * ((uint64_t)1 << bits) < 3 * (uint64_t)n) bits++;
-  if (set_bits(t, bits)) return -1;
+  if (vg_table_init(&t->table, n / 2 + 8)) return -1;
   for (size_t i = 0; i < n; i++) {
-    if (2 * t->n > (uint64_t)1 << t->bits && t->bits < 32 &&
-        set_bits(t, t->bits + 1))
-      return -1;
+    if (vg_table_reserve(&t->table, t->n + 3, hash_of, t)) return -1;
     for (int k = 0; k < 3; k++) {
-      uint32_t p = from[face[i]][k], *slot = slot_of(t, p);
+      uint32_t p = from[face[i]][k], *at;
 
-      if (!*slot) {
-        t->point[t->n++] = p;
-        *slot = (uint32_t)t->n;
+      VG_TABLE_FIND(&t->table, at, vg_hash_1(p), t->point[*at] == p);
+      if (*at == VG_TABLE_FREE) {
+        t->point[t->n] = p;
+        *at = (uint32_t)t->n++;
       }
-      to[i][k] = *slot - 1;
+      to[i][k] = *at;
     }
   }
   return 0;
@@ -346,7 +327,7 @@ static vg_status take(const struct vg_front *f, size_t n,
         number_points(&t, (const uint32_t (*)[3])f->face, n, face,
                       part->face) ||
         gather(f, &t, part);
-  free(t.slot);
+  vg_table_release(&t.table);
   if (!bad) {
     uint32_t *less = vg_realloc(t.point, t.n, sizeof *t.point);
 

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/bytes.h"
+#include "base/hash.h"
 #include "base/memory.h"
 #include "partition/cut/node.h"
 
@@ -263,7 +264,7 @@ static int fails_on_purpose(const struct vg_partition *p, const char *path)
   }
   h ^= h >> 29;
   return rounds < p->options.fail_rounds &&
-         (double)(h * 0x9e3779b97f4a7c15u >> 11) * 0x1p-53 <
+         (double)(h * VG_GOLDEN >> 11) * 0x1p-53 <
            p->options.fail_leaves;
 }
 
