@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/checks.h"
 #include "base/memory.h"
 #include "base/table.h"
 #include "base/tri_key.h"
@@ -273,6 +274,7 @@ vg_status vg_tets_compact(struct vg_tets *t, size_t n_keep,
   size_t n;
   vg_status st = VG_OK;
 
+  VG_CHECK("the insertion of points", vg_tets_defects(t));
   if (!point || !to) {
     st = vg_fail_memory(err, "renumbering cells");
     goto done;
@@ -296,6 +298,7 @@ vg_status vg_tets_compact(struct vg_tets *t, size_t n_keep,
     goto done;
   }
   move_cells(t, n, to, cell, flag);
+  VG_CHECK("the renumbering of cells", vg_tets_defects(t));
 done:
   free(point);
   free(to);
@@ -303,16 +306,27 @@ done:
   return st;
 }
 
-size_t vg_tets_defects(const struct vg_tets *t)
+size_t vg_tets_inverted(const struct vg_tets *t)
 {
   size_t bad = 0;
+
+  for (size_t c = 0; c < t->n_cell; c++) {
+    const uint32_t *v = t->cell[c].v;
+
+    bad += !(t->flag[c] & VG_DEAD) &&
+           !(vg_orient3d(t->x[v[0]], t->x[v[1]], t->x[v[2]], t->x[v[3]]) > 0);
+  }
+  return bad;
+}
+
+size_t vg_tets_defects(const struct vg_tets *t)
+{
+  size_t bad = vg_tets_inverted(t);
 
   for (uint32_t c = 0; c < t->n_cell; c++) {
     const struct vg_cell *cell = &t->cell[c];
 
     if (t->flag[c] & VG_DEAD) continue;
-    bad += !(vg_orient3d(t->x[cell->v[0]], t->x[cell->v[1]],
-                         t->x[cell->v[2]], t->x[cell->v[3]]) > 0);
     for (uint32_t i = 0; i < 4; i++) {
       uint32_t l = cell->link[i];
 

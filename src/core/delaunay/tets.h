@@ -96,7 +96,11 @@ uint32_t vg_tets_locate(const struct vg_tets *t, uint32_t start,
 vg_status vg_tets_compact(struct vg_tets *t, size_t n_keep,
                           struct vg_error *err);
 
-/** Test aid: number of inconsistencies (links, orientation). O(n). */
+/** Number of live cells that are not positive. O(n). */
+size_t vg_tets_inverted(const struct vg_tets *t);
+
+/** Number of inconsistencies: links, and cells that are not positive; a check
+ * of stages and an aid of tests. O(n). */
 size_t vg_tets_defects(const struct vg_tets *t);
 
 #endif

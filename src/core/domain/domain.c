@@ -6,12 +6,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/checks.h"
 #include "base/memory.h"
 #include "core/domain/farfield.h"
 #include "core/domain/open_edges.h"
 #include "core/domain/planar.h"
 #include "core/domain/symmetry.h"
 #include "core/geometry/vector.h"
+#include "core/mesh/defects.h"
 
 /* Part of a farfield's radius that the body may reach: chords of the
  * triangulated sphere come this near. */
@@ -365,6 +367,7 @@ vg_status vg_domain_complete_by(struct vg_mesh *surface,
     report->symmetry_at = d.at;
     report->n_added_tri = d.m.n_tri - surface->n_tri;
   }
+  VG_CHECK("the completion of the domain", vg_mesh_open_edges(&d.m));
   vg_mesh_move(surface, &d.m);
 done:
   vg_mesh_release(&d.m);

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/checks.h"
 #include "base/memory.h"
 #include "core/domain/planar_front.h"
 #include "core/domain/planar_tri.h"
@@ -274,6 +275,7 @@ vg_status vg_planar_mesh(size_t n, const double (*p)[2], size_t n_edge,
                  "be far too small in it", n_edge, VG_T2_POINT_MAX);
     goto done;
   }
+  VG_CHECK("the triangulation of a plane region", vg_tri2_defects(&r.t));
   st = hand_over(&r, n_new, add, n_tri, tri, err);
 done:
   vg_tri2_release(&r.t);

@@ -90,6 +90,10 @@ static inline int vg_t2_is_fixed(const struct vg_tri2 *t, uint32_t e)
   return t->face[e >> 2].flag >> (e & 3) & 1;
 }
 
+/** Number of violations of the invariant above; a check of stages
+ * (base/checks.h). O(triangles). */
+size_t vg_tri2_defects(const struct vg_tri2 *t);
+
 /** Copy n points, add the three corners of an enclosing triangle as points
  * n, n + 1, n + 2, and make that triangle. 0, or -1 without memory. */
 int vg_tri2_init(struct vg_tri2 *t, size_t n, const double (*p)[2]);

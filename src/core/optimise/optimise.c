@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/checks.h"
 #include "base/memory.h"
 #include "core/geometry/hilbert.h"
 #include "core/optimise/optimise_parts.h"
@@ -202,6 +203,7 @@ static vg_status optimise(struct vg_optimiser *o, struct vg_tets *t,
   if (st == VG_OK) o->report->n_left = count_left(o);
   for (size_t c = 0; c < t->n_cell; c++) t->flag[c] &= (uint8_t)~VG_TRIED;
   if (st == VG_OK && o->refused) st = vg_fail_memory(err, "optimisation");
+  VG_CHECK("optimisation", vg_tets_defects(t));
   free(o->q);
   free(o->star);
   free(o->failed);

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/checks.h"
 #include "base/memory.h"
 #include "core/optimise/optimise_ball.h"
 
@@ -200,6 +201,7 @@ vg_status vg_optimise_points(struct vg_tets *t, size_t n,
       q[link[c] >> 2] = (float)m->now.q[c];
     report->n_smoothed++;
   }
+  VG_CHECK("the smoothing of points", vg_tets_inverted(t));
   balls_release(&b);
   free(m);
   return st;

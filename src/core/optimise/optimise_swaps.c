@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/checks.h"
 #include "base/memory.h"
 #include "core/optimise/optimise_parts.h"
 
@@ -35,6 +36,7 @@ vg_status vg_optimise_swaps(struct vg_tets *t, float below, float **q,
     if (!(t->flag[c] & (VG_DEAD | VG_OUTSIDE)) && o->q[c] < below)
       vg_swap(o, c);
   *q = o->q;
+  VG_CHECK("a pass of swaps", vg_tets_defects(t));
   if (st == VG_OK && o->refused) st = vg_fail_memory(err, "optimisation");
   free(o->star);
   free(o->failed);

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/checks.h"
 #include "base/hash.h"
 #include "base/memory.h"
 #include "base/table.h"
@@ -438,6 +439,16 @@ done:
   return st;
 }
 
+/* How many triangles are no fixed faces? SIZE_MAX when memory is refused. */
+static size_t not_fixed(struct vg_tets *t, size_t n_tri,
+                        const uint32_t (*tri)[3])
+{
+  size_t n_missing = SIZE_MAX;
+
+  return vg_boundary_fix(t, n_tri, tri, NULL, &n_missing, NULL) < 0
+         ? SIZE_MAX : n_missing;
+}
+
 vg_status vg_boundary_tets(size_t n, const double (*x)[3], size_t n_tri,
                            const uint32_t (*tri)[3], struct vg_tets *out,
                            struct vg_boundary_report *report,
@@ -454,6 +465,8 @@ vg_status vg_boundary_tets(size_t n, const double (*x)[3], size_t n_tri,
   }
   VG_TRY(st);
   VG_TRY(vg_boundary_sides(out, n_tri, tri, NULL, 0, NULL, err));
+  VG_CHECK("boundary recovery", vg_tets_defects(out));
+  VG_CHECK("boundary recovery", not_fixed(out, n_tri, tri));
 done:
   if (st < 0) vg_tets_release(out);
   return st;
@@ -473,6 +486,8 @@ vg_status vg_boundary_open(size_t n, const double (*x)[3], size_t n_tri,
   VG_TRY(delaunay(out, n, x, err));
   VG_TRY(vg_recover(out, n_tri, tri, report, err));
   VG_TRY(vg_boundary_sides(out, n_tri, tri, region, n, sizing, err));
+  VG_CHECK("boundary recovery", vg_tets_defects(out));
+  VG_CHECK("boundary recovery", not_fixed(out, n_tri, tri));
 done:
   if (st < 0) vg_tets_release(out);
   return st;

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/checks.h"
 #include "base/memory.h"
 #include "base/union_find.h"
 #include "core/geometry/hilbert.h"
@@ -538,6 +539,8 @@ vg_status vg_recover(struct vg_tets *t, size_t n_tri, const uint32_t (*tri)[3],
                  "recovered in pockets", r.n_missing);
   if (st == VG_OK && report->n_face_lost)
     st = vg_recover_delaunay(t, n_before, before, &report->n_restored, err);
+  if (st == VG_OK)
+    VG_CHECK("the recovery of faces", vg_tets_defects(t));
   free(before);
   free(missing);
   free(r.missing);

@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/checks.h"
 #include "base/memory.h"
 #include "core/delaunay/cavity.h"
 #include "core/geometry/predicates.h"
@@ -243,6 +244,7 @@ vg_status vg_recover_delaunay(struct vg_tets *t, size_t n_before,
       if (!(t->flag[c] & VG_DEAD) && is_wrong(t, c, i)) restore_face(&r, c, i);
     }
   }
+  VG_CHECK("flips towards Delaunay cells", vg_tets_defects(t));
   free(now.link);
   free(r.next.link);
   *n_flip = r.n_flip;

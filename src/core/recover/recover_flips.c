@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/checks.h"
 #include "base/memory.h"
 
 /* Depth of each round. A round over what was left by one before finds other
@@ -104,6 +105,7 @@ vg_status vg_recover_flips(struct vg_tets *t, size_t n_tri,
     if (!f.refused && *n_missing)
       *n_missing = make_tris(&f, *n_missing, missing, tri_round[k]);
   if (f.refused) st = vg_fail_memory(err, "boundary recovery");
+  VG_CHECK("the recovery of faces by flips", vg_tets_defects(t));
 done:
   vg_flip_front_release(&f.front);
   free(f.star);

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/checks.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 
@@ -267,6 +268,7 @@ vg_status vg_blocks_join(struct vg_tris *w, size_t n, struct vg_block *b,
     j.made.n_swap += b[i].w.n_swap;
     j.made.n_move += b[i].w.n_move;
   }
+  VG_CHECK("the joining of blocks of a surface", vg_work_defects(&j.made));
   vg_work_free_arrays(w);
   *w = j.made;
 done:

@@ -9,8 +9,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/checks.h"
 #include "base/memory.h"
 #include "core/geometry/vector.h"
+#include "core/mesh/defects.h"
 #include "core/remesh/blocks.h"
 #include "core/remesh/job.h"
 #include "core/remesh/passes.h"
@@ -585,6 +587,8 @@ vg_status vg_remesh(struct vg_mesh *m, const struct vg_remesh_options *o,
   VG_TRY(check_stretch(m, o->stretch, err));
   VG_TRY(vg_job_prepare(&j, err));
   VG_TRY(repeat(&j, m, o, &out, err));
+  if (VG_CHECKS_ON && !vg_mesh_open_edges(m))
+    VG_CHECK("the remeshing of a surface", vg_mesh_open_edges(&out));
   tell(&j, m, &out, report);
   vg_mesh_move(m, &out);
 done:

@@ -4,9 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/checks.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "core/geometry/vector.h"
+#include "core/mesh/defects.h"
 
 #define SWEEPS 8          /* over zigzags of soft borders */
 #define NEAR_SQRT2 1.4142135623730951
@@ -211,6 +213,41 @@ static void count_edges(const struct vg_tris *w, struct vg_remesh_report *r)
   }
 }
 
+/* --- is it consistent? --------------------------------------------------- */
+
+static size_t bad_half(const struct vg_work *w, uint32_t h)
+{
+  const uint32_t mate = w->mate[h];
+  size_t bad = vg_work_from(w, h) >= w->n_point;
+
+  bad += w->edge[h] > w->n_line;
+  if (mate == VG_REF_NONE) return bad;
+  if (mate >= 3 * w->n_tri || vg_work_removed(w, mate / 3)) return bad + 1;
+  return bad + (w->mate[mate] != h) +
+         (vg_work_from(w, mate) != vg_work_to(w, h)) +
+         (vg_work_to(w, mate) != vg_work_from(w, h)) +
+         (!w->edge[h] != !w->edge[mate]);
+}
+
+size_t vg_work_defects(const struct vg_work *w)
+{
+  size_t bad = 0;
+
+  for (uint32_t t = 0; t < w->n_tri; t++) {
+    if (vg_work_removed(w, t)) continue;
+    bad += w->tri[t][1] == w->tri[t][2] || w->tri[t][2] == w->tri[t][0];
+    for (uint32_t h = 3 * t; h < 3 * t + 3; h++) bad += bad_half(w, h);
+  }
+  for (uint32_t p = 0; !bad && p < w->n_point; p++) {
+    const uint32_t h = w->point[p].half;
+
+    bad += h != VG_REF_NONE &&
+           (h >= 3 * w->n_tri || vg_work_removed(w, h / 3) ||
+            vg_work_from(w, h) != p);
+  }
+  return bad;
+}
+
 /* --- all ----------------------------------------------------------------- */
 
 static vg_status store(const struct vg_tris *w, const uint32_t *label,
@@ -257,6 +294,8 @@ vg_status vg_result_store(const struct vg_tris *w, const struct vg_mesh *given,
   out->n_patch = given->n_patch;
   VG_TRY(label_all(w, given, label, err));
   VG_TRY(store(w, label, map, out, r, err));
+  VG_CHECK("the remeshing of a surface", vg_work_defects(w));
+  VG_CHECK("the remeshing of a surface", vg_mesh_bad_faces(out));
 done:
   free(map);
   free(label);

@@ -155,6 +155,10 @@ vg_status vg_work_begin(struct vg_tris *w, struct vg_error *err);
 
 void vg_work_release(struct vg_tris *w);
 
+/** Number of inconsistencies of live triangles, their mates, edges of curves
+ * and points; a check of stages (base/checks.h). O(triangles). */
+size_t vg_work_defects(const struct vg_work *w);
+
 /** Arrays for n triangles, w->tri to w->first, and their counts; edges and
  * stamps 0, the others not set. VG_ERR_MEMORY: some are there. */
 vg_status vg_work_room(struct vg_tris *w, size_t n, struct vg_error *err);

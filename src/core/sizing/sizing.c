@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/checks.h"
 #include "base/memory.h"
 #include "base/team.h"
 #include "core/sizing/sizing_parts.h"
@@ -202,6 +203,7 @@ vg_status vg_sizing_new(const struct vg_sizing_options *given, size_t n,
   VG_TRY(vg_team_any(options->team, &steep, err));
   VG_TRY(check_map(&fault, err));
   s->slope = steep ? vg_bvh_steep(s->growth) : s->growth;
+  VG_CHECK("the field of sizes", vg_octree_defects(&s->octree));
   *out = s;
   s = NULL;
 done:

@@ -64,6 +64,10 @@ vg_status vg_octree_build(const struct vg_stat *f, const double lo[3],
 
 void vg_octree_release(struct vg_octree *t);
 
+/** Number of entries that are out of range or do not point down the tree, and
+ * of sizes that are negative or no numbers; a check of stages (base/checks.h). */
+size_t vg_octree_defects(const struct vg_octree *t);
+
 /** Trilinear size at x; outside the cube at the nearest point of it, and
  * *outside gets the distance (0 inside). */
 double vg_octree_at(const struct vg_octree *t, const double x[3],

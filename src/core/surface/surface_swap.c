@@ -7,8 +7,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/checks.h"
 #include "base/memory.h"
 #include "core/geometry/triangles.h"
+#include "core/mesh/defects.h"
 #include "core/surface/surface_parts.h"
 #include "core/surface/surface_swap_parts.h"
 
@@ -347,6 +349,7 @@ vg_status vg_surface_swap(struct vg_mesh *m, const struct vg_swap_options *o,
 {
   struct vg_swap_report found = VG_SWAP_REPORT_INIT;
   struct job j;
+  int is_closed;
   vg_status st;
 
   memset(&j, 0, sizeof j);
@@ -366,7 +369,9 @@ vg_status vg_surface_swap(struct vg_mesh *m, const struct vg_swap_options *o,
     count_slivers(&j.w, &found.n_cap[0], &found.n_needle[0]);
     VG_TRY(improve(&j));
     report(&j.w, &found);
+    is_closed = VG_CHECKS_ON && !vg_mesh_open_edges(m);
     commit(&j, m);
+    if (is_closed) VG_CHECK("the swaps of a surface", vg_mesh_open_edges(m));
   }
   if (r) *r = found;
 done:

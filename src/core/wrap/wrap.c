@@ -4,8 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/checks.h"
 #include "base/memory.h"
 #include "core/geometry/vector.h"
+#include "core/mesh/defects.h"
 #include "core/wrap/wrap_parts.h"
 
 #define REACH 1.5         /* S41: of the offset: farther, a gap was bridged */
@@ -167,6 +169,7 @@ static vg_status make(const struct vg_mesh *in, const struct vg_wrap_options *o,
                  o->size);
     goto done;
   }
+  VG_CHECK("the wrapping of a surface", vg_mesh_open_edges(out));
   VG_TRY(label(in, out, stop, r, err));
   VG_TRY(vg_wrap_compare(&rims, out, o->size, stop, r, err));
 done:

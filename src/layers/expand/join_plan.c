@@ -5,7 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/checks.h"
 #include "base/memory.h"
+#include "core/mesh/defects.h"
 
 vg_status vg_join_check_field(const struct vg_front *f,
                               uint64_t n_point, uint64_t n_tri,
@@ -112,6 +114,11 @@ vg_status vg_join_plan_open(struct vg_join_plan *p,
                         threads, err));
   VG_TRY(number_points(p, n_field_point, err));
   VG_TRY(vg_join_boundary(p, err));
+  VG_CHECK("the boundary of layers and field",
+           vg_mesh_bad_faces(&p->boundary));
+  if (VG_CHECKS_ON && !vg_mesh_open_edges(surface))
+    VG_CHECK("the boundary of layers and field",
+             vg_mesh_open_edges(&p->boundary));
 done:
   if (st < 0) vg_join_plan_close(p);
   return st;

@@ -4,9 +4,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/checks.h"
 #include "base/clock.h"
 #include "base/memory.h"
+#include "core/mesh/defects.h"
 #include "core/surface/surface_check.h"
+#include "layers/expand/defects.h"
 #include "layers/grow/grow_parts.h"
 
 #define ROUNDS_MAX 300   /* L2 */
@@ -478,6 +481,18 @@ done:
   return st;
 }
 
+/* The front of a closed surface is closed. */
+static void check_layers(const struct vg_mesh *surface,
+                         const struct vg_layers *l)
+{
+  const struct vg_mesh *front = &l->front.mesh;
+
+  VG_CHECK("the layers", vg_columns_defects(&l->columns, surface));
+  VG_CHECK("the layers", vg_mesh_bad_faces(front));
+  if (VG_CHECKS_ON && !vg_mesh_open_edges(surface))
+    VG_CHECK("the layers", vg_mesh_open_edges(front));
+}
+
 vg_status vg_layers_grow(const struct vg_mesh *surface,
                          const struct vg_sizing *sizing,
                          const struct vg_layer_options *options,
@@ -496,6 +511,7 @@ vg_status vg_layers_grow(const struct vg_mesh *surface,
   VG_TRY(until_clear(&w, &l.front, &r, err));
   count(&w, &l.front, &r);
   VG_TRY(vg_layers_order(surface, &l, err));
+  check_layers(surface, &l);
   r.time_total = vg_clock() - start;
   *report = r;
   vg_layers_release(out);

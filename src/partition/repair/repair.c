@@ -5,10 +5,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/checks.h"
 #include "base/clock.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "core/geometry/hilbert.h"
+#include "core/geometry/predicates.h"
 #include "partition/repair/repair_parts.h"
 
 /* Balls to a cluster: a few hundred cells each. What is left over is done in
@@ -527,6 +529,27 @@ static const struct vg_entry entry[] = {
 };
 static const struct vg_entries fields = { sizeof entry / sizeof *entry, entry };
 
+/* Cells of the pieces of this rank that are not positive, or have a point that
+ * is out of range. */
+static size_t bad_cells(const struct vg_partition *p)
+{
+  size_t bad = 0;
+
+  for (size_t k = 0; k < p->n_piece; k++) {
+    const struct vg_piece *q = &p->piece[k];
+
+    for (size_t c = 0; c < q->n_cell; c++) {
+      const uint32_t *v = q->cell[c];
+      int is_in = 1;
+
+      for (int i = 0; i < 4; i++) is_in &= v[i] < q->n_in + q->n_point;
+      bad += !is_in || !(vg_orient3d(q->x[v[0]], q->x[v[1]], q->x[v[2]],
+                                     q->x[v[3]]) > 0);
+    }
+  }
+  return bad;
+}
+
 vg_status vg_partition_repair(struct vg_partition *p, struct vg_comm *comm,
                               struct vg_spans *spans, struct vg_error *err)
 {
@@ -536,7 +559,9 @@ vg_status vg_partition_repair(struct vg_partition *p, struct vg_comm *comm,
 
   /* the regular tetrahedron, where there is nothing to do */
   p->report.repair_worst = p->report.repair_worst_left = 8.0 / 9;
+  VG_CHECK("the tasks of the partition", bad_cells(p));
   st = all_rounds(p, comm, &own, err);
+  if (st == VG_OK) VG_CHECK("repairs at interfaces", bad_cells(p));
   if (st == VG_OK) st = vg_entries_agree(&fields, &p->report, comm, err);
   if (st == VG_OK && spans)
     st = vg_repair_record(p, comm, t0, &own, spans, err);

@@ -1,0 +1,13 @@
+/* The end of a program whose stage left a wrong result. */
+#include "base/checks.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+void vg_check_none(const char *stage, const char *what, size_t n_defect)
+{
+  if (!n_defect) return;
+  fprintf(stderr, "vanguard: check failed after %s: %s is %zu, not 0\n", stage,
+          what, n_defect);
+  abort();
+}
