@@ -3,6 +3,7 @@
 #ifndef VG_BASE_BYTES_H
 #define VG_BASE_BYTES_H
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,6 +17,7 @@ static inline void vg_put(struct vg_writer *w, size_t n, size_t size,
 {
   size_t more = n * size;
 
+  assert(data || !n || !size);
   if (w->refused || !more) return;
   if (vg_reserve(&w->bytes.data, &w->cap, w->bytes.n + more, 1)) {
     w->refused = 1;
@@ -30,6 +32,8 @@ struct vg_reader { const unsigned char *data; size_t n, at; int bad; };
 static inline void vg_get(struct vg_reader *r, size_t n, size_t size,
                           void *data)
 {
+  assert(r->at <= r->n || r->bad);
+  assert(data || !n || !size);
   if (r->bad || (size && n > (r->n - r->at) / size)) {
     r->bad = 1;
     return;
@@ -43,6 +47,7 @@ static inline void *vg_get_array(struct vg_reader *r, size_t n, size_t size)
 {
   void *a;
 
+  assert(r->at <= r->n || r->bad);
   if (r->bad || (size && n > (r->n - r->at) / size) ||
       !(a = vg_alloc(n, size))) {
     r->bad = 1;

@@ -1,6 +1,7 @@
 #define _GNU_SOURCE
 #include "base/child.h"
 
+#include <assert.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
@@ -256,6 +257,7 @@ static int fork_here(vg_child_body *body, pid_t *pid)
 
 int vg_child_open(vg_child_body *body, struct vg_child *out)
 {
+  assert(body && out);
   out->pid = 0;
   out->fd = ask_server(body);
   if (out->fd < 0) out->fd = fork_here(body, &out->pid);
@@ -264,6 +266,7 @@ int vg_child_open(vg_child_body *body, struct vg_child *out)
 
 void vg_child_close(struct vg_child *c)
 {
+  assert(c);
   shutdown(c->fd, SHUT_RDWR);
   close(c->fd);
   while (c->pid > 0 && waitpid(c->pid, NULL, 0) < 0 && errno == EINTR) {}
@@ -290,6 +293,7 @@ int vg_child_put(int fd, const void *data, size_t size)
 {
   const char *at = data;
 
+  assert(data || !size);
   while (size) {
     ssize_t n = send(fd, at, size, MSG_NOSIGNAL);
 
@@ -305,6 +309,7 @@ int vg_child_get(int fd, void *data, size_t size)
 {
   char *at = data;
 
+  assert(data || !size);
   while (size) {
     ssize_t n = read(fd, at, size);
 

@@ -1,5 +1,6 @@
 /* What all ranks do together: base/comm.h. All waiting is done asleep; where
  * one rank may run out of memory all ranks agree before they go on. */
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -35,12 +36,14 @@ static vg_status reduce(struct vg_comm *c, size_t n, void *v, size_t size,
 vg_status vg_comm_sum(struct vg_comm *c, size_t n, uint64_t *v,
                       struct vg_error *err)
 {
+  assert(v || !n);
   return c ? reduce(c, n, v, sizeof *v, MPI_UINT64_T, MPI_SUM, err) : VG_OK;
 }
 
 vg_status vg_comm_max(struct vg_comm *c, size_t n, double *v,
                       struct vg_error *err)
 {
+  assert(v || !n);
   return c ? reduce(c, n, v, sizeof *v, MPI_DOUBLE, MPI_MAX, err) : VG_OK;
 }
 
@@ -144,12 +147,14 @@ done:
 vg_status vg_comm_bcast(struct vg_comm *c, int root, struct vg_bytes *b,
                         struct vg_error *err)
 {
+  assert(b && root >= 0 && root < vg_comm_size(c));
   return c ? bcast_in(c, c->all, root, b, err) : VG_OK;
 }
 
 vg_status vg_comm_node_bcast(struct vg_comm *c, struct vg_bytes *b,
                              struct vg_error *err)
 {
+  assert(b);
   return c ? bcast_in(c, c->node, 0, b, err) : VG_OK;
 }
 
@@ -340,6 +345,7 @@ vg_status vg_comm_exchange(struct vg_comm *c, const struct vg_bytes *to,
   uint64_t *n;
   vg_status st;
 
+  assert(to && from);
   if (!c) return copy_own(to, from, err);
   n = vg_alloc((size_t)c->size, sizeof *n);
   st = vg_comm_agree(c, n ? VG_OK : vg_fail_memory(err, "sizes"), err);
@@ -410,6 +416,8 @@ done:
 vg_status vg_comm_allgather(struct vg_comm *c, const struct vg_bytes *mine,
                             struct vg_bytes *out, struct vg_error *err)
 {
+  assert(mine && out);
+
   uint64_t *n = NULL, own = mine->n, total = 0;
   int *count = NULL, *at = NULL, rc;
   MPI_Request request;

@@ -6,6 +6,7 @@
  * communicator. Announcements and parts of a rank stay in order, since MPI
  * lets no message overtake another of the same sender, communicator and tag,
  * and since all of it is posted under one lock. */
+#include <assert.h>
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
@@ -106,6 +107,9 @@ vg_status vg_comm_post(struct vg_comm *c, int to, int kind,
 {
   vg_status st;
 
+  assert(b && (b->data || !b->n));
+  assert(kind >= 0 && kind < 16384);
+  assert(!c || (to >= 0 && to < c->size));
   if (!c)
     return vg_fail(err, VG_ERR_UNSUPPORTED, "messages need a job with MPI");
   if (to < 0 || to >= c->size || kind < 0 || kind > KIND_MAX)
@@ -275,6 +279,7 @@ vg_status vg_comm_poll(struct vg_comm *c, struct vg_message *m,
   vg_status st;
   int is_own;
 
+  assert(m);
   if (!c)
     return vg_fail(err, VG_ERR_UNSUPPORTED, "messages need a job with MPI");
   pthread_mutex_lock(&c->lock);

@@ -6,6 +6,7 @@
  * behind by a job that dies. It is written, not stored to: a write that finds
  * no memory says so. */
 #define _GNU_SOURCE
+#include <assert.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -172,11 +173,13 @@ vg_status vg_comm_node_shmem(struct vg_comm *c, size_t n_part,
                              const struct vg_bytes *part,
                              struct vg_shmem *out, struct vg_error *err)
 {
+  assert(out && (part || !n_part || vg_comm_node_rank(c)));
   return vg_comm_node_memory(c, n_part, part, 0, out, err);
 }
 
 void vg_shmem_release(struct vg_shmem *b)
 {
+  assert(b);
   if (b->is_mapped) munmap((void *)(uintptr_t)b->data, b->n);
   else free((void *)(uintptr_t)b->data);
   *b = (struct vg_shmem){ 0, NULL, 0 };

@@ -1,3 +1,4 @@
+#include <assert.h>
 #include <stdlib.h>
 
 #include "base/comm_parts.h"
@@ -162,6 +163,8 @@ vg_status vg_team_for(struct vg_team *t, int threads, size_t n, size_t grain,
   struct part p = { body, context, 0 };
   vg_status st;
 
+  assert(grain > 0 && body);
+  assert(out || !n_out);
   if (!grain) grain = 1;
   n_chunk = (n + grain - 1) / grain;
   if (!t || n_chunk < (size_t)(WORTH * t->size)) {
@@ -186,6 +189,7 @@ vg_status vg_team_any(struct vg_team *t, int *flag, struct vg_error *err)
   vg_status st;
   int rc;
 
+  assert(flag);
   if (!t) return VG_OK;
   st = meet(t, VG_OK, err);
   if (st < 0) return st;

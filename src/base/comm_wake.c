@@ -3,6 +3,7 @@
  * memory in common for each of them, on which a rank sleeps and which others
  * change when they have posted. */
 #define _GNU_SOURCE
+#include <assert.h>
 #include <linux/futex.h>
 #include <stdlib.h>
 #include <sys/syscall.h>
@@ -89,6 +90,7 @@ unsigned vg_comm_wake_count(const struct vg_comm *c)
 
 void vg_comm_sleep(struct vg_comm *c, unsigned heard, double seconds)
 {
+  assert(seconds >= 0);
   struct vg_wakeup *b = &c->wakeup[c->node_rank];
   const struct timespec t = { (time_t)seconds,
     (long)(1e9 * (seconds - (double)(time_t)seconds)) };

@@ -1,5 +1,6 @@
 #include "base/memory.h"
 
+#include <assert.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,11 +22,13 @@ static void *spread(void *block, size_t bytes)
 
 void *vg_alloc(size_t n, size_t size)
 {
+  assert(size > 0);
   return vg_realloc(NULL, n, size);
 }
 
 void *vg_calloc(size_t n, size_t size)
 {
+  assert(size > 0);
   return calloc(n ? n : 1, size ? size : 1);
 }
 
@@ -33,6 +36,7 @@ void *vg_realloc(void *block, size_t n, size_t size)
 {
   size_t bytes;
 
+  assert(size > 0);
   if (__builtin_mul_overflow(n, size, &bytes) || bytes > PTRDIFF_MAX)
     return NULL;
   return spread(realloc(block, bytes ? bytes : 1), bytes);
@@ -40,6 +44,8 @@ void *vg_realloc(void *block, size_t n, size_t size)
 
 int vg_reserve(void *block, size_t *cap, size_t need, size_t size)
 {
+  assert(block && cap && size > 0);
+
   void *old, *new;
   size_t n = *cap + *cap / 2;
 

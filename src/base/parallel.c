@@ -1,6 +1,7 @@
 #define _GNU_SOURCE
 #include "base/parallel.h"
 
+#include <assert.h>
 #include <pthread.h>
 #include <sched.h>
 #include <stdatomic.h>
@@ -55,6 +56,8 @@ void vg_parallel_for(int threads, size_t n, size_t grain, vg_loop_body body,
   struct worker w[WORKERS_MAX];
   int started = 1;
 
+  assert(threads >= 0);
+  assert(grain > 0 && body);
   if (!n) return;
   if (threads <= 0) threads = vg_cores();
   if (threads > WORKERS_MAX) threads = WORKERS_MAX;

@@ -1,5 +1,6 @@
 #include "base/rendezvous.h"
 
+#include <assert.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,6 +16,7 @@
 
 void *vg_items_add(struct vg_items *list, size_t size)
 {
+  assert(list && size > 0);
   if (vg_reserve(&list->data, &list->room, list->n + 1, size)) return NULL;
   return list->data + size * list->n++;
 }
@@ -22,6 +24,7 @@ void *vg_items_add(struct vg_items *list, size_t size)
 vg_status vg_items_append(struct vg_items *to, const struct vg_items *more,
                           size_t size, struct vg_error *err)
 {
+  assert(to && more && to != more && size > 0);
   if (!more->n) return VG_OK;
   if (vg_reserve(&to->data, &to->room, to->n + more->n, size))
     return vg_fail_memory(err, "what slices share");
@@ -45,6 +48,7 @@ static int rank_of(uint64_t h, int size)
 
 int vg_rendezvous_rank(const struct vg_rendezvous *m, const void *key)
 {
+  assert(m->key > 0 && m->key % 4 == 0 && key);
   return rank_of(vg_rendezvous_hash(key, m->key), vg_comm_size(m->comm));
 }
 
@@ -455,6 +459,12 @@ vg_status vg_rendezvous_run(const struct vg_rendezvous *m,
                             size_t n_list, size_t stride,
                             struct vg_error *err)
 {
+  assert(m->group && m->threads >= 0);
+  assert(m->key > 0 && m->key <= m->size);
+  assert(m->key % 4 == 0 && m->size % 4 == 0);
+  assert(list || !n_list);
+  assert(stride >= sizeof *list && stride % _Alignof(struct vg_items) == 0);
+
   struct vg_bytes *from = take_lists(m, list, n_list, stride), *got = NULL;
   size_t n_from = n_list;
   vg_status st = VG_OK;

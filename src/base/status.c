@@ -1,10 +1,12 @@
 #include "base/status.h"
 
+#include <assert.h>
 #include <stdarg.h>
 #include <stdio.h>
 
 vg_status vg_fail(struct vg_error *err, vg_status code, const char *format, ...)
 {
+  assert(code != VG_OK && format);
   va_list args;
 
   if (!err) return code;
@@ -17,6 +19,7 @@ vg_status vg_fail(struct vg_error *err, vg_status code, const char *format, ...)
 
 vg_status vg_fail_memory(struct vg_error *err, const char *what)
 {
+  assert(what);
   return vg_fail(err, VG_ERR_MEMORY,
                  "not enough memory for %s; use a coarser spacing or a "
                  "machine with more memory", what);

@@ -4,11 +4,13 @@
 #ifndef VG_BASE_UNION_FIND_H
 #define VG_BASE_UNION_FIND_H
 
+#include <assert.h>
 #include <stdint.h>
 
 /** The root of k's set. */
 static inline uint32_t vg_root_of(uint32_t *up, uint32_t k)
 {
+  assert(up);
   while (up[k] != k) k = up[k] = up[up[k]];
   return k;
 }

@@ -177,7 +177,8 @@ static void columns_have_points(void **state)
   struct vg_law law = { 0.25, 0.2, 0, 1.3, 1 };
   struct vg_column column = { .dir = { 0, 0, 2 }, .cap = INFINITY,
                               .bent = SIZE_MAX, .n = 5 };
-  struct vg_columns c = { .n_column = 1, .column = &column, .law = &law };
+  struct vg_columns c = { .n_column = 1, .n_law = 1, .column = &column,
+                          .law = &law };
   struct vg_mesh m = { .n_point = 1, .point = point };
   double top[3];
 

@@ -1,5 +1,6 @@
 #include "core/delaunay/cavity.h"
 
+#include <assert.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -28,6 +29,8 @@ int vg_cavity_ring(const struct vg_tets *t, uint32_t c, uint32_t a, uint32_t b,
   uint32_t first = c, other[2], from, to;
   int n = 0, i, k = 0;
 
+  assert(a != b && c < t->n_cell && most > 0);
+  assert(!(t->flag[c] & VG_DEAD));
   for (i = 0; i < 4; i++)
     if (t->cell[c].v[i] != a && t->cell[c].v[i] != b)
       other[k++] = t->cell[c].v[i];
@@ -61,6 +64,7 @@ struct border {                 /* a face of the cavity, or a face waiting */
 
 void vg_cavity_face(const struct vg_cell *c, int i, uint32_t v[3])
 {
+  assert(i >= 0 && i < 4);
   for (int k = 0; k < 3; k++) v[k] = c->v[vg_face[i][k]];
   vg_order3(v);
 }
@@ -107,6 +111,7 @@ static void link_face(struct vg_tets *t, uint32_t c, uint32_t i,
 
 int vg_cavity_reserve(struct vg_tets *t, int n_old, int n_new)
 {
+  assert(n_old > 0 && n_new > 0);
   return vg_tets_reserve_cells(t, (size_t)n_new) ||
                  vg_reserve(&t->free, &t->cap_free, t->n_free + (size_t)n_old,
                             sizeof *t->free)
@@ -119,6 +124,8 @@ void vg_cavity_refill(struct vg_tets *t, int n_old, const uint32_t *old,
   struct border border[8 * VG_CAVITY_MAX];
   int n;
 
+  assert(n_old > 0 && n_old <= VG_CAVITY_MAX);
+  assert(n_new > 0 && n_new <= VG_CAVITY_MAX);
   for (int k = 0; k < n_old; k++) t->flag[old[k]] |= VG_MARK;
   n = collect_border(t, n_old, old, border);
   for (int k = 0; k < n_new; k++) {

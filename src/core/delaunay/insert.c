@@ -1,5 +1,6 @@
 #include "core/delaunay/insert.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -15,6 +16,7 @@ enum { CUT_MAX = 16 };       /* K5: times a cavity may be cut back */
 vg_status vg_inserter_init(struct vg_inserter *s, struct vg_tets *t,
                            struct vg_error *err)
 {
+  assert(s && t);
   memset(s, 0, sizeof *s);
   s->t = t;
   s->last = VG_NONE;
@@ -63,6 +65,7 @@ static inline void add_face(struct vg_inserter *s, const struct vg_cell *cell,
 {
   struct vg_cavity_face *f = &s->face[s->n_face++];
 
+  assert(s->n_face <= s->cap_face);
   for (int k = 0; k < 3; k++) f->v[k] = cell->v[vg_face[i][k]];
   f->link = cell->link[i];
   f->fixed = flag >> i & 1;
@@ -111,6 +114,7 @@ static int flood(struct vg_inserter *s, const vg_d2 p[3])
     const struct vg_cell *cell = &cells[c.at];
     uint8_t own = flag[c.at];
 
+    assert(own & VG_MARK && !(own & VG_DEAD));
     if (make_room(s)) return -1;
     for (int i = 0; i < 4; i++) {
       uint32_t link = cell->link[i], other = link >> 2;
@@ -294,6 +298,7 @@ static void make_cells(struct vg_inserter *s, uint32_t p)
     cell->v[1] = f->v[1];
     cell->v[2] = f->v[2];
     cell->v[3] = p;
+    assert(f->v[0] != p && f->v[1] != p && f->v[2] != p && !f->hidden);
     t->flag[c] = (uint8_t)(f->outside | f->fixed << 3);
     cell->link[3] = f->link;
     if (f->link != VG_NONE)
@@ -356,6 +361,10 @@ static void link_by_edges(struct vg_inserter *s, const struct vg_table *edge)
 vg_status vg_insert(struct vg_inserter *s, uint32_t p, uint32_t at,
                     double clearance, double nearest, struct vg_error *err)
 {
+  assert(p < s->t->cap_point && at < s->t->n_cell);
+  assert(!(s->t->flag[at] & VG_DEAD));
+  assert(clearance >= 0 && nearest >= 0);
+
   struct vg_tets *t = s->t;
   double x[3];
   vg_d2 both[3];

@@ -1,5 +1,6 @@
 #include "core/delaunay/tets.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -43,6 +44,7 @@ int vg_tets_reserve_cells(struct vg_tets *t, size_t n)
 
 int vg_tets_free_cell(struct vg_tets *t, uint32_t cell)
 {
+  assert(cell < t->n_cell);
   if (vg_reserve(&t->free, &t->cap_free, t->n_free + 1, sizeof *t->free))
     return -1;
   t->flag[cell] = VG_DEAD;
@@ -100,6 +102,7 @@ vg_status vg_tets_link(struct vg_tets *t, struct vg_error *err)
   struct vg_table table;
   vg_status st;
 
+  assert(t->n_cell < VG_CELL_MAX);
   if (vg_table_init(&table, 5 * t->n_cell / 2))
     return vg_fail_memory(err, "the neighbour table");
   for (size_t c = 0; c < t->n_cell; c++)
@@ -113,6 +116,8 @@ vg_status vg_tets_from_cells(struct vg_tets *t, size_t n_point, double (*x)[3],
                              size_t n_cell, const uint32_t (*v)[4],
                              struct vg_error *err)
 {
+  assert(!t->n_point && !t->n_cell && !t->n_free);
+  assert(x && (v || !n_cell));
   t->x = x;
   t->n_point = t->cap_point = n_point;
   if (vg_tets_reserve_cells(t, n_cell))
@@ -157,6 +162,8 @@ static uint32_t search_all(const struct vg_tets *t, const double x[3])
 uint32_t vg_tets_locate(const struct vg_tets *t, uint32_t start,
                         const double x[3])
 {
+  assert(start < t->n_cell && !(t->flag[start] & VG_DEAD));
+
   uint32_t c = start, from = VG_NONE, most = 4096 + t->n_cell / 64;
 
   /* A walk along a sheet of many points is long, but shorter than a search of
@@ -267,6 +274,8 @@ static void move_cells(struct vg_tets *t, size_t n, const uint32_t *to,
 vg_status vg_tets_compact(struct vg_tets *t, size_t n_keep,
                           struct vg_error *err)
 {
+  assert(n_keep <= t->n_point);
+
   uint32_t *point = vg_alloc(t->n_point, sizeof *point), *start = NULL;
   uint32_t *to = vg_alloc(t->n_cell, sizeof *to);
   struct vg_cell *cell = NULL;
@@ -333,7 +342,8 @@ size_t vg_tets_defects(const struct vg_tets *t)
       if (l == VG_NONE) continue;
       bad += t->cell[l >> 2].link[l & 3] != 4 * c + i ||
              !has_key(t, l, face_key(cell, i)) || t->flag[l >> 2] & VG_DEAD ||
-             (t->flag[c] >> i & 1) != (t->flag[l >> 2] >> (l & 3) & 1);
+             (!((t->flag[c] ^ t->flag[l >> 2]) & VG_OUTSIDE) &&
+              (t->flag[c] >> i & 1) != (t->flag[l >> 2] >> (l & 3) & 1));
     }
   }
   return bad;

@@ -8,6 +8,7 @@
 #ifndef VG_CORE_DELAUNAY_TETS_H
 #define VG_CORE_DELAUNAY_TETS_H
 
+#include <assert.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -53,6 +54,7 @@ int vg_tets_reserve_cells(struct vg_tets *t, size_t n);
 /** A slot for a new cell: a dead one, else the next. Room must be there. */
 static inline uint32_t vg_tets_alloc_cell(struct vg_tets *t)
 {
+  assert(t->n_free || t->n_cell < t->cap_cell);
   return t->n_free ? t->free[--t->n_free] : (uint32_t)t->n_cell++;
 }
 
@@ -61,6 +63,7 @@ int vg_tets_free_cell(struct vg_tets *t, uint32_t cell);
 
 static inline void vg_tets_connect(struct vg_tets *t, uint32_t a, uint32_t b)
 {
+  assert(a >> 2 < t->n_cell && b >> 2 < t->n_cell);
   t->cell[a >> 2].link[a & 3] = b;
   t->cell[b >> 2].link[b & 3] = a;
 }
@@ -99,8 +102,9 @@ vg_status vg_tets_compact(struct vg_tets *t, size_t n_keep,
 /** Number of live cells that are not positive. O(n). */
 size_t vg_tets_inverted(const struct vg_tets *t);
 
-/** Number of inconsistencies: links, and cells that are not positive; a check
- * of stages and an aid of tests. O(n). */
+/** Number of inconsistencies: links, cells that are not positive, and faces
+ * that are constrained on one side only, unless one of their cells is in the
+ * fluid and the other outside. A check of stages and an aid of tests. O(n). */
 size_t vg_tets_defects(const struct vg_tets *t);
 
 #endif

@@ -1,6 +1,7 @@
 /* Outline: find the open edges of the body; none: a whole farfield; all in
  * one coordinate plane: snap them to it, half a farfield whose border lies in
  * the plane, and the plane itself between border and footprints. */
+#include <assert.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
@@ -328,6 +329,8 @@ done:
 vg_status vg_domain_half(const struct vg_mesh *surface, int symmetry,
                          int *axis, double *at, struct vg_error *err)
 {
+  assert(symmetry >= -1 && symmetry <= 1 && axis && at);
+
   struct domain d = { .m = *surface };
   vg_status st;
 
@@ -354,6 +357,7 @@ vg_status vg_domain_complete_by(struct vg_mesh *surface,
   struct domain d = { .farfield = farfield, .law = law, .axis = -1 };
   vg_status st;
 
+  assert(law || farfield->spacing > 0 || farfield->kind == VG_FARFIELD_NONE);
   if (!surface->n_tri && !surface->n_quad)
     return vg_fail(err, VG_ERR_INPUT, "the surface has no triangles: there is "
                    "no body to put a farfield around");

@@ -1,5 +1,6 @@
 #include "core/domain/farfield.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,6 +18,7 @@ void vg_border_release(struct vg_border *r)
 vg_status vg_border_add(struct vg_border *r, uint32_t a, uint32_t b,
                         struct vg_error *err)
 {
+  assert(r && a != b);
   if (vg_reserve(&r->edge, &r->cap, r->n + 1, sizeof *r->edge))
     return vg_fail_memory(err, "the rim of a patch");
   r->edge[r->n][0] = a;
@@ -186,6 +188,9 @@ vg_status vg_add_sphere(struct vg_mesh *m, const double centre[3],
                         const struct vg_size_law *size, uint32_t patch,
                         struct vg_border *border, struct vg_error *err)
 {
+  assert(radius > 0 && half >= -1 && half < 6);
+  assert(patch < m->n_patch && (border || half < 0));
+
   const int axis = half < 0 ? 2 : half / 2;
   const uint32_t first = (uint32_t)m->n_point;
   struct half_sphere s = { centre, radius, axis, (axis + 1) % 3,
@@ -315,6 +320,9 @@ vg_status vg_add_box(struct vg_mesh *m, const double lo[3],
                      const struct vg_size_law *size, const uint32_t patch[6],
                      struct vg_border *border, struct vg_error *err)
 {
+  assert(lo[0] < hi[0] && lo[1] < hi[1] && lo[2] < hi[2]);
+  assert(open >= -1 && open < 6 && (border || open < 0));
+
   const uint32_t first = (uint32_t)m->n_point;
   struct box_edge edge[12] = { { 0 } };
   struct vg_border loop = VG_BORDER_INIT;

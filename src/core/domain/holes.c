@@ -1,5 +1,6 @@
 /* Outline: open edges are joined to rims; those where a half model was cut stay
  * open; each of the others is closed by a plane patch of its own. */
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -201,6 +202,8 @@ vg_status vg_domain_close_holes(struct vg_mesh *surface, int symmetry,
                                 size_t *n_hole, size_t *n_tri,
                                 struct vg_error *err)
 {
+  assert(sizing && n_hole && n_tri);
+
   struct holes h = { .n_loop = 0 };
   const struct vg_size_law law = vg_size_law_of(sizing);
   uint32_t patch = 0;
@@ -248,6 +251,8 @@ static struct vg_rim measure_rim(const struct holes *h, uint32_t k)
 vg_status vg_domain_rims(const struct vg_mesh *surface, size_t *n,
                          struct vg_rim **rim, struct vg_error *err)
 {
+  assert(n && rim);
+
   struct holes h = { .m = *surface };
   vg_status st;
 

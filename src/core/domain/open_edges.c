@@ -1,5 +1,6 @@
 #include "core/domain/open_edges.h"
 
+#include <assert.h>
 #include <stdlib.h>
 
 #include "base/memory.h"
@@ -63,6 +64,8 @@ static vg_status open_of_vertex(const struct vg_mesh *m, uint32_t v, size_t n,
 vg_status vg_open_edges(const struct vg_mesh *m, struct vg_border *open,
                         struct vg_error *err)
 {
+  assert(m && open);
+
   const size_t n = n_side(m);
   size_t *start = vg_calloc(m->n_point + 2, sizeof *start);
   struct edge_end *list = vg_alloc(n, sizeof *list);

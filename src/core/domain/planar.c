@@ -2,6 +2,7 @@
  * inside from the left of the segments, add points by a front, smooth. */
 #include "core/domain/planar.h"
 
+#include <assert.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
@@ -258,6 +259,7 @@ vg_status vg_planar_mesh(size_t n, const double (*p)[2], size_t n_edge,
   int bad;
   vg_status st;
 
+  assert(law->at && n_new && add && n_tri && tri);
   VG_TRY(check_input(&r, err));
   VG_TRY(insert_points(&r, err));
   VG_TRY(insert_segments(&r, err));

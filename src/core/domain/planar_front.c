@@ -6,6 +6,7 @@
  * the circumcentre, so no vertex is nearer to it than the edge's ends. */
 #include "core/domain/planar_front.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -288,6 +289,8 @@ static double shortest_fixed(const struct vg_tri2 *t)
 
 int vg_tri2_fill(struct vg_tri2 *t, const struct vg_planar_law *law)
 {
+  assert(law->at);
+
   struct front f = { .t = t, .law = law,
                      .scale = 1.41421356 / shortest_fixed(t) };
   int bad = vg_buckets_init(&f.queue, N_BUCKET);

@@ -1,5 +1,6 @@
 #include "core/domain/planar_patch.h"
 
+#include <assert.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
@@ -206,6 +207,7 @@ vg_status vg_planar_patch(struct vg_mesh *m, size_t n_edge,
                           const struct vg_size_law *size, uint32_t patch,
                           struct vg_error *err)
 {
+  assert((edge || !n_edge) && size->at && patch < m->n_patch);
   return vg_planar_patch_near(m, n_edge, edge, size, FLATNESS, patch, err);
 }
 
@@ -223,6 +225,8 @@ vg_status vg_planar_patch_near(struct vg_mesh *m, size_t n_edge,
   double (*add)[2] = NULL;
   uint32_t (*tri)[3] = NULL;
 
+  assert((edge || !n_edge) && size->at && flatness >= 0);
+  assert(patch < m->n_patch);
   if (n_edge < 3)
     return vg_fail(err, VG_ERR_INPUT, "plane patch with %zu boundary "
                    "segments; a closed loop needs at least 3", n_edge);

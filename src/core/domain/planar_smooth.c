@@ -2,6 +2,7 @@
  * triangles on the edges of its ring, as far as the sum of squared inverse
  * qualities of its triangles falls; then edges are flipped to Delaunay, which
  * in the plane is also the flip to the larger smallest angle. */
+#include <assert.h>
 #include <math.h>
 
 #include "core/domain/planar_front.h"
@@ -148,6 +149,7 @@ static int lift_vertex(struct vg_tri2 *t, uint32_t v)
 int vg_tri2_improve(struct vg_tri2 *t, uint32_t first_free, int n_sweep,
                     const struct vg_planar_law *law)
 {
+  assert(first_free <= t->n_point && n_sweep >= 0);
   for (int sweep = 0; sweep < n_sweep; sweep++) {
     size_t n_moved = 0;
 

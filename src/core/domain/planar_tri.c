@@ -1,5 +1,6 @@
 #include "core/domain/planar_tri.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -53,6 +54,7 @@ int vg_tri2_init(struct vg_tri2 *t, size_t n, const double (*p)[2])
   struct vg_t2_face *f;
   uint32_t slot;
 
+  assert(p || !n);
   for (int k = 0; k < 2; k++) {
     lo[k] = hi[k] = p[0][k];
     for (size_t i = 1; i < n; i++) {
@@ -155,6 +157,7 @@ int vg_tri2_cavity(struct vg_tri2 *t, const double x[2], uint32_t at)
 {
   size_t n = 3;
 
+  assert(at < t->n_face && !(t->face[at].flag & VG_T2_DEAD));
   t->n_cavity = t->n_border = 0;
   if (vg_reserve(&t->stack, &t->cap_stack, 8, sizeof *t->stack)
       || cavity_add(t, at))
@@ -191,6 +194,8 @@ void vg_tri2_cancel(struct vg_tri2 *t)
 
 int vg_tri2_commit(struct vg_tri2 *t, uint32_t p, uint32_t flag)
 {
+  assert(p < t->n_point && t->n_border > 2);
+
   const size_t n = t->n_border;
 
   /* A cavity of m triangles has m + 2 border edges. */
@@ -278,6 +283,8 @@ static void make_order(const struct vg_tri2 *t, size_t n,
 int vg_tri2_insert_all(struct vg_tri2 *t, size_t n, const uint32_t *list,
                        uint32_t *alias)
 {
+  assert((list || !n) && alias);
+
   struct order *order = n ? vg_alloc(n, sizeof *order) : NULL;
   int bad = n && !order;
 
@@ -300,6 +307,8 @@ int vg_tri2_insert_all(struct vg_tri2 *t, size_t n, const uint32_t *list,
 
 uint32_t vg_tri2_find(const struct vg_tri2 *t, uint32_t a, uint32_t b)
 {
+  assert(a < t->n_point && b < t->n_point);
+
   const uint32_t first = t->vt[a];
   uint32_t e = first;
 
@@ -452,6 +461,8 @@ static void fix_edge(struct vg_tri2 *t, uint32_t e)
 vg_status vg_tri2_constrain(struct vg_tri2 *t, uint32_t a, uint32_t b,
                             int *hit, uint32_t at[2])
 {
+  assert(a != b && a < t->n_point && b < t->n_point && hit);
+
   struct pair_list list = { 0 };
   vg_status st = collect_crossed(t, a, b, &list, hit, at);
 
@@ -558,6 +569,8 @@ int vg_tri2_carve(struct vg_tri2 *t)
 
 int vg_tri2_ring(const struct vg_tri2 *t, uint32_t v, int max, uint32_t *ring)
 {
+  assert(v < t->n_point && max > 0 && ring);
+
   const uint32_t first = t->vt[v];
   uint32_t e = first;
   int n = 0;

@@ -9,6 +9,7 @@
 #ifndef VG_CORE_DOMAIN_PLANAR_TRI_H
 #define VG_CORE_DOMAIN_PLANAR_TRI_H
 
+#include <assert.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -67,6 +68,7 @@ static inline uint32_t vg_t2_prev(uint32_t e)
 
 static inline uint32_t vg_t2_from(const struct vg_tri2 *t, uint32_t e)
 {
+  assert(e >> 2 < t->n_face && (e & 3) < 3);
   return t->face[e >> 2].v[e & 3];
 }
 
@@ -82,11 +84,13 @@ static inline uint32_t vg_t2_apex(const struct vg_tri2 *t, uint32_t e)
 
 static inline uint32_t vg_t2_twin(const struct vg_tri2 *t, uint32_t e)
 {
+  assert(e >> 2 < t->n_face && (e & 3) < 3);
   return t->face[e >> 2].adj[e & 3];
 }
 
 static inline int vg_t2_is_fixed(const struct vg_tri2 *t, uint32_t e)
 {
+  assert(e >> 2 < t->n_face && (e & 3) < 3);
   return t->face[e >> 2].flag >> (e & 3) & 1;
 }
 

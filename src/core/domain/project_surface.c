@@ -1,6 +1,7 @@
 /* Surface of a project of planar patches. Curves as VGRID marches them
  * (formats.md 1.7): the step is the spacing at the current point, until it
  * would pass the end; the last three steps are then made equal. */
+#include <assert.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
@@ -280,6 +281,7 @@ vg_status vg_project_surface(const struct vg_project *project,
   struct builder b = { .project = project, .sizing = sizing };
   vg_status st;
 
+  assert(out);
   if (stop) b.stop = *stop;
   VG_TRY(check_project(project, err));
   VG_TRY(copy_patches(&b, err));

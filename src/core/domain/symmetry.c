@@ -1,5 +1,6 @@
 #include "core/domain/symmetry.h"
 
+#include <assert.h>
 #include <math.h>
 
 #include "core/geometry/vector.h"
@@ -53,6 +54,7 @@ int vg_is_symmetry(const struct vg_mesh *m, const struct vg_border *open,
   double lo[3], hi[3], from[3], to[3], length = 0, width = 0;
   int along = axis;
 
+  assert(open->n > 0 && axis >= 0 && axis < 3);
   vg_mesh_bounds(m, lo, hi);
   for (int k = 0; k < 3; k++) {
     length = fmax(length, hi[k] - lo[k]);

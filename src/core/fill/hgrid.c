@@ -1,5 +1,6 @@
 #include "core/fill/hgrid.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -109,6 +110,8 @@ static uint32_t new_page(struct vg_hgrid *s, uint32_t next)
 
 int vg_hgrid_add(struct vg_hgrid *s, const double x[3], double h)
 {
+  assert(h > 0);
+
   int level = level_of(h);
   double inverse = ldexp(1, -level), side = ldexp(1, level);
   int64_t i[3];
@@ -286,6 +289,8 @@ static void find_level(struct vg_hgrid *s, const double c[3], double r,
  * the levels that the gradient of the field allows. */
 void vg_hgrid_gather(struct vg_hgrid *s, const double c[3], double h, double r)
 {
+  assert(h > 0 && r >= 0);
+
   double change = fmin(s->slope * r, largest_change * h);
 
   s->n = s->n_cell = 0;
@@ -302,6 +307,8 @@ void vg_hgrid_gather(struct vg_hgrid *s, const double c[3], double h, double r)
 int vg_hgrid_init(struct vg_hgrid *s, const double lo[3], double h_min,
                   double h_max, double slope)
 {
+  assert(!s->slot && !s->block && !s->page);
+  assert(h_min > 0 && h_max >= h_min && slope >= 0);
   memcpy(s->lo, lo, sizeof s->lo);
   s->slope = slope;
   s->level_lo = level_of(h_min) - 1;

@@ -7,6 +7,7 @@
 #ifndef VG_CORE_FILL_HGRID_H
 #define VG_CORE_FILL_HGRID_H
 
+#include <assert.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -58,6 +59,7 @@ void vg_hgrid_gather(struct vg_hgrid *s, const double c[3], double h, double r);
 /** Add a point at c + d to the list at hand. */
 static inline void vg_hgrid_note(struct vg_hgrid *s, const double d[3])
 {
+  assert(s->n <= VG_HGRID_MAX);
   if (s->n == VG_HGRID_MAX) return;
   for (int k = 0; k < 3; k++) s->x[k][s->n] = (float)d[k];
   s->n++;

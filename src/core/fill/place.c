@@ -1,5 +1,6 @@
 #include "core/fill/place.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -507,6 +508,7 @@ vg_status vg_place_seeds(size_t n, const double (*x)[3],
   struct seeder s = {sizing, region, out, 0};
   double lo[3] = {0}, side = 0;
 
+  assert(sizing && out && (x || !n));
   memset(out, 0, sizeof *out);
   for (int k = 0; k < 3; k++) {
     double hi = n ? x[0][k] : 0;
@@ -644,6 +646,8 @@ vg_status vg_place(const struct vg_tets *t, const struct vg_sizing *sizing,
                    const struct vg_region *region, size_t limit,
                    struct vg_placed *out, struct vg_error *err)
 {
+  assert(t->n_cell > 0 && sizing && out);
+
   struct placer *p = start(t, sizing, region);
   uint32_t item;
   int bad = 0;

@@ -1,5 +1,6 @@
 #include "core/fill/sites.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -35,6 +36,11 @@ static int is_block(const struct vg_site_block *b, const int32_t at[3],
 struct vg_site_block *vg_sites_block(struct vg_sites *s, const int64_t i[3],
                                      float h)
 {
+  assert(h > 0);
+  assert(llabs(i[0]) < INT64_C(1) << 33);
+  assert(llabs(i[1]) < INT64_C(1) << 33);
+  assert(llabs(i[2]) < INT64_C(1) << 33);
+
   const int32_t at[3] = { (int32_t)(i[0] >> 3), (int32_t)(i[1] >> 3),
                           (int32_t)(i[2] >> 3) };
   uint32_t *slot;

@@ -427,6 +427,7 @@ vg_status vg_flow_settle(struct vg_mesh *m, struct vg_surface_report *r,
   struct settle s = { .o = o, .m = m, .r = r, .out = VG_FLOW_INIT };
   vg_status st;
 
+  assert(r && o && out);
   VG_TRY(judge(&s, err));
   if (is_judged(&s)) {
     s.out.on_outer = vg_calloc(m->n_patch, 1);
@@ -452,6 +453,7 @@ vg_status vg_flow_outer(const struct vg_mesh *m,
   struct settle s = { .o = o, .out = VG_FLOW_INIT };
   vg_status st;
 
+  assert(r && o && (outer || !m->n_tri) && n);
   VG_TRY(vg_flow_collect(m, r, 1, &s.e, err));
   VG_TRY(judge_shells(&s, err));
   for (size_t t = 0; t < m->n_tri; t++) {

@@ -1,5 +1,6 @@
 #include "core/flow/half.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -105,6 +106,8 @@ vg_status vg_flow_find_cap(const struct vg_mesh *m, enum vg_flow_half half,
                            struct vg_flow_cap *cap, int *by_condition,
                            struct vg_error *err)
 {
+  assert(cap && by_condition);
+
   const struct box b = box_of(m);
   const double near = NEAR * b.length;
   int found = 0;
@@ -135,6 +138,8 @@ done:
 vg_status vg_flow_mirror(const struct vg_mesh *m, int axis, double at,
                          struct vg_mesh *out, struct vg_error *err)
 {
+  assert(axis >= 0 && axis < 3 && !out->point && !out->tri);
+
   const double near = NEAR * box_of(m).length;
   const size_t n = m->n_point;
   uint32_t *image = vg_alloc(n, sizeof *image);

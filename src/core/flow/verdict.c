@@ -1,5 +1,6 @@
 #include "core/flow/verdict.h"
 
+#include <assert.h>
 #include <stdio.h>
 
 /* F3: thresholds of rule 5. */
@@ -92,6 +93,7 @@ static enum vg_flow_verdict by_contents(const struct vg_flow_shell *s,
 enum vg_flow_verdict vg_flow_judge(const struct vg_flow_shell *s,
                                    enum vg_flow_side side, char *why)
 {
+  assert(s && why);
   if (s->n_role[VG_ROLE_FARFIELD]) {
     snprintf(why, VG_FLOW_TEXT, "patches %s have a farfield condition or name",
              s->far);

@@ -1,5 +1,6 @@
 #include "core/geometry/exact_sum.h"
 
+#include <assert.h>
 #include <math.h>
 
 /* Summands whose mantissas of one exponent are added up in 63 bits. */
@@ -61,6 +62,7 @@ static void add_some(struct vg_exact *s, size_t n, const double *x)
 
 void vg_exact_add_all(struct vg_exact *s, size_t n, const double *x)
 {
+  assert(s && (x || !n));
   for (size_t i = 0; i < n; i += MOST)
     add_some(s, n - i < MOST ? n - i : MOST, x + i);
 }
@@ -87,6 +89,7 @@ double vg_exact_value(const struct vg_exact *s)
   unsigned __int128 top = 0;
   int negative, i = VG_EXACT_LIMBS - 1, low;
 
+  assert(s);
   if (s->n_odd) return NAN;
   negative = carry(s, 0, limb) < 0;
   if (negative) carry(s, 1, limb);

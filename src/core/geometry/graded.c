@@ -1,5 +1,6 @@
 #include "core/geometry/graded.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -43,6 +44,9 @@ vg_status vg_graded_steps(double len, double (*size)(void *user, double s),
                           void *user, size_t least, size_t *n, double **s,
                           struct vg_error *err)
 {
+  assert(size && n && s);
+  assert(least >= 1);
+
   struct sampled a = { 0 };
   double *out, total;
   size_t count, k = 0;
@@ -93,6 +97,7 @@ void vg_quarter_turn(double x, double *sine, double *cosine)
 {
   const double right_angle = 1.57079632679489661923;
 
+  assert(x >= 0 && x <= 1);
   if (x <= 0.5) series(right_angle * x, sine, cosine);
   else series(right_angle * (1 - x), cosine, sine);
 }

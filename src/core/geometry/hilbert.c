@@ -1,5 +1,6 @@
 #include "core/geometry/hilbert.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -60,6 +61,8 @@ uint64_t vg_hilbert_key(const double x[3], const double lo[3], double scale)
 
 vg_status vg_sort_keys(size_t n, struct vg_key *key, struct vg_error *err)
 {
+  assert(key || !n);
+
   struct vg_key *to, *from = key, *buffer = vg_alloc(n, sizeof *buffer);
   uint64_t any = 0;
 
@@ -79,6 +82,7 @@ vg_status vg_sort_keys(size_t n, struct vg_key *key, struct vg_error *err)
   }
   if (from != key) memcpy(key, from, n * sizeof *key);
   free(buffer);
+  for (size_t i = 1; i < n; i++) assert(key[i - 1].key <= key[i].key);
   return VG_OK;
 }
 
@@ -112,6 +116,7 @@ static vg_status order_by(size_t n, const double (*x)[3],
 vg_status vg_hilbert_order(size_t n, const double (*x)[3], uint32_t *order,
                            struct vg_error *err)
 {
+  assert(n == 0 || (x && order));
   return order_by(n, x, NULL, order, err);
 }
 
@@ -128,5 +133,6 @@ static uint64_t round_of(size_t i)
 vg_status vg_insertion_order(size_t n, const double (*x)[3], uint32_t *order,
                              struct vg_error *err)
 {
+  assert(n == 0 || (x && order));
   return order_by(n, x, round_of, order, err);
 }

@@ -10,6 +10,7 @@
  *      component = sign of the whole. */
 #include "core/geometry/predicates.h"
 
+#include <assert.h>
 #include <float.h>
 #include <string.h>
 
@@ -226,12 +227,17 @@ static double orient3d_expansion(const double *a, const double *b,
   return ex_sign(m, h);
 }
 
+/* Are the coordinates of a point finite? For assertions. */
+#define FINITE3(x) (isfinite((x)[0]) && isfinite((x)[1]) && isfinite((x)[2]))
+#define FINITE2(x) (isfinite((x)[0]) && isfinite((x)[1]))
+
 double vg_orient3d_exact(const double a[3], const double b[3],
                          const double c[3], const double d[3])
 {
   struct dd p[3], q[3], r[3], det = { 0, 0 };
   double per = 0;
 
+  assert(FINITE3(a) && FINITE3(b) && FINITE3(c) && FINITE3(d));
   for (int k = 0; k < 3; k++) {
     p[k] = dd_diff(b[k], a[k]);
     q[k] = dd_diff(c[k], a[k]);
@@ -423,6 +429,7 @@ double vg_insphere_exact(const double a[3], const double b[3],
   double v[4][3], per, det;
   int is_short = 1;
 
+  assert(FINITE3(a) && FINITE3(b) && FINITE3(c) && FINITE3(d) && FINITE3(e));
   for (int i = 0; i < 4; i++)
     for (int k = 0; k < 3; k++) v[i][k] = p[i][k] - e[k];
   per = insphere_permanent(v);
@@ -451,6 +458,7 @@ double vg_orient2d_exact(const double a[2], const double b[2],
   struct vec p = vec_diff(b, a, 2), q = vec_diff(c, a, 2);
   double h[16];
 
+  assert(FINITE2(a) && FINITE2(b) && FINITE2(c));
   return ex_sign(vec_minor(&p, &q, 0, 1, h), h);
 }
 
@@ -493,6 +501,7 @@ double vg_incircle_exact(const double a[2], const double b[2],
   struct vec v[3];
   double per = 0;
 
+  assert(FINITE2(a) && FINITE2(b) && FINITE2(c) && FINITE2(d));
   for (int i = 0; i < 3; i++) {
     v[i] = vec_diff(p[i], d, 2);
     for (int k = 0; k < 2; k++) q[i][k] = dd_diff(p[i][k], d[k]);

@@ -3,6 +3,8 @@
  * other. Common nodes are taken out first, by number. */
 #include "core/geometry/triangles.h"
 
+#include <assert.h>
+
 #include "core/geometry/predicates.h"
 
 static int sign(double x)
@@ -215,6 +217,8 @@ int vg_triangles_meet(const double (*point)[3], const uint32_t a[3],
   const double *p[3], *q[3];
   int common_a = 0, common_b = 0, n = 0;
 
+  assert(a[0] != a[1] && a[1] != a[2] && a[2] != a[0]);
+  assert(b[0] != b[1] && b[1] != b[2] && b[2] != b[0]);
   /* Common corners to the front, in the order of a. A node of both that is
    * no common corner is a place where they touch. */
   for (int k = 0; k < 3; k++)

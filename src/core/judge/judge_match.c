@@ -1,4 +1,5 @@
 /* Faces, edges and places that slices have in common. */
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -410,6 +411,7 @@ vg_status vg_judge_components(struct vg_slices_judgement *j,
 {
   vg_status st = VG_OK;
 
+  assert(n_component && j->n_judged > 0);
   for (int q = 0; q < j->n_judged; q++) {
     size_t n_joined = 0;
 

@@ -1,6 +1,7 @@
 /* Judging slices: shares the work out and puts the report together. */
 #include "core/judge/judge_slices.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -533,6 +534,8 @@ vg_status vg_slices_judge_with(struct vg_comm *comm,
                                struct vg_mesh_report *field,
                                struct vg_error *err)
 {
+  assert(s->boundary && whole);
+  assert(threads >= 0);
   struct vg_slices_judgement j = {
     .comm = comm, .s = s, .sizing = sizing, .threads = threads,
     .body = body, .context = context,

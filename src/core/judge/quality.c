@@ -1,6 +1,7 @@
 /* The judge: calls the sweeps in turn and draws the conclusion. */
 #include "core/judge/quality.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -23,6 +24,7 @@ const struct vg_cell_faces vg_cell_faces[VG_CELL_KINDS] = {
 
 struct vg_cells vg_mesh_cells(const struct vg_mesh *m, int kind)
 {
+  assert(kind >= 0 && kind < VG_CELL_KINDS);
   const struct vg_cells all[VG_CELL_KINDS] = {
     { (const uint32_t *)m->tet, m->n_tet, 0 },
     { (const uint32_t *)m->pyr, m->n_pyr, m->n_tet },
@@ -189,6 +191,8 @@ done:
 vg_status vg_mesh_judge(const struct vg_mesh *m, const struct vg_sizing *sizing,
                         struct vg_mesh_report *report, struct vg_error *err)
 {
+  assert(m && report);
+
   struct vg_stats *f = vg_stats_new();
   size_t n_component = 0;
   double lo[3], hi[3];

@@ -5,6 +5,7 @@
  * upper node carries. As in quality_faces.c the buckets of one range of nodes
  * after the other are made, to keep memory small. Edges of boundary faces are
  * entered first and only leave their mark. */
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -230,6 +231,8 @@ vg_status vg_judge_edges(const struct vg_mesh *m,
                          struct vg_stats *f, struct vg_unpaired *unpaired,
                          struct vg_error *err)
 {
+  assert(sizing && f);
+
   struct edges *e = vg_calloc(1, sizeof *e);
   size_t room = 0, n;
   vg_status st = VG_OK;

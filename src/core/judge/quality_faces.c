@@ -8,6 +8,7 @@
  * the cells as keep the records of a range small.
  *
  * Tetrahedra alone are first tried by quality_pairs.c. */
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -393,6 +394,8 @@ vg_status vg_judge_faces(const struct vg_mesh *m, const float *volume,
                          struct vg_stats *f, struct vg_unpaired *unpaired,
                          size_t *n_component, struct vg_error *err)
 {
+  assert(f && n_component);
+
   struct table t = { .m = m, .volume = volume, .f = f, .unpaired = unpaired };
   size_t n_record = 4 * m->n_tet + 5 * (m->n_pyr + m->n_pri) +
                     6 * m->n_hex + m->n_tri + m->n_quad;

@@ -1,4 +1,5 @@
 /* Figures of a judgement: added up in any order, and made into a report. */
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -28,6 +29,8 @@ static int is_worse(const struct vg_worst_cell *a,
 
 void vg_stats_worst(struct vg_stats *f, const struct vg_worst_cell *w)
 {
+  assert(f->n_worst <= VG_WORST);
+
   size_t i = f->n_worst;
 
   if (i == VG_WORST) {
@@ -58,6 +61,8 @@ void vg_stats_add(struct vg_stats *f, const struct vg_stats *more)
 int vg_stats_face(struct vg_stats *f, size_t n_cell, size_t n_boundary,
                   int same_side)
 {
+  assert(n_cell + n_boundary > 0);
+
   struct vg_counts *n = &f->n;
 
   if (!n_cell) n->orphan_boundary += n_boundary;

@@ -14,6 +14,7 @@
  * positive and their faces leave in pairs of opposite sides, then they cover
  * each place equally often, so that such a mesh has a multiple of the volume
  * that its boundary encloses and is found out by that. */
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -262,6 +263,9 @@ vg_status vg_pair_faces(const struct vg_mesh *m, const float *volume,
                         struct vg_stats *f, struct vg_unpaired *unpaired,
                         uint32_t *parent, struct vg_error *err)
 {
+  assert(vg_faces_can_pair(m, unpaired));
+  assert(parent || !m->n_tet);
+
   struct pairing p = { .m = m, .volume = volume, .parent = parent,
                        .n_cell = m->n_tet };
   vg_status st = VG_OK;

@@ -4,6 +4,7 @@
  *   V = u x v . w / 6,
  *   circumradius = | |u|^2 v x w + |v|^2 w x u + |w|^2 u x v | / (12 V),
  *   inradius = 3 V / (sum of face areas). */
+#include <assert.h>
 #include <math.h>
 
 #include "core/geometry/predicates.h"
@@ -319,6 +320,8 @@ static int corners_positive(const double (*x)[3], int kind,
 /* By the divergence theorem, each quad as the mean of its two diagonals. */
 double vg_cell_volume(const double (*x)[3], int kind, const uint32_t *n)
 {
+  assert(kind >= 0 && kind < VG_CELL_KINDS);
+
   const struct vg_cell_faces *f = &vg_cell_faces[kind];
   const double *o = x[n[0]];
   double six = 0;
@@ -335,6 +338,7 @@ double vg_cell_volume(const double (*x)[3], int kind, const uint32_t *n)
 
 int vg_cell_positive(const double (*x)[3], int kind, const uint32_t *n)
 {
+  assert(kind >= 0 && kind < VG_CELL_KINDS);
   if (kind == VG_CELL_TET)
     return vg_orient3d(x[n[0]], x[n[1]], x[n[2]], x[n[3]]) > 0;
   return vg_cell_volume(x, kind, n) > 0 && corners_positive(x, kind, n);
@@ -360,6 +364,7 @@ static void judge_mixed(const struct vg_mesh *m, int kind, float *volume,
 void vg_judge_shape(const struct vg_mesh *m, size_t first, float *volume,
                     struct vg_stats *f)
 {
+  assert(volume || !(m->n_tet + m->n_pyr + m->n_pri + m->n_hex));
   for (size_t i = 0, n; i < m->n_tet; i += n) {
     n = m->n_tet - i < BATCH ? m->n_tet - i : BATCH;
     judge_batch(m, i, n, first + i, volume, f);

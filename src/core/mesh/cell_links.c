@@ -9,6 +9,7 @@
  * faces spreads over a window of heads. */
 #include "core/mesh/cell_links.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -70,6 +71,9 @@ static inline uint32_t *link_of(const struct vg_cell_links *f, uint32_t code)
 int vg_half_face_nodes(const struct vg_cell_links *f, uint32_t code,
                        uint32_t node[4])
 {
+  assert(code >> 3 < f->n_cell);
+  assert((int)(code & 7) < vg_half_faces(f, code >> 3));
+
   const unsigned char (*face)[4], *q;
   int n_face, width;
   const uint32_t *c = cell_nodes(f, code >> 3, &face, &n_face);
@@ -291,6 +295,8 @@ vg_status vg_cell_links_build(struct vg_cell_links *f, const struct vg_mesh *m,
   struct heads h = {NULL, 0};
   vg_status st;
 
+  assert(f && m && name);
+  assert(is_open == 0 || is_open == 1);
   VG_TRY(make_room(&made, &h, m, is_open, name, err));
   pass_cells(&made, &h);
   if (is_open) {

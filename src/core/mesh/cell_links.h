@@ -6,6 +6,7 @@
 #ifndef VG_CORE_MESH_CELL_LINKS_H
 #define VG_CORE_MESH_CELL_LINKS_H
 
+#include <assert.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -45,10 +46,12 @@ vg_status vg_cell_links_build(struct vg_cell_links *l, const struct vg_mesh *m,
 int vg_half_face_nodes(const struct vg_cell_links *l, uint32_t code,
                        uint32_t node[4]);
 
-/** Place of a cell's first half-face in link[]; its others follow. */
+/** Place of a cell's first half-face in link[]; its others follow. With the
+ * number of all cells, the length of link[]. */
 static inline size_t vg_first_half(const struct vg_cell_links *l,
                                    uint32_t cell)
 {
+  assert(cell <= l->n_cell);
   if (cell < l->end_tet) return 4 * (size_t)cell;
   if (cell < l->end_pri)
     return 4 * (size_t)l->end_tet + 5 * (size_t)(cell - l->end_tet);
@@ -59,12 +62,14 @@ static inline size_t vg_first_half(const struct vg_cell_links *l,
 /** Faces of a cell. */
 static inline int vg_half_faces(const struct vg_cell_links *l, uint32_t cell)
 {
+  assert(cell < l->n_cell);
   return cell < l->end_tet ? 4 : cell < l->end_pri ? 5 : 6;
 }
 
 /** Code of the mate of a half-face, or VG_NO_CELL. */
 static inline uint32_t vg_mate(const struct vg_cell_links *l, uint32_t code)
 {
+  assert((int)(code & 7) < vg_half_faces(l, code >> 3));
   return l->link[vg_first_half(l, code >> 3) + (code & 7)];
 }
 

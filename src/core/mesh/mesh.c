@@ -1,5 +1,6 @@
 #include "core/mesh/mesh.h"
 
+#include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,6 +9,7 @@
 
 void vg_mesh_release(struct vg_mesh *m)
 {
+  assert(m);
   free(m->point);
   free(m->tri);
   free(m->quad);
@@ -23,6 +25,7 @@ void vg_mesh_release(struct vg_mesh *m)
 
 void vg_mesh_move(struct vg_mesh *to, struct vg_mesh *from)
 {
+  assert(to && from && to != from);
   vg_mesh_release(to);
   *to = *from;
   memset(from, 0, sizeof *from);
@@ -44,6 +47,8 @@ vg_status vg_mesh_copy(struct vg_mesh *to, const struct vg_mesh *from,
 {
   int bad = 0;
 
+  assert(to != from);
+  assert(!to->n_point && !to->point && !to->patch);
   *to = *from;
 #define COPY(array, n) \
   to->array = copy(from->array, from->n, sizeof *from->array, &bad)
@@ -89,6 +94,7 @@ size_t vg_mesh_add_patch(struct vg_mesh *m, int32_t id, const char *name)
 
 void vg_mesh_bounds(const struct vg_mesh *m, double lo[3], double hi[3])
 {
+  assert(m->point || !m->n_point);
   for (int k = 0; k < 3; k++) lo[k] = hi[k] = m->n_point ? m->point[0][k] : 0;
   for (size_t i = 1; i < m->n_point; i++)
     for (int k = 0; k < 3; k++) {

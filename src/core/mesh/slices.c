@@ -1,5 +1,6 @@
 #include "core/mesh/slices.h"
 
+#include <assert.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
@@ -40,6 +41,7 @@ static void each_slice(void *context, size_t first, size_t end, int worker)
     vg_status st = e->s->get(e->s, i, &slice, &err);
 
     if (st >= 0) {
+      assert(slice.n_own <= slice.n_point);
       st = e->body(e->context, &slice, &err);
       e->s->put(e->s, &slice);
     }
@@ -51,6 +53,9 @@ vg_status vg_slices_each(const struct vg_slices *s, int threads,
                          vg_slice_body body, void *context,
                          struct vg_error *err)
 {
+  assert(s->get && s->put && body);
+  assert(threads >= 0);
+
   struct each e = { s, body, context, ATOMIC_FLAG_INIT, s->n_slice, VG_OK,
                     VG_ERROR_INIT };
 
@@ -89,6 +94,7 @@ vg_status vg_slices_collect(const struct vg_slices *s, int threads,
   struct vg_mesh m = VG_MESH_INIT;
   vg_status st;
 
+  assert(s->boundary && out);
   if (s->n_point >= UINT32_MAX)
     return vg_fail(err, VG_ERR_UNSUPPORTED, "%llu points are too many for a "
                    "mesh in one piece; write b8l.ugrid or pvtu",
@@ -135,5 +141,6 @@ vg_status vg_slices_collect_parts(const struct vg_slices *s, int threads,
 {
   struct parts p = { s, part };
 
+  assert(s->n_part > 0 && part);
   return vg_slices_each(s, threads, collect_parts, &p, err);
 }

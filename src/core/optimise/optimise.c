@@ -1,5 +1,6 @@
 #include "core/optimise/optimise.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -217,6 +218,9 @@ vg_status vg_optimise(struct vg_tets *t, size_t n_fixed, int sweeps,
                       const struct vg_sizing *sizing,
                       struct vg_optimise_report *report, struct vg_error *err)
 {
+  assert(n_fixed <= t->n_point && sweeps >= 0);
+  assert((!region || sizing) && report);
+
   struct vg_optimiser *o = vg_calloc(1, sizeof *o);
 
   memset(report, 0, sizeof *report);
@@ -232,6 +236,8 @@ vg_status vg_optimise_bad(struct vg_tets *t, size_t n_fixed, size_t n_keep,
                           struct vg_optimise_report *report,
                           struct vg_error *err)
 {
+  assert(n_fixed <= n_keep && n_keep <= t->n_point && report);
+
   struct vg_optimiser *o = vg_calloc(1, sizeof *o);
 
   memset(report, 0, sizeof *report);

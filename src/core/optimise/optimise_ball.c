@@ -2,6 +2,7 @@
  * over arrays, which compilers turn into vector instructions. */
 #include "core/optimise/optimise_ball.h"
 
+#include <assert.h>
 #include <math.h>
 
 #include "core/sizing/sizing.h"
@@ -14,6 +15,7 @@ static const double round_slope = 1.2, size_slope = 0.5;
 void vg_ball_faces(const struct vg_tets *t, size_t n, const uint32_t *link,
                    struct vg_ball_faces *out)
 {
+  assert(n <= VG_BALL_MAX);
   out->n = n;
   for (size_t k = 0; k < n; k++) {
     const uint32_t *v = t->cell[link[k] >> 2].v;
@@ -142,6 +144,7 @@ void vg_ball_ideal(const struct vg_ball_faces *b, const double *q,
   static const double height = 0.81649658092772603;  /* regular: of an edge */
   double sum[3] = {0}, total = 0;
 
+  assert(b->n > 0);
   for (size_t k = 0; k < b->n; k++) {
     double w = 1 - q[k], l2 = b->edge2[0][k] + b->edge2[1][k] + b->edge2[2][k];
     double h = b->area2[k] > 0 ? height * sqrt(l2 / (3 * b->area2[k])) : 0;
@@ -201,6 +204,7 @@ void vg_ball_slope(const struct vg_ball_faces *b, size_t first, size_t end,
 {
   double of[3][BLOCK];
 
+  assert(first <= end && end <= b->n);
   g[0] = g[1] = g[2] = 0;
   for (size_t at = first; at < end; at += BLOCK) {
     size_t n = end - at < BLOCK ? end - at : BLOCK;

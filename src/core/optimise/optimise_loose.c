@@ -1,5 +1,6 @@
 /* Points smoothed among cells that are only listed, without the links between
  * them. They are few, so each gets more than in a sweep of the optimisation. */
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -183,6 +184,8 @@ vg_status vg_optimise_points(struct vg_tets *t, size_t n,
                              struct vg_optimise_report *report,
                              struct vg_error *err)
 {
+  assert((point || !n) && (q || !t->n_cell) && report);
+
   struct mover *m = vg_alloc(1, sizeof *m);
   struct balls b = { NULL, NULL, NULL };
   vg_status st = VG_OK;

@@ -1,11 +1,14 @@
 #include "core/optimise/optimise_parts.h"
 
+#include <assert.h>
 #include <string.h>
 
 #include "base/memory.h"
 
 int vg_ball(struct vg_optimiser *o, uint32_t p)
 {
+  assert(p < o->t->n_point);
+
   struct vg_tets *t = o->t;
   uint32_t c = o->star[p];
   int whole = 1;
@@ -55,6 +58,8 @@ int vg_replace(struct vg_optimiser *o, int n_old, const uint32_t *old,
 {
   uint32_t slot[VG_NEW_MAX];
 
+  assert(n_old > 0 && n_old <= VG_OLD_MAX);
+  assert(n_new > 0 && n_new <= VG_NEW_MAX);
   if (vg_cavity_reserve(o->t, n_old, n_new) || grow_shapes(o)) {
     o->refused = 1;
     return -1;

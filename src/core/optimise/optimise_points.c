@@ -1,6 +1,7 @@
 /* For bad cells that neither swaps nor smoothing improve: a point is taken
  * away, or one is put in (Klingner, Shewchuk, "Aggressive tetrahedral mesh
  * improvement", 2007). Both are made only when the worst cell gets better. */
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -144,6 +145,7 @@ int vg_collapse(struct vg_optimiser *o, uint32_t c)
 {
   uint32_t v[4];
 
+  assert(c < o->t->n_cell && !(o->t->flag[c] & VG_DEAD));
   memcpy(v, o->t->cell[c].v, sizeof v);
   for (int i = 0; i < 4; i++)
     if (merge_point(o, v[i])) return 1;
@@ -342,6 +344,7 @@ static int split_above(struct vg_optimiser *o, uint32_t c, double aim)
  * the boundary), of the cell, and for the worst of its edges. */
 int vg_split(struct vg_optimiser *o, uint32_t c, double aim)
 {
+  assert(c < o->t->n_cell && !(o->t->flag[c] & VG_DEAD));
   static const double share[7][4] = {
     {.25, .25, .25, .25}, {.5, .5, 0, 0}, {.5, 0, .5, 0}, {.5, 0, 0, .5},
     {0, .5, .5, 0}, {0, .5, 0, .5}, {0, 0, .5, .5}};

@@ -4,6 +4,7 @@
  * evens out sizes and shapes together (Chen, "Mesh smoothing schemes based on
  * optimal Delaunay triangulations", 2004), then steps along the gradient of
  * the worst cell. */
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -178,6 +179,7 @@ static int smooth_ball(struct vg_optimiser *o, uint32_t p, double aim)
 
 int vg_smooth(struct vg_optimiser *o, uint32_t p, double aim)
 {
+  assert(p < o->t->n_point && aim >= 0);
   if (p < o->n_fixed || o->failed[p] & VG_FAILED_SMOOTH || !vg_ball(o, p))
     return 0;
   if (smooth_ball(o, p, aim)) return 1;

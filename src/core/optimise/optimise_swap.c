@@ -3,6 +3,8 @@
  * discrete optimization algorithms for the topological improvement of
  * tetrahedral meshes", 2002). A swap is made when the worst cell of the new
  * configuration is better than the worst of the old. */
+#include <assert.h>
+
 #include "core/optimise/optimise_parts.h"
 
 static double shape_of(const struct vg_tets *t, uint32_t a, uint32_t b,
@@ -150,6 +152,7 @@ static int remove_edge(struct vg_optimiser *o, uint32_t c, int i, int j)
 
 int vg_swap(struct vg_optimiser *o, uint32_t c)
 {
+  assert(c < o->t->n_cell);
   for (int i = 0; i < 4; i++)
     for (int j = i + 1; j < 4; j++)
       if (remove_edge(o, c, i, j)) return 1;

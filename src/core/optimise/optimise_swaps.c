@@ -1,4 +1,5 @@
 /* One pass of swaps: the first half of a sweep of the optimisation. */
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,6 +23,8 @@ vg_status vg_optimise_swaps(struct vg_tets *t, float below, float **q,
                             struct vg_optimise_report *report,
                             struct vg_error *err)
 {
+  assert(q && (*q || !t->n_cell) && report);
+
   struct vg_optimiser *o = vg_calloc(1, sizeof *o);
   size_t n = t->n_cell;
   vg_status st = VG_OK;

@@ -1,5 +1,6 @@
 #include "core/recover/boundary.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -68,6 +69,8 @@ vg_status vg_boundary_fix(struct vg_tets *t, size_t n_tri,
                           const uint32_t (*tri)[3], uint8_t *missing,
                           size_t *n_missing, struct vg_error *err)
 {
+  assert(n_missing && (tri || !n_tri));
+
   struct tri_table table;
   uint8_t *found = vg_calloc(n_tri, 1);
   vg_status st = tri_table_init(&table, n_tri, tri, err);
@@ -320,6 +323,8 @@ vg_status vg_boundary_sides(struct vg_tets *t, size_t n_tri,
   size_t n_fluid = 0;
   vg_status st = VG_OK;
 
+  assert(t->n_cell > 0 && (tri || !n_tri));
+  assert(!region || (sizing && corner + 8 <= t->n_point));
   s.side = vg_calloc(t->n_cell, 1);
   s.front = vg_calloc(t->n_cell, 1);
   s.near = vg_calloc(region ? t->n_cell : 1, 1);
@@ -456,6 +461,8 @@ vg_status vg_boundary_tets(size_t n, const double (*x)[3], size_t n_tri,
 {
   vg_status st;
 
+  assert(n > 0 && x && tri && report);
+  assert(!out->n_point && !out->n_cell);
   memset(report, 0, sizeof *report);
   VG_TRY(delaunay(out, n, x, err));
   st = vg_recover(out, n_tri, tri, report, err);
@@ -482,6 +489,8 @@ vg_status vg_boundary_open(size_t n, const double (*x)[3], size_t n_tri,
 {
   vg_status st;
 
+  assert(n > 0 && x && tri && report && region && sizing);
+  assert(!out->n_point && !out->n_cell);
   memset(report, 0, sizeof *report);
   VG_TRY(delaunay(out, n, x, err));
   VG_TRY(vg_recover(out, n_tri, tri, report, err));

@@ -1,5 +1,6 @@
 #include "core/recover/recover.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -505,6 +506,8 @@ static struct vg_cell *copy_of_cells(const struct vg_tets *t)
 vg_status vg_recover(struct vg_tets *t, size_t n_tri, const uint32_t (*tri)[3],
                      struct vg_boundary_report *report, struct vg_error *err)
 {
+  assert(t->n_cell > 0 && (tri || !n_tri) && report);
+
   struct recovery r = {0};
   struct vg_cell *before = NULL;
   size_t n_before = 0;

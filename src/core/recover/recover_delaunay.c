@@ -6,6 +6,7 @@
  * transformations", SIAM J. Sci. Stat. Comput. 10, 1989.) */
 #include "core/recover/recover.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -229,6 +230,7 @@ vg_status vg_recover_delaunay(struct vg_tets *t, size_t n_before,
   struct faces now = {0};
   size_t limit;
 
+  assert((before || !n_before) && n_flip);
   list_wrong(&r, n_before, before);
   limit = flips_each * r.next.n + 100;
   for (int round = 0; round < ROUNDS && r.next.n && !r.refused; round++) {

@@ -1,5 +1,6 @@
 #include "core/recover/recover_flip.h"
 
+#include <assert.h>
 #include <limits.h>
 
 #include "core/delaunay/cavity.h"
@@ -78,6 +79,9 @@ static double side(const struct vg_tets *t, uint32_t a, uint32_t b,
 
 int vg_flip_face(struct vg_flipper *f, uint32_t c, int i)
 {
+  assert(c < f->t->n_cell && i >= 0 && i < 4);
+  assert(!(f->t->flag[c] & VG_DEAD));
+
   const struct vg_tets *t = f->t;
   uint32_t link = t->cell[c].link[i], old[2] = {c, link >> 2}, v[3], a, b;
   struct change g = {.n_old = 2, .old = old};
@@ -301,6 +305,9 @@ static int remove_edge(struct vg_flipper *f, uint32_t c,
 int vg_flip_edge(struct vg_flipper *f, uint32_t c, uint32_t a, uint32_t b,
                  int depth)
 {
+  assert(c < f->t->n_cell && a != b && depth >= 0);
+  assert(!(f->t->flag[c] & VG_DEAD));
+
   struct removal m = {a, b, VG_NONE, depth, 1};
   size_t before = f->n_change;
 

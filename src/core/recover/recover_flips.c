@@ -1,6 +1,7 @@
 /* All that flips can put in: edges first, then triangles. */
 #include "core/recover/recover_flip.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -91,6 +92,8 @@ vg_status vg_recover_flips(struct vg_tets *t, size_t n_tri,
                            const uint32_t (*tri)[3], size_t *n_missing,
                            uint32_t *missing, struct vg_error *err)
 {
+  assert(n_missing && *n_missing <= n_tri && missing);
+
   struct vg_flipper f = {0};
   uint32_t (*edge)[2] = vg_alloc(3 * *n_missing, sizeof *edge);
   size_t n = SIZE_MAX;

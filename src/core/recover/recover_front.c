@@ -2,6 +2,7 @@
  * way of one that is to appear. */
 #include "core/recover/recover_flip.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,6 +23,7 @@ uint32_t vg_flip_edge_at(const struct vg_flip_front *s, uint32_t a,
 {
   uint32_t low = a < b ? a : b, high = a < b ? b : a;
 
+  assert(a != b && a < s->n_point && b < s->n_point);
   if (high >= s->n_point) return VG_NONE;
   return find(s->edge, s->first_edge[low], s->first_edge[low + 1], high);
 }
@@ -35,6 +37,8 @@ static uint32_t lowest(const uint32_t v[3])
 
 int vg_flip_is_tri(const struct vg_flip_front *s, const uint32_t v[3])
 {
+  assert(v[0] != v[1] && v[1] != v[2] && v[2] != v[0]);
+
   uint32_t low = lowest(v);
 
   if (v[0] >= s->n_point || v[1] >= s->n_point || v[2] >= s->n_point) return 0;
@@ -69,6 +73,7 @@ vg_status vg_flip_front_init(struct vg_flip_front *s, size_t n_point,
                              size_t n_tri, const uint32_t (*tri)[3],
                              struct vg_error *err)
 {
+  assert(s && (tri || !n_tri));
   s->n_point = n_point;
   s->tri = tri;
   s->first_edge = vg_calloc(n_point + 2, sizeof *s->first_edge);
@@ -154,6 +159,8 @@ static int crosses_in_plane(const struct vg_tets *t, uint32_t end,
 int vg_flip_obstructs(const struct vg_flipper *f, uint32_t x, uint32_t y,
                       uint32_t z)
 {
+  assert(f->n_target == 2 || f->n_target == 3);
+
   const struct vg_tets *t = f->t;
   uint32_t a = f->target[0], b = f->target[1], v[3] = {x, y, z};
   double above, below, s[3];
@@ -181,6 +188,8 @@ int vg_flip_obstructs(const struct vg_flipper *f, uint32_t x, uint32_t y,
 
 int vg_flip_pierces(const struct vg_flipper *f, uint32_t p, uint32_t q)
 {
+  assert(p != q);
+
   const struct vg_tets *t = f->t;
   const uint32_t *v = f->target;
   double above, below, s[3];

@@ -1,5 +1,7 @@
 /* Edges and triangles of a surface put in: what is in the way of each is
  * searched for from its first point, and flipped away. */
+#include <assert.h>
+
 #include "core/recover/recover_flip.h"
 
 
@@ -209,6 +211,8 @@ static int make(struct vg_flipper *f, int depth)
 
 int vg_flip_has_edge(const struct vg_flipper *f, uint32_t a, uint32_t b)
 {
+  assert(a != b);
+
   uint32_t c = towards(f, a, b);
 
   return c != VG_NONE && has(&f->t->cell[c], b);
@@ -217,6 +221,7 @@ int vg_flip_has_edge(const struct vg_flipper *f, uint32_t a, uint32_t b)
 int vg_flip_make_edge(struct vg_flipper *f, uint32_t a, uint32_t b,
                       int depth)
 {
+  assert(a != b && depth >= 0 && depth <= 3);
   f->n_target = 2;
   f->target[0] = a;
   f->target[1] = b;
@@ -226,6 +231,10 @@ int vg_flip_make_edge(struct vg_flipper *f, uint32_t a, uint32_t b,
 
 int vg_flip_make_tri(struct vg_flipper *f, const uint32_t v[3], int depth)
 {
+  assert(depth >= 0);
+  assert(vg_flip_has_edge(f, v[0], v[1]));
+  assert(vg_flip_has_edge(f, v[1], v[2]));
+  assert(vg_flip_has_edge(f, v[2], v[0]));
   f->n_target = 3;
   for (int k = 0; k < 3; k++) f->target[k] = v[k];
   f->budget = budget[depth];

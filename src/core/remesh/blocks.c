@@ -4,6 +4,7 @@
  * together along those edges. */
 #include "core/remesh/blocks_parts.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -224,6 +225,7 @@ vg_status vg_blocks_run(struct vg_tris *w, size_t n, int phase, int threads,
   struct blocks s = { .w = w, .n = n, .body = body, .user = user };
   vg_status st;
 
+  assert(n > 0 && phase >= 0 && threads >= 0 && body);
   if (n < 2) return body(user, w, err);
   st = run_blocks(&s, w, phase, threads > 0 ? threads : vg_cores(), err);
   for (size_t i = 0; s.block && i < n; i++) {

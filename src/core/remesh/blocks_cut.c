@@ -2,6 +2,7 @@
  * longest side of their box, by histogram. */
 #include "core/remesh/blocks_parts.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -121,6 +122,7 @@ vg_status vg_blocks_cut(const struct vg_tris *w, size_t k, int phase,
   size_t n = 0;
   vg_status st = VG_OK;
 
+  assert(k > 0 && phase >= 0 && (block || !w->n_tri));
   c.weight = vg_alloc(w->n_tri, sizeof *c.weight);
   c.middle = vg_alloc(w->n_tri, sizeof *c.middle);
   c.list = vg_alloc(w->n_tri, sizeof *c.list);

@@ -3,6 +3,7 @@
  * ends, which stayed; and points near them count as changed. */
 #include "core/remesh/blocks_parts.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -242,6 +243,8 @@ static void finish_points(struct joining *j, size_t n)
 vg_status vg_blocks_join(struct vg_tris *w, size_t n, struct vg_block *b,
                          int threads, struct vg_error *err)
 {
+  assert(n > 0 && b && threads >= 0);
+
   struct joining j = { .made = *w, .block = b };
   vg_status st;
 

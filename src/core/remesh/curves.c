@@ -4,6 +4,7 @@
  * or where the line turns, are corners, and lines between them curves. */
 #include "core/remesh/curves.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -32,6 +33,7 @@ double vg_cosine(double degrees)
 {
   double s, c;
 
+  assert(degrees >= 0 && degrees <= 180);
   if (degrees > 90) return -vg_cosine(180 - degrees);
   vg_quarter_turn(degrees / 90, &s, &c);
   return c;
@@ -356,6 +358,8 @@ vg_status vg_curves_find(struct vg_curves *c, const struct vg_ref *r,
                          const struct vg_curves_options *o,
                          struct vg_error *err)
 {
+  assert(!c->line && !c->corner);
+
   struct finder f = { .c = c, .r = r, .o = o, .sharp = vg_cosine(o->angle),
                       .lead = vg_cosine(LEAD * o->angle) };
   vg_status st = VG_OK;
@@ -395,6 +399,8 @@ void vg_curves_release(struct vg_curves *c)
 
 size_t vg_curve_of(const struct vg_curves *c, uint32_t number)
 {
+  assert(number > 0 && number <= c->n_point);
+
   size_t lo = 0, hi = c->n_curve;
 
   while (hi - lo > 1) {
@@ -408,6 +414,7 @@ size_t vg_curve_of(const struct vg_curves *c, uint32_t number)
 
 double vg_curve_length(const struct vg_curves *c, size_t i)
 {
+  assert(i < c->n_curve);
   return c->at[c->curve[i].first + c->curve[i].n - 1];
 }
 
@@ -428,6 +435,8 @@ static size_t before(const struct vg_curves *c, size_t i, double s)
 void vg_curve_at(const struct vg_curves *c, const struct vg_ref *r, size_t i,
                  double s, double x[3])
 {
+  assert(i < c->n_curve);
+
   size_t k = before(c, i, s);
   const double *a = r->point[c->point[k]], *b = r->point[c->point[k + 1]];
   double t = (s - c->at[k]) / (c->at[k + 1] - c->at[k]);
@@ -442,6 +451,7 @@ double vg_curve_chord(const struct vg_curves *c, const struct vg_ref *r,
 {
   double a[3], b[3], u[3], uu, most = 0;
 
+  assert(i < c->n_curve && s0 < s1);
   vg_curve_at(c, r, i, s0, a);
   vg_curve_at(c, r, i, s1, b);
   vg_sub(b, a, u);

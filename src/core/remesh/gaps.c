@@ -1,5 +1,6 @@
 #include "core/remesh/gaps.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -291,6 +292,8 @@ static vg_status settle(const struct vg_mesh *m, const struct vg_gap_options *o,
 vg_status vg_gaps_find(const struct vg_mesh *m, const struct vg_gap_options *o,
                        struct vg_gaps *out, struct vg_error *err)
 {
+  assert(m && o && !out->n && !out->x);
+
   struct vg_ref ref = VG_REF_INIT;
   struct search s = { .ref = &ref, .stop = &o->stop };
   struct vg_gaps found = VG_GAPS_INIT;

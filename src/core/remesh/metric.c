@@ -1,9 +1,13 @@
 #include "core/remesh/metric.h"
 
+#include <assert.h>
+
 void vg_form_stretch(double *form, const double d[3], double by)
 {
   const double less = 1 - 1 / (by * by);
 
+  assert(form && by >= 1);
+  assert(by == 1 || fabs(vg_dot(d, d) - 1) < 1e-6);
   for (int k = 0; k < 3; k++) {
     form[k] = 1 - less * d[k] * d[k];
     form[3 + k] = -less * d[k] * d[(k + 1) % 3];
@@ -24,6 +28,8 @@ void vg_form_frame(const double *form, double u[3], double v[3])
 /* By the eigenvalues of the form in the plane, as trace and determinant. */
 double vg_form_aspect(const double *form, const double n[3])
 {
+  assert(vg_dot(n, n) > 0);
+
   double u[3] = { 0, 0, 0 }, v[3], a, b, c, mean, gap;
   int k = fabs(n[0]) < fabs(n[1]) ? 0 : 1;
 

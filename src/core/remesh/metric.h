@@ -8,6 +8,8 @@
 #ifndef VG_CORE_REMESH_METRIC_H
 #define VG_CORE_REMESH_METRIC_H
 
+#include <assert.h>
+
 #include "core/geometry/vector.h"
 
 struct vg_metric {
@@ -69,7 +71,8 @@ static inline double vg_form_shape(const double *form, const double *a,
   return vg_form_area2(form, n) * least / (l[0] * l[1] * l[2]);
 }
 
-/** Edges along the unit vector d are `by` >= 1 times as long as across it. */
+/** Edges along the unit vector d are `by` >= 1 times as long as across it. d
+ * does not matter where by is 1. */
 void vg_form_stretch(double *form, const double d[3], double by);
 
 /** Vectors in the plane of u and v that have length 1 and right angles, as
@@ -86,6 +89,8 @@ static inline double vg_metric_length(const struct vg_metric *a,
                                       const struct vg_metric *b,
                                       const double e[3])
 {
+  assert(a->size > 0 && b->size > 0);
+
   const double la = vg_form_norm(a->form, e) / a->size;
   const double lb = vg_form_norm(b->form, e) / b->size;
 
@@ -96,6 +101,7 @@ static inline double vg_metric_length(const struct vg_metric *a,
 static inline double vg_metric_along(const struct vg_metric *m,
                                      const double d[3])
 {
+  assert(m->size > 0);
   return m->size * vg_norm(d) / vg_form_norm(m->form, d);
 }
 

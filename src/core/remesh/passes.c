@@ -1,5 +1,6 @@
 #include "core/remesh/passes.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -277,6 +278,7 @@ vg_status vg_pass_collapse(struct vg_tris *w, double least, double most,
   struct vg_key *key = NULL;
   size_t n_key, done = 1;
 
+  assert(least >= 0 && most > 0 && n);
   *n = 0;
   for (int round = 0; done && round < ROUNDS; round++) {
     done = 0;
@@ -320,6 +322,7 @@ vg_status vg_pass_split(struct vg_tris *w, double most, int across, size_t *n,
   struct vg_key *key = NULL;
   size_t n_key, done = 1;
 
+  assert(most > 0 && n);
   *n = 0;
   for (int round = 0; done && round < (across ? 1 : ROUNDS); round++) {
     done = 0;
@@ -437,6 +440,7 @@ size_t vg_pass_smooth(struct vg_tris *w, int sweeps)
 {
   size_t n = 0;
 
+  assert(sweeps >= 0);
   for (int i = 0; i < sweeps; i++)
     for (uint32_t p = 0; p < w->n_point && !w->ends; p++)
       if (w->point[p].half != VG_REF_NONE

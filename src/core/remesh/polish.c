@@ -3,6 +3,7 @@
  * only the best is held against the surface. */
 #include "core/remesh/passes.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -281,6 +282,8 @@ static int polish_tri(struct vg_tris *w, uint32_t t)
 vg_status vg_pass_polish(struct vg_tris *w, double shape, size_t *n,
                          struct vg_error *err)
 {
+  assert(shape >= 0 && n);
+
   const uint64_t before = w->looked[VG_WORK_POLISH];
 
   *n = 0;

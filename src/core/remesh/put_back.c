@@ -4,6 +4,7 @@
  * of points around them return. The given surface is sound, so this ends. */
 #include "core/remesh/put_back.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -56,6 +57,7 @@ vg_status vg_remesh_locate(const struct vg_mesh *on, size_t n,
   struct locating l = { &ref, x, tri, foot, stop };
   vg_status st;
 
+  assert((x && tri && foot) || !n);
   if (!on->n_tri)
     return vg_fail(err, VG_ERR_INPUT, "there are no triangles to look on");
   st = vg_ref_build_tree(&ref, on, stop, err);
@@ -176,6 +178,9 @@ vg_status vg_remesh_put_back(struct vg_mesh *m, const double (*to)[3],
                              uint8_t *stays, size_t *n_refused,
                              struct vg_error *err)
 {
+  assert((to && stays) || !m->n_point);
+  assert(n_refused && threads >= 0);
+
   double (*from)[3] = vg_alloc(m->n_point, sizeof *from);
   struct moving k = { m, (const double (*)[3])from, stays,
                       vg_alloc(m->n_point, 1), 0 };

@@ -1,5 +1,6 @@
 #include "core/remesh/reference.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -334,6 +335,7 @@ done:
 vg_status vg_ref_set_faces(struct vg_ref *r, const struct vg_mesh *m,
                            const struct vg_stop *stop, struct vg_error *err)
 {
+  assert(!r->mate && !r->shape);
   return set_faces(r, m, 1, stop, err);
 }
 
@@ -343,6 +345,7 @@ vg_status vg_ref_add_tree(struct vg_ref *r, const struct vg_stop *stop,
   struct piece *piece = NULL;
   vg_status st;
 
+  assert(r->shape || !r->n_tri);
   VG_TRY(make_pieces(r, &piece, &r->n_item, err));
   VG_TRY(vg_stopped(stop, err));
   VG_TRY(make_tree(r, piece, err));
@@ -502,6 +505,7 @@ vg_status vg_ref_thin(struct vg_ref *r, double distance, double far,
 {
   struct thinning c = { r, distance, far, cap, stop };
 
+  assert(distance >= 0 && far >= 0 && threads >= 0);
   free(r->thin);
   r->thin = vg_calloc(r->n_tri, 1);
   if (!r->thin) return vg_fail_memory(err, "the sheets of the surface");

@@ -4,6 +4,7 @@
 #ifndef VG_CORE_REMESH_REFERENCE_H
 #define VG_CORE_REMESH_REFERENCE_H
 
+#include <assert.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -66,6 +67,7 @@ static inline uint32_t vg_ref_prev(uint32_t h)
 /** The point that half-edge h starts from. */
 static inline uint32_t vg_ref_from(const struct vg_ref *r, uint32_t h)
 {
+  assert(h < 3 * r->n_tri);
   return r->tri[h / 3][h % 3];
 }
 

@@ -1,5 +1,6 @@
 #include "core/remesh/reference.h"
 
+#include <assert.h>
 #include <float.h>
 #include <math.h>
 
@@ -162,6 +163,7 @@ int vg_ref_within(const struct vg_ref *r, const double x[3],
   double limit = distance * distance, s, q;
   int top = 0;
 
+  assert(distance >= 0 && hint && d2);
   if (*hint != VG_REF_NONE) {
     uint32_t t = *hint;
 
@@ -252,6 +254,8 @@ static double search(const struct vg_ref *r, const double x[3],
 double vg_ref_nearest(const struct vg_ref *r, const double x[3],
                       const double n[3], uint32_t *hint, double out[3])
 {
+  assert(hint && r->n_tri > 0);
+
   double d = search(r, x, n, hint, out);
 
   return n && !(d < INFINITY) ? search(r, x, NULL, hint, out) : d;
@@ -285,6 +289,7 @@ int vg_ref_leaves(const struct vg_ref *r, const double a[3], const double b[3],
   uint32_t t = hint, entry = 3;
   double e[3], f[3], df[3], s, q, at = 0;
 
+  assert(distance >= 0 && hint < r->n_tri);
   vg_sub(b, a, e);
   /* On a line the hint may be on its other side. */
   if (!(walk(r, a, n, START * limit, &t, &s, &q) <= limit)
@@ -316,6 +321,8 @@ int vg_ref_leaves(const struct vg_ref *r, const double a[3], const double b[3],
 double vg_ref_project(const struct vg_ref *r, const double x[3],
                       const double n[3], uint32_t *hint, double out[3])
 {
+  assert(hint && *hint < r->n_tri);
+
   uint32_t t = *hint;
   double s, q, d2 = walk(r, x, n, 0, &t, &s, &q);
 
@@ -391,6 +398,7 @@ void vg_ref_distances(const struct vg_ref *r, size_t n, const double (*x)[3],
   uint32_t at[VG_REF_GROUP];
   double lo[3], hi[3], most = 0, y[3];
 
+  assert(n <= VG_REF_GROUP && hint);
   for (int k = 0; k < 3; k++) lo[k] = INFINITY, hi[k] = -INFINITY;
   for (size_t i = 0; i < n; i++) {
     double s, q;
@@ -426,6 +434,7 @@ size_t vg_ref_around(const struct vg_ref *r, const double lo[3],
   size_t stack[DEPTH], n = 0;
   int top = 0;
 
+  assert(distance >= 0 && (tri || !cap));
   stack[top++] = 0;
   while (top) {
     size_t i = stack[--top], leaf;
@@ -449,6 +458,8 @@ size_t vg_ref_around(const struct vg_ref *r, const double lo[3],
  * corner, grown with the distance. */
 double vg_ref_size_by(const struct vg_ref *r, uint32_t t, const double x[3])
 {
+  assert(t < r->n_tri);
+
   const uint32_t *c = r->tri[t];
   double s, q, h, d = sqrt(vg_ref_tri_nearest(&r->shape[t], x, &s, &q));
 
@@ -485,6 +496,7 @@ double vg_ref_size(const struct vg_ref *r, const double x[3], double most,
   double h = INFINITY;
   int top = 0;
 
+  assert(most > 0 && by);
   if (*by != VG_REF_NONE) h = vg_ref_size_by(r, *by, x);
   if (h > most) h = most * (1 + 4 * DBL_EPSILON);   /* what asks is found */
   stack[top++] = 0;

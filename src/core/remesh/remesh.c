@@ -5,6 +5,7 @@
  * help, all is done again with these sizes. */
 #include "core/remesh/remesh.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -582,6 +583,7 @@ vg_status vg_remesh(struct vg_mesh *m, const struct vg_remesh_options *o,
   struct vg_mesh out = VG_MESH_INIT;
   vg_status st;
 
+  assert(m && o);
   VG_TRY(check_surface(m, err));
   VG_TRY(check_options(o, err));
   VG_TRY(check_stretch(m, o->stretch, err));
@@ -608,6 +610,7 @@ vg_status vg_remesh_judge(const struct vg_mesh *m,
   int sound = 0;
   vg_status st;
 
+  assert(m && o);
   VG_TRY(check_surface(m, err));
   VG_TRY(check_options(o, err));
   VG_TRY(check_stretch(m, o->stretch, err));

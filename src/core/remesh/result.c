@@ -1,5 +1,6 @@
 #include "core/remesh/result.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -215,7 +216,7 @@ static void count_edges(const struct vg_tris *w, struct vg_remesh_report *r)
 
 /* --- is it consistent? --------------------------------------------------- */
 
-static size_t bad_half(const struct vg_work *w, uint32_t h)
+static size_t bad_half(const struct vg_tris *w, uint32_t h)
 {
   const uint32_t mate = w->mate[h];
   size_t bad = vg_work_from(w, h) >= w->n_point;
@@ -229,7 +230,7 @@ static size_t bad_half(const struct vg_work *w, uint32_t h)
          (!w->edge[h] != !w->edge[mate]);
 }
 
-size_t vg_work_defects(const struct vg_work *w)
+size_t vg_work_defects(const struct vg_tris *w)
 {
   size_t bad = 0;
 
@@ -280,6 +281,8 @@ vg_status vg_result_store(const struct vg_tris *w, const struct vg_mesh *given,
                           struct vg_mesh *out, struct vg_remesh_report *r,
                           struct vg_error *err)
 {
+  assert(!out->point && !out->tri && r);
+
   uint32_t *map = vg_alloc(w->n_point, sizeof *map);
   uint32_t *label = vg_alloc(w->n_tri, sizeof *label);
   vg_status st = VG_OK;

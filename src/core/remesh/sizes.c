@@ -1,5 +1,6 @@
 #include "core/remesh/sizes.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -260,6 +261,9 @@ vg_status vg_sizes_make(struct vg_ref *r, const struct vg_curves *c,
                         const struct vg_sizes_options *o,
                         struct vg_error *err)
 {
+  assert(o->h_min > 0 && o->h_max >= o->h_min && isfinite(o->h_max));
+  assert(o->growth >= 1);
+
   uint8_t *far = vg_alloc(r->n_point, 1);
   vg_status st = VG_OK;
 

@@ -1,5 +1,6 @@
 #include "core/remesh/stretch.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -144,6 +145,8 @@ done:
 vg_status vg_stretch_make(struct vg_stretch *s, const struct vg_tris *w,
                           struct vg_error *err)
 {
+  assert(s->by && !s->run && !s->place);
+
   double *by = vg_calloc(w->n_line, sizeof *by);   /* of each line */
   vg_status st = VG_OK;
 
@@ -262,6 +265,7 @@ void vg_stretch_form(const void *stretch, const double x[3], double size,
   double best = 1, way[3] = { 0, 0, 0 }, other[3], rest;
   size_t first = SIZE_MAX;
 
+  assert(stretch && size > 0);
   for (size_t i = 0; i < s->n_run; i++) {
     double by = ask(s, &s->run[i], x, size, other);
 

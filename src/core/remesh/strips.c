@@ -3,6 +3,7 @@
  * are cut where these begin and end. */
 #include "core/remesh/strips.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -61,6 +62,7 @@ double vg_strip_width(const struct vg_ref *r, const struct vg_curves *c,
 {
   double e[3], in[3], d[3], x[3], sum = 0;
 
+  assert(h < 3 * r->n_tri && most >= 0);
   if (!frame(r, h, e, d)) return INFINITY;
   memcpy(x, start, sizeof x);
   for (int i = 0; i < STEPS; i++) {
@@ -383,6 +385,7 @@ vg_status vg_strips_find(const struct vg_ref *r, const struct vg_curves *c,
   struct finder f = { .r = r, .c = c, .o = o, .s = s };
   vg_status st;
 
+  assert(o->tolerance >= 0 && !s->n);
   VG_TRY(list_sides(&f, err));
   VG_TRY(rank_curves(&f, err));
   for (size_t i = 0; i < c->n_curve; i++)

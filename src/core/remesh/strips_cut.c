@@ -1,5 +1,6 @@
 #include "core/remesh/strips_cut.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -157,6 +158,7 @@ vg_status vg_strip_cut(struct vg_strip_cutter *c, uint32_t h, double t0,
   uint32_t piece;
   vg_status st = VG_OK;
 
+  assert(t0 <= t1);
   if (c->edge != h) c->edge = h, c->begun = 0;
   if (t0 > c->begun + END && t0 < 1 - END) VG_TRY(cut_at(c, t0, err));
   piece = c->where[h];

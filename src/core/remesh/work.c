@@ -1,6 +1,7 @@
 #include "core/remesh/stretch.h"
 #include "core/remesh/work_parts.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -178,6 +179,8 @@ vg_status vg_work_room(struct vg_tris *w, size_t n, struct vg_error *err)
 
 vg_status vg_work_begin(struct vg_tris *w, struct vg_error *err)
 {
+  assert(w->ref && w->curves && w->h_min > 0 && w->h_max >= w->h_min);
+
   const struct vg_ref *r = w->ref;
   vg_status st;
 
@@ -237,6 +240,8 @@ void vg_work_release(struct vg_tris *w)
 size_t vg_work_ring(const struct vg_tris *w, uint32_t p, uint32_t *half,
                     int *open)
 {
+  assert(p < w->n_point && half && open);
+
   uint32_t h = w->point[p].half, first = h;
   size_t n = 0;
 
@@ -290,6 +295,8 @@ double vg_work_tolerance(const struct vg_tris *w, double size)
 
 void vg_work_find_room(const struct vg_tris *w, struct vg_work_point *p)
 {
+  assert(p->asked.size > 0);
+
   const struct vg_ref *r = w->ref;
   double size = p->asked.size;
 

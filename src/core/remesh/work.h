@@ -3,6 +3,8 @@
 #ifndef VG_CORE_REMESH_WORK_H
 #define VG_CORE_REMESH_WORK_H
 
+#include <assert.h>
+
 #include "base/stop.h"
 #include "core/remesh/curves.h"
 #include "core/remesh/metric.h"
@@ -102,6 +104,7 @@ vg_status vg_work_status(const struct vg_tris *w, struct vg_error *err);
 
 static inline uint32_t vg_work_from(const struct vg_tris *w, uint32_t h)
 {
+  assert(h < 3 * w->n_tri);
   return w->tri[h / 3][h % 3];
 }
 
@@ -112,11 +115,13 @@ static inline uint32_t vg_work_to(const struct vg_tris *w, uint32_t h)
 
 static inline const double *vg_work_at(const struct vg_tris *w, uint32_t p)
 {
+  assert(p < w->n_point);
   return w->point[p].x;
 }
 
 static inline int vg_work_removed(const struct vg_tris *w, size_t t)
 {
+  assert(t < w->n_tri);
   return w->tri[t][0] == w->tri[t][1];
 }
 
@@ -147,6 +152,7 @@ static inline int vg_work_stays(const struct vg_tris *w, uint32_t h)
 static inline int vg_work_may_join(const struct vg_tris *w, uint32_t a,
                                    uint32_t b)
 {
+  assert(a < w->n_point && b < w->n_point);
   return w->point[a].frozen + w->point[b].frozen < VG_WORK_FANS;
 }
 
@@ -157,7 +163,7 @@ void vg_work_release(struct vg_tris *w);
 
 /** Number of inconsistencies of live triangles, their mates, edges of curves
  * and points; a check of stages (base/checks.h). O(triangles). */
-size_t vg_work_defects(const struct vg_work *w);
+size_t vg_work_defects(const struct vg_tris *w);
 
 /** Arrays for n triangles, w->tri to w->first, and their counts; edges and
  * stamps 0, the others not set. VG_ERR_MEMORY: some are there. */

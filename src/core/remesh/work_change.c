@@ -3,6 +3,7 @@
  * surface. */
 #include "core/remesh/work_parts.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -215,6 +216,8 @@ static void stitch(struct vg_tris *w, uint32_t h, uint32_t m,
 
 uint32_t vg_work_split(struct vg_tris *w, uint32_t h, const double *at)
 {
+  assert(h < 3 * w->n_tri && !vg_work_removed(w, h / 3));
+
   struct vg_cavity c;
   uint32_t a = vg_work_from(w, h), b = vg_work_to(w, h), m, t[4], e[2];
   struct vg_work_point p = w->point[a];
@@ -412,6 +415,8 @@ static void collapse(struct vg_tris *w, uint32_t h, const uint32_t *ring,
 
 int vg_work_collapse(struct vg_tris *w, uint32_t h, double most, double shape)
 {
+  assert(h < 3 * w->n_tri && !vg_work_removed(w, h / 3));
+
   struct vg_cavity c;
   uint32_t ring[VG_WORK_RING], v = vg_work_from(w, h), k = h, g = w->mate[h];
   size_t n;
@@ -444,6 +449,8 @@ int vg_work_collapse(struct vg_tris *w, uint32_t h, double most, double shape)
 
 int vg_work_swap(struct vg_tris *w, uint32_t h)
 {
+  assert(h < 3 * w->n_tri && !vg_work_removed(w, h / 3));
+
   struct vg_cavity c;
   uint32_t g = w->mate[h], ring[VG_WORK_RING], t[2] = { h / 3, g / 3 };
   uint32_t p[4], out[4], m[4], e[4];
@@ -541,6 +548,8 @@ static double move_cavity(const struct vg_tris *w, uint32_t p, size_t n,
 int vg_work_move(struct vg_tris *w, uint32_t p, const double x[3],
                  double shape)
 {
+  assert(p < w->n_point);
+
   struct vg_cavity c;
   struct vg_work_point q = w->point[p];
   uint32_t ring[VG_WORK_RING];
@@ -593,6 +602,7 @@ int vg_work_span(const struct vg_tris *w, uint32_t p, struct vg_work_span *s)
   size_t n;
   int open;
 
+  assert(p < w->n_point && s);
   if (w->point[p].kind != VG_WORK_CURVE || w->point[p].frozen
       || w->point[p].kept) return 0;
   n = vg_work_ring(w, p, ring, &open);
@@ -606,6 +616,8 @@ int vg_work_span(const struct vg_tris *w, uint32_t p, struct vg_work_span *s)
 
 int vg_work_slide(struct vg_tris *w, uint32_t p, double at, double shape)
 {
+  assert(p < w->n_point);
+
   struct vg_work_point q = w->point[p];
   struct vg_work_span s;
   struct vg_cavity c;

@@ -1,5 +1,6 @@
 #include "core/sizing/sizing.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -168,6 +169,8 @@ vg_status vg_sizing_new(const struct vg_sizing_options *given, size_t n,
                         const struct vg_mesh *surface,
                         struct vg_sizing **out, struct vg_error *err)
 {
+  assert(given && out && (source || !n));
+
   const struct vg_sizing_options o = scaled(given), *options = &o;
   vg_status st = VG_OK;
   atomic_int is_steep = 0;
@@ -225,6 +228,8 @@ void vg_sizing_free(struct vg_sizing *s)
 
 double vg_sizing_at(const struct vg_sizing *s, const double x[3])
 {
+  assert(s);
+
   double outside, h = vg_octree_at(&s->octree, x, &outside);
 
   if (!(outside > 0)) return h;
@@ -241,6 +246,8 @@ void vg_sizing_eval(const struct vg_sizing *s, size_t n, const double (*x)[3],
 double vg_sizing_least(const struct vg_sizing *s, const double lo[3],
                        double side, double x[3])
 {
+  assert(side >= 0);
+
   const struct vg_octree *t = &s->octree;
   double h = vg_octree_least(t, lo, side, x), gap2 = 0;
 
@@ -256,6 +263,7 @@ double vg_sizing_least(const struct vg_sizing *s, const double lo[3],
 
 void vg_sizing_range(const struct vg_sizing *s, double *h_min, double *h_max)
 {
+  assert(h_min && h_max);
   *h_min = s->least;
   *h_max = s->most;
 }
@@ -272,6 +280,8 @@ double vg_sizing_growth(const struct vg_sizing *s)
 
 double vg_sizing_below(double growth, double h, double d)
 {
+  assert(growth > 0 && h >= 0 && d >= 0);
+
   double slope = growth - 1;
   double even = h * (1 + vg_bvh_offset(slope)) - slope * d;
   double steep = h * vg_bvh_rise(slope) - vg_bvh_steep(slope) * d;

@@ -1,5 +1,6 @@
 #include "core/sizing/sizing_bvh_parts.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -353,6 +354,8 @@ vg_status vg_bvh_new(size_t n, const double (*p)[3], const double *h,
                      double slope, int threads, struct vg_bvh **out,
                      struct vg_error *err)
 {
+  assert(n > 0 && p && h && slope > 0 && threads >= 0);
+
   struct vg_bvh *t = vg_calloc(1, sizeof *t);
   struct key *key = vg_alloc(n, sizeof *key);
   size_t count[VG_BVH_CLASSES], n_block = n / LANES + VG_BVH_CLASSES;

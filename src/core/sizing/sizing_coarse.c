@@ -1,4 +1,5 @@
 /* Sizes that are larger than another field's. */
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -54,6 +55,8 @@ vg_status vg_sizing_coarsened(const struct vg_sizing *s, double factor,
                               const struct vg_sizing *most,
                               struct vg_sizing **out, struct vg_error *err)
 {
+  assert(s && most && out && factor >= 1);
+
   struct vg_sizing *to = copy_of(s, 1, sizeof *s);
   const struct vg_octree *t = &s->octree;
   struct coarsening c = { s, most, factor, to ? &to->octree : NULL };

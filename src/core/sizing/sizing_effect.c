@@ -1,5 +1,6 @@
 #include "core/sizing/sizing_effect.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -346,6 +347,7 @@ vg_status vg_effects_find(const struct vg_sizing_options *options, size_t n,
   uint8_t *is_met;
   vg_status st;
 
+  assert(options && sizing && out && (source || !n));
   if (!n || !front->n_tri) return VG_OK;
   is_met = vg_calloc(n, 1);
   for (size_t i = 0; i < n; i++)

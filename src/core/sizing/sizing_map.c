@@ -1,5 +1,6 @@
 #include "core/sizing/sizing_map.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -45,6 +46,8 @@ vg_status vg_size_samples_new(size_t n, const double (*x)[3], const double *h,
                               struct vg_size_samples **out,
                               struct vg_error *err)
 {
+  assert(n > 0 && x && h && growth > 1 && out);
+
   struct vg_size_samples *s = vg_calloc(1, sizeof *s);
   vg_status st;
 

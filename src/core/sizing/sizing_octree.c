@@ -1,5 +1,6 @@
 #include "core/sizing/sizing_octree.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -129,6 +130,8 @@ vg_status vg_octree_build(const struct vg_stat *f, const double lo[3],
                                .team = team };
   vg_status st;
 
+  assert(!out->child && !out->leaf);
+  assert(side > 0 && coarseness >= 1 && f->slope > 0);
   if (b.max_cell > VG_OCTREE_LEAF / 2) b.max_cell = VG_OCTREE_LEAF / 2;
   b.floor = FLOOR * sqrt(FLOOR_SLOPE / f->slope);
   if (b.floor > FLOOR_MOST) b.floor = FLOOR_MOST;
@@ -173,6 +176,8 @@ static inline double trilinear(const float h[8], const double f[3])
 double vg_octree_at(const struct vg_octree *t, const double x[3],
                     double *outside)
 {
+  assert(t->n_leaf > 0 && outside);
+
   double f[3], d2 = 0, scale = 1;
   uint32_t at[3], e = t->root;
   int bit = VG_OCTREE_DEPTH;
@@ -258,6 +263,7 @@ double vg_octree_least(const struct vg_octree *t, const double lo[3],
   struct search s = { .t = t, .least = INFINITY };
   double root[3] = { 0, 0, 0 };
 
+  assert(t->n_leaf > 0 && side >= 0);
   for (int k = 0; k < 3; k++) {
     s.lo[k] = fmin(fmax((lo[k] - t->lo[k]) / t->side, 0), 1);
     s.hi[k] = fmin(fmax((lo[k] + side - t->lo[k]) / t->side, 0), 1);

@@ -3,6 +3,7 @@
  * help. Every operation rounds as its scalar form does, so machines agree.
  * Wider vectors do not pay: what takes time is to know which child comes next.
  * */
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -207,6 +208,8 @@ static void set_box(struct search *q, const double lo[3], const double hi[3])
 double vg_bvh_above(const struct vg_bvh *t, const double lo[3],
                     const double hi[3], double below, uint32_t *hint)
 {
+  assert(hint && lo[0] <= hi[0] && lo[1] <= hi[1] && lo[2] <= hi[2]);
+
   const float start = below < 0.1 * (double)VG_BVH_NEVER
                     ? (float)below : 0.1f * VG_BVH_NEVER;
   struct search q = { .t = t, .best = start, .hint = *hint };
@@ -282,6 +285,8 @@ double vg_bvh_below(const struct vg_bvh *t, const double x[3],
                     double above, double enough,
                     struct vg_bvh_reach *reach, double *by)
 {
+  assert(by);
+
   struct search q = { .t = t, .best = (float)above, .enough = (float)enough,
                       .mid = { x[0], x[1], x[2] } };
   float more = 0;

@@ -5,6 +5,7 @@
  * area 0, so the lid of a piece has the vector area of the piece. */
 #include "core/surface/envelope.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -286,6 +287,7 @@ vg_status vg_envelope_measure(const struct vg_mesh *m, uint8_t *outer,
   size_t above = 0;
   vg_status st = VG_OK;
 
+  assert(m && out);
   if (m->n_tri) {
     e.on = vg_alloc(m->n_tri, 1);
     e.root = vg_alloc(m->n_tri, sizeof *e.root);

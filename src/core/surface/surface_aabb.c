@@ -3,6 +3,7 @@
  * unbalance it. Leaves have two to four items, hence fewer nodes than items. */
 #include "core/surface/surface_parts.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -224,6 +225,7 @@ vg_status vg_aabb_tree_build(struct vg_aabb_tree *t, const struct vg_faces *s,
   struct entry *e;
   size_t n = 0;
 
+  assert(!t->item && !t->node && threads >= 0);
   for (size_t f = 0; f < s->n; f++) n += s->state[f] == 0;
   e = vg_alloc(n, sizeof *e);
   t->item = vg_alloc(n, sizeof *t->item);
@@ -408,6 +410,7 @@ vg_status vg_aabb_tree_pairs(const struct vg_aabb_tree *t, int threads,
   struct pairs p = { .t = t, .visit = visit, .context = context };
   vg_status st = VG_OK;
 
+  assert(visit && threads >= 0);
   if (!t->n_node) return VG_OK;
   if (threads == 1)
     return pairs_below(&p, 0, (struct task){ t->node, t->node });
@@ -448,5 +451,6 @@ done:
 vg_status vg_aabb_tree_ray(const struct vg_aabb_tree *t, const double p[3],
                            vg_status (*visit)(void *, uint32_t), void *context)
 {
+  assert(visit);
   return t->n_node ? ray_below(t, p, t->node, visit, context) : VG_OK;
 }

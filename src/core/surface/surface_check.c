@@ -2,6 +2,7 @@
  * for what is left, kind by kind. The steps are in surface_parts.h. */
 #include "core/surface/surface_check.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -48,6 +49,7 @@ static void release(struct check *c)
 
 void vg_surface_report_release(struct vg_surface_report *r)
 {
+  assert(r);
   free(r->defect);
   free(r->face_kinds);
   free(r->shell);
@@ -591,6 +593,7 @@ vg_status vg_surface_check(struct vg_mesh *m,
   struct check c;
   vg_status st = VG_OK;
 
+  assert(options && report && options->threads >= 0);
   memset(&c, 0, sizeof c);
   c.m = m;
   c.o = options;

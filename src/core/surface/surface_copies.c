@@ -4,6 +4,7 @@
  * that two bodies share (two others), whatever the orientation as read. */
 #include "core/surface/surface_parts.h"
 
+#include <assert.h>
 #include <stdlib.h>
 
 #include "base/memory.h"
@@ -118,6 +119,7 @@ vg_status vg_faces_copies(const struct vg_faces *s, const uint32_t *first,
   uint8_t *out = NULL;
   vg_status st;
 
+  assert((first || !s->n) && copy);
   VG_TRY(allocate(&x, &out, err));
   VG_TRY(vg_edges_build(&e, s, err));
   for (uint32_t f = 0; f < s->n; f++) {

@@ -2,6 +2,7 @@
  * higher. Linear but for nodes with very many edges. */
 #include "core/surface/surface_parts.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -85,6 +86,8 @@ static void number_edges(struct vg_edges *e, const struct vg_faces *s,
 vg_status vg_edges_build(struct vg_edges *e, const struct vg_faces *s,
                          struct vg_error *err)
 {
+  assert(!e->start && !e->half);
+
   size_t n = 3 * s->n;
   uint64_t *key = vg_alloc(n, sizeof *key);
   uint32_t *at = vg_calloc(s->n_point + 1, sizeof *at);
@@ -118,6 +121,8 @@ void vg_edges_release(struct vg_edges *e)
 int vg_edges_disagree(const struct vg_edges *e, const struct vg_faces *s,
                       size_t edge)
 {
+  assert(edge < e->n && e->start[edge + 1] - e->start[edge] == 2);
+
   uint32_t g = e->half[e->start[edge]], h = e->half[e->start[edge] + 1];
 
   return s->node[g / 3][g % 3] == s->node[h / 3][h % 3];

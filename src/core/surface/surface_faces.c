@@ -1,6 +1,7 @@
 /* The boundary faces as triangles over points of distinct coordinates. */
 #include "core/surface/surface_parts.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -51,6 +52,7 @@ vg_status vg_faces_build(struct vg_faces *s, const struct vg_mesh *m,
 {
   size_t n;
 
+  assert(!s->node && !s->state && same);
   if (m->n_tri > UINT32_MAX / 3 || m->n_quad > UINT32_MAX / 3
       || m->n_tri + 2 * m->n_quad > UINT32_MAX / 3 - 1)
     return vg_fail(err, VG_ERR_UNSUPPORTED, "%zu triangles and %zu "
@@ -99,6 +101,7 @@ vg_status vg_faces_duplicate(const struct vg_faces *s, uint32_t **first,
   int bad = vg_table_init(&t, s->n);
   uint32_t *at, *out = vg_alloc(s->n, sizeof *out);
 
+  assert(first);
   if (bad || !out) {
     vg_table_release(&t);
     free(out);

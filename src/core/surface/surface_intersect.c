@@ -2,6 +2,7 @@
  * edges: all pairs, in the order of their numbers. */
 #include "core/surface/surface_parts.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -99,6 +100,8 @@ vg_status vg_find_crossings(struct vg_crossing *c, const struct vg_faces *s,
                             int threads, const struct vg_stop *stop,
                             struct vg_error *err)
 {
+  assert(!c->pair && !c->partner && threads >= 0);
+
   int n_found = vg_aabb_tree_workers(threads);
   struct search x = { c, s, first, fan, shell, stop,
                       vg_calloc((size_t)n_found, sizeof *x.found) };

@@ -1,6 +1,7 @@
 /* Components of the surface and agreement between neighbours. */
 #include "core/surface/surface_parts.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -51,6 +52,8 @@ static size_t walk(const struct vg_faces *s, const struct vg_edges *e,
 vg_status vg_orient_faces(const struct vg_faces *s, const struct vg_edges *e,
                           uint8_t *flip, struct vg_error *err)
 {
+  assert(flip || !s->n);
+
   uint32_t *queue = vg_alloc(s->n, sizeof *queue);
   uint8_t *turn = vg_alloc(s->n, 1);
 

@@ -82,7 +82,7 @@ vg_status vg_points_near(const struct vg_mesh *m, double tolerance,
 vg_status vg_mesh_check_index(const struct vg_mesh *m, struct vg_error *err);
 
 /** Replace node p by map[p] everywhere, drop the points with keep[p] == 0
- * (none is used any more) and close the gaps. Cannot fail; map is used as
+ * (none is used any more; keep NULL: all stay) and close the gaps. Cannot fail; map is used as
  * scratch and holds the new index of every kept point afterwards. */
 void vg_mesh_renumber(struct vg_mesh *m, uint32_t *map, const uint8_t *keep);
 

@@ -1,5 +1,6 @@
 #include "core/surface/surface_quality.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -49,6 +50,7 @@ void vg_surface_quality(const struct vg_mesh *m, struct vg_surface_quality *q)
   static const double limit[4] = { 5, 10, 20, 30 };
   size_t bin[BINS] = { 0 }, below[4] = { 0 };
 
+  assert(m && q);
   memset(q, 0, sizeof *q);
   q->angle_min = 60;
   for (size_t i = 0; i < m->n_tri; i++) {

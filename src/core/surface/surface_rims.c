@@ -8,6 +8,7 @@
  * edge, can confuse it. */
 #include "core/surface/surface_parts.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -256,6 +257,7 @@ vg_status vg_surface_rim_gap(const struct vg_mesh *m,
   double most = 0;
   vg_status st = VG_OK;
 
+  assert(gap && n_edge);
   if (report && !report->count[VG_DEFECT_OPEN_EDGE]) goto done;
   VG_TRY(rims_init(&r, m, err));
   for (size_t i = 0; i < r.n_edge; i++)

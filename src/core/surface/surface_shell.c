@@ -1,6 +1,7 @@
 /* Shells: their volume, which lies in which, and to which side they look. */
 #include "core/surface/surface_parts.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -83,6 +84,8 @@ vg_status vg_measure_shells(struct vg_shell *shell, uint8_t *state,
                             const struct vg_edges *e, const uint32_t *of_face,
                             const uint8_t *flip, struct vg_error *err)
 {
+  assert((shell && state) || !n_shell);
+
   struct total *sum = vg_calloc(n_shell, sizeof *sum);
 
   if (!sum) return vg_fail_memory(err, "the volumes of the shells");
@@ -233,6 +236,7 @@ vg_status vg_nest_shells(struct vg_shell *shell, size_t n_shell,
   struct ray r = { s, shell, of_face, NULL, 0, NULL, 0, 0 };
   vg_status st = VG_ERR_MEMORY;
 
+  assert(shell || !n_shell);
   x.foot = vg_alloc(n_shell, sizeof *x.foot);
   x.start = vg_alloc(n_shell + 1, sizeof *x.start);
   if (x.foot && x.start) {
@@ -341,6 +345,8 @@ vg_status vg_orient_shells(struct vg_shell *shell, uint8_t *state,
                            const uint8_t *crossed, uint8_t *turn,
                            struct vg_error *err)
 {
+  assert(external >= -1 && external <= 1);
+
   struct sides x = { NULL, 0, NULL, NULL, NULL };
   size_t *at = vg_alloc(n_shell + 1, sizeof *at);
   vg_status st = VG_OK;

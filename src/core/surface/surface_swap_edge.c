@@ -2,6 +2,7 @@
  * swap, hence the sorted list of all smallest angles, so this ends. */
 #include "core/surface/surface_swap_parts.h"
 
+#include <assert.h>
 #include <math.h>
 
 #include "core/geometry/vector.h"
@@ -56,6 +57,7 @@ void vg_swap_push(struct vg_swapper *w, uint32_t h)
 {
   size_t end;
 
+  assert(h < 3 * w->n_tri);
   if (w->queued[h] || w->queued[w->mate[h]]) return;
   end = w->head + w->n_queue++;
   if (end >= 3 * w->n_tri) end -= 3 * w->n_tri;

@@ -3,6 +3,7 @@
 #ifndef VG_CORE_SURFACE_SURFACE_SWAP_PARTS_H
 #define VG_CORE_SURFACE_SURFACE_SWAP_PARTS_H
 
+#include <assert.h>
 #include <stdint.h>
 
 #include "core/surface/surface_swap.h"
@@ -44,11 +45,13 @@ static inline uint32_t vg_half_prev(uint32_t h)
 
 static inline uint32_t vg_half_from(const struct vg_swapper *w, uint32_t h)
 {
+  assert(h < 3 * w->n_tri);
   return w->tri[h / 3][h % 3];
 }
 
 static inline void vg_half_pair(struct vg_swapper *w, uint32_t g, uint32_t h)
 {
+  assert(g != h && g < 3 * w->n_tri && h < 3 * w->n_tri);
   w->mate[g] = h;
   w->mate[h] = g;
 }

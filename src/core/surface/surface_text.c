@@ -1,4 +1,5 @@
 /* Findings of the surface check in words. */
+#include <assert.h>
 #include <stdio.h>
 
 #include "core/surface/surface_check.h"
@@ -104,6 +105,7 @@ void vg_defect_text(const struct vg_mesh *m, const struct vg_defect *d,
 {
   char one[VG_NAME_MAX + 64], two[VG_NAME_MAX + 64], points[64], at[96];
 
+  assert(text && size > 0);
   face_text(m, d->face[0], one, sizeof one);
   face_text(m, d->face[1], two, sizeof two);
   points_text(d, points, sizeof points);

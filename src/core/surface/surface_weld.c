@@ -2,6 +2,7 @@
  * dropping points and triangles. */
 #include "core/surface/surface_parts.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -250,6 +251,8 @@ static vg_status link_near(const struct vg_mesh *m, double tolerance,
 vg_status vg_points_near(const struct vg_mesh *m, double tolerance,
                          uint32_t **near, struct vg_error *err)
 {
+  assert(near && tolerance >= 0);
+
   uint32_t *map = NULL;
   vg_status st = vg_points_same(m, &map, err);
 
@@ -313,6 +316,7 @@ void vg_mesh_renumber(struct vg_mesh *m, uint32_t *map, const uint8_t *keep)
 {
   uint32_t n = 0;
 
+  assert(map || !m->n_point);
   for (size_t i = 0; i < m->n_point; i++) {
     if (map[i] != i) {
       map[i] = map[map[i]]; /* lower, hence final */
@@ -334,6 +338,8 @@ void vg_mesh_renumber(struct vg_mesh *m, uint32_t *map, const uint8_t *keep)
 
 size_t vg_mesh_drop_tri(struct vg_mesh *m, const uint8_t *drop)
 {
+  assert(drop || !m->n_tri);
+
   size_t n = 0, before = m->n_tri;
 
   for (size_t t = 0; t < before; t++) {

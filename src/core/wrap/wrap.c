@@ -1,5 +1,6 @@
 #include "core/wrap/wrap.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -180,6 +181,8 @@ done:
 vg_status vg_wrap(struct vg_mesh *m, const struct vg_wrap_options *o,
                   struct vg_wrap_report *r, struct vg_error *err)
 {
+  assert(m && o && r);
+
   struct vg_wrap_report report = { .offset = o->size * VG_WRAP_OFFSET };
   struct vg_mesh in = VG_MESH_INIT, out = VG_MESH_INIT;
   vg_status st;
@@ -212,6 +215,7 @@ vg_status vg_wrap_foresee(const struct vg_mesh *m,
   struct vg_mesh in = VG_MESH_INIT;
   vg_status st;
 
+  assert(m && o && f);
   VG_TRY(check(m, o->size, err));
   VG_TRY(take_bodies(m, o->keep, &in, err));
   VG_TRY(vg_wrap_rims_find(&in, o->size, &rims, err));

@@ -1,5 +1,6 @@
 /* The input measured against its wrap: is a part of it missing, and is the
  * wrap a hollow shell? */
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -311,6 +312,8 @@ vg_status vg_wrap_compare(const struct vg_wrap_rims *rims,
                           const struct vg_stop *stop, struct vg_wrap_report *r,
                           struct vg_error *err)
 {
+  assert(size > 0 && r);
+
   struct samples s = { 0 };
   double (*area)[KINDS] = vg_calloc(rims->n_part, sizeof *area);
   vg_status st;

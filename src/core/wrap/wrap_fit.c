@@ -1,6 +1,7 @@
 /* The points of a wrap put onto the input, where the wrap stays sound. Around a
  * convex edge the nearest place is on the edge, so ridges and corners come
  * back. */
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -100,6 +101,7 @@ vg_status vg_wrap_fit(struct vg_mesh *m, const double (*near)[3], double most,
   size_t n = 1;
   vg_status st = VG_OK;
 
+  assert((near || !m->n_point) && most >= 0 && n_fit);
   f.old = vg_alloc(m->n_point, sizeof *f.old);
   f.moved = vg_calloc(m->n_point, 1);
   if (!f.old || !f.moved) VG_TRY(vg_fail_memory(err, "a wrap"));

@@ -1,4 +1,5 @@
 /* Parts and rims of the input: the holes that a wrap goes through. */
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -176,6 +177,7 @@ vg_status vg_wrap_rims_find(const struct vg_mesh *m, double size,
   size_t n_rim = 0;
   vg_status st;
 
+  assert(size > 0 && !r->part && !r->part_of);
   VG_TRY(vg_mesh_copy(&r->m, m, err));
   VG_TRY(vg_surface_weld(&r->m, fmin(CRACK * size, EDGE * mean_edge(m)), NULL,
                          NULL, err));
@@ -199,6 +201,8 @@ void vg_wrap_rims_release(struct vg_wrap_rims *r)
 
 struct vg_wrap_forecast vg_wrap_count(const struct vg_wrap_rims *r, double size)
 {
+  assert(size > 0);
+
   struct vg_wrap_forecast f = { .n_part = r->n_part };
 
   for (size_t i = 0; i < r->n_part; i++) {

@@ -1,5 +1,6 @@
 /* The shells of a wrap: those that bound no body are removed, and outer
  * boundaries that were kept are appended. */
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,6 +12,8 @@
 vg_status vg_wrap_select(struct vg_mesh *m, const uint8_t *stays,
                          struct vg_error *err)
 {
+  assert(stays || !m->n_tri);
+
   uint32_t *number = vg_alloc(m->n_point, sizeof *number);
   size_t n = 0;
 
@@ -48,6 +51,8 @@ static vg_status examine(struct vg_mesh *m, const struct vg_stop *stop,
 vg_status vg_wrap_prune(struct vg_mesh *m, const struct vg_stop *stop,
                         struct vg_wrap_report *r, struct vg_error *err)
 {
+  assert(m && r);
+
   const double least = r->offset * r->offset * r->offset;
   struct vg_surface_report found = VG_SURFACE_REPORT_INIT;
   uint8_t *stays = NULL;

@@ -4,6 +4,7 @@
  * two of them together, those whose places are nearest to each other. In each
  * round no two of these changes touch the same triangle; all are taken back if
  * triangles come to meet. */
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -214,6 +215,8 @@ vg_status vg_wrap_zip(struct vg_mesh *m, double (*near)[3], double most,
                       const struct vg_stop *stop, size_t *n,
                       struct vg_error *err)
 {
+  assert((near || !m->n_point) && most >= 0 && n);
+
   const size_t n_point = m->n_point, n_tri = m->n_tri;
   struct zip z = { .m = m, .near = near };
   double (*point)[3] = vg_alloc(n_point, sizeof *point);

@@ -1,6 +1,7 @@
 #define _GNU_SOURCE
 #include "io/slices/slices.h"
 
+#include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -238,6 +239,8 @@ vg_status vg_slices_boundary(struct vg_comm *comm, const struct vg_slices *s,
                              int threads, struct vg_mesh *out,
                              struct vg_error *err)
 {
+  assert(out && threads >= 0);
+
   struct vg_boundary_points b = { 0, NULL, NULL };
   struct vg_mesh m = VG_MESH_INIT;
   vg_status st = vg_boundary_points_new(s, &b, err);
@@ -329,6 +332,7 @@ vg_status vg_slices_write_with(struct vg_comm *comm,
   char *path;
   vg_status st = VG_OK;
 
+  assert(s && stem && form && o && o->threads >= 0);
   if (asprintf(&path, "%s.%s", stem, form) < 0) {
     path = NULL;
     st = vg_fail_memory(err, "the output paths");
@@ -383,6 +387,7 @@ vg_status vg_slices_write(struct vg_comm *comm, const struct vg_slices *s,
 {
   struct vg_slices_options o = VG_SLICES_OPTIONS_INIT;
 
+  assert(s && stem && form && threads >= 0);
   o.threads = threads;
   return vg_slices_write_with(comm, s, stem, form, &o, err);
 }

@@ -2,6 +2,7 @@
  * of slices, in the order of the mesh; each brings all its points, so that
  * nothing has to be matched between slices. */
 #define _GNU_SOURCE
+#include <assert.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -50,6 +51,7 @@ char *vg_slices_piece(const char *stem, size_t k)
 {
   char *path;
 
+  assert(stem);
   return asprintf(&path, "%s_%zu.vtu", stem, k) < 0 ? NULL : path;
 }
 

@@ -1,3 +1,4 @@
+#include <assert.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
@@ -159,6 +160,8 @@ vg_status vg_slices_ugrid_open(struct vg_comm *comm,
                                struct vg_slices_ugrid **out,
                                struct vg_error *err)
 {
+  assert(path && o && out);
+
   struct vg_slices_ugrid *u = NULL;
   vg_status st = vg_comm_agree(comm, new_ugrid(s, path, o, &u, err), err);
 
@@ -179,6 +182,8 @@ vg_status vg_slices_ugrid_open(struct vg_comm *comm,
 vg_status vg_slices_ugrid_put(void *ugrid, const struct vg_slice *slice,
                               struct vg_error *err)
 {
+  assert(ugrid && slice);
+
   struct vg_slices_ugrid *u = ugrid;
   vg_status st = u->is_narrow ? note_rounded(u, slice, err) : VG_OK;
 

@@ -1,5 +1,6 @@
 #include "io/stream/boundary.h"
 
+#include <assert.h>
 #include <stdlib.h>
 
 #include "base/memory.h"
@@ -8,6 +9,8 @@
 vg_status vg_boundary_by_patch(const struct vg_mesh *m, size_t **start,
                                size_t **order, struct vg_error *err)
 {
+  assert(start && order);
+
   size_t n = m->n_tri + m->n_quad;
   size_t *s = vg_calloc(m->n_patch + 2, sizeof *s);
   size_t *o = vg_alloc(n, sizeof *o);

@@ -1,6 +1,7 @@
 /* Orientation, index base and patches of meshes from files. */
 #include "io/stream/convention.h"
 
+#include <assert.h>
 #include <float.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,6 +17,7 @@
 vg_status vg_check_points(const char *path, size_t n, const double (*p)[3],
                           struct vg_error *err)
 {
+  assert(path && (p || !n));
   for (size_t i = 0; i < n; i++)
     for (int k = 0; k < 3; k++) {
       double x = p[i][k];
@@ -43,6 +45,7 @@ vg_status vg_index_from_file(const char *path, const char *element, size_t n,
   uint32_t limit = n_point < UINT32_MAX ? (uint32_t)n_point : UINT32_MAX;
   uint32_t bad = 0;
 
+  assert(path && element && width > 0 && (index || !n));
   for (size_t i = 0; i < count; i++) {
     index[i] -= 1;
     bad |= index[i] >= limit;
@@ -120,6 +123,8 @@ static vg_status make_patches(struct vg_mesh *m, const struct tags *t,
 vg_status vg_patches_from_tags(struct vg_mesh *m, const int32_t *tag,
                                struct vg_error *err)
 {
+  assert(tag || !(m->n_tri + m->n_quad));
+
   struct tags t = {0};
   size_t n = m->n_tri + m->n_quad;
   uint32_t *of = vg_alloc(n, sizeof *of), *rank = NULL;
@@ -361,6 +366,7 @@ vg_status vg_mesh_turn(struct vg_mesh *m, struct vg_turned *turned,
   struct face_table t = {0};
   vg_status st;
 
+  assert(m);
   if (m->n_tet + m->n_pyr + m->n_pri + m->n_hex) {
     st = face_build(&t, m, err);
     if (st < 0) return st;
@@ -393,6 +399,8 @@ static void renumber(size_t n, uint32_t *node, const uint32_t *new_index)
 
 void vg_mesh_keep_boundary(struct vg_mesh *m)
 {
+  assert(m);
+
   uint32_t *new_index = vg_alloc(m->n_point, sizeof *new_index);
   size_t n = 0;
 
@@ -428,6 +436,7 @@ static int is_inside(char c)
 
 void vg_name_from_file(const char *text, size_t len, char *name, size_t size)
 {
+  assert((text || !len) && name && size > 0);
   if (len > size - 1) {
     size_t back = 0;
 

@@ -15,7 +15,8 @@ struct vg_turned {
 };
 
 /** Make every cell positive and every boundary face of a cell point into it.
- * A mesh without cells is left as it is. Indices must be valid.
+ * A mesh without cells is left as it is. Indices must be valid. turned may be
+ * NULL.
  * Tetrahedra are tested exactly; other cells by their volume in doubles;
  * cells of zero volume stay. O(n) time; memory O(points + boundary). */
 vg_status vg_mesh_turn(struct vg_mesh *m, struct vg_turned *turned,

@@ -2,6 +2,7 @@
  * */
 #include "io/stream/stream.h"
 
+#include <assert.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <stdarg.h>
@@ -232,6 +233,7 @@ static vg_status open_file(const char *path, size_t limit,
 vg_status vg_input_open(const char *path, struct vg_input *in,
                         struct vg_error *err)
 {
+  assert(path && !in->data);
   return open_file(path, WHOLE, in, err);
 }
 
@@ -246,6 +248,7 @@ vg_status vg_input_memory(const char *name, const void *data, size_t size,
 {
   unsigned char *block = NULL;
 
+  assert(name && (data || !size) && !in->data);
   if (size < SIZE_MAX) block = vg_alloc(size + 1, 1);
   if (!block) return vg_fail_memory(err, name);
   if (size) memcpy(block, data, size);
@@ -271,12 +274,15 @@ void vg_input_order(struct vg_input *in, int is_big)
 
 size_t vg_input_left(const struct vg_input *in)
 {
+  assert(in->at <= in->size);
   return in->size - in->at;
 }
 
 vg_status vg_input_need(const struct vg_input *in, uint64_t n, size_t size,
                         const char *what, struct vg_error *err)
 {
+  assert(what);
+
   uint64_t left = vg_input_left(in), bytes;
 
   if (!__builtin_mul_overflow(n, (uint64_t)size, &bytes) && bytes <= left)
@@ -324,24 +330,28 @@ static void load64(const unsigned char *from, size_t n, uint64_t *to, int swap)
 vg_status vg_input_i32(struct vg_input *in, size_t n, int32_t *v,
                        const char *what, struct vg_error *err)
 {
+  assert((v || !n) && what);
   READ_ARRAY(int32_t, uint32_t, load32);
 }
 
 vg_status vg_input_i64(struct vg_input *in, size_t n, int64_t *v,
                        const char *what, struct vg_error *err)
 {
+  assert((v || !n) && what);
   READ_ARRAY(int64_t, uint64_t, load64);
 }
 
 vg_status vg_input_f32(struct vg_input *in, size_t n, double *v,
                        const char *what, struct vg_error *err)
 {
+  assert((v || !n) && what);
   READ_ARRAY(float, uint32_t, load32);
 }
 
 vg_status vg_input_f64(struct vg_input *in, size_t n, double *v,
                        const char *what, struct vg_error *err)
 {
+  assert((v || !n) && what);
   READ_ARRAY(double, uint64_t, load64);
 }
 
@@ -412,6 +422,8 @@ static vg_status read_part(struct vg_input *in, int is_first, size_t *to,
 vg_status vg_input_record(struct vg_input *in, struct vg_input *record,
                           const char *what, struct vg_error *err)
 {
+  assert(record && what);
+
   size_t start = in->at + (in->marker8 ? 8 : 4), to = 0;
   int is_first = 1, more = 1;
 

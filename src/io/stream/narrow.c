@@ -1,5 +1,6 @@
 #include "io/stream/narrow.h"
 
+#include <assert.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,6 +15,7 @@ static const int cell_width[] = { 4, 5, 6, 8 };
 
 void vg_narrow_round(size_t n, const double (*x)[3], double (*rounded)[3])
 {
+  assert((x && rounded) || !n);
   for (size_t i = 0; i < n; i++)
     for (int k = 0; k < 3; k++) rounded[i][k] = (double)(float)x[i][k];
 }
@@ -26,6 +28,7 @@ static int is_before(const struct vg_narrow *a, const struct vg_narrow *b)
 
 void vg_narrow_add(struct vg_narrow *to, const struct vg_narrow *more)
 {
+  assert(to && more);
   if (!more->n_cell) return;
   if (!to->n_cell || is_before(more, to)) {
     to->kind = more->kind;
@@ -39,6 +42,9 @@ void vg_narrow_cells(const double (*x)[3], const double (*rounded)[3],
                      int kind, size_t n, const uint32_t *node, uint64_t first,
                      struct vg_narrow *to)
 {
+  assert(kind >= 0 && kind < 4 && to);
+  assert((x && rounded && node) || !n);
+
   int width = cell_width[kind];
 
   for (size_t i = 0; i < n; i++) {
@@ -83,6 +89,8 @@ static void note_point(struct vg_narrow *to, uint32_t point,
 vg_status vg_narrow_points(size_t n, const double (*x)[3],
                            struct vg_narrow *to, struct vg_error *err)
 {
+  assert((x || !n) && to);
+
   struct place *p = vg_alloc(n, sizeof *p);
 
   if (!p) return vg_fail_memory(err, "the points of a file");
@@ -131,6 +139,7 @@ vg_status vg_narrow_accept(const struct vg_narrow *n, const char *kind,
 {
   char cells[200] = "", points[200] = "";
 
+  assert(kind && instead);
   if (!n->n_cell && !n->n_point) return VG_OK;
   if (n->n_cell)
     snprintf(cells, sizeof cells, "%" PRIu64 " cell%s flat or inverted, the "

@@ -3,6 +3,7 @@
 #define _GNU_SOURCE
 #include "io/stream/stream.h"
 
+#include <assert.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <float.h>
@@ -45,6 +46,7 @@ vg_status vg_output_open(const char *path, struct vg_output *out,
   struct vg_output made = VG_OUTPUT_INIT;
   vg_status st;
 
+  assert(path && out);
   made.record_limit = out->record_limit;
   made.path = strdup(path);
   made.part = vg_output_part(path);
@@ -188,6 +190,7 @@ static void close_part(struct vg_output *out)
 
 void vg_output_record(struct vg_output *out, uint64_t bytes)
 {
+  assert(!out->record_open);
   out->record_open = out->part_first = 1;
   out->record_left = bytes;
   open_part(out);
@@ -197,6 +200,7 @@ void vg_output_record(struct vg_output *out, uint64_t bytes)
  * writer's; it must not become a file. */
 void vg_output_record_end(struct vg_output *out)
 {
+  assert(out->record_open && !out->record_left);
   if (out->record_left && !out->error) out->error = EPROTO;
   close_part(out);
   out->record_open = 0;
@@ -206,6 +210,7 @@ void vg_output_bytes(struct vg_output *out, const void *data, size_t n)
 {
   const unsigned char *from = data;
 
+  assert(data || out->fd < 0 || !n);
   if (!out->record_open) {
     put_raw(out, data, n);
     return;
@@ -232,11 +237,13 @@ void vg_output_bytes(struct vg_output *out, const void *data, size_t n)
 
 void vg_output_skip(struct vg_output *out, uint64_t n)
 {
+  assert(out->fd < 0 || !n);
   vg_output_bytes(out, NULL, n);
 }
 
 void vg_output_seek(struct vg_output *out, uint64_t at)
 {
+  assert(out->fd < 0);
   flush(out);
   out->at = at;
   out->record_open = out->no_markers = 0;
@@ -258,6 +265,7 @@ void vg_output_seek_record(struct vg_output *out, uint64_t at, uint64_t bytes,
 
 uint64_t vg_record_size(uint64_t bytes, uint32_t limit)
 {
+  assert(limit > 0);
   return bytes + 8 * (bytes ? (bytes - 1) / limit + 1 : 1);
 }
 
@@ -277,21 +285,25 @@ uint64_t vg_record_size(uint64_t bytes, uint32_t limit)
 
 void vg_output_i32(struct vg_output *out, size_t n, const int32_t *v)
 {
+  assert(v || !n);
   WRITE_ARRAY(int32_t, uint32_t, __builtin_bswap32)
 }
 
 void vg_output_i64(struct vg_output *out, size_t n, const int64_t *v)
 {
+  assert(v || !n);
   WRITE_ARRAY(int64_t, uint64_t, __builtin_bswap64)
 }
 
 void vg_output_f64(struct vg_output *out, size_t n, const double *v)
 {
+  assert(v || !n);
   WRITE_ARRAY(double, uint64_t, __builtin_bswap64)
 }
 
 void vg_output_f32(struct vg_output *out, size_t n, const double *v)
 {
+  assert(v || !n);
   WRITE_ARRAY(float, uint32_t, __builtin_bswap32)
 }
 
@@ -299,11 +311,13 @@ void vg_output_f32(struct vg_output *out, size_t n, const double *v)
 
 void vg_output_text(struct vg_output *out, const char *s)
 {
+  assert(s);
   vg_output_bytes(out, s, strlen(s));
 }
 
 void vg_output_format(struct vg_output *out, const char *format, ...)
 {
+  assert(format);
   char text[1024];
   va_list args;
   int n;

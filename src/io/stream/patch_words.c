@@ -1,5 +1,6 @@
 #include "io/stream/patch_words.h"
 
+#include <assert.h>
 #include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -58,6 +59,8 @@ static void make_unique(const struct vg_mesh *m, struct named *list,
 
 char (*vg_patch_words(const struct vg_mesh *m, size_t most))[VG_PATCH_WORD]
 {
+  assert(most >= 24 && most <= VG_PATCH_WORD_MOST);
+
   struct named *list = vg_alloc(m->n_patch, sizeof *list);
   char (*name)[VG_PATCH_WORD] = vg_alloc(m->n_patch, sizeof *name);
 

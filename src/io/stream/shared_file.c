@@ -2,6 +2,7 @@
 #define _GNU_SOURCE
 #include "io/stream/shared_file.h"
 
+#include <assert.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <inttypes.h>
@@ -144,6 +145,8 @@ vg_status vg_shared_open(struct vg_comm *comm, const char *path,
                          uint64_t size, struct vg_shared_file **out,
                          struct vg_error *err)
 {
+  assert(path && out);
+
   struct vg_shared_file *f = NULL;
   int is_first = !vg_comm_rank(comm), is_there = 0;
   vg_status st = prepare(comm, path, size, &f, err);
@@ -209,6 +212,7 @@ static vg_status write_mpi(const struct vg_shared_file *f, uint64_t at,
 vg_status vg_shared_write(struct vg_shared_file *f, uint64_t at, uint64_t n,
                           const void *data, struct vg_error *err)
 {
+  assert(data || !n);
   if (at > f->size || n > f->size - at)
     return vg_fail(err, VG_ERR_IO, "%s: %" PRIu64 " bytes at %" PRIu64 " go "
                    "beyond the %" PRIu64 " that were announced", f->part, n,

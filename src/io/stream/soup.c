@@ -1,5 +1,6 @@
 #include "io/stream/soup.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -29,6 +30,8 @@ static vg_status room(void *list, size_t *cap, size_t n, size_t size,
 vg_status vg_soup_point(struct vg_soup *s, const double x[3], uint32_t *at,
                         struct vg_error *err)
 {
+  assert(at);
+
   struct vg_mesh *m = &s->m;
   vg_status st = room(&m->point, &s->cap_point, m->n_point, sizeof *m->point,
                       "points", err);
@@ -64,6 +67,8 @@ static uint64_t patch_hash(const void *soup, uint32_t i)
 vg_status vg_soup_weld(struct vg_soup *s, const double x[3], uint32_t *at,
                        struct vg_error *err)
 {
+  assert(at);
+
   double p[3] = { x[0] + 0.0, x[1] + 0.0, x[2] + 0.0 };
   uint32_t *slot;
   vg_status st;
@@ -84,6 +89,8 @@ vg_status vg_soup_weld(struct vg_soup *s, const double x[3], uint32_t *at,
 vg_status vg_soup_triangle(struct vg_soup *s, const uint32_t node[3],
                            uint32_t patch, struct vg_error *err)
 {
+  assert(patch < s->m.n_patch);
+
   struct vg_mesh *m = &s->m;
   vg_status st = room(&m->tri, &s->cap_tri, m->n_tri, sizeof *m->tri,
                       "triangles", err);
@@ -138,6 +145,8 @@ static struct vg_patch make_patch(const char *name, size_t len)
 vg_status vg_soup_patch(struct vg_soup *s, const char *name, size_t len,
                         uint32_t *at, struct vg_error *err)
 {
+  assert((name || !len) && at);
+
   struct vg_patch p = make_patch(name, len);
 
   return append_patch(s, &p, at, err);
@@ -146,6 +155,8 @@ vg_status vg_soup_patch(struct vg_soup *s, const char *name, size_t len,
 vg_status vg_soup_named_patch(struct vg_soup *s, const char *name, size_t len,
                               uint32_t *at, struct vg_error *err)
 {
+  assert((name || !len) && at);
+
   struct vg_patch p = make_patch(name, len);
   uint32_t *slot;
   vg_status st;
@@ -174,6 +185,8 @@ static void shrink(void *array, size_t n, size_t size)
 
 void vg_soup_finish(struct vg_soup *s, struct vg_mesh *out)
 {
+  assert(out);
+
   struct vg_mesh *m = &s->m;
 
   shrink(&m->point, m->n_point, sizeof *m->point);

@@ -31,7 +31,8 @@ vg_status vg_soup_point(struct vg_soup *s, const double x[3], uint32_t *at,
 vg_status vg_soup_weld(struct vg_soup *s, const double x[3], uint32_t *at,
                        struct vg_error *err);
 
-/** Append a triangle of existing points and an existing patch. */
+/** Append a triangle of an existing patch. Its nodes may be points that come
+ * later: the caller checks that they came. */
 vg_status vg_soup_triangle(struct vg_soup *s, const uint32_t node[3],
                            uint32_t patch, struct vg_error *err);
 

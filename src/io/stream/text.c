@@ -4,6 +4,7 @@
 #endif
 #include "io/stream/stream.h"
 
+#include <assert.h>
 #include <float.h>
 #include <locale.h>
 #include <stdlib.h>
@@ -55,18 +56,22 @@ static int take_token(struct vg_input *in, const char **text, size_t *len)
 
 int vg_input_token(struct vg_input *in, const char **text, size_t *len)
 {
+  assert(text && len && in->at <= in->size);
   skip_space(in, 0);
   return take_token(in, text, len);
 }
 
 int vg_input_token_in_line(struct vg_input *in, const char **text, size_t *len)
 {
+  assert(text && len && in->at <= in->size);
   skip_space(in, 1);
   return take_token(in, text, len);
 }
 
 int vg_input_line(struct vg_input *in, const char **text, size_t *len)
 {
+  assert(text && len && in->at <= in->size);
+
   const unsigned char *d = in->data, *end;
   size_t n;
 
@@ -82,11 +87,14 @@ int vg_input_line(struct vg_input *in, const char **text, size_t *len)
 
 int vg_token_is(const char *text, size_t len, const char *s)
 {
+  assert((text || !len) && s);
   return strlen(s) == len && !memcmp(text, s, len);
 }
 
 int vg_parse_int(const char *text, size_t len, int64_t *v)
 {
+  assert((text || !len) && v);
+
   size_t i = len && (text[0] == '-' || text[0] == '+');
   uint64_t n = 0;
   int negative = i && text[0] == '-';
@@ -228,6 +236,7 @@ int vg_parse_real(const char *text, size_t len, double *v)
   struct decimal d;
   double x;
 
+  assert((text || !len) && v);
   if (!scan_decimal(text, text + len, &d)) return 0;
   if (!d.mantissa && d.exact) {
     x = 0;
@@ -264,6 +273,7 @@ vg_status vg_input_int(struct vg_input *in, int64_t *v, const char *what,
   const char *text;
   size_t len;
 
+  assert(v && what);
   if (!vg_input_token(in, &text, &len))
     return vg_input_fail(in, err, "the file ends where %s should stand", what);
   if (vg_parse_int(text, len, v)) return VG_OK;
@@ -276,6 +286,7 @@ vg_status vg_input_real(struct vg_input *in, double *v, const char *what,
   const char *text;
   size_t len;
 
+  assert(v && what);
   if (!vg_input_token(in, &text, &len))
     return vg_input_fail(in, err, "the file ends where %s should stand", what);
   if (vg_parse_real(text, len, v)) return VG_OK;

@@ -21,6 +21,7 @@
  * columns do not meet, only a good first height: vg_clear_tops is exact. */
 #include "layers/clear/clear_ahead.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -483,6 +484,9 @@ vg_status vg_clear_ahead(const struct vg_mesh *surface,
                         .allowed = allowed };
   vg_status st;
 
+  assert(reach || !columns->n_column);
+  assert(allowed || !columns->n_column);
+  assert(threads >= 0);
   if (!(gap > 0))
     return vg_fail(err, VG_ERR_INPUT, "a gap of %g leaves no room for layers: "
                    "it must be more than 0", gap);

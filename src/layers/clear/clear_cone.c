@@ -1,6 +1,7 @@
 /* One triangle: where does a line meet it, or a cone of 45 degrees first? */
 #include "layers/clear/clear_ahead.h"
 
+#include <assert.h>
 #include <math.h>
 
 #include "core/geometry/vector.h"
@@ -8,6 +9,8 @@
 int vg_line_hits(const double o[3], const double u[3], const double (*p)[3],
                  const double n[3], double *along)
 {
+  assert(along);
+
   double d = vg_dot(n, u), q[3], s;
 
   if (!(d < 0)) return 0;
@@ -64,6 +67,8 @@ static double edge_in_cone(const double u[3], const double a[3],
 double vg_nearest_in_cone(const double u[3], const double (*p)[3],
                           const double n[3], double most)
 {
+  assert(fabs(vg_dot(u, u) - 1) < 1e-6 && most >= 0);
+
   double g = -vg_dot(n, u), h = -vg_dot(n, p[0]);
   double flat, w[3], s, best = INFINITY;
   static const double apex[3] = { 0, 0, 0 };

@@ -4,6 +4,7 @@
  * and what is left is judged exactly. */
 #include "layers/clear/clear_parts.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -233,6 +234,8 @@ static void judge_alone(const struct vg_tops *t, size_t r)
 
 vg_status vg_clear_flanks(const struct vg_tops *t, struct vg_error *err)
 {
+  assert(t->bad || !t->columns->n_column);
+
   const struct vg_columns *c = t->columns;
   struct flanks x = { t, NULL, VG_BOXES_INIT };
   vg_status st = VG_OK;

@@ -7,6 +7,8 @@
 #ifndef VG_LAYERS_CLEAR_CLEAR_PARTS_H
 #define VG_LAYERS_CLEAR_CLEAR_PARTS_H
 
+#include <assert.h>
+
 #include "layers/clear/clear.h"
 
 /* Four lanes at a time, as GCC and Clang spell it for any processor. */
@@ -83,12 +85,14 @@ struct vg_tops {
 
 static inline int vg_tops_active(const struct vg_tops *t, uint32_t c)
 {
+  assert(c < t->columns->n_column);
   return !t->active || t->active[c];
 }
 
 /** Columns that can be lowered only: one that has no level is no culprit. */
 static inline void vg_tops_mark(const struct vg_tops *t, uint32_t c)
 {
+  assert(c < t->columns->n_column);
   if (t->columns->column[c].n) __atomic_store_n(&t->bad[c], 1,
                                                 __ATOMIC_RELAXED);
 }

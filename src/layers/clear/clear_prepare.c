@@ -3,6 +3,7 @@
  * columns in an order that keeps neighbours together. */
 #include "layers/clear/clear_ahead.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -198,6 +199,8 @@ static void index_columns(struct vg_ahead *x)
 vg_status vg_ahead_prepare(struct vg_ahead *x, int threads,
                            struct vg_error *err)
 {
+  assert(x->surface && x->columns && x->topology && x->gap > 0);
+
   const struct vg_mesh *m = x->surface;
   struct vg_boxes *b = &x->boxes;
   vg_status st;

@@ -4,6 +4,7 @@
  * root when no column of it has a level, is no contact. */
 #include "layers/clear/clear.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -288,6 +289,10 @@ vg_status vg_clear_tops(const struct vg_mesh *surface,
                         int threads, uint8_t *bad, size_t *n_bad,
                         struct vg_error *err)
 {
+  assert(is_slide || !surface->n_patch);
+  assert(bad || !columns->n_column);
+  assert(threads >= 0 && n_bad);
+
   struct clear x = { .t = { .surface = surface, .columns = columns,
                             .active = active, .n_point = surface->n_point,
                             .threads = threads },

@@ -1,5 +1,6 @@
 #include "layers/clear/clear_parts.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -173,6 +174,8 @@ vg_status vg_boxes_build(struct vg_boxes *b, const double (*point)[3],
   size_t count = n, total = 0, size[12];
   vg_status st = VG_OK;
 
+  assert(!b->item && !b->node);
+  assert(point && tri && grow >= 0 && threads >= 0);
   memset(b, 0, sizeof *b);
   b->n = n;
   if (!n) return VG_OK;
@@ -284,6 +287,7 @@ void vg_boxes_pairs(const struct vg_boxes *b, int threads,
 {
   struct pairs p = { b, visit, context };
 
+  assert(visit && threads >= 0);
   vg_parallel_for(threads, (b->n + 7) / 8, 256, pairs_of_leaves, &p);
 }
 
@@ -291,6 +295,7 @@ void vg_boxes_touch(const struct vg_boxes *b, const double (*point)[3],
                     const uint32_t t[3], vg_boxes_visit visit, void *context,
                     size_t tag)
 {
+  assert(visit);
   struct { int level; size_t at; } stack[STACK] = { { b->n_level - 1, 0 } };
   int depth = 1;
   float q[6];

@@ -1,5 +1,6 @@
 #include "layers/columns/columns.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -35,6 +36,10 @@ static void at_height(const struct vg_column *c, const double *root, double h,
 void vg_column_points(const struct vg_columns *c, const struct vg_mesh *m,
                       size_t i, double *d, double (*x)[3])
 {
+  assert(i < c->n_column && c->column[i].n <= VG_LEVELS_MAX);
+  assert(c->column[i].root < m->n_point && c->column[i].law < c->n_law);
+  assert(d && x);
+
   const struct vg_column *col = &c->column[i];
 
   if (col->bent != SIZE_MAX) {
@@ -49,6 +54,9 @@ void vg_column_points(const struct vg_columns *c, const struct vg_mesh *m,
 void vg_column_top(const struct vg_columns *c, const struct vg_mesh *m,
                    size_t i, double x[3])
 {
+  assert(i < c->n_column && c->column[i].n <= VG_LEVELS_MAX);
+  assert(c->column[i].root < m->n_point && c->column[i].law < c->n_law);
+
   const struct vg_column *col = &c->column[i];
   double d[VG_LEVELS_MAX + 1];
 

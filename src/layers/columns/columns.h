@@ -18,6 +18,7 @@
 #ifndef VG_LAYERS_COLUMNS_COLUMNS_H
 #define VG_LAYERS_COLUMNS_COLUMNS_H
 
+#include <assert.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -91,6 +92,8 @@ void vg_columns_release(struct vg_columns *c);
 /** Whether column i is one of a fan. */
 static inline int vg_shares_root(const struct vg_columns *c, size_t i)
 {
+  assert(i < c->n_column);
+
   uint32_t root = c->column[i].root;
 
   return (i && c->column[i - 1].root == root) ||

@@ -1,5 +1,6 @@
 #include "layers/columns/law.h"
 
+#include <assert.h>
 #include <math.h>
 
 /* A rate that no layers have. */
@@ -42,12 +43,16 @@ void vg_law_heights(const struct vg_law *law, double cap, int n, double *d)
 {
   double t = 0, b = 0;
 
+  assert(n >= 0 && d);
+  assert(law->delta1 > 0 && law->rate1 >= 0 && law->rate2 >= 0);
+  assert(law->n_constant >= 1 && cap >= 1);
   if (cap > law->cap) cap = law->cap;
   d[0] = 0;
   for (int j = 1; j <= n; j++) {
     b = bare_next(law, j, b);
     t = next(b, cap, j, t);
     d[j] = d[j - 1] + t;
+    assert(d[j] >= d[j - 1]);
   }
 }
 
@@ -66,6 +71,8 @@ static double sum(const double *b, double cap, int n)
 
 double vg_law_squeeze(const struct vg_law *law, int n, double height)
 {
+  assert(n >= 0 && law->delta1 > 0);
+
   double lo = 1, hi = law->cap, b[VG_LEVELS_MAX + 1];
 
   if (n > VG_LEVELS_MAX) n = VG_LEVELS_MAX;
@@ -133,6 +140,7 @@ double vg_law_rate_for_total(double delta1, int n_constant, int n,
 {
   double lo = 0, hi = 1;
 
+  assert(n_constant >= 1 && delta1 > 0);
   if (total_at(delta1, n_constant, n, 0) > total) return -1;
   while (total_at(delta1, n_constant, n, hi) < total) {
     if (hi > RATE_MAX) return INFINITY;
@@ -151,6 +159,8 @@ double vg_law_rate_for_total(double delta1, int n_constant, int n,
 
 double vg_real_power(double x, double e)
 {
+  assert(x > 0 && isfinite(e));
+
   double whole = floor(fabs(e)), part = fabs(e) - whole, y, root = x;
 
   if (whole > 1000) whole = 1000;    /* beyond any that could be told */
@@ -167,6 +177,7 @@ double vg_real_power(double x, double e)
 
 double vg_law_power(enum vg_law_rule rule, double scale)
 {
+  assert(scale > 0);
   if (rule == VG_LAW_KEPT) return 1;
   return rule == VG_LAW_EVEN ? scale : vg_real_power(2. / 3, 2 / scale - 2);
 }
@@ -181,6 +192,8 @@ static int64_t times(int64_t n, double factor)
 void vg_law_scale(struct vg_law *law, enum vg_law_rule rule, double scale,
                   int *n)
 {
+  assert(scale > 0 && n);
+
   double e = vg_law_power(rule, scale);
 
   if (rule == VG_LAW_KEPT) return;

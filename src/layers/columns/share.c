@@ -1,6 +1,7 @@
 /* One copy of the layers for the ranks of a node. */
 #include "layers/columns/share.h"
 
+#include <assert.h>
 #include <string.h>
 
 struct array {
@@ -37,6 +38,8 @@ void vg_layers_show(const struct vg_layers *layers,
                     void (*look)(void *user, size_t n, const void *data),
                     void *user)
 {
+  assert(layers && look);
+
   struct vg_layers view = *layers;
   struct array a[N_ARRAY];
 

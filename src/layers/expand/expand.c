@@ -1,6 +1,7 @@
 /* Points of columns: numbers and places. Cells are in expand_cells.c. */
 #include "layers/expand/expand.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -49,6 +50,7 @@ vg_status vg_expand_open(struct vg_expand *e, const struct vg_columns *columns,
 {
   vg_status st;
 
+  assert(e && columns && threads >= 0);
   memset(e, 0, sizeof *e);
   e->columns = columns;
   e->mixed = mixed;
@@ -127,6 +129,7 @@ void vg_expand_column(const struct vg_expand *e, const struct vg_mesh *surface,
 {
   double d[VG_LEVELS_MAX + 1], x[VG_LEVELS_MAX + 1][3];
 
+  assert(i < e->columns->n_column && out);
   vg_column_points(e->columns, surface, i, d, x);
   memcpy(out, x[1], vg_mark_n(e->mark[i]) * sizeof *x);
 }
@@ -163,6 +166,8 @@ vg_status vg_layers_count(const struct vg_layers *layers,
                           enum vg_layer_cells cells, int threads, uint64_t *n,
                           struct vg_error *err)
 {
+  assert(n && threads >= 0);
+
   struct vg_expand e;
   vg_status st = vg_expand_open(&e, &layers->columns, cells == VG_LAYER_MIXED,
                                 threads, err);

@@ -10,6 +10,7 @@
  * The columns alone decide, so both sides of a flank agree. */
 #include "layers/expand/expand.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -207,6 +208,8 @@ void vg_expand_face(const struct vg_expand *e, size_t face,
                     const uint32_t foot[3], const uint32_t base[3],
                     struct vg_cell_sink *s)
 {
+  assert(face < e->columns->n_face && s);
+
   const uint32_t *f = e->columns->face[face];
   uint32_t p[3] = { foot[0], foot[1], foot[2] }, h[3];
   unsigned n[3], low = levels_of(e, f, n);
@@ -231,6 +234,8 @@ static void merge_roots(const struct vg_columns *c, const uint32_t f[3],
 /* Of the cells of a face what rises last has the top. */
 int vg_expand_top(const struct vg_expand *e, size_t face, uint32_t node[6])
 {
+  assert(face < e->columns->n_face);
+
   const uint32_t *f = e->columns->face[face];
   uint32_t tet[3][4], pyr[1][5], pri[1][6], p[3], h[3];
   struct vg_cell_sink s = { tet, pyr, pri };
@@ -258,6 +263,8 @@ int vg_expand_top(const struct vg_expand *e, size_t face, uint32_t node[6])
 int vg_join_wall_cells(const struct vg_columns *c, size_t face,
                        struct vg_wall_cell cell[3])
 {
+  assert(face < c->n_face);
+
   const uint32_t *f = c->face[face];
   uint32_t tet[3][4], pyr[1][5], pri[1][6], p[3], h[3];
   struct vg_cell_sink s = { tet, pyr, pri };
@@ -375,6 +382,8 @@ static int border_second_first(const struct vg_expand *e,
 void vg_expand_count_flank(const struct vg_expand *e, size_t r, size_t *tri,
                            size_t *quad)
 {
+  assert(r < e->columns->n_border && tri && quad);
+
   const uint32_t *border = e->columns->border[r];
   const struct vg_column *c = e->columns->column;
   size_t a = vg_mark_n(e->mark[border[0]]), b = vg_mark_n(e->mark[border[1]]);
@@ -407,6 +416,8 @@ static void rise_border(uint32_t p[2], const uint32_t h[2], int first,
 void vg_expand_flank(const struct vg_expand *e, size_t r, uint32_t (*tri)[3],
                      uint32_t (*quad)[4])
 {
+  assert(r < e->columns->n_border);
+
   const uint32_t *border = e->columns->border[r];
   unsigned a = vg_mark_n(e->mark[border[0]]), b = vg_mark_n(e->mark[border[1]]);
   uint32_t p[2] = { e->foot[border[0]], e->foot[border[1]] };

@@ -1,14 +1,13 @@
 /* Layers and field put together in memory. */
 #include "layers/expand/join.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/checks.h"
 #include "base/clock.h"
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "core/judge/quality.h"
 #include "layers/expand/join_plan.h"
 
 #define FIELD_GRAIN 65536
@@ -93,14 +92,6 @@ static vg_status make_cells(struct join *j, struct vg_error *err)
   return VG_OK;
 }
 
-/* 0 when the mesh is valid or cannot be judged for want of memory. */
-static size_t invalid(const struct vg_mesh *m)
-{
-  struct vg_mesh_report r;
-
-  return vg_mesh_judge(m, NULL, &r, NULL) == VG_OK && !r.is_valid;
-}
-
 vg_status vg_layers_join(const struct vg_mesh *surface,
                          const struct vg_layers *layers,
                          const struct vg_mesh *field,
@@ -108,6 +99,8 @@ vg_status vg_layers_join(const struct vg_mesh *surface,
                          struct vg_mesh *out, struct vg_join_info *info,
                          struct vg_error *err)
 {
+  assert(threads >= 0 && out);
+
   struct vg_mesh m = VG_MESH_INIT;
   struct join j = { .field = field, .m = &m };
   double start = vg_clock();
@@ -121,7 +114,6 @@ vg_status vg_layers_join(const struct vg_mesh *surface,
   vg_mesh_move(&m, &j.plan.boundary);
   VG_TRY(place_points(&j, err));
   VG_TRY(make_cells(&j, err));
-  VG_CHECK("the joining of layers and field", invalid(&m));
   vg_mesh_move(out, &m);
   vg_join_plan_describe(&j.plan, vg_clock() - start, info);
 done:

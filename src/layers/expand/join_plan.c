@@ -92,6 +92,17 @@ static vg_status number_points(struct vg_join_plan *p, uint64_t n_field_point,
   return st;
 }
 
+/* Faces have nodes of the whole mesh; that of a closed surface is closed. */
+static void check_boundary(const struct vg_join_plan *p)
+{
+  struct vg_mesh m = p->boundary;
+
+  m.n_point = p->n_point;
+  VG_CHECK("the boundary of layers and field", vg_mesh_bad_faces(&m));
+  if (VG_CHECKS_ON && !vg_mesh_open_edges(p->surface))
+    VG_CHECK("the boundary of layers and field", vg_mesh_open_edges(&m));
+}
+
 vg_status vg_join_plan_open(struct vg_join_plan *p,
                             const struct vg_mesh *surface,
                             const struct vg_layers *layers,
@@ -114,11 +125,7 @@ vg_status vg_join_plan_open(struct vg_join_plan *p,
                         threads, err));
   VG_TRY(number_points(p, n_field_point, err));
   VG_TRY(vg_join_boundary(p, err));
-  VG_CHECK("the boundary of layers and field",
-           vg_mesh_bad_faces(&p->boundary));
-  if (VG_CHECKS_ON && !vg_mesh_open_edges(surface))
-    VG_CHECK("the boundary of layers and field",
-             vg_mesh_open_edges(&p->boundary));
+  check_boundary(p);
 done:
   if (st < 0) vg_join_plan_close(p);
   return st;

@@ -1,6 +1,7 @@
 /* Layers and field in slices: what slices there are, and which is whose. */
 #include "layers/expand/slices.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -271,6 +272,9 @@ vg_status vg_layer_slices_open(const struct vg_mesh *surface,
                                struct vg_join_info *info,
                                struct vg_error *err)
 {
+  assert(size > 0 && rank >= 0 && rank < size);
+  assert(threads >= 0 && out && keep);
+
   double start = vg_clock();
   struct vg_layer_slices *k = vg_calloc(1, sizeof *k);
   vg_status st;
@@ -300,6 +304,7 @@ done:
 void vg_layer_slices_share(struct vg_layer_slices *k,
                            const uint64_t *n_field, struct vg_slices *out)
 {
+  assert(k && n_field && out);
   share_out(k, n_field);
   describe(k, out);
 }
@@ -308,6 +313,7 @@ vg_status vg_layer_slices_tops(struct vg_comm *comm,
                                const struct vg_layer_slices *k,
                                double *ratio, struct vg_error *err)
 {
+  assert(k && ratio);
   return vg_layer_tops(comm, &k->plan, k->field, ratio, err);
 }
 

@@ -1,5 +1,6 @@
 /* Are the cells that columns imply fit to be written? Declared in
  * layers/grow/grow_parts.h. */
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -340,6 +341,8 @@ vg_status vg_cells_lower(struct vg_layer_work *w, const uint8_t *moved,
                          int may_turn, uint8_t *turned, size_t *n_bad,
                          struct vg_error *err)
 {
+  assert(n_bad && (turned || !may_turn));
+
   size_t n = w->c->n_face, n_turn = 0;
   int threads = w->o->threads > 0 ? w->o->threads : vg_cores();
   struct search q = { w, moved, vg_alloc(n, sizeof *q.level), vg_alloc(n, 1),

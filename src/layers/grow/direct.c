@@ -2,6 +2,7 @@
  * faces at edges and corners. Declared in layers/grow/grow_parts.h. */
 #include "layers/grow/direct.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,6 +22,8 @@
 int vg_slide_normals(const struct vg_layer_work *w, size_t i,
                          double n[2][3])
 {
+  assert(i < w->c->n_column);
+
   const struct vg_column *c = &w->c->column[i];
   int k = 0;
 
@@ -43,6 +46,7 @@ void vg_constrain(int n_slide, double n[2][3], double v[3])
 {
   double line[3];
 
+  assert(n_slide >= 0 && n_slide <= 2);
   if (n_slide) remove_part(v, n[0]);
   if (n_slide < 2) return;
   vg_cross(n[0], n[1], line);
@@ -73,6 +77,7 @@ int vg_face_normals(const struct vg_layer_work *w, size_t i,
 {
   int k = 0;
 
+  assert(i < w->c->n_column);
   for (uint32_t j = w->t.first[i]; j < w->t.first[i + 1]; j++) {
     uint32_t f = w->t.corner[j] / 3;
 
@@ -85,6 +90,7 @@ double vg_least_view(int k, const double (*n)[3], const double v[3])
 {
   double least = 1;
 
+  assert(k >= 0 && (n || !k));
   for (int i = 0; i < k; i++) {
     double d = vg_dot(n[i], v);
 

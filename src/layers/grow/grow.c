@@ -1,5 +1,6 @@
 #include "layers/grow/grow.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -499,6 +500,8 @@ vg_status vg_layers_grow(const struct vg_mesh *surface,
                          struct vg_layers *out, struct vg_layer_report *report,
                          struct vg_error *err)
 {
+  assert(sizing && options && out && report);
+
   struct vg_layers l = VG_LAYERS_INIT;
   struct vg_layer_work w = { .m = surface, .sizing = sizing, .o = options,
                              .c = &l.columns, .t = VG_TOPOLOGY_INIT };

@@ -4,6 +4,8 @@
 #ifndef VG_LAYERS_GROW_GROW_PARTS_H
 #define VG_LAYERS_GROW_GROW_PARTS_H
 
+#include <assert.h>
+
 #include "core/geometry/vector.h"
 #include "layers/clear/clear.h"
 #include "layers/columns/layers.h"
@@ -48,6 +50,8 @@ struct vg_layer_work {
 static inline void vg_root_range(const struct vg_columns *c, uint32_t i,
                                  uint32_t *first, uint32_t *end)
 {
+  assert(i < c->n_column);
+
   const uint32_t root = c->column[i].root;
 
   for (*first = i; *first > 0 && c->column[*first - 1].root == root;)
@@ -59,6 +63,7 @@ static inline void vg_root_range(const struct vg_columns *c, uint32_t i,
 static inline double vg_root_distance(const struct vg_layer_work *w,
                                       uint32_t i, uint32_t j)
 {
+  assert(i < w->c->n_column && j < w->c->n_column);
   return vg_distance(w->m->point[w->c->column[i].root],
                      w->m->point[w->c->column[j].root]);
 }

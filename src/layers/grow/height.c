@@ -5,6 +5,7 @@
  * number of layers and grows more slowly (the cap of its law is lowered).
  * Only where layers of equal thickness would still be too high are levels
  * dropped. */
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -161,6 +162,8 @@ vg_status vg_columns_spread(struct vg_layer_work *w,
                                           uint32_t, uint32_t),
                             void *context, struct vg_error *err)
 {
+  assert(change);
+
   uint32_t n = (uint32_t)w->c->n_column, n_now = n, n_next;
   uint32_t *now = vg_alloc(n, sizeof *now), *next = vg_alloc(n, sizeof *next);
   uint8_t *queued = vg_calloc(n, 1);
@@ -276,6 +279,8 @@ done:
 void vg_heights_lower(struct vg_layer_work *w, size_t i, double limit,
                       enum vg_layer_cause why)
 {
+  assert(i < w->c->n_column && limit >= 0);
+  assert(why > VG_CAUSE_NONE && why < VG_CAUSE_N);
   if (!(limit < w->allowed[i])) return;
   w->allowed[i] = limit > 0 ? limit : 0;
   w->why[i] = (uint8_t)why;

@@ -5,6 +5,7 @@
  * number of levels. */
 #include "layers/measure/measure.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -430,6 +431,8 @@ vg_status vg_layers_judge(const struct vg_mesh *surface,
                           struct vg_layer_judgement *out,
                           struct vg_error *err)
 {
+  assert(threads >= 0 && out);
+
   vg_status st = VG_OK;
   struct judge_job j = { .surface = surface, .columns = columns, .stride = 1 };
   struct vg_layer_judgement sum = { .n_cell = 0 };

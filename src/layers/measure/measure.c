@@ -6,6 +6,7 @@
  * concave corner the foot of a top lies several edges away from its root. */
 #include "layers/measure/measure.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -202,6 +203,8 @@ static void measure_column(const struct fields_job *j, size_t c, size_t i)
  * the one with fewest levels. */
 int vg_column_is_worse(const struct vg_column *a, const struct vg_column *b)
 {
+  assert(a && b);
+
   int a_short = a->n < a->n_wanted, b_short = b->n < b->n_wanted;
 
   return a_short != b_short ? a_short : a->n < b->n;
@@ -209,6 +212,8 @@ int vg_column_is_worse(const struct vg_column *a, const struct vg_column *b)
 
 int vg_column_is_tighter(const struct vg_column *a, const struct vg_column *b)
 {
+  assert(a && b);
+
   int a_tight = a->squeezed != VG_CAUSE_NONE;
   int b_tight = b->squeezed != VG_CAUSE_NONE;
 
@@ -305,6 +310,7 @@ vg_status vg_layers_fields(const struct vg_mesh *surface,
   struct vg_wall_fields w = VG_WALL_FIELDS_INIT;
   struct fields_job j = { .surface = surface, .columns = columns, .w = &w };
 
+  assert(threads >= 0 && out);
   VG_TRY(find_points(&j, err));
   VG_TRY(find_triangles(&j, err));
   vg_parallel_for(threads, w.n, GRAIN, measure_points, &j);

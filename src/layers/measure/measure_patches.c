@@ -1,6 +1,7 @@
 /* Statistics of layers, patch by patch. */
 #include "layers/measure/measure.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -215,6 +216,7 @@ vg_status vg_layers_patches(const struct vg_mesh *surface,
   struct vg_patch_layers *list = NULL;
   size_t n_wall = 0, n_done = 0;
 
+  assert(reynolds >= 0 && n && out);
   VG_TRY(find_fields(&j, err));
   VG_TRY(sort_faces(&j, &n_wall, err));
   list = vg_alloc(n_wall, sizeof *list);

@@ -1,4 +1,5 @@
 /* How cells change in size from layers to field, patch by patch. */
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -40,6 +41,9 @@ vg_status vg_layers_tops(const struct vg_mesh *surface,
                          size_t n, struct vg_patch_layers *wall,
                          struct vg_patch_layers *all, struct vg_error *err)
 {
+  assert(ratio || !c->n_face);
+  assert(wall || !n);
+
   struct top *top = vg_alloc(c->n_face, sizeof *top);
   size_t n_top = 0, at = 0;
 

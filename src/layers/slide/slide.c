@@ -1,6 +1,7 @@
 /* The front: tops, re-meshed slide patches, and what stays as it is. */
 #include "layers/slide/slide.h"
 
+#include <assert.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -15,6 +16,7 @@ enum { TEXT = sizeof ((struct vg_slide_failure *)0)->text };
 vg_status vg_slide_add_point(struct vg_slide_work *w, const double x[3],
                              uint32_t *number)
 {
+  assert(number);
   if (w->n_x >= UINT32_MAX - 1)
     return vg_fail(w->err, VG_ERR_UNSUPPORTED, "front of the layers: too many "
                    "points");
@@ -28,6 +30,8 @@ vg_status vg_slide_add_point(struct vg_slide_work *w, const double x[3],
 void vg_slide_mark_bad(struct vg_slide_work *w, uint32_t i, uint32_t patch,
                        const double x[3], const char *what)
 {
+  assert(i < w->c->n_column && what);
+
   const struct vg_patch *p = &w->m->patch[patch];
 
   if (!w->c->column[i].n) return;
@@ -40,6 +44,7 @@ void vg_slide_mark_bad(struct vg_slide_work *w, uint32_t i, uint32_t patch,
 
 void vg_slide_mark_bad_all(struct vg_slide_work *w, size_t s, const char *what)
 {
+  assert(s < w->n_part && what);
   for (uint32_t r = w->border_first[s]; r < w->border_first[s + 1]; r++)
     for (int k = 0; k < 2; k++) {
       const uint32_t i = w->c->border[w->border[r]][k];
@@ -51,6 +56,7 @@ void vg_slide_mark_bad_all(struct vg_slide_work *w, size_t s, const char *what)
 
 uint32_t vg_slide_twin(const struct vg_slide_work *w, uint32_t a, uint32_t b)
 {
+  assert(a != b);
   for (uint32_t i = w->first[b]; i < w->first[b + 1]; i++) {
     const uint32_t h = w->half[i];
 
@@ -301,6 +307,7 @@ vg_status vg_slide_front(const struct vg_mesh *surface, size_t n_slide,
                          struct vg_slide_failure *failure,
                          struct vg_error *err)
 {
+  assert((slide || !n_slide) && sizing && front && failure);
   struct vg_slide_work w = {
     .m = surface, .sizing = sizing, .n_slide = n_slide, .slide = slide,
     .c = columns, .text = failure->text, .err = err };

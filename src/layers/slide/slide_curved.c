@@ -1,5 +1,6 @@
 /* Curved slide patches: graphs over their mean plane. Re-meshing happens in
  * that plane; points are lifted back onto the former triangles. */
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -53,6 +54,8 @@ static void project(struct vg_slide_graph *g, size_t i)
 vg_status vg_slide_graph(const struct vg_slide_work *w, size_t s,
                          struct vg_slide_graph *g)
 {
+  assert(s < w->n_part);
+
   const size_t n = w->tri_first[s + 1] - w->tri_first[s];
 
   memset(g, 0, sizeof *g);
@@ -111,6 +114,7 @@ void vg_slide_mark_steep(struct vg_slide_work *w, size_t s)
   double sum[3] = { 0 };
   int never;
 
+  assert(s < w->n_part);
   at_roots(w, s, NULL, sum);
   never = !(vg_unit(sum) > 0) || at_roots(w, s, sum, NULL) > 0;
   vg_slide_mark_bad_all(w, s, "it is too curved to be meshed anew");
@@ -252,6 +256,7 @@ static vg_status bend(struct vg_slide_work *w, uint32_t i,
 vg_status vg_slide_bend(struct vg_slide_work *w, size_t s,
                         const struct vg_slide_graph *g)
 {
+  assert(s < w->n_part);
   for (uint32_t r = w->border_first[s]; r < w->border_first[s + 1]; r++)
     for (int k = 0; k < 2; k++) {
       const uint32_t i = w->c->border[w->border[r]][k];

@@ -1,6 +1,7 @@
 /* Which patches touch walls, and their normals. */
 #include "layers/slide/slide.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -316,6 +317,8 @@ vg_status vg_slides_find(const struct vg_mesh *surface, const uint8_t *is_wall,
                          size_t *n, struct vg_slide **out,
                          struct vg_error *err)
 {
+  assert((is_wall || !surface->n_patch) && n && out);
+
   struct shape *shape = vg_calloc(surface->n_patch, sizeof *shape);
   struct vg_slide *slide = vg_calloc(surface->n_patch, sizeof *slide);
   uint32_t *slide_of = vg_alloc(surface->n_patch, sizeof *slide_of);
@@ -358,6 +361,7 @@ void vg_slide_normal(const struct vg_slide *s, const struct vg_mesh *surface,
 {
   double n[3] = { 0 };
 
+  assert(p < surface->n_point && s->patch < surface->n_patch);
   memcpy(normal, s->normal, sizeof s->normal);
   if (s->is_plane) return;
   if (s->n_vertex) {

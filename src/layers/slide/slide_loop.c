@@ -1,5 +1,6 @@
 /* The new boundary of a slide patch: its former one with borders raised to the
  * tops, and whether it encloses what it should. */
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -131,6 +132,8 @@ static vg_status check_closed(struct vg_slide_work *w, size_t s,
 vg_status vg_slide_boundary(struct vg_slide_work *w, size_t s,
                             struct vg_slide_loops *out)
 {
+  assert(s < w->n_part && !out->n);
+
   const size_t n_border = w->border_first[s + 1] - w->border_first[s];
   uint64_t *border = vg_alloc(n_border, sizeof *border);
   int is_closed = 0;
@@ -330,6 +333,8 @@ vg_status vg_slide_cross(struct vg_slide_work *w, size_t s,
                          const struct vg_slide_loops *loops,
                          const double (*p)[2], size_t *n_bad)
 {
+  assert(s < w->n_part && n_bad);
+
   struct cross x = { .w = w, .s = s, .l = loops, .p = p };
   struct vg_box2 *box = vg_alloc(loops->n, sizeof *box), b;
   struct vg_aabb_tree2 tree = VG_TREE2_INIT;

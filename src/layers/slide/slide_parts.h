@@ -6,6 +6,8 @@
 #ifndef VG_LAYERS_SLIDE_SLIDE_PARTS_H
 #define VG_LAYERS_SLIDE_SLIDE_PARTS_H
 
+#include <assert.h>
+
 #include "layers/slide/slide.h"
 
 /* slide_tree.c ------------------------------------------------------------*/
@@ -77,6 +79,8 @@ struct vg_slide_work {
 /** The point that column i has in the front: its root, or its top. */
 static inline uint32_t vg_slide_top(const struct vg_slide_work *w, uint32_t i)
 {
+  assert(i < w->c->n_column);
+
   const struct vg_column *c = &w->c->column[i];
 
   return c->n ? (uint32_t)(w->m->n_point + i) : c->root;
@@ -92,6 +96,7 @@ static inline uint32_t vg_slide_column(const struct vg_slide_work *w,
 
 static inline uint64_t vg_slide_key(uint32_t a, uint32_t b)
 {
+  assert(a != b);
   return a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
 }
 

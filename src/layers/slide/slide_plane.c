@@ -1,4 +1,5 @@
 /* A slide patch, triangulated anew inside its new boundary. */
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,6 +17,8 @@
 void vg_slide_frame(const struct vg_slide_work *w, size_t s,
                     struct vg_slide_frame *f)
 {
+  assert(s < w->n_part);
+
   const struct vg_slide *sl = &w->part[s];
   const double *x = w->m->point[w->m->tri[w->tri[w->tri_first[s]]][0]];
   double e[3] = { 0 }, off;
@@ -192,6 +195,8 @@ static vg_status fill(struct vg_slide_work *w, size_t s,
 
 vg_status vg_slide_remesh(struct vg_slide_work *w, size_t s)
 {
+  assert(s < w->n_part);
+
   struct vg_slide_graph graph = { 0 };
   struct vg_slide_frame frame;
   struct vg_slide_law law = { .sizing = w->sizing, .frame = &frame };

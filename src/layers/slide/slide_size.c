@@ -1,6 +1,7 @@
 /* The edge length that a slide patch is re-meshed with. The field was made
  * over walls that are covered now: where tops fan out, their edges are longer
  * than it asks for, and what is filled later starts from them. */
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -86,6 +87,7 @@ double vg_slide_size(void *law, const double p[2])
   struct vg_box2 box;
   double x[3];
 
+  assert(law);
   vg_slide_place(l, p, x);
   at.h = vg_sizing_at(l->sizing, x);
   for (int k = 0; k < 2; k++) box.lo[k] = box.hi[k] = p[k];

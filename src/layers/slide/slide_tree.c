@@ -1,4 +1,5 @@
 /* A tree of boxes in the plane. */
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -53,6 +54,8 @@ static void make_keys(size_t n, const struct vg_box2 *box, struct key *key)
 int vg_aabb_tree2_build(struct vg_aabb_tree2 *t, size_t n,
                         const struct vg_box2 *box)
 {
+  assert(box || !n);
+
   struct key *key = vg_alloc(n, sizeof *key);
   size_t n_leaf = 1;
 
@@ -101,6 +104,7 @@ void vg_aabb_tree2_query(const struct vg_aabb_tree2 *t,
 {
   size_t stack[DEPTH], n = 0;
 
+  assert(box && visit);
   stack[n++] = 1;
   while (n && t->n) {
     const size_t i = stack[--n];

@@ -1,5 +1,6 @@
 #include "layers/topology/fan.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -379,6 +380,8 @@ vg_status vg_fans_build(const struct vg_wall *w, size_t n_slide,
   vg_status st = VG_OK;
   size_t total = 0;
 
+  assert(!out->first && !out->fan);
+  assert(slide || !n_slide);
   if (!(fan_angle >= 0))
     return vg_fail(err, VG_ERR_INPUT, "the fan angle is %g degrees; it has to "
                    "be 0 (fans where one column cannot stand) or more (180: no "

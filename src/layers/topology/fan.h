@@ -8,6 +8,8 @@
 #ifndef VG_LAYERS_TOPOLOGY_FAN_H
 #define VG_LAYERS_TOPOLOGY_FAN_H
 
+#include <assert.h>
+
 #include "layers/topology/topology_wall.h"
 
 #define VG_FAN_SECTORS 16     /* at a point; with more it keeps one column */
@@ -47,6 +49,7 @@ struct vg_fan_chain {
 /** Column of step i = 0 .. n_step, counted from the first of the point. */
 static inline uint32_t vg_fan_at(const struct vg_fan_chain *c, uint32_t i)
 {
+  assert(i <= c->n_step);
   if (i == c->n_step) return c->b;
   return c->down ? c->a - i : c->a + i;
 }
@@ -96,6 +99,7 @@ vg_status vg_fans_close(const struct vg_wall *w, struct vg_fans *f,
 static inline uint32_t vg_fan_column(const struct vg_wall *w,
                                      const struct vg_fans *f, uint32_t h)
 {
+  assert(h < 3 * w->n_face);
   return f->first[w->face[h / 3][h % 3]] + (f->at ? f->at[h] : 0u);
 }
 

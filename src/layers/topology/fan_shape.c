@@ -1,4 +1,5 @@
 /* Directions of the columns at one point of a convex edge. */
+#include <assert.h>
 #include <string.h>
 
 #include "core/geometry/vector.h"
@@ -209,6 +210,7 @@ static int spread_shared(struct vg_fan_shape *s)
 
 int vg_fan_spread(struct vg_fan_shape *s)
 {
+  assert(s->n_sector > 0 && s->n_sector <= VG_FAN_SECTORS);
   s->n_column = s->n_polygon = s->has_centre = 0;
   s->shared = -1;
   if (s->is_open) return spread_from(s, 0, s->n_sector - 1);

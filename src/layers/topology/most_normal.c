@@ -1,5 +1,6 @@
 #include "layers/topology/most_normal.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -85,6 +86,7 @@ int vg_most_normal(int k, const double (*n)[3], double w[3])
 {
   int active[3] = { 0 }, n_active = 1;
 
+  assert(k > 0 && n);
   if (!k || !solve(n, active, 1, w)) return 0;
   for (int step = 0; step < STEPS_MAX; step++) {
     int worst = 0;

@@ -1,5 +1,6 @@
 #include "layers/topology/topology.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -158,6 +159,9 @@ vg_status vg_topology_build(const struct vg_mesh *surface,
   struct vg_columns c = VG_COLUMNS_INIT;
   struct vg_topology made = VG_TOPOLOGY_INIT;
 
+  assert(!columns->n_column && !columns->column);
+  assert(is_wall || !surface->n_patch);
+  assert(slide || !n_slide);
   VG_TRY(vg_wall_build(surface, is_wall, n_slide, slide, &w, err));
   VG_TRY(vg_fans_build(&w, n_slide, slide, fan_angle, &f, err));
   VG_TRY(make_columns(&w, &f, &c, &made, err));

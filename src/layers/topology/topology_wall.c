@@ -1,5 +1,6 @@
 #include "layers/topology/topology_wall.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -235,6 +236,8 @@ vg_status vg_wall_build(const struct vg_mesh *surface, const uint8_t *is_wall,
   struct vg_wall w = VG_WALL_INIT;
   struct rings r = { NULL, NULL, NULL, NULL, NULL };
 
+  assert(!out->point && !out->face);
+  assert(is_wall || !surface->n_patch);
   w.surface = surface;
   VG_TRY(find_roles(surface, is_wall, n_slide, slide, &r, err));
   VG_TRY(number(&w, &r, err));

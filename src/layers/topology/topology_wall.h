@@ -3,6 +3,8 @@
 #ifndef VG_LAYERS_TOPOLOGY_TOPOLOGY_WALL_H
 #define VG_LAYERS_TOPOLOGY_TOPOLOGY_WALL_H
 
+#include <assert.h>
+
 #include "layers/slide/slide.h"
 
 /* Half-edge 3 * face + k goes from corner k of the face to the next one, so
@@ -46,6 +48,7 @@ static inline uint32_t vg_half_previous(uint32_t h)
 /** The next corner counter-clockwise around the point of corner h. */
 static inline uint32_t vg_wall_turn(const struct vg_wall *w, uint32_t h)
 {
+  assert(h < 3 * w->n_face);
   return w->opposite[vg_half_previous(h)];
 }
 

@@ -1,6 +1,7 @@
 #define _GNU_SOURCE
 #include "partition/engine/engine.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -79,6 +80,7 @@ vg_status vg_engine_submit(struct vg_engine *e, const struct vg_task *task,
   vg_status st = VG_OK;
   int bad;
 
+  assert(e && task);
   if (!legal(task)) {
     st = vg_fail(err, VG_ERR_INPUT, "task '%.*s': no path, or a priority or "
                  "weight that is not a number", VG_PATH_MAX - 1, task->path);
@@ -295,6 +297,9 @@ vg_status vg_engine_run(struct vg_comm *comm,
                         size_t n_first, const struct vg_task *first,
                         struct vg_spans *spans, struct vg_error *err)
 {
+  assert(options->threads >= 1 && ops->run && ops->done);
+  assert(first || !n_first);
+
   struct vg_spans none = VG_SPANS_INIT;
   struct vg_engine e = { .comm = comm, .rank = vg_comm_rank(comm),
                          .size = vg_comm_size(comm), .options = options,

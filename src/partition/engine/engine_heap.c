@@ -1,9 +1,11 @@
+#include <assert.h>
 #include <string.h>
 
 #include "partition/engine/engine_parts.h"
 
 int vg_heap_before(const struct vg_heap *a, const struct vg_heap *b)
 {
+  assert(a && b);
   if (a->key != b->key) return a->key > b->key;
   return strcmp(a->path, b->path) < 0;
 }
@@ -21,6 +23,7 @@ static struct vg_heap *meld(struct vg_heap *a, struct vg_heap *b)
 
 void vg_heap_push(struct vg_heap **heap, struct vg_heap *item)
 {
+  assert(item && item->path);
   item->child = item->next = NULL;
   *heap = meld(*heap, item);
 }
@@ -46,6 +49,7 @@ struct vg_heap *vg_heap_pop(struct vg_heap **heap)
     pairs->next = NULL;
     *heap = meld(*heap, pairs);
   }
+  assert(!*heap || !vg_heap_before(*heap, top));
   top->child = top->next = NULL;
   return top;
 }

@@ -2,6 +2,7 @@
  * nothing else to do take chunks of it; who opened it takes them too, so it
  * ends with or without help. Tasks come before loops, but whoever helps stays
  * until no chunk is left: what it does meanwhile is of use all the same. */
+#include <assert.h>
 #include <string.h>
 
 #include "base/clock.h"
@@ -123,6 +124,8 @@ int vg_loop_help(struct vg_worker *w)
 void vg_engine_loop(const struct vg_engine *e, size_t n, size_t grain,
                     vg_loop_body body, void *context)
 {
+  assert(body || !n);
+
   struct vg_worker *w = e && self && self->e == e ? self : NULL;
   struct vg_loop l = { .n = n, .grain = grain ? grain : 1, .body = body,
                        .context = context };

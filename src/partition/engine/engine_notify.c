@@ -1,5 +1,6 @@
 /* What a rank tells the schedule: by a call on rank 0, by a message elsewhere.
  * */
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,6 +17,8 @@ void vg_engine_wake(struct vg_engine *e)
  * ever: then the job ends here. */
 void vg_engine_post(struct vg_engine *e, int to, int kind, struct vg_bytes *b)
 {
+  assert(to >= 0 && to < e->size && kind >= VG_MSG_UPDATE);
+  assert(kind <= VG_MSG_OUTCOME);
   if (!b->data || vg_comm_post(e->comm, to, kind, b, NULL) < 0)
     vg_comm_abort(e->comm, 1);
   e->sent[to]++;
@@ -116,6 +119,7 @@ void vg_notify_fail(struct vg_engine *e, vg_status status, const char *path,
 {
   struct vg_final_status v;
 
+  assert(status != VG_OK);
   memset(&v, 0, sizeof v);
   v.status = status;
   v.from = e->rank;

@@ -10,6 +10,7 @@
  * A cyclic schedule holds tasks with a `work` back until nothing else is left,
  * then deals all of them out to the workers in turn: cutting first, filling
  * after it, nobody helps another out. It is there for comparison. */
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -28,6 +29,7 @@ vg_status vg_schedule_init(struct vg_schedule *l, int size,
 {
   size_t n = (size_t)size;
 
+  assert(size > 0);
   l->ready = vg_calloc(n, sizeof *l->ready);
   l->threads = vg_calloc(n, sizeof *l->threads);
   l->load = vg_calloc(n, sizeof *l->load);
@@ -249,6 +251,8 @@ void vg_schedule_update(struct vg_engine *e, int from,
                         const struct vg_update *update,
                         const struct vg_task_notice *notice)
 {
+  assert(from >= 0 && from < e->size && (notice || !update->n));
+
   struct vg_schedule *l = &e->schedule;
 
   if (update->ended) {
@@ -272,17 +276,21 @@ void vg_schedule_update(struct vg_engine *e, int from,
       add_ready(e, from, &notice[i]);
     }
   }
+  assert(l->n_done <= l->n_known && l->n_out <= l->n_known - l->n_done);
   dispatch(e);
 }
 
 void vg_schedule_free(struct vg_engine *e, int from)
 {
+  assert(from >= 0 && from < e->size);
   add_load(&e->schedule, from, -1);
   dispatch(e);
 }
 
 void vg_schedule_moved(struct vg_engine *e, int from, int to, int ok)
 {
+  assert(from >= 0 && from < e->size && to >= 0 && to < e->size);
+
   struct vg_schedule *l = &e->schedule;
 
   l->asked[from] = ok ? NOT_ASKED : DECLINED;
@@ -299,6 +307,8 @@ static int is_failure(const struct vg_final_status *v)
  * messages repeat as far as can be; any failure rather than a mere stop. */
 void vg_schedule_fail(struct vg_engine *e, const struct vg_final_status *v)
 {
+  assert(v->status != VG_OK);
+
   struct vg_schedule *l = &e->schedule;
   struct vg_final_status *w = &l->final_status;
 

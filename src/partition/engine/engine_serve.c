@@ -7,6 +7,7 @@
  * is cheap, messages wait less. Those from the same node wait for nothing, as
  * the sender wakes. Alone it is only woken for the caller's. */
 #define _GNU_SOURCE
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -39,6 +40,9 @@ static void push_out(struct vg_engine *e, struct vg_task_state *j, int to)
 
 void vg_serve_assign(struct vg_engine *e, uint64_t handle, int to, int lane)
 {
+  assert(handle < e->n_home && e->home[handle]);
+  assert(to >= 0 && to < e->size && lane >= VG_LANE_ANY);
+
   struct vg_task_state *j = e->home[handle];
 
   j->lane = lane;
@@ -48,6 +52,8 @@ void vg_serve_assign(struct vg_engine *e, uint64_t handle, int to, int lane)
 
 void vg_serve_recall(struct vg_engine *e, int to)
 {
+  assert(to >= 0 && to < e->size);
+
   struct vg_task_state *j = (struct vg_task_state *)vg_heap_pop(&e->queue[0]);
 
   if (j) push_out(e, j, to);

@@ -1,4 +1,5 @@
 /* What the workers do: tasks, and `done` for what has ended. */
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,6 +10,7 @@
 /* Of sleeping workers a signal wakes any: not always the one it was dealt to. */
 void vg_work_queue(struct vg_engine *e, struct vg_task_state *j)
 {
+  assert(j->lane >= VG_LANE_ANY && j->lane < e->threads);
   if (j->lane == VG_LANE_ANY) {
     vg_heap_push(&e->queue[j->task.pinned != 0], &j->place);
     pthread_cond_signal(&e->work);

@@ -1,5 +1,6 @@
 #include "partition/engine/spans.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -17,6 +18,7 @@ void vg_spans_release(struct vg_spans *s)
 vg_status vg_spans_add(struct vg_spans *s, const struct vg_span *span,
                        struct vg_error *err)
 {
+  assert(span && memchr(span->path, 0, sizeof span->path));
   if (vg_reserve(&s->span, &s->cap, s->n + 1, sizeof *s->span))
     return vg_fail_memory(err, "the record of tasks");
   s->span[s->n++] = *span;
@@ -26,6 +28,7 @@ vg_status vg_spans_add(struct vg_spans *s, const struct vg_span *span,
 vg_status vg_spans_add_help(struct vg_spans *s, const struct vg_help *help,
                             struct vg_error *err)
 {
+  assert(help && memchr(help->path, 0, sizeof help->path));
   if (vg_reserve(&s->help, &s->cap_help, s->n_help + 1, sizeof *s->help))
     return vg_fail_memory(err, "the record of tasks");
   s->help[s->n_help++] = *help;
@@ -62,6 +65,7 @@ vg_status vg_spans_append(struct vg_spans *s, const struct vg_spans *more,
 {
   vg_status st = VG_OK;
 
+  assert(more && s != more);
   for (size_t k = 0; k < more->n && st == VG_OK; k++) {
     struct vg_span span = more->span[k];
 

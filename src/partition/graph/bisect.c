@@ -1,5 +1,6 @@
 #include "partition/graph/bisect.h"
 
+#include <assert.h>
 #include <stdlib.h>
 
 #include "base/memory.h"
@@ -79,6 +80,7 @@ vg_status vg_bisect(size_t n, const double (*x)[3], const double *weight,
 {
   struct bisection b = { x, weight, vg_alloc(n, sizeof *b.item), part };
 
+  assert((x && weight && part) || !n);
   if (n_part < 1 || (size_t)n_part > n) {
     free(b.item);
     return vg_fail(err, VG_ERR_INPUT, "%zu items cannot be made %d parts", n,
@@ -88,5 +90,6 @@ vg_status vg_bisect(size_t n, const double (*x)[3], const double *weight,
   for (size_t i = 0; i < n; i++) b.item[i].k = (uint32_t)i;
   bisect(&b, 0, n, (size_t)n_part, 0);
   free(b.item);
+  for (size_t i = 0; i < n; i++) assert(part[i] < (uint32_t)n_part);
   return VG_OK;
 }

@@ -1,5 +1,6 @@
 #include "partition/graph/graph.h"
 
+#include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -128,6 +129,7 @@ vg_status vg_graph_part(const struct vg_graph *g,
   double seconds = 0;
   int ok;
 
+  assert(g && o && (part || !g->n));
   if (o->n_part < 1 || (size_t)o->n_part > g->n)
     return vg_fail(err, VG_ERR_INPUT, "%d parts of %zu vertices: there must be "
                    "at least one part, and a vertex for each", o->n_part, g->n);

@@ -3,6 +3,7 @@
  * by several threads; their cubes are joined in the order of the tree. */
 #include "partition/load/load.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdatomic.h>
 #include <stdlib.h>
@@ -639,6 +640,7 @@ vg_status vg_load_new(const struct vg_front *v, const struct vg_sizing *sizing,
                       double cells_per_cube, int threads, struct vg_load *out,
                       struct vg_error *err)
 {
+  assert(sizing && out && cells_per_cube > 0 && threads >= 0);
   struct vg_load_tree t = { .unit = 1 };
   _Atomic size_t emitted = 0;
   struct vg_sizing *pace = NULL;

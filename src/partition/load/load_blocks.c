@@ -1,6 +1,7 @@
 /* Outline: cubes are assigned to the blocks of a lattice by where they are,
  * in chunks that threads share: first all are counted, then written, so their
  * order in a block is the parent's. */
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -218,6 +219,9 @@ vg_status vg_load_split_blocks(const struct vg_load *parent, const int n[3],
                                double correction, const struct vg_engine *e,
                                struct vg_load *out, struct vg_error *err)
 {
+  assert(n[0] >= 0 && n[1] >= 0 && n[2] >= 0 && out);
+  assert(reach >= 0 && correction > 0);
+
   struct deal d = { .parent = parent, .n = n, .at = at, .reach = reach,
                     .correction = correction };
   struct vg_load *made = deal_out(&d, e);

@@ -1,4 +1,5 @@
 /* Loads as messages. The index is not sent: it follows from the cubes. */
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,6 +21,8 @@ static const char magic[8] = { 'V', 'G', 'L', 'O', 'A', 'D', '2', '\n' };
 vg_status vg_load_pack(const struct vg_load *l, struct vg_bytes *out,
                        struct vg_error *err)
 {
+  assert(out);
+
   struct head h = { .n = l->n, .unit = l->unit,
                     .is_block = (uint64_t)l->is_block };
   const size_t cubes = l->n * sizeof *l->cube;
@@ -52,6 +55,7 @@ vg_status vg_load_unpack(const struct vg_bytes *in, struct vg_load *out,
   struct vg_load l = VG_LOAD_INIT;
   struct head h;
 
+  assert(in && out);
   if (in->n < sizeof h) goto damaged;
   memcpy(&h, in->data, sizeof h);
   if (memcmp(h.magic, magic, sizeof magic)

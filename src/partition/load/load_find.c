@@ -1,6 +1,7 @@
 /* Outline: cubes are in the order of an octree, in which places have an order,
  * too: that of the first bit, from the top, in which two of them differ along
  * some axis. So the cube of a place is found by bisection. */
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -75,6 +76,8 @@ static int place_of(const struct vg_load *l, size_t i, struct place *p)
 vg_status vg_load_finder_new(const struct vg_load *l,
                              struct vg_load_finder **out, struct vg_error *err)
 {
+  assert(out);
+
   struct vg_load_finder *f = vg_calloc(1, sizeof *f);
 
   if (f) f->place = vg_alloc(l->n, sizeof *f->place);
@@ -92,6 +95,8 @@ vg_status vg_load_finder_new(const struct vg_load *l,
 
 size_t vg_load_find(const struct vg_load_finder *f, const double x[3])
 {
+  assert(f);
+
   size_t low = 0, high = f->n;
   uint32_t at[3];
 

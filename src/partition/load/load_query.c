@@ -3,6 +3,7 @@
  * Bins know the cells below them, how densely cells stand on planes across
  * them, and the largest target edge. A cube that covers many bins is added in
  * constant time: as a difference between the first and the last of them. */
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -284,6 +285,7 @@ vg_status vg_load_index(struct vg_load *l, int threads, struct vg_error *err)
 {
   struct index_job job = { .l = l };
 
+  assert(threads >= 0);
   release_index(l->index);
   l->index = NULL;
   if (!l->n) return VG_OK;
@@ -306,6 +308,7 @@ double vg_load_quantile(const struct vg_load *l, int axis, double part)
   size_t lo = 0, hi;
   double target, within;
 
+  assert(axis >= 0 && axis < 3 && part >= 0 && part <= 1);
   if (!l->index) return 0;
   a = &l->index->axis[axis];
   if (!(part > 0)) return a->edge[0];
@@ -339,6 +342,8 @@ static int bins_at(const struct vg_load *l, int axis, double x, size_t bin[2])
 double vg_load_zone(const struct vg_load *l, int axis, double at,
                     double width)
 {
+  assert(axis >= 0 && axis < 3 && width >= 0);
+
   size_t bin[2];
   const int n = bins_at(l, axis, at, bin);
   double sum = 0;
@@ -349,6 +354,8 @@ double vg_load_zone(const struct vg_load *l, int axis, double at,
 
 double vg_load_coarsest(const struct vg_load *l, int axis, double at)
 {
+  assert(axis >= 0 && axis < 3);
+
   size_t bin[2];
   const int n = bins_at(l, axis, at, bin);
   double most = 0;

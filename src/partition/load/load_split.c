@@ -3,6 +3,7 @@
  * cube that the front crosses, samples are counted. The samples of a cube are
  * always the same ones, so what earlier cuts have dropped was outside the
  * children too, and errors do not pile up over generations. */
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -300,6 +301,8 @@ vg_status vg_load_split(const struct vg_load *parent, size_t n,
                         vg_calloc(n, sizeof *w.bad) };
   int bad = !w.made || !w.bad;
 
+  assert((child && out) || !n);
+  assert(correction > 0);
   if (!bad) vg_engine_loop(e, n, 1, split_part, &w);
   for (size_t c = 0; c < n && !bad; c++) bad = w.bad[c];
   if (!bad && n) memcpy(out, w.made, n * sizeof *out);

@@ -6,6 +6,7 @@
  * (it is thought shifted by e, e^2). */
 #include "partition/load/load_tree.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -97,6 +98,7 @@ vg_status vg_load_tree_new(struct vg_load_tree *t, size_t n,
 {
   struct enter_job job = { t, 0, 0 };
 
+  assert(t->unit > 0 && (child || !n) && threads >= 0);
   t->child = child;
   t->n_tri = 0;
   for (size_t c = 0; c < n; c++) t->n_tri += child[c].n_face;
@@ -368,6 +370,8 @@ static void fit_parts(struct vg_load *l, double missing)
 
 void vg_load_fit(struct vg_load *l, double volume)
 {
+  assert(volume >= 0);
+
   double sum = vg_load_parts(l);
 
   for (int pass = 0; pass < FIT_PASSES && volume > 0; pass++) {

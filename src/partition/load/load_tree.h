@@ -8,6 +8,7 @@
 #ifndef VG_PARTITION_LOAD_LOAD_TREE_H
 #define VG_PARTITION_LOAD_LOAD_TREE_H
 
+#include <assert.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -48,6 +49,7 @@ struct vg_load_stack {
 
 static inline uint32_t vg_load_side(const struct vg_load_node *node)
 {
+  assert(node->level >= 0 && node->level <= VG_LOAD_BITS);
   return (uint32_t)1 << (VG_LOAD_BITS - node->level);
 }
 

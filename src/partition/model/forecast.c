@@ -1,5 +1,6 @@
 #include "partition/model/forecast_parts.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -64,6 +65,7 @@ void vg_forecast_release(struct vg_forecast *o)
  * of two points), points on the boundary fewer, as measured. */
 double vg_forecast_points(double cells, double faces)
 {
+  assert(cells >= 0 && faces >= 0);
   return cells / 6 + 0.2 * faces;
 }
 
@@ -584,6 +586,7 @@ vg_status vg_forecast_parted(const struct vg_front *v,
                                .levels = levels };
   vg_status st;
 
+  assert(rule && rates && out && levels >= 0);
   o.cells = load->cells;
   VG_TRY(add_load(load, &root, err));
   VG_TRY(add_surface(v, &root, err));
@@ -607,5 +610,6 @@ vg_status vg_forecast_new(const struct vg_front *v, const struct vg_load *load,
                           const struct vg_rates *rates, struct vg_forecast *out,
                           struct vg_error *err)
 {
+  assert(rule && rates && out && levels >= 0);
   return vg_forecast_parted(v, load, NULL, rule, levels, rates, out, err);
 }

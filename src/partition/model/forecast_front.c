@@ -1,4 +1,5 @@
 /* The coarse front of a forecast, and what zones take and leave of it. */
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -40,6 +41,8 @@ vg_status vg_bins_add(struct vg_bins *f, const struct vg_bin *b,
 void vg_amount_add(struct vg_amount *a, const struct vg_load_cube *c,
                    double share)
 {
+  assert(share >= 0);
+
   double side = 2 * (double)c->half / (double)c->h, cells = (double)c->cells;
   double cubes = (double)c->part * side * side * side;
   double more = cubes > 0 ? cells / (cubes * VG_LOAD_CELLS_PER_CUBE) - 1 : 0;
@@ -138,6 +141,8 @@ static vg_status add_sides(const struct vg_load_cube *c,
 /* Front that a zone has closed in. */
 void vg_bins_cover(struct vg_bins *f, size_t n, const struct vg_region *r)
 {
+  assert(n <= f->n);
+
   double reach = reach_of(r);
   size_t left = 0;
 
@@ -151,6 +156,8 @@ void vg_bins_cover(struct vg_bins *f, size_t n, const struct vg_region *r)
 double vg_bins_near(const struct vg_bins *f, size_t n,
                     const struct vg_region *r)
 {
+  assert(n <= f->n);
+
   double band = vg_region_band(r, VG_BAND_FRONT), sum = 0;
 
   for (size_t i = 0; i < n; i++) {

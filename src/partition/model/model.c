@@ -3,6 +3,7 @@
  * one moment are dealt with before tasks are handed out again. */
 #include "partition/model/model_parts.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -670,6 +671,7 @@ vg_status vg_model_replay(const struct vg_spans *spans,
   struct sim s = { .machine = machine, .helps = timeline ? &helps : NULL };
   vg_status st;
 
+  assert(spans && machine && out);
   VG_TRY(check_machine(machine, err));
   s.n_worker = (uint32_t)(machine->ranks * machine->threads);
   VG_TRY(vg_model_graph_new(spans, &s.g, err));

@@ -1,4 +1,5 @@
 /* A cyclic schedule: leaves dealt out to the workers, before any is filled. */
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,6 +22,7 @@ void vg_dealt_release(struct vg_dealt *d)
 vg_status vg_dealt_new(struct vg_dealt *d, uint32_t n, uint32_t n_worker,
                        struct vg_error *err)
 {
+  assert(n_worker > 0);
   d->n_worker = n_worker;
   d->held = vg_alloc(n, sizeof *d->held);
   d->next = vg_alloc(n, sizeof *d->next);

@@ -1,5 +1,6 @@
 #include "partition/model/rates.h"
 
+#include <assert.h>
 #include <dlfcn.h>
 #include <lapacke.h>
 #include <math.h>
@@ -95,6 +96,7 @@ static int both(const struct rows *r, __typeof__(LAPACKE_dgels) *dgels,
 vg_status vg_rates_fit(const struct vg_spans *s, char kind,
                        struct vg_rate_fit *out, struct vg_error *err)
 {
+  assert(s && out);
   struct rows r = { 0, NULL, NULL };
   double cell = 0, face = 0;
   __typeof__(LAPACKE_dgels) *dgels;
@@ -146,6 +148,7 @@ vg_status vg_rates_of(const struct vg_spans *s,
   static const char kind[VG_RATE_FITS] = { VG_SPAN_LEAF, VG_SPAN_PENCIL,
                                            VG_SPAN_TILE };
 
+  assert(s && fit && out);
   *out = vg_rates_measured;
   for (int k = 0; k < VG_RATE_FITS; k++) {
     vg_status st = vg_rates_fit(s, kind[k], &fit[k], err);

@@ -1,5 +1,6 @@
 #include "partition/repair/near.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdatomic.h>
 #include <stdlib.h>
@@ -100,6 +101,8 @@ static void report(const uint64_t *bin, double least,
 vg_status vg_partition_near(const struct vg_partition *p, struct vg_comm *comm,
                             struct vg_near_report *out, struct vg_error *err)
 {
+  assert(out);
+
   int threads = p->options.threads;
   struct census c = { .p = p };
   double least = -180;

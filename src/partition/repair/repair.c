@@ -1,6 +1,7 @@
 /* Repairs: cells gathered by cluster, repaired, and put back as pieces. */
 #include "partition/repair/repair.h"
 
+#include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -553,6 +554,8 @@ static size_t bad_cells(const struct vg_partition *p)
 vg_status vg_partition_repair(struct vg_partition *p, struct vg_comm *comm,
                               struct vg_spans *spans, struct vg_error *err)
 {
+  assert(p);
+
   struct vg_spans own = VG_SPANS_INIT;
   double t0 = vg_clock();
   vg_status st;

@@ -1,4 +1,5 @@
 /* Triangles of the boundary, between some of its points. */
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -71,6 +72,7 @@ int vg_repair_boundary_has(const struct vg_repair_boundary *r,
 {
   uint32_t key[3] = { v[0], v[1], v[2] };
 
+  assert(v[0] != v[1] && v[1] != v[2] && v[2] != v[0]);
   vg_order3(key);
   return r->n && bsearch(key, r->tri, r->n, sizeof *r->tri, by_points);
 }

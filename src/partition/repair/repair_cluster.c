@@ -1,4 +1,5 @@
 /* Cells of several pieces joined by the names of their points, and repaired. */
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -360,6 +361,8 @@ vg_status vg_repair_cluster(size_t n, const struct vg_cluster_cells *block,
                             const struct vg_sizing *sizing,
                             struct vg_repaired *out, struct vg_error *err)
 {
+  assert(n > 0 && block && balls && boundary && out);
+
   struct joint j = { .n_block = n, .block = block, .balls = balls,
                      .boundary = boundary };
   struct vg_optimise_report r;

@@ -1,4 +1,5 @@
 /* Balls around bad cells, who has which piece, and messages to other ranks. */
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -89,6 +90,7 @@ const struct vg_owner *vg_owners_find(const struct vg_owners *o, uint64_t name)
 {
   struct vg_owner key = { .serial = (uint32_t)(name >> 32) };
 
+  assert(o->at || !o->n);
   if (!key.serial) return NULL;
   return bsearch(&key, o->at, o->n, sizeof key, by_serial);
 }
@@ -97,6 +99,7 @@ const struct vg_owner *vg_owners_find(const struct vg_owners *o, uint64_t name)
 
 vg_status vg_outbox_new(struct vg_outbox *post, int size, struct vg_error *err)
 {
+  assert(size > 0);
   post->size = size;
   post->to = vg_calloc((size_t)size, sizeof *post->to);
   return post->to ? VG_OK : vg_fail_memory(err, "repairs");
@@ -114,6 +117,8 @@ vg_status vg_outbox_send(struct vg_outbox *post, struct vg_comm *comm,
                          vg_status st, struct vg_bytes **from,
                          struct vg_error *err)
 {
+  assert(from);
+
   struct vg_bytes *to = vg_calloc((size_t)post->size, sizeof *to);
   struct vg_bytes *got = vg_calloc((size_t)post->size, sizeof *got);
 

@@ -1,5 +1,6 @@
 /* Halos: what the owner of points on an interface needs of the cells that
  * other pieces have around them. */
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -270,6 +271,8 @@ vg_status vg_halos_of(const struct vg_partition *p, size_t k,
                       const struct vg_owners *owners, size_t *n,
                       struct vg_halo **out, size_t *n_hit, uint32_t **hit)
 {
+  assert(k < p->n_piece && n && out && n_hit && hit);
+
   const struct vg_piece *q = &p->piece[k];
   struct user u = { .q = q,
                     .self = vg_owners_find(owners,

@@ -1,5 +1,6 @@
 /* What repairs took, as tasks in the record of a run: they wait for all leaves
  * and for nothing else. */
+#include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,6 +21,7 @@ void vg_repair_begin(struct vg_span *s, int worker)
 void vg_repair_end(struct vg_span *s, const char *what, size_t number,
                    size_t n_cell)
 {
+  assert(what);
   s->end = vg_clock();
   s->cpu = vg_clock_thread() - s->cpu;
   s->n_cell = n_cell;

@@ -1,4 +1,5 @@
 /* Balls of very different sizes in a hashed grid for each size. */
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -228,6 +229,7 @@ vg_status vg_spot_grid_new(size_t n, const struct vg_spot *spot, size_t most,
   struct pairs p = {0};
   vg_status st;
 
+  assert((spot || !n) && most > 0);
   b.cluster = vg_alloc(n, sizeof *b.cluster);
   f.up = vg_alloc(n, sizeof *f.up);
   f.size = vg_alloc(n, sizeof *f.size);

@@ -4,6 +4,7 @@
  * the pairs of them that share a face; faces at the rims of slices meet in a
  * rendezvous. Units are numbered slice by slice along the mesh, so that the
  * graph, which rank 0 collects, is the same whoever serves which slice. */
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -586,6 +587,8 @@ vg_status vg_solver_part_slices(struct vg_comm *comm,
                                 struct vg_solver_report *report,
                                 struct vg_error *err)
 {
+  assert(o && out && keep && report);
+
   struct vg_solver_report r = { .time_graph = vg_clock() };
   struct sliced w = { .comm = comm, .o = o, .k = new_slices(s),
                       .threads = o->threads > 0 ? o->threads : vg_cores(),

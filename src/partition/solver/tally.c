@@ -1,3 +1,4 @@
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -51,6 +52,7 @@ static int meet(struct near *s, uint32_t part)
 
 int vg_tally_faces(struct vg_tally *t, uint32_t a, uint32_t b, uint64_t n)
 {
+  assert(a < t->n && b < t->n);
   if (a == b) return 0;
   t->part[a].cut += n;
   t->part[b].cut += n;
@@ -60,6 +62,7 @@ int vg_tally_faces(struct vg_tally *t, uint32_t a, uint32_t b, uint64_t n)
 void vg_tally_cells(struct vg_tally *t, uint32_t part, uint64_t n,
                     double weight)
 {
+  assert(part < t->n);
   t->part[part].cells += n;
   t->part[part].weight += weight;
 }

@@ -1,4 +1,5 @@
 /* The graph of the units, and its parts by METIS. */
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -173,6 +174,8 @@ vg_status vg_unit_graph_of_pairs(size_t n, const struct vg_unit_pair *pair,
                                  size_t n_pair, struct vg_unit_graph *out,
                                  struct vg_error *err)
 {
+  assert(pair || !n_pair);
+
   struct vg_unit_graph g = { .n = n };
   struct entry *row = vg_alloc(2 * n_pair, sizeof *row);
 
@@ -228,6 +231,8 @@ vg_status vg_unit_graph_part(const struct vg_unit_graph *g,
                              uint32_t *part, struct vg_solver_report *r,
                              struct vg_error *err)
 {
+  assert((weight && part) || !g->n);
+
   struct vg_graph graph = { g->n, g->begin, g->to, weight, g->faces };
   struct vg_graph_options o = { (int)n_part, imbalance, 0, NULL };
   double t = vg_clock();

@@ -7,6 +7,7 @@
  * in layers, joining each to the one below gives the stacks; those between the
  * columns of a fan begin on the flank of another. Prisms of any origin are
  * joined over triangles, hexahedra from walls upwards. */
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -27,6 +28,8 @@ void vg_units_release(struct vg_units *u)
 
 size_t vg_unit_cluster(const struct vg_solver_options *o, uint64_t n_field)
 {
+  assert(o);
+
   uint64_t n = o->cluster_above ? (n_field + o->cluster_above - 1) /
                                     o->cluster_above : 1;
 
@@ -277,6 +280,9 @@ vg_status vg_units_make(const struct vg_cell_links *l,
                         const struct vg_unit_options *o, struct vg_units *out,
                         struct vg_error *err)
 {
+  assert(o->weight && o->cluster >= 1);
+  assert(!out->of && !out->weight);
+
   struct vg_units u = VG_UNITS_INIT;
   struct work w = { l, o, vg_alloc(l->n_cell, sizeof *w.up),
                     vg_alloc(l->n_cell, 1), &u };

@@ -1,4 +1,5 @@
 /* Parts of a mesh in one piece. */
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -161,6 +162,9 @@ vg_status vg_solver_part(const struct vg_mesh *m,
                          uint32_t *part, struct vg_solver_report *report,
                          struct vg_error *err)
 {
+  assert(o && name && report);
+  assert(part || !(m->n_tet + m->n_pyr + m->n_pri + m->n_hex));
+
   struct vg_solver_report r = { .time_graph = vg_clock() };
   struct vg_unit_options uo = unit_options(m, layers, o);
   struct vg_cell_links l = VG_CELL_LINKS_INIT;

@@ -1,6 +1,7 @@
 #define _GNU_SOURCE
 #include "partition/store/store.h"
 
+#include <assert.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -222,6 +223,8 @@ vg_status vg_store_open(struct vg_comm *comm,
                         const struct vg_store_options *options,
                         struct vg_store **out, struct vg_error *err)
 {
+  assert(options->dir && out);
+
   struct vg_store *s = store_new(comm, options);
   int rank = vg_comm_rank(comm);
   uint64_t there = 0;

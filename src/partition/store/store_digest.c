@@ -1,3 +1,4 @@
+#include <assert.h>
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -40,6 +41,7 @@ static int digest_parts(int fd, XXH3_state_t *state, char *part,
 
 int vg_digest_file(int fd, struct vg_digest *d, uint64_t *bytes)
 {
+  assert(fd >= 0 && d && bytes);
   XXH3_state_t *state = XXH3_createState();
   char *part = vg_alloc(PART, 1);
   int bad = -1;
@@ -58,6 +60,7 @@ struct vg_digest vg_digest_of(struct vg_digest seed, size_t n,
 {
   struct vg_digest both[2] = {seed, hash(data, n)};
 
+  assert(data || !n);
   return hash(both, sizeof both);
 }
 

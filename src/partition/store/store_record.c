@@ -1,4 +1,5 @@
 #define _GNU_SOURCE
+#include <assert.h>
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -73,6 +74,7 @@ vg_status vg_store_find(struct vg_store *s, struct vg_digest key,
   char name[VG_STORE_NAME];
   int fd, found = 0;
 
+  assert(out);
   name_of(key, name);
   fd = openat(s->fd, name, O_RDONLY | O_CLOEXEC);
   if (fd < 0 && (errno == ENOENT || errno == ENOTDIR)) return VG_BLOCKED;
@@ -167,6 +169,7 @@ void vg_store_keep(struct vg_store *s, struct vg_digest key, size_t n,
   struct header h;
   size_t size;
 
+  assert(data || !n);
   if (__builtin_add_overflow(n, sizeof h, &size)) size = SIZE_MAX;
   if (!reserve(s, size, &number)) return;
   h = header_of(key, n, data);

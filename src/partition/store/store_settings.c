@@ -1,6 +1,7 @@
 /* The settings of a run, kept beside run.txt so that a refusal can say which
  * of them differ. Lines of "name=value"; nothing is decided by them. */
 #define _GNU_SOURCE
+#include <assert.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -94,6 +95,8 @@ static void add(struct list *to, size_t n_name, const char *name,
 void vg_store_compare_settings(const struct vg_store *s, const char *ours,
                                char *out, size_t size)
 {
+  assert(out && size >= 64);
+
   struct list to = { out, size - 32, 0 };
   char *there = read_settings(s);
 
