@@ -13,7 +13,7 @@
 #include <cmocka.h>
 
 #include "base/checks.h"
-#include "core/mesh/defects.h"
+#include "core/mesh/mesh_defects.h"
 #include "tets_support.h"
 
 /* Run `body` in a child; its signal, and into text [n] what it wrote to the

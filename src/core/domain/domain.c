@@ -14,7 +14,7 @@
 #include "core/domain/planar.h"
 #include "core/domain/symmetry.h"
 #include "core/geometry/vector.h"
-#include "core/mesh/defects.h"
+#include "core/mesh/mesh_defects.h"
 
 /* Part of a farfield's radius that the body may reach: chords of the
  * triangulated sphere come this near. */

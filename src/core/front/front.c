@@ -80,30 +80,6 @@ vg_status vg_front_check(const struct vg_front *f, struct vg_error *err)
                  f->x[p][0], f->x[p][1], f->x[p][2]);
 }
 
-size_t vg_front_open_edges(const struct vg_front *f)
-{
-  struct vg_key *edge = vg_alloc(3 * f->n_face, sizeof *edge);
-  size_t n_open = 0, n = 3 * f->n_face;
-
-  if (!edge) return SIZE_MAX;
-  for (size_t i = 0; i < n; i++) {
-    uint32_t a = f->face[i / 3][i % 3], b = f->face[i / 3][(i + 1) % 3];
-
-    edge[i].key = a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
-    edge[i].index = a < b;
-  }
-  if (vg_sort_keys(n, edge, NULL)) n_open = SIZE_MAX;
-  for (size_t i = 0, j; n_open != SIZE_MAX && i < n; i = j) {
-    long balance = 0;
-
-    for (j = i; j < n && edge[j].key == edge[i].key; j++)
-      balance += edge[j].index ? 1 : -1;
-    n_open += balance != 0;
-  }
-  free(edge);
-  return n_open;
-}
-
 double vg_front_volume(const struct vg_front *f)
 {
   double sum = 0;

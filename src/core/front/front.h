@@ -21,6 +21,7 @@
 
 #include "base/status.h"
 #include "core/mesh/mesh.h"
+#include "core/mesh/mesh_defects.h"
 
 struct vg_front {
   size_t n_point, n_face;
@@ -64,7 +65,13 @@ vg_status vg_front_check(const struct vg_front *f, struct vg_error *err);
 
 /** Number of edges that are not used equally often in both directions; 0 for a
  * closed front. SIZE_MAX when memory is refused. O(n log n). */
-size_t vg_front_open_edges(const struct vg_front *f);
+static inline size_t vg_front_open_edges(const struct vg_front *f)
+{
+  const struct vg_mesh m = { .n_point = f->n_point, .point = f->x,
+                             .n_tri = f->n_face, .tri = f->face };
+
+  return vg_mesh_open_edges(&m);
+}
 
 /** Volume of the void that a closed front encloses; negative for a shell
  * around a body. */

@@ -13,7 +13,7 @@
 #include "base/checks.h"
 #include "base/memory.h"
 #include "core/geometry/vector.h"
-#include "core/mesh/defects.h"
+#include "core/mesh/mesh_defects.h"
 #include "core/remesh/blocks.h"
 #include "core/remesh/job.h"
 #include "core/remesh/passes.h"

@@ -9,7 +9,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "core/geometry/vector.h"
-#include "core/mesh/defects.h"
+#include "core/mesh/mesh_defects.h"
 
 #define SWEEPS 8          /* over zigzags of soft borders */
 #define NEAR_SQRT2 1.4142135623730951

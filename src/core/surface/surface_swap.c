@@ -10,7 +10,7 @@
 #include "base/checks.h"
 #include "base/memory.h"
 #include "core/geometry/triangles.h"
-#include "core/mesh/defects.h"
+#include "core/mesh/mesh_defects.h"
 #include "core/surface/surface_parts.h"
 #include "core/surface/surface_swap_parts.h"
 

@@ -8,7 +8,7 @@
 #include "base/checks.h"
 #include "base/memory.h"
 #include "core/geometry/vector.h"
-#include "core/mesh/defects.h"
+#include "core/mesh/mesh_defects.h"
 #include "core/wrap/wrap_parts.h"
 
 #define REACH 1.5         /* S41: of the offset: farther, a gap was bridged */

@@ -7,7 +7,7 @@
 
 #include "base/checks.h"
 #include "base/memory.h"
-#include "core/mesh/defects.h"
+#include "core/mesh/mesh_defects.h"
 
 vg_status vg_join_check_field(const struct vg_front *f,
                               uint64_t n_point, uint64_t n_tri,

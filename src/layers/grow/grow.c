@@ -8,9 +8,9 @@
 #include "base/checks.h"
 #include "base/clock.h"
 #include "base/memory.h"
-#include "core/mesh/defects.h"
+#include "core/mesh/mesh_defects.h"
 #include "core/surface/surface_check.h"
-#include "layers/expand/defects.h"
+#include "layers/expand/expand_defects.h"
 #include "layers/grow/grow_parts.h"
 
 #define ROUNDS_MAX 300   /* L2 */
@@ -486,12 +486,12 @@ done:
 static void check_layers(const struct vg_mesh *surface,
                          const struct vg_layers *l)
 {
-  const struct vg_mesh *front = &l->front.mesh;
+  const struct vg_mesh front = vg_front_mesh(&l->front, surface);
 
   VG_CHECK("the layers", vg_columns_defects(&l->columns, surface));
-  VG_CHECK("the layers", vg_mesh_bad_faces(front));
+  VG_CHECK("the layers", vg_mesh_bad_faces(&front));
   if (VG_CHECKS_ON && !vg_mesh_open_edges(surface))
-    VG_CHECK("the layers", vg_mesh_open_edges(front));
+    VG_CHECK("the layers", vg_mesh_open_edges(&front));
 }
 
 vg_status vg_layers_grow(const struct vg_mesh *surface,

@@ -1,4 +1,4 @@
-/* layers/expand/defects.h: checks of columns that a stage has made
+/* layers/expand/expand_defects.h: checks of columns that a stage has made
  * (base/checks.h). Uses columns.h, core/judge/quality.h. */
 #ifndef VG_LAYERS_EXPAND_DEFECTS_H
 #define VG_LAYERS_EXPAND_DEFECTS_H

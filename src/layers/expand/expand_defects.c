@@ -1,5 +1,5 @@
 /* Checks of columns: their indices, and their cells one by one. */
-#include "layers/expand/defects.h"
+#include "layers/expand/expand_defects.h"
 
 #include <string.h>
 

@@ -1,5 +1,5 @@
 /* Checks of the boundary faces of a mesh. */
-#include "core/mesh/defects.h"
+#include "core/mesh/mesh_defects.h"
 
 #include <assert.h>
 #include <stdlib.h>
