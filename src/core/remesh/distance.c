@@ -83,8 +83,8 @@ static void arrange(struct measuring *m)
 
   memset(m->by, 0xff, from->n_point * sizeof *m->by);
   memset(m->d, 0, from->n_tri * sizeof *m->d);   /* 1: is there */
-  for (size_t i = 0; i < m->ref.n_item; i++) {
-    uint32_t t = m->ref.item[i];
+  for (size_t i = 0; i < m->ref.tree.n; i++) {
+    uint32_t t = m->ref.tree.item[i];
 
     if (m->d[t] > 0) continue;
     m->d[t] = 1;

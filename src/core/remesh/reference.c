@@ -7,10 +7,8 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "core/geometry/hilbert.h"
 #include "core/geometry/vector.h"
 
-#define LEAF VG_REF_LEAF
 #define FLAT 1e-9         /* height over edge, below which a normal is noise */
 #define PIECE 2.0         /* mean edges, about: longer triangles are cut up */
 #define PIECES 64         /* at most */
@@ -129,10 +127,17 @@ static void make_shape(struct vg_ref *r, size_t t)
 
 /* Needles are put into the tree in pieces, so that boxes about them are not
  * large and empty: parts between planes across their longest edge. */
-struct piece {
-  double lo[3], hi[3];
-  uint32_t tri;
+struct pieces {
+  size_t n, cap_box, cap_tri;
+  struct vg_box *box;
+  uint32_t *tri;
 };
+
+static void pieces_release(struct pieces *p)
+{
+  free(p->box);
+  free(p->tri);
+}
 
 static double longest_edge(const struct vg_ref *r, size_t t, int *which)
 {
@@ -147,26 +152,17 @@ static double longest_edge(const struct vg_ref *r, size_t t, int *which)
   return sqrt(most);
 }
 
-static void into_box(struct piece *p, const double x[3])
-{
-  for (int k = 0; k < 3; k++) {
-    if (x[k] < p->lo[k]) p->lo[k] = x[k];
-    if (x[k] > p->hi[k]) p->hi[k] = x[k];
-  }
-}
-
 /* The box about triangle t between parts from and to of its longest edge. */
-static void box_piece(const struct vg_ref *r, size_t t, int edge, double from,
-                      double to, struct piece *p)
+static struct vg_box box_piece(const struct vg_ref *r, size_t t, int edge,
+                               double from, double to)
 {
+  struct vg_box b = VG_BOX_EMPTY;
   const double *a = r->point[r->tri[t][edge]];
   double along[3], s[3], l2;
 
-  *p = (struct piece){ { INFINITY, INFINITY, INFINITY },
-                       { -INFINITY, -INFINITY, -INFINITY }, (uint32_t)t };
   if (from < 0 && to > 1) {
-    for (int k = 0; k < 3; k++) into_box(p, r->point[r->tri[t][k]]);
-    return;
+    for (int k = 0; k < 3; k++) vg_box_add(&b, r->point[r->tri[t][k]]);
+    return b;
   }
   vg_sub(r->point[r->tri[t][(edge + 1) % 3]], a, along);
   l2 = vg_dot(along, along);
@@ -175,7 +171,7 @@ static void box_piece(const struct vg_ref *r, size_t t, int edge, double from,
 
     vg_sub(r->point[r->tri[t][k]], a, d);
     s[k] = l2 > 0 ? vg_dot(d, along) / l2 : 0;
-    if (s[k] >= from && s[k] <= to) into_box(p, r->point[r->tri[t][k]]);
+    if (s[k] >= from && s[k] <= to) vg_box_add(&b, r->point[r->tri[t][k]]);
   }
   for (int k = 0; k < 3; k++)
     for (int side = 0; side < 2; side++) {
@@ -187,16 +183,16 @@ static void box_piece(const struct vg_ref *r, size_t t, int edge, double from,
       for (int d = 0; d < 3; d++)
         x[d] = r->point[r->tri[t][k]][d]
                + u * (r->point[r->tri[t][m]][d] - r->point[r->tri[t][k]][d]);
-      into_box(p, x);
+      vg_box_add(&b, x);
     }
+  return b;
 }
 
 /* As many pieces as make them about as long as the mean edge. */
-static vg_status make_pieces(const struct vg_ref *r, struct piece **out,
-                             size_t *n, struct vg_error *err)
+static vg_status make_pieces(const struct vg_ref *r, struct pieces *p,
+                             struct vg_error *err)
 {
   double area = 0, step;
-  size_t cap = 0;
   int edge = 0;
 
   for (size_t t = 0; t < r->n_tri; t++) {
@@ -210,22 +206,27 @@ static vg_status make_pieces(const struct vg_ref *r, struct piece **out,
     double parts = ceil(longest_edge(r, t, &edge) / step);
     int k = parts > 1 ? parts < PIECES ? (int)parts : PIECES : 1;
 
-    if (vg_reserve(out, &cap, *n + (size_t)k, sizeof **out))
+    if (vg_reserve(&p->box, &p->cap_box, p->n + (size_t)k, sizeof *p->box)
+        || vg_reserve(&p->tri, &p->cap_tri, p->n + (size_t)k, sizeof *p->tri))
       return vg_fail_memory(err, "the tree of the surface");
-    for (int i = 0; i < k; i++)
-      box_piece(r, t, edge, i ? (double)i / k : -1,
-                i + 1 < k ? (double)(i + 1) / k : 2, &(*out)[(*n)++]);
+    for (int i = 0; i < k; i++) {
+      p->box[p->n] = box_piece(r, t, edge, i ? (double)i / k : -1,
+                               i + 1 < k ? (double)(i + 1) / k : 2);
+      p->tri[p->n++] = (uint32_t)t;
+    }
   }
   return VG_OK;
 }
 
-static void leaf_size(const struct vg_ref *r, size_t leaf,
-                      struct vg_ref_node *b)
+static void leaf_size(const struct vg_ref *r, size_t node)
 {
+  struct vg_ref_node *b = vg_ref_node(r, node);
+
   b->size = INFINITY;
-  for (size_t i = LEAF * leaf; i < LEAF * (leaf + 1) && i < r->n_item; i++)
+  for (size_t i = vg_box_tree_first(&r->tree, node);
+       i < vg_box_tree_end(&r->tree, node); i++)
     for (int c = 0; c < 3; c++)
-      b->size = fmin(b->size, r->size[r->tri[r->item[i]][c]]);
+      b->size = fmin(b->size, r->size[r->tri[r->tree.item[i]][c]]);
 }
 
 /* A triangle without a normal faces every way. */
@@ -243,70 +244,47 @@ static void add_normal(struct vg_ref_node *b, const double n[3])
   }
 }
 
-static void leaf_box(const struct vg_ref *r, const struct piece *piece,
-                     const uint32_t *order, size_t leaf,
-                     struct vg_ref_node *b)
+static void leaf_normals(const struct vg_ref *r, size_t node)
 {
-  for (int k = 0; k < 3; k++) {
-    b->lo[k] = INFINITY, b->hi[k] = -INFINITY;
+  struct vg_ref_node *b = vg_ref_node(r, node);
+
+  for (int k = 0; k < 3; k++)
     b->normal[0][k] = INT8_MAX, b->normal[1][k] = INT8_MIN;
-  }
   b->size = INFINITY;
-  for (size_t i = LEAF * leaf; i < LEAF * (leaf + 1) && i < r->n_item; i++) {
-    for (int k = 0; k < 3; k++) {
-      if (piece[order[i]].lo[k] < b->lo[k]) b->lo[k] = piece[order[i]].lo[k];
-      if (piece[order[i]].hi[k] > b->hi[k]) b->hi[k] = piece[order[i]].hi[k];
-    }
-    add_normal(b, r->shape[r->item[i]].n);
-  }
+  for (size_t i = vg_box_tree_first(&r->tree, node);
+       i < vg_box_tree_end(&r->tree, node); i++)
+    add_normal(b, r->shape[r->tree.item[i]].n);
 }
 
-/* Inner nodes from their children. */
+/* What inner nodes have besides boxes, from their children. */
 static void join_nodes(struct vg_ref *r)
 {
-  for (size_t i = r->first_leaf; i-- > 0;) {
-    const struct vg_ref_node *other = &r->node[2 * i + 2];
-    struct vg_ref_node *b = &r->node[i];
+  for (size_t i = r->tree.first_leaf; i-- > 0;) {
+    const struct vg_ref_node *p = vg_ref_node(r, 2 * i + 1), *q = p + 1;
+    struct vg_ref_node *b = vg_ref_node(r, i);
 
-    *b = r->node[2 * i + 1];
     for (int k = 0; k < 3; k++) {
-      if (other->lo[k] < b->lo[k]) b->lo[k] = other->lo[k];
-      if (other->hi[k] > b->hi[k]) b->hi[k] = other->hi[k];
-      if (other->normal[0][k] < b->normal[0][k])
-        b->normal[0][k] = other->normal[0][k];
-      if (other->normal[1][k] > b->normal[1][k])
-        b->normal[1][k] = other->normal[1][k];
+      b->normal[0][k] = p->normal[0][k] < q->normal[0][k] ? p->normal[0][k]
+                                                          : q->normal[0][k];
+      b->normal[1][k] = p->normal[1][k] > q->normal[1][k] ? p->normal[1][k]
+                                                          : q->normal[1][k];
     }
-    b->size = fmin(b->size, other->size);
+    b->size = fmin(p->size, q->size);
   }
 }
 
-static vg_status make_tree(struct vg_ref *r, const struct piece *piece,
+static vg_status make_tree(struct vg_ref *r, const struct pieces *p,
                            struct vg_error *err)
 {
-  double (*middle)[3] = vg_alloc(r->n_item, sizeof *middle);
-  uint32_t *order = vg_alloc(r->n_item, sizeof *order);
-  size_t n_leaf = 1;
-  vg_status st;
+  vg_status st = vg_box_tree_build(&r->tree, p->n, p->box, NULL,
+                                   sizeof(struct vg_ref_node), err);
 
-  while (LEAF * n_leaf < r->n_item) n_leaf *= 2;
-  r->first_leaf = n_leaf - 1;
-  r->item = vg_alloc(r->n_item, sizeof *r->item);
-  r->node = vg_alloc(2 * n_leaf - 1, sizeof *r->node);
-  if (!middle || !order || !r->item || !r->node)
-    VG_TRY(vg_fail_memory(err, "the tree of the surface"));
-  for (size_t i = 0; i < r->n_item; i++)
-    for (int k = 0; k < 3; k++)
-      middle[i][k] = (piece[i].lo[k] + piece[i].hi[k]) / 2;
-  VG_TRY(vg_hilbert_order(r->n_item, (const double (*)[3])middle, order, err));
-  for (size_t i = 0; i < r->n_item; i++) r->item[i] = piece[order[i]].tri;
-  for (size_t i = 0; i < n_leaf; i++)
-    leaf_box(r, piece, order, i, &r->node[r->first_leaf + i]);
+  if (st < 0) return st;
+  for (size_t i = 0; i < p->n; i++) r->tree.item[i] = p->tri[r->tree.item[i]];
+  for (size_t i = r->tree.first_leaf; i <= 2 * r->tree.first_leaf; i++)
+    leaf_normals(r, i);
   join_nodes(r);
-done:
-  free(middle);
-  free(order);
-  return st;
+  return VG_OK;
 }
 
 static vg_status set_faces(struct vg_ref *r, const struct vg_mesh *m,
@@ -342,15 +320,15 @@ vg_status vg_ref_set_faces(struct vg_ref *r, const struct vg_mesh *m,
 vg_status vg_ref_add_tree(struct vg_ref *r, const struct vg_stop *stop,
                           struct vg_error *err)
 {
-  struct piece *piece = NULL;
+  struct pieces piece = { 0 };
   vg_status st;
 
   assert(r->shape || !r->n_tri);
-  VG_TRY(make_pieces(r, &piece, &r->n_item, err));
+  VG_TRY(make_pieces(r, &piece, err));
   VG_TRY(vg_stopped(stop, err));
-  VG_TRY(make_tree(r, piece, err));
+  VG_TRY(make_tree(r, &piece, err));
 done:
-  free(piece);
+  pieces_release(&piece);
   return st;
 }
 
@@ -381,8 +359,8 @@ vg_status vg_ref_build_tree(struct vg_ref *r, const struct vg_mesh *m,
 
 void vg_ref_sizes(struct vg_ref *r)
 {
-  for (size_t i = 0; i <= r->first_leaf; i++)
-    leaf_size(r, i, &r->node[r->first_leaf + i]);
+  for (size_t i = r->tree.first_leaf; i <= 2 * r->tree.first_leaf; i++)
+    leaf_size(r, i);
   join_nodes(r);
 }
 
@@ -394,8 +372,7 @@ void vg_ref_release(struct vg_ref *r)
   free(r->plain);
   free(r->strip);
   free(r->thin);
-  free(r->item);
-  free(r->node);
+  vg_box_tree_release(&r->tree);
   memset(r, 0, sizeof *r);
 }
 
@@ -467,19 +444,20 @@ static void thin_leaf(const struct thinning *c, size_t leaf, double distance,
                       int as)
 {
   struct vg_ref *r = c->r;
-  const struct vg_ref_node *own = &r->node[r->first_leaf + leaf];
-  const size_t end = LEAF * (leaf + 1) < r->n_item ? LEAF * (leaf + 1)
-                                                   : r->n_item;
+  const size_t node = r->tree.first_leaf + leaf;
+  const size_t end = vg_box_tree_end(&r->tree, node);
+  const uint32_t *item = r->tree.item;
   uint32_t near[1024];
-  size_t cap = sizeof near / sizeof *near, n, first = LEAF * leaf;
+  size_t cap = sizeof near / sizeof *near, n;
+  size_t first = vg_box_tree_first(&r->tree, node);
 
   if (as == VG_REF_THIN_FAR)
-    while (first < end && !is_outer(c, r->item[first]))
-      mark(c, r->item[first++], as);
+    while (first < end && !is_outer(c, item[first]))
+      mark(c, item[first++], as);
   if (first == end) return;
-  n = vg_ref_around(r, own->lo, own->hi, distance, cap, near);
+  n = vg_ref_around(r, vg_box_tree_node(&r->tree, node), distance, cap, near);
   for (size_t i = first; i < end; i++) {
-    const uint32_t t = r->item[i];
+    const uint32_t t = item[i];
     int thin = n > cap || (as == VG_REF_THIN_FAR && !is_outer(c, t));
 
     for (size_t k = 0; k < n && !thin; k++)
@@ -509,7 +487,7 @@ vg_status vg_ref_thin(struct vg_ref *r, double distance, double far,
   free(r->thin);
   r->thin = vg_calloc(r->n_tri, 1);
   if (!r->thin) return vg_fail_memory(err, "the sheets of the surface");
-  vg_parallel_for(threads, (r->n_item + LEAF - 1) / LEAF, GRAIN, thin_leaves,
-                  &c);
+  vg_parallel_for(threads, (r->tree.n + VG_BOX_LEAF - 1) / VG_BOX_LEAF, GRAIN,
+                  thin_leaves, &c);
   return vg_stopped(stop, err);
 }

@@ -10,9 +10,9 @@
 
 #include "base/stop.h"
 #include "core/mesh/mesh.h"
+#include "core/search/box_tree.h"
 
 #define VG_REF_NONE UINT32_MAX
-#define VG_REF_LEAF 4     /* triangles of a leaf of the tree */
 #define VG_REF_GROUP 8    /* points that are asked for at once */
 
 enum { VG_REF_STRIP = 1, VG_REF_CLOSED };
@@ -25,8 +25,8 @@ struct vg_ref_tri {
   double far;               /* of the points, from the corner */
 };
 
-struct vg_ref_node {
-  double lo[3], hi[3];
+struct vg_ref_node {        /* of the tree of boxes */
+  struct vg_box box;
   double size;              /* least below */
   int8_t normal[2][3];      /* the box of the normals below, outward to whole
                                numbers of VG_REF_NORMAL */
@@ -35,7 +35,7 @@ struct vg_ref_node {
 
 /* Half-edge 3 t + k runs from corner k of triangle t to the next one. */
 struct vg_ref {
-  size_t n_point, n_tri, n_item, first_leaf;
+  size_t n_point, n_tri;
   const double (*point)[3];
   const uint32_t (*tri)[3];
   uint32_t *mate;           /* [3 n_tri] VG_REF_NONE: open */
@@ -48,11 +48,15 @@ struct vg_ref {
   double slope;             /* growth - 1 */
   uint8_t *thin;            /* [n_tri] another sheet is near: of vg_ref_thin
                                these */
-  uint32_t *item;           /* [n_item] triangles along a space-filling
-                               curve; long ones in pieces, more than once */
-  struct vg_ref_node *node; /* heap: children of i are 2 i + 1, 2 i + 2 */
+  struct vg_box_tree tree;  /* of struct vg_ref_node; its items are triangles,
+                               long ones in pieces, more than once */
 };
 #define VG_REF_INIT { 0 }
+
+static inline struct vg_ref_node *vg_ref_node(const struct vg_ref *r, size_t i)
+{
+  return (struct vg_ref_node *)r->tree.node + i;
+}
 
 static inline uint32_t vg_ref_next(uint32_t h)
 {
@@ -165,12 +169,11 @@ double vg_ref_size(const struct vg_ref *r, const double x[3], double most,
 /** What triangle t asks for at x. */
 double vg_ref_size_by(const struct vg_ref *r, uint32_t t, const double x[3]);
 
-/** Triangles with a box within `distance` of that from lo to hi, some of them
- * more than once: those that are not within it are not all left out.
+/** Triangles with a box within `distance` of the box, some of them more than
+ * once: those that are not within it are not all left out.
  * Returns their number; beyond cap only counted. */
-size_t vg_ref_around(const struct vg_ref *r, const double lo[3],
-                     const double hi[3], double distance, size_t cap,
-                     uint32_t *tri);
+size_t vg_ref_around(const struct vg_ref *r, const struct vg_box *box,
+                     double distance, size_t cap, uint32_t *tri);
 
 /** All of a triangle but its normal. */
 void vg_ref_tri_make(struct vg_ref_tri *t, const double a[3],

@@ -7,8 +7,6 @@
 #include "core/geometry/vector.h"
 
 #define FACING 0.7        /* S22: cosine between what faces the same way */
-#define LEAF VG_REF_LEAF
-#define DEPTH 64
 #define WALK 24           /* triangles that are tried before the tree */
 #define FOLLOW 64         /* S30: triangles that an edge is followed over */
 #define START 1e-6        /* of the squared distance: its start is found */
@@ -79,19 +77,6 @@ double vg_ref_tri_nearest(const struct vg_ref_tri *t, const double x[3],
   return vg_dot(d, d);
 }
 
-static double box2(const struct vg_ref_node *b, const double x[3])
-{
-  double sum = 0;
-
-  for (int k = 0; k < 3; k++) {
-    double below = b->lo[k] - x[k], above = x[k] - b->hi[k];
-    double d = below > 0 ? below : above > 0 ? above : 0;
-
-    sum += d * d;
-  }
-  return sum;
-}
-
 /* Triangles without a normal face every way. */
 static int faces(const struct vg_ref_tri *t, const double *n)
 {
@@ -103,8 +88,9 @@ static int faces(const struct vg_ref_tri *t, const double *n)
 }
 
 /* May a triangle below the node? Leaves nothing to rounding. */
-static int may_face(const struct vg_ref_node *b, const double *n)
+static int may_face(const struct vg_ref *r, size_t node, const double *n)
 {
+  const struct vg_ref_node *b = vg_ref_node(r, node);
   double most = 0;
 
   if (!n) return 1;
@@ -155,100 +141,111 @@ static double walk(const struct vg_ref *r, const double x[3], const double *n,
   return faces(&r->shape[*t], n) ? best : INFINITY;
 }
 
+/* A search for a triangle that faces the way of n (NULL: any). */
+struct finding {
+  const struct vg_ref *r;
+  const double *x, *n;
+  double best;              /* squared distance: limit, or of `at` */
+  double s, q;              /* barycentric coordinates of the point found */
+  uint32_t at;              /* the triangle found, VG_REF_NONE: none yet */
+};
+
+static inline int enter_within(void *context, size_t node)
+{
+  const struct finding *f = context;
+
+  return vg_box_distance2(vg_box_tree_node(&f->r->tree, node), f->x) <= f->best
+         && may_face(f->r, node, f->n);
+}
+
+static inline int find_within(void *context, size_t node)
+{
+  struct finding *f = context;
+  const struct vg_box_tree *tree = &f->r->tree;
+  const size_t end = vg_box_tree_end(tree, node);
+
+  for (size_t k = vg_box_tree_first(tree, node); k < end; k++) {
+    const struct vg_ref_tri *t = &f->r->shape[tree->item[k]];
+    double d2;
+
+    if (!faces(t, f->n) || !plane_near(t, f->x, f->best)) continue;
+    d2 = vg_ref_tri_nearest(t, f->x, &f->s, &f->q);
+    if (!(d2 <= f->best)) continue;
+    f->best = d2;
+    f->at = tree->item[k];
+    return 1;
+  }
+  return 0;
+}
+
 int vg_ref_within(const struct vg_ref *r, const double x[3],
                   const double n[3], double distance, uint32_t *hint,
                   double *d2)
 {
-  size_t stack[DEPTH];
-  double limit = distance * distance, s, q;
-  int top = 0;
+  struct finding f = { r, x, n, distance * distance, 0, 0, VG_REF_NONE };
 
   assert(distance >= 0 && hint && d2);
   if (*hint != VG_REF_NONE) {
-    uint32_t t = *hint;
-
-    *d2 = walk(r, x, n, limit, &t, &s, &q);
-    if (*d2 <= limit) {
-      *hint = t;
+    f.at = *hint;
+    *d2 = walk(r, x, n, f.best, &f.at, &f.s, &f.q);
+    if (*d2 <= f.best) {
+      *hint = f.at;
       return 1;
     }
   }
-  stack[top++] = 0;
-  while (top) {
-    size_t i = stack[--top], leaf;
+  if (!vg_box_tree_visit(&r->tree, enter_within, find_within, &f)) return 0;
+  *d2 = f.best;
+  *hint = f.at;
+  return 1;
+}
 
-    if (box2(&r->node[i], x) > limit || !may_face(&r->node[i], n)) continue;
-    if (i < r->first_leaf) {
-      stack[top++] = 2 * i + 2;
-      stack[top++] = 2 * i + 1;
-      continue;
-    }
-    leaf = LEAF * (i - r->first_leaf);
-    for (size_t k = leaf; k < leaf + LEAF && k < r->n_item; k++) {
-      const struct vg_ref_tri *t = &r->shape[r->item[k]];
+static inline int enter_nearer(void *context, size_t node, double d2)
+{
+  const struct finding *f = context;
 
-      if (!faces(t, n) || !plane_near(t, x, limit)) continue;
-      *d2 = vg_ref_tri_nearest(t, x, &s, &q);
-      if (!(*d2 <= limit)) continue;
-      *hint = r->item[k];
-      return 1;
+  return d2 <= f->best && may_face(f->r, node, f->n);
+}
+
+/* Of triangles that are as near, the one of the lowest number. */
+static inline void find_nearer(void *context, size_t node)
+{
+  struct finding *f = context;
+  const struct vg_box_tree *tree = &f->r->tree;
+  const size_t end = vg_box_tree_end(tree, node);
+
+  for (size_t k = vg_box_tree_first(tree, node); k < end; k++) {
+    const struct vg_ref_tri *t = &f->r->shape[tree->item[k]];
+    double d2, s, q;
+
+    if (!faces(t, f->n) || !plane_near(t, f->x, f->best)) continue;
+    d2 = vg_ref_tri_nearest(t, f->x, &s, &q);
+    if (d2 < f->best || (d2 == f->best && tree->item[k] < f->at)) {
+      f->best = d2;
+      f->at = tree->item[k];
+      f->s = s;
+      f->q = q;
     }
   }
-  return 0;
 }
 
 static double search(const struct vg_ref *r, const double x[3],
                      const double *n, uint32_t *hint, double out[3])
 {
-  struct { size_t i; double d2; } stack[DEPTH];
-  double best = INFINITY, s, q, bs = 0, bq = 0;
-  uint32_t at = VG_REF_NONE;
-  int top = 0;
+  struct finding f = { r, x, n, INFINITY, 0, 0, VG_REF_NONE };
 
   if (*hint != VG_REF_NONE) {
     uint32_t t = *hint;
 
-    best = walk(r, x, n, 0, &t, &bs, &bq);
-    if (best < INFINITY) at = t;
+    f.best = walk(r, x, n, 0, &t, &f.s, &f.q);
+    if (f.best < INFINITY) f.at = t;
   }
-  stack[top].i = 0;
-  stack[top++].d2 = 0;
-  while (top) {
-    size_t i = stack[--top].i, leaf;
-
-    if (stack[top].d2 > best || !may_face(&r->node[i], n)) continue;
-    if (i < r->first_leaf) {
-      double l = box2(&r->node[2 * i + 1], x);
-      double h = box2(&r->node[2 * i + 2], x);
-      int left = l <= h;      /* the nearer one on top */
-
-      stack[top].i = 2 * i + (left ? 2 : 1);
-      stack[top++].d2 = left ? h : l;
-      stack[top].i = 2 * i + (left ? 1 : 2);
-      stack[top++].d2 = left ? l : h;
-      continue;
-    }
-    leaf = LEAF * (i - r->first_leaf);
-    for (size_t k = leaf; k < leaf + LEAF && k < r->n_item; k++) {
-      const struct vg_ref_tri *t = &r->shape[r->item[k]];
-      double d2;
-
-      if (!faces(t, n) || !plane_near(t, x, best)) continue;
-      d2 = vg_ref_tri_nearest(t, x, &s, &q);
-      if (d2 < best || (d2 == best && r->item[k] < at)) {
-        best = d2;
-        at = r->item[k];
-        bs = s;
-        bq = q;
-      }
-    }
-  }
-  if (at == VG_REF_NONE) return INFINITY;
-  *hint = at;
+  vg_box_tree_approach(&r->tree, x, enter_nearer, find_nearer, &f);
+  if (f.at == VG_REF_NONE) return INFINITY;
+  *hint = f.at;
   for (int k = 0; k < 3; k++)
-    out[k] = r->shape[at].a[k] + bs * r->shape[at].u[k]
-             + bq * r->shape[at].v[k];
-  return sqrt(best);
+    out[k] = r->shape[f.at].a[k] + f.s * r->shape[f.at].u[k]
+             + f.q * r->shape[f.at].v[k];
+  return sqrt(f.best);
 }
 
 double vg_ref_nearest(const struct vg_ref *r, const double x[3],
@@ -333,60 +330,58 @@ double vg_ref_project(const struct vg_ref *r, const double x[3],
   return sqrt(d2);
 }
 
-/* Squared distance between a box and that of a node. */
-static double between2(const struct vg_ref_node *b, const double lo[3],
-                       const double hi[3])
+/* --- some at a time ------------------------------------------------------ */
+
+/* A search for what is within a distance of a box. */
+struct around {
+  const struct vg_ref *r;
+  const struct vg_box *box;
+  double limit;             /* squared distance */
+  size_t n, cap;            /* found so far; so many are kept */
+  size_t *leaf;             /* [cap] leaves, or */
+  uint32_t *tri;            /* [cap] triangles */
+};
+
+static inline int enter_around(void *context, size_t node)
 {
-  double sum = 0;
+  const struct around *a = context;
 
-  for (int k = 0; k < 3; k++) {
-    double below = b->lo[k] - hi[k], above = lo[k] - b->hi[k];
-    double d = below > 0 ? below : above > 0 ? above : 0;
-
-    sum += d * d;
-  }
-  return sum;
+  return vg_box_gap2(vg_box_tree_node(&a->r->tree, node), a->box) <= a->limit;
 }
 
-/* --- some at a time ------------------------------------------------------ */
+static inline int list_leaf(void *context, size_t node)
+{
+  struct around *a = context;
+
+  if (a->n++ == a->cap) return 1;
+  a->leaf[a->n - 1] = node;
+  return 0;
+}
 
 /* Leaves within the root of `limit` of the box; their number, or cap + 1 where
  * there are more. */
-static size_t leaves_around(const struct vg_ref *r, const double lo[3],
-                            const double hi[3], double limit, size_t cap,
-                            size_t *leaf)
+static size_t leaves_around(const struct vg_ref *r, const struct vg_box *box,
+                            double limit, size_t cap, size_t *leaf)
 {
-  size_t stack[DEPTH], n = 0;
-  int top = 0;
+  struct around a = { r, box, limit, 0, cap, leaf, NULL };
 
-  stack[top++] = 0;
-  while (top) {
-    size_t i = stack[--top];
-
-    if (between2(&r->node[i], lo, hi) > limit) continue;
-    if (i < r->first_leaf) {
-      stack[top++] = 2 * i + 2;
-      stack[top++] = 2 * i + 1;
-      continue;
-    }
-    if (n == cap) return cap + 1;
-    leaf[n++] = i;
-  }
-  return n;
+  vg_box_tree_visit(&r->tree, enter_around, list_leaf, &a);
+  return a.n;
 }
 
-static double best_of_leaf(const struct vg_ref *r, size_t i,
+static double best_of_leaf(const struct vg_ref *r, size_t node,
                            const double x[3], double best, uint32_t *at)
 {
-  const size_t leaf = LEAF * (i - r->first_leaf);
+  const struct vg_box_tree *tree = &r->tree;
+  const size_t end = vg_box_tree_end(tree, node);
 
-  for (size_t k = leaf; k < leaf + LEAF && k < r->n_item; k++) {
-    const struct vg_ref_tri *t = &r->shape[r->item[k]];
+  for (size_t k = vg_box_tree_first(tree, node); k < end; k++) {
+    const struct vg_ref_tri *t = &r->shape[tree->item[k]];
     double s, q, d2;
 
-    if (r->item[k] == *at || !plane_near(t, x, best)) continue;
+    if (tree->item[k] == *at || !plane_near(t, x, best)) continue;
     d2 = vg_ref_tri_nearest(t, x, &s, &q);
-    if (d2 < best) best = d2, *at = r->item[k];
+    if (d2 < best) best = d2, *at = tree->item[k];
   }
   return best;
 }
@@ -396,10 +391,10 @@ void vg_ref_distances(const struct vg_ref *r, size_t n, const double (*x)[3],
 {
   size_t leaf[AROUND], n_leaf;
   uint32_t at[VG_REF_GROUP];
-  double lo[3], hi[3], most = 0, y[3];
+  struct vg_box box = VG_BOX_EMPTY;
+  double most = 0, y[3];
 
   assert(n <= VG_REF_GROUP && hint);
-  for (int k = 0; k < 3; k++) lo[k] = INFINITY, hi[k] = -INFINITY;
   for (size_t i = 0; i < n; i++) {
     double s, q;
 
@@ -407,49 +402,41 @@ void vg_ref_distances(const struct vg_ref *r, size_t n, const double (*x)[3],
     d[i] = walk(r, x[i], NULL, 0, hint, &s, &q);
     at[i] = *hint;
     if (d[i] > most) most = d[i];
-    for (int k = 0; k < 3; k++) {
-      if (x[i][k] < lo[k]) lo[k] = x[i][k];
-      if (x[i][k] > hi[k]) hi[k] = x[i][k];
-    }
+    vg_box_add(&box, x[i]);
   }
-  n_leaf = leaves_around(r, lo, hi, most, AROUND, leaf);
+  n_leaf = leaves_around(r, &box, most, AROUND, leaf);
   for (size_t i = 0; i < n; i++) {
     if (n_leaf > AROUND) {
       d[i] = search(r, x[i], NULL, &at[i], y);
       continue;
     }
     for (size_t k = 0; k < n_leaf; k++)
-      if (box2(&r->node[leaf[k]], x[i]) <= d[i])
+      if (vg_box_distance2(vg_box_tree_node(&r->tree, leaf[k]), x[i]) <= d[i])
         d[i] = best_of_leaf(r, leaf[k], x[i], d[i], &at[i]);
     d[i] = sqrt(d[i]);
   }
   if (n) *hint = at[n - 1];
 }
 
-size_t vg_ref_around(const struct vg_ref *r, const double lo[3],
-                     const double hi[3], double distance, size_t cap,
-                     uint32_t *tri)
+static inline int list_triangles(void *context, size_t node)
 {
-  const double limit = distance * distance;
-  size_t stack[DEPTH], n = 0;
-  int top = 0;
+  struct around *a = context;
+  const struct vg_box_tree *tree = &a->r->tree;
+  const size_t end = vg_box_tree_end(tree, node);
+
+  for (size_t k = vg_box_tree_first(tree, node); k < end; k++, a->n++)
+    if (a->n < a->cap) a->tri[a->n] = tree->item[k];
+  return 0;
+}
+
+size_t vg_ref_around(const struct vg_ref *r, const struct vg_box *box,
+                     double distance, size_t cap, uint32_t *tri)
+{
+  struct around a = { r, box, distance * distance, 0, cap, NULL, tri };
 
   assert(distance >= 0 && (tri || !cap));
-  stack[top++] = 0;
-  while (top) {
-    size_t i = stack[--top], leaf;
-
-    if (between2(&r->node[i], lo, hi) > limit) continue;
-    if (i < r->first_leaf) {
-      stack[top++] = 2 * i + 2;
-      stack[top++] = 2 * i + 1;
-      continue;
-    }
-    leaf = LEAF * (i - r->first_leaf);
-    for (size_t k = leaf; k < leaf + LEAF && k < r->n_item; k++, n++)
-      if (n < cap) tri[n] = r->item[k];
-  }
-  return n;
+  vg_box_tree_visit(&r->tree, enter_around, list_triangles, &a);
+  return a.n;
 }
 
 /* --- sizes --------------------------------------------------------------- */
@@ -489,53 +476,65 @@ static int may_ask(const struct vg_ref *r, uint32_t t, const double x[3],
   return vg_distance2(x, r->shape[t].a) < room * room;
 }
 
+/* A search for the triangle that asks for the least size at x. */
+struct asking {
+  const struct vg_ref *r;
+  const double *x;
+  double h;                 /* the least so far */
+  uint32_t by;              /* the triangle that asks for it */
+};
+
+static inline int enter_smaller(void *context, size_t node, double d2)
+{
+  const struct asking *a = context;
+  const double room = (a->h - vg_ref_node(a->r, node)->size) / a->r->slope;
+
+  return room > 0 && d2 < room * room;
+}
+
+static inline void ask_leaf(void *context, size_t node)
+{
+  struct asking *a = context;
+  const struct vg_box_tree *tree = &a->r->tree;
+  const size_t end = vg_box_tree_end(tree, node);
+
+  for (size_t k = vg_box_tree_first(tree, node); k < end; k++) {
+    double asked;
+
+    if (!may_ask(a->r, tree->item[k], a->x, a->h)) continue;
+    asked = vg_ref_size_by(a->r, tree->item[k], a->x);
+    if (!(asked < a->h)) continue;
+    a->h = asked;
+    a->by = tree->item[k];
+  }
+}
+
 double vg_ref_size(const struct vg_ref *r, const double x[3], double most,
                    uint32_t *by)
 {
-  size_t stack[DEPTH];
-  double h = INFINITY;
-  int top = 0;
+  struct asking a = { r, x, INFINITY, *by };
 
-  assert(most > 0 && by);
-  if (*by != VG_REF_NONE) h = vg_ref_size_by(r, *by, x);
-  if (h > most) h = most * (1 + 4 * DBL_EPSILON);   /* what asks is found */
-  stack[top++] = 0;
-  while (top) {
-    size_t i = stack[--top], leaf;
-    double room = (h - r->node[i].size) / r->slope;
-
-    if (!(room > 0) || box2(&r->node[i], x) >= room * room) continue;
-    if (i < r->first_leaf) {
-      int left = box2(&r->node[2 * i + 1], x) <= box2(&r->node[2 * i + 2], x);
-
-      stack[top++] = 2 * i + (left ? 2 : 1);
-      stack[top++] = 2 * i + (left ? 1 : 2);
-      continue;
-    }
-    leaf = LEAF * (i - r->first_leaf);
-    for (size_t k = leaf; k < leaf + LEAF && k < r->n_item; k++) {
-      double asked;
-
-      if (!may_ask(r, r->item[k], x, h)) continue;
-      asked = vg_ref_size_by(r, r->item[k], x);
-      if (!(asked < h)) continue;
-      h = asked;
-      *by = r->item[k];
-    }
-  }
-  return h;
+  assert(most > 0);
+  if (*by != VG_REF_NONE) a.h = vg_ref_size_by(r, *by, x);
+  if (a.h > most) a.h = most * (1 + 4 * DBL_EPSILON); /* what asks is found */
+  vg_box_tree_approach(&r->tree, x, enter_smaller, ask_leaf, &a);
+  *by = a.by;
+  return a.h;
 }
 
 /* --- rays ---------------------------------------------------------------- */
 
 struct ray {
+  const struct vg_ref *ref;
   const double *x, *d;
   double inverse[3], reach; /* to the nearest triangle so far */
   uint32_t tri;
 };
 
-static int ray_meets_box(const struct vg_ref_node *b, const struct ray *r)
+static inline int ray_enters(void *context, size_t node)
 {
+  const struct ray *r = context;
+  const struct vg_box *b = vg_box_tree_node(&r->ref->tree, node);
   double from = 0, to = r->reach;
 
   for (int k = 0; k < 3; k++) {
@@ -554,9 +553,9 @@ static int ray_meets_box(const struct vg_ref_node *b, const struct ray *r)
 
 /* After Moeller and Trumbore, "Fast, minimum storage ray/triangle
  * intersection", Journal of Graphics Tools 2(1), 1997; from the front alone. */
-static void ray_meets(const struct vg_ref *ref, uint32_t t, struct ray *r)
+static void ray_meets(struct ray *r, uint32_t t)
 {
-  const struct vg_ref_tri *s = &ref->shape[t];
+  const struct vg_ref_tri *s = &r->ref->shape[t];
   double p[3], q[3], w[3], det, a, b, far;
 
   vg_cross(r->d, s->v, p);
@@ -574,28 +573,24 @@ static void ray_meets(const struct vg_ref *ref, uint32_t t, struct ray *r)
   r->tri = t;
 }
 
+static inline int ray_leaf(void *context, size_t node)
+{
+  struct ray *r = context;
+  const struct vg_box_tree *tree = &r->ref->tree;
+  const size_t end = vg_box_tree_end(tree, node);
+
+  for (size_t k = vg_box_tree_first(tree, node); k < end; k++)
+    ray_meets(r, tree->item[k]);
+  return 0;
+}
+
 uint32_t vg_ref_ray(const struct vg_ref *r, const double x[3],
                     const double d[3], double most, double *far)
 {
-  struct ray ray = { x, d, { 1 / d[0], 1 / d[1], 1 / d[2] }, most,
+  struct ray ray = { r, x, d, { 1 / d[0], 1 / d[1], 1 / d[2] }, most,
                      VG_REF_NONE };
-  size_t stack[DEPTH];
-  int top = 0;
 
-  stack[top++] = 0;
-  while (top) {
-    size_t i = stack[--top], leaf;
-
-    if (!ray_meets_box(&r->node[i], &ray)) continue;
-    if (i < r->first_leaf) {
-      stack[top++] = 2 * i + 2;
-      stack[top++] = 2 * i + 1;
-      continue;
-    }
-    leaf = LEAF * (i - r->first_leaf);
-    for (size_t k = leaf; k < leaf + LEAF && k < r->n_item; k++)
-      ray_meets(r, r->item[k], &ray);
-  }
+  vg_box_tree_visit(&r->tree, ray_enters, ray_leaf, &ray);
   *far = ray.reach;
   return ray.tri;
 }

@@ -227,20 +227,15 @@ static vg_status add_spot(struct vg_remesh_job *j,
 static size_t keep_near(struct vg_remesh_job *j, const struct vg_mesh *m,
                         size_t f, double distance)
 {
-  double lo[3] = { INFINITY, INFINITY, INFINITY };
-  double hi[3] = { -INFINITY, -INFINITY, -INFINITY };
+  struct vg_box box = VG_BOX_EMPTY;
   uint32_t *tri;
   size_t n, n_new = 0;
 
-  for (int k = 0; k < 3; k++)
-    for (int d = 0; d < 3; d++) {
-      lo[d] = fmin(lo[d], m->point[m->tri[f][k]][d]);
-      hi[d] = fmax(hi[d], m->point[m->tri[f][k]][d]);
-    }
-  n = vg_ref_around(&j->ref, lo, hi, distance, 0, NULL);
+  for (int k = 0; k < 3; k++) vg_box_add(&box, m->point[m->tri[f][k]]);
+  n = vg_ref_around(&j->ref, &box, distance, 0, NULL);
   tri = vg_alloc(n, sizeof *tri);
   if (!tri) return 0;
-  vg_ref_around(&j->ref, lo, hi, distance, n, tri);
+  vg_ref_around(&j->ref, &box, distance, n, tri);
   for (size_t i = 0; i < 3 * n; i++) {
     uint8_t *keep = &j->keep[j->ref.tri[tri[i / 3]][i % 3]];
 

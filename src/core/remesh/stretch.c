@@ -10,8 +10,6 @@
 #include "core/geometry/vector.h"
 #include "core/remesh/work_parts.h"
 
-#define LEAF 4            /* pieces between places */
-#define DEPTH 64
 #define CHORD 0.6         /* S45: of the tolerance: what edges may leave of the
                              line */
 #define BEND 0.033        /* of an edge: its chord where 24 go round a circle */
@@ -65,43 +63,28 @@ static struct vg_stretch_place place_at(const struct vg_stretch *s,
   return q;
 }
 
-static void add_box(struct vg_stretch_box *b, const double x[3])
+/* The tree of the pieces of a run. */
+static vg_status make_tree(const struct vg_stretch *s,
+                           struct vg_stretch_run *r, struct vg_error *err)
 {
-  for (int k = 0; k < 3; k++) {
-    b->lo[k] = fmin(b->lo[k], x[k]);
-    b->hi[k] = fmax(b->hi[k], x[k]);
-  }
-}
+  const struct vg_stretch_place *p = s->place + r->first;
+  const size_t n = r->n - 1;
+  struct vg_box *box = vg_alloc(n, sizeof *box);
+  uint32_t *order = vg_alloc(n, sizeof *order);
+  vg_status st;
 
-/* Boxes of LEAF pieces each, and above them of two each. */
-static vg_status make_boxes(struct vg_stretch *s, struct vg_stretch_run *r,
-                            struct vg_error *err)
-{
-  static const struct vg_stretch_box none = {
-    { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } };
-  struct vg_stretch_box *b;
-
-  r->n_leaf = 1;
-  while (LEAF * r->n_leaf < r->n - 1) r->n_leaf *= 2;
-  r->box = s->n_box;
-  if (vg_reserve(&s->box, &s->cap_box, s->n_box + 2 * r->n_leaf,
-                 sizeof *s->box))
-    return vg_fail_memory(err, "the stretched lines");
-  s->n_box += 2 * r->n_leaf;
-  b = s->box + r->box;
-  for (size_t i = 0; i < 2 * r->n_leaf; i++) b[i] = none;
-  for (size_t i = 0; i + 1 < r->n; i++) {
-    add_box(&b[r->n_leaf + i / LEAF], s->place[r->first + i].x);
-    add_box(&b[r->n_leaf + i / LEAF], s->place[r->first + i + 1].x);
+  if (!box || !order) VG_TRY(vg_fail_memory(err, "the stretched lines"));
+  for (size_t i = 0; i < n; i++) {
+    order[i] = (uint32_t)i;
+    box[i] = (struct vg_box)VG_BOX_EMPTY;
+    vg_box_add(&box[i], p[i].x);
+    vg_box_add(&box[i], p[i + 1].x);
   }
-  for (size_t i = r->n_leaf - 1; i > 0; i--) {
-    b[i] = b[2 * i];
-    for (int k = 0; k < 3; k++) {
-      b[i].lo[k] = fmin(b[i].lo[k], b[2 * i + 1].lo[k]);
-      b[i].hi[k] = fmax(b[i].hi[k], b[2 * i + 1].hi[k]);
-    }
-  }
-  return VG_OK;
+  VG_TRY(vg_box_tree_build(&r->tree, n, box, order, sizeof *box, err));
+done:
+  free(box);
+  free(order);
+  return st;
 }
 
 /* Lengths along it change by no more than sizes do. */
@@ -135,7 +118,7 @@ static vg_status add_run(struct vg_stretch *s, struct part *p,
   for (size_t i = 0; i < r.n; i++)
     s->place[s->n_place++] = place_at(s, p, p->from + step[i]);
   grade(s, &r);
-  VG_TRY(make_boxes(s, &r, err));
+  VG_TRY(make_tree(s, &r, err));
   s->run[s->n_run++] = r;
 done:
   free(step);
@@ -171,25 +154,13 @@ done:
 
 void vg_stretch_release(struct vg_stretch *s)
 {
+  for (size_t i = 0; i < s->n_run; i++) vg_box_tree_release(&s->run[i].tree);
   free(s->run);
   free(s->place);
-  free(s->box);
   *s = (struct vg_stretch){ .by = s->by };
 }
 
 /* --- asking -------------------------------------------------------------- */
-
-static double box2(const struct vg_stretch_box *b, const double x[3])
-{
-  double sum = 0;
-
-  for (int k = 0; k < 3; k++) {
-    double d = fmax(fmax(b->lo[k] - x[k], x[k] - b->hi[k]), 0);
-
-    sum += d * d;
-  }
-  return sum;
-}
 
 /* Squared distance from the piece between two places; how far on it. */
 static double piece2(const struct vg_stretch_place *p, const double x[3],
@@ -205,38 +176,37 @@ static double piece2(const struct vg_stretch_place *p, const double x[3],
   return vg_dot(d, d);
 }
 
-/* The piece nearest to x, nearer than d2; SIZE_MAX: none. */
-static size_t nearest(const struct vg_stretch *s,
-                      const struct vg_stretch_run *r, const double x[3],
-                      double *d2, double *t)
+/* A search for the piece of a run that is nearest to x. */
+struct finding {
+  const struct vg_stretch_place *place;   /* of the run */
+  const struct vg_box_tree *tree;
+  const double *x;
+  double d2;                /* squared distance: limit, or of `best` */
+  double t;                 /* how far on the piece, 0 to 1 */
+  size_t best;              /* the piece; SIZE_MAX: none yet */
+};
+
+static inline int enter_nearer(void *context, size_t node, double d2)
 {
-  const struct vg_stretch_box *b = s->box + r->box;
-  size_t stack[DEPTH], best = SIZE_MAX;
-  int top = 0;
+  const struct finding *f = context;
 
-  stack[top++] = 1;
-  while (top) {
-    size_t i = stack[--top], leaf;
+  (void)node;
+  return d2 < f->d2;
+}
 
-    if (!(box2(&b[i], x) < *d2)) continue;
-    if (i < r->n_leaf) {
-      int left = box2(&b[2 * i], x) <= box2(&b[2 * i + 1], x);
+static inline void find_nearer(void *context, size_t node)
+{
+  struct finding *f = context;
+  const size_t end = vg_box_tree_end(f->tree, node);
 
-      stack[top++] = 2 * i + (size_t)left;
-      stack[top++] = 2 * i + (size_t)!left;
-      continue;
-    }
-    leaf = LEAF * (i - r->n_leaf);
-    for (size_t k = leaf; k < leaf + LEAF && k + 1 < r->n; k++) {
-      double u, own = piece2(s->place + r->first + k, x, &u);
+  for (size_t i = vg_box_tree_first(f->tree, node); i < end; i++) {
+    double t, d2 = piece2(f->place + i, f->x, &t);
 
-      if (!(own < *d2)) continue;
-      *d2 = own;
-      *t = u;
-      best = r->first + k;
-    }
+    if (!(d2 < f->d2)) continue;
+    f->d2 = d2;
+    f->t = t;
+    f->best = i;
   }
-  return best;
 }
 
 /* How many times as long edges are along the run, and its direction. */
@@ -244,17 +214,19 @@ static double ask(const struct vg_stretch *s, const struct vg_stretch_run *r,
                   const double x[3], double size, double way[3])
 {
   const double reach = (r->most - size) / s->slope;
-  double d2 = reach * reach, t, along;
+  struct finding f = { s->place + r->first, &r->tree, x, reach * reach, 0,
+                       SIZE_MAX };
   const struct vg_stretch_place *p;
-  size_t i;
+  double along;
 
   if (!(reach > 0)) return 1;
-  i = nearest(s, r, x, &d2, &t);
-  if (i == SIZE_MAX) return 1;
-  p = s->place + i;
+  vg_box_tree_approach(&r->tree, x, enter_nearer, find_nearer, &f);
+  if (f.best == SIZE_MAX) return 1;
+  p = f.place + f.best;
   for (int k = 0; k < 3; k++)
-    way[k] = p[0].way[k] + t * (p[1].way[k] - p[0].way[k]);
-  along = p[0].along + t * (p[1].along - p[0].along) - s->slope * sqrt(d2);
+    way[k] = p[0].way[k] + f.t * (p[1].way[k] - p[0].way[k]);
+  along = p[0].along + f.t * (p[1].along - p[0].along)
+          - s->slope * sqrt(f.d2);
   return vg_unit(way) > 0 ? fmin(along / size, r->by) : 1;
 }
 

@@ -11,19 +11,16 @@
 #define VG_CORE_REMESH_STRETCH_H
 
 #include "core/remesh/work.h"
+#include "core/search/box_tree.h"
 
 struct vg_stretch_place {
   double x[3], way[3];      /* a place on a line, its direction there */
   double at, along;         /* length of the curve; edges asked for */
 };
 
-struct vg_stretch_box {
-  double lo[3], hi[3];
-};
-
 struct vg_stretch_run {     /* along a curve, between places one another */
   size_t first, n;          /* its places; at least 2 */
-  size_t box, n_leaf;       /* boxes: heap of 2 n_leaf; n_leaf a power of 2 */
+  struct vg_box_tree tree;  /* of the pieces between its places, in order */
   double by, most;          /* times; largest `along` */
 };
 
@@ -32,10 +29,9 @@ struct vg_stretch {
                                reference, on both sides of an edge; 1 or less:
                                not */
   double slope, h_max;
-  size_t n_run, cap_run, n_place, cap_place, n_box, cap_box;
+  size_t n_run, cap_run, n_place, cap_place;
   struct vg_stretch_run *run;
   struct vg_stretch_place *place;
-  struct vg_stretch_box *box;
 };
 
 /** From s->by, along lines of w, which has sizes and lines. O(n).
