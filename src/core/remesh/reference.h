@@ -169,9 +169,9 @@ double vg_ref_size(const struct vg_ref *r, const double x[3], double most,
 /** What triangle t asks for at x. */
 double vg_ref_size_by(const struct vg_ref *r, uint32_t t, const double x[3]);
 
-/** Triangles with a box within `distance` of the box, some of them more than
- * once: those that are not within it are not all left out.
- * Returns their number; beyond cap only counted. */
+/** All triangles with a box within `distance` of the box, and a few that are
+ * farther; some of them more than once. Returns their number; tri gets the
+ * first cap of them. */
 size_t vg_ref_around(const struct vg_ref *r, const struct vg_box *box,
                      double distance, size_t cap, uint32_t *tri);
 

@@ -332,12 +332,12 @@ double vg_ref_project(const struct vg_ref *r, const double x[3],
 
 /* --- some at a time ------------------------------------------------------ */
 
-/* A search for what is within a distance of a box. */
+/* A search for leaves or triangles within a distance of a box. */
 struct around {
   const struct vg_ref *r;
   const struct vg_box *box;
   double limit;             /* squared distance */
-  size_t n, cap;            /* found so far; so many are kept */
+  size_t n, cap;            /* found so far; the first cap are kept */
   size_t *leaf;             /* [cap] leaves, or */
   uint32_t *tri;            /* [cap] triangles */
 };

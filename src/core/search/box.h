@@ -27,7 +27,7 @@ static inline void vg_box_join(struct vg_box *a, const struct vg_box *b)
   }
 }
 
-/** The boxes have a point in common. Empty boxes touch nothing. */
+/** The boxes share a point. Empty boxes touch nothing. */
 static inline int vg_box_touch(const struct vg_box *a, const struct vg_box *b)
 {
   return a->lo[0] <= b->hi[0] && b->lo[0] <= a->hi[0]

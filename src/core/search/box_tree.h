@@ -32,6 +32,8 @@ struct vg_box_tree {
   void *node;               /* [2 first_leaf + 1] owned; each begins with a
                                struct vg_box */
   uint32_t *item;           /* [n] owned; items in the order of the leaves */
+  struct vg_box *box;       /* [n] owned; their boxes in that order, or NULL:
+                               vg_box_tree_build_items keeps them */
 };
 #define VG_BOX_TREE_INIT { 0 }
 
@@ -57,12 +59,25 @@ static inline size_t vg_box_tree_end(const struct vg_box_tree *t, size_t node)
   return end < t->n ? end : t->n;
 }
 
+/** Order boxes along the Hilbert curve through their middles, at any scale: runs
+ * of boxes that the 2^20 cells per side of the curve do not tell apart are
+ * ordered along a curve of their own, so that one box far away does not spoil
+ * the order of the others. O(n log n) at the usual scales.
+ *
+ * @param box    [n] finite
+ * @param order  out: [n] a permutation of 0 .. n - 1
+ *
+ * VG_ERR_MEMORY. */
+vg_status vg_box_order(size_t n, const struct vg_box *box, uint32_t *order,
+                       struct vg_error *err);
+
 /** Build a tree over n boxes; 0 is allowed.
  *
  * @param t       out: the tree, which the caller releases
  * @param box     [n] finite; borrowed for the call
  * @param order   [n] items in the order of the leaves; NULL: along the Hilbert
- *                curve through the boxes' middles
+ *                curve through the boxes' middles, equal places in the
+ *                order given
  * @param stride  bytes of a node, sizeof(struct vg_box) or more
  *
  * Threads: a tree that is built can be searched by many. O(n log n).
@@ -71,7 +86,24 @@ vg_status vg_box_tree_build(struct vg_box_tree *t, size_t n,
                             const struct vg_box *box, const uint32_t *order,
                             size_t stride, struct vg_error *err);
 
+/** The same with nodes of boxes alone. The tree keeps the boxes of items in
+ * t->box, for searches that test them. */
+vg_status vg_box_tree_build_items(struct vg_box_tree *t, size_t n,
+                                  const struct vg_box *box,
+                                  const uint32_t *order,
+                                  struct vg_error *err);
+
 void vg_box_tree_release(struct vg_box_tree *t);
+
+/** Visit the items whose boxes touch `box`, in the order of the leaves.
+ *
+ * @param t      built by vg_box_tree_build_items
+ * @param visit  nonzero ends the search
+ *
+ * Returns what the last call of `visit` returned, 0 without one. */
+int vg_box_tree_touched(const struct vg_box_tree *t, const struct vg_box *box,
+                        int (*visit)(void *context, uint32_t item),
+                        void *context);
 
 /** Visit leaves depth first, left children before right ones.
  *
@@ -87,7 +119,7 @@ vg_box_tree_visit(const struct vg_box_tree *t,
   size_t stack[VG_BOX_DEPTH];
   int top = 0, found = 0;
 
-  stack[top++] = 0;
+  if (t->n) stack[top++] = 0;
   while (top && !found) {
     const size_t i = stack[--top];
 
@@ -117,6 +149,7 @@ vg_box_tree_approach(const struct vg_box_tree *t, const double x[3],
   struct { size_t i; double d2; } stack[VG_BOX_DEPTH];
   int top = 0;
 
+  if (!t->n) return;
   stack[top].i = 0;
   stack[top++].d2 = vg_box_distance2(vg_box_tree_node(t, 0), x);
   while (top) {

@@ -20,7 +20,7 @@ struct check {
   uint32_t *owner;          /* [n_point] lowest face, UINT32_MAX: none */
   struct vg_faces s;
   struct vg_edges e;
-  struct vg_aabb_tree tree;
+  struct vg_box_tree tree;
   struct vg_crossing cross;
   uint32_t *first;          /* [s.n] lowest face with the same nodes */
   uint8_t *copy;            /* [s.n] enum vg_copy; NULL: no face is a copy */
@@ -43,7 +43,7 @@ static void release(struct check *c)
   free(c->shell_turn);
   vg_faces_release(&c->s);
   vg_edges_release(&c->e);
-  vg_aabb_tree_release(&c->tree);
+  vg_box_tree_release(&c->tree);
   vg_crossing_release(&c->cross);
 }
 
@@ -418,8 +418,8 @@ done:
   return st;
 }
 
-/* The tree follows from coordinates and has its own threads; what follows from
- * the nodes is of one, beside them. */
+/* The tree follows from coordinates, the rest from the nodes: each is made by a
+ * thread of its own. */
 struct halves {
   struct check *c;
   vg_status st[2];
@@ -433,8 +433,7 @@ static void build_half(void *context, size_t first, size_t end, int worker)
 
   (void)worker;
   for (size_t i = first; i < end; i++)
-    h->st[i] = i ? vg_aabb_tree_build(&c->tree, &c->s, c->o->threads,
-                                      &h->err[i])
+    h->st[i] = i ? vg_faces_tree(&c->tree, &c->s, &h->err[i])
                  : build_topology(c, &h->err[i]);
 }
 

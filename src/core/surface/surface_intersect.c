@@ -8,6 +8,7 @@
 
 #include "base/memory.h"
 #include "core/geometry/triangles.h"
+#include "core/search/box_pairs.h"
 
 /* What one thread finds. Beyond the limit pairs are counted only. */
 struct found {
@@ -95,14 +96,14 @@ static vg_status gather_pairs(struct vg_crossing *c, const struct found *found,
 
 vg_status vg_find_crossings(struct vg_crossing *c, const struct vg_faces *s,
                             const uint32_t *first, const uint32_t (*fan)[3],
-                            const struct vg_aabb_tree *t,
+                            const struct vg_box_tree *t,
                             const uint32_t *shell, size_t n_shell,
                             int threads, const struct vg_stop *stop,
                             struct vg_error *err)
 {
   assert(!c->pair && !c->partner && threads >= 0);
 
-  int n_found = vg_aabb_tree_workers(threads);
+  int n_found = vg_box_tree_workers(threads);
   struct search x = { c, s, first, fan, shell, stop,
                       vg_calloc((size_t)n_found, sizeof *x.found) };
   vg_status st = VG_ERR_MEMORY;
@@ -111,7 +112,7 @@ vg_status vg_find_crossings(struct vg_crossing *c, const struct vg_faces *s,
   c->other_shell = vg_calloc(n_shell, 1);
   if (x.found && c->partner && c->other_shell) {
     memset(c->partner, 0xff, s->n * sizeof *c->partner);
-    st = vg_aabb_tree_pairs(t, threads, check_pair, &x);
+    st = vg_box_tree_pairs(t, threads, check_pair, &x);
     if (st >= 0) st = gather_pairs(c, x.found, n_found);
   }
   for (int i = 0; x.found && i < n_found; i++) free(x.found[i].pair);

@@ -3,6 +3,7 @@
 #ifndef VG_CORE_SURFACE_SURFACE_PARTS_H
 #define VG_CORE_SURFACE_SURFACE_PARTS_H
 
+#include "core/search/box_tree.h"
 #include "core/surface/surface_check.h"
 
 /* All faces as triangles: the n_tri of the mesh, then two halves of each
@@ -138,44 +139,10 @@ vg_status vg_label_shells(const struct vg_faces *s, const struct vg_edges *e,
 
 /* surface_aabb.c: boxes about triangles -----------------------------------*/
 
-struct vg_aabb_tree_node {
-  double lo[3], hi[3];
-  uint32_t first, n;        /* items of a leaf; n = 0: inner node */
-  uint32_t right;           /* the left child is the next node */
-};
-
-struct vg_aabb_tree {
-  size_t n_item, n_node;
-  uint32_t *item;           /* [n_item] faces, near ones close together */
-  double (*box)[6];         /* [n_item] lo, hi of item[i] */
-  struct vg_aabb_tree_node *node;
-};
-#define VG_TREE_INIT { 0 }
-
-/** Over the faces whose state is 0. O(n log n). threads: as
- * vg_parallel_for's; the same tree for any number. */
-vg_status vg_aabb_tree_build(struct vg_aabb_tree *t, const struct vg_faces *s,
-                             int threads, struct vg_error *err);
-
-void vg_aabb_tree_release(struct vg_aabb_tree *t);
-
-/* worker < vg_aabb_tree_workers(threads) names scratch space. */
-typedef vg_status (*vg_aabb_tree_visit)(void *context, int worker, uint32_t a,
-                                        uint32_t b);
-
-int vg_aabb_tree_workers(int threads);
-
-/** Call visit for all pairs of faces whose boxes touch, once each, from
- * several threads at once. With one thread in an order that depends on the
- * geometry alone. Stops soon after visit returned < 0, and returns one such
- * status; VG_ERR_MEMORY without a message. */
-vg_status vg_aabb_tree_pairs(const struct vg_aabb_tree *t, int threads,
-                             vg_aabb_tree_visit visit, void *context);
-
-/** Call visit(context, f) for all faces whose box touches the line from p
- * towards -x. Stops when visit returns < 0, and returns that. */
-vg_status vg_aabb_tree_ray(const struct vg_aabb_tree *t, const double p[3],
-                           vg_status (*visit)(void *, uint32_t), void *context);
+/** Tree over the boxes of the faces whose state is 0; its items are faces.
+ * O(n log n). VG_ERR_MEMORY. */
+vg_status vg_faces_tree(struct vg_box_tree *t, const struct vg_faces *s,
+                        struct vg_error *err);
 
 /* surface_intersect.c -----------------------------------------------------*/
 
@@ -192,7 +159,7 @@ struct vg_crossing {
  *                the first takes part; the others are duplicates */
 vg_status vg_find_crossings(struct vg_crossing *c, const struct vg_faces *s,
                             const uint32_t *first, const uint32_t (*fan)[3],
-                            const struct vg_aabb_tree *t,
+                            const struct vg_box_tree *t,
                             const uint32_t *shell, size_t n_shell,
                             int threads, const struct vg_stop *stop,
                             struct vg_error *err);
@@ -218,7 +185,7 @@ vg_status vg_measure_shells(struct vg_shell *shell, uint8_t *state,
 
 /** parent and depth of the closed shells by exact ray parity. */
 vg_status vg_nest_shells(struct vg_shell *shell, size_t n_shell,
-                         const struct vg_faces *s, const struct vg_aabb_tree *t,
+                         const struct vg_faces *s, const struct vg_box_tree *t,
                          const uint32_t *of_face, struct vg_error *err);
 
 /** Judge the side of each closed shell: state[] (REVERSED and STRAY), and

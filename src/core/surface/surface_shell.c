@@ -152,7 +152,7 @@ struct ray {
   size_t n, cap;
 };
 
-static vg_status note_hit(void *context, uint32_t f)
+static int note_hit(void *context, uint32_t f)
 {
   struct ray *r = context;
   const double (*p)[3] = r->s->point;
@@ -209,16 +209,25 @@ static void find_feet(struct nest *x, size_t n_shell, const struct vg_faces *s,
   }
 }
 
+/* The line from p towards -x. */
+static struct vg_box line_from(const double p[3])
+{
+  return (struct vg_box){ { -INFINITY, p[1], p[2] }, { p[0], p[1], p[2] } };
+}
+
 static vg_status find_around(struct nest *x, struct ray *r, size_t n_shell,
-                             const struct vg_aabb_tree *t)
+                             const struct vg_box_tree *t)
 {
   for (uint32_t i = 0; i < n_shell; i++) {
+    struct vg_box line;
+
     x->start[i] = x->n;
     if (!r->shell[i].is_closed) continue;
     r->own = i;
     r->from = r->s->point[x->foot[i]];
+    line = line_from(r->from);
     r->n = 0;
-    if (vg_aabb_tree_ray(t, r->from, note_hit, r) < 0) return VG_ERR_MEMORY;
+    if (vg_box_tree_touched(t, &line, note_hit, r) < 0) return VG_ERR_MEMORY;
     r->n = keep_odd(r->hit, r->n);
     if (vg_reserve(&x->list, &x->cap, x->n + r->n, sizeof *x->list))
       return VG_ERR_MEMORY;
@@ -229,7 +238,7 @@ static vg_status find_around(struct nest *x, struct ray *r, size_t n_shell,
 }
 
 vg_status vg_nest_shells(struct vg_shell *shell, size_t n_shell,
-                         const struct vg_faces *s, const struct vg_aabb_tree *t,
+                         const struct vg_faces *s, const struct vg_box_tree *t,
                          const uint32_t *of_face, struct vg_error *err)
 {
   struct nest x = { NULL, NULL, NULL, 0, 0 };

@@ -11,6 +11,7 @@
 #include "base/memory.h"
 #include "core/geometry/triangles.h"
 #include "core/mesh/mesh_defects.h"
+#include "core/search/box_pairs.h"
 #include "core/surface/surface_parts.h"
 #include "core/surface/surface_swap_parts.h"
 
@@ -24,7 +25,7 @@ struct job {
   uint32_t *same;           /* [n_point] every point is itself */
   struct vg_faces s;
   struct vg_edges e;
-  struct vg_aabb_tree tree;
+  struct vg_box_tree tree;
   uint32_t (*fan)[3];
   size_t n_locked;          /* points locked in this round */
 };
@@ -33,7 +34,7 @@ static void release_topology(struct job *j)
 {
   vg_faces_release(&j->s);
   vg_edges_release(&j->e);
-  vg_aabb_tree_release(&j->tree);
+  vg_box_tree_release(&j->tree);
   free(j->fan);
   j->fan = NULL;
 }
@@ -252,8 +253,8 @@ static vg_status test(struct job *j)
   test_faces(j);
   test_edges(j);
   VG_TRY(vg_label_fans(&j->s, &j->e, &j->fan, j->err));
-  VG_TRY(vg_aabb_tree_build(&j->tree, &j->s, 1, j->err));
-  VG_TRY(vg_aabb_tree_pairs(&j->tree, 1, test_pair, j));
+  VG_TRY(vg_faces_tree(&j->tree, &j->s, j->err));
+  VG_TRY(vg_box_tree_pairs(&j->tree, 1, test_pair, j));
 done:
   return st;
 }

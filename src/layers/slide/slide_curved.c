@@ -17,8 +17,7 @@ void vg_slide_graph_release(struct vg_slide_graph *g)
 {
   free(g->p);
   free(g->height);
-  free(g->box);
-  vg_aabb_tree2_release(&g->tree);
+  vg_box_tree_release(&g->tree);
   memset(g, 0, sizeof *g);
 }
 
@@ -33,9 +32,9 @@ static int is_steep(const struct vg_mesh *m, uint32_t t, const double n[3])
   return vg_dot(c, n) < TILT * vg_norm(c);
 }
 
-static void project(struct vg_slide_graph *g, size_t i)
+static struct vg_box project(struct vg_slide_graph *g, size_t i)
 {
-  struct vg_box2 *b = &g->box[i];
+  double lo[2], hi[2];
 
   for (int k = 0; k < 3; k++) {
     const double *x = g->w->m->point[g->w->m->tri[g->tri[i]][k]];
@@ -45,10 +44,11 @@ static void project(struct vg_slide_graph *g, size_t i)
     vg_sub(x, g->frame.o, d);
     g->height[i][k] = vg_dot(d, g->frame.n);
     for (int j = 0; j < 2; j++) {
-      b->lo[j] = k ? fmin(b->lo[j], p[j]) : p[j];
-      b->hi[j] = k ? fmax(b->hi[j], p[j]) : p[j];
+      lo[j] = k ? fmin(lo[j], p[j]) : p[j];
+      hi[j] = k ? fmax(hi[j], p[j]) : p[j];
     }
   }
+  return vg_slide_box(lo, hi);
 }
 
 vg_status vg_slide_graph(const struct vg_slide_work *w, size_t s,
@@ -57,6 +57,8 @@ vg_status vg_slide_graph(const struct vg_slide_work *w, size_t s,
   assert(s < w->n_part);
 
   const size_t n = w->tri_first[s + 1] - w->tri_first[s];
+  struct vg_box *box;
+  vg_status st = VG_ERR_MEMORY;
 
   memset(g, 0, sizeof *g);
   g->w = w;
@@ -67,15 +69,17 @@ vg_status vg_slide_graph(const struct vg_slide_work *w, size_t s,
     if (is_steep(w->m, g->tri[i], g->frame.n)) return VG_BLOCKED;
   g->p = vg_alloc(n, sizeof *g->p);
   g->height = vg_alloc(n, sizeof *g->height);
-  g->box = vg_alloc(n, sizeof *g->box);
-  if (g->p && g->height && g->box) {
-    for (size_t i = 0; i < n; i++) project(g, i);
-    if (!vg_aabb_tree2_build(&g->tree, n, g->box)) {
-      const struct vg_box2 *all = &g->tree.node[1];
+  box = vg_alloc(n, sizeof *box);
+  if (g->p && g->height && box) {
+    for (size_t i = 0; i < n; i++) box[i] = project(g, i);
+    st = vg_slide_tree(&g->tree, n, box, w->err);
+  }
+  free(box);
+  if (st >= 0) {
+    const struct vg_box *all = vg_box_tree_node(&g->tree, 0);
 
-      g->extent = fmax(all->hi[0] - all->lo[0], all->hi[1] - all->lo[1]);
-      return VG_OK;
-    }
+    g->extent = fmax(all->hi[0] - all->lo[0], all->hi[1] - all->lo[1]);
+    return VG_OK;
   }
   vg_slide_graph_release(g);
   return vg_fail_memory(w->err, "a curved slide patch");
@@ -150,7 +154,7 @@ static double segment(const double a[2], const double b[2], const double p[2],
   return x * x + y * y;
 }
 
-static void visit(void *user, uint32_t i)
+static int visit(void *user, uint32_t i)
 {
   struct nearest *best = user;
   const double (*q)[2] = (const double (*)[2])best->g->p[i];
@@ -177,10 +181,11 @@ static void visit(void *user, uint32_t i)
       height = z[k] + t * (z[l] - z[k]);
     }
   }
-  if (d2 > best->d2 || (d2 == best->d2 && i > best->item)) return;
+  if (d2 > best->d2 || (d2 == best->d2 && i > best->item)) return 0;
   best->d2 = d2;
   best->height = height;
   best->item = i;
+  return 0;
 }
 
 void vg_slide_lift(const struct vg_slide_graph *g, const double p[2],
@@ -192,13 +197,11 @@ void vg_slide_lift(const struct vg_slide_graph *g, const double p[2],
   /* Within `reach` all triangles were seen: the nearest is final when it is
    * no farther. */
   for (int i = 0; i < 64; i++) {
-    struct vg_box2 box;
+    const double lo[2] = { p[0] - reach, p[1] - reach };
+    const double hi[2] = { p[0] + reach, p[1] + reach };
+    const struct vg_box box = vg_slide_box(lo, hi);
 
-    for (int k = 0; k < 2; k++) {
-      box.lo[k] = p[k] - reach;
-      box.hi[k] = p[k] + reach;
-    }
-    vg_aabb_tree2_query(&g->tree, &box, visit, &best);
+    vg_box_tree_touched(&g->tree, &box, visit, &best);
     if (best.d2 <= reach * reach) break;
     reach = i ? 4 * reach : 1e-6 * g->extent;
   }

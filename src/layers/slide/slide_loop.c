@@ -201,14 +201,14 @@ static int overlap(const double a[2], const double b[2], const double c[2])
          && (b[0] - a[0]) * (c[0] - a[0]) + (b[1] - a[1]) * (c[1] - a[1]) >= 0;
 }
 
-static void visit_edge(void *user, uint32_t j)
+static int visit_edge(void *user, uint32_t j)
 {
   struct cross *x = user;
   const uint32_t *e = x->l->edge[x->edge], *f = x->l->edge[j];
   const double *at[4];
   int k, is_bad;
 
-  if (j <= x->edge) return;
+  if (j <= x->edge) return 0;
   for (k = 0; k < 2; k++) {
     at[k] = x->p[x->w->local[e[k]]];
     at[2 + k] = x->p[x->w->local[f[k]]];
@@ -220,12 +220,13 @@ static void visit_edge(void *user, uint32_t j)
   else if (e[1] == f[0]) is_bad = overlap(at[1], at[0], at[3]);
   else if (e[1] == f[1]) is_bad = overlap(at[1], at[0], at[2]);
   else is_bad = touch(at[0], at[1], at[2], at[3]);
-  if (!is_bad) return;
+  if (!is_bad) return 0;
   x->n_bad++;
   for (k = 0; k < 2; k++) {
     mark_bad_point(x->w, x->s, e[k], "the tops' outline crosses itself");
     mark_bad_point(x->w, x->s, f[k], "the tops' outline crosses itself");
   }
+  return 0;
 }
 
 static void mark_bad_flank(struct cross *x, const char *what)
@@ -239,19 +240,20 @@ static void mark_bad_flank(struct cross *x, const char *what)
 }
 
 /* No point of the boundary may stand within a flank. */
-static void visit_flank(void *user, uint32_t j)
+static int visit_flank(void *user, uint32_t j)
 {
   struct cross *x = user;
   const uint32_t v = x->l->edge[j][0];
   const double *p = x->p[x->w->local[v]];
 
   for (int i = 0; i < x->n; i++)
-    if (x->corner[i] == v) return;
+    if (x->corner[i] == v) return 0;
   for (int i = 0; i < x->n; i++)
-    if (vg_orient2d(x->q[i], x->q[i + 1 < x->n ? i + 1 : 0], p) < 0) return;
+    if (vg_orient2d(x->q[i], x->q[i + 1 < x->n ? i + 1 : 0], p) < 0) return 0;
   mark_bad_flank(x, "a flank runs into another part of the boundary");
   mark_bad_point(x->w, x->s, v,
                  "a flank runs into another part of the boundary");
+  return 0;
 }
 
 /* The point of column i at level 1, in the plane. */
@@ -317,15 +319,18 @@ static void give_up(struct cross *x, const struct vg_slide_frame *f)
   }
 }
 
-static void box_of(size_t n, const double (*q)[2], struct vg_box2 *box)
+static struct vg_box box_of(size_t n, const double (*q)[2])
 {
+  double lo[2], hi[2];
+
   for (int k = 0; k < 2; k++) {
-    box->lo[k] = box->hi[k] = q[0][k];
+    lo[k] = hi[k] = q[0][k];
     for (size_t i = 1; i < n; i++) {
-      box->lo[k] = fmin(box->lo[k], q[i][k]);
-      box->hi[k] = fmax(box->hi[k], q[i][k]);
+      lo[k] = fmin(lo[k], q[i][k]);
+      hi[k] = fmax(hi[k], q[i][k]);
     }
   }
+  return vg_slide_box(lo, hi);
 }
 
 vg_status vg_slide_cross(struct vg_slide_work *w, size_t s,
@@ -336,8 +341,8 @@ vg_status vg_slide_cross(struct vg_slide_work *w, size_t s,
   assert(s < w->n_part && n_bad);
 
   struct cross x = { .w = w, .s = s, .l = loops, .p = p };
-  struct vg_box2 *box = vg_alloc(loops->n, sizeof *box), b;
-  struct vg_aabb_tree2 tree = VG_TREE2_INIT;
+  struct vg_box *box = vg_alloc(loops->n, sizeof *box), b;
+  struct vg_box_tree tree = VG_BOX_TREE_INIT;
   vg_status st = VG_OK;
 
   *n_bad = 0;
@@ -346,15 +351,14 @@ vg_status vg_slide_cross(struct vg_slide_work *w, size_t s,
     const double *c = p[w->local[loops->edge[i][1]]];
     const double q[2][2] = { { a[0], a[1] }, { c[0], c[1] } };
 
-    box_of(2, q, &box[i]);
+    box[i] = box_of(2, q);
   }
-  if (!box || vg_aabb_tree2_build(&tree, loops->n, box)) {
-    st = vg_fail_memory(w->err, "the boundary of a slide patch");
-    goto done;
-  }
+  if (!box)
+    VG_TRY(vg_fail_memory(w->err, "the boundary of a slide patch"));
+  VG_TRY(vg_slide_tree(&tree, loops->n, box, w->err));
   for (size_t i = 0; i < loops->n; i++) {
     x.edge = (uint32_t)i;
-    vg_aabb_tree2_query(&tree, &box[i], visit_edge, &x);
+    vg_box_tree_touched(&tree, &box[i], visit_edge, &x);
   }
   for (uint32_t i = w->border_first[s]; i < w->border_first[s + 1]; i++) {
     set_flank(&x, frame, w->border[i]);
@@ -364,12 +368,12 @@ vg_status vg_slide_cross(struct vg_slide_work *w, size_t s,
       give_up(&x, frame);
       continue;
     }
-    box_of((size_t)x.n, (const double (*)[2])x.q, &b);
-    vg_aabb_tree2_query(&tree, &b, visit_flank, &x);
+    b = box_of((size_t)x.n, (const double (*)[2])x.q);
+    vg_box_tree_touched(&tree, &b, visit_flank, &x);
   }
   *n_bad = x.n_bad;
 done:
-  vg_aabb_tree2_release(&tree);
+  vg_box_tree_release(&tree);
   free(box);
   return st;
 }

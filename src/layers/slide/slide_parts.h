@@ -8,32 +8,22 @@
 
 #include <assert.h>
 
+#include "core/search/box_tree.h"
 #include "layers/slide/slide.h"
 
 /* slide_tree.c ------------------------------------------------------------*/
 
-struct vg_box2 { double lo[2], hi[2]; };
+/** A box in the plane: its third side has no length. */
+static inline struct vg_box vg_slide_box(const double lo[2],
+                                         const double hi[2])
+{
+  return (struct vg_box){ { lo[0], lo[1], 0 }, { hi[0], hi[1], 0 } };
+}
 
-/* Boxes in the plane: found by overlap. The leaves of a full binary tree are
- * groups of items along a space-filling curve. */
-struct vg_aabb_tree2 {
-  size_t n, n_leaf;         /* n_leaf: a power of 2 */
-  const struct vg_box2 *box;/* [n] the caller's */
-  struct vg_box2 *node;     /* [2 n_leaf] 1 is the root, 2 i below i */
-  uint32_t *item;           /* [n] in the leaves' order */
-};
-#define VG_TREE2_INIT { 0, 0, NULL, NULL, NULL }
-
-/** 0, or -1 when memory is refused. O(n log n). */
-int vg_aabb_tree2_build(struct vg_aabb_tree2 *t, size_t n,
-                        const struct vg_box2 *box);
-void vg_aabb_tree2_release(struct vg_aabb_tree2 *t);
-
-/** visit() items whose box touches `box`, in an order that depends on the
- * items alone. */
-void vg_aabb_tree2_query(const struct vg_aabb_tree2 *t,
-                         const struct vg_box2 *box,
-                         void (*visit)(void *user, uint32_t item), void *user);
+/** Tree of n boxes in the plane, along a Morton curve through their middles.
+ * O(n). VG_ERR_MEMORY. */
+vg_status vg_slide_tree(struct vg_box_tree *t, size_t n,
+                        const struct vg_box *box, struct vg_error *err);
 
 /* slide.c -----------------------------------------------------------------*/
 
@@ -173,8 +163,7 @@ struct vg_slide_graph {
   const uint32_t *tri;      /* [n] */
   double (*p)[3][2];        /* [n] */
   double (*height)[3];      /* [n] above the plane */
-  struct vg_box2 *box;
-  struct vg_aabb_tree2 tree;
+  struct vg_box_tree tree;
   double extent;
 };
 
@@ -206,8 +195,7 @@ struct vg_slide_law {
   const struct vg_slide_graph *graph;   /* NULL: the patch is plane */
   double slope;
   struct { double p[2], h; } *top;      /* edges finer than which it would be */
-  struct vg_box2 *box;                  /* as far as they matter */
-  struct vg_aabb_tree2 tree;
+  struct vg_box_tree tree;              /* of them, as far as they matter */
 };
 
 /** Let tops bound the size from below. */

@@ -12,8 +12,7 @@
 void vg_slide_law_release(struct vg_slide_law *l)
 {
   free(l->top);
-  free(l->box);
-  vg_aabb_tree2_release(&l->tree);
+  vg_box_tree_release(&l->tree);
 }
 
 /* Edge between tops that is longer than the field asks for? */
@@ -34,27 +33,29 @@ vg_status vg_slide_law_floor(struct vg_slide_work *w,
                              const struct vg_slide_loops *loops,
                              struct vg_slide_law *l)
 {
+  struct vg_box *box = vg_alloc(loops->n, sizeof *box);
   size_t n = 0;
+  vg_status st = VG_OK;
 
   l->slope = vg_sizing_growth(w->sizing);
   l->top = vg_alloc(loops->n, sizeof *l->top);
-  l->box = vg_alloc(loops->n, sizeof *l->box);
-  if (!l->top || !l->box) return vg_fail_memory(w->err, "a slide patch");
+  if (!l->top || !box) VG_TRY(vg_fail_memory(w->err, "a slide patch"));
   for (size_t i = 0; i < loops->n; i++) {
-    double mid[3], h;
+    double mid[3], lo[2], hi[2], h;
 
     if (!is_coarse(w, loops->edge[i], mid, &h)) continue;
     vg_slide_to_plane(l->frame, mid, l->top[n].p);
     l->top[n].h = h;
     for (int k = 0; k < 2; k++) {
-      l->box[n].lo[k] = l->top[n].p[k] - h / l->slope;
-      l->box[n].hi[k] = l->top[n].p[k] + h / l->slope;
+      lo[k] = l->top[n].p[k] - h / l->slope;
+      hi[k] = l->top[n].p[k] + h / l->slope;
     }
-    n++;
+    box[n++] = vg_slide_box(lo, hi);
   }
-  if (n && vg_aabb_tree2_build(&l->tree, n, l->box))
-    return vg_fail_memory(w->err, "a slide patch");
-  return VG_OK;
+  VG_TRY(vg_slide_tree(&l->tree, n, box, w->err));
+done:
+  free(box);
+  return st;
 }
 
 void vg_slide_place(const struct vg_slide_law *l, const double p[2],
@@ -70,7 +71,7 @@ struct at {
   double h;
 };
 
-static void lift_to(void *user, uint32_t i)
+static int lift_to(void *user, uint32_t i)
 {
   struct at *at = user;
   const double x = at->p[0] - at->l->top[i].p[0];
@@ -78,19 +79,19 @@ static void lift_to(void *user, uint32_t i)
   const double h = at->l->top[i].h - at->l->slope * sqrt(x * x + y * y);
 
   if (h > at->h) at->h = h;
+  return 0;
 }
 
 double vg_slide_size(void *law, const double p[2])
 {
   const struct vg_slide_law *l = law;
   struct at at = { l, p, 0 };
-  struct vg_box2 box;
+  const struct vg_box box = vg_slide_box(p, p);
   double x[3];
 
   assert(law);
   vg_slide_place(l, p, x);
   at.h = vg_sizing_at(l->sizing, x);
-  for (int k = 0; k < 2; k++) box.lo[k] = box.hi[k] = p[k];
-  vg_aabb_tree2_query(&l->tree, &box, lift_to, &at);
+  vg_box_tree_touched(&l->tree, &box, lift_to, &at);
   return at.h;
 }
