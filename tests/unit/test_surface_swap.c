@@ -211,7 +211,7 @@ static double worst_sum(const struct vg_mesh *m)
 
   assert_int_equal(vg_points_same(m, &same, &err), VG_OK);
   assert_int_equal(vg_faces_build(&s, m, same, &err), VG_OK);
-  assert_int_equal(vg_edges_build(&e, &s, &err), VG_OK);
+  assert_int_equal(vg_faces_edges(&s, &e, &err), VG_OK);
   for (size_t i = 0; i < e.n; i++) {
     uint32_t h[2] = { e.half[e.start[i]], e.half[e.start[i] + 1] };
     double sum = 0;

@@ -5,8 +5,8 @@
 
 #include "base/memory.h"
 #include "core/flow/evidence.h"
-#include "core/geometry/hilbert.h"
 #include "core/geometry/vector.h"
+#include "core/mesh/edges.h"
 
 /* F1 */
 #define FLAT 1e-4         /* of the shell's length: deviation of a flat patch */
@@ -102,35 +102,30 @@ static void add_border(const struct vg_mesh *m, size_t at, size_t beside,
 static vg_status find_ends(const struct vg_mesh *m, struct vg_flow_patch *patch,
                            struct vg_error *err)
 {
-  const size_t n = 3 * m->n_tri;
-  struct vg_key *side = vg_alloc(n, sizeof *side);
+  const uint32_t (*tri)[3] = (const uint32_t (*)[3])m->tri;
   struct border *border = vg_calloc(m->n_patch, sizeof *border);
+  struct vg_edges e = VG_EDGES_INIT;
   vg_status st = VG_OK;
 
-  if (!side || !border) VG_TRY(vg_fail_memory(err, "the ends of the surface"));
-  for (size_t i = 0; i < n; i++) {
-    const uint64_t a = m->tri[i / 3][i % 3], b = m->tri[i / 3][(i + 1) % 3];
+  if (!border) VG_TRY(vg_fail_memory(err, "the ends of the surface"));
+  VG_TRY(vg_edges_build(&e, m->n_point, m->n_tri, tri, NULL, 0, err));
+  for (size_t i = 0; i < e.n; i++)
+    for (uint32_t k = 1; k < vg_edges_count(&e, i); k++) {
+      const uint32_t *h = vg_edges_at(&e, i) + k - 1;
+      const size_t s = h[0] / 3, t = h[1] / 3;
+      double length;
 
-    side[i] = (struct vg_key){ a < b ? a << 32 | b : b << 32 | a,
-                               (uint32_t)(i / 3) };
-  }
-  VG_TRY(vg_sort_keys(n, side, err));
-  for (size_t i = 1; i < n; i++) {
-    const size_t s = side[i - 1].index, t = side[i].index;
-    double length;
-
-    if (side[i].key != side[i - 1].key
-        || m->tri_patch[s] == m->tri_patch[t]) continue;
-    length = vg_distance(m->point[side[i].key >> 32],
-                         m->point[(uint32_t)side[i].key]);
-    add_border(m, s, t, length, patch, border);
-    add_border(m, t, s, length, patch, border);
-  }
+      if (m->tri_patch[s] == m->tri_patch[t]) continue;
+      length = vg_distance(m->point[vg_half_from(tri, h[0])],
+                           m->point[vg_half_to(tri, h[0])]);
+      add_border(m, s, t, length, patch, border);
+      add_border(m, t, s, length, patch, border);
+    }
   for (size_t i = 0; i < m->n_patch; i++)
     patch[i].is_end &= border[i].all > 0
                        && border[i].steep >= MOSTLY * border[i].all;
 done:
-  free(side);
+  vg_edges_release(&e);
   free(border);
   return st;
 }

@@ -19,10 +19,6 @@ struct joining {
   uint32_t *number;         /* [n_point before] of points that stay */
 };
 
-struct side {
-  uint32_t lo, hi, half;
-};
-
 /* Old points that stay keep their order and come first, then new ones. */
 static vg_status number(const struct vg_tris *w, size_t n, struct joining *j,
                         struct vg_error *err)
@@ -142,35 +138,27 @@ static void put(void *context, size_t first, size_t end, int worker)
 
 /* --- borders ------------------------------------------------------------- */
 
-static int by_ends(const void *pa, const void *pb)
-{
-  const struct side *a = pa, *b = pb;
+/* Half-edges of the whole at the borders of blocks, rising, and their ends. */
+struct sides {
+  size_t n, cap_half, cap_end;
+  uint32_t *half, (*end)[2];
+};
 
-  if (a->lo != b->lo) return a->lo < b->lo ? -1 : 1;
-  if (a->hi != b->hi) return a->hi < b->hi ? -1 : 1;
-  return (a->half > b->half) - (a->half < b->half);
-}
-
-static vg_status list_sides(const struct joining *j, size_t n,
-                            struct side **side, size_t *n_side,
+static vg_status list_sides(const struct joining *j, size_t n, struct sides *s,
                             struct vg_error *err)
 {
-  size_t cap = 0;
-
   for (size_t i = 0; i < n; i++) {
     const struct vg_block *b = &j->block[i];
 
     for (uint32_t h = 0; h < 3 * b->w.n_tri; h++) {
-      uint32_t p, q;
-
       if (b->place[h / 3] == VG_REF_NONE || !vg_work_is_border(&b->w, h))
         continue;
-      p = b->point[vg_work_from(&b->w, h)];
-      q = b->point[vg_work_to(&b->w, h)];
-      if (vg_reserve(side, &cap, *n_side + 1, sizeof **side))
+      if (vg_reserve(&s->half, &s->cap_half, s->n + 1, sizeof *s->half)
+          || vg_reserve(&s->end, &s->cap_end, s->n + 1, sizeof *s->end))
         return vg_fail_memory(err, "the borders of blocks");
-      (*side)[(*n_side)++] = (struct side){ p < q ? p : q, p < q ? q : p,
-                                            3 * b->place[h / 3] + h % 3 };
+      s->end[s->n][0] = b->point[vg_work_from(&b->w, h)];
+      s->end[s->n][1] = b->point[vg_work_to(&b->w, h)];
+      s->half[s->n++] = 3 * b->place[h / 3] + h % 3;
     }
   }
   return VG_OK;
@@ -179,22 +167,26 @@ static vg_status list_sides(const struct joining *j, size_t n,
 /* Open edges of blocks that no other has are rims of the surface. */
 static vg_status join_sides(struct joining *j, size_t n, struct vg_error *err)
 {
-  struct side *side = NULL;
-  size_t n_side = 0;
+  struct sides s = { 0 };
+  struct vg_edges e = VG_EDGES_INIT;
   vg_status st;
 
-  VG_TRY(list_sides(j, n, &side, &n_side, err));
-  qsort(side, n_side, sizeof *side, by_ends);
-  for (size_t i = 1; i < n_side; i++) {
-    const struct side *a = &side[i - 1], *b = &side[i];
+  VG_TRY(list_sides(j, n, &s, err));
+  VG_TRY(vg_edges_build_sides(&e, j->made.n_point, s.n,
+                              (const uint32_t (*)[2])s.end, err));
+  for (size_t i = 0; i < e.n; i++)
+    for (uint32_t k = 1; k < vg_edges_count(&e, i); k++) {
+      const uint32_t *at = vg_edges_at(&e, i) + k - 1;
+      const uint32_t g = s.half[at[0]], h = s.half[at[1]];
 
-    if (a->lo != b->lo || a->hi != b->hi) continue;
-    j->made.mate[a->half] = b->half;
-    j->made.mate[b->half] = a->half;
-    j->made.edge[b->half] = j->made.edge[a->half];
-  }
+      j->made.mate[g] = h;
+      j->made.mate[h] = g;
+      j->made.edge[h] = j->made.edge[g];
+    }
 done:
-  free(side);
+  vg_edges_release(&e);
+  free(s.half);
+  free(s.end);
   return st;
 }
 

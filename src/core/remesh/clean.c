@@ -85,7 +85,7 @@ static int is_neighbour(const struct sweep *s, uint32_t p, uint32_t q)
 {
   for (uint32_t i = s->start[p]; i < s->start[p + 1]; i++)
     if (vg_ref_to(&s->ref, s->half[i]) == q
-        || vg_ref_from(&s->ref, vg_ref_prev(s->half[i])) == q) return 1;
+        || vg_ref_from(&s->ref, vg_half_prev(s->half[i])) == q) return 1;
   return 0;
 }
 
@@ -95,8 +95,8 @@ static int link_fits(const struct sweep *s, uint32_t h)
 {
   const struct vg_ref *r = &s->ref;
   const uint32_t v = vg_ref_from(r, h), u = vg_ref_to(r, h), g = r->mate[h];
-  const uint32_t o = vg_ref_from(r, vg_ref_prev(h));
-  const uint32_t q = g == VG_REF_NONE ? o : vg_ref_from(r, vg_ref_prev(g));
+  const uint32_t o = vg_ref_from(r, vg_half_prev(h));
+  const uint32_t q = g == VG_REF_NONE ? o : vg_ref_from(r, vg_half_prev(g));
 
   if (s->start[v + 1] - s->start[v] > RING
       || s->start[u + 1] - s->start[u] > RING) return 0;
@@ -108,7 +108,7 @@ static int link_fits(const struct sweep *s, uint32_t h)
   }
   for (uint32_t i = s->start[v]; i < s->start[v + 1]; i++)
     for (int k = 0; k < 2; k++) {
-      const uint32_t n = k ? vg_ref_from(r, vg_ref_prev(s->half[i]))
+      const uint32_t n = k ? vg_ref_from(r, vg_half_prev(s->half[i]))
                            : vg_ref_to(r, s->half[i]);
 
       if (n != u && n != o && n != q && is_neighbour(s, u, n)) return 0;
@@ -123,7 +123,7 @@ static int leaves_surface(const struct sweep *s, uint32_t h)
   uint32_t k = h;
 
   for (int side = 0; side < 2 && k != VG_REF_NONE; side++, k = r->mate[h]) {
-    const uint32_t a = r->mate[vg_ref_next(k)], b = r->mate[vg_ref_prev(k)];
+    const uint32_t a = r->mate[vg_half_next(k)], b = r->mate[vg_half_prev(k)];
 
     if (a == VG_REF_NONE && b == VG_REF_NONE) return 0;
     if (a != VG_REF_NONE && b != VG_REF_NONE && a / 3 == b / 3) return 0;
@@ -155,7 +155,7 @@ static int keeps_sides(const struct sweep *s, uint32_t h)
 
   for (uint32_t i = s->start[v]; i < s->start[v + 1]; i++) {
     const uint32_t k = s->half[i], a = vg_ref_to(r, k);
-    const uint32_t b = vg_ref_from(r, vg_ref_prev(k));
+    const uint32_t b = vg_ref_from(r, vg_half_prev(k));
     const double *x = r->point[v], *y = r->point[a], *z = r->point[b];
     double before[3], after[3], l2;
 

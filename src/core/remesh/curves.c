@@ -67,7 +67,7 @@ static uint32_t face_beside(const struct finder *f, uint32_t h)
   double room = f->o->tolerance;
 
   for (int i = 0; i < THIN; i++) {
-    uint32_t a = vg_ref_next(h), b = vg_ref_next(a);
+    uint32_t a = vg_half_next(h), b = vg_half_next(a);
 
     room -= height(r, h);
     if (length2(r, b) > length2(r, a)) a = b;

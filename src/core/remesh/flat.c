@@ -111,7 +111,7 @@ static int may_join(const struct swapper *s, uint32_t h, uint32_t q)
   uint32_t g = h;
 
   do {
-    const uint32_t back = vg_ref_prev(g);
+    const uint32_t back = vg_half_prev(g);
 
     if (s->busy[g / 3] || vg_ref_to(r, g) == q || vg_ref_from(r, back) == q)
       return 0;
@@ -119,7 +119,7 @@ static int may_join(const struct swapper *s, uint32_t h, uint32_t q)
   } while (g != VG_REF_NONE && g != h);
   if (g == h) return 1;
   for (g = r->mate[h]; g != VG_REF_NONE; g = r->mate[g]) {
-    g = vg_ref_next(g);
+    g = vg_half_next(g);
     if (s->busy[g / 3] || vg_ref_to(r, g) == q) return 0;
   }
   return 1;
@@ -158,13 +158,13 @@ static int swap(struct swapper *s, uint32_t h)
   if (g == VG_REF_NONE || s->busy[t] || s->busy[u]) return 0;
   if (m->tri_patch[t] != m->tri_patch[u] && s->count[m->tri_patch[t]] < 2)
     return 0;
-  c = vg_ref_from(r, vg_ref_prev(h));
-  d = vg_ref_from(r, vg_ref_prev(g));
+  c = vg_ref_from(r, vg_half_prev(h));
+  d = vg_ref_from(r, vg_half_prev(g));
   {
     const uint32_t made[2][3] = { { vg_ref_from(r, h), d, c },
                                   { d, vg_ref_to(r, h), c } };
 
-    if (c == d || !may_join(s, vg_ref_prev(h), d) || !is_better(m, t, u, made))
+    if (c == d || !may_join(s, vg_half_prev(h), d) || !is_better(m, t, u, made))
       return 0;
     set_busy(s, h);
     set_busy(s, g);

@@ -71,8 +71,8 @@ static uint32_t half_of(const struct vg_tris *w, uint32_t i)
 
     for (size_t j = 0; j < n; j++) {
       if (w->edge[ring[j]] == i + 1) return ring[j];
-      if (w->edge[vg_ref_prev(ring[j])] == i + 1)
-        return vg_ref_prev(ring[j]);
+      if (w->edge[vg_half_prev(ring[j])] == i + 1)
+        return vg_half_prev(ring[j]);
     }
   }
   return VG_REF_NONE;
@@ -308,8 +308,8 @@ static int is_longest(const struct vg_tris *w, uint32_t h)
 
   for (int side = 0; side < 2; side++, h = w->mate[h]) {
     if (h == VG_REF_NONE) break;
-    if (vg_work_ratio(w, vg_ref_next(h)) > l
-        || vg_work_ratio(w, vg_ref_prev(h)) > l) return 0;
+    if (vg_work_ratio(w, vg_half_next(h)) > l
+        || vg_work_ratio(w, vg_half_prev(h)) > l) return 0;
   }
   return 1;
 }
@@ -389,7 +389,7 @@ static int better_place(const struct vg_tris *w, uint32_t p, double x[3],
   memset(x, 0, 3 * sizeof *x);
   for (size_t i = 0; i < n; i++) {
     const uint32_t to = vg_work_to(w, ring[i]);
-    const uint32_t last = vg_work_from(w, vg_ref_prev(ring[i]));
+    const uint32_t last = vg_work_from(w, vg_half_prev(ring[i]));
     const double *a = vg_work_at(w, to), *b = vg_work_at(w, last);
     double e[3], d[3], mid[3], l2, along, high, weight;
     double shape = vg_work_shape(w, &w->point[p], &w->point[to],

@@ -52,7 +52,7 @@ static int take_ring(const struct vg_tris *w, uint32_t p, struct ring *r)
   r->is_stretched = w->form != NULL;
   for (size_t i = 0; i < r->n; i++)
     r->at[i] = &w->point[vg_work_to(w, r->half[i])];
-  r->at[r->n] = &w->point[vg_work_from(w, vg_ref_prev(r->half[r->n - 1]))];
+  r->at[r->n] = &w->point[vg_work_from(w, vg_half_prev(r->half[r->n - 1]))];
   for (size_t i = 0; i < r->n; i++) {
     const struct vg_work_point *a = r->at[i], *b = r->at[i + 1];
 

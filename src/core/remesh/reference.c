@@ -15,88 +15,39 @@
 #define GRAIN 256         /* leaves */
 #define OPPOSED 0.03      /* cosine: both may be taken to face a way and its
                              opposite, by S22 */
-#define FEW 16            /* sides are sorted by insertion */
 
 /* --- building ------------------------------------------------------------ */
 
-struct side {
-  uint32_t lo, hi, half;
-};
-
-static int by_nodes(const void *pa, const void *pb)
+static vg_status refuse(const struct vg_ref *r, uint32_t h, const char *what,
+                        struct vg_error *err)
 {
-  const struct side *a = pa, *b = pb;
-
-  if (a->hi != b->hi) return a->hi < b->hi ? -1 : 1;
-  return (a->half > b->half) - (a->half < b->half);
-}
-
-/* Sides by their lower node, then the other one: by counting, then what is at
- * one node, which mostly is little. */
-static vg_status sort_sides(const struct vg_ref *r, struct side *s,
-                            struct vg_error *err)
-{
-  size_t *start = vg_calloc(r->n_point + 1, sizeof *start);
-
-  if (!start) return vg_fail_memory(err, "the edges of the surface");
-  for (int pass = 0; pass < 2; pass++) {
-    for (size_t i = 0; i < 3 * r->n_tri; i++) {
-      uint32_t a = r->tri[i / 3][i % 3], b = r->tri[i / 3][(i + 1) % 3];
-      uint32_t lo = a < b ? a : b;
-
-      if (!pass) start[lo + 1]++;
-      else s[start[lo]++] = (struct side){ lo, a < b ? b : a, (uint32_t)i };
-    }
-    for (size_t p = 0; !pass && p < r->n_point; p++) start[p + 1] += start[p];
-  }
-  for (size_t p = 0, i = 0; p < r->n_point; i = start[p++])
-    if (start[p] - i > FEW)
-      qsort(s + i, start[p] - i, sizeof *s, by_nodes);
-    else
-      for (size_t k = i + 1; k < start[p]; k++)
-        for (size_t m = k; m > i && by_nodes(&s[m], &s[m - 1]) < 0; m--) {
-          struct side t = s[m];
-
-          s[m] = s[m - 1];
-          s[m - 1] = t;
-        }
-  free(start);
-  return VG_OK;
-}
-
-static vg_status refuse(const struct vg_ref *r, const struct side *s,
-                        const char *what, struct vg_error *err)
-{
-  const double *x = r->point[s->lo];
+  const uint32_t a = vg_ref_from(r, h), b = vg_ref_to(r, h);
+  const double *x = r->point[a < b ? a : b];
 
   return vg_fail(err, VG_ERR_INPUT, "triangle %zu of the surface, at (%g, %g, "
                  "%g): %s; vanguard check names all such places",
-                 (size_t)s->half / 3 + 1, x[0], x[1], x[2], what);
+                 (size_t)h / 3 + 1, x[0], x[1], x[2], what);
 }
 
 static vg_status find_mates(struct vg_ref *r, struct vg_error *err)
 {
-  const size_t n = 3 * r->n_tri;
-  struct side *s = vg_alloc(n, sizeof *s);
-  vg_status st;
+  struct vg_edges e = VG_EDGES_INIT;
+  vg_status st = vg_edges_build(&e, r->n_point, r->n_tri, r->tri, NULL, 0, err);
 
-  if (!s) return vg_fail_memory(err, "the edges of the surface");
-  memset(r->mate, 0xff, n * sizeof *r->mate);
-  st = sort_sides(r, s, err);
-  for (size_t i = 0, end; i < n && st >= 0; i = end) {
-    for (end = i + 1; end < n && s[end].lo == s[i].lo
-         && s[end].hi == s[i].hi;) end++;
-    if (end - i > 2)
-      st = refuse(r, &s[i], "an edge of it has three triangles", err);
-    if (end - i != 2) continue;
-    if (r->tri[s[i].half / 3][s[i].half % 3]
-        == r->tri[s[i + 1].half / 3][s[i + 1].half % 3])
-      st = refuse(r, &s[i], "it is turned the other way than its neighbour",
+  memset(r->mate, 0xff, 3 * r->n_tri * sizeof *r->mate);
+  for (size_t i = 0; i < e.n && st >= 0; i++) {
+    const uint32_t n = vg_edges_count(&e, i), *h = vg_edges_at(&e, i);
+
+    if (n > 2)
+      st = refuse(r, h[0], "an edge of it has three triangles", err);
+    if (n != 2) continue;
+    if (vg_edges_disagree(&e, r->tri, i))
+      st = refuse(r, h[0], "it is turned the other way than its neighbour",
                   err);
-    r->mate[s[i].half] = s[i + 1].half;
-    r->mate[s[i + 1].half] = s[i].half;
+    r->mate[h[0]] = h[1];
+    r->mate[h[1]] = h[0];
   }
-  free(s);
+  vg_edges_release(&e);
   return st;
 }
 

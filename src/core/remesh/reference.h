@@ -9,6 +9,7 @@
 #include <stdint.h>
 
 #include "base/stop.h"
+#include "core/mesh/edges.h"
 #include "core/mesh/mesh.h"
 #include "core/search/box_tree.h"
 
@@ -58,16 +59,6 @@ static inline struct vg_ref_node *vg_ref_node(const struct vg_ref *r, size_t i)
   return (struct vg_ref_node *)r->tree.node + i;
 }
 
-static inline uint32_t vg_ref_next(uint32_t h)
-{
-  return h % 3 == 2 ? h - 2 : h + 1;
-}
-
-static inline uint32_t vg_ref_prev(uint32_t h)
-{
-  return h % 3 ? h - 1 : h + 2;
-}
-
 /** The point that half-edge h starts from. */
 static inline uint32_t vg_ref_from(const struct vg_ref *r, uint32_t h)
 {
@@ -77,7 +68,7 @@ static inline uint32_t vg_ref_from(const struct vg_ref *r, uint32_t h)
 
 static inline uint32_t vg_ref_to(const struct vg_ref *r, uint32_t h)
 {
-  return vg_ref_from(r, vg_ref_next(h));
+  return vg_ref_from(r, vg_half_next(h));
 }
 
 static inline const double *vg_ref_at(const struct vg_ref *r, uint32_t h)

@@ -152,7 +152,7 @@ static enum vg_remesh_cause cause_of(const struct vg_tris *w, size_t t)
     if (l < least) least = l, at = h;
   }
   /* The smallest angle is across from the shortest edge. */
-  if (w->edge[vg_ref_next(at)] && w->edge[vg_ref_prev(at)])
+  if (w->edge[vg_half_next(at)] && w->edge[vg_half_prev(at)])
     return VG_REMESH_CORNER;
   if (n_line == 3) return VG_REMESH_STRIP;
   return n_edge || n_line ? VG_REMESH_LINE : VG_REMESH_SURFACE;

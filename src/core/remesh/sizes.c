@@ -106,7 +106,7 @@ static double sector(const struct vg_ref *r, const struct vg_curves *c,
   struct bend sum = { { 0 }, 0 };
 
   for (;;) {
-    const uint32_t g = vg_ref_prev(h);
+    const uint32_t g = vg_half_prev(h);
 
     add_bend(&sum, &bend[h / 3], 1);
     if (c->line[g] || r->mate[g] == VG_REF_NONE) break;
@@ -205,7 +205,7 @@ static void by_strip(struct vg_ref *r, const struct vg_curves *c, uint32_t h,
 {
   static const double share[3] = { 0.1, 0.5, 0.9 };
   const double factor = strip / across;
-  const double *a = vg_ref_at(r, h), *b = vg_ref_at(r, vg_ref_next(h));
+  const double *a = vg_ref_at(r, h), *b = vg_ref_at(r, vg_half_next(h));
   uint32_t end[2] = { vg_ref_from(r, h), vg_ref_to(r, h) };
 
   for (int i = 0; i < 3; i++) {

@@ -29,7 +29,7 @@
  * one along it. */
 static int frame(const struct vg_ref *r, uint32_t h, double e[3], double in[3])
 {
-  vg_sub(vg_ref_at(r, vg_ref_next(h)), vg_ref_at(r, h), e);
+  vg_sub(vg_ref_at(r, vg_half_next(h)), vg_ref_at(r, h), e);
   if (!(vg_unit(e) > 0)) return 0;
   vg_cross(r->shape[h / 3].n, e, in);
   return vg_unit(in) > 0;
@@ -40,7 +40,7 @@ static int frame(const struct vg_ref *r, uint32_t h, double e[3], double in[3])
 static uint32_t leave(const struct vg_ref *r, uint32_t h, const double x[3],
                       const double d[3], double *far)
 {
-  uint32_t best = VG_REF_NONE, g[2] = { vg_ref_next(h), vg_ref_prev(h) };
+  uint32_t best = VG_REF_NONE, g[2] = { vg_half_next(h), vg_half_prev(h) };
 
   *far = INFINITY;
   for (int k = 0; k < 2; k++) {
@@ -73,7 +73,7 @@ double vg_strip_width(const struct vg_ref *r, const struct vg_curves *c,
     sum += far;
     if (sum > most) return INFINITY;
     for (int k = 0; k < 3; k++) x[k] += far * d[k];
-    vg_sub(vg_ref_at(r, vg_ref_next(g)), vg_ref_at(r, g), e);
+    vg_sub(vg_ref_at(r, vg_half_next(g)), vg_ref_at(r, g), e);
     vg_unit(e);
     if (c->line[g] || r->mate[g] == VG_REF_NONE) {
       /* As seen in the plane where the walk ends. */

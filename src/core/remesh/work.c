@@ -248,7 +248,7 @@ size_t vg_work_ring(const struct vg_tris *w, uint32_t p, uint32_t *half,
   *open = 0;
   /* To the rim, if there is one. */
   while (w->mate[h] != VG_REF_NONE) {
-    h = vg_ref_next(w->mate[h]);
+    h = vg_half_next(w->mate[h]);
     if (h == first) break;
     if (++n > VG_WORK_RING) return 0;
   }
@@ -258,7 +258,7 @@ size_t vg_work_ring(const struct vg_tris *w, uint32_t p, uint32_t *half,
   do {
     if (n == VG_WORK_RING) return 0;
     half[n++] = h;
-    h = w->mate[vg_ref_prev(h)];
+    h = w->mate[vg_half_prev(h)];
   } while (h != VG_REF_NONE && h != first);
   return n;
 }

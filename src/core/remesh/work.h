@@ -110,7 +110,7 @@ static inline uint32_t vg_work_from(const struct vg_tris *w, uint32_t h)
 
 static inline uint32_t vg_work_to(const struct vg_tris *w, uint32_t h)
 {
-  return w->tri[h / 3][vg_ref_next(h) % 3];
+  return w->tri[h / 3][vg_half_next(h) % 3];
 }
 
 static inline const double *vg_work_at(const struct vg_tris *w, uint32_t p)

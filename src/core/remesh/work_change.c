@@ -128,10 +128,10 @@ static int split_fits(const struct vg_tris *w, uint32_t h,
 
     if (side) h = w->mate[h];
     if (h == VG_REF_NONE) break;
-    vg_cavity_narrow(w, c, vg_work_from(w, vg_ref_prev(h)));
+    vg_cavity_narrow(w, c, vg_work_from(w, vg_half_prev(h)));
     a = &w->point[vg_work_from(w, h)];
     b = &w->point[vg_work_to(w, h)];
-    o = &w->point[vg_work_from(w, vg_ref_prev(h))];
+    o = &w->point[vg_work_from(w, vg_half_prev(h))];
     c->was[c->n_new] = c->was[c->n_new + 1] = (uint16_t)c->n_old;
     c->old[c->n_old++] = h / 3;
     shape = fmin(shape, vg_work_shape(w, a, b, o));
@@ -194,8 +194,8 @@ static void stitch(struct vg_tris *w, uint32_t h, uint32_t m,
 
   for (int side = 0; side < 2 && half[side] != VG_REF_NONE; side++) {
     uint32_t k = half[side], t0 = t[2 * side], t1 = t[2 * side + 1];
-    uint32_t o = vg_work_from(w, vg_ref_prev(k));
-    uint32_t h1 = vg_ref_next(k), h2 = vg_ref_prev(k);
+    uint32_t o = vg_work_from(w, vg_half_prev(k));
+    uint32_t h1 = vg_half_next(k), h2 = vg_half_prev(k);
     uint32_t m1 = w->mate[h1], e1 = w->edge[h1];
     uint32_t m2 = w->mate[h2], e2 = w->edge[h2];
 
@@ -258,7 +258,7 @@ static uint32_t other_line(const struct vg_tris *w, const uint32_t *ring,
                            size_t n, uint32_t line)
 {
   for (size_t i = 0; i < n; i++) {
-    uint32_t in = w->edge[vg_ref_prev(ring[i])], out = w->edge[ring[i]];
+    uint32_t in = w->edge[vg_half_prev(ring[i])], out = w->edge[ring[i]];
 
     if (out && out != line) return out;
     if (in && in != line) return in;
@@ -297,14 +297,14 @@ static int link_fits(const struct vg_tris *w, uint32_t h,
   if (!n_other || n + n_other < 7) return 0;
   for (size_t i = 0; i < n; i++)
     for (int end = 0; end < (open && i + 1 == n ? 2 : 1); end++) {
-      uint32_t p = end ? vg_work_from(w, vg_ref_prev(ring[i]))
+      uint32_t p = end ? vg_work_from(w, vg_half_prev(ring[i]))
                        : vg_work_to(w, ring[i]);
       int found = 0;
 
       for (size_t k = 0; k < n_other && !found; k++)
         found = vg_work_to(w, other[k]) == p
                 || (other_open && k + 1 == n_other
-                    && vg_work_from(w, vg_ref_prev(other[k])) == p);
+                    && vg_work_from(w, vg_half_prev(other[k])) == p);
       common += (size_t)found;
     }
   return common == wanted;
@@ -315,13 +315,13 @@ static int joins_fit(const struct vg_tris *w, uint32_t h,
                      const uint32_t *ring, size_t n, int open)
 {
   const uint32_t u = vg_work_to(w, h), g = w->mate[h];
-  const uint32_t o = vg_work_from(w, vg_ref_prev(h));
-  const uint32_t q = g == VG_REF_NONE ? u : vg_work_from(w, vg_ref_prev(g));
+  const uint32_t o = vg_work_from(w, vg_half_prev(h));
+  const uint32_t q = g == VG_REF_NONE ? u : vg_work_from(w, vg_half_prev(g));
 
   if (w->point[u].frozen == VG_WORK_FANS) return 0;
   for (size_t i = 0; i < n; i++)
     for (int end = 0; end < (open && i + 1 == n ? 2 : 1); end++) {
-      uint32_t p = end ? vg_work_from(w, vg_ref_prev(ring[i]))
+      uint32_t p = end ? vg_work_from(w, vg_half_prev(ring[i]))
                        : vg_work_to(w, ring[i]);
 
       if (p != u && p != o && p != q && !vg_work_may_join(w, p, u)) return 0;
@@ -346,7 +346,7 @@ static int collapse_fits(const struct vg_tris *w, uint32_t h,
   }
   for (size_t i = 0; i < n; i++) {
     uint32_t a = vg_work_to(w, ring[i]);
-    uint32_t b = vg_work_from(w, vg_ref_prev(ring[i]));
+    uint32_t b = vg_work_from(w, vg_half_prev(ring[i]));
     const struct vg_work_point *pa = &w->point[a], *pb = &w->point[b];
 
     if (a == u || b == u) continue;
@@ -392,10 +392,10 @@ static void collapse(struct vg_tris *w, uint32_t h, const uint32_t *ring,
     uint32_t k = go[side], p, q, edge;
 
     if (k == VG_REF_NONE) continue;
-    p = w->mate[vg_ref_next(k)];
-    q = w->mate[vg_ref_prev(k)];
-    edge = w->edge[vg_ref_next(k)] ? w->edge[vg_ref_next(k)]
-                                    : w->edge[vg_ref_prev(k)];
+    p = w->mate[vg_half_next(k)];
+    q = w->mate[vg_half_prev(k)];
+    edge = w->edge[vg_half_next(k)] ? w->edge[vg_half_next(k)]
+                                    : w->edge[vg_half_prev(k)];
     if (p != VG_REF_NONE) attach(w, p, q, edge);
     else attach(w, q, p, edge);
   }
@@ -432,7 +432,7 @@ int vg_work_collapse(struct vg_tris *w, uint32_t h, double most, double shape)
       && !curve_fits(w, h, ring, n, c.tolerance)) return 0;
   /* Both other sides on curves would become one edge of two. */
   for (int side = 0; side < 2 && k != VG_REF_NONE; side++, k = g) {
-    uint32_t p = vg_ref_next(k), q = vg_ref_prev(k);
+    uint32_t p = vg_half_next(k), q = vg_half_prev(k);
 
     if (w->edge[p] && w->edge[q]) return 0;
     if ((vg_work_is_border(w, p) && w->edge[q])
@@ -463,8 +463,8 @@ int vg_work_swap(struct vg_tris *w, uint32_t h)
       || vg_work_stays(w, h)) return 0;
   p[0] = vg_work_from(w, h);
   p[1] = vg_work_to(w, h);
-  p[2] = vg_work_from(w, vg_ref_prev(h));
-  p[3] = vg_work_from(w, vg_ref_prev(g));
+  p[2] = vg_work_from(w, vg_half_prev(h));
+  p[3] = vg_work_from(w, vg_half_prev(g));
   for (int k = 0; k < 4; k++) x[k] = &w->point[p[k]];
   vg_cavity_begin(w, &c, p[0]);
   for (int k = 1; k < 4; k++) vg_cavity_narrow(w, &c, p[k]);
@@ -481,13 +481,13 @@ int vg_work_swap(struct vg_tris *w, uint32_t h)
   if (!n || n + 1 >= VG_WORK_RING) return 0;
   for (size_t i = 0; i < n; i++)
     if (vg_work_to(w, ring[i]) == p[3]
-        || vg_work_from(w, vg_ref_prev(ring[i])) == p[3]) return 0;
+        || vg_work_from(w, vg_half_prev(ring[i])) == p[3]) return 0;
   n = vg_work_ring(w, p[3], ring, &open);
   if (!n || n + 1 >= VG_WORK_RING || !vg_cavity_fits(w, &c)) return 0;
-  out[0] = vg_ref_next(h);    /* 1 2 */
-  out[1] = vg_ref_prev(h);    /* 2 0 */
-  out[2] = vg_ref_next(g);    /* 0 3 */
-  out[3] = vg_ref_prev(g);    /* 3 1 */
+  out[0] = vg_half_next(h);    /* 1 2 */
+  out[1] = vg_half_prev(h);    /* 2 0 */
+  out[2] = vg_half_next(g);    /* 0 3 */
+  out[3] = vg_half_prev(g);    /* 3 1 */
   for (int k = 0; k < 4; k++) m[k] = w->mate[out[k]], e[k] = w->edge[out[k]];
   set_tri(w, t[0], p[2], p[0], p[3]);
   set_tri(w, t[1], p[3], p[1], p[2]);
@@ -512,7 +512,7 @@ static void settle_move(struct vg_tris *w, uint32_t p, const uint32_t *ring,
 
   for (size_t i = 0; i < c->n_old; i++) near[n++] = vg_work_to(w, ring[i]);
   if (w->mate[ring[0]] == VG_REF_NONE)
-    near[n++] = vg_work_from(w, vg_ref_prev(ring[c->n_old - 1]));
+    near[n++] = vg_work_from(w, vg_half_prev(ring[c->n_old - 1]));
   near[n++] = p;
   q->given = VG_REF_NONE;
   vg_work_ask(w, q, vg_work_size_near(w, q->x, q->home, n, near, &q->by));
@@ -538,7 +538,7 @@ static double move_cavity(const struct vg_tris *w, uint32_t p, size_t n,
     vg_cavity_narrow(w, c, vg_work_to(w, ring[i]));
     before = fmin(before, vg_work_tri_shape(w, ring[i] / 3));
     vg_cavity_add(c, q, &w->point[vg_work_to(w, ring[i])],
-                  &w->point[vg_work_from(w, vg_ref_prev(ring[i]))],
+                  &w->point[vg_work_from(w, vg_half_prev(ring[i]))],
                   w->edge[ring[i]] ? 0 : 1);
   }
   c->fresh = w->point[p].given;
@@ -631,7 +631,7 @@ int vg_work_slide(struct vg_tris *w, uint32_t p, double at, double shape)
   vg_curve_at(w->curves, w->ref, s.curve, at, q.x);
   before = fmin(shape, move_cavity(w, p, n, ring, &q, &c));
   if (open)
-    vg_cavity_narrow(w, &c, vg_work_from(w, vg_ref_prev(ring[n - 1])));
+    vg_cavity_narrow(w, &c, vg_work_from(w, vg_half_prev(ring[n - 1])));
   c.on_curve = 1;
   vg_cavity_measure(w, &c);
   if (!(c.shape > before)

@@ -12,8 +12,8 @@
 
 #include "base/memory.h"
 #include "base/union_find.h"
-#include "core/geometry/hilbert.h"
 #include "core/geometry/vector.h"
+#include "core/mesh/edges.h"
 
 #define REACH 3         /* directions: the integer points of a cube's faces */
 #define N_DIRECTION (7 * 7 * 7 - 5 * 5 * 5)
@@ -140,25 +140,21 @@ static int is_on_hull(const struct envelope *e, size_t i, size_t *above)
 
 static vg_status join_pieces(struct envelope *e, struct vg_error *err)
 {
-  const size_t n = 3 * e->m->n_tri;
-  struct vg_key *side = vg_alloc(n, sizeof *side);
-  vg_status st;
+  struct vg_edges edges = VG_EDGES_INIT;
+  vg_status st = vg_edges_build(&edges, e->m->n_point, e->m->n_tri,
+                                (const uint32_t (*)[3])e->m->tri, NULL, 0,
+                                err);
 
-  if (!side) return vg_fail_memory(err, "the pieces of the surface");
-  for (size_t i = 0; i < n; i++) {
-    const uint64_t a = e->m->tri[i / 3][i % 3];
-    const uint64_t b = e->m->tri[i / 3][(i + 1) % 3];
+  if (st < 0) return st;
+  for (size_t i = 0; i < edges.n; i++)
+    for (uint32_t k = 1; k < vg_edges_count(&edges, i); k++) {
+      const uint32_t *h = vg_edges_at(&edges, i) + k - 1;
 
-    side[i] = (struct vg_key){ a < b ? a << 32 | b : b << 32 | a,
-                               (uint32_t)(i / 3) };
-  }
-  st = vg_sort_keys(n, side, err);
-  for (size_t i = 1; st >= 0 && i < n; i++)
-    if (side[i].key == side[i - 1].key
-        && e->on[side[i].index] == e->on[side[i - 1].index])
-      vg_union(e->root, side[i].index, side[i - 1].index);
-  free(side);
-  return st;
+      if (e->on[h[0] / 3] == e->on[h[1] / 3])
+        vg_union(e->root, h[1] / 3, h[0] / 3);
+    }
+  vg_edges_release(&edges);
+  return VG_OK;
 }
 
 static void measure_pieces(struct envelope *e)

@@ -268,7 +268,7 @@ static vg_status look_at_edges(struct check *c)
       VG_TRY(add_edge(c, VG_DEFECT_OPEN_EDGE, i));
     } else if (n > 2) {
       VG_TRY(add_edge(c, VG_DEFECT_NONMANIFOLD_EDGE, i));
-    } else if (vg_edges_disagree(&c->e, &c->s, i)
+    } else if (vg_faces_disagree(&c->s, &c->e, i)
                ^ c->flip[c->e.half[at] / 3] ^ c->flip[c->e.half[at + 1] / 3]) {
       VG_TRY(add_edge(c, VG_DEFECT_ORIENTATION, i));
     }
@@ -407,7 +407,7 @@ static vg_status build_topology(struct check *c, struct vg_error *err)
   struct vg_surface_report *r = c->r;
   vg_status st;
 
-  VG_TRY(vg_edges_build(&c->e, &c->s, err));
+  VG_TRY(vg_faces_edges(&c->s, &c->e, err));
   VG_TRY(vg_orient_faces(&c->s, &c->e, c->flip, err));
   VG_TRY(vg_label_fans(&c->s, &c->e, &c->fan, err));
   if (!c->o->repair) memset(c->flip, 0, c->s.n);

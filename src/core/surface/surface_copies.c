@@ -121,7 +121,7 @@ vg_status vg_faces_copies(const struct vg_faces *s, const uint32_t *first,
 
   assert((first || !s->n) && copy);
   VG_TRY(allocate(&x, &out, err));
-  VG_TRY(vg_edges_build(&e, s, err));
+  VG_TRY(vg_faces_edges(s, &e, err));
   for (uint32_t f = 0; f < s->n; f++) {
     x.up[f] = f;
     if (!(s->state[f] & VG_FACE_OUT)) x.n[first[f]]++;

@@ -87,11 +87,6 @@ static uint32_t *each_alone(size_t n)
   return up;
 }
 
-static uint32_t next_corner(uint32_t h)
-{
-  return h % 3 == 2 ? h - 2 : h + 1;
-}
-
 vg_status vg_label_fans(const struct vg_faces *s, const struct vg_edges *e,
                         uint32_t (**fan)[3], struct vg_error *err)
 {
@@ -105,8 +100,8 @@ vg_status vg_label_fans(const struct vg_faces *s, const struct vg_edges *e,
       uint32_t h = e->half[k];
       int same_way = s->node[g / 3][g % 3] == s->node[h / 3][h % 3];
 
-      vg_union(up, g, same_way ? h : next_corner(h));
-      vg_union(up, next_corner(g), same_way ? next_corner(h) : h);
+      vg_union(up, g, same_way ? h : vg_half_next(h));
+      vg_union(up, vg_half_next(g), same_way ? vg_half_next(h) : h);
     }
   }
   for (uint32_t i = 0; i < 3 * s->n; i++) up[i] = vg_root_of(up, i);

@@ -3,6 +3,7 @@
 #ifndef VG_CORE_SURFACE_SURFACE_PARTS_H
 #define VG_CORE_SURFACE_SURFACE_PARTS_H
 
+#include "core/mesh/edges.h"
 #include "core/search/box_tree.h"
 #include "core/surface/surface_check.h"
 
@@ -39,6 +40,22 @@ vg_status vg_faces_build(struct vg_faces *s, const struct vg_mesh *m,
                          const uint32_t *same, struct vg_error *err);
 
 void vg_faces_release(struct vg_faces *s);
+
+/** Edges of the faces that are part of the topology. */
+static inline vg_status vg_faces_edges(const struct vg_faces *s,
+                                       struct vg_edges *e,
+                                       struct vg_error *err)
+{
+  return vg_edges_build(e, s->n_point, s->n, (const uint32_t (*)[3])s->node,
+                        s->state, VG_FACE_OUT, err);
+}
+
+/** The faces of edge i, which has two, run along it the same way. */
+static inline int vg_faces_disagree(const struct vg_faces *s,
+                                    const struct vg_edges *e, size_t i)
+{
+  return vg_edges_disagree(e, (const uint32_t (*)[3])s->node, i);
+}
 
 /** Faces of the same three nodes: (*first)[f] is the lowest such face, f
  * itself for most, collapsed ones included. The caller frees it. O(n). */
@@ -89,27 +106,6 @@ void vg_mesh_renumber(struct vg_mesh *m, uint32_t *map, const uint8_t *keep);
 
 /** Drop the triangles with drop[t] != 0, keeping the order of the others. */
 size_t vg_mesh_drop_tri(struct vg_mesh *m, const uint8_t *drop);
-
-/* surface_edges.c ---------------------------------------------------------*/
-
-/* Half-edge 3 f + k runs from node[f][k] to node[f][(k + 1) % 3]. Edge e has
- * half[start[e]] .. half[start[e + 1] - 1], by rising number. */
-struct vg_edges {
-  size_t n;
-  uint32_t *start;          /* [n + 1] */
-  uint32_t *half;           /* [3 * n_face] at most */
-  uint32_t *of_half;        /* [3 * n_face] edge, UINT32_MAX if collapsed */
-};
-#define VG_EDGES_INIT { 0 }
-
-vg_status vg_edges_build(struct vg_edges *e, const struct vg_faces *s,
-                         struct vg_error *err);
-
-void vg_edges_release(struct vg_edges *e);
-
-/** The two faces of edge e (which has two) run along it the same way. */
-int vg_edges_disagree(const struct vg_edges *e, const struct vg_faces *s,
-                      size_t edge);
 
 /* surface_orient.c --------------------------------------------------------*/
 

@@ -68,7 +68,7 @@ static vg_status list_open_edges(struct rims *r, const struct vg_faces *s,
 {
   struct vg_edges e = VG_EDGES_INIT;
   size_t n = 0;
-  vg_status st = vg_edges_build(&e, s, err);
+  vg_status st = vg_faces_edges(s, &e, err);
 
   if (st < 0) return st;
   for (size_t i = 0; i < e.n; i++) n += e.start[i + 1] - e.start[i] == 1;

@@ -72,7 +72,7 @@ static void measure_extent(struct vg_shell *shell, uint8_t *state,
       grow_box(x, s->point[s->node[f][k]]);
       if (e->start[edge + 1] - at != 2)
         x->is_closed = 0;
-      else if (vg_edges_disagree(e, s, edge) ^ flip[e->half[at] / 3]
+      else if (vg_faces_disagree(s, e, edge) ^ flip[e->half[at] / 3]
                ^ flip[e->half[at + 1] / 3])
         state[of_face[f]] |= VG_SHELL_MIXED;
     }

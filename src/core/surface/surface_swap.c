@@ -131,7 +131,7 @@ static vg_status build_topology(struct job *j)
   release_topology(j);
   view.tri = j->w.tri;
   VG_TRY(vg_faces_build(&j->s, &view, j->same, j->err));
-  VG_TRY(vg_edges_build(&j->e, &j->s, j->err));
+  VG_TRY(vg_faces_edges(&j->s, &j->e, j->err));
 done:
   return st;
 }
@@ -139,8 +139,8 @@ done:
 static vg_status refuse_edge(const struct job *j, size_t edge, uint32_t n)
 {
   uint32_t h = j->e.half[j->e.start[edge]];
-  const double *p = j->m->point[vg_half_from(&j->w, h)];
-  const double *q = j->m->point[vg_half_from(&j->w, vg_half_next(h))];
+  const double *p = j->m->point[vg_swap_from(&j->w, h)];
+  const double *q = j->m->point[vg_swap_from(&j->w, vg_half_next(h))];
 
   return vg_fail(j->err, VG_ERR_INPUT, "triangle %u: its edge at (%g %g %g) "
                  "%s: repair the surface before its triangles are swapped",
@@ -171,7 +171,7 @@ static vg_status pair_halves(struct job *j)
   for (size_t i = 0; i < j->e.n; i++) {
     uint32_t at = j->e.start[i], n = j->e.start[i + 1] - at;
 
-    if (n != 2 || vg_edges_disagree(&j->e, &j->s, i))
+    if (n != 2 || vg_faces_disagree(&j->s, &j->e, i))
       return refuse_edge(j, i, n);
     vg_half_pair(&j->w, j->e.half[at], j->e.half[at + 1]);
   }

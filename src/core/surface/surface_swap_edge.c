@@ -79,14 +79,14 @@ static uint32_t pop(struct vg_swapper *w)
  * a node with very many edges does not cost more than its partner has. */
 static int joined(const struct vg_swapper *w, uint32_t c, uint32_t d)
 {
-  uint32_t from_c = vg_half_from(w, c), from_d = vg_half_from(w, d);
+  uint32_t from_c = vg_swap_from(w, c), from_d = vg_swap_from(w, d);
   uint32_t i = c, j = d;
 
   do {
     i = vg_half_turn(w, i);
     j = vg_half_turn(w, j);
-    if (vg_half_from(w, w->mate[i]) == from_d
-        || vg_half_from(w, w->mate[j]) == from_c)
+    if (vg_swap_from(w, w->mate[i]) == from_d
+        || vg_swap_from(w, w->mate[j]) == from_c)
       return 1;
   } while (i != c && j != d);
   return 0;
@@ -131,7 +131,7 @@ static void swap(struct vg_swapper *w, uint32_t f, uint32_t g, uint32_t c,
 {
   uint32_t f1 = vg_half_next(f), f2 = vg_half_next(f1);
   uint32_t g1 = vg_half_next(g), g2 = vg_half_next(g1);
-  uint32_t a = vg_half_from(w, f), b = vg_half_from(w, g);
+  uint32_t a = vg_swap_from(w, f), b = vg_swap_from(w, g);
   uint32_t bc = w->mate[f1], ca = w->mate[f2];
   uint32_t ad = w->mate[g1], db = w->mate[g2];
 
@@ -177,9 +177,9 @@ static double length_of(const struct vg_tri_shape pair[2])
 static void try_swap(struct vg_swapper *w, uint32_t f)
 {
   uint32_t g = w->mate[f];
-  uint32_t a = vg_half_from(w, f), b = vg_half_from(w, g);
+  uint32_t a = vg_swap_from(w, f), b = vg_swap_from(w, g);
   uint32_t hc = vg_half_prev(f), hd = vg_half_prev(g);
-  uint32_t c = vg_half_from(w, hc), d = vg_half_from(w, hd);
+  uint32_t c = vg_swap_from(w, hc), d = vg_swap_from(w, hd);
   struct vg_tri_shape before[2], after[2];
 
   if (w->patch[f / 3] != w->patch[g / 3] || c == d || w->locked[a]

@@ -6,6 +6,7 @@
 #include <assert.h>
 #include <stdint.h>
 
+#include "core/mesh/edges.h"
 #include "core/surface/surface_swap.h"
 
 /* A surface being changed. Half-edge 3 t + k runs from tri[t][k] to
@@ -33,17 +34,7 @@ struct vg_swapper {
   double moved_max, moved_relative;
 };
 
-static inline uint32_t vg_half_next(uint32_t h)
-{
-  return h % 3 == 2 ? h - 2 : h + 1;
-}
-
-static inline uint32_t vg_half_prev(uint32_t h)
-{
-  return h % 3 ? h - 1 : h + 2;
-}
-
-static inline uint32_t vg_half_from(const struct vg_swapper *w, uint32_t h)
+static inline uint32_t vg_swap_from(const struct vg_swapper *w, uint32_t h)
 {
   assert(h < 3 * w->n_tri);
   return w->tri[h / 3][h % 3];

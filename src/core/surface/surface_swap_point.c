@@ -18,7 +18,7 @@ struct ring {
 
 static const double *from(const struct vg_swapper *w, uint32_t h)
 {
-  return w->point[vg_half_from(w, h)];
+  return w->point[vg_swap_from(w, h)];
 }
 
 static double dot_of(const double *a, const double *b, const double n[3])
@@ -47,9 +47,9 @@ static int link_fits(struct vg_swapper *w, const struct ring *a,
 
   w->turn++;
   for (size_t i = 0; i < a->n; i++)
-    w->mark[vg_half_from(w, w->mate[a->half[i]])] = w->turn;
+    w->mark[vg_swap_from(w, w->mate[a->half[i]])] = w->turn;
   for (size_t i = 0; i < b->n; i++)
-    n += w->mark[vg_half_from(w, w->mate[b->half[i]])] == w->turn;
+    n += w->mark[vg_swap_from(w, w->mate[b->half[i]])] == w->turn;
   return n == 2;
 }
 
@@ -116,7 +116,7 @@ static double price(struct vg_swapper *w, uint32_t h, double length)
     const double *x = from(w, w->mate[r.half[i]]);
     const double *y = from(w, vg_half_prev(r.half[i]));
 
-    if (w->locked[vg_half_from(w, w->mate[r.half[i]])]) return INFINITY;
+    if (w->locked[vg_swap_from(w, w->mate[r.half[i]])]) return INFINITY;
     vg_tri_shape_of(a, x, y, &old);
     worst = fmin(worst, old.sine2);
     most = fmax(most, w->moved[r.half[i] / 3]);
@@ -126,7 +126,7 @@ static double price(struct vg_swapper *w, uint32_t h, double length)
     worst_now = fmin(worst_now, now.sine2);
     by = fmax(by, fabs(dot_of(b, a, now.normal)) / now.area);
   }
-  if (!(worst_now >= worst) || w->locked[vg_half_from(w, h)]) return INFINITY;
+  if (!(worst_now >= worst) || w->locked[vg_swap_from(w, h)]) return INFINITY;
   return by + most <= w->o->distance * length ? by + most : INFINITY;
 }
 
@@ -136,7 +136,7 @@ static void collapse(struct vg_swapper *w, uint32_t f, double moved)
 {
   uint32_t g = w->mate[f], f1 = vg_half_next(f), f2 = vg_half_next(f1);
   uint32_t g1 = vg_half_next(g), g2 = vg_half_next(g1);
-  uint32_t a = vg_half_from(w, f), b = vg_half_from(w, g);
+  uint32_t a = vg_swap_from(w, f), b = vg_swap_from(w, g);
   struct ring r;
 
   collect(w, f, &r);
@@ -177,9 +177,9 @@ static void measure(const struct vg_swapper *w, double *sum, uint32_t *n)
 {
   for (uint32_t h = 0; h < 3 * w->n_tri; h++) {
     if (vg_tri_removed(w, h / 3)) continue;
-    sum[vg_half_from(w, h)] += sqrt(vg_distance2(from(w, h), from(w,
+    sum[vg_swap_from(w, h)] += sqrt(vg_distance2(from(w, h), from(w,
                                                                   w->mate[h])));
-    n[vg_half_from(w, h)]++;
+    n[vg_swap_from(w, h)]++;
   }
 }
 
@@ -207,11 +207,11 @@ vg_status vg_swap_points(struct vg_swapper *w, size_t *n_removed,
   }
   measure(w, sum, n);
   for (uint32_t h = 0; h < 3 * w->n_tri; h++) {
-    uint32_t a = vg_half_from(w, h), b;
+    uint32_t a = vg_swap_from(w, h), b;
     double own, mean;
 
     if (vg_tri_removed(w, h / 3) || h > w->mate[h]) continue;
-    b = vg_half_from(w, w->mate[h]);
+    b = vg_swap_from(w, w->mate[h]);
     own = sqrt(vg_distance2(w->point[a], w->point[b]));
     mean = (sum[a] + sum[b] - 2 * own) / (double)(n[a] + n[b] - 2);
     if (own < w->o->short_edge * mean || at_cap(w, h)

@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "core/geometry/hilbert.h"
 #include "core/geometry/vector.h"
+#include "core/mesh/edges.h"
 #include "core/surface/surface_check.h"
 #include "core/wrap/wrap_parts.h"
 
@@ -61,22 +61,17 @@ static vg_status connect(struct vg_wrap_rims *r, uint32_t *rim, size_t *n_rim,
                          struct vg_error *err)
 {
   const struct vg_mesh *m = &r->m;
-  size_t n = 3 * m->n_tri;
-  struct vg_key *s = vg_alloc(n, sizeof *s);
+  struct vg_edges e = VG_EDGES_INIT;
   vg_status st;
 
-  if (!s) return vg_fail_memory(err, "a wrap");
-  for (size_t i = 0; i < n; i++) {
-    uint64_t a = m->tri[i / 3][i % 3], b = m->tri[i / 3][(i + 1) % 3];
-
-    s[i] = (struct vg_key){ a < b ? a << 32 | b : b << 32 | a, (uint32_t)i };
-  }
-  VG_TRY(vg_sort_keys(n, s, err));
+  VG_TRY(vg_edges_build(&e, m->n_point, m->n_tri,
+                        (const uint32_t (*)[3])m->tri, NULL, 0, err));
   for (size_t i = 0; i < m->n_tri; i++) r->part_of[i] = (uint32_t)i;
-  for (size_t i = 0, j; i < n; i = j) {
-    for (j = i + 1; j < n && s[j].key == s[i].key; j++)
-      unite(r->part_of, s[i].index / 3, s[j].index / 3);
-    if (j == i + 1) rim[(*n_rim)++] = s[i].index;
+  for (size_t i = 0; i < e.n; i++) {
+    const uint32_t n = vg_edges_count(&e, i), *h = vg_edges_at(&e, i);
+
+    for (uint32_t k = 1; k < n; k++) unite(r->part_of, h[0] / 3, h[k] / 3);
+    if (n == 1) rim[(*n_rim)++] = h[0];
   }
   for (size_t i = 0; i < m->n_tri; i++)
     r->part_of[i] = root(r->part_of, (uint32_t)i);
@@ -85,7 +80,7 @@ static vg_status connect(struct vg_wrap_rims *r, uint32_t *rim, size_t *n_rim,
     r->part_of[i] = r->part_of[i] == i ? (uint32_t)r->n_part++
                                        : r->part_of[r->part_of[i]];
 done:
-  free(s);
+  vg_edges_release(&e);
   return st;
 }
 

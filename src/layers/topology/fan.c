@@ -89,7 +89,7 @@ static int is_ridge(const struct build *b, uint32_t h, uint32_t g)
   if (vg_dot(n, o) >= b->cos_fan) return 0;
   return vg_orient3d(wall_point(b->w, h), wall_point(b->w, next),
                      wall_point(b->w, vg_half_next(next)),
-                     wall_point(b->w, vg_half_previous(g))) < 0;
+                     wall_point(b->w, vg_half_prev(g))) < 0;
 }
 
 static size_t find_ridges(struct build *b)
@@ -118,7 +118,7 @@ static double corner_weight(const struct vg_wall *w, uint32_t h)
   double a[3], b[3];
 
   vg_sub(wall_point(w, vg_half_next(h)), wall_point(w, h), a);
-  vg_sub(wall_point(w, vg_half_previous(h)), wall_point(w, h), b);
+  vg_sub(wall_point(w, vg_half_prev(h)), wall_point(w, h), b);
   vg_unit(a);
   vg_unit(b);
   return vg_distance(a, b);
@@ -282,7 +282,7 @@ static int is_clear(const struct build *b, uint32_t p,
 
   do {
     const double *o = wall_point(w, h), *a = wall_point(w, vg_half_next(h));
-    const double *c = wall_point(w, vg_half_previous(h));
+    const double *c = wall_point(w, vg_half_prev(h));
     double e[3], f[3], n[3];
 
     vg_sub(a, o, e);

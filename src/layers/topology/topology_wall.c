@@ -137,7 +137,7 @@ static uint32_t find_reverse(const struct vg_wall *w, const struct rings *r,
 
   for (uint32_t i = r->first[at]; i < r->first[at + 1]; i++) {
     uint32_t h = r->corner[i];
-    uint32_t to = at_a ? vg_half_previous(h) : vg_half_next(h);
+    uint32_t to = at_a ? vg_half_prev(h) : vg_half_next(h);
 
     if (m->tri[to / 3][to % 3] != other) continue;
     if (found != VG_NO_INDEX) return VG_NO_INDEX;

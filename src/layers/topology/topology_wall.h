@@ -5,6 +5,7 @@
 
 #include <assert.h>
 
+#include "core/mesh/edges.h"
 #include "layers/slide/slide.h"
 
 /* Half-edge 3 * face + k goes from corner k of the face to the next one, so
@@ -35,21 +36,11 @@ vg_status vg_wall_build(const struct vg_mesh *surface, const uint8_t *is_wall,
                         size_t n_slide, const struct vg_slide *slide,
                         struct vg_wall *w, struct vg_error *err);
 
-static inline uint32_t vg_half_next(uint32_t h)
-{
-  return h % 3 == 2 ? h - 2 : h + 1;
-}
-
-static inline uint32_t vg_half_previous(uint32_t h)
-{
-  return h % 3 == 0 ? h + 2 : h - 1;
-}
-
 /** The next corner counter-clockwise around the point of corner h. */
 static inline uint32_t vg_wall_turn(const struct vg_wall *w, uint32_t h)
 {
   assert(h < 3 * w->n_face);
-  return w->opposite[vg_half_previous(h)];
+  return w->opposite[vg_half_prev(h)];
 }
 
 #endif
