@@ -18,13 +18,7 @@ void vg_page_text(struct page *p, const char *text)
 {
   char *clean = vg_text_copy(text);
 
-  for (const char *c = clean ? clean : ""; *c; c++) {
-    if (*c == '&') vg_page_markup(p, "&amp;");
-    else if (*c == '<') vg_page_markup(p, "&lt;");
-    else if (*c == '>') vg_page_markup(p, "&gt;");
-    else if (*c == '"') vg_page_markup(p, "&quot;");
-    else vg_output_bytes(&p->out, c, 1);
-  }
+  if (clean) vg_output_markup(&p->out, clean);
   free(clean);
 }
 

@@ -40,15 +40,7 @@ static void put_text(struct vg_svg *s, const char *text)
 {
   char *clean = vg_text_copy(text);
 
-  for (const char *c = clean ? clean : ""; *c; c++) {
-    const char one[2] = { *c, 0 };
-
-    if (*c == '&') vg_output_text(&s->out, "&amp;");
-    else if (*c == '<') vg_output_text(&s->out, "&lt;");
-    else if (*c == '>') vg_output_text(&s->out, "&gt;");
-    else if (*c == '"') vg_output_text(&s->out, "&quot;");
-    else vg_output_text(&s->out, one);
-  }
+  if (clean) vg_output_markup(&s->out, clean);
   free(clean);
 }
 

@@ -4,18 +4,17 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/markup.h"
 #include "run/common/text.h"
 
 static void put(FILE *to, const char *text, size_t n)
 {
+  const char *entity = vg_markup_entity(*text);
   unsigned char c = (unsigned char)*text;
 
   if (n > 1) fwrite(text, 1, n, to);
   else if (!n) fputc('?', to);
-  else if (c == '&') fputs("&amp;", to);
-  else if (c == '<') fputs("&lt;", to);
-  else if (c == '>') fputs("&gt;", to);
-  else if (c == '"') fputs("&quot;", to);
+  else if (entity) fputs(entity, to);
   else if (c == '\'') fputs("&#39;", to);
   else if ((c < ' ' && c != '\n' && c != '\t') || c == 127) fputc(' ', to);
   else fputc(c, to);

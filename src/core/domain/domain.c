@@ -13,7 +13,7 @@
 #include "core/domain/open_edges.h"
 #include "core/domain/planar.h"
 #include "core/domain/symmetry.h"
-#include "core/geometry/vector.h"
+#include "core/geometry/volume.h"
 #include "core/mesh/mesh_defects.h"
 
 /* Part of a farfield's radius that the body may reach: chords of the
@@ -147,11 +147,8 @@ static vg_status check_orientation(const struct domain *d,
     const int second = i >= m->n_tri && (i - m->n_tri) % 2;
     const double *p[3] = { m->point[q[0]], m->point[q[second ? 2 : 1]],
                            m->point[q[second ? 3 : 2]] };
-    double a[3][3];
 
-    for (int j = 0; j < 3; j++)
-      for (int k = 0; k < 3; k++) a[j][k] = p[j][k] - o[k];
-    sum += vg_triple(a[0], a[1], a[2]);
+    sum += vg_tri_cone(o, p[0], p[1], p[2]);
   }
   if (sum > 0) return VG_OK;
   return vg_fail(err, VG_ERR_INPUT, "the triangles of the surface point into "

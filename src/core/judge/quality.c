@@ -9,7 +9,7 @@
 #include "base/hash.h"
 #include "base/memory.h"
 #include "base/table.h"
-#include "core/geometry/vector.h"
+#include "core/geometry/volume.h"
 #include "core/judge/quality_parts.h"
 
 /* Inward faces of formats.md 2.3, each turned around. */
@@ -114,30 +114,6 @@ static vg_status count_duplicates(const struct vg_mesh *m,
   }
   vg_table_release(&t);
   return VG_OK;
-}
-
-static double triple(const double o[3], const double a[3], const double b[3],
-                     const double c[3])
-{
-  double u[3], v[3], w[3];
-
-  vg_sub(a, o, u);
-  vg_sub(b, o, v);
-  vg_sub(c, o, w);
-  return vg_triple(u, v, w);
-}
-
-double vg_tri_cone(const double o[3], const double a[3], const double b[3],
-                   const double c[3])
-{
-  return triple(o, a, b, c);
-}
-
-double vg_quad_cone(const double o[3], const double a[3], const double b[3],
-                    const double c[3], const double d[3])
-{
-  return (triple(o, a, b, c) + triple(o, a, c, d) + triple(o, a, b, d) +
-          triple(o, b, c, d)) / 2;
 }
 
 /* The cones start at the middle of the box: the least cancellation. */

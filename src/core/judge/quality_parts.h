@@ -158,13 +158,4 @@ vg_status vg_judge_edges(const struct vg_mesh *m,
                          struct vg_stats *f, struct vg_unpaired *unpaired,
                          struct vg_error *err);
 
-/** Volume between the origin `o` and a quadrilateral, the mean over its two
- * diagonals, so that a warped face shared by two cells cancels; six times. */
-double vg_quad_cone(const double o[3], const double a[3], const double b[3],
-                    const double c[3], const double d[3]);
-
-/** Six times the volume between `o` and a triangle. */
-double vg_tri_cone(const double o[3], const double a[3], const double b[3],
-                   const double c[3]);
-
 #endif

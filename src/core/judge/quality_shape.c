@@ -8,6 +8,7 @@
 #include <math.h>
 
 #include "core/geometry/predicates.h"
+#include "core/geometry/volume.h"
 #include "core/judge/quality_parts.h"
 
 #define DEGREE 57.295779513082320877

@@ -268,15 +268,6 @@ static vg_status fill(struct vg_comm *comm, const struct vg_slices *s,
 
 /* --- the list of pieces --- */
 
-static void put_name(struct vg_output *out, const char *s)
-{
-  for (; *s; s++)
-    if (*s == '&') vg_output_text(out, "&amp;");
-    else if (*s == '<') vg_output_text(out, "&lt;");
-    else if (*s == '"') vg_output_text(out, "&quot;");
-    else vg_output_bytes(out, s, 1);
-}
-
 static vg_status write_list(const struct pieces *p, const char *stem,
                             struct vg_error *err)
 {
@@ -305,7 +296,7 @@ static vg_status write_list(const struct pieces *p, const char *stem,
     const char *slash = strrchr(p->piece[k].path, '/');
 
     vg_output_text(&out, "  <Piece Source=\"");
-    put_name(&out, slash ? slash + 1 : p->piece[k].path);
+    vg_output_markup(&out, slash ? slash + 1 : p->piece[k].path);
     vg_output_text(&out, "\"/>\n");
   }
   vg_output_text(&out, " </PUnstructuredGrid>\n</VTKFile>\n");

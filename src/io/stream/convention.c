@@ -11,7 +11,7 @@
 #include "base/table.h"
 #include "base/tri_key.h"
 #include "core/geometry/predicates.h"
-#include "core/geometry/vector.h"
+#include "core/geometry/volume.h"
 #include "core/mesh/cell_faces.h"
 
 vg_status vg_check_points(const char *path, size_t n, const double (*p)[3],
@@ -169,19 +169,15 @@ done:
 static double volume6(const struct vg_mesh *m, const uint32_t *c,
                       const unsigned char (*face)[4], int n_face)
 {
-  double volume = 0, p[4][3];
+  const double *o = m->point[c[0]], *p[4];
+  double volume = 0;
 
   for (int f = 0; f < n_face; f++) {
     const unsigned char *q = face[f];
 
-    for (int k = 0; k < 4; k++)
-      vg_sub(m->point[c[q[k]]], m->point[c[0]], p[k]);
-    if (q[2] == q[3])
-      volume -= vg_triple(p[0], p[1], p[2]);
-    else
-      volume -= (vg_triple(p[0], p[1], p[2]) + vg_triple(p[0], p[2], p[3]) +
-                 vg_triple(p[0], p[1], p[3]) + vg_triple(p[1], p[2], p[3])) /
-                2;
+    for (int k = 0; k < 4; k++) p[k] = m->point[c[q[k]]];
+    volume -= q[2] == q[3] ? vg_tri_cone(o, p[0], p[1], p[2])
+                           : vg_quad_cone(o, p[0], p[1], p[2], p[3]);
   }
   return volume;
 }

@@ -13,6 +13,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/markup.h"
 #include "base/memory.h"
 #include "io/stream/shared_file.h"
 
@@ -313,6 +314,16 @@ void vg_output_text(struct vg_output *out, const char *s)
 {
   assert(s);
   vg_output_bytes(out, s, strlen(s));
+}
+
+void vg_output_markup(struct vg_output *out, const char *s)
+{
+  for (; *s; s++) {
+    const char *entity = vg_markup_entity(*s);
+
+    if (entity) vg_output_text(out, entity);
+    else vg_output_bytes(out, s, 1);
+  }
 }
 
 void vg_output_format(struct vg_output *out, const char *format, ...)

@@ -211,6 +211,8 @@ void vg_output_record_end(struct vg_output *out);
  * real that reads back to the same bits (15 digits where these suffice, 17
  * otherwise). */
 void vg_output_text(struct vg_output *out, const char *s);
+/** A string with the characters of markup escaped. */
+void vg_output_markup(struct vg_output *out, const char *s);
 void vg_output_format(struct vg_output *out, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 void vg_output_int(struct vg_output *out, int64_t v);

@@ -15,6 +15,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "core/geometry/predicates.h"
+#include "core/geometry/volume.h"
 
 enum { GRAIN = 1 << 14, FIT_PASSES = 4 };
 
@@ -27,18 +28,9 @@ enum { GRAIN = 1 << 14, FIT_PASSES = 4 };
 double vg_load_volume(const struct vg_front *v)
 {
   const double *o = v->n_face ? v->x[v->face[0][0]] : NULL;
-  double sum = 0;
 
-  for (size_t i = 0; i < v->n_face; i++) {
-    double a[3][3];
-
-    for (int j = 0; j < 3; j++)
-      for (int k = 0; k < 3; k++) a[j][k] = v->x[v->face[i][j]][k] - o[k];
-    sum += a[0][0] * (a[1][1] * a[2][2] - a[1][2] * a[2][1])
-           + a[0][1] * (a[1][2] * a[2][0] - a[1][0] * a[2][2])
-           + a[0][2] * (a[1][0] * a[2][1] - a[1][1] * a[2][0]);
-  }
-  return -sum / 6;               /* normals point inwards */
+  return -vg_enclosed6(v->n_face, (const uint32_t (*)[3])v->face,
+                       (const double (*)[3])v->x, o) / 6;   /* normals inwards */
 }
 
 void vg_load_box(const struct vg_front *v, double lo[3], double hi[3])

@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "core/geometry/vector.h"
+#include "core/geometry/volume.h"
 #include "core/wrap/wrap.h"
 #include "io/mesh/format.h"
 #include "run/input/shape_parts.h"
@@ -151,18 +152,13 @@ static void take_volumes(struct vg_problem *p)
   const struct vg_mesh *m = &p->surface;
   const int is_whole = p->flow.kind != VG_FLOW_UNKNOWN && p->flow.axis < 0
                        && !p->flow.n_cavity && !p->n_given_patch;
-  double sum = 0;
 
   p->renewal.volume[0] = p->renewal.volume[1] = NAN;
   if (!p->model.cad || !is_whole || !m->n_tri) return;
-  for (size_t t = 0; t < m->n_tri; t++) {
-    double v[3][3];
-
-    for (int k = 0; k < 3; k++)
-      vg_sub(m->point[m->tri[t][k]], m->point[0], v[k]);
-    sum += vg_triple(v[0], v[1], v[2]);
-  }
-  p->renewal.volume[0] = fabs(sum) / 6;
+  p->renewal.volume[0] = fabs(vg_enclosed6(m->n_tri,
+                                           (const uint32_t (*)[3])m->tri,
+                                           (const double (*)[3])m->point,
+                                           m->point[0])) / 6;
   p->renewal.volume[1] = p->model.surface.volume;
 }
 
