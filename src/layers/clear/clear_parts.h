@@ -3,7 +3,12 @@
  *
  * A tree with eight children per node, filled from items in Morton order, so
  * that neither pointers nor a search for the best split are needed: built in
- * linear time, twice the memory of the boxes of single precision. */
+ * linear time, twice the memory of the boxes of single precision.
+ *
+ * It stays next to core/search/box_tree.h because it tests eight boxes at once:
+ * on 1,155,200 triangles it is built in 0.08 s and finds the 7.0 million pairs
+ * in 0.13 s, where the shared tree takes 0.30 and 0.28 s (one thread,
+ * 2026-11-26). */
 #ifndef VG_LAYERS_CLEAR_CLEAR_PARTS_H
 #define VG_LAYERS_CLEAR_CLEAR_PARTS_H
 
