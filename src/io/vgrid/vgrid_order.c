@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/mesh/edges.h"
 #include "io/vgrid/vgrid.h"
 
 enum { ON_CURVE, ON_SURFACE, IN_FIELD, PLACED };
@@ -44,19 +45,6 @@ static vg_status classify(const struct vg_mesh *m, unsigned char *class,
   return VG_OK;
 }
 
-struct edge {
-  uint32_t a, b, patch;
-};
-
-static int compare_edge(const void *x, const void *y)
-{
-  const struct edge *p = x, *q = y;
-
-  if (p->a != q->a) return p->a < q->a ? -1 : 1;
-  if (p->b != q->b) return p->b < q->b ? -1 : 1;
-  return (p->patch > q->patch) - (p->patch < q->patch);
-}
-
 static int compare_link(const void *x, const void *y)
 {
   const struct link *p = x, *q = y;
@@ -65,43 +53,60 @@ static int compare_link(const void *x, const void *y)
   return (p->to > q->to) - (p->to < q->to);
 }
 
-/* Links from the edges whose triangles belong to different patches. */
-static int keep_links(struct walk *w, struct edge *e, size_t n)
-{
-  qsort(e, n, sizeof *e, compare_edge);
-  w->link = vg_alloc(2 * n, sizeof *w->link);
-  if (!w->link) return -1;
-  for (size_t i = 0, j; i < n; i = j) {
-    for (j = i + 1; j < n && e[j].a == e[i].a && e[j].b == e[i].b; j++) {}
-    if (e[j - 1].patch == e[i].patch) continue;
-    w->link[w->n_link++] = (struct link){e[i].a, e[i].b};
-    w->link[w->n_link++] = (struct link){e[i].b, e[i].a};
-  }
-  qsort(w->link, w->n_link, sizeof *w->link, compare_link);
-  return 0;
-}
+/* Sides of triangles with both ends on curves. */
+struct sides {
+  size_t n, cap_end, cap_patch;
+  uint32_t (*end)[2], *patch;
+};
 
-static vg_status find_links(struct walk *w, struct vg_error *err)
+static int list_sides(const struct walk *w, struct sides *s)
 {
   const struct vg_mesh *m = w->m;
-  struct edge *e = NULL;
-  size_t n = 0, cap = 0;
-  int bad = 0;
 
-  for (size_t f = 0; f < m->n_tri && !bad; f++)
-    for (int k = 0; k < 3 && !bad; k++) {
+  for (size_t f = 0; f < m->n_tri; f++)
+    for (int k = 0; k < 3; k++) {
       uint32_t a = m->tri[f][k], b = m->tri[f][(k + 1) % 3];
 
       if (w->class[a] != ON_CURVE || w->class[b] != ON_CURVE || a == b)
         continue;
-      bad = vg_reserve(&e, &cap, n + 1, sizeof *e);
-      if (!bad)
-        e[n++] = (struct edge){a < b ? a : b, a < b ? b : a,
-                               m->tri_patch[f]};
+      if (vg_reserve(&s->end, &s->cap_end, s->n + 1, sizeof *s->end) ||
+          vg_reserve(&s->patch, &s->cap_patch, s->n + 1, sizeof *s->patch))
+        return -1;
+      s->end[s->n][0] = a;
+      s->end[s->n][1] = b;
+      s->patch[s->n++] = m->tri_patch[f];
     }
-  if (!bad) bad = keep_links(w, e, n);
-  free(e);
-  return bad ? vg_fail_memory(err, "the curves between patches") : VG_OK;
+  return 0;
+}
+
+/* Links from the edges whose triangles belong to different patches. */
+static vg_status find_links(struct walk *w, struct vg_error *err)
+{
+  struct sides s = { 0 };
+  struct vg_edges e = VG_EDGES_INIT;
+  vg_status st = VG_OK;
+
+  if (list_sides(w, &s))
+    VG_TRY(vg_fail_memory(err, "the curves between patches"));
+  VG_TRY(vg_edges_build_sides(&e, w->m->n_point, s.n,
+                              (const uint32_t (*)[2])s.end, err));
+  w->link = vg_alloc(2 * e.n, sizeof *w->link);
+  if (!w->link) VG_TRY(vg_fail_memory(err, "the curves between patches"));
+  for (size_t i = 0; i < e.n; i++) {
+    const uint32_t *h = vg_edges_at(&e, i), *end = s.end[h[0]];
+    uint32_t k = 1;
+
+    while (k < vg_edges_count(&e, i) && s.patch[h[k]] == s.patch[h[0]]) k++;
+    if (k == vg_edges_count(&e, i)) continue;
+    w->link[w->n_link++] = (struct link){end[0], end[1]};
+    w->link[w->n_link++] = (struct link){end[1], end[0]};
+  }
+  qsort(w->link, w->n_link, sizeof *w->link, compare_link);
+done:
+  vg_edges_release(&e);
+  free(s.end);
+  free(s.patch);
+  return st;
 }
 
 static size_t first_link(const struct walk *w, uint32_t from)

@@ -15,6 +15,7 @@
 #include "base/table.h"
 #include "base/team.h"
 #include "core/geometry/predicates.h"
+#include "core/mesh/edges.h"
 #include "layers/expand/join.h"
 
 #define DEGREE 57.295779513082320877
@@ -276,19 +277,14 @@ static void judge_faces(void *context, size_t first, size_t end, int worker)
   j->cosine[first / GRAIN] = cosine;
 }
 
-static int by_edge(const void *a, const void *b)
-{
-  uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
-
-  return (x > y) - (x < y);
-}
-
 /* Steps were counted once per face; *n out: once per edge. */
 static vg_status count_steps(const struct judge_job *j, size_t *n,
                              struct vg_error *err)
 {
-  uint64_t *edge;
+  uint32_t (*edge)[2];
+  struct vg_edges e = VG_EDGES_INIT;
   size_t n_edge = 0, n_found = *n;
+  vg_status st;
 
   if (!n_found) return VG_OK;
   edge = vg_alloc(n_found, sizeof *edge);
@@ -297,14 +293,16 @@ static vg_status count_steps(const struct judge_job *j, size_t *n,
     for (int k = 0; k < 3; k++) {
       uint32_t a = j->columns->face[f][k], b = j->columns->face[f][(k + 1) % 3];
 
-      if (is_step(j, a, b) && n_edge < n_found)
-        edge[n_edge++] = a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
+      if (!is_step(j, a, b) || n_edge == n_found) continue;
+      edge[n_edge][0] = a;
+      edge[n_edge++][1] = b;
     }
-  qsort(edge, n_edge, sizeof *edge, by_edge);
-  *n = n_edge > 0;
-  for (size_t i = 1; i < n_edge; i++) *n += edge[i] != edge[i - 1];
+  st = vg_edges_build_sides(&e, j->columns->n_column, n_edge,
+                            (const uint32_t (*)[2])edge, err);
+  if (st >= 0) *n = e.n;
+  vg_edges_release(&e);
   free(edge);
-  return VG_OK;
+  return st;
 }
 
 /* Which coordinates all points of a patch have in common. */
