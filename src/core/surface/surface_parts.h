@@ -133,7 +133,7 @@ vg_status vg_label_shells(const struct vg_faces *s, const struct vg_edges *e,
                           uint32_t *shell, size_t *n_shell,
                           struct vg_error *err);
 
-/* surface_aabb.c: boxes about triangles -----------------------------------*/
+/* surface_tree.c ----------------------------------------------------------*/
 
 /** Tree over the boxes of the faces whose state is 0; its items are faces.
  * O(n log n). VG_ERR_MEMORY. */
