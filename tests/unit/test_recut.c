@@ -111,10 +111,10 @@ static void only_what_is_beside(void **state)
 
     print_message("%d: %d voids, %d cells made again\n", rounds,
                   (int)r.n_widened, (int)r.n_widened_cell);
-    /* The paths of two leaves, 0.0.0.1.0 and 0.1.1.0.1, let them fail. Both
-     * have faces in common with the zone of the first plane, so that they
-     * become one void in the first round. It keeps the path of the first leaf
-     * and therefore fails again in every round but the last: a void a round. */
+    /* Two leaves fail by their paths, 0.0.0.1.0 and 0.1.1.0.1. Both share faces
+     * with the zone of the first plane, so the first round joins them to one
+     * void. That void keeps the path of the first leaf and therefore fails
+     * again in every round but the last: each round makes one void. */
     assert_int_equal(r.n_widened, rounds);
     assert_true(r.n_widened_cell > before);
     assert_true(r.n_widened_cell < (rounds == 1 ? 8000 : 20000));

@@ -35,8 +35,8 @@ static const double sideways = 0.65;   /* K13 */
 /* A field that changes less than this over one edge counts as level. */
 static const double level_within = 1e-3;   /* K14 */
 
-/* A place is given up at this share of the exclusion already, before the
- * spacing there is looked up. */
+/* A place within this share of the exclusion is rejected before the spacing
+ * there is evaluated. */
 static const double exclusion_early = 0.9;   /* K35 */
 /* Square of the distance, in halves of the pattern's side, within which a point
  * proposes sites of the lattice: neighbours are at sqrt(3) and 2 of them. */

@@ -14,8 +14,8 @@
 #define ANGLE2 0.0669873  /* (sin 15 degrees)^2: no collapse below */
 #define FINE2 0.45        /* (sin 42 degrees)^2: good enough */
 #define ROUNDS 12
-/* S72: another round of collapses follows where one in so many edges went; a
- * round of swaps where one swap was made in so many hundreds of triangles. */
+/* S72: another round of collapses follows if one in 8 of the short edges
+ * collapsed, another round of swaps after one swap in 200 hundred triangles. */
 #define COLLAPSED_OF 8
 #define SWAPPED_OF 200
 #define GIVEN_WITHIN 0.02 /* S73: of a step: a given point stays in its place */
@@ -24,7 +24,7 @@
 #define SHAPE_FLOOR 0.05
 #define STEP_GOOD 0.1     /* of the size: least step among good triangles */
 #define STEP_BAD 0.02     /* and where one of them is not good */
-#define SHAPE_GAIN 0.02   /* of what the worst shape lacks: least gain there */
+#define SHAPE_GAIN 0.02   /* of 1 - worst shape: least gain there */
 
 /* --- curves -------------------------------------------------------------- */
 

@@ -20,7 +20,7 @@ struct vg_bins { size_t n, cap; struct vg_bin *bit; };
 /* Cells, and how many of them lie where spacing varies. */
 struct vg_amount { double cells, graded; };
 
-/* A subdomain of the forecast: a void on its way down the tree of cuts. */
+/* A void of the forecast, which cuts divide further. */
 struct vg_subdomain {
   struct vg_load load;
   struct vg_bins front;

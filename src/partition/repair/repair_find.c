@@ -9,8 +9,8 @@
 #include "partition/repair/repair_parts.h"
 
 /* R10: the worse a cell, the larger its ball: `reach` local spacings, and
- * `most` times as far as its own corners. Beside long triangles of a sharp edge, what
- * stayed bad needs much room. */
+ * `most` times as far as its own corners. A cell that stayed bad needs much
+ * room, next to long triangles of a sharp edge. */
 static const struct { double reach, most; } ball[VG_SPOT_SIZES] = {
   { 1.2, 1.01 }, { 2.5, 1.01 }, { 4, 2 } };
 
