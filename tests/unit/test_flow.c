@@ -514,6 +514,54 @@ static void a_half_domain_is_internal(void **state)
   assert_true(a.volume < -1e4);
 }
 
+/* One shell: half a ball of radius 10 around half a ball of radius r, and the
+ * plane y = 0 between their rims. Normals point into the room. */
+static struct vg_mesh half_room(double r)
+{
+  const double centre[3] = { 0, 0, 0 };
+  double h = 2;
+  const struct vg_size_law law = { .at = even, .user = &h };
+  struct vg_border border = VG_BORDER_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+  struct vg_mesh m = VG_MESH_INIT;
+  uint32_t p = patch_of(&m, "", VG_BC_NONE);
+
+  assert_int_equal(vg_add_sphere(&m, centre, 10, 3, 1, &law, p, &border, &err),
+                   VG_OK);
+  h = 0.4 * r;
+  p = patch_of(&m, "", VG_BC_NONE);
+  assert_int_equal(vg_add_sphere(&m, centre, r, 3, 0, &law, p, &border, &err),
+                   VG_OK);
+  h = 2;
+  p = patch_of(&m, "", VG_BC_NONE);
+  if (vg_planar_patch(&m, border.n, (const uint32_t (*)[2])border.edge, &law, p,
+                      &err) < 0)
+    fail_msg("%s", err.text);
+  vg_border_release(&border);
+  return m;
+}
+
+/* A part of a sphere with a pocket is a domain around a half body, whatever the
+ * direction of its normals. The same of an ellipsoid is a body with a dent. */
+static void half_a_ball_around_half_a_body(void **state)
+{
+  const double exact = 2 * 3.14159265358979 / 3 * (1000 - 8);
+
+  (void)state;
+  for (int way = 0; way < 4; way++) {
+    struct vg_mesh m = half_room(2);
+    const int is_round = way < 2;
+    struct answer a;
+
+    for (size_t i = 0; i < m.n_point && !is_round; i++) m.point[i][0] *= 1.2;
+    if (way % 2) turn(&m, 0);
+    a = ask(&m);
+    is_kind(&a, is_round ? VG_FLOW_INTERNAL : VG_FLOW_EXTERNAL);
+    /* Chords of a fifth of the radius lie inside the spheres: 1.4 % less. */
+    assert_true(fabs(a.volume / (is_round ? -exact : 1.2 * exact) - 1) < 0.02);
+  }
+}
+
 static struct vg_mesh capped(int32_t bc)
 {
   struct vg_mesh m = VG_MESH_INIT;
@@ -675,6 +723,7 @@ int main(void)
     cmocka_unit_test(open_half_models_are_turned),
     cmocka_unit_test(a_hollow_half_model_loses_its_cavity),
     cmocka_unit_test(a_half_domain_is_internal),
+    cmocka_unit_test(half_a_ball_around_half_a_body),
     cmocka_unit_test(a_cap_is_named_or_removed),
     cmocka_unit_test(a_symmetry_plane_of_a_domain_stays),
     cmocka_unit_test(open_tubes_are_not_decided),
