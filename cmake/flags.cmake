@@ -11,6 +11,13 @@ target_include_directories(vg_flags INTERFACE ${PROJECT_SOURCE_DIR}/src)
 set(CMAKE_C_FLAGS_RELEASE "-O3 -g -DNDEBUG")
 set(CMAKE_CXX_FLAGS_RELEASE "-O2 -g -DNDEBUG")
 
+# Counts of lines (verification/coverage.sh). They are not atomic, which would slow
+# threads down: how often a line ran is then inexact, whether it ran is not.
+if(VG_COVERAGE)
+  target_compile_options(vg_flags INTERFACE --coverage)
+  add_link_options(--coverage LINKER:--wrap=_exit)
+endif()
+
 # vg_module(FOLDER SEEN...): the sources of a folder of src as one part of the
 # program, that sees the headers of others: src/CMakeLists.txt.
 function(vg_module module)

@@ -35,6 +35,11 @@ target_link_libraries(vg_io_cad PUBLIC ${CMAKE_DL_LIBS})
 function(vg_cad_library)
   add_library(vanguard-cad MODULE $<TARGET_OBJECTS:vg_io_occt>)
   target_link_libraries(vanguard-cad PRIVATE ${occt} Threads::Threads)
+  if(VG_COVERAGE)
+    # It writes its own counts, by a copy of gcov of its own.
+    target_sources(vanguard-cad PRIVATE ${PROJECT_SOURCE_DIR}/cmake/coverage.c)
+    target_link_options(vanguard-cad PRIVATE LINKER:-Bsymbolic)
+  endif()
   set_target_properties(vanguard-cad PROPERTIES PREFIX lib SUFFIX .so.0
     LINKER_LANGUAGE CXX LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
   add_dependencies(vanguard vanguard-cad)

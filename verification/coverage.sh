@@ -1,0 +1,63 @@
+#!/usr/bin/env bash
+# verification/coverage.sh: which share of the lines of each module the tests
+# run, by the counts of gcov in a build of the preset `coverage`:
+#   cmake --preset coverage -G Ninja && cmake --build --preset coverage
+#   ctest --preset coverage; verification/coverage.sh
+#
+# usage: verification/coverage.sh [--build DIR] [--files] [--least N] [MODULE...]
+#   --build  the build (default build/coverage)
+#   --files  a row for each file too
+#   --least  fail when a module of core, layers, partition or io has less than N
+#            per cent (default 0)
+#   MODULE   names or patterns: 'core/*' (default: all)
+# Sources in C and C++ count, headers do not. Counts add up over runs of tests:
+# delete the .gcda files of the build to start again.
+# Exit status: 0, 1 a module has less than N, 2 usage.
+set -euo pipefail
+
+root=$(cd "$(dirname "$0")/.." && pwd)
+# shellcheck source=bench/common.sh
+. "$root/bench/common.sh"
+build=$root/build/coverage files='' least=0
+take_options "build least" "files" "$@"
+[ -d "$build/src" ] || die "no build $build: see --help"
+objects=$(realpath "$build/src")
+source=$(sed -n 's/^vanguard_SOURCE_DIR:STATIC=//p' "$build/CMakeCache.txt")
+need gcov gcc
+
+# "FILE LINES RUN" of every source of src. gcov lists the sources of an object
+# file: its own, and headers.
+counts() {
+  find "$objects" -name '*.gcno' -print0 |
+    (cd "$objects" && xargs -0r -n 1 gcov -n 2>/dev/null) |
+    awk -v root="$source/src/" '
+      /^File / { file = substr($0, 7, length($0) - 7)
+        is_own = index(file, root) == 1 && file ~ /\.(c|cpp)$/ }
+      /^Lines executed:/ && is_own { split($2, share, /[:%]/)
+        print substr(file, length(root) + 1), $4,
+          int(share[2] * $4 / 100 + 0.5); is_own = 0 }' | sort
+}
+
+counts | while read -r file count; do
+  ! wanted "${file%/*}" || echo "$file $count"
+done | awk -v files="$files" -v least="$least" '
+  function row(name, lines, run) {
+    printf "| %s | %d | %d | %.1f |\n", name, lines, run, 100 * run / lines
+  }
+  function flush() {
+    if (!lines) return
+    row(module, lines, run)
+    if (files) printf "%s", below
+    if (module ~ /^(core|layers|partition|io)\// && 100 * run < least * lines)
+      bad = bad " " module
+    all += lines; all_run += run; lines = run = 0; below = ""
+  }
+  BEGIN { print "| module | lines | run | % |\n|---|---|---|---|" }
+  { at = $1; sub(/\/[^\/]*$/, "", at)
+    if (at != module) { flush(); module = at }
+    lines += $2; run += $3
+    below = below sprintf("| `%s` | %d | %d | %.1f |\n", $1, $2, $3,
+      100 * $3 / $2) }
+  END { flush()
+    if (all) row("all", all, all_run)
+    if (bad) { print "below " least " %:" bad; exit 1 } }'
