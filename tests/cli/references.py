@@ -7,6 +7,7 @@
   row K17, rows K17 to K19,  a row of a table of docs/decisions.md
   /* K17 ..., (K17)            the same, as comments of the code name rows
   [text](FILE#anchor)        in documents: the file, and its heading
+  core/mesh/mesh.h           a source file below src
 
 references.py ROOT
 """
@@ -26,6 +27,8 @@ ROWS = re.compile(rf"\b[Rr]ows? ({ROW}(?:{LIST}{ROW})*)")
 TAGS = re.compile(rf"^/\*\s+({ROW}(?:{LIST}{ROW})*)(?=[:,.;]| \*/|$)")
 IN_BRACKETS = re.compile(rf"\(({ROW}(?:{LIST}{ROW})*)\)")
 LINK = re.compile(r"\]\(([^)\s#]*)(?:#([^)\s]+))?\)")
+SOURCE = re.compile(r"(?<![\w/.-])(?:src/)?((?:base|core|layers|partition|io|"
+                    r"run|api|cli)/[\w/]+\.(?:c|h|cpp))\b")
 problems = []
 
 
@@ -110,6 +113,15 @@ def check_links(root, path, text, documents):
             complain(path, f"{file} has no heading for #{anchor}")
 
 
+def check_sources(root, path, text):
+    if not path.startswith(("src/", "docs/", "tests/unit/", "CONTRIBUTING")):
+        return
+    for name in SOURCE.findall(text):
+        if "NAME" not in name and \
+                not os.path.exists(os.path.join(root, "src", name)):
+            complain(path, f"src/{name} does not exist")
+
+
 def main(root):
     texts = {path: read(root, path) for path in files(root)
              if "references" not in path and not path.endswith("_fails.sh")}
@@ -123,6 +135,7 @@ def main(root):
         joined = running(text)
         check_cited(root, path, joined, documents)
         check_rows(path, joined, set(listed))
+        check_sources(root, path, text)
         if path in documents:
             check_links(root, path, text, documents)
     print("\n".join(problems) or

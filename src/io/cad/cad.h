@@ -7,7 +7,7 @@
  *
  * The bytes that come out follow from the file and the options. Open CASCADE
  * calls libm, which chooses code by the processor: ranks of a job must take the
- * surface from one of them, and do (run/input/share_surface.h). */
+ * surface from one of them, and do (run/input/share.h). */
 #ifndef VG_IO_CAD_CAD_H
 #define VG_IO_CAD_CAD_H
 

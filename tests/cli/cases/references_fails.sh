@@ -1,6 +1,7 @@
 # The test of references to documents can fail, for each of its reasons.
 command -v python3 >/dev/null || skip "no python3"
-mkdir -p good/src good/docs
+mkdir -p good/src/core/mesh good/docs
+touch good/src/core/mesh/mesh.h
 cat >good/docs/formats.md <<'END'
 # Formats
 See [the layout](#12-layout) and [decisions](decisions.md#kernel), row K1.
@@ -16,7 +17,7 @@ cat >good/src/a.c <<'END'
 /* Records (formats.md 1.2), as docs/formats.md, "Layout", says: formats.md
  * 1.2. Rows K1 and K2 have the constants. */
 #define A 0.5   /* K1: of the size */
-/* Of T1 nothing is said. ONERA M6 is a wing (K2). */
+/* core/mesh/mesh.h has the mesh. Of T1 nothing is said. ONERA M6 is a wing (K2). */
 END
 
 # refused NAME TEXT FILE LINE: the good tree with LINE at the end of FILE fails
@@ -46,6 +47,8 @@ refused list "docs/decisions.md has no row K4" src/a.c "/* K1, K4: both */"
 refused brackets "docs/decisions.md has no row K5" src/a.c "/* Here (K5). */"
 refused row "docs/decisions.md has no row K6" docs/formats.md "Rows K1 to K6."
 refused twice "row K2 occurs twice" docs/decisions.md '| K2 | 1 | `b.c` |'
+refused source "src/core/mesh/m.h does not exist" src/a.c \
+  "/* core/mesh/m.h has it. */"
 refused link "the link to x.md leads nowhere" docs/formats.md "[x](x.md)"
 refused anchor "docs/decisions.md has no heading for #zones" docs/formats.md \
   "[x](decisions.md#zones)"
