@@ -150,9 +150,12 @@ static void everything_survives_a_round_trip(void **state)
   patch.bc = VG_BC_NONE;
   strcpy(patch.name, "-");
   vg_settings_add(&s, VG_TABLE_PATCHES, &patch, NULL);
-  s.layer = (struct vg_layer_settings){ VG_ANSWER_YES, 1e-6, NAN, 0.15, 0.02,
-    30, 40, 5, 2.5, 1.3, 0, 5e6, 1.5, "1-3,-7", "8 ,9", 40, 0.3, 0.8, 1.5, 7,
-    1, 0, 2, { 95, NAN, 60, 1, 5.5 } };
+  s.layer = (struct vg_layer_settings){ .grow = VG_ANSWER_YES, .first = 1e-6,
+    .ratio = NAN, .rate1 = 0.15, .rate2 = 0.02, .count = 30, .most = 40,
+    .constant = 5, .total = 2.5, .cap = 1.3, .reynolds = 5e6, .length = 1.5,
+    .walls = "1-3,-7", .slip = "8 ,9", .fan_angle = 40, .gap = 0.3, .end = 0.8,
+    .slope = 1.5, .smooth = 7, .by_source = 1, .scale_rule = 2,
+    .limit = { 95, NAN, 60, 1, 5.5 } };
   vg_settings_add(&s, VG_TABLE_LAYERS, &layer, NULL);
   vg_settings_add(&s, VG_TABLE_SURFACE, &surface, NULL);
   surface.beside = 8;

@@ -2,8 +2,9 @@
  * name it.
  *
  * One row of a table describes one value: the deck's reader and writer, the
- * command line and its help all walk these rows, so a new setting is one new
- * row. Uses core and io/stream/stream.h. */
+ * command line and its help, the log, the digest of a job and the check of a
+ * resumed run walk these rows, so a new setting is one new row in
+ * run/settings/rows.h. Uses core and io/stream/stream.h. */
 #ifndef VG_RUN_SETTINGS_SETTINGS_H
 #define VG_RUN_SETTINGS_SETTINGS_H
 
@@ -84,65 +85,50 @@ struct vg_sweep_row {
   int64_t repeat;                  /* 0: not given */
 };
 
+/* Members of the structures below: those of the rows in their place. */
+#define VG_MEMBER_REAL double
+#define VG_MEMBER_COUNT int64_t
+#define VG_MEMBER_FLAG int
+#define VG_MEMBER_WORD int
+#define VG_ROW(type, place, member, ...) \
+  VG_IN_##place(VG_MEMBER_##type member;)
+#define VG_TEXT_ROW(place, member, size, ...) VG_IN_##place(char member[size];)
+#define VG_IN_limit(declaration)
+
 /** Viscous layers on all walls. 0 (a rate, the cap and limits: NAN): not
  * given. */
 struct vg_layer_settings {
-  int grow;                        /* enum vg_answer */
-  double first, ratio, rate1, rate2;
-  int64_t count, most, constant;
-  double total, cap;
-  double y_plus, reynolds, length;
-  char walls[VG_LIST_MAX], slip[VG_LIST_MAX];
-  double fan_angle, gap, end, slope;
-  int64_t smooth;
-  int by_source, from_files;
-  int scale_rule;                  /* enum vg_law_rule */
+#define VG_IN_plain(declaration)
+#define VG_IN_cad(declaration)
+#define VG_IN_layer(declaration) declaration
+#include "run/settings/rows.h"
+#undef VG_IN_layer
+#undef VG_IN_cad
   struct vg_layer_limits limit;
 };
 
 /** How CAD becomes triangles: as struct vg_cad_options of io/cad/cad.h. */
 struct vg_cad_settings {
-  int unit, patches;               /* enum vg_cad_unit, vg_cad_patches */
-  double tolerance, chord, angle, seconds;
+#define VG_IN_layer(declaration)
+#define VG_IN_cad(declaration) declaration
+#include "run/settings/rows.h"
+#undef VG_IN_cad
+#undef VG_IN_plain
 };
 
-/** All settings of a run. */
+/** All settings of a run; their rows say what they mean. */
 struct vg_settings {
   char title[VG_TITLE_MAX + 1];
-  double scale, growth, hmin, hmax;
-  int surface_sizes, d3m_sources;
-  char sizes[VG_LIST_MAX];         /* a file with edge lengths; "": none */
-  char mapbc[VG_LIST_MAX];         /* a file with conditions; "": that of the
-                                      project */
+#define VG_IN_cad(declaration)
+#define VG_IN_plain(declaration) declaration
+#include "run/settings/rows.h"
+#undef VG_IN_plain
+#undef VG_IN_cad
+#undef VG_IN_layer
+#undef VG_IN_limit
+#undef VG_ROW
+#undef VG_TEXT_ROW
   struct vg_cad_settings cad;
-  int flow;                        /* enum vg_flow_kind of core/flow/flow.h */
-  int half;                        /* enum vg_flow_half */
-  int all_regions;                 /* 1: mesh every region of fluid */
-  int close_holes;
-  double weld, wrap;
-  int repair;
-  int64_t optimise, max_cells;
-  char write[VG_WRITE_MAX];        /* "auto": vg_settings_write */
-  int report_html;
-  int swap;                        /* enum vg_answer: swap edges */
-  int remesh;                      /* enum vg_answer: make the triangles of the
-                                      surface anew */
-  double surface_tolerance, surface_size, ridge_angle, per_turn;
-  double gap_edges;                /* across gaps, at least; 0: any */
-  int cells;                       /* enum vg_layer_cells */
-  int ugrid_tail;
-  int64_t solver_parts;            /* 0: none */
-  char mesher[VG_MESHER_MAX];      /* of leaves */
-  int64_t leaf_cells, levels;      /* how far the void is cut up */
-  int64_t split_direction;         /* 0: best; 1 to 3: x, y, z first */
-  int constant_direction;
-  int decompose;                   /* enum vg_decomposition */
-  int64_t parts;                   /* VG_COUNT_NONE: by leaf_cells */
-  int partitioner;                 /* enum vg_partitioner */
-  double coarsening;               /* 0: by the number of parts */
-  int h_refine;                    /* 1: interfaces by halving edges */
-  int cyclic;                      /* 1: parts are dealt out beforehand */
-  int64_t threads;
   struct vg_layer_settings layer;
   struct vg_farfield_row farfield;
   struct vg_sweep_row sweep;
@@ -187,6 +173,10 @@ struct vg_param {
   int above_lo;             /* 1: lo itself is refused */
   int optional;             /* 1: "-" stands for "not given" */
   int required;             /* 1: a table must have this column */
+  int keeps_mesh;           /* 1: points, cells, patches and conditions of the
+                               mesh do not depend on the value: it is no part
+                               of the job's digest, and may change when a run
+                               is resumed */
   const char *const *words; /* NULL-ended, for VG_PARAM_WORD */
   /* Of a text: whether it says what it should; NULL: any will do. */
   vg_status (*check)(const char *name, const char *text,
