@@ -161,40 +161,34 @@ static void add_digest(void *user, size_t n, const void *data)
   *d = vg_digest_of(*d, n, data);
 }
 
-/* Everything that the tasks' outcomes follow from, besides their input. */
-static struct vg_digest job_digest(const struct vg_problem *p,
-                                   const struct vg_mesh *boundary,
-                                   const struct vg_sizing *sizing)
+/* What the outcomes of tasks follow from, besides their input: the program, the
+ * settings, the boundary, and sizes that no setting describes. Only the first
+ * rank has settings that are resolved: the others get its digest. Collective. */
+static vg_status job_digest(const struct vg_run *r, const struct vg_problem *p,
+                            const struct vg_mesh *boundary,
+                            const struct vg_sizing *sizing,
+                            struct vg_digest *out, struct vg_error *err)
 {
   const struct vg_settings *s = &p->settings;
-  struct vg_digest d = {{0, 0}}, plugin;
-  double size[6] = {s->scale, s->growth, s->hmin, s->hmax,
-                    (double)s->surface_sizes, s->coarsening};
-  int64_t cut[9] = {s->leaf_cells, s->levels, s->split_direction,
-                    s->constant_direction, s->optimise, s->decompose,
-                    s->parts, s->partitioner, s->h_refine};
+  struct vg_digest d = {{0, 0}};
+  struct vg_bytes all = {0, NULL};
+  vg_status st = VG_OK;
 
+  if (!r->rank) st = vg_run_settings_digest(s, &d, err);
+  VG_TRY(vg_comm_agree(r->comm, st, err));
+  if (!r->rank)
+    all = (struct vg_bytes){ sizeof d, (unsigned char *)&d };
+  VG_TRY(vg_comm_bcast(r->comm, 0, &all, err));
+  if (r->rank) memcpy(&d, all.data, sizeof d);
   d = vg_digest_of(d, strlen(vg_source_digest), vg_source_digest);
-  d = vg_digest_of(d, sizeof size, size);
-  d = vg_digest_of(d, sizeof cut, cut);
-  d = vg_digest_of(d, strlen(s->mesher), s->mesher);
-  if (vg_run_mesher_digest(s, &plugin))
-    d = vg_digest_of(d, sizeof plugin, &plugin);
-  for (size_t i = 0; i < s->n_source; i++) {
-    const struct vg_source *q = &s->source[i];
-    double v[19] = {q->kind, q->h0, q->h1, q->r0, q->r1, q->growth, q->an};
-
-    memcpy(v + 7, q->p0, sizeof q->p0);
-    memcpy(v + 10, q->p1, sizeof q->p1);
-    memcpy(v + 13, q->p2, sizeof q->p2);
-    memcpy(v + 16, q->u, sizeof q->u);
-    d = vg_digest_of(d, sizeof v, v);
-  }
   d = vg_digest_of(d, boundary->n_point * sizeof *boundary->point,
                    boundary->point);
   d = vg_digest_of(d, boundary->n_tri * sizeof *boundary->tri, boundary->tri);
   if (*s->sizes || s->gap_edges > 0) vg_sizing_show(sizing, add_digest, &d);
-  return d;
+  *out = d;
+done:
+  if (r->rank) free(all.data);
+  return st;
 }
 
 vg_status vg_run_resumable(struct vg_run *r, struct vg_error *err)
@@ -214,16 +208,18 @@ static vg_status open_store(struct vg_run *r, const struct vg_problem *p,
 {
   struct vg_store_options s = { .dir = r->options.dir,
     .resume = r->options.resume, .limit = r->options.limit };
-  char what[200], *settings;
+  char what[200], *settings = NULL;
   vg_status st;
 
   if (!r->options.dir) return VG_OK;
-  o->job = s.job = job_digest(p, boundary, sizing);
+  VG_TRY(job_digest(r, p, boundary, sizing, &o->job, err));
+  s.job = o->job;
   snprintf(what, sizeof what, "%s (%zu boundary triangles)",
            p->settings.title, boundary->n_tri);
   s.what = what;
   s.settings = settings = vg_run_settings(&p->settings, boundary);
   st = vg_store_open(r->comm, &s, &r->store, err);
+done:
   free(settings);
   return st;
 }

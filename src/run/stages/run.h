@@ -96,8 +96,14 @@ vg_status vg_run_memory(struct vg_run *r, struct vg_error *err);
 /** Collective. success: what was kept for a resume is removed. */
 void vg_run_release(struct vg_run *r, int success);
 
-/** run/stages/run_settings.c: lines of name=value for vg_store_options; the
- * caller frees them. NULL: no memory. */
+/** run/stages/run_settings.c: the digest of all resolved settings that decide
+ * the mesh (vg_param.keeps_mesh is 0), with the contents of a plug-in mesher.
+ * VG_ERR_MEMORY. */
+vg_status vg_run_settings_digest(const struct vg_settings *s,
+                                 struct vg_digest *d, struct vg_error *err);
+
+/** The same settings as lines of name=value for vg_store_options; the caller
+ * frees them. NULL: no memory. */
 char *vg_run_settings(const struct vg_settings *s,
                       const struct vg_mesh *boundary);
 

@@ -1,5 +1,6 @@
-/* What decides the cells of a run, as lines for its run directory: a refused
- * resume shows which of them differ. */
+/* What decides the mesh of a run, as a digest and as lines for its run
+ * directory: a refused resume shows which of them differ. The rows of the
+ * settings say which values decide it (vg_param.keeps_mesh). */
 #define _GNU_SOURCE
 #include <fcntl.h>
 #include <stdio.h>
@@ -10,48 +11,94 @@
 #include "base/version.h"
 #include "run/stages/run.h"
 
-/* These may change from one part of a run to the next. */
-static const char *const free_to_change[] = {
-  "threads", "schedule", "cad_seconds", "write", "report_html", "ugrid_tail",
-  "solver_parts", "max_cells", "min_full",
-  "min_any", "min_height", "max_first_error", "max_top_ratio" };
-
-static int is_free(const char *name)
-{
-  for (size_t i = 0; i < sizeof free_to_change / sizeof *free_to_change; i++)
-    if (!strcmp(free_to_change[i], name)) return 1;
-  return 0;
-}
-
 static void put_values(FILE *to, const char *prefix, const struct vg_param *p,
                        size_t n, const void *base)
 {
   char value[2 * VG_LIST_MAX + 4];
 
   for (size_t i = 0; i < n; i++) {
-    if (is_free(p[i].name)) continue;
+    if (p[i].keeps_mesh) continue;
     vg_param_format(&p[i], base, value, sizeof value);
     fprintf(to, "%s%s=%s\n", prefix, p[i].name, value);
   }
 }
 
-/* Long tables as a count and a digest of their text. */
+/* The plain settings and the farfield. */
+static void put_plain(FILE *to, const struct vg_settings *s)
+{
+  size_t n;
+  const struct vg_param *p = vg_settings_params(&n);
+  const struct vg_table *far = vg_settings_table(VG_TABLE_FARFIELD);
+
+  put_values(to, "", p, n, s);
+  put_values(to, "farfield ", far->column, far->n_column, &s->farfield);
+}
+
+static void put_rows(FILE *to, const struct vg_settings *s,
+                     enum vg_table_kind kind)
+{
+  const struct vg_table *t = vg_settings_table(kind);
+  size_t n = vg_settings_rows(s, kind);
+
+  for (size_t i = 0; i < n; i++)
+    put_values(to, "", t->column, t->n_column, vg_settings_row(s, kind, i));
+}
+
+/* The digest of what `put_rows` writes for a table, or of the plain settings
+ * where kind is VG_TABLE_FARFIELD. */
+static int digest_part(const struct vg_settings *s, enum vg_table_kind kind,
+                       struct vg_digest *d)
+{
+  char *text = NULL;
+  size_t size;
+  FILE *to = open_memstream(&text, &size);
+
+  if (!to) return -1;
+  if (kind == VG_TABLE_FARFIELD) put_plain(to, s);
+  else put_rows(to, s, kind);
+  if (fclose(to)) {
+    free(text);
+    return -1;
+  }
+  *d = vg_digest_of(*d, size, text);
+  free(text);
+  return 0;
+}
+
+vg_status vg_run_settings_digest(const struct vg_settings *s,
+                                 struct vg_digest *d, struct vg_error *err)
+{
+  struct vg_digest all = {{0, 0}}, plugin;
+  int bad = 0;
+
+  for (int kind = 0; kind < VG_TABLE_N; kind++)
+    bad |= digest_part(s, (enum vg_table_kind)kind, &all);
+  if (bad) return vg_fail_memory(err, "the settings");
+  if (vg_run_mesher_digest(s, &plugin))
+    all = vg_digest_of(all, sizeof plugin, &plugin);
+  *d = all;
+  return VG_OK;
+}
+
+static int decides(const struct vg_table *t)
+{
+  for (size_t c = 0; c < t->n_column; c++)
+    if (!t->column[c].keeps_mesh) return 1;
+  return 0;
+}
+
+/* Tables may be long: a count and a digest stand for their rows. */
 static void put_table(FILE *to, const struct vg_settings *s,
                       enum vg_table_kind kind)
 {
   const struct vg_table *t = vg_settings_table(kind);
   struct vg_digest d = {{0, 0}};
-  char value[2 * VG_LIST_MAX + 4];
   size_t n = vg_settings_rows(s, kind);
 
-  for (size_t i = 0; i < n; i++)
-    for (size_t c = 0; c < t->n_column; c++) {
-      vg_param_format(&t->column[c], vg_settings_row(s, kind, i), value,
-                      sizeof value);
-      d = vg_digest_of(d, strlen(value), value);
-    }
+  if (!decides(t)) return;
   fprintf(to, "table %s=%zu rows", t->name, n);
-  if (n) fprintf(to, " (digest %08x)", (unsigned)d.word[0]);
+  if (n && !digest_part(s, kind, &d))
+    fprintf(to, " (digest %08x)", (unsigned)d.word[0]);
   fputc('\n', to);
 }
 
@@ -88,18 +135,15 @@ char *vg_run_settings(const struct vg_settings *s,
                       const struct vg_mesh *boundary)
 {
   char *text = NULL;
-  size_t size, n;
+  size_t size;
   FILE *to = open_memstream(&text, &size);
-  const struct vg_param *p = vg_settings_params(&n);
-  const struct vg_table *far = vg_settings_table(VG_TABLE_FARFIELD);
 
   if (!to) return NULL;
   fprintf(to, "program=Vanguard " VG_VERSION ", source %.16s\n",
           vg_source_digest);
-  put_values(to, "", p, n, s);
-  put_values(to, "farfield ", far->column, far->n_column, &s->farfield);
-  put_table(to, s, VG_TABLE_LAYERS);
-  put_table(to, s, VG_TABLE_SOURCES);
+  put_plain(to, s);
+  for (int kind = VG_TABLE_FARFIELD + 1; kind < VG_TABLE_N; kind++)
+    put_table(to, s, (enum vg_table_kind)kind);
   put_mesher(to, s);
   put_boundary(to, boundary);
   if (fclose(to)) {
