@@ -27,6 +27,7 @@
 #include "io/stream/stream.h"
 #include "peers.h"
 #include "run/settings/deck.h"
+#include "run/settings/options.h"
 
 #define NAME_MAX_LEN 4096
 
@@ -48,7 +49,7 @@ static vg_status load_surface(const char *path, const char *deck,
   free(m->tet);
   m->tet = NULL;
   m->n_tet = 0;
-  options = vg_settings_sizing(&s);
+  options = vg_options_sizing(&s, NULL);
   VG_TRY(vg_sizing_new(&options, s.n_source, s.source, m, sizing, err));
 done:
   vg_settings_release(&s);

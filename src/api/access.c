@@ -314,17 +314,18 @@ const char *vanguard_cause(int32_t cause)
 static vg_status plan_files(vanguard_job *job, const char *stem,
                             const char *forms, struct vg_outputs *o)
 {
-  struct vg_problem view = job->problem;
+  struct vg_settings view = job->problem.asked;   /* tables are borrowed */
   size_t n = forms ? strlen(forms) : 0;
+  char list[VG_WRITE_MAX];
 
-  if (n >= sizeof view.settings.write)
+  if (n >= sizeof view.write)
     return vg_fail(&job->err, VG_ERR_INPUT, "the list of forms has %zu "
                    "characters, at most %zu are taken", n,
-                   sizeof view.settings.write - 1);
-  if (forms) memcpy(view.settings.write, forms, n + 1);
-  vg_settings_write(&view.settings);
-  view.files.stem = (char *)stem;
-  return vg_outputs_plan(&view, NULL, job->run.size, o, &job->err);
+                   sizeof view.write - 1);
+  if (forms) memcpy(view.write, forms, n + 1);
+  vg_resolve_write(&view, list);
+  return vg_outputs_plan(&job->problem, stem, NULL, list, job->run.size, o,
+                         &job->err);
 }
 
 static vg_status put_files(vanguard_job *job, struct vg_outputs *o)

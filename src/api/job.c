@@ -208,15 +208,14 @@ vanguard_status vanguard_open(vanguard_job *job, const char *project,
   vg_status st;
 
   VG_TRY(vg_job_usable(job));
-  VG_TRY(vg_input_find(project, deck, &p.files, &job->err));
-  VG_TRY(vg_problem_deck(&p, &job->err));
+  VG_TRY(vg_problem_open(&p, project, deck, &job->err));
   if (keep_text(&job->project, project) || keep_text(&job->deck, deck)) {
     st = vg_fail_memory(&job->err, "the names of the project");
     goto done;
   }
   vg_settings_release(&job->settings);
-  job->settings = p.settings;
-  memset(&p.settings, 0, sizeof p.settings);
+  job->settings = p.asked;
+  memset(&p.asked, 0, sizeof p.asked);
   vg_mesh_release(&job->surface);
 done:
   vg_problem_release(&p);

@@ -54,16 +54,36 @@ static vg_status use_sizes(vanguard_job *job)
 
   if (job->size) {
     job->map = (struct vg_size_map){ .at = size_at, .user = job };
-    p->map = &job->map;
+    p->read.map = &job->map;
   } else if (job->n_size) {
     st = vg_size_samples_new(job->n_size, (const double (*)[3])job->size_at,
                              job->size_of,
-                             vg_scaled_growth(p->settings.growth,
-                                              p->settings.scale),
-                             (int)p->settings.threads, &job->samples,
+                             vg_scaled_growth(p->asked.growth,
+                                              p->asked.scale),
+                             (int)p->asked.threads, &job->samples,
                              &job->err);
-    if (st >= 0) p->map = vg_size_samples_map(job->samples);
+    if (st >= 0) p->read.map = vg_size_samples_map(job->samples);
   }
+  return st;
+}
+
+/* By each rank: settings, files found, sizes; the surface is copied. */
+static vg_status take_input(vanguard_job *job, struct vg_mesh *copy)
+{
+  struct vg_problem *p = &job->problem;
+  vg_status st;
+
+  VG_TRY(vg_settings_copy(&p->asked, &job->settings, &job->err));
+  VG_TRY(vg_settings_check(&p->asked, &job->err));
+  VG_TRY(use_sizes(job));
+  if (job->project)
+    st = vg_input_find(job->project, job->deck, &p->read.files, &job->err);
+  else if (job->surface.n_tri)
+    st = vg_mesh_copy(copy, &job->surface, &job->err);
+  else
+    st = vg_fail(&job->err, VG_ERR_USAGE, "no surface: call vanguard_open or "
+                 "vanguard_surface before vanguard_mesh");
+done:
   return st;
 }
 
@@ -71,39 +91,28 @@ static vg_status read_input(vanguard_job *job)
 {
   struct vg_problem *p = &job->problem;
   struct vg_mesh copy = VG_MESH_INIT;
-  vg_status st;
+  vg_status st = vg_comm_agree(job->comm, take_input(job, &copy), &job->err);
 
-  VG_TRY(vg_settings_copy(&p->settings, &job->settings, &job->err));
-  VG_TRY(vg_settings_check(&p->settings, &job->err));
-  vg_settings_write(&p->settings);
-  VG_TRY(use_sizes(job));
-  if (job->project) {
-    VG_TRY(vg_input_find(job->project, job->deck, &p->files, &job->err));
-    st = vg_problem_surface(p, &job->show, &job->err);
-  } else if (job->surface.n_tri) {
-    VG_TRY(vg_mesh_copy(&copy, &job->surface, &job->err));
-    st = vg_problem_given(p, job->name, &copy, &job->err);
-  } else {
-    st = vg_fail(&job->err, VG_ERR_USAGE, "no surface: call vanguard_open or "
-                 "vanguard_surface before vanguard_mesh");
-  }
-  if (st >= 0) st = vg_display_stopped(&job->show, &job->err);
-done:
+  if (st >= 0 && job->project)
+    return vg_problem_read(p, job->comm, &job->show, &job->err);
+  if (st >= 0) st = vg_problem_given(p, job->name, &copy, &job->err);
   vg_mesh_release(&copy);
-  return st;
+  if (st >= 0) st = vg_display_stopped(&job->show, &job->err);
+  return vg_comm_agree(job->comm, st, &job->err);
 }
 
 /* What there is to say of the surface, good or bad. */
 static void describe_surface(vanguard_job *job)
 {
   const struct vg_problem *p = &job->problem;
+  const struct vg_mesh *m = vg_problem_surface(p);
   size_t size;
   FILE *to;
 
-  if (!p->surface.n_tri || vg_comm_node_rank(job->comm)) return;
+  if (!m->n_tri || vg_comm_node_rank(job->comm)) return;
   to = open_memstream(&job->details, &size);
   if (!to) return;
-  vg_report_surface_text(to, &p->surface, &p->check, VG_SHOWN_DEFECTS);
+  vg_report_surface_text(to, m, &p->boundary.check, VG_SHOWN_DEFECTS);
   if (fclose(to)) {
     free(job->details);
     job->details = NULL;
@@ -117,14 +126,14 @@ static vg_status make(vanguard_job *job)
   struct vg_problem *p = &job->problem;
   vg_status st;
 
-  VG_TRY(vg_comm_agree(job->comm, read_input(job), &job->err));
+  VG_TRY(read_input(job));
   VG_TRY(vg_run_surface(r, p, &job->layers, &job->show, &job->err));
   VG_TRY(vg_run_mesh(r, p, &job->layers, &job->show, &job->err));
-  front = vg_layer_stage_front(&job->layers, &p->surface);
-  vg_effects_note(&r->effects, &front, p);
+  front = vg_layer_stage_front(&job->layers, &p->boundary.surface);
+  vg_effects_note(&r->effects, &front, &p->boundary);
   vg_problem_note_unused(p, job->layers.is_on, VG_USE_JUDGED_MESH);
   if (!r->rank)
-    vg_report_layers_note(&job->layers, &p->surface, &p->notes);
+    vg_report_layers_note(&job->layers, &p->boundary.surface, &p->notes);
 done:
   return st;
 }

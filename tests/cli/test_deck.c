@@ -12,6 +12,7 @@
 #include <cmocka.h>
 
 #include "run/settings/deck.h"
+#include "run/settings/resolved.h"
 
 static vg_status parse(const char *text, struct vg_settings *s,
                        struct vg_error *err)
@@ -277,6 +278,7 @@ static void tables_are_checked_too(void **state)
 /* `layers` is a setting, and a table of the same name. */
 static void layers_are_a_setting_and_a_table(void **state)
 {
+  char list[VG_WRITE_MAX];
   struct vg_settings s = VG_SETTINGS_INIT;
   struct vg_error err = VG_ERROR_INIT;
 
@@ -302,8 +304,8 @@ static void layers_are_a_setting_and_a_table(void **state)
     fail_msg("%s", err.text);
   assert_int_equal(s.layer.grow, VG_ANSWER_NO);
   assert_string_equal(s.write, "auto");
-  vg_settings_write(&s);
-  assert_string_equal(s.write, "b8.ugrid");
+  vg_resolve_write(&s, list);
+  assert_string_equal(list, "b8.ugrid");
   vg_settings_release(&s);
 }
 

@@ -482,6 +482,7 @@ static void what_cannot_be_is_refused(void **state)
 
 static vg_status shape(size_t lo, const char *walls, struct vg_error *err)
 {
+  const struct vg_shape_options o = { .threads = 0 };
   struct vg_problem p = VG_PROBLEM_INIT;
   struct vg_mesh m = VG_MESH_INIT;
   struct vg_display show;
@@ -494,12 +495,12 @@ static vg_status shape(size_t lo, const char *walls, struct vg_error *err)
     add_brick(&m, 0.3, 12);
     scale_last(&m, 0.4);
   }
-  vg_settings_default(&p.settings);
-  p.settings.flow = VG_FLOW_EXTERNAL;
-  p.settings.wrap = 0.2;
-  snprintf(p.settings.layer.walls, sizeof p.settings.layer.walls, "%s", walls);
+  vg_settings_default(&p.asked);
+  p.asked.flow = VG_FLOW_EXTERNAL;
+  p.asked.wrap = 0.2;
+  snprintf(p.asked.layer.walls, sizeof p.asked.layer.walls, "%s", walls);
   st = vg_problem_given(&p, "bricks", &m, err);
-  if (st >= 0) st = vg_problem_shape(&p, &show, err);
+  if (st >= 0) st = vg_problem_shape(&p, &o, &show, err);
   vg_problem_release(&p);
   return st;
 }

@@ -9,6 +9,7 @@
 #include "run/common/text.h"
 #include "run/input/layers.h"
 #include "run/report/report.h"
+#include "run/settings/options.h"
 
 struct findings {
   int has_lines;            /* 1: the surface has no defects that keep its lines
@@ -36,20 +37,20 @@ static int can_be_followed(const struct vg_mesh *m,
 }
 
 /* A surface may be sound and yet beyond what the remesher can be asked for. */
-static vg_status look_at_lines(struct vg_problem *p, struct findings *f,
+static vg_status look_at_lines(struct vg_boundary *b, struct findings *f,
                                struct vg_error *err)
 {
-  struct vg_remesh_options o = vg_remesh_options_of(&p->settings);
+  struct vg_remesh_options o = vg_options_remesh(&b->read->settings);
   struct vg_error why = VG_ERROR_INIT;
   vg_status st;
 
-  if (!can_be_followed(&p->surface, &p->check)) return VG_OK;
+  if (!can_be_followed(&b->surface, &b->check)) return VG_OK;
   o.threads = 0;
-  st = vg_remesh_judge(&p->surface, &o, &f->lines, &why);
+  st = vg_remesh_judge(&b->surface, &o, &f->lines, &why);
   f->has_lines = st >= 0;
   if (st == VG_ERR_MEMORY) return vg_fail_memory(err, "the lines");
   if (st < 0)
-    vg_note(&p->notes, "feature lines were not examined: %s", why.text);
+    vg_note(b->notes, "feature lines were not examined: %s", why.text);
   return VG_OK;
 }
 
@@ -128,69 +129,69 @@ static json_t *notes_json(const struct vg_notes *notes)
 }
 
 /* Whether vanguard mesh adds a farfield to a surface like this. */
-static int adds_farfield(const struct vg_problem *p)
+static int adds_farfield(const struct vg_boundary *b)
 {
-  return p->flow.kind == VG_FLOW_EXTERNAL
-         && p->settings.farfield.kind != VG_DOMAIN_NONE;
+  return b->flow.kind == VG_FLOW_EXTERNAL
+         && b->read->settings.farfield.kind != VG_DOMAIN_NONE;
 }
 
 static void print_json(const struct vg_check_surface *a,
-                       const struct vg_problem *p, const struct findings *f,
+                       const struct vg_boundary *b, const struct findings *f,
                        const json_t *body, vg_status st,
                        const struct vg_error *err)
 {
   json_t *o = json_pack("{s:o s:b s:o s:O s:o s:o s:o s:o}", "file",
     vg_text_json(a->file), "ok", st >= 0, "flow",
-    vg_report_flow_json(&p->flow, adds_farfield(p)), "surface", body, "remesh",
-    vg_report_remesh_json(&p->renewal, &p->surface), "notes",
-    notes_json(&p->notes), "lines",
+    vg_report_flow_json(&b->flow, adds_farfield(b)), "surface", body, "remesh",
+    vg_report_remesh_json(&b->renewal, &b->surface), "notes",
+    notes_json(b->notes), "lines",
     f->has_lines ? vg_report_lines_json(&f->lines, a->has_deck) : json_null(),
     "against", a->against ? vg_report_distances_json(a->against, f->off)
                           : json_null());
 
   if (st < 0) json_object_set_new(o, "error", vg_text_json(err->text));
-  json_object_set_new(o, "patches", vg_report_patches_json(&p->surface));
-  json_object_set_new(o, "size", vg_report_size_json(&p->surface));
+  json_object_set_new(o, "patches", vg_report_patches_json(&b->surface));
+  json_object_set_new(o, "size", vg_report_size_json(&b->surface));
   json_dumpf(o, stdout, JSON_INDENT(2));
   printf("\n");
   json_decref(o);
 }
 
 static vg_status print_text(const struct vg_check_surface *a,
-                            const struct vg_problem *p,
+                            const struct vg_boundary *b,
                             const struct findings *f, struct vg_error *err)
 {
   vg_status st;
 
   printf("%s: surface\n\n", a->file);
-  vg_report_flow_text(stdout, &p->flow, adds_farfield(p));
-  for (size_t i = 0; i < p->notes.n; i++)
-    printf("  note: %s\n", p->notes.text[i]);
+  vg_report_flow_text(stdout, &b->flow, adds_farfield(b));
+  for (size_t i = 0; i < b->notes->n; i++)
+    printf("  note: %s\n", b->notes->text[i]);
   printf("\nSurface\n");
-  vg_report_size_text(stdout, &p->surface);
-  VG_TRY(vg_report_patches_text(stdout, &p->surface, err));
-  vg_report_remesh_text(stdout, &p->renewal);
-  vg_report_surface_text(stdout, &p->surface, &p->check, VG_SHOWN_DEFECTS);
+  vg_report_size_text(stdout, &b->surface);
+  VG_TRY(vg_report_patches_text(stdout, &b->surface, err));
+  vg_report_remesh_text(stdout, &b->renewal);
+  vg_report_surface_text(stdout, &b->surface, &b->check, VG_SHOWN_DEFECTS);
   if (f->has_lines) vg_report_lines_text(stdout, &f->lines, a->has_deck);
   if (a->against) vg_report_distances_text(stdout, a->against, f->off);
-  if (!p->check.n_defect) printf("  no defects\n");
+  if (!b->check.n_defect) printf("  no defects\n");
 done:
   return st;
 }
 
 /* Examine the surface itself, before the domain is completed. */
 static vg_status examine(const struct vg_check_surface *a,
-                         struct vg_problem *p, struct findings *f,
+                         struct vg_boundary *b, struct findings *f,
                          struct vg_display *show, struct vg_error *err)
 {
   vg_status st;
 
-  VG_TRY(look_at_lines(p, f, err));
-  VG_TRY(compare(a, &p->surface, f, err));
+  VG_TRY(look_at_lines(b, f, err));
+  VG_TRY(compare(a, &b->surface, f, err));
   vg_display_clear(show);
-  if (!a->json) VG_TRY(print_text(a, p, f, err));
-  VG_TRY(write_defects(a, &p->surface, &p->check, err));
-  VG_TRY(write_vtu(a, &p->surface, f, err));
+  if (!a->json) VG_TRY(print_text(a, b, f, err));
+  VG_TRY(write_defects(a, &b->surface, &b->check, err));
+  VG_TRY(write_vtu(a, &b->surface, f, err));
 done:
   return st;
 }
@@ -203,7 +204,7 @@ static vg_status finish(struct vg_problem *p, struct vg_display *show,
   vg_status st;
 
   VG_TRY(vg_problem_close(p, show, err));
-  st = vg_layer_stage_plan(&layers, p, err);
+  st = vg_problem_layers(p, &layers, err);
 done:
   vg_layer_stage_release(&layers);
   return st;
@@ -213,22 +214,24 @@ vg_status vg_check_surface(const struct vg_check_surface *a,
                            struct vg_problem *p, struct vg_display *show,
                            struct vg_error *err)
 {
+  const struct vg_shape_options o = { .threads = (int)p->asked.threads };
+  struct vg_boundary *b = &p->boundary;
   struct vg_error why = VG_ERROR_INIT;
   struct findings f = { 0 };
   json_t *body = NULL;
   size_t n_note;
-  vg_status st = vg_problem_shape(p, show, &why), shape = st;
+  vg_status st = vg_problem_shape(p, &o, show, &why), shape = st;
 
-  if (st < 0 && !p->check.face_kinds) {
+  if (st < 0 && !b->check.face_kinds) {
     st = vg_fail(err, st, "%s", why.text);
     goto done;
   }
-  VG_TRY(examine(a, p, &f, show, err));
-  body = vg_report_surface_json(&p->surface, &p->check, VG_LISTED_DEFECTS);
+  VG_TRY(examine(a, b, &f, show, err));
+  body = vg_report_surface_json(&b->surface, &b->check, VG_LISTED_DEFECTS);
   n_note = p->notes.n;
   if (shape >= 0) shape = finish(p, show, &why);
   vg_display_clear(show);
-  if (a->json) print_json(a, p, &f, body, shape, &why);
+  if (a->json) print_json(a, b, &f, body, shape, &why);
   else
     for (size_t i = n_note; i < p->notes.n; i++)
       printf("  note: %s\n", p->notes.text[i]);

@@ -15,6 +15,7 @@
 #include "run/common/text.h"
 #include "run/input/input.h"
 #include "run/report/report.h"
+#include "run/settings/options.h"
 
 struct arguments {
   struct vg_cli_one one;
@@ -42,7 +43,7 @@ static vg_status field(const struct arguments *a, const struct vg_settings *s,
                        const struct vg_mesh *m, struct vg_sizing **out,
                        struct vg_error *err)
 {
-  struct vg_sizing_options options = vg_settings_sizing(s);
+  struct vg_sizing_options options = vg_options_sizing(s, NULL);
 
   if (!a->deck) return VG_OK;
   return vg_sizing_new(&options, s->n_source, s->source, m, out, err);
@@ -115,12 +116,12 @@ static vg_status check_volume(const struct arguments *a, struct vg_problem *p,
                               struct vg_display *show, struct vg_error *err)
 {
   struct vg_mesh m = VG_MESH_INIT;
-  struct vg_read_info info = { .mapbc = p->settings.mapbc };
+  struct vg_read_info info = { .mapbc = p->asked.mapbc };
   vg_status st;
 
   VG_TRY(vg_mesh_read(a->one.file, &m, &info, err));
   vg_display_clear(show);
-  st = check_mesh(a, &p->settings, &m, &info.turned, err);
+  st = check_mesh(a, &p->asked, &m, &info.turned, err);
 done:
   vg_mesh_release(&m);
   return st;
@@ -140,16 +141,14 @@ static vg_status check(const struct arguments *a, struct vg_error *err)
   vg_display_update(&show, "read", 0, 0);
   if (access(a->one.file, F_OK))
     VG_TRY(vg_fail(err, VG_ERR_IO, "%s: %s", a->one.file, strerror(errno)));
-  VG_TRY(vg_input_find(a->one.file, a->deck, &p.files, err));
-  VG_TRY(vg_problem_deck(&p, err));
-  VG_TRY(vg_cli_apply(&a->kept, &p.settings, err));
-  p.threads = (int)p.settings.threads;
+  VG_TRY(vg_problem_open(&p, a->one.file, a->deck, err));
+  VG_TRY(vg_cli_apply(&a->kept, &p.asked, err));
   if (vg_format_holds_cells(a->one.file)) {
     st = check_volume(a, &p, &show, err);
     goto done;
   }
-  VG_TRY(vg_problem_surface(&p, &show, err));
-  st = p.has_cells ? check_volume(a, &p, &show, err)
+  VG_TRY(vg_problem_read(&p, NULL, &show, err));
+  st = p.read.has_cells ? check_volume(a, &p, &show, err)
                    : vg_check_surface(&surface, &p, &show, err);
 done:
   vg_display_clear(&show);

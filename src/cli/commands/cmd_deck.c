@@ -30,25 +30,22 @@ static error_t option(int key, char *arg, struct argp_state *state)
 }
 
 /* Settings with the patches of the surface; its sources stay in the .d3m. */
-static vg_status describe(const char *name, struct vg_problem *p,
+static vg_status describe(const char *name, struct vg_settings *out,
                           struct vg_error *err)
 {
-  char title[VG_TITLE_MAX + 1];
+  struct vg_problem p = VG_PROBLEM_INIT;
   const char *base;
   vg_status st;
 
-  VG_TRY(vg_input_find(name, "", &p->files, err));
-  VG_TRY(vg_problem_deck(p, err));
-  VG_TRY(vg_problem_surface(p, NULL, err));
-  base = strrchr(p->files.stem, '/');
-  snprintf(title, sizeof title, "Run deck of %s",
-           base ? base + 1 : p->files.stem);
-  vg_text_trim_end(title);
-  vg_settings_release(&p->settings);
-  vg_settings_default(&p->settings);
-  memcpy(p->settings.title, title, sizeof title);
-  VG_TRY(vg_deck_patches_of(&p->surface, &p->settings, err));
+  VG_TRY(vg_problem_open(&p, name, "", err));
+  VG_TRY(vg_problem_read(&p, NULL, NULL, err));
+  base = strrchr(p.read.files.stem, '/');
+  snprintf(out->title, sizeof out->title, "Run deck of %s",
+           base ? base + 1 : p.read.files.stem);
+  vg_text_trim_end(out->title);
+  st = vg_deck_patches_of(vg_problem_surface(&p), out, err);
 done:
+  vg_problem_release(&p);
   return st;
 }
 
@@ -84,21 +81,21 @@ int vg_cmd_deck(int argc, char **argv)
     .args_doc = "[SURFACE]",
     .doc = "Write a run deck with every setting, its unit and its default, "
       "and the patch table of SURFACE (a file or the stem of a project)." };
-  struct vg_problem p = VG_PROBLEM_INIT;
+  struct vg_settings s;
   struct vg_error err = VG_ERROR_INIT;
   struct arguments a = { 0 };
   vg_status st = VG_OK;
 
   vg_cli_parse(&argp, argc, argv, &a);
-  vg_settings_default(&p.settings);
-  snprintf(p.settings.title, sizeof p.settings.title, "Run deck");
-  if (a.surface) st = describe(a.surface, &p, &err);
+  vg_settings_default(&s);
+  snprintf(s.title, sizeof s.title, "Run deck");
+  if (a.surface) st = describe(a.surface, &s, &err);
   if (st >= 0 && a.output && access(a.output, F_OK) == 0)
     st = vg_fail(&err, VG_ERR_INPUT, "%s exists and is not overwritten; "
                  "remove it or choose another name", a.output);
   if (st >= 0)
-    st = a.output ? vg_deck_write(a.output, &p.settings, NULL, 1, &err)
-                  : to_stdout(&p.settings, &err);
-  vg_problem_release(&p);
+    st = a.output ? vg_deck_write(a.output, &s, NULL, 1, &err)
+                  : to_stdout(&s, &err);
+  vg_settings_release(&s);
   return st < 0 ? vg_cli_fail(&err) : VG_EXIT_DONE;
 }

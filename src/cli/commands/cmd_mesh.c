@@ -38,7 +38,6 @@ struct run {
   struct vg_display show;
   struct vg_layer_stage layers;
   struct vg_run mesh;
-  struct vg_asked asked;
   double start, time_read, time_check, time_write, time_digest, time_page;
 };
 
@@ -135,23 +134,22 @@ static vg_status read_settings(struct run *r, const struct arguments *a,
                                struct vg_error *err)
 {
   struct vg_problem *p = &r->problem;
+  char list[VG_WRITE_MAX];
   vg_status st;
 
   VG_TRY(vg_display_stopped(&r->show, err));
   vg_display_update(&r->show, "read", 0, 0);
-  VG_TRY(vg_input_find(a->project, a->deck, &p->files, err));
-  VG_TRY(vg_problem_deck(p, err));
-  VG_TRY(vg_cli_apply(&a->kept, &p->settings, err));
-  VG_TRY(vg_asked_take(&p->settings, &r->asked, err));
-  vg_settings_write(&p->settings);
-  vg_mesh_log_settings(&r->mesh, &p->settings);
-  st = vg_outputs_plan(p, a->dir, vg_comm_size(r->mesh.comm), &r->outputs,
-                       err);
+  VG_TRY(vg_problem_open(p, a->project, a->deck, err));
+  VG_TRY(vg_cli_apply(&a->kept, &p->asked, err));
+  vg_mesh_log_settings(&r->mesh, &p->asked);
+  vg_resolve_write(&p->asked, list);
+  st = vg_outputs_plan(p, p->read.files.stem, a->dir, list,
+                       vg_comm_size(r->mesh.comm), &r->outputs, err);
 done:
   return st;
 }
 
-/* Stages up to a surface as read: by each rank, but for CAD. */
+/* Stages up to a surface as read. */
 static vg_status read_project(struct run *r, const struct arguments *a,
                               struct vg_error *err)
 {
@@ -160,11 +158,8 @@ static vg_status read_project(struct run *r, const struct arguments *a,
   vg_status st;
 
   VG_TRY(vg_comm_agree(comm, read_settings(r, a, err), err));
-  VG_TRY(vg_problem_cad(&r->problem, comm, err));
-  st = vg_problem_surface(&r->problem, &r->show, err);
+  st = vg_problem_read(&r->problem, comm, &r->show, err);
   r->time_read = vg_display_now() - t;
-  if (st >= 0) st = vg_display_stopped(&r->show, err);
-  st = vg_comm_agree(comm, st, err);
 done:
   return st;
 }
@@ -220,28 +215,30 @@ static json_t *report_json(const struct run *r, int ok,
                            const struct vg_error *err)
 {
   const struct vg_problem *p = &r->problem;
-  const struct vg_mesh front = vg_layer_stage_front(&r->layers, &p->surface);
+  const struct vg_boundary *b = &p->boundary;
+  const struct vg_mesh *m = vg_problem_surface(p);
+  const struct vg_mesh front = vg_layer_stage_front(&r->layers, &b->surface);
   json_t *o = json_object();
 
   json_object_set_new(o, "vanguard", json_string(VG_VERSION));
   json_object_set_new(o, "source", json_string(vg_source_digest));
-  json_object_set_new(o, "title", vg_text_json(p->settings.title));
+  json_object_set_new(o, "title", vg_text_json(p->asked.title));
   json_object_set_new(o, "ok", json_boolean(ok));
   if (!ok) json_object_set_new(o, "error", vg_text_json(err->text));
-  json_object_set_new(o, "flow", vg_report_flow_json(&p->flow,
-                                                     p->domain.added_farfield));
-  json_object_set_new(o, "input", vg_report_size_json(&p->surface));
-  json_object_set_new(o, "patches", vg_report_patches_json(&p->surface));
-  json_object_set_new(o, "surface", vg_report_surface_json(&p->surface,
-                      &p->check, VG_LISTED_DEFECTS));
-  json_object_set_new(o, "remesh", vg_report_remesh_json(&p->renewal,
-                                                         &p->surface));
-  json_object_set_new(o, "domain", vg_report_domain_json(&p->domain));
+  json_object_set_new(o, "flow", vg_report_flow_json(&b->flow,
+                                                     b->domain.added_farfield));
+  json_object_set_new(o, "input", vg_report_size_json(m));
+  json_object_set_new(o, "patches", vg_report_patches_json(m));
+  json_object_set_new(o, "surface", vg_report_surface_json(m,
+                      &b->check, VG_LISTED_DEFECTS));
+  json_object_set_new(o, "remesh", vg_report_remesh_json(&b->renewal,
+                                                         m));
+  json_object_set_new(o, "domain", vg_report_domain_json(&b->domain));
   json_object_set_new(o, "notes", strings(&p->notes));
   if (ok) {
     json_object_set_new(o, "sources",
                         vg_effects_json(&r->mesh.effects, &front,
-                                        &p->settings));
+                                        &p->resolved.settings));
     json_object_set_new(o, "mesh", vg_report_mesh_json(&r->mesh.judge));
     json_object_set_new(o, "fill",
                         vg_report_fill_json(&r->mesh.partition.fill,
@@ -251,7 +248,7 @@ static json_t *report_json(const struct run *r, int ok,
       json_object_set_new(o, "field",
                           vg_report_mesh_json(&r->mesh.field_judge));
       json_object_set_new(o, "layers",
-                          vg_report_layers_json(&r->layers, &p->surface));
+                          vg_report_layers_json(&r->layers, m));
     }
     if (r->mesh.parts)
       json_object_set_new(o, "solver_parts",
@@ -279,7 +276,7 @@ static struct vg_timeline timeline_of(const struct run *r)
 {
   struct vg_timeline t = VG_TIMELINE_INIT;
 
-  snprintf(t.title, sizeof t.title, "%s", r->problem.settings.title);
+  snprintf(t.title, sizeof t.title, "%s", r->problem.asked.title);
   t.seconds[VG_PHASE_READ] = r->time_read;
   t.seconds[VG_PHASE_CHECK] = r->time_check;
   t.seconds[VG_PHASE_SIZES] = r->mesh.time_size;
@@ -292,7 +289,7 @@ static struct vg_timeline timeline_of(const struct run *r)
   t.seconds[VG_PHASE_TOTAL] = vg_display_now() - r->start - r->mesh.time_near;
   t.n_cell = vg_run_cells(&r->mesh);
   t.n_point = r->mesh.slices.n_point;
-  t.cyclic = r->problem.settings.cyclic;
+  t.cyclic = r->problem.asked.cyclic;
   t.spans = r->mesh.spans;
   return t;
 }
@@ -318,7 +315,7 @@ static vg_status write_page(struct run *r, struct vg_error *err)
   struct vg_timeline t = timeline_of(r);
   double start = vg_display_now();
   struct vg_html page = { .problem = &r->problem, .layers = &r->layers,
-                          .run = &r->mesh, .asked = &r->asked };
+                          .run = &r->mesh };
   char *path = NULL, *svg = NULL;
   json_t *report = NULL;
   vg_status st;
@@ -355,10 +352,10 @@ static vg_status finish(struct run *r, const struct arguments *a,
   VG_TRY(vg_outputs_digest(&r->outputs, err));
   r->time_digest = vg_display_now() - t;
   if (a->timeline) VG_TRY(write_timeline(r, err));
-  if (r->problem.settings.report_html)
+  if (r->problem.asked.report_html)
     VG_TRY(vg_outputs_add(&r->outputs, "report.html", err));
   VG_TRY(vg_outputs_add(&r->outputs, "report.json", err));
-  if (r->problem.settings.report_html) VG_TRY(write_page(r, err));
+  if (r->problem.asked.report_html) VG_TRY(write_page(r, err));
   path = vg_outputs_temp_path(&r->outputs, "report.json");
   report = report_json(r, 1, NULL);
   st = path && report ? vg_json_write(path, report, "the report", err)
@@ -394,19 +391,22 @@ done:
 static void print_surface(FILE *to, const struct run *r)
 {
   const struct vg_problem *p = &r->problem;
+  const struct vg_boundary *b = &p->boundary;
+  const struct vg_mesh *m = vg_problem_surface(p);
+  const struct vg_mesh front = vg_layer_stage_front(&r->layers, &b->surface);
 
-  fprintf(to, "%s\n\n", p->settings.title);
-  vg_report_flow_text(to, &p->flow, p->domain.added_farfield);
+  fprintf(to, "%s\n\n", p->asked.title);
+  vg_report_flow_text(to, &b->flow, b->domain.added_farfield);
   for (size_t i = 0; i < p->notes.n; i++)
     fprintf(to, "  note: %s\n", p->notes.text[i]);
   fprintf(to, "\nSurface\n");
-  vg_report_size_text(to, &p->surface);
-  if (p->n_welded || p->n_dropped)
+  vg_report_size_text(to, m);
+  if (b->n_welded || b->n_dropped)
     fprintf(to, "  welded: %zu points merged, %zu triangles dropped\n",
-           p->n_welded, p->n_dropped);
-  vg_report_remesh_text(to, &p->renewal);
-  vg_report_domain_text(to, &p->domain);
-  vg_report_surface_text(to, &p->surface, &p->check, VG_SHOWN_DEFECTS);
+           b->n_welded, b->n_dropped);
+  vg_report_remesh_text(to, &b->renewal);
+  vg_report_domain_text(to, &b->domain);
+  vg_report_surface_text(to, m, &b->check, VG_SHOWN_DEFECTS);
 }
 
 static void print_count(FILE *to, const char *name, size_t n)
@@ -449,7 +449,7 @@ static void print_report(FILE *to, const struct run *r)
   print_surface(to, r);
   if (r->layers.is_on) {
     fprintf(to, "\nLayers\n");
-    vg_report_layers_text(to, &r->layers, &r->problem.surface);
+    vg_report_layers_text(to, &r->layers, &r->problem.boundary.surface);
   }
   fprintf(to, "\nPartition\n");
   vg_report_partition_text(to, m);
@@ -480,16 +480,16 @@ static void print_report(FILE *to, const struct run *r)
 /* All faces with a defect go into STEM.defects.vtu. */
 static void show_defects(struct run *r, const struct arguments *a)
 {
+  const struct vg_boundary *b = &r->problem.boundary;
   struct vg_error err = VG_ERROR_INIT;
   char *path;
 
-  if (!r->problem.check.n_defect || !r->outputs.dir) return;
+  if (!b->check.n_defect || !r->outputs.dir) return;
   if (!a->json) print_surface(stdout, r);
   if (vg_log()) print_surface(vg_log(), r);
   path = vg_outputs_final(&r->outputs, "defects.vtu");
   if (!path) return;
-  if (vg_write_defects(path, &r->problem.surface, &r->problem.check,
-                       &err) < 0)
+  if (vg_write_defects(path, &b->surface, &b->check, &err) < 0)
     vg_cli_fail(&err);
   else if (!a->json)
     printf("  all faces with a defect: %s\n", path);
@@ -518,10 +518,11 @@ static vg_status run_stages(struct run *r, const struct arguments *a,
   VG_TRY(read_project(r, a, err));
   VG_TRY(close_surface(r, err));
   VG_TRY(vg_run_mesh(m, &r->problem, &r->layers, &r->show, err));
-  front = vg_layer_stage_front(&r->layers, &r->problem.surface);
-  vg_effects_note(&m->effects, &front, &r->problem);
+  front = vg_layer_stage_front(&r->layers, &r->problem.boundary.surface);
+  vg_effects_note(&m->effects, &front, &r->problem.boundary);
   vg_problem_note_unused(&r->problem, r->layers.is_on, VG_USE_JUDGED_MESH);
-  vg_report_layers_note(&r->layers, &r->problem.surface, &r->problem.notes);
+  vg_report_layers_note(&r->layers, &r->problem.boundary.surface,
+                        &r->problem.notes);
   st = write_all(r, a, err);
 done:
   return st;
@@ -546,9 +547,9 @@ static int report_success(struct run *r, const struct arguments *a)
   if (vg_log()) print_report(vg_log(), r);
   if (!r->layers.n_missed || status != VG_EXIT_DONE) return status;
   fflush(stdout);
-  vg_report_missed_text(stderr, &r->layers, &r->problem.surface);
+  vg_report_missed_text(stderr, &r->layers, &r->problem.boundary.surface);
   if (vg_log())
-    vg_report_missed_text(vg_log(), &r->layers, &r->problem.surface);
+    vg_report_missed_text(vg_log(), &r->layers, &r->problem.boundary.surface);
   return VG_EXIT_LIMIT;
 }
 
@@ -607,7 +608,6 @@ static int run(const struct arguments *a)
   vg_run_release(&r.mesh, status == VG_EXIT_DONE || status == VG_EXIT_LIMIT);
   vg_outputs_release(&r.outputs);
   vg_layer_stage_release(&r.layers);
-  vg_asked_release(&r.asked);
   vg_problem_release(&r.problem);
   vg_comm_close(r.mesh.comm);
   return close_log(&r, status);

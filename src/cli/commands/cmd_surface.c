@@ -13,14 +13,12 @@
 #include "io/mesh/vtu.h"
 #include "io/stream/stream.h"
 #include "io/vgrid/mapbc.h"
-#include "run/common/folder.h"
 #include "run/common/json_file.h"
 #include "run/common/text.h"
 #include "run/input/input.h"
 #include "run/report/report.h"
 #include "run/settings/lists.h"
-
-#define FILES (VG_WRITE_ITEMS + 3)
+#include "run/stages/output.h"
 
 struct arguments {
   struct vg_cli_one one;
@@ -28,11 +26,12 @@ struct arguments {
   struct vg_cli_overrides kept;
 };
 
-/* Files are written beside their places and moved there together. */
+/* The files of a run; `stem` is what all their paths begin with. */
 struct files {
   char *stem;
-  size_t n;
-  struct { char *path, *temp; } file[FILES];
+  size_t n_item;
+  char item[VG_WRITE_ITEMS][VG_WRITE_NAME];
+  struct vg_outputs outputs;
 };
 
 static error_t option(int key, char *arg, struct argp_state *state)
@@ -53,35 +52,26 @@ static error_t option(int key, char *arg, struct argp_state *state)
 
 static void release_files(struct files *f)
 {
-  for (size_t i = 0; i < f->n; i++) {
-    if (f->file[i].temp) unlink(f->file[i].temp);
-    free(f->file[i].path);
-    free(f->file[i].temp);
-  }
+  vg_outputs_release(&f->outputs);
   free(f->stem);
 }
 
-/* A file to write, for which there must be room: what is there is an input or
- * somebody's work. */
+/* A file that is to be written, for which there must be room: what is there is
+ * an input or somebody's work. */
 static vg_status add_file(struct files *f, const char *suffix,
                           struct vg_error *err)
 {
-  char *path, *temp;
-  const char *name = strrchr(f->stem, '/');
-  int folder = name ? (int)(name - f->stem) + 1 : 0;
+  char *path;
+  vg_status st = vg_outputs_add(&f->outputs, suffix, err);
 
+  if (st < 0) return st;
   if (asprintf(&path, "%s.%s", f->stem, suffix) < 0)
     return vg_fail_memory(err, "a path");
-  if (asprintf(&temp, "%.*s.vanguard-%ld-%s.%s", folder, f->stem,
-               (long)getpid(), f->stem + folder, suffix) < 0) {
-    free(path);
-    return vg_fail_memory(err, "a path");
-  }
-  f->file[f->n].path = path;
-  f->file[f->n++].temp = temp;
-  if (access(path, F_OK)) return VG_OK;
-  return vg_fail(err, VG_ERR_INPUT, "%s exists and is not overwritten; remove "
+  if (!access(path, F_OK))
+    st = vg_fail(err, VG_ERR_INPUT, "%s exists and is not overwritten; remove "
                  "it or choose another folder with --out", path);
+  free(path);
+  return st;
 }
 
 /* Beside the input, under a name of its own, or in a folder, under its name. */
@@ -89,24 +79,22 @@ static vg_status plan_files(const struct vg_problem *p,
                             const struct arguments *a, struct files *f,
                             struct vg_error *err)
 {
-  char item[VG_WRITE_ITEMS][VG_WRITE_NAME];
-  const char *name = strrchr(p->files.stem, '/');
-  size_t n = 0;
+  const char *stem = p->read.files.stem, *name = strrchr(stem, '/');
   vg_status st;
 
-  name = name ? name + 1 : p->files.stem;
-  if (a->dir) VG_TRY(vg_make_folder(a->dir, err));
+  name = name ? name + 1 : stem;
   if ((a->dir ? asprintf(&f->stem, "%s/%s", a->dir, name)
-              : asprintf(&f->stem, "%s.new", p->files.stem)) < 0) {
+              : asprintf(&f->stem, "%s.new", stem)) < 0) {
     f->stem = NULL;
     return vg_fail_memory(err, "a path");
   }
-  VG_TRY(vg_write_list(p->settings.write, &n, item, err));
-  for (size_t i = 0; i < n; i++) {
-    if (!strcmp(item[i], "cogsg") || !strcmp(item[i], "openfoam"))
+  VG_TRY(vg_outputs_place(f->stem, a->dir, &f->outputs, err));
+  VG_TRY(vg_write_list(p->asked.write, &f->n_item, f->item, err));
+  for (size_t i = 0; i < f->n_item; i++) {
+    if (!strcmp(f->item[i], "cogsg") || !strcmp(f->item[i], "openfoam"))
       VG_TRY(vg_fail(err, VG_ERR_INPUT, "%s is for volume meshes; write the "
-                     "surface as lb8.ugrid, stl, ...", item[i]));
-    VG_TRY(add_file(f, item[i], err));
+                     "surface as lb8.ugrid, stl, ...", f->item[i]));
+    VG_TRY(add_file(f, f->item[i], err));
   }
   VG_TRY(add_file(f, "mapbc", err));
   VG_TRY(add_file(f, "surface.vtu", err));
@@ -115,110 +103,160 @@ done:
   return st;
 }
 
-static vg_status move_files(struct files *f, struct vg_error *err)
-{
-  for (size_t i = 0; i < f->n; i++) {
-    if (rename(f->file[i].temp, f->file[i].path))
-      return vg_fail(err, VG_ERR_IO, "%s: cannot be put into its place",
-                     f->file[i].path);
-    free(f->file[i].temp);
-    f->file[i].temp = NULL;
-  }
-  return VG_OK;
-}
-
 /* --- what is written ----------------------------------------------------- */
 
 /* The first of both arrays begins what is allocated. */
-static vg_status write_vtu(const char *path, const struct vg_problem *p,
+static vg_status write_vtu(const char *path, const struct vg_boundary *b,
                            struct vg_error *err)
 {
-  size_t n = p->surface.n_tri;
+  size_t n = b->surface.n_tri;
   double *angle = vg_alloc(2 * n, sizeof *angle);
   const struct vg_vtu_field field[3] = {
     { "smallest_angle", VG_VTU_CELL, VG_VTU_FLOAT64, 1, angle },
     { "radius_ratio", VG_VTU_CELL, VG_VTU_FLOAT64, 1, angle + n },
-    { "distance", VG_VTU_CELL, VG_VTU_FLOAT64, 1, p->renewal.face } };
+    { "distance", VG_VTU_CELL, VG_VTU_FLOAT64, 1, b->renewal.face } };
   vg_status st;
 
   if (!angle) return vg_fail_memory(err, "the angles");
-  vg_surface_shapes(&p->surface, angle, angle + n);
-  st = vg_vtu_write_boundary(path, &p->surface, field, 3, err);
+  vg_surface_shapes(&b->surface, angle, angle + n);
+  st = vg_vtu_write_boundary(path, &b->surface, field, 3, err);
   free(angle);
   return st;
 }
 
+/* Path i; NULL: no memory. */
+static char *path_of(const struct files *f, size_t i)
+{
+  char *path;
+
+  return asprintf(&path, "%s.%s", f->stem, f->outputs.file[i].suffix) < 0
+         ? NULL : path;
+}
+
 static json_t *report(const struct vg_problem *p, const struct files *f)
 {
+  const struct vg_boundary *b = &p->boundary;
   json_t *notes = json_array(), *files = json_array();
 
   for (size_t i = 0; i < p->notes.n; i++)
     json_array_append_new(notes, vg_text_json(p->notes.text[i]));
-  for (size_t i = 0; i < f->n; i++)
-    json_array_append_new(files, vg_text_json(f->file[i].path));
+  for (size_t i = 0; i < f->outputs.n_file; i++) {
+    char *path = path_of(f, i);
+
+    json_array_append_new(files, vg_text_json(path ? path : ""));
+    free(path);
+  }
   return json_pack("{s:b s:o s:o s:o s:o s:o}", "ok", 1, "remesh",
-                   vg_report_remesh_json(&p->renewal, &p->surface), "patches",
-                   vg_report_patches_json(&p->surface), "surface",
-                   vg_report_surface_json(&p->surface, &p->check,
+                   vg_report_remesh_json(&b->renewal, &b->surface), "patches",
+                   vg_report_patches_json(&b->surface), "surface",
+                   vg_report_surface_json(&b->surface, &b->check,
                                           VG_LISTED_DEFECTS),
                    "notes", notes, "files", files);
+}
+
+/* The file with a suffix: the surface, or what is told of it. */
+static vg_status write_file(const struct vg_problem *p, struct files *f,
+                            const char *suffix, const json_t *o,
+                            struct vg_error *err)
+{
+  const struct vg_mesh *m = &p->boundary.surface;
+  char *path = vg_outputs_temp_path(&f->outputs, suffix);
+  vg_status st;
+
+  if (!path) return vg_fail_memory(err, "a path");
+  if (!strcmp(suffix, "mapbc"))
+    st = vg_mapbc_write(path, m, VG_MAPBC_VGRID, p->asked.title, NULL, err);
+  else if (!strcmp(suffix, "surface.vtu"))
+    st = write_vtu(path, &p->boundary, err);
+  else if (!strcmp(suffix, "surface.json"))
+    st = vg_json_write(path, o, "the report", err);
+  else
+    st = vg_format_write(path, m, err);
+  free(path);
+  return st;
 }
 
 static vg_status write_all(const struct vg_problem *p, struct files *f,
                            const json_t *o, struct vg_display *show,
                            struct vg_error *err)
 {
-  size_t n = f->n - 3;
-  vg_status st = VG_OK;
+  vg_status st;
 
-  for (size_t i = 0; i < n; i++)
-    VG_TRY(vg_format_write(f->file[i].temp, &p->surface, err));
-  VG_TRY(vg_mapbc_write(f->file[n].temp, &p->surface, VG_MAPBC_VGRID,
-                        p->settings.title, NULL, err));
-  VG_TRY(write_vtu(f->file[n + 1].temp, p, err));
-  VG_TRY(vg_json_write(f->file[n + 2].temp, o, "the report", err));
+  VG_TRY(vg_outputs_begin(&f->outputs, NULL, err));
+  for (size_t i = 0; i < f->outputs.n_file; i++)
+    VG_TRY(write_file(p, f, f->outputs.file[i].suffix, o, err));
   VG_TRY(vg_display_stopped(show, err));
-  VG_TRY(move_files(f, err));
+  vg_display_commit();
+  st = vg_outputs_commit(&f->outputs, err);
 done:
   return st;
 }
 
 static void print(const struct vg_problem *p, const struct files *f)
 {
-  vg_report_remesh_text(stdout, &p->renewal);
-  vg_report_surface_text(stdout, &p->surface, &p->check, 0);
+  const struct vg_boundary *b = &p->boundary;
+
+  vg_report_remesh_text(stdout, &b->renewal);
+  vg_report_surface_text(stdout, &b->surface, &b->check, 0);
   for (size_t i = 0; i < p->notes.n; i++)
     printf("  note: %s\n", p->notes.text[i]);
-  for (size_t i = 0; i < f->n; i++) printf("  %s\n", f->file[i].path);
+  for (size_t i = 0; i < f->outputs.n_file; i++) {
+    char *path = path_of(f, i);
+
+    printf("  %s\n", path ? path : "");
+    free(path);
+  }
+}
+
+/* Deck, options, and what the command itself asks for. */
+static vg_status read_settings(const struct arguments *a, struct vg_problem *p,
+                               struct vg_error *err)
+{
+  struct vg_settings *s = &p->asked;
+  vg_status st;
+
+  VG_TRY(vg_problem_open(p, a->one.file, a->deck, err));
+  VG_TRY(vg_cli_apply(&a->kept, s, err));
+  if (!strcmp(s->write, "auto"))
+    snprintf(s->write, sizeof s->write, "lb8.ugrid");
+  s->remesh = VG_ANSWER_YES;
+done:
+  return st;
+}
+
+static vg_status make_surface(struct vg_problem *p, struct vg_display *show,
+                              struct vg_error *err)
+{
+  const struct vg_shape_options o = { .threads = (int)p->asked.threads,
+                                      .remesh_open = 1 };
+  vg_status st;
+
+  VG_TRY(vg_problem_read(p, NULL, show, err));
+  VG_TRY(vg_problem_shape(p, &o, show, err));
+  VG_TRY(vg_boundary_check(&p->boundary, show, err));
+  vg_boundary_note_unset(&p->boundary);
+  vg_problem_note_unused(p, 0, VG_USE_JUDGED_SURFACE);
+done:
+  return st;
 }
 
 static vg_status run(const struct arguments *a, struct vg_display *show,
                      struct vg_error *err)
 {
   struct vg_problem p = VG_PROBLEM_INIT;
-  struct files f = { .n = 0 };
+  struct files f = { .n_item = 0 };
   json_t *o = NULL;
   vg_status st;
 
   vg_display_end_at_once(1);     /* nothing is written yet */
   vg_display_update(show, "read", 0, 0);
-  VG_TRY(vg_input_find(a->one.file, a->deck, &p.files, err));
-  VG_TRY(vg_problem_deck(&p, err));
-  VG_TRY(vg_cli_apply(&a->kept, &p.settings, err));
-  if (!strcmp(p.settings.write, "auto"))
-    snprintf(p.settings.write, sizeof p.settings.write, "lb8.ugrid");
-  p.settings.remesh = VG_ANSWER_YES;
-  p.surface_only = 1;
-  p.threads = (int)p.settings.threads;
+  VG_TRY(read_settings(a, &p, err));
   VG_TRY(plan_files(&p, a, &f, err));
-  VG_TRY(vg_problem_surface(&p, show, err));
-  VG_TRY(vg_problem_close(&p, show, err));
-  vg_problem_note_unset(&p);
-  vg_problem_note_unused(&p, 0, VG_USE_JUDGED_SURFACE);
+  VG_TRY(make_surface(&p, show, err));
   o = report(&p, &f);
   if (!o) VG_TRY(vg_fail_memory(err, "the report"));
   vg_display_end_at_once(0);
-  vg_display_update(show, "write", p.surface.n_tri, 0);
+  vg_display_update(show, "write", p.boundary.surface.n_tri, 0);
   VG_TRY(write_all(&p, &f, o, show, err));
   vg_display_clear(show);
   if (a->one.json) {

@@ -138,13 +138,13 @@ static vg_status take_deck(struct vg_sweep_options *o, struct vg_error *err)
   const char *deck = o->deck;
   vg_status st = VG_OK;
 
-  vg_settings_default(&p.settings);
-  if (!deck && vg_input_find(o->project, NULL, &p.files, NULL) >= 0)
-    deck = p.files.deck;
-  if (deck && *deck) st = vg_deck_read(deck, &p.settings, err);
-  o->scale = p.settings.scale;
-  if (st >= 0 && p.settings.n_sweep)
-    st = take_row(deck, &p.settings.sweep, o, err);
+  vg_settings_default(&p.asked);
+  if (!deck && vg_input_find(o->project, NULL, &p.read.files, NULL) >= 0)
+    deck = p.read.files.deck;
+  if (deck && *deck) st = vg_deck_read(deck, &p.asked, err);
+  o->scale = p.asked.scale;
+  if (st >= 0 && p.asked.n_sweep)
+    st = take_row(deck, &p.asked.sweep, o, err);
   if (st >= 0 && !o->ranks.n)
     st = vg_range_parse("--ranks", "1", 1, 1, &o->ranks, err);
   if (st >= 0 && !o->threads.n)

@@ -9,6 +9,7 @@
 #include "base/version.h"
 #include "cli/commands/commands.h"
 #include "run/common/log.h"
+#include "run/settings/resolved.h"
 
 static void put_command(FILE *to, int argc, char **argv)
 {
@@ -41,17 +42,20 @@ void vg_mesh_log_start(const struct vg_run *r, int argc, char **argv)
   vg_version_libraries(to);
 }
 
-void vg_mesh_log_settings(const struct vg_run *r, const struct vg_settings *s)
+void vg_mesh_log_settings(const struct vg_run *r,
+                          const struct vg_settings *asked)
 {
   static const enum vg_table_kind table[] = { VG_TABLE_PATCHES,
     VG_TABLE_LAYERS, VG_TABLE_SURFACE, VG_TABLE_SOURCES };
   const struct vg_param *p;
   const char *name;
   char value[2 * VG_LIST_MAX + 4];
+  struct vg_settings view = *asked, *s = &view;   /* tables are borrowed */
   FILE *to = vg_log();
   int in_farfield;
 
   if (!to) return;
+  vg_resolve_write(asked, view.write);
   fprintf(to, "threads  %d of each rank\nsettings\n", s->threads
           ? (int)s->threads : vg_comm_default_threads(r->comm));
   for (size_t i = 0; (p = vg_settings_name(i, &name, &in_farfield)); i++) {

@@ -57,7 +57,7 @@ done:
 vg_status vg_html_write(const char *path, const struct vg_html *h,
                         struct vg_error *err)
 {
-  const struct vg_mesh *m = &h->problem->surface;
+  const struct vg_mesh *m = &h->problem->boundary.surface;
   struct page p = { .out = VG_OUTPUT_INIT, .h = h,
                     .has_layers = h->layers->is_on };
   vg_status st;

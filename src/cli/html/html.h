@@ -9,25 +9,12 @@
 #include "run/input/layers.h"
 #include "run/stages/run.h"
 
-/** Values of the plain settings and the farfield as text, to tell later what
- * was asked from what was settled. */
-struct vg_asked { size_t n; char **value; };
-#define VG_ASKED_INIT { 0, NULL }
-
-/** After deck and options, before anything is resolved. *a is replaced.
- * VG_ERR_MEMORY. */
-vg_status vg_asked_take(const struct vg_settings *s, struct vg_asked *a,
-                        struct vg_error *err);
-
-void vg_asked_release(struct vg_asked *a);
-
 /** What a page is made of; borrowed. */
 struct vg_html {
   const json_t *report;     /* as STEM.report.json */
   const struct vg_problem *problem;
   const struct vg_layer_stage *layers;
   const struct vg_run *run; /* with its pictures */
-  const struct vg_asked *asked;
   const char *timeline;     /* an SVG file, put into the page; NULL: none */
 };
 

@@ -16,7 +16,7 @@ static const char policy[] =
 /* The flow domain and its evidence: the first thing to know. */
 static void flow(struct page *p)
 {
-  const struct vg_problem *q = p->h->problem;
+  const struct vg_boundary *q = &p->h->problem->boundary;
   char statement[VG_FLOW_TEXT];
 
   vg_flow_statement(&q->flow, q->domain.added_farfield, statement);
@@ -41,12 +41,12 @@ void vg_html_head(struct page *p)
   vg_page_markup(p, policy);
   vg_page_markup(p, "<meta name=\"generator\" content=\"Vanguard " VG_VERSION
                     "\">\n<title>");
-  vg_page_text(p, q->settings.title);
+  vg_page_text(p, q->asked.title);
   vg_page_markup(p, "</title>\n<style>\n");
   vg_output_bytes(&p->out, vg_asset_report_css, vg_asset_report_css_size);
   vg_page_markup(p, "</style>\n</head>\n<body>\n<header>\n"
                     "<p class=\"over\">Vanguard mesh report</p>\n<h1>");
-  vg_page_text(p, q->settings.title);
+  vg_page_text(p, q->asked.title);
   vg_page_markup(p, "</h1>\n<p class=\"badges\">");
   vg_page_markup(p, json_is_true(vg_page_json(p, "mesh.valid"))
     ? "<span class=\"badge good\">valid mesh</span>"
@@ -95,7 +95,7 @@ static void count_line(struct list *l, enum weight weight, uint64_t n,
 
 static void patch_words(struct page *p, uint32_t patch)
 {
-  const struct vg_patch *of = &p->h->problem->surface.patch[patch];
+  const struct vg_patch *of = &p->h->problem->boundary.surface.patch[patch];
 
   vg_page_format(p, "patch %d ", (int)of->id);
   vg_page_text(p, of->name);
@@ -165,7 +165,7 @@ static void layers_short(struct list *l)
 
 static void added(struct list *l)
 {
-  const struct vg_domain_report *d = &l->p->h->problem->domain;
+  const struct vg_domain_report *d = &l->p->h->problem->boundary.domain;
 
   if (!d->added_symmetry && !d->added_farfield) return;
   if (!begin(l, WEIGHT_CHANGED)) return;
@@ -183,7 +183,7 @@ static void added(struct list *l)
 
 static void surface_changed(struct list *l)
 {
-  const struct vg_problem *q = l->p->h->problem;
+  const struct vg_boundary *q = &l->p->h->problem->boundary;
   uint64_t removed = (uint64_t)vg_page_number(l->p,
                                               "surface.removed_triangles");
   uint64_t flipped = (uint64_t)vg_page_number(l->p, "surface.flipped");

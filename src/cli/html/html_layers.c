@@ -43,7 +43,7 @@ static void row(struct page *p, const struct vg_patch_layers *w)
 {
   const struct vg_patch *patch =
     w->patch == VG_NO_INDEX ? NULL
-                            : &p->h->problem->surface.patch[w->patch];
+                            : &p->h->problem->boundary.surface.patch[w->patch];
 
   vg_page_markup(p, patch ? "<tr><th scope=\"row\">"
                           : "<tr class=\"all\"><th scope=\"row\">");

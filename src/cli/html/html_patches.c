@@ -9,7 +9,7 @@ static void code(struct page *p, int32_t bc)
 
 static void patches(struct page *p)
 {
-  const struct vg_mesh *m = &p->h->problem->surface;
+  const struct vg_mesh *m = &p->h->problem->boundary.surface;
   const json_t *list = vg_page_json(p, "patches");
 
   vg_page_markup(p, "<div class=\"wide\"><table>\n<thead><tr>"
@@ -40,8 +40,8 @@ void vg_html_patches(struct page *p)
   patches(p);
   vg_page_markup(p, "<table class=\"facts\">\n");
   vg_page_fact_count(p, "points of the surface",
-                     p->h->problem->surface.n_point);
-  vg_page_fact_count(p, "triangles", p->h->problem->surface.n_tri);
+                     p->h->problem->boundary.surface.n_point);
+  vg_page_fact_count(p, "triangles", p->h->problem->boundary.surface.n_tri);
   vg_page_fact_count(p, "closed shells",
                      json_array_size(vg_page_json(p, "surface.shells")));
   vg_page_fact(p, "smallest angle of a triangle");

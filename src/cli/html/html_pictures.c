@@ -50,7 +50,7 @@ static vg_status choose_views(struct page *p, struct vg_error *err)
 {
   static const double toward[VIEWS][3] = { { -0.62, -0.55, 0.56 },
                                            { 0.66, -0.52, -0.54 } };
-  const struct vg_mesh *m = &p->h->problem->surface;
+  const struct vg_mesh *m = &p->h->problem->boundary.surface;
   int is_turned = faces_y(m) > 0;
   uint8_t *seen = vg_alloc(m->n_tri, 1);
 
@@ -131,7 +131,7 @@ static void choose_part_cut(struct page *p)
 
 vg_status vg_html_draw(struct page *p, struct vg_error *err)
 {
-  const struct vg_mesh *m = &p->h->problem->surface;
+  const struct vg_mesh *m = &p->h->problem->boundary.surface;
   struct drawing d = { .p = p };
   int threads = p->h->run->threads;
   vg_status st;

@@ -29,7 +29,7 @@ static void release(struct scene *s)
 
 static void find_box(const struct page *p, struct scene *s)
 {
-  const struct vg_mesh *m = &p->h->problem->surface;
+  const struct vg_mesh *m = &p->h->problem->boundary.surface;
   double lo[3] = { INFINITY, INFINITY, INFINITY };
   double hi[3] = { -INFINITY, -INFINITY, -INFINITY };
 
@@ -50,7 +50,7 @@ static void find_box(const struct page *p, struct scene *s)
 static vg_status sort(const struct page *p, struct scene *s,
                       struct vg_error *err)
 {
-  const struct vg_mesh *m = &p->h->problem->surface;
+  const struct vg_mesh *m = &p->h->problem->boundary.surface;
   const struct vg_decimated *c = &s->coarse;
   size_t *next = vg_calloc(m->n_patch + 1, sizeof *next);
 
@@ -140,7 +140,7 @@ static json_t *vector(const double x[3], const double *less)
 
 static json_t *patches(const struct page *p, const struct scene *s)
 {
-  const struct vg_mesh *m = &p->h->problem->surface;
+  const struct vg_mesh *m = &p->h->problem->boundary.surface;
   json_t *list = json_array();
 
   for (size_t i = 0; i < m->n_patch; i++) {
@@ -225,7 +225,7 @@ static json_t *facts(const struct page *p, const struct scene *s)
 
 static void words(struct page *p, const struct scene *s)
 {
-  const struct vg_mesh *m = &p->h->problem->surface;
+  const struct vg_mesh *m = &p->h->problem->boundary.surface;
 
   vg_page_section(p, "turn", "To turn and to look into");
   vg_page_markup(p, "<div id=\"view\" hidden>\n<div id=\"controls\"></div>\n"
@@ -257,7 +257,7 @@ vg_status vg_html_scene(struct page *p, struct vg_error *err)
   char *text = NULL;
   vg_status st;
 
-  VG_TRY(vg_decimate(&p->h->problem->surface, MOST, &s.coarse, err));
+  VG_TRY(vg_decimate(&p->h->problem->boundary.surface, MOST, &s.coarse, err));
   VG_TRY(sort(p, &s, err));
   find_box(p, &s);
   VG_TRY(pack(p, &s, &packed, err));

@@ -2,7 +2,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "cli/html/asked.h"
 #include "cli/html/page.h"
 
 enum which { ASKED, SETTLED, REST, WHICH_N };
@@ -10,8 +9,8 @@ enum which { ASKED, SETTLED, REST, WHICH_N };
 static enum which which_of(const char *usual, const char *asked,
                            const char *now)
 {
-  if (asked && strcmp(usual, asked) != 0) return ASKED;
-  return strcmp(asked ? asked : usual, now) ? SETTLED : REST;
+  if (strcmp(usual, asked) != 0) return ASKED;
+  return strcmp(asked, now) ? SETTLED : REST;
 }
 
 static void row(struct page *p, const struct vg_param *param, int is_far,
@@ -30,29 +29,43 @@ static void row(struct page *p, const struct vg_param *param, int is_far,
   vg_page_markup(p, "</td></tr>\n");
 }
 
+/* Setting i of the plain ones and, behind them, of the farfield, and what its
+ * offset counts from in s. NULL behind the last. */
+static const struct vg_param *param_of(const struct vg_settings *s, size_t i,
+                                       int *is_far, const void **base)
+{
+  const struct vg_table *far = vg_settings_table(VG_TABLE_FARFIELD);
+  size_t n;
+  const struct vg_param *p = vg_settings_params(&n);
+
+  *is_far = i >= n;
+  *base = *is_far ? (const void *)&s->farfield : (const void *)s;
+  if (i < n) return &p[i];
+  return i - n < far->n_column ? &far->column[i - n] : NULL;
+}
+
 /* Rows of one kind; `threads` tells of the run, not of the mesh. */
 static size_t rows(struct page *p, const struct vg_settings *usual,
                    enum which which)
 {
-  const struct vg_settings *s = &p->h->problem->settings;
-  const struct vg_asked *a = p->h->asked;
+  const struct vg_problem *q = p->h->problem;
+  const struct vg_settings *of[3] = { usual, &q->asked,
+                                      &q->resolved.settings };
   const struct vg_param *param;
-  const void *base, *usual_base;
-  char now[2 * VG_LIST_MAX + 4], was[2 * VG_LIST_MAX + 4];
-  size_t n = 0, all = vg_asked_params(s, SIZE_MAX, &param, &base), plain;
+  char value[3][2 * VG_LIST_MAX + 4];
+  const void *base;
+  size_t n = 0;
+  int far;
 
-  vg_settings_params(&plain);
-  for (size_t i = 0; i < all; i++) {
-    const char *asked = i < a->n ? a->value[i] : NULL;
-
-    vg_asked_params(usual, i, &param, &usual_base);
-    vg_asked_params(s, i, &param, &base);
+  for (size_t i = 0; (param = param_of(usual, i, &far, &base)); i++) {
     if (!strcmp(param->name, "threads") || !strcmp(param->name, "schedule"))
       continue;            /* no part of what the mesh follows from */
-    vg_param_format(param, base, now, sizeof now);
-    vg_param_format(param, usual_base, was, sizeof was);
-    if (which_of(was, asked, now) != which) continue;
-    row(p, param, i >= plain, which == ASKED ? asked : NULL, now);
+    for (int k = 0; k < 3; k++) {
+      param_of(of[k], i, &far, &base);
+      vg_param_format(param, base, value[k], sizeof value[k]);
+    }
+    if (which_of(value[0], value[1], value[2]) != which) continue;
+    row(p, param, far, which == ASKED ? value[1] : NULL, value[2]);
     n++;
   }
   return n;
@@ -69,7 +82,7 @@ static void table(struct page *p, const struct vg_settings *usual,
 
 void vg_html_settings(struct page *p)
 {
-  const struct vg_settings *s = &p->h->problem->settings;
+  const struct vg_settings *s = &p->h->problem->resolved.settings;
   struct vg_settings usual;
 
   vg_settings_default(&usual);

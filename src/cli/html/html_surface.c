@@ -21,7 +21,7 @@ static void pair(struct page *p, enum by by, const char *what)
 
 static void patch_keys(struct page *p)
 {
-  const struct vg_mesh *m = &p->h->problem->surface;
+  const struct vg_mesh *m = &p->h->problem->boundary.surface;
   size_t n = 0, rest = 0;
   char word[VG_NAME_MAX + 24];
 

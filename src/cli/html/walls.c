@@ -57,7 +57,7 @@ static void colour_layers(const struct vg_wall_fields *f, const uint32_t *at,
 static void by_layers(const struct page *p, const uint32_t *index,
                       struct walls *w)
 {
-  const struct vg_mesh *m = &p->h->problem->surface;
+  const struct vg_mesh *m = &p->h->problem->boundary.surface;
   const struct vg_wall_fields *f = &p->h->layers->fields;
 
   for (size_t i = 0; i < f->n; i++)
@@ -76,7 +76,7 @@ static void by_layers(const struct page *p, const uint32_t *index,
 /* Symmetry planes, and what columns slide in, stand behind the body. */
 static void mark_beside(const struct page *p, uint8_t *beside)
 {
-  const struct vg_mesh *m = &p->h->problem->surface;
+  const struct vg_mesh *m = &p->h->problem->boundary.surface;
   const struct vg_columns *c = &p->h->layers->layers.columns;
 
   for (size_t i = 0; i < m->n_patch; i++)
@@ -88,7 +88,7 @@ static void mark_beside(const struct page *p, uint8_t *beside)
 vg_status vg_walls_colour(const struct page *p, struct walls *w,
                           struct vg_error *err)
 {
-  const struct vg_mesh *m = &p->h->problem->surface;
+  const struct vg_mesh *m = &p->h->problem->boundary.surface;
   uint8_t **list[] = { &w->by[BY_PATCH], &w->by[BY_LEVEL], &w->by[BY_CAUSE],
                        &w->by_share, &w->is_seen };
   uint32_t *index = vg_alloc(m->n_point, sizeof *index);

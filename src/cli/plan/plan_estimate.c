@@ -13,6 +13,7 @@
 #include "core/geometry/vector.h"
 #include "partition/advance/advance.h"
 #include "partition/advance/ways.h"
+#include "run/settings/options.h"
 
 /* Walls with more points get their layers estimated, not grown. */
 #define GROW_LIMIT 50000
@@ -121,7 +122,7 @@ static void measure_lift(struct vg_plan *p, struct lift *l)
  * fill, but for details. */
 static vg_status estimate_layers(struct vg_plan *p, struct vg_error *err)
 {
-  const struct vg_mesh *m = &p->problem.surface;
+  const struct vg_mesh *m = &p->problem.boundary.surface;
   struct lift l = { .s = &p->layers, .m = m, .sizing = p->sizing };
   vg_status st;
 
@@ -150,7 +151,7 @@ done:
 
 static vg_status count_wall_points(struct vg_plan *p, struct vg_error *err)
 {
-  const struct vg_mesh *m = &p->problem.surface;
+  const struct vg_mesh *m = &p->problem.boundary.surface;
   uint8_t *on = vg_calloc(m->n_point, 1);
 
   if (!on) return vg_fail_memory(err, "the walls");
@@ -174,21 +175,21 @@ static void count_time(struct vg_plan *p, enum vg_phase phase, double start)
 static vg_status read_project(struct vg_plan *p, struct vg_error *err)
 {
   const struct vg_plan_options *o = p->o;
+  const struct vg_shape_options all_cores = { .threads = 0 };
   struct vg_problem *q = &p->problem;
   double start = vg_clock_process();
   vg_status st;
 
   vg_display_update(&p->show, "read", 0, 0);
-  VG_TRY(vg_input_find(o->project, o->deck, &q->files, err));
-  VG_TRY(vg_problem_deck(q, err));
-  VG_TRY(vg_cli_apply(&o->kept, &q->settings, err));
-  vg_settings_write(&q->settings);
-  VG_TRY(vg_problem_surface(q, &p->show, err));
+  VG_TRY(vg_problem_open(q, o->project, o->deck, err));
+  VG_TRY(vg_cli_apply(&o->kept, &q->asked, err));
+  VG_TRY(vg_problem_read(q, NULL, &p->show, err));
   count_time(p, VG_PHASE_READ, start);
   start = vg_clock_process();
+  VG_TRY(vg_problem_shape(q, &all_cores, &p->show, err));
   VG_TRY(vg_problem_close(q, &p->show, err));
-  VG_TRY(vg_layer_stage_plan(&p->layers, q, err));
-  st = vg_walls_swap(q, p->layers.is_on ? p->layers.reason : NULL, err);
+  VG_TRY(vg_problem_layers(q, &p->layers, err));
+  st = vg_problem_settle(q, &p->layers, err);
   count_time(p, VG_PHASE_CHECK, start);
 done:
   return st;
@@ -199,8 +200,8 @@ static vg_status measure_sizes(struct vg_plan *p, const struct vg_mesh *m,
                                double coarseness, double finer,
                                struct vg_error *err)
 {
-  const struct vg_settings *s = &p->problem.settings;
-  struct vg_sizing_options options = vg_problem_sizing(&p->problem);
+  const struct vg_settings *s = &p->problem.resolved.settings;
+  struct vg_sizing_options options = vg_boundary_sizing(&p->problem.boundary);
   double start = vg_clock_process();
   vg_status st;
 
@@ -216,18 +217,18 @@ static vg_status measure_sizes(struct vg_plan *p, const struct vg_mesh *m,
 
 static vg_status make_layers(struct vg_plan *p, struct vg_error *err)
 {
-  const struct vg_mesh *surface = &p->problem.surface;
+  const struct vg_mesh *surface = &p->problem.boundary.surface;
   struct vg_mesh view = VG_MESH_INIT;
   double start;
   vg_status st;
 
-  VG_TRY(vg_layer_stage_sizes(&p->layers, &p->problem, &view, err));
+  VG_TRY(vg_layer_stage_sizes(&p->layers, &p->problem.boundary, &view, err));
   VG_TRY(measure_sizes(p, &view, VG_LAYERS_COARSENESS, 1, err));
   VG_TRY(count_wall_points(p, err));
   /* a front of layers that are estimated may cross itself: it cannot be
    * parted */
   p->is_grown = p->n_wall_point < GROW_LIMIT ||
-                vg_ways[p->problem.settings.decompose].maker;
+                vg_ways[p->problem.resolved.settings.decompose].maker;
   start = vg_clock_process();
   if (p->is_grown) {
     p->layers.options.threads = 0;
@@ -255,7 +256,7 @@ static void count_mesh(struct vg_plan *p)
   double faces = (double)p->front->n_tri, field = p->load.cells;
 
   p->tet = field;
-  if (p->problem.settings.cells == VG_LAYER_MIXED)
+  if (p->problem.resolved.settings.cells == VG_LAYER_MIXED)
     p->prism = p->layer_tet / 3;
   else
     p->tet += p->layer_tet;
@@ -268,7 +269,7 @@ static double bytes_written(const struct vg_plan *p)
   char list[VG_WRITE_MAX], *save = NULL;
   double sum = 0;
 
-  memcpy(list, p->problem.settings.write, sizeof list);
+  memcpy(list, p->problem.resolved.settings.write, sizeof list);
   for (char *word = strtok_r(list, " ,", &save); word;
        word = strtok_r(NULL, " ,", &save)) sum += vg_plan_bytes(p, word);
   return sum;
@@ -303,8 +304,9 @@ static vg_status forecast(const struct vg_plan *p, double leaf_cells,
 
   rule.leaf_cells = leaf_cells;
   if (p->parting.n_part) return vg_plan_parted(p, &v, &rule, out, err);
-  return vg_forecast_new(&v, &p->load, &rule, (int)p->problem.settings.levels,
-                         &p->rates, out, err);
+  return vg_forecast_new(&v, &p->load, &rule,
+                         (int)p->problem.resolved.settings.levels, &p->rates,
+                         out, err);
 }
 
 /* What the machine of a record takes, in place of the one measured. */
@@ -356,7 +358,7 @@ static vg_status run_on(const struct vg_plan *p, const struct vg_forecast *o,
   double outside = 0;
   vg_status st;
 
-  m.cyclic = p->problem.settings.cyclic;
+  m.cyclic = p->problem.resolved.settings.cyclic;
   m.ranks = row->ranks = ranks;
   m.threads = row->threads = threads;
   m.ranks_per_node = row->ranks_per_node = ranks_per_node;
@@ -453,19 +455,19 @@ done:
  * forecast. */
 static vg_status make(struct vg_plan *p, struct vg_error *err)
 {
-  const struct vg_settings *s = &p->problem.settings;
+  const struct vg_settings *s = &p->problem.resolved.settings;
   struct vg_front v;
   vg_status st;
 
   VG_TRY(learn_rates(p, err));
   VG_TRY(read_project(p, err));
-  p->front = &p->problem.surface;
+  p->front = &p->problem.boundary.surface;
   if (p->layers.is_on) VG_TRY(make_layers(p, err));
   else VG_TRY(measure_sizes(p, p->front, COARSENESS, COARSENESS * COARSENESS,
                             err));
-  VG_TRY(vg_problem_effects(&p->problem, p->front, p->sizing, &p->effects,
-                            err));
-  vg_effects_note(&p->effects, p->front, &p->problem);
+  VG_TRY(vg_boundary_effects(&p->problem.boundary, p->front, p->sizing,
+                             &p->effects, err));
+  vg_effects_note(&p->effects, p->front, &p->problem.boundary);
   v = vg_front_of(p->front);
   vg_display_update(&p->show, "forecast", 0, 0);
   VG_TRY(vg_load_new(&v, p->sizing, VG_LOAD_CELLS_PER_CUBE, vg_cores(),
@@ -475,12 +477,10 @@ static vg_status make(struct vg_plan *p, struct vg_error *err)
     memset(p->phase, 0, sizeof p->phase);
     p->phase[VG_PHASE_READ] = p->o->serial;
   }
+  p->rule = vg_options_cuts(s);
   p->rule.leaf_cells = vg_parting_leaf_cells(
-    p->load.cells, s->parts == VG_COUNT_NONE ? 0 : (int)s->parts,
-    vg_ways[s->decompose].maker != NULL,
-    s->levels ? 0 : (double)s->leaf_cells);
-  p->rule.first_axis = (int)s->split_direction - 1;
-  p->rule.constant = s->constant_direction;
+    p->load.cells, vg_options_parting(s).n_part,
+    vg_ways[s->decompose].maker != NULL, p->rule.leaf_cells);
   VG_TRY(forecast(p, p->rule.leaf_cells, &p->forecast, err));
   count_mesh(p);
   count_memory(p);

@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "cli/plan/plan_estimate.h"
 #include "partition/advance/ways.h"
+#include "run/settings/options.h"
 
 void vg_plan_parting_release(struct vg_plan_parting *q)
 {
@@ -43,21 +44,17 @@ static vg_status weigh_parts(const struct vg_load *load,
 
 static struct vg_parting_options options_of(const struct vg_plan *p)
 {
-  const struct vg_settings *s = &p->problem.settings;
-  struct vg_parting_options o = VG_PARTING_OPTIONS_INIT;
-  double leaf = s->levels ? 0 : (double)s->leaf_cells;
+  const struct vg_settings *s = &p->problem.resolved.settings;
+  struct vg_parting_options o = vg_options_parting(s);
 
-  o.n_part = s->parts == VG_COUNT_NONE ? vg_parting_parts(p->load.cells, leaf)
-                                       : (int)s->parts;
-  o.partitioner = s->partitioner;
-  o.coarsening = s->coarsening;
-  o.h_refine = s->h_refine;
+  if (!o.n_part)
+    o.n_part = vg_parting_parts(p->load.cells, vg_options_cuts(s).leaf_cells);
   return o;
 }
 
 vg_status vg_plan_part(struct vg_plan *p, struct vg_error *err)
 {
-  const struct vg_way *way = &vg_ways[p->problem.settings.decompose];
+  const struct vg_way *way = &vg_ways[p->problem.resolved.settings.decompose];
   struct vg_front f = vg_front_of(p->front);
   struct vg_parting_options o = options_of(p);
   double t = vg_clock();
@@ -82,7 +79,7 @@ vg_status vg_plan_parted(const struct vg_plan *p, const struct vg_front *v,
                          struct vg_forecast *out, struct vg_error *err)
 {
   const struct vg_plan_parting *q = &p->parting;
-  const struct vg_settings *s = &p->problem.settings;
+  const struct vg_settings *s = &p->problem.resolved.settings;
   struct vg_forecast_part *part = vg_calloc(q->n_part, sizeof *part);
   struct vg_forecast_parting all = {
     s->decompose == VG_DECOMPOSE_OCTREE ? &p->rates.octree : &p->rates.discrete,

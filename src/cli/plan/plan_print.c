@@ -42,7 +42,7 @@ static double fluent_bytes(const struct vg_plan *p)
 {
   int is_mixed = p->prism > 0, width = 1;
   double faces = 2 * p->tet + 2.5 * p->prism +
-                 0.5 * (double)p->problem.surface.n_tri;
+                 0.5 * (double)p->problem.boundary.surface.n_tri;
 
   for (double n = p->tet + p->prism; n >= 16; n /= 16) width++;
   return 76 * p->point + faces * ((is_mixed ? 6 : 5) * (width + 1) + 1 +
@@ -53,7 +53,7 @@ static double fluent_bytes(const struct vg_plan *p)
 double vg_plan_bytes(const struct vg_plan *p, const char *item)
 {
   struct vg_foam_options foam;
-  double boundary = (double)p->problem.surface.n_tri;
+  double boundary = (double)p->problem.boundary.surface.n_tri;
 
   if (!strcmp(item, "auto")) return 0;
   for (size_t i = 0; i < sizeof forms / sizeof *forms; i++) {
@@ -92,7 +92,7 @@ static void print_mesh(const struct vg_plan *p)
   const struct vg_notes *notes = &p->problem.notes;
   char a[32], b[32];
 
-  printf("%s\n\nMesh expected\n", p->problem.settings.title);
+  printf("%s\n\nMesh expected\n", p->problem.asked.title);
   printf("  %-24s %15s\n", "cells", count(p->cell, a));
   if (p->layers.is_on) {
     printf("  %-24s %15s  %s\n", "  of layers",
@@ -119,7 +119,7 @@ static void print_files(const struct vg_plan *p)
   char list[VG_WRITE_MAX], *save = NULL, text[32];
 
   printf("\nFiles\n");
-  memcpy(list, p->problem.settings.write, sizeof list);
+  memcpy(list, p->problem.resolved.settings.write, sizeof list);
   for (char *word = strtok_r(list, " ,", &save); word;
        word = strtok_r(NULL, " ,", &save)) {
     double size = vg_plan_bytes(p, word);
@@ -187,7 +187,7 @@ static void print_parting(const struct vg_plan *p)
 {
   const struct vg_plan_parting *q = &p->parting;
   const struct vg_parting_report *r = &q->made.report;
-  const char *way = vg_ways[p->problem.settings.decompose].name;
+  const char *way = vg_ways[p->problem.resolved.settings.decompose].name;
   char a[32], b[32], c[32];
 
   if (!q->n_part) return;
@@ -434,7 +434,7 @@ static json_t *files_json(const struct vg_plan *p)
   char list[VG_WRITE_MAX], *save = NULL;
   json_t *o = json_object();
 
-  memcpy(list, p->problem.settings.write, sizeof list);
+  memcpy(list, p->problem.resolved.settings.write, sizeof list);
   for (char *word = strtok_r(list, " ,", &save); word;
        word = strtok_r(NULL, " ,", &save))
     json_object_set_new(o, word, json_real(vg_plan_bytes(p, word)));
@@ -446,7 +446,7 @@ static json_t *parting_json(const struct vg_plan *p)
   const struct vg_plan_parting *q = &p->parting;
 
   return json_pack("{s:s s:I s:I s:I s:f s:f s:f s:I s:I s:f}", "way",
-    vg_ways[p->problem.settings.decompose].name,
+    vg_ways[p->problem.resolved.settings.decompose].name,
     "parts", (json_int_t)q->n_part, "whole_parts", (json_int_t)q->n_whole,
     "gap_parts", (json_int_t)q->made.report.n_gap, "whole_cells", q->cells,
     "most_cells", q->most, "coarsening", q->made.report.coarsening,
@@ -519,10 +519,11 @@ vg_status vg_plan_json(const struct vg_plan *p, struct vg_error *err)
   json_t *o = json_object(), *rows = json_array();
   int bad;
 
-  json_object_set_new(o, "title", vg_text_json(p->problem.settings.title));
+  json_object_set_new(o, "title", vg_text_json(p->problem.asked.title));
   json_object_set_new(o, "mesh", mesh_json(p));
-  json_object_set_new(o, "sources", vg_effects_json(&p->effects, p->front,
-                                                    &p->problem.settings));
+  json_object_set_new(o, "sources",
+                      vg_effects_json(&p->effects, p->front,
+                                      &p->problem.resolved.settings));
   json_object_set_new(o, "files", files_json(p));
   json_object_set_new(o, "memory", json_pack("{s:f s:f s:f}", "shared",
     p->shared, "per_cell", p->per_cell, "per_thread", p->per_thread));
@@ -578,7 +579,7 @@ vg_status vg_plan_draw(const struct vg_plan *p, struct vg_error *err)
     v[n + i] = row[i].speedup;
     v[2 * n + i] = row[i].tasks.speedup;
   }
-  st = vg_plot_speedup(p->o->plot, p->problem.settings.title,
+  st = vg_plot_speedup(p->o->plot, p->problem.asked.title,
                        "forecast from the load", 2, line, err);
 done:
   free(row);

@@ -209,10 +209,10 @@ vg_status vg_project_settings(const char *root, const char *name,
     st = vg_fail_memory(err, "a path");
     goto done;
   }
-  VG_TRY(vg_input_find(path, deck, &p.files, err));
-  VG_TRY(check_files(root, &p.files, err));
-  VG_TRY(vg_problem_deck(&p, err));
-  st = vg_settings_copy(s, &p.settings, err);
+  VG_TRY(vg_input_find(path, deck, &p.read.files, err));
+  VG_TRY(check_files(root, &p.read.files, err));
+  VG_TRY(vg_problem_open_deck(&p, err));
+  st = vg_settings_copy(s, &p.asked, err);
 done:
   vg_problem_release(&p);
   free(real);

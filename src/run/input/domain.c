@@ -8,93 +8,62 @@
 #include "io/stream/convention.h"
 #include "run/input/input.h"
 #include "run/input/shape_parts.h"
-#include "run/settings/deck.h"
+#include "run/settings/options.h"
 
 #define FARFIELD_TRIANGLES 1e8
 #define SHOWN_RIMS 3
 
 /* --- the decision -------------------------------------------------------- */
 
-struct vg_flow_options vg_problem_flow_options(const struct vg_problem *p,
+struct vg_flow_options vg_boundary_flow_options(const struct vg_boundary *b,
                                                struct vg_display *show)
 {
-  const struct vg_settings *s = &p->settings;
-  struct vg_flow_options o = { .kind = (enum vg_flow_kind)s->flow,
-    .half = (enum vg_flow_half)s->half,
-    .side = p->side,
-    .all_regions = s->all_regions, .repair = s->repair,
-    .require_bc = p->require_bc, .threads = p->threads,
-    .stop = { vg_display_stop, show } };
+  struct vg_flow_options o = vg_options_flow(&b->read->settings,
+                                             b->read->has_cells);
 
-  if (o.kind == VG_FLOW_EXTERNAL) {
-    o.asked_by = "flow external";
-  } else if (o.kind == VG_FLOW_INTERNAL) {
-    o.asked_by = "flow internal";
-  } else if (s->farfield.kind == VG_DOMAIN_NONE) {
-    o.kind = VG_FLOW_INTERNAL;
-    o.asked_by = "farfield none";
-  } else if (s->farfield.kind != VG_DOMAIN_AUTO) {
-    o.kind = VG_FLOW_EXTERNAL;
-    o.asked_by = s->farfield.kind == VG_DOMAIN_BOX ? "farfield box"
-                                                   : "farfield sphere";
-  } else if (p->has_cells) {
-    o.kind = VG_FLOW_INTERNAL;
-    o.asked_by = "that the boundary of a volume mesh is read";
-  }
+  o.side = b->read->side;
+  o.require_bc = b->require_bc;
+  o.threads = b->threads;
+  o.stop = (struct vg_stop){ vg_display_stop, show };
   return o;
 }
 
-static void note_cavities(struct vg_problem *p)
+static void note_cavities(struct vg_boundary *b)
 {
-  const struct vg_flow *f = &p->flow;
+  const struct vg_flow *f = &b->flow;
 
   if (f->n_cavity)
-    vg_note(&p->notes, "sealed cavities inside the bodies are not meshed: %zu, "
+    vg_note(b->notes, "sealed cavities inside the bodies are not meshed: %zu, "
             "volume %.4g, the largest around (%.6g, %.6g, %.6g) (--regions all "
             "meshes them)", f->n_cavity, f->cavity_volume, f->cavity_at[0],
             f->cavity_at[1], f->cavity_at[2]);
 }
 
-static void note_cap(struct vg_problem *p)
+static void note_cap(struct vg_boundary *b)
 {
-  const struct vg_flow *f = &p->flow;
+  const struct vg_flow *f = &b->flow;
 
   if (f->cap_axis >= 0 && !f->n_cap_tri && f->kind == VG_FLOW_EXTERNAL
-      && p->settings.half == VG_HALF_AUTO)
-    vg_note(&p->notes, "flat cap at %c = %g: is this a half model? --half %c "
+      && b->read->settings.half == VG_HALF_AUTO)
+    vg_note(b->notes, "flat cap at %c = %g: is this a half model? --half %c "
             "removes the cap and adds the symmetry plane; --half no settles "
             "that it is a whole body", "xyz"[f->cap_axis], f->cap_at,
             "xyz"[f->cap_axis]);
 }
 
-/* Settings say what was decided, so that the run can be repeated. */
-static void resolve(struct vg_problem *p)
-{
-  struct vg_settings *s = &p->settings;
-  const struct vg_flow *f = &p->flow;
-
-  if (f->kind == VG_FLOW_UNKNOWN) return;
-  if (s->farfield.kind == VG_DOMAIN_AUTO)
-    s->farfield.kind = f->kind == VG_FLOW_EXTERNAL ? VG_DOMAIN_SPHERE
-                                                   : VG_DOMAIN_NONE;
-  s->flow = (int)f->kind;
-  s->half = f->axis < 0 ? VG_HALF_NO : (int)VG_HALF_X + f->axis;
-}
-
-vg_status vg_problem_decide(struct vg_problem *p, struct vg_display *show,
+vg_status vg_boundary_decide(struct vg_boundary *b, struct vg_display *show,
                             struct vg_error *err)
 {
-  const struct vg_flow_options o = vg_problem_flow_options(p, show);
+  const struct vg_flow_options o = vg_boundary_flow_options(b, show);
   struct vg_error why = VG_ERROR_INIT;
-  vg_status st = vg_flow_settle(&p->surface, &p->check, &o, &p->flow, &why);
+  vg_status st = vg_flow_settle(&b->surface, &b->check, &o, &b->flow, &why);
 
   if (st < 0)
-    return st == VG_ERR_INPUT ? vg_fail(err, st, "%s: %s", p->files.stem,
+    return st == VG_ERR_INPUT ? vg_fail(err, st, "%s: %s", b->read->files.stem,
                                         why.text)
                               : vg_fail(err, st, "%s", why.text);
-  note_cap(p);
-  note_cavities(p);
-  resolve(p);
+  note_cap(b);
+  note_cavities(b);
   return VG_OK;
 }
 
@@ -121,26 +90,26 @@ static void list_rims(const struct vg_rim *rim, size_t n, char *text,
   if (n > SHOWN_RIMS) snprintf(text + at, size - at, "; ...");
 }
 
-vg_status vg_problem_refuse_open(const struct vg_problem *p,
+vg_status vg_boundary_refuse_open(const struct vg_boundary *b,
                                  struct vg_display *show, struct vg_error *err)
 {
   struct vg_error why = VG_ERROR_INIT;
   struct vg_rim *rim = NULL;
   char list[400], half[160] = "", remedy[120];
   size_t n = 0;
-  vg_status st = vg_domain_rims(&p->surface, &n, &rim, &why);
+  vg_status st = vg_domain_rims(&b->surface, &n, &rim, &why);
 
-  if (p->rim_gap > 0) {
+  if (b->rim_gap > 0) {
     free(rim);
     return vg_fail(err, VG_ERR_GEOMETRY, "%s: the surface is open, but open "
                    "edges lie next to each other, %.3g apart at most: --weld "
-                   "%.2g closes these gaps", p->files.stem, p->rim_gap,
-                   1.05 * p->rim_gap);
+                   "%.2g closes these gaps", b->read->files.stem, b->rim_gap,
+                   1.05 * b->rim_gap);
   }
   if (st == VG_ERR_GEOMETRY) {
-    vg_problem_suggest_wrap(p, show, remedy, sizeof remedy);
+    vg_boundary_suggest_wrap(b, show, remedy, sizeof remedy);
     return vg_fail(err, VG_ERR_GEOMETRY, "%s: the surface is open, and %s%s",
-                   p->files.stem, why.text, remedy);
+                   b->read->files.stem, why.text, remedy);
   }
   if (st < 0) return vg_fail(err, st, "%s", why.text);
   list_rims(rim, n, list, sizeof list);
@@ -150,7 +119,8 @@ vg_status vg_problem_refuse_open(const struct vg_problem *p,
              rim[0].centre[rim[0].axis], "xyz"[rim[0].axis]);
   st = vg_fail(err, VG_ERR_GEOMETRY, "%s: the surface is open: %zu rim%s (%s). "
                "--close-holes yes closes each with a flat cap in a patch of "
-               "its own (cap_1%s%s)%s", p->files.stem, n, n > 1 ? "s" : "", list,
+               "its own (cap_1%s%s)%s", b->read->files.stem, n, n > 1 ? "s" : "",
+               list,
                n > 1 ? ", cap_2, ..." : "", n > 1 ? "; in a duct with --flow "
                "internal" : "", half);
   free(rim);
@@ -160,15 +130,15 @@ vg_status vg_problem_refuse_open(const struct vg_problem *p,
 /* --- the domain completed ------------------------------------------------ */
 
 /* An edge in another unit would ask for more triangles than fit anywhere. */
-static vg_status check_farfield(const struct vg_problem *p,
+static vg_status check_farfield(const struct vg_boundary *b,
                                 const struct vg_farfield *far,
                                 struct vg_error *err)
 {
   double edge = far->spacing, lo[3], hi[3], size = 0, n;
-  double hmax = p->settings.hmax * p->settings.scale;
+  double hmax = b->read->settings.hmax * b->read->settings.scale;
 
   if (hmax > 0 && !(edge > 0 && edge < hmax)) edge = hmax;
-  vg_mesh_bounds(&p->surface, lo, hi);
+  vg_mesh_bounds(&b->surface, lo, hi);
   for (int k = 0; k < 3; k++) {
     size = fmax(size, far->lengths * (hi[k] - lo[k]));
     if (far->has_box) size = fmax(size, (far->hi[k] - far->lo[k]) / 2);
@@ -182,25 +152,34 @@ static vg_status check_farfield(const struct vg_problem *p,
                  "unit of the surface?", size, edge, n);
 }
 
-vg_status vg_problem_complete(struct vg_problem *p, struct vg_display *show,
+/* Of the flow that was decided, where settings leave it open. */
+static struct vg_farfield decided_farfield(const struct vg_boundary *b)
+{
+  struct vg_settings view = b->read->settings;   /* tables are borrowed */
+
+  vg_resolve_flow(&view, (int)b->flow.kind, b->flow.axis);
+  return vg_options_farfield(&view);
+}
+
+vg_status vg_boundary_complete(struct vg_boundary *b, struct vg_display *show,
                               struct vg_error *err)
 {
-  struct vg_settings *s = &p->settings;
-  struct vg_sizing_options options = vg_problem_sizing(p);
-  struct vg_farfield far = vg_settings_farfield(s);
+  const struct vg_settings *s = &b->read->settings;
+  struct vg_sizing_options options = vg_boundary_sizing(b);
+  struct vg_farfield far = decided_farfield(b);
   struct vg_sizing *sizing = NULL;
   vg_status st;
 
-  far.symmetry = p->flow.axis < 0 ? -1 : 1;
-  VG_TRY(check_farfield(p, &far, err));
+  far.symmetry = b->flow.axis < 0 ? -1 : 1;
+  VG_TRY(check_farfield(b, &far, err));
   /* The farfield is away from the body, whose own largest edge is no limit
    * for it. */
   if (!(options.h_max > 0)) options.h_max = INFINITY;
-  options.threads = p->threads;
-  VG_TRY(vg_sizing_new(&options, s->n_source, s->source, &p->surface, &sizing,
+  options.threads = b->threads;
+  VG_TRY(vg_sizing_new(&options, s->n_source, s->source, &b->surface, &sizing,
                        err));
   far.stop = (struct vg_stop){ vg_display_stop, show };
-  VG_TRY(vg_domain_complete(&p->surface, &far, sizing, &p->domain, err));
+  VG_TRY(vg_domain_complete(&b->surface, &far, sizing, &b->domain, err));
 done:
   vg_sizing_free(sizing);
   /* the library's message says less */

@@ -8,9 +8,9 @@
 
 #include "base/memory.h"
 #include "run/input/sizes.h"
+#include "run/settings/options.h"
 
-/* S60: limits of what gaps ask for. */
-#define MOST_TRI 1e8
+/* S60: limit of what gaps ask for. */
 #define MOST_PLACE 2e7
 
 struct vg_gap_sizes {
@@ -46,33 +46,25 @@ static void join_maps(struct vg_gap_sizes *g, const struct vg_size_map *other)
     .most = other->most > 0 ? fmax(other->most, g->gaps->most) : 0 };
 }
 
-static vg_status make(struct vg_problem *p, const struct vg_gaps *found,
+static vg_status make(struct vg_boundary *b, const struct vg_gaps *found,
                       struct vg_error *err)
 {
-  const struct vg_settings *s = &p->settings;
+  const struct vg_settings *s = &b->read->settings;
   struct vg_gap_sizes *g = vg_calloc(1, sizeof *g);
   vg_status st;
 
   if (!g) return vg_fail_memory(err, "the gaps");
   st = vg_size_samples_new(found->n, (const double (*)[3])found->x, found->h,
-                           vg_scaled_growth(s->growth, s->scale), p->threads,
+                           vg_scaled_growth(s->growth, s->scale), b->threads,
                            &g->samples, err);
   if (st < 0) {
     free(g);
     return st;
   }
-  join_maps(g, p->map);
-  p->gaps = g;
-  p->map = &g->map;
+  join_maps(g, b->map);
+  b->gaps = g;
+  b->map = &g->map;
   return VG_OK;
-}
-
-/* What a new surface may have in gaps: a surface of more triangles than cells
- * are allowed is refused before it is made. */
-static double most_triangles(const struct vg_settings *s)
-{
-  if (s->remesh != VG_ANSWER_YES) return 0;
-  return s->max_cells ? fmin((double)s->max_cells, MOST_TRI) : MOST_TRI;
 }
 
 static void patch_text(const struct vg_patch *p, char *text, size_t size)
@@ -81,64 +73,62 @@ static void patch_text(const struct vg_patch *p, char *text, size_t size)
            *p->name ? ")" : "");
 }
 
-static vg_status too_many(const struct vg_problem *p, const struct vg_gaps *g,
-                          struct vg_error *err)
+static vg_status too_many(const struct vg_boundary *b, const struct vg_gaps *g,
+                          double most_tri, struct vg_error *err)
 {
-  const struct vg_settings *s = &p->settings;
-  const int is_tri = s->remesh == VG_ANSWER_YES && g->n_tri > most_triangles(s);
+  const struct vg_settings *s = &b->read->settings;
+  const int is_tri = b->is_remeshed && g->n_tri > most_tri;
   char one[VG_NAME_MAX + 24], two[VG_NAME_MAX + 24];
 
-  patch_text(&p->surface.patch[g->patch[0]], one, sizeof one);
-  patch_text(&p->surface.patch[g->patch[1]], two, sizeof two);
+  patch_text(&b->surface.patch[g->patch[0]], one, sizeof one);
+  patch_text(&b->surface.patch[g->patch[1]], two, sizeof two);
   return vg_fail(err, VG_ERR_INPUT, "gap_edges %g needs some %.2g %s in gaps, "
                  "%.9g are the limit%s; the narrowest gap is %.4g wide, "
                  "between patches %s and %s at (%.6g, %.6g, %.6g). Lower "
                  "gap_edges, raise hmin, or close the gap (--wrap)%s",
                  s->gap_edges, is_tri ? g->n_tri : g->n_place,
                  is_tri ? "surface triangles" : "places with a size",
-                 is_tri ? most_triangles(s) : MOST_PLACE,
+                 is_tri ? most_tri : MOST_PLACE,
                  is_tri && s->max_cells ? " (max_cells)" : "", g->narrowest,
                  one, two, g->at[0], g->at[1], g->at[2],
                  is_tri && s->max_cells ? "; or raise max_cells" : "");
 }
 
-vg_status vg_problem_gaps(struct vg_problem *p, struct vg_display *show,
+vg_status vg_boundary_gaps(struct vg_boundary *b, struct vg_display *show,
                           struct vg_error *err)
 {
-  const struct vg_settings *s = &p->settings;
+  const struct vg_settings *s = &b->read->settings;
   struct vg_gaps found = VG_GAPS_INIT;
-  double most = s->surface_size > 0 && !(s->hmax > 0 &&
-                s->hmax < s->surface_size) ? s->surface_size : s->hmax;
+  struct vg_gap_options o = vg_options_gaps(s, b->is_remeshed);
   vg_status st;
 
-  if (!(s->gap_edges > 0) || p->gaps) return VG_OK;
-  vg_display_update(show, "gaps", p->surface.n_tri, 0);
-  VG_TRY(vg_gaps_find(&p->surface, &(struct vg_gap_options){
-    .edges = s->gap_edges / s->scale, .h_min = s->hmin * s->scale,
-    .h_max = most * s->scale, .most_tri = most_triangles(s),
-    .most_place = MOST_PLACE, .threads = p->threads,
-    .stop = { vg_display_stop, show } }, &found, err));
-  if (st == VG_BLOCKED) VG_TRY(too_many(p, &found, err));
+  if (!(s->gap_edges > 0) || b->gaps) return VG_OK;
+  vg_display_update(show, "gaps", b->surface.n_tri, 0);
+  o.most_place = MOST_PLACE;
+  o.threads = b->threads;
+  o.stop = (struct vg_stop){ vg_display_stop, show };
+  VG_TRY(vg_gaps_find(&b->surface, &o, &found, err));
+  if (st == VG_BLOCKED) VG_TRY(too_many(b, &found, o.most_tri, err));
   if (found.n)
-    vg_note(&p->notes, "gap_edges %g: sizes from %zu places in gaps, the "
+    vg_note(b->notes, "gap_edges %g: sizes from %zu places in gaps, the "
             "narrowest %.4g wide at (%.6g, %.6g, %.6g)%s", s->gap_edges,
             found.n, found.narrowest, found.at[0], found.at[1], found.at[2],
-            s->remesh == VG_ANSWER_YES ? "" : "; the surface stays as it is given, and cells "
-            "between coarse faces cannot be small (remesh_surface)");
+            b->is_remeshed ? "" : "; the surface stays as it is given, and "
+            "cells between coarse faces cannot be small (remesh_surface)");
   else
-    vg_note(&p->notes, "without effect, for no gap is narrow: gap_edges");
-  if (found.n) VG_TRY(make(p, &found, err));
+    vg_note(b->notes, "without effect, for no gap is narrow: gap_edges");
+  if (found.n) VG_TRY(make(b, &found, err));
   st = vg_display_stopped(show, err);
 done:
   vg_gaps_release(&found);
   return st;
 }
 
-void vg_problem_forget_gaps(struct vg_problem *p)
+void vg_boundary_forget_gaps(struct vg_boundary *b)
 {
-  if (!p->gaps) return;
-  p->map = p->gaps->other;
-  vg_size_samples_free(p->gaps->samples);
-  free(p->gaps);
-  p->gaps = NULL;
+  if (!b->gaps) return;
+  b->map = b->gaps->other;
+  vg_size_samples_free(b->gaps->samples);
+  free(b->gaps);
+  b->gaps = NULL;
 }

@@ -19,16 +19,8 @@
 #include "run/input/share.h"
 #include "run/input/sizes.h"
 #include "run/settings/deck.h"
+#include "run/settings/options.h"
 #include "run/settings/patch_names.h"
-
-/* Of struct vg_cad_options, however sizes are scaled. */
-#define FINE_CHORD 3e-4   /* S15: of what the surface is made anew from */
-#define FINEST_CHORD 1e-4 /* S45: where triangles of thin tips do not cross
-                             yet */
-#define FINE_ANGLE 8.0
-#define CHORD_MOST 0.5
-#define ANGLE_LEAST 1.0
-#define ANGLE_MOST 60.0
 
 void vg_note(struct vg_notes *notes, const char *format, ...)
 {
@@ -67,21 +59,45 @@ static void release_files(struct vg_input_files *f)
   memset(f, 0, sizeof *f);
 }
 
+void vg_boundary_release(struct vg_boundary *b)
+{
+  vg_boundary_forget_gaps(b);
+  if (b->common.data) vg_shmem_release(&b->common);
+  else vg_mesh_release(&b->surface);
+  vg_surface_report_release(&b->check);
+  vg_flow_release(&b->flow);
+  vg_renewal_release(&b->renewal);
+  vg_cad_model_release(&b->model);
+  free(b->row);
+}
+
+static void release_read(struct vg_read *r)
+{
+  release_files(&r->files);
+  vg_settings_release(&r->settings);
+  vg_project_release(&r->project);
+  vg_size_samples_free(r->samples);
+  vg_mesh_release(&r->surface);
+  vg_cad_model_release(&r->model);
+  free(r->heights.item);
+}
+
+void vg_problem_forget_sizes(struct vg_problem *p)
+{
+  vg_boundary_forget_gaps(&p->boundary);
+  if (!p->read.samples) return;
+  vg_size_samples_free(p->read.samples);
+  p->read.samples = NULL;
+  p->read.map = p->boundary.map = NULL;
+}
+
 void vg_problem_release(struct vg_problem *p)
 {
-  release_files(&p->files);
-  vg_settings_release(&p->settings);
-  vg_project_release(&p->project);
-  vg_problem_forget_sizes(p);
-  if (p->common.data) vg_shmem_release(&p->common);
-  else vg_mesh_release(&p->surface);
-  free(p->heights.item);
-  vg_surface_report_release(&p->check);
-  vg_flow_release(&p->flow);
-  vg_renewal_release(&p->renewal);
-  vg_cad_model_release(&p->model);
+  vg_boundary_release(&p->boundary);
+  release_read(&p->read);
+  vg_resolved_release(&p->resolved);
+  vg_settings_release(&p->asked);
   vg_notes_release(&p->notes);
-  free(p->given);
 }
 
 static int exists(const char *path)
@@ -217,32 +233,33 @@ vg_status vg_input_find(const char *name, const char *deck,
   return VG_OK;
 }
 
-vg_status vg_problem_deck(struct vg_problem *p, struct vg_error *err)
+vg_status vg_problem_open_deck(struct vg_problem *p, struct vg_error *err)
 {
-  const char *base = strrchr(p->files.stem, '/');
-  struct vg_settings *s = &p->settings;
+  const struct vg_input_files *f = &p->read.files;
+  struct vg_settings *s = &p->asked;
+  const char *base = strrchr(f->stem, '/');
 
   vg_settings_default(s);
-  snprintf(s->title, sizeof s->title, "%s", base ? base + 1 : p->files.stem);
+  snprintf(s->title, sizeof s->title, "%s", base ? base + 1 : f->stem);
   vg_text_trim_end(s->title);
-  if (!*p->files.deck) return VG_OK;
-  return vg_deck_read(p->files.deck, s, err);
+  if (!*f->deck) return VG_OK;
+  return vg_deck_read(f->deck, s, err);
 }
 
-struct vg_sizing_options vg_problem_sizing(const struct vg_problem *p)
+vg_status vg_problem_open(struct vg_problem *p, const char *name,
+                          const char *deck, struct vg_error *err)
 {
-  struct vg_sizing_options o = vg_settings_sizing(&p->settings);
+  vg_status st = vg_input_find(name, deck, &p->read.files, err);
 
-  o.map = p->map;
-  return o;
+  return st < 0 ? st : vg_problem_open_deck(p, err);
 }
 
-static void note_unused(struct vg_problem *p,
+static void note_unused(struct vg_read *r,
                         const struct vg_mapbc_match *match)
 {
   if (match->n_unused)
-    vg_note(&p->notes, "%s lists %zu patches that the surface does not "
-            "have (the first is %d)", p->files.mapbc, match->n_unused,
+    vg_note(r->notes, "%s lists %zu patches that the surface does not "
+            "have (the first is %d)", r->files.mapbc, match->n_unused,
             (int)match->first_unused);
 }
 
@@ -261,81 +278,90 @@ void vg_note_own_mapbc(struct vg_notes *notes, const char *stem, size_t n)
 }
 
 /* The .mapbc of an earlier run is no input, and may be overwritten. */
-static void leave_own_mapbc(struct vg_problem *p)
+static void leave_own_mapbc(struct vg_read *r)
 {
-  vg_note_own_mapbc(&p->notes, p->files.stem, strlen(p->files.stem));
-  *p->files.mapbc = 0;
+  vg_note_own_mapbc(r->notes, r->files.stem, strlen(r->files.stem));
+  *r->files.mapbc = 0;
 }
 
 /* The file that the settings name takes the place of the project's. */
-static vg_status name_mapbc(struct vg_problem *p, struct vg_error *err)
+static vg_status name_mapbc(struct vg_read *r, struct vg_error *err)
 {
   char *name;
 
-  if (!*p->settings.mapbc) return VG_OK;
-  name = strdup(p->settings.mapbc);
+  if (!*r->settings.mapbc) return VG_OK;
+  name = strdup(r->settings.mapbc);
   if (!name) return vg_fail_memory(err, "a path");
-  free(p->files.mapbc);
-  p->files.mapbc = name;
+  free(r->files.mapbc);
+  r->files.mapbc = name;
   return VG_OK;
+}
+
+static void note_cad(void *user, const char *text)
+{
+  vg_note(user, "CAD: %s", text);
+}
+
+/* user: the notes. */
+static int stop_cad(void *user)
+{
+  (void)user;
+  return vg_display_stop(NULL);
 }
 
 /* The conditions are those of the .mapbc that is named or has the stem of the
  * file. */
-static vg_status read_surface_file(struct vg_problem *p, struct vg_error *err)
+static vg_status read_surface_file(struct vg_read *r, struct vg_error *err)
 {
-  const int is_renewed = vg_problem_is_renewed(p);
-  struct vg_cad_options cad = vg_cad_options_of(&p->settings, is_renewed,
-                                                &p->notes);
+  const int is_remeshed = vg_read_is_remeshed(r, &r->surface);
+  struct vg_cad_options cad = vg_options_cad(&r->settings, is_remeshed);
   struct vg_read_info info = { .cad = &cad,
-    .model = is_renewed ? &p->model : NULL, .mapbc = p->settings.mapbc };
-  const char *path = p->files.surface;
-  vg_status st = name_mapbc(p, err);
+    .model = is_remeshed ? &r->model : NULL, .mapbc = r->settings.mapbc };
+  const char *path = r->files.surface;
+  vg_status st = name_mapbc(r, err);
 
+  cad.note = note_cad;
+  cad.stop = stop_cad;
+  cad.user = r->notes;
   if (st < 0) return st;
-  if (p->is_read) {
-    if (!*p->settings.mapbc && vg_mapbc_is_output(p->files.mapbc))
-      leave_own_mapbc(p);
-    return VG_OK;
-  }
-  st = vg_surface_read(path, &p->surface, &info, err);
+  st = vg_surface_read(path, &r->surface, &info, err);
   /* the library's message says less */
   if (st < 0)
     return vg_display_stop(NULL) ? vg_display_stopped(NULL, err) : st;
-  p->has_cells = info.n_cell > 0;
-  p->side = side_of(info.format);
+  r->has_cells = info.n_cell > 0;
+  r->side = side_of(info.format);
   if (info.n_cell)
-    vg_note(&p->notes, "%s is a volume mesh: its boundary is meshed anew, its "
+    vg_note(r->notes, "%s is a volume mesh: its boundary is meshed anew, its "
             "%zu cells are not used", path, info.n_cell);
   if (info.turned.face)
-    vg_note(&p->notes, "%s: %zu boundary faces pointed out of their cells and "
+    vg_note(r->notes, "%s: %zu boundary faces pointed out of their cells and "
             "were turned", path, info.turned.face);
   if (info.turned.loose_face)
-    vg_note(&p->notes, "%s: %zu boundary faces belong to no cell", path,
+    vg_note(r->notes, "%s: %zu boundary faces belong to no cell", path,
             info.turned.loose_face);
-  if (info.has_own_mapbc) leave_own_mapbc(p);
-  note_unused(p, &info.match);
+  if (info.has_own_mapbc) leave_own_mapbc(r);
+  note_unused(r, &info.match);
   return VG_OK;
 }
 
 /* Sizes have to reach over the patches, wherever the sources are. */
-static vg_status mesh_patches(struct vg_problem *p, struct vg_display *show,
+static vg_status mesh_patches(struct vg_read *r, struct vg_display *show,
                               struct vg_error *err)
 {
-  struct vg_sizing_options options = vg_problem_sizing(p);
-  const struct vg_mesh corners = { .n_point = p->project.n_point,
-                                   .point = p->project.point };
+  struct vg_sizing_options options = vg_options_sizing(&r->settings, r->map);
+  const struct vg_mesh corners = { .n_point = r->project.n_point,
+                                   .point = r->project.point };
   const struct vg_stop stop = { vg_display_stop, show };
   struct vg_sizing *sizing = NULL;
   vg_status st;
 
-  if (!p->project.n_shape)
+  if (!r->project.n_shape)
     return vg_fail(err, VG_ERR_INPUT, "%s: no patches in it and no surface "
                    "beside it; add a .front or a surface file",
-                   p->files.d3m);
-  VG_TRY(vg_sizing_new(&options, p->settings.n_source, p->settings.source,
+                   r->files.d3m);
+  VG_TRY(vg_sizing_new(&options, r->settings.n_source, r->settings.source,
                        &corners, &sizing, err));
-  VG_TRY(vg_project_surface(&p->project, sizing, &stop, &p->surface, err));
+  VG_TRY(vg_project_surface(&r->project, sizing, &stop, &r->surface, err));
 done:
   vg_sizing_free(sizing);
   /* the library's message says less */
@@ -353,24 +379,24 @@ static void use_ifact(struct vg_settings *s, double ifact)
 
 /* Sources of the project come first, those of the deck after them; the sum of
  * VGRID's law depends on the order in the last bits. */
-static vg_status merge_sources(struct vg_problem *p, struct vg_error *err)
+static vg_status merge_sources(struct vg_read *r, struct vg_error *err)
 {
-  struct vg_settings *s = &p->settings;
-  size_t n = p->project.n_source, total = n + s->n_source;
+  struct vg_settings *s = &r->settings;
+  size_t n = r->project.n_source, total = n + s->n_source;
   struct vg_source *all;
 
-  if (!s->d3m_sources || !*p->files.d3m) return VG_OK;
+  if (!s->d3m_sources || !*r->files.d3m) return VG_OK;
   s->d3m_sources = 0;
-  if (!n) use_ifact(s, p->project.ifact);
+  if (!n) use_ifact(s, r->project.ifact);
   if (!n) return VG_OK;
   all = vg_alloc(total, sizeof *all);
   if (!all) return vg_fail_memory(err, "the sources");
-  memcpy(all, p->project.source, n * sizeof *all);
+  memcpy(all, r->project.source, n * sizeof *all);
   if (s->n_source) memcpy(all + n, s->source, s->n_source * sizeof *all);
   free(s->source);
   s->source = all;
   s->n_source = s->cap_source = total;
-  use_ifact(s, p->project.ifact);
+  use_ifact(s, r->project.ifact);
   return VG_OK;
 }
 
@@ -390,128 +416,113 @@ static void set_condition(struct vg_patch *p, int32_t code, int axis)
   if (p->bc != before) p->family = p->bc;
 }
 
-int vg_problem_is_cap(const struct vg_problem *p, size_t i)
+int vg_boundary_is_cap(const struct vg_boundary *b, size_t i)
 {
-  return p->n_given_patch && i >= p->n_given_patch
-         && !strncmp(p->surface.patch[i].name, "cap_", 4);
+  return b->n_given_patch && i >= b->n_given_patch
+         && !strncmp(b->surface.patch[i].name, "cap_", 4);
 }
 
 /* The table wins over the .mapbc. */
-vg_status vg_problem_patch_table(struct vg_problem *p, int are_closed,
-                                 struct vg_error *err)
+vg_status vg_patch_table_apply(size_t n, const struct vg_patch_row *row,
+                               int may_lack, struct vg_mesh *surface,
+                               struct vg_error *err)
 {
-  int *axis = vg_alloc(p->surface.n_patch, sizeof *axis);
-  vg_status st = axis ? vg_patch_axes(&p->surface, axis, err)
+  int *axis = vg_alloc(surface->n_patch, sizeof *axis);
+  vg_status st = axis ? vg_patch_axes(surface, axis, err)
                       : vg_fail_memory(err, "the patches");
 
-  if (st >= 0) st = vg_patch_rows_resolve(&p->settings, &p->surface, err);
-  for (size_t i = 0; i < p->settings.n_patch && st >= 0; i++) {
-    const struct vg_patch_row *row = &p->settings.patch[i];
-    size_t at = vg_mesh_find_patch(&p->surface, row->id);
-    struct vg_patch *to = at == SIZE_MAX ? NULL : &p->surface.patch[at];
+  for (size_t i = 0; i < n && st >= 0; i++) {
+    size_t at = vg_mesh_find_patch(surface, row[i].id);
+    struct vg_patch *to = at == SIZE_MAX ? NULL : &surface->patch[at];
 
-    if (!to && p->settings.close_holes && !are_closed) continue;
+    if (!to && may_lack) continue;
     if (!to) {
-      st = vg_patch_ref_mark("patches", row->id, "", &p->surface,
-                             p->surface.n_patch, NULL, err);
+      st = vg_patch_ref_mark("patches", row[i].id, "", surface,
+                             surface->n_patch, NULL, err);
       break;
     }
-    if (*row->name) snprintf(to->name, sizeof to->name, "%s", row->name);
-    set_condition(to, row->bc, axis[at]);
+    if (*row[i].name) snprintf(to->name, sizeof to->name, "%s", row[i].name);
+    set_condition(to, row[i].bc, axis[at]);
   }
   free(axis);
   return st;
 }
 
-static vg_status apply_conditions(struct vg_problem *p, struct vg_error *err)
+/* With numbers in place of names. */
+static vg_status apply_patch_table(struct vg_read *r, struct vg_error *err)
+{
+  vg_status st = vg_patch_rows_resolve(&r->settings, &r->surface, err);
+
+  return st < 0 ? st : vg_patch_table_apply(r->settings.n_patch,
+                                            r->settings.patch,
+                                            r->settings.close_holes,
+                                            &r->surface, err);
+}
+
+static vg_status apply_conditions(struct vg_read *r, struct vg_error *err)
 {
   struct vg_mapbc bc = VG_MAPBC_INIT;
   struct vg_mapbc_match match;
   vg_status st;
 
-  VG_TRY(name_mapbc(p, err));
-  if (!*p->settings.mapbc && vg_mapbc_is_output(p->files.mapbc))
-    leave_own_mapbc(p);
-  if (!*p->files.mapbc) return VG_OK;
-  st = vg_mapbc_read(p->files.mapbc, &bc, err);
-  if (st >= 0) st = vg_mapbc_apply(&bc, &p->surface, &match, err);
-  if (st >= 0) note_unused(p, &match);
+  VG_TRY(name_mapbc(r, err));
+  if (!*r->settings.mapbc && vg_mapbc_is_output(r->files.mapbc))
+    leave_own_mapbc(r);
+  if (!*r->files.mapbc) return VG_OK;
+  st = vg_mapbc_read(r->files.mapbc, &bc, err);
+  if (st >= 0) st = vg_mapbc_apply(&bc, &r->surface, &match, err);
+  if (st >= 0) note_unused(r, &match);
 done:
   vg_mapbc_release(&bc);
   return st;
 }
 
-static void note_cad(void *user, const char *text)
+int vg_read_is_by_first(const struct vg_read *r, struct vg_comm *comm)
 {
-  vg_note(user, "CAD: %s", text);
+  return vg_comm_size(comm) > 1 && !*r->files.front
+         && vg_format_is_cad(r->files.surface);
 }
 
-/* Triangles along a line are held against facets beside it. */
-static int is_stretched(const struct vg_settings *s)
+/* st: of this rank so far. Collective. */
+static vg_status read_for_all(struct vg_read *r, struct vg_comm *comm,
+                              vg_status st, struct vg_error *err)
 {
-  for (size_t i = 0; i < s->n_surface; i++)
-    if (s->surface_row[i].stretch > 1) return 1;
-  return 0;
+  VG_TRY(vg_comm_agree(comm, st, err));
+  if (!vg_comm_rank(comm)) {
+    st = read_surface_file(r, err);
+  } else {
+    st = name_mapbc(r, err);
+    if (st >= 0 && !*r->settings.mapbc && vg_mapbc_is_output(r->files.mapbc))
+      leave_own_mapbc(r);
+  }
+  st = vg_surface_bcast(comm, 1, st, &r->surface, err);
+done:
+  return st;
 }
 
-struct vg_cad_options vg_cad_options_of(const struct vg_settings *s,
-                                        int is_renewed,
-                                        struct vg_notes *notes)
-{
-  const struct vg_cad_options plain = VG_CAD_OPTIONS_INIT;
-  const double scale2 = s->scale * s->scale;
-  /* An arc of an edge S times as long turns by S, and rises by S * S. */
-  double chord = (s->cad.chord > 0 ? s->cad.chord : plain.chord) * scale2;
-  double angle = (s->cad.angle > 0 ? s->cad.angle : plain.angle) * s->scale;
-
-  if (is_renewed && !(s->cad.chord > 0))
-    chord = is_stretched(s) ? FINEST_CHORD
-            : fmax(FINEST_CHORD, FINE_CHORD * fmin(scale2, 1));
-  if (is_renewed && !(s->cad.angle > 0)) angle = FINE_ANGLE;
-  return (struct vg_cad_options){ .unit = s->cad.unit,
-    .patches = s->cad.patches, .tolerance = s->cad.tolerance,
-    .chord = fmin(chord, CHORD_MOST),
-    .angle = fmin(fmax(angle, ANGLE_LEAST), ANGLE_MOST),
-    .seconds = s->cad.seconds,
-    .note = note_cad, .user = notes, .stop = { vg_display_stop, NULL } };
-}
-
-vg_status vg_problem_cad(struct vg_problem *p, struct vg_comm *comm,
-                         struct vg_error *err)
-{
-  vg_status st = VG_OK;
-
-  if (vg_comm_size(comm) == 1 || *p->files.front ||
-      !vg_format_is_cad(p->files.surface))
-    return VG_OK;
-  if (!vg_comm_rank(comm)) st = read_surface_file(p, err);
-  p->is_read = 1;
-  return vg_surface_bcast(comm, 1, st, &p->surface, err);
-}
-
-static vg_status read_surface(struct vg_problem *p, struct vg_display *show,
+static vg_status read_surface(struct vg_read *r, struct vg_display *show,
                               struct vg_error *err)
 {
-  const struct vg_input_files *f = &p->files;
-  const struct vg_project *project = *f->d3m ? &p->project : NULL;
+  const struct vg_input_files *f = &r->files;
+  const struct vg_project *project = *f->d3m ? &r->project : NULL;
   vg_status st;
 
-  if (!*f->front && *f->surface) return read_surface_file(p, err);
-  p->side = VG_SIDE_DEFINED;
-  st = *f->front ? vg_front_read(f->front, project, &p->surface, err)
-                 : mesh_patches(p, show, err);
-  return st < 0 ? st : apply_conditions(p, err);
+  if (!*f->front && *f->surface) return read_surface_file(r, err);
+  r->side = VG_SIDE_DEFINED;
+  st = *f->front ? vg_front_read(f->front, project, &r->surface, err)
+                 : mesh_patches(r, show, err);
+  return st < 0 ? st : apply_conditions(r, err);
 }
 
 /* Layer settings of the .d3m where none are given. VGRID's vfact scales the
  * spacing of its viscous part: the local edge at which layers end. */
-static void merge_layers(struct vg_problem *p)
+static void merge_layers(struct vg_read *r)
 {
-  struct vg_layer_settings *l = &p->settings.layer;
-  const struct vg_project *d = &p->project;
+  struct vg_layer_settings *l = &r->settings.layer;
+  const struct vg_project *d = &r->project;
 
   if (!l->from_files || !d->grid || l->grow == VG_ANSWER_NO) return;
-  vg_note(&p->notes, "layers as the .d3m says (grid = %d): first %g, rates %g "
+  vg_note(r->notes, "layers as the .d3m says (grid = %d): first %g, rates %g "
           "and %g, at most %d layers, vfact %g", (int)d->grid,
           d->layer.delta1, d->layer.rate1, d->layer.rate2,
           (int)d->layer.n_max, d->vfact);
@@ -567,28 +578,28 @@ static vg_status merge_aflr_patch(struct vg_settings *s,
 }
 
 /* AFLR's .tags go by number, its .bc by name. */
-static vg_status apply_aflr(struct vg_problem *p, const char *path,
+static vg_status apply_aflr(struct vg_read *r, const char *path,
                             int by_name, struct vg_error *err)
 {
   struct vg_aflr a = VG_AFLR_INIT;
-  const struct vg_mesh *m = &p->surface;
+  const struct vg_mesh *m = &r->surface;
   size_t n_unused = 0;
   vg_status st;
 
   if (!*path) return VG_OK;
   VG_TRY(by_name ? vg_aflr_bc_read(path, &a, err)
                  : vg_aflr_tags_read(path, &a, err));
-  VG_TRY(vg_aflr_apply(&a, &p->surface, &n_unused, err));
+  VG_TRY(vg_aflr_apply(&a, &r->surface, &n_unused, err));
   if (n_unused)
-    vg_note(&p->notes, "%s lists %zu patches that the surface does not have",
+    vg_note(r->notes, "%s lists %zu patches that the surface does not have",
             path, n_unused);
   /* A row that is given by name goes before one of the file. */
-  VG_TRY(vg_patch_rows_resolve(&p->settings, &p->surface, err));
-  for (size_t i = 0; i < a.n && p->settings.layer.from_files; i++)
+  VG_TRY(vg_patch_rows_resolve(&r->settings, &r->surface, err));
+  for (size_t i = 0; i < a.n && r->settings.layer.from_files; i++)
     for (size_t j = 0; j < m->n_patch; j++)
       if (by_name ? strcmp(m->patch[j].name, a.patch[i].name) == 0
                   : m->patch[j].id == a.patch[i].id)
-        VG_TRY(merge_aflr_patch(&p->settings, &a.patch[i], m->patch[j].id,
+        VG_TRY(merge_aflr_patch(&r->settings, &a.patch[i], m->patch[j].id,
                                 err));
 done:
   vg_aflr_release(&a);
@@ -625,34 +636,34 @@ double *vg_point_height(const struct vg_point_heights *h, const double x[3])
 
 /* A .surf may have a first height at each point. They are found again by
  * their coordinates, since repairs renumber points. */
-static vg_status read_heights(struct vg_problem *p, struct vg_error *err)
+static vg_status read_heights(struct vg_read *r, struct vg_error *err)
 {
-  const char *path = p->files.surface;
+  const char *path = r->files.surface;
   struct vg_mesh m = VG_MESH_INIT;
   struct vg_aflr a = VG_AFLR_INIT;
   size_t len = strlen(path);
   vg_status st = VG_OK;
 
   if (len > 3 && !strcasecmp(path + len - 3, ".gz")) len -= 3;
-  if (len < 5 || strncasecmp(path + len - 5, ".surf", 5) || *p->files.front ||
-      *p->files.d3m || !p->settings.layer.from_files)
+  if (len < 5 || strncasecmp(path + len - 5, ".surf", 5) || *r->files.front ||
+      *r->files.d3m || !r->settings.layer.from_files)
     return VG_OK;
   VG_TRY(vg_aflr_surf_read(path, &m, &a, err));
   if (!a.spacing) goto done;
-  p->heights.item = vg_alloc(a.n_point, sizeof *p->heights.item);
-  if (!p->heights.item) {
+  r->heights.item = vg_alloc(a.n_point, sizeof *r->heights.item);
+  if (!r->heights.item) {
     st = vg_fail_memory(err, "the heights of a .surf");
     goto done;
   }
   for (size_t i = 0; i < a.n_point; i++) {
-    struct vg_point_height *to = &p->heights.item[p->heights.n];
+    struct vg_point_height *to = &r->heights.item[r->heights.n];
 
     if (!(a.spacing[i] > 0)) continue;
     memcpy(to->x, m.point[i], sizeof to->x);
     to->first = a.spacing[i];
-    p->heights.n++;
+    r->heights.n++;
   }
-  qsort(p->heights.item, p->heights.n, sizeof *p->heights.item,
+  qsort(r->heights.item, r->heights.n, sizeof *r->heights.item,
         compare_height);
 done:
   vg_mesh_release(&m);
@@ -660,46 +671,95 @@ done:
   return st;
 }
 
-vg_status vg_problem_given(struct vg_problem *p, const char *name,
-                           struct vg_mesh *surface, struct vg_error *err)
+/* The settings that are asked for, to which files may add. */
+static vg_status begin(const struct vg_settings *asked, struct vg_read *r,
+                       struct vg_error *err)
 {
-  struct vg_input_files *f = &p->files;
+  vg_status st = vg_settings_copy(&r->settings, asked, err);
+
+  if (st >= 0) vg_resolve_write(asked, r->settings.write);
+  return st;
+}
+
+vg_status vg_read_given(const struct vg_settings *asked, const char *name,
+                        struct vg_mesh *surface, struct vg_read *r,
+                        struct vg_error *err)
+{
+  struct vg_input_files *f = &r->files;
   char **path[] = { &f->d3m, &f->front, &f->surface, &f->mapbc, &f->deck,
                     &f->tags, &f->aflr };
   vg_status st;
   int bad = 0;
 
-  vg_mesh_move(&p->surface, surface);
-  p->side = VG_SIDE_DEFINED;       /* as the interface has it */
-  if (!p->given) p->given = vg_settings_given(&p->settings);
+  vg_mesh_move(&r->surface, surface);
+  r->side = VG_SIDE_DEFINED;       /* as the interface has it */
+  VG_TRY(begin(asked, r, err));
   f->stem = strdup(name);
   for (size_t i = 0; i < sizeof path / sizeof *path; i++)
     bad |= !(*path[i] = strdup(""));
   if (bad || !f->stem) return vg_fail_memory(err, "the names of a surface");
-  st = vg_problem_sizes(p, err);
-  if (st >= 0) st = apply_conditions(p, err);
-  return st < 0 ? st : vg_problem_patch_table(p, 0, err);
-}
-
-vg_status vg_problem_surface(struct vg_problem *p, struct vg_display *show,
-                             struct vg_error *err)
-{
-  vg_status st = VG_OK;
-
-  if (!p->given) p->given = vg_settings_given(&p->settings);
-  if (*p->files.d3m) {
-    VG_TRY(vg_d3m_read(p->files.d3m, &p->project, err));
-    merge_layers(p);
-  }
-  VG_TRY(merge_sources(p, err));
-  VG_TRY(vg_problem_sizes(p, err));
-  VG_TRY(read_surface(p, show, err));
-  VG_TRY(apply_aflr(p, p->files.tags, 0, err));
-  VG_TRY(apply_aflr(p, p->files.aflr, 1, err));
-  VG_TRY(read_heights(p, err));
-  /* What has been taken is in the settings, but for heights by point. */
-  if (!p->heights.n) p->settings.layer.from_files = 0;
-  VG_TRY(vg_problem_patch_table(p, 0, err));
+  VG_TRY(vg_read_sizes(r, err));
+  VG_TRY(apply_conditions(r, err));
+  st = apply_patch_table(r, err);
 done:
   return st;
+}
+
+/* What is known without the surface. */
+static vg_status read_asides(const struct vg_settings *asked,
+                             struct vg_read *r, struct vg_error *err)
+{
+  vg_status st;
+
+  VG_TRY(begin(asked, r, err));
+  if (*r->files.d3m) {
+    VG_TRY(vg_d3m_read(r->files.d3m, &r->project, err));
+    merge_layers(r);
+  }
+  VG_TRY(merge_sources(r, err));
+  st = vg_read_sizes(r, err);
+done:
+  return st;
+}
+
+/* What files say of the surface that is read. */
+static vg_status read_patches(struct vg_read *r, struct vg_error *err)
+{
+  vg_status st;
+
+  VG_TRY(apply_aflr(r, r->files.tags, 0, err));
+  VG_TRY(apply_aflr(r, r->files.aflr, 1, err));
+  VG_TRY(read_heights(r, err));
+  /* What has been taken is in the settings, but for heights by point. */
+  if (!r->heights.n) r->settings.layer.from_files = 0;
+  st = apply_patch_table(r, err);
+done:
+  return st;
+}
+
+vg_status vg_read_project(const struct vg_settings *asked,
+                          struct vg_comm *comm, struct vg_display *show,
+                          struct vg_read *r, struct vg_error *err)
+{
+  vg_status st = read_asides(asked, r, err);
+
+  if (vg_read_is_by_first(r, comm)) st = read_for_all(r, comm, st, err);
+  else if (st >= 0) st = read_surface(r, show, err);
+  if (st >= 0) st = read_patches(r, err);
+  if (st >= 0 && show) st = vg_display_stopped(show, err);
+  return vg_comm_agree(comm, st, err);
+}
+
+vg_status vg_problem_read(struct vg_problem *p, struct vg_comm *comm,
+                          struct vg_display *show, struct vg_error *err)
+{
+  p->read.notes = &p->notes;
+  return vg_read_project(&p->asked, comm, show, &p->read, err);
+}
+
+vg_status vg_problem_given(struct vg_problem *p, const char *name,
+                           struct vg_mesh *surface, struct vg_error *err)
+{
+  p->read.notes = &p->notes;
+  return vg_read_given(&p->asked, name, surface, &p->read, err);
 }

@@ -14,7 +14,7 @@
 #include "core/surface/surface_check.h"
 #include "io/cad/cad.h"
 #include "run/common/progress.h"
-#include "run/settings/settings.h"
+#include "run/settings/resolved.h"
 
 /** Paths of what exists; "" where a part is absent. */
 struct vg_input_files {
@@ -68,43 +68,79 @@ struct vg_renewal {
                                        NAN where one of them is not closed */
 };
 
-struct vg_problem {
+/** 1. What the files of a project hold. Made by vg_read_project or
+ * vg_read_given; const from then on, but for `surface` and `model`, which the
+ * boundary takes over. */
+struct vg_read {
   struct vg_input_files files;
-  struct vg_settings settings;
+  struct vg_settings settings;     /* asked, with what the files add: sources,
+                                      layers, numbers in place of names */
   const struct vg_size_map *map;   /* sizes besides sources; NULL: none */
   struct vg_size_samples *samples; /* of the setting `sizes`; NULL */
-  struct vg_gap_sizes *gaps;       /* of gap_edges; NULL */
   struct vg_project project;       /* empty without a .d3m */
   struct vg_mesh surface;
-  struct vg_shmem common;          /* where its arrays are, if a node has them
-                                      in common */
-  struct vg_cad_model model;       /* of a CAD file whose triangles are made
-                                      anew, with the first rank; else empty */
-  int is_read;                     /* surface, by vg_problem_cad */
+  struct vg_cad_model model;       /* of a CAD file that is to be remeshed, with
+                                      the first rank; else empty */
   struct vg_point_heights heights;
-  size_t n_welded, n_dropped;      /* by the weld */
-  struct vg_surface_report check;
-  int is_shaped;                   /* 1: vg_problem_shape was done */
-  struct vg_flow flow;             /* what was decided of the flow domain */
   enum vg_flow_side side;          /* to which the format of the surface has
                                       triangles point */
   int has_cells;                   /* 1: the surface is the boundary of a volume
                                       mesh */
+  struct vg_notes *notes;          /* of the problem; borrowed */
+};
+
+/** 2. The surface, checked, closed and remeshed (vg_boundary_shape), and 3. the
+ * boundary of the fluid, which a farfield and a symmetry plane complete
+ * (vg_boundary_close). Layers give conditions to its patches. */
+struct vg_boundary {
+  const struct vg_read *read;      /* borrowed */
+  struct vg_notes *notes;          /* borrowed */
+  int threads;                     /* 0: one per core */
+  struct vg_mesh surface;
+  struct vg_shmem common;          /* where its arrays are, if a node has them
+                                      in common */
+  struct vg_cad_model model;       /* as in struct vg_read */
+  const struct vg_size_map *map;   /* sizes besides sources: those that were
+                                      read and those of gaps; NULL: none */
+  struct vg_gap_sizes *gaps;       /* of gap_edges; NULL */
+  size_t n_welded, n_dropped;      /* by the weld */
+  struct vg_surface_report check;
+  int require_bc;                  /* the input gives conditions */
+  int is_remeshed;                 /* settings remesh the surface */
+  struct vg_flow flow;             /* what was decided of the flow domain */
   double rim_gap;                  /* weld tolerance at which open edges find
                                       partners; 0: no partners */
   size_t n_given_patch;            /* patches before holes were closed; the caps
                                       follow them; 0: none were closed */
-  int require_bc;                  /* the input gives conditions */
-  int threads;                     /* for the check; 0: one per core */
+  size_t n_row;                    /* patches before the domain was completed */
+  struct vg_patch_row *row;        /* [n_row] owned: their names, conditions and
+                                      hard borders */
   struct vg_renewal renewal;
-  int surface_only;                /* vg_problem_close stops before it looks
-                                      for the domain */
   struct vg_domain_report domain;
-  struct vg_notes notes;
-  uint8_t *given;                  /* vg_settings_given before anything was
-                                      resolved; NULL: not known */
+  int is_swapped;                  /* edges of the surface were swapped */
 };
-#define VG_PROBLEM_INIT { .project = VG_PROJECT_INIT, .flow = VG_FLOW_INIT }
+
+/** The values of a run up to its mesh, in their order: asked, read, boundary,
+ * what layers ask for (run/input/layers.h), resolved. All commands make them by
+ * the same calls, as far as each one goes:
+ *
+ *   vg_problem_open        files found, the deck read into `asked`; options of
+ *                          the caller go there, too
+ *   vg_problem_read        1
+ *   vg_problem_shape       2
+ *   vg_problem_close       3
+ *   vg_problem_layers      4 (run/input/layers.h)
+ *   vg_problem_settle      slivers swapped, and `resolved`
+ */
+struct vg_problem {
+  struct vg_settings asked;        /* not written after parsing */
+  struct vg_read read;
+  struct vg_boundary boundary;
+  struct vg_resolved resolved;
+  struct vg_notes notes;           /* of all of them */
+};
+#define VG_PROBLEM_INIT { .read = { .project = VG_PROJECT_INIT }, \
+  .boundary = { .flow = VG_FLOW_INIT } }
 
 void vg_problem_release(struct vg_problem *p);
 
@@ -124,55 +160,89 @@ void vg_note(struct vg_notes *notes, const char *format, ...)
 vg_status vg_input_find(const char *name, const char *deck,
                         struct vg_input_files *out, struct vg_error *err);
 
-/** Read project, deck and surface, and give the patches their conditions.
- * Settings hold what the deck says; the caller applies its options between
- * vg_problem_deck and vg_problem_surface. */
-vg_status vg_problem_deck(struct vg_problem *p, struct vg_error *err);
-vg_status vg_problem_surface(struct vg_problem *p, struct vg_display *show,
-                             struct vg_error *err);
+/** Find the files of a project (as vg_input_find) and read its deck into
+ * p->asked; the second one reads the deck of files that the caller found. */
+vg_status vg_problem_open(struct vg_problem *p, const char *name,
+                          const char *deck, struct vg_error *err);
+vg_status vg_problem_open_deck(struct vg_problem *p, struct vg_error *err);
+
+/** Read the files that vg_problem_open found, and give the patches their
+ * conditions. Collective: the first rank reads CAD, for all to have the same
+ * triangles; the same status on all ranks. */
+vg_status vg_problem_read(struct vg_problem *p, struct vg_comm *comm,
+                          struct vg_display *show, struct vg_error *err);
 
 /** The same of a problem without files: a surface that somebody has made.
- * Settings are the caller's.
  *
- * @param name     for messages, and the title if there is none
+ * @param name     for messages
  * @param surface  boundary as core/mesh/mesh.h has it; moved, also on failure
  */
 vg_status vg_problem_given(struct vg_problem *p, const char *name,
                            struct vg_mesh *surface, struct vg_error *err);
 
+/** What the two do. *read has its files (vg_read_project) and notes; `asked` is
+ * only read. */
+vg_status vg_read_project(const struct vg_settings *asked,
+                          struct vg_comm *comm, struct vg_display *show,
+                          struct vg_read *read, struct vg_error *err);
+vg_status vg_read_given(const struct vg_settings *asked, const char *name,
+                        struct vg_mesh *surface, struct vg_read *read,
+                        struct vg_error *err);
+
+/** 1 for a CAD file on several ranks, which the first one reads and remeshes
+ * for the others. */
+int vg_read_is_by_first(const struct vg_read *read, struct vg_comm *comm);
+
 /** What settings and map say of sizes. */
-struct vg_sizing_options vg_problem_sizing(const struct vg_problem *p);
+struct vg_sizing_options vg_boundary_sizing(const struct vg_boundary *b);
 
-/** Before vg_problem_surface on several ranks: a CAD file is read by the first
- * one, for all to have the same triangles; nothing happens for other files.
- * Collective. */
-vg_status vg_problem_cad(struct vg_problem *p, struct vg_comm *comm,
-                         struct vg_error *err);
+/** 1 where settings remesh this surface: `auto` remeshes CAD, and tessellations
+ * (STL, OBJ, Cart3D) more than half of whose triangles are slivers. */
+int vg_read_is_remeshed(const struct vg_read *read,
+                        const struct vg_mesh *surface);
 
-/** What settings and displays ask of CAD, finer where the surface is made
- * anew; notes go to *notes. */
-struct vg_cad_options vg_cad_options_of(const struct vg_settings *s,
-                                        int is_renewed,
-                                        struct vg_notes *notes);
+/** Weld, check and repair the surface of `read`, and remesh it where settings
+ * ask for it. `read` gives up its triangles and its CAD model.
+ *
+ * @param out      zeroed, with flow VG_FLOW_INIT; on failure it has the surface
+ *                 and its check, for reports
+ * @param remesh_open  1: an open surface that is no half model is remeshed, too
+ * @param has_maker    1: another rank remeshes CAD (vg_boundary_share)
+ * VG_ERR_GEOMETRY when defects are in the way. */
+struct vg_shape_options { int threads, remesh_open, has_maker; };
+vg_status vg_boundary_shape(struct vg_read *read,
+                            const struct vg_shape_options *o,
+                            struct vg_display *show, struct vg_boundary *out,
+                            struct vg_error *err);
 
-/** Weld, check and repair the surface, and make its triangles anew where
- * settings ask for it. VG_ERR_GEOMETRY when defects are in the way. */
-vg_status vg_problem_shape(struct vg_problem *p, struct vg_display *show,
-                           struct vg_error *err);
+/** Complete the domain. VG_ERR_GEOMETRY when defects remain: they are in
+ * b->check. */
+vg_status vg_boundary_close(struct vg_boundary *b, struct vg_display *show,
+                            struct vg_error *err);
 
-/** The same unless it was done, and complete the domain. VG_ERR_GEOMETRY when
- * defects remain: they are in p->check. After success p->settings are resolved:
- * they name all sources, patches and the farfield that was chosen. */
+/** The same for an open or closed surface that is no domain: VG_ERR_GEOMETRY
+ * where it has other defects than open edges. */
+vg_status vg_boundary_check(struct vg_boundary *b, struct vg_display *show,
+                            struct vg_error *err);
+
+void vg_boundary_release(struct vg_boundary *b);
+
+/** The steps of a problem. */
+vg_status vg_problem_shape(struct vg_problem *p,
+                           const struct vg_shape_options *o,
+                           struct vg_display *show, struct vg_error *err);
 vg_status vg_problem_close(struct vg_problem *p, struct vg_display *show,
                            struct vg_error *err);
 
+/** The triangles as they are now: those of the boundary, or as they were read
+ * where there is none yet. */
+const struct vg_mesh *vg_problem_surface(const struct vg_problem *p);
+
 /** Remesh the surface; distances are measured, notes tell. The surface is as
  * the check left it. VG_ERR_GEOMETRY where no sound surface came out. */
-vg_status vg_problem_renew(struct vg_problem *p, struct vg_display *show,
+vg_status vg_boundary_renew(struct vg_boundary *b, struct vg_display *show,
                            struct vg_error *err);
 
-/** What settings ask of a new surface; sources are borrowed. */
-struct vg_remesh_options vg_remesh_options_of(const struct vg_settings *s);
 /** What the table `surface` asks for. NULL, NULL: nothing. */
 struct vg_surface_sizes {
   double *cap;                      /* [n_point] largest size; INFINITY: none */
@@ -184,38 +254,34 @@ struct vg_surface_sizes {
 /** From the settings, for the surface as it is now. VG_ERR_INPUT for patches
  * that it lacks, or two without an edge in common. O(n log n) for each curve,
  * O(n) for each other row. */
-vg_status vg_surface_sizes_make(const struct vg_problem *p,
+vg_status vg_surface_sizes_make(const struct vg_boundary *b,
                                 struct vg_surface_sizes *s,
                                 struct vg_error *err);
 
 void vg_surface_sizes_release(struct vg_surface_sizes *s);
-
-/** 1 where settings remesh the surface: `auto` remeshes CAD, and tessellations
- * (STL, OBJ, Cart3D) more than half of whose triangles are slivers. */
-int vg_problem_is_renewed(const struct vg_problem *p);
 
 /** Share of the triangles that have an angle below 10 degrees. */
 double vg_surface_sliver_share(const struct vg_mesh *m);
 
 /** A note where `auto` decides by the slivers of the surface, and a warning
  * where slivers stay. */
-void vg_problem_note_slivers(struct vg_problem *p);
+void vg_boundary_note_slivers(struct vg_boundary *b);
 
 /** 1 where the defects in *r are such that the remesher may repair: it judges
  * the new surface. Edges of four triangles count as such where triangles lie
  * back to back. */
 int vg_surface_is_reference(const struct vg_surface_report *r);
 
-/** After vg_problem_shape on several ranks: what the first one put back on CAD
+/** After vg_boundary_shape on several ranks: what the first one put back on CAD
  * goes to those that have their own (is_maker); nothing happens for other
  * surfaces. st: how this rank fared. Collective. */
 vg_status vg_problem_share(struct vg_problem *p, struct vg_comm *comm,
                            int is_maker, vg_status st, struct vg_error *err);
 
-/** Put the points of a surface that was made anew back on p->model, as far as
+/** Put the points of a surface that was made anew back on b->model, as far as
  * no triangle folds or meets another one; distances are measured, notes tell.
  * VG_ERR_GEOMETRY when Open CASCADE fails. */
-vg_status vg_problem_put_back(struct vg_problem *p, struct vg_error *err);
+vg_status vg_boundary_put_back(struct vg_boundary *b, struct vg_error *err);
 
 void vg_renewal_release(struct vg_renewal *r);
 
@@ -231,16 +297,17 @@ void vg_problem_note_unused(struct vg_problem *p, int layers_on,
 
 /** Writers give patches without a condition that of an inviscid wall: a note
  * tells which these are. Once conditions are final. */
-void vg_problem_note_unset(struct vg_problem *p);
+void vg_boundary_note_unset(struct vg_boundary *b);
 
-/** Names and conditions of the table `patches`. VG_ERR_INPUT for a patch that
- * the surface lacks; before holes are closed (are_closed 0) rows of caps that
- * will be made then are left for later. */
-vg_status vg_problem_patch_table(struct vg_problem *p, int are_closed,
-                                 struct vg_error *err);
+/** Names and conditions of rows of the table `patches`. VG_ERR_INPUT for a
+ * patch that the surface lacks; with may_lack 1, before holes are closed, rows
+ * of caps that will be made then have no effect. */
+vg_status vg_patch_table_apply(size_t n, const struct vg_patch_row *row,
+                               int may_lack, struct vg_mesh *surface,
+                               struct vg_error *err);
 
 /** 1 when patch i of the surface is a cap that closes a hole. */
-int vg_problem_is_cap(const struct vg_problem *p, size_t i);
+int vg_boundary_is_cap(const struct vg_boundary *b, size_t i);
 
 /** 1 when a patch has a boundary condition: then all of them should. */
 int vg_surface_has_conditions(const struct vg_mesh *m);

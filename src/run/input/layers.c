@@ -7,9 +7,9 @@
 #include "base/memory.h"
 #include "io/mesh/vtu.h"
 #include "layers/grow/grow.h"
+#include "run/settings/options.h"
 
 #define DEFAULT_RATE 0.2   /* RANS practice; growth 1.2 */
-#define DEFAULT_CAP 1.3
 #define SHOWN_PATCHES 20
 
 /* By source: first height and rates. Each is the mean that the spacing would
@@ -17,7 +17,7 @@
  * weights, by the same code. By point: the first height of a .surf, the rest by
  * patch. */
 struct vg_layer_laws {
-  const struct vg_point_heights *heights;  /* NULL: by source */
+  struct vg_point_heights at;   /* first heights; none: by source */
   size_t n;
   struct vg_source *source[3];  /* [n] h0, h1: delta1, rate1, rate2 */
   double constant[3];           /* one value at all sources, or NAN */
@@ -32,6 +32,7 @@ static void release_laws(struct vg_layer_laws *l)
 {
   if (!l) return;
   for (int k = 0; k < 3; k++) free(l->source[k]);
+  free(l->at.item);
   free(l);
 }
 
@@ -71,7 +72,7 @@ static void law_at(void *user, const double x[3], struct vg_law *law)
 static void height_at(void *user, const double x[3], struct vg_law *law)
 {
   const struct vg_layer_laws *l = user;
-  const double *h = vg_point_height(l->heights, x);
+  const double *h = vg_point_height(&l->at, x);
 
   if (h && *h > 0) law->delta1 = *h * l->scale;
 }
@@ -144,25 +145,17 @@ static double choose(double own, double global)
 
 static double law_cap(double cap)
 {
-  if (isnan(cap)) return DEFAULT_CAP;
+  if (isnan(cap)) return VG_LAYER_CAP;
   return cap > 0 ? cap : INFINITY;
-}
-
-static double height_of(const struct vg_layer_settings *l, double first,
-                        double y_plus)
-{
-  if (first > 0) return first;
-  return y_plus > 0 && l->reynolds > 0
-         ? vg_first_height(y_plus, l->reynolds, l->length) : 0;
 }
 
 /* 0 when it is not known. */
 static double first_height(const struct vg_layer_settings *l,
                            const struct vg_layer_row *r)
 {
-  double own = height_of(l, r->first, r->y_plus);
+  double own = vg_settings_first(l, r->first, r->y_plus);
 
-  return own > 0 ? own : height_of(l, l->first, l->y_plus);
+  return own > 0 ? own : vg_settings_first(l, l->first, l->y_plus);
 }
 
 /* Both rates from number and total height; the cap must allow them. */
@@ -231,18 +224,6 @@ static vg_status make_request(const struct vg_settings *s,
   return set_rates(s, r, q, err);
 }
 
-/* The row of a patch, or one that leaves all to the settings. */
-static struct vg_layer_row row_of(const struct vg_settings *s, int32_t id)
-{
-  struct vg_layer_row row;
-
-  for (size_t i = 0; i < s->n_layer; i++)
-    if (s->layer_row[i].id == id) return s->layer_row[i];
-  vg_settings_row_default(VG_TABLE_LAYERS, &row);
-  row.id = id;
-  return row;
-}
-
 static vg_status no_first(const struct vg_mesh *m, size_t i,
                           struct vg_error *err)
 {
@@ -265,24 +246,32 @@ static vg_status check_row(const struct vg_layer_row *r, int by_source,
                  "to no or remove the values", (int)r->id);
 }
 
+/* First heights at points. */
+struct by_point {
+  double *least;                /* [n_patch] 0 where a patch uses none */
+  struct vg_point_heights at;   /* 0 where a patch has a height of its own */
+};
+
+/* The laws take the heights over. */
 static vg_status use_heights(struct vg_layer_stage *s,
-                             const struct vg_problem *p, const double *least,
+                             const struct vg_boundary *b, struct by_point *h,
                              struct vg_error *err)
 {
   struct vg_layer_laws laws;
   int used = 0;
 
-  set_scale(&p->settings, &laws);
+  set_scale(&b->read->settings, &laws);
   for (size_t i = 0; i < s->n_patch; i++)
-    if (least[i] > 0 && s->reason[i] != VG_WALL_NOT) {
-      s->request[i].law.delta1 = least[i] * laws.scale;
+    if (h->least[i] > 0 && s->reason[i] != VG_WALL_NOT) {
+      s->request[i].law.delta1 = h->least[i] * laws.scale;
       used = 1;
     }
   if (!used) return VG_OK;
   s->laws = vg_calloc(1, sizeof *s->laws);
   if (!s->laws) return vg_fail_memory(err, "the laws of the layers");
-  s->laws->heights = &p->heights;
-  set_scale(&p->settings, s->laws);
+  s->laws->at = h->at;
+  h->at = (struct vg_point_heights){ 0, NULL };
+  set_scale(&b->read->settings, s->laws);
   return VG_OK;
 }
 
@@ -298,18 +287,18 @@ static struct vg_layer_limits limits_of(const struct vg_layer_limits *own,
 }
 
 static vg_status make_requests(struct vg_layer_stage *s,
-                               const struct vg_problem *p,
-                               const double *least, struct vg_error *err)
+                               const struct vg_boundary *b,
+                               struct by_point *h, struct vg_error *err)
 {
-  const struct vg_settings *set = &p->settings;
+  const struct vg_settings *set = &b->read->settings;
   const struct vg_layer_settings *l = &set->layer;
-  const struct vg_mesh *m = &p->surface;
+  const struct vg_mesh *m = &b->surface;
   vg_status st = VG_OK;
 
   if (l->by_source)
     VG_TRY(make_laws(set, law_cap(l->cap), &s->laws, err));
   for (size_t i = 0; i < m->n_patch; i++) {
-    struct vg_layer_row row = row_of(set, m->patch[i].id);
+    struct vg_layer_row row = vg_settings_layer_row(set, m->patch[i].id);
     struct vg_layer_request *q = &s->request[i];
 
     s->limit[i] = limits_of(&row.limit, &l->limit);
@@ -326,48 +315,56 @@ static vg_status make_requests(struct vg_layer_stage *s,
       q->law.rate1 = s->laws->source[1][0].h0 - s->laws->shift[1];
       q->law.rate2 = s->laws->source[2][0].h0 - s->laws->shift[2];
     }
-    if (!(q->law.delta1 > 0) && !(least[i] > 0)) st = no_first(m, i, err);
+    if (!(q->law.delta1 > 0) && !(h->least[i] > 0)) st = no_first(m, i, err);
     if (st < 0) break;
   }
-  if (st >= 0) st = use_heights(s, p, least, err);
+  if (st >= 0) st = use_heights(s, b, h, err);
 done:
   return st;
 }
 
 /* Heights by point are for patches that have none by setting. */
-static int uses_points(const struct vg_problem *p, const struct vg_layer_row *r)
+static int uses_points(const struct vg_layer_settings *l,
+                       const struct vg_layer_row *r)
 {
-  const struct vg_layer_settings *l = &p->settings.layer;
-
-  return p->heights.n && !l->by_source && l->first == 0 && l->y_plus == 0 &&
+  return !l->by_source && l->first == 0 && l->y_plus == 0 &&
          isnan(r->first) && isnan(r->y_plus);
 }
 
 /* Heights at points of patches that have their own are dropped; the least of
- * the others, per patch, is for points without one.
- * @param least  out: [n_patch], 0 where a patch uses none */
-static vg_status sort_heights(struct vg_problem *p, double *least,
+ * the others, per patch, is for points without one. */
+static vg_status sort_heights(const struct vg_boundary *b, struct by_point *h,
                               struct vg_error *err)
 {
-  const struct vg_mesh *m = &p->surface;
-  uint8_t *uses = vg_calloc(m->n_patch, 1);
+  const struct vg_settings *s = &b->read->settings;
+  const struct vg_point_heights *from = &b->read->heights;
+  const struct vg_mesh *m = &b->surface;
+  uint8_t *uses;
 
-  if (!uses) return vg_fail_memory(err, "the patches");
+  if (!from->n) return VG_OK;
+  h->at.item = vg_alloc(from->n, sizeof *h->at.item);
+  uses = vg_calloc(m->n_patch, 1);
+  if (!uses || !h->at.item) {
+    free(uses);
+    return vg_fail_memory(err, "the heights of layers");
+  }
+  h->at.n = from->n;
+  memcpy(h->at.item, from->item, from->n * sizeof *from->item);
   for (size_t i = 0; i < m->n_patch; i++) {
-    struct vg_layer_row row = row_of(&p->settings, m->patch[i].id);
+    struct vg_layer_row row = vg_settings_layer_row(s, m->patch[i].id);
 
-    uses[i] = (uint8_t)uses_points(p, &row);
+    uses[i] = (uint8_t)uses_points(&s->layer, &row);
   }
   for (int pass = 0; pass < 2; pass++)
     for (size_t i = 0; i < m->n_tri; i++) {
       const uint32_t of = m->tri_patch[i];
 
       for (int k = 0; k < 3 && uses[of] == pass; k++) {
-        double *h = vg_point_height(&p->heights, m->point[m->tri[i][k]]);
+        double *at = vg_point_height(&h->at, m->point[m->tri[i][k]]);
 
-        if (h && !pass) *h = 0;
-        else if (h && *h > 0 && (least[of] == 0 || *h < least[of]))
-          least[of] = *h;
+        if (at && !pass) *at = 0;
+        else if (at && *at > 0 && (h->least[of] == 0 || *at < h->least[of]))
+          h->least[of] = *at;
       }
     }
   free(uses);
@@ -376,12 +373,13 @@ static vg_status sort_heights(struct vg_problem *p, double *least,
 
 /* 1 when each wall has a first height. */
 static int first_is_known(const struct vg_layer_stage *s,
-                          const struct vg_problem *p, const double *least)
+                          const struct vg_boundary *b, const double *least)
 {
-  const struct vg_layer_settings *l = &p->settings.layer;
+  const struct vg_layer_settings *l = &b->read->settings.layer;
 
   for (size_t i = 0; i < s->n_patch && !l->by_source; i++) {
-    struct vg_layer_row row = row_of(&p->settings, p->surface.patch[i].id);
+    struct vg_layer_row row =
+      vg_settings_layer_row(&b->read->settings, b->surface.patch[i].id);
 
     if (s->reason[i] != VG_WALL_NOT && !(first_height(l, &row) > 0) &&
         !(least[i] > 0))
@@ -413,12 +411,12 @@ static size_t wall_numbers(const struct vg_layer_stage *s,
 }
 
 /* Layers that conditions suggest but nobody has given a height for. */
-static void note_missing(const struct vg_layer_stage *s, struct vg_problem *p)
+static void note_missing(const struct vg_layer_stage *s, struct vg_boundary *b)
 {
   char list[12 * SHOWN_PATCHES + 24];
-  size_t n_wall = wall_numbers(s, &p->surface, 0, list, sizeof list);
+  size_t n_wall = wall_numbers(s, &b->surface, 0, list, sizeof list);
 
-  vg_note(&p->notes, "no layers on %zu viscous wall%s (patch%s%s), for no "
+  vg_note(b->notes, "no layers on %zu viscous wall%s (patch%s%s), for no "
           "first height is known: give --first, or --y-plus with --reynolds "
           "and --reference-length", n_wall, n_wall > 1 ? "s" : "",
           n_wall > 1 ? "es" : "", list);
@@ -427,12 +425,12 @@ static void note_missing(const struct vg_layer_stage *s, struct vg_problem *p)
 /* A wall with layers and without a condition is a viscous one; left open, it
  * would be written as inviscid. */
 static void give_conditions(const struct vg_layer_stage *s,
-                            struct vg_problem *p)
+                            struct vg_boundary *b)
 {
   size_t n = 0;
 
   for (size_t i = 0; i < s->n_patch; i++) {
-    struct vg_patch *patch = &p->surface.patch[i];
+    struct vg_patch *patch = &b->surface.patch[i];
 
     if (s->reason[i] == VG_WALL_NOT || patch->bc != VG_BC_NONE ||
         patch->bc_fun3d != VG_BC_NONE)
@@ -442,91 +440,54 @@ static void give_conditions(const struct vg_layer_stage *s,
     n++;
   }
   if (n)
-    vg_note(&p->notes, "%zu patch%s with layers, but without a boundary "
+    vg_note(b->notes, "%zu patch%s with layers, but without a boundary "
             "condition, %s written as viscous (4, FUN3D 4000)", n,
             n > 1 ? "es" : "", n > 1 ? "are" : "is");
 }
 
-static void note_choice(const struct vg_layer_stage *s, struct vg_problem *p)
+static void note_choice(const struct vg_layer_stage *s, struct vg_boundary *b)
 {
-  const struct vg_layer_settings *l = &p->settings.layer;
+  const struct vg_layer_settings *l = &b->read->settings.layer;
   double ratio = choose(l->ratio, 0), cap = law_cap(l->cap);
   char list[12 * SHOWN_PATCHES + 24];
-  size_t n = 0, n_odd = wall_numbers(s, &p->surface, 1, list, sizeof list);
+  size_t n = 0, n_odd = wall_numbers(s, &b->surface, 1, list, sizeof list);
 
   for (size_t i = 0; i < s->n_patch; i++) n += s->reason[i] == VG_WALL_BODY;
   if (n_odd)
-    vg_note(&p->notes, "%zu patch%s layers, but a condition that is not "
+    vg_note(b->notes, "%zu patch%s layers, but a condition that is not "
             "viscous: number%s", n_odd, n_odd > 1 ? "es have" : " has", list);
-  if (n && p->flow.kind == VG_FLOW_INTERNAL)
-    vg_note(&p->notes, "no patch has a condition: layers grow on %zu of %zu "
+  if (n && b->flow.kind == VG_FLOW_INTERNAL)
+    vg_note(b->notes, "no patch has a condition: layers grow on %zu of %zu "
             "patches, not on inlets, outlets, caps, and outer boundaries "
             "around bodies (--walls, --slip or the table layers settle it)", n,
             s->n_patch);
   else if (n)
-    vg_note(&p->notes, "no patch has a condition: layers grow on the whole "
+    vg_note(b->notes, "no patch has a condition: layers grow on the whole "
             "body (--walls, --slip or the table layers settle it)");
   if (!l->by_source && l->y_plus > 0)
-    vg_note(&p->notes, "y+ %g at Reynolds number %g of length %g: first "
+    vg_note(b->notes, "y+ %g at Reynolds number %g of length %g: first "
             "height %.6g", l->y_plus, l->reynolds, l->length,
             vg_first_height(l->y_plus, l->reynolds, l->length));
   if (l->scale_rule != VG_LAW_KEPT)
-    vg_note(&p->notes, "scale_layers: first heights times %.4g, growth of the "
+    vg_note(b->notes, "scale_layers: first heights times %.4g, growth of the "
             "layers to the power of %.4g, numbers of layers over it, constant "
-            "ones over %.4g", p->settings.scale,
-            vg_law_power((enum vg_law_rule)l->scale_rule, p->settings.scale),
-            p->settings.scale);
+            "ones over %.4g", b->read->settings.scale,
+            vg_law_power((enum vg_law_rule)l->scale_rule,
+                         b->read->settings.scale),
+            b->read->settings.scale);
   if (ratio > cap)
-    vg_note(&p->notes, "ratio %g is above layer_cap %g, which holds", ratio,
+    vg_note(b->notes, "ratio %g is above layer_cap %g, which holds", ratio,
             cap);
-}
-
-/* Settings that lead to the same layers again: heights instead of y+, and a
- * row for each given patch instead of lists and conditions. */
-static vg_status resolve(const struct vg_layer_stage *s, struct vg_problem *p,
-                         struct vg_error *err)
-{
-  struct vg_settings *set = &p->settings;
-  struct vg_layer_settings *l = &set->layer;
-  struct vg_layer_row *old = set->layer_row;
-  size_t n_given = set->n_patch;
-  vg_status st = VG_OK;
-  struct vg_settings view = *set;  /* keeps the old rows in sight */
-
-  set->layer_row = NULL;
-  set->n_layer = set->cap_layer = 0;
-  for (size_t i = 0; i < n_given && st >= 0; i++) {
-    struct vg_layer_row row = row_of(&view, set->patch[i].id);
-    size_t at = vg_mesh_find_patch(&p->surface, row.id);
-
-    if (at == SIZE_MAX) continue;
-    row.grow = s->reason[at] == VG_WALL_NOT ? VG_ANSWER_NO : VG_ANSWER_YES;
-    st = vg_settings_add(set, VG_TABLE_LAYERS, &row, err);
-  }
-  free(old);
-  l->grow = VG_ANSWER_YES;
-  l->first = height_of(l, l->first, l->y_plus);
-  l->y_plus = 0;
-  l->cap = isnan(l->cap) ? DEFAULT_CAP : l->cap;
-  *l->walls = *l->slip = 0;
-  return st;
 }
 
 static void set_options(struct vg_layer_stage *s, const struct vg_settings *set)
 {
-  const struct vg_layer_options defaults = VG_LAYER_OPTIONS_INIT;
   struct vg_layer_options *o = &s->options;
 
-  *o = defaults;
+  *o = vg_options_layers(set);
   o->patch = s->request;
-  o->law_at = !s->laws ? NULL : s->laws->heights ? height_at : law_at;
+  o->law_at = !s->laws ? NULL : s->laws->at.n ? height_at : law_at;
   o->law_user = s->laws;
-  o->fan_angle = set->layer.fan_angle;
-  o->end = set->layer.end;
-  o->gap = set->layer.gap;
-  o->slope = set->layer.slope;
-  o->smooth = (int)set->layer.smooth;
-  o->threads = (int)set->threads;
   s->reynolds = set->layer.reynolds;
   s->length = set->layer.length;
 }
@@ -556,42 +517,96 @@ static vg_status refuse_limits(const struct vg_settings *s,
                  "max_top_ratio); remove the limit or let layers grow");
 }
 
-vg_status vg_layer_stage_plan(struct vg_layer_stage *s, struct vg_problem *p,
-                              struct vg_error *err)
+/* On walls that were found. */
+static vg_status plan_walls(struct vg_layer_stage *s, struct vg_boundary *b,
+                            struct by_point *h, struct vg_error *err)
 {
-  struct vg_layer_settings *l = &p->settings.layer;
-  double *least = vg_calloc(p->surface.n_patch, sizeof *least);
+  const struct vg_settings *set = &b->read->settings;
   size_t n_wall;
-  vg_status st = least ? VG_OK : vg_fail_memory(err, "the patches");
+  vg_status st;
 
-  if (st < 0) goto done;
-  VG_TRY(allocate(s, p->surface.n_patch, err));
-  if (l->grow == VG_ANSWER_NO) {
-    st = refuse_limits(&p->settings, err);
-    goto done;
-  }
-  if (p->heights.n) VG_TRY(sort_heights(p, least, err));
-  VG_TRY(vg_walls_find(p, s->reason, &n_wall, err));
-  if (n_wall && !vg_walls_asked(&p->settings) &&
-      !first_is_known(s, p, least)) {
-    note_missing(s, p);
+  VG_TRY(sort_heights(b, h, err));
+  VG_TRY(vg_walls_find(b, s->reason, &n_wall, err));
+  if (n_wall && !vg_walls_asked(set) && !first_is_known(s, b, h->least)) {
+    note_missing(s, b);
     n_wall = 0;
   }
   if (!n_wall) {
-    if (vg_walls_asked(&p->settings))
-      vg_note(&p->notes, "layers are asked for, but no patch has a viscous "
+    if (vg_walls_asked(set))
+      vg_note(b->notes, "layers are asked for, but no patch has a viscous "
               "condition: there are none (--walls names walls)");
-    l->grow = VG_ANSWER_NO;
-    goto done;
+    return VG_OK;
   }
-  VG_TRY(make_requests(s, p, least, err));
-  note_choice(s, p);
-  give_conditions(s, p);
-  set_options(s, &p->settings);
-  VG_TRY(resolve(s, p, err));
+  VG_TRY(make_requests(s, b, h, err));
+  note_choice(s, b);
+  give_conditions(s, b);
+  set_options(s, set);
   s->is_on = 1;
 done:
-  free(least);
+  return st;
+}
+
+vg_status vg_layer_stage_plan(struct vg_layer_stage *s, struct vg_boundary *b,
+                              struct vg_error *err)
+{
+  struct by_point h = { vg_calloc(b->surface.n_patch, sizeof *h.least),
+                        { 0, NULL } };
+  vg_status st = h.least ? VG_OK : vg_fail_memory(err, "the patches");
+
+  if (st >= 0) st = allocate(s, b->surface.n_patch, err);
+  if (st >= 0)
+    st = b->read->settings.layer.grow == VG_ANSWER_NO
+         ? refuse_limits(&b->read->settings, err) : plan_walls(s, b, &h, err);
+  free(h.least);
+  free(h.at.item);
+  return st;
+}
+
+/* Whether layers grow, for each patch that was given. */
+static vg_status list_grows(const struct vg_layer_stage *s,
+                            const struct vg_boundary *b,
+                            struct vg_patch_grows **out, size_t *n,
+                            struct vg_error *err)
+{
+  struct vg_patch_grows *list = vg_alloc(b->n_row, sizeof *list);
+
+  if (!list) return vg_fail_memory(err, "the patches");
+  *n = 0;
+  for (size_t i = 0; s->is_on && i < b->n_row; i++) {
+    size_t at = vg_mesh_find_patch(&b->surface, b->row[i].id);
+
+    if (at != SIZE_MAX)
+      list[(*n)++] = (struct vg_patch_grows){
+        b->row[i].id, s->reason[at] != VG_WALL_NOT };
+  }
+  *out = list;
+  return VG_OK;
+}
+
+vg_status vg_problem_layers(struct vg_problem *p, struct vg_layer_stage *s,
+                            struct vg_error *err)
+{
+  return vg_layer_stage_plan(s, &p->boundary, err);
+}
+
+vg_status vg_problem_settle(struct vg_problem *p,
+                            const struct vg_layer_stage *s,
+                            struct vg_error *err)
+{
+  struct vg_boundary *b = &p->boundary;
+  struct vg_patch_grows *grows = NULL;
+  size_t n = 0;
+  vg_status st;
+
+  VG_TRY(vg_walls_swap(b, s->is_on ? s->reason : NULL, err));
+  VG_TRY(list_grows(s, b, &grows, &n, err));
+  st = vg_resolve(&p->read.settings, &(struct vg_decisions){
+    .is_remeshed = b->is_remeshed, .is_swapped = b->is_swapped,
+    .flow = (int)b->flow.kind, .axis = b->flow.axis, .n_patch = b->n_row,
+    .patch = b->row, .has_layers = s->is_on, .n_grows = n, .grows = grows },
+    &p->resolved, err);
+done:
+  free(grows);
   return st;
 }
 
@@ -613,11 +628,11 @@ static void mark_beside(const struct vg_layer_stage *s,
 }
 
 vg_status vg_layer_stage_sizes(const struct vg_layer_stage *s,
-                               const struct vg_problem *p,
+                               const struct vg_boundary *b,
                                struct vg_mesh *out, struct vg_error *err)
 {
-  const struct vg_mesh *m = &p->surface;
-  int is_front = *p->files.front && p->project.grid > 0;
+  const struct vg_mesh *m = &b->surface;
+  int is_front = *b->read->files.front && b->read->project.grid > 0;
   uint8_t *on_wall = vg_calloc(m->n_point, 1);
   uint8_t *beside = vg_calloc(m->n_patch, 1);
   vg_status st = VG_OK;

@@ -49,11 +49,20 @@ struct vg_layer_stage {
 
 void vg_layer_stage_release(struct vg_layer_stage *s);
 
-/** Settle whether layers are grown, on which patches and by which laws, once
- * the problem is closed. p->settings are resolved: run again with them, the
- * same layers grow. Notes tell what was assumed or is missing. */
-vg_status vg_layer_stage_plan(struct vg_layer_stage *s, struct vg_problem *p,
+/** 4. Settle whether layers are grown, on which patches and by which laws, once
+ * the boundary is closed. Walls without a condition get one. Notes tell what
+ * was assumed or is missing. */
+vg_status vg_layer_stage_plan(struct vg_layer_stage *s, struct vg_boundary *b,
                               struct vg_error *err);
+
+/** The steps of a problem: vg_layer_stage_plan; then slivers of the surface are
+ * swapped as settings say, and p->resolved is made: a run with these settings
+ * makes the same mesh. */
+vg_status vg_problem_layers(struct vg_problem *p, struct vg_layer_stage *s,
+                            struct vg_error *err);
+vg_status vg_problem_settle(struct vg_problem *p,
+                            const struct vg_layer_stage *s,
+                            struct vg_error *err);
 
 /** The triangles that say how large edges are before layers grow. All, but
  * for a VGRID front with layers: there VGRID has put the layers' points on
@@ -62,7 +71,7 @@ vg_status vg_layer_stage_plan(struct vg_layer_stage *s, struct vg_problem *p,
  * @param out  borrows points and patches of the surface; tri and tri_patch
  *             are its own: free them, nothing else */
 vg_status vg_layer_stage_sizes(const struct vg_layer_stage *s,
-                               const struct vg_problem *p,
+                               const struct vg_boundary *b,
                                struct vg_mesh *out, struct vg_error *err);
 
 /** What bounds the field: the front above the layers, or, without layers, the

@@ -192,16 +192,16 @@ static vg_status summarise(const struct samples *s, size_t end,
 
 /* Which triangle each sample lies on, and which curve; where it is farther
  * than `limit` from all of them, it is none of the model's. */
-static vg_status locate(struct samples *s, const struct vg_problem *p,
+static vg_status locate(struct samples *s, const struct vg_boundary *b,
                         double limit, struct vg_error *err)
 {
-  const struct vg_cad_surface *c = &p->model.surface;
+  const struct vg_cad_surface *c = &b->model.surface;
   const struct vg_stop stop = { vg_display_stop, NULL };
   struct segment *list = NULL;
   vg_status st;
 
   VG_TRY(vg_remesh_locate(&c->mesh, s->n, (const double (*)[3])s->x,
-                          p->threads, &stop, s->tri, s->to, err));
+                          b->threads, &stop, s->tri, s->to, err));
   for (size_t i = 0; i < s->n; i++)
     s->distance[i] = vg_distance(s->x[i], s->to[i]) <= limit ? 0 : INFINITY;
   VG_TRY(list_segments(c, &list, err));
@@ -255,36 +255,36 @@ done:
 
 /* The model has no caps over its holes: points inside them stay and do not
  * count, distance INFINITY. */
-static void leave_caps(struct samples *s, const struct vg_problem *p,
-                       struct vg_put_back *b)
+static void leave_caps(struct samples *s, const struct vg_boundary *b,
+                       struct vg_put_back *back)
 {
-  const struct vg_mesh *m = &p->surface;
+  const struct vg_mesh *m = &b->surface;
 
-  if (!p->n_given_patch) return;
+  if (!b->n_given_patch) return;
   memset(s->stays, 1, s->n_point);
   for (size_t t = 0; t < m->n_tri; t++)
-    for (int k = 0; k < 3 && !vg_problem_is_cap(p, m->tri_patch[t]); k++)
+    for (int k = 0; k < 3 && !vg_boundary_is_cap(b, m->tri_patch[t]); k++)
       s->stays[m->tri[t][k]] = 0;
   for (size_t i = 0; i < s->n_point; i++)
     if (s->stays[i]) {
       s->distance[i] = INFINITY;
-      b->n_cap++;
+      back->n_cap++;
     }
 }
 
-static vg_status move(struct vg_problem *p, struct samples *s,
-                      struct vg_put_back *b, struct vg_error *err)
+static vg_status move(struct vg_boundary *b, struct samples *s,
+                      struct vg_put_back *back, struct vg_error *err)
 {
   const struct vg_stop stop = { vg_display_stop, NULL };
 
   for (size_t i = 0; i < s->n_point; i++) {
-    if (!(s->distance[i] < INFINITY) && !s->stays[i]) b->n_far++;
-    if (s->curve[i]) b->n_curve++;
+    if (!(s->distance[i] < INFINITY) && !s->stays[i]) back->n_far++;
+    if (s->curve[i]) back->n_curve++;
     s->stays[i] = !(s->distance[i] < INFINITY);
   }
-  b->n_point = s->n_point - b->n_cap;
-  return vg_remesh_put_back(&p->surface, (const double (*)[3])s->to,
-                            p->threads, &stop, s->stays, &b->n_refused, err);
+  back->n_point = s->n_point - back->n_cap;
+  return vg_remesh_put_back(&b->surface, (const double (*)[3])s->to,
+                            b->threads, &stop, s->stays, &back->n_refused, err);
 }
 
 /* The largest of each triangle's own samples, where it has a place there. */
@@ -300,33 +300,34 @@ static void by_face(const struct samples *s, const struct vg_mesh *m,
   }
 }
 
-vg_status vg_problem_put_back(struct vg_problem *p, struct vg_error *err)
+vg_status vg_boundary_put_back(struct vg_boundary *b, struct vg_error *err)
 {
-  struct vg_renewal *r = &p->renewal;
-  struct vg_put_back *b = &r->back;
+  struct vg_renewal *r = &b->renewal;
+  struct vg_put_back *back = &r->back;
   struct samples s = { 0 };
   double t = vg_display_now();
   vg_status st;
 
-  VG_TRY(start(&s, &p->surface, err));
-  take_points(&s, &p->surface);
-  take_centroids(&s, &p->surface);
-  VG_TRY(locate(&s, p, r->report.tolerance, err));
-  leave_caps(&s, p, b);
-  VG_TRY(find_places(&s, p->model.cad, &b->off[0], err));
-  VG_TRY(move(p, &s, b, err));
-  VG_TRY(measure(&s, &p->surface, p->model.cad, &b->off[1], err));
-  by_face(&s, &p->surface, r->face);
-  b->seconds = vg_display_now() - t;
-  b->is_done = 1;
-  vg_note(&p->notes, "points were put back on the CAD model: %zu, %zu of them "
+  VG_TRY(start(&s, &b->surface, err));
+  take_points(&s, &b->surface);
+  take_centroids(&s, &b->surface);
+  VG_TRY(locate(&s, b, r->report.tolerance, err));
+  leave_caps(&s, b, back);
+  VG_TRY(find_places(&s, b->model.cad, &back->off[0], err));
+  VG_TRY(move(b, &s, back, err));
+  VG_TRY(measure(&s, &b->surface, b->model.cad, &back->off[1], err));
+  by_face(&s, &b->surface, r->face);
+  back->seconds = vg_display_now() - t;
+  back->is_done = 1;
+  vg_note(b->notes, "points were put back on the CAD model: %zu, %zu of them "
           "on its curves, from at most %.3g off it; middles of triangles, "
           "which are flat, are at most %.3g off; refused, since triangles would fold "
-          "or meet: %zu", b->n_point - b->n_far - b->n_refused, b->n_curve,
-          b->off[0].most, b->off[1].most, b->n_refused);
-  if (b->n_far)
-    vg_note(&p->notes, "%zu points lie farther than %.3g from the CAD model "
-            "and were left where they are", b->n_far, r->report.tolerance);
+          "or meet: %zu", back->n_point - back->n_far - back->n_refused,
+          back->n_curve,
+          back->off[0].most, back->off[1].most, back->n_refused);
+  if (back->n_far)
+    vg_note(b->notes, "%zu points lie farther than %.3g from the CAD model "
+            "and were left where they are", back->n_far, r->report.tolerance);
 done:
   release(&s);
   return st;

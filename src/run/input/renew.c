@@ -11,6 +11,7 @@
 #include "io/mesh/format.h"
 #include "run/input/shape_parts.h"
 #include "run/input/share.h"
+#include "run/settings/options.h"
 
 #define SLIVER2 0.03015369  /* S49: (sin 10 degrees)^2 */
 #define NEEDLE 5.0        /* S56: degrees */
@@ -48,32 +49,32 @@ double vg_surface_sliver_share(const struct vg_mesh *m)
   return m->n_tri ? (double)n / (double)m->n_tri : 0;
 }
 
-static int is_tessellation(const struct vg_problem *p)
+static int is_tessellation(const struct vg_read *r)
 {
-  return !*p->files.front && !(p->settings.wrap > 0) && !p->heights.n
-         && *p->files.surface && vg_format_is_tessellation(p->files.surface);
+  return !*r->files.front && !(r->settings.wrap > 0) && !r->heights.n
+         && *r->files.surface && vg_format_is_tessellation(r->files.surface);
 }
 
-int vg_problem_is_renewed(const struct vg_problem *p)
+int vg_read_is_remeshed(const struct vg_read *r, const struct vg_mesh *surface)
 {
-  if (p->settings.remesh != VG_ANSWER_AUTO)
-    return p->settings.remesh == VG_ANSWER_YES;
-  if (is_tessellation(p)) return vg_surface_sliver_share(&p->surface) > MOST;
-  return !*p->files.front && vg_format_is_cad(p->files.surface)
-         && !(p->settings.wrap > 0);
+  if (r->settings.remesh != VG_ANSWER_AUTO)
+    return r->settings.remesh == VG_ANSWER_YES;
+  if (is_tessellation(r)) return vg_surface_sliver_share(surface) > MOST;
+  return !*r->files.front && vg_format_is_cad(r->files.surface)
+         && !(r->settings.wrap > 0);
 }
 
-void vg_problem_note_slivers(struct vg_problem *p)
+void vg_boundary_note_slivers(struct vg_boundary *b)
 {
-  const double share = vg_surface_sliver_share(&p->surface);
+  const double share = vg_surface_sliver_share(&b->surface);
 
-  if (p->settings.remesh != VG_ANSWER_AUTO || !(share > MOST)) return;
-  if (vg_problem_is_renewed(p))
-    vg_note(&p->notes, "%.0f %% of the triangles have an angle below 10 "
+  if (b->read->settings.remesh != VG_ANSWER_AUTO || !(share > MOST)) return;
+  if (b->is_remeshed)
+    vg_note(b->notes, "%.0f %% of the triangles have an angle below 10 "
             "degrees: the surface is taken for a tessellation and is remeshed "
             "(--remesh-surface no: as given)", 100 * share);
-  else if (!(p->settings.wrap > 0))
-    vg_note(&p->notes, "%.0f %% of the triangles have an angle below 10 "
+  else if (!(b->read->settings.wrap > 0))
+    vg_note(b->notes, "%.0f %% of the triangles have an angle below 10 "
             "degrees, and so will cells on them: --remesh-surface yes remeshes "
             "the surface", 100 * share);
 }
@@ -81,15 +82,15 @@ void vg_problem_note_slivers(struct vg_problem *p)
 /* --- the new surface ----------------------------------------------------- */
 
 /* *hard: [n_patch], NULL where none is asked for. */
-static vg_status hard_patches(const struct vg_problem *p, uint8_t **hard,
+static vg_status hard_patches(const struct vg_boundary *b, uint8_t **hard,
                               struct vg_error *err)
 {
-  for (size_t i = 0; i < p->settings.n_patch; i++) {
-    const struct vg_patch_row *row = &p->settings.patch[i];
-    size_t at = vg_mesh_find_patch(&p->surface, row->id);
+  for (size_t i = 0; i < b->n_row; i++) {
+    const struct vg_patch_row *row = &b->row[i];
+    size_t at = vg_mesh_find_patch(&b->surface, row->id);
 
     if (!row->hard || at == SIZE_MAX) continue;
-    if (!*hard) *hard = vg_calloc(p->surface.n_patch, 1);
+    if (!*hard) *hard = vg_calloc(b->surface.n_patch, 1);
     if (!*hard) return vg_fail_memory(err, "the patches");
     (*hard)[at] = 1;
   }
@@ -108,58 +109,40 @@ static void areas(const struct vg_mesh *m, int after, double *area)
   }
 }
 
-struct vg_remesh_options vg_remesh_options_of(const struct vg_settings *s)
-{
-  struct vg_remesh_options o = VG_REMESH_OPTIONS_INIT;
-
-  o.tolerance = s->surface_tolerance;
-  o.accuracy = s->wrap * VG_WRAP_OFFSET;
-  o.ridge_angle = s->ridge_angle;
-  o.per_turn = s->per_turn;
-  o.h_min = s->hmin;
-  o.h_max = s->surface_size > 0 && !(s->hmax > 0 && s->hmax < s->surface_size)
-            ? s->surface_size : s->hmax;
-  o.growth = s->growth;
-  o.scale = s->scale;
-  o.n_source = s->n_source;
-  o.source = s->source;
-  return o;
-}
-
-static vg_status remesh(struct vg_problem *p, const uint8_t *hard,
+static vg_status remesh(struct vg_boundary *b, const uint8_t *hard,
                         const struct vg_surface_sizes *sizes, int is_reference,
                         struct vg_display *show, struct vg_error *err)
 {
-  struct vg_remesh_options o = vg_remesh_options_of(&p->settings);
+  struct vg_remesh_options o = vg_options_remesh(&b->read->settings);
 
-  o.map = p->map;
+  o.map = b->map;
   o.hard = hard;
-  o.is_body = p->flow.kind == VG_FLOW_EXTERNAL;
+  o.is_body = b->flow.kind == VG_FLOW_EXTERNAL;
   o.is_reference = is_reference;
   o.cap = sizes->cap;
   o.across = sizes->across;
   o.stretch = sizes->stretch;
-  o.threads = p->threads;
+  o.threads = b->threads;
   o.stop = (struct vg_stop){ vg_display_stop, show };
-  return vg_remesh(&p->surface, &o, &p->renewal.report, err);
+  return vg_remesh(&b->surface, &o, &b->renewal.report, err);
 }
 
 /* Volumes of the new surface and of the CAD model, where both are closed and
  * nothing was dropped or capped. About a corner: small numbers wherever the
  * body is. */
-static void take_volumes(struct vg_problem *p)
+static void take_volumes(struct vg_boundary *b)
 {
-  const struct vg_mesh *m = &p->surface;
-  const int is_whole = p->flow.kind != VG_FLOW_UNKNOWN && p->flow.axis < 0
-                       && !p->flow.n_cavity && !p->n_given_patch;
+  const struct vg_mesh *m = &b->surface;
+  const int is_whole = b->flow.kind != VG_FLOW_UNKNOWN && b->flow.axis < 0
+                       && !b->flow.n_cavity && !b->n_given_patch;
 
-  p->renewal.volume[0] = p->renewal.volume[1] = NAN;
-  if (!p->model.cad || !is_whole || !m->n_tri) return;
-  p->renewal.volume[0] = fabs(vg_enclosed6(m->n_tri,
+  b->renewal.volume[0] = b->renewal.volume[1] = NAN;
+  if (!b->model.cad || !is_whole || !m->n_tri) return;
+  b->renewal.volume[0] = fabs(vg_enclosed6(m->n_tri,
                                            (const uint32_t (*)[3])m->tri,
                                            (const double (*)[3])m->point,
                                            m->point[0])) / 6;
-  p->renewal.volume[1] = p->model.surface.volume;
+  b->renewal.volume[1] = b->model.surface.volume;
 }
 
 static size_t n_needle(const struct vg_remesh_report *r)
@@ -173,32 +156,32 @@ static size_t n_needle(const struct vg_remesh_report *r)
 /* A tessellation without defects is remeshed as it is. Where CAD leads to many
  * needles that way, since its own are feature edges too, it is repaired as one
  * with defects is, and the outcome with fewer needles stays. */
-static vg_status remesh_cad(struct vg_problem *p, const struct vg_mesh *given,
+static vg_status remesh_cad(struct vg_boundary *b, const struct vg_mesh *given,
                             const uint8_t *hard,
                             const struct vg_surface_sizes *sizes,
                             struct vg_display *show, struct vg_error *err)
 {
   const int has_defects =
-    p->check.n_defect > p->check.count[VG_DEFECT_OPEN_EDGE];
+    b->check.n_defect > b->check.count[VG_DEFECT_OPEN_EDGE];
   struct vg_remesh_report first = VG_REMESH_REPORT_INIT;
   struct vg_mesh made = VG_MESH_INIT;
   vg_status st;
 
-  VG_TRY(remesh(p, hard, sizes, has_defects, show, err));
-  if (has_defects || !p->model.cad
-      || (double)n_needle(&p->renewal.report)
-         <= MANY * (double)p->surface.n_tri) goto done;
-  vg_mesh_move(&made, &p->surface);
-  first = p->renewal.report;
-  p->renewal.report = (struct vg_remesh_report)VG_REMESH_REPORT_INIT;
-  VG_TRY(vg_mesh_copy(&p->surface, given, err));
-  st = remesh(p, hard, sizes, 1, show, err);
+  VG_TRY(remesh(b, hard, sizes, has_defects, show, err));
+  if (has_defects || !b->model.cad
+      || (double)n_needle(&b->renewal.report)
+         <= MANY * (double)b->surface.n_tri) goto done;
+  vg_mesh_move(&made, &b->surface);
+  first = b->renewal.report;
+  b->renewal.report = (struct vg_remesh_report)VG_REMESH_REPORT_INIT;
+  VG_TRY(vg_mesh_copy(&b->surface, given, err));
+  st = remesh(b, hard, sizes, 1, show, err);
   if (st < 0 && st != VG_ERR_GEOMETRY) goto done;
-  if (st >= 0 && n_needle(&p->renewal.report) < n_needle(&first)) goto done;
+  if (st >= 0 && n_needle(&b->renewal.report) < n_needle(&first)) goto done;
   st = VG_OK;
-  vg_mesh_move(&p->surface, &made);
-  vg_remesh_report_release(&p->renewal.report);
-  p->renewal.report = first;
+  vg_mesh_move(&b->surface, &made);
+  vg_remesh_report_release(&b->renewal.report);
+  b->renewal.report = first;
   first = (struct vg_remesh_report)VG_REMESH_REPORT_INIT;
 done:
   vg_remesh_report_release(&first);
@@ -206,69 +189,69 @@ done:
   return st;
 }
 
-static vg_status measure(struct vg_problem *p, struct vg_mesh *given,
+static vg_status measure(struct vg_boundary *b, struct vg_mesh *given,
                          struct vg_display *show, struct vg_error *err)
 {
   const struct vg_stop stop = { vg_display_stop, show };
-  struct vg_renewal *r = &p->renewal;
+  struct vg_renewal *r = &b->renewal;
   vg_status st;
 
-  r->face = vg_alloc(p->surface.n_tri, sizeof *r->face);
-  r->n_patch = p->surface.n_patch;
+  r->face = vg_alloc(b->surface.n_tri, sizeof *r->face);
+  r->n_patch = b->surface.n_patch;
   r->area = vg_calloc(2 * r->n_patch, sizeof *r->area);
   if (!r->face || !r->area) return vg_fail_memory(err, "the distances");
   areas(given, 0, r->area);
   VG_TRY(vg_remesh_arrange(given, err));
-  VG_TRY(vg_remesh_measure(&p->surface, given, p->threads, &stop, r->face,
+  VG_TRY(vg_remesh_measure(&b->surface, given, b->threads, &stop, r->face,
                            r->off, err));
 done:
   return st;
 }
 
-static void note_faults(struct vg_problem *p)
+static void note_faults(struct vg_boundary *b)
 {
-  const struct vg_remesh_report *r = &p->renewal.report;
+  const struct vg_remesh_report *r = &b->renewal.report;
 
   if (r->n_crossing[0])
-    vg_note(&p->notes, "the surface as given intersects itself in %zu pairs of "
+    vg_note(b->notes, "the surface as given intersects itself in %zu pairs of "
             "triangles, by %.3g at most, at (%.6g, %.6g, %.6g); the new "
             "surface, which is within %.3g of it, does not", r->n_crossing[0],
             r->crossing_depth, r->crossing_at[0], r->crossing_at[1],
             r->crossing_at[2], r->tolerance);
   if (r->n_kept)
-    vg_note(&p->notes, "%zu triangles stay as given, since new ones met there; "
+    vg_note(b->notes, "%zu triangles stay as given, since new ones met there; "
             "the first are near (%.6g, %.6g, %.6g)", r->n_kept, r->kept_at[0],
             r->kept_at[1], r->kept_at[2]);
 }
 
-vg_status vg_problem_renew(struct vg_problem *p, struct vg_display *show,
+vg_status vg_boundary_renew(struct vg_boundary *b, struct vg_display *show,
                            struct vg_error *err)
 {
-  struct vg_renewal *r = &p->renewal;
+  struct vg_renewal *r = &b->renewal;
   struct vg_surface_sizes sizes = { NULL, NULL, NULL };
   struct vg_mesh given = VG_MESH_INIT;
   uint8_t *hard = NULL;
   double t = vg_display_now();
   vg_status st;
 
-  if (p->heights.n)
+  if (b->read->heights.n)
     return vg_fail(err, VG_ERR_INPUT, "first heights are given at points of "
                    "the surface, which remesh_surface would take away: give "
                    "them by patch instead, or keep the surface");
-  vg_display_update(show, "remesh", p->surface.n_tri, 0);
-  VG_TRY(vg_mesh_copy(&given, &p->surface, err));
-  VG_TRY(hard_patches(p, &hard, err));
-  VG_TRY(vg_surface_sizes_make(p, &sizes, err));
-  VG_TRY(remesh_cad(p, &given, hard, &sizes, show, err));
+  vg_display_update(show, "remesh", b->surface.n_tri, 0);
+  VG_TRY(vg_mesh_copy(&given, &b->surface, err));
+  VG_TRY(hard_patches(b, &hard, err));
+  VG_TRY(vg_surface_sizes_make(b, &sizes, err));
+  VG_TRY(remesh_cad(b, &given, hard, &sizes, show, err));
   r->seconds = vg_display_now() - t;
-  VG_TRY(measure(p, &given, show, err));
+  VG_TRY(measure(b, &given, show, err));
   r->is_done = 1;
-  vg_display_update(show, "put back", p->surface.n_tri, 0);
-  if (p->model.cad) VG_TRY(vg_problem_put_back(p, err));
-  take_volumes(p);
-  areas(&p->surface, 1, r->area);
-  note_faults(p);
-  vg_note(&p->notes, "the surface was remeshed (remesh_surface): %zu "
+  vg_display_update(show, "put back", b->surface.n_tri, 0);
+  if (b->model.cad) VG_TRY(vg_boundary_put_back(b, err));
+  take_volumes(b);
+  areas(&b->surface, 1, r->area);
+  note_faults(b);
+  vg_note(b->notes, "the surface was remeshed (remesh_surface): %zu "
           "triangles, before %zu, at most %.3g from it, tolerance %.3g",
           r->report.n_tri[1], r->report.n_tri[0],
           r->off[0].most > r->off[1].most ? r->off[0].most : r->off[1].most,
@@ -292,32 +275,32 @@ static void keep_conditions(const struct vg_mesh *from, struct vg_mesh *to)
   }
 }
 
-vg_status vg_problem_tessellate(struct vg_problem *p, size_t i,
+vg_status vg_boundary_tessellate(struct vg_boundary *b, size_t i,
                                 const struct vg_patch *patch, size_t n_patch,
                                 size_t n_note, struct vg_display *show,
                                 struct vg_error *err)
 {
   const struct vg_mesh given = { .n_patch = n_patch,
                                  .patch = (struct vg_patch *)(uintptr_t)patch };
-  struct vg_cad_options cad = vg_cad_options_of(&p->settings, 1, NULL);
+  struct vg_cad_options cad = vg_options_cad(&b->read->settings, 1);
   struct vg_cad_surface fresh = VG_CAD_SURFACE_INIT;
   struct vg_mesh m = VG_MESH_INIT;
   vg_status st;
 
-  if (i >= TRIES || !p->model.cad) return VG_BLOCKED;
-  cad.note = NULL;
+  if (i >= TRIES || !b->model.cad) return VG_BLOCKED;
+  cad.stop = vg_display_stop;
   cad.chord = fmin(cad.chord * again[i][0], 0.1);
   cad.angle = fmin(fmax(cad.angle * again[i][1], 2), 30);
   vg_display_update(show, "tessellate", 0, 0);
-  VG_TRY(vg_cad_again(p->model.cad, &cad, &fresh, err));
+  VG_TRY(vg_cad_again(b->model.cad, &cad, &fresh, err));
   VG_TRY(vg_mesh_copy(&m, &fresh.mesh, err));
   keep_conditions(&given, &m);
-  vg_mesh_move(&p->surface, &m);
-  vg_cad_surface_release(&p->model.surface);
-  p->model.surface = fresh;
-  vg_renewal_release(&p->renewal);
-  while (p->notes.n > n_note) free(p->notes.text[--p->notes.n]);
-  vg_note(&p->notes, "the first tessellation of the CAD model led to no sound "
+  vg_mesh_move(&b->surface, &m);
+  vg_cad_surface_release(&b->model.surface);
+  b->model.surface = fresh;
+  vg_renewal_release(&b->renewal);
+  while (b->notes->n > n_note) free(b->notes->text[--b->notes->n]);
+  vg_note(b->notes, "the first tessellation of the CAD model led to no sound "
           "surface; this one has chord %.2g and angle %.3g (cad_chord, "
           "cad_angle)", cad.chord, cad.angle);
   return VG_OK;
@@ -338,10 +321,13 @@ void vg_renewal_release(struct vg_renewal *r)
 vg_status vg_problem_share(struct vg_problem *p, struct vg_comm *comm,
                            int is_maker, vg_status st, struct vg_error *err)
 {
-  if (vg_comm_size(comm) == 1 || *p->files.front
-      || !vg_format_is_cad(p->files.surface) || !vg_problem_is_renewed(p))
+  const struct vg_read *read = &p->read;
+  struct vg_boundary *b = &p->boundary;
+
+  if (!vg_read_is_by_first(read, comm)
+      || !vg_read_is_remeshed(read, vg_problem_surface(p)))
     return vg_comm_agree(comm, st, err);
-  st = vg_surface_bcast(comm, is_maker, st, &p->surface, err);
-  if (st >= 0 && vg_comm_rank(comm)) p->renewal.is_done = is_maker;
+  st = vg_surface_bcast(comm, is_maker, st, &b->surface, err);
+  if (st >= 0 && vg_comm_rank(comm)) b->renewal.is_done = is_maker;
   return st;
 }

@@ -153,16 +153,16 @@ done:
   return st;
 }
 
-vg_status vg_problem_sizes(struct vg_problem *p, struct vg_error *err)
+vg_status vg_read_sizes(struct vg_read *r, struct vg_error *err)
 {
-  const struct vg_settings *set = &p->settings;
+  const struct vg_settings *set = &r->settings;
   struct vg_mesh m = VG_MESH_INIT;
   struct samples s = { 0 };
   double *h = NULL;
   vg_status st;
 
-  if (!*set->sizes || p->samples) return VG_OK;
-  if (p->map)
+  if (!*set->sizes || r->samples) return VG_OK;
+  if (r->map)
     return vg_fail(err, VG_ERR_INPUT, "sizes are given by the file %s and by "
                    "the program; give one", set->sizes);
   VG_TRY(read_values(set->sizes, &m, &h, err));
@@ -171,9 +171,9 @@ vg_status vg_problem_sizes(struct vg_problem *p, struct vg_error *err)
   VG_TRY(make_samples(&m, h, &s, err));
   VG_TRY(vg_size_samples_new(s.n, (const double (*)[3])s.x, s.h,
                              vg_scaled_growth(set->growth, set->scale),
-                             (int)set->threads, &p->samples, err));
-  p->map = vg_size_samples_map(p->samples);
-  vg_note(&p->notes, "sizes of %zu points were read from %s", m.n_point,
+                             (int)set->threads, &r->samples, err));
+  r->map = vg_size_samples_map(r->samples);
+  vg_note(r->notes, "sizes of %zu points were read from %s", m.n_point,
           set->sizes);
 done:
   free(s.x);
@@ -181,13 +181,4 @@ done:
   free(h);
   vg_mesh_release(&m);
   return st;
-}
-
-void vg_problem_forget_sizes(struct vg_problem *p)
-{
-  vg_problem_forget_gaps(p);
-  if (!p->samples) return;
-  vg_size_samples_free(p->samples);
-  p->samples = NULL;
-  p->map = NULL;
 }

@@ -6,22 +6,22 @@
 #include "run/input/input.h"
 
 /** Read the file that the setting `sizes` names, if any, and the mesh at whose
- * points its values are, into p->samples; p->map is then theirs.
+ * points its values are, into r->samples; r->map is then theirs.
  *
  * Between the points of a cell sizes are linear, where the cell is large for
  * them; elsewhere they grow from the points. VG_ERR_INPUT: no mesh beside it,
  * more than one, another number of points, a value that is no size, or a map
  * that is there already. */
-vg_status vg_problem_sizes(struct vg_problem *p, struct vg_error *err);
+vg_status vg_read_sizes(struct vg_read *r, struct vg_error *err);
 
 /** Where the setting gap_edges asks for it: sizes from gaps between surfaces
- * into p->gaps; p->map is then the less of those and what it was. Of the closed
+ * into b->gaps; b->map is then the less of those and what it was. Of the closed
  * surface, before it is made anew; a note tells. */
-vg_status vg_problem_gaps(struct vg_problem *p, struct vg_display *show,
-                          struct vg_error *err);
+vg_status vg_boundary_gaps(struct vg_boundary *b, struct vg_display *show,
+                           struct vg_error *err);
 
-/** Free them, and give p->map back; nothing happens where there are none. */
-void vg_problem_forget_gaps(struct vg_problem *p);
+/** Free them, and give b->map back; nothing happens where there are none. */
+void vg_boundary_forget_gaps(struct vg_boundary *b);
 
 /** Free all sizes, of gaps too; nothing happens where there are none. */
 void vg_problem_forget_sizes(struct vg_problem *p);

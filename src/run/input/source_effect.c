@@ -5,17 +5,19 @@
 #include <string.h>
 
 #include "run/common/text.h"
+#include "run/settings/options.h"
 
-vg_status vg_problem_effects(const struct vg_problem *p,
+vg_status vg_boundary_effects(const struct vg_boundary *b,
                              const struct vg_mesh *front,
                              const struct vg_sizing *sizing,
                              struct vg_effects *out,
                              struct vg_error *err)
 {
-  const struct vg_sizing_options o = vg_settings_sizing(&p->settings);
+  const struct vg_settings *s = &b->read->settings;
+  const struct vg_sizing_options o = vg_options_sizing(s, NULL);
 
-  return vg_effects_find(&o, p->settings.n_source, p->settings.source, front,
-                         &p->surface, sizing, out, err);
+  return vg_effects_find(&o, s->n_source, s->source, front, &b->surface,
+                         sizing, out, err);
 }
 
 static const char *kind_of(const struct vg_source *s)
@@ -65,9 +67,9 @@ static void explain(const struct vg_limited_source *h,
 }
 
 static void note_limited(const struct vg_limited_source *h,
-                         const struct vg_mesh *front, struct vg_problem *p)
+                         const struct vg_mesh *front, struct vg_boundary *b)
 {
-  const struct vg_source *s = p->settings.source + h->source;
+  const struct vg_source *s = b->read->settings.source + h->source;
   char name[160], why[320];
 
   snprintf(name, sizeof name, "source %zu (%s%s%.32s, from %.4g %.4g %.4g)",
@@ -75,20 +77,20 @@ static void note_limited(const struct vg_limited_source *h,
            s->p0[0], s->p0[1], s->p0[2]);
   explain(h, front, why, sizeof why);
   if (is_wholly(h))
-    vg_note(&p->notes, "%s gets nowhere what it asks for: %.3g at best where "
+    vg_note(b->notes, "%s gets nowhere what it asks for: %.3g at best where "
             "it asks for %.3g, at %.4g %.4g %.4g, where %s", name, h->got,
             h->asked, h->at[0], h->at[1], h->at[2], why);
   else
-    vg_note(&p->notes, "%s is held back in %zu of %zu places: at %.4g %.4g "
+    vg_note(b->notes, "%s is held back in %zu of %zu places: at %.4g %.4g "
             "%.4g it asks for %.3g and gets %.3g, where %s", name, h->n_limited,
             h->n_place, h->at[0], h->at[1], h->at[2], h->asked, h->got, why);
 }
 
-static void note_unmet(const struct vg_unmet_source *u, struct vg_problem *p)
+static void note_unmet(const struct vg_unmet_source *u, struct vg_boundary *b)
 {
-  const struct vg_source *s = p->settings.source + u->source;
+  const struct vg_source *s = b->read->settings.source + u->source;
 
-  vg_note(&p->notes, "source %zu (%s%s%.32s) has no effect in %zu of %zu "
+  vg_note(b->notes, "source %zu (%s%s%.32s) has no effect in %zu of %zu "
           "places: at %.4g %.4g %.4g the size is %.3g, and no point of the "
           "mesh is within twice that, for sizes grow faster around it than "
           "cells can; a larger radius or growth of 2 or less would help",
@@ -98,7 +100,7 @@ static void note_unmet(const struct vg_unmet_source *u, struct vg_problem *p)
 }
 
 static void note_outside(const struct vg_effects *h, int is_beyond,
-                         struct vg_problem *p)
+                         struct vg_boundary *b)
 {
   char list[200] = "";
   size_t n = 0, at = 0;
@@ -113,7 +115,7 @@ static void note_outside(const struct vg_effects *h, int is_beyond,
       at += (size_t)snprintf(list + at, sizeof list - at, " ...");
   }
   if (!n) return;
-  vg_note(&p->notes, "%zu source%s (number%s%s) %s wholly %s: of %s no more "
+  vg_note(b->notes, "%zu source%s (number%s%s) %s wholly %s: of %s no more "
           "than the growth is felt", n, n > 1 ? "s" : "", n > 1 ? "s" : "",
           list, n > 1 ? "lie" : "lies",
           is_beyond ? "outside the domain"
@@ -122,20 +124,20 @@ static void note_outside(const struct vg_effects *h, int is_beyond,
 }
 
 void vg_effects_note(const struct vg_effects *h, const struct vg_mesh *front,
-                     struct vg_problem *p)
+                     struct vg_boundary *b)
 {
   for (size_t i = 0; i < h->n && i < VG_SHOWN_LIMITED; i++)
-    note_limited(h->item + i, front, p);
+    note_limited(h->item + i, front, b);
   if (h->n > VG_SHOWN_LIMITED)
-    vg_note(&p->notes, "%zu more sources are held back; the JSON report has "
+    vg_note(b->notes, "%zu more sources are held back; the JSON report has "
             "them all", h->n - VG_SHOWN_LIMITED);
   for (size_t i = 0; i < h->n_unmet && i < VG_SHOWN_LIMITED; i++)
-    note_unmet(h->unmet + i, p);
+    note_unmet(h->unmet + i, b);
   if (h->n_unmet > VG_SHOWN_LIMITED)
-    vg_note(&p->notes, "%zu more sources have no effect; the JSON report has "
+    vg_note(b->notes, "%zu more sources have no effect; the JSON report has "
             "them all", h->n_unmet - VG_SHOWN_LIMITED);
-  note_outside(h, 0, p);
-  note_outside(h, 1, p);
+  note_outside(h, 0, b);
+  note_outside(h, 1, b);
 }
 
 static json_t *item_json(const struct vg_limited_source *h,

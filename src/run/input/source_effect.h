@@ -8,8 +8,8 @@
 #include "core/sizing/sizing_effect.h"
 #include "run/input/input.h"
 
-/** vg_effects_find with the settings of a problem. */
-vg_status vg_problem_effects(const struct vg_problem *p,
+/** vg_effects_find with the settings that were read. */
+vg_status vg_boundary_effects(const struct vg_boundary *b,
                              const struct vg_mesh *front,
                              const struct vg_sizing *sizing,
                              struct vg_effects *out,
@@ -20,7 +20,7 @@ vg_status vg_problem_effects(const struct vg_problem *p,
  * as for vg_effects_find. */
 #define VG_SHOWN_LIMITED 10
 void vg_effects_note(const struct vg_effects *h, const struct vg_mesh *front,
-                     struct vg_problem *p);
+                     struct vg_boundary *b);
 
 /** All of them: "held", "unmet" (by the mesh), "inside" (a body), "beyond"
  * (the domain). */

@@ -10,6 +10,7 @@
 #include "run/input/shape_parts.h"
 #include "run/input/sizes.h"
 #include "run/settings/deck.h"
+#include "run/settings/options.h"
 
 #define SHOWN_PATCHES 20   /* numbers in a note */
 #define ROUNDING 1e-9      /* S62: of the length: gaps between rims that are
@@ -54,80 +55,84 @@ static vg_status split_quads(struct vg_mesh *m, struct vg_notes *notes,
 }
 
 /* Notes on triangles that the repair removed: the next check finds none. */
-static void note_removed(struct vg_problem *p)
+static void note_removed(struct vg_boundary *b)
 {
-  if (p->check.n_removed_wall)
-    vg_note(&p->notes, "%zu triangles of walls that touching bodies shared "
+  if (b->check.n_removed_wall)
+    vg_note(b->notes, "%zu triangles of walls that touching bodies shared "
             "were removed, so that the bodies have one skin",
-            p->check.n_removed_wall);
-  if (p->check.n_removed_tri)
-    vg_note(&p->notes, "%zu duplicate or degenerate triangles were removed",
-            p->check.n_removed_tri);
+            b->check.n_removed_wall);
+  if (b->check.n_removed_tri)
+    vg_note(b->notes, "%zu duplicate or degenerate triangles were removed",
+            b->check.n_removed_tri);
 }
 
 /* external: as in vg_surface_check_options. */
-static vg_status check(struct vg_problem *p, int external,
+static vg_status check(struct vg_boundary *b, int external,
                        struct vg_display *show, struct vg_error *err)
 {
-  struct vg_surface_check_options o = VG_SURFACE_CHECK_OPTIONS_INIT;
+  struct vg_surface_check_options o = vg_options_check(&b->read->settings);
   vg_status st;
 
-  o.repair = p->settings.repair;
-  o.require_bc = p->require_bc;
+  o.require_bc = b->require_bc;
   o.external = external;
-  o.threads = p->threads;
+  o.threads = b->threads;
   o.stop = (struct vg_stop){ vg_display_stop, show };
-  vg_display_update(show, "check", p->surface.n_tri, 0);
-  st = vg_surface_check(&p->surface, &o, &p->check, err);
-  if (st >= 0) note_removed(p);
+  vg_display_update(show, "check", b->surface.n_tri, 0);
+  st = vg_surface_check(&b->surface, &o, &b->check, err);
+  if (st >= 0) note_removed(b);
   return st;
 }
 
-static vg_status defects(const struct vg_problem *p, struct vg_display *show,
+static vg_status defects(const struct vg_boundary *b, struct vg_display *show,
                          struct vg_error *err)
 {
   char remedy[120];
 
-  if (!p->check.n_defect && !p->surface.n_tri)
+  if (!b->check.n_defect && !b->surface.n_tri)
     return vg_fail(err, VG_ERR_GEOMETRY, "%s: no surface is left: all its "
-                   "triangles are degenerate", p->files.stem);
-  if (!p->check.n_defect) return VG_OK;
-  vg_problem_suggest_wrap(p, show, remedy, sizeof remedy);
+                   "triangles are degenerate", b->read->files.stem);
+  if (!b->check.n_defect) return VG_OK;
+  vg_boundary_suggest_wrap(b, show, remedy, sizeof remedy);
   return vg_fail(err, VG_ERR_GEOMETRY, "%s: the surface has %zu defects and "
-                 "cannot bound a mesh%s", p->files.stem, p->check.n_defect,
-                 remedy);
+                 "cannot bound a mesh%s", b->read->files.stem,
+                 b->check.n_defect, remedy);
 }
 
-/* Names and conditions of the patches as they are now, for the resolved
- * settings; what is added later comes by itself when the run is repeated. */
-static vg_status resolve_patches(struct vg_problem *p, struct vg_error *err)
+/* The rows of n patches as they are now; what is added later comes by itself
+ * when the run is repeated. Borders are hard as the n rows of `old` say. */
+static vg_status take_rows(struct vg_boundary *b, size_t n,
+                           const struct vg_patch_row *old,
+                           struct vg_error *err)
 {
-  struct vg_settings *s = &p->settings, old = *s;
-  vg_status st;
+  struct vg_settings view = VG_SETTINGS_INIT;
+  vg_status st = vg_deck_patches_of(&b->surface, &view, err);
 
-  s->patch = NULL;
-  s->n_patch = s->cap_patch = 0;
-  st = vg_deck_patches_of(&p->surface, s, err);
-  for (size_t i = 0; i < old.n_patch && st >= 0; i++) {
-    size_t at = vg_mesh_find_patch(&p->surface, old.patch[i].id);
-
-    if (at != SIZE_MAX) s->patch[at].hard = old.patch[i].hard;
+  if (st < 0) {
+    vg_settings_release(&view);
+    return st;
   }
-  free(old.patch);
-  return st;
+  for (size_t i = 0; i < n; i++) {
+    size_t at = vg_mesh_find_patch(&b->surface, old[i].id);
+
+    if (at != SIZE_MAX) view.patch[at].hard = old[i].hard;
+  }
+  free(b->row);
+  b->row = view.patch;
+  b->n_row = view.n_patch;
+  return VG_OK;
 }
 
-void vg_problem_note_unset(struct vg_problem *p)
+void vg_boundary_note_unset(struct vg_boundary *b)
 {
   char list[12 * SHOWN_PATCHES + 8] = "";
   size_t n = 0, at = 0;
-  uint8_t *has_faces = vg_calloc(p->surface.n_patch, 1);
+  uint8_t *has_faces = vg_calloc(b->surface.n_patch, 1);
 
   if (!has_faces) return;   /* as a note for which there is no memory */
-  for (size_t i = 0; i < p->surface.n_tri; i++)
-    has_faces[p->surface.tri_patch[i]] = 1;
-  for (size_t i = 0; i < p->surface.n_patch; i++) {
-    const struct vg_patch *patch = &p->surface.patch[i];
+  for (size_t i = 0; i < b->surface.n_tri; i++)
+    has_faces[b->surface.tri_patch[i]] = 1;
+  for (size_t i = 0; i < b->surface.n_patch; i++) {
+    const struct vg_patch *patch = &b->surface.patch[i];
 
     if (patch->bc != VG_BC_NONE || patch->bc_fun3d != VG_BC_NONE
         || !has_faces[i]) continue;
@@ -136,50 +141,55 @@ void vg_problem_note_unset(struct vg_problem *p)
                              (int)patch->id);
   }
   if (n)
-    vg_note(&p->notes, "%zu patch%s no boundary condition (number%s%s), "
+    vg_note(b->notes, "%zu patch%s no boundary condition (number%s%s), "
             "written as inviscid (5, FUN3D 3000): give conditions in a .mapbc "
             "file or the deck", n, n > 1 ? "es have" : " has", list,
             n > SHOWN_PATCHES ? " ..." : "");
   free(has_faces);
 }
 
-static vg_status close_holes(struct vg_problem *p, struct vg_error *err)
+struct vg_sizing_options vg_boundary_sizing(const struct vg_boundary *b)
 {
-  struct vg_sizing_options options = vg_problem_sizing(p);
+  return vg_options_sizing(&b->read->settings, b->map);
+}
+
+static vg_status close_holes(struct vg_boundary *b, struct vg_error *err)
+{
+  struct vg_sizing_options options = vg_boundary_sizing(b);
   struct vg_sizing *sizing = NULL;
   size_t n_hole, n_tri;
   vg_status st;
 
-  options.threads = p->threads;
-  VG_TRY(vg_sizing_new(&options, p->settings.n_source, p->settings.source,
-                       &p->surface, &sizing, err));
-  VG_TRY(vg_domain_close_holes(&p->surface,
-                               vg_settings_farfield(&p->settings).symmetry,
+  options.threads = b->threads;
+  VG_TRY(vg_sizing_new(&options, b->read->settings.n_source,
+                       b->read->settings.source, &b->surface, &sizing, err));
+  VG_TRY(vg_domain_close_holes(&b->surface,
+                               vg_options_farfield(&b->read->settings).symmetry,
                                sizing, &n_hole, &n_tri, err));
   if (n_hole)
-    vg_note(&p->notes, "holes of the surface that were closed (close_holes): "
+    vg_note(b->notes, "holes of the surface that were closed (close_holes): "
             "%zu, with %zu triangles in patches %d to %d, named cap_1 to "
             "cap_%zu", n_hole, n_tri,
-            (int)p->surface.patch[p->n_given_patch].id,
-            (int)p->surface.patch[p->surface.n_patch - 1].id, n_hole);
+            (int)b->surface.patch[b->n_given_patch].id,
+            (int)b->surface.patch[b->surface.n_patch - 1].id, n_hole);
 done:
   vg_sizing_free(sizing);
   return st;
 }
 
 /* Bodies are wrapped; outer boundaries stay as they are. */
-static vg_status wrap(struct vg_problem *p, struct vg_display *show,
+static vg_status wrap(struct vg_boundary *b, struct vg_display *show,
                       struct vg_error *err)
 {
-  const struct vg_flow_options o = vg_problem_flow_options(p, show);
+  const struct vg_flow_options o = vg_boundary_flow_options(b, show);
   uint8_t *outer = NULL;
   size_t n = 0;
   vg_status st;
 
-  outer = vg_alloc(p->surface.n_tri, 1);
+  outer = vg_alloc(b->surface.n_tri, 1);
   if (!outer) VG_TRY(vg_fail_memory(err, "the outer boundary"));
-  VG_TRY(vg_flow_outer(&p->surface, &p->check, &o, outer, &n, err));
-  VG_TRY(vg_problem_wrap(p, n ? outer : NULL, show, err));
+  VG_TRY(vg_flow_outer(&b->surface, &b->check, &o, outer, &n, err));
+  VG_TRY(vg_boundary_wrap(b, n ? outer : NULL, show, err));
 done:
   free(outer);
   return st;
@@ -187,54 +197,54 @@ done:
 
 /* Rims that coincide but for rounding are welded; for wider gaps the refusal
  * of an open surface names the tolerance. */
-static vg_status weld_rims(struct vg_problem *p, struct vg_display *show,
+static vg_status weld_rims(struct vg_boundary *b, struct vg_display *show,
                            struct vg_error *err)
 {
   double lo[3], hi[3], length = 0;
   size_t n_edge, n_point = 0;
   vg_status st = VG_OK;
 
-  p->rim_gap = 0;
-  if (!p->check.count[VG_DEFECT_OPEN_EDGE] || !p->settings.repair)
+  b->rim_gap = 0;
+  if (!b->check.count[VG_DEFECT_OPEN_EDGE] || !b->read->settings.repair)
     return VG_OK;
-  VG_TRY(vg_surface_rim_gap(&p->surface, &p->check, &p->rim_gap, &n_edge, err));
-  vg_mesh_bounds(&p->surface, lo, hi);
+  VG_TRY(vg_surface_rim_gap(&b->surface, &b->check, &b->rim_gap, &n_edge, err));
+  vg_mesh_bounds(&b->surface, lo, hi);
   for (int k = 0; k < 3; k++) length = fmax(length, hi[k] - lo[k]);
-  if (!(p->rim_gap > 0)) goto done;
-  VG_TRY(vg_surface_weld_rims(&p->surface, ROUNDING * length, &n_point, &n_edge,
+  if (!(b->rim_gap > 0)) goto done;
+  VG_TRY(vg_surface_weld_rims(&b->surface, ROUNDING * length, &n_point, &n_edge,
                               err));
   if (!n_point) goto done;
-  vg_note(&p->notes, "%zu open edges coincide with others but for rounding: "
+  vg_note(b->notes, "%zu open edges coincide with others but for rounding: "
           "they were welded, %zu points merged", n_edge, n_point);
-  VG_TRY(check(p, -1, show, err));
-  VG_TRY(vg_surface_rim_gap(&p->surface, &p->check, &p->rim_gap, &n_edge, err));
+  VG_TRY(check(b, -1, show, err));
+  VG_TRY(vg_surface_rim_gap(&b->surface, &b->check, &b->rim_gap, &n_edge, err));
 done:
   return st;
 }
 
 /* Close the surface as far as settings ask for it, and check it. */
-static vg_status close_surface(struct vg_problem *p, struct vg_display *show,
+static vg_status close_surface(struct vg_boundary *b, struct vg_display *show,
                                struct vg_error *err)
 {
-  const struct vg_settings *s = &p->settings;
+  const struct vg_settings *s = &b->read->settings;
   vg_status st = VG_OK;
 
   if (s->weld > 0)
-    VG_TRY(vg_surface_weld(&p->surface, s->weld, &p->n_welded, &p->n_dropped,
+    VG_TRY(vg_surface_weld(&b->surface, s->weld, &b->n_welded, &b->n_dropped,
                            err));
-  VG_TRY(check(p, -1, show, err));
-  VG_TRY(weld_rims(p, show, err));
-  if (s->close_holes && p->check.count[VG_DEFECT_OPEN_EDGE]) {
+  VG_TRY(check(b, -1, show, err));
+  VG_TRY(weld_rims(b, show, err));
+  if (s->close_holes && b->check.count[VG_DEFECT_OPEN_EDGE]) {
     /* Rims are followed along triangles that agree, as the check left them. */
-    p->n_given_patch = p->surface.n_patch;
-    VG_TRY(close_holes(p, err));
-    VG_TRY(vg_problem_patch_table(p, 1, err));
-    VG_TRY(resolve_patches(p, err));
-    VG_TRY(check(p, -1, show, err));
+    b->n_given_patch = b->surface.n_patch;
+    VG_TRY(close_holes(b, err));
+    VG_TRY(vg_patch_table_apply(b->n_row, b->row, 0, &b->surface, err));
+    VG_TRY(take_rows(b, b->n_row, b->row, err));
+    VG_TRY(check(b, -1, show, err));
   }
   if (!(s->wrap > 0)) goto done;
-  VG_TRY(wrap(p, show, err));
-  VG_TRY(check(p, -1, show, err));
+  VG_TRY(wrap(b, show, err));
+  VG_TRY(check(b, -1, show, err));
 done:
   return st;
 }
@@ -252,150 +262,189 @@ int vg_surface_is_reference(const struct vg_surface_report *r)
                         + (n_double ? r->count[VG_DEFECT_NONMANIFOLD_EDGE] : 0);
 }
 
-/* Remeshed by another rank, which has the CAD model. */
-static int is_made_elsewhere(const struct vg_problem *p)
+/* Open, and no half model. */
+static int is_open_for_good(const struct vg_boundary *b,
+                            const struct vg_shape_options *o)
 {
-  return p->is_read && !p->model.cad;
-}
+  const size_t *n = b->check.count;
 
-/* Open, and no half model; vanguard surface takes it as it is. */
-static int is_open_for_good(const struct vg_problem *p)
-{
-  const size_t *n = p->check.count;
-
-  return !p->surface_only && p->flow.axis < 0 && n[VG_DEFECT_OPEN_EDGE]
+  return !o->remesh_open && b->flow.axis < 0 && n[VG_DEFECT_OPEN_EDGE]
          && !n[VG_DEFECT_NONMANIFOLD_EDGE] && !n[VG_DEFECT_ORIENTATION];
 }
 
 /* One tessellation of the surface: closed, decided, remeshed. */
-static vg_status shape(struct vg_problem *p, struct vg_display *show,
-                       struct vg_error *err)
+static vg_status shape(struct vg_boundary *b, const struct vg_shape_options *o,
+                       struct vg_display *show, struct vg_error *err)
 {
-  const int is_renewed = p->settings.remesh == VG_ANSWER_YES;
+  const struct vg_settings *s = &b->read->settings;
   struct vg_error why = VG_ERROR_INIT;
   char remedy[120] = "";
   vg_status st;
 
-  VG_TRY(split_quads(&p->surface, &p->notes, err));
-  VG_TRY(resolve_patches(p, err));
-  VG_TRY(close_surface(p, show, err));
-  if (!p->surface.n_tri) return defects(p, show, err);
-  VG_TRY(vg_problem_decide(p, show, err));
-  if (!p->check.n_defect || vg_is_only_open(&p->check))
-    VG_TRY(vg_problem_gaps(p, show, err));
-  if (is_open_for_good(p)) return vg_problem_refuse_open(p, show, err);
-  if (!is_renewed || is_made_elsewhere(p)) goto done;
-  if (!vg_surface_is_reference(&p->check)) return defects(p, show, err);
-  st = vg_problem_renew(p, show, &why);
+  VG_TRY(split_quads(&b->surface, b->notes, err));
+  VG_TRY(b->row ? take_rows(b, b->n_row, b->row, err)
+                : take_rows(b, s->n_patch, s->patch, err));
+  VG_TRY(close_surface(b, show, err));
+  if (!b->surface.n_tri) return defects(b, show, err);
+  VG_TRY(vg_boundary_decide(b, show, err));
+  if (!b->check.n_defect || vg_is_only_open(&b->check))
+    VG_TRY(vg_boundary_gaps(b, show, err));
+  if (is_open_for_good(b, o)) return vg_boundary_refuse_open(b, show, err);
+  if (!b->is_remeshed || o->has_maker) goto done;
+  if (!vg_surface_is_reference(&b->check)) return defects(b, show, err);
+  st = vg_boundary_renew(b, show, &why);
   if (st < 0) {
     if (st == VG_ERR_GEOMETRY)
-      vg_problem_suggest_wrap(p, show, remedy, sizeof remedy);
-    st = vg_fail(err, st, "%s: %s%s", p->files.stem, why.text, remedy);
+      vg_boundary_suggest_wrap(b, show, remedy, sizeof remedy);
+    st = vg_fail(err, st, "%s: %s%s", b->read->files.stem, why.text, remedy);
   }
 done:
   return st;
 }
 
-/* State of the problem before the first tessellation, for the next one. */
+/* Names and conditions before the first tessellation, for the next one. */
 struct given {
-  int flow, half, farfield;
   size_t n_note, n_patch;
   struct vg_patch *patch;   /* [n_patch] owned */
 };
 
-static vg_status take_given(const struct vg_problem *p, struct given *g,
+static vg_status take_given(const struct vg_boundary *b, struct given *g,
                             struct vg_error *err)
 {
-  *g = (struct given){ p->settings.flow, p->settings.half,
-    p->settings.farfield.kind, p->notes.n, p->surface.n_patch, NULL };
+  *g = (struct given){ b->notes->n, b->surface.n_patch, NULL };
   g->patch = vg_alloc(g->n_patch, sizeof *g->patch);
   if (!g->patch) return vg_fail_memory(err, "the patches");
   if (g->n_patch)
-    memcpy(g->patch, p->surface.patch, g->n_patch * sizeof *g->patch);
+    memcpy(g->patch, b->surface.patch, g->n_patch * sizeof *g->patch);
   return VG_OK;
 }
 
-static void put_back_given(struct vg_problem *p, const struct given *g)
-{
-  p->settings.flow = g->flow;
-  p->settings.half = g->half;
-  p->settings.farfield.kind = g->farfield;
-  p->n_given_patch = 0;
-  vg_flow_release(&p->flow);
-}
-
-vg_status vg_problem_shape(struct vg_problem *p, struct vg_display *show,
-                           struct vg_error *err)
+/* The first tessellation that leads to a sound surface. */
+static vg_status try_shapes(struct vg_boundary *b,
+                            const struct vg_shape_options *o,
+                            struct vg_display *show, struct vg_error *err)
 {
   struct vg_error why = VG_ERROR_INIT;
   struct given g = { .patch = NULL };
   vg_status st, next;
 
-  vg_mesh_keep_boundary(&p->surface);
-  p->require_bc = vg_surface_has_conditions(&p->surface);
-  vg_problem_note_slivers(p);
-  p->settings.remesh = vg_problem_is_renewed(p) ? VG_ANSWER_YES
-                                                : VG_ANSWER_NO;
-  VG_TRY(take_given(p, &g, err));
-  st = shape(p, show, &why);
-  for (size_t i = 0; st == VG_ERR_GEOMETRY && !is_open_for_good(p); i++) {
+  VG_TRY(take_given(b, &g, err));
+  st = shape(b, o, show, &why);
+  for (size_t i = 0; st == VG_ERR_GEOMETRY && !is_open_for_good(b, o); i++) {
     struct vg_error again = VG_ERROR_INIT;
 
-    next = vg_problem_tessellate(p, i, g.patch, g.n_patch, g.n_note,
-                                 show, &again);
+    next = vg_boundary_tessellate(b, i, g.patch, g.n_patch, g.n_note,
+                                  show, &again);
     if (next == VG_BLOCKED) break;
     if (next < 0) {
       st = vg_fail(err, next, "%s", again.text);
       goto done;
     }
-    put_back_given(p, &g);
-    st = shape(p, show, &again);
+    b->n_given_patch = 0;
+    vg_flow_release(&b->flow);
+    st = shape(b, o, show, &again);
     if (st < 0 && st != VG_ERR_GEOMETRY) why = again;
   }
   if (st < 0) *err = why;
-  p->is_shaped = st >= 0;
 done:
   free(g.patch);
+  return st;
+}
+
+vg_status vg_boundary_shape(struct vg_read *read,
+                            const struct vg_shape_options *o,
+                            struct vg_display *show, struct vg_boundary *b,
+                            struct vg_error *err)
+{
+  vg_status st;
+
+  b->read = read;
+  b->notes = read->notes;
+  b->threads = o->threads;
+  b->map = read->map;
+  vg_mesh_move(&b->surface, &read->surface);
+  b->model = read->model;
+  read->model = (struct vg_cad_model)VG_CAD_MODEL_INIT;
+  vg_mesh_keep_boundary(&b->surface);
+  b->require_bc = vg_surface_has_conditions(&b->surface);
+  b->is_remeshed = vg_read_is_remeshed(read, &b->surface);
+  vg_boundary_note_slivers(b);
+  st = try_shapes(b, o, show, err);
   /* the library's message says less */
   return st == VG_ERR_STOPPED ? vg_display_stopped(show, err) : st;
 }
 
 /* Add farfield and symmetry plane, and check the whole boundary. */
-static vg_status complete(struct vg_problem *p, struct vg_display *show,
+static vg_status complete(struct vg_boundary *b, struct vg_display *show,
                           struct vg_error *err)
 {
   vg_status st;
 
   vg_display_update(show, "farfield", 0, 0);
-  VG_TRY(vg_problem_complete(p, show, err));
-  VG_TRY(check(p, 0, show, err));
-  VG_TRY(defects(p, show, err));
+  VG_TRY(vg_boundary_complete(b, show, err));
+  VG_TRY(check(b, 0, show, err));
+  VG_TRY(defects(b, show, err));
 done:
   return st;
+}
+
+/* A surface that was remeshed, as the decision has it. */
+static vg_status check_again(struct vg_boundary *b, struct vg_display *show,
+                             struct vg_error *err)
+{
+  if (!b->renewal.is_done) return VG_OK;
+  return check(b, b->flow.kind == VG_FLOW_UNKNOWN ? -1
+               : b->flow.kind == VG_FLOW_EXTERNAL, show, err);
+}
+
+vg_status vg_boundary_close(struct vg_boundary *b, struct vg_display *show,
+                            struct vg_error *err)
+{
+  int is_open;
+  vg_status st;
+
+  VG_TRY(check_again(b, show, err));
+  is_open = vg_is_only_open(&b->check);
+  if (is_open && b->flow.axis < 0)
+    st = vg_boundary_refuse_open(b, show, err);
+  else if (b->check.n_defect && !is_open)
+    st = defects(b, show, err);
+  else if (b->flow.kind == VG_FLOW_EXTERNAL || is_open)
+    st = complete(b, show, err);
+  else
+    st = defects(b, show, err);
+done:
+  return st == VG_ERR_STOPPED ? vg_display_stopped(show, err) : st;
+}
+
+vg_status vg_boundary_check(struct vg_boundary *b, struct vg_display *show,
+                            struct vg_error *err)
+{
+  vg_status st = check_again(b, show, err);
+
+  if (st >= 0 && b->check.n_defect && !vg_is_only_open(&b->check))
+    st = defects(b, show, err);
+  return st == VG_ERR_STOPPED ? vg_display_stopped(show, err) : st;
+}
+
+/* --- the steps of a problem ---------------------------------------------- */
+
+const struct vg_mesh *vg_problem_surface(const struct vg_problem *p)
+{
+  return p->boundary.read ? &p->boundary.surface : &p->read.surface;
+}
+
+vg_status vg_problem_shape(struct vg_problem *p,
+                           const struct vg_shape_options *o,
+                           struct vg_display *show, struct vg_error *err)
+{
+  return vg_boundary_shape(&p->read, o, show, &p->boundary, err);
 }
 
 vg_status vg_problem_close(struct vg_problem *p, struct vg_display *show,
                            struct vg_error *err)
 {
-  int is_open;
-  vg_status st = VG_OK;
-
-  if (!p->is_shaped) VG_TRY(vg_problem_shape(p, show, err));
-  if (p->renewal.is_done)
-    VG_TRY(check(p, p->flow.kind == VG_FLOW_UNKNOWN ? -1
-                    : p->flow.kind == VG_FLOW_EXTERNAL, show, err));
-  is_open = vg_is_only_open(&p->check);
-  if (p->surface_only && (!p->check.n_defect || is_open)) return VG_OK;
-  if (is_open && p->flow.axis < 0)
-    st = vg_problem_refuse_open(p, show, err);
-  else if (p->check.n_defect && !is_open)
-    st = defects(p, show, err);
-  else if (p->flow.kind == VG_FLOW_EXTERNAL || is_open)
-    st = complete(p, show, err);
-  else
-    st = defects(p, show, err);
-done:
-  return st == VG_ERR_STOPPED ? vg_display_stopped(show, err) : st;
+  return vg_boundary_close(&p->boundary, show, err);
 }
 
 /* Face f of the report as one or two triangles (quadrilaterals come after

@@ -180,27 +180,27 @@ static vg_status take_curve(const struct vg_mesh *m,
                  "there is no curve between them", one, two);
 }
 
-static void take_patch(const struct vg_problem *p, size_t patch,
+static void take_patch(const struct vg_boundary *b, size_t patch,
                        const struct vg_surface_row *row,
                        struct vg_surface_sizes *s)
 {
-  const struct vg_mesh *m = &p->surface;
+  const struct vg_mesh *m = &b->surface;
 
   for (size_t t = 0; t < m->n_tri && row->size > 0; t++)
     for (int k = 0; k < 3 && m->tri_patch[t] == patch; k++)
       lower(s->cap, m->tri[t][k], row->size);
   if (row->lead > 0)
-    size_lead(m, patch, row->lead, p->settings.growth, s->cap);
+    size_lead(m, patch, row->lead, b->read->settings.growth, s->cap);
   if (row->across > 0) s->across[patch] = row->across;
 }
 
 /* mark[2 * n_patch] and on[n_patch] are scratch space. */
-static vg_status take_row(const struct vg_problem *p,
+static vg_status take_row(const struct vg_boundary *b,
                           const struct vg_surface_row *row, uint8_t *mark,
                           uint8_t (*on)[2], struct vg_surface_sizes *s,
                           struct vg_error *err)
 {
-  const struct vg_mesh *m = &p->surface;
+  const struct vg_mesh *m = &b->surface;
   const int beside = vg_surface_row_has_beside(row);
   vg_status st;
 
@@ -213,43 +213,43 @@ static vg_status take_row(const struct vg_problem *p,
   for (size_t i = 0; i < m->n_patch; i++) {
     on[i][0] = mark[i];
     on[i][1] = mark[m->n_patch + i];
-    if (!beside && mark[i]) take_patch(p, i, row, s);
+    if (!beside && mark[i]) take_patch(b, i, row, s);
   }
   if (beside) st = take_curve(m, row, on, s, err);
 done:
   return st;
 }
 
-static vg_status take_rows(const struct vg_problem *p,
+static vg_status take_rows(const struct vg_boundary *b,
                            struct vg_surface_sizes *s, struct vg_error *err)
 {
-  size_t n = p->surface.n_patch;
+  size_t n = b->surface.n_patch;
   uint8_t *mark = vg_alloc(n, 2), (*on)[2] = vg_alloc(n, sizeof *on);
   vg_status st = mark && on ? VG_OK : vg_fail_memory(err, "the patches");
 
-  for (size_t i = 0; i < p->settings.n_surface && st >= 0; i++)
-    st = take_row(p, &p->settings.surface_row[i], mark, on, s, err);
+  for (size_t i = 0; i < b->read->settings.n_surface && st >= 0; i++)
+    st = take_row(b, &b->read->settings.surface_row[i], mark, on, s, err);
   free(mark);
   free(on);
   return st;
 }
 
-vg_status vg_surface_sizes_make(const struct vg_problem *p,
+vg_status vg_surface_sizes_make(const struct vg_boundary *b,
                                 struct vg_surface_sizes *s,
                                 struct vg_error *err)
 {
   vg_status st = VG_OK;
 
-  if (!p->settings.n_surface) return VG_OK;
-  s->cap = vg_alloc(p->surface.n_point, sizeof *s->cap);
-  s->across = vg_alloc(p->surface.n_patch, sizeof *s->across);
+  if (!b->read->settings.n_surface) return VG_OK;
+  s->cap = vg_alloc(b->surface.n_point, sizeof *s->cap);
+  s->across = vg_alloc(b->surface.n_patch, sizeof *s->across);
   if (!s->cap || !s->across)
     return vg_fail_memory(err, "the sizes on the surface");
-  for (size_t i = 0; i < p->surface.n_point; i++) s->cap[i] = INFINITY;
-  for (size_t i = 0; i < p->surface.n_patch; i++) s->across[i] = 1;
-  VG_TRY(take_rows(p, s, err));
-  for (size_t i = 0; i < p->surface.n_point; i++)
-    s->cap[i] *= p->settings.scale;
+  for (size_t i = 0; i < b->surface.n_point; i++) s->cap[i] = INFINITY;
+  for (size_t i = 0; i < b->surface.n_patch; i++) s->across[i] = 1;
+  VG_TRY(take_rows(b, s, err));
+  for (size_t i = 0; i < b->surface.n_point; i++)
+    s->cap[i] *= b->read->settings.scale;
 done:
   return st;
 }

@@ -1,5 +1,6 @@
 /* Settings without effect. Declared in run/input/input.h. */
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "run/input/input.h"
@@ -17,16 +18,16 @@ static const char *const reason[VG_USE_N] = {
 
 static unsigned in_use(const struct vg_problem *p, int layers_on)
 {
-  const struct vg_input_files *f = &p->files;
-  int parted = p->settings.decompose != VG_DECOMPOSE_ADVANCING;
-  int planes = p->settings.decompose != VG_DECOMPOSE_DISCRETE;
+  const struct vg_input_files *f = &p->read.files;
+  int parted = p->read.settings.decompose != VG_DECOMPOSE_ADVANCING;
+  int planes = p->read.settings.decompose != VG_DECOMPOSE_DISCRETE;
   int cad = !*f->front && *f->surface && vg_format_is_cad(f->surface);
 
   return 1u << VG_USE_ALWAYS | (unsigned)(*f->d3m != 0) << VG_USE_D3M
          | (unsigned)cad << VG_USE_CAD
-         | (unsigned)p->renewal.is_done << VG_USE_REMESH
+         | (unsigned)p->boundary.renewal.is_done << VG_USE_REMESH
          | (unsigned)layers_on << VG_USE_LAYERS
-         | (unsigned)p->domain.added_farfield << VG_USE_FARFIELD
+         | (unsigned)p->boundary.domain.added_farfield << VG_USE_FARFIELD
          | (unsigned)planes << VG_USE_PLANES
          | (unsigned)parted << VG_USE_PARTS;
 }
@@ -38,7 +39,8 @@ static int is_given(const struct vg_input_files *f)
          (!*f->surface && !*f->d3m);
 }
 
-static void note_use(struct vg_problem *p, enum vg_use use)
+static void note_use(struct vg_problem *p, const uint8_t *given,
+                     enum vg_use use)
 {
   const struct vg_param *param;
   char list[SHOWN * 24 + 8] = "";
@@ -47,7 +49,7 @@ static void note_use(struct vg_problem *p, enum vg_use use)
   int far;
 
   for (size_t i = 0; (param = vg_settings_name(i, &name, &far)); i++) {
-    if (!p->given[i] || vg_param_use(param, far) != use) continue;
+    if (!given[i] || vg_param_use(param, far) != use) continue;
     if (n++ < SHOWN)
       at += (size_t)snprintf(list + at, sizeof list - at, "%s%s",
                              n > 1 ? ", " : "", name);
@@ -60,19 +62,22 @@ static void note_use(struct vg_problem *p, enum vg_use use)
 void vg_problem_note_unused(struct vg_problem *p, int layers_on,
                             unsigned judged)
 {
-  const struct vg_settings *s = &p->settings;
+  const struct vg_settings *s = &p->read.settings;
+  const struct vg_boundary *b = &p->boundary;
+  uint8_t *given = vg_settings_given(&p->asked);
   unsigned missing = judged & ~in_use(p, layers_on);
   size_t n_hard = 0;
 
-  if (!p->given) return;
+  if (!given) return;   /* as a note for which there is no memory */
   for (int use = VG_USE_D3M; use < VG_USE_N; use++)
-    if (missing >> use & 1) note_use(p, (enum vg_use)use);
+    if (missing >> use & 1) note_use(p, given, (enum vg_use)use);
+  free(given);
   if (layers_on && s->layer.scale_rule && s->scale == 1)
     vg_note(&p->notes, "without effect, for scale is 1: scale_layers");
-  if (s->scale != 1 && missing >> VG_USE_REMESH & 1 && is_given(&p->files))
+  if (s->scale != 1 && missing >> VG_USE_REMESH & 1 && is_given(&p->read.files))
     vg_note(&p->notes, "scale %g acts on sizes in space alone: the surface "
             "stays as it is given (remesh_surface makes it anew)", s->scale);
-  for (size_t i = 0; i < s->n_patch; i++) n_hard += s->patch[i].hard != 0;
+  for (size_t i = 0; i < b->n_row; i++) n_hard += b->row[i].hard != 0;
   if (n_hard && missing >> VG_USE_REMESH & 1)
     vg_note(&p->notes, "without effect, for %s: hard, in %zu rows of patches",
             reason[VG_USE_REMESH], n_hard);

@@ -66,36 +66,36 @@ static int32_t meshing_class(const struct vg_project *p, int32_t id)
 }
 
 /* The patches that were given; what completes the domain comes later. */
-static int is_given(const struct vg_problem *p, int32_t id)
+static int is_given(const struct vg_boundary *b, int32_t id)
 {
-  for (size_t i = 0; i < p->settings.n_patch; i++)
-    if (p->settings.patch[i].id == id) return 1;
+  for (size_t i = 0; i < b->n_row; i++)
+    if (b->row[i].id == id) return 1;
   return 0;
 }
 
 /* A farfield or symmetry plane that this program added. Its number follows
  * those of the surface, so that a range can include it by mistake. */
-static int is_added(const struct vg_problem *p, const struct vg_patch *patch)
+static int is_added(const struct vg_boundary *b, const struct vg_patch *patch)
 {
-  return !is_given(p, patch->id) && (patch->bc == 1 || patch->bc == 3);
+  return !is_given(b, patch->id) && (patch->bc == 1 || patch->bc == 3);
 }
 
 /* The patches before those that this program added. */
-static size_t n_own(const struct vg_problem *p)
+static size_t n_own(const struct vg_boundary *b)
 {
-  size_t n = p->surface.n_patch;
+  size_t n = b->surface.n_patch;
 
-  while (n && is_added(p, &p->surface.patch[n - 1])) n--;
+  while (n && is_added(b, &b->surface.patch[n - 1])) n--;
   return n;
 }
 
-static vg_status refuse_added(const struct vg_problem *p, const char *what,
+static vg_status refuse_added(const struct vg_boundary *b, const char *what,
                               size_t i, struct vg_error *err)
 {
-  const struct vg_patch *patch = &p->surface.patch[i];
+  const struct vg_patch *patch = &b->surface.patch[i];
   char list[600];
 
-  vg_patch_list_text(&p->surface, n_own(p), list, sizeof list);
+  vg_patch_list_text(&b->surface, n_own(b), list, sizeof list);
   return vg_fail(err, VG_ERR_INPUT, "%s: patch %d is the %s that was added to "
                  "the surface, on which no layers grow; leave it out. Patches: "
                  "%s", what, (int)patch->id,
@@ -104,17 +104,17 @@ static vg_status refuse_added(const struct vg_problem *p, const char *what,
 
 /* Names mean patches of the surface; only numbers can mean one that was
  * added. */
-static vg_status refuse_added_walls(const struct vg_problem *p,
+static vg_status refuse_added_walls(const struct vg_boundary *b,
                                     struct vg_error *err)
 {
-  const char *at = p->settings.layer.walls;
+  const char *at = b->read->settings.layer.walls;
   struct vg_patch_item item;
 
   while (vg_patch_list_next(&at, &item))
-    for (size_t i = n_own(p); i < p->surface.n_patch && !*item.name; i++)
-      if (p->surface.patch[i].id >= item.from &&
-          p->surface.patch[i].id <= item.to)
-        return refuse_added(p, "walls", i, err);
+    for (size_t i = n_own(b); i < b->surface.n_patch && !*item.name; i++)
+      if (b->surface.patch[i].id >= item.from &&
+          b->surface.patch[i].id <= item.to)
+        return refuse_added(b, "walls", i, err);
   return VG_OK;
 }
 
@@ -135,46 +135,46 @@ static vg_status refuse_empty(const struct vg_mesh *m, const uint8_t *has_faces,
 /* Patches without conditions that are walls when layers are asked for: all of a
  * body; in a duct all but its ends; in another outer boundary the bodies
  * inside it. A name that says wall decides everywhere. */
-static int is_bare_wall(const struct vg_problem *p, size_t i)
+static int is_bare_wall(const struct vg_boundary *b, size_t i)
 {
-  const struct vg_flow *f = &p->flow;
-  const enum vg_flow_role role = vg_flow_role_of(&p->surface.patch[i]);
+  const struct vg_flow *f = &b->flow;
+  const enum vg_flow_role role = vg_flow_role_of(&b->surface.patch[i]);
 
   if (f->kind != VG_FLOW_INTERNAL) return 1;
   if (role == VG_ROLE_WALL) return 1;
   if (role != VG_ROLE_NONE && role != VG_ROLE_OTHER) return 0;
-  if (vg_problem_is_cap(p, i)) return 0;
-  return f->n_inlet + f->n_outlet || p->n_given_patch || !f->on_outer[i];
+  if (vg_boundary_is_cap(b, i)) return 0;
+  return f->n_inlet + f->n_outlet || b->n_given_patch || !f->on_outer[i];
 }
 
 /* What the input says of patch i, settings aside. */
-static enum vg_wall_reason by_input(const struct vg_problem *p, size_t i,
+static enum vg_wall_reason by_input(const struct vg_boundary *b, size_t i,
                                     int has_faces)
 {
-  const struct vg_patch *patch = &p->surface.patch[i];
+  const struct vg_patch *patch = &b->surface.patch[i];
 
-  if (meshing_class(&p->project, patch->id) == MESHING_WALL)
+  if (meshing_class(&b->read->project, patch->id) == MESHING_WALL)
     return VG_WALL_CLASS;
   if (vg_is_viscous(patch)) return VG_WALL_CONDITION;
-  if (has_faces && !p->require_bc && vg_walls_asked(&p->settings) &&
-      is_given(p, patch->id) && is_bare_wall(p, i))
+  if (has_faces && !b->require_bc && vg_walls_asked(&b->read->settings) &&
+      is_given(b, patch->id) && is_bare_wall(b, i))
     return VG_WALL_BODY;
   return VG_WALL_NOT;
 }
 
-static vg_status apply_row(const struct vg_problem *p,
+static vg_status apply_row(const struct vg_boundary *b,
                            const struct vg_layer_row *row,
                            const uint8_t *wall, const uint8_t *slip,
                            enum vg_wall_reason *reason, struct vg_error *err)
 {
-  size_t i = vg_mesh_find_patch(&p->surface, row->id);
+  size_t i = vg_mesh_find_patch(&b->surface, row->id);
 
   if (i == SIZE_MAX)
-    return vg_patch_ref_mark("layers", row->id, "", &p->surface, n_own(p),
+    return vg_patch_ref_mark("layers", row->id, "", &b->surface, n_own(b),
                              NULL, err);
-  if (i >= n_own(p) && (row->grow == VG_ANSWER_YES ||
+  if (i >= n_own(b) && (row->grow == VG_ANSWER_YES ||
                         vg_has_limits(&row->limit)))
-    return refuse_added(p, "layers", i, err);
+    return refuse_added(b, "layers", i, err);
   if (row->grow == VG_ANSWER_NO && wall[i])
     return vg_fail(err, VG_ERR_INPUT, "patch %d is in the list walls, but the "
                    "table layers says grow no; remove one", (int)row->id);
@@ -186,16 +186,16 @@ static vg_status apply_row(const struct vg_problem *p,
   return VG_OK;
 }
 
-static vg_status by_settings(const struct vg_problem *p, uint8_t *wall,
+static vg_status by_settings(const struct vg_boundary *b, uint8_t *wall,
                              uint8_t *slip, enum vg_wall_reason *reason,
                              struct vg_error *err)
 {
-  const struct vg_settings *s = &p->settings;
-  const struct vg_mesh *m = &p->surface;
+  const struct vg_settings *s = &b->read->settings;
+  const struct vg_mesh *m = &b->surface;
   vg_status st;
 
-  VG_TRY(refuse_added_walls(p, err));
-  VG_TRY(vg_patch_list_mark("walls", s->layer.walls, m, n_own(p), wall, err));
+  VG_TRY(refuse_added_walls(b, err));
+  VG_TRY(vg_patch_list_mark("walls", s->layer.walls, m, n_own(b), wall, err));
   VG_TRY(vg_patch_list_mark("slip", s->layer.slip, m, m->n_patch, slip, err));
   for (size_t i = 0; i < m->n_patch; i++) {
     if (wall[i] && slip[i]) {
@@ -207,7 +207,7 @@ static vg_status by_settings(const struct vg_problem *p, uint8_t *wall,
     else if (slip[i] || *s->layer.walls) reason[i] = VG_WALL_NOT;
   }
   for (size_t i = 0; i < s->n_layer; i++)
-    VG_TRY(apply_row(p, &s->layer_row[i], wall, slip, reason, err));
+    VG_TRY(apply_row(b, &s->layer_row[i], wall, slip, reason, err));
 done:
   return st;
 }
@@ -222,22 +222,22 @@ static int insists(const struct vg_settings *s)
   return l->grow == VG_ANSWER_YES || vg_has_limits(&l->limit);
 }
 
-static vg_status no_walls(const struct vg_problem *p, struct vg_error *err)
+static vg_status no_walls(const struct vg_boundary *b, struct vg_error *err)
 {
   char list[600];
 
-  vg_patch_list_text(&p->surface, n_own(p), list, sizeof list);
+  vg_patch_list_text(&b->surface, n_own(b), list, sizeof list);
   return vg_fail(err, VG_ERR_INPUT, "%s: layers are asked for, but no patch "
                  "is known to be a wall; name them with --walls (as in "
                  "--walls 3-12,wing*), give condition 4 in a .mapbc or the deck, "
-                 "or say --layers no. Patches: %s", p->files.stem, list);
+                 "or say --layers no. Patches: %s", b->read->files.stem, list);
 }
 
-vg_status vg_walls_find(const struct vg_problem *p,
+vg_status vg_walls_find(const struct vg_boundary *b,
                         enum vg_wall_reason *reason, size_t *n_wall,
                         struct vg_error *err)
 {
-  const struct vg_mesh *m = &p->surface;
+  const struct vg_mesh *m = &b->surface;
   uint8_t *mark_of = vg_calloc(3 * m->n_patch, 1);
   uint8_t *has_faces = mark_of ? mark_of + 2 * m->n_patch : NULL;
   vg_status st;
@@ -246,16 +246,16 @@ vg_status vg_walls_find(const struct vg_problem *p,
   if (!mark_of) return vg_fail_memory(err, "the patches");
   for (size_t i = 0; i < m->n_tri; i++) has_faces[m->tri_patch[i]] = 1;
   for (size_t i = 0; i < m->n_patch; i++)
-    reason[i] = by_input(p, i, has_faces[i]);
-  VG_TRY(by_settings(p, mark_of, mark_of + m->n_patch, reason, err));
+    reason[i] = by_input(b, i, has_faces[i]);
+  VG_TRY(by_settings(b, mark_of, mark_of + m->n_patch, reason, err));
   VG_TRY(refuse_empty(m, has_faces, reason, err));
   for (size_t i = 0; i < m->n_patch; i++)
     *n_wall += reason[i] != VG_WALL_NOT;
   /* A whole domain in which conditions say that nothing is viscous is left
    * as it is, unless somebody insists. */
-  if (!*n_wall && vg_walls_asked(&p->settings) &&
-      (insists(&p->settings) || !p->require_bc))
-    st = no_walls(p, err);
+  if (!*n_wall && vg_walls_asked(&b->read->settings) &&
+      (insists(&b->read->settings) || !b->require_bc))
+    st = no_walls(b, err);
 done:
   free(mark_of);
   return st;
@@ -287,21 +287,21 @@ static int has_slivers(const struct vg_mesh *m,
   return 0;
 }
 
-vg_status vg_walls_swap(struct vg_problem *p,
+vg_status vg_walls_swap(struct vg_boundary *b,
                         const enum vg_wall_reason *reason,
                         struct vg_error *err)
 {
   const struct vg_swap_options o = VG_SWAP_OPTIONS_INIT;
   struct vg_swap_report r = VG_SWAP_REPORT_INIT;
-  int *answer = &p->settings.swap;
+  const int answer = b->read->settings.swap;
   vg_status st;
 
-  if (*answer == VG_ANSWER_AUTO)
-    *answer = has_slivers(&p->surface, reason) ? VG_ANSWER_YES : VG_ANSWER_NO;
-  if (*answer == VG_ANSWER_NO) return VG_OK;
-  st = vg_surface_swap(&p->surface, &o, &r, err);
+  b->is_swapped = answer == VG_ANSWER_AUTO ? has_slivers(&b->surface, reason)
+                                           : answer == VG_ANSWER_YES;
+  if (!b->is_swapped) return VG_OK;
+  st = vg_surface_swap(&b->surface, &o, &r, err);
   if (st < 0) return st;
-  vg_note(&p->notes, "slivers of the surface: caps %zu, now %zu, needles %zu, "
+  vg_note(b->notes, "slivers of the surface: caps %zu, now %zu, needles %zu, "
           "now %zu, by %zu swaps and %zu collapses of edges that move it by "
           "%.2g at most (--surface-swap no: as given)", r.n_cap[0],
           r.n_cap[1], r.n_needle[0], r.n_needle[1], r.n_swapped,

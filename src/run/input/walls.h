@@ -23,24 +23,24 @@ const char *vg_wall_reason_name(enum vg_wall_reason reason);
  * BCWallViscous. */
 int vg_is_viscous(const struct vg_patch *p);
 
-/** The walls of a closed problem. The layers table decides, then the lists
+/** The walls of a boundary. The layers table decides, then the lists
  * `walls` and `slip`, then meshing class and condition; a body without any
  * condition is all wall when layers are asked for.
  *
- * @param reason  out: [p->surface.n_patch]
+ * @param reason  out: [b->surface.n_patch]
  * @param n_wall  out
  * VG_ERR_INPUT for a patch that is not there, for contradictions, and when
  * layers are asked for and there is no wall: the message lists the patches
  * and says what to do. */
-vg_status vg_walls_find(const struct vg_problem *p,
+vg_status vg_walls_find(const struct vg_boundary *b,
                         enum vg_wall_reason *reason, size_t *n_wall,
                         struct vg_error *err);
 
 /** Swap and collapse edges of the closed surface as settings say; `auto` does
  * so where a wall has slivers, on which layers would invert, and without layers
- * where the surface has flat triangles. With a note; settings are resolved.
+ * where the surface has flat triangles. With a note, and b->is_swapped.
  * @param reason  [n_patch] of the walls; NULL: no layers grow */
-vg_status vg_walls_swap(struct vg_problem *p,
+vg_status vg_walls_swap(struct vg_boundary *b,
                         const enum vg_wall_reason *reason,
                         struct vg_error *err);
 

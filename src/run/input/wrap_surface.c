@@ -6,16 +6,17 @@
 #include "core/wrap/wrap.h"
 #include "run/common/text.h"
 #include "run/input/shape_parts.h"
+#include "run/settings/options.h"
 #include "run/settings/patch_names.h"
 
 #define LONG 60.0          /* seconds that are announced */
 
 /* asked: [n_patch] 1: walls or the table layers name the patch. */
-static vg_status find_asked(const struct vg_problem *p, uint8_t *asked,
+static vg_status find_asked(const struct vg_boundary *b, uint8_t *asked,
                             struct vg_error *err)
 {
-  const struct vg_settings *s = &p->settings;
-  const struct vg_mesh *m = &p->surface;
+  const struct vg_settings *s = &b->read->settings;
+  const struct vg_mesh *m = &b->surface;
   vg_status st;
 
   VG_TRY(vg_patch_list_mark("walls", s->layer.walls, m, m->n_patch, asked,
@@ -31,64 +32,65 @@ done:
   return st;
 }
 
-static vg_status check_empty(const struct vg_problem *p, const uint8_t *empty,
+static vg_status check_empty(const struct vg_boundary *b, const uint8_t *empty,
                              const uint8_t *asked, struct vg_error *err)
 {
-  for (size_t i = 0; i < p->surface.n_patch; i++)
+  for (size_t i = 0; i < b->surface.n_patch; i++)
     if (empty[i] && asked[i])
       return vg_fail(err, VG_ERR_INPUT, "wrap: nothing of patch %d is left, "
                      "though walls or the table layers name it: it lies inside "
                      "others, or is smaller than the size; remove it there, or "
-                     "take a smaller size", (int)p->surface.patch[i].id);
+                     "take a smaller size", (int)b->surface.patch[i].id);
   return VG_OK;
 }
 
-static void note_wrap(struct vg_problem *p, const struct vg_wrap_report *r)
+static void note_wrap(struct vg_boundary *b, const struct vg_wrap_report *r)
 {
-  vg_note(&p->notes, "the surface was wrapped: %zu triangles by %zu; of %zu "
+  vg_note(b->notes, "the surface was wrapped: %zu triangles by %zu; of %zu "
           "points %zu lie on them, others about %.3g away; put together where "
           "two sides meet in an edge: %zu; gaps narrower than %g were bridged; "
           "the farthest point of the wrap is %.3g away, at (%.6g, %.6g, %.6g); "
           "patches follow the nearest triangle, left without any: %zu",
-          r->n_before, p->surface.n_tri - r->n_kept, r->n_point, r->n_fit,
-          r->offset, r->n_zip, p->settings.wrap, r->distance, r->at[0],
+          r->n_before, b->surface.n_tri - r->n_kept, r->n_point, r->n_fit,
+          r->offset, r->n_zip, b->read->settings.wrap, r->distance, r->at[0],
           r->at[1], r->at[2], r->n_empty);
-  vg_note(&p->notes, "what the wrap leaves out: no point of the input lies "
+  vg_note(b->notes, "what the wrap leaves out: no point of the input lies "
           "farther than %.3g outside it (at %.6g, %.6g, %.6g); %.1f %% of the "
           "input's area lies inside it, within other parts or behind gaps "
           "narrower than its size", r->missing, r->missing_at[0],
           r->missing_at[1], r->missing_at[2], 100 * r->inside);
   if (r->sheet > 0)
-    vg_note(&p->notes, "%.1f %% of the wrapped area are sheets: they have "
+    vg_note(b->notes, "%.1f %% of the wrapped area are sheets: they have "
             "fluid on both sides, closer together than %.3g",
             100 * r->sheet, 10 * r->offset);
-  if (r->sheet > 0 && r->widest > p->settings.wrap)
-    vg_note(&p->notes, "the surface has holes wider than the wrap, up to %.3g, "
+  if (r->sheet > 0 && r->widest > b->read->settings.wrap)
+    vg_note(b->notes, "the surface has holes wider than the wrap, up to %.3g, "
             "at (%.6g, %.6g, %.6g): a part that should be solid may have fluid "
             "inside it (--close-holes yes, or a larger wrap)", r->widest,
             r->widest_at[0], r->widest_at[1], r->widest_at[2]);
   if (r->n_cavity || r->n_crumb)
-    vg_note(&p->notes, "shells of the wrap that were removed: inside it %zu, "
+    vg_note(b->notes, "shells of the wrap that were removed: inside it %zu, "
             "of negligible volume %zu", r->n_cavity, r->n_crumb);
   if (r->n_kept)
-    vg_note(&p->notes, "triangles of outer boundaries that were not wrapped: "
+    vg_note(b->notes, "triangles of outer boundaries that were not wrapped: "
             "%zu", r->n_kept);
 }
 
 /* What takes minutes says so before it begins. */
-static vg_status announce(struct vg_problem *p, const struct vg_wrap_options *o,
+static vg_status announce(struct vg_boundary *b,
+                          const struct vg_wrap_options *o,
                           struct vg_display *show, struct vg_error *err)
 {
   struct vg_wrap_forecast f;
   char stage[80], count[32];
-  vg_status st = vg_wrap_foresee(&p->surface, o, &f, err);
+  vg_status st = vg_wrap_foresee(&b->surface, o, &f, err);
 
   if (st < 0 || f.seconds < LONG) return st;
   vg_text_count((unsigned long long)f.triangles, count);
   snprintf(stage, sizeof stage, "wrap: %s triangles, %d min", count,
            (int)(f.seconds / 60 + 0.5));
   vg_display_update(show, stage, 0, 0);
-  vg_note(&p->notes, "forecast of the wrap: %s triangles, %.0f minutes; twice "
+  vg_note(b->notes, "forecast of the wrap: %s triangles, %.0f minutes; twice "
           "the size takes a quarter of them", count, f.seconds / 60);
   return VG_OK;
 }
@@ -98,45 +100,48 @@ static void progress(void *user, size_t done, size_t expected)
   vg_display_update(user, "wrap", done, expected);
 }
 
-vg_status vg_problem_wrap(struct vg_problem *p, const uint8_t *keep,
+vg_status vg_boundary_wrap(struct vg_boundary *b, const uint8_t *keep,
                           struct vg_display *show, struct vg_error *err)
 {
-  size_t n = p->surface.n_patch;
+  size_t n = b->surface.n_patch;
   uint8_t *empty = vg_alloc(n, 1), *asked = vg_calloc(n, 1);
-  const struct vg_wrap_options o = {
-    .size = p->settings.wrap, .keep = keep, .empty = empty,
-    .stop = { vg_display_stop, show }, .progress = progress, .user = show };
+  struct vg_wrap_options o = vg_options_wrap(&b->read->settings);
   struct vg_wrap_report r = { 0 };
   vg_status st;
 
   if (!empty || !asked) VG_TRY(vg_fail_memory(err, "the patches"));
-  VG_TRY(find_asked(p, asked, err));
-  VG_TRY(announce(p, &o, show, err));
+  o.keep = keep;
+  o.empty = empty;
+  o.stop = (struct vg_stop){ vg_display_stop, show };
+  o.progress = progress;
+  o.user = show;
+  VG_TRY(find_asked(b, asked, err));
+  VG_TRY(announce(b, &o, show, err));
   vg_display_update(show, "wrap", 0, 0);
-  VG_TRY(vg_wrap(&p->surface, &o, &r, err));
-  VG_TRY(check_empty(p, empty, asked, err));
-  note_wrap(p, &r);
+  VG_TRY(vg_wrap(&b->surface, &o, &r, err));
+  VG_TRY(check_empty(b, empty, asked, err));
+  note_wrap(b, &r);
 done:
   free(empty);
   free(asked);
   return st;
 }
 
-void vg_problem_suggest_wrap(const struct vg_problem *p,
+void vg_boundary_suggest_wrap(const struct vg_boundary *b,
                              struct vg_display *show, char *text, size_t size)
 {
   const struct vg_stop stop = { vg_display_stop, show };
-  const size_t *n = p->check.count;
+  const size_t *n = b->check.count;
   struct vg_error why = VG_ERROR_INIT;
   enum vg_wrap_reason reason;
   double wrap = 0;
 
   *text = 0;
-  if (!vg_wrap_is_built() || p->settings.wrap > 0
-      || p->flow.kind == VG_FLOW_INTERNAL || n[VG_DEFECT_NOT_FINITE]
-      || n[VG_DEFECT_NO_BC] == p->check.n_defect) return;
+  if (!vg_wrap_is_built() || b->read->settings.wrap > 0
+      || b->flow.kind == VG_FLOW_INTERNAL || n[VG_DEFECT_NOT_FINITE]
+      || n[VG_DEFECT_NO_BC] == b->check.n_defect) return;
   vg_display_update(show, "wrap that would do", 0, 0);
-  if (vg_wrap_suggest(&p->surface, &stop, &wrap, &reason, &why) < 0) return;
+  if (vg_wrap_suggest(&b->surface, &stop, &wrap, &reason, &why) < 0) return;
   if (reason == VG_WRAP_SHEETS)
     snprintf(text, size, "; its sheets without thickness bound no body, so "
              "that no wrap will do");

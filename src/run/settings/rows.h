@@ -10,9 +10,9 @@
  *   VG_TEXT_ROW(PLACE, MEMBER, SIZE, NAME, DEFAULT, DESCRIPTION...)
  *
  * TYPE is REAL, COUNT, FLAG or WORD. PLACE is the structure of the member:
- * plain (vg_settings), cad (vg_cad_settings), layer (vg_layer_settings) or limit
- * (vg_layer_limits, whose members are written by hand because a row of the table
- * `layers` has them, too). DEFAULT may use the local options of
+ * plain (vg_settings), cad (vg_cad_settings), layer (vg_layer_settings) or
+ * limit (vg_layer_limits, whose members are written by hand because a row of
+ * the table `layers` has them, too). DEFAULT may use the local options of
  * vg_settings_default. DESCRIPTION initialises members of struct vg_param; a
  * setting on which the mesh does not depend has .keeps_mesh = 1. */
 VG_ROW(REAL, plain, scale, "scale", sizing.scale,

@@ -386,13 +386,6 @@ size_t vg_settings_rows(const struct vg_settings *s, enum vg_table_kind kind)
   return kind == VG_TABLE_PATCHES ? s->n_patch : s->n_source;
 }
 
-void vg_settings_write(struct vg_settings *s)
-{
-  if (strcmp(s->write, "auto") != 0) return;
-  snprintf(s->write, sizeof s->write, "%s",
-           s->cells == VG_LAYER_MIXED ? "b8.ugrid" : "cogsg,b8.ugrid");
-}
-
 void vg_settings_override(struct vg_settings *s, const struct vg_param *set)
 {
   struct vg_layer_settings *l = &s->layer;
@@ -403,40 +396,4 @@ void vg_settings_override(struct vg_settings *s, const struct vg_param *set)
   if (at == &s->leaf_cells) s->levels = 0;
   if (at == &l->ratio) l->rate1 = l->rate2 = NAN;
   if (at == &l->rate1 || at == &l->rate2) l->ratio = NAN;
-}
-
-struct vg_sizing_options vg_settings_sizing(const struct vg_settings *s)
-{
-  struct vg_sizing_options o = VG_SIZING_OPTIONS_INIT;
-
-  o.h_min = s->hmin;
-  o.h_max = s->hmax;
-  o.growth = s->growth;
-  o.scale = s->scale;
-  o.from_surface = s->surface_sizes;
-  return o;
-}
-
-struct vg_farfield vg_settings_farfield(const struct vg_settings *s)
-{
-  const struct vg_farfield_row *row = &s->farfield;
-  struct vg_farfield f = VG_FARFIELD_INIT;
-
-  f.kind = row->kind == VG_DOMAIN_NONE ? VG_FARFIELD_NONE
-         : row->kind == VG_DOMAIN_BOX ? VG_FARFIELD_BOX : VG_FARFIELD_SPHERE;
-  f.lengths = row->lengths;
-  f.size = row->size;
-  f.spacing = row->spacing * s->scale;
-  f.symmetry = s->half == VG_HALF_AUTO ? 0 : s->half == VG_HALF_NO ? -1 : 1;
-  f.has_centre = f.has_box = 1;
-  for (int k = 0; k < 3; k++) {
-    f.has_centre &= !isnan(row->centre[k]);
-    f.has_box &= !isnan(row->lo[k]);
-  }
-  for (int k = 0; k < 3; k++) {
-    f.centre[k] = f.has_centre ? row->centre[k] : 0;
-    f.lo[k] = f.has_box ? row->lo[k] : 0;
-    f.hi[k] = f.has_box ? row->hi[k] : 0;
-  }
-  return f;
 }

@@ -281,13 +281,6 @@ const char *vg_nearest_name(const char *text, size_t n,
                             const char *(*get)(const void *user, size_t i),
                             const void *user);
 
-/** The settings as core understands them. */
-struct vg_sizing_options vg_settings_sizing(const struct vg_settings *s);
-struct vg_farfield vg_settings_farfield(const struct vg_settings *s);
-
-/** Settle what is left to the program: the files to write. */
-void vg_settings_write(struct vg_settings *s);
-
 /** Of settings that say the same in two ways (a first height and y+, a ratio
  * and its rates, leaf_cells and levels) the one that was set last holds: forget
  * the others.

@@ -21,6 +21,7 @@
 #include "run/common/progress.h"
 #include "run/settings/deck.h"
 #include "run/settings/lists.h"
+#include "run/settings/options.h"
 
 #define WALLS "wall.vtu"
 
@@ -97,8 +98,8 @@ static const char *hits_input(const struct vg_outputs *o,
                               const struct vg_problem *p,
                               const char *suffix)
 {
-  const struct vg_input_files *f = &p->files;
-  const char *sizes = p->settings.sizes;
+  const struct vg_input_files *f = &p->read.files;
+  const char *sizes = p->asked.sizes;
   const char *input[] = { f->d3m, f->front, f->surface, f->mapbc, f->deck,
                           f->tags, f->aflr, sizes };
   char *path = vg_outputs_final(o, suffix);
@@ -154,22 +155,22 @@ static vg_status cannot_write(const struct vg_outputs *o, struct vg_error *err)
                  "another one with --out", o->dir, strerror(errno));
 }
 
-static vg_status plan_place(const struct vg_problem *p, const char *dir,
-                            struct vg_outputs *o, struct vg_error *err)
+vg_status vg_outputs_place(const char *stem, const char *dir,
+                           struct vg_outputs *o, struct vg_error *err)
 {
-  const char *slash = strrchr(p->files.stem, '/');
-  const char *base = slash ? slash + 1 : p->files.stem;
+  const char *slash = strrchr(stem, '/');
+  const char *base = slash ? slash + 1 : stem;
   vg_status st = VG_OK;
 
   if (dir) o->dir = strdup(dir);
   else if (!slash) o->dir = strdup(".");
-  else o->dir = strndup(p->files.stem, slash == p->files.stem
-                        ? 1 : (size_t)(slash - p->files.stem));
+  else o->dir = strndup(stem, slash == stem
+                        ? 1 : (size_t)(slash - stem));
   o->name = strdup(base);
   if (!o->dir || !o->name) return vg_fail_memory(err, "the output paths");
   if (!*base)
     return vg_fail(err, VG_ERR_INPUT, "%s: the project has no name",
-                   p->files.stem);
+                   stem);
   if (dir) st = vg_make_folder(dir, err);
   if (st >= 0 && access(o->dir, W_OK | X_OK)) st = cannot_write(o, err);
   return st;
@@ -191,13 +192,13 @@ static vg_status refuse_ranks(const char *item, int ranks,
                  "it", item);
 }
 
-vg_status vg_outputs_plan(const struct vg_problem *p, const char *dir,
-                          int ranks, struct vg_outputs *o,
-                          struct vg_error *err)
+vg_status vg_outputs_plan(const struct vg_problem *p, const char *stem,
+                          const char *dir, const char *list, int ranks,
+                          struct vg_outputs *o, struct vg_error *err)
 {
-  vg_status st = plan_place(p, dir, o, err);
+  vg_status st = vg_outputs_place(stem, dir, o, err);
 
-  if (st >= 0) st = vg_write_list(p->settings.write, &o->n_item, o->item, err);
+  if (st >= 0) st = vg_write_list(list, &o->n_item, o->item, err);
   for (size_t i = 0; i < o->n_item && st >= 0; i++) {
     if (strcmp(o->item[i], "mapbc") != 0)
       st = refuse_hit(o, p, o->item[i], err);
@@ -205,7 +206,7 @@ vg_status vg_outputs_plan(const struct vg_problem *p, const char *dir,
       st = refuse_folder(o, o->item[i], err);
     if (st >= 0 && !strcmp(o->item[i], "cogsg"))
       st = refuse_hit(o, p, "bc", err);
-    if (st >= 0) st = refuse_mixed(o->item[i], &p->settings, err);
+    if (st >= 0) st = refuse_mixed(o->item[i], &p->asked, err);
     if (st >= 0) st = refuse_absent(o->item[i], err);
     if (st >= 0) st = refuse_ranks(o->item[i], ranks, err);
   }
@@ -215,21 +216,22 @@ vg_status vg_outputs_plan(const struct vg_problem *p, const char *dir,
 vg_status vg_outputs_check(const struct vg_problem *p, struct vg_outputs *o,
                            struct vg_error *err)
 {
+  const struct vg_mesh *m = &p->boundary.surface;
   struct vg_mapbc bc = VG_MAPBC_INIT;
   vg_status st;
 
   if (!hits_input(o, p, "mapbc")) return VG_OK;
-  st = vg_mapbc_read(p->files.mapbc, &bc, err);
-  for (size_t i = 0; i < p->surface.n_patch && st >= 0; i++) {
+  st = vg_mapbc_read(p->read.files.mapbc, &bc, err);
+  for (size_t i = 0; i < m->n_patch && st >= 0; i++) {
     int found = 0;
 
     for (size_t j = 0; j < bc.n; j++)
-      found |= bc.entry[j].id == p->surface.patch[i].id;
+      found |= bc.entry[j].id == m->patch[i].id;
     if (!found)
       st = vg_fail(err, VG_ERR_INPUT, "%s is an input and is not overwritten, "
                    "but it lacks patch %d (%s) of the mesh; use --out DIR, or "
-                   "add the patch to it", p->files.mapbc,
-                   (int)p->surface.patch[i].id, p->surface.patch[i].name);
+                   "add the patch to it", p->read.files.mapbc,
+                   (int)m->patch[i].id, m->patch[i].name);
   }
   vg_mapbc_release(&bc);
   return st;
@@ -268,8 +270,8 @@ vg_status vg_outputs_add(struct vg_outputs *o, const char *suffix,
 }
 
 /* The folder that rank 0 makes, on all ranks. */
-static vg_status begin(struct vg_outputs *o, struct vg_comm *comm,
-                       struct vg_error *err)
+vg_status vg_outputs_begin(struct vg_outputs *o, struct vg_comm *comm,
+                           struct vg_error *err)
 {
   struct vg_bytes name = {0, NULL};
   vg_status st = VG_OK;
@@ -293,7 +295,7 @@ static vg_status open_item(struct vg_outputs *o, const struct vg_problem *p,
                            struct vg_comm *comm, const struct vg_slices *mesh,
                            const char *item, struct vg_error *err)
 {
-  struct vg_slices_options options = { .tail = p->settings.ugrid_tail };
+  struct vg_slices_options options = vg_options_slices(&p->asked);
   char *path = vg_outputs_temp_path(o, item);
   vg_status st = path ? vg_outputs_add(o, item, err)
                       : vg_fail_memory(err, "the output paths");
@@ -314,7 +316,7 @@ vg_status vg_outputs_open(struct vg_outputs *o, const struct vg_problem *p,
   vg_status st;
 
   if (!o) return VG_OK;
-  st = begin(o, comm, err);
+  st = vg_outputs_begin(o, comm, err);
   for (size_t i = 0; i < o->n_item && st >= 0; i++)
     if (vg_slices_is_ugrid(o->item[i]))
       st = open_item(o, p, comm, mesh, o->item[i], err);
@@ -362,7 +364,7 @@ static vg_status write_format(const struct writing *w, const char *path,
 {
   struct vg_ugrid_kind kind;
 
-  if (w->p->settings.ugrid_tail && vg_ugrid_kind(suffix, &kind))
+  if (w->p->asked.ugrid_tail && vg_ugrid_kind(suffix, &kind))
     return vg_ugrid_write_tail(path, &w->whole,
                                w->mesh->n_layer_cell[VG_SLICE_TET], err);
   return vg_format_write(path, &w->whole, err);
@@ -425,7 +427,7 @@ static vg_status write_conditions(struct writing *w, const char *item,
   if (st >= 0 && !w->o->is_guest)
     st = is_fun3d
       ? vg_mapbc_write(path, &boundary, VG_MAPBC_FUN3D, NULL, NULL, err)
-      : vg_mapbc_write_output(path, &boundary, w->p->settings.title, NULL,
+      : vg_mapbc_write_output(path, &boundary, w->p->asked.title, NULL,
                               err);
   vg_mesh_release(&boundary);
   free(path);
@@ -460,11 +462,11 @@ static vg_status write_slices(struct writing *w, const char *item,
   const char *one[] = { item, NULL };
   const char **part = !strcmp(item, "cogsg") ? triple
                     : !strcmp(item, "vtu") ? pair : one;
-  struct vg_slices_options o = { .threads = w->threads,
-                                 .tail = w->p->settings.ugrid_tail };
+  struct vg_slices_options o = vg_options_slices(&w->p->asked);
   char *stem;
   vg_status st;
 
+  o.threads = w->threads;
   if (asprintf(&stem, "%s/%s", w->o->temp_dir, w->o->name) < 0)
     return vg_fail_memory(err, "the output paths");
   st = vg_slices_write_with(w->comm, w->mesh, stem, item, &o, err);
@@ -498,7 +500,8 @@ static vg_status write_walls(struct vg_outputs *o, const struct vg_problem *p,
                              struct vg_error *err)
 {
   char *path = vg_outputs_temp_path(o, WALLS);
-  vg_status st = path ? vg_layer_stage_write(layers, &p->surface, path, err)
+  vg_status st = path ? vg_layer_stage_write(layers, &p->boundary.surface,
+                                             path, err)
                       : vg_fail_memory(err, "the output paths");
 
   free(path);
@@ -510,8 +513,8 @@ static vg_status write_walls(struct vg_outputs *o, const struct vg_problem *p,
 static vg_status write_deck(struct vg_outputs *o, const struct vg_problem *p,
                             struct vg_error *err)
 {
-  const struct vg_input_files *f = &p->files;
-  struct vg_settings settings = p->settings;
+  const struct vg_input_files *f = &p->read.files;
+  struct vg_settings settings = p->resolved.settings;   /* tables borrowed */
   const char *input = *f->surface ? f->surface : f->stem;
   const char *quote = strchr(input, ' ') ? "'" : "";   /* for a shell */
   char *path = vg_outputs_temp_path(o, "resolved.deck"), *comment = NULL;

@@ -34,13 +34,26 @@ struct vg_outputs {
 
 void vg_outputs_release(struct vg_outputs *o);
 
-/** Understand the write list and where files go, and refuse at once what
- * would overwrite an input, or cannot be written by several ranks.
+/** Where files go, and that files can be written there.
  *
- * @param dir  NULL: beside the input; created when absent */
-vg_status vg_outputs_plan(const struct vg_problem *p, const char *dir,
-                          int ranks, struct vg_outputs *o,
-                          struct vg_error *err);
+ * @param stem  gives the files their name
+ * @param dir   NULL: that of the stem; created when absent */
+vg_status vg_outputs_place(const char *stem, const char *dir,
+                           struct vg_outputs *o, struct vg_error *err);
+
+/** Make the hidden folder. Collective. Files are then written to
+ * vg_outputs_temp_path, and each is registered by vg_outputs_add. */
+vg_status vg_outputs_begin(struct vg_outputs *o, struct vg_comm *comm,
+                           struct vg_error *err);
+
+/** Understand the write list and where files go, and refuse at once what
+ * would overwrite an input of p, or cannot be written by several ranks.
+ *
+ * @param stem, dir  as of vg_outputs_place
+ * @param list       as vg_resolve_write has it */
+vg_status vg_outputs_plan(const struct vg_problem *p, const char *stem,
+                          const char *dir, const char *list, int ranks,
+                          struct vg_outputs *o, struct vg_error *err);
 
 /** Once the surface is final: an existing .mapbc that is an input stays, and
  * must know every patch. Call before the fill. */
@@ -53,11 +66,11 @@ char *vg_outputs_temp_path(struct vg_outputs *o, const char *suffix);
 /** Path of STEM.suffix when all is done; free() it. */
 char *vg_outputs_final(const struct vg_outputs *o, const char *suffix);
 
-/** Start the hidden folder and, in it, the files that can be written slice by
- * slice while slices are at hand for something else. Between this and closing
- * every slice must be put once: vg_outputs_put is a vg_slice_body. What stays
- * open is closed with st, how this rank fared. Open and close: collective; the
- * same answer on all ranks. o NULL: nothing is written. */
+/** vg_outputs_begin, and in the hidden folder the files that can be written
+ * slice by slice while slices are at hand for something else. Between this and
+ * closing every slice must be put once: vg_outputs_put is a vg_slice_body. What
+ * stays open is closed with st, how this rank fared. Open and close:
+ * collective; the same answer on all ranks. o NULL: nothing is written. */
 vg_status vg_outputs_open(struct vg_outputs *o, const struct vg_problem *p,
                           struct vg_comm *comm, const struct vg_slices *mesh,
                           struct vg_error *err);

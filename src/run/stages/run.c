@@ -13,6 +13,7 @@
 #include "run/input/sizes.h"
 #include "run/input/walls.h"
 #include "run/report/report.h"
+#include "run/settings/options.h"
 
 uint64_t vg_run_cells(const struct vg_run *r)
 {
@@ -51,45 +52,60 @@ static int node_threads(struct vg_run *r, const struct vg_settings *s)
   return (int)s->threads * vg_comm_node_size(r->comm);
 }
 
-static vg_status settle_surface(struct vg_problem *p,
+/* By the first rank of a node. */
+static vg_status shape_surface(struct vg_run *r, struct vg_problem *p,
+                               struct vg_display *show, struct vg_error *err)
+{
+  const struct vg_shape_options o = {
+    .threads = node_threads(r, &p->asked),
+    .has_maker = r->rank && vg_read_is_by_first(&p->read, r->comm) };
+  vg_status st = vg_problem_shape(p, &o, show, err);
+
+  vg_comm_bind_node(r->comm, 0);
+  return st;
+}
+
+static vg_status settle_surface(struct vg_run *r, struct vg_problem *p,
                                 struct vg_layer_stage *layers,
                                 struct vg_display *show, struct vg_error *err)
 {
   vg_status st;
 
+  p->boundary.threads = node_threads(r, &p->asked);
   VG_TRY(vg_problem_close(p, show, err));
-  VG_TRY(vg_layer_stage_plan(layers, p, err));
-  vg_problem_note_unset(p);
-  st = vg_walls_swap(p, layers->is_on ? layers->reason : NULL, err);
+  VG_TRY(vg_problem_layers(p, layers, err));
+  vg_boundary_note_unset(&p->boundary);
+  st = vg_problem_settle(p, layers, err);
 done:
+  vg_comm_bind_node(r->comm, 0);
   return st;
+}
+
+/* By the other ranks of a node, which get the surface. */
+static vg_status await_surface(struct vg_problem *p, struct vg_error *err)
+{
+  vg_problem_forget_sizes(p);
+  vg_mesh_release(&p->read.surface);
+  return vg_resolve_nothing(&p->read.settings, &p->resolved, err);
 }
 
 vg_status vg_run_surface(struct vg_run *r, struct vg_problem *p,
                          struct vg_layer_stage *layers,
                          struct vg_display *show, struct vg_error *err)
 {
+  struct vg_boundary *b = &p->boundary;
   uint64_t is_on = 0;
   vg_status st = VG_OK;
 
-  if (leads_node(r)) {
-    p->threads = node_threads(r, &p->settings);
-    st = vg_problem_shape(p, show, err);
-    vg_comm_bind_node(r->comm, 0);
-  }
+  if (leads_node(r)) st = shape_surface(r, p, show, err);
   VG_TRY(vg_problem_share(p, r->comm, leads_node(r), st, err));
-  if (leads_node(r)) {
-    p->threads = node_threads(r, &p->settings);
-    st = settle_surface(p, layers, show, err);
-    vg_comm_bind_node(r->comm, 0);
-  } else {
-    vg_problem_forget_sizes(p);
-  }
+  st = leads_node(r) ? settle_surface(r, p, layers, show, err)
+                     : await_surface(p, err);
   VG_TRY(vg_comm_agree(r->comm, st, err));
   is_on = (uint64_t)layers->is_on;
-  st = vg_surface_share(r->comm, &p->surface, &is_on, &p->common, err);
+  st = vg_surface_share(r->comm, &b->surface, &is_on, &b->common, err);
   layers->is_on = (int)is_on;
-  r->common += vg_shared_bytes(&p->common);
+  r->common += vg_shared_bytes(&b->common);
   st = vg_comm_agree(r->comm, st, err);
 done:
   return st;
@@ -124,8 +140,8 @@ static vg_status measure_sizes(struct vg_run *r, const struct vg_problem *p,
                                struct vg_team *team, struct vg_display *show,
                                struct vg_sizing **sizing, struct vg_error *err)
 {
-  const struct vg_settings *s = &p->settings;
-  struct vg_sizing_options options = vg_problem_sizing(p);
+  const struct vg_settings *s = &p->resolved.settings;
+  struct vg_sizing_options options = vg_boundary_sizing(&p->boundary);
   double t = vg_display_now();
   vg_status st;
 
@@ -147,7 +163,8 @@ static vg_status look_at_sources(struct vg_run *r, const struct vg_problem *p,
   double t = vg_display_now();
   vg_status st = VG_OK;
 
-  if (!r->rank) st = vg_problem_effects(p, front, sizing, &r->effects, err);
+  if (!r->rank) st = vg_boundary_effects(&p->boundary, front, sizing,
+                                        &r->effects, err);
   r->time_size += vg_display_now() - t;
   return vg_comm_agree(r->comm, st, err);
 }
@@ -162,14 +179,14 @@ static void add_digest(void *user, size_t n, const void *data)
 }
 
 /* What the outcomes of tasks follow from, besides their input: the program, the
- * settings, the boundary, and sizes that no setting describes. Only the first
- * rank has settings that are resolved: the others get its digest. Collective. */
+ * settings, the boundary, and sizes that no setting describes. The first rank
+ * alone has resolved settings: the others get its digest. Collective. */
 static vg_status job_digest(const struct vg_run *r, const struct vg_problem *p,
                             const struct vg_mesh *boundary,
                             const struct vg_sizing *sizing,
                             struct vg_digest *out, struct vg_error *err)
 {
-  const struct vg_settings *s = &p->settings;
+  const struct vg_settings *s = &p->resolved.settings;
   struct vg_digest d = {{0, 0}};
   struct vg_bytes all = {0, NULL};
   vg_status st = VG_OK;
@@ -215,9 +232,9 @@ static vg_status open_store(struct vg_run *r, const struct vg_problem *p,
   VG_TRY(job_digest(r, p, boundary, sizing, &o->job, err));
   s.job = o->job;
   snprintf(what, sizeof what, "%s (%zu boundary triangles)",
-           p->settings.title, boundary->n_tri);
+           p->resolved.settings.title, boundary->n_tri);
   s.what = what;
-  s.settings = settings = vg_run_settings(&p->settings, boundary);
+  s.settings = settings = vg_run_settings(&p->resolved.settings, boundary);
   st = vg_store_open(r->comm, &s, &r->store, err);
 done:
   free(settings);
@@ -274,25 +291,14 @@ static vg_status fill(struct vg_run *r, const struct vg_problem *p,
                       const struct vg_sizing *sizing, struct vg_display *show,
                       struct vg_error *err)
 {
-  const struct vg_settings *s = &p->settings;
-  struct vg_partition_options o = VG_PARTITION_OPTIONS_INIT;
+  const struct vg_settings *s = &p->resolved.settings;
+  struct vg_partition_options o = vg_options_partition(s);
   double t = vg_display_now();
   vg_status st;
 
-  o.rule.leaf_cells = s->levels ? 0 : (double)s->leaf_cells;
-  o.rule.first_axis = (int)s->split_direction - 1;
-  o.rule.constant = s->constant_direction;
-  o.levels = (int)s->levels;
-  o.maker = vg_ways[s->decompose].maker;
   r->decomposition = vg_ways[s->decompose].name;
-  o.parting.n_part = s->parts == VG_COUNT_NONE ? 0 : (int)s->parts;
-  o.parting.partitioner = s->partitioner;
-  o.parting.coarsening = s->coarsening;
-  o.parting.h_refine = s->h_refine;
+  r->cyclic = o.cyclic;
   o.threads = r->threads;
-  o.cyclic = r->cyclic = s->cyclic;
-  o.sweeps = (int)s->optimise;
-  o.max_cells = (uint64_t)s->max_cells;
   VG_TRY(count_layers(r, s, layers, &o.layer_cells, err));
   o.shuffle = r->options.shuffle;
   o.fail_leaves = r->options.fail_leaves;
@@ -356,7 +362,7 @@ static vg_status judge(struct vg_run *r, const struct vg_problem *p,
   vg_status st;
 
   vg_display_update(show, "judge", vg_run_cells(r), 0);
-  VG_TRY(vg_run_pictures_plan(&r->pictures, r->comm, &p->surface,
+  VG_TRY(vg_run_pictures_plan(&r->pictures, r->comm, &p->boundary.surface,
                               layers ? &layers->columns : NULL, err));
   VG_TRY(vg_outputs_open(r->outputs, p, r->comm, &r->slices, err));
   st = vg_slices_judge_with(r->comm, &r->slices, front_faces, sizing,
@@ -385,14 +391,14 @@ done:
 static vg_status mesh_plain(struct vg_run *r, const struct vg_problem *p,
                             struct vg_display *show, struct vg_error *err)
 {
-  const struct vg_mesh *surface = &p->surface;
+  const struct vg_mesh *surface = &p->boundary.surface;
   struct vg_sizing *sizing = NULL;
   struct vg_team *team;
   vg_status st = vg_team_open(r->comm, &team, err);
 
   if (st < 0) return st;
   if (leads_node(r)) {
-    st = measure_sizes(r, p, surface, 1, node_threads(r, &p->settings), team,
+    st = measure_sizes(r, p, surface, 1, node_threads(r, &p->asked), team,
                        show, &sizing, err);
     st = vg_team_close(team, st, err);
     vg_comm_bind_node(r->comm, 0);
@@ -417,22 +423,22 @@ static vg_status grow_layers(struct vg_run *r, const struct vg_problem *p,
                              struct vg_sizing **sizing, struct vg_error *err)
 {
   struct vg_mesh view = VG_MESH_INIT, front;
-  int threads = node_threads(r, &p->settings);
+  int threads = node_threads(r, &p->asked);
   double t;
   vg_status st;
 
-  VG_TRY(vg_layer_stage_sizes(layers, p, &view, err));
+  VG_TRY(vg_layer_stage_sizes(layers, &p->boundary, &view, err));
   VG_TRY(measure_sizes(r, p, &view, VG_LAYERS_COARSENESS, threads, team,
                        show, sizing, err));
   t = vg_display_now();
   layers->options.threads = threads;
   layers->options.team = team;
-  VG_TRY(vg_layer_stage_grow(layers, &p->surface, *sizing, show, err));
+  VG_TRY(vg_layer_stage_grow(layers, &p->boundary.surface, *sizing, show, err));
   r->time_layers = vg_display_now() - t;
   VG_TRY(vg_display_stopped(show, err));
   vg_sizing_free(*sizing);
   *sizing = NULL;
-  front = vg_front_mesh(&layers->layers.front, &p->surface);
+  front = vg_front_mesh(&layers->layers.front, &p->boundary.surface);
   st = measure_sizes(r, p, &front, 1, threads, team, show, sizing, err);
 done:
   layers->options.team = NULL;
@@ -471,7 +477,7 @@ static vg_status measure_tops(struct vg_run *r, const struct vg_problem *p,
   if (!layers->top) st = vg_fail_memory(err, "the tops of the layers");
   VG_TRY(vg_comm_agree(r->comm, st, err));
   VG_TRY(vg_layer_slices_tops(r->comm, r->layers, layers->top, err));
-  if (!r->rank) st = vg_layer_stage_finish(layers, &p->surface, err);
+  if (!r->rank) st = vg_layer_stage_finish(layers, &p->boundary.surface, err);
   layers->time_measure += vg_display_now() - t;
   st = vg_comm_agree(r->comm, st, err);
 done:
@@ -492,16 +498,16 @@ static vg_status mesh_layers(struct vg_run *r, const struct vg_problem *p,
   if (st < 0) return st;
   if (leads_node(r)) st = grow_layers(r, p, layers, team, show, &sizing, err);
   VG_TRY(share_with_node(r, st, &layers->layers, show, &sizing, err));
-  front = vg_front_mesh(&layers->layers.front, &p->surface);
-  VG_TRY(vg_run_agree(r->comm, &p->surface, &layers->layers, sizing,
+  front = vg_front_mesh(&layers->layers.front, &p->boundary.surface);
+  VG_TRY(vg_run_agree(r->comm, &p->boundary.surface, &layers->layers, sizing,
                       r->options.change, err));
   VG_TRY(look_at_sources(r, p, &front, sizing, err));
   VG_TRY(fill(r, p, &layers->layers, &front, sizing, show, err));
-  st = vg_layer_slices_open(&p->surface, &layers->layers,
+  st = vg_layer_slices_open(&p->boundary.surface, &layers->layers,
                             vg_partition_slices(r->field),
-                            (enum vg_layer_cells)p->settings.cells, r->rank,
-                            r->size, r->threads, &r->slices, &r->layers,
-                            &layers->join, err);
+                            (enum vg_layer_cells)p->resolved.settings.cells,
+                            r->rank, r->size, r->threads, &r->slices,
+                            &r->layers, &layers->join, err);
   VG_TRY(vg_comm_agree(r->comm, st, err));
   VG_TRY(share_layers(r, err));
   VG_TRY(judge(r, p, &layers->layers, sizing, show, err));
@@ -515,13 +521,12 @@ done:
 static vg_status part_for_solver(struct vg_run *r, const struct vg_problem *p,
                                  struct vg_display *show, struct vg_error *err)
 {
-  struct vg_solver_options o = VG_SOLVER_OPTIONS_INIT;
+  struct vg_solver_options o = vg_options_solver(&p->resolved.settings);
   double t = vg_display_now();
   vg_status st;
 
-  if (!p->settings.solver_parts) return VG_OK;
+  if (!o.n_part) return VG_OK;
   vg_display_update(show, "partition", vg_run_cells(r), 0);
-  o.n_part = (uint64_t)p->settings.solver_parts;
   o.threads = r->threads;
   st = vg_solver_part_slices(r->comm, &r->slices, &o, &r->parted, &r->parts,
                              &r->solver, err);
@@ -540,9 +545,9 @@ vg_status vg_run_mesh(struct vg_run *r, const struct vg_problem *p,
 {
   vg_status st;
 
-  r->threads = p->settings.threads ? (int)p->settings.threads
+  r->threads = p->resolved.settings.threads ? (int)p->resolved.settings.threads
                                    : vg_comm_default_threads(r->comm);
-  r->pictures.is_on = r->outputs && p->settings.report_html;
+  r->pictures.is_on = r->outputs && p->resolved.settings.report_html;
   st = layers->is_on ? mesh_layers(r, p, layers, show, err)
                      : mesh_plain(r, p, show, err);
   return st < 0 ? st : part_for_solver(r, p, show, err);

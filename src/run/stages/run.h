@@ -68,14 +68,15 @@ struct vg_run {
 
 /** Close the surface as read, settle its layers and swap its slivers. By the
  * first rank of each node on the cores of all; the others get the surface and
- * whether layers grow, no notes, reports or settings. Collective. */
+ * whether layers grow; their notes and reports are empty, and their resolved
+ * settings those that were read. Collective. */
 vg_status vg_run_surface(struct vg_run *r, struct vg_problem *p,
                          struct vg_layer_stage *layers,
                          struct vg_display *show, struct vg_error *err);
 
 /** Sizes, layers, field, judgement, and what of r->outputs is written slice
  * by slice. Collective; the mesh is r->slices.
- * p->surface and layers are needed as long as it is. */
+ * The boundary of p and layers are needed as long as it is. */
 vg_status vg_run_mesh(struct vg_run *r, const struct vg_problem *p,
                       struct vg_layer_stage *layers, struct vg_display *show,
                       struct vg_error *err);

@@ -1,0 +1,77 @@
+/* run/settings/options.h: from settings to the options of the modules below.
+ * One function fills each structure. A caller adds what is no setting: threads,
+ * callbacks, arrays of the surface. Functions on the surface take the settings
+ * that were read, those on the mesh resolved ones (run/settings/resolved.h).
+ * They are pure: threads may call them at once. */
+#ifndef VG_RUN_SETTINGS_OPTIONS_H
+#define VG_RUN_SETTINGS_OPTIONS_H
+
+#include "core/flow/flow.h"
+#include "core/remesh/gaps.h"
+#include "core/remesh/remesh.h"
+#include "core/surface/surface_check.h"
+#include "core/wrap/wrap.h"
+#include "io/cad/cad.h"
+#include "io/slices/slices.h"
+#include "layers/columns/layers.h"
+#include "partition/cut/partition.h"
+#include "partition/solver/solver.h"
+#include "run/settings/settings.h"
+
+/* --- the surface --------------------------------------------------------- */
+
+/** Finer where the surface is remeshed. Unset: note, stop, user. */
+struct vg_cad_options vg_options_cad(const struct vg_settings *s,
+                                     int is_remeshed);
+
+/** Unset: require_bc, external, threads, stop. */
+struct vg_surface_check_options vg_options_check(const struct vg_settings *s);
+
+/** The reading that settings ask for, also by a farfield; `has_cells`: the
+ * surface is the boundary of a volume mesh, which bounds a flow unless settings
+ * ask for something else. Unset: side, require_bc, threads, stop. */
+struct vg_flow_options vg_options_flow(const struct vg_settings *s,
+                                       int has_cells);
+
+/** Unset: keep, empty, stop, progress, user. */
+struct vg_wrap_options vg_options_wrap(const struct vg_settings *s);
+
+/** Unset: most_place, threads, stop. */
+struct vg_gap_options vg_options_gaps(const struct vg_settings *s,
+                                      int is_remeshed);
+
+/** Sources are borrowed from s. Unset: all that depends on the surface, map,
+ * threads, stop. */
+struct vg_remesh_options vg_options_remesh(const struct vg_settings *s);
+
+/** Unset: stop, user. */
+struct vg_farfield vg_options_farfield(const struct vg_settings *s);
+
+/* --- the mesh ------------------------------------------------------------ */
+
+/** map: sizes besides the sources; NULL: none; borrowed. Unset: coarseness,
+ * threads, team. */
+struct vg_sizing_options vg_options_sizing(const struct vg_settings *s,
+                                           const struct vg_size_map *map);
+
+/** Unset: patch, law_at, progress, team. */
+struct vg_layer_options vg_options_layers(const struct vg_settings *s);
+
+/** Unset: what is no setting, and the cells of the layers. The maker is that of
+ * partition/advance/ways.h. */
+struct vg_partition_options
+vg_options_partition(const struct vg_settings *s);
+
+/** Number of parts (0: by the size of leaves) and how they are made. */
+struct vg_parting_options vg_options_parting(const struct vg_settings *s);
+
+/** Where planes cut; levels of bisection are vg_partition_options.levels. */
+struct vg_cut_rule vg_options_cuts(const struct vg_settings *s);
+
+/** Unset: threads. */
+struct vg_solver_options vg_options_solver(const struct vg_settings *s);
+
+/** Unset: threads. */
+struct vg_slices_options vg_options_slices(const struct vg_settings *s);
+
+#endif

@@ -1,0 +1,126 @@
+#include "run/settings/resolved.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/flow/flow.h"
+#include "layers/columns/law.h"
+#include "layers/expand/join.h"
+
+struct vg_layer_row vg_settings_layer_row(const struct vg_settings *s,
+                                          int32_t id)
+{
+  struct vg_layer_row row;
+
+  for (size_t i = 0; i < s->n_layer; i++)
+    if (s->layer_row[i].id == id) return s->layer_row[i];
+  vg_settings_row_default(VG_TABLE_LAYERS, &row);
+  row.id = id;
+  return row;
+}
+
+double vg_settings_first(const struct vg_layer_settings *l, double first,
+                         double y_plus)
+{
+  if (first > 0) return first;
+  return y_plus > 0 && l->reynolds > 0
+         ? vg_first_height(y_plus, l->reynolds, l->length) : 0;
+}
+
+void vg_resolve_flow(struct vg_settings *s, int flow, int axis)
+{
+  if (flow == VG_FLOW_UNKNOWN) return;
+  if (s->farfield.kind == VG_DOMAIN_AUTO)
+    s->farfield.kind = flow == VG_FLOW_EXTERNAL ? VG_DOMAIN_SPHERE
+                                                : VG_DOMAIN_NONE;
+  s->flow = flow;
+  s->half = axis < 0 ? VG_HALF_NO : (int)VG_HALF_X + axis;
+}
+
+void vg_resolve_write(const struct vg_settings *s, char write[VG_WRITE_MAX])
+{
+  snprintf(write, VG_WRITE_MAX, "%s", strcmp(s->write, "auto") != 0 ? s->write
+           : s->cells == VG_LAYER_MIXED ? "b8.ugrid" : "cogsg,b8.ugrid");
+}
+
+/* Rows in place of those of a table. */
+static vg_status replace_patches(struct vg_settings *s,
+                                 const struct vg_decisions *d,
+                                 struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  s->n_patch = 0;
+  for (size_t i = 0; i < d->n_patch && st >= 0; i++)
+    st = vg_settings_add(s, VG_TABLE_PATCHES, &d->patch[i], err);
+  return st;
+}
+
+/* Heights in place of y+, and a row for each given patch in place of lists and
+ * conditions: they lead to the same layers again. */
+static vg_status resolve_layers(const struct vg_settings *read,
+                                const struct vg_decisions *d,
+                                struct vg_settings *s, struct vg_error *err)
+{
+  struct vg_layer_settings *l = &s->layer;
+  vg_status st = VG_OK;
+
+  if (!d->has_layers) {
+    l->grow = VG_ANSWER_NO;
+    return VG_OK;
+  }
+  s->n_layer = 0;
+  for (size_t i = 0; i < d->n_grows && st >= 0; i++) {
+    struct vg_layer_row row = vg_settings_layer_row(read, d->grows[i].id);
+
+    row.grow = d->grows[i].grows ? VG_ANSWER_YES : VG_ANSWER_NO;
+    st = vg_settings_add(s, VG_TABLE_LAYERS, &row, err);
+  }
+  l->grow = VG_ANSWER_YES;
+  l->first = vg_settings_first(l, l->first, l->y_plus);
+  l->y_plus = 0;
+  l->cap = isnan(l->cap) ? VG_LAYER_CAP : l->cap;
+  *l->walls = *l->slip = 0;
+  return st;
+}
+
+static int answer(int is_yes)
+{
+  return is_yes ? VG_ANSWER_YES : VG_ANSWER_NO;
+}
+
+vg_status vg_resolve_nothing(const struct vg_settings *read,
+                             struct vg_resolved *out, struct vg_error *err)
+{
+  vg_status st = vg_settings_copy(&out->settings, read, err);
+
+  if (st >= 0) vg_resolve_write(read, out->settings.write);
+  return st;
+}
+
+vg_status vg_resolve(const struct vg_settings *read,
+                     const struct vg_decisions *decided,
+                     struct vg_resolved *out, struct vg_error *err)
+{
+  struct vg_resolved r = VG_RESOLVED_INIT;
+  struct vg_settings *s = &r.settings;
+  vg_status st;
+
+  VG_TRY(vg_resolve_nothing(read, &r, err));
+  s->remesh = answer(decided->is_remeshed);
+  s->swap = answer(decided->is_swapped);
+  vg_resolve_flow(s, decided->flow, decided->axis);
+  VG_TRY(replace_patches(s, decided, err));
+  VG_TRY(resolve_layers(read, decided, s, err));
+  *out = r;
+  return VG_OK;
+done:
+  vg_resolved_release(&r);
+  return st;
+}
+
+void vg_resolved_release(struct vg_resolved *r)
+{
+  vg_settings_release(&r->settings);
+}
