@@ -197,14 +197,14 @@ done:
 }
 
 /* The rest of the path, as vanguard mesh takes it before it makes cells. */
-static vg_status finish(struct vg_problem *p, struct vg_display *show,
+static vg_status finish(struct vg_boundary *b, struct vg_display *show,
                         struct vg_error *err)
 {
   struct vg_layer_stage layers = { 0 };
   vg_status st;
 
-  VG_TRY(vg_problem_close(p, show, err));
-  st = vg_problem_layers(p, &layers, err);
+  VG_TRY(vg_boundary_close(b, show, err));
+  st = vg_layer_stage_plan(&layers, b, err);
 done:
   vg_layer_stage_release(&layers);
   return st;
@@ -220,7 +220,7 @@ vg_status vg_check_surface(const struct vg_check_surface *a,
   struct findings f = { 0 };
   json_t *body = NULL;
   size_t n_note;
-  vg_status st = vg_problem_shape(p, &o, show, &why), shape = st;
+  vg_status st = vg_boundary_shape(&p->read, &o, show, b, &why), shape = st;
 
   if (st < 0 && !b->check.face_kinds) {
     st = vg_fail(err, st, "%s", why.text);
@@ -229,7 +229,7 @@ vg_status vg_check_surface(const struct vg_check_surface *a,
   VG_TRY(examine(a, b, &f, show, err));
   body = vg_report_surface_json(&b->surface, &b->check, VG_LISTED_DEFECTS);
   n_note = p->notes.n;
-  if (shape >= 0) shape = finish(p, show, &why);
+  if (shape >= 0) shape = finish(b, show, &why);
   vg_display_clear(show);
   if (a->json) print_json(a, b, &f, body, shape, &why);
   else

@@ -56,8 +56,8 @@ static void release_files(struct files *f)
   free(f->stem);
 }
 
-/* A file that is to be written, for which there must be room: what is there is
- * an input or somebody's work. */
+/* Register a file to write. A file of that name is an input or somebody's work,
+ * and stays. */
 static vg_status add_file(struct files *f, const char *suffix,
                           struct vg_error *err)
 {
@@ -154,7 +154,7 @@ static json_t *report(const struct vg_problem *p, const struct files *f)
                    "notes", notes, "files", files);
 }
 
-/* The file with a suffix: the surface, or what is told of it. */
+/* Write the file with a suffix: the surface, its conditions or a report. */
 static vg_status write_file(const struct vg_problem *p, struct files *f,
                             const char *suffix, const json_t *o,
                             struct vg_error *err)
@@ -208,7 +208,7 @@ static void print(const struct vg_problem *p, const struct files *f)
   }
 }
 
-/* Deck, options, and what the command itself asks for. */
+/* Deck and options; the command adds its own format and remeshes always. */
 static vg_status read_settings(const struct arguments *a, struct vg_problem *p,
                                struct vg_error *err)
 {
@@ -229,12 +229,13 @@ static vg_status make_surface(struct vg_problem *p, struct vg_display *show,
 {
   const struct vg_shape_options o = { .threads = (int)p->asked.threads,
                                       .remesh_open = 1 };
+  struct vg_boundary *b = &p->boundary;
   vg_status st;
 
   VG_TRY(vg_problem_read(p, NULL, show, err));
-  VG_TRY(vg_problem_shape(p, &o, show, err));
-  VG_TRY(vg_boundary_check(&p->boundary, show, err));
-  vg_boundary_note_unset(&p->boundary);
+  VG_TRY(vg_boundary_shape(&p->read, &o, show, b, err));
+  VG_TRY(vg_boundary_check(b, show, err));
+  vg_boundary_note_unset(b);
   vg_problem_note_unused(p, 0, VG_USE_JUDGED_SURFACE);
 done:
   return st;

@@ -186,9 +186,9 @@ static vg_status read_project(struct vg_plan *p, struct vg_error *err)
   VG_TRY(vg_problem_read(q, NULL, &p->show, err));
   count_time(p, VG_PHASE_READ, start);
   start = vg_clock_process();
-  VG_TRY(vg_problem_shape(q, &all_cores, &p->show, err));
-  VG_TRY(vg_problem_close(q, &p->show, err));
-  VG_TRY(vg_problem_layers(q, &p->layers, err));
+  VG_TRY(vg_boundary_shape(&q->read, &all_cores, &p->show, &q->boundary, err));
+  VG_TRY(vg_boundary_close(&q->boundary, &p->show, err));
+  VG_TRY(vg_layer_stage_plan(&p->layers, &q->boundary, err));
   st = vg_problem_settle(q, &p->layers, err);
   count_time(p, VG_PHASE_CHECK, start);
 done:

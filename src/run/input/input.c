@@ -681,19 +681,20 @@ static vg_status begin(const struct vg_settings *asked, struct vg_read *r,
   return st;
 }
 
-vg_status vg_read_given(const struct vg_settings *asked, const char *name,
-                        struct vg_mesh *surface, struct vg_read *r,
-                        struct vg_error *err)
+vg_status vg_problem_given(struct vg_problem *p, const char *name,
+                           struct vg_mesh *surface, struct vg_error *err)
 {
+  struct vg_read *r = &p->read;
   struct vg_input_files *f = &r->files;
   char **path[] = { &f->d3m, &f->front, &f->surface, &f->mapbc, &f->deck,
                     &f->tags, &f->aflr };
   vg_status st;
   int bad = 0;
 
+  r->notes = &p->notes;
   vg_mesh_move(&r->surface, surface);
   r->side = VG_SIDE_DEFINED;       /* as the interface has it */
-  VG_TRY(begin(asked, r, err));
+  VG_TRY(begin(&p->asked, r, err));
   f->stem = strdup(name);
   for (size_t i = 0; i < sizeof path / sizeof *path; i++)
     bad |= !(*path[i] = strdup(""));
@@ -705,7 +706,7 @@ done:
   return st;
 }
 
-/* What is known without the surface. */
+/* Read the project, its sources and the file of sizes. */
 static vg_status read_asides(const struct vg_settings *asked,
                              struct vg_read *r, struct vg_error *err)
 {
@@ -722,7 +723,7 @@ done:
   return st;
 }
 
-/* What files say of the surface that is read. */
+/* Take conditions, names and layers of the patches from files and settings. */
 static vg_status read_patches(struct vg_read *r, struct vg_error *err)
 {
   vg_status st;
@@ -737,29 +738,17 @@ done:
   return st;
 }
 
-vg_status vg_read_project(const struct vg_settings *asked,
-                          struct vg_comm *comm, struct vg_display *show,
-                          struct vg_read *r, struct vg_error *err)
+vg_status vg_problem_read(struct vg_problem *p, struct vg_comm *comm,
+                          struct vg_display *show, struct vg_error *err)
 {
-  vg_status st = read_asides(asked, r, err);
+  struct vg_read *r = &p->read;
+  vg_status st;
 
+  r->notes = &p->notes;
+  st = read_asides(&p->asked, r, err);
   if (vg_read_is_by_first(r, comm)) st = read_for_all(r, comm, st, err);
   else if (st >= 0) st = read_surface(r, show, err);
   if (st >= 0) st = read_patches(r, err);
   if (st >= 0 && show) st = vg_display_stopped(show, err);
   return vg_comm_agree(comm, st, err);
-}
-
-vg_status vg_problem_read(struct vg_problem *p, struct vg_comm *comm,
-                          struct vg_display *show, struct vg_error *err)
-{
-  p->read.notes = &p->notes;
-  return vg_read_project(&p->asked, comm, show, &p->read, err);
-}
-
-vg_status vg_problem_given(struct vg_problem *p, const char *name,
-                           struct vg_mesh *surface, struct vg_error *err)
-{
-  p->read.notes = &p->notes;
-  return vg_read_given(&p->asked, name, surface, &p->read, err);
 }

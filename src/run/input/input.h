@@ -68,19 +68,19 @@ struct vg_renewal {
                                        NAN where one of them is not closed */
 };
 
-/** 1. What the files of a project hold. Made by vg_read_project or
- * vg_read_given; const from then on, but for `surface` and `model`, which the
- * boundary takes over. */
+/** 1. The contents of a project's files. Made by vg_problem_read or
+ * vg_problem_given; const from then on, but for `surface` and `model`, which
+ * the boundary takes over. */
 struct vg_read {
   struct vg_input_files files;
-  struct vg_settings settings;     /* asked, with what the files add: sources,
-                                      layers, numbers in place of names */
+  struct vg_settings settings;     /* asked, and sources and layers from files;
+                                      numbers in place of names of patches */
   const struct vg_size_map *map;   /* sizes besides sources; NULL: none */
   struct vg_size_samples *samples; /* of the setting `sizes`; NULL */
   struct vg_project project;       /* empty without a .d3m */
   struct vg_mesh surface;
-  struct vg_cad_model model;       /* of a CAD file that is to be remeshed, with
-                                      the first rank; else empty */
+  struct vg_cad_model model;       /* of a CAD file whose surface is remeshed,
+                                      on the first rank; else empty */
   struct vg_point_heights heights;
   enum vg_flow_side side;          /* to which the format of the surface has
                                       triangles point */
@@ -97,8 +97,8 @@ struct vg_boundary {
   struct vg_notes *notes;          /* borrowed */
   int threads;                     /* 0: one per core */
   struct vg_mesh surface;
-  struct vg_shmem common;          /* where its arrays are, if a node has them
-                                      in common */
+  struct vg_shmem common;          /* memory of its arrays, if the ranks of a
+                                      node share them */
   struct vg_cad_model model;       /* as in struct vg_read */
   const struct vg_size_map *map;   /* sizes besides sources: those that were
                                       read and those of gaps; NULL: none */
@@ -120,17 +120,16 @@ struct vg_boundary {
   int is_swapped;                  /* edges of the surface were swapped */
 };
 
-/** The values of a run up to its mesh, in their order: asked, read, boundary,
- * what layers ask for (run/input/layers.h), resolved. All commands make them by
- * the same calls, as far as each one goes:
+/** The values of a run up to its mesh. All commands and the library make them
+ * by the same calls, as far as each one goes:
  *
- *   vg_problem_open        files found, the deck read into `asked`; options of
- *                          the caller go there, too
- *   vg_problem_read        1
- *   vg_problem_shape       2
- *   vg_problem_close       3
- *   vg_problem_layers      4 (run/input/layers.h)
- *   vg_problem_settle      slivers swapped, and `resolved`
+ *   vg_problem_open      files found, the deck read into `asked`; options of
+ *                        the caller go there, too
+ *   vg_problem_read      1. read
+ *   vg_boundary_shape    2. the surface, from `read`
+ *   vg_boundary_close    3. the domain around it
+ *   vg_layer_stage_plan  4. what layers ask for (run/input/layers.h)
+ *   vg_problem_settle    slivers swapped; resolved settings
  */
 struct vg_problem {
   struct vg_settings asked;        /* not written after parsing */
@@ -180,20 +179,11 @@ vg_status vg_problem_read(struct vg_problem *p, struct vg_comm *comm,
 vg_status vg_problem_given(struct vg_problem *p, const char *name,
                            struct vg_mesh *surface, struct vg_error *err);
 
-/** What the two do. *read has its files (vg_read_project) and notes; `asked` is
- * only read. */
-vg_status vg_read_project(const struct vg_settings *asked,
-                          struct vg_comm *comm, struct vg_display *show,
-                          struct vg_read *read, struct vg_error *err);
-vg_status vg_read_given(const struct vg_settings *asked, const char *name,
-                        struct vg_mesh *surface, struct vg_read *read,
-                        struct vg_error *err);
-
 /** 1 for a CAD file on several ranks, which the first one reads and remeshes
  * for the others. */
 int vg_read_is_by_first(const struct vg_read *read, struct vg_comm *comm);
 
-/** What settings and map say of sizes. */
+/** Options of sizes: settings and map. */
 struct vg_sizing_options vg_boundary_sizing(const struct vg_boundary *b);
 
 /** 1 where settings remesh this surface: `auto` remeshes CAD, and tessellations
@@ -201,41 +191,38 @@ struct vg_sizing_options vg_boundary_sizing(const struct vg_boundary *b);
 int vg_read_is_remeshed(const struct vg_read *read,
                         const struct vg_mesh *surface);
 
+struct vg_shape_options {
+  int threads;                     /* 0: one per core */
+  int remesh_open;                 /* 1: remesh an open surface, too, that is no
+                                      half model */
+  int has_maker;                   /* 1: another rank remeshes this surface,
+                                      which is CAD's (vg_problem_share) */
+};
+
 /** Weld, check and repair the surface of `read`, and remesh it where settings
- * ask for it. `read` gives up its triangles and its CAD model.
+ * ask for it. The triangles and the CAD model of `read` move to `out`.
  *
- * @param out      zeroed, with flow VG_FLOW_INIT; on failure it has the surface
- *                 and its check, for reports
- * @param remesh_open  1: an open surface that is no half model is remeshed, too
- * @param has_maker    1: another rank remeshes CAD (vg_boundary_share)
+ * @param out  zeroed, with flow VG_FLOW_INIT; vg_boundary_release. On failure
+ *             it has the surface and its check, for reports
  * VG_ERR_GEOMETRY when defects are in the way. */
-struct vg_shape_options { int threads, remesh_open, has_maker; };
 vg_status vg_boundary_shape(struct vg_read *read,
                             const struct vg_shape_options *o,
                             struct vg_display *show, struct vg_boundary *out,
                             struct vg_error *err);
 
-/** Complete the domain. VG_ERR_GEOMETRY when defects remain: they are in
- * b->check. */
+/** Add farfield and symmetry plane as b->flow asks for, and check the whole
+ * boundary. VG_ERR_GEOMETRY when defects remain: b->check lists them. */
 vg_status vg_boundary_close(struct vg_boundary *b, struct vg_display *show,
                             struct vg_error *err);
 
-/** The same for an open or closed surface that is no domain: VG_ERR_GEOMETRY
- * where it has other defects than open edges. */
+/** The step for a surface that need not bound a domain: VG_ERR_GEOMETRY where
+ * it has other defects than open edges. */
 vg_status vg_boundary_check(struct vg_boundary *b, struct vg_display *show,
                             struct vg_error *err);
 
 void vg_boundary_release(struct vg_boundary *b);
 
-/** The steps of a problem. */
-vg_status vg_problem_shape(struct vg_problem *p,
-                           const struct vg_shape_options *o,
-                           struct vg_display *show, struct vg_error *err);
-vg_status vg_problem_close(struct vg_problem *p, struct vg_display *show,
-                           struct vg_error *err);
-
-/** The triangles as they are now: those of the boundary, or as they were read
- * where there is none yet. */
+/** The triangles of the boundary; before vg_boundary_shape those of `read`. */
 const struct vg_mesh *vg_problem_surface(const struct vg_problem *p);
 
 /** Remesh the surface; distances are measured, notes tell. The surface is as

@@ -583,12 +583,6 @@ static vg_status list_grows(const struct vg_layer_stage *s,
   return VG_OK;
 }
 
-vg_status vg_problem_layers(struct vg_problem *p, struct vg_layer_stage *s,
-                            struct vg_error *err)
-{
-  return vg_layer_stage_plan(s, &p->boundary, err);
-}
-
 vg_status vg_problem_settle(struct vg_problem *p,
                             const struct vg_layer_stage *s,
                             struct vg_error *err)

@@ -55,11 +55,8 @@ void vg_layer_stage_release(struct vg_layer_stage *s);
 vg_status vg_layer_stage_plan(struct vg_layer_stage *s, struct vg_boundary *b,
                               struct vg_error *err);
 
-/** The steps of a problem: vg_layer_stage_plan; then slivers of the surface are
- * swapped as settings say, and p->resolved is made: a run with these settings
- * makes the same mesh. */
-vg_status vg_problem_layers(struct vg_problem *p, struct vg_layer_stage *s,
-                            struct vg_error *err);
+/** Swap slivers of the surface as settings say, and make p->resolved: a run with
+ * these settings makes the same mesh. */
 vg_status vg_problem_settle(struct vg_problem *p,
                             const struct vg_layer_stage *s,
                             struct vg_error *err);

@@ -15,15 +15,15 @@
 vg_status vg_read_sizes(struct vg_read *r, struct vg_error *err);
 
 /** Where the setting gap_edges asks for it: sizes from gaps between surfaces
- * into b->gaps; b->map is then the less of those and what it was. Of the closed
- * surface, before it is made anew; a note tells. */
+ * into b->gaps. b->map becomes the smaller of those and of the sizes that were
+ * read. Called for the closed surface, before it is remeshed; a note tells. */
 vg_status vg_boundary_gaps(struct vg_boundary *b, struct vg_display *show,
                            struct vg_error *err);
 
-/** Free them, and give b->map back; nothing happens where there are none. */
+/** Free the sizes of gaps and restore b->map. Does nothing without gaps. */
 void vg_boundary_forget_gaps(struct vg_boundary *b);
 
-/** Free all sizes, of gaps too; nothing happens where there are none. */
+/** Free the sizes of gaps and of the file that `sizes` names. */
 void vg_problem_forget_sizes(struct vg_problem *p);
 
 #endif

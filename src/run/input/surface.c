@@ -427,24 +427,9 @@ vg_status vg_boundary_check(struct vg_boundary *b, struct vg_display *show,
   return st == VG_ERR_STOPPED ? vg_display_stopped(show, err) : st;
 }
 
-/* --- the steps of a problem ---------------------------------------------- */
-
 const struct vg_mesh *vg_problem_surface(const struct vg_problem *p)
 {
   return p->boundary.read ? &p->boundary.surface : &p->read.surface;
-}
-
-vg_status vg_problem_shape(struct vg_problem *p,
-                           const struct vg_shape_options *o,
-                           struct vg_display *show, struct vg_error *err)
-{
-  return vg_boundary_shape(&p->read, o, show, &p->boundary, err);
-}
-
-vg_status vg_problem_close(struct vg_problem *p, struct vg_display *show,
-                           struct vg_error *err)
-{
-  return vg_boundary_close(&p->boundary, show, err);
 }
 
 /* Face f of the report as one or two triangles (quadrilaterals come after

@@ -5,7 +5,7 @@
 #include "partition/advance/ways.h"
 
 /* Of struct vg_cad_options, however sizes are scaled. */
-#define FINE_CHORD 3e-4   /* S15: of what the surface is made anew from */
+#define FINE_CHORD 3e-4   /* S15: for a surface that is remeshed */
 #define FINEST_CHORD 1e-4 /* S45: where triangles of thin tips do not cross
                              yet */
 #define FINE_ANGLE 8.0
@@ -17,7 +17,7 @@
 
 /* --- the surface --------------------------------------------------------- */
 
-/* Triangles along a line are held against facets beside it. */
+/* Triangles along a stretched line are compared with facets next to it. */
 static int is_stretched(const struct vg_settings *s)
 {
   for (size_t i = 0; i < s->n_surface; i++)

@@ -1,12 +1,12 @@
 /* run/settings/resolved.h: the settings of a run as they hold.
  *
- *   asked     what deck, options or calls say; never written after parsing
- *   read      a copy, with what the files of the project add (run/input)
- *   resolved  once surface, domain and layers are decided: `auto`, names and
- *             conditions have given way to what was decided, so that a run with
- *             these settings makes the same mesh
+ *   asked     the values of deck, options or calls; never written after parsing
+ *   read      a copy, to which the files of the project add values (run/input)
+ *   resolved  made once surface, domain and layers are decided: decisions
+ *             stand in place of `auto`, of names and of missing conditions, so
+ *             that a run with these settings makes the same mesh
  *
- * Meshing, files and reports go by the resolved ones. */
+ * Meshing, output files and reports use the resolved settings. */
 #ifndef VG_RUN_SETTINGS_RESOLVED_H
 #define VG_RUN_SETTINGS_RESOLVED_H
 

@@ -59,7 +59,7 @@ static vg_status shape_surface(struct vg_run *r, struct vg_problem *p,
   const struct vg_shape_options o = {
     .threads = node_threads(r, &p->asked),
     .has_maker = r->rank && vg_read_is_by_first(&p->read, r->comm) };
-  vg_status st = vg_problem_shape(p, &o, show, err);
+  vg_status st = vg_boundary_shape(&p->read, &o, show, &p->boundary, err);
 
   vg_comm_bind_node(r->comm, 0);
   return st;
@@ -69,12 +69,13 @@ static vg_status settle_surface(struct vg_run *r, struct vg_problem *p,
                                 struct vg_layer_stage *layers,
                                 struct vg_display *show, struct vg_error *err)
 {
+  struct vg_boundary *b = &p->boundary;
   vg_status st;
 
-  p->boundary.threads = node_threads(r, &p->asked);
-  VG_TRY(vg_problem_close(p, show, err));
-  VG_TRY(vg_problem_layers(p, layers, err));
-  vg_boundary_note_unset(&p->boundary);
+  b->threads = node_threads(r, &p->asked);
+  VG_TRY(vg_boundary_close(b, show, err));
+  VG_TRY(vg_layer_stage_plan(layers, b, err));
+  vg_boundary_note_unset(b);
   st = vg_problem_settle(p, layers, err);
 done:
   vg_comm_bind_node(r->comm, 0);
@@ -178,7 +179,7 @@ static void add_digest(void *user, size_t n, const void *data)
   *d = vg_digest_of(*d, n, data);
 }
 
-/* What the outcomes of tasks follow from, besides their input: the program, the
+/* The outcomes of tasks follow from their input and from the program, the
  * settings, the boundary, and sizes that no setting describes. The first rank
  * alone has resolved settings: the others get its digest. Collective. */
 static vg_status job_digest(const struct vg_run *r, const struct vg_problem *p,
