@@ -8,6 +8,7 @@
 #include "api/job.h"
 #include "base/memory.h"
 #include "run/report/report.h"
+#include "run/settings/options.h"
 
 void vg_job_release_run(vanguard_job *job, int success)
 {
@@ -58,8 +59,7 @@ static vg_status use_sizes(vanguard_job *job)
   } else if (job->n_size) {
     st = vg_size_samples_new(job->n_size, (const double (*)[3])job->size_at,
                              job->size_of,
-                             vg_scaled_growth(p->asked.growth,
-                                              p->asked.scale),
+                             vg_options_growth(&p->asked),
                              (int)p->asked.threads, &job->samples,
                              &job->err);
     if (st >= 0) p->read.map = vg_size_samples_map(job->samples);
@@ -130,7 +130,7 @@ static vg_status make(vanguard_job *job)
   VG_TRY(vg_run_surface(r, p, &job->layers, &job->show, &job->err));
   VG_TRY(vg_run_mesh(r, p, &job->layers, &job->show, &job->err));
   front = vg_layer_stage_front(&job->layers, &p->boundary.surface);
-  vg_effects_note(&r->effects, &front, &p->boundary);
+  vg_effects_note(&r->effects, &front, &p->resolved.settings, &p->notes);
   vg_problem_note_unused(p, job->layers.is_on, VG_USE_JUDGED_MESH);
   if (!r->rank)
     vg_report_layers_note(&job->layers, &p->boundary.surface, &p->notes);

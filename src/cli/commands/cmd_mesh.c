@@ -509,6 +509,7 @@ static int print_json(const struct run *r, int ok, const struct vg_error *err)
 static vg_status run_stages(struct run *r, const struct arguments *a,
                             struct vg_error *err)
 {
+  struct vg_problem *p = &r->problem;
   struct vg_run *m = &r->mesh;
   struct vg_mesh front;
   vg_status st;
@@ -517,12 +518,11 @@ static vg_status run_stages(struct run *r, const struct arguments *a,
   VG_TRY(vg_run_resumable(m, err));
   VG_TRY(read_project(r, a, err));
   VG_TRY(close_surface(r, err));
-  VG_TRY(vg_run_mesh(m, &r->problem, &r->layers, &r->show, err));
-  front = vg_layer_stage_front(&r->layers, &r->problem.boundary.surface);
-  vg_effects_note(&m->effects, &front, &r->problem.boundary);
-  vg_problem_note_unused(&r->problem, r->layers.is_on, VG_USE_JUDGED_MESH);
-  vg_report_layers_note(&r->layers, &r->problem.boundary.surface,
-                        &r->problem.notes);
+  VG_TRY(vg_run_mesh(m, p, &r->layers, &r->show, err));
+  front = vg_layer_stage_front(&r->layers, &p->boundary.surface);
+  vg_effects_note(&m->effects, &front, &p->resolved.settings, &p->notes);
+  vg_problem_note_unused(p, r->layers.is_on, VG_USE_JUDGED_MESH);
+  vg_report_layers_note(&r->layers, &p->boundary.surface, &p->notes);
   st = write_all(r, a, err);
 done:
   return st;

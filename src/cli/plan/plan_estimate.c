@@ -467,7 +467,8 @@ static vg_status make(struct vg_plan *p, struct vg_error *err)
                             err));
   VG_TRY(vg_boundary_effects(&p->problem.boundary, p->front, p->sizing,
                              &p->effects, err));
-  vg_effects_note(&p->effects, p->front, &p->problem.boundary);
+  vg_effects_note(&p->effects, p->front, &p->problem.resolved.settings,
+                  &p->problem.notes);
   v = vg_front_of(p->front);
   vg_display_update(&p->show, "forecast", 0, 0);
   VG_TRY(vg_load_new(&v, p->sizing, VG_LOAD_CELLS_PER_CUBE, vg_cores(),

@@ -55,8 +55,8 @@ static vg_status make(struct vg_boundary *b, const struct vg_gaps *found,
 
   if (!g) return vg_fail_memory(err, "the gaps");
   st = vg_size_samples_new(found->n, (const double (*)[3])found->x, found->h,
-                           vg_scaled_growth(s->growth, s->scale), b->threads,
-                           &g->samples, err);
+                           vg_options_growth(s), b->threads, &g->samples,
+                           err);
   if (st < 0) {
     free(g);
     return st;

@@ -12,6 +12,7 @@
 #include "io/mesh/format.h"
 #include "io/mesh/sol.h"
 #include "io/mesh/vtu_read.h"
+#include "run/settings/options.h"
 
 /* H8: between two points of a cell that are further apart than FAR times the
  * smaller of their sizes there are samples, at most PARTS - 1. */
@@ -170,8 +171,8 @@ vg_status vg_read_sizes(struct vg_read *r, struct vg_error *err)
                                (const double (*)[3])m.point, h, err));
   VG_TRY(make_samples(&m, h, &s, err));
   VG_TRY(vg_size_samples_new(s.n, (const double (*)[3])s.x, s.h,
-                             vg_scaled_growth(set->growth, set->scale),
-                             (int)set->threads, &r->samples, err));
+                             vg_options_growth(set), (int)set->threads,
+                             &r->samples, err));
   r->map = vg_size_samples_map(r->samples);
   vg_note(r->notes, "sizes of %zu points were read from %s", m.n_point,
           set->sizes);

@@ -67,9 +67,9 @@ static void explain(const struct vg_limited_source *h,
 }
 
 static void note_limited(const struct vg_limited_source *h,
-                         const struct vg_mesh *front, struct vg_boundary *b)
+                         const struct vg_mesh *front,
+                         const struct vg_source *s, struct vg_notes *notes)
 {
-  const struct vg_source *s = b->read->settings.source + h->source;
   char name[160], why[320];
 
   snprintf(name, sizeof name, "source %zu (%s%s%.32s, from %.4g %.4g %.4g)",
@@ -77,20 +77,19 @@ static void note_limited(const struct vg_limited_source *h,
            s->p0[0], s->p0[1], s->p0[2]);
   explain(h, front, why, sizeof why);
   if (is_wholly(h))
-    vg_note(b->notes, "%s gets nowhere what it asks for: %.3g at best where "
+    vg_note(notes, "%s gets nowhere what it asks for: %.3g at best where "
             "it asks for %.3g, at %.4g %.4g %.4g, where %s", name, h->got,
             h->asked, h->at[0], h->at[1], h->at[2], why);
   else
-    vg_note(b->notes, "%s is held back in %zu of %zu places: at %.4g %.4g "
+    vg_note(notes, "%s is held back in %zu of %zu places: at %.4g %.4g "
             "%.4g it asks for %.3g and gets %.3g, where %s", name, h->n_limited,
             h->n_place, h->at[0], h->at[1], h->at[2], h->asked, h->got, why);
 }
 
-static void note_unmet(const struct vg_unmet_source *u, struct vg_boundary *b)
+static void note_unmet(const struct vg_unmet_source *u,
+                       const struct vg_source *s, struct vg_notes *notes)
 {
-  const struct vg_source *s = b->read->settings.source + u->source;
-
-  vg_note(b->notes, "source %zu (%s%s%.32s) has no effect in %zu of %zu "
+  vg_note(notes, "source %zu (%s%s%.32s) has no effect in %zu of %zu "
           "places: at %.4g %.4g %.4g the size is %.3g, and no point of the "
           "mesh is within twice that, for sizes grow faster around it than "
           "cells can; a larger radius or growth of 2 or less would help",
@@ -100,7 +99,7 @@ static void note_unmet(const struct vg_unmet_source *u, struct vg_boundary *b)
 }
 
 static void note_outside(const struct vg_effects *h, int is_beyond,
-                         struct vg_boundary *b)
+                         struct vg_notes *notes)
 {
   char list[200] = "";
   size_t n = 0, at = 0;
@@ -115,7 +114,7 @@ static void note_outside(const struct vg_effects *h, int is_beyond,
       at += (size_t)snprintf(list + at, sizeof list - at, " ...");
   }
   if (!n) return;
-  vg_note(b->notes, "%zu source%s (number%s%s) %s wholly %s: of %s no more "
+  vg_note(notes, "%zu source%s (number%s%s) %s wholly %s: of %s no more "
           "than the growth is felt", n, n > 1 ? "s" : "", n > 1 ? "s" : "",
           list, n > 1 ? "lie" : "lies",
           is_beyond ? "outside the domain"
@@ -124,20 +123,20 @@ static void note_outside(const struct vg_effects *h, int is_beyond,
 }
 
 void vg_effects_note(const struct vg_effects *h, const struct vg_mesh *front,
-                     struct vg_boundary *b)
+                     const struct vg_settings *s, struct vg_notes *notes)
 {
   for (size_t i = 0; i < h->n && i < VG_SHOWN_LIMITED; i++)
-    note_limited(h->item + i, front, b);
+    note_limited(h->item + i, front, s->source + h->item[i].source, notes);
   if (h->n > VG_SHOWN_LIMITED)
-    vg_note(b->notes, "%zu more sources are held back; the JSON report has "
+    vg_note(notes, "%zu more sources are held back; the JSON report has "
             "them all", h->n - VG_SHOWN_LIMITED);
   for (size_t i = 0; i < h->n_unmet && i < VG_SHOWN_LIMITED; i++)
-    note_unmet(h->unmet + i, b);
+    note_unmet(h->unmet + i, s->source + h->unmet[i].source, notes);
   if (h->n_unmet > VG_SHOWN_LIMITED)
-    vg_note(b->notes, "%zu more sources have no effect; the JSON report has "
+    vg_note(notes, "%zu more sources have no effect; the JSON report has "
             "them all", h->n_unmet - VG_SHOWN_LIMITED);
-  note_outside(h, 0, b);
-  note_outside(h, 1, b);
+  note_outside(h, 0, notes);
+  note_outside(h, 1, notes);
 }
 
 static json_t *item_json(const struct vg_limited_source *h,

@@ -17,10 +17,10 @@ vg_status vg_boundary_effects(const struct vg_boundary *b,
 
 /** A note for each source that is held back, or that the mesh does not meet,
  * the first VG_SHOWN_LIMITED of them, and one for all that are outside. front:
- * as for vg_effects_find. */
+ * as for vg_effects_find; s: with the sources. */
 #define VG_SHOWN_LIMITED 10
 void vg_effects_note(const struct vg_effects *h, const struct vg_mesh *front,
-                     struct vg_boundary *b);
+                     const struct vg_settings *s, struct vg_notes *notes);
 
 /** All of them: "held", "unmet" (by the mesh), "inside" (a body), "beyond"
  * (the domain). */

@@ -163,6 +163,11 @@ struct vg_sizing_options vg_options_sizing(const struct vg_settings *s,
   return o;
 }
 
+double vg_options_growth(const struct vg_settings *s)
+{
+  return vg_scaled_growth(s->growth, s->scale);
+}
+
 struct vg_layer_options vg_options_layers(const struct vg_settings *s)
 {
   struct vg_layer_options o = VG_LAYER_OPTIONS_INIT;

@@ -54,6 +54,9 @@ struct vg_farfield vg_options_farfield(const struct vg_settings *s);
 struct vg_sizing_options vg_options_sizing(const struct vg_settings *s,
                                            const struct vg_size_map *map);
 
+/** The growth of sizes at samples (core/sizing/sizing_map.h). */
+double vg_options_growth(const struct vg_settings *s);
+
 /** Unset: patch, law_at, progress, team. */
 struct vg_layer_options vg_options_layers(const struct vg_settings *s);
 

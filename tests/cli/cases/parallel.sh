@@ -136,6 +136,15 @@ says err "run: cannot be resumed: input or options have changed since"
 says err ", is 0.2; restore what changed"
 lacks err "threads was"
 absent other/box.b8.ugrid
+# A setting that leaves the field as it is, but decides the mesh.
+vanguard mesh $cut --run-dir run --resume --edges-per-turn 20 --out other
+exits 1
+says err "edges_per_turn was 24, is 20; restore what changed"
+vanguard mesh $cut --run-dir run --resume --keep-run --schedule cyclic \
+  --max-cells 9000000 --write b8.ugrid --out free
+exits 0
+lacks out "tasks found in run: 0"
+cmp kept/box.b8.ugrid free/box.b8.ugrid || fail "other files than before"
 if [ $has_mpirun = 1 ]; then
   ranks 2 mesh $cut -t 1 --run-dir run --resume --keep-run --out resumed
   agrees resumed
